@@ -1,0 +1,206 @@
+# libmpm: shared and static library, tests, examples.
+#
+#   make                 both libraries in $(BUILD)
+#   make install         PREFIX=/usr/local, DESTDIR=
+#   make check           unit tests, interface tests, examples (needs Check and pkg-config: make check-setup)
+#   make demo            one example, with nothing but a C compiler
+#
+# V=1 shows the commands. CFLAGS and LDFLAGS are the user's; OPT and KERNEL_OPT, which come after CFLAGS, set
+# the optimisation.
+
+VERSION := 0.1.0
+SONAME := libmpm.so.0
+SHARED := libmpm.so.$(VERSION)
+
+PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+DESTDIR ?=
+BUILD ?= build
+CC ?= cc
+CXX ?= g++
+CFLAGS ?= -g
+OPT ?= -O2
+KERNEL_OPT ?= -O3
+WERROR ?= -Werror
+PKG_CONFIG ?= pkg-config
+ifndef V
+Q := @
+SAY = @echo '  $(1) $@'
+endif
+
+WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion $(WERROR)
+COMMON = -std=c11 -MMD -MP -Iinclude -Isrc $(WARNINGS) $(CPPFLAGS) $(CFLAGS)
+LIBRARY = $(COMMON) -fPIC -fvisibility=hidden
+LIBS := -lm -lpthread
+
+# ---- sources ---------------------------------------------------------------------------------------------
+# Kernels are compiled once for each instruction set, with contraction to fused multiply-add; all other files
+# once, without it, so that only the kernels' results depend on the instruction set.
+KERNEL_PATTERNS := src/transfer/weights*.c src/transfer/bspline*.c src/transfer/scatter.c src/transfer/gather.c \
+  src/transfer/advance.c src/transfer/survey.c src/transfer/kernels.c src/material/law_*.c
+KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))
+PLAIN := $(filter-out $(KERNELS),$(sort $(wildcard src/*/*.c)))
+HEADERS := $(sort $(wildcard include/mpm/*.h include/mpm/*.hpp))
+
+ISAS := baseline
+ifneq (,$(findstring x86_64,$(shell $(CC) -dumpmachine)))
+ISAS += avx2 avx512
+endif
+ISA_baseline :=
+ISA_avx2 := -mavx2 -mfma
+ISA_avx512 := -mavx512f -mavx512vl -mavx512dq -mavx2 -mfma -mprefer-vector-width=256
+KERNEL_FLAGS = $(KERNEL_OPT) -ffp-contract=fast -fno-math-errno -fno-trapping-math -Wno-psabi
+
+OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/obj/%.$(isa).o))
+STATIC_LIB := $(BUILD)/libmpm.a
+SHARED_LIB := $(BUILD)/$(SHARED)
+
+EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(sort $(wildcard examples/*.c)))
+BENCHES := $(patsubst bench/%.c,$(BUILD)/bench/%,$(sort $(wildcard bench/*.c)))
+UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
+UNIT := $(BUILD)/tests/unit
+
+.PHONY: all install uninstall examples demo bench clean format format-check
+.PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+all: $(STATIC_LIB) $(SHARED_LIB)
+
+# ---- library ---------------------------------------------------------------------------------------------
+$(BUILD)/obj/src/%.o: src/%.c Makefile
+	@mkdir -p $(@D)
+	$(call SAY,CC)
+	$(Q)$(CC) $(LIBRARY) $(OPT) -ffp-contract=off -c $< -o $@
+
+define kernel_rule
+$(BUILD)/obj/src/%.$(1).o: src/%.c Makefile
+	@mkdir -p $$(@D)
+	$$(call SAY,CC)
+	$$(Q)$$(CC) $$(LIBRARY) $$(KERNEL_FLAGS) $$(ISA_$(1)) -DMPMI_ISA=$(1) -c $$< -o $$@
+endef
+$(foreach isa,$(ISAS),$(eval $(call kernel_rule,$(isa))))
+
+$(STATIC_LIB): $(OBJECTS)
+	@rm -f $@
+	$(call SAY,AR)
+	$(Q)$(AR) rcs $@ $(OBJECTS)
+
+NO_UNDEFINED ?= -Wl,-z,defs
+$(SHARED_LIB): $(OBJECTS) src/libmpm.map
+	$(call SAY,LINK)
+	$(Q)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--version-script=src/libmpm.map $(NO_UNDEFINED) -Wl,-z,noexecstack \
+	  $(CFLAGS) $(LDFLAGS) $(OBJECTS) $(LIBS) -o $@
+	$(Q)ln -sf $(SHARED) $(BUILD)/$(SONAME)
+	$(Q)ln -sf $(SHARED) $(BUILD)/libmpm.so
+
+# ---- installation ----------------------------------------------------------------------------------------
+install: all
+	install -d $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -m 644 $(HEADERS) $(DESTDIR)$(INCLUDEDIR)/mpm
+	install -m 644 $(STATIC_LIB) $(DESTDIR)$(LIBDIR)
+	install -m 755 $(SHARED_LIB) $(DESTDIR)$(LIBDIR)
+	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/libmpm.so
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' \
+	  -e 's|@VERSION@|$(VERSION)|' pkgconfig/mpm.pc.in > $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
+	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
+
+uninstall:
+	rm -f $(HEADERS:include/%=$(DESTDIR)$(INCLUDEDIR)/%)
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libmpm.a $(SHARED) $(SONAME) libmpm.so pkgconfig/mpm.pc)
+	rmdir $(DESTDIR)$(INCLUDEDIR)/mpm 2>/dev/null || :
+
+# ---- examples and benchmarks -----------------------------------------------------------------------------
+$(BUILD)/examples/%: examples/%.c $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+
+$(BUILD)/bench/%: bench/%.c $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+
+examples: $(EXAMPLES)
+
+demo: $(BUILD)/examples/two_disks
+	@mkdir -p $(BUILD)/demo
+	cd $(BUILD)/demo && $(abspath $<)
+
+bench: $(BENCHES)
+	@for program in $(abspath $(BENCHES)); do (cd $(BUILD)/bench && $$program) || exit 1; done
+
+# ---- tests -----------------------------------------------------------------------------------------------
+# Every tests/unit/test_X.c defines Suite *X_suite(void), listed in tests/unit/suites.h. The program is linked to
+# the static library, so that it reaches internal functions. CHECK_LIBS are asked for only when needed: a demo or
+# an installation does without pkg-config.
+CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
+CHECK_LIBS = $(shell $(PKG_CONFIG) --libs check)
+TEST_ENVIRONMENT = CC="$(CC)" CXX="$(CXX)" MAKE="$(MAKE)" PKG_CONFIG="$(PKG_CONFIG)" BUILD="$(abspath $(BUILD))" \
+  MPM_SCRATCH="$(abspath $(BUILD))/tests/scratch"
+
+$(BUILD)/obj/tests/%.o: tests/%.c Makefile
+	@mkdir -p $(@D)
+	$(call SAY,CC)
+	$(Q)$(CC) $(COMMON) $(CHECK_CFLAGS) -O1 -c $< -o $@
+
+$(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(UNIT_OBJECTS) $(STATIC_LIB) $(CHECK_LIBS) $(LIBS) -o $@
+
+check: check-unit check-api check-examples
+
+check-unit: $(UNIT)
+	@mkdir -p $(BUILD)/tests/scratch
+	@$(TEST_ENVIRONMENT) $(UNIT)
+
+check-api: all
+	@mkdir -p $(BUILD)/tests/scratch
+	@for script in $(sort $(wildcard tests/api/*.sh)); do \
+	  echo "$$script"; env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash $$script || exit 1; done
+
+check-examples: examples
+	@mkdir -p $(BUILD)/tests/scratch
+	@for script in $(sort $(wildcard tests/examples/*.sh)); do \
+	  echo "$$script"; $(TEST_ENVIRONMENT) bash $$script || exit 1; done
+
+# With `make -j check-setup check` the tools come before the first file that needs them.
+ifneq (,$(filter check-setup,$(MAKECMDGOALS)))
+$(UNIT_OBJECTS) $(UNIT) check-unit check-api check-examples: | check-setup
+endif
+
+check-setup:
+	@if $(PKG_CONFIG) --exists check 2>/dev/null && command -v g++ >/dev/null; then exit 0; fi; \
+	sudo=; if [ "$$(id -u)" != 0 ]; then sudo=sudo; fi; \
+	$$sudo apt-get update -q && \
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q check pkg-config g++
+
+SANITIZED = $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
+check-asan:
+	ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
+	  BUILD=$(BUILD)-asan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
+
+# The fork of each test would hide threads from the sanitizer.
+check-tsan:
+	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) \
+	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
+
+# Plants known faults one by one in a copy of the sources and expects the unit tests to notice each.
+mutate: $(UNIT)
+	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/run.sh
+
+# ---- upkeep ----------------------------------------------------------------------------------------------
+FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp src/*/*.[ch] examples/*.[ch] bench/*.[ch] \
+  tests/*/*.[ch] tests/*/*.cpp)
+format:
+	clang-format -i $(FORMATTED)
+format-check:
+	clang-format --dry-run -Werror $(FORMATTED)
+
+clean:
+	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan
+
+-include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d) $(BENCHES:=.d)

@@ -1,0 +1,209 @@
+/* Numbered tasks on the library's own threads, the host's executor or the calling thread.
+ *
+ * The pool hands out tasks by compare-and-swap on one word, `ticket`: the number of the run in the upper
+ * half, the tasks not yet handed out in the lower. A worker that wakes late finds a word that has moved on
+ * and takes nothing, so a run ends as soon as its tasks are done: nobody waits for a worker that never came.
+ */
+#define _POSIX_C_SOURCE 200809L
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <time.h>
+
+#include "context/context.h"
+
+enum {
+  SPIN_NS = 5000, /* longest wait before sleeping; a wake-up costs more than that */
+  CACHE_LINE = 64 /* what the threads hammer on is kept apart from what they read */
+};
+#define TASKS_AT_ONCE ((int64_t)UINT32_MAX)
+
+struct mpmi_pool {
+  _Alignas(CACHE_LINE) _Atomic uint64_t ticket;
+  _Alignas(CACHE_LINE) _Atomic int64_t unfinished; /* tasks of the run that are not done yet */
+  /* The run. Written only while no task can be taken; atomic because late workers may look. */
+  _Alignas(CACHE_LINE) _Atomic(mpm_task_fn) task;
+  _Atomic(void *) data;
+  _Atomic int64_t first; /* number of the first task */
+  _Atomic uint32_t count;
+  _Alignas(CACHE_LINE) _Atomic int32_t sleeping; /* workers that need a signal */
+  _Atomic int32_t stop;
+  pthread_mutex_t mutex;
+  pthread_cond_t work, done;
+  int32_t workers; /* threads besides the caller's */
+  size_t bytes;    /* of this allocation */
+  pthread_t thread[];
+};
+
+static void pause_briefly(void) {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  __asm__ volatile("yield");
+#endif
+}
+
+static int64_t nanoseconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+static int nothing_to_take(mpmi_pool *pool) {
+  return (uint32_t)atomic_load(&pool->ticket) == 0;
+}
+
+static int not_finished(mpmi_pool *pool) {
+  return atomic_load(&pool->unfinished) != 0;
+}
+
+/* Waits a moment for the condition to end; true if it has not. The clock bounds the wait, because a pause
+ * takes ten times longer on some processors than on others. */
+static int lasts(mpmi_pool *pool, int (*condition)(mpmi_pool *)) {
+  if (!condition(pool)) return 0;
+  int64_t end = nanoseconds() + SPIN_NS;
+  do {
+    for (int32_t k = 0; k < 4; ++k) pause_briefly();
+    if (!condition(pool)) return 0;
+  } while (nanoseconds() < end);
+  return 1;
+}
+
+/* Runs tasks until none is left to take; the one that finishes the last task of a run wakes the caller. */
+static void take_part(mpmi_pool *pool) {
+  int64_t finished = 0;
+  uint64_t ticket = atomic_load(&pool->ticket);
+  while ((uint32_t)ticket) {
+    /* Valid when the exchange succeeds: the run cannot end, and these cannot change, with a task not handed
+     * out. */
+    mpm_task_fn task = atomic_load_explicit(&pool->task, memory_order_relaxed);
+    void *data = atomic_load_explicit(&pool->data, memory_order_relaxed);
+    int64_t first = atomic_load_explicit(&pool->first, memory_order_relaxed);
+    uint32_t count = atomic_load_explicit(&pool->count, memory_order_relaxed);
+    if (!atomic_compare_exchange_weak(&pool->ticket, &ticket, ticket - 1)) continue;
+    task(data, first + (count - (uint32_t)ticket));
+    finished++;
+    ticket = atomic_load(&pool->ticket);
+  }
+  if (finished && atomic_fetch_sub(&pool->unfinished, finished) == finished) {
+    pthread_mutex_lock(&pool->mutex); /* not between the caller's last look and its sleep */
+    pthread_mutex_unlock(&pool->mutex);
+    pthread_cond_signal(&pool->done);
+  }
+}
+
+static void sleep_until_work(mpmi_pool *pool) {
+  pthread_mutex_lock(&pool->mutex);
+  atomic_fetch_add(&pool->sleeping, 1); /* before the last look: see the order in run() */
+  while (nothing_to_take(pool) && !atomic_load(&pool->stop)) pthread_cond_wait(&pool->work, &pool->mutex);
+  atomic_fetch_sub(&pool->sleeping, 1);
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+static void *work(void *argument) {
+  mpmi_pool *pool = argument;
+  while (!atomic_load(&pool->stop)) {
+    take_part(pool);
+    if (lasts(pool, nothing_to_take)) sleep_until_work(pool);
+  }
+  return NULL;
+}
+
+static void run(mpmi_pool *pool, int64_t first, uint32_t count, mpm_task_fn task, void *data) {
+  atomic_store_explicit(&pool->task, task, memory_order_relaxed);
+  atomic_store_explicit(&pool->data, data, memory_order_relaxed);
+  atomic_store_explicit(&pool->first, first, memory_order_relaxed);
+  atomic_store_explicit(&pool->count, count, memory_order_relaxed);
+  atomic_store_explicit(&pool->unfinished, count, memory_order_relaxed);
+  uint64_t number = (atomic_load_explicit(&pool->ticket, memory_order_relaxed) >> 32) + 1;
+  /* The ticket is written before `sleeping` is read, and a worker counts itself as sleeping before it reads
+   * the ticket: one of the two sees the other, so no wake-up is lost. */
+  atomic_store(&pool->ticket, number << 32 | count);
+  int32_t sleeping = atomic_load(&pool->sleeping);
+  if (sleeping) {
+    pthread_mutex_lock(&pool->mutex); /* not between a worker's last look and its sleep */
+    pthread_mutex_unlock(&pool->mutex);
+    if (count - 1 < (uint32_t)sleeping)
+      for (uint32_t k = 1; k < count; ++k) pthread_cond_signal(&pool->work);
+    else
+      pthread_cond_broadcast(&pool->work);
+  }
+  take_part(pool);
+  if (!lasts(pool, not_finished)) return;
+  pthread_mutex_lock(&pool->mutex);
+  while (not_finished(pool)) pthread_cond_wait(&pool->done, &pool->mutex);
+  pthread_mutex_unlock(&pool->mutex);
+}
+
+static void run_inline(int64_t count, mpm_task_fn task, void *data) {
+  for (int64_t k = 0; k < count; ++k) task(data, k);
+}
+
+void mpmi_pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *data) {
+  if (count <= 1) {
+    run_inline(count, task, data);
+    return;
+  }
+  for (int64_t first = 0; first < count; first += TASKS_AT_ONCE) {
+    int64_t rest = count - first;
+    run(pool, first, (uint32_t)(rest < TASKS_AT_ONCE ? rest : TASKS_AT_ONCE), task, data);
+  }
+}
+
+static void start_workers(mpmi_pool *pool, int32_t workers) {
+  /* Signals belong to the host's threads: workers inherit a mask that blocks them all. */
+  sigset_t all, old;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &old);
+  while (pool->workers < workers && !pthread_create(&pool->thread[pool->workers], NULL, work, pool))
+    pool->workers++;
+  pthread_sigmask(SIG_SETMASK, &old, NULL);
+}
+
+mpm_status mpmi_pool_create(mpm_context *context, int32_t threads, mpmi_pool **out) {
+  int32_t workers = threads - 1;
+  size_t bytes = sizeof(mpmi_pool) + mpmi_bytes(workers, sizeof(pthread_t));
+  mpmi_pool *pool = mpmi_alloc_zeroed(context, bytes);
+  if (!pool) return MPM_E_NOMEM;
+  pool->bytes = bytes;
+  pthread_mutex_init(&pool->mutex, NULL);
+  pthread_cond_init(&pool->work, NULL);
+  pthread_cond_init(&pool->done, NULL);
+  start_workers(pool, workers);
+  if (pool->workers < workers) {
+    mpmi_pool_destroy(context, pool);
+    return mpmi_fail(context, MPM_E_NOMEM, "the system refuses to start %d threads", workers);
+  }
+  *out = pool;
+  return MPM_OK;
+}
+
+void mpmi_pool_destroy(mpm_context *context, mpmi_pool *pool) {
+  if (!pool) return;
+  pthread_mutex_lock(&pool->mutex);
+  atomic_store(&pool->stop, 1);
+  pthread_cond_broadcast(&pool->work);
+  pthread_mutex_unlock(&pool->mutex);
+  for (int32_t k = 0; k < pool->workers; ++k) pthread_join(pool->thread[k], NULL);
+  pthread_cond_destroy(&pool->done);
+  pthread_cond_destroy(&pool->work);
+  pthread_mutex_destroy(&pool->mutex);
+  mpmi_free(context, pool, pool->bytes);
+}
+
+mpm_status mpmi_parallel_for(mpm_context *context, int64_t count, mpm_task_fn task, void *data) {
+  const mpm_context_desc *host = &context->host;
+  if (count > 1 && host->parallel_for) {
+    mpm_status status = host->parallel_for(host->parallel_user, count, task, data);
+    if (status) return mpmi_fail(context, MPM_E_CALLBACK, "the host's parallel_for returned %d", (int)status);
+  } else if (count > 1 && context->pool) {
+    mpmi_pool_run(context->pool, count, task, data);
+  } else {
+    run_inline(count, task, data);
+  }
+  return MPM_OK;
+}
+
+void mpmi_parallel_for_sure(mpm_context *context, int64_t count, mpm_task_fn task, void *data) {
+  if (mpmi_parallel_for(context, count, task, data)) run_inline(count, task, data);
+}

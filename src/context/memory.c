@@ -1,0 +1,53 @@
+/* Memory from the host's allocator, counted. Only the thread that calls the library allocates: no locks. */
+#include <string.h>
+
+#include "context/context.h"
+
+/* A request of 0 bytes takes one line, so that every result is a valid pointer of its own. */
+static size_t granted(size_t bytes) {
+  return bytes ? bytes : MPMI_ALIGNMENT;
+}
+
+void *mpmi_alloc(mpm_context *context, size_t bytes) {
+  const mpm_context_desc *host = &context->host;
+  size_t size = granted(bytes);
+  if (size > PTRDIFF_MAX) {
+    mpmi_fail(context, MPM_E_NOMEM, "out of memory: the request does not fit the address space");
+    return NULL;
+  }
+  void *memory = host->alloc(host->alloc_user, size, MPMI_ALIGNMENT);
+  if (!memory) {
+    mpmi_fail(context, MPM_E_NOMEM, "out of memory: %zu bytes refused, %lld held", size,
+              (long long)context->bytes);
+    return NULL;
+  }
+  /* Kernels use aligned loads: a careless allocator would crash there, far from the cause. */
+  if ((uintptr_t)memory % MPMI_ALIGNMENT) {
+    host->release(host->alloc_user, memory, size, MPMI_ALIGNMENT);
+    mpmi_fail(context, MPM_E_NOMEM, "the host's alloc returned memory that is not aligned to %d bytes",
+              MPMI_ALIGNMENT);
+    return NULL;
+  }
+  context->bytes += (int64_t)size;
+  if (context->bytes > context->peak_bytes) context->peak_bytes = context->bytes;
+  return memory;
+}
+
+void *mpmi_alloc_zeroed(mpm_context *context, size_t bytes) {
+  void *memory = mpmi_alloc(context, bytes);
+  if (memory) memset(memory, 0, bytes);
+  return memory;
+}
+
+void mpmi_free(mpm_context *context, void *memory, size_t bytes) {
+  if (!memory) return;
+  const mpm_context_desc *host = &context->host;
+  size_t size = granted(bytes);
+  context->bytes -= (int64_t)size;
+  host->release(host->alloc_user, memory, size, MPMI_ALIGNMENT);
+}
+
+size_t mpmi_bytes(int64_t count, size_t size) {
+  if (count < 0 || (size && (uint64_t)count > SIZE_MAX / size)) return SIZE_MAX;
+  return (size_t)count * size;
+}
