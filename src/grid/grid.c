@@ -1,0 +1,200 @@
+/* Grids: what a description may ask for, numbering of nodes, bounds and periods. */
+#include <math.h>
+#include <string.h>
+
+#include "grid/grid.h"
+
+enum { MOST_CELLS = 6 << 20 }; /* block coordinates take 21 bits per axis, and a block has up to 6 cells */
+
+static const double most_periods =
+    2147483648.0; /* farther off, a wrapped position has no digits worth having */
+
+mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size) {
+  mpm_grid_desc defaults;
+  memset(&defaults, 0, sizeof defaults);
+  defaults.struct_size = sizeof defaults;
+  defaults.dim = 3;
+  defaults.basis = MPM_BSPLINE2;
+  defaults.boundary_basis = MPM_BOUNDARY_GHOST;
+  defaults.smoothing = 1.0;
+  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+}
+
+static mpm_status check_basis(mpm_context *context, const mpm_grid_desc *desc) {
+  switch (desc->basis) {
+  case MPM_LINEAR:
+  case MPM_BSPLINE2:
+    break;
+  case MPM_BSPLINE3:
+  case MPM_GIMP:
+  case MPM_UGIMP:
+  case MPM_CPGIMP:
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "mpm_grid_desc: basis %d (cubic B-splines or GIMP) is not offered: use MPM_BSPLINE2, "
+                     "or MPM_LINEAR",
+                     (int)desc->basis);
+  default:
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: basis is %d, which is none of the constants",
+                     (int)desc->basis);
+  }
+  if (desc->boundary_basis == MPM_BOUNDARY_OPEN_KNOT)
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "mpm_grid_desc: boundary_basis MPM_BOUNDARY_OPEN_KNOT is not offered: use "
+                     "MPM_BOUNDARY_GHOST");
+  if (desc->boundary_basis != MPM_BOUNDARY_GHOST)
+    return mpmi_fail(context, MPM_E_ARG,
+                     "mpm_grid_desc: boundary_basis is %d, which is none of the constants",
+                     (int)desc->boundary_basis);
+  return MPM_OK;
+}
+
+static mpm_status check_axis(mpm_context *context, const mpm_grid_desc *desc, int32_t axis) {
+  double spacing = desc->spacing[axis], origin = desc->origin[axis];
+  int64_t cells = desc->cells[axis];
+  if (desc->periodic[axis] != 0 && desc->periodic[axis] != 1)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: periodic[%d] is %d, must be 0 or 1", (int)axis,
+                     (int)desc->periodic[axis]);
+  if (cells < 1 || cells > MOST_CELLS)
+    return mpmi_fail(context, MPM_E_ARG,
+                     "mpm_grid_desc: cells[%d] is %lld, must be 1 to %d (block coordinates have 21 bits)",
+                     (int)axis, (long long)cells, (int)MOST_CELLS);
+  if (!isfinite(spacing) || !(spacing > 0) || !isfinite(1.0 / spacing))
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: spacing[%d] is %g, must be > 0 and finite",
+                     (int)axis, spacing);
+  if (!isfinite(origin))
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: origin[%d] is %g, must be finite", (int)axis,
+                     origin);
+  double upper = origin + (double)cells * spacing;
+  if (!isfinite(upper) || !(origin + spacing > origin) || !(upper - spacing < upper))
+    return mpmi_fail(context, MPM_E_ARG,
+                     "mpm_grid_desc: spacing[%d] = %g does not resolve positions between %g and %g",
+                     (int)axis, spacing, origin, upper);
+  return MPM_OK;
+}
+
+/* Nodes along an axis; a periodic one has no node of its own on the upper face. */
+static int64_t axis_nodes(const mpm_grid *grid, int32_t axis) {
+  int64_t cells = grid->desc.cells[axis];
+  return grid->desc.periodic[axis] ? cells : cells + 2 * grid->order - 1;
+}
+
+static mpm_status check_node_numbers(mpm_context *context, const mpm_grid *grid) {
+  int64_t nodes = 1;
+  for (int32_t k = 0; k < grid->dim; ++k)
+    if (__builtin_mul_overflow(nodes, axis_nodes(grid, k), &nodes))
+      return mpmi_fail(context, MPM_E_ARG,
+                       "mpm_grid_desc: cells (%lld, %lld, %lld) make more nodes than 63 bits can number",
+                       (long long)grid->desc.cells[0], (long long)grid->desc.cells[1],
+                       (long long)grid->desc.cells[2]);
+  return MPM_OK;
+}
+
+static mpm_status check_desc(mpm_context *context, const mpm_grid_desc *desc) {
+  if (desc->dim < 1 || desc->dim > 3)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: dim is %d, must be 1, 2 or 3", (int)desc->dim);
+  mpm_status status = check_basis(context, desc);
+  for (int32_t k = 0; k < desc->dim && !status; ++k) status = check_axis(context, desc, k);
+  if (status) return status;
+  if (!(desc->smoothing > 0 && desc->smoothing <= 1))
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: smoothing is %g, must be in (0, 1]",
+                     desc->smoothing);
+  if (desc->reserved)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: reserved is %d, must be 0", (int)desc->reserved);
+  return MPM_OK;
+}
+
+static void derive(mpm_grid *grid) {
+  mpm_grid_desc *desc = &grid->desc;
+  /* Axes that do not exist have one cell of unit thickness, whatever the host left there. */
+  for (int32_t k = desc->dim; k < 3; ++k) {
+    desc->periodic[k] = 0;
+    desc->cells[k] = 1;
+    desc->origin[k] = 0.0;
+    desc->spacing[k] = 1.0;
+  }
+  grid->dim = desc->dim;
+  grid->order = desc->basis == MPM_LINEAR ? 1 : 2;
+  grid->width = grid->order + 1;
+  grid->h_min = desc->spacing[0];
+  for (int32_t k = 0; k < 3; ++k) {
+    grid->upper[k] = desc->origin[k] + (double)desc->cells[k] * desc->spacing[k];
+    grid->inverse_spacing[k] = 1.0 / desc->spacing[k];
+    if (k < desc->dim && desc->spacing[k] < grid->h_min) grid->h_min = desc->spacing[k];
+  }
+}
+
+mpm_status mpm_grid_create(mpm_context *context, const mpm_grid_desc *desc, mpm_grid **out) {
+  if (!context || context->magic != MPMI_CONTEXT) return MPM_E_ARG;
+  context->error[0] = '\0';
+  if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_grid_create: out is NULL");
+  *out = NULL;
+  mpm_grid made;
+  memset(&made, 0, sizeof made);
+  mpm_status status = mpmi_read_struct(context, "mpm_grid_desc", desc, sizeof made.desc, &made.desc);
+  if (!status) status = check_desc(context, &made.desc);
+  if (status) return status;
+  made.magic = MPMI_GRID;
+  made.context = context;
+  derive(&made);
+  status = check_node_numbers(context, &made);
+  if (status) return status;
+  mpm_grid *grid = mpmi_alloc(context, sizeof *grid);
+  if (!grid) return MPM_E_NOMEM;
+  memcpy(grid, &made, sizeof made);
+  context->children++;
+  *out = grid;
+  return MPM_OK;
+}
+
+mpm_status mpm_grid_destroy(mpm_grid *grid) {
+  if (!grid) return MPM_OK;
+  MPMI_ENTER(grid, MPMI_GRID);
+  mpm_context *context = grid->context;
+  if (grid->children)
+    return mpmi_fail(context, MPM_E_STATE, "%d sets and steppers on the grid still live: destroy them first",
+                     (int)grid->children);
+  grid->magic = 0;
+  context->children--;
+  mpmi_free(context, grid, sizeof *grid);
+  return MPM_OK;
+}
+
+/* Last axis fastest; the first node of an axis is the lower ghost where the basis has one. */
+int64_t mpmi_node_number(const mpm_grid *grid, const int64_t *index) {
+  int64_t number = 0;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    int64_t nodes = axis_nodes(grid, k);
+    int64_t i = grid->desc.periodic[k] ? (index[k] % nodes + nodes) % nodes : index[k] + grid->order - 1;
+    number = number * nodes + i;
+  }
+  return number;
+}
+
+/* The position in [lower, upper) that is congruent to x, and how many periods it was away. */
+static double wrapped(double x, double lower, double upper, int64_t *periods) {
+  double crossed = floor((x - lower) / (upper - lower));
+  double place = x - crossed * (upper - lower);
+  if (place >= upper) { /* by rounding: x lies just below a face */
+    place = lower;
+    crossed += 1.0;
+  }
+  *periods = (int64_t)crossed;
+  return place < lower ? lower : place;
+}
+
+int32_t mpmi_grid_place(const mpm_grid *grid, double *position, int64_t stride, int64_t *image,
+                        int64_t image_stride) {
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    double x = position[k * stride], lower = grid->desc.origin[k], upper = grid->upper[k];
+    int32_t near = fabs(x - lower) < most_periods * (upper - lower); /* false for NaN */
+    if (grid->desc.periodic[k] ? !near : !(x >= lower && x <= upper)) return k;
+  }
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    double *x = position + k * stride, lower = grid->desc.origin[k], upper = grid->upper[k];
+    if (!grid->desc.periodic[k] || (*x >= lower && *x < upper)) continue;
+    int64_t periods;
+    *x = wrapped(*x, lower, upper, &periods);
+    if (image) image[k * image_stride] += periods;
+  }
+  return -1;
+}
