@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Block coordinates start at -1 (ghost nodes) or -2 (periodic halo of the first block): shifted to be positive. */
+/* Block coordinates start at -1 (ghost nodes) or -2 (periodic halo of the first block): shifted to be
+ * positive. */
 enum { COORD_SHIFT = 4, FIRST_CAPACITY = 64 };
 
 static uint64_t spread(uint64_t v, int32_t dim) {
@@ -49,7 +50,8 @@ void mpmi_blocks_init(mpmi_blocks *b, const mpm_grid *grid) {
   }
 }
 
-/* Every array of the structure with its size per block, so that allocation, release and growth are one loop each. */
+/* Every array of the structure with its size per block, so that allocation, release and growth are one loop
+ * each. */
 enum { ARRAYS = 7 };
 typedef struct block_array {
   void **at;
@@ -113,7 +115,8 @@ static mpm_status grow(mpmi_blocks *b) {
   next.capacity = b->capacity ? 2 * b->capacity : FIRST_CAPACITY;
   next.table_size = 4 * next.capacity;
   if (next.capacity > INT32_MAX / 8)
-    return mpmi_fail(b->context, MPM_E_NOMEM, "the material covers more than %d blocks of the grid", INT32_MAX / 8);
+    return mpmi_fail(b->context, MPM_E_NOMEM, "the material covers more than %d blocks of the grid",
+                     INT32_MAX / 8);
   block_array from[ARRAYS], to[ARRAYS];
   arrays_of(b, from);
   arrays_of(&next, to);
@@ -236,7 +239,8 @@ mpm_status mpmi_blocks_order(mpmi_blocks *b) {
   return MPM_OK;
 }
 
-void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stride, int32_t edge, int32_t *coord) {
+void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stride, int32_t edge,
+                             int32_t *coord) {
   for (int32_t k = 0; k < grid->dim; ++k) {
     const double xi = (x[k * stride] - grid->desc.origin[k]) * grid->inverse_spacing[k];
     const int64_t cells = grid->desc.cells[k];

@@ -1,14 +1,15 @@
 /* Sparse nodal storage: blocks of nodes that exist where there is material, in Morton order.
  *
- * A block holds edge^dim nodes (x slowest). A particle belongs to the block of its middle node: the nearest one for a
- * quadratic basis, the lower one of its cell for a linear basis. Blocks with particles have all 3^dim neighbours, so
- * that a tile (block and halo) can be read and written without looking anything up. */
+ * A block holds edge^dim nodes (x slowest). A particle belongs to the block of its middle node: the nearest
+ * one for a quadratic basis, the lower one of its cell for a linear basis. Blocks with particles have all
+ * 3^dim neighbours, so that a tile (block and halo) can be read and written without looking anything up. */
 #ifndef MPMI_BLOCKS_H
 #define MPMI_BLOCKS_H
 
 #include "grid/grid.h"
 
-/* Edge of a block, and the loose ring: a particle may drift this many cells out of its block before a re-sort. */
+/* Edge of a block, and the loose ring: a particle may drift this many cells out of its block before a
+ * re-sort. */
 #define MPMI_BLOCK_EDGE(dim) ((dim) == 1 ? 64 : (dim) == 2 ? 16 : 6)
 enum { MPMI_RING = 1 };
 
@@ -19,10 +20,10 @@ typedef struct mpmi_blocks {
   mpm_context *context;
   int32_t edge, nodes, neighbours; /* nodes = edge^dim, neighbours = 3^dim */
   int64_t count, capacity;
-  uint64_t *key;                          /* [count] Morton key, ascending once ordered */
-  int32_t (*coord)[3];                    /* [count] */
+  uint64_t *key;                             /* [count] Morton key, ascending once ordered */
+  int32_t (*coord)[3];                       /* [count] */
   int32_t (*neighbour)[MPMI_MAX_NEIGHBOURS]; /* [count], lowest corner first; MPMI_NO_BLOCK where absent */
-  uint32_t *order, *order_scratch;        /* [capacity] scratch of the ordering; order: provisional -> final */
+  uint32_t *order, *order_scratch; /* [capacity] scratch of the ordering; order: provisional -> final */
   uint64_t *key_scratch;
   int32_t (*coord_scratch)[3];
   int64_t table_size; /* hash table from key to block, a power of two */
@@ -36,11 +37,12 @@ void mpmi_blocks_clear(mpmi_blocks *blocks);
 /* Finds or adds a block by its coordinates; *block is provisional until mpmi_blocks_order. */
 mpm_status mpmi_blocks_insert(mpmi_blocks *blocks, const int32_t *coord, int32_t *block);
 int32_t mpmi_blocks_find(const mpmi_blocks *blocks, const int32_t *coord); /* or MPMI_NO_BLOCK */
-/* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and links neighbours. After it
- * order[provisional] is the block's final index. */
+/* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and links neighbours.
+ * After it order[provisional] is the block's final index. */
 mpm_status mpmi_blocks_order(mpmi_blocks *blocks);
 /* Block of a position that lies inside the grid. */
-void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stride, int32_t edge, int32_t *coord);
+void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stride, int32_t edge,
+                             int32_t *coord);
 /* Slot (block * nodes + place) of a node by its index, or -1 when its block is not there. */
 int64_t mpmi_blocks_node(const mpmi_blocks *blocks, const int64_t *index);
 /* Index of the node in a slot. */

@@ -18,8 +18,8 @@ void mpmi_constraints_free(mpmi_constraints *c) {
 
 /* How one axis binds a node. */
 typedef struct axis_role {
-  int64_t master;  /* index of the master on this axis */
-  int32_t face;    /* wall that binds it, or -1 */
+  int64_t master;   /* index of the master on this axis */
+  int32_t face;     /* wall that binds it, or -1 */
   int32_t mirrored; /* a ghost: sign -1 of the components that the wall reverses */
 } axis_role;
 
@@ -236,7 +236,8 @@ mpm_status mpmi_constraints_build(mpmi_constraints *c, const mpmi_blocks *b, con
   clear_map(c, b);
   visit_all(&w, VISIT_LINEAR, 0);
   if ((status = reserve(context, (void **)&c->orbit, &c->orbit_capacity, w.orbits, sizeof *c->orbit)) ||
-      (status = reserve(context, (void **)&c->dependant, &c->dependant_capacity, w.dependants, sizeof *c->dependant)))
+      (status = reserve(context, (void **)&c->dependant, &c->dependant_capacity, w.dependants,
+                        sizeof *c->dependant)))
     return status;
   clear_map(c, b);
   w = (walk){b, wall, c, 1, 0, 0, 0};

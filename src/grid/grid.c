@@ -6,8 +6,8 @@
 
 enum { MOST_CELLS = 6 << 20 }; /* block coordinates take 21 bits per axis, and a block has up to 6 cells */
 
-static const double most_periods =
-    2147483648.0; /* farther off, a wrapped position has no digits worth having */
+/* Farther off, a wrapped position has no digits worth having. */
+static const double most_periods = 2147483648.0;
 
 mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size) {
   mpm_grid_desc defaults;
@@ -16,7 +16,7 @@ mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size) {
   defaults.dim = 3;
   defaults.basis = MPM_BSPLINE2;
   defaults.boundary_basis = MPM_BOUNDARY_GHOST;
-  defaults.smoothing = 1.0;
+  defaults.smoothing = 0.5;
   return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
 }
 

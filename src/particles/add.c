@@ -1,0 +1,110 @@
+/* Particles from the host's arrays. */
+#include <math.h>
+#include <string.h>
+
+#include "context/radix.h"
+#include "particles/append.h"
+#include "particles/values.h"
+
+typedef struct arrays {
+  int64_t n;
+  const double *position, *velocity, *volume, *size;
+  const int64_t *ids;
+} arrays;
+
+static mpm_status check_values(const mpm_particles *set, const arrays *from) {
+  const struct {
+    int32_t field;
+    const double *value;
+  } given[] = {{MPMI_POSITION, from->position},
+               {MPMI_VELOCITY, from->velocity},
+               {MPMI_VOLUME, from->volume},
+               {MPMI_SIZE, from->size}};
+  for (int32_t k = 0; k < 4; ++k)
+    for (int64_t i = 0; given[k].value && i < from->n; ++i) {
+      mpm_status status =
+          mpmi_check_value(set, given[k].field, given[k].value + i, from->n, (mpmi_who){"index", i});
+      if (status) return status;
+    }
+  for (int64_t i = 0; i < from->n; ++i)
+    if (!isfinite(set->material->density * from->volume[i]))
+      return mpmi_fail(set->context, MPM_E_ARG,
+                       "volume of the particle with index %lld is %g: its mass overflows", (long long)i,
+                       from->volume[i]);
+  return MPM_OK;
+}
+
+/* Refuses ids that the set has already, or that are given twice. order: of the ids, ascending. */
+static mpm_status check_known(const mpm_particles *set, int64_t n, const int64_t *ids,
+                              const uint32_t *order) {
+  for (int64_t i = 0; i < n; ++i) {
+    int64_t id = ids[order[i]];
+    if (i > 0 && id == ids[order[i - 1]])
+      return mpmi_fail(set->context, MPM_E_ARG, "id %lld is given twice", (long long)id);
+    if (id < set->next_id && mpmi_index_find(set, id) >= 0)
+      return mpmi_fail(set->context, MPM_E_ARG, "id %lld is in use", (long long)id);
+  }
+  return MPM_OK;
+}
+
+static mpm_status check_unique(mpm_particles *set, int64_t n, const int64_t *ids) {
+  mpm_context *context = set->context;
+  size_t key_bytes = mpmi_bytes(n, 2 * sizeof(uint64_t)), order_bytes = mpmi_bytes(n, 2 * sizeof(uint32_t));
+  uint64_t *key = mpmi_alloc(context, key_bytes);
+  uint32_t *order = key ? mpmi_alloc(context, order_bytes) : NULL;
+  mpm_status status = MPM_E_NOMEM;
+  if (order) {
+    for (int64_t i = 0; i < n; ++i) key[i] = (uint64_t)ids[i];
+    mpmi_radix_sort(n, key, order, key + n, order + n);
+    /* An id beyond all that were ever used needs no look into the set. */
+    status = ids[order[0]] < set->next_id ? mpmi_index_build(set) : MPM_OK;
+    if (!status) status = check_known(set, n, ids, order);
+  }
+  mpmi_free(context, order, order_bytes);
+  mpmi_free(context, key, key_bytes);
+  return status;
+}
+
+static mpm_status check_ids(mpm_particles *set, int64_t n, const int64_t *ids) {
+  for (int64_t i = 0; i < n; ++i)
+    if (ids[i] < 0 || ids[i] == INT64_MAX)
+      return mpmi_fail(set->context, MPM_E_ARG, "ids[%lld] is %lld, must be >= 0 and below 2^63 - 1",
+                       (long long)i, (long long)ids[i]);
+  return check_unique(set, n, ids);
+}
+
+static void copy_rows(mpm_particles *set, int32_t field, int64_t slot, const double *from, int64_t n) {
+  for (int32_t c = 0; c < set->field[field].components; ++c)
+    memcpy(mpmi_f64(set, field, 0) + c * set->ld + slot, from + c * n, (size_t)n * sizeof *from);
+}
+
+static void copy_in(mpm_particles *set, int64_t slot, const arrays *from) {
+  copy_rows(set, MPMI_POSITION, slot, from->position, from->n);
+  copy_rows(set, MPMI_INITIAL_VOLUME, slot, from->volume, from->n);
+  if (from->velocity) copy_rows(set, MPMI_VELOCITY, slot, from->velocity, from->n);
+  if (from->size) copy_rows(set, MPMI_SIZE, slot, from->size, from->n);
+}
+
+mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const double *position,
+                             const double *velocity, const double *volume, const double *size,
+                             const int64_t *ids, int64_t *first_id) {
+  MPMI_ENTER(particles, MPMI_PARTICLES);
+  mpm_status status = mpmi_particles_changeable(particles);
+  if (status) return status;
+  if (n < 0) return mpmi_fail(particles->context, MPM_E_ARG, "n is %lld, must be >= 0", (long long)n);
+  if (n > 0 && (!position || !volume))
+    return mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL", position ? "volume" : "position");
+  int64_t first = ids && n > 0 ? ids[0] : particles->next_id, slot;
+  if (n > 0) {
+    arrays from = {n, position, velocity, volume, size, ids};
+    status = mpmi_check_room(particles, n, ids == NULL);
+    if (!status) status = check_values(particles, &from);
+    if (!status && ids) status = check_ids(particles, n, ids);
+    if (!status) status = mpmi_append_begin(particles, n, size != NULL, &slot);
+    if (status) return status;
+    copy_in(particles, slot, &from);
+    mpmi_append_finish(particles, slot, n, size != NULL, ids);
+  }
+  if (first_id) *first_id = first;
+  return MPM_OK;
+}

@@ -1,0 +1,125 @@
+#include "particles/law_batch.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { FIXED_ROWS = 9 + 9 + 9 + 6 + 6 + 1 + 1 + 1 + 3 };
+
+int64_t mpmi_law_batch_length(const mpm_material *material) {
+  return material->law ? MPMI_BATCH_OWN : MPMI_BATCH_HOST;
+}
+
+size_t mpmi_law_batch_bytes(const mpm_material *material) {
+  const int64_t rows = FIXED_ROWS + 2 * material->state_count;
+  return mpmi_bytes(rows * mpmi_law_batch_length(material), sizeof(double));
+}
+
+void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *memory) {
+  const int64_t ld = mpmi_law_batch_length(material);
+  double *at = memory;
+  b->ld = ld;
+  b->F = at, at += 9 * ld;
+  b->F_inc = at, at += 9 * ld;
+  b->L = at, at += 9 * ld;
+  b->stress = at, at += 6 * ld;
+  b->stress_new = at, at += 6 * ld;
+  b->wave_speed = at, at += ld;
+  b->viscosity = at, at += ld;
+  b->energy = at, at += ld;
+  b->position = at, at += 3 * ld;
+  b->state = at, at += material->state_count * ld;
+  b->state_new = at;
+  for (int32_t e = 0; e < 9; ++e)
+    for (int64_t p = 0; p < ld; ++p) {
+      b->F[e * ld + p] = b->F_inc[e * ld + p] = e % 4 == 0 ? 1.0 : 0.0;
+      b->L[e * ld + p] = 0.0;
+    }
+  memset(b->stress, 0, (size_t)(6 * ld) * sizeof(double));
+  memset(b->stress_new, 0, (size_t)(6 * ld) * sizeof(double));
+  memset(b->wave_speed, 0, (size_t)ld * sizeof(double));
+  b->batch = (mpm_material_batch){.struct_size = sizeof b->batch,
+                                  .state_count = material->state_count,
+                                  .ld = ld,
+                                  .F = b->F,
+                                  .F_inc = b->F_inc,
+                                  .L = b->L,
+                                  .stress = b->stress,
+                                  .state = b->state,
+                                  .stress_new = b->stress_new,
+                                  .state_new = b->state_new,
+                                  .wave_speed = b->wave_speed,
+                                  .kinematic_viscosity = b->viscosity,
+                                  .energy = b->energy,
+                                  .position = b->position,
+                                  .lookup = &b->lookup};
+}
+
+static void copy_rows(double *to, int64_t to_ld, const double *from, int64_t from_ld, int32_t rows,
+                      int64_t n) {
+  for (int32_t r = 0; r < rows; ++r) memcpy(to + r * to_ld, from + r * from_ld, (size_t)n * sizeof(double));
+}
+
+void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double t,
+                         double dt) {
+  const int32_t dim = set->grid->dim;
+  const mpm_material *material = set->material;
+  b->lookup = (mpmi_lookup){set, begin};
+  b->batch.n = n;
+  b->batch.t = t;
+  b->batch.dt = dt;
+  b->batch.id = mpmi_i64(set, MPMI_ID, 0) + begin;
+  if (!mpmi_material_stress_from_F(material))
+    copy_rows(b->stress, b->ld, mpmi_f64(set, MPMI_STRESS, 0) + begin, set->ld, mpmi_stress_components(dim),
+              n);
+  if (material->state_count)
+    copy_rows(b->state, b->ld, mpmi_f64(set, MPMI_STATE, 0) + begin, set->ld, material->state_count, n);
+  if (!material->law) copy_rows(b->position, b->ld, mpmi_f64(set, MPMI_POSITION, 0) + begin, set->ld, dim, n);
+  for (int64_t p = 0; p < n; ++p) {
+    b->viscosity[p] = 0.0;
+    b->energy[p] = (double)NAN;
+  }
+}
+
+void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {
+  const int32_t dim = set->grid->dim, *map = mpmi_tensor_map(dim);
+  const double *F = mpmi_f64(set, MPMI_F, 0) + begin;
+  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
+    memcpy(b->F + map[c] * b->ld, F + c * set->ld, (size_t)n * sizeof(double));
+}
+
+mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {
+  const mpm_status status =
+      mpmi_material_evaluate(set->material, set->context->isa, set->grid->dim, &b->batch);
+  if (status || set->material->law) return status;
+  /* whatever the host made of inert slots must not get into sums */
+  for (int64_t p = 0; p < b->batch.n; ++p) {
+    if (b->batch.id[p] >= 0) continue;
+    for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = 0.0;
+    for (int32_t c = 0; c < set->material->state_count; ++c)
+      b->state_new[c * b->ld + p] = b->state[c * b->ld + p];
+    b->wave_speed[p] = b->viscosity[p] = 0.0;
+  }
+  return MPM_OK;
+}
+
+void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,
+                          int64_t n) {
+  copy_rows(mpmi_f64(set, MPMI_STRESS, copy) + begin, set->ld, b->stress_new, b->ld,
+            mpmi_stress_components(set->grid->dim), n);
+  if (set->material->state_count)
+    copy_rows(mpmi_f64(set, MPMI_STATE, copy) + begin, set->ld, b->state_new, b->ld,
+              set->material->state_count, n);
+}
+
+mpm_status mpm_batch_field(const void *lookup, const char *field, const void **data,
+                           int64_t *component_stride) {
+  if (!lookup || !field || !data || !component_stride) return MPM_E_ARG;
+  const mpmi_lookup *at = lookup;
+  const int32_t f = mpmi_find_field(at->set, field);
+  if (f < 0) return MPM_E_NOT_FOUND;
+  if (!at->set->field[f].present) return MPM_E_STATE;
+  *data =
+      (const char *)at->set->field[f].data[0] + (size_t)at->begin * mpmi_type_size(at->set->field[f].type);
+  *component_stride = at->set->ld;
+  return MPM_OK;
+}

@@ -1,0 +1,42 @@
+/* The buffers of one batch of particles on its way through a constitutive law, and the public batch that
+ * shows them. */
+#ifndef MPMI_LAW_BATCH_H
+#define MPMI_LAW_BATCH_H
+
+#include "particles/particles.h"
+
+/* Lengths: short enough for the first-level cache where the law is ours; long where calling the host costs.
+ */
+enum { MPMI_BATCH_OWN = 32, MPMI_BATCH_HOST = 512 };
+
+/* Where a batch lies in its set: what the `lookup` of callbacks points to. */
+typedef struct mpmi_lookup {
+  const mpm_particles *set;
+  int64_t begin;
+} mpmi_lookup;
+
+typedef struct mpmi_law_batch {
+  int64_t ld;
+  double *F, *F_inc, *L, *stress, *state, *stress_new, *state_new, *wave_speed, *viscosity, *energy,
+      *position;
+  mpm_material_batch batch;
+  mpmi_lookup lookup;
+} mpmi_law_batch;
+
+int64_t mpmi_law_batch_length(const mpm_material *material);
+/* Bytes of the buffers for a material, a multiple of 64. */
+size_t mpmi_law_batch_bytes(const mpm_material *material);
+/* Lays the buffers out in 64-byte aligned memory and presets them to the state that does not change: F_inc =
+ * I, L = 0. */
+void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *memory);
+/* Fills the batch with n slots from `begin`: old stress and state, position, ids; t and dt of the step. */
+void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double t,
+                         double dt);
+/* F from storage, for evaluating the state as it is. */
+void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
+/* Runs the law; then the new stress and state may be stored in copy `copy` of the set's fields. */
+mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set);
+void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,
+                          int64_t n);
+
+#endif

@@ -1,0 +1,127 @@
+/* The table of built-in fields, and the maps between stored and full components. */
+#include <string.h>
+
+#include "particles/layout.h"
+
+enum { SCALAR, VECTOR, TENSOR, GRADIENT, STRESS, STATE };
+
+typedef struct builtin_field {
+  const char *name;
+  int32_t type, shape, writable, two_copies, present;
+} builtin_field;
+
+/* "stress" becomes writable, "state" and "image" present, as law and grid say. */
+static const builtin_field builtin[MPMI_BUILTIN_FIELDS] = {
+    [MPMI_ID] = {"id", MPM_I64, SCALAR, 0, 0, 1},
+    [MPMI_POSITION] = {"position", MPM_F64, VECTOR, 1, 1, 1},
+    [MPMI_VELOCITY] = {"velocity", MPM_F64, VECTOR, 1, 1, 1},
+    [MPMI_ACCELERATION] = {"acceleration", MPM_F64, VECTOR, 1, 1, 0},
+    [MPMI_MASS] = {"mass", MPM_F64, SCALAR, 1, 0, 1},
+    [MPMI_VOLUME] = {"volume", MPM_F64, SCALAR, 0, 0, 1},
+    [MPMI_INITIAL_VOLUME] = {"initial_volume", MPM_F64, SCALAR, 1, 0, 1},
+    [MPMI_SIZE] = {"size", MPM_F64, VECTOR, 1, 0, 0},
+    [MPMI_F] = {"deformation_gradient", MPM_F64, TENSOR, 1, 1, 1},
+    [MPMI_L] = {"velocity_gradient", MPM_F64, GRADIENT, 1, 1, 0},
+    [MPMI_STRESS] = {"stress", MPM_F64, STRESS, 0, 1, 1},
+    [MPMI_STATE] = {"state", MPM_F64, STATE, 1, 1, 0},
+    [MPMI_REFERENCE] = {"reference_position", MPM_F64, VECTOR, 1, 0, 0},
+    [MPMI_PRESCRIBED] = {"prescribed", MPM_U8, VECTOR, 0, 0, 0},
+    [MPMI_APPLIED_FORCE] = {"applied_force", MPM_F64, VECTOR, 1, 0, 0},
+    [MPMI_IMAGE] = {"image", MPM_I64, VECTOR, 0, 1, 0},
+};
+
+size_t mpmi_type_size(int32_t type) {
+  return type == MPM_U8 ? sizeof(uint8_t) : sizeof(double);
+}
+
+int32_t mpmi_tensor_components(int32_t dim) {
+  return dim == 1 ? 1 : dim == 2 ? 5 : 9;
+}
+
+int32_t mpmi_gradient_components(int32_t dim) {
+  return dim * dim;
+}
+
+int32_t mpmi_stress_components(int32_t dim) {
+  return dim == 1 ? 3 : dim == 2 ? 4 : 6;
+}
+
+static const int32_t plane_map[] = {0, 1, 3, 4,
+                                    8}; /* and its first entry for 1-D, first four for gradients */
+static const int32_t whole_map[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+
+const int32_t *mpmi_tensor_map(int32_t dim) {
+  return dim == 3 ? whole_map : plane_map;
+}
+
+const int32_t *mpmi_gradient_map(int32_t dim) {
+  return mpmi_tensor_map(dim);
+}
+
+static int32_t shape_components(int32_t shape, int32_t dim, int32_t state_count) {
+  switch (shape) {
+  case SCALAR:
+    return 1;
+  case VECTOR:
+    return dim;
+  case TENSOR:
+    return mpmi_tensor_components(dim);
+  case GRADIENT:
+    return mpmi_gradient_components(dim);
+  case STRESS:
+    return mpmi_stress_components(dim);
+  default:
+    return state_count;
+  }
+}
+
+void mpmi_layout_builtin(mpm_particles *set) {
+  int32_t dim = set->grid->dim, state_count = set->material->state_count;
+  const int32_t *periodic = set->grid->desc.periodic;
+  for (int32_t f = 0; f < MPMI_BUILTIN_FIELDS; ++f) {
+    const builtin_field *from = &builtin[f];
+    mpmi_field *field = &set->field[f];
+    memcpy(field->name, from->name, strlen(from->name) + 1);
+    field->type = from->type;
+    field->components = shape_components(from->shape, dim, state_count);
+    /* Tensors are full in three dimensions; nothing else depends on the dimension of the copy. */
+    field->full_components = shape_components(from->shape, from->shape == VECTOR ? dim : 3, state_count);
+    field->writable = from->writable;
+    field->two_copies = from->two_copies;
+    field->present = from->present;
+  }
+  set->field[MPMI_STRESS].writable = !mpmi_material_stress_from_F(set->material);
+  set->field[MPMI_STATE].present = state_count > 0;
+  set->field[MPMI_IMAGE].present = periodic[0] || periodic[1] || periodic[2];
+  set->field_count = MPMI_BUILTIN_FIELDS;
+}
+
+int32_t mpmi_stored_component(const mpm_particles *set, int32_t field, int32_t c) {
+  int32_t stored = set->field[field].components;
+  if (field != MPMI_F && field != MPMI_L) return c < stored ? c : -1;
+  const int32_t *map = mpmi_tensor_map(set->grid->dim);
+  for (int32_t s = 0; s < stored; ++s)
+    if (map[s] == c) return s;
+  return -1;
+}
+
+double mpmi_unstored_value(int32_t field, int32_t c) {
+  return field == MPMI_F && c % 4 == 0 ? 1.0 : 0.0;
+}
+
+int32_t mpmi_find_field(const mpm_particles *set, const char *name) {
+  for (int32_t f = 0; f < set->field_count; ++f)
+    if (!strcmp(set->field[f].name, name)) return f;
+  return -1;
+}
+
+mpm_status mpmi_require_field(const mpm_particles *set, const char *name, int32_t *field) {
+  if (!name) return mpmi_fail(set->context, MPM_E_ARG, "field is NULL");
+  *field = mpmi_find_field(set, name);
+  if (*field >= 0) return MPM_OK;
+  const char *names[MPMI_MAX_FIELDS];
+  char nearest[4 * MPMI_NAME];
+  for (int32_t f = 0; f < set->field_count; ++f) names[f] = set->field[f].name;
+  mpmi_nearest_names(name, names, set->field_count, nearest, sizeof nearest);
+  return mpmi_fail(set->context, MPM_E_NOT_FOUND, "the set has no field \"%s\"; nearest: %s", name, nearest);
+}

@@ -1,0 +1,54 @@
+/* From id to slot: a table ascending by id, built when asked for, dropped when particles come, go or move. */
+#include "context/radix.h"
+#include "particles/particles.h"
+
+typedef struct mpmi_id_slot id_slot;
+
+/* Holes get a key above every id, so that they sort to the end. */
+static void build(const mpm_particles *set, uint64_t *key, uint32_t *order, uint64_t *key_scratch,
+                  uint32_t *order_scratch, id_slot *index) {
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  for (int64_t s = 0; s < set->slots; ++s) key[s] = (uint64_t)(id[s] < 0 ? set->next_id : id[s]);
+  mpmi_radix_sort(set->slots, key, order, key_scratch, order_scratch);
+  for (int64_t i = 0; i < set->count; ++i) index[i] = (id_slot){id[order[i]], order[i]};
+}
+
+mpm_status mpmi_index_build(mpm_particles *set) {
+  if (set->index) return MPM_OK;
+  mpm_context *context = set->context;
+  size_t key_bytes = mpmi_bytes(2 * set->slots, sizeof(uint64_t));
+  size_t order_bytes = mpmi_bytes(2 * set->slots, sizeof(uint32_t));
+  uint64_t *key = mpmi_alloc(context, key_bytes);
+  uint32_t *order = key ? mpmi_alloc(context, order_bytes) : NULL;
+  id_slot *index = order ? mpmi_alloc(context, mpmi_bytes(set->count, sizeof *index)) : NULL;
+  if (index) {
+    build(set, key, order, key + set->slots, order + set->slots, index);
+    set->index = index;
+    set->index_capacity = set->count;
+  }
+  mpmi_free(context, order, order_bytes);
+  mpmi_free(context, key, key_bytes);
+  return index ? MPM_OK : MPM_E_NOMEM;
+}
+
+void mpmi_index_drop(mpm_particles *set) {
+  mpmi_free(set->context, set->index, mpmi_bytes(set->index_capacity, sizeof *set->index));
+  set->index = NULL;
+  set->index_capacity = 0;
+}
+
+int64_t mpmi_index_find(const mpm_particles *set, int64_t id) {
+  const id_slot *index = set->index;
+  int64_t low = 0, high = set->index_capacity;
+  if (high == 0 || id < index[0].id) return -1;
+  int64_t ahead = id - index[0].id;
+  if (ahead < high && index[ahead].id == id) return index[ahead].slot; /* ids without gaps */
+  while (low < high) {
+    int64_t middle = low + (high - low) / 2;
+    if (index[middle].id < id)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < set->index_capacity && index[low].id == id ? index[low].slot : -1;
+}

@@ -1,0 +1,41 @@
+/* Volume and stress after the host has set F or the initial volume. */
+#include "particles/law_batch.h"
+#include "transfer/kernels.h"
+
+#include <string.h>
+
+/* The law is asked for the state as it is: F_inc = I, dt = 0. Stresses go to the second copy first, so that a
+ * refusing law changes nothing. */
+mpm_status mpmi_particles_refresh(mpm_particles *set) {
+  if (!(set->dirty & MPMI_DIRTY_STRESS)) return MPM_OK;
+  const mpmi_kernels *kernels = mpmi_kernels_of(set->context->isa);
+  const int32_t dim = set->grid->dim;
+  const size_t bytes = mpmi_law_batch_bytes(set->material);
+  void *memory = mpmi_alloc(set->context, bytes);
+  if (!memory) return MPM_E_NOMEM;
+  mpmi_law_batch b;
+  mpmi_law_batch_bind(&b, set->material, memory);
+  mpm_status status = MPM_OK;
+  const int32_t keeps_stress = set->material->law && !mpmi_material_stress_from_F(set->material);
+  for (int64_t s = 0; s < set->slots && !keeps_stress && !status; s += b.ld) {
+    const int64_t n = set->slots - s < b.ld ? set->slots - s : b.ld;
+    mpmi_law_batch_load(&b, set, s, n, 0.0, 0.0);
+    mpmi_law_batch_load_F(&b, set, s, n);
+    status = mpmi_law_batch_run(&b, set);
+    if (!status) mpmi_law_batch_store(&b, set, 1, s, n);
+  }
+  mpmi_free(set->context, memory, bytes);
+  if (status)
+    return mpmi_fail(set->context, MPM_E_CALLBACK,
+                     "the material returned %d when asked for the stress of the given F", (int)status);
+  /* copied, not swapped: a view of the stress may be out */
+  if (!keeps_stress)
+    for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
+      memcpy(mpmi_f64(set, MPMI_STRESS, 0) + c * set->ld, mpmi_f64(set, MPMI_STRESS, 1) + c * set->ld,
+             (size_t)set->slots * sizeof(double));
+  const double *F[9];
+  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld;
+  kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0), set->slots);
+  set->dirty &= ~(uint32_t)MPMI_DIRTY_STRESS;
+  return MPM_OK;
+}

@@ -1,0 +1,209 @@
+#include "particles/sort.h"
+
+#include <string.h>
+
+#define NONE UINT32_MAX
+
+void mpmi_arrangement_init(mpmi_arrangement *a, mpm_context *context) {
+  memset(a, 0, sizeof *a);
+  a->context = context;
+}
+
+void mpmi_arrangement_free(mpmi_arrangement *a) {
+  mpmi_free(a->context, a->start, mpmi_bytes(a->start_capacity, sizeof *a->start));
+  mpmi_free(a->context, a->block, mpmi_bytes(a->block_capacity, sizeof *a->block));
+  mpmi_free(a->context, a->source, mpmi_bytes(a->source_capacity, sizeof *a->source));
+  mpmi_arrangement_init(a, a->context);
+}
+
+static mpm_status reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size) {
+  if (wanted <= *capacity) return MPM_OK;
+  void *memory = mpmi_alloc(context, mpmi_bytes(wanted, size));
+  if (!memory) return MPM_E_NOMEM;
+  mpmi_free(context, *at, mpmi_bytes(*capacity, size));
+  *at = memory;
+  *capacity = wanted;
+  return MPM_OK;
+}
+
+mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *a, int64_t blocks) {
+  return reserve(a->context, (void **)&a->start, &a->start_capacity,
+                 blocks + 1 > a->start_capacity ? 2 * blocks + 2 : 0, sizeof *a->start);
+}
+
+mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks, mpmi_arrangement *to) {
+  mpm_status status =
+      reserve(to->context, (void **)&to->block, &to->block_capacity, set->ld, sizeof *to->block);
+  if (status) return status;
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  const double *x = mpmi_f64(set, MPMI_POSITION, 0);
+  int32_t last[3] = {0, 0, 0}, coord[3] = {0, 0, 0}, block = MPMI_NO_BLOCK;
+  for (int64_t s = 0; s < set->slots; ++s) {
+    to->block[s] = NONE;
+    if (id[s] < 0) continue;
+    mpmi_blocks_of_position(set->grid, x + s, set->ld, blocks->edge, coord);
+    if (block < 0 || memcmp(coord, last, sizeof coord) != 0) {
+      if ((status = mpmi_blocks_insert(blocks, coord, &block))) return status;
+      memcpy(last, coord, sizeof coord);
+    }
+    to->block[s] = (uint32_t)block;
+  }
+  return MPM_OK;
+}
+
+static int64_t padded(int64_t count) {
+  return (count + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD;
+}
+
+mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_arrangement *to) {
+  mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
+  if (status) return status;
+  const int32_t by_id = (set->dirty & MPMI_DIRTY_ORDER) != 0;
+  if (by_id && (status = mpmi_index_build(set))) return status;
+  memset(to->start, 0, (size_t)(blocks->count + 1) * sizeof *to->start);
+  for (int64_t s = 0; s < set->slots; ++s)
+    if (to->block[s] != NONE) ++to->start[blocks->order[to->block[s]]];
+  int64_t slots = 0;
+  for (int64_t b = 0; b <= blocks->count; ++b) {
+    const int64_t here = padded(to->start[b]);
+    to->start[b] = slots;
+    slots += here;
+  }
+  if ((status = mpmi_particles_reserve(set, slots)) ||
+      (status =
+           reserve(to->context, (void **)&to->source, &to->source_capacity, set->ld, sizeof *to->source)))
+    return status;
+  memset(to->source, 0xff, (size_t)slots * sizeof *to->source);
+  /* start[b] serves as the cursor of block b and is put back afterwards */
+  const int64_t n = by_id ? set->count : set->slots;
+  for (int64_t i = 0; i < n; ++i) {
+    const int64_t s = by_id ? set->index[i].slot : i;
+    if (to->block[s] != NONE) to->source[to->start[blocks->order[to->block[s]]]++] = (uint32_t)s;
+  }
+  for (int64_t b = blocks->count; b > 0; --b) to->start[b] = padded(to->start[b - 1]);
+  to->start[0] = 0;
+  return MPM_OK;
+}
+
+/* One component array to move, and where to. */
+typedef struct move {
+  const char *from;
+  char *to;
+  size_t size;
+} move;
+enum { MAX_MOVES = 96 };
+typedef struct moving {
+  const uint32_t *source; /* NULL: plain copy */
+  int64_t slots, pieces;
+  int32_t count;
+  move list[MAX_MOVES];
+} moving;
+
+/* Element types are 8 bytes or 1. */
+static void move_piece(void *data, int64_t k) {
+  const moving *m = data;
+  const int64_t begin = m->slots * k / m->pieces, end = m->slots * (k + 1) / m->pieces;
+  for (int32_t i = 0; i < m->count; ++i) {
+    const move *v = &m->list[i];
+    if (!m->source) {
+      memcpy(v->to + (size_t)begin * v->size, v->from + (size_t)begin * v->size,
+             (size_t)(end - begin) * v->size);
+    } else if (v->size == 8) {
+      uint64_t *to = (uint64_t *)(void *)v->to;
+      const uint64_t *from = (const uint64_t *)(const void *)v->from;
+      for (int64_t s = begin; s < end; ++s)
+        if (m->source[s] != NONE) to[s] = from[m->source[s]];
+    } else {
+      for (int64_t s = begin; s < end; ++s)
+        if (m->source[s] != NONE) v->to[s] = v->from[m->source[s]];
+    }
+  }
+}
+
+static void run(mpm_particles *set, moving *m) {
+  m->pieces = set->context->concurrency;
+  if (m->count) mpmi_parallel_for_sure(set->context, m->pieces, move_piece, m);
+  m->count = 0;
+}
+
+/* Component arrays that a sort may use as scratch: the second copies, before they receive their own field. */
+static int32_t collect_spares(const mpm_particles *set, char **spare, int32_t capacity) {
+  int32_t count = 0;
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field *field = &set->field[f];
+    for (int32_t c = 0; field->present && field->two_copies && c < field->components && count < capacity; ++c)
+      spare[count++] = (char *)field->data[1] + (size_t)(c * set->ld) * mpmi_type_size(field->type);
+  }
+  return count;
+}
+
+/* Fields with one copy: out to the spares by the new order, and straight back. */
+static void sort_single_copies(mpm_particles *set, const uint32_t *source, int64_t slots) {
+  char *spare[MAX_MOVES];
+  const int32_t spares = collect_spares(set, spare, MAX_MOVES);
+  moving out = {source, slots, 0, 0, {{0}}}, back = {NULL, slots, 0, 0, {{0}}};
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field *field = &set->field[f];
+    if (!field->present || field->two_copies) continue;
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components; ++c) {
+      char *at = (char *)field->data[0] + (size_t)(c * set->ld) * size;
+      out.list[out.count] = (move){at, spare[out.count], size};
+      back.list[out.count] = (move){spare[out.count], at, size};
+      back.count = ++out.count;
+      if (out.count < spares) continue;
+      run(set, &out);
+      run(set, &back);
+    }
+  }
+  run(set, &out);
+  run(set, &back);
+}
+
+static void sort_double_copies(mpm_particles *set, const uint32_t *source, int64_t slots) {
+  moving out = {source, slots, 0, 0, {{0}}};
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    mpmi_field *field = &set->field[f];
+    if (!field->present || !field->two_copies) continue;
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components; ++c) {
+      const size_t offset = (size_t)(c * set->ld) * size;
+      out.list[out.count++] = (move){(char *)field->data[0] + offset, (char *)field->data[1] + offset, size};
+      if (out.count == MAX_MOVES) run(set, &out);
+    }
+  }
+  run(set, &out);
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    mpmi_field *field = &set->field[f];
+    if (!field->present || !field->two_copies) continue;
+    void *swap = field->data[0];
+    field->data[0] = field->data[1];
+    field->data[1] = swap;
+  }
+}
+
+/* A place inside both the block and the grid. */
+static void hole_position(const mpm_grid *grid, const mpmi_blocks *blocks, int64_t b, double *x) {
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    x[k] =
+        grid->desc.origin[k] + grid->desc.spacing[k] * (((double)blocks->coord[b][k] + 0.5) * blocks->edge);
+    if (x[k] > grid->upper[k]) x[k] = grid->upper[k];
+  }
+}
+
+void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_arrangement *to) {
+  const int64_t slots = to->start[blocks->count];
+  sort_single_copies(set, to->source, slots);
+  sort_double_copies(set, to->source, slots);
+  for (int64_t b = 0; b < blocks->count; ++b) {
+    int64_t end = to->start[b + 1], begin = end;
+    while (begin > to->start[b] && to->source[begin - 1] == NONE) --begin;
+    if (begin == end) continue;
+    double position[3];
+    hole_position(set->grid, blocks, b, position);
+    mpmi_fill_holes(set, 0, begin, end, position);
+  }
+  set->slots = slots;
+  set->dirty &= ~(uint32_t)(MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE);
+  mpmi_index_drop(set);
+}

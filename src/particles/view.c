@@ -1,0 +1,90 @@
+/* Views: the library's own memory, lent until it is given back. */
+#include <stddef.h>
+
+#include "particles/values.h"
+#include "stepper/node_view.h"
+
+/* Size of the struct in its first release, which has all that a view needs. */
+static const uint32_t least_size = offsetof(mpm_view, owner) + sizeof(void *);
+
+void mpmi_view_fill(mpm_view *view, int32_t type, int32_t components, int32_t access, int64_t count,
+                    int64_t ld, void *data, mpmi_view_record *record) {
+  view->type = type;
+  view->components = components;
+  view->access = access;
+  view->count = count;
+  view->item_stride = 1;
+  view->component_stride = ld;
+  view->data = data;
+  view->owner = record;
+}
+
+static mpmi_view_record *free_record(mpm_particles *set) {
+  for (int32_t i = 0; i < MPMI_MAX_VIEWS; ++i)
+    if (!set->view[i].live) return &set->view[i];
+  return NULL;
+}
+
+static mpm_status check_request(const mpm_particles *set, const char *field, int32_t access,
+                                const mpm_view *view, int32_t *f) {
+  if (!view) return mpmi_fail(set->context, MPM_E_ARG, "view is NULL");
+  if (view->struct_size < least_size)
+    return mpmi_fail(set->context, MPM_E_ARG, "mpm_view: struct_size is %u, must be sizeof(mpm_view)",
+                     view->struct_size);
+  if (access < MPM_READ || access > (MPM_READ | MPM_WRITE))
+    return mpmi_fail(set->context, MPM_E_ARG, "access is %d, must be MPM_READ, MPM_WRITE or both",
+                     (int)access);
+  mpm_status status = mpmi_require_field(set, field, f);
+  if (!status) status = mpmi_check_exists(set, *f);
+  if (!status && access & MPM_WRITE) status = mpmi_check_writable(set, *f);
+  if (status) return status;
+  if (set->field[*f].components == 0)
+    return mpmi_fail(set->context, MPM_E_NOT_FOUND, "the law of this set has no state to map");
+  return access & MPM_WRITE || !set->field[*f].present ? mpmi_between_steps(set) : MPM_OK;
+}
+
+mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_t access, mpm_view *view) {
+  MPMI_ENTER(particles, MPMI_PARTICLES);
+  int32_t f;
+  mpm_status status = check_request(particles, field, access, view, &f);
+  if (status) return status;
+  mpmi_view_record *record = free_record(particles);
+  if (!record)
+    return mpmi_fail(particles->context, MPM_E_STATE, "%d views of the set are out: release one first",
+                     (int)MPMI_MAX_VIEWS);
+  status = mpmi_settle(particles, f);
+  if (!status) status = mpmi_field_make_present(particles, f);
+  if (status) return status;
+  const mpmi_field *at = &particles->field[f];
+  *record = (mpmi_view_record){1, f, access, at->data[0], particles, NULL};
+  particles->mapped++;
+  mpmi_view_fill(view, at->type, at->components, access, particles->slots, particles->ld, at->data[0],
+                 record);
+  return MPM_OK;
+}
+
+/* Writing takes effect: what follows from the field is out of date, and bad values bar the set from steps. */
+static mpm_status accept_written(mpm_particles *set, int32_t field) {
+  mpmi_restore_holes(set, field);
+  mpm_status status = mpmi_check_stored(set, field);
+  if (field < MPMI_BUILTIN_FIELDS) {
+    uint32_t bit = 1u << field;
+    set->suspect = status ? set->suspect | bit : set->suspect & ~bit;
+  }
+  mpmi_field_written(set, field);
+  return status;
+}
+
+mpm_status mpm_view_release(mpm_view *view) {
+  if (!view) return MPM_E_ARG;
+  mpmi_view_record *record = view->owner;
+  if (!record || !record->live || record->data != view->data) return MPM_E_STATE;
+  if (record->stepper) return mpmi_node_view_release(record, view);
+  mpm_particles *set = record->set;
+  int32_t field = record->field, access = record->access;
+  set->context->error[0] = '\0';
+  set->mapped--;
+  *record = (mpmi_view_record){0};
+  view->data = view->owner = NULL;
+  return access & MPM_WRITE ? accept_written(set, field) : MPM_OK;
+}
