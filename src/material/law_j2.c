@@ -1,0 +1,33 @@
+/* Von Mises plasticity with linear isotropic hardening: the increments of linear_elastic, then a radial
+ * return (Simo & Hughes 1998, box 3.1). One state variable, the equivalent plastic strain. */
+#include "material/objective_increment.h"
+
+MPMI_INLINE void j2(int dim, const double *constants, const mpm_material_batch *batch) {
+  const double yield_initial = constants[MPMI_C_YIELD], hardening = constants[MPMI_C_HARDENING];
+  const double return_inverse = constants[MPMI_C_RETURN], mu3 = 3.0 * constants[MPMI_C_MU];
+  const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
+  const mpmi_increments in = mpmi_increments_of(constants, batch);
+  const double *plastic_old = batch->state;
+  double *stress = batch->stress_new, *plastic_new = batch->state_new;
+  if (batch->dt == 0.0) {
+    mpmi_keep_rows(mpmi_stress_rows(dim), batch->stress, stress, batch);
+    mpmi_keep_rows(1, plastic_old, plastic_new, batch);
+  } else {
+    MPMI_IVDEP
+    for (int64_t i = 0; i < n; ++i) {
+      double mean, plastic = plastic_old[i];
+      mpmi_sym d = mpmi_deviator(mpmi_trial_stress(dim, in, i), &mean);
+      double mises = sqrt(1.5 * mpmi_square(d)), yield = yield_initial + hardening * plastic;
+      double increment = mpmi_max(mises - yield, 0.0) * return_inverse;
+      /* Where there is an increment, mises > yield > 0: the maximum is mises, and never 0. */
+      double keep = 1.0 - mu3 * increment / mpmi_max(mises, yield);
+      mpmi_sym s = {mean + keep * d.xx, mean + keep * d.yy, mean + keep * d.zz,
+                    keep * d.xy,        keep * d.yz,        keep * d.xz};
+      mpmi_store_sym(dim, stress, ld, i, s);
+      plastic_new[i] = plastic + increment;
+    }
+  }
+  mpmi_elastic_outputs(dim, constants, batch);
+}
+
+MPMI_LAW_BY_DIM(law_j2, j2)

@@ -1,0 +1,51 @@
+/* Compressible neo-Hookean law, Steffen et al. 2008, eq. 46:
+ *   stress = (lambda ln J / J) I + (mu / J) (F F^T - I),
+ *   energy per initial volume W = lambda/2 ln^2 J - mu ln J + mu/2 (tr F F^T - 3). */
+#include <math.h>
+
+#include "material/laws.h"
+#include "material/tensor.h"
+#include "material/vector_math.h"
+
+/* Largest absolute row sum: a bound of the largest eigenvalue of b = I + e over the directions that `dim`
+ * has. */
+MPMI_INLINE double largest_stretch_squared(int dim, mpmi_sym e) {
+  if (dim == 1) return 1.0 + e.xx;
+  double xy = fabs(e.xy);
+  if (dim == 2) return 1.0 + (mpmi_max(e.xx, e.yy) + xy);
+  double yz = fabs(e.yz), xz = fabs(e.xz);
+  return 1.0 + mpmi_max(mpmi_max(e.xx + (xy + xz), e.yy + (xy + yz)), e.zz + (xz + yz));
+}
+
+MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_material_batch *batch) {
+  const double lambda = constants[MPMI_C_LAMBDA], mu = constants[MPMI_C_MU];
+  const double density_inverse = constants[MPMI_C_DENSITY_INVERSE];
+  const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
+  const double *deformation = batch->F;
+  double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
+  MPMI_IVDEP
+  for (int64_t i = 0; i < n; ++i) {
+    /* In terms of H = F - I, so that small strains keep their digits. */
+    mpmi_mat h = mpmi_load_mat(dim, deformation, ld, i, 1.0, 1.0);
+    mpmi_sym e = mpmi_left_cauchy_green_minus_1(dim, h);
+    double j_minus_1 = mpmi_det_minus_1(dim, h), j_inverse = 1.0 / (1.0 + j_minus_1);
+    double log_j = mpmi_lane_log1p(j_minus_1);
+
+    double mu_j = mu * j_inverse, pressure = lambda * log_j * j_inverse;
+    mpmi_sym s = {pressure + mu_j * e.xx,
+                  pressure + mu_j * e.yy,
+                  pressure + mu_j * e.zz,
+                  mu_j * e.xy,
+                  mu_j * e.yz,
+                  mu_j * e.xz};
+    mpmi_store_sym(dim, stress, ld, i, s);
+    energy[i] = 0.5 * lambda * log_j * log_j + mu * (0.5 * (e.xx + e.yy + e.zz) - log_j);
+
+    /* The acoustic tensor (J c_ijkl n_j n_l + tau_jl n_j n_l delta_ik) / density has the eigenvalues
+     * mu b_nn (transverse) and lambda + mu - lambda ln J + mu b_nn (along n), over the initial density. */
+    double along = mpmi_max(lambda + mu - lambda * log_j, 0.0) + mu * largest_stretch_squared(dim, e);
+    wave_speed[i] = sqrt(mpmi_max(along, mu) * density_inverse);
+  }
+}
+
+MPMI_LAW_BY_DIM(law_neo_hookean, neo_hookean)

@@ -1,0 +1,50 @@
+/* The built-in laws: their kernels, one per instruction set, and the order of their constants. */
+#ifndef MPMI_LAWS_H
+#define MPMI_LAWS_H
+
+#include "material/material.h"
+#include "transfer/isa.h"
+
+/* Isotropic elastic constants come first in every law. */
+enum {
+  MPMI_C_LAMBDA,
+  MPMI_C_MU,
+  MPMI_C_DENSITY_INVERSE,
+  MPMI_C_P_WAVE_SQUARED, /* (lambda + 2 mu) / density */
+  MPMI_C_MEAN_ENERGY,    /* 1 / (2 K): energy of the mean stress */
+  MPMI_C_SHEAR_ENERGY,   /* 1 / (4 mu): energy of the deviator */
+  MPMI_C_YIELD,          /* j2: initial yield stress */
+  MPMI_C_HARDENING,      /* j2: slope of the yield stress over the equivalent plastic strain */
+  MPMI_C_RETURN,         /* j2: 1 / (3 mu + hardening) */
+  MPMI_C_COUNT
+};
+_Static_assert((int)MPMI_C_COUNT <= (int)MPMI_MAX_CONSTANTS, "constants of a law");
+
+/* A built-in law by name, or NULL. */
+const mpmi_law *mpmi_law_by_name(const char *name);
+/* For a name that the interface reserves but that cannot be made yet: what to use instead; else NULL. */
+const char *mpmi_law_substitute(const char *name);
+
+#define MPMI_DECLARE_LAWS(isa)                                                                               \
+  void mpmi_law_neo_hookean_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);    \
+  void mpmi_law_linear_elastic_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch); \
+  void mpmi_law_j2_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);
+
+MPMI_DECLARE_LAWS(baseline)
+#if MPMI_HAS_X86
+MPMI_DECLARE_LAWS(avx2)
+MPMI_DECLARE_LAWS(avx512)
+#endif
+
+/* Makes f(constants, dim, batch) from f_dim(constants, dim, batch), specialised for each dim. */
+#define MPMI_LAW_BY_DIM(law, body)                                                                           \
+  void KERNEL(law)(const double *constants, int32_t dim, const mpm_material_batch *batch) {                  \
+    if (dim == 3)                                                                                            \
+      body(3, constants, batch);                                                                             \
+    else if (dim == 2)                                                                                       \
+      body(2, constants, batch);                                                                             \
+    else                                                                                                     \
+      body(1, constants, batch);                                                                             \
+  }
+
+#endif

@@ -1,0 +1,185 @@
+/* Materials as handles: a built-in law with checked parameters, or the host's callbacks. */
+#include <math.h>
+#include <string.h>
+
+#include "material/laws.h"
+
+enum { MAX_STATE_COUNT = 64 };
+
+static int32_t is_context(const mpm_context *context) {
+  return context && context->magic == MPMI_CONTEXT;
+}
+
+static mpm_status refuse_model(mpm_context *context, const char *model) {
+  const char *names[MPMI_LAW_COUNT], *substitute = mpmi_law_substitute(model);
+  if (substitute)
+    return mpmi_fail(context, MPM_E_UNSUPPORTED, "model \"%s\" is not available in this version: %s", model,
+                     substitute);
+  for (int32_t i = 0; i < MPMI_LAW_COUNT; ++i) names[i] = mpmi_law_by_index(i)->name;
+  char nearest[256];
+  mpmi_nearest_names(model, names, MPMI_LAW_COUNT, nearest, sizeof nearest);
+  return mpmi_fail(context, MPM_E_NOT_FOUND, "no model \"%s\"; nearest: %s", model, nearest);
+}
+
+static mpm_status refuse_param(mpm_context *context, const mpmi_law *law, const char *name) {
+  const char *names[MPMI_MAX_PARAMS];
+  for (int32_t k = 0; k < law->param_count; ++k) names[k] = law->param[k].name;
+  char nearest[256];
+  mpmi_nearest_names(name, names, law->param_count, nearest, sizeof nearest);
+  return mpmi_fail(context, MPM_E_NOT_FOUND, "%s has no parameter \"%s\"; nearest: %s", law->name, name,
+                   nearest);
+}
+
+static mpm_status read_params(mpm_context *context, const mpmi_law *law, const mpm_param *params,
+                              int32_t count, double *value) {
+  int32_t given[MPMI_MAX_PARAMS] = {0};
+  for (int32_t k = 0; k < law->param_count; ++k) value[k] = law->param[k].value;
+  for (int32_t i = 0; i < count; ++i) {
+    const char *name = params[i].name;
+    if (!name) return mpmi_fail(context, MPM_E_ARG, "%s: params[%d].name is NULL", law->name, i);
+    int32_t k = 0;
+    while (k < law->param_count && strcmp(law->param[k].name, name) != 0) ++k;
+    if (k == law->param_count) return refuse_param(context, law, name);
+    if (given[k])
+      return mpmi_fail(context, MPM_E_ARG, "%s: parameter \"%s\" is given twice", law->name, name);
+    given[k] = 1;
+    value[k] = params[i].value;
+    if (!(value[k] >= law->param[k].low && value[k] <= law->param[k].high))
+      return mpmi_fail(context, MPM_E_ARG, "%s: %s = %.17g, but it %s", law->name, name, value[k],
+                       law->param[k].range);
+  }
+  for (int32_t k = 0; k < law->param_count; ++k)
+    if (isnan(value[k]))
+      return mpmi_fail(context, MPM_E_ARG, "%s: parameter \"%s\" (%s) must be given", law->name,
+                       law->param[k].name, law->param[k].text);
+  return MPM_OK;
+}
+
+/* Parameters may be fine one by one and still overflow together, such as 1e300 / 1e-300. */
+static mpm_status prepare_constants(mpm_context *context, const mpmi_law *law, const double *value,
+                                    double *constants) {
+  law->prepare(value, constants);
+  for (int32_t i = 0; i < MPMI_MAX_CONSTANTS; ++i)
+    if (!isfinite(constants[i]))
+      return mpmi_fail(context, MPM_E_ARG,
+                       "%s: the parameters together are beyond the range of double precision", law->name);
+  return MPM_OK;
+}
+
+mpm_status mpm_material_create(mpm_context *context, const char *model, const mpm_param *params,
+                               int32_t count, mpm_material **out) {
+  if (out) *out = NULL;
+  if (!is_context(context)) return MPM_E_ARG;
+  context->error[0] = '\0';
+  if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_material_create: out is NULL");
+  if (!model) return mpmi_fail(context, MPM_E_ARG, "mpm_material_create: model is NULL");
+  const mpmi_law *law = mpmi_law_by_name(model);
+  if (!law) return refuse_model(context, model);
+  if (count < 0) return mpmi_fail(context, MPM_E_ARG, "%s: count = %d is negative", model, count);
+  if (count > 0 && !params)
+    return mpmi_fail(context, MPM_E_ARG, "%s: params is NULL, but count is %d", model, count);
+
+  mpm_material made = {
+      .magic = MPMI_MATERIAL, .context = context, .law = law, .state_count = law->state_count};
+  mpm_status status = read_params(context, law, params, count, made.value);
+  if (!status) status = prepare_constants(context, law, made.value, made.constants);
+  if (status) return status;
+  for (int32_t k = 0; k < law->param_count; ++k)
+    if (!strcmp(law->param[k].name, "density")) made.density = made.value[k];
+
+  mpm_material *material = mpmi_alloc(context, sizeof *material);
+  if (!material) return MPM_E_NOMEM;
+  *material = made;
+  context->children++;
+  *out = material;
+  return MPM_OK;
+}
+
+mpm_status mpm_material_desc_init(mpm_material_desc *desc, uint32_t struct_size) {
+  const mpm_material_desc defaults = {.struct_size = sizeof defaults,
+                                      .tangent_form = MPM_TANGENT_MINOR_SYMMETRIC};
+  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+}
+
+static mpm_status check_desc(mpm_context *context, const mpm_material_desc *d) {
+  if (!(d->density > 0.0 && isfinite(d->density)))
+    return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: density = %.17g must be finite and > 0",
+                     d->density);
+  if (!d->stress) return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: stress is NULL");
+  if (d->state_count < 0 || d->state_count > MAX_STATE_COUNT)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: state_count = %d must be 0 to %d",
+                     d->state_count, MAX_STATE_COUNT);
+  int32_t form = d->tangent_form;
+  if (form != MPM_TANGENT_MINOR_SYMMETRIC && form != MPM_TANGENT_GENERAL && (form != 0 || d->tangent))
+    return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: tangent_form = %d must be %d or %d", form,
+                     MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL);
+  if (d->reserved)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: reserved = %d must be 0", d->reserved);
+  for (int32_t k = 0; d->state_initial && k < d->state_count; ++k)
+    if (!isfinite(d->state_initial[k]))
+      return mpmi_fail(context, MPM_E_ARG, "mpm_material_desc: state_initial[%d] = %g must be finite", k,
+                       d->state_initial[k]);
+  return MPM_OK;
+}
+
+static size_t state_bytes(int32_t state_count) {
+  return mpmi_bytes(state_count, sizeof(double));
+}
+
+mpm_status mpm_material_create_custom(mpm_context *context, const mpm_material_desc *desc,
+                                      mpm_material **out) {
+  if (out) *out = NULL;
+  if (!is_context(context)) return MPM_E_ARG;
+  context->error[0] = '\0';
+  if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_material_create_custom: out is NULL");
+  mpm_material_desc custom;
+  mpm_status status = mpmi_read_struct(context, "mpm_material_desc", desc, sizeof custom, &custom);
+  if (!status) status = check_desc(context, &custom);
+  if (status) return status;
+
+  mpm_material *material = mpmi_alloc(context, sizeof *material);
+  if (!material) return MPM_E_NOMEM;
+  *material = (mpm_material){.magic = MPMI_MATERIAL,
+                             .context = context,
+                             .density = custom.density,
+                             .state_count = custom.state_count,
+                             .custom = custom};
+  if (custom.state_initial && custom.state_count > 0) {
+    material->state_initial = mpmi_alloc(context, state_bytes(custom.state_count));
+    if (!material->state_initial) {
+      mpmi_free(context, material, sizeof *material);
+      return MPM_E_NOMEM;
+    }
+    memcpy(material->state_initial, custom.state_initial, state_bytes(custom.state_count));
+  }
+  material->custom.state_initial = material->state_initial; /* the caller's array may be gone tomorrow */
+  context->children++;
+  *out = material;
+  return MPM_OK;
+}
+
+mpm_status mpm_material_destroy(mpm_material *material) {
+  if (!material) return MPM_OK;
+  MPMI_ENTER(material, MPMI_MATERIAL);
+  mpm_context *context = material->context;
+  if (material->users > 0)
+    return mpmi_fail(context, MPM_E_STATE, "the material is still used by %d set(s) of particles",
+                     material->users);
+  if (material->custom.release_user) material->custom.release_user(material->custom.user);
+  material->magic = 0;
+  mpmi_free(context, material->state_initial, state_bytes(material->state_count));
+  mpmi_free(context, material, sizeof *material);
+  context->children--;
+  return MPM_OK;
+}
+
+mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t isa, int32_t dim,
+                                  const mpm_material_batch *batch) {
+  if (!material->law) return material->custom.stress(material->custom.user, batch);
+  mpmi_law_kernel(isa, material->law->index)(material->constants, dim, batch);
+  return MPM_OK;
+}
+
+int32_t mpmi_material_stress_from_F(const mpm_material *material) {
+  return material->law ? material->law->stress_from_F : 0;
+}

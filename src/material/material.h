@@ -1,0 +1,64 @@
+/* Materials: one constitutive law with its parameters, built in or the host's.
+ *
+ * Built-in laws are kernels: plain loops over the component arrays of an mpm_material_batch, compiled once
+ * for each instruction set, of type mpmi_law_fn. Batch lengths are multiples of 16 and every array is 64-byte
+ * aligned. */
+#ifndef MPMI_MATERIAL_H
+#define MPMI_MATERIAL_H
+
+#include "context/context.h"
+
+enum {
+  MPMI_LAW_NEO_HOOKEAN,
+  MPMI_LAW_LINEAR_ELASTIC,
+  MPMI_LAW_J2,
+  MPMI_LAW_COUNT,
+  MPMI_LAW_CUSTOM = MPMI_LAW_COUNT
+};
+enum { MPMI_MAX_PARAMS = 8, MPMI_MAX_CONSTANTS = 16 };
+
+/* Evaluates a built-in law on batch->n particles (a multiple of 16). constants: made by the law's prepare
+ * function. dim tells which entries of the full tensors can be anything but those of the identity, so that
+ * 1-D and 2-D need not pay for 3-D; stress_new has all six rows written for the components that exist in
+ * `dim` (xx yy zz; xy in 2-D; yz xz in 3-D), others are left alone. */
+typedef void (*mpmi_law_fn)(const double *constants, int32_t dim, const mpm_material_batch *batch);
+
+typedef struct mpmi_law_param {
+  const char *name, *unit, *text;
+  double value, low, high; /* default (NaN: must be given); inclusive range */
+  const char *range;       /* the same in words */
+} mpmi_law_param;
+
+typedef struct mpmi_law {
+  const char *name;
+  int32_t index; /* MPMI_LAW_... */
+  int32_t state_count;
+  int32_t stress_from_F; /* 1: hyperelastic; 0: hypoelastic, the host may set the stress */
+  int32_t param_count;
+  mpmi_law_param param[MPMI_MAX_PARAMS];
+  /* Derived constants for the kernel from the parameter values. */
+  void (*prepare)(const double *value, double *constants);
+} mpmi_law;
+
+struct mpm_material {
+  uint32_t magic;
+  int32_t users; /* sets */
+  mpm_context *context;
+  const mpmi_law *law; /* NULL: the host's */
+  double value[MPMI_MAX_PARAMS], constants[MPMI_MAX_CONSTANTS];
+  double density;
+  int32_t state_count;
+  double *state_initial;    /* [state_count], or NULL: zeros */
+  mpm_material_desc custom; /* the host's callbacks */
+};
+
+const mpmi_law *mpmi_law_by_index(int32_t index);
+/* The law's kernel for an instruction set. */
+mpmi_law_fn mpmi_law_kernel(int32_t isa, int32_t law);
+/* Runs a material's law, built in or the host's, on a batch. Callback statuses pass through unchanged. */
+mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t isa, int32_t dim,
+                                  const mpm_material_batch *batch);
+/* 1 when stress follows from F alone. */
+int32_t mpmi_material_stress_from_F(const mpm_material *material);
+
+#endif

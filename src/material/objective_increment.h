@@ -1,0 +1,136 @@
+/* Kinematics that linear_elastic and j2 share. With the increment F_inc = V R (polar decomposition) the
+ * stress turns with R and the strain increment is ln V: rotations leave no stress behind, whatever the size
+ * of the step. G = F_inc - I is taken as dt L, so that small increments keep their digits. */
+#ifndef MPMI_OBJECTIVE_INCREMENT_H
+#define MPMI_OBJECTIVE_INCREMENT_H
+
+#include <math.h>
+#include <string.h>
+
+#include "material/isotropic_function.h"
+#include "material/laws.h"
+#include "material/tensor.h"
+#include "material/vector_math.h"
+
+/* Turns the stress with R and gives ln V. */
+MPMI_INLINE mpmi_sym mpmi_increment_2d(mpmi_mat g, mpmi_sym *stress) {
+  /* V is symmetric when R turns by the angle whose cosine and sine are as along and across. Written as a
+   * change of the stress, so that no rotation leaves it as it is. */
+  double along = 2.0 + (g.xx + g.yy), across = g.yx - g.xy;
+  double turn = 2.0 * across / (along * along + across * across);
+  double half = 0.5 * (stress->xx - stress->yy), shear = stress->xy;
+  double shift = turn * (along * shear + across * half);
+  stress->xx -= shift;
+  stress->yy += shift;
+  stress->xy += turn * (along * half - across * shear);
+
+  /* e = V V - I has the eigenvalues m + d and m - d, and ln V = a I + s (e - m I) with a = 1/2 ln det V and
+   * s = 1/(4 d) ln((1 + m + d) / (1 + m - d)). The tiny number keeps d from 0 without changing s. */
+  mpmi_sym e = mpmi_left_cauchy_green_minus_1(2, g);
+  double m = 0.5 * (e.xx + e.yy), h = 0.5 * (e.xx - e.yy);
+  double d = sqrt((h * h + e.xy * e.xy) + 1e-60);
+  double det_minus_1 = mpmi_det_minus_1(2, g), det = 1.0 + det_minus_1;
+  double ratio_minus_1 = 2.0 * d * (1.0 + m + d) / (det * det);
+  double slope = 0.25 * mpmi_lane_log1p(ratio_minus_1) / d, half_trace = 0.5 * mpmi_lane_log1p(det_minus_1);
+  mpmi_sym log_v = {half_trace + slope * h, half_trace - slope * h, 0.0, slope * e.xy, 0.0, 0.0};
+  return log_v;
+}
+
+/* R S R^T */
+MPMI_INLINE mpmi_sym mpmi_turned(mpmi_mat r, mpmi_sym s) {
+  mpmi_mat a = {r.xx * s.xx + r.xy * s.xy + r.xz * s.xz, r.xx * s.xy + r.xy * s.yy + r.xz * s.yz,
+                r.xx * s.xz + r.xy * s.yz + r.xz * s.zz, r.yx * s.xx + r.yy * s.xy + r.yz * s.xz,
+                r.yx * s.xy + r.yy * s.yy + r.yz * s.yz, r.yx * s.xz + r.yy * s.yz + r.yz * s.zz,
+                r.zx * s.xx + r.zy * s.xy + r.zz * s.xz, r.zx * s.xy + r.zy * s.yy + r.zz * s.yz,
+                r.zx * s.xz + r.zy * s.yz + r.zz * s.zz};
+  mpmi_sym t = {a.xx * r.xx + a.xy * r.xy + a.xz * r.xz, a.yx * r.yx + a.yy * r.yy + a.yz * r.yz,
+                a.zx * r.zx + a.zy * r.zy + a.zz * r.zz, a.xx * r.yx + a.xy * r.yy + a.xz * r.yz,
+                a.yx * r.zx + a.yy * r.zy + a.yz * r.zz, a.xx * r.zx + a.xy * r.zy + a.xz * r.zz};
+  return t;
+}
+
+MPMI_INLINE mpmi_sym mpmi_increment_3d(mpmi_mat g, mpmi_sym *stress) {
+  mpmi_sym e = mpmi_left_cauchy_green_minus_1(3, g);
+  mpmi_nodes n = mpmi_eigenvalues(e);
+  mpmi_sym q = mpmi_quadratic(e, n), w = mpmi_inverse_stretch(e, q, n);
+  /* R = V^-1 F_inc = V^-1 + V^-1 G */
+  mpmi_mat r = {
+      w.xx + w.xx * g.xx + w.xy * g.yx + w.xz * g.zx, w.xy + w.xx * g.xy + w.xy * g.yy + w.xz * g.zy,
+      w.xz + w.xx * g.xz + w.xy * g.yz + w.xz * g.zz, w.xy + w.xy * g.xx + w.yy * g.yx + w.yz * g.zx,
+      w.yy + w.xy * g.xy + w.yy * g.yy + w.yz * g.zy, w.yz + w.xy * g.xz + w.yy * g.yz + w.yz * g.zz,
+      w.xz + w.xz * g.xx + w.yz * g.yx + w.zz * g.zx, w.yz + w.xz * g.xy + w.yz * g.yy + w.zz * g.zy,
+      w.zz + w.xz * g.xz + w.yz * g.yz + w.zz * g.zz};
+  *stress = mpmi_turned(r, *stress);
+  return mpmi_log_stretch(e, q, n);
+}
+
+/* What the trial stress needs, read before the loop: the compiler must see that stores leave it alone. */
+typedef struct mpmi_increments {
+  const double *L, *stress;
+  int64_t ld;
+  double dt, lambda, mu;
+} mpmi_increments;
+
+MPMI_INLINE mpmi_increments mpmi_increments_of(const double *constants, const mpm_material_batch *batch) {
+  mpmi_increments in = {
+      batch->L, batch->stress, batch->ld, batch->dt, constants[MPMI_C_LAMBDA], constants[MPMI_C_MU]};
+  return in;
+}
+
+/* Old stress turned, plus lambda tr(ln V) I + 2 mu ln V. */
+MPMI_INLINE mpmi_sym mpmi_trial_stress(int dim, mpmi_increments in, int64_t i) {
+  mpmi_sym s = mpmi_load_sym(dim, in.stress, in.ld, i), v = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, i, 0.0, in.dt);
+  if (dim == 1)
+    v.xx = mpmi_lane_log1p(g.xx);
+  else
+    v = dim == 2 ? mpmi_increment_2d(g, &s) : mpmi_increment_3d(g, &s);
+  double pressure = in.lambda * (v.xx + v.yy + v.zz), mu2 = 2.0 * in.mu;
+  s.xx += pressure + mu2 * v.xx;
+  s.yy += pressure + mu2 * v.yy;
+  s.zz += pressure + mu2 * v.zz;
+  s.xy += mu2 * v.xy;
+  s.yz += mu2 * v.yz;
+  s.xz += mu2 * v.xz;
+  return s;
+}
+
+/* Deviator of s; a third of the trace goes to *mean. */
+MPMI_INLINE mpmi_sym mpmi_deviator(mpmi_sym s, double *mean) {
+  *mean = (s.xx + s.yy + s.zz) * (1.0 / 3.0);
+  mpmi_sym d = {s.xx - *mean, s.yy - *mean, s.zz - *mean, s.xy, s.yz, s.xz};
+  return d;
+}
+
+MPMI_INLINE double mpmi_square(mpmi_sym s) {
+  return 2.0 * (s.xy * s.xy + s.yz * s.yz + s.xz * s.xz) + s.xx * s.xx + s.yy * s.yy + s.zz * s.zz;
+}
+
+/* Elastic wave speed at the current density, and energy J/2 stress : S : stress per initial volume. */
+MPMI_INLINE void mpmi_elastic_outputs(int dim, const double *constants, const mpm_material_batch *batch) {
+  const double p_wave = constants[MPMI_C_P_WAVE_SQUARED];
+  const double by_mean = constants[MPMI_C_MEAN_ENERGY], by_deviator = constants[MPMI_C_SHEAR_ENERGY];
+  const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
+  const double *deformation = batch->F, *stress = batch->stress_new;
+  double *wave_speed = batch->wave_speed, *energy = batch->energy;
+  MPMI_IVDEP
+  for (int64_t i = 0; i < n; ++i) {
+    double j = 1.0 + mpmi_det_minus_1(dim, mpmi_load_mat(dim, deformation, ld, i, 1.0, 1.0)), mean;
+    mpmi_sym s = mpmi_deviator(mpmi_load_sym(dim, stress, ld, i), &mean);
+    wave_speed[i] = sqrt(p_wave * j);
+    energy[i] = j * (by_mean * mean * mean + by_deviator * mpmi_square(s));
+  }
+}
+
+/* dt = 0 asks about the state as it is: its stress is given back bit for bit. */
+MPMI_INLINE void mpmi_keep_rows(int64_t rows, const double *from, double *to,
+                                const mpm_material_batch *batch) {
+  for (int64_t c = 0; c < rows; ++c)
+    memcpy(to + c * batch->ld, from + c * batch->ld, (size_t)batch->n * sizeof *to);
+}
+
+MPMI_INLINE int64_t mpmi_stress_rows(int dim) {
+  return dim == 1 ? 3 : dim == 2 ? 4 : 6;
+}
+
+#endif

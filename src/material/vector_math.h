@@ -1,0 +1,70 @@
+/* Elementary functions that the compiler can vectorise on every instruction set: no branches, no calls, and
+ * integers used as bit patterns only. Arguments outside the domain give meaningless values but never trap. */
+#ifndef MPMI_VECTOR_MATH_H
+#define MPMI_VECTOR_MATH_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "transfer/isa.h"
+
+#define MPMI_ONE_BITS       UINT64_C(0x3ff0000000000000)
+#define MPMI_SQRT_HALF_BITS UINT64_C(0x3fe6a09e667f3bcd)
+#define MPMI_MANTISSA_BITS  UINT64_C(0x000fffffffffffff)
+
+MPMI_INLINE uint64_t mpmi_bits_of(double x) {
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
+MPMI_INLINE double mpmi_from_bits(uint64_t bits) {
+  double x;
+  memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+MPMI_INLINE double mpmi_max(double a, double b) {
+  return a > b ? a : b;
+}
+
+/* k ln 2 + log(1 + f) for |f| < 0.42: with s = f / (2 + f), log(1 + f) = 2 artanh s = f - f^2/2 + s (f^2/2 +
+ * R), where R(s^2) is the minimax polynomial of 2 artanh(s) / s - 2 with relative error 1.3e-18. */
+MPMI_INLINE double mpmi_log_reduced(double k, double f) {
+  const double ln2_high = 0x1.62e42fefa3800p-1; /* 42 bits: k * ln2_high is exact */
+  const double ln2_low = 5.497923018708371e-14;
+  double s = f / (2.0 + f), z = s * s, w = z * z;
+  double even = w * (0.3999999999941487 + w * (0.2222219857624919 + w * 0.15314053867034655));
+  double odd = z * (0.6666666666666734 +
+                    w * (0.2857142874235307 + w * (0.18183564183964648 + w * 0.14795919028641485)));
+  double half_square = 0.5 * f * f;
+  return k * ln2_high - ((half_square - (s * (half_square + (even + odd)) + k * ln2_low)) - f);
+}
+
+/* x = 2^k (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)). The biased exponent becomes a double by way of the bits
+ * of 2^52 + exponent, because AVX2 cannot convert 64-bit integers. */
+typedef struct mpmi_binade {
+  double k, f;
+} mpmi_binade;
+
+MPMI_INLINE mpmi_binade mpmi_split_binade(double x) {
+  mpmi_binade r;
+  uint64_t shifted = mpmi_bits_of(x) + (MPMI_ONE_BITS - MPMI_SQRT_HALF_BITS);
+  r.k = mpmi_from_bits((shifted >> 52) | UINT64_C(0x4330000000000000)) - (4503599627370496.0 + 1023.0);
+  r.f = mpmi_from_bits((shifted & MPMI_MANTISSA_BITS) + MPMI_SQRT_HALF_BITS) - 1.0;
+  return r;
+}
+
+/* Natural logarithm of a normal x > 0. */
+MPMI_INLINE double mpmi_lane_log(double x) {
+  mpmi_binade b = mpmi_split_binade(x);
+  return mpmi_log_reduced(b.k, b.f);
+}
+
+/* log(1 + x) for x > -1. Only where k = 0 does it matter what rounding 1 + x loses. */
+MPMI_INLINE double mpmi_lane_log1p(double x) {
+  mpmi_binade b = mpmi_split_binade(1.0 + x);
+  return mpmi_log_reduced(b.k, b.k == 0.0 ? x : b.f);
+}
+
+#endif
