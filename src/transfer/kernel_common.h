@@ -1,0 +1,74 @@
+/* Small helpers shared by the kernel files; everything here is inlined. */
+#ifndef MPMI_KERNEL_COMMON_H
+#define MPMI_KERNEL_COMMON_H
+
+#include "transfer/kernels.h"
+#include "transfer/vector4.h"
+
+/* Slots come in groups of 16; saying so lets the compiler drop remainders. */
+MPMI_INLINE int64_t mpmi_groups(int64_t n) {
+  return n & ~(int64_t)(MPMI_GROUP - 1);
+}
+
+/* Sums over 16 fixed lanes, then over the lanes: they vectorise, and do not depend on vector width or on how
+ * batches are cut. */
+typedef struct mpmi_lanes {
+  double at[MPMI_GROUP];
+} mpmi_lanes;
+
+MPMI_INLINE double mpmi_lane_sum(const mpmi_lanes *l) {
+  double s = 0.0;
+  for (int32_t i = 0; i < MPMI_GROUP; ++i) s += l->at[i];
+  return s;
+}
+MPMI_INLINE double mpmi_lane_max(const mpmi_lanes *l) {
+  double s = l->at[0];
+  for (int32_t i = 1; i < MPMI_GROUP; ++i) s = l->at[i] > s ? l->at[i] : s;
+  return s;
+}
+
+/* Nearest integer for |x| < 2^51 by adding and taking away 1.5 * 2^52: every instruction set can vectorise
+ * it. */
+MPMI_INLINE double mpmi_round(double x) {
+  const double big = 6755399441055744.0;
+  return (x + big) - big;
+}
+
+MPMI_INLINE double mpmi_floor(double x) {
+  double r = mpmi_round(x);
+  return r > x ? r - 1.0 : r;
+}
+
+/* First node of the stencil relative to the tile, in the periodic image that lies in the tile. */
+MPMI_INLINE double mpmi_in_tile(const mpmi_axis *a, double base) {
+  double first = base - a->tile_base;
+  return first - a->period * mpmi_round((first - a->middle) * a->inverse_period);
+}
+
+/* n particles' four components, arrays a..d, to one vector per particle; and back (d is dropped). */
+MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const double *c, const double *d,
+                           mpmi_v4 *out) {
+  for (int64_t p = 0; p < mpmi_groups(n); p += 4) {
+    mpmi_v4 va = mpmi_load4(a + p), vb = mpmi_load4(b + p), vc = mpmi_load4(c + p), vd = mpmi_load4(d + p);
+    mpmi_transpose4(&va, &vb, &vc, &vd);
+    out[p] = va;
+    out[p + 1] = vb;
+    out[p + 2] = vc;
+    out[p + 3] = vd;
+  }
+}
+MPMI_INLINE void mpmi_unpack3(int64_t n, const mpmi_v4 *in, double *a, double *b, double *c) {
+  for (int64_t p = 0; p < mpmi_groups(n); p += 4) {
+    mpmi_v4 va = in[p], vb = in[p + 1], vc = in[p + 2], vd = in[p + 3];
+    mpmi_transpose4(&va, &vb, &vc, &vd);
+    mpmi_store4(a + p, va);
+    mpmi_store4(b + p, vb);
+    mpmi_store4(c + p, vc);
+  }
+}
+
+/* Weights of a chunk on all axes and the tile node of each stencil (transfer/weights.c). */
+void KERNEL(weights)(int32_t dim, int32_t width, const mpmi_axis *axis, mpmi_axis_weights_fn axis_weights,
+                     int32_t need, int64_t n, const double *const *x, mpmi_weights *out);
+
+#endif

@@ -1,0 +1,151 @@
+/* The specialised kernels of the method: weights, scatter (P2G), gather (G2P), advance and survey.
+ *
+ * Kernels work on slots in groups of 16 and in chunks of 32; they see one block at a time with its tile: a
+ * private copy of the block's nodes plus halo. Tile nodes hold `values` doubles: 4 [px py pz m] or 8 [px py
+ * pz m fx fy fz 0] when scattering, and [vx vy vz m] or [vx vy vz m dvx dvy dvz 0] when gathering, where v is
+ * the updated nodal velocity and dv its change over the step. The last axis runs fastest.
+ *
+ * Specialised by dim x stencil width x form x instruction set. A basis family enters through its weights
+ * alone. */
+#ifndef MPMI_KERNELS_H
+#define MPMI_KERNELS_H
+
+#include "grid/blocks.h"
+#include "material/material.h"
+#include "transfer/isa.h"
+
+enum { MPMI_CHUNK = 32, MPMI_GROUP = 16, MPMI_MAX_WIDTH = 4 };
+#define MPMI_TILE_EDGE(dim, width) (MPMI_BLOCK_EDGE(dim) + 2 * MPMI_RING + (width)-1)
+
+/* One axis of the basis as seen from one block. */
+typedef struct mpmi_axis {
+  double origin, spacing, inverse_spacing;
+  double base_low, base_high;    /* range of the first node of a stencil */
+  double period, inverse_period; /* in cells; 0 when the axis is not periodic */
+  double tile_base;              /* node at the corner of the tile */
+  double middle; /* of the valid first nodes, relative to tile_base: picks the periodic image */
+} mpmi_axis;
+
+/* Weights of a chunk along each axis: w basis, g the second weight of the first-order terms (gradient, or u /
+ * D for the MLS form), u moments w (x_i - x_p). moment: D = sum w (x_i - x_p)^2. node: first node of the
+ * stencil in the tile. */
+typedef struct mpmi_weights {
+  double w[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
+  double g[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
+  double u[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
+  double moment[3][MPMI_CHUNK];
+  int32_t node[MPMI_CHUNK];
+} mpmi_weights;
+
+/* What a transfer needs beside w. */
+enum {
+  MPMI_NEED_GRADIENT = 1,
+  MPMI_NEED_MOMENT = 2,
+  MPMI_NEED_MLS = 4 /* g = u / D in place of the gradient */
+};
+
+/* Weights of n (a multiple of 16, <= 32) particles along one axis; first[] receives the first node of the
+ * stencil, relative to the tile. One function per basis family; everything else is common. */
+typedef void (*mpmi_axis_weights_fn)(const mpmi_axis *axis, int64_t n, const double *x, int32_t need,
+                                     double (*w)[MPMI_CHUNK], double (*g)[MPMI_CHUNK],
+                                     double (*u)[MPMI_CHUNK], double *moment, double *first);
+
+/* Forms of the scatter: 4 values (momentum and mass; the fused MLS force may ride on the momentum) or 8
+ * (force apart), with or without the affine part of the velocity. */
+enum { MPMI_SCATTER_4, MPMI_SCATTER_4_AFFINE, MPMI_SCATTER_8, MPMI_SCATTER_8_AFFINE, MPMI_SCATTER_FORMS };
+/* Forms of the gather: 4 values: velocity and L; and C beside L; 8 values: velocity, its change and L. */
+enum { MPMI_GATHER_4, MPMI_GATHER_4_AFFINE, MPMI_GATHER_8, MPMI_GATHER_FORMS };
+
+/* Component arrays of a set, each at slot 0. */
+typedef struct mpmi_scatter {
+  mpmi_axis axis[3];
+  mpmi_axis_weights_fn axis_weights;
+  int32_t need;
+  const double *x[3], *v[3], *mass, *volume;
+  const double *stress[6]; /* by (xx yy zz xy yz xz); NULL: no internal force */
+  const double *affine[9]; /* row * 3 + column; for the affine forms */
+  const double *force[3];  /* external force on the particle beside gravity, or NULL */
+  double gravity[3];
+  double fused_dt; /* form 4 affine: time that the force acts on the momentum; 0: no force */
+  double *tile;
+} mpmi_scatter;
+typedef void (*mpmi_scatter_fn)(const mpmi_scatter *job, int64_t begin, int64_t end);
+
+/* Gathered quantities of a batch, [components][ld] each; L and C full 3x3 with unused entries left alone. */
+typedef struct mpmi_gather {
+  mpmi_axis axis[3];
+  mpmi_axis_weights_fn axis_weights;
+  int32_t need;
+  const double *x[3], *initial_volume; /* a hole has none: everything gathered for it is 0 */
+  const double *tile;
+  int64_t ld;
+  double *v, *dv, *L, *C; /* [3], [3], [9], [9]; outputs, slot `begin` at 0 */
+} mpmi_gather;
+typedef void (*mpmi_gather_fn)(const mpmi_gather *job, int64_t begin, int64_t n);
+
+/* Flags that advance kernels return for a batch: something to look at, particle by particle. */
+enum { MPMI_LEFT_TILE = 1, MPMI_OUTSIDE = 2, MPMI_NONFINITE = 4, MPMI_NOT_POSITIVE = 8 };
+
+/* New velocity and position of a batch (numerics: first-order position update). */
+typedef struct mpmi_move {
+  int32_t form; /* of the gather: 8 updates by flip * (v + dv) + (1 - flip) * vbar, 4 sets vbar */
+  double dt, flip;
+  int64_t ld;
+  const double *v_bar, *dv;          /* gathered, [3][ld] */
+  const double *x_old[3], *v_old[3]; /* at the batch's first slot */
+  double *x_new[3], *v_new[3];
+  double centre[3], half[3];           /* of the loose tile */
+  double low[3], high[3];              /* bounds of the grid; infinite on periodic axes */
+  double period[3], inverse_period[3]; /* lengths; 0 when not periodic */
+} mpmi_move;
+typedef uint32_t (*mpmi_move_fn)(const mpmi_move *job, int64_t n);
+
+/* F_new = (I + dt L) F_old and volume = det F_new * initial volume; F_inc when asked for. Full and compact F.
+ */
+typedef struct mpmi_deform {
+  double dt;
+  int64_t ld;
+  const double *L;        /* [9][ld] */
+  double *F, *F_inc;      /* [9][ld] out; F_inc may be NULL */
+  const double *F_old[9]; /* stored components */
+  double *F_new[9];
+} mpmi_deform;
+typedef void (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
+/* volume = det F * initial volume from stored components: the one place where volumes are made, so that they
+ * can be made again with the same bits. Returns MPMI_NOT_POSITIVE / MPMI_NONFINITE. */
+typedef uint32_t (*mpmi_volume_fn)(const double *const *F, const double *initial_volume, double *volume,
+                                   int64_t n);
+
+/* Sums over a batch: energies, momenta and the largest rate (|v_k| + c) / h_k. */
+typedef struct mpmi_sums {
+  double kinetic, strain, work, rate, viscous_rate;
+  double momentum[3], angular[3];
+} mpmi_sums;
+typedef struct mpmi_survey {
+  int64_t ld; /* of wave_speed ... */
+  const double *x[3], *v[3], *mass, *initial_volume;
+  const double *wave_speed, *kinematic_viscosity, *energy; /* [ld] of the batch */
+  const double *affine[9];                                 /* or NULL: of APIC, for the angular momentum */
+  const double *force[3];                                  /* external force or NULL, */
+  const double *x_old[3]; /* and old position: work over the step; NULL: no work */
+  double gravity[3], period[3], inverse_period[3];
+  double origin[3], inverse_spacing[3], spacing[3], viscous_factor; /* 2 dim / h_min^2 */
+  int32_t order;                                                    /* of the basis: for the moment D */
+  const double *checked[2]; /* [checked_rows][ld] further values that must be finite */
+  int32_t checked_rows[2];
+} mpmi_survey;
+typedef uint32_t (*mpmi_survey_fn)(const mpmi_survey *job, int64_t n, mpmi_sums *sums); /* adds to sums */
+
+typedef struct mpmi_kernels {
+  mpmi_axis_weights_fn axis_weights[4];                               /* by order of the B-spline */
+  mpmi_scatter_fn scatter[4][MPMI_MAX_WIDTH + 1][MPMI_SCATTER_FORMS]; /* by dim, width, form */
+  mpmi_gather_fn gather[4][MPMI_MAX_WIDTH + 1][MPMI_GATHER_FORMS];
+  mpmi_move_fn move[4];
+  mpmi_deform_fn deform[4];
+  mpmi_volume_fn volume[4];
+  mpmi_survey_fn survey[4];
+} mpmi_kernels;
+
+const mpmi_kernels *mpmi_kernels_of(int32_t isa);
+
+#endif
