@@ -1,0 +1,98 @@
+/* Sub-steps to a given time: cut on failure, grown on success. */
+#include "stepper/stepper.h"
+
+#include <math.h>
+
+static const mpm_advance_desc defaults = {.struct_size = sizeof(mpm_advance_desc), .cfl = 0.5};
+
+/* Proven in practice: cut to 0.6, double after success. */
+static const double CUT = 0.6, GROW = 2.0;
+
+mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct_size) {
+  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+}
+
+static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {
+  mpm_context *c = s->context;
+  if (!isfinite(d->t_end) || d->t_end < s->t)
+    return mpmi_fail(c, MPM_E_ARG, "t_end is %g: it must be finite and not before the present time %g",
+                     d->t_end, s->t);
+  if (!(d->cfl > 0.0 && d->cfl <= 1.0))
+    return mpmi_fail(c, MPM_E_ARG, "cfl is %g: it must lie in (0, 1]", d->cfl);
+  const struct {
+    const char *name;
+    double value;
+  } bound[] = {{"dt_first", d->dt_first}, {"dt_min", d->dt_min}, {"dt_max", d->dt_max}};
+  for (int32_t i = 0; i < 3; ++i)
+    if (!isfinite(bound[i].value) || bound[i].value < 0.0)
+      return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and >= 0", bound[i].name, bound[i].value);
+  if (d->dt_max > 0.0 && d->dt_min > d->dt_max)
+    return mpmi_fail(c, MPM_E_ARG, "dt_min is %g, more than dt_max = %g", d->dt_min, d->dt_max);
+  if (d->max_steps < 0)
+    return mpmi_fail(c, MPM_E_ARG, "max_steps is %lld: it must be >= 0", (long long)d->max_steps);
+  return MPM_OK;
+}
+
+/* The sub-step that the bounds allow, cut so that no sliver remains before t_end. */
+static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, int32_t *last) {
+  double stable;
+  const mpm_status status = mpm_stable_dt(s, &stable);
+  if (status) return status;
+  const double left = d->t_end - s->t;
+  *dt = d->cfl * stable;
+  if (s->controller_dt > 0.0 && s->controller_dt < *dt) *dt = s->controller_dt;
+  if (d->dt_max > 0.0 && d->dt_max < *dt) *dt = d->dt_max;
+  *last = left <= *dt * (1.0 + 1e-9);
+  if (*last)
+    *dt = left;
+  else if (left < 2.0 * *dt)
+    *dt = 0.5 * left;
+  return MPM_OK;
+}
+
+static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
+  if (d->dt_first > 0.0) s->controller_dt = d->dt_first;
+  for (int64_t step = 0; s->t < d->t_end && (!d->max_steps || step < d->max_steps);) {
+    double dt;
+    int32_t last;
+    mpm_status status = choose(s, d, &dt, &last);
+    if (status) return status;
+    if (s->t + dt == s->t) { /* nothing left that the clock can show */
+      s->t = d->t_end;
+      return MPM_OK;
+    }
+    status = mpmi_step(s, dt);
+    if (!status) {
+      if (last) s->t = d->t_end;
+      if (s->controller_dt > 0.0) s->controller_dt *= GROW;
+      if (s->controller_dt > 1e6 * dt) s->controller_dt = 0.0;
+      ++step;
+      continue;
+    }
+    const int32_t curable = status >= MPM_CUT_DT && status <= MPM_SINGULAR;
+    s->controller_dt = CUT * dt;
+    if (!curable || s->controller_dt < d->dt_min || s->t + s->controller_dt == s->t) return status;
+  }
+  return MPM_OK;
+}
+
+mpm_status mpm_advance(mpm_stepper *s, const mpm_advance_desc *desc, mpm_step_info *info) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
+  mpm_advance_desc d = defaults;
+  mpm_status status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d);
+  if (status || (status = check(s, &d))) return status;
+  if (info && info->struct_size < sizeof info->struct_size)
+    return mpmi_fail(s->context, MPM_E_ARG,
+                     "mpm_step_info.struct_size is %u: set it to sizeof(mpm_step_info)",
+                     (unsigned)info->struct_size);
+  if (s->phase != MPMI_IDLE)
+    return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
+  status = sub_steps(s, &d);
+  if (!info) return status;
+  mpm_step_info now;
+  mpmi_fill_info(s, &now);
+  now.cause = status;
+  const mpm_status written = mpmi_write_struct(s->context, "mpm_step_info", &now, sizeof now, info);
+  return status ? status : written;
+}

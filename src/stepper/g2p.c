@@ -1,0 +1,309 @@
+/* Nodes to particles, block by block: velocity, position, deformation gradient, volume, stress. Reads copy 0
+ * of the particles' fields and writes copy 1; only volume has one copy, and mpmi_roll_back makes it again. */
+#include "stepper/stepper.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct g2p_job {
+  mpm_stepper *s;
+  int32_t what, values, form, need;
+  double dt;
+  const double *nodes;
+} g2p_job;
+
+/* One batch of one set in one block, with everything that the kernels are given. */
+typedef struct batch_job {
+  const g2p_job *job;
+  mpmi_scratch *scratch;
+  mpm_particles *set;
+  int32_t m;
+  mpmi_law_batch law;
+  mpmi_gather gather;
+  mpmi_move move;
+  mpmi_deform deform;
+  mpmi_survey survey;
+  double *v_bar, *dv, *C;
+} batch_job;
+
+static double *component(const mpm_particles *set, int32_t field, int32_t copy, int32_t c) {
+  return mpmi_f64(set, field, copy) + c * set->ld;
+}
+
+static void bind_set(batch_job *b, int32_t m) {
+  const mpm_stepper *s = b->job->s;
+  const mpm_grid *grid = s->grid;
+  mpm_particles *set = s->member[m].set;
+  const int32_t dim = grid->dim;
+  b->m = m;
+  b->set = set;
+  mpmi_law_batch_bind(&b->law, set->material, b->scratch->batch_memory);
+  const int64_t ld = b->law.ld;
+  b->v_bar = b->scratch->gathered;
+  b->dv = b->v_bar + 3 * ld;
+  b->C = b->dv + 3 * ld;
+  memset(b->scratch->gathered, 0, (size_t)(15 * ld) * sizeof(double));
+  b->gather = (mpmi_gather){.axis_weights = s->kernels->axis_weights[grid->order],
+                            .need = b->job->need,
+                            .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
+                            .tile = b->scratch->tile,
+                            .ld = ld,
+                            .v = b->v_bar,
+                            .dv = b->dv,
+                            .L = b->law.L,
+                            .C = b->C};
+  b->move = (mpmi_move){
+      .form = b->job->form, .dt = b->job->dt, .flip = s->desc.flip, .ld = ld, .v_bar = b->v_bar, .dv = b->dv};
+  b->deform = (mpmi_deform){.dt = b->job->dt,
+                            .ld = ld,
+                            .L = b->law.L,
+                            .F = b->law.F,
+                            .F_inc = set->material->law ? NULL : b->law.F_inc};
+  b->survey = (mpmi_survey){.ld = ld,
+                            .wave_speed = b->law.wave_speed,
+                            .kinematic_viscosity = b->law.viscosity,
+                            .energy = b->law.energy,
+                            .viscous_factor = 2.0 * dim / (grid->h_min * grid->h_min),
+                            .order = grid->order,
+                            .checked = {b->law.stress_new, b->law.state_new},
+                            .checked_rows = {mpmi_stress_components(dim), set->material->state_count}};
+  for (int32_t k = 0; k < dim; ++k) {
+    const double length = grid->upper[k] - grid->desc.origin[k];
+    const int32_t periodic = grid->desc.periodic[k] != 0;
+    b->gather.x[k] = component(set, MPMI_POSITION, 0, k);
+    b->move.low[k] = grid->desc.origin[k];
+    b->move.high[k] = grid->upper[k];
+    b->move.period[k] = b->survey.period[k] = periodic ? length : 0.0;
+    b->move.inverse_period[k] = b->survey.inverse_period[k] = periodic ? 1.0 / length : 0.0;
+    b->survey.gravity[k] = s->desc.gravity[k];
+    b->survey.origin[k] = grid->desc.origin[k];
+    b->survey.spacing[k] = grid->desc.spacing[k];
+    b->survey.inverse_spacing[k] = grid->inverse_spacing[k];
+  }
+}
+
+/* Where the particles of a block may be before they have to be sorted anew, less a hair for rounding. */
+static void bind_block(batch_job *b, int64_t block) {
+  const mpm_stepper *s = b->job->s;
+  const mpm_grid *grid = s->grid;
+  const int32_t edge = s->blocks.edge;
+  mpmi_block_axes(grid, s->blocks.coord[block], b->gather.axis);
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double first = (double)s->blocks.coord[block][k] * edge;
+    const double centre = first + 0.5 * (edge - (grid->order == 2 ? 1 : 0));
+    b->move.centre[k] = grid->desc.origin[k] + grid->desc.spacing[k] * centre;
+    b->move.half[k] = grid->desc.spacing[k] * (0.5 * edge + MPMI_RING) * (1.0 - 1e-9);
+  }
+}
+
+static void fail(batch_job *b, mpm_status cause, int64_t slot, const char *what) {
+  mpmi_failure_take(&b->scratch->failure,
+                    &(mpmi_failure){cause, 0, b->m, mpmi_i64(b->set, MPMI_ID, 0)[slot], -1, what});
+}
+
+/* Particles beyond a face: wrapped, marked for removal, or the end of the step. */
+static void look_outside(batch_job *b, int64_t begin, int64_t n) {
+  const mpm_stepper *s = b->job->s;
+  const mpm_grid *grid = s->grid;
+  const int64_t *id = mpmi_i64(b->set, MPMI_ID, 0);
+  for (int64_t slot = begin; slot < begin + n; ++slot) {
+    if (id[slot] < 0) continue;
+    int32_t stays = 0, leaves = 0;
+    for (int32_t k = 0; k < grid->dim; ++k) {
+      double *x = component(b->set, MPMI_POSITION, 1, k) + slot;
+      if (*x >= grid->desc.origin[k] && *x <= grid->upper[k]) continue;
+      if (grid->desc.periodic[k]) {
+        int64_t *image = mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot;
+        const double length = grid->upper[k] - grid->desc.origin[k];
+        const double turns = floor((*x - grid->desc.origin[k]) / length);
+        *x -= turns * length;
+        if (*x < grid->desc.origin[k]) *x = grid->desc.origin[k];
+        if (*x > grid->upper[k]) *x = grid->upper[k];
+        *image += (int64_t)turns;
+      } else if (s->wall[2 * k + (*x > grid->upper[k])].kind == MPM_WALL_OPEN) {
+        leaves = 1;
+      } else {
+        stays = 1;
+      }
+    }
+    if (stays)
+      fail(b, MPM_OFF_GRID, slot, "a particle would leave the grid");
+    else if (leaves)
+      b->scratch->removes = 1;
+  }
+}
+
+static int32_t finite_row(const mpm_particles *set, int32_t field, int32_t components, int64_t slot) {
+  for (int32_t c = 0; c < components; ++c)
+    if (!isfinite(component(set, field, 1, c)[slot])) return 0;
+  return 1;
+}
+
+/* Finds the particles behind a flag; holes are not looked at. */
+static void look_at_values(batch_job *b, int64_t begin, int64_t n) {
+  const mpm_particles *set = b->set;
+  const int32_t dim = b->job->s->grid->dim;
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  const int32_t moved = b->job->what & MPMI_G2P_MOVE, deformed = b->job->what & MPMI_G2P_DEFORM;
+  for (int64_t slot = begin; slot < begin + n; ++slot) {
+    if (id[slot] < 0) continue;
+    const int64_t p = slot - begin;
+    if (moved && !(finite_row(set, MPMI_POSITION, dim, slot) && finite_row(set, MPMI_VELOCITY, dim, slot)))
+      fail(b, MPM_NONFINITE, slot, "position or velocity not finite");
+    else if (deformed && !finite_row(set, MPMI_F, mpmi_tensor_components(dim), slot))
+      fail(b, MPM_NONFINITE, slot, "deformation gradient not finite");
+    else if (deformed && !(mpmi_f64(set, MPMI_VOLUME, 0)[slot] > 0.0))
+      fail(b, MPM_INVERTED, slot, "det F is not positive");
+    else if (deformed && !(finite_row(set, MPMI_STRESS, mpmi_stress_components(dim), slot) &&
+                           finite_row(set, MPMI_STATE, set->material->state_count, slot) &&
+                           isfinite(b->law.wave_speed[p]) && isfinite(b->law.viscosity[p])))
+      fail(b, MPM_NONFINITE, slot, "the material's stress, state or wave speed is not finite");
+  }
+}
+
+static uint32_t move_batch(batch_job *b, int64_t begin, int64_t n) {
+  const mpm_stepper *s = b->job->s;
+  mpm_particles *set = b->set;
+  for (int32_t k = 0; k < s->grid->dim; ++k) {
+    b->move.x_old[k] = component(set, MPMI_POSITION, 0, k) + begin;
+    b->move.v_old[k] = component(set, MPMI_VELOCITY, 0, k) + begin;
+    b->move.x_new[k] = component(set, MPMI_POSITION, 1, k) + begin;
+    b->move.v_new[k] = component(set, MPMI_VELOCITY, 1, k) + begin;
+    if (set->field[MPMI_IMAGE].present)
+      memcpy(mpmi_i64(set, MPMI_IMAGE, 1) + k * set->ld + begin,
+             mpmi_i64(set, MPMI_IMAGE, 0) + k * set->ld + begin, (size_t)n * sizeof(int64_t));
+  }
+  const uint32_t flags = s->kernels->move[s->grid->dim](&b->move, n);
+  if (flags & MPMI_LEFT_TILE) b->scratch->left_tile = 1;
+  if ((flags & MPMI_OUTSIDE) && !(flags & MPMI_NONFINITE)) look_outside(b, begin, n);
+  if (set->field[MPMI_ACCELERATION].present)
+    for (int32_t k = 0; k < s->grid->dim; ++k)
+      for (int64_t p = 0; p < n; ++p)
+        component(set, MPMI_ACCELERATION, 1, k)[begin + p] =
+            (b->move.v_new[k][p] - b->move.v_old[k][p]) / b->job->dt;
+  return flags & MPMI_NONFINITE;
+}
+
+/* The affine matrix of APIC, or the velocity gradient where the host keeps it. */
+static void store_gradient(batch_job *b, int64_t begin, int64_t n) {
+  const mpm_stepper *s = b->job->s;
+  const int32_t dim = s->grid->dim;
+  if (!b->set->field[MPMI_L].present) return;
+  const int32_t moment = b->job->form == MPMI_GATHER_4_AFFINE;
+  if (mpmi_is_affine(s) && !(b->job->what & MPMI_G2P_MOVE)) return;
+  const double *from = moment ? b->C : b->law.L;
+  for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+    memcpy(component(b->set, MPMI_L, 1, c) + begin, from + mpmi_gradient_map(dim)[c] * b->law.ld,
+           (size_t)n * sizeof(double));
+}
+
+static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
+  mpm_stepper *s = b->job->s;
+  mpm_particles *set = b->set;
+  const int32_t dim = s->grid->dim, stored = mpmi_tensor_components(dim);
+  const double *F[9];
+  for (int32_t c = 0; c < stored; ++c) {
+    b->deform.F_old[c] = component(set, MPMI_F, 0, c) + begin;
+    b->deform.F_new[c] = component(set, MPMI_F, 1, c) + begin;
+    F[c] = b->deform.F_new[c];
+  }
+  mpmi_law_batch_load(&b->law, set, begin, n, s->t + b->job->dt, b->job->dt);
+  s->kernels->deform[dim](&b->deform, n);
+  uint32_t flags = s->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
+                                           mpmi_f64(set, MPMI_VOLUME, 0) + begin, n);
+  if (flags) return flags;
+  const double started = s->profiled ? mpmi_seconds() : 0.0;
+  const mpm_status status = mpmi_law_batch_run(&b->law, set);
+  if (s->profiled) b->scratch->law_seconds += mpmi_seconds() - started;
+  if (status) {
+    mpmi_failure_take(&b->scratch->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
+                                                            "the material callback"});
+    return 0;
+  }
+  mpmi_law_batch_store(&b->law, set, 1, begin, n);
+  return 0;
+}
+
+/* After all of the particle's new values are there. */
+static uint32_t survey_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
+  const mpm_stepper *s = b->job->s;
+  mpm_particles *set = b->set;
+  const mpmi_member *member = &s->member[b->m];
+  const int32_t dim = s->grid->dim;
+  mpmi_survey *job = &b->survey;
+  job->mass = mpmi_f64(set, MPMI_MASS, 0) + begin;
+  job->initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin;
+  for (int32_t k = 0; k < dim; ++k) {
+    job->x[k] = component(set, MPMI_POSITION, 1, k) + begin;
+    job->v[k] = component(set, MPMI_VELOCITY, 1, k) + begin;
+    job->x_old[k] = component(set, MPMI_POSITION, 0, k) + begin;
+    job->force[k] = member->force ? member->force + k * set->ld + begin : NULL;
+  }
+  if (mpmi_is_affine(s))
+    for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+      job->affine[mpmi_gradient_map(dim)[c]] = component(set, MPMI_L, 1, c) + begin;
+  return s->kernels->survey[dim](job, n, sums);
+}
+
+static void one_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
+  const mpm_stepper *s = b->job->s;
+  const int32_t what = b->job->what;
+  uint32_t flags = 0;
+  s->kernels->gather[s->grid->dim][s->grid->width][b->job->form](&b->gather, begin, n);
+  /* the kernels write from the start of the batch's buffers */
+  if (what & MPMI_G2P_MOVE) flags |= move_batch(b, begin, n);
+  store_gradient(b, begin, n);
+  if (what & MPMI_G2P_DEFORM) {
+    flags |= deform_batch(b, begin, n);
+    flags |= survey_batch(b, begin, n, sums);
+  }
+  if (flags) look_at_values(b, begin, n);
+}
+
+static void g2p_task(void *data, int64_t k) {
+  const g2p_job *job = data;
+  mpm_stepper *s = job->s;
+  const mpmi_cut *cut = &s->cut;
+  batch_job b = {.job = job, .scratch = &s->scratch[k]};
+  int32_t bound = -1;
+  for (int64_t i = cut->bound[k]; i < cut->bound[k + 1]; ++i) {
+    const int32_t block = cut->list[i];
+    mpmi_sums *sums = &s->block_sums[block];
+    memset(sums, 0, sizeof *sums);
+    mpmi_tile_load(s, block, job->nodes, job->values, job->form == MPMI_GATHER_8 ? 8 : 4, b.scratch->tile);
+    for (int32_t m = 0; m < s->member_count; ++m) {
+      const int64_t *start = s->member[m].now.start;
+      if (start[block] == start[block + 1]) continue;
+      if (m != bound) bind_set(&b, m);
+      bound = m;
+      bind_block(&b, block);
+      for (int64_t p = start[block]; p < start[block + 1]; p += b.law.ld) {
+        const int64_t left = start[block + 1] - p;
+        one_batch(&b, p, left < b.law.ld ? left : b.law.ld, sums);
+      }
+    }
+  }
+}
+
+static int32_t has_host_law(const mpm_stepper *s) {
+  for (int32_t m = 0; m < s->member_count; ++m)
+    if (!s->member[m].set->material->law) return 1;
+  return 0;
+}
+
+mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt) {
+  g2p_job job = {.s = s, .what = what, .dt = dt, .nodes = nodes, .values = values};
+  const int32_t mls = mpmi_is_mls(s);
+  job.need = mls ? MPMI_NEED_MLS : MPMI_NEED_GRADIENT;
+  job.form = MPMI_GATHER_4;
+  if (what & MPMI_G2P_MOVE) {
+    if (s->desc.transfer == MPM_APIC) {
+      job.form = MPMI_GATHER_4_AFFINE;
+      job.need |= MPMI_NEED_MOMENT;
+    } else if (s->desc.transfer == MPM_FLIP) {
+      job.form = MPMI_GATHER_8;
+    }
+  }
+  mpm_status status = mpmi_run_tasks(s, has_host_law(s), s->tasks, g2p_task, &job);
+  return status ? status : mpmi_stepper_failure(s);
+}

@@ -1,0 +1,169 @@
+/* Nodal fields for the host: of a staged step while one is under way, of the last step otherwise. Active
+ * nodes lie scattered over the blocks, so views are copies; what was written goes back at release. */
+#include "stepper/node_view.h"
+#include "stepper/stepper.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+  NODE_INDEX,
+  NODE_POSITION,
+  NODE_MASS,
+  NODE_VELOCITY,
+  NODE_FORCE,
+  NODE_ACCELERATION,
+  NODE_REACTION,
+  NODE_FIELDS
+};
+static const char *const names[NODE_FIELDS] = {"index", "position",     "mass",    "velocity",
+                                               "force", "acceleration", "reaction"};
+enum { VIEWS = (int)(sizeof((mpm_stepper *)0)->view / sizeof(mpmi_view_record)) };
+
+static double *node_at(const mpm_stepper *s, int64_t i) {
+  return s->node + s->active[i] * s->values;
+}
+
+/* Nodes hold [p m f 0] until velocities are solved for, then [v m dv 0]; fused nodes have no second half. */
+static double value_of(const mpm_stepper *s, int32_t field, int64_t i, int32_t c) {
+  const double *node = node_at(s, i), mass = node[3];
+  const int32_t solved = s->phase != MPMI_BEGUN;
+  const double impulse = s->impulses && solved ? s->impulse[3 * s->active[i] + c] : 0.0;
+  const double dt = s->phase == MPMI_IDLE ? s->nodes_dt : s->dt;
+  switch (field) {
+  case NODE_MASS:
+    return mass;
+  case NODE_VELOCITY:
+    return solved ? node[c] : node[c] / mass;
+  case NODE_FORCE:
+    return solved ? (mass * node[4 + c] - impulse) / dt : node[4 + c];
+  case NODE_ACCELERATION:
+    return solved ? node[4 + c] / dt : node[4 + c] / mass;
+  default:
+    return impulse / dt;
+  }
+}
+
+static void fill(const mpm_stepper *s, int32_t field, void *memory) {
+  const int32_t components = field == NODE_MASS ? 1 : s->grid->dim;
+  for (int64_t i = 0; i < s->active_count; ++i) {
+    int64_t index[3];
+    mpmi_blocks_index(&s->blocks, s->active[i], index);
+    for (int32_t c = 0; c < components; ++c) {
+      const int64_t at = c * s->active_count + i;
+      if (field == NODE_INDEX)
+        ((int64_t *)memory)[at] = index[c];
+      else if (field == NODE_POSITION)
+        ((double *)memory)[at] = s->grid->desc.origin[c] + (double)index[c] * s->grid->desc.spacing[c];
+      else
+        ((double *)memory)[at] = value_of(s, field, i, c);
+    }
+  }
+}
+
+static mpm_status list_active(mpm_stepper *s) {
+  const int64_t slots = s->blocks.count * s->blocks.nodes;
+  int64_t count = 0;
+  for (int64_t i = 0; i < slots; ++i) count += s->node[i * s->values + 3] > s->mass_cut;
+  if (count > s->active_capacity) {
+    int64_t *memory = mpmi_alloc(s->context, mpmi_bytes(count, sizeof *memory));
+    if (!memory) return MPM_E_NOMEM;
+    mpmi_free(s->context, s->active, mpmi_bytes(s->active_capacity, sizeof *s->active));
+    s->active = memory;
+    s->active_capacity = count;
+  }
+  s->active_count = 0;
+  for (int64_t i = 0; i < slots; ++i)
+    if (s->node[i * s->values + 3] > s->mass_cut) s->active[s->active_count++] = i;
+  return MPM_OK;
+}
+
+static mpm_status check_map(mpm_stepper *s, int32_t body, const char *field, int32_t access,
+                            const mpm_view *view, int32_t *which) {
+  mpm_context *c = s->context;
+  if (!field || !view) return mpmi_fail(c, MPM_E_ARG, "%s is NULL", field ? "view" : "field");
+  if (body != 0) return mpmi_fail(c, MPM_E_NOT_FOUND, "body is %d: there is only body 0", (int)body);
+  if (access != MPM_READ && access != MPM_WRITE && access != (MPM_READ | MPM_WRITE))
+    return mpmi_fail(c, MPM_E_ARG, "access is %d: it must be MPM_READ, MPM_WRITE or both", (int)access);
+  for (*which = 0; *which < NODE_FIELDS && strcmp(field, names[*which]) != 0;) ++*which;
+  if (*which == NODE_FIELDS) {
+    char near[256];
+    mpmi_nearest_names(field, names, NODE_FIELDS, near, sizeof near);
+    return mpmi_fail(c, MPM_E_NOT_FOUND, "nodes have no field \"%s\"; there are: %s", field, near);
+  }
+  if (s->phase == MPMI_RUNNING || (s->phase == MPMI_IDLE && !s->nodes_valid))
+    return mpmi_fail(c, MPM_E_STATE, "there are no nodal fields: make a step or begin one first");
+  if ((access & MPM_WRITE) && *which != NODE_VELOCITY && *which != NODE_FORCE)
+    return mpmi_fail(c, MPM_E_ARG, "nodal \"%s\" cannot be written: only \"velocity\" and \"force\" can",
+                     field);
+  if ((access & MPM_WRITE) && (s->phase == MPMI_IDLE || (*which == NODE_FORCE && s->phase != MPMI_BEGUN)))
+    return mpmi_fail(c, MPM_E_STATE, "nodal \"%s\" can be written %s only", field,
+                     *which == NODE_FORCE ? "between mpm_step_begin and mpm_step_grid"
+                                          : "during a staged step");
+  if (s->values == 4 && (*which == NODE_FORCE || *which == NODE_ACCELERATION))
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "a whole step of MPM_APIC_MLS does not keep \"%s\" apart: use a staged step, or MPM_APIC", field);
+  return MPM_OK;
+}
+
+mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t access, mpm_view *view) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  int32_t which, at = 0;
+  mpm_status status = check_map(s, body, field, access, view, &which);
+  if (status) return status;
+  while (at < VIEWS && s->view[at].live) ++at;
+  if (at == VIEWS)
+    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release one first", VIEWS);
+  if (!s->mapped && (status = list_active(s))) return status;
+  const int32_t components = which == NODE_MASS ? 1 : s->grid->dim;
+  const size_t bytes = mpmi_bytes(s->active_count * components, sizeof(double));
+  if (bytes > s->view_bytes[at] || !s->view_memory[at]) {
+    void *memory = mpmi_alloc(s->context, bytes);
+    if (!memory) return MPM_E_NOMEM;
+    mpmi_free(s->context, s->view_memory[at], s->view_bytes[at]);
+    s->view_memory[at] = memory;
+    s->view_bytes[at] = bytes;
+  }
+  fill(s, which, s->view_memory[at]);
+  s->view[at] = (mpmi_view_record){
+      .live = 1, .field = which, .access = access, .data = s->view_memory[at], .stepper = s};
+  mpmi_view_fill(view, which == NODE_INDEX ? MPM_I64 : MPM_F64, components, access, s->active_count,
+                 s->active_count, s->view_memory[at], &s->view[at]);
+  ++s->mapped;
+  return MPM_OK;
+}
+
+static mpm_status write_back(mpm_stepper *s, int32_t field, const double *value) {
+  for (int64_t i = 0; i < s->active_count * s->grid->dim; ++i) {
+    if (isfinite(value[i])) continue;
+    int64_t index[3];
+    mpmi_blocks_index(&s->blocks, s->active[i % s->active_count], index);
+    return mpmi_fail(s->context, MPM_E_ARG, "nodal \"%s\" is %g at node %lld: nothing was written",
+                     names[field], value[i], (long long)mpmi_node_number(s->grid, index));
+  }
+  for (int64_t i = 0; i < s->active_count; ++i)
+    for (int32_t c = 0; c < s->grid->dim; ++c) {
+      double *node = node_at(s, i);
+      const double wanted = value[c * s->active_count + i];
+      if (field == NODE_FORCE) {
+        node[4 + c] = wanted;
+      } else if (s->phase == MPMI_BEGUN) {
+        /* untouched values must come back as they were: p / m * m rounds */
+        if (wanted != node[c] / node[3]) node[c] = wanted * node[3];
+      } else {
+        node[4 + c] += wanted - node[c];
+        node[c] = wanted;
+      }
+    }
+  return MPM_OK;
+}
+
+mpm_status mpmi_node_view_release(mpmi_view_record *record, mpm_view *view) {
+  mpm_stepper *s = record->stepper;
+  s->context->error[0] = '\0';
+  record->live = 0;
+  --s->mapped;
+  view->data = NULL;
+  return record->access & MPM_WRITE ? write_back(s, record->field, record->data) : MPM_OK;
+}

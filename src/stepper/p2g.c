@@ -1,0 +1,89 @@
+/* Particles to nodes: block by block into a tile, tile by tile into the nodes. Blocks of one colour touch
+ * disjoint nodes, and colours follow each other in a fixed order, so that every nodal sum has one order. */
+#include "stepper/stepper.h"
+
+#include <string.h>
+
+typedef struct p2g_job {
+  mpm_stepper *s;
+  int32_t what, values, form, need, colour;
+  double dt, *nodes;
+} p2g_job;
+
+/* Blocks of one colour are two apart: their tiles must not meet. */
+#define TILE_FITS(dim, width) (2 * MPMI_BLOCK_EDGE(dim) >= MPMI_TILE_EDGE(dim, width))
+_Static_assert(TILE_FITS(1, 4) && TILE_FITS(2, 4) && TILE_FITS(3, 4), "tiles of one colour overlap");
+
+static void zero_task(void *data, int64_t k) {
+  const p2g_job *job = data;
+  const int64_t slots = job->s->blocks.count * job->s->blocks.nodes * job->values, tasks = job->s->tasks;
+  const int64_t begin = slots * k / tasks, end = slots * (k + 1) / tasks;
+  memset(job->nodes + begin, 0, (size_t)(end - begin) * sizeof *job->nodes);
+}
+
+static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatter *scatter) {
+  const mpm_stepper *s = job->s;
+  const mpm_particles *set = member->set;
+  const int32_t dim = s->grid->dim, again = job->what == MPMI_P2G_AGAIN;
+  memset(scatter, 0, sizeof *scatter);
+  scatter->axis_weights = s->kernels->axis_weights[s->grid->order];
+  scatter->need = job->need;
+  scatter->mass = mpmi_f64(set, MPMI_MASS, 0);
+  scatter->volume = mpmi_f64(set, MPMI_VOLUME, 0);
+  for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
+    scatter->stress[c] = mpmi_f64(set, MPMI_STRESS, 0) + c * set->ld;
+  for (int32_t k = 0; k < dim; ++k) {
+    scatter->x[k] = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld;
+    scatter->v[k] = mpmi_f64(set, MPMI_VELOCITY, again) + k * set->ld;
+    scatter->force[k] = member->force && !again ? member->force + k * set->ld : NULL;
+    scatter->gravity[k] = again ? 0.0 : s->desc.gravity[k];
+  }
+  if (mpmi_is_affine(s))
+    for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+      scatter->affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, again) + c * set->ld;
+  scatter->fused_dt = again || job->values == 8 ? 0.0 : job->dt;
+}
+
+static void p2g_task(void *data, int64_t k) {
+  const p2g_job *job = data;
+  mpm_stepper *s = job->s;
+  const mpm_grid *grid = s->grid;
+  const mpmi_cut *cut = &s->colour[job->colour];
+  double *tile = s->scratch[k].tile;
+  size_t tile_doubles = (size_t)job->values;
+  for (int32_t d = 0; d < grid->dim; ++d) tile_doubles *= (size_t)MPMI_TILE_EDGE(grid->dim, grid->width);
+  mpmi_scatter scatter;
+  for (int64_t i = cut->bound[k]; i < cut->bound[k + 1]; ++i) {
+    const int32_t block = cut->list[i];
+    memset(tile, 0, tile_doubles * sizeof *tile);
+    for (int32_t m = 0; m < s->member_count; ++m) {
+      const int64_t *start = s->member[m].now.start;
+      if (start[block] == start[block + 1]) continue;
+      scatter_of(job, &s->member[m], &scatter);
+      mpmi_block_axes(grid, s->blocks.coord[block], scatter.axis);
+      scatter.tile = tile;
+      s->kernels->scatter[grid->dim][grid->width][job->form](&scatter, start[block], start[block + 1]);
+    }
+    mpmi_tile_add(s, block, job->nodes, job->values, tile);
+  }
+}
+
+mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t what, double dt) {
+  const int32_t affine = mpmi_is_affine(s), mls = mpmi_is_mls(s), again = what == MPMI_P2G_AGAIN;
+  p2g_job job = {.s = s, .what = what, .dt = dt};
+  job.values = again ? 4 : s->values;
+  job.nodes = again ? s->again : s->node;
+  if (job.values == 8) {
+    job.form = affine ? MPMI_SCATTER_8_AFFINE : MPMI_SCATTER_8;
+    job.need = (mls ? MPMI_NEED_MLS : MPMI_NEED_GRADIENT) | (affine ? MPMI_NEED_MOMENT : 0);
+  } else {
+    job.form = affine ? MPMI_SCATTER_4_AFFINE : MPMI_SCATTER_4;
+    job.need = affine ? MPMI_NEED_MOMENT : 0;
+  }
+  mpm_status status = mpmi_run_tasks(s, 0, s->tasks, zero_task, &job);
+  for (int32_t c = 0; c < MPMI_COLOURS && !status; ++c) {
+    job.colour = c;
+    if (s->colour[c].count) status = mpmi_run_tasks(s, 0, s->tasks, p2g_task, &job);
+  }
+  return status;
+}

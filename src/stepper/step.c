@@ -1,0 +1,269 @@
+/* One explicit step: USL and MUSL (table in docs/theory.md), whole or in three parts with the host in
+ * between. */
+#define _POSIX_C_SOURCE 200809L /* clock_gettime */
+#include "stepper/stepper.h"
+
+#include <math.h>
+#include <time.h>
+
+double mpmi_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm_task_fn task, void *data) {
+  const mpm_context *c = s->context;
+  if (count > 1 && !(calls_host && (c->host.serial_callbacks || c->concurrency == 1)))
+    return mpmi_parallel_for(s->context, count, task, data);
+  for (int64_t k = 0; k < count; ++k) task(data, k);
+  return MPM_OK;
+}
+
+/* Adds the seconds since *from to a stage and restarts the clock. */
+static void lap(mpm_stepper *s, int32_t stage, double *from) {
+  const double now = mpmi_seconds();
+  s->seconds[stage] += now - *from;
+  s->seconds[MPMI_TIME_TOTAL] += now - *from;
+  *from = now;
+}
+
+static void count_active(mpm_stepper *s) {
+  const int64_t slots = s->blocks.count * s->blocks.nodes;
+  s->last.active_nodes = 0;
+  for (int64_t i = 0; i < slots; ++i) s->last.active_nodes += s->node[i * s->values + 3] > s->mass_cut;
+}
+
+/* Particles to grid, and forces. */
+static mpm_status begin_part(mpm_stepper *s, double dt) {
+  double clock = mpmi_seconds();
+  mpm_status status = mpmi_stepper_energies(s);
+  if (!status) status = mpmi_stepper_prepare(s);
+  if (status) return status;
+  lap(s, MPMI_TIME_SORT, &clock);
+  s->dt = dt;
+  s->nodes_valid = 0;
+  s->prescribed_work = 0.0;
+  mpmi_failure_clear(&s->failure);
+  for (int32_t k = 0; k < s->tasks; ++k) {
+    mpmi_failure_clear(&s->scratch[k].failure);
+    s->scratch[k].left_tile = s->scratch[k].removes = 0;
+    s->scratch[k].law_seconds = 0.0;
+  }
+  for (int32_t f = 0; f < 6; ++f)
+    for (int32_t c = 0; c < 3; ++c) s->impulse_in_step[f][c] = 0.0;
+  status = mpmi_stage_forces(s, dt);
+  lap(s, MPMI_TIME_CALLBACKS, &clock);
+  if (!status) status = mpmi_stage_p2g(s, MPMI_P2G_FORCES, dt);
+  lap(s, MPMI_TIME_P2G, &clock);
+  return status;
+}
+
+/* Velocities, walls, prescribed velocities. */
+static mpm_status grid_part(mpm_stepper *s, double dt) {
+  double clock = mpmi_seconds();
+  mpm_status status = mpmi_stage_nodes(s, MPMI_P2G_FORCES, dt);
+  if (!status) status = mpmi_stage_boundary(s, MPMI_P2G_FORCES, dt);
+  if (!status) count_active(s);
+  lap(s, MPMI_TIME_GRID, &clock);
+  return status;
+}
+
+/* USL: everything from the updated nodal velocity. MUSL: L from the velocity that the new particles give the
+ * nodes. */
+static mpm_status particles_part(mpm_stepper *s, double dt) {
+  double clock = mpmi_seconds();
+  const int32_t musl = s->desc.scheme == MPM_MUSL;
+  mpm_status status = mpmi_stage_g2p(s, MPMI_G2P_MOVE | (musl ? 0 : MPMI_G2P_DEFORM), s->node, s->values, dt);
+  lap(s, MPMI_TIME_G2P, &clock);
+  if (!status && musl) {
+    status = mpmi_stage_p2g(s, MPMI_P2G_AGAIN, dt);
+    lap(s, MPMI_TIME_P2G, &clock);
+    if (!status) status = mpmi_stage_nodes(s, MPMI_P2G_AGAIN, dt);
+    if (!status) status = mpmi_stage_boundary(s, MPMI_P2G_AGAIN, dt);
+    lap(s, MPMI_TIME_GRID, &clock);
+    if (!status) status = mpmi_stage_g2p(s, MPMI_G2P_DEFORM, s->again, 4, dt);
+    lap(s, MPMI_TIME_G2P, &clock);
+  }
+  /* the law runs inside the tasks: its share of their time is moved from g2p */
+  double law = 0.0;
+  for (int32_t k = 0; k < s->tasks; ++k) law += s->scratch[k].law_seconds / s->tasks;
+  s->seconds[MPMI_TIME_LAW] += law;
+  s->seconds[MPMI_TIME_G2P] -= law;
+  return status;
+}
+
+static void note_failure(mpm_stepper *s, mpm_status status) {
+  s->last.cause = status;
+  s->last.dt = s->dt;
+  s->last.dt_suggested = 0.6 * s->dt;
+  s->last.callback_status = s->failure.callback_status;
+  s->last.set = s->failure.set;
+  s->last.particle = s->failure.particle;
+  s->last.node = s->failure.node;
+  s->last.external_work = s->last.dissipation = 0.0;
+}
+
+static void note_success(mpm_stepper *s) {
+  s->last.cause = MPM_OK;
+  s->last.dt = s->dt;
+  s->last.callback_status = 0;
+  s->last.set = -1;
+  s->last.particle = s->last.node = -1;
+}
+
+/* The host may still cancel: it sees the info that the step is about to have. */
+static mpm_status ask_progress(mpm_stepper *s) {
+  if (!s->progress) return MPM_OK;
+  mpm_step_info info;
+  mpmi_fill_info(s, &info);
+  info.t = s->t + s->dt;
+  info.dt = s->dt;
+  info.step = s->step + 1;
+  const mpm_status status = s->progress(s->progress_user, &info);
+  if (!status) return MPM_OK;
+  s->failure.callback_status = status;
+  return mpmi_fail(s->context, status > 0 ? MPM_CANCELLED : MPM_E_CALLBACK,
+                   "the progress callback returned %d in the step from t = %g", (int)status, s->t);
+}
+
+static mpm_status finish(mpm_stepper *s, double dt) {
+  mpm_status status = particles_part(s, dt);
+  if (!status) status = ask_progress(s);
+  if (status) return status;
+  note_success(s);
+  mpmi_commit(s, dt);
+  /* a removal leaves the sums to be made again; then the host's law may refuse, which is for the next call to
+   * say */
+  if (!s->energies.valid && mpmi_stepper_energies(s)) s->context->error[0] = '\0';
+  s->last.dt_suggested = mpmi_stable_dt_of(s, &s->energies.sums);
+  s->nodes_valid = 1;
+  s->nodes_dt = dt;
+  return MPM_OK;
+}
+
+static mpm_status checked_dt(mpm_stepper *s, double dt) {
+  if (!(dt > 0.0) || !isfinite(dt))
+    return mpmi_fail(s->context, MPM_E_ARG, "dt is %g: it must be positive and finite", dt);
+  if (!isfinite(s->t + dt) || s->t + dt == s->t)
+    return mpmi_fail(s->context, MPM_E_ARG, "dt = %g does not advance the time %g", dt, s->t);
+  if (s->phase != MPMI_IDLE)
+    return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE,
+                     "%d views of nodal fields are out: release them before stepping", (int)s->mapped);
+  return MPM_OK;
+}
+
+/* Whatever has gone wrong: the particles are as before, the info says why. */
+static mpm_status give_up(mpm_stepper *s, mpm_status status) {
+  mpmi_roll_back(s);
+  note_failure(s, status);
+  s->phase = MPMI_IDLE;
+  return status;
+}
+
+mpm_status mpmi_step(mpm_stepper *s, double dt) {
+  mpm_status status = checked_dt(s, dt);
+  if (status) return status;
+  s->phase = MPMI_RUNNING;
+  s->dt = dt;
+  s->staged = 0;
+  mpmi_failure_clear(&s->failure);
+  status = begin_part(s, dt);
+  if (!status) status = grid_part(s, dt);
+  if (!status) status = finish(s, dt);
+  if (status) return give_up(s, status);
+  s->phase = MPMI_IDLE;
+  return MPM_OK;
+}
+
+static mpm_status give_info(mpm_stepper *s, mpm_status status, mpm_step_info *info) {
+  if (!info) return status;
+  mpm_step_info now;
+  mpmi_fill_info(s, &now);
+  now.cause = status;
+  const mpm_status written = mpmi_write_struct(s->context, "mpm_step_info", &now, sizeof now, info);
+  return status ? status : written;
+}
+
+/* Writing the info must not be what fails a step that is done. */
+static mpm_status check_info(mpm_stepper *s, const mpm_step_info *info) {
+  if (info && info->struct_size < sizeof info->struct_size)
+    return mpmi_fail(s->context, MPM_E_ARG,
+                     "mpm_step_info.struct_size is %u: set it to sizeof(mpm_step_info)",
+                     (unsigned)info->struct_size);
+  return MPM_OK;
+}
+
+mpm_status mpm_step(mpm_stepper *s, double dt, mpm_step_info *info) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = check_info(s, info);
+  if (status) return status;
+  status = mpmi_step(s, dt);
+  return give_info(s, status, info);
+}
+
+mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = checked_dt(s, dt);
+  if (status) return status;
+  s->phase = MPMI_RUNNING;
+  s->dt = dt;
+  s->staged = 1;
+  mpmi_failure_clear(&s->failure);
+  status = begin_part(s, dt);
+  if (status) return give_up(s, status);
+  s->phase = MPMI_BEGUN;
+  return MPM_OK;
+}
+
+static mpm_status in_phase(mpm_stepper *s, int32_t phase, const char *call, const char *before) {
+  if (s->phase != phase) return mpmi_fail(s->context, MPM_E_STATE, "%s must follow %s", call, before);
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them before %s",
+                     (int)s->mapped, call);
+  for (int32_t m = 0; m < s->member_count; ++m)
+    if (s->member[m].set->mapped)
+      return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views before %s", (int)m,
+                       call);
+  return MPM_OK;
+}
+
+mpm_status mpm_step_grid(mpm_stepper *s) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = in_phase(s, MPMI_BEGUN, "mpm_step_grid", "mpm_step_begin");
+  if (status) return status;
+  s->phase = MPMI_RUNNING;
+  status = grid_part(s, s->dt);
+  if (status) return give_up(s, status);
+  s->phase = MPMI_SOLVED;
+  return MPM_OK;
+}
+
+mpm_status mpm_step_end(mpm_stepper *s, mpm_step_info *info) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = in_phase(s, MPMI_SOLVED, "mpm_step_end", "mpm_step_grid");
+  if (!status) status = check_info(s, info);
+  if (status) return status;
+  s->phase = MPMI_RUNNING;
+  status = finish(s, s->dt);
+  if (status) {
+    give_up(s, status);
+  } else {
+    s->phase = MPMI_IDLE;
+  }
+  return give_info(s, status, info);
+}
+
+mpm_status mpm_step_abort(mpm_stepper *s) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (s->phase != MPMI_BEGUN && s->phase != MPMI_SOLVED)
+    return mpmi_fail(s->context, MPM_E_STATE, "no step is under way");
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE,
+                     "%d views of nodal fields are out: release them before mpm_step_abort", (int)s->mapped);
+  s->phase = MPMI_IDLE;
+  s->nodes_valid = 0;
+  return MPM_OK;
+}

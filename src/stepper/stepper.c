@@ -1,0 +1,345 @@
+/* Making, configuring and taking apart steppers. */
+#include "stepper/stepper.h"
+
+#include <math.h>
+#include <string.h>
+
+static const mpm_stepper_desc defaults = {.struct_size = sizeof(mpm_stepper_desc),
+                                          .scheme = MPM_USL,
+                                          .transfer = MPM_FLIP,
+                                          .xpic_order = 2,
+                                          .position_order = 1,
+                                          .flip = 1.0,
+                                          .newmark_beta = 0.25,
+                                          .newmark_gamma = 0.5,
+                                          .newton_tolerance_displacement = 1e-8,
+                                          .newton_tolerance_energy = 1e-14,
+                                          .newton_tolerance_residual = 1e-8,
+                                          .newton_max_iterations = 20,
+                                          .linear_solver = MPM_SOLVER_AUTO};
+
+mpm_status mpm_stepper_desc_init(mpm_stepper_desc *desc, uint32_t struct_size) {
+  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+}
+
+static mpm_status known_scheme(mpm_context *c, int32_t scheme) {
+  switch (scheme) {
+  case MPM_USL:
+  case MPM_MUSL:
+    return MPM_OK;
+  case MPM_USF:
+    return mpmi_fail(c, MPM_E_UNSUPPORTED, "scheme MPM_USF is not in this version: use MPM_USL or MPM_MUSL");
+  case MPM_NEWMARK:
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK is not in this version: use MPM_USL or MPM_MUSL");
+  default:
+    return mpmi_fail(c, MPM_E_ARG, "scheme is %d: it must be an MPM_USL ... MPM_NEWMARK", (int)scheme);
+  }
+}
+
+static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, int32_t transfer) {
+  if (transfer == MPM_APIC_MLS && grid->order < 2)
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "transfer MPM_APIC_MLS needs a quadratic or cubic B-spline: use MPM_APIC with the linear basis");
+  switch (transfer) {
+  case MPM_FLIP:
+  case MPM_APIC:
+  case MPM_APIC_MLS:
+    return MPM_OK;
+  case MPM_TPIC:
+  case MPM_TFLIP:
+  case MPM_AFLIP:
+  case MPM_XPIC:
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "transfer %d is not in this version: use MPM_FLIP, MPM_APIC or MPM_APIC_MLS",
+                     (int)transfer);
+  default:
+    return mpmi_fail(c, MPM_E_ARG, "transfer is %d: it must be an MPM_FLIP ... MPM_APIC_MLS", (int)transfer);
+  }
+}
+
+/* Options that change nothing while they have their default, and that this version does not have. */
+static mpm_status known_options(mpm_context *c, const mpm_stepper_desc *d) {
+  const struct {
+    const char *name, *use;
+    int32_t value, off, high;
+  } option[] = {
+      {"position_order", "1", d->position_order, 1, 2},
+      {"locking_remedy", "MPM_LOCKING_NONE", d->locking_remedy, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE},
+      {"quasi_static", "0", d->quasi_static, 0, 1},
+      {"staggered", "0", d->staggered, 0, 1},
+      {"boundary_zero_acceleration", "0", d->boundary_zero_acceleration, 0, 1}};
+  for (size_t i = 0; i < sizeof option / sizeof *option; ++i) {
+    if (option[i].value < option[i].off || option[i].value > option[i].high)
+      return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be %d ... %d", option[i].name, (int)option[i].value,
+                       (int)option[i].off, (int)option[i].high);
+    if (option[i].value != option[i].off)
+      return mpmi_fail(c, MPM_E_UNSUPPORTED, "%s = %d is not in this version: use %s", option[i].name,
+                       (int)option[i].value, option[i].use);
+  }
+  if (!isfinite(d->pic_damping) || d->pic_damping < 0.0)
+    return mpmi_fail(c, MPM_E_ARG, "pic_damping is %g: it must be finite and >= 0", d->pic_damping);
+  if (d->pic_damping > 0.0)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED, "pic_damping = %g is not in this version: use flip",
+                     d->pic_damping);
+  return MPM_OK;
+}
+
+static mpm_status read_desc(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *desc,
+                            mpm_stepper_desc *out) {
+  *out = defaults;
+  mpm_status status = desc ? mpmi_read_struct(c, "mpm_stepper_desc", desc, sizeof *out, out) : MPM_OK;
+  if (status || (status = known_scheme(c, out->scheme)) ||
+      (status = known_transfer(c, grid, out->transfer)) || (status = known_options(c, out)))
+    return status;
+  if (!(out->flip >= 0.0 && out->flip <= 1.0))
+    return mpmi_fail(c, MPM_E_ARG, "flip is %g: it must lie in [0, 1]", out->flip);
+  for (int32_t k = 0; k < grid->dim; ++k)
+    if (!isfinite(out->gravity[k]))
+      return mpmi_fail(c, MPM_E_ARG, "gravity[%d] is %g: it must be finite", (int)k, out->gravity[k]);
+  for (int32_t k = grid->dim; k < 3; ++k) out->gravity[k] = 0.0;
+  if (out->reference_positions != 0 && out->reference_positions != 1)
+    return mpmi_fail(c, MPM_E_ARG, "reference_positions is %d: it must be 0 or 1",
+                     (int)out->reference_positions);
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_stepper_desc *desc,
+                              mpm_stepper **out) {
+  if (out) *out = NULL;
+  if (!context || context->magic != (uint32_t)MPMI_CONTEXT) return MPM_E_ARG;
+  context->error[0] = '\0';
+  if (!out) return mpmi_fail(context, MPM_E_ARG, "out is NULL");
+  if (!grid || grid->magic != (uint32_t)MPMI_GRID || grid->context != context)
+    return mpmi_fail(context, MPM_E_ARG, "grid is NULL, destroyed or of another context");
+  mpm_stepper_desc d;
+  mpm_status status = read_desc(context, grid, desc, &d);
+  if (status) return status;
+  mpm_stepper *s = mpmi_alloc_zeroed(context, sizeof *s);
+  if (!s) return MPM_E_NOMEM;
+  s->context = context;
+  s->grid = grid;
+  s->desc = d;
+  s->kernels = mpmi_kernels_of(context->isa);
+  s->tasks = context->concurrency;
+  s->last.set = -1;
+  s->last.particle = s->last.node = -1;
+  mpmi_failure_clear(&s->failure);
+  mpmi_blocks_init(&s->blocks, grid);
+  mpmi_blocks_init(&s->next_blocks, grid);
+  mpmi_constraints_init(&s->constraints, context);
+  mpmi_constraints_init(&s->next_constraints, context);
+  s->scratch = mpmi_alloc_zeroed(context, mpmi_bytes(s->tasks, sizeof *s->scratch));
+  if (s->scratch)
+    s->bound_memory =
+        mpmi_alloc_zeroed(context, mpmi_bytes((s->tasks + 1) * (MPMI_COLOURS + 1), sizeof(int64_t)));
+  if (!s->bound_memory) {
+    mpmi_free(context, s->scratch, mpmi_bytes(s->tasks, sizeof *s->scratch));
+    mpmi_free(context, s, sizeof *s);
+    return MPM_E_NOMEM;
+  }
+  s->magic = MPMI_STEPPER;
+  ++context->children;
+  ++grid->children;
+  *out = s;
+  return MPM_OK;
+}
+
+static mpm_status idle(mpm_stepper *s) {
+  if (s->phase != MPMI_IDLE)
+    return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
+  return MPM_OK;
+}
+
+static void forget_member(mpm_stepper *s, int32_t m) {
+  mpmi_member *member = &s->member[m];
+  mpmi_arrangement_free(&member->now);
+  mpmi_arrangement_free(&member->next);
+  mpmi_free(s->context, member->force, mpmi_bytes(member->force_ld * s->grid->dim, sizeof *member->force));
+  mpmi_field_make_absent(member->set, MPMI_REFERENCE);
+  member->set->stepper = NULL;
+  member->set->dirty |= MPMI_DIRTY_PLACE;
+  for (int32_t i = m + 1; i < s->member_count; ++i) s->member[i - 1] = s->member[i];
+  --s->member_count;
+  s->energies.valid = 0;
+}
+
+mpm_status mpm_stepper_destroy(mpm_stepper *s) {
+  if (!s) return MPM_OK;
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = idle(s);
+  if (status) return status;
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them first",
+                     (int)s->mapped);
+  for (int32_t m = 0; m < s->member_count; ++m)
+    if (s->member[m].set->mapped)
+      return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views first", (int)m);
+  while (s->member_count) forget_member(s, s->member_count - 1);
+  mpm_context *context = s->context;
+  mpmi_stepper_free_topology(s);
+  for (int32_t i = 0; i < 8; ++i) mpmi_free(context, s->view_memory[i], s->view_bytes[i]);
+  mpmi_free(context, s->active, mpmi_bytes(s->active_capacity, sizeof *s->active));
+  mpmi_free(context, s->member, mpmi_bytes(s->member_capacity, sizeof *s->member));
+  mpmi_free(context, s->bound_memory, mpmi_bytes((s->tasks + 1) * (MPMI_COLOURS + 1), sizeof(int64_t)));
+  mpmi_free(context, s->scratch, mpmi_bytes(s->tasks, sizeof *s->scratch));
+  --s->grid->children;
+  --context->children;
+  s->magic = 0;
+  mpmi_free(context, s, sizeof *s);
+  return MPM_OK;
+}
+
+int32_t mpmi_stepper_in_step(const mpm_stepper *s) {
+  return s->phase != MPMI_IDLE;
+}
+
+static mpm_status grow_members(mpm_stepper *s) {
+  if (s->member_count < s->member_capacity) return MPM_OK;
+  const int32_t capacity = s->member_capacity ? 2 * s->member_capacity : 4;
+  mpmi_member *member = mpmi_alloc_zeroed(s->context, mpmi_bytes(capacity, sizeof *member));
+  if (!member) return MPM_E_NOMEM;
+  if (s->member_count) memcpy(member, s->member, (size_t)s->member_count * sizeof *member);
+  mpmi_free(s->context, s->member, mpmi_bytes(s->member_capacity, sizeof *s->member));
+  s->member = member;
+  s->member_capacity = capacity;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = idle(s);
+  if (status) return status;
+  if (!set || set->magic != (uint32_t)MPMI_PARTICLES || set->context != s->context)
+    return mpmi_fail(s->context, MPM_E_ARG, "particles is NULL, destroyed or of another context");
+  if (set->grid != s->grid)
+    return mpmi_fail(s->context, MPM_E_ARG, "the set was made on another grid than the stepper");
+  if (set->stepper)
+    return mpmi_fail(s->context, MPM_E_STATE, "the set already belongs to %s stepper",
+                     set->stepper == s ? "this" : "another");
+  if (set->mapped) return mpmi_fail(s->context, MPM_E_STATE, "the set is mapped: release its views first");
+  if ((status = grow_members(s)) ||
+      (s->desc.reference_positions && (status = mpmi_field_make_present(set, MPMI_REFERENCE))))
+    return status;
+  mpmi_member *member = &s->member[s->member_count++];
+  memset(member, 0, sizeof *member);
+  member->set = set;
+  mpmi_arrangement_init(&member->now, s->context);
+  mpmi_arrangement_init(&member->next, s->context);
+  set->stepper = s;
+  set->dirty |= MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY;
+  s->nodes_valid = 0;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = idle(s);
+  if (status) return status;
+  for (int32_t m = 0; m < s->member_count; ++m) {
+    if (s->member[m].set != set) continue;
+    if (set->mapped) return mpmi_fail(s->context, MPM_E_STATE, "the set is mapped: release its views first");
+    forget_member(s, m);
+    /* cuts counted the slots of this set: sort anew */
+    mpmi_blocks_clear(&s->blocks);
+    s->nodes_valid = 0;
+    return MPM_OK;
+  }
+  return mpmi_fail(s->context, MPM_E_NOT_FOUND, "the set is not in this stepper");
+}
+
+mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = idle(s);
+  if (status) return status;
+  if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
+  mpm_stepper_desc d;
+  if ((status = read_desc(s->context, s->grid, desc, &d))) return status;
+  const int32_t begins = d.reference_positions && !s->desc.reference_positions;
+  for (int32_t m = 0; m < s->member_count; ++m) {
+    if (s->member[m].set->mapped)
+      return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views first", (int)m);
+    if (begins && (status = mpmi_field_make_present(s->member[m].set, MPMI_REFERENCE))) return status;
+  }
+  if (!d.reference_positions)
+    for (int32_t m = 0; m < s->member_count; ++m) mpmi_field_make_absent(s->member[m].set, MPMI_REFERENCE);
+  s->desc = d;
+  s->energies.valid = 0; /* the angular momentum depends on the transfer */
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = idle(s);
+  if (status) return status;
+  if (!isfinite(t)) return mpmi_fail(s->context, MPM_E_ARG, "t is %g: it must be finite", t);
+  if (step < 0) return mpmi_fail(s->context, MPM_E_ARG, "step is %lld: it must be >= 0", (long long)step);
+  s->t = t;
+  s->step = step;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, double friction) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = idle(s);
+  if (status) return status;
+  if (face < 0 || face >= 2 * s->grid->dim)
+    return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
+                     (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
+  if (kind < MPM_WALL_NONE || kind > MPM_WALL_FRICTION)
+    return mpmi_fail(s->context, MPM_E_ARG, "kind is %d: it must be an MPM_WALL_NONE ... MPM_WALL_FRICTION",
+                     (int)kind);
+  if (s->grid->desc.periodic[face / 2] && kind != MPM_WALL_NONE)
+    return mpmi_fail(s->context, MPM_E_ARG, "face %d belongs to a periodic axis and can have no wall",
+                     (int)face);
+  if (kind == MPM_WALL_FRICTION && !(friction >= 0.0 && isfinite(friction)))
+    return mpmi_fail(s->context, MPM_E_ARG, "friction is %g: it must be finite and >= 0", friction);
+  if (s->wall[face].kind != kind) s->walls_changed = 1;
+  s->wall[face] = (mpmi_wall){kind, kind == MPM_WALL_FRICTION ? friction : 0.0};
+  return MPM_OK;
+}
+
+#define SETTER(name, type, member)                                                                           \
+  mpm_status name(mpm_stepper *s, type fn, void *user) {                                                     \
+    MPMI_ENTER(s, MPMI_STEPPER);                                                                             \
+    mpm_status status = idle(s);                                                                             \
+    if (status) return status;                                                                               \
+    s->member = fn;                                                                                          \
+    s->member##_user = user;                                                                                 \
+    return MPM_OK;                                                                                           \
+  }
+SETTER(mpm_stepper_set_acceleration, mpm_particle_fn, acceleration)
+SETTER(mpm_stepper_set_force, mpm_particle_fn, force)
+SETTER(mpm_stepper_set_velocity_bc, mpm_velocity_fn, velocity_bc)
+SETTER(mpm_stepper_set_progress, mpm_progress_fn, progress)
+
+mpm_status mpm_stepper_profile(mpm_stepper *s, int32_t reset, mpm_profile *out) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!out) return mpmi_fail(s->context, MPM_E_ARG, "out is NULL");
+  const double *t = s->seconds;
+  const mpm_profile profile = {.struct_size = sizeof profile,
+                               .sort = t[MPMI_TIME_SORT],
+                               .p2g = t[MPMI_TIME_P2G],
+                               .grid = t[MPMI_TIME_GRID],
+                               .g2p = t[MPMI_TIME_G2P],
+                               .law = t[MPMI_TIME_LAW],
+                               .callbacks = t[MPMI_TIME_CALLBACKS],
+                               .total = t[MPMI_TIME_TOTAL]};
+  const mpm_status status = mpmi_write_struct(s->context, "mpm_profile", &profile, sizeof profile, out);
+  if (status) return status;
+  s->profiled = 1;
+  if (reset) memset(s->seconds, 0, sizeof s->seconds);
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_wall_reaction(const mpm_stepper *s, int32_t face, double *force) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!force) return mpmi_fail(s->context, MPM_E_ARG, "force is NULL");
+  if (face < 0 || face >= 2 * s->grid->dim)
+    return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
+                     (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
+  if (!s->has_reactions) return mpmi_fail(s->context, MPM_E_STATE, "no step has been made yet");
+  for (int32_t k = 0; k < s->grid->dim; ++k) force[k] = s->impulse_by_face[face][k] / s->reaction_dt;
+  return MPM_OK;
+}

@@ -1,0 +1,195 @@
+/* The stepper: one grid, its nodes, many sets, one scheme. A step is a sequence of stages, one file each:
+ *
+ *   topology.c   sort particles into blocks, find active nodes and constraints, cut the work
+ *   forces.c     external forces on particles
+ *   p2g.c        particles -> nodes
+ *   nodes.c      momentum -> velocity on free nodes
+ *   boundary.c   velocity callback, walls, periodic images
+ *   g2p.c        nodes -> particles: velocity, position, deformation gradient, stress
+ *   commit.c     the new state becomes the state, or is dropped
+ *
+ * explicit.c strings them together: one page per scheme. */
+#ifndef MPMI_STEPPER_H
+#define MPMI_STEPPER_H
+
+#include "grid/constraints.h"
+#include "particles/law_batch.h"
+#include "particles/sort.h"
+#include "stepper/stepper_state.h"
+#include "transfer/kernels.h"
+
+typedef struct mpmi_member {
+  mpm_particles *set;
+  mpmi_arrangement now, next; /* slots by block: of the last sort; of the one being made */
+  double *force;              /* [dim][force_ld] external force beside gravity, or NULL */
+  int64_t force_ld;
+} mpmi_member;
+
+/* The first failure: smallest (set, particle), then node. */
+typedef struct mpmi_failure {
+  mpm_status cause;
+  int32_t callback_status, set;
+  int64_t particle, node;
+  const char *what;
+} mpmi_failure;
+
+/* What one task works with; there are as many as tasks at a time. */
+typedef struct mpmi_scratch {
+  double *tile, *gathered; /* tile of one block; v, dv, C of one batch */
+  void *batch_memory;
+  mpmi_failure failure;
+  int32_t left_tile, removes;
+  double law_seconds;
+} mpmi_scratch;
+
+/* Blocks with particles, cut into tasks: task k has list[bound[k]] ... list[bound[k + 1] - 1]. */
+typedef struct mpmi_cut {
+  int32_t *list;
+  int64_t count;
+  int64_t *bound; /* [tasks + 1] */
+} mpmi_cut;
+
+enum { MPMI_COLOURS = 8, MPMI_ORBIT_STATE = 12 };
+enum { MPMI_IDLE, MPMI_RUNNING, MPMI_BEGUN, MPMI_SOLVED }; /* phase of the step */
+
+/* Seconds by stage, in the order of mpm_profile. */
+enum {
+  MPMI_TIME_SORT,
+  MPMI_TIME_P2G,
+  MPMI_TIME_GRID,
+  MPMI_TIME_G2P,
+  MPMI_TIME_LAW,
+  MPMI_TIME_CALLBACKS,
+  MPMI_TIME_TOTAL,
+  MPMI_TIMES
+};
+
+/* Sums over particles that belong to a state. */
+typedef struct mpmi_energies {
+  int32_t valid;
+  mpmi_sums sums;
+} mpmi_energies;
+
+struct mpm_stepper {
+  uint32_t magic;
+  int32_t phase, mapped, walls_changed;
+  mpm_context *context;
+  mpm_grid *grid;
+  mpm_stepper_desc desc;
+  const mpmi_kernels *kernels;
+  int32_t member_count, member_capacity;
+  mpmi_member *member;
+  double t, dt;
+  int64_t step, resorts, removed;
+  double controller_dt; /* of mpm_advance; 0: none yet */
+
+  mpmi_wall wall[6];
+  mpm_particle_fn acceleration, force;
+  void *acceleration_user, *force_user;
+  mpm_velocity_fn velocity_bc;
+  void *velocity_bc_user;
+  mpm_progress_fn progress;
+  void *progress_user;
+
+  mpmi_blocks blocks, next_blocks;
+  mpmi_constraints constraints, next_constraints;
+  int32_t *list_memory; /* of all cuts */
+  int64_t list_capacity;
+  int64_t *bound_memory;
+  mpmi_cut cut, colour[MPMI_COLOURS];
+  mpmi_scratch *scratch; /* [tasks] */
+  int32_t tasks;
+  void *scratch_memory;
+  size_t scratch_bytes;
+  mpmi_sums *block_sums; /* [blocks] of the step; added up in block order */
+  int64_t block_sums_capacity;
+
+  /* Nodes: values doubles each. First projection: [p m f .] then [v m dv .]. MUSL projects once more, into
+   * again. */
+  int32_t values;
+  int64_t node_capacity, again_capacity; /* in doubles */
+  double *node, *again;
+  int64_t impulse_capacity;
+  int32_t impulses; /* something can give nodes an impulse: then */
+  double *impulse;  /* [3 per node] given by walls and prescribed velocities in the step */
+  int64_t held_capacity;
+  uint8_t *held;       /* [3 per node] component prescribed by the velocity callback */
+  double *held_value;  /* [3 per node] */
+  double *orbit_state; /* [orbits][MPMI_ORBIT_STATE], boundary.c */
+  int64_t orbit_state_capacity;
+  double mass_cut;
+  int32_t nodes_valid; /* nodal fields of the last step can be shown */
+  double nodes_dt;
+
+  double impulse_by_face[6][3]; /* of the last step */
+  double impulse_in_step[6][3]; /* of the one under way */
+  double prescribed_work, reaction_dt;
+  int32_t has_reactions;
+  mpmi_failure failure;
+  mpmi_energies energies; /* of the present state */
+  mpm_step_info last;     /* of the last step */
+  int32_t staged;         /* nodes keep force apart from momentum */
+  double seconds[MPMI_TIMES];
+  int32_t profiled;
+  mpmi_view_record view[8];
+  void *view_memory[8];
+  size_t view_bytes[8];
+  int64_t *active; /* slots of active nodes shown by the views */
+  int64_t active_count, active_capacity;
+};
+
+/* Does the transfer carry an affine matrix, and is it the fused MLS form? */
+static inline int32_t mpmi_is_affine(const mpm_stepper *s) {
+  return s->desc.transfer == MPM_APIC || s->desc.transfer == MPM_APIC_MLS;
+}
+static inline int32_t mpmi_is_mls(const mpm_stepper *s) {
+  return s->desc.transfer == MPM_APIC_MLS;
+}
+
+/* Errors (failure.c): failures of tasks are collected, the first decides. */
+void mpmi_failure_clear(mpmi_failure *failure);
+void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other);
+/* Status of the step from the first failure among the scratches, with its sentence; MPM_OK when none. */
+mpm_status mpmi_stepper_failure(mpm_stepper *s);
+/* What a callback's status makes of the step: > 0 cuts dt, < 0 stops it. */
+mpm_status mpmi_callback_cause(mpm_status status);
+
+/* topology.c: everything that depends on where the particles are. Cannot be half done. */
+mpm_status mpmi_stepper_prepare(mpm_stepper *s);
+void mpmi_stepper_free_topology(mpm_stepper *s);
+/* The work of a sorted state: cuts, nodes, constraints, scratch; used by prepare and by loading a state. */
+mpm_status mpmi_stepper_adopt(mpm_stepper *s);
+
+/* Stages. */
+mpm_status mpmi_stage_forces(mpm_stepper *s, double dt);
+enum { MPMI_P2G_FORCES, MPMI_P2G_AGAIN /* momentum only, from the new velocities: MUSL */ };
+mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t what, double dt);
+mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t what, double dt);
+mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t what, double dt);
+enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2 };
+mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt);
+void mpmi_commit(mpm_stepper *s, double dt);
+void mpmi_roll_back(mpm_stepper *s);
+
+/* tile.c: the nodes of a block and its halo. */
+void mpmi_tile_load(const mpm_stepper *s, int64_t block, const double *nodes, int32_t node_values,
+                    int32_t tile_values, double *tile);
+void mpmi_tile_add(const mpm_stepper *s, int64_t block, double *nodes, int32_t values, const double *tile);
+/* Axes of the basis as seen from a block. */
+void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis);
+
+/* Runs task over [0, count), on this thread when the host's callbacks must stay on it. */
+mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm_task_fn task, void *data);
+
+/* energy.c: energies of the present state, from the last step or by a survey of the particles. */
+mpm_status mpmi_stepper_energies(mpm_stepper *s);
+double mpmi_stable_dt_of(const mpm_stepper *s, const mpmi_sums *sums);
+void mpmi_add_sums(mpmi_sums *sum, const mpmi_sums *other);
+/* Everything of the info that does not depend on how the step went. */
+void mpmi_fill_info(const mpm_stepper *s, mpm_step_info *info);
+
+/* step.c */
+mpm_status mpmi_step(mpm_stepper *s, double dt);
+double mpmi_seconds(void);
+
+#endif
