@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Every public header compiles alone and twice over, as C99, C11 and C++17; a dumb parser can take it.
+set -euo pipefail
+BUILD=${BUILD:-build}
+scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/headers
+mkdir -p "$scratch"
+warnings="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror"
+
+compile() { # compiler, standard, language, header
+  command -v "$1" > /dev/null || return 0
+  local source=$scratch/$1-$2.$3
+  printf '#include <%s>\n#include <%s>\nint used(void);\nint used(void) { return 0; }\n' "$4" "$4" > "$source"
+  # shellcheck disable=SC2086
+  "$1" -std="$2" $warnings -Iinclude -c "$source" -o "$source.o"
+}
+
+count=0
+for path in include/mpm/*.h include/mpm/*.hpp; do
+  [ -e "$path" ] || continue
+  header=${path#include/}
+  case $path in
+  *.hpp) ;;
+  *)
+    for standard in c99 c11; do
+      compile gcc $standard c "$header"
+      compile clang $standard c "$header"
+    done
+    gcc -E -P -std=c99 -Iinclude "$path" > "$scratch/expanded"
+    if grep -nwE 'inline|_Bool|bool|FILE|va_list' "$scratch/expanded"; then
+      echo "headers.sh: $path is more than plain declarations" >&2
+      exit 1
+    fi
+    ;;
+  esac
+  compile g++ c++17 cpp "$header"
+  compile clang++ c++17 cpp "$header"
+  count=$((count + 1))
+done
+echo "headers.sh: $count headers"

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Installs into a scratch prefix and builds host programs against it through pkg-config, as a user would: C and C++,
+# shared and static. Then uninstalls and expects nothing to be left.
+set -euo pipefail
+BUILD=${BUILD:-build} CC=${CC:-cc} CXX=${CXX:-g++} MAKE=${MAKE:-make} PKG_CONFIG=${PKG_CONFIG:-pkg-config}
+BUILD=$(cd "$BUILD" && pwd)
+scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/install
+rm -rf "$scratch"
+mkdir -p "$scratch"
+prefix=$scratch/prefix
+
+"$MAKE" -s install BUILD="$BUILD" CC="$CC" PREFIX="$prefix" DESTDIR= > /dev/null
+export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+version=$("$PKG_CONFIG" --modversion mpm)
+
+flags() { "$PKG_CONFIG" "$@" mpm; }
+build() { # compiler, standard, source, program, libraries...
+  local compiler=$1 standard=$2 source=$3 program=$scratch/$4
+  shift 4
+  # shellcheck disable=SC2046
+  "$compiler" -std="$standard" -Wall -Wextra -Werror $(flags --cflags) "$source" -o "$program" "$@"
+}
+# shellcheck disable=SC2207
+shared=($(flags --libs)) static=($(flags --static --libs))
+static=("${static[@]/-lmpm/-l:libmpm.a}")
+
+build "$CC" c99 tests/api/host.c c_shared "${shared[@]}"
+build "$CC" c99 tests/api/host.c c_static "${static[@]}"
+build "$CXX" c++17 tests/api/host.cpp cpp_shared "${shared[@]}"
+build "$CXX" c++17 tests/api/host.cpp cpp_static "${static[@]}"
+for program in c_shared c_static cpp_shared cpp_static; do
+  printf 'install.sh: %s: ' $program
+  case $program in
+  *_shared) LD_LIBRARY_PATH=$prefix/lib "$scratch/$program" "$version" ;;
+  *) "$scratch/$program" "$version" ;;
+  esac
+done
+if readelf -d "$scratch/c_static" | grep libmpm; then
+  echo "install.sh: the static program still needs the shared library" >&2
+  exit 1
+fi
+
+# A package is staged under DESTDIR, but its files speak of the prefix.
+"$MAKE" -s install BUILD="$BUILD" CC="$CC" PREFIX=/opt/mpm DESTDIR="$scratch/stage" > /dev/null
+grep -q '^prefix=/opt/mpm$' "$scratch/stage/opt/mpm/lib/pkgconfig/mpm.pc"
+
+"$MAKE" -s uninstall PREFIX="$prefix" DESTDIR= > /dev/null
+if find "$prefix" -type f -o -type l | grep .; then
+  echo "install.sh: uninstall left these behind" >&2
+  exit 1
+fi

@@ -1,0 +1,113 @@
+#!/bin/sh
+# Runs every example in a scratch directory and checks the result line that it prints, and the files of two_disks.
+#   BUILD   where the built library lives; the examples are in $BUILD/examples (default: build)
+set -u
+
+build=$(cd "${BUILD:-build}" && pwd) || exit 1
+scratch=$(mktemp -d) || exit 1
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch" || exit 1
+failures=0
+
+fail() {
+  echo "FAIL $*"
+  failures=$((failures + 1))
+}
+
+# run name [arguments]: output to name.out, its result line to $result
+run() {
+  name=$1
+  shift
+  result=
+  if ! "$build/examples/$name" "$@" >"$name.out" 2>"$name.err"; then
+    fail "$name: exit status not 0"
+    cat "$name.out" "$name.err"
+    return
+  fi
+  result=$(tail -n 1 "$name.out")
+  case $result in
+  result:*) echo "$name: $result" ;;
+  *)
+    fail "$name: no result line at the end"
+    cat "$name.out"
+    ;;
+  esac
+}
+
+# check "what" text low high: the number after `text` in the result line lies in [low, high]
+check() {
+  [ -n "$result" ] || return
+  printf '%s\n' "$result" | awk -v what="$2" -v low="$3" -v high="$4" '
+    {
+      at = index($0, what)
+      if (!at) exit 1
+      rest = substr($0, at + length(what))
+      if (!match(rest, /^ *[-+]?[0-9.]+([eE][-+]?[0-9]+)?/)) exit 1
+      value = substr(rest, RSTART, RLENGTH) + 0
+      exit !(value >= low && value <= high)
+    }' || fail "$name: $1: the number after \"$2\" is not in [$3, $4]"
+}
+
+mkdir disks
+run two_disks disks
+check "least kinetic energy" "least kinetic energy" 0.05 0.2
+check "time of closest approach" "at t =" 1.98 2.13
+check "rebound" "rebound speed" 0.1235 0.1337
+check "energy" "energy drift" -2 2
+check "momentum" "momentum below" 0 1e-12
+for file in two_disks.pvd two_disks.svg two_disks_energy.svg energy.csv particles_0000.vtp particles_0036.vtp; do
+  [ -s "disks/$file" ] || fail "two_disks: $file is missing or empty"
+done
+[ "$(awk -F, 'NF == 6' disks/energy.csv | wc -l)" -eq 362 ] || fail "two_disks: energy.csv has not 362 rows of 6 columns"
+if command -v python3 >/dev/null; then
+  python3 - disks <<'PYTHON' || fail "two_disks: a file is not well-formed"
+import glob, os, sys, xml.dom.minidom
+
+where = sys.argv[1]
+for name in ("two_disks.svg", "two_disks_energy.svg"):
+    root = xml.dom.minidom.parse(os.path.join(where, name)).documentElement
+    assert root.tagName == "svg" and root.getElementsByTagName("path"), name
+series = xml.dom.minidom.parse(os.path.join(where, "two_disks.pvd"))
+entries = series.getElementsByTagName("DataSet")
+assert len(entries) == 37 == len(glob.glob(os.path.join(where, "particles_*.vtp"))), len(entries)
+for entry in entries:
+    with open(os.path.join(where, entry.getAttribute("file")), "rb") as f:
+        data = f.read()
+    # appended raw data is not XML: leave out what stands between "_" and the end of AppendedData
+    begin = data.index(b"<AppendedData")
+    begin = data.index(b">", begin) + 1
+    end = data.rindex(b"</AppendedData>")
+    root = xml.dom.minidom.parseString(data[:begin] + data[end:]).documentElement
+    assert root.getAttribute("type") == "PolyData"
+    names = {a.getAttribute("Name") for a in root.getElementsByTagName("DataArray")}
+    assert {"velocity", "stress", "deformation_gradient"} <= names, names
+PYTHON
+fi
+
+run cantilever
+check "deviation from FEM" "deviation" -4 4
+awk '$5 == "%" && ($4 > 4 || $4 < -4) && $1 <= 0.9 && $1 > 0.1 { bad = 1 } $5 == "%" { rows++ } END { exit bad || rows != 10 }' \
+  cantilever.out || fail "cantilever: more than 4 % from FEM before t = 0.9, or not 10 rows"
+
+run user_material
+check "own law against the built-in" "from the built-in by" 0 1e-10
+check "visco-elastic bar" "from theory by" 0 1
+
+run user_force_and_boundary
+check "wall force" "wall force" -0.0712 -0.0688
+check "grip force" "grip force" 0.0255 0.0265
+check "energy balance" "energy balance" -1 1
+
+run host_threads
+check "hashes" "result:" 4 4
+
+run staged_coupling
+check "period" "deviation" -1.5 1.5
+check "momentum" "momentum kept to" 0 1e-11
+check "energy" "energy of vibration to" 0 3
+
+[ "$failures" -eq 0 ] || {
+  echo "$failures checks of the examples failed"
+  exit 1
+}
+echo "examples: all checks passed"

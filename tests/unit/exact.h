@@ -1,0 +1,12 @@
+/* Parts of test_exact.c. */
+#ifndef EXACT_H
+#define EXACT_H
+
+#include "support.h"
+
+TCase *basis_case(void);
+TCase *conservation_case(void);
+TCase *patch_case(void);
+TCase *rotation_case(void);
+
+#endif

@@ -1,0 +1,174 @@
+/* Weights along one axis, for every basis and instruction set: exact at nodes, faces, half nodes and anywhere. */
+#include "exact.h"
+
+#include "transfer/kernels.h"
+
+static const double origin = -0.3, spacing = 0.25;
+enum { CELLS = 10, GLOBAL = CELLS + 3 /* nodes -1 ... CELLS + 1 */ };
+
+typedef struct weights {
+  double w[MPMI_MAX_WIDTH][MPMI_CHUNK], g[MPMI_MAX_WIDTH][MPMI_CHUNK], u[MPMI_MAX_WIDTH][MPMI_CHUNK];
+  double moment[MPMI_CHUNK], first[MPMI_CHUNK];
+} weights;
+
+/* As the stepper makes it for a block whose first node is `corner`. */
+static mpmi_axis axis_of(int32_t order, double corner, int32_t periodic) {
+  return (mpmi_axis){.origin = origin,
+                     .spacing = spacing,
+                     .inverse_spacing = 1.0 / spacing,
+                     .base_low = order == 2 ? -1.0 : 0.0,
+                     .base_high = CELLS - 1.0,
+                     .period = periodic ? CELLS : 0.0,
+                     .inverse_period = periodic ? 1.0 / CELLS : 0.0,
+                     .tile_base = corner,
+                     .middle = 0.5 * (16 + 2 * MPMI_RING - 1)};
+}
+
+static int32_t available(int32_t isa) {
+  mpm_context *context;
+  mpm_context_desc desc;
+  ck_assert_int_eq(mpm_context_desc_init(&desc, sizeof desc), MPM_OK);
+  desc.isa = isa;
+  if (mpm_context_create(&desc, &context)) return 0;
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  return 1;
+}
+
+/* Nodes, half nodes, faces and their neighbourhoods in the first half of a chunk, then anywhere. */
+static void fill_positions(dice *d, double *x) {
+  static const double special[16] = {0.0,  0.5,  1.0, 1.5,        5.0,        4.5,        9.5,       9.0,
+                                     10.0, 1e-9, 0.1, 10.0 - 1e-9, 5.0 - 1e-9, 5.5 + 1e-9, 0.5 - 1e-9, 7.25};
+  for (int32_t p = 0; p < MPMI_CHUNK; ++p)
+    x[p] = origin + spacing * (p < 16 ? special[p] : throw_between(d, 0.0, CELLS));
+}
+
+static void check_sums(const char *name, int32_t order, const double *x, const weights *W, double corner) {
+  for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
+    double w = 0.0, wx = 0.0, g = 0.0, gx = 0.0, u = 0.0, moment = 0.0;
+    for (int32_t k = 0; k <= order; ++k) {
+      const double node = origin + spacing * (corner + W->first[p] + k), away = node - x[p];
+      ck_between(name, W->w[k][p], 0.0, 1.0);
+      ck_within(name, W->u[k][p], W->w[k][p] * away, 1e-15);
+      w += W->w[k][p];
+      wx += W->w[k][p] * node;
+      g += W->g[k][p];
+      gx += W->g[k][p] * node;
+      u += W->u[k][p];
+      moment += W->w[k][p] * away * away;
+    }
+    ck_within(name, w, 1.0, 1e-14);
+    ck_within(name, wx, x[p], 1e-14);
+    ck_within(name, g, 0.0, 1e-14 / spacing);
+    ck_within(name, gx, 1.0, 1e-13);
+    ck_within(name, u, 0.0, 1e-15);
+    ck_within(name, W->moment[p], moment, 1e-16);
+  }
+}
+
+/* Weights of one particle by node of the grid. */
+static void by_node(const weights *W, int32_t p, int32_t order, double corner, double *w, double *g) {
+  for (int32_t i = 0; i < GLOBAL; ++i) w[i] = g[i] = 0.0;
+  for (int32_t k = 0; k <= order; ++k) {
+    const int32_t node = (int32_t)(corner + W->first[p]) + k + 1;
+    ck_assert(node >= 0 && node < GLOBAL);
+    w[node] += W->w[k][p];
+    g[node] += W->g[k][p];
+  }
+}
+
+/* One-sided differences, in the cell where the linear basis is smooth. */
+static void check_gradient(const char *name, mpmi_axis_weights_fn fn, const mpmi_axis *axis, int32_t order,
+                           const double *x, const weights *W) {
+  const double eps = 1e-8 * spacing;
+  double x_near[MPMI_CHUNK];
+  weights near;
+  for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
+    const double next = floor((x[p] + eps - origin) / spacing);
+    x_near[p] = next > floor((x[p] - origin) / spacing) || next >= CELLS ? x[p] - eps : x[p] + eps;
+  }
+  fn(axis, MPMI_CHUNK, x_near, MPMI_NEED_GRADIENT, near.w, near.g, near.u, near.moment, near.first);
+  for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
+    double w[GLOBAL], g[GLOBAL], w_near[GLOBAL], g_near[GLOBAL];
+    by_node(W, p, order, axis->tile_base, w, g);
+    by_node(&near, p, order, axis->tile_base, w_near, g_near);
+    for (int32_t i = 0; i < GLOBAL; ++i) ck_within(name, (w_near[i] - w[i]) / (x_near[p] - x[p]), g[i], 1e-7 / spacing);
+  }
+}
+
+START_TEST(weights_are_exact) {
+  static const char *const names[] = {"baseline", "avx2", "avx512"};
+  const int32_t isa = MPM_ISA_BASELINE + _i;
+  if (!available(isa)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  dice d = {1};
+  for (int32_t order = 1; order <= 2; ++order)
+    for (int32_t round = 0; round < 50; ++round) {
+      const double corner = (double)(round % 3) - 2.0;
+      const mpmi_axis axis = axis_of(order, corner, 0);
+      double x[MPMI_CHUNK];
+      weights W;
+      fill_positions(&d, x);
+      kernels->axis_weights[order](&axis, MPMI_CHUNK, x, MPMI_NEED_GRADIENT | MPMI_NEED_MOMENT, W.w, W.g, W.u, W.moment,
+                                   W.first);
+      check_sums(names[_i], order, x, &W, corner);
+      check_gradient(names[_i], kernels->axis_weights[order], &axis, order, x, &W);
+    }
+}
+END_TEST
+
+/* Moving least squares: the second weight is w (x_i - x_p) / D, with D = h^2 / 4. */
+START_TEST(mls_weights_are_exact) {
+  if (!available(MPM_ISA_BASELINE + _i)) return;
+  const mpmi_axis axis = axis_of(2, -2.0, 0);
+  dice d = {2};
+  double x[MPMI_CHUNK];
+  weights W;
+  fill_positions(&d, x);
+  mpmi_kernels_of(MPM_ISA_BASELINE + _i)
+      ->axis_weights[2](&axis, MPMI_CHUNK, x, MPMI_NEED_MLS | MPMI_NEED_MOMENT, W.w, W.g, W.u, W.moment, W.first);
+  check_sums("MLS", 2, x, &W, -2.0);
+  for (int32_t p = 0; p < MPMI_CHUNK; ++p)
+    for (int32_t k = 0; k < 3; ++k) {
+      ck_within("MLS", W.moment[p], 0.25 * spacing * spacing, 1e-17);
+      ck_within("MLS", W.g[k][p], W.u[k][p] / W.moment[p], 1e-13);
+    }
+}
+END_TEST
+
+/* On a periodic axis the weights are the same, and the stencil lies in the tile whatever image the particle is in. */
+START_TEST(periodic_images_reach_the_tile) {
+  if (!available(MPM_ISA_BASELINE + _i)) return;
+  const mpmi_kernels *kernels = mpmi_kernels_of(MPM_ISA_BASELINE + _i);
+  dice d = {3};
+  for (int32_t order = 1; order <= 2; ++order) {
+    /* a block of 16 nodes from node 8 on, of a grid of 10 cells: its ring lies behind the seam */
+    const mpmi_axis periodic = axis_of(order, 8.0 - MPMI_RING - (order == 2), 1), plain = axis_of(order, 0.0, 0);
+    double x[MPMI_CHUNK];
+    weights W, P;
+    for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
+      const double xi = throw_between(&d, 8.5, 11.5);
+      x[p] = origin + spacing * (xi > CELLS ? xi - CELLS : xi);
+    }
+    kernels->axis_weights[order](&periodic, MPMI_CHUNK, x, MPMI_NEED_GRADIENT, P.w, P.g, P.u, P.moment, P.first);
+    kernels->axis_weights[order](&plain, MPMI_CHUNK, x, MPMI_NEED_GRADIENT, W.w, W.g, W.u, W.moment, W.first);
+    for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
+      for (int32_t k = 0; k <= order; ++k) {
+        ck_assert(P.w[k][p] == W.w[k][p]);
+        ck_assert(P.g[k][p] == W.g[k][p]);
+      }
+      ck_between("tile", P.first[p], 0.0, 16 + 2 * MPMI_RING - 1);
+      const double turns = (P.first[p] + periodic.tile_base - W.first[p]) / CELLS;
+      ck_assert(turns == 0.0 || turns == 1.0);
+      ck_assert(turns == (x[p] < origin + 5.0 * spacing ? 1.0 : 0.0));
+    }
+  }
+}
+END_TEST
+
+TCase *basis_case(void) {
+  TCase *tc = tcase_create("basis");
+  tcase_add_loop_test(tc, weights_are_exact, 0, 3);
+  tcase_add_loop_test(tc, mls_weights_are_exact, 0, 3);
+  tcase_add_loop_test(tc, periodic_images_reach_the_tile, 0, 3);
+  return tc;
+}

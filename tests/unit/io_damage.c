@@ -1,0 +1,163 @@
+/* Buffers that are not what mpm_state_save() wrote. */
+#include "io_world.h"
+
+static io_world world;
+static io_buffer saved;
+static uint64_t before;
+
+/* A small sorted state, and a world to load it into. */
+static void open_small(void) {
+  const io_setup setup = io_plain(1);
+  io_world from;
+  io_open(&from, &setup);
+  io_steps(&from, 1);
+  ck_assert_int_eq(mpmi_state_is_sorted(from.stepper), 1);
+  saved = io_save(&from);
+  io_close(&from);
+  io_open(&world, &setup);
+  before = io_hash(&world);
+}
+
+static void close_small(void) {
+  free(saved.data);
+  io_close(&world);
+}
+
+/* Copies, so that reading past the end is noticed by memory checkers. */
+static mpm_status load_copy(const unsigned char *data, int64_t bytes) {
+  unsigned char *copy = malloc((size_t)bytes + (bytes == 0));
+  memcpy(copy, data, (size_t)bytes);
+  const mpm_status status = mpm_state_load(world.stepper, copy, bytes);
+  free(copy);
+  return status;
+}
+
+static void refuses(const unsigned char *data, int64_t bytes, const char *text) {
+  ck_refused(world.f.context, load_copy(data, bytes), MPM_E_FORMAT, text);
+  ck_assert_uint_eq(io_hash(&world), before);
+}
+
+START_TEST(truncated_at_every_length) {
+  for (int64_t bytes = 0; bytes < saved.bytes; ++bytes) refuses(saved.data, bytes, "");
+  refuses(saved.data, 31, "too few");
+  refuses(saved.data, saved.bytes - 1, "of which there are");
+}
+END_TEST
+
+START_TEST(every_byte_counts) {
+  for (int64_t i = 0; i < saved.bytes; ++i) {
+    const unsigned char kept = saved.data[i];
+    saved.data[i] = (unsigned char)(kept ^ (1u << i % 8));
+    refuses(saved.data, saved.bytes, "");
+    saved.data[i] = kept;
+  }
+  ck_ok(load_copy(saved.data, saved.bytes));
+}
+END_TEST
+
+START_TEST(foreign_data) {
+  unsigned char *data = calloc(1, (size_t)saved.bytes + 8);
+  refuses(data, saved.bytes, "not a state");
+  memcpy(data, saved.data, (size_t)saved.bytes);
+  refuses(data, saved.bytes + 8, "of which there are");
+  for (int32_t i = 0; i < 4; ++i) data[8 + i] = saved.data[11 - i];
+  refuses(data, saved.bytes, "byte order");
+  memcpy(data, saved.data, (size_t)saved.bytes);
+  data[12] = MPMI_STATE_FORMAT + 1;
+  refuses(data, saved.bytes, "format 2: this library knows format 1");
+  free(data);
+}
+END_TEST
+
+START_TEST(buffers_need_no_alignment) {
+  unsigned char *data = malloc((size_t)saved.bytes + 1);
+  memcpy(data + 1, saved.data, (size_t)saved.bytes);
+  ck_ok(mpm_state_load(world.stepper, data + 1, saved.bytes));
+  ck_ok(mpm_state_save(world.stepper, data + 1, saved.bytes));
+  ck_assert_mem_eq(data + 1, saved.data, (size_t)saved.bytes);
+  free(data);
+}
+END_TEST
+
+/* Gives changed contents the checksum that belongs to them. */
+static void seal(unsigned char *data, int64_t bytes) {
+  mpmi_state_header header;
+  mpmi_checksum sum;
+  mpmi_checksum_begin(&sum);
+  mpmi_checksum_add(&sum, data + sizeof header, bytes - (int64_t)sizeof header);
+  memcpy(&header, data, sizeof header);
+  header.bytes = bytes;
+  header.checksum = mpmi_checksum_end(&sum);
+  memcpy(data, &header, sizeof header);
+}
+
+static uint64_t next_random(uint64_t *state) {
+  *state = *state * 6364136223846793005u + 1442695040888963407u;
+  return *state >> 20;
+}
+
+/* Well sealed nonsense is refused, or harmless: it may be loaded and stepped. */
+static void try_forged(const unsigned char *data, int64_t bytes) {
+  const mpm_status status = load_copy(data, bytes);
+  if (status) {
+    ck_assert_int_eq(status, MPM_E_FORMAT);
+    ck_assert_uint_eq(io_hash(&world), before);
+    return;
+  }
+  for (int32_t i = 0; i < 3; ++i) mpm_step(world.stepper, 1e-3, NULL);
+  ck_ok(load_copy(saved.data, saved.bytes));
+  before = io_hash(&world);
+}
+
+START_TEST(forged_words) {
+  static const int64_t odd[] = {
+      0, 1, -1, 16, 17, INT64_MAX, INT64_MIN, 0x7ff8000000000000, 0x7fefffffffffffff, 48};
+  unsigned char *data = malloc((size_t)saved.bytes);
+  ck_ok(load_copy(saved.data, saved.bytes));
+  before = io_hash(&world);
+  for (int64_t at = sizeof(mpmi_state_header); at < saved.bytes; at += 8)
+    for (size_t k = 0; k < sizeof odd / sizeof *odd; ++k) {
+      memcpy(data, saved.data, (size_t)saved.bytes);
+      memcpy(data + at, &odd[k], 8);
+      seal(data, saved.bytes);
+      try_forged(data, saved.bytes);
+    }
+  free(data);
+}
+END_TEST
+
+START_TEST(forged_at_random) {
+  unsigned char *data = malloc((size_t)saved.bytes);
+  uint64_t random = 7;
+  ck_ok(load_copy(saved.data, saved.bytes));
+  before = io_hash(&world);
+  for (int32_t i = 0; i < 3000; ++i) {
+    memcpy(data, saved.data, (size_t)saved.bytes);
+    int64_t bytes = saved.bytes;
+    const uint64_t changes = 1 + next_random(&random) % 4;
+    for (uint64_t k = 0; k < changes; ++k) {
+      const int64_t span = saved.bytes - (int64_t)sizeof(mpmi_state_header);
+      const int64_t at =
+          (int64_t)sizeof(mpmi_state_header) + (int64_t)(next_random(&random) % (uint64_t)span);
+      data[at] = (unsigned char)next_random(&random);
+    }
+    if (i % 5 == 0) bytes -= 8 * (int64_t)(next_random(&random) % 40);
+    seal(data, bytes);
+    try_forged(data, bytes);
+  }
+  free(data);
+}
+END_TEST
+
+TCase *io_damage_case(void) {
+  TCase *tests = tcase_create("damaged states");
+  tcase_set_timeout(tests, 120);
+  tcase_add_checked_fixture(tests, open_small, close_small);
+  tcase_add_test(tests, truncated_at_every_length);
+  tcase_add_test(tests, every_byte_counts);
+  tcase_add_test(tests, foreign_data);
+  tcase_add_test(tests, buffers_need_no_alignment);
+  tcase_add_test(tests, forged_words);
+  tcase_add_test(tests, forged_at_random);
+  return tests;
+}

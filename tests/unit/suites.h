@@ -1,0 +1,11 @@
+/* The suites of the unit test program: SUITE(x) runs x_suite() of test_x.c. */
+SUITE(abi)
+SUITE(context)
+SUITE(executor)
+SUITE(grid)
+SUITE(particles)
+SUITE(fill)
+SUITE(fields)
+SUITE(copies)
+SUITE(views)
+SUITE(material)

@@ -1,0 +1,203 @@
+/* Tasks on the library's own threads and on the host's executor. */
+#define _POSIX_C_SOURCE 200809L
+#include <check.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "context/context.h"
+
+static mpm_context_desc desc_for(int32_t concurrency) {
+  mpm_context_desc desc;
+  ck_assert_int_eq(mpm_context_desc_init(&desc, sizeof desc), MPM_OK);
+  desc.concurrency = concurrency;
+  return desc;
+}
+
+static mpm_context *make(const mpm_context_desc *desc) {
+  mpm_context *context = NULL;
+  ck_assert_int_eq(mpm_context_create(desc, &context), MPM_OK);
+  return context;
+}
+
+typedef struct tally {
+  _Atomic int32_t *seen;
+  int64_t count;
+  _Atomic int64_t out_of_range;
+} tally;
+
+static void count_task(void *data, int64_t k) {
+  tally *t = data;
+  if (k < 0 || k >= t->count)
+    atomic_fetch_add(&t->out_of_range, 1);
+  else
+    atomic_fetch_add(&t->seen[k], 1);
+}
+
+static void expect_each_once(mpm_context *context, int64_t count) {
+  tally t = {.count = count};
+  t.seen = calloc((size_t)count + 1, sizeof *t.seen);
+  ck_assert_int_eq(mpmi_parallel_for(context, count, count_task, &t), MPM_OK);
+  for (int64_t k = 0; k < count; ++k)
+    if (t.seen[k] != 1) ck_abort_msg("task %d of %d ran %d times", (int)k, (int)count, (int)t.seen[k]);
+  ck_assert_int_eq(t.out_of_range, 0);
+  free(t.seen);
+}
+
+START_TEST(every_task_once) {
+  static const int32_t threads[] = {0, 1, 2, 3, 8};
+  for (int i = 0; i < 5; ++i) {
+    mpm_context_desc desc = desc_for(threads[i]);
+    mpm_context *context = make(&desc);
+    ck_assert_int_ge(context->concurrency, 1);
+    if (threads[i]) ck_assert_int_eq(context->concurrency, threads[i]);
+    for (int64_t count = 0; count < 70; ++count) expect_each_once(context, count);
+    expect_each_once(context, 1000);
+    expect_each_once(context, 100003);
+    ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  }
+}
+END_TEST
+
+static void add_task(void *data, int64_t k) {
+  int64_t *sums = data;
+  sums[k] += k + 1; /* not atomic: runs must not overlap, and their results must be visible afterwards */
+}
+
+static void idle(long nanoseconds) {
+  struct timespec time = {0, nanoseconds};
+  nanosleep(&time, NULL);
+}
+
+/* Short runs back to back, with and without pauses long enough for the workers to fall asleep. */
+START_TEST(many_short_runs) {
+  mpm_context_desc desc = desc_for(4);
+  mpm_context *context = make(&desc);
+  int64_t sums[5] = {0}, runs = 4000;
+  for (int64_t r = 0; r < runs; ++r) {
+    if (r % 16 == 0) idle(20000);
+    ck_assert_int_eq(mpmi_parallel_for(context, 5, add_task, sums), MPM_OK);
+  }
+  for (int64_t k = 0; k < 5; ++k) ck_assert_int_eq(sums[k], runs * (k + 1));
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
+END_TEST
+
+static void slow_task(void *data, int64_t k) {
+  (void)k;
+  idle(2000000);
+  atomic_fetch_add((_Atomic int64_t *)data, 1);
+}
+
+/* The caller must sleep and be woken; a pool that was never used must end as well. */
+START_TEST(slow_tasks) {
+  mpm_context_desc desc = desc_for(3);
+  mpm_context *context = make(&desc);
+  _Atomic int64_t done = 0;
+  for (int r = 0; r < 5; ++r) ck_assert_int_eq(mpmi_parallel_for(context, 7, slow_task, &done), MPM_OK);
+  ck_assert_int_eq(done, 35);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  ck_assert_int_eq(mpm_context_destroy(make(&desc)), MPM_OK);
+}
+END_TEST
+
+static void mask_task(void *data, int64_t k) {
+  (void)k;
+  sigset_t mask;
+  pthread_sigmask(SIG_SETMASK, NULL, &mask);
+  idle(1000000);
+  if (!pthread_equal(pthread_self(), *(pthread_t *)data))
+    ck_assert(sigismember(&mask, SIGINT) == 1 && sigismember(&mask, SIGTERM) == 1);
+}
+
+START_TEST(workers_take_no_signals) {
+  mpm_context_desc desc = desc_for(2);
+  sigset_t before, after;
+  pthread_sigmask(SIG_SETMASK, NULL, &before);
+  mpm_context *context = make(&desc);
+  pthread_sigmask(SIG_SETMASK, NULL, &after);
+  for (int s = 1; s < 32; ++s) ck_assert_int_eq(sigismember(&before, s), sigismember(&after, s));
+  pthread_t self = pthread_self();
+  ck_assert_int_eq(mpmi_parallel_for(context, 8, mask_task, &self), MPM_OK);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
+END_TEST
+
+typedef struct executor {
+  int64_t calls;
+  mpm_status status;
+} executor;
+
+static mpm_status backwards(void *user, int64_t count, mpm_task_fn task, void *data) {
+  executor *e = user;
+  e->calls++;
+  if (e->status) return e->status;
+  for (int64_t k = count - 1; k >= 0; --k) task(data, k);
+  return MPM_OK;
+}
+
+START_TEST(host_executor) {
+  executor e = {0, MPM_OK};
+  mpm_context_desc desc = desc_for(6);
+  desc.parallel_for = backwards;
+  desc.parallel_user = &e;
+  mpm_context *context = make(&desc);
+  ck_assert_ptr_null(context->pool);
+  ck_assert_int_eq(context->concurrency, 6);
+  expect_each_once(context, 17);
+  ck_assert_int_eq(e.calls, 1);
+  expect_each_once(context, 1); /* not worth a call */
+  expect_each_once(context, 0);
+  ck_assert_int_eq(e.calls, 1);
+  int64_t sums[3] = {0};
+  e.status = 42;
+  ck_assert_int_eq(mpmi_parallel_for(context, 3, add_task, sums), MPM_E_CALLBACK);
+  ck_assert_ptr_nonnull(strstr(mpm_last_error(context), "42"));
+  ck_assert_int_eq(sums[2], 0);
+  mpmi_parallel_for_sure(context, 3, add_task, sums);
+  ck_assert_int_eq(sums[2], 3);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  desc.concurrency = 0;
+  context = make(&desc);
+  ck_assert_int_ge(context->concurrency, 1);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
+END_TEST
+
+static void *own_context(void *argument) {
+  (void)argument;
+  for (int r = 0; r < 20; ++r) {
+    mpm_context_desc desc = desc_for(1 + r % 3);
+    mpm_context *context = make(&desc);
+    expect_each_once(context, 100 + r);
+    mpmi_fail(context, MPM_E_IO, "run %d", r);
+    ck_assert_int_eq(mpm_last_error(context)[4] - '0', r < 10 ? r : r / 10);
+    ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  }
+  return NULL;
+}
+
+START_TEST(contexts_side_by_side) {
+  pthread_t thread[4];
+  for (int k = 0; k < 4; ++k) ck_assert_int_eq(pthread_create(&thread[k], NULL, own_context, NULL), 0);
+  for (int k = 0; k < 4; ++k) ck_assert_int_eq(pthread_join(thread[k], NULL), 0);
+}
+END_TEST
+
+Suite *executor_suite(void);
+Suite *executor_suite(void) {
+  Suite *suite = suite_create("executor");
+  TCase *threads = tcase_create("threads");
+  tcase_set_timeout(threads, 60);
+  tcase_add_test(threads, every_task_once);
+  tcase_add_test(threads, many_short_runs);
+  tcase_add_test(threads, slow_tasks);
+  tcase_add_test(threads, workers_take_no_signals);
+  tcase_add_test(threads, host_executor);
+  tcase_add_test(threads, contexts_side_by_side);
+  suite_add_tcase(suite, threads);
+  return suite;
+}

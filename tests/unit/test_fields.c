@@ -1,0 +1,235 @@
+/* Fields of a set by name: what there is, what the host adds, and the storage below. */
+#include "context/radix.h"
+#include "set_fixture.h"
+
+static fixture f;
+
+static void open_set(void) {
+  fixture_open(&f, 3, "linear_elastic");
+  fixture_add(&f, 20, NULL);
+}
+
+static void open_on(const mpm_grid_desc *grid, const char *model) {
+  fixture_close(&f);
+  fixture_open_on(&f, grid, model);
+  fixture_add(&f, 20, NULL);
+}
+
+static void open_dim(int32_t dim, const char *model) {
+  mpm_grid_desc grid = fixture_grid(dim);
+  open_on(&grid, model);
+}
+
+static void close_set(void) {
+  fixture_check_slots(&f);
+  fixture_close(&f);
+}
+
+/* ---- what there is ----------------------------------------------------------------------------------- */
+typedef struct row {
+  const char *name;
+  int32_t type, stored[3], full[3], writable;
+} row;
+
+static const row table[] = {{"id", MPM_I64, {1, 1, 1}, {1, 1, 1}, 0},
+                            {"position", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
+                            {"velocity", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
+                            {"acceleration", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
+                            {"mass", MPM_F64, {1, 1, 1}, {1, 1, 1}, 1},
+                            {"volume", MPM_F64, {1, 1, 1}, {1, 1, 1}, 0},
+                            {"initial_volume", MPM_F64, {1, 1, 1}, {1, 1, 1}, 1},
+                            {"size", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
+                            {"deformation_gradient", MPM_F64, {1, 5, 9}, {9, 9, 9}, 1},
+                            {"velocity_gradient", MPM_F64, {1, 4, 9}, {9, 9, 9}, 1},
+                            {"stress", MPM_F64, {3, 4, 6}, {6, 6, 6}, 1},
+                            {"state", MPM_F64, {0, 0, 0}, {0, 0, 0}, 1},
+                            {"reference_position", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
+                            {"prescribed", MPM_U8, {1, 2, 3}, {1, 2, 3}, 0},
+                            {"applied_force", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
+                            {"image", MPM_I64, {1, 2, 3}, {1, 2, 3}, 0}};
+
+START_TEST(built_in_fields) {
+  for (int32_t dim = 1; dim <= 3; ++dim) {
+    open_dim(dim, "linear_elastic");
+    for (int32_t i = 0; i < 16; ++i) {
+      const char *name;
+      int32_t type, components, writable;
+      ck_ok(mpm_particles_field_info(f.set, i, &name, &type, &components, &writable));
+      ck_assert_str_eq(name, table[i].name);
+      ck_assert_int_eq(type, table[i].type);
+      ck_assert_int_eq(components, table[i].full[dim - 1]);
+      ck_assert_int_eq(writable, table[i].writable);
+      ck_assert_int_eq(f.set->field[i].components, table[i].stored[dim - 1]);
+      ck_ok(mpm_particles_field_info(f.set, i, NULL, NULL, NULL, NULL));
+    }
+    ck_refused(f.context, mpm_particles_field_info(f.set, 16, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND,
+               "16 fields");
+    ck_refused(f.context, mpm_particles_field_info(f.set, -1, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND, "-1");
+    ck_assert_int_eq(mpm_particles_field_info(NULL, 0, NULL, NULL, NULL, NULL), MPM_E_ARG);
+  }
+}
+END_TEST
+
+START_TEST(present_and_doubled) {
+  static const int32_t doubled[] = {MPMI_POSITION, MPMI_VELOCITY, MPMI_F, MPMI_STRESS};
+  uint32_t present = 0, copies = 0;
+  for (int i = 0; i < 4; ++i) copies |= 1u << doubled[i];
+  for (int32_t i = 0; i < MPMI_BUILTIN_FIELDS; ++i) {
+    const mpmi_field *field = &f.set->field[i];
+    if (field->present) present |= 1u << i;
+    ck_assert_int_eq(field->data[0] != NULL, field->present);
+    ck_assert_int_eq(field->data[1] != NULL, copies >> i & 1);
+    ck_assert_uint_eq((uintptr_t)field->data[0] % MPMI_ALIGNMENT, 0);
+  }
+  ck_assert_uint_eq(present,
+                    copies | 1u << MPMI_ID | 1u << MPMI_MASS | 1u << MPMI_VOLUME | 1u << MPMI_INITIAL_VOLUME);
+  mpm_grid_desc grid = fixture_grid(3);
+  grid.periodic[2] = 1;
+  open_on(&grid, "linear_elastic");
+  ck_assert_int_eq(f.set->field[MPMI_IMAGE].present, 1);
+  ck_assert_ptr_nonnull(f.set->field[MPMI_IMAGE].data[1]);
+}
+END_TEST
+
+START_TEST(added_fields) {
+  int32_t type, components, writable;
+  const char *name;
+  ck_ok(mpm_particles_add_field(f.set, "temperature_0", MPM_F64, 1));
+  ck_ok(mpm_particles_add_field(f.set, "label", MPM_I64, 2));
+  ck_ok(mpm_particles_add_field(f.set, "flags", MPM_U8, 64));
+  ck_ok(mpm_particles_field_info(f.set, 17, &name, &type, &components, &writable));
+  ck_assert_str_eq(name, "label");
+  ck_assert_int_eq(type, MPM_I64);
+  ck_assert_int_eq(components, 2);
+  ck_assert_int_eq(writable, 1);
+  uint8_t flags[20 * 64];
+  memset(flags, 9, sizeof flags);
+  ck_ok(mpm_particles_get(f.set, "flags", MPM_U8, 64, 20, NULL, flags));
+  for (int i = 0; i < 20 * 64; ++i) ck_assert_int_eq(flags[i], 0);
+  /* They travel with growth, and new particles have zeros. */
+  int64_t label[40], more[240];
+  for (int i = 0; i < 40; ++i) label[i] = 1000 - i;
+  ck_ok(mpm_particles_set(f.set, "label", MPM_I64, 2, 20, NULL, label));
+  fixture_add(&f, 100, NULL);
+  ck_ok(mpm_particles_get(f.set, "label", MPM_I64, 2, 120, NULL, more));
+  for (int i = 0; i < 120; ++i)
+    for (int c = 0; c < 2; ++c) ck_assert_int_eq(more[120 * c + i], i < 20 ? label[20 * c + i] : 0);
+}
+END_TEST
+
+START_TEST(bad_added_fields) {
+  static const char *const bad[] = {"", "Mass", "a-b", "a b", "\xc3\xa4"};
+  char longest[MPMI_NAME + 1] = {0};
+  memset(longest, 'a', MPMI_NAME);
+  fixture_counts was = fixture_take(&f);
+  ck_refused(f.context, mpm_particles_add_field(f.set, NULL, MPM_F64, 1), MPM_E_ARG, "field is NULL");
+  for (int i = 0; i < 5; ++i)
+    ck_refused(f.context, mpm_particles_add_field(f.set, bad[i], MPM_F64, 1), MPM_E_ARG, "names are made of");
+  ck_refused(f.context, mpm_particles_add_field(f.set, longest, MPM_F64, 1), MPM_E_ARG, "48 characters");
+  ck_refused(f.context, mpm_particles_add_field(f.set, "mass", MPM_F64, 1), MPM_E_ARG, "\"mass\" already");
+  ck_refused(f.context, mpm_particles_add_field(f.set, "t", 0, 1), MPM_E_ARG, "type is 0");
+  ck_refused(f.context, mpm_particles_add_field(f.set, "t", 4, 1), MPM_E_ARG, "type is 4");
+  ck_refused(f.context, mpm_particles_add_field(f.set, "t", MPM_F64, 0), MPM_E_ARG, "components is 0");
+  ck_refused(f.context, mpm_particles_add_field(f.set, "t", MPM_F64, 65), MPM_E_ARG, "components is 65");
+  ck_assert_int_eq(mpm_particles_add_field(NULL, "t", MPM_F64, 1), MPM_E_ARG);
+  fixture_unchanged(&f, was);
+  longest[MPMI_NAME - 1] = '\0';
+  ck_ok(mpm_particles_add_field(f.set, longest, MPM_F64, 1));
+  ck_refused(f.context, mpm_particles_add_field(f.set, longest, MPM_U8, 2), MPM_E_ARG, "already");
+  for (char name[] = "x0"; f.set->field_count < MPMI_MAX_FIELDS;) {
+    name[0] = (char)('a' + f.set->field_count % 26);
+    name[1] = (char)('0' + f.set->field_count / 26);
+    ck_ok(mpm_particles_add_field(f.set, name, MPM_U8, 1));
+  }
+  ck_refused(f.context, mpm_particles_add_field(f.set, "t", MPM_F64, 1), MPM_E_STATE, "64 fields");
+}
+END_TEST
+
+/* ---- storage ----------------------------------------------------------------------------------------- */
+START_TEST(leading_dimensions) {
+  ck_assert_int_eq(mpmi_leading_dimension(1), 16);
+  for (int64_t slots = 1; slots < 200000; slots = slots * 5 / 4 + 1) {
+    int64_t ld = mpmi_leading_dimension(slots);
+    ck_assert_int_ge(ld, slots);
+    ck_assert_int_le(ld, slots + 7 * MPMI_PAD);
+    ck_assert_int_eq(ld % MPMI_PAD, 0);
+    for (int32_t c = 1; c < 9 && ld > MPMI_PAD; ++c) ck_assert_int_ne(c * ld * 8 % 4096, 0);
+  }
+}
+END_TEST
+
+START_TEST(reserving) {
+  int64_t ld = f.set->ld, held = f.held;
+  ck_ok(mpmi_particles_reserve(f.set, ld));
+  ck_assert_int_eq(f.held, held);
+  ck_refused(f.context, mpmi_particles_reserve(f.set, INT64_C(0xffffffff)), MPM_E_ARG, "too many");
+  for (int64_t k = 1; k <= 12; ++k) { /* 8 fields, 4 of them twice */
+    f.fail_at = f.calls + k;
+    ck_refused(f.context, mpmi_particles_reserve(f.set, 1000), MPM_E_NOMEM, "out of memory");
+    ck_assert_int_eq(f.held, held);
+    ck_assert_int_eq(f.set->ld, ld);
+  }
+  f.fail_at = 0;
+  ck_ok(mpmi_particles_reserve(f.set, 1000));
+  ck_assert_int_ge(f.set->ld, 1000);
+  for (int64_t id = 0; id < 20; ++id)
+    ck_assert_double_eq(fixture_get1(&f, "volume", 1, 0, id), 0.125 * (double)(id + 1));
+}
+END_TEST
+
+START_TEST(lookups) {
+  const int64_t ids[] = {1000, 25, 26, 27, 500};
+  fixture_add(&f, 5, ids);
+  ck_ok(mpmi_index_build(f.set));
+  for (int64_t id = -3; id < 1005; ++id) {
+    int64_t slot = mpmi_index_find(f.set, id);
+    int known = (id >= 0 && id < 20) || (id >= 25 && id <= 27) || id == 500 || id == 1000;
+    ck_assert_int_eq(slot >= 0, known);
+    if (known) ck_assert_int_eq(mpmi_i64(f.set, MPMI_ID, 0)[slot], id);
+  }
+  ck_assert_int_eq(mpmi_index_find(f.set, INT64_MIN), -1);
+  ck_assert_int_eq(mpmi_index_find(f.set, INT64_MAX), -1);
+  int64_t calls = f.calls;
+  ck_ok(mpmi_index_build(f.set));
+  ck_assert_int_eq(f.calls, calls);
+}
+END_TEST
+
+START_TEST(radix_sorts) {
+  enum { N = 3000 };
+  static uint64_t key[N], keep[N], key_scratch[N];
+  static uint32_t order[N], order_scratch[N];
+  static const uint64_t mask[] = {0xff, 0xff00ff, 0x7, 0, ~UINT64_C(0), UINT64_C(0xff00000000000000)};
+  uint64_t random = 88172645463325252u;
+  for (int m = 0; m < 6; ++m)
+    for (int64_t n = 0; n <= N; n = 3 * n + 1) {
+      for (int64_t i = 0; i < n; ++i) {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        keep[i] = key[i] = random & mask[m];
+      }
+      mpmi_radix_sort(n, key, order, key_scratch, order_scratch);
+      for (int64_t i = 1; i < n; ++i) {
+        uint64_t a = keep[order[i - 1]], b = keep[order[i]];
+        ck_assert(a < b || (a == b && order[i - 1] < order[i]));
+      }
+    }
+}
+END_TEST
+
+Suite *fields_suite(void) {
+  Suite *suite = suite_create("fields");
+  TCase *tests = tcase_create("fields");
+  tcase_add_checked_fixture(tests, open_set, close_set);
+  tcase_add_test(tests, built_in_fields);
+  tcase_add_test(tests, present_and_doubled);
+  tcase_add_test(tests, added_fields);
+  tcase_add_test(tests, bad_added_fields);
+  tcase_add_test(tests, leading_dimensions);
+  tcase_add_test(tests, reserving);
+  tcase_add_test(tests, lookups);
+  tcase_add_test(tests, radix_sorts);
+  suite_add_tcase(suite, tests);
+  return suite;
+}

@@ -1,0 +1,218 @@
+/* Materials as handles: the registry and refused arguments; and the logarithms of the
+ * kernels. The laws themselves are tested in material_*.c. */
+#include "law_sample.h"
+#include "material/vector_math.h"
+
+static mpm_context *context;
+static mpm_material *material;
+
+static void setup(void) {
+  ck_assert_int_eq(mpm_context_create(NULL, &context), MPM_OK);
+}
+static void teardown(void) {
+  ck_assert_int_eq(context->children, 0);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
+
+/* The refusal has a text that contains `text`, gives no object and leaves none behind. */
+static void refused(mpm_status got, mpm_status expected, const char *text) {
+  ck_assert_int_eq(got, expected);
+  ck_assert_ptr_null(material);
+  ck_assert_int_eq(context->children, 0);
+  ck_assert_msg(strstr(mpm_last_error(context), text) != NULL, "\"%s\" not in \"%s\"", text,
+                mpm_last_error(context));
+}
+static void refuse(const char *model, const mpm_param *params, int32_t count, mpm_status expected,
+                   const char *text) {
+  material = (mpm_material *)&material;
+  refused(mpm_material_create(context, model, params, count, &material), expected, text);
+}
+
+START_TEST(registry_describes_every_law) {
+  ck_assert_int_eq(mpm_material_model_count(), 3);
+  ck_assert_ptr_null(mpm_material_model_name(-1));
+  ck_assert_ptr_null(mpm_material_model_name(3));
+  ck_assert_ptr_null(mpmi_law_by_index(MPMI_LAW_CUSTOM));
+  for (int32_t m = 0; m < mpm_material_model_count(); ++m) {
+    const char *model = mpm_material_model_name(m), *name, *unit, *text;
+    mpm_param params[MPMI_MAX_PARAMS];
+    double value, low, high;
+    int32_t k = 0;
+    for (; !mpm_material_model_param(model, k, &name, &unit, &text, &value, &low, &high); ++k) {
+      ck_assert(strlen(name) && strlen(unit) && strlen(text) && low < high);
+      ck_assert(isnan(value) || (value >= low && value <= high));
+      params[k] = (mpm_param){name, isnan(value) ? 0.25 : value};
+    }
+    ck_assert_int_ge(k, 3);
+    ck_assert_int_eq(mpm_material_model_param(model, k, NULL, NULL, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND);
+    ck_assert_int_eq(mpm_material_model_param(model, k - 1, NULL, NULL, NULL, NULL, NULL, NULL), MPM_OK);
+    ck_assert_int_eq(mpm_material_create(context, model, params, k, &material), MPM_OK);
+    ck_assert_int_eq(context->children, 1);
+    ck_assert_str_eq(material->law->name, model);
+    ck_assert_int_eq(material->law->index, mpmi_law_by_index(m)->index);
+    ck_assert_double_eq(material->density, 0.25);
+    ck_assert_int_eq(material->state_count, strcmp(model, "j2") ? 0 : 1);
+    ck_assert_int_eq(mpmi_material_stress_from_F(material), !strcmp(model, "neo_hookean"));
+    ck_assert_int_eq(mpm_material_destroy(material), MPM_OK);
+  }
+  ck_assert_int_eq(mpm_material_model_param("neo_hookean", -1, NULL, NULL, NULL, NULL, NULL, NULL),
+                   MPM_E_ARG);
+  ck_assert_int_eq(mpm_material_model_param(NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL), MPM_E_ARG);
+  ck_assert_int_eq(mpm_material_model_param("ether", 0, NULL, NULL, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND);
+  ck_assert_int_eq(mpm_material_model_param("rigid", 0, NULL, NULL, NULL, NULL, NULL, NULL),
+                   MPM_E_UNSUPPORTED);
+}
+END_TEST
+
+START_TEST(kernels_differ) {
+  for (int32_t law = 0; law < MPMI_LAW_COUNT; ++law) {
+    ck_assert(mpmi_law_kernel(MPM_ISA_BASELINE, law) != mpmi_law_kernel(MPM_ISA_BASELINE, (law + 1) % 3));
+#if MPMI_HAS_X86
+    ck_assert(mpmi_law_kernel(MPM_ISA_AVX2, law) != mpmi_law_kernel(MPM_ISA_BASELINE, law));
+    ck_assert(mpmi_law_kernel(MPM_ISA_AVX512, law) != mpmi_law_kernel(MPM_ISA_BASELINE, law));
+    ck_assert(mpmi_law_kernel(MPM_ISA_AVX512, law) != mpmi_law_kernel(MPM_ISA_AVX2, law));
+#endif
+  }
+}
+END_TEST
+
+START_TEST(refused_names) {
+  mpm_param p[] = {{"E", 1e6}, {"nu", 0.3}, {"density", 1e3}};
+  refuse("neo_hooke", p, 3, MPM_E_NOT_FOUND, "neo_hookean");
+  refuse("", p, 3, MPM_E_NOT_FOUND, "no model");
+  refuse("neo_hookean_decoupled", p, 3, MPM_E_UNSUPPORTED, "\"neo_hookean\"");
+  refuse("newtonian_fluid", p, 3, MPM_E_UNSUPPORTED, "mpm_material_create_custom");
+  refuse("rigid", p, 3, MPM_E_UNSUPPORTED, "mpm_stepper_set_motion");
+  p[2].name = "densty";
+  refuse("linear_elastic", p, 3, MPM_E_NOT_FOUND, "nearest: density");
+  p[2].name = "yield_stress";
+  refuse("linear_elastic", p, 3, MPM_E_NOT_FOUND, "no parameter \"yield_stress\"");
+  p[2].name = NULL;
+  refuse("linear_elastic", p, 3, MPM_E_ARG, "params[2].name is NULL");
+  p[2].name = "E";
+  refuse("linear_elastic", p, 3, MPM_E_ARG, "\"E\" is given twice");
+}
+END_TEST
+
+START_TEST(refused_arguments) {
+  const mpm_param p[] = {{"E", 1e6}, {"nu", 0.3}, {"density", 1e3}, {"hardening", 1.0}};
+  refuse(NULL, p, 3, MPM_E_ARG, "model is NULL");
+  refuse("linear_elastic", NULL, 3, MPM_E_ARG, "params is NULL");
+  refuse("linear_elastic", p, -1, MPM_E_ARG, "count = -1");
+  refuse("linear_elastic", NULL, 0, MPM_E_ARG, "\"E\"");
+  refuse("linear_elastic", p, 1, MPM_E_ARG, "\"nu\"");
+  refuse("linear_elastic", p, 2, MPM_E_ARG, "\"density\"");
+  refuse("j2", p, 4, MPM_E_ARG, "\"yield_stress\"");
+  material = NULL;
+  refused(mpm_material_create(context, "linear_elastic", p, 3, NULL), MPM_E_ARG, "out is NULL");
+  material = (mpm_material *)&material;
+  ck_assert_int_eq(mpm_material_create(NULL, "linear_elastic", p, 3, &material), MPM_E_ARG);
+  ck_assert_ptr_null(material);
+  int64_t not_a_context[512] = {0};
+  ck_assert_int_eq(mpm_material_create((mpm_context *)not_a_context, "linear_elastic", p, 3, &material),
+                   MPM_E_ARG);
+}
+END_TEST
+
+START_TEST(refused_values) {
+  const double nan = (double)NAN, inf = (double)INFINITY;
+  const struct {
+    int32_t index;
+    double value;
+    const char *text;
+  } bad[] = {{0, 0.0, "E = 0"},
+             {0, -1e6, "E = -1000000"},
+             {0, nan, "E = "},
+             {0, inf, "E = inf"},
+             {1, -1.0, "nu = -1"},
+             {1, 0.5, "nu = 0.5, but it must be"},
+             {1, 0.7, "nu = 0.69"},
+             {1, nan, "nu = "},
+             {2, 0.0, "density = 0"},
+             {2, -1.0, "density = -1"},
+             {2, inf, "density = inf"},
+             {2, nan, "density = "},
+             {3, 0.0, "yield_stress = 0"},
+             {3, -2.0, "yield_stress = -2"},
+             {3, nan, "yield_stress = "},
+             {4, -1.0, "hardening = -1"},
+             {4, inf, "hardening = inf"},
+             {4, nan, "hardening = "}};
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
+    mpm_param p[] = {{"E", 1e6}, {"nu", 0.3}, {"density", 1e3}, {"yield_stress", 1e3}, {"hardening", 0.0}};
+    p[bad[i].index].value = bad[i].value;
+    refuse("j2", p, 5, MPM_E_ARG, bad[i].text);
+    if (bad[i].index > 2) continue;
+    refuse("neo_hookean", p, 3, MPM_E_ARG, bad[i].text);
+    refuse("linear_elastic", p, 3, MPM_E_ARG, bad[i].text);
+  }
+  const mpm_param overflow[] = {{"E", 1e300}, {"nu", 0.3}, {"density", 1e-300}};
+  refuse("neo_hookean", overflow, 3, MPM_E_ARG, "double precision");
+  const mpm_param fine[][3] = {{{"E", 1e6}, {"nu", -0.999}, {"density", 1e3}},
+                               {{"nu", 0.4999999}, {"E", 1e-3}, {"density", 1e-12}}};
+  for (int i = 0; i < 2; ++i) {
+    ck_assert_int_eq(mpm_material_create(context, "neo_hookean", fine[i], 3, &material), MPM_OK);
+    ck_assert_int_eq(mpm_material_destroy(material), MPM_OK);
+  }
+}
+END_TEST
+
+START_TEST(destroying) {
+  const mpm_param p[] = {{"E", 1e6}, {"nu", 0.3}, {"density", 1e3}};
+  int64_t before, after;
+  ck_assert_int_eq(mpm_context_memory(context, &before, NULL), MPM_OK);
+  ck_assert_int_eq(mpm_material_destroy(NULL), MPM_OK);
+  ck_assert_int_eq(mpm_material_create(context, "linear_elastic", p, 3, &material), MPM_OK);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_E_STATE);
+  material->users = 2;
+  ck_assert_int_eq(mpm_material_destroy(material), MPM_E_STATE);
+  ck_assert_ptr_nonnull(strstr(mpm_last_error(context), "2 set"));
+  material->users = 0;
+  ck_assert_int_eq(mpm_material_destroy(material), MPM_OK);
+  ck_assert_int_eq(mpm_material_destroy((mpm_material *)context), MPM_E_ARG);
+  ck_assert_int_eq(mpm_context_memory(context, &after, NULL), MPM_OK);
+  ck_assert_int_eq(before, after);
+}
+END_TEST
+
+/* ---- logarithms -------------------------------------------------------------------------------------- */
+static real relative_error(double got, real exact) {
+  return exact == 0 ? fabsl(got) : fabsl(got / exact - 1);
+}
+
+START_TEST(logarithms) {
+  uint64_t state = 31;
+  real near_one = 0, elsewhere = 0, plus_one = 0;
+  for (int i = 0; i < 1000000; ++i) {
+    double u = (double)uniform(&state), x = 1.0 + 0.3 * u * (i % 2 ? 1.0 : 1e-6);
+    double wide = exp(700.0 * u), medium = exp(3.0 * u), small = ldexp(u, -(i % 300)), grown = expm1(3.0 * u);
+    near_one = fmaxl(near_one, relative_error(mpmi_lane_log(x), logl(x)));
+    elsewhere = fmaxl(elsewhere, relative_error(mpmi_lane_log(wide), logl(wide)));
+    elsewhere = fmaxl(elsewhere, relative_error(mpmi_lane_log(medium), logl(medium)));
+    plus_one = fmaxl(plus_one, relative_error(mpmi_lane_log1p(grown), log1pl(grown)));
+    if (u > -1) plus_one = fmaxl(plus_one, relative_error(mpmi_lane_log1p(small), log1pl(small)));
+  }
+  ck_assert_msg(near_one <= 2e-16L && elsewhere <= 4e-16L && plus_one <= 4e-16L, "%Lg %Lg %Lg", near_one,
+                elsewhere, plus_one);
+  ck_assert(mpmi_lane_log(1.0) == 0.0 && mpmi_lane_log1p(0.0) == 0.0);
+}
+END_TEST
+
+Suite *material_suite(void) {
+  Suite *suite = suite_create("material");
+  TCase *handles = tcase_create("handles");
+  tcase_add_checked_fixture(handles, setup, teardown);
+  tcase_add_test(handles, registry_describes_every_law);
+  tcase_add_test(handles, kernels_differ);
+  tcase_add_test(handles, refused_names);
+  tcase_add_test(handles, refused_arguments);
+  tcase_add_test(handles, refused_values);
+  tcase_add_test(handles, destroying);
+  tcase_add_test(handles, logarithms);
+  suite_add_tcase(suite, handles);
+  suite_add_tcase(suite, custom_material_case());
+  suite_add_tcase(suite, neo_hookean_case());
+  suite_add_tcase(suite, hypoelastic_case());
+  suite_add_tcase(suite, j2_case());
+  return suite;
+}
