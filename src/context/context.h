@@ -50,10 +50,11 @@ void mpmi_free(mpm_context *context, void *memory, size_t bytes); /* NULL is fin
 /* count * size with overflow giving SIZE_MAX, which mpmi_alloc refuses. */
 size_t mpmi_bytes(int64_t count, size_t size);
 
-/* Runs task(data, k) for k in [0, count) on the pool, the host's executor or the calling thread. A failing host
- * executor gives MPM_E_CALLBACK with text; some tasks may then not have run. */
+/* Runs task(data, k) for k in [0, count) on the pool, the host's executor or the calling thread. A failing
+ * host executor gives MPM_E_CALLBACK with text; some tasks may then not have run. */
 mpm_status mpmi_parallel_for(mpm_context *context, int64_t count, mpm_task_fn task, void *data);
-/* The same for idempotent tasks that must all be done: repeats them on this thread when the executor fails. */
+/* The same for idempotent tasks that must all be done: repeats them on this thread when the executor fails.
+ */
 void mpmi_parallel_for_sure(mpm_context *context, int64_t count, mpm_task_fn task, void *data);
 
 /* Own threads (executor.c). */
@@ -61,12 +62,16 @@ mpm_status mpmi_pool_create(mpm_context *context, int32_t threads, mpmi_pool **o
 void mpmi_pool_destroy(mpm_context *context, mpmi_pool *pool);
 void mpmi_pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *data);
 
-/* Checks a versioned input struct: `given` is what the caller set, `known` the library's sizeof. Copies into `out`
- * (known bytes). A larger struct is accepted when its unknown tail is zero. `name` goes into the error text. */
-mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known, void *out);
+/* Checks a versioned input struct: `given` is what the caller set, `known` the library's sizeof. Copies into
+ * `out` (known bytes). A larger struct is accepted when its unknown tail is zero. `name` goes into the error
+ * text. */
+mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known,
+                            void *out);
 /* Writes min(struct_size, known) bytes of `value` to the caller's `out`, keeping out's struct_size. */
-mpm_status mpmi_write_struct(mpm_context *context, const char *name, const void *value, uint32_t known, void *out);
-/* For mpm_*_desc_init: copies the defaults, zeroes any tail, sets struct_size. Refuses sizes below `known`. */
+mpm_status mpmi_write_struct(mpm_context *context, const char *name, const void *value, uint32_t known,
+                             void *out);
+/* For mpm_*_desc_init: copies the defaults, zeroes any tail, sets struct_size. Refuses sizes below `known`.
+ */
 mpm_status mpmi_init_struct(const void *defaults, uint32_t known, void *out, uint32_t struct_size);
 
 /* Text helpers for errors: the names of `candidates` closest to `wanted`, as "a, b, c" into buffer. */
