@@ -54,7 +54,7 @@ check "least kinetic energy" "least kinetic energy" 0.05 0.2
 check "time of closest approach" "at t =" 1.98 2.13
 check "rebound" "rebound speed" 0.1235 0.1337
 check "energy" "energy drift" -2 2
-check "momentum" "momentum below" 0 1e-12
+check "momentum" "momentum at most" 0 1e-12
 for file in two_disks.pvd two_disks.svg two_disks_energy.svg energy.csv particles_0000.vtp particles_0036.vtp; do
   [ -s "disks/$file" ] || fail "two_disks: $file is missing or empty"
 done
