@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# The host program of the README compiles as printed, runs, and reports a falling then resting block.
+set -euo pipefail
+build=${BUILD:-build}
+scratch=${MPM_SCRATCH:-$build/tests/scratch}/readme
+rm -rf "$scratch"
+mkdir -p "$scratch"
+awk '/^```c$/ {inside = 1; next} /^```/ {inside = 0} inside' README.md > "$scratch/block.c"
+[ -s "$scratch/block.c" ] || { echo "README.md has no C program"; exit 1; }
+${CC:-cc} -std=c11 -Wall -Wextra -Wpedantic -Werror -Iinclude "$scratch/block.c" -o "$scratch/block" \
+  -L"$build" -lmpm -Wl,-rpath,"$build"
+(cd "$scratch" && ./block > out)
+cat "$scratch/out"
+grep -Eq '^t = 0\.50[0-9] s: kinetic [0-9.]+ J, strain [0-9.]+ J$' "$scratch/out"
+grep -q '<VTKFile type="PolyData"' "$scratch/block.vtp"
