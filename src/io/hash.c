@@ -1,0 +1,130 @@
+/* A hash of the physical state: a sum over particles, so that neither their order nor how the work is cut
+ * matters. */
+#include "io/mix.h"
+#include "particles/values.h"
+#include "stepper/stepper.h"
+
+#include <string.h>
+
+enum { PIECES = 64, CHUNK = 256 };
+
+typedef struct hash_job {
+  const mpm_particles *set;
+  uint64_t set_seed, field_seed[MPMI_MAX_FIELDS];
+  uint64_t sum[PIECES];
+} hash_job;
+
+static uint64_t absorb(uint64_t h, uint64_t word) {
+  h = (h ^ word) * MPMI_MIX_A;
+  return h ^ h >> 29;
+}
+
+static uint64_t bits(double x) {
+  uint64_t word;
+  memcpy(&word, &x, sizeof word);
+  return word;
+}
+
+/* Fields are told apart by name, so that the order in which the host added its own does not matter. */
+static uint64_t seed_of(const char *name) {
+  uint64_t h = MPMI_MIX_C;
+  for (; *name; ++name) h = absorb(h, (unsigned char)*name);
+  return mpmi_avalanche(h);
+}
+
+/* Fields that every set has count whatever their values; the others only where they differ from what they
+ * read as when they are absent, so that presence alone makes no difference. */
+static int32_t always_counts(int32_t field) {
+  switch (field) {
+  case MPMI_POSITION:
+  case MPMI_VELOCITY:
+  case MPMI_MASS:
+  case MPMI_VOLUME:
+  case MPMI_INITIAL_VOLUME:
+  case MPMI_F:
+  case MPMI_STRESS:
+  case MPMI_STATE:
+    return 1;
+  default:
+    return 0;
+  }
+}
+
+static void load_words(const mpmi_field *field, const char *row, int64_t begin, int64_t n, uint64_t *word) {
+  const size_t size = mpmi_type_size(field->type);
+  if (size == sizeof *word)
+    memcpy(word, row + (size_t)begin * size, (size_t)n * size);
+  else
+    for (int64_t i = 0; i < n; ++i) word[i] = ((const uint8_t *)row)[begin + i];
+}
+
+/* What the field reads as when it is absent, in the bits of component c. */
+static void load_defaults(const mpm_particles *set, int32_t f, int32_t c, int64_t begin, int64_t n,
+                          uint64_t *word) {
+  if (f == MPMI_SIZE && c > 0) return; /* the same for every component, and it takes a root */
+  for (int64_t i = 0; i < n; ++i)
+    word[i] = f == MPMI_SIZE || f == MPMI_REFERENCE ? bits(mpmi_absent_value(set, f, c, begin + i)) : 0;
+}
+
+static void add_field(const hash_job *job, int32_t f, int64_t begin, int64_t n, uint64_t *total) {
+  const mpm_particles *set = job->set;
+  const mpmi_field *field = &set->field[f];
+  uint64_t h[CHUNK], word[CHUNK], absent[CHUNK], differs[CHUNK];
+  for (int64_t i = 0; i < n; ++i) h[i] = job->field_seed[f];
+  for (int64_t i = 0; i < n; ++i) differs[i] = always_counts(f) ? 1 : 0;
+  for (int32_t c = 0; c < field->components; ++c) {
+    load_words(field, (const char *)field->data[0] + (size_t)(c * set->ld) * mpmi_type_size(field->type),
+               begin, n, word);
+    for (int64_t i = 0; i < n; ++i) h[i] = absorb(h[i], word[i]);
+    if (always_counts(f)) continue;
+    load_defaults(set, f, c, begin, n, absent);
+    for (int64_t i = 0; i < n; ++i) differs[i] |= word[i] ^ absent[i];
+  }
+  for (int64_t i = 0; i < n; ++i)
+    if (differs[i]) total[i] += mpmi_avalanche(h[i]);
+}
+
+static void hash_piece(void *data, int64_t k) {
+  hash_job *job = data;
+  const mpm_particles *set = job->set;
+  const int64_t chunks = (set->slots + CHUNK - 1) / CHUNK;
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  uint64_t sum = 0;
+  for (int64_t chunk = chunks * k / PIECES; chunk < chunks * (k + 1) / PIECES; ++chunk) {
+    const int64_t begin = chunk * CHUNK, n = set->slots - begin < CHUNK ? set->slots - begin : CHUNK;
+    uint64_t total[CHUNK] = {0};
+    for (int32_t f = 0; f < set->field_count; ++f)
+      if (f != MPMI_ID && set->field[f].present) add_field(job, f, begin, n, total);
+    for (int64_t i = 0; i < n; ++i)
+      if (id[begin + i] >= 0)
+        sum += mpmi_avalanche(absorb(absorb(job->set_seed, (uint64_t)id[begin + i]), total[i]));
+  }
+  job->sum[k] = sum;
+}
+
+static uint64_t hash_set(const mpm_particles *set, int32_t number) {
+  hash_job job = {.set = set, .set_seed = mpmi_avalanche((uint64_t)number + MPMI_MIX_B)};
+  for (int32_t f = 0; f < set->field_count; ++f) job.field_seed[f] = seed_of(set->field[f].name);
+  if (set->slots) mpmi_parallel_for_sure(set->context, PIECES, hash_piece, &job);
+  uint64_t sum = job.set_seed;
+  for (int32_t k = 0; k < PIECES; ++k) sum += job.sum[k];
+  return mpmi_avalanche(absorb(sum, (uint64_t)set->count));
+}
+
+mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  if (!hash) return mpmi_fail(stepper->context, MPM_E_ARG, "hash is NULL");
+  if (stepper->phase == MPMI_RUNNING)
+    return mpmi_fail(stepper->context, MPM_E_STATE, "mpm_state_hash() must not be called from a callback");
+  uint64_t h = absorb(absorb(absorb(MPMI_MIX_A, bits(stepper->t)), (uint64_t)stepper->step),
+                      (uint64_t)stepper->member_count);
+  for (int32_t m = 0; m < stepper->member_count; ++m) {
+    mpm_particles *set = stepper->member[m].set;
+    /* what follows from F may have been left for later: const or not, the host sees the same */
+    mpm_status status = mpmi_settle(set, MPMI_STRESS);
+    if (status) return status;
+    h = absorb(h, hash_set(set, m));
+  }
+  *hash = mpmi_avalanche(h);
+  return MPM_OK;
+}

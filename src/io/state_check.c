@@ -1,0 +1,117 @@
+/* What the values of a loaded set must fulfil, so that a step can work with them: kernels do not look twice.
+ */
+#include "io/state.h"
+
+static void check_ids(mpmi_archive *a, mpm_particles *fresh) {
+  const int64_t *id = mpmi_i64(fresh, MPMI_ID, 0);
+  int64_t live = 0, good = 1;
+  for (int64_t s = 0; s < fresh->slots; ++s) {
+    live += id[s] >= 0;
+    good &= id[s] >= -1 && id[s] < fresh->next_id;
+  }
+  if (!good || live != fresh->count) {
+    mpmi_archive_damaged(a, "its ids make no sense");
+    return;
+  }
+  if ((a->status = mpmi_index_build(fresh))) return;
+  for (int64_t i = 1; i < fresh->count; ++i)
+    if (fresh->index[i - 1].id == fresh->index[i].id) mpmi_archive_damaged(a, "an id stands there twice");
+  mpmi_index_drop(fresh);
+}
+
+/* Holes are inert whatever the state says: their nonsense would spread over the nodes. */
+static void restore_holes(mpm_particles *fresh) {
+  const int64_t *id = mpmi_i64(fresh, MPMI_ID, 0);
+  for (int64_t s = 0; s < fresh->slots; ++s)
+    if (id[s] < 0) mpmi_make_hole(fresh, s);
+}
+
+enum { ANY, NOT_NEGATIVE, POSITIVE };
+
+/* Particles need finite values, some with a sign; of holes only the position counts. */
+static void check_field(mpmi_archive *a, const mpm_particles *fresh, int32_t f, int32_t sign) {
+  const mpmi_field *field = &fresh->field[f];
+  const int64_t *id = mpmi_i64(fresh, MPMI_ID, 0);
+  int64_t bad = 0;
+  for (int32_t c = 0; c < field->components && field->present; ++c) {
+    const double *x = mpmi_f64(fresh, f, 0) + c * fresh->ld;
+    for (int64_t s = 0; s < fresh->slots; ++s) {
+      const int32_t finite = x[s] - x[s] == 0.0;
+      bad += !finite || (id[s] >= 0 && !(sign == ANY || x[s] > 0.0 || (sign == NOT_NEGATIVE && x[s] == 0.0)));
+    }
+  }
+  char what[MPMI_NAME + 32];
+  snprintf(what, sizeof what, "values of %s make no sense", field->name);
+  if (bad) mpmi_archive_damaged(a, what);
+}
+
+/* Holes too: kernels compute on them. */
+static void check_inside(mpmi_archive *a, const mpm_particles *fresh) {
+  int64_t outside = 0;
+  for (int32_t k = 0; k < fresh->grid->dim; ++k) {
+    const double *x = mpmi_f64(fresh, MPMI_POSITION, 0) + k * fresh->ld;
+    const double low = fresh->grid->desc.origin[k], high = fresh->grid->upper[k];
+    for (int64_t s = 0; s < fresh->slots; ++s) outside += !(x[s] >= low && x[s] <= high);
+  }
+  if (outside) mpmi_archive_damaged(a, "a position lies outside the grid");
+}
+
+/* Counts go on from here: far from where they would overflow. */
+static void check_images(mpmi_archive *a, const mpm_particles *fresh) {
+  const mpmi_field *field = &fresh->field[MPMI_IMAGE];
+  int64_t far = 0;
+  for (int32_t c = 0; c < field->components && field->present; ++c)
+    for (int64_t s = 0; s < fresh->slots; ++s) {
+      const int64_t image = mpmi_i64(fresh, MPMI_IMAGE, 0)[c * fresh->ld + s];
+      far += image > INT64_MAX / 2 || image < -(INT64_MAX / 2);
+    }
+  if (far) mpmi_archive_damaged(a, "values of image make no sense");
+}
+
+/* Every stencil, that of a hole too, must lie in the tile of its block: asks the function that the kernels
+ * ask. */
+static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_blocks *blocks,
+                        const int64_t *start) {
+  const mpm_grid *grid = fresh->grid;
+  const mpmi_axis_weights_fn weights = mpmi_kernels_of(fresh->context->isa)->axis_weights[grid->order];
+  const double last = blocks->edge + 2 * MPMI_RING - 1;
+  mpmi_weights W;
+  mpmi_axis axis[3];
+  _Alignas(64) double first[MPMI_CHUNK];
+  int64_t astray = 0;
+  for (int64_t b = 0; b < blocks->count; ++b) {
+    mpmi_block_axes(grid, blocks->coord[b], axis);
+    for (int64_t s = start[b]; s < start[b + 1]; s += MPMI_GROUP)
+      for (int32_t k = 0; k < grid->dim; ++k) {
+        const double *x = mpmi_f64(fresh, MPMI_POSITION, 0) + k * fresh->ld + s;
+        weights(&axis[k], MPMI_GROUP, x, 0, W.w[k], W.g[k], W.u[k], W.moment[k], first);
+        for (int32_t p = 0; p < MPMI_GROUP; ++p) astray += !(first[p] >= 0.0 && first[p] <= last);
+      }
+  }
+  if (astray) mpmi_archive_damaged(a, "a particle is far from its block");
+}
+
+void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_blocks *blocks,
+                          const int64_t *start) {
+  if (fresh->slots == 0) return;
+  static const struct {
+    int32_t field, sign;
+  } demand[] = {{MPMI_POSITION, ANY},
+                {MPMI_VELOCITY, ANY},
+                {MPMI_MASS, NOT_NEGATIVE},
+                {MPMI_VOLUME, POSITIVE},
+                {MPMI_INITIAL_VOLUME, POSITIVE},
+                {MPMI_SIZE, POSITIVE},
+                {MPMI_F, ANY},
+                {MPMI_L, ANY},
+                {MPMI_STRESS, ANY},
+                {MPMI_STATE, ANY},
+                {MPMI_APPLIED_FORCE, ANY}};
+  restore_holes(fresh);
+  check_ids(a, fresh);
+  for (size_t i = 0; i < sizeof demand / sizeof *demand; ++i)
+    check_field(a, fresh, demand[i].field, demand[i].sign);
+  check_inside(a, fresh);
+  check_images(a, fresh);
+  if (blocks && !a->status) check_tiles(a, fresh, blocks, start);
+}

@@ -1,0 +1,68 @@
+/* States in files. */
+#define _POSIX_C_SOURCE   200809L
+#define _FILE_OFFSET_BITS 64
+#include "io/state.h"
+
+#include <errno.h>
+#include <sys/stat.h>
+
+mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  mpm_context *context = stepper->context;
+  mpm_status status = mpmi_check_path(context, path);
+  if (!status) status = mpmi_state_settle(stepper);
+  mpmi_output out;
+  if (!status) status = mpmi_output_open(&out, context, path);
+  if (status) return status;
+  /* the header, which knows the checksum, comes last: until then its place is empty */
+  mpmi_state_header header = {"", 0, 0, 0, 0};
+  mpmi_output_write(&out, &header, sizeof header);
+  mpmi_archive a;
+  mpmi_archive_begin(&a, context, MPMI_TO_FILE);
+  a.file = &out;
+  mpmi_state_write(&a, stepper);
+  header = mpmi_state_header_of(&a);
+  mpmi_output_rewind(&out);
+  mpmi_output_write(&out, &header, sizeof header);
+  return mpmi_output_close(&out, 1);
+}
+
+/* Reads and checks the header before there is a buffer: what is no state may be of any size. */
+static mpm_status measure(mpm_context *context, const char *path, FILE *file, int64_t *bytes) {
+  struct stat info;
+  if (fstat(fileno(file), &info)) return mpmi_io_error(context, "read", path, errno);
+  if (!S_ISREG(info.st_mode))
+    return mpmi_fail(context, MPM_E_IO, "cannot read %s: it is not a regular file", path);
+  *bytes = info.st_size;
+  mpmi_state_header header = {"", 0, 0, 0, 0};
+  if (*bytes >= (int64_t)sizeof header && fread(&header, sizeof header, 1, file) != 1)
+    return mpmi_io_error(context, "read", path, EIO);
+  return mpmi_state_check_header(context, &header, *bytes);
+}
+
+static mpm_status load(mpm_stepper *s, const char *path, FILE *file, int64_t bytes) {
+  unsigned char *buffer = mpmi_alloc(s->context, (size_t)bytes);
+  if (!buffer) return MPM_E_NOMEM;
+  rewind(file);
+  errno = 0;
+  mpm_status status;
+  if (fread(buffer, 1, (size_t)bytes, file) == (size_t)bytes)
+    status = mpmi_state_load(s, buffer, bytes);
+  else
+    status = mpmi_io_error(s->context, "read", path, errno ? errno : EIO);
+  mpmi_free(s->context, buffer, (size_t)bytes);
+  return status;
+}
+
+mpm_status mpm_state_load_file(mpm_stepper *stepper, const char *path) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  mpm_status status = mpmi_check_path(stepper->context, path);
+  if (status) return status;
+  FILE *file = fopen(path, "rbe");
+  if (!file) return mpmi_io_error(stepper->context, "read", path, errno);
+  int64_t bytes = 0;
+  status = measure(stepper->context, path, file, &bytes);
+  if (!status) status = load(stepper, path, file, bytes);
+  fclose(file);
+  return status;
+}

@@ -1,0 +1,227 @@
+/* Loading: everything is read into new storage and checked before anything of the stepper changes. */
+#include "io/state.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A state on its way in. */
+typedef struct loading {
+  mpmi_archive archive;
+  mpm_stepper *stepper;
+  mpmi_state_numbers numbers;
+  mpmi_state_set *set; /* [sets] */
+  int64_t slots;       /* of all sets */
+} loading;
+
+mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header *header, int64_t bytes) {
+  if (bytes < (int64_t)sizeof *header)
+    return mpmi_fail(context, MPM_E_FORMAT, "%lld bytes are too few for a state", (long long)bytes);
+  if (memcmp(header->magic, MPMI_STATE_MAGIC, sizeof header->magic) != 0)
+    return mpmi_fail(context, MPM_E_FORMAT, "this is not a state of libmpm");
+  if (header->byte_order != MPMI_STATE_BYTE_ORDER)
+    return mpmi_fail(context, MPM_E_FORMAT,
+                     "the state has another byte order than this machine, or is damaged");
+  if (header->format != MPMI_STATE_FORMAT)
+    return mpmi_fail(context, MPM_E_FORMAT, "the state has format %u: this library knows format %d",
+                     (unsigned)header->format, (int)MPMI_STATE_FORMAT);
+  if (header->bytes != bytes)
+    return mpmi_fail(context, MPM_E_FORMAT, "the state has %lld bytes, of which there are %lld",
+                     (long long)header->bytes, (long long)bytes);
+  return MPM_OK;
+}
+
+static mpm_status check_checksum(mpm_context *context, const mpmi_state_header *header,
+                                 const unsigned char *body) {
+  const int64_t bytes = header->bytes - (int64_t)sizeof *header;
+  mpmi_checksum sum;
+  mpmi_checksum_begin(&sum);
+  if (bytes % 8 == 0) mpmi_checksum_add(&sum, body, bytes);
+  if (bytes % 8 == 0 && mpmi_checksum_end(&sum) == header->checksum) return MPM_OK;
+  return mpmi_fail(context, MPM_E_FORMAT, "the state is damaged: its checksum is wrong");
+}
+
+static mpm_status check_idle(const mpm_stepper *s) {
+  if (mpmi_stepper_in_step(s))
+    return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before loading");
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them before loading",
+                     (int)s->mapped);
+  for (int32_t m = 0; m < s->member_count; ++m)
+    if (s->member[m].set->mapped)
+      return mpmi_fail(s->context, MPM_E_STATE, "%d views of set %d are out: release them before loading",
+                       (int)s->member[m].set->mapped, (int)m);
+  return MPM_OK;
+}
+
+/* The set as it is, but without storage. */
+static void start_set(mpmi_state_set *to, const mpm_particles *set) {
+  mpm_particles *fresh = &to->fresh;
+  *fresh = *set;
+  fresh->count = fresh->slots = fresh->ld = 0;
+  fresh->index = NULL;
+  fresh->index_capacity = 0;
+  for (int32_t f = 0; f < fresh->field_count; ++f) fresh->field[f].data[0] = fresh->field[f].data[1] = NULL;
+}
+
+static int32_t is_magnitude(double x) {
+  return isfinite(x) && x >= 0.0;
+}
+
+/* Counts go on from here: far from where they would overflow. */
+static int32_t is_count(int64_t n) {
+  return n >= 0 && n <= INT64_MAX / 2;
+}
+
+static void read_numbers(loading *l) {
+  mpmi_archive *a = &l->archive;
+  mpmi_state_numbers *n = &l->numbers;
+  mpmi_archive_bytes(a, n, sizeof *n);
+  if (a->status) return;
+  if (!isfinite(n->t) || !is_count(n->step) || !is_count(n->resorts) || !is_count(n->removed) ||
+      n->blocks < -1 || !is_magnitude(n->controller_dt) || !is_magnitude(n->mass_cut))
+    mpmi_archive_damaged(a, "its numbers make no sense");
+  const int64_t unsorted = MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE,
+                flags = MPMI_DIRTY_SURVEY | (n->blocks < 0 ? unsorted : 0);
+  for (int32_t m = 0; m < l->stepper->member_count && !a->status; ++m) {
+    mpmi_state_set_numbers *of = &l->set[m].numbers;
+    mpmi_archive_bytes(a, of, sizeof *of);
+    if (a->status) return;
+    if (of->slots < 0 || of->slots > MPMI_MAX_SLOTS || of->slots % MPMI_PAD || of->count < 0 ||
+        of->count > of->slots || of->next_id < 0 || of->dirty & ~flags || !is_magnitude(of->mass_max))
+      mpmi_archive_damaged(a, "the numbers of a set make no sense");
+    else
+      l->slots += of->slots;
+  }
+}
+
+static mpm_status read_blocks(loading *l) {
+  /* each takes at least one group of slots */
+  if (l->numbers.blocks > l->slots / MPMI_PAD)
+    mpmi_archive_damaged(&l->archive, "it has blocks without slots");
+  if (l->archive.status) return l->archive.status;
+  return mpmi_state_read_blocks(&l->archive, l->stepper, l->numbers.blocks, l->set);
+}
+
+static int64_t bytes_per_slot(const mpm_particles *set) {
+  int64_t bytes = 0;
+  for (int32_t f = 0; f < set->field_count; ++f)
+    if (set->field[f].present)
+      bytes += set->field[f].components * (int64_t)mpmi_type_size(set->field[f].type);
+  return bytes;
+}
+
+static mpm_status read_set(loading *l, int32_t m) {
+  mpmi_archive *a = &l->archive;
+  mpmi_state_set *from = &l->set[m];
+  mpm_particles *fresh = &from->fresh;
+  const int64_t slots = from->numbers.slots;
+  if (slots > (a->size - a->at) / bytes_per_slot(fresh)) mpmi_archive_damaged(a, "it ends too early");
+  mpm_status status = a->status ? a->status : mpmi_particles_reserve(fresh, slots);
+  if (status) return status;
+  for (int32_t i = 0; i < from->field_count && slots > 0; ++i) {
+    const mpmi_field *field = &fresh->field[from->field[i]];
+    const int64_t size = (int64_t)mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components && field->present; ++c)
+      mpmi_archive_bytes(a, (char *)field->data[0] + c * fresh->ld * size, slots * size);
+  }
+  fresh->slots = slots;
+  fresh->count = from->numbers.count;
+  fresh->next_id = from->numbers.next_id;
+  fresh->mass_max = from->numbers.mass_max;
+  fresh->dirty = (uint32_t)from->numbers.dirty | (l->numbers.blocks < 0 ? (uint32_t)MPMI_DIRTY_PLACE : 0);
+  if (a->status) return a->status;
+  const int32_t sorted = l->numbers.blocks >= 0;
+  snprintf(a->where, sizeof a->where, "set %d: ", (int)m);
+  mpmi_state_check_set(a, fresh, sorted ? &l->stepper->next_blocks : NULL,
+                       sorted ? l->stepper->member[m].next.start : NULL);
+  a->where[0] = '\0';
+  return a->status;
+}
+
+static mpm_status read_state(loading *l) {
+  mpmi_archive *a = &l->archive;
+  mpm_stepper *s = l->stepper;
+  mpmi_state_setup(a, s, l->set);
+  read_numbers(l);
+  mpm_status status = a->status;
+  if (!status && l->numbers.blocks >= 0) status = read_blocks(l);
+  for (int32_t m = 0; m < s->member_count && !status; ++m) status = read_set(l, m);
+  if (!status && a->at != a->size) {
+    mpmi_archive_damaged(a, "it is longer than its contents");
+    status = a->status;
+  }
+  return status;
+}
+
+/* The old storage goes where the new one came from, to be freed with it. */
+static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field field = set->field[f];
+    set->field[f] = fresh->field[f];
+    fresh->field[f] = field;
+  }
+  const int64_t ld = set->ld;
+  set->ld = fresh->ld;
+  fresh->ld = ld;
+  set->count = fresh->count;
+  set->slots = fresh->slots;
+  set->next_id = fresh->next_id;
+  set->dirty = fresh->dirty;
+  set->mass_max = fresh->mass_max;
+  set->suspect = 0;
+  mpmi_index_drop(set);
+}
+
+/* Cannot fail. */
+static void take_over(loading *l) {
+  mpm_stepper *s = l->stepper;
+  const mpmi_state_numbers *n = &l->numbers;
+  for (int32_t m = 0; m < s->member_count; ++m) exchange_storage(s->member[m].set, &l->set[m].fresh);
+  if (n->blocks < 0) mpmi_blocks_clear(&s->blocks);
+  s->nodes_valid = 0;
+  s->t = n->t;
+  s->controller_dt = n->controller_dt;
+  s->mass_cut = n->mass_cut;
+  s->reaction_dt = n->reaction_dt;
+  s->step = n->step;
+  s->resorts = n->resorts;
+  s->removed = n->removed;
+  s->energies = (mpmi_energies){n->energies_valid != 0, n->sums};
+  s->has_reactions = n->has_reactions != 0;
+  memcpy(s->impulse_by_face, n->impulse_by_face, sizeof n->impulse_by_face);
+  s->last = n->last;
+}
+
+mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
+  mpmi_state_header header;
+  memset(&header, 0, sizeof header);
+  memcpy(&header, buffer, bytes < (int64_t)sizeof header ? (size_t)bytes : sizeof header);
+  mpm_status status = check_idle(s);
+  if (!status) status = mpmi_state_check_header(s->context, &header, bytes);
+  if (status) return status;
+  const unsigned char *body = (const unsigned char *)buffer + sizeof header;
+  if ((status = check_checksum(s->context, &header, body))) return status;
+  loading l = {.stepper = s};
+  const size_t set_bytes = mpmi_bytes(s->member_count, sizeof *l.set);
+  l.set = mpmi_alloc_zeroed(s->context, set_bytes);
+  if (!l.set) return MPM_E_NOMEM;
+  for (int32_t m = 0; m < s->member_count; ++m) start_set(&l.set[m], s->member[m].set);
+  mpmi_archive_begin(&l.archive, s->context, MPMI_FROM_MEMORY);
+  l.archive.from = body;
+  l.archive.size = bytes - (int64_t)sizeof header;
+  status = read_state(&l);
+  if (!status && l.numbers.blocks >= 0) status = mpmi_stepper_adopt(s);
+  if (!status) take_over(&l);
+  for (int32_t m = 0; m < s->member_count; ++m)
+    for (int32_t f = 0; f < l.set[m].fresh.field_count; ++f) mpmi_field_make_absent(&l.set[m].fresh, f);
+  mpmi_free(s->context, l.set, set_bytes);
+  return status;
+}
+
+mpm_status mpm_state_load(mpm_stepper *stepper, const void *buffer, int64_t bytes) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  if (!buffer) return mpmi_fail(stepper->context, MPM_E_ARG, "buffer is NULL");
+  if (bytes < 0)
+    return mpmi_fail(stepper->context, MPM_E_ARG, "bytes is %lld, must be >= 0", (long long)bytes);
+  return mpmi_state_load(stepper, buffer, bytes);
+}

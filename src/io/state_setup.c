@@ -1,0 +1,134 @@
+/* The part of a state that must be the same in the stepper that loads it. */
+#include "io/state.h"
+
+#include <string.h>
+
+static void same_axis(mpmi_archive *a, const char *what, int32_t axis, int64_t here) {
+  char name[MPMI_TEXT];
+  snprintf(name, sizeof name, "%s[%d]", what, (int)axis);
+  mpmi_archive_same_int(a, name, here);
+}
+
+static void same_axis_real(mpmi_archive *a, const char *what, int32_t axis, double here) {
+  char name[MPMI_TEXT];
+  snprintf(name, sizeof name, "%s[%d]", what, (int)axis);
+  mpmi_archive_same_real(a, name, here);
+}
+
+static void setup_grid(mpmi_archive *a, const mpm_grid_desc *d) {
+  mpmi_archive_same_int(a, "dim", d->dim);
+  mpmi_archive_same_int(a, "basis", d->basis);
+  mpmi_archive_same_int(a, "boundary_basis", d->boundary_basis);
+  for (int32_t k = 0; k < d->dim; ++k) {
+    same_axis(a, "cells", k, d->cells[k]);
+    same_axis(a, "periodic", k, d->periodic[k]);
+    same_axis_real(a, "origin", k, d->origin[k]);
+    same_axis_real(a, "spacing", k, d->spacing[k]);
+  }
+  mpmi_archive_same_real(a, "smoothing", d->basis == MPM_UGIMP ? d->smoothing : 0.0);
+}
+
+/* What belongs to the scheme; forces, damping, boundary conditions and tolerances are the host's to change.
+ */
+static void setup_scheme(mpmi_archive *a, const mpm_stepper_desc *d) {
+  mpmi_archive_same_int(a, "scheme", d->scheme);
+  mpmi_archive_same_int(a, "transfer", d->transfer);
+  mpmi_archive_same_int(a, "xpic_order", d->transfer == MPM_XPIC ? d->xpic_order : 0);
+  mpmi_archive_same_int(a, "position_order", d->position_order);
+  mpmi_archive_same_int(a, "locking_remedy", d->locking_remedy);
+  mpmi_archive_same_int(a, "reference_positions", d->reference_positions);
+  mpmi_archive_same_int(a, "quasi_static", d->quasi_static);
+  mpmi_archive_same_int(a, "staggered", d->staggered);
+}
+
+static void setup_law(mpmi_archive *a, const mpm_material *material) {
+  const mpmi_law *law = material->law;
+  mpmi_archive_same_text(a, "law", law ? law->name : "custom");
+  mpmi_archive_same_int(a, "state_count", material->state_count);
+  for (int32_t k = 0; law && k < law->param_count; ++k)
+    mpmi_archive_same_real(a, law->param[k].name, material->value[k]);
+  mpmi_archive_same_real(a, "density", material->density);
+}
+
+static void write_fields(mpmi_archive *a, const mpm_particles *set) {
+  int64_t count = set->field_count;
+  mpmi_archive_bytes(a, &count, sizeof count);
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field *field = &set->field[f];
+    mpmi_state_field saved = {{0}, field->type, field->components, field->present};
+    memcpy(saved.name, field->name, strlen(field->name));
+    mpmi_archive_bytes(a, &saved, sizeof saved);
+  }
+}
+
+static int32_t may_be_absent(int32_t field) {
+  return field == MPMI_ACCELERATION || field == MPMI_SIZE || field == MPMI_L || field == MPMI_REFERENCE ||
+         field == MPMI_PRESCRIBED || field == MPMI_APPLIED_FORCE;
+}
+
+static mpm_status refuse_field(mpmi_archive *a, const char *name, const char *what) {
+  return mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %sfield \"%s\" %s", a->where,
+                   name, what);
+}
+
+/* Finds the field in the set; its presence there follows the state where that is a matter of use. */
+static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
+  mpmi_state_field saved;
+  mpmi_archive_bytes(a, &saved, sizeof saved);
+  if (a->status) return;
+  saved.name[MPMI_NAME - 1] = '\0';
+  const int32_t f = mpmi_find_field(&to->fresh, saved.name);
+  if (f < 0) {
+    a->status = refuse_field(a, saved.name, "is there, but not here");
+    return;
+  }
+  mpmi_field *field = &to->fresh.field[f];
+  char what[MPMI_NAME + 16];
+  snprintf(what, sizeof what, "type of %s", field->name);
+  if (saved.type != field->type || saved.components != field->components) {
+    if (saved.components != field->components)
+      snprintf(what, sizeof what, "number of components of %s", field->name);
+    const int64_t there = saved.components != field->components ? saved.components : saved.type;
+    const int32_t here = saved.components != field->components ? field->components : field->type;
+    a->status =
+        mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %s%s is %lld there, %d here",
+                  a->where, what, (long long)there, (int)here);
+  } else if (saved.present < 0 || saved.present > 1 || *found & UINT64_C(1) << f ||
+             (!may_be_absent(f) && saved.present != field->present)) {
+    mpmi_archive_damaged(a, "its list of fields makes no sense");
+  }
+  *found |= UINT64_C(1) << f;
+  field->present = (int32_t)saved.present;
+  to->field[to->field_count++] = f;
+}
+
+static void read_fields(mpmi_archive *a, mpmi_state_set *to) {
+  int64_t count = 0;
+  uint64_t found = 0;
+  mpmi_archive_bytes(a, &count, sizeof count);
+  if (count < 0 || count > MPMI_MAX_FIELDS) mpmi_archive_damaged(a, "its list of fields makes no sense");
+  for (int64_t i = 0; i < count && !a->status; ++i) read_field(a, to, &found);
+  for (int32_t f = 0; f < to->fresh.field_count && !a->status; ++f)
+    if (!(found & UINT64_C(1) << f))
+      a->status = refuse_field(a, to->fresh.field[f].name, "is here, but not there");
+}
+_Static_assert(MPMI_MAX_FIELDS <= 64, "one bit for each field");
+
+void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set) {
+  /* which library and instruction set wrote the state: for information only */
+  int64_t version = MPM_VERSION, isa = s->context->isa;
+  mpmi_archive_bytes(a, &version, sizeof version);
+  mpmi_archive_bytes(a, &isa, sizeof isa);
+  setup_grid(a, &s->grid->desc);
+  setup_scheme(a, &s->desc);
+  mpmi_archive_same_int(a, "number of sets", s->member_count);
+  for (int32_t m = 0; m < s->member_count && !a->status; ++m) {
+    snprintf(a->where, sizeof a->where, "set %d: ", (int)m);
+    setup_law(a, s->member[m].set->material);
+    if (set)
+      read_fields(a, &set[m]);
+    else
+      write_fields(a, s->member[m].set);
+  }
+  a->where[0] = '\0';
+}
