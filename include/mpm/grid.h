@@ -31,7 +31,7 @@ typedef struct mpm_grid_desc {
 MPM_API mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size);
 
 /** Makes a grid; desc is copied. Shared by any number of sets and steppers, and outlives them. *out is
- * NULL unless MPM_OK is returned. MPM_E_ARG: a bad value, too few cells on a periodic axis for the basis,
+ * NULL unless MPM_OK is returned. MPM_E_ARG: a bad value,
  * or more nodes than 64-bit numbers can name. MPM_E_UNSUPPORTED: open knots with a basis that is not a
  * B-spline. */
 MPM_API mpm_status mpm_grid_create(mpm_context *context, const mpm_grid_desc *desc, mpm_grid **out);

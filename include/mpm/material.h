@@ -83,8 +83,9 @@ typedef struct mpm_material_batch {
 /**
  * Lends a field of the set that a batch belongs to, built in or the host's own, aligned with the batch and
  * valid during the callback: component c of item i is (*data)[c * *component_stride + i], in elements of the
- * field's type; tensors are full. lookup: that of the batch. May be called from any thread on which a
- * callback runs. MPM_E_NOT_FOUND: unknown field.
+ * field's type. No copy: tensors have their stored components, as in views. lookup: that of the batch. May be
+ * called from any thread on which a callback runs. MPM_E_NOT_FOUND: unknown field. MPM_E_STATE: an optional
+ * field that the set does not have now.
  */
 MPM_API mpm_status mpm_batch_field(const void *lookup, const char *field, const void **data,
                                    int64_t *component_stride);

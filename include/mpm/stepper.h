@@ -26,8 +26,9 @@ typedef struct mpm_stepper_desc {
   int32_t reference_positions; /**< 1: keep "reference_position" and pass it to callbacks; default 0 */
   int32_t quasi_static;        /**< MPM_NEWMARK: 1 drops the inertia; default 0 */
   int32_t staggered;           /**< 1: particle velocities at t_n - dt/2 (Steffen et al. 2008, eqs 11-15) */
-  /** Acceleration of nodes with prescribed velocity. 0 (default): that which brings them from the
-   * projected to the prescribed velocity (Steffen et al. 2008, eq. 30); 1: zero. */
+  /** Acceleration of nodes whose velocity the host prescribes. 0 (default): that which brings them from the
+   * projected to the prescribed velocity (Steffen et al. 2008, eq. 30); 1: zero. Nodes that walls hold have
+   * none in either case: a slip wall is a symmetry plane, on which the projected velocity is zero too. */
   int32_t boundary_zero_acceleration;
   double flip;          /**< per step, 1 (default) FLIP ... 0 PIC; MPM_FLIP, MPM_TFLIP, MPM_AFLIP */
   double pic_damping;   /**< rate beta, 1/time, of a blend free of dt: MPoint theory, eqs 58-59; default 0 */
@@ -247,7 +248,7 @@ typedef struct mpm_advance_desc {
   int32_t reserved;     /**< 0 */
   double t_end;         /**< time to reach, not before the present one */
   double cfl;           /**< explicit: share of mpm_stable_dt(), in (0, 1], default 0.5; implicit: ignored */
-  double dt_first;      /**< of the first sub-step; 0 (default): the controller's */
+  double dt_first;      /**< most that the first sub-step takes; 0 (default): the controller's */
   double dt_min;        /**< sub-steps are not cut below it; 0 (default): no bound */
   double dt_max;        /**< largest sub-step; 0 (default): no bound */
   int64_t max_steps;    /**< sub-steps of this call; 0 (default): no limit */
@@ -308,7 +309,8 @@ MPM_API mpm_status mpm_step_begin(mpm_stepper *stepper, double dt);
 MPM_API mpm_status mpm_step_grid(mpm_stepper *stepper);
 
 /** Last part: grid to particles, stress, commit. info may be NULL. MPM_E_STATE unless it follows
- * mpm_step_grid(). The three parts in a row give the same bits as mpm_step(). */
+ * mpm_step_grid(). The three parts in a row give the same bits as mpm_step(), except with MPM_APIC_MLS, where
+ * a whole step fuses force and momentum: there they agree to rounding. */
 MPM_API mpm_status mpm_step_end(mpm_stepper *stepper, mpm_step_info *info);
 
 /** Drops the step that was begun; particles and time are as before it. MPM_E_STATE if none was, or a view
@@ -320,8 +322,10 @@ MPM_API mpm_status mpm_step_abort(mpm_stepper *stepper);
  * "index" (I64, dim components), "mass" (1), "position" "velocity" "force" "acceleration" "reaction" (F64,
  * dim). body: velocity field, 0. "reaction" is the force by which walls and prescribed velocities act on a
  * node. Until mpm_view_release() steps and their parts return MPM_E_STATE. The view's struct_size is set by
- * the caller. MPM_E_STATE: nothing stepped yet, or MPM_WRITE outside a staged step. MPM_E_NOT_FOUND: unknown
- * field or body. MPM_E_ARG: MPM_WRITE on a field other than "velocity" and "force".
+ * the caller. Periodic images and mirrored ghosts are listed beside the nodes that they follow. MPM_E_STATE:
+ * nothing stepped yet, or MPM_WRITE outside a staged step. MPM_E_NOT_FOUND: unknown field or body. MPM_E_ARG:
+ * MPM_WRITE on a field other than "velocity" and "force". MPM_E_UNSUPPORTED: "force" or "acceleration" after
+ * a whole step of MPM_APIC_MLS, which does not keep them: use a staged step, or MPM_APIC.
  */
 MPM_API mpm_status mpm_grid_map(mpm_stepper *stepper, int32_t body, const char *field, int32_t access,
                                 mpm_view *view);

@@ -188,7 +188,7 @@ static void visit_contact(walk *w, int32_t face, int64_t slot, const int64_t *in
   const int64_t plane = face % 2 ? grid->desc.cells[axis] : 0, ghost = face % 2 ? plane + 1 : -1;
   const int32_t is_ghost = grid->order == 2 && index[axis] == ghost;
   if ((index[axis] != plane && !is_ghost) || !mpmi_constraints_is_free(w->out, slot)) return;
-  mpmi_contact contact = {slot, -1, face};
+  mpmi_contact contact = {slot, -1, face, 0, 0};
   if (is_ghost) {
     int64_t mirror[3] = {index[0], index[1], index[2]};
     mirror[axis] = 2 * plane - ghost;

@@ -72,10 +72,9 @@ static mpm_status check_axis(mpm_context *context, const mpm_grid_desc *desc, in
   return MPM_OK;
 }
 
-/* Nodes along an axis; a periodic one has no node of its own on the upper face. */
+/* Nodes along an axis with one layer of ghosts on either side, whatever the basis. */
 static int64_t axis_nodes(const mpm_grid *grid, int32_t axis) {
-  int64_t cells = grid->desc.cells[axis];
-  return grid->desc.periodic[axis] ? cells : cells + 2 * grid->order - 1;
+  return grid->desc.cells[axis] + 3;
 }
 
 static mpm_status check_node_numbers(mpm_context *context, const mpm_grid *grid) {
@@ -159,14 +158,10 @@ mpm_status mpm_grid_destroy(mpm_grid *grid) {
   return MPM_OK;
 }
 
-/* Last axis fastest; the first node of an axis is the lower ghost where the basis has one. */
+/* Last axis fastest; the first node of an axis is the lower ghost. */
 int64_t mpmi_node_number(const mpm_grid *grid, const int64_t *index) {
   int64_t number = 0;
-  for (int32_t k = 0; k < grid->dim; ++k) {
-    int64_t nodes = axis_nodes(grid, k);
-    int64_t i = grid->desc.periodic[k] ? (index[k] % nodes + nodes) % nodes : index[k] + grid->order - 1;
-    number = number * nodes + i;
-  }
+  for (int32_t k = 0; k < grid->dim; ++k) number = number * axis_nodes(grid, k) + index[k] + 1;
   return number;
 }
 

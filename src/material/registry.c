@@ -98,7 +98,7 @@ const char *mpmi_law_substitute(const char *name) {
   static const char *const planned[][2] = {
       {"neo_hookean_decoupled", "use \"neo_hookean\", or mpm_material_create_custom()"},
       {"newtonian_fluid", "use mpm_material_create_custom()"},
-      {"rigid", "use an elastic law, the field \"prescribed\" and mpm_stepper_set_motion()"}};
+      {"rigid", "use an elastic law, and hold its nodes with mpm_stepper_set_velocity_bc()"}};
   for (size_t i = 0; i < sizeof planned / sizeof planned[0]; ++i)
     if (!strcmp(planned[i][0], name)) return planned[i][1];
   return NULL;

@@ -1,5 +1,6 @@
 /* Volume and stress after the host has set F or the initial volume. */
 #include "particles/law_batch.h"
+#include "stepper/stepper_state.h"
 #include "transfer/kernels.h"
 
 #include <string.h>
@@ -16,10 +17,11 @@ mpm_status mpmi_particles_refresh(mpm_particles *set) {
   mpmi_law_batch b;
   mpmi_law_batch_bind(&b, set->material, memory);
   mpm_status status = MPM_OK;
+  const double t = set->stepper ? mpmi_stepper_time(set->stepper) : 0.0;
   const int32_t keeps_stress = set->material->law && !mpmi_material_stress_from_F(set->material);
   for (int64_t s = 0; s < set->slots && !keeps_stress && !status; s += b.ld) {
     const int64_t n = set->slots - s < b.ld ? set->slots - s : b.ld;
-    mpmi_law_batch_load(&b, set, s, n, 0.0, 0.0);
+    mpmi_law_batch_load(&b, set, s, n, t, 0.0);
     mpmi_law_batch_load_F(&b, set, s, n);
     status = mpmi_law_batch_run(&b, set);
     if (!status) mpmi_law_batch_store(&b, set, 1, s, n);

@@ -28,6 +28,7 @@ static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {
       return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and >= 0", bound[i].name, bound[i].value);
   if (d->dt_max > 0.0 && d->dt_min > d->dt_max)
     return mpmi_fail(c, MPM_E_ARG, "dt_min is %g, more than dt_max = %g", d->dt_min, d->dt_max);
+  if (d->reserved) return mpmi_fail(c, MPM_E_ARG, "reserved is %d: it must be 0", (int)d->reserved);
   if (d->max_steps < 0)
     return mpmi_fail(c, MPM_E_ARG, "max_steps is %lld: it must be >= 0", (long long)d->max_steps);
   return MPM_OK;
@@ -45,7 +46,7 @@ static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, 
   *last = left <= *dt * (1.0 + 1e-9);
   if (*last)
     *dt = left;
-  else if (left < 2.0 * *dt)
+  else if (left < 2.0 * *dt && 0.5 * left >= d->dt_min)
     *dt = 0.5 * left;
   return MPM_OK;
 }
@@ -69,9 +70,10 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
       ++step;
       continue;
     }
-    const int32_t curable = status >= MPM_CUT_DT && status <= MPM_SINGULAR;
-    s->controller_dt = CUT * dt;
-    if (!curable || s->controller_dt < d->dt_min || s->t + s->controller_dt == s->t) return status;
+    const double smaller = CUT * dt;
+    if (status < MPM_CUT_DT || status > MPM_SINGULAR || smaller < d->dt_min || s->t + smaller == s->t)
+      return status;
+    s->controller_dt = smaller;
   }
   return MPM_OK;
 }
@@ -79,13 +81,13 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
 mpm_status mpm_advance(mpm_stepper *s, const mpm_advance_desc *desc, mpm_step_info *info) {
   MPMI_ENTER(s, MPMI_STEPPER);
   if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
-  mpm_advance_desc d = defaults;
-  mpm_status status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d);
-  if (status || (status = check(s, &d))) return status;
   if (info && info->struct_size < sizeof info->struct_size)
     return mpmi_fail(s->context, MPM_E_ARG,
                      "mpm_step_info.struct_size is %u: set it to sizeof(mpm_step_info)",
                      (unsigned)info->struct_size);
+  mpm_advance_desc d = defaults;
+  mpm_status status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d);
+  if (status || (status = check(s, &d))) return status;
   if (s->phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
   status = sub_steps(s, &d);

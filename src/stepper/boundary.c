@@ -16,14 +16,15 @@ enum {
 
 typedef struct field {
   mpm_stepper *s;
-  double *nodes, dt;
-  int32_t values, dim, books; /* books: impulses count as reactions; not in the second projection of MUSL */
+  double *nodes, dt, flip;
+  int32_t values, dim, zero_acceleration,
+      books; /* books: impulses count as reactions; not in the second projection of MUSL */
 } field;
 
-/* Of an orbit: folded mass, signed mass by component, velocity of the master before folding, impulse booked
- * already. */
+/* Of an orbit: folded mass, signed mass by component, what the master gave to particles before folding,
+ * impulse that is booked already. */
 typedef struct orbit_state {
-  double mass, net[3], before[3], booked[3], unused[2];
+  double mass, net[3], before[3], increment[3], booked[3];
 } orbit_state;
 _Static_assert(sizeof(orbit_state) == MPMI_ORBIT_STATE * sizeof(double), "orbit state");
 
@@ -35,18 +36,39 @@ static double *node_at(const field *f, int64_t slot) {
   return f->nodes + slot * f->values;
 }
 
-static void shift(const field *f, int64_t slot, int32_t c, double by) {
-  double *node = node_at(f, slot);
-  node[c] += by;
-  if (f->values == 8) node[4 + c] += by;
+/* What particles take from a node's velocity per unit of its mass: the change with FLIP, the whole with the
+ * others. The impulse of a boundary is how much more of it there is. */
+static double given(const field *f, int64_t slot, int32_t c) {
+  const double *node = node_at(f, slot);
+  return f->flip * (f->values == 8 ? node[4 + c] : 0.0) + (1.0 - f->flip) * node[c];
 }
 
-static void add_impulse(const field *f, int64_t slot, int32_t c, double impulse) {
-  if (f->books) f->s->impulse[3 * slot + c] += impulse;
+static double increment(const field *f, int64_t slot, int32_t c) {
+  return f->values == 8 ? node_at(f, slot)[4 + c] : 0.0;
+}
+
+/* Impulse of a boundary on a node, and by how much it changed the node's increment. */
+static void note(const field *f, int64_t slot, int32_t c, double impulse, double change) {
+  if (!f->books) return;
+  f->s->impulse[6 * slot + c] += impulse;
+  f->s->impulse[6 * slot + 3 + c] += change;
 }
 
 static int32_t is_held(const field *f, int64_t slot, int32_t c) {
   return f->s->velocity_bc && f->s->held[3 * slot + c];
+}
+
+static void hold(const field *f, int64_t slot, int32_t c, double value, double increment) {
+  double *node = node_at(f, slot);
+  node[c] = value;
+  if (f->values == 8) node[4 + c] = increment;
+}
+
+/* Sets a component that the host prescribes; its increment is that of eq. 30, or 0 by option. */
+static void prescribe(const field *f, int64_t slot, int32_t c, double value) {
+  const double *node = node_at(f, slot);
+  const double increment = f->values == 8 && !f->zero_acceleration ? node[4 + c] + value - node[c] : 0.0;
+  hold(f, slot, c, value, increment);
 }
 
 /* Mass that moves with a free node: its own, or that of its orbit. */
@@ -55,57 +77,81 @@ static double moving_mass(const field *f, int64_t slot) {
   return orbit < 0 ? node_at(f, slot)[3] : state_of(f, orbit)->mass;
 }
 
-/* Changes a free node's velocity by a force from outside: a contact, or the host. The impulse is returned. */
-static double push(const field *f, int64_t slot, int32_t c, double by) {
+typedef struct component_state {
+  double given, increment;
+} component_state;
+
+static component_state component(const field *f, int64_t slot, int32_t c) {
+  return (component_state){given(f, slot, c), increment(f, slot, c)};
+}
+
+/* Takes note of what a free node gives to the particles more than before: the impulse is returned. */
+static double book(const field *f, int64_t slot, int32_t c, component_state before) {
+  const double more = given(f, slot, c) - before.given;
   const int32_t orbit = f->s->constraints.orbit_of[slot];
-  shift(f, slot, c, by);
   if (orbit < 0) {
-    const double impulse = node_at(f, slot)[3] * by;
-    add_impulse(f, slot, c, impulse);
+    const double impulse = node_at(f, slot)[3] * more;
+    note(f, slot, c, impulse, increment(f, slot, c) - before.increment);
     return impulse;
   }
   orbit_state *state = state_of(f, orbit);
-  state->booked[c] += state->net[c] * by;
-  return state->net[c] * by;
+  state->booked[c] += state->net[c] * more;
+  return state->net[c] * more;
 }
 
+/* Changes a free node's velocity by a contact. */
+static double push(const field *f, int64_t slot, int32_t c, double by) {
+  const component_state before = component(f, slot, c);
+  double *node = node_at(f, slot);
+  node[c] += by;
+  if (f->values == 8) node[4 + c] += by;
+  return book(f, slot, c, before);
+}
+
+/* The master gets the velocity that the whole orbit has, before the forces and after them. */
 static void fold(const field *f) {
   const mpmi_constraints *constraints = &f->s->constraints;
   for (int64_t i = 0; i < constraints->orbit_count; ++i) {
     const mpmi_orbit *orbit = &constraints->orbit[i];
-    const double *master = node_at(f, orbit->master);
+    double *master = node_at(f, orbit->master);
     orbit_state *state = state_of(f, i);
-    double momentum[3];
+    double momentum[3], gained[3];
     state->mass = master[3];
     for (int32_t c = 0; c < f->dim; ++c) {
       state->net[c] = master[3];
-      state->before[c] = master[c];
+      state->before[c] = given(f, orbit->master, c);
+      state->increment[c] = increment(f, orbit->master, c);
       state->booked[c] = 0.0;
       momentum[c] = master[3] * master[c];
+      gained[c] = f->values == 8 ? master[3] * master[4 + c] : 0.0;
     }
     for (int64_t d = orbit->first; d < orbit->first + orbit->count; ++d) {
       const mpmi_dependant *dependant = &constraints->dependant[d];
       const double *node = node_at(f, dependant->slot);
       state->mass += node[3];
       for (int32_t c = 0; c < f->dim; ++c) {
-        state->net[c] += dependant->sign[c] * node[3];
-        momentum[c] += dependant->sign[c] * node[3] * node[c];
+        const double signed_mass = dependant->sign[c] * node[3];
+        state->net[c] += signed_mass;
+        momentum[c] += signed_mass * node[c];
+        if (f->values == 8) gained[c] += signed_mass * node[4 + c];
       }
     }
-    for (int32_t c = 0; c < f->dim; ++c) {
-      const double folded = state->mass > f->s->mass_cut ? momentum[c] / state->mass : 0.0;
-      shift(f, orbit->master, c, folded - master[c]);
+    const double inverse = state->mass > f->s->mass_cut ? 1.0 / state->mass : 0.0;
+    for (int32_t c = 0; orbit->count && c < f->dim; ++c) {
+      master[c] = momentum[c] * inverse;
+      if (f->values == 8) master[4 + c] = gained[c] * inverse;
     }
   }
 }
 
+/* A node on the plane is its own mirror image: the projected velocity of the component is 0 as well, so that
+ * there is no increment. Only so is half a symmetric body on a slip wall the same as the whole. */
 static void hold_walls(const field *f) {
   const mpmi_constraints *constraints = &f->s->constraints;
   for (int64_t i = 0; i < constraints->orbit_count; ++i) {
     const mpmi_orbit *orbit = &constraints->orbit[i];
     for (int32_t c = 0; c < f->dim; ++c)
-      if (orbit->zero[c] && !is_held(f, orbit->master, c))
-        shift(f, orbit->master, c, -node_at(f, orbit->master)[c]);
+      if (orbit->zero[c] && !is_held(f, orbit->master, c)) hold(f, orbit->master, c, 0.0, 0.0);
   }
 }
 
@@ -118,17 +164,19 @@ static void unfold(const field *f) {
     const double *master = node_at(f, orbit->master);
     double total[3] = {0.0, 0.0, 0.0};
     for (int32_t c = 0; c < f->dim; ++c) {
-      total[c] = master[3] * (master[c] - state->before[c]);
-      add_impulse(f, orbit->master, c, total[c]);
+      total[c] = master[3] * (given(f, orbit->master, c) - state->before[c]);
+      note(f, orbit->master, c, total[c], increment(f, orbit->master, c) - state->increment[c]);
     }
     for (int64_t d = orbit->first; d < orbit->first + orbit->count; ++d) {
       const mpmi_dependant *dependant = &constraints->dependant[d];
       double *node = node_at(f, dependant->slot);
       for (int32_t c = 0; c < f->dim; ++c) {
-        const double by = dependant->sign[c] * master[c] - node[c], impulse = node[3] * by;
-        shift(f, dependant->slot, c, by);
+        const component_state before = component(f, dependant->slot, c);
+        node[c] = dependant->sign[c] * master[c];
+        if (f->values == 8) node[4 + c] = dependant->sign[c] * master[4 + c];
+        const double impulse = node[3] * (given(f, dependant->slot, c) - before.given);
         total[c] += impulse;
-        add_impulse(f, dependant->slot, c, impulse);
+        note(f, dependant->slot, c, impulse, increment(f, dependant->slot, c) - before.increment);
       }
     }
     for (int32_t c = 0; c < f->dim; ++c)
@@ -158,21 +206,29 @@ static void give(const field *f, const contact_nodes *n, int32_t face, int32_t c
   }
 }
 
+static int32_t collect(const field *f, const mpmi_contact *pair, contact_nodes *n) {
+  *n = (contact_nodes){{pair->slot, pair->partner}, pair->partner < 0 ? 1 : 2, {0.0, 0.0}, 0.0};
+  for (int32_t i = 0; i < n->count; ++i) {
+    n->mass[i] = moving_mass(f, n->slot[i]);
+    if (n->mass[i] <= f->s->mass_cut) return 0;
+    n->compliance += 1.0 / n->mass[i];
+    for (int32_t c = 0; c < f->dim; ++c)
+      if (is_held(f, n->slot[i], c)) return 0; /* the host holds it: that comes before walls */
+  }
+  return 1;
+}
+
 /* Pushes but never pulls; Coulomb: the tangential impulse stops sliding or is friction times the normal one.
  */
-static void contact(const field *f, const mpmi_contact *pair) {
+static void contact(const field *f, mpmi_contact *pair) {
   const int32_t axis = pair->face / 2;
-  contact_nodes n = {{pair->slot, pair->partner}, pair->partner < 0 ? 1 : 2, {0.0, 0.0}, 0.0};
-  for (int32_t i = 0; i < n.count; ++i) {
-    n.mass[i] = moving_mass(f, n.slot[i]);
-    if (n.mass[i] <= f->s->mass_cut) return;
-    n.compliance += 1.0 / n.mass[i];
-    for (int32_t c = 0; c < f->dim; ++c)
-      if (is_held(f, n.slot[i], c)) return; /* the host holds it: that comes before walls */
-  }
+  contact_nodes n;
+  pair->closed = pair->stuck = 0;
+  if (!collect(f, pair, &n)) return;
   const double inward = pair->face % 2 ? -1.0 : 1.0;
   const double approach = -inward * sum_of(f, &n, axis);
   if (approach <= 0.0) return;
+  pair->closed = 1;
   const double normal = approach / n.compliance;
   give(f, &n, pair->face, axis, inward * normal);
   double slide[3] = {0.0, 0.0, 0.0}, squared = 0.0;
@@ -181,11 +237,21 @@ static void contact(const field *f, const mpmi_contact *pair) {
     slide[c] = sum_of(f, &n, c) / n.compliance;
     squared += slide[c] * slide[c];
   }
-  if (squared == 0.0) return;
   const double stop = sqrt(squared), most = f->s->wall[pair->face].friction * normal;
-  const double share = most < stop ? most / stop : 1.0;
+  pair->stuck = most >= stop;
+  if (most <= 0.0 || stop <= 0.0) return;
+  const double share = pair->stuck ? 1.0 : most / stop;
   for (int32_t c = 0; c < f->dim; ++c)
-    if (c != axis && share > 0.0) give(f, &n, pair->face, c, -share * slide[c]);
+    if (c != axis) give(f, &n, pair->face, c, -share * slide[c]);
+}
+
+/* The second projection of MUSL moves with the first: a contact that was closed stays so, one that was open
+ * is free. */
+static void keep_contact(const field *f, const mpmi_contact *pair) {
+  contact_nodes n;
+  if (!pair->closed || !collect(f, pair, &n)) return;
+  for (int32_t c = 0; c < f->dim; ++c)
+    if (c == pair->face / 2 || pair->stuck) give(f, &n, pair->face, c, -sum_of(f, &n, c) / n.compliance);
 }
 
 /* Free nodes of one block with mass, for the host. */
@@ -200,7 +266,7 @@ static void list_block(const field *f, int64_t block, node_list *list) {
   const mpmi_blocks *b = &s->blocks;
   list->n = 0;
   for (int64_t slot = block * b->nodes; slot < (block + 1) * b->nodes; ++slot) {
-    if (node_at(f, slot)[3] <= s->mass_cut || !mpmi_constraints_is_free(&s->constraints, slot)) continue;
+    if (!mpmi_constraints_is_free(&s->constraints, slot) || moving_mass(f, slot) <= s->mass_cut) continue;
     int64_t index[3];
     mpmi_blocks_index(b, slot, index);
     for (int32_t k = 0; k < f->dim; ++k) {
@@ -265,9 +331,11 @@ static void set_held(const field *f) {
   for (int64_t slot = 0; slot < slots; ++slot)
     for (int32_t c = 0; c < f->dim; ++c) {
       if (!s->held[3 * slot + c]) continue;
-      const double value = s->held_value[3 * slot + c], by = value - node_at(f, slot)[c];
-      if (f->books) s->prescribed_work += moving_mass(f, slot) * by * value;
-      push(f, slot, c, by);
+      const double value = s->held_value[3 * slot + c];
+      const component_state before = component(f, slot, c);
+      prescribe(f, slot, c, value);
+      const double impulse = book(f, slot, c, before);
+      if (f->books) s->prescribed_work += impulse * value;
     }
 }
 
@@ -276,8 +344,10 @@ mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t what, double dt) {
   const field f = {.s = s,
                    .nodes = again ? s->again : s->node,
                    .dt = dt,
+                   .flip = s->desc.transfer == MPM_FLIP && s->values == 8 ? s->desc.flip : 0.0,
                    .values = again ? 4 : s->values,
                    .dim = s->grid->dim,
+                   .zero_acceleration = s->desc.boundary_zero_acceleration,
                    .books = !again && s->impulses};
   fold(&f);
   if (s->velocity_bc) {
@@ -288,7 +358,13 @@ mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t what, double dt) {
     set_held(&f);
   }
   hold_walls(&f);
-  for (int64_t i = 0; i < s->constraints.contact_count; ++i) contact(&f, &s->constraints.contact[i]);
+  for (int64_t i = 0; i < s->constraints.contact_count; ++i) {
+    mpmi_contact *pair = &s->constraints.contact[i];
+    if (again)
+      keep_contact(&f, pair);
+    else
+      contact(&f, pair);
+  }
   unfold(&f);
   return MPM_OK;
 }

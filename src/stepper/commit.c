@@ -38,6 +38,7 @@ static void remove_outside(mpm_stepper *s, mpm_particles *set) {
     --set->count;
     ++s->removed;
     s->energies.valid = 0;
+    mpmi_index_drop(set);
   }
 }
 

@@ -34,6 +34,8 @@ static mpm_status survey_set(mpm_stepper *s, int32_t m, mpmi_sums *sums) {
     mpmi_law_batch_load_F(&b, set, begin, n);
     const mpm_status refused = mpmi_law_batch_run(&b, set);
     if (refused) {
+      s->failure.callback_status = refused;
+      s->failure.set = m;
       status =
           mpmi_fail(s->context, MPM_E_CALLBACK,
                     "the material of set %d returned %d when asked for its wave speed", (int)m, (int)refused);
@@ -65,17 +67,32 @@ static mpm_status survey_set(mpm_stepper *s, int32_t m, mpmi_sums *sums) {
   return status;
 }
 
+/* MPM_E_STATE when a set has views out of the given access, or holds bad values. */
+static mpm_status check_sets(mpm_stepper *s, int32_t access) {
+  for (int32_t m = 0; m < s->member_count; ++m) {
+    mpm_particles *set = s->member[m].set;
+    for (int32_t v = 0; v < MPMI_MAX_VIEWS && set->mapped; ++v)
+      if (set->view[v].live && (set->view[v].access & access))
+        return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views first", (int)m);
+    const mpm_status status = mpmi_usable(set);
+    if (status) return status;
+  }
+  return MPM_OK;
+}
+
 mpm_status mpmi_stepper_energies(mpm_stepper *s) {
   int32_t fresh = s->energies.valid;
   for (int32_t m = 0; m < s->member_count; ++m) fresh &= !(s->member[m].set->dirty & MPMI_DIRTY_SURVEY);
   if (fresh) return MPM_OK;
   mpmi_sums sums = {0};
-  for (int32_t m = 0; m < s->member_count; ++m) {
-    mpm_status status;
-    if ((status = mpmi_particles_check_suspects(s->member[m].set)) ||
-        (status = mpmi_particles_refresh(s->member[m].set)) || (status = survey_set(s, m, &sums)))
-      return status;
+  mpm_status status = check_sets(s, MPM_READ | MPM_WRITE);
+  /* sums follow the order of the slots, which must not be that in which the host added particles */
+  if (!status) status = mpmi_stepper_sort(s);
+  for (int32_t m = 0; m < s->member_count && !status; ++m) {
+    status = mpmi_particles_refresh(s->member[m].set);
+    if (!status) status = survey_set(s, m, &sums);
   }
+  if (status) return status;
   for (int32_t m = 0; m < s->member_count; ++m) s->member[m].set->dirty &= ~(uint32_t)MPMI_DIRTY_SURVEY;
   s->energies = (mpmi_energies){1, sums};
   return MPM_OK;
@@ -95,7 +112,8 @@ mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
   int64_t count = 0;
   for (int32_t m = 0; m < s->member_count; ++m) count += s->member[m].set->count;
   if (!count) return mpmi_fail(s->context, MPM_E_STATE, "the stepper has no particles");
-  const mpm_status status = mpmi_stepper_energies(s);
+  mpm_status status = check_sets(s, MPM_READ | MPM_WRITE);
+  if (!status) status = mpmi_stepper_energies(s);
   if (status) return status;
   *dt = mpmi_stable_dt_of(s, &s->energies.sums);
   return MPM_OK;
@@ -124,7 +142,8 @@ mpm_status mpm_stepper_info(const mpm_stepper *stepper, mpm_step_info *info) {
   if (!info) return mpmi_fail(s->context, MPM_E_ARG, "info is NULL");
   if (s->phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
-  const mpm_status status = mpmi_stepper_energies(s);
+  mpm_status status = check_sets(s, MPM_WRITE);
+  if (!status) status = mpmi_stepper_energies(s);
   if (status) return status;
   mpm_step_info now;
   mpmi_fill_info(s, &now);

@@ -24,10 +24,39 @@ typedef struct batch_job {
   mpmi_deform deform;
   mpmi_survey survey;
   double *v_bar, *dv, *C;
+  int32_t law_ran; /* on the batch at hand: its stress is that of this step */
 } batch_job;
 
 static double *component(const mpm_particles *set, int32_t field, int32_t copy, int32_t c) {
   return mpmi_f64(set, field, copy) + c * set->ld;
+}
+
+/* What a batch reads and writes, for prefetching. */
+static void add_streams(mpmi_streams *streams, const mpm_particles *set, int32_t field, int32_t copy) {
+  const mpmi_field *f = &set->field[field];
+  for (int32_t c = 0; f->present && c < f->components && streams->count < MPMI_MAX_STREAMS; ++c)
+    streams->at[streams->count++] = component(set, field, copy, c);
+}
+
+static void bind_streams(batch_job *b) {
+  mpmi_streams *streams = &b->gather.streams;
+  streams->count = 0;
+  add_streams(streams, b->set, MPMI_POSITION, 0);
+  add_streams(streams, b->set, MPMI_INITIAL_VOLUME, 0);
+  if (b->job->what & MPMI_G2P_MOVE) {
+    add_streams(streams, b->set, MPMI_VELOCITY, 0);
+    add_streams(streams, b->set, MPMI_POSITION, 1);
+    add_streams(streams, b->set, MPMI_VELOCITY, 1);
+    add_streams(streams, b->set, MPMI_L, 1);
+  }
+  if (b->job->what & MPMI_G2P_DEFORM) {
+    add_streams(streams, b->set, MPMI_F, 0);
+    add_streams(streams, b->set, MPMI_F, 1);
+    add_streams(streams, b->set, MPMI_VOLUME, 0);
+    add_streams(streams, b->set, MPMI_MASS, 0);
+    add_streams(streams, b->set, MPMI_STRESS, 1);
+    if (!mpmi_material_stress_from_F(b->set->material)) add_streams(streams, b->set, MPMI_STRESS, 0);
+  }
 }
 
 static void bind_set(batch_job *b, int32_t m) {
@@ -52,6 +81,7 @@ static void bind_set(batch_job *b, int32_t m) {
                             .dv = b->dv,
                             .L = b->law.L,
                             .C = b->C};
+  bind_streams(b);
   b->move = (mpmi_move){
       .form = b->job->form, .dt = b->job->dt, .flip = s->desc.flip, .ld = ld, .v_bar = b->v_bar, .dv = b->dv};
   b->deform = (mpmi_deform){.dt = b->job->dt,
@@ -101,6 +131,9 @@ static void fail(batch_job *b, mpm_status cause, int64_t slot, const char *what)
                     &(mpmi_failure){cause, 0, b->m, mpmi_i64(b->set, MPMI_ID, 0)[slot], -1, what});
 }
 
+/* Periods that a particle may cross in one step: beyond them its position is rounding. */
+#define MOST_TURNS 2147483648.0
+
 /* Particles beyond a face: wrapped, marked for removal, or the end of the step. */
 static void look_outside(batch_job *b, int64_t begin, int64_t n) {
   const mpm_stepper *s = b->job->s;
@@ -116,6 +149,10 @@ static void look_outside(batch_job *b, int64_t begin, int64_t n) {
         int64_t *image = mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot;
         const double length = grid->upper[k] - grid->desc.origin[k];
         const double turns = floor((*x - grid->desc.origin[k]) / length);
+        if (fabs(turns) >= MOST_TURNS) {
+          stays = 1;
+          continue;
+        }
         *x -= turns * length;
         if (*x < grid->desc.origin[k]) *x = grid->desc.origin[k];
         if (*x > grid->upper[k]) *x = grid->upper[k];
@@ -154,9 +191,9 @@ static void look_at_values(batch_job *b, int64_t begin, int64_t n) {
       fail(b, MPM_NONFINITE, slot, "deformation gradient not finite");
     else if (deformed && !(mpmi_f64(set, MPMI_VOLUME, 0)[slot] > 0.0))
       fail(b, MPM_INVERTED, slot, "det F is not positive");
-    else if (deformed && !(finite_row(set, MPMI_STRESS, mpmi_stress_components(dim), slot) &&
-                           finite_row(set, MPMI_STATE, set->material->state_count, slot) &&
-                           isfinite(b->law.wave_speed[p]) && isfinite(b->law.viscosity[p])))
+    else if (b->law_ran && !(finite_row(set, MPMI_STRESS, mpmi_stress_components(dim), slot) &&
+                             finite_row(set, MPMI_STATE, set->material->state_count, slot) &&
+                             isfinite(b->law.wave_speed[p]) && isfinite(b->law.viscosity[p])))
       fail(b, MPM_NONFINITE, slot, "the material's stress, state or wave speed is not finite");
   }
 }
@@ -221,6 +258,7 @@ static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
     return 0;
   }
   mpmi_law_batch_store(&b->law, set, 1, begin, n);
+  b->law_ran = 1;
   return 0;
 }
 
@@ -249,13 +287,14 @@ static void one_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
   const mpm_stepper *s = b->job->s;
   const int32_t what = b->job->what;
   uint32_t flags = 0;
+  b->law_ran = 0;
   s->kernels->gather[s->grid->dim][s->grid->width][b->job->form](&b->gather, begin, n);
   /* the kernels write from the start of the batch's buffers */
   if (what & MPMI_G2P_MOVE) flags |= move_batch(b, begin, n);
   store_gradient(b, begin, n);
   if (what & MPMI_G2P_DEFORM) {
     flags |= deform_batch(b, begin, n);
-    flags |= survey_batch(b, begin, n, sums);
+    if (b->law_ran) flags |= survey_batch(b, begin, n, sums);
   }
   if (flags) look_at_values(b, begin, n);
 }

@@ -28,7 +28,8 @@ static double *node_at(const mpm_stepper *s, int64_t i) {
 static double value_of(const mpm_stepper *s, int32_t field, int64_t i, int32_t c) {
   const double *node = node_at(s, i), mass = node[3];
   const int32_t solved = s->phase != MPMI_BEGUN;
-  const double impulse = s->impulses && solved ? s->impulse[3 * s->active[i] + c] : 0.0;
+  const double *bound = s->impulses && solved ? s->impulse + 6 * s->active[i] : NULL;
+  const double impulse = bound ? bound[c] : 0.0, change = bound ? bound[3 + c] : 0.0;
   const double dt = s->phase == MPMI_IDLE ? s->nodes_dt : s->dt;
   switch (field) {
   case NODE_MASS:
@@ -36,7 +37,7 @@ static double value_of(const mpm_stepper *s, int32_t field, int64_t i, int32_t c
   case NODE_VELOCITY:
     return solved ? node[c] : node[c] / mass;
   case NODE_FORCE:
-    return solved ? (mass * node[4 + c] - impulse) / dt : node[4 + c];
+    return solved ? mass * (node[4 + c] - change) / dt : node[4 + c];
   case NODE_ACCELERATION:
     return solved ? node[4 + c] / dt : node[4 + c] / mass;
   default:
@@ -82,6 +83,9 @@ static mpm_status check_map(mpm_stepper *s, int32_t body, const char *field, int
                             const mpm_view *view, int32_t *which) {
   mpm_context *c = s->context;
   if (!field || !view) return mpmi_fail(c, MPM_E_ARG, "%s is NULL", field ? "view" : "field");
+  if (view->struct_size < sizeof *view)
+    return mpmi_fail(c, MPM_E_ARG, "mpm_view: struct_size is %u, must be sizeof(mpm_view)",
+                     (unsigned)view->struct_size);
   if (body != 0) return mpmi_fail(c, MPM_E_NOT_FOUND, "body is %d: there is only body 0", (int)body);
   if (access != MPM_READ && access != MPM_WRITE && access != (MPM_READ | MPM_WRITE))
     return mpmi_fail(c, MPM_E_ARG, "access is %d: it must be MPM_READ, MPM_WRITE or both", (int)access);
@@ -164,6 +168,6 @@ mpm_status mpmi_node_view_release(mpmi_view_record *record, mpm_view *view) {
   s->context->error[0] = '\0';
   record->live = 0;
   --s->mapped;
-  view->data = NULL;
+  view->data = view->owner = NULL;
   return record->access & MPM_WRITE ? write_back(s, record->field, record->data) : MPM_OK;
 }

@@ -41,6 +41,21 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   if (mpmi_is_affine(s))
     for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
       scatter->affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, again) + c * set->ld;
+  mpmi_streams *streams = &scatter->streams;
+  for (int32_t k = 0; k < dim; ++k) {
+    streams->at[streams->count++] = scatter->x[k];
+    streams->at[streams->count++] = scatter->v[k];
+    if (scatter->force[k]) streams->at[streams->count++] = scatter->force[k];
+  }
+  streams->at[streams->count++] = scatter->mass;
+  if (!again) {
+    streams->at[streams->count++] = scatter->volume;
+    for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
+      streams->at[streams->count++] = scatter->stress[c];
+  }
+  if (mpmi_is_affine(s))
+    for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+      streams->at[streams->count++] = scatter->affine[mpmi_gradient_map(dim)[c]];
   scatter->fused_dt = again || job->values == 8 ? 0.0 : job->dt;
 }
 

@@ -68,8 +68,7 @@ static mpm_status known_options(mpm_context *c, const mpm_stepper_desc *d) {
       {"position_order", "1", d->position_order, 1, 2},
       {"locking_remedy", "MPM_LOCKING_NONE", d->locking_remedy, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE},
       {"quasi_static", "0", d->quasi_static, 0, 1},
-      {"staggered", "0", d->staggered, 0, 1},
-      {"boundary_zero_acceleration", "0", d->boundary_zero_acceleration, 0, 1}};
+      {"staggered", "0", d->staggered, 0, 1}};
   for (size_t i = 0; i < sizeof option / sizeof *option; ++i) {
     if (option[i].value < option[i].off || option[i].value > option[i].high)
       return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be %d ... %d", option[i].name, (int)option[i].value,
@@ -99,6 +98,10 @@ static mpm_status read_desc(mpm_context *c, const mpm_grid *grid, const mpm_step
     if (!isfinite(out->gravity[k]))
       return mpmi_fail(c, MPM_E_ARG, "gravity[%d] is %g: it must be finite", (int)k, out->gravity[k]);
   for (int32_t k = grid->dim; k < 3; ++k) out->gravity[k] = 0.0;
+  if (out->boundary_zero_acceleration != 0 && out->boundary_zero_acceleration != 1)
+    return mpmi_fail(c, MPM_E_ARG, "boundary_zero_acceleration is %d: it must be 0 or 1",
+                     (int)out->boundary_zero_acceleration);
+  if (out->reserved) return mpmi_fail(c, MPM_E_ARG, "reserved is %d: it must be 0", (int)out->reserved);
   if (out->reference_positions != 0 && out->reference_positions != 1)
     return mpmi_fail(c, MPM_E_ARG, "reference_positions is %d: it must be 0 or 1",
                      (int)out->reference_positions);
@@ -195,6 +198,10 @@ int32_t mpmi_stepper_in_step(const mpm_stepper *s) {
   return s->phase != MPMI_IDLE;
 }
 
+double mpmi_stepper_time(const mpm_stepper *s) {
+  return s->t;
+}
+
 static mpm_status grow_members(mpm_stepper *s) {
   if (s->member_count < s->member_capacity) return MPM_OK;
   const int32_t capacity = s->member_capacity ? 2 * s->member_capacity : 4;
@@ -274,6 +281,8 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   mpm_status status = idle(s);
   if (status) return status;
   if (!isfinite(t)) return mpmi_fail(s->context, MPM_E_ARG, "t is %g: it must be finite", t);
+  if (step == INT64_MAX)
+    return mpmi_fail(s->context, MPM_E_ARG, "step is %lld: there is none after it", (long long)step);
   if (step < 0) return mpmi_fail(s->context, MPM_E_ARG, "step is %lld: it must be >= 0", (long long)step);
   s->t = t;
   s->step = step;

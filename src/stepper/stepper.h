@@ -8,7 +8,7 @@
  *   g2p.c        nodes -> particles: velocity, position, deformation gradient, stress
  *   commit.c     the new state becomes the state, or is dropped
  *
- * explicit.c strings them together: one page per scheme. */
+ * step.c strings them together. */
 #ifndef MPMI_STEPPER_H
 #define MPMI_STEPPER_H
 
@@ -49,7 +49,7 @@ typedef struct mpmi_cut {
   int64_t *bound; /* [tasks + 1] */
 } mpmi_cut;
 
-enum { MPMI_COLOURS = 8, MPMI_ORBIT_STATE = 12 };
+enum { MPMI_COLOURS = 8, MPMI_ORBIT_STATE = 13 };
 enum { MPMI_IDLE, MPMI_RUNNING, MPMI_BEGUN, MPMI_SOLVED }; /* phase of the step */
 
 /* Seconds by stage, in the order of mpm_profile. */
@@ -111,7 +111,8 @@ struct mpm_stepper {
   double *node, *again;
   int64_t impulse_capacity;
   int32_t impulses; /* something can give nodes an impulse: then */
-  double *impulse;  /* [3 per node] given by walls and prescribed velocities in the step */
+  double
+      *impulse; /* [6 per node] given by walls and prescribed velocities; change of the increment by them */
   int64_t held_capacity;
   uint8_t *held;       /* [3 per node] component prescribed by the velocity callback */
   double *held_value;  /* [3 per node] */
@@ -156,6 +157,10 @@ mpm_status mpmi_callback_cause(mpm_status status);
 
 /* topology.c: everything that depends on where the particles are. Cannot be half done. */
 mpm_status mpmi_stepper_prepare(mpm_stepper *s);
+/* Only the sorting, when particles have moved out of their tiles. */
+mpm_status mpmi_stepper_sort(mpm_stepper *s);
+/* MPM_E_STATE while the set holds bad values that the host wrote through a view. */
+mpm_status mpmi_usable(mpm_particles *set);
 void mpmi_stepper_free_topology(mpm_stepper *s);
 /* The work of a sorted state: cuts, nodes, constraints, scratch; used by prepare and by loading a state. */
 mpm_status mpmi_stepper_adopt(mpm_stepper *s);

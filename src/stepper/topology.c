@@ -86,12 +86,13 @@ static mpm_status reserve_orbits(mpm_stepper *s, const mpmi_constraints *constra
 mpm_status mpmi_stepper_adopt(mpm_stepper *s) {
   const int64_t blocks = s->next_blocks.count;
   mpm_status status;
-  if ((status = reserve(s->context, (void **)&s->list_memory, &s->list_capacity,
-                        roomy(2 * blocks, s->list_capacity), sizeof *s->list_memory)) ||
-      (status = reserve(s->context, (void **)&s->block_sums, &s->block_sums_capacity,
+  if ((status = reserve(s->context, (void **)&s->block_sums, &s->block_sums_capacity,
                         roomy(blocks, s->block_sums_capacity), sizeof *s->block_sums)) ||
       (status = mpmi_constraints_build(&s->next_constraints, &s->next_blocks, s->wall)) ||
-      (status = reserve_orbits(s, &s->next_constraints)))
+      (status = reserve_orbits(s, &s->next_constraints)) ||
+      /* last, because the present cuts point into this memory */
+      (status = reserve(s->context, (void **)&s->list_memory, &s->list_capacity,
+                        roomy(2 * blocks, s->list_capacity), sizeof *s->list_memory)))
     return status;
   cut_work(s);
   swap_in_next(s);
@@ -100,17 +101,21 @@ mpm_status mpmi_stepper_adopt(mpm_stepper *s) {
   return MPM_OK;
 }
 
-static void find_mass_cut(mpm_stepper *s) {
-  double largest = 0.0;
+static void find_largest_masses(mpm_stepper *s) {
   for (int32_t m = 0; m < s->member_count; ++m) {
     mpm_particles *set = s->member[m].set;
     const double *mass = mpmi_f64(set, MPMI_MASS, 0);
     set->mass_max = 0.0;
     for (int64_t p = 0; p < set->slots; ++p)
       if (mass[p] > set->mass_max) set->mass_max = mass[p];
-    if (set->mass_max > largest) largest = set->mass_max;
   }
-  s->mass_cut = 1e-12 * largest;
+}
+
+/* Below this a node is too light to divide by its mass. */
+static void find_mass_cut(mpm_stepper *s) {
+  s->mass_cut = 0.0;
+  for (int32_t m = 0; m < s->member_count; ++m)
+    if (1e-12 * s->member[m].set->mass_max > s->mass_cut) s->mass_cut = 1e-12 * s->member[m].set->mass_max;
 }
 
 static mpm_status sort_anew(mpm_stepper *s) {
@@ -124,7 +129,7 @@ static mpm_status sort_anew(mpm_stepper *s) {
   if ((status = mpmi_stepper_adopt(s))) return status;
   for (int32_t m = 0; m < s->member_count; ++m)
     mpmi_sort_apply(s->member[m].set, &s->blocks, &s->member[m].now);
-  find_mass_cut(s);
+  find_largest_masses(s);
   ++s->resorts;
   return MPM_OK;
 }
@@ -139,6 +144,10 @@ static mpm_status rebuild_constraints(mpm_stepper *s) {
   s->next_constraints = constraints;
   s->walls_changed = 0;
   return MPM_OK;
+}
+
+mpm_status mpmi_usable(mpm_particles *set) {
+  return mpmi_particles_check_suspects(set) ? MPM_E_STATE : MPM_OK;
 }
 
 /* Fields that the scheme carries, brought up to date and free of bad values. */
@@ -210,9 +219,9 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
   s->impulses = gives_impulses(s);
   if (s->impulses) {
     if ((status = reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
-                          roomy(slots * 3, s->impulse_capacity), sizeof *s->impulse)))
+                          roomy(slots * 6, s->impulse_capacity), sizeof *s->impulse)))
       return status;
-    memset(s->impulse, 0, (size_t)(slots * 3) * sizeof *s->impulse);
+    memset(s->impulse, 0, (size_t)(slots * 6) * sizeof *s->impulse);
   }
   if (s->velocity_bc && slots * 3 > s->held_capacity) {
     const int64_t wanted = roomy(slots * 3, 0);
@@ -248,13 +257,17 @@ static mpm_status prepare_forces(mpm_stepper *s) {
   return MPM_OK;
 }
 
-mpm_status mpmi_stepper_prepare(mpm_stepper *s) {
-  mpm_status status;
-  if ((status = prepare_sets(s))) return status;
+mpm_status mpmi_stepper_sort(mpm_stepper *s) {
   int32_t moved = s->blocks.count == 0;
   for (int32_t m = 0; m < s->member_count; ++m)
     moved |= (s->member[m].set->dirty & (MPMI_DIRTY_PLACE | MPMI_DIRTY_ORDER)) != 0;
-  if (moved && (status = sort_anew(s))) return status;
+  return moved ? sort_anew(s) : MPM_OK;
+}
+
+mpm_status mpmi_stepper_prepare(mpm_stepper *s) {
+  mpm_status status;
+  if ((status = prepare_sets(s)) || (status = mpmi_stepper_sort(s))) return status;
+  find_mass_cut(s);
   if (s->walls_changed && (status = rebuild_constraints(s))) return status;
   if ((status = prepare_scratch(s)) || (status = prepare_nodes(s)) || (status = prepare_forces(s)))
     return status;

@@ -95,7 +95,10 @@ MPMI_INLINE void gather(int32_t dim, int32_t width, int32_t form, const mpmi_gat
     const double *x[3];
     for (int32_t k = 0; k < dim; ++k) x[k] = job->x[k] + begin + s;
     KERNEL(weights)(dim, width, job->axis, job->axis_weights, job->need, n, x, &W);
-    for (int64_t p = 0; p < n; ++p) gather_particle(dim, width, form, &W, p, job->tile, &out);
+    for (int64_t p = 0; p < n; ++p) {
+      mpmi_prefetch(&job->streams, begin + s + MPMI_CHUNK, p);
+      gather_particle(dim, width, form, &W, p, job->tile, &out);
+    }
     const double *volume = job->initial_volume + begin + s;
     MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) live[p] = volume[p] > 0.0 ? 1.0 : 0.0;
     unpack_scaled(dim, n, out.v, live, job->v + s, job->ld);

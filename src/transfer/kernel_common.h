@@ -16,15 +16,29 @@ typedef struct mpmi_lanes {
   double at[MPMI_GROUP];
 } mpmi_lanes;
 
+/* Folded in halves: short chains, and the same order always. */
 MPMI_INLINE double mpmi_lane_sum(const mpmi_lanes *l) {
-  double s = 0.0;
-  for (int32_t i = 0; i < MPMI_GROUP; ++i) s += l->at[i];
-  return s;
+  double h[MPMI_GROUP / 2], q[MPMI_GROUP / 4];
+  for (int32_t i = 0; i < MPMI_GROUP / 2; ++i) h[i] = l->at[i] + l->at[i + MPMI_GROUP / 2];
+  for (int32_t i = 0; i < MPMI_GROUP / 4; ++i) q[i] = h[i] + h[i + MPMI_GROUP / 4];
+  return (q[0] + q[2]) + (q[1] + q[3]);
+}
+MPMI_INLINE double mpmi_larger(double a, double b) {
+  return a > b ? a : b;
 }
 MPMI_INLINE double mpmi_lane_max(const mpmi_lanes *l) {
-  double s = l->at[0];
-  for (int32_t i = 1; i < MPMI_GROUP; ++i) s = l->at[i] > s ? l->at[i] : s;
-  return s;
+  double h[MPMI_GROUP / 2], q[MPMI_GROUP / 4];
+  for (int32_t i = 0; i < MPMI_GROUP / 2; ++i) h[i] = mpmi_larger(l->at[i], l->at[i + MPMI_GROUP / 2]);
+  for (int32_t i = 0; i < MPMI_GROUP / 4; ++i) q[i] = mpmi_larger(h[i], h[i + MPMI_GROUP / 4]);
+  return mpmi_larger(mpmi_larger(q[0], q[2]), mpmi_larger(q[1], q[3]));
+}
+
+/* Brings the next chunk's share of particle p (0 ... 31) nearer, to the second-level cache: a chunk of a
+ * stream is four lines, and asking for all of them at once would fill the queues. */
+MPMI_INLINE void mpmi_prefetch(const mpmi_streams *streams, int64_t next, int64_t p) {
+  enum { LINES = MPMI_CHUNK * (int32_t)sizeof(double) / 64, DOUBLES = 64 / (int32_t)sizeof(double) };
+  for (int64_t i = p; i < LINES * streams->count; i += MPMI_CHUNK)
+    __builtin_prefetch(streams->at[i / LINES] + next + DOUBLES * (i % LINES), 0, 2);
 }
 
 /* Nearest integer for |x| < 2^51 by adding and taking away 1.5 * 2^52: every instruction set can vectorise

@@ -56,6 +56,13 @@ enum { MPMI_SCATTER_4, MPMI_SCATTER_4_AFFINE, MPMI_SCATTER_8, MPMI_SCATTER_8_AFF
 /* Forms of the gather: 4 values: velocity and L; and C beside L; 8 values: velocity, its change and L. */
 enum { MPMI_GATHER_4, MPMI_GATHER_4_AFFINE, MPMI_GATHER_8, MPMI_GATHER_FORMS };
 
+/* Component arrays, each at slot 0, that the chunk after the present one will touch. */
+enum { MPMI_MAX_STREAMS = 64 };
+typedef struct mpmi_streams {
+  int32_t count;
+  const double *at[MPMI_MAX_STREAMS];
+} mpmi_streams;
+
 /* Component arrays of a set, each at slot 0. */
 typedef struct mpmi_scatter {
   mpmi_axis axis[3];
@@ -68,6 +75,7 @@ typedef struct mpmi_scatter {
   double gravity[3];
   double fused_dt; /* form 4 affine: time that the force acts on the momentum; 0: no force */
   double *tile;
+  mpmi_streams streams;
 } mpmi_scatter;
 typedef void (*mpmi_scatter_fn)(const mpmi_scatter *job, int64_t begin, int64_t end);
 
@@ -80,6 +88,7 @@ typedef struct mpmi_gather {
   const double *tile;
   int64_t ld;
   double *v, *dv, *L, *C; /* [3], [3], [9], [9]; outputs, slot `begin` at 0 */
+  mpmi_streams streams;
 } mpmi_gather;
 typedef void (*mpmi_gather_fn)(const mpmi_gather *job, int64_t begin, int64_t n);
 
@@ -95,7 +104,7 @@ typedef struct mpmi_move {
   const double *x_old[3], *v_old[3]; /* at the batch's first slot */
   double *x_new[3], *v_new[3];
   double centre[3], half[3];           /* of the loose tile */
-  double low[3], high[3];              /* bounds of the grid; infinite on periodic axes */
+  double low[3], high[3];              /* bounds of the grid */
   double period[3], inverse_period[3]; /* lengths; 0 when not periodic */
 } mpmi_move;
 typedef uint32_t (*mpmi_move_fn)(const mpmi_move *job, int64_t n);

@@ -151,7 +151,10 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
     KERNEL(weights)(dim, width, job->axis, job->axis_weights, job->need, n, x, &W);
     pack_momentum(dim, form, job, s, n, &momentum);
     if (form >= MPMI_SCATTER_8) pack_force(dim, job, s, n, &force);
-    for (int64_t p = 0; p < n; ++p) scatter_particle(dim, width, form, &W, p, &momentum, &force, job->tile);
+    for (int64_t p = 0; p < n; ++p) {
+      mpmi_prefetch(&job->streams, s + MPMI_CHUNK, p);
+      scatter_particle(dim, width, form, &W, p, &momentum, &force, job->tile);
+    }
   }
 }
 

@@ -53,11 +53,11 @@ MPMI_INLINE uint32_t survey(int32_t dim, const mpmi_survey *job, int64_t n, mpmi
       }
       if (job->x_old[0]) {
         const double *x = job->x[k] + s, *x_old = job->x_old[k] + s;
-        MPMI_IVDEP for (int32_t i = 0; i < MPMI_GROUP; ++i) {
-          double d = x[i] - x_old[i];
-          d -= job->period[k] * mpmi_round(d * job->inverse_period[k]);
-          work.at[i] += m[i] * job->gravity[k] * d;
-        }
+        if (job->gravity[k] != 0.0) MPMI_IVDEP for (int32_t i = 0; i < MPMI_GROUP; ++i) {
+            double d = x[i] - x_old[i];
+            d -= job->period[k] * mpmi_round(d * job->inverse_period[k]);
+            work.at[i] += m[i] * job->gravity[k] * d;
+          }
         if (job->force[0]) {
           const double *f = job->force[k] + s;
           MPMI_IVDEP for (int32_t i = 0; i < MPMI_GROUP; ++i) {
