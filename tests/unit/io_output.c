@@ -49,7 +49,7 @@ START_TEST(particle_arguments) {
   ck_refused(c, mpm_write_grid(w.stepper, path, 0, NULL), MPM_E_UNSUPPORTED, "mpm_grid_map()");
   ck_assert_int_eq(mpm_write_grid(NULL, path, 0, NULL), MPM_E_ARG);
   ck_ok(mpm_write_particles(set, path, 2, twice));
-  contains("NumberOfPoints=\"24\"");
+  contains("NumberOfPoints=\"36\"");
   contains("Name=\"mass\" NumberOfComponents=\"1\"");
   ck_assert_ptr_null(strstr(text, "velocity"));
   w.f.calls = 0;

@@ -113,10 +113,8 @@ static inline void io_open(io_world *w, const io_setup *setup) {
 
 static inline void io_close(io_world *w) {
   ck_ok(mpm_stepper_destroy(w->stepper));
-  for (int32_t m = 0; m < WORLD_SETS; ++m) {
-    ck_ok(mpm_particles_destroy(w->set[m]));
-    ck_ok(mpm_material_destroy(w->material[m]));
-  }
+  for (int32_t m = 0; m < WORLD_SETS; ++m) ck_ok(mpm_particles_destroy(w->set[m]));
+  for (int32_t m = 0; m < WORLD_SETS; ++m) ck_ok(mpm_material_destroy(w->material[m]));
   ck_ok(mpm_grid_destroy(w->f.grid));
   ck_ok(mpm_context_destroy(w->f.context));
   ck_assert_int_eq(w->f.held, 0);
@@ -158,6 +156,7 @@ static inline const char *io_path(const char *name, char *path, size_t capacity)
 }
 
 TCase *io_state_case(void);
+TCase *io_unlike_case(void);
 TCase *io_damage_case(void);
 TCase *io_hash_case(void);
 TCase *io_file_case(void);

@@ -1,7 +1,9 @@
 #include "support.h"
 
 #define BOTH_SCHEMES(basis, transfer, flip, name)                                                            \
-  {basis, MPM_USL, transfer, flip, name " USL"}, {basis, MPM_MUSL, transfer, flip, name " MUSL"}
+  {basis, MPM_USL, transfer, flip, name " USL"}, {                                                           \
+    basis, MPM_MUSL, transfer, flip, name " MUSL"                                                            \
+  }
 const method methods[METHODS] = {
     BOTH_SCHEMES(MPM_BSPLINE2, MPM_FLIP, 1.0, "quadratic FLIP"),
     BOTH_SCHEMES(MPM_BSPLINE2, MPM_FLIP, 0.9, "quadratic blend"),
@@ -42,7 +44,8 @@ void world_open(world *w, const world_desc *desc) {
   memset(w, 0, sizeof *w);
   ck_assert_int_eq(mpm_context_create(NULL, &w->context), MPM_OK);
   ck_ok(w, mpm_grid_create(w->context, &desc->grid, &w->grid));
-  ck_ok(w, mpm_material_create(w->context, desc->model, params, strcmp(desc->model, "j2") ? 3 : 5, &w->material));
+  ck_ok(w, mpm_material_create(w->context, desc->model, params, strcmp(desc->model, "j2") ? 3 : 5,
+                               &w->material));
   ck_ok(w, mpm_stepper_create(w->context, w->grid, &desc->stepper, &w->stepper));
   w->dim = desc->grid.dim;
 }
@@ -133,17 +136,19 @@ double throw_between(dice *d, double low, double high) {
   return low + (high - low) * ((double)(z >> 11) / 9007199254740992.0);
 }
 
-void add_cloud(const world *w, mpm_particles *set, dice *d, int64_t n, double low, double high, double speed) {
+void add_cloud(const world *w, mpm_particles *set, dice *d, int64_t n, double h, double low, double high,
+               double speed) {
   double *x = malloc((size_t)n * 16 * sizeof *x), *v = x + 3 * n, *volume = v + 3 * n, *F = volume + n;
   for (int64_t p = 0; p < n; ++p) {
     for (int32_t k = 0; k < w->dim; ++k) {
-      x[k * n + p] = throw_between(d, low, high);
+      x[k * n + p] = h * (floor(throw_between(d, low, high) / h * 16.0) + 0.5) / 16.0;
       v[k * n + p] = throw_between(d, -speed, speed);
     }
     volume[p] = throw_between(d, 0.5, 1.5) * pow(high - low, w->dim) / (double)n;
     for (int32_t c = 0; c < 9; ++c) {
       const int32_t row = c / 3, column = c % 3;
-      F[c * n + p] = (row == column) + (row < w->dim && column < w->dim ? throw_between(d, -0.02, 0.02) : 0.0);
+      F[c * n + p] =
+          (row == column) + (row < w->dim && column < w->dim ? throw_between(d, -0.02, 0.02) : 0.0);
     }
   }
   ck_ok(w, mpm_particles_add(set, n, x, v, volume, NULL, NULL, NULL));

@@ -5,12 +5,11 @@
 
 #include <check.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <mpm/mpm.h>
-#include <stdio.h>
-#define SHOW(...) do { if (getenv("MPM_SHOW")) printf(__VA_ARGS__); } while (0)
 
 #define PI 3.14159265358979323846
 
@@ -44,6 +43,12 @@ extern const method methods[METHODS];
   do {                                                                                                       \
     const mpm_status status_ = (call);                                                                       \
     if (status_) ck_abort_msg("%s: %s", mpm_status_name(status_), mpm_last_error((world_)->context));        \
+  } while (0)
+
+/* Measured numbers, for those who set MPM_SHOW in the environment. */
+#define show(...)                                                                                            \
+  do {                                                                                                       \
+    if (getenv("MPM_SHOW")) printf(__VA_ARGS__), fflush(stdout);                                             \
   } while (0)
 
 /* |value - wanted| <= tolerance; NaN fails. */
@@ -90,9 +95,11 @@ typedef struct dice {
 } dice;
 double throw_between(dice *d, double low, double high);
 
-/* n particles at random places of the box low ... high on every axis, with random velocities up to `speed`, volumes
- * and small random deformations. */
-void add_cloud(const world *w, mpm_particles *set, dice *d, int64_t n, double low, double high, double speed);
+/* n particles at random places of the box low ... high on every axis, with random velocities up to `speed`,
+ * volumes and small random deformations. Places are odd multiples of h / 32, so that no node is so light that
+ * it is cut. */
+void add_cloud(const world *w, mpm_particles *set, dice *d, int64_t n, double h, double low, double high,
+               double speed);
 /* Sets random affine matrices with entries up to `rate`. */
 void add_affine(const world *w, mpm_particles *set, dice *d, double rate);
 

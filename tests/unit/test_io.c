@@ -4,6 +4,7 @@
 Suite *io_suite(void) {
   Suite *suite = suite_create("io");
   suite_add_tcase(suite, io_state_case());
+  suite_add_tcase(suite, io_unlike_case());
   suite_add_tcase(suite, io_damage_case());
   suite_add_tcase(suite, io_hash_case());
   suite_add_tcase(suite, io_file_case());

@@ -82,7 +82,7 @@ START_TEST(refused_names) {
   refuse("", p, 3, MPM_E_NOT_FOUND, "no model");
   refuse("neo_hookean_decoupled", p, 3, MPM_E_UNSUPPORTED, "\"neo_hookean\"");
   refuse("newtonian_fluid", p, 3, MPM_E_UNSUPPORTED, "mpm_material_create_custom");
-  refuse("rigid", p, 3, MPM_E_UNSUPPORTED, "mpm_stepper_set_motion");
+  refuse("rigid", p, 3, MPM_E_UNSUPPORTED, "mpm_stepper_set_velocity_bc");
   p[2].name = "densty";
   refuse("linear_elastic", p, 3, MPM_E_NOT_FOUND, "nearest: density");
   p[2].name = "yield_stress";
