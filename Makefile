@@ -153,9 +153,13 @@ $(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
 
 check: check-unit check-api check-examples
 
+# Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together.
+SUITES ?= $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)
+JOBS ?= $(shell nproc)
 check-unit: $(UNIT)
-	@mkdir -p $(BUILD)/tests/scratch
-	@$(TEST_ENVIRONMENT) $(UNIT)
+	@mkdir -p $(SUITES:%=$(BUILD)/tests/scratch/%)
+	@printf '%s\n' $(SUITES) | $(TEST_ENVIRONMENT) xargs -P $(JOBS) -I{} sh -c \
+	  'out=$$(CK_RUN_SUITE={} MPM_SCRATCH="$$MPM_SCRATCH/{}" $(UNIT) 2>&1); status=$$?; echo "$$out"; exit $$status'
 
 check-api: all
 	@mkdir -p $(BUILD)/tests/scratch
@@ -178,14 +182,15 @@ check-setup:
 	$$sudo apt-get update -q && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q check pkg-config g++
 
-SANITIZED = $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
+# Long runs of the method add nothing under a sanitizer but time.
+SANITIZED = CK_EXCLUDE_TAGS=long $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
 check-asan:
 	ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
 	  BUILD=$(BUILD)-asan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 
 # The fork of each test would hide threads from the sanitizer.
 check-tsan:
-	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) \
+	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="context executor threads rollback restart" \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
 
 # Plants known faults one by one in a copy of the sources and expects the unit tests to notice each.

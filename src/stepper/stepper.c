@@ -263,14 +263,16 @@ mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
   mpm_stepper_desc d;
   if ((status = read_desc(s->context, s->grid, desc, &d))) return status;
-  const int32_t begins = d.reference_positions && !s->desc.reference_positions;
-  for (int32_t m = 0; m < s->member_count; ++m) {
+  for (int32_t m = 0; m < s->member_count; ++m)
     if (s->member[m].set->mapped)
       return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views first", (int)m);
-    if (begins && (status = mpmi_field_make_present(s->member[m].set, MPMI_REFERENCE))) return status;
-  }
-  if (!d.reference_positions)
+  const int32_t begins = d.reference_positions && !s->desc.reference_positions;
+  for (int32_t m = 0; m < s->member_count && begins && !status; ++m)
+    status = mpmi_field_make_present(s->member[m].set, MPMI_REFERENCE);
+  /* not wanted, or not to be had for all of them */
+  if (!d.reference_positions || status)
     for (int32_t m = 0; m < s->member_count; ++m) mpmi_field_make_absent(s->member[m].set, MPMI_REFERENCE);
+  if (status) return status;
   s->desc = d;
   s->energies.valid = 0; /* the angular momentum depends on the transfer */
   return MPM_OK;

@@ -91,11 +91,13 @@ static mpm_status hold_some(void *user, const mpm_node_batch *b, uint8_t *prescr
  */
 /* First cell and number of cells on each axis. */
 static void extent(const run_options *o, int64_t *first, int64_t *count) {
-  static const int64_t large[3][3][2] = {{{0, 1750}}, {{15, 66}, {0, 66}}, {{4, 10}, {0, 13}, {0, 13}}};
-  static const int64_t small[3][3][2] = {{{0, 140}}, {{10, 26}, {0, 18}}, {{4, 5}, {0, 8}, {0, 7}}};
+  static const int64_t cells[2][3][3][2] = {
+      {{{0, 140}}, {{10, 26}, {0, 18}}, {{4, 5}, {0, 8}, {0, 7}}},
+      {{{0, 1750}}, {{15, 66}, {0, 66}}, {{4, 10}, {0, 13}, {0, 13}}},
+  };
   for (int32_t k = 0; k < o->dim; ++k) {
-    first[k] = (o->large ? large : small)[o->dim - 1][k][0];
-    count[k] = (o->large ? large : small)[o->dim - 1][k][1];
+    first[k] = cells[o->large != 0][o->dim - 1][k][0];
+    count[k] = cells[o->large != 0][o->dim - 1][k][1];
   }
 }
 

@@ -122,6 +122,22 @@ START_TEST(ends_exactly) {
 }
 END_TEST
 
+/* Also where t + (t_end - t) is not t_end. */
+START_TEST(ends_exactly_whatever_rounds) {
+  int32_t rounds = 0;
+  for (int32_t i = 0; i < 30; ++i) {
+    const double t = -2e-4 * (1.0 + 0.5 * run_noise((uint64_t)i));
+    d.t_end = 1e-6 * (1.0 + 0.5 * run_noise((uint64_t)(i + 100)));
+    rounds += t + (d.t_end - t) != d.t_end;
+    run_ok(&r, mpm_stepper_set_time(r.stepper, t, 0));
+    run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+    ck_assert_int_eq(r.info.step, 1);
+    ck_assert_double_eq(r.info.t, d.t_end);
+  }
+  ck_assert_int_gt(rounds, 0);
+}
+END_TEST
+
 /* The sub-step is a share of the stable one of the present state, unless something else is smaller. */
 START_TEST(share_of_the_stable_step) {
   double stable;
@@ -273,6 +289,7 @@ TCase *stepper_advance_case(void) {
   tcase_add_test(tests, defaults);
   tcase_add_test(tests, refused_values);
   tcase_add_test(tests, ends_exactly);
+  tcase_add_test(tests, ends_exactly_whatever_rounds);
   tcase_add_test(tests, share_of_the_stable_step);
   tcase_add_test(tests, first_and_growth);
   tcase_add_test(tests, runs_out_of_steps);

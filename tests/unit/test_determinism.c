@@ -170,10 +170,12 @@ END_TEST
 Suite *determinism_suite(void) {
   Suite *suite = suite_create("determinism");
   TCase *methods = tcase_create("methods");
+  tcase_set_tags(methods, "long");
   tcase_set_timeout(methods, 900);
   tcase_add_loop_test(methods, same_bits, 0, COMBINATIONS);
   suite_add_tcase(suite, methods);
   TCase *hashes = tcase_create("hashes");
+  tcase_set_tags(hashes, "long");
   tcase_set_timeout(hashes, 900);
   tcase_add_test(hashes, hash_differs);
   tcase_add_test(hashes, best_isa_is_one_of_them);

@@ -204,6 +204,7 @@ Suite *exact_suite(void);
 Suite *exact_suite(void) {
   Suite *suite = suite_create("exact");
   TCase *motion = tcase_create("motion");
+  tcase_set_tags(motion, "long");
   tcase_set_timeout(motion, 30.0);
   tcase_add_loop_test(motion, translation_is_free_of_stress, 0, METHODS);
   tcase_add_loop_test(motion, free_fall, 0, 4 * METHODS);
