@@ -70,6 +70,8 @@ mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *
 /* Writes min(struct_size, known) bytes of `value` to the caller's `out`, keeping out's struct_size. */
 mpm_status mpmi_write_struct(mpm_context *context, const char *name, const void *value, uint32_t known,
                              void *out);
+/* The check that mpmi_write_struct makes, for calls that must know before they do anything. */
+mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_t known, const void *out);
 /* For mpm_*_desc_init: copies the defaults, zeroes any tail, sets struct_size. Refuses sizes below `known`.
  */
 mpm_status mpmi_init_struct(const void *defaults, uint32_t known, void *out, uint32_t struct_size);

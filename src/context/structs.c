@@ -31,12 +31,19 @@ mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *
   return MPM_OK;
 }
 
-mpm_status mpmi_write_struct(mpm_context *context, const char *name, const void *value, uint32_t known,
-                             void *out) {
+mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_t known, const void *out) {
   if (!out) return mpmi_fail(context, MPM_E_ARG, "%s is NULL", name);
   uint32_t given = struct_size_of(out);
   if (given < sizeof given || given > LARGEST_STRUCT)
     return mpmi_fail(context, MPM_E_ARG, "%s: struct_size is %u, expected %u", name, given, known);
+  return MPM_OK;
+}
+
+mpm_status mpmi_write_struct(mpm_context *context, const char *name, const void *value, uint32_t known,
+                             void *out) {
+  mpm_status status = mpmi_check_out_struct(context, name, known, out);
+  if (status) return status;
+  uint32_t given = struct_size_of(out);
   memcpy(out, value, given < known ? given : known);
   memcpy(out, &given, sizeof given);
   return MPM_OK;

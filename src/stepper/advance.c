@@ -81,13 +81,11 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
 mpm_status mpm_advance(mpm_stepper *s, const mpm_advance_desc *desc, mpm_step_info *info) {
   MPMI_ENTER(s, MPMI_STEPPER);
   if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
-  if (info && info->struct_size < sizeof info->struct_size)
-    return mpmi_fail(s->context, MPM_E_ARG,
-                     "mpm_step_info.struct_size is %u: set it to sizeof(mpm_step_info)",
-                     (unsigned)info->struct_size);
   mpm_advance_desc d = defaults;
-  mpm_status status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d);
-  if (status || (status = check(s, &d))) return status;
+  mpm_status status = info ? mpmi_check_out_struct(s->context, "mpm_step_info", sizeof *info, info) : MPM_OK;
+  if (status || (status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d)) ||
+      (status = check(s, &d)))
+    return status;
   if (s->phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
   status = sub_steps(s, &d);

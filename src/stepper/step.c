@@ -189,11 +189,7 @@ static mpm_status give_info(mpm_stepper *s, mpm_status status, mpm_step_info *in
 
 /* Writing the info must not be what fails a step that is done. */
 static mpm_status check_info(mpm_stepper *s, const mpm_step_info *info) {
-  if (info && info->struct_size < sizeof info->struct_size)
-    return mpmi_fail(s->context, MPM_E_ARG,
-                     "mpm_step_info.struct_size is %u: set it to sizeof(mpm_step_info)",
-                     (unsigned)info->struct_size);
-  return MPM_OK;
+  return info ? mpmi_check_out_struct(s->context, "mpm_step_info", sizeof *info, info) : MPM_OK;
 }
 
 mpm_status mpm_step(mpm_stepper *s, double dt, mpm_step_info *info) {

@@ -337,8 +337,9 @@ char *run_fields(const run *r, int32_t m, size_t *bytes) {
   const char *name;
   int32_t type, components;
   for (int32_t f = 0; mpm_particles_field_info(set, f, &name, &type, &components, NULL) == MPM_OK; ++f) {
-    const size_t size = (type == MPM_U8 ? 1 : 8) * (size_t)(components * n);
+    const size_t size = ((type == MPM_U8 ? 1 : 8) * (size_t)(components * n) + 7) / 8 * 8;
     all = realloc(all, *bytes + size + 1);
+    memset(all + *bytes, 0, size);
     const mpm_status status = mpm_particles_get(set, name, type, components, n, NULL, all + *bytes);
     if (status == MPM_E_STATE) continue; /* "reference_position" that nobody keeps */
     run_ok(r, status);

@@ -177,7 +177,7 @@ START_TEST(infos) {
   for (int32_t i = 0; i < 4; ++i) {
     mpm_advance_desc d;
     ck_assert_int_eq(mpm_advance_desc_init(&d, sizeof d), MPM_OK);
-    d.t_end = 1e-4;
+    d.t_end = 1.0;
     info.struct_size = sizes[i];
     run_refused(&r, mpm_stepper_info(r.stepper, &info), MPM_E_ARG, "struct_size");
     run_refused(&r, mpm_step(r.stepper, RUN_DT, &info), MPM_E_ARG, "struct_size");
