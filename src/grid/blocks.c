@@ -223,6 +223,7 @@ mpm_status mpmi_blocks_order(mpmi_blocks *b) {
   for (int64_t i = 0; i < with_halo; ++i)
     if ((status = insert_originals(b, i))) return status;
 
+  if (!b->count) return MPM_OK;
   mpmi_radix_sort(b->count, b->key, b->order_scratch, b->key_scratch, b->order);
   memcpy(b->coord_scratch, b->coord, (size_t)b->count * sizeof *b->coord);
   for (int64_t i = 0; i < b->count; ++i) {

@@ -73,7 +73,7 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_ar
       (status =
            reserve(to->context, (void **)&to->source, &to->source_capacity, set->ld, sizeof *to->source)))
     return status;
-  memset(to->source, 0xff, (size_t)slots * sizeof *to->source);
+  if (slots) memset(to->source, 0xff, (size_t)slots * sizeof *to->source);
   /* start[b] serves as the cursor of block b and is put back afterwards */
   const int64_t n = by_id ? set->count : set->slots;
   for (int64_t i = 0; i < n; ++i) {
@@ -193,8 +193,10 @@ static void hole_position(const mpm_grid *grid, const mpmi_blocks *blocks, int64
 
 void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_arrangement *to) {
   const int64_t slots = to->start[blocks->count];
-  sort_single_copies(set, to->source, slots);
-  sort_double_copies(set, to->source, slots);
+  if (slots) {
+    sort_single_copies(set, to->source, slots);
+    sort_double_copies(set, to->source, slots);
+  }
   for (int64_t b = 0; b < blocks->count; ++b) {
     int64_t end = to->start[b + 1], begin = end;
     while (begin > to->start[b] && to->source[begin - 1] == NONE) --begin;

@@ -18,7 +18,7 @@ static void zero_task(void *data, int64_t k) {
   const p2g_job *job = data;
   const int64_t slots = job->s->blocks.count * job->s->blocks.nodes * job->values, tasks = job->s->tasks;
   const int64_t begin = slots * k / tasks, end = slots * (k + 1) / tasks;
-  memset(job->nodes + begin, 0, (size_t)(end - begin) * sizeof *job->nodes);
+  if (end > begin) memset(job->nodes + begin, 0, (size_t)(end - begin) * sizeof *job->nodes);
 }
 
 static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatter *scatter) {

@@ -217,7 +217,7 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
                                                       roomy(slots * 4, s->again_capacity), sizeof *s->again)))
     return status;
   s->impulses = gives_impulses(s);
-  if (s->impulses) {
+  if (s->impulses && slots) {
     if ((status = reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
                           roomy(slots * 6, s->impulse_capacity), sizeof *s->impulse)))
       return status;
@@ -237,7 +237,7 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
     s->held_value = value;
     s->held_capacity = wanted;
   }
-  if (s->velocity_bc) memset(s->held, 0, (size_t)(slots * 3));
+  if (s->velocity_bc && slots) memset(s->held, 0, (size_t)(slots * 3));
   return MPM_OK;
 }
 

@@ -108,7 +108,8 @@ START_TEST(steps_conserve) {
 }
 END_TEST
 
-/* Three parts in a row are the step: bit by bit, but to rounding where a whole step fuses force and momentum. */
+/* Three parts in a row are the step: bit by bit, but to rounding where a whole step fuses force and momentum.
+ */
 START_TEST(parts_are_the_step) {
   const method *how = &methods[_i];
   world w[2];
@@ -137,8 +138,8 @@ START_TEST(parts_are_the_step) {
   if (how->transfer == MPM_APIC_MLS) {
     for (int64_t i = 0; i < 2 * CLOUD; ++i) ck_within(how->name, v[1][i], v[0][i], 1e-12);
     for (int64_t i = 0; i < 9 * CLOUD; ++i) ck_within(how->name, F[1][i], F[0][i], 1e-12);
-  } else if (memcmp(x[0], x[1], 2 * CLOUD * sizeof(double)) || memcmp(v[0], v[1], 2 * CLOUD * sizeof(double)) ||
-      memcmp(F[0], F[1], 9 * CLOUD * sizeof(double)))
+  } else if (memcmp(x[0], x[1], 2 * CLOUD * sizeof(double)) ||
+             memcmp(v[0], v[1], 2 * CLOUD * sizeof(double)) || memcmp(F[0], F[1], 9 * CLOUD * sizeof(double)))
     ck_abort_msg("%s: a step in parts differs from a whole one", how->name);
   for (int32_t i = 0; i < 2; ++i) free(x[i]), free(v[i]), free(F[i]);
 }

@@ -23,10 +23,10 @@ static mpm_status show(void *user, const mpm_node_batch *b, uint8_t *prescribed,
   ck_assert_double_eq(b->dt, shown.dt);
   static const double spacing[3] = {0.1, 0.11, 0.09}, origin[3] = {-0.3, 0.2, 0.1};
   for (int64_t i = 0; i < b->n; ++i) {
-    ck_assert_double_gt(b->mass[i], 0.0);
+    parts_holds(b->mass[i] > 0.0);
     shown.mass += b->mass[i];
     for (int32_t c = 0; c < b->dim; ++c) {
-      ck_assert_int_eq(prescribed[c * b->ld + i], 0);
+      parts_holds(prescribed[c * b->ld + i] == 0);
       shown.index[shown.n][c] = b->index[c * b->ld + i];
       parts_close(b->position[c * b->ld + i], origin[c] + spacing[c] * (double)b->index[c * b->ld + i], 1e-12,
                   "position of a node");
@@ -35,11 +35,10 @@ static mpm_status show(void *user, const mpm_node_batch *b, uint8_t *prescribed,
       prescribed[c * b->ld + i] = 1;
       velocity[c * b->ld + i] = shown.value[c];
     }
-    for (int64_t k = 0; k < shown.n; ++k)
-      ck_assert_msg(memcmp(shown.index[k], shown.index[shown.n], sizeof shown.index[k]) != 0,
-                    "node %lld comes twice", (long long)shown.index[k][0]);
+    for (int64_t k = 0; k < shown.n && shown.axis < 0; ++k)
+      parts_holds(memcmp(shown.index[k], shown.index[shown.n], sizeof shown.index[k]) != 0); /* once only */
     ++shown.n;
-    ck_assert_int_lt(shown.n, 8192);
+    parts_holds(shown.n < 8192);
   }
   return 0;
 }
@@ -293,6 +292,7 @@ END_TEST
 
 TCase *stepper_boundary_case(void) {
   TCase *tests = tcase_create("boundary");
+  tcase_set_tags(tests, "long");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, nodes_shown, 0, 12);
   tcase_add_loop_test(tests, all_nodes_held, 0, 6 * RUN_METHODS);
