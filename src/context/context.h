@@ -47,6 +47,9 @@ void mpmi_log(mpm_context *context, int32_t level, const char *format, ...)
 void *mpmi_alloc(mpm_context *context, size_t bytes);
 void *mpmi_alloc_zeroed(mpm_context *context, size_t bytes);
 void mpmi_free(mpm_context *context, void *memory, size_t bytes); /* NULL is fine */
+/* Makes room for `wanted` elements where there is less; what was there is lost. On failure nothing has
+ * changed. */
+mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size);
 /* count * size with overflow giving SIZE_MAX, which mpmi_alloc refuses. */
 size_t mpmi_bytes(int64_t count, size_t size);
 

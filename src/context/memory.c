@@ -51,3 +51,13 @@ size_t mpmi_bytes(int64_t count, size_t size) {
   if (count < 0 || (size && (uint64_t)count > SIZE_MAX / size)) return SIZE_MAX;
   return (size_t)count * size;
 }
+
+mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size) {
+  if (wanted <= *capacity) return MPM_OK;
+  void *memory = mpmi_alloc(context, mpmi_bytes(wanted, size));
+  if (!memory) return MPM_E_NOMEM;
+  mpmi_free(context, *at, mpmi_bytes(*capacity, size));
+  *at = memory;
+  *capacity = wanted;
+  return MPM_OK;
+}

@@ -99,15 +99,9 @@ static int32_t block_is_bound(const mpmi_blocks *b, const mpmi_wall *wall, int64
   return 0;
 }
 
+/* Room for a quarter more: constraints come and go as a body moves along its walls. */
 static mpm_status reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size) {
-  if (wanted <= *capacity) return MPM_OK;
-  const int64_t next = wanted + wanted / 4 + 64;
-  void *memory = mpmi_alloc(context, mpmi_bytes(next, size));
-  if (!memory) return MPM_E_NOMEM;
-  mpmi_free(context, *at, mpmi_bytes(*capacity, size));
-  *at = memory;
-  *capacity = next;
-  return MPM_OK;
+  return mpmi_reserve(context, at, capacity, wanted > *capacity ? wanted + wanted / 4 + 64 : 0, size);
 }
 
 /* One walk over all bound nodes; called to count and then to fill. */

@@ -16,24 +16,14 @@ void mpmi_arrangement_free(mpmi_arrangement *a) {
   mpmi_arrangement_init(a, a->context);
 }
 
-static mpm_status reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size) {
-  if (wanted <= *capacity) return MPM_OK;
-  void *memory = mpmi_alloc(context, mpmi_bytes(wanted, size));
-  if (!memory) return MPM_E_NOMEM;
-  mpmi_free(context, *at, mpmi_bytes(*capacity, size));
-  *at = memory;
-  *capacity = wanted;
-  return MPM_OK;
-}
-
 mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *a, int64_t blocks) {
-  return reserve(a->context, (void **)&a->start, &a->start_capacity,
-                 blocks + 1 > a->start_capacity ? 2 * blocks + 2 : 0, sizeof *a->start);
+  return mpmi_reserve(a->context, (void **)&a->start, &a->start_capacity,
+                      blocks + 1 > a->start_capacity ? 2 * blocks + 2 : 0, sizeof *a->start);
 }
 
 mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks, mpmi_arrangement *to) {
   mpm_status status =
-      reserve(to->context, (void **)&to->block, &to->block_capacity, set->ld, sizeof *to->block);
+      mpmi_reserve(to->context, (void **)&to->block, &to->block_capacity, set->ld, sizeof *to->block);
   if (status) return status;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   const double *x = mpmi_f64(set, MPMI_POSITION, 0);
@@ -70,8 +60,8 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_ar
     slots += here;
   }
   if ((status = mpmi_particles_reserve(set, slots)) ||
-      (status =
-           reserve(to->context, (void **)&to->source, &to->source_capacity, set->ld, sizeof *to->source)))
+      (status = mpmi_reserve(to->context, (void **)&to->source, &to->source_capacity, set->ld,
+                             sizeof *to->source)))
     return status;
   if (slots) memset(to->source, 0xff, (size_t)slots * sizeof *to->source);
   /* start[b] serves as the cursor of block b and is put back afterwards */

@@ -4,16 +4,6 @@
 
 #include <string.h>
 
-static mpm_status reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size) {
-  if (wanted <= *capacity) return MPM_OK;
-  void *memory = mpmi_alloc(context, mpmi_bytes(wanted, size));
-  if (!memory) return MPM_E_NOMEM;
-  mpmi_free(context, *at, mpmi_bytes(*capacity, size));
-  *at = memory;
-  *capacity = wanted;
-  return MPM_OK;
-}
-
 /* Room for half as much again: bodies spread, and a step in steady state must not allocate. */
 static int64_t roomy(int64_t wanted, int64_t capacity) {
   return wanted > capacity ? wanted + wanted / 4 : 0;
@@ -78,21 +68,21 @@ static void swap_in_next(mpm_stepper *s) {
 }
 
 static mpm_status reserve_orbits(mpm_stepper *s, const mpmi_constraints *constraints) {
-  return reserve(s->context, (void **)&s->orbit_state, &s->orbit_state_capacity,
-                 roomy(MPMI_ORBIT_STATE * constraints->orbit_count, s->orbit_state_capacity),
-                 sizeof *s->orbit_state);
+  return mpmi_reserve(s->context, (void **)&s->orbit_state, &s->orbit_state_capacity,
+                      roomy(MPMI_ORBIT_STATE * constraints->orbit_count, s->orbit_state_capacity),
+                      sizeof *s->orbit_state);
 }
 
 mpm_status mpmi_stepper_adopt(mpm_stepper *s) {
   const int64_t blocks = s->next_blocks.count;
   mpm_status status;
-  if ((status = reserve(s->context, (void **)&s->block_sums, &s->block_sums_capacity,
-                        roomy(blocks, s->block_sums_capacity), sizeof *s->block_sums)) ||
+  if ((status = mpmi_reserve(s->context, (void **)&s->block_sums, &s->block_sums_capacity,
+                             roomy(blocks, s->block_sums_capacity), sizeof *s->block_sums)) ||
       (status = mpmi_constraints_build(&s->next_constraints, &s->next_blocks, s->wall)) ||
       (status = reserve_orbits(s, &s->next_constraints)) ||
       /* last, because the present cuts point into this memory */
-      (status = reserve(s->context, (void **)&s->list_memory, &s->list_capacity,
-                        roomy(2 * blocks, s->list_capacity), sizeof *s->list_memory)))
+      (status = mpmi_reserve(s->context, (void **)&s->list_memory, &s->list_capacity,
+                             roomy(2 * blocks, s->list_capacity), sizeof *s->list_memory)))
     return status;
   cut_work(s);
   swap_in_next(s);
@@ -210,16 +200,17 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
   const int64_t slots = s->blocks.count * s->blocks.nodes;
   mpm_status status;
   s->values = mpmi_is_mls(s) && !s->staged ? 4 : 8;
-  if ((status = reserve(s->context, (void **)&s->node, &s->node_capacity,
-                        roomy(slots * s->values, s->node_capacity), sizeof *s->node)))
+  if ((status = mpmi_reserve(s->context, (void **)&s->node, &s->node_capacity,
+                             roomy(slots * s->values, s->node_capacity), sizeof *s->node)))
     return status;
-  if (s->desc.scheme == MPM_MUSL && (status = reserve(s->context, (void **)&s->again, &s->again_capacity,
-                                                      roomy(slots * 4, s->again_capacity), sizeof *s->again)))
+  if (s->desc.scheme == MPM_MUSL &&
+      (status = mpmi_reserve(s->context, (void **)&s->again, &s->again_capacity,
+                             roomy(slots * 4, s->again_capacity), sizeof *s->again)))
     return status;
   s->impulses = gives_impulses(s);
   if (s->impulses && slots) {
-    if ((status = reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
-                          roomy(slots * 6, s->impulse_capacity), sizeof *s->impulse)))
+    if ((status = mpmi_reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
+                               roomy(slots * 6, s->impulse_capacity), sizeof *s->impulse)))
       return status;
     memset(s->impulse, 0, (size_t)(slots * 6) * sizeof *s->impulse);
   }
