@@ -38,7 +38,7 @@ LIBS := -lm -lpthread
 # Kernels are compiled once for each instruction set, with contraction to fused multiply-add; all other files
 # once, without it, so that only the kernels' results depend on the instruction set.
 KERNEL_PATTERNS := src/transfer/weights*.c src/transfer/bspline*.c src/transfer/scatter.c src/transfer/gather.c \
-  src/transfer/advance.c src/transfer/survey.c src/transfer/kernels.c src/material/law_*.c
+  src/transfer/box.c src/transfer/update.c src/transfer/advance.c src/transfer/survey.c src/transfer/kernels.c src/material/law_*.c
 KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))
 PLAIN := $(filter-out $(KERNELS),$(sort $(wildcard src/*/*.c)))
 HEADERS := $(sort $(wildcard include/mpm/*.h include/mpm/*.hpp))
@@ -49,7 +49,7 @@ ISAS += avx2 avx512
 endif
 ISA_baseline :=
 ISA_avx2 := -mavx2 -mfma
-ISA_avx512 := -mavx512f -mavx512vl -mavx512dq -mavx2 -mfma -mprefer-vector-width=256
+ISA_avx512 := -mavx512f -mavx512vl -mavx512dq -mavx2 -mfma -mprefer-vector-width=512
 KERNEL_FLAGS = $(KERNEL_OPT) -ffp-contract=fast -fno-math-errno -fno-trapping-math -Wno-psabi
 
 OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/obj/%.$(isa).o))

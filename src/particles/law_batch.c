@@ -14,6 +14,14 @@ size_t mpmi_law_batch_bytes(const mpm_material *material) {
   return mpmi_bytes(rows * mpmi_law_batch_length(material), sizeof(double));
 }
 
+/* What a law need not fill: no viscosity, energy unknown. */
+static void preset_optional(mpmi_law_batch *b, int64_t n) {
+  for (int64_t p = 0; p < n; ++p) {
+    b->viscosity[p] = 0.0;
+    b->energy[p] = (double)NAN;
+  }
+}
+
 void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *memory) {
   const int64_t ld = mpmi_law_batch_length(material);
   double *at = memory;
@@ -37,6 +45,7 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
   memset(b->stress, 0, (size_t)(6 * ld) * sizeof(double));
   memset(b->stress_new, 0, (size_t)(6 * ld) * sizeof(double));
   memset(b->wave_speed, 0, (size_t)ld * sizeof(double));
+  preset_optional(b, ld);
   b->batch = (mpm_material_batch){.struct_size = sizeof b->batch,
                                   .state_count = material->state_count,
                                   .ld = ld,
@@ -74,10 +83,7 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
   if (material->state_count)
     copy_rows(b->state, b->ld, mpmi_f64(set, MPMI_STATE, 0) + begin, set->ld, material->state_count, n);
   if (!material->law) copy_rows(b->position, b->ld, mpmi_f64(set, MPMI_POSITION, 0) + begin, set->ld, dim, n);
-  for (int64_t p = 0; p < n; ++p) {
-    b->viscosity[p] = 0.0;
-    b->energy[p] = (double)NAN;
-  }
+  if (!material->law) preset_optional(b, n);
 }
 
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {

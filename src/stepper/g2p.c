@@ -12,6 +12,9 @@ typedef struct g2p_job {
   const double *nodes;
 } g2p_job;
 
+/* Reading the clock costs as much as the law of a few particles: one batch in so many stands for all. */
+enum { TIMED_BATCHES = 16 };
+
 /* One batch of one set in one block, with everything that the kernels are given. */
 typedef struct batch_job {
   const g2p_job *job;
@@ -24,6 +27,7 @@ typedef struct batch_job {
   mpmi_deform deform;
   mpmi_survey survey;
   double *v_bar, *dv, *C;
+  int64_t batches;
   int32_t law_ran; /* on the batch at hand: its stress is that of this step */
 } batch_job;
 
@@ -249,9 +253,10 @@ static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
   uint32_t flags = s->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
                                            mpmi_f64(set, MPMI_VOLUME, 0) + begin, n);
   if (flags) return flags;
-  const double started = s->profiled ? mpmi_seconds() : 0.0;
+  const int32_t timed = s->profiled && b->batches++ % TIMED_BATCHES == 0;
+  const double started = timed ? mpmi_seconds() : 0.0;
   const mpm_status status = mpmi_law_batch_run(&b->law, set);
-  if (s->profiled) b->scratch->law_seconds += mpmi_seconds() - started;
+  if (timed) b->scratch->law_seconds += TIMED_BATCHES * (mpmi_seconds() - started);
   if (status) {
     mpmi_failure_take(&b->scratch->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
                                                             "the material callback"});
@@ -316,9 +321,15 @@ static void g2p_task(void *data, int64_t k) {
       if (m != bound) bind_set(&b, m);
       bound = m;
       bind_block(&b, block);
-      for (int64_t p = start[block]; p < start[block + 1]; p += b.law.ld) {
-        const int64_t left = start[block + 1] - p;
-        one_batch(&b, p, left < b.law.ld ? left : b.law.ld, sums);
+      const int64_t slots = start[block + 1] - start[block];
+      for (int64_t p = 0; p < slots; p += b.law.ld) {
+        const int64_t left = slots - p, n = left < b.law.ld ? left : b.law.ld;
+        /* the nodes of the next block, share by share */
+        if (m == 0 && i + 1 < cut->bound[k + 1])
+          mpmi_tile_fetch(s, cut->list[i + 1], job->nodes, job->values,
+                          (int32_t)(s->blocks.neighbours * p / slots),
+                          (int32_t)(s->blocks.neighbours * (p + n) / slots));
+        one_batch(&b, start[block] + p, n, sums);
       }
     }
   }
@@ -332,16 +343,16 @@ static int32_t has_host_law(const mpm_stepper *s) {
 
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt) {
   g2p_job job = {.s = s, .what = what, .dt = dt, .nodes = nodes, .values = values};
-  const int32_t mls = mpmi_is_mls(s);
-  job.need = mls ? MPMI_NEED_MLS : MPMI_NEED_GRADIENT;
+  job.need = MPMI_NEED_GRADIENT;
   job.form = MPMI_GATHER_4;
-  if (what & MPMI_G2P_MOVE) {
-    if (s->desc.transfer == MPM_APIC) {
-      job.form = MPMI_GATHER_4_AFFINE;
-      job.need |= MPMI_NEED_MOMENT;
-    } else if (s->desc.transfer == MPM_FLIP) {
-      job.form = MPMI_GATHER_8;
-    }
+  if (mpmi_is_mls(s)) {
+    job.form = MPMI_GATHER_4_MLS;
+    job.need = 0;
+  } else if ((what & MPMI_G2P_MOVE) && s->desc.transfer == MPM_APIC) {
+    job.form = MPMI_GATHER_4_AFFINE;
+    job.need |= MPMI_NEED_MOMENT;
+  } else if ((what & MPMI_G2P_MOVE) && s->desc.transfer == MPM_FLIP) {
+    job.form = MPMI_GATHER_8;
   }
   mpm_status status = mpmi_run_tasks(s, has_host_law(s), s->tasks, g2p_task, &job);
   return status ? status : mpmi_stepper_failure(s);

@@ -1,5 +1,4 @@
-/* Nodal velocities: v = p / m, a = f / m, v~ = v + dt a (MPoint theory eqs 30-32), on every node as if it
- * were free. Nodes lighter than the cut stay at rest: dividing by their mass would only make noise. */
+/* The grid's own part of a step, on every node as if it were free: transfer/update.c. */
 #include "stepper/stepper.h"
 
 typedef struct nodes_job {
@@ -12,22 +11,17 @@ static void nodes_task(void *data, int64_t k) {
   const nodes_job *job = data;
   const mpm_stepper *s = job->s;
   const int64_t slots = s->blocks.count * s->blocks.nodes, tasks = s->tasks;
-  const double cut = s->mass_cut, dt = job->dt;
-  for (int64_t i = slots * k / tasks; i < slots * (k + 1) / tasks; ++i) {
-    double *node = job->nodes + i * job->values;
-    const double mass = node[3], inverse = mass > cut ? 1.0 / mass : 0.0;
-    for (int32_t c = 0; c < 3; ++c) node[c] *= inverse;
-    if (job->values == 4) continue;
-    for (int32_t c = 0; c < 3; ++c) {
-      const double dv = dt * node[4 + c] * inverse;
-      node[c] += dv;
-      node[4 + c] = dv;
-    }
-  }
+  const int64_t begin = slots * k / tasks, end = slots * (k + 1) / tasks;
+  s->scratch[k].active =
+      s->kernels->update(job->values, job->nodes + begin * job->values, end - begin, s->mass_cut, job->dt);
 }
 
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t what, double dt) {
-  nodes_job job = {s, what == MPMI_P2G_AGAIN ? 4 : s->values, dt,
-                   what == MPMI_P2G_AGAIN ? s->again : s->node};
-  return mpmi_run_tasks(s, 0, s->tasks, nodes_task, &job);
+  const int32_t again = what == MPMI_P2G_AGAIN;
+  nodes_job job = {s, again ? 4 : s->values, dt, again ? s->again : s->node};
+  const mpm_status status = mpmi_run_tasks(s, 0, s->tasks, nodes_task, &job);
+  if (status || again) return status;
+  s->last.active_nodes = 0;
+  for (int32_t k = 0; k < s->tasks; ++k) s->last.active_nodes += s->scratch[k].active;
+  return MPM_OK;
 }

@@ -14,6 +14,9 @@ typedef struct p2g_job {
 #define TILE_FITS(dim, width) (2 * MPMI_BLOCK_EDGE(dim) >= MPMI_TILE_EDGE(dim, width))
 _Static_assert(TILE_FITS(1, 4) && TILE_FITS(2, 4) && TILE_FITS(3, 4), "tiles of one colour overlap");
 
+/* A block is scattered in pieces, and in front of each a share of its nodes is asked for. */
+enum { PIECES = 9 };
+
 static void zero_task(void *data, int64_t k) {
   const p2g_job *job = data;
   const int64_t slots = job->s->blocks.count * job->s->blocks.nodes * job->values, tasks = job->s->tasks;
@@ -68,16 +71,24 @@ static void p2g_task(void *data, int64_t k) {
   size_t tile_doubles = (size_t)job->values;
   for (int32_t d = 0; d < grid->dim; ++d) tile_doubles *= (size_t)MPMI_TILE_EDGE(grid->dim, grid->width);
   mpmi_scatter scatter;
+  memset(tile, 0, tile_doubles * sizeof *tile);
   for (int64_t i = cut->bound[k]; i < cut->bound[k + 1]; ++i) {
     const int32_t block = cut->list[i];
-    memset(tile, 0, tile_doubles * sizeof *tile);
     for (int32_t m = 0; m < s->member_count; ++m) {
       const int64_t *start = s->member[m].now.start;
       if (start[block] == start[block + 1]) continue;
       scatter_of(job, &s->member[m], &scatter);
       mpmi_block_axes(grid, s->blocks.coord[block], scatter.axis);
       scatter.tile = tile;
-      s->kernels->scatter[grid->dim][grid->width][job->form](&scatter, start[block], start[block + 1]);
+      for (int32_t piece = 0; piece < PIECES; ++piece) {
+        const int64_t slots = start[block + 1] - start[block], groups = slots / MPMI_CHUNK;
+        const int64_t from = start[block] + groups * piece / PIECES * MPMI_CHUNK;
+        const int64_t to =
+            piece + 1 < PIECES ? start[block] + groups * (piece + 1) / PIECES * MPMI_CHUNK : start[block + 1];
+        mpmi_tile_fetch(s, block, job->nodes, job->values, s->blocks.neighbours * piece / PIECES,
+                        s->blocks.neighbours * (piece + 1) / PIECES);
+        if (to > from) s->kernels->scatter[grid->dim][grid->width][job->form](&scatter, from, to);
+      }
     }
     mpmi_tile_add(s, block, job->nodes, job->values, tile);
   }
@@ -90,10 +101,9 @@ mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t what, double dt) {
   job.nodes = again ? s->again : s->node;
   if (job.values == 8) {
     job.form = affine ? MPMI_SCATTER_8_AFFINE : MPMI_SCATTER_8;
-    job.need = (mls ? MPMI_NEED_MLS : MPMI_NEED_GRADIENT) | (affine ? MPMI_NEED_MOMENT : 0);
+    job.need = mls ? MPMI_NEED_MLS : MPMI_NEED_GRADIENT | (affine ? MPMI_NEED_MOMENT : 0);
   } else {
     job.form = affine ? MPMI_SCATTER_4_AFFINE : MPMI_SCATTER_4;
-    job.need = affine ? MPMI_NEED_MOMENT : 0;
   }
   mpm_status status = mpmi_run_tasks(s, 0, s->tasks, zero_task, &job);
   for (int32_t c = 0; c < MPMI_COLOURS && !status; ++c) {

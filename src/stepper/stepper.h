@@ -39,6 +39,7 @@ typedef struct mpmi_scratch {
   void *batch_memory;
   mpmi_failure failure;
   int32_t left_tile, removes;
+  int64_t active; /* nodes with mass */
   double law_seconds;
 } mpmi_scratch;
 
@@ -179,7 +180,11 @@ void mpmi_roll_back(mpm_stepper *s);
 /* tile.c: the nodes of a block and its halo. */
 void mpmi_tile_load(const mpm_stepper *s, int64_t block, const double *nodes, int32_t node_values,
                     int32_t tile_values, double *tile);
-void mpmi_tile_add(const mpm_stepper *s, int64_t block, double *nodes, int32_t values, const double *tile);
+/* Prefetches the nodes that the block shares with its neighbours [begin, end), itself among them. */
+void mpmi_tile_fetch(const mpm_stepper *s, int64_t block, const double *nodes, int32_t values, int32_t begin,
+                     int32_t end);
+/* Adds the tile to the nodes and leaves it clean. */
+void mpmi_tile_add(const mpm_stepper *s, int64_t block, double *nodes, int32_t values, double *tile);
 /* Axes of the basis as seen from a block. */
 void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis);
 

@@ -1,7 +1,5 @@
 #include "stepper/stepper.h"
 
-#include <string.h>
-
 /* Along an axis a tile spans parts of the lower neighbour, the block and the upper neighbour. */
 typedef struct span {
   int32_t tile, block, length; /* first place in the tile, first place in the block, nodes */
@@ -14,56 +12,53 @@ static void spans_of(const mpm_grid *grid, int32_t edge, span *out) {
   out[2] = (span){low + edge, 0, high};
 }
 
-/* Visits the rows of nodes (last axis contiguous) that tile and blocks share. */
-typedef void (*row_fn)(double *tile, int32_t tile_values, double *nodes, int32_t node_values, int64_t count);
-
-static void visit_rows(const mpm_stepper *s, int64_t block, double *nodes, int32_t node_values, double *tile,
-                       int32_t tile_values, row_fn row) {
+/* The box of nodes that the tile shares with neighbour n of a block. */
+static mpmi_box box_of(const mpm_stepper *s, const span *spans, int64_t block, int32_t n, double *nodes,
+                       int32_t node_values, double *tile, int32_t tile_values) {
   const mpmi_blocks *b = &s->blocks;
   const int32_t dim = s->grid->dim, edge = b->edge, tile_edge = MPMI_TILE_EDGE(dim, s->grid->width);
+  static const span flat = {0, 0, 1}; /* an axis that the grid does not have */
+  const span *x = dim == 3 ? &spans[n / 9] : &flat, *y = dim >= 2 ? &spans[n / 3 % 3] : &flat,
+             *z = &spans[n % 3];
+  const int64_t in_tile = ((int64_t)x->tile * tile_edge + y->tile) * tile_edge + z->tile;
+  const int64_t in_block =
+      ((int64_t)b->neighbour[block][n] * b->nodes) + ((int64_t)x->block * edge + y->block) * edge + z->block;
+  return (mpmi_box){.tile = tile + in_tile * tile_values,
+                    .nodes = nodes + in_block * node_values,
+                    .count = {x->length, y->length, z->length},
+                    .tile_stride = {tile_edge * tile_edge, tile_edge},
+                    .node_stride = {edge * edge, edge}};
+}
+
+void mpmi_tile_fetch(const mpm_stepper *s, int64_t block, const double *nodes, int32_t values, int32_t begin,
+                     int32_t end) {
   span spans[3];
-  spans_of(s->grid, edge, spans);
-  for (int32_t n = 0; n < b->neighbours; ++n) {
-    const span *x = &spans[dim == 3 ? n / 9 : 1], *y = &spans[dim >= 2 ? n / 3 % 3 : 1], *z = &spans[n % 3];
-    double *base = nodes + (int64_t)b->neighbour[block][n] * b->nodes * node_values;
-    const int32_t rows_x = dim == 3 ? x->length : 1, rows_y = dim >= 2 ? y->length : 1;
-    for (int32_t i = 0; i < rows_x; ++i)
-      for (int32_t j = 0; j < rows_y; ++j) {
-        int64_t in_tile = z->tile, in_block = z->block;
-        if (dim >= 2) {
-          in_tile += (int64_t)(y->tile + j) * tile_edge;
-          in_block += (int64_t)(y->block + j) * edge;
-        }
-        if (dim == 3) {
-          in_tile += (int64_t)(x->tile + i) * tile_edge * tile_edge;
-          in_block += (int64_t)(x->block + i) * edge * edge;
-        }
-        row(tile + in_tile * tile_values, tile_values, base + in_block * node_values, node_values, z->length);
-      }
+  spans_of(s->grid, s->blocks.edge, spans);
+  for (int32_t n = begin; n < end; ++n) {
+    const mpmi_box box =
+        box_of(s, spans, block, n, (double *)(uintptr_t)nodes, values, (double *)(uintptr_t)nodes, 0);
+    s->kernels->fetch_box(values, &box);
   }
-}
-
-/* A tile of 4 values per node can be had from nodes with 8: the velocities without their changes. */
-static void load_row(double *tile, int32_t tile_values, double *nodes, int32_t node_values, int64_t count) {
-  if (tile_values == node_values) {
-    memcpy(tile, nodes, (size_t)(count * tile_values) * sizeof *tile);
-    return;
-  }
-  for (int64_t i = 0; i < count; ++i) memcpy(tile + 4 * i, nodes + i * node_values, 4 * sizeof *tile);
-}
-
-static void add_row(double *tile, int32_t tile_values, double *nodes, int32_t node_values, int64_t count) {
-  (void)node_values;
-  for (int64_t i = 0; i < count * tile_values; ++i) nodes[i] += tile[i];
 }
 
 void mpmi_tile_load(const mpm_stepper *s, int64_t block, const double *nodes, int32_t node_values,
                     int32_t tile_values, double *tile) {
-  visit_rows(s, block, (double *)(uintptr_t)nodes, node_values, tile, tile_values, load_row);
+  span spans[3];
+  spans_of(s->grid, s->blocks.edge, spans);
+  for (int32_t n = 0; n < s->blocks.neighbours; ++n) {
+    const mpmi_box box =
+        box_of(s, spans, block, n, (double *)(uintptr_t)nodes, node_values, tile, tile_values);
+    s->kernels->load_box(tile_values, node_values, &box);
+  }
 }
 
-void mpmi_tile_add(const mpm_stepper *s, int64_t block, double *nodes, int32_t values, const double *tile) {
-  visit_rows(s, block, nodes, values, (double *)(uintptr_t)tile, values, add_row);
+void mpmi_tile_add(const mpm_stepper *s, int64_t block, double *nodes, int32_t values, double *tile) {
+  span spans[3];
+  spans_of(s->grid, s->blocks.edge, spans);
+  for (int32_t n = 0; n < s->blocks.neighbours; ++n) {
+    const mpmi_box box = box_of(s, spans, block, n, nodes, values, tile, values);
+    s->kernels->add_box(values, &box);
+  }
 }
 
 void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis) {

@@ -1,5 +1,6 @@
 /* New particle velocity, position, deformation gradient and volume from what was gathered. */
 #include "transfer/kernel_common.h"
+#include "transfer/lanes.h"
 
 /*   FLIP/PIC blend  v = a (v_p + sum w dv) + (1 - a) sum w v     MPoint theory eq. 36
  *   affine, PIC     v = sum w v
@@ -7,34 +8,29 @@
  */
 MPMI_INLINE uint32_t move(int32_t dim, const mpmi_move *job, int64_t n) {
   const double dt = job->dt, flip = job->flip, pic = 1.0 - flip;
-  mpmi_lanes bad = {{0.0}}, outside = {{0.0}}, left = {{0.0}};
+  mpmi_lanes bad = {0.0};
+  mpmi_mask outside = {0}, left = {0};
   for (int32_t k = 0; k < dim; ++k) {
     const double low = job->low[k], high = job->high[k], centre = job->centre[k], half = job->half[k];
     const double period = job->period[k], inverse = job->inverse_period[k];
-    for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_GROUP) {
-      const double *v_bar = job->v_bar + k * job->ld + s, *dv = job->dv + k * job->ld + s;
-      const double *x_old = job->x_old[k] + s, *v_old = job->v_old[k] + s;
-      double *x_new = job->x_new[k] + s, *v_new = job->v_new[k] + s;
-      if (job->form == MPMI_GATHER_8) {
-        MPMI_IVDEP for (int32_t i = 0; i < MPMI_GROUP; ++i) v_new[i] =
-            flip * (v_old[i] + dv[i]) + pic * v_bar[i];
-      } else {
-        MPMI_IVDEP for (int32_t i = 0; i < MPMI_GROUP; ++i) v_new[i] = v_bar[i];
-      }
-      MPMI_IVDEP for (int32_t i = 0; i < MPMI_GROUP; ++i) {
-        double x = x_old[i] + dt * v_bar[i];
-        bad.at[i] += (v_new[i] - v_new[i]) + (x - x);
-        outside.at[i] += x < low || x > high ? 1.0 : 0.0;
-        double d = x - centre;
-        d -= period * mpmi_round(d * inverse);
-        left.at[i] += d > half || d < -half ? 1.0 : 0.0;
-        x_new[i] = x;
-      }
+    const double *v_bar = job->v_bar + k * job->ld, *dv = job->dv + k * job->ld;
+    for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+      const mpmi_lanes mean = mpmi_lanes_load(v_bar + s);
+      mpmi_lanes v = mean;
+      if (job->form == MPMI_GATHER_8)
+        v = flip * (mpmi_lanes_load(job->v_old[k] + s) + mpmi_lanes_load(dv + s)) + pic * mean;
+      const mpmi_lanes x = mpmi_lanes_load(job->x_old[k] + s) + dt * mean;
+      mpmi_lanes_store(job->v_new[k] + s, v);
+      mpmi_lanes_store(job->x_new[k] + s, x);
+      mpmi_lanes away = x - centre;
+      away -= period * mpmi_lanes_round(away * inverse);
+      bad += (v - v) + (x - x);
+      outside |= (x < low) | (x > high);
+      left |= mpmi_lanes_abs(away) > half;
     }
   }
-  return (mpmi_lane_sum(&bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE) |
-         (mpmi_lane_sum(&outside) > 0.0 ? (uint32_t)MPMI_OUTSIDE : 0u) |
-         (mpmi_lane_sum(&left) > 0.0 ? (uint32_t)MPMI_LEFT_TILE : 0u);
+  return (mpmi_lanes_sum(bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE) |
+         mpmi_lanes_any(outside, MPMI_OUTSIDE) | mpmi_lanes_any(left, MPMI_LEFT_TILE);
 }
 
 /* Full 3x3 entries that may differ from the identity: a plane strain tensor keeps its zz. */
@@ -80,29 +76,28 @@ MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
   }
 }
 
+MPMI_INLINE mpmi_lanes determinant(int32_t dim, const double *const *F, int64_t s) {
+#define F_(c) mpmi_lanes_load(F[c] + s)
+  if (dim == 1) return F_(0);
+  if (dim == 2) return (F_(0) * F_(3) - F_(1) * F_(2)) * F_(4);
+  return F_(0) * (F_(4) * F_(8) - F_(5) * F_(7)) - F_(1) * (F_(3) * F_(8) - F_(5) * F_(6)) +
+         F_(2) * (F_(3) * F_(7) - F_(4) * F_(6));
+#undef F_
+}
+
 /* V = det F V0: MPoint theory eq. 40. */
 MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *initial_volume, double *out,
                             int64_t n) {
-  mpmi_lanes bad = {{0.0}}, inverted = {{0.0}};
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_GROUP) {
-    MPMI_IVDEP for (int32_t i = 0; i < MPMI_GROUP; ++i) {
-      const int64_t p = s + i;
-      double J;
-      if (dim == 1)
-        J = F[0][p];
-      else if (dim == 2)
-        J = (F[0][p] * F[3][p] - F[1][p] * F[2][p]) * F[4][p];
-      else
-        J = F[0][p] * (F[4][p] * F[8][p] - F[5][p] * F[7][p]) -
-            F[1][p] * (F[3][p] * F[8][p] - F[5][p] * F[6][p]) +
-            F[2][p] * (F[3][p] * F[7][p] - F[4][p] * F[6][p]);
-      bad.at[i] += J - J;
-      inverted.at[i] += J <= 0.0 ? 1.0 : 0.0;
-      out[p] = J * initial_volume[p];
-    }
+  mpmi_lanes bad = {0.0};
+  mpmi_mask inverted = {0};
+  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+    const mpmi_lanes J = determinant(dim, F, s);
+    bad += J - J;
+    inverted |= J <= 0.0;
+    mpmi_lanes_store(out + s, J * mpmi_lanes_load(initial_volume + s));
   }
-  return (mpmi_lane_sum(&bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE) |
-         (mpmi_lane_sum(&inverted) > 0.0 ? (uint32_t)MPMI_NOT_POSITIVE : 0u);
+  return (mpmi_lanes_sum(bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE) |
+         mpmi_lanes_any(inverted, MPMI_NOT_POSITIVE);
 }
 
 #define ADVANCE(dim)                                                                                         \

@@ -1,9 +1,8 @@
 /* Linear basis (Steffen et al. 2008 eq. 17): node i and i + 1 of the cell that holds the particle. */
 #include "transfer/kernel_common.h"
 
-void KERNEL(bspline1)(const mpmi_axis *axis, int64_t n, const double *x, int32_t need,
-                      double (*w)[MPMI_CHUNK], double (*g)[MPMI_CHUNK], double (*u)[MPMI_CHUNK],
-                      double *moment, double *first) {
+void KERNEL(bspline1)(const mpmi_axis *axis, int64_t n, const double *x, int32_t gradient,
+                      double (*w)[MPMI_CHUNK], double (*g)[MPMI_CHUNK], double *first, double *place) {
   const mpmi_axis a = *axis;
   MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
     double xi = (x[p] - a.origin) * a.inverse_spacing;
@@ -13,16 +12,11 @@ void KERNEL(bspline1)(const mpmi_axis *axis, int64_t n, const double *x, int32_t
     double f = xi - base;
     w[0][p] = 1.0 - f;
     w[1][p] = f;
-    first[p] = mpmi_in_tile(&a, base);
+    first[p] = -f;
+    place[p] = mpmi_in_tile(&a, base);
   }
-  if (need & MPMI_NEED_GRADIENT) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  if (gradient) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
       g[0][p] = -a.inverse_spacing;
       g[1][p] = a.inverse_spacing;
-    }
-  if (need & MPMI_NEED_MOMENT) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
-      double f = w[1][p];
-      u[0][p] = -w[0][p] * f * a.spacing;
-      u[1][p] = f * w[0][p] * a.spacing;
-      moment[p] = w[0][p] * f * a.spacing * a.spacing;
     }
 }

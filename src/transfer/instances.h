@@ -1,5 +1,14 @@
-/* Every specialisation of scatter and gather that exists; define SCATTER or GATHER before including.
- * name = kernel, dim, width, form. */
+/* Every specialisation of weights, scatter and gather that exists; define WEIGHTS, SCATTER or GATHER before
+ * including. name = kernel, dim, width, form. */
+#ifdef WEIGHTS
+WEIGHTS(1, 2)
+WEIGHTS(1, 3)
+WEIGHTS(2, 2)
+WEIGHTS(2, 3)
+WEIGHTS(3, 2)
+WEIGHTS(3, 3)
+#undef WEIGHTS
+#endif
 #ifdef SCATTER
 #define SCATTER_FORMS(dim, width)                                                                            \
   SCATTER(dim, width, MPMI_SCATTER_4, scatter_##dim##_##width##_4)                                           \
@@ -19,6 +28,7 @@ SCATTER_FORMS(3, 3)
 #define GATHER_FORMS(dim, width)                                                                             \
   GATHER(dim, width, MPMI_GATHER_4, gather_##dim##_##width##_4)                                              \
   GATHER(dim, width, MPMI_GATHER_4_AFFINE, gather_##dim##_##width##_4_affine)                                \
+  GATHER(dim, width, MPMI_GATHER_4_MLS, gather_##dim##_##width##_4_mls)                                      \
   GATHER(dim, width, MPMI_GATHER_8, gather_##dim##_##width##_8)
 GATHER_FORMS(1, 2)
 GATHER_FORMS(1, 3)

@@ -3,34 +3,11 @@
 #define MPMI_KERNEL_COMMON_H
 
 #include "transfer/kernels.h"
-#include "transfer/vector4.h"
+#include "transfer/vector.h"
 
 /* Slots come in groups of 16; saying so lets the compiler drop remainders. */
 MPMI_INLINE int64_t mpmi_groups(int64_t n) {
   return n & ~(int64_t)(MPMI_GROUP - 1);
-}
-
-/* Sums over 16 fixed lanes, then over the lanes: they vectorise, and do not depend on vector width or on how
- * batches are cut. */
-typedef struct mpmi_lanes {
-  double at[MPMI_GROUP];
-} mpmi_lanes;
-
-/* Folded in halves: short chains, and the same order always. */
-MPMI_INLINE double mpmi_lane_sum(const mpmi_lanes *l) {
-  double h[MPMI_GROUP / 2], q[MPMI_GROUP / 4];
-  for (int32_t i = 0; i < MPMI_GROUP / 2; ++i) h[i] = l->at[i] + l->at[i + MPMI_GROUP / 2];
-  for (int32_t i = 0; i < MPMI_GROUP / 4; ++i) q[i] = h[i] + h[i + MPMI_GROUP / 4];
-  return (q[0] + q[2]) + (q[1] + q[3]);
-}
-MPMI_INLINE double mpmi_larger(double a, double b) {
-  return a > b ? a : b;
-}
-MPMI_INLINE double mpmi_lane_max(const mpmi_lanes *l) {
-  double h[MPMI_GROUP / 2], q[MPMI_GROUP / 4];
-  for (int32_t i = 0; i < MPMI_GROUP / 2; ++i) h[i] = mpmi_larger(l->at[i], l->at[i + MPMI_GROUP / 2]);
-  for (int32_t i = 0; i < MPMI_GROUP / 4; ++i) q[i] = mpmi_larger(h[i], h[i + MPMI_GROUP / 4]);
-  return mpmi_larger(mpmi_larger(q[0], q[2]), mpmi_larger(q[1], q[3]));
 }
 
 /* Brings the next chunk's share of particle p (0 ... 31) nearer, to the second-level cache: a chunk of a
@@ -59,21 +36,23 @@ MPMI_INLINE double mpmi_in_tile(const mpmi_axis *a, double base) {
   return first - a->period * mpmi_round((first - a->middle) * a->inverse_period);
 }
 
-/* n particles' four components, arrays a..d, to one vector per particle; and back (d is dropped). */
+/* n particles' four components, arrays a..d, to one vector per particle, `stride` doubles apart; and back (d
+ * is dropped). */
 MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const double *c, const double *d,
-                           mpmi_v4 *out) {
+                           double *out, int32_t stride) {
   for (int64_t p = 0; p < mpmi_groups(n); p += 4) {
     mpmi_v4 va = mpmi_load4(a + p), vb = mpmi_load4(b + p), vc = mpmi_load4(c + p), vd = mpmi_load4(d + p);
     mpmi_transpose4(&va, &vb, &vc, &vd);
-    out[p] = va;
-    out[p + 1] = vb;
-    out[p + 2] = vc;
-    out[p + 3] = vd;
+    mpmi_store4(out + p * stride, va);
+    mpmi_store4(out + (p + 1) * stride, vb);
+    mpmi_store4(out + (p + 2) * stride, vc);
+    mpmi_store4(out + (p + 3) * stride, vd);
   }
 }
-MPMI_INLINE void mpmi_unpack3(int64_t n, const mpmi_v4 *in, double *a, double *b, double *c) {
+MPMI_INLINE void mpmi_unpack(int64_t n, const double *in, int32_t stride, double *a, double *b, double *c) {
   for (int64_t p = 0; p < mpmi_groups(n); p += 4) {
-    mpmi_v4 va = in[p], vb = in[p + 1], vc = in[p + 2], vd = in[p + 3];
+    mpmi_v4 va = mpmi_load4(in + p * stride), vb = mpmi_load4(in + (p + 1) * stride),
+            vc = mpmi_load4(in + (p + 2) * stride), vd = mpmi_load4(in + (p + 3) * stride);
     mpmi_transpose4(&va, &vb, &vc, &vd);
     mpmi_store4(a + p, va);
     mpmi_store4(b + p, vb);
@@ -81,8 +60,10 @@ MPMI_INLINE void mpmi_unpack3(int64_t n, const mpmi_v4 *in, double *a, double *b
   }
 }
 
-/* Weights of a chunk on all axes and the tile node of each stencil (transfer/weights.c). */
-void KERNEL(weights)(int32_t dim, int32_t width, const mpmi_axis *axis, mpmi_axis_weights_fn axis_weights,
-                     int32_t need, int64_t n, const double *const *x, mpmi_weights *out);
+/* Weights of a chunk on all axes and the tile node of each stencil (weights.c). */
+#define WEIGHTS(dim, width)                                                                                  \
+  void KERNEL(weights_##dim##_##width)(const mpmi_axis *axis, mpmi_axis_weights_fn axis_weights,             \
+                                       int32_t need, int64_t n, const double *const *x, mpmi_weights *out);
+#include "transfer/instances.h"
 
 #endif

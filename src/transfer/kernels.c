@@ -3,9 +3,12 @@
 
 #define AXIS(name)                                                                                           \
   void KERNEL(name)(const mpmi_axis *, int64_t, const double *, int32_t, double(*)[MPMI_CHUNK],              \
-                    double(*)[MPMI_CHUNK], double(*)[MPMI_CHUNK], double *, double *);
+                    double(*)[MPMI_CHUNK], double *, double *);
 AXIS(bspline1)
 AXIS(bspline2)
+#define WEIGHTS(dim, width)                                                                                  \
+  void KERNEL(weights_##dim##_##width)(const mpmi_axis *, mpmi_axis_weights_fn, int32_t, int64_t,            \
+                                       const double *const *, mpmi_weights *);
 #define SCATTER(dim, width, form, name) void KERNEL(name)(const mpmi_scatter *, int64_t, int64_t);
 #define GATHER(dim, width, form, name)  void KERNEL(name)(const mpmi_gather *, int64_t, int64_t);
 #include "transfer/instances.h"
@@ -18,12 +21,22 @@ PER_DIM(1)
 PER_DIM(2)
 PER_DIM(3)
 
+void KERNEL(add_box)(int32_t, const mpmi_box *);
+void KERNEL(fetch_box)(int32_t, const mpmi_box *);
+void KERNEL(load_box)(int32_t, int32_t, const mpmi_box *);
+int64_t KERNEL(update)(int32_t, double *, int64_t, double, double);
+
 extern const mpmi_kernels KERNEL(kernels);
 const mpmi_kernels KERNEL(kernels) = {
     .axis_weights = {NULL, KERNEL(bspline1), KERNEL(bspline2), NULL},
+#define WEIGHTS(dim, width)             .weights[dim][width] = KERNEL(weights_##dim##_##width),
 #define SCATTER(dim, width, form, name) .scatter[dim][width][form] = KERNEL(name),
 #define GATHER(dim, width, form, name)  .gather[dim][width][form] = KERNEL(name),
 #include "transfer/instances.h"
+    .add_box = KERNEL(add_box),
+    .fetch_box = KERNEL(fetch_box),
+    .load_box = KERNEL(load_box),
+    .update = KERNEL(update),
     .move = {NULL, KERNEL(move_1), KERNEL(move_2), KERNEL(move_3)},
     .deform = {NULL, KERNEL(deform_1), KERNEL(deform_2), KERNEL(deform_3)},
     .volume = {NULL, KERNEL(volume_1), KERNEL(volume_2), KERNEL(volume_3)},

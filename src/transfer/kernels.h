@@ -26,35 +26,41 @@ typedef struct mpmi_axis {
   double middle; /* of the valid first nodes, relative to tile_base: picks the periodic image */
 } mpmi_axis;
 
-/* Weights of a chunk along each axis: w basis, g the second weight of the first-order terms (gradient, or u /
- * D for the MLS form), u moments w (x_i - x_p). moment: D = sum w (x_i - x_p)^2. node: first node of the
- * stencil in the tile. */
+/* Weights of a chunk along each axis: w basis; g second weight of the first-order terms: the gradient, or u /
+ * D in the MLS form; u = w (x_i - x_p), with inverse_moment = 1 / sum w (x_i - x_p)^2, or 0 where that
+ * vanishes. first: from the particle to the first node of its stencil, in cells. node: that node's place in
+ * the tile. */
 typedef struct mpmi_weights {
   double w[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
   double g[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
   double u[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
-  double moment[3][MPMI_CHUNK];
+  double inverse_moment[3][MPMI_CHUNK], first[3][MPMI_CHUNK];
   int32_t node[MPMI_CHUNK];
 } mpmi_weights;
 
-/* What a transfer needs beside w. */
+/* What a transfer needs beside w and first. */
 enum {
-  MPMI_NEED_GRADIENT = 1,
-  MPMI_NEED_MOMENT = 2,
-  MPMI_NEED_MLS = 4 /* g = u / D in place of the gradient */
+  MPMI_NEED_GRADIENT = 1, /* g */
+  MPMI_NEED_MOMENT = 2,   /* u and inverse_moment */
+  MPMI_NEED_MLS = 4       /* these, and g = u / D in place of the gradient */
 };
 
-/* Weights of n (a multiple of 16, <= 32) particles along one axis; first[] receives the first node of the
+/* Weights of n (a multiple of 16, <= 32) particles along one axis; place[] receives the first node of the
  * stencil, relative to the tile. One function per basis family; everything else is common. */
-typedef void (*mpmi_axis_weights_fn)(const mpmi_axis *axis, int64_t n, const double *x, int32_t need,
-                                     double (*w)[MPMI_CHUNK], double (*g)[MPMI_CHUNK],
-                                     double (*u)[MPMI_CHUNK], double *moment, double *first);
+typedef void (*mpmi_axis_weights_fn)(const mpmi_axis *axis, int64_t n, const double *x, int32_t gradient,
+                                     double (*w)[MPMI_CHUNK], double (*g)[MPMI_CHUNK], double *first,
+                                     double *place);
+
+/* Weights along all axes. */
+typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, mpmi_axis_weights_fn axis_weights, int32_t need,
+                                int64_t n, const double *const *x, mpmi_weights *out);
 
 /* Forms of the scatter: 4 values (momentum and mass; the fused MLS force may ride on the momentum) or 8
  * (force apart), with or without the affine part of the velocity. */
 enum { MPMI_SCATTER_4, MPMI_SCATTER_4_AFFINE, MPMI_SCATTER_8, MPMI_SCATTER_8_AFFINE, MPMI_SCATTER_FORMS };
-/* Forms of the gather: 4 values: velocity and L; and C beside L; 8 values: velocity, its change and L. */
-enum { MPMI_GATHER_4, MPMI_GATHER_4_AFFINE, MPMI_GATHER_8, MPMI_GATHER_FORMS };
+/* Forms of the gather: 4 values: velocity and L; and C beside L; C of the MLS form in place of L; 8 values:
+ * velocity, its change and L. */
+enum { MPMI_GATHER_4, MPMI_GATHER_4_AFFINE, MPMI_GATHER_4_MLS, MPMI_GATHER_8, MPMI_GATHER_FORMS };
 
 /* Component arrays, each at slot 0, that the chunk after the present one will touch. */
 enum { MPMI_MAX_STREAMS = 64 };
@@ -145,10 +151,30 @@ typedef struct mpmi_survey {
 } mpmi_survey;
 typedef uint32_t (*mpmi_survey_fn)(const mpmi_survey *job, int64_t n, mpmi_sums *sums); /* adds to sums */
 
+/* A box of nodes in a tile and in the nodes of one block; strides of the two outer axes in nodes. */
+typedef struct mpmi_box {
+  double *tile, *nodes;
+  int32_t count[3], tile_stride[2], node_stride[2];
+} mpmi_box;
+/* nodes += tile, tile = 0, both with `values` per node. */
+typedef void (*mpmi_add_box_fn)(int32_t values, const mpmi_box *box);
+/* Prefetches the nodes. */
+typedef void (*mpmi_fetch_box_fn)(int32_t values, const mpmi_box *box);
+/* tile = nodes: 8 from 8, or 4 from 4 or from the first half of 8. */
+typedef void (*mpmi_load_box_fn)(int32_t values, int32_t node_values, const mpmi_box *box);
+
+/* Momenta and forces of `count` nodes to velocities and increments; returns how many have mass. */
+typedef int64_t (*mpmi_update_fn)(int32_t values, double *nodes, int64_t count, double cut, double dt);
+
 typedef struct mpmi_kernels {
   mpmi_axis_weights_fn axis_weights[4];                               /* by order of the B-spline */
+  mpmi_weights_fn weights[4][MPMI_MAX_WIDTH + 1];                     /* by dim, width */
   mpmi_scatter_fn scatter[4][MPMI_MAX_WIDTH + 1][MPMI_SCATTER_FORMS]; /* by dim, width, form */
   mpmi_gather_fn gather[4][MPMI_MAX_WIDTH + 1][MPMI_GATHER_FORMS];
+  mpmi_add_box_fn add_box;
+  mpmi_fetch_box_fn fetch_box;
+  mpmi_load_box_fn load_box;
+  mpmi_update_fn update;
   mpmi_move_fn move[4];
   mpmi_deform_fn deform[4];
   mpmi_volume_fn volume[4];

@@ -3,72 +3,101 @@
  *   p_i += w_ip m_p (v_p + C_p (x_i - x_p))                    MPoint theory eq. 29; APIC: Jiang et al. 2017
  *   f_i += w_ip f_ext,p - V_p sigma_p grad w_ip                Steffen et al. 2008 eqs 4, 16
  *
- * Both are first-order forms  w (a + sum_k B_k d_k)  in which the second weight of axis k stands for w d_k;
- * they are summed hierarchically: axis by axis, row by row, node by node. The MLS form puts force and
- * momentum into one. */
+ * Both are first-order forms  w a + sum_k column_k (w with axis k replaced by its second weight),  summed
+ * hierarchically: axis by axis, row by row, node by node. Affine momentum alone is simpler: what a node
+ * receives is w_ip times a linear function of its place. The MLS form puts the force into that function. */
 #include "transfer/kernel_common.h"
 
-/* One particle's contribution: a w + sum_k column[k] (w with axis k replaced by its second weight). */
+/* What the particles of a chunk give: a and the columns, 4 or 8 values each as nodes have them. */
 typedef struct mpmi_first_order {
-  mpmi_v4 a[MPMI_CHUNK], column[3][MPMI_CHUNK];
+  _Alignas(64) double a[8 * MPMI_CHUNK], column[3][8 * MPMI_CHUNK];
 } mpmi_first_order;
 
-/* Sums of a first-order form over the axes before the last: node += row[0] * w_last + row[1] * g_last. */
-MPMI_INLINE void row_of(int32_t dim, const mpmi_first_order *form, const mpmi_weights *W,
-                        const double (*second)[MPMI_MAX_WIDTH][MPMI_CHUNK], int64_t p, int32_t i, int32_t j,
-                        mpmi_v4 *row) {
-  const mpmi_v4 a = form->a[p], c0 = form->column[0][p];
-  if (dim == 1) {
-    row[0] = a;
-    row[1] = c0;
-    return;
-  }
-  const mpmi_v4 c1 = form->column[1][p];
-  const double wi = W->w[0][i][p], si = second[0][i][p];
-  if (dim == 2) {
-    row[0] = mpmi_add4(mpmi_scale4(wi, a), si, c0);
-    row[1] = mpmi_scale4(wi, c1);
-    return;
-  }
-  const mpmi_v4 c2 = form->column[2][p];
-  const double wj = W->w[1][j][p], sj = second[1][j][p];
-  row[0] = mpmi_add4(mpmi_scale4(wj, mpmi_add4(mpmi_scale4(wi, a), si, c0)), sj, mpmi_scale4(wi, c1));
-  row[1] = mpmi_scale4(wj, mpmi_scale4(wi, c2));
-}
-
-MPMI_INLINE void scatter_particle(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W, int64_t p,
-                                  const mpmi_first_order *momentum, const mpmi_first_order *force,
-                                  double *tile) {
-  const int32_t values = form >= MPMI_SCATTER_8 ? 8 : 4;
-  const int32_t affine = form == MPMI_SCATTER_4_AFFINE || form == MPMI_SCATTER_8_AFFINE;
+/* Mass and momentum. */
+MPMI_INLINE void scatter_plain(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
+                               const mpmi_first_order *of, double *tile) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
-  /* in the 4-value form the fused matrix uses u; with forces apart the affine part uses u and the stress g */
-  const double(*wl)[MPMI_CHUNK] = W->w[last];
-  double *stencil = tile + (int64_t)values * W->node[p];
+  const mpmi_node a = mpmi_node_load(MPMI_LOW, of->a + 4 * p);
+  double *stencil = tile + 4 * (int64_t)W->node[p];
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
     if (dim < 3 && i > 0) break;
     MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
       if (dim < 2 && j > 0) break;
-      const int32_t first = dim == 3 ? i : j;
-      mpmi_v4 m[2], f[2];
-      if (affine) {
-        row_of(dim, momentum, W, W->u, p, first, j, m);
-      } else {
-        double outer = dim == 1 ? 1.0 : W->w[0][first][p];
-        if (dim == 3) outer *= W->w[1][j][p];
-        m[0] = mpmi_scale4(outer, momentum->a[p]);
-      }
-      if (values == 8) row_of(dim, force, W, W->g, p, first, j, f);
-      double *node = stencil + (int64_t)values * ((i * edge + j) * (dim == 1 ? 0 : edge));
+      double outer = dim == 3 ? W->w[0][i][p] * W->w[1][j][p] : dim == 2 ? W->w[0][j][p] : 1.0;
+      const mpmi_node row = mpmi_node_scale(MPMI_LOW, outer, a);
+      double *node = stencil + 4 * (i * edge + j) * (dim == 1 ? 0 : edge);
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
-        mpmi_v4 q = mpmi_add4(mpmi_load4(node + k * values), wl[k][p], m[0]);
-        if (affine) q = mpmi_add4(q, W->u[last][k][p], m[1]);
-        mpmi_store4(node + k * values, q);
-        if (values == 8) {
-          q = mpmi_add4(mpmi_load4(node + k * values + 4), wl[k][p], f[0]);
-          q = mpmi_add4(q, W->g[last][k][p], f[1]);
-          mpmi_store4(node + k * values + 4, q);
-        }
+        mpmi_node q = mpmi_node_load(MPMI_LOW, node + 4 * k);
+        mpmi_node_store(MPMI_LOW, node + 4 * k, mpmi_node_fma(MPMI_LOW, q, W->w[last][k][p], row));
+      }
+    }
+  }
+}
+
+/* Mass and affine momentum: a is the function at the first node, column[k] its growth per node of axis k. */
+MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
+                                const mpmi_first_order *of, double *tile) {
+  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
+  mpmi_node plane = mpmi_node_load(MPMI_LOW, of->a + 4 * p), step[3];
+  for (int32_t k = 0; k < dim; ++k) step[k] = mpmi_node_load(MPMI_LOW, of->column[k] + 4 * p);
+  double *stencil = tile + 4 * (int64_t)W->node[p];
+  MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
+    if (dim < 3 && i > 0) break;
+    mpmi_node row = plane;
+    MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
+      if (dim < 2 && j > 0) break;
+      double outer = dim == 3 ? W->w[0][i][p] * W->w[1][j][p] : dim == 2 ? W->w[0][j][p] : 1.0;
+      mpmi_node value = mpmi_node_scale(MPMI_LOW, outer, row);
+      const mpmi_node growth = mpmi_node_scale(MPMI_LOW, outer, step[last]);
+      double *node = stencil + 4 * (i * edge + j) * (dim == 1 ? 0 : edge);
+      MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
+        mpmi_node q = mpmi_node_load(MPMI_LOW, node + 4 * k);
+        mpmi_node_store(MPMI_LOW, node + 4 * k, mpmi_node_fma(MPMI_LOW, q, W->w[last][k][p], value));
+        value = mpmi_node_sum(MPMI_LOW, value, growth);
+      }
+      if (dim >= 2) row = mpmi_node_sum(MPMI_LOW, row, step[dim - 2]);
+    }
+    if (dim == 3) plane = mpmi_node_sum(MPMI_LOW, plane, step[0]);
+  }
+}
+
+/* Second weight of node k of an axis: of the momentum, of the force. */
+MPMI_INLINE mpmi_pair second(int32_t affine, const mpmi_weights *W, int32_t axis, int32_t k, int64_t p) {
+  return mpmi_pair_of(affine ? W->u[axis][k][p] : W->g[axis][k][p], W->g[axis][k][p]);
+}
+
+/* Mass, momentum and force. Without an affine part the columns have nothing to give to momentum. */
+MPMI_INLINE void scatter_forces(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W, int64_t p,
+                                const mpmi_first_order *of, double *tile) {
+  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, all = MPMI_BOTH;
+  const int32_t part = affine ? MPMI_BOTH : MPMI_HIGH; /* of the columns */
+  const mpmi_node a = mpmi_node_load(all, of->a + 8 * p);
+  mpmi_node column[3];
+  for (int32_t k = 0; k < dim; ++k) column[k] = mpmi_node_load(part, of->column[k] + 8 * p);
+  double *stencil = tile + 8 * (int64_t)W->node[p];
+  /* sums over the axes before the last: node += w_k value + s_k slope */
+  mpmi_node plane = a, plane_1 = column[0], plane_2 = column[last], value = a, slope = column[last];
+  MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
+    if (dim < 3 && i > 0) break;
+    if (dim == 3) {
+      const double w = W->w[0][i][p];
+      plane = mpmi_node_fma_pair(part, mpmi_node_scale(all, w, a), second(affine, W, 0, i, p), column[0]);
+      plane_1 = mpmi_node_scale(part, w, column[1]);
+      plane_2 = mpmi_node_scale(part, w, column[2]);
+    }
+    MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
+      if (dim < 2 && j > 0) break;
+      if (dim >= 2) {
+        const double w = W->w[dim - 2][j][p];
+        value = mpmi_node_fma_pair(part, mpmi_node_scale(all, w, plane), second(affine, W, dim - 2, j, p),
+                                   plane_1);
+        slope = mpmi_node_scale(part, w, plane_2);
+      }
+      double *node = stencil + 8 * (i * edge + j) * (dim == 1 ? 0 : edge);
+      MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
+        mpmi_node q = mpmi_node_load(all, node + 8 * k);
+        q = mpmi_node_fma(all, q, W->w[last][k][p], value);
+        mpmi_node_store(all, node + 8 * k, mpmi_node_fma_pair(part, q, second(affine, W, last, k, p), slope));
       }
     }
   }
@@ -77,11 +106,13 @@ MPMI_INLINE void scatter_particle(int32_t dim, int32_t width, int32_t form, cons
 /* Column k of a symmetric tensor stored xx yy zz xy yz xz: rows of that column. */
 static const int32_t stress_of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 
-/* -V sigma, column by column, and the external force. */
+#define LANE(array, r) ((r) < dim ? (array)[r] : zero)
+_Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
+
+/* -V sigma, column by column, and the external force, into the upper halves. */
 MPMI_INLINE void pack_force(int32_t dim, const mpmi_scatter *job, int64_t s, int64_t n,
-                            mpmi_first_order *force) {
+                            mpmi_first_order *of) {
   _Alignas(64) double column[3][3][MPMI_CHUNK], ext[3][MPMI_CHUNK];
-  _Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
   const double *volume = job->volume + s, *mass = job->mass + s;
   for (int32_t r = 0; r < dim; ++r) {
     const double g = job->gravity[r];
@@ -91,24 +122,26 @@ MPMI_INLINE void pack_force(int32_t dim, const mpmi_scatter *job, int64_t s, int
     } else {
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) ext[r][p] = mass[p] * g;
     }
-    for (int32_t k = 0; k < dim; ++k) {
+    for (int32_t k = 0; k <= r; ++k) {
       const double *sigma = job->stress[stress_of[k][r]] + s;
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) column[k][r][p] = -volume[p] * sigma[p];
     }
   }
-#define LANE(array, r) ((r) < dim ? (array)[r] : zero)
-  mpmi_pack(n, LANE(ext, 0), LANE(ext, 1), LANE(ext, 2), zero, force->a);
+#define ENTRY(k, r) LANE(column[(r) < (k) ? (r) : (k)], (r) < (k) ? (k) : (r))
+  mpmi_pack(n, LANE(ext, 0), LANE(ext, 1), LANE(ext, 2), zero, of->a + 4, 8);
   for (int32_t k = 0; k < dim; ++k)
-    mpmi_pack(n, LANE(column[k], 0), LANE(column[k], 1), LANE(column[k], 2), zero, force->column[k]);
+    mpmi_pack(n, ENTRY(k, 0), ENTRY(k, 1), ENTRY(k, 2), zero, of->column[k] + 4, 8);
+#undef ENTRY
 }
 
-/* Momentum and mass; with `affine` the columns of m C; with a fused force also dt (f_ext; -V D^-1 sigma). */
+/* Momentum and mass. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis;
+ * there the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Affine with 8 values: the columns
+ * of m C. */
 MPMI_INLINE void pack_momentum(int32_t dim, int32_t form, const mpmi_scatter *job, int64_t s, int64_t n,
-                               mpmi_first_order *momentum) {
-  const int32_t affine = form == MPMI_SCATTER_4_AFFINE || form == MPMI_SCATTER_8_AFFINE;
-  const int32_t fused = form == MPMI_SCATTER_4_AFFINE && job->fused_dt != 0.0;
+                               const mpmi_weights *W, mpmi_first_order *of) {
+  const int32_t linear = form == MPMI_SCATTER_4_AFFINE, affine = linear || form == MPMI_SCATTER_8_AFFINE;
+  const int32_t fused = linear && job->fused_dt != 0.0, stride = form >= MPMI_SCATTER_8 ? 8 : 4;
   _Alignas(64) double p_[3][MPMI_CHUNK], column[3][3][MPMI_CHUNK];
-  _Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
   const double *mass = job->mass + s, *volume = job->volume + s;
   for (int32_t r = 0; r < dim; ++r) {
     const double *v = job->v[r] + s;
@@ -118,42 +151,54 @@ MPMI_INLINE void pack_momentum(int32_t dim, int32_t form, const mpmi_scatter *jo
       const double *added = job->force[r] + s;
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) p_[r][p] += job->fused_dt * added[p];
     }
-    if (!affine) continue;
-    for (int32_t k = 0; k < dim; ++k) {
-      const double *C = job->affine[3 * r + k] + s;
-      if (fused) {
-        /* quadratic B-spline: D = h^2 / 4 on every axis */
-        const double scale =
-            -job->fused_dt * 4.0 * job->axis[k].inverse_spacing * job->axis[k].inverse_spacing;
-        const double *sigma = job->stress[stress_of[k][r]] + s;
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) column[k][r][p] =
-            mass[p] * C[p] + scale * volume[p] * sigma[p];
-      } else {
+    for (int32_t k = 0; affine && k < dim; ++k) {
+      const double *C = job->affine[3 * r + k] + s, *sigma = job->stress[stress_of[k][r]] + s;
+      const double h = job->axis[k].spacing;
+      /* quadratic B-spline: D = h^2 / 4 on every axis */
+      const double scale = fused ? -job->fused_dt * 4.0 / h : 0.0;
+      if (!linear) {
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) column[k][r][p] = mass[p] * C[p];
+      } else if (fused) {
+        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+          double growth = mass[p] * C[p] * h + scale * volume[p] * sigma[p];
+          column[k][r][p] = growth;
+          p_[r][p] += W->first[k][p] * growth;
+        }
+      } else {
+        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+          double growth = mass[p] * C[p] * h;
+          column[k][r][p] = growth;
+          p_[r][p] += W->first[k][p] * growth;
+        }
       }
     }
   }
-  mpmi_pack(n, LANE(p_, 0), LANE(p_, 1), LANE(p_, 2), mass, momentum->a);
-  if (affine)
-    for (int32_t k = 0; k < dim; ++k)
-      mpmi_pack(n, LANE(column[k], 0), LANE(column[k], 1), LANE(column[k], 2), zero, momentum->column[k]);
-#undef LANE
+  mpmi_pack(n, LANE(p_, 0), LANE(p_, 1), LANE(p_, 2), mass, of->a, stride);
+  for (int32_t k = 0; affine && k < dim; ++k)
+    mpmi_pack(n, LANE(column[k], 0), LANE(column[k], 1), LANE(column[k], 2), zero, of->column[k], stride);
 }
 
 MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
-                         int64_t end) {
+                         int64_t end, mpmi_weights_fn weights) {
   mpmi_weights W;
-  mpmi_first_order momentum, force;
+  mpmi_first_order of;
+  if (form == MPMI_SCATTER_8)
+    for (int32_t k = 0; k < dim; ++k) __builtin_memset(of.column[k], 0, sizeof of.column[k]);
   for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
     const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
     const double *x[3];
     for (int32_t k = 0; k < dim; ++k) x[k] = job->x[k] + s;
-    KERNEL(weights)(dim, width, job->axis, job->axis_weights, job->need, n, x, &W);
-    pack_momentum(dim, form, job, s, n, &momentum);
-    if (form >= MPMI_SCATTER_8) pack_force(dim, job, s, n, &force);
+    weights(job->axis, job->axis_weights, job->need, n, x, &W);
+    pack_momentum(dim, form, job, s, n, &W, &of);
+    if (form >= MPMI_SCATTER_8) pack_force(dim, job, s, n, &of);
     for (int64_t p = 0; p < n; ++p) {
       mpmi_prefetch(&job->streams, s + MPMI_CHUNK, p);
-      scatter_particle(dim, width, form, &W, p, &momentum, &force, job->tile);
+      if (form == MPMI_SCATTER_4)
+        scatter_plain(dim, width, &W, p, &of, job->tile);
+      else if (form == MPMI_SCATTER_4_AFFINE)
+        scatter_linear(dim, width, &W, p, &of, job->tile);
+      else
+        scatter_forces(dim, width, form == MPMI_SCATTER_8_AFFINE, &W, p, &of, job->tile);
     }
   }
 }
@@ -161,6 +206,6 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
 #define SCATTER(dim, width, form, name)                                                                      \
   void KERNEL(name)(const mpmi_scatter *job, int64_t begin, int64_t end);                                    \
   void KERNEL(name)(const mpmi_scatter *job, int64_t begin, int64_t end) {                                   \
-    scatter(dim, width, form, job, begin, end);                                                              \
+    scatter(dim, width, form, job, begin, end, KERNEL(weights_##dim##_##width));                             \
   }
 #include "transfer/instances.h"

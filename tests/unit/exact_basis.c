@@ -8,8 +8,8 @@ static const double origin = -0.3, spacing = 0.25;
 enum { CELLS = 10, GLOBAL = CELLS + 3 /* nodes -1 ... CELLS + 1 */ };
 
 typedef struct weights {
-  double w[MPMI_MAX_WIDTH][MPMI_CHUNK], g[MPMI_MAX_WIDTH][MPMI_CHUNK], u[MPMI_MAX_WIDTH][MPMI_CHUNK];
-  double moment[MPMI_CHUNK], first[MPMI_CHUNK];
+  double w[MPMI_MAX_WIDTH][MPMI_CHUNK], g[MPMI_MAX_WIDTH][MPMI_CHUNK];
+  double first[MPMI_CHUNK], place[MPMI_CHUNK];
 } weights;
 
 /* As the stepper makes it for a block whose first node is `corner`. */
@@ -45,24 +45,20 @@ static void fill_positions(dice *d, double *x) {
 
 static void check_sums(const char *name, int32_t order, const double *x, const weights *W, double corner) {
   for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
-    double w = 0.0, wx = 0.0, g = 0.0, gx = 0.0, u = 0.0, moment = 0.0;
+    double w = 0.0, wx = 0.0, g = 0.0, gx = 0.0;
     for (int32_t k = 0; k <= order; ++k) {
-      const double node = origin + spacing * (corner + W->first[p] + k), away = node - x[p];
+      const double node = origin + spacing * (corner + W->place[p] + k);
       ck_between(name, W->w[k][p], 0.0, 1.0);
-      ck_within(name, W->u[k][p], W->w[k][p] * away, 1e-15);
+      ck_within(name, (W->first[p] + k) * spacing, node - x[p], 1e-14);
       w += W->w[k][p];
       wx += W->w[k][p] * node;
       g += W->g[k][p];
       gx += W->g[k][p] * node;
-      u += W->u[k][p];
-      moment += W->w[k][p] * away * away;
     }
     ck_within(name, w, 1.0, 1e-14);
     ck_within(name, wx, x[p], 1e-14);
     ck_within(name, g, 0.0, 1e-14 / spacing);
     ck_within(name, gx, 1.0, 1e-13);
-    ck_within(name, u, 0.0, 1e-15);
-    ck_within(name, W->moment[p], moment, 1e-16);
   }
 }
 
@@ -70,7 +66,7 @@ static void check_sums(const char *name, int32_t order, const double *x, const w
 static void by_node(const weights *W, int32_t p, int32_t order, double corner, double *w, double *g) {
   for (int32_t i = 0; i < GLOBAL; ++i) w[i] = g[i] = 0.0;
   for (int32_t k = 0; k <= order; ++k) {
-    const int32_t node = (int32_t)(corner + W->first[p]) + k + 1;
+    const int32_t node = (int32_t)(corner + W->place[p]) + k + 1;
     ck_assert(node >= 0 && node < GLOBAL);
     w[node] += W->w[k][p];
     g[node] += W->g[k][p];
@@ -89,8 +85,7 @@ static void check_gradient(const char *name, mpmi_axis_weights_fn fn, const mpmi
     for (int32_t i = 0; i < 2; ++i) x_near[i][p] = x[p] + (i + 1) * eps[p];
   }
   for (int32_t i = 0; i < 2; ++i)
-    fn(axis, MPMI_CHUNK, x_near[i], MPMI_NEED_GRADIENT, near[i].w, near[i].g, near[i].u, near[i].moment,
-       near[i].first);
+    fn(axis, MPMI_CHUNK, x_near[i], 1, near[i].w, near[i].g, near[i].first, near[i].place);
   for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
     double w[3][GLOBAL], g[GLOBAL], unused[GLOBAL];
     by_node(W, p, order, axis->tile_base, w[0], g);
@@ -113,31 +108,41 @@ START_TEST(weights_are_exact) {
       double x[MPMI_CHUNK];
       weights W;
       fill_positions(&d, x);
-      kernels->axis_weights[order](&axis, MPMI_CHUNK, x, MPMI_NEED_GRADIENT | MPMI_NEED_MOMENT, W.w, W.g, W.u,
-                                   W.moment, W.first);
+      kernels->axis_weights[order](&axis, MPMI_CHUNK, x, 1, W.w, W.g, W.first, W.place);
       check_sums(names[_i], order, x, &W, corner);
       check_gradient(names[_i], kernels->axis_weights[order], &axis, order, x, &W);
     }
 }
 END_TEST
 
-/* Moving least squares: the second weight is w (x_i - x_p) / D, with D = h^2 / 4. */
-START_TEST(mls_weights_are_exact) {
+/* u = w (x_i - x_p), D = sum u (x_i - x_p); moving least squares: the second weight is u / D. A linear basis
+ * has no D at a node, a quadratic one h^2 / 4 everywhere. */
+START_TEST(moments_are_exact) {
   if (!available(MPM_ISA_BASELINE + _i)) return;
-  const mpmi_axis axis = axis_of(2, -2.0, 0);
+  const mpmi_kernels *kernels = mpmi_kernels_of(MPM_ISA_BASELINE + _i);
   dice d = {2};
-  double x[MPMI_CHUNK];
-  weights W;
-  fill_positions(&d, x);
-  mpmi_kernels_of(MPM_ISA_BASELINE + _i)
-      ->axis_weights[2](&axis, MPMI_CHUNK, x, MPMI_NEED_MLS | MPMI_NEED_MOMENT, W.w, W.g, W.u, W.moment,
-                        W.first);
-  check_sums("MLS", 2, x, &W, -2.0);
-  for (int32_t p = 0; p < MPMI_CHUNK; ++p)
-    for (int32_t k = 0; k < 3; ++k) {
-      ck_within("MLS", W.moment[p], 0.25 * spacing * spacing, 1e-17);
-      ck_within("MLS", W.g[k][p], W.u[k][p] / W.moment[p], 1e-13);
+  for (int32_t order = 1; order <= 2; ++order) {
+    const mpmi_axis axis = axis_of(order, -2.0, 0);
+    double x[MPMI_CHUNK];
+    const double *const axes[1] = {x};
+    mpmi_weights W;
+    fill_positions(&d, x);
+    kernels->weights[1][order + 1](&axis, kernels->axis_weights[order], MPMI_NEED_MLS, MPMI_CHUNK, axes, &W);
+    for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
+      double D = 0.0;
+      for (int32_t k = 0; k <= order; ++k) {
+        const double away = origin + spacing * (W.node[p] - 2 + k) - x[p];
+        ck_within("u", W.u[0][k][p], W.w[0][k][p] * away, 1e-15);
+        ck_within("g", W.g[0][k][p], W.u[0][k][p] * W.inverse_moment[0][p], 1e-15 * W.inverse_moment[0][p]);
+        D += W.w[0][k][p] * away * away;
+      }
+      if (order == 2) ck_within("D", D, 0.25 * spacing * spacing, 1e-16);
+      if (D > 1e-7 * spacing * spacing)
+        ck_within("1/D", W.inverse_moment[0][p] * D, 1.0, 1e-7);
+      else if (D < 1e-9 * spacing * spacing)
+        ck_assert(W.inverse_moment[0][p] == 0.0);
     }
+  }
 }
 END_TEST
 
@@ -157,16 +162,15 @@ START_TEST(periodic_images_reach_the_tile) {
       const double xi = throw_between(&d, 8.5, 11.5);
       x[p] = origin + spacing * (xi > CELLS ? xi - CELLS : xi);
     }
-    kernels->axis_weights[order](&periodic, MPMI_CHUNK, x, MPMI_NEED_GRADIENT, P.w, P.g, P.u, P.moment,
-                                 P.first);
-    kernels->axis_weights[order](&plain, MPMI_CHUNK, x, MPMI_NEED_GRADIENT, W.w, W.g, W.u, W.moment, W.first);
+    kernels->axis_weights[order](&periodic, MPMI_CHUNK, x, 1, P.w, P.g, P.first, P.place);
+    kernels->axis_weights[order](&plain, MPMI_CHUNK, x, 1, W.w, W.g, W.first, W.place);
     for (int32_t p = 0; p < MPMI_CHUNK; ++p) {
       for (int32_t k = 0; k <= order; ++k) {
         ck_assert(P.w[k][p] == W.w[k][p]);
         ck_assert(P.g[k][p] == W.g[k][p]);
       }
-      ck_between("tile", P.first[p], 0.0, 16 + 2 * MPMI_RING - 1);
-      const double turns = (P.first[p] + periodic.tile_base - W.first[p]) / CELLS;
+      ck_between("tile", P.place[p], 0.0, 16 + 2 * MPMI_RING - 1);
+      const double turns = (P.place[p] + periodic.tile_base - W.place[p]) / CELLS;
       ck_assert(turns == floor(turns));
     }
   }
@@ -176,7 +180,7 @@ END_TEST
 TCase *basis_case(void) {
   TCase *tc = tcase_create("basis");
   tcase_add_loop_test(tc, weights_are_exact, 0, 3);
-  tcase_add_loop_test(tc, mls_weights_are_exact, 0, 3);
+  tcase_add_loop_test(tc, moments_are_exact, 0, 3);
   tcase_add_loop_test(tc, periodic_images_reach_the_tile, 0, 3);
   return tc;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "context/context.h"
+#include "transfer/kernels.h"
 
 /* ---- a host that counts ------------------------------------------------------------------------------ */
 typedef struct host {
@@ -244,6 +245,15 @@ START_TEST(isa_environment) {
 }
 END_TEST
 
+START_TEST(isa_has_kernels_of_its_own) {
+#if MPMI_HAS_X86
+  for (int32_t isa = MPM_ISA_BASELINE; isa < MPM_ISA_AVX512; ++isa)
+    ck_assert_ptr_ne(mpmi_kernels_of(isa), mpmi_kernels_of(isa + 1));
+#endif
+  ck_assert_ptr_nonnull(mpmi_kernels_of(MPM_ISA_BASELINE)->scatter[3][3][MPMI_SCATTER_8]);
+}
+END_TEST
+
 /* ---- memory ------------------------------------------------------------------------------------------ */
 START_TEST(memory_counted) {
   host h;
@@ -380,6 +390,7 @@ Suite *context_suite(void) {
   tcase_add_test(creation, longer_desc);
   tcase_add_test(creation, structs_written);
   tcase_add_test(creation, isa_environment);
+  tcase_add_test(creation, isa_has_kernels_of_its_own);
   suite_add_tcase(suite, creation);
   TCase *memory = tcase_create("memory");
   tcase_add_test(memory, memory_counted);

@@ -1,0 +1,56 @@
+/* Boxes of nodes between the tile of a block and the nodes of that block or of a neighbour. */
+#include "transfer/kernel_common.h"
+
+/* nodes += tile, and the tile is clean again. */
+MPMI_INLINE void add_box(int32_t values, const mpmi_box *box) {
+  const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW;
+  const mpmi_node zero = mpmi_node_zero();
+  for (int32_t i = 0; i < box->count[0]; ++i)
+    for (int32_t j = 0; j < box->count[1]; ++j) {
+      double *tile = box->tile + values * (i * box->tile_stride[0] + j * box->tile_stride[1]);
+      double *nodes = box->nodes + values * (i * box->node_stride[0] + j * box->node_stride[1]);
+      for (int32_t k = 0; k < box->count[2]; ++k) {
+        const mpmi_node sum = mpmi_node_sum(all, mpmi_node_load(all, nodes + values * k),
+                                            mpmi_node_load(all, tile + values * k));
+        mpmi_node_store(all, nodes + values * k, sum);
+        mpmi_node_store(all, tile + values * k, zero);
+      }
+    }
+}
+
+/* tile = nodes; a tile of 4 values per node can be had from nodes with 8: the velocities without their
+ * changes. */
+MPMI_INLINE void load_box(int32_t values, int32_t node_values, const mpmi_box *box) {
+  const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW;
+  for (int32_t i = 0; i < box->count[0]; ++i)
+    for (int32_t j = 0; j < box->count[1]; ++j) {
+      double *tile = box->tile + values * (i * box->tile_stride[0] + j * box->tile_stride[1]);
+      const double *nodes = box->nodes + node_values * (i * box->node_stride[0] + j * box->node_stride[1]);
+      for (int32_t k = 0; k < box->count[2]; ++k)
+        mpmi_node_store(all, tile + values * k, mpmi_node_load(all, nodes + node_values * k));
+    }
+}
+
+/* Asks for the nodes of a box, to the second-level cache. */
+void KERNEL(fetch_box)(int32_t values, const mpmi_box *box) {
+  enum { LINE = 64 / (int32_t)sizeof(double) };
+  for (int32_t i = 0; i < box->count[0]; ++i)
+    for (int32_t j = 0; j < box->count[1]; ++j) {
+      const double *row = box->nodes + values * (i * box->node_stride[0] + j * box->node_stride[1]);
+      for (int32_t k = 0; k < values * box->count[2]; k += LINE) __builtin_prefetch(row + k, 1, 2);
+    }
+}
+
+void KERNEL(add_box)(int32_t values, const mpmi_box *box) {
+  if (values == 8)
+    add_box(8, box);
+  else
+    add_box(4, box);
+}
+
+void KERNEL(load_box)(int32_t values, int32_t node_values, const mpmi_box *box) {
+  if (values == 8)
+    load_box(8, 8, box);
+  else
+    load_box(4, node_values, box);
+}

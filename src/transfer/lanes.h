@@ -1,0 +1,62 @@
+/* Particles side by side in one register of the instruction set: for loops that end in sums, maxima or flags,
+ * which compilers do not vectorise without being told to reorder. A sum over lanes has one order, so that
+ * results depend on the instruction set and on nothing else. */
+#ifndef MPMI_LANES_H
+#define MPMI_LANES_H
+
+#include <stdint.h>
+
+#include "transfer/isa.h"
+
+#if defined(__AVX512F__)
+enum { MPMI_LANES = 8 };
+#elif defined(__AVX__)
+enum { MPMI_LANES = 4 };
+#else
+enum { MPMI_LANES = 2 };
+#endif
+typedef double mpmi_lanes __attribute__((vector_size(MPMI_LANES * 8)));
+typedef int64_t mpmi_mask __attribute__((vector_size(MPMI_LANES * 8)));
+
+MPMI_INLINE mpmi_lanes mpmi_lanes_load(const double *a) {
+  mpmi_lanes r;
+  __builtin_memcpy(&r, a, sizeof r);
+  return r;
+}
+MPMI_INLINE void mpmi_lanes_store(double *a, mpmi_lanes v) {
+  __builtin_memcpy(a, &v, sizeof v);
+}
+/* v where the mask is set, else 0; also where v is not a number. */
+MPMI_INLINE mpmi_lanes mpmi_lanes_where(mpmi_mask mask, mpmi_lanes v) {
+  return (mpmi_lanes)((mpmi_mask)v & mask);
+}
+MPMI_INLINE mpmi_lanes mpmi_lanes_abs(mpmi_lanes v) {
+  return (mpmi_lanes)((mpmi_mask)v & INT64_MAX);
+}
+/* The larger one; a when b is not a number. */
+MPMI_INLINE mpmi_lanes mpmi_lanes_max(mpmi_lanes a, mpmi_lanes b) {
+  const mpmi_mask larger = b > a;
+  return (mpmi_lanes)(((mpmi_mask)b & larger) | ((mpmi_mask)a & ~larger));
+}
+/* Nearest integers; see mpmi_round. */
+MPMI_INLINE mpmi_lanes mpmi_lanes_round(mpmi_lanes v) {
+  const double big = 6755399441055744.0;
+  return (v + big) - big;
+}
+MPMI_INLINE double mpmi_lanes_sum(mpmi_lanes v) {
+  double sum = v[0];
+  for (int32_t i = 1; i < MPMI_LANES; ++i) sum += v[i];
+  return sum;
+}
+MPMI_INLINE double mpmi_lanes_largest(mpmi_lanes v) {
+  double largest = v[0];
+  for (int32_t i = 1; i < MPMI_LANES; ++i) largest = v[i] > largest ? v[i] : largest;
+  return largest;
+}
+MPMI_INLINE uint32_t mpmi_lanes_any(mpmi_mask mask, uint32_t flag) {
+  int64_t any = 0;
+  for (int32_t i = 0; i < MPMI_LANES; ++i) any |= mask[i];
+  return any ? flag : 0u;
+}
+
+#endif

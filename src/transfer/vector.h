@@ -1,0 +1,215 @@
+/* The values of one node, or of one particle as nodes receive them, in whole registers of the instruction
+ * set: four doubles, or eight as two halves. */
+#ifndef MPMI_VECTOR_H
+#define MPMI_VECTOR_H
+
+#include "transfer/isa.h"
+
+#if defined(__AVX__)
+typedef double mpmi_v4 __attribute__((vector_size(32)));
+
+MPMI_INLINE mpmi_v4 mpmi_zero4(void) {
+  return (mpmi_v4){0.0, 0.0, 0.0, 0.0};
+}
+MPMI_INLINE mpmi_v4 mpmi_load4(const double *a) {
+  mpmi_v4 r;
+  __builtin_memcpy(&r, a, sizeof r);
+  return r;
+}
+MPMI_INLINE void mpmi_store4(double *a, mpmi_v4 v) {
+  __builtin_memcpy(a, &v, sizeof v);
+}
+MPMI_INLINE mpmi_v4 mpmi_scale4(double s, mpmi_v4 v) {
+  return s * v;
+}
+MPMI_INLINE mpmi_v4 mpmi_fma4(mpmi_v4 a, double s, mpmi_v4 v) {
+  return a + s * v;
+}
+MPMI_INLINE mpmi_v4 mpmi_sum4(mpmi_v4 a, mpmi_v4 b) {
+  return a + b;
+}
+MPMI_INLINE mpmi_v4 mpmi_difference4(mpmi_v4 a, mpmi_v4 b) {
+  return a - b;
+}
+MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d) {
+  mpmi_v4 ab_even = __builtin_shufflevector(*a, *b, 0, 4, 2, 6),
+          ab_odd = __builtin_shufflevector(*a, *b, 1, 5, 3, 7);
+  mpmi_v4 cd_even = __builtin_shufflevector(*c, *d, 0, 4, 2, 6),
+          cd_odd = __builtin_shufflevector(*c, *d, 1, 5, 3, 7);
+  *a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  *b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  *c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  *d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+}
+
+#else
+/* 128-bit registers: compilers split wider vectors badly, so they come in two halves. */
+typedef double mpmi_v2 __attribute__((vector_size(16)));
+typedef struct mpmi_v4 {
+  mpmi_v2 low, high;
+} mpmi_v4;
+
+MPMI_INLINE mpmi_v4 mpmi_zero4(void) {
+  return (mpmi_v4){{0.0, 0.0}, {0.0, 0.0}};
+}
+MPMI_INLINE mpmi_v4 mpmi_load4(const double *a) {
+  mpmi_v4 r;
+  __builtin_memcpy(&r.low, a, sizeof r.low);
+  __builtin_memcpy(&r.high, a + 2, sizeof r.high);
+  return r;
+}
+MPMI_INLINE void mpmi_store4(double *a, mpmi_v4 v) {
+  __builtin_memcpy(a, &v.low, sizeof v.low);
+  __builtin_memcpy(a + 2, &v.high, sizeof v.high);
+}
+MPMI_INLINE mpmi_v4 mpmi_scale4(double s, mpmi_v4 v) {
+  return (mpmi_v4){s * v.low, s * v.high};
+}
+MPMI_INLINE mpmi_v4 mpmi_fma4(mpmi_v4 a, double s, mpmi_v4 v) {
+  return (mpmi_v4){a.low + s * v.low, a.high + s * v.high};
+}
+MPMI_INLINE mpmi_v4 mpmi_sum4(mpmi_v4 a, mpmi_v4 b) {
+  return (mpmi_v4){a.low + b.low, a.high + b.high};
+}
+MPMI_INLINE mpmi_v4 mpmi_difference4(mpmi_v4 a, mpmi_v4 b) {
+  return (mpmi_v4){a.low - b.low, a.high - b.high};
+}
+MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d) {
+  const mpmi_v4 ta = *a, tb = *b, tc = *c, td = *d;
+  a->low = __builtin_shufflevector(ta.low, tb.low, 0, 2);
+  a->high = __builtin_shufflevector(tc.low, td.low, 0, 2);
+  b->low = __builtin_shufflevector(ta.low, tb.low, 1, 3);
+  b->high = __builtin_shufflevector(tc.low, td.low, 1, 3);
+  c->low = __builtin_shufflevector(ta.high, tb.high, 0, 2);
+  c->high = __builtin_shufflevector(tc.high, td.high, 0, 2);
+  d->low = __builtin_shufflevector(ta.high, tb.high, 1, 3);
+  d->high = __builtin_shufflevector(tc.high, td.high, 1, 3);
+}
+#endif
+
+/* A node holds four values (LOW) or eight (BOTH). Operands whose lower half is zero may say HIGH. The part is
+ * always a constant. */
+enum { MPMI_LOW = 1, MPMI_HIGH = 2, MPMI_BOTH = 3 };
+
+#if defined(__AVX512F__)
+enum { MPMI_HALF = MPMI_BOTH }; /* how to work with a node of eight when only its lower half counts */
+typedef double mpmi_v8 __attribute__((vector_size(64)));
+typedef struct mpmi_node {
+  mpmi_v4 four;
+  mpmi_v8 eight;
+} mpmi_node;
+/* Weights that differ between the halves: momentum takes moments of the basis where force takes gradients. */
+typedef mpmi_v8 mpmi_pair;
+
+MPMI_INLINE mpmi_node mpmi_node_zero(void) {
+  return (mpmi_node){mpmi_zero4(), {0.0}};
+}
+MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
+  mpmi_node r = mpmi_node_zero();
+  if (part == MPMI_LOW)
+    r.four = mpmi_load4(a);
+  else
+    __builtin_memcpy(&r.eight, a, sizeof r.eight);
+  return r;
+}
+MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
+  if (part == MPMI_LOW)
+    mpmi_store4(a, v.four);
+  else
+    __builtin_memcpy(a, &v.eight, sizeof v.eight);
+}
+MPMI_INLINE mpmi_v4 mpmi_node_low(int32_t part, mpmi_node a) {
+  return part == MPMI_LOW ? a.four : __builtin_shufflevector(a.eight, a.eight, 0, 1, 2, 3);
+}
+MPMI_INLINE mpmi_node mpmi_node_scale(int32_t part, double s, mpmi_node a) {
+  if (part == MPMI_LOW)
+    a.four = s * a.four;
+  else
+    a.eight = s * a.eight;
+  return a;
+}
+MPMI_INLINE mpmi_node mpmi_node_fma(int32_t part, mpmi_node a, double s, mpmi_node b) {
+  if (part == MPMI_LOW)
+    a.four = a.four + s * b.four;
+  else
+    a.eight = a.eight + s * b.eight;
+  return a;
+}
+MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
+  if (part == MPMI_LOW)
+    a.four = a.four + b.four;
+  else
+    a.eight = a.eight + b.eight;
+  return a;
+}
+MPMI_INLINE mpmi_node mpmi_node_difference(int32_t part, mpmi_node a, mpmi_node b) {
+  if (part == MPMI_LOW)
+    a.four = a.four - b.four;
+  else
+    a.eight = a.eight - b.eight;
+  return a;
+}
+MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {
+  return (mpmi_pair){low, low, low, low, high, high, high, high};
+}
+MPMI_INLINE mpmi_node mpmi_node_fma_pair(int32_t part, mpmi_node a, mpmi_pair s, mpmi_node b) {
+  (void)part;
+  a.eight = a.eight + s * b.eight;
+  return a;
+}
+
+#else
+enum { MPMI_HALF = MPMI_LOW };
+typedef struct mpmi_node {
+  mpmi_v4 low, high;
+} mpmi_node;
+typedef struct mpmi_pair {
+  double low, high;
+} mpmi_pair;
+
+MPMI_INLINE mpmi_node mpmi_node_zero(void) {
+  return (mpmi_node){mpmi_zero4(), mpmi_zero4()};
+}
+MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
+  return (mpmi_node){part & MPMI_LOW ? mpmi_load4(a) : mpmi_zero4(),
+                     part & MPMI_HIGH ? mpmi_load4(a + 4) : mpmi_zero4()};
+}
+MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
+  if (part & MPMI_LOW) mpmi_store4(a, v.low);
+  if (part & MPMI_HIGH) mpmi_store4(a + 4, v.high);
+}
+MPMI_INLINE mpmi_v4 mpmi_node_low(int32_t part, mpmi_node a) {
+  (void)part;
+  return a.low;
+}
+MPMI_INLINE mpmi_node mpmi_node_scale(int32_t part, double s, mpmi_node a) {
+  if (part & MPMI_LOW) a.low = mpmi_scale4(s, a.low);
+  if (part & MPMI_HIGH) a.high = mpmi_scale4(s, a.high);
+  return a;
+}
+MPMI_INLINE mpmi_node mpmi_node_fma(int32_t part, mpmi_node a, double s, mpmi_node b) {
+  if (part & MPMI_LOW) a.low = mpmi_fma4(a.low, s, b.low);
+  if (part & MPMI_HIGH) a.high = mpmi_fma4(a.high, s, b.high);
+  return a;
+}
+MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
+  if (part & MPMI_LOW) a.low = mpmi_sum4(a.low, b.low);
+  if (part & MPMI_HIGH) a.high = mpmi_sum4(a.high, b.high);
+  return a;
+}
+MPMI_INLINE mpmi_node mpmi_node_difference(int32_t part, mpmi_node a, mpmi_node b) {
+  if (part & MPMI_LOW) a.low = mpmi_difference4(a.low, b.low);
+  if (part & MPMI_HIGH) a.high = mpmi_difference4(a.high, b.high);
+  return a;
+}
+MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {
+  return (mpmi_pair){low, high};
+}
+MPMI_INLINE mpmi_node mpmi_node_fma_pair(int32_t part, mpmi_node a, mpmi_pair s, mpmi_node b) {
+  if (part & MPMI_LOW) a.low = mpmi_fma4(a.low, s.low, b.low);
+  if (part & MPMI_HIGH) a.high = mpmi_fma4(a.high, s.high, b.high);
+  return a;
+}
+#endif
+
+#endif
