@@ -76,7 +76,7 @@ static void bind_set(batch_job *b, int32_t m) {
   b->dv = b->v_bar + 3 * ld;
   b->C = b->dv + 3 * ld;
   memset(b->scratch->gathered, 0, (size_t)(15 * ld) * sizeof(double));
-  b->gather = (mpmi_gather){.axis_weights = s->kernels->axis_weights[grid->order],
+  b->gather = (mpmi_gather){.weights = s->kernels->weights[grid->order][dim],
                             .need = b->job->need,
                             .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
                             .tile = b->scratch->tile,

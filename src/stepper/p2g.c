@@ -14,9 +14,6 @@ typedef struct p2g_job {
 #define TILE_FITS(dim, width) (2 * MPMI_BLOCK_EDGE(dim) >= MPMI_TILE_EDGE(dim, width))
 _Static_assert(TILE_FITS(1, 4) && TILE_FITS(2, 4) && TILE_FITS(3, 4), "tiles of one colour overlap");
 
-/* A block is scattered in pieces, and in front of each a share of its nodes is asked for. */
-enum { PIECES = 9 };
-
 static void zero_task(void *data, int64_t k) {
   const p2g_job *job = data;
   const int64_t slots = job->s->blocks.count * job->s->blocks.nodes * job->values, tasks = job->s->tasks;
@@ -29,7 +26,7 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   const mpm_particles *set = member->set;
   const int32_t dim = s->grid->dim, again = job->what == MPMI_P2G_AGAIN;
   memset(scatter, 0, sizeof *scatter);
-  scatter->axis_weights = s->kernels->axis_weights[s->grid->order];
+  scatter->weights = s->kernels->weights[s->grid->order][dim];
   scatter->need = job->need;
   scatter->mass = mpmi_f64(set, MPMI_MASS, 0);
   scatter->volume = mpmi_f64(set, MPMI_VOLUME, 0);
@@ -62,6 +59,22 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   scatter->fused_dt = again || job->values == 8 ? 0.0 : job->dt;
 }
 
+/* In as many pieces as the block has neighbours: in front of each, the nodes that the tile shares with one of
+ * them are asked for, so that they are near when the tile is added to them. */
+static void scatter_block(const p2g_job *job, const mpmi_scatter *scatter, int32_t block, int64_t begin,
+                          int64_t end) {
+  const mpm_stepper *s = job->s;
+  const int32_t pieces = s->blocks.neighbours;
+  const mpmi_scatter_fn kernel = s->kernels->scatter[s->grid->dim][s->grid->width][job->form];
+  const int64_t chunks = (end - begin + MPMI_CHUNK - 1) / MPMI_CHUNK;
+  for (int32_t k = 0; k < pieces; ++k) {
+    const int64_t from = begin + chunks * k / pieces * MPMI_CHUNK;
+    const int64_t to = begin + chunks * (k + 1) / pieces * MPMI_CHUNK;
+    mpmi_tile_fetch(s, block, job->nodes, job->values, k, k + 1);
+    if (to > from) kernel(scatter, from, to < end ? to : end);
+  }
+}
+
 static void p2g_task(void *data, int64_t k) {
   const p2g_job *job = data;
   mpm_stepper *s = job->s;
@@ -80,15 +93,7 @@ static void p2g_task(void *data, int64_t k) {
       scatter_of(job, &s->member[m], &scatter);
       mpmi_block_axes(grid, s->blocks.coord[block], scatter.axis);
       scatter.tile = tile;
-      for (int32_t piece = 0; piece < PIECES; ++piece) {
-        const int64_t slots = start[block + 1] - start[block], groups = slots / MPMI_CHUNK;
-        const int64_t from = start[block] + groups * piece / PIECES * MPMI_CHUNK;
-        const int64_t to =
-            piece + 1 < PIECES ? start[block] + groups * (piece + 1) / PIECES * MPMI_CHUNK : start[block + 1];
-        mpmi_tile_fetch(s, block, job->nodes, job->values, s->blocks.neighbours * piece / PIECES,
-                        s->blocks.neighbours * (piece + 1) / PIECES);
-        if (to > from) s->kernels->scatter[grid->dim][grid->width][job->form](&scatter, from, to);
-      }
+      scatter_block(job, &scatter, block, start[block], start[block + 1]);
     }
     mpmi_tile_add(s, block, job->nodes, job->values, tile);
   }

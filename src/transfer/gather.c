@@ -138,14 +138,14 @@ MPMI_INLINE void unpack(int32_t dim, int32_t width, int32_t form, const mpmi_gat
 }
 
 MPMI_INLINE void gather(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t begin,
-                        int64_t count, mpmi_weights_fn weights) {
+                        int64_t count) {
   mpmi_weights W;
   mpmi_gathered out;
   for (int64_t s = 0; s < count; s += MPMI_CHUNK) {
     const int64_t n = count - s < MPMI_CHUNK ? count - s : MPMI_CHUNK;
     const double *x[3], *volume = job->initial_volume + begin + s;
     for (int32_t k = 0; k < dim; ++k) x[k] = job->x[k] + begin + s;
-    weights(job->axis, job->axis_weights, job->need, n, x, &W);
+    job->weights(job->axis, job->need, n, x, &W);
     for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
         double live = volume[p] > 0.0 ? 1.0 : 0.0;
         W.w[0][k][p] *= live;
@@ -162,6 +162,6 @@ MPMI_INLINE void gather(int32_t dim, int32_t width, int32_t form, const mpmi_gat
 #define GATHER(dim, width, form, name)                                                                       \
   void KERNEL(name)(const mpmi_gather *job, int64_t begin, int64_t n);                                       \
   void KERNEL(name)(const mpmi_gather *job, int64_t begin, int64_t n) {                                      \
-    gather(dim, width, form, job, begin, n, KERNEL(weights_##dim##_##width));                                \
+    gather(dim, width, form, job, begin, n);                                                                 \
   }
 #include "transfer/instances.h"

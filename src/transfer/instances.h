@@ -1,14 +1,5 @@
-/* Every specialisation of weights, scatter and gather that exists; define WEIGHTS, SCATTER or GATHER before
- * including. name = kernel, dim, width, form. */
-#ifdef WEIGHTS
-WEIGHTS(1, 2)
-WEIGHTS(1, 3)
-WEIGHTS(2, 2)
-WEIGHTS(2, 3)
-WEIGHTS(3, 2)
-WEIGHTS(3, 3)
-#undef WEIGHTS
-#endif
+/* Every specialisation of scatter and gather that exists; define SCATTER or GATHER before including.
+ * name = kernel, dim, width, form. */
 #ifdef SCATTER
 #define SCATTER_FORMS(dim, width)                                                                            \
   SCATTER(dim, width, MPMI_SCATTER_4, scatter_##dim##_##width##_4)                                           \

@@ -60,10 +60,4 @@ MPMI_INLINE void mpmi_unpack(int64_t n, const double *in, int32_t stride, double
   }
 }
 
-/* Weights of a chunk on all axes and the tile node of each stencil (weights.c). */
-#define WEIGHTS(dim, width)                                                                                  \
-  void KERNEL(weights_##dim##_##width)(const mpmi_axis *axis, mpmi_axis_weights_fn axis_weights,             \
-                                       int32_t need, int64_t n, const double *const *x, mpmi_weights *out);
-#include "transfer/instances.h"
-
 #endif

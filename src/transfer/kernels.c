@@ -1,14 +1,14 @@
 /* The table of this instruction set's kernels. */
 #include "transfer/kernels.h"
 
-#define AXIS(name)                                                                                           \
-  void KERNEL(name)(const mpmi_axis *, int64_t, const double *, int32_t, double(*)[MPMI_CHUNK],              \
-                    double(*)[MPMI_CHUNK], double *, double *);
-AXIS(bspline1)
-AXIS(bspline2)
-#define WEIGHTS(dim, width)                                                                                  \
-  void KERNEL(weights_##dim##_##width)(const mpmi_axis *, mpmi_axis_weights_fn, int32_t, int64_t,            \
-                                       const double *const *, mpmi_weights *);
+#define WEIGHTS(name)                                                                                        \
+  void KERNEL(name)(const mpmi_axis *, int32_t, int64_t, const double *const *, mpmi_weights *);
+#define BASIS(name)                                                                                          \
+  WEIGHTS(name##_1)                                                                                          \
+  WEIGHTS(name##_2)                                                                                          \
+  WEIGHTS(name##_3)
+BASIS(bspline1)
+BASIS(bspline2)
 #define SCATTER(dim, width, form, name) void KERNEL(name)(const mpmi_scatter *, int64_t, int64_t);
 #define GATHER(dim, width, form, name)  void KERNEL(name)(const mpmi_gather *, int64_t, int64_t);
 #include "transfer/instances.h"
@@ -28,8 +28,9 @@ int64_t KERNEL(update)(int32_t, double *, int64_t, double, double);
 
 extern const mpmi_kernels KERNEL(kernels);
 const mpmi_kernels KERNEL(kernels) = {
-    .axis_weights = {NULL, KERNEL(bspline1), KERNEL(bspline2), NULL},
-#define WEIGHTS(dim, width)             .weights[dim][width] = KERNEL(weights_##dim##_##width),
+    .weights = {{NULL},
+                {NULL, KERNEL(bspline1_1), KERNEL(bspline1_2), KERNEL(bspline1_3)},
+                {NULL, KERNEL(bspline2_1), KERNEL(bspline2_2), KERNEL(bspline2_3)}},
 #define SCATTER(dim, width, form, name) .scatter[dim][width][form] = KERNEL(name),
 #define GATHER(dim, width, form, name)  .gather[dim][width][form] = KERNEL(name),
 #include "transfer/instances.h"

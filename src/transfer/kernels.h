@@ -1,6 +1,6 @@
 /* The specialised kernels of the method: weights, scatter (P2G), gather (G2P), advance and survey.
  *
- * Kernels work on slots in groups of 16 and in chunks of 32; they see one block at a time with its tile: a
+ * Kernels work on slots in groups of 16 and in chunks; they see one block at a time with its tile: a
  * private copy of the block's nodes plus halo. Tile nodes hold `values` doubles: 4 [px py pz m] or 8 [px py
  * pz m fx fy fz 0] when scattering, and [vx vy vz m] or [vx vy vz m dvx dvy dvz 0] when gathering, where v is
  * the updated nodal velocity and dv its change over the step. The last axis runs fastest.
@@ -14,13 +14,15 @@
 #include "material/material.h"
 #include "transfer/isa.h"
 
-enum { MPMI_CHUNK = 32, MPMI_GROUP = 16, MPMI_MAX_WIDTH = 4 };
+/* A chunk is what a kernel has under way between particles and tile; longer ones push the tile out of the
+ * first-level cache. */
+enum { MPMI_CHUNK = 16, MPMI_GROUP = 16, MPMI_MAX_WIDTH = 4 };
 #define MPMI_TILE_EDGE(dim, width) (MPMI_BLOCK_EDGE(dim) + 2 * MPMI_RING + (width)-1)
 
 /* One axis of the basis as seen from one block. */
 typedef struct mpmi_axis {
   double origin, spacing, inverse_spacing;
-  double base_low, base_high;    /* range of the first node of a stencil */
+  double last_cell;              /* the last one has particles on the upper face too */
   double period, inverse_period; /* in cells; 0 when the axis is not periodic */
   double tile_base;              /* node at the corner of the tile */
   double middle; /* of the valid first nodes, relative to tile_base: picks the periodic image */
@@ -45,15 +47,10 @@ enum {
   MPMI_NEED_MLS = 4       /* these, and g = u / D in place of the gradient */
 };
 
-/* Weights of n (a multiple of 16, <= 32) particles along one axis; place[] receives the first node of the
- * stencil, relative to the tile. One function per basis family; everything else is common. */
-typedef void (*mpmi_axis_weights_fn)(const mpmi_axis *axis, int64_t n, const double *x, int32_t gradient,
-                                     double (*w)[MPMI_CHUNK], double (*g)[MPMI_CHUNK], double *first,
-                                     double *place);
-
-/* Weights along all axes. */
-typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, mpmi_axis_weights_fn axis_weights, int32_t need,
-                                int64_t n, const double *const *x, mpmi_weights *out);
+/* Weights of n (a multiple of 16, at most a chunk) particles along all axes: one function per basis and dim;
+ * everything else is common. */
+typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, int64_t n, const double *const *x,
+                                mpmi_weights *out);
 
 /* Forms of the scatter: 4 values (momentum and mass; the fused MLS force may ride on the momentum) or 8
  * (force apart), with or without the affine part of the velocity. */
@@ -72,7 +69,7 @@ typedef struct mpmi_streams {
 /* Component arrays of a set, each at slot 0. */
 typedef struct mpmi_scatter {
   mpmi_axis axis[3];
-  mpmi_axis_weights_fn axis_weights;
+  mpmi_weights_fn weights;
   int32_t need;
   const double *x[3], *v[3], *mass, *volume;
   const double *stress[6]; /* by (xx yy zz xy yz xz); NULL: no internal force */
@@ -88,7 +85,7 @@ typedef void (*mpmi_scatter_fn)(const mpmi_scatter *job, int64_t begin, int64_t 
 /* Gathered quantities of a batch, [components][ld] each; L and C full 3x3 with unused entries left alone. */
 typedef struct mpmi_gather {
   mpmi_axis axis[3];
-  mpmi_axis_weights_fn axis_weights;
+  mpmi_weights_fn weights;
   int32_t need;
   const double *x[3], *initial_volume; /* a hole has none: everything gathered for it is 0 */
   const double *tile;
@@ -167,8 +164,7 @@ typedef void (*mpmi_load_box_fn)(int32_t values, int32_t node_values, const mpmi
 typedef int64_t (*mpmi_update_fn)(int32_t values, double *nodes, int64_t count, double cut, double dt);
 
 typedef struct mpmi_kernels {
-  mpmi_axis_weights_fn axis_weights[4];                               /* by order of the B-spline */
-  mpmi_weights_fn weights[4][MPMI_MAX_WIDTH + 1];                     /* by dim, width */
+  mpmi_weights_fn weights[4][4];                                      /* by order of the B-spline, dim */
   mpmi_scatter_fn scatter[4][MPMI_MAX_WIDTH + 1][MPMI_SCATTER_FORMS]; /* by dim, width, form */
   mpmi_gather_fn gather[4][MPMI_MAX_WIDTH + 1][MPMI_GATHER_FORMS];
   mpmi_add_box_fn add_box;

@@ -179,7 +179,7 @@ MPMI_INLINE void pack_momentum(int32_t dim, int32_t form, const mpmi_scatter *jo
 }
 
 MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
-                         int64_t end, mpmi_weights_fn weights) {
+                         int64_t end) {
   mpmi_weights W;
   mpmi_first_order of;
   if (form == MPMI_SCATTER_8)
@@ -188,7 +188,7 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
     const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
     const double *x[3];
     for (int32_t k = 0; k < dim; ++k) x[k] = job->x[k] + s;
-    weights(job->axis, job->axis_weights, job->need, n, x, &W);
+    job->weights(job->axis, job->need, n, x, &W);
     pack_momentum(dim, form, job, s, n, &W, &of);
     if (form >= MPMI_SCATTER_8) pack_force(dim, job, s, n, &of);
     for (int64_t p = 0; p < n; ++p) {
@@ -206,6 +206,6 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
 #define SCATTER(dim, width, form, name)                                                                      \
   void KERNEL(name)(const mpmi_scatter *job, int64_t begin, int64_t end);                                    \
   void KERNEL(name)(const mpmi_scatter *job, int64_t begin, int64_t end) {                                   \
-    scatter(dim, width, form, job, begin, end, KERNEL(weights_##dim##_##width));                             \
+    scatter(dim, width, form, job, begin, end);                                                              \
   }
 #include "transfer/instances.h"
