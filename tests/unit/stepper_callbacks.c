@@ -233,6 +233,34 @@ START_TEST(three_ways_of_a_force) {
 }
 END_TEST
 
+/* Inert slots lie among moving particles and stay at rest, or they would wander off and cause sorts. */
+static mpm_status look_at_inert(void *user, const mpm_particle_batch *b, double *add) {
+  const void *lent;
+  int64_t stride;
+  (void)add;
+  ck_assert_int_eq(mpm_batch_field(b->lookup, "velocity", &lent, &stride), MPM_OK);
+  const double *v = lent;
+  for (int64_t p = 0; p < b->n; ++p) {
+    if (b->id[p] >= 0) continue;
+    ++*(int64_t *)user;
+    for (int32_t c = 0; c < b->dim; ++c) ck_assert(v[c * stride + p] == 0.0);
+  }
+  return 0;
+}
+
+START_TEST(inert_slots_rest) {
+  run other;
+  int64_t seen = 0;
+  run_options o = {.dim = 1 + _i / RUN_METHODS};
+  run_use(&o, &run_methods[_i % RUN_METHODS]);
+  run_open(&other, &o);
+  run_ok(&other, mpm_stepper_set_force(other.stepper, look_at_inert, &seen));
+  run_steps(&other, 6);
+  ck_assert_int_gt(seen, 0);
+  run_close(&other);
+}
+END_TEST
+
 /* ---- refusals and calls from inside ----------------------------------------------------------------------
  */
 static struct {
@@ -405,6 +433,7 @@ TCase *stepper_callbacks_case(void) {
   tcase_add_loop_test(tests, stored_tensors, 0, 3);
   tcase_add_test(tests, optional_fields);
   tcase_add_test(tests, three_ways_of_a_force);
+  tcase_add_loop_test(tests, inert_slots_rest, 0, 3 * RUN_METHODS);
   tcase_add_test(tests, answers);
   tcase_add_test(tests, calls_from_inside);
   tcase_add_loop_test(tests, serial_callbacks, 0, 2);
