@@ -13,8 +13,31 @@ static void build(const mpm_particles *set, uint64_t *key, uint32_t *order, uint
   for (int64_t i = 0; i < set->count; ++i) index[i] = (id_slot){id[order[i]], order[i]};
 }
 
+int32_t mpmi_ids_ascend(const mpm_particles *set) {
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  int64_t last = -1;
+  for (int64_t s = 0; s < set->slots; ++s) {
+    if (id[s] < 0) continue;
+    if (id[s] < last) return 0;
+    last = id[s];
+  }
+  return 1;
+}
+
+/* Ids that ascend with the slots are as good as sorted, and need no scratch. */
+static mpm_status list(mpm_particles *set) {
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  set->index = mpmi_alloc(set->context, mpmi_bytes(set->count, sizeof *set->index));
+  if (!set->index) return MPM_E_NOMEM;
+  set->index_capacity = 0;
+  for (int64_t s = 0; s < set->slots; ++s)
+    if (id[s] >= 0) set->index[set->index_capacity++] = (id_slot){id[s], s};
+  return MPM_OK;
+}
+
 mpm_status mpmi_index_build(mpm_particles *set) {
   if (set->index) return MPM_OK;
+  if (mpmi_ids_ascend(set)) return list(set);
   mpm_context *context = set->context;
   size_t key_bytes = mpmi_bytes(2 * set->slots, sizeof(uint64_t));
   size_t order_bytes = mpmi_bytes(2 * set->slots, sizeof(uint32_t));

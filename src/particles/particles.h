@@ -116,7 +116,8 @@ double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int
 int64_t mpmi_leading_dimension(int64_t slots);
 
 /* Lookup by id (lookup.c). */
-mpm_status mpmi_index_build(mpm_particles *set); /* no work when it is there */
+mpm_status mpmi_index_build(mpm_particles *set);   /* no work when it is there */
+int32_t mpmi_ids_ascend(const mpm_particles *set); /* with the slots */
 void mpmi_index_drop(mpm_particles *set);
 int64_t mpmi_index_find(const mpm_particles *set, int64_t id); /* slot, or -1; index must be built */
 

@@ -11,9 +11,13 @@ void mpmi_arrangement_init(mpmi_arrangement *a, mpm_context *context) {
 
 void mpmi_arrangement_free(mpmi_arrangement *a) {
   mpmi_free(a->context, a->start, mpmi_bytes(a->start_capacity, sizeof *a->start));
-  mpmi_free(a->context, a->block, mpmi_bytes(a->block_capacity, sizeof *a->block));
-  mpmi_free(a->context, a->source, mpmi_bytes(a->source_capacity, sizeof *a->source));
   mpmi_arrangement_init(a, a->context);
+}
+
+void mpmi_sorting_free(mpmi_sorting *sorting, mpm_context *context) {
+  mpmi_free(context, sorting->block, mpmi_bytes(sorting->block_capacity, sizeof *sorting->block));
+  mpmi_free(context, sorting->source, mpmi_bytes(sorting->source_capacity, sizeof *sorting->source));
+  memset(sorting, 0, sizeof *sorting);
 }
 
 mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *a, int64_t blocks) {
@@ -21,22 +25,22 @@ mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *a, int64_t blocks) 
                       blocks + 1 > a->start_capacity ? 2 * blocks + 2 : 0, sizeof *a->start);
 }
 
-mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks, mpmi_arrangement *to) {
-  mpm_status status =
-      mpmi_reserve(to->context, (void **)&to->block, &to->block_capacity, set->ld, sizeof *to->block);
+mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks, mpmi_sorting *sorting) {
+  mpm_status status = mpmi_reserve(set->context, (void **)&sorting->block, &sorting->block_capacity, set->ld,
+                                   sizeof *sorting->block);
   if (status) return status;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   const double *x = mpmi_f64(set, MPMI_POSITION, 0);
   int32_t last[3] = {0, 0, 0}, coord[3] = {0, 0, 0}, block = MPMI_NO_BLOCK;
   for (int64_t s = 0; s < set->slots; ++s) {
-    to->block[s] = NONE;
+    sorting->block[s] = NONE;
     if (id[s] < 0) continue;
     mpmi_blocks_of_position(set->grid, x + s, set->ld, blocks->edge, coord);
     if (block < 0 || memcmp(coord, last, sizeof coord) != 0) {
       if ((status = mpmi_blocks_insert(blocks, coord, &block))) return status;
       memcpy(last, coord, sizeof coord);
     }
-    to->block[s] = (uint32_t)block;
+    sorting->block[s] = (uint32_t)block;
   }
   return MPM_OK;
 }
@@ -45,14 +49,15 @@ static int64_t padded(int64_t count) {
   return (count + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD;
 }
 
-mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_arrangement *to) {
+mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
+                          mpmi_arrangement *to) {
   mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
   if (status) return status;
-  const int32_t by_id = (set->dirty & MPMI_DIRTY_ORDER) != 0;
+  const int32_t by_id = (set->dirty & MPMI_DIRTY_ORDER) && !mpmi_ids_ascend(set);
   if (by_id && (status = mpmi_index_build(set))) return status;
   memset(to->start, 0, (size_t)(blocks->count + 1) * sizeof *to->start);
   for (int64_t s = 0; s < set->slots; ++s)
-    if (to->block[s] != NONE) ++to->start[blocks->order[to->block[s]]];
+    if (sorting->block[s] != NONE) ++to->start[blocks->order[sorting->block[s]]];
   int64_t slots = 0;
   for (int64_t b = 0; b <= blocks->count; ++b) {
     const int64_t here = padded(to->start[b]);
@@ -60,15 +65,16 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_ar
     slots += here;
   }
   if ((status = mpmi_particles_reserve(set, slots)) ||
-      (status = mpmi_reserve(to->context, (void **)&to->source, &to->source_capacity, set->ld,
-                             sizeof *to->source)))
+      (status = mpmi_reserve(set->context, (void **)&sorting->source, &sorting->source_capacity, set->ld,
+                             sizeof *sorting->source)))
     return status;
-  if (slots) memset(to->source, 0xff, (size_t)slots * sizeof *to->source);
+  if (slots) memset(sorting->source, 0xff, (size_t)slots * sizeof *sorting->source);
   /* start[b] serves as the cursor of block b and is put back afterwards */
   const int64_t n = by_id ? set->count : set->slots;
   for (int64_t i = 0; i < n; ++i) {
     const int64_t s = by_id ? set->index[i].slot : i;
-    if (to->block[s] != NONE) to->source[to->start[blocks->order[to->block[s]]]++] = (uint32_t)s;
+    if (sorting->block[s] != NONE)
+      sorting->source[to->start[blocks->order[sorting->block[s]]]++] = (uint32_t)s;
   }
   for (int64_t b = blocks->count; b > 0; --b) to->start[b] = padded(to->start[b - 1]);
   to->start[0] = 0;
@@ -181,15 +187,16 @@ static void hole_position(const mpm_grid *grid, const mpmi_blocks *blocks, int64
   }
 }
 
-void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_arrangement *to) {
+void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_sorting *sorting,
+                     const mpmi_arrangement *to) {
   const int64_t slots = to->start[blocks->count];
   if (slots) {
-    sort_single_copies(set, to->source, slots);
-    sort_double_copies(set, to->source, slots);
+    sort_single_copies(set, sorting->source, slots);
+    sort_double_copies(set, sorting->source, slots);
   }
   for (int64_t b = 0; b < blocks->count; ++b) {
     int64_t end = to->start[b + 1], begin = end;
-    while (begin > to->start[b] && to->source[begin - 1] == NONE) --begin;
+    while (begin > to->start[b] && sorting->source[begin - 1] == NONE) --begin;
     if (begin == end) continue;
     double position[3];
     hole_position(set->grid, blocks, b, position);

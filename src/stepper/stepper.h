@@ -21,7 +21,8 @@
 typedef struct mpmi_member {
   mpm_particles *set;
   mpmi_arrangement now, next; /* slots by block: of the last sort; of the one being made */
-  double *force;              /* [dim][force_ld] external force beside gravity, or NULL */
+  mpmi_sorting sorting;
+  double *force; /* [dim][force_ld] external force beside gravity, or NULL */
   int64_t force_ld;
 } mpmi_member;
 

@@ -112,13 +112,15 @@ static mpm_status sort_anew(mpm_stepper *s) {
   mpm_status status;
   mpmi_blocks_clear(&s->next_blocks);
   for (int32_t m = 0; m < s->member_count; ++m)
-    if ((status = mpmi_sort_survey(s->member[m].set, &s->next_blocks, &s->member[m].next))) return status;
+    if ((status = mpmi_sort_survey(s->member[m].set, &s->next_blocks, &s->member[m].sorting))) return status;
   if ((status = mpmi_blocks_order(&s->next_blocks))) return status;
   for (int32_t m = 0; m < s->member_count; ++m)
-    if ((status = mpmi_sort_plan(s->member[m].set, &s->next_blocks, &s->member[m].next))) return status;
+    if ((status =
+             mpmi_sort_plan(s->member[m].set, &s->next_blocks, &s->member[m].sorting, &s->member[m].next)))
+      return status;
   if ((status = mpmi_stepper_adopt(s))) return status;
   for (int32_t m = 0; m < s->member_count; ++m)
-    mpmi_sort_apply(s->member[m].set, &s->blocks, &s->member[m].now);
+    mpmi_sort_apply(s->member[m].set, &s->blocks, &s->member[m].sorting, &s->member[m].now);
   find_largest_masses(s);
   ++s->resorts;
   return MPM_OK;
