@@ -57,11 +57,11 @@ STATIC_LIB := $(BUILD)/libmpm.a
 SHARED_LIB := $(BUILD)/$(SHARED)
 
 EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(sort $(wildcard examples/*.c)))
-BENCHES := $(patsubst bench/%.c,$(BUILD)/bench/%,$(sort $(wildcard bench/*.c)))
+BENCH := $(BUILD)/bench/bench
 UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
 UNIT := $(BUILD)/tests/unit
 
-.PHONY: all install uninstall examples demo bench clean format format-check
+.PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
 .DELETE_ON_ERROR:
 .SUFFIXES:
@@ -118,10 +118,13 @@ $(BUILD)/examples/%: examples/%.c $(STATIC_LIB) Makefile
 	$(call SAY,LINK)
 	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 
-$(BUILD)/bench/%: bench/%.c $(STATIC_LIB) Makefile
+# The benchmark is a host program: it is compiled against an installation and runs the shared library.
+$(BENCH): $(wildcard bench/*.[ch]) $(SHARED_LIB) $(STATIC_LIB) Makefile
 	@mkdir -p $(@D)
+	$(Q)$(MAKE) -s install PREFIX=$(abspath $(@D))/installed DESTDIR= > /dev/null
 	$(call SAY,LINK)
-	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+	$(Q)$(CC) -std=c11 $(WARNINGS) $(CFLAGS) -O3 -ffp-contract=fast -fno-math-errno -Wno-psabi $(wildcard bench/*.c) -I$(@D)/installed/include \
+	  -L$(@D)/installed/lib -Wl,-rpath,$(abspath $(@D))/installed/lib $(LDFLAGS) -lmpm -lm -o $@
 
 examples: $(EXAMPLES)
 
@@ -129,8 +132,11 @@ demo: $(BUILD)/examples/two_disks
 	@mkdir -p $(BUILD)/demo
 	cd $(BUILD)/demo && $(abspath $<)
 
-bench: $(BENCHES)
-	@for program in $(abspath $(BENCHES)); do (cd $(BUILD)/bench && $$program) || exit 1; done
+# All cases on one and two threads, with a table in $(BUILD)/bench/bench.csv; under a minute: bench-quick.
+bench: $(BENCH)
+	$(BENCH) --csv $(BUILD)/bench/bench.csv
+bench-quick: $(BENCH)
+	$(BENCH) --quick
 
 # ---- tests -----------------------------------------------------------------------------------------------
 # Every tests/unit/test_X.c defines Suite *X_suite(void), listed in tests/unit/suites.h. The program is linked to
@@ -208,4 +214,4 @@ format-check:
 clean:
 	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan
 
--include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d) $(BENCHES:=.d)
+-include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d)

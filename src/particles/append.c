@@ -21,7 +21,7 @@ static int64_t free_tail(const mpm_particles *set) {
 
 static mpm_status grow(mpm_particles *set, int64_t slots) {
   if (slots <= set->ld) return MPM_OK;
-  int64_t wanted = slots + slots / 25; /* the padding of sorted blocks takes a few per cent */
+  int64_t wanted = slots + slots / 40; /* the padding of sorted blocks takes a per cent or two */
   int64_t geometric = set->ld + set->ld / 2;
   if (wanted < geometric) wanted = geometric;
   return mpmi_particles_reserve(set, wanted > MPMI_MAX_SLOTS ? MPMI_MAX_SLOTS : wanted);

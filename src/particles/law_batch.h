@@ -7,7 +7,7 @@
 
 /* Lengths: short enough for the first-level cache where the law is ours; long where calling the host costs.
  */
-enum { MPMI_BATCH_OWN = 64, MPMI_BATCH_HOST = 512 };
+enum { MPMI_BATCH_OWN = 64, MPMI_BATCH_HOST = 256 };
 
 /* Where a batch lies in its set: what the `lookup` of callbacks points to. */
 typedef struct mpmi_lookup {

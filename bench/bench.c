@@ -1,0 +1,261 @@
+/* Particle-steps per second of whole explicit steps through the public interface: mpm_stable_dt and mpm_step
+ * every step, re-sorts included, with momentum, energy and the hash of the state looked at in the end.
+ *
+ *   bench [--quick] [--only TEXT] [--particles N] [--threads N,N] [--repeats N] [--spread X] [--csv FILE]
+ *
+ * --only: cases whose name contains the text. --spread: bounds of the grid over the size of the body. A line
+ * gives the median and the best of the repeats, nanoseconds per particle and step by stage, the rate as a
+ * share of what one core, times the threads, can do in multiply-adds and in memory traffic, and the peak of
+ * the whole process. */
+#define _DEFAULT_SOURCE
+#include "ceilings.h"
+#include "scene.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+/* The linear basis needs small steps at a free surface, where nodes are light; its body moves faster, so that
+ * it has to be sorted again within the time. */
+static const bench_case cases[] = {
+    {"3-D quadratic FLIP", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
+    {"3-D quadratic APIC_MLS", 3, MPM_BSPLINE2, MPM_USL, MPM_APIC_MLS, "neo_hookean", 0.3, 0.125, 40,
+     BENCH_FREE},
+    {"3-D linear FLIP", 3, MPM_LINEAR, MPM_USL, MPM_FLIP, "neo_hookean", 0.02, 2.0, 100, BENCH_FREE},
+    {"2-D quadratic FLIP", 2, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
+    {"3-D FLIP, six walls", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_WALLS},
+    {"3-D FLIP, force callback", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40,
+     BENCH_FORCE},
+    {"3-D FLIP, law of the host", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "host", 0.3, 0.125, 40, BENCH_HOST_LAW},
+    {"3-D FLIP, MUSL", 3, MPM_BSPLINE2, MPM_MUSL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
+    {"3-D quadratic APIC", 3, MPM_BSPLINE2, MPM_USL, MPM_APIC, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
+    {"3-D FLIP, J2", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "j2", 0.3, 0.125, 40, BENCH_FREE},
+    {"1-D quadratic FLIP", 1, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
+};
+enum { CASES = sizeof cases / sizeof *cases, MOST_THREADS = 16, MOST_REPEATS = 99, WARM_UP = 45 };
+
+typedef struct settings {
+  const char *only, *csv;
+  int64_t particles;
+  int32_t repeats, thread_counts, threads[MOST_THREADS];
+  double spread;
+} settings;
+
+typedef struct result {
+  int32_t failed;
+  char error[200];
+  int64_t particles, resorts, allocations;
+  double median, best, bytes; /* particle-steps per second; peak of the process per particle */
+  double p2g, grid, g2p, law, sort, callbacks;
+  double momentum, energy; /* relative changes over the whole run */
+  uint64_t hash;
+} result;
+
+static mpm_status one_step(const bench_scene *scene, const bench_case *of, mpm_step_info *info) {
+  double dt;
+  const mpm_status status = mpm_stable_dt(scene->stepper, &dt);
+  return status ? status : mpm_step(scene->stepper, of->cfl * dt, info);
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double size_of(const double *v) {
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static mpm_status measure(const bench_scene *scene, const bench_case *of, const settings *how, result *r) {
+  mpm_step_info first = {.struct_size = sizeof first}, info = {.struct_size = sizeof info};
+  mpm_profile stage = {.struct_size = sizeof stage};
+  double rate[MOST_REPEATS];
+  mpm_status status = mpm_stepper_info(scene->stepper, &first);
+  for (int32_t i = 0; i < WARM_UP && !status; ++i) status = one_step(scene, of, &info);
+  if (status) return status;
+  mpm_stepper_profile(scene->stepper, 1, &stage);
+  const int64_t sorted = info.resorts, allocated = scene->allocations;
+  const double n = (double)mpm_particles_count(scene->body), steps = (double)of->steps;
+  for (int32_t k = 0; k < how->repeats; ++k) {
+    const double from = bench_seconds();
+    for (int32_t i = 0; i < of->steps && !status; ++i) status = one_step(scene, of, &info);
+    if (status) return status;
+    rate[k] = n * steps / (bench_seconds() - from);
+  }
+  mpm_stepper_profile(scene->stepper, 0, &stage);
+  if ((status = mpm_state_hash(scene->stepper, &r->hash))) return status;
+  qsort(rate, (size_t)how->repeats, sizeof *rate, ascending);
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  const double ns = 1e9 / (n * steps * how->repeats);
+  r->particles = (int64_t)n;
+  r->resorts = info.resorts - sorted;
+  r->allocations = scene->allocations - allocated;
+  r->median = rate[how->repeats / 2];
+  r->best = rate[how->repeats - 1];
+  r->bytes = 1024.0 * (double)usage.ru_maxrss / n;
+  r->p2g = stage.p2g * ns, r->grid = stage.grid * ns, r->g2p = stage.g2p * ns;
+  r->law = stage.law * ns, r->sort = stage.sort * ns, r->callbacks = stage.callbacks * ns;
+  const double change[3] = {info.momentum[0] - first.momentum[0], info.momentum[1] - first.momentum[1],
+                            info.momentum[2] - first.momentum[2]};
+  const double energy = first.kinetic_energy + first.strain_energy;
+  r->momentum = size_of(change) / sqrt(2.0 * n * pow(0.5, of->dim) * first.kinetic_energy);
+  r->energy = (info.kinetic_energy + info.strain_energy) / energy - 1.0;
+  return MPM_OK;
+}
+
+static void run(const bench_case *of, const settings *how, int32_t threads, result *r) {
+  bench_scene scene;
+  const bench_options options = {how->particles, threads, how->spread};
+  mpm_status status = bench_open(&scene, of, &options);
+  if (!status) status = measure(&scene, of, how, r);
+  r->failed = status != MPM_OK;
+  if (status) snprintf(r->error, sizeof r->error, "%s", mpm_last_error(scene.context));
+  bench_close(&scene);
+}
+
+/* In a process of its own, whose peak of memory is that of the case. */
+static int32_t run_apart(const bench_case *of, const settings *how, int32_t threads, result *r) {
+  int ends[2], status;
+  *r = (result){.failed = 1, .error = "the process died"};
+  if (pipe(ends)) return 1;
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    run(of, how, threads, r);
+    const ssize_t written = write(ends[1], r, sizeof *r);
+    _exit(written != (ssize_t)sizeof *r);
+  }
+  close(ends[1]);
+  result got;
+  if (child > 0 && read(ends[0], &got, sizeof got) == (ssize_t)sizeof got) *r = got;
+  close(ends[0]);
+  if (child > 0) waitpid(child, &status, 0);
+  if (r->failed) fprintf(stderr, "%s: %s\n", of->name, r->error);
+  return r->failed;
+}
+
+/* What a run must keep whatever its speed. Work is done by the force; walls take momentum; J2 dissipates. */
+static int32_t is_sound(const bench_case *of, const result *r) {
+  const int32_t free_body = of->extras == BENCH_FREE || of->extras == BENCH_HOST_LAW;
+  int32_t good = isfinite(r->energy) && r->energy < 0.01;
+  if (free_body) good &= r->momentum < 1e-9 && (of->law[0] == 'j' || r->energy > -0.2);
+  if (!good)
+    fprintf(stderr, "%s: momentum changed by %.1e, energy by %.1e\n", of->name, r->momentum, r->energy);
+  return good;
+}
+
+static void print(FILE *csv, const bench_case *of, int32_t threads, double spread, const result *r,
+                  double peak, double bandwidth) {
+  const double gflops = bench_flops(of) * r->median * 1e-9, gbytes = bench_bytes(of) * r->median * 1e-9;
+  printf("%-26s %6.0fk %2d %7.2f %7.2f  %5.1f %4.1f %5.1f %5.1f %4.1f %4.1f  %3.0f%% %3.0f%%  %4.0f  %3lld "
+         "%2lld\n",
+         of->name, 1e-3 * (double)r->particles, (int)threads, 1e-6 * r->median, 1e-6 * r->best, r->p2g,
+         r->grid, r->g2p, r->law, r->sort, r->callbacks, 100.0 * gflops / (peak * threads),
+         100.0 * gbytes / (bandwidth * threads), r->bytes, (long long)r->resorts, (long long)r->allocations);
+  fflush(stdout);
+  if (!csv) return;
+  fprintf(csv,
+          "\"%s\",%lld,%d,%.0f,%.3f,%.3f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.4f,%.4f,%.1f,%lld,%lld,%016llx\n",
+          of->name, (long long)r->particles, (int)threads, spread, 1e-6 * r->median, 1e-6 * r->best, r->p2g,
+          r->grid, r->g2p, r->law, r->sort, r->callbacks, gflops / (peak * threads),
+          gbytes / (bandwidth * threads), r->bytes, (long long)r->resorts, (long long)r->allocations,
+          (unsigned long long)r->hash);
+  fflush(csv);
+}
+
+static int32_t run_all(const settings *how, FILE *csv) {
+  const double peak = bench_fma_peak(), bandwidth = bench_update_bandwidth();
+  printf("one core: %.1f GFLOP/s in multiply-adds, %.1f GB/s in an in-place update\n\n", peak, bandwidth);
+  printf("%-26s %7s %2s %7s %7s  %5s %4s %5s %5s %4s %4s  %4s %4s  %4s  %3s %2s\n", "", "", "", "median",
+         "best", "ns:", "", "", "", "", "call", "", "", "B per", "", "");
+  printf("%-26s %7s %2s %7s %7s  %5s %4s %5s %5s %4s %4s  %4s %4s  %4s  %3s %2s\n", "case", "part.", "th",
+         "Mp/s", "Mp/s", "p2g", "grid", "g2p", "law", "sort", "back", "fma", "mem", "part.", "srt", "al");
+  if (csv) {
+    fprintf(csv, "# one core: %.2f GFLOP/s in multiply-adds, %.2f GB/s in an in-place update\n", peak,
+            bandwidth);
+    fprintf(csv,
+            "case,particles,threads,spread,median_Mps,best_Mps,p2g_ns,grid_ns,g2p_ns,law_ns,sort_ns,"
+            "callbacks_ns,share_of_fma,share_of_bandwidth,bytes_per_particle,resorts,allocations,hash\n");
+  }
+  int32_t bad = 0;
+  for (int32_t c = 0; c < CASES; ++c) {
+    uint64_t hash = 0;
+    if (how->only && !strstr(cases[c].name, how->only)) continue;
+    for (int32_t t = 0; t < how->thread_counts; ++t) {
+      result r;
+      if (run_apart(&cases[c], how, how->threads[t], &r)) {
+        bad = 1;
+        continue;
+      }
+      print(csv, &cases[c], how->threads[t], how->spread, &r, peak, bandwidth);
+      bad |= !is_sound(&cases[c], &r);
+      if (t > 0 && r.hash != hash) {
+        fprintf(stderr, "%s: another hash on %d threads\n", cases[c].name, (int)how->threads[t]);
+        bad = 1;
+      }
+      hash = r.hash;
+    }
+  }
+  return bad;
+}
+
+static int32_t read_threads(const char *text, settings *how) {
+  how->thread_counts = 0;
+  for (char *end; *text && how->thread_counts < MOST_THREADS; text = *end == ',' ? end + 1 : end) {
+    const long threads = strtol(text, &end, 10);
+    if (end == text || threads < 1 || threads > 1024) return 0;
+    how->threads[how->thread_counts++] = (int32_t)threads;
+  }
+  return how->thread_counts > 0;
+}
+
+/* 0 when an option is not understood. */
+static int32_t read_options(int argc, char **argv, settings *how) {
+  for (int i = 1; i < argc; ++i) {
+    if (!strcmp(argv[i], "--quick")) {
+      how->particles = 200000;
+      how->repeats = 3;
+      continue;
+    }
+    const char *value = i + 1 < argc ? argv[i + 1] : NULL;
+    int32_t good = value != NULL;
+    if (good && !strcmp(argv[i], "--only"))
+      how->only = value;
+    else if (good && !strcmp(argv[i], "--csv"))
+      how->csv = value;
+    else if (good && !strcmp(argv[i], "--particles"))
+      good = (how->particles = atoll(value)) >= 64;
+    else if (good && !strcmp(argv[i], "--repeats"))
+      good = (how->repeats = atoi(value)) >= 1 && how->repeats <= MOST_REPEATS;
+    else if (good && !strcmp(argv[i], "--spread"))
+      good = (how->spread = atof(value)) >= 3.0;
+    else if (good && !strcmp(argv[i], "--threads"))
+      good = read_threads(value, how);
+    else
+      good = 0;
+    if (!good) {
+      fprintf(stderr, "bench: %s %s is not understood\n", argv[i], value ? value : "");
+      return 0;
+    }
+    ++i;
+  }
+  return 1;
+}
+
+int main(int argc, char **argv) {
+  settings how = {.particles = 1000000, .repeats = 5, .thread_counts = 2, .threads = {1, 2}, .spread = 3.0};
+  if (!read_options(argc, argv, &how)) return 2;
+  FILE *csv = how.csv ? fopen(how.csv, "w") : NULL;
+  if (how.csv && !csv) {
+    perror(how.csv);
+    return 2;
+  }
+  const int32_t bad = run_all(&how, csv);
+  if (csv && fclose(csv)) return 2;
+  return bad;
+}

@@ -1,0 +1,217 @@
+#define _POSIX_C_SOURCE 200809L
+#include "scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const mpm_param parameters[] = {
+    {"E", 1.0}, {"nu", 0.3}, {"density", 1.0}, {"yield_stress", 0.02}, {"hardening", 0.1}};
+static const double sound = 1.1602387022306428; /* of the law: sqrt((lambda + 2 mu) / density) */
+
+static double uniform(uint64_t *state) {
+  *state ^= *state << 13;
+  *state ^= *state >> 7;
+  *state ^= *state << 17;
+  return (double)(*state >> 11) * 0x1p-53;
+}
+
+static void shuffle(int64_t n, int64_t *order, uint64_t *dice) {
+  for (int64_t i = 0; i < n; ++i) order[i] = i;
+  for (int64_t i = n - 1; i > 0; --i) {
+    const int64_t j = (int64_t)(uniform(dice) * (double)(i + 1)), swap = order[i];
+    order[i] = order[j];
+    order[j] = swap;
+  }
+}
+
+/* side^dim particles, 2^dim per cell, from `corner` on, one random place of the lattice after the other. */
+static mpm_status place(mpm_particles *set, int32_t dim, int64_t side, double corner) {
+  uint64_t dice = 88172645463325252u;
+  int64_t n = 1;
+  for (int32_t k = 0; k < dim; ++k) n *= side;
+  double *x = malloc((size_t)(n * dim) * sizeof *x), *volume = malloc((size_t)n * sizeof *volume);
+  int64_t *order = malloc((size_t)n * sizeof *order);
+  mpm_status status = MPM_E_NOMEM;
+  if (x && volume && order) {
+    shuffle(n, order, &dice);
+    for (int64_t i = 0; i < n; ++i) {
+      for (int32_t k = 0; k < dim; ++k, order[i] /= side)
+        x[k * n + i] = corner + 0.5 * ((double)(order[i] % side) + 0.25 + 0.5 * uniform(&dice));
+      volume[i] = pow(0.5, dim);
+    }
+    free(order); /* before the set grows: the peak of memory is to be the library's */
+    order = NULL;
+    status = mpm_particles_add(set, n, x, NULL, volume, NULL, NULL, NULL);
+  }
+  free(x), free(volume), free(order);
+  return status;
+}
+
+/* A velocity linear in place, in pieces. */
+static mpm_status set_velocities(mpm_particles *set, const bench_case *of, int64_t side, double corner) {
+  enum { PIECE = 4096 };
+  static double x[3 * PIECE], v[3 * PIECE];
+  static int64_t id[PIECE];
+  const double half = 0.25 * (double)side;
+  const int64_t n = mpm_particles_count(set);
+  mpm_status status = MPM_OK;
+  for (int64_t begin = 0; begin < n && !status; begin += PIECE) {
+    const int64_t count = n - begin < PIECE ? n - begin : PIECE;
+    for (int64_t i = 0; i < count; ++i) id[i] = begin + i;
+    if ((status = mpm_particles_get(set, "position", MPM_F64, of->dim, count, id, x))) break;
+    for (int64_t i = 0; i < count; ++i) {
+      double at[3] = {0.0, 0.0, 0.0};
+      for (int32_t k = 0; k < of->dim; ++k) at[k] = (x[k * count + i] - corner) / half - 1.0;
+      const double rate[3] = {0.15 * at[2] - 0.85 * at[1], 0.7 * at[0] - 0.3 * at[2],
+                              0.25 * at[0] + 0.15 * at[1]};
+      for (int32_t k = 0; k < of->dim; ++k)
+        v[k * count + i] = of->speed * sound * (of->dim > 1 ? rate[k] : 0.6 + 0.4 * at[0]);
+    }
+    status = mpm_particles_set(set, "velocity", MPM_F64, of->dim, count, id, v);
+  }
+  return status;
+}
+
+/* A constant force, as a host would add one. */
+static mpm_status add_constant(void *user, const mpm_particle_batch *batch, double *add) {
+  (void)user;
+  for (int32_t c = 0; c < batch->dim; ++c)
+    for (int64_t i = 0; i < batch->n; ++i) add[c * batch->ld + i] += 1e-6;
+  return MPM_OK;
+}
+
+/* The library's neo-Hookean law (Steffen et al. 2008, eq. 46), as a host would write it. */
+static mpm_status host_law(void *user, const mpm_material_batch *b) {
+  const double *constants = user, lambda = constants[0], mu = constants[1];
+  const int64_t ld = b->ld;
+  for (int64_t i = 0; i < b->n; ++i) {
+    const double *F = b->F + i;
+    const double a = F[0], d = F[ld], e = F[2 * ld], f = F[3 * ld], g = F[4 * ld], h = F[5 * ld],
+                 p = F[6 * ld], q = F[7 * ld], r = F[8 * ld];
+    const double J = a * (g * r - h * q) - d * (f * r - h * p) + e * (f * q - g * p), inverse = 1.0 / J;
+    const double log_J = log(J), pressure = (lambda * log_J - mu) * inverse, shear = mu * inverse;
+    const double xx = a * a + d * d + e * e, yy = f * f + g * g + h * h, zz = p * p + q * q + r * r;
+    double *stress = b->stress_new + i;
+    stress[0] = pressure + shear * xx;
+    stress[ld] = pressure + shear * yy;
+    stress[2 * ld] = pressure + shear * zz;
+    stress[3 * ld] = shear * (a * f + d * g + e * h);
+    stress[4 * ld] = shear * (f * p + g * q + h * r);
+    stress[5 * ld] = shear * (a * p + d * q + e * r);
+    b->wave_speed[i] = sqrt(lambda + mu + mu * fmax(xx, fmax(yy, zz)));
+    b->energy[i] = 0.5 * lambda * log_J * log_J + mu * (0.5 * (xx + yy + zz - 3.0) - log_J);
+  }
+  return MPM_OK;
+}
+
+static mpm_status make_material(bench_scene *scene, const bench_case *of) {
+  static double constants[2] = {0.3 / (1.3 * 0.4), 1.0 / 2.6}; /* lambda, mu */
+  if (of->extras != BENCH_HOST_LAW)
+    return mpm_material_create(scene->context, of->law, parameters, of->law[0] == 'j' ? 5 : 3,
+                               &scene->material);
+  mpm_material_desc desc;
+  mpm_material_desc_init(&desc, sizeof desc);
+  desc.density = 1.0;
+  desc.stress = host_law;
+  desc.user = constants;
+  return mpm_material_create_custom(scene->context, &desc, &scene->material);
+}
+
+static mpm_status add_extras(bench_scene *scene, const bench_case *of) {
+  mpm_status status = MPM_OK;
+  if (of->extras == BENCH_FORCE) status = mpm_stepper_set_force(scene->stepper, add_constant, NULL);
+  for (int32_t face = 0; face < 2 * of->dim && of->extras == BENCH_WALLS && !status; ++face)
+    status = mpm_stepper_set_wall(scene->stepper, face, MPM_WALL_SLIP, 0.0);
+  return status;
+}
+
+static void *counted_alloc(void *user, size_t bytes, size_t alignment) {
+  void *memory;
+  ++*(int64_t *)user;
+  return posix_memalign(&memory, alignment, bytes) ? NULL : memory;
+}
+static void counted_release(void *user, void *memory, size_t bytes, size_t alignment) {
+  (void)user, (void)bytes, (void)alignment;
+  free(memory);
+}
+
+mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_options *options) {
+  *scene = (bench_scene){0};
+  mpm_context_desc services;
+  mpm_context_desc_init(&services, sizeof services);
+  services.concurrency = options->threads;
+  services.alloc = counted_alloc;
+  services.release = counted_release;
+  services.alloc_user = &scene->allocations;
+  mpm_status status = mpm_context_create(&services, &scene->context);
+  if (status) return status;
+  const int64_t side = (int64_t)llround(pow((double)options->particles, 1.0 / of->dim));
+  const double cells = ceil(0.5 * (double)side);
+  /* with walls the body lies in a corner of its grid, two cells from the faces */
+  const double corner = of->extras == BENCH_WALLS ? 2.0 : floor(0.5 * (options->spread - 1.0) * cells);
+  mpm_grid_desc g;
+  mpm_grid_desc_init(&g, sizeof g);
+  g.dim = of->dim;
+  g.basis = of->basis;
+  for (int32_t k = 0; k < of->dim; ++k) {
+    g.spacing[k] = 1.0;
+    g.cells[k] = of->extras == BENCH_WALLS ? (int64_t)cells + 4 : (int64_t)(options->spread * cells);
+  }
+  mpm_stepper_desc s;
+  mpm_stepper_desc_init(&s, sizeof s);
+  s.scheme = of->scheme;
+  s.transfer = of->transfer;
+  if ((status = mpm_grid_create(scene->context, &g, &scene->grid)) || (status = make_material(scene, of)) ||
+      (status = mpm_particles_create(scene->context, scene->grid, scene->material, &scene->body)) ||
+      (status = place(scene->body, of->dim, side, corner)) ||
+      (status = set_velocities(scene->body, of, side, corner)) ||
+      (status = mpm_stepper_create(scene->context, scene->grid, &s, &scene->stepper)) ||
+      (status = mpm_stepper_add(scene->stepper, scene->body)))
+    return status;
+  return add_extras(scene, of);
+}
+
+void bench_close(bench_scene *scene) {
+  mpm_stepper_destroy(scene->stepper);
+  mpm_particles_destroy(scene->body);
+  mpm_material_destroy(scene->material);
+  mpm_grid_destroy(scene->grid);
+  mpm_context_destroy(scene->context);
+}
+
+static int32_t is_affine(const bench_case *of) {
+  return of->transfer == MPM_APIC || of->transfer == MPM_APIC_MLS;
+}
+
+/* The factored sums of the transfers, unused components of vectors left out, then what is done per particle:
+ * weights, packing, F, volume, law, energies. */
+double bench_flops(const bench_case *of) {
+  const int32_t d = of->dim, width = of->basis == MPM_LINEAR ? 2 : 3;
+  const int32_t mls = of->transfer == MPM_APIC_MLS, apic = of->transfer == MPM_APIC;
+  double scatter = 0.0, gather = 0.0;
+  for (int32_t axis = d - 1; axis >= 0; --axis) {
+    const double each = pow(width, axis + 1); /* nodes, rows or planes */
+    const int32_t behind = d - 1 - axis;      /* columns that are already slopes */
+    if (mls) {
+      scatter += each * (axis == d - 1 ? 3.0 : 2.5) * (d + 1);
+      gather += each * (3.0 * d + 2.0 * d * behind);
+    } else {
+      scatter += each * (2.0 * (d + 1 + d) + 2.0 * d + (apic ? 2.0 * d : 0.0) + d * behind);
+      gather += each * (2.0 * (apic ? d : 2 * d) + 2.0 * d + (apic ? 2.0 * d : 0.0) +
+                        2.0 * d * behind * (apic ? 2 : 1));
+    }
+  }
+  if (of->scheme == MPM_MUSL) scatter *= 1.5, gather *= 1.6;
+  return scatter + gather + 2.0 * 22.0 * d + d * (d + 4.0) + 2.0 * d * d * d + 14.0 + 30.0 * d + 40.0;
+}
+
+/* P2G reads x, v, m, V, stress (and C); G2P reads x, v, F, m, V0 and writes x, v, F, V, stress (and C); MUSL
+ * reads and writes some of it twice. */
+double bench_bytes(const bench_case *of) {
+  const int32_t d = of->dim, F = d == 1 ? 1 : d == 2 ? 5 : 9, stress = d == 1 ? 3 : d == 2 ? 4 : 6;
+  int32_t values = (2 * d + 2 + stress) + (2 * d + F + 2) + (2 * d + F + 1 + stress);
+  if (is_affine(of)) values += 2 * d * d;
+  if (of->law[0] == 'j') values += stress + 2;
+  if (of->scheme == MPM_MUSL) values += 2 * d + 1 + d;
+  return 8.0 * values;
+}

@@ -1,0 +1,43 @@
+/* The body that is timed: a jittered cube of particles, added in random order, that rotates and strains in
+ * the middle of a grid; and what can be varied about it. */
+#ifndef BENCH_SCENE_H
+#define BENCH_SCENE_H
+
+#include <mpm/mpm.h>
+
+enum { BENCH_FREE, BENCH_WALLS, BENCH_FORCE, BENCH_HOST_LAW };
+
+typedef struct bench_case {
+  const char *name;
+  int32_t dim, basis, scheme, transfer;
+  const char *law;
+  double cfl;     /* share of mpm_stable_dt */
+  double speed;   /* of the fastest particle, over the speed of sound */
+  int32_t steps;  /* of one timing: long enough for a re-sort */
+  int32_t extras; /* BENCH_... */
+} bench_case;
+
+typedef struct bench_options {
+  int64_t particles;
+  int32_t threads;
+  double spread; /* bounds of the grid over the size of the body, 3 or more */
+} bench_options;
+
+typedef struct bench_scene {
+  mpm_context *context;
+  mpm_grid *grid;
+  mpm_material *material;
+  mpm_particles *body;
+  mpm_stepper *stepper;
+  int64_t allocations; /* asked of the host so far */
+} bench_scene;
+
+/* On failure the context's last error says why; bench_close() takes what is there. */
+mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_options *options);
+void bench_close(bench_scene *scene);
+/* Useful floating-point operations and bytes of particle fields per particle and step, counted in the source.
+ */
+double bench_flops(const bench_case *of);
+double bench_bytes(const bench_case *of);
+
+#endif
