@@ -63,6 +63,7 @@ UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
+.PHONY: check-determinism check-instructions update-instructions check-aarch64
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -167,6 +168,25 @@ check-unit: $(UNIT)
 	@printf '%s\n' $(SUITES) | $(TEST_ENVIRONMENT) xargs -P $(JOBS) -I{} sh -c \
 	  'out=$$(CK_RUN_SUITE={} MPM_SCRATCH="$$MPM_SCRATCH/{}" $(UNIT) 2>&1); status=$$?; echo "$$out"; exit $$status'
 
+# Every method that the library offers on 1, 2, 3, 4, 7 threads, by pool and executor, on each instruction set; `check`
+# has a sample of it.
+check-determinism: $(UNIT)
+	@printf '%s\n' 3-D 2-D 1-D hashes | xargs -P $(JOBS) -I{} sh -c \
+	  'out=$$(MPM_FULL=1 CK_RUN_SUITE=determinism CK_RUN_CASE={} $(UNIT) 2>&1); status=$$?; echo "{}: $$out"; exit $$status'
+
+# Instructions per particle-step under callgrind, within 3 % of tests/instructions/expected.txt.
+STEPS := $(BUILD)/tests/instructions/steps
+$(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+check-instructions update-instructions: $(STEPS)
+	@$(TEST_ENVIRONMENT) bash tests/instructions/run.sh $(@:-instructions=)
+
+# The library and its unit tests for another processor, run by qemu.
+check-aarch64:
+	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/aarch64/run.sh
+
 check-api: all
 	@mkdir -p $(BUILD)/tests/scratch
 	@for script in $(sort $(wildcard tests/api/*.sh)); do \
@@ -214,4 +234,4 @@ format-check:
 clean:
 	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan
 
--include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d)
+-include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d) $(STEPS).d

@@ -35,6 +35,14 @@ MPMI_INLINE void mpmi_moments(int32_t width, double h, int32_t need, int64_t n, 
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) g[k][p] = u[k][p] * inverse_moment[p];
 }
 
+/* The first nodes of stencils, relative to the tile, in the periodic image that lies in the tile. */
+MPMI_INLINE void mpmi_into_tile(const mpmi_axis *a, int64_t n, double *place) {
+  if (a->period > 0.0) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+      double at = place[p];
+      place[p] = at - a->period * mpmi_round((at - a->middle) * a->inverse_period);
+    }
+}
+
 /* Place of each stencil in the tile. */
 MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (*place)[MPMI_CHUNK],
                                  int32_t *node) {

@@ -12,8 +12,9 @@ MPMI_INLINE void bspline1_axis(const mpmi_axis *a, int64_t n, const double *x, i
     w[0][p] = 1.0 - f;
     w[1][p] = f;
     first[p] = -f;
-    place[p] = mpmi_in_tile(a, base);
+    place[p] = base - a->tile_base;
   }
+  mpmi_into_tile(a, n, place);
   if (gradient) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
       g[0][p] = -a->inverse_spacing;
       g[1][p] = a->inverse_spacing;

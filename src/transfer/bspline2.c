@@ -5,21 +5,23 @@
 MPMI_INLINE void bspline2_axis(const mpmi_axis *a, int64_t n, const double *x, int32_t gradient,
                                double (*w)[MPMI_CHUNK], double (*g)[MPMI_CHUNK], double *first,
                                double *place) {
+  const double origin = a->origin, inverse = a->inverse_spacing, corner = a->tile_base + 1.0;
   MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
-    double xi = (x[p] - a->origin) * a->inverse_spacing;
+    double xi = (x[p] - origin) * inverse;
     double middle = mpmi_round(xi);
-    double f = xi - middle; /* in [-1/2, 1/2] */
-    w[0][p] = 0.5 * (0.5 - f) * (0.5 - f);
+    double f = xi - middle, below = 0.5 - f, above = 0.5 + f; /* f in [-1/2, 1/2] */
+    w[0][p] = 0.5 * below * below;
     w[1][p] = 0.75 - f * f;
-    w[2][p] = 0.5 * (0.5 + f) * (0.5 + f);
+    w[2][p] = 0.5 * above * above;
     if (gradient) {
-      g[0][p] = (f - 0.5) * a->inverse_spacing;
-      g[1][p] = -2.0 * f * a->inverse_spacing;
-      g[2][p] = (f + 0.5) * a->inverse_spacing;
+      g[0][p] = below * -inverse;
+      g[1][p] = f * (-2.0 * inverse);
+      g[2][p] = above * inverse;
     }
     first[p] = -1.0 - f;
-    place[p] = mpmi_in_tile(a, middle - 1.0);
+    place[p] = middle - corner;
   }
+  mpmi_into_tile(a, n, place);
 }
 
 MPMI_BASIS(bspline2, 3)

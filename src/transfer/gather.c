@@ -9,10 +9,10 @@
  * small the digits lost in moving them would count. Holes have no initial volume and gather zeros. */
 #include "transfer/kernel_common.h"
 
-/* Per particle of a chunk: v, and dv beside it when nodes have 8 values; gradients; sums of w v (x_i - x_p),
+/* Per particle of a chunk: v; dv when nodes have 8 values; gradients; sums of w v (x_i - x_p),
  * or of w v (i - middle) in the MLS form. */
 typedef struct mpmi_gathered {
-  _Alignas(64) double v[8 * MPMI_CHUNK], L[3][4 * MPMI_CHUNK], M[3][4 * MPMI_CHUNK];
+  _Alignas(64) double v[4 * MPMI_CHUNK], dv[4 * MPMI_CHUNK], L[3][4 * MPMI_CHUNK], M[3][4 * MPMI_CHUNK];
 } mpmi_gathered;
 
 /* The node about which moments are taken. */
@@ -86,7 +86,8 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
       if (affine || mls) add_slope(part, i, w, pM[k], &M[k]);
     }
   }
-  mpmi_node_store(all, out->v + values * p, v);
+  mpmi_store4(out->v + 4 * p, mpmi_node_low(all, v));
+  if (values == 8) mpmi_store4(out->dv + 4 * p, mpmi_node_high(v));
   for (int32_t k = 0; k < dim; ++k) {
     if (!mls) mpmi_store4(out->L[k] + 4 * p, mpmi_node_low(part, L[k]));
     if (affine || mls) mpmi_store4(out->M[k] + 4 * p, mpmi_node_low(part, M[k]));
@@ -97,7 +98,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
 MPMI_INLINE void unpack_mls(int32_t width, double h, int32_t k, int64_t n, const mpmi_weights *W,
                             const mpmi_gathered *in, const double *v, int64_t ld, double *const *C) {
   const double factor = 4.0 / h;
-  mpmi_unpack(n, in->M[k], 4, C[0], C[1], C[2]);
+  mpmi_unpack(n, in->M[k], C[0], C[1], C[2]);
   for (int32_t r = 0; r < 3; ++r) {
     const double *vr = v + r * ld;
     double *to = C[r];
@@ -108,7 +109,7 @@ MPMI_INLINE void unpack_mls(int32_t width, double h, int32_t k, int64_t n, const
 
 MPMI_INLINE void unpack_affine(int32_t k, int64_t n, const mpmi_weights *W, const mpmi_gathered *in,
                                double *const *C) {
-  mpmi_unpack(n, in->M[k], 4, C[0], C[1], C[2]);
+  mpmi_unpack(n, in->M[k], C[0], C[1], C[2]);
   for (int32_t r = 0; r < 3; ++r) {
     double *to = C[r];
     MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to[p] *= W->inverse_moment[k][p];
@@ -119,10 +120,9 @@ MPMI_INLINE void unpack_affine(int32_t k, int64_t n, const mpmi_weights *W, cons
 MPMI_INLINE void unpack(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t s,
                         int64_t n, const mpmi_weights *W, const mpmi_gathered *in) {
   const int64_t ld = job->ld;
-  const int32_t values = form == MPMI_GATHER_8 ? 8 : 4;
   double *v = job->v + s, *dv = job->dv + s;
-  mpmi_unpack(n, in->v, values, v, v + ld, v + 2 * ld);
-  if (form == MPMI_GATHER_8) mpmi_unpack(n, in->v + 4, values, dv, dv + ld, dv + 2 * ld);
+  mpmi_unpack(n, in->v, v, v + ld, v + 2 * ld);
+  if (form == MPMI_GATHER_8) mpmi_unpack(n, in->dv, dv, dv + ld, dv + 2 * ld);
   for (int32_t k = 0; k < dim; ++k) {
     double *L[3], *C[3];
     for (int32_t r = 0; r < 3; ++r) {
@@ -132,7 +132,7 @@ MPMI_INLINE void unpack(int32_t dim, int32_t width, int32_t form, const mpmi_gat
     if (form == MPMI_GATHER_4_MLS)
       unpack_mls(width, job->axis[k].spacing, k, n, W, in, v, ld, L);
     else
-      mpmi_unpack(n, in->L[k], 4, L[0], L[1], L[2]);
+      mpmi_unpack(n, in->L[k], L[0], L[1], L[2]);
     if (form == MPMI_GATHER_4_AFFINE) unpack_affine(k, n, W, in, C);
   }
 }
@@ -150,6 +150,7 @@ MPMI_INLINE void gather(int32_t dim, int32_t width, int32_t form, const mpmi_gat
         double live = volume[p] > 0.0 ? 1.0 : 0.0;
         W.w[0][k][p] *= live;
         if (form != MPMI_GATHER_4_MLS) W.g[0][k][p] *= live;
+        if (form == MPMI_GATHER_4_AFFINE) W.u[0][k][p] *= live;
       }
     for (int64_t p = 0; p < n; ++p) {
       mpmi_prefetch(&job->streams, begin + s + MPMI_CHUNK, p);

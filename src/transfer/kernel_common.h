@@ -30,34 +30,15 @@ MPMI_INLINE double mpmi_floor(double x) {
   return r > x ? r - 1.0 : r;
 }
 
-/* First node of the stencil relative to the tile, in the periodic image that lies in the tile. */
-MPMI_INLINE double mpmi_in_tile(const mpmi_axis *a, double base) {
-  double first = base - a->tile_base;
-  return first - a->period * mpmi_round((first - a->middle) * a->inverse_period);
-}
-
 /* n particles' four components, arrays a..d, to one vector per particle, `stride` doubles apart; and back (d
  * is dropped). */
 MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const double *c, const double *d,
                            double *out, int32_t stride) {
-  for (int64_t p = 0; p < mpmi_groups(n); p += 4) {
-    mpmi_v4 va = mpmi_load4(a + p), vb = mpmi_load4(b + p), vc = mpmi_load4(c + p), vd = mpmi_load4(d + p);
-    mpmi_transpose4(&va, &vb, &vc, &vd);
-    mpmi_store4(out + p * stride, va);
-    mpmi_store4(out + (p + 1) * stride, vb);
-    mpmi_store4(out + (p + 2) * stride, vc);
-    mpmi_store4(out + (p + 3) * stride, vd);
-  }
+  for (int64_t p = 0; p < mpmi_groups(n); p += MPMI_SIDE)
+    mpmi_interleave(a + p, b + p, c + p, d + p, out + p * stride, stride);
 }
-MPMI_INLINE void mpmi_unpack(int64_t n, const double *in, int32_t stride, double *a, double *b, double *c) {
-  for (int64_t p = 0; p < mpmi_groups(n); p += 4) {
-    mpmi_v4 va = mpmi_load4(in + p * stride), vb = mpmi_load4(in + (p + 1) * stride),
-            vc = mpmi_load4(in + (p + 2) * stride), vd = mpmi_load4(in + (p + 3) * stride);
-    mpmi_transpose4(&va, &vb, &vc, &vd);
-    mpmi_store4(a + p, va);
-    mpmi_store4(b + p, vb);
-    mpmi_store4(c + p, vc);
-  }
+MPMI_INLINE void mpmi_unpack(int64_t n, const double *in, double *a, double *b, double *c) {
+  for (int64_t p = 0; p < mpmi_groups(n); p += MPMI_SIDE) mpmi_separate(in + 4 * p, a + p, b + p, c + p);
 }
 
 #endif
