@@ -1,5 +1,7 @@
 /* Results do not depend on threads, executor or order of filling, for every method; instruction sets agree to
- * round-off. Bodies of many blocks that move through them, lose particles and are sorted anew. */
+ * round-off. Bodies of many blocks that move through them, lose particles and are sorted anew. With
+ * MPM_FULL=1 in the environment the list is all that the library offers, on every count of threads, by pool
+ * and by executor, for each instruction set; without, a sample of it. */
 #include "run_support.h"
 #include "stepper/stepper.h"
 
@@ -94,40 +96,93 @@ static int32_t has_isa(int32_t isa) {
   return status == MPM_OK;
 }
 
-/* One instruction set; the best one is tried more often. */
-static void one_isa(run_options o, int32_t thorough, sample *at) {
+enum { BRIEF, THOROUGH, FULL };
+static const int32_t threads[] = {1, 2, 3, 4, 7};
+enum { COUNTS = sizeof threads / sizeof *threads };
+
+/* One instruction set. */
+static void one_isa(run_options o, int32_t care, sample *at) {
   const uint64_t alone = tell(&o, at);
-  static const int32_t threads[] = {2, 3, 7};
-  for (int32_t i = 0; i < 3 && thorough; ++i) {
+  for (int32_t i = 1; i < COUNTS && care > BRIEF; ++i) {
     o.concurrency = threads[i];
     ck_assert_msg(tell(&o, NULL) == alone, "%d threads give another hash than one", (int)threads[i]);
   }
-  o.concurrency = 5;
   o.own_order = 1;
-  ck_assert_msg(tell(&o, NULL) == alone, "tasks in another order give another hash");
-  if (!thorough) return;
+  for (int32_t i = care == FULL ? 0 : COUNTS - 1; i < COUNTS; ++i) {
+    o.concurrency = threads[i];
+    ck_assert_msg(tell(&o, NULL) == alone, "tasks for %d threads in another order give another hash",
+                  (int)threads[i]);
+  }
+  if (care == BRIEF) return;
   o.own_order = 0;
   o.concurrency = 2;
   o.shuffled = 1;
   ck_assert_msg(tell(&o, NULL) == alone, "another order of filling gives another hash");
 }
 
-static run_options numbered(int32_t i) {
-  run_options o = {.dim = 1 + i / (2 * RUN_METHODS), .large = 1, .periodic = i / RUN_METHODS % 2};
-  run_use(&o, &run_methods[i % RUN_METHODS]);
-  return o;
+/* Whether the library takes the combination; what fails otherwise than by a refusal will fail in its run. */
+static int32_t offers(int32_t dim, int32_t basis, int32_t scheme, int32_t transfer) {
+  mpm_context *context = NULL;
+  mpm_grid *grid = NULL;
+  mpm_stepper *stepper = NULL;
+  mpm_grid_desc g;
+  mpm_stepper_desc s;
+  mpm_grid_desc_init(&g, sizeof g);
+  mpm_stepper_desc_init(&s, sizeof s);
+  g.dim = dim;
+  g.basis = basis;
+  for (int32_t k = 0; k < dim; ++k) g.spacing[k] = 1.0, g.cells[k] = 8;
+  s.scheme = scheme;
+  s.transfer = transfer;
+  mpm_status status = mpm_context_create(NULL, &context);
+  if (!status) status = mpm_grid_create(context, &g, &grid);
+  if (!status) status = mpm_stepper_create(context, grid, &s, &stepper);
+  mpm_stepper_destroy(stepper);
+  mpm_grid_destroy(grid);
+  mpm_context_destroy(context);
+  return status != MPM_E_UNSUPPORTED && status != MPM_E_ARG;
 }
-enum { COMBINATIONS = 3 * 2 * RUN_METHODS };
+
+/* All methods of a dimension, by asking for each value that has a name. */
+enum { MOST_METHODS = 64 };
+static int32_t ask_methods(int32_t dim, run_method *method) {
+  int32_t n = 0;
+  for (int32_t basis = 1; basis <= MPM_CPGIMP; ++basis)
+    for (int32_t scheme = 1; scheme <= MPM_NEWMARK; ++scheme)
+      for (int32_t transfer = 1; transfer <= MPM_APIC_MLS; ++transfer)
+        if (n < MOST_METHODS && offers(dim, basis, scheme, transfer))
+          method[n++] = (run_method){basis, scheme, transfer, 1.0};
+  return n;
+}
+
+static int32_t full;
+static run_options list[3 * 4 * MOST_METHODS];
+static int32_t listed;
+
+/* Along walls and with a periodic axis; the full list blends FLIP with PIC, too. */
+static void list_methods(int32_t dim) {
+  run_method asked[MOST_METHODS];
+  const run_method *method = full ? asked : run_methods;
+  const int32_t n = full ? ask_methods(dim, asked) : RUN_METHODS;
+  for (int32_t i = 0; i < 2 * n; ++i) {
+    run_options o = {.dim = dim, .large = 1, .periodic = i / n};
+    run_use(&o, &method[i % n]);
+    list[listed++] = o;
+    if (!full || o.transfer != MPM_FLIP) continue;
+    o.flip = 0.97;
+    list[listed++] = o;
+  }
+}
 
 START_TEST(same_bits) {
-  run_options o = numbered(_i);
+  run_options o = list[_i];
   sample first = {{0, 0}, {{NULL}}};
   int32_t tried = 0;
   for (int32_t isa = MPM_ISA_AVX512; isa >= MPM_ISA_BASELINE; --isa) {
     if (!has_isa(isa)) continue;
     sample other;
     o.isa = isa;
-    one_isa(o, !tried, tried ? &other : &first);
+    one_isa(o, full ? FULL : tried ? BRIEF : THOROUGH, tried ? &other : &first);
     if (tried++) {
       run r = {.options = o};
       ck_agree(&r, &first, &other);
@@ -136,6 +191,24 @@ START_TEST(same_bits) {
   }
   ck_assert_int_ge(tried, 1);
   drop_sample(&first);
+}
+END_TEST
+
+/* The table that many suites go through has every method that the library offers, once. */
+START_TEST(table_is_complete) {
+  run_method asked[MOST_METHODS];
+  for (int32_t dim = 1; dim <= 3; ++dim) {
+    const int32_t n = ask_methods(dim, asked);
+    ck_assert_int_eq(n, RUN_METHODS);
+    for (int32_t i = 0; i < n; ++i) {
+      int32_t times = 0;
+      for (int32_t j = 0; j < RUN_METHODS; ++j)
+        times += run_methods[j].basis == asked[i].basis && run_methods[j].scheme == asked[i].scheme &&
+                 run_methods[j].transfer == asked[i].transfer;
+      ck_assert_msg(times == 1, "basis %d, scheme %d, transfer %d is in the table %d times",
+                    (int)asked[i].basis, (int)asked[i].scheme, (int)asked[i].transfer, (int)times);
+    }
+  }
 }
 END_TEST
 
@@ -169,14 +242,22 @@ END_TEST
 
 Suite *determinism_suite(void) {
   Suite *suite = suite_create("determinism");
-  TCase *methods = tcase_create("methods");
-  tcase_set_tags(methods, "long");
-  tcase_set_timeout(methods, 900);
-  tcase_add_loop_test(methods, same_bits, 0, COMBINATIONS);
-  suite_add_tcase(suite, methods);
+  full = getenv("MPM_FULL") != NULL;
+  listed = 0;
+  static const char *const cases[3] = {"1-D", "2-D", "3-D"};
+  for (int32_t dim = 1; dim <= 3; ++dim) {
+    const int32_t first = listed;
+    list_methods(dim);
+    TCase *methods = tcase_create(cases[dim - 1]);
+    tcase_set_tags(methods, "long");
+    tcase_set_timeout(methods, 900);
+    tcase_add_loop_test(methods, same_bits, first, listed);
+    suite_add_tcase(suite, methods);
+  }
   TCase *hashes = tcase_create("hashes");
   tcase_set_tags(hashes, "long");
   tcase_set_timeout(hashes, 900);
+  tcase_add_test(hashes, table_is_complete);
   tcase_add_test(hashes, hash_differs);
   tcase_add_test(hashes, best_isa_is_one_of_them);
   suite_add_tcase(suite, hashes);
