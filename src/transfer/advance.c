@@ -52,27 +52,23 @@ MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
         const double unit = r == c ? 1.0 : 0.0;
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) F_inc[p] = unit + dt * L[p];
       }
-  for (int32_t r = 0; r < dim; ++r)
-    for (int32_t c = 0; c < dim; ++c) {
-      const double *L0 = job->L + 3 * r * ld, *L1 = L0 + ld, *L2 = L1 + ld;
-      const double *own = job->F_old[place[3 * r + c]];
-      const double *F0 = job->F_old[place[c]];
-      const double *F1 = dim > 1 ? job->F_old[place[3 + c]] : F0,
-                   *F2 = dim > 2 ? job->F_old[place[6 + c]] : F0;
-      double *F = job->F + (3 * r + c) * ld, *F_new = job->F_new[place[3 * r + c]];
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
-        double s = L0[p] * F0[p];
-        if (dim > 1) s += L1[p] * F1[p];
-        if (dim > 2) s += L2[p] * F2[p];
-        s = own[p] + dt * s;
-        F[p] = s;
-        F_new[p] = s;
+  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+    mpmi_lanes old[3][3];
+    for (int32_t r = 0; r < dim; ++r)
+      for (int32_t c = 0; c < dim; ++c) old[r][c] = mpmi_lanes_load(job->F_old[place[3 * r + c]] + s);
+    for (int32_t r = 0; r < dim; ++r)
+      for (int32_t c = 0; c < dim; ++c) {
+        mpmi_lanes rate = {0.0};
+        for (int32_t k = 0; k < dim; ++k) rate += mpmi_lanes_load(job->L + (3 * r + k) * ld + s) * old[k][c];
+        const mpmi_lanes F = old[r][c] + dt * rate;
+        mpmi_lanes_store(job->F + (3 * r + c) * ld + s, F);
+        mpmi_lanes_store(job->F_new[place[3 * r + c]] + s, F);
       }
+    if (dim == 2) { /* plane strain keeps its zz */
+      const mpmi_lanes zz = mpmi_lanes_load(job->F_old[4] + s);
+      mpmi_lanes_store(job->F + 8 * ld + s, zz);
+      mpmi_lanes_store(job->F_new[4] + s, zz);
     }
-  if (dim == 2) {
-    const double *old = job->F_old[4];
-    double *F = job->F + 8 * ld, *F_new = job->F_new[4];
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) F[p] = F_new[p] = old[p];
   }
 }
 

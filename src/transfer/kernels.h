@@ -33,7 +33,7 @@ typedef struct mpmi_axis {
  * vanishes. first: from the particle to the first node of its stencil, in cells. node: that node's place in
  * the tile. */
 typedef struct mpmi_weights {
-  double w[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
+  _Alignas(64) double w[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
   double g[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
   double u[3][MPMI_MAX_WIDTH][MPMI_CHUNK];
   double inverse_moment[3][MPMI_CHUNK], first[3][MPMI_CHUNK];

@@ -8,6 +8,14 @@
  * receives is w_ip times a linear function of its place. The MLS form puts the force into that function. */
 #include "transfer/kernel_common.h"
 
+/* The tile is apart from the weights, which may then stay in registers from row to row; with 16 registers the
+ * forces need them for other things. */
+#if defined(__AVX512F__) || defined(__aarch64__)
+#define MPMI_APART restrict
+#else
+#define MPMI_APART
+#endif
+
 /* What the particles of a chunk give: a and the columns, 4 or 8 values each as nodes have them. */
 typedef struct mpmi_first_order {
   _Alignas(64) double a[8 * MPMI_CHUNK], column[3][8 * MPMI_CHUNK];
@@ -15,7 +23,7 @@ typedef struct mpmi_first_order {
 
 /* Mass and momentum. */
 MPMI_INLINE void scatter_plain(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
-                               const mpmi_first_order *of, double *tile) {
+                               const mpmi_first_order *of, double *restrict tile) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
   const mpmi_node a = mpmi_node_load(MPMI_LOW, of->a + 4 * p);
   double *stencil = tile + 4 * (int64_t)W->node[p];
@@ -36,7 +44,7 @@ MPMI_INLINE void scatter_plain(int32_t dim, int32_t width, const mpmi_weights *W
 
 /* Mass and affine momentum: a is the function at the first node, column[k] its growth per node of axis k. */
 MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
-                                const mpmi_first_order *of, double *tile) {
+                                const mpmi_first_order *of, double *restrict tile) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
   mpmi_node plane = mpmi_node_load(MPMI_LOW, of->a + 4 * p), step[3];
   for (int32_t k = 0; k < dim; ++k) step[k] = mpmi_node_load(MPMI_LOW, of->column[k] + 4 * p);
@@ -68,7 +76,7 @@ MPMI_INLINE mpmi_pair second(int32_t affine, const mpmi_weights *W, int32_t axis
 
 /* Mass, momentum and force. Without an affine part the columns have nothing to give to momentum. */
 MPMI_INLINE void scatter_forces(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W, int64_t p,
-                                const mpmi_first_order *of, double *tile) {
+                                const mpmi_first_order *of, double *MPMI_APART tile) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, all = MPMI_BOTH;
   const int32_t part = affine ? MPMI_BOTH : MPMI_HIGH; /* of the columns */
   const mpmi_node a = mpmi_node_load(all, of->a + 8 * p);
