@@ -1,7 +1,7 @@
 /* Particle-steps per second of whole explicit steps through the public interface: mpm_stable_dt and mpm_step
  * every step, re-sorts included, with momentum, energy and the hash of the state looked at in the end.
  *
- *   bench [--quick] [--only TEXT] [--particles N] [--threads N,N] [--repeats N] [--spread X] [--csv FILE]
+ *   bench [--quick] [--only TEXT] [--particles N,N] [--threads N,N] [--repeats N] [--spread X] [--csv FILE]
  *
  * --only: cases whose name contains the text. --spread: bounds of the grid over the size of the body. A line
  * gives the median and the best of the repeats, nanoseconds per particle and step by stage, the rate as a
@@ -36,12 +36,15 @@ static const bench_case cases[] = {
     {"3-D FLIP, J2", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "j2", 0.3, 0.125, 40, BENCH_FREE},
     {"1-D quadratic FLIP", 1, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
 };
-enum { CASES = sizeof cases / sizeof *cases, MOST_THREADS = 16, MOST_REPEATS = 99, WARM_UP = 45 };
+enum { CASES = sizeof cases / sizeof *cases, MOST_NUMBERS = 16, MOST_REPEATS = 99, WARM_UP = 45 };
 
 typedef struct settings {
   const char *only, *csv;
-  int64_t particles;
-  int32_t repeats, thread_counts, threads[MOST_THREADS];
+  int32_t repeats;
+  struct numbers {
+    int32_t count;
+    int64_t at[MOST_NUMBERS];
+  } particles, threads;
   double spread;
 } settings;
 
@@ -108,9 +111,9 @@ static mpm_status measure(const bench_scene *scene, const bench_case *of, const 
   return MPM_OK;
 }
 
-static void run(const bench_case *of, const settings *how, int32_t threads, result *r) {
+static void run(const bench_case *of, const settings *how, int64_t particles, int32_t threads, result *r) {
   bench_scene scene;
-  const bench_options options = {how->particles, threads, how->spread};
+  const bench_options options = {particles, threads, how->spread};
   mpm_status status = bench_open(&scene, of, &options);
   if (!status) status = measure(&scene, of, how, r);
   r->failed = status != MPM_OK;
@@ -119,14 +122,15 @@ static void run(const bench_case *of, const settings *how, int32_t threads, resu
 }
 
 /* In a process of its own, whose peak of memory is that of the case. */
-static int32_t run_apart(const bench_case *of, const settings *how, int32_t threads, result *r) {
+static int32_t run_apart(const bench_case *of, const settings *how, int64_t particles, int32_t threads,
+                         result *r) {
   int ends[2], status;
   *r = (result){.failed = 1, .error = "the process died"};
   if (pipe(ends)) return 1;
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    run(of, how, threads, r);
+    run(of, how, particles, threads, r);
     const ssize_t written = write(ends[1], r, sizeof *r);
     _exit(written != (ssize_t)sizeof *r);
   }
@@ -168,6 +172,26 @@ static void print(FILE *csv, const bench_case *of, int32_t threads, double sprea
   fflush(csv);
 }
 
+/* One case on all numbers of threads, which must agree in every bit. */
+static int32_t run_threads(const bench_case *of, const settings *how, int64_t particles, FILE *csv,
+                           double peak, double bandwidth) {
+  int32_t bad = 0;
+  uint64_t hash = 0;
+  for (int32_t t = 0; t < how->threads.count; ++t) {
+    const int32_t threads = (int32_t)how->threads.at[t];
+    result r;
+    if (run_apart(of, how, particles, threads, &r)) return 1;
+    print(csv, of, threads, how->spread, &r, peak, bandwidth);
+    bad |= !is_sound(of, &r);
+    if (t > 0 && r.hash != hash) {
+      fprintf(stderr, "%s: another hash on %d threads\n", of->name, (int)threads);
+      bad = 1;
+    }
+    hash = r.hash;
+  }
+  return bad;
+}
+
 static int32_t run_all(const settings *how, FILE *csv) {
   const double peak = bench_fma_peak(), bandwidth = bench_update_bandwidth();
   printf("one core: %.1f GFLOP/s in multiply-adds, %.1f GB/s in an in-place update\n\n", peak, bandwidth);
@@ -183,42 +207,28 @@ static int32_t run_all(const settings *how, FILE *csv) {
             "callbacks_ns,share_of_fma,share_of_bandwidth,bytes_per_particle,resorts,allocations,hash\n");
   }
   int32_t bad = 0;
-  for (int32_t c = 0; c < CASES; ++c) {
-    uint64_t hash = 0;
-    if (how->only && !strstr(cases[c].name, how->only)) continue;
-    for (int32_t t = 0; t < how->thread_counts; ++t) {
-      result r;
-      if (run_apart(&cases[c], how, how->threads[t], &r)) {
-        bad = 1;
-        continue;
-      }
-      print(csv, &cases[c], how->threads[t], how->spread, &r, peak, bandwidth);
-      bad |= !is_sound(&cases[c], &r);
-      if (t > 0 && r.hash != hash) {
-        fprintf(stderr, "%s: another hash on %d threads\n", cases[c].name, (int)how->threads[t]);
-        bad = 1;
-      }
-      hash = r.hash;
-    }
-  }
+  for (int32_t c = 0; c < CASES; ++c)
+    for (int32_t n = 0; n < how->particles.count; ++n)
+      if (!how->only || strstr(cases[c].name, how->only))
+        bad |= run_threads(&cases[c], how, how->particles.at[n], csv, peak, bandwidth);
   return bad;
 }
 
-static int32_t read_threads(const char *text, settings *how) {
-  how->thread_counts = 0;
-  for (char *end; *text && how->thread_counts < MOST_THREADS; text = *end == ',' ? end + 1 : end) {
-    const long threads = strtol(text, &end, 10);
-    if (end == text || threads < 1 || threads > 1024) return 0;
-    how->threads[how->thread_counts++] = (int32_t)threads;
+static int32_t read_numbers(const char *text, int64_t low, int64_t high, struct numbers *list) {
+  list->count = 0;
+  for (char *end; *text && list->count < MOST_NUMBERS; text = *end == ',' ? end + 1 : end) {
+    const long long number = strtoll(text, &end, 10);
+    if (end == text || number < low || number > high) return 0;
+    list->at[list->count++] = number;
   }
-  return how->thread_counts > 0;
+  return list->count > 0;
 }
 
 /* 0 when an option is not understood. */
 static int32_t read_options(int argc, char **argv, settings *how) {
   for (int i = 1; i < argc; ++i) {
     if (!strcmp(argv[i], "--quick")) {
-      how->particles = 200000;
+      how->particles = (struct numbers){1, {200000}};
       how->repeats = 3;
       continue;
     }
@@ -229,13 +239,13 @@ static int32_t read_options(int argc, char **argv, settings *how) {
     else if (good && !strcmp(argv[i], "--csv"))
       how->csv = value;
     else if (good && !strcmp(argv[i], "--particles"))
-      good = (how->particles = atoll(value)) >= 64;
+      good = read_numbers(value, 64, INT64_C(1) << 31, &how->particles);
     else if (good && !strcmp(argv[i], "--repeats"))
       good = (how->repeats = atoi(value)) >= 1 && how->repeats <= MOST_REPEATS;
     else if (good && !strcmp(argv[i], "--spread"))
       good = (how->spread = atof(value)) >= 3.0;
     else if (good && !strcmp(argv[i], "--threads"))
-      good = read_threads(value, how);
+      good = read_numbers(value, 1, 1024, &how->threads);
     else
       good = 0;
     if (!good) {
@@ -248,7 +258,7 @@ static int32_t read_options(int argc, char **argv, settings *how) {
 }
 
 int main(int argc, char **argv) {
-  settings how = {.particles = 1000000, .repeats = 5, .thread_counts = 2, .threads = {1, 2}, .spread = 3.0};
+  settings how = {.particles = {1, {1000000}}, .repeats = 5, .threads = {2, {1, 2}}, .spread = 3.0};
   if (!read_options(argc, argv, &how)) return 2;
   FILE *csv = how.csv ? fopen(how.csv, "w") : NULL;
   if (how.csv && !csv) {
