@@ -1,9 +1,11 @@
 /* The grid's own part of a step, on every node as if it were free: transfer/update.c. */
 #include "stepper/stepper.h"
 
+#include <string.h>
+
 typedef struct nodes_job {
   mpm_stepper *s;
-  int32_t values;
+  int32_t values, again;
   double dt, *nodes;
 } nodes_job;
 
@@ -14,11 +16,15 @@ static void nodes_task(void *data, int64_t k) {
   const int64_t begin = slots * k / tasks, end = slots * (k + 1) / tasks;
   s->scratch[k].active =
       s->kernels->update(job->values, job->nodes + begin * job->values, end - begin, s->mass_cut, job->dt);
+  if (job->again || end == begin) return;
+  /* what the boundary stage notes, node by node */
+  if (s->impulses) memset(s->impulse + 6 * begin, 0, (size_t)(6 * (end - begin)) * sizeof *s->impulse);
+  if (s->velocity_bc) memset(s->held + 3 * begin, 0, (size_t)(3 * (end - begin)));
 }
 
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t what, double dt) {
   const int32_t again = what == MPMI_P2G_AGAIN;
-  nodes_job job = {s, again ? 4 : s->values, dt, again ? s->again : s->node};
+  nodes_job job = {s, again ? 4 : s->values, again, dt, again ? s->again : s->node};
   const mpm_status status = mpmi_run_tasks(s, 0, s->tasks, nodes_task, &job);
   if (status || again) return status;
   s->last.active_nodes = 0;

@@ -210,12 +210,9 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
                              roomy(slots * 4, s->again_capacity), sizeof *s->again)))
     return status;
   s->impulses = gives_impulses(s);
-  if (s->impulses && slots) {
-    if ((status = mpmi_reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
-                               roomy(slots * 6, s->impulse_capacity), sizeof *s->impulse)))
-      return status;
-    memset(s->impulse, 0, (size_t)(slots * 6) * sizeof *s->impulse);
-  }
+  if (s->impulses && (status = mpmi_reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
+                                            roomy(slots * 6, s->impulse_capacity), sizeof *s->impulse)))
+    return status;
   if (s->velocity_bc && slots * 3 > s->held_capacity) {
     const int64_t wanted = roomy(slots * 3, 0);
     uint8_t *held = mpmi_alloc(s->context, (size_t)wanted);
@@ -230,7 +227,6 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
     s->held_value = value;
     s->held_capacity = wanted;
   }
-  if (s->velocity_bc && slots) memset(s->held, 0, (size_t)(slots * 3));
   return MPM_OK;
 }
 
