@@ -90,10 +90,10 @@ static mpm_status measure(const bench_scene *scene, const bench_case *of, const 
     rate[k] = n * steps / (bench_seconds() - from);
   }
   mpm_stepper_profile(scene->stepper, 0, &stage);
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage); /* of the steps: the hash lists the ids for itself */
   if ((status = mpm_state_hash(scene->stepper, &r->hash))) return status;
   qsort(rate, (size_t)how->repeats, sizeof *rate, ascending);
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
   const double ns = 1e9 / (n * steps * how->repeats);
   r->particles = (int64_t)n;
   r->resorts = info.resorts - sorted;
