@@ -26,7 +26,7 @@ def main(out, *names):
         for spread, line in (("3", "-"), ("3000", ":")):
             chosen = [r for r in table if r["case"] == case and r["spread"] == spread and r["threads"] == "1"]
             chosen.sort(key=lambda r: int(r["particles"]))
-            if not chosen:
+            if len(chosen) < 2:  # nothing to connect
                 continue
             label = case if spread == "3" else f"{case}, bounds 1000 times wider"
             axes.plot([int(r["particles"]) for r in chosen], [1e3 / float(r["median_Mps"]) for r in chosen],
@@ -35,7 +35,7 @@ def main(out, *names):
     axes.set_ylim(bottom=0)
     axes.set_xlabel("particles")
     axes.set_ylabel("ns per particle and step, one thread")
-    axes.legend()
+    axes.legend(loc="lower left")
     figure.tight_layout()
     figure.savefig(out, metadata={"Date": None})
 

@@ -14,9 +14,11 @@ static void nodes_task(void *data, int64_t k) {
   const mpm_stepper *s = job->s;
   const int64_t slots = s->blocks.count * s->blocks.nodes, tasks = s->tasks;
   const int64_t begin = slots * k / tasks, end = slots * (k + 1) / tasks;
+  s->scratch[k].active = 0;
+  if (end == begin) return; /* perhaps there are no nodes at all */
   s->scratch[k].active =
       s->kernels->update(job->values, job->nodes + begin * job->values, end - begin, s->mass_cut, job->dt);
-  if (job->again || end == begin) return;
+  if (job->again) return;
   /* what the boundary stage notes, node by node */
   if (s->impulses) memset(s->impulse + 6 * begin, 0, (size_t)(6 * (end - begin)) * sizeof *s->impulse);
   if (s->velocity_bc) memset(s->held + 3 * begin, 0, (size_t)(3 * (end - begin)));

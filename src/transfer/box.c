@@ -37,7 +37,7 @@ void KERNEL(fetch_box)(int32_t values, const mpmi_box *box) {
   for (int32_t i = 0; i < box->count[0]; ++i)
     for (int32_t j = 0; j < box->count[1]; ++j) {
       const double *row = box->nodes + values * (i * box->node_stride[0] + j * box->node_stride[1]);
-      for (int32_t k = 0; k < values * box->count[2]; k += LINE) __builtin_prefetch(row + k, 1, 2);
+      for (int32_t k = 0; k < values * box->count[2]; k += LINE) __builtin_prefetch(row + k, 0, 2);
     }
 }
 

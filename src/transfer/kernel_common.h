@@ -10,8 +10,8 @@ MPMI_INLINE int64_t mpmi_groups(int64_t n) {
   return n & ~(int64_t)(MPMI_GROUP - 1);
 }
 
-/* Brings the next chunk's share of particle p (0 ... 31) nearer, to the second-level cache: a chunk of a
- * stream is four lines, and asking for all of them at once would fill the queues. */
+/* Brings the next chunk's share of particle p (0 ... 15) nearer, to the second-level cache: a chunk of a
+ * stream is two lines, and asking for all of them at once would fill the queues. */
 MPMI_INLINE void mpmi_prefetch(const mpmi_streams *streams, int64_t next, int64_t p) {
   enum { LINES = MPMI_CHUNK * (int32_t)sizeof(double) / 64, DOUBLES = 64 / (int32_t)sizeof(double) };
   for (int64_t i = p; i < LINES * streams->count; i += MPMI_CHUNK)

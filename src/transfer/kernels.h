@@ -1,4 +1,5 @@
-/* The specialised kernels of the method: weights, scatter (P2G), gather (G2P), advance and survey.
+/* The specialised kernels of the method: weights, scatter (P2G), update of nodes, gather (G2P), advance,
+ * survey, and boxes of nodes to and from tiles.
  *
  * Kernels work on slots in groups of 16 and in chunks; they see one block at a time with its tile: a
  * private copy of the block's nodes plus halo. Tile nodes hold `values` doubles: 4 [px py pz m] or 8 [px py
@@ -72,7 +73,7 @@ typedef struct mpmi_scatter {
   mpmi_weights_fn weights;
   int32_t need;
   const double *x[3], *v[3], *mass, *volume;
-  const double *stress[6]; /* by (xx yy zz xy yz xz); NULL: no internal force */
+  const double *stress[6]; /* by (xx yy zz xy yz xz) */
   const double *affine[9]; /* row * 3 + column; for the affine forms */
   const double *force[3];  /* external force on the particle beside gravity, or NULL */
   double gravity[3];
@@ -82,7 +83,8 @@ typedef struct mpmi_scatter {
 } mpmi_scatter;
 typedef void (*mpmi_scatter_fn)(const mpmi_scatter *job, int64_t begin, int64_t end);
 
-/* Gathered quantities of a batch, [components][ld] each; L and C full 3x3 with unused entries left alone. */
+/* Gathered quantities of a batch, [components][ld] each; L and C full 3x3: columns that the grid
+ * does not have are left alone, rows are zero. */
 typedef struct mpmi_gather {
   mpmi_axis axis[3];
   mpmi_weights_fn weights;
