@@ -38,7 +38,8 @@ LIBS := -lm -lpthread
 # Kernels are compiled once for each instruction set, with contraction to fused multiply-add; all other files
 # once, without it, so that only the kernels' results depend on the instruction set.
 KERNEL_PATTERNS := src/transfer/bspline*.c src/transfer/scatter.c src/transfer/gather.c \
-  src/transfer/box.c src/transfer/update.c src/transfer/advance.c src/transfer/survey.c src/transfer/kernels.c src/material/law_*.c
+  src/transfer/box.c src/transfer/update.c src/transfer/advance.c src/transfer/survey.c \
+  src/transfer/kernels.c src/material/law_*.c
 KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))
 PLAIN := $(filter-out $(KERNELS),$(sort $(wildcard src/*/*.c)))
 HEADERS := $(sort $(wildcard include/mpm/*.h include/mpm/*.hpp))

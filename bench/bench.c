@@ -221,7 +221,7 @@ static int32_t read_numbers(const char *text, int64_t low, int64_t high, struct 
     if (end == text || number < low || number > high) return 0;
     list->at[list->count++] = number;
   }
-  return list->count > 0;
+  return list->count > 0 && !*text; /* and no more than there is room for */
 }
 
 /* 0 when an option is not understood. */

@@ -1,6 +1,5 @@
 /* New particle velocity, position, deformation gradient and volume from what was gathered. */
 #include "transfer/kernel_common.h"
-#include "transfer/lanes.h"
 
 /*   FLIP/PIC blend  v = a (v_p + sum w dv) + (1 - a) sum w v     MPoint theory eq. 36
  *   affine, PIC     v = sum w v

@@ -166,15 +166,9 @@ MPMI_INLINE void pack_momentum(int32_t dim, int32_t form, const mpmi_scatter *jo
       const double scale = fused ? -job->fused_dt * 4.0 / h : 0.0;
       if (!linear) {
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) column[k][r][p] = mass[p] * C[p];
-      } else if (fused) {
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
-          double growth = mass[p] * C[p] * h + scale * volume[p] * sigma[p];
-          column[k][r][p] = growth;
-          p_[r][p] += W->first[k][p] * growth;
-        }
       } else {
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
-          double growth = mass[p] * C[p] * h;
+          double growth = mass[p] * C[p] * h + scale * volume[p] * sigma[p];
           column[k][r][p] = growth;
           p_[r][p] += W->first[k][p] * growth;
         }

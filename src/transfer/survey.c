@@ -1,6 +1,5 @@
 /* Energies, momenta and the stable rate of a batch, and a look at what the law returned. */
 #include "transfer/kernel_common.h"
-#include "transfer/lanes.h"
 
 typedef struct mpmi_tally {
   mpmi_lanes kinetic, strain, work, rate, viscosity, bad, momentum[3], angular[3];

@@ -4,6 +4,7 @@
 #define MPMI_VECTOR_H
 
 #include "transfer/isa.h"
+#include "transfer/lanes.h"
 
 #if defined(__AVX__)
 typedef double mpmi_v4 __attribute__((vector_size(32)));
@@ -90,27 +91,18 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
 /* The four components of some particles side by side in memory, to one vector per particle and back. */
 #if defined(__AVX512F__)
 enum { MPMI_SIDE = 8 };
-typedef double mpmi_v8 __attribute__((vector_size(64)));
-
-MPMI_INLINE mpmi_v8 mpmi_load8(const double *a) {
-  mpmi_v8 r;
-  __builtin_memcpy(&r, a, sizeof r);
-  return r;
-}
-MPMI_INLINE void mpmi_store8(double *a, mpmi_v8 v) {
-  __builtin_memcpy(a, &v, sizeof v);
-}
-MPMI_INLINE void mpmi_store_halves(double *low, double *high, mpmi_v8 v) {
+MPMI_INLINE void mpmi_store_halves(double *low, double *high, mpmi_lanes v) {
   mpmi_store4(low, __builtin_shufflevector(v, v, 0, 1, 2, 3));
   mpmi_store4(high, __builtin_shufflevector(v, v, 4, 5, 6, 7));
 }
 MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double *c, const double *d,
                                  double *out, int32_t stride) {
-  const mpmi_v8 va = mpmi_load8(a), vb = mpmi_load8(b), vc = mpmi_load8(c), vd = mpmi_load8(d);
-  const mpmi_v8 ab_even = __builtin_shufflevector(va, vb, 0, 8, 2, 10, 4, 12, 6, 14),
-                ab_odd = __builtin_shufflevector(va, vb, 1, 9, 3, 11, 5, 13, 7, 15),
-                cd_even = __builtin_shufflevector(vc, vd, 0, 8, 2, 10, 4, 12, 6, 14),
-                cd_odd = __builtin_shufflevector(vc, vd, 1, 9, 3, 11, 5, 13, 7, 15);
+  const mpmi_lanes va = mpmi_lanes_load(a), vb = mpmi_lanes_load(b), vc = mpmi_lanes_load(c),
+                   vd = mpmi_lanes_load(d);
+  const mpmi_lanes ab_even = __builtin_shufflevector(va, vb, 0, 8, 2, 10, 4, 12, 6, 14),
+                   ab_odd = __builtin_shufflevector(va, vb, 1, 9, 3, 11, 5, 13, 7, 15),
+                   cd_even = __builtin_shufflevector(vc, vd, 0, 8, 2, 10, 4, 12, 6, 14),
+                   cd_odd = __builtin_shufflevector(vc, vd, 1, 9, 3, 11, 5, 13, 7, 15);
   mpmi_store_halves(out, out + 2 * stride,
                     __builtin_shufflevector(ab_even, cd_even, 0, 1, 8, 9, 2, 3, 10, 11));
   mpmi_store_halves(out + stride, out + 3 * stride,
@@ -121,15 +113,15 @@ MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double 
                     __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
 }
 MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c) {
-  const mpmi_v8 r01 = mpmi_load8(in), r23 = mpmi_load8(in + 8), r45 = mpmi_load8(in + 16),
-                r67 = mpmi_load8(in + 24);
-  const mpmi_v8 ab_low = __builtin_shufflevector(r01, r23, 0, 4, 8, 12, 1, 5, 9, 13),
-                ab_high = __builtin_shufflevector(r45, r67, 0, 4, 8, 12, 1, 5, 9, 13),
-                c_low = __builtin_shufflevector(r01, r23, 2, 6, 10, 14, 3, 7, 11, 15),
-                c_high = __builtin_shufflevector(r45, r67, 2, 6, 10, 14, 3, 7, 11, 15);
-  mpmi_store8(a, __builtin_shufflevector(ab_low, ab_high, 0, 1, 2, 3, 8, 9, 10, 11));
-  mpmi_store8(b, __builtin_shufflevector(ab_low, ab_high, 4, 5, 6, 7, 12, 13, 14, 15));
-  mpmi_store8(c, __builtin_shufflevector(c_low, c_high, 0, 1, 2, 3, 8, 9, 10, 11));
+  const mpmi_lanes r01 = mpmi_lanes_load(in), r23 = mpmi_lanes_load(in + 8), r45 = mpmi_lanes_load(in + 16),
+                   r67 = mpmi_lanes_load(in + 24);
+  const mpmi_lanes ab_low = __builtin_shufflevector(r01, r23, 0, 4, 8, 12, 1, 5, 9, 13),
+                   ab_high = __builtin_shufflevector(r45, r67, 0, 4, 8, 12, 1, 5, 9, 13),
+                   c_low = __builtin_shufflevector(r01, r23, 2, 6, 10, 14, 3, 7, 11, 15),
+                   c_high = __builtin_shufflevector(r45, r67, 2, 6, 10, 14, 3, 7, 11, 15);
+  mpmi_lanes_store(a, __builtin_shufflevector(ab_low, ab_high, 0, 1, 2, 3, 8, 9, 10, 11));
+  mpmi_lanes_store(b, __builtin_shufflevector(ab_low, ab_high, 4, 5, 6, 7, 12, 13, 14, 15));
+  mpmi_lanes_store(c, __builtin_shufflevector(c_low, c_high, 0, 1, 2, 3, 8, 9, 10, 11));
 }
 #else
 enum { MPMI_SIDE = 4 };
@@ -160,10 +152,10 @@ enum { MPMI_LOW = 1, MPMI_HIGH = 2, MPMI_BOTH = 3 };
 enum { MPMI_HALF = MPMI_BOTH }; /* how to work with a node of eight when only its lower half counts */
 typedef struct mpmi_node {
   mpmi_v4 four;
-  mpmi_v8 eight;
+  mpmi_lanes eight;
 } mpmi_node;
 /* Weights that differ between the halves: momentum takes moments of the basis where force takes gradients. */
-typedef mpmi_v8 mpmi_pair;
+typedef mpmi_lanes mpmi_pair;
 
 MPMI_INLINE mpmi_node mpmi_node_zero(void) {
   return (mpmi_node){mpmi_zero4(), {0.0}};
@@ -173,14 +165,14 @@ MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
   if (part == MPMI_LOW)
     r.four = mpmi_load4(a);
   else
-    __builtin_memcpy(&r.eight, a, sizeof r.eight);
+    r.eight = mpmi_lanes_load(a);
   return r;
 }
 MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
   if (part == MPMI_LOW)
     mpmi_store4(a, v.four);
   else
-    __builtin_memcpy(a, &v.eight, sizeof v.eight);
+    mpmi_lanes_store(a, v.eight);
 }
 MPMI_INLINE mpmi_v4 mpmi_node_low(int32_t part, mpmi_node a) {
   return part == MPMI_LOW ? a.four : __builtin_shufflevector(a.eight, a.eight, 0, 1, 2, 3);
