@@ -101,6 +101,7 @@ void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_bloc
                 {MPMI_VOLUME, POSITIVE},
                 {MPMI_INITIAL_VOLUME, POSITIVE},
                 {MPMI_SIZE, POSITIVE},
+                {MPMI_DILATION_RATIO, POSITIVE},
                 {MPMI_F, ANY},
                 {MPMI_L, ANY},
                 {MPMI_STRESS, ANY},

@@ -12,6 +12,7 @@ static int32_t written_by_step(int32_t field) {
   case MPMI_L:
   case MPMI_STRESS:
   case MPMI_STATE:
+  case MPMI_DILATION_RATIO:
   case MPMI_IMAGE:
     return 1;
   default:

@@ -46,7 +46,8 @@ static const row table[] = {{"id", MPM_I64, {1, 1, 1}, {1, 1, 1}, 0},
                             {"reference_position", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
                             {"prescribed", MPM_U8, {1, 2, 3}, {1, 2, 3}, 0},
                             {"applied_force", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
-                            {"image", MPM_I64, {1, 2, 3}, {1, 2, 3}, 0}};
+                            {"image", MPM_I64, {1, 2, 3}, {1, 2, 3}, 0},
+                            {"dilation_ratio", MPM_F64, {1, 1, 1}, {1, 1, 1}, 1}};
 
 START_TEST(built_in_fields) {
   for (int32_t dim = 1; dim <= 3; ++dim) {
