@@ -63,7 +63,7 @@ START_TEST(built_in_fields) {
       ck_assert_int_eq(f.set->field[i].components, table[i].stored[dim - 1]);
       ck_ok(mpm_particles_field_info(f.set, i, NULL, NULL, NULL, NULL));
     }
-    ck_refused(f.context, mpm_particles_field_info(f.set, 16, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND,
+    ck_refused(f.context, mpm_particles_field_info(f.set, 17, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND,
                "16 fields");
     ck_refused(f.context, mpm_particles_field_info(f.set, -1, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND, "-1");
     ck_assert_int_eq(mpm_particles_field_info(NULL, 0, NULL, NULL, NULL, NULL), MPM_E_ARG);
@@ -98,7 +98,7 @@ START_TEST(added_fields) {
   ck_ok(mpm_particles_add_field(f.set, "temperature_0", MPM_F64, 1));
   ck_ok(mpm_particles_add_field(f.set, "label", MPM_I64, 2));
   ck_ok(mpm_particles_add_field(f.set, "flags", MPM_U8, 64));
-  ck_ok(mpm_particles_field_info(f.set, 17, &name, &type, &components, &writable));
+  ck_ok(mpm_particles_field_info(f.set, 18, &name, &type, &components, &writable));
   ck_assert_str_eq(name, "label");
   ck_assert_int_eq(type, MPM_I64);
   ck_assert_int_eq(components, 2);
