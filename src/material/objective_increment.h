@@ -115,7 +115,7 @@ MPMI_INLINE void mpmi_elastic_outputs(int dim, const double *constants, const mp
   double *wave_speed = batch->wave_speed, *energy = batch->energy;
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
-    double j = 1.0 + mpmi_det_minus_1(dim, mpmi_load_mat(dim, deformation, ld, i, 1.0, 1.0)), mean;
+    double j = 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, deformation, ld, i)), mean;
     mpmi_sym s = mpmi_deviator(mpmi_load_sym(dim, stress, ld, i), &mean);
     wave_speed[i] = sqrt(p_wave * j);
     energy[i] = j * (by_mean * mean * mean + by_deviator * mpmi_square(s));

@@ -33,6 +33,14 @@ static void prepare_elastic(const double *value, double *constants) {
   constants[MPMI_C_SHEAR_ENERGY] = 1.0 / (4.0 * mu);
 }
 
+enum { DECOUPLED_MU, DECOUPLED_KAPPA, DECOUPLED_DENSITY };
+
+static void prepare_decoupled(const double *value, double *constants) {
+  constants[MPMI_C_BULK] = value[DECOUPLED_KAPPA];
+  constants[MPMI_C_MU] = value[DECOUPLED_MU];
+  constants[MPMI_C_DENSITY_INVERSE] = 1.0 / value[DECOUPLED_DENSITY];
+}
+
 static void prepare_j2(const double *value, double *constants) {
   prepare_elastic(value, constants);
   constants[MPMI_C_YIELD] = value[YIELD_STRESS];
@@ -64,12 +72,22 @@ static const mpmi_law laws[MPMI_LAW_COUNT] = {
                    {"hardening", "stress", "slope of the yield stress over the equivalent plastic strain",
                     0.0, NOT_NEGATIVE}},
          .prepare = prepare_j2},
+    [MPMI_LAW_NEO_HOOKEAN_DECOUPLED] = {.name = "neo_hookean_decoupled",
+                                        .index = MPMI_LAW_NEO_HOOKEAN_DECOUPLED,
+                                        .stress_from_F = 1,
+                                        .param_count = 3,
+                                        .param = {{"mu", "stress", "shear modulus", MUST_BE_GIVEN, POSITIVE},
+                                                  {"kappa", "stress", "bulk modulus", MUST_BE_GIVEN,
+                                                   POSITIVE},
+                                                  PARAM_DENSITY},
+                                        .prepare = prepare_decoupled},
 };
 
 #define KERNELS(isa)                                                                                         \
   {                                                                                                          \
     [MPMI_LAW_NEO_HOOKEAN] = mpmi_law_neo_hookean_##isa,                                                     \
-    [MPMI_LAW_LINEAR_ELASTIC] = mpmi_law_linear_elastic_##isa, [MPMI_LAW_J2] = mpmi_law_j2_##isa             \
+    [MPMI_LAW_LINEAR_ELASTIC] = mpmi_law_linear_elastic_##isa, [MPMI_LAW_J2] = mpmi_law_j2_##isa,            \
+    [MPMI_LAW_NEO_HOOKEAN_DECOUPLED] = mpmi_law_neo_hookean_decoupled_##isa                                  \
   }
 
 mpmi_law_fn mpmi_law_kernel(int32_t isa, int32_t law) {
@@ -96,7 +114,6 @@ const mpmi_law *mpmi_law_by_name(const char *name) {
 
 const char *mpmi_law_substitute(const char *name) {
   static const char *const planned[][2] = {
-      {"neo_hookean_decoupled", "use \"neo_hookean\", or mpm_material_create_custom()"},
       {"newtonian_fluid", "use mpm_material_create_custom()"},
       {"rigid", "use an elastic law, and hold its nodes with mpm_stepper_set_velocity_bc()"}};
   for (size_t i = 0; i < sizeof planned / sizeof planned[0]; ++i)
