@@ -15,6 +15,8 @@ BASIS(bspline2)
 #define PER_DIM(dim)                                                                                         \
   uint32_t KERNEL(move_##dim)(const mpmi_move *, int64_t);                                                   \
   void KERNEL(deform_##dim)(const mpmi_deform *, int64_t);                                                   \
+  void KERNEL(dilate_##dim)(const mpmi_deform *, int64_t);                                                   \
+  void KERNEL(stay_##dim)(const mpmi_deform *, int64_t);                                                     \
   uint32_t KERNEL(volume_##dim)(const double *const *, const double *, double *, int64_t);                   \
   uint32_t KERNEL(survey_##dim)(const mpmi_survey *, int64_t, mpmi_sums *);
 PER_DIM(1)
@@ -39,7 +41,9 @@ const mpmi_kernels KERNEL(kernels) = {
     .load_box = KERNEL(load_box),
     .update = KERNEL(update),
     .move = {NULL, KERNEL(move_1), KERNEL(move_2), KERNEL(move_3)},
-    .deform = {NULL, KERNEL(deform_1), KERNEL(deform_2), KERNEL(deform_3)},
+    .deform = {[MPMI_F_DEFORMS] = {NULL, KERNEL(deform_1), KERNEL(deform_2), KERNEL(deform_3)},
+               [MPMI_F_DILATES] = {NULL, KERNEL(dilate_1), KERNEL(dilate_2), KERNEL(dilate_3)},
+               [MPMI_F_STAYS] = {NULL, KERNEL(stay_1), KERNEL(stay_2), KERNEL(stay_3)}},
     .volume = {NULL, KERNEL(volume_1), KERNEL(volume_2), KERNEL(volume_3)},
     .survey = {NULL, KERNEL(survey_1), KERNEL(survey_2), KERNEL(survey_3)},
 };
