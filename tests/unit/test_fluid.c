@@ -143,6 +143,69 @@ START_TEST(viscous_stress_stays) {
 }
 END_TEST
 
+/* ---- the same bits on any number of threads, and after saving and loading ------------------------------ */
+static void splash(world *w, int32_t dim, const method *how, int32_t concurrency, int32_t filled) {
+  const double lower[3] = {0.15, 0.15, 0.15}, upper[3] = {1.9, 0.7, 0.6};
+  const int32_t per_cell[3] = {2, 2, 2};
+  world_desc desc = fluid_desc(dim, how);
+  desc.concurrency = concurrency;
+  desc.grid.cells[0] = 40;
+  desc.grid.spacing[0] = 0.05;
+  desc.stepper.gravity[dim - 1] = -9.81;
+  world_open(w, &desc);
+  mpm_particles *set = world_add_set(w);
+  for (int32_t face = 0; face < 2 * dim; ++face)
+    ck_ok(w, mpm_stepper_set_wall(w->stepper, face, MPM_WALL_SLIP, 0.0));
+  if (!filled) return;
+  ck_ok(w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  dice d = {3};
+  const int64_t n = mpm_particles_count(set);
+  double *v = malloc((size_t)(dim * n) * sizeof *v), *F = calloc((size_t)(9 * n), sizeof *F), one[9];
+  for (int64_t i = 0; i < dim * n; ++i) v[i] = throw_between(&d, -1.0, 1.0);
+  for (int64_t p = 0; p < n; ++p) {
+    some_F(&d, dim, p % 7 ? 0 : p / 7, one);
+    for (int32_t e = 0; e < 9; ++e) F[e * n + p] = one[e];
+  }
+  put(w, set, "velocity", dim, v);
+  put(w, set, "deformation_gradient", 9, F);
+  free(v), free(F);
+}
+
+static uint64_t hash_of(const world *w) {
+  uint64_t hash = 0;
+  ck_ok(w, mpm_state_hash(w->stepper, &hash));
+  return hash;
+}
+
+START_TEST(same_bits) {
+  const int32_t dim = 2 + _i / 4;
+  const method *how = &methods[_i % 4 * 3];
+  uint64_t first = 0;
+  for (int32_t threads = 1; threads <= 4; ++threads) {
+    world w;
+    splash(&w, dim, how, threads, 1);
+    for (int32_t i = 0; i < 40; ++i) world_step(&w, 5e-4);
+    if (threads == 1) first = hash_of(&w);
+    ck_assert_msg(hash_of(&w) == first, "%s on %d threads", how->name, (int)threads);
+    world_close(&w);
+  }
+  world was, then;
+  splash(&was, dim, how, 1, 1);
+  splash(&then, dim, how, 2, 0);
+  for (int32_t i = 0; i < 15; ++i) world_step(&was, 5e-4);
+  int64_t bytes;
+  ck_ok(&was, mpm_state_size(was.stepper, &bytes));
+  void *state = malloc((size_t)bytes);
+  ck_ok(&was, mpm_state_save(was.stepper, state, bytes));
+  ck_ok(&then, mpm_state_load(then.stepper, state, bytes));
+  for (int32_t i = 0; i < 25; ++i) world_step(&then, 5e-4);
+  ck_assert(hash_of(&then) == first);
+  free(state);
+  world_close(&was);
+  world_close(&then);
+}
+END_TEST
+
 /* ---- the kernel ---------------------------------------------------------------------------------------- */
 enum { ITEMS = 32 };
 typedef struct deforming {
@@ -435,6 +498,7 @@ Suite *fluid_suite(void) {
   tcase_add_loop_test(tc, starting_plate, 0, 2);
   tcase_add_loop_test(tc, column_at_rest, 0, 8);
   tcase_add_loop_test(tc, rigid_set, 0, 6);
+  tcase_add_loop_test(tc, same_bits, 0, 8);
   tcase_add_test(tc, refused_basis);
   suite_add_tcase(suite, tc);
   return suite;
