@@ -77,7 +77,7 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
   b->batch.t = t;
   b->batch.dt = dt;
   b->batch.id = mpmi_i64(set, MPMI_ID, 0) + begin;
-  if (!mpmi_material_stress_from_F(material))
+  if (!mpmi_material_stress_from_F(material) || dt == 0.0) /* the state as it is may have viscous stress */
     copy_rows(b->stress, b->ld, mpmi_f64(set, MPMI_STRESS, 0) + begin, set->ld, mpmi_stress_components(dim),
               n);
   if (material->state_count)

@@ -119,6 +119,8 @@ mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field) {
   if (field == MPMI_PRESCRIBED)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
                      "particles cannot be prescribed: use mpm_stepper_set_velocity_bc() to hold nodes");
+  if (field == MPMI_STRESS && mpmi_material_kinematics(set->material) == MPMI_F_STAYS)
+    return mpmi_fail(set->context, MPM_E_UNSUPPORTED, "a rigid material has no stress: it cannot be set");
   if (field == MPMI_STRESS && !at->writable)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
                      "the stress of this law follows from deformation_gradient: set that");

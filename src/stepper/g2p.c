@@ -255,7 +255,7 @@ static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
     F[c] = b->deform.F_new[c];
   }
   mpmi_law_batch_load(&b->law, set, begin, n, s->t + b->job->dt, b->job->dt);
-  s->kernels->deform[dim](&b->deform, n);
+  s->kernels->deform[mpmi_material_kinematics(set->material)][dim](&b->deform, n);
   uint32_t flags = s->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
                                            mpmi_f64(set, MPMI_VOLUME, 0) + begin, n);
   if (flags) return flags;

@@ -52,7 +52,7 @@ static const row table[] = {{"id", MPM_I64, {1, 1, 1}, {1, 1, 1}, 0},
 START_TEST(built_in_fields) {
   for (int32_t dim = 1; dim <= 3; ++dim) {
     open_dim(dim, "linear_elastic");
-    for (int32_t i = 0; i < 16; ++i) {
+    for (int32_t i = 0; i < 17; ++i) {
       const char *name;
       int32_t type, components, writable;
       ck_ok(mpm_particles_field_info(f.set, i, &name, &type, &components, &writable));
@@ -64,7 +64,7 @@ START_TEST(built_in_fields) {
       ck_ok(mpm_particles_field_info(f.set, i, NULL, NULL, NULL, NULL));
     }
     ck_refused(f.context, mpm_particles_field_info(f.set, 17, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND,
-               "16 fields");
+               "17 fields");
     ck_refused(f.context, mpm_particles_field_info(f.set, -1, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND, "-1");
     ck_assert_int_eq(mpm_particles_field_info(NULL, 0, NULL, NULL, NULL, NULL), MPM_E_ARG);
   }
