@@ -66,7 +66,7 @@ UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
-.PHONY: check-determinism check-instructions update-instructions check-aarch64
+.PHONY: check-determinism check-instructions update-instructions check-aarch64 check-abi update-abi docs
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -206,6 +206,10 @@ $(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile
 check-instructions update-instructions: $(STEPS)
 	@$(TEST_ENVIRONMENT) bash tests/instructions/run.sh $(@:-instructions=)
 
+# The binary interface against abi/libmpm-x86_64.abi.xml, by abidiff; update-abi takes what is there as the new baseline.
+check-abi update-abi: $(SHARED_LIB)
+	@$(TEST_ENVIRONMENT) bash tests/abi/run.sh $(@:-abi=)
+
 # The library and its unit tests for another processor, run by qemu.
 check-aarch64:
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/aarch64/run.sh
@@ -245,6 +249,13 @@ check-tsan:
 # Plants known faults one by one in a copy of the sources and expects the unit tests to notice each.
 mutate: $(UNIT)
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/run.sh
+
+# ---- reference -------------------------------------------------------------------------------------------
+# HTML from the headers, into $(BUILD)/docs/html; anything without a comment is an error.
+docs:
+	@mkdir -p $(BUILD)/docs
+	@VERSION=$(VERSION) OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile
+	@echo "$(BUILD)/docs/html/index.html"
 
 # ---- upkeep ----------------------------------------------------------------------------------------------
 FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
