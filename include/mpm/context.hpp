@@ -21,6 +21,7 @@ struct context_desc : mpm_context_desc {
   /** parallel_for(count, task): calls task(k), which does not throw, once for each k in [0, count). */
   callback<int64_t, const std::function<void(int64_t)> &> on_parallel_for;
 
+  /** The defaults. */
   context_desc() : mpm_context_desc() {
     if (const mpm_status status = mpm_context_desc_init(this, sizeof(mpm_context_desc)))
       throw error(status, "mpm_context_desc_init");
@@ -37,7 +38,7 @@ struct memory_use {
  * A context. The C object lives until the wrapper and everything made with it are gone, in whatever order:
  * grids, materials, sets, steppers, series and views keep it.
  */
-class context : public detail::owner<detail::context_core> {
+class context : public wrapper<detail::context_core> {
 public:
   /** mpm_context_create(). The library keeps no text for a context that could not be made; the status says
    * which value was bad. */

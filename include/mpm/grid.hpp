@@ -12,6 +12,7 @@ namespace mpm {
 
 /** mpm_grid_desc with its defaults; cells and spacing are to be set. */
 struct grid_desc : mpm_grid_desc {
+  /** The defaults. */
   grid_desc() : mpm_grid_desc() {
     if (const mpm_status status = mpm_grid_desc_init(this, sizeof(mpm_grid_desc)))
       throw error(status, "mpm_grid_desc_init");
@@ -37,10 +38,10 @@ struct grid_core {
 } // namespace detail
 
 /** A grid: see mpm_grid_create(). Sets and steppers on it keep it. */
-class grid : public detail::owner<detail::grid_core> {
+class grid : public wrapper<detail::grid_core> {
 public:
   /** mpm_grid_create(). */
-  grid(const context &made_with, const mpm_grid_desc &desc) : owner(made_with.shared()) {
+  grid(const context &made_with, const mpm_grid_desc &desc) : wrapper(made_with.shared()) {
     detail::grid_core &c = core();
     c.context->check(mpm_grid_create(c.context->handle, &desc, &c.handle));
     c.dim = desc.dim;

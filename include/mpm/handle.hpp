@@ -45,8 +45,10 @@ struct context_core {
   }
 };
 
+} // namespace detail
+
 /** What all wrappers of handles are: they move, and share a core with what was made from them. */
-template <class Core> class owner {
+template <class Core> class wrapper {
 public:
   /** False once it was moved from. */
   explicit operator bool() const noexcept {
@@ -65,10 +67,12 @@ public:
 protected:
   /** A core of its own. */
   template <class... A>
-  explicit owner(A &&...arguments) : core_(std::make_shared<Core>(std::forward<A>(arguments)...)) {}
-  owner(owner &&) noexcept = default;
-  owner &operator=(owner &&) noexcept = default;
-  ~owner() = default;
+  explicit wrapper(A &&...arguments) : core_(std::make_shared<Core>(std::forward<A>(arguments)...)) {}
+  /** Takes the core over. */
+  wrapper(wrapper &&) noexcept = default;
+  /** Lets go of its core and takes the other over. */
+  wrapper &operator=(wrapper &&) noexcept = default;
+  ~wrapper() = default;
   /** The core. */
   Core &core() const {
     return *shared();
@@ -77,8 +81,6 @@ protected:
 private:
   std::shared_ptr<Core> core_;
 };
-
-} // namespace detail
 
 } // namespace mpm
 

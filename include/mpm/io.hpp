@@ -29,10 +29,10 @@ struct series_core {
 } // namespace detail
 
 /** A .pvd file, valid on disk after every append; destruction ends it. */
-class series : public detail::owner<detail::series_core> {
+class series : public wrapper<detail::series_core> {
 public:
   /** mpm_series_open(). */
-  series(const context &made_with, const std::string &path) : owner(made_with.shared()) {
+  series(const context &made_with, const std::string &path) : wrapper(made_with.shared()) {
     detail::series_core &c = core();
     c.context->check(mpm_series_open(c.context->handle, path.c_str(), &c.handle));
   }

@@ -67,17 +67,17 @@ struct material_core {
 } // namespace detail
 
 /** A material: see mpm_material_create() and mpm_material_create_custom(). Sets of it keep it. */
-class material : public detail::owner<detail::material_core> {
+class material : public wrapper<detail::material_core> {
 public:
   /** A built-in law, with parameters such as {{"E", 1e6}, {"nu", 0.3}, {"density", 1e3}}. */
   material(const context &made_with, const std::string &model, span<const mpm_param> parameters)
-      : owner(made_with.shared()) {
+      : wrapper(made_with.shared()) {
     detail::material_core &c = core();
     c.context->check(mpm_material_create(c.context->handle, model.c_str(), parameters.data(),
                                          static_cast<int32_t>(parameters.size()), &c.handle));
   }
   /** A law of the host. */
-  material(const context &made_with, law host) : owner(made_with.shared(), std::move(host)) {
+  material(const context &made_with, law host) : wrapper(made_with.shared(), std::move(host)) {
     detail::material_core &c = core();
     const law &given = c.functions;
     if (!given.state_initial.empty())

@@ -68,10 +68,10 @@ inline std::vector<const char *> c_names(const std::vector<std::string> &names) 
 } // namespace detail
 
 /** A set of particles: see particles.h. A stepper that it was added to keeps it. */
-class particles : public detail::owner<detail::particles_core> {
+class particles : public wrapper<detail::particles_core> {
 public:
   /** mpm_particles_create(). */
-  particles(const grid &on, const material &of) : owner(on.shared(), of.shared()) {
+  particles(const grid &on, const material &of) : wrapper(on.shared(), of.shared()) {
     detail::particles_core &c = core();
     check(mpm_particles_create(c.context->handle, c.grid->handle, c.material->handle, &c.handle));
   }

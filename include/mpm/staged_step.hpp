@@ -13,6 +13,7 @@ namespace mpm {
  * a part that is not done. */
 class staged_step {
 public:
+  /** Takes the step over. */
   staged_step(staged_step &&) noexcept = default;
   /** Drops the step that it held before. */
   staged_step &operator=(staged_step &&other) noexcept {
@@ -21,6 +22,7 @@ public:
     std::swap(begun_, taken.begun_);
     return *this;
   }
+  /** Drops the step unless it is over. */
   ~staged_step() {
     if (core_) mpm_step_abort(core_->handle);
   }

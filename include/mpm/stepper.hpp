@@ -12,10 +12,10 @@
 namespace mpm {
 
 /** A stepper: see stepper.h. It keeps its sets alive until they are removed or it is destroyed. */
-class stepper : public detail::owner<detail::stepper_core> {
+class stepper : public wrapper<detail::stepper_core> {
 public:
   /** mpm_stepper_create(). */
-  explicit stepper(const grid &on, const mpm_stepper_desc &desc = stepper_desc()) : owner(on.shared()) {
+  explicit stepper(const grid &on, const mpm_stepper_desc &desc = stepper_desc()) : wrapper(on.shared()) {
     detail::stepper_core &c = core();
     check(mpm_stepper_create(c.context->handle, c.grid->handle, &desc, &c.handle));
   }

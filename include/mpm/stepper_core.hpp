@@ -15,6 +15,7 @@ namespace mpm {
 
 /** mpm_stepper_desc with its defaults. */
 struct stepper_desc : mpm_stepper_desc {
+  /** The defaults. */
   stepper_desc() : mpm_stepper_desc() {
     if (const mpm_status status = mpm_stepper_desc_init(this, sizeof(mpm_stepper_desc)))
       throw error(status, "mpm_stepper_desc_init");
@@ -33,6 +34,7 @@ struct advance_desc : mpm_advance_desc {
 
 /** mpm_step_info, ready to be filled. */
 struct step_info : mpm_step_info {
+  /** With struct_size set, else zeros. */
   step_info() : mpm_step_info() {
     struct_size = sizeof(mpm_step_info);
   }

@@ -15,6 +15,7 @@ namespace mpm {
  */
 template <class T> class view {
 public:
+  /** Takes the memory over. */
   view(view &&other) noexcept
       : keep_(std::move(other.keep_)), context_(std::move(other.context_)), view_(other.view_) {
     other.view_ = {};
