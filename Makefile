@@ -20,6 +20,7 @@ BUILD ?= build
 CC ?= cc
 CXX ?= g++
 CFLAGS ?= -g
+CXXFLAGS ?= $(CFLAGS)
 OPT ?= -O2
 KERNEL_OPT ?= -O3
 WERROR ?= -Werror
@@ -30,6 +31,7 @@ SAY = @echo '  $(1) $@'
 endif
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion $(WERROR)
+CXX_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(WERROR)
 COMMON = -std=c11 -MMD -MP -Iinclude -Isrc $(WARNINGS) $(CPPFLAGS) $(CFLAGS)
 LIBRARY = $(COMMON) -fPIC -fvisibility=hidden
 LIBS := -lm -lpthread
@@ -58,14 +60,14 @@ OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(B
 STATIC_LIB := $(BUILD)/libmpm.a
 SHARED_LIB := $(BUILD)/$(SHARED)
 
-EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(sort $(wildcard examples/*.c)))
+EXAMPLES := $(patsubst examples/%,$(BUILD)/examples/%,$(basename $(sort $(wildcard examples/*.c examples/*.cpp))))
 BENCH := $(BUILD)/bench/bench
 UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
 UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
-.PHONY: check-determinism check-instructions update-instructions check-aarch64
+.PHONY: check-determinism check-instructions update-instructions check-aarch64 check-abi update-abi docs
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -99,27 +101,47 @@ $(SHARED_LIB): $(OBJECTS) src/libmpm.map
 	$(Q)ln -sf $(SHARED) $(BUILD)/libmpm.so
 
 # ---- installation ----------------------------------------------------------------------------------------
+# Where libraries and headers both lie under the prefix, the CMake package finds one from the other, wherever the
+# installation is moved to.
+CMAKEDIR = $(LIBDIR)/cmake/mpm
+inside_prefix = $(patsubst $(PREFIX)/%,%,$(filter $(PREFIX)/%,$(1)))
+up_to_prefix = $(subst $(space),/,$(patsubst %,..,$(subst /, ,$(call inside_prefix,$(CMAKEDIR)))))
+space := $(subst ,, )
+INCLUDEDIR_FROM_CMAKEDIR = $(if $(and $(call inside_prefix,$(LIBDIR)),$(call inside_prefix,$(INCLUDEDIR))),$(\
+  )$(up_to_prefix)/$(call inside_prefix,$(INCLUDEDIR)),$(INCLUDEDIR))
+POINTER_BYTES = $(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)
+SUBSTITUTE = sed $(foreach name,PREFIX LIBDIR INCLUDEDIR VERSION SHARED SONAME INCLUDEDIR_FROM_CMAKEDIR \
+  POINTER_BYTES,-e 's|@$(name)@|$($(name))|')
+
 install: all
-	install -d $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -d $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(CMAKEDIR)
 	install -m 644 $(HEADERS) $(DESTDIR)$(INCLUDEDIR)/mpm
 	install -m 644 $(STATIC_LIB) $(DESTDIR)$(LIBDIR)
 	install -m 755 $(SHARED_LIB) $(DESTDIR)$(LIBDIR)
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/libmpm.so
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' \
-	  -e 's|@VERSION@|$(VERSION)|' pkgconfig/mpm.pc.in > $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
-	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
+	$(SUBSTITUTE) pkgconfig/mpm.pc.in > $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
+	$(SUBSTITUTE) cmake/mpmConfig.cmake.in > $(DESTDIR)$(CMAKEDIR)/mpmConfig.cmake
+	$(SUBSTITUTE) cmake/mpmConfigVersion.cmake.in > $(DESTDIR)$(CMAKEDIR)/mpmConfigVersion.cmake
+	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc $(DESTDIR)$(CMAKEDIR)/*.cmake
 
 uninstall:
 	rm -f $(HEADERS:include/%=$(DESTDIR)$(INCLUDEDIR)/%)
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libmpm.a $(SHARED) $(SONAME) libmpm.so pkgconfig/mpm.pc)
-	rmdir $(DESTDIR)$(INCLUDEDIR)/mpm 2>/dev/null || :
+	rm -f $(addprefix $(DESTDIR)$(CMAKEDIR)/,mpmConfig.cmake mpmConfigVersion.cmake)
+	rmdir $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(CMAKEDIR) 2>/dev/null || :
 
 # ---- examples and benchmarks -----------------------------------------------------------------------------
 $(BUILD)/examples/%: examples/%.c $(STATIC_LIB) Makefile
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+
+$(BUILD)/examples/%: examples/%.cpp $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CXX) -std=c++17 -MMD -MP -Iinclude $(CXX_WARNINGS) $(CPPFLAGS) $(CXXFLAGS) $(OPT) -MF $@.d -MT $@ $< \
+	  $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 
 # The benchmark is a host program: it is compiled against an installation and runs the shared library.
 $(BENCH): $(wildcard bench/*.[ch]) $(SHARED_LIB) $(STATIC_LIB) Makefile
@@ -185,6 +207,10 @@ $(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile
 check-instructions update-instructions: $(STEPS)
 	@$(TEST_ENVIRONMENT) bash tests/instructions/run.sh $(@:-instructions=)
 
+# The binary interface against abi/libmpm-x86_64.abi.xml, by abidiff; update-abi takes what is there as the new baseline.
+check-abi update-abi: $(SHARED_LIB)
+	@$(TEST_ENVIRONMENT) bash tests/abi/run.sh $(@:-abi=)
+
 # The library and its unit tests for another processor, run by qemu.
 check-aarch64:
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/aarch64/run.sh
@@ -225,8 +251,15 @@ check-tsan:
 mutate: $(UNIT)
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/run.sh
 
+# ---- reference -------------------------------------------------------------------------------------------
+# HTML from the headers, into $(BUILD)/docs/html; anything without a comment is an error.
+docs:
+	@mkdir -p $(BUILD)/docs
+	@VERSION=$(VERSION) OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile
+	@echo "$(BUILD)/docs/html/index.html"
+
 # ---- upkeep ----------------------------------------------------------------------------------------------
-FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp src/*/*.[ch] examples/*.[ch] bench/*.[ch] \
+FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
   tests/*/*.[ch] tests/*/*.cpp)
 format:
 	clang-format -i $(FORMATTED)
