@@ -116,7 +116,12 @@ mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
   mpm_status status = check_sets(s, MPM_READ | MPM_WRITE);
   if (!status) status = mpmi_stepper_energies(s);
   if (status) return status;
-  *dt = mpmi_stable_dt_of(s, &s->energies.sums);
+  const double stable = mpmi_stable_dt_of(s, &s->energies.sums);
+  if (!(stable > 0.0))
+    return mpmi_fail(s->context, MPM_NONFINITE,
+                     "velocity and wave speed over the spacing are beyond the range of double precision: no "
+                     "step is stable");
+  *dt = stable;
   return MPM_OK;
 }
 
