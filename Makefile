@@ -68,6 +68,7 @@ UNIT := $(BUILD)/tests/unit
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
 .PHONY: check-determinism check-instructions update-instructions check-aarch64 check-abi update-abi docs
+.PHONY: fuzz-programs fuzz check-fuzz
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -247,6 +248,26 @@ check-tsan:
 	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="context executor threads rollback restart" \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
 
+# libFuzzer on saved states, descriptors and small clouds of particles: FUZZ_SECONDS each, from the committed corpora;
+# what is new stays in $(FUZZ)/corpus. check-fuzz: the corpora as they are, then a minute in all.
+FUZZ = $(BUILD)-fuzz
+FUZZ_TARGETS ?= state descriptors clouds
+FUZZ_SECONDS ?= 600
+FUZZ_FLAGS = -g -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
+FUZZ_CC ?= clang
+fuzz-programs:
+	@$(MAKE) CC=$(FUZZ_CC) BUILD=$(FUZZ) OPT=-O1 KERNEL_OPT="-O1 -Wno-pass-failed" CFLAGS="$(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp" \
+	  $(FUZZ_TARGETS:%=$(FUZZ)/fuzz/%)
+$(BUILD)/fuzz/%: tests/fuzz/%.c tests/fuzz/fuzz.h $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(COMMON) -O1 -MF $@.d -MT $@ -fsanitize=fuzzer $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+
+fuzz: fuzz-programs
+	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target $(FUZZ_SECONDS) || exit 1; done
+check-fuzz: fuzz-programs
+	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target 20 || exit 1; done
+
 # Plants known faults one by one in a copy of the sources and expects the unit tests to notice each.
 mutate: $(UNIT)
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/run.sh
@@ -267,6 +288,6 @@ format-check:
 	clang-format --dry-run -Werror $(FORMATTED)
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan $(BUILD)-aarch64
+	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan $(BUILD)-aarch64 $(FUZZ)
 
--include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d) $(STEPS).d
+-include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d) $(STEPS).d $(FUZZ_TARGETS:%=$(BUILD)/fuzz/%.d)

@@ -80,9 +80,9 @@ mpm_status mpmi_stepper_adopt(mpm_stepper *s) {
                              roomy(blocks, s->block_sums_capacity), sizeof *s->block_sums)) ||
       (status = mpmi_constraints_build(&s->next_constraints, &s->next_blocks, s->wall)) ||
       (status = reserve_orbits(s, &s->next_constraints)) ||
-      /* last, because the present cuts point into this memory */
+      /* last, because the present cuts point into this memory; some of it without blocks, too */
       (status = mpmi_reserve(s->context, (void **)&s->list_memory, &s->list_capacity,
-                             roomy(2 * blocks, s->list_capacity), sizeof *s->list_memory)))
+                             roomy(2 * blocks + 1, s->list_capacity), sizeof *s->list_memory)))
     return status;
   cut_work(s);
   swap_in_next(s);
