@@ -78,8 +78,8 @@ typedef struct mpm_step_info {
   double residual;           /**< last relative residual of the Newton iteration; 0 for explicit schemes */
   double kinetic_energy;     /**< sum m v.v / 2 */
   double strain_energy;      /**< sum energy * initial_volume; NaN when a law has none */
-  /** Work during the step of gravity, acceleration and force callbacks, applied_force and prescribed nodal
-   * velocities. */
+  /** Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed
+   * nodal velocities and prescribed particles. */
   double external_work;
   /** (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain
    * energy is. */
@@ -141,8 +141,23 @@ typedef mpm_status (*mpm_particle_fn)(void *user, const mpm_particle_batch *batc
 typedef mpm_status (*mpm_velocity_fn)(void *user, const mpm_node_batch *batch, uint8_t *prescribed,
                                       double *velocity);
 
-/** Reads and changes the nodal velocity[dim][ld] and force[dim][ld] at a stage of an explicit step (mt).
- * Returns as mpm_particle_fn. */
+/**
+ * Reads and changes the nodal velocity[dim][ld] and force[dim][ld] at a stage of an explicit step (mt). It is
+ * shown every node that moves by itself: periodic images and mirrored ghosts are counted in with the node
+ * that they follow, in mass, velocity and force, and what is written acts on all of them.
+ *
+ * - MPM_AFTER_P2G: velocity is the projected one, force is zero; what is written is added to the force.
+ * - MPM_AFTER_FORCES: the same velocity; force is the whole of it, and may be replaced.
+ * - MPM_AFTER_VELOCITY: velocity is the updated one, under walls and prescribed velocities, which do not act
+ *   again; a change is an impulse of mass times change. force, reactions included, is for reading: what is
+ *   written there is ignored.
+ *
+ * A change of the projected velocity moves particles, and is given to them as far as the transfer takes nodal
+ * velocities: not with MPM_FLIP and flip = 1. Values that are left as they are change no bit; with
+ * MPM_APIC_MLS a hook keeps forces apart, as steps in parts do. Hooks do not run in the second projection of
+ * MPM_MUSL. Work: impulse times new nodal velocity, in external_work. MPM_NONFINITE names the node. Returns
+ * as mpm_particle_fn.
+ */
 typedef mpm_status (*mpm_node_fn)(void *user, const mpm_node_batch *batch, double *velocity, double *force);
 
 /** Called at least once in each step before it is committed, and after each Newton iteration, with what is
@@ -211,7 +226,8 @@ MPM_API mpm_status mpm_stepper_set_force(mpm_stepper *stepper, mpm_particle_fn f
 /** Sets the callback that prescribes nodal velocities; NULL: none. */
 MPM_API mpm_status mpm_stepper_set_velocity_bc(mpm_stepper *stepper, mpm_velocity_fn fn, void *user);
 
-/** Sets the hook of a stage, MPM_AFTER_P2G ... MPM_AFTER_VELOCITY; NULL: none. MPM_E_UNSUPPORTED with
+/** Sets the hook of a stage, MPM_AFTER_P2G ... MPM_AFTER_VELOCITY; NULL: none. In a step in parts all run in
+ * mpm_step_grid(), after what the host has written itself. MPM_E_ARG: no such stage. MPM_E_UNSUPPORTED with
  * MPM_NEWMARK. */
 MPM_API mpm_status mpm_stepper_set_node_hook(mpm_stepper *stepper, int32_t stage, mpm_node_fn fn, void *user);
 

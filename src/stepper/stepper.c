@@ -149,7 +149,7 @@ mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_st
   return MPM_OK;
 }
 
-static mpm_status idle(mpm_stepper *s) {
+mpm_status mpmi_stepper_idle(mpm_stepper *s) {
   if (s->phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
   return MPM_OK;
@@ -172,7 +172,7 @@ static void forget_member(mpm_stepper *s, int32_t m) {
 mpm_status mpm_stepper_destroy(mpm_stepper *s) {
   if (!s) return MPM_OK;
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (s->mapped)
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them first",
@@ -217,7 +217,7 @@ static mpm_status grow_members(mpm_stepper *s) {
 
 mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (!set || set->magic != (uint32_t)MPMI_PARTICLES || set->context != s->context)
     return mpmi_fail(s->context, MPM_E_ARG, "particles is NULL, destroyed or of another context");
@@ -243,7 +243,7 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
 
 mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   for (int32_t m = 0; m < s->member_count; ++m) {
     if (s->member[m].set != set) continue;
@@ -259,7 +259,7 @@ mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
 
 mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
   mpm_stepper_desc d;
@@ -281,7 +281,7 @@ mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
 
 mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (!isfinite(t)) return mpmi_fail(s->context, MPM_E_ARG, "t is %g: it must be finite", t);
   if (step == INT64_MAX)
@@ -294,7 +294,7 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
 
 mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, double friction) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (face < 0 || face >= 2 * s->grid->dim)
     return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
@@ -315,7 +315,7 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
 #define SETTER(name, type, member)                                                                           \
   mpm_status name(mpm_stepper *s, type fn, void *user) {                                                     \
     MPMI_ENTER(s, MPMI_STEPPER);                                                                             \
-    mpm_status status = idle(s);                                                                             \
+    mpm_status status = mpmi_stepper_idle(s);                                                                \
     if (status) return status;                                                                               \
     s->member = fn;                                                                                          \
     s->member##_user = user;                                                                                 \

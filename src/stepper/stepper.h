@@ -4,7 +4,7 @@
  *   forces.c     external forces on particles
  *   p2g.c        particles -> nodes
  *   nodes.c      momentum -> velocity on free nodes
- *   boundary.c   velocity callback, walls, periodic images
+ *   boundary.c   velocity callback, walls, periodic images; hooks.c, contact.c
  *   g2p.c        nodes -> particles: velocity, position, deformation gradient, stress
  *   commit.c     the new state becomes the state, or is dropped
  *
@@ -90,6 +90,8 @@ struct mpm_stepper {
   void *acceleration_user, *force_user;
   mpm_velocity_fn velocity_bc;
   void *velocity_bc_user;
+  mpm_node_fn hook[3]; /* by stage, from MPM_AFTER_P2G */
+  void *hook_user[3];
   mpm_progress_fn progress;
   void *progress_user;
 
@@ -116,9 +118,13 @@ struct mpm_stepper {
   double
       *impulse; /* [6 per node] given by walls and prescribed velocities; change of the increment by them */
   int64_t held_capacity;
-  uint8_t *held;       /* [3 per node] component prescribed by the velocity callback */
-  double *held_value;  /* [3 per node] */
-  double *orbit_state; /* [orbits][MPMI_ORBIT_STATE], boundary.c */
+  int32_t holds;      /* something may prescribe velocities of nodes: then */
+  uint8_t *held;      /* [3 per node] who prescribes a component, boundary.h */
+  double *held_value; /* [3 per node] */
+  int64_t block_work_capacity, hook_impulse_capacity;
+  double *block_work;   /* [blocks] of the host on nodes, by the part of the boundary stage at hand */
+  double *hook_impulse; /* [3 per node] where there are hooks */
+  double *orbit_state;  /* [orbits][MPMI_ORBIT_STATE], boundary.c */
   int64_t orbit_state_capacity;
   double mass_cut;
   int32_t nodes_valid; /* nodal fields of the last step can be shown */
@@ -149,6 +155,10 @@ static inline int32_t mpmi_is_mls(const mpm_stepper *s) {
   return s->desc.transfer == MPM_APIC_MLS;
 }
 
+static inline int32_t mpmi_has_hooks(const mpm_stepper *s) {
+  return s->hook[0] || s->hook[1] || s->hook[2];
+}
+
 /* Errors (failure.c): failures of tasks are collected, the first decides. */
 void mpmi_failure_clear(mpmi_failure *failure);
 void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other);
@@ -161,6 +171,9 @@ mpm_status mpmi_callback_cause(mpm_status status);
 mpm_status mpmi_stepper_prepare(mpm_stepper *s);
 /* Only the sorting, when particles have moved out of their tiles. */
 mpm_status mpmi_stepper_sort(mpm_stepper *s);
+/* Like mpmi_reserve, with room for more where it has to grow. */
+mpm_status mpmi_reserve_roomy(mpm_context *context, void **at, int64_t *capacity, int64_t wanted,
+                              size_t size);
 /* MPM_E_STATE while the set holds bad values that the host wrote through a view. */
 mpm_status mpmi_usable(mpm_particles *set);
 void mpmi_stepper_free_topology(mpm_stepper *s);
@@ -172,6 +185,9 @@ mpm_status mpmi_stage_forces(mpm_stepper *s, double dt);
 enum { MPMI_P2G_FORCES, MPMI_P2G_AGAIN /* momentum only, from the new velocities: MUSL */ };
 mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t what, double dt);
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t what, double dt);
+/* Memory of the boundary stage; who will hold nodes. */
+mpm_status mpmi_boundary_prepare(mpm_stepper *s);
+void mpmi_boundary_free(mpm_stepper *s);
 mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t what, double dt);
 enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2 };
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt);
@@ -191,6 +207,9 @@ void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis
 
 /* Runs task over [0, count), on this thread when the host's callbacks must stay on it. */
 mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm_task_fn task, void *data);
+
+/* MPM_E_STATE while a step is under way. */
+mpm_status mpmi_stepper_idle(mpm_stepper *s);
 
 /* energy.c: energies of the present state, from the last step or by a survey of the particles. */
 mpm_status mpmi_stepper_energies(mpm_stepper *s);

@@ -10,13 +10,6 @@ mpm_status mpm_stepper_set_motion(mpm_stepper *s, mpm_particles *particles, mpm_
       "prescribed particles are not in this version: prescribe nodes with mpm_stepper_set_velocity_bc");
 }
 
-mpm_status mpm_stepper_set_node_hook(mpm_stepper *s, int32_t stage, mpm_node_fn fn, void *user) {
-  MPMI_ENTER(s, MPMI_STEPPER);
-  (void)stage, (void)fn, (void)user;
-  return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                   "node hooks are not in this version: use a staged step and mpm_grid_map");
-}
-
 mpm_status mpm_stepper_set_linear_solver(mpm_stepper *s, mpm_solve_fn fn, void *user) {
   MPMI_ENTER(s, MPMI_STEPPER);
   (void)fn, (void)user;
