@@ -18,7 +18,7 @@
 
 #define MPMI_STATE_MAGIC      "MPMSTATE"
 #define MPMI_STATE_BYTE_ORDER 0x01020304u
-enum { MPMI_STATE_FORMAT = 1 };
+enum { MPMI_STATE_FORMAT = 2 };
 
 typedef struct mpmi_state_header {
   char magic[8];
@@ -39,7 +39,7 @@ _Static_assert(sizeof(mpmi_state_numbers) == 10 * 8 + 18 * 8 + 11 * 8 + 192, "pa
 
 typedef struct mpmi_state_set_numbers {
   int64_t count, slots, next_id, dirty;
-  double mass_max;
+  double mass_max, reaction[3];
 } mpmi_state_set_numbers;
 
 typedef struct mpmi_state_field {

@@ -25,7 +25,7 @@ static const builtin_field builtin[MPMI_BUILTIN_FIELDS] = {
     [MPMI_STRESS] = {"stress", MPM_F64, STRESS, 0, 1, 1},
     [MPMI_STATE] = {"state", MPM_F64, STATE, 1, 1, 0},
     [MPMI_REFERENCE] = {"reference_position", MPM_F64, VECTOR, 1, 0, 0},
-    [MPMI_PRESCRIBED] = {"prescribed", MPM_U8, VECTOR, 0, 0, 0},
+    [MPMI_PRESCRIBED] = {"prescribed", MPM_U8, VECTOR, 1, 0, 0},
     [MPMI_APPLIED_FORCE] = {"applied_force", MPM_F64, VECTOR, 1, 0, 0},
     [MPMI_IMAGE] = {"image", MPM_I64, VECTOR, 0, 1, 0},
 };

@@ -150,21 +150,25 @@ static mpm_status set_held(const mpmi_boundary *f) {
 }
 
 static mpm_status hold_nodes(const mpmi_boundary *f) {
-  const mpm_status status = f->s->velocity_bc ? mpmi_ask_velocities(f) : MPM_OK;
+  mpm_status status = f->s->velocity_bc ? mpmi_ask_velocities(f) : MPM_OK;
+  if (!status && f->s->prescription.any) status = mpmi_prescribed_hold(f);
   return status ? status : set_held(f);
 }
 
 mpm_status mpmi_boundary_prepare(mpm_stepper *s) {
-  s->holds = s->velocity_bc != NULL;
+  mpm_status status = mpmi_prescribed_prepare(s);
+  if (status) return status;
+  s->holds = s->velocity_bc || s->prescription.any;
   if (!s->holds && !mpmi_has_hooks(s)) return MPM_OK;
-  const mpm_status status = mpmi_reserve_roomy(s->context, (void **)&s->block_work, &s->block_work_capacity,
-                                               s->blocks.count, sizeof *s->block_work);
+  status = mpmi_reserve_roomy(s->context, (void **)&s->block_work, &s->block_work_capacity, s->blocks.count,
+                              sizeof *s->block_work);
   return status ? status : mpmi_hooks_prepare(s);
 }
 
 void mpmi_boundary_free(mpm_stepper *s) {
   mpmi_free(s->context, s->block_work, mpmi_bytes(s->block_work_capacity, sizeof *s->block_work));
   mpmi_hooks_free(s);
+  mpmi_prescribed_free(s);
 }
 
 /* Between fold and unfold: what acts on nodes, the host's hooks around it. */
@@ -197,8 +201,10 @@ mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t what, double dt) {
                            .zero_acceleration = s->desc.boundary_zero_acceleration,
                            .books = !again && s->impulses};
   fold(&f);
-  const mpm_status status = again ? act_again(&f) : act(&f);
+  mpm_status status = again ? act_again(&f) : act(&f);
   if (status) return status;
   unfold(&f);
-  return again ? MPM_OK : mpmi_hooks_end(&f);
+  if (again) return MPM_OK;
+  if (s->prescription.any && (status = mpmi_prescribed_share(&f))) return status;
+  return mpmi_hooks_end(&f);
 }

@@ -88,6 +88,12 @@ mpm_status mpmi_hooks_end(const mpmi_boundary *f);
 mpm_status mpmi_hooks_prepare(mpm_stepper *s);
 void mpmi_hooks_free(mpm_stepper *s);
 
+/* prescribed.c, prescribed_nodes.c: the nodes that prescribed particles hold; their share of the impulses. */
+mpm_status mpmi_prescribed_prepare(mpm_stepper *s);
+mpm_status mpmi_prescribed_hold(const mpmi_boundary *f);
+mpm_status mpmi_prescribed_share(const mpmi_boundary *f);
+void mpmi_prescribed_free(mpm_stepper *s);
+
 /* Adds block_work to the work of the step, in the order of blocks. */
 void mpmi_add_block_work(mpm_stepper *s);
 

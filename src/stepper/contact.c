@@ -16,7 +16,7 @@ static double push(const mpmi_boundary *f, int64_t slot, int32_t c, double by) {
  * `compliance` is the change of that sum for a unit impulse on each node. */
 typedef struct contact_nodes {
   int64_t slot[2];
-  int32_t count;
+  int32_t count, held[3]; /* held: components that prescribed particles hold */
   double mass[2], compliance;
 } contact_nodes;
 
@@ -34,13 +34,16 @@ static void give(const mpmi_boundary *f, const contact_nodes *n, int32_t face, i
 }
 
 static int32_t collect(const mpmi_boundary *f, const mpmi_contact *pair, contact_nodes *n) {
-  *n = (contact_nodes){{pair->slot, pair->partner}, pair->partner < 0 ? 1 : 2, {0.0, 0.0}, 0.0};
+  *n = (contact_nodes){{pair->slot, pair->partner}, pair->partner < 0 ? 1 : 2, {0, 0, 0}, {0.0, 0.0}, 0.0};
   for (int32_t i = 0; i < n->count; ++i) {
     n->mass[i] = mpmi_moving_mass(f, n->slot[i]);
     if (n->mass[i] <= f->s->mass_cut) return 0;
     n->compliance += 1.0 / n->mass[i];
-    for (int32_t c = 0; c < f->dim; ++c)
-      if (mpmi_held_by(f, n->slot[i], c)) return 0; /* the host holds it: that comes before walls */
+    for (int32_t c = 0; c < f->dim; ++c) {
+      const int32_t held = mpmi_held_by(f, n->slot[i], c);
+      if (held == MPMI_HELD_BY_HOST) return 0; /* that comes before walls, on all axes */
+      n->held[c] |= held;
+    }
   }
   return 1;
 }
@@ -54,13 +57,13 @@ static void contact(const mpmi_boundary *f, mpmi_contact *pair) {
   if (!collect(f, pair, &n)) return;
   const double inward = pair->face % 2 ? -1.0 : 1.0;
   const double approach = -inward * sum_of(f, &n, axis);
-  if (approach <= 0.0) return;
+  if (approach <= 0.0 || n.held[axis]) return;
   pair->closed = 1;
   const double normal = approach / n.compliance;
   give(f, &n, pair->face, axis, inward * normal);
   double slide[3] = {0.0, 0.0, 0.0}, squared = 0.0;
   for (int32_t c = 0; c < f->dim; ++c) {
-    if (c == axis) continue;
+    if (c == axis || n.held[c]) continue;
     slide[c] = sum_of(f, &n, c) / n.compliance;
     squared += slide[c] * slide[c];
   }
@@ -69,7 +72,7 @@ static void contact(const mpmi_boundary *f, mpmi_contact *pair) {
   if (most <= 0.0 || stop <= 0.0) return;
   const double share = pair->stuck ? 1.0 : most / stop;
   for (int32_t c = 0; c < f->dim; ++c)
-    if (c != axis) give(f, &n, pair->face, c, -share * slide[c]);
+    if (c != axis && !n.held[c]) give(f, &n, pair->face, c, -share * slide[c]);
 }
 
 /* The second projection of MUSL moves with the first: a contact that was closed stays so, one that was open
@@ -78,7 +81,8 @@ static void keep_contact(const mpmi_boundary *f, const mpmi_contact *pair) {
   contact_nodes n;
   if (!pair->closed || !collect(f, pair, &n)) return;
   for (int32_t c = 0; c < f->dim; ++c)
-    if (c == pair->face / 2 || pair->stuck) give(f, &n, pair->face, c, -sum_of(f, &n, c) / n.compliance);
+    if ((c == pair->face / 2 || pair->stuck) && !n.held[c])
+      give(f, &n, pair->face, c, -sum_of(f, &n, c) / n.compliance);
 }
 
 void mpmi_contacts(const mpmi_boundary *f, int32_t again) {

@@ -161,6 +161,7 @@ static void forget_member(mpm_stepper *s, int32_t m) {
   mpmi_arrangement_free(&member->next);
   mpmi_sorting_free(&member->sorting, s->context);
   mpmi_free(s->context, member->force, mpmi_bytes(member->force_ld * s->grid->dim, sizeof *member->force));
+  mpmi_prescribed_forget(s, member);
   mpmi_field_make_absent(member->set, MPMI_REFERENCE);
   member->set->stepper = NULL;
   member->set->dirty |= MPMI_DIRTY_PLACE;

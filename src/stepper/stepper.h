@@ -1,7 +1,7 @@
 /* The stepper: one grid, its nodes, many sets, one scheme. A step is a sequence of stages, one file each:
  *
  *   topology.c   sort particles into blocks, find active nodes and constraints, cut the work
- *   forces.c     external forces on particles
+ *   forces.c     external forces on particles; prescribed.c: velocities of prescribed ones
  *   p2g.c        particles -> nodes
  *   nodes.c      momentum -> velocity on free nodes
  *   boundary.c   velocity callback, walls, periodic images; hooks.c, contact.c
@@ -24,6 +24,12 @@ typedef struct mpmi_member {
   mpmi_sorting sorting;
   double *force; /* [dim][force_ld] external force beside gravity, or NULL */
   int64_t force_ld;
+  mpm_particle_fn motion; /* of prescribed particles, or NULL: they keep their velocity */
+  void *motion_user;
+  int32_t prescribed; /* some are in the step under way */
+  double *mean;       /* [dim][mean_ld] their mean velocities where there is a motion, or NULL */
+  int64_t mean_ld;
+  double reaction[3]; /* impulse of prescribed particles on the material in the last step */
 } mpmi_member;
 
 /* The first failure: smallest (set, particle), then node. */
@@ -43,6 +49,20 @@ typedef struct mpmi_scratch {
   int64_t active; /* nodes with mass */
   double law_seconds;
 } mpmi_scratch;
+
+/* Prescribed particles of one set in one block: impulse on the material, work of moving them. */
+typedef struct mpmi_prescribed_part {
+  double impulse[3], work;
+} mpmi_prescribed_part;
+
+/* Prescribed particles of a step (prescribed.h). */
+typedef struct mpmi_prescription {
+  int32_t any;    /* in some set: then */
+  double *sums;   /* [8 per node] their momentum and mass by axis; then the impulse on them by mass */
+  uint8_t *block; /* [blocks] flags */
+  mpmi_prescribed_part *part; /* [blocks][members] */
+  int64_t sums_capacity, block_capacity, part_capacity;
+} mpmi_prescription;
 
 /* Blocks with particles, cut into tasks: task k has list[bound[k]] ... list[bound[k + 1] - 1]. */
 typedef struct mpmi_cut {
@@ -124,7 +144,8 @@ struct mpm_stepper {
   int64_t block_work_capacity, hook_impulse_capacity;
   double *block_work;   /* [blocks] of the host on nodes, by the part of the boundary stage at hand */
   double *hook_impulse; /* [3 per node] where there are hooks */
-  double *orbit_state;  /* [orbits][MPMI_ORBIT_STATE], boundary.c */
+  mpmi_prescription prescription;
+  double *orbit_state; /* [orbits][MPMI_ORBIT_STATE], boundary.c */
   int64_t orbit_state_capacity;
   double mass_cut;
   int32_t nodes_valid; /* nodal fields of the last step can be shown */
@@ -185,14 +206,27 @@ mpm_status mpmi_stage_forces(mpm_stepper *s, double dt);
 enum { MPMI_P2G_FORCES, MPMI_P2G_AGAIN /* momentum only, from the new velocities: MUSL */ };
 mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t what, double dt);
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t what, double dt);
+/* Velocities of prescribed particles in the step. */
+mpm_status mpmi_stage_motion(mpm_stepper *s, double dt);
 /* Memory of the boundary stage; who will hold nodes. */
 mpm_status mpmi_boundary_prepare(mpm_stepper *s);
 void mpmi_boundary_free(mpm_stepper *s);
 mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t what, double dt);
 enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2 };
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt);
+/* After a batch was moved as any other: prescribed particles of it move as they must. Returns flags of move.
+ */
+uint32_t mpmi_prescribed_move(mpm_stepper *s, int32_t m, int64_t block, const mpmi_move *move, int64_t begin,
+                              int64_t n);
+void mpmi_prescribed_commit(mpm_stepper *s);
+void mpmi_prescribed_forget(mpm_stepper *s, mpmi_member *member); /* memory of a member */
 void mpmi_commit(mpm_stepper *s, double dt);
 void mpmi_roll_back(mpm_stepper *s);
+
+/* forces.c: particles for the host's callbacks, in batches that are long because calling costs. */
+enum { MPMI_PARTICLE_BATCH = 2048 };
+mpm_particle_batch mpmi_particle_batch(const mpm_stepper *s, const mpm_particles *set, int64_t begin,
+                                       int64_t n, double dt, const mpmi_lookup *lookup);
 
 /* tile.c: the nodes of a block and its halo. */
 void mpmi_tile_load(const mpm_stepper *s, int64_t block, const double *nodes, int32_t node_values,
