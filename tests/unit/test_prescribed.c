@@ -295,6 +295,49 @@ START_TEST(precedence) {
 }
 END_TEST
 
+static mpm_status slide_along(void *user, const mpm_particle_batch *b, double *add) {
+  (void)user;
+  for (int64_t p = 0; p < b->n; ++p) add[p] += 0.5;
+  return 0;
+}
+
+/* A body that is driven along a friction wall is still held up by it, and is not held back. */
+START_TEST(driven_along_a_wall) {
+  const method *how = &methods[_i];
+  const double lower[2] = {0.1, 0.0}, upper[2] = {0.7, 0.4}, down[2] = {0.0, -1.0};
+  const int32_t per_cell[2] = {2, 2};
+  const uint8_t along[2] = {1, 0};
+  world w;
+  world_desc desc = world_default(2, 12, 0.1);
+  world_use(&desc, how);
+  world_open(&w, &desc);
+  mpm_particles *set = world_add_set(&w);
+  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, down));
+  ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 2, along));
+  ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, slide_along, NULL));
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.5));
+  double up = 0.0;
+  for (int32_t i = 0; i < 5; ++i) {
+    double force[2];
+    int64_t n;
+    world_step(&w, 1e-3);
+    int64_t *index = fetch_node_indices(&w, &n);
+    double *v = fetch_nodes(&w, "velocity", &n);
+    for (int64_t k = 0; k < n; ++k) {
+      ck_within(how->name, v[k], 0.5, 1e-12);
+      if (index[n + k] == 0) ck_between(how->name, v[n + k], -1e-15, 1.0);
+    }
+    ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_Y_MIN, force));
+    ck_within(how->name, force[0], 0.0, 0.0);
+    up += force[1];
+    free(index), free(v);
+  }
+  ck_assert_double_gt(up, 100.0);
+  world_close(&w);
+}
+END_TEST
+
 /* A body that is prescribed whole, at constant speed under gravity, holds itself: no force on anything, no
  * strain; and when it is made faster, the work is that of its momentum. */
 START_TEST(nothing_to_push) {
@@ -635,6 +678,7 @@ Suite *prescribed_suite(void) {
   tcase_add_loop_test(tc, reactions_balance, 0, 4 * METHODS);
   tcase_add_loop_test(tc, two_sets_on_one_node, 0, METHODS);
   tcase_add_loop_test(tc, precedence, 0, 6 * METHODS);
+  tcase_add_loop_test(tc, driven_along_a_wall, 0, METHODS);
   tcase_add_loop_test(tc, nothing_to_push, 0, METHODS);
   tcase_add_loop_test(tc, work_of_moving_itself, 0, METHODS);
   tcase_add_loop_test(tc, across_the_seam, 0, METHODS);
