@@ -26,9 +26,10 @@ typedef struct mpm_stepper_desc {
   int32_t reference_positions; /**< 1: keep "reference_position" and pass it to callbacks; default 0 */
   int32_t quasi_static;        /**< MPM_NEWMARK: 1 drops the inertia; default 0 */
   int32_t staggered;           /**< 1: particle velocities at t_n - dt/2 (Steffen et al. 2008, eqs 11-15) */
-  /** Acceleration of nodes whose velocity the host prescribes. 0 (default): that which brings them from the
-   * projected to the prescribed velocity (Steffen et al. 2008, eq. 30); 1: zero. Nodes that walls hold have
-   * none in either case: a slip wall is a symmetry plane, on which the projected velocity is zero too. */
+  /** Acceleration of nodes whose velocity the host or a particle prescribes. 0 (default): that which brings
+   * them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30); 1: zero. Nodes that
+   * walls hold have none in either case: a slip wall is a symmetry plane, on which the projected velocity is
+   * zero too. */
   int32_t boundary_zero_acceleration;
   double flip;          /**< per step, 1 (default) FLIP ... 0 PIC; MPM_FLIP, MPM_TFLIP, MPM_AFLIP */
   double pic_damping;   /**< rate beta, 1/time, of a blend free of dt: MPoint theory, eqs 58-59; default 0 */
@@ -202,9 +203,16 @@ MPM_API mpm_status mpm_stepper_configure(mpm_stepper *stepper, const mpm_stepper
 /** Sets the time and the number of steps counted. MPM_E_ARG: t not finite or step < 0. */
 MPM_API mpm_status mpm_stepper_set_time(mpm_stepper *stepper, double t, int64_t step);
 
-/** Moves the prescribed particles of a set (platens, pistons): mean_velocity adds the mean velocity of the
- * coming step to zeros and is called at its start. NULL: none; they keep their velocity. MPM_E_NOT_FOUND:
- * the set is not in this stepper. */
+/**
+ * Moves the prescribed particles of a set (platens, pistons): mean_velocity (mt) adds the mean velocity u of
+ * the coming step to zeros and is called at its start for the particles of the set, unless none is
+ * prescribed; what it gives to others is ignored. NULL: none; they keep their velocity.
+ *
+ * On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the
+ * nodes to which it gives mass move with u too, or with the mean of several by that mass. On other axes, and
+ * in deformation and stress, it is a particle like others. MPM_NONFINITE names the particle. Set again after
+ * loading a state. MPM_E_NOT_FOUND: the set is not in this stepper.
+ */
 MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *particles,
                                           mpm_particle_fn mean_velocity, void *user);
 
@@ -351,7 +359,9 @@ MPM_API mpm_status mpm_grid_map(mpm_stepper *stepper, int32_t body, const char *
 MPM_API mpm_status mpm_stepper_wall_reaction(const mpm_stepper *stepper, int32_t face, double *force);
 
 /** force[dim]: that which the prescribed particles of a set exert on the material, mean over the last
- * step. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_STATE before the first step. */
+ * step, on the axes on which they are prescribed: what holds them, less their own inertia, weight and
+ * external forces. 0 for a set without such particles. MPM_E_NOT_FOUND: the set is not in this stepper.
+ * MPM_E_STATE before the first step. */
 MPM_API mpm_status mpm_stepper_particles_reaction(const mpm_stepper *stepper, const mpm_particles *prescribed,
                                                   double *force);
 

@@ -72,7 +72,7 @@ static void contact(const mpmi_boundary *f, mpmi_contact *pair) {
   if (most <= 0.0 || stop <= 0.0) return;
   const double share = pair->stuck ? 1.0 : most / stop;
   for (int32_t c = 0; c < f->dim; ++c)
-    if (c != axis && !n.held[c]) give(f, &n, pair->face, c, -share * slide[c]);
+    if (c != axis) give(f, &n, pair->face, c, -share * slide[c]);
 }
 
 /* The second projection of MUSL moves with the first: a contact that was closed stays so, one that was open
