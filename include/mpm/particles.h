@@ -36,14 +36,15 @@
  * - state: state variables of the law.
  * - reference_position: exists while a stepper with reference_positions holds the set, and starts as the
  *   unwrapped position at mpm_stepper_add().
- * - prescribed: 1 on an axis imposes the particle's velocity on the nodes it touches.
+ * - prescribed: 0 or 1 (default 0; 1 on all axes in new particles of the law "rigid"). 1 on an axis imposes
+ * the particle's velocity there on the nodes that it touches: see mpm_stepper_set_motion().
  * - dilation_ratio: J'/J > 0, by which the volume that the law sees differs from that of
  * deformation_gradient; exists while a stepper with locking_remedy holds the set, and starts as 1. The law
  * sees (J'/J)^(1/dim) F, in 2-D in the plane only.
  * - image: periods crossed on each periodic axis; position + image * period is the unwrapped position.
  *
- * size, acceleration, velocity_gradient and applied_force take memory only when used; until then
- * acceleration, velocity_gradient and applied_force read as zeros.
+ * size, acceleration, velocity_gradient, applied_force and prescribed take memory only when used; until then
+ * all of these but size read as zeros.
  *
  * Fields are independent but for this: once deformation_gradient, dilation_ratio or initial_volume is set,
  * volume, and the stress of laws that compute it from F, are brought up to date before anything reads them

@@ -26,9 +26,10 @@ typedef struct mpm_stepper_desc {
   int32_t reference_positions; /**< 1: keep "reference_position" and pass it to callbacks; default 0 */
   int32_t quasi_static;        /**< MPM_NEWMARK: 1 drops the inertia; default 0 */
   int32_t staggered;           /**< 1: particle velocities at t_n - dt/2 (Steffen et al. 2008, eqs 11-15) */
-  /** Acceleration of nodes whose velocity the host prescribes. 0 (default): that which brings them from the
-   * projected to the prescribed velocity (Steffen et al. 2008, eq. 30); 1: zero. Nodes that walls hold have
-   * none in either case: a slip wall is a symmetry plane, on which the projected velocity is zero too. */
+  /** Acceleration of nodes whose velocity the host or a particle prescribes. 0 (default): that which brings
+   * them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30); 1: zero. Nodes that
+   * walls hold have none in either case: a slip wall is a symmetry plane, on which the projected velocity is
+   * zero too. */
   int32_t boundary_zero_acceleration;
   double flip;          /**< per step, 1 (default) FLIP ... 0 PIC; MPM_FLIP, MPM_TFLIP, MPM_AFLIP */
   double pic_damping;   /**< rate beta, 1/time, of a blend free of dt: MPoint theory, eqs 58-59; default 0 */
@@ -78,8 +79,8 @@ typedef struct mpm_step_info {
   double residual;           /**< last relative residual of the Newton iteration; 0 for explicit schemes */
   double kinetic_energy;     /**< sum m v.v / 2 */
   double strain_energy;      /**< sum energy * initial_volume; NaN when a law has none */
-  /** Work during the step of gravity, acceleration and force callbacks, applied_force and prescribed nodal
-   * velocities. */
+  /** Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed
+   * nodal velocities and prescribed particles. */
   double external_work;
   /** (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain
    * energy is. */
@@ -141,8 +142,23 @@ typedef mpm_status (*mpm_particle_fn)(void *user, const mpm_particle_batch *batc
 typedef mpm_status (*mpm_velocity_fn)(void *user, const mpm_node_batch *batch, uint8_t *prescribed,
                                       double *velocity);
 
-/** Reads and changes the nodal velocity[dim][ld] and force[dim][ld] at a stage of an explicit step (mt).
- * Returns as mpm_particle_fn. */
+/**
+ * Reads and changes the nodal velocity[dim][ld] and force[dim][ld] at a stage of an explicit step (mt). It is
+ * shown every node that moves by itself: periodic images and mirrored ghosts are counted in with the node
+ * that they follow, in mass, velocity and force, and what is written acts on all of them.
+ *
+ * - MPM_AFTER_P2G: velocity is the projected one, force is zero; what is written is added to the force.
+ * - MPM_AFTER_FORCES: the same velocity; force is the whole of it, and may be replaced.
+ * - MPM_AFTER_VELOCITY: velocity is the updated one, under walls and prescribed velocities, which do not act
+ *   again; a change is an impulse of mass times change. force, reactions included, is for reading: what is
+ *   written there is ignored.
+ *
+ * A change of the projected velocity moves particles, and is given to them as far as the transfer takes nodal
+ * velocities: not with MPM_FLIP and flip = 1. Values that are left as they are change no bit; with
+ * MPM_APIC_MLS a hook keeps forces apart, as steps in parts do. Hooks do not run in the second projection of
+ * MPM_MUSL. Work: impulse times new nodal velocity, in external_work. MPM_NONFINITE names the node. Returns
+ * as mpm_particle_fn.
+ */
 typedef mpm_status (*mpm_node_fn)(void *user, const mpm_node_batch *batch, double *velocity, double *force);
 
 /** Called at least once in each step before it is committed, and after each Newton iteration, with what is
@@ -187,9 +203,16 @@ MPM_API mpm_status mpm_stepper_configure(mpm_stepper *stepper, const mpm_stepper
 /** Sets the time and the number of steps counted. MPM_E_ARG: t not finite or step < 0. */
 MPM_API mpm_status mpm_stepper_set_time(mpm_stepper *stepper, double t, int64_t step);
 
-/** Moves the prescribed particles of a set (platens, pistons): mean_velocity adds the mean velocity of the
- * coming step to zeros and is called at its start. NULL: none; they keep their velocity. MPM_E_NOT_FOUND:
- * the set is not in this stepper. */
+/**
+ * Moves the prescribed particles of a set (platens, pistons): mean_velocity (mt) adds the mean velocity u of
+ * the coming step to zeros and is called at its start for the particles of the set, unless none is
+ * prescribed; what it gives to others is ignored. NULL: none; they keep their velocity.
+ *
+ * On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the
+ * nodes to which it gives mass move with u too, or with the mean of several by that mass. On other axes, and
+ * in deformation and stress, it is a particle like others. MPM_NONFINITE names the particle. Set again after
+ * loading a state. MPM_E_NOT_FOUND: the set is not in this stepper.
+ */
 MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *particles,
                                           mpm_particle_fn mean_velocity, void *user);
 
@@ -211,7 +234,8 @@ MPM_API mpm_status mpm_stepper_set_force(mpm_stepper *stepper, mpm_particle_fn f
 /** Sets the callback that prescribes nodal velocities; NULL: none. */
 MPM_API mpm_status mpm_stepper_set_velocity_bc(mpm_stepper *stepper, mpm_velocity_fn fn, void *user);
 
-/** Sets the hook of a stage, MPM_AFTER_P2G ... MPM_AFTER_VELOCITY; NULL: none. MPM_E_UNSUPPORTED with
+/** Sets the hook of a stage, MPM_AFTER_P2G ... MPM_AFTER_VELOCITY; NULL: none. In a step in parts all run in
+ * mpm_step_grid(), after what the host has written itself. MPM_E_ARG: no such stage. MPM_E_UNSUPPORTED with
  * MPM_NEWMARK. */
 MPM_API mpm_status mpm_stepper_set_node_hook(mpm_stepper *stepper, int32_t stage, mpm_node_fn fn, void *user);
 
@@ -336,7 +360,9 @@ MPM_API mpm_status mpm_grid_map(mpm_stepper *stepper, int32_t body, const char *
 MPM_API mpm_status mpm_stepper_wall_reaction(const mpm_stepper *stepper, int32_t face, double *force);
 
 /** force[dim]: that which the prescribed particles of a set exert on the material, mean over the last
- * step. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_STATE before the first step. */
+ * step, on the axes on which they are prescribed: what holds them, less their own inertia, weight and
+ * external forces. 0 for a set without such particles. MPM_E_NOT_FOUND: the set is not in this stepper.
+ * MPM_E_STATE before the first step. */
 MPM_API mpm_status mpm_stepper_particles_reaction(const mpm_stepper *stepper, const mpm_particles *prescribed,
                                                   double *force);
 

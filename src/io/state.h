@@ -39,7 +39,7 @@ _Static_assert(sizeof(mpmi_state_numbers) == 11 * 8 + 18 * 8 + 11 * 8 + 192, "pa
 
 typedef struct mpmi_state_set_numbers {
   int64_t count, slots, next_id, dirty;
-  double mass_max;
+  double mass_max, reaction[3];
 } mpmi_state_set_numbers;
 
 typedef struct mpmi_state_field {

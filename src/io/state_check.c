@@ -45,6 +45,15 @@ static void check_field(mpmi_archive *a, const mpm_particles *fresh, int32_t f, 
   if (bad) mpmi_archive_damaged(a, what);
 }
 
+static void check_prescribed(mpmi_archive *a, const mpm_particles *fresh) {
+  const mpmi_field *field = &fresh->field[MPMI_PRESCRIBED];
+  int64_t bad = 0;
+  for (int32_t c = 0; c < field->components && field->present; ++c)
+    for (int64_t s = 0; s < fresh->slots; ++s)
+      bad += ((const uint8_t *)field->data[0])[c * fresh->ld + s] > 1;
+  if (bad) mpmi_archive_damaged(a, "values of prescribed make no sense");
+}
+
 /* Holes too: kernels compute on them. */
 static void check_inside(mpmi_archive *a, const mpm_particles *fresh) {
   int64_t outside = 0;
@@ -113,6 +122,7 @@ void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_bloc
   check_ids(a, fresh);
   for (size_t i = 0; i < sizeof demand / sizeof *demand; ++i)
     check_field(a, fresh, demand[i].field, demand[i].sign);
+  check_prescribed(a, fresh);
   check_inside(a, fresh);
   check_images(a, fresh);
   if (blocks && !a->status) check_tiles(a, fresh, blocks, start);

@@ -177,7 +177,10 @@ static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
 static void take_over(loading *l) {
   mpm_stepper *s = l->stepper;
   const mpmi_state_numbers *n = &l->numbers;
-  for (int32_t m = 0; m < s->member_count; ++m) exchange_storage(s->member[m].set, &l->set[m].fresh);
+  for (int32_t m = 0; m < s->member_count; ++m) {
+    exchange_storage(s->member[m].set, &l->set[m].fresh);
+    memcpy(s->member[m].reaction, l->set[m].numbers.reaction, sizeof s->member[m].reaction);
+  }
   if (n->blocks < 0) mpmi_blocks_clear(&s->blocks);
   s->nodes_valid = 0;
   s->t = n->t;

@@ -47,7 +47,9 @@ static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
   mpmi_archive_bytes(a, &n, sizeof n);
   for (int32_t m = 0; m < s->member_count; ++m) {
     const mpm_particles *set = s->member[m].set;
-    mpmi_state_set_numbers of_set = {set->count, set->slots, set->next_id, set->dirty, set->mass_max};
+    const double *reaction = s->member[m].reaction;
+    mpmi_state_set_numbers of_set = {set->count, set->slots,    set->next_id,
+                                     set->dirty, set->mass_max, {reaction[0], reaction[1], reaction[2]}};
     mpmi_archive_bytes(a, &of_set, sizeof of_set);
   }
 }

@@ -104,14 +104,17 @@ typedef struct source {
 
 static mpm_status check_values(const mpm_particles *set, int32_t field, const selection *of,
                                const source *from) {
-  if (set->field[field].type != MPM_F64) return MPM_OK;
   const double *values = (const double *)(const void *)from->values;
+  const uint8_t *flags = (const uint8_t *)from->values;
+  if (set->field[field].type != MPM_F64 && field != MPMI_PRESCRIBED) return MPM_OK;
   for (int64_t i = 0; i < (of->uniform ? 1 : of->n); ++i) {
     mpmi_who who = {"id", of->ids ? of->ids[i] : i};
     if (!of->ids && !of->uniform) who.number = set->index[i].id;
     if (of->uniform) who.kind = NULL;
-    mpm_status status =
-        mpmi_check_value(set, field, values + i * from->item_stride, from->component_stride, who);
+    const int64_t item = i * from->item_stride;
+    const mpm_status status = field == MPMI_PRESCRIBED
+                                  ? mpmi_check_flags(set, field, flags + item, from->component_stride, who)
+                                  : mpmi_check_value(set, field, values + item, from->component_stride, who);
     if (status) return status;
   }
   return MPM_OK;
@@ -141,7 +144,7 @@ static mpm_status write_field(mpm_particles *set, int32_t field, const selection
   const mpmi_field *at = &set->field[field];
   int64_t given = (of->uniform ? 1 : of->n) * at->full_components;
   if (!from->values && given > 0) return mpmi_fail(set->context, MPM_E_ARG, "the values are NULL");
-  if (field == MPMI_PRESCRIBED) {
+  if (field == MPMI_PRESCRIBED && !at->present) {
     int64_t i = 0;
     while (i < given && from->values[i] == 0) ++i;
     if (i == given) return MPM_OK; /* what it is anyway */

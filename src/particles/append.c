@@ -1,4 +1,6 @@
 /* New particles at the end of a set. */
+#include <string.h>
+
 #include "particles/append.h"
 
 mpm_status mpmi_check_room(const mpm_particles *set, int64_t n, int32_t numbered) {
@@ -27,11 +29,18 @@ static mpm_status grow(mpm_particles *set, int64_t slots) {
   return mpmi_particles_reserve(set, wanted > MPMI_MAX_SLOTS ? MPMI_MAX_SLOTS : wanted);
 }
 
+/* Such a law has no stress: its particles act only by being prescribed, and are unless the host says
+ * otherwise. */
+static int32_t is_rigid(const mpm_particles *set) {
+  return set->material->law && !strcmp(set->material->law->name, "rigid");
+}
+
 mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, int64_t *slot) {
   int64_t first = set->slots - free_tail(set);
   int64_t slots = (first + n + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD;
   mpm_status status = grow(set, slots);
   if (!status && with_size) status = mpmi_field_make_present(set, MPMI_SIZE);
+  if (!status && is_rigid(set)) status = mpmi_field_make_present(set, MPMI_PRESCRIBED);
   if (status) return status;
   set->slots = slots;
   mpmi_fill_holes(set, 0, first, slots, set->grid->desc.origin);
@@ -63,6 +72,8 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
   if (!with_size) write_derived(set, MPMI_SIZE, slot, slot + n);
   write_derived(set, MPMI_REFERENCE, slot, slot + n);
   write_derived(set, MPMI_DILATION_RATIO, slot, slot + n);
+  for (int32_t c = 0; c < set->grid->dim && is_rigid(set); ++c)
+    memset((uint8_t *)set->field[MPMI_PRESCRIBED].data[0] + c * set->ld + slot, 1, (size_t)n);
   set->next_id = next_id;
   set->count += n;
   set->dirty |= MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY;

@@ -65,6 +65,13 @@ mpm_status mpmi_check_value(const mpm_particles *set, int32_t field, const doubl
   return field == MPMI_F ? check_determinant(set, value, stride, who) : MPM_OK;
 }
 
+mpm_status mpmi_check_flags(const mpm_particles *set, int32_t field, const uint8_t *value, int64_t stride,
+                            mpmi_who who) {
+  for (int32_t c = 0; field == MPMI_PRESCRIBED && c < set->field[field].full_components; ++c)
+    if (value[c * stride] > 1) return refuse(set, field, c, value[c * stride], who, "0 or 1");
+  return MPM_OK;
+}
+
 /* The tensor of a slot with all its components; other fields are stored as they are copied. */
 static void expand(const mpm_particles *set, int32_t field, int64_t slot, double *full) {
   for (int32_t c = 0; c < set->field[field].full_components; ++c) {
@@ -75,10 +82,17 @@ static void expand(const mpm_particles *set, int32_t field, int64_t slot, double
 
 mpm_status mpmi_check_stored(mpm_particles *set, int32_t field) {
   const mpmi_field *at = &set->field[field];
-  if (at->type != MPM_F64 || !at->present) return MPM_OK;
+  if (!at->present || (at->type != MPM_F64 && field != MPMI_PRESCRIBED)) return MPM_OK;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   for (int64_t s = 0; s < set->slots; ++s) {
     if (id[s] < 0) continue;
+    const mpmi_who who = {"id", id[s]};
+    mpm_status status = MPM_OK;
+    if (at->type == MPM_U8) {
+      if ((status = mpmi_check_flags(set, field, (const uint8_t *)at->data[0] + s, set->ld, who)))
+        return status;
+      continue;
+    }
     double *value = mpmi_f64(set, field, 0) + s, full[9];
     int64_t stride = set->ld;
     if (at->components != at->full_components) {
@@ -86,8 +100,7 @@ mpm_status mpmi_check_stored(mpm_particles *set, int32_t field) {
       value = full;
       stride = 1;
     }
-    mpm_status status = mpmi_check_value(set, field, value, stride, (mpmi_who){"id", id[s]});
-    if (status) return status;
+    if ((status = mpmi_check_value(set, field, value, stride, who))) return status;
     if (field == MPMI_POSITION) mpmi_wrap_slot(set, s);
   }
   return MPM_OK;
@@ -116,9 +129,6 @@ mpm_status mpmi_check_exists(const mpm_particles *set, int32_t field) {
 
 mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field) {
   const mpmi_field *at = &set->field[field];
-  if (field == MPMI_PRESCRIBED)
-    return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
-                     "particles cannot be prescribed: use mpm_stepper_set_velocity_bc() to hold nodes");
   if (field == MPMI_STRESS && mpmi_material_kinematics(set->material) == MPMI_F_STAYS)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED, "a rigid material has no stress: it cannot be set");
   if (field == MPMI_STRESS && !at->writable)

@@ -13,6 +13,9 @@ typedef struct mpmi_who {
 /* Refuses one particle's bad value of an F64 field, full layout, components `stride` apart: MPM_E_ARG. */
 mpm_status mpmi_check_value(const mpm_particles *set, int32_t field, const double *value, int64_t stride,
                             mpmi_who who);
+/* The same for a field of flags, which others than "prescribed" are not. */
+mpm_status mpmi_check_flags(const mpm_particles *set, int32_t field, const uint8_t *value, int64_t stride,
+                            mpmi_who who);
 /* The same for the stored values of all particles; wraps positions on periodic axes. */
 mpm_status mpmi_check_stored(mpm_particles *set, int32_t field);
 /* MPM_E_STATE for a field that has neither values nor a default, with what would keep it. */

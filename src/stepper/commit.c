@@ -56,6 +56,7 @@ void mpmi_commit(mpm_stepper *s, double dt) {
     removes |= s->scratch[k].removes;
   }
   const mpmi_sums before = s->energies.sums;
+  mpmi_prescribed_commit(s);
   add_up_blocks(s);
   const mpmi_sums *after = &s->energies.sums;
   for (int32_t m = 0; m < s->member_count; ++m) {

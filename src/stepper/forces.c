@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-enum { FORCE_BATCH = 2048 };
-
 typedef struct forces_job {
   mpm_stepper *s;
   int32_t m;
@@ -33,26 +31,32 @@ static void check_finite(const forces_job *job, const mpm_particle_batch *batch,
                                                    "external force not finite"});
 }
 
-static void forces_of_batch(const forces_job *job, int64_t begin, int64_t n, mpmi_failure *failure) {
-  mpm_stepper *s = job->s;
-  mpmi_member *member = &s->member[job->m];
-  mpm_particles *set = member->set;
-  const int32_t dim = s->grid->dim;
-  const mpmi_lookup lookup = {set, begin};
+mpm_particle_batch mpmi_particle_batch(const mpm_stepper *s, const mpm_particles *set, int64_t begin,
+                                       int64_t n, double dt, const mpmi_lookup *lookup) {
   mpm_particle_batch batch = {.struct_size = sizeof batch,
-                              .dim = dim,
+                              .dim = s->grid->dim,
                               .n = n,
                               .ld = set->ld,
                               .t = s->t,
-                              .dt = job->dt,
+                              .dt = dt,
                               .id = mpmi_i64(set, MPMI_ID, 0) + begin,
                               .position = mpmi_f64(set, MPMI_POSITION, 0) + begin,
                               .velocity = mpmi_f64(set, MPMI_VELOCITY, 0) + begin,
                               .mass = mpmi_f64(set, MPMI_MASS, 0) + begin,
                               .volume = mpmi_f64(set, MPMI_VOLUME, 0) + begin,
                               .particles = set,
-                              .lookup = &lookup};
+                              .lookup = lookup};
   if (set->field[MPMI_REFERENCE].present) batch.reference_position = mpmi_f64(set, MPMI_REFERENCE, 0) + begin;
+  return batch;
+}
+
+static void forces_of_batch(const forces_job *job, int64_t begin, int64_t n, mpmi_failure *failure) {
+  mpm_stepper *s = job->s;
+  mpmi_member *member = &s->member[job->m];
+  mpm_particles *set = member->set;
+  const int32_t dim = s->grid->dim;
+  const mpmi_lookup lookup = {set, begin};
+  const mpm_particle_batch batch = mpmi_particle_batch(s, set, begin, n, job->dt, &lookup);
   double *force = member->force + begin;
   for (int32_t k = 0; k < dim; ++k) memset(force + k * set->ld, 0, (size_t)n * sizeof *force);
   if (s->acceleration) {
@@ -78,10 +82,10 @@ static void forces_of_batch(const forces_job *job, int64_t begin, int64_t n, mpm
 static void forces_task(void *data, int64_t k) {
   const forces_job *job = data;
   const mpm_particles *set = job->s->member[job->m].set;
-  const int64_t batches = (set->slots + FORCE_BATCH - 1) / FORCE_BATCH, tasks = job->s->tasks;
+  const int64_t batches = (set->slots + MPMI_PARTICLE_BATCH - 1) / MPMI_PARTICLE_BATCH, tasks = job->s->tasks;
   for (int64_t b = batches * k / tasks; b < batches * (k + 1) / tasks; ++b) {
-    const int64_t begin = b * FORCE_BATCH;
-    const int64_t n = set->slots - begin < FORCE_BATCH ? set->slots - begin : FORCE_BATCH;
+    const int64_t begin = b * MPMI_PARTICLE_BATCH;
+    const int64_t n = set->slots - begin < MPMI_PARTICLE_BATCH ? set->slots - begin : MPMI_PARTICLE_BATCH;
     forces_of_batch(job, begin, n, &job->s->scratch[k].failure);
   }
 }

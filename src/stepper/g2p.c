@@ -28,7 +28,7 @@ typedef struct batch_job {
   mpmi_deform deform;
   mpmi_survey survey;
   double *v_bar, *dv, *C;
-  int64_t batches;
+  int64_t batches, block;
   int32_t law_ran; /* on the batch at hand: its stress is that of this step */
 } batch_job;
 
@@ -126,6 +126,7 @@ static void bind_block(batch_job *b, int64_t block) {
   const mpm_stepper *s = b->job->s;
   const mpm_grid *grid = s->grid;
   const int32_t edge = s->blocks.edge;
+  b->block = block;
   mpmi_block_axes(grid, s->blocks.coord[block], b->gather.axis);
   for (int32_t k = 0; k < grid->dim; ++k) {
     const double first = (double)s->blocks.coord[block][k] * edge;
@@ -208,7 +209,7 @@ static void look_at_values(batch_job *b, int64_t begin, int64_t n) {
 }
 
 static uint32_t move_batch(batch_job *b, int64_t begin, int64_t n) {
-  const mpm_stepper *s = b->job->s;
+  mpm_stepper *s = b->job->s;
   mpm_particles *set = b->set;
   for (int32_t k = 0; k < s->grid->dim; ++k) {
     b->move.x_old[k] = component(set, MPMI_POSITION, 0, k) + begin;
@@ -219,7 +220,8 @@ static uint32_t move_batch(batch_job *b, int64_t begin, int64_t n) {
       memcpy(mpmi_i64(set, MPMI_IMAGE, 1) + k * set->ld + begin,
              mpmi_i64(set, MPMI_IMAGE, 0) + k * set->ld + begin, (size_t)n * sizeof(int64_t));
   }
-  const uint32_t flags = s->kernels->move[s->grid->dim](&b->move, n);
+  uint32_t flags = s->kernels->move[s->grid->dim](&b->move, n);
+  if (s->member[b->m].prescribed) flags |= mpmi_prescribed_move(s, b->m, b->block, &b->move, begin, n);
   if (flags & MPMI_LEFT_TILE) b->scratch->left_tile = 1;
   if ((flags & MPMI_OUTSIDE) && !(flags & MPMI_NONFINITE)) look_outside(b, begin, n);
   if (set->field[MPMI_ACCELERATION].present)

@@ -21,7 +21,7 @@ static void nodes_task(void *data, int64_t k) {
   /* what the boundary stage notes, node by node */
   if (job->books && s->impulses)
     memset(s->impulse + 6 * begin, 0, (size_t)(6 * (end - begin)) * sizeof *s->impulse);
-  if (job->asks && s->velocity_bc) memset(s->held + 3 * begin, 0, (size_t)(3 * (end - begin)));
+  if (job->asks && s->holds) memset(s->held + 3 * begin, 0, (size_t)(3 * (end - begin)));
 }
 
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t projection) {

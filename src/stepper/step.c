@@ -80,6 +80,7 @@ static mpm_status begin_part(mpm_stepper *s, double dt) {
   for (int32_t f = 0; f < 6; ++f)
     for (int32_t c = 0; c < 3; ++c) s->impulse_in_step[f][c] = 0.0;
   status = mpmi_stage_forces(s, dt);
+  if (!status) status = mpmi_stage_motion(s, dt);
   lap(s, MPMI_TIME_CALLBACKS, &clock);
   if (!status && s->desc.scheme == MPM_USF) status = strain_first(s, dt, &clock);
   if (!status) status = mpmi_stage_p2g(s, MPMI_PROJECT_FORCES);

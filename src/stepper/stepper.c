@@ -152,7 +152,7 @@ double mpmi_flip_share(const mpm_stepper *s) {
   return kept > 0.0 ? s->desc.flip * kept : 0.0;
 }
 
-static mpm_status idle(mpm_stepper *s) {
+mpm_status mpmi_stepper_idle(mpm_stepper *s) {
   if (s->phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
   return MPM_OK;
@@ -182,6 +182,7 @@ static void forget_member(mpm_stepper *s, int32_t m) {
   mpmi_sorting_free(&member->sorting, s->context);
   mpmi_free(s->context, member->force, mpmi_bytes(member->force_ld * s->grid->dim, sizeof *member->force));
   drop_fields(member->set, NULL);
+  mpmi_prescribed_forget(s, member);
   member->set->stepper = NULL;
   member->set->dirty |= MPMI_DIRTY_PLACE;
   for (int32_t i = m + 1; i < s->member_count; ++i) s->member[i - 1] = s->member[i];
@@ -192,7 +193,7 @@ static void forget_member(mpm_stepper *s, int32_t m) {
 mpm_status mpm_stepper_destroy(mpm_stepper *s) {
   if (!s) return MPM_OK;
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (s->mapped)
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them first",
@@ -237,7 +238,7 @@ static mpm_status grow_members(mpm_stepper *s) {
 
 mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (!set || set->magic != (uint32_t)MPMI_PARTICLES || set->context != s->context)
     return mpmi_fail(s->context, MPM_E_ARG, "particles is NULL, destroyed or of another context");
@@ -261,7 +262,7 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
 
 mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   for (int32_t m = 0; m < s->member_count; ++m) {
     if (s->member[m].set != set) continue;
@@ -277,7 +278,7 @@ mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
 
 mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
   mpm_stepper_desc d;
@@ -297,7 +298,7 @@ mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
 
 mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (!isfinite(t)) return mpmi_fail(s->context, MPM_E_ARG, "t is %g: it must be finite", t);
   if (step == INT64_MAX)
@@ -310,7 +311,7 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
 
 mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, double friction) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = idle(s);
+  mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (face < 0 || face >= 2 * s->grid->dim)
     return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
@@ -331,7 +332,7 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
 #define SETTER(name, type, member)                                                                           \
   mpm_status name(mpm_stepper *s, type fn, void *user) {                                                     \
     MPMI_ENTER(s, MPMI_STEPPER);                                                                             \
-    mpm_status status = idle(s);                                                                             \
+    mpm_status status = mpmi_stepper_idle(s);                                                                \
     if (status) return status;                                                                               \
     s->member = fn;                                                                                          \
     s->member##_user = user;                                                                                 \

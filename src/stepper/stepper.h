@@ -1,10 +1,10 @@
 /* The stepper: one grid, its nodes, many sets, one scheme. A step is a sequence of stages, one file each:
  *
  *   topology.c   sort particles into blocks, find active nodes and constraints, cut the work
- *   forces.c     external forces on particles
+ *   forces.c     external forces on particles; prescribed.c: velocities of prescribed ones
  *   p2g.c        particles -> nodes
  *   nodes.c      momentum -> velocity on free nodes
- *   boundary.c   velocity callback, walls, periodic images
+ *   boundary.c   velocity callback, walls, periodic images; hooks.c, contact.c
  *   xpic.c       corrections of the nodal velocities for XPIC
  *   locking.c    cell averages of the dilation, for the locking remedy
  *   g2p.c        nodes -> particles: velocity, position, deformation gradient, stress
@@ -26,6 +26,12 @@ typedef struct mpmi_member {
   mpmi_sorting sorting;
   double *force; /* [dim][force_ld] external force beside gravity, or NULL */
   int64_t force_ld;
+  mpm_particle_fn motion; /* of prescribed particles, or NULL: they keep their velocity */
+  void *motion_user;
+  int32_t prescribed; /* some are in the step under way */
+  double *mean;       /* [dim][mean_ld] their mean velocities where there is a motion, or NULL */
+  int64_t mean_ld;
+  double reaction[3]; /* impulse of prescribed particles on the material in the last step */
 } mpmi_member;
 
 /* The first failure: smallest (set, particle), then node. */
@@ -47,6 +53,20 @@ typedef struct mpmi_scratch {
   int64_t active; /* nodes with mass */
   double law_seconds;
 } mpmi_scratch;
+
+/* Prescribed particles of one set in one block: impulse on the material, work of moving them. */
+typedef struct mpmi_prescribed_part {
+  double impulse[3], work;
+} mpmi_prescribed_part;
+
+/* Prescribed particles of a step (prescribed.h). */
+typedef struct mpmi_prescription {
+  int32_t any;    /* in some set: then */
+  double *sums;   /* [8 per node] their momentum and mass by axis; then the impulse on them by mass */
+  uint8_t *block; /* [blocks] flags */
+  mpmi_prescribed_part *part; /* [blocks][members] */
+  int64_t sums_capacity, block_capacity, part_capacity;
+} mpmi_prescription;
 
 /* Blocks with particles, cut into tasks: task k has list[bound[k]] ... list[bound[k + 1] - 1]. */
 typedef struct mpmi_cut {
@@ -96,6 +116,8 @@ struct mpm_stepper {
   void *acceleration_user, *force_user;
   mpm_velocity_fn velocity_bc;
   void *velocity_bc_user;
+  mpm_node_fn hook[3]; /* by stage, from MPM_AFTER_P2G */
+  void *hook_user[3];
   mpm_progress_fn progress;
   void *progress_user;
 
@@ -122,8 +144,13 @@ struct mpm_stepper {
   double
       *impulse; /* [6 per node] given by walls and prescribed velocities; change of the increment by them */
   int64_t held_capacity;
-  uint8_t *held;       /* [3 per node] component prescribed by the velocity callback */
-  double *held_value;  /* [3 per node] */
+  int32_t holds;      /* something may prescribe velocities of nodes: then */
+  uint8_t *held;      /* [3 per node] who prescribes a component, boundary.h */
+  double *held_value; /* [3 per node] */
+  int64_t block_work_capacity, hook_impulse_capacity;
+  double *block_work;   /* [blocks] of the host on nodes, by the part of the boundary stage at hand */
+  double *hook_impulse; /* [3 per node] where there are hooks */
+  mpmi_prescription prescription;
   double *orbit_state; /* [orbits][MPMI_ORBIT_STATE], boundary.c */
   int64_t orbit_state_capacity;
   double mass_cut;
@@ -168,6 +195,10 @@ static inline int32_t mpmi_corrects(const mpm_stepper *s) {
 /* Share of FLIP in the blend of a step, 0 for the other transfers. */
 double mpmi_flip_share(const mpm_stepper *s);
 
+static inline int32_t mpmi_has_hooks(const mpm_stepper *s) {
+  return s->hook[0] || s->hook[1] || s->hook[2];
+}
+
 /* Errors (failure.c): failures of tasks are collected, the first decides. */
 void mpmi_failure_clear(mpmi_failure *failure);
 void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other);
@@ -180,6 +211,9 @@ mpm_status mpmi_callback_cause(mpm_status status);
 mpm_status mpmi_stepper_prepare(mpm_stepper *s);
 /* Only the sorting, when particles have moved out of their tiles. */
 mpm_status mpmi_stepper_sort(mpm_stepper *s);
+/* Like mpmi_reserve, with room for more where it has to grow. */
+mpm_status mpmi_reserve_roomy(mpm_context *context, void **at, int64_t *capacity, int64_t wanted,
+                              size_t size);
 /* MPM_E_STATE while the set holds bad values that the host wrote through a view. */
 mpm_status mpmi_usable(mpm_particles *set);
 void mpmi_stepper_free_topology(mpm_stepper *s);
@@ -213,8 +247,24 @@ mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int
 mpm_status mpmi_stage_locking(mpm_stepper *s, const double *nodes, int32_t values, double dt);
 /* xpic.c: the corrections of XPIC, left in the second copy of the particles' velocities. */
 mpm_status mpmi_stage_xpic(mpm_stepper *s);
+/* Velocities of prescribed particles in the step. */
+mpm_status mpmi_stage_motion(mpm_stepper *s, double dt);
+/* Memory of the boundary stage; who will hold nodes. */
+mpm_status mpmi_boundary_prepare(mpm_stepper *s);
+void mpmi_boundary_free(mpm_stepper *s);
+/* After a batch was moved as any other: prescribed particles of it move as they must. Returns flags of move.
+ */
+uint32_t mpmi_prescribed_move(mpm_stepper *s, int32_t m, int64_t block, const mpmi_move *move, int64_t begin,
+                              int64_t n);
+void mpmi_prescribed_commit(mpm_stepper *s);
+void mpmi_prescribed_forget(mpm_stepper *s, mpmi_member *member); /* memory of a member */
 void mpmi_commit(mpm_stepper *s, double dt);
 void mpmi_roll_back(mpm_stepper *s);
+
+/* forces.c: particles for the host's callbacks, in batches that are long because calling costs. */
+enum { MPMI_PARTICLE_BATCH = 2048 };
+mpm_particle_batch mpmi_particle_batch(const mpm_stepper *s, const mpm_particles *set, int64_t begin,
+                                       int64_t n, double dt, const mpmi_lookup *lookup);
 
 /* tile.c: the nodes of a block and its halo. */
 void mpmi_tile_load(const mpm_stepper *s, int64_t block, const double *nodes, int32_t node_values,
@@ -231,6 +281,9 @@ mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy);
 
 /* Runs task over [0, count), on this thread when the host's callbacks must stay on it. */
 mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm_task_fn task, void *data);
+
+/* MPM_E_STATE while a step is under way. */
+mpm_status mpmi_stepper_idle(mpm_stepper *s);
 
 /* energy.c: energies of the present state, from the last step or by a survey of the particles. */
 mpm_status mpmi_stepper_energies(mpm_stepper *s);

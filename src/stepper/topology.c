@@ -9,6 +9,11 @@ static int64_t roomy(int64_t wanted, int64_t capacity) {
   return wanted > capacity ? wanted + wanted / 4 : 0;
 }
 
+mpm_status mpmi_reserve_roomy(mpm_context *context, void **at, int64_t *capacity, int64_t wanted,
+                              size_t size) {
+  return mpmi_reserve(context, at, capacity, roomy(wanted, *capacity), size);
+}
+
 static int64_t slots_in_block(const mpm_stepper *s, int32_t next, int64_t block) {
   int64_t slots = 0;
   for (int32_t m = 0; m < s->member_count; ++m) {
@@ -199,13 +204,13 @@ static mpm_status prepare_scratch(mpm_stepper *s) {
 
 /* Can a wall, or the host, give nodes an impulse that has to be remembered? */
 static int32_t gives_impulses(const mpm_stepper *s) {
-  return s->velocity_bc || s->constraints.orbit_count || s->constraints.contact_count;
+  return s->holds || s->constraints.orbit_count || s->constraints.contact_count;
 }
 
 static mpm_status prepare_nodes(mpm_stepper *s) {
   const int64_t slots = s->blocks.count * s->blocks.nodes;
   mpm_status status;
-  s->values = mpmi_is_mls(s) && !s->staged && s->desc.position_order == 1 ? 4 : 8;
+  s->values = mpmi_is_mls(s) && !s->staged && !mpmi_has_hooks(s) && s->desc.position_order == 1 ? 4 : 8;
   if ((status = mpmi_reserve(s->context, (void **)&s->node, &s->node_capacity,
                              roomy(slots * s->values, s->node_capacity), sizeof *s->node)))
     return status;
@@ -221,7 +226,7 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
   if (s->impulses && (status = mpmi_reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
                                             roomy(slots * 6, s->impulse_capacity), sizeof *s->impulse)))
     return status;
-  if (s->velocity_bc && slots * 3 > s->held_capacity) {
+  if (s->holds && slots * 3 > s->held_capacity) {
     const int64_t wanted = roomy(slots * 3, 0);
     uint8_t *held = mpmi_alloc(s->context, (size_t)wanted);
     double *value = held ? mpmi_alloc(s->context, mpmi_bytes(wanted, sizeof *value)) : NULL;
@@ -266,7 +271,8 @@ mpm_status mpmi_stepper_prepare(mpm_stepper *s) {
   if ((status = prepare_sets(s)) || (status = mpmi_stepper_sort(s))) return status;
   find_mass_cut(s);
   if (s->walls_changed && (status = rebuild_constraints(s))) return status;
-  if ((status = prepare_scratch(s)) || (status = prepare_nodes(s)) || (status = prepare_forces(s)))
+  if ((status = mpmi_boundary_prepare(s)) || (status = prepare_scratch(s)) || (status = prepare_nodes(s)) ||
+      (status = prepare_forces(s)))
     return status;
   return MPM_OK;
 }
@@ -277,6 +283,7 @@ void mpmi_stepper_free_topology(mpm_stepper *s) {
   mpmi_blocks_free(&s->next_blocks);
   mpmi_constraints_free(&s->constraints);
   mpmi_constraints_free(&s->next_constraints);
+  mpmi_boundary_free(s);
   mpmi_free(c, s->list_memory, mpmi_bytes(s->list_capacity, sizeof *s->list_memory));
   mpmi_free(c, s->block_sums, mpmi_bytes(s->block_sums_capacity, sizeof *s->block_sums));
   mpmi_free(c, s->orbit_state, mpmi_bytes(s->orbit_state_capacity, sizeof *s->orbit_state));

@@ -1,22 +1,6 @@
 /* Calls whose work this version does not have; each says what to use instead. */
 #include "stepper/stepper.h"
 
-mpm_status mpm_stepper_set_motion(mpm_stepper *s, mpm_particles *particles, mpm_particle_fn mean_velocity,
-                                  void *user) {
-  MPMI_ENTER(s, MPMI_STEPPER);
-  (void)particles, (void)mean_velocity, (void)user;
-  return mpmi_fail(
-      s->context, MPM_E_UNSUPPORTED,
-      "prescribed particles are not in this version: prescribe nodes with mpm_stepper_set_velocity_bc");
-}
-
-mpm_status mpm_stepper_set_node_hook(mpm_stepper *s, int32_t stage, mpm_node_fn fn, void *user) {
-  MPMI_ENTER(s, MPMI_STEPPER);
-  (void)stage, (void)fn, (void)user;
-  return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                   "node hooks are not in this version: use a staged step and mpm_grid_map");
-}
-
 mpm_status mpm_stepper_set_linear_solver(mpm_stepper *s, mpm_solve_fn fn, void *user) {
   MPMI_ENTER(s, MPMI_STEPPER);
   (void)fn, (void)user;
@@ -29,16 +13,6 @@ mpm_status mpm_stepper_residuals(const mpm_stepper *s, int32_t capacity, double 
   (void)capacity, (void)residual, (void)count;
   return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                    "implicit steps are not in this version: explicit schemes have no residuals");
-}
-
-mpm_status mpm_stepper_particles_reaction(const mpm_stepper *s, const mpm_particles *prescribed,
-                                          double *force) {
-  MPMI_ENTER(s, MPMI_STEPPER);
-  (void)prescribed, (void)force;
-  return mpmi_fail(
-      s->context, MPM_E_UNSUPPORTED,
-      "prescribed particles are not in this version: use mpm_stepper_wall_reaction, or \"reaction\" of "
-      "mpm_grid_map");
 }
 
 /* An operator exists only inside a solve callback, which explicit steps never call: there is none to be

@@ -87,6 +87,23 @@ static mpm_status hold_some(void *user, const mpm_node_batch *b, uint8_t *prescr
   return 0;
 }
 
+/* Particles of set 1 slow down where they are led, soon across the walls. */
+static mpm_status lead(void *user, const mpm_particle_batch *b, double *add) {
+  (void)user;
+  for (int32_t c = 0; c < b->dim; ++c)
+    for (int64_t p = 0; p < b->n; ++p) add[c * b->ld + p] += (c ? 0.8 : 0.999) * b->velocity[c * b->ld + p];
+  return 0;
+}
+
+static mpm_status hook(void *user, const mpm_node_batch *b, double *velocity, double *force) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i) {
+    if (b->index[i] % 5 == 0) velocity[i] *= 0.999;
+    force[(b->dim - 1) * b->ld + i] += 0.5 * b->mass[i] * b->position[i];
+  }
+  return 0;
+}
+
 /* ---- the body --------------------------------------------------------------------------------------------
  */
 /* First cell and number of cells on each axis. */
@@ -220,6 +237,18 @@ static mpm_status set_heat(run *r, int32_t m) {
   return status;
 }
 
+/* One particle in eight of set 1, on one axis or all. */
+static mpm_status set_prescribed(run *r) {
+  const int64_t n = mpm_particles_count(r->set[1]);
+  uint8_t *flags = malloc((size_t)(n * r->options.dim) + 1);
+  for (int64_t i = 0; i < n * r->options.dim; ++i)
+    flags[i] = i % n % 8 == 3 && (i % n % 16 == 3 || i / n == i % n % r->options.dim);
+  const mpm_status status =
+      mpm_particles_set(r->set[1], "prescribed", MPM_U8, r->options.dim, n, NULL, flags);
+  free(flags);
+  return status;
+}
+
 static mpm_status make_stepper(run *r) {
   mpm_stepper_desc d;
   ck_assert_int_eq(mpm_stepper_desc_init(&d, sizeof d), MPM_OK);
@@ -250,6 +279,9 @@ static mpm_status set_callbacks(run *r) {
   mpm_status status = mpm_stepper_set_force(r->stepper, add_force, r);
   if (!status) status = mpm_stepper_set_acceleration(r->stepper, add_acceleration, r);
   if (!status && r->options.velocity_bc) status = mpm_stepper_set_velocity_bc(r->stepper, hold_some, r);
+  for (int32_t stage = MPM_AFTER_P2G; stage <= MPM_AFTER_VELOCITY && r->options.led && !status; ++stage)
+    status = mpm_stepper_set_node_hook(r->stepper, stage, hook, NULL);
+  if (!status && r->options.led) status = mpm_stepper_set_motion(r->stepper, r->set[1], lead, NULL);
   return status;
 }
 
@@ -282,13 +314,15 @@ static mpm_status next_call(run *r) {
   case 14:
   case 15:
     return mpm_stepper_add(r->stepper, r->set[m]);
+  case 16:
+    return r->options.led ? set_prescribed(r) : MPM_OK;
   default:
     return set_callbacks(r);
   }
 }
 
 mpm_status run_try_open(run *r) {
-  for (; r->stage <= 16; ++r->stage) {
+  for (; r->stage <= 17; ++r->stage) {
     const mpm_status status = next_call(r);
     if (status) return status;
   }

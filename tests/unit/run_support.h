@@ -43,6 +43,7 @@ typedef struct run_options {
   int32_t large;                /* at least 27 blocks with particles; else a few */
   int32_t periodic;             /* the x axis is; else FIXED (1-D) or NONE below and OPEN above */
   int32_t velocity_bc;          /* a callback holds some nodes */
+  int32_t led;                  /* hooks at all stages, and prescribed particles in set 1 */
   int32_t empty;                /* no particles are added */
   int32_t shuffled;             /* particles are added in another order */
   int32_t concurrency;          /* 0: 1 */

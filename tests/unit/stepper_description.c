@@ -198,14 +198,8 @@ END_TEST
 START_TEST(unsupported_calls) {
   double value[3];
   int32_t count;
-  run_refused(&r, mpm_stepper_set_motion(r.stepper, r.set[0], NULL, NULL), MPM_E_UNSUPPORTED,
-              "mpm_stepper_set_velocity_bc");
-  run_refused(&r, mpm_stepper_set_node_hook(r.stepper, MPM_AFTER_P2G, NULL, NULL), MPM_E_UNSUPPORTED,
-              "mpm_grid_map");
   run_refused(&r, mpm_stepper_set_linear_solver(r.stepper, NULL, NULL), MPM_E_UNSUPPORTED, "explicit");
   run_refused(&r, mpm_stepper_residuals(r.stepper, 0, NULL, &count), MPM_E_UNSUPPORTED, "explicit");
-  run_refused(&r, mpm_stepper_particles_reaction(r.stepper, r.set[0], value), MPM_E_UNSUPPORTED,
-              "mpm_stepper_wall_reaction");
   ck_assert_int_eq(mpm_stepper_set_motion(NULL, r.set[0], NULL, NULL), MPM_E_ARG);
   ck_assert_int_eq(mpm_stepper_set_node_hook(NULL, MPM_AFTER_P2G, NULL, NULL), MPM_E_ARG);
   ck_assert_int_eq(mpm_stepper_set_linear_solver(NULL, NULL, NULL), MPM_E_ARG);

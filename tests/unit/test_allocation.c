@@ -159,7 +159,8 @@ START_TEST(every_allocation_fails_once) {
        .scheme = MPM_MUSL,
        .transfer = MPM_FLIP,
        .periodic = 1,
-       .stress = run_neo_hookean}};
+       .stress = run_neo_hookean},
+      {.dim = 2, .basis = MPM_BSPLINE2, .scheme = MPM_MUSL, .transfer = MPM_APIC_MLS, .led = 1}};
   uint64_t wanted, hash;
   int32_t failures, all = 0;
   const int64_t calls = tell(cases[_i], 0, &wanted, &failures);
@@ -221,7 +222,7 @@ END_TEST
 /* After some steps that find how much is needed, 20 steps do without a single allocation. */
 START_TEST(steady_state) {
   run_memory memory = {0};
-  run_options o = {.dim = 3, .large = 1, .periodic = 1, .memory = &memory, .concurrency = 2};
+  run_options o = {.dim = 3, .large = 1, .periodic = 1, .memory = &memory, .concurrency = 2, .led = _i % 2};
   run_use(&o, &run_methods[_i]);
   run r;
   run_open(&r, &o);
@@ -272,7 +273,7 @@ Suite *allocation_suite(void) {
   Suite *suite = suite_create("allocation");
   TCase *failing = tcase_create("failing");
   tcase_set_timeout(failing, 600);
-  tcase_add_loop_test(failing, every_allocation_fails_once, 0, 4);
+  tcase_add_loop_test(failing, every_allocation_fails_once, 0, 5);
   tcase_add_loop_test(failing, loading_a_larger_state, 0, 3);
   suite_add_tcase(suite, failing);
   TCase *steady = tcase_create("steady");

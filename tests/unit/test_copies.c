@@ -217,13 +217,6 @@ START_TEST(not_for_the_host) {
   ck_refused(f.context, mpm_particles_set_all(f.set, "id", MPM_I64, 1, zero), MPM_E_ARG, "id is not");
   ck_refused(f.context, mpm_particles_set_all(f.set, "image", MPM_I64, 3, zero), MPM_E_ARG, "image is not");
   ck_refused(f.context, mpm_particles_set_all(f.set, "volume", MPM_F64, 1, one), MPM_E_ARG, "volume is not");
-  ck_ok(mpm_particles_set_all(f.set, "prescribed", MPM_U8, 3, (uint8_t[]){0, 0, 0}));
-  ck_refused(f.context, mpm_particles_set_all(f.set, "prescribed", MPM_U8, 3, (uint8_t[]){0, 0, 1}),
-             MPM_E_UNSUPPORTED, "mpm_stepper_set_velocity_bc");
-  ck_refused(f.context,
-             mpm_particles_set(f.set, "prescribed", MPM_U8, 3, 1, (int64_t[]){2}, (uint8_t[]){1, 0, 0}),
-             MPM_E_UNSUPPORTED, "mpm_stepper_set_velocity_bc");
-  ck_assert_int_eq(f.set->field[MPMI_PRESCRIBED].present, 0);
   ck_ok(mpm_particles_set_all(f.set, "stress", MPM_F64, 6, one));
   open_dim(3, "neo_hookean");
   int32_t writable;
@@ -231,6 +224,47 @@ START_TEST(not_for_the_host) {
   ck_assert_int_eq(writable, 0);
   ck_refused(f.context, mpm_particles_set_all(f.set, "stress", MPM_F64, 6, one), MPM_E_UNSUPPORTED,
              "deformation_gradient");
+}
+END_TEST
+
+/* Flags are 0 or 1, and take memory once one is 1. */
+START_TEST(prescribed_flags) {
+  uint8_t flags[60];
+  mpm_view view = {.struct_size = sizeof view};
+  ck_ok(mpm_particles_set_all(f.set, "prescribed", MPM_U8, 3, (uint8_t[]){0, 0, 0}));
+  ck_refused(f.context, mpm_particles_set_all(f.set, "prescribed", MPM_U8, 3, (uint8_t[]){0, 0, 2}),
+             MPM_E_ARG, "prescribed of all particles, component 2, is 2, must be 0 or 1");
+  ck_assert_int_eq(f.set->field[MPMI_PRESCRIBED].present, 0);
+  ck_ok(mpm_particles_set(f.set, "prescribed", MPM_U8, 3, 1, (int64_t[]){2}, (uint8_t[]){1, 0, 1}));
+  ck_refused(f.context,
+             mpm_particles_set(f.set, "prescribed", MPM_U8, 3, 1, (int64_t[]){2}, (uint8_t[]){0, 255, 0}),
+             MPM_E_ARG, "prescribed of the particle with id 2, component 1, is 255");
+  ck_ok(mpm_particles_get(f.set, "prescribed", MPM_U8, 3, 20, NULL, flags));
+  for (int32_t i = 0; i < 60; ++i) ck_assert_int_eq(flags[i], i == 2 || i == 42);
+  ck_ok(mpm_particles_map(f.set, "prescribed", MPM_READ | MPM_WRITE, &view));
+  ((uint8_t *)view.data)[5 + view.component_stride] = 7;
+  ck_refused(f.context, mpm_view_release(&view), MPM_E_ARG, "is 7, must be 0 or 1");
+  ck_refused(f.context, mpmi_particles_check_suspects(f.set), MPM_E_ARG, "is 7, must be 0 or 1");
+  ck_ok(mpm_particles_set_all(f.set, "prescribed", MPM_U8, 3, (uint8_t[]){0, 1, 0}));
+  ck_ok(mpmi_particles_check_suspects(f.set));
+  ck_ok(mpm_particles_get(f.set, "prescribed", MPM_U8, 3, 20, NULL, flags));
+  for (int32_t i = 0; i < 60; ++i) ck_assert_int_eq(flags[i], i / 20 == 1);
+}
+END_TEST
+
+/* Particles of a rigid law are prescribed unless the host says otherwise. */
+START_TEST(rigid_particles_are_prescribed) {
+  uint8_t flags[69];
+  const mpmi_law *law = f.material->law;
+  mpmi_law rigid = *law;
+  rigid.name = "rigid";
+  ck_ok(mpm_particles_get(f.set, "prescribed", MPM_U8, 3, 20, NULL, flags));
+  for (int32_t i = 0; i < 60; ++i) ck_assert_int_eq(flags[i], 0);
+  f.material->law = &rigid;
+  fixture_add(&f, 3, NULL);
+  f.material->law = law;
+  ck_ok(mpm_particles_get(f.set, "prescribed", MPM_U8, 3, 23, NULL, flags));
+  for (int32_t i = 0; i < 69; ++i) ck_assert_int_eq(flags[i], i % 23 >= 20);
 }
 END_TEST
 
@@ -352,6 +386,8 @@ Suite *copies_suite(void) {
   tcase_add_test(tests, bad_values_are_not_stored);
   tcase_add_test(tests, what_the_dimension_lacks);
   tcase_add_test(tests, not_for_the_host);
+  tcase_add_test(tests, prescribed_flags);
+  tcase_add_test(tests, rigid_particles_are_prescribed);
   tcase_add_test(tests, absent_fields_read_as_defaults);
   tcase_add_test(tests, reference_positions);
   tcase_add_test(tests, positions_are_wrapped);

@@ -156,7 +156,7 @@ static int32_t ask_methods(int32_t dim, run_method *method) {
 }
 
 static int32_t full;
-static run_options list[3 * 4 * MOST_METHODS];
+static run_options list[3 * 5 * MOST_METHODS];
 static int32_t listed;
 
 /* Along walls and with a periodic axis; the full list blends FLIP with PIC, too. */
@@ -170,6 +170,12 @@ static void list_methods(int32_t dim) {
     list[listed++] = o;
     if (!full || o.transfer != MPM_FLIP) continue;
     o.flip = 0.97;
+    list[listed++] = o;
+  }
+  /* with hooks and prescribed particles */
+  for (int32_t i = 0; i < (full ? n : 2); ++i) {
+    run_options o = {.dim = dim, .large = 1, .periodic = i % 2, .led = 1};
+    run_use(&o, &method[i]);
     list[listed++] = o;
   }
 }

@@ -44,7 +44,7 @@ static const row table[] = {{"id", MPM_I64, {1, 1, 1}, {1, 1, 1}, 0},
                             {"stress", MPM_F64, {3, 4, 6}, {6, 6, 6}, 1},
                             {"state", MPM_F64, {0, 0, 0}, {0, 0, 0}, 1},
                             {"reference_position", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
-                            {"prescribed", MPM_U8, {1, 2, 3}, {1, 2, 3}, 0},
+                            {"prescribed", MPM_U8, {1, 2, 3}, {1, 2, 3}, 1},
                             {"applied_force", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
                             {"image", MPM_I64, {1, 2, 3}, {1, 2, 3}, 0},
                             {"dilation_ratio", MPM_F64, {1, 1, 1}, {1, 1, 1}, 1}};

@@ -6,8 +6,8 @@
 typedef struct trouble {
   double dt;
   int64_t bad[4]; /* set, id; set, id: particles that get NaN */
-  mpm_status law, force, acceleration, velocity_bc, progress, executor;
-  int32_t law_nan, force_nan, velocity_nan;
+  mpm_status law, force, acceleration, velocity_bc, progress, executor, motion, hook;
+  int32_t law_nan, force_nan, velocity_nan, motion_nan, hook_nan;
   const mpm_particles *set[2];
   int64_t node[3]; /* index of a node that is prescribed NaN */
   int32_t runs;    /* calls of the executor left before it fails */
@@ -51,6 +51,20 @@ static mpm_status velocity_bc(void *user, const mpm_node_batch *b, uint8_t *pres
     velocity[i] = -RUN_INFINITY;
   }
   return wrong.velocity_bc;
+}
+
+static mpm_status motion(void *user, const mpm_particle_batch *b, double *add) {
+  (void)user;
+  for (int64_t i = 0; i < b->n && now(b->dt) && wrong.motion_nan; ++i)
+    if (b->id[i] == wrong.bad[1] || b->id[i] == wrong.bad[3]) add[i] = RUN_NAN;
+  return now(b->dt) ? wrong.motion : 0;
+}
+
+static mpm_status hook(void *user, const mpm_node_batch *b, double *velocity, double *force) {
+  (void)user;
+  for (int64_t i = 0; i < b->n && now(b->dt) && wrong.hook_nan; ++i)
+    if (b->position[i] > 0.3) (wrong.hook_nan == 1 ? velocity : force)[i] = RUN_NAN;
+  return now(b->dt) ? wrong.hook : 0;
 }
 
 static mpm_status progress(void *user, const mpm_step_info *info) {
@@ -140,6 +154,15 @@ static void tell(int32_t i, story_fn story) {
   }
 }
 
+/* Hooks and prescribed particles for the steps that fail. */
+static void lead(run *r, int32_t stage) {
+  uint8_t flags[3] = {stage != 0, 0, 0};
+  run_ok(r, mpm_particles_set_all(r->set[1], "prescribed", MPM_U8, r->options.dim, flags));
+  run_ok(r, mpm_stepper_set_motion(r->stepper, r->set[1], stage ? motion : NULL, NULL));
+  for (int32_t k = MPM_AFTER_P2G; k <= MPM_AFTER_VELOCITY; ++k)
+    run_ok(r, mpm_stepper_set_node_hook(r->stepper, k, k == stage ? hook : NULL, NULL));
+}
+
 static void callbacks_refuse(run *r) {
   static const mpm_status answer[2] = {7, -3};
   for (int32_t k = 0; k < 2; ++k) {
@@ -161,6 +184,16 @@ static void callbacks_refuse(run *r) {
     wrong.progress = answer[k];
     fails(r, 0.9 * RUN_DT, &(expected){k ? MPM_E_CALLBACK : MPM_CANCELLED, answer[k], -1, -1, "progress"});
     wrong.progress = 0;
+    for (int32_t stage = MPM_AFTER_P2G; stage <= MPM_AFTER_VELOCITY; ++stage) {
+      lead(r, stage);
+      wrong.hook = answer[k];
+      fails(r, 0.9 * RUN_DT, &(expected){cause, answer[k], -1, -1, "the hook after"});
+      wrong.hook = 0;
+    }
+    wrong.motion = answer[k];
+    fails(r, 0.9 * RUN_DT, &(expected){cause, answer[k], 1, -1, "motion"});
+    wrong.motion = 0;
+    lead(r, 0);
   }
 }
 START_TEST(refusing_callbacks) {
@@ -192,6 +225,16 @@ static void nan_from_callbacks(run *r) {
   wrong.velocity_nan = 1;
   fails(r, 0.8 * RUN_DT, &(expected){MPM_NONFINITE, 0, -1, -1, "velocity"});
   wrong.velocity_nan = 0;
+  for (int32_t stage = MPM_AFTER_P2G; stage <= MPM_AFTER_VELOCITY; ++stage) {
+    lead(r, stage);
+    for (wrong.hook_nan = 1; wrong.hook_nan <= (stage == MPM_AFTER_VELOCITY ? 1 : 2); ++wrong.hook_nan)
+      fails(r, 0.8 * RUN_DT, &(expected){MPM_NONFINITE, 0, -1, -1, "of the hook after"});
+  }
+  wrong.hook_nan = 0;
+  wrong.motion_nan = 1;
+  fails(r, 0.8 * RUN_DT, &(expected){MPM_NONFINITE, 0, 1, wrong.bad[3], "prescribed velocity"});
+  wrong.motion_nan = 0;
+  lead(r, 0);
 }
 START_TEST(values_not_finite) {
   tell(_i, nan_from_callbacks);

@@ -58,7 +58,6 @@ START_TEST(bad_requests) {
   REFUSED(MPM_E_ARG, "id is not", "id", MPM_WRITE, &view);
   REFUSED(MPM_E_ARG, "volume is not", "volume", MPM_READ | MPM_WRITE, &view);
   REFUSED(MPM_E_ARG, "image is not", "image", MPM_WRITE, &view);
-  REFUSED(MPM_E_UNSUPPORTED, "mpm_stepper_set_velocity_bc", "prescribed", MPM_WRITE, &view);
   REFUSED(MPM_E_STATE, "reference_positions = 1", "reference_position", MPM_READ, &view);
 #undef REFUSED
   ck_assert_ptr_null(view.data);

@@ -1,0 +1,41 @@
+/* Prescribed particles: platens, pistons, rigid tools. On the axes where its field "prescribed" is 1 a
+ * particle moves with a given mean velocity, and so do the nodes that it touches.
+ *
+ *   prescribed.c         which they are, their velocities, their motion, what they report
+ *   prescribed_nodes.c   the nodes that they hold, and their share of the nodes' impulses
+ *
+ * With the nodal mass M_ic = sum w_ip m_p of those that are prescribed on axis c, a node that nothing before
+ * them holds gets v_ic = sum w_ip m_p u_pc / M_ic. Of its impulse I_ic a particle has the share m_p w_ip /
+ * M_ic. From that, and from its external forces, it takes the momentum m_p (v' - v_p) that it would gain as
+ * any other particle; the rest is what the material gets. */
+#ifndef MPMI_PRESCRIBED_H
+#define MPMI_PRESCRIBED_H
+
+#include "stepper/boundary.h"
+
+/* Flags of a block. */
+enum {
+  MPMI_WITH_PRESCRIBED = 1,
+  MPMI_TOUCHED = 2 /* has nodes that such particles touch, or masters of those: its sums are in use */
+};
+
+static inline int32_t mpmi_block_is(const mpm_stepper *s, int64_t block, int32_t flag) {
+  return s->prescription.block[block] & flag;
+}
+
+/* Is the particle in a slot prescribed on axis c? Holes are not. Only for members with prescribed particles.
+ */
+static inline int32_t mpmi_is_prescribed(const mpm_particles *set, int64_t slot, int32_t c) {
+  return ((const uint8_t *)set->field[MPMI_PRESCRIBED].data[0])[c * set->ld + slot];
+}
+
+/* [dim][ld of the set]: mean velocities of the step. */
+static inline const double *mpmi_mean_velocity(const mpmi_member *member) {
+  return member->motion ? member->mean : mpmi_f64(member->set, MPMI_VELOCITY, 0);
+}
+
+static inline mpmi_prescribed_part *mpmi_part_of(const mpm_stepper *s, int64_t block, int32_t m) {
+  return &s->prescription.part[block * s->member_count + m];
+}
+
+#endif

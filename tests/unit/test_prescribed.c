@@ -1,0 +1,694 @@
+/* Prescribed particles: their own motion, the nodes that they hold, who comes first, reactions, work, walls
+ * and periods. */
+#include "support.h"
+
+enum { CLOUD = 200 };
+
+#define ck_fails(w_, call, wanted, text)                                                                     \
+  do {                                                                                                       \
+    ck_assert_int_eq(call, wanted);                                                                          \
+    if (!strstr(mpm_last_error((w_)->context), text))                                                        \
+      ck_abort_msg("\"%s\" is not in: %s", text, mpm_last_error((w_)->context));                             \
+  } while (0)
+
+/* Two clouds through each other, the second prescribed on some axes of some particles. */
+static void open_clouds(world *w, const method *how, int32_t dim, int32_t walled, int32_t all) {
+  world_desc desc = world_default(dim, 8, 0.1);
+  world_use(&desc, how);
+  desc.grid.periodic[0] = 1;
+  memcpy(desc.stepper.gravity, (double[]){1.0, -5.0, 2.0}, 3 * sizeof(double));
+  world_open(w, &desc);
+  dice d = {29};
+  const double low = walled ? 0.0 : 0.2, high = walled ? 0.8 : 0.6;
+  for (int32_t m = 0; m < 2; ++m) add_cloud(w, world_add_set(w), &d, CLOUD, 0.1, low, high, 1.0);
+  uint8_t *flags = malloc((size_t)(dim * CLOUD));
+  for (int32_t i = 0; i < dim * CLOUD; ++i) flags[i] = all || throw_between(&d, 0.0, 1.0) < 0.1;
+  ck_ok(w, mpm_particles_set(w->set[1], "prescribed", MPM_U8, dim, CLOUD, NULL, flags));
+  free(flags);
+  if (!walled) return;
+  ck_ok(w, mpm_stepper_set_wall(w->stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.3));
+  ck_ok(w, mpm_stepper_set_wall(w->stepper, MPM_Y_MAX, MPM_WALL_SLIP, 0.0));
+  if (dim == 3) ck_ok(w, mpm_stepper_set_wall(w->stepper, MPM_Z_MIN, MPM_WALL_FIXED, 0.0));
+}
+
+/* Turns, so that particles have velocities of their own. */
+static mpm_status turn(void *user, const mpm_particle_batch *b, double *add) {
+  ck_assert_ptr_eq(user, (void *)(uintptr_t)b->particles);
+  for (int64_t p = 0; p < b->n; ++p)
+    for (int32_t c = 0; c < b->dim; ++c) {
+      if (b->id[p] >= 0) ck_assert_double_eq(add[c * b->ld + p], 0.0);
+      add[c * b->ld + p] += (c ? -0.5 : 0.7) * b->position[(c + 1) % b->dim * b->ld + p] + b->t;
+    }
+  return 0;
+}
+
+static uint8_t *fetch_flags(const world *w, const mpm_particles *set) {
+  const int64_t n = mpm_particles_count(set);
+  uint8_t *flags = malloc((size_t)(w->dim * n));
+  ck_ok(w, mpm_particles_get(set, "prescribed", MPM_U8, w->dim, n, NULL, flags));
+  return flags;
+}
+
+/* v = u and x += dt u to the last bit but one, whatever the transfer; others move on as they do. */
+START_TEST(exact_motion) {
+  const method *how = &methods[_i % METHODS];
+  const int32_t dim = 2 + _i / METHODS % 2, moved = _i / METHODS / 2;
+  world w;
+  open_clouds(&w, how, dim, 1, 0);
+  uint8_t *flags = fetch_flags(&w, w.set[1]);
+  double *acceleration = calloc(3 * CLOUD, sizeof *acceleration);
+  put(&w, w.set[1], "acceleration", dim, acceleration);
+  free(acceleration);
+  if (moved) ck_ok(&w, mpm_stepper_set_motion(w.stepper, w.set[1], turn, w.set[1]));
+  const double dt = 1e-3;
+  for (int32_t i = 0; i < 4; ++i) {
+    int32_t checked = 0;
+    double *x = fetch(&w, w.set[1], "position", dim), *v = fetch(&w, w.set[1], "velocity", dim);
+    const double t = world_info(&w).t;
+    world_step(&w, dt);
+    double *x_new = fetch(&w, w.set[1], "position", dim), *v_new = fetch(&w, w.set[1], "velocity", dim);
+    double *a = fetch(&w, w.set[1], "acceleration", dim);
+    for (int32_t c = 0; c < dim; ++c)
+      for (int32_t p = 0; p < CLOUD; ++p) {
+        const int32_t at = c * CLOUD + p;
+        const double u = moved ? (c ? -0.5 : 0.7) * x[(c + 1) % dim * CLOUD + p] + t : v[at];
+        if (!flags[at]) continue;
+        ++checked;
+        ck_within(how->name, v_new[at], u, 1e-15);
+        ck_within(how->name, remainder(x_new[at] - x[at] - dt * u, 0.8), 0.0, 4e-16);
+        ck_within(how->name, a[at], (u - v[at]) / dt, 1e-11);
+      }
+    ck_assert_int_gt(checked, 20);
+    free(x), free(v), free(x_new), free(v_new), free(a);
+  }
+  free(flags);
+  world_close(&w);
+}
+END_TEST
+
+static double of_field(const world *w, const mpm_particles *set, const char *field, int32_t c) {
+  double *mass = fetch(w, set, "mass", 1), *v = fetch(w, set, field, w->dim);
+  const double sum = weighted_sum(mpm_particles_count(set), mass, v + c * mpm_particles_count(set));
+  free(mass), free(v);
+  return sum;
+}
+
+static double mass_of(const world *w, const mpm_particles *set) {
+  double *mass = fetch(w, set, "mass", 1), sum = 0.0;
+  for (int64_t p = 0; p < mpm_particles_count(set); ++p) sum += mass[p];
+  free(mass);
+  return sum;
+}
+
+/* What the prescribed set and the walls exert on the other, with its weight, is the change of its momentum.
+ */
+START_TEST(reactions_balance) {
+  const method *how = &methods[_i % METHODS];
+  const int32_t dim = 2 + _i / METHODS % 2, walled = _i / METHODS / 2;
+  const double g[3] = {1.0, -5.0, 2.0}, dt = 1e-3;
+  world w;
+  open_clouds(&w, how, dim, walled, 1);
+  ck_ok(&w, mpm_stepper_set_motion(w.stepper, w.set[1], turn, w.set[1]));
+  double force[2 * CLOUD * 3];
+  dice d = {3};
+  for (int32_t i = 0; i < 2 * CLOUD * 3; ++i) force[i] = throw_between(&d, -1.0, 1.0);
+  for (int32_t m = 0; m < 2; ++m) put(&w, w.set[m], "applied_force", dim, force + m * 3 * CLOUD);
+  for (int32_t i = 0; i < 4; ++i) {
+    double before[3], reaction[3], other[3], wall[3], sum[3] = {0.0, 0.0, 0.0}, scale = 0.0;
+    for (int32_t c = 0; c < dim; ++c) before[c] = of_field(&w, w.set[0], "velocity", c);
+    world_step(&w, dt);
+    ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, w.set[1], reaction));
+    ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, w.set[0], other));
+    for (int32_t face = 2; face < 2 * dim; ++face) {
+      ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, face, wall));
+      for (int32_t c = 0; c < dim; ++c) sum[c] += wall[c], scale += fabs(wall[c]);
+    }
+    for (int32_t c = 0; c < dim; ++c) {
+      for (int32_t p = 0; p < CLOUD; ++p) sum[c] += force[c * CLOUD + p];
+      sum[c] += mass_of(&w, w.set[0]) * g[c] + reaction[c];
+      scale += fabs(reaction[c]) + mass_of(&w, w.set[0]) * 1.0 / dt;
+    }
+    for (int32_t c = 0; c < dim; ++c) {
+      ck_within(how->name, other[c], 0.0, 0.0);
+      ck_assert_double_gt(fabs(reaction[c]), 1e-3);
+      ck_within(how->name, (of_field(&w, w.set[0], "velocity", c) - before[c]) / dt, sum[c], 1e-12 * scale);
+    }
+  }
+  world_close(&w);
+}
+END_TEST
+
+static double speeds[2];
+static mpm_status both_alike(void *user, const mpm_particle_batch *b, double *add) {
+  for (int64_t p = 0; p < b->n; ++p) add[p] += speeds[*(int32_t *)user];
+  return 0;
+}
+
+/* Two sets of one particle each within one cell of a third: nodes have the mean by mass; impulses are shared
+ * by mass. */
+START_TEST(two_sets_on_one_node) {
+  const method *how = &methods[_i];
+  const double x[2] = {0.43, 0.47}, volume[2] = {0.001, 0.003}, xm = 0.45, vm = 0.02;
+  int32_t number[2] = {0, 1};
+  const uint8_t yes = 1;
+  world w;
+  world_desc desc = world_default(1, 8, 0.1);
+  world_use(&desc, how);
+  world_open(&w, &desc);
+  mpm_particles *third;
+  speeds[0] = 0.3, speeds[1] = -0.5;
+  for (int32_t m = 0; m < 2; ++m) {
+    ck_ok(&w, mpm_particles_add(world_add_set(&w), 1, &x[m], NULL, &volume[m], NULL, NULL, NULL));
+    ck_ok(&w, mpm_particles_set_all(w.set[m], "prescribed", MPM_U8, 1, &yes));
+    ck_ok(&w, mpm_stepper_set_motion(w.stepper, w.set[m], both_alike, &number[m]));
+  }
+  ck_ok(&w, mpm_particles_create(w.context, w.grid, w.material, &third));
+  ck_ok(&w, mpm_stepper_add(w.stepper, third));
+  ck_ok(&w, mpm_particles_add(third, 1, &xm, NULL, &vm, NULL, NULL, NULL));
+  world_step(&w, 1e-3);
+  int64_t n;
+  int64_t *index = fetch_node_indices(&w, &n);
+  double *v = fetch_nodes(&w, "velocity", &n), *r = fetch_nodes(&w, "reaction", &n), force[2],
+         shares[2] = {0.0, 0.0};
+  int32_t checked = 0;
+  for (int64_t i = 0; i < n; ++i) {
+    double weight[2], mass = 0.0, momentum = 0.0;
+    for (int32_t m = 0; m < 2; ++m) {
+      const double f = fabs(x[m] / 0.1 - (double)index[i]);
+      weight[m] = how->basis == MPM_LINEAR ? fmax(0.0, 1.0 - f)
+                  : f < 0.5                ? 0.75 - f * f
+                                           : 0.5 * pow(fmax(0.0, 1.5 - f), 2.0);
+      mass += weight[m] * volume[m] * 1e3;
+      momentum += weight[m] * volume[m] * 1e3 * speeds[m];
+    }
+    if (!(mass > 1e-9)) continue;
+    ++checked;
+    ck_within(how->name, v[i], momentum / mass, 1e-12);
+    for (int32_t m = 0; m < 2; ++m) shares[m] += r[i] * weight[m] * volume[m] * 1e3 / mass;
+  }
+  ck_assert_int_ge(checked, 2);
+  /* less what they would have gained themselves, at rest as they were: the nodes' increments or velocities */
+  for (int32_t m = 0; m < 2; ++m) {
+    double gain = 0.0;
+    for (int64_t i = 0; i < n; ++i) {
+      const double f = fabs(x[m] / 0.1 - (double)index[i]);
+      const double weight = how->basis == MPM_LINEAR ? fmax(0.0, 1.0 - f)
+                            : f < 0.5                ? 0.75 - f * f
+                                                     : 0.5 * pow(fmax(0.0, 1.5 - f), 2.0);
+      gain += weight * v[i]; /* all started at rest: increment and velocity are the same */
+    }
+    ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, w.set[m], &force[m]));
+    ck_within(how->name, force[m], shares[m] - volume[m] * 1e3 * gain / 1e-3, 1e-9);
+    ck_assert_double_gt(fabs(force[m]), 1.0);
+  }
+  free(index), free(v), free(r);
+  ck_ok(&w, mpm_stepper_remove(w.stepper, third));
+  ck_fails(&w, mpm_stepper_particles_reaction(w.stepper, third, force), MPM_E_NOT_FOUND,
+           "not in this stepper");
+  ck_ok(&w, mpm_particles_destroy(third));
+  world_close(&w);
+}
+END_TEST
+
+/* Prescribes x at nodes left of 0.4. */
+static mpm_status hold_left(void *user, const mpm_node_batch *b, uint8_t *prescribed, double *velocity) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i)
+    if (b->position[i] < 0.4 - 1e-9) prescribed[i] = 1, velocity[i] = 3.0;
+  return 0;
+}
+
+static mpm_status to_corner(void *user, const mpm_particle_batch *b, double *add) {
+  (void)user;
+  for (int64_t p = 0; p < b->n; ++p) {
+    add[p] += -2.0;
+    add[b->ld + p] += 0.25;
+  }
+  return 0;
+}
+
+/* Callback, prescribed particles, walls, by node and axis; the reaction goes to the first. A block covers the
+ * floor; prescribed are its particles with x < 0.6, in x and y. */
+START_TEST(precedence) {
+  const method *how = &methods[_i % METHODS];
+  static const int32_t kinds[3] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION};
+  const int32_t kind = kinds[_i / METHODS % 3], per_cell[2] = {2, 2};
+  const double lower[2] = {0.1, 0.0}, upper[2] = {1.1, 0.4}, down[2] = {0.0, -1.0};
+  const double pressed[9] = {1.0, 0.0, 0.0, 0.0, 0.98, 0.0, 0.0, 0.0, 1.0};
+  world w;
+  world_desc desc = world_default(2, 12, 0.1);
+  world_use(&desc, how);
+  desc.stepper.boundary_zero_acceleration = _i / METHODS / 3;
+  world_open(&w, &desc);
+  mpm_particles *set = world_add_set(&w);
+  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, down));
+  ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, pressed));
+  const int64_t count = mpm_particles_count(set);
+  double *x = fetch(&w, set, "position", 2);
+  uint8_t *flags = malloc((size_t)(2 * count));
+  for (int64_t p = 0; p < 2 * count; ++p) flags[p] = x[p % count] < 0.6;
+  ck_ok(&w, mpm_particles_set(set, "prescribed", MPM_U8, 2, count, NULL, flags));
+  ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, to_corner, NULL));
+  ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, hold_left, NULL));
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, kind, 0.5));
+  world_step(&w, 1e-4);
+  const int64_t last = how->basis == MPM_LINEAR ? 6 : 7; /* that prescribed particles touch */
+  int64_t n, seen[3] = {0, 0, 0};
+  int64_t *index = fetch_node_indices(&w, &n);
+  double *v = fetch_nodes(&w, "velocity", &n), *r = fetch_nodes(&w, "reaction", &n);
+  double floor_force[2], platen[2], wall_sum[2] = {0.0, 0.0};
+  double *a = how->transfer == MPM_APIC_MLS ? NULL : fetch_nodes(&w, "acceleration", &n);
+  for (int64_t i = 0; i < n; ++i) {
+    if (index[n + i] < 0) continue;
+    const int32_t host = index[i] < 4, particle = index[i] <= last;
+    /* the mirror image of the row that touches the ghosts counts against it, where the wall reverses */
+    const int32_t mirrored = last == 7 && kind != MPM_WALL_FRICTION && index[n + i] == 1;
+    const double share[2] = {mirrored && kind == MPM_WALL_FIXED ? 0.96875 : 1.0, mirrored ? 0.96875 : 1.0};
+    ++seen[host ? 0 : particle ? 1 : 2];
+    if (host) ck_within(how->name, v[i], 3.0, 0.0);
+    if (particle && !host) ck_within(how->name, v[i], -2.0 * share[0], 1e-12);
+    if (particle) ck_within(how->name, v[n + i], 0.25 * share[1], 1e-12);
+    if (!particle && index[n + i] == 0) ck_within(how->name, v[n + i], 0.0, 1e-15);
+    if (particle && a)
+      ck_assert_msg((fabs(a[i]) <= 0.0) == desc.stepper.boundary_zero_acceleration, "%s: acceleration %g",
+                    how->name, a[i]);
+    if (!particle)
+      for (int32_t c = 0; c < 2; ++c) wall_sum[c] += r[c * n + i];
+  }
+  for (int32_t k = 0; k < 3; ++k) ck_assert_int_gt(seen[k], 5);
+  for (int64_t i = 0; i < n; ++i) /* ghosts below the part that only the wall holds */
+    for (int32_t c = 0; c < 2; ++c)
+      if (index[n + i] < 0 && index[i] > last) wall_sum[c] += r[c * n + i];
+  ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_Y_MIN, floor_force));
+  ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, set, platen));
+  for (int32_t c = 0; c < 2; ++c)
+    ck_within(how->name, floor_force[c], wall_sum[c], 1e-9 * (1.0 + fabs(wall_sum[c])));
+  ck_assert_double_gt(floor_force[1], 1.0);
+  /* without acceleration FLIP particles get nothing, and the pressed part is in balance */
+  if (!desc.stepper.boundary_zero_acceleration || how->transfer != MPM_FLIP || how->flip < 1.0) {
+    ck_assert_double_gt(platen[1], 1.0);
+    ck_assert_double_lt(platen[0], -1.0);
+  }
+  free(index), free(v), free(r), free(x), free(flags), free(a);
+  world_close(&w);
+}
+END_TEST
+
+static mpm_status slide_along(void *user, const mpm_particle_batch *b, double *add) {
+  (void)user;
+  for (int64_t p = 0; p < b->n; ++p) add[p] += 0.5;
+  return 0;
+}
+
+/* A body that is driven along a friction wall is still held up by it, and is not held back. */
+START_TEST(driven_along_a_wall) {
+  const method *how = &methods[_i];
+  const double lower[2] = {0.1, 0.0}, upper[2] = {0.7, 0.4}, down[2] = {0.0, -1.0};
+  const int32_t per_cell[2] = {2, 2};
+  const uint8_t along[2] = {1, 0};
+  world w;
+  world_desc desc = world_default(2, 12, 0.1);
+  world_use(&desc, how);
+  world_open(&w, &desc);
+  mpm_particles *set = world_add_set(&w);
+  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, down));
+  ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 2, along));
+  ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, slide_along, NULL));
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.5));
+  double up = 0.0;
+  for (int32_t i = 0; i < 5; ++i) {
+    double force[2];
+    int64_t n;
+    world_step(&w, 1e-3);
+    int64_t *index = fetch_node_indices(&w, &n);
+    double *v = fetch_nodes(&w, "velocity", &n);
+    for (int64_t k = 0; k < n; ++k) {
+      ck_within(how->name, v[k], 0.5, 1e-12);
+      if (index[n + k] == 0) ck_between(how->name, v[n + k], -1e-15, 1.0);
+    }
+    ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_Y_MIN, force));
+    ck_within(how->name, force[0], 0.0, 0.0);
+    up += force[1];
+    free(index), free(v);
+  }
+  ck_assert_double_gt(up, 100.0);
+  world_close(&w);
+}
+END_TEST
+
+/* A body that is prescribed whole, at constant speed under gravity, holds itself: no force on anything, no
+ * strain; and when it is made faster, the work is that of its momentum. */
+START_TEST(nothing_to_push) {
+  const method *how = &methods[_i];
+  const double lower[3] = {0.2, 0.2, 0.2}, upper[3] = {0.6, 0.6, 0.6}, v0[3] = {0.4, -0.3, 0.2};
+  const int32_t per_cell[3] = {2, 2, 2};
+  const uint8_t all[3] = {1, 1, 1};
+  world w;
+  world_desc desc = world_default(3, 8, 0.1);
+  world_use(&desc, how);
+  memcpy(desc.stepper.gravity, (double[]){1.0, -5.0, 2.0}, 3 * sizeof(double));
+  world_open(&w, &desc);
+  mpm_particles *set = world_add_set(&w);
+  double force[3];
+  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 3, v0));
+  ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 3, all));
+  ck_fails(&w, mpm_stepper_particles_reaction(w.stepper, set, force), MPM_E_STATE, "no step");
+  const double mass = mass_of(&w, set), squared = 0.29;
+  for (int32_t i = 0; i < 5; ++i) {
+    const mpm_step_info info = world_step(&w, 1e-3);
+    ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, set, force));
+    for (int32_t c = 0; c < 3; ++c) ck_within(how->name, force[c], 0.0, 1e-9 * mass);
+    ck_within(how->name, info.external_work, 0.0, 1e-12 * mass);
+    ck_within(how->name, info.kinetic_energy, 0.5 * mass * squared, 1e-12 * mass);
+  }
+  double *F = fetch(&w, set, "deformation_gradient", 9);
+  const int64_t n = mpm_particles_count(set);
+  for (int64_t p = 0; p < 9 * n; ++p) ck_within(how->name, F[p], p / n % 4 ? 0.0 : 1.0, 1e-13);
+  free(F);
+  world_close(&w);
+}
+END_TEST
+
+static mpm_status double_speed(void *user, const mpm_particle_batch *b, double *add) {
+  (void)user;
+  for (int32_t c = 0; c < b->dim; ++c)
+    for (int64_t p = 0; p < b->n; ++p) add[c * b->ld + p] += 2.0 * b->velocity[c * b->ld + p];
+  return 0;
+}
+
+/* Twice as fast: the work is the change of momentum times the mean velocity of the step, whatever gravity
+ * does. */
+START_TEST(work_of_moving_itself) {
+  const method *how = &methods[_i];
+  const double lower = 0.2, upper = 0.6, v0 = 0.4;
+  const int32_t per_cell = 2;
+  const uint8_t yes = 1;
+  world w;
+  world_desc desc = world_default(1, 8, 0.1);
+  world_use(&desc, how);
+  desc.stepper.gravity[0] = -7.0;
+  world_open(&w, &desc);
+  mpm_particles *set = world_add_set(&w);
+  ck_ok(&w, mpm_particles_fill_box(set, &lower, &upper, &per_cell, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 1, &v0));
+  ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 1, &yes));
+  ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, double_speed, NULL));
+  const double mass = mass_of(&w, set);
+  const mpm_step_info info = world_step(&w, 1e-3);
+  ck_within(how->name, info.external_work, mass * (0.8 - 0.4) * 0.8, 1e-12 * mass);
+  ck_within(how->name, info.dissipation, mass * (0.32 - 0.5 * (0.64 - 0.16)), 1e-12 * mass);
+  world_close(&w);
+}
+END_TEST
+
+/* ---- walls and periods -----------------------------------------------------------------------------------
+ */
+static mpm_status against(void *user, const mpm_particle_batch *b, double *add) {
+  const double middle = *(double *)user; /* towards it on both sides */
+  for (int64_t p = 0; p < b->n; ++p) {
+    add[p] += 0.2;
+    add[b->ld + p] += b->position[b->ld + p] < middle ? 0.5 : -0.5;
+  }
+  return 0;
+}
+
+/* A cloud with prescribed particles, `from` cells along the periodic x axis. */
+static void open_shifted(world *w, const method *how, int64_t from) {
+  static double middle = 0.8;
+  world_desc desc = world_default(2, 8, 0.125);
+  world_use(&desc, how);
+  desc.grid.periodic[0] = 1;
+  world_open(w, &desc);
+  dice d = {31};
+  mpm_particles *set = world_add_set(w);
+  add_cloud(w, set, &d, CLOUD, 0.125, 0.25, 0.75, 1.0);
+  double *x = fetch(w, set, "position", 2);
+  uint8_t flags[2 * CLOUD];
+  for (int32_t p = 0; p < CLOUD; ++p) {
+    flags[p] = flags[CLOUD + p] = x[p] > 0.45 && x[p] < 0.6;
+    x[p] = fmod(x[p] + 0.125 * (double)from, 1.0);
+  }
+  put(w, set, "position", 2, x);
+  ck_ok(w, mpm_particles_set(set, "prescribed", MPM_U8, 2, CLOUD, NULL, flags));
+  ck_ok(w, mpm_stepper_set_motion(w->stepper, set, against, &middle));
+  free(x);
+}
+
+/* Whether they straddle the seam of a periodic axis does not matter. */
+START_TEST(across_the_seam) {
+  const method *how = &methods[_i];
+  world w[2];
+  double *v[2], *s[2], force[2][2];
+  for (int32_t k = 0; k < 2; ++k) {
+    open_shifted(&w[k], how, k ? 4 : 0);
+    for (int32_t i = 0; i < 8; ++i) world_step(&w[k], 1e-3);
+    v[k] = fetch(&w[k], w[k].set[0], "velocity", 2);
+    s[k] = fetch(&w[k], w[k].set[0], "stress", 6);
+    ck_ok(&w[k], mpm_stepper_particles_reaction(w[k].stepper, w[k].set[0], force[k]));
+  }
+  for (int32_t i = 0; i < 2 * CLOUD; ++i) ck_within(how->name, v[1][i], v[0][i], 1e-9);
+  for (int32_t i = 0; i < 4 * CLOUD; ++i)
+    ck_within(how->name, s[1][i], s[0][i], 1e-9 * largest(4 * CLOUD, s[0]));
+  for (int32_t c = 0; c < 2; ++c) {
+    ck_assert_double_gt(fabs(force[0][c]), 1.0);
+    ck_within(how->name, force[1][c], force[0][c], 1e-8 * (fabs(force[0][0]) + fabs(force[0][1])));
+  }
+  for (int32_t k = 0; k < 2; ++k) free(v[k]), free(s[k]), world_close(&w[k]);
+}
+END_TEST
+
+/* A symmetric body with prescribed particles, and its half on a slip wall in the plane: the same
+ * motion. */
+START_TEST(half_on_a_slip_wall) {
+  const method *how = &methods[_i];
+  double plane = 0.8;
+  world w[2];
+  double *x[2], *v[2];
+  for (int32_t k = 0; k < 2; ++k) { /* the half is above the plane: 1 is the whole */
+    const double shift = k ? 0.0 : -0.8, lower[2] = {0.3, k ? 0.4 : 0.0}, upper[2] = {0.9, 1.2 + shift};
+    const int32_t per_cell[2] = {2, 2};
+    static double middle[2];
+    middle[k] = plane + shift;
+    world_desc desc = world_default(2, 16, 0.1);
+    world_use(&desc, how);
+    world_open(&w[k], &desc);
+    mpm_particles *set = world_add_set(&w[k]);
+    ck_ok(&w[k], mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+    if (!k) ck_ok(&w[k], mpm_stepper_set_wall(w[k].stepper, MPM_Y_MIN, MPM_WALL_SLIP, 0.0));
+    const int64_t n = mpm_particles_count(set);
+    double *at = fetch(&w[k], set, "position", 2), *speed = fetch(&w[k], set, "velocity", 2);
+    uint8_t *flags = malloc((size_t)(2 * n));
+    for (int64_t p = 0; p < n; ++p) {
+      flags[p] = at[p] < 0.5;
+      flags[n + p] = at[p] < 0.5 && fabs(at[n + p] - plane - shift) > 0.2; /* else against the wall */
+      speed[n + p] = -0.3 * sin(3.0 * at[p]) * (at[n + p] - plane - shift);
+      speed[p] = 0.1 * at[p];
+    }
+    put(&w[k], set, "velocity", 2, speed);
+    ck_ok(&w[k], mpm_particles_set(set, "prescribed", MPM_U8, 2, n, NULL, flags));
+    ck_ok(&w[k], mpm_stepper_set_motion(w[k].stepper, set, against, &middle[k]));
+    free(at), free(speed), free(flags);
+    for (int32_t i = 0; i < 10; ++i) world_step(&w[k], 1e-3);
+    x[k] = fetch(&w[k], set, "position", 2);
+    v[k] = fetch(&w[k], set, "velocity", 2);
+  }
+  const int64_t half = mpm_particles_count(w[0].set[0]), whole = mpm_particles_count(w[1].set[0]);
+  int64_t found = 0;
+  ck_assert_int_eq(whole, 2 * half);
+  for (int64_t p = 0; p < half; ++p)
+    for (int64_t q = 0; q < whole; ++q) {
+      if (fabs(x[0][p] - x[1][q]) > 1e-6 || fabs(x[0][half + p] + plane - x[1][whole + q]) > 1e-6) continue;
+      ++found;
+      for (int32_t c = 0; c < 2; ++c) ck_within(how->name, v[0][c * half + p], v[1][c * whole + q], 1e-10);
+    }
+  ck_assert_int_eq(found, half);
+  for (int32_t k = 0; k < 2; ++k) free(x[k]), free(v[k]), world_close(&w[k]);
+}
+END_TEST
+
+/* ---- errors, states --------------------------------------------------------------------------------------
+ */
+typedef struct trouble {
+  mpm_status status;
+  int64_t id;
+} trouble;
+
+static mpm_status misbehave(void *user, const mpm_particle_batch *b, double *add) {
+  const trouble *t = user;
+  for (int64_t p = 0; p < b->n; ++p)
+    if (b->id[p] == t->id) add[p] = (double)NAN;
+  return t->status;
+}
+
+START_TEST(motions_that_fail) {
+  const method *how = &methods[_i];
+  mpm_step_info info = {.struct_size = sizeof info};
+  uint64_t was, now;
+  double force[3];
+  world w, other;
+  open_clouds(&w, how, 2, 1, 0);
+  open_clouds(&other, how, 2, 0, 0);
+  uint8_t *flags = fetch_flags(&w, w.set[1]);
+  trouble t = {0, 0};
+  while (!flags[t.id]) ++t.id;
+  ck_fails(&w, mpm_stepper_set_motion(w.stepper, other.set[1], turn, NULL), MPM_E_NOT_FOUND,
+           "not in this stepper");
+  ck_fails(&w, mpm_stepper_set_motion(w.stepper, NULL, turn, NULL), MPM_E_ARG, "particles is NULL");
+  ck_fails(&w, mpm_stepper_particles_reaction(w.stepper, w.set[1], NULL), MPM_E_ARG, "force is NULL");
+  ck_fails(&w, mpm_stepper_particles_reaction(w.stepper, other.set[0], force), MPM_E_NOT_FOUND,
+           "not in this stepper");
+  ck_fails(&w, mpm_stepper_particles_reaction(w.stepper, w.set[1], force), MPM_E_STATE, "no step");
+  world_step(&w, 1e-3);
+  ck_ok(&w, mpm_stepper_set_motion(w.stepper, w.set[1], misbehave, &t));
+  ck_ok(&w, mpm_state_hash(w.stepper, &was));
+  ck_fails(&w, mpm_step(w.stepper, 1e-3, &info), MPM_NONFINITE, "prescribed velocity");
+  ck_assert_int_eq(info.set, 1);
+  ck_assert_int_eq(info.particle, t.id);
+  t.status = 3;
+  ck_fails(&w, mpm_step(w.stepper, 1e-3, &info), MPM_CUT_DT, "motion callback returned 3 for set 1");
+  t.status = -3;
+  ck_fails(&w, mpm_step_begin(w.stepper, 1e-3), MPM_E_CALLBACK, "motion callback returned -3 for set 1");
+  ck_ok(&w, mpm_state_hash(w.stepper, &now));
+  ck_assert(was == now);
+  t.status = 0;
+  while (flags[t.id]) ++t.id; /* what is said of others does not count */
+  world_step(&w, 1e-3);
+  ck_ok(&w, mpm_step_begin(w.stepper, 1e-3));
+  ck_fails(&w, mpm_stepper_set_motion(w.stepper, w.set[1], turn, NULL), MPM_E_STATE, "under way");
+  ck_ok(&w, mpm_step_abort(w.stepper));
+  free(flags);
+  world_close(&w), world_close(&other);
+}
+END_TEST
+
+/* A state holds the flags and the last reactions; the callback is the host's to set. */
+START_TEST(saved_and_restored) {
+  const method *how = &methods[_i];
+  world a, b;
+  double force[2][2];
+  int64_t bytes;
+  uint64_t hash[2];
+  open_clouds(&a, how, 2, 1, 0);
+  open_clouds(&b, how, 2, 1, 1);
+  ck_ok(&a, mpm_stepper_set_motion(a.stepper, a.set[1], turn, a.set[1]));
+  ck_ok(&b, mpm_stepper_set_motion(b.stepper, b.set[1], turn, b.set[1]));
+  for (int32_t i = 0; i < 3; ++i) world_step(&a, 1e-3);
+  ck_ok(&a, mpm_state_size(a.stepper, &bytes));
+  void *state = malloc((size_t)bytes);
+  ck_ok(&a, mpm_state_save(a.stepper, state, bytes));
+  ck_ok(&b, mpm_state_load(b.stepper, state, bytes));
+  free(state);
+  for (int32_t i = 0; i < 4; ++i) {
+    ck_ok(&a, mpm_stepper_particles_reaction(a.stepper, a.set[1], force[0]));
+    ck_ok(&b, mpm_stepper_particles_reaction(b.stepper, b.set[1], force[1]));
+    ck_assert_double_gt(fabs(force[0][1]), 1e-3);
+    for (int32_t c = 0; c < 2; ++c) ck_within(how->name, force[1][c], force[0][c], 0.0);
+    ck_ok(&a, mpm_state_hash(a.stepper, &hash[0]));
+    ck_ok(&b, mpm_state_hash(b.stepper, &hash[1]));
+    ck_assert(hash[0] == hash[1]);
+    if (i == 1) { /* they come and go */
+      const int64_t ids[3] = {4, 9, 77};
+      const double x[2] = {0.3, 0.4}, volume = 1e-3;
+      ck_ok(&a, mpm_particles_remove(a.set[1], 3, ids));
+      ck_ok(&b, mpm_particles_remove(b.set[1], 3, ids));
+      ck_ok(&a, mpm_particles_add(a.set[1], 1, x, NULL, &volume, NULL, NULL, NULL));
+      ck_ok(&b, mpm_particles_add(b.set[1], 1, x, NULL, &volume, NULL, NULL, NULL));
+    }
+    world_step(&a, 1e-3), world_step(&b, 1e-3);
+  }
+  world_close(&a), world_close(&b);
+}
+END_TEST
+
+/* ---- waves -----------------------------------------------------------------------------------------------
+ */
+/* A platen of prescribed elastic particles runs at v into a bar at rest, E = rho = 1: behind the front the
+ * stress is -rho c v, which is the force on the platen until the front has been at the free end and back, at
+ * t = 2. Mean of the reaction over 0.2 < t < 1.6 against rho c v, the same for the stress within 0.2 ... 0.5
+ * at t = 0.8, the front being at 0.8. */
+typedef struct pushed {
+  double reaction, stress, work, energy;
+} pushed;
+
+static pushed push_bar(const method *how, int32_t cells) {
+  const double h = 1.0 / cells, v = 0.001, platen[2] = {1.0, 1.0 + 5.0 * h},
+               bar[2] = {1.0 + 5.0 * h, 2.0 + 5.0 * h};
+  const int32_t per_cell = 2;
+  const uint8_t yes = 1;
+  world w;
+  world_desc desc = world_default(1, 4 * cells, h);
+  world_use(&desc, how);
+  desc.model = "linear_elastic";
+  desc.E = 1.0, desc.nu = 0.0, desc.density = 1.0;
+  world_open(&w, &desc);
+  mpm_particles *tool = world_add_set(&w), *body = world_add_set(&w);
+  ck_ok(&w, mpm_particles_fill_box(tool, &platen[0], &platen[1], &per_cell, NULL, NULL));
+  ck_ok(&w, mpm_particles_fill_box(body, &bar[0], &bar[1], &per_cell, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(tool, "velocity", MPM_F64, 1, &v));
+  ck_ok(&w, mpm_particles_set_all(tool, "prescribed", MPM_U8, 1, &yes));
+  const mpm_step_info start = world_info(&w);
+  const double dt = 0.2 * h;
+  pushed out = {0.0, 0.0, 0.0, 0.0};
+  double weight = 0.0;
+  for (double t = 0.0; t < 1.6; t += dt) {
+    double force;
+    const mpm_step_info info = world_step(&w, dt);
+    ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, tool, &force));
+    out.work += info.external_work;
+    if (info.t > 0.2) out.reaction += force, weight += 1.0;
+    if (fabs(info.t - 0.8) > 0.51 * dt) continue;
+    const int64_t n = mpm_particles_count(body);
+    double *x = fetch(&w, body, "position", 1), *s = fetch(&w, body, "stress", 6), sum = 0.0, parts = 0.0;
+    for (int64_t p = 0; p < n; ++p)
+      if (x[p] > bar[0] + 0.2 && x[p] < bar[0] + 0.5) sum += s[p], parts += 1.0;
+    out.stress = -sum / parts / v;
+    const mpm_step_info now = world_info(&w);
+    out.energy =
+        (now.kinetic_energy + now.strain_energy - start.kinetic_energy - start.strain_energy) / out.work;
+    free(x), free(s);
+  }
+  out.reaction /= weight * v;
+  world_close(&w);
+  return out;
+}
+
+START_TEST(platen_pushes_a_bar) {
+  const method *how = &methods[_i];
+  const pushed coarse = push_bar(how, 40), fine = push_bar(how, 160);
+  show("%s: reaction %.5f %.5f, stress %.5f %.5f, energy %.5f %.5f\n", how->name, coarse.reaction,
+       fine.reaction, coarse.stress, fine.stress, coarse.energy, fine.energy);
+  ck_within(how->name, coarse.reaction, 1.0, 0.02);
+  ck_within(how->name, fine.reaction, 1.0, 0.002);
+  ck_within(how->name, coarse.stress, 1.0, 0.03);
+  ck_within(how->name, fine.stress, 1.0, 0.005);
+  /* what the platen spends is in the bar, less what the front dissipates */
+  ck_between(how->name, coarse.energy, 0.85, 1.0);
+  ck_between(how->name, fine.energy, 1.0 - 0.6 * (1.0 - coarse.energy), 1.0);
+}
+END_TEST
+
+Suite *prescribed_suite(void) {
+  Suite *suite = suite_create("prescribed");
+  TCase *tc = tcase_create("prescribed");
+  tcase_set_timeout(tc, 120);
+  tcase_add_loop_test(tc, exact_motion, 0, 4 * METHODS);
+  tcase_add_loop_test(tc, reactions_balance, 0, 4 * METHODS);
+  tcase_add_loop_test(tc, two_sets_on_one_node, 0, METHODS);
+  tcase_add_loop_test(tc, precedence, 0, 6 * METHODS);
+  tcase_add_loop_test(tc, driven_along_a_wall, 0, METHODS);
+  tcase_add_loop_test(tc, nothing_to_push, 0, METHODS);
+  tcase_add_loop_test(tc, work_of_moving_itself, 0, METHODS);
+  tcase_add_loop_test(tc, across_the_seam, 0, METHODS);
+  tcase_add_loop_test(tc, half_on_a_slip_wall, 0, METHODS);
+  tcase_add_loop_test(tc, motions_that_fail, 0, METHODS);
+  tcase_add_loop_test(tc, saved_and_restored, 0, METHODS);
+  suite_add_tcase(suite, tc);
+  TCase *waves = tcase_create("waves");
+  tcase_set_timeout(waves, 120);
+  tcase_add_loop_test(waves, platen_pushes_a_bar, 0, METHODS);
+  suite_add_tcase(suite, waves);
+  return suite;
+}
