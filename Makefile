@@ -37,7 +37,8 @@ LIBS := -lm -lpthread
 # ---- sources ---------------------------------------------------------------------------------------------
 # Kernels are compiled once for each instruction set, with contraction to fused multiply-add; all other files
 # once, without it, so that only the kernels' results depend on the instruction set.
-KERNEL_PATTERNS := src/transfer/bspline*.c src/transfer/scatter.c src/transfer/gather.c \
+KERNEL_PATTERNS := src/transfer/bspline*.c src/transfer/open_bspline*.c src/transfer/gimp.c \
+  src/transfer/scatter.c src/transfer/gather.c \
   src/transfer/box.c src/transfer/update.c src/transfer/advance.c src/transfer/survey.c \
   src/transfer/kernels.c src/material/law_*.c
 KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))

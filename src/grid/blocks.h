@@ -1,8 +1,8 @@
 /* Sparse nodal storage: blocks of nodes that exist where there is material, in Morton order.
  *
- * A block holds edge^dim nodes (x slowest). A particle belongs to the block of its middle node: the nearest
- * one for a quadratic basis, the lower one of its cell for a linear basis. Blocks with particles have all
- * 3^dim neighbours, so that a tile (block and halo) can be read and written without looking anything up. */
+ * A block holds edge^dim nodes (x slowest). A particle belongs to the block of its anchor (grid.h). Blocks
+ * with particles have all 3^dim neighbours, so that a tile (block and halo) can be read and written without
+ * looking anything up. */
 #ifndef MPMI_BLOCKS_H
 #define MPMI_BLOCKS_H
 

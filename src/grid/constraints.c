@@ -35,10 +35,9 @@ static axis_role role_on_axis(const mpm_grid *grid, const mpmi_wall *wall, int32
     return role;
   }
   const int32_t low = 2 * axis, high = 2 * axis + 1;
-  const int32_t ghost = grid->order == 2;
-  if (ghost && node == -1 && is_linear_wall(wall + low)) {
+  if (grid->ghosts && node == -1 && is_linear_wall(wall + low)) {
     role = (axis_role){1, low, 1};
-  } else if (ghost && node == cells + 1 && is_linear_wall(wall + high)) {
+  } else if (grid->ghosts && node == cells + 1 && is_linear_wall(wall + high)) {
     role = (axis_role){cells - 1, high, 1};
   }
   return role;
@@ -47,8 +46,8 @@ static axis_role role_on_axis(const mpm_grid *grid, const mpmi_wall *wall, int32
 /* Wall on whose plane a node lies, or -1. */
 static int32_t plane_face(const mpm_grid *grid, const mpmi_wall *wall, int32_t axis, int64_t node) {
   if (grid->desc.periodic[axis]) return -1;
-  if (node == 0 && is_linear_wall(wall + 2 * axis)) return 2 * axis;
-  if (node == grid->desc.cells[axis] && is_linear_wall(wall + 2 * axis + 1)) return 2 * axis + 1;
+  for (int32_t face = 2 * axis; face < 2 * axis + 2; ++face)
+    if (node == mpmi_face_node(grid, face) && is_linear_wall(wall + face)) return face;
   return -1;
 }
 
@@ -179,8 +178,8 @@ static void place_dependant(walk *w, int64_t slot, const int64_t *index) {
 static void visit_contact(walk *w, int32_t face, int64_t slot, const int64_t *index) {
   const mpm_grid *grid = w->blocks->grid;
   const int32_t axis = face / 2;
-  const int64_t plane = face % 2 ? grid->desc.cells[axis] : 0, ghost = face % 2 ? plane + 1 : -1;
-  const int32_t is_ghost = grid->order == 2 && index[axis] == ghost;
+  const int64_t plane = mpmi_face_node(grid, face), ghost = face % 2 ? plane + 1 : plane - 1;
+  const int32_t is_ghost = grid->ghosts && index[axis] == ghost;
   if ((index[axis] != plane && !is_ghost) || !mpmi_constraints_is_free(w->out, slot)) return;
   mpmi_contact contact = {slot, -1, face, 0, 0};
   if (is_ghost) {

@@ -21,30 +21,19 @@ mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size) {
 }
 
 static mpm_status check_basis(mpm_context *context, const mpm_grid_desc *desc) {
-  switch (desc->basis) {
-  case MPM_LINEAR:
-  case MPM_BSPLINE2:
-    break;
-  case MPM_BSPLINE3:
-  case MPM_GIMP:
-  case MPM_UGIMP:
-  case MPM_CPGIMP:
-    return mpmi_fail(context, MPM_E_UNSUPPORTED,
-                     "mpm_grid_desc: basis %d (cubic B-splines or GIMP) is not offered: use MPM_BSPLINE2, "
-                     "or MPM_LINEAR",
-                     (int)desc->basis);
-  default:
+  const int32_t spline = desc->basis >= MPM_LINEAR && desc->basis <= MPM_BSPLINE3;
+  if (!spline && (desc->basis < MPM_GIMP || desc->basis > MPM_CPGIMP))
     return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: basis is %d, which is none of the constants",
                      (int)desc->basis);
-  }
-  if (desc->boundary_basis == MPM_BOUNDARY_OPEN_KNOT)
-    return mpmi_fail(context, MPM_E_UNSUPPORTED,
-                     "mpm_grid_desc: boundary_basis MPM_BOUNDARY_OPEN_KNOT is not offered: use "
-                     "MPM_BOUNDARY_GHOST");
-  if (desc->boundary_basis != MPM_BOUNDARY_GHOST)
+  if (desc->boundary_basis != MPM_BOUNDARY_GHOST && desc->boundary_basis != MPM_BOUNDARY_OPEN_KNOT)
     return mpmi_fail(context, MPM_E_ARG,
                      "mpm_grid_desc: boundary_basis is %d, which is none of the constants",
                      (int)desc->boundary_basis);
+  if (desc->boundary_basis == MPM_BOUNDARY_OPEN_KNOT && (!spline || desc->basis == MPM_LINEAR))
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "mpm_grid_desc: boundary_basis MPM_BOUNDARY_OPEN_KNOT is for MPM_BSPLINE2 and "
+                     "MPM_BSPLINE3: use one of them, or MPM_BOUNDARY_GHOST with basis %d",
+                     (int)desc->basis);
   return MPM_OK;
 }
 
@@ -102,6 +91,32 @@ static mpm_status check_desc(mpm_context *context, const mpm_grid_desc *desc) {
   return MPM_OK;
 }
 
+/* By family: width, below, centred, ghosts, second moment where it is constant. */
+static const struct {
+  int32_t width, below, centred, ghosts;
+  double moment;
+} families[MPMI_FAMILIES] = {
+    [MPMI_FAMILY_BSPLINE1] = {2, 0, 0, 0, 0.0},       [MPMI_FAMILY_BSPLINE2] = {3, 1, 1, 1, 1.0 / 4.0},
+    [MPMI_FAMILY_BSPLINE3] = {4, 1, 0, 1, 1.0 / 3.0}, [MPMI_FAMILY_GIMP] = {3, 1, 1, 1, 0.0},
+    [MPMI_FAMILY_OPEN_BSPLINE2] = {3, 0, 0, 0, 0.0},  [MPMI_FAMILY_OPEN_BSPLINE3] = {4, 1, 0, 0, 0.0},
+};
+
+static int32_t family_of(const mpm_grid_desc *desc) {
+  int32_t faces = 0;
+  for (int32_t k = 0; k < desc->dim; ++k) faces |= !desc->periodic[k];
+  const int32_t open = faces && desc->boundary_basis == MPM_BOUNDARY_OPEN_KNOT;
+  switch (desc->basis) {
+  case MPM_LINEAR:
+    return MPMI_FAMILY_BSPLINE1;
+  case MPM_BSPLINE2:
+    return open ? MPMI_FAMILY_OPEN_BSPLINE2 : MPMI_FAMILY_BSPLINE2;
+  case MPM_BSPLINE3:
+    return open ? MPMI_FAMILY_OPEN_BSPLINE3 : MPMI_FAMILY_BSPLINE3;
+  default:
+    return MPMI_FAMILY_GIMP;
+  }
+}
+
 static void derive(mpm_grid *grid) {
   mpm_grid_desc *desc = &grid->desc;
   /* Axes that do not exist have one cell of unit thickness, whatever the host left there. */
@@ -112,8 +127,12 @@ static void derive(mpm_grid *grid) {
     desc->spacing[k] = 1.0;
   }
   grid->dim = desc->dim;
-  grid->order = desc->basis == MPM_LINEAR ? 1 : 2;
-  grid->width = grid->order + 1;
+  grid->family = family_of(desc);
+  grid->width = families[grid->family].width;
+  grid->below = families[grid->family].below;
+  grid->centred = families[grid->family].centred;
+  grid->ghosts = families[grid->family].ghosts;
+  grid->moment = families[grid->family].moment;
   grid->h_min = desc->spacing[0];
   for (int32_t k = 0; k < 3; ++k) {
     grid->upper[k] = desc->origin[k] + (double)desc->cells[k] * desc->spacing[k];
@@ -156,6 +175,29 @@ mpm_status mpm_grid_destroy(mpm_grid *grid) {
   context->children--;
   mpmi_free(context, grid, sizeof *grid);
   return MPM_OK;
+}
+
+int64_t mpmi_face_node(const mpm_grid *grid, int32_t face) {
+  const int64_t cells = grid->desc.cells[face / 2];
+  if (!mpmi_is_open(grid, face / 2)) return face % 2 ? cells : 0;
+  return face % 2 ? cells + 1 : -grid->below;
+}
+
+double mpmi_node_position(const mpm_grid *grid, int32_t axis, int64_t index) {
+  const double cells = (double)grid->desc.cells[axis];
+  double place = (double)index;
+  if (grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {
+    /* mean of the inner knots of the function: knots are the integers, kept within the faces */
+    const int32_t knots = grid->width - 1, open = mpmi_is_open(grid, axis);
+    double sum = 0.0;
+    for (int32_t j = 0; j < knots; ++j) {
+      double knot = (double)(index + j - 1);
+      if (open) knot = knot < 0.0 ? 0.0 : knot > cells ? cells : knot;
+      sum += knot;
+    }
+    place = sum / knots;
+  }
+  return grid->desc.origin[axis] + place * grid->desc.spacing[axis];
 }
 
 /* Last axis fastest; the first node of an axis is the lower ghost. */

@@ -1,8 +1,22 @@
-/* The background grid: a description only. Nodal storage belongs to the stepper (grid/blocks.h). */
+/* The background grid: a description only. Nodal storage belongs to the stepper (grid/blocks.h).
+ *
+ * Basis functions ("nodes") have integer indices along each axis. A particle has an anchor, the nearest node
+ * or the lower node of its cell as the basis says, and its stencil is `width` nodes from anchor - below on.
+ * Node i lies at origin + i * spacing, except with open knots, where it stands at its Greville point. */
 #ifndef MPMI_GRID_H
 #define MPMI_GRID_H
 
 #include "context/context.h"
+
+enum {
+  MPMI_FAMILY_BSPLINE1,
+  MPMI_FAMILY_BSPLINE2,
+  MPMI_FAMILY_BSPLINE3,
+  MPMI_FAMILY_GIMP,
+  MPMI_FAMILY_OPEN_BSPLINE2, /* knots at the nodes, repeated at the faces */
+  MPMI_FAMILY_OPEN_BSPLINE3,
+  MPMI_FAMILIES
+};
 
 struct mpm_grid {
   uint32_t magic;
@@ -10,14 +24,30 @@ struct mpm_grid {
   mpm_context *context;
   mpm_grid_desc desc;
   int32_t dim;
-  int32_t order; /* of the basis: 1 linear, 2 quadratic */
-  int32_t width; /* nodes of the stencil per axis: order + 1 */
+  int32_t family;  /* MPMI_FAMILY_..., which functions make the weights */
+  int32_t width;   /* nodes of the stencil per axis */
+  int32_t below;   /* of them below the anchor */
+  int32_t centred; /* the anchor is the nearest node, else the lower node of the cell */
+  int32_t ghosts;  /* there are nodes beyond the faces: -1 and cells + 1 */
+  double moment;   /* sum w (x_i - x_p)^2 / h^2 where the basis has the same everywhere, else 0 */
   double upper[3], inverse_spacing[3];
   double h_min; /* smallest spacing */
 };
 
-/* Nodes are numbered so that node i of an axis lies at origin + i * spacing; a quadratic basis has one ghost
- * node beyond each face (-1 and cells + 1). Number of a node as reported in mpm_step_info.node. */
+/* Are the functions of an axis those of an open knot vector? Periodic axes have no ends. */
+static inline int32_t mpmi_is_open(const mpm_grid *grid, int32_t axis) {
+  return grid->family >= MPMI_FAMILY_OPEN_BSPLINE2 && !grid->desc.periodic[axis];
+}
+/* Does the weight of a particle depend on the size of its domain? */
+static inline int32_t mpmi_has_domains(const mpm_grid *grid) {
+  return grid->desc.basis == MPM_GIMP || grid->desc.basis == MPM_CPGIMP;
+}
+/* Index of the node on a face: the one whose velocity is that of the material at the face, or about whose
+ * plane the ghosts mirror. */
+int64_t mpmi_face_node(const mpm_grid *grid, int32_t face);
+/* Where a node stands. */
+double mpmi_node_position(const mpm_grid *grid, int32_t axis, int64_t index);
+/* Number of a node as reported in mpm_step_info.node. */
 int64_t mpmi_node_number(const mpm_grid *grid, const int64_t *index);
 
 /* Bounds test and periodic wrap of one position (strided by `stride`). Wraps periodic axes, adding the

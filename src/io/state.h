@@ -18,7 +18,7 @@
 
 #define MPMI_STATE_MAGIC      "MPMSTATE"
 #define MPMI_STATE_BYTE_ORDER 0x01020304u
-enum { MPMI_STATE_FORMAT = 1 };
+enum { MPMI_STATE_FORMAT = 2 };
 
 typedef struct mpmi_state_header {
   char magic[8];
@@ -28,14 +28,14 @@ typedef struct mpmi_state_header {
 } mpmi_state_header;
 
 typedef struct mpmi_state_numbers {
-  double t, controller_dt, mass_cut, reaction_dt;
+  double t, previous_dt, controller_dt, mass_cut, reaction_dt;
   int64_t step, resorts, removed, energies_valid, has_reactions;
   int64_t blocks; /* with slots; -1: not sorted, the next step does that */
   double impulse_by_face[6][3];
   mpmi_sums sums;
   mpm_step_info last;
 } mpmi_state_numbers;
-_Static_assert(sizeof(mpmi_state_numbers) == 10 * 8 + 18 * 8 + 11 * 8 + 192, "part of the format");
+_Static_assert(sizeof(mpmi_state_numbers) == 11 * 8 + 18 * 8 + 11 * 8 + 192, "part of the format");
 
 typedef struct mpmi_state_set_numbers {
   int64_t count, slots, next_id, dirty;

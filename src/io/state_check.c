@@ -73,7 +73,7 @@ static void check_images(mpmi_archive *a, const mpm_particles *fresh) {
 static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_blocks *blocks,
                         const int64_t *start) {
   const mpm_grid *grid = fresh->grid;
-  const mpmi_weights_fn weights = mpmi_kernels_of(fresh->context->isa)->weights[grid->order][1];
+  const mpmi_weights_fn weights = mpmi_kernels_of(fresh->context->isa)->weights[grid->family][1];
   const int32_t last = blocks->edge + 2 * MPMI_RING - 1;
   mpmi_weights W;
   mpmi_axis axis[3];
@@ -82,8 +82,8 @@ static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_
     mpmi_block_axes(grid, blocks->coord[b], axis);
     for (int64_t s = start[b]; s < start[b + 1]; s += MPMI_GROUP)
       for (int32_t k = 0; k < grid->dim; ++k) {
-        const double *x = mpmi_f64(fresh, MPMI_POSITION, 0) + k * fresh->ld + s;
-        weights(&axis[k], 0, MPMI_GROUP, &x, &W);
+        const mpmi_points points = {.x = {mpmi_f64(fresh, MPMI_POSITION, 0) + k * fresh->ld}};
+        weights(&axis[k], 0, &points, s, MPMI_GROUP, &W);
         for (int32_t p = 0; p < MPMI_GROUP; ++p) astray += W.node[p] < 0 || W.node[p] > last;
       }
   }

@@ -78,7 +78,8 @@ static void read_numbers(loading *l) {
   mpmi_archive_bytes(a, n, sizeof *n);
   if (a->status) return;
   if (!isfinite(n->t) || !is_count(n->step) || !is_count(n->resorts) || !is_count(n->removed) ||
-      n->blocks < -1 || !is_magnitude(n->controller_dt) || !is_magnitude(n->mass_cut))
+      n->blocks < -1 || !is_magnitude(n->previous_dt) || !is_magnitude(n->controller_dt) ||
+      !is_magnitude(n->mass_cut))
     mpmi_archive_damaged(a, "its numbers make no sense");
   const int64_t unsorted = MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE,
                 flags = MPMI_DIRTY_SURVEY | (n->blocks < 0 ? unsorted : 0);
@@ -180,6 +181,7 @@ static void take_over(loading *l) {
   if (n->blocks < 0) mpmi_blocks_clear(&s->blocks);
   s->nodes_valid = 0;
   s->t = n->t;
+  s->previous_dt = n->previous_dt;
   s->controller_dt = n->controller_dt;
   s->mass_cut = n->mass_cut;
   s->reaction_dt = n->reaction_dt;

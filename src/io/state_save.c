@@ -31,6 +31,7 @@ mpm_status mpmi_state_settle(const mpm_stepper *s) {
 
 static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
   mpmi_state_numbers n = {.t = s->t,
+                          .previous_dt = s->previous_dt,
                           .controller_dt = s->controller_dt,
                           .mass_cut = s->mass_cut,
                           .reaction_dt = s->reaction_dt,

@@ -61,8 +61,9 @@ static void write_fields(mpmi_archive *a, const mpm_particles *set) {
   }
 }
 
-static int32_t may_be_absent(int32_t field) {
-  return field == MPMI_ACCELERATION || field == MPMI_SIZE || field == MPMI_L || field == MPMI_REFERENCE ||
+static int32_t may_be_absent(const mpm_grid *grid, int32_t field) {
+  if (field == MPMI_SIZE) return !mpmi_has_domains(grid);
+  return field == MPMI_ACCELERATION || field == MPMI_L || field == MPMI_REFERENCE ||
          field == MPMI_PRESCRIBED || field == MPMI_APPLIED_FORCE;
 }
 
@@ -94,7 +95,7 @@ static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
         mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %s%s is %lld there, %d here",
                   a->where, what, (long long)there, (int)here);
   } else if (saved.present < 0 || saved.present > 1 || *found & UINT64_C(1) << f ||
-             (!may_be_absent(f) && saved.present != field->present)) {
+             (!may_be_absent(to->fresh.grid, f) && saved.present != field->present)) {
     mpmi_archive_damaged(a, "its list of fields makes no sense");
   }
   *found |= UINT64_C(1) << f;

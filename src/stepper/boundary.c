@@ -18,7 +18,7 @@ typedef struct field {
   mpm_stepper *s;
   double *nodes, dt, flip;
   int32_t values, dim, zero_acceleration,
-      books; /* books: impulses count as reactions; not in the second projection of MUSL */
+      books; /* books: impulses count as reactions; only in the projection that has the forces */
 } field;
 
 /* Of an orbit: folded mass, signed mass by component, what the master gave to particles before folding,
@@ -271,8 +271,7 @@ static void list_block(const field *f, int64_t block, node_list *list) {
     mpmi_blocks_index(b, slot, index);
     for (int32_t k = 0; k < f->dim; ++k) {
       list->index[k * NODE_BATCH + list->n] = index[k];
-      list->position[k * NODE_BATCH + list->n] =
-          s->grid->desc.origin[k] + (double)index[k] * s->grid->desc.spacing[k];
+      list->position[k * NODE_BATCH + list->n] = mpmi_node_position(s->grid, k, index[k]);
     }
     list->mass[list->n] = moving_mass(f, slot);
     list->slot[list->n++] = slot;
@@ -339,28 +338,28 @@ static void set_held(const field *f) {
     }
 }
 
-mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t what, double dt) {
-  const int32_t again = what == MPMI_P2G_AGAIN;
+mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt) {
+  const int32_t forces = projection == MPMI_PROJECT_FORCES, corrects = projection == MPMI_PROJECT_CORRECT;
   const field f = {.s = s,
-                   .nodes = again ? s->again : s->node,
+                   .nodes = forces ? s->node : s->again,
                    .dt = dt,
-                   .flip = s->desc.transfer == MPM_FLIP && s->values == 8 ? s->desc.flip : 0.0,
-                   .values = again ? 4 : s->values,
+                   .flip = s->values == 8 ? mpmi_flip_share(s) : 0.0,
+                   .values = forces ? s->values : 4,
                    .dim = s->grid->dim,
                    .zero_acceleration = s->desc.boundary_zero_acceleration,
-                   .books = !again && s->impulses};
+                   .books = forces && s->impulses};
   fold(&f);
-  if (s->velocity_bc) {
-    if (!again) {
+  if (s->velocity_bc && !corrects) {
+    if (mpmi_asks_host(s, projection)) {
       mpm_status status = mpmi_run_tasks(s, 1, s->tasks, prescribe_task, (void *)(uintptr_t)&f);
       if (status || (status = mpmi_stepper_failure(s))) return status;
     }
     set_held(&f);
   }
   hold_walls(&f);
-  for (int64_t i = 0; i < s->constraints.contact_count; ++i) {
+  for (int64_t i = 0; i < s->constraints.contact_count && !corrects; ++i) {
     mpmi_contact *pair = &s->constraints.contact[i];
-    if (again)
+    if (projection == MPMI_PROJECT_AGAIN)
       keep_contact(&f, pair);
     else
       contact(&f, pair);

@@ -75,7 +75,8 @@ void mpmi_commit(mpm_stepper *s, double dt) {
   s->last.external_work = work;
   s->last.dissipation = before.kinetic + before.strain + work - after->kinetic - after->strain;
   memcpy(s->impulse_by_face, s->impulse_in_step, sizeof s->impulse_by_face);
-  s->reaction_dt = dt;
+  s->reaction_dt = s->velocity_dt;
+  s->previous_dt = s->desc.staggered ? dt : 0.0;
   s->has_reactions = 1;
   if (removes)
     for (int32_t m = 0; m < s->member_count; ++m) remove_outside(s, s->member[m].set);

@@ -17,13 +17,39 @@ void mpmi_add_sums(mpmi_sums *sum, const mpmi_sums *other) {
   if (other->viscous_rate > sum->viscous_rate) sum->viscous_rate = other->viscous_rate;
 }
 
+void mpmi_survey_moments(const mpm_stepper *s, const mpm_particles *set, int32_t copy, int64_t begin,
+                         int64_t n, int64_t ld, double *buffer, mpmi_survey *job) {
+  const mpm_grid *grid = s->grid;
+  const int32_t dim = grid->dim, anywhere[3] = {0, 0, 0};
+  for (int32_t k = 0; k < dim; ++k) {
+    job->constant_moment[k] = grid->moment * grid->desc.spacing[k] * grid->desc.spacing[k];
+    job->moment[k] = grid->moment > 0.0 ? NULL : buffer + k * ld;
+  }
+  if (grid->moment > 0.0) return;
+  const mpmi_points points = mpmi_points_of(set, copy);
+  mpmi_axis axis[3];
+  mpmi_weights W;
+  mpmi_block_axes(grid, anywhere, axis);
+  for (int64_t p = 0; p < n; p += MPMI_CHUNK) {
+    const int64_t count = n - p < MPMI_CHUNK ? n - p : MPMI_CHUNK;
+    s->kernels->weights[grid->family][dim](axis, MPMI_NEED_MOMENT | MPMI_NO_PLACE, &points, begin + p, count,
+                                           &W);
+    for (int32_t k = 0; k < dim; ++k)
+      for (int64_t i = 0; i < count; ++i) {
+        const double inverse = W.inverse_moment[k][i];
+        buffer[k * ld + p + i] = inverse > 0.0 ? 1.0 / inverse : 0.0;
+      }
+  }
+}
+
 /* The law is asked for the state as it is: F_inc = I, dt = 0. */
 static mpm_status survey_set(mpm_stepper *s, int32_t m, mpmi_sums *sums) {
   mpm_particles *set = s->member[m].set;
   const mpm_grid *grid = s->grid;
   const int32_t dim = grid->dim;
-  const size_t bytes = mpmi_law_batch_bytes(set->material);
-  void *memory = mpmi_alloc(s->context, bytes);
+  const size_t batch = mpmi_law_batch_bytes(set->material);
+  const size_t bytes = batch + mpmi_bytes(3 * mpmi_law_batch_length(set->material), sizeof(double));
+  char *memory = mpmi_alloc(s->context, bytes);
   if (!memory) return MPM_E_NOMEM;
   mpmi_law_batch b;
   mpmi_law_batch_bind(&b, set->material, memory);
@@ -41,24 +67,24 @@ static mpm_status survey_set(mpm_stepper *s, int32_t m, mpmi_sums *sums) {
                     "the material of set %d returned %d when asked for its wave speed", (int)m, (int)refused);
       break;
     }
-    mpmi_survey job = {.ld = b.ld,
+    mpmi_survey job = {.what = MPMI_SURVEY_LAW | MPMI_SURVEY_MOTION,
+                       .ld = b.ld,
                        .mass = mpmi_f64(set, MPMI_MASS, 0) + begin,
                        .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
                        .wave_speed = b.wave_speed,
                        .kinematic_viscosity = b.viscosity,
                        .energy = b.energy,
-                       .viscous_factor = 2.0 * dim / (grid->h_min * grid->h_min),
-                       .order = grid->order};
+                       .viscous_factor = 2.0 * dim / (grid->h_min * grid->h_min)};
     for (int32_t k = 0; k < dim; ++k) {
       job.x[k] = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + begin;
       job.v[k] = mpmi_f64(set, MPMI_VELOCITY, 0) + k * set->ld + begin;
-      job.origin[k] = grid->desc.origin[k];
-      job.spacing[k] = grid->desc.spacing[k];
       job.inverse_spacing[k] = grid->inverse_spacing[k];
     }
-    if (mpmi_is_affine(s) && set->field[MPMI_L].present)
+    if (mpmi_is_affine(s) && set->field[MPMI_L].present) {
+      mpmi_survey_moments(s, set, 0, begin, n, b.ld, (double *)(void *)(memory + batch), &job);
       for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
         job.affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, 0) + c * set->ld + begin;
+    }
     if (s->kernels->survey[dim](&job, n, sums))
       status = mpmi_fail(s->context, MPM_NONFINITE,
                          "the material of set %d gives a wave speed that is not finite", (int)m);

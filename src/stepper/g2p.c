@@ -8,6 +8,7 @@
 typedef struct g2p_job {
   mpm_stepper *s;
   int32_t what, values, form, need;
+  int32_t starts_sums; /* of energies: not the pass that completes those of another */
   double dt;
   const double *nodes;
 } g2p_job;
@@ -76,7 +77,8 @@ static void bind_set(batch_job *b, int32_t m) {
   b->dv = b->v_bar + 3 * ld;
   b->C = b->dv + 3 * ld;
   memset(b->scratch->gathered, 0, (size_t)(15 * ld) * sizeof(double));
-  b->gather = (mpmi_gather){.weights = s->kernels->weights[grid->order][dim],
+  b->gather = (mpmi_gather){.weights = s->kernels->weights[grid->family][dim],
+                            .points = mpmi_points_of(set, 0),
                             .need = b->job->need,
                             .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
                             .tile = b->scratch->tile,
@@ -86,8 +88,15 @@ static void bind_set(batch_job *b, int32_t m) {
                             .L = b->law.L,
                             .C = b->C};
   bind_streams(b);
-  b->move = (mpmi_move){
-      .form = b->job->form, .dt = b->job->dt, .flip = s->desc.flip, .ld = ld, .v_bar = b->v_bar, .dv = b->dv};
+  b->move = (mpmi_move){.rule = mpmi_is_blend(s)   ? MPMI_MOVE_BLEND
+                                : mpmi_corrects(s) ? MPMI_MOVE_CORRECT
+                                                   : MPMI_MOVE_SET,
+                        .dt = b->job->dt,
+                        .flip = mpmi_flip_share(s),
+                        .lag = s->desc.position_order == 2 ? 0.5 : 0.0,
+                        .ld = ld,
+                        .v_bar = b->v_bar,
+                        .dv = b->dv};
   b->deform = (mpmi_deform){.dt = b->job->dt,
                             .ld = ld,
                             .L = b->law.L,
@@ -98,20 +107,16 @@ static void bind_set(batch_job *b, int32_t m) {
                             .kinematic_viscosity = b->law.viscosity,
                             .energy = b->law.energy,
                             .viscous_factor = 2.0 * dim / (grid->h_min * grid->h_min),
-                            .order = grid->order,
                             .checked = {b->law.stress_new, b->law.state_new},
                             .checked_rows = {mpmi_stress_components(dim), set->material->state_count}};
   for (int32_t k = 0; k < dim; ++k) {
     const double length = grid->upper[k] - grid->desc.origin[k];
     const int32_t periodic = grid->desc.periodic[k] != 0;
-    b->gather.x[k] = component(set, MPMI_POSITION, 0, k);
     b->move.low[k] = grid->desc.origin[k];
     b->move.high[k] = grid->upper[k];
     b->move.period[k] = b->survey.period[k] = periodic ? length : 0.0;
     b->move.inverse_period[k] = b->survey.inverse_period[k] = periodic ? 1.0 / length : 0.0;
     b->survey.gravity[k] = s->desc.gravity[k];
-    b->survey.origin[k] = grid->desc.origin[k];
-    b->survey.spacing[k] = grid->desc.spacing[k];
     b->survey.inverse_spacing[k] = grid->inverse_spacing[k];
   }
 }
@@ -124,7 +129,7 @@ static void bind_block(batch_job *b, int64_t block) {
   mpmi_block_axes(grid, s->blocks.coord[block], b->gather.axis);
   for (int32_t k = 0; k < grid->dim; ++k) {
     const double first = (double)s->blocks.coord[block][k] * edge;
-    const double centre = first + 0.5 * (edge - (grid->order == 2 ? 1 : 0));
+    const double centre = first + 0.5 * (edge - grid->centred);
     b->move.centre[k] = grid->desc.origin[k] + grid->desc.spacing[k] * centre;
     b->move.half[k] = grid->desc.spacing[k] * (0.5 * edge + MPMI_RING) * (1.0 - 1e-9);
   }
@@ -225,13 +230,14 @@ static uint32_t move_batch(batch_job *b, int64_t begin, int64_t n) {
   return flags & MPMI_NONFINITE;
 }
 
-/* The affine matrix of APIC, or the velocity gradient where the host keeps it. */
+/* What an affine transfer carries comes with the velocities; otherwise the velocity gradient of the strain is
+ * kept where the host wants it. */
 static void store_gradient(batch_job *b, int64_t begin, int64_t n) {
   const mpm_stepper *s = b->job->s;
   const int32_t dim = s->grid->dim;
   if (!b->set->field[MPMI_L].present) return;
-  const int32_t moment = b->job->form == MPMI_GATHER_4_AFFINE;
-  if (mpmi_is_affine(s) && !(b->job->what & MPMI_G2P_MOVE)) return;
+  if (!(b->job->what & (mpmi_is_affine(s) ? MPMI_G2P_MOVE : MPMI_G2P_DEFORM))) return;
+  const int32_t moment = b->job->form == MPMI_GATHER_4_AFFINE || b->job->form == MPMI_GATHER_8_AFFINE;
   const double *from = moment ? b->C : b->law.L;
   for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
     memcpy(component(b->set, MPMI_L, 1, c) + begin, from + mpmi_gradient_map(dim)[c] * b->law.ld,
@@ -267,10 +273,11 @@ static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
   return 0;
 }
 
-/* After all of the particle's new values are there. */
-static uint32_t survey_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
+/* Of the law's outputs; of the motion once all of the particle's new values are there. */
+static uint32_t survey_batch(batch_job *b, int32_t what, int64_t begin, int64_t n, mpmi_sums *sums) {
   const mpm_stepper *s = b->job->s;
   mpm_particles *set = b->set;
+  b->survey.what = what;
   const mpmi_member *member = &s->member[b->m];
   const int32_t dim = s->grid->dim;
   mpmi_survey *job = &b->survey;
@@ -282,25 +289,51 @@ static uint32_t survey_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *
     job->x_old[k] = component(set, MPMI_POSITION, 0, k) + begin;
     job->force[k] = member->force ? member->force + k * set->ld + begin : NULL;
   }
-  if (mpmi_is_affine(s))
+  if (mpmi_is_affine(s) && (what & MPMI_SURVEY_MOTION)) {
+    mpmi_survey_moments(s, set, 1, begin, n, b->law.ld, b->C, job); /* C is stored, its buffer free */
     for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
       job->affine[mpmi_gradient_map(dim)[c]] = component(set, MPMI_L, 1, c) + begin;
+  }
   return s->kernels->survey[dim](job, n, sums);
+}
+
+static void probe_batch(batch_job *b, int64_t begin, int64_t n) {
+  for (int32_t k = 0; k < b->job->s->grid->dim; ++k)
+    memcpy(component(b->set, MPMI_VELOCITY, 1, k) + begin, b->v_bar + k * b->law.ld,
+           (size_t)n * sizeof(double));
+}
+
+/* USF asks the law before particles move, and the survey of the motion wants to know the wave speed: it waits
+ * where the new position will be. */
+static void leave_wave_speed(batch_job *b, int64_t begin, int64_t n) {
+  memcpy(component(b->set, MPMI_POSITION, 1, 0) + begin, b->law.wave_speed, (size_t)n * sizeof(double));
+}
+static void take_wave_speed(batch_job *b, int64_t begin, int64_t n) {
+  memcpy(b->law.wave_speed, component(b->set, MPMI_POSITION, 1, 0) + begin, (size_t)n * sizeof(double));
 }
 
 static void one_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
   const mpm_stepper *s = b->job->s;
   const int32_t what = b->job->what;
   uint32_t flags = 0;
+  const int32_t usf = s->desc.scheme == MPM_USF;
   b->law_ran = 0;
   s->kernels->gather[s->grid->dim][s->grid->width][b->job->form](&b->gather, begin, n);
   /* the kernels write from the start of the batch's buffers */
+  if (what & MPMI_G2P_PROBE) {
+    probe_batch(b, begin, n);
+    return;
+  }
+  if (mpmi_is_mls(s) && b->job->form == MPMI_GATHER_8_AFFINE) /* there C is the gradient too */
+    memcpy(b->law.L, b->C, (size_t)(9 * b->law.ld) * sizeof(double));
+  if (usf && (what & MPMI_G2P_MOVE)) take_wave_speed(b, begin, n);
   if (what & MPMI_G2P_MOVE) flags |= move_batch(b, begin, n);
   store_gradient(b, begin, n);
-  if (what & MPMI_G2P_DEFORM) {
-    flags |= deform_batch(b, begin, n);
-    if (b->law_ran) flags |= survey_batch(b, begin, n, sums);
-  }
+  if (what & MPMI_G2P_DEFORM) flags |= deform_batch(b, begin, n);
+  if (usf && b->law_ran) leave_wave_speed(b, begin, n);
+  const int32_t moved = usf ? what & MPMI_G2P_MOVE : b->law_ran;
+  const int32_t survey = (b->law_ran ? MPMI_SURVEY_LAW : 0) | (moved ? MPMI_SURVEY_MOTION : 0);
+  if (survey) flags |= survey_batch(b, survey, begin, n, sums);
   if (flags) look_at_values(b, begin, n);
 }
 
@@ -313,8 +346,8 @@ static void g2p_task(void *data, int64_t k) {
   for (int64_t i = cut->bound[k]; i < cut->bound[k + 1]; ++i) {
     const int32_t block = cut->list[i];
     mpmi_sums *sums = &s->block_sums[block];
-    memset(sums, 0, sizeof *sums);
-    mpmi_tile_load(s, block, job->nodes, job->values, job->form == MPMI_GATHER_8 ? 8 : 4, b.scratch->tile);
+    if (job->starts_sums) memset(sums, 0, sizeof *sums);
+    mpmi_tile_load(s, block, job->nodes, job->values, job->form >= MPMI_GATHER_8 ? 8 : 4, b.scratch->tile);
     for (int32_t m = 0; m < s->member_count; ++m) {
       const int64_t *start = s->member[m].now.start;
       if (start[block] == start[block + 1]) continue;
@@ -341,19 +374,27 @@ static int32_t has_host_law(const mpm_stepper *s) {
   return 0;
 }
 
+/* Increments are needed by blends and by second-order positions; C by transfers that carry it. */
+static void choose_form(g2p_job *job) {
+  const mpm_stepper *s = job->s;
+  const int32_t move = job->what & MPMI_G2P_MOVE;
+  const int32_t increments = move && (mpmi_is_blend(s) || s->desc.position_order == 2);
+  const int32_t matrix = move && mpmi_is_affine(s) && !mpmi_is_taylor(s);
+  if (mpmi_is_mls(s) && !increments && !(job->what & MPMI_G2P_PROBE)) {
+    job->form = MPMI_GATHER_4_MLS;
+    return;
+  }
+  job->need = MPMI_NEED_GRADIENT | (matrix ? MPMI_NEED_MOMENT : 0);
+  if (increments)
+    job->form = matrix ? MPMI_GATHER_8_AFFINE : MPMI_GATHER_8;
+  else
+    job->form = matrix ? MPMI_GATHER_4_AFFINE : MPMI_GATHER_4;
+}
+
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt) {
   g2p_job job = {.s = s, .what = what, .dt = dt, .nodes = nodes, .values = values};
-  job.need = MPMI_NEED_GRADIENT;
-  job.form = MPMI_GATHER_4;
-  if (mpmi_is_mls(s)) {
-    job.form = MPMI_GATHER_4_MLS;
-    job.need = 0;
-  } else if ((what & MPMI_G2P_MOVE) && s->desc.transfer == MPM_APIC) {
-    job.form = MPMI_GATHER_4_AFFINE;
-    job.need |= MPMI_NEED_MOMENT;
-  } else if ((what & MPMI_G2P_MOVE) && s->desc.transfer == MPM_FLIP) {
-    job.form = MPMI_GATHER_8;
-  }
+  job.starts_sums = !(s->desc.scheme == MPM_USF && (what & MPMI_G2P_MOVE));
+  choose_form(&job);
   mpm_status status = mpmi_run_tasks(s, has_host_law(s), s->tasks, g2p_task, &job);
   return status ? status : mpmi_stepper_failure(s);
 }

@@ -30,7 +30,7 @@ static double value_of(const mpm_stepper *s, int32_t field, int64_t i, int32_t c
   const int32_t solved = s->phase != MPMI_BEGUN;
   const double *bound = s->impulses && solved ? s->impulse + 6 * s->active[i] : NULL;
   const double impulse = bound ? bound[c] : 0.0, change = bound ? bound[3 + c] : 0.0;
-  const double dt = s->phase == MPMI_IDLE ? s->nodes_dt : s->dt;
+  const double dt = s->phase == MPMI_IDLE ? s->nodes_dt : s->velocity_dt;
   switch (field) {
   case NODE_MASS:
     return mass;
@@ -55,7 +55,7 @@ static void fill(const mpm_stepper *s, int32_t field, void *memory) {
       if (field == NODE_INDEX)
         ((int64_t *)memory)[at] = index[c];
       else if (field == NODE_POSITION)
-        ((double *)memory)[at] = s->grid->desc.origin[c] + (double)index[c] * s->grid->desc.spacing[c];
+        ((double *)memory)[at] = mpmi_node_position(s->grid, c, index[c]);
       else
         ((double *)memory)[at] = value_of(s, field, i, c);
     }

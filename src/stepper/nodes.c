@@ -5,8 +5,8 @@
 
 typedef struct nodes_job {
   mpm_stepper *s;
-  int32_t values, again;
-  double dt, *nodes;
+  int32_t values, books, asks;
+  double *nodes;
 } nodes_job;
 
 static void nodes_task(void *data, int64_t k) {
@@ -16,19 +16,20 @@ static void nodes_task(void *data, int64_t k) {
   const int64_t begin = slots * k / tasks, end = slots * (k + 1) / tasks;
   s->scratch[k].active = 0;
   if (end == begin) return; /* perhaps there are no nodes at all */
-  s->scratch[k].active =
-      s->kernels->update(job->values, job->nodes + begin * job->values, end - begin, s->mass_cut, job->dt);
-  if (job->again) return;
+  s->scratch[k].active = s->kernels->update(job->values, job->nodes + begin * job->values, end - begin,
+                                            s->mass_cut, s->velocity_dt);
   /* what the boundary stage notes, node by node */
-  if (s->impulses) memset(s->impulse + 6 * begin, 0, (size_t)(6 * (end - begin)) * sizeof *s->impulse);
-  if (s->velocity_bc) memset(s->held + 3 * begin, 0, (size_t)(3 * (end - begin)));
+  if (job->books && s->impulses)
+    memset(s->impulse + 6 * begin, 0, (size_t)(6 * (end - begin)) * sizeof *s->impulse);
+  if (job->asks && s->velocity_bc) memset(s->held + 3 * begin, 0, (size_t)(3 * (end - begin)));
 }
 
-mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t what, double dt) {
-  const int32_t again = what == MPMI_P2G_AGAIN;
-  nodes_job job = {s, again ? 4 : s->values, again, dt, again ? s->again : s->node};
+mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t projection) {
+  const int32_t forces = projection == MPMI_PROJECT_FORCES;
+  nodes_job job = {s, forces ? s->values : 4, forces, mpmi_asks_host(s, projection),
+                   forces ? s->node : s->again};
   const mpm_status status = mpmi_run_tasks(s, 0, s->tasks, nodes_task, &job);
-  if (status || again) return status;
+  if (status || !forces) return status;
   s->last.active_nodes = 0;
   for (int32_t k = 0; k < s->tasks; ++k) s->last.active_nodes += s->scratch[k].active;
   return MPM_OK;

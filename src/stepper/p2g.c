@@ -6,8 +6,8 @@
 
 typedef struct p2g_job {
   mpm_stepper *s;
-  int32_t what, values, form, need, colour;
-  double dt, *nodes;
+  int32_t projection, affine, values, form, need, colour;
+  double *nodes;
 } p2g_job;
 
 /* Blocks of one colour are two apart: their tiles must not meet. */
@@ -24,39 +24,41 @@ static void zero_task(void *data, int64_t k) {
 static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatter *scatter) {
   const mpm_stepper *s = job->s;
   const mpm_particles *set = member->set;
-  const int32_t dim = s->grid->dim, again = job->what == MPMI_P2G_AGAIN;
+  const int32_t dim = s->grid->dim, forces = job->projection == MPMI_PROJECT_FORCES;
+  const int32_t copy = job->projection == MPMI_PROJECT_AGAIN || job->projection == MPMI_PROJECT_CORRECT;
+  const int32_t stress = s->desc.scheme == MPM_USF; /* USF has updated it already */
   memset(scatter, 0, sizeof *scatter);
-  scatter->weights = s->kernels->weights[s->grid->order][dim];
+  scatter->weights = s->kernels->weights[s->grid->family][dim];
+  scatter->points = mpmi_points_of(set, 0);
   scatter->need = job->need;
   scatter->mass = mpmi_f64(set, MPMI_MASS, 0);
   scatter->volume = mpmi_f64(set, MPMI_VOLUME, 0);
   for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
-    scatter->stress[c] = mpmi_f64(set, MPMI_STRESS, 0) + c * set->ld;
+    scatter->stress[c] = mpmi_f64(set, MPMI_STRESS, stress) + c * set->ld;
   for (int32_t k = 0; k < dim; ++k) {
-    scatter->x[k] = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld;
-    scatter->v[k] = mpmi_f64(set, MPMI_VELOCITY, again) + k * set->ld;
-    scatter->force[k] = member->force && !again ? member->force + k * set->ld : NULL;
-    scatter->gravity[k] = again ? 0.0 : s->desc.gravity[k];
+    scatter->v[k] = mpmi_f64(set, MPMI_VELOCITY, copy) + k * set->ld;
+    scatter->force[k] = member->force && forces ? member->force + k * set->ld : NULL;
+    scatter->gravity[k] = forces ? s->desc.gravity[k] : 0.0;
   }
-  if (mpmi_is_affine(s))
+  if (job->affine)
     for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
-      scatter->affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, again) + c * set->ld;
+      scatter->affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, copy) + c * set->ld;
   mpmi_streams *streams = &scatter->streams;
   for (int32_t k = 0; k < dim; ++k) {
-    streams->at[streams->count++] = scatter->x[k];
+    streams->at[streams->count++] = scatter->points.x[k];
     streams->at[streams->count++] = scatter->v[k];
     if (scatter->force[k]) streams->at[streams->count++] = scatter->force[k];
   }
   streams->at[streams->count++] = scatter->mass;
-  if (!again) {
+  if (forces) {
     streams->at[streams->count++] = scatter->volume;
     for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
       streams->at[streams->count++] = scatter->stress[c];
   }
-  if (mpmi_is_affine(s))
+  if (job->affine)
     for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
       streams->at[streams->count++] = scatter->affine[mpmi_gradient_map(dim)[c]];
-  scatter->fused_dt = again || job->values == 8 ? 0.0 : job->dt;
+  scatter->fused_dt = forces && job->values == 4 ? s->velocity_dt : 0.0;
 }
 
 /* In as many pieces as the block has neighbours: in front of each, the nodes that the tile shares with one of
@@ -99,14 +101,18 @@ static void p2g_task(void *data, int64_t k) {
   }
 }
 
-mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t what, double dt) {
-  const int32_t affine = mpmi_is_affine(s), mls = mpmi_is_mls(s), again = what == MPMI_P2G_AGAIN;
-  p2g_job job = {.s = s, .what = what, .dt = dt};
-  job.values = again ? 4 : s->values;
-  job.nodes = again ? s->again : s->node;
+mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t projection) {
+  const int32_t forces = projection == MPMI_PROJECT_FORCES;
+  const int32_t affine = mpmi_is_affine(s) && projection != MPMI_PROJECT_CORRECT;
+  p2g_job job = {.s = s, .projection = projection, .affine = affine};
+  job.values = forces ? s->values : 4;
+  job.nodes = forces ? s->node : s->again;
   if (job.values == 8) {
     job.form = affine ? MPMI_SCATTER_8_AFFINE : MPMI_SCATTER_8;
-    job.need = mls ? MPMI_NEED_MLS : MPMI_NEED_GRADIENT | (affine ? MPMI_NEED_MOMENT : 0);
+    job.need = mpmi_is_mls(s) ? MPMI_NEED_MLS : MPMI_NEED_GRADIENT | (affine ? MPMI_NEED_MOMENT : 0);
+  } else if (affine && s->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {
+    job.form = MPMI_SCATTER_4_UNEVEN;
+    job.need = MPMI_NEED_MOMENT;
   } else {
     job.form = affine ? MPMI_SCATTER_4_AFFINE : MPMI_SCATTER_4;
   }

@@ -1,4 +1,4 @@
-/* One explicit step: USL and MUSL (table in docs/theory.md), whole or in three parts with the host in
+/* One explicit step: USL, USF and MUSL (table in docs/theory.md), whole or in three parts with the host in
  * between. */
 #define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "stepper/stepper.h"
@@ -35,6 +35,29 @@ static void count_active(mpm_stepper *s) {
   for (int64_t i = 0; i < slots; ++i) s->last.active_nodes += s->node[i * s->values + 3] > s->mass_cut;
 }
 
+/* A projection of velocities alone, up to its boundary conditions. */
+static mpm_status project(mpm_stepper *s, int32_t projection, double dt, double *clock) {
+  mpm_status status = mpmi_stage_p2g(s, projection);
+  lap(s, MPMI_TIME_P2G, clock);
+  if (!status) status = mpmi_stage_nodes(s, projection);
+  if (!status) status = mpmi_stage_boundary(s, projection, dt);
+  lap(s, MPMI_TIME_GRID, clock);
+  return status;
+}
+
+static mpm_status gather(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt,
+                         double *clock) {
+  const mpm_status status = mpmi_stage_g2p(s, what, nodes, values, dt);
+  lap(s, MPMI_TIME_G2P, clock);
+  return status;
+}
+
+/* USF: strain and stress from the velocities at the start of the step. */
+static mpm_status strain_first(mpm_stepper *s, double dt, double *clock) {
+  const mpm_status status = project(s, MPMI_PROJECT_STRAIN, dt, clock);
+  return status ? status : gather(s, MPMI_G2P_DEFORM, s->again, 4, dt, clock);
+}
+
 /* Particles to grid, and forces. */
 static mpm_status begin_part(mpm_stepper *s, double dt) {
   double clock = mpmi_seconds();
@@ -43,6 +66,7 @@ static mpm_status begin_part(mpm_stepper *s, double dt) {
   if (status) return status;
   lap(s, MPMI_TIME_SORT, &clock);
   s->dt = dt;
+  s->velocity_dt = s->desc.staggered && s->previous_dt > 0.0 ? 0.5 * (s->previous_dt + dt) : dt;
   s->nodes_valid = 0;
   s->prescribed_work = 0.0;
   mpmi_failure_clear(&s->failure);
@@ -55,7 +79,8 @@ static mpm_status begin_part(mpm_stepper *s, double dt) {
     for (int32_t c = 0; c < 3; ++c) s->impulse_in_step[f][c] = 0.0;
   status = mpmi_stage_forces(s, dt);
   lap(s, MPMI_TIME_CALLBACKS, &clock);
-  if (!status) status = mpmi_stage_p2g(s, MPMI_P2G_FORCES, dt);
+  if (!status && s->desc.scheme == MPM_USF) status = strain_first(s, dt, &clock);
+  if (!status) status = mpmi_stage_p2g(s, MPMI_PROJECT_FORCES);
   lap(s, MPMI_TIME_P2G, &clock);
   return status;
 }
@@ -63,29 +88,23 @@ static mpm_status begin_part(mpm_stepper *s, double dt) {
 /* Velocities, walls, prescribed velocities. */
 static mpm_status grid_part(mpm_stepper *s, double dt) {
   double clock = mpmi_seconds();
-  mpm_status status = mpmi_stage_nodes(s, MPMI_P2G_FORCES, dt);
-  if (!status) status = mpmi_stage_boundary(s, MPMI_P2G_FORCES, dt);
+  mpm_status status = mpmi_stage_nodes(s, MPMI_PROJECT_FORCES);
+  if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_FORCES, dt);
   if (!status && s->constraints.orbit_count) count_active(s);
   lap(s, MPMI_TIME_GRID, &clock);
   return status;
 }
 
 /* USL: everything from the updated nodal velocity. MUSL: L from the velocity that the new particles give the
- * nodes. */
+ * nodes. USF has its strain already. */
 static mpm_status particles_part(mpm_stepper *s, double dt) {
   double clock = mpmi_seconds();
-  const int32_t musl = s->desc.scheme == MPM_MUSL;
-  mpm_status status = mpmi_stage_g2p(s, MPMI_G2P_MOVE | (musl ? 0 : MPMI_G2P_DEFORM), s->node, s->values, dt);
-  lap(s, MPMI_TIME_G2P, &clock);
-  if (!status && musl) {
-    status = mpmi_stage_p2g(s, MPMI_P2G_AGAIN, dt);
-    lap(s, MPMI_TIME_P2G, &clock);
-    if (!status) status = mpmi_stage_nodes(s, MPMI_P2G_AGAIN, dt);
-    if (!status) status = mpmi_stage_boundary(s, MPMI_P2G_AGAIN, dt);
-    lap(s, MPMI_TIME_GRID, &clock);
-    if (!status) status = mpmi_stage_g2p(s, MPMI_G2P_DEFORM, s->again, 4, dt);
-    lap(s, MPMI_TIME_G2P, &clock);
-  }
+  const int32_t usl = s->desc.scheme == MPM_USL, musl = s->desc.scheme == MPM_MUSL;
+  mpm_status status = mpmi_corrects(s) ? mpmi_stage_xpic(s) : MPM_OK;
+  if (!status)
+    status = gather(s, MPMI_G2P_MOVE | (usl ? MPMI_G2P_DEFORM : 0), s->node, s->values, dt, &clock);
+  if (!status && musl) status = project(s, MPMI_PROJECT_AGAIN, dt, &clock);
+  if (!status && musl) status = gather(s, MPMI_G2P_DEFORM, s->again, 4, dt, &clock);
   /* the law runs inside the tasks: its share of their time is moved from g2p */
   double law = 0.0;
   for (int32_t k = 0; k < s->tasks; ++k) law += s->scratch[k].law_seconds / s->tasks;
@@ -139,7 +158,7 @@ static mpm_status finish(mpm_stepper *s, double dt) {
   if (!s->energies.valid && mpmi_stepper_energies(s)) s->context->error[0] = '\0';
   s->last.dt_suggested = mpmi_stable_dt_of(s, &s->energies.sums);
   s->nodes_valid = 1;
-  s->nodes_dt = dt;
+  s->nodes_dt = s->velocity_dt;
   return MPM_OK;
 }
 
@@ -260,6 +279,7 @@ mpm_status mpm_step_abort(mpm_stepper *s) {
   if (s->mapped)
     return mpmi_fail(s->context, MPM_E_STATE,
                      "%d views of nodal fields are out: release them before mpm_step_abort", (int)s->mapped);
+  mpmi_roll_back(s);
   s->phase = MPMI_IDLE;
   s->nodes_valid = 0;
   return MPM_OK;

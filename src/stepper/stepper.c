@@ -25,38 +25,28 @@ mpm_status mpm_stepper_desc_init(mpm_stepper_desc *desc, uint32_t struct_size) {
 static mpm_status known_scheme(mpm_context *c, int32_t scheme) {
   switch (scheme) {
   case MPM_USL:
+  case MPM_USF:
   case MPM_MUSL:
     return MPM_OK;
-  case MPM_USF:
-    return mpmi_fail(c, MPM_E_UNSUPPORTED, "scheme MPM_USF is not in this version: use MPM_USL or MPM_MUSL");
   case MPM_NEWMARK:
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "scheme MPM_NEWMARK is not in this version: use MPM_USL or MPM_MUSL");
+                     "scheme MPM_NEWMARK is not in this version: use MPM_USL, MPM_USF or MPM_MUSL");
   default:
     return mpmi_fail(c, MPM_E_ARG, "scheme is %d: it must be an MPM_USL ... MPM_NEWMARK", (int)scheme);
   }
 }
 
-static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, int32_t transfer) {
-  if (transfer == MPM_APIC_MLS && grid->order < 2)
-    return mpmi_fail(
-        c, MPM_E_UNSUPPORTED,
-        "transfer MPM_APIC_MLS needs a quadratic or cubic B-spline: use MPM_APIC with the linear basis");
-  switch (transfer) {
-  case MPM_FLIP:
-  case MPM_APIC:
-  case MPM_APIC_MLS:
-    return MPM_OK;
-  case MPM_TPIC:
-  case MPM_TFLIP:
-  case MPM_AFLIP:
-  case MPM_XPIC:
+static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
+  if (d->transfer < MPM_FLIP || d->transfer > MPM_APIC_MLS)
+    return mpmi_fail(c, MPM_E_ARG, "transfer is %d: it must be an MPM_FLIP ... MPM_APIC_MLS",
+                     (int)d->transfer);
+  if (d->transfer == MPM_APIC_MLS && !(grid->moment > 0.0))
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "transfer %d is not in this version: use MPM_FLIP, MPM_APIC or MPM_APIC_MLS",
-                     (int)transfer);
-  default:
-    return mpmi_fail(c, MPM_E_ARG, "transfer is %d: it must be an MPM_FLIP ... MPM_APIC_MLS", (int)transfer);
-  }
+                     "transfer MPM_APIC_MLS needs a quadratic or cubic B-spline with ghost or periodic "
+                     "boundaries: use MPM_APIC with this grid");
+  if (d->transfer == MPM_XPIC && (d->xpic_order < 1 || d->xpic_order > 5))
+    return mpmi_fail(c, MPM_E_ARG, "xpic_order is %d: it must be 1 ... 5", (int)d->xpic_order);
+  return MPM_OK;
 }
 
 /* Options that change nothing while they have their default, and that this version does not have. */
@@ -65,10 +55,8 @@ static mpm_status known_options(mpm_context *c, const mpm_stepper_desc *d) {
     const char *name, *use;
     int32_t value, off, high;
   } option[] = {
-      {"position_order", "1", d->position_order, 1, 2},
       {"locking_remedy", "MPM_LOCKING_NONE", d->locking_remedy, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE},
-      {"quasi_static", "0", d->quasi_static, 0, 1},
-      {"staggered", "0", d->staggered, 0, 1}};
+      {"quasi_static", "0", d->quasi_static, 0, 1}};
   for (size_t i = 0; i < sizeof option / sizeof *option; ++i) {
     if (option[i].value < option[i].off || option[i].value > option[i].high)
       return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be %d ... %d", option[i].name, (int)option[i].value,
@@ -79,9 +67,13 @@ static mpm_status known_options(mpm_context *c, const mpm_stepper_desc *d) {
   }
   if (!isfinite(d->pic_damping) || d->pic_damping < 0.0)
     return mpmi_fail(c, MPM_E_ARG, "pic_damping is %g: it must be finite and >= 0", d->pic_damping);
-  if (d->pic_damping > 0.0)
-    return mpmi_fail(c, MPM_E_UNSUPPORTED, "pic_damping = %g is not in this version: use flip",
-                     d->pic_damping);
+  if (d->position_order != 1 && d->position_order != 2)
+    return mpmi_fail(c, MPM_E_ARG, "position_order is %d: it must be 1 or 2", (int)d->position_order);
+  if (d->staggered != 0 && d->staggered != 1)
+    return mpmi_fail(c, MPM_E_ARG, "staggered is %d: it must be 0 or 1", (int)d->staggered);
+  if (d->staggered && d->position_order == 2)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "staggered steps are of second order with position_order = 1: use that");
   return MPM_OK;
 }
 
@@ -89,8 +81,8 @@ static mpm_status read_desc(mpm_context *c, const mpm_grid *grid, const mpm_step
                             mpm_stepper_desc *out) {
   *out = defaults;
   mpm_status status = desc ? mpmi_read_struct(c, "mpm_stepper_desc", desc, sizeof *out, out) : MPM_OK;
-  if (status || (status = known_scheme(c, out->scheme)) ||
-      (status = known_transfer(c, grid, out->transfer)) || (status = known_options(c, out)))
+  if (status || (status = known_scheme(c, out->scheme)) || (status = known_transfer(c, grid, out)) ||
+      (status = known_options(c, out)))
     return status;
   if (!(out->flip >= 0.0 && out->flip <= 1.0))
     return mpmi_fail(c, MPM_E_ARG, "flip is %g: it must lie in [0, 1]", out->flip);
@@ -147,6 +139,12 @@ mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_st
   ++grid->children;
   *out = s;
   return MPM_OK;
+}
+
+double mpmi_flip_share(const mpm_stepper *s) {
+  if (!mpmi_is_blend(s)) return 0.0;
+  const double kept = 1.0 - s->desc.pic_damping * s->velocity_dt; /* MPoint theory eq. 59 */
+  return kept > 0.0 ? s->desc.flip * kept : 0.0;
 }
 
 static mpm_status idle(mpm_stepper *s) {
@@ -274,6 +272,7 @@ mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   if (!d.reference_positions || status)
     for (int32_t m = 0; m < s->member_count; ++m) mpmi_field_make_absent(s->member[m].set, MPMI_REFERENCE);
   if (status) return status;
+  if (!d.staggered || !s->desc.staggered) s->previous_dt = 0.0;
   s->desc = d;
   s->energies.valid = 0; /* the angular momentum depends on the transfer */
   return MPM_OK;

@@ -5,6 +5,7 @@
  *   p2g.c        particles -> nodes
  *   nodes.c      momentum -> velocity on free nodes
  *   boundary.c   velocity callback, walls, periodic images
+ *   xpic.c       corrections of the nodal velocities for XPIC
  *   g2p.c        nodes -> particles: velocity, position, deformation gradient, stress
  *   commit.c     the new state becomes the state, or is dropped
  *
@@ -82,6 +83,8 @@ struct mpm_stepper {
   int32_t member_count, member_capacity;
   mpmi_member *member;
   double t, dt;
+  double velocity_dt; /* over which forces change velocities: dt, or staggered the mean of two steps */
+  double previous_dt; /* of the last step, for the next one's mean; 0: none */
   int64_t step, resorts, removed;
   double controller_dt; /* of mpm_advance; 0: none yet */
 
@@ -106,11 +109,11 @@ struct mpm_stepper {
   mpmi_sums *block_sums; /* [blocks] of the step; added up in block order */
   int64_t block_sums_capacity;
 
-  /* Nodes: values doubles each. First projection: [p m f .] then [v m dv .]. MUSL projects once more, into
-   * again. */
+  /* Nodes: values doubles each, [p m f .] then [v m dv .]. The other projections go into again, [p m] then [v
+   * m]; XPIC adds up its corrections in correction. */
   int32_t values;
-  int64_t node_capacity, again_capacity; /* in doubles */
-  double *node, *again;
+  int64_t node_capacity, again_capacity, correction_capacity; /* in doubles */
+  double *node, *again, *correction;
   int64_t impulse_capacity;
   int32_t impulses; /* something can give nodes an impulse: then */
   double
@@ -141,13 +144,26 @@ struct mpm_stepper {
   int64_t active_count, active_capacity;
 };
 
-/* Does the transfer carry an affine matrix, and is it the fused MLS form? */
+/* What a transfer is made of: particles may give the nodes an affine velocity, with C or with the gradient L
+ * (Taylor); and take back a blend of increment and velocity, or the velocity. */
 static inline int32_t mpmi_is_affine(const mpm_stepper *s) {
-  return s->desc.transfer == MPM_APIC || s->desc.transfer == MPM_APIC_MLS;
+  return s->desc.transfer != MPM_FLIP && s->desc.transfer != MPM_XPIC;
+}
+static inline int32_t mpmi_is_taylor(const mpm_stepper *s) {
+  return s->desc.transfer == MPM_TPIC || s->desc.transfer == MPM_TFLIP;
 }
 static inline int32_t mpmi_is_mls(const mpm_stepper *s) {
   return s->desc.transfer == MPM_APIC_MLS;
 }
+static inline int32_t mpmi_is_blend(const mpm_stepper *s) {
+  return s->desc.transfer == MPM_FLIP || s->desc.transfer == MPM_TFLIP || s->desc.transfer == MPM_AFLIP;
+}
+/* Does XPIC have corrections? Of order 1 it is PIC. */
+static inline int32_t mpmi_corrects(const mpm_stepper *s) {
+  return s->desc.transfer == MPM_XPIC && s->desc.xpic_order > 1;
+}
+/* Share of FLIP in the blend of a step, 0 for the other transfers. */
+double mpmi_flip_share(const mpm_stepper *s);
 
 /* Errors (failure.c): failures of tasks are collected, the first decides. */
 void mpmi_failure_clear(mpmi_failure *failure);
@@ -169,12 +185,28 @@ mpm_status mpmi_stepper_adopt(mpm_stepper *s);
 
 /* Stages. */
 mpm_status mpmi_stage_forces(mpm_stepper *s, double dt);
-enum { MPMI_P2G_FORCES, MPMI_P2G_AGAIN /* momentum only, from the new velocities: MUSL */ };
-mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t what, double dt);
-mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t what, double dt);
-mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t what, double dt);
-enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2 };
+/* A projection of particles onto nodes and what is done with it there. Beside the one with the forces there
+ * are those of velocity alone: before it for the strain of USF, after it for the strain of MUSL, and for the
+ * corrections of XPIC. They go into other nodes and book no reactions. */
+enum {
+  MPMI_PROJECT_FORCES,  /* momentum and force */
+  MPMI_PROJECT_STRAIN,  /* momentum, from the velocities at the start of the step */
+  MPMI_PROJECT_AGAIN,   /* momentum, from the new velocities */
+  MPMI_PROJECT_CORRECT, /* momentum without its affine part, from the second copy of the velocities */
+  MPMI_PROJECTIONS
+};
+/* The first projection of a step asks the host for prescribed velocities; later ones keep to the answer. */
+static inline int32_t mpmi_asks_host(const mpm_stepper *s, int32_t projection) {
+  return projection == (s->desc.scheme == MPM_USF ? MPMI_PROJECT_STRAIN : MPMI_PROJECT_FORCES);
+}
+mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t projection);
+mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t projection);
+mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt);
+/* G2P_PROBE gathers nodal velocities into the second copy of the particles' and does nothing else. */
+enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2, MPMI_G2P_PROBE = 4 };
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt);
+/* xpic.c: the corrections of XPIC, left in the second copy of the particles' velocities. */
+mpm_status mpmi_stage_xpic(mpm_stepper *s);
 void mpmi_commit(mpm_stepper *s, double dt);
 void mpmi_roll_back(mpm_stepper *s);
 
@@ -188,6 +220,8 @@ void mpmi_tile_fetch(const mpm_stepper *s, int64_t block, const double *nodes, i
 void mpmi_tile_add(const mpm_stepper *s, int64_t block, double *nodes, int32_t values, double *tile);
 /* Axes of the basis as seen from a block. */
 void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis);
+/* Where the particles of a set are, and how large; copy: of position and deformation gradient. */
+mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy);
 
 /* Runs task over [0, count), on this thread when the host's callbacks must stay on it. */
 mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm_task_fn task, void *data);
@@ -196,6 +230,10 @@ mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm
 mpm_status mpmi_stepper_energies(mpm_stepper *s);
 double mpmi_stable_dt_of(const mpm_stepper *s, const mpmi_sums *sums);
 void mpmi_add_sums(mpmi_sums *sum, const mpmi_sums *other);
+/* Gives a survey the second moments of the basis at n particles, for the affine part of the angular momentum;
+ * copy: of their positions. buffer: [3][ld]. */
+void mpmi_survey_moments(const mpm_stepper *s, const mpm_particles *set, int32_t copy, int64_t begin,
+                         int64_t n, int64_t ld, double *buffer, mpmi_survey *job);
 /* Everything of the info that does not depend on how the step went. */
 void mpmi_fill_info(const mpm_stepper *s, mpm_step_info *info);
 

@@ -201,13 +201,17 @@ static int32_t gives_impulses(const mpm_stepper *s) {
 static mpm_status prepare_nodes(mpm_stepper *s) {
   const int64_t slots = s->blocks.count * s->blocks.nodes;
   mpm_status status;
-  s->values = mpmi_is_mls(s) && !s->staged ? 4 : 8;
+  s->values = mpmi_is_mls(s) && !s->staged && s->desc.position_order == 1 ? 4 : 8;
   if ((status = mpmi_reserve(s->context, (void **)&s->node, &s->node_capacity,
                              roomy(slots * s->values, s->node_capacity), sizeof *s->node)))
     return status;
-  if (s->desc.scheme == MPM_MUSL &&
+  if ((s->desc.scheme == MPM_MUSL || s->desc.scheme == MPM_USF || mpmi_corrects(s)) &&
       (status = mpmi_reserve(s->context, (void **)&s->again, &s->again_capacity,
                              roomy(slots * 4, s->again_capacity), sizeof *s->again)))
+    return status;
+  if (mpmi_corrects(s) &&
+      (status = mpmi_reserve(s->context, (void **)&s->correction, &s->correction_capacity,
+                             roomy(slots * 4, s->correction_capacity), sizeof *s->correction)))
     return status;
   s->impulses = gives_impulses(s);
   if (s->impulses && (status = mpmi_reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
@@ -275,6 +279,7 @@ void mpmi_stepper_free_topology(mpm_stepper *s) {
   mpmi_free(c, s->scratch_memory, s->scratch_bytes);
   mpmi_free(c, s->node, mpmi_bytes(s->node_capacity, sizeof *s->node));
   mpmi_free(c, s->again, mpmi_bytes(s->again_capacity, sizeof *s->again));
+  mpmi_free(c, s->correction, mpmi_bytes(s->correction_capacity, sizeof *s->correction));
   mpmi_free(c, s->impulse, mpmi_bytes(s->impulse_capacity, sizeof *s->impulse));
   mpmi_free(c, s->held, (size_t)s->held_capacity);
   mpmi_free(c, s->held_value, mpmi_bytes(s->held_capacity, sizeof *s->held_value));

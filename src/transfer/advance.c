@@ -3,7 +3,9 @@
 
 /*   FLIP/PIC blend  v = a (v_p + sum w dv) + (1 - a) sum w v     MPoint theory eq. 36
  *   affine, PIC     v = sum w v
+ *   XPIC            v = sum w v + correction                     stepper/xpic.c
  *   position        x = x_p + dt sum w v                         Guilkey eq. 10, Steffen et al. 2008 eq. 10
+ *   second order    x = x_p + dt sum w (v - dv / 2)              MPoint theory eq. 37, its misprint mended
  */
 MPMI_INLINE uint32_t move(int32_t dim, const mpmi_move *job, int64_t n) {
   const double dt = job->dt, flip = job->flip, pic = 1.0 - flip;
@@ -16,9 +18,12 @@ MPMI_INLINE uint32_t move(int32_t dim, const mpmi_move *job, int64_t n) {
     for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
       const mpmi_lanes mean = mpmi_lanes_load(v_bar + s);
       mpmi_lanes v = mean;
-      if (job->form == MPMI_GATHER_8)
+      if (job->rule == MPMI_MOVE_BLEND)
         v = flip * (mpmi_lanes_load(job->v_old[k] + s) + mpmi_lanes_load(dv + s)) + pic * mean;
-      const mpmi_lanes x = mpmi_lanes_load(job->x_old[k] + s) + dt * mean;
+      if (job->rule == MPMI_MOVE_CORRECT) v = mean + mpmi_lanes_load(job->v_new[k] + s);
+      mpmi_lanes path = mean;
+      if (job->lag > 0.0) path -= job->lag * mpmi_lanes_load(dv + s);
+      const mpmi_lanes x = mpmi_lanes_load(job->x_old[k] + s) + dt * path;
       mpmi_lanes_store(job->v_new[k] + s, v);
       mpmi_lanes_store(job->x_new[k] + s, x);
       mpmi_lanes away = x - centre;

@@ -1,12 +1,12 @@
 /* What every basis has in common. A basis is a file that defines
  *
- *   MPMI_INLINE void NAME_axis(const mpmi_axis *axis, int64_t n, const double *x, int32_t gradient,
- *                              double (*w)[MPMI_CHUNK], double (*g)[MPMI_CHUNK], double *first, double
- * *place)
+ *   MPMI_INLINE void NAME_axis(const mpmi_axis *axis, int64_t n, const mpmi_chunk *at, int32_t gradient,
+ *                              mpmi_stencils *out)
  *
  * for n particles along one axis: weights w[k], their gradients g[k] when asked for, the distance in cells
  * from the particle to the first node of its stencil, and the place of that node in the tile; then says
- * MPMI_BASIS(NAME, width). kernels.c lists it. */
+ * MPMI_BASIS(NAME, width, EVEN) when its nodes are a spacing apart, and MPMI_BASIS(NAME, width, UNEVEN) when
+ * it gives the distance of each node. kernels.c lists it. */
 #ifndef MPMI_BASIS_H
 #define MPMI_BASIS_H
 
@@ -15,16 +15,29 @@
 /* Below this share of h^2 an axis has no usable second moment and carries no affine part. */
 #define MPMI_MOMENT_CUT 1e-8
 
-/* From w and the distance d_k = (first + k) h of node k from the particle: D = sum w_k d_k^2, its inverse,
- * and u_k = w_k d_k; the MLS form puts u_k / D in the place of the gradient. */
-MPMI_INLINE void mpmi_moments(int32_t width, double h, int32_t need, int64_t n, double (*w)[MPMI_CHUNK],
-                              double (*g)[MPMI_CHUNK], double (*u)[MPMI_CHUNK], const double *first,
-                              double *inverse_moment) {
+enum { EVEN, UNEVEN };
+
+/* A chunk of particles along one axis. size, stretch: see mpmi_points. */
+typedef struct mpmi_chunk {
+  const double *x, *size, *stretch;
+} mpmi_chunk;
+
+/* Their stencils along that axis, component arrays of a chunk. */
+typedef struct mpmi_stencils {
+  double (*w)[MPMI_CHUNK], (*g)[MPMI_CHUNK], *first, *place;
+  double (*distance)[MPMI_CHUNK]; /* from the particle to each node, in cells; UNEVEN only */
+} mpmi_stencils;
+
+/* From w and the distances d_k of the nodes from the particle: D = sum w_k d_k^2, its inverse, and u_k = w_k
+ * d_k; the MLS form puts u_k / D in the place of the gradient. */
+MPMI_INLINE void mpmi_moments(int32_t width, int32_t spaced, double h, int32_t need, int64_t n,
+                              const mpmi_stencils *at, double (*u)[MPMI_CHUNK], double *inverse_moment) {
   const double cut = MPMI_MOMENT_CUT * h * h;
+  double(*w)[MPMI_CHUNK] = at->w;
   MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
     double D = 0.0;
     for (int32_t k = 0; k < width; ++k) {
-      double d = (first[p] + k) * h, ud = w[k][p] * d;
+      double d = (spaced == EVEN ? at->first[p] + k : at->distance[k][p]) * h, ud = w[k][p] * d;
       u[k][p] = ud;
       D += ud * d;
     }
@@ -32,7 +45,7 @@ MPMI_INLINE void mpmi_moments(int32_t width, double h, int32_t need, int64_t n, 
   }
   if (need & MPMI_NEED_MLS)
     for (int32_t k = 0; k < width; ++k)
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) g[k][p] = u[k][p] * inverse_moment[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) at->g[k][p] = u[k][p] * inverse_moment[p];
 }
 
 /* The first nodes of stencils, relative to the tile, in the periodic image that lies in the tile. */
@@ -41,6 +54,12 @@ MPMI_INLINE void mpmi_into_tile(const mpmi_axis *a, int64_t n, double *place) {
       double at = place[p];
       place[p] = at - a->period * mpmi_round((at - a->middle) * a->inverse_period);
     }
+}
+
+/* The cell that holds a particle at xi; the last one when it is on the upper face. */
+MPMI_INLINE double mpmi_cell(const mpmi_axis *a, double xi) {
+  const double cell = mpmi_floor(xi);
+  return cell > a->last_cell ? a->last_cell : cell;
 }
 
 /* Place of each stencil in the tile. */
@@ -55,26 +74,28 @@ MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (
   }
 }
 
-#define MPMI_BASIS_IN(dim, name, width)                                                                      \
-  void KERNEL(name##_##dim)(const mpmi_axis *axis, int32_t need, int64_t n, const double *const *x,          \
-                            mpmi_weights *W);                                                                \
-  void KERNEL(name##_##dim)(const mpmi_axis *axis, int32_t need, int64_t n, const double *const *x,          \
-                            mpmi_weights *W) {                                                               \
+#define MPMI_BASIS_IN(dim, name, width, spaced)                                                              \
+  void KERNEL(name##_##dim)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,   \
+                            int64_t n, mpmi_weights *W);                                                     \
+  void KERNEL(name##_##dim)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,   \
+                            int64_t n, mpmi_weights *W) {                                                    \
     _Alignas(64) double place[3][MPMI_CHUNK];                                                                \
     for (int32_t k = 0; k < (dim); ++k) {                                                                    \
+      const mpmi_chunk at = {points->x[k] + begin, points->size[k] ? points->size[k] + begin : NULL,         \
+                             points->stretch[k] ? points->stretch[k] + begin : NULL};                        \
+      const mpmi_stencils out = {W->w[k], W->g[k], W->first[k], place[k], W->u[k]};                          \
       if (need & MPMI_NEED_GRADIENT)                                                                         \
-        name##_axis(axis + k, n, x[k], 1, W->w[k], W->g[k], W->first[k], place[k]);                          \
+        name##_axis(axis + k, n, &at, 1, &out);                                                              \
       else                                                                                                   \
-        name##_axis(axis + k, n, x[k], 0, W->w[k], W->g[k], W->first[k], place[k]);                          \
+        name##_axis(axis + k, n, &at, 0, &out);                                                              \
       if (need & (MPMI_NEED_MOMENT | MPMI_NEED_MLS))                                                         \
-        mpmi_moments(width, axis[k].spacing, need, n, W->w[k], W->g[k], W->u[k], W->first[k],                \
-                     W->inverse_moment[k]);                                                                  \
+        mpmi_moments(width, spaced, axis[k].spacing, need, n, &out, W->u[k], W->inverse_moment[k]);          \
     }                                                                                                        \
-    mpmi_find_nodes(dim, width, n, place, W->node);                                                          \
+    if (!(need & MPMI_NO_PLACE)) mpmi_find_nodes(dim, width, n, place, W->node);                             \
   }
-#define MPMI_BASIS(name, width)                                                                              \
-  MPMI_BASIS_IN(1, name, width)                                                                              \
-  MPMI_BASIS_IN(2, name, width)                                                                              \
-  MPMI_BASIS_IN(3, name, width)
+#define MPMI_BASIS(name, width, spaced)                                                                      \
+  MPMI_BASIS_IN(1, name, width, spaced)                                                                      \
+  MPMI_BASIS_IN(2, name, width, spaced)                                                                      \
+  MPMI_BASIS_IN(3, name, width, spaced)
 
 #endif

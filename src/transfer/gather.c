@@ -41,8 +41,8 @@ MPMI_INLINE void add_slope(int32_t part, int32_t k, double g, mpmi_node v, mpmi_
 
 MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W, int64_t p,
                                  const double *tile, mpmi_gathered *out) {
-  const int32_t values = form == MPMI_GATHER_8 ? 8 : 4, mls = form == MPMI_GATHER_4_MLS;
-  const int32_t affine = form == MPMI_GATHER_4_AFFINE;
+  const int32_t values = form >= MPMI_GATHER_8 ? 8 : 4, mls = form == MPMI_GATHER_4_MLS;
+  const int32_t affine = form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW, part = values == 8 ? MPMI_HALF : MPMI_LOW;
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, mid = dim >= 2 ? dim - 2 : 0;
   const double *stencil = tile + (int64_t)values * W->node[p];
@@ -94,10 +94,10 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
   }
 }
 
-/* Column k of C in the MLS form: D = h^2 / 4 on every axis of the quadratic B-spline. */
+/* Column k of C in the MLS form. */
 MPMI_INLINE void unpack_mls(int32_t width, double h, int32_t k, int64_t n, const mpmi_weights *W,
                             const mpmi_gathered *in, const double *v, int64_t ld, double *const *C) {
-  const double factor = 4.0 / h;
+  const double factor = MPMI_MLS_INVERSE(width) / h;
   mpmi_unpack(n, in->M[k], C[0], C[1], C[2]);
   for (int32_t r = 0; r < 3; ++r) {
     const double *vr = v + r * ld;
@@ -122,7 +122,7 @@ MPMI_INLINE void unpack(int32_t dim, int32_t width, int32_t form, const mpmi_gat
   const int64_t ld = job->ld;
   double *v = job->v + s, *dv = job->dv + s;
   mpmi_unpack(n, in->v, v, v + ld, v + 2 * ld);
-  if (form == MPMI_GATHER_8) mpmi_unpack(n, in->dv, dv, dv + ld, dv + 2 * ld);
+  if (form >= MPMI_GATHER_8) mpmi_unpack(n, in->dv, dv, dv + ld, dv + 2 * ld);
   for (int32_t k = 0; k < dim; ++k) {
     double *L[3], *C[3];
     for (int32_t r = 0; r < 3; ++r) {
@@ -133,7 +133,7 @@ MPMI_INLINE void unpack(int32_t dim, int32_t width, int32_t form, const mpmi_gat
       unpack_mls(width, job->axis[k].spacing, k, n, W, in, v, ld, L);
     else
       mpmi_unpack(n, in->L[k], L[0], L[1], L[2]);
-    if (form == MPMI_GATHER_4_AFFINE) unpack_affine(k, n, W, in, C);
+    if (form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE) unpack_affine(k, n, W, in, C);
   }
 }
 
@@ -143,9 +143,8 @@ MPMI_INLINE void gather(int32_t dim, int32_t width, int32_t form, const mpmi_gat
   mpmi_gathered out;
   for (int64_t s = 0; s < count; s += MPMI_CHUNK) {
     const int64_t n = count - s < MPMI_CHUNK ? count - s : MPMI_CHUNK;
-    const double *x[3], *volume = job->initial_volume + begin + s;
-    for (int32_t k = 0; k < dim; ++k) x[k] = job->x[k] + begin + s;
-    job->weights(job->axis, job->need, n, x, &W);
+    const double *volume = job->initial_volume + begin + s;
+    job->weights(job->axis, job->need, &job->points, begin + s, n, &W);
     for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
         double live = volume[p] > 0.0 ? 1.0 : 0.0;
         W.w[0][k][p] *= live;

@@ -4,14 +4,18 @@
 #define SCATTER_FORMS(dim, width)                                                                            \
   SCATTER(dim, width, MPMI_SCATTER_4, scatter_##dim##_##width##_4)                                           \
   SCATTER(dim, width, MPMI_SCATTER_4_AFFINE, scatter_##dim##_##width##_4_affine)                             \
+  SCATTER(dim, width, MPMI_SCATTER_4_UNEVEN, scatter_##dim##_##width##_4_uneven)                             \
   SCATTER(dim, width, MPMI_SCATTER_8, scatter_##dim##_##width##_8)                                           \
   SCATTER(dim, width, MPMI_SCATTER_8_AFFINE, scatter_##dim##_##width##_8_affine)
 SCATTER_FORMS(1, 2)
 SCATTER_FORMS(1, 3)
+SCATTER_FORMS(1, 4)
 SCATTER_FORMS(2, 2)
 SCATTER_FORMS(2, 3)
+SCATTER_FORMS(2, 4)
 SCATTER_FORMS(3, 2)
 SCATTER_FORMS(3, 3)
+SCATTER_FORMS(3, 4)
 #undef SCATTER_FORMS
 #undef SCATTER
 #endif
@@ -20,13 +24,17 @@ SCATTER_FORMS(3, 3)
   GATHER(dim, width, MPMI_GATHER_4, gather_##dim##_##width##_4)                                              \
   GATHER(dim, width, MPMI_GATHER_4_AFFINE, gather_##dim##_##width##_4_affine)                                \
   GATHER(dim, width, MPMI_GATHER_4_MLS, gather_##dim##_##width##_4_mls)                                      \
-  GATHER(dim, width, MPMI_GATHER_8, gather_##dim##_##width##_8)
+  GATHER(dim, width, MPMI_GATHER_8, gather_##dim##_##width##_8)                                              \
+  GATHER(dim, width, MPMI_GATHER_8_AFFINE, gather_##dim##_##width##_8_affine)
 GATHER_FORMS(1, 2)
 GATHER_FORMS(1, 3)
+GATHER_FORMS(1, 4)
 GATHER_FORMS(2, 2)
 GATHER_FORMS(2, 3)
+GATHER_FORMS(2, 4)
 GATHER_FORMS(3, 2)
 GATHER_FORMS(3, 3)
+GATHER_FORMS(3, 4)
 #undef GATHER_FORMS
 #undef GATHER
 #endif

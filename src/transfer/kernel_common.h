@@ -18,6 +18,9 @@ MPMI_INLINE void mpmi_prefetch(const mpmi_streams *streams, int64_t next, int64_
     __builtin_prefetch(streams->at[i / LINES] + next + DOUBLES * (i % LINES), 0, 2);
 }
 
+/* h^2 / D of the MLS form: quadratic and cubic B-splines have D = h^2 / 4 and h^2 / 3 everywhere. */
+#define MPMI_MLS_INVERSE(width) ((width) == 3 ? 4.0 : 3.0)
+
 /* Nearest integer for |x| < 2^51 by adding and taking away 1.5 * 2^52: every instruction set can vectorise
  * it. */
 MPMI_INLINE double mpmi_round(double x) {

@@ -2,13 +2,19 @@
 #include "transfer/kernels.h"
 
 #define WEIGHTS(name)                                                                                        \
-  void KERNEL(name)(const mpmi_axis *, int32_t, int64_t, const double *const *, mpmi_weights *);
+  void KERNEL(name)(const mpmi_axis *, int32_t, const mpmi_points *, int64_t, int64_t, mpmi_weights *);
 #define BASIS(name)                                                                                          \
   WEIGHTS(name##_1)                                                                                          \
   WEIGHTS(name##_2)                                                                                          \
   WEIGHTS(name##_3)
 BASIS(bspline1)
 BASIS(bspline2)
+BASIS(bspline3)
+BASIS(gimp)
+BASIS(open_bspline2)
+BASIS(open_bspline3)
+#define BY_DIM(name)                                                                                         \
+  { NULL, KERNEL(name##_1), KERNEL(name##_2), KERNEL(name##_3) }
 #define SCATTER(dim, width, form, name) void KERNEL(name)(const mpmi_scatter *, int64_t, int64_t);
 #define GATHER(dim, width, form, name)  void KERNEL(name)(const mpmi_gather *, int64_t, int64_t);
 #include "transfer/instances.h"
@@ -28,9 +34,12 @@ int64_t KERNEL(update)(int32_t, double *, int64_t, double, double);
 
 extern const mpmi_kernels KERNEL(kernels);
 const mpmi_kernels KERNEL(kernels) = {
-    .weights = {{NULL},
-                {NULL, KERNEL(bspline1_1), KERNEL(bspline1_2), KERNEL(bspline1_3)},
-                {NULL, KERNEL(bspline2_1), KERNEL(bspline2_2), KERNEL(bspline2_3)}},
+    .weights = {[MPMI_FAMILY_BSPLINE1] = BY_DIM(bspline1),
+                [MPMI_FAMILY_BSPLINE2] = BY_DIM(bspline2),
+                [MPMI_FAMILY_BSPLINE3] = BY_DIM(bspline3),
+                [MPMI_FAMILY_GIMP] = BY_DIM(gimp),
+                [MPMI_FAMILY_OPEN_BSPLINE2] = BY_DIM(open_bspline2),
+                [MPMI_FAMILY_OPEN_BSPLINE3] = BY_DIM(open_bspline3)},
 #define SCATTER(dim, width, form, name) .scatter[dim][width][form] = KERNEL(name),
 #define GATHER(dim, width, form, name)  .gather[dim][width][form] = KERNEL(name),
 #include "transfer/instances.h"
@@ -38,8 +47,8 @@ const mpmi_kernels KERNEL(kernels) = {
     .fetch_box = KERNEL(fetch_box),
     .load_box = KERNEL(load_box),
     .update = KERNEL(update),
-    .move = {NULL, KERNEL(move_1), KERNEL(move_2), KERNEL(move_3)},
-    .deform = {NULL, KERNEL(deform_1), KERNEL(deform_2), KERNEL(deform_3)},
-    .volume = {NULL, KERNEL(volume_1), KERNEL(volume_2), KERNEL(volume_3)},
-    .survey = {NULL, KERNEL(survey_1), KERNEL(survey_2), KERNEL(survey_3)},
+    .move = BY_DIM(move),
+    .deform = BY_DIM(deform),
+    .volume = BY_DIM(volume),
+    .survey = BY_DIM(survey),
 };

@@ -24,10 +24,18 @@ enum { MPMI_CHUNK = 16, MPMI_GROUP = 16, MPMI_MAX_WIDTH = 4 };
 typedef struct mpmi_axis {
   double origin, spacing, inverse_spacing;
   double last_cell;              /* the last one has particles on the upper face too */
+  double first_knot, last_knot;  /* in cells: open knot vectors are repeated there; else far away */
+  double domain;                 /* edge of the particle domains in cells, where particles have none */
   double period, inverse_period; /* in cells; 0 when the axis is not periodic */
   double tile_base;              /* node at the corner of the tile */
   double middle; /* of the valid first nodes, relative to tile_base: picks the periodic image */
 } mpmi_axis;
+
+/* Where particles are, each array at slot 0, and for GIMP the edges of their domains: size, or NULL for one
+ * size for all, times |stretch|, or NULL for 1. */
+typedef struct mpmi_points {
+  const double *x[3], *size[3], *stretch[3];
+} mpmi_points;
 
 /* Weights of a chunk along each axis: w basis; g second weight of the first-order terms: the gradient, or u /
  * D in the MLS form; u = w (x_i - x_p), with inverse_moment = 1 / sum w (x_i - x_p)^2, or 0 where that
@@ -45,20 +53,36 @@ typedef struct mpmi_weights {
 enum {
   MPMI_NEED_GRADIENT = 1, /* g */
   MPMI_NEED_MOMENT = 2,   /* u and inverse_moment */
-  MPMI_NEED_MLS = 4       /* these, and g = u / D in place of the gradient */
+  MPMI_NEED_MLS = 4,      /* these, and g = u / D in place of the gradient */
+  MPMI_NO_PLACE = 8       /* but not node: the particles may lie anywhere */
 };
 
 /* Weights of n (a multiple of 16, at most a chunk) particles along all axes: one function per basis and dim;
  * everything else is common. */
-typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, int64_t n, const double *const *x,
-                                mpmi_weights *out);
+typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,
+                                int64_t n, mpmi_weights *out);
 
 /* Forms of the scatter: 4 values (momentum and mass; the fused MLS force may ride on the momentum) or 8
- * (force apart), with or without the affine part of the velocity. */
-enum { MPMI_SCATTER_4, MPMI_SCATTER_4_AFFINE, MPMI_SCATTER_8, MPMI_SCATTER_8_AFFINE, MPMI_SCATTER_FORMS };
+ * (force apart), with or without the affine part of the velocity; UNEVEN: of nodes that are not a spacing
+ * apart. */
+enum {
+  MPMI_SCATTER_4,
+  MPMI_SCATTER_4_AFFINE,
+  MPMI_SCATTER_4_UNEVEN,
+  MPMI_SCATTER_8,
+  MPMI_SCATTER_8_AFFINE,
+  MPMI_SCATTER_FORMS
+};
 /* Forms of the gather: 4 values: velocity and L; and C beside L; C of the MLS form in place of L; 8 values:
- * velocity, its change and L. */
-enum { MPMI_GATHER_4, MPMI_GATHER_4_AFFINE, MPMI_GATHER_4_MLS, MPMI_GATHER_8, MPMI_GATHER_FORMS };
+ * velocity, its change and L; and C. */
+enum {
+  MPMI_GATHER_4,
+  MPMI_GATHER_4_AFFINE,
+  MPMI_GATHER_4_MLS,
+  MPMI_GATHER_8,
+  MPMI_GATHER_8_AFFINE,
+  MPMI_GATHER_FORMS
+};
 
 /* Component arrays, each at slot 0, that the chunk after the present one will touch. */
 enum { MPMI_MAX_STREAMS = 64 };
@@ -72,7 +96,8 @@ typedef struct mpmi_scatter {
   mpmi_axis axis[3];
   mpmi_weights_fn weights;
   int32_t need;
-  const double *x[3], *v[3], *mass, *volume;
+  mpmi_points points;
+  const double *v[3], *mass, *volume;
   const double *stress[6]; /* by (xx yy zz xy yz xz) */
   const double *affine[9]; /* row * 3 + column; for the affine forms */
   const double *force[3];  /* external force on the particle beside gravity, or NULL */
@@ -89,7 +114,8 @@ typedef struct mpmi_gather {
   mpmi_axis axis[3];
   mpmi_weights_fn weights;
   int32_t need;
-  const double *x[3], *initial_volume; /* a hole has none: everything gathered for it is 0 */
+  mpmi_points points;
+  const double *initial_volume; /* a hole has none: everything gathered for it is 0 */
   const double *tile;
   int64_t ld;
   double *v, *dv, *L, *C; /* [3], [3], [9], [9]; outputs, slot `begin` at 0 */
@@ -100,10 +126,18 @@ typedef void (*mpmi_gather_fn)(const mpmi_gather *job, int64_t begin, int64_t n)
 /* Flags that advance kernels return for a batch: something to look at, particle by particle. */
 enum { MPMI_LEFT_TILE = 1, MPMI_OUTSIDE = 2, MPMI_NONFINITE = 4, MPMI_NOT_POSITIVE = 8 };
 
-/* New velocity and position of a batch (numerics: first-order position update). */
+/* How a particle's velocity follows from what was gathered. */
+enum {
+  MPMI_MOVE_SET,    /* v = v_bar */
+  MPMI_MOVE_BLEND,  /* v = flip (v_old + dv) + (1 - flip) v_bar */
+  MPMI_MOVE_CORRECT /* v = v_bar + what v_new holds: XPIC */
+};
+
+/* New velocity and position of a batch. */
 typedef struct mpmi_move {
-  int32_t form; /* of the gather: 8 updates by flip * (v + dv) + (1 - flip) * vbar, 4 sets vbar */
+  int32_t rule;
   double dt, flip;
+  double lag; /* share of dv in the position: 1/2 for the second-order update, else 0 */
   int64_t ld;
   const double *v_bar, *dv;          /* gathered, [3][ld] */
   const double *x_old[3], *v_old[3]; /* at the batch's first slot */
@@ -130,12 +164,15 @@ typedef void (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
 typedef uint32_t (*mpmi_volume_fn)(const double *const *F, const double *initial_volume, double *volume,
                                    int64_t n);
 
-/* Sums over a batch: energies, momenta and the largest rate (|v_k| + c) / h_k. */
+/* Sums over a batch: energies, momenta and the largest rate (|v_k| + c) / h_k. A survey looks at what the law
+ * gave, at the motion, or at both. */
+enum { MPMI_SURVEY_LAW = 1, MPMI_SURVEY_MOTION = 2 };
 typedef struct mpmi_sums {
   double kinetic, strain, work, rate, viscous_rate;
   double momentum[3], angular[3];
 } mpmi_sums;
 typedef struct mpmi_survey {
+  int32_t what;
   int64_t ld; /* of wave_speed ... */
   const double *x[3], *v[3], *mass, *initial_volume;
   const double *wave_speed, *kinematic_viscosity, *energy; /* [ld] of the batch */
@@ -143,9 +180,10 @@ typedef struct mpmi_survey {
   const double *force[3];                                  /* external force or NULL, */
   const double *x_old[3]; /* and old position: work over the step; NULL: no work */
   double gravity[3], period[3], inverse_period[3];
-  double origin[3], inverse_spacing[3], spacing[3], viscous_factor; /* 2 dim / h_min^2 */
-  int32_t order;                                                    /* of the basis: for the moment D */
-  const double *checked[2]; /* [checked_rows][ld] further values that must be finite */
+  double inverse_spacing[3], viscous_factor; /* 2 dim / h_min^2 */
+  const double *moment[3];   /* sum w (x_i - x)^2 of each particle along each axis, or NULL: */
+  double constant_moment[3]; /* the same for all */
+  const double *checked[2];  /* [checked_rows][ld] further values that must be finite */
   int32_t checked_rows[2];
 } mpmi_survey;
 typedef uint32_t (*mpmi_survey_fn)(const mpmi_survey *job, int64_t n, mpmi_sums *sums); /* adds to sums */
@@ -166,7 +204,7 @@ typedef void (*mpmi_load_box_fn)(int32_t values, int32_t node_values, const mpmi
 typedef int64_t (*mpmi_update_fn)(int32_t values, double *nodes, int64_t count, double cut, double dt);
 
 typedef struct mpmi_kernels {
-  mpmi_weights_fn weights[4][4];                                      /* by order of the B-spline, dim */
+  mpmi_weights_fn weights[MPMI_FAMILIES][4];                          /* by family of the basis, dim */
   mpmi_scatter_fn scatter[4][MPMI_MAX_WIDTH + 1][MPMI_SCATTER_FORMS]; /* by dim, width, form */
   mpmi_gather_fn gather[4][MPMI_MAX_WIDTH + 1][MPMI_GATHER_FORMS];
   mpmi_add_box_fn add_box;

@@ -74,22 +74,33 @@ MPMI_INLINE mpmi_pair second(int32_t affine, const mpmi_weights *W, int32_t axis
   return mpmi_pair_of(affine ? W->u[axis][k][p] : W->g[axis][k][p], W->g[axis][k][p]);
 }
 
-/* Mass, momentum and force. Without an affine part the columns have nothing to give to momentum. */
-MPMI_INLINE void scatter_forces(int32_t dim, int32_t width, int32_t affine, const mpmi_weights *W, int64_t p,
-                                const mpmi_first_order *of, double *MPMI_APART tile) {
-  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, all = MPMI_BOTH;
-  const int32_t part = affine ? MPMI_BOTH : MPMI_HIGH; /* of the columns */
-  const mpmi_node a = mpmi_node_load(all, of->a + 8 * p);
+/* a += second weight * column; with 4 values there is only the momentum's. */
+MPMI_INLINE mpmi_node add_second(int32_t values, int32_t part, mpmi_node a, int32_t affine,
+                                 const mpmi_weights *W, int32_t axis, int32_t k, int64_t p,
+                                 mpmi_node column) {
+  if (values == 4) return mpmi_node_fma(part, a, W->u[axis][k][p], column);
+  return mpmi_node_fma_pair(part, a, second(affine, W, axis, k, p), column);
+}
+
+/* Mass, momentum and force, or with 4 values mass and affine momentum. Without an affine part the columns
+ * have nothing to give to momentum. */
+MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t values, int32_t affine,
+                                     const mpmi_weights *W, int64_t p, const mpmi_first_order *of,
+                                     double *MPMI_APART tile) {
+  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
+  const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW;
+  const int32_t part = values == 4 ? MPMI_LOW : affine ? MPMI_BOTH : MPMI_HIGH; /* of the columns */
+  const mpmi_node a = mpmi_node_load(all, of->a + values * p);
   mpmi_node column[3];
-  for (int32_t k = 0; k < dim; ++k) column[k] = mpmi_node_load(part, of->column[k] + 8 * p);
-  double *stencil = tile + 8 * (int64_t)W->node[p];
+  for (int32_t k = 0; k < dim; ++k) column[k] = mpmi_node_load(part, of->column[k] + values * p);
+  double *stencil = tile + values * (int64_t)W->node[p];
   /* sums over the axes before the last: node += w_k value + s_k slope */
   mpmi_node plane = a, plane_1 = column[0], plane_2 = column[last], value = a, slope = column[last];
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
     if (dim < 3 && i > 0) break;
     if (dim == 3) {
       const double w = W->w[0][i][p];
-      plane = mpmi_node_fma_pair(part, mpmi_node_scale(all, w, a), second(affine, W, 0, i, p), column[0]);
+      plane = add_second(values, part, mpmi_node_scale(all, w, a), affine, W, 0, i, p, column[0]);
       plane_1 = mpmi_node_scale(part, w, column[1]);
       plane_2 = mpmi_node_scale(part, w, column[2]);
     }
@@ -97,15 +108,14 @@ MPMI_INLINE void scatter_forces(int32_t dim, int32_t width, int32_t affine, cons
       if (dim < 2 && j > 0) break;
       if (dim >= 2) {
         const double w = W->w[dim - 2][j][p];
-        value = mpmi_node_fma_pair(part, mpmi_node_scale(all, w, plane), second(affine, W, dim - 2, j, p),
-                                   plane_1);
+        value = add_second(values, part, mpmi_node_scale(all, w, plane), affine, W, dim - 2, j, p, plane_1);
         slope = mpmi_node_scale(part, w, plane_2);
       }
-      double *node = stencil + 8 * (i * edge + j) * (dim == 1 ? 0 : edge);
+      double *node = stencil + values * (i * edge + j) * (dim == 1 ? 0 : edge);
       MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
-        mpmi_node q = mpmi_node_load(all, node + 8 * k);
+        mpmi_node q = mpmi_node_load(all, node + values * k);
         q = mpmi_node_fma(all, q, W->w[last][k][p], value);
-        mpmi_node_store(all, node + 8 * k, mpmi_node_fma_pair(part, q, second(affine, W, last, k, p), slope));
+        mpmi_node_store(all, node + values * k, add_second(values, part, q, affine, W, last, k, p, slope));
       }
     }
   }
@@ -143,11 +153,12 @@ MPMI_INLINE void pack_force(int32_t dim, const mpmi_scatter *job, int64_t s, int
 }
 
 /* Momentum and mass. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis;
- * there the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Affine with 8 values: the columns
- * of m C. */
-MPMI_INLINE void pack_momentum(int32_t dim, int32_t form, const mpmi_scatter *job, int64_t s, int64_t n,
-                               const mpmi_weights *W, mpmi_first_order *of) {
-  const int32_t linear = form == MPMI_SCATTER_4_AFFINE, affine = linear || form == MPMI_SCATTER_8_AFFINE;
+ * there the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Other affine forms: the columns of
+ * m C. */
+MPMI_INLINE void pack_momentum(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t s,
+                               int64_t n, const mpmi_weights *W, mpmi_first_order *of) {
+  const int32_t linear = form == MPMI_SCATTER_4_AFFINE;
+  const int32_t affine = linear || form == MPMI_SCATTER_8_AFFINE || form == MPMI_SCATTER_4_UNEVEN;
   const int32_t fused = linear && job->fused_dt != 0.0, stride = form >= MPMI_SCATTER_8 ? 8 : 4;
   _Alignas(64) double p_[3][MPMI_CHUNK], column[3][3][MPMI_CHUNK];
   const double *mass = job->mass + s, *volume = job->volume + s;
@@ -162,8 +173,7 @@ MPMI_INLINE void pack_momentum(int32_t dim, int32_t form, const mpmi_scatter *jo
     for (int32_t k = 0; affine && k < dim; ++k) {
       const double *C = job->affine[3 * r + k] + s, *sigma = job->stress[stress_of[k][r]] + s;
       const double h = job->axis[k].spacing;
-      /* quadratic B-spline: D = h^2 / 4 on every axis */
-      const double scale = fused ? -job->fused_dt * 4.0 / h : 0.0;
+      const double scale = fused ? -job->fused_dt * MPMI_MLS_INVERSE(width) / h : 0.0;
       if (!linear) {
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) column[k][r][p] = mass[p] * C[p];
       } else {
@@ -188,10 +198,8 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
     for (int32_t k = 0; k < dim; ++k) __builtin_memset(of.column[k], 0, sizeof of.column[k]);
   for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
     const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
-    const double *x[3];
-    for (int32_t k = 0; k < dim; ++k) x[k] = job->x[k] + s;
-    job->weights(job->axis, job->need, n, x, &W);
-    pack_momentum(dim, form, job, s, n, &W, &of);
+    job->weights(job->axis, job->need, &job->points, s, n, &W);
+    pack_momentum(dim, width, form, job, s, n, &W, &of);
     if (form >= MPMI_SCATTER_8) pack_force(dim, job, s, n, &of);
     for (int64_t p = 0; p < n; ++p) {
       mpmi_prefetch(&job->streams, s + MPMI_CHUNK, p);
@@ -199,8 +207,10 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
         scatter_plain(dim, width, &W, p, &of, job->tile);
       else if (form == MPMI_SCATTER_4_AFFINE)
         scatter_linear(dim, width, &W, p, &of, job->tile);
+      else if (form == MPMI_SCATTER_4_UNEVEN)
+        scatter_first_order(dim, width, 4, 1, &W, p, &of, job->tile);
       else
-        scatter_forces(dim, width, form == MPMI_SCATTER_8_AFFINE, &W, p, &of, job->tile);
+        scatter_first_order(dim, width, 8, form == MPMI_SCATTER_8_AFFINE, &W, p, &of, job->tile);
     }
   }
 }

@@ -5,13 +5,11 @@ typedef struct mpmi_tally {
   mpmi_lanes kinetic, strain, work, rate, viscosity, bad, momentum[3], angular[3];
 } mpmi_tally;
 
-/* Second moment D of the basis at x, for the affine part of the angular momentum. */
-MPMI_INLINE mpmi_lanes second_moment(const mpmi_survey *job, int32_t axis, mpmi_lanes x) {
-  const double square = job->spacing[axis] * job->spacing[axis];
-  if (job->order == 2) return (x - x) + 0.25 * square;
-  const mpmi_lanes xi = (x - job->origin[axis]) * job->inverse_spacing[axis];
-  const mpmi_lanes f = xi - mpmi_lanes_round(xi); /* f (1 - f) is the same counted from either node */
-  return (mpmi_lanes_abs(f) - f * f) * square;
+/* Second moment D of the basis at a particle, for the affine part of the angular momentum. */
+MPMI_INLINE mpmi_lanes second_moment(const mpmi_survey *job, int32_t axis, int64_t s) {
+  if (job->moment[axis]) return mpmi_lanes_load(job->moment[axis] + s);
+  const mpmi_lanes zero = {0.0};
+  return zero + job->constant_moment[axis];
 }
 
 /* m (x x v + sum_k D_k e_k x C e_k): component r of the angular momentum, with a, b the two other axes. */
@@ -21,8 +19,8 @@ MPMI_INLINE void add_angular(int32_t dim, const mpmi_survey *job, int64_t s, int
   if (a >= dim || b >= dim) return;
   t->angular[r] += m * (x[a] * v[b] - x[b] * v[a]);
   if (!job->affine[0]) return;
-  t->angular[r] += m * (second_moment(job, a, x[a]) * mpmi_lanes_load(job->affine[3 * b + a] + s) -
-                        second_moment(job, b, x[b]) * mpmi_lanes_load(job->affine[3 * a + b] + s));
+  t->angular[r] += m * (second_moment(job, a, s) * mpmi_lanes_load(job->affine[3 * b + a] + s) -
+                        second_moment(job, b, s) * mpmi_lanes_load(job->affine[3 * a + b] + s));
 }
 
 /* Work of gravity and of the other external forces along axis k. */
@@ -39,10 +37,18 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_survey *job, int64_t s, mpmi_
   const mpmi_lanes m = mpmi_lanes_load(job->mass + s), v0 = mpmi_lanes_load(job->initial_volume + s);
   const mpmi_mask live = v0 > 0.0; /* holes have no volume, and what the law says of them is of no interest */
   const mpmi_lanes c = mpmi_lanes_where(live, mpmi_lanes_load(job->wave_speed + s));
-  const mpmi_lanes nu = mpmi_lanes_where(live, mpmi_lanes_load(job->kinematic_viscosity + s));
-  t->strain += v0 * mpmi_lanes_where(live, mpmi_lanes_load(job->energy + s));
-  t->viscosity = mpmi_lanes_max(t->viscosity, nu);
-  t->bad += (c - c) + (nu - nu);
+  if (job->what & MPMI_SURVEY_LAW) {
+    const mpmi_lanes nu = mpmi_lanes_where(live, mpmi_lanes_load(job->kinematic_viscosity + s));
+    t->strain += v0 * mpmi_lanes_where(live, mpmi_lanes_load(job->energy + s));
+    t->viscosity = mpmi_lanes_max(t->viscosity, nu);
+    t->bad += (c - c) + (nu - nu);
+    for (int32_t a = 0; a < 2; ++a)
+      for (int32_t r = 0; r < job->checked_rows[a]; ++r) {
+        const mpmi_lanes value = mpmi_lanes_load(job->checked[a] + r * job->ld + s);
+        t->bad += value - value;
+      }
+  }
+  if (!(job->what & MPMI_SURVEY_MOTION)) return;
   mpmi_lanes x[3], v[3];
   for (int32_t k = 0; k < dim; ++k) {
     x[k] = mpmi_lanes_load(job->x[k] + s);
@@ -54,11 +60,6 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_survey *job, int64_t s, mpmi_
     add_work(job, s, k, m, x[k], t);
   }
   for (int32_t r = 0; r < 3; ++r) add_angular(dim, job, s, r, m, x, v, t);
-  for (int32_t a = 0; a < 2; ++a)
-    for (int32_t r = 0; r < job->checked_rows[a]; ++r) {
-      const mpmi_lanes value = mpmi_lanes_load(job->checked[a] + r * job->ld + s);
-      t->bad += value - value;
-    }
 }
 
 MPMI_INLINE uint32_t survey(int32_t dim, const mpmi_survey *job, int64_t n, mpmi_sums *sums) {

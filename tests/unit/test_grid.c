@@ -47,13 +47,13 @@ END_TEST
 
 START_TEST(derived_values) {
   for (int32_t dim = 1; dim <= 3; ++dim)
-    for (int32_t basis = MPM_LINEAR; basis <= MPM_BSPLINE2; ++basis) {
+    for (int32_t basis = MPM_LINEAR; basis <= MPM_BSPLINE3; ++basis) {
       mpm_grid_desc d = fixture_grid(dim);
       d.basis = basis;
       d.spacing[dim - 1] = 0.25;
       mpm_grid *grid = made(&d);
       ck_assert_int_eq(grid->dim, dim);
-      ck_assert_int_eq(grid->order, basis);
+      ck_assert_int_eq(grid->family, MPMI_FAMILY_BSPLINE1 + basis - MPM_LINEAR);
       ck_assert_int_eq(grid->width, basis + 1);
       ck_assert_int_eq(f.context->children, 1);
       ck_assert_double_eq(grid->h_min, 0.25);
@@ -120,16 +120,42 @@ START_TEST(bad_values_are_named) {
 }
 END_TEST
 
-START_TEST(what_is_not_offered) {
-  static const int32_t basis[] = {MPM_BSPLINE3, MPM_GIMP, MPM_UGIMP, MPM_CPGIMP};
+START_TEST(open_knots_are_for_splines) {
+  static const int32_t basis[] = {MPM_LINEAR, MPM_GIMP, MPM_UGIMP, MPM_CPGIMP};
   mpm_grid_desc d = fixture_grid(2);
+  d.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
   for (int i = 0; i < 4; ++i) {
     d.basis = basis[i];
-    refused(&d, MPM_E_UNSUPPORTED, "use MPM_BSPLINE2");
+    refused(&d, MPM_E_UNSUPPORTED, "MPM_BOUNDARY_GHOST");
   }
-  d = fixture_grid(2);
+}
+END_TEST
+
+/* Greville points: the mean of the inner knots of each function. */
+START_TEST(places_of_nodes) {
+  mpm_grid_desc d = fixture_grid(1);
+  const double cells = (double)d.cells[0], quadratic[] = {0.0, 0.5, 1.5},
+               cubic[] = {0.0, 1.0 / 3.0, 1.0, 2.0};
   d.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
-  refused(&d, MPM_E_UNSUPPORTED, "use MPM_BOUNDARY_GHOST");
+  d.basis = MPM_BSPLINE2;
+  mpm_grid *grid = made(&d);
+  for (int32_t i = 0; i < 3; ++i) {
+    ck_assert_double_eq_tol(mpmi_node_position(grid, 0, i), -1.0 + quadratic[i] * d.spacing[0], 1e-15);
+    ck_assert_double_eq_tol(mpmi_node_position(grid, 0, d.cells[0] + 1 - i),
+                            -1.0 + (cells - quadratic[i]) * d.spacing[0], 1e-14);
+  }
+  ck_assert_int_eq(mpmi_face_node(grid, MPM_X_MIN), 0);
+  ck_assert_int_eq(mpmi_face_node(grid, MPM_X_MAX), d.cells[0] + 1);
+  ck_ok(mpm_grid_destroy(grid));
+  d.basis = MPM_BSPLINE3;
+  grid = made(&d);
+  for (int32_t i = 0; i < 4; ++i) {
+    ck_assert_double_eq_tol(mpmi_node_position(grid, 0, i - 1), -1.0 + cubic[i] * d.spacing[0], 1e-15);
+    ck_assert_double_eq_tol(mpmi_node_position(grid, 0, d.cells[0] + 1 - i),
+                            -1.0 + (cells - cubic[i]) * d.spacing[0], 1e-14);
+  }
+  ck_assert_int_eq(mpmi_face_node(grid, MPM_X_MIN), -1);
+  ck_ok(mpm_grid_destroy(grid));
 }
 END_TEST
 
@@ -260,7 +286,8 @@ Suite *grid_suite(void) {
   tcase_add_test(tests, derived_values);
   tcase_add_test(tests, axes_beyond_dim_are_ignored);
   tcase_add_test(tests, bad_values_are_named);
-  tcase_add_test(tests, what_is_not_offered);
+  tcase_add_test(tests, open_knots_are_for_splines);
+  tcase_add_test(tests, places_of_nodes);
   tcase_add_test(tests, limits_are_inside);
   tcase_add_test(tests, misuse);
   tcase_add_test(tests, goes_after_its_sets);
