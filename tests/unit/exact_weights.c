@@ -337,7 +337,7 @@ START_TEST(ugimp_has_both_limits) {
         double w = 0.0, g = 0.0;
         if (v->index[0][i] >= reference_first(&limit) && v->index[0][i] <= reference_last(&limit))
           reference_function(&limit, v->index[0][i], x, 0.0, &w, &g);
-        ck_within(basis->name, v->weight[i], w, wide ? 1e-13 : 2e-10 + 1e-13);
+        ck_within(basis->name, v->weight[i], w, wide ? 1e-13 : 2.5e-10 + 1e-13);
         if (!near_node) ck_within(basis->name, v->gradient[0][i], g, (wide ? 1e-12 : 1e-6) / spacing[0]);
       }
     }

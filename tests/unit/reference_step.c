@@ -17,7 +17,6 @@ typedef struct sums {
   touch *at;    /* [n] */
   double *mass; /* [nodes] */
   double (*v)[3], (*a)[3], (*v_new)[3];
-  double mass_cut;
 } sums;
 
 static double get(const reference_cloud *c, const double *field, int32_t component, int64_t p) {
@@ -124,7 +123,7 @@ static void project(const sums *s, const double *v, int32_t matrix, double (*out
         out[s->at[p].node[q]][k] += s->c->m[p] * s->at[p].w[q] * value;
       }
   for (int32_t i = 0; i < s->nodes; ++i)
-    for (int32_t k = 0; k < s->dim; ++k) out[i][k] = s->mass[i] > s->mass_cut ? out[i][k] / s->mass[i] : 0.0;
+    for (int32_t k = 0; k < s->dim; ++k) out[i][k] = s->mass[i] > 0.0 ? out[i][k] / s->mass[i] : 0.0;
 }
 
 static double interpolate(const sums *s, int64_t p, double (*v)[3], int32_t k) {
@@ -142,10 +141,8 @@ static void gradient(const sums *s, int64_t p, double (*v)[3], double *L) {
 }
 
 static void sum_masses(sums *s) {
-  for (int64_t p = 0; p < s->c->n; ++p) {
-    s->mass_cut = fmax(s->mass_cut, 1e-12 * s->c->m[p]);
+  for (int64_t p = 0; p < s->c->n; ++p)
     for (int32_t q = 0; q < s->at[p].count; ++q) s->mass[s->at[p].node[q]] += s->c->m[p] * s->at[p].w[q];
-  }
 }
 
 static void accelerate(const sums *s, double dt) {
@@ -163,7 +160,7 @@ static void accelerate(const sums *s, double dt) {
   }
   for (int32_t i = 0; i < s->nodes; ++i)
     for (int32_t k = 0; k < s->dim; ++k) {
-      s->a[i][k] = s->mass[i] > s->mass_cut ? s->a[i][k] / s->mass[i] : 0.0;
+      s->a[i][k] = s->mass[i] > 0.0 ? s->a[i][k] / s->mass[i] : 0.0;
       s->v_new[i][k] = s->v[i][k] + dt * s->a[i][k];
     }
 }
