@@ -64,6 +64,22 @@ static void remove_some(run *r) {
   }
 }
 
+/* Light nodes can end a run of the linear basis with so few particles: then the state that is left is the end
+ * of the story, and 0 is returned. */
+static int32_t go_on(run *r, int32_t steps) {
+  if (r->options.basis != MPM_LINEAR) {
+    run_steps(r, steps);
+    return 1;
+  }
+  r->info.struct_size = sizeof r->info;
+  for (int32_t i = 0; i < steps; ++i) {
+    const mpm_status status = mpm_step(r->stepper, RUN_DT, &r->info);
+    if (status == MPM_INVERTED) return 0;
+    run_ok(r, status);
+  }
+  return 1;
+}
+
 /* The whole story of one run; at: receives the fields after COMPARED_AT steps, or NULL. */
 static uint64_t tell(const run_options *options, sample *at) {
   run r;
@@ -71,17 +87,17 @@ static uint64_t tell(const run_options *options, sample *at) {
   run_steps(&r, REMOVED_AT);
   ck_assert_int_ge(r.stepper->cut.count, 27);
   remove_some(&r);
-  run_steps(&r, COMPARED_AT - REMOVED_AT);
+  int32_t lasts = go_on(&r, COMPARED_AT - REMOVED_AT);
   if (at) *at = take_sample(&r);
-  run_steps(&r, options->dim == 1
-                    ? 14
-                    : 10); /* far enough for three sorts more, too short for linear bases to fail */
-  ck_assert_int_ge(r.info.resorts, 4); /* the first sort is one of them */
-  if (options->periodic)
-    ck_assert_int_eq(r.info.removed, 0);
-  else
-    ck_assert_int_gt(r.info.removed, 0);
-  ck_assert(isfinite(r.info.strain_energy) && r.info.strain_energy > 0.0);
+  lasts = lasts && go_on(&r, options->dim == 1 ? 14 : 10); /* far enough for three sorts more */
+  if (lasts) {
+    ck_assert_int_ge(r.info.resorts, 4); /* the first sort is one of them */
+    if (options->periodic)
+      ck_assert_int_eq(r.info.removed, 0);
+    else
+      ck_assert_int_gt(r.info.removed, 0);
+    ck_assert(isfinite(r.info.strain_energy) && r.info.strain_energy > 0.0);
+  }
   const uint64_t hash = run_hash(&r);
   run_close(&r);
   return hash;
@@ -155,9 +171,6 @@ static int32_t list_method(int32_t dim, const basis_option *b, const scheme_opti
                            const transfer_option *t, int32_t periodic) {
   if (!basis_ready(b) || !scheme_ready(s) || !transfer_ready(t)) return 0;
   if (t->transfer == MPM_APIC_MLS && !fits_mls(b)) return 0;
-  /* with so few particles light nodes end the run of a linear basis, but where MUSL or damping hold them */
-  const int32_t calm = t->transfer == MPM_FLIP || t->transfer == MPM_APIC || t->transfer == MPM_TPIC;
-  if (b->basis == MPM_LINEAR && s->scheme != MPM_MUSL && !calm) return 0;
   list[listed++] = (run_options){.dim = dim,
                                  .large = 1,
                                  .periodic = periodic,
