@@ -2,6 +2,7 @@
  * second-order positions, staggered velocities and the remedy against locking, on random clouds that reach
  * from face to face. */
 #include "reference.h"
+#include "schemes.h"
 
 enum { VARIANTS = 4, PARTICLES = 40, STEPS = 4 };
 static const struct {
@@ -142,5 +143,6 @@ Suite *schemes_suite(void) {
   tcase_add_loop_test(tc, steps_are_those_of_the_book, 0, 3 * BASES);
   tcase_add_loop_test(tc, a_bar_through_many_steps, 0, BASES);
   suite_add_tcase(suite, tc);
+  suite_add_tcase(suite, schemes_options_case());
   return suite;
 }
