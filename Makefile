@@ -67,7 +67,7 @@ UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
-.PHONY: check-determinism check-instructions update-instructions check-aarch64 check-abi update-abi docs
+.PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi docs
 .PHONY: fuzz-programs fuzz check-fuzz
 .DELETE_ON_ERROR:
 .SUFFIXES:
@@ -198,6 +198,11 @@ check-unit: $(UNIT)
 check-determinism: $(UNIT)
 	@printf '%s\n' 3-D 2-D 1-D hashes | xargs -P $(JOBS) -I{} sh -c \
 	  'out=$$(MPM_FULL=1 CK_RUN_SUITE=determinism CK_RUN_CASE={} $(UNIT) 2>&1); status=$$?; echo "{}: $$out"; exit $$status'
+
+# Every combination of options on bodies of 27 blocks and more; `check` has a sample of it.
+check-combinations: $(UNIT)
+	@printf '%s\n' rules 'first half' 'second half' | xargs -P $(JOBS) -I{} sh -c \
+	  'out=$$(MPM_FULL=1 CK_RUN_SUITE=combinations CK_RUN_CASE="{}" $(UNIT) 2>&1); status=$$?; echo "{}: $$out"; exit $$status'
 
 # Instructions per particle-step under callgrind, within 3 % of tests/instructions/expected.txt.
 STEPS := $(BUILD)/tests/instructions/steps

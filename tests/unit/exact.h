@@ -8,5 +8,6 @@ TCase *basis_case(void);
 TCase *conservation_case(void);
 TCase *patch_case(void);
 TCase *rotation_case(void);
+TCase *weights_case(void);
 
 #endif

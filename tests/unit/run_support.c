@@ -1,4 +1,5 @@
 #include "run_support.h"
+#include "options.h"
 
 const run_method run_methods[RUN_METHODS] = {
     {MPM_BSPLINE2, MPM_USL, MPM_FLIP, 0.97},    {MPM_BSPLINE2, MPM_MUSL, MPM_FLIP, 1.0},
@@ -142,6 +143,7 @@ static mpm_status make_grid(run *r) {
   extent(o, first, count);
   d.dim = o->dim;
   d.basis = o->basis ? o->basis : MPM_BSPLINE2;
+  d.boundary_basis = o->boundary_basis;
   d.periodic[0] = o->periodic;
   for (int32_t k = 0; k < o->dim; ++k) {
     d.origin[k] = origin[k];
@@ -206,7 +208,8 @@ static mpm_status add_particles(run *r, int32_t m) {
         memcpy(at[other], swap, sizeof swap);
     memcpy(swap, v[i], sizeof swap), memcpy(v[i], v[other], sizeof swap), memcpy(v[other], swap, sizeof swap);
   }
-  double *position = malloc((size_t)(7 * n) * sizeof *position), *velocity = position + 3 * n;
+  double *position = malloc((size_t)(10 * n) * sizeof *position), *velocity = position + 3 * n;
+  double *size = position + 7 * n; /* of domains: a share of the cell */
   mpm_status status = MPM_OK;
   /* in two portions when shuffled */
   for (int64_t begin = 0, part; begin < n && !status; begin += part) {
@@ -215,11 +218,12 @@ static mpm_status add_particles(run *r, int32_t m) {
       for (int32_t k = 0; k < o->dim; ++k) {
         position[k * part + i] = at[begin + i][k];
         velocity[k * part + i] = v[begin + i][k];
+        size[k * part + i] = 0.7 * spacing[k];
       }
       position[6 * n + i] = volume;
     }
-    status =
-        mpm_particles_add(r->set[m], part, position, velocity, position + 6 * n, NULL, ids + begin, NULL);
+    status = mpm_particles_add(r->set[m], part, position, velocity, position + 6 * n,
+                               is_gimp(o->basis) ? size : NULL, ids + begin, NULL);
   }
   free(position);
   free(ids);
@@ -255,6 +259,8 @@ static mpm_status make_stepper(run *r) {
   d.scheme = r->options.scheme ? r->options.scheme : MPM_USL;
   d.transfer = r->options.transfer ? r->options.transfer : MPM_FLIP;
   if (r->options.flip > 0.0) d.flip = r->options.flip;
+  if (r->options.xpic_order) d.xpic_order = r->options.xpic_order;
+  d.pic_damping = r->options.pic_damping;
   d.gravity[0] = 2.0;
   d.gravity[1] = -10.0;
   d.gravity[2] = 1.0;

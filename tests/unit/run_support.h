@@ -38,8 +38,9 @@ typedef struct run_memory {
 } run_memory;
 
 typedef struct run_options {
-  int32_t dim, basis, scheme, transfer;
-  double flip;                  /* 0: 1 */
+  int32_t dim, basis, boundary_basis, scheme, transfer;
+  int32_t xpic_order;           /* 0: the default */
+  double flip, pic_damping;     /* flip 0: 1 */
   int32_t large;                /* at least 27 blocks with particles; else a few */
   int32_t periodic;             /* the x axis is; else FIXED (1-D) or NONE below and OPEN above */
   int32_t velocity_bc;          /* a callback holds some nodes */
@@ -71,7 +72,7 @@ typedef struct run {
 /* What run_open() needs beside the options: h = 0.1 and nearly so on the other axes. */
 #define RUN_DT 1e-3
 
-/* Every combination of basis, scheme and transfer that exists. */
+/* Combinations of basis, scheme and transfer for suites that go through them; all are in options.h. */
 typedef struct run_method {
   int32_t basis, scheme, transfer;
   double flip;

@@ -1,0 +1,9 @@
+/* Parts of test_schemes.c. */
+#ifndef SCHEMES_H
+#define SCHEMES_H
+
+#include "support.h"
+
+TCase *schemes_options_case(void);
+
+#endif

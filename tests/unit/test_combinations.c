@@ -1,0 +1,491 @@
+/* Every combination of options that has a meaning works, and every other is refused with a sentence that says
+ * what to use instead. Each is stepped on a body whose motion is known: a translation across cells, and a
+ * patch of uniform deformation and stress in an affine velocity field under gravity. With MPM_FULL=1 in the
+ * environment the list is whole and the bodies have 27 blocks and more; without, it is a sample on small
+ * ones. */
+#include "combinations.h"
+#include "reference.h"
+#include "stepper/stepper.h"
+
+static const double h = 0.25, E = 100.0, nu = 0.3, density = 1e3;
+static combination *list;
+static int32_t listed, full;
+
+/* ---- the world of a combination ---- */
+typedef struct body {
+  world w;
+  mpm_particles *set;
+  const combination *c;
+  mpm_grid_desc grid;
+  int32_t dim, periodic, per_cell;
+  int64_t cells; /* of the body along each axis */
+  double low[3];
+  char name[128];
+} body;
+
+static mpm_status host_law(void *user, const mpm_material_batch *b) {
+  (void)user;
+  for (int64_t p = 0; p < b->n; ++p) {
+    double F[9], stress[6];
+    for (int32_t c = 0; c < 9; ++c) F[c] = b->F[c * b->ld + p];
+    reference_stress(E, nu, F, stress);
+    for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = stress[c];
+    b->wave_speed[p] = sqrt(2.0 * E / density);
+  }
+  return MPM_OK;
+}
+
+static mpm_status make_law(const world *w, int32_t law, mpm_material **out) {
+  const char *model = law_options[law].model;
+  const double mu = E / (2.0 * (1.0 + nu)), kappa = E / (3.0 * (1.0 - 2.0 * nu));
+  if (!model) {
+    mpm_material_desc d;
+    ck_assert_int_eq(mpm_material_desc_init(&d, sizeof d), MPM_OK);
+    d.density = density;
+    d.stress = host_law;
+    return mpm_material_create_custom(w->context, &d, out);
+  }
+  const mpm_param all[] = {{"density", density},   {"E", E},   {"nu", nu},       {"yield_stress", 0.01 * E},
+                           {"hardening", 0.1 * E}, {"mu", mu}, {"kappa", kappa}, {"bulk_modulus", E},
+                           {"viscosity", 1e-2 * E}};
+  mpm_param given[sizeof all / sizeof *all];
+  int32_t count = 0;
+  const char *wanted;
+  for (int32_t i = 0; mpm_material_model_param(model, i, &wanted, NULL, NULL, NULL, NULL, NULL) == MPM_OK;
+       ++i)
+    for (size_t k = 0; k < sizeof all / sizeof *all; ++k)
+      if (!strcmp(all[k].name, wanted)) given[count++] = all[k];
+  return mpm_material_create(w->context, model, given, count, out);
+}
+
+/* `before` and `after`: free cells on both sides of the body, but for a periodic axis. */
+static void open_body(body *b, const combination *c, int64_t cells, int32_t per_cell, int64_t before,
+                      int64_t after, const double *gravity) {
+  memset(b, 0, sizeof *b);
+  mpm_stepper_desc stepper;
+  const int32_t lattice[3] = {per_cell, per_cell, per_cell};
+  double high[3];
+  describe_combination(c, &b->grid, &stepper);
+  memcpy(stepper.gravity, gravity, sizeof stepper.gravity);
+  b->c = c;
+  b->dim = b->w.dim = b->grid.dim;
+  b->periodic = c->choice[CHOOSE_PERIODIC];
+  b->cells = cells;
+  b->per_cell = per_cell;
+  name_of(c, b->name, sizeof b->name);
+  for (int32_t k = 0; k < b->dim; ++k) {
+    const int32_t around = b->grid.periodic[k];
+    b->grid.spacing[k] = h;
+    b->grid.cells[k] = around ? cells : before + cells + after;
+    b->low[k] = around ? 0.0 : h * (double)before;
+    high[k] = b->low[k] + h * (double)cells;
+  }
+  ck_assert_int_eq(mpm_context_create(NULL, &b->w.context), MPM_OK);
+  ck_ok(&b->w, mpm_grid_create(b->w.context, &b->grid, &b->w.grid));
+  ck_ok(&b->w, make_law(&b->w, c->choice[CHOOSE_LAW], &b->w.material));
+  ck_ok(&b->w, mpm_stepper_create(b->w.context, b->w.grid, &stepper, &b->w.stepper));
+  b->set = world_add_set(&b->w);
+  ck_ok(&b->w, mpm_particles_fill_box(b->set, b->low, high, lattice, NULL, NULL));
+}
+
+static const char *model_of(const body *b) {
+  const char *model = law_options[b->c->choice[CHOOSE_LAW]].model;
+  return model ? model : "host";
+}
+
+static int32_t has_law(const body *b, const char *model) {
+  return !strcmp(model_of(b), model);
+}
+
+/* Momentum on an axis, and a scale for it. */
+static double momentum_of(const body *b, const double *m, const double *v, int32_t k, double *scale) {
+  const int64_t n = mpm_particles_count(b->set);
+  double sum = 0.0;
+  for (int64_t p = 0; p < n; ++p) sum += m[p] * v[k * n + p], *scale += m[p] * fabs(v[k * n + p]);
+  return sum;
+}
+
+/* The grid has the particles' mass; where an axis is periodic nodes are listed with their images. */
+static void check_nodal_mass(body *b, const double *m) {
+  int64_t nodes;
+  double *mass = fetch_nodes(&b->w, "mass", &nodes), sum = 0.0, total = 0.0;
+  for (int64_t i = 0; i < nodes; ++i) sum += mass[i];
+  for (int64_t p = 0; p < mpm_particles_count(b->set); ++p) total += m[p];
+  if (!b->periodic) ck_within(b->name, sum, total, 1e-12 * total);
+  free(mass);
+}
+
+/* ---- translation ---- */
+/* A block that starts on the lower faces flies stress-free through several cells on each axis. */
+static void check_translation(const combination *c) {
+  enum { FLIGHT = 12 };
+  const double v[3] = {0.96, 0.8, 0.7}, dt = 0.08, none[3] = {0.0, 0.0, 0.0};
+  body b;
+  open_body(&b, c, 4, 2, 0, 6, none);
+  ck_ok(&b.w, mpm_particles_set_all(b.set, "velocity", MPM_F64, b.dim, v));
+  const int64_t n = mpm_particles_count(b.set);
+  double *x0 = fetch(&b.w, b.set, "position", b.dim), *m0 = fetch(&b.w, b.set, "mass", 1);
+  for (int32_t i = 0; i < FLIGHT; ++i) world_step(&b.w, dt);
+  check_nodal_mass(&b, m0);
+  double *x = fetch(&b.w, b.set, "position", b.dim), *m = fetch(&b.w, b.set, "mass", 1);
+  double *u = fetch(&b.w, b.set, "velocity", b.dim), *stress = fetch(&b.w, b.set, "stress", 6);
+  int64_t *image = calloc((size_t)(b.dim * n), sizeof *image);
+  if (b.periodic) ck_ok(&b.w, mpm_particles_get(b.set, "image", MPM_I64, b.dim, n, NULL, image));
+  if (memcmp(m, m0, (size_t)n * sizeof *m)) ck_abort_msg("%s: masses have changed", b.name);
+  for (int32_t k = 0; k < b.dim; ++k)
+    for (int64_t p = 0; p < n; ++p) {
+      const int64_t i = k * n + p;
+      const double flown = x[i] - x0[i] + (double)image[i] * h * (double)b.grid.cells[k];
+      ck_within(b.name, u[i], v[k], 1e-12);
+      ck_within(b.name, flown, v[k] * FLIGHT * dt, 1e-12);
+    }
+  ck_within(b.name, largest(6 * n, stress) / E, 0.0, 1e-12);
+  free(x0), free(m0), free(x), free(m), free(u), free(stress), free(image);
+  world_close(&b.w);
+}
+
+/* ---- patch ---- */
+static const double F_patch[9] = {1.1, 0.05, -0.04, 0.03, 0.95, 0.06, 0.02, -0.05, 1.05};
+static const double L_patch[9] = {0.3, -0.5, 0.2, 0.4, -0.2, 0.6, -0.1, 0.7, 0.15};
+static const double stress_patch[6] = {2.0, -1.0, 0.5, 0.7, -0.3, 0.4};
+static const double gravity[3] = {1.0, -3.0, 2.0};
+static const double swelling = 1.02; /* of a fluid, which knows its volume only */
+
+static double of_dim(int32_t dim, const double *tensor, int32_t c, double diagonal) {
+  return c / 3 < dim && c % 3 < dim ? tensor[c] : c % 4 == 0 ? diagonal : 0.0;
+}
+
+typedef struct patch {
+  double L[9], F[9], F_new[9]; /* F_new: after the step */
+  double J_new;
+} patch;
+
+/* F and L of the patch. Along a periodic axis velocities repeat themselves: L has no such column. */
+static patch make_patch(const body *b, double dt) {
+  patch q;
+  const int32_t fluid = has_law(b, "newtonian_fluid");
+  for (int32_t c = 0; c < 9; ++c) {
+    q.L[c] = b->periodic && c % 3 == 0 ? 0.0 : of_dim(b->dim, L_patch, c, 0.0);
+    q.F[c] = of_dim(b->dim, F_patch, c, 1.0);
+    if (fluid) q.F[c] = c % 4 ? 0.0 : b->dim == 1 ? 1.0 : swelling;
+  }
+  for (int32_t c = 0; c < 9; ++c) {
+    q.F_new[c] = q.F[c];
+    for (int32_t k = 0; k < 3; ++k) q.F_new[c] += dt * q.L[c / 3 * 3 + k] * q.F[3 * k + c % 3];
+  }
+  const double *F = q.F_new;
+  q.J_new = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+            F[2] * (F[3] * F[7] - F[4] * F[6]);
+  return q;
+}
+
+static void set_patch(const body *b, const patch *q) {
+  const int64_t n = mpm_particles_count(b->set);
+  double *x = fetch(&b->w, b->set, "position", b->dim), *v = calloc((size_t)(n * b->dim), sizeof *v);
+  for (int32_t c = 0; c < 9; ++c)
+    for (int64_t p = 0; p < n && c / 3 < b->dim && c % 3 < b->dim; ++p)
+      v[c / 3 * n + p] += q->L[c] * (x[c % 3 * n + p] - b->low[c % 3] - 0.5 * h * (double)b->cells);
+  ck_ok(&b->w, mpm_particles_set_all(b->set, "deformation_gradient", MPM_F64, 9, q->F));
+  put(&b->w, b->set, "velocity", b->dim, v);
+  if (carries_matrix(transfer_options[b->c->choice[CHOOSE_TRANSFER]].transfer))
+    ck_ok(&b->w, mpm_particles_set_all(b->set, "velocity_gradient", MPM_F64, 9, q->L));
+  if (has_law(b, "linear_elastic") || has_law(b, "j2")) {
+    double stress[6];
+    for (int32_t c = 0; c < 6; ++c)
+      stress[c] = b->dim == 3 || c < 3 || (b->dim == 2 && c == 3) ? stress_patch[c] : 0.0;
+    ck_ok(&b->w, mpm_particles_set_all(b->set, "stress", MPM_F64, 6, stress));
+  }
+  free(x), free(v);
+}
+
+/* How far from the edge of the body its edge is felt, in cells. What a particle knows at the end of a step
+ * comes by hops, from particles to nodes and back; the first brings the missing neighbours of nodes at the
+ * edge, where neither the projected velocity is that of the field nor stress in balance. */
+typedef struct depths {
+  double motion, deformation, stress;
+} depths;
+
+static depths depths_of(const combination *c) {
+  const basis_option *basis = &basis_options[c->choice[CHOOSE_BASIS]];
+  const transfer_option *transfer = &transfer_options[c->choice[CHOOSE_TRANSFER]];
+  const int32_t scheme = scheme_options[c->choice[CHOOSE_SCHEME]].scheme;
+  const double hop = 2.0 * reference_reach(basis);
+  const int32_t filters = transfer->transfer == MPM_XPIC ? transfer->xpic_order : 1;
+  /* USF: forces come from a stress that has already been through a hop, and through a cell with the remedy */
+  const double forces = scheme == MPM_USF ? 2.0 * hop + c->choice[CHOOSE_REMEDY] : hop;
+  depths d;
+  d.motion = fmax(forces, hop * filters);
+  d.deformation = scheme == MPM_MUSL ? d.motion + hop : hop;
+  d.stress = d.deformation + c->choice[CHOOSE_REMEDY];
+  return d;
+}
+
+/* Is the particle at x far enough inside? */
+static int32_t is_inside(const body *b, const double *x, int64_t p, double depth) {
+  const int64_t n = mpm_particles_count(b->set);
+  for (int32_t k = b->periodic; k < b->dim; ++k) {
+    const double from = (x[k * n + p] - b->low[k]) / h;
+    if (from < depth || from > (double)b->cells - depth) return 0;
+  }
+  return 1;
+}
+
+static void check_motion(const body *b, double dt, double depth, const double *x0, const double *v0,
+                         double scale) {
+  const int64_t n = mpm_particles_count(b->set);
+  double *x = fetch(&b->w, b->set, "position", b->dim), *v = fetch(&b->w, b->set, "velocity", b->dim);
+  /* with g all along the step, positions of second order know half of it */
+  const double fallen = b->c->choice[CHOOSE_ORDER] == 2 ? 0.5 : 1.0;
+  for (int32_t k = 0; k < b->dim; ++k)
+    for (int64_t p = 0; p < n; ++p) {
+      if (!is_inside(b, x0, p, depth)) continue;
+      const int64_t i = k * n + p;
+      ck_within(b->name, v[i], v0[i] + dt * gravity[k], 1e-13 * scale);
+      ck_within(b->name, x[i], x0[i] + dt * (v0[i] + fallen * dt * gravity[k]), 1e-12);
+    }
+  free(x), free(v);
+}
+
+static void check_deformation(const body *b, const patch *q, double depth, const double *x0) {
+  const int64_t n = mpm_particles_count(b->set);
+  double *F = fetch(&b->w, b->set, "deformation_gradient", 9), *V = fetch(&b->w, b->set, "volume", 1);
+  double *V0 = fetch(&b->w, b->set, "initial_volume", 1);
+  for (int64_t p = 0; p < n; ++p) {
+    if (!is_inside(b, x0, p, depth)) continue;
+    ck_within(b->name, V[p] / V0[p], q->J_new, 1e-13);
+    for (int32_t c = 0; c < 9 && !has_law(b, "newtonian_fluid"); ++c)
+      ck_within(b->name, F[c * n + p], q->F_new[c], 1e-13);
+  }
+  free(F), free(V), free(V0);
+}
+
+static void check_stress(const body *b, const patch *q, double depth, const double *x0) {
+  const int64_t n = mpm_particles_count(b->set);
+  double *stress = fetch(&b->w, b->set, "stress", 6), wanted[6];
+  int64_t first = -1;
+  for (int64_t p = 0; p < n; ++p) {
+    if (!is_inside(b, x0, p, depth)) continue;
+    if (first < 0) {
+      first = p;
+      for (int32_t c = 0; c < 6; ++c) wanted[c] = stress[c * n + p];
+      if (has_law(b, "neo_hookean") || has_law(b, "host")) reference_stress(E, nu, q->F_new, wanted);
+    }
+    for (int32_t c = 0; c < 6; ++c) ck_within(b->name, stress[c * n + p], wanted[c], 1e-11 * E);
+  }
+  free(stress);
+}
+
+/* Uniform F and stress on a lattice, v = L x: inside the body nothing but gravity accelerates it, F becomes
+ * (I + dt L) F, and stress stays uniform. All bases reproduce linear fields and all transfers project them
+ * exactly from a lattice that is symmetric about every node, those that carry a matrix from any. */
+static void check_patch(const combination *c) {
+  static const int64_t large[4] = {0, 1740, 80, 18}, small[4] = {0, 60, 24, 18};
+  const double dt = 1e-4;
+  const int64_t cells = full ? large[c->choice[CHOOSE_DIM]] : small[c->choice[CHOOSE_DIM]];
+  const depths d = depths_of(c);
+  body b;
+  open_body(&b, c, cells, c->choice[CHOOSE_DIM] == 3 || full ? 1 : 2, 4, 4, gravity);
+  const patch q = make_patch(&b, dt);
+  if (has_law(&b, "rigid")) { /* has neither deformation nor stress */
+    world_close(&b.w);
+    return;
+  }
+  set_patch(&b, &q);
+  const int64_t n = mpm_particles_count(b.set);
+  double *x0 = fetch(&b.w, b.set, "position", b.dim), *v0 = fetch(&b.w, b.set, "velocity", b.dim);
+  double *m0 = fetch(&b.w, b.set, "mass", 1);
+  world_step(&b.w, dt);
+  if (full) ck_assert_int_ge(b.w.stepper->cut.count, 27);
+  check_nodal_mass(&b, m0);
+  double *m = fetch(&b.w, b.set, "mass", 1), *v = fetch(&b.w, b.set, "velocity", b.dim), total = 0.0;
+  if (memcmp(m, m0, (size_t)n * sizeof *m)) ck_abort_msg("%s: masses have changed", b.name);
+  for (int64_t p = 0; p < n; ++p) total += m[p];
+  for (int32_t k = 0; k < b.dim; ++k) {
+    double scale = 0.0;
+    const double before = momentum_of(&b, m, v0, k, &scale), after = momentum_of(&b, m, v, k, &scale);
+    ck_within(b.name, after, before + dt * total * gravity[k], 1e-12 * (scale + total));
+  }
+  check_motion(&b, dt, d.motion, x0, v0, 1.0 + largest(n * b.dim, v0));
+  check_deformation(&b, &q, d.deformation, x0);
+  check_stress(&b, &q, d.stress, x0);
+  free(x0), free(v0), free(m0), free(m), free(v);
+  world_close(&b.w);
+}
+
+/* ---- tests ---- */
+enum { SAMPLE = 240, AT_ONCE = 6 };
+static int32_t list_sample(void) {
+  return full || listed < SAMPLE ? listed : SAMPLE;
+}
+
+/* The k-th of those to be stepped; a sample is spread over the list. */
+static const combination *chosen(int32_t k) {
+  return &list[(int64_t)k * listed / list_sample()];
+}
+
+START_TEST(combination_works) {
+  for (int32_t k = _i * AT_ONCE; k < (_i + 1) * AT_ONCE && k < list_sample(); ++k) {
+    check_translation(chosen(k));
+    check_patch(chosen(k));
+  }
+}
+END_TEST
+
+/* Every two values that are ready are together in some combination, but those that are refused. */
+START_TEST(every_pair_is_listed) {
+  for (int32_t a = 0; a < CHOICES; ++a)
+    for (int32_t b = a + 1; b < CHOICES; ++b)
+      for (int32_t value = choice_first[a]; value < choice_end[a]; ++value)
+        for (int32_t other = choice_first[b]; other < choice_end[b]; ++other) {
+          if (!choice_ready(a, value) || !choice_ready(b, other)) continue;
+          int32_t times = 0;
+          for (int32_t i = 0; i < listed; ++i)
+            times += list[i].choice[a] == value && list[i].choice[b] == other;
+          if ((times > 0) == pair_refused(a, value, b, other))
+            ck_abort_msg("choice %d = %d with %d = %d: %d times", (int)a, (int)value, (int)b, (int)other,
+                         (int)times);
+        }
+}
+END_TEST
+
+/* The inside of the patch is not empty where it should not be: in 1-D and 2-D for every combination, in 3-D
+ * for all but the higher orders of XPIC. */
+START_TEST(patches_have_an_inside) {
+  for (int32_t i = 0; i < listed; ++i) {
+    const depths d = depths_of(&list[i]);
+    const int32_t dim = list[i].choice[CHOOSE_DIM];
+    const int32_t filters = transfer_options[list[i].choice[CHOOSE_TRANSFER]].xpic_order;
+    const int32_t deep =
+        transfer_options[list[i].choice[CHOOSE_TRANSFER]].transfer == MPM_XPIC && filters > 1;
+    const double half = dim == 1 ? 870.0 : dim == 2 ? 40.0 : 9.0;
+    if (dim < 3 || !deep) ck_assert_double_lt(d.motion, half);
+    if (dim < 3 || !deep) ck_assert_double_lt(d.deformation, half);
+  }
+}
+END_TEST
+
+/* Whatever is refused is refused by a call before the first step, with a sentence that names what to use. */
+static void expect_refusal(const combination *c, const char *why) {
+  char name[128];
+  mpm_grid_desc g;
+  mpm_stepper_desc s;
+  world w = {0};
+  describe_combination(c, &g, &s);
+  name_of(c, name, sizeof name);
+  ck_assert_int_eq(mpm_context_create(NULL, &w.context), MPM_OK);
+  mpm_particles *set = NULL;
+  mpm_stepper *plain = NULL;
+  mpm_status status = mpm_grid_create(w.context, &g, &w.grid);
+  if (!status) status = make_law(&w, c->choice[CHOOSE_LAW], &w.material);
+  if (!status) status = mpm_particles_create(w.context, w.grid, w.material, &set);
+  if (!status) status = mpm_stepper_create(w.context, w.grid, &s, &w.stepper);
+  if (status != MPM_E_UNSUPPORTED || !strstr(mpm_last_error(w.context), "use"))
+    ck_abort_msg("%s (%s): %s: \"%s\"", name, why, mpm_status_name(status), mpm_last_error(w.context));
+  /* and so where a stepper that exists is asked for it */
+  if (set) {
+    ck_ok(&w, mpm_stepper_create(w.context, w.grid, NULL, &plain));
+    status = mpm_stepper_configure(plain, &s);
+    if (status != MPM_E_UNSUPPORTED || !strstr(mpm_last_error(w.context), "use"))
+      ck_abort_msg("configure %s (%s): %s: \"%s\"", name, why, mpm_status_name(status),
+                   mpm_last_error(w.context));
+  }
+  ck_ok(&w, mpm_stepper_destroy(plain));
+  ck_ok(&w, mpm_particles_destroy(set));
+  ck_ok(&w, mpm_material_destroy(w.material));
+  ck_ok(&w, mpm_grid_destroy(w.grid));
+  ck_ok(&w, mpm_context_destroy(w.context));
+}
+
+START_TEST(refusals_say_what_to_use) {
+  int32_t refused = 0;
+  combination c;
+  int32_t *is = c.choice;
+  is[CHOOSE_DIM] = _i;
+  for (is[CHOOSE_BASIS] = 0; is[CHOOSE_BASIS] < BASES; ++is[CHOOSE_BASIS])
+    for (is[CHOOSE_SCHEME] = 0; is[CHOOSE_SCHEME] < SCHEMES; ++is[CHOOSE_SCHEME])
+      for (is[CHOOSE_TRANSFER] = 0; is[CHOOSE_TRANSFER] < TRANSFERS; ++is[CHOOSE_TRANSFER])
+        for (int32_t rest = 0; rest < 8 * LAWS; ++rest) {
+          is[CHOOSE_ORDER] = 1 + rest % 2;
+          is[CHOOSE_STAGGERED] = rest / 2 % 2;
+          is[CHOOSE_REMEDY] = rest / 4 % 2;
+          is[CHOOSE_LAW] = rest / 8;
+          is[CHOOSE_PERIODIC] = (rest + is[CHOOSE_BASIS]) % 2;
+          /* a grid without faces has no open knots: nothing need be refused */
+          if (_i == 1 && is[CHOOSE_PERIODIC] && basis_options[is[CHOOSE_BASIS]].boundary) continue;
+          const char *why = refusal_of(&c);
+          if (!why || (!full && refused++ % 7)) continue;
+          expect_refusal(&c, why);
+        }
+  ck_assert_int_gt(full || refused, 0);
+}
+END_TEST
+
+/* Open knots are for B-splines of order two and three. */
+START_TEST(open_knots_want_splines) {
+  static const int32_t others[] = {MPM_LINEAR, MPM_GIMP, MPM_UGIMP, MPM_CPGIMP};
+  mpm_context *context;
+  mpm_grid *grid;
+  mpm_grid_desc d;
+  ck_assert_int_eq(mpm_context_create(NULL, &context), MPM_OK);
+  ck_assert_int_eq(mpm_grid_desc_init(&d, sizeof d), MPM_OK);
+  d.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
+  for (int32_t k = 0; k < 3; ++k) d.cells[k] = 8, d.spacing[k] = h;
+  for (size_t i = 0; i < sizeof others / sizeof *others; ++i) {
+    d.basis = others[i];
+    ck_assert_int_eq(mpm_grid_create(context, &d, &grid), MPM_E_UNSUPPORTED);
+    ck_assert_ptr_nonnull(strstr(mpm_last_error(context), "use"));
+  }
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
+END_TEST
+
+/* The list of what is not there yet hides nothing that is there. */
+START_TEST(what_is_not_yet_is_refused) {
+  for (const option_value *o = options_not_yet; o->kind; ++o) {
+    combination c = {{2, 1, 0, 0, 1, 0, 0, 0, 0}};
+    for (int32_t i = 0; i < BASES; ++i)
+      if ((o->kind == OPTION_BASIS && basis_options[i].basis == o->value) ||
+          (o->kind == OPTION_BOUNDARY && basis_options[i].boundary == o->value))
+        c.choice[CHOOSE_BASIS] = i;
+    for (int32_t i = 0; i < SCHEMES && o->kind == OPTION_SCHEME; ++i)
+      if (scheme_options[i].scheme == o->value) c.choice[CHOOSE_SCHEME] = i;
+    for (int32_t i = 0; i < TRANSFERS; ++i)
+      if ((o->kind == OPTION_TRANSFER && transfer_options[i].transfer == o->value) ||
+          (o->kind == OPTION_PIC_DAMPING && transfer_options[i].transfer == MPM_FLIP &&
+           transfer_options[i].pic_damping > 0.0))
+        c.choice[CHOOSE_TRANSFER] = i;
+    if (o->kind == OPTION_POSITION_ORDER) c.choice[CHOOSE_ORDER] = o->value;
+    if (o->kind == OPTION_STAGGERED) c.choice[CHOOSE_STAGGERED] = o->value;
+    if (o->kind == OPTION_LOCKING) c.choice[CHOOSE_REMEDY] = o->value;
+    if (o->kind == OPTION_LAW) c.choice[CHOOSE_LAW] = o->value;
+    ck_assert_ptr_null(refusal_of(&c));
+    expect_refusal(&c, "not yet: take it out of options_not_yet if it is there");
+  }
+}
+END_TEST
+
+Suite *combinations_suite(void);
+Suite *combinations_suite(void) {
+  Suite *suite = suite_create("combinations");
+  full = getenv("MPM_FULL") != NULL;
+  if (!list) list = list_combinations(&listed);
+  TCase *rules = tcase_create("rules");
+  tcase_set_timeout(rules, 300.0);
+  tcase_add_test(rules, every_pair_is_listed);
+  tcase_add_test(rules, patches_have_an_inside);
+  tcase_add_loop_test(rules, refusals_say_what_to_use, 1, 4);
+  tcase_add_test(rules, open_knots_want_splines);
+  tcase_add_test(rules, what_is_not_yet_is_refused);
+  suite_add_tcase(suite, rules);
+  /* in two parts, for as many processes */
+  static const char *const parts[2] = {"first half", "second half"};
+  const int32_t tests = (list_sample() + AT_ONCE - 1) / AT_ONCE;
+  for (int32_t i = 0; i < 2; ++i) {
+    TCase *tc = tcase_create(parts[i]);
+    tcase_set_tags(tc, "long");
+    tcase_set_timeout(tc, 300.0);
+    tcase_add_loop_test(tc, combination_works, i * tests / 2, (i + 1) * tests / 2);
+    suite_add_tcase(suite, tc);
+  }
+  return suite;
+}

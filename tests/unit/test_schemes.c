@@ -1,0 +1,148 @@
+/* Whole steps against the independent evaluation of reference_step.c: every basis, scheme and transfer, with
+ * second-order positions, staggered velocities and the remedy against locking, on random clouds that reach
+ * from face to face. */
+#include "reference.h"
+#include "schemes.h"
+
+enum { VARIANTS = 4, PARTICLES = 40, STEPS = 4 };
+static const struct {
+  int32_t position_order, staggered, locking;
+  const char *name;
+} variants[VARIANTS] = {
+    {1, 0, 0, ""}, {2, 0, 0, ", order 2"}, {1, 1, 0, ", staggered"}, {1, 0, 1, ", remedy"}};
+
+typedef struct comparison {
+  const basis_option *basis;
+  const scheme_option *scheme;
+  const transfer_option *transfer;
+  int32_t dim, variant;
+  char name[96];
+} comparison;
+
+static world_desc describe(const comparison *c, int64_t cells) {
+  static const double spacing[3] = {0.25, 0.3, 0.2}, origin[3] = {-0.7, 0.1, 2.0};
+  world_desc d = world_default(c->dim, cells, 1.0);
+  d.E = 1e3;
+  for (int32_t k = 0; k < c->dim; ++k) d.grid.spacing[k] = spacing[k], d.grid.origin[k] = origin[k];
+  d.grid.basis = c->basis->basis;
+  d.grid.boundary_basis = c->basis->boundary;
+  d.grid.smoothing = c->basis->smoothing;
+  d.stepper.scheme = c->scheme->scheme;
+  d.stepper.transfer = c->transfer->transfer;
+  d.stepper.xpic_order = c->transfer->xpic_order;
+  d.stepper.flip = c->transfer->flip;
+  d.stepper.pic_damping = c->transfer->pic_damping;
+  d.stepper.position_order = variants[c->variant].position_order;
+  d.stepper.staggered = variants[c->variant].staggered;
+  d.stepper.locking_remedy = variants[c->variant].locking;
+  d.stepper.gravity[0] = 3.0, d.stepper.gravity[1] = -9.81, d.stepper.gravity[2] = 1.0;
+  return d;
+}
+
+/* Random places at odd multiples of h / 32 of the whole grid, velocities, domains, deformations and, where
+ * they are carried, matrices. */
+static mpm_particles *scatter_cloud(world *w, const world_desc *d, dice *random, int64_t n) {
+  double *x = malloc((size_t)n * 28 * sizeof *x), *v = x + 3 * n, *size = v + 3 * n, *F = size + 3 * n,
+         *C = F + 9 * n, *volume = C + 9 * n;
+  for (int64_t p = 0; p < n; ++p) {
+    volume[p] = 1.0;
+    for (int32_t k = 0; k < w->dim; ++k) {
+      const double h = d->grid.spacing[k], cells = (double)d->grid.cells[k];
+      x[k * n + p] = d->grid.origin[k] + h * (floor(throw_between(random, 0.0, cells) * 16.0) + 0.5) / 16.0;
+      v[k * n + p] = throw_between(random, -0.5, 0.5);
+      size[k * n + p] = h * throw_between(random, 0.2, 0.9);
+      volume[p] *= h * throw_between(random, 0.3, 0.8);
+    }
+    for (int32_t c = 0; c < 9; ++c) {
+      const int32_t inner = c / 3 < w->dim && c % 3 < w->dim;
+      F[c * n + p] = (c % 4 == 0) + (inner ? throw_between(random, -0.1, 0.1) : 0.0);
+      C[c * n + p] = inner ? throw_between(random, -2.0, 2.0) : 0.0;
+    }
+  }
+  mpm_particles *set = world_add_set(w);
+  ck_ok(w, mpm_particles_add(set, n, x, v, volume, size, NULL, NULL));
+  if (!d->stepper.locking_remedy) put(w, set, "deformation_gradient", 9, F);
+  if (carries_matrix(d->stepper.transfer)) put(w, set, "velocity_gradient", 9, C);
+  free(x);
+  return set;
+}
+
+static void agree(const world *w, const mpm_particles *set, const char *name, const char *field,
+                  int32_t components, const double *wanted, double tolerance) {
+  const int64_t n = mpm_particles_count(set) * components;
+  double *is = fetch(w, set, field, components);
+  for (int64_t i = 0; i < n; ++i)
+    if (!(fabs(is[i] - wanted[i]) <= tolerance))
+      ck_abort_msg("%s: %s[%d] of particle %d is %.17g, wanted %.17g within %g", name, field,
+                   (int)(i / mpm_particles_count(set)), (int)(i % mpm_particles_count(set)), is[i], wanted[i],
+                   tolerance);
+  free(is);
+}
+
+static void compare(comparison *c, int64_t cells, int64_t n, int32_t steps) {
+  world_desc d = describe(c, cells);
+  if (!stepper_ready(&d.stepper) || !basis_ready(c->basis)) return;
+  if (c->transfer->transfer == MPM_APIC_MLS && !fits_mls(c->basis)) return;
+  if (d.stepper.locking_remedy && c->dim == 1) return;
+  snprintf(c->name, sizeof c->name, "%d-D %s, %s, %s%s", (int)c->dim, c->basis->name, c->scheme->name,
+           c->transfer->name, variants[c->variant].name);
+  world w;
+  world_open(&w, &d);
+  dice random = {(uint64_t)(1000 * c->dim + c->variant)};
+  mpm_particles *set = scatter_cloud(&w, &d, &random, n);
+  const double zero[3] = {0.0, 0.0, 0.0};
+  ck_ok(&w, mpm_particles_set_all(set, "acceleration", MPM_F64, c->dim, zero)); /* from now on it is kept */
+  reference_cloud cloud = reference_take(&w, set);
+  reference r = {d.grid, d.stepper, d.E, d.nu, 0.0};
+  for (int32_t i = 0; i < steps; ++i) {
+    const double dt = 1e-3 * (1.0 + 0.3 * (i % 3)); /* it changes: staggered velocities must notice */
+    world_step(&w, dt);
+    reference_step(&r, &cloud, dt);
+    /* light nodes magnify rounding: velocities are of order 1, their gradients of order 10, E is 1e3 */
+    agree(&w, set, c->name, "velocity", c->dim, cloud.v, 1e-11);
+    agree(&w, set, c->name, "position", c->dim, cloud.x, 1e-13);
+    agree(&w, set, c->name, "acceleration", c->dim, cloud.a, 1e-8);
+    agree(&w, set, c->name, "deformation_gradient", 9, cloud.F, 1e-12);
+    agree(&w, set, c->name, "stress", 6, cloud.stress, 1e-9);
+    if (carries_matrix(d.stepper.transfer)) agree(&w, set, c->name, "velocity_gradient", 9, cloud.C, 1e-9);
+  }
+  reference_drop(&cloud);
+  world_close(&w);
+}
+
+/* One basis in one dimension: all schemes and transfers, in all variants. */
+START_TEST(steps_are_those_of_the_book) {
+  comparison c = {.basis = &basis_options[_i % BASES], .dim = 1 + _i / BASES};
+  for (int32_t scheme = 0; scheme < SCHEMES; ++scheme)
+    for (int32_t transfer = 0; transfer < TRANSFERS; ++transfer)
+      for (c.variant = 0; c.variant < VARIANTS; ++c.variant) {
+        c.scheme = &scheme_options[scheme];
+        c.transfer = &transfer_options[transfer];
+        compare(&c, c.dim == 3 ? 4 : 6, c.dim == 1 ? 12 : PARTICLES, STEPS);
+      }
+}
+END_TEST
+
+/* A bar of a dozen particles through 20 steps. */
+START_TEST(a_bar_through_many_steps) {
+  comparison c = {.basis = &basis_options[_i], .dim = 1};
+  for (int32_t scheme = 0; scheme < SCHEMES; ++scheme)
+    for (int32_t transfer = 0; transfer < TRANSFERS; ++transfer) {
+      c.scheme = &scheme_options[scheme];
+      c.transfer = &transfer_options[transfer];
+      compare(&c, 6, 12, 20);
+    }
+}
+END_TEST
+
+Suite *schemes_suite(void);
+Suite *schemes_suite(void) {
+  Suite *suite = suite_create("schemes");
+  TCase *tc = tcase_create("reference");
+  tcase_set_timeout(tc, 120.0);
+  tcase_add_loop_test(tc, steps_are_those_of_the_book, 0, 3 * BASES);
+  tcase_add_loop_test(tc, a_bar_through_many_steps, 0, BASES);
+  suite_add_tcase(suite, tc);
+  suite_add_tcase(suite, schemes_options_case());
+  return suite;
+}
