@@ -106,11 +106,13 @@ static void find_largest_masses(mpm_stepper *s) {
   }
 }
 
-/* Below this a node is too light to divide by its mass. */
+/* Below this a node is too light to divide by its mass. Of the linear basis force stays where mass vanishes; of
+ * the smooth ones it vanishes too, and a node in the corner of a cubic stencil weighs (d^3 / 6)^3. */
 static void find_mass_cut(mpm_stepper *s) {
+  const double share = s->grid->family == MPMI_FAMILY_BSPLINE1 ? 1e-12 : 1e-40;
   s->mass_cut = 0.0;
   for (int32_t m = 0; m < s->member_count; ++m)
-    if (1e-12 * s->member[m].set->mass_max > s->mass_cut) s->mass_cut = 1e-12 * s->member[m].set->mass_max;
+    if (share * s->member[m].set->mass_max > s->mass_cut) s->mass_cut = share * s->member[m].set->mass_max;
 }
 
 static mpm_status sort_anew(mpm_stepper *s) {
