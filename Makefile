@@ -20,6 +20,7 @@ BUILD ?= build
 CC ?= cc
 CXX ?= g++
 CFLAGS ?= -g
+CXXFLAGS ?= $(CFLAGS)
 OPT ?= -O2
 KERNEL_OPT ?= -O3
 WERROR ?= -Werror
@@ -30,6 +31,7 @@ SAY = @echo '  $(1) $@'
 endif
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion $(WERROR)
+CXX_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(WERROR)
 COMMON = -std=c11 -MMD -MP -Iinclude -Isrc $(WARNINGS) $(CPPFLAGS) $(CFLAGS)
 LIBRARY = $(COMMON) -fPIC -fvisibility=hidden
 LIBS := -lm -lpthread
@@ -58,14 +60,15 @@ OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(B
 STATIC_LIB := $(BUILD)/libmpm.a
 SHARED_LIB := $(BUILD)/$(SHARED)
 
-EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(sort $(wildcard examples/*.c)))
+EXAMPLES := $(patsubst examples/%,$(BUILD)/examples/%,$(basename $(sort $(wildcard examples/*.c examples/*.cpp))))
 BENCH := $(BUILD)/bench/bench
 UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
 UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
-.PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64
+.PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
+.PHONY: docs fuzz-programs fuzz check-fuzz
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -99,27 +102,47 @@ $(SHARED_LIB): $(OBJECTS) src/libmpm.map
 	$(Q)ln -sf $(SHARED) $(BUILD)/libmpm.so
 
 # ---- installation ----------------------------------------------------------------------------------------
+# Where libraries and headers both lie under the prefix, the CMake package finds one from the other, wherever the
+# installation is moved to.
+CMAKEDIR = $(LIBDIR)/cmake/mpm
+inside_prefix = $(patsubst $(PREFIX)/%,%,$(filter $(PREFIX)/%,$(1)))
+up_to_prefix = $(subst $(space),/,$(patsubst %,..,$(subst /, ,$(call inside_prefix,$(CMAKEDIR)))))
+space := $(subst ,, )
+INCLUDEDIR_FROM_CMAKEDIR = $(if $(and $(call inside_prefix,$(LIBDIR)),$(call inside_prefix,$(INCLUDEDIR))),$(\
+  )$(up_to_prefix)/$(call inside_prefix,$(INCLUDEDIR)),$(INCLUDEDIR))
+POINTER_BYTES = $(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)
+SUBSTITUTE = sed $(foreach name,PREFIX LIBDIR INCLUDEDIR VERSION SHARED SONAME INCLUDEDIR_FROM_CMAKEDIR \
+  POINTER_BYTES,-e 's|@$(name)@|$($(name))|')
+
 install: all
-	install -d $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -d $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(CMAKEDIR)
 	install -m 644 $(HEADERS) $(DESTDIR)$(INCLUDEDIR)/mpm
 	install -m 644 $(STATIC_LIB) $(DESTDIR)$(LIBDIR)
 	install -m 755 $(SHARED_LIB) $(DESTDIR)$(LIBDIR)
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/libmpm.so
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' \
-	  -e 's|@VERSION@|$(VERSION)|' pkgconfig/mpm.pc.in > $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
-	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
+	$(SUBSTITUTE) pkgconfig/mpm.pc.in > $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
+	$(SUBSTITUTE) cmake/mpmConfig.cmake.in > $(DESTDIR)$(CMAKEDIR)/mpmConfig.cmake
+	$(SUBSTITUTE) cmake/mpmConfigVersion.cmake.in > $(DESTDIR)$(CMAKEDIR)/mpmConfigVersion.cmake
+	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc $(DESTDIR)$(CMAKEDIR)/*.cmake
 
 uninstall:
 	rm -f $(HEADERS:include/%=$(DESTDIR)$(INCLUDEDIR)/%)
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libmpm.a $(SHARED) $(SONAME) libmpm.so pkgconfig/mpm.pc)
-	rmdir $(DESTDIR)$(INCLUDEDIR)/mpm 2>/dev/null || :
+	rm -f $(addprefix $(DESTDIR)$(CMAKEDIR)/,mpmConfig.cmake mpmConfigVersion.cmake)
+	rmdir $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(CMAKEDIR) 2>/dev/null || :
 
 # ---- examples and benchmarks -----------------------------------------------------------------------------
 $(BUILD)/examples/%: examples/%.c $(STATIC_LIB) Makefile
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+
+$(BUILD)/examples/%: examples/%.cpp $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CXX) -std=c++17 -MMD -MP -Iinclude $(CXX_WARNINGS) $(CPPFLAGS) $(CXXFLAGS) $(OPT) -MF $@.d -MT $@ $< \
+	  $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 
 # The benchmark is a host program: it is compiled against an installation and runs the shared library.
 $(BENCH): $(wildcard bench/*.[ch]) $(SHARED_LIB) $(STATIC_LIB) Makefile
@@ -190,6 +213,10 @@ $(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile
 check-instructions update-instructions: $(STEPS)
 	@$(TEST_ENVIRONMENT) bash tests/instructions/run.sh $(@:-instructions=)
 
+# The binary interface against abi/libmpm-x86_64.abi.xml, by abidiff; update-abi takes what is there as the new baseline.
+check-abi update-abi: $(SHARED_LIB)
+	@$(TEST_ENVIRONMENT) bash tests/abi/run.sh $(@:-abi=)
+
 # The library and its unit tests for another processor, run by qemu.
 check-aarch64:
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/aarch64/run.sh
@@ -226,12 +253,39 @@ check-tsan:
 	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="context executor threads rollback restart" \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
 
+# libFuzzer on saved states, descriptors and small clouds of particles: FUZZ_SECONDS each, from the committed corpora;
+# what is new stays in $(FUZZ)/corpus. check-fuzz: the corpora as they are, then a minute in all.
+FUZZ = $(BUILD)-fuzz
+FUZZ_TARGETS ?= state descriptors clouds
+FUZZ_SECONDS ?= 600
+FUZZ_FLAGS = -g -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
+FUZZ_CC ?= clang
+fuzz-programs:
+	@$(MAKE) CC=$(FUZZ_CC) BUILD=$(FUZZ) OPT=-O1 KERNEL_OPT="-O1 -Wno-pass-failed" CFLAGS="$(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp" \
+	  $(FUZZ_TARGETS:%=$(FUZZ)/fuzz/%)
+$(BUILD)/fuzz/%: tests/fuzz/%.c tests/fuzz/fuzz.h $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(COMMON) -O1 -MF $@.d -MT $@ -fsanitize=fuzzer $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+
+fuzz: fuzz-programs
+	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target $(FUZZ_SECONDS) || exit 1; done
+check-fuzz: fuzz-programs
+	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target 20 || exit 1; done
+
 # Plants known faults one by one in a copy of the sources and expects the unit tests to notice each.
 mutate: $(UNIT)
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/run.sh
 
+# ---- reference -------------------------------------------------------------------------------------------
+# HTML from the headers, into $(BUILD)/docs/html; anything without a comment is an error.
+docs:
+	@mkdir -p $(BUILD)/docs
+	@VERSION=$(VERSION) OUTPUT=$(BUILD)/docs doxygen docs/Doxyfile
+	@echo "$(BUILD)/docs/html/index.html"
+
 # ---- upkeep ----------------------------------------------------------------------------------------------
-FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp src/*/*.[ch] examples/*.[ch] bench/*.[ch] \
+FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
   tests/*/*.[ch] tests/*/*.cpp)
 format:
 	clang-format -i $(FORMATTED)
@@ -239,6 +293,6 @@ format-check:
 	clang-format --dry-run -Werror $(FORMATTED)
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan $(BUILD)-aarch64
+	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan $(BUILD)-aarch64 $(FUZZ)
 
--include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d) $(STEPS).d
+-include $(OBJECTS:.o=.d) $(UNIT_OBJECTS:.o=.d) $(EXAMPLES:=.d) $(STEPS).d $(FUZZ_TARGETS:%=$(BUILD)/fuzz/%.d)

@@ -17,6 +17,7 @@
  * | "state"                              | F64  | as the law says                            | same | yes   |
  * | "prescribed"                         | U8   | dim                                        | dim  | yes   |
  * | "image"                              | I64  | dim                                        | dim  | no    |
+ * | "dilation_ratio"                     | F64  | 1                                          | 1    | yes   |
  * | the host's own                       | any  | as made                                    | same | yes   |
  *
  * Views show the stored components; copies and callbacks have the full ones.
@@ -36,14 +37,17 @@
  * - reference_position: exists while a stepper with reference_positions holds the set, and starts as the
  *   unwrapped position at mpm_stepper_add().
  * - prescribed: 1 on an axis imposes the particle's velocity on the nodes it touches.
+ * - dilation_ratio: J'/J > 0, by which the volume that the law sees differs from that of
+ * deformation_gradient; exists while a stepper with locking_remedy holds the set, and starts as 1. The law
+ * sees (J'/J)^(1/dim) F, in 2-D in the plane only.
  * - image: periods crossed on each periodic axis; position + image * period is the unwrapped position.
  *
  * size, acceleration, velocity_gradient and applied_force take memory only when used; until then
  * acceleration, velocity_gradient and applied_force read as zeros.
  *
- * Fields are independent but for this: once deformation_gradient or initial_volume is set, volume, and the
- * stress of laws that compute it from F, are brought up to date before anything reads them (get, map,
- * callbacks, mpm_stable_dt(), mpm_step()).
+ * Fields are independent but for this: once deformation_gradient, dilation_ratio or initial_volume is set,
+ * volume, and the stress of laws that compute it from F, are brought up to date before anything reads them
+ * (get, map, callbacks, mpm_stable_dt(), mpm_step()).
  *
  * Everything that changes a set returns MPM_E_STATE while a view of it is out or a staged step is under way.
  */

@@ -225,7 +225,8 @@ MPM_API mpm_status mpm_stepper_set_progress(mpm_stepper *stepper, mpm_progress_f
  * Stable dt of an explicit step from the present state, at CFL number 1 (MPoint theory, eqs 45-46):
  * 1 / max over particles and axes of (|v_k| + c) / h_k, where c is the law's current wave speed, and at most
  * h^2 / (2 dim nu) where a law reports a kinematic viscosity nu; h is the smallest spacing. Explicit steps
- * want a share of it. Calls the laws. MPM_E_STATE if there are no particles or a view is out.
+ * want a share of it. Infinite where nothing moves and no law has waves. Calls the laws. MPM_E_STATE if there
+ * are no particles or a view is out.
  */
 MPM_API mpm_status mpm_stable_dt(mpm_stepper *stepper, double *dt);
 

@@ -4,11 +4,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SUFFIX = 48, ATTEMPTS = 100 };
+enum { SUFFIX = 48, ATTEMPTS = 100, LONG_GAP = 1 << 20 };
 
 mpm_status mpmi_check_path(mpm_context *context, const char *path) {
   if (!path) return mpmi_fail(context, MPM_E_ARG, "path is NULL");
@@ -81,6 +82,18 @@ void mpmi_output_write(mpmi_output *out, const void *data, size_t bytes) {
   if (!out->error) note(out, fwrite(data, 1, bytes, out->stream) != bytes);
 }
 
+void mpmi_output_zeros(mpmi_output *out, int64_t bytes) {
+  static const char zero[4096];
+  errno = 0;
+  if (bytes >= LONG_GAP && !out->error) {
+    note(out, fseeko(out->stream, bytes, SEEK_CUR));
+    if (out->error == EINVAL || out->error == EOVERFLOW) out->error = EFBIG; /* no such place in a file */
+    return;
+  }
+  for (; bytes > 0; bytes -= (int64_t)sizeof zero)
+    mpmi_output_write(out, zero, bytes < (int64_t)sizeof zero ? (size_t)bytes : sizeof zero);
+}
+
 void mpmi_output_rewind(mpmi_output *out) {
   errno = 0;
   if (!out->error) note(out, fseeko(out->stream, 0, SEEK_SET));
@@ -101,4 +114,24 @@ mpm_status mpmi_output_close(mpmi_output *out, int32_t durable) {
   }
   free_name(out);
   return status;
+}
+
+void mpmi_print_real(double value, char *text) {
+  char local[MPMI_REAL];
+  for (int32_t digits = 15; digits <= 17; ++digits) {
+    snprintf(local, sizeof local, "%.*g", (int)digits, value);
+    const double back = strtod(local, NULL);
+    if (!memcmp(&back, &value, sizeof value)) break;
+  }
+  size_t n = 0;
+  int32_t in_point = 0;
+  for (const char *c = local; *c; ++c) {
+    const int32_t known = strchr("0123456789+-e", *c) != NULL;
+    if (known)
+      text[n++] = *c;
+    else if (!in_point) /* a decimal point may take several bytes */
+      text[n++] = '.';
+    in_point = !known;
+  }
+  text[n] = '\0';
 }

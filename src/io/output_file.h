@@ -19,6 +19,8 @@ typedef struct mpmi_output {
 /* MPM_E_IO with path and cause. `path` must live as long as the file is open. */
 mpm_status mpmi_output_open(mpmi_output *out, mpm_context *context, const char *path);
 void mpmi_output_write(mpmi_output *out, const void *data, size_t bytes);
+/* Zeros; long runs of them take no room on the storage where it knows holes. More data must follow. */
+void mpmi_output_zeros(mpmi_output *out, int64_t bytes);
 void mpmi_output_rewind(mpmi_output *out); /* writes on at the first byte */
 /* Completes the file under its path, or removes what was written: MPM_E_IO. durable: waits for the storage.
  */
@@ -27,5 +29,9 @@ mpm_status mpmi_output_close(mpmi_output *out, int32_t durable);
 mpm_status mpmi_check_path(mpm_context *context, const char *path);
 /* MPM_E_IO: "cannot <verb> <path>: <text of error>". */
 mpm_status mpmi_io_error(mpm_context *context, const char *verb, const char *path, int error);
+/* Shortest decimal that reads back as a finite value, with a point in any locale; text has MPMI_REAL bytes.
+ */
+enum { MPMI_REAL = 40 };
+void mpmi_print_real(double value, char *text);
 
 #endif

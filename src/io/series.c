@@ -6,7 +6,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -36,27 +35,6 @@ static int write_at(int file, int64_t at, const char *text, size_t bytes) {
     bytes -= (size_t)written;
   }
   return 0;
-}
-
-/* Shortest decimal that reads back as t, with a point in any locale. */
-static void print_time(double t, char *text, size_t capacity) {
-  char local[40];
-  for (int32_t digits = 15; digits <= 17; ++digits) {
-    snprintf(local, sizeof local, "%.*g", (int)digits, t);
-    const double back = strtod(local, NULL);
-    if (!memcmp(&back, &t, sizeof t)) break;
-  }
-  size_t n = 0;
-  int32_t in_point = 0;
-  for (const char *c = local; *c && n + 1 < capacity; ++c) {
-    const int32_t known = strchr("0123456789+-e", *c) != NULL;
-    if (known)
-      text[n++] = *c;
-    else if (!in_point) /* a decimal point may take several bytes */
-      text[n++] = '.';
-    in_point = !known;
-  }
-  text[n] = '\0';
 }
 
 /* Bytes of the UTF-8 character at c if XML 1.0 can hold it, else 0. */
@@ -169,8 +147,8 @@ mpm_status mpm_series_append(mpm_series *series, double t, const char *file) {
   mpm_context *context = series->context;
   if (!isfinite(t)) return mpmi_fail(context, MPM_E_ARG, "t is %g, must be finite", t);
   if (!file || !*file) return mpmi_fail(context, MPM_E_ARG, "file is %s", file ? "empty" : "NULL");
-  char time[40];
-  print_time(t, time, sizeof time);
+  char time[MPMI_REAL];
+  mpmi_print_real(t, time);
   static const char before[] = "    <DataSet timestep=\"%s\" part=\"0\" file=\"", after[] = "\"/>\n";
   const size_t capacity =
       sizeof before + sizeof time + LONGEST_ESCAPE * strlen(file) + sizeof after + sizeof tail;

@@ -97,14 +97,17 @@ void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_bloc
     int32_t field, sign;
   } demand[] = {{MPMI_POSITION, ANY},
                 {MPMI_VELOCITY, ANY},
+                {MPMI_ACCELERATION, ANY},
                 {MPMI_MASS, NOT_NEGATIVE},
                 {MPMI_VOLUME, POSITIVE},
                 {MPMI_INITIAL_VOLUME, POSITIVE},
                 {MPMI_SIZE, POSITIVE},
+                {MPMI_DILATION_RATIO, POSITIVE},
                 {MPMI_F, ANY},
                 {MPMI_L, ANY},
                 {MPMI_STRESS, ANY},
                 {MPMI_STATE, ANY},
+                {MPMI_REFERENCE, ANY},
                 {MPMI_APPLIED_FORCE, ANY}};
   restore_holes(fresh);
   check_ids(a, fresh);

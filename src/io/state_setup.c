@@ -63,8 +63,8 @@ static void write_fields(mpmi_archive *a, const mpm_particles *set) {
 
 static int32_t may_be_absent(const mpm_grid *grid, int32_t field) {
   if (field == MPMI_SIZE) return !mpmi_has_domains(grid);
-  return field == MPMI_ACCELERATION || field == MPMI_L || field == MPMI_REFERENCE ||
-         field == MPMI_PRESCRIBED || field == MPMI_APPLIED_FORCE;
+  return field == MPMI_ACCELERATION || field == MPMI_DILATION_RATIO || field == MPMI_L ||
+         field == MPMI_REFERENCE || field == MPMI_PRESCRIBED || field == MPMI_APPLIED_FORCE;
 }
 
 static mpm_status refuse_field(mpmi_archive *a, const char *name, const char *what) {

@@ -1,8 +1,160 @@
+/* Nodal fields as VTK image data over the box of the active nodes. Nodes are visited in the order of the
+ * image; what lies between them is zeros, so that memory follows the material and not the box. */
+#include "context/radix.h"
+#include "io/vtk_file.h"
+#include "stepper/node_view.h"
 #include "stepper/stepper.h"
 
+#include <string.h>
+
+enum { BUFFER = 4096 };
+
+typedef struct image {
+  mpm_stepper *s;
+  mpmi_vtk_file file;
+  int64_t low[3], size[3]; /* of the box, in nodes; 1 on axes that do not exist */
+  int64_t n;               /* active nodes, by ascending place: */
+  int64_t *slot;           /* [n] */
+  uint64_t *place;         /* [n] in the image, x fastest */
+  size_t bytes;            /* of both */
+} image;
+
+static int32_t shown_components(const mpm_stepper *s, int32_t field) {
+  return mpmi_node_fields[field].scalar ? 1 : s->grid->dim > 1 ? 3 : 1;
+}
+
+static mpm_status choose_arrays(image *w, int32_t count, const char *const *fields) {
+  const mpm_stepper *s = w->s;
+  mpm_status status = mpmi_vtk_check_names(s->context, count, fields);
+  for (int32_t i = 0; i < count && !status; ++i) {
+    int32_t f;
+    status = mpmi_node_require(s->context, fields[i], &f);
+    if (!status) status = mpmi_node_check_kept(s, f);
+    if (!status)
+      status = mpmi_vtk_add_named(&w->file, mpmi_node_fields[f].name, f, mpmi_node_fields[f].type,
+                                  shown_components(s, f));
+  }
+  for (int32_t f = 0; f < MPMI_NODE_FIELDS && !count && !status; ++f) {
+    /* the points of the image are the positions, and only what the step has kept is there */
+    if (f == MPMI_NODE_POSITION || !mpmi_node_keeps(s, f)) continue;
+    mpmi_vtk_add(&w->file, mpmi_node_fields[f].name, f, mpmi_node_fields[f].type, shown_components(s, f));
+  }
+  return status;
+}
+
+static mpm_status find_box(image *w) {
+  const mpm_stepper *s = w->s;
+  int64_t high[3] = {0, 0, 0};
+  for (int64_t i = 0; i < s->active_count; ++i) {
+    int64_t index[3] = {0, 0, 0};
+    mpmi_blocks_index(&s->blocks, s->active[i], index);
+    for (int32_t k = 0; k < 3; ++k) {
+      if (i == 0 || index[k] < w->low[k]) w->low[k] = index[k];
+      if (i == 0 || index[k] > high[k]) high[k] = index[k];
+    }
+  }
+  w->file.tuples = 1; /* does not overflow: grids have no more nodes than 63 bits can number */
+  for (int32_t k = 0; k < 3; ++k) {
+    w->size[k] = s->active_count ? high[k] - w->low[k] + 1 : 0;
+    w->file.tuples *= w->size[k];
+  }
+  if (mpmi_vtk_fits(&w->file)) return MPM_OK;
+  return mpmi_fail(
+      s->context, MPM_E_ARG,
+      "the box of the active nodes has %lld x %lld x %lld nodes, more than a file can hold: read "
+      "the fields with mpm_grid_map()",
+      (long long)w->size[0], (long long)w->size[1], (long long)w->size[2]);
+}
+
+static uint64_t place_of(const image *w, int64_t slot) {
+  int64_t index[3] = {0, 0, 0}, place = 0;
+  mpmi_blocks_index(&w->s->blocks, slot, index);
+  for (int32_t k = 2; k >= 0; --k) place = place * w->size[k] + index[k] - w->low[k];
+  return (uint64_t)place;
+}
+
+static mpm_status sort_nodes(image *w) {
+  const mpm_stepper *s = w->s;
+  mpm_context *context = s->context;
+  if (s->active_count > UINT32_MAX)
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "%lld active nodes are too many for one image: read the fields with mpm_grid_map()",
+                     (long long)s->active_count);
+  w->n = s->active_count;
+  w->bytes = mpmi_bytes(w->n, sizeof *w->slot + sizeof *w->place);
+  const size_t order_bytes = mpmi_bytes(w->n, 2 * sizeof(uint32_t));
+  w->slot = mpmi_alloc(context, w->bytes);
+  uint32_t *order = w->slot ? mpmi_alloc(context, order_bytes) : NULL;
+  if (!order) {
+    mpmi_free(context, w->slot, w->bytes);
+    return MPM_E_NOMEM;
+  }
+  w->place = (uint64_t *)w->slot + w->n;
+  for (int64_t i = 0; i < w->n; ++i) w->place[i] = place_of(w, s->active[i]);
+  mpmi_radix_sort(w->n, w->place, order, (uint64_t *)w->slot, order + w->n);
+  for (int64_t i = 0; i < w->n; ++i) {
+    w->slot[i] = s->active[order[i]];
+    w->place[i] = place_of(w, w->slot[i]);
+  }
+  mpmi_free(context, order, order_bytes);
+  return MPM_OK;
+}
+
+static void write_head(image *w) {
+  const mpm_grid_desc *grid = &w->s->grid->desc;
+  FILE *stream = w->file.out.stream;
+  char extent[160], number[6][MPMI_REAL];
+  int32_t used = 0;
+  for (int32_t k = 0; k < 3; ++k) {
+    used += snprintf(extent + used, sizeof extent - (size_t)used, k ? " %lld %lld" : "%lld %lld",
+                     (long long)w->low[k], (long long)(w->low[k] + w->size[k] - 1));
+    mpmi_print_real(grid->origin[k], number[k]);
+    mpmi_print_real(grid->spacing[k], number[3 + k]);
+  }
+  fprintf(stream,
+          "  <ImageData WholeExtent=\"%s\" Origin=\"%s %s %s\" Spacing=\"%s %s %s\">\n"
+          "    <Piece Extent=\"%s\">\n"
+          "      <PointData>\n",
+          extent, number[0], number[1], number[2], number[3], number[4], number[5], extent);
+  mpmi_vtk_tags(&w->file, 0, w->file.count);
+  fputs("      </PointData>\n", stream);
+}
+
+static void write_array(image *w, const mpmi_vtk_array *a) {
+  const int64_t tuple = a->components * (int64_t)mpmi_type_size(a->type), most = BUFFER / a->components;
+  double buffer[BUFFER]; /* of I64 too, which are as large */
+  int64_t end = 0;
+  mpmi_vtk_start_array(&w->file, a);
+  for (int64_t i = 0, run; i < w->n; i += run) {
+    const int64_t begin = (int64_t)w->place[i];
+    for (run = 1; run < most && i + run < w->n && (int64_t)w->place[i + run] == begin + run;) ++run;
+    memset(buffer, 0, (size_t)(run * tuple)); /* the axes that do not exist */
+    mpmi_node_values(w->s, a->field, w->slot + i, run, a->components, 1, buffer);
+    mpmi_output_zeros(&w->file.out, (begin - end) * tuple);
+    mpmi_output_write(&w->file.out, buffer, (size_t)(run * tuple));
+    end = begin + run;
+  }
+  mpmi_output_zeros(&w->file.out, (w->file.tuples - end) * tuple);
+}
+
 mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count, const char *const *fields) {
-  (void)path, (void)count, (void)fields;
   MPMI_ENTER(stepper, MPMI_STEPPER);
-  return mpmi_fail(stepper->context, MPM_E_UNSUPPORTED,
-                   "mpm_write_grid() is not in this version: read nodal fields with mpm_grid_map()");
+  mpm_context *context = stepper->context;
+  image w = {.s = stepper, .file = {.context = context}};
+  mpm_status status = mpmi_check_path(context, path);
+  if (!status) status = mpmi_nodes_ready(stepper);
+  if (!status) status = choose_arrays(&w, count, fields);
+  if (!status) status = mpmi_nodes_list(stepper);
+  if (!status) status = find_box(&w);
+  if (!status) status = sort_nodes(&w);
+  if (status) return status;
+  status = mpmi_vtk_open(&w.file, path, "ImageData");
+  if (!status) {
+    write_head(&w);
+    mpmi_vtk_start_data(&w.file, "ImageData");
+    for (int32_t i = 0; i < w.file.count; ++i) write_array(&w, &w.file.list[i]);
+    status = mpmi_vtk_close(&w.file);
+  }
+  mpmi_free(context, w.slot, w.bytes);
+  return status;
 }

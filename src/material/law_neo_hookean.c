@@ -4,18 +4,8 @@
 #include <math.h>
 
 #include "material/laws.h"
-#include "material/tensor.h"
+#include "material/stretch_bounds.h"
 #include "material/vector_math.h"
-
-/* Largest absolute row sum: a bound of the largest eigenvalue of b = I + e over the directions that `dim`
- * has. */
-MPMI_INLINE double largest_stretch_squared(int dim, mpmi_sym e) {
-  if (dim == 1) return 1.0 + e.xx;
-  double xy = fabs(e.xy);
-  if (dim == 2) return 1.0 + (mpmi_max(e.xx, e.yy) + xy);
-  double yz = fabs(e.yz), xz = fabs(e.xz);
-  return 1.0 + mpmi_max(mpmi_max(e.xx + (xy + xz), e.yy + (xy + yz)), e.zz + (xz + yz));
-}
 
 MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_material_batch *batch) {
   const double lambda = constants[MPMI_C_LAMBDA], mu = constants[MPMI_C_MU];
@@ -26,9 +16,9 @@ MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_materia
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
     /* In terms of H = F - I, so that small strains keep their digits. */
-    mpmi_mat h = mpmi_load_mat(dim, deformation, ld, i, 1.0, 1.0);
+    mpmi_mat h = mpmi_load_F_minus_1(dim, deformation, ld, i);
     mpmi_sym e = mpmi_left_cauchy_green_minus_1(dim, h);
-    double j_minus_1 = mpmi_det_minus_1(dim, h), j_inverse = 1.0 / (1.0 + j_minus_1);
+    double j_minus_1 = mpmi_J_minus_1(dim, h), j_inverse = 1.0 / (1.0 + j_minus_1);
     double log_j = mpmi_lane_log1p(j_minus_1);
 
     double mu_j = mu * j_inverse, pressure = lambda * log_j * j_inverse;
@@ -43,7 +33,7 @@ MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_materia
 
     /* The acoustic tensor (J c_ijkl n_j n_l + tau_jl n_j n_l delta_ik) / density has the eigenvalues
      * mu b_nn (transverse) and lambda + mu - lambda ln J + mu b_nn (along n), over the initial density. */
-    double along = mpmi_max(lambda + mu - lambda * log_j, 0.0) + mu * largest_stretch_squared(dim, e);
+    double along = mpmi_max(lambda + mu - lambda * log_j, 0.0) + mu * mpmi_largest_stretch_squared(dim, e);
     wave_speed[i] = sqrt(mpmi_max(along, mu) * density_inverse);
   }
 }

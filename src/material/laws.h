@@ -5,7 +5,7 @@
 #include "material/material.h"
 #include "transfer/isa.h"
 
-/* Isotropic elastic constants come first in every law. */
+/* Each law has those that it needs; the others are 0. */
 enum {
   MPMI_C_LAMBDA,
   MPMI_C_MU,
@@ -16,17 +16,25 @@ enum {
   MPMI_C_YIELD,          /* j2: initial yield stress */
   MPMI_C_HARDENING,      /* j2: slope of the yield stress over the equivalent plastic strain */
   MPMI_C_RETURN,         /* j2: 1 / (3 mu + hardening) */
+  MPMI_C_BULK,           /* neo_hookean_decoupled: kappa; newtonian_fluid: K */
+  MPMI_C_BULK_BY_GAMMA,
+  MPMI_C_GAMMA_MINUS_1, /* newtonian_fluid: never 0 */
+  MPMI_C_VISCOSITY,
+  MPMI_C_LARGEST_J_MINUS_1, /* newtonian_fluid: 0 without tension */
   MPMI_C_COUNT
 };
 _Static_assert((int)MPMI_C_COUNT <= (int)MPMI_MAX_CONSTANTS, "constants of a law");
 
 /* A built-in law by name, or NULL. */
 const mpmi_law *mpmi_law_by_name(const char *name);
-/* For a name that the interface reserves but that cannot be made yet: what to use instead; else NULL. */
-const char *mpmi_law_substitute(const char *name);
 
 #define MPMI_DECLARE_LAWS(isa)                                                                               \
   void mpmi_law_neo_hookean_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);    \
+  void mpmi_law_neo_hookean_decoupled_##isa(const double *constants, int32_t dim,                            \
+                                            const mpm_material_batch *batch);                                \
+  void mpmi_law_newtonian_fluid_##isa(const double *constants, int32_t dim,                                  \
+                                      const mpm_material_batch *batch);                                      \
+  void mpmi_law_rigid_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);          \
   void mpmi_law_linear_elastic_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch); \
   void mpmi_law_j2_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);
 

@@ -11,10 +11,7 @@ static int32_t is_context(const mpm_context *context) {
 }
 
 static mpm_status refuse_model(mpm_context *context, const char *model) {
-  const char *names[MPMI_LAW_COUNT], *substitute = mpmi_law_substitute(model);
-  if (substitute)
-    return mpmi_fail(context, MPM_E_UNSUPPORTED, "model \"%s\" is not available in this version: %s", model,
-                     substitute);
+  const char *names[MPMI_LAW_COUNT];
   for (int32_t i = 0; i < MPMI_LAW_COUNT; ++i) names[i] = mpmi_law_by_index(i)->name;
   char nearest[256];
   mpmi_nearest_names(model, names, MPMI_LAW_COUNT, nearest, sizeof nearest);
@@ -44,9 +41,10 @@ static mpm_status read_params(mpm_context *context, const mpmi_law *law, const m
       return mpmi_fail(context, MPM_E_ARG, "%s: parameter \"%s\" is given twice", law->name, name);
     given[k] = 1;
     value[k] = params[i].value;
-    if (!(value[k] >= law->param[k].low && value[k] <= law->param[k].high))
+    const mpmi_law_param *param = &law->param[k];
+    if (!(value[k] >= param->low && value[k] <= param->high) || (param->whole && value[k] != floor(value[k])))
       return mpmi_fail(context, MPM_E_ARG, "%s: %s = %.17g, but it %s", law->name, name, value[k],
-                       law->param[k].range);
+                       param->range);
   }
   for (int32_t k = 0; k < law->param_count; ++k)
     if (isnan(value[k]))
@@ -58,7 +56,7 @@ static mpm_status read_params(mpm_context *context, const mpmi_law *law, const m
 /* Parameters may be fine one by one and still overflow together, such as 1e300 / 1e-300. */
 static mpm_status prepare_constants(mpm_context *context, const mpmi_law *law, const double *value,
                                     double *constants) {
-  law->prepare(value, constants);
+  if (law->prepare) law->prepare(value, constants);
   for (int32_t i = 0; i < MPMI_MAX_CONSTANTS; ++i)
     if (!isfinite(constants[i]))
       return mpmi_fail(context, MPM_E_ARG,
@@ -182,4 +180,8 @@ mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t isa, int
 
 int32_t mpmi_material_stress_from_F(const mpm_material *material) {
   return material->law ? material->law->stress_from_F : 0;
+}
+
+int32_t mpmi_material_kinematics(const mpm_material *material) {
+  return material->law ? material->law->kinematics : MPMI_F_DEFORMS;
 }

@@ -12,9 +12,14 @@ enum {
   MPMI_LAW_NEO_HOOKEAN,
   MPMI_LAW_LINEAR_ELASTIC,
   MPMI_LAW_J2,
+  MPMI_LAW_NEO_HOOKEAN_DECOUPLED,
+  MPMI_LAW_NEWTONIAN_FLUID,
+  MPMI_LAW_RIGID,
   MPMI_LAW_COUNT,
   MPMI_LAW_CUSTOM = MPMI_LAW_COUNT
 };
+/* What a step does to F: all of it; only its volume, F = J^(1/3) I (1-D: F11 = J); nothing. */
+enum { MPMI_F_DEFORMS, MPMI_F_DILATES, MPMI_F_STAYS, MPMI_F_KINDS };
 enum { MPMI_MAX_PARAMS = 8, MPMI_MAX_CONSTANTS = 16 };
 
 /* Evaluates a built-in law on batch->n particles (a multiple of 16). constants: made by the law's prepare
@@ -27,16 +32,18 @@ typedef struct mpmi_law_param {
   const char *name, *unit, *text;
   double value, low, high; /* default (NaN: must be given); inclusive range */
   const char *range;       /* the same in words */
+  int32_t whole;           /* 1: whole numbers only */
 } mpmi_law_param;
 
 typedef struct mpmi_law {
   const char *name;
   int32_t index; /* MPMI_LAW_... */
   int32_t state_count;
-  int32_t stress_from_F; /* 1: hyperelastic; 0: hypoelastic, the host may set the stress */
+  int32_t stress_from_F; /* 1: hyperelastic, fluid, rigid; 0: hypoelastic, the host may set the stress */
+  int32_t kinematics;    /* MPMI_F_... */
   int32_t param_count;
   mpmi_law_param param[MPMI_MAX_PARAMS];
-  /* Derived constants for the kernel from the parameter values. */
+  /* Derived constants for the kernel from the parameter values, where it has any. */
   void (*prepare)(const double *value, double *constants);
 } mpmi_law;
 
@@ -58,7 +65,8 @@ mpmi_law_fn mpmi_law_kernel(int32_t isa, int32_t law);
 /* Runs a material's law, built in or the host's, on a batch. Callback statuses pass through unchanged. */
 mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t isa, int32_t dim,
                                   const mpm_material_batch *batch);
-/* 1 when stress follows from F alone. */
+/* 1 when stress follows from F, and from the step where the law is viscous. */
 int32_t mpmi_material_stress_from_F(const mpm_material *material);
+int32_t mpmi_material_kinematics(const mpm_material *material);
 
 #endif

@@ -1,6 +1,7 @@
-/* Kinematics that linear_elastic and j2 share. With the increment F_inc = V R (polar decomposition) the
- * stress turns with R and the strain increment is ln V: rotations leave no stress behind, whatever the size
- * of the step. G = F_inc - I is taken as dt L, so that small increments keep their digits. */
+/* Kinematics that linear_elastic, j2 and newtonian_fluid share. With the increment F_inc = V R (polar
+ * decomposition) the stress turns with R and the strain increment is ln V: rotations leave no stress behind,
+ * whatever the size of the step. G = F_inc - I is taken as dt L, so that small increments keep their digits.
+ */
 #ifndef MPMI_OBJECTIVE_INCREMENT_H
 #define MPMI_OBJECTIVE_INCREMENT_H
 
@@ -12,7 +13,6 @@
 #include "material/tensor.h"
 #include "material/vector_math.h"
 
-/* Turns the stress with R and gives ln V. */
 MPMI_INLINE mpmi_sym mpmi_increment_2d(mpmi_mat g, mpmi_sym *stress) {
   /* V is symmetric when R turns by the angle whose cosine and sine are as along and across. Written as a
    * change of the stress, so that no rotation leaves it as it is. */
@@ -64,6 +64,15 @@ MPMI_INLINE mpmi_sym mpmi_increment_3d(mpmi_mat g, mpmi_sym *stress) {
   return mpmi_log_stretch(e, q, n);
 }
 
+/* Turns the stress with R and gives ln V; g = F_inc - I. */
+MPMI_INLINE mpmi_sym mpmi_log_increment(int dim, mpmi_mat g, mpmi_sym *stress) {
+  mpmi_sym v = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (dim == 2) return mpmi_increment_2d(g, stress);
+  if (dim == 3) return mpmi_increment_3d(g, stress);
+  v.xx = mpmi_lane_log1p(g.xx);
+  return v;
+}
+
 /* What the trial stress needs, read before the loop: the compiler must see that stores leave it alone. */
 typedef struct mpmi_increments {
   const double *L, *stress;
@@ -79,12 +88,8 @@ MPMI_INLINE mpmi_increments mpmi_increments_of(const double *constants, const mp
 
 /* Old stress turned, plus lambda tr(ln V) I + 2 mu ln V. */
 MPMI_INLINE mpmi_sym mpmi_trial_stress(int dim, mpmi_increments in, int64_t i) {
-  mpmi_sym s = mpmi_load_sym(dim, in.stress, in.ld, i), v = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, i, 0.0, in.dt);
-  if (dim == 1)
-    v.xx = mpmi_lane_log1p(g.xx);
-  else
-    v = dim == 2 ? mpmi_increment_2d(g, &s) : mpmi_increment_3d(g, &s);
+  mpmi_sym s = mpmi_load_sym(dim, in.stress, in.ld, i);
+  mpmi_sym v = mpmi_log_increment(dim, mpmi_load_mat(dim, in.L, in.ld, i, 0.0, in.dt), &s);
   double pressure = in.lambda * (v.xx + v.yy + v.zz), mu2 = 2.0 * in.mu;
   s.xx += pressure + mu2 * v.xx;
   s.yy += pressure + mu2 * v.yy;
@@ -115,7 +120,7 @@ MPMI_INLINE void mpmi_elastic_outputs(int dim, const double *constants, const mp
   double *wave_speed = batch->wave_speed, *energy = batch->energy;
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
-    double j = 1.0 + mpmi_det_minus_1(dim, mpmi_load_mat(dim, deformation, ld, i, 1.0, 1.0)), mean;
+    double j = 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, deformation, ld, i)), mean;
     mpmi_sym s = mpmi_deviator(mpmi_load_sym(dim, stress, ld, i), &mean);
     wave_speed[i] = sqrt(p_wave * j);
     energy[i] = j * (by_mean * mean * mean + by_deviator * mpmi_square(s));

@@ -6,15 +6,17 @@
 #include "material/laws.h"
 
 /* Open ranges are written with their outermost members, so that low and high themselves are accepted. */
-#define POSITIVE      DBL_MIN, DBL_MAX, "must be finite and > 0"
-#define NOT_NEGATIVE  0.0, DBL_MAX, "must be finite and >= 0"
+#define POSITIVE      DBL_MIN, DBL_MAX, "must be finite and > 0", 0
+#define NOT_NEGATIVE  0.0, DBL_MAX, "must be finite and >= 0", 0
+#define AT_LEAST_ONE  1.0, DBL_MAX, "must be finite and >= 1", 0
+#define ZERO_OR_ONE   0.0, 1.0, "must be 0 or 1", 1
 #define MUST_BE_GIVEN ((double)NAN)
 #define PARAM_E                                                                                              \
   { "E", "stress", "Young's modulus", MUST_BE_GIVEN, POSITIVE }
 #define PARAM_NU                                                                                             \
   {                                                                                                          \
     "nu", "1", "Poisson's ratio", MUST_BE_GIVEN, -1.0 + DBL_EPSILON / 2, 0.5 - DBL_EPSILON / 4,              \
-        "must be > -1 and < 0.5"                                                                             \
+        "must be > -1 and < 0.5", 0                                                                          \
   }
 #define PARAM_DENSITY                                                                                        \
   { "density", "mass/length^3", "mass per initial volume", MUST_BE_GIVEN, POSITIVE }
@@ -31,6 +33,27 @@ static void prepare_elastic(const double *value, double *constants) {
   constants[MPMI_C_P_WAVE_SQUARED] = (bulk + 4.0 / 3.0 * mu) / value[DENSITY];
   constants[MPMI_C_MEAN_ENERGY] = 1.0 / (2.0 * bulk);
   constants[MPMI_C_SHEAR_ENERGY] = 1.0 / (4.0 * mu);
+}
+
+enum { DECOUPLED_MU, DECOUPLED_KAPPA, DECOUPLED_DENSITY };
+
+static void prepare_decoupled(const double *value, double *constants) {
+  constants[MPMI_C_BULK] = value[DECOUPLED_KAPPA];
+  constants[MPMI_C_MU] = value[DECOUPLED_MU];
+  constants[MPMI_C_DENSITY_INVERSE] = 1.0 / value[DECOUPLED_DENSITY];
+}
+
+enum { FLUID_DENSITY, FLUID_BULK, FLUID_GAMMA, FLUID_VISCOSITY, FLUID_TENSION };
+
+static void prepare_fluid(const double *value, double *constants) {
+  const double gamma_minus_1 = value[FLUID_GAMMA] - 1.0;
+  constants[MPMI_C_BULK] = value[FLUID_BULK];
+  constants[MPMI_C_BULK_BY_GAMMA] = value[FLUID_BULK] / value[FLUID_GAMMA];
+  /* (J^(1 - gamma) - 1) / (gamma - 1) is -ln J to the last digit for one so small */
+  constants[MPMI_C_GAMMA_MINUS_1] = gamma_minus_1 > 0.0 ? gamma_minus_1 : 1e-100;
+  constants[MPMI_C_VISCOSITY] = value[FLUID_VISCOSITY];
+  constants[MPMI_C_LARGEST_J_MINUS_1] = value[FLUID_TENSION] > 0.0 ? DBL_MAX : 0.0;
+  constants[MPMI_C_DENSITY_INVERSE] = 1.0 / value[FLUID_DENSITY];
 }
 
 static void prepare_j2(const double *value, double *constants) {
@@ -64,12 +87,42 @@ static const mpmi_law laws[MPMI_LAW_COUNT] = {
                    {"hardening", "stress", "slope of the yield stress over the equivalent plastic strain",
                     0.0, NOT_NEGATIVE}},
          .prepare = prepare_j2},
+    [MPMI_LAW_NEO_HOOKEAN_DECOUPLED] = {.name = "neo_hookean_decoupled",
+                                        .index = MPMI_LAW_NEO_HOOKEAN_DECOUPLED,
+                                        .stress_from_F = 1,
+                                        .param_count = 3,
+                                        .param = {{"mu", "stress", "shear modulus", MUST_BE_GIVEN, POSITIVE},
+                                                  {"kappa", "stress", "bulk modulus", MUST_BE_GIVEN,
+                                                   POSITIVE},
+                                                  PARAM_DENSITY},
+                                        .prepare = prepare_decoupled},
+    [MPMI_LAW_NEWTONIAN_FLUID] =
+        {.name = "newtonian_fluid",
+         .index = MPMI_LAW_NEWTONIAN_FLUID,
+         .stress_from_F = 1,
+         .kinematics = MPMI_F_DILATES,
+         .param_count = 5,
+         .param = {PARAM_DENSITY,
+                   {"bulk_modulus", "stress", "bulk modulus at the initial volume", MUST_BE_GIVEN, POSITIVE},
+                   {"gamma", "1", "exponent of the volume: pressure = bulk_modulus / gamma (J^-gamma - 1)",
+                    7.0, AT_LEAST_ONE},
+                   {"viscosity", "stress*time", "dynamic viscosity", 0.0, NOT_NEGATIVE},
+                   {"tension", "1", "1: pressure may be negative; 0: it is cut off at 0", 1.0, ZERO_OR_ONE}},
+         .prepare = prepare_fluid},
+    [MPMI_LAW_RIGID] = {.name = "rigid",
+                        .index = MPMI_LAW_RIGID,
+                        .stress_from_F = 1,
+                        .kinematics = MPMI_F_STAYS,
+                        .param_count = 1,
+                        .param = {PARAM_DENSITY}},
 };
 
 #define KERNELS(isa)                                                                                         \
   {                                                                                                          \
     [MPMI_LAW_NEO_HOOKEAN] = mpmi_law_neo_hookean_##isa,                                                     \
-    [MPMI_LAW_LINEAR_ELASTIC] = mpmi_law_linear_elastic_##isa, [MPMI_LAW_J2] = mpmi_law_j2_##isa             \
+    [MPMI_LAW_LINEAR_ELASTIC] = mpmi_law_linear_elastic_##isa, [MPMI_LAW_J2] = mpmi_law_j2_##isa,            \
+    [MPMI_LAW_NEO_HOOKEAN_DECOUPLED] = mpmi_law_neo_hookean_decoupled_##isa,                                 \
+    [MPMI_LAW_NEWTONIAN_FLUID] = mpmi_law_newtonian_fluid_##isa, [MPMI_LAW_RIGID] = mpmi_law_rigid_##isa     \
   }
 
 mpmi_law_fn mpmi_law_kernel(int32_t isa, int32_t law) {
@@ -94,16 +147,6 @@ const mpmi_law *mpmi_law_by_name(const char *name) {
   return NULL;
 }
 
-const char *mpmi_law_substitute(const char *name) {
-  static const char *const planned[][2] = {
-      {"neo_hookean_decoupled", "use \"neo_hookean\", or mpm_material_create_custom()"},
-      {"newtonian_fluid", "use mpm_material_create_custom()"},
-      {"rigid", "use an elastic law, and hold its nodes with mpm_stepper_set_velocity_bc()"}};
-  for (size_t i = 0; i < sizeof planned / sizeof planned[0]; ++i)
-    if (!strcmp(planned[i][0], name)) return planned[i][1];
-  return NULL;
-}
-
 int32_t mpm_material_model_count(void) {
   return MPMI_LAW_COUNT;
 }
@@ -117,7 +160,7 @@ mpm_status mpm_material_model_param(const char *model, int32_t index, const char
                                     const char **text, double *value_default, double *low, double *high) {
   if (!model || index < 0) return MPM_E_ARG;
   const mpmi_law *law = mpmi_law_by_name(model);
-  if (!law) return mpmi_law_substitute(model) ? MPM_E_UNSUPPORTED : MPM_E_NOT_FOUND;
+  if (!law) return MPM_E_NOT_FOUND;
   if (index >= law->param_count) return MPM_E_NOT_FOUND;
   const mpmi_law_param *param = &law->param[index];
   if (name) *name = param->name;

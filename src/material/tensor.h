@@ -40,6 +40,13 @@ MPMI_INLINE mpmi_mat mpmi_load_mat(int dim, const double *a, int64_t ld, int64_t
   return m;
 }
 
+/* F - I, with the zz that a plane strain F keeps. */
+MPMI_INLINE mpmi_mat mpmi_load_F_minus_1(int dim, const double *F, int64_t ld, int64_t i) {
+  mpmi_mat h = mpmi_load_mat(dim, F, ld, i, 1.0, 1.0);
+  if (dim == 2) h.zz = F[8 * ld + i] - 1.0;
+  return h;
+}
+
 MPMI_INLINE mpmi_sym mpmi_load_sym(int dim, const double *a, int64_t ld, int64_t i) {
   mpmi_sym s = {a[i], a[ld + i], a[2 * ld + i], 0.0, 0.0, 0.0};
   if (dim >= 2) s.xy = a[3 * ld + i];
@@ -61,8 +68,8 @@ MPMI_INLINE void mpmi_store_sym(int dim, double *a, int64_t ld, int64_t i, mpmi_
   }
 }
 
-/* det(I + H) - 1 without losing the digits of a small H: expanded along the first row, with the ones of the
- * diagonal taken out by hand. */
+/* det(I + H) - 1 within the plane in 2-D, without losing the digits of a small H: expanded along the first
+ * row, with the ones of the diagonal taken out by hand. */
 MPMI_INLINE double mpmi_det_minus_1(int dim, mpmi_mat h) {
   if (dim == 1) return h.xx;
   if (dim == 2) return (h.xx + h.yy) + h.xx * h.yy - h.xy * h.yx;
@@ -70,6 +77,12 @@ MPMI_INLINE double mpmi_det_minus_1(int dim, mpmi_mat h) {
   double minor_y = h.yx + h.yx * h.zz - h.yz * h.zx;
   double minor_z = h.yx * h.zy - h.yy * h.zx - h.zx;
   return (h.xx + minor_x) + h.xx * minor_x - h.xy * minor_y + h.xz * minor_z;
+}
+
+/* det F - 1 for H of mpmi_load_F_minus_1. */
+MPMI_INLINE double mpmi_J_minus_1(int dim, mpmi_mat h) {
+  double d = mpmi_det_minus_1(dim, h);
+  return dim == 2 ? (d + h.zz) + d * h.zz : d;
 }
 
 /* F F^T - I = H + H^T + H H^T with H = F - I, each a sum and a chain of multiply-adds. */
@@ -80,6 +93,7 @@ MPMI_INLINE mpmi_sym mpmi_left_cauchy_green_minus_1(int dim, mpmi_mat h) {
   } else if (dim == 2) {
     e.xx = 2.0 * h.xx + h.xx * h.xx + h.xy * h.xy;
     e.yy = 2.0 * h.yy + h.yx * h.yx + h.yy * h.yy;
+    e.zz = 2.0 * h.zz + h.zz * h.zz;
     e.xy = (h.xy + h.yx) + h.xx * h.yx + h.xy * h.yy;
   } else {
     e.xx = 2.0 * h.xx + h.xx * h.xx + h.xy * h.xy + h.xz * h.xz;

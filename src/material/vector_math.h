@@ -28,6 +28,10 @@ MPMI_INLINE double mpmi_max(double a, double b) {
   return a > b ? a : b;
 }
 
+MPMI_INLINE double mpmi_min(double a, double b) {
+  return a < b ? a : b;
+}
+
 /* k ln 2 + log(1 + f) for |f| < 0.42: with s = f / (2 + f), log(1 + f) = 2 artanh s = f - f^2/2 + s (f^2/2 +
  * R), where R(s^2) is the minimax polynomial of 2 artanh(s) / s - 2 with relative error 1.3e-18. */
 MPMI_INLINE double mpmi_log_reduced(double k, double f) {
@@ -65,6 +69,23 @@ MPMI_INLINE double mpmi_lane_log(double x) {
 MPMI_INLINE double mpmi_lane_log1p(double x) {
   mpmi_binade b = mpmi_split_binade(1.0 + x);
   return mpmi_log_reduced(b.k, b.k == 0.0 ? x : b.f);
+}
+
+/* exp(x) - 1 with x = k ln 2 + r, |r| <= ln 2 / 2: 2^k (exp(r) - 1) + (2^k - 1), where exp(r) - 1 = r + r^2
+ * Q(r) and Q is the minimax polynomial with relative error 1.4e-18. k is read off the last bits of the
+ * mantissa of 1.5 * 2^52 + k. Not finite from x = 709.4 on. */
+MPMI_INLINE double mpmi_lane_expm1(double x) {
+  const double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 5.497923018708371e-14; /* as in the logarithm */
+  const double shift = 6755399441055744.0;
+  double within = x < -80.0 ? -80.0 : x > 710.0 ? 710.0 : x; /* keeps a NaN */
+  double shifted = within * 1.4426950408889634 + shift, k = shifted - shift;
+  double power = mpmi_from_bits((mpmi_bits_of(shifted) + UINT64_C(1023)) << 52);
+  double r = (within - k * ln2_high) - k * ln2_low, z = r * r, w = z * z;
+  double low = (0.5 + r * 0.1666666666666667) + z * (0.04166666666666667 + r * 0.008333333333326136);
+  double middle = (0.0013888888888883748 + r * 0.00019841269874820627) +
+                  z * (2.4801587325547743e-05 + r * 2.7557255400206422e-06);
+  double high = (2.75572736431103e-07 + r * 2.5105217004720745e-08) + z * 2.0914686968086876e-09;
+  return power * (r + z * (low + w * (middle + w * high))) + (power - 1.0);
 }
 
 #endif

@@ -42,7 +42,7 @@ mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, i
 /* Fields that are kept, and that have a default other than 0 which the caller has not written. */
 static void write_derived(mpm_particles *set, int32_t field, int64_t begin, int64_t end) {
   if (!set->field[field].present) return;
-  for (int32_t c = 0; c < set->grid->dim; ++c)
+  for (int32_t c = 0; c < set->field[field].components; ++c)
     for (int64_t s = begin; s < end; ++s)
       mpmi_f64(set, field, 0)[c * set->ld + s] = mpmi_absent_value(set, field, c, s);
 }
@@ -62,6 +62,7 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
   for (int64_t s = slot; s < slot + n; ++s) mpmi_wrap_slot(set, s);
   if (!with_size) write_derived(set, MPMI_SIZE, slot, slot + n);
   write_derived(set, MPMI_REFERENCE, slot, slot + n);
+  write_derived(set, MPMI_DILATION_RATIO, slot, slot + n);
   set->next_id = next_id;
   set->count += n;
   set->dirty |= MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY;

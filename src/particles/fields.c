@@ -84,13 +84,15 @@ double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int
     double period = grid->upper[c] - grid->desc.origin[c];
     return x + period * (double)mpmi_i64(set, MPMI_IMAGE, 0)[c * set->ld + slot];
   }
-  return 0.0;
+  return field == MPMI_DILATION_RATIO ? 1.0 : 0.0;
 }
 
 static double hole_value(const mpm_particles *set, int32_t field, int32_t c, const double *position) {
   switch (field) {
   case MPMI_ID:
     return -1.0;
+  case MPMI_DILATION_RATIO:
+    return 1.0;
   case MPMI_POSITION:
     return position[c];
   case MPMI_F:

@@ -77,7 +77,7 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
   b->batch.t = t;
   b->batch.dt = dt;
   b->batch.id = mpmi_i64(set, MPMI_ID, 0) + begin;
-  if (!mpmi_material_stress_from_F(material))
+  if (!mpmi_material_stress_from_F(material) || dt == 0.0) /* the state as it is may have viscous stress */
     copy_rows(b->stress, b->ld, mpmi_f64(set, MPMI_STRESS, 0) + begin, set->ld, mpmi_stress_components(dim),
               n);
   if (material->state_count)
@@ -86,11 +86,21 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
   if (!material->law) preset_optional(b, n);
 }
 
+void mpmi_law_batch_scale_F(mpmi_law_batch *b, int32_t dim, const double *ratio, int64_t n) {
+  for (int64_t p = 0; p < n; ++p) {
+    const double f = dim == 2 ? sqrt(ratio[p]) : cbrt(ratio[p]);
+    for (int32_t r = 0; r < dim; ++r)
+      for (int32_t c = 0; c < dim; ++c) b->F[(3 * r + c) * b->ld + p] *= f;
+  }
+}
+
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {
   const int32_t dim = set->grid->dim, *map = mpmi_tensor_map(dim);
   const double *F = mpmi_f64(set, MPMI_F, 0) + begin;
   for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
     memcpy(b->F + map[c] * b->ld, F + c * set->ld, (size_t)n * sizeof(double));
+  if (set->field[MPMI_DILATION_RATIO].present)
+    mpmi_law_batch_scale_F(b, dim, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
 }
 
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {

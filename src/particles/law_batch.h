@@ -32,6 +32,8 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
 /* Fills the batch with n slots from `begin`: old stress and state, position, ids; t and dt of the step. */
 void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double t,
                          double dt);
+/* F -> ratio^(1/d) F in the axes that the grid has: the dilation that the locking remedy shows to the law. */
+void mpmi_law_batch_scale_F(mpmi_law_batch *b, int32_t dim, const double *ratio, int64_t n);
 /* F from storage, for evaluating the state as it is. */
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
 /* Runs the law; then the new stress and state may be stored in copy `copy` of the set's fields. */

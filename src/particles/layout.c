@@ -28,6 +28,7 @@ static const builtin_field builtin[MPMI_BUILTIN_FIELDS] = {
     [MPMI_PRESCRIBED] = {"prescribed", MPM_U8, VECTOR, 0, 0, 0},
     [MPMI_APPLIED_FORCE] = {"applied_force", MPM_F64, VECTOR, 1, 0, 0},
     [MPMI_IMAGE] = {"image", MPM_I64, VECTOR, 0, 1, 0},
+    [MPMI_DILATION_RATIO] = {"dilation_ratio", MPM_F64, SCALAR, 1, 1, 0},
 };
 
 size_t mpmi_type_size(int32_t type) {

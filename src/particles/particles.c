@@ -27,6 +27,11 @@ static mpm_status check_parts(mpm_context *context, const mpm_grid *grid, const 
   if (grid->context != context) return mpmi_fail(context, MPM_E_ARG, "grid belongs to another context");
   if (material->context != context)
     return mpmi_fail(context, MPM_E_ARG, "material belongs to another context");
+  if (grid->desc.basis == MPM_CPGIMP && mpmi_material_kinematics(material) == MPMI_F_DILATES)
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "%s keeps the volume of F only, of which MPM_CPGIMP cannot make particle domains: use "
+                     "MPM_UGIMP or a B-spline basis",
+                     material->law->name);
   return MPM_OK;
 }
 

@@ -8,6 +8,7 @@
 /* The law is asked for the state as it is: F_inc = I, dt = 0. Stresses go to the second copy first, so that a
  * refusing law changes nothing. */
 mpm_status mpmi_particles_refresh(mpm_particles *set) {
+  if (!set->slots) set->dirty &= ~(uint32_t)MPMI_DIRTY_STRESS;
   if (!(set->dirty & MPMI_DIRTY_STRESS)) return MPM_OK;
   const mpmi_kernels *kernels = mpmi_kernels_of(set->context->isa);
   const int32_t dim = set->grid->dim;

@@ -50,7 +50,8 @@ static mpm_status check_determinant(const mpm_particles *set, const double *valu
 mpm_status mpmi_check_value(const mpm_particles *set, int32_t field, const double *value, int64_t stride,
                             mpmi_who who) {
   if (field == MPMI_POSITION) return check_place(set, field, value, stride, who);
-  int32_t positive = field == MPMI_VOLUME || field == MPMI_INITIAL_VOLUME || field == MPMI_SIZE;
+  int32_t positive = field == MPMI_VOLUME || field == MPMI_INITIAL_VOLUME || field == MPMI_SIZE ||
+                     field == MPMI_DILATION_RATIO;
   for (int32_t c = 0; c < set->field[field].full_components; ++c) {
     double v = value[c * stride];
     if (!isfinite(v)) return refuse(set, field, c, v, who, "finite");
@@ -103,9 +104,14 @@ mpm_status mpmi_particles_check_suspects(mpm_particles *set) {
 }
 
 mpm_status mpmi_check_exists(const mpm_particles *set, int32_t field) {
-  if (field != MPMI_REFERENCE || set->field[field].present) return MPM_OK;
-  return mpmi_fail(set->context, MPM_E_STATE,
-                   "there is no reference_position: a stepper with reference_positions = 1 keeps it");
+  if (set->field[field].present) return MPM_OK;
+  if (field == MPMI_REFERENCE)
+    return mpmi_fail(set->context, MPM_E_STATE,
+                     "there is no reference_position: a stepper with reference_positions = 1 keeps it");
+  if (field == MPMI_DILATION_RATIO)
+    return mpmi_fail(set->context, MPM_E_STATE,
+                     "there is no dilation_ratio: a stepper with locking_remedy = 1 keeps it");
+  return MPM_OK;
 }
 
 mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field) {
@@ -113,6 +119,8 @@ mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field) {
   if (field == MPMI_PRESCRIBED)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
                      "particles cannot be prescribed: use mpm_stepper_set_velocity_bc() to hold nodes");
+  if (field == MPMI_STRESS && mpmi_material_kinematics(set->material) == MPMI_F_STAYS)
+    return mpmi_fail(set->context, MPM_E_UNSUPPORTED, "a rigid material has no stress: it cannot be set");
   if (field == MPMI_STRESS && !at->writable)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
                      "the stress of this law follows from deformation_gradient: set that");
@@ -131,7 +139,8 @@ static double largest_mass(const mpm_particles *set) {
 void mpmi_field_written(mpm_particles *set, int32_t field) {
   set->dirty |= MPMI_DIRTY_SURVEY;
   if (field == MPMI_POSITION) set->dirty |= MPMI_DIRTY_PLACE;
-  if (field == MPMI_F || field == MPMI_INITIAL_VOLUME) set->dirty |= MPMI_DIRTY_STRESS;
+  if (field == MPMI_F || field == MPMI_INITIAL_VOLUME || field == MPMI_DILATION_RATIO)
+    set->dirty |= MPMI_DIRTY_STRESS;
   if (field == MPMI_MASS) set->mass_max = largest_mass(set);
 }
 

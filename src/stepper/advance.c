@@ -1,6 +1,7 @@
 /* Sub-steps to a given time: cut on failure, grown on success. */
 #include "stepper/stepper.h"
 
+#include <float.h>
 #include <math.h>
 
 static const mpm_advance_desc defaults = {.struct_size = sizeof(mpm_advance_desc), .cfl = 0.5};
@@ -58,7 +59,8 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
     int32_t last;
     mpm_status status = choose(s, d, &dt, &last);
     if (status) return status;
-    if (s->t + dt == s->t) { /* nothing left that the clock can show */
+    /* nothing is left that the clock can show; a step that is too small for it is refused below */
+    if (s->t + dt == s->t && s->t + 0.5 * (d->t_end - s->t) == s->t) {
       s->t = d->t_end;
       return MPM_OK;
     }
@@ -71,7 +73,9 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
       continue;
     }
     const double smaller = CUT * dt;
-    if (status < MPM_CUT_DT || status > MPM_SINGULAR || smaller < d->dt_min || s->t + smaller == s->t)
+    /* cutting ends where numbers lose digits: the smallest would be cut to itself */
+    if (status < MPM_CUT_DT || status > MPM_SINGULAR || smaller < d->dt_min || smaller < DBL_MIN ||
+        s->t + smaller == s->t)
       return status;
     s->controller_dt = smaller;
   }

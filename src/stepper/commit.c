@@ -12,6 +12,7 @@ static int32_t written_by_step(int32_t field) {
   case MPMI_L:
   case MPMI_STRESS:
   case MPMI_STATE:
+  case MPMI_DILATION_RATIO:
   case MPMI_IMAGE:
     return 1;
   default:
@@ -87,6 +88,7 @@ void mpmi_roll_back(mpm_stepper *s) {
   const int32_t dim = s->grid->dim;
   for (int32_t m = 0; m < s->member_count; ++m) {
     mpm_particles *set = s->member[m].set;
+    if (!set->slots) continue;
     const double *F[9];
     for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld;
     s->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0),

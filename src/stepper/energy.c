@@ -107,13 +107,14 @@ static mpm_status check_sets(mpm_stepper *s, int32_t access) {
 }
 
 mpm_status mpmi_stepper_energies(mpm_stepper *s) {
-  int32_t fresh = s->energies.valid;
-  for (int32_t m = 0; m < s->member_count; ++m) fresh &= !(s->member[m].set->dirty & MPMI_DIRTY_SURVEY);
-  if (fresh) return MPM_OK;
+  uint32_t dirty = 0;
+  for (int32_t m = 0; m < s->member_count; ++m) dirty |= s->member[m].set->dirty;
+  if (s->energies.valid && !(dirty & MPMI_DIRTY_SURVEY)) return MPM_OK;
   mpmi_sums sums = {0};
   mpm_status status = check_sets(s, MPM_READ | MPM_WRITE);
-  /* sums follow the order of the slots, which must not be that in which the host added particles */
-  if (!status) status = mpmi_stepper_sort(s);
+  /* sums follow the order of the slots, which must not be that in which the host added particles; without
+   * such there is no sorting, which would end the nodal fields of the last step */
+  if (!status && dirty & MPMI_DIRTY_ORDER) status = mpmi_stepper_sort(s);
   for (int32_t m = 0; m < s->member_count && !status; ++m) {
     status = mpmi_particles_refresh(s->member[m].set);
     if (!status) status = survey_set(s, m, &sums);
@@ -141,7 +142,12 @@ mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
   mpm_status status = check_sets(s, MPM_READ | MPM_WRITE);
   if (!status) status = mpmi_stepper_energies(s);
   if (status) return status;
-  *dt = mpmi_stable_dt_of(s, &s->energies.sums);
+  const double stable = mpmi_stable_dt_of(s, &s->energies.sums);
+  if (!(stable > 0.0))
+    return mpmi_fail(s->context, MPM_NONFINITE,
+                     "velocity and wave speed over the spacing are beyond the range of double precision: no "
+                     "step is stable");
+  *dt = stable;
   return MPM_OK;
 }
 

@@ -1,6 +1,6 @@
 /* Nodes to particles, block by block: velocity, position, deformation gradient, volume, stress. Reads copy 0
  * of the particles' fields and writes copy 1; only volume has one copy, and mpmi_roll_back makes it again. */
-#include "stepper/stepper.h"
+#include "stepper/locking.h"
 
 #include <math.h>
 #include <string.h>
@@ -255,10 +255,12 @@ static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
     F[c] = b->deform.F_new[c];
   }
   mpmi_law_batch_load(&b->law, set, begin, n, s->t + b->job->dt, b->job->dt);
-  s->kernels->deform[dim](&b->deform, n);
+  s->kernels->deform[mpmi_material_kinematics(set->material)][dim](&b->deform, n);
   uint32_t flags = s->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
                                            mpmi_f64(set, MPMI_VOLUME, 0) + begin, n);
   if (flags) return flags;
+  if (s->desc.locking_remedy)
+    mpmi_locking_apply(s, b->scratch->cells, b->gather.axis, set, &b->law, begin, n, b->job->dt);
   const int32_t timed = s->profiled && b->batches++ % TIMED_BATCHES == 0;
   const double started = timed ? mpmi_seconds() : 0.0;
   const mpm_status status = mpmi_law_batch_run(&b->law, set);
@@ -320,10 +322,9 @@ static void one_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
   b->law_ran = 0;
   s->kernels->gather[s->grid->dim][s->grid->width][b->job->form](&b->gather, begin, n);
   /* the kernels write from the start of the batch's buffers */
-  if (what & MPMI_G2P_PROBE) {
-    probe_batch(b, begin, n);
-    return;
-  }
+  if (what & MPMI_G2P_PROBE) probe_batch(b, begin, n);
+  if (what & MPMI_G2P_DILATION) mpmi_locking_measure(s, b->set, b->law.L, b->law.ld, begin, n, b->job->dt);
+  if (!(what & (MPMI_G2P_MOVE | MPMI_G2P_DEFORM))) return;
   if (mpmi_is_mls(s) && b->job->form == MPMI_GATHER_8_AFFINE) /* there C is the gradient too */
     memcpy(b->law.L, b->C, (size_t)(9 * b->law.ld) * sizeof(double));
   if (usf && (what & MPMI_G2P_MOVE)) take_wave_speed(b, begin, n);
@@ -348,6 +349,8 @@ static void g2p_task(void *data, int64_t k) {
     mpmi_sums *sums = &s->block_sums[block];
     if (job->starts_sums) memset(sums, 0, sizeof *sums);
     mpmi_tile_load(s, block, job->nodes, job->values, job->form >= MPMI_GATHER_8 ? 8 : 4, b.scratch->tile);
+    if (s->desc.locking_remedy && (job->what & MPMI_G2P_DEFORM))
+      mpmi_tile_load(s, block, s->extra, 4, 4, b.scratch->cells);
     for (int32_t m = 0; m < s->member_count; ++m) {
       const int64_t *start = s->member[m].now.start;
       if (start[block] == start[block + 1]) continue;
@@ -393,7 +396,7 @@ static void choose_form(g2p_job *job) {
 
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt) {
   g2p_job job = {.s = s, .what = what, .dt = dt, .nodes = nodes, .values = values};
-  job.starts_sums = !(s->desc.scheme == MPM_USF && (what & MPMI_G2P_MOVE));
+  job.starts_sums = (what & (s->desc.scheme == MPM_USF ? MPMI_G2P_DEFORM : MPMI_G2P_MOVE | MPMI_G2P_DEFORM));
   choose_form(&job);
   mpm_status status = mpmi_run_tasks(s, has_host_law(s), s->tasks, g2p_task, &job);
   return status ? status : mpmi_stepper_failure(s);

@@ -1,68 +1,62 @@
-/* Nodal fields for the host: of a staged step while one is under way, of the last step otherwise. Active
- * nodes lie scattered over the blocks, so views are copies; what was written goes back at release. */
+/* Active nodes lie scattered over the blocks, so views are copies; what was written goes back at release. */
 #include "stepper/node_view.h"
 #include "stepper/stepper.h"
 
 #include <math.h>
 #include <string.h>
 
-enum {
-  NODE_INDEX,
-  NODE_POSITION,
-  NODE_MASS,
-  NODE_VELOCITY,
-  NODE_FORCE,
-  NODE_ACCELERATION,
-  NODE_REACTION,
-  NODE_FIELDS
+const mpmi_node_field mpmi_node_fields[MPMI_NODE_FIELDS] = {
+    [MPMI_NODE_INDEX] = {"index", MPM_I64, 0},       [MPMI_NODE_POSITION] = {"position", MPM_F64, 0},
+    [MPMI_NODE_MASS] = {"mass", MPM_F64, 1},         [MPMI_NODE_VELOCITY] = {"velocity", MPM_F64, 0},
+    [MPMI_NODE_FORCE] = {"force", MPM_F64, 0},       [MPMI_NODE_ACCELERATION] = {"acceleration", MPM_F64, 0},
+    [MPMI_NODE_REACTION] = {"reaction", MPM_F64, 0},
 };
-static const char *const names[NODE_FIELDS] = {"index", "position",     "mass",    "velocity",
-                                               "force", "acceleration", "reaction"};
 enum { VIEWS = (int)(sizeof((mpm_stepper *)0)->view / sizeof(mpmi_view_record)) };
 
-static double *node_at(const mpm_stepper *s, int64_t i) {
-  return s->node + s->active[i] * s->values;
+static int32_t components_of(const mpm_stepper *s, int32_t field) {
+  return mpmi_node_fields[field].scalar ? 1 : s->grid->dim;
 }
 
 /* Nodes hold [p m f 0] until velocities are solved for, then [v m dv 0]; fused nodes have no second half. */
-static double value_of(const mpm_stepper *s, int32_t field, int64_t i, int32_t c) {
-  const double *node = node_at(s, i), mass = node[3];
+static double value_of(const mpm_stepper *s, int32_t field, int64_t slot, int32_t c) {
+  const double *node = s->node + slot * s->values, mass = node[3];
   const int32_t solved = s->phase != MPMI_BEGUN;
-  const double *bound = s->impulses && solved ? s->impulse + 6 * s->active[i] : NULL;
+  const double *bound = s->impulses && solved ? s->impulse + 6 * slot : NULL;
   const double impulse = bound ? bound[c] : 0.0, change = bound ? bound[3 + c] : 0.0;
   const double dt = s->phase == MPMI_IDLE ? s->nodes_dt : s->velocity_dt;
   switch (field) {
-  case NODE_MASS:
+  case MPMI_NODE_MASS:
     return mass;
-  case NODE_VELOCITY:
+  case MPMI_NODE_VELOCITY:
     return solved ? node[c] : node[c] / mass;
-  case NODE_FORCE:
+  case MPMI_NODE_FORCE:
     return solved ? mass * (node[4 + c] - change) / dt : node[4 + c];
-  case NODE_ACCELERATION:
+  case MPMI_NODE_ACCELERATION:
     return solved ? node[4 + c] / dt : node[4 + c] / mass;
   default:
     return impulse / dt;
   }
 }
 
-static void fill(const mpm_stepper *s, int32_t field, void *memory) {
-  const int32_t components = field == NODE_MASS ? 1 : s->grid->dim;
-  for (int64_t i = 0; i < s->active_count; ++i) {
+void mpmi_node_values(const mpm_stepper *s, int32_t field, const int64_t *slot, int64_t n,
+                      int64_t item_stride, int64_t component_stride, void *out) {
+  for (int64_t i = 0; i < n; ++i) {
     int64_t index[3];
-    mpmi_blocks_index(&s->blocks, s->active[i], index);
-    for (int32_t c = 0; c < components; ++c) {
-      const int64_t at = c * s->active_count + i;
-      if (field == NODE_INDEX)
-        ((int64_t *)memory)[at] = index[c];
-      else if (field == NODE_POSITION)
-        ((double *)memory)[at] = mpmi_node_position(s->grid, c, index[c]);
+    mpmi_blocks_index(&s->blocks, slot[i], index);
+    for (int32_t c = 0; c < components_of(s, field); ++c) {
+      const int64_t at = i * item_stride + c * component_stride;
+      if (field == MPMI_NODE_INDEX)
+        ((int64_t *)out)[at] = index[c];
+      else if (field == MPMI_NODE_POSITION)
+        ((double *)out)[at] = mpmi_node_position(s->grid, c, index[c]);
       else
-        ((double *)memory)[at] = value_of(s, field, i, c);
+        ((double *)out)[at] = value_of(s, field, slot[i], c);
     }
   }
 }
 
-static mpm_status list_active(mpm_stepper *s) {
+mpm_status mpmi_nodes_list(mpm_stepper *s) {
+  if (s->mapped) return MPM_OK;
   const int64_t slots = s->blocks.count * s->blocks.nodes;
   int64_t count = 0;
   for (int64_t i = 0; i < slots; ++i) count += s->node[i * s->values + 3] > s->mass_cut;
@@ -79,36 +73,58 @@ static mpm_status list_active(mpm_stepper *s) {
   return MPM_OK;
 }
 
+mpm_status mpmi_node_require(mpm_context *context, const char *name, int32_t *field) {
+  if (!name) return mpmi_fail(context, MPM_E_ARG, "field is NULL");
+  const char *names[MPMI_NODE_FIELDS];
+  for (int32_t f = 0; f < MPMI_NODE_FIELDS; ++f) {
+    *field = f;
+    names[f] = mpmi_node_fields[f].name;
+    if (strcmp(name, names[f]) == 0) return MPM_OK;
+  }
+  char near[256];
+  mpmi_nearest_names(name, names, MPMI_NODE_FIELDS, near, sizeof near);
+  return mpmi_fail(context, MPM_E_NOT_FOUND, "nodes have no field \"%s\"; there are: %s", name, near);
+}
+
+mpm_status mpmi_nodes_ready(const mpm_stepper *s) {
+  if (s->phase == MPMI_RUNNING || (s->phase == MPMI_IDLE && !s->nodes_valid))
+    return mpmi_fail(s->context, MPM_E_STATE, "there are no nodal fields: make a step or begin one first");
+  return MPM_OK;
+}
+
+int32_t mpmi_node_keeps(const mpm_stepper *s, int32_t field) {
+  return s->values > 4 || (field != MPMI_NODE_FORCE && field != MPMI_NODE_ACCELERATION);
+}
+
+mpm_status mpmi_node_check_kept(const mpm_stepper *s, int32_t field) {
+  if (mpmi_node_keeps(s, field)) return MPM_OK;
+  return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                   "a whole step of MPM_APIC_MLS does not keep \"%s\" apart: use a staged step, or MPM_APIC",
+                   mpmi_node_fields[field].name);
+}
+
 static mpm_status check_map(mpm_stepper *s, int32_t body, const char *field, int32_t access,
                             const mpm_view *view, int32_t *which) {
   mpm_context *c = s->context;
-  if (!field || !view) return mpmi_fail(c, MPM_E_ARG, "%s is NULL", field ? "view" : "field");
+  if (!view) return mpmi_fail(c, MPM_E_ARG, "view is NULL");
   if (view->struct_size < sizeof *view)
     return mpmi_fail(c, MPM_E_ARG, "mpm_view: struct_size is %u, must be sizeof(mpm_view)",
                      (unsigned)view->struct_size);
   if (body != 0) return mpmi_fail(c, MPM_E_NOT_FOUND, "body is %d: there is only body 0", (int)body);
   if (access != MPM_READ && access != MPM_WRITE && access != (MPM_READ | MPM_WRITE))
     return mpmi_fail(c, MPM_E_ARG, "access is %d: it must be MPM_READ, MPM_WRITE or both", (int)access);
-  for (*which = 0; *which < NODE_FIELDS && strcmp(field, names[*which]) != 0;) ++*which;
-  if (*which == NODE_FIELDS) {
-    char near[256];
-    mpmi_nearest_names(field, names, NODE_FIELDS, near, sizeof near);
-    return mpmi_fail(c, MPM_E_NOT_FOUND, "nodes have no field \"%s\"; there are: %s", field, near);
-  }
-  if (s->phase == MPMI_RUNNING || (s->phase == MPMI_IDLE && !s->nodes_valid))
-    return mpmi_fail(c, MPM_E_STATE, "there are no nodal fields: make a step or begin one first");
-  if ((access & MPM_WRITE) && *which != NODE_VELOCITY && *which != NODE_FORCE)
+  mpm_status status = mpmi_node_require(c, field, which);
+  if (!status) status = mpmi_nodes_ready(s);
+  if (status) return status;
+  if ((access & MPM_WRITE) && *which != MPMI_NODE_VELOCITY && *which != MPMI_NODE_FORCE)
     return mpmi_fail(c, MPM_E_ARG, "nodal \"%s\" cannot be written: only \"velocity\" and \"force\" can",
                      field);
-  if ((access & MPM_WRITE) && (s->phase == MPMI_IDLE || (*which == NODE_FORCE && s->phase != MPMI_BEGUN)))
+  if ((access & MPM_WRITE) &&
+      (s->phase == MPMI_IDLE || (*which == MPMI_NODE_FORCE && s->phase != MPMI_BEGUN)))
     return mpmi_fail(c, MPM_E_STATE, "nodal \"%s\" can be written %s only", field,
-                     *which == NODE_FORCE ? "between mpm_step_begin and mpm_step_grid"
-                                          : "during a staged step");
-  if (s->values == 4 && (*which == NODE_FORCE || *which == NODE_ACCELERATION))
-    return mpmi_fail(
-        c, MPM_E_UNSUPPORTED,
-        "a whole step of MPM_APIC_MLS does not keep \"%s\" apart: use a staged step, or MPM_APIC", field);
-  return MPM_OK;
+                     *which == MPMI_NODE_FORCE ? "between mpm_step_begin and mpm_step_grid"
+                                               : "during a staged step");
+  return mpmi_node_check_kept(s, *which);
 }
 
 mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t access, mpm_view *view) {
@@ -119,8 +135,8 @@ mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t
   while (at < VIEWS && s->view[at].live) ++at;
   if (at == VIEWS)
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release one first", VIEWS);
-  if (!s->mapped && (status = list_active(s))) return status;
-  const int32_t components = which == NODE_MASS ? 1 : s->grid->dim;
+  if ((status = mpmi_nodes_list(s))) return status;
+  const int32_t components = components_of(s, which);
   const size_t bytes = mpmi_bytes(s->active_count * components, sizeof(double));
   if (bytes > s->view_bytes[at] || !s->view_memory[at]) {
     void *memory = mpmi_alloc(s->context, bytes);
@@ -129,11 +145,11 @@ mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t
     s->view_memory[at] = memory;
     s->view_bytes[at] = bytes;
   }
-  fill(s, which, s->view_memory[at]);
+  mpmi_node_values(s, which, s->active, s->active_count, 1, s->active_count, s->view_memory[at]);
   s->view[at] = (mpmi_view_record){
       .live = 1, .field = which, .access = access, .data = s->view_memory[at], .stepper = s};
-  mpmi_view_fill(view, which == NODE_INDEX ? MPM_I64 : MPM_F64, components, access, s->active_count,
-                 s->active_count, s->view_memory[at], &s->view[at]);
+  mpmi_view_fill(view, mpmi_node_fields[which].type, components, access, s->active_count, s->active_count,
+                 s->view_memory[at], &s->view[at]);
   ++s->mapped;
   return MPM_OK;
 }
@@ -144,13 +160,13 @@ static mpm_status write_back(mpm_stepper *s, int32_t field, const double *value)
     int64_t index[3];
     mpmi_blocks_index(&s->blocks, s->active[i % s->active_count], index);
     return mpmi_fail(s->context, MPM_E_ARG, "nodal \"%s\" is %g at node %lld: nothing was written",
-                     names[field], value[i], (long long)mpmi_node_number(s->grid, index));
+                     mpmi_node_fields[field].name, value[i], (long long)mpmi_node_number(s->grid, index));
   }
   for (int64_t i = 0; i < s->active_count; ++i)
     for (int32_t c = 0; c < s->grid->dim; ++c) {
-      double *node = node_at(s, i);
+      double *node = s->node + s->active[i] * s->values;
       const double wanted = value[c * s->active_count + i];
-      if (field == NODE_FORCE) {
+      if (field == MPMI_NODE_FORCE) {
         node[4 + c] = wanted;
       } else if (s->phase == MPMI_BEGUN) {
         /* untouched values must come back as they were: p / m * m rounds */

@@ -26,7 +26,7 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   const mpm_particles *set = member->set;
   const int32_t dim = s->grid->dim, forces = job->projection == MPMI_PROJECT_FORCES;
   const int32_t copy = job->projection == MPMI_PROJECT_AGAIN || job->projection == MPMI_PROJECT_CORRECT;
-  const int32_t stress = s->desc.scheme == MPM_USF; /* USF has updated it already */
+  const int32_t stress = forces && s->desc.scheme == MPM_USF; /* USF has updated it already */
   memset(scatter, 0, sizeof *scatter);
   scatter->weights = s->kernels->weights[s->grid->family][dim];
   scatter->points = mpmi_points_of(set, 0);

@@ -47,7 +47,9 @@ static mpm_status project(mpm_stepper *s, int32_t projection, double dt, double 
 
 static mpm_status gather(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt,
                          double *clock) {
-  const mpm_status status = mpmi_stage_g2p(s, what, nodes, values, dt);
+  mpm_status status = MPM_OK;
+  if (s->desc.locking_remedy && (what & MPMI_G2P_DEFORM)) status = mpmi_stage_locking(s, nodes, values, dt);
+  if (!status) status = mpmi_stage_g2p(s, what, nodes, values, dt);
   lap(s, MPMI_TIME_G2P, clock);
   return status;
 }

@@ -1,4 +1,5 @@
 /* Making, configuring and taking apart steppers. */
+#include "particles/values.h"
 #include "stepper/stepper.h"
 
 #include <math.h>
@@ -50,13 +51,11 @@ static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm
 }
 
 /* Options that change nothing while they have their default, and that this version does not have. */
-static mpm_status known_options(mpm_context *c, const mpm_stepper_desc *d) {
+static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
   const struct {
     const char *name, *use;
     int32_t value, off, high;
-  } option[] = {
-      {"locking_remedy", "MPM_LOCKING_NONE", d->locking_remedy, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE},
-      {"quasi_static", "0", d->quasi_static, 0, 1}};
+  } option[] = {{"quasi_static", "0", d->quasi_static, 0, 1}};
   for (size_t i = 0; i < sizeof option / sizeof *option; ++i) {
     if (option[i].value < option[i].off || option[i].value > option[i].high)
       return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be %d ... %d", option[i].name, (int)option[i].value,
@@ -71,6 +70,12 @@ static mpm_status known_options(mpm_context *c, const mpm_stepper_desc *d) {
     return mpmi_fail(c, MPM_E_ARG, "position_order is %d: it must be 1 or 2", (int)d->position_order);
   if (d->staggered != 0 && d->staggered != 1)
     return mpmi_fail(c, MPM_E_ARG, "staggered is %d: it must be 0 or 1", (int)d->staggered);
+  if (d->locking_remedy != MPM_LOCKING_NONE && d->locking_remedy != MPM_LOCKING_CELL_AVERAGE)
+    return mpmi_fail(c, MPM_E_ARG, "locking_remedy is %d: it must be 0 or 1", (int)d->locking_remedy);
+  if (d->locking_remedy && grid->dim == 1)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "locking_remedy has no meaning in 1-D, where dilation is all there is: use "
+                     "MPM_LOCKING_NONE");
   if (d->staggered && d->position_order == 2)
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "staggered steps are of second order with position_order = 1: use that");
@@ -82,7 +87,7 @@ static mpm_status read_desc(mpm_context *c, const mpm_grid *grid, const mpm_step
   *out = defaults;
   mpm_status status = desc ? mpmi_read_struct(c, "mpm_stepper_desc", desc, sizeof *out, out) : MPM_OK;
   if (status || (status = known_scheme(c, out->scheme)) || (status = known_transfer(c, grid, out)) ||
-      (status = known_options(c, out)))
+      (status = known_options(c, grid, out)))
     return status;
   if (!(out->flip >= 0.0 && out->flip <= 1.0))
     return mpmi_fail(c, MPM_E_ARG, "flip is %g: it must lie in [0, 1]", out->flip);
@@ -153,13 +158,30 @@ static mpm_status idle(mpm_stepper *s) {
   return MPM_OK;
 }
 
+/* Fields that exist as long as a stepper keeps them. */
+static mpm_status keep_fields(mpm_particles *set, const mpm_stepper_desc *d) {
+  mpm_status status = MPM_OK;
+  if (d->reference_positions) status = mpmi_field_make_present(set, MPMI_REFERENCE);
+  if (!status && d->locking_remedy) status = mpmi_field_make_present(set, MPMI_DILATION_RATIO);
+  if (status && !set->stepper) mpmi_field_make_absent(set, MPMI_REFERENCE);
+  return status;
+}
+
+/* Drops those that d does not ask for, all of them when it is NULL. */
+static void drop_fields(mpm_particles *set, const mpm_stepper_desc *d) {
+  if (!d || !d->reference_positions) mpmi_field_make_absent(set, MPMI_REFERENCE);
+  if ((d && d->locking_remedy) || !set->field[MPMI_DILATION_RATIO].present) return;
+  mpmi_field_make_absent(set, MPMI_DILATION_RATIO);
+  mpmi_field_written(set, MPMI_F); /* the law sees F as it is again */
+}
+
 static void forget_member(mpm_stepper *s, int32_t m) {
   mpmi_member *member = &s->member[m];
   mpmi_arrangement_free(&member->now);
   mpmi_arrangement_free(&member->next);
   mpmi_sorting_free(&member->sorting, s->context);
   mpmi_free(s->context, member->force, mpmi_bytes(member->force_ld * s->grid->dim, sizeof *member->force));
-  mpmi_field_make_absent(member->set, MPMI_REFERENCE);
+  drop_fields(member->set, NULL);
   member->set->stepper = NULL;
   member->set->dirty |= MPMI_DIRTY_PLACE;
   for (int32_t i = m + 1; i < s->member_count; ++i) s->member[i - 1] = s->member[i];
@@ -225,9 +247,7 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
     return mpmi_fail(s->context, MPM_E_STATE, "the set already belongs to %s stepper",
                      set->stepper == s ? "this" : "another");
   if (set->mapped) return mpmi_fail(s->context, MPM_E_STATE, "the set is mapped: release its views first");
-  if ((status = grow_members(s)) ||
-      (s->desc.reference_positions && (status = mpmi_field_make_present(set, MPMI_REFERENCE))))
-    return status;
+  if ((status = grow_members(s)) || (status = keep_fields(set, &s->desc))) return status;
   mpmi_member *member = &s->member[s->member_count++];
   memset(member, 0, sizeof *member);
   member->set = set;
@@ -265,12 +285,9 @@ mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   for (int32_t m = 0; m < s->member_count; ++m)
     if (s->member[m].set->mapped)
       return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views first", (int)m);
-  const int32_t begins = d.reference_positions && !s->desc.reference_positions;
-  for (int32_t m = 0; m < s->member_count && begins && !status; ++m)
-    status = mpmi_field_make_present(s->member[m].set, MPMI_REFERENCE);
-  /* not wanted, or not to be had for all of them */
-  if (!d.reference_positions || status)
-    for (int32_t m = 0; m < s->member_count; ++m) mpmi_field_make_absent(s->member[m].set, MPMI_REFERENCE);
+  for (int32_t m = 0; m < s->member_count && !status; ++m) status = keep_fields(s->member[m].set, &d);
+  /* those not wanted, or not to be had for all sets */
+  for (int32_t m = 0; m < s->member_count; ++m) drop_fields(s->member[m].set, status ? &s->desc : &d);
   if (status) return status;
   if (!d.staggered || !s->desc.staggered) s->previous_dt = 0.0;
   s->desc = d;

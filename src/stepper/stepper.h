@@ -6,6 +6,7 @@
  *   nodes.c      momentum -> velocity on free nodes
  *   boundary.c   velocity callback, walls, periodic images
  *   xpic.c       corrections of the nodal velocities for XPIC
+ *   locking.c    cell averages of the dilation, for the locking remedy
  *   g2p.c        nodes -> particles: velocity, position, deformation gradient, stress
  *   commit.c     the new state becomes the state, or is dropped
  *
@@ -38,6 +39,8 @@ typedef struct mpmi_failure {
 /* What one task works with; there are as many as tasks at a time. */
 typedef struct mpmi_scratch {
   double *tile, *gathered; /* tile of one block; v, dv, C of one batch */
+  double *cells;           /* tile of cell sums, for the locking remedy */
+  size_t cells_bytes;
   void *batch_memory;
   mpmi_failure failure;
   int32_t left_tile, removes;
@@ -110,10 +113,10 @@ struct mpm_stepper {
   int64_t block_sums_capacity;
 
   /* Nodes: values doubles each, [p m f .] then [v m dv .]. The other projections go into again, [p m] then [v
-   * m]; XPIC adds up its corrections in correction. */
+   * m]. extra, 4 each: the sum of the corrections of XPIC, the cell sums of the locking remedy. */
   int32_t values;
-  int64_t node_capacity, again_capacity, correction_capacity; /* in doubles */
-  double *node, *again, *correction;
+  int64_t node_capacity, again_capacity, extra_capacity; /* in doubles */
+  double *node, *again, *extra;
   int64_t impulse_capacity;
   int32_t impulses; /* something can give nodes an impulse: then */
   double
@@ -202,9 +205,12 @@ static inline int32_t mpmi_asks_host(const mpm_stepper *s, int32_t projection) {
 mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t projection);
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t projection);
 mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt);
-/* G2P_PROBE gathers nodal velocities into the second copy of the particles' and does nothing else. */
-enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2, MPMI_G2P_PROBE = 4 };
+/* G2P_PROBE gathers nodal velocities into the second copy of the particles' and does nothing else;
+ * G2P_DILATION measures what the locking remedy averages. */
+enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2, MPMI_G2P_PROBE = 4, MPMI_G2P_DILATION = 8 };
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt);
+/* locking.c: cell averages of the dilation that these nodal velocities make, for the pass that deforms. */
+mpm_status mpmi_stage_locking(mpm_stepper *s, const double *nodes, int32_t values, double dt);
 /* xpic.c: the corrections of XPIC, left in the second copy of the particles' velocities. */
 mpm_status mpmi_stage_xpic(mpm_stepper *s);
 void mpmi_commit(mpm_stepper *s, double dt);

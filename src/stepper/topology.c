@@ -80,9 +80,9 @@ mpm_status mpmi_stepper_adopt(mpm_stepper *s) {
                              roomy(blocks, s->block_sums_capacity), sizeof *s->block_sums)) ||
       (status = mpmi_constraints_build(&s->next_constraints, &s->next_blocks, s->wall)) ||
       (status = reserve_orbits(s, &s->next_constraints)) ||
-      /* last, because the present cuts point into this memory */
+      /* last, because the present cuts point into this memory; some of it without blocks, too */
       (status = mpmi_reserve(s->context, (void **)&s->list_memory, &s->list_capacity,
-                             roomy(2 * blocks, s->list_capacity), sizeof *s->list_memory)))
+                             roomy(2 * blocks + 1, s->list_capacity), sizeof *s->list_memory)))
     return status;
   cut_work(s);
   swap_in_next(s);
@@ -176,7 +176,8 @@ static mpm_status prepare_scratch(mpm_stepper *s) {
     length = rows > length ? rows : length;
   }
   const size_t gathered = GATHERED_ROWS * length * sizeof(double), tile = tile_bytes(s);
-  const size_t bytes = (tile + gathered + batch) * (size_t)s->tasks;
+  const size_t cells = s->desc.locking_remedy ? tile : 0;
+  const size_t bytes = (tile + cells + gathered + batch) * (size_t)s->tasks;
   if (bytes > s->scratch_bytes) {
     char *memory = mpmi_alloc(s->context, bytes);
     if (!memory) return MPM_E_NOMEM;
@@ -185,7 +186,10 @@ static mpm_status prepare_scratch(mpm_stepper *s) {
     s->scratch_bytes = bytes;
   }
   for (int32_t k = 0; k < s->tasks; ++k) {
-    char *at = (char *)s->scratch_memory + (size_t)k * (tile + gathered + batch);
+    char *at = (char *)s->scratch_memory + (size_t)k * (tile + cells + gathered + batch);
+    s->scratch[k].cells = (double *)(void *)at;
+    s->scratch[k].cells_bytes = cells;
+    at += cells;
     s->scratch[k].tile = (double *)(void *)at;
     s->scratch[k].gathered = (double *)(void *)(at + tile);
     s->scratch[k].batch_memory = at + tile + gathered;
@@ -209,9 +213,9 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
       (status = mpmi_reserve(s->context, (void **)&s->again, &s->again_capacity,
                              roomy(slots * 4, s->again_capacity), sizeof *s->again)))
     return status;
-  if (mpmi_corrects(s) &&
-      (status = mpmi_reserve(s->context, (void **)&s->correction, &s->correction_capacity,
-                             roomy(slots * 4, s->correction_capacity), sizeof *s->correction)))
+  if ((mpmi_corrects(s) || s->desc.locking_remedy) &&
+      (status = mpmi_reserve(s->context, (void **)&s->extra, &s->extra_capacity,
+                             roomy(slots * 4, s->extra_capacity), sizeof *s->extra)))
     return status;
   s->impulses = gives_impulses(s);
   if (s->impulses && (status = mpmi_reserve(s->context, (void **)&s->impulse, &s->impulse_capacity,
@@ -279,7 +283,7 @@ void mpmi_stepper_free_topology(mpm_stepper *s) {
   mpmi_free(c, s->scratch_memory, s->scratch_bytes);
   mpmi_free(c, s->node, mpmi_bytes(s->node_capacity, sizeof *s->node));
   mpmi_free(c, s->again, mpmi_bytes(s->again_capacity, sizeof *s->again));
-  mpmi_free(c, s->correction, mpmi_bytes(s->correction_capacity, sizeof *s->correction));
+  mpmi_free(c, s->extra, mpmi_bytes(s->extra_capacity, sizeof *s->extra));
   mpmi_free(c, s->impulse, mpmi_bytes(s->impulse_capacity, sizeof *s->impulse));
   mpmi_free(c, s->held, (size_t)s->held_capacity);
   mpmi_free(c, s->held_value, mpmi_bytes(s->held_capacity, sizeof *s->held_value));

@@ -32,7 +32,7 @@ static void first_term(void *data, int64_t k) {
       const double *node = s->node + 8 * i;
       const double v = c < 3 ? node[c] - node[4 + c] : node[3];
       s->again[4 * i + c] = v;
-      s->correction[4 * i + c] = job->share * v;
+      s->extra[4 * i + c] = job->share * v;
     }
 }
 
@@ -44,7 +44,7 @@ static void next_term(void *data, int64_t k) {
   for (int64_t i = begin; i < end; ++i)
     for (int32_t c = 0; c < 3; ++c) {
       s->again[4 * i + c] *= job->scale;
-      s->correction[4 * i + c] += job->share * s->again[4 * i + c];
+      s->extra[4 * i + c] += job->share * s->again[4 * i + c];
     }
 }
 
@@ -60,5 +60,5 @@ mpm_status mpmi_stage_xpic(mpm_stepper *s) {
     if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_CORRECT, s->dt);
     if (!status) status = mpmi_run_tasks(s, 0, s->tasks, next_term, &job);
   }
-  return status ? status : mpmi_stage_g2p(s, MPMI_G2P_PROBE, s->correction, 4, s->dt);
+  return status ? status : mpmi_stage_g2p(s, MPMI_G2P_PROBE, s->extra, 4, s->dt);
 }

@@ -1,4 +1,8 @@
 /* New particle velocity, position, deformation gradient and volume from what was gathered. */
+#include <string.h>
+
+#include "material/tensor.h"
+#include "material/vector_math.h"
 #include "transfer/kernel_common.h"
 
 /*   FLIP/PIC blend  v = a (v_p + sum w dv) + (1 - a) sum w v     MPoint theory eq. 36
@@ -42,12 +46,18 @@ MPMI_INLINE int32_t has_entry(int32_t dim, int32_t row, int32_t column) {
   return (row < dim && column < dim) || (dim == 2 && row == 2 && column == 2);
 }
 
+/* Place of each entry of the full tensor among the stored ones, or -1. */
+MPMI_INLINE void place_entries(int32_t dim, int32_t *place) {
+  int32_t stored = 0;
+  for (int32_t e = 0; e < 9; ++e) place[e] = has_entry(dim, e / 3, e % 3) ? stored++ : -1;
+}
+
 /* F = (I + dt L) F_old: MPoint theory eq. 39, Steffen et al. 2008 eq. 8. */
 MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
   const double dt = job->dt;
   const int64_t ld = job->ld;
-  int32_t stored = 0, place[9];
-  for (int32_t e = 0; e < 9; ++e) place[e] = has_entry(dim, e / 3, e % 3) ? stored++ : -1;
+  int32_t place[9];
+  place_entries(dim, place);
   if (job->F_inc)
     for (int32_t r = 0; r < dim; ++r)
       for (int32_t c = 0; c < dim; ++c) {
@@ -85,6 +95,58 @@ MPMI_INLINE mpmi_lanes determinant(int32_t dim, const double *const *F, int64_t 
 #undef F_
 }
 
+/* The f > 0 of F_old = f I, or J^(1/3) where the host has set an F of another shape. */
+MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t n, double *f) {
+  const mpmi_lanes zero = {0.0};
+  mpmi_mask any = {0};
+  int32_t place[9];
+  place_entries(dim, place);
+  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+    const mpmi_lanes first = mpmi_lanes_load(job->F_old[0] + s);
+    mpmi_mask other = {0};
+    for (int32_t e = 1; e < 9; ++e)
+      if (place[e] >= 0) other |= mpmi_lanes_load(job->F_old[place[e]] + s) != (e % 4 ? zero : first);
+    const mpmi_lanes minus_J = -determinant(dim, job->F_old, s); /* the sign marks it */
+    mpmi_lanes_store(f + s, mpmi_lanes_where(~other, first) + mpmi_lanes_where(other, minus_J));
+    any |= other;
+  }
+  if (!mpmi_lanes_any(any, 1)) return;
+  for (int64_t p = 0; p < mpmi_groups(n); ++p)
+    if (f[p] < 0.0) f[p] = 1.0 + mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log(-f[p]));
+}
+
+/* F = J^(1/3) I with J = det(I + dt L) J_old; in 1-D, where only F11 is stored, F11 = J. */
+MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
+  const double dt = job->dt, *L = job->L;
+  const int64_t ld = job->ld;
+  const int32_t diagonals = dim == 1 ? 1 : 3;
+  double *f = job->F;
+  stretch_of_volume(dim, job, n, f);
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+    const double d = mpmi_det_minus_1(dim, mpmi_load_mat(dim, L, ld, p, 0.0, dt));
+    const double grown = dim == 1 ? d : mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log1p(d));
+    /* an inverted increment stays one, and what is not finite does not become so */
+    f[p] = (d > -1.0 ? f[p] + f[p] * grown : 1.0 + d) + (d - d);
+  }
+  int32_t stored = 0;
+  for (int32_t e = 0; e < 9; ++e) {
+    if (!has_entry(dim, e / 3, e % 3)) continue;
+    double *F = job->F_new[stored++];
+    for (int64_t p = 0; p < mpmi_groups(n); ++p) F[p] = e % 4 ? 0.0 : f[p];
+  }
+  for (int32_t k = 1; k < diagonals; ++k) memcpy(job->F + 4 * k * ld, f, (size_t)n * sizeof *f);
+}
+
+MPMI_INLINE void stay(int32_t dim, const mpmi_deform *job, int64_t n) {
+  int32_t place[9];
+  place_entries(dim, place);
+  for (int32_t e = 0; e < 9; ++e) {
+    if (place[e] < 0) continue;
+    memcpy(job->F + e * job->ld, job->F_old[place[e]], (size_t)n * sizeof(double));
+    memcpy(job->F_new[place[e]], job->F_old[place[e]], (size_t)n * sizeof(double));
+  }
+}
+
 /* V = det F V0: MPoint theory eq. 40. */
 MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *initial_volume, double *out,
                             int64_t n) {
@@ -108,6 +170,14 @@ MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *i
   void KERNEL(deform_##dim)(const mpmi_deform *job, int64_t n);                                              \
   void KERNEL(deform_##dim)(const mpmi_deform *job, int64_t n) {                                             \
     deform(dim, job, n);                                                                                     \
+  }                                                                                                          \
+  void KERNEL(dilate_##dim)(const mpmi_deform *job, int64_t n);                                              \
+  void KERNEL(dilate_##dim)(const mpmi_deform *job, int64_t n) {                                             \
+    dilate(dim, job, n);                                                                                     \
+  }                                                                                                          \
+  void KERNEL(stay_##dim)(const mpmi_deform *job, int64_t n);                                                \
+  void KERNEL(stay_##dim)(const mpmi_deform *job, int64_t n) {                                               \
+    stay(dim, job, n);                                                                                       \
   }                                                                                                          \
   uint32_t KERNEL(volume_##dim)(const double *const *F, const double *initial_volume, double *out,           \
                                 int64_t n);                                                                  \

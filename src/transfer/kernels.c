@@ -21,6 +21,8 @@ BASIS(open_bspline3)
 #define PER_DIM(dim)                                                                                         \
   uint32_t KERNEL(move_##dim)(const mpmi_move *, int64_t);                                                   \
   void KERNEL(deform_##dim)(const mpmi_deform *, int64_t);                                                   \
+  void KERNEL(dilate_##dim)(const mpmi_deform *, int64_t);                                                   \
+  void KERNEL(stay_##dim)(const mpmi_deform *, int64_t);                                                     \
   uint32_t KERNEL(volume_##dim)(const double *const *, const double *, double *, int64_t);                   \
   uint32_t KERNEL(survey_##dim)(const mpmi_survey *, int64_t, mpmi_sums *);
 PER_DIM(1)
@@ -48,7 +50,8 @@ const mpmi_kernels KERNEL(kernels) = {
     .load_box = KERNEL(load_box),
     .update = KERNEL(update),
     .move = BY_DIM(move),
-    .deform = BY_DIM(deform),
+    .deform =
+        {[MPMI_F_DEFORMS] = BY_DIM(deform), [MPMI_F_DILATES] = BY_DIM(dilate), [MPMI_F_STAYS] = BY_DIM(stay)},
     .volume = BY_DIM(volume),
     .survey = BY_DIM(survey),
 };

@@ -148,8 +148,7 @@ typedef struct mpmi_move {
 } mpmi_move;
 typedef uint32_t (*mpmi_move_fn)(const mpmi_move *job, int64_t n);
 
-/* F_new = (I + dt L) F_old and volume = det F_new * initial volume; F_inc when asked for. Full and compact F.
- */
+/* F_new from F_old and L, as the material's kinematics want it; F_inc when asked for. Full and compact F. */
 typedef struct mpmi_deform {
   double dt;
   int64_t ld;
@@ -212,7 +211,7 @@ typedef struct mpmi_kernels {
   mpmi_load_box_fn load_box;
   mpmi_update_fn update;
   mpmi_move_fn move[4];
-  mpmi_deform_fn deform[4];
+  mpmi_deform_fn deform[MPMI_F_KINDS][4];
   mpmi_volume_fn volume[4];
   mpmi_survey_fn survey[4];
 } mpmi_kernels;

@@ -13,6 +13,11 @@ prefix=$scratch/prefix
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 version=$("$PKG_CONFIG" --modversion mpm)
 
+# One version everywhere.
+grep -qx "version: $version" CITATION.cff
+[ "$(sed -n 's/^## //p' CHANGELOG.md | head -n 1)" = "$version" ]
+grep -qx "set(PACKAGE_VERSION \"$version\")" "$prefix/lib/cmake/mpm/mpmConfigVersion.cmake"
+
 flags() { "$PKG_CONFIG" "$@" mpm; }
 build() { # compiler, standard, source, program, libraries...
   local compiler=$1 standard=$2 source=$3 program=$scratch/$4

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The host program of the README compiles as printed, runs, and reports a falling then resting block.
+# The host programs of the README and of docs/cpp.md compile as printed, run, and report a falling then resting block.
 set -euo pipefail
 build=${BUILD:-build}
 scratch=${MPM_SCRATCH:-$build/tests/scratch}/readme
@@ -13,3 +13,10 @@ ${CC:-cc} -std=c11 -Wall -Wextra -Wpedantic -Werror -Iinclude "$scratch/block.c"
 cat "$scratch/out"
 grep -Eq '^t = 0\.50[0-9] s: kinetic [0-9.]+ J, strain [0-9.]+ J$' "$scratch/out"
 grep -q '<VTKFile type="PolyData"' "$scratch/block.vtp"
+
+awk '/^```cpp$/ {inside = 1; next} /^```/ {if (inside) exit} inside' docs/cpp.md > "$scratch/block.cpp"
+${CXX:-g++} -std=c++17 -Wall -Wextra -Wpedantic -Werror -Iinclude "$scratch/block.cpp" -o "$scratch/block_cpp" \
+  -L"$build" -lmpm -Wl,-rpath,"$build"
+"$scratch/block_cpp" > "$scratch/out"
+cat "$scratch/out"
+[ "$(grep -Ec '^t = 0\.[1-5] s: kinetic [0-9.]+ J$' "$scratch/out")" = 5 ]

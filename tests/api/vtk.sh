@@ -16,6 +16,8 @@ if [ -z "$python" ]; then
 fi
 rm -rf "$scratch"
 mkdir -p "$scratch/files"
-"$CC" -std=c11 -Wall -Wextra -Werror -Iinclude tests/io/write_vtp.c "$BUILD/libmpm.a" -lm -lpthread -o "$scratch/write_vtp"
-"$scratch/write_vtp" "$scratch/files" > "$scratch/times"
-"$python" tests/io/vtk_read.py "$scratch/files" < "$scratch/times"
+for program in write_vtp write_vti; do
+  "$CC" -std=c11 -Wall -Wextra -Werror -Iinclude tests/io/$program.c "$BUILD/libmpm.a" -lm -lpthread -o "$scratch/$program"
+  "$scratch/$program" "$scratch/files" > "$scratch/$program.out"
+done
+"$python" tests/io/vtk_read.py "$scratch/files" < "$scratch/write_vtp.out"

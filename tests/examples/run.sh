@@ -106,6 +106,11 @@ check "period" "deviation" -1.5 1.5
 check "momentum" "momentum kept to" 0 1e-11
 check "energy" "energy of vibration to" 0 3
 
+run cpp_block
+check "settlement" "settlement" 4.1 4.2
+check "statics" "from theory by" 0 1
+check "weight" "from weight by" 0 0.01
+
 [ "$failures" -eq 0 ] || {
   echo "$failures checks of the examples failed"
   exit 1

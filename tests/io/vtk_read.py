@@ -1,4 +1,4 @@
-"""Reads what write_vtp.c wrote with VTK and compares every number with what the library gave by id.
+"""Reads what write_vtp.c and write_vti.c wrote with VTK and compares every number with what the library gave.
 
 Usage: vtk_read.py directory; the times of the series come on standard input.
 """
@@ -7,11 +7,12 @@ import os
 import sys
 import xml.etree.ElementTree as ElementTree
 
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPolyDataReader
 
 # Fields that take no memory until they are used: a file of all fields may leave them out.
 OPTIONAL = {"acceleration", "velocity_gradient", "applied_force", "prescribed", "size", "image"}
-VECTORS = {"velocity", "acceleration", "size", "reference_position", "applied_force", "position"}
+VECTORS = {"velocity", "acceleration", "size", "reference_position", "applied_force", "position", "force", "reaction",
+           "index"}
 SHOWN = {"F64": "double", "I64": ("long", "long long", "vtktypeint64"), "U8": "unsigned char"}
 
 
@@ -20,7 +21,7 @@ def fail(text):
 
 
 def read(path):
-    reader = vtkXMLPolyDataReader()
+    reader = vtkXMLImageDataReader() if path.endswith(".vti") else vtkXMLPolyDataReader()
     errors = []
     reader.AddObserver("ErrorEvent", lambda *_: errors.append(path))
     reader.AddObserver("WarningEvent", lambda *_: errors.append(path))
@@ -104,6 +105,47 @@ def check_file(path):
     return len(found), data.GetNumberOfPoints()
 
 
+def check_point(path, data, i, position, index, dim):
+    wanted = [position[k] if k < dim else 0.0 for k in range(3)]
+    if max(abs(a - b) for a, b in zip(data.GetPoint(i), wanted)) > 1e-14:
+        fail("%s: node %s is at %r, not %r" % (path, index, data.GetPoint(i), wanted))
+
+
+def check_image(path):
+    """The extent is the box of the nodes that the library lists; values at these, zeros elsewhere."""
+    data, fields = read(path), expected(path + ".expect")
+    index, position = fields["index"][1], fields["position"][1]
+    dim, count = len(index), len(index[0])
+    box = [(min(row), max(row)) for row in index] if count else [(0, -1)] * 3
+    box += [(0, 0)] * (3 - len(box))
+    if list(data.GetExtent()) != [n for pair in box for n in pair]:
+        fail("%s: extent is %r, not %r" % (path, data.GetExtent(), box))
+    arrays = data.GetPointData()
+    found = {arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())}
+    wanted = set(fields) - {"position"}
+    if os.path.basename(path).startswith("some"):
+        wanted = {"reaction", "position", "mass"}
+    if found != wanted:
+        fail("%s: has %s, not %s" % (path, sorted(found), sorted(wanted)))
+    if not count:
+        return len(found), 0
+    sizes = [high - low + 1 for low, high in box]
+    nodes = sizes[0] * sizes[1] * sizes[2]
+    place = {}
+    for i in range(count):
+        at = [index[k][i] - box[k][0] if k < dim else 0 for k in range(3)]
+        here = at[0] + sizes[0] * (at[1] + sizes[1] * at[2])
+        place[here] = i
+        check_point(path, data, here, [row[i] for row in position], at, dim)
+    if len(place) != count or data.GetNumberOfPoints() != nodes:
+        fail("%s: %d points for %d nodes" % (path, data.GetNumberOfPoints(), nodes))
+    for name in found:
+        kind, rows = fields[name]
+        full = [[row[place[i]] if i in place else 0 for i in range(nodes)] for row in rows]
+        compare(path, name, arrays.GetArray(name), kind, full, dim)
+    return len(found), nodes - count
+
+
 def check_series(directory, times):
     root = ElementTree.parse(os.path.join(directory, "run.pvd")).getroot()
     if root.tag != "VTKFile" or root.get("type") != "Collection":
@@ -123,10 +165,15 @@ def main():
     times = [float(line) for line in sys.stdin]
     files = sorted(name for name in os.listdir(directory) if name.endswith(".vtp"))
     checked = [check_file(os.path.join(directory, name)) for name in files]
+    images = [check_image(os.path.join(directory, name))
+              for name in sorted(os.listdir(directory)) if name.endswith(".vti")]
     series = check_series(directory, times)
     if len(checked) < 12 or series != 3 or max(points for _, points in checked) < 1500:
         fail("too little to check")
-    print("vtk_read.py: %d files, %d arrays, a series of %d" % (len(checked), sum(a for a, _ in checked), series))
+    if len(images) < 12 or max(zeros for _, zeros in images) < 1000:
+        fail("too few images to check")
+    print("vtk_read.py: %d sets, %d images, %d arrays, a series of %d" % (
+        len(checked), len(images), sum(a for a, _ in checked + images), series))
 
 
 main()

@@ -131,6 +131,36 @@ START_TEST(forged_words) {
 }
 END_TEST
 
+/* Fields that steps write and never read hold numbers too. */
+START_TEST(forged_fields) {
+  static const char *const field[] = {"acceleration", "reference_position"};
+  const double mark[] = {12345.678}, bad = NOT_A_NUMBER;
+  io_setup setup = io_plain(1);
+  setup.references = 1;
+  io_world other;
+  io_open(&other, &setup);
+  for (int32_t i = 0; i < 2; ++i) {
+    ck_ok(mpm_particles_set_all(other.set[0], field[i], MPM_F64, 1, mark));
+    const io_buffer good = io_save(&other);
+    int64_t found = 0;
+    for (int64_t at = 0; at + 8 <= good.bytes && !found; at += 8)
+      if (!memcmp(good.data + at, mark, 8)) found = at;
+    ck_assert_int_gt(found, 0);
+    memcpy(good.data + found, &bad, 8);
+    seal(good.data, good.bytes);
+    const uint64_t hash = io_hash(&other);
+    ck_refused(other.f.context, mpm_state_load(other.stepper, good.data, good.bytes), MPM_E_FORMAT, field[i]);
+    ck_assert_uint_eq(io_hash(&other), hash);
+    memcpy(good.data + found, mark, 8);
+    seal(good.data, good.bytes);
+    io_load(&other, &good);
+    ck_ok(mpm_particles_set_all(other.set[0], field[i], MPM_F64, 1, (double[]){0.5}));
+    free(good.data);
+  }
+  io_close(&other);
+}
+END_TEST
+
 /* Half of the changes hit the beginning: setup, numbers and blocks, which decide how the rest is read. */
 START_TEST(forged_at_random) {
   close_small();
@@ -166,6 +196,7 @@ TCase *io_damage_case(void) {
   tcase_add_test(tests, foreign_data);
   tcase_add_test(tests, buffers_need_no_alignment);
   tcase_add_test(tests, forged_words);
+  tcase_add_test(tests, forged_fields);
   tcase_add_loop_test(tests, forged_at_random, 1, 4);
   return tests;
 }

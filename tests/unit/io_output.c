@@ -46,8 +46,6 @@ START_TEST(particle_arguments) {
   ck_refused(c, mpm_write_particles(set, path, 1, reference), MPM_E_STATE, "reference_position");
   ck_assert_int_ne(access(path, F_OK), 0);
   ck_refused(c, mpm_write_particles(set, "no/such/place.vtp", 0, NULL), MPM_E_IO, "no/such/place.vtp");
-  ck_refused(c, mpm_write_grid(w.stepper, path, 0, NULL), MPM_E_UNSUPPORTED, "mpm_grid_map()");
-  ck_assert_int_eq(mpm_write_grid(NULL, path, 0, NULL), MPM_E_ARG);
   ck_ok(mpm_write_particles(set, path, 2, twice));
   contains("NumberOfPoints=\"36\"");
   contains("Name=\"mass\" NumberOfComponents=\"1\"");

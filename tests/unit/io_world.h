@@ -161,5 +161,6 @@ TCase *io_damage_case(void);
 TCase *io_hash_case(void);
 TCase *io_file_case(void);
 TCase *io_output_case(void);
+TCase *io_grid_case(void);
 
 #endif

@@ -264,7 +264,8 @@ static inline void law_material_free(mpm_material *material) {
 }
 
 TCase *custom_material_case(void);
-TCase *neo_hookean_case(void);
+TCase *hyperelastic_case(void);
+TCase *fluid_case(void);
 TCase *hypoelastic_case(void);
 TCase *j2_case(void);
 

@@ -232,6 +232,26 @@ START_TEST(not_below_dt_min) {
 }
 END_TEST
 
+/* Without a bound cutting ends too, at t = 0, where every number advances the time. */
+START_TEST(cuts_end) {
+  strict.limit = 0.0;
+  run_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
+  d.t_end = 1.0;
+  run_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_CUT_DT, "force callback");
+  ck_assert_double_eq(r.info.t, 0.0);
+}
+END_TEST
+
+/* A clock that the stable step does not move is an error, not a jump to the end. */
+START_TEST(steps_too_small_for_the_clock) {
+  run_ok(&r, mpm_stepper_set_time(r.stepper, 1e18, 3));
+  d.t_end = 1e18 + 4096.0;
+  run_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_E_ARG, "does not advance the time 1e+18");
+  ck_assert_int_eq(r.info.step, 3);
+  ck_assert_double_eq(r.info.t, 1e18);
+}
+END_TEST
+
 /* A failure that no smaller step cures ends the call at the last committed sub-step. */
 START_TEST(not_curable) {
   strict.answer = -9;
@@ -295,6 +315,8 @@ TCase *stepper_advance_case(void) {
   tcase_add_test(tests, runs_out_of_steps);
   tcase_add_test(tests, cuts);
   tcase_add_test(tests, not_below_dt_min);
+  tcase_add_test(tests, cuts_end);
+  tcase_add_test(tests, steps_too_small_for_the_clock);
   tcase_add_test(tests, not_curable);
   tcase_add_test(tests, cancelled);
   tcase_add_test(tests, progress);

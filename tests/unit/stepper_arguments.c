@@ -151,6 +151,16 @@ START_TEST(stable_dt_of_what) {
 }
 END_TEST
 
+/* Speeds whose ratio to the spacing overflows leave no stable step, which is not 0. */
+START_TEST(no_stable_dt) {
+  const double fast[] = {1.7e308, 0.0, 0.0};
+  double dt = -1.0;
+  run_ok(&r, mpm_particles_set_all(r.set[1], "velocity", MPM_F64, r.options.dim, fast));
+  run_refused(&r, mpm_stable_dt(r.stepper, &dt), MPM_NONFINITE, "over the spacing");
+  ck_assert_double_eq(dt, -1.0);
+}
+END_TEST
+
 START_TEST(steps) {
   static const struct {
     double dt;
@@ -286,6 +296,7 @@ TCase *stepper_arguments_case(void) {
   tcase_add_test(tests, walls);
   tcase_add_test(tests, reactions);
   tcase_add_test(tests, stable_dt_of_what);
+  tcase_add_test(tests, no_stable_dt);
   tcase_add_test(tests, steps);
   tcase_add_test(tests, infos);
   tcase_add_test(tests, views_bar_steps);

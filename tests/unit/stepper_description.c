@@ -69,7 +69,6 @@ static const struct {
     INT(position_order, 3, MPM_E_ARG, "position_order is 3"),
     INT(locking_remedy, -1, MPM_E_ARG, "locking_remedy is -1"),
     INT(locking_remedy, 2, MPM_E_ARG, "locking_remedy is 2"),
-    INT(locking_remedy, MPM_LOCKING_CELL_AVERAGE, MPM_E_UNSUPPORTED, "use MPM_LOCKING_NONE"),
     INT(reference_positions, 2, MPM_E_ARG, "reference_positions is 2"),
     INT(reference_positions, -1, MPM_E_ARG, "reference_positions is -1"),
     INT(quasi_static, 2, MPM_E_ARG, "quasi_static is 2"),

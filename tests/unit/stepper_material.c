@@ -228,6 +228,60 @@ START_TEST(what_limits_the_step) {
 }
 END_TEST
 
+/* ---- a law that depends on the place ---------------------------------------------------------------------
+ */
+static mpm_status graded(void *user, const mpm_material_batch *b) {
+  run_neo_hookean(user, b);
+  for (int64_t i = 0; i < b->n; ++i) {
+    b->energy[i] = 2.0 + b->position[i];
+    b->wave_speed[i] = 1.0;
+    b->kinematic_viscosity[i] = 1e3 * (1.0 + b->position[i]);
+  }
+  return 0;
+}
+
+/* Energies of set 1 belong to the places that the law was shown: those at the start of the step. */
+static double graded_energy(const double *x, const double *volume, int64_t n) {
+  double sum = 0.0;
+  for (int64_t i = 0; i < n; ++i) sum += volume[i] * (2.0 + x[i]);
+  return sum;
+}
+
+START_TEST(by_place) {
+  const int32_t dim = 1 + _i / 2;
+  static const double spacing[3] = {0.1, 0.1, 0.09};
+  mpm_step_info info = {.struct_size = sizeof info};
+  double dt, most = 0.0;
+  run_open(&r, &(run_options){.dim = dim, .stress = graded, .scheme = _i % 2 ? MPM_MUSL : MPM_USL});
+  /* set 0 alone, which stays as it is */
+  run_ok(&r, mpm_stepper_remove(r.stepper, r.set[1]));
+  run_ok(&r, mpm_stepper_info(r.stepper, &info));
+  const double other = info.strain_energy;
+  run_ok(&r, mpm_stepper_add(r.stepper, r.set[1]));
+  const int64_t n = mpm_particles_count(r.set[1]);
+  double *x = run_get(&r, 1, "position", dim), *volume = run_get(&r, 1, "initial_volume", 1);
+  for (int64_t i = 0; i < n; ++i) most = fmax(most, x[i]);
+  const double wanted = graded_energy(x, volume, n), h = spacing[dim - 1];
+  run_ok(&r, mpm_stepper_info(r.stepper, &info));
+  parts_close(info.strain_energy - other, wanted, 1e-12 * wanted, "energy as it is");
+  run_ok(&r, mpm_stable_dt(r.stepper, &dt));
+  const double limit = h * h / (2.0 * dim * 1e3 * (1.0 + most));
+  parts_close(dt, limit, 1e-13 * limit, "viscous limit at the farthest place");
+  run_ok(&r, mpm_step(r.stepper, 0.1 * limit, &info));
+  run_ok(&r, mpm_step(r.stepper, 0.1 * limit, &info));
+  double *old = run_get(&r, 1, "position", dim);
+  run_ok(&r, mpm_stepper_remove(r.stepper, r.set[0]));
+  run_ok(&r, mpm_step(r.stepper, 0.1 * limit, &info));
+  const double in_step = graded_energy(old, volume, n);
+  parts_close(info.strain_energy, in_step, 1e-13 * in_step, "energy after a step");
+  double *now = run_get(&r, 1, "position", dim);
+  ck_assert(fabs(graded_energy(now, volume, n) - in_step) > 1e-11 * in_step); /* they have moved */
+  run_ok(&r, mpm_stepper_add(r.stepper, r.set[0]));
+  free(x), free(volume), free(old), free(now);
+  run_close(&r);
+}
+END_TEST
+
 TCase *stepper_material_case(void) {
   TCase *tests = tcase_create("material");
   tcase_set_timeout(tests, 60);
@@ -235,5 +289,6 @@ TCase *stepper_material_case(void) {
   tcase_add_loop_test(tests, batches, 0, 6);
   tcase_add_test(tests, refusals);
   tcase_add_test(tests, what_limits_the_step);
+  tcase_add_loop_test(tests, by_place, 0, 6);
   return tests;
 }

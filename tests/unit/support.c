@@ -41,10 +41,16 @@ void world_open(world *w, const world_desc *desc) {
                               {"density", desc->density},
                               {"yield_stress", desc->yield_stress},
                               {"hardening", desc->hardening}};
+  mpm_context_desc context;
   memset(w, 0, sizeof *w);
-  ck_assert_int_eq(mpm_context_create(NULL, &w->context), MPM_OK);
+  ck_assert_int_eq(mpm_context_desc_init(&context, sizeof context), MPM_OK);
+  if (desc->concurrency) context.concurrency = desc->concurrency;
+  ck_assert_int_eq(mpm_context_create(&context, &w->context), MPM_OK);
   ck_ok(w, mpm_grid_create(w->context, &desc->grid, &w->grid));
-  ck_ok(w, mpm_material_create(w->context, desc->model, params, strcmp(desc->model, "j2") ? 3 : 5,
+  ck_ok(w, mpm_material_create(w->context, desc->model, desc->params ? desc->params : params,
+                               desc->params                ? desc->param_count
+                               : strcmp(desc->model, "j2") ? 3
+                                                           : 5,
                                &w->material));
   ck_ok(w, mpm_stepper_create(w->context, w->grid, &desc->stepper, &w->stepper));
   w->dim = desc->grid.dim;

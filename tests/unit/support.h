@@ -18,6 +18,8 @@ typedef struct world_desc {
   mpm_stepper_desc stepper;
   const char *model; /* default "neo_hookean" */
   double E, nu, density, yield_stress, hardening;
+  const mpm_param *params;          /* in place of these, for other models */
+  int32_t param_count, concurrency; /* 0: the library's default */
 } world_desc;
 
 typedef struct world {

@@ -46,12 +46,13 @@ static const row table[] = {{"id", MPM_I64, {1, 1, 1}, {1, 1, 1}, 0},
                             {"reference_position", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
                             {"prescribed", MPM_U8, {1, 2, 3}, {1, 2, 3}, 0},
                             {"applied_force", MPM_F64, {1, 2, 3}, {1, 2, 3}, 1},
-                            {"image", MPM_I64, {1, 2, 3}, {1, 2, 3}, 0}};
+                            {"image", MPM_I64, {1, 2, 3}, {1, 2, 3}, 0},
+                            {"dilation_ratio", MPM_F64, {1, 1, 1}, {1, 1, 1}, 1}};
 
 START_TEST(built_in_fields) {
   for (int32_t dim = 1; dim <= 3; ++dim) {
     open_dim(dim, "linear_elastic");
-    for (int32_t i = 0; i < 16; ++i) {
+    for (int32_t i = 0; i < 17; ++i) {
       const char *name;
       int32_t type, components, writable;
       ck_ok(mpm_particles_field_info(f.set, i, &name, &type, &components, &writable));
@@ -62,8 +63,8 @@ START_TEST(built_in_fields) {
       ck_assert_int_eq(f.set->field[i].components, table[i].stored[dim - 1]);
       ck_ok(mpm_particles_field_info(f.set, i, NULL, NULL, NULL, NULL));
     }
-    ck_refused(f.context, mpm_particles_field_info(f.set, 16, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND,
-               "16 fields");
+    ck_refused(f.context, mpm_particles_field_info(f.set, 17, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND,
+               "17 fields");
     ck_refused(f.context, mpm_particles_field_info(f.set, -1, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND, "-1");
     ck_assert_int_eq(mpm_particles_field_info(NULL, 0, NULL, NULL, NULL, NULL), MPM_E_ARG);
   }
@@ -97,7 +98,7 @@ START_TEST(added_fields) {
   ck_ok(mpm_particles_add_field(f.set, "temperature_0", MPM_F64, 1));
   ck_ok(mpm_particles_add_field(f.set, "label", MPM_I64, 2));
   ck_ok(mpm_particles_add_field(f.set, "flags", MPM_U8, 64));
-  ck_ok(mpm_particles_field_info(f.set, 17, &name, &type, &components, &writable));
+  ck_ok(mpm_particles_field_info(f.set, 18, &name, &type, &components, &writable));
   ck_assert_str_eq(name, "label");
   ck_assert_int_eq(type, MPM_I64);
   ck_assert_int_eq(components, 2);

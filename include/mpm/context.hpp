@@ -1,0 +1,107 @@
+/**
+ * @file context.hpp
+ * C++17: the context and the services of the host. See mpm.hpp.
+ */
+#ifndef MPM_CONTEXT_HPP
+#define MPM_CONTEXT_HPP
+
+#include <mpm/handle.hpp>
+
+namespace mpm {
+
+/** Services of the host: the fields of mpm_context_desc with their defaults, and functions in place of its
+ * pointers; a function that is set replaces them. */
+struct context_desc : mpm_context_desc {
+  /** log: takes a level MPM_LOG_* and a text. What it throws is dropped. */
+  std::function<void(int32_t level, const char *text)> on_log;
+  /** alloc(bytes, alignment), set together with on_release. An exception is as nullptr: MPM_E_NOMEM. */
+  std::function<void *(std::size_t bytes, std::size_t alignment)> on_alloc;
+  /** release(memory, bytes, alignment). What it throws is dropped. */
+  std::function<void(void *memory, std::size_t bytes, std::size_t alignment)> on_release;
+  /** parallel_for(count, task): calls task(k), which does not throw, once for each k in [0, count). */
+  callback<int64_t, const std::function<void(int64_t)> &> on_parallel_for;
+
+  /** The defaults. */
+  context_desc() : mpm_context_desc() {
+    if (const mpm_status status = mpm_context_desc_init(this, sizeof(mpm_context_desc)))
+      throw error(status, "mpm_context_desc_init");
+  }
+};
+
+/** Bytes held now and the most ever held: see mpm_context_memory(). */
+struct memory_use {
+  int64_t bytes;      /**< now */
+  int64_t peak_bytes; /**< at most */
+};
+
+/**
+ * A context. The C object lives until the wrapper and everything made with it are gone, in whatever order:
+ * grids, materials, sets, steppers, series and views keep it.
+ */
+class context : public wrapper<detail::context_core> {
+public:
+  /** mpm_context_create(). The library keeps no text for a context that could not be made; the status says
+   * which value was bad. */
+  explicit context(context_desc desc = {}) {
+    detail::context_core &c = core();
+    bind(desc, c);
+    if (const mpm_status status = mpm_context_create(&desc, &c.handle))
+      throw error(status, "mpm_context_create");
+  }
+
+  /** mpm_context_memory(). */
+  memory_use memory() const {
+    memory_use use{};
+    core().check(mpm_context_memory(core().handle, &use.bytes, &use.peak_bytes));
+    return use;
+  }
+
+private:
+  static void bind(context_desc &desc, detail::context_core &c) {
+    c.log = std::move(desc.on_log);
+    c.alloc = std::move(desc.on_alloc);
+    c.release = std::move(desc.on_release);
+    c.parallel_for = std::move(desc.on_parallel_for);
+    if (c.log) desc.log = log, desc.log_user = &c;
+    if (c.alloc || c.release) desc.alloc_user = &c;
+    if (c.alloc) desc.alloc = alloc;
+    if (c.release) desc.release = release;
+    if (c.parallel_for) desc.parallel_for = parallel_for, desc.parallel_user = &c;
+  }
+  static void log(void *user, int32_t level, const char *text) {
+    try {
+      static_cast<detail::context_core *>(user)->log(level, text);
+    } catch (...) {}
+  }
+  static void *alloc(void *user, std::size_t bytes, std::size_t alignment) {
+    try {
+      return static_cast<detail::context_core *>(user)->alloc(bytes, alignment);
+    } catch (...) {
+      return nullptr;
+    }
+  }
+  static void release(void *user, void *memory, std::size_t bytes, std::size_t alignment) {
+    try {
+      static_cast<detail::context_core *>(user)->release(memory, bytes, alignment);
+    } catch (...) {}
+  }
+  static mpm_status parallel_for(void *user, int64_t count, mpm_task_fn task, void *task_data) {
+    auto &c = *static_cast<detail::context_core *>(user);
+    return detail::guarded(c.exceptions,
+                           [&] { return c.parallel_for(count, [=](int64_t k) { task(task_data, k); }); });
+  }
+};
+
+/** Version of the library that runs, 0xMMmmpp: mpm_version(). */
+inline uint32_t version() noexcept {
+  return mpm_version();
+}
+
+/** Name of a status: mpm_status_name(). */
+inline const char *status_name(mpm_status status) noexcept {
+  return mpm_status_name(status);
+}
+
+} // namespace mpm
+
+#endif

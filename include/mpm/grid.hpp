@@ -1,0 +1,58 @@
+/**
+ * @file grid.hpp
+ * C++17: the background grid. See mpm.hpp.
+ */
+#ifndef MPM_GRID_HPP
+#define MPM_GRID_HPP
+
+#include <mpm/context.hpp>
+#include <mpm/grid.h>
+
+namespace mpm {
+
+/** mpm_grid_desc with its defaults; cells and spacing are to be set. */
+struct grid_desc : mpm_grid_desc {
+  /** The defaults. */
+  grid_desc() : mpm_grid_desc() {
+    if (const mpm_status status = mpm_grid_desc_init(this, sizeof(mpm_grid_desc)))
+      throw error(status, "mpm_grid_desc_init");
+  }
+};
+
+namespace detail {
+
+/** A grid and its context. */
+struct grid_core {
+  std::shared_ptr<context_core> context; /**< outlives the grid */
+  mpm_grid *handle = nullptr;            /**< what mpm_grid_create() gave */
+  int32_t dim = 0;                       /**< lengths of vectors that calls take */
+
+  explicit grid_core(std::shared_ptr<context_core> made_with) : context(std::move(made_with)) {}
+  grid_core(const grid_core &) = delete;
+  grid_core &operator=(const grid_core &) = delete;
+  ~grid_core() {
+    mpm_grid_destroy(handle);
+  }
+};
+
+} // namespace detail
+
+/** A grid: see mpm_grid_create(). Sets and steppers on it keep it. */
+class grid : public wrapper<detail::grid_core> {
+public:
+  /** mpm_grid_create(). */
+  grid(const context &made_with, const mpm_grid_desc &desc) : wrapper(made_with.shared()) {
+    detail::grid_core &c = core();
+    c.context->check(mpm_grid_create(c.context->handle, &desc, &c.handle));
+    c.dim = desc.dim;
+  }
+
+  /** 1, 2 or 3. */
+  int32_t dim() const {
+    return core().dim;
+  }
+};
+
+} // namespace mpm
+
+#endif

@@ -1,0 +1,148 @@
+/**
+ * @file material.hpp
+ * C++17: constitutive laws, built in or the host's. See mpm.hpp.
+ */
+#ifndef MPM_MATERIAL_HPP
+#define MPM_MATERIAL_HPP
+
+#include <mpm/context.hpp>
+#include <mpm/material.h>
+
+namespace mpm {
+
+/** A law of the host: mpm_material_desc with function objects (mt). */
+struct law {
+  double density = 0.0;                        /**< mass per initial volume, > 0; must be set */
+  int32_t state_count = 0;                     /**< state variables per particle */
+  std::vector<double> state_initial;           /**< [state_count] of a new particle; empty: zeros */
+  callback<const mpm_material_batch &> stress; /**< mpm_stress_fn; must be set */
+  /** mpm_tangent_fn: stress batch, tangent out, symmetric out (false unless it is set); empty: differenced.
+   */
+  callback<const mpm_material_batch &, double *, bool &> tangent;
+  int32_t tangent_form = MPM_TANGENT_MINOR_SYMMETRIC; /**< of tangent */
+};
+
+/** A parameter of a built-in law: see mpm_material_model_param(). */
+struct parameter {
+  std::string name;     /**< as mpm_param has it */
+  std::string unit;     /**< a dimension, such as "stress" */
+  std::string text;     /**< one line */
+  double value_default; /**< NaN: must be given */
+  double low;           /**< least value */
+  double high;          /**< largest value */
+};
+
+namespace detail {
+
+/** A material, its context and, for a law of the host, the functions. */
+struct material_core {
+  std::shared_ptr<context_core> context; /**< outlives the material */
+  mpm_material *handle = nullptr;        /**< what mpm_material_create() gave */
+  law functions;                         /**< called by the library while the material lives */
+
+  explicit material_core(std::shared_ptr<context_core> made_with, law host = {})
+      : context(std::move(made_with)), functions(std::move(host)) {}
+  material_core(const material_core &) = delete;
+  material_core &operator=(const material_core &) = delete;
+  ~material_core() {
+    mpm_material_destroy(handle);
+  }
+
+  /** The law as C calls it; user is a material_core. */
+  static mpm_status stress(void *user, const mpm_material_batch *batch) {
+    auto &self = *static_cast<material_core *>(user);
+    return guarded(self.context->exceptions, self.functions.stress, *batch);
+  }
+  /** The tangent as C calls it. */
+  static mpm_status tangent(void *user, const mpm_material_batch *batch, double *out, int32_t *symmetric) {
+    auto &self = *static_cast<material_core *>(user);
+    bool is_symmetric = false;
+    const mpm_status status =
+        guarded(self.context->exceptions, self.functions.tangent, *batch, out, is_symmetric);
+    *symmetric = is_symmetric;
+    return status;
+  }
+};
+
+} // namespace detail
+
+/** A material: see mpm_material_create() and mpm_material_create_custom(). Sets of it keep it. */
+class material : public wrapper<detail::material_core> {
+public:
+  /** A built-in law, with parameters such as {{"E", 1e6}, {"nu", 0.3}, {"density", 1e3}}. */
+  material(const context &made_with, const std::string &model, span<const mpm_param> parameters)
+      : wrapper(made_with.shared()) {
+    detail::material_core &c = core();
+    c.context->check(mpm_material_create(c.context->handle, model.c_str(), parameters.data(),
+                                         static_cast<int32_t>(parameters.size()), &c.handle));
+  }
+  /** A law of the host. */
+  material(const context &made_with, law host) : wrapper(made_with.shared(), std::move(host)) {
+    detail::material_core &c = core();
+    const law &given = c.functions;
+    if (!given.state_initial.empty())
+      detail::expect_size("state_initial", given.state_initial.size(), given.state_count);
+    mpm_material_desc desc{};
+    c.context->check(mpm_material_desc_init(&desc, sizeof desc));
+    desc.state_count = given.state_count;
+    desc.tangent_form = given.tangent_form;
+    desc.density = given.density;
+    if (given.stress) desc.stress = detail::material_core::stress;
+    if (given.tangent) desc.tangent = detail::material_core::tangent;
+    desc.user = &c;
+    if (!given.state_initial.empty()) desc.state_initial = given.state_initial.data();
+    c.context->check(mpm_material_create_custom(c.context->handle, &desc, &c.handle));
+  }
+};
+
+/** Names of the built-in laws: mpm_material_model_name(). */
+inline std::vector<std::string> models() {
+  std::vector<std::string> names;
+  for (int32_t i = 0; i < mpm_material_model_count(); ++i) names.emplace_back(mpm_material_model_name(i));
+  return names;
+}
+
+/** Parameters of a built-in law: mpm_material_model_param(). Throws error (MPM_E_NOT_FOUND) for an unknown
+ * model. */
+inline std::vector<parameter> model_parameters(const std::string &model) {
+  std::vector<parameter> all;
+  for (int32_t i = 0;; ++i) {
+    const char *name = "", *unit = "", *text = "";
+    parameter p{};
+    if (mpm_material_model_param(model.c_str(), i, &name, &unit, &text, &p.value_default, &p.low, &p.high))
+      break;
+    p.name = name;
+    p.unit = unit;
+    p.text = text;
+    all.push_back(p);
+  }
+  if (all.empty()) throw error(MPM_E_NOT_FOUND, "no built-in law \"" + model + "\"");
+  return all;
+}
+
+/** A field beside a batch, valid during the callback: see mpm_batch_field(). */
+template <class T> struct batch_values {
+  const T *data;            /**< component 0 of item 0 */
+  int64_t component_stride; /**< from component c to c + 1, in elements */
+
+  /** Stored component component of item of the batch, not checked. */
+  const T &operator()(int64_t item, int32_t component = 0) const noexcept {
+    return data[component * component_stride + item];
+  }
+};
+
+/** mpm_batch_field(): T is the type of the field's elements, which the library cannot check. Throws error,
+ * which in a callback stops the call that runs it. */
+template <class T> batch_values<T> batch_field(const void *lookup, const std::string &field) {
+  static_assert(detail::type_of<T>() != 0);
+  const void *data = nullptr;
+  batch_values<T> values{};
+  if (const mpm_status status = mpm_batch_field(lookup, field.c_str(), &data, &values.component_stride))
+    throw error(status, "mpm_batch_field: \"" + field + "\"");
+  values.data = static_cast<const T *>(data);
+  return values;
+}
+
+} // namespace mpm
+
+#endif

@@ -1,0 +1,242 @@
+/**
+ * @file particles.hpp
+ * C++17: sets of particles. See mpm.hpp.
+ */
+#ifndef MPM_PARTICLES_HPP
+#define MPM_PARTICLES_HPP
+
+#include <mpm/grid.hpp>
+#include <mpm/io.h>
+#include <mpm/material.hpp>
+#include <mpm/particles.h>
+#include <mpm/view.hpp>
+
+namespace mpm {
+
+/** Ids first ... first + count - 1 of particles that a call has made. */
+struct id_range {
+  int64_t first; /**< smallest */
+  int64_t count; /**< how many; may be 0 */
+};
+
+/** What particles::add() takes: arrays as mpm_particles_add() wants them, [dim][n]; empty for NULL. */
+struct new_particles {
+  span<const double> position; /**< [dim][n] */
+  span<const double> velocity; /**< [dim][n]; empty: zeros */
+  span<const double> volume;   /**< [n] */
+  span<const double> size;     /**< [dim][n]; empty: cubes */
+  span<const int64_t> ids;     /**< [n]; empty: numbered on */
+};
+
+/** A field of a set: see mpm_particles_field_info(). */
+struct field_info {
+  std::string name;   /**< as calls want it */
+  int32_t type;       /**< MPM_F64, MPM_I64 or MPM_U8 */
+  int32_t components; /**< of copies */
+  bool writable;      /**< by the host */
+};
+
+namespace detail {
+
+/** A set with its grid and material. */
+struct particles_core {
+  std::shared_ptr<context_core> context;   /**< outlives the set */
+  std::shared_ptr<grid_core> grid;         /**< outlives the set */
+  std::shared_ptr<material_core> material; /**< outlives the set */
+  mpm_particles *handle = nullptr;         /**< what mpm_particles_create() gave */
+
+  particles_core(std::shared_ptr<grid_core> on, std::shared_ptr<material_core> of)
+      : context(on->context), grid(std::move(on)), material(std::move(of)) {}
+  particles_core(const particles_core &) = delete;
+  particles_core &operator=(const particles_core &) = delete;
+  ~particles_core() {
+    mpm_particles_destroy(handle);
+  }
+};
+
+/** Type of the elements of a container. */
+template <class C>
+using element = std::remove_cv_t<std::remove_pointer_t<decltype(std::data(std::declval<C &>()))>>;
+
+/** Names of fields as C wants them; they live as long as names do. */
+inline std::vector<const char *> c_names(const std::vector<std::string> &names) {
+  std::vector<const char *> pointers;
+  for (const std::string &name : names) pointers.push_back(name.c_str());
+  return pointers;
+}
+
+} // namespace detail
+
+/** A set of particles: see particles.h. A stepper that it was added to keeps it. */
+class particles : public wrapper<detail::particles_core> {
+public:
+  /** mpm_particles_create(). */
+  particles(const grid &on, const material &of) : wrapper(on.shared(), of.shared()) {
+    detail::particles_core &c = core();
+    check(mpm_particles_create(c.context->handle, c.grid->handle, c.material->handle, &c.handle));
+  }
+
+  /** mpm_particles_add(); gives the first id. */
+  int64_t add(const new_particles &p) {
+    const auto n = static_cast<int64_t>(p.volume.size()), coordinates = n * core().grid->dim;
+    detail::expect_size("position", p.position.size(), coordinates);
+    if (!p.velocity.empty()) detail::expect_size("velocity", p.velocity.size(), coordinates);
+    if (!p.size.empty()) detail::expect_size("size", p.size.size(), coordinates);
+    if (!p.ids.empty()) detail::expect_size("ids", p.ids.size(), n);
+    int64_t first = 0;
+    check(mpm_particles_add(core().handle, n, detail::not_null(p.position), p.velocity.data(),
+                            detail::not_null(p.volume), p.size.data(), p.ids.data(), &first));
+    return first;
+  }
+  /** mpm_particles_fill_box(); all arrays are [dim]. */
+  id_range fill_box(span<const double> lower, span<const double> upper, span<const int32_t> per_cell) {
+    expect_axes("lower", lower.size()), expect_axes("upper", upper.size()),
+        expect_axes("per_cell", per_cell.size());
+    id_range made{};
+    check(mpm_particles_fill_box(core().handle, lower.data(), upper.data(), per_cell.data(), &made.first,
+                                 &made.count));
+    return made;
+  }
+  /** mpm_particles_fill_ball(); all arrays are [dim]. */
+  id_range fill_ball(span<const double> centre, double radius, span<const int32_t> per_cell) {
+    expect_axes("centre", centre.size()), expect_axes("per_cell", per_cell.size());
+    id_range made{};
+    check(mpm_particles_fill_ball(core().handle, centre.data(), radius, per_cell.data(), &made.first,
+                                  &made.count));
+    return made;
+  }
+  /** mpm_particles_fill(), with a function of one point x[dim]: bool inside(const double *x). What it throws
+   * comes out of this call, and nothing is added. */
+  template <class F>
+  id_range fill(span<const double> lower, span<const double> upper, span<const int32_t> per_cell, F inside) {
+    expect_axes("lower", lower.size()), expect_axes("upper", upper.size()),
+        expect_axes("per_cell", per_cell.size());
+    struct job {
+      F &inside;
+      detail::thrown &exceptions;
+    } each{inside, core().context->exceptions};
+    const mpm_inside_fn points = [](void *user, int32_t dim, int64_t n, int64_t ld, const double *position,
+                                    uint8_t *accepted) -> mpm_status {
+      return detail::guarded(static_cast<job *>(user)->exceptions, [&] {
+        double x[3] = {0.0, 0.0, 0.0};
+        for (int64_t i = 0; i < n; ++i) {
+          for (int32_t c = 0; c < dim; ++c) x[c] = position[c * ld + i];
+          accepted[i] = static_cast<job *>(user)->inside(static_cast<const double *>(x)) ? 1 : 0;
+        }
+        return MPM_OK;
+      });
+    };
+    id_range made{};
+    check(mpm_particles_fill(core().handle, lower.data(), upper.data(), per_cell.data(), points, &each,
+                             &made.first, &made.count));
+    return made;
+  }
+  /** mpm_particles_remove(). */
+  void remove(span<const int64_t> ids) {
+    check(mpm_particles_remove(core().handle, static_cast<int64_t>(ids.size()), detail::not_null(ids)));
+  }
+  /** mpm_particles_count(). */
+  int64_t count() const {
+    return mpm_particles_count(core().handle);
+  }
+
+  /** All fields: mpm_particles_field_info(). */
+  std::vector<field_info> fields() const {
+    std::vector<field_info> all;
+    for (int32_t i = 0;; ++i) {
+      const char *name = "";
+      int32_t writable = 0;
+      field_info field{};
+      if (mpm_particles_field_info(core().handle, i, &name, &field.type, &field.components, &writable)) break;
+      field.name = name;
+      field.writable = writable != 0;
+      all.push_back(field);
+    }
+    return all;
+  }
+  /** Adds a field of the host: mpm_particles_add_field(). */
+  template <class T> void add_field(const std::string &field, int32_t components = 1) {
+    check(mpm_particles_add_field(core().handle, field.c_str(), detail::type_of<T>(), components));
+  }
+
+  /** Copies a field of all particles by ascending id, [components][count()]: mpm_particles_get(). */
+  template <class T = double> std::vector<T> get(const std::string &field) const {
+    return copy<T>(field, count(), nullptr);
+  }
+  /** The same of the particles with the given ids. */
+  template <class T = double> std::vector<T> get(const std::string &field, span<const int64_t> ids) const {
+    return copy<T>(field, static_cast<int64_t>(ids.size()), detail::not_null(ids));
+  }
+  /** Copies values, [components][count()] by ascending id, into a field: mpm_particles_set(). */
+  template <class C> void set(const std::string &field, const C &values) {
+    write<detail::element<const C>>(field, count(), nullptr, values);
+  }
+  /** The same for the particles with the given ids. */
+  template <class C> void set(const std::string &field, span<const int64_t> ids, const C &values) {
+    write<detail::element<const C>>(field, static_cast<int64_t>(ids.size()), detail::not_null(ids), values);
+  }
+  /** The same with a list in braces. */
+  template <class T>
+  void set(const std::string &field, span<const int64_t> ids, std::initializer_list<T> values) {
+    set<std::initializer_list<T>>(field, ids, values);
+  }
+  /** One value, [components], for every particle: mpm_particles_set_all(). */
+  template <class C> void set_all(const std::string &field, const C &value) {
+    const span<const detail::element<const C>> all(value);
+    check(mpm_particles_set_all(core().handle, field.c_str(), detail::type_of<detail::element<const C>>(),
+                                static_cast<int32_t>(all.size()), detail::not_null(all)));
+  }
+  /** The same with a list in braces, such as {1.0, 0.0}. */
+  template <class T> void set_all(const std::string &field, std::initializer_list<T> value) {
+    set_all<std::initializer_list<T>>(field, value);
+  }
+  /** Lends a field in library order: mpm_particles_map(). map<const double>() is for reading, map<double>()
+   * for reading and writing. */
+  template <class T> view<T> map(const std::string &field) {
+    return view<T>(shared(), field, [&](int32_t access, mpm_view *out) {
+      return mpm_particles_map(core().handle, field.c_str(), access, out);
+    });
+  }
+
+  /** Writes a .vtp file with the named fields, or all: mpm_write_particles(). */
+  void write_file(const std::string &path, const std::vector<std::string> &names = {}) const {
+    check(mpm_write_particles(core().handle, path.c_str(), static_cast<int32_t>(names.size()),
+                              detail::c_names(names).data()));
+  }
+
+private:
+  void check(mpm_status status) const {
+    core().context->check(status);
+  }
+  void expect_axes(const char *what, std::size_t size) const {
+    detail::expect_size(what, size, core().grid->dim);
+  }
+  /* 0 for an unknown field, which the library then names */
+  int32_t components_of(const std::string &field) const {
+    const char *name = "";
+    int32_t components = 0;
+    for (int32_t i = 0; !mpm_particles_field_info(core().handle, i, &name, nullptr, &components, nullptr);
+         ++i)
+      if (field == name) return components;
+    return 0;
+  }
+  template <class T> std::vector<T> copy(const std::string &field, int64_t n, const int64_t *ids) const {
+    const int32_t components = components_of(field);
+    std::vector<T> values(static_cast<std::size_t>(components) * static_cast<std::size_t>(n));
+    T none{};
+    check(mpm_particles_get(core().handle, field.c_str(), detail::type_of<T>(), components, n, ids,
+                            values.empty() ? &none : values.data()));
+    return values;
+  }
+  template <class T>
+  void write(const std::string &field, int64_t n, const int64_t *ids, span<const T> values) {
+    const int32_t components = components_of(field);
+    if (components) detail::expect_size(field.c_str(), values.size(), components * n);
+    check(mpm_particles_set(core().handle, field.c_str(), detail::type_of<T>(), components, n, ids,
+                            detail::not_null(values)));
+  }
+};
+
+} // namespace mpm
+
+#endif

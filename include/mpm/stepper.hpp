@@ -1,0 +1,208 @@
+/**
+ * @file stepper.hpp
+ * C++17: the time loop. See mpm.hpp.
+ */
+#ifndef MPM_STEPPER_HPP
+#define MPM_STEPPER_HPP
+
+#include <mpm/staged_step.hpp>
+
+#include <algorithm>
+
+namespace mpm {
+
+/** A stepper: see stepper.h. It keeps its sets alive until they are removed or it is destroyed. */
+class stepper : public wrapper<detail::stepper_core> {
+public:
+  /** mpm_stepper_create(). */
+  explicit stepper(const grid &on, const mpm_stepper_desc &desc = stepper_desc()) : wrapper(on.shared()) {
+    detail::stepper_core &c = core();
+    check(mpm_stepper_create(c.context->handle, c.grid->handle, &desc, &c.handle));
+  }
+
+  /** mpm_stepper_add(). */
+  void add(particles &set) {
+    core().sets.reserve(core().sets.size() + 1);
+    check(mpm_stepper_add(core().handle, set.handle()));
+    core().sets.push_back(set.shared());
+  }
+  /** mpm_stepper_remove(). */
+  void remove(particles &set) {
+    detail::stepper_core &c = core();
+    check(mpm_stepper_remove(c.handle, set.handle()));
+    c.sets.erase(std::find(c.sets.begin(), c.sets.end(), set.shared()));
+    forget_motion(set.handle());
+  }
+  /** mpm_stepper_configure(). */
+  void configure(const mpm_stepper_desc &desc) {
+    check(mpm_stepper_configure(core().handle, &desc));
+  }
+  /** mpm_stepper_set_time(). */
+  void set_time(double t, int64_t step) {
+    check(mpm_stepper_set_time(core().handle, t, step));
+  }
+
+  /** mpm_stepper_set_wall(). */
+  void set_wall(int32_t face, int32_t kind, double friction = 0.0) {
+    check(mpm_stepper_set_wall(core().handle, face, kind, friction));
+  }
+  /** Mean velocity of a set's prescribed particles, or nullptr: mpm_stepper_set_motion(). */
+  void set_motion(particles &set, particle_callback mean_velocity) {
+    detail::stepper_core &c = core();
+    c.motions.reserve(c.motions.size() + 1);
+    auto rule = c.keep(std::move(mean_velocity));
+    check(mpm_stepper_set_motion(c.handle, set.handle(), rule ? c.on_particles : nullptr, rule.get()));
+    forget_motion(set.handle());
+    if (rule) c.motions.push_back({set.handle(), std::move(rule)});
+  }
+  /** Body acceleration, or nullptr: mpm_stepper_set_acceleration(). */
+  void set_acceleration(particle_callback function) {
+    install(mpm_stepper_set_acceleration, core().acceleration, std::move(function), core().on_particles);
+  }
+  /** Force on particles, or nullptr: mpm_stepper_set_force(). */
+  void set_force(particle_callback function) {
+    install(mpm_stepper_set_force, core().force, std::move(function), core().on_particles);
+  }
+  /** Prescribed nodal velocities, or nullptr: mpm_stepper_set_velocity_bc(). */
+  void set_velocity_bc(velocity_callback function) {
+    install(mpm_stepper_set_velocity_bc, core().velocity, std::move(function), core().on_velocity);
+  }
+  /** Hook of a stage, MPM_AFTER_P2G ... MPM_AFTER_VELOCITY, or nullptr: mpm_stepper_set_node_hook(). */
+  void set_node_hook(int32_t stage, node_callback function) {
+    const auto set = [stage](mpm_stepper *s, mpm_node_fn fn, void *user) {
+      return mpm_stepper_set_node_hook(s, stage, fn, user);
+    };
+    std::unique_ptr<detail::stepper_core::slot<node_callback>> refused;
+    const bool known = stage >= MPM_AFTER_P2G && stage <= MPM_AFTER_VELOCITY;
+    auto &place = known ? core().hooks[static_cast<std::size_t>(stage - MPM_AFTER_P2G)] : refused;
+    install(set, place, std::move(function), core().on_nodes);
+  }
+  /** Solver of MPM_SOLVER_HOST, or nullptr: mpm_stepper_set_linear_solver(). */
+  void set_linear_solver(solve_callback function) {
+    install(mpm_stepper_set_linear_solver, core().solver, std::move(function), core().on_solve);
+  }
+  /** Progress, or nullptr: mpm_stepper_set_progress(). */
+  void set_progress(progress_callback function) {
+    install(mpm_stepper_set_progress, core().progress, std::move(function), core().on_progress);
+  }
+
+  /** mpm_stable_dt(). Throws error for any status but MPM_OK. */
+  double stable_dt() {
+    double dt = 0.0;
+    check(mpm_stable_dt(core().handle, &dt));
+    return dt;
+  }
+  /** mpm_step(). */
+  outcome step(double dt) {
+    return core().result(mpm_step(core().handle, dt, nullptr));
+  }
+  /** The same; info is filled on success and on failure, also when it throws. */
+  outcome step(double dt, mpm_step_info &info) {
+    return core().result(mpm_step(core().handle, dt, &info));
+  }
+  /** mpm_advance(). */
+  outcome advance(const mpm_advance_desc &desc) {
+    return core().result(mpm_advance(core().handle, &desc, nullptr));
+  }
+  /** The same; info is that of the last sub-step tried. */
+  outcome advance(const mpm_advance_desc &desc, mpm_step_info &info) {
+    return core().result(mpm_advance(core().handle, &desc, &info));
+  }
+  /** A step in parts: mpm_step_begin(). */
+  staged_step begin(double dt) {
+    return staged_step(shared(), dt);
+  }
+
+  /** mpm_stepper_info(). */
+  step_info info() const {
+    step_info now;
+    check(mpm_stepper_info(core().handle, &now));
+    return now;
+  }
+  /** Times since creation or the last reset: mpm_stepper_profile(). */
+  mpm_profile profile(bool reset = false) {
+    mpm_profile times{};
+    times.struct_size = sizeof times;
+    check(mpm_stepper_profile(core().handle, reset, &times));
+    return times;
+  }
+  /** Residuals of the last implicit step: mpm_stepper_residuals(). */
+  std::vector<double> residuals() const {
+    int32_t count = 0;
+    check(mpm_stepper_residuals(core().handle, 0, nullptr, &count));
+    std::vector<double> all(static_cast<std::size_t>(count));
+    if (count) check(mpm_stepper_residuals(core().handle, count, all.data(), &count));
+    return all;
+  }
+  /** Lends a nodal field: mpm_grid_map(). map<const double>() is for reading, map<double>() for both. */
+  template <class T> view<T> map(const std::string &field, int32_t body = 0) {
+    return view<T>(shared(), field, [&](int32_t access, mpm_view *out) {
+      return mpm_grid_map(core().handle, body, field.c_str(), access, out);
+    });
+  }
+  /** Force of a wall on the material: mpm_stepper_wall_reaction(). Entries of unused axes are 0. */
+  std::array<double, 3> wall_reaction(int32_t face) const {
+    std::array<double, 3> force{};
+    check(mpm_stepper_wall_reaction(core().handle, face, force.data()));
+    return force;
+  }
+  /** Force of a set's prescribed particles on the material: mpm_stepper_particles_reaction(). */
+  std::array<double, 3> particles_reaction(const particles &set) const {
+    std::array<double, 3> force{};
+    check(mpm_stepper_particles_reaction(core().handle, set.handle(), force.data()));
+    return force;
+  }
+
+  /** The state: mpm_state_save(). */
+  std::vector<unsigned char> save() const {
+    int64_t bytes = 0;
+    check(mpm_state_size(core().handle, &bytes));
+    std::vector<unsigned char> state(static_cast<std::size_t>(bytes));
+    check(mpm_state_save(core().handle, state.data(), bytes));
+    return state;
+  }
+  /** Replaces the state by a saved one: mpm_state_load(). */
+  void load(span<const unsigned char> state) {
+    check(mpm_state_load(core().handle, detail::not_null(state), static_cast<int64_t>(state.size())));
+  }
+  /** mpm_state_save_file(). */
+  void save_file(const std::string &path) const {
+    check(mpm_state_save_file(core().handle, path.c_str()));
+  }
+  /** mpm_state_load_file(). */
+  void load_file(const std::string &path) {
+    check(mpm_state_load_file(core().handle, path.c_str()));
+  }
+  /** mpm_state_hash(). */
+  uint64_t hash() const {
+    uint64_t hash = 0;
+    check(mpm_state_hash(core().handle, &hash));
+    return hash;
+  }
+  /** Writes a .vti file with the named nodal fields, or all: mpm_write_grid(). */
+  void write_grid(const std::string &path, const std::vector<std::string> &names = {}) {
+    check(mpm_write_grid(core().handle, path.c_str(), static_cast<int32_t>(names.size()),
+                         detail::c_names(names).data()));
+  }
+
+private:
+  void check(mpm_status status) const {
+    core().result(status).or_throw();
+  }
+  /* The old function goes only once the library has taken the new one. */
+  template <class Set, class F, class Fn>
+  void install(Set set, std::unique_ptr<detail::stepper_core::slot<F>> &place, F function, Fn *trampoline) {
+    auto fresh = core().keep(std::move(function));
+    check(set(core().handle, fresh ? trampoline : nullptr, fresh.get()));
+    place = std::move(fresh);
+  }
+  void forget_motion(const mpm_particles *set) {
+    auto &all = core().motions;
+    all.erase(std::remove_if(all.begin(), all.end(), [set](const auto &m) { return m.set == set; }),
+              all.end());
+  }
+};
+
+} // namespace mpm
+
+#endif

@@ -1,0 +1,54 @@
+/* Neo-Hookean law with volume and shape apart, Guilkey & Weiss 2003, eq. 20:
+ *   J stress = kappa ln J I + mu dev(b_bar), b_bar = J^(-2/3) F F^T,
+ *   energy per initial volume W = kappa/2 ln^2 J + mu/2 (tr b_bar - 3). */
+#include <math.h>
+
+#include "material/laws.h"
+#include "material/stretch_bounds.h"
+#include "material/vector_math.h"
+
+/* The acoustic tensor for a direction n, times J, has in the frame of n the entries
+ *   kappa (1 - ln J) + 5/3 mean - 1/3 b_nn along n, b_nn across it, and -2/3 |t| between n and t,
+ * where b is mu b_bar, mean = tr(b) / 3 and t what b n has across n: at most half the spread of b. Its
+ * largest eigenvalue grows with each of them. */
+MPMI_INLINE double stiffest(double volumetric, double mean, double low, double high) {
+  double along = mpmi_max(volumetric, 0.0) + (5.0 / 3.0) * mean - (1.0 / 3.0) * low;
+  double between = (1.0 / 3.0) * (high - low), half = 0.5 * (along - high);
+  return 0.5 * (along + high) + sqrt(half * half + between * between);
+}
+
+MPMI_INLINE void neo_hookean_decoupled(int dim, const double *constants, const mpm_material_batch *batch) {
+  const double kappa = constants[MPMI_C_BULK], mu = constants[MPMI_C_MU];
+  const double density_inverse = constants[MPMI_C_DENSITY_INVERSE];
+  const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
+  const double *deformation = batch->F;
+  double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
+  MPMI_IVDEP
+  for (int64_t i = 0; i < n; ++i) {
+    /* In terms of H = F - I and e = F F^T - I, so that small strains keep their digits. */
+    mpmi_mat h = mpmi_load_F_minus_1(dim, deformation, ld, i);
+    mpmi_sym e = mpmi_left_cauchy_green_minus_1(dim, h);
+    double j_minus_1 = mpmi_J_minus_1(dim, h), j_inverse = 1.0 / (1.0 + j_minus_1);
+    double log_j = mpmi_lane_log1p(j_minus_1);
+    double shape_minus_1 = mpmi_lane_expm1((-2.0 / 3.0) * log_j), trace = e.xx + e.yy + e.zz;
+    double mu_bar = mu + mu * shape_minus_1; /* mu J^(-2/3) */
+
+    double mu_j = mu_bar * j_inverse;
+    double isotropic = kappa * log_j * j_inverse - (1.0 / 3.0) * mu_j * trace;
+    mpmi_sym s = {isotropic + mu_j * e.xx,
+                  isotropic + mu_j * e.yy,
+                  isotropic + mu_j * e.zz,
+                  mu_j * e.xy,
+                  mu_j * e.yz,
+                  mu_j * e.xz};
+    mpmi_store_sym(dim, stress, ld, i, s);
+    energy[i] = 0.5 * kappa * log_j * log_j + 0.5 * (mu_bar * trace + 3.0 * mu * shape_minus_1);
+
+    double stiffness = stiffest(kappa - kappa * log_j, mu_bar * (1.0 + (1.0 / 3.0) * trace),
+                                mu_bar * mpmi_smallest_stretch_squared(dim, e),
+                                mu_bar * mpmi_largest_stretch_squared(dim, e));
+    wave_speed[i] = sqrt(stiffness * density_inverse);
+  }
+}
+
+MPMI_LAW_BY_DIM(law_neo_hookean_decoupled, neo_hookean_decoupled)

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# ABI.md names every exported function, every constant with its value, and every public struct with its size on LP64;
+# nothing in it is not there. A struct that has grown is listed again: the last size counts.
+set -euo pipefail
+BUILD=${BUILD:-build} CC=${CC:-cc}
+scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/ledger
+rm -rf "$scratch"
+mkdir -p "$scratch"
+ledger=$scratch/ledger
+sed -n '/^# Ledger/,$p' ABI.md > "$ledger"
+
+same() { # what, in the ledger, in the library
+  if ! diff "$2" "$3"; then
+    echo "ledger.sh: $1: '<' is in ABI.md only, '>' in the library only" >&2
+    exit 1
+  fi
+}
+
+sed -n '/^### Functions/,/^### /p' "$ledger" | grep -o '`mpm_[a-z0-9_]*`' | tr -d '`' | sort > "$scratch/functions"
+nm -D --defined-only "$BUILD/libmpm.so" | awk '$3 ~ /^mpm_/ { sub("@.*", "", $3); print $3 }' | sort > "$scratch/exported"
+same functions "$scratch/functions" "$scratch/exported"
+
+grep -oE '`MPM_[A-Z0-9_]*` -?[0-9]+' "$ledger" | tr -d '`' | sort > "$scratch/constants"
+sed -nE 's/^ *(MPM_[A-Z0-9_]+) = (-?[0-9]+).*/\1 \2/p' include/mpm/*.h | sort > "$scratch/declared"
+same constants "$scratch/constants" "$scratch/declared"
+
+sed -nE 's/^\| `(mpm_[a-z_]+)` \| ([0-9]+) \|.*/\1 \2/p' "$ledger" | awk '{ size[$1] = $2 } END { for (s in size) print s, size[s] }' |
+  sort > "$scratch/sizes"
+{
+  echo '#include <mpm/mpm.h>'
+  echo '#include <stdio.h>'
+  echo 'int main(void) {'
+  sed -nE 's/^\} (mpm_[a-z_]+);.*/  printf("%s %zu\\n", "\1", sizeof(\1));/p' include/mpm/*.h
+  echo '  return 0;'
+  echo '}'
+} > "$scratch/sizes.c"
+"$CC" -std=c11 -Iinclude "$scratch/sizes.c" -o "$scratch/sizes_of"
+if [ "$(getconf LONG_BIT)" = 64 ]; then
+  "$scratch/sizes_of" | sort > "$scratch/actual"
+  same sizes "$scratch/sizes" "$scratch/actual"
+fi
+echo "ledger.sh: $(wc -l < "$scratch/functions") functions, $(wc -l < "$scratch/constants") constants, $(wc -l < "$scratch/sizes") structs"

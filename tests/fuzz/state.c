@@ -1,0 +1,190 @@
+/* States that were damaged, cut, forged or made up: loaded whole, or refused with a sentence and nothing
+ * changed. What was loaded can be stepped, shown and saved again. */
+#include "fuzz.h"
+#include "io/archive.h"
+#include "io/state.h"
+
+typedef struct world {
+  fuzz_memory memory;
+  mpm_context *context;
+  mpm_grid *grid;
+  mpm_material *material[2];
+  mpm_particles *set[2];
+  mpm_stepper *stepper;
+} world;
+
+enum { SETUPS = 12, ROOM = 1 << 20 };
+
+static void build_sets(world *w, int32_t dim) {
+  const mpm_param params[] = {
+      {"E", 1e5}, {"nu", 0.3}, {"density", 1e3}, {"yield_stress", 1e3}, {"hardening", 1e3}};
+  const double low[2][3] = {{0.3, 0.3, 0.3}, {5.0, 0.3, 0.3}},
+               high[2][3] = {{1.6, 1.6, 1.2}, {6.0, 1.0, 0.8}};
+  const double speed[2][3] = {{3.0, 1.0, 0.5}, {-3.0, 0.0, 1.0}};
+  const int32_t per_cell[] = {2, 2, 2};
+  const uint8_t colour[] = {1, 2, 3};
+  for (int32_t m = 0; m < 2; ++m) {
+    MUST(!mpm_material_create(w->context, m ? "j2" : "neo_hookean", params, m ? 5 : 3, &w->material[m]));
+    MUST(!mpm_particles_create(w->context, w->grid, w->material[m], &w->set[m]));
+    MUST(!mpm_particles_fill_box(w->set[m], low[m], high[m], per_cell, NULL, NULL));
+    MUST(!mpm_particles_set_all(w->set[m], "velocity", MPM_F64, dim, speed[m]));
+  }
+  MUST(!mpm_particles_add_field(w->set[0], "colour", MPM_U8, 3));
+  MUST(!mpm_particles_add_field(w->set[1], "grain", MPM_I64, 2));
+  MUST(!mpm_particles_set_all(w->set[0], "colour", MPM_U8, 3, colour));
+}
+
+/* Dimension, transfer, periodic axis, reference positions and number of steps follow from the number. */
+static void open_world(world *w, int32_t setup) {
+  const int32_t dim = 1 + setup % 3, kind = setup / 3;
+  static const int32_t transfer[] = {MPM_FLIP, MPM_APIC, MPM_APIC_MLS, MPM_FLIP};
+  mpm_grid_desc g;
+  mpm_stepper_desc s;
+  w->context = fuzz_context(&w->memory, 1);
+  MUST(!mpm_grid_desc_init(&g, sizeof g));
+  g.dim = dim;
+  for (int32_t k = 0; k < dim; ++k)
+    g.cells[k] = 16 - 4 * k, g.spacing[k] = 0.5, g.periodic[k] = kind == 1 && !k;
+  if (kind == 3) g.basis = MPM_LINEAR;
+  MUST(!mpm_grid_create(w->context, &g, &w->grid));
+  build_sets(w, dim);
+  MUST(!mpm_stepper_desc_init(&s, sizeof s));
+  s.transfer = transfer[kind];
+  s.scheme = kind == 2 ? MPM_MUSL : MPM_USL;
+  s.reference_positions = kind == 3;
+  s.gravity[0] = 1.0;
+  MUST(!mpm_stepper_create(w->context, w->grid, &s, &w->stepper));
+  for (int32_t m = 0; m < 2; ++m) MUST(!mpm_stepper_add(w->stepper, w->set[m]));
+  for (int32_t face = kind == 1 ? 2 : 0; face < 2 * dim; ++face)
+    MUST(!mpm_stepper_set_wall(w->stepper, face, 1 + (setup + face) % 4, 0.3));
+  for (int32_t i = 0; i < kind; ++i) MUST(!mpm_step(w->stepper, 1e-3, NULL));
+}
+
+static void close_world(world *w) {
+  MUST(!mpm_stepper_destroy(w->stepper));
+  for (int32_t m = 0; m < 2; ++m) MUST(!mpm_particles_destroy(w->set[m]));
+  for (int32_t m = 0; m < 2; ++m) MUST(!mpm_material_destroy(w->material[m]));
+  MUST(!mpm_grid_destroy(w->grid));
+  fuzz_close(w->context, &w->memory);
+}
+
+static uint64_t hash_of(const world *w) {
+  uint64_t hash;
+  MUST(!mpm_state_hash(w->stepper, &hash));
+  return hash;
+}
+
+/* A header that belongs to the contents: without it few bytes would get past the checksum. */
+static void seal(uint8_t *state, int64_t bytes) {
+  mpmi_state_header header = {MPMI_STATE_MAGIC, MPMI_STATE_BYTE_ORDER, MPMI_STATE_FORMAT, bytes, 0};
+  mpmi_checksum sum;
+  if (bytes < (int64_t)sizeof header || bytes % 8) return;
+  memcpy(header.magic, MPMI_STATE_MAGIC, sizeof header.magic);
+  mpmi_checksum_begin(&sum);
+  mpmi_checksum_add(&sum, state + sizeof header, bytes - (int64_t)sizeof header);
+  header.checksum = mpmi_checksum_end(&sum);
+  memcpy(state, &header, sizeof header);
+}
+
+/* A change at a place of the state, or far from it: a word, a byte, a copy of other words, words put in or
+ * taken out. */
+static int64_t change(fuzz_input *in, uint8_t *state, int64_t bytes) {
+  const int32_t what = fuzz_below(in, 8);
+  const int64_t words = bytes / 8;
+  if (words < 8) return bytes;
+  const int64_t at = 8 * (int64_t)(fuzz_word(in, 2) % (uint64_t)words),
+                n = 8 * (1 + (int64_t)fuzz_below(in, 16));
+  const double real = fuzz_double(in);
+  const int64_t integer = fuzz_integer(in), other = 8 * (integer % words + (integer < 0 ? words - 1 : 0));
+  switch (what) {
+  case 0:
+  case 1:
+    memcpy(state + at, &integer, 8);
+    return bytes;
+  case 2:
+    memcpy(state + at, &real, 8);
+    return bytes;
+  case 3:
+  case 4:
+    state[at + n % 8] = (uint8_t)integer;
+    return bytes;
+  case 5:
+    if (at + n <= bytes && other >= 0 && other + n <= bytes) memmove(state + at, state + other, (size_t)n);
+    return bytes;
+  case 6:
+    if (bytes + n > ROOM) return bytes;
+    memmove(state + at + n, state + at, (size_t)(bytes - at));
+    return bytes + n;
+  default:
+    if (at + n > bytes) return bytes;
+    memmove(state + at, state + at + n, (size_t)(bytes - at - n));
+    return bytes - n;
+  }
+}
+
+/* What the library does with a state that it has taken. */
+static void use(world *w, int32_t steps) {
+  mpm_view view = {.struct_size = sizeof view};
+  mpm_step_info info = {.struct_size = sizeof info};
+  mpm_advance_desc go;
+  double dt;
+  for (int32_t m = 0; m < 2; ++m) fuzz_finite(w->set[m]);
+  fuzz_status(w->context, mpm_stable_dt(w->stepper, &dt));
+  fuzz_status(w->context, mpm_stepper_info(w->stepper, &info));
+  for (int32_t i = 0; i < steps; ++i) {
+    const uint64_t before = hash_of(w);
+    if (fuzz_status(w->context, mpm_step(w->stepper, 1e-3, &info))) MUST(hash_of(w) == before);
+    for (int32_t m = 0; m < 2; ++m) fuzz_finite(w->set[m]);
+  }
+  if (steps < 2) return;
+  if (!fuzz_status(w->context, mpm_grid_map(w->stepper, 0, "velocity", MPM_READ, &view)))
+    MUST(!mpm_view_release(&view));
+  MUST(!mpm_advance_desc_init(&go, sizeof go));
+  go.t_end = info.t + 1e-3;
+  go.max_steps = 3;
+  fuzz_status(w->context, mpm_advance(w->stepper, &go, &info));
+  int64_t bytes;
+  if (fuzz_status(w->context, mpm_state_size(w->stepper, &bytes))) return;
+  void *again = malloc((size_t)bytes);
+  const uint64_t hash = hash_of(w);
+  if (!fuzz_status(w->context, mpm_state_save(w->stepper, again, bytes))) {
+    fuzz_status(w->context, mpm_state_load(w->stepper, again, bytes));
+    MUST(!*mpm_last_error(w->context)); /* what it saves it can load */
+    MUST(hash_of(w) == hash);
+  }
+  free(again);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  static uint8_t state[ROOM + 256];
+  fuzz_input in = {data, data + size};
+  world w;
+  open_world(&w, fuzz_below(&in, SETUPS));
+  const uint32_t how = fuzz_byte(&in);
+  int64_t bytes;
+  if (how % 8 < 6) { /* a state of this setup, changed */
+    MUST(!mpm_state_size(w.stepper, &bytes) && bytes < ROOM);
+    MUST(!mpm_state_save(w.stepper, state, bytes));
+    while (fuzz_left(&in)) bytes = change(&in, state, bytes);
+  } else { /* the input itself */
+    bytes = in.end - in.at;
+    memcpy(state, in.at, (size_t)bytes);
+  }
+  if (how % 8 != 5 && how % 8 != 6) seal(state, bytes);
+  uint8_t *exact = malloc((size_t)bytes + 1); /* reading past the end is noticed */
+  memcpy(exact, state, (size_t)bytes);
+  const uint64_t before = hash_of(&w);
+  w.memory.calls = 0;
+  w.memory.fail_at = how >= 240 ? how - 239 : 0;
+  const mpm_status status = fuzz_status(w.context, mpm_state_load(w.stepper, exact, bytes));
+  w.memory.fail_at = 0;
+  free(exact);
+  if (status) {
+    MUST(status == MPM_E_FORMAT || status == MPM_E_NOMEM);
+    MUST(hash_of(&w) == before);
+  }
+  use(&w, status ? 1 : 3);
+  close_world(&w);
+  return 0;
+}

@@ -1,0 +1,296 @@
+/* Nodal fields in files: every byte of the image, sparse boxes, and what is refused. VTK reads such files
+ * elsewhere. */
+#define _POSIX_C_SOURCE   200809L
+#define _FILE_OFFSET_BITS 64
+#include "io_world.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char *const all[] = {"index", "position",     "mass",    "velocity",
+                                  "force", "acceleration", "reaction"};
+enum { ALL = 7, HEAD = 1 << 13 };
+
+/* A file of nodal fields: its head as text, and what is read from that. */
+typedef struct image {
+  char path[640], head[HEAD];
+  FILE *file;
+  int64_t data; /* first byte of the appended data */
+  long long low[3], high[3];
+} image;
+
+static void open_image(image *f) {
+  f->file = fopen(f->path, "rb");
+  ck_assert_ptr_nonnull(f->file);
+  const size_t bytes = fread(f->head, 1, HEAD - 1, f->file);
+  f->head[bytes] = '\0'; /* text functions end at the first zero, which the data begin with */
+  const char *data = strstr(f->head, "encoding=\"raw\">\n_"), *extent = strstr(f->head, "<Piece Extent=\"");
+  ck_assert_ptr_nonnull(data);
+  ck_assert_ptr_nonnull(extent);
+  f->data = data - f->head + (int64_t)strlen("encoding=\"raw\">\n_");
+  ck_assert_int_eq(sscanf(extent, "<Piece Extent=\"%lld %lld %lld %lld %lld %lld\"", &f->low[0], &f->high[0],
+                          &f->low[1], &f->high[1], &f->low[2], &f->high[2]),
+                   6);
+}
+
+static int64_t points(const image *f) {
+  return (f->high[0] - f->low[0] + 1) * (f->high[1] - f->low[1] + 1) * (f->high[2] - f->low[2] + 1);
+}
+
+/* First byte of an array, or -1; its components. */
+static int64_t find_array(const image *f, const char *name, int32_t *components) {
+  char tag[64];
+  int n = 0;
+  long long offset = -1;
+  snprintf(tag, sizeof tag, "Name=\"%s\"", name);
+  const char *at = strstr(f->head, tag);
+  if (!at) return -1;
+  ck_assert_int_eq(
+      sscanf(at + strlen(tag), " NumberOfComponents=\"%d\" format=\"appended\" offset=\"%lld\"", &n, &offset),
+      2);
+  *components = n;
+  uint64_t bytes = 0;
+  fseeko(f->file, f->data + offset, SEEK_SET);
+  ck_assert_uint_eq(fread(&bytes, sizeof bytes, 1, f->file), 1);
+  ck_assert_uint_eq(bytes, (uint64_t)points(f) * (uint64_t)n * 8);
+  return f->data + offset + (int64_t)sizeof bytes;
+}
+
+static void read_tuple(const image *f, int64_t array, int64_t point, int32_t components, void *out) {
+  fseeko(f->file, array + 8 * point * components, SEEK_SET);
+  ck_assert_uint_eq(fread(out, 8, (size_t)components, f->file), (size_t)components);
+}
+
+static mpm_view map(mpm_stepper *s, const char *field) {
+  mpm_view v = {.struct_size = sizeof v};
+  ck_ok(mpm_grid_map(s, 0, field, MPM_READ, &v));
+  return v;
+}
+
+/* Where the nodes of the stepper lie in the image, in the order of its views; to be freed. */
+static int64_t *places(const image *f, mpm_stepper *s, int64_t *count) {
+  mpm_view v = map(s, "index");
+  int64_t *place = calloc((size_t)v.count + 1, sizeof *place);
+  for (int64_t i = 0; i < v.count; ++i)
+    for (int32_t k = v.components - 1; k >= 0; --k) {
+      const int64_t index = ((const int64_t *)v.data)[i + k * v.component_stride];
+      if (index < f->low[k] || index > f->high[k]) ck_abort_msg("a node lies outside the box");
+      place[i] = place[i] * (f->high[k] - f->low[k] + 1) + index - f->low[k];
+    }
+  *count = v.count;
+  ck_ok(mpm_view_release(&v));
+  return place;
+}
+
+/* The named field at every active node; with `zeros`, zero at all other points. Returns whether it is there.
+ */
+static int32_t check_field(const image *f, mpm_stepper *s, const char *name, int32_t zeros) {
+  int32_t components;
+  const int64_t array = find_array(f, name, &components);
+  if (array < 0) return 0;
+  int64_t n;
+  int64_t *place = places(f, s, &n), is[3], wanted[3];
+  unsigned char *seen = zeros ? calloc(1, (size_t)points(f) + 1) : NULL;
+  mpm_view v = map(s, name);
+  ck_assert_int_eq(components, v.components > 1 ? 3 : 1);
+  for (int64_t i = 0; i < n; ++i) {
+    memset(wanted, 0, sizeof wanted);
+    for (int32_t c = 0; c < v.components; ++c)
+      memcpy(&wanted[c], (const char *)v.data + 8 * (i + c * v.component_stride), 8);
+    read_tuple(f, array, place[i], components, is);
+    if (memcmp(is, wanted, 8 * (size_t)components)) ck_abort_msg("%s of node %d differs", name, (int)i);
+    if (seen) ck_assert_int_eq(seen[place[i]]++, 0);
+  }
+  for (int64_t p = 0; seen && p < points(f); ++p) {
+    if (seen[p]) continue;
+    read_tuple(f, array, p, components, is);
+    for (int32_t c = 0; c < components; ++c)
+      if (is[c]) ck_abort_msg("%s is not zero where there is no node", name);
+  }
+  ck_ok(mpm_view_release(&v));
+  free(seen);
+  free(place);
+  return 1;
+}
+
+/* All fields of two bodies in every dimension and kind of step; what fills the box between them is zero. */
+START_TEST(every_number) {
+  const int32_t dim = 1 + _i % 3, mls = _i / 3 % 2, staged = _i / 6;
+  io_setup setup = io_plain(dim);
+  setup.transfer = mls ? MPM_APIC_MLS : MPM_FLIP;
+  setup.periodic = dim == 3;
+  io_world w;
+  io_open(&w, &setup);
+  io_steps(&w, 2);
+  if (staged) ck_ok(mpm_step_begin(w.stepper, 0.004));
+  static image f;
+  io_path("all.vti", f.path, sizeof f.path);
+  ck_ok(mpm_write_grid(w.stepper, f.path, 0, NULL));
+  open_image(&f);
+  int64_t n;
+  free(places(&f, w.stepper, &n));
+  ck_assert_int_ge(points(&f), n + (dim > 1)); /* there is a gap */
+  for (int32_t k = 0; k < ALL; ++k) {
+    const int32_t kept = k != 1 && !(mls && !staged && (k == 4 || k == 5));
+    ck_assert_int_eq(check_field(&f, w.stepper, all[k], 1), kept);
+  }
+  char text[80];
+  snprintf(text, sizeof text, "Origin=\"-35 %s", dim == 1 ? "0 0\"" : dim == 2 ? "-1 0\"" : "-1 -1\"");
+  ck_assert_ptr_nonnull(strstr(f.head, text));
+  fclose(f.file);
+  static const char *const some[] = {"velocity", "position"};
+  ck_ok(mpm_write_grid(w.stepper, f.path, 2, some));
+  open_image(&f);
+  for (int32_t k = 0; k < ALL; ++k) ck_assert_int_eq(check_field(&f, w.stepper, all[k], 1), k == 1 || k == 3);
+  fclose(f.file);
+  if (staged) ck_ok(mpm_step_abort(w.stepper));
+  io_close(&w);
+}
+END_TEST
+
+/* A world of two particles in corners of a grid of so many cells, so that the last node is not active. */
+static void open_apart(io_world *w, int32_t dim, int64_t cells) {
+  mpm_grid_desc grid = fixture_grid(dim);
+  for (int32_t k = 0; k < dim; ++k) grid.cells[k] = cells, grid.spacing[k] = 1.0, grid.origin[k] = 0.0;
+  io_open_context(w, 1);
+  ck_ok(mpm_grid_create(w->f.context, &grid, &w->f.grid));
+  io_open_sets(w);
+  const io_setup setup = io_plain(dim);
+  const mpm_stepper_desc desc = io_stepper_desc(&setup);
+  ck_ok(mpm_stepper_create(w->f.context, w->f.grid, &desc, &w->stepper));
+  for (int32_t m = 0; m < WORLD_SETS; ++m) {
+    const double near = 3.3, far = (double)cells - 4.3;
+    const double x[] = {m ? far : near, m ? near : far, m ? far : near}, v[] = {1.0, 2.0, 3.0}, volume = 1.0;
+    ck_ok(mpm_stepper_add(w->stepper, w->set[m]));
+    ck_ok(mpm_particles_add(w->set[m], 1, x, v, &volume, NULL, NULL, NULL));
+  }
+  ck_ok(mpm_step(w->stepper, 1e-4, NULL));
+}
+
+/* 40000 x 40000 nodes, of which 18 are active: memory and time are theirs. */
+START_TEST(sparse_box) {
+  static const char *const some[] = {"mass", "velocity"};
+  io_world w;
+  open_apart(&w, 2, 40000);
+  static image f;
+  io_path("sparse.vti", f.path, sizeof f.path);
+  int64_t before, peak;
+  ck_ok(mpm_context_memory(w.f.context, &before, NULL));
+  ck_ok(mpm_write_grid(w.stepper, f.path, 2, some));
+  ck_ok(mpm_context_memory(w.f.context, NULL, &peak));
+  ck_assert_int_lt(peak - before, 100000);
+  open_image(&f);
+  ck_assert_int_gt(points(&f), INT64_C(1500000000));
+  ck_assert_int_eq(check_field(&f, w.stepper, "mass", 0), 1);
+  ck_assert_int_eq(check_field(&f, w.stepper, "velocity", 0), 1);
+  int32_t components;
+  const int64_t array = find_array(&f, "velocity", &components);
+  for (int64_t p = 100; p < points(&f) - 100; p += 15485863) { /* nowhere near the particles */
+    double v[3];
+    read_tuple(&f, array, p, 3, v);
+    ck_assert(v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0);
+  }
+  struct stat info;
+  ck_assert_int_eq(fstat(fileno(f.file), &info), 0);
+  ck_assert_int_gt(info.st_size, points(&f) * 32);
+  fclose(f.file);
+  unlink(f.path);
+  io_close(&w);
+}
+END_TEST
+
+START_TEST(box_beyond_a_file) {
+  static const char *const some[] = {"mass"};
+  io_world w;
+  char path[640];
+  io_path("beyond.vti", path, sizeof path);
+  unlink(path);
+  open_apart(&w, 3, 2000000);
+  ck_refused(w.f.context, mpm_write_grid(w.stepper, path, 1, some), MPM_E_ARG, "mpm_grid_map()");
+  ck_assert_int_ne(access(path, F_OK), 0);
+  io_close(&w);
+  open_apart(&w, 3, 900000); /* offsets could name it, but no file is as long */
+  ck_refused(w.f.context, mpm_write_grid(w.stepper, path, 1, some), MPM_E_IO, "beyond.vti");
+  ck_assert_int_ne(access(path, F_OK), 0);
+  io_close(&w);
+}
+END_TEST
+
+START_TEST(refused) {
+  io_setup setup = io_plain(2);
+  io_world w;
+  io_open(&w, &setup);
+  mpm_context *c = w.f.context;
+  char path[640];
+  io_path("refused.vti", path, sizeof path);
+  unlink(path);
+  const char *const bad[] = {"mass", "velocty"}, *const twice[] = {"mass", "force", "mass"},
+                    *const none[] = {NULL}, *const force[] = {"force"},
+                    *const acceleration[] = {"acceleration"};
+  ck_assert_int_eq(mpm_write_grid(NULL, path, 0, NULL), MPM_E_ARG);
+  ck_refused(c, mpm_write_grid(w.stepper, path, 0, NULL), MPM_E_STATE, "no nodal fields");
+  io_steps(&w, 1);
+  ck_refused(c, mpm_write_grid(w.stepper, NULL, 0, NULL), MPM_E_ARG, "path");
+  ck_refused(c, mpm_write_grid(w.stepper, "", 0, NULL), MPM_E_ARG, "path");
+  ck_refused(c, mpm_write_grid(w.stepper, path, -1, bad), MPM_E_ARG, "count is -1");
+  ck_refused(c, mpm_write_grid(w.stepper, path, 1, NULL), MPM_E_ARG, "fields");
+  ck_refused(c, mpm_write_grid(w.stepper, path, 1, none), MPM_E_ARG, "NULL");
+  ck_refused(c, mpm_write_grid(w.stepper, path, 2, bad), MPM_E_NOT_FOUND, "there are: velocity");
+  ck_refused(c, mpm_write_grid(w.stepper, path, 3, twice), MPM_E_ARG, "\"mass\" is named twice");
+  ck_refused(c, mpm_write_grid(w.stepper, "no/such/place.vti", 0, NULL), MPM_E_IO, "no/such/place.vti");
+  ck_assert_int_ne(access(path, F_OK), 0);
+  for (int64_t k = 1; k <= 3; ++k) { /* the list of nodes; places; order; the file's name */
+    w.f.calls = 0;
+    w.f.fail_at = k;
+    ck_assert_int_eq(mpm_write_grid(w.stepper, path, 0, NULL), MPM_E_NOMEM);
+    ck_assert_int_ne(access(path, F_OK), 0);
+  }
+  w.f.fail_at = 0;
+  ck_ok(mpm_write_grid(w.stepper, path, 0, NULL));
+  ck_assert_str_eq(mpm_last_error(c), "");
+  mpm_stepper_desc desc = io_stepper_desc(&setup);
+  desc.transfer = MPM_APIC_MLS;
+  ck_ok(mpm_stepper_configure(w.stepper, &desc));
+  ck_ok(mpm_write_grid(w.stepper, path, 1, force)); /* the last step was another */
+  io_steps(&w, 1);
+  ck_refused(c, mpm_write_grid(w.stepper, path, 1, force), MPM_E_UNSUPPORTED, "MPM_APIC");
+  ck_refused(c, mpm_write_grid(w.stepper, path, 1, acceleration), MPM_E_UNSUPPORTED, "staged step");
+  ck_ok(mpm_write_grid(w.stepper, path, 0, NULL));
+  ck_assert_str_eq(mpm_last_error(c), "");
+  io_close(&w);
+}
+END_TEST
+
+/* Nodal fields are those of the last step whatever has happened to the particles since. */
+START_TEST(fields_of_the_last_step) {
+  const io_setup setup = io_plain(2);
+  io_world w;
+  io_open(&w, &setup);
+  io_steps(&w, 3);
+  static image f;
+  io_path("last.vti", f.path, sizeof f.path);
+  mpm_view kept = map(w.stepper, "force"); /* the list of nodes is in use */
+  ck_ok(mpm_write_grid(w.stepper, f.path, 0, NULL));
+  ck_ok(mpm_view_release(&kept));
+  open_image(&f);
+  ck_assert_int_eq(check_field(&f, w.stepper, "force", 1), 1);
+  const int64_t gone[] = {0, 1, 2};
+  double dt;
+  ck_ok(mpm_particles_remove(w.set[0], 3, gone));
+  ck_ok(mpm_stable_dt(w.stepper, &dt));
+  ck_assert_int_eq(check_field(&f, w.stepper, "force", 1), 1);
+  fclose(f.file);
+  io_close(&w);
+}
+END_TEST
+
+TCase *io_grid_case(void) {
+  TCase *tests = tcase_create("grid output");
+  tcase_set_timeout(tests, 60);
+  tcase_add_loop_test(tests, every_number, 0, 12);
+  tcase_add_test(tests, sparse_box);
+  tcase_add_test(tests, box_beyond_a_file);
+  tcase_add_test(tests, refused);
+  tcase_add_test(tests, fields_of_the_last_step);
+  return tests;
+}
