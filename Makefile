@@ -67,8 +67,8 @@ UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
-.PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi docs
-.PHONY: fuzz-programs fuzz check-fuzz
+.PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
+.PHONY: docs fuzz-programs fuzz check-fuzz
 .DELETE_ON_ERROR:
 .SUFFIXES:
 

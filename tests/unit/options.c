@@ -2,8 +2,7 @@
 
 /* What the library refuses today for no reason but that it is not written. Take out what has come; a test
  * sees to it that nothing stays here that is there. */
-const option_value options_not_yet[] = {
-    {OPTION_LOCKING, MPM_LOCKING_CELL_AVERAGE}, {OPTION_LAW, 2}, {OPTION_LAW, 4}, {OPTION_LAW, 5}, {0, 0}};
+const option_value options_not_yet[] = {{0, 0}};
 
 const basis_option basis_options[BASES] = {{MPM_LINEAR, MPM_BOUNDARY_GHOST, 0.5, "linear"},
                                            {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, 0.5, "quadratic"},

@@ -279,7 +279,7 @@ static void check_stress(const body *b, const patch *q, double depth, const doub
  * (I + dt L) F, and stress stays uniform. All bases reproduce linear fields and all transfers project them
  * exactly from a lattice that is symmetric about every node, those that carry a matrix from any. */
 static void check_patch(const combination *c) {
-  static const int64_t large[4] = {0, 1740, 80, 18}, small[4] = {0, 60, 24, 18};
+  static const int64_t large[4] = {0, 1740, 80, 20}, small[4] = {0, 60, 24, 20};
   const double dt = 1e-4;
   const int64_t cells = full ? large[c->choice[CHOOSE_DIM]] : small[c->choice[CHOOSE_DIM]];
   const depths d = depths_of(c);
@@ -357,7 +357,7 @@ START_TEST(patches_have_an_inside) {
     const int32_t filters = transfer_options[list[i].choice[CHOOSE_TRANSFER]].xpic_order;
     const int32_t deep =
         transfer_options[list[i].choice[CHOOSE_TRANSFER]].transfer == MPM_XPIC && filters > 1;
-    const double half = dim == 1 ? 870.0 : dim == 2 ? 40.0 : 9.0;
+    const double half = dim == 1 ? 870.0 : dim == 2 ? 40.0 : 10.0;
     if (dim < 3 || !deep) ck_assert_double_lt(d.motion, half);
     if (dim < 3 || !deep) ck_assert_double_lt(d.deformation, half);
   }
