@@ -105,6 +105,14 @@ static inline void svg_curve(FILE *out, const svg_frame *f, int n, const double 
   fputs("\"/>\n", out);
 }
 
+/* Rings about points (x, y). */
+static inline void svg_circles(FILE *out, const svg_frame *f, int n, const double (*at)[2],
+                               const char *colour) {
+  for (int i = 0; out && i < n; ++i)
+    fprintf(out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\"/>\n",
+            svg_x(f, at[i][0]), svg_y(f, at[i][1]), colour);
+}
+
 /* The viridis colour map, 0 <= s <= 1. */
 enum { SVG_STOPS = 9 };
 static inline void svg_colour(double s, int rgb[3]) {

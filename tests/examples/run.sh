@@ -84,6 +84,15 @@ for entry in entries:
 PYTHON
 fi
 
+mkdir dam
+run dam_break dam
+check "front, at the slowest" "at least" -3 20
+check "front, at the fastest" "at most" 0 20
+for file in dam_break.pvd dam_break.svg dam_break_front.svg front.csv water_0000.vtp water_0011.vtp; do
+  [ -s "dam/$file" ] || fail "dam_break: $file is missing or empty"
+done
+[ "$(awk -F, 'NF == 5' dam/front.csv | wc -l)" -eq 112 ] || fail "dam_break: front.csv has not 112 rows of 5 columns"
+
 run cantilever
 check "deviation from FEM" "deviation" -4 4
 awk '$5 == "%" && ($4 > 4 || $4 < -4) && $1 <= 0.9 && $1 > 0.1 { bad = 1 } $5 == "%" { rows++ } END { exit bad || rows != 10 }' \
