@@ -57,6 +57,15 @@ void destruction_in_any_order() {
   }
   CHECK(blocks == 0);
   {
+    std::optional<world> w(std::in_place, mpm::stepper_desc(), counted(blocks));
+    std::optional<mpm::staged_step> step(w->stepper.begin(1e-4));
+    const auto mass = w->stepper.map<const double>("mass");
+    step.reset(); // cannot drop the step while the view is out
+    w.reset();
+    CHECK(mass.size() > 0);
+  }
+  CHECK(blocks == 0);
+  {
     world w(mpm::stepper_desc(), counted(blocks));
     world other(mpm::stepper_desc(), counted(blocks));
     other = std::move(w); // frees what it held

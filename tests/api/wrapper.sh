@@ -5,7 +5,7 @@ BUILD=${BUILD:-build}
 scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/wrapper
 rm -rf "$scratch"
 mkdir -p "$scratch"
-for compiler in g++ clang++; do
+for compiler in ${COMPILERS:-g++ clang++}; do
   command -v $compiler > /dev/null || continue
   for source in tests/api/wrapper*.cpp; do
     $compiler -std=c++17 -Wall -Wextra -Wpedantic -Werror -g -Iinclude ${CXXFLAGS:-} -c "$source" \
@@ -14,5 +14,5 @@ for compiler in g++ clang++; do
   for job in $(jobs -p); do wait "$job"; done
   $compiler ${CXXFLAGS:-} "$scratch/$compiler"-*.o "$BUILD/libmpm.a" -lm -lpthread -o "$scratch/$compiler"
   printf 'wrapper.sh: %s: ' $compiler
-  "$scratch/$compiler" "$scratch"
+  "$scratch/$compiler" "$scratch" || { echo "wrapper.sh:0:E: exit status $?"; exit 1; }
 done

@@ -1,18 +1,22 @@
 #!/usr/bin/env bash
-# Plants the faults of faults.txt one by one in a copy of the sources and runs the suite that is named beside each; a
-# fault that it does not notice is a gap in the tests. An argument selects the files whose path contains it.
+# Plants the faults of faults.txt one by one in a copy of the sources and runs the suite that is named beside each
+# (wrapper: tests/api/wrapper.sh); a fault that it does not notice is a gap in the tests. An argument selects the files whose path contains it.
 set -euo pipefail
-BUILD=${BUILD:-build} MAKE=${MAKE:-make} CC=${CC:-cc}
+BUILD=${BUILD:-build} MAKE=${MAKE:-make} CC=${CC:-cc} CXX=${CXX:-g++}
 copy=$BUILD/mutate
 rm -rf "$copy"
 mkdir -p "$copy/scratch"
 cp -a Makefile include src tests "$copy"
-rm -rf "$copy"/tests/api "$copy"/tests/examples
+rm -rf "$copy"/tests/examples
 cd "$copy"
 
 # A fault that the compiler's warnings would catch is no fault: they are off. It must still compile.
 program() { "$MAKE" -s -j"$(nproc)" BUILD=out CC="$CC" WERROR=-w out/tests/unit > log 2>&1; }
 suite() {
+  if [ "$1" = wrapper ]; then
+    BUILD=out MPM_SCRATCH=$PWD/scratch COMPILERS=$CXX CXXFLAGS=-w timeout 300 bash tests/api/wrapper.sh > log 2>&1
+    return
+  fi
   local leave_out=
   if [ "$1" = exact ]; then leave_out=long; fi # minutes in all, and the short tests see the faults
   CK_EXCLUDE_TAGS=$leave_out CK_RUN_SUITE=$1 MPM_SCRATCH=$PWD/scratch timeout 300 out/tests/unit > log 2>&1
@@ -39,7 +43,7 @@ while read -r name file fault; do
   cp original "$file" # with a new time, so that it is compiled again
 done < tests/mutate/faults.txt
 program
-for name in $(sed -n 's/^\([a-z]*\) src.*/\1/p' tests/mutate/faults.txt | sort -u); do
+for name in $(sed -n 's/^\([a-z]*\) \(src\|include\).*/\1/p' tests/mutate/faults.txt | sort -u); do
   suite "$name" || miss "fails without a fault" "$name"
 done
 echo "mutate: $planted faults, $((planted - missed)) noticed"
