@@ -84,8 +84,9 @@ void mpmi_output_write(mpmi_output *out, const void *data, size_t bytes) {
 
 void mpmi_output_zeros(mpmi_output *out, int64_t bytes) {
   static const char zero[4096];
+  if (out->error) return;
   errno = 0;
-  if (bytes >= LONG_GAP && !out->error) {
+  if (bytes >= LONG_GAP) {
     note(out, fseeko(out->stream, bytes, SEEK_CUR));
     if (out->error == EINVAL || out->error == EOVERFLOW) out->error = EFBIG; /* no such place in a file */
     return;

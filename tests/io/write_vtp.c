@@ -121,6 +121,18 @@ static void close_scene(scene *on) {
   if (mpm_context_destroy(context)) exit(1);
 }
 
+/* Each field alone, in use or not, built in or the host's. */
+static void write_one_by_one(const scene *on, const char *directory) {
+  const char *field;
+  int32_t components;
+  for (int32_t f = 0; !mpm_particles_field_info(on->set, f, &field, NULL, &components, NULL); ++f) {
+    char name[96];
+    if (!strcmp(field, "reference_position") || !components) continue; /* none is kept */
+    snprintf(name, sizeof name, "one_%s_%d.vtp", field, (int)on->dim);
+    write_set(on, directory, name, 1, &field);
+  }
+}
+
 static void write_dimension(const char *directory, int32_t dim) {
   static const char *const some[] = {"applied_force",     "stress",   "label",      "deformation_gradient",
                                      "velocity_gradient", "position", "prescribed", "size"};
@@ -137,6 +149,7 @@ static void write_dimension(const char *directory, int32_t dim) {
   write_set(&on, directory, name, 0, NULL);
   snprintf(name, sizeof name, "some_%d.vtp", (int)dim);
   write_set(&on, directory, name, (int32_t)(sizeof some / sizeof *some), some);
+  write_one_by_one(&on, directory);
   close_scene(&on);
 }
 

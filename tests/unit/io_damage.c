@@ -161,6 +161,37 @@ START_TEST(forged_fields) {
 }
 END_TEST
 
+/* A volume that does not follow from F is made anew: a step that fails leaves what was loaded. */
+START_TEST(forged_volume) {
+  const io_setup setup = io_plain(2);
+  const double force[] = {1e300, 0.0};
+  io_world other;
+  io_open(&other, &setup);
+  io_steps(&other, 1);
+  const io_buffer good = io_save(&other);
+  const uint64_t hash = io_hash(&other);
+  double *volume = mpmi_f64(other.set[1], MPMI_VOLUME, 0);
+  int32_t found = 0;
+  for (int64_t at = 0; at + 8 <= good.bytes; at += 8)
+    if (!memcmp(good.data + at, volume, 8)) {
+      const double twice = 2.0 * *volume;
+      memcpy(good.data + at, &twice, 8);
+      ++found;
+      break;
+    }
+  ck_assert_int_eq(found, 1);
+  seal(good.data, good.bytes);
+  io_load(&other, &good);
+  ck_assert_uint_eq(io_hash(&other), hash);
+  ck_ok(mpm_particles_set_all(other.set[0], "applied_force", MPM_F64, 2, force));
+  const uint64_t loaded = io_hash(&other);
+  ck_assert_int_gt(mpm_step(other.stepper, 1e200, NULL), 0);
+  ck_assert_uint_eq(io_hash(&other), loaded);
+  free(good.data);
+  io_close(&other);
+}
+END_TEST
+
 /* Half of the changes hit the beginning: setup, numbers and blocks, which decide how the rest is read. */
 START_TEST(forged_at_random) {
   close_small();
@@ -197,6 +228,7 @@ TCase *io_damage_case(void) {
   tcase_add_test(tests, buffers_need_no_alignment);
   tcase_add_test(tests, forged_words);
   tcase_add_test(tests, forged_fields);
+  tcase_add_test(tests, forged_volume);
   tcase_add_loop_test(tests, forged_at_random, 1, 4);
   return tests;
 }
