@@ -109,6 +109,7 @@ struct mpm_stepper {
   double velocity_dt; /* over which forces change velocities: dt, or staggered the mean of two steps */
   double previous_dt; /* of the last step, for the next one's mean; 0: none */
   int64_t step, resorts, removed;
+  int64_t wide_domains; /* of GIMP, at the last sort */
   double controller_dt; /* of mpm_advance; 0: none yet */
 
   mpmi_wall wall[6];
