@@ -40,7 +40,7 @@ static mpm_status project(mpm_stepper *s, int32_t projection, double dt, double 
   mpm_status status = mpmi_stage_p2g(s, projection);
   lap(s, MPMI_TIME_P2G, clock);
   if (!status) status = mpmi_stage_nodes(s, projection);
-  if (!status) status = mpmi_stage_boundary(s, projection, dt);
+  if (!status) status = mpmi_stage_boundary(s, projection, dt, 0.0);
   lap(s, MPMI_TIME_GRID, clock);
   return status;
 }
@@ -92,7 +92,7 @@ static mpm_status begin_part(mpm_stepper *s, double dt) {
 static mpm_status grid_part(mpm_stepper *s, double dt) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_stage_nodes(s, MPMI_PROJECT_FORCES);
-  if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_FORCES, dt);
+  if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_FORCES, dt, 1.0);
   if (!status && s->constraints.orbit_count) count_active(s);
   lap(s, MPMI_TIME_GRID, &clock);
   return status;
