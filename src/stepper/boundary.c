@@ -195,23 +195,27 @@ static mpm_status act(const mpmi_boundary *f) {
 }
 
 /* Other projections have no hooks. That of USF comes first and asks who holds nodes; the second one of MUSL
- * keeps to what was said of the first; the terms of XPIC obey what is linear and the same for all of them. */
+ * keeps to what was said of the first; the terms of XPIC obey what is linear and the same for all of them.
+ *
+ * Which contacts are closed is for a projection with forces to say. Without them a body that expands against
+ * a wall seems to leave it, and USF would strain it less in the rebound than in the approach, which makes
+ * energy. */
 static mpm_status act_on_velocities(const mpmi_boundary *f, int32_t projection) {
   mpm_status status = MPM_OK;
   if (projection == MPMI_PROJECT_STRAIN) status = hold_nodes(f);
   if (projection == MPMI_PROJECT_AGAIN) status = set_held(f);
   hold_walls(f);
-  if (projection != MPMI_PROJECT_CORRECT) mpmi_contacts(f, projection == MPMI_PROJECT_AGAIN);
+  if (projection != MPMI_PROJECT_CORRECT) mpmi_contacts(f, projection != MPMI_PROJECT_TOUCH);
   return status;
 }
 
 mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt, double share) {
-  const int32_t forces = projection == MPMI_PROJECT_FORCES;
+  const int32_t forces = projection == MPMI_PROJECT_FORCES, whole = mpmi_projects_forces(projection);
   const mpmi_boundary f = {.s = s,
-                           .nodes = forces ? s->node : s->again,
+                           .nodes = whole ? s->node : s->again,
                            .dt = dt,
                            .flip = s->values == 8 ? mpmi_flip_share(s) : 0.0,
-                           .values = forces ? s->values : 4,
+                           .values = whole ? s->values : 4,
                            .dim = s->grid->dim,
                            .zero_acceleration = s->desc.boundary_zero_acceleration,
                            .share = share,

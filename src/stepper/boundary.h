@@ -78,7 +78,7 @@ static inline int64_t mpmi_first_block(const mpm_stepper *s, int64_t k) {
   return s->blocks.count * k / s->tasks;
 }
 
-/* contact.c: friction walls; again: the second projection of MUSL. */
+/* contact.c: friction walls; again: as they were found before, in a projection without forces. */
 void mpmi_contacts(const mpmi_boundary *f, int32_t again);
 
 /* node_batch.c: asks the velocity callback. */

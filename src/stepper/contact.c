@@ -89,8 +89,8 @@ static double contact(const mpmi_boundary *f, mpmi_contact *pair, int32_t sweep)
   return normal * n.compliance[axis];
 }
 
-/* The second projection of MUSL moves with the first: a contact that was closed stays so, one that was open
- * is free. */
+/* A projection without forces moves with the one that had them: a contact that was closed stays so, one that
+ * was open is free. */
 static double keep_contact(const mpmi_boundary *f, const mpmi_contact *pair) {
   contact_nodes n;
   double stopped = 0.0;

@@ -35,7 +35,7 @@ static void count_active(mpm_stepper *s) {
   for (int64_t i = 0; i < slots; ++i) s->last.active_nodes += s->node[i * s->values + 3] > s->mass_cut;
 }
 
-/* A projection of velocities alone, up to its boundary conditions. */
+/* A projection beside the one with the forces of the step, up to its boundary conditions. */
 static mpm_status project(mpm_stepper *s, int32_t projection, double dt, double *clock) {
   mpm_status status = mpmi_stage_p2g(s, projection);
   lap(s, MPMI_TIME_P2G, clock);
@@ -56,7 +56,9 @@ static mpm_status gather(mpm_stepper *s, int32_t what, const double *nodes, int3
 
 /* USF: strain and stress from the velocities at the start of the step. */
 static mpm_status strain_first(mpm_stepper *s, double dt, double *clock) {
-  const mpm_status status = project(s, MPMI_PROJECT_STRAIN, dt, clock);
+  mpm_status status = MPM_OK;
+  if (s->constraints.contact_count) status = project(s, MPMI_PROJECT_TOUCH, dt, clock);
+  if (!status) status = project(s, MPMI_PROJECT_STRAIN, dt, clock);
   return status ? status : gather(s, MPMI_G2P_DEFORM, s->again, 4, dt, clock);
 }
 

@@ -155,6 +155,8 @@ Suite *walls_suite(void) {
   suite_add_tcase(suite, tc);
   suite_add_tcase(suite, walls_nodes_case());
   suite_add_tcase(suite, walls_symmetry_case());
+  suite_add_tcase(suite, walls_space_case());
   suite_add_tcase(suite, walls_balance_case());
+  suite_add_tcase(suite, walls_flow_case());
   return suite;
 }

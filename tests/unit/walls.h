@@ -31,6 +31,7 @@ int64_t wall_face_node(const mpm_grid_desc *grid, int32_t face);
 
 TCase *walls_nodes_case(void);
 TCase *walls_symmetry_case(void);
+TCase *walls_space_case(void);
 TCase *walls_balance_case(void);
 TCase *walls_flow_case(void);
 

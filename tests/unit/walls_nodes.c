@@ -175,11 +175,69 @@ START_TEST(material_on_walls_stands) {
 }
 END_TEST
 
+/* Up to the faces nothing is lost: nodes have the mass of the particles, and an affine velocity field, given
+ * with its gradient, is that of the nodes where they stand, and again that of the particles. */
+START_TEST(faces_keep_affine_fields) {
+  static const double A[9] = {0.7, -1.1, 0.4, 0.9, -0.3, 0.8, -0.6, 0.5, 1.2}, b[3] = {0.3, -0.2, 0.1};
+  const basis_option *basis = &basis_options[_i];
+  for (int32_t dim = 1; dim <= 3; ++dim)
+    for (int64_t cells = 1; cells <= 5; ++cells) {
+      world w;
+      world_desc desc = world_default(dim, cells, 0.1);
+      wall_use_basis(&desc.grid, basis);
+      desc.stepper.transfer = MPM_TPIC;
+      world_open(&w, &desc);
+      mpm_particles *set = world_add_set(&w);
+      dice d = {23};
+      add_cloud(&w, set, &d, CLOUD, 0.1, 0.0, 0.1 * (double)cells, 0.0);
+      double *x = fetch(&w, set, "position", dim), *v = calloc((size_t)(dim * CLOUD), sizeof *v), L[9];
+      for (int32_t k = 0; k < dim; ++k) x[k * CLOUD + k] = 0.0, x[k * CLOUD + 5 + k] = 0.1 * (double)cells;
+      for (int32_t k = 0; k < dim; ++k)
+        for (int64_t p = 0; p < CLOUD; ++p) {
+          v[k * CLOUD + p] = b[k];
+          for (int32_t j = 0; j < dim; ++j) v[k * CLOUD + p] += A[3 * k + j] * x[j * CLOUD + p];
+        }
+      for (int32_t c = 0; c < 9; ++c) L[c] = c / 3 < dim && c % 3 < dim ? A[c] : 0.0;
+      static const double none[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+      put(&w, set, "position", dim, x);
+      put(&w, set, "velocity", dim, v);
+      ck_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, L));
+      ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, none));
+      for (int32_t face = 0; face < 2 * dim; ++face)
+        ck_ok(&w, mpm_stepper_set_wall(w.stepper, face, MPM_WALL_OPEN, 0.0));
+      double *mass = fetch(&w, set, "mass", 1), total = 0.0, sum = 0.0;
+      for (int64_t p = 0; p < CLOUD; ++p) total += mass[p];
+      world_step(&w, 1e-9);
+      int64_t n;
+      double *of_nodes = fetch_nodes(&w, "mass", &n), *at = fetch_nodes(&w, "position", &n);
+      double *v_nodes = fetch_nodes(&w, "velocity", &n);
+      for (int64_t i = 0; i < n; ++i) sum += of_nodes[i];
+      ck_within(basis->name, sum, total, 1e-13 * total);
+      for (int64_t i = 0; i < n; ++i)
+        for (int32_t k = 0; k < dim; ++k) {
+          double wanted = b[k];
+          for (int32_t j = 0; j < dim; ++j) wanted += A[3 * k + j] * at[j * n + i];
+          ck_within(basis->name, v_nodes[k * n + i], wanted, 1e-12);
+        }
+      for (int64_t id = 0; id < CLOUD; ++id) {
+        double after[3];
+        if (mpm_particles_get(set, "velocity", MPM_F64, dim, 1, &id, after))
+          continue; /* it was on a face and left */
+        for (int32_t k = 0; k < dim; ++k) ck_within(basis->name, after[k], v[k * CLOUD + id], 1e-12);
+      }
+      ck_assert_int_ge(mpm_particles_count(set), CLOUD - 2 * dim);
+      free(x), free(v), free(mass), free(of_nodes), free(at), free(v_nodes);
+      world_close(&w);
+    }
+}
+END_TEST
+
 TCase *walls_nodes_case(void) {
   TCase *tc = tcase_create("nodes");
   tcase_set_timeout(tc, 60.0);
   tcase_add_loop_test(tc, nodes_obey_walls, 0, WALL_METHODS);
   tcase_add_loop_test(tc, tiny_grids_obey_walls, 0, WALL_METHODS);
+  tcase_add_loop_test(tc, faces_keep_affine_fields, 0, BASES);
   tcase_add_loop_test(tc, material_on_walls_stands, 0, 2 * BASES);
   return tc;
 }

@@ -144,11 +144,18 @@ START_TEST(half_on_slip_wall_in_space) {
 }
 END_TEST
 
+TCase *walls_space_case(void) {
+  TCase *tc = tcase_create("space");
+  tcase_set_timeout(tc, 60.0);
+  tcase_set_tags(tc, "long");
+  tcase_add_loop_test(tc, half_on_slip_wall_in_space, 0, WALL_METHODS);
+  return tc;
+}
+
 TCase *walls_symmetry_case(void) {
   TCase *tc = tcase_create("symmetry");
   tcase_set_timeout(tc, 60.0);
   tcase_add_loop_test(tc, half_on_slip_wall_is_the_whole, 0, WALL_METHODS);
   tcase_add_loop_test(tc, half_on_fixed_wall_is_the_whole, 0, WALL_METHODS);
-  tcase_add_loop_test(tc, half_on_slip_wall_in_space, 0, WALL_METHODS);
   return tc;
 }
