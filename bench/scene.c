@@ -153,6 +153,7 @@ mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_opti
   mpm_grid_desc_init(&g, sizeof g);
   g.dim = of->dim;
   g.basis = of->basis;
+  g.boundary_basis = of->extras == BENCH_OPEN_KNOTS ? MPM_BOUNDARY_OPEN_KNOT : MPM_BOUNDARY_GHOST;
   for (int32_t k = 0; k < of->dim; ++k) {
     g.spacing[k] = 1.0;
     g.cells[k] = of->extras == BENCH_WALLS ? (int64_t)cells + 4 : (int64_t)(options->spread * cells);
@@ -161,6 +162,8 @@ mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_opti
   mpm_stepper_desc_init(&s, sizeof s);
   s.scheme = of->scheme;
   s.transfer = of->transfer;
+  s.position_order = of->extras == BENCH_SECOND_ORDER ? 2 : 1;
+  s.locking_remedy = of->extras == BENCH_REMEDY;
   if ((status = mpm_grid_create(scene->context, &g, &scene->grid)) || (status = make_material(scene, of)) ||
       (status = mpm_particles_create(scene->context, scene->grid, scene->material, &scene->body)) ||
       (status = place(scene->body, of->dim, side, corner)) ||
@@ -180,14 +183,22 @@ void bench_close(bench_scene *scene) {
 }
 
 static int32_t is_affine(const bench_case *of) {
-  return of->transfer == MPM_APIC || of->transfer == MPM_APIC_MLS;
+  return of->transfer != MPM_FLIP && of->transfer != MPM_XPIC;
+}
+
+static int32_t width_of(const bench_case *of) {
+  return of->basis == MPM_LINEAR ? 2 : of->basis == MPM_BSPLINE3 ? 4 : 3;
+}
+
+double bench_nodes(const bench_case *of) {
+  return pow(width_of(of), of->dim);
 }
 
 /* The factored sums of the transfers, unused components of vectors left out, then what is done per particle:
  * weights, packing, F, volume, law, energies. */
 double bench_flops(const bench_case *of) {
-  const int32_t d = of->dim, width = of->basis == MPM_LINEAR ? 2 : 3;
-  const int32_t mls = of->transfer == MPM_APIC_MLS, apic = of->transfer == MPM_APIC;
+  const int32_t d = of->dim, width = width_of(of);
+  const int32_t mls = of->transfer == MPM_APIC_MLS, apic = is_affine(of) && !mls;
   double scatter = 0.0, gather = 0.0;
   for (int32_t axis = d - 1; axis >= 0; --axis) {
     const double each = pow(width, axis + 1); /* nodes, rows or planes */
@@ -201,17 +212,21 @@ double bench_flops(const bench_case *of) {
                         2.0 * d * behind * (apic ? 2 : 1));
     }
   }
-  if (of->scheme == MPM_MUSL) scatter *= 1.5, gather *= 1.6;
+  if (of->scheme != MPM_USL) scatter *= 1.5, gather *= 1.6; /* one more projection and one more gather */
+  if (of->transfer == MPM_XPIC) scatter *= 1.5, gather *= 2.2;
+  if (of->extras == BENCH_REMEDY) gather *= 1.6;
   return scatter + gather + 2.0 * 22.0 * d + d * (d + 4.0) + 2.0 * d * d * d + 14.0 + 30.0 * d + 40.0;
 }
 
 /* P2G reads x, v, m, V, stress (and C); G2P reads x, v, F, m, V0 and writes x, v, F, V, stress (and C); MUSL
- * reads and writes some of it twice. */
+ * and USF, XPIC and the remedy read and write some of it again. */
 double bench_bytes(const bench_case *of) {
   const int32_t d = of->dim, F = d == 1 ? 1 : d == 2 ? 5 : 9, stress = d == 1 ? 3 : d == 2 ? 4 : 6;
   int32_t values = (2 * d + 2 + stress) + (2 * d + F + 2) + (2 * d + F + 1 + stress);
   if (is_affine(of)) values += 2 * d * d;
   if (of->law[0] == 'j') values += stress + 2;
-  if (of->scheme == MPM_MUSL) values += 2 * d + 1 + d;
+  if (of->scheme != MPM_USL) values += 2 * d + 1 + d;
+  if (of->transfer == MPM_XPIC) values += 3 * (2 * d);
+  if (of->extras == BENCH_REMEDY) values += d + 3;
   return 8.0 * values;
 }

@@ -5,7 +5,15 @@
 
 #include <mpm/mpm.h>
 
-enum { BENCH_FREE, BENCH_WALLS, BENCH_FORCE, BENCH_HOST_LAW };
+enum {
+  BENCH_FREE,
+  BENCH_WALLS,
+  BENCH_FORCE,
+  BENCH_HOST_LAW,
+  BENCH_OPEN_KNOTS,
+  BENCH_SECOND_ORDER, /* positions */
+  BENCH_REMEDY        /* against locking */
+};
 
 typedef struct bench_case {
   const char *name;
@@ -38,6 +46,8 @@ void bench_close(bench_scene *scene);
 /* Useful floating-point operations and bytes of particle fields per particle and step, counted in the source.
  */
 double bench_flops(const bench_case *of);
+/* Nodes in the stencil of a particle. */
+double bench_nodes(const bench_case *of);
 double bench_bytes(const bench_case *of);
 
 #endif

@@ -15,7 +15,6 @@ void mpmi_arrangement_free(mpmi_arrangement *a) {
 }
 
 void mpmi_sorting_free(mpmi_sorting *sorting, mpm_context *context) {
-  mpmi_free(context, sorting->block, mpmi_bytes(sorting->block_capacity, sizeof *sorting->block));
   mpmi_free(context, sorting->source, mpmi_bytes(sorting->source_capacity, sizeof *sorting->source));
   memset(sorting, 0, sizeof *sorting);
 }
@@ -25,22 +24,26 @@ mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *a, int64_t blocks) 
                       blocks + 1 > a->start_capacity ? 2 * blocks + 2 : 0, sizeof *a->start);
 }
 
-mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks, mpmi_sorting *sorting) {
-  mpm_status status = mpmi_reserve(set->context, (void **)&sorting->block, &sorting->block_capacity, set->ld,
-                                   sizeof *sorting->block);
-  if (status) return status;
+/* The provisional block of each slot, from survey to plan: where positions will be after the next step. */
+static uint32_t *blocks_of_slots(const mpm_particles *set) {
+  return set->field[MPMI_POSITION].data[1];
+}
+
+mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks) {
+  uint32_t *of_slot = blocks_of_slots(set);
+  mpm_status status;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   const double *x = mpmi_f64(set, MPMI_POSITION, 0);
   int32_t last[3] = {0, 0, 0}, coord[3] = {0, 0, 0}, block = MPMI_NO_BLOCK;
   for (int64_t s = 0; s < set->slots; ++s) {
-    sorting->block[s] = NONE;
+    of_slot[s] = NONE;
     if (id[s] < 0) continue;
     mpmi_blocks_of_position(set->grid, x + s, set->ld, blocks->edge, coord);
     if (block < 0 || memcmp(coord, last, sizeof coord) != 0) {
       if ((status = mpmi_blocks_insert(blocks, coord, &block))) return status;
       memcpy(last, coord, sizeof coord);
     }
-    sorting->block[s] = (uint32_t)block;
+    of_slot[s] = (uint32_t)block;
   }
   return MPM_OK;
 }
@@ -51,21 +54,22 @@ static int64_t padded(int64_t count) {
 
 mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                           mpmi_arrangement *to) {
+  const uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
   if (status) return status;
   const int32_t by_id = (set->dirty & MPMI_DIRTY_ORDER) && !mpmi_ids_ascend(set);
   if (by_id && (status = mpmi_index_build(set))) return status;
   memset(to->start, 0, (size_t)(blocks->count + 1) * sizeof *to->start);
   for (int64_t s = 0; s < set->slots; ++s)
-    if (sorting->block[s] != NONE) ++to->start[blocks->order[sorting->block[s]]];
+    if (of_slot[s] != NONE) ++to->start[blocks->order[of_slot[s]]];
   int64_t slots = 0;
   for (int64_t b = 0; b <= blocks->count; ++b) {
     const int64_t here = padded(to->start[b]);
     to->start[b] = slots;
     slots += here;
   }
-  if ((status = mpmi_particles_reserve(set, slots)) ||
-      (status = mpmi_reserve(set->context, (void **)&sorting->source, &sorting->source_capacity, set->ld,
+  const int64_t room = slots > set->ld ? mpmi_leading_dimension(slots) : set->ld;
+  if ((status = mpmi_reserve(set->context, (void **)&sorting->source, &sorting->source_capacity, room,
                              sizeof *sorting->source)))
     return status;
   if (slots) memset(sorting->source, 0xff, (size_t)slots * sizeof *sorting->source);
@@ -73,12 +77,11 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
   const int64_t n = by_id ? set->count : set->slots;
   for (int64_t i = 0; i < n; ++i) {
     const int64_t s = by_id ? set->index[i].slot : i;
-    if (sorting->block[s] != NONE)
-      sorting->source[to->start[blocks->order[sorting->block[s]]]++] = (uint32_t)s;
+    if (of_slot[s] != NONE) sorting->source[to->start[blocks->order[of_slot[s]]]++] = (uint32_t)s;
   }
   for (int64_t b = blocks->count; b > 0; --b) to->start[b] = padded(to->start[b - 1]);
   to->start[0] = 0;
-  return MPM_OK;
+  return mpmi_particles_reserve(set, slots); /* last: it may take the second copies elsewhere */
 }
 
 /* One component array to move, and where to. */

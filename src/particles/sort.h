@@ -12,10 +12,8 @@ typedef struct mpmi_arrangement {
   int64_t start_capacity;
 } mpmi_arrangement;
 
-/* What a sort of one set needs from its first part to its last. */
+/* What a sort of one set needs from its second part to its last. */
 typedef struct mpmi_sorting {
-  uint32_t *block; /* [slots] provisional block of each slot */
-  int64_t block_capacity;
   uint32_t *source; /* [slots] slot that a slot's particle comes from */
   int64_t source_capacity;
 } mpmi_sorting;
@@ -28,7 +26,7 @@ mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *arrangement, int64_
 /* The three parts of a sort. The first two may fail and change nothing that matters; the third cannot fail.
  * survey: inserts the blocks of the set's particles. plan: `to` receives the new arrangement and the set's
  * storage the room for it. apply: moves the particles and clears the set's ORDER and PLACE flags. */
-mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks, mpmi_sorting *sorting);
+mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks);
 mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                           mpmi_arrangement *to);
 void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_sorting *sorting,

@@ -2,6 +2,7 @@
  * the work. */
 #include "stepper/stepper.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Room for half as much again: bodies spread, and a step in steady state must not allocate. */
@@ -106,8 +107,8 @@ static void find_largest_masses(mpm_stepper *s) {
   }
 }
 
-/* Below this a node is too light to divide by its mass. Of the linear basis force stays where mass vanishes; of
- * the smooth ones it vanishes too, and a node in the corner of a cubic stencil weighs (d^3 / 6)^3. */
+/* Below this a node is too light to divide by its mass. Of the linear basis force stays where mass vanishes;
+ * of the smooth ones it vanishes too, and a node in the corner of a cubic stencil weighs (d^3 / 6)^3. */
 static void find_mass_cut(mpm_stepper *s) {
   const double share = s->grid->family == MPMI_FAMILY_BSPLINE1 ? 1e-12 : 1e-40;
   s->mass_cut = 0.0;
@@ -115,11 +116,37 @@ static void find_mass_cut(mpm_stepper *s) {
     if (share * s->member[m].set->mass_max > s->mass_cut) s->mass_cut = share * s->member[m].set->mass_max;
 }
 
+/* GIMP takes domains wider than a cell as one cell: the host should know how many there are. */
+static void count_wide_domains(mpm_stepper *s) {
+  const mpm_grid *grid = s->grid;
+  if (!mpmi_has_domains(grid)) return;
+  int64_t wide = 0, live = 0;
+  for (int32_t m = 0; m < s->member_count; ++m) {
+    const mpm_particles *set = s->member[m].set;
+    const mpmi_points points = mpmi_points_of(set, 0);
+    const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+    live += set->count;
+    for (int64_t p = 0; p < set->slots; ++p) {
+      int32_t over = 0;
+      for (int32_t k = 0; k < grid->dim; ++k) {
+        const double stretch = points.stretch[k] ? fabs(points.stretch[k][p]) : 1.0;
+        over |= points.size[k][p] * stretch > grid->desc.spacing[k] * (1.0 + 1e-12);
+      }
+      wide += over && id[p] >= 0;
+    }
+  }
+  if (wide != s->wide_domains)
+    mpmi_log(s->context, MPM_LOG_INFO,
+             "stepper: %lld of %lld particles have domains wider than a cell, which GIMP takes as one cell",
+             (long long)wide, (long long)live);
+  s->wide_domains = wide;
+}
+
 static mpm_status sort_anew(mpm_stepper *s) {
   mpm_status status;
   mpmi_blocks_clear(&s->next_blocks);
   for (int32_t m = 0; m < s->member_count; ++m)
-    if ((status = mpmi_sort_survey(s->member[m].set, &s->next_blocks, &s->member[m].sorting))) return status;
+    if ((status = mpmi_sort_survey(s->member[m].set, &s->next_blocks))) return status;
   if ((status = mpmi_blocks_order(&s->next_blocks))) return status;
   for (int32_t m = 0; m < s->member_count; ++m)
     if ((status =
@@ -129,6 +156,7 @@ static mpm_status sort_anew(mpm_stepper *s) {
   for (int32_t m = 0; m < s->member_count; ++m)
     mpmi_sort_apply(s->member[m].set, &s->blocks, &s->member[m].sorting, &s->member[m].now);
   find_largest_masses(s);
+  count_wide_domains(s);
   ++s->resorts;
   return MPM_OK;
 }

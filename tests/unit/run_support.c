@@ -1,12 +1,28 @@
 #include "run_support.h"
 #include "options.h"
 
-const run_method run_methods[RUN_METHODS] = {
-    {MPM_BSPLINE2, MPM_USL, MPM_FLIP, 0.97},    {MPM_BSPLINE2, MPM_MUSL, MPM_FLIP, 1.0},
-    {MPM_BSPLINE2, MPM_USL, MPM_APIC, 1.0},     {MPM_BSPLINE2, MPM_MUSL, MPM_APIC, 1.0},
-    {MPM_BSPLINE2, MPM_USL, MPM_APIC_MLS, 1.0}, {MPM_BSPLINE2, MPM_MUSL, MPM_APIC_MLS, 1.0},
-    {MPM_LINEAR, MPM_USL, MPM_FLIP, 0.97},      {MPM_LINEAR, MPM_MUSL, MPM_FLIP, 1.0},
-    {MPM_LINEAR, MPM_USL, MPM_APIC, 1.0},       {MPM_LINEAR, MPM_MUSL, MPM_APIC, 1.0}};
+#define METHOD(b, s, t, f) .basis = MPM_##b, .scheme = MPM_##s, .transfer = MPM_##t, .flip = f
+#define OPEN_KNOTS         .boundary_basis = MPM_BOUNDARY_OPEN_KNOT
+const run_method run_methods[RUN_ALL] = {
+    {METHOD(BSPLINE2, USL, FLIP, 0.97)},
+    {METHOD(BSPLINE2, MUSL, FLIP, 1.0)},
+    {METHOD(BSPLINE2, USL, APIC, 1.0)},
+    {METHOD(BSPLINE2, MUSL, APIC, 1.0)},
+    {METHOD(BSPLINE2, USL, APIC_MLS, 1.0)},
+    {METHOD(BSPLINE2, MUSL, APIC_MLS, 1.0)},
+    {METHOD(LINEAR, USL, FLIP, 0.97)},
+    {METHOD(LINEAR, MUSL, FLIP, 1.0)},
+    {METHOD(LINEAR, USL, APIC, 1.0)},
+    {METHOD(LINEAR, MUSL, APIC, 1.0)},
+    {METHOD(BSPLINE3, USF, FLIP, 0.9), .remedy = 1},
+    {METHOD(BSPLINE3, MUSL, TFLIP, 1.0), OPEN_KNOTS, .staggered = 1},
+    {METHOD(BSPLINE2, USF, APIC, 1.0), OPEN_KNOTS, .position_order = 2},
+    {METHOD(GIMP, USF, XPIC, 1.0), .xpic_order = 3},
+    {METHOD(UGIMP, USL, XPIC, 1.0), .xpic_order = 2, .remedy = 1, .staggered = 1},
+    {METHOD(CPGIMP, MUSL, AFLIP, 0.95), .remedy = 1, .position_order = 2},
+    {METHOD(BSPLINE2, USF, TPIC, 1.0), .staggered = 1},
+    {METHOD(BSPLINE3, USL, APIC_MLS, 1.0), .position_order = 2},
+};
 
 const double run_E = 5e4, run_nu = 0.3, run_density = 1e3;
 static const double spacing[3] = {0.1, 0.11, 0.09}, origin[3] = {-0.3, 0.2, 0.1};
@@ -17,6 +33,11 @@ void run_use(run_options *options, const run_method *method) {
   options->scheme = method->scheme;
   options->transfer = method->transfer;
   options->flip = method->flip;
+  options->boundary_basis = method->boundary_basis;
+  options->xpic_order = method->xpic_order;
+  options->position_order = method->position_order;
+  options->staggered = method->staggered;
+  options->remedy = method->remedy;
 }
 
 static uint64_t mixed(uint64_t x) {
@@ -260,6 +281,9 @@ static mpm_status make_stepper(run *r) {
   d.transfer = r->options.transfer ? r->options.transfer : MPM_FLIP;
   if (r->options.flip > 0.0) d.flip = r->options.flip;
   if (r->options.xpic_order) d.xpic_order = r->options.xpic_order;
+  if (r->options.position_order) d.position_order = r->options.position_order;
+  d.staggered = r->options.staggered;
+  d.locking_remedy = r->options.remedy && r->options.dim > 1;
   d.pic_damping = r->options.pic_damping;
   d.gravity[0] = 2.0;
   d.gravity[1] = -10.0;

@@ -40,6 +40,8 @@ typedef struct run_memory {
 typedef struct run_options {
   int32_t dim, basis, boundary_basis, scheme, transfer;
   int32_t xpic_order;           /* 0: the default */
+  int32_t position_order;       /* 0: the default */
+  int32_t staggered, remedy;    /* remedy: not in 1-D */
   double flip, pic_damping;     /* flip 0: 1 */
   int32_t large;                /* at least 27 blocks with particles; else a few */
   int32_t periodic;             /* the x axis is; else FIXED (1-D) or NONE below and OPEN above */
@@ -76,9 +78,11 @@ typedef struct run {
 typedef struct run_method {
   int32_t basis, scheme, transfer;
   double flip;
+  int32_t boundary_basis, xpic_order, position_order, staggered, remedy;
 } run_method;
-enum { RUN_METHODS = 10 };
-extern const run_method run_methods[RUN_METHODS];
+/* The first of them are plain; the others have every further option at least once. */
+enum { RUN_METHODS = 10, RUN_ALL = RUN_METHODS + 8 };
+extern const run_method run_methods[RUN_ALL];
 void run_use(run_options *options, const run_method *method);
 
 /* Opens a run, or goes on where a failed call left it. */

@@ -278,7 +278,7 @@ Suite *allocation_suite(void) {
   suite_add_tcase(suite, failing);
   TCase *steady = tcase_create("steady");
   tcase_set_timeout(steady, 600);
-  tcase_add_loop_test(steady, steady_state, 0, RUN_METHODS);
+  tcase_add_loop_test(steady, steady_state, 0, RUN_ALL);
   tcase_add_loop_test(steady, steady_resorts, 0, 6);
   suite_add_tcase(suite, steady);
   return suite;

@@ -5,14 +5,14 @@
 enum { BEFORE = 5, AFTER = 12 };
 
 static run_options numbered(int32_t i) {
-  run_options o = {.dim = 1 + i / (2 * RUN_METHODS),
-                   .periodic = i / RUN_METHODS % 2,
+  run_options o = {.dim = 1 + i / (2 * RUN_ALL),
+                   .periodic = i / RUN_ALL % 2,
                    .velocity_bc = i % 3 == 0,
-                   .led = i % 3 == 1 && i % RUN_METHODS < 6}; /* linear: too soft */
-  run_use(&o, &run_methods[i % RUN_METHODS]);
+                   .led = i % 3 == 1 && i % RUN_ALL < 6}; /* linear: too soft */
+  run_use(&o, &run_methods[i % RUN_ALL]);
   return o;
 }
-enum { COMBINATIONS = 3 * 2 * RUN_METHODS };
+enum { COMBINATIONS = 3 * 2 * RUN_ALL };
 
 static void remove_one(run *r) {
   const int64_t id = 1;

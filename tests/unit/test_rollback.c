@@ -117,11 +117,11 @@ typedef void (*story_fn)(run *r);
 static run_options options_of(int32_t i, int32_t threads) {
   static run_memory memory;
   memset(&memory, 0, sizeof memory);
-  run_options o = {.dim = 1 + i / RUN_METHODS, .concurrency = threads, .stress = law, .memory = &memory};
-  run_use(&o, &run_methods[i % RUN_METHODS]);
+  run_options o = {.dim = 1 + i / RUN_ALL, .concurrency = threads, .stress = law, .memory = &memory};
+  run_use(&o, &run_methods[i % RUN_ALL]);
   return o;
 }
-enum { COMBINATIONS = 3 * RUN_METHODS };
+enum { COMBINATIONS = 3 * RUN_ALL };
 
 static void open_for_trouble(run *r, const run_options *o) {
   memset(&wrong, 0, sizeof wrong);
@@ -361,7 +361,12 @@ START_TEST(off_the_grid) {
       fly(&r, id, face);
       const run_state was = run_take(&r);
       mpm_step_info info = {.struct_size = sizeof info};
-      run_refused(&r, mpm_step(r.stepper, 2e-3, &info), MPM_OFF_GRID, "leave the grid");
+      const mpm_status status = mpm_step(r.stepper, 2e-3, &info);
+      /* USF strains before it moves, and the flight may tear a particle's neighbourhood */
+      if (o.scheme == MPM_USF && status == MPM_INVERTED)
+        run_refused(&r, status, MPM_INVERTED, "det F");
+      else
+        run_refused(&r, status, MPM_OFF_GRID, "leave the grid");
       ck_assert_int_eq(info.set, 0);
       ck_assert_int_ge(info.particle, 0);
       if (threads == 1)

@@ -49,7 +49,7 @@ static void open_stream(stream *s, int32_t dim, int32_t periodic, int32_t transf
   run_ok(s, mpm_grid_desc_init(&g, sizeof g));
   g.dim = dim;
   for (int32_t k = 0; k < dim; ++k) {
-    g.cells[k] = k ? 12 : 160;
+    g.cells[k] = k ? 12 : periodic ? 40 : 160;
     g.spacing[k] = period[k] / (double)g.cells[k];
     g.origin[k] = low;
     g.periodic[k] = k && periodic;

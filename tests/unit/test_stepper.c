@@ -325,6 +325,51 @@ START_TEST(walls_change) {
 }
 END_TEST
 
+/* Domains wider than a cell are taken as one cell, and the host is told how many there are. */
+static void keep_text(void *user, int32_t level, const char *text) {
+  (void)level;
+  if (strstr(text, "domains")) snprintf(user, 200, "%s", text);
+}
+
+START_TEST(wide_domains_are_counted) {
+  char told[200] = "";
+  mpm_context *context;
+  mpm_context_desc services;
+  mpm_context_desc_init(&services, sizeof services);
+  services.log = keep_text;
+  services.log_user = told;
+  ck_assert_int_eq(mpm_context_create(&services, &context), MPM_OK);
+  mpm_grid_desc g;
+  mpm_grid_desc_init(&g, sizeof g);
+  g.dim = 2;
+  g.basis = MPM_CPGIMP;
+  for (int32_t k = 0; k < 2; ++k) g.cells[k] = 8, g.spacing[k] = 1.0;
+  mpm_grid *grid;
+  mpm_material *material;
+  mpm_particles *set;
+  mpm_stepper *stepper;
+  const mpm_param elastic[] = {{"E", 1.0}, {"nu", 0.3}, {"density", 1.0}};
+  const double x[6] = {2.0, 4.0, 6.0, 4.0, 4.0, 4.0}, volume[3] = {0.25, 0.25, 2.25};
+  double F[27] = {0.0};
+  for (int32_t p = 0; p < 3; ++p) F[p] = F[12 + p] = F[24 + p] = 1.0;
+  F[1] = 2.1; /* of particle 1: half a cell times 2.1 */
+  ck_assert_int_eq(mpm_grid_create(context, &g, &grid), MPM_OK);
+  ck_assert_int_eq(mpm_material_create(context, "neo_hookean", elastic, 3, &material), MPM_OK);
+  ck_assert_int_eq(mpm_particles_create(context, grid, material, &set), MPM_OK);
+  ck_assert_int_eq(mpm_particles_add(set, 3, x, NULL, volume, NULL, NULL, NULL), MPM_OK);
+  ck_assert_int_eq(mpm_particles_set(set, "deformation_gradient", MPM_F64, 9, 3, NULL, F), MPM_OK);
+  ck_assert_int_eq(mpm_stepper_create(context, grid, NULL, &stepper), MPM_OK);
+  ck_assert_int_eq(mpm_stepper_add(stepper, set), MPM_OK);
+  ck_assert_int_eq(mpm_step(stepper, 1e-3, NULL), MPM_OK);
+  ck_assert_msg(strstr(told, "2 of 3 particles") != NULL, "%s", told);
+  ck_assert_int_eq(mpm_stepper_destroy(stepper), MPM_OK);
+  ck_assert_int_eq(mpm_particles_destroy(set), MPM_OK);
+  ck_assert_int_eq(mpm_material_destroy(material), MPM_OK);
+  ck_assert_int_eq(mpm_grid_destroy(grid), MPM_OK);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
+END_TEST
+
 Suite *stepper_suite(void) {
   Suite *suite = suite_create("stepper");
   TCase *tests = tcase_create("whole");
@@ -339,6 +384,7 @@ Suite *stepper_suite(void) {
   tcase_add_loop_test(tests, sets_come_and_go, 0, 3);
   tcase_add_loop_test(tests, empty_sets, 0, 3);
   tcase_add_test(tests, walls_change);
+  tcase_add_test(tests, wide_domains_are_counted);
   suite_add_tcase(suite, tests);
   suite_add_tcase(suite, stepper_description_case());
   suite_add_tcase(suite, stepper_arguments_case());

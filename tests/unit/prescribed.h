@@ -1,0 +1,28 @@
+/* What the files of the suite share: clouds with prescribed particles. */
+#ifndef PRESCRIBED_H
+#define PRESCRIBED_H
+
+#include "support.h"
+
+/* Particles of one set. */
+enum { CLOUD = 200 };
+
+/* The call is refused with this status, and the sentence names what is at fault. */
+#define ck_fails(w_, call, wanted, text)                                                                     \
+  do {                                                                                                       \
+    ck_assert_int_eq(call, wanted);                                                                          \
+    if (!strstr(mpm_last_error((w_)->context), text))                                                        \
+      ck_abort_msg("\"%s\" is not in: %s", text, mpm_last_error((w_)->context));                             \
+  } while (0)
+
+/* Two clouds through each other, the second prescribed on some axes of some particles, or on all. */
+void open_clouds(world *w, const method *how, int32_t dim, int32_t walled, int32_t all);
+/* A motion that turns, so that particles have velocities of their own; user: the set. */
+mpm_status prescribed_turn(void *user, const mpm_particle_batch *b, double *add);
+uint8_t *fetch_flags(const world *w, const mpm_particles *set); /* [dim][count]; to be freed */
+
+TCase *prescribed_walls_case(void);
+TCase *prescribed_state_case(void);
+TCase *prescribed_waves_case(void);
+
+#endif
