@@ -33,7 +33,7 @@ typedef struct mpmi_orbit {
 typedef struct mpmi_contact {
   int64_t slot, partner; /* partner -1: alone */
   int32_t face;
-  int32_t closed, stuck; /* as found in the step: the second projection of MUSL keeps to it */
+  int32_t closed, stuck; /* as found with forces; projections without them keep to it */
 } mpmi_contact;
 
 typedef struct mpmi_constraints {

@@ -10,8 +10,8 @@
 /* Impulse of a boundary on a node, and by how much it changed the node's increment. */
 static void note(const mpmi_boundary *f, int64_t slot, int32_t c, double impulse, double change) {
   if (!f->books) return;
-  f->s->impulse[6 * slot + c] += impulse;
-  f->s->impulse[6 * slot + 3 + c] += change;
+  f->s->impulse[6 * slot + c] += f->share * impulse;
+  f->s->impulse[6 * slot + 3 + c] += f->share * change;
 }
 
 static void hold(const mpmi_boundary *f, int64_t slot, int32_t c, double value, double increment) {
@@ -27,7 +27,9 @@ static void prescribe(const mpmi_boundary *f, int64_t slot, int32_t c, double va
   hold(f, slot, c, value, increment);
 }
 
-double mpmi_book(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_component_state before) {
+/* whole: as if no part of an orbit were an image with the opposite sign. */
+static double book(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_component_state before,
+                   int32_t whole) {
   const double more = mpmi_given(f, slot, c) - before.given;
   const int32_t orbit = f->s->constraints.orbit_of[slot];
   if (orbit < 0) {
@@ -36,8 +38,17 @@ double mpmi_book(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_component
     return impulse;
   }
   mpmi_orbit_state *state = mpmi_orbit_state_of(f, orbit);
-  state->booked[c] += state->net[c] * more;
-  return state->net[c] * more;
+  const double impulse = (whole ? state->mass : state->net[c]) * more;
+  state->booked[c] += impulse;
+  return impulse;
+}
+
+double mpmi_book(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_component_state before) {
+  return book(f, slot, c, before, 0);
+}
+
+double mpmi_book_whole(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_component_state before) {
+  return book(f, slot, c, before, 1);
 }
 
 /* The master gets the velocity that the whole orbit has, before the forces and after them. */
@@ -113,7 +124,7 @@ static void unfold(const mpmi_boundary *f) {
     }
     for (int32_t c = 0; c < f->dim; ++c)
       if (f->books && orbit->face[c] >= 0 && !mpmi_held_by(f, orbit->master, c))
-        s->impulse_in_step[orbit->face[c]][c] += total[c] - state->booked[c];
+        s->impulse_in_step[orbit->face[c]][c] += f->share * (total[c] - state->booked[c]);
   }
 }
 
@@ -184,26 +195,31 @@ static mpm_status act(const mpmi_boundary *f) {
 }
 
 /* Other projections have no hooks. That of USF comes first and asks who holds nodes; the second one of MUSL
- * keeps to what was said of the first; the terms of XPIC obey what is linear and the same for all of them. */
+ * keeps to what was said of the first; the terms of XPIC obey what is linear and the same for all of them.
+ *
+ * Which contacts are closed is for a projection with forces to say. Without them a body that expands against
+ * a wall seems to leave it, and USF would strain it less in the rebound than in the approach, which makes
+ * energy. */
 static mpm_status act_on_velocities(const mpmi_boundary *f, int32_t projection) {
   mpm_status status = MPM_OK;
   if (projection == MPMI_PROJECT_STRAIN) status = hold_nodes(f);
   if (projection == MPMI_PROJECT_AGAIN) status = set_held(f);
   hold_walls(f);
-  if (projection != MPMI_PROJECT_CORRECT) mpmi_contacts(f, projection == MPMI_PROJECT_AGAIN);
+  if (projection != MPMI_PROJECT_CORRECT) mpmi_contacts(f, projection != MPMI_PROJECT_TOUCH);
   return status;
 }
 
-mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt) {
-  const int32_t forces = projection == MPMI_PROJECT_FORCES;
+mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt, double share) {
+  const int32_t forces = projection == MPMI_PROJECT_FORCES, whole = mpmi_projects_forces(projection);
   const mpmi_boundary f = {.s = s,
-                           .nodes = forces ? s->node : s->again,
+                           .nodes = whole ? s->node : s->again,
                            .dt = dt,
                            .flip = s->values == 8 ? mpmi_flip_share(s) : 0.0,
-                           .values = forces ? s->values : 4,
+                           .values = whole ? s->values : 4,
                            .dim = s->grid->dim,
                            .zero_acceleration = s->desc.boundary_zero_acceleration,
-                           .books = forces && s->impulses};
+                           .share = share,
+                           .books = (forces || projection == MPMI_PROJECT_CORRECT) && s->impulses};
   fold(&f);
   mpm_status status = forces ? act(&f) : act_on_velocities(&f, projection);
   if (status) return status;

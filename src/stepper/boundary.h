@@ -12,8 +12,8 @@
 typedef struct mpmi_boundary {
   mpm_stepper *s;
   double *nodes, dt, flip; /* flip: share of the increment in what particles take */
-  int32_t values, dim, zero_acceleration,
-      books; /* books: impulses count as reactions; only in the projection that has the forces */
+  double share;            /* of the velocities in what particles take: impulses count as much */
+  int32_t values, dim, zero_acceleration, books; /* books: impulses count as reactions */
 } mpmi_boundary;
 
 /* Who holds a component of a node, in held[]. */
@@ -69,13 +69,16 @@ static inline mpmi_component_state mpmi_component_of(const mpmi_boundary *f, int
 
 /* Takes note of what a free node gives to the particles more than before: the impulse is returned. */
 double mpmi_book(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_component_state before);
+/* The same for a contact, which acts on the whole mass that moves with the node: what mirrored ghosts take of
+ * it the other way round is the reaction of the wall that mirrors them. */
+double mpmi_book_whole(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_component_state before);
 
 /* The blocks that task k of the stepper's tasks works on. */
 static inline int64_t mpmi_first_block(const mpm_stepper *s, int64_t k) {
   return s->blocks.count * k / s->tasks;
 }
 
-/* contact.c: friction walls; again: the second projection of MUSL. */
+/* contact.c: friction walls; again: as they were found before, in a projection without forces. */
 void mpmi_contacts(const mpmi_boundary *f, int32_t again);
 
 /* node_batch.c: asks the velocity callback. */

@@ -144,6 +144,19 @@ static void fail(batch_job *b, mpm_status cause, int64_t slot, const char *what)
 /* Periods that a particle may cross in one step: beyond them its position is rounding. */
 #define MOST_TURNS 2147483648.0
 
+/* A particle on a wall stands there but for rounding; this many cells beyond it are that. */
+#define WALL_ROUNDING 1e-12
+
+static int32_t is_on_wall(const mpm_stepper *s, int32_t k, double *x) {
+  const mpm_grid *grid = s->grid;
+  const int32_t above = *x > grid->upper[k];
+  const double face = above ? grid->upper[k] : grid->desc.origin[k];
+  if (s->wall[2 * k + above].kind < MPM_WALL_FIXED) return 0;
+  if (!(fabs(*x - face) <= WALL_ROUNDING * grid->desc.spacing[k])) return 0;
+  *x = face;
+  return 1;
+}
+
 /* Particles beyond a face: wrapped, marked for removal, or the end of the step. */
 static void look_outside(batch_job *b, int64_t begin, int64_t n) {
   const mpm_stepper *s = b->job->s;
@@ -169,7 +182,7 @@ static void look_outside(batch_job *b, int64_t begin, int64_t n) {
         *image += (int64_t)turns;
       } else if (s->wall[2 * k + (*x > grid->upper[k])].kind == MPM_WALL_OPEN) {
         leaves = 1;
-      } else {
+      } else if (!is_on_wall(s, k, x)) {
         stays = 1;
       }
     }

@@ -25,11 +25,12 @@ static void nodes_task(void *data, int64_t k) {
 }
 
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t projection) {
-  const int32_t forces = projection == MPMI_PROJECT_FORCES;
-  nodes_job job = {s, forces ? s->values : 4, forces, mpmi_asks_host(s, projection),
+  const int32_t forces = mpmi_projects_forces(projection), books = projection == MPMI_PROJECT_FORCES;
+  nodes_job job = {s, forces ? s->values : 4, books,
+                   projection == MPMI_PROJECT_TOUCH || mpmi_asks_host(s, projection),
                    forces ? s->node : s->again};
   const mpm_status status = mpmi_run_tasks(s, 0, s->tasks, nodes_task, &job);
-  if (status || !forces) return status;
+  if (status || !books) return status;
   s->last.active_nodes = 0;
   for (int32_t k = 0; k < s->tasks; ++k) s->last.active_nodes += s->scratch[k].active;
   return MPM_OK;

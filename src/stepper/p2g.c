@@ -24,9 +24,10 @@ static void zero_task(void *data, int64_t k) {
 static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatter *scatter) {
   const mpm_stepper *s = job->s;
   const mpm_particles *set = member->set;
-  const int32_t dim = s->grid->dim, forces = job->projection == MPMI_PROJECT_FORCES;
+  const int32_t dim = s->grid->dim, forces = mpmi_projects_forces(job->projection);
   const int32_t copy = job->projection == MPMI_PROJECT_AGAIN || job->projection == MPMI_PROJECT_CORRECT;
-  const int32_t stress = forces && s->desc.scheme == MPM_USF; /* USF has updated it already */
+  const int32_t stress =
+      job->projection == MPMI_PROJECT_FORCES && s->desc.scheme == MPM_USF; /* USF has updated it already */
   memset(scatter, 0, sizeof *scatter);
   scatter->weights = s->kernels->weights[s->grid->family][dim];
   scatter->points = mpmi_points_of(set, 0);
@@ -104,7 +105,7 @@ static void p2g_task(void *data, int64_t k) {
 }
 
 mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t projection) {
-  const int32_t forces = projection == MPMI_PROJECT_FORCES;
+  const int32_t forces = mpmi_projects_forces(projection);
   const int32_t affine = mpmi_is_affine(s) && projection != MPMI_PROJECT_CORRECT;
   p2g_job job = {.s = s, .projection = projection, .affine = affine};
   job.values = forces ? s->values : 4;

@@ -27,12 +27,12 @@ static void count_active(mpm_stepper *s) {
   for (int64_t i = 0; i < slots; ++i) s->last.active_nodes += s->node[i * s->values + 3] > s->mass_cut;
 }
 
-/* A projection of velocities alone, up to its boundary conditions. */
+/* A projection beside the one with the forces of the step, up to its boundary conditions. */
 static mpm_status project(mpm_stepper *s, int32_t projection, double dt, double *clock) {
   mpm_status status = mpmi_stage_p2g(s, projection);
   lap(s, MPMI_TIME_P2G, clock);
   if (!status) status = mpmi_stage_nodes(s, projection);
-  if (!status) status = mpmi_stage_boundary(s, projection, dt);
+  if (!status) status = mpmi_stage_boundary(s, projection, dt, 0.0);
   lap(s, MPMI_TIME_GRID, clock);
   return status;
 }
@@ -48,7 +48,9 @@ static mpm_status gather(mpm_stepper *s, int32_t what, const double *nodes, int3
 
 /* USF: strain and stress from the velocities at the start of the step. */
 static mpm_status strain_first(mpm_stepper *s, double dt, double *clock) {
-  const mpm_status status = project(s, MPMI_PROJECT_STRAIN, dt, clock);
+  mpm_status status = MPM_OK;
+  if (s->constraints.contact_count) status = project(s, MPMI_PROJECT_TOUCH, dt, clock);
+  if (!status) status = project(s, MPMI_PROJECT_STRAIN, dt, clock);
   return status ? status : gather(s, MPMI_G2P_DEFORM, s->again, 4, dt, clock);
 }
 
@@ -84,7 +86,7 @@ static mpm_status begin_part(mpm_stepper *s, double dt) {
 static mpm_status grid_part(mpm_stepper *s, double dt) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_stage_nodes(s, MPMI_PROJECT_FORCES);
-  if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_FORCES, dt);
+  if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_FORCES, dt, 1.0);
   if (!status && s->constraints.orbit_count) count_active(s);
   lap(s, MPMI_TIME_GRID, &clock);
   return status;

@@ -227,21 +227,26 @@ mpm_status mpmi_stepper_adopt(mpm_stepper *s);
 mpm_status mpmi_stage_forces(mpm_stepper *s, double dt);
 /* A projection of particles onto nodes and what is done with it there. Beside the one with the forces there
  * are those of velocity alone: before it for the strain of USF, after it for the strain of MUSL, and for the
- * corrections of XPIC. They go into other nodes and book no reactions. */
+ * corrections of XPIC. They go into other nodes; only those of the corrections book reactions. */
 enum {
-  MPMI_PROJECT_FORCES,  /* momentum and force */
-  MPMI_PROJECT_STRAIN,  /* momentum, from the velocities at the start of the step */
-  MPMI_PROJECT_AGAIN,   /* momentum, from the new velocities */
+  MPMI_PROJECT_FORCES, /* momentum and force */
+  MPMI_PROJECT_STRAIN, /* momentum, from the velocities at the start of the step */
+  MPMI_PROJECT_TOUCH,  /* momentum and force at the start of the step, to find the contacts that are closed */
+  MPMI_PROJECT_AGAIN,  /* momentum, from the new velocities */
   MPMI_PROJECT_CORRECT, /* momentum without its affine part, from the second copy of the velocities */
   MPMI_PROJECTIONS
 };
+static inline int32_t mpmi_projects_forces(int32_t projection) {
+  return projection == MPMI_PROJECT_FORCES || projection == MPMI_PROJECT_TOUCH;
+}
 /* The first projection of a step asks the host for prescribed velocities; later ones keep to the answer. */
 static inline int32_t mpmi_asks_host(const mpm_stepper *s, int32_t projection) {
   return projection == (s->desc.scheme == MPM_USF ? MPMI_PROJECT_STRAIN : MPMI_PROJECT_FORCES);
 }
 mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t projection);
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t projection);
-mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt);
+/* share: of these velocities in what particles get; reactions are booked by it. */
+mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt, double share);
 /* G2P_PROBE gathers nodal velocities into the second copy of the particles' and does nothing else;
  * G2P_DILATION measures what the locking remedy averages. */
 enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2, MPMI_G2P_PROBE = 4, MPMI_G2P_DILATION = 8 };

@@ -48,6 +48,13 @@ static void next_term(void *data, int64_t k) {
     }
 }
 
+/* How much of a velocity that is added to v_r comes to be in v^: by way of the terms after it too. */
+static double share_of(int32_t m, int32_t r) {
+  double share = 0.0;
+  for (int32_t k = m; k >= r; --k) share = (k % 2 ? m : -m) + (m - k) / (k + 1.0) * share;
+  return share;
+}
+
 mpm_status mpmi_stage_xpic(mpm_stepper *s) {
   const int32_t m = s->desc.xpic_order;
   xpic_job job = {s, 1.0, m - 1.0};
@@ -57,7 +64,7 @@ mpm_status mpmi_stage_xpic(mpm_stepper *s) {
     status = mpmi_stage_g2p(s, MPMI_G2P_PROBE, s->again, 4, s->dt);
     if (!status) status = mpmi_stage_p2g(s, MPMI_PROJECT_CORRECT);
     if (!status) status = mpmi_stage_nodes(s, MPMI_PROJECT_CORRECT);
-    if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_CORRECT, s->dt);
+    if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_CORRECT, s->dt, job.scale * share_of(m, r));
     if (!status) status = mpmi_run_tasks(s, 0, s->tasks, next_term, &job);
   }
   return status ? status : mpmi_stage_g2p(s, MPMI_G2P_PROBE, s->extra, 4, s->dt);

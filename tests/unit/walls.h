@@ -1,0 +1,38 @@
+/* Parts of test_walls.c: every basis with schemes and transfers that use walls in different ways, and walls
+ * on the faces of a box. */
+#ifndef WALLS_H
+#define WALLS_H
+
+#include "options.h"
+#include "support.h"
+
+typedef struct wall_method {
+  const basis_option *basis;
+  const scheme_option *scheme;
+  const transfer_option *transfer;
+  char name[64];
+} wall_method;
+enum { WALL_WAYS = 7, WALL_METHODS = BASES * WALL_WAYS };
+wall_method wall_method_of(int32_t i);
+void wall_use(world_desc *desc, const wall_method *how);
+void wall_use_basis(mpm_grid_desc *grid, const basis_option *basis);
+
+/* Kinds by face; the second axis may be periodic. Every kind alone first, in the order of the constants. */
+typedef struct wall_setup {
+  int32_t kind[6], periodic;
+} wall_setup;
+enum { WALL_SETUPS = 12 };
+extern const wall_setup wall_setups[WALL_SETUPS];
+void wall_describe(const wall_setup *setup, mpm_grid_desc *grid);
+void wall_set(world *w, const wall_setup *setup, double friction);
+int32_t wall_is_linear(int32_t kind);
+/* Index of the node on a face, as guide.md numbers them. */
+int64_t wall_face_node(const mpm_grid_desc *grid, int32_t face);
+
+TCase *walls_nodes_case(void);
+TCase *walls_symmetry_case(void);
+TCase *walls_space_case(void);
+TCase *walls_balance_case(void);
+TCase *walls_flow_case(void);
+
+#endif
