@@ -93,6 +93,30 @@ for file in dam_break.pvd dam_break.svg dam_break_front.svg front.csv water_0000
 done
 [ "$(awk -F, 'NF == 5' dam/front.csv | wc -l)" -eq 112 ] || fail "dam_break: front.csv has not 112 rows of 5 columns"
 
+mkdir taylor
+run taylor_bar taylor 3
+check "length" "length" 21.66 21.87
+check "foot" "foot radius" 7.07 7.21
+check "plastic strain" "plastic strain" 2.85 3.05
+awk '$1 == "80.0" { ended = 1; lost = $5 < 0.01 * start && $7 > 0.98 * start } $1 == "0.0" { start = $5 }
+  END { exit !(ended && lost) }' taylor_bar.out || fail "taylor_bar: the plastic work is not the energy of the impact"
+for file in taylor_bar.svg taylor_bar.vtp; do
+  [ -s "taylor/$file" ] || fail "taylor_bar: $file is missing or empty"
+done
+
+mkdir impact
+run two_materials impact
+check "squeeze of the block" "takes up to" 980 1080
+check "energy" "falls by" 6 12
+check "momentum" "momentum kept to" 0 1e-13
+check "angular momentum" "angular momentum to" 0 4e-4
+check "energies by set" "energy by sets to" 0 1e-9
+awk '$1 == "50.0" { flew = $2 < 60 && $3 > 1400; flow = $6 > 140 && $6 < 220; rows++ } END { exit !(rows == 1 && flew && flow) }' \
+  two_materials.out || fail "two_materials: energies at the end are not those of a rebound with plastic flow"
+for file in ball.pvd block.pvd two_materials.svg ball_0000.vtp block_0020.vtp; do
+  [ -s "impact/$file" ] || fail "two_materials: $file is missing or empty"
+done
+
 run cantilever
 check "deviation from FEM" "deviation" -4 4
 awk '$5 == "%" && ($4 > 4 || $4 < -4) && $1 <= 0.9 && $1 > 0.1 { bad = 1 } $5 == "%" { rows++ } END { exit bad || rows != 10 }' \
