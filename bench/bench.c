@@ -4,9 +4,9 @@
  *   bench [--quick] [--only TEXT] [--particles N,N] [--threads N,N] [--repeats N] [--spread X] [--csv FILE]
  *
  * --only: cases whose name contains the text. --spread: bounds of the grid over the size of the body. A line
- * gives the median and the best of the repeats, nanoseconds per particle and step by stage, those of a thread
- * for each node of the stencil, the rate as a share of what one core, times the threads, can do in
- * multiply-adds and in memory traffic, and the peak of the whole process. */
+ * gives the median and the best of the repeats, nanoseconds per particle and step by stage (weights are part
+ * of P2G and G2P), those of a thread for each node of the stencil, the rate as a share of what one core,
+ * times the threads, can do in multiply-adds and in memory traffic, and the peak of the whole process. */
 #define _DEFAULT_SOURCE
 #include "ceilings.h"
 #include "scene.h"
@@ -70,7 +70,7 @@ typedef struct result {
   char error[200];
   int64_t particles, resorts, allocations;
   double median, best, bytes; /* particle-steps per second; peak of the process per particle */
-  double p2g, grid, g2p, law, sort, callbacks;
+  double weights, p2g, grid, g2p, law, sort, callbacks;
   double momentum, energy; /* relative changes over the whole run */
   uint64_t hash;
 } result;
@@ -118,7 +118,8 @@ static mpm_status measure(const bench_scene *scene, const bench_case *of, const 
   r->median = rate[how->repeats / 2];
   r->best = rate[how->repeats - 1];
   r->bytes = 1024.0 * (double)usage.ru_maxrss / n;
-  r->p2g = stage.p2g * ns, r->grid = stage.grid * ns, r->g2p = stage.g2p * ns;
+  r->weights = stage.weights * ns, r->p2g = stage.p2g * ns, r->grid = stage.grid * ns,
+  r->g2p = stage.g2p * ns;
   r->law = stage.law * ns, r->sort = stage.sort * ns, r->callbacks = stage.callbacks * ns;
   const double change[3] = {info.momentum[0] - first.momentum[0], info.momentum[1] - first.momentum[1],
                             info.momentum[2] - first.momentum[2]};
@@ -174,20 +175,21 @@ static void print(FILE *csv, const bench_case *of, int32_t threads, double sprea
                   double peak, double bandwidth) {
   const double gflops = bench_flops(of) * r->median * 1e-9, gbytes = bench_bytes(of) * r->median * 1e-9;
   const double per_node = 1e9 * threads / (r->median * bench_nodes(of));
-  printf("%-26s %6.0fk %2d %7.2f %7.2f  %5.1f %4.1f %5.1f %5.1f %4.1f %4.1f %5.2f  %3.0f%% %3.0f%%  %4.0f  "
+  printf("%-26s %6.0fk %2d %7.2f %7.2f  %4.1f %5.1f %4.1f %5.1f %5.1f %4.1f %4.1f %5.2f  %3.0f%% %3.0f%%  "
+         "%4.0f  "
          "%3lld %2lld\n",
-         of->name, 1e-3 * (double)r->particles, (int)threads, 1e-6 * r->median, 1e-6 * r->best, r->p2g,
-         r->grid, r->g2p, r->law, r->sort, r->callbacks, per_node, 100.0 * gflops / (peak * threads),
+         of->name, 1e-3 * (double)r->particles, (int)threads, 1e-6 * r->median, 1e-6 * r->best, r->weights,
+         r->p2g, r->grid, r->g2p, r->law, r->sort, r->callbacks, per_node, 100.0 * gflops / (peak * threads),
          100.0 * gbytes / (bandwidth * threads), r->bytes, (long long)r->resorts, (long long)r->allocations);
   fflush(stdout);
   if (!csv) return;
-  fprintf(
-      csv,
-      "\"%s\",%lld,%d,%.0f,%.3f,%.3f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.3f,%.4f,%.4f,%.1f,%lld,%lld,%016llx\n",
-      of->name, (long long)r->particles, (int)threads, spread, 1e-6 * r->median, 1e-6 * r->best, r->p2g,
-      r->grid, r->g2p, r->law, r->sort, r->callbacks, per_node, gflops / (peak * threads),
-      gbytes / (bandwidth * threads), r->bytes, (long long)r->resorts, (long long)r->allocations,
-      (unsigned long long)r->hash);
+  fprintf(csv,
+          "\"%s\",%lld,%d,%.0f,%.3f,%.3f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.3f,%.4f,%.4f,%.1f,%lld,%lld,%"
+          "016llx\n",
+          of->name, (long long)r->particles, (int)threads, spread, 1e-6 * r->median, 1e-6 * r->best,
+          r->weights, r->p2g, r->grid, r->g2p, r->law, r->sort, r->callbacks, per_node,
+          gflops / (peak * threads), gbytes / (bandwidth * threads), r->bytes, (long long)r->resorts,
+          (long long)r->allocations, (unsigned long long)r->hash);
   fflush(csv);
 }
 
@@ -214,17 +216,19 @@ static int32_t run_threads(const bench_case *of, const settings *how, int64_t pa
 static int32_t run_all(const settings *how, FILE *csv) {
   const double peak = bench_fma_peak(), bandwidth = bench_update_bandwidth();
   printf("one core: %.1f GFLOP/s in multiply-adds, %.1f GB/s in an in-place update\n\n", peak, bandwidth);
-  printf("%-26s %7s %2s %7s %7s  %5s %4s %5s %5s %4s %4s %5s  %4s %4s  %4s  %3s %2s\n", "", "", "", "median",
-         "best", "ns:", "", "", "", "", "call", "per", "", "", "B per", "", "");
-  printf("%-26s %7s %2s %7s %7s  %5s %4s %5s %5s %4s %4s %5s  %4s %4s  %4s  %3s %2s\n", "case", "part.", "th",
-         "Mp/s", "Mp/s", "p2g", "grid", "g2p", "law", "sort", "back", "node", "fma", "mem", "part.", "srt",
-         "al");
+  printf("%-26s %7s %2s %7s %7s  %4s %5s %4s %5s %5s %4s %4s %5s  %4s %4s  %4s  %3s %2s\n", "", "", "",
+         "median", "best", "ns:", "", "", "", "", "", "call", "per", "", "", "B per", "", "");
+  printf("%-26s %7s %2s %7s %7s  %4s %5s %4s %5s %5s %4s %4s %5s  %4s %4s  %4s  %3s %2s\n", "case", "part.",
+         "th", "Mp/s", "Mp/s", "wgt", "p2g", "grid", "g2p", "law", "sort", "back", "node", "fma", "mem",
+         "part.", "srt", "al");
   if (csv) {
     fprintf(csv, "# one core: %.2f GFLOP/s in multiply-adds, %.2f GB/s in an in-place update\n", peak,
             bandwidth);
-    fprintf(csv, "case,particles,threads,spread,median_Mps,best_Mps,p2g_ns,grid_ns,g2p_ns,law_ns,sort_ns,"
-                 "callbacks_ns,ns_per_node,share_of_fma,share_of_bandwidth,bytes_per_particle,resorts,"
-                 "allocations,hash\n");
+    fprintf(
+        csv,
+        "case,particles,threads,spread,median_Mps,best_Mps,weights_ns,p2g_ns,grid_ns,g2p_ns,law_ns,sort_ns,"
+        "callbacks_ns,ns_per_node,share_of_fma,share_of_bandwidth,bytes_per_particle,resorts,"
+        "allocations,hash\n");
   }
   int32_t bad = 0;
   for (int32_t c = 0; c < CASES; ++c)

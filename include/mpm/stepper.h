@@ -306,6 +306,7 @@ typedef struct mpm_profile {
   double solve;         /**< linear solves */
   double callbacks;     /**< the host's callbacks */
   double total;         /**< whole steps */
+  double weights;       /**< of p2g and g2p, weights of the basis: from samples */
 } mpm_profile;
 
 /** Copies the times into out, then sets them to zero if reset is not 0. Costs the steps one clock read per

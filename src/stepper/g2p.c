@@ -369,6 +369,8 @@ static void g2p_task(void *data, int64_t k) {
                           (int32_t)(s->blocks.neighbours * (p + n) / slots));
         one_batch(&b, start[block] + p, n, sums);
       }
+      mpmi_sample_weights(s, b.scratch, b.gather.axis, job->need, &b.gather.points, start[block],
+                          start[block + 1]);
     }
   }
 }

@@ -96,6 +96,8 @@ static void p2g_task(void *data, int64_t k) {
       mpmi_block_axes(grid, s->blocks.coord[block], scatter.axis);
       scatter.tile = tile;
       scatter_block(job, &scatter, block, start[block], start[block + 1]);
+      mpmi_sample_weights(s, &s->scratch[k], scatter.axis, job->need, &scatter.points, start[block],
+                          start[block + 1]);
     }
     mpmi_tile_add(s, block, job->nodes, job->values, tile);
   }

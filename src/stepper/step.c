@@ -1,16 +1,8 @@
 /* One explicit step: USL, USF and MUSL (table in docs/theory.md), whole or in three parts with the host in
  * between. */
-#define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "stepper/stepper.h"
 
 #include <math.h>
-#include <time.h>
-
-double mpmi_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm_task_fn task, void *data) {
   const mpm_context *c = s->context;
@@ -75,7 +67,7 @@ static mpm_status begin_part(mpm_stepper *s, double dt) {
   for (int32_t k = 0; k < s->tasks; ++k) {
     mpmi_failure_clear(&s->scratch[k].failure);
     s->scratch[k].left_tile = s->scratch[k].removes = 0;
-    s->scratch[k].law_seconds = 0.0;
+    s->scratch[k].law_seconds = s->scratch[k].weights_seconds = 0.0;
   }
   for (int32_t f = 0; f < 6; ++f)
     for (int32_t c = 0; c < 3; ++c) s->impulse_in_step[f][c] = 0.0;
@@ -110,7 +102,10 @@ static mpm_status particles_part(mpm_stepper *s, double dt) {
   if (!status && musl) status = gather(s, MPMI_G2P_DEFORM, s->again, 4, dt, &clock);
   /* the law runs inside the tasks: its share of their time is moved from g2p */
   double law = 0.0;
-  for (int32_t k = 0; k < s->tasks; ++k) law += s->scratch[k].law_seconds / s->tasks;
+  for (int32_t k = 0; k < s->tasks; ++k) {
+    law += s->scratch[k].law_seconds / s->tasks;
+    s->seconds[MPMI_TIME_WEIGHTS] += s->scratch[k].weights_seconds / s->tasks;
+  }
   s->seconds[MPMI_TIME_LAW] += law;
   s->seconds[MPMI_TIME_G2P] -= law;
   return status;

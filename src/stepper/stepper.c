@@ -343,25 +343,6 @@ SETTER(mpm_stepper_set_force, mpm_particle_fn, force)
 SETTER(mpm_stepper_set_velocity_bc, mpm_velocity_fn, velocity_bc)
 SETTER(mpm_stepper_set_progress, mpm_progress_fn, progress)
 
-mpm_status mpm_stepper_profile(mpm_stepper *s, int32_t reset, mpm_profile *out) {
-  MPMI_ENTER(s, MPMI_STEPPER);
-  if (!out) return mpmi_fail(s->context, MPM_E_ARG, "out is NULL");
-  const double *t = s->seconds;
-  const mpm_profile profile = {.struct_size = sizeof profile,
-                               .sort = t[MPMI_TIME_SORT],
-                               .p2g = t[MPMI_TIME_P2G],
-                               .grid = t[MPMI_TIME_GRID],
-                               .g2p = t[MPMI_TIME_G2P],
-                               .law = t[MPMI_TIME_LAW],
-                               .callbacks = t[MPMI_TIME_CALLBACKS],
-                               .total = t[MPMI_TIME_TOTAL]};
-  const mpm_status status = mpmi_write_struct(s->context, "mpm_profile", &profile, sizeof profile, out);
-  if (status) return status;
-  s->profiled = 1;
-  if (reset) memset(s->seconds, 0, sizeof s->seconds);
-  return MPM_OK;
-}
-
 mpm_status mpm_stepper_wall_reaction(const mpm_stepper *s, int32_t face, double *force) {
   MPMI_ENTER(s, MPMI_STEPPER);
   if (!force) return mpmi_fail(s->context, MPM_E_ARG, "force is NULL");

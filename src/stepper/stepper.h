@@ -51,7 +51,8 @@ typedef struct mpmi_scratch {
   mpmi_failure failure;
   int32_t left_tile, removes;
   int64_t active; /* nodes with mass */
-  double law_seconds;
+  double law_seconds, weights_seconds;
+  int64_t blocks_seen; /* for sampling */
 } mpmi_scratch;
 
 /* Prescribed particles of one set in one block: impulse on the material, work of moving them. */
@@ -87,6 +88,7 @@ enum {
   MPMI_TIME_LAW,
   MPMI_TIME_CALLBACKS,
   MPMI_TIME_TOTAL,
+  MPMI_TIME_WEIGHTS,
   MPMI_TIMES
 };
 
@@ -297,8 +299,13 @@ void mpmi_survey_moments(const mpm_stepper *s, const mpm_particles *set, int32_t
 /* Everything of the info that does not depend on how the step went. */
 void mpmi_fill_info(const mpm_stepper *s, mpm_step_info *info);
 
+/* profile.c */
+double mpmi_seconds(void);
+/* Now and then makes the weights of a block once more, to know how long that takes. */
+void mpmi_sample_weights(const mpm_stepper *s, mpmi_scratch *scratch, const mpmi_axis *axis, int32_t need,
+                         const mpmi_points *points, int64_t begin, int64_t end);
+
 /* step.c */
 mpm_status mpmi_step(mpm_stepper *s, double dt);
-double mpmi_seconds(void);
 
 #endif

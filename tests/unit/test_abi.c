@@ -307,7 +307,7 @@ END_TEST
 
 #define STRUCT mpm_profile
 START_TEST(layout_of_profile) {
-  SIZE(88);
+  SIZE(96);
   AT(0, struct_size);
   AT(4, reserved);
   AT(8, sort);
@@ -320,6 +320,7 @@ START_TEST(layout_of_profile) {
   AT(64, solve);
   AT(72, callbacks);
   AT(80, total);
+  AT(88, weights);
 }
 END_TEST
 #undef STRUCT
