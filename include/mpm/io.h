@@ -48,12 +48,14 @@ MPM_API mpm_status mpm_write_particles(const mpm_particles *particles, const cha
                                        const char *const *fields);
 
 /** Writes nodal fields of the last step, or of a staged step while one is under way, named as in
- * mpm_grid_map(), as VTK image data (.vti, appended raw) over the box of the active nodes; zeros where no
- * node is active. Vectors have three components in 2-D and 3-D. count 0 (fields may be NULL): every field
- * that the step has kept but "position", which is that of the image's points. Memory follows the active
+ * mpm_grid_map(), as VTK image data (.vti, appended raw) over the box of the active nodes; with open knots,
+ * whose nodes are not evenly spaced at the faces, as a rectilinear grid (.vtr). Extents are indices of nodes;
+ * zeros where no node is active. Vectors have three components in 2-D and 3-D. count 0 (fields may be NULL):
+ * every field that the step has kept but "position", which is that of the points. Memory follows the active
  * nodes; long runs of zeros take no room on storage that knows holes. MPM_E_NOT_FOUND: unknown field.
- * MPM_E_STATE: nothing stepped yet. MPM_E_UNSUPPORTED: as mpm_grid_map(). MPM_E_ARG: a field named twice, or
- * a box of more nodes than a file can hold. MPM_E_IO: the file could not be written. */
+ * MPM_E_STATE: nothing stepped yet. MPM_E_UNSUPPORTED: as mpm_grid_map(). MPM_E_ARG: a field named twice, a
+ * path that ends with the other kind's suffix, or a box of more nodes than a file can hold. MPM_E_IO: the
+ * file could not be written. */
 MPM_API mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count,
                                   const char *const *fields);
 

@@ -179,7 +179,7 @@ public:
     check(mpm_state_hash(core().handle, &hash));
     return hash;
   }
-  /** Writes a .vti file with the named nodal fields, or all: mpm_write_grid(). */
+  /** Writes a .vti file (open knots: .vtr) with the named nodal fields, or all: mpm_write_grid(). */
   void write_grid(const std::string &path, const std::vector<std::string> &names = {}) {
     check(mpm_write_grid(core().handle, path.c_str(), static_cast<int32_t>(names.size()),
                          detail::c_names(names).data()));

@@ -8,23 +8,24 @@ mpm_status mpmi_vtk_check_names(mpm_context *context, int32_t count, const char 
   return MPM_OK;
 }
 
-void mpmi_vtk_add(mpmi_vtk_file *file, const char *name, int32_t field, int32_t type, int32_t components) {
-  file->list[file->count++] = (mpmi_vtk_array){name, field, type, components};
+void mpmi_vtk_add(mpmi_vtk_file *file, const char *name, int32_t field, int32_t type, int32_t components,
+                  int64_t tuples) {
+  file->list[file->count++] = (mpmi_vtk_array){name, field, type, components, tuples};
 }
 
 mpm_status mpmi_vtk_add_named(mpmi_vtk_file *file, const char *name, int32_t field, int32_t type,
-                              int32_t components) {
+                              int32_t components, int64_t tuples) {
   for (int32_t i = 0; i < file->count; ++i)
     if (file->list[i].field == field)
       return mpmi_fail(file->context, MPM_E_ARG, "field \"%s\" is named twice", name);
-  mpmi_vtk_add(file, name, field, type, components);
+  mpmi_vtk_add(file, name, field, type, components, tuples);
   return MPM_OK;
 }
 
 /* With the number of its bytes, which stands before it. */
-static int32_t add_bytes(const mpmi_vtk_file *file, const mpmi_vtk_array *a, int64_t *sum) {
+static int32_t add_bytes(const mpmi_vtk_array *a, int64_t *sum) {
   int64_t bytes;
-  return !__builtin_mul_overflow(file->tuples, a->components * (int64_t)mpmi_type_size(a->type), &bytes) &&
+  return !__builtin_mul_overflow(a->tuples, a->components * (int64_t)mpmi_type_size(a->type), &bytes) &&
          !__builtin_add_overflow(bytes, (int64_t)sizeof(uint64_t), &bytes) &&
          !__builtin_add_overflow(*sum, bytes, sum);
 }
@@ -32,7 +33,7 @@ static int32_t add_bytes(const mpmi_vtk_file *file, const mpmi_vtk_array *a, int
 int32_t mpmi_vtk_fits(const mpmi_vtk_file *file) {
   int64_t sum = 1 << 20; /* the head */
   for (int32_t i = 0; i < file->count; ++i)
-    if (!add_bytes(file, &file->list[i], &sum)) return 0;
+    if (!add_bytes(&file->list[i], &sum)) return 0;
   return 1;
 }
 
@@ -58,7 +59,7 @@ void mpmi_vtk_tags(mpmi_vtk_file *file, int32_t begin, int32_t end) {
             "        <DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" "
             "offset=\"%lld\"/>\n",
             type_name[a->type], a->name, (int)a->components, (long long)file->offset);
-    add_bytes(file, a, &file->offset);
+    add_bytes(a, &file->offset);
   }
 }
 
@@ -67,7 +68,7 @@ void mpmi_vtk_start_data(mpmi_vtk_file *file, const char *kind) {
 }
 
 void mpmi_vtk_start_array(mpmi_vtk_file *file, const mpmi_vtk_array *a) {
-  const uint64_t bytes = (uint64_t)file->tuples * (uint64_t)a->components * mpmi_type_size(a->type);
+  const uint64_t bytes = (uint64_t)a->tuples * (uint64_t)a->components * mpmi_type_size(a->type);
   mpmi_output_write(&file->out, &bytes, sizeof bytes);
 }
 

@@ -13,12 +13,12 @@ typedef struct mpmi_vtk_array {
   const char *name;
   int32_t field; /* number that the writer knows it by */
   int32_t type, components;
+  int64_t tuples;
 } mpmi_vtk_array;
 
 typedef struct mpmi_vtk_file {
   mpm_context *context;
   mpmi_output out;
-  int64_t tuples; /* of every array */
   int64_t offset; /* of the next array in the appended data */
   int32_t count;
   mpmi_vtk_array list[MPMI_VTK_ARRAYS];
@@ -26,10 +26,11 @@ typedef struct mpmi_vtk_file {
 
 /* Before the file is there: which arrays it has. */
 mpm_status mpmi_vtk_check_names(mpm_context *context, int32_t count, const char *const *fields);
-void mpmi_vtk_add(mpmi_vtk_file *file, const char *name, int32_t field, int32_t type, int32_t components);
+void mpmi_vtk_add(mpmi_vtk_file *file, const char *name, int32_t field, int32_t type, int32_t components,
+                  int64_t tuples);
 /* The same for a field that the host names: MPM_E_ARG when it is there already. */
 mpm_status mpmi_vtk_add_named(mpmi_vtk_file *file, const char *name, int32_t field, int32_t type,
-                              int32_t components);
+                              int32_t components, int64_t tuples);
 /* Is there an offset for every byte of the arrays? */
 int32_t mpmi_vtk_fits(const mpmi_vtk_file *file);
 

@@ -1,5 +1,6 @@
-/* Nodal fields as VTK image data over the box of the active nodes. Nodes are visited in the order of the
- * image; what lies between them is zeros, so that memory follows the material and not the box. */
+/* Nodal fields as VTK image data over the box of the active nodes, or as a rectilinear grid where open knots
+ * leave nodes that are not a spacing apart. Nodes are visited in the order of the image; what lies between
+ * them is zeros, so that memory follows the material and not the box. */
 #include "context/radix.h"
 #include "io/vtk_file.h"
 #include "stepper/node_view.h"
@@ -8,11 +9,14 @@
 #include <string.h>
 
 enum { BUFFER = 4096 };
+enum { COORDINATES = -1 }; /* and less: of an axis, beside the numbers of fields */
 
 typedef struct image {
   mpm_stepper *s;
   mpmi_vtk_file file;
+  int32_t uneven;          /* nodes are not a spacing apart */
   int64_t low[3], size[3]; /* of the box, in nodes; 1 on axes that do not exist */
+  int64_t points;          /* of the box */
   int64_t n;               /* active nodes, by ascending place: */
   int64_t *slot;           /* [n] */
   uint64_t *place;         /* [n] in the image, x fastest */
@@ -23,6 +27,8 @@ static int32_t shown_components(const mpm_stepper *s, int32_t field) {
   return mpmi_node_fields[field].scalar ? 1 : s->grid->dim > 1 ? 3 : 1;
 }
 
+static const char *const axis_names[] = {"x", "y", "z"};
+
 static mpm_status choose_arrays(image *w, int32_t count, const char *const *fields) {
   const mpm_stepper *s = w->s;
   mpm_status status = mpmi_vtk_check_names(s->context, count, fields);
@@ -32,17 +38,20 @@ static mpm_status choose_arrays(image *w, int32_t count, const char *const *fiel
     if (!status) status = mpmi_node_check_kept(s, f);
     if (!status)
       status = mpmi_vtk_add_named(&w->file, mpmi_node_fields[f].name, f, mpmi_node_fields[f].type,
-                                  shown_components(s, f));
+                                  shown_components(s, f), w->points);
   }
   for (int32_t f = 0; f < MPMI_NODE_FIELDS && !count && !status; ++f) {
     /* the points of the image are the positions, and only what the step has kept is there */
     if (f == MPMI_NODE_POSITION || !mpmi_node_keeps(s, f)) continue;
-    mpmi_vtk_add(&w->file, mpmi_node_fields[f].name, f, mpmi_node_fields[f].type, shown_components(s, f));
+    mpmi_vtk_add(&w->file, mpmi_node_fields[f].name, f, mpmi_node_fields[f].type, shown_components(s, f),
+                 w->points);
   }
+  for (int32_t k = 0; k < 3 && w->uneven; ++k)
+    mpmi_vtk_add(&w->file, axis_names[k], COORDINATES - k, MPM_F64, 1, w->size[k]);
   return status;
 }
 
-static mpm_status find_box(image *w) {
+static void find_box(image *w) {
   const mpm_stepper *s = w->s;
   int64_t high[3] = {0, 0, 0};
   for (int64_t i = 0; i < s->active_count; ++i) {
@@ -53,14 +62,17 @@ static mpm_status find_box(image *w) {
       if (i == 0 || index[k] > high[k]) high[k] = index[k];
     }
   }
-  w->file.tuples = 1; /* does not overflow: grids have no more nodes than 63 bits can number */
+  w->points = 1; /* does not overflow: grids have no more nodes than 63 bits can number */
   for (int32_t k = 0; k < 3; ++k) {
     w->size[k] = s->active_count ? high[k] - w->low[k] + 1 : 0;
-    w->file.tuples *= w->size[k];
+    w->points *= w->size[k];
   }
+}
+
+static mpm_status check_box(const image *w) {
   if (mpmi_vtk_fits(&w->file)) return MPM_OK;
   return mpmi_fail(
-      s->context, MPM_E_ARG,
+      w->s->context, MPM_E_ARG,
       "the box of the active nodes has %lld x %lld x %lld nodes, more than a file can hold: read "
       "the fields with mpm_grid_map()",
       (long long)w->size[0], (long long)w->size[1], (long long)w->size[2]);
@@ -100,6 +112,10 @@ static mpm_status sort_nodes(image *w) {
   return MPM_OK;
 }
 
+static const char *kind_of(const image *w) {
+  return w->uneven ? "RectilinearGrid" : "ImageData";
+}
+
 static void write_head(image *w) {
   const mpm_grid_desc *grid = &w->s->grid->desc;
   FILE *stream = w->file.out.stream;
@@ -111,13 +127,29 @@ static void write_head(image *w) {
     mpmi_print_real(grid->origin[k], number[k]);
     mpmi_print_real(grid->spacing[k], number[3 + k]);
   }
-  fprintf(stream,
-          "  <ImageData WholeExtent=\"%s\" Origin=\"%s %s %s\" Spacing=\"%s %s %s\">\n"
-          "    <Piece Extent=\"%s\">\n"
-          "      <PointData>\n",
-          extent, number[0], number[1], number[2], number[3], number[4], number[5], extent);
-  mpmi_vtk_tags(&w->file, 0, w->file.count);
+  fprintf(stream, "  <%s WholeExtent=\"%s\"", kind_of(w), extent);
+  if (!w->uneven)
+    fprintf(stream, " Origin=\"%s %s %s\" Spacing=\"%s %s %s\"", number[0], number[1], number[2], number[3],
+            number[4], number[5]);
+  fprintf(stream, ">\n    <Piece Extent=\"%s\">\n      <PointData>\n", extent);
+  const int32_t fields = w->file.count - (w->uneven ? 3 : 0);
+  mpmi_vtk_tags(&w->file, 0, fields);
   fputs("      </PointData>\n", stream);
+  if (!w->uneven) return;
+  fputs("      <Coordinates>\n", stream);
+  mpmi_vtk_tags(&w->file, fields, w->file.count);
+  fputs("      </Coordinates>\n", stream);
+}
+
+static void write_coordinates(image *w, int32_t axis) {
+  const mpm_grid *grid = w->s->grid;
+  double buffer[BUFFER];
+  for (int64_t begin = 0, n; begin < w->size[axis]; begin += n) {
+    n = w->size[axis] - begin < BUFFER ? w->size[axis] - begin : BUFFER;
+    for (int64_t i = 0; i < n; ++i)
+      buffer[i] = axis < grid->dim ? mpmi_node_position(grid, axis, w->low[axis] + begin + i) : 0.0;
+    mpmi_output_write(&w->file.out, buffer, (size_t)n * sizeof *buffer);
+  }
 }
 
 static void write_array(image *w, const mpmi_vtk_array *a) {
@@ -125,6 +157,10 @@ static void write_array(image *w, const mpmi_vtk_array *a) {
   double buffer[BUFFER]; /* of I64 too, which are as large */
   int64_t end = 0;
   mpmi_vtk_start_array(&w->file, a);
+  if (a->field <= COORDINATES) {
+    write_coordinates(w, COORDINATES - a->field);
+    return;
+  }
   for (int64_t i = 0, run; i < w->n; i += run) {
     const int64_t begin = (int64_t)w->place[i];
     for (run = 1; run < most && i + run < w->n && (int64_t)w->place[i + run] == begin + run;) ++run;
@@ -134,24 +170,42 @@ static void write_array(image *w, const mpmi_vtk_array *a) {
     mpmi_output_write(&w->file.out, buffer, (size_t)(run * tuple));
     end = begin + run;
   }
-  mpmi_output_zeros(&w->file.out, (w->file.tuples - end) * tuple);
+  mpmi_output_zeros(&w->file.out, (w->points - end) * tuple);
+}
+
+/* Readers choose by the suffix what they expect to find. */
+static mpm_status check_suffix(const image *w, const char *path) {
+  const char *suffix = strrchr(path, '.');
+  if (!suffix || strcmp(suffix, w->uneven ? ".vti" : ".vtr")) return MPM_OK;
+  return mpmi_fail(w->s->context, MPM_E_ARG,
+                   w->uneven
+                       ? "\"%s\": nodes of open knots are not evenly spaced, which makes the file a "
+                         "rectilinear grid: let its name end with .vtr"
+                       : "\"%s\": the nodes are evenly spaced, which makes the file image data: let its "
+                         "name end with .vti",
+                   path);
 }
 
 mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count, const char *const *fields) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
   mpm_context *context = stepper->context;
-  image w = {.s = stepper, .file = {.context = context}};
+  image w = {.s = stepper,
+             .file = {.context = context},
+             .uneven = stepper->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2};
   mpm_status status = mpmi_check_path(context, path);
+  if (!status) status = check_suffix(&w, path);
   if (!status) status = mpmi_nodes_ready(stepper);
-  if (!status) status = choose_arrays(&w, count, fields);
   if (!status) status = mpmi_nodes_list(stepper);
-  if (!status) status = find_box(&w);
+  if (status) return status;
+  find_box(&w);
+  status = choose_arrays(&w, count, fields);
+  if (!status) status = check_box(&w);
   if (!status) status = sort_nodes(&w);
   if (status) return status;
-  status = mpmi_vtk_open(&w.file, path, "ImageData");
+  status = mpmi_vtk_open(&w.file, path, kind_of(&w));
   if (!status) {
     write_head(&w);
-    mpmi_vtk_start_data(&w.file, "ImageData");
+    mpmi_vtk_start_data(&w.file, kind_of(&w));
     for (int32_t i = 0; i < w.file.count; ++i) write_array(&w, &w.file.list[i]);
     status = mpmi_vtk_close(&w.file);
   }

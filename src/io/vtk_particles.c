@@ -29,22 +29,23 @@ static mpm_status add_named(writer *w, const char *name) {
   const mpmi_field *field = &set->field[f];
   if (field->components == 0)
     return mpmi_fail(set->context, MPM_E_NOT_FOUND, "the law of this set has no state to write");
-  return mpmi_vtk_add_named(&w->file, field->name, f, field->type,
-                            shown_components(field, f, set->grid->dim));
+  return mpmi_vtk_add_named(&w->file, field->name, f, field->type, shown_components(field, f, set->grid->dim),
+                            set->count);
 }
 
 static mpm_status choose_arrays(writer *w, int32_t count, const char *const *fields) {
   const mpm_particles *set = w->set;
   mpm_status status = mpmi_vtk_check_names(set->context, count, fields);
   if (status) return status;
-  mpmi_vtk_add(&w->file, "points", POINTS, MPM_F64, 3);
-  mpmi_vtk_add(&w->file, "connectivity", NUMBERS, MPM_I64, 1);
-  mpmi_vtk_add(&w->file, "offsets", ENDS, MPM_I64, 1);
+  mpmi_vtk_add(&w->file, "points", POINTS, MPM_F64, 3, set->count);
+  mpmi_vtk_add(&w->file, "connectivity", NUMBERS, MPM_I64, 1, set->count);
+  mpmi_vtk_add(&w->file, "offsets", ENDS, MPM_I64, 1, set->count);
   for (int32_t i = 0; i < count && !status; ++i) status = add_named(w, fields[i]);
   for (int32_t f = 0; f < set->field_count && !count; ++f) {
     const mpmi_field *field = &set->field[f];
     if (field->present && f != MPMI_POSITION) /* the points are the positions */
-      mpmi_vtk_add(&w->file, field->name, f, field->type, shown_components(field, f, set->grid->dim));
+      mpmi_vtk_add(&w->file, field->name, f, field->type, shown_components(field, f, set->grid->dim),
+                   set->count);
   }
   return status;
 }
@@ -118,7 +119,7 @@ mpm_status mpm_write_particles(const mpm_particles *particles, const char *path,
   mpm_context *context = particles->context;
   if (particles->stepper && particles->stepper->phase == MPMI_RUNNING)
     return mpmi_fail(context, MPM_E_STATE, "mpm_write_particles() must not be called from a callback");
-  writer w = {.set = particles, .file = {.context = context, .tuples = particles->count}};
+  writer w = {.set = particles, .file = {.context = context}};
   mpm_status status = mpmi_check_path(context, path);
   if (!status) status = choose_arrays(&w, count, fields);
   if (!status) status = settle(&w);

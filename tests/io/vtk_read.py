@@ -7,12 +7,13 @@ import os
 import sys
 import xml.etree.ElementTree as ElementTree
 
-from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPolyDataReader
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPolyDataReader, vtkXMLRectilinearGridReader
 
 # Fields that take no memory until they are used: a file of all fields may leave them out.
 OPTIONAL = {"acceleration", "velocity_gradient", "applied_force", "prescribed", "size", "image"}
 VECTORS = {"velocity", "acceleration", "size", "reference_position", "applied_force", "position", "force", "reaction",
            "index"}
+READERS = {".vtp": vtkXMLPolyDataReader, ".vti": vtkXMLImageDataReader, ".vtr": vtkXMLRectilinearGridReader}
 SHOWN = {"F64": "double", "I64": ("long", "long long", "vtktypeint64"), "U8": "unsigned char"}
 
 
@@ -21,7 +22,7 @@ def fail(text):
 
 
 def read(path):
-    reader = vtkXMLImageDataReader() if path.endswith(".vti") else vtkXMLPolyDataReader()
+    reader = READERS[path[-4:]]()
     errors = []
     reader.AddObserver("ErrorEvent", lambda *_: errors.append(path))
     reader.AddObserver("WarningEvent", lambda *_: errors.append(path))
@@ -168,11 +169,11 @@ def main():
     files = sorted(name for name in os.listdir(directory) if name.endswith(".vtp"))
     checked = [check_file(os.path.join(directory, name)) for name in files]
     images = [check_image(os.path.join(directory, name))
-              for name in sorted(os.listdir(directory)) if name.endswith(".vti")]
+              for name in sorted(os.listdir(directory)) if name.endswith((".vti", ".vtr"))]
     series = check_series(directory, times)
     if len(checked) < 50 or series != 3 or max(points for _, points in checked) < 1500:
         fail("too little to check")
-    if len(images) < 12 or max(zeros for _, zeros in images) < 1000:
+    if len(images) < 24 or max(zeros for _, zeros in images) < 1000:
         fail("too few images to check")
     print("vtk_read.py: %d sets, %d images, %d arrays, a series of %d" % (
         len(checked), len(images), sum(a for a, _ in checked + images), series))

@@ -47,8 +47,8 @@ static void write_image(mpm_stepper *stepper, const char *directory, const char 
 
 /* Two bodies apart, one in a corner, walls and a periodic axis: ghosts and images are active, and there are
  * gaps. */
-static mpm_stepper *open_scene(int32_t dim, int32_t transfer, mpm_grid **grid, mpm_material **material,
-                               mpm_particles **set) {
+static mpm_stepper *open_scene(int32_t dim, int32_t open_knots, int32_t transfer, mpm_grid **grid,
+                               mpm_material **material, mpm_particles **set) {
   mpm_stepper *stepper;
   mpm_grid_desc g;
   OK(mpm_grid_desc_init(&g, sizeof g));
@@ -56,7 +56,8 @@ static mpm_stepper *open_scene(int32_t dim, int32_t transfer, mpm_grid **grid, m
   for (int32_t k = 0; k < dim; ++k)
     g.cells[k] = 40 - 10 * k, g.spacing[k] = 0.1 + 0.03 * k, g.origin[k] = -1.0 / (k + 3);
   g.periodic[0] = dim == 2;
-  g.basis = dim == 1 ? MPM_LINEAR : MPM_BSPLINE2;
+  g.basis = open_knots ? (dim == 2 ? MPM_BSPLINE2 : MPM_BSPLINE3) : dim == 1 ? MPM_LINEAR : MPM_BSPLINE2;
+  g.boundary_basis = open_knots ? MPM_BOUNDARY_OPEN_KNOT : MPM_BOUNDARY_GHOST;
   OK(mpm_grid_create(context, &g, grid));
   const mpm_param params[] = {{"E", 1e5}, {"nu", 0.3}, {"density", 1e3}};
   OK(mpm_material_create(context, "neo_hookean", params, 3, material));
@@ -83,22 +84,24 @@ static mpm_stepper *open_scene(int32_t dim, int32_t transfer, mpm_grid **grid, m
 
 int main(int argc, char **argv) {
   static const char *const some[] = {"reaction", "position", "mass"};
-  static const int32_t transfer[] = {MPM_FLIP, MPM_APIC_MLS, MPM_APIC};
+  static const int32_t transfer[2][3] = {{MPM_FLIP, MPM_APIC_MLS, MPM_APIC}, {MPM_FLIP, MPM_TPIC, MPM_APIC}};
   if (argc != 2) return 2;
   OK(mpm_context_create(NULL, &context));
-  for (int32_t dim = 1; dim <= 3; ++dim) {
+  for (int32_t i = 0; i < 6; ++i) {
+    const int32_t dim = 1 + i % 3, open_knots = i / 3;
+    const char *const suffix = open_knots ? "vtr" : "vti";
     mpm_grid *grid;
     mpm_material *material;
     mpm_particles *set;
-    mpm_stepper *stepper = open_scene(dim, transfer[dim - 1], &grid, &material, &set);
+    mpm_stepper *stepper = open_scene(dim, open_knots, transfer[open_knots][dim - 1], &grid, &material, &set);
     char name[64];
     for (int32_t k = 0; k < 5; ++k) OK(mpm_step(stepper, 1e-3, NULL));
-    snprintf(name, sizeof name, "all_%d.vti", (int)dim);
+    snprintf(name, sizeof name, "all_%d.%s", (int)dim, suffix);
     write_image(stepper, argv[1], name, 0, NULL);
-    snprintf(name, sizeof name, "some_%d.vti", (int)dim);
+    snprintf(name, sizeof name, "some_%d.%s", (int)dim, suffix);
     write_image(stepper, argv[1], name, 3, some);
     OK(mpm_step_begin(stepper, 1e-3));
-    snprintf(name, sizeof name, "begun_%d.vti", (int)dim);
+    snprintf(name, sizeof name, "begun_%d.%s", (int)dim, suffix);
     write_image(stepper, argv[1], name, 0, NULL);
     OK(mpm_step_grid(stepper));
     OK(mpm_step_end(stepper, NULL));
@@ -111,7 +114,7 @@ int main(int argc, char **argv) {
       OK(mpm_particles_remove(set, 1, &id));
     }
     OK(mpm_step(stepper, 1e-3, NULL));
-    snprintf(name, sizeof name, "empty_%d.vti", (int)dim);
+    snprintf(name, sizeof name, "empty_%d.%s", (int)dim, suffix);
     write_image(stepper, argv[1], name, 0, NULL);
     OK(mpm_stepper_destroy(stepper));
     OK(mpm_particles_destroy(set));

@@ -42,6 +42,11 @@ static void expect_field(const scene *on, FILE *out, const char *name, int32_t t
   free(values);
 }
 
+/* The steppers here ask for none of the fields that only some keep. */
+static int is_kept(const char *field, int32_t components) {
+  return components && strcmp(field, "reference_position") && strcmp(field, "dilation_ratio");
+}
+
 /* The file, and beside it what must be in it: the named fields, or all that the set has. */
 static void write_set(const scene *on, const char *directory, const char *name, int32_t count,
                       const char *const *fields) {
@@ -57,8 +62,7 @@ static void write_set(const scene *on, const char *directory, const char *name, 
   for (int32_t f = 0; !mpm_particles_field_info(on->set, f, &field, &type, &components, NULL); ++f) {
     int32_t wanted = !count || !strcmp(field, "position"); /* the points */
     for (int32_t i = 0; i < count; ++i) wanted |= !strcmp(field, fields[i]);
-    if (!strcmp(field, "reference_position") || !components) wanted = 0; /* none is kept */
-    if (wanted) expect_field(on, out, field, type, components);
+    if (wanted && is_kept(field, components)) expect_field(on, out, field, type, components);
   }
   fclose(out);
 }
@@ -127,7 +131,7 @@ static void write_one_by_one(const scene *on, const char *directory) {
   int32_t components;
   for (int32_t f = 0; !mpm_particles_field_info(on->set, f, &field, NULL, &components, NULL); ++f) {
     char name[96];
-    if (!strcmp(field, "reference_position") || !components) continue; /* none is kept */
+    if (!is_kept(field, components)) continue;
     snprintf(name, sizeof name, "one_%s_%d.vtp", field, (int)on->dim);
     write_set(on, directory, name, 1, &field);
   }

@@ -239,6 +239,7 @@ START_TEST(refused) {
   ck_refused(c, mpm_write_grid(w.stepper, path, 3, twice), MPM_E_ARG, "\"mass\" is named twice");
   ck_refused(c, mpm_write_grid(w.stepper, "no/such/place.vti", 0, NULL), MPM_E_IO, "no/such/place.vti");
   ck_assert_int_ne(access(path, F_OK), 0);
+  ck_refused(c, mpm_write_grid(w.stepper, "refused.vtr", 0, NULL), MPM_E_ARG, "end with .vti");
   for (int64_t k = 1; k <= 3; ++k) { /* the list of nodes; places; order; the file's name */
     w.f.calls = 0;
     w.f.fail_at = k;
@@ -284,6 +285,89 @@ START_TEST(fields_of_the_last_step) {
 }
 END_TEST
 
+/* ---- open knots: nodes at Greville points ---- */
+static void open_knots(io_world *w, int32_t dim, int32_t basis) {
+  mpm_grid_desc grid = fixture_grid(dim);
+  const int32_t per_cell[3] = {2, 2, 2};
+  grid.basis = basis;
+  grid.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
+  for (int32_t k = 0; k < dim; ++k)
+    grid.cells[k] = 9, grid.spacing[k] = 0.1 + 0.07 * k, grid.origin[k] = k - 0.3, grid.periodic[k] = k == 1;
+  double upper[3];
+  for (int32_t k = 0; k < 3; ++k) upper[k] = grid.origin[k] + (k ? 6.0 : 9.0) * grid.spacing[k];
+  io_open_context(w, 1);
+  ck_ok(mpm_grid_create(w->f.context, &grid, &w->f.grid));
+  io_open_sets(w);
+  const io_setup setup = io_plain(dim);
+  const mpm_stepper_desc desc = io_stepper_desc(&setup);
+  ck_ok(mpm_stepper_create(w->f.context, w->f.grid, &desc, &w->stepper));
+  for (int32_t m = 0; m < WORLD_SETS; ++m) ck_ok(mpm_stepper_add(w->stepper, w->set[m]));
+  ck_ok(mpm_particles_fill_box(w->set[0], grid.origin, upper, per_cell, NULL, NULL));
+  ck_ok(mpm_step(w->stepper, 1e-5, NULL));
+}
+
+/* First byte of the coordinates along an axis. */
+static int64_t find_coordinates(const image *f, int32_t axis) {
+  static const char *const name[] = {"Name=\"x\"", "Name=\"y\"", "Name=\"z\""};
+  const char *at = strstr(f->head, "<Coordinates>");
+  long long offset = -1;
+  ck_assert_ptr_nonnull(at);
+  at = strstr(at, name[axis]);
+  ck_assert_ptr_nonnull(at);
+  ck_assert_int_eq(sscanf(at + strlen(name[axis]),
+                          " NumberOfComponents=\"1\" format=\"appended\" offset=\"%lld\"", &offset),
+                   1);
+  uint64_t bytes = 0;
+  fseeko(f->file, f->data + offset, SEEK_SET);
+  ck_assert_uint_eq(fread(&bytes, sizeof bytes, 1, f->file), 1);
+  ck_assert_uint_eq(bytes, (uint64_t)(f->high[axis] - f->low[axis] + 1) * sizeof(double));
+  return f->data + offset + (int64_t)sizeof bytes;
+}
+
+/* Points stand where the nodes do, to the bit, and fields are the nodes' own. */
+START_TEST(open_knots_are_rectilinear) {
+  const int32_t dim = 1 + _i % 3, cubic = _i / 3;
+  io_world w;
+  open_knots(&w, dim, cubic ? MPM_BSPLINE3 : MPM_BSPLINE2);
+  static image f;
+  io_path("open.vti", f.path, sizeof f.path);
+  unlink(f.path);
+  ck_refused(w.f.context, mpm_write_grid(w.stepper, f.path, 0, NULL), MPM_E_ARG, ".vtr");
+  ck_assert_int_ne(access(f.path, F_OK), 0);
+  io_path("open.vtr", f.path, sizeof f.path);
+  ck_ok(mpm_write_grid(w.stepper, f.path, 0, NULL));
+  open_image(&f);
+  ck_assert_ptr_nonnull(strstr(f.head, "<VTKFile type=\"RectilinearGrid\""));
+  ck_assert_ptr_null(strstr(f.head, "Spacing"));
+  for (int32_t k = 0; k < ALL; ++k) ck_assert_int_eq(check_field(&f, w.stepper, all[k], 1), k != 1);
+  mpm_view index = map(w.stepper, "index"), position = map(w.stepper, "position");
+  for (int32_t k = 0; k < 3; ++k) {
+    const int64_t array = find_coordinates(&f, k);
+    double x = 1.0, last;
+    read_tuple(&f, array, 0, 1, &x);
+    if (k >= dim) ck_assert(x == 0.0);
+    for (int64_t p = 1; p <= f.high[k] - f.low[k]; ++p, x = last) {
+      read_tuple(&f, array, p, 1, &last);
+      ck_assert_double_gt(last, x);
+    }
+    for (int64_t i = 0; i < index.count && k < dim; ++i) {
+      read_tuple(&f, array, ((const int64_t *)index.data)[i + k * index.component_stride] - f.low[k], 1, &x);
+      ck_assert(x == ((const double *)position.data)[i + k * position.component_stride]);
+    }
+  }
+  /* the body reaches from face to face: cubic functions are -1 ... 10 at 0, 1/3, 1 ... 8 2/3, 9 cells */
+  double second;
+  read_tuple(&f, find_coordinates(&f, 0), 1, 1, &second);
+  ck_assert_double_eq_tol(second, -0.3 + 0.1 * (cubic ? 1.0 / 3.0 : 0.5), 1e-15);
+  ck_assert_int_eq(f.low[0], cubic ? -1 : 0);
+  ck_assert_int_eq(f.high[0], 10);
+  ck_ok(mpm_view_release(&position));
+  ck_ok(mpm_view_release(&index));
+  fclose(f.file);
+  io_close(&w);
+}
+END_TEST
+
 TCase *io_grid_case(void) {
   TCase *tests = tcase_create("grid output");
   tcase_set_timeout(tests, 60);
@@ -292,5 +376,6 @@ TCase *io_grid_case(void) {
   tcase_add_test(tests, box_beyond_a_file);
   tcase_add_test(tests, refused);
   tcase_add_test(tests, fields_of_the_last_step);
+  tcase_add_loop_test(tests, open_knots_are_rectilinear, 0, 6);
   return tests;
 }
