@@ -3,6 +3,7 @@
 #   make                 both libraries in $(BUILD)
 #   make install         PREFIX=/usr/local, DESTDIR=
 #   make check           unit tests, interface tests, examples (needs Check and pkg-config: make check-setup)
+#   make verify          the method against exact solutions, with a table of gates: docs/verification.md
 #   make demo            one example, with nothing but a C compiler
 #
 # V=1 shows the commands. CFLAGS and LDFLAGS are the user's; OPT and KERNEL_OPT, which come after CFLAGS, set
@@ -68,7 +69,7 @@ UNIT := $(BUILD)/tests/unit
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
-.PHONY: docs fuzz-programs fuzz check-fuzz
+.PHONY: docs fuzz-programs fuzz check-fuzz verify verify-quick verify-plots
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -276,6 +277,33 @@ check-fuzz: fuzz-programs
 # Plants known faults one by one in a copy of the sources and expects the unit tests to notice each.
 mutate: $(UNIT)
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/run.sh
+
+# ---- verification ----------------------------------------------------------------------------------------
+# Every tests/verification/X.c is a host program of the shared library that compares it with exact solutions and prints
+# its gates; CSV files, logs and the table of gates go to $(VERIFIED). A file with a header of its name is shared by the
+# cases. The long cases start first. CASES="a b" selects.
+VERIFIED = $(BUILD)/verification
+VERIFY_HEADERS := $(sort $(wildcard tests/verification/*.h))
+VERIFY_SHARED := $(VERIFY_HEADERS:.h=.c)
+VERIFY_LONG := cube_convergence
+VERIFY_ALL := $(basename $(notdir $(filter-out $(VERIFY_SHARED),$(sort $(wildcard tests/verification/*.c)))))
+CASES ?= $(filter $(VERIFY_LONG),$(VERIFY_ALL)) $(filter-out $(VERIFY_LONG),$(VERIFY_ALL))
+VERIFY := $(CASES:%=$(VERIFIED)/%)
+VERIFY_JOBS ?= 2
+$(VERIFIED)/%: tests/verification/%.c $(VERIFY_SHARED) $(VERIFY_HEADERS) $(SHARED_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) -std=c11 -Iinclude $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) $(filter %.c,$^) -L$(BUILD) \
+	  -Wl,-rpath,'$$ORIGIN/..' $(LDFLAGS) -lmpm -lm -o $@
+
+verify: $(VERIFY)
+	@bash tests/verification/run.sh $(VERIFIED)/full $(VERIFY_JOBS) $(VERIFY)
+verify-quick: $(VERIFY)
+	@bash tests/verification/run.sh $(VERIFIED)/quick $(VERIFY_JOBS) --quick $(VERIFY)
+# Takes the numbers of the last `make verify` into docs/verification: plots, and the tables of docs/verification.md.
+verify-plots:
+	cp $(VERIFIED)/full/*.csv docs/verification
+	/usr/bin/python3 docs/verification/plot.py
 
 # ---- reference -------------------------------------------------------------------------------------------
 # HTML from the headers, into $(BUILD)/docs/html; anything without a comment is an error.

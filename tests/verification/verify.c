@@ -1,0 +1,157 @@
+#include "verify.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+static struct {
+  const char *name, *out;
+  int quick, failed;
+} state = {.out = "."};
+
+static void stop(const char *text, const char *detail) {
+  fprintf(stderr, "%s: %s%s\n", state.name, text, detail);
+  exit(2);
+}
+
+void verify_begin(const char *name, int argc, char **argv) {
+  state.name = name;
+  for (int i = 1; i < argc; ++i) {
+    if (!strcmp(argv[i], "--quick"))
+      state.quick = 1;
+    else if (!strcmp(argv[i], "--out") && i + 1 < argc)
+      state.out = argv[++i];
+    else
+      stop("options are --quick and --out DIR, not ", argv[i]);
+  }
+}
+
+int verify_quick(void) {
+  return state.quick;
+}
+
+FILE *verify_csv(const char *name) {
+  char path[4096];
+  const int length = snprintf(path, sizeof path, "%s/%s.csv", state.out, name);
+  FILE *file = length > 0 && (size_t)length < sizeof path ? fopen(path, "w") : NULL;
+  if (!file) stop("cannot write ", path);
+  return file;
+}
+
+void verify_progress(const char *format, ...) {
+  va_list arguments;
+  char line[256];
+  va_start(arguments, format);
+  vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  fprintf(stderr, "  %s: %s\n", state.name, line); /* one write, so that lines of two cases do not mix */
+}
+
+static void result(const char *what, double value, double low, double high, const char *verdict,
+                   const char *source, const char *reason) {
+  printf("RESULT %s | %s | %.6g | %g | %g | %s | %s%s%s\n", state.name, what, value, low, high, verdict,
+         source, *reason ? "; " : "", reason);
+  fflush(stdout);
+}
+
+void verify_gate(const char *what, double value, double low, double high, const char *source) {
+  const int ok = value >= low && value <= high;
+  state.failed += !ok;
+  result(what, value, low, high, ok ? "ok" : "FAILED", source, "");
+}
+
+void verify_expected_failure(const char *what, double value, double low, double high, const char *source,
+                             const char *reason) {
+  const int met = value >= low && value <= high;
+  state.failed += met;
+  result(what, value, low, high, met ? "MET" : "expected", source, reason);
+}
+
+int verify_end(void) {
+  return state.failed != 0;
+}
+
+double verify_slope(int32_t n, const double *h, const double *error) {
+  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  for (int32_t i = 0; i < n; ++i) {
+    const double lx = log(h[i]), ly = log(error[i]);
+    x += lx, y += ly, xx += lx * lx, xy += lx * ly;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+void verify_check(const mpm_context *context, mpm_status status, const char *file, int line) {
+  if (!status) return;
+  fprintf(stderr, "%s: %s:%d: %s: %s\n", state.name, file, line, mpm_status_name(status),
+          mpm_last_error(context));
+  exit(2);
+}
+
+verify_setup verify_defaults(int32_t dim, int64_t cells, double h) {
+  verify_setup setup;
+  if (mpm_grid_desc_init(&setup.grid, sizeof setup.grid) ||
+      mpm_stepper_desc_init(&setup.stepper, sizeof setup.stepper))
+    stop("the library is older than its headers", "");
+  setup.grid.dim = dim;
+  for (int32_t k = 0; k < dim; ++k) setup.grid.cells[k] = cells, setup.grid.spacing[k] = h;
+  return setup;
+}
+
+void verify_open(verify_world *w, const verify_setup *setup) {
+  memset(w, 0, sizeof *w);
+  w->dim = setup->grid.dim;
+  if (mpm_context_create(NULL, &w->context)) stop("no context", "");
+  verify_ok(w, mpm_grid_create(w->context, &setup->grid, &w->grid));
+  verify_ok(w, mpm_stepper_create(w->context, w->grid, &setup->stepper, &w->stepper));
+}
+
+mpm_material *verify_material(verify_world *w, const char *model, const mpm_param *params, int32_t count) {
+  if (w->materials == VERIFY_MOST) stop("too many laws: ", model);
+  mpm_material **material = &w->material[w->materials++];
+  verify_ok(w, mpm_material_create(w->context, model, params, count, material));
+  return *material;
+}
+
+mpm_material *verify_elastic(verify_world *w, const char *model, double E, double nu, double density) {
+  const mpm_param params[3] = {{"E", E}, {"nu", nu}, {"density", density}};
+  return verify_material(w, model, params, 3);
+}
+
+mpm_particles *verify_set(verify_world *w, mpm_material *material) {
+  if (w->sets == VERIFY_MOST) stop("too many sets", "");
+  mpm_particles **set = &w->set[w->sets++];
+  verify_ok(w, mpm_particles_create(w->context, w->grid, material, set));
+  verify_ok(w, mpm_stepper_add(w->stepper, *set));
+  return *set;
+}
+
+void verify_close(verify_world *w) {
+  verify_ok(w, mpm_stepper_destroy(w->stepper));
+  for (int32_t i = 0; i < w->sets; ++i) verify_ok(w, mpm_particles_destroy(w->set[i]));
+  for (int32_t i = 0; i < w->materials; ++i) verify_ok(w, mpm_material_destroy(w->material[i]));
+  verify_ok(w, mpm_grid_destroy(w->grid));
+  if (mpm_context_destroy(w->context)) stop("the context has objects left", "");
+}
+
+double *verify_array(int64_t n) {
+  double *values = calloc((size_t)n, sizeof *values);
+  if (!values) stop("out of memory", "");
+  return values;
+}
+
+double *verify_get(const verify_world *w, const mpm_particles *set, const char *field, int32_t components) {
+  const int64_t n = mpm_particles_count(set);
+  double *values = verify_array(n * components);
+  verify_ok(w, mpm_particles_get(set, field, MPM_F64, components, n, NULL, values));
+  return values;
+}
+
+void verify_put(const verify_world *w, mpm_particles *set, const char *field, int32_t components,
+                const double *values) {
+  verify_ok(w, mpm_particles_set(set, field, MPM_F64, components, mpm_particles_count(set), NULL, values));
+}
+
+mpm_step_info verify_info(const verify_world *w) {
+  mpm_step_info info = {.struct_size = sizeof info};
+  verify_ok(w, mpm_stepper_info(w->stepper, &info));
+  return info;
+}

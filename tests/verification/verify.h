@@ -1,0 +1,70 @@
+/* What the programs of the verification share: options of the command line, CSV files, gates, and a world of
+ * one context, grid and stepper with a few laws and sets, over the public interface. What the library refuses
+ * ends the program with the library's sentence. */
+#ifndef VERIFY_H
+#define VERIFY_H
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <mpm/mpm.h>
+
+#define PI 3.14159265358979323846
+
+/* Options: --quick for a variant of seconds, --out DIR for CSV files (default: the working folder). */
+void verify_begin(const char *name, int argc, char **argv);
+int verify_quick(void);
+FILE *verify_csv(const char *name); /* <dir>/<name>.csv, to be closed by the caller */
+
+/* A line of progress for those who wait. */
+void verify_progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* low <= value <= high or the case fails; either may be infinite. A value that is not a number fails. source:
+ * where the gate is from. */
+void verify_gate(const char *what, double value, double low, double high, const char *source);
+/* A gate that a correct method does not meet, for the reason given: listed apart, and the case fails once it
+ * is met. */
+void verify_expected_failure(const char *what, double value, double low, double high, const char *source,
+                             const char *reason);
+int verify_end(void); /* exit status */
+
+/* Order of convergence: slope of log error over log h, by least squares. */
+double verify_slope(int32_t n, const double *h, const double *error);
+
+typedef struct verify_setup {
+  mpm_grid_desc grid;
+  mpm_stepper_desc stepper;
+} verify_setup;
+
+enum { VERIFY_MOST = 8 };
+typedef struct verify_world {
+  mpm_context *context;
+  mpm_grid *grid;
+  mpm_stepper *stepper;
+  mpm_material *material[VERIFY_MOST];
+  mpm_particles *set[VERIFY_MOST];
+  int32_t materials, sets, dim;
+} verify_world;
+
+/* The library's defaults on a grid of `cells` cells of edge h along each axis, from the origin. */
+verify_setup verify_defaults(int32_t dim, int64_t cells, double h);
+void verify_open(verify_world *w, const verify_setup *setup); /* on one thread */
+mpm_material *verify_material(verify_world *w, const char *model, const mpm_param *params, int32_t count);
+mpm_material *verify_elastic(verify_world *w, const char *model, double E, double nu, double density);
+mpm_particles *verify_set(verify_world *w, mpm_material *material); /* an empty one, in the stepper */
+void verify_close(verify_world *w);
+
+/* Whole field of a set by ascending id, [components][n]; the caller frees it. */
+double *verify_get(const verify_world *w, const mpm_particles *set, const char *field, int32_t components);
+void verify_put(const verify_world *w, mpm_particles *set, const char *field, int32_t components,
+                const double *values);
+mpm_step_info verify_info(const verify_world *w);
+double *verify_array(int64_t n); /* zeros */
+
+/* Ends the program unless the call is MPM_OK. */
+#define verify_ok(world, call) verify_check((world)->context, (call), __FILE__, __LINE__)
+void verify_check(const mpm_context *context, mpm_status status, const char *file, int line);
+
+#endif
