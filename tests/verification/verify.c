@@ -155,3 +155,25 @@ mpm_step_info verify_info(const verify_world *w) {
   verify_ok(w, mpm_stepper_info(w->stepper, &info));
   return info;
 }
+
+void verify_fill_box(const verify_world *w, mpm_particles *set, const double *lower, const double *upper,
+                     int32_t per_cell) {
+  const int32_t n[3] = {per_cell, per_cell, per_cell};
+  verify_ok(w, mpm_particles_fill_box(set, lower, upper, n, NULL, NULL));
+}
+
+mpm_step_info verify_advance(const verify_world *w, double cfl, double t) {
+  mpm_step_info info = {.struct_size = sizeof info};
+  mpm_advance_desc go;
+  verify_ok(w, mpm_advance_desc_init(&go, sizeof go));
+  go.cfl = cfl;
+  go.t_end = t;
+  verify_ok(w, mpm_advance(w->stepper, &go, &info));
+  return info;
+}
+
+mpm_step_info verify_step(const verify_world *w, double dt) {
+  mpm_step_info info = {.struct_size = sizeof info};
+  verify_ok(w, mpm_step(w->stepper, dt, &info));
+  return info;
+}

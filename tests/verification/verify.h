@@ -62,6 +62,11 @@ void verify_put(const verify_world *w, mpm_particles *set, const char *field, in
                 const double *values);
 mpm_step_info verify_info(const verify_world *w);
 double *verify_array(int64_t n); /* zeros */
+/* A box of particles, as many along each axis of a cell. */
+void verify_fill_box(const verify_world *w, mpm_particles *set, const double *lower, const double *upper,
+                     int32_t per_cell);
+mpm_step_info verify_advance(const verify_world *w, double cfl, double t); /* to time t by stable steps */
+mpm_step_info verify_step(const verify_world *w, double dt);
 
 /* Ends the program unless the call is MPM_OK. */
 #define verify_ok(world, call) verify_check((world)->context, (call), __FILE__, __LINE__)
