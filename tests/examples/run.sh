@@ -117,6 +117,17 @@ for file in ball.pvd block.pvd two_materials.svg ball_0000.vtp block_0020.vtp; d
   [ -s "impact/$file" ] || fail "two_materials: $file is missing or empty"
 done
 
+mkdir channel
+run outflow channel
+check "particles that left" "result:" 2380 2450
+check "mass balance" "mass balance to" 0 1e-11
+check "flux" "outlet" 0.985 1.01
+check "depth" "depth within" 0 2
+check "speed" "speed within" 0 1
+for file in outflow.pvd outflow_grid.pvd outflow.svg water_0001.vtp water_0020.vtp grid_0020.vti; do
+  [ -s "channel/$file" ] || fail "outflow: $file is missing or empty"
+done
+
 run cantilever
 check "deviation from FEM" "deviation" -4 4
 awk '$5 == "%" && ($4 > 4 || $4 < -4) && $1 <= 0.9 && $1 > 0.1 { bad = 1 } $5 == "%" { rows++ } END { exit bad || rows != 10 }' \
