@@ -59,6 +59,12 @@ def loglog(ax, x_label, y_label, base=2):
     ax.set_ylabel(y_label)
 
 
+def ticks(ax, values):
+    """These values along x, in figures."""
+    ax.set_xticks(values, [f"{v:g}" for v in values])
+    ax.minorticks_off()
+
+
 def number(text):
     value = float(text)
     return {math.inf: "∞", -math.inf: "-∞"}.get(value, f"{value:.4g}")
