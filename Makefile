@@ -2,7 +2,7 @@
 #
 #   make                 both libraries in $(BUILD)
 #   make install         PREFIX=/usr/local, DESTDIR=
-#   make check           unit tests, interface tests, examples (needs Check and pkg-config: make check-setup)
+#   make check           unit tests, interface tests, examples, verify-quick (needs Check and pkg-config: make check-setup)
 #   make verify          the method against exact solutions, with a table of gates: docs/verification.md
 #   make demo            one example, with nothing but a C compiler
 #
@@ -184,7 +184,7 @@ $(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(UNIT_OBJECTS) $(STATIC_LIB) $(CHECK_LIBS) $(LIBS) -o $@
 
-check: check-unit check-api check-examples
+check: check-unit check-api check-examples verify-quick
 
 # Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together.
 SUITES ?= $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)

@@ -59,6 +59,12 @@ def loglog(ax, x_label, y_label, base=2):
     ax.set_ylabel(y_label)
 
 
+def cells_axis(ax, cells):
+    """Numbers of cells, in figures."""
+    ax.set_xticks(cells, [f"{c:g}" for c in cells])
+    ax.minorticks_off()
+
+
 def number(text):
     value = float(text)
     return {math.inf: "∞", -math.inf: "-∞"}.get(value, f"{value:.4g}")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Plants the faults of faults.txt one by one in a copy of the sources and runs the suite that is named beside each
-# (wrapper: tests/api/wrapper.sh); a fault that it does not notice is a gap in the tests. An argument selects the files whose path contains it.
+# (wrapper: tests/api/wrapper.sh; verify/CASE: tests/verification/CASE.c, quick); a fault that it does not notice is a gap in the tests. An argument selects the files whose path contains it.
 set -euo pipefail
 BUILD=${BUILD:-build} MAKE=${MAKE:-make} CC=${CC:-cc} CXX=${CXX:-g++}
 copy=$BUILD/mutate
@@ -15,6 +15,10 @@ program() { "$MAKE" -s -j"$(nproc)" BUILD=out CC="$CC" WERROR=-w out/tests/unit 
 suite() {
   if [ "$1" = wrapper ]; then
     BUILD=out MPM_SCRATCH=$PWD/scratch COMPILERS=$CXX CXXFLAGS=-w timeout 300 bash tests/api/wrapper.sh > log 2>&1
+    return
+  fi
+  if [ "${1%/*}" = verify ]; then
+    timeout 300 "$MAKE" -s -j"$(nproc)" BUILD=out CC="$CC" WERROR=-w CASES="${1#*/}" verify-quick > log 2>&1
     return
   fi
   local leave_out=
@@ -37,13 +41,13 @@ while read -r name file fault; do
     miss "does not compile" "$file $fault"
   elif suite "$name"; then
     miss "not noticed by $name" "$file $fault"
-  elif ! grep -Eq ':[FE]:' log; then
+  elif ! grep -Eq ':[FE]:|\] +(FAILED|MET)$' log; then
     miss "$name did not run to its end" "$file $fault"
   fi
   cp original "$file" # with a new time, so that it is compiled again
 done < tests/mutate/faults.txt
 program
-for name in $(sed -n 's/^\([a-z]*\) \(src\|include\).*/\1/p' tests/mutate/faults.txt | sort -u); do
+for name in $(sed -n 's/^\([a-z_/]*\) \(src\|include\).*/\1/p' tests/mutate/faults.txt | sort -u); do
   suite "$name" || miss "fails without a fault" "$name"
 done
 echo "mutate: $planted faults, $((planted - missed)) noticed"
