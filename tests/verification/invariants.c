@@ -49,7 +49,7 @@ static outcome collide(int variant, int threads, int transfer) {
   one_disk(&w, disks, 1.0, variant == TURNED, shift, h);
   const int64_t half = mpm_particles_count(disks);
   one_disk(&w, disks, -1.0, variant == TURNED, shift, h);
-  outcome out = {0.0, INFINITY, 0};
+  outcome out = {0.0, HUGE_VAL, 0};
   for (int k = 1; k <= 180; ++k) {
     const mpm_step_info now = verify_advance(&w, 0.4, 0.02 * k);
     out.least = fmin(out.least, now.kinetic_energy);

@@ -81,7 +81,7 @@ static outcome disks(const method *m, int scheme) {
   double mean = 0.0;
   for (int64_t i = 0; i < half; ++i) mean -= (v[i] + v[n + i]) / sqrt(2.0) / (double)half;
   out.quality = mean / 0.1286;
-  out.angular = NAN; /* none at the start */
+  out.angular = (double)NAN; /* none at the start */
   free(v);
   verify_close(&w);
   return out;
@@ -137,7 +137,7 @@ static outcome bar(const method *m, int scheme) {
   const double start = now.kinetic_energy, dt = 0.2 * h / sqrt(E);
   const int64_t per_period = (int64_t)(period / dt + 0.5);
   double first = 0.0, last = 0.0, most = 0.0, swing = 0.0;
-  outcome out = {0.0, 1.0, NAN, 0.0, 0};
+  outcome out = {0.0, 1.0, (double)NAN, 0.0, 0};
   for (int64_t k = 0; k < 10 * per_period; ++k) {
     out.broke = mpm_step(w.stepper, dt, &now);
     if (out.broke) break;

@@ -47,7 +47,7 @@ static void martin_moyce(int cells, FILE *csv, FILE *cloud) {
   tank it;
   open_tank(&it, a, 2.0 * a, 6.0 * a, cells);
   const int64_t n = mpm_particles_count(it.water);
-  double least = INFINITY, most = -INFINITY;
+  double least = HUGE_VAL, most = -HUGE_VAL;
   for (int k = 0; k < POINTS; ++k) {
     verify_advance(&it.w, 0.4, measured[k][0] * unit);
     double *x = verify_get(&it.w, it.water, "position", 2), front = 0.0;
