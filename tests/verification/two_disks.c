@@ -43,7 +43,7 @@ static outcome collide(int cells, FILE *history, FILE *cloud) {
   mpm_step_info now = verify_info(&w);
   const double start = now.kinetic_energy;
   const double due[3] = {0.0, 2.1, 3.6};
-  outcome out = {INFINITY, 0.0, 0.0, 0.0, 0.0};
+  outcome out = {HUGE_VAL, 0.0, 0.0, 0.0, 0.0};
   int drawn = 0;
   double sample = 0.0;
   for (;;) {

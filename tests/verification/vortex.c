@@ -89,7 +89,7 @@ int main(int argc, char **argv) {
   double h[4], error[4][2], at_end[4];
   for (int k = 0; k < levels; ++k) {
     h[k] = 0.1 / (1 << k);
-    turn(10 << k, MPM_FLIP, error[k], k == 1 ? cloud : NULL);
+    turn(10 << k, MPM_FLIP, error[k], k == 0 ? cloud : NULL);
     at_end[k] = error[k][1];
     fprintf(csv, "FLIP,%g,%.5e,%.5e\n", h[k], error[k][0], error[k][1]);
   }

@@ -1,0 +1,239 @@
+"""Waves, collisions, solids, fluids, and the transfers compared."""
+import math
+
+from plot import axes, loglog, plot, read, slope
+
+
+def rows(data, **wanted):
+    """The rows of a table of columns where each named column has the value wanted."""
+    keep = [all(data[k][i] == v for k, v in wanted.items()) for i in range(len(next(iter(data.values()))))]
+    return {k: [v for v, kept in zip(values, keep) if kept] for k, values in data.items()}
+
+
+def clouds(name, key, colour, text, form, size, width=3.2, height=3.2, label="{:g}"):
+    """Particles at each value of `key`, coloured by `colour`."""
+    data = read(name)
+    times = sorted(set(data[key]))
+    x, y = form
+    figure, ax = axes(len(times), width, height)
+    ax = [ax] if len(times) == 1 else list(ax)
+    top = sorted(data[colour])[int(0.99 * len(data[colour]))]
+    for panel, t in zip(ax, times):
+        at = rows(data, **{key: t})
+        drawn = panel.scatter(at[x], at[y], c=at[colour], s=size, vmin=0, vmax=top, cmap="viridis", linewidths=0,
+                              rasterized=True)
+        panel.set_aspect("equal")
+        panel.set_title(label.format(t), fontsize=9)
+    figure.colorbar(drawn, ax=ax, label=text, shrink=0.8)
+    return figure
+
+
+@plot
+def axial_vibration():
+    figure, ax = axes(2)
+    data, fine = read("axial_vibration"), read("axial_vibration_refinement")
+    ax[0].plot(data["t"], data["v_exact"], "k-", linewidth=1, label="exact")
+    ax[0].plot(data["t"], data["v_mean"], "C1.", markersize=2, label="13 cells")
+    ax[0].set_xlabel("t")
+    ax[0].set_ylabel("mean velocity")
+    ax[0].legend()
+    kh = [19 * math.pi / 2 / n for n in fine["cells"]]
+    ax[1].plot(fine["cells"], fine["period_error"], "o-", label="mode 10")
+    ax[1].plot(fine["cells"], [0.25 * v * v for v in kh], "k:", label=r"$(\beta h)^2 / 4$")
+    loglog(ax[1], "cells", "relative error of the period")
+    ax[1].legend()
+    return figure
+
+
+@plot
+def pulse():
+    figure, ax = axes(2)
+    data, fine = read("pulse"), read("pulse_refinement")
+    for i, t in enumerate((0.4, 1.2)):
+        at = rows(data, t=t)
+        ax[0].plot(at["x"], at["v_exact"], "k-", linewidth=1, label="exact" if i == 0 else None)
+        ax[0].plot(at["x"], at["v"], f"C{i}.", markersize=2, label=f"t = {t:g}, h = 1/200")
+    ax[0].set_xlabel("x")
+    ax[0].set_ylabel("velocity")
+    ax[0].legend()
+    for key, text in (("v_0.4", "velocity, t = 0.4"), ("v_1.2", "velocity, t = 1.2"), ("stress_0.4", "stress, t = 0.4")):
+        ax[1].plot(fine["cells"], fine[key], "o-", label=text)
+    ax[1].axhline(0.05, color="k", linestyle="--", linewidth=0.8)
+    slope(ax[1], (300, 800), 0.05, -2)
+    loglog(ax[1], "cells", "relative L2 error")
+    ax[1].legend()
+    return figure
+
+
+@plot
+def wall_impact():
+    figure, ax = axes(2)
+    data, fine = read("wall_impact"), read("wall_impact_refinement")
+    ax[0].plot([0, 0, 2, 2, 3], [0, 0.01, 0.01, 0, 0], "k-", linewidth=1, label="exact")
+    ax[0].plot(data["t"], data["force"], "C1-", linewidth=0.8, label="200 cells")
+    ax[0].set_xlabel("t")
+    ax[0].set_ylabel("force of the wall")
+    ax[0].legend()
+    for key in ("stress", "duration", "rebound"):
+        ax[1].plot(fine["cells"], [abs(v - 1) for v in fine[key]], "o-", label=key)
+    ax[1].axhline(0.02, color="k", linestyle="--", linewidth=0.8)
+    loglog(ax[1], "cells", "relative error")
+    ax[1].legend()
+    return figure
+
+
+@plot
+def two_disks():
+    figure, ax = axes()
+    data = read("two_disks")
+    for key in ("total", "kinetic", "strain"):
+        ax.plot(data["t"], data[key], label=key)
+    ax.plot([2.104], [0.136], "k+", markersize=9, label="least kinetic energy, FEM")
+    ax.set_xlabel("t")
+    ax.set_ylabel("energy")
+    ax.legend()
+    return figure
+
+
+@plot
+def two_disks_cloud():
+    return clouds("two_disks_cloud", "t", "mises", "von Mises stress", ("x", "y"), 2, label="t = {:g}")
+
+
+@plot
+def cantilever():
+    figure, ax = axes()
+    data = read("cantilever")
+    reference = rows(data, cells_per_metre=4.0)
+    ax.plot(reference["t"], reference["fem"], "k-", linewidth=1, label="FEM")
+    for i, (n, per_cell) in enumerate(((4.0, 2.0), (8.0, 2.0), (16.0, 4.0))):
+        at = rows(data, cells_per_metre=n, per_cell=per_cell)
+        ax.plot(at["t"], at["displacement"], "o^s"[i], label=f"h = 1/{n:g}, {per_cell:g} x {per_cell:g} per cell")
+    ax.set_xlabel("t / s")
+    ax.set_ylabel("displacement of the lower corner / m")
+    ax.legend()
+    return figure
+
+
+@plot
+def cantilever_cloud():
+    return clouds("cantilever_cloud", "t", "speed", "speed / (m/s)", ("x", "y"), 2, 3.0, 3.0, "t = {:g} s")
+
+
+@plot
+def vortex():
+    figure, ax = axes()
+    data = rows(read("vortex"), transfer="FLIP")
+    ax.plot(data["h"], data["error_0.5"], "o-", label="t = 0.5")
+    ax.plot(data["h"], data["error_1"], "s-", label="t = 1")
+    slope(ax, (0.1, 0.025), 7e-3, 2)
+    loglog(ax, "h", "error of displacement, L2", 10)
+    ax.legend()
+    return figure
+
+
+@plot
+def vortex_cloud():
+    return clouds("vortex_cloud", "t", "error", "error of displacement", ("x", "y"), 2, label="t = {:g}, h = 0.1")
+
+
+@plot
+def taylor_bar():
+    figure, ax = axes(1, 4.0, 5.6)
+    data = read("taylor_bar_cloud")
+    drawn = ax.scatter(data["r"], data["z"], c=data["plastic_strain"], s=5, cmap="viridis", linewidths=0,
+                       rasterized=True)
+    ax.plot([7.206], [0], "k<", label="radius, FEM")
+    ax.plot([0], [21.58], "kv", label="length, FEM")
+    ax.set_aspect("equal")
+    ax.set_xlabel("r / mm")
+    ax.set_ylabel("z / mm")
+    ax.legend()
+    figure.colorbar(drawn, label="plastic strain")
+    return figure
+
+
+@plot
+def hydrostatic():
+    figure, ax = axes()
+    data = read("hydrostatic")
+    ax.plot(data["p_exact"], data["y"], "k-", linewidth=1, label="exact")
+    ax.plot(data["p"], data["y"], "C1.", label="20 cells")
+    ax.set_xlabel("pressure")
+    ax.set_ylabel("y")
+    ax.legend()
+    return figure
+
+
+@plot
+def couette():
+    figure, ax = axes()
+    data = read("couette")
+    for i, t in enumerate(sorted(set(data["t"]))):
+        at = rows(data, t=t)
+        order = sorted(range(len(at["y"])), key=lambda k: at["y"][k])
+        ax.plot([at["u_exact"][k] for k in order], [at["y"][k] for k in order], "k-", linewidth=1)
+        ax.plot(at["u"], at["y"], f"C{i}.", markersize=3, label=rf"$\nu t / H^2$ = {t:g}")
+    ax.set_xlabel("u / U")
+    ax.set_ylabel("y / H")
+    ax.legend()
+    return figure
+
+
+@plot
+def water_column():
+    figure, ax = axes(2)
+    front, depth = read("water_column_front"), read("water_column_ritter")
+    for i, n in enumerate(sorted(set(front["cells"]))):
+        at = rows(front, cells=n)
+        ax[0].plot(at["T"], at["front"], f"C{i}-", label=f"2 a / {n:g}")
+    ax[0].plot(at["T"], at["measured"], "ko", label="Martin and Moyce")
+    ax[0].set_xlabel(r"$t \sqrt{2 g / a}$")
+    ax[0].set_ylabel("front / a")
+    ax[0].legend()
+    finest = max(depth["cells"])
+    for i, T in enumerate(sorted(set(depth["T"]))):
+        at = rows(depth, cells=finest, T=T)
+        ax[1].plot(at["x"], at["depth_exact"], "k-", linewidth=1)
+        ax[1].plot(at["x"], at["depth"], f"C{i}.", markersize=4, label=rf"$t \sqrt{{g / h_0}}$ = {T:g}")
+    ax[1].set_xlabel("x / h0")
+    ax[1].set_ylabel("depth / h0")
+    ax[1].legend()
+    return figure
+
+
+@plot
+def water_column_cloud():
+    return clouds("water_column_cloud", "T", "speed", "speed / (m/s)", ("x", "y"), 2, 3.4, 2.6, "T = {:g}")
+
+
+@plot
+def transfers():
+    figure, ax = axes(3, 4.0, 3.8)
+    data = read("transfers")
+    names = list(dict.fromkeys(data["transfer"]))
+    panels = (("disks", "energy_end", "disks: energy left"), ("square", "angular_end", "square: angular momentum left"),
+              ("bar", "energy_end", "bar: energy left"))
+    for panel, (case, key, title) in zip(ax, panels):
+        for i, scheme in enumerate(("USL", "USF", "MUSL")):
+            at = rows(data, case=case, scheme=scheme)
+            panel.plot(at[key], range(len(names)), "o^s"[i], color=f"C{i}", label=scheme, markersize=5)
+        panel.axvline(1, color="k", linewidth=0.8)
+        panel.set_yticks(range(len(names)), names if panel is ax[0] else [""] * len(names))
+        panel.invert_yaxis()
+        panel.set_title(title, fontsize=9)
+    ax[0].legend()
+    return figure
+
+
+@plot
+def transfers_square():
+    figure, ax = axes()
+    data = read("transfers_square")
+    for name in ("FLIP", "TPIC"):
+        at = rows(data, transfer=name)
+        ax.plot(at["h"], at["loss"], "o-", label=name)
+    slope(ax, (0.05, 0.00625), 5e-2, 2)
+    loglog(ax, "h", "loss of angular momentum in one turn", 10)
+    ax.legend()
+    return figure
