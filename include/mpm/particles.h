@@ -27,20 +27,23 @@
  * - acceleration: (v_new - v_old) / dt of the last step, once the host has set or mapped it.
  * - mass, initial_volume: > 0; a new particle has mass = density * initial_volume.
  * - volume: det F * initial_volume (MPoint theory, eq. 40).
- * - size: full initial edge lengths of the particle's domain, for GIMP.
+ * - size: full initial edge lengths of the particle's domain, for MPM_GIMP and MPM_CPGIMP; edges beyond a
+ * cell count as one cell. Until set or given it is that of a cube (2-D: square) of the initial volume.
  * - applied_force: a force on the particle that stays until changed (f^app of MPoint theory, eq. 21).
  * - deformation_gradient: det F > 0.
- * - velocity_gradient: the affine matrix carried by APIC transfers, 1/time; with other transfers it is kept
- *   only once the host has set or mapped it, and then is the L of the last step.
+ * - velocity_gradient: the matrix that the transfer carries, 1/time: affine (MPM_APIC, MPM_APIC_MLS,
+ * MPM_AFLIP) or the gradient of the updated nodal velocities (MPM_TPIC, MPM_TFLIP); 0 in new particles. With
+ * MPM_FLIP and MPM_XPIC it is kept only once the host has set or mapped it, and then is the L that deformed
+ * the particle in the last step.
  * - stress: Cauchy; writable where the law is hypoelastic (linear_elastic, j2), else computed from F.
  * - state: state variables of the law.
  * - reference_position: exists while a stepper with reference_positions holds the set, and starts as the
  *   unwrapped position at mpm_stepper_add().
  * - prescribed: 0 or 1 (default 0; 1 on all axes in new particles of the law "rigid"). 1 on an axis imposes
- * the particle's velocity there on the nodes that it touches: see mpm_stepper_set_motion().
+ *   the particle's velocity there on the nodes that it touches: see mpm_stepper_set_motion().
  * - dilation_ratio: J'/J > 0, by which the volume that the law sees differs from that of
- * deformation_gradient; exists while a stepper with locking_remedy holds the set, and starts as 1. The law
- * sees (J'/J)^(1/dim) F, in 2-D in the plane only.
+ *   deformation_gradient; exists while a stepper with locking_remedy holds the set, and starts as 1. The law
+ *   sees (J'/J)^(1/dim) F, in 2-D in the plane only.
  * - image: periods crossed on each periodic axis; position + image * period is the unwrapped position.
  *
  * size, acceleration, velocity_gradient, applied_force and prescribed take memory only when used; until then
@@ -76,7 +79,8 @@ MPM_API mpm_status mpm_particles_destroy(mpm_particles *particles);
  * - position: inside the grid; outside a periodic axis it is wrapped, and the images are counted.
  * - velocity: NULL for zeros.
  * - volume: [n] initial, of the undeformed material, > 0; mass = density * volume.
- * - size: full initial edge lengths of the domain, > 0; NULL for a cube of that volume.
+ * - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume. Used by
+ *   MPM_GIMP and MPM_CPGIMP; on other grids it is kept as given.
  * - ids: [n] the host's own, >= 0 and unique in the set; NULL to number on from the largest so far.
  * - first_id: out, the first of the ids; may be NULL.
  *
@@ -89,8 +93,8 @@ MPM_API mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const 
 /**
  * Fills the box lower[dim] ... upper[dim] with particles at rest on a lattice aligned with the cells,
  * per_cell[dim] along each axis of a cell, wherever the centre is inside. Each has the volume and the size of
- * one lattice cell. The ids of the new particles are *first_id ... *first_id + *count - 1; both pointers may
- * be NULL. MPM_E_ARG: lower > upper, or per_cell < 1.
+ * one lattice cell, so that domains of GIMP fill the body. The ids of the new particles are *first_id ...
+ * *first_id + *count - 1; both pointers may be NULL. MPM_E_ARG: lower > upper, or per_cell < 1.
  */
 MPM_API mpm_status mpm_particles_fill_box(mpm_particles *particles, const double *lower, const double *upper,
                                           const int32_t *per_cell, int64_t *first_id, int64_t *count);

@@ -17,22 +17,32 @@ typedef struct mpm_stepper_desc {
   uint32_t struct_size; /**< sizeof(mpm_stepper_desc) of the caller */
   int32_t scheme;       /**< MPM_USL (default), MPM_USF, MPM_MUSL or MPM_NEWMARK */
   int32_t transfer;     /**< MPM_FLIP (default) ... MPM_APIC_MLS; MPM_NEWMARK: MPM_FLIP with flip = 1 */
-  int32_t xpic_order;   /**< order m of MPM_XPIC, 1..5; default 2 */
+  /** Order m of MPM_XPIC, 1 (PIC) ... 5; default 2. Each order above the first projects and gathers once
+   * more; these corrections obey fixed and slip walls and periodic axes. */
+  int32_t xpic_order;
   /** 1 (default): x += dt sum w v (Steffen et al. 2008, eq. 10); 2: x += dt sum w v - dt^2 / 2 sum w a,
    * exact under constant acceleration (MPoint theory, eq. 37, where the last term is misprinted). v:
-   * updated nodal velocity. */
+   * updated nodal velocity. 2 is not for staggered steps, which have that order with 1. */
   int32_t position_order;
-  int32_t locking_remedy;      /**< MPM_LOCKING_NONE (default) or MPM_LOCKING_CELL_AVERAGE; 2-D and 3-D */
+  /** MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE: then the sets of the stepper
+   * have the field "dilation_ratio". */
+  int32_t locking_remedy;
   int32_t reference_positions; /**< 1: keep "reference_position" and pass it to callbacks; default 0 */
   int32_t quasi_static;        /**< MPM_NEWMARK: 1 drops the inertia; default 0 */
-  int32_t staggered;           /**< 1: particle velocities at t_n - dt/2 (Steffen et al. 2008, eqs 11-15) */
+  /** 1: particle velocities are those at t_n - dt/2 (Steffen et al. 2008, eqs 11-15), and so is the kinetic
+   * energy; default 0. The host sets them so: the library does not shift velocities. Forces change them over
+   * the mean of this step and the one before, in the first step over its dt, so that dt may change. Positions
+   * and strain follow over dt. MPM_E_UNSUPPORTED with position_order = 2. */
+  int32_t staggered;
   /** Acceleration of nodes whose velocity the host or a particle prescribes. 0 (default): that which brings
    * them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30); 1: zero. Nodes that
    * walls hold have none in either case: a slip wall is a symmetry plane, on which the projected velocity is
    * zero too. */
   int32_t boundary_zero_acceleration;
-  double flip;          /**< per step, 1 (default) FLIP ... 0 PIC; MPM_FLIP, MPM_TFLIP, MPM_AFLIP */
-  double pic_damping;   /**< rate beta, 1/time, of a blend free of dt: MPoint theory, eqs 58-59; default 0 */
+  double flip; /**< per step, 1 (default) FLIP ... 0 PIC; MPM_FLIP, MPM_TFLIP, MPM_AFLIP */
+  /** Rate beta >= 0, 1/time, of a blend free of dt (MPoint theory, eqs 58-59), for the transfers of flip: the
+   * step's share of FLIP is flip * max(0, 1 - beta dt). Default 0. */
+  double pic_damping;
   double gravity[3];    /**< acceleration of all particles, length/time^2; default 0 */
   double newmark_beta;  /**< default 1/4; with gamma 1/2 as Guilkey & Weiss 2003, eqs 14-15 */
   double newmark_gamma; /**< default 1/2; larger values damp high frequencies */
@@ -52,8 +62,9 @@ typedef struct mpm_stepper_desc {
 
 /**
  * What a step did, or the state as it is. The caller sets struct_size. Energies and momenta are the
- * particles'; the angular momentum is about the origin and includes the affine part of APIC. Entries of
- * unused axes are 0. After a failed step the sums are those of the state that was kept.
+ * particles'; the angular momentum is about the origin and includes the part of the matrices that transfers
+ * carry ("velocity_gradient"). Entries of unused axes are 0. After a failed step the sums are those of the
+ * state that was kept.
  */
 typedef struct mpm_step_info {
   uint32_t struct_size;      /**< sizeof(mpm_step_info) of the caller */
@@ -123,8 +134,9 @@ typedef struct mpm_node_batch {
   int64_t ld;             /**< from component c to c + 1, in elements; >= n */
   double t;               /**< time for which the value is wanted */
   double dt;              /**< of the step */
-  const int64_t *index;   /**< [dim][ld] indices of the basis function; ghosts lie outside 0 ... cells */
-  const double *position; /**< [dim][ld]; open knots: the Greville points */
+  const int64_t *index;   /**< [dim][ld] of the basis function, -1 ... cells + 1. Ghosts lie outside 0 ...
+                             cells; open knots have none, and other functions there: go by position */
+  const double *position; /**< [dim][ld] origin + index * spacing; open knots: the Greville points */
   const double *mass;     /**< [ld] */
 } mpm_node_batch;
 
@@ -136,7 +148,8 @@ typedef mpm_status (*mpm_particle_fn)(void *user, const mpm_particle_batch *batc
  * Prescribes nodal velocities (mt). On the nodes and axes to hold, set prescribed[c * ld + i] = 1 (preset 0)
  * and velocity[c * ld + i] = mean velocity of the step, so that the displacement increment is dt * velocity
  * in every scheme. Where several prescribe one node and axis, the first of these wins: this callback,
- * prescribed particles (their mass-weighted mean), walls; the reaction is booked to the winner. Returns as
+ * prescribed particles (their mass-weighted mean), walls; the reaction is booked to the winner. Asked once
+ * per step, in the first projection of particles onto nodes; further ones keep to the answer. Returns as
  * mpm_particle_fn.
  */
 typedef mpm_status (*mpm_velocity_fn)(void *user, const mpm_node_batch *batch, uint8_t *prescribed,
@@ -155,9 +168,10 @@ typedef mpm_status (*mpm_velocity_fn)(void *user, const mpm_node_batch *batch, u
  *
  * A change of the projected velocity moves particles, and is given to them as far as the transfer takes nodal
  * velocities: not with MPM_FLIP and flip = 1. Values that are left as they are change no bit; with
- * MPM_APIC_MLS a hook keeps forces apart, as steps in parts do. Hooks do not run in the second projection of
- * MPM_MUSL. Work: impulse times new nodal velocity, in external_work. MPM_NONFINITE names the node. Returns
- * as mpm_particle_fn.
+ * MPM_APIC_MLS a hook keeps forces apart, as steps in parts do. Hooks run in the projection that has the
+ * forces: not in the second one of MPM_MUSL, and not in the first one of MPM_USF, which gives the strain, so
+ * that they act on the strain of later steps only. Work: impulse times new nodal velocity, in external_work.
+ * MPM_NONFINITE names the node. Returns as mpm_particle_fn.
  */
 typedef mpm_status (*mpm_node_fn)(void *user, const mpm_node_batch *batch, double *velocity, double *force);
 
@@ -324,10 +338,11 @@ MPM_API mpm_status mpm_stepper_info(const mpm_stepper *stepper, mpm_step_info *i
 MPM_API mpm_status mpm_stepper_residuals(const mpm_stepper *stepper, int32_t capacity, double *residual,
                                          int32_t *count);
 
-/** First part of an explicit step in parts: particles to grid, and forces. Until mpm_step_end() or
- * mpm_step_abort() the host may map nodal fields between the parts, and change "velocity" and "force".
- * Errors as mpm_step(); MPM_E_UNSUPPORTED with MPM_NEWMARK. A part that
- * fails with any status but MPM_E_STATE or MPM_E_ARG aborts the step. */
+/** First part of an explicit step in parts: particles to grid, and forces; with MPM_USF before them strain
+ * and stress of the step, for which the callbacks of prescribed velocities are asked here. Until
+ * mpm_step_end() or mpm_step_abort() the host may map nodal fields between the parts, and change "velocity"
+ * and "force". Errors as mpm_step(); MPM_E_UNSUPPORTED with MPM_NEWMARK. A part that fails with any status
+ * but MPM_E_STATE or MPM_E_ARG aborts the step. */
 MPM_API mpm_status mpm_step_begin(mpm_stepper *stepper, double dt);
 
 /** Second part: nodal velocities, walls, prescribed velocities. MPM_E_STATE unless it follows

@@ -66,22 +66,25 @@ enum {
   MPM_LINEAR = 1,   /**< piecewise linear, 2h wide: Steffen et al. 2008, eqs 17-18 */
   MPM_BSPLINE2 = 2, /**< quadratic B-spline, 3h wide: Steffen et al. 2008, eq. 21; MPoint theory, eqs 24-27 */
   MPM_BSPLINE3 = 3, /**< cubic B-spline, 4h wide: Steffen et al. 2008, eqs 22-23 */
-  MPM_GIMP = 16,    /**< GIMP, undeformed domains, one size per particle: Steffen et al. 2008, eqs 26-29 */
+  MPM_GIMP = 16,    /**< GIMP, edges "size", at most a cell: Steffen et al. 2008, eqs 26-29 */
   MPM_UGIMP = 17,   /**< GIMP, one size for all: smoothing * spacing */
-  MPM_CPGIMP = 18   /**< GIMP, edges size * |F_ii| clamped to at most one cell; depends on the axes */
+  MPM_CPGIMP = 18   /**< GIMP, edges "size" * |F_ii|, at most a cell; depends on the axes */
 };
 
 /** B-splines at the faces of the grid: Steffen et al. 2008, section 3.2. */
 enum {
-  MPM_BOUNDARY_GHOST = 0,    /**< the same splines everywhere, with nodes outside the faces */
-  MPM_BOUNDARY_OPEN_KNOT = 1 /**< knots repeated at the faces; no nodes outside */
+  MPM_BOUNDARY_GHOST = 0, /**< the same splines everywhere, with nodes outside the faces */
+  /** Knots repeated at the faces, degree + 1 times: one function alone is 1 there. No nodes outside; nodes
+   * stand at the Greville points, cells + degree of them along an axis. Periodic axes keep plain splines. */
+  MPM_BOUNDARY_OPEN_KNOT = 1
 };
 
 /** Time integration scheme. */
 enum {
-  MPM_USL = 1,     /**< explicit, stress last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10 */
-  MPM_USF = 2,     /**< explicit, stress first: Guilkey, An Introduction to the MPM, eqs 2-10 */
-  MPM_MUSL = 3,    /**< as MPM_USL, with velocities projected again before the stress update */
+  MPM_USL = 1,  /**< explicit, stress last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10 */
+  MPM_USF = 2,  /**< explicit, stress first, strain from the velocities at the start of the step: Guilkey, An
+                   Introduction to the MPM, eqs 2-10 */
+  MPM_MUSL = 3, /**< as MPM_USL, with velocities projected again before the stress update */
   MPM_NEWMARK = 16 /**< implicit: Guilkey & Weiss 2003, eqs 11-16, generalised to any beta and gamma */
 };
 
@@ -89,11 +92,12 @@ enum {
 enum {
   MPM_FLIP = 1,    /**< FLIP, PIC and their blend by flip: MPoint theory, eqs 34-36 */
   MPM_APIC = 2,    /**< affine, Jiang et al. 2015; inertia per axis and particle, any basis */
-  MPM_TPIC = 3,    /**< gradient-enhanced projection (MPoint theory, eq. 29) with the PIC update (eq. 35) */
-  MPM_TFLIP = 4,   /**< gradient-enhanced projection (MPoint theory, eq. 29) with the blend (eq. 36) */
+  MPM_TPIC = 3,    /**< velocity gradient in the projection (MPoint theory, eq. 29), PIC update (eq. 35) */
+  MPM_TFLIP = 4,   /**< velocity gradient in the projection (MPoint theory, eq. 29), FLIP blend (eq. 36) */
   MPM_AFLIP = 5,   /**< affine projection with the FLIP blend */
   MPM_XPIC = 6,    /**< XPIC(m), Hammerquist & Nairn 2017; m is xpic_order */
-  MPM_APIC_MLS = 7 /**< affine, moving least squares, Hu et al. 2018: constant inertia, one fused matrix */
+  MPM_APIC_MLS = 7 /**< affine, moving least squares, Hu et al. 2018: constant inertia, one fused matrix;
+                      quadratic and cubic B-splines with ghosts or periodic axes */
 };
 
 /** Instruction set of the kernels. Results of two sets agree to round-off, those of one set bit by bit. */
@@ -114,7 +118,7 @@ enum {
 /** Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient. */
 enum {
   MPM_LOCKING_NONE = 0,        /**< none */
-  MPM_LOCKING_CELL_AVERAGE = 1 /**< the law sees the dilation averaged over the cell */
+  MPM_LOCKING_CELL_AVERAGE = 1 /**< the law sees the dilation averaged over the cell, weighted by volume */
 };
 
 /** Form of a law's tangent; the value is the number of components. See mpm_tangent_fn. */
