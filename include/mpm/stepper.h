@@ -32,7 +32,7 @@ typedef struct mpm_stepper_desc {
    * zero too. */
   int32_t boundary_zero_acceleration;
   double flip;          /**< per step, 1 (default) FLIP ... 0 PIC; MPM_FLIP, MPM_TFLIP, MPM_AFLIP */
-  double pic_damping;   /**< rate beta, 1/time, of a blend free of dt: MPoint theory, eqs 58-59; default 0 */
+  double pic_damping;   /**< rate beta, 1/time, by which flip falls: MPoint theory, eqs 58-59; default 0 */
   double gravity[3];    /**< acceleration of all particles, length/time^2; default 0 */
   double newmark_beta;  /**< default 1/4; with gamma 1/2 as Guilkey & Weiss 2003, eqs 14-15 */
   double newmark_gamma; /**< default 1/2; larger values damp high frequencies */
@@ -156,8 +156,8 @@ typedef mpm_status (*mpm_velocity_fn)(void *user, const mpm_node_batch *batch, u
  * A change of the projected velocity moves particles, and is given to them as far as the transfer takes nodal
  * velocities: not with MPM_FLIP and flip = 1. Values that are left as they are change no bit; with
  * MPM_APIC_MLS a hook keeps forces apart, as steps in parts do. Hooks do not run in the second projection of
- * MPM_MUSL. Work: impulse times new nodal velocity, in external_work. MPM_NONFINITE names the node. Returns
- * as mpm_particle_fn.
+ * MPM_MUSL, nor in the first of MPM_USF, of which its strain is made. Work: impulse times new nodal velocity,
+ * in external_work. MPM_NONFINITE names the node. Returns as mpm_particle_fn.
  */
 typedef mpm_status (*mpm_node_fn)(void *user, const mpm_node_batch *batch, double *velocity, double *force);
 
