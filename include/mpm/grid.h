@@ -32,8 +32,8 @@ MPM_API mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size)
 
 /** Makes a grid; desc is copied. Shared by any number of sets and steppers, and outlives them. *out is
  * NULL unless MPM_OK is returned. MPM_E_ARG: a bad value,
- * or more nodes than 64-bit numbers can name. MPM_E_UNSUPPORTED: open knots with a basis that is not a
- * B-spline. */
+ * or more nodes than 64-bit numbers can name. MPM_E_UNSUPPORTED: open knots with a basis other
+ * than MPM_BSPLINE2 and MPM_BSPLINE3. */
 MPM_API mpm_status mpm_grid_create(mpm_context *context, const mpm_grid_desc *desc, mpm_grid **out);
 
 /** Frees the grid. MPM_E_STATE while sets or steppers on it live. NULL is fine. */

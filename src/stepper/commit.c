@@ -84,15 +84,20 @@ void mpmi_commit(mpm_stepper *s, double dt) {
     for (int32_t m = 0; m < s->member_count; ++m) remove_outside(s, s->member[m].set);
 }
 
-/* Only volumes were overwritten: F is still there to make them again. */
-void mpmi_roll_back(mpm_stepper *s) {
+void mpmi_make_volumes(mpm_stepper *s, int32_t copy) {
   const int32_t dim = s->grid->dim;
   for (int32_t m = 0; m < s->member_count; ++m) {
     mpm_particles *set = s->member[m].set;
     if (!set->slots) continue;
     const double *F[9];
-    for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld;
+    for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
+      F[c] = mpmi_f64(set, MPMI_F, copy) + c * set->ld;
     s->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0),
                             set->slots);
   }
+}
+
+/* Only volumes were overwritten: F is still there to make them again. */
+void mpmi_roll_back(mpm_stepper *s) {
+  mpmi_make_volumes(s, 0);
 }

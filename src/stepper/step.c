@@ -230,6 +230,7 @@ mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
   mpmi_failure_clear(&s->failure);
   status = begin_part(s, dt);
   if (status) return give_up(s, status);
+  if (s->desc.scheme == MPM_USF) mpmi_make_volumes(s, 0); /* until the end the host sees the old state */
   s->phase = MPMI_BEGUN;
   return MPM_OK;
 }
@@ -263,6 +264,7 @@ mpm_status mpm_step_end(mpm_stepper *s, mpm_step_info *info) {
   if (!status) status = check_info(s, info);
   if (status) return status;
   s->phase = MPMI_RUNNING;
+  if (s->desc.scheme == MPM_USF) mpmi_make_volumes(s, 1);
   status = finish(s, s->dt);
   if (status) {
     give_up(s, status);

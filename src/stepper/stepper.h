@@ -268,6 +268,8 @@ void mpmi_prescribed_commit(mpm_stepper *s);
 void mpmi_prescribed_forget(mpm_stepper *s, mpmi_member *member); /* memory of a member */
 void mpmi_commit(mpm_stepper *s, double dt);
 void mpmi_roll_back(mpm_stepper *s);
+/* Volumes, of which there is one copy, by a copy of F. */
+void mpmi_make_volumes(mpm_stepper *s, int32_t copy);
 
 /* forces.c: particles for the host's callbacks, in batches that are long because calling costs. */
 enum { MPMI_PARTICLE_BATCH = 2048 };

@@ -65,6 +65,27 @@ START_TEST(order_of_the_parts) {
 }
 END_TEST
 
+/* Between the parts the host sees the state before the step, whatever the scheme has made already. */
+START_TEST(old_state_between_parts) {
+  run r;
+  run_open(&r, &(run_options){.dim = 2, .scheme = _i});
+  run_steps(&r, 2);
+  double *before = run_get(&r, 0, "volume", 1);
+  const int64_t n = mpm_particles_count(r.set[0]);
+  for (int32_t part = 0; part < 2; ++part) {
+    run_ok(&r, part ? mpm_step_grid(r.stepper) : mpm_step_begin(r.stepper, RUN_DT));
+    double *volume = run_get(&r, 0, "volume", 1);
+    ck_assert_int_eq(memcmp(volume, before, (size_t)n * sizeof *volume), 0);
+    free(volume);
+  }
+  run_ok(&r, mpm_step_end(r.stepper, NULL));
+  double *after = run_get(&r, 0, "volume", 1);
+  ck_assert_int_ne(memcmp(after, before, (size_t)n * sizeof *after), 0);
+  free(before), free(after);
+  run_close(&r);
+}
+END_TEST
+
 /* While a step is under way nothing of the stepper may change. */
 START_TEST(nothing_else_meanwhile) {
   run r;
@@ -278,6 +299,7 @@ TCase *stepper_staged_case(void) {
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, parts_make_the_whole, 0, COMBINATIONS);
   tcase_add_test(tests, order_of_the_parts);
+  tcase_add_loop_test(tests, old_state_between_parts, MPM_USL, MPM_MUSL + 1);
   tcase_add_test(tests, nothing_else_meanwhile);
   tcase_add_loop_test(tests, abort_leaves_no_trace, 0, COMBINATIONS);
   tcase_add_test(tests, failing_parts_abort);
