@@ -59,9 +59,9 @@ def loglog(ax, x_label, y_label, base=2):
     ax.set_ylabel(y_label)
 
 
-def cells_axis(ax, cells):
-    """Numbers of cells, in figures."""
-    ax.set_xticks(cells, [f"{c:g}" for c in cells])
+def ticks(ax, values):
+    """These values along x, in figures."""
+    ax.set_xticks(values, [f"{v:g}" for v in values])
     ax.minorticks_off()
 
 

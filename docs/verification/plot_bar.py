@@ -1,7 +1,7 @@
 """The manufactured bar and cube of Steffen et al. 2008, and the figures of their section 4."""
 import math
 
-from plot import axes, cells_axis, loglog, plot, read, slope
+from plot import axes, ticks, loglog, plot, read, slope
 
 MARKERS = "osD^v<>ph"
 
@@ -9,8 +9,9 @@ MARKERS = "osD^v<>ph"
 def series(ax, data, key):
     """All columns against one, with gaps where a run failed."""
     x = data.pop(key)
-    for (name, values), marker in zip(data.items(), MARKERS):
-        ax.plot(x, [v if math.isfinite(v) else math.nan for v in values], marker + "-", label=name)
+    for i, ((name, values), marker) in enumerate(zip(data.items(), MARKERS)):
+        ax.plot(x, [v if math.isfinite(v) else math.nan for v in values], marker + "-", label=name,
+                markerfacecolor="none", markersize=9 - 0.6 * i) # open, so that equal curves show
 
 
 def convergence(name, reference, order, label="largest error of position"):
@@ -21,7 +22,7 @@ def convergence(name, reference, order, label="largest error of position"):
     for ends, start, p in zip(reference[::2], reference[1::2], order):
         slope(ax, ends, start, -p)
     loglog(ax, "cells along an axis", label)
-    cells_axis(ax, cells)
+    ticks(ax, cells)
     ax.legend(fontsize=7)
     return figure
 
@@ -65,6 +66,18 @@ def bar_cfl():
         ax.set(title=f"{per_cell} per cell", xlabel="CFL number", ylim=(2e-6, 5e-2))
     both[0].set_ylabel("largest error of position")
     both[0].legend(fontsize=7)
+    return figure
+
+
+@plot
+def bar_schemes():
+    figure, ax = axes()
+    data = read("bar_schemes")
+    cfl = list(data["cfl"])
+    series(ax, data, "cfl")
+    loglog(ax, "CFL number", "largest error of position")
+    ticks(ax, cfl)
+    ax.legend(fontsize=7)
     return figure
 
 

@@ -47,7 +47,7 @@ while read -r name file fault; do
   cp original "$file" # with a new time, so that it is compiled again
 done < tests/mutate/faults.txt
 program
-for name in $(sed -n 's/^\([a-z_/]*\) \(src\|include\).*/\1/p' tests/mutate/faults.txt | sort -u); do
+for name in $(sed -n 's,^\([a-z_/]*\) \(src\|include\).*,\1,p' tests/mutate/faults.txt | sort -u); do
   suite "$name" || miss "fails without a fault" "$name"
 done
 echo "mutate: $planted faults, $((planted - missed)) noticed"

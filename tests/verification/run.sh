@@ -17,7 +17,7 @@ one() {
   local failed
   failed=$(grep -cE '\| (FAILED|MET) \|' "$dir/$name.log" || :)
   if [ "$status" -gt 1 ] || ! grep -q '^RESULT' "$dir/$name.log" || [ "$status" != "$((failed > 0))" ]; then
-    echo "RESULT $name | runs to its end | $status | 0 | 0 | FAILED | exit status" >> "$dir/$name.log"
+    echo "RESULT $name | runs to its end | $status | 0 | 0 | BROKEN | exit status" >> "$dir/$name.log"
     failed=$((failed + 1))
   fi
   echo "$name ends after $((SECONDS - start)) s: $(grep -c '^RESULT' "$dir/$name.log") gates, $failed not as expected"
@@ -40,8 +40,8 @@ table() { # verdicts as a regular expression, heading
   awk -F ' [|] ' -v verdict="$1" -v line="${line%\\n}" \
     '$6 ~ verdict { printf line "\n", $1, $2, $3, "[" $4 ", " $5 "]", $6 }' "$dir/all.log"
 }
-table '^(ok|FAILED)$' 'Gates'
+table '^(ok|FAILED|BROKEN)$' 'Gates'
 table '^(expected|MET)$' 'Expected failures: gates that a correct method does not meet; the reasons are in docs/verification.md'
-total=$(wc -l < "$dir/all.log") bad=$(grep -cE '\| (FAILED|MET) \|' "$dir/all.log" || :)
+total=$(wc -l < "$dir/all.log") bad=$(grep -cE '\| (FAILED|MET|BROKEN) \|' "$dir/all.log" || :)
 printf '\n%s gates in %s cases, %s not as expected, %s s\n' "$total" "$#" "$bad" "$((SECONDS - start))"
 [ "$bad" = 0 ]
