@@ -206,7 +206,7 @@ int main(int argc, char **argv) {
   fprintf(stderr, "\n");
 
   printf("t sqrt(2g/a)   front/a   measured   ahead\n");
-  double least = INFINITY, most = -INFINITY;
+  double least = HUGE_VAL, most = -HUGE_VAL;
   for (int i = 0; i < POINTS; ++i) {
     const double is = at_time(measured[i][0], time, front), ahead = 100.0 * (is / measured[i][1] - 1.0);
     printf("%8.2f %13.3f %9.2f %+8.1f %%\n", measured[i][0], is, measured[i][1], ahead);

@@ -24,7 +24,8 @@
  *
  * - position: length, inside the grid.
  * - velocity: length/time.
- * - acceleration: (v_new - v_old) / dt of the last step, once the host has set or mapped it.
+ * - acceleration: (v_new - v_old) / dt of the last step, once the host has set or mapped it; with staggered
+ *   velocities over the mean of its dt and the one before.
  * - mass, initial_volume: > 0; a new particle has mass = density * initial_volume.
  * - volume: det F * initial_volume (MPoint theory, eq. 40).
  * - size: full initial edge lengths of the particle's domain, for MPM_GIMP and MPM_CPGIMP; edges beyond a

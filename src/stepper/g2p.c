@@ -241,7 +241,7 @@ static uint32_t move_batch(batch_job *b, int64_t begin, int64_t n) {
     for (int32_t k = 0; k < s->grid->dim; ++k)
       for (int64_t p = 0; p < n; ++p)
         component(set, MPMI_ACCELERATION, 1, k)[begin + p] =
-            (b->move.v_new[k][p] - b->move.v_old[k][p]) / b->job->dt;
+            (b->move.v_new[k][p] - b->move.v_old[k][p]) / s->velocity_dt;
   return flags & MPMI_NONFINITE;
 }
 

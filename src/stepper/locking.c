@@ -73,6 +73,7 @@ static void add_task(void *data, int64_t k) {
     mpmi_block_axes(s->grid, s->blocks.coord[block], axis);
     for (int32_t m = 0; m < s->member_count; ++m) {
       mpm_particles *set = s->member[m].set;
+      if (mpmi_material_kinematics(set->material) == MPMI_F_STAYS) continue; /* rigid: nothing to average */
       const int64_t *start = s->member[m].now.start, *id = mpmi_i64(set, MPMI_ID, 0);
       const mpmi_points points = mpmi_points_of(set, 0);
       const double *j = mpmi_f64(set, MPMI_DILATION_RATIO, 1), *volume = mpmi_f64(set, MPMI_VOLUME, 0);
@@ -119,10 +120,14 @@ void mpmi_locking_apply(const mpm_stepper *s, const double *cells, const mpmi_ax
   const mpmi_points points = mpmi_points_of(set, 0);
   const double *old = mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin;
   double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
+  const int32_t rigid = mpmi_material_kinematics(set->material) == MPMI_F_STAYS;
   int32_t place[MPMI_CHUNK];
   for (int64_t p = 0; p < n; ++p) {
+    ratio[p] = old[p];
     if (p % MPMI_CHUNK == 0)
       cell_places(s->grid, axis, &points, begin + p, n - p < MPMI_CHUNK ? n - p : MPMI_CHUNK, place);
+    if (rigid || id[p] < 0) continue;
     const double *cell = cells + 4 * place[p % MPMI_CHUNK];
     const double j = det_minus_1(dim, b->L + p, b->ld, dt);
     const double mean = cell[1] > 0.0 ? cell[0] / cell[1] : j;

@@ -50,20 +50,12 @@ static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm
   return MPM_OK;
 }
 
-/* Options that change nothing while they have their default, and that this version does not have. */
+/* Options beside scheme, transfer and forces. */
 static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
-  const struct {
-    const char *name, *use;
-    int32_t value, off, high;
-  } option[] = {{"quasi_static", "0", d->quasi_static, 0, 1}};
-  for (size_t i = 0; i < sizeof option / sizeof *option; ++i) {
-    if (option[i].value < option[i].off || option[i].value > option[i].high)
-      return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be %d ... %d", option[i].name, (int)option[i].value,
-                       (int)option[i].off, (int)option[i].high);
-    if (option[i].value != option[i].off)
-      return mpmi_fail(c, MPM_E_UNSUPPORTED, "%s = %d is not in this version: use %s", option[i].name,
-                       (int)option[i].value, option[i].use);
-  }
+  if (d->quasi_static != 0 && d->quasi_static != 1)
+    return mpmi_fail(c, MPM_E_ARG, "quasi_static is %d: it must be 0 or 1", (int)d->quasi_static);
+  if (d->quasi_static)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED, "quasi_static = 1 is not in this version: use 0");
   if (!isfinite(d->pic_damping) || d->pic_damping < 0.0)
     return mpmi_fail(c, MPM_E_ARG, "pic_damping is %g: it must be finite and >= 0", d->pic_damping);
   if (d->position_order != 1 && d->position_order != 2)

@@ -253,7 +253,7 @@ static void move(const sums *s, double dt, double dt_v, double *x_new) {
       const double v_new = interpolate(s, p, s->v_new, k), v_old = interpolate(s, p, s->v, k);
       const double a = interpolate(s, p, s->a, k), before = c->v[i];
       c->v[i] = kept ? kept[i] + dt_v * a : v_new + share * (before - v_old);
-      c->a[i] = (c->v[i] - before) / dt;
+      c->a[i] = (c->v[i] - before) / dt_v;
       x_new[i] = c->x[i] + dt * v_new - (d->position_order == 2 ? 0.5 * dt * dt * a : 0.0);
     }
     if (d->transfer == MPM_TPIC || d->transfer == MPM_TFLIP)

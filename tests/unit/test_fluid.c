@@ -467,6 +467,43 @@ START_TEST(rigid_set) {
 }
 END_TEST
 
+/* A rigid set that shares cells with a fluid takes no part in the averages of the remedy: its ratio stays 1.
+ */
+START_TEST(rigid_set_and_remedy) {
+  world w;
+  world_desc desc = fluid_desc(2, &methods[0]);
+  world_open(&w, &desc);
+  const mpm_param heavy = {"density", 8e3};
+  mpm_material *steel_law;
+  mpm_particles *rigid;
+  ck_ok(&w, mpm_material_create(w.context, "rigid", &heavy, 1, &steel_law));
+  mpm_particles *column = box(&w, 0.2, 0.6);
+  ck_ok(&w, mpm_particles_create(w.context, w.grid, steel_law, &rigid));
+  const double lower[2] = {0.55, 0.2}, upper[2] = {0.8, 0.6};
+  const int32_t per_cell[2] = {2, 2};
+  ck_ok(&w, mpm_particles_fill_box(rigid, lower, upper, per_cell, NULL, NULL));
+  const double speed[2] = {-0.3, 0.0};
+  ck_ok(&w, mpm_particles_set_all(rigid, "velocity", MPM_F64, 2, speed));
+  mpm_stepper_desc d;
+  ck_ok(&w, mpm_stepper_desc_init(&d, sizeof d));
+  d.locking_remedy = MPM_LOCKING_CELL_AVERAGE;
+  ck_ok(&w, mpm_stepper_configure(w.stepper, &d));
+  ck_ok(&w, mpm_stepper_add(w.stepper, rigid));
+  for (int32_t i = 0; i < 20; ++i) world_step(&w, 1e-4);
+  const int64_t n = mpm_particles_count(rigid);
+  double *ratio = fetch(&w, rigid, "dilation_ratio", 1), *other = fetch(&w, column, "dilation_ratio", 1);
+  double apart = 0.0;
+  for (int64_t p = 0; p < n; ++p) ck_assert(ratio[p] == 1.0);
+  for (int64_t p = 0; p < mpm_particles_count(column); ++p) apart = fmax(apart, fabs(other[p] - 1.0));
+  ck_assert_msg(apart > 1e-7, "the remedy has done nothing: %g", apart);
+  free(ratio), free(other);
+  ck_ok(&w, mpm_stepper_remove(w.stepper, rigid));
+  ck_ok(&w, mpm_particles_destroy(rigid));
+  ck_ok(&w, mpm_material_destroy(steel_law));
+  world_close(&w);
+}
+END_TEST
+
 /* Domains of particles follow from F, of which a fluid has the volume only. */
 START_TEST(refused_basis) {
   world w;
@@ -499,6 +536,7 @@ Suite *fluid_suite(void) {
   tcase_add_loop_test(tc, starting_plate, 0, 2);
   tcase_add_loop_test(tc, column_at_rest, 0, 8);
   tcase_add_loop_test(tc, rigid_set, 0, 6);
+  tcase_add_test(tc, rigid_set_and_remedy);
   tcase_add_loop_test(tc, same_bits, 0, 8);
   tcase_add_test(tc, refused_basis);
   suite_add_tcase(suite, tc);
