@@ -35,6 +35,9 @@ mpm_status mpm_stepper_profile(mpm_stepper *s, int32_t reset, mpm_profile *out) 
                                .grid = t[MPMI_TIME_GRID],
                                .g2p = t[MPMI_TIME_G2P],
                                .law = t[MPMI_TIME_LAW],
+                               .assembly = t[MPMI_TIME_ASSEMBLY],
+                               .factor = t[MPMI_TIME_FACTOR],
+                               .solve = t[MPMI_TIME_SOLVE],
                                .callbacks = t[MPMI_TIME_CALLBACKS],
                                .total = t[MPMI_TIME_TOTAL],
                                .weights = t[MPMI_TIME_WEIGHTS]};
