@@ -61,8 +61,14 @@ OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(B
 STATIC_LIB := $(BUILD)/libmpm.a
 SHARED_LIB := $(BUILD)/$(SHARED)
 
+# One example shows CHOLMOD as the host's solver, where that is installed.
+HAS_CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null > /dev/null 2>&1 && echo yes)
 EXAMPLES := $(patsubst examples/%,$(BUILD)/examples/%,$(basename $(sort $(wildcard examples/*.c examples/*.cpp))))
 BENCH := $(BUILD)/bench/bench
+ifneq ($(HAS_CHOLMOD),yes)
+EXAMPLES := $(filter-out %/cholmod_solver,$(EXAMPLES))
+endif
+$(BUILD)/examples/cholmod_solver: LIBS += -lcholmod
 UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
 UNIT := $(BUILD)/tests/unit
 

@@ -178,6 +178,12 @@ if wanted staged_coupling; then
   check "energy" "energy of vibration to" 0 3
 fi
 
+if wanted cholmod_solver && [ -e "$build/examples/cholmod_solver" ]; then
+  run cholmod_solver
+  check "same as the built-in solver" "differ by" 0 1e-9
+  check "tip" "sinks by" 0.7 1.3
+fi
+
 if wanted cpp_block; then
   run cpp_block
   check "settlement" "settlement" 4.1 4.2

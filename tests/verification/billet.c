@@ -4,6 +4,8 @@
  * displacements.) */
 #include "verify.h"
 
+#include <string.h>
+
 static const double mu = 6e6, kappa = 6e7, density = 10.0, L = 10.0;
 
 typedef struct variant {
@@ -78,9 +80,9 @@ static outcome compress(const variant *v, double speed, int bonded, double compr
   verify_ok(&w, mpm_stepper_set_motion(w.stepper, platen, push, &mean));
   if (!bonded) {
     const int64_t n = mpm_particles_count(platen);
-    double *axes = verify_array(2 * n);
-    for (int64_t i = 0; i < n; ++i) axes[n + i] = 1.0;
-    verify_put(&w, platen, "prescribed", 2, axes);
+    uint8_t *axes = calloc(2 * (size_t)n, 1);
+    memset(axes + n, 1, (size_t)n);
+    verify_ok(&w, mpm_particles_set(platen, "prescribed", MPM_U8, 2, NULL, n, axes, n));
     free(axes);
   }
   const int64_t n = mpm_particles_count(block);
