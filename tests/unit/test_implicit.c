@@ -1,5 +1,6 @@
 /* Implicit steps: Newmark's rule, convergence of the iteration, reactions, initial accelerations. */
 #include "implicit.h"
+#include "run_support.h"
 
 const implicit_basis implicit_bases[IMPLICIT_BASES] = {
     {MPM_LINEAR, MPM_BOUNDARY_GHOST, "linear"},        {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, "quadratic"},
@@ -292,6 +293,28 @@ START_TEST(patch) {
 }
 END_TEST
 
+/* The same bits on any number of threads, by the pool and by an executor in random order. */
+START_TEST(threads) {
+  static const int32_t counts[] = {1, 2, 3, 4, 7};
+  const run_method *method = &run_methods[RUN_ALL - 3 + _i % 3];
+  run_options o = {.dim = 1 + _i / 3 % 3, .velocity_bc = 1, .led = 1, .periodic = _i / 9};
+  run_use(&o, method);
+  uint64_t alone = 0;
+  for (int32_t i = 0; i < 6; ++i) {
+    run r;
+    o.concurrency = counts[i % 5];
+    o.own_order = i == 5;
+    if (i == 5) o.concurrency = 4;
+    run_open(&r, &o);
+    for (int32_t k = 0; k < 4; ++k) run_step_of(&r, 5.0 * RUN_DT);
+    ck_assert_int_gt(r.info.newton_iterations, 0);
+    if (!i) alone = run_hash(&r);
+    ck_assert_msg(run_hash(&r) == alone, "%d threads give another hash than one", (int)o.concurrency);
+    run_close(&r);
+  }
+}
+END_TEST
+
 Suite *implicit_suite(void) {
   Suite *suite = suite_create("implicit");
   TCase *tests = tcase_create("steps");
@@ -302,6 +325,7 @@ Suite *implicit_suite(void) {
   tcase_add_loop_test(tests, every_law, 0, 40);
   tcase_add_loop_test(tests, initial_acceleration, 0, 2);
   tcase_add_test(tests, patch);
+  tcase_add_loop_test(tests, threads, 0, 18);
   suite_add_tcase(suite, tests);
   suite_add_tcase(suite, implicit_failures_case());
   return suite;
