@@ -163,13 +163,19 @@ static int32_t is_on_wall(const mpm_stepper *s, int32_t k, double *x) {
   return 1;
 }
 
+static int32_t is_placed(const mpm_particles *set, int32_t dim, int64_t slot) {
+  int32_t placed = 1;
+  for (int32_t k = 0; k < dim; ++k) placed &= isfinite(component(set, MPMI_POSITION, 1, k)[slot]) != 0;
+  return placed;
+}
+
 /* Particles beyond a face: wrapped, marked for removal, or the end of the step. */
 static void look_outside(batch_job *b, int64_t begin, int64_t n) {
   const mpm_stepper *s = b->job->s;
   const mpm_grid *grid = s->grid;
   const int64_t *id = mpmi_i64(b->set, MPMI_ID, 0);
   for (int64_t slot = begin; slot < begin + n; ++slot) {
-    if (id[slot] < 0) continue;
+    if (id[slot] < 0 || !is_placed(b->set, grid->dim, slot)) continue; /* look_at_values will say */
     int32_t stays = 0, leaves = 0;
     for (int32_t k = 0; k < grid->dim; ++k) {
       double *x = component(b->set, MPMI_POSITION, 1, k) + slot;
@@ -205,14 +211,33 @@ static int32_t finite_row(const mpm_particles *set, int32_t field, int32_t compo
   return 1;
 }
 
-/* Finds the particles behind a flag; holes are not looked at. */
+/* A hole weighs nothing, but nodes near it that are not finite make it so: it stays what it was. */
+static void restore_hole(batch_job *b, int64_t slot) {
+  mpm_particles *set = b->set;
+  b->scratch->holes_restored = 1;
+  mpmi_f64(set, MPMI_VOLUME, 0)[slot] = 0.0;
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field *field = &set->field[f];
+    if (!field->present || !field->two_copies) continue;
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components; ++c) {
+      const size_t at = (size_t)(c * set->ld + slot) * size;
+      memcpy((char *)field->data[1] + at, (const char *)field->data[0] + at, size);
+    }
+  }
+}
+
+/* Finds the particles behind a flag. */
 static void look_at_values(batch_job *b, int64_t begin, int64_t n) {
   const mpm_particles *set = b->set;
   const int32_t dim = b->job->s->grid->dim;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   const int32_t moved = b->job->what & MPMI_G2P_MOVE, deformed = b->job->what & MPMI_G2P_DEFORM;
   for (int64_t slot = begin; slot < begin + n; ++slot) {
-    if (id[slot] < 0) continue;
+    if (id[slot] < 0) {
+      restore_hole(b, slot);
+      continue;
+    }
     const int64_t p = slot - begin;
     if (moved && !(finite_row(set, MPMI_POSITION, dim, slot) && finite_row(set, MPMI_VELOCITY, dim, slot)))
       fail(b, MPM_NONFINITE, slot, "position or velocity not finite");
@@ -257,7 +282,7 @@ static uint32_t move_batch(batch_job *b, int64_t begin, int64_t n) {
   uint32_t flags = s->kernels->move[s->grid->dim](&b->move, n);
   if (s->member[b->m].prescribed) flags |= mpmi_prescribed_move(s, b->m, b->block, &b->move, begin, n);
   if (flags & MPMI_LEFT_TILE) b->scratch->left_tile = 1;
-  if ((flags & MPMI_OUTSIDE) && !(flags & MPMI_NONFINITE)) look_outside(b, begin, n);
+  if (flags & MPMI_OUTSIDE) look_outside(b, begin, n);
   if (set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(s))
     for (int32_t k = 0; k < s->grid->dim; ++k)
       for (int64_t p = 0; p < n; ++p)

@@ -111,13 +111,8 @@ static void set_nodes(mpm_stepper *s, double dt) {
     double *to = s->node + 8 * node->slot;
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)node->row * dim + c;
-      const double u = w->vector[MPMI_U][at];
-      const int32_t rests = s->desc.boundary_zero_acceleration && w->matrix.held[at];
-      to[c] = node->sign[c] * (u / dt);
-      to[4 + c] = !mpmi_is_dynamic(s) || rests
-                      ? 0.0
-                      : node->sign[c] * dt *
-                            mpmi_newmark_acceleration(s, dt, u, w->vector[MPMI_V0][at], w->vector[MPMI_A0][at]);
+      to[c] = node->sign[c] * (w->vector[MPMI_U][at] / dt);
+      to[4 + c] = mpmi_is_dynamic(s) ? node->sign[c] * dt * mpmi_newmark_acceleration(s, dt, at) : 0.0;
     }
   }
 }
@@ -132,6 +127,7 @@ static void show_velocities(mpm_stepper *s, double dt) {
     double *to = s->node + 8 * node->slot;
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)node->row * dim + c;
+      if (w->matrix.held[at] == MPMI_ROW_WALL) continue;
       to[c] = node->sign[c] * (w->vector[MPMI_V0][at] + dt * (1.0 - gamma) * w->vector[MPMI_A0][at]) +
               gamma * to[4 + c];
     }

@@ -35,14 +35,13 @@ static double norm_of(const iteration *it, const double *v, int32_t free_only) {
 static void find_residual(iteration *it) {
   const mpm_stepper *s = it->s;
   mpmi_newton *w = it->w;
-  const double *u = w->vector[MPMI_U], *internal = w->vector[MPMI_INTERNAL], *external = w->vector[MPMI_EXTERNAL];
+  const double *internal = w->vector[MPMI_INTERNAL], *external = w->vector[MPMI_EXTERNAL];
   double *residual = w->vector[MPMI_RESIDUAL], inertia = 0.0;
   const int32_t dim = s->grid->dim;
   for (int64_t i = 0; i < it->n; ++i) {
     double Ma = 0.0;
     if (mpmi_is_dynamic(s))
-      Ma = w->mass[i / dim] *
-           mpmi_newmark_acceleration(s, it->dt, u[i], w->vector[MPMI_V0][i], w->vector[MPMI_A0][i]);
+      Ma = w->mass[i / dim] * mpmi_newmark_acceleration(s, it->dt, i);
     residual[i] = internal[i] + Ma - external[i];
     inertia += Ma * Ma;
   }

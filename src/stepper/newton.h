@@ -98,11 +98,17 @@ void mpmi_newton_free(mpm_stepper *s);
 
 /* newton.c: displacements of the step in vector[MPMI_U], forces and stress in place. */
 mpm_status mpmi_newton_solve(mpm_stepper *s, double dt);
-/* Acceleration that belongs to the displacement u of one component. */
-static inline double mpmi_newmark_acceleration(const mpm_stepper *s, double dt, double u, double v0,
-                                               double a0) {
+/* matrix.held: by whom; none but the last two is an unknown. */
+enum { MPMI_ROW_FREE, MPMI_ROW_PRESCRIBED, MPMI_ROW_WALL };
+/* Acceleration that belongs to a displacement, by component of the vectors; on walls there is none. */
+static inline double mpmi_newmark_acceleration(const mpm_stepper *s, double dt, int64_t at) {
+  const mpmi_newton *w = s->newton;
   const double beta = s->desc.newmark_beta;
-  return (u - dt * v0 - dt * dt * (0.5 - beta) * a0) / (beta * dt * dt);
+  const uint8_t held = w->matrix.held[at];
+  if (held == MPMI_ROW_WALL || (held && s->desc.boundary_zero_acceleration)) return 0.0;
+  return (w->vector[MPMI_U][at] - dt * w->vector[MPMI_V0][at] -
+          dt * dt * (0.5 - beta) * w->vector[MPMI_A0][at]) /
+         (beta * dt * dt);
 }
 
 /* unknowns.c: from the masses in s->node and the external forces, whose fourth value tells the nodes that

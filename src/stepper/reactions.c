@@ -12,9 +12,7 @@ static double reaction_on(const mpm_stepper *s, const mpmi_active_node *node, in
   const int64_t at = (int64_t)node->row * s->grid->dim + c;
   double force = w->force[4 * node->slot + c] - w->external[4 * node->slot + c];
   if (mpmi_is_dynamic(s))
-    force += s->node[8 * node->slot + 3] * node->sign[c] *
-             mpmi_newmark_acceleration(s, dt, w->vector[MPMI_U][at], w->vector[MPMI_V0][at],
-                                       w->vector[MPMI_A0][at]);
+    force += s->node[8 * node->slot + 3] * node->sign[c] * mpmi_newmark_acceleration(s, dt, at);
   return force;
 }
 

@@ -69,7 +69,7 @@ static mpm_status start(mpm_stepper *s, double dt, double *clock) {
   mpmi_failure_clear(&s->failure);
   for (int32_t k = 0; k < s->tasks; ++k) {
     mpmi_failure_clear(&s->scratch[k].failure);
-    s->scratch[k].left_tile = s->scratch[k].removes = 0;
+    s->scratch[k].left_tile = s->scratch[k].removes = s->scratch[k].holes_restored = 0;
     s->scratch[k].law_seconds = s->scratch[k].weights_seconds = 0.0;
   }
   for (int32_t f = 0; f < 6; ++f)

@@ -2,6 +2,7 @@
  * the work. */
 #include "stepper/stepper.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -113,7 +114,7 @@ static void find_largest_masses(mpm_stepper *s) {
  * steps do not divide: stiffness moves the lightest node. */
 static void find_mass_cut(mpm_stepper *s) {
   const double share = s->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(s) ? 1e-12 : 1e-40;
-  s->mass_cut = 0.0;
+  s->mass_cut = DBL_MIN; /* of what is lighter, the inverse may not be finite */
   for (int32_t m = 0; m < s->member_count; ++m)
     if (share * s->member[m].set->mass_max > s->mass_cut) s->mass_cut = share * s->member[m].set->mass_max;
 }

@@ -2,6 +2,7 @@
  * matrix. All of it is frozen during the step. */
 #include "stepper/newton.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,9 +45,25 @@ static void offset_of(const mpm_stepper *s, int32_t index, int32_t *offset) {
 }
 
 /* Nodes with stiffness, or in a dynamic step with inertia. Light ones stay in: leaving them out would hold
- * them. */
-static int32_t is_active(const mpm_stepper *s, int64_t slot) {
-  return s->newton->external[4 * slot + 3] > 0.0 || (mpmi_is_dynamic(s) && s->node[8 * slot + 3] > s->mass_cut);
+ * them. What is left out is rounding of weights that are zero. */
+typedef struct cuts {
+  double stiffness, mass;
+} cuts;
+static const double STIFFNESS_ROUNDING = 1e-26, MASS_ROUNDING = 1e-14;
+
+static cuts find_cuts(const mpm_stepper *s) {
+  const int64_t slots = s->blocks.count * s->blocks.nodes;
+  cuts most = {0.0, 0.0};
+  for (int64_t i = 0; i < slots; ++i) {
+    most.stiffness = fmax(most.stiffness, s->newton->external[4 * i + 3]);
+    most.mass = fmax(most.mass, s->node[8 * i + 3]);
+  }
+  return (cuts){STIFFNESS_ROUNDING * most.stiffness, MASS_ROUNDING * most.mass};
+}
+
+static int32_t is_active(const mpm_stepper *s, const cuts *cut, int64_t slot) {
+  return s->newton->external[4 * slot + 3] > cut->stiffness ||
+         (mpmi_is_dynamic(s) && s->node[8 * slot + 3] > cut->mass);
 }
 
 static int64_t master_of(const mpm_stepper *s, int64_t slot) {
@@ -58,9 +75,10 @@ static int64_t master_of(const mpm_stepper *s, int64_t slot) {
 static void mark(mpm_stepper *s, int64_t *active, int64_t *rows) {
   mpmi_newton *w = s->newton;
   const int64_t slots = s->blocks.count * s->blocks.nodes;
+  const cuts cut = find_cuts(s);
   for (int64_t i = 0; i < slots; ++i) w->active_of[i] = -1;
   for (int64_t i = 0; i < slots; ++i)
-    if (is_active(s, i)) w->active_of[i] = w->active_of[master_of(s, i)] = 0;
+    if (is_active(s, &cut, i)) w->active_of[i] = w->active_of[master_of(s, i)] = 0;
   *active = *rows = 0;
   for (int64_t i = 0; i < slots; ++i) {
     if (w->active_of[i] < 0) continue;
@@ -272,7 +290,8 @@ static void hold(mpm_stepper *s, double dt) {
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)w->active[i].row * dim + c;
       const int32_t by_host = s->holds && s->held[3 * slot + c];
-      const uint8_t held = by_host || (orbit >= 0 && s->constraints.orbit[orbit].zero[c]);
+      const int32_t on_wall = orbit >= 0 && s->constraints.orbit[orbit].zero[c];
+      const uint8_t held = by_host ? MPMI_ROW_PRESCRIBED : on_wall ? MPMI_ROW_WALL : MPMI_ROW_FREE;
       changed |= held != A->held[at];
       A->held[at] = held;
       w->vector[MPMI_TARGET][at] = by_host ? dt * s->held_value[3 * slot + c] : 0.0;

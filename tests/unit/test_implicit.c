@@ -296,9 +296,9 @@ END_TEST
 /* The same bits on any number of threads, by the pool and by an executor in random order. */
 START_TEST(threads) {
   static const int32_t counts[] = {1, 2, 3, 4, 7};
-  const run_method *method = &run_methods[RUN_ALL - 3 + _i % 3];
+  const run_method *how = &run_methods[RUN_ALL - 3 + _i % 3];
   run_options o = {.dim = 1 + _i / 3 % 3, .velocity_bc = 1, .led = 1, .periodic = _i / 9};
-  run_use(&o, method);
+  run_use(&o, how);
   uint64_t alone = 0;
   for (int32_t i = 0; i < 6; ++i) {
     run r;
