@@ -83,9 +83,9 @@ MPMI_INLINE void shear_chunk(int dim, const double *constants, const mpm_materia
   const double shear = constants[MPMI_C_VISCOSITY] / batch->dt;
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
-    double mean;
+    double mean_log;
     mpmi_objective_load(dim, o, p, batch, begin + p);
-    mpmi_sym v = mpmi_deviator(mpmi_load_sym(dim, o->log_v[0], MPMI_CHUNK, p), &mean);
+    mpmi_sym v = mpmi_deviator(mpmi_load_sym(dim, o->log_v[0], MPMI_CHUNK, p), &mean_log);
     mpmi_store_sym(dim, o->stress[0], MPMI_CHUNK, p, mpmi_shifted(2.0 * shear, v, 0.0));
     o->bulk[p] = 0.0;
     o->shear[p] = shear;
