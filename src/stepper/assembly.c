@@ -149,6 +149,16 @@ static void map_tile(const mpm_stepper *s, int64_t block, int32_t *to) {
   }
 }
 
+int32_t mpmi_at_seam(const mpm_stepper *s, int64_t block) {
+  const mpm_grid *grid = s->grid;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const int64_t first = (int64_t)s->blocks.coord[block][k] * s->blocks.edge - MPMI_RING - grid->below;
+    const int64_t end = first + MPMI_TILE_EDGE(grid->dim, grid->width);
+    if (grid->desc.periodic[k] && (first < 0 || end > grid->desc.cells[k])) return 1;
+  }
+  return 0;
+}
+
 void mpmi_assemble_begin(mpm_stepper *s, int32_t task, int32_t what, int64_t block) {
   mpmi_newton_work *work = &s->newton->work[task];
   if (what & MPMI_G2P_FORCES) memset(work->tile, 0, tile_bytes(s));

@@ -11,6 +11,7 @@ typedef struct g2p_job {
   int32_t what, values, form, need;
   int32_t starts_sums; /* of energies: not the pass that completes those of another */
   const mpmi_cut *cut;
+  int32_t seam; /* of passes that add stiffness: the blocks at periodic seams, or the others */
   double dt;
   const double *nodes;
 } g2p_job;
@@ -421,6 +422,7 @@ static void g2p_task(void *data, int64_t k) {
   int32_t bound = -1;
   for (int64_t i = cut->bound[k]; i < cut->bound[k + 1]; ++i) {
     const int32_t block = cut->list[i];
+    if ((job->what & MPMI_G2P_STIFFNESS) && mpmi_at_seam(s, block) != job->seam) continue;
     mpmi_sums *sums = &s->block_sums[block];
     if (job->starts_sums) memset(sums, 0, sizeof *sums);
     mpmi_tile_load(s, block, job->nodes, job->values, job->form >= MPMI_GATHER_8 ? 8 : 4, b.scratch->tile);
@@ -477,10 +479,16 @@ mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int
   g2p_job job = {.s = s, .what = what, .dt = dt, .nodes = nodes, .values = values};
   job.starts_sums = (what & (mpmi_deforms_first(s) ? MPMI_G2P_DEFORM : MPMI_G2P_MOVE | MPMI_G2P_DEFORM));
   choose_form(&job);
+  /* rows of images are written at their masters', anywhere: these blocks come one by one */
+  int64_t whole[] = {0, s->cut.count};
+  const mpmi_cut all = {s->cut.list, s->cut.count, whole};
   mpm_status status = MPM_OK;
   for (int32_t c = 0; c < (what & ASSEMBLES ? (int32_t)MPMI_COLOURS : 1) && !status; ++c) {
     job.cut = what & ASSEMBLES ? &s->colour[c] : &s->cut;
     if (job.cut->count) status = mpmi_run_tasks(s, has_host_law(s), s->tasks, g2p_task, &job);
   }
+  job.seam = 1;
+  job.cut = &all;
+  if ((what & MPMI_G2P_STIFFNESS) && !status) status = mpmi_run_tasks(s, has_host_law(s), 1, g2p_task, &job);
   return status ? status : mpmi_stepper_failure(s);
 }

@@ -121,6 +121,8 @@ void mpmi_unknowns_fold(const mpm_stepper *s, const double *forces, double *vect
 mpm_status mpmi_external_forces(mpm_stepper *s);
 /* Stress and internal force of the displacements u; with stiffness the matrix too. Fails as the law does. */
 mpm_status mpmi_internal_forces(mpm_stepper *s, const double *u, double dt, int32_t stiffness);
+/* Does the tile of a block reach over the end of a periodic axis? */
+int32_t mpmi_at_seam(const mpm_stepper *s, int64_t block);
 /* Called from the pass over the particles: what one batch adds, its law having run. */
 void mpmi_assemble_begin(mpm_stepper *s, int32_t task, int32_t what, int64_t block);
 void mpmi_assemble_batch(mpm_stepper *s, int32_t task, int32_t what, int32_t m, const mpmi_law_batch *law,
