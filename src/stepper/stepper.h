@@ -307,7 +307,6 @@ void mpmi_survey_moments(const mpm_stepper *s, const mpm_particles *set, int32_t
 void mpmi_fill_info(const mpm_stepper *s, mpm_step_info *info);
 
 /* profile.c */
-double mpmi_seconds(void);
 /* Now and then makes the weights of a block once more, to know how long that takes. */
 void mpmi_sample_weights(const mpm_stepper *s, mpmi_scratch *scratch, const mpmi_axis *axis, int32_t need,
                          const mpmi_points *points, int64_t begin, int64_t end);
