@@ -161,44 +161,77 @@ START_TEST(structure) {
 }
 END_TEST
 
-/* Large enough that an iteration comes first. */
-static const springs cube = {.dim = 3, .block = 1, .reach = 1, .n = {20, 20, 20}, .clamped = 1};
+/* Looks large enough for an iteration to come first, while the factor is cheap. */
+static const springs chains = {
+    .dim = 3, .block = 1, .reach = 1, .n = {20, 20, 20}, .clamped = 1, .chains = 1};
+
+static void build(double mass, double convection) {
+  springs of = chains;
+  of.mass = mass;
+  of.convection = convection;
+  mpmi_matrix_free(&A);
+  springs_build(&A, context, &of);
+}
+
+/* With too few iterations allowed. */
+static void solve_in_five(void) {
+  double *x = noise_vector(&A, 1), *b = rhs_for(&A, x), *y = malloc(8000 * sizeof *y);
+  mpmi_solve_job job = job_of(&A, b, y, MPM_SOLVER_AUTO);
+  job.max_iterations = 5;
+  solved(solver, &job, &report);
+  ck_assert_int_eq(report.iterations, 5);
+  ck_assert_int_eq(report.indefinite, 0);
+  ck_assert_double_lt(distance(8000, y, x), 1e-9);
+  ck_assert_str_eq(mpm_last_error(context), "");
+  free(x), free(b), free(y);
+}
 
 START_TEST(iteration_first) {
-  springs of = cube;
-  springs_build(&A, context, &of);
+  build(0.0, 0.0);
   ck_assert_double_lt(error_of(MPM_SOLVER_AUTO, 1), 1e-7);
   ck_assert_int_eq(report.solver, MPM_SOLVER_CG);
+  build(0.5, 0.3);
+  ck_assert_double_lt(error_of(MPM_SOLVER_AUTO, 1), 1e-7);
+  ck_assert_int_eq(report.solver, MPM_SOLVER_GMRES);
   ck_assert_int_eq(solver->factor.analysed, 0);
-  mpmi_matrix_free(&A);
-  of.mass = -0.1; /* CG meets the negative curvature, the factor solves */
-  springs_build(&A, context, &of);
+  build(-0.1, 0.0); /* CG meets negative curvature, the factor solves */
   ck_assert_double_lt(error_of(MPM_SOLVER_AUTO, 1), 1e-9);
   ck_assert_int_eq(report.solver, MPM_SOLVER_LDLT);
   ck_assert(report.indefinite == 1 && report.negative > 0 && report.node == -1);
   ck_assert_str_eq(mpm_last_error(context), "");
-  mpmi_matrix_free(&A);
-  of.mass = 0.0;
-  springs_build(&A, context, &of);
-  double *x = noise_vector(&A, 1), *b = rhs_for(&A, x), *y = malloc(8000 * sizeof *y);
-  mpmi_solve_job job = job_of(&A, b, y, MPM_SOLVER_AUTO);
-  job.max_iterations = 5; /* too few */
-  solved(solver, &job, &report);
-  ck_assert(report.solver == MPM_SOLVER_LDLT && report.iterations == 5 && report.indefinite == 0);
-  ck_assert_double_lt(distance(8000, y, x), 1e-9);
-  free(x), free(b), free(y);
+  build(0.0, 0.0);
+  solve_in_five();
+  ck_assert(report.solver == MPM_SOLVER_LDLT && report.negative == 0);
+  build(0.5, 0.3);
+  solve_in_five();
+  ck_assert(report.solver == MPM_SOLVER_GMRES && report.negative == -1);
 }
 END_TEST
 
-/* Strong convection that restarts do not get through: the factor does. */
+/* Convection so strong that restarts do not get through it: the factor does, and the impatient see it early.
+ */
 START_TEST(stalled) {
-  springs of = cube;
+  springs of = chains;
+  of.chains = 0;
   of.convection = 200.0;
   springs_build(&A, context, &of);
   refuse(MPM_SOLVER_GMRES, MPM_NOT_CONVERGED, "GMRES: after ");
+  const int64_t patient = report.iterations;
   ck_assert_double_lt(error_of(MPM_SOLVER_AUTO, 1), 1e-7);
   ck_assert_int_eq(report.solver, MPM_SOLVER_GMRES);
   ck_assert(solver->factor.analysed);
+  double *b = noise_vector(&A, 3), *x = calloc(8000, sizeof *x);
+  mpmi_system s = {
+      .solver = solver, .context = context, .A = &A, .b = b, .x = x, .n = 8000, .report = &report};
+  ck_assert_int_eq(mpmi_norm(context, b, 8000, &s.b_norm), MPM_OK);
+  s.wanted = 1e-10 * s.b_norm;
+  int64_t row;
+  ck_assert_int_eq(mpmi_inverse_blocks(&s, &row), MPM_OK);
+  report.iterations = 0;
+  const mpmi_gmres_plan plan = {mpmi_times_inverse_blocks, &s, 60, 1, patient};
+  ck_assert_int_eq(mpmi_gmres(&s, &plan), MPM_NOT_CONVERGED);
+  ck_assert_int_lt(report.iterations, patient);
+  free(b), free(x);
 }
 END_TEST
 

@@ -37,7 +37,7 @@ static void add_sorted(int32_t *list, int64_t *count, int32_t value) {
 static int64_t columns_of(const springs *of, const int64_t *row, const int64_t *index, int32_t *out) {
   int64_t count = 0;
   int64_t span[3] = {0, 0, 0};
-  for (int32_t k = 0; k < of->dim; ++k) span[k] = of->reach;
+  for (int32_t k = 0; k < (of->chains ? 1 : of->dim); ++k) span[k] = of->reach;
   for (int64_t dx = -span[0]; dx <= span[0]; ++dx)
     for (int64_t dy = -span[1]; dy <= span[1]; ++dy)
       for (int64_t dz = -span[2]; dz <= span[2]; ++dz) {
