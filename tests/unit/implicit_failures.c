@@ -343,6 +343,32 @@ START_TEST(refused) {
 }
 END_TEST
 
+/* A body that flies out: refused where nothing is said of the face, removed particle by particle where it is
+ * open. */
+START_TEST(off_the_grid) {
+  for (int32_t open = 0; open < 2; ++open) {
+    block b;
+    const double v[] = {3.0, 0.0};
+    b.desc = implicit_default(2, 8, 0.1, &implicit_bases[1]);
+    b.dt = 0.05;
+    world_open(&b.w, &b.desc);
+    b.set = world_add_set(&b.w);
+    implicit_block(&b.w, b.set, 0.4, 0.6, v);
+    if (open) ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_OPEN, 0.0));
+    world_step(&b.w, b.dt);
+    if (open) {
+      const int64_t n = mpm_particles_count(b.set);
+      ck_assert_int_eq(world_step(&b.w, b.dt).removed, n / 2);
+      ck_assert_int_eq(mpm_particles_count(b.set), n / 2);
+      ck_assert_int_eq(world_step(&b.w, 0.2 * b.dt).removed, n / 2 + n / 4);
+    } else {
+      ck_assert_int_ge(fails(&b, MPM_OFF_GRID, "leave the grid").particle, 0);
+    }
+    world_close(&b.w);
+  }
+}
+END_TEST
+
 /* mpm_advance cuts where the iteration fails, grows again, and ends where it should. */
 START_TEST(advance) {
   block b;
@@ -377,6 +403,7 @@ TCase *implicit_failures_case(void) {
   tcase_add_test(tests, force_in_trouble);
   tcase_add_test(tests, host_solver);
   tcase_add_test(tests, refused);
+  tcase_add_test(tests, off_the_grid);
   tcase_add_test(tests, advance);
   return tests;
 }

@@ -82,7 +82,7 @@ static outcome compress(const variant *v, double speed, int bonded, double compr
     const int64_t n = mpm_particles_count(platen);
     uint8_t *axes = calloc(2 * (size_t)n, 1);
     memset(axes + n, 1, (size_t)n);
-    verify_ok(&w, mpm_particles_set(platen, "prescribed", MPM_U8, 2, NULL, n, axes, n));
+    verify_ok(&w, mpm_particles_set(platen, "prescribed", MPM_U8, 2, n, NULL, axes));
     free(axes);
   }
   const int64_t n = mpm_particles_count(block);
