@@ -23,11 +23,14 @@ MPMI_INLINE void row_times_vector(const mpmi_matrix *A, int32_t block, int32_t a
   for (int32_t r = 0; r < block; ++r) sum[r] = 0.0;
   for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e, value += block * block) {
     const double *at = x + (int64_t)A->column[e] * block;
-    for (int32_t r = 0; r < block; ++r)
+    for (int32_t r = 0; r < block; ++r) {
+      double of_block = 0.0; /* first, so that blocks wait for one addition each */
       for (int32_t c = 0; c < block; ++c) {
         const double term = value[r * block + c] * at[c];
-        sum[r] += absolute ? fabs(term) : term;
+        of_block += absolute ? fabs(term) : term;
       }
+      sum[r] += of_block;
+    }
   }
 }
 

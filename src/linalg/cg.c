@@ -85,7 +85,7 @@ mpm_status mpmi_cg(mpmi_system *s, int64_t limit) {
   c.r = s->solver->work;
   c.p = c.r + s->n;
   c.q = c.p + s->n;
-  double before = INFINITY;
+  double before = (double)INFINITY;
   for (;;) {
     double rz;
     if ((status = start(&c, &rz))) return status;

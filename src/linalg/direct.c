@@ -30,7 +30,7 @@ static mpm_status refine(mpmi_system *s, int32_t *good) {
   mpmi_factor *f = &s->solver->factor;
   mpm_status status = mpmi_system_work(s, 2, 0);
   if (status) return status;
-  double *r = s->solver->work, *change = r + s->n, before = INFINITY;
+  double *r = s->solver->work, *change = r + s->n, before = (double)INFINITY;
   mpmi_factor_solve(f, s->A, s->b, s->x);
   for (int32_t round = 0;; ++round) {
     if ((status = mpmi_matrix_residual(s->A, s->b, s->x, r, &s->reached))) return status;

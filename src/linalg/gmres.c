@@ -191,7 +191,7 @@ static int32_t goes_on(const gmres *g, double before) {
 mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {
   gmres g = {.system = s, .plan = plan, .cut = mpmi_cut_of(s->n, s->n)};
   mpm_status status = reserve(&g);
-  for (double before = INFINITY; !status; before = s->reached) {
+  for (double before = (double)INFINITY; !status; before = s->reached) {
     int32_t good;
     if ((status = mpmi_matrix_residual(s->A, s->b, s->x, g.w, &s->reached))) break;
     if ((status = mpmi_system_good(s, s->reached, g.z, &good)) || good) break;

@@ -101,6 +101,22 @@ START_TEST(empty_node) {
 }
 END_TEST
 
+/* Two nodes that differ by nothing: the later one in the order of elimination is named. */
+START_TEST(equal_nodes) {
+  const springs of = {.dim = 2, .block = 1, .reach = 1, .n = {9, 10}, .mass = 0.1};
+  const int64_t pair[2] = {11 + 7 * _i, 21 + 7 * _i};
+  springs_build(&A, context, &of);
+  for (int64_t i = 0; i < A.rows; ++i)
+    for (int64_t e = A.row_start[i]; e < A.row_start[i + 1]; ++e) {
+      const int32_t row = i == pair[0] || i == pair[1],
+                    column = A.column[e] == pair[0] || A.column[e] == pair[1];
+      if (row || column) A.value[e] = row && column ? 1.0 : 0.0;
+    }
+  refuse(MPM_SOLVER_LDLT, MPM_SINGULAR, "no pivot");
+  ck_assert(report.node == 1000 + 7 * pair[0] || report.node == 1000 + 7 * pair[1]);
+}
+END_TEST
+
 /* Zeros on the diagonal that the elimination fills: [0 B; B^T C]. */
 START_TEST(zero_diagonal) {
   const springs of = {.dim = 1, .block = 1, .reach = 1, .n = {2}, .mass = 0.5};
@@ -277,6 +293,7 @@ TCase *linalg_direct_case(void) {
   tcase_add_loop_test(tests, inertia, 0, 12);
   tcase_add_loop_test(tests, floating_body, 0, 5);
   tcase_add_loop_test(tests, empty_node, 0, 2);
+  tcase_add_loop_test(tests, equal_nodes, 0, 10);
   tcase_add_test(tests, zero_diagonal);
   tcase_add_loop_test(tests, large, 0, 12);
   tcase_add_test(tests, structure);

@@ -122,7 +122,7 @@ START_TEST(room) {
   ck_assert_int_eq(A.rows, 200);
   mpmi_matrix_free(&A);
   ck_assert_int_eq(memory.held, before);
-  ck_assert_int_eq(mpmi_matrix_reserve(&A, INT64_MAX / 16, 5, 3), MPM_E_NOMEM);
+  ck_assert_int_eq(mpmi_matrix_reserve(&A, INT64_MAX / 2, 5, 3), MPM_E_NOMEM);
   ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
 }
 END_TEST
