@@ -42,6 +42,15 @@ static mpm_status refine(mpmi_system *s, int32_t *good) {
   }
 }
 
+/* A pivot that is small, though no rounding, with a solution out of reach: there is none. */
+static const double SMALL_PIVOT = 1e-9;
+static mpm_status without_solution(const mpmi_system *s) {
+  int64_t row;
+  if (mpmi_factor_least_pivot(&s->solver->factor, &row) < SMALL_PIVOT)
+    return mpmi_system_fail_at(s, MPM_SINGULAR, row, "the linear system is singular: least pivot");
+  return mpmi_system_not_converged(s, "the direct solver");
+}
+
 mpm_status mpmi_direct(mpmi_system *s) {
   mpm_status status = make_factor(s);
   if (status) return status;
@@ -58,5 +67,5 @@ mpm_status mpmi_direct(mpmi_system *s) {
     for (int64_t i = 0; i < s->n; ++i) s->x[i] = 0.0;
   const mpmi_gmres_plan plan = {times_factor, s, RESTART, 0, s->report->iterations + RESTART * CYCLES};
   status = mpmi_gmres(s, &plan);
-  return status == MPM_NOT_CONVERGED ? mpmi_system_not_converged(s, "the direct solver") : status;
+  return status == MPM_NOT_CONVERGED ? without_solution(s) : status;
 }

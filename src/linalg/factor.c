@@ -225,6 +225,14 @@ static double tiny_pivot(const mpmi_factor *f) {
   return 8.0 * DBL_EPSILON * (8.0 + sqrt((double)f->unknowns));
 }
 
+double mpmi_factor_least_pivot(const mpmi_factor *f, int64_t *node) {
+  int64_t least = 0;
+  for (int64_t u = 1; u < f->unknowns; ++u)
+    if (fabs(f->pivot[u]) < fabs(f->pivot[least])) least = u;
+  *node = node_of_unknown(f, least);
+  return fabs(f->pivot[least]);
+}
+
 mpm_status mpmi_factor_numbers(mpmi_factor *f, const mpmi_matrix *A, int64_t *node) {
   const factor_job job = {f, A, tiny_pivot(f)};
   int64_t failed;

@@ -69,6 +69,8 @@ void mpmi_factor_lay_out(mpmi_factor *f);
 /* MPM_SINGULAR: *node is the row of the matrix with the tiny pivot, or with nothing in it; MPM_NONFINITE:
  * that with a value that is not finite. */
 mpm_status mpmi_factor_numbers(mpmi_factor *f, const mpmi_matrix *A, int64_t *node);
+/* Size of the smallest pivot of the scaled matrix, and the row of its node. */
+double mpmi_factor_least_pivot(const mpmi_factor *f, int64_t *node);
 /* Scales of the unknowns; statuses as above. (scales.c) */
 mpm_status mpmi_factor_scales(mpmi_factor *f, const mpmi_matrix *A, int64_t *node);
 /* x = A^-1 b; held unknowns become 0. (factor_solve.c) */

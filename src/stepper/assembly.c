@@ -1,5 +1,6 @@
-/* Forces and stiffness of the particles on the nodes, for implicit steps: block by block, and colour by colour
- * so that every sum has one order (p2g.c). Stress and tangent come with the pass over the particles, g2p.c. */
+/* Forces and stiffness of the particles on the nodes, for implicit steps: block by block, and colour by
+ * colour so that every sum has one order (p2g.c). Stress and tangent come with the pass over the particles,
+ * g2p.c. */
 #include "stepper/locking.h"
 #include "stepper/newton.h"
 
@@ -115,8 +116,8 @@ mpm_status mpmi_internal_forces(mpm_stepper *s, const double *u, double dt, int3
   if (!status && stiffness && s->desc.locking_remedy) status = mpmi_locking_stiffness_begin(s);
   for (int32_t k = 0; k < s->tasks; ++k) w->work[k].symmetric = 1;
   if (status) return status;
-  status = mpmi_stage_g2p(s, MPMI_G2P_DEFORM | MPMI_G2P_FORCES | (stiffness ? MPMI_G2P_STIFFNESS : 0), s->node,
-                          s->values, dt);
+  status = mpmi_stage_g2p(s, MPMI_G2P_DEFORM | MPMI_G2P_FORCES | (stiffness ? MPMI_G2P_STIFFNESS : 0),
+                          s->node, s->values, dt);
   if (status) return status;
   mpmi_unknowns_fold(s, w->force, w->vector[MPMI_INTERNAL]);
   if (!stiffness) return MPM_OK;
@@ -224,7 +225,8 @@ static void add_to_cell(mpm_stepper *s, const mpmi_newton_work *work, const mpm_
     for (int32_t K = 0; K < dim; ++K) {
       of.inverse[3 * K + i] = work->inverse[(3 * K + i) * ld + q];
       for (int32_t k = 0; k < dim; ++k)
-        of.h[3 * i + K] += work->weight[q] * work->h[(3 * i + k) * ld + q] * work->inverse[(3 * K + k) * ld + q];
+        of.h[3 * i + K] +=
+            work->weight[q] * work->h[(3 * i + k) * ld + q] * work->inverse[(3 * K + k) * ld + q];
     }
   mpmi_locking_stiffness_add(s, work, W, p, cell, &of);
 }
@@ -238,7 +240,8 @@ static void add_stiffness(mpm_stepper *s, mpmi_newton_work *work, const mpm_part
   mpmi_weights W;
   int32_t first = -1, cell[MPMI_CHUNK];
   for (int64_t at = 0; at < n; at += MPMI_CHUNK) {
-    s->kernels->weights[grid->family][grid->dim](axis, MPMI_NEED_GRADIENT, &points, begin + at, MPMI_CHUNK, &W);
+    s->kernels->weights[grid->family][grid->dim](axis, MPMI_NEED_GRADIENT, &points, begin + at, MPMI_CHUNK,
+                                                 &W);
     if (s->desc.locking_remedy) mpmi_cell_places(grid, axis, &points, begin + at, MPMI_CHUNK, cell);
     for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
       if (id[at + p] < 0) continue;
@@ -252,7 +255,8 @@ static void add_stiffness(mpm_stepper *s, mpmi_newton_work *work, const mpm_part
 }
 
 /* V0 of the tangent: the law saw a dilation of `ratio` more than the volume has. */
-static void find_weights(const mpm_stepper *s, const mpm_particles *set, int64_t begin, int64_t n, double *weight) {
+static void find_weights(const mpm_stepper *s, const mpm_particles *set, int64_t begin, int64_t n,
+                         double *weight) {
   const double *volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin;
   memcpy(weight, volume, (size_t)n * sizeof *weight);
   if (!s->desc.locking_remedy) return;
@@ -276,8 +280,8 @@ static int32_t find_tangent(mpm_stepper *s, mpmi_newton_work *work, mpmi_failure
   const mpm_status status = mpmi_material_tangent(set->material, s->context->isa, dim, &law->batch,
                                                   work->tangent_scratch, work->tangent, &work->symmetric);
   if (status) {
-    mpmi_failure_take(failure, &(mpmi_failure){mpmi_callback_cause(status), status, m, -1, -1,
-                                               "the tangent callback"});
+    mpmi_failure_take(
+        failure, &(mpmi_failure){mpmi_callback_cause(status), status, m, -1, -1, "the tangent callback"});
     return 0;
   }
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
@@ -285,8 +289,8 @@ static int32_t find_tangent(mpm_stepper *s, mpmi_newton_work *work, mpmi_failure
     for (int32_t e = 0; e < 81 && id[p] < 0; ++e) work->tangent[e * law->ld + p] = 0.0;
   int64_t bad;
   if (is_finite(work->tangent, dim, law->ld, n, &bad)) return 1;
-  mpmi_failure_take(failure, &(mpmi_failure){MPM_NONFINITE, 0, m, id[bad], -1,
-                                             "the material's tangent is not finite"});
+  mpmi_failure_take(
+      failure, &(mpmi_failure){MPM_NONFINITE, 0, m, id[bad], -1, "the material's tangent is not finite"});
   return 0;
 }
 
@@ -296,7 +300,8 @@ void mpmi_assemble_batch(mpm_stepper *s, int32_t task, int32_t what, int32_t m, 
   const mpm_grid *grid = s->grid;
   mpmi_newton_work *work = &s->newton->work[task];
   if (mpmi_material_kinematics(set->material) == MPMI_F_STAYS) return;
-  if ((what & MPMI_G2P_STIFFNESS) && !find_tangent(s, work, &s->scratch[task].failure, m, law, begin, n)) return;
+  if ((what & MPMI_G2P_STIFFNESS) && !find_tangent(s, work, &s->scratch[task].failure, m, law, begin, n))
+    return;
   find_weights(s, set, begin, n, work->weight);
   const double *volume = mpmi_f64(set, MPMI_VOLUME, 0) + begin;
   if ((what & MPMI_G2P_STIFFNESS) && s->desc.locking_remedy)

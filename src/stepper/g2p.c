@@ -380,8 +380,8 @@ static void probe_batch(batch_job *b, int64_t begin, int64_t n) {
            (size_t)n * sizeof(double));
 }
 
-/* USF and implicit steps ask the law before particles move, and the survey of the motion wants to know the wave speed: it waits
- * where the new position will be. */
+/* USF and implicit steps ask the law before particles move, and the survey of the motion wants to know the
+ * wave speed: it waits where the new position will be. */
 static void leave_wave_speed(batch_job *b, int64_t begin, int64_t n) {
   memcpy(component(b->set, MPMI_POSITION, 1, 0) + begin, b->law.wave_speed, (size_t)n * sizeof(double));
 }

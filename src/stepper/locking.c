@@ -13,7 +13,7 @@
 
 /* Place of each particle's cell in the tile. On a periodic axis any image that lies in the tile will do. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
-                        int64_t n, int32_t *place) {
+                      int64_t n, int32_t *place) {
   const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width);
   for (int64_t p = 0; p < n; ++p) {
     place[p] = 0;

@@ -1,11 +1,11 @@
-/* What the locking remedy adds to the stiffness. With j' the mean of det F_inc - 1 over a cell, weighted by the
- * old volumes V, and theta = div du of a particle, the law sees L' = L + (theta' - theta) / d I, where
+/* What the locking remedy adds to the stiffness. With j' the mean of det F_inc - 1 over a cell, weighted by
+ * the old volumes V, and theta = div du of a particle, the law sees L' = L + (theta' - theta) / d I, where
  *
  *   theta' = sum V (1 + j) theta / sum V (1 + j)                          over the cell,
  *
- * and force is divided by a ratio that grows by theta' - theta. With h_ik = c_ikll / d + (2 / d - 1) tau_ik that
- * gives h_ik g_a,k (theta' - theta): the part of theta goes into the tangent of the particle, that of theta'
- * couples all particles of the cell and is one outer product for it. It is not symmetric. */
+ * and force is divided by a ratio that grows by theta' - theta. With h_ik = c_ikll / d + (2 / d - 1) tau_ik
+ * that gives h_ik g_a,k (theta' - theta): the part of theta goes into the tangent of the particle, that of
+ * theta' couples all particles of the cell and is one outer product for it. It is not symmetric. */
 #include "stepper/locking.h"
 #include "stepper/newton.h"
 
@@ -31,8 +31,8 @@ mpm_status mpmi_locking_stiffness_begin(mpm_stepper *s) {
   mpmi_newton *w = s->newton;
   const int64_t cells = w->matrix.rows, nodes = nodes_of(s->grid);
   mpm_status status;
-  if ((status = mpmi_reserve_roomy(s->context, (void **)&w->cell, &w->cell_capacity, cells * cell_values(s->grid),
-                                   sizeof *w->cell)) ||
+  if ((status = mpmi_reserve_roomy(s->context, (void **)&w->cell, &w->cell_capacity,
+                                   cells * cell_values(s->grid), sizeof *w->cell)) ||
       (status = mpmi_reserve_roomy(s->context, (void **)&w->cell_node, &w->cell_node_capacity, cells * nodes,
                                    sizeof *w->cell_node)))
     return status;
@@ -51,7 +51,8 @@ void mpmi_locking_stiffness_local(const mpm_stepper *s, const mpmi_law_batch *la
       double *to = h + (3 * i + k) * ld;
       for (int64_t p = 0; p < law->batch.n; ++p) {
         /* tau of the dilation that the law sees: volume / weight is its J */
-        const double tau = weight[p] > 0.0 ? volume[p] / weight[p] * law->stress_new[row[i][k] * ld + p] : 0.0;
+        const double tau =
+            weight[p] > 0.0 ? volume[p] / weight[p] * law->stress_new[row[i][k] * ld + p] : 0.0;
         to[p] = (2.0 / dim - 1.0) * tau;
         for (int32_t l = 0; l < dim; ++l) to[p] += tangent[(9 * (3 * i + k) + 4 * l) * ld + p] / dim;
       }
@@ -63,8 +64,8 @@ void mpmi_locking_stiffness_local(const mpm_stepper *s, const mpmi_law_batch *la
           tangent[(9 * (3 * i + k) + 4 * l) * ld + p] -= h[(3 * i + k) * ld + p];
 }
 
-void mpmi_locking_stiffness_add(mpm_stepper *s, const mpmi_newton_work *work, const mpmi_weights *W, int64_t p,
-                                int32_t cell_place, const mpmi_locking_particle *of) {
+void mpmi_locking_stiffness_add(mpm_stepper *s, const mpmi_newton_work *work, const mpmi_weights *W,
+                                int64_t p, int32_t cell_place, const mpmi_locking_particle *of) {
   mpmi_newton *w = s->newton;
   const mpm_grid *grid = s->grid;
   const int32_t dim = grid->dim, edge = MPMI_TILE_EDGE(dim, grid->width), span = span_of(grid);
@@ -140,7 +141,8 @@ static void add_cell(mpm_stepper *s, int64_t cell) {
       const double *h = sums + (int64_t)2 * a * dim, *d = sums + (int64_t)2 * b * dim + dim;
       for (int32_t i = 0; i < dim; ++i)
         for (int32_t j = 0; j < dim; ++j)
-          value[i * dim + j] += w->active[node[a]].sign[i] * w->active[node[b]].sign[j] * h[i] * d[j] / volume;
+          value[i * dim + j] +=
+              w->active[node[a]].sign[i] * w->active[node[b]].sign[j] * h[i] * d[j] / volume;
     }
 }
 

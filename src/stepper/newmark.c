@@ -1,14 +1,15 @@
-/* One implicit step by Newmark's rule (Guilkey & Weiss 2003, eqs 14-16, for any beta and gamma), or quasi-static
- * without inertia:
+/* One implicit step by Newmark's rule (Guilkey & Weiss 2003, eqs 14-16, for any beta and gamma), or
+ * quasi-static without inertia:
  *
- *   particles -> nodes    M, v0 = sum w m v_p / M, a0 = sum w m a_p / M, external forces at the end of the step
- *   nodes                 f_int(u) + M a1 = f_ext,  a1 = (u - dt v0 - dt^2 (1/2 - beta) a0) / (beta dt^2)
+ *   particles -> nodes    M, v0 = sum w m v_p / M, a0 = sum w m a_p / M, external forces at the end of the
+ * step nodes                 f_int(u) + M a1 = f_ext,  a1 = (u - dt v0 - dt^2 (1/2 - beta) a0) / (beta dt^2)
  *   nodes -> particles    x_p += sum w u,  a_p' = sum w a1,  v_p += dt ((1 - gamma) a_p + gamma a_p') */
 #include "stepper/newton.h"
 
 #include <string.h>
 
-/* Sums over the nodes of each row of mass and mass times value, nodes being [value mass]; then the quotient. */
+/* Sums over the nodes of each row of mass and mass times value, nodes being [value mass]; then the quotient.
+ */
 static void fold_means(const mpm_stepper *s, const double *nodes, double *mean) {
   mpmi_newton *w = s->newton;
   const int32_t dim = s->grid->dim;
@@ -18,8 +19,7 @@ static void fold_means(const mpm_stepper *s, const double *nodes, double *mean) 
     const mpmi_active_node *node = &w->active[i];
     const double *from = nodes + 4 * node->slot;
     w->mass[node->row] += from[3];
-    for (int32_t c = 0; c < dim; ++c)
-      mean[(int64_t)node->row * dim + c] += node->sign[c] * from[3] * from[c];
+    for (int32_t c = 0; c < dim; ++c) mean[(int64_t)node->row * dim + c] += node->sign[c] * from[3] * from[c];
   }
   for (int64_t i = 0; i < w->matrix.rows * dim; ++i)
     mean[i] = w->mass[i / dim] > 0.0 ? mean[i] / w->mass[i / dim] : 0.0;
@@ -50,7 +50,8 @@ static mpm_status find_external(mpm_stepper *s, double t, double dt) {
   return status ? status : mpmi_external_forces(s);
 }
 
-/* M a0 = f_ext - f_int at the start of the step, where accelerations are not known: held components have none.
+/* M a0 = f_ext - f_int at the start of the step, where accelerations are not known: held components have
+ * none.
  */
 static mpm_status find_accelerations(mpm_stepper *s, double dt) {
   mpmi_newton *w = s->newton;

@@ -1,9 +1,9 @@
-/* Newton's method for the displacements of one implicit step: Guilkey & Weiss 2003, eqs 11-13, for any beta and
- * gamma.
+/* Newton's method for the displacements of one implicit step: Guilkey & Weiss 2003, eqs 11-13, for any beta
+ * and gamma.
  *
  * The first increment carries the prescribed displacements on its right-hand side (tangent predictor): nodes
- * that are moved at once, with the rest at rest, turn cells inside out. Increments that do so all the same, or
- * that take the residual up, are halved. */
+ * that are moved at once, with the rest at rest, turn cells inside out. Increments that do so all the same,
+ * or that take the residual up, are halved. */
 #include "stepper/newton.h"
 
 #include <float.h>
@@ -17,9 +17,9 @@ typedef struct iteration {
   mpm_stepper *s;
   mpmi_newton *w;
   double dt;
-  int64_t n;             /* rows * dim */
-  double norm, scale;    /* of the residual; free components, all kinds of forces */
-  double stiffness;      /* largest diagonal entry */
+  int64_t n;          /* rows * dim */
+  double norm, scale; /* of the residual; free components, all kinds of forces */
+  double stiffness;   /* largest diagonal entry */
   double du_largest, energy_first;
 } iteration;
 
@@ -40,8 +40,7 @@ static void find_residual(iteration *it) {
   const int32_t dim = s->grid->dim;
   for (int64_t i = 0; i < it->n; ++i) {
     double Ma = 0.0;
-    if (mpmi_is_dynamic(s))
-      Ma = w->mass[i / dim] * mpmi_newmark_acceleration(s, it->dt, i);
+    if (mpmi_is_dynamic(s)) Ma = w->mass[i / dim] * mpmi_newmark_acceleration(s, it->dt, i);
     residual[i] = internal[i] + Ma - external[i];
     inertia += Ma * Ma;
   }
@@ -134,8 +133,7 @@ static mpm_status solve(iteration *it) {
     s->failure.callback_status = report.callback_status;
     return status;
   }
-  for (int64_t i = 0; i < it->n; ++i)
-    w->vector[MPMI_DU][i] = w->matrix.held[i] ? du_held[i] : x[i];
+  for (int64_t i = 0; i < it->n; ++i) w->vector[MPMI_DU][i] = w->matrix.held[i] ? du_held[i] : x[i];
   return MPM_OK;
 }
 
@@ -168,8 +166,10 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
     if (status) continue;
     find_residual(it);
     if (!isfinite(it->norm))
-      return mpmi_fail(it->s->context, MPM_NONFINITE, "the residual is not finite in the step from t = %g with "
-                       "dt = %g", it->s->t, it->dt);
+      return mpmi_fail(it->s->context, MPM_NONFINITE,
+                       "the residual is not finite in the step from t = %g with "
+                       "dt = %g",
+                       it->s->t, it->dt);
     if (moves_held || halvings >= RESIDUAL_HALVINGS || it->norm <= before ||
         fabs(dot_free(it, du, w->vector[MPMI_RESIDUAL])) <= slope)
       return MPM_OK;
@@ -188,10 +188,11 @@ static int32_t converged(iteration *it, double du, double energy) {
 
 static mpm_status not_converged(const iteration *it) {
   const mpm_stepper *s = it->s;
-  return mpmi_fail(s->context, MPM_NOT_CONVERGED,
-                   "Newton's method has a relative residual of %g after %d iterations in the step from t = %g "
-                   "with dt = %g: use a smaller dt, or mpm_advance",
-                   relative(it), (int)it->w->iterations, s->t, it->dt);
+  return mpmi_fail(
+      s->context, MPM_NOT_CONVERGED,
+      "Newton's method has a relative residual of %g after %d iterations in the step from t = %g "
+      "with dt = %g: use a smaller dt, or mpm_advance",
+      relative(it), (int)it->w->iterations, s->t, it->dt);
 }
 
 static mpm_status iterate(iteration *it) {

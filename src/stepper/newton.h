@@ -39,7 +39,7 @@ enum {
 
 /* What one task assembles with; component arrays have the length of the longest batch. */
 typedef struct mpmi_newton_work {
-  double *tile;                               /* forces on the nodes of one block, 4 each */
+  double *tile; /* forces on the nodes of one block, 4 each */
   double *F_inc, *nominal, *stiffness, *tangent, *weight, *h, *inverse;
   /* [9] [9] [81] [81] [1] [9] [9] */
   void *tangent_scratch;
@@ -72,7 +72,7 @@ typedef struct mpmi_newton {
   int64_t cell_capacity, cell_node_capacity;
   double *cell;       /* by row of the lower corner of a cell: sums of the locking remedy */
   int32_t *cell_node; /* active nodes of its stencils, or -1 */
-  int64_t topology;     /* of the stepper, that the pattern was made for; -1: none */
+  int64_t topology;   /* of the stepper, that the pattern was made for; -1: none */
   void *work_memory;
   size_t work_bytes;
   mpmi_newton_work *work; /* [tasks] */
@@ -138,8 +138,8 @@ void mpmi_locking_stiffness_local(const mpm_stepper *s, const mpmi_law_batch *la
 typedef struct mpmi_locking_particle {
   double h[9], inverse[9], volume;
 } mpmi_locking_particle;
-void mpmi_locking_stiffness_add(mpm_stepper *s, const mpmi_newton_work *work, const mpmi_weights *W, int64_t p,
-                                int32_t cell_place, const mpmi_locking_particle *of);
+void mpmi_locking_stiffness_add(mpm_stepper *s, const mpmi_newton_work *work, const mpmi_weights *W,
+                                int64_t p, int32_t cell_place, const mpmi_locking_particle *of);
 /* and at last the cells into the matrix. */
 void mpmi_locking_stiffness_end(mpm_stepper *s);
 

@@ -107,8 +107,8 @@ mpm_status mpmi_newton_prepare(mpm_stepper *s) {
   w->linear_iterations = 0;
   w->factor_seconds = w->solve_seconds = w->assembly_seconds = 0.0;
   if ((status = prepare_history(s)) || (status = prepare_work(s)) ||
-      (status = mpmi_reserve_roomy(s->context, (void **)&w->force, &w->force_capacity, values,
-                                   sizeof *w->force)))
+      (status =
+           mpmi_reserve_roomy(s->context, (void **)&w->force, &w->force_capacity, values, sizeof *w->force)))
     return status;
   return mpmi_reserve_roomy(s->context, (void **)&w->external, &w->external_capacity, values,
                             sizeof *w->external);

@@ -35,7 +35,8 @@ static void book_row(mpm_stepper *s, int64_t row, int32_t c, double dt) {
   if (s->holds && s->held[3 * master + c])
     s->prescribed_work += along * s->held_value[3 * master + c];
   else if (orbit < 0)
-    s->impulse[6 * slot + c] = s->impulse[6 * slot + 3 + c] = 0.0; /* nothing holds it: this is what the iterations have left */
+    s->impulse[6 * slot + c] = s->impulse[6 * slot + 3 + c] =
+        0.0; /* nothing holds it: this is what the iterations have left */
   else if (s->constraints.orbit[orbit].face[c] >= 0)
     s->impulse_in_step[s->constraints.orbit[orbit].face[c]][c] += total;
 }

@@ -164,8 +164,7 @@ static mpm_status finish(mpm_stepper *s, double dt) {
   /* a removal leaves the sums to be made again; then the host's law may refuse, which is for the next call to
    * say */
   if (!s->energies.valid && mpmi_stepper_energies(s)) s->context->error[0] = '\0';
-  s->last.dt_suggested =
-      mpmi_is_implicit(s) ? mpmi_next_dt(s, dt) : mpmi_stable_dt_of(s, &s->energies.sums);
+  s->last.dt_suggested = mpmi_is_implicit(s) ? mpmi_next_dt(s, dt) : mpmi_stable_dt_of(s, &s->energies.sums);
   s->nodes_valid = 1;
   s->nodes_dt = s->velocity_dt;
   return MPM_OK;

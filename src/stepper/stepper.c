@@ -101,9 +101,10 @@ static mpm_status known_implicit(mpm_context *c, const mpm_stepper_desc *d) {
                      (int)d->linear_solver);
   if (d->scheme != MPM_NEWMARK) return MPM_OK;
   if (d->transfer != MPM_FLIP || d->flip != 1.0 || d->pic_damping != 0.0)
-    return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "scheme MPM_NEWMARK has its own update of particles: use transfer MPM_FLIP with flip = 1 "
-                     "and pic_damping = 0; newmark_gamma above 1/2 damps");
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "scheme MPM_NEWMARK has its own update of particles: use transfer MPM_FLIP with flip = 1 "
+        "and pic_damping = 0; newmark_gamma above 1/2 damps");
   if (d->staggered)
     return mpmi_fail(c, MPM_E_UNSUPPORTED, "scheme MPM_NEWMARK has velocities at t_n: use staggered = 0");
   if (d->linear_solver == MPM_SOLVER_MULTIGRID_CG)

@@ -53,7 +53,7 @@ typedef struct mpmi_scratch {
   mpmi_failure failure;
   int32_t left_tile, removes;
   int32_t holes_restored; /* sums over the particles may not be finite */
-  int64_t active; /* nodes with mass */
+  int64_t active;         /* nodes with mass */
   double law_seconds, weights_seconds;
   int64_t blocks_seen; /* for sampling */
 } mpmi_scratch;
@@ -134,7 +134,7 @@ struct mpm_stepper {
 
   mpmi_blocks blocks, next_blocks;
   mpmi_constraints constraints, next_constraints;
-  int64_t topology; /* counts changes of blocks and constraints */
+  int64_t topology;     /* counts changes of blocks and constraints */
   int32_t *list_memory; /* of all cuts */
   int64_t list_capacity;
   int64_t *bound_memory;
@@ -243,7 +243,7 @@ enum {
   MPMI_PROJECT_STRAIN, /* momentum, from the velocities at the start of the step */
   MPMI_PROJECT_TOUCH,  /* momentum and force at the start of the step, to find the contacts that are closed */
   MPMI_PROJECT_AGAIN,  /* momentum, from the new velocities */
-  MPMI_PROJECT_CORRECT, /* momentum without its affine part, from the second copy of the velocities */
+  MPMI_PROJECT_CORRECT,      /* momentum without its affine part, from the second copy of the velocities */
   MPMI_PROJECT_ACCELERATION, /* mass times acceleration, from the second copy; for implicit steps */
   MPMI_PROJECTIONS
 };

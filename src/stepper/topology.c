@@ -110,8 +110,8 @@ static void find_largest_masses(mpm_stepper *s) {
 }
 
 /* Below this a node is too light to divide by its mass. Of the linear basis force stays where mass vanishes;
- * of the smooth ones it vanishes too, and a node in the corner of a cubic stencil weighs (d^3 / 6)^3. Implicit
- * steps do not divide: stiffness moves the lightest node. */
+ * of the smooth ones it vanishes too, and a node in the corner of a cubic stencil weighs (d^3 / 6)^3.
+ * Implicit steps do not divide: stiffness moves the lightest node. */
 static void find_mass_cut(mpm_stepper *s) {
   const double share = s->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(s) ? 1e-12 : 1e-40;
   s->mass_cut = DBL_MIN; /* of what is lighter, the inverse may not be finite */

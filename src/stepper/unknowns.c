@@ -312,7 +312,8 @@ mpm_status mpmi_unknowns_find(mpm_stepper *s) {
   mark(s, &active, &rows);
   if (active > INT32_MAX)
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                     "%lld nodes are active, more than 2147483647: use an explicit scheme", (long long)active);
+                     "%lld nodes are active, more than 2147483647: use an explicit scheme",
+                     (long long)active);
   if (same_as_before(s, active)) {
     for (int64_t i = 0; i < active; ++i) w->active_of[w->active[i].slot] = (int32_t)i;
   } else {

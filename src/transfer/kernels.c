@@ -62,6 +62,9 @@ const mpmi_kernels KERNEL(kernels) = {
     .push = BY_DIM(push),
 #define BY_WIDTH(name)                                                                                       \
   { NULL, NULL, KERNEL(name##_2), KERNEL(name##_3), KERNEL(name##_4) }
-    .force_scatter = {{NULL}, BY_WIDTH(force_scatter_1), BY_WIDTH(force_scatter_2), BY_WIDTH(force_scatter_3)},
+    .force_scatter = {{NULL},
+                      BY_WIDTH(force_scatter_1),
+                      BY_WIDTH(force_scatter_2),
+                      BY_WIDTH(force_scatter_3)},
     .stiffness = BY_DIM(stiffness),
 };

@@ -4,7 +4,8 @@
  *   f_a  = sum V sigma g_a                                   = sum (V sigma F_inc^-T) G_a
  *   K_ab = sum V0 g_a,k (c_ikjl + delta_ij tau_kl) g_b,l     = sum G_a,K A_iKjL G_b,L
  *
- * The push-forward goes into what the gradients are multiplied by, so that the loops over nodes see G alone. */
+ * The push-forward goes into what the gradients are multiplied by, so that the loops over nodes see G alone.
+ */
 #include "transfer/kernel_common.h"
 
 /* F_inc^-1 of particle p, component 3 * k + i. */
@@ -46,8 +47,7 @@ MPMI_INLINE void push_stiffness(int32_t dim, const mpmi_push *job, const double 
     for (int32_t j = 0; j < dim; ++j) {
       /* half_kL = sum_l a_ikjl inverse_Ll */
       for (int32_t k = 0; k < dim; ++k)
-        for (int32_t L = 0; L < dim; ++L)
-          MPMI_IVDEP for (int64_t p = 0; p < MPMI_GROUP; ++p) {
+        for (int32_t L = 0; L < dim; ++L) MPMI_IVDEP for (int64_t p = 0; p < MPMI_GROUP; ++p) {
             double sum = 0.0;
             for (int32_t l = 0; l < dim; ++l) {
               double a = job->weight[s + p] * job->tangent[(9 * (3 * i + k) + 3 * j + l) * ld + s + p];
@@ -125,8 +125,7 @@ MPMI_INLINE void scatter_particle(int32_t dim, int32_t width, const mpmi_force_s
   double P[3][3] = {{0.0}}, f[3] = {0.0, 0.0, 0.0};
   for (int32_t i = 0; i < dim; ++i) {
     for (int32_t K = 0; K < dim && job->nominal; ++K) P[i][K] = job->nominal[(3 * i + K) * job->ld + q];
-    if (!job->nominal)
-      f[i] = job->mass[slot] * job->gravity[i] + (job->force[i] ? job->force[i][slot] : 0.0);
+    if (!job->nominal) f[i] = job->mass[slot] * job->gravity[i] + (job->force[i] ? job->force[i][slot] : 0.0);
   }
   const double volume = job->nominal || !job->deforms ? 0.0 : job->initial_volume[slot];
   for (int32_t a = 0; a < stencil_count(dim, width); ++a) {

@@ -1,5 +1,5 @@
-/* What may go wrong in an implicit step: each has its status and sentence, leaves the state as it was, and the next
- * step is possible. */
+/* What may go wrong in an implicit step: each has its status and sentence, leaves the state as it was, and
+ * the next step is possible. */
 #include "implicit.h"
 
 typedef struct block {
@@ -202,8 +202,8 @@ typedef struct own_solver {
 } own_solver;
 
 /* Conjugate gradients on the rows that the library lends. */
-static mpm_status solve(void *user, const mpm_operator *matrix, const double *rhs, double *x, double tolerance,
-                        int64_t *iterations) {
+static mpm_status solve(void *user, const mpm_operator *matrix, const double *rhs, double *x,
+                        double tolerance, int64_t *iterations) {
   own_solver *own = user;
   mpm_operator_info info = {.struct_size = sizeof info};
   const int64_t *start;

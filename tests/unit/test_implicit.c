@@ -3,9 +3,12 @@
 #include "run_support.h"
 
 const implicit_basis implicit_bases[IMPLICIT_BASES] = {
-    {MPM_LINEAR, MPM_BOUNDARY_GHOST, "linear"},        {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, "quadratic"},
-    {MPM_BSPLINE3, MPM_BOUNDARY_GHOST, "cubic"},       {MPM_BSPLINE2, MPM_BOUNDARY_OPEN_KNOT, "open quadratic"},
-    {MPM_BSPLINE3, MPM_BOUNDARY_OPEN_KNOT, "open cubic"}, {MPM_GIMP, MPM_BOUNDARY_GHOST, "GIMP"},
+    {MPM_LINEAR, MPM_BOUNDARY_GHOST, "linear"},
+    {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, "quadratic"},
+    {MPM_BSPLINE3, MPM_BOUNDARY_GHOST, "cubic"},
+    {MPM_BSPLINE2, MPM_BOUNDARY_OPEN_KNOT, "open quadratic"},
+    {MPM_BSPLINE3, MPM_BOUNDARY_OPEN_KNOT, "open cubic"},
+    {MPM_GIMP, MPM_BOUNDARY_GHOST, "GIMP"},
     {MPM_CPGIMP, MPM_BOUNDARY_GHOST, "cpGIMP"}};
 
 world_desc implicit_default(int32_t dim, int64_t cells, double h, const implicit_basis *basis) {
@@ -41,7 +44,8 @@ void implicit_quadratic(const char *name, const world *w, double C) {
     if (r[k] > 0.05 || r[k] < 1e-7) continue;
     ++checked;
     if (!(r[k + 1] <= C * pow(r[k], 1.8) + 1e-13))
-      ck_abort_msg("%s: residual %g after %g in iteration %d: more than %g r^1.8", name, r[k + 1], r[k], (int)k, C);
+      ck_abort_msg("%s: residual %g after %g in iteration %d: more than %g r^1.8", name, r[k + 1], r[k],
+                   (int)k, C);
   }
   show("%s:", name);
   for (int32_t k = 0; k < n; ++k) show(" %.1e", r[k]);
@@ -122,7 +126,8 @@ START_TEST(one_unknown) {
     x += weight * u;
     const mpm_step_info info = world_step(&w, dt);
     double *is = fetch(&w, set, "position", 1), *speed = fetch(&w, set, "velocity", 1);
-    double *acceleration = fetch(&w, set, "acceleration", 1), *stretch = fetch(&w, set, "deformation_gradient", 9);
+    double *acceleration = fetch(&w, set, "acceleration", 1),
+           *stretch = fetch(&w, set, "deformation_gradient", 9);
     ck_within("x", is[0], x, 1e-11);
     ck_within("v", speed[0], v, 1e-9);
     ck_within("a", acceleration[0], a, 1e-7);
@@ -134,8 +139,8 @@ START_TEST(one_unknown) {
 }
 END_TEST
 
-/* A block in three dimensions and less sags on its fixed foot between slip walls, quasi-static and dynamic: every
- * basis and dimension converges quadratically, and walls carry the weight. */
+/* A block in three dimensions and less sags on its fixed foot between slip walls, quasi-static and dynamic:
+ * every basis and dimension converges quadratically, and walls carry the weight. */
 START_TEST(sagging_block) {
   const implicit_basis *basis = &implicit_bases[_i % IMPLICIT_BASES];
   const int32_t dim = 1 + _i / IMPLICIT_BASES % 3, quasi_static = _i / IMPLICIT_BASES / 3;
@@ -172,8 +177,11 @@ START_TEST(every_law) {
     const char *model;
     const mpm_param *params;
     int32_t count;
-  } laws[] = {{"neo_hookean", NULL, 0}, {"linear_elastic", NULL, 0},       {"j2", NULL, 0},
-              {"newtonian_fluid", fluid, 3}, {"neo_hookean_decoupled", decoupled, 3}};
+  } laws[] = {{"neo_hookean", NULL, 0},
+              {"linear_elastic", NULL, 0},
+              {"j2", NULL, 0},
+              {"newtonian_fluid", fluid, 3},
+              {"neo_hookean_decoupled", decoupled, 3}};
   const int32_t remedy = _i / 5 % 2, dim = 2 + _i / 10 % 2;
   const implicit_basis *basis = &implicit_bases[_i / 20];
   world w;
@@ -200,8 +208,8 @@ START_TEST(every_law) {
 }
 END_TEST
 
-/* Falling freely, a body has the acceleration of gravity from its first implicit step on: it is found, not taken
- * to be zero; after explicit steps too. */
+/* Falling freely, a body has the acceleration of gravity from its first implicit step on: it is found, not
+ * taken to be zero; after explicit steps too. */
 START_TEST(initial_acceleration) {
   const implicit_basis *basis = &implicit_bases[1];
   world w;
@@ -233,11 +241,12 @@ START_TEST(initial_acceleration) {
 }
 END_TEST
 
-/* Compression between a slip wall and a platen of prescribed particles, all sides free to slide: homogeneous, and
- * known. GIMP with domains that follow F is exact while the platen is in line with nodes. */
+/* Compression between a slip wall and a platen of prescribed particles, all sides free to slide: homogeneous,
+ * and known. GIMP with domains that follow F is exact while the platen is in line with nodes. */
 START_TEST(patch) {
   static const double kappa = 6e7, mu = 6e6;
-  static const mpm_param rubber[] = {{"mu", 6e6}, {"kappa", 6e7}, {"density", 10.0}}, steel[] = {{"density", 10.0}};
+  static const mpm_param rubber[] = {{"mu", 6e6}, {"kappa", 6e7}, {"density", 10.0}},
+                         steel[] = {{"density", 10.0}};
   const double h = 0.5, L = 4.0;
   world w;
   world_desc d = implicit_default(2, 16, h, &implicit_bases[6]);
@@ -266,7 +275,8 @@ START_TEST(patch) {
     double low = 1.0, high = 4.0, force[2], floor[2];
     for (int32_t i = 0; i < 200; ++i) {
       const double x = 0.5 * (low + high);
-      const double t = kappa * log(x * y) + mu * pow(x * y, -2.0 / 3.0) * (x * x - (x * x + y * y + 1.0) / 3.0);
+      const double t =
+          kappa * log(x * y) + mu * pow(x * y, -2.0 / 3.0) * (x * x - (x * x + y * y + 1.0) / 3.0);
       if (t > 0.0)
         high = x;
       else

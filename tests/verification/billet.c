@@ -1,7 +1,7 @@
-/* The billet of Guilkey & Weiss 2003, 5.1: a square block of 20 cm, bonded between two rigid platens, compressed
- * to half its height in plane strain; a quarter of it. Reference: finite elements with 40 x 40 biquadratic
- * elements; the frictionless variant is homogeneous and exact. (The paper gives 40 cm, which does not fit its
- * displacements.) */
+/* The billet of Guilkey & Weiss 2003, 5.1: a square block of 20 cm, bonded between two rigid platens,
+ * compressed to half its height in plane strain; a quarter of it. Reference: finite elements with 40 x 40
+ * biquadratic elements; the frictionless variant is homogeneous and exact. (The paper gives 40 cm, which does
+ * not fit its displacements.) */
 #include "verify.h"
 
 #include <string.h>
@@ -11,7 +11,7 @@ static const double mu = 6e6, kappa = 6e7, density = 10.0, L = 10.0;
 typedef struct variant {
   const char *name;
   int32_t basis, per_cell;
-  double h, step; /* of the platen */
+  double h, step;             /* of the platen */
   double displacement, force; /* half way down; of a prototype of the same algorithm, 0: none */
 } variant;
 
@@ -70,7 +70,8 @@ static outcome compress(const variant *v, double speed, int bonded, double compr
   setup.stepper.quasi_static = quasi_static;
   verify_world w;
   verify_open(&w, &setup);
-  const mpm_param rubber[] = {{"mu", mu}, {"kappa", kappa}, {"density", density}}, steel[] = {{"density", density}};
+  const mpm_param rubber[] = {{"mu", mu}, {"kappa", kappa}, {"density", density}},
+                  steel[] = {{"density", density}};
   mpm_particles *block = verify_set(&w, verify_material(&w, "neo_hookean_decoupled", rubber, 3));
   mpm_particles *platen = verify_set(&w, verify_material(&w, "rigid", steel, 1));
   verify_fill_box(&w, block, (const double[]){0.0, 0.0}, (const double[]){L, L}, v->per_cell);
