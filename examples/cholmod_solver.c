@@ -1,6 +1,6 @@
-/* A linear solver of the host: a soft beam, clamped at one end, sinks under its own weight in quasi-static steps,
- * once with the library's solvers and once with CHOLMOD (SuiteSparse), which sees the matrix where it lies. Built
- * where <suitesparse/cholmod.h> is found: Debian's libsuitesparse-dev. */
+/* A linear solver of the host: a soft beam, clamped at one end, sinks under its own weight in quasi-static
+ * steps, once with the library's solvers and once with CHOLMOD (SuiteSparse), which sees the matrix where it
+ * lies. Built where <suitesparse/cholmod.h> is found: Debian's libsuitesparse-dev. */
 #include <mpm/mpm.h>
 
 #include <inttypes.h>
@@ -139,7 +139,8 @@ static int run(int32_t solver, direct *own, double *lowest, mpm_profile *profile
   }
   const double *y = (const double *)x.data + x.component_stride;
   *lowest = 1e9;
-  for (int64_t i = 0; i < x.count; ++i) *lowest = fmin(*lowest, y[i * x.item_stride] > 0.0 ? y[i * x.item_stride] : 1e9);
+  for (int64_t i = 0; i < x.count; ++i)
+    *lowest = fmin(*lowest, y[i * x.item_stride] > 0.0 ? y[i * x.item_stride] : 1e9);
   mpm_view_release(&x);
   mpm_stepper_profile(b.stepper, 0, profile);
   printf("%-8s %3" PRId64 " solves  %6.1f ms assembly  %6.1f ms solver  lowest point %.9f m\n",
@@ -159,7 +160,8 @@ int main(void) {
   mpm_profile profile;
   cholmod_start(&own.common);
   own.common.print = 0;
-  if (run(MPM_SOLVER_AUTO, &own, &lowest[0], &profile) || run(MPM_SOLVER_HOST, &own, &lowest[1], &profile)) return 1;
+  if (run(MPM_SOLVER_AUTO, &own, &lowest[0], &profile) || run(MPM_SOLVER_HOST, &own, &lowest[1], &profile))
+    return 1;
   cholmod_free_factor(&own.factor, &own.common);
   cholmod_finish(&own.common);
   printf("result: beams differ by %.1e m, tip sinks by %.3f m, %d analyses for %d solves\n",
