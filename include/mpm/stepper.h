@@ -38,10 +38,9 @@ typedef struct mpm_stepper_desc {
    * and strain follow over dt. MPM_E_UNSUPPORTED with position_order = 2. */
   int32_t staggered;
   /** Acceleration of nodes whose velocity the host or a particle prescribes. 0 (default): that which brings
-   * them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30), or with MPM_NEWMARK that
-   * of its rule; 1: zero. Nodes that
-   * walls hold have none in either case: a slip wall is a symmetry plane, on which the projected velocity is
-   * zero too. */
+   * them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30), or with MPM_NEWMARK
+   * that of its rule; 1: zero. Nodes that walls hold have none in either case: a slip wall is a symmetry
+   * plane, on which the projected velocity is zero too. */
   int32_t boundary_zero_acceleration;
   double flip; /**< per step, 1 (default) FLIP ... 0 PIC; MPM_FLIP, MPM_TFLIP, MPM_AFLIP */
   /** Rate beta >= 0, 1/time, of a blend free of dt (MPoint theory, eqs 58-59), for the transfers of flip: the
@@ -93,9 +92,9 @@ typedef struct mpm_step_info {
   /** After success the stable dt of the new state; with MPM_NEWMARK 2 dt after at most 4 iterations, else dt.
    * After a failure 0.6 dt. */
   double dt_suggested;
-  double residual;           /**< last relative residual of the Newton iteration; 0 for explicit schemes */
-  double kinetic_energy;     /**< sum m v.v / 2 */
-  double strain_energy;      /**< sum energy * initial_volume; NaN when a law has none */
+  double residual;       /**< last relative residual of the Newton iteration; 0 for explicit schemes */
+  double kinetic_energy; /**< sum m v.v / 2 */
+  double strain_energy;  /**< sum energy * initial_volume; NaN when a law has none */
   /** Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed
    * nodal velocities and prescribed particles. */
   double external_work;
