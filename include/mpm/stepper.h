@@ -22,22 +22,25 @@ typedef struct mpm_stepper_desc {
   int32_t xpic_order;
   /** 1 (default): x += dt sum w v (Steffen et al. 2008, eq. 10); 2: x += dt sum w v - dt^2 / 2 sum w a,
    * exact under constant acceleration (MPoint theory, eq. 37, where the last term is misprinted). v:
-   * updated nodal velocity. 2 is not for staggered steps, which have that order with 1. */
+   * updated nodal velocity. 2 is not for staggered steps, which have that order with 1. MPM_NEWMARK moves
+   * particles by the displacements that it solves for, whatever the order. */
   int32_t position_order;
   /** MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE: then the sets of the stepper
    * have the field "dilation_ratio". */
   int32_t locking_remedy;
   int32_t reference_positions; /**< 1: keep "reference_position" and pass it to callbacks; default 0 */
-  int32_t quasi_static;        /**< MPM_NEWMARK: 1 drops the inertia; default 0 */
+  /** MPM_NEWMARK: 1 drops the inertia: each step ends in equilibrium under the forces at its end. Velocities
+   * are then displacements over dt, accelerations zero. Default 0. MPM_E_UNSUPPORTED with other schemes. */
+  int32_t quasi_static;
   /** 1: particle velocities are those at t_n - dt/2 (Steffen et al. 2008, eqs 11-15), and so is the kinetic
    * energy; default 0. The host sets them so: the library does not shift velocities. Forces change them over
    * the mean of this step and the one before, in the first step over its dt, so that dt may change. Positions
    * and strain follow over dt. MPM_E_UNSUPPORTED with position_order = 2. */
   int32_t staggered;
   /** Acceleration of nodes whose velocity the host or a particle prescribes. 0 (default): that which brings
-   * them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30); 1: zero. Nodes that
-   * walls hold have none in either case: a slip wall is a symmetry plane, on which the projected velocity is
-   * zero too. */
+   * them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30), or with MPM_NEWMARK
+   * that of its rule; 1: zero. Nodes that walls hold have none in either case: a slip wall is a symmetry
+   * plane, on which the projected velocity is zero too. */
   int32_t boundary_zero_acceleration;
   double flip; /**< per step, 1 (default) FLIP ... 0 PIC; MPM_FLIP, MPM_TFLIP, MPM_AFLIP */
   /** Rate beta >= 0, 1/time, of a blend free of dt (MPoint theory, eqs 58-59), for the transfers of flip: the
@@ -70,7 +73,7 @@ typedef struct mpm_step_info {
   uint32_t struct_size;      /**< sizeof(mpm_step_info) of the caller */
   int32_t cause;             /**< status of the failure, MPM_OK if none */
   int32_t callback_status;   /**< what a callback returned when it was not 0, else 0 */
-  int32_t newton_iterations; /**< linear solves of the step; 0 for explicit schemes */
+  int32_t newton_iterations; /**< linear solves of the step; 0 for explicit schemes, and at rest */
   int32_t linear_solver;     /**< MPM_SOLVER_* that was used; 0 for explicit schemes */
   /** Set of the first failure, numbered in order of mpm_stepper_add(), or -1. The first is the smallest
    * (set, particle) of those that failed, so that reports repeat. */
@@ -86,10 +89,12 @@ typedef struct mpm_step_info {
   int64_t linear_iterations; /**< of the linear solver, summed over the step */
   double t;                  /**< time of the state */
   double dt;                 /**< of the step that was tried; 0 before the first */
-  double dt_suggested;       /**< success: the stable dt of the new state; failure: 0.6 dt */
-  double residual;           /**< last relative residual of the Newton iteration; 0 for explicit schemes */
-  double kinetic_energy;     /**< sum m v.v / 2 */
-  double strain_energy;      /**< sum energy * initial_volume; NaN when a law has none */
+  /** After success the stable dt of the new state; with MPM_NEWMARK 2 dt after at most 4 iterations, else dt.
+   * After a failure 0.6 dt. */
+  double dt_suggested;
+  double residual;       /**< last relative residual of the Newton iteration; 0 for explicit schemes */
+  double kinetic_energy; /**< sum m v.v / 2 */
+  double strain_energy;  /**< sum energy * initial_volume; NaN when a law has none */
   /** Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed
    * nodal velocities and prescribed particles. */
   double external_work;
@@ -109,7 +114,8 @@ typedef struct mpm_particle_batch {
   int32_t dim;                      /**< dimension of the grid */
   int64_t n;                        /**< particles, inert slots included */
   int64_t ld;                       /**< from component c to c + 1, in elements; >= n */
-  double t;                         /**< time for which the value is wanted */
+  double t;                         /**< time for which the value is wanted: start of the step; forces of
+                                       MPM_NEWMARK: its end, and the start where accelerations are to be found */
   double dt;                        /**< of the step */
   const int64_t *id;                /**< [ld] ids, < 0 for inert slots */
   const double *position;           /**< [dim][ld] at the start of the step, wrapped on periodic axes */

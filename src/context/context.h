@@ -12,7 +12,8 @@ enum {
   MPMI_MATERIAL = 0x6d706d03,
   MPMI_PARTICLES = 0x6d706d04,
   MPMI_STEPPER = 0x6d706d05,
-  MPMI_SERIES = 0x6d706d06
+  MPMI_SERIES = 0x6d706d06,
+  MPMI_OPERATOR = 0x6d706d07
 };
 
 enum { MPMI_ALIGNMENT = 64 };
@@ -78,6 +79,9 @@ mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_
 /* For mpm_*_desc_init: copies the defaults, zeroes any tail, sets struct_size. Refuses sizes below `known`.
  */
 mpm_status mpmi_init_struct(const void *defaults, uint32_t known, void *out, uint32_t struct_size);
+
+/* Of a clock that only goes forward (clock.c). */
+double mpmi_seconds(void);
 
 /* Text helpers for errors: the names of `candidates` closest to `wanted`, as "a, b, c" into buffer. */
 void mpmi_nearest_names(const char *wanted, const char *const *candidates, int32_t count, char *buffer,

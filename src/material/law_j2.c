@@ -1,6 +1,6 @@
 /* Von Mises plasticity with linear isotropic hardening: the increments of linear_elastic, then a radial
  * return (Simo & Hughes 1998, box 3.1). One state variable, the equivalent plastic strain. */
-#include "material/objective_increment.h"
+#include "material/objective_tangent.h"
 
 MPMI_INLINE void j2(int dim, const double *constants, const mpm_material_batch *batch) {
   const double yield_initial = constants[MPMI_C_YIELD], hardening = constants[MPMI_C_HARDENING];
@@ -31,3 +31,37 @@ MPMI_INLINE void j2(int dim, const double *constants, const mpm_material_batch *
 }
 
 MPMI_LAW_BY_DIM(law_j2, j2)
+
+/* With the trial deviator d, its von Mises stress m and the yield stress y, the factor of d that the law
+ * keeps, 1 - 3 mu / (3 mu + hardening) (1 - y / m), changes by -3 mu / (3 mu + hardening) y / m 3/2 d :
+ * (change of d) / m^2. */
+MPMI_INLINE void j2_chunk(int dim, const double *constants, const double *plastic, mpmi_objective *o) {
+  const double yield_initial = constants[MPMI_C_YIELD], hardening = constants[MPMI_C_HARDENING];
+  const double return_inverse = constants[MPMI_C_RETURN], mu = constants[MPMI_C_MU], mu3 = 3.0 * mu;
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_sym s = mpmi_load_sym(dim, o->turned[0], MPMI_CHUNK, p);
+    mpmi_sym v = mpmi_load_sym(dim, o->log_v[0], MPMI_CHUNK, p);
+    mpmi_sym trial = {s.xx + 2.0 * mu * v.xx, s.yy + 2.0 * mu * v.yy, s.zz + 2.0 * mu * v.zz,
+                      s.xy + 2.0 * mu * v.xy, s.yz + 2.0 * mu * v.yz, s.xz + 2.0 * mu * v.xz};
+    double mean;
+    mpmi_sym d = mpmi_deviator(trial, &mean);
+    double mises = sqrt(1.5 * mpmi_square(d)), yield = yield_initial + hardening * plastic[p];
+    double over = mpmi_max(mises - yield, 0.0), inverse = 1.0 / mpmi_max(mises, yield);
+    double drop = over > 0.0 ? 1.5 * mu3 * return_inverse * yield * inverse : 0.0;
+    o->keep[p] = 1.0 - mu3 * return_inverse * over * inverse;
+    mpmi_store_sym(dim, o->bend[0], MPMI_CHUNK, p, mpmi_shifted(sqrt(drop) * inverse, d, 0.0));
+  }
+}
+
+MPMI_INLINE void j2_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+                            double *tangent) {
+  mpmi_objective o;
+  for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
+    mpmi_elastic_chunk(dim, constants, batch, i, &o);
+    j2_chunk(dim, constants, batch->state + i, &o);
+    KERNEL(objective_rows)(dim, 0, &o, tangent + i, batch->ld);
+  }
+}
+
+MPMI_TANGENT_BY_DIM(tangent_j2, j2_tangent)

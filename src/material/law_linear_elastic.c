@@ -1,5 +1,5 @@
 /* Isotropic linear elasticity in objective logarithmic increments: stress' = R stress R^T + C : ln V. */
-#include "material/objective_increment.h"
+#include "material/objective_tangent.h"
 
 MPMI_INLINE void linear_elastic(int dim, const double *constants, const mpm_material_batch *batch) {
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
@@ -15,3 +15,15 @@ MPMI_INLINE void linear_elastic(int dim, const double *constants, const mpm_mate
 }
 
 MPMI_LAW_BY_DIM(law_linear_elastic, linear_elastic)
+
+MPMI_INLINE void linear_elastic_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+                                        double *tangent) {
+  mpmi_objective o;
+  memset(o.bend, 0, sizeof o.bend);
+  for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
+    mpmi_elastic_chunk(dim, constants, batch, i, &o);
+    KERNEL(objective_rows)(dim, 0, &o, tangent + i, batch->ld);
+  }
+}
+
+MPMI_TANGENT_BY_DIM(tangent_linear_elastic, linear_elastic_tangent)

@@ -5,6 +5,7 @@
 
 #include "material/laws.h"
 #include "material/stretch_bounds.h"
+#include "material/tangent_rows.h"
 #include "material/vector_math.h"
 
 MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_material_batch *batch) {
@@ -39,3 +40,21 @@ MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_materia
 }
 
 MPMI_LAW_BY_DIM(law_neo_hookean, neo_hookean)
+
+/* c_ijkl = lambda d_ij d_kl + (mu - lambda ln J) (d_ik d_jl + d_il d_jk) */
+MPMI_INLINE void neo_hookean_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+                                     double *tangent) {
+  const double lambda = constants[MPMI_C_LAMBDA], mu = constants[MPMI_C_MU];
+  for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
+    _Alignas(64) double volumetric[MPMI_CHUNK], shear[MPMI_CHUNK];
+    MPMI_IVDEP
+    for (int p = 0; p < MPMI_CHUNK; ++p) {
+      double j_minus_1 = mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, batch->F, batch->ld, i + p));
+      volumetric[p] = lambda;
+      shear[p] = mu - lambda * mpmi_lane_log1p(j_minus_1);
+    }
+    KERNEL(isotropic_rows)(dim, volumetric, shear, tangent + i, batch->ld);
+  }
+}
+
+MPMI_TANGENT_BY_DIM(tangent_neo_hookean, neo_hookean_tangent)

@@ -5,6 +5,7 @@
 
 #include "material/laws.h"
 #include "material/stretch_bounds.h"
+#include "material/tangent_rows.h"
 #include "material/vector_math.h"
 
 /* The acoustic tensor for a direction n, times J, has in the frame of n the entries
@@ -52,3 +53,29 @@ MPMI_INLINE void neo_hookean_decoupled(int dim, const double *constants, const m
 }
 
 MPMI_LAW_BY_DIM(law_neo_hookean_decoupled, neo_hookean_decoupled)
+
+/* With s = mu dev(b_bar) and m = mu tr(b_bar) / 3,
+ *   c_ijkl = (kappa - 2/3 m) d_ij d_kl + (m - kappa ln J) (d_ik d_jl + d_il d_jk) - 2/3 (s_ij d_kl + d_ij
+ * s_kl). */
+MPMI_INLINE void neo_hookean_decoupled_tangent(int dim, const double *constants,
+                                               const mpm_material_batch *batch, double *tangent) {
+  const double kappa = constants[MPMI_C_BULK], mu = constants[MPMI_C_MU];
+  for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
+    _Alignas(64) double volumetric[MPMI_CHUNK], shear[MPMI_CHUNK], mixed[6][MPMI_CHUNK];
+    MPMI_IVDEP
+    for (int p = 0; p < MPMI_CHUNK; ++p) {
+      mpmi_mat h = mpmi_load_F_minus_1(dim, batch->F, batch->ld, i + p);
+      mpmi_sym e = mpmi_left_cauchy_green_minus_1(dim, h);
+      double log_j = mpmi_lane_log1p(mpmi_J_minus_1(dim, h)), third = (1.0 / 3.0) * (e.xx + e.yy + e.zz);
+      double mu_bar = mu + mu * mpmi_lane_expm1((-2.0 / 3.0) * log_j), f = (-2.0 / 3.0) * mu_bar;
+      mpmi_sym s = {f * (e.xx - third), f * (e.yy - third), f * (e.zz - third), f * e.xy, f * e.yz, f * e.xz};
+      mpmi_store_sym(dim, mixed[0], MPMI_CHUNK, p, s);
+      volumetric[p] = kappa + f * (1.0 + third);
+      shear[p] = mu_bar * (1.0 + third) - kappa * log_j;
+    }
+    KERNEL(isotropic_rows)(dim, volumetric, shear, tangent + i, batch->ld);
+    KERNEL(add_mixed_rows)(dim, (const double(*)[MPMI_CHUNK])mixed, tangent + i, batch->ld);
+  }
+}
+
+MPMI_TANGENT_BY_DIM(tangent_neo_hookean_decoupled, neo_hookean_decoupled_tangent)

@@ -4,7 +4,7 @@
  * Without tension everything but the viscous stress is that of min(J, 1). */
 #include <math.h>
 
-#include "material/objective_increment.h"
+#include "material/objective_tangent.h"
 
 MPMI_INLINE void compression(int dim, const double *constants, const mpm_material_batch *batch) {
   const double bulk_by_gamma = constants[MPMI_C_BULK_BY_GAMMA], exponent = constants[MPMI_C_GAMMA_MINUS_1];
@@ -58,3 +58,55 @@ MPMI_INLINE void newtonian_fluid(int dim, const double *constants, const mpm_mat
 }
 
 MPMI_LAW_BY_DIM(law_newtonian_fluid, newtonian_fluid)
+
+/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). At the J from which on there is no
+ * pressure it is that of compression: a fluid at rest there is stiff. */
+MPMI_INLINE void compression_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+                                     double *tangent) {
+  const double bulk_by_gamma = constants[MPMI_C_BULK_BY_GAMMA], exponent = constants[MPMI_C_GAMMA_MINUS_1];
+  const double most = constants[MPMI_C_LARGEST_J_MINUS_1];
+  for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
+    _Alignas(64) double volumetric[MPMI_CHUNK], shear[MPMI_CHUNK];
+    MPMI_IVDEP
+    for (int p = 0; p < MPMI_CHUNK; ++p) {
+      double h = mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, batch->F, batch->ld, i + p));
+      double power = mpmi_lane_expm1(-exponent * mpmi_lane_log1p(h)); /* J^(1 - gamma) - 1 */
+      volumetric[p] = h > most ? 0.0 : bulk_by_gamma * ((1.0 + h) + exponent * (1.0 + power));
+      shear[p] = h > most ? 0.0 : bulk_by_gamma * (power - h);
+    }
+    KERNEL(isotropic_rows)(dim, volumetric, shear, tangent + i, batch->ld);
+  }
+}
+
+MPMI_INLINE void shear_chunk(int dim, const double *constants, const mpm_material_batch *batch, int64_t begin,
+                             mpmi_objective *o) {
+  const double shear = constants[MPMI_C_VISCOSITY] / batch->dt;
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    double mean_log;
+    mpmi_objective_load(dim, o, p, batch, begin + p);
+    mpmi_sym v = mpmi_deviator(mpmi_load_sym(dim, o->log_v[0], MPMI_CHUNK, p), &mean_log);
+    mpmi_store_sym(dim, o->stress[0], MPMI_CHUNK, p, mpmi_shifted(2.0 * shear, v, 0.0));
+    o->bulk[p] = 0.0;
+    o->shear[p] = shear;
+  }
+}
+
+MPMI_INLINE void add_shear_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+                                   double *tangent) {
+  mpmi_objective o;
+  memset(o.bend, 0, sizeof o.bend);
+  for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
+    shear_chunk(dim, constants, batch, i, &o);
+    memset(o.turned, 0, sizeof o.turned); /* the old stress has no part in it */
+    KERNEL(objective_rows)(dim, 1, &o, tangent + i, batch->ld);
+  }
+}
+
+MPMI_INLINE void newtonian_fluid_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+                                         double *tangent) {
+  compression_tangent(dim, constants, batch, tangent);
+  if (constants[MPMI_C_VISCOSITY] > 0.0) add_shear_tangent(dim, constants, batch, tangent);
+}
+
+MPMI_TANGENT_BY_DIM(tangent_newtonian_fluid, newtonian_fluid_tangent)

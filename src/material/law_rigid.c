@@ -1,6 +1,6 @@
 /* No stress, no energy, no waves: where such particles go, others say. */
 #include "material/laws.h"
-#include "material/tensor.h"
+#include "material/tangent_rows.h"
 
 MPMI_INLINE void rigid(int dim, const double *constants, const mpm_material_batch *batch) {
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
@@ -16,3 +16,13 @@ MPMI_INLINE void rigid(int dim, const double *constants, const mpm_material_batc
 }
 
 MPMI_LAW_BY_DIM(law_rigid, rigid)
+
+MPMI_INLINE void rigid_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+                               double *tangent) {
+  const double none[MPMI_CHUNK] = {0.0};
+  (void)constants;
+  for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK)
+    KERNEL(isotropic_rows)(dim, none, none, tangent + i, batch->ld);
+}
+
+MPMI_TANGENT_BY_DIM(tangent_rigid, rigid_tangent)

@@ -28,15 +28,17 @@ _Static_assert((int)MPMI_C_COUNT <= (int)MPMI_MAX_CONSTANTS, "constants of a law
 /* A built-in law by name, or NULL. */
 const mpmi_law *mpmi_law_by_name(const char *name);
 
+#define MPMI_DECLARE_LAW(law, isa)                                                                           \
+  void mpmi_law_##law##_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);        \
+  void mpmi_tangent_##law##_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch,     \
+                                  double *tangent);
 #define MPMI_DECLARE_LAWS(isa)                                                                               \
-  void mpmi_law_neo_hookean_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);    \
-  void mpmi_law_neo_hookean_decoupled_##isa(const double *constants, int32_t dim,                            \
-                                            const mpm_material_batch *batch);                                \
-  void mpmi_law_newtonian_fluid_##isa(const double *constants, int32_t dim,                                  \
-                                      const mpm_material_batch *batch);                                      \
-  void mpmi_law_rigid_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);          \
-  void mpmi_law_linear_elastic_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch); \
-  void mpmi_law_j2_##isa(const double *constants, int32_t dim, const mpm_material_batch *batch);
+  MPMI_DECLARE_LAW(neo_hookean, isa)                                                                         \
+  MPMI_DECLARE_LAW(neo_hookean_decoupled, isa)                                                               \
+  MPMI_DECLARE_LAW(newtonian_fluid, isa)                                                                     \
+  MPMI_DECLARE_LAW(rigid, isa)                                                                               \
+  MPMI_DECLARE_LAW(linear_elastic, isa)                                                                      \
+  MPMI_DECLARE_LAW(j2, isa)
 
 MPMI_DECLARE_LAWS(baseline)
 #if MPMI_HAS_X86
@@ -53,6 +55,18 @@ MPMI_DECLARE_LAWS(avx512)
       body(2, constants, batch);                                                                             \
     else                                                                                                     \
       body(1, constants, batch);                                                                             \
+  }
+
+/* The same of a tangent, f(constants, dim, batch, tangent). */
+#define MPMI_TANGENT_BY_DIM(kernel, body)                                                                    \
+  void KERNEL(kernel)(const double *constants, int32_t dim, const mpm_material_batch *batch,                 \
+                      double *tangent) {                                                                     \
+    if (dim == 3)                                                                                            \
+      body(3, constants, batch, tangent);                                                                    \
+    else if (dim == 2)                                                                                       \
+      body(2, constants, batch, tangent);                                                                    \
+    else                                                                                                     \
+      body(1, constants, batch, tangent);                                                                    \
   }
 
 #endif

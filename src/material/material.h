@@ -28,6 +28,10 @@ enum { MPMI_MAX_PARAMS = 8, MPMI_MAX_CONSTANTS = 16 };
  * `dim` (xx yy zz; xy in 2-D; yz xz in 3-D), others are left alone. */
 typedef void (*mpmi_law_fn)(const double *constants, int32_t dim, const mpm_material_batch *batch);
 
+/* The tangent of a built-in law at a batch whose law has just run, as mpmi_material_tangent() writes it. */
+typedef void (*mpmi_tangent_fn)(const double *constants, int32_t dim, const mpm_material_batch *batch,
+                                double *tangent);
+
 typedef struct mpmi_law_param {
   const char *name, *unit, *text;
   double value, low, high; /* default (NaN: must be given); inclusive range */
@@ -62,11 +66,24 @@ struct mpm_material {
 const mpmi_law *mpmi_law_by_index(int32_t index);
 /* The law's kernel for an instruction set. */
 mpmi_law_fn mpmi_law_kernel(int32_t isa, int32_t law);
+mpmi_tangent_fn mpmi_tangent_kernel(int32_t isa, int32_t law);
 /* Runs a material's law, built in or the host's, on a batch. Callback statuses pass through unchanged. */
 mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t isa, int32_t dim,
                                   const mpm_material_batch *batch);
 /* 1 when stress follows from F, and from the step where the law is viscous. */
 int32_t mpmi_material_stress_from_F(const mpm_material *material);
 int32_t mpmi_material_kinematics(const mpm_material *material);
+
+/* Tangent of a material on a batch whose law has just run (outputs in place): c_ijkl of mpm_tangent_fn: with
+ * tau = J sigma and dF = L F:  c_ijkl = d tau_ij / d L_kl - delta_ik tau_jl - delta_jk tau_il,
+ * [81][batch->ld], component 9 * (3 * i + j) + 3 * k + l. Only components with i, j, k, l < dim are written;
+ * others are left alone. It is the derivative of the step as the law computes it: F = F_inc F_old, with
+ * F_old, old stress and state fixed. batch->dt > 0. Inert slots of a host's law get zeros. scratch:
+ * mpmi_material_tangent_scratch(material, batch->ld) bytes, 64-byte aligned. *symmetric is set to 0 where c
+ * has no major symmetry, else left alone. Callback statuses pass through. */
+size_t mpmi_material_tangent_scratch(const mpm_material *material, int64_t ld);
+mpm_status mpmi_material_tangent(const mpm_material *material, int32_t isa, int32_t dim,
+                                 const mpm_material_batch *batch, void *scratch, double *tangent,
+                                 int32_t *symmetric);
 
 #endif

@@ -117,19 +117,32 @@ static const mpmi_law laws[MPMI_LAW_COUNT] = {
                         .param = {PARAM_DENSITY}},
 };
 
-#define KERNELS(isa)                                                                                         \
+#define KERNELS(kind, isa)                                                                                   \
   {                                                                                                          \
-    [MPMI_LAW_NEO_HOOKEAN] = mpmi_law_neo_hookean_##isa,                                                     \
-    [MPMI_LAW_LINEAR_ELASTIC] = mpmi_law_linear_elastic_##isa, [MPMI_LAW_J2] = mpmi_law_j2_##isa,            \
-    [MPMI_LAW_NEO_HOOKEAN_DECOUPLED] = mpmi_law_neo_hookean_decoupled_##isa,                                 \
-    [MPMI_LAW_NEWTONIAN_FLUID] = mpmi_law_newtonian_fluid_##isa, [MPMI_LAW_RIGID] = mpmi_law_rigid_##isa     \
+    [MPMI_LAW_NEO_HOOKEAN] = mpmi_##kind##_neo_hookean_##isa,                                                \
+    [MPMI_LAW_LINEAR_ELASTIC] = mpmi_##kind##_linear_elastic_##isa, [MPMI_LAW_J2] = mpmi_##kind##_j2_##isa,  \
+    [MPMI_LAW_NEO_HOOKEAN_DECOUPLED] = mpmi_##kind##_neo_hookean_decoupled_##isa,                            \
+    [MPMI_LAW_NEWTONIAN_FLUID] = mpmi_##kind##_newtonian_fluid_##isa,                                        \
+    [MPMI_LAW_RIGID] = mpmi_##kind##_rigid_##isa                                                             \
   }
 
 mpmi_law_fn mpmi_law_kernel(int32_t isa, int32_t law) {
-  static const mpmi_law_fn baseline[MPMI_LAW_COUNT] = KERNELS(baseline);
+  static const mpmi_law_fn baseline[MPMI_LAW_COUNT] = KERNELS(law, baseline);
 #if MPMI_HAS_X86
-  static const mpmi_law_fn avx2[MPMI_LAW_COUNT] = KERNELS(avx2);
-  static const mpmi_law_fn avx512[MPMI_LAW_COUNT] = KERNELS(avx512);
+  static const mpmi_law_fn avx2[MPMI_LAW_COUNT] = KERNELS(law, avx2);
+  static const mpmi_law_fn avx512[MPMI_LAW_COUNT] = KERNELS(law, avx512);
+  if (isa == MPM_ISA_AVX2) return avx2[law];
+  if (isa == MPM_ISA_AVX512) return avx512[law];
+#endif
+  (void)isa;
+  return baseline[law];
+}
+
+mpmi_tangent_fn mpmi_tangent_kernel(int32_t isa, int32_t law) {
+  static const mpmi_tangent_fn baseline[MPMI_LAW_COUNT] = KERNELS(tangent, baseline);
+#if MPMI_HAS_X86
+  static const mpmi_tangent_fn avx2[MPMI_LAW_COUNT] = KERNELS(tangent, avx2);
+  static const mpmi_tangent_fn avx512[MPMI_LAW_COUNT] = KERNELS(tangent, avx512);
   if (isa == MPM_ISA_AVX2) return avx2[law];
   if (isa == MPM_ISA_AVX512) return avx512[law];
 #endif

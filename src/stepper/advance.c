@@ -37,11 +37,13 @@ static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {
 
 /* The sub-step that the bounds allow, cut so that no sliver remains before t_end. */
 static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, int32_t *last) {
-  double stable;
-  const mpm_status status = mpm_stable_dt(s, &stable);
-  if (status) return status;
   const double left = d->t_end - s->t;
-  *dt = d->cfl * stable;
+  *dt = left;
+  if (!mpmi_is_implicit(s)) {
+    const mpm_status status = mpm_stable_dt(s, dt);
+    if (status) return status;
+    *dt *= d->cfl;
+  }
   if (s->controller_dt > 0.0 && s->controller_dt < *dt) *dt = s->controller_dt;
   if (d->dt_max > 0.0 && d->dt_max < *dt) *dt = d->dt_max;
   *last = left <= *dt * (1.0 + 1e-9);
@@ -50,6 +52,17 @@ static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, 
   else if (left < 2.0 * *dt && 0.5 * left >= d->dt_min)
     *dt = 0.5 * left;
   return MPM_OK;
+}
+
+/* Explicit: until it no longer bounds the stable dt. Implicit: as the iterations went; a step that t_end cut
+ * says nothing of longer ones. */
+static void let_grow(mpm_stepper *s, double dt) {
+  if (mpmi_is_implicit(s)) {
+    s->controller_dt = fmax(s->controller_dt, s->last.dt_suggested);
+    return;
+  }
+  if (s->controller_dt > 0.0) s->controller_dt *= GROW;
+  if (s->controller_dt > 1e6 * dt) s->controller_dt = 0.0;
 }
 
 static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
@@ -67,8 +80,7 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
     status = mpmi_step(s, dt);
     if (!status) {
       if (last) s->t = d->t_end;
-      if (s->controller_dt > 0.0) s->controller_dt *= GROW;
-      if (s->controller_dt > 1e6 * dt) s->controller_dt = 0.0;
+      let_grow(s, dt);
       ++step;
       continue;
     }

@@ -160,9 +160,13 @@ static mpm_status set_held(const mpmi_boundary *f) {
   return status;
 }
 
+static mpm_status find_held(const mpmi_boundary *f) {
+  const mpm_status status = f->s->velocity_bc ? mpmi_ask_velocities(f) : MPM_OK;
+  return status || !f->s->prescription.any ? status : mpmi_prescribed_hold(f);
+}
+
 static mpm_status hold_nodes(const mpmi_boundary *f) {
-  mpm_status status = f->s->velocity_bc ? mpmi_ask_velocities(f) : MPM_OK;
-  if (!status && f->s->prescription.any) status = mpmi_prescribed_hold(f);
+  const mpm_status status = find_held(f);
   return status ? status : set_held(f);
 }
 
@@ -207,6 +211,12 @@ static mpm_status act_on_velocities(const mpmi_boundary *f, int32_t projection) 
   hold_walls(f);
   if (projection != MPMI_PROJECT_CORRECT) mpmi_contacts(f, projection != MPMI_PROJECT_TOUCH);
   return status;
+}
+
+mpm_status mpmi_stage_hold(mpm_stepper *s, double dt) {
+  const mpmi_boundary f = {.s = s, .nodes = s->node, .dt = dt, .values = s->values, .dim = s->grid->dim};
+  fold(&f);
+  return find_held(&f);
 }
 
 mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt, double share) {

@@ -50,10 +50,11 @@ static void add_up_blocks(mpm_stepper *s) {
 }
 
 void mpmi_commit(mpm_stepper *s, double dt) {
-  int32_t left = 0, removes = 0;
+  int32_t left = 0, removes = 0, restored = 0;
   for (int32_t k = 0; k < s->tasks; ++k) {
     left |= s->scratch[k].left_tile;
     removes |= s->scratch[k].removes;
+    restored |= s->scratch[k].holes_restored;
   }
   const mpmi_sums before = s->energies.sums;
   mpmi_prescribed_commit(s);
@@ -69,7 +70,8 @@ void mpmi_commit(mpm_stepper *s, double dt) {
       field->data[1] = swap;
     }
     if (left) set->dirty |= MPMI_DIRTY_PLACE;
-    set->dirty &= ~(uint32_t)MPMI_DIRTY_SURVEY;
+    set->dirty &= ~(uint32_t)(MPMI_DIRTY_SURVEY | MPMI_DIRTY_ACCELERATION);
+    if (!mpmi_is_implicit(s) || s->desc.quasi_static) set->dirty |= MPMI_DIRTY_ACCELERATION;
   }
   s->t += dt;
   ++s->step;
@@ -80,6 +82,7 @@ void mpmi_commit(mpm_stepper *s, double dt) {
   s->reaction_dt = s->velocity_dt;
   s->previous_dt = s->desc.staggered ? dt : 0.0;
   s->has_reactions = 1;
+  if (restored) s->energies.valid = 0;
   if (removes)
     for (int32_t m = 0; m < s->member_count; ++m) remove_outside(s, s->member[m].set);
 }

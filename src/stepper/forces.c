@@ -7,7 +7,7 @@
 typedef struct forces_job {
   mpm_stepper *s;
   int32_t m;
-  double dt;
+  double t, dt;
 } forces_job;
 
 static mpm_status call_host(const forces_job *job, mpm_particle_fn fn, void *user, const char *what,
@@ -32,12 +32,12 @@ static void check_finite(const forces_job *job, const mpm_particle_batch *batch,
 }
 
 mpm_particle_batch mpmi_particle_batch(const mpm_stepper *s, const mpm_particles *set, int64_t begin,
-                                       int64_t n, double dt, const mpmi_lookup *lookup) {
+                                       int64_t n, double t, double dt, const mpmi_lookup *lookup) {
   mpm_particle_batch batch = {.struct_size = sizeof batch,
                               .dim = s->grid->dim,
                               .n = n,
                               .ld = set->ld,
-                              .t = s->t,
+                              .t = t,
                               .dt = dt,
                               .id = mpmi_i64(set, MPMI_ID, 0) + begin,
                               .position = mpmi_f64(set, MPMI_POSITION, 0) + begin,
@@ -56,7 +56,7 @@ static void forces_of_batch(const forces_job *job, int64_t begin, int64_t n, mpm
   mpm_particles *set = member->set;
   const int32_t dim = s->grid->dim;
   const mpmi_lookup lookup = {set, begin};
-  const mpm_particle_batch batch = mpmi_particle_batch(s, set, begin, n, job->dt, &lookup);
+  const mpm_particle_batch batch = mpmi_particle_batch(s, set, begin, n, job->t, job->dt, &lookup);
   double *force = member->force + begin;
   for (int32_t k = 0; k < dim; ++k) memset(force + k * set->ld, 0, (size_t)n * sizeof *force);
   if (s->acceleration) {
@@ -90,10 +90,10 @@ static void forces_task(void *data, int64_t k) {
   }
 }
 
-mpm_status mpmi_stage_forces(mpm_stepper *s, double dt) {
+mpm_status mpmi_stage_forces(mpm_stepper *s, double t, double dt) {
   for (int32_t m = 0; m < s->member_count; ++m) {
     if (!s->member[m].force) continue;
-    forces_job job = {s, m, dt};
+    forces_job job = {s, m, t, dt};
     const mpm_status status = mpmi_run_tasks(s, s->acceleration || s->force, s->tasks, forces_task, &job);
     if (status) return status;
   }

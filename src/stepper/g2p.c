@@ -1,6 +1,7 @@
 /* Nodes to particles, block by block: velocity, position, deformation gradient, volume, stress. Reads copy 0
  * of the particles' fields and writes copy 1; only volume has one copy, and mpmi_roll_back makes it again. */
 #include "stepper/locking.h"
+#include "stepper/newton.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,6 +10,8 @@ typedef struct g2p_job {
   mpm_stepper *s;
   int32_t what, values, form, need;
   int32_t starts_sums; /* of energies: not the pass that completes those of another */
+  const mpmi_cut *cut;
+  int32_t seam; /* of passes that add stiffness: the blocks at periodic seams, or the others */
   double dt;
   const double *nodes;
 } g2p_job;
@@ -16,12 +19,15 @@ typedef struct g2p_job {
 /* Reading the clock costs as much as the law of a few particles: one batch in so many stands for all. */
 enum { TIMED_BATCHES = 16 };
 
+/* Passes that add to nodes: by colours. */
+enum { ASSEMBLES = MPMI_G2P_FORCES | MPMI_G2P_STIFFNESS };
+
 /* One batch of one set in one block, with everything that the kernels are given. */
 typedef struct batch_job {
   const g2p_job *job;
   mpmi_scratch *scratch;
   mpm_particles *set;
-  int32_t m;
+  int32_t m, task;
   mpmi_law_batch law;
   mpmi_gather gather;
   mpmi_move move;
@@ -88,12 +94,13 @@ static void bind_set(batch_job *b, int32_t m) {
                             .L = b->law.L,
                             .C = b->C};
   bind_streams(b);
-  b->move = (mpmi_move){.rule = mpmi_is_blend(s)   ? MPMI_MOVE_BLEND
+  const int32_t blends = mpmi_is_blend(s) && !s->desc.quasi_static;
+  b->move = (mpmi_move){.rule = blends             ? MPMI_MOVE_BLEND
                                 : mpmi_corrects(s) ? MPMI_MOVE_CORRECT
                                                    : MPMI_MOVE_SET,
                         .dt = b->job->dt,
                         .flip = mpmi_flip_share(s),
-                        .lag = s->desc.position_order == 2 ? 0.5 : 0.0,
+                        .lag = s->desc.position_order == 2 && !mpmi_is_implicit(s) ? 0.5 : 0.0,
                         .ld = ld,
                         .v_bar = b->v_bar,
                         .dv = b->dv};
@@ -101,7 +108,7 @@ static void bind_set(batch_job *b, int32_t m) {
                             .ld = ld,
                             .L = b->law.L,
                             .F = b->law.F,
-                            .F_inc = set->material->law ? NULL : b->law.F_inc};
+                            .F_inc = set->material->law && !mpmi_is_implicit(s) ? NULL : b->law.F_inc};
   b->survey = (mpmi_survey){.ld = ld,
                             .wave_speed = b->law.wave_speed,
                             .kinematic_viscosity = b->law.viscosity,
@@ -157,13 +164,19 @@ static int32_t is_on_wall(const mpm_stepper *s, int32_t k, double *x) {
   return 1;
 }
 
+static int32_t is_placed(const mpm_particles *set, int32_t dim, int64_t slot) {
+  int32_t placed = 1;
+  for (int32_t k = 0; k < dim; ++k) placed &= isfinite(component(set, MPMI_POSITION, 1, k)[slot]) != 0;
+  return placed;
+}
+
 /* Particles beyond a face: wrapped, marked for removal, or the end of the step. */
 static void look_outside(batch_job *b, int64_t begin, int64_t n) {
   const mpm_stepper *s = b->job->s;
   const mpm_grid *grid = s->grid;
   const int64_t *id = mpmi_i64(b->set, MPMI_ID, 0);
   for (int64_t slot = begin; slot < begin + n; ++slot) {
-    if (id[slot] < 0) continue;
+    if (id[slot] < 0 || !is_placed(b->set, grid->dim, slot)) continue; /* look_at_values will say */
     int32_t stays = 0, leaves = 0;
     for (int32_t k = 0; k < grid->dim; ++k) {
       double *x = component(b->set, MPMI_POSITION, 1, k) + slot;
@@ -199,14 +212,33 @@ static int32_t finite_row(const mpm_particles *set, int32_t field, int32_t compo
   return 1;
 }
 
-/* Finds the particles behind a flag; holes are not looked at. */
+/* A hole weighs nothing, but nodes near it that are not finite make it so: it stays what it was. */
+static void restore_hole(batch_job *b, int64_t slot) {
+  mpm_particles *set = b->set;
+  b->scratch->holes_restored = 1;
+  mpmi_f64(set, MPMI_VOLUME, 0)[slot] = 0.0;
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field *field = &set->field[f];
+    if (!field->present || !field->two_copies) continue;
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components; ++c) {
+      const size_t at = (size_t)(c * set->ld + slot) * size;
+      memcpy((char *)field->data[1] + at, (const char *)field->data[0] + at, size);
+    }
+  }
+}
+
+/* Finds the particles behind a flag. */
 static void look_at_values(batch_job *b, int64_t begin, int64_t n) {
   const mpm_particles *set = b->set;
   const int32_t dim = b->job->s->grid->dim;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   const int32_t moved = b->job->what & MPMI_G2P_MOVE, deformed = b->job->what & MPMI_G2P_DEFORM;
   for (int64_t slot = begin; slot < begin + n; ++slot) {
-    if (id[slot] < 0) continue;
+    if (id[slot] < 0) {
+      restore_hole(b, slot);
+      continue;
+    }
     const int64_t p = slot - begin;
     if (moved && !(finite_row(set, MPMI_POSITION, dim, slot) && finite_row(set, MPMI_VELOCITY, dim, slot)))
       fail(b, MPM_NONFINITE, slot, "position or velocity not finite");
@@ -218,6 +250,20 @@ static void look_at_values(batch_job *b, int64_t begin, int64_t n) {
                              finite_row(set, MPMI_STATE, set->material->state_count, slot) &&
                              isfinite(b->law.wave_speed[p]) && isfinite(b->law.viscosity[p])))
       fail(b, MPM_NONFINITE, slot, "the material's stress, state or wave speed is not finite");
+  }
+}
+
+/* From gathered dt a1 to what Newmark's rule adds to the velocities. */
+static void mean_accelerations(batch_job *b, int64_t begin, int64_t n) {
+  const mpm_stepper *s = b->job->s;
+  const double dt = b->job->dt, gamma = s->desc.newmark_gamma;
+  for (int32_t k = 0; k < s->grid->dim; ++k) {
+    double *a = component(b->set, MPMI_ACCELERATION, 1, k) + begin, *dv = b->dv + k * b->law.ld;
+    for (int64_t p = 0; p < n; ++p) {
+      const double new = dv[p] / dt;
+      dv[p] = dt * (1.0 - gamma) * a[p] + gamma * dv[p];
+      a[p] = new;
+    }
   }
 }
 
@@ -233,11 +279,12 @@ static uint32_t move_batch(batch_job *b, int64_t begin, int64_t n) {
       memcpy(mpmi_i64(set, MPMI_IMAGE, 1) + k * set->ld + begin,
              mpmi_i64(set, MPMI_IMAGE, 0) + k * set->ld + begin, (size_t)n * sizeof(int64_t));
   }
+  if (mpmi_is_implicit(s)) mean_accelerations(b, begin, n);
   uint32_t flags = s->kernels->move[s->grid->dim](&b->move, n);
   if (s->member[b->m].prescribed) flags |= mpmi_prescribed_move(s, b->m, b->block, &b->move, begin, n);
   if (flags & MPMI_LEFT_TILE) b->scratch->left_tile = 1;
-  if ((flags & MPMI_OUTSIDE) && !(flags & MPMI_NONFINITE)) look_outside(b, begin, n);
-  if (set->field[MPMI_ACCELERATION].present)
+  if (flags & MPMI_OUTSIDE) look_outside(b, begin, n);
+  if (set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(s))
     for (int32_t k = 0; k < s->grid->dim; ++k)
       for (int64_t p = 0; p < n; ++p)
         component(set, MPMI_ACCELERATION, 1, k)[begin + p] =
@@ -274,6 +321,8 @@ static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
   uint32_t flags = s->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
                                            mpmi_f64(set, MPMI_VOLUME, 0) + begin, n);
   if (flags) return flags;
+  if (s->desc.locking_remedy && (b->job->what & ASSEMBLES))
+    memcpy(s->newton->work[b->task].F_inc, b->law.F_inc, (size_t)(9 * b->law.ld) * sizeof(double));
   if (s->desc.locking_remedy)
     mpmi_locking_apply(s, b->scratch->cells, b->gather.axis, set, &b->law, begin, n, b->job->dt);
   const int32_t timed = s->profiled && b->batches++ % TIMED_BATCHES == 0;
@@ -287,6 +336,8 @@ static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
   }
   mpmi_law_batch_store(&b->law, set, 1, begin, n);
   b->law_ran = 1;
+  if (b->job->what & ASSEMBLES)
+    mpmi_assemble_batch(s, b->task, b->job->what, b->m, &b->law, b->gather.axis, begin, n);
   return 0;
 }
 
@@ -314,14 +365,23 @@ static uint32_t survey_batch(batch_job *b, int32_t what, int64_t begin, int64_t 
   return s->kernels->survey[dim](job, n, sums);
 }
 
+/* From nodal accelerations, for sets that do not have them. */
+static void accelerate_batch(batch_job *b, int64_t begin, int64_t n) {
+  const int32_t unknown = (b->set->dirty & MPMI_DIRTY_ACCELERATION) != 0;
+  for (int32_t k = 0; k < b->job->s->grid->dim; ++k)
+    memcpy(component(b->set, MPMI_ACCELERATION, 1, k) + begin,
+           unknown ? b->v_bar + k * b->law.ld : component(b->set, MPMI_ACCELERATION, 0, k) + begin,
+           (size_t)n * sizeof(double));
+}
+
 static void probe_batch(batch_job *b, int64_t begin, int64_t n) {
   for (int32_t k = 0; k < b->job->s->grid->dim; ++k)
     memcpy(component(b->set, MPMI_VELOCITY, 1, k) + begin, b->v_bar + k * b->law.ld,
            (size_t)n * sizeof(double));
 }
 
-/* USF asks the law before particles move, and the survey of the motion wants to know the wave speed: it waits
- * where the new position will be. */
+/* USF and implicit steps ask the law before particles move, and the survey of the motion wants to know the
+ * wave speed: it waits where the new position will be. */
 static void leave_wave_speed(batch_job *b, int64_t begin, int64_t n) {
   memcpy(component(b->set, MPMI_POSITION, 1, 0) + begin, b->law.wave_speed, (size_t)n * sizeof(double));
 }
@@ -333,21 +393,22 @@ static void one_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
   const mpm_stepper *s = b->job->s;
   const int32_t what = b->job->what;
   uint32_t flags = 0;
-  const int32_t usf = s->desc.scheme == MPM_USF;
+  const int32_t first = mpmi_deforms_first(s);
   b->law_ran = 0;
   s->kernels->gather[s->grid->dim][s->grid->width][b->job->form](&b->gather, begin, n);
   /* the kernels write from the start of the batch's buffers */
   if (what & MPMI_G2P_PROBE) probe_batch(b, begin, n);
+  if (what & MPMI_G2P_ACCELERATION) accelerate_batch(b, begin, n);
   if (what & MPMI_G2P_DILATION) mpmi_locking_measure(s, b->set, b->law.L, b->law.ld, begin, n, b->job->dt);
   if (!(what & (MPMI_G2P_MOVE | MPMI_G2P_DEFORM))) return;
   if (mpmi_is_mls(s) && b->job->form == MPMI_GATHER_8_AFFINE) /* there C is the gradient too */
     memcpy(b->law.L, b->C, (size_t)(9 * b->law.ld) * sizeof(double));
-  if (usf && (what & MPMI_G2P_MOVE)) take_wave_speed(b, begin, n);
+  if (first && (what & MPMI_G2P_MOVE)) take_wave_speed(b, begin, n);
   if (what & MPMI_G2P_MOVE) flags |= move_batch(b, begin, n);
   store_gradient(b, begin, n);
   if (what & MPMI_G2P_DEFORM) flags |= deform_batch(b, begin, n);
-  if (usf && b->law_ran) leave_wave_speed(b, begin, n);
-  const int32_t moved = usf ? what & MPMI_G2P_MOVE : b->law_ran;
+  if (first && b->law_ran) leave_wave_speed(b, begin, n);
+  const int32_t moved = first ? what & MPMI_G2P_MOVE : b->law_ran;
   const int32_t survey = (b->law_ran ? MPMI_SURVEY_LAW : 0) | (moved ? MPMI_SURVEY_MOTION : 0);
   if (survey) flags |= survey_batch(b, survey, begin, n, sums);
   if (flags) look_at_values(b, begin, n);
@@ -356,16 +417,18 @@ static void one_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
 static void g2p_task(void *data, int64_t k) {
   const g2p_job *job = data;
   mpm_stepper *s = job->s;
-  const mpmi_cut *cut = &s->cut;
-  batch_job b = {.job = job, .scratch = &s->scratch[k]};
+  const mpmi_cut *cut = job->cut;
+  batch_job b = {.job = job, .task = (int32_t)k, .scratch = &s->scratch[k]};
   int32_t bound = -1;
   for (int64_t i = cut->bound[k]; i < cut->bound[k + 1]; ++i) {
     const int32_t block = cut->list[i];
+    if ((job->what & MPMI_G2P_STIFFNESS) && mpmi_at_seam(s, block) != job->seam) continue;
     mpmi_sums *sums = &s->block_sums[block];
     if (job->starts_sums) memset(sums, 0, sizeof *sums);
     mpmi_tile_load(s, block, job->nodes, job->values, job->form >= MPMI_GATHER_8 ? 8 : 4, b.scratch->tile);
     if (s->desc.locking_remedy && (job->what & MPMI_G2P_DEFORM))
       mpmi_tile_load(s, block, s->extra, 4, 4, b.scratch->cells);
+    if (job->what & ASSEMBLES) mpmi_assemble_begin(s, b.task, job->what, block);
     for (int32_t m = 0; m < s->member_count; ++m) {
       const int64_t *start = s->member[m].now.start;
       if (start[block] == start[block + 1]) continue;
@@ -385,6 +448,7 @@ static void g2p_task(void *data, int64_t k) {
       mpmi_sample_weights(s, b.scratch, b.gather.axis, job->need, &b.gather.points, start[block],
                           start[block + 1]);
     }
+    if (job->what & ASSEMBLES) mpmi_assemble_end(s, b.task, job->what, block);
   }
 }
 
@@ -413,8 +477,18 @@ static void choose_form(g2p_job *job) {
 
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt) {
   g2p_job job = {.s = s, .what = what, .dt = dt, .nodes = nodes, .values = values};
-  job.starts_sums = (what & (s->desc.scheme == MPM_USF ? MPMI_G2P_DEFORM : MPMI_G2P_MOVE | MPMI_G2P_DEFORM));
+  job.starts_sums = (what & (mpmi_deforms_first(s) ? MPMI_G2P_DEFORM : MPMI_G2P_MOVE | MPMI_G2P_DEFORM));
   choose_form(&job);
-  mpm_status status = mpmi_run_tasks(s, has_host_law(s), s->tasks, g2p_task, &job);
+  /* rows of images are written at their masters', anywhere: these blocks come one by one */
+  int64_t whole[] = {0, s->cut.count};
+  const mpmi_cut all = {s->cut.list, s->cut.count, whole};
+  mpm_status status = MPM_OK;
+  for (int32_t c = 0; c < (what & ASSEMBLES ? (int32_t)MPMI_COLOURS : 1) && !status; ++c) {
+    job.cut = what & ASSEMBLES ? &s->colour[c] : &s->cut;
+    if (job.cut->count) status = mpmi_run_tasks(s, has_host_law(s), s->tasks, g2p_task, &job);
+  }
+  job.seam = 1;
+  job.cut = &all;
+  if ((what & MPMI_G2P_STIFFNESS) && !status) status = mpmi_run_tasks(s, has_host_law(s), 1, g2p_task, &job);
   return status ? status : mpmi_stepper_failure(s);
 }

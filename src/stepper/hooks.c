@@ -167,6 +167,10 @@ mpm_status mpm_stepper_set_node_hook(mpm_stepper *s, int32_t stage, mpm_node_fn 
   if (stage < MPM_AFTER_P2G || stage > MPM_AFTER_VELOCITY)
     return mpmi_fail(s->context, MPM_E_ARG, "stage is %d: it must be an MPM_AFTER_P2G ... MPM_AFTER_VELOCITY",
                      (int)stage);
+  if (fn && mpmi_is_implicit(s))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no node hooks: use force and velocity callbacks, or an explicit "
+                     "scheme");
   s->hook[stage - MPM_AFTER_P2G] = fn;
   s->hook_user[stage - MPM_AFTER_P2G] = user;
   return MPM_OK;

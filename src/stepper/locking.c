@@ -12,8 +12,8 @@
 #include <string.h>
 
 /* Place of each particle's cell in the tile. On a periodic axis any image that lies in the tile will do. */
-static void cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
-                        int64_t n, int32_t *place) {
+void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
+                      int64_t n, int32_t *place) {
   const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width);
   for (int64_t p = 0; p < n; ++p) {
     place[p] = 0;
@@ -79,7 +79,7 @@ static void add_task(void *data, int64_t k) {
       const double *j = mpmi_f64(set, MPMI_DILATION_RATIO, 1), *volume = mpmi_f64(set, MPMI_VOLUME, 0);
       for (int64_t at = start[block]; at < start[block + 1]; at += MPMI_CHUNK) {
         const int64_t left = start[block + 1] - at, n = left < MPMI_CHUNK ? left : MPMI_CHUNK;
-        cell_places(s->grid, axis, &points, at, n, place);
+        mpmi_cell_places(s->grid, axis, &points, at, n, place);
         for (int64_t p = 0; p < n; ++p) {
           if (id[at + p] < 0) continue;
           tile[4 * place[p]] += volume[at + p] * j[at + p];
@@ -126,7 +126,7 @@ void mpmi_locking_apply(const mpm_stepper *s, const double *cells, const mpmi_ax
   for (int64_t p = 0; p < n; ++p) {
     ratio[p] = old[p];
     if (p % MPMI_CHUNK == 0)
-      cell_places(s->grid, axis, &points, begin + p, n - p < MPMI_CHUNK ? n - p : MPMI_CHUNK, place);
+      mpmi_cell_places(s->grid, axis, &points, begin + p, n - p < MPMI_CHUNK ? n - p : MPMI_CHUNK, place);
     if (rigid || id[p] < 0) continue;
     const double *cell = cells + 4 * place[p % MPMI_CHUNK];
     const double j = det_minus_1(dim, b->L + p, b->ld, dt);

@@ -12,4 +12,8 @@ void mpmi_locking_measure(const mpm_stepper *s, mpm_particles *set, const double
 void mpmi_locking_apply(const mpm_stepper *s, const double *cells, const mpmi_axis *axis, mpm_particles *set,
                         mpmi_law_batch *b, int64_t begin, int64_t n, double dt);
 
+/* Place in the tile of the lower corner of the cells of n particles, at most a chunk. */
+void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
+                      int64_t n, int32_t *place);
+
 #endif

@@ -25,7 +25,8 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   const mpm_stepper *s = job->s;
   const mpm_particles *set = member->set;
   const int32_t dim = s->grid->dim, forces = mpmi_projects_forces(job->projection);
-  const int32_t copy = job->projection == MPMI_PROJECT_AGAIN || job->projection == MPMI_PROJECT_CORRECT;
+  const int32_t copy = job->projection >= MPMI_PROJECT_AGAIN;
+  const int32_t field = job->projection == MPMI_PROJECT_ACCELERATION ? MPMI_ACCELERATION : MPMI_VELOCITY;
   const int32_t stress =
       job->projection == MPMI_PROJECT_FORCES && s->desc.scheme == MPM_USF; /* USF has updated it already */
   memset(scatter, 0, sizeof *scatter);
@@ -37,7 +38,7 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
     scatter->stress[c] = mpmi_f64(set, MPMI_STRESS, stress) + c * set->ld;
   for (int32_t k = 0; k < dim; ++k) {
-    scatter->v[k] = mpmi_f64(set, MPMI_VELOCITY, copy) + k * set->ld;
+    scatter->v[k] = mpmi_f64(set, field, copy) + k * set->ld;
     scatter->force[k] = member->force && forces ? member->force + k * set->ld : NULL;
     scatter->gravity[k] = forces ? s->desc.gravity[k] : 0.0;
   }

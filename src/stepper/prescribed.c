@@ -103,7 +103,7 @@ static void ask_batch(const motion_job *job, int64_t begin, int64_t n, mpmi_fail
   mpmi_member *member = &job->s->member[job->m];
   mpm_particles *set = member->set;
   const mpmi_lookup lookup = {set, begin};
-  const mpm_particle_batch batch = mpmi_particle_batch(job->s, set, begin, n, job->dt, &lookup);
+  const mpm_particle_batch batch = mpmi_particle_batch(job->s, set, begin, n, job->s->t, job->dt, &lookup);
   double *mean = member->mean + begin;
   for (int32_t c = 0; c < batch.dim; ++c) memset(mean + c * set->ld, 0, (size_t)n * sizeof *mean);
   const mpm_status status = member->motion(member->motion_user, &batch, mean);
@@ -158,8 +158,10 @@ uint32_t mpmi_prescribed_move(mpm_stepper *s, int32_t m, int64_t block, const mp
     for (int64_t p = 0; p < n; ++p) {
       if (!mpmi_is_prescribed(set, begin + p, c)) continue;
       const double u = mean[c * set->ld + begin + p], moved = move->v_new[c][p];
-      part->impulse[c] -= mass[begin + p] * (moved - move->v_old[c][p]);
-      part->work += mass[begin + p] * (u - moved) * u;
+      if (!s->desc.quasi_static) {
+        part->impulse[c] -= mass[begin + p] * (moved - move->v_old[c][p]);
+        part->work += mass[begin + p] * (u - moved) * u;
+      }
       move->v_new[c][p] = u;
       move->x_new[c][p] = move->x_old[c][p] + move->dt * u;
       flags |= flags_of(move, c, move->x_new[c][p]);

@@ -1,18 +1,10 @@
 /* Where the time of steps goes. */
-#define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "stepper/stepper.h"
 
 #include <string.h>
-#include <time.h>
 
 /* Weights are made inside the transfers: one block in so many has them made once more, for the clock. */
 enum { SAMPLED_BLOCKS = 64 };
-
-double mpmi_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 void mpmi_sample_weights(const mpm_stepper *s, mpmi_scratch *scratch, const mpmi_axis *axis, int32_t need,
                          const mpmi_points *points, int64_t begin, int64_t end) {
@@ -35,6 +27,9 @@ mpm_status mpm_stepper_profile(mpm_stepper *s, int32_t reset, mpm_profile *out) 
                                .grid = t[MPMI_TIME_GRID],
                                .g2p = t[MPMI_TIME_G2P],
                                .law = t[MPMI_TIME_LAW],
+                               .assembly = t[MPMI_TIME_ASSEMBLY],
+                               .factor = t[MPMI_TIME_FACTOR],
+                               .solve = t[MPMI_TIME_SOLVE],
                                .callbacks = t[MPMI_TIME_CALLBACKS],
                                .total = t[MPMI_TIME_TOTAL],
                                .weights = t[MPMI_TIME_WEIGHTS]};

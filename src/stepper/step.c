@@ -1,6 +1,6 @@
-/* One explicit step: USL, USF and MUSL (table in docs/theory.md), whole or in three parts with the host in
- * between. */
-#include "stepper/stepper.h"
+/* One step. Explicit: USL, USF and MUSL (table in docs/theory.md), whole or in three parts with the host in
+ * between; implicit ones are those of newmark.c. */
+#include "stepper/newton.h"
 
 #include <math.h>
 
@@ -12,8 +12,7 @@ mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm
   return MPM_OK;
 }
 
-/* Adds the seconds since *from to a stage and restarts the clock. */
-static void lap(mpm_stepper *s, int32_t stage, double *from) {
+void mpmi_lap(mpm_stepper *s, int32_t stage, double *from) {
   const double now = mpmi_seconds();
   s->seconds[stage] += now - *from;
   s->seconds[MPMI_TIME_TOTAL] += now - *from;
@@ -30,10 +29,10 @@ static void count_active(mpm_stepper *s) {
 /* A projection beside the one with the forces of the step, up to its boundary conditions. */
 static mpm_status project(mpm_stepper *s, int32_t projection, double dt, double *clock) {
   mpm_status status = mpmi_stage_p2g(s, projection);
-  lap(s, MPMI_TIME_P2G, clock);
+  mpmi_lap(s, MPMI_TIME_P2G, clock);
   if (!status) status = mpmi_stage_nodes(s, projection);
   if (!status) status = mpmi_stage_boundary(s, projection, dt, 0.0);
-  lap(s, MPMI_TIME_GRID, clock);
+  mpmi_lap(s, MPMI_TIME_GRID, clock);
   return status;
 }
 
@@ -42,7 +41,7 @@ static mpm_status gather(mpm_stepper *s, int32_t what, const double *nodes, int3
   mpm_status status = MPM_OK;
   if (s->desc.locking_remedy && (what & MPMI_G2P_DEFORM)) status = mpmi_stage_locking(s, nodes, values, dt);
   if (!status) status = mpmi_stage_g2p(s, what, nodes, values, dt);
-  lap(s, MPMI_TIME_G2P, clock);
+  mpmi_lap(s, MPMI_TIME_G2P, clock);
   return status;
 }
 
@@ -54,31 +53,41 @@ static mpm_status strain_first(mpm_stepper *s, double dt, double *clock) {
   return status ? status : gather(s, MPMI_G2P_DEFORM, s->again, 4, dt, clock);
 }
 
-/* Particles to grid, and forces. */
-static mpm_status begin_part(mpm_stepper *s, double dt) {
-  double clock = mpmi_seconds();
+/* Up to date sets and topology; nothing known of the step yet. */
+static mpm_status start(mpm_stepper *s, double dt, double *clock) {
   mpm_status status = mpmi_stepper_energies(s);
   if (!status) status = mpmi_stepper_prepare(s);
   if (status) return status;
-  lap(s, MPMI_TIME_SORT, &clock);
+  mpmi_lap(s, MPMI_TIME_SORT, clock);
   s->dt = dt;
   s->velocity_dt = s->desc.staggered && s->previous_dt > 0.0 ? 0.5 * (s->previous_dt + dt) : dt;
   s->nodes_valid = 0;
   s->prescribed_work = 0.0;
+  s->last.newton_iterations = s->last.linear_solver = 0;
+  s->last.linear_iterations = 0;
+  s->last.residual = 0.0;
   mpmi_failure_clear(&s->failure);
   for (int32_t k = 0; k < s->tasks; ++k) {
     mpmi_failure_clear(&s->scratch[k].failure);
-    s->scratch[k].left_tile = s->scratch[k].removes = 0;
+    s->scratch[k].left_tile = s->scratch[k].removes = s->scratch[k].holes_restored = 0;
     s->scratch[k].law_seconds = s->scratch[k].weights_seconds = 0.0;
   }
   for (int32_t f = 0; f < 6; ++f)
     for (int32_t c = 0; c < 3; ++c) s->impulse_in_step[f][c] = 0.0;
-  status = mpmi_stage_forces(s, dt);
+  return MPM_OK;
+}
+
+/* Particles to grid, and forces. */
+static mpm_status begin_part(mpm_stepper *s, double dt) {
+  double clock = mpmi_seconds();
+  mpm_status status = start(s, dt, &clock);
+  if (status) return status;
+  status = mpmi_stage_forces(s, s->t, dt);
   if (!status) status = mpmi_stage_motion(s, dt);
-  lap(s, MPMI_TIME_CALLBACKS, &clock);
+  mpmi_lap(s, MPMI_TIME_CALLBACKS, &clock);
   if (!status && s->desc.scheme == MPM_USF) status = strain_first(s, dt, &clock);
   if (!status) status = mpmi_stage_p2g(s, MPMI_PROJECT_FORCES);
-  lap(s, MPMI_TIME_P2G, &clock);
+  mpmi_lap(s, MPMI_TIME_P2G, &clock);
   return status;
 }
 
@@ -88,7 +97,7 @@ static mpm_status grid_part(mpm_stepper *s, double dt) {
   mpm_status status = mpmi_stage_nodes(s, MPMI_PROJECT_FORCES);
   if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_FORCES, dt, 1.0);
   if (!status && s->constraints.orbit_count) count_active(s);
-  lap(s, MPMI_TIME_GRID, &clock);
+  mpmi_lap(s, MPMI_TIME_GRID, &clock);
   return status;
 }
 
@@ -148,15 +157,14 @@ static mpm_status ask_progress(mpm_stepper *s) {
 }
 
 static mpm_status finish(mpm_stepper *s, double dt) {
-  mpm_status status = particles_part(s, dt);
-  if (!status) status = ask_progress(s);
+  const mpm_status status = ask_progress(s);
   if (status) return status;
   note_success(s);
   mpmi_commit(s, dt);
   /* a removal leaves the sums to be made again; then the host's law may refuse, which is for the next call to
    * say */
   if (!s->energies.valid && mpmi_stepper_energies(s)) s->context->error[0] = '\0';
-  s->last.dt_suggested = mpmi_stable_dt_of(s, &s->energies.sums);
+  s->last.dt_suggested = mpmi_is_implicit(s) ? mpmi_next_dt(s, dt) : mpmi_stable_dt_of(s, &s->energies.sums);
   s->nodes_valid = 1;
   s->nodes_dt = s->velocity_dt;
   return MPM_OK;
@@ -183,6 +191,18 @@ static mpm_status give_up(mpm_stepper *s, mpm_status status) {
   return status;
 }
 
+static mpm_status explicit(mpm_stepper *s, double dt) {
+  mpm_status status = begin_part(s, dt);
+  if (!status) status = grid_part(s, dt);
+  return status ? status : particles_part(s, dt);
+}
+
+static mpm_status implicit(mpm_stepper *s, double dt) {
+  double clock = mpmi_seconds();
+  const mpm_status status = start(s, dt, &clock);
+  return status ? status : mpmi_newmark_step(s, dt);
+}
+
 mpm_status mpmi_step(mpm_stepper *s, double dt) {
   mpm_status status = checked_dt(s, dt);
   if (status) return status;
@@ -190,8 +210,7 @@ mpm_status mpmi_step(mpm_stepper *s, double dt) {
   s->dt = dt;
   s->staged = 0;
   mpmi_failure_clear(&s->failure);
-  status = begin_part(s, dt);
-  if (!status) status = grid_part(s, dt);
+  status = mpmi_is_implicit(s) ? implicit(s, dt) : explicit(s, dt);
   if (!status) status = finish(s, dt);
   if (status) return give_up(s, status);
   s->phase = MPMI_IDLE;
@@ -224,6 +243,9 @@ mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_status status = checked_dt(s, dt);
   if (status) return status;
+  if (mpmi_is_implicit(s))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no steps in parts: use mpm_step, or an explicit scheme");
   s->phase = MPMI_RUNNING;
   s->dt = dt;
   s->staged = 1;
@@ -265,7 +287,8 @@ mpm_status mpm_step_end(mpm_stepper *s, mpm_step_info *info) {
   if (status) return status;
   s->phase = MPMI_RUNNING;
   if (s->desc.scheme == MPM_USF) mpmi_make_volumes(s, 1);
-  status = finish(s, s->dt);
+  status = particles_part(s, s->dt);
+  if (!status) status = finish(s, s->dt);
   if (status) {
     give_up(s, status);
   } else {

@@ -1,7 +1,8 @@
 /* Making, configuring and taking apart steppers. */
 #include "particles/values.h"
-#include "stepper/stepper.h"
+#include "stepper/newton.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -28,10 +29,8 @@ static mpm_status known_scheme(mpm_context *c, int32_t scheme) {
   case MPM_USL:
   case MPM_USF:
   case MPM_MUSL:
-    return MPM_OK;
   case MPM_NEWMARK:
-    return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "scheme MPM_NEWMARK is not in this version: use MPM_USL, MPM_USF or MPM_MUSL");
+    return MPM_OK;
   default:
     return mpmi_fail(c, MPM_E_ARG, "scheme is %d: it must be an MPM_USL ... MPM_NEWMARK", (int)scheme);
   }
@@ -54,8 +53,8 @@ static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm
 static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
   if (d->quasi_static != 0 && d->quasi_static != 1)
     return mpmi_fail(c, MPM_E_ARG, "quasi_static is %d: it must be 0 or 1", (int)d->quasi_static);
-  if (d->quasi_static)
-    return mpmi_fail(c, MPM_E_UNSUPPORTED, "quasi_static = 1 is not in this version: use 0");
+  if (d->quasi_static && d->scheme != MPM_NEWMARK)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED, "quasi_static = 1 needs implicit steps: use scheme MPM_NEWMARK");
   if (!isfinite(d->pic_damping) || d->pic_damping < 0.0)
     return mpmi_fail(c, MPM_E_ARG, "pic_damping is %g: it must be finite and >= 0", d->pic_damping);
   if (d->position_order != 1 && d->position_order != 2)
@@ -74,12 +73,52 @@ static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_
   return MPM_OK;
 }
 
+/* Options of implicit steps, and what they do not go with. */
+static mpm_status known_implicit(mpm_context *c, const mpm_stepper_desc *d) {
+  const struct {
+    const char *name;
+    double value, low, high;
+  } bound[] = {{"newmark_beta", d->newmark_beta, 1e-6, 1.0},
+               {"newmark_gamma", d->newmark_gamma, 0.0, 1.0},
+               {"newton_tolerance_displacement", d->newton_tolerance_displacement, 0.0, 1.0},
+               {"newton_tolerance_energy", d->newton_tolerance_energy, 0.0, 1.0},
+               {"newton_tolerance_residual", d->newton_tolerance_residual, 0.0, 1.0},
+               {"newton_residual_floor", d->newton_residual_floor, 0.0, DBL_MAX},
+               {"linear_tolerance", d->linear_tolerance, 0.0, 1.0}};
+  for (size_t i = 0; i < sizeof bound / sizeof *bound; ++i)
+    if (!(bound[i].value >= bound[i].low && bound[i].value <= bound[i].high))
+      return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must lie in [%g, %g]", bound[i].name, bound[i].value,
+                       bound[i].low, bound[i].high);
+  if (d->newton_max_iterations < 1 || d->newton_max_iterations > 10000)
+    return mpmi_fail(c, MPM_E_ARG, "newton_max_iterations is %d: it must be 1 ... 10000",
+                     (int)d->newton_max_iterations);
+  if (d->linear_max_iterations < 0)
+    return mpmi_fail(c, MPM_E_ARG, "linear_max_iterations is %d: it must be >= 0",
+                     (int)d->linear_max_iterations);
+  if ((d->linear_solver < MPM_SOLVER_AUTO || d->linear_solver > MPM_SOLVER_GMRES) &&
+      d->linear_solver != MPM_SOLVER_HOST)
+    return mpmi_fail(c, MPM_E_ARG, "linear_solver is %d: it must be an MPM_SOLVER_AUTO ... MPM_SOLVER_HOST",
+                     (int)d->linear_solver);
+  if (d->scheme != MPM_NEWMARK) return MPM_OK;
+  if (d->transfer != MPM_FLIP || d->flip != 1.0 || d->pic_damping != 0.0)
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "scheme MPM_NEWMARK has its own update of particles: use transfer MPM_FLIP with flip = 1 "
+        "and pic_damping = 0; newmark_gamma above 1/2 damps");
+  if (d->staggered)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED, "scheme MPM_NEWMARK has velocities at t_n: use staggered = 0");
+  if (d->linear_solver == MPM_SOLVER_MULTIGRID_CG)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "MPM_SOLVER_MULTIGRID_CG is not in this version: use MPM_SOLVER_AUTO or MPM_SOLVER_CG");
+  return MPM_OK;
+}
+
 static mpm_status read_desc(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *desc,
                             mpm_stepper_desc *out) {
   *out = defaults;
   mpm_status status = desc ? mpmi_read_struct(c, "mpm_stepper_desc", desc, sizeof *out, out) : MPM_OK;
   if (status || (status = known_scheme(c, out->scheme)) || (status = known_transfer(c, grid, out)) ||
-      (status = known_options(c, grid, out)))
+      (status = known_options(c, grid, out)) || (status = known_implicit(c, out)))
     return status;
   if (!(out->flip >= 0.0 && out->flip <= 1.0))
     return mpmi_fail(c, MPM_E_ARG, "flip is %g: it must lie in [0, 1]", out->flip);
@@ -154,6 +193,7 @@ mpm_status mpmi_stepper_idle(mpm_stepper *s) {
 static mpm_status keep_fields(mpm_particles *set, const mpm_stepper_desc *d) {
   mpm_status status = MPM_OK;
   if (d->reference_positions) status = mpmi_field_make_present(set, MPMI_REFERENCE);
+  if (!status && d->scheme == MPM_NEWMARK) status = mpmi_field_make_present(set, MPMI_ACCELERATION);
   if (!status && d->locking_remedy) status = mpmi_field_make_present(set, MPMI_DILATION_RATIO);
   if (status && !set->stepper) mpmi_field_make_absent(set, MPMI_REFERENCE);
   return status;
@@ -196,6 +236,7 @@ mpm_status mpm_stepper_destroy(mpm_stepper *s) {
   while (s->member_count) forget_member(s, s->member_count - 1);
   mpm_context *context = s->context;
   mpmi_stepper_free_topology(s);
+  mpmi_newton_free(s);
   for (int32_t i = 0; i < 8; ++i) mpmi_free(context, s->view_memory[i], s->view_bytes[i]);
   mpmi_free(context, s->active, mpmi_bytes(s->active_capacity, sizeof *s->active));
   mpmi_free(context, s->member, mpmi_bytes(s->member_capacity, sizeof *s->member));
@@ -268,13 +309,29 @@ mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
   return mpmi_fail(s->context, MPM_E_NOT_FOUND, "the set is not in this stepper");
 }
 
+/* What the host has set and implicit steps do not have. */
+static mpm_status without_explicit_parts(mpm_stepper *s) {
+  if (mpmi_has_hooks(s))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no node hooks: unset them, or use an explicit scheme");
+  for (int32_t f = 0; f < 2 * s->grid->dim; ++f)
+    if (s->wall[f].kind == MPM_WALL_FRICTION)
+      return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                       "scheme MPM_NEWMARK has no friction walls, and face %d is one: use MPM_WALL_SLIP or "
+                       "MPM_WALL_FIXED, or an explicit scheme",
+                       (int)f);
+  return MPM_OK;
+}
+
 mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
   mpm_stepper_desc d;
-  if ((status = read_desc(s->context, s->grid, desc, &d))) return status;
+  if ((status = read_desc(s->context, s->grid, desc, &d)) ||
+      (status = d.scheme == MPM_NEWMARK ? without_explicit_parts(s) : MPM_OK))
+    return status;
   for (int32_t m = 0; m < s->member_count; ++m)
     if (s->member[m].set->mapped)
       return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views first", (int)m);
@@ -316,6 +373,10 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
                      (int)face);
   if (kind == MPM_WALL_FRICTION && !(friction >= 0.0 && isfinite(friction)))
     return mpmi_fail(s->context, MPM_E_ARG, "friction is %g: it must be finite and >= 0", friction);
+  if (kind == MPM_WALL_FRICTION && mpmi_is_implicit(s))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no friction walls: use MPM_WALL_SLIP or MPM_WALL_FIXED, or an "
+                     "explicit scheme");
   if (s->wall[face].kind != kind) s->walls_changed = 1;
   s->wall[face] = (mpmi_wall){kind, kind == MPM_WALL_FRICTION ? friction : 0.0};
   return MPM_OK;
@@ -334,6 +395,7 @@ SETTER(mpm_stepper_set_acceleration, mpm_particle_fn, acceleration)
 SETTER(mpm_stepper_set_force, mpm_particle_fn, force)
 SETTER(mpm_stepper_set_velocity_bc, mpm_velocity_fn, velocity_bc)
 SETTER(mpm_stepper_set_progress, mpm_progress_fn, progress)
+SETTER(mpm_stepper_set_linear_solver, mpm_solve_fn, solver)
 
 mpm_status mpm_stepper_wall_reaction(const mpm_stepper *s, int32_t face, double *force) {
   MPMI_ENTER(s, MPMI_STEPPER);

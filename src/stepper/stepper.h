@@ -10,7 +10,7 @@
  *   g2p.c        nodes -> particles: velocity, position, deformation gradient, stress
  *   commit.c     the new state becomes the state, or is dropped
  *
- * step.c strings them together. */
+ * step.c strings them together; newton.h has the stages of implicit steps. */
 #ifndef MPMI_STEPPER_H
 #define MPMI_STEPPER_H
 
@@ -19,6 +19,8 @@
 #include "particles/sort.h"
 #include "stepper/stepper_state.h"
 #include "transfer/kernels.h"
+
+typedef struct mpmi_newton mpmi_newton; /* newton.h */
 
 typedef struct mpmi_member {
   mpm_particles *set;
@@ -50,7 +52,8 @@ typedef struct mpmi_scratch {
   void *batch_memory;
   mpmi_failure failure;
   int32_t left_tile, removes;
-  int64_t active; /* nodes with mass */
+  int32_t holes_restored; /* sums over the particles may not be finite */
+  int64_t active;         /* nodes with mass */
   double law_seconds, weights_seconds;
   int64_t blocks_seen; /* for sampling */
 } mpmi_scratch;
@@ -89,6 +92,9 @@ enum {
   MPMI_TIME_CALLBACKS,
   MPMI_TIME_TOTAL,
   MPMI_TIME_WEIGHTS,
+  MPMI_TIME_ASSEMBLY,
+  MPMI_TIME_FACTOR,
+  MPMI_TIME_SOLVE,
   MPMI_TIMES
 };
 
@@ -123,9 +129,12 @@ struct mpm_stepper {
   void *hook_user[3];
   mpm_progress_fn progress;
   void *progress_user;
+  mpm_solve_fn solver;
+  void *solver_user;
 
   mpmi_blocks blocks, next_blocks;
   mpmi_constraints constraints, next_constraints;
+  int64_t topology;     /* counts changes of blocks and constraints */
   int32_t *list_memory; /* of all cuts */
   int64_t list_capacity;
   int64_t *bound_memory;
@@ -154,6 +163,7 @@ struct mpm_stepper {
   double *block_work;   /* [blocks] of the host on nodes, by the part of the boundary stage at hand */
   double *hook_impulse; /* [3 per node] where there are hooks */
   mpmi_prescription prescription;
+  mpmi_newton *newton; /* of implicit steps, or NULL */
   double *orbit_state; /* [orbits][MPMI_ORBIT_STATE], boundary.c */
   int64_t orbit_state_capacity;
   double mass_cut;
@@ -224,7 +234,7 @@ void mpmi_stepper_free_topology(mpm_stepper *s);
 mpm_status mpmi_stepper_adopt(mpm_stepper *s);
 
 /* Stages. */
-mpm_status mpmi_stage_forces(mpm_stepper *s, double dt);
+mpm_status mpmi_stage_forces(mpm_stepper *s, double t, double dt); /* external, at time t */
 /* A projection of particles onto nodes and what is done with it there. Beside the one with the forces there
  * are those of velocity alone: before it for the strain of USF, after it for the strain of MUSL, and for the
  * corrections of XPIC. They go into other nodes; only those of the corrections book reactions. */
@@ -233,23 +243,43 @@ enum {
   MPMI_PROJECT_STRAIN, /* momentum, from the velocities at the start of the step */
   MPMI_PROJECT_TOUCH,  /* momentum and force at the start of the step, to find the contacts that are closed */
   MPMI_PROJECT_AGAIN,  /* momentum, from the new velocities */
-  MPMI_PROJECT_CORRECT, /* momentum without its affine part, from the second copy of the velocities */
+  MPMI_PROJECT_CORRECT,      /* momentum without its affine part, from the second copy of the velocities */
+  MPMI_PROJECT_ACCELERATION, /* mass times acceleration, from the second copy; for implicit steps */
   MPMI_PROJECTIONS
 };
 static inline int32_t mpmi_projects_forces(int32_t projection) {
   return projection == MPMI_PROJECT_FORCES || projection == MPMI_PROJECT_TOUCH;
 }
+static inline int32_t mpmi_is_implicit(const mpm_stepper *s) {
+  return s->desc.scheme == MPM_NEWMARK;
+}
+/* Is the new stress there before the particles move? */
+static inline int32_t mpmi_deforms_first(const mpm_stepper *s) {
+  return s->desc.scheme == MPM_USF || mpmi_is_implicit(s);
+}
 /* The first projection of a step asks the host for prescribed velocities; later ones keep to the answer. */
 static inline int32_t mpmi_asks_host(const mpm_stepper *s, int32_t projection) {
-  return projection == (s->desc.scheme == MPM_USF ? MPMI_PROJECT_STRAIN : MPMI_PROJECT_FORCES);
+  return projection == (mpmi_deforms_first(s) ? MPMI_PROJECT_STRAIN : MPMI_PROJECT_FORCES);
 }
 mpm_status mpmi_stage_p2g(mpm_stepper *s, int32_t projection);
 mpm_status mpmi_stage_nodes(mpm_stepper *s, int32_t projection);
 /* share: of these velocities in what particles get; reactions are booked by it. */
 mpm_status mpmi_stage_boundary(mpm_stepper *s, int32_t projection, double dt, double share);
+/* Only finds who holds which nodes, in held and held_value; for implicit steps. */
+mpm_status mpmi_stage_hold(mpm_stepper *s, double dt);
 /* G2P_PROBE gathers nodal velocities into the second copy of the particles' and does nothing else;
  * G2P_DILATION measures what the locking remedy averages. */
-enum { MPMI_G2P_MOVE = 1, MPMI_G2P_DEFORM = 2, MPMI_G2P_PROBE = 4, MPMI_G2P_DILATION = 8 };
+enum {
+  MPMI_G2P_MOVE = 1,
+  MPMI_G2P_DEFORM = 2,
+  MPMI_G2P_PROBE = 4,
+  MPMI_G2P_DILATION = 8,
+  /* implicit steps (newton.h): with DEFORM, forces and stiffness of the new stress on the nodes; and the
+   * particles' accelerations from the nodes */
+  MPMI_G2P_FORCES = 16,
+  MPMI_G2P_STIFFNESS = 32,
+  MPMI_G2P_ACCELERATION = 64
+};
 mpm_status mpmi_stage_g2p(mpm_stepper *s, int32_t what, const double *nodes, int32_t values, double dt);
 /* locking.c: cell averages of the dilation that these nodal velocities make, for the pass that deforms. */
 mpm_status mpmi_stage_locking(mpm_stepper *s, const double *nodes, int32_t values, double dt);
@@ -274,7 +304,7 @@ void mpmi_make_volumes(mpm_stepper *s, int32_t copy);
 /* forces.c: particles for the host's callbacks, in batches that are long because calling costs. */
 enum { MPMI_PARTICLE_BATCH = 2048 };
 mpm_particle_batch mpmi_particle_batch(const mpm_stepper *s, const mpm_particles *set, int64_t begin,
-                                       int64_t n, double dt, const mpmi_lookup *lookup);
+                                       int64_t n, double t, double dt, const mpmi_lookup *lookup);
 
 /* tile.c: the nodes of a block and its halo. */
 void mpmi_tile_load(const mpm_stepper *s, int64_t block, const double *nodes, int32_t node_values,
@@ -307,12 +337,13 @@ void mpmi_survey_moments(const mpm_stepper *s, const mpm_particles *set, int32_t
 void mpmi_fill_info(const mpm_stepper *s, mpm_step_info *info);
 
 /* profile.c */
-double mpmi_seconds(void);
 /* Now and then makes the weights of a block once more, to know how long that takes. */
 void mpmi_sample_weights(const mpm_stepper *s, mpmi_scratch *scratch, const mpmi_axis *axis, int32_t need,
                          const mpmi_points *points, int64_t begin, int64_t end);
 
 /* step.c */
+/* Adds the seconds since *from to a stage and restarts the clock. */
+void mpmi_lap(mpm_stepper *s, int32_t stage, double *from);
 mpm_status mpmi_step(mpm_stepper *s, double dt);
 
 #endif

@@ -2,6 +2,7 @@
  * the work. */
 #include "stepper/stepper.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -92,6 +93,7 @@ mpm_status mpmi_stepper_adopt(mpm_stepper *s) {
     return status;
   cut_work(s);
   swap_in_next(s);
+  ++s->topology;
   s->walls_changed = 0;
   s->nodes_valid = 0;
   return MPM_OK;
@@ -108,10 +110,11 @@ static void find_largest_masses(mpm_stepper *s) {
 }
 
 /* Below this a node is too light to divide by its mass. Of the linear basis force stays where mass vanishes;
- * of the smooth ones it vanishes too, and a node in the corner of a cubic stencil weighs (d^3 / 6)^3. */
+ * of the smooth ones it vanishes too, and a node in the corner of a cubic stencil weighs (d^3 / 6)^3.
+ * Implicit steps do not divide: stiffness moves the lightest node. */
 static void find_mass_cut(mpm_stepper *s) {
-  const double share = s->grid->family == MPMI_FAMILY_BSPLINE1 ? 1e-12 : 1e-40;
-  s->mass_cut = 0.0;
+  const double share = s->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(s) ? 1e-12 : 1e-40;
+  s->mass_cut = DBL_MIN; /* of what is lighter, the inverse may not be finite */
   for (int32_t m = 0; m < s->member_count; ++m)
     if (share * s->member[m].set->mass_max > s->mass_cut) s->mass_cut = share * s->member[m].set->mass_max;
 }
@@ -170,6 +173,7 @@ static mpm_status rebuild_constraints(mpm_stepper *s) {
   s->constraints = s->next_constraints;
   s->next_constraints = constraints;
   s->walls_changed = 0;
+  ++s->topology;
   return MPM_OK;
 }
 
@@ -244,7 +248,7 @@ static mpm_status prepare_nodes(mpm_stepper *s) {
   if ((status = mpmi_reserve(s->context, (void **)&s->node, &s->node_capacity,
                              roomy(slots * s->values, s->node_capacity), sizeof *s->node)))
     return status;
-  if ((s->desc.scheme == MPM_MUSL || s->desc.scheme == MPM_USF || mpmi_corrects(s)) &&
+  if ((s->desc.scheme == MPM_MUSL || mpmi_deforms_first(s) || mpmi_corrects(s)) &&
       (status = mpmi_reserve(s->context, (void **)&s->again, &s->again_capacity,
                              roomy(slots * 4, s->again_capacity), sizeof *s->again)))
     return status;

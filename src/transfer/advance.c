@@ -52,20 +52,24 @@ MPMI_INLINE void place_entries(int32_t dim, int32_t *place) {
   for (int32_t e = 0; e < 9; ++e) place[e] = has_entry(dim, e / 3, e % 3) ? stored++ : -1;
 }
 
+/* F_inc = I + dt L. */
+MPMI_INLINE void increment(int32_t dim, const mpmi_deform *job, int64_t n) {
+  for (int32_t r = 0; r < dim; ++r)
+    for (int32_t c = 0; c < dim; ++c) {
+      const double *L = job->L + (3 * r + c) * job->ld;
+      double *F_inc = job->F_inc + (3 * r + c) * job->ld;
+      const double unit = r == c ? 1.0 : 0.0;
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) F_inc[p] = unit + job->dt * L[p];
+    }
+}
+
 /* F = (I + dt L) F_old: MPoint theory eq. 39, Steffen et al. 2008 eq. 8. */
 MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
   const double dt = job->dt;
   const int64_t ld = job->ld;
   int32_t place[9];
   place_entries(dim, place);
-  if (job->F_inc)
-    for (int32_t r = 0; r < dim; ++r)
-      for (int32_t c = 0; c < dim; ++c) {
-        const double *L = job->L + (3 * r + c) * ld;
-        double *F_inc = job->F_inc + (3 * r + c) * ld;
-        const double unit = r == c ? 1.0 : 0.0;
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) F_inc[p] = unit + dt * L[p];
-      }
+  if (job->F_inc) increment(dim, job, n);
   for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
     mpmi_lanes old[3][3];
     for (int32_t r = 0; r < dim; ++r)
@@ -122,6 +126,7 @@ MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
   const int32_t diagonals = dim == 1 ? 1 : 3;
   double *f = job->F;
   stretch_of_volume(dim, job, n, f);
+  if (job->F_inc) increment(dim, job, n);
   MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
     const double d = mpmi_det_minus_1(dim, mpmi_load_mat(dim, L, ld, p, 0.0, dt));
     const double grown = dim == 1 ? d : mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log1p(d));

@@ -22,6 +22,9 @@ const run_method run_methods[RUN_ALL] = {
     {METHOD(CPGIMP, MUSL, AFLIP, 0.95), .remedy = 1, .position_order = 2},
     {METHOD(BSPLINE2, USF, TPIC, 1.0), .staggered = 1},
     {METHOD(BSPLINE3, USL, APIC_MLS, 1.0), .position_order = 2},
+    {METHOD(BSPLINE2, NEWMARK, FLIP, 1.0)},
+    {METHOD(LINEAR, NEWMARK, FLIP, 1.0), .remedy = 1},
+    {METHOD(CPGIMP, NEWMARK, FLIP, 1.0)},
 };
 
 const double run_E = 5e4, run_nu = 0.3, run_density = 1e3;
@@ -298,7 +301,9 @@ static mpm_status set_walls(run *r) {
     status = mpm_stepper_set_wall(r->stepper, MPM_X_MAX, MPM_WALL_OPEN, 0.0);
     if (!status && o->dim == 1) status = mpm_stepper_set_wall(r->stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0);
   }
-  if (!status && o->dim > 1) status = mpm_stepper_set_wall(r->stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.3);
+  const int32_t implicit = o->scheme == MPM_NEWMARK;
+  if (!status && o->dim > 1)
+    status = mpm_stepper_set_wall(r->stepper, MPM_Y_MIN, implicit ? MPM_WALL_SLIP : MPM_WALL_FRICTION, 0.3);
   if (!status && o->dim == 2) status = mpm_stepper_set_wall(r->stepper, MPM_Y_MAX, MPM_WALL_SLIP, 0.0);
   if (!status && o->dim == 3) status = mpm_stepper_set_wall(r->stepper, MPM_Z_MIN, MPM_WALL_SLIP, 0.0);
   if (!status && o->dim == 3) status = mpm_stepper_set_wall(r->stepper, MPM_Z_MAX, MPM_WALL_FIXED, 0.0);
@@ -309,7 +314,8 @@ static mpm_status set_callbacks(run *r) {
   mpm_status status = mpm_stepper_set_force(r->stepper, add_force, r);
   if (!status) status = mpm_stepper_set_acceleration(r->stepper, add_acceleration, r);
   if (!status && r->options.velocity_bc) status = mpm_stepper_set_velocity_bc(r->stepper, hold_some, r);
-  for (int32_t stage = MPM_AFTER_P2G; stage <= MPM_AFTER_VELOCITY && r->options.led && !status; ++stage)
+  const int32_t hooks = r->options.led && r->options.scheme != MPM_NEWMARK;
+  for (int32_t stage = MPM_AFTER_P2G; stage <= MPM_AFTER_VELOCITY && hooks && !status; ++stage)
     status = mpm_stepper_set_node_hook(r->stepper, stage, hook, NULL);
   if (!status && r->options.led) status = mpm_stepper_set_motion(r->stepper, r->set[1], lead, NULL);
   return status;

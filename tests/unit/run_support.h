@@ -81,7 +81,7 @@ typedef struct run_method {
   int32_t boundary_basis, xpic_order, position_order, staggered, remedy;
 } run_method;
 /* The first of them are plain; the others have every further option at least once. */
-enum { RUN_METHODS = 10, RUN_ALL = RUN_METHODS + 8 };
+enum { RUN_METHODS = 10, RUN_ALL = RUN_METHODS + 11 };
 extern const run_method run_methods[RUN_ALL];
 void run_use(run_options *options, const run_method *method);
 

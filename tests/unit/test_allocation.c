@@ -224,6 +224,7 @@ START_TEST(steady_state) {
   run_memory memory = {0};
   run_options o = {.dim = 3, .large = 1, .periodic = 1, .memory = &memory, .concurrency = 2, .led = _i % 2};
   run_use(&o, &run_methods[_i]);
+  if (o.scheme == MPM_NEWMARK) return; /* a matrix grows with its nodes */
   run r;
   run_open(&r, &o);
   run_steps(&r, 2);

@@ -533,12 +533,16 @@ Suite *fluid_suite(void) {
   tcase_add_loop_test(tc, volume_alone, 0, 9);
   tcase_add_test(tc, viscous_stress_stays);
   tcase_add_loop_test(tc, kernel, 0, 9);
-  tcase_add_loop_test(tc, starting_plate, 0, 2);
-  tcase_add_loop_test(tc, column_at_rest, 0, 8);
   tcase_add_loop_test(tc, rigid_set, 0, 6);
   tcase_add_test(tc, rigid_set_and_remedy);
   tcase_add_loop_test(tc, same_bits, 0, 8);
   tcase_add_test(tc, refused_basis);
   suite_add_tcase(suite, tc);
+  TCase *flow = tcase_create("flow");
+  tcase_set_timeout(flow, 60.0);
+  tcase_set_tags(flow, "long");
+  tcase_add_loop_test(flow, starting_plate, 0, 2);
+  tcase_add_loop_test(flow, column_at_rest, 0, 8);
+  suite_add_tcase(suite, flow);
   return suite;
 }

@@ -81,7 +81,8 @@ START_TEST(adds_in_every_dimension) {
     f.set->dirty = 0;
     ck_ok(mpm_particles_add(f.set, 2, x, v, volume, NULL, NULL, &first));
     ck_assert_int_eq(first, 0);
-    ck_assert_uint_eq(f.set->dirty, MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY);
+    ck_assert_uint_eq(f.set->dirty,
+                      MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY | MPMI_DIRTY_ACCELERATION);
     ck_assert_double_eq(f.set->mass_max, 16e3);
     for (int64_t i = 0; i < 2; ++i) {
       for (int32_t k = 0; k < dim; ++k) {

@@ -154,12 +154,16 @@ static void tell(int32_t i, story_fn story) {
   }
 }
 
+static int32_t has_hooks(const run *r) {
+  return r->options.scheme != MPM_NEWMARK;
+}
+
 /* Hooks and prescribed particles for the steps that fail. */
 static void lead(run *r, int32_t stage) {
   uint8_t flags[3] = {stage != 0, 0, 0};
   run_ok(r, mpm_particles_set_all(r->set[1], "prescribed", MPM_U8, r->options.dim, flags));
   run_ok(r, mpm_stepper_set_motion(r->stepper, r->set[1], stage ? motion : NULL, NULL));
-  for (int32_t k = MPM_AFTER_P2G; k <= MPM_AFTER_VELOCITY; ++k)
+  for (int32_t k = MPM_AFTER_P2G; k <= MPM_AFTER_VELOCITY && has_hooks(r); ++k)
     run_ok(r, mpm_stepper_set_node_hook(r->stepper, k, k == stage ? hook : NULL, NULL));
 }
 
@@ -187,7 +191,7 @@ static void callbacks_refuse(run *r) {
     for (int32_t stage = MPM_AFTER_P2G; stage <= MPM_AFTER_VELOCITY; ++stage) {
       lead(r, stage);
       wrong.hook = answer[k];
-      fails(r, 0.9 * RUN_DT, &(expected){cause, answer[k], -1, -1, "the hook after"});
+      if (has_hooks(r)) fails(r, 0.9 * RUN_DT, &(expected){cause, answer[k], -1, -1, "the hook after"});
       wrong.hook = 0;
     }
     wrong.motion = answer[k];
@@ -227,7 +231,8 @@ static void nan_from_callbacks(run *r) {
   wrong.velocity_nan = 0;
   for (int32_t stage = MPM_AFTER_P2G; stage <= MPM_AFTER_VELOCITY; ++stage) {
     lead(r, stage);
-    for (wrong.hook_nan = 1; wrong.hook_nan <= (stage == MPM_AFTER_VELOCITY ? 1 : 2); ++wrong.hook_nan)
+    const int32_t kinds = !has_hooks(r) ? 0 : stage == MPM_AFTER_VELOCITY ? 1 : 2;
+    for (wrong.hook_nan = 1; wrong.hook_nan <= kinds; ++wrong.hook_nan)
       fails(r, 0.8 * RUN_DT, &(expected){MPM_NONFINITE, 0, -1, -1, "of the hook after"});
   }
   wrong.hook_nan = 0;
@@ -270,6 +275,7 @@ START_TEST(inversion) {
   uint64_t hash[3];
   for (int32_t k = 0; k < 3; ++k) {
     const run_options o = options_of(_i, k == 1 ? 3 : 1);
+    if (o.scheme == MPM_NEWMARK) return; /* iterations look for a way around */
     run r;
     open_for_trouble(&r, &o);
     collapse(&r);
@@ -306,7 +312,8 @@ static double *determinants(run *r, int32_t m) {
 /* Of all particles that turn inside out the first is reported, wherever it lies: a twin tells which do. */
 START_TEST(first_of_the_inverted) {
   const run_options o = options_of(_i, 3);
-  if (o.transfer != MPM_FLIP) return; /* others keep another matrix than L */
+  if (o.transfer != MPM_FLIP) return;  /* others keep another matrix than L */
+  if (o.scheme == MPM_NEWMARK) return; /* iterations look for a way around */
   const double zero[9] = {0.0};
   run r, twin;
   open_for_trouble(&twin, &o);
@@ -350,6 +357,7 @@ START_TEST(off_the_grid) {
     int64_t reported = -1;
     for (int32_t threads = 1; threads <= 3; threads += 2) {
       const run_options o = options_of(_i, threads);
+      if (o.scheme == MPM_NEWMARK) continue; /* what holds the particle lets the iterations fail first */
       const int32_t face = 2 * (o.dim - 1) + 1;
       run r;
       open_for_trouble(&r, &o);

@@ -1,0 +1,102 @@
+/* Products of a block matrix with a vector: chunks of rows, one loop per size of the blocks. */
+#include <float.h>
+#include <math.h>
+
+#include "linalg/matrix.h"
+#include "linalg/vectors.h"
+#include "transfer/isa.h"
+
+enum { PRODUCT, RESIDUAL, ROUNDING };
+
+typedef struct apply_job {
+  const mpmi_matrix *A;
+  const double *b, *x;
+  double *y;
+  int32_t what;
+  mpmi_cut cut;
+  double part[MPMI_MOST_CHUNKS];
+} apply_job;
+
+MPMI_INLINE void row_times_vector(const mpmi_matrix *A, int32_t block, int32_t absolute, int64_t i,
+                                  const double *x, double *sum) {
+  const double *value = A->value + A->row_start[i] * block * block;
+  for (int32_t r = 0; r < block; ++r) sum[r] = 0.0;
+  for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e, value += block * block) {
+    const double *at = x + (int64_t)A->column[e] * block;
+    for (int32_t r = 0; r < block; ++r) {
+      double of_block = 0.0; /* first, so that blocks wait for one addition each */
+      for (int32_t c = 0; c < block; ++c) {
+        const double term = value[r * block + c] * at[c];
+        of_block += absolute ? fabs(term) : term;
+      }
+      sum[r] += of_block;
+    }
+  }
+}
+
+/* The sum is that of x . y for a product, of y . y for the others. */
+MPMI_INLINE double apply_rows(const apply_job *job, int32_t block, int32_t what, int64_t begin, int64_t end) {
+  double sum = 0.0;
+  for (int64_t i = begin; i < end; ++i) {
+    double row[3];
+    row_times_vector(job->A, block, what == ROUNDING, i, job->x, row);
+    for (int32_t r = 0; r < block; ++r) {
+      const int64_t at = i * block + r;
+      if (what == RESIDUAL) row[r] = job->b[at] - row[r];
+      if (what == ROUNDING) row[r] += fabs(job->b[at]);
+      job->y[at] = row[r];
+      sum += row[r] * (what == PRODUCT ? job->x[at] : row[r]);
+    }
+  }
+  return sum;
+}
+
+MPMI_INLINE double apply_blocks(const apply_job *job, int32_t what, int64_t begin, int64_t end) {
+  if (job->A->block == 1) return apply_rows(job, 1, what, begin, end);
+  if (job->A->block == 2) return apply_rows(job, 2, what, begin, end);
+  return apply_rows(job, 3, what, begin, end);
+}
+
+static void apply_task(void *data, int64_t k) {
+  apply_job *job = data;
+  const int64_t begin = mpmi_cut_begin(&job->cut, k), end = mpmi_cut_begin(&job->cut, k + 1);
+  if (job->what == PRODUCT)
+    job->part[k] = apply_blocks(job, PRODUCT, begin, end);
+  else if (job->what == RESIDUAL)
+    job->part[k] = apply_blocks(job, RESIDUAL, begin, end);
+  else
+    job->part[k] = apply_blocks(job, ROUNDING, begin, end);
+}
+
+static mpm_status apply(const mpmi_matrix *A, int32_t what, const double *b, const double *x, double *y,
+                        double *sum) {
+  apply_job job = {.A = A, .b = b, .x = x, .y = y, .what = what};
+  job.cut = mpmi_cut_of(A->rows, mpmi_matrix_unknowns(A));
+  const mpm_status status = mpmi_cut_run(A->context, &job.cut, apply_task, &job);
+  *sum = status ? 0.0 : mpmi_sum_in_order(job.part, job.cut.count);
+  return status;
+}
+
+mpm_status mpmi_matrix_apply(const mpmi_matrix *A, const double *x, double *y) {
+  double unused;
+  return apply(A, PRODUCT, NULL, x, y, &unused);
+}
+
+mpm_status mpmi_matrix_apply_dot(const mpmi_matrix *A, const double *x, double *y, double *dot) {
+  return apply(A, PRODUCT, NULL, x, y, dot);
+}
+
+mpm_status mpmi_matrix_residual(const mpmi_matrix *A, const double *b, const double *x, double *r,
+                                double *norm) {
+  const mpm_status status = apply(A, RESIDUAL, b, x, r, norm);
+  *norm = sqrt(*norm);
+  return status;
+}
+
+mpm_status mpmi_matrix_rounding(const mpmi_matrix *A, const double *b, const double *x, double *scratch,
+                                double *norm) {
+  const double units = 32.0;
+  const mpm_status status = apply(A, ROUNDING, b, x, scratch, norm);
+  *norm = units * DBL_EPSILON * sqrt(*norm);
+  return status;
+}

@@ -1,0 +1,41 @@
+/* Which kernels; how a front is cut into panels, slivers and strips. */
+#include "linalg/dense.h"
+
+#include <mpm/types.h>
+
+extern const mpmi_dense mpmi_dense_baseline;
+#if MPMI_HAS_X86
+extern const mpmi_dense mpmi_dense_avx2, mpmi_dense_avx512;
+#endif
+
+const mpmi_dense *mpmi_dense_of(int32_t isa) {
+#if MPMI_HAS_X86
+  if (isa == MPM_ISA_AVX512) return &mpmi_dense_avx512;
+  if (isa == MPM_ISA_AVX2) return &mpmi_dense_avx2;
+#else
+  (void)isa;
+#endif
+  return &mpmi_dense_baseline;
+}
+
+static int64_t pieces(int64_t count, int64_t size) {
+  return (count + size - 1) / size;
+}
+
+int64_t mpmi_dense_scratch(const mpmi_dense *kernels, int64_t pivots, int64_t rows, int32_t symmetric) {
+  const int64_t slivers = pieces(pivots, kernels->sliver) + pieces(rows, kernels->sliver);
+  return (symmetric ? 2 : 4) * slivers * kernels->sliver * MPMI_PANEL;
+}
+
+void mpmi_dense_panel(const mpmi_dense *kernels, mpmi_dense_front *front, int64_t first) {
+  const int64_t left = front->pivots - first;
+  front->first = first;
+  front->width = left < MPMI_PANEL ? left : MPMI_PANEL;
+  front->pivot_slivers = pieces(left - front->width, kernels->sliver);
+  front->slivers = front->pivot_slivers + pieces(front->rows, kernels->sliver);
+}
+
+int64_t mpmi_dense_strips(const mpmi_dense *kernels, const mpmi_dense_front *front) {
+  return pieces(front->pivots - front->first - front->width, kernels->strip) +
+         pieces(front->rows, kernels->strip);
+}

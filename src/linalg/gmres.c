@@ -1,0 +1,202 @@
+/* GMRES with restarts. Vectors are made orthogonal by two rounds of classical Gram-Schmidt, whose sums are
+ * formed side by side. */
+#include <math.h>
+#include <string.h>
+
+#include "linalg/system.h"
+
+enum { SLOW_CYCLES = 12 }; /* the impatient go on only if as many cycles would do */
+
+typedef struct gmres {
+  mpmi_system *system;
+  const mpmi_gmres_plan *plan;
+  double *basis, *w, *z;               /* [restart + 1][n], [n], [n] */
+  double *hessenberg;                  /* [restart][restart + 1], by columns; triangular once rotated */
+  double *cosine, *sine, *rest, *part; /* rest: right-hand side of the small system; part: sums by chunk */
+  double scale;
+  int32_t last;  /* vectors that w is made orthogonal to */
+  int32_t again; /* second round */
+  mpmi_cut cut;
+} gmres;
+
+static double *vector(const gmres *g, int32_t j) {
+  return g->basis + j * g->system->n;
+}
+
+/* Sums of w with the vectors; before them w loses what the first round found. */
+static void project_task(void *data, int64_t k) {
+  const gmres *g = data;
+  const int64_t begin = mpmi_cut_begin(&g->cut, k), end = mpmi_cut_begin(&g->cut, k + 1);
+  const double *h = g->hessenberg + (g->last - 1) * (g->plan->restart + 1);
+  double *part = g->part + k * (g->plan->restart + 1);
+  if (g->again)
+    for (int32_t j = 0; j < g->last; ++j) {
+      const double *v = vector(g, j);
+      for (int64_t i = begin; i < end; ++i) g->w[i] -= h[j] * v[i];
+    }
+  for (int32_t j = 0; j < g->last; ++j) {
+    const double *v = vector(g, j);
+    double sum = 0.0;
+    for (int64_t i = begin; i < end; ++i) sum += g->w[i] * v[i];
+    part[j] = sum;
+  }
+}
+
+/* w loses what the second round found, which is left in `rest` beyond the vectors; its square is summed. */
+static void clean_task(void *data, int64_t k) {
+  const gmres *g = data;
+  const int64_t begin = mpmi_cut_begin(&g->cut, k), end = mpmi_cut_begin(&g->cut, k + 1);
+  const double *h = g->rest + g->plan->restart + 1;
+  double sum = 0.0;
+  for (int32_t j = 0; j < g->last; ++j) {
+    const double *v = vector(g, j);
+    for (int64_t i = begin; i < end; ++i) g->w[i] -= h[j] * v[i];
+  }
+  for (int64_t i = begin; i < end; ++i) sum += g->w[i] * g->w[i];
+  g->part[k * (g->plan->restart + 1)] = sum;
+}
+
+/* The next vector: w times a scale. */
+static void scale_task(void *data, int64_t k) {
+  const gmres *g = data;
+  double *v = vector(g, g->last);
+  for (int64_t i = mpmi_cut_begin(&g->cut, k); i < mpmi_cut_begin(&g->cut, k + 1); ++i)
+    v[i] = g->w[i] * g->scale;
+}
+
+/* w = sum y_j v_j, with y in the second half of `rest`. */
+static void combine_task(void *data, int64_t k) {
+  const gmres *g = data;
+  const int64_t begin = mpmi_cut_begin(&g->cut, k), end = mpmi_cut_begin(&g->cut, k + 1);
+  const double *y = g->rest + g->plan->restart + 1;
+  for (int64_t i = begin; i < end; ++i) g->w[i] = 0.0;
+  for (int32_t j = 0; j < g->last; ++j) {
+    const double *v = vector(g, j);
+    for (int64_t i = begin; i < end; ++i) g->w[i] += y[j] * v[i];
+  }
+}
+
+static void add_task(void *data, int64_t k) {
+  const gmres *g = data;
+  for (int64_t i = mpmi_cut_begin(&g->cut, k); i < mpmi_cut_begin(&g->cut, k + 1); ++i)
+    g->system->x[i] += g->z[i];
+}
+
+static mpm_status run(gmres *g, mpm_task_fn task) {
+  return mpmi_cut_run(g->system->context, &g->cut, task, g);
+}
+
+static double sum_of(const gmres *g, int32_t j) {
+  double sum = 0.0;
+  for (int64_t k = 0; k < g->cut.count; ++k) sum += g->part[k * (g->plan->restart + 1) + j];
+  return sum;
+}
+
+/* w = A M^-1 v_j made orthogonal to v_0 ... v_j; column j of the Hessenberg matrix. */
+static mpm_status extend(gmres *g, int32_t j, double *h) {
+  mpmi_system *s = g->system;
+  double *correction = g->rest + g->plan->restart + 1;
+  mpm_status status = g->plan->precondition(g->plan->user, vector(g, j), g->z);
+  if (!status) status = mpmi_matrix_apply(s->A, g->z, g->w);
+  g->last = j + 1;
+  g->again = 0;
+  if (!status) status = run(g, project_task);
+  if (status) return status;
+  for (int32_t i = 0; i <= j; ++i) h[i] = sum_of(g, i);
+  g->again = 1;
+  if ((status = run(g, project_task))) return status;
+  for (int32_t i = 0; i <= j; ++i) correction[i] = sum_of(g, i);
+  if ((status = run(g, clean_task))) return status;
+  for (int32_t i = 0; i <= j; ++i) h[i] += correction[i];
+  h[j + 1] = sqrt(sum_of(g, 0));
+  g->scale = h[j + 1] > 0.0 ? 1.0 / h[j + 1] : 0.0;
+  return run(g, scale_task);
+}
+
+/* Rotates the new column so that the matrix is triangular; the norm of the residual that is left. */
+static double rotate(gmres *g, int32_t j, double *h) {
+  for (int32_t i = 0; i < j; ++i) {
+    const double upper = h[i];
+    h[i] = g->cosine[i] * upper + g->sine[i] * h[i + 1];
+    h[i + 1] = g->cosine[i] * h[i + 1] - g->sine[i] * upper;
+  }
+  const double length = hypot(h[j], h[j + 1]);
+  g->cosine[j] = length > 0.0 ? h[j] / length : 1.0;
+  g->sine[j] = length > 0.0 ? h[j + 1] / length : 0.0;
+  h[j] = length;
+  g->rest[j + 1] = -g->sine[j] * g->rest[j];
+  g->rest[j] *= g->cosine[j];
+  return fabs(g->rest[j + 1]);
+}
+
+/* x += M^-1 of the combination of `count` vectors that is best. */
+static mpm_status step(gmres *g, int32_t count) {
+  const int32_t ld = g->plan->restart + 1;
+  double *y = g->rest + ld;
+  for (int32_t i = count - 1; i >= 0; --i) {
+    double sum = g->rest[i];
+    for (int32_t j = i + 1; j < count; ++j) sum -= g->hessenberg[j * ld + i] * y[j];
+    const double pivot = g->hessenberg[i * ld + i];
+    y[i] = pivot > 0.0 ? sum / pivot : 0.0; /* 0: the matrix has no such direction */
+  }
+  g->last = count;
+  mpm_status status = run(g, combine_task);
+  if (!status) status = g->plan->precondition(g->plan->user, g->w, g->z);
+  return status ? status : run(g, add_task);
+}
+
+/* From the residual in w, of norm s->reached, until the basis is full or the residual is as wanted. */
+static mpm_status cycle(gmres *g) {
+  mpmi_system *s = g->system;
+  const int32_t ld = g->plan->restart + 1;
+  g->last = 0;
+  g->scale = 1.0 / s->reached;
+  g->rest[0] = s->reached;
+  mpm_status status = run(g, scale_task);
+  int32_t j = 0;
+  for (double left = s->reached; !status && left > s->wanted && j < g->plan->restart; ++j) {
+    if (s->report->iterations >= g->plan->limit) break;
+    double *h = g->hessenberg + j * ld;
+    if ((status = extend(g, j, h))) return status;
+    if (!isfinite(h[j + 1])) return MPM_NOT_CONVERGED;
+    left = h[j + 1] > 0.0 ? rotate(g, j, h) : (rotate(g, j, h), 0.0);
+    ++s->report->iterations;
+  }
+  return status ? status : step(g, j);
+}
+
+static mpm_status reserve(gmres *g) {
+  const int64_t ld = g->plan->restart + 1, n = g->system->n;
+  const mpm_status status = mpmi_system_work(g->system, ld + 2, ld * ld + 4 * ld + ld * MPMI_MOST_CHUNKS);
+  if (status) return status;
+  g->basis = g->system->solver->work;
+  g->w = g->basis + ld * n;
+  g->z = g->w + n;
+  g->hessenberg = g->z + n;
+  g->cosine = g->hessenberg + ld * ld;
+  g->sine = g->cosine + ld;
+  g->rest = g->sine + ld;
+  g->part = g->rest + 2 * ld;
+  return MPM_OK;
+}
+
+/* Whether the cycles to come are worth their time. */
+static int32_t goes_on(const gmres *g, double before) {
+  const double share = g->system->reached / before;
+  if (!(share < 0.99) || g->system->report->iterations >= g->plan->limit) return 0;
+  return !g->plan->impatient ||
+         log(g->system->wanted / g->system->reached) / log(share) < (double)SLOW_CYCLES;
+}
+
+mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {
+  gmres g = {.system = s, .plan = plan, .cut = mpmi_cut_of(s->n, s->n)};
+  mpm_status status = reserve(&g);
+  for (double before = (double)INFINITY; !status; before = s->reached) {
+    int32_t good;
+    if ((status = mpmi_matrix_residual(s->A, s->b, s->x, g.w, &s->reached))) break;
+    if ((status = mpmi_system_good(s, s->reached, g.z, &good)) || good) break;
+    if (!isfinite(s->reached) || !goes_on(&g, before)) return MPM_NOT_CONVERGED;
+    status = cycle(&g);
+  }
+  return status;
+}

@@ -1,0 +1,93 @@
+/* Memory of block matrices; held unknowns. */
+#include "linalg/matrix.h"
+
+#include <string.h>
+
+#include "linalg/vectors.h"
+
+enum { ARRAYS = 7, SLACK = 8 }; /* room for a SLACKth more: active nodes come and go */
+
+typedef struct array {
+  void **at;
+  int64_t count;
+  size_t size;
+} array;
+
+/* What there is for the capacities and the block as they stand. */
+static void arrays_of(mpmi_matrix *A, array *list) {
+  const int64_t rows = A->row_capacity, entries = A->entry_capacity;
+  const size_t block = (size_t)A->block;
+  const array all[ARRAYS] = {{(void **)&A->row_start, rows + 1, sizeof *A->row_start},
+                             {(void **)&A->column, entries, sizeof *A->column},
+                             {(void **)&A->value, entries, block * block * sizeof *A->value},
+                             {(void **)&A->held, rows, block * sizeof *A->held},
+                             {(void **)&A->index, rows, sizeof *A->index},
+                             {(void **)&A->number, rows, sizeof *A->number},
+                             {(void **)&A->position, rows, 3 * sizeof *A->position}};
+  memcpy(list, all, sizeof all);
+}
+
+void mpmi_matrix_init(mpmi_matrix *A, mpm_context *context) {
+  memset(A, 0, sizeof *A);
+  A->context = context;
+  A->block = 1;
+}
+
+static void free_arrays(mpmi_matrix *A) {
+  array list[ARRAYS];
+  arrays_of(A, list);
+  for (int32_t i = 0; i < ARRAYS; ++i) {
+    mpmi_free(A->context, *list[i].at, mpmi_bytes(list[i].count, list[i].size));
+    *list[i].at = NULL;
+  }
+  A->rows = A->row_capacity = A->entry_capacity = 0;
+}
+
+void mpmi_matrix_free(mpmi_matrix *A) {
+  free_arrays(A);
+  mpmi_matrix_init(A, A->context);
+}
+
+mpm_status mpmi_matrix_reserve(mpmi_matrix *A, int64_t rows, int64_t entries, int32_t block) {
+  if (!A->row_start || block != A->block || rows > A->row_capacity || entries > A->entry_capacity) {
+    free_arrays(A);
+    A->block = block;
+    A->row_capacity = rows + rows / SLACK;
+    A->entry_capacity = entries + entries / SLACK;
+    array list[ARRAYS];
+    arrays_of(A, list);
+    for (int32_t i = 0; i < ARRAYS; ++i) {
+      *list[i].at = mpmi_alloc(A->context, mpmi_bytes(list[i].count, list[i].size));
+      if (*list[i].at) continue;
+      free_arrays(A);
+      return MPM_E_NOMEM;
+    }
+  }
+  A->rows = rows;
+  return MPM_OK;
+}
+
+typedef struct eliminate_job {
+  mpmi_matrix *A;
+  mpmi_cut cut;
+} eliminate_job;
+
+static void eliminate_task(void *data, int64_t k) {
+  const eliminate_job *job = data;
+  mpmi_matrix *A = job->A;
+  const int32_t block = A->block;
+  for (int64_t i = mpmi_cut_begin(&job->cut, k); i < mpmi_cut_begin(&job->cut, k + 1); ++i)
+    for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e) {
+      const int64_t j = A->column[e];
+      double *value = A->value + e * block * block;
+      for (int32_t r = 0; r < block; ++r)
+        for (int32_t c = 0; c < block; ++c)
+          if (A->held[i * block + r] || A->held[j * block + c])
+            value[r * block + c] = i == j && r == c ? 1.0 : 0.0;
+    }
+}
+
+mpm_status mpmi_matrix_eliminate(mpmi_matrix *A) {
+  eliminate_job job = {A, mpmi_cut_of(A->rows, mpmi_matrix_unknowns(A))};
+  return mpmi_cut_run(A->context, &job.cut, eliminate_task, &job);
+}

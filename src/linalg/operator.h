@@ -1,0 +1,39 @@
+/* The linear system as the host's solver sees it: unknowns only, held ones removed. */
+#ifndef MPMI_OPERATOR_H
+#define MPMI_OPERATOR_H
+
+#include "linalg/matrix.h"
+
+struct mpm_operator {
+  uint32_t magic;
+  int32_t open; /* within the solve callback */
+  mpm_context *context;
+  const mpmi_matrix *A;
+  int32_t positive_definite;
+  int64_t rows, nonzeros;
+  int64_t *unknown;   /* [rows] place in vectors of the matrix */
+  int32_t *row;       /* [unknowns of the matrix] the other way, -1 where held */
+  int64_t *node;      /* [rows] */
+  int32_t *component; /* [rows] */
+  double *position;   /* [3][rows] */
+  double *x, *y;      /* [unknowns of the matrix] */
+  /* Compressed rows, made when they are asked for. */
+  int32_t has_rows;
+  int64_t *row_start;
+  int32_t *column;
+  double *value;
+  char *slab;
+  int64_t slab_capacity, row_start_capacity, column_capacity, value_capacity;
+};
+
+void mpmi_operator_init(mpm_operator *op, mpm_context *context);
+void mpmi_operator_free(mpm_operator *op);
+/* Lends the matrix until mpmi_operator_close(). */
+mpm_status mpmi_operator_open(mpm_operator *op, const mpmi_matrix *A, int32_t positive_definite);
+void mpmi_operator_close(mpm_operator *op);
+
+/* Between vectors of the matrix and those of the host: rows only, and zeros where held. */
+void mpmi_operator_compress(const mpm_operator *op, const double *full, double *rows);
+void mpmi_operator_expand(const mpm_operator *op, const double *rows, double *full);
+
+#endif

@@ -1,0 +1,109 @@
+/* Diagonal preconditioners: entries for CG, blocks of nodes for GMRES. */
+#include <math.h>
+#include <string.h>
+
+#include "linalg/system.h"
+
+static const double *diagonal_block(const mpmi_matrix *A, int64_t node) {
+  int64_t e = A->row_start[node];
+  while (A->column[e] != node) ++e;
+  return A->value + e * A->block * A->block;
+}
+
+static mpm_status reserve_diagonal(const mpmi_system *s, int64_t count) {
+  mpmi_solver *solver = s->solver;
+  return mpmi_reserve(s->context, (void **)&solver->diagonal, &solver->diagonal_capacity, count,
+                      sizeof *solver->diagonal);
+}
+
+mpm_status mpmi_inverse_diagonal(const mpmi_system *s, int64_t *node) {
+  const mpmi_matrix *A = s->A;
+  const mpm_status status = reserve_diagonal(s, s->n);
+  if (status) return status;
+  for (int64_t i = 0; i < A->rows; ++i) {
+    const double *block = diagonal_block(A, i);
+    for (int32_t c = 0; c < A->block; ++c) {
+      const double value = block[c * A->block + c];
+      *node = i;
+      if (!isfinite(value)) return MPM_NONFINITE;
+      if (!(value > 0.0)) return MPM_SINGULAR;
+      s->solver->diagonal[i * A->block + c] = 1.0 / value;
+    }
+  }
+  return MPM_OK;
+}
+
+/* Gauss-Jordan with row pivoting, in place; 0 where the block is singular. */
+static int32_t invert(int32_t n, double a[3][3]) {
+  double inverse[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  for (int32_t c = 0; c < n; ++c) {
+    int32_t pivot = c;
+    for (int32_t r = c + 1; r < n; ++r)
+      if (fabs(a[r][c]) > fabs(a[pivot][c])) pivot = r;
+    if (!(fabs(a[pivot][c]) > 0.0)) return 0;
+    for (int32_t k = 0; k < n; ++k) {
+      const double row = a[pivot][k], inverse_row = inverse[pivot][k];
+      a[pivot][k] = a[c][k];
+      inverse[pivot][k] = inverse[c][k];
+      a[c][k] = row;
+      inverse[c][k] = inverse_row;
+    }
+    const double scale = 1.0 / a[c][c];
+    for (int32_t k = 0; k < n; ++k) a[c][k] *= scale, inverse[c][k] *= scale;
+    for (int32_t r = 0; r < n; ++r) {
+      const double factor = a[r][c];
+      for (int32_t k = 0; k < n && r != c; ++k) {
+        a[r][k] -= factor * a[c][k];
+        inverse[r][k] -= factor * inverse[c][k];
+      }
+    }
+  }
+  memcpy(a, inverse, sizeof inverse);
+  return 1;
+}
+
+mpm_status mpmi_inverse_blocks(const mpmi_system *s, int64_t *node) {
+  const mpmi_matrix *A = s->A;
+  const int32_t n = A->block;
+  const mpm_status status = reserve_diagonal(s, s->n * n);
+  if (status) return status;
+  for (int64_t i = 0; i < A->rows; ++i) {
+    const double *block = diagonal_block(A, i);
+    double a[3][3], sum = 0.0;
+    for (int32_t r = 0; r < n; ++r)
+      for (int32_t c = 0; c < n; ++c) sum += a[r][c] = block[r * n + c];
+    *node = i;
+    if (!isfinite(sum)) return MPM_NONFINITE;
+    const int32_t regular = invert(n, a);
+    double *out = s->solver->diagonal + i * n * n;
+    for (int32_t r = 0; r < n; ++r)
+      for (int32_t c = 0; c < n; ++c) out[r * n + c] = regular ? a[r][c] : r == c ? 1.0 : 0.0;
+  }
+  return MPM_OK;
+}
+
+typedef struct times_job {
+  const mpmi_system *s;
+  const double *r;
+  double *z;
+  mpmi_cut cut;
+} times_job;
+
+static void times_task(void *data, int64_t k) {
+  const times_job *job = data;
+  const int32_t n = job->s->A->block;
+  for (int64_t i = mpmi_cut_begin(&job->cut, k); i < mpmi_cut_begin(&job->cut, k + 1); ++i) {
+    const double *block = job->s->solver->diagonal + i * n * n;
+    for (int32_t r = 0; r < n; ++r) {
+      double sum = 0.0;
+      for (int32_t c = 0; c < n; ++c) sum += block[r * n + c] * job->r[i * n + c];
+      job->z[i * n + r] = sum;
+    }
+  }
+}
+
+mpm_status mpmi_times_inverse_blocks(void *system, const double *r, double *z) {
+  const mpmi_system *s = system;
+  times_job job = {s, r, z, mpmi_cut_of(s->A->rows, s->n)};
+  return mpmi_cut_run(s->context, &job.cut, times_task, &job);
+}

@@ -1,0 +1,66 @@
+/* Scales that make the diagonal of a matrix 1 in size. */
+#include <math.h>
+
+#include "linalg/factor.h"
+#include "linalg/vectors.h"
+
+/* A diagonal smaller than this share of its row is no measure of the row. */
+static const double no_measure = 1e-13;
+
+typedef struct scale_job {
+  mpmi_factor *f;
+  const mpmi_matrix *A;
+  mpmi_cut cut;
+  int64_t bad[MPMI_MOST_CHUNKS]; /* first node of the chunk that has no scale, or -1 */
+  mpm_status status[MPMI_MOST_CHUNKS];
+} scale_job;
+
+static mpm_status scale_node(const scale_job *job, int64_t node) {
+  const mpmi_matrix *A = job->A;
+  const int32_t block = A->block;
+  double diagonal[3] = {0.0}, largest[3] = {0.0}, sum = 0.0;
+  for (int64_t e = A->row_start[node]; e < A->row_start[node + 1]; ++e) {
+    const double *value = A->value + e * block * block;
+    for (int32_t r = 0; r < block; ++r)
+      for (int32_t c = 0; c < block; ++c) {
+        largest[r] = fmax(largest[r], fabs(value[r * block + c]));
+        sum += value[r * block + c];
+        if (A->column[e] == node && r == c) diagonal[r] = fabs(value[r * block + c]);
+      }
+  }
+  if (!isfinite(sum)) return MPM_NONFINITE;
+  int32_t component[3];
+  const int32_t count = mpmi_free_components(A, node, component);
+  double *scale = job->f->scale + job->f->start[job->f->place[node]];
+  for (int32_t k = 0; k < count; ++k) {
+    const int32_t c = component[k];
+    const double size = diagonal[c] > no_measure * largest[c] ? diagonal[c] : largest[c];
+    scale[k] = 1.0 / sqrt(size);
+    if (!(size > 0.0) || !isfinite(scale[k])) return MPM_SINGULAR;
+  }
+  return MPM_OK;
+}
+
+static void scale_task(void *data, int64_t k) {
+  scale_job *job = data;
+  job->bad[k] = -1;
+  for (int64_t i = mpmi_cut_begin(&job->cut, k); i < mpmi_cut_begin(&job->cut, k + 1); ++i) {
+    if (job->f->place[i] < 0) continue;
+    job->status[k] = scale_node(job, i);
+    if (!job->status[k]) continue;
+    job->bad[k] = i;
+    return;
+  }
+}
+
+mpm_status mpmi_factor_scales(mpmi_factor *f, const mpmi_matrix *A, int64_t *node) {
+  scale_job job = {.f = f, .A = A, .cut = mpmi_cut_of(A->rows, mpmi_matrix_unknowns(A))};
+  const mpm_status status = mpmi_cut_run(f->context, &job.cut, scale_task, &job);
+  if (status) return status;
+  for (int64_t k = 0; k < job.cut.count; ++k)
+    if (job.bad[k] >= 0) {
+      *node = job.bad[k];
+      return job.status[k];
+    }
+  return MPM_OK;
+}

@@ -1,0 +1,73 @@
+/* What the methods of solution share. */
+#ifndef MPMI_SYSTEM_H
+#define MPMI_SYSTEM_H
+
+#include "linalg/factor.h"
+#include "linalg/operator.h"
+#include "linalg/solver.h"
+#include "linalg/vectors.h"
+
+struct mpmi_solver {
+  mpm_context *context;
+  mpmi_factor factor;
+  mpm_operator lent; /* to the host's solver */
+  double *work;      /* vectors */
+  int64_t work_capacity;
+  double *diagonal; /* inverse of the diagonal, or of its blocks */
+  int64_t diagonal_capacity;
+};
+
+/* One system on its way. */
+typedef struct mpmi_system {
+  mpmi_solver *solver;
+  mpm_context *context;
+  const mpmi_matrix *A;
+  const double *b;
+  double *x;
+  int64_t n;      /* unknowns, held ones too */
+  double b_norm;  /* > 0 */
+  double wanted;  /* norm of the residual */
+  double reached; /* that of the last solution */
+  mpmi_solve_report *report;
+} mpmi_system;
+
+/* Room for so many vectors. */
+mpm_status mpmi_system_work(const mpmi_system *s, int64_t vectors, int64_t more);
+/* Whether a residual of this norm will do: it is as wanted, or all that rounding leaves of A x - b. scratch:
+ * a vector. */
+mpm_status mpmi_system_good(const mpmi_system *s, double norm, double *scratch, int32_t *good);
+
+/* Conjugate gradients from x on (cg.c). MPM_NOT_CONVERGED and MPM_SINGULAR are left without a sentence; the
+ * latter says that the matrix is not positive definite. */
+mpm_status mpmi_cg(mpmi_system *s, int64_t limit);
+
+/* z = M^-1 r */
+typedef mpm_status (*mpmi_precondition_fn)(void *user, const double *r, double *z);
+typedef struct mpmi_gmres_plan {
+  mpmi_precondition_fn precondition;
+  void *user;
+  int32_t restart;   /* vectors of the basis */
+  int32_t impatient; /* ends where progress is so slow that a factor is the better way */
+  int64_t limit;     /* iterations */
+} mpmi_gmres_plan;
+/* GMRES from x on, with the preconditioner on the right: residuals are those of the system (gmres.c).
+ * MPM_NOT_CONVERGED is left without a sentence. */
+mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan);
+
+/* 1 / diagonal for CG; MPM_SINGULAR where an entry is not > 0, MPM_NONFINITE where it is not finite: *node is
+ * the first row of the matrix with such a one. Inverse diagonal blocks for GMRES, where singular ones count
+ * as the identity (preconditioner.c). */
+mpm_status mpmi_inverse_diagonal(const mpmi_system *s, int64_t *node);
+mpm_status mpmi_inverse_blocks(const mpmi_system *s, int64_t *node);
+mpm_status mpmi_times_inverse_blocks(void *system, const double *r, double *z);
+
+/* The factor and what it takes to reach the tolerance with it: LDL^T, or GMRES with L D U (direct.c). */
+mpm_status mpmi_direct(mpmi_system *s);
+/* The host's solver (host.c). */
+mpm_status mpmi_solve_by_host(mpmi_system *s, const mpmi_solve_job *job);
+
+/* Fails with a sentence that names a row of the matrix, which goes into the report. */
+mpm_status mpmi_system_fail_at(const mpmi_system *s, mpm_status status, int64_t row, const char *what);
+mpm_status mpmi_system_not_converged(const mpmi_system *s, const char *method);
+
+#endif

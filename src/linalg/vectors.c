@@ -1,0 +1,55 @@
+/* Chunks of vectors, and sums over them. */
+#include "linalg/vectors.h"
+
+#include <math.h>
+
+mpmi_cut mpmi_cut_of(int64_t items, int64_t unknowns) {
+  mpmi_cut cut = {.items = items, .alone = unknowns < MPMI_ALONE_UNKNOWNS};
+  cut.size = (items + MPMI_MOST_CHUNKS - 1) / MPMI_MOST_CHUNKS;
+  if (cut.size < MPMI_LEAST_CHUNK) cut.size = MPMI_LEAST_CHUNK;
+  cut.count = (items + cut.size - 1) / cut.size;
+  return cut;
+}
+
+mpm_status mpmi_cut_run(mpm_context *context, const mpmi_cut *cut, mpm_task_fn task, void *data) {
+  if (!cut->alone) return mpmi_parallel_for(context, cut->count, task, data);
+  for (int64_t k = 0; k < cut->count; ++k) task(data, k);
+  return MPM_OK;
+}
+
+double mpmi_sum_in_order(const double *part, int64_t count) {
+  double sum = 0.0;
+  for (int64_t k = 0; k < count; ++k) sum += part[k];
+  return sum;
+}
+
+typedef struct dot_job {
+  const double *a, *b;
+  mpmi_cut cut;
+  double part[MPMI_MOST_CHUNKS];
+} dot_job;
+
+static void dot_task(void *data, int64_t k) {
+  dot_job *job = data;
+  const double *a = job->a, *b = job->b;
+  const int64_t end = mpmi_cut_begin(&job->cut, k + 1);
+  double sum[4] = {0.0, 0.0, 0.0, 0.0}; /* four at a time: one sum would wait for each addition */
+  int64_t i = mpmi_cut_begin(&job->cut, k);
+  for (; i + 4 <= end; i += 4)
+    for (int32_t l = 0; l < 4; ++l) sum[l] += a[i + l] * b[i + l];
+  for (; i < end; ++i) sum[0] += a[i] * b[i];
+  job->part[k] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+mpm_status mpmi_dot(mpm_context *context, const double *a, const double *b, int64_t n, double *out) {
+  dot_job job = {.a = a, .b = b, .cut = mpmi_cut_of(n, n)};
+  const mpm_status status = mpmi_cut_run(context, &job.cut, dot_task, &job);
+  *out = status ? 0.0 : mpmi_sum_in_order(job.part, job.cut.count);
+  return status;
+}
+
+mpm_status mpmi_norm(mpm_context *context, const double *a, int64_t n, double *out) {
+  const mpm_status status = mpmi_dot(context, a, a, n, out);
+  *out = sqrt(*out);
+  return status;
+}

@@ -1,0 +1,31 @@
+/* Vectors of unknowns. Work on them is cut into chunks that depend on the length alone, and sums are formed
+ * in the order of the chunks: the bits do not depend on the number of threads. */
+#ifndef MPMI_VECTORS_H
+#define MPMI_VECTORS_H
+
+#include "context/context.h"
+
+enum {
+  MPMI_MOST_CHUNKS = 256,
+  MPMI_LEAST_CHUNK = 512,    /* items: below that a chunk is not worth its task */
+  MPMI_ALONE_UNKNOWNS = 2000 /* systems smaller than that do not wake other threads */
+};
+
+typedef struct mpmi_cut {
+  int64_t items, size, count; /* chunks of `size` items, the last one may be shorter */
+  int32_t alone;              /* the calling thread does them all */
+} mpmi_cut;
+
+/* Items may be unknowns or nodes; unknowns: of the whole system. */
+mpmi_cut mpmi_cut_of(int64_t items, int64_t unknowns);
+static inline int64_t mpmi_cut_begin(const mpmi_cut *cut, int64_t k) {
+  return k * cut->size < cut->items ? k * cut->size : cut->items;
+}
+/* One task per chunk. */
+mpm_status mpmi_cut_run(mpm_context *context, const mpmi_cut *cut, mpm_task_fn task, void *data);
+
+double mpmi_sum_in_order(const double *part, int64_t count);
+mpm_status mpmi_dot(mpm_context *context, const double *a, const double *b, int64_t n, double *out);
+mpm_status mpmi_norm(mpm_context *context, const double *a, int64_t n, double *out);
+
+#endif

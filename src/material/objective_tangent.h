@@ -1,0 +1,58 @@
+/* Tangents of laws in objective increments (objective_increment.h), 16 particles at a time: the derivative of
+ *   mean(J) I + keep (dev(R stress R^T) + 2 shear dev(ln V))
+ * to dF_inc = D F_inc, with keep the radial return of j2. */
+#ifndef MPMI_OBJECTIVE_TANGENT_H
+#define MPMI_OBJECTIVE_TANGENT_H
+
+#include "material/objective_increment.h"
+#include "material/spin.h"
+#include "material/tangent_rows.h"
+
+/* bulk: d mean / tr D. The return changes by -(bend : d) bend when the deviator before it changes by d. */
+typedef struct mpmi_objective {
+  _Alignas(64) double jacobian[MPMI_CHUNK], bulk[MPMI_CHUNK], shear[MPMI_CHUNK], keep[MPMI_CHUNK];
+  double stress[6][MPMI_CHUNK], turned[6][MPMI_CHUNK], log_v[6][MPMI_CHUNK], bend[6][MPMI_CHUNK];
+  double stretching[6][MPMI_CHUNK], turning[6][MPMI_CHUNK];
+  double slope[6][6][MPMI_CHUNK]; /* of the stress: by D, then by component */
+} mpmi_objective;
+
+/* What all of these laws take from particle p of the chunk, i of the batch. */
+MPMI_INLINE void mpmi_objective_load(int dim, mpmi_objective *o, int p, const mpm_material_batch *batch,
+                                     int64_t i) {
+  const int64_t ld = batch->ld;
+  mpmi_sym turned = mpmi_load_sym(dim, batch->stress, ld, i);
+  mpmi_sym log_v = mpmi_log_increment(dim, mpmi_load_mat(dim, batch->L, ld, i, 0.0, batch->dt), &turned);
+  mpmi_spins spins = mpmi_spins_of(dim, log_v);
+  o->jacobian[p] = 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, batch->F, ld, i));
+  o->keep[p] = 1.0;
+  mpmi_store_sym(dim, o->turned[0], MPMI_CHUNK, p, turned);
+  mpmi_store_sym(dim, o->log_v[0], MPMI_CHUNK, p, log_v);
+  mpmi_store_sym(dim, o->stretching[0], MPMI_CHUNK, p, spins.stretching);
+  mpmi_store_sym(dim, o->turning[0], MPMI_CHUNK, p, spins.turning);
+}
+
+/* The chunk from particle `begin` on, elastic. */
+MPMI_INLINE void mpmi_elastic_chunk(int dim, const double *constants, const mpm_material_batch *batch,
+                                    int64_t begin, mpmi_objective *o) {
+  const double mu = constants[MPMI_C_MU], bulk = constants[MPMI_C_LAMBDA] + (2.0 / 3.0) * mu;
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    mpmi_objective_load(dim, o, p, batch, begin + p);
+    mpmi_store_sym(dim, o->stress[0], MPMI_CHUNK, p,
+                   mpmi_load_sym(dim, batch->stress_new, batch->ld, begin + p));
+    o->bulk[p] = bulk;
+    o->shear[p] = mu;
+  }
+}
+
+/* The tangent of a chunk that has all but its slopes; added to what is there where add is 1. */
+#define MPMI_DECLARE_OBJECTIVE_ROWS(isa)                                                                     \
+  void mpmi_objective_rows_##isa(int32_t dim, int32_t add, mpmi_objective *o, double *tangent, int64_t ld);
+
+MPMI_DECLARE_OBJECTIVE_ROWS(baseline)
+#if MPMI_HAS_X86
+MPMI_DECLARE_OBJECTIVE_ROWS(avx2)
+MPMI_DECLARE_OBJECTIVE_ROWS(avx512)
+#endif
+
+#endif

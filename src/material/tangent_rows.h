@@ -1,0 +1,28 @@
+/* Rows of tangents c_ijkl, [81][ld], worked out for 16 particles at a time: row 9 (3 i + j) + 3 k + l of
+ * those that `dim` has. `tangent` points at the first of the 16 in row 0; other pointers are to values of 16
+ * particles, component after component. */
+#ifndef MPMI_TANGENT_ROWS_H
+#define MPMI_TANGENT_ROWS_H
+
+#include "material/tensor.h"
+
+enum { MPMI_CHUNK = 16 };
+
+/* Which of xx yy zz xy yz xz is ij. */
+MPMI_INLINE int mpmi_sym_index(int i, int j) {
+  return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
+}
+
+/* isotropic: volumetric d_ij d_kl + shear (d_ik d_jl + d_il d_jk). mixed: adds s_ij d_kl + d_ij s_kl. */
+#define MPMI_DECLARE_TANGENT_ROWS(isa)                                                                       \
+  void mpmi_isotropic_rows_##isa(int32_t dim, const double *volumetric, const double *shear,                 \
+                                 double *tangent, int64_t ld);                                               \
+  void mpmi_add_mixed_rows_##isa(int32_t dim, const double(*s)[MPMI_CHUNK], double *tangent, int64_t ld);
+
+MPMI_DECLARE_TANGENT_ROWS(baseline)
+#if MPMI_HAS_X86
+MPMI_DECLARE_TANGENT_ROWS(avx2)
+MPMI_DECLARE_TANGENT_ROWS(avx512)
+#endif
+
+#endif

@@ -1,0 +1,409 @@
+/* What may go wrong in an implicit step: each has its status and sentence, leaves the state as it was, and
+ * the next step is possible. */
+#include "implicit.h"
+
+typedef struct block {
+  world w;
+  world_desc desc;
+  mpm_particles *set;
+  double dt;
+} block;
+
+static uint64_t hash_of(const block *b) {
+  uint64_t hash;
+  ck_ok(&b->w, mpm_state_hash(b->w.stepper, &hash));
+  return hash;
+}
+
+/* A block on a fixed floor under gravity, one step old. */
+static void open_block(block *b, int32_t quasi_static) {
+  b->desc = implicit_default(2, 8, 0.1, &implicit_bases[1]);
+  b->desc.stepper.quasi_static = quasi_static;
+  b->desc.stepper.gravity[1] = -20.0;
+  b->dt = 0.02;
+  world_open(&b->w, &b->desc);
+  b->set = world_add_set(&b->w);
+  implicit_block(&b->w, b->set, 0.0, 0.4, NULL);
+  ck_ok(&b->w, mpm_stepper_set_wall(b->w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
+  ck_ok(&b->w, mpm_stepper_set_wall(b->w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
+  world_step(&b->w, b->dt);
+}
+
+/* The step fails so, and changes nothing. */
+static mpm_step_info fails(block *b, mpm_status wanted, const char *text) {
+  mpm_step_info info = {.struct_size = sizeof info};
+  const uint64_t before = hash_of(b);
+  const mpm_status status = mpm_step(b->w.stepper, b->dt, &info);
+  if (status != wanted || !strstr(mpm_last_error(b->w.context), text))
+    ck_abort_msg("%s, wanted %s: \"%s\" in \"%s\"", mpm_status_name(status), mpm_status_name(wanted), text,
+                 mpm_last_error(b->w.context));
+  ck_assert_int_eq(info.cause, wanted);
+  ck_assert(hash_of(b) == before);
+  return info;
+}
+
+/* Nothing holds it: singular, and the node is named. With inertia it falls. */
+START_TEST(free_body) {
+  block b;
+  open_block(&b, 1);
+  for (int32_t face = MPM_X_MIN; face <= MPM_Y_MIN; face += 2)
+    ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, face, MPM_WALL_NONE, 0.0));
+  const mpm_step_info info = fails(&b, MPM_SINGULAR, "node");
+  ck_assert_int_ge(info.node, 0);
+  ck_assert_double_eq(info.dt_suggested, 0.6 * b.dt);
+  b.desc.stepper.quasi_static = 0;
+  b.desc.stepper.gravity[1] = 5.0;
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  world_step(&b.w, 1e-3);
+  world_close(&b.w);
+}
+END_TEST
+
+START_TEST(too_few_iterations) {
+  block b;
+  open_block(&b, 0);
+  b.desc.stepper.newton_max_iterations = 1;
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  const mpm_step_info info = fails(&b, MPM_NOT_CONVERGED, "after 1 iterations");
+  ck_assert_int_eq(info.newton_iterations, 1);
+  ck_assert_double_gt(info.residual, 0.0);
+  double r[IMPLICIT_HISTORY];
+  ck_assert_int_eq(implicit_history(&b.w, r), 2);
+  ck_assert_double_eq(r[1], info.residual);
+  b.desc.stepper.newton_max_iterations = 20;
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  world_step(&b.w, b.dt);
+  world_close(&b.w);
+}
+END_TEST
+
+/* Nodes in the middle are sent through the floor: no increment keeps the material from turning inside out. */
+static mpm_status crush(void *user, const mpm_node_batch *b, uint8_t *prescribed, double *velocity) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i)
+    if (b->position[b->ld + i] > 0.25) {
+      prescribed[b->ld + i] = 1;
+      velocity[b->ld + i] = -0.6 / b->dt;
+    }
+  return MPM_OK;
+}
+
+START_TEST(inverted) {
+  block b;
+  open_block(&b, 1);
+  ck_ok(&b.w, mpm_stepper_set_velocity_bc(b.w.stepper, crush, NULL));
+  mpm_step_info info = {.struct_size = sizeof info};
+  const uint64_t before = hash_of(&b);
+  const mpm_status status = mpm_step(b.w.stepper, b.dt, &info);
+  ck_assert_msg(status == MPM_INVERTED || status == MPM_NOT_CONVERGED || status == MPM_SINGULAR, "%s",
+                mpm_status_name(status));
+  ck_assert(hash_of(&b) == before);
+  ck_ok(&b.w, mpm_stepper_set_velocity_bc(b.w.stepper, NULL, NULL));
+  world_step(&b.w, b.dt);
+  world_close(&b.w);
+}
+END_TEST
+
+/* ---- callbacks -------------------------------------------------------------------------------------------
+ */
+typedef struct trouble {
+  mpm_status stress, tangent;
+  int32_t nan;
+} trouble;
+
+static mpm_status soft(void *user, const mpm_material_batch *b) {
+  const trouble *t = user;
+  for (int64_t p = 0; p < b->n; ++p) {
+    const double *F = b->F + p;
+    const double J = F[0] * F[4 * b->ld] - F[b->ld] * F[3 * b->ld];
+    for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = c < 3 ? 1e4 * (J - 1.0) : 0.0;
+    b->stress_new[3 * b->ld + p] = 5e3 * (F[b->ld] + F[3 * b->ld]);
+    b->stress_new[p] += 5e3 * (F[0] - F[4 * b->ld]);
+    b->stress_new[b->ld + p] -= 5e3 * (F[0] - F[4 * b->ld]);
+    b->wave_speed[p] = 10.0;
+  }
+  return b->dt > 0.0 ? t->stress : MPM_OK;
+}
+
+static mpm_status bad_tangent(void *user, const mpm_material_batch *b, double *tangent, int32_t *symmetric) {
+  const trouble *t = user;
+  for (int64_t i = 0; i < 36 * b->ld; ++i) tangent[i] = i / b->ld % 7 ? 0.0 : 1e4;
+  if (t->nan) tangent[0] = (double)NAN;
+  *symmetric = 1;
+  return t->tangent;
+}
+
+START_TEST(law_in_trouble) {
+  block b;
+  open_block(&b, 0);
+  trouble t = {MPM_OK, MPM_OK, 0};
+  mpm_material_desc d;
+  ck_ok(&b.w, mpm_material_desc_init(&d, sizeof d));
+  d.density = 1e3;
+  d.stress = soft;
+  d.tangent = bad_tangent;
+  d.user = &t;
+  mpm_material *law;
+  ck_ok(&b.w, mpm_material_create_custom(b.w.context, &d, &law));
+  mpm_particles *other;
+  ck_ok(&b.w, mpm_particles_create(b.w.context, b.w.grid, law, &other));
+  ck_ok(&b.w, mpm_stepper_add(b.w.stepper, other));
+  const double lower[] = {0.5, 0.0}, upper[] = {0.7, 0.2};
+  const int32_t per_cell[] = {2, 2};
+  ck_ok(&b.w, mpm_particles_fill_box(other, lower, upper, per_cell, NULL, NULL));
+  t.stress = 7;
+  ck_assert_int_eq(fails(&b, MPM_CUT_DT, "material callback returned 7").callback_status, 7);
+  t.stress = -3;
+  ck_assert_int_eq(fails(&b, MPM_E_CALLBACK, "material callback returned -3").callback_status, -3);
+  t.stress = MPM_OK;
+  t.tangent = 4;
+  ck_assert_int_eq(fails(&b, MPM_CUT_DT, "tangent callback returned 4").set, 1);
+  t.tangent = -1;
+  fails(&b, MPM_E_CALLBACK, "tangent callback returned -1");
+  t.tangent = MPM_OK;
+  t.nan = 1;
+  ck_assert_int_eq(fails(&b, MPM_NONFINITE, "tangent is not finite").set, 1);
+  t.nan = 0;
+  b.desc.stepper.newton_max_iterations = 200; /* that tangent is only about right */
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  b.dt = 1e-3;
+  world_step(&b.w, b.dt);
+  ck_ok(&b.w, mpm_stepper_remove(b.w.stepper, other));
+  ck_ok(&b.w, mpm_particles_destroy(other));
+  ck_ok(&b.w, mpm_material_destroy(law));
+  world_close(&b.w);
+}
+END_TEST
+
+static mpm_status say(void *user, const mpm_particle_batch *b, double *add) {
+  (void)b, (void)add;
+  return *(const mpm_status *)user;
+}
+
+START_TEST(force_in_trouble) {
+  block b;
+  open_block(&b, 0);
+  mpm_status says = 2;
+  ck_ok(&b.w, mpm_stepper_set_acceleration(b.w.stepper, say, &says));
+  fails(&b, MPM_CUT_DT, "acceleration callback returned 2");
+  says = -2;
+  fails(&b, MPM_E_CALLBACK, "acceleration callback returned -2");
+  says = MPM_OK;
+  world_step(&b.w, b.dt);
+  world_close(&b.w);
+}
+END_TEST
+
+/* ---- the host's solver -----------------------------------------------------------------------------------
+ */
+typedef struct own_solver {
+  mpm_status says;
+  int32_t nan, wrong, calls;
+} own_solver;
+
+/* Conjugate gradients on the rows that the library lends. */
+static mpm_status solve(void *user, const mpm_operator *matrix, const double *rhs, double *x,
+                        double tolerance, int64_t *iterations) {
+  own_solver *own = user;
+  mpm_operator_info info = {.struct_size = sizeof info};
+  const int64_t *start;
+  const int32_t *column;
+  const double *value;
+  ck_assert_int_eq(mpm_operator_get_info(matrix, &info), MPM_OK);
+  ck_assert_int_eq(mpm_operator_csr(matrix, &start, &column, &value), MPM_OK);
+  ck_assert_int_eq(info.symmetric, 1);
+  ck_assert_int_eq(start[info.rows], info.nonzeros);
+  ++own->calls;
+  const int64_t n = info.rows;
+  double *memory = calloc((size_t)(4 * n), sizeof *memory);
+  double *r = memory, *p = r + n, *q = p + n, *diagonal = q + n, gamma = 0.0, norm = 0.0;
+  for (int64_t i = 0; i < n; ++i) {
+    for (int64_t e = start[i]; e < start[i + 1]; ++e)
+      if (column[e] == i) diagonal[i] = value[e];
+    x[i] = 0.0;
+    r[i] = rhs[i];
+    p[i] = r[i] / diagonal[i];
+    gamma += r[i] * p[i];
+    norm += r[i] * r[i];
+  }
+  const double enough = 1e-4 * tolerance * tolerance * norm;
+  for (*iterations = 0; *iterations < 20000 && norm > enough; ++*iterations) {
+    double curvature = 0.0, next = 0.0;
+    ck_assert_int_eq(mpm_operator_apply(matrix, p, q), MPM_OK);
+    for (int64_t i = 0; i < n; ++i) curvature += p[i] * q[i];
+    norm = 0.0;
+    for (int64_t i = 0; i < n; ++i) {
+      x[i] += gamma / curvature * p[i];
+      r[i] -= gamma / curvature * q[i];
+      norm += r[i] * r[i];
+      next += r[i] * r[i] / diagonal[i];
+    }
+    for (int64_t i = 0; i < n; ++i) p[i] = r[i] / diagonal[i] + next / gamma * p[i];
+    gamma = next;
+  }
+  free(memory);
+  if (own->nan) x[0] = (double)NAN;
+  if (own->wrong) x[0] += 1.0;
+  return own->says;
+}
+
+START_TEST(host_solver) {
+  block b, same;
+  open_block(&b, 0);
+  open_block(&same, 0);
+  b.desc.stepper.linear_solver = MPM_SOLVER_HOST;
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  fails(&b, MPM_E_STATE, "mpm_stepper_set_linear_solver");
+  own_solver own = {MPM_OK, 0, 0, 0};
+  ck_ok(&b.w, mpm_stepper_set_linear_solver(b.w.stepper, solve, &own));
+  own.says = 3;
+  ck_assert_int_eq(fails(&b, MPM_CUT_DT, "returned 3").callback_status, 3);
+  own.says = -3;
+  fails(&b, MPM_E_CALLBACK, "returned -3");
+  own.says = MPM_OK;
+  own.nan = 1;
+  fails(&b, MPM_NONFINITE, "not finite");
+  own.nan = 0;
+  own.wrong = 1;
+  fails(&b, MPM_NOT_CONVERGED, "");
+  own.wrong = own.calls = 0;
+  const mpm_step_info info = world_step(&b.w, b.dt);
+  world_step(&same.w, same.dt);
+  ck_assert_int_eq(info.linear_solver, MPM_SOLVER_HOST);
+  ck_assert_int_eq(own.calls, info.newton_iterations);
+  ck_assert_int_gt(info.linear_iterations, 0);
+  const int64_t n = mpm_particles_count(b.set);
+  double *x = fetch(&b.w, b.set, "position", 2), *y = fetch(&same.w, same.set, "position", 2);
+  for (int64_t i = 0; i < 2 * n; ++i) ck_within("position", x[i], y[i], 1e-9);
+  free(x), free(y);
+  world_close(&b.w);
+  world_close(&same.w);
+}
+END_TEST
+
+/* ---- what is refused -------------------------------------------------------------------------------------
+ */
+static mpm_status hook(void *user, const mpm_node_batch *b, double *velocity, double *force) {
+  (void)user, (void)b, (void)velocity, (void)force;
+  return MPM_OK;
+}
+
+static void refuses(block *b, const mpm_stepper_desc *d, mpm_status wanted, const char *text) {
+  const mpm_status status = mpm_stepper_configure(b->w.stepper, d);
+  if (status != wanted || !strstr(mpm_last_error(b->w.context), text))
+    ck_abort_msg("%s: \"%s\" is not in \"%s\"", mpm_status_name(status), text, mpm_last_error(b->w.context));
+}
+
+START_TEST(refused) {
+  block b;
+  open_block(&b, 0);
+  mpm_stepper_desc d = b.desc.stepper;
+#define REFUSED(member, value, status, text)                                                                 \
+  do {                                                                                                       \
+    d = b.desc.stepper;                                                                                      \
+    d.member = value;                                                                                        \
+    refuses(&b, &d, status, text);                                                                           \
+  } while (0)
+  REFUSED(transfer, MPM_APIC, MPM_E_UNSUPPORTED, "use transfer MPM_FLIP");
+  REFUSED(flip, 0.9, MPM_E_UNSUPPORTED, "flip = 1");
+  REFUSED(pic_damping, 1.0, MPM_E_UNSUPPORTED, "pic_damping = 0");
+  REFUSED(staggered, 1, MPM_E_UNSUPPORTED, "staggered = 0");
+  REFUSED(linear_solver, MPM_SOLVER_MULTIGRID_CG, MPM_E_UNSUPPORTED, "use MPM_SOLVER_AUTO");
+  REFUSED(linear_solver, 57, MPM_E_ARG, "linear_solver is 57");
+  REFUSED(newmark_beta, 0.0, MPM_E_ARG, "newmark_beta is 0");
+  REFUSED(newmark_gamma, -0.5, MPM_E_ARG, "newmark_gamma is -0.5");
+  REFUSED(newton_tolerance_residual, (double)NAN, MPM_E_ARG, "newton_tolerance_residual is");
+  REFUSED(newton_tolerance_displacement, -1.0, MPM_E_ARG, "newton_tolerance_displacement is -1");
+  REFUSED(newton_tolerance_energy, 2.0, MPM_E_ARG, "newton_tolerance_energy is 2");
+  REFUSED(newton_residual_floor, -1.0, MPM_E_ARG, "newton_residual_floor is -1");
+  REFUSED(linear_tolerance, 1.5, MPM_E_ARG, "linear_tolerance is 1.5");
+  REFUSED(newton_max_iterations, 0, MPM_E_ARG, "newton_max_iterations is 0");
+  REFUSED(linear_max_iterations, -1, MPM_E_ARG, "linear_max_iterations is -1");
+#undef REFUSED
+  d = b.desc.stepper;
+  d.scheme = MPM_USL;
+  d.quasi_static = 1;
+  refuses(&b, &d, MPM_E_UNSUPPORTED, "use scheme MPM_NEWMARK");
+  ck_assert_int_eq(mpm_step_begin(b.w.stepper, b.dt), MPM_E_UNSUPPORTED);
+  ck_assert_int_eq(mpm_stepper_set_node_hook(b.w.stepper, MPM_AFTER_P2G, hook, NULL), MPM_E_UNSUPPORTED);
+  ck_assert_int_eq(mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_FRICTION, 0.3), MPM_E_UNSUPPORTED);
+  /* set before, they stand in the way of the scheme */
+  d = b.desc.stepper;
+  d.scheme = MPM_USL;
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &d));
+  ck_ok(&b.w, mpm_stepper_set_node_hook(b.w.stepper, MPM_AFTER_P2G, hook, NULL));
+  refuses(&b, &b.desc.stepper, MPM_E_UNSUPPORTED, "no node hooks");
+  ck_ok(&b.w, mpm_stepper_set_node_hook(b.w.stepper, MPM_AFTER_P2G, NULL, NULL));
+  ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_FRICTION, 0.3));
+  refuses(&b, &b.desc.stepper, MPM_E_UNSUPPORTED, "face 1 is one");
+  ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_NONE, 0.0));
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  world_step(&b.w, b.dt);
+  world_close(&b.w);
+}
+END_TEST
+
+/* A body that flies out: refused where nothing is said of the face, removed particle by particle where it is
+ * open. */
+START_TEST(off_the_grid) {
+  for (int32_t open = 0; open < 2; ++open) {
+    block b;
+    const double v[] = {3.0, 0.0};
+    b.desc = implicit_default(2, 8, 0.1, &implicit_bases[1]);
+    b.dt = 0.05;
+    world_open(&b.w, &b.desc);
+    b.set = world_add_set(&b.w);
+    implicit_block(&b.w, b.set, 0.4, 0.6, v);
+    if (open) ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_OPEN, 0.0));
+    world_step(&b.w, b.dt);
+    if (open) {
+      const int64_t n = mpm_particles_count(b.set);
+      ck_assert_int_eq(world_step(&b.w, b.dt).removed, n / 2);
+      ck_assert_int_eq(mpm_particles_count(b.set), n / 2);
+      ck_assert_int_eq(world_step(&b.w, 0.2 * b.dt).removed, n / 2 + n / 4);
+    } else {
+      ck_assert_int_ge(fails(&b, MPM_OFF_GRID, "leave the grid").particle, 0);
+    }
+    world_close(&b.w);
+  }
+}
+END_TEST
+
+/* mpm_advance cuts where the iteration fails, grows again, and ends where it should. */
+START_TEST(advance) {
+  block b;
+  open_block(&b, 0);
+  b.desc.stepper.newton_max_iterations = 3;
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  mpm_advance_desc go;
+  ck_ok(&b.w, mpm_advance_desc_init(&go, sizeof go));
+  go.t_end = 0.2;
+  mpm_step_info info = {.struct_size = sizeof info};
+  ck_ok(&b.w, mpm_advance(b.w.stepper, &go, &info));
+  ck_assert_double_eq(info.t, 0.2);
+  ck_assert_int_gt(info.step, 3);
+  b.desc.stepper.newton_max_iterations = 20;
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  const int64_t before = info.step;
+  go.t_end = 0.4;
+  ck_ok(&b.w, mpm_advance(b.w.stepper, &go, &info));
+  ck_assert_double_eq(info.t, 0.4);
+  ck_assert_int_lt(info.step - before, before);
+  world_close(&b.w);
+}
+END_TEST
+
+TCase *implicit_failures_case(void) {
+  TCase *tests = tcase_create("failures");
+  tcase_set_timeout(tests, 60.0);
+  tcase_add_test(tests, free_body);
+  tcase_add_test(tests, too_few_iterations);
+  tcase_add_test(tests, inverted);
+  tcase_add_test(tests, law_in_trouble);
+  tcase_add_test(tests, force_in_trouble);
+  tcase_add_test(tests, host_solver);
+  tcase_add_test(tests, refused);
+  tcase_add_test(tests, off_the_grid);
+  tcase_add_test(tests, advance);
+  return tests;
+}

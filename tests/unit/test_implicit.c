@@ -1,0 +1,342 @@
+/* Implicit steps: Newmark's rule, convergence of the iteration, reactions, initial accelerations. */
+#include "implicit.h"
+#include "run_support.h"
+
+const implicit_basis implicit_bases[IMPLICIT_BASES] = {
+    {MPM_LINEAR, MPM_BOUNDARY_GHOST, "linear"},
+    {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, "quadratic"},
+    {MPM_BSPLINE3, MPM_BOUNDARY_GHOST, "cubic"},
+    {MPM_BSPLINE2, MPM_BOUNDARY_OPEN_KNOT, "open quadratic"},
+    {MPM_BSPLINE3, MPM_BOUNDARY_OPEN_KNOT, "open cubic"},
+    {MPM_GIMP, MPM_BOUNDARY_GHOST, "GIMP"},
+    {MPM_CPGIMP, MPM_BOUNDARY_GHOST, "cpGIMP"}};
+
+world_desc implicit_default(int32_t dim, int64_t cells, double h, const implicit_basis *basis) {
+  world_desc d = world_default(dim, cells, h);
+  d.grid.basis = basis->basis;
+  d.grid.boundary_basis = basis->boundary;
+  d.stepper.scheme = MPM_NEWMARK;
+  d.stepper.transfer = MPM_FLIP;
+  d.stepper.flip = 1.0;
+  return d;
+}
+
+void implicit_block(world *w, mpm_particles *set, double low, double high, const double *velocity) {
+  const double lower[3] = {low, low, low}, upper[3] = {high, high, high};
+  const int32_t per_cell[3] = {2, 2, 2};
+  ck_ok(w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  if (velocity) ck_ok(w, mpm_particles_set_all(set, "velocity", MPM_F64, w->dim, velocity));
+}
+
+int32_t implicit_history(const world *w, double *residual) {
+  int32_t count;
+  ck_ok(w, mpm_stepper_residuals(w->stepper, IMPLICIT_HISTORY, residual, &count));
+  ck_assert_int_le(count, IMPLICIT_HISTORY);
+  return count;
+}
+
+/* r' <= C r^1.8 once the iteration is near: that of a tangent that is the derivative of the residual. */
+void implicit_quadratic(const char *name, const world *w, double C) {
+  double r[IMPLICIT_HISTORY];
+  const int32_t n = implicit_history(w, r);
+  int32_t checked = 0;
+  for (int32_t k = 1; k + 1 < n; ++k) {
+    if (r[k] > 0.05 || r[k] < 1e-7) continue;
+    ++checked;
+    if (!(r[k + 1] <= C * pow(r[k], 1.8) + 1e-13))
+      ck_abort_msg("%s: residual %g after %g in iteration %d: more than %g r^1.8", name, r[k + 1], r[k],
+                   (int)k, C);
+  }
+  show("%s:", name);
+  for (int32_t k = 0; k < n; ++k) show(" %.1e", r[k]);
+  show("\n");
+  ck_assert_msg(checked > 0, "%s: no residual to check", name);
+}
+
+/* A free body keeps its velocity and its shape at any dt. */
+START_TEST(free_flight) {
+  const implicit_basis *basis = &implicit_bases[_i % IMPLICIT_BASES];
+  const int32_t dim = 1 + _i / IMPLICIT_BASES;
+  world w;
+  world_desc d = implicit_default(dim, 12, 0.1, basis);
+  world_open(&w, &d);
+  const double v[3] = {0.7, -0.4, 0.3};
+  mpm_particles *set = world_add_set(&w);
+  implicit_block(&w, set, 0.42, 0.67, v);
+  double *x0 = fetch(&w, set, "position", dim);
+  const double dt = 0.05;
+  for (int32_t k = 1; k <= 3; ++k) {
+    const mpm_step_info info = world_step(&w, dt);
+    ck_assert_int_le(info.newton_iterations, 3);
+    const int64_t n = mpm_particles_count(set);
+    double *x = fetch(&w, set, "position", dim), *u = fetch(&w, set, "velocity", dim);
+    double *F = fetch(&w, set, "deformation_gradient", 9), *a = fetch(&w, set, "acceleration", dim);
+    for (int64_t i = 0; i < n * dim; ++i) {
+      ck_within(basis->name, x[i], x0[i] + k * dt * v[i / n], 1e-12);
+      ck_within(basis->name, u[i], v[i / n], 1e-11);
+      ck_within(basis->name, a[i], 0.0, 1e-8);
+    }
+    for (int64_t i = 0; i < 9 * n; ++i) ck_within(basis->name, F[i], i / n % 4 ? 0.0 : 1.0, 1e-12);
+    free(x), free(u), free(F), free(a);
+  }
+  free(x0);
+  world_close(&w);
+}
+END_TEST
+
+/* One cell, one particle in its middle, the lower node held: one unknown, here solved apart. P-wave law of
+ * neo_hookean in 1-D: sigma = (lambda ln J + mu (J^2 - 1)) / J. */
+START_TEST(one_unknown) {
+  const double betas[] = {0.25, 0.3025, 0.5}, gammas[] = {0.5, 0.6, 0.5};
+  const double beta = betas[_i], gamma = gammas[_i], h = 0.5, g = -3.0, dt = 0.02;
+  const implicit_basis linear = implicit_bases[0];
+  world w;
+  world_desc d = implicit_default(1, 4, h, &linear);
+  d.stepper.newmark_beta = beta;
+  d.stepper.newmark_gamma = gamma;
+  d.stepper.gravity[0] = g;
+  world_open(&w, &d);
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  mpm_particles *set = world_add_set(&w);
+  const double at = 0.5 * h, volume = 0.4;
+  ck_ok(&w, mpm_particles_add(set, 1, &at, NULL, &volume, NULL, NULL, NULL));
+  const double lambda = d.E * d.nu / ((1.0 + d.nu) * (1.0 - 2.0 * d.nu)), mu = d.E / (2.0 * (1.0 + d.nu));
+  const double m = d.density * volume;
+  double x = at, v = 0.0, a = 0.0, F = 1.0;
+  for (int32_t k = 0; k < 25; ++k) {
+    const double weight = x / h, M = weight * m, G = 1.0 / h;
+    const double tau = lambda * log(F) + mu * (F * F - 1.0);
+    if (k == 0) a = weight * ((weight * m * g - volume * tau * G) / M);
+    /* by bisection: the balance grows with u */
+    double low = -0.45 * h, high = 3.0 * h;
+    for (int32_t i = 0; i < 200; ++i) {
+      const double u = 0.5 * (low + high), inc = 1.0 + u * G, J = inc * F;
+      const double t = lambda * log(J) + mu * (J * J - 1.0);
+      const double acceleration = (u - dt * v - dt * dt * (0.5 - beta) * a) / (beta * dt * dt);
+      const double balance = volume * t * G / inc + M * acceleration - M * g;
+      if (balance > 0.0)
+        high = u;
+      else
+        low = u;
+    }
+    const double u = 0.5 * (low + high), a1 = (u - dt * v - dt * dt * (0.5 - beta) * a) / (beta * dt * dt);
+    F *= 1.0 + u * G;
+    v += dt * ((1.0 - gamma) * a + gamma * weight * a1);
+    a = weight * a1;
+    x += weight * u;
+    const mpm_step_info info = world_step(&w, dt);
+    double *is = fetch(&w, set, "position", 1), *speed = fetch(&w, set, "velocity", 1);
+    double *acceleration = fetch(&w, set, "acceleration", 1),
+           *stretch = fetch(&w, set, "deformation_gradient", 9);
+    ck_within("x", is[0], x, 1e-11);
+    ck_within("v", speed[0], v, 1e-9);
+    ck_within("a", acceleration[0], a, 1e-7);
+    ck_within("F", stretch[0], F, 1e-10);
+    ck_assert_int_gt(info.newton_iterations, 0);
+    free(is), free(speed), free(acceleration), free(stretch);
+  }
+  world_close(&w);
+}
+END_TEST
+
+/* A block in three dimensions and less sags on its fixed foot between slip walls, quasi-static and dynamic:
+ * every basis and dimension converges quadratically, and walls carry the weight. */
+START_TEST(sagging_block) {
+  const implicit_basis *basis = &implicit_bases[_i % IMPLICIT_BASES];
+  const int32_t dim = 1 + _i / IMPLICIT_BASES % 3, quasi_static = _i / IMPLICIT_BASES / 3;
+  world w;
+  world_desc d = implicit_default(dim, 8, 0.1, basis);
+  d.stepper.quasi_static = quasi_static;
+  d.stepper.gravity[dim - 1] = -30.0;
+  world_open(&w, &d);
+  mpm_particles *set = world_add_set(&w);
+  implicit_block(&w, set, 0.0, 0.4, NULL);
+  for (int32_t k = 0; k < dim; ++k)
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, 2 * k, k == dim - 1 ? MPM_WALL_FIXED : MPM_WALL_SLIP, 0.0));
+  char name[80];
+  snprintf(name, sizeof name, "%s in %d-D%s", basis->name, (int)dim, quasi_static ? ", quasi-static" : "");
+  world_step(&w, 0.05);
+  implicit_quadratic(name, &w, 60.0);
+  if (quasi_static) {
+    double force[3], weight = 30.0 * d.density * pow(0.4, dim);
+    ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, 2 * (dim - 1), force));
+    ck_within(name, force[dim - 1], weight, 1e-7 * weight);
+    const mpm_step_info info = world_info(&w);
+    ck_assert_int_gt(info.newton_iterations, 2);
+    ck_assert_double_lt(info.residual, 1e-8);
+  }
+  world_close(&w);
+}
+END_TEST
+
+/* Every law, with and without the remedy: the iteration knows the derivative of what the law does. */
+START_TEST(every_law) {
+  static const mpm_param decoupled[] = {{"mu", 4e4}, {"kappa", 4e5}, {"density", 1e3}};
+  static const mpm_param fluid[] = {{"bulk_modulus", 1e5}, {"viscosity", 300.0}, {"density", 1e3}};
+  const struct {
+    const char *model;
+    const mpm_param *params;
+    int32_t count;
+  } laws[] = {{"neo_hookean", NULL, 0},
+              {"linear_elastic", NULL, 0},
+              {"j2", NULL, 0},
+              {"newtonian_fluid", fluid, 3},
+              {"neo_hookean_decoupled", decoupled, 3}};
+  const int32_t remedy = _i / 5 % 2, dim = 2 + _i / 10 % 2;
+  const implicit_basis *basis = &implicit_bases[_i / 20];
+  world w;
+  world_desc d = implicit_default(dim, 6, 0.1, basis);
+  d.model = laws[_i % 5].model;
+  d.params = laws[_i % 5].params;
+  d.param_count = laws[_i % 5].count;
+  d.yield_stress = 900.0;
+  d.hardening = 1e4;
+  d.stepper.gravity[dim - 1] = -30.0;
+  d.stepper.gravity[0] = 6.0;
+  d.stepper.locking_remedy = remedy;
+  world_open(&w, &d);
+  mpm_particles *set = world_add_set(&w);
+  implicit_block(&w, set, 0.0, 0.3, NULL);
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, 2 * (dim - 1), MPM_WALL_FIXED, 0.0));
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
+  char name[80];
+  snprintf(name, sizeof name, "%s, %s in %d-D%s", d.model, basis->name, (int)dim, remedy ? ", remedy" : "");
+  world_step(&w, 0.03);
+  world_step(&w, 0.03);
+  implicit_quadratic(name, &w, 100.0);
+  world_close(&w);
+}
+END_TEST
+
+/* Falling freely, a body has the acceleration of gravity from its first implicit step on: it is found, not
+ * taken to be zero; after explicit steps too. */
+START_TEST(initial_acceleration) {
+  const implicit_basis *basis = &implicit_bases[1];
+  world w;
+  world_desc d = implicit_default(2, 10, 0.1, basis);
+  d.stepper.gravity[1] = -9.0;
+  d.stepper.scheme = _i ? MPM_USL : MPM_NEWMARK;
+  world_open(&w, &d);
+  mpm_particles *set = world_add_set(&w);
+  implicit_block(&w, set, 0.4, 0.7, NULL);
+  double t = 0.0;
+  if (_i) {
+    for (int32_t k = 0; k < 3; ++k) world_step(&w, 1e-3);
+    t = 3e-3;
+    d.stepper.scheme = MPM_NEWMARK;
+    ck_ok(&w, mpm_stepper_configure(w.stepper, &d.stepper));
+  }
+  const double dt = 0.01;
+  for (int32_t k = 1; k <= 4; ++k) {
+    world_step(&w, dt);
+    const int64_t n = mpm_particles_count(set);
+    double *v = fetch(&w, set, "velocity", 2), *a = fetch(&w, set, "acceleration", 2);
+    for (int64_t i = 0; i < n; ++i) {
+      ck_within("v", v[n + i], -9.0 * (t + k * dt), 1e-10);
+      ck_within("a", a[n + i], -9.0, 1e-7);
+    }
+    free(v), free(a);
+  }
+  world_close(&w);
+}
+END_TEST
+
+/* Compression between a slip wall and a platen of prescribed particles, all sides free to slide: homogeneous,
+ * and known. GIMP with domains that follow F is exact while the platen is in line with nodes. */
+START_TEST(patch) {
+  static const double kappa = 6e7, mu = 6e6;
+  static const mpm_param rubber[] = {{"mu", 6e6}, {"kappa", 6e7}, {"density", 10.0}},
+                         steel[] = {{"density", 10.0}};
+  const double h = 0.5, L = 4.0;
+  world w;
+  world_desc d = implicit_default(2, 16, h, &implicit_bases[6]);
+  d.model = "neo_hookean_decoupled";
+  d.params = rubber;
+  d.param_count = 3;
+  d.stepper.quasi_static = 1;
+  world_open(&w, &d);
+  mpm_particles *block = world_add_set(&w), *platen;
+  mpm_material *rigid;
+  ck_ok(&w, mpm_material_create(w.context, "rigid", steel, 1, &rigid));
+  ck_ok(&w, mpm_particles_create(w.context, w.grid, rigid, &platen));
+  ck_ok(&w, mpm_stepper_add(w.stepper, platen));
+  implicit_block(&w, block, 0.0, L, NULL);
+  const double lower[] = {0.0, L}, upper[] = {7.5, L + h}, speed[] = {0.0, -h};
+  const int32_t per_cell[] = {2, 2};
+  ck_ok(&w, mpm_particles_fill_box(platen, lower, upper, per_cell, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(platen, "velocity", MPM_F64, 2, speed));
+  ck_ok(&w, mpm_particles_set_all(platen, "prescribed", MPM_U8, 2, (const uint8_t[]){0, 1}));
+  for (int32_t face = MPM_X_MIN; face <= MPM_Y_MIN; ++face)
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, face, MPM_WALL_SLIP, 0.0));
+  const int64_t n = mpm_particles_count(block);
+  for (int32_t k = 1; k <= 4; ++k) {
+    world_step(&w, 1.0);
+    const double y = 1.0 - k * h / L;
+    double low = 1.0, high = 4.0, force[2], floor[2];
+    for (int32_t i = 0; i < 200; ++i) {
+      const double x = 0.5 * (low + high);
+      const double t =
+          kappa * log(x * y) + mu * pow(x * y, -2.0 / 3.0) * (x * x - (x * x + y * y + 1.0) / 3.0);
+      if (t > 0.0)
+        high = x;
+      else
+        low = x;
+    }
+    const double J = low * y;
+    const double tau = kappa * log(J) + mu * pow(J, -2.0 / 3.0) * (y * y - (low * low + y * y + 1.0) / 3.0);
+    double *F = fetch(&w, block, "deformation_gradient", 9);
+    for (int64_t i = 0; i < n; ++i) {
+      ck_within("F_xx", F[i], low, 1e-9);
+      ck_within("F_yy", F[4 * n + i], y, 1e-9);
+      ck_within("F_xy", F[n + i], 0.0, 1e-9);
+    }
+    free(F);
+    ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, platen, force));
+    ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_Y_MIN, floor));
+    ck_within("platen", force[1], tau / y * L, 1e-8 * fabs(tau) * L);
+    ck_within("floor", floor[1], -force[1], 1e-8 * fabs(tau) * L);
+  }
+  ck_ok(&w, mpm_stepper_remove(w.stepper, platen));
+  ck_ok(&w, mpm_particles_destroy(platen));
+  ck_ok(&w, mpm_material_destroy(rigid));
+  world_close(&w);
+}
+END_TEST
+
+/* The same bits on any number of threads, by the pool and by an executor in random order. */
+START_TEST(threads) {
+  static const int32_t counts[] = {1, 2, 3, 4, 7};
+  const run_method *how = &run_methods[RUN_ALL - 3 + _i % 3];
+  run_options o = {.dim = 1 + _i / 3 % 3, .velocity_bc = 1, .led = 1, .periodic = _i / 9};
+  run_use(&o, how);
+  uint64_t alone = 0;
+  for (int32_t i = 0; i < 6; ++i) {
+    run r;
+    o.concurrency = counts[i % 5];
+    o.own_order = i == 5;
+    if (i == 5) o.concurrency = 4;
+    run_open(&r, &o);
+    for (int32_t k = 0; k < 4; ++k) run_step_of(&r, 5.0 * RUN_DT);
+    ck_assert_int_gt(r.info.newton_iterations, 0);
+    if (!i) alone = run_hash(&r);
+    ck_assert_msg(run_hash(&r) == alone, "%d threads give another hash than one", (int)o.concurrency);
+    run_close(&r);
+  }
+}
+END_TEST
+
+Suite *implicit_suite(void) {
+  Suite *suite = suite_create("implicit");
+  TCase *tests = tcase_create("steps");
+  tcase_set_timeout(tests, 60.0);
+  tcase_add_loop_test(tests, free_flight, 0, 3 * IMPLICIT_BASES);
+  tcase_add_loop_test(tests, one_unknown, 0, 3);
+  tcase_add_loop_test(tests, sagging_block, 0, 6 * IMPLICIT_BASES);
+  tcase_add_loop_test(tests, every_law, 0, 40);
+  tcase_add_loop_test(tests, initial_acceleration, 0, 2);
+  tcase_add_test(tests, patch);
+  tcase_add_loop_test(tests, threads, 0, 18);
+  suite_add_tcase(suite, tests);
+  suite_add_tcase(suite, implicit_failures_case());
+  return suite;
+}
