@@ -62,7 +62,7 @@ static void add_symmetric_update(const mpmi_factor *f, const mpmi_front *front, 
     double *to = column < front->pivots
                      ? f->lower + front->panel + column * ld
                      : f->arena + front->built + (column - front->pivots) * front->rows - front->pivots;
-    for (int64_t r = c; r < n; ++r) to[map[r]] += update[c * n + r];
+    for (int64_t r = c; r < n; ++r) to[map[r]] += *update++;
   }
 }
 
@@ -137,6 +137,18 @@ static mpm_status finish_panel(const mpmi_factor *f, const mpmi_dense_front *fro
   return status;
 }
 
+/* Moves the update to where it is kept, which is never above where it was made. */
+static void keep_update(const mpmi_factor *f, const mpmi_front *front) {
+  const double *from = f->arena + front->built;
+  double *to = f->arena + front->kept;
+  const int64_t n = front->rows;
+  for (int64_t c = 0; c < n; ++c) {
+    const int64_t first = f->symmetric ? c : 0;
+    memmove(to, from + c * n + first, (size_t)(n - first) * sizeof *to);
+    to += n - first;
+  }
+}
+
 /* *failed: the unknown with a tiny pivot, or -1. */
 static mpm_status eliminate(const factor_job *job, const mpmi_front *front, double *scratch, int32_t shared,
                             int64_t *failed) {
@@ -159,9 +171,7 @@ static mpm_status eliminate(const factor_job *job, const mpmi_front *front, doub
     const mpm_status status = finish_panel(f, &dense, shared);
     if (status) return status;
   }
-  if (front->kept != front->built)
-    memmove(f->arena + front->kept, f->arena + front->built,
-            (size_t)front->rows * (size_t)front->rows * sizeof *f->arena);
+  keep_update(f, front);
   return MPM_OK;
 }
 

@@ -18,8 +18,10 @@ typedef struct mpmi_front {
   int32_t parent, child, sibling; /* fronts, -1 none; children ascend */
   int32_t lowest;                 /* first front of those that it encloses; they end with itself */
   int32_t top;                    /* eliminated by itself, after the tasks */
-  int64_t built, kept;            /* places of its update matrix: while it is made, and until it is used */
-  double work;                    /* multiplications, with those of the fronts that it encloses */
+  /* Places of its update matrix: while it is made, and until it is used. Of a symmetric one the lower
+   * triangle is kept, column by column. */
+  int64_t built, kept;
+  double work; /* multiplications, with those of the fronts that it encloses */
 } mpmi_front;
 
 /* Fronts [begin, end) and what they enclose, eliminated by one thread. */

@@ -50,13 +50,13 @@ static int64_t place_updates(mpmi_factor *f, int32_t begin, int32_t end, int32_t
   for (int32_t i = begin; i < end; ++i) {
     mpmi_front *front = &f->front[i];
     if (front->top != top) continue;
-    const int64_t size = (int64_t)front->rows * front->rows;
+    const int64_t n = front->rows, size = n * n, kept_size = f->symmetric ? n * (n + 1) / 2 : size;
     front->built = front->kept = next;
     for (int32_t child = front->child; child >= 0; child = f->front[child].sibling)
       if (f->front[child].top == top && f->front[child].kept < front->kept)
         front->kept = f->front[child].kept;
     if (front->built + size > peak) peak = front->built + size;
-    next = front->kept + size;
+    next = front->kept + kept_size;
   }
   return whole_lines(peak);
 }
