@@ -99,7 +99,7 @@ static mpm_status open_beam(beam *b, int32_t solver, direct *own) {
   g.cells[0] = g.cells[1] = 40;
   mpm_stepper_desc_init(&s, sizeof s);
   s.scheme = MPM_NEWMARK;
-  s.quasi_static = 1;
+  s.gravity[1] = -10.0;
   s.linear_solver = solver;
   if ((status = mpm_grid_create(b->context, &g, &b->grid)) ||
       (status = mpm_material_create(b->context, "neo_hookean", soft, 3, &b->rubber)) ||
@@ -112,23 +112,15 @@ static mpm_status open_beam(beam *b, int32_t solver, direct *own) {
   return mpm_stepper_set_velocity_bc(b->stepper, clamp, NULL);
 }
 
-/* Weight grows to its full size in time 1. */
-static mpm_status weigh(void *user, const mpm_particle_batch *b, double *add) {
-  (void)user;
-  for (int64_t i = 0; i < b->n; ++i) add[b->ld + i] -= 5.0 * b->t;
-  return MPM_OK;
-}
-
 static int run(int32_t solver, direct *own, double *lowest, mpm_profile *profile) {
   beam b = {NULL, NULL, NULL, NULL, NULL};
   mpm_step_info info = {.struct_size = sizeof info};
   profile->struct_size = sizeof *profile;
   mpm_status status = open_beam(&b, solver, own);
-  if (!status) status = mpm_stepper_set_acceleration(b.stepper, weigh, NULL);
   if (!status) status = mpm_stepper_profile(b.stepper, 1, profile);
   int64_t solves = 0;
-  for (int step = 0; step < 10 && !status; ++step) {
-    status = mpm_step(b.stepper, 0.1, &info);
+  for (int step = 0; step < 25 && !status; ++step) {
+    status = mpm_step(b.stepper, 0.02, &info);
     solves += info.newton_iterations;
   }
   mpm_view x = {.struct_size = sizeof x};
@@ -164,7 +156,7 @@ int main(void) {
     return 1;
   cholmod_free_factor(&own.factor, &own.common);
   cholmod_finish(&own.common);
-  printf("result: beams differ by %.1e m, tip sinks by %.3f m, %d analyses for %d solves\n",
+  printf("result: beams differ by %.1e m, tip sinks by %.3f m in half a second, %d analyses for %d solves\n",
          fabs(lowest[0] - lowest[1]), 2.5 - lowest[0], (int)own.analyses, (int)own.solves);
   return 0;
 }
