@@ -74,13 +74,16 @@ static mpm_status find_accelerations(mpm_stepper *s, double dt) {
   return MPM_OK;
 }
 
-/* Accelerations at the start of the step into the second copy of the particles', and onto the nodes. */
-static mpm_status prepare_accelerations(mpm_stepper *s, double dt) {
-  int32_t unknown = 0;
-  mpm_status status = MPM_OK;
+static int32_t lacks_accelerations(const mpm_stepper *s) {
+  int32_t lacks = 0;
   for (int32_t m = 0; m < s->member_count; ++m)
-    unknown |= (s->member[m].set->dirty & MPMI_DIRTY_ACCELERATION) != 0;
-  if (unknown) status = find_accelerations(s, dt);
+    lacks |= (s->member[m].set->dirty & MPMI_DIRTY_ACCELERATION) != 0;
+  return lacks && mpmi_is_dynamic(s);
+}
+
+/* Accelerations at the start of the step into the second copy of the particles', and onto the nodes. */
+static mpm_status prepare_accelerations(mpm_stepper *s, double dt, int32_t unknown) {
+  mpm_status status = unknown ? find_accelerations(s, dt) : MPM_OK;
   if (!status) status = mpmi_stage_g2p(s, MPMI_G2P_ACCELERATION, s->again, 4, dt);
   if (!status) status = project(s, MPMI_PROJECT_ACCELERATION);
   if (!status) fold_means(s, s->again, s->newton->vector[MPMI_A0]);
@@ -90,15 +93,15 @@ static mpm_status prepare_accelerations(mpm_stepper *s, double dt) {
 /* Everything that the balance of the nodes needs to know. */
 static mpm_status particles_to_grid(mpm_stepper *s, double dt) {
   mpmi_newton *w = s->newton;
-  const int32_t dynamic = mpmi_is_dynamic(s);
+  const int32_t unknown = lacks_accelerations(s);
   mpm_status status;
   if ((status = mpmi_stage_motion(s, dt)) || (status = find_nodes(s, dt)) ||
-      (status = find_external(s, dynamic ? s->t : s->t + dt, dt)) || (status = mpmi_unknowns_find(s)))
+      (status = find_external(s, unknown ? s->t : s->t + dt, dt)) || (status = mpmi_unknowns_find(s)))
     return status;
   fold_means(s, s->again, w->vector[MPMI_V0]);
   memset(w->vector[MPMI_A0], 0, (size_t)(w->matrix.rows * s->grid->dim) * sizeof(double));
-  if (dynamic && ((status = prepare_accelerations(s, dt)) || (status = find_external(s, s->t + dt, dt))))
-    return status;
+  if (mpmi_is_dynamic(s) && (status = prepare_accelerations(s, dt, unknown))) return status;
+  if (unknown && (status = find_external(s, s->t + dt, dt))) return status;
   mpmi_unknowns_fold(s, w->external, w->vector[MPMI_EXTERNAL]);
   return MPM_OK;
 }

@@ -303,6 +303,71 @@ START_TEST(patch) {
 }
 END_TEST
 
+/* A dead load under which the first increment would turn the cell inside out: it is halved until it does not.
+ */
+START_TEST(halved_increments) {
+  const double h = 0.5, volume = 0.4, at = 0.5 * h;
+  world w;
+  world_desc d = implicit_default(1, 4, h, &implicit_bases[0]);
+  const double lambda = d.E * d.nu / ((1.0 + d.nu) * (1.0 - 2.0 * d.nu)), mu = d.E / (2.0 * (1.0 + d.nu));
+  const double m = d.density * volume, load = -1.5 * volume * (lambda + 2.0 * mu) / h;
+  d.stepper.quasi_static = 1;
+  d.stepper.gravity[0] = load / (0.5 * m);
+  world_open(&w, &d);
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  mpm_particles *set = world_add_set(&w);
+  ck_ok(&w, mpm_particles_add(set, 1, &at, NULL, &volume, NULL, NULL, NULL));
+  world_step(&w, 1.0);
+  double *F = fetch(&w, set, "deformation_gradient", 9);
+  ck_between("F", F[0], 0.05, 0.9);
+  const double tau = lambda * log(F[0]) + mu * (F[0] * F[0] - 1.0);
+  ck_within("balance", volume * tau / (F[0] * h), load, 1e-7 * fabs(load));
+  free(F);
+  world_close(&w);
+}
+END_TEST
+
+/* Forces are wanted for the end of the step; dynamic ones, where accelerations are to be found, first for its
+ * start.
+ */
+typedef struct times {
+  double t[8];
+  int32_t count;
+} times;
+
+static mpm_status note_time(void *user, const mpm_particle_batch *b, double *add) {
+  times *seen = user;
+  (void)add;
+  if (seen->count < 8) seen->t[seen->count] = b->t;
+  ++seen->count;
+  return MPM_OK;
+}
+
+START_TEST(time_of_forces) {
+  world w;
+  world_desc d = implicit_default(2, 8, 0.1, &implicit_bases[1]);
+  d.stepper.quasi_static = _i;
+  d.stepper.gravity[1] = -5.0;
+  world_open(&w, &d);
+  mpm_particles *set = world_add_set(&w);
+  implicit_block(&w, set, 0.0, 0.3, NULL);
+  for (int32_t face = MPM_X_MIN; face <= MPM_Y_MIN; face += 2)
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, face, MPM_WALL_SLIP, 0.0));
+  times seen = {{0.0}, 0};
+  ck_ok(&w, mpm_stepper_set_force(w.stepper, note_time, &seen));
+  const double dt = 0.125;
+  world_step(&w, dt);
+  ck_assert_int_eq(seen.count, _i ? 1 : 2);
+  if (!_i) ck_assert_double_eq(seen.t[0], 0.0);
+  ck_assert_double_eq(seen.t[seen.count - 1], dt);
+  seen.count = 0;
+  world_step(&w, dt);
+  ck_assert_int_eq(seen.count, 1);
+  ck_assert_double_eq(seen.t[0], 2.0 * dt);
+  world_close(&w);
+}
+END_TEST
+
 /* The same bits on any number of threads, by the pool and by an executor in random order. */
 START_TEST(threads) {
   static const int32_t counts[] = {1, 2, 3, 4, 7};
@@ -335,6 +400,8 @@ Suite *implicit_suite(void) {
   tcase_add_loop_test(tests, every_law, 0, 40);
   tcase_add_loop_test(tests, initial_acceleration, 0, 2);
   tcase_add_test(tests, patch);
+  tcase_add_test(tests, halved_increments);
+  tcase_add_loop_test(tests, time_of_forces, 0, 2);
   tcase_add_loop_test(tests, threads, 0, 18);
   suite_add_tcase(suite, tests);
   suite_add_tcase(suite, implicit_failures_case());
