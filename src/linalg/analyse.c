@@ -212,6 +212,10 @@ mpm_status mpmi_factor_analyse(mpmi_factor *f, const mpmi_matrix *A) {
   if (!status)
     status = mpmi_reserve(f->context, (void **)&f->local, &f->local_capacity, A->row_start[A->rows],
                           sizeof *f->local);
+  /* a single front leaves these without an entry, but not without a place */
+  if (!status) status = grow(f->context, &f->node_row, &f->node_row_capacity, 0, 1);
+  if (!status) status = grow(f->context, &f->row, &f->row_capacity, 0, 1);
+  if (!status) status = grow(f->context, &f->map, &f->map_capacity, 0, 1);
   if (status) return status;
   order_nodes(&a);
   f->fronts = 0;

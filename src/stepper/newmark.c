@@ -146,6 +146,7 @@ double mpmi_next_dt(const mpm_stepper *s, double dt) {
 mpm_status mpmi_newmark_step(mpm_stepper *s, double dt) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_newton_prepare(s);
+  if (!status && !s->blocks.count) return MPM_OK; /* no particles */
   if (!status) status = particles_to_grid(s, dt);
   mpmi_lap(s, MPMI_TIME_P2G, &clock);
   if (!status) status = mpmi_newton_solve(s, dt);

@@ -206,7 +206,7 @@ static void divide_impulses(const mpmi_boundary *f, int64_t begin, int64_t end, 
 
 static void divide_of_orbit(const mpmi_boundary *f, const mpmi_orbit *orbit, int32_t c) {
   const mpm_stepper *s = f->s;
-  const mpmi_dependant *dependant = s->constraints.dependant + orbit->first;
+  const mpmi_dependant *dependant = orbit->count ? s->constraints.dependant + orbit->first : NULL;
   double total = s->impulse[6 * orbit->master + c];
   for (int64_t d = 0; d < orbit->count; ++d) total += s->impulse[6 * dependant[d].slot + c];
   const double by_mass = total / sums_at(s, orbit->master)[3 + c];

@@ -65,6 +65,7 @@ mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {
   const mpm_grid *grid = set->grid;
   mpmi_points points = {{NULL}, {NULL}, {NULL}};
   int32_t stored = 0;
+  if (!set->ld) return points; /* nothing was ever added */
   for (int32_t k = 0; k < grid->dim; ++k) {
     points.x[k] = mpmi_f64(set, MPMI_POSITION, copy) + k * set->ld;
     if (mpmi_has_domains(grid)) points.size[k] = mpmi_f64(set, MPMI_SIZE, 0) + k * set->ld;

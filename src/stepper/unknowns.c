@@ -209,12 +209,13 @@ static void fill_task(void *data, int64_t k) {
   }
 }
 
+/* Room for one more than there are, so that none has a place. */
 static mpm_status reserve(mpm_stepper *s, int64_t active, int64_t rows) {
   mpmi_newton *w = s->newton;
   mpm_context *c = s->context;
   const int32_t dim = s->grid->dim;
   mpm_status status;
-  if (active > w->members_capacity) {
+  if (active + 1 > w->members_capacity) {
     const int64_t wanted = active + active / 4 + 64;
     int64_t none = 0;
     mpmi_free(c, w->members, mpmi_bytes(w->members_capacity, sizeof *w->members));
@@ -231,14 +232,14 @@ static mpm_status reserve(mpm_stepper *s, int64_t active, int64_t rows) {
       return MPM_E_NOMEM;
     }
   }
-  if ((status = mpmi_reserve_roomy(c, (void **)&w->active, &w->active_capacity, active, sizeof *w->active)) ||
-      (status = mpmi_reserve_roomy(c, (void **)&w->place, &w->place_capacity, active * w->offsets,
+  if ((status = mpmi_reserve_roomy(c, (void **)&w->active, &w->active_capacity, active + 1, sizeof *w->active)) ||
+      (status = mpmi_reserve_roomy(c, (void **)&w->place, &w->place_capacity, (active + 1) * w->offsets,
                                    sizeof *w->place)) ||
       (status =
-           mpmi_reserve_roomy(c, (void **)&w->diagonal, &w->diagonal_capacity, rows, sizeof *w->diagonal)) ||
-      (status = mpmi_reserve_roomy(c, (void **)&w->mass, &w->mass_capacity, rows, sizeof *w->mass)) ||
+           mpmi_reserve_roomy(c, (void **)&w->diagonal, &w->diagonal_capacity, rows + 1, sizeof *w->diagonal)) ||
+      (status = mpmi_reserve_roomy(c, (void **)&w->mass, &w->mass_capacity, rows + 1, sizeof *w->mass)) ||
       (status = mpmi_reserve_roomy(c, (void **)&w->vector_memory, &w->vector_capacity,
-                                   MPMI_VECTORS * rows * dim, sizeof *w->vector_memory)))
+                                   MPMI_VECTORS * (rows + 1) * dim, sizeof *w->vector_memory)))
     return status;
   for (int32_t v = 0; v < MPMI_VECTORS; ++v) w->vector[v] = w->vector_memory + v * rows * dim;
   return MPM_OK;
