@@ -99,7 +99,7 @@ int main(int argc, char **argv) {
     const int locks = v->nu > 0.4 && v->basis == MPM_LINEAR && !v->remedy;
     double h = 4.0, of[3];
     for (int k = 0; k < sizes; ++k, h /= 2.0) {
-      of[k] = load(v, h, v->nu > 0.4 && v->basis == MPM_LINEAR && k == 1 ? cloud : NULL);
+      of[k] = load(v, h, v->nu > 0.4 && v->basis == MPM_LINEAR && k == 0 ? cloud : NULL);
       fprintf(csv, "\"%s\",%g,%.6f,%.6f\n", v->name, h, of[k], v->fem);
     }
     char what[80];

@@ -69,6 +69,7 @@ int main(int argc, char **argv) {
   FILE *csv = verify_csv("weight_column"), *profile = verify_csv("weight_column_profile");
   double h[SIZES], error[BASES][SIZES];
   char what[80];
+  fprintf(profile, "basis,Y,stress,exact\n");
   fputs("cells", csv);
   for (int i = 0; i < BASES; ++i) fprintf(csv, ",%s", list[i].name);
   for (int k = 0; k < SIZES; ++k) {
