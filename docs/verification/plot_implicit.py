@@ -1,0 +1,160 @@
+"""Implicit steps: vibration, equilibrium, locking, limit loads, and explicit steps beside them."""
+from plot import axes, loglog, plot, read, slope
+from plot_cases import rows
+
+LINEAR, QUADRATIC, GIMP, CPGIMP = 1.0, 2.0, 16.0, 18.0
+
+
+@plot
+def free_vibration_implicit():
+    figure, ax = axes(2)
+    data = read("free_vibration_implicit")
+    for cfl, gamma, h, text in ((1, 0.5, 1, "CFL 1"), (10, 0.5, 1, "CFL 10"), (1, 0.5, 0.5, "CFL 1, h = 1/2"),
+                                (10, 0.6, 1, r"CFL 10, $\gamma$ = 0.6")):
+        at = rows(data, cfl=float(cfl), gamma=gamma, h=float(h))
+        ax[0].plot(at["t"], at["energy"], "-" if cfl == 1 else "o-", label=text)
+    ax[0].set_xlabel("t c / 4 L")
+    for cfl in (100, 1000):
+        at = rows(data, cfl=float(cfl))
+        ax[1].plot(range(1, len(at["t"]) + 1), at["energy"], label=f"CFL {cfl}")
+    ax[1].set_xlabel("steps")
+    for panel in ax:
+        panel.axhline(1, color="k", linewidth=0.8)
+        panel.set_ylabel("energy / energy at the start")
+        panel.set_ylim(0, 1.05)
+        panel.legend()
+    return figure
+
+
+@plot
+def weight_column():
+    figure, ax = axes(2)
+    data, profile = read("weight_column"), read("weight_column_profile")
+    for name in ("linear", "GIMP", "cpGIMP", "quadratic", "cubic"):
+        ax[0].plot(data["cells"], data[name], "o-", label=name)
+    slope(ax[0], (100, 800), 2e-4, -1)
+    loglog(ax[0], "cells", "mean error of the stress / largest stress")
+    ax[0].legend()
+    for i, (basis, name) in enumerate(((LINEAR, "linear"), (CPGIMP, "cpGIMP"))):
+        at = rows(profile, basis=basis)
+        ax[1].plot([-s / 1000 for s in at["stress"]], at["Y"], f"C{2 * i}.", markersize=4, label=f"{name}, 64 cells")
+    ax[1].plot([-s / 1000 for s in at["exact"]], at["Y"], "k-", linewidth=1, label="exact")
+    ax[1].set_xlabel("pressure / kPa")
+    ax[1].set_ylabel("Y / m")
+    ax[1].legend()
+    return figure
+
+
+@plot
+def thick_cylinder():
+    figure, ax = axes(2)
+    at = rows(read("thick_cylinder"), basis=QUADRATIC, cells=10.0)
+    ax[0].plot(at["r"], [u * 1000 for u in at["u_exact"]], "k-", linewidth=1, label="exact")
+    ax[0].plot(at["r"], [u * 1000 for u in at["u"]], "C0o", label="h = a/10")
+    ax[0].set_ylabel("displacement E / (a p)")
+    ax[0].legend()
+    for i, key in enumerate(("radial", "hoop")):
+        ax[1].plot(at["r"], at[key + "_exact"], "k-", linewidth=1)
+        ax[1].plot(at["r"], at[key], f"C{i}o", label=f"{key} stress / p")
+    ax[1].legend()
+    for panel in ax:
+        panel.set_xlabel("r / a")
+    return figure
+
+
+@plot
+def cook():
+    figure, ax = axes()
+    data = read("cook")
+    for i, name in enumerate(dict.fromkeys(data["variant"])):
+        at = rows(data, variant=name)
+        ax.plot(at["h"], [u / f for u, f in zip(at["displacement"], at["fem"])], "os^v<>D*"[i] + "-", label=name)
+    ax.axhspan(0.97, 1.03, color="k", alpha=0.08)
+    ax.set_xscale("log", base=2)
+    ax.set_xlabel("h")
+    ax.set_ylabel("displacement over FEM")
+    ax.legend(fontsize=7)
+    return figure
+
+
+@plot
+def cook_cloud():
+    figure, ax = axes(2, 3.4, 3.2)
+    data = read("cook_cloud")
+    for panel, remedy, title in zip(ax, (0.0, 1.0), ("plain", "remedy")):
+        at = rows(data, remedy=remedy)
+        drawn = panel.scatter(at["x"], at["y"], c=at["pressure"], s=3, vmin=-0.4, vmax=0.4, cmap="coolwarm",
+                              linewidths=0, rasterized=True)
+        panel.set_aspect("equal")
+        panel.set_title(title, fontsize=9)
+    figure.colorbar(drawn, ax=ax, label="pressure", shrink=0.8)
+    return figure
+
+
+@plot
+def beam():
+    figure, ax = axes()
+    data = read("beam")
+    for i, (basis, per_cell, name) in enumerate(((QUADRATIC, 3.0, "quadratic, 3 x 3"), (QUADRATIC, 6.0, "quadratic, 6 x 6"),
+                                                 (GIMP, 4.0, "GIMP, 4 x 4"))):
+        at = rows(data, basis=basis, per_cell=per_cell, quasi_static=0.0)
+        for key in ("x", "y"):
+            ax.plot(at["share"], [-u for u in at[key]], f"C{i}" + "-:"[key == "y"], label=f"{name}: -u_{key}")
+    ax.plot([1, 1], [5.519, 8.244], "k+", markersize=9, label="FEM")
+    ax.set_xlabel("load / 100 kN/m")
+    ax.set_ylabel("displacement of the tip / m")
+    ax.legend(fontsize=7)
+    return figure
+
+
+@plot
+def plastic_cylinder():
+    figure, ax = axes()
+    data = read("plastic_cylinder")
+    for i, (basis, remedy, n, name) in enumerate(((LINEAR, 0.0, 4.0, "linear, plain, a/4"),
+                                                  (LINEAR, 1.0, 4.0, "linear, remedy, a/4"),
+                                                  (LINEAR, 1.0, 16.0, "linear, remedy, a/16"),
+                                                  (QUADRATIC, 0.0, 16.0, "quadratic, plain, a/16"))):
+        at = rows(data, basis=basis, remedy=remedy, cells=n)
+        ax.plot(at["u"], at["p"], f"C{i}-", label=name)
+    ax.plot([0.0865, 0.1177, 0.1537, 0.1945], [139.21, 163.91, 180.13, 189.22], "k+", label="closed form")
+    ax.axhline(192.09, color="k", linestyle="--", linewidth=0.8)
+    ax.set_xlim(0, 0.4)
+    ax.set_xlabel("displacement of the outer face / mm")
+    ax.set_ylabel("pressure / MPa")
+    ax.legend(fontsize=7)
+    return figure
+
+
+@plot
+def footing():
+    figure, ax = axes()
+    data = read("footing")
+    for i, (name, n) in enumerate((("linear, plain, smooth", 16), ("quadratic, remedy, rough", 16),
+                                   ("linear, remedy, rough", 16), ("linear, remedy, smooth", 8),
+                                   ("linear, remedy, smooth", 16), ("linear, remedy, smooth", 32))):
+        at = rows(data, variant=name, cells=float(n))
+        ax.plot([1000 * s for s in at["settlement"]], at["load"], f"C{i}-", label=f"{name}, B/{n}")
+    ax.axhline(1, color="k", linestyle="--", linewidth=0.8)
+    ax.set_xlabel("1000 settlement / B")
+    ax.set_ylabel(r"load / $(2 + \pi) c$")
+    ax.legend(fontsize=7)
+    return figure
+
+
+@plot
+def explicit_against_implicit():
+    figure, ax = axes(2)
+    data = rows(read("explicit_against_implicit"), basis=CPGIMP)
+    for i, scheme in enumerate(("MUSL", "Newmark")):
+        at = rows(data, scheme=scheme)
+        for panel, key in zip(ax, ("seconds", "displacement")):
+            panel.plot(at["speed"], at[key], "os"[i] + "-", label=scheme)
+    ax[0].set_yscale("log")
+    ax[0].set_ylabel("seconds")
+    ax[1].set_ylim(7, 8)
+    ax[1].set_ylabel("displacement / cm")
+    for panel in ax:
+        panel.set_xlabel("speed of the platen / (cm/s)")
+        panel.legend()
+    return figure
