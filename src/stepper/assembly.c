@@ -170,7 +170,7 @@ void mpmi_assemble_end(mpm_stepper *s, int32_t task, int32_t what, int64_t block
   if (what & MPMI_G2P_FORCES) mpmi_tile_add(s, block, s->newton->force, 4, s->newton->work[task].tile);
 }
 
-/* The nodes of a stencil: where they lie in the tile, and relative to each other. */
+/* The nodes of a stencil along rows of `edge`. */
 static int32_t stencil_places(const mpm_grid *grid, int32_t edge, int32_t *place) {
   int32_t count = 1;
   for (int32_t k = 0; k < grid->dim; ++k) count *= grid->width;
@@ -186,33 +186,47 @@ static int32_t stencil_places(const mpm_grid *grid, int32_t edge, int32_t *place
   return count;
 }
 
-enum { MOST_NODES = MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH) };
+void mpmi_stencil_find(const mpm_stepper *s, mpmi_stencil *to) {
+  const mpm_grid *grid = s->grid;
+  const int32_t span = grid->width + (s->desc.locking_remedy ? grid->centred : 0);
+  to->count = stencil_places(grid, MPMI_TILE_EDGE(grid->dim, grid->width), to->in_tile);
+  stencil_places(grid, 2 * span - 1, to->offset);
+}
+
+MPMI_INLINE void add_block(int32_t dim, int32_t nodes, const double *K, const mpmi_active_node *A,
+                           const mpmi_active_node *B, double *value) {
+  const int32_t plain = A->plain && B->plain;
+  for (int32_t i = 0; i < dim; ++i)
+    for (int32_t j = 0; j < dim; ++j) {
+      const double entry = K[(i * dim * nodes + j) * nodes];
+      value[i * dim + j] += plain ? entry : A->sign[i] * B->sign[j] * entry;
+    }
+}
+
+MPMI_INLINE void add_stencil_in(int32_t dim, mpmi_newton *w, const mpmi_newton_work *work, int32_t nodes,
+                                int32_t first) {
+  const mpmi_stencil *stencil = &w->stencil;
+  int32_t active[MPMI_MOST_NODES];
+  for (int32_t a = 0; a < stencil->count; ++a) active[a] = work->tile_active[first + stencil->in_tile[a]];
+  for (int32_t a = 0; a < stencil->count; ++a) {
+    if (active[a] < 0) continue;
+    const int32_t *place = w->place + (int64_t)active[a] * w->offsets + w->offsets / 2 - stencil->offset[a];
+    for (int32_t b = 0; b < stencil->count; ++b)
+      if (active[b] >= 0)
+        add_block(dim, nodes, work->K + (int64_t)a * dim * nodes + b, &w->active[active[a]],
+                  &w->active[active[b]], w->matrix.value + (int64_t)place[stencil->offset[b]] * dim * dim);
+  }
+}
 
 /* Adds the dense stiffness of the stencil whose first node lies at `first` of the tile, and clears it. */
 static void add_stencil(mpm_stepper *s, mpmi_newton_work *work, int32_t first) {
-  mpmi_newton *w = s->newton;
-  const mpm_grid *grid = s->grid;
-  const int32_t dim = grid->dim, nodes = MPMI_STENCIL_NODES(dim, grid->width), row = dim * nodes;
-  int32_t in_tile[MOST_NODES], offset[MOST_NODES];
-  const int32_t count = stencil_places(grid, MPMI_TILE_EDGE(dim, grid->width), in_tile);
-  stencil_places(grid, 2 * (grid->width + (s->desc.locking_remedy ? grid->centred : 0)) - 1, offset);
-  const int32_t middle = w->offsets / 2;
-  for (int32_t a = 0; a < count; ++a) {
-    const int32_t from = work->tile_active[first + in_tile[a]];
-    if (from < 0) continue;
-    const mpmi_active_node *A = &w->active[from];
-    const int32_t *place = w->place + (int64_t)from * w->offsets;
-    for (int32_t b = 0; b < count; ++b) {
-      const int32_t to = work->tile_active[first + in_tile[b]];
-      if (to < 0) continue;
-      const mpmi_active_node *B = &w->active[to];
-      double *value = w->matrix.value + (int64_t)place[middle + offset[b] - offset[a]] * dim * dim;
-      for (int32_t i = 0; i < dim; ++i) {
-        const double *K = work->K + (int64_t)(i * nodes + a) * row + b;
-        for (int32_t j = 0; j < dim; ++j) value[i * dim + j] += A->sign[i] * B->sign[j] * K[j * nodes];
-      }
-    }
-  }
+  const int32_t dim = s->grid->dim, nodes = MPMI_STENCIL_NODES(dim, s->grid->width), row = dim * nodes;
+  if (dim == 3)
+    add_stencil_in(3, s->newton, work, nodes, first);
+  else if (dim == 2)
+    add_stencil_in(2, s->newton, work, nodes, first);
+  else
+    add_stencil_in(1, s->newton, work, nodes, first);
   memset(work->K, 0, (size_t)(row * row) * sizeof *work->K);
 }
 

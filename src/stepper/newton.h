@@ -37,6 +37,12 @@ enum {
   MPMI_VECTORS
 };
 
+/* The nodes of a stencil: where they lie in a tile, and among the offsets that couple. */
+enum { MPMI_MOST_NODES = MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH) };
+typedef struct mpmi_stencil {
+  int32_t count, in_tile[MPMI_MOST_NODES], offset[MPMI_MOST_NODES];
+} mpmi_stencil;
+
 /* What one task assembles with; component arrays have the length of the longest batch. */
 typedef struct mpmi_newton_work {
   double *tile; /* forces on the nodes of one block, 4 each */
@@ -55,6 +61,7 @@ typedef struct mpmi_newton {
   mpmi_active_node *active;
   int64_t map_capacity;
   int32_t *active_of; /* [slots] active node, or -1 */
+  mpmi_stencil stencil;
   int32_t offsets;    /* nodes that share a stencil with one, itself among them */
   int64_t place_capacity;
   int32_t *place; /* [active][offsets] entry of the matrix that couples a node with the one that far away */
@@ -118,6 +125,7 @@ mpm_status mpmi_unknowns_find(mpm_stepper *s);
 void mpmi_unknowns_fold(const mpm_stepper *s, const double *forces, double *vector);
 
 /* assembly.c */
+void mpmi_stencil_find(const mpm_stepper *s, mpmi_stencil *to);
 mpm_status mpmi_external_forces(mpm_stepper *s);
 /* Stress and internal force of the displacements u; with stiffness the matrix too. Fails as the law does. */
 mpm_status mpmi_internal_forces(mpm_stepper *s, const double *u, double dt, int32_t stiffness);

@@ -102,6 +102,7 @@ mpm_status mpmi_newton_prepare(mpm_stepper *s) {
   mpm_status status = s->newton ? MPM_OK : make(s);
   if (status) return status;
   mpmi_newton *w = s->newton;
+  mpmi_stencil_find(s, &w->stencil);
   w->history_count = 0;
   w->iterations = w->solver_used = 0;
   w->linear_iterations = 0;

@@ -213,6 +213,7 @@ mpm_status mpmi_step(mpm_stepper *s, double dt) {
   status = mpmi_is_implicit(s) ? implicit(s, dt) : explicit(s, dt);
   if (!status) status = finish(s, dt);
   if (status) return give_up(s, status);
+  s->context->error[0] = '\0'; /* of attempts before */
   s->phase = MPMI_IDLE;
   return MPM_OK;
 }
