@@ -1,6 +1,6 @@
 """Implicit steps: vibration, equilibrium, locking, limit loads, and explicit steps beside them."""
 from plot import axes, loglog, plot, read, slope
-from plot_cases import rows
+from plot_cases import clouds, rows
 
 LINEAR, QUADRATIC, GIMP, CPGIMP = 1.0, 2.0, 16.0, 18.0
 
@@ -158,3 +158,31 @@ def explicit_against_implicit():
         panel.set_xlabel("speed of the platen / (cm/s)")
         panel.legend()
     return figure
+
+
+# Finite elements, 40 x 40 biquadratic: compression, displacement in cm, force in dyn/cm.
+BILLET = ((0.1, 1.0550, 3.028e7), (0.2, 2.2957, 6.978e7), (0.3, 3.7607, 1.2352e8), (0.4, 5.4453, 2.0722e8),
+          (0.5, 7.292, 3.613e8))
+
+
+@plot
+def billet():
+    figure, ax = axes(2)
+    data = read("billet")
+    for name in ("linear 4x4", "linear 2x2", "cpGIMP 2x2", "quadratic 4x4"):
+        at = rows(data, variant=name)
+        for panel, key in zip(ax, ("displacement", "force")):
+            panel.plot([100 * c for c in at["compression"]], at[key], label=name)
+    for k in (1, 2):
+        ax[k - 1].plot([100 * row[0] for row in BILLET], [row[k] for row in BILLET], "ko", label="finite elements")
+        ax[k - 1].set_xlabel("compression / %")
+        ax[k - 1].legend()
+    ax[0].set_ylabel("displacement of the corner / cm")
+    ax[1].set_ylabel("force on half a platen / (dyn/cm)")
+    return figure
+
+
+@plot
+def billet_particles():
+    return clouds("billet_particles", "compression", "mises", "von Mises stress / (dyn/cm$^2$)", ("x", "y"), 3, width=4.4,
+                  height=3.6, label="compression {:g}")

@@ -99,7 +99,7 @@ int main(int argc, char **argv) {
   FILE *csv = verify_csv("beam");
   fprintf(csv, "basis,per_cell,quasi_static,share,x,y\n");
   const int steps = verify_quick() ? 25 : 50;
-  const char *source = "own finite elements of order 4; cases A5.2", *axis[2] = {"u_x", "u_y"};
+  const char *source = "own finite elements of order 4; set tolerance", *axis[2] = {"u_x", "u_y"};
   static const struct {
     const char *name;
     int32_t basis, per_cell;

@@ -90,7 +90,7 @@ int main(int argc, char **argv) {
       {"nu = 0.4999, quadratic, remedy, hypoelastic", "linear_elastic", 70.0, 0.4999, 18.508 / 70.0,
        MPM_BSPLINE2, 1}};
   const int sizes = verify_quick() ? 2 : 3;
-  const char *source = "own finite elements of order 4; cases A5.4";
+  const char *source = "own finite elements of order 4; set tolerance";
   FILE *csv = verify_csv("cook"), *cloud = verify_csv("cook_cloud");
   fprintf(csv, "variant,h,displacement,fem\n");
   fprintf(cloud, "remedy,x,y,pressure\n");

@@ -68,7 +68,7 @@ int main(int argc, char **argv) {
   const int count = verify_quick() ? 2 : (int)(sizeof list / sizeof *list);
   FILE *csv = verify_csv("footing");
   fprintf(csv, "variant,cells,settlement,load,iterations\n");
-  const char *source = "Prandtl, with a margin for the width of the strip and for locking; cases A6.4";
+  const char *source = "Prandtl, with a margin for the width of the strip and for locking; set tolerance";
   for (int i = 0; i < count; ++i) {
     const variant *v = &list[i];
     char what[80];

@@ -63,7 +63,7 @@ int main(int argc, char **argv) {
   for (int i = 0; i < 4; ++i) {
     is[i] = vibrate(1.0, list[i].cfl, list[i].steps, 0.5, csv);
     snprintf(what, sizeof what, "CFL %g, %d steps: largest energy / E0", list[i].cfl, list[i].steps);
-    verify_gate(what, is[i].most, 0.0, 1.001, "the trapezoidal rule; numerics, section 4");
+    verify_gate(what, is[i].most, 0.0, 1.001, "the trapezoidal rule");
     snprintf(what, sizeof what, "CFL %g: most Newton iterations", list[i].cfl);
     verify_gate(what, is[i].most_iterations, 1.0, 5.0, "quadratic convergence");
   }

@@ -78,7 +78,7 @@ static outcome load(int32_t basis, int32_t per_a, int32_t remedy, FILE *csv) {
 
 static void gates(const char *name, int32_t basis, int32_t per_a, int32_t remedy, FILE *csv) {
   const outcome is = load(basis, per_a, remedy, csv);
-  const char *source = "closed form; cases A6.2";
+  const char *source = "closed form; set tolerance";
   char what[96];
   const int plain = basis == MPM_LINEAR && !remedy;
   snprintf(what, sizeof what, "%s, h = a/%d: limit pressure over exact", name, (int)per_a);
@@ -98,7 +98,7 @@ static void gates(const char *name, int32_t basis, int32_t per_a, int32_t remedy
   if (per_a < 16 || basis != MPM_LINEAR) return;
   snprintf(what, sizeof what, "%s, h = a/%d: pressure at first yield over exact", name, (int)per_a);
   verify_expected_failure(
-      what, is.first, 0.97, 1.03, "Lame and von Mises; cases A6.2",
+      what, is.first, 0.97, 1.03, "Lame and von Mises; set tolerance",
       "the inner layers of particles bear the load, and stress is not smooth within a cell of it");
 }
 

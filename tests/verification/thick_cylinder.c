@@ -47,7 +47,7 @@ int main(int argc, char **argv) {
   verify_begin("thick_cylinder", argc, argv);
   FILE *csv = verify_csv("thick_cylinder");
   fprintf(csv, "basis,cells,r,u,u_exact,radial,radial_exact,hoop,hoop_exact\n");
-  const char *source = "Lame; cases A5.5";
+  const char *source = "Lame; set tolerance";
   char what[96];
   for (int32_t n = 10; n <= (verify_quick() ? 10 : 40); n *= 2) {
     const outcome is = load(MPM_BSPLINE2, n, csv);

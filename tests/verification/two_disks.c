@@ -89,11 +89,11 @@ int main(int argc, char **argv) {
   fclose(history);
   fclose(cloud);
   fclose(table);
-  const char *source = "own FEM, 23040 elements; cases A4.1";
+  const char *source = "own FEM, 23040 elements; set tolerance";
   for (int k = 0; k < levels; ++k) {
     char what[80];
     snprintf(what, sizeof what, "h = 1/%d: momentum / that of a disk", 20 << k);
-    verify_gate(what, at[k].momentum, 0.0, 1e-12, "conservation; cases A8");
+    verify_gate(what, at[k].momentum, 0.0, 1e-12, "conservation; set tolerance");
   }
   for (int k = 1; k < levels; ++k) {
     char what[4][80];

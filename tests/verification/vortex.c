@@ -98,7 +98,7 @@ int main(int argc, char **argv) {
   fprintf(csv, "APIC,0.05,%.5e,%.5e\n", affine[0], affine[1]);
   fclose(csv);
   fclose(cloud);
-  const char *source = "Kamojjala et al. 2015; cases A3.2";
+  const char *source = "Kamojjala et al. 2015; set tolerance";
   const char *independent = "an independent implementation, with a margin of 25 %";
   if (verify_quick()) {
     verify_gate("h = 0.05: displacement at t = 1, L2", error[1][1], 0.0, 1.25 * 4.9e-3, independent);

@@ -67,7 +67,7 @@ static void martin_moyce(int cells, FILE *csv, FILE *cloud) {
   }
   verify_close(&it.w);
   char what[96];
-  const char *source = "Martin and Moyce 1952, table 2; cases A7.2: codes lead, because the gate takes time";
+  const char *source = "Martin and Moyce 1952, table 2; set tolerance: codes lead, because the gate takes time";
   snprintf(what, sizeof what, "Martin and Moyce, 2 a / %d: front ahead of the experiment, least", cells);
   verify_gate(what, least, -0.03, 0.2, source);
   snprintf(what, sizeof what, "Martin and Moyce, 2 a / %d: front ahead of the experiment, most", cells);
@@ -107,7 +107,7 @@ static void ritter(int cells, FILE *csv) {
       fprintf(csv, "%d,%.1f,%.4f,%.5f,%.5f\n", cells, T, s, depth[k], due);
     }
     free(x);
-    const char *source = "Ritter 1892 with a margin for vertical motion; cases A7.2";
+    const char *source = "Ritter 1892 with a margin for vertical motion; set tolerance";
     snprintf(what, sizeof what, "Ritter, h0 / %d, t sqrt(g / h0) = %g: depth at the gate / h0 (4/9)", cells,
              T);
     verify_gate(what, at_gate, 0.9 * 4.0 / 9.0, 1.1 * 4.0 / 9.0, source);
