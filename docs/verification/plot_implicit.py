@@ -11,7 +11,7 @@ def free_vibration_implicit():
     data = read("free_vibration_implicit")
     for cfl, gamma, h, text in ((1, 0.5, 1, "CFL 1"), (10, 0.5, 1, "CFL 10"), (1, 0.5, 0.5, "CFL 1, h = 1/2"),
                                 (10, 0.6, 1, r"CFL 10, $\gamma$ = 0.6")):
-        at = rows(data, cfl=float(cfl), gamma=gamma, h=float(h))
+        at = rows(data, basis=LINEAR, cfl=float(cfl), gamma=gamma, h=float(h))
         ax[0].plot(at["t"], at["energy"], "-" if cfl == 1 else "o-", label=text)
     ax[0].set_xlabel("t c / 4 L")
     for cfl in (100, 1000):

@@ -79,23 +79,28 @@ static outcome load(int32_t basis, int32_t per_a, int32_t remedy, FILE *csv) {
 static void gates(const char *name, int32_t basis, int32_t per_a, int32_t remedy, FILE *csv) {
   const outcome is = load(basis, per_a, remedy, csv);
   const char *source = "closed form; set tolerance";
+  const char *smooth = "the remedy on a smooth basis is soft on coarse cells; it goes with h";
   char what[96];
-  const int plain = basis == MPM_LINEAR && !remedy;
+  const int plain = basis == MPM_LINEAR && !remedy, coarse = basis == MPM_BSPLINE2 && remedy && per_a < 16;
   snprintf(what, sizeof what, "%s, h = a/%d: limit pressure over exact", name, (int)per_a);
-  if (plain && per_a < 16)
+  if (per_a == 4 && (plain || coarse))
     verify_expected_failure(what, is.limit, 0.97, 1.03, source,
-                            "volumetric locking of plastic flow; it goes with h");
+                            plain ? "volumetric locking of plastic flow; it goes with h" : smooth);
   else
     verify_gate(what, is.limit, 0.97, 1.03, source);
-  if (plain) return;
+  if (plain || (coarse && per_a == 4)) return;
   for (int32_t k = 0; k < FRONTS; ++k) {
     snprintf(what, sizeof what, "%s, h = a/%d: pressure with the front near %d mm over exact", name,
              (int)per_a, (int)a + 20 * (k + 1));
     verify_gate(what, is.front[k], 0.97, 1.03, source);
   }
   snprintf(what, sizeof what, "%s, h = a/%d: u(b) with the front at 140 mm over exact", name, (int)per_a);
-  verify_gate(what, is.outer, 0.95, 1.05, "the same, incompressible where plastic: hence 5 %");
-  if (per_a < 16 || basis != MPM_LINEAR) return;
+  source = "the same, incompressible where plastic: hence 5 %";
+  if (coarse)
+    verify_expected_failure(what, is.outer, 0.95, 1.05, source, smooth);
+  else
+    verify_gate(what, is.outer, 0.95, 1.05, source);
+  if (per_a < 16) return;
   snprintf(what, sizeof what, "%s, h = a/%d: pressure at first yield over exact", name, (int)per_a);
   verify_expected_failure(
       what, is.first, 0.97, 1.03, "Lame and von Mises; set tolerance",
@@ -109,12 +114,12 @@ int main(int argc, char **argv) {
   gates("linear, plain", MPM_LINEAR, 4, 0, csv);
   gates("linear, remedy", MPM_LINEAR, 4, 1, csv);
   if (!verify_quick()) {
-    gates("linear, remedy", MPM_LINEAR, 8, 1, csv);
-    gates("linear, remedy", MPM_LINEAR, 16, 1, csv);
-    gates("linear, plain", MPM_LINEAR, 8, 0, csv);
     gates("linear, plain", MPM_LINEAR, 16, 0, csv);
-    gates("quadratic, plain", MPM_BSPLINE2, 8, 0, csv);
-    gates("quadratic, plain", MPM_BSPLINE2, 16, 0, csv);
+    for (int32_t per_a = 4; per_a <= 16; per_a *= 2) gates("quadratic, remedy", MPM_BSPLINE2, per_a, 1, csv);
+    for (int32_t per_a = 8; per_a <= 16; per_a *= 2) {
+      gates("linear, remedy", MPM_LINEAR, per_a, 1, csv);
+      gates("quadratic, plain", MPM_BSPLINE2, per_a, 0, csv);
+    }
   }
   fclose(csv);
   return verify_end();
