@@ -49,8 +49,8 @@ typedef struct mpm_stepper_desc {
   double gravity[3];    /**< acceleration of all particles, length/time^2; default 0 */
   double newmark_beta;  /**< default 1/4; with gamma 1/2 as Guilkey & Weiss 2003, eqs 14-15 */
   double newmark_gamma; /**< default 1/2; larger values damp high frequencies */
-  /** Bound on the displacement increment against the largest of the step: Guilkey & Weiss 2003, eq. 13,
-   * eps_d. Newton iterations end when the bounds on displacement, energy and residual hold together.
+  /** Bound on the displacement increment against the largest of the step, both measured by the diagonal of the
+   * stiffness, in which light nodes count little: Guilkey & Weiss 2003, eq. 13, eps_d. Newton iterations end when the bounds on displacement, energy and residual hold together.
    * Default 1e-8. */
   double newton_tolerance_displacement;
   double newton_tolerance_energy;   /**< on increment times residual: the same, eps_e; default 1e-14 */

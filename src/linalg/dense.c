@@ -86,8 +86,9 @@ static int64_t factor_block(mpmi_dense_front *f) {
     fetch_block(f, f->upper, upper);
   }
   for (int64_t j = 0; j < width; ++j) {
-    const double d = lower[j * MPMI_PANEL + j];
-    if (!(fabs(d) > f->tiny) || !isfinite(d)) return f->first + j;
+    double d = lower[j * MPMI_PANEL + j];
+    if (!isfinite(d)) return f->first + j;
+    if (!(fabs(d) > f->tiny)) d = MPMI_NO_PIVOT;
     f->pivot[f->first + j] = d;
     f->inverse[j] = 1.0 / d;
     double *l = lower + j * MPMI_PANEL, *u = symmetric ? l : upper + j * MPMI_PANEL;

@@ -13,13 +13,14 @@
 #include <stdint.h>
 
 enum { MPMI_PANEL = 32 }; /* pivots per panel */
+#define MPMI_NO_PIVOT 1e200 /* in the place of one that is rounding of zero: its unknown becomes 0 */
 
 typedef struct mpmi_dense_front {
   double *lower, *upper, *update;
   double *pivot; /* [pivots] out: D */
   double *scratch;
   int64_t pivots, rows;
-  double tiny;           /* a pivot of that size or less ends the elimination */
+  double tiny;           /* a pivot of that size or less is none */
   int64_t first, width;  /* of the panel under way */
   int64_t pivot_slivers; /* groups of rows below it: of pivots, */
   int64_t slivers;       /* and of all rows */
@@ -31,7 +32,7 @@ typedef struct mpmi_dense_front {
 typedef struct mpmi_dense {
   /* Rows are taken in slivers of so many, columns of the update in strips. */
   int64_t sliver, strip;
-  /* Factors the panel's own block; the number of the pivot that is tiny or not finite, or -1. */
+  /* Factors the panel's own block; the number of the pivot that is not finite, or -1. */
   int64_t (*factor_block)(mpmi_dense_front *front);
   /* The rows below: slivers [begin, end). */
   void (*solve_slivers)(const mpmi_dense_front *front, int64_t begin, int64_t end);

@@ -63,6 +63,9 @@ mpm_status mpmi_direct(mpmi_system *s) {
   }
   int32_t good = 0;
   if ((status = refine(s, &good)) || good) return status;
+  if (f->skipped >= 0) s->report->negative = -1;
+  if (f->skipped >= 0)
+    return mpmi_system_fail_at(s, MPM_SINGULAR, f->skipped, "the linear system is singular: no pivot");
   if (!(s->reached < s->b_norm))
     for (int64_t i = 0; i < s->n; ++i) s->x[i] = 0.0;
   const mpmi_gmres_plan plan = {times_factor, s, RESTART, 0, s->report->iterations + RESTART * CYCLES};

@@ -255,6 +255,10 @@ mpm_status mpmi_factor_numbers(mpmi_factor *f, const mpmi_matrix *A, int64_t *no
     return MPM_SINGULAR;
   }
   f->negative = 0;
-  for (int64_t u = 0; u < f->unknowns; ++u) f->negative += f->pivot[u] < 0.0;
+  f->skipped = -1;
+  for (int64_t u = f->unknowns - 1; u >= 0; --u) {
+    f->negative += f->pivot[u] < 0.0;
+    if (f->pivot[u] == MPMI_NO_PIVOT) f->skipped = node_of_unknown(f, u);
+  }
   return MPM_OK;
 }

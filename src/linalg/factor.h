@@ -54,6 +54,7 @@ typedef struct mpmi_factor {
   double *scale, *pivot, *y; /* [unknowns] in the order of elimination; y: of solutions */
   double *arena;             /* update matrices and scratch */
   int64_t negative;          /* pivots */
+  int64_t skipped;           /* row of the first node with a pivot that is rounding of zero, or -1 */
   /* Memory. */
   char *slab;
   double *number;
@@ -68,8 +69,9 @@ void mpmi_factor_free(mpmi_factor *f);
 mpm_status mpmi_factor_analyse(mpmi_factor *f, const mpmi_matrix *A);
 /* Which updates and scratch lie where, and which fronts are tasks. (fronts.c) */
 void mpmi_factor_lay_out(mpmi_factor *f);
-/* MPM_SINGULAR: *node is the row of the matrix with the tiny pivot, or with nothing in it; MPM_NONFINITE:
- * that with a value that is not finite. */
+/* Unknowns whose pivot is rounding of zero are left out: they are 0 in solutions, and whether these are any is for
+ * the residual to say. MPM_SINGULAR: *node is the row of the matrix with nothing in it, or with a pivot that is not
+ * finite; MPM_NONFINITE: that with a value that is not finite. */
 mpm_status mpmi_factor_numbers(mpmi_factor *f, const mpmi_matrix *A, int64_t *node);
 /* Size of the smallest pivot of the scaled matrix, and the row of its node. */
 double mpmi_factor_least_pivot(const mpmi_factor *f, int64_t *node);

@@ -101,9 +101,8 @@ static void clear_matrix_task(void *data, int64_t k) {
   if (end > begin) memset(A->value + begin, 0, (size_t)(end - begin) * sizeof(double));
 }
 
-mpm_status mpmi_internal_forces(mpm_stepper *s, const double *u, double dt, int32_t stiffness) {
-  mpmi_newton *w = s->newton;
-  force_job clear = {s, w->force, 0};
+/* Strain of the displacements u, and then what is asked for on the nodes. */
+static mpm_status strain(mpm_stepper *s, const double *u, double dt, int32_t what) {
   spread_job spread = {s, u, dt};
   clear_failures(s);
   mpm_status status = mpmi_run_tasks(s, 0, s->tasks, spread_task, &spread);
@@ -111,16 +110,25 @@ mpm_status mpmi_internal_forces(mpm_stepper *s, const double *u, double dt, int3
     mpmi_make_volumes(s, 0); /* the averages weigh with those of the start of the step */
     status = mpmi_stage_locking(s, s->node, s->values, dt);
   }
-  if (!status) status = mpmi_run_tasks(s, 0, s->tasks, clear_task, &clear);
-  if (!status && stiffness) status = mpmi_run_tasks(s, 0, s->tasks, clear_matrix_task, s);
-  if (!status && stiffness && s->desc.locking_remedy) status = mpmi_locking_stiffness_begin(s);
+  return status ? status : mpmi_stage_g2p(s, MPMI_G2P_DEFORM | what, s->node, s->values, dt);
+}
+
+mpm_status mpmi_internal_forces(mpm_stepper *s, const double *u, double dt) {
+  mpmi_newton *w = s->newton;
+  force_job clear = {s, w->force, 0};
+  mpm_status status = mpmi_run_tasks(s, 0, s->tasks, clear_task, &clear);
+  if (!status) status = strain(s, u, dt, MPMI_G2P_FORCES);
+  if (!status) mpmi_unknowns_fold(s, w->force, w->vector[MPMI_INTERNAL]);
+  return status;
+}
+
+mpm_status mpmi_stiffness(mpm_stepper *s, const double *u, double dt) {
+  mpmi_newton *w = s->newton;
+  mpm_status status = mpmi_run_tasks(s, 0, s->tasks, clear_matrix_task, s);
+  if (!status && s->desc.locking_remedy) status = mpmi_locking_stiffness_begin(s);
   for (int32_t k = 0; k < s->tasks; ++k) w->work[k].symmetric = 1;
+  if (!status) status = strain(s, u, dt, MPMI_G2P_STIFFNESS);
   if (status) return status;
-  status = mpmi_stage_g2p(s, MPMI_G2P_DEFORM | MPMI_G2P_FORCES | (stiffness ? MPMI_G2P_STIFFNESS : 0),
-                          s->node, s->values, dt);
-  if (status) return status;
-  mpmi_unknowns_fold(s, w->force, w->vector[MPMI_INTERNAL]);
-  if (!stiffness) return MPM_OK;
   w->matrix.symmetric = 1;
   for (int32_t k = 0; k < s->tasks; ++k) w->matrix.symmetric &= w->work[k].symmetric;
   if (s->desc.locking_remedy) mpmi_locking_stiffness_end(s);

@@ -59,7 +59,7 @@ static mpm_status find_accelerations(mpm_stepper *s, double dt) {
   double *u = w->vector[MPMI_U], *external = w->vector[MPMI_EXTERNAL];
   const int64_t n = w->matrix.rows * dim;
   memset(u, 0, (size_t)n * sizeof *u);
-  mpm_status status = mpmi_internal_forces(s, u, dt, 0);
+  mpm_status status = mpmi_internal_forces(s, u, dt);
   if (status) return status;
   mpmi_unknowns_fold(s, w->external, external);
   for (int64_t i = 0; i < w->active_count; ++i) {

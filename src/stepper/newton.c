@@ -30,6 +30,13 @@ static double norm_of(const iteration *it, const double *v, int32_t free_only) {
   return sqrt(sum);
 }
 
+/* Of an increment, by stiffness: a node at the rim of a body may move far and mean little. */
+static double length_of(const iteration *it, const double *du) {
+  double sum = 0.0;
+  for (int64_t i = 0; i < it->n; ++i) sum += it->w->vector[MPMI_DIAGONAL][i] * du[i] * du[i];
+  return sqrt(sum);
+}
+
 /* From the internal forces as they are. The scale knows reactions: they are internal forces of held
  * components. */
 static void find_residual(iteration *it) {
@@ -69,7 +76,7 @@ static mpm_status assemble(iteration *it) {
   mpmi_matrix *A = &w->matrix;
   const int32_t dim = s->grid->dim;
   const double started = mpmi_seconds();
-  const mpm_status status = mpmi_internal_forces(s, w->vector[MPMI_U], it->dt, 1);
+  const mpm_status status = mpmi_stiffness(s, w->vector[MPMI_U], it->dt);
   if (status) return status;
   const double by_mass = mpmi_is_dynamic(s) ? 1.0 / (s->desc.newmark_beta * it->dt * it->dt) : 0.0;
   it->stiffness = 0.0;
@@ -77,6 +84,7 @@ static mpm_status assemble(iteration *it) {
     for (int32_t c = 0; c < dim; ++c) {
       double *diagonal = A->value + (w->diagonal[r] * dim + c) * dim + c;
       *diagonal += by_mass * w->mass[r];
+      w->vector[MPMI_DIAGONAL][r * dim + c] = fabs(*diagonal);
       it->stiffness = fmax(it->stiffness, fabs(*diagonal));
     }
   w->assembly_seconds += mpmi_seconds() - started;
@@ -160,7 +168,7 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
   for (int32_t halvings = 0;; ++halvings, *taken *= 0.5) {
     for (int64_t i = 0; i < it->n; ++i) u[i] = start[i] + *taken * du[i];
     const double started = mpmi_seconds();
-    const mpm_status status = mpmi_internal_forces(it->s, u, it->dt, 0);
+    const mpm_status status = mpmi_internal_forces(it->s, u, it->dt);
     w->assembly_seconds += mpmi_seconds() - started;
     if (status && (!may_shrink(it->s, status) || halvings == MOST_HALVINGS)) return status;
     if (status) continue;
@@ -209,8 +217,8 @@ static mpm_status iterate(iteration *it) {
     if (w->iterations == 1) it->energy_first = energy;
     if ((status = line_search(it, moves_held, &taken))) return status;
     note(it);
-    if (taken == 1.0 && converged(it, norm_of(it, w->vector[MPMI_DU], 0), energy)) return MPM_OK;
-    it->du_largest = fmax(it->du_largest, taken * norm_of(it, w->vector[MPMI_DU], 0));
+    if (taken == 1.0 && converged(it, length_of(it, w->vector[MPMI_DU]), energy)) return MPM_OK;
+    it->du_largest = fmax(it->du_largest, taken * length_of(it, w->vector[MPMI_DU]));
   }
 }
 
@@ -218,7 +226,7 @@ mpm_status mpmi_newton_solve(mpm_stepper *s, double dt) {
   mpmi_newton *w = s->newton;
   iteration it = {.s = s, .w = w, .dt = dt, .n = w->matrix.rows * s->grid->dim};
   memset(w->vector[MPMI_U], 0, (size_t)it.n * sizeof(double));
-  mpm_status status = mpmi_internal_forces(s, w->vector[MPMI_U], dt, 0);
+  mpm_status status = mpmi_internal_forces(s, w->vector[MPMI_U], dt);
   if (status) return status;
   find_residual(&it);
   note(&it);

@@ -32,6 +32,7 @@ enum {
   MPMI_INTERNAL, /* internal force of the displacements as they are */
   MPMI_RESIDUAL, /* internal + inertia - external */
   MPMI_RHS,
+  MPMI_DIAGONAL, /* of the matrix, sizes */
   MPMI_DU,
   MPMI_START, /* displacement before the increment */
   MPMI_VECTORS
@@ -127,8 +128,9 @@ void mpmi_unknowns_fold(const mpm_stepper *s, const double *forces, double *vect
 /* assembly.c */
 void mpmi_stencil_find(const mpm_stepper *s, mpmi_stencil *to);
 mpm_status mpmi_external_forces(mpm_stepper *s);
-/* Stress and internal force of the displacements u; with stiffness the matrix too. Fails as the law does. */
-mpm_status mpmi_internal_forces(mpm_stepper *s, const double *u, double dt, int32_t stiffness);
+/* Stress and internal force of the displacements u; the stiffness at them. Fail as the law does. */
+mpm_status mpmi_internal_forces(mpm_stepper *s, const double *u, double dt);
+mpm_status mpmi_stiffness(mpm_stepper *s, const double *u, double dt);
 /* Does the tile of a block reach over the end of a periodic axis? */
 int32_t mpmi_at_seam(const mpm_stepper *s, int64_t block);
 /* Called from the pass over the particles: what one batch adds, its law having run. */
