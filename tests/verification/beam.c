@@ -3,8 +3,9 @@
  * only. Gate: the middle of the tip.
  *
  * The beam swings far from the axes of the grid, so that its corners hold nodes by a few particles only,
- * fewer than it takes: inertia holds these, in slow and strongly damped motion (gamma = 1). For the same
- * reason the beam goes on for two cells beyond the load, without stress. */
+ * fewer than it takes: inertia holds these, in slow and strongly damped motion (gamma = 1). Quasi-static
+ * steps leave them where they are as long as nothing pulls them: the beam goes on for two cells beyond the
+ * load, without stress. */
 #include "verify.h"
 
 static const double length = 10.0, h = 0.25, E = 12e6, nu = 0.2, force = 1e5;
@@ -120,10 +121,18 @@ int main(int argc, char **argv) {
         verify_gate(what, is.u[c] / fem[c], 0.97, 1.03, source);
     }
   }
-  verify_expected_failure("quasi-static: share of the load that is reached",
-                          bend(MPM_BSPLINE2, 4, steps, 1, csv).share, 1.0, 1.0, source,
+  for (int i = 0; i < (verify_quick() ? 1 : 2); ++i) {
+    const outcome is = bend(i ? MPM_GIMP : MPM_BSPLINE2, 4, steps, 1, csv);
+    for (int c = 0; c < 2; ++c) {
+      snprintf(what, sizeof what, "quasi-static, %s, 4 x 4: %s of the tip over FEM", i ? "GIMP" : "quadratic",
+               axis[c]);
+      verify_gate(what, is.u[c] / fem[c], 0.97, 1.03, source);
+    }
+  }
+  verify_expected_failure("quasi-static, 6 x 6 per cell: share of the load that is reached",
+                          bend(MPM_BSPLINE2, 6, steps, 1, csv).share, 1.0, 1.0, source,
                           "corners of the body hold some nodes by too few particles, and nothing else does: "
-                          "MPM_SINGULAR or MPM_NOT_CONVERGED; inertia does");
+                          "MPM_NOT_CONVERGED; inertia does");
   fclose(csv);
   return verify_end();
 }
