@@ -257,7 +257,7 @@ check-asan:
 
 # The fork of each test would hide threads from the sanitizer.
 check-tsan:
-	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="context executor threads rollback restart" \
+	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="context executor threads rollback" \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
 
 # libFuzzer on saved states, descriptors and small clouds of particles: FUZZ_SECONDS each, from the committed corpora;

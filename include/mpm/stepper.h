@@ -49,9 +49,9 @@ typedef struct mpm_stepper_desc {
   double gravity[3];    /**< acceleration of all particles, length/time^2; default 0 */
   double newmark_beta;  /**< default 1/4; with gamma 1/2 as Guilkey & Weiss 2003, eqs 14-15 */
   double newmark_gamma; /**< default 1/2; larger values damp high frequencies */
-  /** Bound on the displacement increment against the largest of the step, both measured by the diagonal of the
-   * stiffness, in which light nodes count little: Guilkey & Weiss 2003, eq. 13, eps_d. Newton iterations end when the bounds on displacement, energy and residual hold together.
-   * Default 1e-8. */
+  /** Bound on the displacement increment against the largest of the step, both measured by the diagonal of
+   * the stiffness, in which light nodes count little: Guilkey & Weiss 2003, eq. 13, eps_d. Newton iterations
+   * end when the bounds on displacement, energy and residual hold together. Default 1e-8. */
   double newton_tolerance_displacement;
   double newton_tolerance_energy;   /**< on increment times residual: the same, eps_e; default 1e-14 */
   double newton_tolerance_residual; /**< on the residual over a scale that includes reactions; default 1e-8 */
@@ -377,14 +377,14 @@ MPM_API mpm_status mpm_step_abort(mpm_stepper *stepper);
 MPM_API mpm_status mpm_grid_map(mpm_stepper *stepper, int32_t body, const char *field, int32_t access,
                                 mpm_view *view);
 
-/** force[dim]: that which the wall at a face exerts on the material, mean over the last step. MPM_E_ARG:
- * no such face. MPM_E_STATE before the first step. */
+/** force[dim]: that which the wall at a face exerts on the material, mean over the last step; with
+ * MPM_NEWMARK that at its end. MPM_E_ARG: no such face. MPM_E_STATE before the first step. */
 MPM_API mpm_status mpm_stepper_wall_reaction(const mpm_stepper *stepper, int32_t face, double *force);
 
-/** force[dim]: that which the prescribed particles of a set exert on the material, mean over the last
- * step, on the axes on which they are prescribed: what holds them, less their own inertia, weight and
- * external forces. 0 for a set without such particles. MPM_E_NOT_FOUND: the set is not in this stepper.
- * MPM_E_STATE before the first step. */
+/** force[dim]: that which the prescribed particles of a set exert on the material, mean over the last step,
+ * with MPM_NEWMARK at its end, on the axes on which they are prescribed: what holds them, less their own
+ * inertia, weight and external forces. 0 for a set without such particles. MPM_E_NOT_FOUND: the set is not in
+ * this stepper. MPM_E_STATE before the first step. */
 MPM_API mpm_status mpm_stepper_particles_reaction(const mpm_stepper *stepper, const mpm_particles *prescribed,
                                                   double *force);
 

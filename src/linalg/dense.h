@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-enum { MPMI_PANEL = 32 }; /* pivots per panel */
+enum { MPMI_PANEL = 32 };   /* pivots per panel */
 #define MPMI_NO_PIVOT 1e200 /* in the place of one that is rounding of zero: its unknown becomes 0 */
 
 typedef struct mpmi_dense_front {

@@ -69,9 +69,9 @@ void mpmi_factor_free(mpmi_factor *f);
 mpm_status mpmi_factor_analyse(mpmi_factor *f, const mpmi_matrix *A);
 /* Which updates and scratch lie where, and which fronts are tasks. (fronts.c) */
 void mpmi_factor_lay_out(mpmi_factor *f);
-/* Unknowns whose pivot is rounding of zero are left out: they are 0 in solutions, and whether these are any is for
- * the residual to say. MPM_SINGULAR: *node is the row of the matrix with nothing in it, or with a pivot that is not
- * finite; MPM_NONFINITE: that with a value that is not finite. */
+/* Unknowns whose pivot is rounding of zero are left out: they are 0 in solutions, and whether these are any
+ * is for the residual to say. MPM_SINGULAR: *node is the row of the matrix with nothing in it, or with a
+ * pivot that is not finite; MPM_NONFINITE: that with a value that is not finite. */
 mpm_status mpmi_factor_numbers(mpmi_factor *f, const mpmi_matrix *A, int64_t *node);
 /* Size of the smallest pivot of the scaled matrix, and the row of its node. */
 double mpmi_factor_least_pivot(const mpmi_factor *f, int64_t *node);

@@ -65,6 +65,11 @@ static void let_grow(mpm_stepper *s, double dt) {
   if (s->controller_dt > 1e6 * dt) s->controller_dt = 0.0;
 }
 
+/* The first matrix of a quasi-static step does not know dt: cutting that would not help. */
+static int32_t no_cut_helps(const mpm_stepper *s, mpm_status status) {
+  return status == MPM_SINGULAR && s->desc.quasi_static && s->last.newton_iterations <= 1;
+}
+
 static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
   if (d->dt_first > 0.0) s->controller_dt = d->dt_first;
   for (int64_t step = 0; s->t < d->t_end && (!d->max_steps || step < d->max_steps);) {
@@ -86,8 +91,8 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
     }
     const double smaller = CUT * dt;
     /* cutting ends where numbers lose digits: the smallest would be cut to itself */
-    if (status < MPM_CUT_DT || status > MPM_SINGULAR || smaller < d->dt_min || smaller < DBL_MIN ||
-        s->t + smaller == s->t)
+    if (status < MPM_CUT_DT || status > MPM_SINGULAR || no_cut_helps(s, status) || smaller < d->dt_min ||
+        smaller < DBL_MIN || s->t + smaller == s->t)
       return status;
     s->controller_dt = smaller;
   }

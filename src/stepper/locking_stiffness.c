@@ -74,6 +74,10 @@ void mpmi_locking_stiffness_add(mpm_stepper *s, const mpmi_newton_work *work, co
   if (corner < 0) return;
   for (int32_t k = dim - 1; k >= 0; --k) {
     shift[k] = node_rest % edge - (cell_rest % edge - grid->below);
+    if (grid->desc.periodic[k]) { /* cell and stencil may have been placed at different images */
+      const int64_t cells = grid->desc.cells[k];
+      shift[k] = (int32_t)((shift[k] % cells + cells) % cells);
+    }
     node_rest /= edge;
     cell_rest /= edge;
     count *= grid->width;

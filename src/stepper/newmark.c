@@ -131,7 +131,7 @@ static void show_velocities(mpm_stepper *s, double dt) {
     double *to = s->node + 8 * node->slot;
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)node->row * dim + c;
-      if (w->matrix.held[at] == MPMI_ROW_WALL) continue;
+      if (w->matrix.held[at]) continue; /* u / dt is what was prescribed */
       to[c] = node->sign[c] * (w->vector[MPMI_V0][at] + dt * (1.0 - gamma) * w->vector[MPMI_A0][at]) +
               gamma * to[4 + c];
     }

@@ -19,7 +19,8 @@ typedef struct iteration {
   double dt;
   int64_t n;          /* rows * dim */
   double norm, scale; /* of the residual; free components, all kinds of forces */
-  double stiffness;   /* largest diagonal entry */
+  double stiffness;   /* largest diagonal entry, without inertia */
+  double inertia;     /* of the terms that M a is the difference of */
   double du_largest, energy_first;
 } iteration;
 
@@ -43,14 +44,19 @@ static void find_residual(iteration *it) {
   const mpm_stepper *s = it->s;
   mpmi_newton *w = it->w;
   const double *internal = w->vector[MPMI_INTERNAL], *external = w->vector[MPMI_EXTERNAL];
-  double *residual = w->vector[MPMI_RESIDUAL], inertia = 0.0;
+  double *residual = w->vector[MPMI_RESIDUAL], inertia = 0.0, terms = 0.0;
   const int32_t dim = s->grid->dim;
   for (int64_t i = 0; i < it->n; ++i) {
     double Ma = 0.0;
     if (mpmi_is_dynamic(s)) Ma = w->mass[i / dim] * mpmi_newmark_acceleration(s, it->dt, i);
     residual[i] = internal[i] + Ma - external[i];
     inertia += Ma * Ma;
+    if (!mpmi_is_dynamic(s)) continue;
+    const double reach = fabs(w->vector[MPMI_U][i]) + it->dt * fabs(w->vector[MPMI_V0][i]);
+    const double term = w->mass[i / dim] * reach / (s->desc.newmark_beta * it->dt * it->dt);
+    terms += term * term;
   }
+  it->inertia = sqrt(terms);
   it->norm = norm_of(it, residual, 1);
   it->scale = fmax(sqrt(inertia), fmax(norm_of(it, internal, 0), norm_of(it, external, 0)));
 }
@@ -59,9 +65,9 @@ static double relative(const iteration *it) {
   return it->scale > 0.0 ? it->norm / it->scale : 0.0;
 }
 
-/* Forces of displacements that are rounding of a cell. */
+/* Forces of displacements that are rounding of a cell, and rounding of inertia. */
 static double noise(const iteration *it) {
-  return 16.0 * DBL_EPSILON * it->stiffness * it->s->grid->h_min * sqrt((double)it->n);
+  return 16.0 * DBL_EPSILON * (it->stiffness * it->s->grid->h_min * sqrt((double)it->n) + it->inertia);
 }
 
 static void note(iteration *it) {
@@ -83,9 +89,9 @@ static mpm_status assemble(iteration *it) {
   for (int64_t r = 0; r < A->rows; ++r)
     for (int32_t c = 0; c < dim; ++c) {
       double *diagonal = A->value + (w->diagonal[r] * dim + c) * dim + c;
+      it->stiffness = fmax(it->stiffness, fabs(*diagonal));
       *diagonal += by_mass * w->mass[r];
       w->vector[MPMI_DIAGONAL][r * dim + c] = fabs(*diagonal);
-      it->stiffness = fmax(it->stiffness, fabs(*diagonal));
     }
   w->assembly_seconds += mpmi_seconds() - started;
   return MPM_OK;

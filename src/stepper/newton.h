@@ -63,7 +63,7 @@ typedef struct mpmi_newton {
   int64_t map_capacity;
   int32_t *active_of; /* [slots] active node, or -1 */
   mpmi_stencil stencil;
-  int32_t offsets;    /* nodes that share a stencil with one, itself among them */
+  int32_t offsets; /* nodes that share a stencil with one, itself among them */
   int64_t place_capacity;
   int32_t *place; /* [active][offsets] entry of the matrix that couples a node with the one that far away */
   int64_t members_capacity;

@@ -159,8 +159,12 @@ uint32_t mpmi_prescribed_move(mpm_stepper *s, int32_t m, int64_t block, const mp
       if (!mpmi_is_prescribed(set, begin + p, c)) continue;
       const double u = mean[c * set->ld + begin + p], moved = move->v_new[c][p];
       if (!s->desc.quasi_static) {
-        part->impulse[c] -= mass[begin + p] * (moved - move->v_old[c][p]);
-        part->work += mass[begin + p] * (u - moved) * u;
+        /* of an implicit step the nodes' balance is that at its end */
+        const double gained = mpmi_is_implicit(s)
+                                  ? move->dt * (mpmi_f64(set, MPMI_ACCELERATION, 1) + c * set->ld)[begin + p]
+                                  : moved - move->v_old[c][p];
+        part->impulse[c] -= mass[begin + p] * gained;
+        part->work += mass[begin + p] * (u - move->v_old[c][p] - gained) * u;
       }
       move->v_new[c][p] = u;
       move->x_new[c][p] = move->x_old[c][p] + move->dt * u;

@@ -79,6 +79,9 @@ static void mark(mpm_stepper *s, int64_t *active, int64_t *rows) {
   for (int64_t i = 0; i < slots; ++i) w->active_of[i] = -1;
   for (int64_t i = 0; i < slots; ++i)
     if (is_active(s, &cut, i)) w->active_of[i] = w->active_of[master_of(s, i)] = 0;
+  /* images of what is active are too: a cell may be seen from either side of a seam */
+  for (int64_t i = 0; i < slots; ++i)
+    if (w->active_of[i] < 0 && w->active_of[master_of(s, i)] >= 0) w->active_of[i] = 0;
   *active = *rows = 0;
   for (int64_t i = 0; i < slots; ++i) {
     if (w->active_of[i] < 0) continue;
@@ -232,11 +235,12 @@ static mpm_status reserve(mpm_stepper *s, int64_t active, int64_t rows) {
       return MPM_E_NOMEM;
     }
   }
-  if ((status = mpmi_reserve_roomy(c, (void **)&w->active, &w->active_capacity, active + 1, sizeof *w->active)) ||
+  if ((status =
+           mpmi_reserve_roomy(c, (void **)&w->active, &w->active_capacity, active + 1, sizeof *w->active)) ||
       (status = mpmi_reserve_roomy(c, (void **)&w->place, &w->place_capacity, (active + 1) * w->offsets,
                                    sizeof *w->place)) ||
-      (status =
-           mpmi_reserve_roomy(c, (void **)&w->diagonal, &w->diagonal_capacity, rows + 1, sizeof *w->diagonal)) ||
+      (status = mpmi_reserve_roomy(c, (void **)&w->diagonal, &w->diagonal_capacity, rows + 1,
+                                   sizeof *w->diagonal)) ||
       (status = mpmi_reserve_roomy(c, (void **)&w->mass, &w->mass_capacity, rows + 1, sizeof *w->mass)) ||
       (status = mpmi_reserve_roomy(c, (void **)&w->vector_memory, &w->vector_capacity,
                                    MPMI_VECTORS * (rows + 1) * dim, sizeof *w->vector_memory)))

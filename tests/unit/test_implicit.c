@@ -368,6 +368,84 @@ START_TEST(time_of_forces) {
 }
 END_TEST
 
+/* With the remedy particles of a cell couple across the seam of a periodic axis, however few cells it has. */
+START_TEST(remedy_across_a_seam) {
+  static const int64_t cells[] = {1, 2, 3, 5, 17};
+  const implicit_basis *basis = &implicit_bases[_i % IMPLICIT_BASES];
+  const int64_t across = cells[_i / IMPLICIT_BASES];
+  world w;
+  world_desc d = implicit_default(2, 8, 0.1, basis);
+  d.grid.cells[0] = across;
+  d.grid.periodic[0] = 1;
+  d.stepper.locking_remedy = 1;
+  world_open(&w, &d);
+  mpm_particles *set = world_add_set(&w);
+  const double lower[] = {0.0, 0.2}, upper[] = {0.1 * (double)across, 0.5};
+  const int32_t per_cell[] = {2, 2};
+  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  const int64_t n = mpm_particles_count(set);
+  double *v = malloc((size_t)(2 * n) * sizeof *v);
+  dice d7 = {7};
+  for (int64_t i = 0; i < 2 * n; ++i) v[i] = throw_between(&d7, -1.0, 1.0);
+  put(&w, set, "velocity", 2, v);
+  free(v);
+  for (int32_t k = 0; k < 3; ++k) {
+    const mpm_step_info info = world_step(&w, 0.01);
+    ck_assert_msg(info.newton_iterations <= 6, "%s on %d cells: %d iterations", basis->name, (int)across,
+                  (int)info.newton_iterations);
+  }
+  world_close(&w);
+}
+END_TEST
+
+/* However short the step, forces count: rounding is that of what moves, not of inertia over dt^2. */
+START_TEST(short_steps) {
+  world w;
+  world_desc d = implicit_default(2, 8, 1.0, &implicit_bases[1]);
+  d.stepper.gravity[1] = -10.0;
+  world_open(&w, &d);
+  mpm_particles *set = world_add_set(&w);
+  implicit_block(&w, set, 3.0, 5.0, NULL);
+  const double dt = 1e-9;
+  for (int32_t k = 1; k <= 3; ++k) {
+    world_step(&w, dt);
+    double *v = fetch(&w, set, "velocity", 2);
+    const int64_t n = mpm_particles_count(set);
+    for (int64_t i = 0; i < n; ++i) ck_within("v", v[n + i], -10.0 * k * dt, 1e-6 * dt);
+    free(v);
+  }
+  world_close(&w);
+}
+END_TEST
+
+static mpm_status sink(void *user, const mpm_particle_batch *b, double *add) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i) add[b->ld + i] -= 0.1;
+  return MPM_OK;
+}
+
+/* A platen in the air: nothing acts on the material but what its own motion takes. */
+START_TEST(platen_in_the_air) {
+  world w;
+  world_desc d = implicit_default(2, 8, 0.1, &implicit_bases[1]);
+  const mpm_param steel[] = {{"density", 1e3}};
+  d.model = "rigid";
+  d.params = steel;
+  d.param_count = 1;
+  world_open(&w, &d);
+  mpm_particles *set = world_add_set(&w);
+  implicit_block(&w, set, 0.3, 0.5, NULL);
+  ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, sink, NULL));
+  for (int32_t k = 0; k < 4; ++k) {
+    world_step(&w, 0.01);
+    double force[2];
+    ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, set, force));
+    for (int32_t c = 0; c < 2; ++c) ck_within("reaction", force[c], 0.0, 1e-8);
+  }
+  world_close(&w);
+}
+END_TEST
+
 /* The same bits on any number of threads, by the pool and by an executor in random order. */
 START_TEST(threads) {
   static const int32_t counts[] = {1, 2, 3, 4, 7};
@@ -402,6 +480,9 @@ Suite *implicit_suite(void) {
   tcase_add_test(tests, patch);
   tcase_add_test(tests, halved_increments);
   tcase_add_loop_test(tests, time_of_forces, 0, 2);
+  tcase_add_loop_test(tests, remedy_across_a_seam, 0, 5 * IMPLICIT_BASES);
+  tcase_add_test(tests, short_steps);
+  tcase_add_test(tests, platen_in_the_air);
   tcase_add_loop_test(tests, threads, 0, 18);
   suite_add_tcase(suite, tests);
   suite_add_tcase(suite, implicit_failures_case());

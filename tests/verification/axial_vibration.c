@@ -88,7 +88,8 @@ int main(int argc, char **argv) {
   const double kh = 19.0 * PI / (2.0 * 200.0);
   verify_gate("mode 10, 200 cells: period error / ((beta h)^2 / 4)", error[2] / (0.25 * kh * kh), 0.95, 1.05,
               "dispersion of the method, derived");
-  if (!verify_quick()) verify_gate("mode 10, 400 cells: period error", error[3], -0.005, 0.005, "set tolerance");
+  if (!verify_quick())
+    verify_gate("mode 10, 400 cells: period error", error[3], -0.005, 0.005, "set tolerance");
   verify_gate("mode 10: order of the period, 50 to 200 cells", log2(error[0] / error[2]) / 2.0, 1.7, 2.4,
               "second order of the spatial discretisation");
   return verify_end();

@@ -59,6 +59,7 @@ int main(int argc, char **argv) {
   fclose(csv);
   fclose(table);
   verify_gate("20 cells: pressure at half depth over exact", at[1].middle, 0.98, 1.02, "set tolerance");
-  verify_gate("20 cells: pressure, relative L2 error over the column", at[1].whole, 0.0, 0.02, "set tolerance");
+  verify_gate("20 cells: pressure, relative L2 error over the column", at[1].whole, 0.0, 0.02,
+              "set tolerance");
   return verify_end();
 }

@@ -67,7 +67,8 @@ static void martin_moyce(int cells, FILE *csv, FILE *cloud) {
   }
   verify_close(&it.w);
   char what[96];
-  const char *source = "Martin and Moyce 1952, table 2; set tolerance: codes lead, because the gate takes time";
+  const char *source =
+      "Martin and Moyce 1952, table 2; set tolerance: codes lead, because the gate takes time";
   snprintf(what, sizeof what, "Martin and Moyce, 2 a / %d: front ahead of the experiment, least", cells);
   verify_gate(what, least, -0.03, 0.2, source);
   snprintf(what, sizeof what, "Martin and Moyce, 2 a / %d: front ahead of the experiment, most", cells);
