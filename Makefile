@@ -256,8 +256,9 @@ check-asan:
 	  BUILD=$(BUILD)-asan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 
 # The fork of each test would hide threads from the sanitizer.
+TSAN_SUITES ?= context executor threads rollback restart linalg
 check-tsan:
-	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="context executor threads rollback" \
+	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
 
 # libFuzzer on saved states, descriptors and small clouds of particles: FUZZ_SECONDS each, from the committed corpora;
