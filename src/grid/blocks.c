@@ -264,6 +264,17 @@ int64_t mpmi_blocks_node(const mpmi_blocks *b, const int64_t *index) {
   return block < 0 ? -1 : (int64_t)block * b->nodes + place;
 }
 
+int64_t mpmi_blocks_near(const mpmi_blocks *b, int64_t block, const int32_t *at) {
+  int32_t n = 0, place = 0;
+  for (int32_t k = 0; k < b->grid->dim; ++k) {
+    const int32_t side = at[k] < 0 ? 0 : at[k] >= b->edge ? 2 : 1;
+    n = 3 * n + side;
+    place = place * b->edge + at[k] - (side - 1) * b->edge;
+  }
+  const int32_t other = b->neighbour[block][n];
+  return other == MPMI_NO_BLOCK ? -1 : (int64_t)other * b->nodes + place;
+}
+
 void mpmi_blocks_index(const mpmi_blocks *b, int64_t slot, int64_t *index) {
   const int64_t block = slot / b->nodes;
   int64_t place = slot % b->nodes;

@@ -45,6 +45,9 @@ void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stri
                              int32_t *coord);
 /* Slot (block * nodes + place) of a node by its index, or -1 when its block is not there. */
 int64_t mpmi_blocks_node(const mpmi_blocks *blocks, const int64_t *index);
+/* Slot of the node `at` steps from the first of a block, in it or in a neighbour; -1 when that is not there.
+ */
+int64_t mpmi_blocks_near(const mpmi_blocks *blocks, int64_t block, const int32_t *at);
 /* Index of the node in a slot. */
 void mpmi_blocks_index(const mpmi_blocks *blocks, int64_t slot, int64_t *index);
 

@@ -1,12 +1,18 @@
 /* Nodes that are not free: periodic images, mirrored ghosts, nodes on a wall, contact pairs.
  *
  * Seen from the grid update every linear condition is the same thing: the velocity of a dependent node is
- * that of its master, component by component with a sign, periodic image  v_image = v_master slip wall
- * v_ghost = mirror image (normal component negated), v_wall,n = 0 fixed wall      v_ghost = -v_mirror, v_wall
- * = 0 An orbit is a master with its dependants; conditions on several axes multiply. Mass, momentum and force
- * of an orbit are folded into the master, solved there, and copied back, which conserves what the condition
- * does not take away. Friction walls are contacts between the nodes of a wall and, for wide stencils, pairs
- * of ghost and mirror. */
+ * that of its master, component by component with a sign:
+ *
+ *   periodic image   v_image = v_master
+ *
+ *   slip wall        v_ghost = mirror image (normal component negated), v_wall,n = 0
+ *
+ *   fixed wall       v_ghost = -v_mirror, v_wall = 0
+ *
+ * An orbit is a master with its dependants; conditions on several axes multiply. Mass, momentum and force of
+ * an orbit are folded into the master, solved there, and copied back, which conserves what the condition does
+ * not take away. Friction walls are contacts between the nodes of a wall and, for wide stencils, pairs of
+ * ghost and mirror. */
 #ifndef MPMI_CONSTRAINTS_H
 #define MPMI_CONSTRAINTS_H
 

@@ -365,19 +365,10 @@ static uint32_t survey_batch(batch_job *b, int32_t what, int64_t begin, int64_t 
   return s->kernels->survey[dim](job, n, sums);
 }
 
-/* From nodal accelerations, for sets that do not have them. */
-static void accelerate_batch(batch_job *b, int64_t begin, int64_t n) {
-  const int32_t unknown = (b->set->dirty & MPMI_DIRTY_ACCELERATION) != 0;
+/* What the nodes hold, as a particle's velocity or acceleration. */
+static void take_means(batch_job *b, int32_t field, int64_t begin, int64_t n) {
   for (int32_t k = 0; k < b->job->s->grid->dim; ++k)
-    memcpy(component(b->set, MPMI_ACCELERATION, 1, k) + begin,
-           unknown ? b->v_bar + k * b->law.ld : component(b->set, MPMI_ACCELERATION, 0, k) + begin,
-           (size_t)n * sizeof(double));
-}
-
-static void probe_batch(batch_job *b, int64_t begin, int64_t n) {
-  for (int32_t k = 0; k < b->job->s->grid->dim; ++k)
-    memcpy(component(b->set, MPMI_VELOCITY, 1, k) + begin, b->v_bar + k * b->law.ld,
-           (size_t)n * sizeof(double));
+    memcpy(component(b->set, field, 1, k) + begin, b->v_bar + k * b->law.ld, (size_t)n * sizeof(double));
 }
 
 /* USF and implicit steps ask the law before particles move, and the survey of the motion wants to know the
@@ -397,8 +388,9 @@ static void one_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
   b->law_ran = 0;
   s->kernels->gather[s->grid->dim][s->grid->width][b->job->form](&b->gather, begin, n);
   /* the kernels write from the start of the batch's buffers */
-  if (what & MPMI_G2P_PROBE) probe_batch(b, begin, n);
-  if (what & MPMI_G2P_ACCELERATION) accelerate_batch(b, begin, n);
+  if (what & MPMI_G2P_PROBE) take_means(b, MPMI_VELOCITY, begin, n);
+  if ((what & MPMI_G2P_ACCELERATION) && (b->set->dirty & MPMI_DIRTY_ACCELERATION))
+    take_means(b, MPMI_ACCELERATION, begin, n);
   if (what & MPMI_G2P_DILATION) mpmi_locking_measure(s, b->set, b->law.L, b->law.ld, begin, n, b->job->dt);
   if (!(what & (MPMI_G2P_MOVE | MPMI_G2P_DEFORM))) return;
   if (mpmi_is_mls(s) && b->job->form == MPMI_GATHER_8_AFFINE) /* there C is the gradient too */

@@ -11,32 +11,27 @@
 
 #include <string.h>
 
-/* Nodes of all stencils of a cell, per axis and in all. */
-static int32_t span_of(const mpm_grid *grid) {
-  return grid->width + grid->centred;
-}
 enum { MOST_SPAN = 4, MOST_NODES = MOST_SPAN * MOST_SPAN * MOST_SPAN };
-static int32_t nodes_of(const mpm_grid *grid) {
-  int32_t nodes = 1;
-  for (int32_t k = 0; k < grid->dim; ++k) nodes *= span_of(grid);
-  return nodes;
+static int32_t nodes_of(const mpm_stepper *s) {
+  const int32_t span = mpmi_coupling_span(s);
+  return s->grid->dim == 3 ? span * span * span : span * span;
 }
 
 /* Of one cell: sum of new volumes, then by node and axis sum h g and sum V (1 + j) g. */
-static int64_t cell_values(const mpm_grid *grid) {
-  return 1 + 2 * (int64_t)nodes_of(grid) * grid->dim;
+static int64_t cell_values(const mpm_stepper *s) {
+  return 1 + 2 * (int64_t)nodes_of(s) * s->grid->dim;
 }
 
 mpm_status mpmi_locking_stiffness_begin(mpm_stepper *s) {
   mpmi_newton *w = s->newton;
-  const int64_t cells = w->matrix.rows, nodes = nodes_of(s->grid);
+  const int64_t cells = w->matrix.rows, nodes = nodes_of(s);
   mpm_status status;
-  if ((status = mpmi_reserve_roomy(s->context, (void **)&w->cell, &w->cell_capacity,
-                                   cells * cell_values(s->grid), sizeof *w->cell)) ||
+  if ((status = mpmi_reserve_roomy(s->context, (void **)&w->cell, &w->cell_capacity, cells * cell_values(s),
+                                   sizeof *w->cell)) ||
       (status = mpmi_reserve_roomy(s->context, (void **)&w->cell_node, &w->cell_node_capacity, cells * nodes,
                                    sizeof *w->cell_node)))
     return status;
-  memset(w->cell, 0, (size_t)(cells * cell_values(s->grid)) * sizeof *w->cell);
+  memset(w->cell, 0, (size_t)(cells * cell_values(s)) * sizeof *w->cell);
   for (int64_t i = 0; i < cells * nodes; ++i) w->cell_node[i] = -1;
   return MPM_OK;
 }
@@ -68,39 +63,40 @@ void mpmi_locking_stiffness_add(mpm_stepper *s, const mpmi_newton_work *work, co
                                 int64_t p, int32_t cell_place, const mpmi_locking_particle *of) {
   mpmi_newton *w = s->newton;
   const mpm_grid *grid = s->grid;
-  const int32_t dim = grid->dim, edge = MPMI_TILE_EDGE(dim, grid->width), span = span_of(grid);
+  const int32_t dim = grid->dim, edge = MPMI_TILE_EDGE(dim, grid->width), span = mpmi_coupling_span(s);
   const int32_t corner = work->tile_active[cell_place];
-  int32_t shift[3], cell_rest = cell_place, node_rest = W->node[p], count = 1;
-  if (corner < 0) return;
+  int32_t base = 0, scale = 1, cell_rest = cell_place, node_rest = W->node[p], in_cell[MPMI_MOST_NODES];
+  if (corner < 0) return; /* a lone particle on it: no other is in its cell */
   for (int32_t k = dim - 1; k >= 0; --k) {
-    shift[k] = node_rest % edge - (cell_rest % edge - grid->below);
+    int32_t shift = node_rest % edge - (cell_rest % edge - grid->below);
     if (grid->desc.periodic[k]) { /* cell and stencil may have been placed at different images */
       const int64_t cells = grid->desc.cells[k];
-      shift[k] = (int32_t)((shift[k] % cells + cells) % cells);
+      shift = (int32_t)((shift % cells + cells) % cells);
     }
+    base += shift * scale;
+    scale *= span;
     node_rest /= edge;
     cell_rest /= edge;
-    count *= grid->width;
   }
-  const int64_t cell = w->active[corner].row, nodes = nodes_of(grid);
-  double *sums = w->cell + cell * cell_values(grid);
+  const int32_t count = mpmi_cube_places(dim, grid->width, span, in_cell);
+  const int64_t cell = w->active[corner].row, nodes = nodes_of(s);
+  double *sums = w->cell + cell * cell_values(s);
   *sums++ += of->volume;
   for (int32_t a = 0; a < count; ++a) {
-    int32_t rest = a, at[3], in_cell = 0, in_tile = 0;
+    int32_t rest = a, at[3];
     double G[3];
     for (int32_t k = dim - 1; k >= 0; --k) {
       at[k] = rest % grid->width;
       rest /= grid->width;
     }
     for (int32_t k = 0; k < dim; ++k) {
-      in_cell = in_cell * span + at[k] + shift[k];
-      in_tile = in_tile * edge + at[k];
       G[k] = W->g[k][at[k]][p];
       for (int32_t o = 0; o < dim; ++o)
         if (o != k) G[k] *= W->w[o][at[o]][p];
     }
-    w->cell_node[cell * nodes + in_cell] = work->tile_active[W->node[p] + in_tile];
-    double *to = sums + (int64_t)2 * in_cell * dim;
+    const int32_t place = base + in_cell[a];
+    w->cell_node[cell * nodes + place] = work->tile_active[W->node[p] + w->stencil.in_tile[a]];
+    double *to = sums + (int64_t)2 * place * dim;
     for (int32_t i = 0; i < dim; ++i)
       for (int32_t K = 0; K < dim; ++K) {
         to[i] += of->h[3 * i + K] * G[K];
@@ -123,20 +119,12 @@ static double *entry_of(mpmi_newton *w, int32_t from, int32_t to, int32_t offset
 
 static void add_cell(mpm_stepper *s, int64_t cell) {
   mpmi_newton *w = s->newton;
-  const int32_t dim = s->grid->dim, span = span_of(s->grid), nodes = nodes_of(s->grid), reach = 2 * span - 1;
-  const double *sums = w->cell + cell * cell_values(s->grid), volume = *sums++;
+  const int32_t dim = s->grid->dim, span = mpmi_coupling_span(s), nodes = nodes_of(s);
+  const double *sums = w->cell + cell * cell_values(s), volume = *sums++;
   const int32_t *node = w->cell_node + cell * nodes;
   if (!(volume > 0.0)) return;
   int32_t place[MOST_NODES];
-  for (int32_t a = 0; a < nodes; ++a) {
-    int32_t rest = a, scale = 1;
-    place[a] = 0;
-    for (int32_t k = 0; k < dim; ++k) {
-      place[a] += rest % span * scale;
-      rest /= span;
-      scale *= reach;
-    }
-  }
+  mpmi_cube_places(dim, span, 2 * span - 1, place);
   for (int32_t a = 0; a < nodes; ++a)
     for (int32_t b = 0; b < nodes && node[a] >= 0; ++b) {
       if (node[b] < 0) continue;

@@ -81,7 +81,6 @@ static mpm_status assemble(iteration *it) {
   mpmi_newton *w = it->w;
   mpmi_matrix *A = &w->matrix;
   const int32_t dim = s->grid->dim;
-  const double started = mpmi_seconds();
   const mpm_status status = mpmi_stiffness(s, w->vector[MPMI_U], it->dt);
   if (status) return status;
   const double by_mass = mpmi_is_dynamic(s) ? 1.0 / (s->desc.newmark_beta * it->dt * it->dt) : 0.0;
@@ -93,7 +92,6 @@ static mpm_status assemble(iteration *it) {
       *diagonal += by_mass * w->mass[r];
       w->vector[MPMI_DIAGONAL][r * dim + c] = fabs(*diagonal);
     }
-  w->assembly_seconds += mpmi_seconds() - started;
   return MPM_OK;
 }
 
@@ -173,9 +171,7 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
   *taken = 1.0;
   for (int32_t halvings = 0;; ++halvings, *taken *= 0.5) {
     for (int64_t i = 0; i < it->n; ++i) u[i] = start[i] + *taken * du[i];
-    const double started = mpmi_seconds();
     const mpm_status status = mpmi_internal_forces(it->s, u, it->dt);
-    w->assembly_seconds += mpmi_seconds() - started;
     if (status && (!may_shrink(it->s, status) || halvings == MOST_HALVINGS)) return status;
     if (status) continue;
     find_residual(it);

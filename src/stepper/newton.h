@@ -3,8 +3,10 @@
  *
  *   newmark.c    one step: the state on nodes, the iterations, the new state of the particles
  *   newton.c     the iterations: residual, increment, line search, convergence
- *   unknowns.c   active nodes, their numbering, the pattern of the matrix
+ *   unknowns.c   active nodes, their numbering, who holds them
+ *   pattern.c    the pattern of the matrix
  *   assembly.c   forces and stiffness, block by block and colour by colour
+ *   assemble_batch.c  what one batch of particles adds to them
  *   reactions.c  what walls, the host and prescribed particles exert
  *
  * Vectors have matrix.rows * dim entries, one row per node that moves by itself; what happens at its periodic
@@ -66,7 +68,7 @@ typedef struct mpmi_newton {
   int32_t offsets; /* nodes that share a stencil with one, itself among them */
   int64_t place_capacity;
   int32_t *place; /* [active][offsets] entry of the matrix that couples a node with the one that far away */
-  int64_t members_capacity;
+  int64_t members_capacity, members_start_capacity;
   int64_t *members_start, *members; /* active nodes by row */
   int64_t diagonal_capacity;
   int64_t *diagonal; /* [rows] entry */
@@ -88,11 +90,26 @@ typedef struct mpmi_newton {
   double *history;
   int32_t iterations, solver_used;
   int64_t linear_iterations;
-  double factor_seconds, solve_seconds, assembly_seconds;
+  double factor_seconds, solve_seconds;
 } mpmi_newton;
 
 static inline int32_t mpmi_is_dynamic(const mpm_stepper *s) {
   return !s->desc.quasi_static;
+}
+
+/* Nodes along an axis that couple: of a stencil, or with the locking remedy of all stencils of a cell. */
+static inline int32_t mpmi_coupling_span(const mpm_stepper *s) {
+  return s->grid->width + (s->desc.locking_remedy ? s->grid->centred : 0);
+}
+
+/* Places of the nodes of a cube of `width` in one of `edge`, the last axis fastest; how many there are. */
+static inline int32_t mpmi_cube_places(int32_t dim, int32_t width, int32_t edge, int32_t *place) {
+  int32_t count = 1;
+  place[0] = 0;
+  for (int32_t axis = 0; axis < dim; ++axis, count *= width)
+    for (int32_t n = count - 1; n >= 0; --n)
+      for (int32_t k = width - 1; k >= 0; --k) place[n * width + k] = place[n] * edge + k;
+  return count;
 }
 
 /* newmark.c */
@@ -124,6 +141,9 @@ static inline double mpmi_newmark_acceleration(const mpm_stepper *s, double dt, 
 mpm_status mpmi_unknowns_find(mpm_stepper *s);
 /* Sums of nodal forces, 4 values each, over the nodes that move with each row. */
 void mpmi_unknowns_fold(const mpm_stepper *s, const double *forces, double *vector);
+
+/* pattern.c: of the active nodes as they are numbered. */
+mpm_status mpmi_make_pattern(mpm_stepper *s, int64_t rows);
 
 /* assembly.c */
 void mpmi_stencil_find(const mpm_stepper *s, mpmi_stencil *to);

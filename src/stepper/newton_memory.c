@@ -26,7 +26,8 @@ static double *carve_rows(carver *from, int64_t rows, int64_t length) {
 static void lay_out(const mpm_stepper *s, carver *from, mpmi_newton_work *to) {
   const mpm_grid *grid = s->grid;
   const int64_t row = grid->dim * MPMI_STENCIL_NODES(grid->dim, grid->width);
-  int64_t length = 0, tile = 1;
+  const int64_t tile = mpmi_tile_nodes(grid);
+  int64_t length = 0;
   size_t tangent = 0;
   for (int32_t m = 0; m < s->member_count; ++m) {
     const mpm_material *material = s->member[m].set->material;
@@ -35,7 +36,6 @@ static void lay_out(const mpm_stepper *s, carver *from, mpmi_newton_work *to) {
     length = ld > length ? ld : length;
     tangent = bytes > tangent ? bytes : tangent;
   }
-  for (int32_t k = 0; k < grid->dim; ++k) tile *= MPMI_TILE_EDGE(grid->dim, grid->width);
   to->tile = carve_rows(from, 4, tile);
   to->F_inc = carve_rows(from, 9, length);
   to->nominal = carve_rows(from, 9, length);
@@ -106,7 +106,7 @@ mpm_status mpmi_newton_prepare(mpm_stepper *s) {
   w->history_count = 0;
   w->iterations = w->solver_used = 0;
   w->linear_iterations = 0;
-  w->factor_seconds = w->solve_seconds = w->assembly_seconds = 0.0;
+  w->factor_seconds = w->solve_seconds = 0.0;
   if ((status = prepare_history(s)) || (status = prepare_work(s)) ||
       (status =
            mpmi_reserve_roomy(s->context, (void **)&w->force, &w->force_capacity, values, sizeof *w->force)))
@@ -125,7 +125,7 @@ void mpmi_newton_free(mpm_stepper *s) {
   mpmi_free(c, w->active_of, mpmi_bytes(w->map_capacity, sizeof *w->active_of));
   mpmi_free(c, w->place, mpmi_bytes(w->place_capacity, sizeof *w->place));
   mpmi_free(c, w->members, mpmi_bytes(w->members_capacity, sizeof *w->members));
-  mpmi_free(c, w->members_start, mpmi_bytes(w->members_capacity + 1, sizeof *w->members_start));
+  mpmi_free(c, w->members_start, mpmi_bytes(w->members_start_capacity, sizeof *w->members_start));
   mpmi_free(c, w->diagonal, mpmi_bytes(w->diagonal_capacity, sizeof *w->diagonal));
   mpmi_free(c, w->mass, mpmi_bytes(w->mass_capacity, sizeof *w->mass));
   mpmi_free(c, w->vector_memory, mpmi_bytes(w->vector_capacity, sizeof *w->vector_memory));

@@ -85,8 +85,7 @@ static void p2g_task(void *data, int64_t k) {
   const mpm_grid *grid = s->grid;
   const mpmi_cut *cut = &s->colour[job->colour];
   double *tile = s->scratch[k].tile;
-  size_t tile_doubles = (size_t)job->values;
-  for (int32_t d = 0; d < grid->dim; ++d) tile_doubles *= (size_t)MPMI_TILE_EDGE(grid->dim, grid->width);
+  const size_t tile_doubles = (size_t)job->values * (size_t)mpmi_tile_nodes(grid);
   mpmi_scatter scatter;
   memset(tile, 0, tile_doubles * sizeof *tile);
   for (int64_t i = cut->bound[k]; i < cut->bound[k + 1]; ++i) {

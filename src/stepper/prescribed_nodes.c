@@ -95,9 +95,7 @@ static void sum_task(void *data, int64_t k) {
   mpm_stepper *s = job->f->s;
   const mpmi_cut *cut = &s->colour[job->colour];
   double *tile = s->scratch[k].tile;
-  size_t doubles = 8;
-  for (int32_t d = 0; d < s->grid->dim; ++d) doubles *= (size_t)MPMI_TILE_EDGE(s->grid->dim, s->grid->width);
-  memset(tile, 0, doubles * sizeof *tile);
+  memset(tile, 0, 8 * (size_t)mpmi_tile_nodes(s->grid) * sizeof *tile);
   for (int64_t i = cut->bound[k]; i < cut->bound[k + 1]; ++i) {
     if (!mpmi_block_is(s, cut->list[i], MPMI_WITH_PRESCRIBED)) continue;
     visit_block(job->f, cut->list[i], tile, give_momentum);

@@ -17,6 +17,23 @@ void mpmi_sample_weights(const mpm_stepper *s, mpmi_scratch *scratch, const mpmi
   scratch->weights_seconds += SAMPLED_BLOCKS * (mpmi_seconds() - started);
 }
 
+void mpmi_lap(mpm_stepper *s, int32_t stage, double *from) {
+  const double now = mpmi_seconds();
+  s->seconds[stage] += now - *from;
+  s->seconds[MPMI_TIME_TOTAL] += now - *from;
+  *from = now;
+}
+
+void mpmi_book_samples(mpm_stepper *s, int32_t stage) {
+  double law = 0.0;
+  for (int32_t k = 0; k < s->tasks; ++k) {
+    law += s->scratch[k].law_seconds / s->tasks;
+    s->seconds[MPMI_TIME_WEIGHTS] += s->scratch[k].weights_seconds / s->tasks;
+  }
+  s->seconds[MPMI_TIME_LAW] += law;
+  s->seconds[stage] -= law;
+}
+
 mpm_status mpm_stepper_profile(mpm_stepper *s, int32_t reset, mpm_profile *out) {
   MPMI_ENTER(s, MPMI_STEPPER);
   if (!out) return mpmi_fail(s->context, MPM_E_ARG, "out is NULL");

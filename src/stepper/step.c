@@ -12,13 +12,6 @@ mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm
   return MPM_OK;
 }
 
-void mpmi_lap(mpm_stepper *s, int32_t stage, double *from) {
-  const double now = mpmi_seconds();
-  s->seconds[stage] += now - *from;
-  s->seconds[MPMI_TIME_TOTAL] += now - *from;
-  *from = now;
-}
-
 /* Anew, where folding has moved mass between nodes. */
 static void count_active(mpm_stepper *s) {
   const int64_t slots = s->blocks.count * s->blocks.nodes;
@@ -111,14 +104,7 @@ static mpm_status particles_part(mpm_stepper *s, double dt) {
     status = gather(s, MPMI_G2P_MOVE | (usl ? MPMI_G2P_DEFORM : 0), s->node, s->values, dt, &clock);
   if (!status && musl) status = project(s, MPMI_PROJECT_AGAIN, dt, &clock);
   if (!status && musl) status = gather(s, MPMI_G2P_DEFORM, s->again, 4, dt, &clock);
-  /* the law runs inside the tasks: its share of their time is moved from g2p */
-  double law = 0.0;
-  for (int32_t k = 0; k < s->tasks; ++k) {
-    law += s->scratch[k].law_seconds / s->tasks;
-    s->seconds[MPMI_TIME_WEIGHTS] += s->scratch[k].weights_seconds / s->tasks;
-  }
-  s->seconds[MPMI_TIME_LAW] += law;
-  s->seconds[MPMI_TIME_G2P] -= law;
+  mpmi_book_samples(s, MPMI_TIME_G2P);
   return status;
 }
 

@@ -314,6 +314,7 @@ void mpmi_tile_fetch(const mpm_stepper *s, int64_t block, const double *nodes, i
                      int32_t end);
 /* Adds the tile to the nodes and leaves it clean. */
 void mpmi_tile_add(const mpm_stepper *s, int64_t block, double *nodes, int32_t values, double *tile);
+int32_t mpmi_tile_nodes(const mpm_grid *grid);
 /* Axes of the basis as seen from a block. */
 void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis);
 /* Where the particles of a set are, and how large; copy: of position and deformation gradient. */
@@ -341,9 +342,12 @@ void mpmi_fill_info(const mpm_stepper *s, mpm_step_info *info);
 void mpmi_sample_weights(const mpm_stepper *s, mpmi_scratch *scratch, const mpmi_axis *axis, int32_t need,
                          const mpmi_points *points, int64_t begin, int64_t end);
 
-/* step.c */
 /* Adds the seconds since *from to a stage and restarts the clock. */
 void mpmi_lap(mpm_stepper *s, int32_t stage, double *from);
+/* The law runs inside the tasks of a stage: its share of their time is moved from there. */
+void mpmi_book_samples(mpm_stepper *s, int32_t stage);
+
+/* step.c */
 mpm_status mpmi_step(mpm_stepper *s, double dt);
 
 #endif

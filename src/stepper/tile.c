@@ -12,6 +12,12 @@ static void spans_of(const mpm_grid *grid, int32_t edge, span *out) {
   out[2] = (span){low + edge, 0, high};
 }
 
+int32_t mpmi_tile_nodes(const mpm_grid *grid) {
+  int32_t count = 1;
+  for (int32_t k = 0; k < grid->dim; ++k) count *= MPMI_TILE_EDGE(grid->dim, grid->width);
+  return count;
+}
+
 /* The box of nodes that the tile shares with neighbour n of a block. */
 static mpmi_box box_of(const mpm_stepper *s, const span *spans, int64_t block, int32_t n, double *nodes,
                        int32_t node_values, double *tile, int32_t tile_values) {

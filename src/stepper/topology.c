@@ -201,8 +201,7 @@ static mpm_status prepare_sets(mpm_stepper *s) {
 enum { GATHERED_ROWS = 3 + 3 + 9 };
 
 static size_t tile_bytes(const mpm_stepper *s) {
-  size_t bytes = 8 * sizeof(double);
-  for (int32_t k = 0; k < s->grid->dim; ++k) bytes *= (size_t)MPMI_TILE_EDGE(s->grid->dim, s->grid->width);
+  const size_t bytes = 8 * sizeof(double) * (size_t)mpmi_tile_nodes(s->grid);
   return (bytes + MPMI_ALIGNMENT - 1) / MPMI_ALIGNMENT * MPMI_ALIGNMENT;
 }
 

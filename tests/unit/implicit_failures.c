@@ -59,6 +59,28 @@ START_TEST(free_body) {
 }
 END_TEST
 
+/* A rigid body in the air: nothing moves it while it weighs nothing, and nothing carries its weight. */
+START_TEST(free_rigid_body) {
+  block b = {.desc = implicit_default(2, 8, 0.1, &implicit_bases[1]), .dt = 0.01};
+  const mpm_param steel[] = {{"density", 1e3}};
+  b.desc.model = "rigid";
+  b.desc.params = steel;
+  b.desc.param_count = 1;
+  b.desc.stepper.quasi_static = 1;
+  world_open(&b.w, &b.desc);
+  b.set = world_add_set(&b.w);
+  implicit_block(&b.w, b.set, 0.3, 0.5, NULL);
+  ck_ok(&b.w, mpm_particles_set_all(b.set, "prescribed", MPM_U8, 2, (const uint8_t[]){0, 0}));
+  world_step(&b.w, b.dt);
+  b.desc.stepper.gravity[1] = -5.0;
+  ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+  ck_assert_int_ge(fails(&b, MPM_SINGULAR, "rigid particles").node, 0);
+  ck_ok(&b.w, mpm_particles_set_all(b.set, "prescribed", MPM_U8, 2, (const uint8_t[]){0, 1}));
+  world_step(&b.w, b.dt);
+  world_close(&b.w);
+}
+END_TEST
+
 START_TEST(too_few_iterations) {
   block b;
   open_block(&b, 0);
@@ -397,6 +419,7 @@ TCase *implicit_failures_case(void) {
   TCase *tests = tcase_create("failures");
   tcase_set_timeout(tests, 60.0);
   tcase_add_test(tests, free_body);
+  tcase_add_test(tests, free_rigid_body);
   tcase_add_test(tests, too_few_iterations);
   tcase_add_test(tests, inverted);
   tcase_add_test(tests, law_in_trouble);

@@ -1,0 +1,204 @@
+/* What one batch of particles adds to forces and stiffness of the nodes: its law has run, its nominal stress
+ * and its tangent are pushed forward (transfer/stiffness.c) and spread over the nodes of their stencils. */
+#include "stepper/assemble.h"
+#include "stepper/locking.h"
+
+#include <string.h>
+
+size_t mpmi_force_tile_bytes(const mpm_stepper *s) {
+  return 4 * sizeof(double) * (size_t)mpmi_tile_nodes(s->grid);
+}
+
+mpmi_force_scatter mpmi_force_scatter_of(const mpm_stepper *s, const mpmi_member *member, double *tile) {
+  const mpm_particles *set = member->set;
+  mpmi_force_scatter job = {.weights = s->kernels->weights[s->grid->family][s->grid->dim],
+                            .points = mpmi_points_of(set, 0),
+                            .mass = mpmi_f64(set, MPMI_MASS, 0),
+                            .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
+                            .deforms = mpmi_material_kinematics(set->material) != MPMI_F_STAYS,
+                            .tile = tile};
+  for (int32_t k = 0; k < s->grid->dim; ++k) {
+    job.gravity[k] = s->desc.gravity[k];
+    job.force[k] = member->force ? member->force + k * set->ld : NULL;
+  }
+  return job;
+}
+
+/* Active node at each place of the tile of a block. */
+static void map_tile(const mpm_stepper *s, int64_t block, int32_t *to) {
+  const mpm_grid *grid = s->grid;
+  const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width), low = MPMI_RING + grid->below;
+  const int32_t count = mpmi_tile_nodes(grid);
+  for (int32_t i = 0; i < count; ++i) {
+    int32_t rest = i, at[3];
+    for (int32_t k = grid->dim - 1; k >= 0; --k) {
+      at[k] = rest % edge - low;
+      rest /= edge;
+    }
+    const int64_t slot = mpmi_blocks_near(&s->blocks, block, at);
+    to[i] = slot < 0 ? -1 : s->newton->active_of[slot];
+  }
+}
+
+void mpmi_assemble_begin(mpm_stepper *s, int32_t task, int32_t what, int64_t block) {
+  mpmi_newton_work *work = &s->newton->work[task];
+  if (what & MPMI_G2P_FORCES) memset(work->tile, 0, mpmi_force_tile_bytes(s));
+  if (what & MPMI_G2P_STIFFNESS) map_tile(s, block, work->tile_active);
+}
+
+void mpmi_assemble_end(mpm_stepper *s, int32_t task, int32_t what, int64_t block) {
+  if (what & MPMI_G2P_FORCES) mpmi_tile_add(s, block, s->newton->force, 4, s->newton->work[task].tile);
+}
+
+void mpmi_stencil_find(const mpm_stepper *s, mpmi_stencil *to) {
+  const int32_t dim = s->grid->dim, width = s->grid->width;
+  to->count = mpmi_cube_places(dim, width, MPMI_TILE_EDGE(dim, width), to->in_tile);
+  mpmi_cube_places(dim, width, 2 * mpmi_coupling_span(s) - 1, to->offset);
+}
+
+MPMI_INLINE void add_block(int32_t dim, int32_t nodes, const double *K, const mpmi_active_node *A,
+                           const mpmi_active_node *B, double *value) {
+  const int32_t plain = A->plain && B->plain;
+  for (int32_t i = 0; i < dim; ++i)
+    for (int32_t j = 0; j < dim; ++j) {
+      const double entry = K[(i * dim * nodes + j) * nodes];
+      value[i * dim + j] += plain ? entry : A->sign[i] * B->sign[j] * entry;
+    }
+}
+
+MPMI_INLINE void add_stencil_in(int32_t dim, mpmi_newton *w, const mpmi_newton_work *work, int32_t nodes,
+                                int32_t first) {
+  const mpmi_stencil *stencil = &w->stencil;
+  int32_t active[MPMI_MOST_NODES];
+  for (int32_t a = 0; a < stencil->count; ++a) active[a] = work->tile_active[first + stencil->in_tile[a]];
+  for (int32_t a = 0; a < stencil->count; ++a) {
+    if (active[a] < 0) continue;
+    const int32_t *place = w->place + (int64_t)active[a] * w->offsets + w->offsets / 2 - stencil->offset[a];
+    for (int32_t b = 0; b < stencil->count; ++b)
+      if (active[b] >= 0)
+        add_block(dim, nodes, work->K + (int64_t)a * dim * nodes + b, &w->active[active[a]],
+                  &w->active[active[b]], w->matrix.value + (int64_t)place[stencil->offset[b]] * dim * dim);
+  }
+}
+
+/* Adds the dense stiffness of the stencil whose first node lies at `first` of the tile, and clears it. */
+static void add_stencil(mpm_stepper *s, mpmi_newton_work *work, int32_t first) {
+  const int32_t dim = s->grid->dim, nodes = MPMI_STENCIL_NODES(dim, s->grid->width), row = dim * nodes;
+  if (dim == 3)
+    add_stencil_in(3, s->newton, work, nodes, first);
+  else if (dim == 2)
+    add_stencil_in(2, s->newton, work, nodes, first);
+  else
+    add_stencil_in(1, s->newton, work, nodes, first);
+  memset(work->K, 0, (size_t)(row * row) * sizeof *work->K);
+}
+
+/* The share of one particle in what couples those of its cell. */
+static void add_to_cell(mpm_stepper *s, const mpmi_newton_work *work, const mpm_particles *set,
+                        const mpmi_weights *W, int64_t p, int32_t cell, int64_t slot, int64_t q, int64_t ld) {
+  const int32_t dim = s->grid->dim;
+  mpmi_locking_particle of = {.volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot]};
+  for (int32_t i = 0; i < dim; ++i)
+    for (int32_t K = 0; K < dim; ++K) {
+      of.inverse[3 * K + i] = work->inverse[(3 * K + i) * ld + q];
+      for (int32_t k = 0; k < dim; ++k)
+        of.h[3 * i + K] +=
+            work->weight[q] * work->h[(3 * i + k) * ld + q] * work->inverse[(3 * K + k) * ld + q];
+    }
+  mpmi_locking_stiffness_add(s, work, W, p, cell, &of);
+}
+
+/* Particles with the same stencil follow each other for the most part: their stiffness is added up first. */
+static void add_stiffness(mpm_stepper *s, mpmi_newton_work *work, const mpm_particles *set,
+                          const mpmi_axis *axis, int64_t begin, int64_t n, int64_t ld) {
+  const mpm_grid *grid = s->grid;
+  const mpmi_points points = mpmi_points_of(set, 0);
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
+  mpmi_weights W;
+  int32_t first = -1, cell[MPMI_CHUNK];
+  for (int64_t at = 0; at < n; at += MPMI_CHUNK) {
+    s->kernels->weights[grid->family][grid->dim](axis, MPMI_NEED_GRADIENT, &points, begin + at, MPMI_CHUNK,
+                                                 &W);
+    if (s->desc.locking_remedy) mpmi_cell_places(grid, axis, &points, begin + at, MPMI_CHUNK, cell);
+    for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
+      if (id[at + p] < 0) continue;
+      if (s->desc.locking_remedy) add_to_cell(s, work, set, &W, p, cell[p], begin + at + p, at + p, ld);
+      if (first >= 0 && W.node[p] != first) add_stencil(s, work, first);
+      first = W.node[p];
+      s->kernels->stiffness[grid->dim](grid->width, &W, p, work->stiffness + at + p, ld, work->K);
+    }
+  }
+  if (first >= 0) add_stencil(s, work, first);
+}
+
+/* V0 of the tangent: the law saw a dilation of `ratio` more than the volume has. */
+static void find_weights(const mpm_stepper *s, const mpm_particles *set, int64_t begin, int64_t n,
+                         double *weight) {
+  const double *volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin;
+  memcpy(weight, volume, (size_t)n * sizeof *weight);
+  if (!s->desc.locking_remedy) return;
+  const double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
+  for (int64_t p = 0; p < n; ++p) weight[p] /= ratio[p];
+}
+
+static int32_t is_finite(const double *value, int32_t dim, int64_t ld, int64_t n, int64_t *bad) {
+  for (int32_t e = 0; e < 81; ++e) {
+    if (e / 27 >= dim || e / 9 % 3 >= dim || e / 3 % 3 >= dim || e % 3 >= dim) continue;
+    for (*bad = 0; *bad < n; ++*bad)
+      if (value[e * ld + *bad] - value[e * ld + *bad] != 0.0) return 0;
+  }
+  return 1;
+}
+
+static int32_t find_tangent(mpm_stepper *s, mpmi_newton_work *work, mpmi_failure *failure, int32_t m,
+                            const mpmi_law_batch *law, int64_t begin, int64_t n) {
+  const mpm_particles *set = s->member[m].set;
+  const int32_t dim = s->grid->dim;
+  const mpm_status status = mpmi_material_tangent(set->material, s->context->isa, dim, &law->batch,
+                                                  work->tangent_scratch, work->tangent, &work->symmetric);
+  if (status) {
+    mpmi_failure_take(
+        failure, &(mpmi_failure){mpmi_callback_cause(status), status, m, -1, -1, "the tangent callback"});
+    return 0;
+  }
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
+  for (int64_t p = 0; p < n; ++p)
+    for (int32_t e = 0; e < 81 && id[p] < 0; ++e) work->tangent[e * law->ld + p] = 0.0;
+  int64_t bad;
+  if (is_finite(work->tangent, dim, law->ld, n, &bad)) return 1;
+  mpmi_failure_take(
+      failure, &(mpmi_failure){MPM_NONFINITE, 0, m, id[bad], -1, "the material's tangent is not finite"});
+  return 0;
+}
+
+void mpmi_assemble_batch(mpm_stepper *s, int32_t task, int32_t what, int32_t m, const mpmi_law_batch *law,
+                         const mpmi_axis *axis, int64_t begin, int64_t n) {
+  const mpm_particles *set = s->member[m].set;
+  const mpm_grid *grid = s->grid;
+  mpmi_newton_work *work = &s->newton->work[task];
+  if (mpmi_material_kinematics(set->material) == MPMI_F_STAYS) return;
+  if ((what & MPMI_G2P_STIFFNESS) && !find_tangent(s, work, &s->scratch[task].failure, m, law, begin, n))
+    return;
+  find_weights(s, set, begin, n, work->weight);
+  const double *volume = mpmi_f64(set, MPMI_VOLUME, 0) + begin;
+  if ((what & MPMI_G2P_STIFFNESS) && s->desc.locking_remedy)
+    mpmi_locking_stiffness_local(s, law, work->weight, volume, work->tangent, work->h);
+  const mpmi_push push = {.ld = law->ld,
+                          .F_inc = s->desc.locking_remedy ? work->F_inc : law->F_inc,
+                          .stress = law->stress_new,
+                          .volume = volume,
+                          .weight = work->weight,
+                          .tangent = what & MPMI_G2P_STIFFNESS ? work->tangent : NULL,
+                          .inverse = work->inverse,
+                          .nominal = work->nominal,
+                          .stiffness = work->stiffness};
+  s->kernels->push[grid->dim](&push, n);
+  if (what & MPMI_G2P_FORCES) {
+    mpmi_force_scatter scatter = mpmi_force_scatter_of(s, &s->member[m], work->tile);
+    memcpy(scatter.axis, axis, sizeof scatter.axis);
+    scatter.ld = law->ld;
+    scatter.nominal = work->nominal;
+    s->kernels->force_scatter[grid->dim][grid->width](&scatter, begin, n);
+  }
+  if (what & MPMI_G2P_STIFFNESS) add_stiffness(s, work, set, axis, begin, n, law->ld);
+}
