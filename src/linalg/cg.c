@@ -1,4 +1,4 @@
-/* Conjugate gradients with diagonal scaling: three passes over the vectors per iteration. */
+/* Conjugate gradients, with diagonal scaling or a preconditioner of the caller's. */
 #include <math.h>
 #include <string.h>
 
@@ -6,8 +6,11 @@
 
 typedef struct cg {
   mpmi_system *system;
+  mpmi_precondition_fn precondition; /* NULL: by the diagonal, in the passes over the vectors */
+  void *user;
   const double *inverse; /* of the diagonal */
   double *r, *p, *q;     /* residual, direction, A p */
+  double *z;             /* M^-1 r */
   double alpha, beta;
   mpmi_cut cut;
   double rz[MPMI_MOST_CHUNKS], rr[MPMI_MOST_CHUNKS]; /* by chunk: r . D^-1 r and r . r */
@@ -16,29 +19,41 @@ typedef struct cg {
 /* x += alpha p, r -= alpha q, and the sums of the new r. */
 static void advance_task(void *data, int64_t k) {
   cg *c = data;
-  double *x = c->system->x, *r = c->r, rz = 0.0, rr = 0.0;
+  double *x = c->system->x, *r = c->r, *z = c->z, rz = 0.0, rr = 0.0;
   const double *p = c->p, *q = c->q, *inverse = c->inverse, alpha = c->alpha;
   for (int64_t i = mpmi_cut_begin(&c->cut, k); i < mpmi_cut_begin(&c->cut, k + 1); ++i) {
     x[i] += alpha * p[i];
     r[i] -= alpha * q[i];
     rr += r[i] * r[i];
-    rz += r[i] * r[i] * inverse[i];
+    if (!inverse) continue;
+    z[i] = inverse[i] * r[i];
+    rz += r[i] * z[i];
   }
   c->rz[k] = rz;
   c->rr[k] = rr;
 }
 
-/* p = D^-1 r + beta p */
+/* p = z + beta p */
 static void turn_task(void *data, int64_t k) {
   const cg *c = data;
   double *p = c->p;
-  const double *r = c->r, *inverse = c->inverse, beta = c->beta;
+  const double *z = c->z, beta = c->beta;
   for (int64_t i = mpmi_cut_begin(&c->cut, k); i < mpmi_cut_begin(&c->cut, k + 1); ++i)
-    p[i] = inverse[i] * r[i] + beta * p[i];
+    p[i] = z[i] + beta * p[i];
 }
 
 static mpm_status run(cg *c, mpm_task_fn task) {
   return mpmi_cut_run(c->system->context, &c->cut, task, c);
+}
+
+/* x and r advance; z = M^-1 r and r . z follow. */
+static mpm_status advance(cg *c, double *rz) {
+  mpm_status status = run(c, advance_task);
+  if (status) return status;
+  *rz = mpmi_sum_in_order(c->rz, c->cut.count);
+  if (!c->precondition) return MPM_OK;
+  status = c->precondition(c->user, c->r, c->z);
+  return status ? status : mpmi_dot(c->system->context, c->r, c->z, c->system->n, rz);
 }
 
 /* r = b - A x with its sums, and the direction that it gives. */
@@ -48,10 +63,8 @@ static mpm_status start(cg *c, double *rz) {
   c->alpha = c->beta = 0.0;
   memset(c->p, 0, (size_t)s->n * sizeof *c->p);
   memset(c->q, 0, (size_t)s->n * sizeof *c->q);
-  if (!status) status = run(c, advance_task);
-  if (!status) status = run(c, turn_task);
-  *rz = mpmi_sum_in_order(c->rz, c->cut.count);
-  return status;
+  if (!status) status = advance(c, rz);
+  return status ? status : run(c, turn_task);
 }
 
 /* Iterates until the recursion's residual is as wanted or the limit is reached. */
@@ -63,10 +76,10 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
     mpm_status status = mpmi_matrix_apply_dot(s->A, c->p, c->q, &curvature);
     if (status) return status;
     if (!isfinite(curvature) || !isfinite(rz)) return MPM_NOT_CONVERGED;
-    if (!(curvature > 0.0)) return MPM_SINGULAR;
+    if (!(curvature > 0.0) || !(rz > 0.0)) return MPM_SINGULAR;
     c->alpha = rz / curvature;
-    if ((status = run(c, advance_task))) return status;
-    const double next = mpmi_sum_in_order(c->rz, c->cut.count);
+    double next;
+    if ((status = advance(c, &next))) return status;
     norm = sqrt(mpmi_sum_in_order(c->rr, c->cut.count));
     c->beta = next / rz;
     rz = next;
@@ -78,13 +91,15 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
 
 /* The recursion drifts from the true residual: where that is not as wanted yet, the iteration starts again
  * from it, as long as this helps. */
-mpm_status mpmi_cg(mpmi_system *s, int64_t limit) {
-  mpm_status status = mpmi_system_work(s, 3, 0);
+mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user, int64_t limit) {
+  mpm_status status = mpmi_system_work(s, 4, 0);
   if (status) return status;
-  cg c = {.system = s, .inverse = s->solver->diagonal, .cut = mpmi_cut_of(s->n, s->n)};
+  cg c = {.system = s, .precondition = precondition, .user = user, .cut = mpmi_cut_of(s->n, s->n)};
+  c.inverse = precondition ? NULL : s->solver->diagonal;
   c.r = s->solver->work;
   c.p = c.r + s->n;
   c.q = c.p + s->n;
+  c.z = c.q + s->n;
   double before = (double)INFINITY;
   for (;;) {
     double rz;

@@ -243,6 +243,10 @@ double mpmi_factor_least_pivot(const mpmi_factor *f, int64_t *node) {
   return fabs(f->pivot[least]);
 }
 
+double mpmi_factor_bytes(const mpmi_factor *f) {
+  return (double)sizeof(double) * ((double)f->panels * (f->symmetric ? 1.0 : 2.0) + (double)f->arena_size);
+}
+
 mpm_status mpmi_factor_numbers(mpmi_factor *f, const mpmi_matrix *A, int64_t *node) {
   const factor_job job = {f, A, tiny_pivot(f)};
   int64_t failed;

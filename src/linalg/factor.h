@@ -73,6 +73,8 @@ void mpmi_factor_lay_out(mpmi_factor *f);
  * is for the residual to say. MPM_SINGULAR: *node is the row of the matrix with nothing in it, or with a
  * pivot that is not finite; MPM_NONFINITE: that with a value that is not finite. */
 mpm_status mpmi_factor_numbers(mpmi_factor *f, const mpmi_matrix *A, int64_t *node);
+/* What its numbers take in memory, once analysed. */
+double mpmi_factor_bytes(const mpmi_factor *f);
 /* Size of the smallest pivot of the scaled matrix, and the row of its node. */
 double mpmi_factor_least_pivot(const mpmi_factor *f, int64_t *node);
 /* Scales of the unknowns; statuses as above. (scales.c) */

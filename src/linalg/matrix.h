@@ -18,6 +18,7 @@ typedef struct mpmi_matrix {
   int64_t (*index)[3]; /* [rows] integer grid index of the node; unused axes 0 */
   int64_t *number;     /* [rows] reported node number (mpm_step_info.node) */
   double *position;    /* [rows][3] */
+  int64_t period[3];   /* nodes along a periodic axis, else 0 */
   int64_t pattern_id;  /* changes whenever the pattern or held does */
 } mpmi_matrix;
 
@@ -39,6 +40,9 @@ mpm_status mpmi_matrix_residual(const mpmi_matrix *A, const double *b, const dou
 /* What rounding may leave of a residual: a norm of |A| |x| + |b| times a few units of the last place. */
 mpm_status mpmi_matrix_rounding(const mpmi_matrix *A, const double *b, const double *x, double *scratch,
                                 double *norm);
+
+/* The inverse of a block of n unknowns in place; 0 if there is none (preconditioner.c). */
+int32_t mpmi_invert_block(int32_t n, double a[3][3]);
 
 static inline int64_t mpmi_matrix_unknowns(const mpmi_matrix *A) {
   return A->rows * A->block;

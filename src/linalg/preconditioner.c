@@ -33,8 +33,8 @@ mpm_status mpmi_inverse_diagonal(const mpmi_system *s, int64_t *node) {
   return MPM_OK;
 }
 
-/* Gauss-Jordan with row pivoting, in place; 0 where the block is singular. */
-static int32_t invert(int32_t n, double a[3][3]) {
+/* Gauss-Jordan with row pivoting. */
+int32_t mpmi_invert_block(int32_t n, double a[3][3]) {
   double inverse[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
   for (int32_t c = 0; c < n; ++c) {
     int32_t pivot = c;
@@ -74,7 +74,7 @@ mpm_status mpmi_inverse_blocks(const mpmi_system *s, int64_t *node) {
       for (int32_t c = 0; c < n; ++c) sum += a[r][c] = block[r * n + c];
     *node = i;
     if (!isfinite(sum)) return MPM_NONFINITE;
-    const int32_t regular = invert(n, a);
+    const int32_t regular = mpmi_invert_block(n, a);
     double *out = s->solver->diagonal + i * n * n;
     for (int32_t r = 0; r < n; ++r)
       for (int32_t c = 0; c < n; ++c) out[r * n + c] = regular ? a[r][c] : r == c ? 1.0 : 0.0;

@@ -4,7 +4,7 @@
 
 #include "linalg/system.h"
 
-enum { RESTART = 60, MOST_CYCLES = 50 };
+enum { RESTART = 60, MOST_RESTARTS = 50, MOST_CYCLES = 500 };
 
 mpm_status mpmi_solver_create(mpm_context *context, mpmi_solver **out) {
   mpmi_solver *solver = mpmi_alloc_zeroed(context, sizeof *solver);
@@ -12,6 +12,7 @@ mpm_status mpmi_solver_create(mpm_context *context, mpmi_solver **out) {
   if (!solver) return MPM_E_NOMEM;
   solver->context = context;
   mpmi_factor_init(&solver->factor, context);
+  mpmi_multigrid_init(&solver->multigrid, context);
   mpmi_operator_init(&solver->lent, context);
   return MPM_OK;
 }
@@ -20,6 +21,7 @@ void mpmi_solver_destroy(mpmi_solver *solver) {
   if (!solver) return;
   mpm_context *context = solver->context;
   mpmi_factor_free(&solver->factor);
+  mpmi_multigrid_free(&solver->multigrid);
   mpmi_operator_free(&solver->lent);
   mpmi_free(context, solver->work, mpmi_bytes(solver->work_capacity, sizeof *solver->work));
   mpmi_free(context, solver->diagonal, mpmi_bytes(solver->diagonal_capacity, sizeof *solver->diagonal));
@@ -69,26 +71,40 @@ static void extents_of(const mpmi_matrix *A, double *extent) {
   }
 }
 
-/* Iterations grow with the number of nodes in a row; these are what CG needs for bodies of soft matter. */
-static double cg_iterations(const double *extent) {
-  return 20.0 * extent[0];
-}
+/* What solving takes, in products of the matrix with a vector. Iterations of CG grow with the number of nodes
+ * in a row, or with the step: inertia is a share of the diagonal. Those of multigrid grow with the overlap of
+ * stencils, for nodes at the rim of a body then share few particles. Measured on bodies of soft matter. */
+typedef struct costs {
+  double cg, multigrid, factor;
+} costs;
 
-/* Whether the factor is cheaper. Its work is that of its separators, which are as wide as half a stencil, and
- * of which a long body has many. Measured: 7 times the cube of one, and 20 multiplications in the time of one
- * of the matrix times a vector. */
-static int32_t factor_pays(const mpmi_matrix *A, const double *extent) {
+static costs costs_of(const mpmi_matrix *A, double inertia) {
+  double extent[3];
+  extents_of(A, extent);
   const double entries = (double)A->row_start[A->rows], rows = (double)A->rows;
   const double dim = 1.0 + (extent[1] > 1.0) + (extent[2] > 1.0);
   const double half_stencil = fmax(1.0, 0.5 * (pow(entries / rows, 1.0 / dim) - 1.0));
+  /* work of the factor is that of its separators, as wide as half a stencil, of which a long body has many:
+   * 7 times the cube of one, and 20 multiplications in the time of one of a product */
   const double separator = (double)mpmi_matrix_unknowns(A) / extent[0] * half_stencil;
   const double factor = 7.0 * separator * separator * separator * extent[0] / extent[1];
-  return factor < 20.0 * cg_iterations(extent) * entries * (double)(A->block * A->block);
+  costs c;
+  c.cg = fmin(20.0 * extent[0], inertia > 0.0 ? 20.0 / sqrt(inertia) : (double)INFINITY);
+  c.multigrid = 20.0 + 70.0 * half_stencil * half_stencil;
+  c.factor = factor / (20.0 * entries * (double)(A->block * A->block));
+  return c;
 }
 
 /* ---- methods ----------------------------------------------------------------------------------------- */
 static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
   return mpmi_system_fail_at(s, MPM_NONFINITE, row, "a diagonal entry of the linear system is not finite");
+}
+
+static mpm_status not_positive(const mpmi_system *s) {
+  s->report->indefinite = 1;
+  return mpmi_fail(s->context, MPM_SINGULAR,
+                   "conjugate gradients: the matrix is not positive definite: use MPM_SOLVER_LDLT or "
+                   "MPM_SOLVER_AUTO");
 }
 
 static mpm_status by_cg(mpmi_system *s, int64_t limit) {
@@ -102,68 +118,126 @@ static mpm_status by_cg(mpmi_system *s, int64_t limit) {
     return mpmi_system_fail_at(s, status, row, "conjugate gradients: a diagonal entry is not positive");
   }
   if (status == MPM_NONFINITE) return bad_diagonal(s, row);
-  if (!status) status = mpmi_cg(s, limit);
+  if (!status) status = mpmi_cg(s, NULL, NULL, limit);
   if (status == MPM_NOT_CONVERGED) return mpmi_system_not_converged(s, "conjugate gradients");
-  if (status != MPM_SINGULAR) return status;
-  s->report->indefinite = 1;
-  return mpmi_fail(s->context, MPM_SINGULAR,
-                   "conjugate gradients: the matrix is not positive definite: use MPM_SOLVER_LDLT or "
-                   "MPM_SOLVER_AUTO");
+  return status == MPM_SINGULAR ? not_positive(s) : status;
 }
 
-static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient) {
-  int64_t row = 0;
+static mpm_status times_cycle(void *multigrid, const double *r, double *z) {
+  return mpmi_multigrid_cycle(multigrid, r, z);
+}
+
+static mpm_status prepare_multigrid(mpmi_system *s) {
+  int64_t row = -1;
   const double started = mpmi_seconds();
-  s->report->solver = MPM_SOLVER_GMRES;
-  mpm_status status = mpmi_inverse_blocks(s, &row);
+  const mpm_status status = mpmi_multigrid_prepare(&s->solver->multigrid, s->A, &row);
   s->report->factor_seconds += mpmi_seconds() - started;
-  if (status == MPM_NONFINITE) return bad_diagonal(s, row);
-  const mpmi_gmres_plan plan = {mpmi_times_inverse_blocks, s, RESTART, impatient, limit};
+  if (status == MPM_SINGULAR) s->report->indefinite = 1;
+  if (status == MPM_SINGULAR && row >= 0)
+    return mpmi_system_fail_at(s, status, row, "multigrid: a diagonal entry is not positive");
+  if (status == MPM_SINGULAR)
+    return mpmi_fail(
+        s->context, status,
+        "multigrid: the matrix is not positive definite: use MPM_SOLVER_LDLT or MPM_SOLVER_AUTO");
+  if (status == MPM_NONFINITE && row >= 0) return bad_diagonal(s, row);
+  if (status == MPM_NONFINITE)
+    return mpmi_fail(s->context, status, "multigrid: a coarser level is not finite");
+  return status;
+}
+
+static mpm_status by_multigrid(mpmi_system *s, int64_t limit) {
+  s->report->solver = MPM_SOLVER_MULTIGRID_CG;
+  mpm_status status = prepare_multigrid(s);
+  if (!status) status = mpmi_cg(s, times_cycle, &s->solver->multigrid, limit);
+  if (status == MPM_NOT_CONVERGED) return mpmi_system_not_converged(s, "multigrid conjugate gradients");
+  return status == MPM_SINGULAR && !s->report->indefinite ? not_positive(s) : status;
+}
+
+/* Preconditioned by a cycle, or by the blocks of the diagonal where there is no hierarchy. */
+static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient, int32_t multigrid) {
+  mpmi_gmres_plan plan = {mpmi_times_inverse_blocks, s, RESTART, impatient, limit};
+  mpm_status status = multigrid ? prepare_multigrid(s) : MPM_SINGULAR;
+  s->report->solver = MPM_SOLVER_GMRES;
+  if (!status) {
+    plan.precondition = times_cycle;
+    plan.user = &s->solver->multigrid;
+  } else if (status > 0) {
+    int64_t row = 0;
+    const double started = mpmi_seconds();
+    s->report->indefinite = 0;
+    s->report->node = -1;
+    status = mpmi_inverse_blocks(s, &row);
+    s->report->factor_seconds += mpmi_seconds() - started;
+    if (status == MPM_NONFINITE) return bad_diagonal(s, row);
+  }
   if (!status) status = mpmi_gmres(s, &plan);
   return status == MPM_NOT_CONVERGED ? mpmi_system_not_converged(s, "GMRES") : status;
 }
 
-/* Where the factor is dear an iteration comes first; where that fails the factor has the last word. */
+/* The last word, up to a factor that a machine has room for. */
+static mpm_status fall_back(mpmi_system *s, mpm_status status) {
+  const double most = 4.0e9;
+  const mpm_status analysed = mpmi_factor_analyse(&s->solver->factor, s->A);
+  if (analysed) return analysed;
+  const double bytes = mpmi_factor_bytes(&s->solver->factor);
+  if (bytes > most)
+    return mpmi_fail(s->context, status,
+                     "the linear system has %lld unknowns, is %s, and its factor would take %.1f GB: use a "
+                     "smaller dt, or MPM_SOLVER_LDLT if there is room",
+                     (long long)s->n,
+                     s->report->indefinite ? "not positive definite" : "too hard for iterations",
+                     1e-9 * bytes);
+  s->context->error[0] = '\0'; /* of the iterations */
+  s->report->node = -1;
+  return mpmi_direct(s);
+}
+
+static mpm_status by_cheapest(mpmi_system *s, const mpmi_solve_job *job) {
+  const costs c = costs_of(s->A, job->inertia);
+  const int64_t limit = job->max_iterations;
+  mpm_status status;
+  if (c.factor <= fmin(c.cg, c.multigrid)) return mpmi_direct(s);
+  if (!s->A->symmetric)
+    status = by_gmres(s, limit ? limit : RESTART * MOST_RESTARTS, 1, c.multigrid < c.cg);
+  else if (c.multigrid < c.cg)
+    status = by_multigrid(s, limit ? limit : MOST_CYCLES);
+  else
+    status = by_cg(s, limit ? limit : 500 + 3 * (int64_t)c.cg);
+  return status > 0 ? fall_back(s, status) : status;
+}
+
 static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
   const int64_t limit = job->max_iterations;
-  double extent[3];
-  extents_of(s->A, extent);
-  const int64_t usual = 500 + 3 * (int64_t)cg_iterations(extent);
-  mpm_status status;
   switch (job->choice) {
   case MPM_SOLVER_HOST:
     return mpmi_solve_by_host(s, job);
   case MPM_SOLVER_CG:
-    return by_cg(s, limit ? limit : 10 * usual);
+    return by_cg(s, limit ? limit : 5000 + 30 * (int64_t)costs_of(s->A, 0.0).cg);
+  case MPM_SOLVER_MULTIGRID_CG:
+    return by_multigrid(s, limit ? limit : 10 * MOST_CYCLES);
   case MPM_SOLVER_LDLT:
     return mpmi_direct(s);
   case MPM_SOLVER_GMRES:
-    return by_gmres(s, limit ? limit : RESTART * MOST_CYCLES, 0);
+    return by_gmres(s, limit ? limit : RESTART * MOST_RESTARTS, 0, s->n > MPMI_ALONE_UNKNOWNS);
   default:
-    if (factor_pays(s->A, extent)) return mpmi_direct(s);
-    status = s->A->symmetric ? by_cg(s, limit ? limit : usual)
-                             : by_gmres(s, limit ? limit : RESTART * MOST_CYCLES, 1);
-    if (status <= 0) return status;
-    s->context->error[0] = '\0'; /* not the last word */
-    s->report->node = -1;
-    return mpmi_direct(s);
+    return by_cheapest(s, job);
   }
 }
 
 /* ---- the call ---------------------------------------------------------------------------------------- */
 static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) {
   const int32_t choice = job->choice;
-  if (choice == MPM_SOLVER_MULTIGRID_CG)
-    return mpmi_fail(context, MPM_E_UNSUPPORTED,
-                     "MPM_SOLVER_MULTIGRID_CG is not in this version: use MPM_SOLVER_CG or MPM_SOLVER_LDLT");
   if (choice == MPM_SOLVER_HOST && !job->host)
     return mpmi_fail(context, MPM_E_STATE,
                      "MPM_SOLVER_HOST has no solver: call mpm_stepper_set_linear_solver first");
-  if ((choice == MPM_SOLVER_CG || choice == MPM_SOLVER_LDLT) && !job->matrix->symmetric)
+  static const char *symmetric_only[] = {[MPM_SOLVER_CG] = "MPM_SOLVER_CG",
+                                         [MPM_SOLVER_MULTIGRID_CG] = "MPM_SOLVER_MULTIGRID_CG",
+                                         [MPM_SOLVER_LDLT] = "MPM_SOLVER_LDLT"};
+  if (choice >= MPM_SOLVER_CG && choice <= MPM_SOLVER_LDLT && !job->matrix->symmetric)
     return mpmi_fail(context, MPM_E_UNSUPPORTED,
                      "%s is for symmetric matrices, and this one is not: use MPM_SOLVER_GMRES or "
                      "MPM_SOLVER_AUTO",
-                     choice == MPM_SOLVER_CG ? "MPM_SOLVER_CG" : "MPM_SOLVER_LDLT");
+                     symmetric_only[choice]);
   if (choice != MPM_SOLVER_HOST && (choice < MPM_SOLVER_AUTO || choice > MPM_SOLVER_GMRES))
     return mpmi_fail(context, MPM_E_ARG, "linear_solver is %d, must be MPM_SOLVER_AUTO ... MPM_SOLVER_HOST",
                      (int)choice);

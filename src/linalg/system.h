@@ -2,7 +2,7 @@
 #ifndef MPMI_SYSTEM_H
 #define MPMI_SYSTEM_H
 
-#include "linalg/factor.h"
+#include "linalg/multigrid.h"
 #include "linalg/operator.h"
 #include "linalg/solver.h"
 #include "linalg/vectors.h"
@@ -10,6 +10,7 @@
 struct mpmi_solver {
   mpm_context *context;
   mpmi_factor factor;
+  mpmi_multigrid multigrid;
   mpm_operator lent; /* to the host's solver */
   double *work;      /* vectors */
   int64_t work_capacity;
@@ -37,12 +38,14 @@ mpm_status mpmi_system_work(const mpmi_system *s, int64_t vectors, int64_t more)
  * a vector. */
 mpm_status mpmi_system_good(const mpmi_system *s, double norm, double *scratch, int32_t *good);
 
-/* Conjugate gradients from x on (cg.c). MPM_NOT_CONVERGED and MPM_SINGULAR are left without a sentence; the
- * latter says that the matrix is not positive definite. */
-mpm_status mpmi_cg(mpmi_system *s, int64_t limit);
-
 /* z = M^-1 r */
 typedef mpm_status (*mpmi_precondition_fn)(void *user, const double *r, double *z);
+
+/* Conjugate gradients from x on (cg.c); without a preconditioner with mpmi_inverse_diagonal().
+ * MPM_NOT_CONVERGED and MPM_SINGULAR are left without a sentence; the latter says that the matrix is not
+ * positive definite. */
+mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user, int64_t limit);
+
 typedef struct mpmi_gmres_plan {
   mpmi_precondition_fn precondition;
   void *user;

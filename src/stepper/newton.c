@@ -17,10 +17,11 @@ typedef struct iteration {
   mpm_stepper *s;
   mpmi_newton *w;
   double dt;
-  int64_t n;          /* rows * dim */
-  double norm, scale; /* of the residual; free components, all kinds of forces */
-  double stiffness;   /* largest diagonal entry, without inertia */
-  double inertia;     /* of the terms that M a is the difference of */
+  int64_t n;            /* rows * dim */
+  double norm, scale;   /* of the residual; free components, all kinds of forces */
+  double stiffness;     /* largest diagonal entry, without inertia */
+  double inertia;       /* of the terms that M a is the difference of */
+  double inertia_share; /* of the diagonal of the matrix */
   double du_largest, energy_first;
 } iteration;
 
@@ -84,14 +85,18 @@ static mpm_status assemble(iteration *it) {
   const mpm_status status = mpmi_stiffness(s, w->vector[MPMI_U], it->dt);
   if (status) return status;
   const double by_mass = mpmi_is_dynamic(s) ? 1.0 / (s->desc.newmark_beta * it->dt * it->dt) : 0.0;
+  double inertia = 0.0, total = 0.0;
   it->stiffness = 0.0;
   for (int64_t r = 0; r < A->rows; ++r)
     for (int32_t c = 0; c < dim; ++c) {
       double *diagonal = A->value + (w->diagonal[r] * dim + c) * dim + c;
       it->stiffness = fmax(it->stiffness, fabs(*diagonal));
       *diagonal += by_mass * w->mass[r];
+      inertia += by_mass * w->mass[r];
+      total += fabs(*diagonal);
       w->vector[MPMI_DIAGONAL][r * dim + c] = fabs(*diagonal);
     }
+  it->inertia_share = total > 0.0 ? inertia / total : 0.0;
   return MPM_OK;
 }
 
@@ -132,7 +137,8 @@ static mpm_status solve(iteration *it) {
                               .max_iterations = s->desc.linear_max_iterations,
                               .host = s->solver,
                               .host_user = s->solver_user,
-                              .expects_positive = w->matrix.symmetric};
+                              .expects_positive = w->matrix.symmetric,
+                              .inertia = it->inertia_share};
   mpmi_solve_report report = {.node = -1};
   status = mpmi_solve(w->solver, &job, &report);
   w->factor_seconds += report.factor_seconds;

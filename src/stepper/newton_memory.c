@@ -1,29 +1,14 @@
 /* Memory of implicit steps that does not depend on the unknowns. */
+#include "context/carver.h"
 #include "stepper/newton.h"
 
 #include <string.h>
 
-static size_t round_up(size_t bytes) {
-  return (bytes + MPMI_ALIGNMENT - 1) / MPMI_ALIGNMENT * MPMI_ALIGNMENT;
+static double *carve_rows(mpmi_carver *from, int64_t rows, int64_t length) {
+  return mpmi_carve(from, rows * length, sizeof(double));
 }
 
-/* Hands out pieces of one allocation; with no memory it only adds up. */
-typedef struct carver {
-  char *memory;
-  size_t used;
-} carver;
-
-static void *carve(carver *from, size_t bytes) {
-  void *at = from->memory ? from->memory + from->used : NULL;
-  from->used += round_up(bytes);
-  return at;
-}
-
-static double *carve_rows(carver *from, int64_t rows, int64_t length) {
-  return carve(from, mpmi_bytes(rows * length, sizeof(double)));
-}
-
-static void lay_out(const mpm_stepper *s, carver *from, mpmi_newton_work *to) {
+static void lay_out(const mpm_stepper *s, mpmi_carver *from, mpmi_newton_work *to) {
   const mpm_grid *grid = s->grid;
   const int64_t row = grid->dim * MPMI_STENCIL_NODES(grid->dim, grid->width);
   const int64_t tile = mpmi_tile_nodes(grid);
@@ -44,14 +29,14 @@ static void lay_out(const mpm_stepper *s, carver *from, mpmi_newton_work *to) {
   to->weight = carve_rows(from, 1, length);
   to->h = carve_rows(from, 9, length);
   to->inverse = carve_rows(from, 9, length);
-  to->tangent_scratch = carve(from, tangent);
+  to->tangent_scratch = mpmi_carve(from, (int64_t)tangent, 1);
   to->K = carve_rows(from, row, row);
-  to->tile_active = carve(from, mpmi_bytes(tile, sizeof *to->tile_active));
+  to->tile_active = mpmi_carve(from, tile, sizeof *to->tile_active);
 }
 
 static mpm_status prepare_work(mpm_stepper *s) {
   mpmi_newton *w = s->newton;
-  carver counter = {NULL, 0};
+  mpmi_carver counter = {NULL, 0};
   mpmi_newton_work one;
   lay_out(s, &counter, &one);
   const size_t bytes = counter.used * (size_t)s->tasks;
@@ -63,7 +48,7 @@ static mpm_status prepare_work(mpm_stepper *s) {
     w->work_bytes = bytes;
   }
   for (int32_t k = 0; k < s->tasks; ++k) {
-    carver from = {(char *)w->work_memory + (size_t)k * counter.used, 0};
+    mpmi_carver from = {(char *)w->work_memory + (size_t)k * counter.used, 0};
     lay_out(s, &from, &w->work[k]);
     memset(w->work[k].K, 0, (size_t)((char *)w->work[k].tile_active - (char *)w->work[k].K));
   }

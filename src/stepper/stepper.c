@@ -107,9 +107,6 @@ static mpm_status known_implicit(mpm_context *c, const mpm_stepper_desc *d) {
         "and pic_damping = 0; newmark_gamma above 1/2 damps");
   if (d->staggered)
     return mpmi_fail(c, MPM_E_UNSUPPORTED, "scheme MPM_NEWMARK has velocities at t_n: use staggered = 0");
-  if (d->linear_solver == MPM_SOLVER_MULTIGRID_CG)
-    return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "MPM_SOLVER_MULTIGRID_CG is not in this version: use MPM_SOLVER_AUTO or MPM_SOLVER_CG");
   return MPM_OK;
 }
 

@@ -145,6 +145,8 @@ static mpm_status reserve(mpm_stepper *s, int64_t active, int64_t rows) {
 static void place_rows(mpm_stepper *s) {
   mpmi_newton *w = s->newton;
   mpmi_matrix *A = &w->matrix;
+  for (int32_t k = 0; k < s->grid->dim; ++k)
+    A->period[k] = s->grid->desc.periodic[k] ? s->grid->desc.cells[k] : 0;
   for (int64_t i = 0; i < w->active_count; ++i) {
     const mpmi_active_node *node = &w->active[i];
     if (master_of(s, node->slot) != node->slot) continue;

@@ -330,7 +330,6 @@ START_TEST(refused) {
   REFUSED(flip, 0.9, MPM_E_UNSUPPORTED, "flip = 1");
   REFUSED(pic_damping, 1.0, MPM_E_UNSUPPORTED, "pic_damping = 0");
   REFUSED(staggered, 1, MPM_E_UNSUPPORTED, "staggered = 0");
-  REFUSED(linear_solver, MPM_SOLVER_MULTIGRID_CG, MPM_E_UNSUPPORTED, "use MPM_SOLVER_AUTO");
   REFUSED(linear_solver, 57, MPM_E_ARG, "linear_solver is 57");
   REFUSED(newmark_beta, 0.0, MPM_E_ARG, "newmark_beta is 0");
   REFUSED(newmark_gamma, -0.5, MPM_E_ARG, "newmark_gamma is -0.5");

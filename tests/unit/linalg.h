@@ -63,5 +63,6 @@ TCase *linalg_matrix_case(void);
 TCase *linalg_methods_case(void);
 TCase *linalg_direct_case(void);
 TCase *linalg_host_case(void);
+TCase *linalg_multigrid_case(void);
 
 #endif

@@ -12,7 +12,9 @@ static const springs shapes[] = {
     {.dim = 3, .block = 3, .reach = 2, .n = {5, 5, 4}, .mass = 0.05, .holes = 6},
     {.dim = 3, .block = 1, .reach = 1, .n = {7, 6, 5}, .mass = 0.02, .rollers = 1, .periodic = 1}};
 enum { SHAPES = 9 };
-static const int32_t choices[] = {MPM_SOLVER_AUTO, MPM_SOLVER_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES};
+static const int32_t choices[] = {MPM_SOLVER_AUTO, MPM_SOLVER_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES,
+                                  MPM_SOLVER_MULTIGRID_CG};
+enum { CHOICES = 5 };
 
 static mpm_context *context;
 static mpmi_solver *solver;
@@ -54,8 +56,9 @@ static void compare(const springs *of, int32_t choice, int32_t wanted_solver) {
 }
 
 START_TEST(symmetric) {
-  static const int32_t wanted[] = {0, MPM_SOLVER_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES};
-  compare(&shapes[_i / 4], choices[_i % 4], wanted[_i % 4]);
+  static const int32_t wanted[] = {0, MPM_SOLVER_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES,
+                                   MPM_SOLVER_MULTIGRID_CG};
+  compare(&shapes[_i / CHOICES], choices[_i % CHOICES], wanted[_i % CHOICES]);
 }
 END_TEST
 
@@ -78,12 +81,12 @@ static void try(const springs *of, int32_t choice, mpm_status wanted, const char
 
 START_TEST(refusals) {
   springs of = shapes[2];
-  try(&of, MPM_SOLVER_MULTIGRID_CG, MPM_E_UNSUPPORTED, "use MPM_SOLVER_CG or MPM_SOLVER_LDLT");
   try(&of, MPM_SOLVER_HOST, MPM_E_STATE, "call mpm_stepper_set_linear_solver first");
   try(&of, 5, MPM_E_ARG, "is 5");
   try(&of, -1, MPM_E_ARG, "is -1");
   of.convection = 0.1;
   try(&of, MPM_SOLVER_CG, MPM_E_UNSUPPORTED, "use MPM_SOLVER_GMRES or MPM_SOLVER_AUTO");
+  try(&of, MPM_SOLVER_MULTIGRID_CG, MPM_E_UNSUPPORTED, "MPM_SOLVER_MULTIGRID_CG is for symmetric");
   try(&of, MPM_SOLVER_LDLT, MPM_E_UNSUPPORTED, "use MPM_SOLVER_GMRES or MPM_SOLVER_AUTO");
 }
 END_TEST
@@ -154,6 +157,8 @@ END_TEST
 START_TEST(indefinite) {
   springs of = shapes[4];
   of.mass = -0.4;
+  try(&of, MPM_SOLVER_MULTIGRID_CG, MPM_SINGULAR, "not positive definite");
+  ck_assert(report.indefinite && report.node == -1);
   try(&of, MPM_SOLVER_CG, MPM_SINGULAR, "not positive definite");
   ck_assert(report.indefinite && report.node == -1);
   springs_build(&A, context, &of);
@@ -193,14 +198,14 @@ END_TEST
 TCase *linalg_methods_case(void) {
   TCase *tests = tcase_create("methods");
   tcase_add_checked_fixture(tests, open_solver, close_solver);
-  tcase_add_loop_test(tests, symmetric, 0, 4 * SHAPES);
+  tcase_add_loop_test(tests, symmetric, 0, CHOICES * SHAPES);
   tcase_add_loop_test(tests, not_symmetric, 0, SHAPES);
   tcase_add_test(tests, refusals);
-  tcase_add_loop_test(tests, no_load, 0, 4);
+  tcase_add_loop_test(tests, no_load, 0, CHOICES);
   tcase_add_loop_test(tests, guesses, 0, 2);
-  tcase_add_loop_test(tests, beyond_rounding, 0, 4);
+  tcase_add_loop_test(tests, beyond_rounding, 0, CHOICES);
   tcase_add_loop_test(tests, limits, 0, 2);
   tcase_add_test(tests, indefinite);
-  tcase_add_loop_test(tests, not_finite, 0, 8);
+  tcase_add_loop_test(tests, not_finite, 0, 2 * CHOICES);
   return tests;
 }

@@ -107,6 +107,7 @@ void springs_build(mpmi_matrix *A, mpm_context *context, const springs *of) {
   ck_assert_int_eq(mpmi_matrix_reserve(A, rows, rows * width, of->block), MPM_OK);
   A->symmetric = of->convection == 0.0;
   A->pattern_id = 1;
+  A->period[0] = of->periodic ? n[0] : 0;
   for (int64_t at = 0; at < n[0] * n[1] * n[2]; ++at) {
     const int64_t i = row[at];
     if (i < 0) continue;

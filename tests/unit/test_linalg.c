@@ -14,8 +14,12 @@ static const scene scenes[] = {
     {{.dim = 2, .block = 2, .reach = 1, .n = {60, 61}, .clamped = 1, .rollers = 1}, MPM_SOLVER_LDLT},
     {{.dim = 3, .block = 3, .reach = 1, .n = {11, 10, 12}, .mass = 0.02}, MPM_SOLVER_LDLT},
     {{.dim = 2, .block = 2, .reach = 1, .n = {45, 40}, .mass = 0.5, .convection = 0.3}, MPM_SOLVER_GMRES},
-    {{.dim = 3, .block = 3, .reach = 1, .n = {11, 10, 12}, .mass = 0.5, .convection = 0.3}, MPM_SOLVER_AUTO}};
-enum { SCENES = 5 };
+    {{.dim = 3, .block = 3, .reach = 1, .n = {11, 10, 12}, .mass = 0.5, .convection = 0.3}, MPM_SOLVER_AUTO},
+    {{.dim = 2, .block = 2, .reach = 1, .n = {45, 60}, .clamped = 1, .rollers = 1}, MPM_SOLVER_MULTIGRID_CG},
+    {{.dim = 3, .block = 3, .reach = 2, .n = {12, 10, 11}, .mass = 0.1}, MPM_SOLVER_MULTIGRID_CG},
+    {{.dim = 3, .block = 3, .reach = 1, .n = {12, 10, 11}, .mass = 0.1, .convection = 0.1},
+     MPM_SOLVER_GMRES}};
+enum { SCENES = 8 };
 
 static mpm_status by_sweeps(void *user, const mpm_operator *matrix, const double *rhs, double *solution,
                             double tolerance, int64_t *iterations) {
@@ -124,6 +128,7 @@ START_TEST(executors) {
   ck_assert_int_eq(memcmp(x, by_pool, (size_t)mpmi_matrix_unknowns(&A) * sizeof *x), 0);
   free(by_pool);
   for (int32_t fail_at = 1; fail_at <= calls; fail_at += 1 + fail_at / 10) {
+    ++A.pattern_id; /* as if nothing were known of it */
     job = job_of(&A, b, x, at->choice);
     m = (moody){0, fail_at};
     refused(solver, &job, &report, MPM_E_CALLBACK, "parallel_for returned -9");
@@ -136,7 +141,7 @@ START_TEST(executors) {
   springs_build(&A, context, &small);
   b = noise_vector(&A, 2);
   x = malloc((size_t)mpmi_matrix_unknowns(&A) * sizeof *x);
-  A.pattern_id = 2;
+  A.pattern_id = 1000000;
   job = job_of(&A, b, x, at->choice);
   solved(solver, &job, &report);
   ck_assert_int_eq(m.calls, 0);
@@ -149,12 +154,13 @@ END_TEST
 
 /* Each allocation fails once: the call says so, loses nothing, and succeeds when it is repeated. */
 START_TEST(out_of_memory) {
-  static const int32_t choices[] = {MPM_SOLVER_AUTO,  MPM_SOLVER_CG,   MPM_SOLVER_LDLT,
-                                    MPM_SOLVER_GMRES, MPM_SOLVER_HOST, MPM_SOLVER_AUTO};
+  static const int32_t choices[] = {MPM_SOLVER_AUTO,        MPM_SOLVER_CG,   MPM_SOLVER_LDLT,
+                                    MPM_SOLVER_GMRES,       MPM_SOLVER_HOST, MPM_SOLVER_AUTO,
+                                    MPM_SOLVER_MULTIGRID_CG};
   const springs of = {.dim = 2,
                       .block = 2,
                       .reach = 1,
-                      .n = {8, 9},
+                      .n = {_i == 6 ? 45 : 8, _i == 6 ? 40 : 9},
                       .mass = 0.5,
                       .rollers = 1,
                       .convection = _i == 5 ? 0.2 : 0.0};
@@ -211,11 +217,12 @@ Suite *linalg_suite(void) {
   suite_add_tcase(suite, linalg_methods_case());
   suite_add_tcase(suite, linalg_direct_case());
   suite_add_tcase(suite, linalg_host_case());
+  suite_add_tcase(suite, linalg_multigrid_case());
   TCase *all = tcase_create("all methods");
   tcase_set_timeout(all, 120);
   tcase_add_loop_test(all, threads, 0, SCENES);
   tcase_add_loop_test(all, executors, 0, SCENES);
-  tcase_add_loop_test(all, out_of_memory, 0, 6);
+  tcase_add_loop_test(all, out_of_memory, 0, 7);
   suite_add_tcase(suite, all);
   return suite;
 }

@@ -1,0 +1,231 @@
+#include "linalg/multigrid.h"
+
+#include <string.h>
+
+#include "transfer/isa.h"
+
+extern const mpmi_sweeps mpmi_sweeps_baseline;
+#if MPMI_HAS_X86
+extern const mpmi_sweeps mpmi_sweeps_avx2, mpmi_sweeps_avx512;
+#endif
+
+const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
+#if MPMI_HAS_X86
+  if (isa == MPM_ISA_AVX512) return &mpmi_sweeps_avx512;
+  if (isa == MPM_ISA_AVX2) return &mpmi_sweeps_avx2;
+#else
+  (void)isa;
+#endif
+  return &mpmi_sweeps_baseline;
+}
+
+/* Unknowns that are better factored than coarsened, and the share of nodes that a coarser level may have to
+ * be worth it. */
+enum { COARSEST = 800 };
+static const double WORTH = 0.7;
+
+void mpmi_multigrid_init(mpmi_multigrid *g, mpm_context *context) {
+  memset(g, 0, sizeof *g);
+  g->context = context;
+  g->kernels = mpmi_sweeps_of(context->isa);
+  for (int32_t l = 0; l < MPMI_MOST_LEVELS; ++l) mpmi_matrix_init(&g->level[l].own, context);
+  mpmi_factor_init(&g->coarsest, context);
+}
+
+void mpmi_multigrid_free(mpmi_multigrid *g) {
+  for (int32_t l = 0; l < MPMI_MOST_LEVELS; ++l) {
+    mpmi_level *level = &g->level[l];
+    mpmi_matrix_free(&level->own);
+    mpmi_smoother_free(&level->smoother, g->context);
+    mpmi_free(g->context, level->next.slab, (size_t)level->next.slab_capacity);
+  }
+  mpmi_factor_free(&g->coarsest);
+  mpmi_free(g->context, g->rhs, mpmi_bytes(g->coarsest_capacity, sizeof *g->rhs));
+  mpmi_free(g->context, g->scratch, (size_t)g->scratch_capacity);
+}
+
+mpm_status mpmi_multigrid_scratch(mpmi_multigrid *g, size_t bytes) {
+  return mpmi_reserve(g->context, (void **)&g->scratch, &g->scratch_capacity, (int64_t)bytes, 1);
+}
+
+static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
+  mpm_status status = MPM_OK;
+  g->analysed = g->coarsest.analysed = 0;
+  g->level[0].A = A;
+  for (g->levels = 1; g->levels < MPMI_MOST_LEVELS; ++g->levels) {
+    mpmi_level *level = &g->level[g->levels - 1], *next = level + 1;
+    if (mpmi_matrix_unknowns(level->A) <= COARSEST) break;
+    if ((status = mpmi_coarsen(g, level, next, &level->next))) return status;
+    if ((double)next->own.rows > WORTH * (double)level->A->rows) break;
+    if ((status = mpmi_multigrid_scratch(g, mpmi_bytes(level->A->rows, 2 * sizeof(int32_t)))) ||
+        (status = mpmi_smoother_analyse(&level->smoother, level->A, (int32_t *)(void *)g->scratch)))
+      return status;
+  }
+  const mpmi_matrix *last = g->level[g->levels - 1].A;
+  const int64_t n = mpmi_matrix_unknowns(last);
+  if ((status = mpmi_reserve(g->context, (void **)&g->rhs, &g->coarsest_capacity, 2 * n, sizeof *g->rhs)))
+    return status;
+  g->x = g->rhs + n;
+  if ((status = mpmi_factor_analyse(&g->coarsest, last))) return status;
+  g->pattern_id = A->pattern_id;
+  g->analysed = 1;
+  return MPM_OK;
+}
+
+mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64_t *row) {
+  mpm_status status = MPM_OK;
+  *row = -1;
+  g->level[0].A = A;
+  if ((!g->analysed || g->pattern_id != A->pattern_id) && (status = analyse(g, A))) return status;
+  for (int32_t l = 0; l + 1 < g->levels; ++l) {
+    mpmi_level *level = &g->level[l];
+    level[1].own.symmetric = A->symmetric;
+    int64_t bad;
+    if ((status = mpmi_smoother_numbers(&level->smoother, level->A, &bad)) && !l) *row = bad;
+    if (status || (status = mpmi_galerkin(g, level, level + 1))) return status;
+  }
+  const mpmi_matrix *last = g->level[g->levels - 1].A;
+  int64_t bad;
+  if ((status = mpmi_factor_analyse(&g->coarsest, last))) return status; /* if it is not symmetric any more */
+  if ((status = mpmi_factor_numbers(&g->coarsest, last, &bad)) && g->levels == 1) *row = bad;
+  if (status) return status;
+  return A->symmetric && g->coarsest.negative ? MPM_SINGULAR : MPM_OK;
+}
+
+/* ---- the cycle --------------------------------------------------------------------------------------- */
+typedef struct cycle_job {
+  mpmi_multigrid *g;
+  const mpmi_level *fine;
+  const mpmi_level *coarse;
+  mpmi_sweep_fn sweep;
+  int64_t first; /* of a colour */
+  const double *r;
+  double *z, by;
+  int32_t factored; /* the coarse level is the coarsest */
+  mpmi_cut cut;
+} cycle_job;
+
+static mpm_status run(cycle_job *job, int64_t items, const mpmi_matrix *A, mpm_task_fn task) {
+  job->cut = mpmi_cut_of(items, mpmi_matrix_unknowns(A));
+  return mpmi_cut_run(job->g->context, &job->cut, task, job);
+}
+
+static void sweep_task(void *data, int64_t k) {
+  const cycle_job *job = data;
+  job->sweep(&job->fine->smoother, job->first + mpmi_cut_begin(&job->cut, k),
+             job->first + mpmi_cut_begin(&job->cut, k + 1));
+}
+
+/* Colour after colour, forwards or backwards. */
+static mpm_status sweep(cycle_job *job, mpmi_sweep_fn fn, int32_t backwards) {
+  const mpmi_smoother *s = &job->fine->smoother;
+  job->sweep = fn;
+  mpm_status status = MPM_OK;
+  for (int32_t i = 0; i < s->colours && !status; ++i) {
+    const int32_t c = backwards ? s->colours - 1 - i : i;
+    job->first = s->colour_start[c];
+    status = run(job, s->colour_start[c + 1] - job->first, job->fine->A, sweep_task);
+  }
+  return status;
+}
+
+static void load_task(void *data, int64_t k) {
+  const cycle_job *job = data;
+  const mpmi_smoother *s = &job->fine->smoother;
+  const int32_t block = s->block, lanes = MPMI_PADDED(block);
+  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p)
+    for (int32_t c = 0; c < block; ++c)
+      s->rhs[p * lanes + c] =
+          (float)(job->by * s->scale[p * block + c] * job->r[(int64_t)s->order[p] * block + c]);
+}
+
+static void store_task(void *data, int64_t k) {
+  const cycle_job *job = data;
+  const mpmi_smoother *s = &job->fine->smoother;
+  const int32_t block = s->block, lanes = MPMI_PADDED(block);
+  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p)
+    for (int32_t c = 0; c < block; ++c)
+      job->z[(int64_t)s->order[p] * block + c] =
+          job->by * s->scale[p * block + c] * (double)s->x[p * lanes + c];
+}
+
+/* The right-hand side of the coarse level: P^T times what is left on the fine one. */
+static void restrict_task(void *data, int64_t k) {
+  const cycle_job *job = data;
+  const mpmi_coarsening *P = &job->fine->next;
+  const mpmi_smoother *s = &job->fine->smoother, *to = &job->coarse->smoother;
+  const int32_t block = s->block, lanes = MPMI_PADDED(block);
+  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p) {
+    const int64_t I = job->factored ? p : to->order[p];
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int64_t e = P->child_start[I]; e < P->child_start[I + 1]; ++e) {
+      const int64_t i = P->child[e], q = s->place[i];
+      const double weight = 1.0 / (double)(P->parent_start[i + 1] - P->parent_start[i]);
+      for (int32_t c = 0; c < block; ++c)
+        sum[c] += weight * s->unscale[q * block + c] * (double)s->residual[q * lanes + c];
+    }
+    for (int32_t c = 0; c < block; ++c) {
+      if (job->factored)
+        job->g->rhs[p * block + c] = job->coarse->A->held[p * block + c] ? 0.0 : sum[c];
+      else
+        to->rhs[p * lanes + c] = (float)(to->scale[p * block + c] * sum[c]);
+    }
+  }
+}
+
+/* Adds P times the coarse solution. */
+static void prolong_task(void *data, int64_t k) {
+  const cycle_job *job = data;
+  const mpmi_coarsening *P = &job->fine->next;
+  const mpmi_smoother *s = &job->fine->smoother, *from = &job->coarse->smoother;
+  const int32_t block = s->block, lanes = MPMI_PADDED(block);
+  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p) {
+    const int64_t i = s->order[p], begin = P->parent_start[i], end = P->parent_start[i + 1];
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int64_t e = begin; e < end; ++e) {
+      const int64_t J = P->parent[e];
+      for (int32_t c = 0; c < block; ++c)
+        sum[c] += job->factored ? job->g->x[J * block + c]
+                                : from->scale[from->place[J] * (int64_t)block + c] *
+                                      (double)from->x[from->place[J] * (int64_t)lanes + c];
+    }
+    for (int32_t c = 0; c < block; ++c)
+      s->x[p * lanes + c] += (float)(s->unscale[p * block + c] * sum[c] / (double)(end - begin));
+  }
+}
+
+static mpm_status cycle(cycle_job job, int32_t l) {
+  mpmi_multigrid *g = job.g;
+  const mpmi_sweeps *kernels = g->kernels;
+  job.fine = &g->level[l];
+  job.coarse = &g->level[l + 1];
+  job.factored = l + 2 == g->levels;
+  mpm_status status = sweep(&job, kernels->first, 0);
+  job.first = 0;
+  job.sweep = kernels->residual;
+  if (!status) status = run(&job, job.fine->A->rows, job.fine->A, sweep_task);
+  if (!status) status = run(&job, job.coarse->A->rows, job.fine->A, restrict_task);
+  if (status) return status;
+  if (job.factored)
+    mpmi_factor_solve(&g->coarsest, job.coarse->A, g->rhs, g->x);
+  else if ((status = cycle(job, l + 1)))
+    return status;
+  if ((status = run(&job, job.fine->A->rows, job.fine->A, prolong_task))) return status;
+  return sweep(&job, kernels->again, 1);
+}
+
+mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z) {
+  const mpmi_matrix *A = g->level[0].A;
+  double norm;
+  mpm_status status = mpmi_norm(g->context, r, mpmi_matrix_unknowns(A), &norm);
+  if (status) return status;
+  if (g->levels == 1) {
+    mpmi_factor_solve(&g->coarsest, A, r, z);
+    return MPM_OK;
+  }
+  /* of size 1, so that single precision has room on both sides */
+  cycle_job job = {.g = g, .fine = &g->level[0], .r = r, .z = z, .by = norm > 0.0 ? 1.0 / norm : 0.0};
+  if ((status = run(&job, A->rows, A, load_task)) || (status = cycle(job, 0))) return status;
+  job.by = norm;
+  return run(&job, A->rows, A, store_task);
+}

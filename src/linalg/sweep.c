@@ -1,0 +1,56 @@
+#include "linalg/sweep.h"
+
+#include "transfer/isa.h"
+
+enum { BEFORE = 1, AFTER = 2 };
+
+MPMI_INLINE void subtract(const mpmi_smoother *s, int32_t block, int64_t begin, int64_t end, float *sum) {
+  const int32_t lanes = MPMI_PADDED(block);
+  const float *value = s->value + begin * block * lanes;
+  for (int64_t e = begin; e < end; ++e, value += block * lanes) {
+    const float *x = s->x + (int64_t)s->column[e] * lanes;
+    for (int32_t c = 0; c < block; ++c)
+      for (int32_t l = 0; l < lanes; ++l) sum[l] -= value[c * lanes + l] * x[c];
+  }
+}
+
+/* What the other nodes leave of the right-hand side, and what that makes of x. */
+MPMI_INLINE void sweep(const mpmi_smoother *s, int32_t block, int32_t with, int64_t begin, int64_t end) {
+  const int32_t lanes = MPMI_PADDED(block);
+  for (int64_t i = begin; i < end; ++i) {
+    float sum[4] = {0.0F, 0.0F, 0.0F, 0.0F}, x[4] = {0.0F, 0.0F, 0.0F, 0.0F};
+    for (int32_t l = 0; l < lanes && (with & BEFORE); ++l) sum[l] = s->rhs[i * lanes + l];
+    subtract(s, block, with & BEFORE ? s->row_start[i] : s->middle[i],
+             with & AFTER ? s->row_start[i + 1] : s->middle[i], sum);
+    if (!(with & BEFORE)) {
+      for (int32_t l = 0; l < lanes; ++l) s->residual[i * lanes + l] = sum[l];
+      continue;
+    }
+    const float *inverse = s->inverse + i * block * lanes;
+    for (int32_t c = 0; c < block; ++c)
+      for (int32_t l = 0; l < lanes; ++l) x[l] += inverse[c * lanes + l] * sum[c];
+    for (int32_t l = 0; l < lanes; ++l) s->x[i * lanes + l] = x[l];
+  }
+}
+
+MPMI_INLINE void sweep_of(const mpmi_smoother *s, int32_t with, int64_t begin, int64_t end) {
+  if (s->block == 3)
+    sweep(s, 3, with, begin, end);
+  else if (s->block == 2)
+    sweep(s, 2, with, begin, end);
+  else
+    sweep(s, 1, with, begin, end);
+}
+
+static void first(const mpmi_smoother *s, int64_t begin, int64_t end) {
+  sweep_of(s, BEFORE, begin, end);
+}
+static void residual(const mpmi_smoother *s, int64_t begin, int64_t end) {
+  sweep_of(s, AFTER, begin, end);
+}
+static void again(const mpmi_smoother *s, int64_t begin, int64_t end) {
+  sweep_of(s, BEFORE | AFTER, begin, end);
+}
+
+extern const mpmi_sweeps KERNEL(sweeps);
+const mpmi_sweeps KERNEL(sweeps) = {first, residual, again};

@@ -1,0 +1,225 @@
+/* Multigrid: what its levels are, and what a cycle is worth. */
+#include "linalg.h"
+#include "linalg/multigrid.h"
+
+/* Large enough for three levels, small enough to be solved by the factor beside. */
+static const springs bodies[] = {
+    {.dim = 1, .block = 1, .reach = 1, .n = {5001}, .mass = 1e-7, .clamped = 1},
+    {.dim = 1, .block = 1, .reach = 3, .n = {4001}, .mass = 1e-6, .periodic = 1},
+    {.dim = 2, .block = 2, .reach = 1, .n = {61, 48}, .clamped = 1, .rollers = 1},
+    {.dim = 2, .block = 2, .reach = 1, .n = {51, 48}, .mass = 1e-3, .periodic = 1, .holes = 13},
+    {.dim = 2, .block = 2, .reach = 2, .n = {50, 41}, .mass = 1e-3, .periodic = 1, .light = 1e-4},
+    {.dim = 2, .block = 1, .reach = 3, .n = {60, 61}, .clamped = 1, .holes = 7},
+    {.dim = 3, .block = 3, .reach = 1, .n = {14, 13, 15}, .clamped = 1, .rollers = 1, .light = 1e-6},
+    {.dim = 3, .block = 3, .reach = 2, .n = {12, 13, 11}, .clamped = 1},
+    {.dim = 3, .block = 3, .reach = 1, .n = {13, 12, 14}, .mass = 1e-3, .periodic = 1, .holes = 9}};
+enum { BODIES = 9 };
+
+static mpm_context *context;
+static mpmi_solver *solver;
+static mpmi_matrix A;
+
+static void open_solver(void) {
+  context = context_of(1, MPM_ISA_BEST, NULL);
+  ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
+  mpmi_matrix_init(&A, context);
+}
+
+static void close_solver(void) {
+  mpmi_matrix_free(&A);
+  mpmi_solver_destroy(solver);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
+
+static mpmi_solve_report solve_noise(int32_t choice, double tolerance, double within) {
+  const int64_t n = mpmi_matrix_unknowns(&A);
+  double *x = noise_vector(&A, 9), *b = rhs_for(&A, x), *y = malloc((size_t)n * sizeof *y);
+  mpmi_solve_job job = job_of(&A, b, y, choice);
+  mpmi_solve_report report;
+  job.tolerance = tolerance;
+  solved(solver, &job, &report);
+  ck_assert_double_lt(distance(n, y, x), within);
+  free(x), free(b), free(y);
+  return report;
+}
+
+START_TEST(solves) {
+  springs_build(&A, context, &bodies[_i]);
+  const mpmi_solve_report report = solve_noise(MPM_SOLVER_MULTIGRID_CG, 1e-12, 1e-5);
+  ck_assert_int_eq(report.solver, MPM_SOLVER_MULTIGRID_CG);
+  ck_assert_int_le(report.iterations, 80);
+}
+END_TEST
+
+START_TEST(solves_not_symmetric) {
+  springs of = bodies[_i];
+  of.convection = 0.05;
+  of.mass += 0.05;
+  springs_build(&A, context, &of);
+  const mpmi_solve_report report = solve_noise(MPM_SOLVER_GMRES, 1e-12, 1e-5);
+  ck_assert_int_eq(report.solver, MPM_SOLVER_GMRES);
+  ck_assert_int_le(report.iterations, 80);
+}
+END_TEST
+
+/* With twice the nodes along each axis conjugate gradients need twice the iterations, cycles no more. */
+START_TEST(sizes) {
+  int64_t iterations[2][2];
+  for (int32_t k = 0; k < 2; ++k) {
+    const springs of = {.dim = 3, .block = 3, .reach = 1, .n = {9 << k, 9 << k, 9 << k}, .clamped = 1};
+    springs_build(&A, context, &of);
+    A.pattern_id = k;
+    iterations[k][0] = solve_noise(MPM_SOLVER_MULTIGRID_CG, 1e-8, 1e-3).iterations;
+    iterations[k][1] = solve_noise(MPM_SOLVER_CG, 1e-8, 1e-3).iterations;
+    mpmi_matrix_free(&A);
+  }
+  ck_assert_int_le(3 * iterations[1][0], 4 * iterations[0][0]);
+  ck_assert_int_gt(2 * iterations[1][1], 3 * iterations[0][1]);
+}
+END_TEST
+
+/* e of a coarse level on the finer one, by the rule itself: the mean over the parents, 0 where held. */
+static double *interpolated(const mpmi_matrix *fine, const mpmi_matrix *coarse, const double *e) {
+  double *x = calloc((size_t)mpmi_matrix_unknowns(fine), sizeof *x);
+  for (int64_t i = 0; i < fine->rows; ++i)
+    for (int64_t I = 0; I < coarse->rows; ++I) {
+      double weight = 1.0;
+      for (int32_t k = 0; k < 3 && weight > 0.0; ++k) {
+        int64_t away = llabs(fine->index[i][k] - 2 * coarse->index[I][k]);
+        if (fine->period[k] && fine->index[i][k] == fine->period[k] - 1 && !coarse->index[I][k] &&
+            fine->period[k] % 2 == 0)
+          away = 1;
+        weight *= away == 0 ? 1.0 : away == 1 ? 0.5 : 0.0;
+      }
+      for (int32_t c = 0; c < fine->block && weight > 0.0; ++c)
+        if (!fine->held[i * fine->block + c] && !coarse->held[I * fine->block + c])
+          x[i * fine->block + c] += weight * e[I * fine->block + c];
+    }
+  return x;
+}
+
+static double energy(const mpmi_matrix *M, const double *x, const double *y) {
+  double *z = rhs_for(M, x), sum = 0.0;
+  for (int64_t i = 0; i < mpmi_matrix_unknowns(M); ++i) sum += y[i] * z[i];
+  free(z);
+  return sum;
+}
+
+/* Coarse matrices are those of interpolated vectors, and a coarse unknown is held where the fine one is. */
+START_TEST(galerkin) {
+  mpmi_multigrid g;
+  int64_t row;
+  springs_build(&A, context, &bodies[_i]);
+  mpmi_multigrid_init(&g, context);
+  ck_assert_int_eq(mpmi_multigrid_prepare(&g, &A, &row), MPM_OK);
+  ck_assert_int_ge(g.levels, 2);
+  for (int32_t l = 0; l + 1 < g.levels; ++l) {
+    const mpmi_matrix *fine = g.level[l].A, *coarse = g.level[l + 1].A;
+    ck_assert_int_lt(coarse->rows, fine->rows);
+    double *e = noise_vector(coarse, 3), *f = noise_vector(coarse, 4);
+    double *x = interpolated(fine, coarse, e), *y = interpolated(fine, coarse, f);
+    const double wanted = energy(fine, x, y), size = sqrt(energy(fine, x, x) * energy(fine, y, y));
+    ck_assert_double_le(fabs(energy(coarse, e, f) - wanted), 1e-12 * size);
+    for (int64_t i = 0; i < fine->rows; ++i)
+      for (int64_t I = 0; I < coarse->rows; ++I) {
+        int32_t same = 1;
+        for (int32_t k = 0; k < 3; ++k) same &= fine->index[i][k] == 2 * coarse->index[I][k];
+        for (int32_t c = 0; c < A.block && same; ++c)
+          if (fine->held[i * A.block + c]) ck_assert(coarse->held[I * A.block + c]);
+      }
+    free(e), free(f), free(x), free(y);
+  }
+  mpmi_multigrid_free(&g);
+}
+END_TEST
+
+/* A cycle is linear, symmetric up to single precision, and takes most of an error away. */
+START_TEST(one_cycle) {
+  mpmi_multigrid g;
+  int64_t row;
+  springs_build(&A, context, &bodies[_i]);
+  const int64_t n = mpmi_matrix_unknowns(&A);
+  mpmi_multigrid_init(&g, context);
+  ck_assert_int_eq(mpmi_multigrid_prepare(&g, &A, &row), MPM_OK);
+  double *r = noise_vector(&A, 1), *q = noise_vector(&A, 2), *zr = calloc((size_t)n, sizeof *zr),
+         *zq = calloc((size_t)n, sizeof *zq), rq = 0.0, qr = 0.0, size = 0.0;
+  ck_assert_int_eq(mpmi_multigrid_cycle(&g, r, zr), MPM_OK);
+  ck_assert_int_eq(mpmi_multigrid_cycle(&g, q, zq), MPM_OK);
+  for (int64_t i = 0; i < n; ++i) {
+    if (A.held[i]) ck_assert(zr[i] == 0.0);
+    rq += r[i] * zq[i];
+    qr += q[i] * zr[i];
+    size += fabs(r[i] * zr[i]);
+  }
+  ck_assert_double_le(fabs(rq - qr), 1e-4 * size);
+  for (int64_t i = 0; i < n; ++i) r[i] *= 1e-60;
+  ck_assert_int_eq(mpmi_multigrid_cycle(&g, r, zq), MPM_OK);
+  for (int64_t i = 0; i < n; ++i) zq[i] *= 1e60;
+  ck_assert_double_lt(distance(n, zq, zr), 1e-5);
+  free(r), free(q), free(zr), free(zq);
+  mpmi_multigrid_free(&g);
+}
+END_TEST
+
+/* Instruction sets take other roundings, and agree. */
+START_TEST(instruction_sets) {
+  springs_build(&A, context, &bodies[6]);
+  const int64_t n = mpmi_matrix_unknowns(&A);
+  double *b = noise_vector(&A, 5), *x = malloc((size_t)n * sizeof *x), *y = malloc((size_t)n * sizeof *y);
+  mpmi_solve_report report;
+  mpmi_solve_job job = job_of(&A, b, x, MPM_SOLVER_MULTIGRID_CG);
+  job.tolerance = 1e-12;
+  solved(solver, &job, &report);
+  for (int32_t isa = MPM_ISA_BASELINE; isa <= MPM_ISA_AVX512; ++isa) {
+    mpm_context *other = context_of(1, isa, NULL);
+    mpmi_solver *by;
+    if (!other) continue;
+    ck_assert_int_eq(mpmi_solver_create(other, &by), MPM_OK);
+    job = job_of(&A, b, y, MPM_SOLVER_MULTIGRID_CG);
+    job.tolerance = 1e-12;
+    solved(by, &job, &report);
+    ck_assert_double_lt(distance(n, y, x), 1e-8);
+    mpmi_solver_destroy(by);
+    ck_assert_int_eq(mpm_context_destroy(other), MPM_OK);
+  }
+  free(b), free(x), free(y);
+}
+END_TEST
+
+/* What is chosen: the factor where it is cheap, multigrid for large bodies, plain iterations where inertia
+ * rules. */
+START_TEST(choice) {
+  static const struct {
+    springs of;
+    double inertia;
+    int32_t wanted;
+  } at[] = {
+      {{.dim = 2, .block = 2, .reach = 1, .n = {30, 30}, .clamped = 1}, 0.0, MPM_SOLVER_LDLT},
+      {{.dim = 3, .block = 3, .reach = 1, .n = {22, 22, 22}, .clamped = 1}, 0.0, MPM_SOLVER_MULTIGRID_CG},
+      {{.dim = 3, .block = 3, .reach = 1, .n = {22, 22, 22}, .mass = 50.0}, 0.8, MPM_SOLVER_CG},
+      {{.dim = 1, .block = 1, .reach = 1, .n = {9001}, .clamped = 1}, 0.0, MPM_SOLVER_LDLT}};
+  springs_build(&A, context, &at[_i].of);
+  const int64_t n = mpmi_matrix_unknowns(&A);
+  double *b = noise_vector(&A, 5), *x = malloc((size_t)n * sizeof *x);
+  mpmi_solve_report report;
+  mpmi_solve_job job = job_of(&A, b, x, MPM_SOLVER_AUTO);
+  job.inertia = at[_i].inertia;
+  solved(solver, &job, &report);
+  ck_assert_int_eq(report.solver, at[_i].wanted);
+  free(b), free(x);
+}
+END_TEST
+
+TCase *linalg_multigrid_case(void) {
+  TCase *tests = tcase_create("multigrid");
+  tcase_set_timeout(tests, 120);
+  tcase_add_checked_fixture(tests, open_solver, close_solver);
+  tcase_add_loop_test(tests, solves, 0, BODIES);
+  tcase_add_loop_test(tests, solves_not_symmetric, 0, BODIES);
+  tcase_add_test(tests, sizes);
+  tcase_add_loop_test(tests, galerkin, 0, BODIES);
+  tcase_add_loop_test(tests, one_cycle, 0, BODIES);
+  tcase_add_test(tests, instruction_sets);
+  tcase_add_loop_test(tests, choice, 0, 4);
+  return tests;
+}
