@@ -168,9 +168,9 @@ enum {
 
 /** Linear solver of an implicit step. */
 enum {
-  MPM_SOLVER_AUTO = 0,         /**< chosen by size, dimension and symmetry */
+  MPM_SOLVER_AUTO = 0,         /**< the cheapest by size, stencil, symmetry and inertia */
   MPM_SOLVER_CG = 1,           /**< conjugate gradients, diagonally scaled; symmetric positive definite */
-  MPM_SOLVER_MULTIGRID_CG = 2, /**< conjugate gradients with geometric multigrid; the same */
+  MPM_SOLVER_MULTIGRID_CG = 2, /**< conjugate gradients with geometric multigrid: the same matrices */
   MPM_SOLVER_LDLT = 3,         /**< direct; symmetric, may be indefinite */
   MPM_SOLVER_GMRES = 4,        /**< for systems that are not symmetric */
   MPM_SOLVER_HOST = 100        /**< the callback of mpm_stepper_set_linear_solver() */

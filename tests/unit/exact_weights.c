@@ -370,6 +370,10 @@ START_TEST(domains_follow_the_deformation) {
       check_sums(v, x);
       check_functions(v, x);
     }
+    look(v, origin); /* on a node a point as a domain has the mean of two slopes */
+    check_sums(v, origin);
+    for (int64_t i = 0; i < v->n; ++i)
+      if (v->index[0][i] == 0) ck_within(basis->name, v->gradient[0][i], 0.0, 1e-9 / spacing[0]);
   }
   close_view(v);
   free(v);
