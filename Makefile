@@ -165,9 +165,10 @@ demo: $(BUILD)/examples/two_disks
 	@mkdir -p $(BUILD)/demo
 	cd $(BUILD)/demo && $(abspath $<)
 
-# All cases on one and two threads, with a table in $(BUILD)/bench/bench.csv; under a minute: bench-quick.
+# All cases on one and two threads, with tables in $(BUILD)/bench; explicit steps in under a minute: bench-quick.
 bench: $(BENCH)
 	$(BENCH) --csv $(BUILD)/bench/bench.csv
+	$(BENCH) --implicit --csv $(BUILD)/bench/implicit.csv
 bench-quick: $(BENCH)
 	$(BENCH) --quick
 

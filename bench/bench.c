@@ -1,23 +1,23 @@
 /* Particle-steps per second of whole explicit steps through the public interface: mpm_stable_dt and mpm_step
  * every step, re-sorts included, with momentum, energy and the hash of the state looked at in the end.
  *
- *   bench [--quick] [--only TEXT] [--particles N,N] [--threads N,N] [--repeats N] [--spread X] [--csv FILE]
+ *   bench [--quick] [--implicit] [--only TEXT] [--particles N,N] [--threads N,N] [--repeats N] [--spread X]
+ *         [--csv FILE]
  *
+ * --implicit: implicit steps in their place, implicit.c.
  * --only: cases whose name contains the text. --spread: bounds of the grid over the size of the body. A line
  * gives the median and the best of the repeats, nanoseconds per particle and step by stage (weights are part
  * of P2G and G2P), those of a thread for each node of the stencil, the rate as a share of what one core,
  * times the threads, can do in multiply-adds and in memory traffic, and the peak of the whole process. */
-#define _DEFAULT_SOURCE
+#include "apart.h"
 #include "ceilings.h"
+#include "implicit.h"
 #include "scene.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 /* The linear basis needs small steps at a free surface, where nodes are light; its body moves faster, so that
  * it has to be sorted again within the time. */
@@ -57,7 +57,7 @@ enum { CASES = sizeof cases / sizeof *cases, MOST_NUMBERS = 16, MOST_REPEATS = 9
 
 typedef struct settings {
   const char *only, *csv;
-  int32_t repeats;
+  int32_t repeats, implicit;
   struct numbers {
     int32_t count;
     int64_t at[MOST_NUMBERS];
@@ -107,8 +107,7 @@ static mpm_status measure(const bench_scene *scene, const bench_case *of, const 
     rate[k] = n * steps / (bench_seconds() - from);
   }
   mpm_stepper_profile(scene->stepper, 0, &stage);
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage); /* of the steps: the hash lists the ids for itself */
+  const double peak = bench_peak_bytes(); /* of the steps: the hash lists the ids for itself */
   if ((status = mpm_state_hash(scene->stepper, &r->hash))) return status;
   qsort(rate, (size_t)how->repeats, sizeof *rate, ascending);
   const double ns = 1e9 / (n * steps * how->repeats);
@@ -117,7 +116,7 @@ static mpm_status measure(const bench_scene *scene, const bench_case *of, const 
   r->allocations = scene->allocations - allocated;
   r->median = rate[how->repeats / 2];
   r->best = rate[how->repeats - 1];
-  r->bytes = 1024.0 * (double)usage.ru_maxrss / n;
+  r->bytes = peak / n;
   r->weights = stage.weights * ns, r->p2g = stage.p2g * ns, r->grid = stage.grid * ns,
   r->g2p = stage.g2p * ns;
   r->law = stage.law * ns, r->sort = stage.sort * ns, r->callbacks = stage.callbacks * ns;
@@ -129,36 +128,23 @@ static mpm_status measure(const bench_scene *scene, const bench_case *of, const 
   return MPM_OK;
 }
 
-static void run(const bench_case *of, const settings *how, int64_t particles, int32_t threads, result *r) {
+typedef struct run_job {
+  const bench_case *of;
+  const settings *how;
+  int64_t particles;
+  int32_t threads;
+} run_job;
+
+static void run(const void *data, void *to) {
+  const run_job *job = data;
+  result *r = to;
   bench_scene scene;
-  const bench_options options = {particles, threads, how->spread};
-  mpm_status status = bench_open(&scene, of, &options);
-  if (!status) status = measure(&scene, of, how, r);
+  const bench_options options = {job->particles, job->threads, job->how->spread};
+  mpm_status status = bench_open(&scene, job->of, &options);
+  if (!status) status = measure(&scene, job->of, job->how, r);
   r->failed = status != MPM_OK;
   if (status) snprintf(r->error, sizeof r->error, "%s", mpm_last_error(scene.context));
   bench_close(&scene);
-}
-
-/* In a process of its own, whose peak of memory is that of the case. */
-static int32_t run_apart(const bench_case *of, const settings *how, int64_t particles, int32_t threads,
-                         result *r) {
-  int ends[2], status;
-  *r = (result){.failed = 1, .error = "the process died"};
-  if (pipe(ends)) return 1;
-  const pid_t child = fork();
-  if (child == 0) {
-    close(ends[0]);
-    run(of, how, particles, threads, r);
-    const ssize_t written = write(ends[1], r, sizeof *r);
-    _exit(written != (ssize_t)sizeof *r);
-  }
-  close(ends[1]);
-  result got;
-  if (child > 0 && read(ends[0], &got, sizeof got) == (ssize_t)sizeof got) *r = got;
-  close(ends[0]);
-  if (child > 0) waitpid(child, &status, 0);
-  if (r->failed) fprintf(stderr, "%s: %s\n", of->name, r->error);
-  return r->failed;
 }
 
 /* What a run must keep whatever its speed. Work is done by the force; walls take momentum; J2 dissipates. */
@@ -200,8 +186,11 @@ static int32_t run_threads(const bench_case *of, const settings *how, int64_t pa
   uint64_t hash = 0;
   for (int32_t t = 0; t < how->threads.count; ++t) {
     const int32_t threads = (int32_t)how->threads.at[t];
-    result r;
-    if (run_apart(of, how, particles, threads, &r)) return 1;
+    const run_job job = {of, how, particles, threads};
+    result r = {.failed = 1, .error = "the process died"};
+    bench_apart(run, &job, &r, sizeof r);
+    if (r.failed) fprintf(stderr, "%s: %s\n", of->name, r.error);
+    if (r.failed) return 1;
     print(csv, of, threads, how->spread, &r, peak, bandwidth);
     bad |= !is_sound(of, &r);
     if (t > 0 && r.hash != hash) {
@@ -256,6 +245,10 @@ static int32_t read_options(int argc, char **argv, settings *how) {
       how->repeats = 3;
       continue;
     }
+    if (!strcmp(argv[i], "--implicit")) {
+      how->implicit = 1;
+      continue;
+    }
     const char *value = i + 1 < argc ? argv[i + 1] : NULL;
     int32_t good = value != NULL;
     if (good && !strcmp(argv[i], "--only"))
@@ -289,7 +282,9 @@ int main(int argc, char **argv) {
     perror(how.csv);
     return 2;
   }
-  const int32_t bad = run_all(&how, csv);
+  const int32_t bad = how.implicit
+                          ? bench_implicit(how.only, how.repeats, how.threads.at, how.threads.count, csv)
+                          : run_all(&how, csv);
   if (csv && fclose(csv)) return 2;
   return bad;
 }

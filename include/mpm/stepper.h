@@ -320,7 +320,7 @@ typedef struct mpm_profile {
   double p2g;           /**< weights, particles to grid */
   double grid;          /**< nodal update, walls, prescribed velocities */
   double g2p;           /**< grid to particles */
-  double law;           /**< built-in laws and tangents, where timed apart from the transfers */
+  double law;           /**< laws within g2p and assembly: from samples; their tangents are assembly */
   double assembly;      /**< residual and matrix */
   double factor;        /**< factorisation, set-up of preconditioners */
   double solve;         /**< linear solves */
