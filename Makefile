@@ -293,7 +293,7 @@ mutate: $(UNIT)
 VERIFIED = $(BUILD)/verification
 VERIFY_HEADERS := $(sort $(wildcard tests/verification/*.h))
 VERIFY_SHARED := $(VERIFY_HEADERS:.h=.c)
-VERIFY_LONG := cube_convergence taylor_bar transfers water_column
+VERIFY_LONG := cube_convergence taylor_bar four_discs transfers water_column
 VERIFY_ALL := $(basename $(notdir $(filter-out $(VERIFY_SHARED),$(sort $(wildcard tests/verification/*.c)))))
 CASES ?= $(filter $(VERIFY_LONG),$(VERIFY_ALL)) $(filter-out $(VERIFY_LONG),$(VERIFY_ALL))
 VERIFY := $(CASES:%=$(VERIFIED)/%)
