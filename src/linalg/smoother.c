@@ -25,6 +25,7 @@ static int32_t colour_nodes(const mpmi_matrix *A, int32_t *colour, int32_t *take
 
 static mpm_status reserve(mpmi_smoother *s, const mpmi_matrix *A) {
   const int64_t rows = A->rows, entries = A->row_start[rows] - rows, lanes = MPMI_PADDED(A->block);
+  const int64_t area = A->block * A->block;
   mpmi_carver from = {NULL, 0};
   for (;;) {
     s->colour_start = mpmi_carve(&from, s->colours + 1, sizeof *s->colour_start);
@@ -33,8 +34,8 @@ static mpm_status reserve(mpmi_smoother *s, const mpmi_matrix *A) {
     s->order = mpmi_carve(&from, rows, sizeof *s->order);
     s->place = mpmi_carve(&from, rows, sizeof *s->place);
     s->column = mpmi_carve(&from, entries, sizeof *s->column);
-    s->value = mpmi_carve(&from, entries * lanes * A->block, sizeof *s->value);
-    s->inverse = mpmi_carve(&from, rows * lanes * A->block, sizeof *s->inverse);
+    s->value = mpmi_carve(&from, entries * area, sizeof *s->value);
+    s->inverse = mpmi_carve(&from, rows * area, sizeof *s->inverse);
     s->scale = mpmi_carve(&from, rows * A->block, sizeof *s->scale);
     s->unscale = mpmi_carve(&from, rows * A->block, sizeof *s->unscale);
     s->rhs = mpmi_carve(&from, rows * lanes, sizeof *s->rhs);
@@ -109,8 +110,8 @@ mpm_status mpmi_smoother_analyse(mpmi_smoother *s, const mpmi_matrix *A, int32_t
 /* ---- numbers ----------------------------------------------------------------------------------------- */
 /* The diagonal block of a row, scaled, inverted; by columns. */
 static void invert_diagonal(mpmi_smoother *s, const double *value, int64_t p) {
-  const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  float *to = s->inverse + p * block * lanes;
+  const int32_t block = s->block;
+  float *to = s->inverse + p * block * block;
   double a[3][3];
   for (int32_t r = 0; r < block; ++r)
     for (int32_t c = 0; c < block; ++c) {
@@ -119,8 +120,7 @@ static void invert_diagonal(mpmi_smoother *s, const double *value, int64_t p) {
     }
   const int32_t regular = mpmi_invert_block(block, a);
   for (int32_t c = 0; c < block; ++c)
-    for (int32_t r = 0; r < lanes; ++r)
-      to[c * lanes + r] = r == block ? 0.0F : regular ? (float)a[r][c] : r == c ? 1.0F : 0.0F;
+    for (int32_t r = 0; r < block; ++r) to[c * block + r] = regular ? (float)a[r][c] : r == c ? 1.0F : 0.0F;
 }
 
 static mpm_status scale_row(mpmi_smoother *s, const mpmi_matrix *A, int64_t p) {
@@ -156,20 +156,18 @@ static void values_task(void *data, int64_t k) {
   const smoother_job *job = data;
   mpmi_smoother *s = job->s;
   const mpmi_matrix *A = job->A;
-  const int32_t block = s->block, lanes = MPMI_PADDED(block);
+  const int32_t block = s->block;
   for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p) {
     int64_t before = s->row_start[p], after = s->middle[p];
     for (int64_t e = A->row_start[s->order[p]]; e < A->row_start[s->order[p] + 1]; ++e) {
       const int64_t other = s->place[A->column[e]];
       if (other == p) continue;
       const double *from = A->value + e * block * block;
-      float *to = s->value + (other < p ? before++ : after++) * block * lanes;
+      float *to = s->value + (other < p ? before++ : after++) * block * block;
       for (int32_t c = 0; c < block; ++c)
-        for (int32_t r = 0; r < lanes; ++r)
-          to[c * lanes + r] =
-              r == block
-                  ? 0.0F
-                  : (float)(s->scale[p * block + r] * from[r * block + c] * s->scale[other * block + c]);
+        for (int32_t r = 0; r < block; ++r)
+          to[c * block + r] =
+              (float)(s->scale[p * block + r] * from[r * block + c] * s->scale[other * block + c]);
     }
   }
 }

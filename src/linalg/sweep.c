@@ -1,17 +1,36 @@
 #include "linalg/sweep.h"
 
+#include <string.h>
+
 #include "transfer/isa.h"
 
 enum { BEFORE = 1, AFTER = 2 };
 
+typedef float quad __attribute__((vector_size(16)));
+
+MPMI_INLINE quad load(const float *at) {
+  quad q;
+  memcpy(&q, at, sizeof q);
+  return q;
+}
+
+/* sum -= the rows of entries [begin, end); a sum for each column of the blocks, so that none waits for
+ * another. */
 MPMI_INLINE void subtract(const mpmi_smoother *s, int32_t block, int64_t begin, int64_t end, float *sum) {
-  const int32_t lanes = MPMI_PADDED(block);
-  const float *value = s->value + begin * block * lanes;
-  for (int64_t e = begin; e < end; ++e, value += block * lanes) {
-    const float *x = s->x + (int64_t)s->column[e] * lanes;
-    for (int32_t c = 0; c < block; ++c)
-      for (int32_t l = 0; l < lanes; ++l) sum[l] -= value[c * lanes + l] * x[c];
+  const float *value = s->value + begin * block * block;
+  quad part[3] = {{0.0F}, {0.0F}, {0.0F}};
+  for (int64_t e = begin; e < end; ++e, value += block * block) {
+    const float *x = s->x + (int64_t)s->column[e] * MPMI_PADDED(block);
+    if (block == 3) /* the last lane takes what follows a column */
+      for (int32_t c = 0; c < 3; ++c) part[c] += load(value + 3 * c) * x[c];
+    else if (block == 2) /* both columns side by side */
+      part[e & 1] += load(value) * (quad){x[0], x[0], x[1], x[1]};
+    else
+      sum[0] -= value[0] * x[0];
   }
+  if (block == 1) return;
+  const quad all = (part[0] + part[1]) + part[2];
+  for (int32_t l = 0; l < MPMI_PADDED(block); ++l) sum[l] -= block == 2 ? all[l] + all[l + 2] : all[l];
 }
 
 /* What the other nodes leave of the right-hand side, and what that makes of x. */
@@ -26,9 +45,9 @@ MPMI_INLINE void sweep(const mpmi_smoother *s, int32_t block, int32_t with, int6
       for (int32_t l = 0; l < lanes; ++l) s->residual[i * lanes + l] = sum[l];
       continue;
     }
-    const float *inverse = s->inverse + i * block * lanes;
+    const float *inverse = s->inverse + i * block * block;
     for (int32_t c = 0; c < block; ++c)
-      for (int32_t l = 0; l < lanes; ++l) x[l] += inverse[c * lanes + l] * sum[c];
+      for (int32_t l = 0; l < block; ++l) x[l] += inverse[c * block + l] * sum[c];
     for (int32_t l = 0; l < lanes; ++l) s->x[i * lanes + l] = x[l];
   }
 }

@@ -2,7 +2,8 @@
  *
  * The level is scaled, S A S, and its nodes are ordered by colour: those of one colour do not couple, and may
  * be taken at the same time. Entries of a row are those of nodes before it, then those after it; blocks are
- * kept by columns, and those of three unknowns with a fourth row of zeros, as vectors are. */
+ * kept by columns. Vectors have four places for the three unknowns of a node: the last one holds nothing of
+ * meaning. */
 #ifndef MPMI_SWEEP_H
 #define MPMI_SWEEP_H
 
