@@ -184,6 +184,14 @@ if wanted cholmod_solver && [ -e "$build/examples/cholmod_solver" ]; then
   check "tip" "sinks by" 1.5 1.65
 fi
 
+if wanted petsc_solver && [ -e "$build/examples/petsc_solver" ]; then
+  for option in "" -locking_remedy; do
+    run petsc_solver -cells 8 $option
+    check "same as the built-in solvers" "differ by" 0 1e-10
+    check "solves" "patterns for" 6 12
+  done
+fi
+
 if wanted cpp_block; then
   run cpp_block
   check "settlement" "settlement" 4.1 4.2
