@@ -10,11 +10,12 @@
  * symmetry planes do not balance.
  *
  * What to expect: sphere and block share one velocity field, so they stick, and feel each other across a gap
- * of a cell. Linear functions are taken because with others the gap is wider. The sphere acts as one whose
- * radius is a cell larger, and the force at the geometric depth is far above Hertz: at 5 mm 3.79, 2.52, 2.18,
- * 1.88 and 1.72 times with 8, 12, 16, 20 and 24 cells. Against Hertz for the larger sphere it is 1.20, 1.08,
- * 1.12, 1.08 and 1.08 times, and less where the radius of contact is but some three cells: 0.71 at depth 0.
- * Hertz knows neither large strain nor the finite block; the depth reaches half of the radius. */
+ * of a cell. Linear functions are taken because with others the gap is wider, and because with quadratic ones
+ * Newton's method does not end at large depths. The sphere acts as one whose radius is a cell larger, and the
+ * force at the geometric depth is far above Hertz: at 5 mm 3.79, 2.52, 2.18, 1.88 and 1.72 times with 8, 12,
+ * 16, 20 and 24 cells. Against Hertz for the larger sphere it is 1.20, 1.08, 1.12, 1.08 and 1.08 times, and
+ * less where the radius of contact is but some three cells: 0.71 at depth 0, with 16. Hertz knows neither
+ * large strain nor the finite block; the depth reaches half of the radius. */
 #include <mpm/mpm.h>
 
 #include <inttypes.h>
@@ -22,8 +23,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double edge = 40e-3, radius = 20e-3,
-                    depth = 10e-3; /* of the quarter; of the sphere; to reach, m */
+/* of the quarter; of the sphere; to reach; m */
+static const double edge = 40e-3, radius = 20e-3, depth = 10e-3;
 static const double E = 1e6, nu = 0.45;
 enum { STEPS_PER_CELL = 2, SETS = 2 };
 
