@@ -61,14 +61,19 @@ OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(B
 STATIC_LIB := $(BUILD)/libmpm.a
 SHARED_LIB := $(BUILD)/$(SHARED)
 
-# One example shows CHOLMOD as the host's solver, where that is installed.
+# Two examples show CHOLMOD and PETSc as the host's solver, where these are installed.
 HAS_CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null > /dev/null 2>&1 && echo yes)
+PETSC_PACKAGES := $(shell $(PKG_CONFIG) --exists PETSc mpi-c 2> /dev/null && echo PETSc mpi-c)
 EXAMPLES := $(patsubst examples/%,$(BUILD)/examples/%,$(basename $(sort $(wildcard examples/*.c examples/*.cpp))))
 BENCH := $(BUILD)/bench/bench
 ifneq ($(HAS_CHOLMOD),yes)
 EXAMPLES := $(filter-out %/cholmod_solver,$(EXAMPLES))
 endif
+ifeq ($(PETSC_PACKAGES),)
+EXAMPLES := $(filter-out %/petsc_solver,$(EXAMPLES))
+endif
 $(BUILD)/examples/cholmod_solver: LIBS += -lcholmod
+$(BUILD)/examples/petsc_solver: LIBS += $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags-only-I --libs $(PETSC_PACKAGES)))
 UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
 UNIT := $(BUILD)/tests/unit
 

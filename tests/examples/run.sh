@@ -184,6 +184,28 @@ if wanted cholmod_solver && [ -e "$build/examples/cholmod_solver" ]; then
   check "tip" "sinks by" 1.5 1.65
 fi
 
+if wanted petsc_solver && [ -e "$build/examples/petsc_solver" ]; then
+  for option in "" -locking_remedy; do
+    run petsc_solver -cells 8 $option
+    check "same as the built-in solvers" "differ by" 0 1e-10
+    check "solves" "patterns for" 6 12
+  done
+fi
+
+if wanted indenter; then
+  mkdir indenter
+  run indenter indenter
+  check "force" "result: force" 98 105
+  check "ratio to Hertz" "N," 1.13 1.19
+  check "balance" "balance to" 0 1e-10
+  awk '$1 == "0.000" { low = $6 > 0.6 && $6 < 0.85; rows++ } $1 == "5.000" { high = $6 > 1.05 && $6 < 1.2; rows++ }
+    END { exit !(rows == 2 && low && high) }' indenter.out || fail "indenter: ratios to Hertz on the way are not as measured"
+  [ "$(awk -F, 'NF == 4' indenter/force.csv | wc -l)" -eq 10 ] || fail "indenter: force.csv has not 10 rows of 4 columns"
+  for file in block.pvd sphere.pvd block_0000.vtp sphere_0009.vtp; do
+    [ -s "indenter/$file" ] || fail "indenter: $file is missing or empty"
+  done
+fi
+
 if wanted cpp_block; then
   run cpp_block
   check "settlement" "settlement" 4.1 4.2
