@@ -1,5 +1,6 @@
-/* GMRES with restarts. Vectors are made orthogonal by two rounds of classical Gram-Schmidt, whose sums are
- * formed side by side. */
+/* Flexible GMRES with restarts: what the preconditioner made of each vector is kept, so that it need not be
+ * linear to the last digit, as a cycle in single precision is not. Vectors are made orthogonal by two rounds
+ * of classical Gram-Schmidt, whose sums are formed side by side. */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +11,7 @@ enum { SLOW_CYCLES = 12 }; /* the impatient go on only if as many cycles would d
 typedef struct gmres {
   mpmi_system *system;
   const mpmi_gmres_plan *plan;
-  double *basis, *w, *z;               /* [restart + 1][n], [n], [n] */
+  double *basis, *ready, *w;           /* [restart + 1][n]; [restart][n] M^-1 of it; [n] */
   double *hessenberg;                  /* [restart][restart + 1], by columns; triangular once rotated */
   double *cosine, *sine, *rest, *part; /* rest: right-hand side of the small system; part: sums by chunk */
   double scale;
@@ -64,22 +65,16 @@ static void scale_task(void *data, int64_t k) {
     v[i] = g->w[i] * g->scale;
 }
 
-/* w = sum y_j v_j, with y in the second half of `rest`. */
+/* x += sum y_j M^-1 v_j, with y in the second half of `rest`. */
 static void combine_task(void *data, int64_t k) {
   const gmres *g = data;
   const int64_t begin = mpmi_cut_begin(&g->cut, k), end = mpmi_cut_begin(&g->cut, k + 1);
   const double *y = g->rest + g->plan->restart + 1;
-  for (int64_t i = begin; i < end; ++i) g->w[i] = 0.0;
+  double *x = g->system->x;
   for (int32_t j = 0; j < g->last; ++j) {
-    const double *v = vector(g, j);
-    for (int64_t i = begin; i < end; ++i) g->w[i] += y[j] * v[i];
+    const double *z = g->ready + j * g->system->n;
+    for (int64_t i = begin; i < end; ++i) x[i] += y[j] * z[i];
   }
-}
-
-static void add_task(void *data, int64_t k) {
-  const gmres *g = data;
-  for (int64_t i = mpmi_cut_begin(&g->cut, k); i < mpmi_cut_begin(&g->cut, k + 1); ++i)
-    g->system->x[i] += g->z[i];
 }
 
 static mpm_status run(gmres *g, mpm_task_fn task) {
@@ -96,8 +91,9 @@ static double sum_of(const gmres *g, int32_t j) {
 static mpm_status extend(gmres *g, int32_t j, double *h) {
   mpmi_system *s = g->system;
   double *correction = g->rest + g->plan->restart + 1;
-  mpm_status status = g->plan->precondition(g->plan->user, vector(g, j), g->z);
-  if (!status) status = mpmi_matrix_apply(s->A, g->z, g->w);
+  double *z = g->ready + j * s->n;
+  mpm_status status = g->plan->precondition(g->plan->user, vector(g, j), z);
+  if (!status) status = mpmi_matrix_apply(s->A, z, g->w);
   g->last = j + 1;
   g->again = 0;
   if (!status) status = run(g, project_task);
@@ -140,9 +136,7 @@ static mpm_status step(gmres *g, int32_t count) {
     y[i] = pivot > 0.0 ? sum / pivot : 0.0; /* 0: the matrix has no such direction */
   }
   g->last = count;
-  mpm_status status = run(g, combine_task);
-  if (!status) status = g->plan->precondition(g->plan->user, g->w, g->z);
-  return status ? status : run(g, add_task);
+  return run(g, combine_task);
 }
 
 /* From the residual in w, of norm s->reached, until the basis is full or the residual is as wanted. */
@@ -167,12 +161,12 @@ static mpm_status cycle(gmres *g) {
 
 static mpm_status reserve(gmres *g) {
   const int64_t ld = g->plan->restart + 1, n = g->system->n;
-  const mpm_status status = mpmi_system_work(g->system, ld + 2, ld * ld + 4 * ld + ld * MPMI_MOST_CHUNKS);
+  const mpm_status status = mpmi_system_work(g->system, 2 * ld, ld * ld + 4 * ld + ld * MPMI_MOST_CHUNKS);
   if (status) return status;
   g->basis = g->system->solver->work;
-  g->w = g->basis + ld * n;
-  g->z = g->w + n;
-  g->hessenberg = g->z + n;
+  g->ready = g->basis + ld * n;
+  g->w = g->ready + (ld - 1) * n;
+  g->hessenberg = g->w + n;
   g->cosine = g->hessenberg + ld * ld;
   g->sine = g->cosine + ld;
   g->rest = g->sine + ld;
@@ -194,7 +188,7 @@ mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {
   for (double before = (double)INFINITY; !status; before = s->reached) {
     int32_t good;
     if ((status = mpmi_matrix_residual(s->A, s->b, s->x, g.w, &s->reached))) break;
-    if ((status = mpmi_system_good(s, s->reached, g.z, &good)) || good) break;
+    if ((status = mpmi_system_good(s, s->reached, g.basis, &good)) || good) break;
     if (!isfinite(s->reached) || !goes_on(&g, before)) return MPM_NOT_CONVERGED;
     status = cycle(&g);
   }

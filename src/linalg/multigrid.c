@@ -80,12 +80,12 @@ mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64
   for (int32_t l = 0; l + 1 < g->levels; ++l) {
     mpmi_level *level = &g->level[l];
     level[1].own.symmetric = A->symmetric;
-    int64_t bad;
+    int64_t bad = -1;
     if ((status = mpmi_smoother_numbers(&level->smoother, level->A, &bad)) && !l) *row = bad;
     if (status || (status = mpmi_galerkin(g, level, level + 1))) return status;
   }
   const mpmi_matrix *last = g->level[g->levels - 1].A;
-  int64_t bad;
+  int64_t bad = -1;
   if ((status = mpmi_factor_analyse(&g->coarsest, last))) return status; /* if it is not symmetric any more */
   if ((status = mpmi_factor_numbers(&g->coarsest, last, &bad)) && g->levels == 1) *row = bad;
   if (status) return status;

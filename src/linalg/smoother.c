@@ -6,8 +6,8 @@
 #include "linalg/sweep.h"
 #include "linalg/vectors.h"
 
-/* Each node takes the first colour that none of its neighbours has. next: [colours], for which node a colour
- * is taken. */
+/* Each node takes the first colour that none of its neighbours has. taken: [rows], for which node a colour
+ * is. */
 static int32_t colour_nodes(const mpmi_matrix *A, int32_t *colour, int32_t *taken) {
   int32_t colours = 0;
   memset(colour, 0xff, (size_t)A->rows * sizeof *colour);

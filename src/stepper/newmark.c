@@ -103,7 +103,7 @@ static mpm_status find_accelerations(mpm_stepper *s, double dt, double *clock) {
 static mpm_status prepare_accelerations(mpm_stepper *s, double dt, int32_t unknown, double *clock) {
   for (int32_t m = 0; m < s->member_count; ++m) {
     const mpm_particles *set = s->member[m].set;
-    if (set->dirty & MPMI_DIRTY_ACCELERATION) continue;
+    if ((set->dirty & MPMI_DIRTY_ACCELERATION) || !set->ld) continue; /* or nothing was ever added */
     memcpy(mpmi_f64(set, MPMI_ACCELERATION, 1), mpmi_f64(set, MPMI_ACCELERATION, 0),
            (size_t)(s->grid->dim * set->ld) * sizeof(double));
   }

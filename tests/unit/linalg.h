@@ -18,6 +18,7 @@ typedef struct springs {
   int64_t n[3];      /* nodes along the axes in use */
   int32_t chains;    /* springs along the first axis only */
   int32_t periodic;  /* around the first axis */
+  int32_t below;     /* axes begin at this index below 0 */
   int32_t holes;     /* one node in so many is left out; 0: none */
   int32_t clamped;   /* the plane of the first nodes along the first axis is held */
   int32_t rollers;   /* one component is held on nodes here and there */

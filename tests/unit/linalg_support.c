@@ -113,7 +113,7 @@ void springs_build(mpmi_matrix *A, mpm_context *context, const springs *of) {
     if (i < 0) continue;
     const int64_t index[3] = {at / (n[1] * n[2]), at / n[2] % n[1], at % n[2]};
     for (int32_t k = 0; k < 3; ++k) {
-      A->index[i][k] = index[k];
+      A->index[i][k] = index[k] - (k < of->dim ? of->below : 0);
       A->position[3 * i + k] = 0.1 * (double)index[k];
     }
     A->number[i] = 1000 + 7 * i;
