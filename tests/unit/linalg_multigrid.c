@@ -240,6 +240,23 @@ START_TEST(choice) {
 }
 END_TEST
 
+/* A body that nothing holds has no solution, whatever rounding makes of it. */
+START_TEST(floating) {
+  static const springs afloat[] = {{.dim = 2, .block = 2, .reach = 1, .n = {50, 50}},
+                                   {.dim = 3, .block = 3, .reach = 1, .n = {16, 16, 16}}};
+  static const int32_t choices[] = {MPM_SOLVER_AUTO, MPM_SOLVER_LDLT};
+  springs_build(&A, context, &afloat[_i / 2]);
+  const int64_t n = mpmi_matrix_unknowns(&A);
+  double *b = malloc((size_t)n * sizeof *b), *x = malloc((size_t)n * sizeof *x);
+  for (int64_t i = 0; i < n; ++i) b[i] = i % A.block == 0 ? 1.0 : 0.0;
+  mpmi_solve_report report;
+  const mpmi_solve_job job = job_of(&A, b, x, choices[_i % 2]);
+  refused(solver, &job, &report, MPM_SINGULAR, "singular");
+  ck_assert_int_ge(report.node, 0);
+  free(b), free(x);
+}
+END_TEST
+
 TCase *linalg_multigrid_case(void) {
   TCase *tests = tcase_create("multigrid");
   tcase_set_timeout(tests, 120);
@@ -252,5 +269,6 @@ TCase *linalg_multigrid_case(void) {
   tcase_add_loop_test(tests, one_cycle, 0, BODIES);
   tcase_add_test(tests, instruction_sets);
   tcase_add_loop_test(tests, choice, 0, 4);
+  tcase_add_loop_test(tests, floating, 0, 4);
   return tests;
 }
