@@ -59,6 +59,23 @@ START_TEST(free_body) {
 }
 END_TEST
 
+/* Of many unknowns: what rounding leaves of its motions is no solution. */
+START_TEST(large_free_body) {
+  block b = {.desc = implicit_default(3, 18, 0.1, &implicit_bases[0]), .dt = 0.02};
+  b.desc.stepper.quasi_static = 1;
+  b.desc.stepper.gravity[1] = -0.1;
+  world_open(&b.w, &b.desc);
+  b.set = world_add_set(&b.w);
+  implicit_block(&b.w, b.set, 0.1, 1.7, NULL);
+  for (int32_t choice = MPM_SOLVER_AUTO; choice <= MPM_SOLVER_LDLT; choice += MPM_SOLVER_LDLT) {
+    b.desc.stepper.linear_solver = choice;
+    ck_ok(&b.w, mpm_stepper_configure(b.w.stepper, &b.desc.stepper));
+    ck_assert_int_ge(fails(&b, MPM_SINGULAR, "singular").node, 0);
+  }
+  world_close(&b.w);
+}
+END_TEST
+
 /* A rigid body in the air: nothing moves it while it weighs nothing, and nothing carries its weight. */
 START_TEST(free_rigid_body) {
   block b = {.desc = implicit_default(2, 8, 0.1, &implicit_bases[1]), .dt = 0.01};
@@ -418,6 +435,7 @@ TCase *implicit_failures_case(void) {
   TCase *tests = tcase_create("failures");
   tcase_set_timeout(tests, 60.0);
   tcase_add_test(tests, free_body);
+  tcase_add_test(tests, large_free_body);
   tcase_add_test(tests, free_rigid_body);
   tcase_add_test(tests, too_few_iterations);
   tcase_add_test(tests, inverted);
