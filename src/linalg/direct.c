@@ -42,11 +42,12 @@ static mpm_status refine(mpmi_system *s, int32_t *good) {
   }
 }
 
-/* A pivot that is small, though no rounding, with a solution out of reach: there is none. */
+/* A pivot that is small, though no rounding, or a factor whose answer is worse than none, with a solution out
+ * of reach: there is none. */
 static const double SMALL_PIVOT = 1e-9;
-static mpm_status without_solution(const mpmi_system *s) {
+static mpm_status without_solution(const mpmi_system *s, int32_t useless) {
   int64_t row;
-  if (mpmi_factor_least_pivot(&s->solver->factor, &row) < SMALL_PIVOT)
+  if (mpmi_factor_least_pivot(&s->solver->factor, &row) < SMALL_PIVOT || useless)
     return mpmi_system_fail_at(s, MPM_SINGULAR, row, "the linear system is singular: least pivot");
   return mpmi_system_not_converged(s, "the direct solver");
 }
@@ -66,9 +67,10 @@ mpm_status mpmi_direct(mpmi_system *s) {
   if (f->skipped >= 0) s->report->negative = -1;
   if (f->skipped >= 0)
     return mpmi_system_fail_at(s, MPM_SINGULAR, f->skipped, "the linear system is singular: no pivot");
-  if (!(s->reached < s->b_norm))
+  const int32_t useless = !(s->reached < s->b_norm);
+  if (useless)
     for (int64_t i = 0; i < s->n; ++i) s->x[i] = 0.0;
   const mpmi_gmres_plan plan = {times_factor, s, RESTART, 0, s->report->iterations + RESTART * CYCLES};
   status = mpmi_gmres(s, &plan);
-  return status == MPM_NOT_CONVERGED ? without_solution(s) : status;
+  return status == MPM_NOT_CONVERGED ? without_solution(s, useless) : status;
 }
