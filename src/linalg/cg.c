@@ -10,7 +10,7 @@ typedef struct cg {
   void *user;
   const double *inverse; /* of the diagonal */
   double *r, *p, *q;     /* residual, direction, A p */
-  double *z;             /* M^-1 r */
+  double *z;             /* M^-1 r of a preconditioner */
   double alpha, beta;
   mpmi_cut cut;
   double rz[MPMI_MOST_CHUNKS], rr[MPMI_MOST_CHUNKS]; /* by chunk: r . D^-1 r and r . r */
@@ -19,27 +19,25 @@ typedef struct cg {
 /* x += alpha p, r -= alpha q, and the sums of the new r. */
 static void advance_task(void *data, int64_t k) {
   cg *c = data;
-  double *x = c->system->x, *r = c->r, *z = c->z, rz = 0.0, rr = 0.0;
+  double *x = c->system->x, *r = c->r, rz = 0.0, rr = 0.0;
   const double *p = c->p, *q = c->q, *inverse = c->inverse, alpha = c->alpha;
   for (int64_t i = mpmi_cut_begin(&c->cut, k); i < mpmi_cut_begin(&c->cut, k + 1); ++i) {
     x[i] += alpha * p[i];
     r[i] -= alpha * q[i];
     rr += r[i] * r[i];
-    if (!inverse) continue;
-    z[i] = inverse[i] * r[i];
-    rz += r[i] * z[i];
+    if (inverse) rz += r[i] * (inverse[i] * r[i]);
   }
   c->rz[k] = rz;
   c->rr[k] = rr;
 }
 
-/* p = z + beta p */
+/* p = M^-1 r + beta p */
 static void turn_task(void *data, int64_t k) {
   const cg *c = data;
   double *p = c->p;
-  const double *z = c->z, beta = c->beta;
+  const double *r = c->r, *z = c->z, *inverse = c->inverse, beta = c->beta;
   for (int64_t i = mpmi_cut_begin(&c->cut, k); i < mpmi_cut_begin(&c->cut, k + 1); ++i)
-    p[i] = z[i] + beta * p[i];
+    p[i] = (inverse ? inverse[i] * r[i] : z[i]) + beta * p[i];
 }
 
 static mpm_status run(cg *c, mpm_task_fn task) {
@@ -92,14 +90,14 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
 /* The recursion drifts from the true residual: where that is not as wanted yet, the iteration starts again
  * from it, as long as this helps. */
 mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user, int64_t limit) {
-  mpm_status status = mpmi_system_work(s, 4, 0);
+  mpm_status status = mpmi_system_work(s, precondition ? 4 : 3, 0);
   if (status) return status;
   cg c = {.system = s, .precondition = precondition, .user = user, .cut = mpmi_cut_of(s->n, s->n)};
   c.inverse = precondition ? NULL : s->solver->diagonal;
   c.r = s->solver->work;
   c.p = c.r + s->n;
   c.q = c.p + s->n;
-  c.z = c.q + s->n;
+  c.z = precondition ? c.q + s->n : NULL;
   double before = (double)INFINITY;
   for (;;) {
     double rz;
