@@ -42,12 +42,13 @@ static mpm_status refine(mpmi_system *s, int32_t *good) {
   }
 }
 
-/* A pivot that is small, though no rounding, or a factor whose answer is worse than none, with a solution out
- * of reach: there is none. */
-static const double SMALL_PIVOT = 1e-9;
+/* With a solution out of reach, there is none if a pivot is small, though no rounding, if the answer of the
+ * factor was worse than none, or if this much of the right-hand side is left: rounding made the pivots. */
+static const double SMALL_PIVOT = 1e-9, UNSOLVED = 0.1;
 static mpm_status without_solution(const mpmi_system *s, int32_t useless) {
   int64_t row;
-  if (mpmi_factor_least_pivot(&s->solver->factor, &row) < SMALL_PIVOT || useless)
+  const double pivot = mpmi_factor_least_pivot(&s->solver->factor, &row);
+  if (pivot < SMALL_PIVOT || useless || s->reached > UNSOLVED * s->b_norm)
     return mpmi_system_fail_at(s, MPM_SINGULAR, row, "the linear system is singular: least pivot");
   return mpmi_system_not_converged(s, "the direct solver");
 }

@@ -19,9 +19,9 @@ const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
   return &mpmi_sweeps_baseline;
 }
 
-/* Unknowns that are better factored than coarsened, and the share of nodes that a coarser level may have to
- * be worth it. */
-enum { COARSEST = 800 };
+/* Unknowns that are better factored than coarsened; where a coarser level has more than this share of the
+ * nodes, so many. */
+enum { COARSEST = 800, FACTORED = 50 * COARSEST };
 static const double WORTH = 0.7;
 
 void mpmi_multigrid_init(mpmi_multigrid *g, mpm_context *context) {
@@ -56,7 +56,8 @@ static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
     mpmi_level *level = &g->level[g->levels - 1], *next = level + 1;
     if (mpmi_matrix_unknowns(level->A) <= COARSEST) break;
     if ((status = mpmi_coarsen(g, level, next, &level->next))) return status;
-    if ((double)next->own.rows > WORTH * (double)level->A->rows) break;
+    if ((double)next->own.rows > WORTH * (double)level->A->rows && mpmi_matrix_unknowns(level->A) <= FACTORED)
+      break;
     if ((status = mpmi_multigrid_scratch(g, mpmi_bytes(level->A->rows, 2 * sizeof(int32_t)))) ||
         (status = mpmi_smoother_analyse(&level->smoother, level->A, (int32_t *)(void *)g->scratch)))
       return status;
@@ -72,6 +73,15 @@ static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
   return MPM_OK;
 }
 
+/* A matrix may be of any size, and single precision has little room: a cycle's right-hand side is divided by
+ * its norm and by this. */
+static void measure_scales(mpmi_multigrid *g) {
+  const mpmi_smoother *s = &g->level[0].smoother;
+  g->largest_scale = 0.0;
+  for (int64_t i = 0; g->levels > 1 && i < s->rows * s->block; ++i)
+    if (s->scale[i] > g->largest_scale) g->largest_scale = s->scale[i];
+}
+
 mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64_t *row) {
   mpm_status status = MPM_OK;
   *row = -1;
@@ -84,6 +94,7 @@ mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64
     if ((status = mpmi_smoother_numbers(&level->smoother, level->A, &bad)) && !l) *row = bad;
     if (status || (status = mpmi_galerkin(g, level, level + 1))) return status;
   }
+  measure_scales(g);
   const mpmi_matrix *last = g->level[g->levels - 1].A;
   int64_t bad = -1;
   if ((status = mpmi_factor_analyse(&g->coarsest, last))) return status; /* if it is not symmetric any more */
@@ -223,7 +234,7 @@ mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z) {
     mpmi_factor_solve(&g->coarsest, A, r, z);
     return MPM_OK;
   }
-  /* of size 1, so that single precision has room on both sides */
+  norm *= g->largest_scale;
   cycle_job job = {.g = g, .fine = &g->level[0], .r = r, .z = z, .by = norm > 0.0 ? 1.0 / norm : 0.0};
   if ((status = run(&job, A->rows, A, load_task)) || (status = cycle(job, 0))) return status;
   job.by = norm;

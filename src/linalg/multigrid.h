@@ -43,6 +43,7 @@ typedef struct mpmi_multigrid {
   int64_t pattern_id; /* that the structure was made for */
   int32_t analysed, levels;
   mpmi_level level[MPMI_MOST_LEVELS];
+  double largest_scale; /* of the first level */
   mpmi_factor coarsest;
   double *rhs, *x; /* of the coarsest */
   int64_t coarsest_capacity;

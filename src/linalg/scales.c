@@ -11,8 +11,7 @@ typedef struct scale_job {
   mpmi_factor *f;
   const mpmi_matrix *A;
   mpmi_cut cut;
-  int64_t bad[MPMI_MOST_CHUNKS]; /* first node of the chunk that has no scale, or -1 */
-  mpm_status status[MPMI_MOST_CHUNKS];
+  mpmi_chunk_failures bad; /* nodes that have no scale */
 } scale_job;
 
 static mpm_status scale_node(const scale_job *job, int64_t node) {
@@ -43,24 +42,17 @@ static mpm_status scale_node(const scale_job *job, int64_t node) {
 
 static void scale_task(void *data, int64_t k) {
   scale_job *job = data;
-  job->bad[k] = -1;
-  for (int64_t i = mpmi_cut_begin(&job->cut, k); i < mpmi_cut_begin(&job->cut, k + 1); ++i) {
+  const int64_t end = mpmi_cut_begin(&job->cut, k + 1);
+  job->bad.status[k] = MPM_OK;
+  for (int64_t i = mpmi_cut_begin(&job->cut, k); i < end && !job->bad.status[k]; ++i) {
     if (job->f->place[i] < 0) continue;
-    job->status[k] = scale_node(job, i);
-    if (!job->status[k]) continue;
-    job->bad[k] = i;
-    return;
+    job->bad.status[k] = scale_node(job, i);
+    job->bad.item[k] = i;
   }
 }
 
 mpm_status mpmi_factor_scales(mpmi_factor *f, const mpmi_matrix *A, int64_t *node) {
   scale_job job = {.f = f, .A = A, .cut = mpmi_cut_of(A->rows, mpmi_matrix_unknowns(A))};
   const mpm_status status = mpmi_cut_run(f->context, &job.cut, scale_task, &job);
-  if (status) return status;
-  for (int64_t k = 0; k < job.cut.count; ++k)
-    if (job.bad[k] >= 0) {
-      *node = job.bad[k];
-      return job.status[k];
-    }
-  return MPM_OK;
+  return status ? status : mpmi_first_failure(&job.bad, job.cut.count, node);
 }

@@ -71,8 +71,7 @@ typedef struct smoother_job {
   mpmi_smoother *s;
   const mpmi_matrix *A;
   mpmi_cut cut;
-  int64_t bad[MPMI_MOST_CHUNKS]; /* first row of the chunk with a bad diagonal, or -1 */
-  mpm_status status[MPMI_MOST_CHUNKS];
+  mpmi_chunk_failures bad; /* rows with a bad diagonal */
 } smoother_job;
 
 static void columns_task(void *data, int64_t k) {
@@ -144,11 +143,11 @@ static mpm_status scale_row(mpmi_smoother *s, const mpmi_matrix *A, int64_t p) {
 
 static void scales_task(void *data, int64_t k) {
   smoother_job *job = data;
-  job->bad[k] = -1;
-  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p) {
-    if (!(job->status[k] = scale_row(job->s, job->A, p))) continue;
-    job->bad[k] = job->s->order[p];
-    return;
+  const int64_t end = mpmi_cut_begin(&job->cut, k + 1);
+  job->bad.status[k] = MPM_OK;
+  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < end && !job->bad.status[k]; ++p) {
+    job->bad.status[k] = scale_row(job->s, job->A, p);
+    job->bad.item[k] = job->s->order[p];
   }
 }
 
@@ -177,12 +176,7 @@ mpm_status mpmi_smoother_numbers(mpmi_smoother *s, const mpmi_matrix *A, int64_t
   const size_t bytes = (size_t)(s->rows * MPMI_PADDED(s->block)) * sizeof *s->x;
   memset(s->rhs, 0, bytes);
   memset(s->x, 0, bytes);
-  const mpm_status status = mpmi_cut_run(A->context, &job.cut, scales_task, &job);
-  if (status) return status;
-  for (int64_t k = 0; k < job.cut.count; ++k)
-    if (job.bad[k] >= 0) {
-      *row = job.bad[k];
-      return job.status[k];
-    }
-  return mpmi_cut_run(A->context, &job.cut, values_task, &job);
+  mpm_status status = mpmi_cut_run(A->context, &job.cut, scales_task, &job);
+  if (!status) status = mpmi_first_failure(&job.bad, job.cut.count, row);
+  return status ? status : mpmi_cut_run(A->context, &job.cut, values_task, &job);
 }

@@ -17,6 +17,15 @@ mpm_status mpmi_cut_run(mpm_context *context, const mpmi_cut *cut, mpm_task_fn t
   return MPM_OK;
 }
 
+mpm_status mpmi_first_failure(const mpmi_chunk_failures *of, int64_t chunks, int64_t *item) {
+  for (int64_t k = 0; k < chunks; ++k)
+    if (of->status[k]) {
+      *item = of->item[k];
+      return of->status[k];
+    }
+  return MPM_OK;
+}
+
 double mpmi_sum_in_order(const double *part, int64_t count) {
   double sum = 0.0;
   for (int64_t k = 0; k < count; ++k) sum += part[k];

@@ -24,6 +24,14 @@ static inline int64_t mpmi_cut_begin(const mpmi_cut *cut, int64_t k) {
 /* One task per chunk. */
 mpm_status mpmi_cut_run(mpm_context *context, const mpmi_cut *cut, mpm_task_fn task, void *data);
 
+/* What went wrong in each chunk, if anything, and at which item. */
+typedef struct mpmi_chunk_failures {
+  mpm_status status[MPMI_MOST_CHUNKS];
+  int64_t item[MPMI_MOST_CHUNKS];
+} mpmi_chunk_failures;
+/* The first one in the order of the chunks; *item is left alone where there is none. */
+mpm_status mpmi_first_failure(const mpmi_chunk_failures *of, int64_t chunks, int64_t *item);
+
 double mpmi_sum_in_order(const double *part, int64_t count);
 mpm_status mpmi_dot(mpm_context *context, const double *a, const double *b, int64_t n, double *out);
 mpm_status mpmi_norm(mpm_context *context, const double *a, int64_t n, double *out);

@@ -1,26 +1,9 @@
 /* The factor: inertia, singular matrices, structure kept and renewed, and what the choice by the library
  * makes of systems that iterations do not solve. */
-#include "linalg.h"
-
 #include "linalg/factor.h"
 #include "linalg/system.h"
 
-static mpm_context *context;
-static mpmi_solver *solver;
-static mpmi_matrix A;
-static mpmi_solve_report report;
-
-static void open_solver(void) {
-  context = context_of(2, MPM_ISA_BEST, NULL);
-  ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
-  mpmi_matrix_init(&A, context);
-}
-
-static void close_solver(void) {
-  mpmi_matrix_free(&A);
-  mpmi_solver_destroy(solver);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
-}
+#include "linalg_fixture.h"
 
 /* Solves for a known x with the matrix as it is; the distance from it. */
 static double error_of(int32_t choice, uint64_t seed) {

@@ -1,5 +1,5 @@
 /* Every method of solution against a dense one, and what it says where it fails. */
-#include "linalg.h"
+#include "linalg_fixture.h"
 
 static const springs shapes[] = {
     {.dim = 1, .block = 1, .reach = 1, .n = {40}, .mass = 0.01, .clamped = 1},
@@ -15,23 +15,6 @@ enum { SHAPES = 9 };
 static const int32_t choices[] = {MPM_SOLVER_AUTO, MPM_SOLVER_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES,
                                   MPM_SOLVER_MULTIGRID_CG};
 enum { CHOICES = 5 };
-
-static mpm_context *context;
-static mpmi_solver *solver;
-static mpmi_matrix A;
-static mpmi_solve_report report;
-
-static void open_solver(void) {
-  context = context_of(1, MPM_ISA_BEST, NULL);
-  ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
-  mpmi_matrix_init(&A, context);
-}
-
-static void close_solver(void) {
-  mpmi_matrix_free(&A);
-  mpmi_solver_destroy(solver);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
-}
 
 /* The solution agrees with that by elimination with pivoting. */
 static void compare(const springs *of, int32_t choice, int32_t wanted_solver) {

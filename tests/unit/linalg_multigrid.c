@@ -1,6 +1,7 @@
 /* Multigrid: what its levels are, and what a cycle is worth. */
-#include "linalg.h"
 #include "linalg/multigrid.h"
+
+#include "linalg_fixture.h"
 
 /* Large enough for three levels, small enough to be solved by the factor beside. */
 static const springs bodies[] = {
@@ -15,37 +16,19 @@ static const springs bodies[] = {
     {.dim = 3, .block = 3, .reach = 1, .n = {13, 12, 14}, .mass = 1e-3, .periodic = 1, .holes = 9}};
 enum { BODIES = 9 };
 
-static mpm_context *context;
-static mpmi_solver *solver;
-static mpmi_matrix A;
-
-static void open_solver(void) {
-  context = context_of(1, MPM_ISA_BEST, NULL);
-  ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
-  mpmi_matrix_init(&A, context);
-}
-
-static void close_solver(void) {
-  mpmi_matrix_free(&A);
-  mpmi_solver_destroy(solver);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
-}
-
-static mpmi_solve_report solve_noise(int32_t choice, double tolerance, double within) {
+static void solve_noise(int32_t choice, double tolerance, double within) {
   const int64_t n = mpmi_matrix_unknowns(&A);
   double *x = noise_vector(&A, 9), *b = rhs_for(&A, x), *y = malloc((size_t)n * sizeof *y);
   mpmi_solve_job job = job_of(&A, b, y, choice);
-  mpmi_solve_report report;
   job.tolerance = tolerance;
   solved(solver, &job, &report);
   ck_assert_double_lt(distance(n, y, x), within);
   free(x), free(b), free(y);
-  return report;
 }
 
 START_TEST(solves) {
   springs_build(&A, context, &bodies[_i]);
-  const mpmi_solve_report report = solve_noise(MPM_SOLVER_MULTIGRID_CG, 1e-12, 1e-5);
+  solve_noise(MPM_SOLVER_MULTIGRID_CG, 1e-12, 1e-5);
   ck_assert_int_eq(report.solver, MPM_SOLVER_MULTIGRID_CG);
   ck_assert_int_le(report.iterations, 80);
 }
@@ -58,7 +41,7 @@ START_TEST(slender) {
   springs_build(&A, context, &beams[_i / 2]);
   A.symmetric = _i % 2;
   const int32_t choice = A.symmetric ? MPM_SOLVER_MULTIGRID_CG : MPM_SOLVER_GMRES;
-  const mpmi_solve_report report = solve_noise(choice, 1e-10, 1e-3);
+  solve_noise(choice, 1e-10, 1e-3);
   ck_assert_int_eq(report.solver, choice);
 }
 END_TEST
@@ -68,7 +51,7 @@ START_TEST(solves_not_symmetric) {
   of.convection = 0.05;
   of.mass += 0.05;
   springs_build(&A, context, &of);
-  const mpmi_solve_report report = solve_noise(MPM_SOLVER_GMRES, 1e-12, 1e-5);
+  solve_noise(MPM_SOLVER_GMRES, 1e-12, 1e-5);
   ck_assert_int_eq(report.solver, MPM_SOLVER_GMRES);
   ck_assert_int_le(report.iterations, 80);
 }
@@ -81,8 +64,10 @@ START_TEST(sizes) {
     const springs of = {.dim = 3, .block = 3, .reach = 1, .n = {9 << k, 9 << k, 9 << k}, .clamped = 1};
     springs_build(&A, context, &of);
     A.pattern_id = k;
-    iterations[k][0] = solve_noise(MPM_SOLVER_MULTIGRID_CG, 1e-8, 1e-3).iterations;
-    iterations[k][1] = solve_noise(MPM_SOLVER_CG, 1e-8, 1e-3).iterations;
+    for (int32_t by = 0; by < 2; ++by) {
+      solve_noise(by ? MPM_SOLVER_CG : MPM_SOLVER_MULTIGRID_CG, 1e-8, 1e-3);
+      iterations[k][by] = report.iterations;
+    }
     mpmi_matrix_free(&A);
   }
   ck_assert_int_le(3 * iterations[1][0], 4 * iterations[0][0]);
@@ -149,7 +134,6 @@ END_TEST
 static double energy_of_solution(const double *r) {
   const int64_t n = mpmi_matrix_unknowns(&A);
   double *e = malloc((size_t)n * sizeof *e), sum = 0.0;
-  mpmi_solve_report report;
   const mpmi_solve_job job = job_of(&A, r, e, MPM_SOLVER_LDLT);
   solved(solver, &job, &report);
   for (int64_t i = 0; i < n; ++i) sum += e[i] * r[i];
@@ -191,12 +175,37 @@ START_TEST(one_cycle) {
 }
 END_TEST
 
+/* Moduli may be in any unit: single precision is not asked to hold them. */
+START_TEST(units) {
+  static const double factors[] = {1e-90, 1e90};
+  springs_build(&A, context, &bodies[6]);
+  for (int64_t v = 0; v < A.row_start[A.rows] * A.block * A.block; ++v) A.value[v] *= factors[_i / 2];
+  solve_noise(_i % 2 ? MPM_SOLVER_GMRES : MPM_SOLVER_MULTIGRID_CG, 1e-12, 1e-5);
+  ck_assert_int_le(report.iterations, 80);
+}
+END_TEST
+
+/* Where nodes are so far apart that the next level has as many, large levels are coarsened all the same. */
+START_TEST(far_apart) {
+  mpmi_multigrid g;
+  int64_t row;
+  const springs of = {.dim = 3, .block = 3, .reach = 1, .n = {26, 25, 24}, .clamped = 1};
+  springs_build(&A, context, &of);
+  for (int64_t i = 0; i < A.rows; ++i)
+    for (int32_t k = 0; k < 3; ++k) A.index[i][k] *= 4;
+  mpmi_multigrid_init(&g, context);
+  ck_assert_int_eq(mpmi_multigrid_prepare(&g, &A, &row), MPM_OK);
+  ck_assert_int_gt(g.levels, 3);
+  ck_assert_int_lt(mpmi_matrix_unknowns(g.level[g.levels - 1].A), 1000);
+  mpmi_multigrid_free(&g);
+}
+END_TEST
+
 /* Instruction sets take other roundings, and agree. */
 START_TEST(instruction_sets) {
   springs_build(&A, context, &bodies[6]);
   const int64_t n = mpmi_matrix_unknowns(&A);
   double *b = noise_vector(&A, 5), *x = malloc((size_t)n * sizeof *x), *y = malloc((size_t)n * sizeof *y);
-  mpmi_solve_report report;
   mpmi_solve_job job = job_of(&A, b, x, MPM_SOLVER_MULTIGRID_CG);
   job.tolerance = 1e-12;
   solved(solver, &job, &report);
@@ -231,7 +240,6 @@ START_TEST(choice) {
   springs_build(&A, context, &at[_i].of);
   const int64_t n = mpmi_matrix_unknowns(&A);
   double *b = noise_vector(&A, 5), *x = malloc((size_t)n * sizeof *x);
-  mpmi_solve_report report;
   mpmi_solve_job job = job_of(&A, b, x, MPM_SOLVER_AUTO);
   job.inertia = at[_i].inertia;
   solved(solver, &job, &report);
@@ -249,7 +257,6 @@ START_TEST(floating) {
   const int64_t n = mpmi_matrix_unknowns(&A);
   double *b = malloc((size_t)n * sizeof *b), *x = malloc((size_t)n * sizeof *x);
   for (int64_t i = 0; i < n; ++i) b[i] = i % A.block == 0 ? 1.0 : 0.0;
-  mpmi_solve_report report;
   const mpmi_solve_job job = job_of(&A, b, x, choices[_i % 2]);
   refused(solver, &job, &report, MPM_SINGULAR, "singular");
   ck_assert_int_ge(report.node, 0);
@@ -267,6 +274,8 @@ TCase *linalg_multigrid_case(void) {
   tcase_add_test(tests, sizes);
   tcase_add_loop_test(tests, galerkin, 0, BODIES);
   tcase_add_loop_test(tests, one_cycle, 0, BODIES);
+  tcase_add_loop_test(tests, units, 0, 4);
+  tcase_add_test(tests, far_apart);
   tcase_add_test(tests, instruction_sets);
   tcase_add_loop_test(tests, choice, 0, 4);
   tcase_add_loop_test(tests, floating, 0, 4);

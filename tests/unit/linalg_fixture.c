@@ -1,0 +1,18 @@
+#include "linalg_fixture.h"
+
+mpm_context *context;
+mpmi_solver *solver;
+mpmi_matrix A;
+mpmi_solve_report report;
+
+void open_solver(void) {
+  context = context_of(2, MPM_ISA_BEST, NULL);
+  ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
+  mpmi_matrix_init(&A, context);
+}
+
+void close_solver(void) {
+  mpmi_matrix_free(&A);
+  mpmi_solver_destroy(solver);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
