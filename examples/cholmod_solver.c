@@ -1,73 +1,11 @@
 /* A linear solver of the host: a soft beam, clamped at one end, sinks under its own weight in quasi-static
- * steps, once with the library's solvers and once with CHOLMOD (SuiteSparse), which sees the matrix where it
- * lies. Built where <suitesparse/cholmod.h> is found: Debian's libsuitesparse-dev. */
-#include <mpm/mpm.h>
-
+ * steps, once with the library's solvers and once with CHOLMOD (cholmod_direct.h). Built where
+ * <suitesparse/cholmod.h> is found: Debian's libsuitesparse-dev. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <suitesparse/cholmod.h>
 
-typedef struct direct {
-  cholmod_common common;
-  cholmod_factor *factor; /* of the pattern that has this number */
-  int64_t pattern_id;
-  int32_t analyses, solves;
-} direct;
-
-/* The matrix is symmetric: by rows it is what CHOLMOD wants by columns, which with stype 1 reads its upper
- * triangle. Only the row starts have to be copied, to int. */
-static mpm_status solve(void *user, const mpm_operator *matrix, const double *rhs, double *solution,
-                        double tolerance, int64_t *iterations) {
-  direct *d = user;
-  const int64_t *start;
-  const int32_t *column;
-  const double *value;
-  mpm_operator_info info = {.struct_size = sizeof info};
-  (void)tolerance; /* a direct solver has its own */
-  if (mpm_operator_get_info(matrix, &info) || mpm_operator_csr(matrix, &start, &column, &value)) return -1;
-  if (!info.symmetric || info.rows > INT32_MAX) return -1;
-  int *p = malloc((size_t)(info.rows + 1) * sizeof *p);
-  if (!p) return -1;
-  for (int64_t i = 0; i <= info.rows; ++i) p[i] = (int)start[i];
-  cholmod_sparse A = {.nrow = (size_t)info.rows,
-                      .ncol = (size_t)info.rows,
-                      .nzmax = (size_t)info.nonzeros,
-                      .p = p,
-                      .i = (void *)(uintptr_t)column,
-                      .x = (void *)(uintptr_t)value,
-                      .stype = 1,
-                      .itype = CHOLMOD_INT,
-                      .xtype = CHOLMOD_REAL,
-                      .dtype = CHOLMOD_DOUBLE,
-                      .sorted = 1,
-                      .packed = 1};
-  cholmod_dense b = {.nrow = (size_t)info.rows,
-                     .ncol = 1,
-                     .nzmax = (size_t)info.rows,
-                     .d = (size_t)info.rows,
-                     .x = (void *)(uintptr_t)rhs,
-                     .xtype = CHOLMOD_REAL,
-                     .dtype = CHOLMOD_DOUBLE};
-  if (!d->factor || d->pattern_id != info.pattern_id) {
-    cholmod_free_factor(&d->factor, &d->common);
-    d->factor = cholmod_analyze(&A, &d->common);
-    d->pattern_id = info.pattern_id;
-    ++d->analyses;
-  }
-  cholmod_dense *x = NULL;
-  if (d->factor && cholmod_factorize(&A, d->factor, &d->common) && d->common.status == CHOLMOD_OK)
-    x = cholmod_solve(CHOLMOD_A, d->factor, &b, &d->common);
-  if (x) memcpy(solution, x->x, (size_t)info.rows * sizeof *solution);
-  const mpm_status status = x ? MPM_OK : 1; /* not positive definite: a shorter step may be */
-  cholmod_free_dense(&x, &d->common);
-  free(p);
-  *iterations = 1;
-  ++d->solves;
-  return status;
-}
+#include "cholmod_direct.h"
 
 static mpm_status clamp(void *user, const mpm_node_batch *b, uint8_t *prescribed, double *velocity) {
   (void)user, (void)velocity;
@@ -84,7 +22,7 @@ typedef struct beam {
   mpm_stepper *stepper;
 } beam;
 
-static mpm_status open_beam(beam *b, int32_t solver, direct *own) {
+static mpm_status open_beam(beam *b, int32_t solver, cholmod_direct *own) {
   const mpm_param soft[] = {{"E", 1e6}, {"nu", 0.3}, {"density", 1050.0}};
   const double lower[] = {0.0, 2.5}, upper[] = {4.5, 3.5};
   const int32_t per_cell[] = {2, 2};
@@ -107,12 +45,12 @@ static mpm_status open_beam(beam *b, int32_t solver, direct *own) {
       (status = mpm_particles_fill_box(b->set, lower, upper, per_cell, NULL, NULL)) ||
       (status = mpm_stepper_create(b->context, b->grid, &s, &b->stepper)) ||
       (status = mpm_stepper_add(b->stepper, b->set)) ||
-      (status = mpm_stepper_set_linear_solver(b->stepper, solve, own)))
+      (status = mpm_stepper_set_linear_solver(b->stepper, cholmod_direct_solve, own)))
     return status;
   return mpm_stepper_set_velocity_bc(b->stepper, clamp, NULL);
 }
 
-static int run(int32_t solver, direct *own, double *lowest, mpm_profile *profile) {
+static int run(int32_t solver, cholmod_direct *own, double *lowest, mpm_profile *profile) {
   beam b = {NULL, NULL, NULL, NULL, NULL};
   mpm_step_info info = {.struct_size = sizeof info};
   profile->struct_size = sizeof *profile;
@@ -147,15 +85,13 @@ static int run(int32_t solver, direct *own, double *lowest, mpm_profile *profile
 }
 
 int main(void) {
-  direct own = {.factor = NULL};
+  cholmod_direct own;
   double lowest[2];
   mpm_profile profile;
-  cholmod_start(&own.common);
-  own.common.print = 0;
+  cholmod_direct_open(&own);
   if (run(MPM_SOLVER_AUTO, &own, &lowest[0], &profile) || run(MPM_SOLVER_HOST, &own, &lowest[1], &profile))
     return 1;
-  cholmod_free_factor(&own.factor, &own.common);
-  cholmod_finish(&own.common);
+  cholmod_direct_close(&own);
   printf("result: beams differ by %.1e m, tip sinks by %.3f m in half a second, %d analyses for %d solves\n",
          fabs(lowest[0] - lowest[1]), 2.5 - lowest[0], (int)own.analyses, (int)own.solves);
   return 0;
