@@ -38,11 +38,17 @@ typedef struct lent {
 } lent;
 
 /* Before PetscInitialize(). Splines overlap far: a sweep of Gauss-Seidel smooths what PETSc's usual smoother,
- * Chebyshev's over the diagonal, does not. */
+ * Chebyshev's over the diagonal, does not. An aggregate of few nodes does not have all rigid motions: the
+ * shift is the diagonal of those that it lacks. */
 static PetscErrorCode multigrid_defaults(void) {
-  PetscErrorCode failed = PetscOptionsSetValue(NULL, "-mg_levels_pc_type", "sor");
-  if (!failed) failed = PetscOptionsSetValue(NULL, "-mg_levels_ksp_type", "richardson");
-  return failed ? failed : PetscOptionsSetValue(NULL, "-mg_levels_ksp_max_it", "1");
+  static const char *const options[][2] = {{"-mg_levels_pc_type", "sor"},
+                                           {"-mg_levels_ksp_type", "richardson"},
+                                           {"-mg_levels_ksp_max_it", "1"},
+                                           {"-mg_levels_pc_sor_diagonal_shift", "1e-12"}};
+  PetscErrorCode failed = 0;
+  for (size_t i = 0; i < sizeof options / sizeof *options && !failed; ++i)
+    failed = PetscOptionsSetValue(NULL, options[i][0], options[i][1]);
+  return failed;
 }
 
 static PetscInt length_of(const lent *l, int64_t row) {
