@@ -55,7 +55,8 @@ endif
 ISA_baseline :=
 ISA_avx2 := -mavx2 -mfma
 ISA_avx512 := -mavx512f -mavx512vl -mavx512dq -mavx2 -mfma -mprefer-vector-width=512
-KERNEL_FLAGS = $(KERNEL_OPT) -ffp-contract=fast -fno-math-errno -fno-trapping-math -Wno-psabi
+# Of kernels debuggers are told the lines only: to follow all of their variables takes compilers minutes.
+KERNEL_FLAGS = $(KERNEL_OPT) -ffp-contract=fast -fno-math-errno -fno-trapping-math -Wno-psabi $(if $(filter -g,$(CFLAGS)),-g1)
 
 OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/obj/%.$(isa).o))
 STATIC_LIB := $(BUILD)/libmpm.a
@@ -73,7 +74,8 @@ ifeq ($(PETSC_PACKAGES),)
 EXAMPLES := $(filter-out %/petsc_solver,$(EXAMPLES))
 endif
 $(BUILD)/examples/cholmod_solver: LIBS += -lcholmod
-$(BUILD)/examples/petsc_solver: LIBS += $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags-only-I --libs $(PETSC_PACKAGES)))
+PETSC_LIBS = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags-only-I --libs $(PETSC_PACKAGES)))
+$(BUILD)/examples/petsc_solver: LIBS += $(PETSC_LIBS)
 UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
 UNIT := $(BUILD)/tests/unit
 
@@ -156,13 +158,17 @@ $(BUILD)/examples/%: examples/%.cpp $(STATIC_LIB) Makefile
 	$(Q)$(CXX) -std=c++17 -MMD -MP -Iinclude $(CXX_WARNINGS) $(CPPFLAGS) $(CXXFLAGS) $(OPT) -MF $@.d -MT $@ $< \
 	  $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 
-# The benchmark is a host program: it is compiled against an installation and runs the shared library.
-$(BENCH): $(wildcard bench/*.[ch]) $(SHARED_LIB) $(STATIC_LIB) Makefile
+# The benchmark is a host program: it is compiled against an installation and runs the shared library; with the
+# solvers of the examples as well, where they are found.
+BENCH_HOSTS := $(if $(HAS_CHOLMOD),-DBENCH_CHOLMOD) $(if $(PETSC_PACKAGES),-DBENCH_PETSC)
+BENCH_HOST_LIBS = $(if $(HAS_CHOLMOD),-lcholmod) $(if $(PETSC_PACKAGES),$(PETSC_LIBS))
+$(BENCH): $(wildcard bench/*.[ch] examples/*.h) $(SHARED_LIB) $(STATIC_LIB) Makefile
 	@mkdir -p $(@D)
 	$(Q)$(MAKE) -s install PREFIX=$(abspath $(@D))/installed DESTDIR= > /dev/null
 	$(call SAY,LINK)
-	$(Q)$(CC) -std=c11 $(WARNINGS) $(CFLAGS) -O3 -ffp-contract=fast -fno-math-errno -Wno-psabi $(wildcard bench/*.c) -I$(@D)/installed/include \
-	  -L$(@D)/installed/lib -Wl,-rpath,$(abspath $(@D))/installed/lib $(LDFLAGS) -lmpm -lm -o $@
+	$(Q)$(CC) -std=c11 $(WARNINGS) $(CFLAGS) -O3 -ffp-contract=fast -fno-math-errno -Wno-psabi $(BENCH_HOSTS) $(wildcard bench/*.c) \
+	  -I$(@D)/installed/include -L$(@D)/installed/lib -Wl,-rpath,$(abspath $(@D))/installed/lib $(LDFLAGS) -lmpm \
+	  $(BENCH_HOST_LIBS) -lm -o $@
 
 examples: $(EXAMPLES)
 

@@ -5,6 +5,7 @@
 
 #include "apart.h"
 #include "ceilings.h"
+#include "hosts.h"
 
 #include <math.h>
 #include <mpm/mpm.h>
@@ -14,30 +15,35 @@
 typedef struct implicit_case {
   const char *name;
   int32_t dim, cells, basis, per_cell, solver;
-  double strain; /* compression along the last axis */
-  double kappa;  /* over mu */
+  double strain;    /* compression along the last axis */
+  double kappa;     /* over mu */
+  const char *host; /* whose solver it is, of MPM_SOLVER_HOST */
 } implicit_case;
 
 /* Smooth bases lose their positive matrix earlier, at the rim. */
 static const implicit_case cases[] = {
-    {"2-D linear 80^2, direct", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_LDLT, 0.2, 10.0},
-    {"2-D linear 80^2, multigrid", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0},
-    {"2-D linear 80^2, CG", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_CG, 0.2, 10.0},
-    {"2-D linear 320^2, direct", 2, 320, MPM_LINEAR, 2, MPM_SOLVER_LDLT, 0.2, 10.0},
-    {"2-D linear 320^2, multigrid", 2, 320, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0},
-    {"3-D linear 16^3, direct", 3, 16, MPM_LINEAR, 2, MPM_SOLVER_LDLT, 0.2, 10.0},
-    {"3-D linear 16^3, multigrid", 3, 16, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0},
-    {"3-D linear 32^3, multigrid", 3, 32, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0},
-    {"3-D linear 32^3, CG", 3, 32, MPM_LINEAR, 2, MPM_SOLVER_CG, 0.2, 10.0},
-    {"3-D linear 64^3, multigrid", 3, 64, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0},
-    {"2-D quadratic 80^2, multigrid", 2, 80, MPM_BSPLINE2, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0},
-    {"2-D cubic 80^2, multigrid", 2, 80, MPM_BSPLINE3, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0},
-    {"3-D uGIMP 16^3, multigrid", 3, 16, MPM_UGIMP, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0},
-    {"3-D quadratic 16^3, multigrid", 3, 16, MPM_BSPLINE2, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0},
-    {"3-D quadratic 16^3, 3^3", 3, 16, MPM_BSPLINE2, 3, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0},
-    {"3-D quadratic 16^3, CG", 3, 16, MPM_BSPLINE2, 2, MPM_SOLVER_CG, 0.02, 10.0},
-    {"2-D 80^2, kappa / mu 10^3", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 1e3},
-    {"3-D 16^3, kappa / mu 10^3", 3, 16, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 1e3},
+    {"2-D linear 80^2, direct", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_LDLT, 0.2, 10.0, NULL},
+    {"2-D linear 80^2, multigrid", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0, NULL},
+    {"2-D linear 80^2, CG", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_CG, 0.2, 10.0, NULL},
+    {"2-D linear 320^2, direct", 2, 320, MPM_LINEAR, 2, MPM_SOLVER_LDLT, 0.2, 10.0, NULL},
+    {"2-D linear 320^2, multigrid", 2, 320, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0, NULL},
+    {"3-D linear 16^3, direct", 3, 16, MPM_LINEAR, 2, MPM_SOLVER_LDLT, 0.2, 10.0, NULL},
+    {"3-D linear 16^3, multigrid", 3, 16, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0, NULL},
+    {"3-D linear 16^3, CHOLMOD", 3, 16, MPM_LINEAR, 2, MPM_SOLVER_HOST, 0.2, 10.0, "CHOLMOD"},
+    {"3-D linear 16^3, PETSc GAMG", 3, 16, MPM_LINEAR, 2, MPM_SOLVER_HOST, 0.2, 10.0, "PETSc GAMG"},
+    {"3-D linear 32^3, multigrid", 3, 32, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0, NULL},
+    {"3-D linear 32^3, CG", 3, 32, MPM_LINEAR, 2, MPM_SOLVER_CG, 0.2, 10.0, NULL},
+    {"3-D linear 32^3, CHOLMOD", 3, 32, MPM_LINEAR, 2, MPM_SOLVER_HOST, 0.2, 10.0, "CHOLMOD"},
+    {"3-D linear 32^3, PETSc GAMG", 3, 32, MPM_LINEAR, 2, MPM_SOLVER_HOST, 0.2, 10.0, "PETSc GAMG"},
+    {"3-D linear 64^3, multigrid", 3, 64, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.2, 10.0, NULL},
+    {"2-D quadratic 80^2, multigrid", 2, 80, MPM_BSPLINE2, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
+    {"2-D cubic 80^2, multigrid", 2, 80, MPM_BSPLINE3, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
+    {"3-D uGIMP 16^3, multigrid", 3, 16, MPM_UGIMP, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
+    {"3-D quadratic 16^3, multigrid", 3, 16, MPM_BSPLINE2, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
+    {"3-D quadratic 16^3, 3^3", 3, 16, MPM_BSPLINE2, 3, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
+    {"3-D quadratic 16^3, CG", 3, 16, MPM_BSPLINE2, 2, MPM_SOLVER_CG, 0.02, 10.0, NULL},
+    {"2-D 80^2, kappa / mu 10^3", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 1e3, NULL},
+    {"3-D 16^3, kappa / mu 10^3", 3, 16, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 1e3, NULL},
 };
 enum { CASES = sizeof cases / sizeof *cases, MOST_REPEATS = 99 };
 
@@ -86,6 +92,8 @@ typedef struct world {
   mpm_material *material;
   mpm_particles *body;
   mpm_stepper *stepper;
+  const bench_host *host;
+  void *solver; /* of the host */
 } world;
 
 static mpm_status open_world(world *w, const implicit_job *job) {
@@ -124,7 +132,10 @@ static mpm_status open_world(world *w, const implicit_job *job) {
     return status;
   for (int32_t k = 0; k < of->dim && !status; ++k)
     status = mpm_stepper_set_wall(w->stepper, 2 * k, MPM_WALL_SLIP, 0.0);
-  return status;
+  if (status || !of->host) return status;
+  w->host = bench_find_host(of->host);
+  w->solver = w->host->open();
+  return w->solver ? mpm_stepper_set_linear_solver(w->stepper, w->host->solve, w->solver) : MPM_E_NOMEM;
 }
 
 static int ascending(const void *a, const void *b) {
@@ -132,13 +143,16 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Each time the same iteration, for the step is given up after it; the first one makes the pattern too. */
+/* Each time the same iteration, for the step is given up after it; the first one makes the pattern too. Not
+ * again after a minute. */
 static mpm_status measure(const world *w, const implicit_job *job, implicit_result *r) {
   double total[MOST_REPEATS], assembly[MOST_REPEATS], set_up[MOST_REPEATS], solve[MOST_REPEATS];
   mpm_step_info info = {.struct_size = sizeof info};
   mpm_profile stage = {.struct_size = sizeof stage};
   mpm_stepper_profile(w->stepper, 1, &stage);
-  for (int32_t k = 0; k < job->repeats; ++k) {
+  const double begin = bench_seconds();
+  int32_t k = 0;
+  for (; k < job->repeats && (k == 0 || bench_seconds() - begin < 60.0); ++k) {
     const double from = bench_seconds();
     const mpm_status status = mpm_step(w->stepper, 1.0, &info);
     total[k] = bench_seconds() - from;
@@ -151,8 +165,8 @@ static mpm_status measure(const world *w, const implicit_job *job, implicit_resu
   }
   double *all[] = {total, assembly, set_up, solve}, *to[] = {&r->total, &r->assembly, &r->set_up, &r->solve};
   for (int32_t i = 0; i < 4; ++i) {
-    qsort(all[i], (size_t)job->repeats, sizeof(double), ascending);
-    *to[i] = all[i][job->repeats / 2];
+    qsort(all[i], (size_t)k, sizeof(double), ascending);
+    *to[i] = all[i][k / 2];
   }
   r->unknowns = info.active_nodes * job->of->dim;
   r->iterations = info.linear_iterations;
@@ -170,6 +184,7 @@ static void run(const void *data, void *result) {
   r->failed = status != MPM_OK;
   if (status)
     snprintf(r->error, sizeof r->error, "%s: %s", mpm_status_name(status), mpm_last_error(w.context));
+  if (w.solver) w.host->close(w.solver);
   mpm_stepper_destroy(w.stepper);
   mpm_particles_destroy(w.body);
   mpm_material_destroy(w.material);
@@ -196,6 +211,7 @@ int32_t bench_implicit(const char *only, int32_t repeats, const int64_t *threads
     fprintf(csv, "case,unknowns,threads,iterations,seconds,assembly_s,set_up_s,solve_s,bytes_per_unknown\n");
   for (int32_t c = 0; c < CASES; ++c) {
     double residual = 0.0;
+    if (cases[c].host && !bench_find_host(cases[c].host)) continue;
     for (int32_t t = 0; t < count && (!only || strstr(cases[c].name, only)); ++t) {
       const implicit_job job = {&cases[c], (int32_t)threads[t], repeats};
       implicit_result r = {.failed = 1, .error = "the process died"};
