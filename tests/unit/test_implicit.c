@@ -483,8 +483,12 @@ Suite *implicit_suite(void) {
   tcase_add_loop_test(tests, remedy_across_a_seam, 0, 5 * IMPLICIT_BASES);
   tcase_add_test(tests, short_steps);
   tcase_add_test(tests, platen_in_the_air);
-  tcase_add_loop_test(tests, threads, 0, 18);
+  TCase *on_threads = tcase_create("threads");
+  tcase_set_timeout(on_threads, 60.0);
+  tcase_set_tags(on_threads, "long");
+  tcase_add_loop_test(on_threads, threads, 0, 18);
   suite_add_tcase(suite, tests);
+  suite_add_tcase(suite, on_threads);
   suite_add_tcase(suite, implicit_failures_case());
   return suite;
 }
