@@ -264,13 +264,13 @@ check-setup:
 # Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
 SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS=long EXAMPLES="two_disks user_material host_threads staged_coupling cpp_block" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
 check-asan:
-	ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
+	+ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
 	  BUILD=$(BUILD)-asan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 
 # The fork of each test would hide threads from the sanitizer.
 TSAN_SUITES ?= context executor threads rollback restart linalg
 check-tsan:
-	CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" \
+	+CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
 
 # libFuzzer on saved states, descriptors and small clouds of particles: FUZZ_SECONDS each, from the committed corpora;
