@@ -40,6 +40,10 @@ MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const do
   for (int64_t p = 0; p < mpmi_groups(n); p += MPMI_SIDE)
     mpmi_interleave(a + p, b + p, c + p, d + p, out + p * stride, stride);
 }
+/* Eight components, to eight values for each particle. */
+MPMI_INLINE void mpmi_pack8(int64_t n, const double *const *in, double *out) {
+  for (int64_t p = 0; p < mpmi_groups(n); p += MPMI_SIDE) mpmi_interleave8(in, p, out + 8 * p);
+}
 MPMI_INLINE void mpmi_unpack(int64_t n, const double *in, double *a, double *b, double *c) {
   for (int64_t p = 0; p < mpmi_groups(n); p += MPMI_SIDE) mpmi_separate(in + 4 * p, a + p, b + p, c + p);
 }

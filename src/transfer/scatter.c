@@ -16,7 +16,8 @@
 #define MPMI_APART
 #endif
 
-/* What the particles of a chunk give: a and the columns, 4 or 8 values each as nodes have them. */
+/* What the particles of a chunk give as nodes have it: a and the columns, 4 or 8 values each; 4 where columns
+ * have nothing but force. */
 typedef struct mpmi_first_order {
   _Alignas(64) double a[8 * MPMI_CHUNK], column[3][8 * MPMI_CHUNK];
 } mpmi_first_order;
@@ -92,7 +93,9 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t values,
   const int32_t part = values == 4 ? MPMI_LOW : affine ? MPMI_BOTH : MPMI_HIGH; /* of the columns */
   const mpmi_node a = mpmi_node_load(all, of->a + values * p);
   mpmi_node column[3];
-  for (int32_t k = 0; k < dim; ++k) column[k] = mpmi_node_load(part, of->column[k] + values * p);
+  for (int32_t k = 0; k < dim; ++k)
+    column[k] = part == MPMI_HIGH ? mpmi_node_load_high(of->column[k] + 4 * p)
+                                  : mpmi_node_load(part, of->column[k] + values * p);
   double *stencil = tile + values * (int64_t)W->node[p];
   /* sums over the axes before the last: node += w_k value + s_k slope */
   mpmi_node plane = a, plane_1 = column[0], plane_2 = column[last], value = a, slope = column[last];
@@ -121,86 +124,103 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t values,
   }
 }
 
+MPMI_INLINE int32_t is_affine(int32_t form) {
+  return form == MPMI_SCATTER_4_AFFINE || form == MPMI_SCATTER_4_UNEVEN || form == MPMI_SCATTER_8_AFFINE;
+}
+
+_Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
+
 /* Column k of a symmetric tensor stored xx yy zz xy yz xz: rows of that column. */
 static const int32_t stress_of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 
-#define LANE(array, r) ((r) < dim ? (array)[r] : zero)
-_Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
+/* What the particles of a chunk give, component by component. */
+typedef struct mpmi_given {
+  _Alignas(64) double momentum[3][MPMI_CHUNK], affine[3][3][MPMI_CHUNK]; /* affine, stress: [column][row] */
+  double force[3][MPMI_CHUNK], stress[3][3][MPMI_CHUNK];
+} mpmi_given;
 
-/* -V sigma, column by column, and the external force, into the upper halves. */
-MPMI_INLINE void pack_force(int32_t dim, const mpmi_scatter *job, int64_t s, int64_t n,
-                            mpmi_first_order *of) {
-  _Alignas(64) double column[3][3][MPMI_CHUNK], ext[3][MPMI_CHUNK];
+/* -V sigma, of which the lower triangle is filled, and the external force. */
+MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, int64_t s, int64_t n, mpmi_given *to) {
   const double *volume = job->volume + s, *mass = job->mass + s;
   for (int32_t r = 0; r < dim; ++r) {
     const double g = job->gravity[r];
     if (job->force[r]) {
       const double *added = job->force[r] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) ext[r][p] = mass[p] * g + added[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->force[r][p] = mass[p] * g + added[p];
     } else {
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) ext[r][p] = mass[p] * g;
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->force[r][p] = mass[p] * g;
     }
     for (int32_t k = 0; k <= r; ++k) {
       const double *sigma = job->stress[stress_of[k][r]] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) column[k][r][p] = -volume[p] * sigma[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->stress[k][r][p] = -volume[p] * sigma[p];
     }
   }
-#define ENTRY(k, r) LANE(column[(r) < (k) ? (r) : (k)], (r) < (k) ? (k) : (r))
-  mpmi_pack(n, LANE(ext, 0), LANE(ext, 1), LANE(ext, 2), zero, of->a + 4, 8);
-  for (int32_t k = 0; k < dim; ++k)
-    mpmi_pack(n, ENTRY(k, 0), ENTRY(k, 1), ENTRY(k, 2), zero, of->column[k] + 4, 8);
-#undef ENTRY
 }
 
-/* Momentum and mass. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis;
- * there the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Other affine forms: the columns of
- * m C. */
-MPMI_INLINE void pack_momentum(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t s,
-                               int64_t n, const mpmi_weights *W, mpmi_first_order *of) {
-  const int32_t linear = form == MPMI_SCATTER_4_AFFINE;
-  const int32_t affine = linear || form == MPMI_SCATTER_8_AFFINE || form == MPMI_SCATTER_4_UNEVEN;
-  const int32_t fused = linear && job->fused_dt != 0.0, stride = form >= MPMI_SCATTER_8 ? 8 : 4;
-  _Alignas(64) double p_[3][MPMI_CHUNK], column[3][3][MPMI_CHUNK];
+/* Momentum. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis; there the
+ * fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Other affine forms: the columns of m C. */
+MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t s,
+                               int64_t n, const mpmi_weights *W, mpmi_given *to) {
+  const int32_t linear = form == MPMI_SCATTER_4_AFFINE, affine = is_affine(form);
+  const int32_t fused = linear && job->fused_dt != 0.0;
   const double *mass = job->mass + s, *volume = job->volume + s;
   for (int32_t r = 0; r < dim; ++r) {
     const double *v = job->v[r] + s;
     const double dv = fused ? job->fused_dt * job->gravity[r] : 0.0;
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) p_[r][p] = mass[p] * (v[p] + dv);
+    MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->momentum[r][p] = mass[p] * (v[p] + dv);
     if (fused && job->force[r]) {
       const double *added = job->force[r] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) p_[r][p] += job->fused_dt * added[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->momentum[r][p] += job->fused_dt * added[p];
     }
     for (int32_t k = 0; affine && k < dim; ++k) {
       const double *C = job->affine[3 * r + k] + s, *sigma = job->stress[stress_of[k][r]] + s;
       const double h = job->axis[k].spacing;
       const double scale = fused ? -job->fused_dt * MPMI_MLS_INVERSE(width) / h : 0.0;
       if (!linear) {
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) column[k][r][p] = mass[p] * C[p];
+        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->affine[k][r][p] = mass[p] * C[p];
       } else {
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
           double growth = mass[p] * C[p] * h + scale * volume[p] * sigma[p];
-          column[k][r][p] = growth;
-          p_[r][p] += W->first[k][p] * growth;
+          to->affine[k][r][p] = growth;
+          to->momentum[r][p] += W->first[k][p] * growth;
         }
       }
     }
   }
-  mpmi_pack(n, LANE(p_, 0), LANE(p_, 1), LANE(p_, 2), mass, of->a, stride);
-  for (int32_t k = 0; affine && k < dim; ++k)
-    mpmi_pack(n, LANE(column[k], 0), LANE(column[k], 1), LANE(column[k], 2), zero, of->column[k], stride);
+}
+
+/* As nodes have it. Components that the grid does not have are zero. */
+MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, const mpmi_given *given,
+                      mpmi_first_order *of) {
+  const int32_t eight = form >= MPMI_SCATTER_8, affine = is_affine(form);
+  const double *a[8] = {zero, zero, zero, mass, zero, zero, zero, zero};
+  for (int32_t r = 0; r < dim; ++r) a[r] = given->momentum[r], a[4 + r] = given->force[r];
+  if (eight)
+    mpmi_pack8(n, a, of->a);
+  else
+    mpmi_pack(n, a[0], a[1], a[2], a[3], of->a, 4);
+  for (int32_t k = 0; (eight || affine) && k < dim; ++k) {
+    const double *c[8] = {zero, zero, zero, zero, zero, zero, zero, zero};
+    for (int32_t r = 0; r < dim; ++r)
+      c[r] = given->affine[k][r], c[4 + r] = r < k ? given->stress[r][k] : given->stress[k][r];
+    if (eight && affine)
+      mpmi_pack8(n, c, of->column[k]);
+    else
+      mpmi_pack(n, c[4 * eight], c[4 * eight + 1], c[4 * eight + 2], zero, of->column[k], 4);
+  }
 }
 
 MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
                          int64_t end) {
   mpmi_weights W;
+  mpmi_given given;
   mpmi_first_order of;
-  if (form == MPMI_SCATTER_8)
-    for (int32_t k = 0; k < dim; ++k) __builtin_memset(of.column[k], 0, sizeof of.column[k]);
   for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
     const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
     job->weights(job->axis, job->need, &job->points, s, n, &W);
-    pack_momentum(dim, width, form, job, s, n, &W, &of);
-    if (form >= MPMI_SCATTER_8) pack_force(dim, job, s, n, &of);
+    give_momentum(dim, width, form, job, s, n, &W, &given);
+    if (form >= MPMI_SCATTER_8) give_force(dim, job, s, n, &given);
+    pack(dim, form, job->mass + s, n, &given, &of);
     for (int64_t p = 0; p < n; ++p) {
       mpmi_prefetch(&job->streams, s + MPMI_CHUNK, p);
       if (form == MPMI_SCATTER_4)

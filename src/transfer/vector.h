@@ -112,6 +112,28 @@ MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double 
   mpmi_store_halves(out + 5 * stride, out + 7 * stride,
                     __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
 }
+/* Eight components of as many particles: a store for each, for a load that wants all of it back at once would
+ * wait for the end of two stores. */
+MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *out) {
+  mpmi_lanes pair[2][4]; /* of two components, of even and odd particles */
+  for (int32_t c = 0; c < 4; ++c) {
+    const mpmi_lanes a = mpmi_lanes_load(in[2 * c] + p), b = mpmi_lanes_load(in[2 * c + 1] + p);
+    pair[0][c] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    pair[1][c] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int32_t odd = 0; odd < 2; ++odd) {
+    const mpmi_lanes low_04 = __builtin_shufflevector(pair[odd][0], pair[odd][1], 0, 1, 4, 5, 8, 9, 12, 13),
+                     low_26 = __builtin_shufflevector(pair[odd][0], pair[odd][1], 2, 3, 6, 7, 10, 11, 14, 15),
+                     high_04 = __builtin_shufflevector(pair[odd][2], pair[odd][3], 0, 1, 4, 5, 8, 9, 12, 13),
+                     high_26 =
+                         __builtin_shufflevector(pair[odd][2], pair[odd][3], 2, 3, 6, 7, 10, 11, 14, 15);
+    double *row = out + 8 * odd;
+    mpmi_lanes_store(row, __builtin_shufflevector(low_04, high_04, 0, 1, 4, 5, 8, 9, 12, 13));
+    mpmi_lanes_store(row + 16, __builtin_shufflevector(low_26, high_26, 0, 1, 4, 5, 8, 9, 12, 13));
+    mpmi_lanes_store(row + 32, __builtin_shufflevector(low_04, high_04, 2, 3, 6, 7, 10, 11, 14, 15));
+    mpmi_lanes_store(row + 48, __builtin_shufflevector(low_26, high_26, 2, 3, 6, 7, 10, 11, 14, 15));
+  }
+}
 MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c) {
   const mpmi_lanes r01 = mpmi_lanes_load(in), r23 = mpmi_lanes_load(in + 8), r45 = mpmi_lanes_load(in + 16),
                    r67 = mpmi_lanes_load(in + 24);
@@ -134,6 +156,11 @@ MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double 
   mpmi_store4(out + stride, vb);
   mpmi_store4(out + 2 * stride, vc);
   mpmi_store4(out + 3 * stride, vd);
+}
+MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *out) {
+  for (int32_t half = 0; half < 2; ++half)
+    mpmi_interleave(in[4 * half] + p, in[4 * half + 1] + p, in[4 * half + 2] + p, in[4 * half + 3] + p,
+                    out + 4 * half, 8);
 }
 MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c) {
   mpmi_v4 va = mpmi_load4(in), vb = mpmi_load4(in + 4), vc = mpmi_load4(in + 8), vd = mpmi_load4(in + 12);
@@ -166,6 +193,12 @@ MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
     r.four = mpmi_load4(a);
   else
     r.eight = mpmi_lanes_load(a);
+  return r;
+}
+/* The upper half, kept by itself. */
+MPMI_INLINE mpmi_node mpmi_node_load_high(const double *a) {
+  mpmi_node r = mpmi_node_zero();
+  r.eight = __builtin_shufflevector(mpmi_zero4(), mpmi_load4(a), 0, 1, 2, 3, 4, 5, 6, 7);
   return r;
 }
 MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
@@ -232,6 +265,9 @@ MPMI_INLINE mpmi_node mpmi_node_zero(void) {
 MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
   return (mpmi_node){part & MPMI_LOW ? mpmi_load4(a) : mpmi_zero4(),
                      part & MPMI_HIGH ? mpmi_load4(a + 4) : mpmi_zero4()};
+}
+MPMI_INLINE mpmi_node mpmi_node_load_high(const double *a) {
+  return (mpmi_node){mpmi_zero4(), mpmi_load4(a)};
 }
 MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
   if (part & MPMI_LOW) mpmi_store4(a, v.low);
