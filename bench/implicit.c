@@ -212,7 +212,8 @@ int32_t bench_implicit(const char *only, int32_t repeats, const int64_t *threads
   for (int32_t c = 0; c < CASES; ++c) {
     double residual = 0.0;
     if (cases[c].host && !bench_find_host(cases[c].host)) continue;
-    for (int32_t t = 0; t < count && (!only || strstr(cases[c].name, only)); ++t) {
+    const int32_t runs = cases[c].host ? 1 : count; /* these have threads of their own, if any */
+    for (int32_t t = 0; t < runs && (!only || strstr(cases[c].name, only)); ++t) {
       const implicit_job job = {&cases[c], (int32_t)threads[t], repeats};
       implicit_result r = {.failed = 1, .error = "the process died"};
       bench_apart(run, &job, &r, sizeof r);
