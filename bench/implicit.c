@@ -197,10 +197,10 @@ static void print(FILE *csv, const implicit_job *job, const implicit_result *r) 
   printf("%-30s %8lld %2d  %5lld  %7.3f  %7.3f %7.3f %7.3f  %5.0f\n", name, (long long)r->unknowns,
          (int)job->threads, (long long)r->iterations, r->total, r->assembly, r->set_up, r->solve, r->bytes);
   fflush(stdout);
-  if (csv)
-    fprintf(csv, "\"%s\",%lld,%d,%lld,%.4f,%.4f,%.4f,%.4f,%.0f\n", name, (long long)r->unknowns,
-            (int)job->threads, (long long)r->iterations, r->total, r->assembly, r->set_up, r->solve,
-            r->bytes);
+  if (!csv) return;
+  fprintf(csv, "\"%s\",%lld,%d,%lld,%.4f,%.4f,%.4f,%.4f,%.0f\n", name, (long long)r->unknowns,
+          (int)job->threads, (long long)r->iterations, r->total, r->assembly, r->set_up, r->solve, r->bytes);
+  fflush(csv);
 }
 
 int32_t bench_implicit(const char *only, int32_t repeats, const int64_t *threads, int32_t count, FILE *csv) {
@@ -209,6 +209,7 @@ int32_t bench_implicit(const char *only, int32_t repeats, const int64_t *threads
          "seconds", "assemb.", "set-up", "solve", "B/unk");
   if (csv)
     fprintf(csv, "case,unknowns,threads,iterations,seconds,assembly_s,set_up_s,solve_s,bytes_per_unknown\n");
+  if (csv) fflush(csv); /* the process of a case would write what is still in the buffer once more */
   for (int32_t c = 0; c < CASES; ++c) {
     double residual = 0.0;
     if (cases[c].host && !bench_find_host(cases[c].host)) continue;
