@@ -9,10 +9,10 @@ void mpmi_constraints_init(mpmi_constraints *c, mpm_context *context) {
 
 void mpmi_constraints_free(mpmi_constraints *c) {
   mpm_context *context = c->context;
-  mpmi_free(context, c->orbit, mpmi_bytes(c->orbit_capacity, sizeof *c->orbit));
-  mpmi_free(context, c->dependant, mpmi_bytes(c->dependant_capacity, sizeof *c->dependant));
+  mpmi_free(context, c->tie, mpmi_bytes(c->tie_capacity, sizeof *c->tie));
+  mpmi_free(context, c->follower, mpmi_bytes(c->follower_capacity, sizeof *c->follower));
   mpmi_free(context, c->contact, mpmi_bytes(c->contact_capacity, sizeof *c->contact));
-  mpmi_free(context, c->orbit_of, mpmi_bytes(c->map_capacity, sizeof *c->orbit_of));
+  mpmi_free(context, c->tie_of, mpmi_bytes(c->map_capacity, sizeof *c->tie_of));
   mpmi_constraints_init(c, context);
 }
 
@@ -109,30 +109,30 @@ typedef struct walk {
   const mpmi_wall *wall;
   mpmi_constraints *out;
   int32_t fill;
-  int64_t orbits, dependants, contacts;
+  int64_t ties, followers, contacts;
 } walk;
 
-static int32_t orbit_at(walk *w, int64_t master) {
-  int32_t *of = w->out->orbit_of + master;
+static int32_t tie_at(walk *w, int64_t master) {
+  int32_t *of = w->out->tie_of + master;
   if (*of < 0) {
-    *of = (int32_t)w->orbits++;
+    *of = (int32_t)w->ties++;
     if (w->fill) {
-      w->out->orbit[*of] = (mpmi_orbit){master, 0, 0, {0, 0, 0}, {-1, -1, -1}};
+      w->out->tie[*of] = (mpmi_tie){master, 0, 0, {0, 0, 0}, {-1, -1, -1}};
     }
   }
   return *of;
 }
 
-static void hold_on_planes(walk *w, mpmi_orbit *orbit, const int64_t *index) {
+static void hold_on_planes(walk *w, mpmi_tie *tie, const int64_t *index) {
   const mpm_grid *grid = w->blocks->grid;
   for (int32_t k = 0; k < grid->dim; ++k) {
     const int32_t face = plane_face(grid, w->wall, k, index[k]);
     if (face < 0) continue;
-    node_role taken = {{0}, {0}, {orbit->face[0], orbit->face[1], orbit->face[2]}, 0};
+    node_role taken = {{0}, {0}, {tie->face[0], tie->face[1], tie->face[2]}, 0};
     take(&taken, w->wall, face, grid->dim);
     for (int32_t c = 0; c < grid->dim; ++c) {
-      orbit->face[c] = taken.face[c];
-      if (wall_takes(w->wall, face, c)) orbit->zero[c] = 1;
+      tie->face[c] = taken.face[c];
+      if (wall_takes(w->wall, face, c)) tie->zero[c] = 1;
     }
   }
 }
@@ -148,29 +148,29 @@ static void visit_linear(walk *w, int64_t slot, const int64_t *index) {
   const node_role role = role_of(grid, w->wall, index);
   if (!role.dependent) {
     if (!on_plane(w, index)) return;
-    const int32_t at = orbit_at(w, slot);
-    if (w->fill) hold_on_planes(w, &w->out->orbit[at], index);
+    const int32_t at = tie_at(w, slot);
+    if (w->fill) hold_on_planes(w, &w->out->tie[at], index);
     return;
   }
   const int64_t master = mpmi_blocks_node(w->blocks, role.master);
   if (master < 0) return; /* nothing can reach this ghost: its mirror has no storage */
-  const int32_t at = orbit_at(w, master);
-  w->out->orbit_of[slot] = at;
-  ++w->dependants;
+  const int32_t at = tie_at(w, master);
+  w->out->tie_of[slot] = at;
+  ++w->followers;
   if (!w->fill) return;
-  mpmi_orbit *orbit = &w->out->orbit[at];
-  ++orbit->count;
-  hold_on_planes(w, orbit, role.master);
+  mpmi_tie *tie = &w->out->tie[at];
+  ++tie->count;
+  hold_on_planes(w, tie, role.master);
   for (int32_t c = 0; c < grid->dim; ++c)
-    if (role.face[c] >= 0 && (orbit->face[c] < 0 || role.face[c] / 2 == c)) orbit->face[c] = role.face[c];
+    if (role.face[c] >= 0 && (tie->face[c] < 0 || role.face[c] / 2 == c)) tie->face[c] = role.face[c];
 }
 
-/* Places the dependants of each orbit side by side, in the order of their slots. */
-static void place_dependant(walk *w, int64_t slot, const int64_t *index) {
+/* Places the followers of each tie side by side, in the order of their slots. */
+static void place_follower(walk *w, int64_t slot, const int64_t *index) {
   const node_role role = role_of(w->blocks->grid, w->wall, index);
-  if (!role.dependent || w->out->orbit_of[slot] < 0) return;
-  mpmi_orbit *orbit = &w->out->orbit[w->out->orbit_of[slot]];
-  mpmi_dependant *d = &w->out->dependant[orbit->first + orbit->count++];
+  if (!role.dependent || w->out->tie_of[slot] < 0) return;
+  mpmi_tie *tie = &w->out->tie[w->out->tie_of[slot]];
+  mpmi_follower *d = &w->out->follower[tie->first + tie->count++];
   d->slot = slot;
   memcpy(d->sign, role.sign, sizeof d->sign);
 }
@@ -202,7 +202,7 @@ static void visit_all(walk *w, int32_t what, int32_t face) {
       const int64_t slot = block * b->nodes + n;
       mpmi_blocks_index(b, slot, index);
       if (what == VISIT_LINEAR) visit_linear(w, slot, index);
-      if (what == VISIT_PLACE) place_dependant(w, slot, index);
+      if (what == VISIT_PLACE) place_follower(w, slot, index);
       if (what == VISIT_CONTACTS) visit_contact(w, face, slot, index);
     }
   }
@@ -210,7 +210,7 @@ static void visit_all(walk *w, int32_t what, int32_t face) {
 
 static void clear_map(mpmi_constraints *c, const mpmi_blocks *b) {
   const int64_t slots = b->count * b->nodes;
-  for (int64_t i = 0; i < slots; ++i) c->orbit_of[i] = -1;
+  for (int64_t i = 0; i < slots; ++i) c->tie_of[i] = -1;
 }
 
 static void visit_contacts(walk *w) {
@@ -223,25 +223,25 @@ static void visit_contacts(walk *w) {
 mpm_status mpmi_constraints_build(mpmi_constraints *c, const mpmi_blocks *b, const mpmi_wall *wall) {
   mpm_context *context = c->context;
   mpm_status status =
-      reserve(context, (void **)&c->orbit_of, &c->map_capacity, b->count * b->nodes, sizeof *c->orbit_of);
+      reserve(context, (void **)&c->tie_of, &c->map_capacity, b->count * b->nodes, sizeof *c->tie_of);
   if (status) return status;
   walk w = {b, wall, c, 0, 0, 0, 0};
   clear_map(c, b);
   visit_all(&w, VISIT_LINEAR, 0);
-  if ((status = reserve(context, (void **)&c->orbit, &c->orbit_capacity, w.orbits, sizeof *c->orbit)) ||
-      (status = reserve(context, (void **)&c->dependant, &c->dependant_capacity, w.dependants,
-                        sizeof *c->dependant)))
+  if ((status = reserve(context, (void **)&c->tie, &c->tie_capacity, w.ties, sizeof *c->tie)) ||
+      (status =
+           reserve(context, (void **)&c->follower, &c->follower_capacity, w.followers, sizeof *c->follower)))
     return status;
   clear_map(c, b);
   w = (walk){b, wall, c, 1, 0, 0, 0};
   visit_all(&w, VISIT_LINEAR, 0);
-  c->orbit_count = w.orbits;
-  c->dependant_count = w.dependants;
+  c->tie_count = w.ties;
+  c->follower_count = w.followers;
   int64_t first = 0;
-  for (int64_t i = 0; i < c->orbit_count; ++i) {
-    c->orbit[i].first = first;
-    first += c->orbit[i].count;
-    c->orbit[i].count = 0;
+  for (int64_t i = 0; i < c->tie_count; ++i) {
+    c->tie[i].first = first;
+    first += c->tie[i].count;
+    c->tie[i].count = 0;
   }
   visit_all(&w, VISIT_PLACE, 0);
   w.fill = 0;
@@ -255,5 +255,5 @@ mpm_status mpmi_constraints_build(mpmi_constraints *c, const mpmi_blocks *b, con
 }
 
 int32_t mpmi_constraints_is_free(const mpmi_constraints *c, int64_t slot) {
-  return c->orbit_of[slot] < 0 || c->orbit[c->orbit_of[slot]].master == slot;
+  return c->tie_of[slot] < 0 || c->tie[c->tie_of[slot]].master == slot;
 }

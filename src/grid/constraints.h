@@ -9,8 +9,8 @@
  *
  *   fixed wall       v_ghost = -v_mirror, v_wall = 0
  *
- * An orbit is a master with its dependants; conditions on several axes multiply. Mass, momentum and force of
- * an orbit are folded into the master, solved there, and copied back, which conserves what the condition does
+ * A tie is a master with its followers; conditions on several axes multiply. Mass, momentum and force of
+ * a tie are folded into the master, solved there, and copied back, which conserves what the condition does
  * not take away. Friction walls are contacts between the nodes of a wall and, for wide stencils, pairs of
  * ghost and mirror. */
 #ifndef MPMI_CONSTRAINTS_H
@@ -23,17 +23,17 @@ typedef struct mpmi_wall {
   double friction;
 } mpmi_wall;
 
-typedef struct mpmi_dependant {
+typedef struct mpmi_follower {
   int64_t slot;
   double sign[3];
-} mpmi_dependant;
+} mpmi_follower;
 
-typedef struct mpmi_orbit {
+typedef struct mpmi_tie {
   int64_t master;
-  int64_t first, count; /* dependants */
+  int64_t first, count; /* followers */
   int32_t zero[3];      /* component held at 0 by a wall */
   int32_t face[3];      /* wall that takes the reaction of a component, or -1 */
-} mpmi_orbit;
+} mpmi_tie;
 
 /* A node on a friction wall, or a ghost and its mirror. */
 typedef struct mpmi_contact {
@@ -44,14 +44,14 @@ typedef struct mpmi_contact {
 
 typedef struct mpmi_constraints {
   mpm_context *context;
-  int64_t orbit_count, orbit_capacity;
-  mpmi_orbit *orbit;
-  int64_t dependant_count, dependant_capacity;
-  mpmi_dependant *dependant;
+  int64_t tie_count, tie_capacity;
+  mpmi_tie *tie;
+  int64_t follower_count, follower_capacity;
+  mpmi_follower *follower;
   int64_t contact_count, contact_capacity;
   mpmi_contact *contact; /* face by face */
   int64_t map_capacity;
-  int32_t *orbit_of; /* [slots]: orbit of a node, or -1; a dependant has that of its master */
+  int32_t *tie_of; /* [slots]: tie of a node, or -1; a follower has that of its master */
 } mpmi_constraints;
 
 void mpmi_constraints_init(mpmi_constraints *constraints, mpm_context *context);
@@ -60,7 +60,7 @@ void mpmi_constraints_free(mpmi_constraints *constraints);
  * swap. */
 mpm_status mpmi_constraints_build(mpmi_constraints *constraints, const mpmi_blocks *blocks,
                                   const mpmi_wall *wall);
-/* 1 when the node in a slot moves by itself: not a dependant. */
+/* 1 when the node in a slot moves by itself: not a follower. */
 int32_t mpmi_constraints_is_free(const mpmi_constraints *constraints, int64_t slot);
 
 #endif

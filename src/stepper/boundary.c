@@ -1,7 +1,7 @@
 /* Boundary conditions on nodal velocities (Steffen et al. 2008, 3.4): velocity callback, prescribed
  * particles, walls, periodic images, and the host's hooks in between.
  *
- * They work on the velocities that all nodes would have if free. Orbits are folded into their masters first
+ * They work on the velocities that all nodes would have if free. Ties are folded into their masters first
  * and unfolded last. */
 #include "stepper/boundary.h"
 
@@ -27,17 +27,17 @@ static void prescribe(const mpmi_boundary *f, int64_t slot, int32_t c, double va
   hold(f, slot, c, value, increment);
 }
 
-/* whole: as if no part of an orbit were an image with the opposite sign. */
+/* whole: as if no part of a tie were an image with the opposite sign. */
 static double book(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_component_state before,
                    int32_t whole) {
   const double more = mpmi_given(f, slot, c) - before.given;
-  const int32_t orbit = f->s->constraints.orbit_of[slot];
-  if (orbit < 0) {
+  const int32_t tie = f->s->constraints.tie_of[slot];
+  if (tie < 0) {
     const double impulse = mpmi_node_at(f, slot)[3] * more;
     note(f, slot, c, impulse, mpmi_increment(f, slot, c) - before.increment);
     return impulse;
   }
-  mpmi_orbit_state *state = mpmi_orbit_state_of(f, orbit);
+  mpmi_tie_state *state = mpmi_tie_state_of(f, tie);
   const double impulse = (whole ? state->mass : state->net[c]) * more;
   state->booked[c] += impulse;
   return impulse;
@@ -51,36 +51,36 @@ double mpmi_book_whole(const mpmi_boundary *f, int64_t slot, int32_t c, mpmi_com
   return book(f, slot, c, before, 1);
 }
 
-/* The master gets the velocity that the whole orbit has, before the forces and after them. */
+/* The master gets the velocity that the whole tie has, before the forces and after them. */
 static void fold(const mpmi_boundary *f) {
   const mpmi_constraints *constraints = &f->s->constraints;
-  for (int64_t i = 0; i < constraints->orbit_count; ++i) {
-    const mpmi_orbit *orbit = &constraints->orbit[i];
-    double *master = mpmi_node_at(f, orbit->master);
-    mpmi_orbit_state *state = mpmi_orbit_state_of(f, i);
+  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
+    double *master = mpmi_node_at(f, tie->master);
+    mpmi_tie_state *state = mpmi_tie_state_of(f, i);
     double momentum[3], gained[3];
     state->mass = master[3];
     for (int32_t c = 0; c < f->dim; ++c) {
       state->net[c] = master[3];
-      state->before[c] = mpmi_given(f, orbit->master, c);
-      state->increment[c] = mpmi_increment(f, orbit->master, c);
+      state->before[c] = mpmi_given(f, tie->master, c);
+      state->increment[c] = mpmi_increment(f, tie->master, c);
       state->booked[c] = 0.0;
       momentum[c] = master[3] * master[c];
       gained[c] = f->values == 8 ? master[3] * master[4 + c] : 0.0;
     }
-    for (int64_t d = orbit->first; d < orbit->first + orbit->count; ++d) {
-      const mpmi_dependant *dependant = &constraints->dependant[d];
-      const double *node = mpmi_node_at(f, dependant->slot);
+    for (int64_t d = tie->first; d < tie->first + tie->count; ++d) {
+      const mpmi_follower *follower = &constraints->follower[d];
+      const double *node = mpmi_node_at(f, follower->slot);
       state->mass += node[3];
       for (int32_t c = 0; c < f->dim; ++c) {
-        const double signed_mass = dependant->sign[c] * node[3];
+        const double signed_mass = follower->sign[c] * node[3];
         state->net[c] += signed_mass;
         momentum[c] += signed_mass * node[c];
         if (f->values == 8) gained[c] += signed_mass * node[4 + c];
       }
     }
     const double inverse = state->mass > f->s->mass_cut ? 1.0 / state->mass : 0.0;
-    for (int32_t c = 0; orbit->count && c < f->dim; ++c) {
+    for (int32_t c = 0; tie->count && c < f->dim; ++c) {
       master[c] = momentum[c] * inverse;
       if (f->values == 8) master[4 + c] = gained[c] * inverse;
     }
@@ -91,40 +91,40 @@ static void fold(const mpmi_boundary *f) {
  * there is no increment. Only so is half a symmetric body on a slip wall the same as the whole. */
 static void hold_walls(const mpmi_boundary *f) {
   const mpmi_constraints *constraints = &f->s->constraints;
-  for (int64_t i = 0; i < constraints->orbit_count; ++i) {
-    const mpmi_orbit *orbit = &constraints->orbit[i];
+  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
     for (int32_t c = 0; c < f->dim; ++c)
-      if (orbit->zero[c] && !mpmi_held_by(f, orbit->master, c)) hold(f, orbit->master, c, 0.0, 0.0);
+      if (tie->zero[c] && !mpmi_held_by(f, tie->master, c)) hold(f, tie->master, c, 0.0, 0.0);
   }
 }
 
 static void unfold(const mpmi_boundary *f) {
   mpm_stepper *s = f->s;
   const mpmi_constraints *constraints = &s->constraints;
-  for (int64_t i = 0; i < constraints->orbit_count; ++i) {
-    const mpmi_orbit *orbit = &constraints->orbit[i];
-    const mpmi_orbit_state *state = mpmi_orbit_state_of(f, i);
-    const double *master = mpmi_node_at(f, orbit->master);
+  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
+    const mpmi_tie_state *state = mpmi_tie_state_of(f, i);
+    const double *master = mpmi_node_at(f, tie->master);
     double total[3] = {0.0, 0.0, 0.0};
     for (int32_t c = 0; c < f->dim; ++c) {
-      total[c] = master[3] * (mpmi_given(f, orbit->master, c) - state->before[c]);
-      note(f, orbit->master, c, total[c], mpmi_increment(f, orbit->master, c) - state->increment[c]);
+      total[c] = master[3] * (mpmi_given(f, tie->master, c) - state->before[c]);
+      note(f, tie->master, c, total[c], mpmi_increment(f, tie->master, c) - state->increment[c]);
     }
-    for (int64_t d = orbit->first; d < orbit->first + orbit->count; ++d) {
-      const mpmi_dependant *dependant = &constraints->dependant[d];
-      double *node = mpmi_node_at(f, dependant->slot);
+    for (int64_t d = tie->first; d < tie->first + tie->count; ++d) {
+      const mpmi_follower *follower = &constraints->follower[d];
+      double *node = mpmi_node_at(f, follower->slot);
       for (int32_t c = 0; c < f->dim; ++c) {
-        const mpmi_component_state before = mpmi_component_of(f, dependant->slot, c);
-        node[c] = dependant->sign[c] * master[c];
-        if (f->values == 8) node[4 + c] = dependant->sign[c] * master[4 + c];
-        const double impulse = node[3] * (mpmi_given(f, dependant->slot, c) - before.given);
+        const mpmi_component_state before = mpmi_component_of(f, follower->slot, c);
+        node[c] = follower->sign[c] * master[c];
+        if (f->values == 8) node[4 + c] = follower->sign[c] * master[4 + c];
+        const double impulse = node[3] * (mpmi_given(f, follower->slot, c) - before.given);
         total[c] += impulse;
-        note(f, dependant->slot, c, impulse, mpmi_increment(f, dependant->slot, c) - before.increment);
+        note(f, follower->slot, c, impulse, mpmi_increment(f, follower->slot, c) - before.increment);
       }
     }
     for (int32_t c = 0; c < f->dim; ++c)
-      if (f->books && orbit->face[c] >= 0 && !mpmi_held_by(f, orbit->master, c))
-        s->impulse_in_step[orbit->face[c]][c] += f->share * (total[c] - state->booked[c]);
+      if (f->books && tie->face[c] >= 0 && !mpmi_held_by(f, tie->master, c))
+        s->impulse_in_step[tie->face[c]][c] += f->share * (total[c] - state->booked[c]);
   }
 }
 

@@ -1,6 +1,6 @@
 /* What the parts of the boundary stage share: the nodes as they are between P2G and G2P.
  *
- * Orbits are folded into their masters (grid/constraints.h) while the host, prescribed particles, walls and
+ * Ties are folded into their masters (grid/constraints.h) while the host, prescribed particles, walls and
  * contacts change velocities. Whatever changes a velocity changes its increment by as much, so that the
  * acceleration of a bound node is that of Steffen et al. 2008, eq. 30, and mass times the change is the
  * impulse that was given. */
@@ -19,15 +19,15 @@ typedef struct mpmi_boundary {
 /* Who holds a component of a node, in held[]. */
 enum { MPMI_HELD_BY_HOST = 1, MPMI_HELD_BY_PARTICLES = 2 };
 
-/* Of an orbit: folded mass, signed mass by component, what the master gave to particles before folding,
+/* Of a tie: folded mass, signed mass by component, what the master gave to particles before folding,
  * impulse that is booked already. */
-typedef struct mpmi_orbit_state {
+typedef struct mpmi_tie_state {
   double mass, net[3], before[3], increment[3], booked[3];
-} mpmi_orbit_state;
-_Static_assert(sizeof(mpmi_orbit_state) == MPMI_ORBIT_STATE * sizeof(double), "orbit state");
+} mpmi_tie_state;
+_Static_assert(sizeof(mpmi_tie_state) == MPMI_TIE_STATE * sizeof(double), "tie state");
 
-static inline mpmi_orbit_state *mpmi_orbit_state_of(const mpmi_boundary *f, int64_t orbit) {
-  return (mpmi_orbit_state *)(void *)f->s->orbit_state + orbit;
+static inline mpmi_tie_state *mpmi_tie_state_of(const mpmi_boundary *f, int64_t tie) {
+  return (mpmi_tie_state *)(void *)f->s->tie_state + tie;
 }
 
 static inline double *mpmi_node_at(const mpmi_boundary *f, int64_t slot) {
@@ -44,10 +44,10 @@ static inline double mpmi_given(const mpmi_boundary *f, int64_t slot, int32_t c)
   return f->flip * mpmi_increment(f, slot, c) + (1.0 - f->flip) * mpmi_node_at(f, slot)[c];
 }
 
-/* Mass that moves with a free node: its own, or that of its orbit. */
+/* Mass that moves with a free node: its own, or that of its tie. */
 static inline double mpmi_moving_mass(const mpmi_boundary *f, int64_t slot) {
-  const int32_t orbit = f->s->constraints.orbit_of[slot];
-  return orbit < 0 ? mpmi_node_at(f, slot)[3] : mpmi_orbit_state_of(f, orbit)->mass;
+  const int32_t tie = f->s->constraints.tie_of[slot];
+  return tie < 0 ? mpmi_node_at(f, slot)[3] : mpmi_tie_state_of(f, tie)->mass;
 }
 
 /* Does a free node that moves take part? */

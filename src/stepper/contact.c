@@ -37,8 +37,8 @@ static void give(const mpmi_boundary *f, const contact_nodes *n, int32_t face, i
 
 static int32_t on_wall(const mpmi_boundary *f, int64_t slot, int32_t c) {
   const mpmi_constraints *constraints = &f->s->constraints;
-  const int32_t orbit = constraints->orbit_of[slot];
-  return orbit >= 0 && constraints->orbit[orbit].zero[c];
+  const int32_t tie = constraints->tie_of[slot];
+  return tie >= 0 && constraints->tie[tie].zero[c];
 }
 
 static int32_t collect(const mpmi_boundary *f, const mpmi_contact *pair, contact_nodes *n) {

@@ -1,9 +1,9 @@
 /* Node hooks: the host reads and changes nodal velocities and forces at a stage of the step.
  *
- * All stages run after the nodes have been updated and orbits folded, because both are linear: there a node
+ * All stages run after the nodes have been updated and ties folded, because both are linear: there a node
  * has its updated velocity v~ and the increment dv, hence the projected velocity v = v~ - dv and the force m
  * dv / dt. A change of force is one of dv and v~; a change of v is one of v~; a change of v~ is an impulse,
- * one of both. It is laid on every node of the orbit, as if the host had written there: so it is no reaction
+ * one of both. It is laid on every node of the tie, as if the host had written there: so it is no reaction
  * of the constraint. */
 #include "stepper/node_batch.h"
 
@@ -26,20 +26,20 @@ static void shift_node(const mpmi_boundary *f, int64_t slot, int32_t c, double v
   node[4 + c] += increment;
 }
 
-/* Changes v~ and dv of a free node with its orbit; what particles take of that is the hook's impulse. */
+/* Changes v~ and dv of a free node with its tie; what particles take of that is the hook's impulse. */
 static void shift(const mpmi_boundary *f, int64_t slot, int32_t c, double velocity, double increment) {
   const mpmi_constraints *constraints = &f->s->constraints;
-  const int32_t at = constraints->orbit_of[slot];
+  const int32_t at = constraints->tie_of[slot];
   const double given = f->flip * increment + (1.0 - f->flip) * velocity;
   f->s->hook_impulse[3 * slot + c] += mpmi_moving_mass(f, slot) * given;
   shift_node(f, slot, c, velocity, increment);
   if (at < 0) return;
-  mpmi_orbit_state *state = mpmi_orbit_state_of(f, at);
+  mpmi_tie_state *state = mpmi_tie_state_of(f, at);
   state->before[c] += given;
   state->increment[c] += increment;
-  for (int64_t d = 0; d < constraints->orbit[at].count; ++d) {
-    const mpmi_dependant *dependant = &constraints->dependant[constraints->orbit[at].first + d];
-    shift_node(f, dependant->slot, c, dependant->sign[c] * velocity, dependant->sign[c] * increment);
+  for (int64_t d = 0; d < constraints->tie[at].count; ++d) {
+    const mpmi_follower *follower = &constraints->follower[constraints->tie[at].first + d];
+    shift_node(f, follower->slot, c, follower->sign[c] * velocity, follower->sign[c] * increment);
   }
 }
 

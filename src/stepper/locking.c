@@ -94,13 +94,13 @@ static void add_task(void *data, int64_t k) {
 /* Cells at a periodic seam have been added up on both sides of it. Ghosts of walls hold no cell. */
 static void join_images(mpm_stepper *s) {
   const mpmi_constraints *c = &s->constraints;
-  for (int64_t i = 0; i < c->orbit_count; ++i) {
-    double *master = s->extra + 4 * c->orbit[i].master;
-    const int64_t first = c->orbit[i].first, end = first + c->orbit[i].count;
+  for (int64_t i = 0; i < c->tie_count; ++i) {
+    double *master = s->extra + 4 * c->tie[i].master;
+    const int64_t first = c->tie[i].first, end = first + c->tie[i].count;
     for (int64_t d = first; d < end; ++d)
-      for (int32_t v = 0; v < 2; ++v) master[v] += s->extra[4 * c->dependant[d].slot + v];
+      for (int32_t v = 0; v < 2; ++v) master[v] += s->extra[4 * c->follower[d].slot + v];
     for (int64_t d = first; d < end; ++d)
-      for (int32_t v = 0; v < 2; ++v) s->extra[4 * c->dependant[d].slot + v] = master[v];
+      for (int32_t v = 0; v < 2; ++v) s->extra[4 * c->follower[d].slot + v] = master[v];
   }
 }
 

@@ -15,7 +15,7 @@ typedef struct mpmi_node_list {
   mpm_node_batch batch;
 } mpmi_node_list;
 
-/* Masters stand for their orbits, with the mass of all of it. Returns how many nodes there are. */
+/* Masters stand for their ties, with the mass of all of it. Returns how many nodes there are. */
 int64_t mpmi_list_nodes(const mpmi_boundary *f, int64_t block, mpmi_node_list *list);
 /* A value of the host on node i that is not finite. */
 void mpmi_bad_node(const mpmi_boundary *f, const mpmi_node_list *list, int64_t i, const char *what,

@@ -62,7 +62,7 @@ static int by_value(const void *a, const void *b) {
 
 enum { MOST_OFFSETS = 343 };
 
-/* Distinct columns of a row, ascending; an orbit of many images gives them member by member. */
+/* Distinct columns of a row, ascending; a tie of many images gives them member by member. */
 static int32_t columns_of(const mpmi_newton *w, int64_t row, int32_t *out) {
   int32_t count = 0;
   for (int64_t m = w->members_start[row]; m < w->members_start[row + 1]; ++m) {

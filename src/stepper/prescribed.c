@@ -20,15 +20,15 @@ static void touch_around(mpm_stepper *s, int64_t block) {
       s->prescription.block[b->neighbour[block][n]] |= MPMI_TOUCHED;
 }
 
-/* A master takes what its dependants are given, wherever it lies. */
+/* A master takes what its followers are given, wherever it lies. */
 static void touch_masters(mpm_stepper *s) {
   const mpmi_constraints *constraints = &s->constraints;
-  for (int64_t i = 0; i < constraints->orbit_count; ++i) {
-    const mpmi_orbit *orbit = &constraints->orbit[i];
+  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
     int32_t touched = 0;
-    for (int64_t d = orbit->first; d < orbit->first + orbit->count; ++d)
-      touched |= s->prescription.block[constraints->dependant[d].slot / s->blocks.nodes];
-    if (touched & MPMI_TOUCHED) s->prescription.block[orbit->master / s->blocks.nodes] |= MPMI_TOUCHED;
+    for (int64_t d = tie->first; d < tie->first + tie->count; ++d)
+      touched |= s->prescription.block[constraints->follower[d].slot / s->blocks.nodes];
+    if (touched & MPMI_TOUCHED) s->prescription.block[tie->master / s->blocks.nodes] |= MPMI_TOUCHED;
   }
 }
 

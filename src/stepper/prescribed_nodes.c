@@ -136,21 +136,21 @@ static void clear_sums(const mpmi_boundary *f, int64_t begin, int64_t end, mpmi_
   memset(sums_at(f->s, begin), 0, (size_t)(8 * (end - begin)) * sizeof(double));
 }
 
-/* An orbit moves as one, component by component with its sign. */
+/* A tie moves as one, component by component with its sign. */
 static void fold_task(void *data, int64_t k) {
   const mpmi_boundary *f = data;
   const mpm_stepper *s = f->s;
   const mpmi_constraints *constraints = &s->constraints;
-  const int64_t orbits = constraints->orbit_count;
-  for (int64_t i = orbits * k / s->tasks; i < orbits * (k + 1) / s->tasks; ++i) {
-    const mpmi_orbit *orbit = &constraints->orbit[i];
-    double *master = sums_at(s, orbit->master);
-    for (int64_t d = orbit->first; d < orbit->first + orbit->count; ++d) {
-      const mpmi_dependant *dependant = &constraints->dependant[d];
-      if (!is_touched(s, dependant->slot) || !is_touched(s, orbit->master)) continue;
-      const double *sums = sums_at(s, dependant->slot);
+  const int64_t ties = constraints->tie_count;
+  for (int64_t i = ties * k / s->tasks; i < ties * (k + 1) / s->tasks; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
+    double *master = sums_at(s, tie->master);
+    for (int64_t d = tie->first; d < tie->first + tie->count; ++d) {
+      const mpmi_follower *follower = &constraints->follower[d];
+      if (!is_touched(s, follower->slot) || !is_touched(s, tie->master)) continue;
+      const double *sums = sums_at(s, follower->slot);
       for (int32_t c = 0; c < f->dim; ++c) {
-        master[c] += dependant->sign[c] * sums[c];
+        master[c] += follower->sign[c] * sums[c];
         master[3 + c] += sums[3 + c];
       }
     }
@@ -189,7 +189,7 @@ mpm_status mpmi_prescribed_hold(const mpmi_boundary *f) {
 
 /* ---- their share of the impulses -------------------------------------------------------------------------
  */
-/* The sums become impulse by prescribed mass: of free nodes here, of orbits below. */
+/* The sums become impulse by prescribed mass: of free nodes here, of ties below. */
 static void divide_impulses(const mpmi_boundary *f, int64_t begin, int64_t end, mpmi_failure *failure) {
   const mpm_stepper *s = f->s;
   (void)failure;
@@ -197,30 +197,30 @@ static void divide_impulses(const mpmi_boundary *f, int64_t begin, int64_t end, 
     for (int32_t c = 0; c < f->dim; ++c) {
       double *sums = sums_at(s, slot);
       const int32_t theirs =
-          s->constraints.orbit_of[slot] < 0 && mpmi_held_by(f, slot, c) == MPMI_HELD_BY_PARTICLES;
+          s->constraints.tie_of[slot] < 0 && mpmi_held_by(f, slot, c) == MPMI_HELD_BY_PARTICLES;
       sums[c] = theirs ? s->impulse[6 * slot + c] / sums[3 + c] : 0.0;
     }
 }
 
-static void divide_of_orbit(const mpmi_boundary *f, const mpmi_orbit *orbit, int32_t c) {
+static void divide_of_tie(const mpmi_boundary *f, const mpmi_tie *tie, int32_t c) {
   const mpm_stepper *s = f->s;
-  const mpmi_dependant *dependant = orbit->count ? s->constraints.dependant + orbit->first : NULL;
-  double total = s->impulse[6 * orbit->master + c];
-  for (int64_t d = 0; d < orbit->count; ++d) total += s->impulse[6 * dependant[d].slot + c];
-  const double by_mass = total / sums_at(s, orbit->master)[3 + c];
-  sums_at(s, orbit->master)[c] = by_mass;
-  for (int64_t d = 0; d < orbit->count; ++d)
-    if (is_touched(s, dependant[d].slot)) sums_at(s, dependant[d].slot)[c] = by_mass;
+  const mpmi_follower *follower = tie->count ? s->constraints.follower + tie->first : NULL;
+  double total = s->impulse[6 * tie->master + c];
+  for (int64_t d = 0; d < tie->count; ++d) total += s->impulse[6 * follower[d].slot + c];
+  const double by_mass = total / sums_at(s, tie->master)[3 + c];
+  sums_at(s, tie->master)[c] = by_mass;
+  for (int64_t d = 0; d < tie->count; ++d)
+    if (is_touched(s, follower[d].slot)) sums_at(s, follower[d].slot)[c] = by_mass;
 }
 
-static void orbits_task(void *data, int64_t k) {
+static void ties_task(void *data, int64_t k) {
   const mpmi_boundary *f = data;
   const mpm_stepper *s = f->s;
-  const int64_t orbits = s->constraints.orbit_count;
-  for (int64_t i = orbits * k / s->tasks; i < orbits * (k + 1) / s->tasks; ++i) {
-    const mpmi_orbit *orbit = &s->constraints.orbit[i];
+  const int64_t ties = s->constraints.tie_count;
+  for (int64_t i = ties * k / s->tasks; i < ties * (k + 1) / s->tasks; ++i) {
+    const mpmi_tie *tie = &s->constraints.tie[i];
     for (int32_t c = 0; c < f->dim; ++c)
-      if (mpmi_held_by(f, orbit->master, c) == MPMI_HELD_BY_PARTICLES) divide_of_orbit(f, orbit, c);
+      if (mpmi_held_by(f, tie->master, c) == MPMI_HELD_BY_PARTICLES) divide_of_tie(f, tie, c);
   }
 }
 
@@ -252,7 +252,7 @@ static void share_task(void *data, int64_t k) {
 mpm_status mpmi_prescribed_share(const mpmi_boundary *f) {
   mpm_stepper *s = f->s;
   mpm_status status = over_slots(f, divide_impulses);
-  if (!status) status = mpmi_run_tasks(s, 0, s->tasks, orbits_task, (void *)(uintptr_t)f);
+  if (!status) status = mpmi_run_tasks(s, 0, s->tasks, ties_task, (void *)(uintptr_t)f);
   if (!status) status = mpmi_run_tasks(s, 0, s->tasks, share_task, (void *)(uintptr_t)f);
   return status;
 }

@@ -1,6 +1,6 @@
 /* What holds nodes in an implicit step: the residual of their balance is the force of the constraint. It is
  * booked as boundary.c does: to the host and to prescribed particles what acts on the components that they
- * hold, the rest of an orbit to the wall that binds it. */
+ * hold, the rest of a tie to the wall that binds it. */
 #include "stepper/boundary.h"
 #include "stepper/newton.h"
 
@@ -30,15 +30,15 @@ static void book_row(mpm_stepper *s, int64_t row, int32_t c, double dt) {
     along += node->sign[c] * impulse;
   }
   const int64_t slot = w->active[w->members[w->members_start[row]]].slot;
-  const int32_t orbit = s->constraints.orbit_of[slot];
-  const int64_t master = orbit < 0 ? slot : s->constraints.orbit[orbit].master;
+  const int32_t tie = s->constraints.tie_of[slot];
+  const int64_t master = tie < 0 ? slot : s->constraints.tie[tie].master;
   if (s->holds && s->held[3 * master + c])
     s->prescribed_work += along * s->held_value[3 * master + c];
-  else if (orbit < 0)
+  else if (tie < 0)
     s->impulse[6 * slot + c] = s->impulse[6 * slot + 3 + c] =
         0.0; /* nothing holds it: this is what the iterations have left */
-  else if (s->constraints.orbit[orbit].face[c] >= 0)
-    s->impulse_in_step[s->constraints.orbit[orbit].face[c]][c] += total;
+  else if (s->constraints.tie[tie].face[c] >= 0)
+    s->impulse_in_step[s->constraints.tie[tie].face[c]][c] += total;
 }
 
 mpm_status mpmi_book_reactions(mpm_stepper *s, double dt) {

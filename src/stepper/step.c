@@ -89,7 +89,7 @@ static mpm_status grid_part(mpm_stepper *s, double dt) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_stage_nodes(s, MPMI_PROJECT_FORCES);
   if (!status) status = mpmi_stage_boundary(s, MPMI_PROJECT_FORCES, dt, 1.0);
-  if (!status && s->constraints.orbit_count) count_active(s);
+  if (!status && s->constraints.tie_count) count_active(s);
   mpmi_lap(s, MPMI_TIME_GRID, &clock);
   return status;
 }

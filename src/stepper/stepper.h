@@ -79,7 +79,7 @@ typedef struct mpmi_cut {
   int64_t *bound; /* [tasks + 1] */
 } mpmi_cut;
 
-enum { MPMI_COLOURS = 8, MPMI_ORBIT_STATE = 13 };
+enum { MPMI_COLOURS = 8, MPMI_TIE_STATE = 13 };
 enum { MPMI_IDLE, MPMI_RUNNING, MPMI_BEGUN, MPMI_SOLVED }; /* phase of the step */
 
 /* Seconds by stage, in the order of mpm_profile. */
@@ -164,8 +164,8 @@ struct mpm_stepper {
   double *hook_impulse; /* [3 per node] where there are hooks */
   mpmi_prescription prescription;
   mpmi_newton *newton; /* of implicit steps, or NULL */
-  double *orbit_state; /* [orbits][MPMI_ORBIT_STATE], boundary.c */
-  int64_t orbit_state_capacity;
+  double *tie_state;   /* [ties][MPMI_TIE_STATE], boundary.c */
+  int64_t tie_state_capacity;
   double mass_cut;
   int32_t nodes_valid; /* nodal fields of the last step can be shown */
   double nodes_dt;

@@ -74,10 +74,10 @@ static void swap_in_next(mpm_stepper *s) {
   }
 }
 
-static mpm_status reserve_orbits(mpm_stepper *s, const mpmi_constraints *constraints) {
-  return mpmi_reserve(s->context, (void **)&s->orbit_state, &s->orbit_state_capacity,
-                      roomy(MPMI_ORBIT_STATE * constraints->orbit_count, s->orbit_state_capacity),
-                      sizeof *s->orbit_state);
+static mpm_status reserve_ties(mpm_stepper *s, const mpmi_constraints *constraints) {
+  return mpmi_reserve(s->context, (void **)&s->tie_state, &s->tie_state_capacity,
+                      roomy(MPMI_TIE_STATE * constraints->tie_count, s->tie_state_capacity),
+                      sizeof *s->tie_state);
 }
 
 mpm_status mpmi_stepper_adopt(mpm_stepper *s) {
@@ -86,7 +86,7 @@ mpm_status mpmi_stepper_adopt(mpm_stepper *s) {
   if ((status = mpmi_reserve(s->context, (void **)&s->block_sums, &s->block_sums_capacity,
                              roomy(blocks, s->block_sums_capacity), sizeof *s->block_sums)) ||
       (status = mpmi_constraints_build(&s->next_constraints, &s->next_blocks, s->wall)) ||
-      (status = reserve_orbits(s, &s->next_constraints)) ||
+      (status = reserve_ties(s, &s->next_constraints)) ||
       /* last, because the present cuts point into this memory; some of it without blocks, too */
       (status = mpmi_reserve(s->context, (void **)&s->list_memory, &s->list_capacity,
                              roomy(2 * blocks + 1, s->list_capacity), sizeof *s->list_memory)))
@@ -167,7 +167,7 @@ static mpm_status sort_anew(mpm_stepper *s) {
 static mpm_status rebuild_constraints(mpm_stepper *s) {
   mpm_status status;
   if ((status = mpmi_constraints_build(&s->next_constraints, &s->blocks, s->wall)) ||
-      (status = reserve_orbits(s, &s->next_constraints)))
+      (status = reserve_ties(s, &s->next_constraints)))
     return status;
   const mpmi_constraints constraints = s->constraints;
   s->constraints = s->next_constraints;
@@ -237,7 +237,7 @@ static mpm_status prepare_scratch(mpm_stepper *s) {
 
 /* Can a wall, or the host, give nodes an impulse that has to be remembered? */
 static int32_t gives_impulses(const mpm_stepper *s) {
-  return s->holds || s->constraints.orbit_count || s->constraints.contact_count;
+  return s->holds || s->constraints.tie_count || s->constraints.contact_count;
 }
 
 static mpm_status prepare_nodes(mpm_stepper *s) {
@@ -319,7 +319,7 @@ void mpmi_stepper_free_topology(mpm_stepper *s) {
   mpmi_boundary_free(s);
   mpmi_free(c, s->list_memory, mpmi_bytes(s->list_capacity, sizeof *s->list_memory));
   mpmi_free(c, s->block_sums, mpmi_bytes(s->block_sums_capacity, sizeof *s->block_sums));
-  mpmi_free(c, s->orbit_state, mpmi_bytes(s->orbit_state_capacity, sizeof *s->orbit_state));
+  mpmi_free(c, s->tie_state, mpmi_bytes(s->tie_state_capacity, sizeof *s->tie_state));
   mpmi_free(c, s->scratch_memory, s->scratch_bytes);
   mpmi_free(c, s->node, mpmi_bytes(s->node_capacity, sizeof *s->node));
   mpmi_free(c, s->again, mpmi_bytes(s->again_capacity, sizeof *s->again));

@@ -28,8 +28,8 @@ static int32_t is_active(const mpm_stepper *s, const cuts *cut, int64_t slot) {
 }
 
 static int64_t master_of(const mpm_stepper *s, int64_t slot) {
-  const int32_t orbit = s->constraints.orbit_of[slot];
-  return orbit < 0 ? slot : s->constraints.orbit[orbit].master;
+  const int32_t tie = s->constraints.tie_of[slot];
+  return tie < 0 ? slot : s->constraints.tie[tie].master;
 }
 
 /* Without inertia only stiffness and what is held can carry a force: that of rigid particles beyond both has
@@ -46,9 +46,9 @@ static mpm_status check_carried(mpm_stepper *s) {
     for (int32_t c = 0; c < dim && w->active_of[i] < 0; ++c) {
       const double force = w->external[4 * i + c];
       const int64_t master = master_of(s, i);
-      const int32_t orbit = s->constraints.orbit_of[i];
+      const int32_t tie = s->constraints.tie_of[i];
       const int32_t held =
-          (s->holds && s->held[3 * master + c]) || (orbit >= 0 && s->constraints.orbit[orbit].zero[c]);
+          (s->holds && s->held[3 * master + c]) || (tie >= 0 && s->constraints.tie[tie].zero[c]);
       if (held || fabs(force) <= FORCE_ROUNDING * most) continue;
       int64_t index[3] = {0, 0, 0};
       mpmi_blocks_index(&s->blocks, i, index);
@@ -102,16 +102,16 @@ static void number(mpm_stepper *s) {
         (mpmi_active_node){i, master_of(s, i) == i ? (int32_t)rows++ : -1, 1, {1.0, 1.0, 1.0}};
   }
   w->active_count = count;
-  for (int64_t i = 0; i < c->orbit_count; ++i) {
-    const mpmi_orbit *orbit = &c->orbit[i];
-    if (w->active_of[orbit->master] < 0) continue;
-    const int32_t row = w->active[w->active_of[orbit->master]].row;
-    for (int64_t d = orbit->first; d < orbit->first + orbit->count; ++d) {
-      const mpmi_dependant *dependant = &c->dependant[d];
-      if (w->active_of[dependant->slot] < 0) continue;
-      mpmi_active_node *node = &w->active[w->active_of[dependant->slot]];
+  for (int64_t i = 0; i < c->tie_count; ++i) {
+    const mpmi_tie *tie = &c->tie[i];
+    if (w->active_of[tie->master] < 0) continue;
+    const int32_t row = w->active[w->active_of[tie->master]].row;
+    for (int64_t d = tie->first; d < tie->first + tie->count; ++d) {
+      const mpmi_follower *follower = &c->follower[d];
+      if (w->active_of[follower->slot] < 0) continue;
+      mpmi_active_node *node = &w->active[w->active_of[follower->slot]];
       node->row = row;
-      memcpy(node->sign, dependant->sign, sizeof node->sign);
+      memcpy(node->sign, follower->sign, sizeof node->sign);
       for (int32_t k = 0; k < s->grid->dim; ++k) node->plain &= node->sign[k] > 0.0;
     }
   }
@@ -168,11 +168,11 @@ static void hold(mpm_stepper *s, double dt) {
   for (int64_t i = 0; i < w->active_count; ++i) {
     const int64_t slot = w->active[i].slot;
     if (master_of(s, slot) != slot) continue;
-    const int32_t orbit = s->constraints.orbit_of[slot];
+    const int32_t tie = s->constraints.tie_of[slot];
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)w->active[i].row * dim + c;
       const int32_t by_host = s->holds && s->held[3 * slot + c];
-      const int32_t on_wall = orbit >= 0 && s->constraints.orbit[orbit].zero[c];
+      const int32_t on_wall = tie >= 0 && s->constraints.tie[tie].zero[c];
       const uint8_t held = by_host ? MPMI_ROW_PRESCRIBED : on_wall ? MPMI_ROW_WALL : MPMI_ROW_FREE;
       changed |= held != A->held[at];
       A->held[at] = held;
