@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "context/carver.h"
+#include "context/arena.h"
 #include "linalg/multigrid.h"
 
 enum { MOST_PARENTS = 8 };
@@ -176,17 +176,17 @@ static void hold(const mpmi_matrix *A, const mpmi_coarsening *P, mpmi_matrix *co
 }
 
 static mpm_status reserve_slab(mpm_context *context, mpmi_coarsening *to, int64_t rows, int64_t parents) {
-  mpmi_carver from = {NULL, 0};
+  mpmi_arena from = {NULL, 0};
   for (;;) {
-    to->parent_start = mpmi_carve(&from, rows + 1, sizeof *to->parent_start);
-    to->child_start = mpmi_carve(&from, parents + 1, sizeof *to->child_start);
-    to->parent = mpmi_carve(&from, parents, sizeof *to->parent);
-    to->child = mpmi_carve(&from, parents, sizeof *to->child);
+    to->parent_start = mpmi_arena_take(&from, rows + 1, sizeof *to->parent_start);
+    to->child_start = mpmi_arena_take(&from, parents + 1, sizeof *to->child_start);
+    to->parent = mpmi_arena_take(&from, parents, sizeof *to->parent);
+    to->child = mpmi_arena_take(&from, parents, sizeof *to->child);
     if (from.memory) return MPM_OK;
     const mpm_status status =
         mpmi_reserve(context, (void **)&to->slab, &to->slab_capacity, (int64_t)from.used, 1);
     if (status) return status;
-    from = (mpmi_carver){to->slab, 0};
+    from = (mpmi_arena){to->slab, 0};
   }
 }
 
@@ -198,16 +198,16 @@ mpm_status mpmi_coarsen(mpmi_multigrid *g, const mpmi_level *l, mpmi_level *next
   mpm_status status = reserve_slab(g->context, to, A->rows, parents);
   if (status) return status;
   while (n.slots < 2 * parents) n.slots *= 2;
-  mpmi_carver from = {NULL, 0};
+  mpmi_arena from = {NULL, 0};
   for (;;) {
-    n.index = mpmi_carve(&from, parents, sizeof *n.index);
-    n.table = mpmi_carve(&from, n.slots, sizeof *n.table);
-    job.count = mpmi_carve(&from, parents, sizeof *job.count);
-    job.most = mpmi_carve(&from, job.tasks.count, sizeof *job.most);
-    job.seen = mpmi_carve(&from, job.tasks.count * (A->rows + parents), sizeof *job.seen);
+    n.index = mpmi_arena_take(&from, parents, sizeof *n.index);
+    n.table = mpmi_arena_take(&from, n.slots, sizeof *n.table);
+    job.count = mpmi_arena_take(&from, parents, sizeof *job.count);
+    job.most = mpmi_arena_take(&from, job.tasks.count, sizeof *job.most);
+    job.seen = mpmi_arena_take(&from, job.tasks.count * (A->rows + parents), sizeof *job.seen);
     if (from.memory) break;
     if ((status = mpmi_multigrid_scratch(g, from.used))) return status;
-    from = (mpmi_carver){g->scratch, 0};
+    from = (mpmi_arena){g->scratch, 0};
   }
   find_parents(A, &n, to);
   job.rows = n.count;

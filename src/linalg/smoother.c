@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "context/carver.h"
+#include "context/arena.h"
 #include "linalg/sweep.h"
 #include "linalg/vectors.h"
 
@@ -26,26 +26,26 @@ static int32_t colour_nodes(const mpmi_matrix *A, int32_t *colour, int32_t *take
 static mpm_status reserve(mpmi_smoother *s, const mpmi_matrix *A) {
   const int64_t rows = A->rows, entries = A->row_start[rows] - rows, lanes = MPMI_PADDED(A->block);
   const int64_t area = A->block * A->block;
-  mpmi_carver from = {NULL, 0};
+  mpmi_arena from = {NULL, 0};
   for (;;) {
-    s->colour_start = mpmi_carve(&from, s->colours + 1, sizeof *s->colour_start);
-    s->row_start = mpmi_carve(&from, rows + 1, sizeof *s->row_start);
-    s->middle = mpmi_carve(&from, rows, sizeof *s->middle);
-    s->order = mpmi_carve(&from, rows, sizeof *s->order);
-    s->place = mpmi_carve(&from, rows, sizeof *s->place);
-    s->column = mpmi_carve(&from, entries, sizeof *s->column);
-    s->value = mpmi_carve(&from, entries * area, sizeof *s->value);
-    s->inverse = mpmi_carve(&from, rows * area, sizeof *s->inverse);
-    s->scale = mpmi_carve(&from, rows * A->block, sizeof *s->scale);
-    s->unscale = mpmi_carve(&from, rows * A->block, sizeof *s->unscale);
-    s->rhs = mpmi_carve(&from, rows * lanes, sizeof *s->rhs);
-    s->x = mpmi_carve(&from, rows * lanes, sizeof *s->x);
-    s->residual = mpmi_carve(&from, rows * lanes, sizeof *s->residual);
+    s->colour_start = mpmi_arena_take(&from, s->colours + 1, sizeof *s->colour_start);
+    s->row_start = mpmi_arena_take(&from, rows + 1, sizeof *s->row_start);
+    s->middle = mpmi_arena_take(&from, rows, sizeof *s->middle);
+    s->order = mpmi_arena_take(&from, rows, sizeof *s->order);
+    s->place = mpmi_arena_take(&from, rows, sizeof *s->place);
+    s->column = mpmi_arena_take(&from, entries, sizeof *s->column);
+    s->value = mpmi_arena_take(&from, entries * area, sizeof *s->value);
+    s->inverse = mpmi_arena_take(&from, rows * area, sizeof *s->inverse);
+    s->scale = mpmi_arena_take(&from, rows * A->block, sizeof *s->scale);
+    s->unscale = mpmi_arena_take(&from, rows * A->block, sizeof *s->unscale);
+    s->rhs = mpmi_arena_take(&from, rows * lanes, sizeof *s->rhs);
+    s->x = mpmi_arena_take(&from, rows * lanes, sizeof *s->x);
+    s->residual = mpmi_arena_take(&from, rows * lanes, sizeof *s->residual);
     if (from.memory) return MPM_OK;
     const mpm_status status =
         mpmi_reserve(A->context, (void **)&s->slab, &s->slab_capacity, (int64_t)from.used, 1);
     if (status) return status;
-    from = (mpmi_carver){s->slab, 0};
+    from = (mpmi_arena){s->slab, 0};
   }
 }
 

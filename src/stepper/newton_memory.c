@@ -1,14 +1,14 @@
 /* Memory of implicit steps that does not depend on the unknowns. */
-#include "context/carver.h"
+#include "context/arena.h"
 #include "stepper/newton.h"
 
 #include <string.h>
 
-static double *carve_rows(mpmi_carver *from, int64_t rows, int64_t length) {
-  return mpmi_carve(from, rows * length, sizeof(double));
+static double *take_rows(mpmi_arena *from, int64_t rows, int64_t length) {
+  return mpmi_arena_take(from, rows * length, sizeof(double));
 }
 
-static void lay_out(const mpm_stepper *s, mpmi_carver *from, mpmi_newton_work *to) {
+static void lay_out(const mpm_stepper *s, mpmi_arena *from, mpmi_newton_work *to) {
   const mpm_grid *grid = s->grid;
   const int64_t row = grid->dim * MPMI_STENCIL_NODES(grid->dim, grid->width);
   const int64_t tile = mpmi_tile_nodes(grid);
@@ -21,22 +21,22 @@ static void lay_out(const mpm_stepper *s, mpmi_carver *from, mpmi_newton_work *t
     length = ld > length ? ld : length;
     tangent = bytes > tangent ? bytes : tangent;
   }
-  to->tile = carve_rows(from, 4, tile);
-  to->F_inc = carve_rows(from, 9, length);
-  to->nominal = carve_rows(from, 9, length);
-  to->stiffness = carve_rows(from, 81, length);
-  to->tangent = carve_rows(from, 81, length);
-  to->weight = carve_rows(from, 1, length);
-  to->h = carve_rows(from, 9, length);
-  to->inverse = carve_rows(from, 9, length);
-  to->tangent_scratch = mpmi_carve(from, (int64_t)tangent, 1);
-  to->K = carve_rows(from, row, row);
-  to->tile_active = mpmi_carve(from, tile, sizeof *to->tile_active);
+  to->tile = take_rows(from, 4, tile);
+  to->F_inc = take_rows(from, 9, length);
+  to->nominal = take_rows(from, 9, length);
+  to->stiffness = take_rows(from, 81, length);
+  to->tangent = take_rows(from, 81, length);
+  to->weight = take_rows(from, 1, length);
+  to->h = take_rows(from, 9, length);
+  to->inverse = take_rows(from, 9, length);
+  to->tangent_scratch = mpmi_arena_take(from, (int64_t)tangent, 1);
+  to->K = take_rows(from, row, row);
+  to->tile_active = mpmi_arena_take(from, tile, sizeof *to->tile_active);
 }
 
 static mpm_status prepare_work(mpm_stepper *s) {
   mpmi_newton *w = s->newton;
-  mpmi_carver counter = {NULL, 0};
+  mpmi_arena counter = {NULL, 0};
   mpmi_newton_work one;
   lay_out(s, &counter, &one);
   const size_t bytes = counter.used * (size_t)s->tasks;
@@ -48,7 +48,7 @@ static mpm_status prepare_work(mpm_stepper *s) {
     w->work_bytes = bytes;
   }
   for (int32_t k = 0; k < s->tasks; ++k) {
-    mpmi_carver from = {(char *)w->work_memory + (size_t)k * counter.used, 0};
+    mpmi_arena from = {(char *)w->work_memory + (size_t)k * counter.used, 0};
     lay_out(s, &from, &w->work[k]);
     memset(w->work[k].K, 0, (size_t)((char *)w->work[k].tile_active - (char *)w->work[k].K));
   }

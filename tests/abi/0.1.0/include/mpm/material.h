@@ -1,0 +1,150 @@
+/**
+ * @file material.h
+ * Constitutive laws: built in and found by name, or written by the host as callbacks over batches of
+ * particles.
+ */
+#ifndef MPM_MATERIAL_H
+#define MPM_MATERIAL_H
+
+#include <mpm/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/**
+ * Makes a material from a built-in law. Stresses are Cauchy; J = det F.
+ *
+ * | model                   | parameters                              | law                                 |
+ * |-------------------------|-----------------------------------------|-------------------------------------|
+ * | "linear_elastic"        | E, nu, density                          | hypoelastic: with F_inc = V R,      |
+ * |                         |                                         | stress' = R stress R^T + C : ln V   |
+ * | "neo_hookean"           | E, nu, density                          | Steffen et al. 2008, eq. 46         |
+ * | "neo_hookean_decoupled" | mu, kappa, density                      | Guilkey & Weiss 2003, eq. 20        |
+ * | "j2"                    | E, nu, density, yield_stress, hardening | linear_elastic with von Mises yield |
+ * |                         |                                         | and linear isotropic hardening      |
+ * | "newtonian_fluid"       | density, bulk_modulus, gamma,           | p = bulk_modulus / gamma            |
+ * |                         | viscosity, tension                      | (J^-gamma - 1), dynamic viscosity;  |
+ * |                         |                                         | tension 0 cuts off p < 0            |
+ * | "rigid"                 | density                                 | no stress; moves as prescribed      |
+ *
+ * params: count name-value pairs in any order, copied; parameters not named take their defaults.
+ * mpm_material_model_param() lists units, defaults and ranges. *out is NULL unless MPM_OK is returned.
+ * MPM_E_NOT_FOUND: unknown model or parameter. MPM_E_ARG: a value out of range, a name given twice, or a
+ * parameter without default missing.
+ */
+MPM_API mpm_status mpm_material_create(mpm_context *context, const char *model, const mpm_param *params,
+                                       int32_t count, mpm_material **out);
+
+/** Number of built-in laws. Any thread, any time. */
+MPM_API int32_t mpm_material_model_count(void);
+
+/** Name of built-in law index, 0 <= index < mpm_material_model_count(); NULL otherwise. Static text. Any
+ * thread, any time. */
+MPM_API const char *mpm_material_model_name(int32_t index);
+
+/**
+ * Describes parameter index (from 0) of a built-in law: its name, its unit as a dimension (such as "stress"),
+ * one line of text, its default (NaN: must be given) and its range [low, high]. Texts are static; output
+ * pointers may be NULL. MPM_E_NOT_FOUND: unknown model, or index past the last parameter. Any thread, any
+ * time.
+ */
+MPM_API mpm_status mpm_material_model_param(const char *model, int32_t index, const char **name,
+                                            const char **unit, const char **text, double *value_default,
+                                            double *low, double *high);
+
+/**
+ * Particles of one set that a law is asked about. Arrays are [components][ld], of which the first n items of
+ * each component count; the memory is the library's and valid during the call. Tensors are full: 3 * row +
+ * column for F, F_inc and L, xx yy zz xy yz xz for stresses. Output arrays do not overlap input arrays.
+ */
+typedef struct mpm_material_batch {
+  uint32_t struct_size;        /**< sizeof(mpm_material_batch) of the library */
+  int32_t state_count;         /**< state variables per particle */
+  int64_t n;                   /**< particles, inert slots included */
+  int64_t ld;                  /**< from component c to c + 1, in elements; >= n */
+  double t;                    /**< time at the end of the step */
+  double dt;                   /**< of the step; 0: the state as it is, see mpm_stress_fn */
+  const int64_t *id;           /**< [ld] ids, < 0 for inert slots */
+  const double *F;             /**< [9][ld] deformation gradient at the end of the step */
+  const double *F_inc;         /**< [9][ld] that of this step: F = F_inc F_old */
+  const double *L;             /**< [9][ld] velocity gradient (F_inc - I) / dt, 1/time; 0 when dt is 0 */
+  const double *stress;        /**< [6][ld] Cauchy stress before the step */
+  const double *state;         /**< [state_count][ld] state variables before the step */
+  double *stress_new;          /**< [6][ld] out: Cauchy stress after the step */
+  double *state_new;           /**< [state_count][ld] out: state variables after the step */
+  double *wave_speed;          /**< [ld] out: speed of the fastest elastic wave now, length/time */
+  double *kinematic_viscosity; /**< [ld] out, preset 0: length^2/time; limits the explicit dt */
+  double *energy;              /**< [ld] out, preset NaN (not known): strain energy per initial volume */
+  const double *position;      /**< [dim][ld] at the start of the step */
+  const void *lookup;          /**< for mpm_batch_field() */
+} mpm_material_batch;
+
+/**
+ * Lends a field of the set that a batch belongs to, built in or the host's own, aligned with the batch and
+ * valid during the callback: component c of item i is (*data)[c * *component_stride + i], in elements of the
+ * field's type. No copy: tensors have their stored components, as in views. lookup: that of the batch. May be
+ * called from any thread on which a callback runs. MPM_E_NOT_FOUND: unknown field. MPM_E_STATE: an optional
+ * field that the set does not have now.
+ */
+MPM_API mpm_status mpm_batch_field(const void *lookup, const char *field, const void **data,
+                                   int64_t *component_stride);
+
+/**
+ * A law (mt). Reads the state before the step and its deformation, and writes stress_new, state_new and
+ * wave_speed of all n items, and kinematic_viscosity and energy where the law has them. It may be called
+ * several times for one step, and nothing that it writes counts before the step is committed: it keeps no
+ * state of its own.
+ *
+ * With dt = 0, F_inc = I and L = 0 the library asks for stress, wave speed and energy of the state as it is:
+ * the law returns the stress that belongs to that state.
+ *
+ * Returns 0; > 0 to ask for a smaller dt (MPM_CUT_DT); < 0 to stop (MPM_E_CALLBACK).
+ */
+typedef mpm_status (*mpm_stress_fn)(void *user, const mpm_material_batch *batch);
+
+/**
+ * The tangent of a law (mt), for implicit steps: called after the law on the same batch, with its outputs in
+ * place. Writes tangent[component * ld + i], in the form that tangent_form names. With tau = J stress and the
+ * variation dF = L F, c is the derivative of the Lie derivative of tau:
+ * c_ijkl = d tau_ij / d L_kl - delta_ik tau_jl - delta_jk tau_il.
+ *
+ * MPM_TANGENT_MINOR_SYMMETRIC: component 6 * row + column, rows and columns xx yy zz xy yz xz, columns for
+ * engineering shear. MPM_TANGENT_GENERAL: component 9 * (3 * i + j) + 3 * k + l.
+ *
+ * *symmetric: write 1 if c has major symmetry (c_ijkl = c_klij) at every item, 0 otherwise. Returns as
+ * mpm_stress_fn.
+ */
+typedef mpm_status (*mpm_tangent_fn)(void *user, const mpm_material_batch *batch, double *tangent,
+                                     int32_t *symmetric);
+
+/** A law of the host. */
+typedef struct mpm_material_desc {
+  uint32_t struct_size;             /**< sizeof(mpm_material_desc) of the caller */
+  int32_t state_count;              /**< state variables per particle, >= 0; default 0 */
+  int32_t tangent_form;             /**< MPM_TANGENT_MINOR_SYMMETRIC (default) or MPM_TANGENT_GENERAL */
+  int32_t reserved;                 /**< 0 */
+  double density;                   /**< mass per initial volume, > 0; must be set */
+  mpm_stress_fn stress;             /**< the law; must be set */
+  mpm_tangent_fn tangent;           /**< NULL (default): differenced, in the general form */
+  void *user;                       /**< passed to stress, tangent and release_user */
+  void (*release_user)(void *user); /**< when the material is destroyed, not when create fails; or NULL */
+  const double *state_initial;      /**< [state_count] of a new particle, copied; NULL (default): zeros */
+} mpm_material_desc;
+
+/** Fills desc with the defaults; density and stress must be set. struct_size: sizeof(mpm_material_desc) of
+ * the caller. MPM_E_ARG if it is smaller than the first released struct. */
+MPM_API mpm_status mpm_material_desc_init(mpm_material_desc *desc, uint32_t struct_size);
+
+/** Makes a material from a law of the host; desc is copied. *out is NULL unless MPM_OK is returned. */
+MPM_API mpm_status mpm_material_create_custom(mpm_context *context, const mpm_material_desc *desc,
+                                              mpm_material **out);
+
+/** Frees the material and calls release_user. MPM_E_STATE while sets of it live. NULL is fine. */
+MPM_API mpm_status mpm_material_destroy(mpm_material *material);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
