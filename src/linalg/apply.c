@@ -13,7 +13,7 @@ typedef struct apply_job {
   const double *b, *x;
   double *y;
   int32_t what;
-  mpmi_cut cut;
+  mpmi_chunks chunks;
   double part[MPMI_MOST_CHUNKS];
 } apply_job;
 
@@ -59,7 +59,7 @@ MPMI_INLINE double apply_blocks(const apply_job *job, int32_t what, int64_t begi
 
 static void apply_task(void *data, int64_t k) {
   apply_job *job = data;
-  const int64_t begin = mpmi_cut_begin(&job->cut, k), end = mpmi_cut_begin(&job->cut, k + 1);
+  const int64_t begin = mpmi_chunk_begin(&job->chunks, k), end = mpmi_chunk_begin(&job->chunks, k + 1);
   if (job->what == PRODUCT)
     job->part[k] = apply_blocks(job, PRODUCT, begin, end);
   else if (job->what == RESIDUAL)
@@ -71,9 +71,9 @@ static void apply_task(void *data, int64_t k) {
 static mpm_status apply(const mpmi_matrix *A, int32_t what, const double *b, const double *x, double *y,
                         double *sum) {
   apply_job job = {.A = A, .b = b, .x = x, .y = y, .what = what};
-  job.cut = mpmi_cut_of(A->rows, mpmi_matrix_unknowns(A));
-  const mpm_status status = mpmi_cut_run(A->context, &job.cut, apply_task, &job);
-  *sum = status ? 0.0 : mpmi_sum_in_order(job.part, job.cut.count);
+  job.chunks = mpmi_chunks_of(A->rows, mpmi_matrix_unknowns(A));
+  const mpm_status status = mpmi_run_chunks(A->context, &job.chunks, apply_task, &job);
+  *sum = status ? 0.0 : mpmi_sum_in_order(job.part, job.chunks.count);
   return status;
 }
 

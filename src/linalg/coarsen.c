@@ -91,7 +91,7 @@ typedef struct pattern_job {
   const mpmi_coarsening *P;
   mpmi_matrix *coarse; /* to be filled, or NULL */
   int64_t rows;
-  mpmi_cut tasks;
+  mpmi_chunks tasks;
   int64_t *count; /* [rows] columns */
   int64_t *most;  /* [tasks] */
   int32_t *seen;  /* [tasks][rows of A, then coarse ones] for which row */
@@ -144,7 +144,7 @@ static void pattern_task(void *data, int64_t k) {
 static mpm_status make_pattern(pattern_job *job, mpmi_matrix *coarse, int64_t (*index)[3],
                                mpmi_coarsening *to) {
   mpm_context *context = coarse->context;
-  mpm_status status = mpmi_cut_run(context, &job->tasks, pattern_task, job);
+  mpm_status status = mpmi_run_chunks(context, &job->tasks, pattern_task, job);
   if (status) return status;
   int64_t entries = 0;
   for (int64_t i = 0; i < job->rows; ++i) entries += job->count[i];
@@ -153,7 +153,7 @@ static mpm_status make_pattern(pattern_job *job, mpmi_matrix *coarse, int64_t (*
   for (int64_t i = 0; i < job->rows; ++i) coarse->row_start[i + 1] = coarse->row_start[i] + job->count[i];
   memcpy(coarse->index, index, (size_t)job->rows * sizeof *index);
   job->coarse = coarse;
-  status = mpmi_cut_run(context, &job->tasks, pattern_task, job);
+  status = mpmi_run_chunks(context, &job->tasks, pattern_task, job);
   to->most_nodes = 0;
   for (int64_t k = 0; k < job->tasks.count; ++k)
     if (job->most[k] > to->most_nodes) to->most_nodes = job->most[k];

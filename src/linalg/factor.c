@@ -189,8 +189,8 @@ static void eliminate_task(void *data, int64_t k) {
 static mpm_status eliminate_all(const factor_job *job, int64_t *failed) {
   mpmi_factor *f = job->f;
   *failed = -1;
-  const mpmi_cut tasks = {f->tasks, 1, f->tasks, f->unknowns < MPMI_ALONE_UNKNOWNS};
-  mpm_status status = mpmi_cut_run(f->context, &tasks, eliminate_task, (void *)job);
+  const mpmi_chunks tasks = {f->tasks, 1, f->tasks, f->unknowns < MPMI_ALONE_UNKNOWNS};
+  mpm_status status = mpmi_run_chunks(f->context, &tasks, eliminate_task, (void *)job);
   for (int32_t t = 0; t < f->tasks && !status && *failed < 0; ++t) *failed = f->task[t].failed;
   for (int32_t i = 0; i < f->fronts && !status && *failed < 0; ++i) {
     if (!f->front[i].top) continue;

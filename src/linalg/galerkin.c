@@ -8,7 +8,7 @@ typedef struct galerkin_job {
   const mpmi_matrix *A;
   const mpmi_coarsening *P;
   mpmi_matrix *coarse;
-  mpmi_cut tasks;
+  mpmi_chunks tasks;
   int64_t ints; /* of one task's scratch */
   int32_t
       *scratch; /* place in the sums of each row of A, or -1; nodes that have one; entry of each coarse row */
@@ -95,6 +95,6 @@ mpm_status mpmi_galerkin(mpmi_multigrid *g, const mpmi_level *fine, mpmi_level *
   if (status) return status;
   job.sums = (double *)(void *)g->scratch;
   job.scratch = (int32_t *)(void *)(g->scratch + sums);
-  status = mpmi_cut_run(g->context, &job.tasks, galerkin_task, &job);
+  status = mpmi_run_chunks(g->context, &job.tasks, galerkin_task, &job);
   return status ? status : mpmi_matrix_eliminate(&coarse->own);
 }

@@ -17,7 +17,7 @@ typedef struct gmres {
   double scale;
   int32_t last;  /* vectors that w is made orthogonal to */
   int32_t again; /* second round */
-  mpmi_cut cut;
+  mpmi_chunks chunks;
 } gmres;
 
 static double *vector(const gmres *g, int32_t j) {
@@ -27,7 +27,7 @@ static double *vector(const gmres *g, int32_t j) {
 /* Sums of w with the vectors; before them w loses what the first round found. */
 static void project_task(void *data, int64_t k) {
   const gmres *g = data;
-  const int64_t begin = mpmi_cut_begin(&g->cut, k), end = mpmi_cut_begin(&g->cut, k + 1);
+  const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
   const double *h = g->hessenberg + (g->last - 1) * (g->plan->restart + 1);
   double *part = g->part + k * (g->plan->restart + 1);
   if (g->again)
@@ -46,7 +46,7 @@ static void project_task(void *data, int64_t k) {
 /* w loses what the second round found, which is left in `rest` beyond the vectors; its square is summed. */
 static void clean_task(void *data, int64_t k) {
   const gmres *g = data;
-  const int64_t begin = mpmi_cut_begin(&g->cut, k), end = mpmi_cut_begin(&g->cut, k + 1);
+  const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
   const double *h = g->rest + g->plan->restart + 1;
   double sum = 0.0;
   for (int32_t j = 0; j < g->last; ++j) {
@@ -61,14 +61,14 @@ static void clean_task(void *data, int64_t k) {
 static void scale_task(void *data, int64_t k) {
   const gmres *g = data;
   double *v = vector(g, g->last);
-  for (int64_t i = mpmi_cut_begin(&g->cut, k); i < mpmi_cut_begin(&g->cut, k + 1); ++i)
+  for (int64_t i = mpmi_chunk_begin(&g->chunks, k); i < mpmi_chunk_begin(&g->chunks, k + 1); ++i)
     v[i] = g->w[i] * g->scale;
 }
 
 /* x += sum y_j M^-1 v_j, with y in the second half of `rest`. */
 static void combine_task(void *data, int64_t k) {
   const gmres *g = data;
-  const int64_t begin = mpmi_cut_begin(&g->cut, k), end = mpmi_cut_begin(&g->cut, k + 1);
+  const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
   const double *y = g->rest + g->plan->restart + 1;
   double *x = g->system->x;
   for (int32_t j = 0; j < g->last; ++j) {
@@ -78,12 +78,12 @@ static void combine_task(void *data, int64_t k) {
 }
 
 static mpm_status run(gmres *g, mpm_task_fn task) {
-  return mpmi_cut_run(g->system->context, &g->cut, task, g);
+  return mpmi_run_chunks(g->system->context, &g->chunks, task, g);
 }
 
 static double sum_of(const gmres *g, int32_t j) {
   double sum = 0.0;
-  for (int64_t k = 0; k < g->cut.count; ++k) sum += g->part[k * (g->plan->restart + 1) + j];
+  for (int64_t k = 0; k < g->chunks.count; ++k) sum += g->part[k * (g->plan->restart + 1) + j];
   return sum;
 }
 
@@ -183,7 +183,7 @@ static int32_t goes_on(const gmres *g, double before) {
 }
 
 mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {
-  gmres g = {.system = s, .plan = plan, .cut = mpmi_cut_of(s->n, s->n)};
+  gmres g = {.system = s, .plan = plan, .chunks = mpmi_chunks_of(s->n, s->n)};
   mpm_status status = reserve(&g);
   for (double before = (double)INFINITY; !status; before = s->reached) {
     int32_t good;

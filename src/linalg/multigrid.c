@@ -113,18 +113,18 @@ typedef struct cycle_job {
   const double *r;
   double *z, by;
   int32_t factored; /* the coarse level is the coarsest */
-  mpmi_cut cut;
+  mpmi_chunks chunks;
 } cycle_job;
 
 static mpm_status run(cycle_job *job, int64_t items, const mpmi_matrix *A, mpm_task_fn task) {
-  job->cut = mpmi_cut_of(items, mpmi_matrix_unknowns(A));
-  return mpmi_cut_run(job->g->context, &job->cut, task, job);
+  job->chunks = mpmi_chunks_of(items, mpmi_matrix_unknowns(A));
+  return mpmi_run_chunks(job->g->context, &job->chunks, task, job);
 }
 
 static void sweep_task(void *data, int64_t k) {
   const cycle_job *job = data;
-  job->sweep(&job->fine->smoother, job->first + mpmi_cut_begin(&job->cut, k),
-             job->first + mpmi_cut_begin(&job->cut, k + 1));
+  job->sweep(&job->fine->smoother, job->first + mpmi_chunk_begin(&job->chunks, k),
+             job->first + mpmi_chunk_begin(&job->chunks, k + 1));
 }
 
 /* Colour after colour, forwards or backwards. */
@@ -144,7 +144,7 @@ static void load_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_smoother *s = &job->fine->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p)
+  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p)
     for (int32_t c = 0; c < block; ++c)
       s->rhs[p * lanes + c] =
           (float)(job->by * s->scale[p * block + c] * job->r[(int64_t)s->order[p] * block + c]);
@@ -154,7 +154,7 @@ static void store_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_smoother *s = &job->fine->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p)
+  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p)
     for (int32_t c = 0; c < block; ++c)
       job->z[(int64_t)s->order[p] * block + c] =
           job->by * s->scale[p * block + c] * (double)s->x[p * lanes + c];
@@ -166,7 +166,7 @@ static void restrict_task(void *data, int64_t k) {
   const mpmi_coarsening *P = &job->fine->next;
   const mpmi_smoother *s = &job->fine->smoother, *to = &job->coarse->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p) {
+  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p) {
     const int64_t I = job->factored ? p : to->order[p];
     double sum[3] = {0.0, 0.0, 0.0};
     for (int64_t e = P->child_start[I]; e < P->child_start[I + 1]; ++e) {
@@ -190,7 +190,7 @@ static void prolong_task(void *data, int64_t k) {
   const mpmi_coarsening *P = &job->fine->next;
   const mpmi_smoother *s = &job->fine->smoother, *from = &job->coarse->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_cut_begin(&job->cut, k); p < mpmi_cut_begin(&job->cut, k + 1); ++p) {
+  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p) {
     const int64_t i = s->order[p], begin = P->parent_start[i], end = P->parent_start[i + 1];
     double sum[3] = {0.0, 0.0, 0.0};
     for (int64_t e = begin; e < end; ++e) {

@@ -60,10 +60,10 @@ mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64
 mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z);
 
 /* Tasks with scratch of their own: as many as run at once, one where threads are not worth waking. */
-static inline mpmi_cut mpmi_multigrid_tasks(const mpmi_multigrid *g, const mpmi_matrix *A) {
+static inline mpmi_chunks mpmi_multigrid_tasks(const mpmi_multigrid *g, const mpmi_matrix *A) {
   const int32_t alone = mpmi_matrix_unknowns(A) < MPMI_ALONE_UNKNOWNS;
   const int64_t count = alone ? 1 : g->context->concurrency;
-  return (mpmi_cut){.items = count, .size = 1, .count = count, .alone = alone};
+  return (mpmi_chunks){.items = count, .size = 1, .count = count, .alone = alone};
 }
 
 /* coarsen.c: the next level of l; its own matrix gets pattern and held unknowns. */

@@ -10,7 +10,7 @@ static const double no_measure = 1e-13;
 typedef struct scale_job {
   mpmi_factor *f;
   const mpmi_matrix *A;
-  mpmi_cut cut;
+  mpmi_chunks chunks;
   mpmi_chunk_failures bad; /* nodes that have no scale */
 } scale_job;
 
@@ -42,9 +42,9 @@ static mpm_status scale_node(const scale_job *job, int64_t node) {
 
 static void scale_task(void *data, int64_t k) {
   scale_job *job = data;
-  const int64_t end = mpmi_cut_begin(&job->cut, k + 1);
+  const int64_t end = mpmi_chunk_begin(&job->chunks, k + 1);
   job->bad.status[k] = MPM_OK;
-  for (int64_t i = mpmi_cut_begin(&job->cut, k); i < end && !job->bad.status[k]; ++i) {
+  for (int64_t i = mpmi_chunk_begin(&job->chunks, k); i < end && !job->bad.status[k]; ++i) {
     if (job->f->place[i] < 0) continue;
     job->bad.status[k] = scale_node(job, i);
     job->bad.item[k] = i;
@@ -52,7 +52,7 @@ static void scale_task(void *data, int64_t k) {
 }
 
 mpm_status mpmi_factor_scales(mpmi_factor *f, const mpmi_matrix *A, int64_t *node) {
-  scale_job job = {.f = f, .A = A, .cut = mpmi_cut_of(A->rows, mpmi_matrix_unknowns(A))};
-  const mpm_status status = mpmi_cut_run(f->context, &job.cut, scale_task, &job);
-  return status ? status : mpmi_first_failure(&job.bad, job.cut.count, node);
+  scale_job job = {.f = f, .A = A, .chunks = mpmi_chunks_of(A->rows, mpmi_matrix_unknowns(A))};
+  const mpm_status status = mpmi_run_chunks(f->context, &job.chunks, scale_task, &job);
+  return status ? status : mpmi_first_failure(&job.bad, job.chunks.count, node);
 }

@@ -3,17 +3,17 @@
 
 #include <math.h>
 
-mpmi_cut mpmi_cut_of(int64_t items, int64_t unknowns) {
-  mpmi_cut cut = {.items = items, .alone = unknowns < MPMI_ALONE_UNKNOWNS};
-  cut.size = (items + MPMI_MOST_CHUNKS - 1) / MPMI_MOST_CHUNKS;
-  if (cut.size < MPMI_LEAST_CHUNK) cut.size = MPMI_LEAST_CHUNK;
-  cut.count = (items + cut.size - 1) / cut.size;
-  return cut;
+mpmi_chunks mpmi_chunks_of(int64_t items, int64_t unknowns) {
+  mpmi_chunks chunks = {.items = items, .alone = unknowns < MPMI_ALONE_UNKNOWNS};
+  chunks.size = (items + MPMI_MOST_CHUNKS - 1) / MPMI_MOST_CHUNKS;
+  if (chunks.size < MPMI_LEAST_CHUNK) chunks.size = MPMI_LEAST_CHUNK;
+  chunks.count = (items + chunks.size - 1) / chunks.size;
+  return chunks;
 }
 
-mpm_status mpmi_cut_run(mpm_context *context, const mpmi_cut *cut, mpm_task_fn task, void *data) {
-  if (!cut->alone) return mpmi_parallel_for(context, cut->count, task, data);
-  for (int64_t k = 0; k < cut->count; ++k) task(data, k);
+mpm_status mpmi_run_chunks(mpm_context *context, const mpmi_chunks *chunks, mpm_task_fn task, void *data) {
+  if (!chunks->alone) return mpmi_parallel_for(context, chunks->count, task, data);
+  for (int64_t k = 0; k < chunks->count; ++k) task(data, k);
   return MPM_OK;
 }
 
@@ -34,16 +34,16 @@ double mpmi_sum_in_order(const double *part, int64_t count) {
 
 typedef struct dot_job {
   const double *a, *b;
-  mpmi_cut cut;
+  mpmi_chunks chunks;
   double part[MPMI_MOST_CHUNKS];
 } dot_job;
 
 static void dot_task(void *data, int64_t k) {
   dot_job *job = data;
   const double *a = job->a, *b = job->b;
-  const int64_t end = mpmi_cut_begin(&job->cut, k + 1);
+  const int64_t end = mpmi_chunk_begin(&job->chunks, k + 1);
   double sum[4] = {0.0, 0.0, 0.0, 0.0}; /* four at a time: one sum would wait for each addition */
-  int64_t i = mpmi_cut_begin(&job->cut, k);
+  int64_t i = mpmi_chunk_begin(&job->chunks, k);
   for (; i + 4 <= end; i += 4)
     for (int32_t l = 0; l < 4; ++l) sum[l] += a[i + l] * b[i + l];
   for (; i < end; ++i) sum[0] += a[i] * b[i];
@@ -51,9 +51,9 @@ static void dot_task(void *data, int64_t k) {
 }
 
 mpm_status mpmi_dot(mpm_context *context, const double *a, const double *b, int64_t n, double *out) {
-  dot_job job = {.a = a, .b = b, .cut = mpmi_cut_of(n, n)};
-  const mpm_status status = mpmi_cut_run(context, &job.cut, dot_task, &job);
-  *out = status ? 0.0 : mpmi_sum_in_order(job.part, job.cut.count);
+  dot_job job = {.a = a, .b = b, .chunks = mpmi_chunks_of(n, n)};
+  const mpm_status status = mpmi_run_chunks(context, &job.chunks, dot_task, &job);
+  *out = status ? 0.0 : mpmi_sum_in_order(job.part, job.chunks.count);
   return status;
 }
 

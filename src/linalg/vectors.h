@@ -11,18 +11,18 @@ enum {
   MPMI_ALONE_UNKNOWNS = 2000 /* systems smaller than that do not wake other threads */
 };
 
-typedef struct mpmi_cut {
+typedef struct mpmi_chunks {
   int64_t items, size, count; /* chunks of `size` items, the last one may be shorter */
   int32_t alone;              /* the calling thread does them all */
-} mpmi_cut;
+} mpmi_chunks;
 
 /* Items may be unknowns or nodes; unknowns: of the whole system. */
-mpmi_cut mpmi_cut_of(int64_t items, int64_t unknowns);
-static inline int64_t mpmi_cut_begin(const mpmi_cut *cut, int64_t k) {
-  return k * cut->size < cut->items ? k * cut->size : cut->items;
+mpmi_chunks mpmi_chunks_of(int64_t items, int64_t unknowns);
+static inline int64_t mpmi_chunk_begin(const mpmi_chunks *chunks, int64_t k) {
+  return k * chunks->size < chunks->items ? k * chunks->size : chunks->items;
 }
 /* One task per chunk. */
-mpm_status mpmi_cut_run(mpm_context *context, const mpmi_cut *cut, mpm_task_fn task, void *data);
+mpm_status mpmi_run_chunks(mpm_context *context, const mpmi_chunks *chunks, mpm_task_fn task, void *data);
 
 /* What went wrong in each chunk, if anything, and at which item. */
 typedef struct mpmi_chunk_failures {
