@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/system.h"
+#include "linalg/methods.h"
 
 typedef struct cg {
   mpmi_system *system;

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "context/arena.h"
-#include "linalg/multigrid.h"
+#include "linalg/level.h"
 
 enum { MOST_PARENTS = 8 };
 
@@ -190,12 +190,12 @@ static mpm_status reserve_slab(mpm_context *context, mpmi_coarsening *to, int64_
   }
 }
 
-mpm_status mpmi_coarsen(mpmi_multigrid *g, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to) {
+mpm_status mpmi_coarsen(mpmi_workspace *w, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to) {
   const mpmi_matrix *A = l->A;
   const int64_t parents = count_parents(A);
   node_list n = {.count = 0, .slots = 64};
-  pattern_job job = {.A = A, .P = to, .tasks = mpmi_multigrid_tasks(g, A)};
-  mpm_status status = reserve_slab(g->context, to, A->rows, parents);
+  pattern_job job = {.A = A, .P = to, .tasks = mpmi_workspace_tasks(w, A)};
+  mpm_status status = reserve_slab(w->context, to, A->rows, parents);
   if (status) return status;
   while (n.slots < 2 * parents) n.slots *= 2;
   mpmi_arena from = {NULL, 0};
@@ -206,8 +206,8 @@ mpm_status mpmi_coarsen(mpmi_multigrid *g, const mpmi_level *l, mpmi_level *next
     job.most = mpmi_arena_take(&from, job.tasks.count, sizeof *job.most);
     job.seen = mpmi_arena_take(&from, job.tasks.count * (A->rows + parents), sizeof *job.seen);
     if (from.memory) break;
-    if ((status = mpmi_multigrid_scratch(g, from.used))) return status;
-    from = (mpmi_arena){g->scratch, 0};
+    if ((status = mpmi_workspace_reserve(w, from.used))) return status;
+    from = (mpmi_arena){w->memory, 0};
   }
   find_parents(A, &n, to);
   job.rows = n.count;

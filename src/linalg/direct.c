@@ -1,7 +1,7 @@
 /* Solution with the factor, and what else it takes: refinement, GMRES with the factor as preconditioner. */
 #include <math.h>
 
-#include "linalg/system.h"
+#include "linalg/methods.h"
 
 enum { REFINEMENTS = 3, RESTART = 30, CYCLES = 3 };
 

@@ -1,7 +1,7 @@
 /* Numbers of a coarser level: P^T A P, row by row. First a row of P^T A, then what P makes of it. */
 #include <string.h>
 
-#include "linalg/multigrid.h"
+#include "linalg/level.h"
 #include "transfer/isa.h"
 
 typedef struct galerkin_job {
@@ -84,17 +84,17 @@ static void galerkin_task(void *data, int64_t k) {
   }
 }
 
-mpm_status mpmi_galerkin(mpmi_multigrid *g, const mpmi_level *fine, mpmi_level *coarse) {
+mpm_status mpmi_galerkin(mpmi_workspace *w, const mpmi_level *fine, mpmi_level *coarse) {
   galerkin_job job = {
-      .A = fine->A, .P = &fine->next, .coarse = &coarse->own, .tasks = mpmi_multigrid_tasks(g, fine->A)};
+      .A = fine->A, .P = &fine->next, .coarse = &coarse->own, .tasks = mpmi_workspace_tasks(w, fine->A)};
   const int64_t area = job.A->block * job.A->block;
   job.ints = job.A->rows + job.P->most_nodes + coarse->own.rows;
   const size_t sums = mpmi_bytes(job.tasks.count * job.P->most_nodes * area, sizeof *job.sums);
   mpm_status status =
-      mpmi_multigrid_scratch(g, sums + mpmi_bytes(job.tasks.count * job.ints, sizeof *job.scratch));
+      mpmi_workspace_reserve(w, sums + mpmi_bytes(job.tasks.count * job.ints, sizeof *job.scratch));
   if (status) return status;
-  job.sums = (double *)(void *)g->scratch;
-  job.scratch = (int32_t *)(void *)(g->scratch + sums);
-  status = mpmi_run_chunks(g->context, &job.tasks, galerkin_task, &job);
+  job.sums = (double *)(void *)w->memory;
+  job.scratch = (int32_t *)(void *)(w->memory + sums);
+  status = mpmi_run_chunks(w->context, &job.tasks, galerkin_task, &job);
   return status ? status : mpmi_matrix_eliminate(&coarse->own);
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/system.h"
+#include "linalg/methods.h"
 
 enum { SLOW_CYCLES = 12 }; /* the impatient go on only if as many cycles would do */
 

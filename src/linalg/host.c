@@ -1,7 +1,7 @@
 /* The host's solver: lends it the system, and does not take its word for the answer. */
 #include <math.h>
 
-#include "linalg/system.h"
+#include "linalg/methods.h"
 
 /* What it may miss the tolerance by: hosts measure residuals in norms of their own. */
 static const double allowance = 100.0, always_allowed = 1e-6;

@@ -1,6 +1,7 @@
-/* Memory of block matrices; held unknowns. */
+/* Memory of block matrices, their held unknowns, and the inverse of a block. */
 #include "linalg/matrix.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "linalg/vectors.h"
@@ -90,4 +91,33 @@ static void eliminate_task(void *data, int64_t k) {
 mpm_status mpmi_matrix_eliminate(mpmi_matrix *A) {
   eliminate_job job = {A, mpmi_chunks_of(A->rows, mpmi_matrix_unknowns(A))};
   return mpmi_run_chunks(A->context, &job.chunks, eliminate_task, &job);
+}
+
+/* Gauss-Jordan with row pivoting. */
+int32_t mpmi_invert_block(int32_t n, double a[3][3]) {
+  double inverse[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  for (int32_t c = 0; c < n; ++c) {
+    int32_t pivot = c;
+    for (int32_t r = c + 1; r < n; ++r)
+      if (fabs(a[r][c]) > fabs(a[pivot][c])) pivot = r;
+    if (!(fabs(a[pivot][c]) > 0.0)) return 0;
+    for (int32_t k = 0; k < n; ++k) {
+      const double row = a[pivot][k], inverse_row = inverse[pivot][k];
+      a[pivot][k] = a[c][k];
+      inverse[pivot][k] = inverse[c][k];
+      a[c][k] = row;
+      inverse[c][k] = inverse_row;
+    }
+    const double scale = 1.0 / a[c][c];
+    for (int32_t k = 0; k < n; ++k) a[c][k] *= scale, inverse[c][k] *= scale;
+    for (int32_t r = 0; r < n; ++r) {
+      const double factor = a[r][c];
+      for (int32_t k = 0; k < n && r != c; ++k) {
+        a[r][k] -= factor * a[c][k];
+        inverse[r][k] -= factor * inverse[c][k];
+      }
+    }
+  }
+  memcpy(a, inverse, sizeof inverse);
+  return 1;
 }

@@ -41,7 +41,7 @@ mpm_status mpmi_matrix_residual(const mpmi_matrix *A, const double *b, const dou
 mpm_status mpmi_matrix_rounding(const mpmi_matrix *A, const double *b, const double *x, double *scratch,
                                 double *norm);
 
-/* The inverse of a block of n unknowns in place; 0 if there is none (preconditioner.c). */
+/* The inverse of a block of n unknowns in place; 0 if there is none. */
 int32_t mpmi_invert_block(int32_t n, double a[3][3]);
 
 static inline int64_t mpmi_matrix_unknowns(const mpmi_matrix *A) {

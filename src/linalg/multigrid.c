@@ -26,7 +26,7 @@ static const double WORTH = 0.7;
 
 void mpmi_multigrid_init(mpmi_multigrid *g, mpm_context *context) {
   memset(g, 0, sizeof *g);
-  g->context = context;
+  g->context = g->scratch.context = context;
   g->kernels = mpmi_sweeps_of(context->isa);
   for (int32_t l = 0; l < MPMI_MOST_LEVELS; ++l) mpmi_matrix_init(&g->level[l].own, context);
   mpmi_factor_init(&g->coarsest, context);
@@ -41,11 +41,7 @@ void mpmi_multigrid_free(mpmi_multigrid *g) {
   }
   mpmi_factor_free(&g->coarsest);
   mpmi_free(g->context, g->rhs, mpmi_bytes(g->coarsest_capacity, sizeof *g->rhs));
-  mpmi_free(g->context, g->scratch, (size_t)g->scratch_capacity);
-}
-
-mpm_status mpmi_multigrid_scratch(mpmi_multigrid *g, size_t bytes) {
-  return mpmi_reserve(g->context, (void **)&g->scratch, &g->scratch_capacity, (int64_t)bytes, 1);
+  mpmi_free(g->context, g->scratch.memory, (size_t)g->scratch.capacity);
 }
 
 static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
@@ -55,11 +51,11 @@ static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
   for (g->levels = 1; g->levels < MPMI_MOST_LEVELS; ++g->levels) {
     mpmi_level *level = &g->level[g->levels - 1], *next = level + 1;
     if (mpmi_matrix_unknowns(level->A) <= COARSEST) break;
-    if ((status = mpmi_coarsen(g, level, next, &level->next))) return status;
+    if ((status = mpmi_coarsen(&g->scratch, level, next, &level->next))) return status;
     if ((double)next->own.rows > WORTH * (double)level->A->rows && mpmi_matrix_unknowns(level->A) <= FACTORED)
       break;
-    if ((status = mpmi_multigrid_scratch(g, mpmi_bytes(level->A->rows, 2 * sizeof(int32_t)))) ||
-        (status = mpmi_smoother_analyse(&level->smoother, level->A, (int32_t *)(void *)g->scratch)))
+    if ((status = mpmi_workspace_reserve(&g->scratch, mpmi_bytes(level->A->rows, 2 * sizeof(int32_t)))) ||
+        (status = mpmi_smoother_analyse(&level->smoother, level->A, (int32_t *)(void *)g->scratch.memory)))
       return status;
   }
   const mpmi_matrix *last = g->level[g->levels - 1].A;
@@ -92,7 +88,7 @@ mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64
     level[1].own.symmetric = A->symmetric;
     int64_t bad = -1;
     if ((status = mpmi_smoother_numbers(&level->smoother, level->A, &bad)) && !l) *row = bad;
-    if (status || (status = mpmi_galerkin(g, level, level + 1))) return status;
+    if (status || (status = mpmi_galerkin(&g->scratch, level, level + 1))) return status;
   }
   measure_scales(g);
   const mpmi_matrix *last = g->level[g->levels - 1].A;

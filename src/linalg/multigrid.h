@@ -3,8 +3,9 @@
  * one; the coarsest is factored.
  *
  *   multigrid.c   the levels, and the cycle over them
- *   coarsen.c     nodes of the next level, interpolation, pattern of its matrix
- *   galerkin.c    its numbers
+ *   level.h       one level, and how it is made from the finer one:
+ *   coarsen.c     its nodes, interpolation, the pattern of its matrix
+ *   galerkin.c    the numbers of its matrix
  *   smoother.c    colours, and the copy of a matrix that is smoothed with
  *   sweep.c       block Gauss-Seidel, compiled once for each instruction set
  *
@@ -14,28 +15,9 @@
 #define MPMI_MULTIGRID_H
 
 #include "linalg/factor.h"
-#include "linalg/sweep.h"
-#include "linalg/vectors.h"
+#include "linalg/level.h"
 
 enum { MPMI_MOST_LEVELS = 24 };
-
-/* Nodes of a level and those of the next. */
-typedef struct mpmi_coarsening {
-  int64_t *parent_start; /* [rows + 1] */
-  int32_t *parent;       /* coarse nodes that a node lies between; each has the weight 1 / their number */
-  int64_t *child_start;  /* [coarse rows + 1] */
-  int32_t *child;        /* nodes that a coarse one is a parent of */
-  int64_t most_nodes;    /* that couple with the children of a node */
-  char *slab;
-  int64_t slab_capacity;
-} mpmi_coarsening;
-
-typedef struct mpmi_level {
-  const mpmi_matrix *A; /* of the system, or own */
-  mpmi_matrix own;
-  mpmi_coarsening next; /* but for the coarsest */
-  mpmi_smoother smoother;
-} mpmi_level;
 
 typedef struct mpmi_multigrid {
   mpm_context *context;
@@ -47,8 +29,7 @@ typedef struct mpmi_multigrid {
   mpmi_factor coarsest;
   double *rhs, *x; /* of the coarsest */
   int64_t coarsest_capacity;
-  char *scratch;
-  int64_t scratch_capacity;
+  mpmi_workspace scratch;
 } mpmi_multigrid;
 
 void mpmi_multigrid_init(mpmi_multigrid *g, mpm_context *context);
@@ -58,19 +39,5 @@ void mpmi_multigrid_free(mpmi_multigrid *g);
 mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64_t *row);
 /* z = one cycle for A z = r. */
 mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z);
-
-/* Tasks with scratch of their own: as many as run at once, one where threads are not worth waking. */
-static inline mpmi_chunks mpmi_multigrid_tasks(const mpmi_multigrid *g, const mpmi_matrix *A) {
-  const int32_t alone = mpmi_matrix_unknowns(A) < MPMI_ALONE_UNKNOWNS;
-  const int64_t count = alone ? 1 : g->context->concurrency;
-  return (mpmi_chunks){.items = count, .size = 1, .count = count, .alone = alone};
-}
-
-/* coarsen.c: the next level of l; its own matrix gets pattern and held unknowns. */
-mpm_status mpmi_coarsen(mpmi_multigrid *g, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to);
-/* galerkin.c */
-mpm_status mpmi_galerkin(mpmi_multigrid *g, const mpmi_level *fine, mpmi_level *coarse);
-/* Scratch for so many bytes, that lasts until the next call. */
-mpm_status mpmi_multigrid_scratch(mpmi_multigrid *g, size_t bytes);
 
 #endif

@@ -1,7 +1,7 @@
 /* The factor: inertia, singular matrices, structure kept and renewed, and what the choice by the library
  * makes of systems that iterations do not solve. */
 #include "linalg/factor.h"
-#include "linalg/system.h"
+#include "linalg/methods.h"
 
 #include "linalg_fixture.h"
 

@@ -2,102 +2,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/system.h"
+#include "linalg/costs.h"
+#include "linalg/methods.h"
 
 enum { RESTART = 60, MOST_RESTARTS = 50, MOST_CYCLES = 500 };
-
-/* Terms of A x may be so many times as large as b before what they leave is no solution: slender beams have
- * 3, bodies that nothing holds hundreds. */
-static const double MOST_ROUNDING = 32.0;
-
-mpm_status mpmi_solver_create(mpm_context *context, mpmi_solver **out) {
-  mpmi_solver *solver = mpmi_alloc_zeroed(context, sizeof *solver);
-  *out = solver;
-  if (!solver) return MPM_E_NOMEM;
-  solver->context = context;
-  mpmi_factor_init(&solver->factor, context);
-  mpmi_multigrid_init(&solver->multigrid, context);
-  mpmi_operator_init(&solver->lent, context);
-  return MPM_OK;
-}
-
-void mpmi_solver_destroy(mpmi_solver *solver) {
-  if (!solver) return;
-  mpm_context *context = solver->context;
-  mpmi_factor_free(&solver->factor);
-  mpmi_multigrid_free(&solver->multigrid);
-  mpmi_operator_free(&solver->lent);
-  mpmi_free(context, solver->work, mpmi_bytes(solver->work_capacity, sizeof *solver->work));
-  mpmi_free(context, solver->diagonal, mpmi_bytes(solver->diagonal_capacity, sizeof *solver->diagonal));
-  mpmi_free(context, solver, sizeof *solver);
-}
-
-mpm_status mpmi_system_work(const mpmi_system *s, int64_t vectors, int64_t more) {
-  mpmi_solver *solver = s->solver;
-  return mpmi_reserve(s->context, (void **)&solver->work, &solver->work_capacity, vectors * s->n + more,
-                      sizeof *solver->work);
-}
-
-mpm_status mpmi_system_good(const mpmi_system *s, double norm, double *scratch, int32_t *good) {
-  *good = norm <= s->wanted;
-  if (*good || !(norm < s->b_norm)) return MPM_OK;
-  double rounding;
-  const mpm_status status = mpmi_matrix_rounding(s->A, s->b, s->x, scratch, &rounding);
-  *good = norm <= rounding && rounding < MOST_ROUNDING * s->b_norm; /* more is what no solution looks like */
-  return status;
-}
-
-mpm_status mpmi_system_fail_at(const mpmi_system *s, mpm_status status, int64_t row, const char *what) {
-  const double *x = s->A->position + 3 * row;
-  s->report->node = s->A->number[row];
-  return mpmi_fail(s->context, status, "%s at node %lld (%g, %g, %g)", what, (long long)s->A->number[row],
-                   x[0], x[1], x[2]);
-}
-
-mpm_status mpmi_system_not_converged(const mpmi_system *s, const char *method) {
-  return mpmi_fail(s->context, MPM_NOT_CONVERGED,
-                   "%s: after %lld iterations the residual is %g of the right-hand side, wanted is %g",
-                   method, (long long)s->report->iterations, s->reached / s->b_norm, s->wanted / s->b_norm);
-}
-
-/* ---- what a method would cost ------------------------------------------------------------------------ */
-/* Nodes along the axes, longest first. */
-static void extents_of(const mpmi_matrix *A, double *extent) {
-  for (int32_t k = 0; k < 3; ++k) {
-    int64_t low = A->rows ? A->index[0][k] : 0, high = low;
-    for (int64_t i = 1; i < A->rows; ++i) {
-      if (A->index[i][k] < low) low = A->index[i][k];
-      if (A->index[i][k] > high) high = A->index[i][k];
-    }
-    int32_t at = k;
-    for (; at > 0 && extent[at - 1] < (double)(high - low + 1); --at) extent[at] = extent[at - 1];
-    extent[at] = (double)(high - low + 1);
-  }
-}
-
-/* What solving takes, in products of the matrix with a vector. Iterations of CG grow with the number of nodes
- * in a row, or with the step: inertia is a share of the diagonal. Those of multigrid grow with the overlap of
- * stencils, for nodes at the rim of a body then share few particles. Measured on bodies of soft matter. */
-typedef struct costs {
-  double cg, multigrid, factor;
-} costs;
-
-static costs costs_of(const mpmi_matrix *A, double inertia) {
-  double extent[3];
-  extents_of(A, extent);
-  const double entries = (double)A->row_start[A->rows], rows = (double)A->rows;
-  const double dim = 1.0 + (extent[1] > 1.0) + (extent[2] > 1.0);
-  const double half_stencil = fmax(1.0, 0.5 * (pow(entries / rows, 1.0 / dim) - 1.0));
-  /* work of the factor is that of its separators, as wide as half a stencil, of which a long body has many:
-   * 7 times the cube of one, and 20 multiplications in the time of one of a product */
-  const double separator = (double)mpmi_matrix_unknowns(A) / extent[0] * half_stencil;
-  const double factor = 7.0 * separator * separator * separator * extent[0] / extent[1];
-  costs c;
-  c.cg = fmin(20.0 * extent[0], inertia > 0.0 ? 20.0 / sqrt(inertia) : (double)INFINITY);
-  c.multigrid = 20.0 + 70.0 * half_stencil * half_stencil;
-  c.factor = factor / (20.0 * entries * (double)(A->block * A->block));
-  return c;
-}
 
 /* ---- methods ----------------------------------------------------------------------------------------- */
 static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
@@ -200,7 +108,7 @@ static mpm_status fall_back(mpmi_system *s, mpm_status status) {
 }
 
 static mpm_status by_cheapest(mpmi_system *s, const mpmi_solve_job *job) {
-  const costs c = costs_of(s->A, job->inertia);
+  const mpmi_costs c = mpmi_costs_of(s->A, job->inertia);
   const int64_t limit = job->max_iterations;
   mpm_status status;
   if (c.factor <= fmin(c.cg, c.multigrid)) return mpmi_direct(s);
@@ -219,7 +127,7 @@ static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
   case MPM_SOLVER_HOST:
     return mpmi_solve_by_host(s, job);
   case MPM_SOLVER_CG:
-    return by_cg(s, limit ? limit : 5000 + 30 * (int64_t)costs_of(s->A, 0.0).cg);
+    return by_cg(s, limit ? limit : 5000 + 30 * (int64_t)mpmi_costs_of(s->A, 0.0).cg);
   case MPM_SOLVER_MULTIGRID_CG:
     return by_multigrid(s, limit ? limit : 10 * MOST_CYCLES);
   case MPM_SOLVER_LDLT:

@@ -1,0 +1,12 @@
+/* Memory and tasks of the steps that make levels. */
+#include "linalg/level.h"
+
+mpm_status mpmi_workspace_reserve(mpmi_workspace *w, size_t bytes) {
+  return mpmi_reserve(w->context, (void **)&w->memory, &w->capacity, (int64_t)bytes, 1);
+}
+
+mpmi_chunks mpmi_workspace_tasks(const mpmi_workspace *w, const mpmi_matrix *A) {
+  const int32_t alone = mpmi_matrix_unknowns(A) < MPMI_ALONE_UNKNOWNS;
+  const int64_t count = alone ? 1 : w->context->concurrency;
+  return (mpmi_chunks){.items = count, .size = 1, .count = count, .alone = alone};
+}

@@ -1,0 +1,43 @@
+/* One level of the multigrid, and the two steps that make the next one from it. */
+#ifndef MPMI_LEVEL_H
+#define MPMI_LEVEL_H
+
+#include "linalg/sweep.h"
+#include "linalg/vectors.h"
+
+/* Nodes of a level and those of the next. */
+typedef struct mpmi_coarsening {
+  int64_t *parent_start; /* [rows + 1] */
+  int32_t *parent;       /* coarse nodes that a node lies between; each has the weight 1 / their number */
+  int64_t *child_start;  /* [coarse rows + 1] */
+  int32_t *child;        /* nodes that a coarse one is a parent of */
+  int64_t most_nodes;    /* that couple with the children of a node */
+  char *slab;
+  int64_t slab_capacity;
+} mpmi_coarsening;
+
+typedef struct mpmi_level {
+  const mpmi_matrix *A; /* of the system, or own */
+  mpmi_matrix own;
+  mpmi_coarsening next; /* but for the coarsest */
+  mpmi_smoother smoother;
+} mpmi_level;
+
+/* Memory that serves one step after the other. */
+typedef struct mpmi_workspace {
+  mpm_context *context;
+  char *memory;
+  int64_t capacity;
+} mpmi_workspace;
+
+/* Makes room for so many bytes; what was there is lost. */
+mpm_status mpmi_workspace_reserve(mpmi_workspace *w, size_t bytes);
+/* Tasks with scratch of their own: as many as run at once, or one where threads are not worth waking. */
+mpmi_chunks mpmi_workspace_tasks(const mpmi_workspace *w, const mpmi_matrix *A);
+
+/* The next level of l: its own matrix gets pattern and held unknowns (coarsen.c). */
+mpm_status mpmi_coarsen(mpmi_workspace *w, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to);
+/* The numbers of its matrix (galerkin.c). */
+mpm_status mpmi_galerkin(mpmi_workspace *w, const mpmi_level *fine, mpmi_level *coarse);
+
+#endif
