@@ -51,6 +51,9 @@ void mpmi_free(mpm_context *context, void *memory, size_t bytes); /* NULL is fin
 /* Makes room for `wanted` elements where there is less; what was there is lost. On failure nothing has
  * changed. */
 mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size);
+/* The same with room for a quarter more where it has to grow, so that lists whose length varies a little from
+ * step to step soon need no more memory. */
+mpm_status mpmi_reserve_more(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size);
 /* count * size with overflow giving SIZE_MAX, which mpmi_alloc refuses. */
 size_t mpmi_bytes(int64_t count, size_t size);
 

@@ -61,3 +61,9 @@ mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int6
   *capacity = wanted;
   return MPM_OK;
 }
+
+mpm_status mpmi_reserve_more(mpm_context *context, void **at, int64_t *capacity, int64_t wanted,
+                             size_t size) {
+  const int64_t few = 64; /* short lists double soon */
+  return mpmi_reserve(context, at, capacity, wanted > *capacity ? wanted + wanted / 4 + few : 0, size);
+}

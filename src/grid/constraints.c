@@ -98,11 +98,6 @@ static int32_t block_is_bound(const mpmi_blocks *b, const mpmi_wall *wall, int64
   return 0;
 }
 
-/* Room for a quarter more: constraints come and go as a body moves along its walls. */
-static mpm_status reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size) {
-  return mpmi_reserve(context, at, capacity, wanted > *capacity ? wanted + wanted / 4 + 64 : 0, size);
-}
-
 /* One walk over all bound nodes; called to count and then to fill. */
 typedef struct walk {
   const mpmi_blocks *blocks;
@@ -222,15 +217,15 @@ static void visit_contacts(walk *w) {
 
 mpm_status mpmi_constraints_build(mpmi_constraints *c, const mpmi_blocks *b, const mpmi_wall *wall) {
   mpm_context *context = c->context;
-  mpm_status status =
-      reserve(context, (void **)&c->tie_of, &c->map_capacity, b->count * b->nodes, sizeof *c->tie_of);
+  mpm_status status = mpmi_reserve_more(context, (void **)&c->tie_of, &c->map_capacity, b->count * b->nodes,
+                                        sizeof *c->tie_of);
   if (status) return status;
   walk w = {b, wall, c, 0, 0, 0, 0};
   clear_map(c, b);
   visit_all(&w, VISIT_LINEAR, 0);
-  if ((status = reserve(context, (void **)&c->tie, &c->tie_capacity, w.ties, sizeof *c->tie)) ||
-      (status =
-           reserve(context, (void **)&c->follower, &c->follower_capacity, w.followers, sizeof *c->follower)))
+  if ((status = mpmi_reserve_more(context, (void **)&c->tie, &c->tie_capacity, w.ties, sizeof *c->tie)) ||
+      (status = mpmi_reserve_more(context, (void **)&c->follower, &c->follower_capacity, w.followers,
+                                  sizeof *c->follower)))
     return status;
   clear_map(c, b);
   w = (walk){b, wall, c, 1, 0, 0, 0};
@@ -246,7 +241,8 @@ mpm_status mpmi_constraints_build(mpmi_constraints *c, const mpmi_blocks *b, con
   visit_all(&w, VISIT_PLACE, 0);
   w.fill = 0;
   visit_contacts(&w);
-  if ((status = reserve(context, (void **)&c->contact, &c->contact_capacity, w.contacts, sizeof *c->contact)))
+  if ((status = mpmi_reserve_more(context, (void **)&c->contact, &c->contact_capacity, w.contacts,
+                                  sizeof *c->contact)))
     return status;
   w.fill = 1;
   visit_contacts(&w);
