@@ -41,7 +41,7 @@ static mpm_status check_checksum(mpm_context *context, const mpmi_state_header *
 }
 
 static mpm_status check_idle(const mpm_stepper *s) {
-  if (mpmi_stepper_in_step(s))
+  if (s->phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before loading");
   if (s->mapped)
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them before loading",

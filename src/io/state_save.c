@@ -3,7 +3,7 @@
 #include <string.h>
 
 static mpm_status check_between_steps(const mpm_stepper *s) {
-  if (!mpmi_stepper_in_step(s)) return MPM_OK;
+  if (s->phase == MPMI_IDLE) return MPM_OK;
   return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before saving");
 }
 

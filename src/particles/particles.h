@@ -54,12 +54,20 @@ enum {
   MPMI_DIRTY_ACCELERATION = 16 /* accelerations are not those of an implicit step, nor given by the host */
 };
 
-typedef struct mpmi_view_record {
+/* A view that is out, of a set or of a stepper's nodes. */
+typedef struct mpmi_view_record mpmi_view_record;
+struct mpmi_view_record {
   int32_t live, field, access;
   void *data;
-  struct mpm_particles *set;   /* owner, or */
-  struct mpm_stepper *stepper; /* owner, for views of nodal fields */
-} mpmi_view_record;
+  void *lender; /* the set or the stepper */
+  mpm_status (*release)(mpmi_view_record *record, mpm_view *view);
+};
+
+/* What a set asks of the stepper that holds it. */
+typedef struct mpmi_owner {
+  int32_t (*in_step)(const mpm_stepper *stepper); /* is a step under way, whole or staged? */
+  double (*time)(const mpm_stepper *stepper);     /* the present time */
+} mpmi_owner;
 
 struct mpm_particles {
   uint32_t magic;
@@ -67,10 +75,11 @@ struct mpm_particles {
   mpm_context *context;
   mpm_grid *grid;
   mpm_material *material;
-  mpm_stepper *stepper; /* that holds the set, or NULL */
-  int64_t count;        /* live particles */
-  int64_t slots;        /* used, a multiple of MPMI_PAD */
-  int64_t ld;           /* capacity of every component array */
+  mpm_stepper *stepper;    /* that holds the set, or NULL */
+  const mpmi_owner *owner; /* where there is a stepper */
+  int64_t count;           /* live particles */
+  int64_t slots;           /* used, a multiple of MPMI_PAD */
+  int64_t ld;              /* capacity of every component array */
   int64_t next_id;
   uint32_t dirty;   /* MPMI_DIRTY_... */
   uint32_t suspect; /* bit per built-in field: bad values were written through a view; step refuses */

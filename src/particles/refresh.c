@@ -1,6 +1,5 @@
 /* Volume and stress after the host has set F or the initial volume. */
 #include "particles/law_batch.h"
-#include "stepper/stepper_state.h"
 #include "transfer/kernels.h"
 
 #include <string.h>
@@ -18,7 +17,7 @@ mpm_status mpmi_particles_refresh(mpm_particles *set) {
   mpmi_law_batch b;
   mpmi_law_batch_bind(&b, set->material, memory);
   mpm_status status = MPM_OK;
-  const double t = set->stepper ? mpmi_stepper_time(set->stepper) : 0.0;
+  const double t = set->stepper ? set->owner->time(set->stepper) : 0.0;
   const int32_t keeps_stress = set->material->law && !mpmi_material_stress_from_F(set->material);
   for (int64_t s = 0; s < set->slots && !keeps_stress && !status; s += b.ld) {
     const int64_t n = set->slots - s < b.ld ? set->slots - s : b.ld;

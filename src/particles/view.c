@@ -2,7 +2,6 @@
 #include <stddef.h>
 
 #include "particles/values.h"
-#include "stepper/node_view.h"
 
 /* Size of the struct in its first release, which has all that a view needs. */
 static const uint32_t least_size = offsetof(mpm_view, owner) + sizeof(void *);
@@ -43,6 +42,28 @@ static mpm_status check_request(const mpm_particles *set, const char *field, int
   return access & MPM_WRITE || !set->field[*f].present ? mpmi_between_steps(set) : MPM_OK;
 }
 
+/* Writing takes effect: what follows from the field is out of date, and bad values bar the set from steps. */
+static mpm_status accept_written(mpm_particles *set, int32_t field) {
+  mpmi_restore_holes(set, field);
+  mpm_status status = mpmi_check_stored(set, field);
+  if (field < MPMI_BUILTIN_FIELDS) {
+    uint32_t bit = 1u << field;
+    set->suspect = status ? set->suspect | bit : set->suspect & ~bit;
+  }
+  mpmi_field_written(set, field);
+  return status;
+}
+
+static mpm_status release_field(mpmi_view_record *record, mpm_view *view) {
+  mpm_particles *set = record->lender;
+  int32_t field = record->field, access = record->access;
+  set->context->error[0] = '\0';
+  set->mapped--;
+  *record = (mpmi_view_record){0};
+  view->data = view->owner = NULL;
+  return access & MPM_WRITE ? accept_written(set, field) : MPM_OK;
+}
+
 mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_t access, mpm_view *view) {
   MPMI_ENTER(particles, MPMI_PARTICLES);
   int32_t f;
@@ -56,35 +77,16 @@ mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_
   if (!status) status = mpmi_field_make_present(particles, f);
   if (status) return status;
   const mpmi_field *at = &particles->field[f];
-  *record = (mpmi_view_record){1, f, access, at->data[0], particles, NULL};
+  *record = (mpmi_view_record){1, f, access, at->data[0], particles, release_field};
   particles->mapped++;
   mpmi_view_fill(view, at->type, at->components, access, particles->slots, particles->ld, at->data[0],
                  record);
   return MPM_OK;
 }
 
-/* Writing takes effect: what follows from the field is out of date, and bad values bar the set from steps. */
-static mpm_status accept_written(mpm_particles *set, int32_t field) {
-  mpmi_restore_holes(set, field);
-  mpm_status status = mpmi_check_stored(set, field);
-  if (field < MPMI_BUILTIN_FIELDS) {
-    uint32_t bit = 1u << field;
-    set->suspect = status ? set->suspect | bit : set->suspect & ~bit;
-  }
-  mpmi_field_written(set, field);
-  return status;
-}
-
 mpm_status mpm_view_release(mpm_view *view) {
   if (!view) return MPM_E_ARG;
   mpmi_view_record *record = view->owner;
   if (!record || !record->live || record->data != view->data) return MPM_E_STATE;
-  if (record->stepper) return mpmi_node_view_release(record, view);
-  mpm_particles *set = record->set;
-  int32_t field = record->field, access = record->access;
-  set->context->error[0] = '\0';
-  set->mapped--;
-  *record = (mpmi_view_record){0};
-  view->data = view->owner = NULL;
-  return access & MPM_WRITE ? accept_written(set, field) : MPM_OK;
+  return record->release(record, view);
 }

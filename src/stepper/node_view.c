@@ -146,8 +146,12 @@ mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t
     s->view_bytes[at] = bytes;
   }
   mpmi_node_values(s, which, s->active, s->active_count, 1, s->active_count, s->view_memory[at]);
-  s->view[at] = (mpmi_view_record){
-      .live = 1, .field = which, .access = access, .data = s->view_memory[at], .stepper = s};
+  s->view[at] = (mpmi_view_record){.live = 1,
+                                   .field = which,
+                                   .access = access,
+                                   .data = s->view_memory[at],
+                                   .lender = s,
+                                   .release = mpmi_node_view_release};
   mpmi_view_fill(view, mpmi_node_fields[which].type, components, access, s->active_count, s->active_count,
                  s->view_memory[at], &s->view[at]);
   ++s->mapped;
@@ -180,7 +184,7 @@ static mpm_status write_back(mpm_stepper *s, int32_t field, const double *value)
 }
 
 mpm_status mpmi_node_view_release(mpmi_view_record *record, mpm_view *view) {
-  mpm_stepper *s = record->stepper;
+  mpm_stepper *s = record->lender;
   s->context->error[0] = '\0';
   record->live = 0;
   --s->mapped;

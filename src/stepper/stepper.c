@@ -246,13 +246,15 @@ mpm_status mpm_stepper_destroy(mpm_stepper *s) {
   return MPM_OK;
 }
 
-int32_t mpmi_stepper_in_step(const mpm_stepper *s) {
+static int32_t in_step(const mpm_stepper *s) {
   return s->phase != MPMI_IDLE;
 }
 
-double mpmi_stepper_time(const mpm_stepper *s) {
+static double present_time(const mpm_stepper *s) {
   return s->t;
 }
+
+static const mpmi_owner owner_of_sets = {in_step, present_time};
 
 static mpm_status grow_members(mpm_stepper *s) {
   if (s->member_count < s->member_capacity) return MPM_OK;
@@ -285,6 +287,7 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
   mpmi_arrangement_init(&member->now, s->context);
   mpmi_arrangement_init(&member->next, s->context);
   set->stepper = s;
+  set->owner = &owner_of_sets;
   set->dirty |= MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY;
   s->nodes_valid = 0;
   return MPM_OK;

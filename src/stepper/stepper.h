@@ -17,7 +17,6 @@
 #include "grid/constraints.h"
 #include "particles/law_batch.h"
 #include "particles/sort.h"
-#include "stepper/stepper_state.h"
 #include "transfer/kernels.h"
 
 typedef struct mpmi_newton mpmi_newton; /* newton.h */
