@@ -2,7 +2,7 @@
 #
 #   make                 both libraries in $(BUILD)
 #   make install         PREFIX=/usr/local, DESTDIR=
-#   make check           unit tests, interface tests, examples, verify-quick (needs Check and pkg-config: make check-setup)
+#   make check           unit tests, interface tests, examples, verify-quick (needs Check, pkg-config, Python: make check-setup)
 #   make verify          the method against exact solutions, with a table of gates: docs/verification.md
 #   make demo            one example, with nothing but a C compiler
 #
@@ -80,7 +80,7 @@ UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c
 UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
-.PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
+.PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan mutate
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
 .PHONY: docs fuzz-programs fuzz check-fuzz verify verify-quick verify-plots
 .DELETE_ON_ERROR:
@@ -202,7 +202,17 @@ $(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(UNIT_OBJECTS) $(STATIC_LIB) $(CHECK_LIBS) $(LIBS) -o $@
 
-check: check-unit check-api check-examples verify-quick
+check: check-structure check-unit check-api check-examples verify-quick
+
+# Which files of src/ need which others: no circles, and no arrow from a lower folder to a higher one. First the check
+# must notice what is planted in a small tree of its own. measure-structure: figures as well.
+STRUCTURE = python3 tests/structure/check.py --objects $(BUILD)/obj/src
+check-structure: $(STATIC_LIB)
+	@mkdir -p $(BUILD)/tests/scratch
+	@$(TEST_ENVIRONMENT) python3 tests/structure/planted.py $(BUILD)/tests/scratch
+	@$(STRUCTURE)
+measure-structure: $(STATIC_LIB)
+	@$(STRUCTURE) --measure
 
 # Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together.
 SUITES ?= $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)
@@ -256,10 +266,10 @@ $(UNIT_OBJECTS) $(UNIT) check-unit check-api check-examples: | check-setup
 endif
 
 check-setup:
-	@if $(PKG_CONFIG) --exists check 2>/dev/null && command -v g++ >/dev/null; then exit 0; fi; \
+	@if $(PKG_CONFIG) --exists check 2>/dev/null && command -v g++ >/dev/null && command -v python3 >/dev/null; then exit 0; fi; \
 	sudo=; if [ "$$(id -u)" != 0 ]; then sudo=sudo; fi; \
 	$$sudo apt-get update -q && \
-	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q check pkg-config g++
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q check pkg-config g++ python3
 
 # Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
 SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS=long EXAMPLES="two_disks user_material host_threads staged_coupling cpp_block" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
