@@ -82,7 +82,7 @@ static void read_numbers(loading *l) {
       !is_magnitude(n->mass_cut))
     mpmi_archive_damaged(a, "its numbers make no sense");
   const int64_t unsorted = MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE,
-                flags = MPMI_DIRTY_SURVEY | MPMI_DIRTY_ACCELERATION | (n->blocks < 0 ? unsorted : 0);
+                flags = MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION | (n->blocks < 0 ? unsorted : 0);
   for (int32_t m = 0; m < l->stepper->member_count && !a->status; ++m) {
     mpmi_state_set_numbers *of = &l->set[m].numbers;
     mpmi_archive_bytes(a, of, sizeof *of);

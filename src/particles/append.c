@@ -76,6 +76,6 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
     memset((uint8_t *)set->field[MPMI_PRESCRIBED].data[0] + c * set->ld + slot, 1, (size_t)n);
   set->next_id = next_id;
   set->count += n;
-  set->dirty |= MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY | MPMI_DIRTY_ACCELERATION;
+  set->dirty |= MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION;
   mpmi_index_drop(set);
 }

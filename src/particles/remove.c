@@ -39,7 +39,7 @@ mpm_status mpm_particles_remove(mpm_particles *particles, int64_t n, const int64
                      (long long)ids[marked]);
   }
   particles->count -= n;
-  particles->dirty |= MPMI_DIRTY_SURVEY;
+  particles->dirty |= MPMI_DIRTY_SUMS;
   mpmi_index_drop(particles);
   return MPM_OK;
 }

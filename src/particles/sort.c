@@ -24,12 +24,13 @@ mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *a, int64_t blocks) 
                       blocks + 1 > a->start_capacity ? 2 * blocks + 2 : 0, sizeof *a->start);
 }
 
-/* The provisional block of each slot, from survey to plan: where positions will be after the next step. */
+/* The provisional block of each slot, from mpmi_sort_blocks to mpmi_sort_plan: where positions will be after
+ * the next step. */
 static uint32_t *blocks_of_slots(const mpm_particles *set) {
   return set->field[MPMI_POSITION].data[1];
 }
 
-mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks) {
+mpm_status mpmi_sort_blocks(mpm_particles *set, mpmi_blocks *blocks) {
   uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);

@@ -24,9 +24,9 @@ void mpmi_sorting_free(mpmi_sorting *sorting, mpm_context *context);
 mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *arrangement, int64_t blocks);
 
 /* The three parts of a sort. The first two may fail and change nothing that matters; the third cannot fail.
- * survey: inserts the blocks of the set's particles. plan: `to` receives the new arrangement and the set's
+ * blocks: inserts the blocks of the set's particles. plan: `to` receives the new arrangement and the set's
  * storage the room for it. apply: moves the particles and clears the set's ORDER and PLACE flags. */
-mpm_status mpmi_sort_survey(mpm_particles *set, mpmi_blocks *blocks);
+mpm_status mpmi_sort_blocks(mpm_particles *set, mpmi_blocks *blocks);
 mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                           mpmi_arrangement *to);
 void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_sorting *sorting,

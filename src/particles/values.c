@@ -147,7 +147,7 @@ static double largest_mass(const mpm_particles *set) {
 }
 
 void mpmi_field_written(mpm_particles *set, int32_t field) {
-  set->dirty |= MPMI_DIRTY_SURVEY;
+  set->dirty |= MPMI_DIRTY_SUMS;
   if (field == MPMI_ACCELERATION) set->dirty &= ~(uint32_t)MPMI_DIRTY_ACCELERATION;
   if (field == MPMI_POSITION) set->dirty |= MPMI_DIRTY_PLACE;
   if (field == MPMI_F || field == MPMI_INITIAL_VOLUME || field == MPMI_DILATION_RATIO)

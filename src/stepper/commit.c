@@ -70,7 +70,7 @@ void mpmi_commit(mpm_stepper *s, double dt) {
       field->data[1] = swap;
     }
     if (left) set->dirty |= MPMI_DIRTY_PLACE;
-    set->dirty &= ~(uint32_t)(MPMI_DIRTY_SURVEY | MPMI_DIRTY_ACCELERATION);
+    set->dirty &= ~(uint32_t)(MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION);
     if (!mpmi_is_implicit(s) || s->desc.quasi_static) set->dirty |= MPMI_DIRTY_ACCELERATION;
   }
   s->t += dt;

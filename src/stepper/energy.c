@@ -17,8 +17,8 @@ void mpmi_add_sums(mpmi_sums *sum, const mpmi_sums *other) {
   if (other->viscous_rate > sum->viscous_rate) sum->viscous_rate = other->viscous_rate;
 }
 
-void mpmi_survey_moments(const mpm_stepper *s, const mpm_particles *set, int32_t copy, int64_t begin,
-                         int64_t n, int64_t ld, double *buffer, mpmi_survey *job) {
+void mpmi_sums_moments(const mpm_stepper *s, const mpm_particles *set, int32_t copy, int64_t begin, int64_t n,
+                       int64_t ld, double *buffer, mpmi_sums_job *job) {
   const mpm_grid *grid = s->grid;
   const int32_t dim = grid->dim, anywhere[3] = {0, 0, 0};
   for (int32_t k = 0; k < dim; ++k) {
@@ -43,7 +43,7 @@ void mpmi_survey_moments(const mpm_stepper *s, const mpm_particles *set, int32_t
 }
 
 /* The law is asked for the state as it is: F_inc = I, dt = 0. */
-static mpm_status survey_set(mpm_stepper *s, int32_t m, mpmi_sums *sums) {
+static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums) {
   mpm_particles *set = s->member[m].set;
   const mpm_grid *grid = s->grid;
   const int32_t dim = grid->dim;
@@ -67,25 +67,25 @@ static mpm_status survey_set(mpm_stepper *s, int32_t m, mpmi_sums *sums) {
                     "the material of set %d returned %d when asked for its wave speed", (int)m, (int)refused);
       break;
     }
-    mpmi_survey job = {.what = MPMI_SURVEY_LAW | MPMI_SURVEY_MOTION,
-                       .ld = b.ld,
-                       .mass = mpmi_f64(set, MPMI_MASS, 0) + begin,
-                       .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
-                       .wave_speed = b.wave_speed,
-                       .kinematic_viscosity = b.viscosity,
-                       .energy = b.energy,
-                       .viscous_factor = 2.0 * dim / (grid->h_min * grid->h_min)};
+    mpmi_sums_job job = {.what = MPMI_SUMS_LAW | MPMI_SUMS_MOTION,
+                         .ld = b.ld,
+                         .mass = mpmi_f64(set, MPMI_MASS, 0) + begin,
+                         .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
+                         .wave_speed = b.wave_speed,
+                         .kinematic_viscosity = b.viscosity,
+                         .energy = b.energy,
+                         .viscous_factor = 2.0 * dim / (grid->h_min * grid->h_min)};
     for (int32_t k = 0; k < dim; ++k) {
       job.x[k] = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + begin;
       job.v[k] = mpmi_f64(set, MPMI_VELOCITY, 0) + k * set->ld + begin;
       job.inverse_spacing[k] = grid->inverse_spacing[k];
     }
     if (mpmi_is_affine(s) && set->field[MPMI_L].present) {
-      mpmi_survey_moments(s, set, 0, begin, n, b.ld, (double *)(void *)(memory + batch), &job);
+      mpmi_sums_moments(s, set, 0, begin, n, b.ld, (double *)(void *)(memory + batch), &job);
       for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
         job.affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, 0) + c * set->ld + begin;
     }
-    if (s->kernels->survey[dim](&job, n, sums))
+    if (s->kernels->sums[dim](&job, n, sums))
       status = mpmi_fail(s->context, MPM_NONFINITE,
                          "the material of set %d gives a wave speed that is not finite", (int)m);
   }
@@ -109,7 +109,7 @@ static mpm_status check_sets(mpm_stepper *s, int32_t access) {
 mpm_status mpmi_stepper_energies(mpm_stepper *s) {
   uint32_t dirty = 0;
   for (int32_t m = 0; m < s->member_count; ++m) dirty |= s->member[m].set->dirty;
-  if (s->energies.valid && !(dirty & MPMI_DIRTY_SURVEY)) return MPM_OK;
+  if (s->energies.valid && !(dirty & MPMI_DIRTY_SUMS)) return MPM_OK;
   mpmi_sums sums = {0};
   mpm_status status = check_sets(s, MPM_READ | MPM_WRITE);
   /* sums follow the order of the slots, which must not be that in which the host added particles; without
@@ -117,10 +117,10 @@ mpm_status mpmi_stepper_energies(mpm_stepper *s) {
   if (!status && dirty & MPMI_DIRTY_ORDER) status = mpmi_stepper_sort(s);
   for (int32_t m = 0; m < s->member_count && !status; ++m) {
     status = mpmi_particles_refresh(s->member[m].set);
-    if (!status) status = survey_set(s, m, &sums);
+    if (!status) status = sum_set(s, m, &sums);
   }
   if (status) return status;
-  for (int32_t m = 0; m < s->member_count; ++m) s->member[m].set->dirty &= ~(uint32_t)MPMI_DIRTY_SURVEY;
+  for (int32_t m = 0; m < s->member_count; ++m) s->member[m].set->dirty &= ~(uint32_t)MPMI_DIRTY_SUMS;
   s->energies = (mpmi_energies){1, sums};
   return MPM_OK;
 }

@@ -32,7 +32,7 @@ typedef struct batch_job {
   mpmi_gather gather;
   mpmi_move move;
   mpmi_deform deform;
-  mpmi_survey survey;
+  mpmi_sums_job sums;
   double *v_bar, *dv, *C;
   int64_t batches, block;
   int32_t law_ran; /* on the batch at hand: its stress is that of this step */
@@ -109,7 +109,7 @@ static void bind_set(batch_job *b, int32_t m) {
                             .L = b->law.L,
                             .F = b->law.F,
                             .F_inc = set->material->law && !mpmi_is_implicit(s) ? NULL : b->law.F_inc};
-  b->survey = (mpmi_survey){.ld = ld,
+  b->sums = (mpmi_sums_job){.ld = ld,
                             .wave_speed = b->law.wave_speed,
                             .kinematic_viscosity = b->law.viscosity,
                             .energy = b->law.energy,
@@ -121,10 +121,10 @@ static void bind_set(batch_job *b, int32_t m) {
     const int32_t periodic = grid->desc.periodic[k] != 0;
     b->move.low[k] = grid->desc.origin[k];
     b->move.high[k] = grid->upper[k];
-    b->move.period[k] = b->survey.period[k] = periodic ? length : 0.0;
-    b->move.inverse_period[k] = b->survey.inverse_period[k] = periodic ? 1.0 / length : 0.0;
-    b->survey.gravity[k] = s->desc.gravity[k];
-    b->survey.inverse_spacing[k] = grid->inverse_spacing[k];
+    b->move.period[k] = b->sums.period[k] = periodic ? length : 0.0;
+    b->move.inverse_period[k] = b->sums.inverse_period[k] = periodic ? 1.0 / length : 0.0;
+    b->sums.gravity[k] = s->desc.gravity[k];
+    b->sums.inverse_spacing[k] = grid->inverse_spacing[k];
   }
 }
 
@@ -342,13 +342,13 @@ static uint32_t deform_batch(batch_job *b, int64_t begin, int64_t n) {
 }
 
 /* Of the law's outputs; of the motion once all of the particle's new values are there. */
-static uint32_t survey_batch(batch_job *b, int32_t what, int64_t begin, int64_t n, mpmi_sums *sums) {
+static uint32_t sum_batch(batch_job *b, int32_t what, int64_t begin, int64_t n, mpmi_sums *sums) {
   const mpm_stepper *s = b->job->s;
   mpm_particles *set = b->set;
-  b->survey.what = what;
+  b->sums.what = what;
   const mpmi_member *member = &s->member[b->m];
   const int32_t dim = s->grid->dim;
-  mpmi_survey *job = &b->survey;
+  mpmi_sums_job *job = &b->sums;
   job->mass = mpmi_f64(set, MPMI_MASS, 0) + begin;
   job->initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin;
   for (int32_t k = 0; k < dim; ++k) {
@@ -357,12 +357,12 @@ static uint32_t survey_batch(batch_job *b, int32_t what, int64_t begin, int64_t 
     job->x_old[k] = component(set, MPMI_POSITION, 0, k) + begin;
     job->force[k] = member->force ? member->force + k * set->ld + begin : NULL;
   }
-  if (mpmi_is_affine(s) && (what & MPMI_SURVEY_MOTION)) {
-    mpmi_survey_moments(s, set, 1, begin, n, b->law.ld, b->C, job); /* C is stored, its buffer free */
+  if (mpmi_is_affine(s) && (what & MPMI_SUMS_MOTION)) {
+    mpmi_sums_moments(s, set, 1, begin, n, b->law.ld, b->C, job); /* C is stored, its buffer free */
     for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
       job->affine[mpmi_gradient_map(dim)[c]] = component(set, MPMI_L, 1, c) + begin;
   }
-  return s->kernels->survey[dim](job, n, sums);
+  return s->kernels->sums[dim](job, n, sums);
 }
 
 /* What the nodes hold, as a particle's velocity or acceleration. */
@@ -371,7 +371,7 @@ static void take_means(batch_job *b, int32_t field, int64_t begin, int64_t n) {
     memcpy(component(b->set, field, 1, k) + begin, b->v_bar + k * b->law.ld, (size_t)n * sizeof(double));
 }
 
-/* USF and implicit steps ask the law before particles move, and the survey of the motion wants to know the
+/* USF and implicit steps ask the law before particles move, and the sums over the motion need the
  * wave speed: it waits where the new position will be. */
 static void leave_wave_speed(batch_job *b, int64_t begin, int64_t n) {
   memcpy(component(b->set, MPMI_POSITION, 1, 0) + begin, b->law.wave_speed, (size_t)n * sizeof(double));
@@ -401,8 +401,8 @@ static void one_batch(batch_job *b, int64_t begin, int64_t n, mpmi_sums *sums) {
   if (what & MPMI_G2P_DEFORM) flags |= deform_batch(b, begin, n);
   if (first && b->law_ran) leave_wave_speed(b, begin, n);
   const int32_t moved = first ? what & MPMI_G2P_MOVE : b->law_ran;
-  const int32_t survey = (b->law_ran ? MPMI_SURVEY_LAW : 0) | (moved ? MPMI_SURVEY_MOTION : 0);
-  if (survey) flags |= survey_batch(b, survey, begin, n, sums);
+  const int32_t summed = (b->law_ran ? MPMI_SUMS_LAW : 0) | (moved ? MPMI_SUMS_MOTION : 0);
+  if (summed) flags |= sum_batch(b, summed, begin, n, sums);
   if (flags) look_at_values(b, begin, n);
 }
 

@@ -288,7 +288,7 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
   mpmi_arrangement_init(&member->next, s->context);
   set->stepper = s;
   set->owner = &owner_of_sets;
-  set->dirty |= MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY;
+  set->dirty |= MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS;
   s->nodes_valid = 0;
   return MPM_OK;
 }

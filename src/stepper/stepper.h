@@ -325,14 +325,14 @@ mpm_status mpmi_run_tasks(mpm_stepper *s, int32_t calls_host, int64_t count, mpm
 /* MPM_E_STATE while a step is under way. */
 mpm_status mpmi_stepper_idle(mpm_stepper *s);
 
-/* energy.c: energies of the present state, from the last step or by a survey of the particles. */
+/* energy.c: energies of the present state, from the last step or summed over the particles. */
 mpm_status mpmi_stepper_energies(mpm_stepper *s);
 double mpmi_stable_dt_of(const mpm_stepper *s, const mpmi_sums *sums);
 void mpmi_add_sums(mpmi_sums *sum, const mpmi_sums *other);
-/* Gives a survey the second moments of the basis at n particles, for the affine part of the angular momentum;
+/* Gives the job the second moments of the basis at n particles, for the affine part of the angular momentum;
  * copy: of their positions. buffer: [3][ld]. */
-void mpmi_survey_moments(const mpm_stepper *s, const mpm_particles *set, int32_t copy, int64_t begin,
-                         int64_t n, int64_t ld, double *buffer, mpmi_survey *job);
+void mpmi_sums_moments(const mpm_stepper *s, const mpm_particles *set, int32_t copy, int64_t begin, int64_t n,
+                       int64_t ld, double *buffer, mpmi_sums_job *job);
 /* Everything of the info that does not depend on how the step went. */
 void mpmi_fill_info(const mpm_stepper *s, mpm_step_info *info);
 

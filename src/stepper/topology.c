@@ -149,7 +149,7 @@ static mpm_status sort_anew(mpm_stepper *s) {
   mpm_status status;
   mpmi_blocks_clear(&s->next_blocks);
   for (int32_t m = 0; m < s->member_count; ++m)
-    if ((status = mpmi_sort_survey(s->member[m].set, &s->next_blocks))) return status;
+    if ((status = mpmi_sort_blocks(s->member[m].set, &s->next_blocks))) return status;
   if ((status = mpmi_blocks_order(&s->next_blocks))) return status;
   for (int32_t m = 0; m < s->member_count; ++m)
     if ((status =

@@ -24,7 +24,7 @@ BASIS(open_bspline3)
   void KERNEL(dilate_##dim)(const mpmi_deform *, int64_t);                                                   \
   void KERNEL(stay_##dim)(const mpmi_deform *, int64_t);                                                     \
   uint32_t KERNEL(volume_##dim)(const double *const *, const double *, double *, int64_t);                   \
-  uint32_t KERNEL(survey_##dim)(const mpmi_survey *, int64_t, mpmi_sums *);                                  \
+  uint32_t KERNEL(sums_##dim)(const mpmi_sums_job *, int64_t, mpmi_sums *);                                  \
   void KERNEL(push_##dim)(const mpmi_push *, int64_t);                                                       \
   void KERNEL(force_scatter_##dim##_2)(const mpmi_force_scatter *, int64_t, int64_t);                        \
   void KERNEL(force_scatter_##dim##_3)(const mpmi_force_scatter *, int64_t, int64_t);                        \
@@ -58,7 +58,7 @@ const mpmi_kernels KERNEL(kernels) = {
     .deform =
         {[MPMI_F_DEFORMS] = BY_DIM(deform), [MPMI_F_DILATES] = BY_DIM(dilate), [MPMI_F_STAYS] = BY_DIM(stay)},
     .volume = BY_DIM(volume),
-    .survey = BY_DIM(survey),
+    .sums = BY_DIM(sums),
     .push = BY_DIM(push),
 #define BY_WIDTH(name)                                                                                       \
   { NULL, NULL, KERNEL(name##_2), KERNEL(name##_3), KERNEL(name##_4) }

@@ -1,5 +1,5 @@
 /* The specialised kernels of the method: weights, scatter (P2G), update of nodes, gather (G2P), advance,
- * survey, and boxes of nodes to and from tiles.
+ * sums over particles, and boxes of nodes to and from tiles.
  *
  * Kernels work on slots in groups of 16 and in chunks; they see one block at a time with its tile: a
  * private copy of the block's nodes plus halo. Tile nodes hold `values` doubles: 4 [px py pz m] or 8 [px py
@@ -163,14 +163,14 @@ typedef void (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
 typedef uint32_t (*mpmi_volume_fn)(const double *const *F, const double *initial_volume, double *volume,
                                    int64_t n);
 
-/* Sums over a batch: energies, momenta and the largest rate (|v_k| + c) / h_k. A survey looks at what the law
+/* Sums over a batch: energies, momenta and the largest rate (|v_k| + c) / h_k. A job looks at what the law
  * gave, at the motion, or at both. */
-enum { MPMI_SURVEY_LAW = 1, MPMI_SURVEY_MOTION = 2 };
+enum { MPMI_SUMS_LAW = 1, MPMI_SUMS_MOTION = 2 };
 typedef struct mpmi_sums {
   double kinetic, strain, work, rate, viscous_rate;
   double momentum[3], angular[3];
 } mpmi_sums;
-typedef struct mpmi_survey {
+typedef struct mpmi_sums_job {
   int32_t what;
   int64_t ld; /* of wave_speed ... */
   const double *x[3], *v[3], *mass, *initial_volume;
@@ -184,8 +184,8 @@ typedef struct mpmi_survey {
   double constant_moment[3]; /* the same for all */
   const double *checked[2];  /* [checked_rows][ld] further values that must be finite */
   int32_t checked_rows[2];
-} mpmi_survey;
-typedef uint32_t (*mpmi_survey_fn)(const mpmi_survey *job, int64_t n, mpmi_sums *sums); /* adds to sums */
+} mpmi_sums_job;
+typedef uint32_t (*mpmi_sums_fn)(const mpmi_sums_job *job, int64_t n, mpmi_sums *sums); /* adds to sums */
 
 /* A box of nodes in a tile and in the nodes of one block; strides of the two outer axes in nodes. */
 typedef struct mpmi_box {
@@ -253,7 +253,7 @@ typedef struct mpmi_kernels {
   mpmi_move_fn move[4];
   mpmi_deform_fn deform[MPMI_F_KINDS][4];
   mpmi_volume_fn volume[4];
-  mpmi_survey_fn survey[4];
+  mpmi_sums_fn sums[4];
   mpmi_push_fn push[4];
   mpmi_force_scatter_fn force_scatter[4][MPMI_MAX_WIDTH + 1];
   mpmi_stiffness_fn stiffness[4];

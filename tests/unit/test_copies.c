@@ -340,13 +340,13 @@ START_TEST(what_follows_is_marked) {
     const char *field;
     int32_t components;
     uint32_t dirty;
-  } list[] = {{"position", 3, MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY},
-              {"velocity", 3, MPMI_DIRTY_SURVEY},
-              {"mass", 1, MPMI_DIRTY_SURVEY},
-              {"stress", 6, MPMI_DIRTY_SURVEY},
-              {"velocity_gradient", 9, MPMI_DIRTY_SURVEY},
-              {"deformation_gradient", 9, MPMI_DIRTY_STRESS | MPMI_DIRTY_SURVEY},
-              {"initial_volume", 1, MPMI_DIRTY_STRESS | MPMI_DIRTY_SURVEY}};
+  } list[] = {{"position", 3, MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS},
+              {"velocity", 3, MPMI_DIRTY_SUMS},
+              {"mass", 1, MPMI_DIRTY_SUMS},
+              {"stress", 6, MPMI_DIRTY_SUMS},
+              {"velocity_gradient", 9, MPMI_DIRTY_SUMS},
+              {"deformation_gradient", 9, MPMI_DIRTY_STRESS | MPMI_DIRTY_SUMS},
+              {"initial_volume", 1, MPMI_DIRTY_STRESS | MPMI_DIRTY_SUMS}};
   const double value[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   for (int i = 0; i < 7; ++i) {
     f.set->dirty = 0;

@@ -82,7 +82,7 @@ START_TEST(adds_in_every_dimension) {
     ck_ok(mpm_particles_add(f.set, 2, x, v, volume, NULL, NULL, &first));
     ck_assert_int_eq(first, 0);
     ck_assert_uint_eq(f.set->dirty,
-                      MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY | MPMI_DIRTY_ACCELERATION);
+                      MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION);
     ck_assert_double_eq(f.set->mass_max, 16e3);
     for (int64_t i = 0; i < 2; ++i) {
       for (int32_t k = 0; k < dim; ++k) {
@@ -244,7 +244,7 @@ START_TEST(removes) {
   f.set->dirty = 0;
   ck_ok(mpm_particles_remove(f.set, 3, (int64_t[]){39, 0, 17}));
   ck_assert_int_eq(mpm_particles_count(f.set), 37);
-  ck_assert_uint_eq(f.set->dirty, MPMI_DIRTY_SURVEY);
+  ck_assert_uint_eq(f.set->dirty, MPMI_DIRTY_SUMS);
   fixture_check_slots(&f);
   double mass;
   ck_refused(f.context, mpm_particles_get(f.set, "mass", MPM_F64, 1, 1, (int64_t[]){17}, &mass),

@@ -154,12 +154,12 @@ START_TEST(written_values_count) {
   static const struct {
     const char *field;
     uint32_t dirty;
-  } list[] = {{"position", MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY},
-              {"velocity", MPMI_DIRTY_SURVEY},
-              {"mass", MPMI_DIRTY_SURVEY},
-              {"stress", MPMI_DIRTY_SURVEY},
-              {"deformation_gradient", MPMI_DIRTY_STRESS | MPMI_DIRTY_SURVEY},
-              {"initial_volume", MPMI_DIRTY_STRESS | MPMI_DIRTY_SURVEY}};
+  } list[] = {{"position", MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS},
+              {"velocity", MPMI_DIRTY_SUMS},
+              {"mass", MPMI_DIRTY_SUMS},
+              {"stress", MPMI_DIRTY_SUMS},
+              {"deformation_gradient", MPMI_DIRTY_STRESS | MPMI_DIRTY_SUMS},
+              {"initial_volume", MPMI_DIRTY_STRESS | MPMI_DIRTY_SUMS}};
   for (int i = 0; i < 6; ++i) {
     f.set->dirty = 0;
     mpm_view view = mapped(list[i].field, MPM_READ);

@@ -6,14 +6,14 @@ typedef struct mpmi_tally {
 } mpmi_tally;
 
 /* Second moment D of the basis at a particle, for the affine part of the angular momentum. */
-MPMI_INLINE mpmi_lanes second_moment(const mpmi_survey *job, int32_t axis, int64_t s) {
+MPMI_INLINE mpmi_lanes second_moment(const mpmi_sums_job *job, int32_t axis, int64_t s) {
   if (job->moment[axis]) return mpmi_lanes_load(job->moment[axis] + s);
   const mpmi_lanes zero = {0.0};
   return zero + job->constant_moment[axis];
 }
 
 /* m (x x v + sum_k D_k e_k x C e_k): component r of the angular momentum, with a, b the two other axes. */
-MPMI_INLINE void add_angular(int32_t dim, const mpmi_survey *job, int64_t s, int32_t r, mpmi_lanes m,
+MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t r, mpmi_lanes m,
                              const mpmi_lanes *x, const mpmi_lanes *v, mpmi_tally *t) {
   const int32_t a = (r + 1) % 3, b = (r + 2) % 3;
   if (a >= dim || b >= dim) return;
@@ -24,7 +24,7 @@ MPMI_INLINE void add_angular(int32_t dim, const mpmi_survey *job, int64_t s, int
 }
 
 /* Work of gravity and of the other external forces along axis k. */
-MPMI_INLINE void add_work(const mpmi_survey *job, int64_t s, int32_t k, mpmi_lanes m, mpmi_lanes x,
+MPMI_INLINE void add_work(const mpmi_sums_job *job, int64_t s, int32_t k, mpmi_lanes m, mpmi_lanes x,
                           mpmi_tally *t) {
   if (!job->x_old[0] || (job->gravity[k] == 0.0 && !job->force[0])) return;
   mpmi_lanes path = x - mpmi_lanes_load(job->x_old[k] + s), force = m * job->gravity[k];
@@ -33,11 +33,11 @@ MPMI_INLINE void add_work(const mpmi_survey *job, int64_t s, int32_t k, mpmi_lan
   t->work += force * path;
 }
 
-MPMI_INLINE void add_group(int32_t dim, const mpmi_survey *job, int64_t s, mpmi_tally *t) {
+MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpmi_tally *t) {
   const mpmi_lanes m = mpmi_lanes_load(job->mass + s), v0 = mpmi_lanes_load(job->initial_volume + s);
   const mpmi_mask live = v0 > 0.0; /* holes have no volume, and what the law says of them is of no interest */
   const mpmi_lanes c = mpmi_lanes_where(live, mpmi_lanes_load(job->wave_speed + s));
-  if (job->what & MPMI_SURVEY_LAW) {
+  if (job->what & MPMI_SUMS_LAW) {
     const mpmi_lanes nu = mpmi_lanes_where(live, mpmi_lanes_load(job->kinematic_viscosity + s));
     t->strain += v0 * mpmi_lanes_where(live, mpmi_lanes_load(job->energy + s));
     t->viscosity = mpmi_lanes_max(t->viscosity, nu);
@@ -48,7 +48,7 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_survey *job, int64_t s, mpmi_
         t->bad += value - value;
       }
   }
-  if (!(job->what & MPMI_SURVEY_MOTION)) return;
+  if (!(job->what & MPMI_SUMS_MOTION)) return;
   mpmi_lanes x[3], v[3];
   for (int32_t k = 0; k < dim; ++k) {
     x[k] = mpmi_lanes_load(job->x[k] + s);
@@ -62,7 +62,7 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_survey *job, int64_t s, mpmi_
   for (int32_t r = 0; r < 3; ++r) add_angular(dim, job, s, r, m, x, v, t);
 }
 
-MPMI_INLINE uint32_t survey(int32_t dim, const mpmi_survey *job, int64_t n, mpmi_sums *sums) {
+MPMI_INLINE uint32_t sum_batch(int32_t dim, const mpmi_sums_job *job, int64_t n, mpmi_sums *sums) {
   const mpmi_lanes zero = {0.0};
   mpmi_tally t = {zero, zero, zero, zero, zero, zero, {zero, zero, zero}, {zero, zero, zero}};
   for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) add_group(dim, job, s, &t);
@@ -80,11 +80,11 @@ MPMI_INLINE uint32_t survey(int32_t dim, const mpmi_survey *job, int64_t n, mpmi
   return mpmi_lanes_sum(t.bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE;
 }
 
-#define SURVEY(dim)                                                                                          \
-  uint32_t KERNEL(survey_##dim)(const mpmi_survey *job, int64_t n, mpmi_sums *sums);                         \
-  uint32_t KERNEL(survey_##dim)(const mpmi_survey *job, int64_t n, mpmi_sums *sums) {                        \
-    return survey(dim, job, n, sums);                                                                        \
+#define SUMS(dim)                                                                                            \
+  uint32_t KERNEL(sums_##dim)(const mpmi_sums_job *job, int64_t n, mpmi_sums *sums);                         \
+  uint32_t KERNEL(sums_##dim)(const mpmi_sums_job *job, int64_t n, mpmi_sums *sums) {                        \
+    return sum_batch(dim, job, n, sums);                                                                     \
   }
-SURVEY(1)
-SURVEY(2)
-SURVEY(3)
+SUMS(1)
+SUMS(2)
+SUMS(3)
