@@ -5,6 +5,8 @@
 
 #include <mpm/mpm.h>
 
+#include "context/structs.h"
+
 /* First word of every handle: tells a live object of the right kind from anything else. */
 enum {
   MPMI_CONTEXT = 0x6d706d01,
@@ -68,20 +70,6 @@ void mpmi_parallel_for_sure(mpm_context *context, int64_t count, mpm_task_fn tas
 mpm_status mpmi_pool_create(mpm_context *context, int32_t threads, mpmi_pool **out);
 void mpmi_pool_destroy(mpm_context *context, mpmi_pool *pool);
 void mpmi_pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *data);
-
-/* Checks a versioned input struct: `given` is what the caller set, `known` the library's sizeof. Copies into
- * `out` (known bytes). A larger struct is accepted when its unknown tail is zero. `name` goes into the error
- * text. */
-mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known,
-                            void *out);
-/* Writes min(struct_size, known) bytes of `value` to the caller's `out`, keeping out's struct_size. */
-mpm_status mpmi_write_struct(mpm_context *context, const char *name, const void *value, uint32_t known,
-                             void *out);
-/* The check that mpmi_write_struct makes, for calls that must know before they do anything. */
-mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_t known, const void *out);
-/* For mpm_*_desc_init: copies the defaults, zeroes any tail, sets struct_size. Refuses sizes below `known`.
- */
-mpm_status mpmi_init_struct(const void *defaults, uint32_t known, void *out, uint32_t struct_size);
 
 /* Of a clock that only goes forward (clock.c). */
 double mpmi_seconds(void);

@@ -29,7 +29,7 @@ static mpm_context_desc default_desc(void) {
 
 mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size) {
   mpm_context_desc defaults = default_desc();
-  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+  return mpmi_init_struct("mpm_context_desc", &defaults, sizeof defaults, desc, struct_size);
 }
 
 static int processor_has(int32_t isa) {

@@ -1,8 +1,35 @@
-/* Versioned structs: struct_size comes first, fields are only appended, and every appended default is zero.
- */
+/* Versioned structs of hosts that were compiled against this release, an earlier or a later one: see
+ * structs.h. */
+#include <stddef.h>
 #include <string.h>
 
 #include "context/context.h"
+
+/* Every release of every versioned struct: the last field that it had, and its size on LP64. None of these
+ * lines ever changes. A release that appends fields to a struct adds a line below that of the struct. */
+#define RELEASES(X)                                                                                          \
+  X(mpm_view, owner, 56)                                                                                     \
+  X(mpm_context_desc, log_user, 72)                                                                          \
+  X(mpm_grid_desc, smoothing, 112)                                                                           \
+  X(mpm_material_batch, lookup, 144)                                                                         \
+  X(mpm_material_desc, state_initial, 64)                                                                    \
+  X(mpm_stepper_desc, reserved, 152)                                                                         \
+  X(mpm_step_info, angular_momentum, 192)                                                                    \
+  X(mpm_particle_batch, lookup, 104)                                                                         \
+  X(mpm_node_batch, mass, 72)                                                                                \
+  X(mpm_advance_desc, max_steps, 56)                                                                         \
+  X(mpm_profile, weights, 96)                                                                                \
+  X(mpm_operator_info, position, 72)
+
+#define END(type, last) (offsetof(type, last) + sizeof(((type *)0)->last))
+/* Where pointers have 4 bytes, a struct may end with padding. */
+#define BYTES(type, last)        ((END(type, last) + _Alignof(type) - 1) / _Alignof(type) * _Alignof(type))
+#define ENTRY(type, last, bytes) {#type, BYTES(type, last)},
+#define FROZEN(type, last, bytes)                                                                            \
+  _Static_assert(sizeof(void *) != 8 || (END(type, last) == (bytes) && sizeof(type) >= (bytes)),             \
+                 #type ": a field of a release has moved or gone");
+RELEASES(FROZEN)
+const mpmi_release mpmi_releases[] = {RELEASES(ENTRY){NULL, 0}};
 
 /* No struct of this interface comes near; more is a size that was never set. */
 enum { LARGEST_STRUCT = 1 << 16 };
@@ -13,27 +40,51 @@ static uint32_t struct_size_of(const void *versioned) {
   return size;
 }
 
-mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known,
-                            void *out) {
+static uint32_t first_size(const mpmi_release *table, const char *name) {
+  while (table->name && strcmp(table->name, name) != 0) ++table;
+  return table->bytes;
+}
+
+/* The size of the latest release of a struct that is whole within so many bytes; 0 if none is. */
+static uint32_t whole_size(const mpmi_release *table, const char *name, uint32_t bytes) {
+  uint32_t whole = 0;
+  for (; table->name; ++table)
+    if (strcmp(table->name, name) == 0 && table->bytes <= bytes) whole = table->bytes;
+  return whole;
+}
+
+uint32_t mpmi_first_size(const char *name) {
+  return first_size(mpmi_releases, name);
+}
+
+mpm_status mpmi_read_release(const mpmi_release *table, mpm_context *context, const char *name,
+                             const void *desc, uint32_t known, void *out) {
   if (!desc) return mpmi_fail(context, MPM_E_ARG, "%s is NULL", name);
-  uint32_t given = struct_size_of(desc);
-  if (given < known || given > LARGEST_STRUCT)
-    return mpmi_fail(context, MPM_E_ARG, "%s: struct_size is %u, expected %u (call its _init first)", name,
-                     given, known);
+  const uint32_t given = struct_size_of(desc);
+  const uint32_t whole = whole_size(table, name, given < known ? given : known);
+  if (!whole || given > LARGEST_STRUCT)
+    return mpmi_fail(context, MPM_E_ARG, "%s: struct_size is %u, must be at least %u (call its _init first)",
+                     name, given, first_size(table, name));
   const unsigned char *bytes = desc;
-  for (uint32_t i = known; i < given; ++i)
+  for (uint32_t i = whole; i < given; ++i)
     if (bytes[i])
       return mpmi_fail(context, MPM_E_UNSUPPORTED,
                        "%s sets a field that this version of the library does not know (byte %u of %u)", name,
                        i, given);
-  memcpy(out, desc, known);
+  memset(out, 0, known);
+  memcpy(out, desc, whole);
   memcpy(out, &known, sizeof known);
   return MPM_OK;
 }
 
+mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known,
+                            void *out) {
+  return mpmi_read_release(mpmi_releases, context, name, desc, known, out);
+}
+
 mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_t known, const void *out) {
   if (!out) return mpmi_fail(context, MPM_E_ARG, "%s is NULL", name);
-  uint32_t given = struct_size_of(out);
+  const uint32_t given = struct_size_of(out);
   if (given < sizeof given || given > LARGEST_STRUCT)
     return mpmi_fail(context, MPM_E_ARG, "%s: struct_size is %u, expected %u", name, given, known);
   return MPM_OK;
@@ -41,18 +92,25 @@ mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_
 
 mpm_status mpmi_write_struct(mpm_context *context, const char *name, const void *value, uint32_t known,
                              void *out) {
-  mpm_status status = mpmi_check_out_struct(context, name, known, out);
+  const mpm_status status = mpmi_check_out_struct(context, name, known, out);
   if (status) return status;
-  uint32_t given = struct_size_of(out);
+  const uint32_t given = struct_size_of(out);
   memcpy(out, value, given < known ? given : known);
   memcpy(out, &given, sizeof given);
   return MPM_OK;
 }
 
-mpm_status mpmi_init_struct(const void *defaults, uint32_t known, void *out, uint32_t struct_size) {
-  if (!out || struct_size < known || struct_size > LARGEST_STRUCT) return MPM_E_ARG;
+mpm_status mpmi_init_release(const mpmi_release *table, const char *name, const void *defaults,
+                             uint32_t known, void *out, uint32_t struct_size) {
+  const uint32_t whole = whole_size(table, name, struct_size < known ? struct_size : known);
+  if (!out || !whole || struct_size > LARGEST_STRUCT) return MPM_E_ARG;
   memset(out, 0, struct_size);
-  memcpy(out, defaults, known);
+  memcpy(out, defaults, whole);
   memcpy(out, &struct_size, sizeof struct_size);
   return MPM_OK;
+}
+
+mpm_status mpmi_init_struct(const char *name, const void *defaults, uint32_t known, void *out,
+                            uint32_t struct_size) {
+  return mpmi_init_release(mpmi_releases, name, defaults, known, out, struct_size);
 }

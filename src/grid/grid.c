@@ -17,7 +17,7 @@ mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size) {
   defaults.basis = MPM_BSPLINE2;
   defaults.boundary_basis = MPM_BOUNDARY_GHOST;
   defaults.smoothing = 0.5;
-  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+  return mpmi_init_struct("mpm_grid_desc", &defaults, sizeof defaults, desc, struct_size);
 }
 
 static mpm_status check_basis(mpm_context *context, const mpm_grid_desc *desc) {

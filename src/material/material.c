@@ -96,7 +96,7 @@ mpm_status mpm_material_create(mpm_context *context, const char *model, const mp
 mpm_status mpm_material_desc_init(mpm_material_desc *desc, uint32_t struct_size) {
   const mpm_material_desc defaults = {.struct_size = sizeof defaults,
                                       .tangent_form = MPM_TANGENT_MINOR_SYMMETRIC};
-  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+  return mpmi_init_struct("mpm_material_desc", &defaults, sizeof defaults, desc, struct_size);
 }
 
 static mpm_status check_desc(mpm_context *context, const mpm_material_desc *d) {

@@ -139,7 +139,8 @@ mpm_status mpmi_particles_check_suspects(mpm_particles *set);
 mpm_status mpmi_particles_refresh(mpm_particles *set);
 /* Refuses when the set is mapped or in the middle of a staged step: MPM_E_STATE. */
 mpm_status mpmi_particles_changeable(mpm_particles *set);
-/* Views shared by particles and nodes (view.c). */
+/* Views shared by particles and nodes (view.c): the check of the host's struct, then what it is told. */
+mpm_status mpmi_view_check(mpm_context *context, const mpm_view *view);
 void mpmi_view_fill(mpm_view *view, int32_t type, int32_t components, int32_t access, int64_t count,
                     int64_t ld, void *data, mpmi_view_record *record);
 

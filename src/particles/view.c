@@ -1,21 +1,29 @@
 /* Views: the library's own memory, lent until it is given back. */
-#include <stddef.h>
+#include <string.h>
 
 #include "particles/values.h"
 
-/* Size of the struct in its first release, which has all that a view needs. */
-static const uint32_t least_size = offsetof(mpm_view, owner) + sizeof(void *);
+mpm_status mpmi_view_check(mpm_context *context, const mpm_view *view) {
+  if (!view) return mpmi_fail(context, MPM_E_ARG, "view is NULL");
+  if (view->struct_size < mpmi_first_size("mpm_view"))
+    return mpmi_fail(context, MPM_E_ARG, "mpm_view: struct_size is %u, must be sizeof(mpm_view)",
+                     view->struct_size);
+  return MPM_OK;
+}
 
 void mpmi_view_fill(mpm_view *view, int32_t type, int32_t components, int32_t access, int64_t count,
                     int64_t ld, void *data, mpmi_view_record *record) {
-  view->type = type;
-  view->components = components;
-  view->access = access;
-  view->count = count;
-  view->item_stride = 1;
-  view->component_stride = ld;
-  view->data = data;
-  view->owner = record;
+  const mpm_view filled = {.struct_size = view->struct_size,
+                           .type = type,
+                           .components = components,
+                           .access = access,
+                           .count = count,
+                           .item_stride = 1,
+                           .component_stride = ld,
+                           .data = data,
+                           .owner = record};
+  /* The host's struct may be that of another release: longer or shorter than this one. */
+  memcpy(view, &filled, view->struct_size < sizeof filled ? view->struct_size : sizeof filled);
 }
 
 static mpmi_view_record *free_record(mpm_particles *set) {
@@ -26,14 +34,12 @@ static mpmi_view_record *free_record(mpm_particles *set) {
 
 static mpm_status check_request(const mpm_particles *set, const char *field, int32_t access,
                                 const mpm_view *view, int32_t *f) {
-  if (!view) return mpmi_fail(set->context, MPM_E_ARG, "view is NULL");
-  if (view->struct_size < least_size)
-    return mpmi_fail(set->context, MPM_E_ARG, "mpm_view: struct_size is %u, must be sizeof(mpm_view)",
-                     view->struct_size);
+  mpm_status status = mpmi_view_check(set->context, view);
+  if (status) return status;
   if (access < MPM_READ || access > (MPM_READ | MPM_WRITE))
     return mpmi_fail(set->context, MPM_E_ARG, "access is %d, must be MPM_READ, MPM_WRITE or both",
                      (int)access);
-  mpm_status status = mpmi_require_field(set, field, f);
+  status = mpmi_require_field(set, field, f);
   if (!status) status = mpmi_check_exists(set, *f);
   if (!status && access & MPM_WRITE) status = mpmi_check_writable(set, *f);
   if (status) return status;

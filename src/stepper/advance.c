@@ -10,7 +10,7 @@ static const mpm_advance_desc defaults = {.struct_size = sizeof(mpm_advance_desc
 static const double CUT = 0.6, GROW = 2.0;
 
 mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct_size) {
-  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+  return mpmi_init_struct("mpm_advance_desc", &defaults, sizeof defaults, desc, struct_size);
 }
 
 static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {

@@ -106,14 +106,12 @@ mpm_status mpmi_node_check_kept(const mpm_stepper *s, int32_t field) {
 static mpm_status check_map(mpm_stepper *s, int32_t body, const char *field, int32_t access,
                             const mpm_view *view, int32_t *which) {
   mpm_context *c = s->context;
-  if (!view) return mpmi_fail(c, MPM_E_ARG, "view is NULL");
-  if (view->struct_size < sizeof *view)
-    return mpmi_fail(c, MPM_E_ARG, "mpm_view: struct_size is %u, must be sizeof(mpm_view)",
-                     (unsigned)view->struct_size);
+  mpm_status status = mpmi_view_check(c, view);
+  if (status) return status;
   if (body != 0) return mpmi_fail(c, MPM_E_NOT_FOUND, "body is %d: there is only body 0", (int)body);
   if (access != MPM_READ && access != MPM_WRITE && access != (MPM_READ | MPM_WRITE))
     return mpmi_fail(c, MPM_E_ARG, "access is %d: it must be MPM_READ, MPM_WRITE or both", (int)access);
-  mpm_status status = mpmi_node_require(c, field, which);
+  status = mpmi_node_require(c, field, which);
   if (!status) status = mpmi_nodes_ready(s);
   if (status) return status;
   if ((access & MPM_WRITE) && *which != MPMI_NODE_VELOCITY && *which != MPMI_NODE_FORCE)

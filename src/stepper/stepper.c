@@ -21,7 +21,7 @@ static const mpm_stepper_desc defaults = {.struct_size = sizeof(mpm_stepper_desc
                                           .linear_solver = MPM_SOLVER_AUTO};
 
 mpm_status mpm_stepper_desc_init(mpm_stepper_desc *desc, uint32_t struct_size) {
-  return mpmi_init_struct(&defaults, sizeof defaults, desc, struct_size);
+  return mpmi_init_struct("mpm_stepper_desc", &defaults, sizeof defaults, desc, struct_size);
 }
 
 static mpm_status known_scheme(mpm_context *c, int32_t scheme) {

@@ -343,6 +343,7 @@ START_TEST(layout_of_operator_info) {
 END_TEST
 #undef STRUCT
 
+TCase *abi_structs_case(void);
 Suite *abi_suite(void);
 Suite *abi_suite(void) {
   Suite *suite = suite_create("abi");
@@ -364,5 +365,6 @@ Suite *abi_suite(void) {
     tcase_add_test(frozen, layout_of_operator_info);
   }
   suite_add_tcase(suite, frozen);
+  suite_add_tcase(suite, abi_structs_case());
   return suite;
 }
