@@ -5,8 +5,6 @@
 
 #include <mpm/mpm.h>
 
-#include "context/structs.h"
-
 /* First word of every handle: tells a live object of the right kind from anything else. */
 enum {
   MPMI_CONTEXT = 0x6d706d01,

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "context/structs.h"
 #include "context/context.h"
 
 enum { MOST_THREADS = 1024 };

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "context/context.h"
+#include "context/structs.h"
 
 /* Every release of every versioned struct: the last field that it had, and its size on LP64. None of these
  * lines ever changes. A release that appends fields to a struct adds a line below that of the struct. */

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "context/structs.h"
 #include "grid/grid.h"
 
 enum { MOST_CELLS = 6 << 20 }; /* block coordinates take 21 bits per axis, and a block has up to 6 cells */

@@ -4,35 +4,35 @@
 #include <string.h>
 
 int32_t mpmi_state_is_sorted(const mpm_stepper *s) {
-  if (s->blocks.count == 0) return 0;
-  for (int32_t m = 0; m < s->member_count; ++m)
-    if (s->member[m].set->dirty & (MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE)) return 0;
+  if (s->layout.blocks.count == 0) return 0;
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    if (s->layout.member[m].set->dirty & (MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE)) return 0;
   return 1;
 }
 
 static int32_t has_slots(const mpm_stepper *s, int64_t block) {
-  for (int32_t m = 0; m < s->member_count; ++m)
-    if (s->member[m].now.start[block + 1] > s->member[m].now.start[block]) return 1;
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    if (s->layout.member[m].now.start[block + 1] > s->layout.member[m].now.start[block]) return 1;
   return 0;
 }
 
 int64_t mpmi_state_count_blocks(const mpm_stepper *s) {
   int64_t count = 0;
-  for (int64_t b = 0; b < s->blocks.count; ++b) count += has_slots(s, b);
+  for (int64_t b = 0; b < s->layout.blocks.count; ++b) count += has_slots(s, b);
   return count;
 }
 
 void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s) {
-  for (int64_t b = 0; b < s->blocks.count; ++b) {
+  for (int64_t b = 0; b < s->layout.blocks.count; ++b) {
     if (!has_slots(s, b)) continue;
-    int64_t coord[3] = {s->blocks.coord[b][0], s->blocks.coord[b][1], s->blocks.coord[b][2]};
+    int64_t coord[3] = {s->layout.blocks.coord[b][0], s->layout.blocks.coord[b][1], s->layout.blocks.coord[b][2]};
     mpmi_archive_bytes(a, coord, sizeof coord);
   }
-  for (int32_t m = 0; m < s->member_count; ++m) {
-    int64_t *start = s->member[m].now.start;
-    for (int64_t b = 0; b < s->blocks.count; ++b)
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    int64_t *start = s->layout.member[m].now.start;
+    for (int64_t b = 0; b < s->layout.blocks.count; ++b)
       if (has_slots(s, b)) mpmi_archive_bytes(a, start + b, sizeof *start);
-    mpmi_archive_bytes(a, start + s->blocks.count, sizeof *start);
+    mpmi_archive_bytes(a, start + s->layout.blocks.count, sizeof *start);
   }
 }
 
@@ -94,10 +94,10 @@ static mpm_status read_starts(mpmi_archive *a, const mpmi_blocks *blocks, int64_
 }
 
 mpm_status mpmi_state_read_blocks(mpmi_archive *a, mpm_stepper *s, int64_t count, const mpmi_state_set *set) {
-  mpmi_blocks *blocks = &s->next_blocks;
+  mpmi_blocks *blocks = &s->layout.next_blocks;
   mpmi_blocks_clear(blocks);
   mpm_status status = read_coordinates(a, blocks, count);
-  for (int32_t m = 0; m < s->member_count && !status; ++m)
-    status = read_starts(a, blocks, count, set[m].numbers.slots, &s->member[m].next);
+  for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
+    status = read_starts(a, blocks, count, set[m].numbers.slots, &s->layout.member[m].next);
   return status;
 }

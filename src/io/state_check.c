@@ -1,6 +1,7 @@
 /* What the values of a loaded set must fulfil, so that a step can work with them: kernels do not look twice.
  */
 #include "io/state.h"
+#include "layout/axes.h"
 
 static void check_ids(mpmi_archive *a, mpm_particles *fresh) {
   const int64_t *id = mpmi_i64(fresh, MPMI_ID, 0);

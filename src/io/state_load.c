@@ -41,15 +41,15 @@ static mpm_status check_checksum(mpm_context *context, const mpmi_state_header *
 }
 
 static mpm_status check_idle(const mpm_stepper *s) {
-  if (s->phase != MPMI_IDLE)
+  if (s->step.phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before loading");
   if (s->mapped)
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them before loading",
                      (int)s->mapped);
-  for (int32_t m = 0; m < s->member_count; ++m)
-    if (s->member[m].set->mapped)
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    if (s->layout.member[m].set->mapped)
       return mpmi_fail(s->context, MPM_E_STATE, "%d views of set %d are out: release them before loading",
-                       (int)s->member[m].set->mapped, (int)m);
+                       (int)s->layout.member[m].set->mapped, (int)m);
   return MPM_OK;
 }
 
@@ -83,7 +83,7 @@ static void read_numbers(loading *l) {
     mpmi_archive_damaged(a, "its numbers make no sense");
   const int64_t unsorted = MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE,
                 flags = MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION | (n->blocks < 0 ? unsorted : 0);
-  for (int32_t m = 0; m < l->stepper->member_count && !a->status; ++m) {
+  for (int32_t m = 0; m < l->stepper->layout.member_count && !a->status; ++m) {
     mpmi_state_set_numbers *of = &l->set[m].numbers;
     mpmi_archive_bytes(a, of, sizeof *of);
     if (a->status) return;
@@ -133,8 +133,8 @@ static mpm_status read_set(loading *l, int32_t m) {
   if (a->status) return a->status;
   const int32_t sorted = l->numbers.blocks >= 0;
   snprintf(a->where, sizeof a->where, "set %d: ", (int)m);
-  mpmi_state_check_set(a, fresh, sorted ? &l->stepper->next_blocks : NULL,
-                       sorted ? l->stepper->member[m].next.start : NULL);
+  mpmi_state_check_set(a, fresh, sorted ? &l->stepper->layout.next_blocks : NULL,
+                       sorted ? l->stepper->layout.member[m].next.start : NULL);
   a->where[0] = '\0';
   return a->status;
 }
@@ -146,7 +146,7 @@ static mpm_status read_state(loading *l) {
   read_numbers(l);
   mpm_status status = a->status;
   if (!status && l->numbers.blocks >= 0) status = read_blocks(l);
-  for (int32_t m = 0; m < s->member_count && !status; ++m) status = read_set(l, m);
+  for (int32_t m = 0; m < s->layout.member_count && !status; ++m) status = read_set(l, m);
   if (!status && a->at != a->size) {
     mpmi_archive_damaged(a, "it is longer than its contents");
     status = a->status;
@@ -177,24 +177,25 @@ static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
 static void take_over(loading *l) {
   mpm_stepper *s = l->stepper;
   const mpmi_state_numbers *n = &l->numbers;
-  for (int32_t m = 0; m < s->member_count; ++m) {
-    exchange_storage(s->member[m].set, &l->set[m].fresh);
-    memcpy(s->member[m].reaction, l->set[m].numbers.reaction, sizeof s->member[m].reaction);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    exchange_storage(s->layout.member[m].set, &l->set[m].fresh);
+    memcpy(s->layout.member[m].reaction, l->set[m].numbers.reaction, sizeof s->layout.member[m].reaction);
   }
-  if (n->blocks < 0) mpmi_blocks_clear(&s->blocks);
-  s->nodes_valid = 0;
-  s->t = n->t;
-  s->previous_dt = n->previous_dt;
-  s->controller_dt = n->controller_dt;
-  s->mass_cut = n->mass_cut;
-  s->reaction_dt = n->reaction_dt;
-  s->step = n->step;
-  s->resorts = n->resorts;
-  s->removed = n->removed;
-  s->energies = (mpmi_energies){n->energies_valid != 0, n->sums};
-  s->has_reactions = n->has_reactions != 0;
-  memcpy(s->impulse_by_face, n->impulse_by_face, sizeof n->impulse_by_face);
-  s->last = n->last;
+  if (n->blocks < 0) mpmi_blocks_clear(&s->layout.blocks);
+  s->nodes.shown = -1;
+  s->history.t = n->t;
+  s->history.previous_dt = n->previous_dt;
+  s->history.controller_dt = n->controller_dt;
+  s->layout.mass_cut = n->mass_cut;
+  s->history.reaction_dt = n->reaction_dt;
+  s->history.step = n->step;
+  s->layout.sorts = n->resorts;
+  s->history.removed = n->removed;
+  s->history.has_sums = n->energies_valid != 0;
+  s->history.sums = n->sums;
+  s->history.has_reactions = n->has_reactions != 0;
+  memcpy(s->history.impulse_by_face, n->impulse_by_face, sizeof n->impulse_by_face);
+  s->history.last = n->last;
 }
 
 mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
@@ -207,17 +208,17 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   const unsigned char *body = (const unsigned char *)buffer + sizeof header;
   if ((status = check_checksum(s->context, &header, body))) return status;
   loading l = {.stepper = s};
-  const size_t set_bytes = mpmi_bytes(s->member_count, sizeof *l.set);
+  const size_t set_bytes = mpmi_bytes(s->layout.member_count, sizeof *l.set);
   l.set = mpmi_alloc_zeroed(s->context, set_bytes);
   if (!l.set) return MPM_E_NOMEM;
-  for (int32_t m = 0; m < s->member_count; ++m) start_set(&l.set[m], s->member[m].set);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) start_set(&l.set[m], s->layout.member[m].set);
   mpmi_archive_begin(&l.archive, s->context, MPMI_FROM_MEMORY);
   l.archive.from = body;
   l.archive.size = bytes - (int64_t)sizeof header;
   status = read_state(&l);
-  if (!status && l.numbers.blocks >= 0) status = mpmi_stepper_adopt(s);
+  if (!status && l.numbers.blocks >= 0) status = mpmi_layout_adopt(&s->layout, &s->settings);
   if (!status) take_over(&l);
-  for (int32_t m = 0; m < s->member_count; ++m)
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
     for (int32_t f = 0; f < l.set[m].fresh.field_count; ++f) mpmi_field_make_absent(&l.set[m].fresh, f);
   mpmi_free(s->context, l.set, set_bytes);
   return status;

@@ -3,12 +3,12 @@
 #include <string.h>
 
 static mpm_status check_between_steps(const mpm_stepper *s) {
-  if (s->phase == MPMI_IDLE) return MPM_OK;
+  if (s->step.phase == MPMI_IDLE) return MPM_OK;
   return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before saving");
 }
 
 static mpm_status check_views(const mpm_stepper *s, int32_t m) {
-  const mpm_particles *set = s->member[m].set;
+  const mpm_particles *set = s->layout.member[m].set;
   for (int32_t i = 0; i < MPMI_MAX_VIEWS; ++i)
     if (set->view[i].live && set->view[i].access & MPM_WRITE)
       return mpmi_fail(s->context, MPM_E_STATE,
@@ -19,35 +19,35 @@ static mpm_status check_views(const mpm_stepper *s, int32_t m) {
 
 mpm_status mpmi_state_settle(const mpm_stepper *s) {
   mpm_status status = check_between_steps(s);
-  for (int32_t m = 0; m < s->member_count && !status; ++m) {
+  for (int32_t m = 0; m < s->layout.member_count && !status; ++m) {
     status = check_views(s, m);
     /* Bad values written through a view bar saving as they bar a step; the text says which. */
-    if (!status && mpmi_particles_check_suspects(s->member[m].set)) status = MPM_E_STATE;
+    if (!status && mpmi_particles_check_suspects(s->layout.member[m].set)) status = MPM_E_STATE;
     /* What follows from F may have been left for later: const or not, the host sees the same. */
-    if (!status) status = mpmi_particles_refresh(s->member[m].set);
+    if (!status) status = mpmi_particles_refresh(s->layout.member[m].set);
   }
   return status;
 }
 
 static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
-  mpmi_state_numbers n = {.t = s->t,
-                          .previous_dt = s->previous_dt,
-                          .controller_dt = s->controller_dt,
-                          .mass_cut = s->mass_cut,
-                          .reaction_dt = s->reaction_dt,
-                          .step = s->step,
-                          .resorts = s->resorts,
-                          .removed = s->removed,
-                          .energies_valid = s->energies.valid != 0,
-                          .has_reactions = s->has_reactions != 0,
+  mpmi_state_numbers n = {.t = s->history.t,
+                          .previous_dt = s->history.previous_dt,
+                          .controller_dt = s->history.controller_dt,
+                          .mass_cut = s->layout.mass_cut,
+                          .reaction_dt = s->history.reaction_dt,
+                          .step = s->history.step,
+                          .resorts = s->layout.sorts,
+                          .removed = s->history.removed,
+                          .energies_valid = s->history.has_sums != 0,
+                          .has_reactions = s->history.has_reactions != 0,
                           .blocks = mpmi_state_is_sorted(s) ? mpmi_state_count_blocks(s) : -1,
-                          .sums = s->energies.sums,
-                          .last = s->last};
-  memcpy(n.impulse_by_face, s->impulse_by_face, sizeof n.impulse_by_face);
+                          .sums = s->history.sums,
+                          .last = s->history.last};
+  memcpy(n.impulse_by_face, s->history.impulse_by_face, sizeof n.impulse_by_face);
   mpmi_archive_bytes(a, &n, sizeof n);
-  for (int32_t m = 0; m < s->member_count; ++m) {
-    const mpm_particles *set = s->member[m].set;
-    const double *reaction = s->member[m].reaction;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    const mpm_particles *set = s->layout.member[m].set;
+    const double *reaction = s->layout.member[m].reaction;
     mpmi_state_set_numbers of_set = {set->count, set->slots,    set->next_id,
                                      set->dirty, set->mass_max, {reaction[0], reaction[1], reaction[2]}};
     mpmi_archive_bytes(a, &of_set, sizeof of_set);
@@ -67,7 +67,7 @@ void mpmi_state_write(mpmi_archive *a, const mpm_stepper *s) {
   mpmi_state_setup(a, s, NULL);
   write_numbers(a, s);
   if (mpmi_state_is_sorted(s)) mpmi_state_write_blocks(a, s);
-  for (int32_t m = 0; m < s->member_count; ++m) write_fields(a, s->member[m].set);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) write_fields(a, s->layout.member[m].set);
 }
 
 mpmi_state_header mpmi_state_header_of(const mpmi_archive *a) {

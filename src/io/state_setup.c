@@ -121,15 +121,15 @@ void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set
   mpmi_archive_bytes(a, &version, sizeof version);
   mpmi_archive_bytes(a, &isa, sizeof isa);
   setup_grid(a, &s->grid->desc);
-  setup_scheme(a, &s->desc);
-  mpmi_archive_same_int(a, "number of sets", s->member_count);
-  for (int32_t m = 0; m < s->member_count && !a->status; ++m) {
+  setup_scheme(a, &s->settings.desc);
+  mpmi_archive_same_int(a, "number of sets", s->layout.member_count);
+  for (int32_t m = 0; m < s->layout.member_count && !a->status; ++m) {
     snprintf(a->where, sizeof a->where, "set %d: ", (int)m);
-    setup_law(a, s->member[m].set->material);
+    setup_law(a, s->layout.member[m].set->material);
     if (set)
       read_fields(a, &set[m]);
     else
-      write_fields(a, s->member[m].set);
+      write_fields(a, s->layout.member[m].set);
   }
   a->where[0] = '\0';
 }

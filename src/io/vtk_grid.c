@@ -56,7 +56,7 @@ static void find_box(image *w) {
   int64_t high[3] = {0, 0, 0};
   for (int64_t i = 0; i < s->active_count; ++i) {
     int64_t index[3] = {0, 0, 0};
-    mpmi_blocks_index(&s->blocks, s->active[i], index);
+    mpmi_blocks_index(&s->layout.blocks, s->active[i], index);
     for (int32_t k = 0; k < 3; ++k) {
       if (i == 0 || index[k] < w->low[k]) w->low[k] = index[k];
       if (i == 0 || index[k] > high[k]) high[k] = index[k];
@@ -80,7 +80,7 @@ static mpm_status check_box(const image *w) {
 
 static uint64_t place_of(const image *w, int64_t slot) {
   int64_t index[3] = {0, 0, 0}, place = 0;
-  mpmi_blocks_index(&w->s->blocks, slot, index);
+  mpmi_blocks_index(&w->s->layout.blocks, slot, index);
   for (int32_t k = 2; k >= 0; --k) place = place * w->size[k] + index[k] - w->low[k];
   return (uint64_t)place;
 }

@@ -1,4 +1,5 @@
 /* The linear system lent to the host's solver. */
+#include "context/structs.h"
 #include "linalg/operator.h"
 
 #include <string.h>

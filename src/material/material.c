@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "context/structs.h"
 #include "material/laws.h"
 
 enum { MAX_STATE_COUNT = 64 };

@@ -1,6 +1,7 @@
 /* Views: the library's own memory, lent until it is given back. */
 #include <string.h>
 
+#include "context/structs.h"
 #include "particles/values.h"
 
 mpm_status mpmi_view_check(mpm_context *context, const mpm_view *view) {

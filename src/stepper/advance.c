@@ -1,5 +1,7 @@
 /* Sub-steps to a given time: cut on failure, grown on success. */
-#include "stepper/stepper.h"
+#include "context/structs.h"
+#include "stepper/make_step.h"
+#include "stepper/reports.h"
 
 #include <float.h>
 #include <math.h>
@@ -15,9 +17,9 @@ mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct_size) {
 
 static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {
   mpm_context *c = s->context;
-  if (!isfinite(d->t_end) || d->t_end < s->t)
+  if (!isfinite(d->t_end) || d->t_end < s->history.t)
     return mpmi_fail(c, MPM_E_ARG, "t_end is %g: it must be finite and not before the present time %g",
-                     d->t_end, s->t);
+                     d->t_end, s->history.t);
   if (!(d->cfl > 0.0 && d->cfl <= 1.0))
     return mpmi_fail(c, MPM_E_ARG, "cfl is %g: it must lie in (0, 1]", d->cfl);
   const struct {
@@ -37,14 +39,14 @@ static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {
 
 /* The sub-step that the bounds allow, cut so that no sliver remains before t_end. */
 static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, int32_t *last) {
-  const double left = d->t_end - s->t;
+  const double left = d->t_end - s->history.t;
   *dt = left;
-  if (!mpmi_is_implicit(s)) {
+  if (!mpmi_is_implicit(&s->settings)) {
     const mpm_status status = mpm_stable_dt(s, dt);
     if (status) return status;
     *dt *= d->cfl;
   }
-  if (s->controller_dt > 0.0 && s->controller_dt < *dt) *dt = s->controller_dt;
+  if (s->history.controller_dt > 0.0 && s->history.controller_dt < *dt) *dt = s->history.controller_dt;
   if (d->dt_max > 0.0 && d->dt_max < *dt) *dt = d->dt_max;
   *last = left <= *dt * (1.0 + 1e-9);
   if (*last)
@@ -57,34 +59,34 @@ static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, 
 /* Explicit: until it no longer bounds the stable dt. Implicit: as the iterations went; a step that t_end cut
  * says nothing of longer ones. */
 static void let_grow(mpm_stepper *s, double dt) {
-  if (mpmi_is_implicit(s)) {
-    s->controller_dt = fmax(s->controller_dt, s->last.dt_suggested);
+  if (mpmi_is_implicit(&s->settings)) {
+    s->history.controller_dt = fmax(s->history.controller_dt, s->history.last.dt_suggested);
     return;
   }
-  if (s->controller_dt > 0.0) s->controller_dt *= GROW;
-  if (s->controller_dt > 1e6 * dt) s->controller_dt = 0.0;
+  if (s->history.controller_dt > 0.0) s->history.controller_dt *= GROW;
+  if (s->history.controller_dt > 1e6 * dt) s->history.controller_dt = 0.0;
 }
 
 /* The first matrix of a quasi-static step does not know dt: cutting that would not help. */
 static int32_t no_cut_helps(const mpm_stepper *s, mpm_status status) {
-  return status == MPM_SINGULAR && s->desc.quasi_static && s->last.newton_iterations <= 1;
+  return status == MPM_SINGULAR && s->settings.desc.quasi_static && s->history.last.newton_iterations <= 1;
 }
 
 static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
-  if (d->dt_first > 0.0) s->controller_dt = d->dt_first;
-  for (int64_t step = 0; s->t < d->t_end && (!d->max_steps || step < d->max_steps);) {
+  if (d->dt_first > 0.0) s->history.controller_dt = d->dt_first;
+  for (int64_t step = 0; s->history.t < d->t_end && (!d->max_steps || step < d->max_steps);) {
     double dt;
     int32_t last;
     mpm_status status = choose(s, d, &dt, &last);
     if (status) return status;
     /* nothing is left that the clock can show; a step that is too small for it is refused below */
-    if (s->t + dt == s->t && s->t + 0.5 * (d->t_end - s->t) == s->t) {
-      s->t = d->t_end;
+    if (s->history.t + dt == s->history.t && s->history.t + 0.5 * (d->t_end - s->history.t) == s->history.t) {
+      s->history.t = d->t_end;
       return MPM_OK;
     }
-    status = mpmi_step(s, dt);
+    status = mpmi_make_step(s, dt);
     if (!status) {
-      if (last) s->t = d->t_end;
+      if (last) s->history.t = d->t_end;
       let_grow(s, dt);
       ++step;
       continue;
@@ -92,9 +94,9 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
     const double smaller = CUT * dt;
     /* cutting ends where numbers lose digits: the smallest would be cut to itself */
     if (status < MPM_CUT_DT || status > MPM_SINGULAR || no_cut_helps(s, status) || smaller < d->dt_min ||
-        smaller < DBL_MIN || s->t + smaller == s->t)
+        smaller < DBL_MIN || s->history.t + smaller == s->history.t)
       return status;
-    s->controller_dt = smaller;
+    s->history.controller_dt = smaller;
   }
   return MPM_OK;
 }
@@ -103,17 +105,10 @@ mpm_status mpm_advance(mpm_stepper *s, const mpm_advance_desc *desc, mpm_step_in
   MPMI_ENTER(s, MPMI_STEPPER);
   if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
   mpm_advance_desc d = defaults;
-  mpm_status status = info ? mpmi_check_out_struct(s->context, "mpm_step_info", sizeof *info, info) : MPM_OK;
+  mpm_status status = mpmi_check_info(s, info);
   if (status || (status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d)) ||
       (status = check(s, &d)))
     return status;
-  if (s->phase != MPMI_IDLE)
-    return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
-  status = sub_steps(s, &d);
-  if (!info) return status;
-  mpm_step_info now;
-  mpmi_fill_info(s, &now);
-  now.cause = status;
-  const mpm_status written = mpmi_write_struct(s->context, "mpm_step_info", &now, sizeof now, info);
-  return status ? status : written;
+  status = mpmi_stepper_idle(s);
+  return status ? status : mpmi_give_info(s, sub_steps(s, &d), info);
 }

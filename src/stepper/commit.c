@@ -1,5 +1,7 @@
-/* The end of a step: the second copies become the state, or are dropped. */
-#include "stepper/stepper.h"
+#include "stepper/commit.h"
+#include "boundary/prescribed.h"
+#include "stages/strain.h"
+#include "stepper/state_sums.h"
 
 #include <string.h>
 
@@ -37,70 +39,58 @@ static void remove_outside(mpm_stepper *s, mpm_particles *set) {
           mpmi_f64(set, MPMI_POSITION, 1)[k * set->ld + slot];
     mpmi_make_hole(set, slot);
     --set->count;
-    ++s->removed;
-    s->energies.valid = 0;
+    ++s->history.removed;
+    s->history.has_sums = 0;
     mpmi_index_drop(set);
   }
 }
 
-static void add_up_blocks(mpm_stepper *s) {
-  mpmi_sums sums = {0};
-  for (int64_t i = 0; i < s->cut.count; ++i) mpmi_add_sums(&sums, &s->block_sums[s->cut.list[i]]);
-  s->energies = (mpmi_energies){1, sums};
+/* The new copies of what a step writes. */
+static void swap_copies(const mpm_stepper *s, mpm_particles *set, int32_t left_tile) {
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    mpmi_field *field = &set->field[f];
+    if (!field->present || !written_by_step(f)) continue;
+    void *swap = field->data[0];
+    field->data[0] = field->data[1];
+    field->data[1] = swap;
+  }
+  if (left_tile) set->dirty |= MPMI_DIRTY_PLACE;
+  set->dirty &= ~(uint32_t)(MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION);
+  if (!mpmi_is_implicit(&s->settings) || s->settings.desc.quasi_static) set->dirty |= MPMI_DIRTY_ACCELERATION;
 }
 
-void mpmi_commit(mpm_stepper *s, double dt) {
+static void commit_history(mpm_stepper *s) {
+  mpmi_step *step = &s->step;
+  mpmi_history *history = &s->history;
+  const mpmi_sums before = history->sums;
+  history->sums = mpmi_block_sums(step);
+  history->has_sums = 1;
+  history->t += step->dt;
+  ++history->step;
+  const mpmi_sums *after = &history->sums;
+  const double work = after->work + step->host_work;
+  step->info.external_work = work;
+  step->info.dissipation = before.kinetic + before.strain + work - after->kinetic - after->strain;
+  memcpy(history->impulse_by_face, step->impulse_by_face, sizeof history->impulse_by_face);
+  history->reaction_dt = step->velocity_dt;
+  history->previous_dt = s->settings.desc.staggered ? step->dt : 0.0;
+  history->has_reactions = 1;
+}
+
+void mpmi_commit(mpm_stepper *s) {
   int32_t left = 0, removes = 0, restored = 0;
-  for (int32_t k = 0; k < s->tasks; ++k) {
-    left |= s->scratch[k].left_tile;
-    removes |= s->scratch[k].removes;
-    restored |= s->scratch[k].holes_restored;
+  for (int32_t k = 0; k < s->settings.tasks; ++k) {
+    left |= s->work.report[k].left_tile;
+    removes |= s->work.report[k].removes;
+    restored |= s->work.report[k].holes_restored;
   }
-  const mpmi_sums before = s->energies.sums;
-  mpmi_prescribed_commit(s);
-  add_up_blocks(s);
-  const mpmi_sums *after = &s->energies.sums;
-  for (int32_t m = 0; m < s->member_count; ++m) {
-    mpm_particles *set = s->member[m].set;
-    for (int32_t f = 0; f < set->field_count; ++f) {
-      mpmi_field *field = &set->field[f];
-      if (!field->present || !written_by_step(f)) continue;
-      void *swap = field->data[0];
-      field->data[0] = field->data[1];
-      field->data[1] = swap;
-    }
-    if (left) set->dirty |= MPMI_DIRTY_PLACE;
-    set->dirty &= ~(uint32_t)(MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION);
-    if (!mpmi_is_implicit(s) || s->desc.quasi_static) set->dirty |= MPMI_DIRTY_ACCELERATION;
-  }
-  s->t += dt;
-  ++s->step;
-  const double work = after->work + s->prescribed_work;
-  s->last.external_work = work;
-  s->last.dissipation = before.kinetic + before.strain + work - after->kinetic - after->strain;
-  memcpy(s->impulse_by_face, s->impulse_in_step, sizeof s->impulse_by_face);
-  s->reaction_dt = s->velocity_dt;
-  s->previous_dt = s->desc.staggered ? dt : 0.0;
-  s->has_reactions = 1;
-  if (restored) s->energies.valid = 0;
-  if (removes)
-    for (int32_t m = 0; m < s->member_count; ++m) remove_outside(s, s->member[m].set);
+  mpmi_prescribed_report(&s->step, &s->nodes);
+  commit_history(s);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) swap_copies(s, s->layout.member[m].set, left);
+  if (restored) s->history.has_sums = 0;
+  for (int32_t m = 0; m < s->layout.member_count && removes; ++m) remove_outside(s, s->layout.member[m].set);
 }
 
-void mpmi_make_volumes(mpm_stepper *s, int32_t copy) {
-  const int32_t dim = s->grid->dim;
-  for (int32_t m = 0; m < s->member_count; ++m) {
-    mpm_particles *set = s->member[m].set;
-    if (!set->slots) continue;
-    const double *F[9];
-    for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
-      F[c] = mpmi_f64(set, MPMI_F, copy) + c * set->ld;
-    s->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0),
-                            set->slots);
-  }
-}
-
-/* Only volumes were overwritten: F is still there to make them again. */
 void mpmi_roll_back(mpm_stepper *s) {
-  mpmi_make_volumes(s, 0);
+  mpmi_make_volumes(&s->layout, &s->settings, 0);
 }

@@ -1,6 +1,5 @@
 /* Active nodes lie scattered over the blocks, so views are copies; what was written goes back at release. */
 #include "stepper/node_view.h"
-#include "stepper/stepper.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,7 +10,6 @@ const mpmi_node_field mpmi_node_fields[MPMI_NODE_FIELDS] = {
     [MPMI_NODE_FORCE] = {"force", MPM_F64, 0},       [MPMI_NODE_ACCELERATION] = {"acceleration", MPM_F64, 0},
     [MPMI_NODE_REACTION] = {"reaction", MPM_F64, 0},
 };
-enum { VIEWS = (int)(sizeof((mpm_stepper *)0)->view / sizeof(mpmi_view_record)) };
 
 static int32_t components_of(const mpm_stepper *s, int32_t field) {
   return mpmi_node_fields[field].scalar ? 1 : s->grid->dim;
@@ -19,20 +17,22 @@ static int32_t components_of(const mpm_stepper *s, int32_t field) {
 
 /* Nodes hold [p m f 0] until velocities are solved for, then [v m dv 0]; fused nodes have no second half. */
 static double value_of(const mpm_stepper *s, int32_t field, int64_t slot, int32_t c) {
-  const double *node = s->node + slot * s->values, mass = node[3];
-  const int32_t solved = s->phase != MPMI_BEGUN;
-  const double *bound = s->impulses && solved ? s->impulse + 6 * slot : NULL;
-  const double impulse = bound ? bound[c] : 0.0, change = bound ? bound[3 + c] : 0.0;
-  const double dt = s->phase == MPMI_IDLE ? s->nodes_dt : s->velocity_dt;
+  const mpmi_nodal *values = &s->nodes.solved;
+  const double mass = *mpmi_mass(values, slot), v = mpmi_velocity(values, slot)[c];
+  const double dv = mpmi_has_increments(values) ? mpmi_increment(values, slot)[c] : 0.0;
+  const int32_t solved = s->step.phase != MPMI_BEGUN;
+  const mpmi_impulse *bound = s->nodes.has_impulses && solved ? &s->nodes.impulse[slot] : NULL;
+  const double impulse = bound ? bound->given[c] : 0.0, change = bound ? bound->change[c] : 0.0;
+  const double dt = s->step.phase == MPMI_IDLE ? s->nodes.shown_dt : s->step.velocity_dt;
   switch (field) {
   case MPMI_NODE_MASS:
     return mass;
   case MPMI_NODE_VELOCITY:
-    return solved ? node[c] : node[c] / mass;
+    return solved ? v : v / mass;
   case MPMI_NODE_FORCE:
-    return solved ? mass * (node[4 + c] - change) / dt : node[4 + c];
+    return solved ? mass * (dv - change) / dt : dv;
   case MPMI_NODE_ACCELERATION:
-    return solved ? node[4 + c] / dt : node[4 + c] / mass;
+    return solved ? dv / dt : dv / mass;
   default:
     return impulse / dt;
   }
@@ -42,7 +42,7 @@ void mpmi_node_values(const mpm_stepper *s, int32_t field, const int64_t *slot, 
                       int64_t item_stride, int64_t component_stride, void *out) {
   for (int64_t i = 0; i < n; ++i) {
     int64_t index[3];
-    mpmi_blocks_index(&s->blocks, slot[i], index);
+    mpmi_blocks_index(&s->layout.blocks, slot[i], index);
     for (int32_t c = 0; c < components_of(s, field); ++c) {
       const int64_t at = i * item_stride + c * component_stride;
       if (field == MPMI_NODE_INDEX)
@@ -57,9 +57,7 @@ void mpmi_node_values(const mpm_stepper *s, int32_t field, const int64_t *slot, 
 
 mpm_status mpmi_nodes_list(mpm_stepper *s) {
   if (s->mapped) return MPM_OK;
-  const int64_t slots = s->blocks.count * s->blocks.nodes;
-  int64_t count = 0;
-  for (int64_t i = 0; i < slots; ++i) count += s->node[i * s->values + 3] > s->mass_cut;
+  const int64_t slots = mpmi_slots(&s->layout), count = mpmi_count_active(&s->layout, &s->nodes.solved);
   if (count > s->active_capacity) {
     int64_t *memory = mpmi_alloc(s->context, mpmi_bytes(count, sizeof *memory));
     if (!memory) return MPM_E_NOMEM;
@@ -69,7 +67,7 @@ mpm_status mpmi_nodes_list(mpm_stepper *s) {
   }
   s->active_count = 0;
   for (int64_t i = 0; i < slots; ++i)
-    if (s->node[i * s->values + 3] > s->mass_cut) s->active[s->active_count++] = i;
+    if (*mpmi_mass(&s->nodes.solved, i) > s->layout.mass_cut) s->active[s->active_count++] = i;
   return MPM_OK;
 }
 
@@ -87,13 +85,15 @@ mpm_status mpmi_node_require(mpm_context *context, const char *name, int32_t *fi
 }
 
 mpm_status mpmi_nodes_ready(const mpm_stepper *s) {
-  if (s->phase == MPMI_RUNNING || (s->phase == MPMI_IDLE && !s->nodes_valid))
+  const int32_t shown = s->nodes.shown == s->layout.version;
+  if (s->step.phase == MPMI_RUNNING || (s->step.phase == MPMI_IDLE && !shown))
     return mpmi_fail(s->context, MPM_E_STATE, "there are no nodal fields: make a step or begin one first");
   return MPM_OK;
 }
 
 int32_t mpmi_node_keeps(const mpm_stepper *s, int32_t field) {
-  return s->values > 4 || (field != MPMI_NODE_FORCE && field != MPMI_NODE_ACCELERATION);
+  return mpmi_has_increments(&s->nodes.solved) ||
+         (field != MPMI_NODE_FORCE && field != MPMI_NODE_ACCELERATION);
 }
 
 mpm_status mpmi_node_check_kept(const mpm_stepper *s, int32_t field) {
@@ -118,7 +118,7 @@ static mpm_status check_map(mpm_stepper *s, int32_t body, const char *field, int
     return mpmi_fail(c, MPM_E_ARG, "nodal \"%s\" cannot be written: only \"velocity\" and \"force\" can",
                      field);
   if ((access & MPM_WRITE) &&
-      (s->phase == MPMI_IDLE || (*which == MPMI_NODE_FORCE && s->phase != MPMI_BEGUN)))
+      (s->step.phase == MPMI_IDLE || (*which == MPMI_NODE_FORCE && s->step.phase != MPMI_BEGUN)))
     return mpmi_fail(c, MPM_E_STATE, "nodal \"%s\" can be written %s only", field,
                      *which == MPMI_NODE_FORCE ? "between mpm_step_begin and mpm_step_grid"
                                                : "during a staged step");
@@ -130,9 +130,10 @@ mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t
   int32_t which, at = 0;
   mpm_status status = check_map(s, body, field, access, view, &which);
   if (status) return status;
-  while (at < VIEWS && s->view[at].live) ++at;
-  if (at == VIEWS)
-    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release one first", VIEWS);
+  while (at < MPMI_NODE_VIEWS && s->view[at].live) ++at;
+  if (at == MPMI_NODE_VIEWS)
+    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release one first",
+                     MPMI_NODE_VIEWS);
   if ((status = mpmi_nodes_list(s))) return status;
   const int32_t components = components_of(s, which);
   const size_t bytes = mpmi_bytes(s->active_count * components, sizeof(double));
@@ -160,22 +161,24 @@ static mpm_status write_back(mpm_stepper *s, int32_t field, const double *value)
   for (int64_t i = 0; i < s->active_count * s->grid->dim; ++i) {
     if (isfinite(value[i])) continue;
     int64_t index[3];
-    mpmi_blocks_index(&s->blocks, s->active[i % s->active_count], index);
+    mpmi_blocks_index(&s->layout.blocks, s->active[i % s->active_count], index);
     return mpmi_fail(s->context, MPM_E_ARG, "nodal \"%s\" is %g at node %lld: nothing was written",
                      mpmi_node_fields[field].name, value[i], (long long)mpmi_node_number(s->grid, index));
   }
   for (int64_t i = 0; i < s->active_count; ++i)
     for (int32_t c = 0; c < s->grid->dim; ++c) {
-      double *node = s->node + s->active[i] * s->values;
+      const double mass = *mpmi_mass(&s->nodes.solved, s->active[i]);
+      double *v = mpmi_velocity(&s->nodes.solved, s->active[i]) + c;
+      double *second = mpmi_increment(&s->nodes.solved, s->active[i]) + c;
       const double wanted = value[c * s->active_count + i];
       if (field == MPMI_NODE_FORCE) {
-        node[4 + c] = wanted;
-      } else if (s->phase == MPMI_BEGUN) {
+        *second = wanted;
+      } else if (s->step.phase == MPMI_BEGUN) {
         /* untouched values must come back as they were: p / m * m rounds */
-        if (wanted != node[c] / node[3]) node[c] = wanted * node[3];
+        if (wanted != *v / mass) *v = wanted * mass;
       } else {
-        node[4 + c] += wanted - node[c];
-        node[c] = wanted;
+        *second += wanted - *v;
+        *v = wanted;
       }
     }
   return MPM_OK;

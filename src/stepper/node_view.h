@@ -2,7 +2,7 @@
 #ifndef MPMI_NODE_VIEW_H
 #define MPMI_NODE_VIEW_H
 
-#include "particles/particles.h"
+#include "stepper/stepper.h"
 
 enum {
   MPMI_NODE_INDEX,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "context/structs.h"
 #include "context/context.h"
 
 typedef struct sample {

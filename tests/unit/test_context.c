@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "context/structs.h"
 #include "context/context.h"
 #include "transfer/kernels.h"
 

@@ -1,0 +1,145 @@
+#include "boundary/prescribed.h"
+#include "layout/particle_batch.h"
+
+#include <math.h>
+#include <string.h>
+
+static int32_t any_in(const mpm_particles *set, int64_t begin, int64_t end) {
+  const uint8_t *flags = set->field[MPMI_PRESCRIBED].data[0];
+  uint8_t any = 0;
+  for (int32_t c = 0; c < set->grid->dim; ++c)
+    for (int64_t p = begin; p < end; ++p) any |= flags[c * set->ld + p];
+  return any != 0;
+}
+
+static void touch_around(const mpmi_blocks *b, uint8_t *flag, int64_t block) {
+  flag[block] |= MPMI_WITH_PRESCRIBED;
+  for (int32_t n = 0; n < b->neighbours; ++n)
+    if (b->neighbour[block][n] != MPMI_NO_BLOCK) flag[b->neighbour[block][n]] |= MPMI_TOUCHED;
+}
+
+/* A master takes what its followers are given, wherever it lies. */
+static void touch_masters(const mpmi_constraints *constraints, int32_t block_nodes, uint8_t *flag) {
+  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
+    int32_t touched = 0;
+    for (int64_t d = tie->first; d < tie->first + tie->count; ++d)
+      touched |= flag[constraints->follower[d].slot / block_nodes];
+    if (touched & MPMI_TOUCHED) flag[tie->master / block_nodes] |= MPMI_TOUCHED;
+  }
+}
+
+static void find_blocks(const mpmi_layout *layout, uint8_t *flag) {
+  const mpmi_blocks *b = &layout->blocks;
+  memset(flag, 0, (size_t)b->count);
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const mpmi_member *member = &layout->member[m];
+    for (int64_t block = 0; block < b->count && member->prescribed; ++block)
+      if (any_in(member->set, member->now.start[block], member->now.start[block + 1]))
+        touch_around(b, flag, block);
+  }
+  touch_masters(&layout->constraints, b->nodes, flag);
+}
+
+mpm_status mpmi_prescribed_prepare(mpmi_layout *layout, mpmi_nodes *nodes, const mpmi_settings *settings) {
+  mpmi_prescription *p = &nodes->prescription;
+  mpm_context *c = settings->context;
+  mpm_status status;
+  p->any = 0;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    mpmi_member *member = &layout->member[m];
+    member->prescribed =
+        member->set->field[MPMI_PRESCRIBED].present && any_in(member->set, 0, member->set->slots);
+    p->any |= member->prescribed;
+  }
+  if (!p->any) return MPM_OK;
+  const int64_t blocks = layout->blocks.count;
+  if ((status =
+           mpmi_reserve_more(c, (void **)&p->sums, &p->sums_capacity, mpmi_slots(layout), sizeof *p->sums)) ||
+      (status = mpmi_reserve_more(c, (void **)&p->part, &p->part_capacity, blocks * layout->member_count,
+                                  sizeof *p->part)) ||
+      (status = mpmi_reserve_more(c, (void **)&p->block, &p->block_capacity, blocks, sizeof *p->block)))
+    return status;
+  find_blocks(layout, p->block);
+  return MPM_OK;
+}
+
+/* ---- mean velocities of the coming step
+ * -------------------------------------------------------------------- */
+static void ask_batch(void *user, int32_t m, const mpm_particle_batch *batch, int64_t begin,
+                      mpmi_failure *failure) {
+  const mpmi_step *step = user;
+  const mpmi_member *member = &step->layout->member[m];
+  double *mean = member->mean + begin;
+  for (int32_t c = 0; c < batch->dim; ++c) memset(mean + c * batch->ld, 0, (size_t)batch->n * sizeof *mean);
+  if (mpmi_call_particle_fn(member->motion, member->motion_user, "the motion callback", m, batch, mean,
+                            failure))
+    return;
+  for (int32_t c = 0; c < batch->dim; ++c)
+    for (int64_t p = 0; p < batch->n; ++p)
+      if (mpmi_is_prescribed(member->set, begin + p, c) && !isfinite(mean[c * batch->ld + p]))
+        mpmi_failure_take(failure, &(mpmi_failure){MPM_NONFINITE, 0, m, batch->id[p], -1,
+                                                   "prescribed velocity not finite"});
+}
+
+mpm_status mpmi_prescribed_stage(mpmi_step *step) {
+  for (int32_t m = 0; m < step->layout->member_count; ++m) {
+    if (!step->layout->member[m].prescribed || !step->layout->member[m].motion) continue;
+    const mpm_status status = mpmi_particle_batches(step, m, step->t, 1, ask_batch, step);
+    if (status) return status;
+  }
+  return mpmi_step_failure(step);
+}
+
+/* ---- motion
+ * ------------------------------------------------------------------------------------------------ */
+static uint32_t flags_of(const mpmi_move *move, int32_t c, double x) {
+  double away = x - move->centre[c];
+  away -= move->period[c] * nearbyint(away * move->inverse_period[c]);
+  return (x < move->low[c] || x > move->high[c] ? (uint32_t)MPMI_OUTSIDE : 0u) |
+         (fabs(away) > move->half[c] ? (uint32_t)MPMI_LEFT_TILE : 0u);
+}
+
+uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t m, int64_t block,
+                              const mpmi_move *move, int64_t begin, int64_t n) {
+  const mpmi_settings *settings = step->settings;
+  const mpmi_member *member = &step->layout->member[m];
+  const mpm_particles *set = member->set;
+  const double *mean = mpmi_mean_velocity(member), *mass = mpmi_f64(set, MPMI_MASS, 0);
+  mpmi_prescribed_part *part = mpmi_part_of(step->layout, nodes, block, m);
+  uint32_t flags = 0;
+  if (!mpmi_block_is(nodes, block, MPMI_WITH_PRESCRIBED)) return 0;
+  for (int32_t c = 0; c < settings->grid->dim; ++c)
+    for (int64_t p = 0; p < n; ++p) {
+      if (!mpmi_is_prescribed(set, begin + p, c)) continue;
+      const double u = mean[c * set->ld + begin + p], moved = move->v_new[c][p];
+      if (mpmi_is_dynamic(settings)) {
+        /* of an implicit step the nodes' balance is that at its end */
+        const double gained = mpmi_is_implicit(settings)
+                                  ? move->dt * (mpmi_f64(set, MPMI_ACCELERATION, 1) + c * set->ld)[begin + p]
+                                  : moved - move->v_old[c][p];
+        part->impulse[c] -= mass[begin + p] * gained;
+        part->work += mass[begin + p] * (u - move->v_old[c][p] - gained) * u;
+      }
+      move->v_new[c][p] = u;
+      move->x_new[c][p] = move->x_old[c][p] + move->dt * u;
+      flags |= flags_of(move, c, move->x_new[c][p]);
+    }
+  return flags;
+}
+
+/* ---- reports
+ * ----------------------------------------------------------------------------------------------- */
+void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes) {
+  const mpmi_layout *layout = step->layout;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    mpmi_member *member = &layout->member[m];
+    for (int32_t c = 0; c < 3; ++c) member->reaction[c] = 0.0;
+    for (int64_t b = 0; b < layout->blocks.count && member->prescribed; ++b) {
+      if (!mpmi_block_is(nodes, b, MPMI_WITH_PRESCRIBED)) continue;
+      const mpmi_prescribed_part *part = mpmi_part_of(layout, nodes, b, m);
+      for (int32_t c = 0; c < step->settings->grid->dim; ++c) member->reaction[c] += part->impulse[c];
+      step->host_work += part->work;
+    }
+  }
+}

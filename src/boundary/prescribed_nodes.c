@@ -1,0 +1,249 @@
+#include "boundary/prescribed_nodes.h"
+#include "boundary/prescribed.h"
+#include "layout/accumulate.h"
+#include "layout/axes.h"
+#include "layout/tasks.h"
+#include "layout/tile.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Nodes of the stencil of one particle: places in the tile, weights. */
+enum { MOST_NODES = MPMI_MAX_WIDTH * MPMI_MAX_WIDTH * MPMI_MAX_WIDTH };
+typedef struct stencil {
+  int32_t count, at[MOST_NODES];
+  double w[MOST_NODES];
+} stencil;
+
+static void find_stencil(const mpm_grid *grid, const mpmi_weights *W, int64_t p, stencil *to) {
+  const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width), width = grid->width;
+  to->count = 1;
+  to->at[0] = 0;
+  to->w[0] = 1.0;
+  for (int32_t axis = 0; axis < grid->dim; ++axis) {
+    for (int32_t n = to->count - 1; n >= 0; --n)
+      for (int32_t k = width - 1; k >= 0; --k) {
+        to->at[n * width + k] = to->at[n] * edge + k;
+        to->w[n * width + k] = to->w[n] * W->w[axis][k][p];
+      }
+    to->count *= width;
+  }
+  for (int32_t n = 0; n < to->count; ++n) to->at[n] += W->node[p];
+}
+
+/* One member's prescribed particles in one block, with the block's tile of sums. */
+typedef struct visit {
+  const mpmi_bound *f;
+  const mpmi_member *member;
+  double *tile;
+  mpmi_prescribed_part *part;
+} visit;
+typedef void (*visit_fn)(const visit *v, int64_t slot, const stencil *nodes);
+
+static void visit_chunk(const visit *v, const mpmi_axis *axis, int64_t begin, visit_fn fn) {
+  const mpm_particles *set = v->member->set;
+  const mpm_grid *grid = set->grid;
+  const mpmi_weights_fn weights = v->f->step->settings->kernels->weights[grid->family][grid->dim];
+  const mpmi_points points = mpmi_points_of(set, 0);
+  mpmi_weights W;
+  stencil nodes;
+  int32_t weighed = 0;
+  for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
+    int32_t any = 0;
+    for (int32_t c = 0; c < grid->dim; ++c) any |= mpmi_is_prescribed(set, begin + p, c);
+    if (!any) continue;
+    if (!weighed) weights(axis, 0, &points, begin, MPMI_CHUNK, &W);
+    weighed = 1;
+    find_stencil(grid, &W, p, &nodes);
+    fn(v, begin + p, &nodes);
+  }
+}
+
+static void visit_particles(const mpmi_bound *f, int64_t block, double *tile, visit_fn fn) {
+  const mpmi_layout *layout = f->step->layout;
+  mpmi_axis axis[3];
+  mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[block], axis);
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const visit v = {f, &layout->member[m], tile, mpmi_part_of(layout, f->nodes, block, m)};
+    const int64_t *start = v.member->now.start;
+    for (int64_t at = start[block]; at < start[block + 1] && v.member->prescribed; at += MPMI_CHUNK)
+      visit_chunk(&v, axis, at, fn);
+  }
+}
+_Static_assert((int)MPMI_PAD % (int)MPMI_CHUNK == 0, "blocks have whole chunks");
+
+/* ---- the nodes that they hold ----------------------------------------------------------------------------
+ */
+static void give_momentum(const visit *v, int64_t slot, const stencil *nodes) {
+  const mpm_particles *set = v->member->set;
+  const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot], *mean = mpmi_mean_velocity(v->member);
+  for (int32_t c = 0; c < v->f->dim; ++c) {
+    if (!mpmi_is_prescribed(set, slot, c)) continue;
+    const double momentum = mass * mean[c * set->ld + slot];
+    for (int32_t n = 0; n < nodes->count; ++n) {
+      double *sums = v->tile + 8 * (int64_t)nodes->at[n];
+      sums[c] += nodes->w[n] * momentum;
+      sums[3 + c] += nodes->w[n] * mass;
+    }
+  }
+}
+
+static void give_block(void *user, const mpmi_visit *at, double *tile) {
+  visit_particles(user, at->block, tile, give_momentum);
+}
+
+static mpmi_prescribed_sums *sums_at(const mpmi_nodes *nodes, int64_t slot) {
+  return nodes->prescription.sums + slot;
+}
+
+static mpmi_nodal sums_of(const mpmi_nodes *nodes) {
+  return (mpmi_nodal){.at = (double *)nodes->prescription.sums, .values = 8};
+}
+
+static int32_t is_touched(const mpmi_bound *f, int64_t slot) {
+  return mpmi_block_is(f->nodes, slot / f->step->layout->blocks.nodes, MPMI_TOUCHED);
+}
+
+/* Runs over the slots of the blocks that are touched. */
+typedef void (*slots_fn)(const mpmi_bound *f, int64_t begin, int64_t end, mpmi_failure *failure);
+typedef struct slots_job {
+  const mpmi_bound *f;
+  slots_fn fn;
+} slots_job;
+
+static void slots_task(void *data, int64_t k) {
+  const slots_job *job = data;
+  const mpmi_step *step = job->f->step;
+  const mpmi_blocks *blocks = &step->layout->blocks;
+  const mpmi_share share = mpmi_share_of(step->settings, blocks->count, k);
+  for (int64_t b = share.begin; b < share.end; ++b)
+    if (mpmi_block_is(job->f->nodes, b, MPMI_TOUCHED))
+      job->fn(job->f, b * blocks->nodes, (b + 1) * blocks->nodes, &step->work->report[k].failure);
+}
+
+static mpm_status over_slots(const mpmi_bound *f, slots_fn fn) {
+  slots_job job = {f, fn};
+  return mpmi_run_tasks(f->step->settings, 0, f->step->settings->tasks, slots_task, &job);
+}
+
+/* A tie moves as one, component by component with its sign. */
+static void fold_task(void *data, int64_t k) {
+  const mpmi_bound *f = data;
+  const mpmi_constraints *constraints = mpmi_constraints_of(f);
+  const mpmi_share share = mpmi_share_of(f->step->settings, constraints->tie_count, k);
+  for (int64_t i = share.begin; i < share.end; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
+    mpmi_prescribed_sums *master = sums_at(f->nodes, tie->master);
+    for (int64_t d = tie->first; d < tie->first + tie->count; ++d) {
+      const mpmi_follower *follower = &constraints->follower[d];
+      if (!is_touched(f, follower->slot) || !is_touched(f, tie->master)) continue;
+      const mpmi_prescribed_sums *sums = sums_at(f->nodes, follower->slot);
+      for (int32_t c = 0; c < f->dim; ++c) {
+        master->momentum[c] += follower->sign[c] * sums->momentum[c];
+        master->mass[c] += sums->mass[c];
+      }
+    }
+  }
+}
+
+/* After the host: it comes first. */
+static void hold_slots(const mpmi_bound *f, int64_t begin, int64_t end, mpmi_failure *failure) {
+  const mpmi_blocks *blocks = &f->step->layout->blocks;
+  for (int64_t slot = begin; slot < end; ++slot)
+    for (int32_t c = 0; c < f->dim && mpmi_moves(f, slot); ++c) {
+      const mpmi_prescribed_sums *sums = sums_at(f->nodes, slot);
+      if (f->nodes->held[slot][c] || !(sums->mass[c] > f->step->layout->mass_cut)) continue;
+      const double value = sums->momentum[c] / sums->mass[c];
+      if (!isfinite(value)) {
+        int64_t index[3];
+        mpmi_blocks_index(blocks, slot, index);
+        mpmi_failure_take(failure,
+                          &(mpmi_failure){MPM_NONFINITE, 0, -1, -1, mpmi_node_number(blocks->grid, index),
+                                          "velocity by prescribed particles not finite"});
+      }
+      f->nodes->held[slot][c] = MPMI_HELD_BY_PARTICLES;
+      f->nodes->held_value[slot][c] = value;
+    }
+}
+
+mpm_status mpmi_prescribed_hold(const mpmi_bound *f) {
+  const mpmi_nodal sums = sums_of(f->nodes);
+  mpm_status status = mpmi_accumulate(f->step, &(mpmi_accumulation){.to = &sums,
+                                                                    .give = give_block,
+                                                                    .fold = fold_task,
+                                                                    .user = (void *)(uintptr_t)f,
+                                                                    .flags = f->nodes->prescription.block,
+                                                                    .giving = MPMI_WITH_PRESCRIBED,
+                                                                    .receiving = MPMI_TOUCHED});
+  if (!status) status = over_slots(f, hold_slots);
+  return status ? status : mpmi_step_failure(f->step);
+}
+
+/* ---- their share of the impulses
+ * --------------------------------------------------------------------------- */
+/* The sums become impulse by prescribed mass: of free nodes here, of ties below. */
+static void divide_impulses(const mpmi_bound *f, int64_t begin, int64_t end, mpmi_failure *failure) {
+  (void)failure;
+  for (int64_t slot = begin; slot < end; ++slot)
+    for (int32_t c = 0; c < f->dim; ++c) {
+      mpmi_prescribed_sums *sums = sums_at(f->nodes, slot);
+      const int32_t theirs = mpmi_constraints_of(f)->tie_of[slot] < 0 &&
+                             mpmi_held_by(f->nodes, slot, c) == MPMI_HELD_BY_PARTICLES;
+      sums->momentum[c] = theirs ? f->nodes->impulse[slot].given[c] / sums->mass[c] : 0.0;
+    }
+}
+
+static void divide_of_tie(const mpmi_bound *f, const mpmi_tie *tie, int32_t c) {
+  const mpmi_follower *follower = tie->count ? mpmi_constraints_of(f)->follower + tie->first : NULL;
+  double total = f->nodes->impulse[tie->master].given[c];
+  for (int64_t d = 0; d < tie->count; ++d) total += f->nodes->impulse[follower[d].slot].given[c];
+  const double by_mass = total / sums_at(f->nodes, tie->master)->mass[c];
+  sums_at(f->nodes, tie->master)->momentum[c] = by_mass;
+  for (int64_t d = 0; d < tie->count; ++d)
+    if (is_touched(f, follower[d].slot)) sums_at(f->nodes, follower[d].slot)->momentum[c] = by_mass;
+}
+
+static void ties_task(void *data, int64_t k) {
+  const mpmi_bound *f = data;
+  const mpmi_constraints *constraints = mpmi_constraints_of(f);
+  const mpmi_share share = mpmi_share_of(f->step->settings, constraints->tie_count, k);
+  for (int64_t i = share.begin; i < share.end; ++i)
+    for (int32_t c = 0; c < f->dim; ++c)
+      if (mpmi_held_by(f->nodes, constraints->tie[i].master, c) == MPMI_HELD_BY_PARTICLES)
+        divide_of_tie(f, &constraints->tie[i], c);
+}
+
+static void take_share(const visit *v, int64_t slot, const stencil *nodes) {
+  const mpm_particles *set = v->member->set;
+  const mpmi_step *step = v->f->step;
+  const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot];
+  for (int32_t c = 0; c < v->f->dim; ++c) {
+    if (!mpmi_is_prescribed(set, slot, c)) continue;
+    double force = mass * step->settings->desc.gravity[c], impulse = 0.0;
+    if (v->member->force) force += v->member->force[c * set->ld + slot];
+    for (int32_t n = 0; n < nodes->count; ++n)
+      impulse += nodes->w[n] * v->tile[8 * (int64_t)nodes->at[n] + c];
+    v->part->impulse[c] += mass * impulse + step->velocity_dt * force;
+  }
+}
+
+static void share_block(void *user, const mpmi_visit *at) {
+  const mpmi_bound *f = user;
+  const mpmi_step *step = f->step;
+  const mpmi_nodal sums = sums_of(f->nodes);
+  double *tile = step->work->scratch[at->task].tile;
+  if (!mpmi_block_is(f->nodes, at->block, MPMI_WITH_PRESCRIBED)) return;
+  memset(mpmi_part_of(step->layout, f->nodes, at->block, 0), 0,
+         (size_t)step->layout->member_count * sizeof(mpmi_prescribed_part));
+  mpmi_tile_load(step->settings->kernels, &step->layout->blocks, at->block, &sums, 8, tile);
+  visit_particles(f, at->block, tile, take_share);
+}
+
+mpm_status mpmi_prescribed_share(const mpmi_bound *f) {
+  const mpmi_settings *settings = f->step->settings;
+  void *user = (void *)(uintptr_t)f;
+  mpm_status status = over_slots(f, divide_impulses);
+  if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, ties_task, user);
+  if (!status) status = mpmi_visit_blocks(f->step, 0, share_block, user);
+  return status;
+}

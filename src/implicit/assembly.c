@@ -1,0 +1,167 @@
+#include "implicit/assembly.h"
+#include "implicit/locking_stiffness.h"
+#include "implicit/particle_stiffness.h"
+#include "implicit/unknowns.h"
+#include "layout/accumulate.h"
+#include "layout/axes.h"
+#include "layout/tasks.h"
+#include "stages/locking.h"
+#include "stages/strain.h"
+
+#include <string.h>
+
+/* ---- external forces
+ * --------------------------------------------------------------------------------------- */
+static void give_external(void *user, const mpmi_visit *visit, double *tile) {
+  const mpmi_balance *s = user;
+  const mpm_grid *grid = s->settings->grid;
+  const mpmi_force_scatter_fn kernel = s->settings->kernels->force_scatter[grid->dim][grid->width];
+  for (int32_t m = 0; m < s->layout->member_count; ++m) {
+    const int64_t *start = s->layout->member[m].now.start + visit->block;
+    if (start[0] == start[1]) continue;
+    mpmi_force_scatter scatter = mpmi_force_scatter_of(s->settings, &s->layout->member[m], tile);
+    mpmi_block_axes(grid, s->layout->blocks.coord[visit->block], scatter.axis);
+    kernel(&scatter, start[0], start[1] - start[0]);
+  }
+}
+
+mpm_status mpmi_external_forces(mpmi_balance *s) {
+  return mpmi_accumulate(s->step,
+                         &(mpmi_accumulation){.to = &s->newton->external, .give = give_external, .user = s});
+}
+
+/* ---- strain of given displacements
+ * ------------------------------------------------------------------------- */
+/* Displacements as mean velocities of the step, on all nodes that move with a row. */
+typedef struct spread_job {
+  mpmi_balance *s;
+  const double *u;
+} spread_job;
+
+static void spread_task(void *data, int64_t k) {
+  const spread_job *job = data;
+  const mpmi_balance *s = job->s;
+  const mpmi_newton *newton = s->newton;
+  const int32_t dim = s->settings->grid->dim;
+  const mpmi_share share = mpmi_share_of(s->settings, newton->active_count, k);
+  for (int64_t i = share.begin; i < share.end; ++i) {
+    const mpmi_active_node *node = &newton->active[i];
+    for (int32_t c = 0; c < dim; ++c)
+      mpmi_velocity(&s->nodes->solved, node->slot)[c] =
+          node->sign[c] * (job->u[(int64_t)node->row * dim + c] / s->step->dt);
+  }
+}
+
+/* Nodes with the velocities of u; all tasks begin a pass that deforms. */
+static mpm_status begin_strain(mpmi_balance *s, const double *u, const mpmi_pass *pass) {
+  spread_job spread = {s, u};
+  mpmi_failures_clear(s->step);
+  mpm_status status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, spread_task, &spread);
+  if (!status && s->settings->desc.locking_remedy) {
+    /* the averages weigh with the volumes of the start of the step */
+    mpmi_make_volumes(s->layout, s->settings, 0);
+    status = mpmi_locking_stage(s->step, s->nodes, &s->nodes->solved);
+  }
+  for (int32_t k = 0; k < s->settings->tasks; ++k)
+    mpmi_pass_begin(&s->newton->work[k].batch, s->step, s->nodes, &s->nodes->solved, pass, s, k);
+  return status;
+}
+
+/* Stress of a batch, then what it adds to the nodes. */
+static void take(mpmi_batch *b, void (*add)(mpmi_balance *, mpmi_batch *)) {
+  mpmi_balance *s = b->user;
+  mpmi_gradient_keep(b);
+  if (!mpmi_strain_deform(b)) return;
+  if (s->settings->desc.locking_remedy) /* the law will see another one */
+    memcpy(s->newton->work[b->task].F_inc, b->law.F_inc, (size_t)(9 * b->law.ld) * sizeof(double));
+  mpmi_strain_law(b);
+  if (!b->law_ran) return;
+  add(s, b);
+  mpmi_wave_speed_leave(b);
+  mpmi_batch_sums(b, MPMI_SUMS_LAW);
+}
+
+/* ---- internal forces
+ * --------------------------------------------------------------------------------------- */
+static void take_forces(mpmi_batch *b) {
+  take(b, mpmi_add_forces);
+}
+
+static void give_internal(void *user, const mpmi_visit *visit, double *tile) {
+  mpmi_balance *s = user;
+  s->newton->work[visit->task].tile = tile;
+  mpmi_pass_block(&s->newton->work[visit->task].batch, visit->block, visit->next);
+}
+
+mpm_status mpmi_internal_forces(mpmi_balance *s, const double *u) {
+  static const mpmi_pass pass = {
+      .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .take = take_forces};
+  mpm_status status = begin_strain(s, u, &pass);
+  if (!status)
+    status = mpmi_accumulate(s->step, &(mpmi_accumulation){.to = &s->newton->force,
+                                                           .give = give_internal,
+                                                           .user = s,
+                                                           .calls_host = mpmi_has_host_law(s->layout),
+                                                           .gathers = 1});
+  if (!status) status = mpmi_step_failure(s->step);
+  if (!status) mpmi_unknowns_fold(s, &s->newton->force, s->newton->vector[MPMI_INTERNAL]);
+  return status;
+}
+
+/* ---- stiffness
+ * --------------------------------------------------------------------------------------------- */
+static void take_stiffness(mpmi_batch *b) {
+  take(b, mpmi_add_stiffness);
+}
+
+static void clear_matrix_task(void *data, int64_t k) {
+  const mpmi_balance *s = data;
+  const mpmi_matrix *A = &s->newton->matrix;
+  mpmi_clear_share(s->settings, A->value, A->row_start[A->rows], (int64_t)A->block * A->block, k);
+}
+
+/* Does the tile of a block reach over the end of a periodic axis? */
+static int32_t is_at_seam(const mpmi_balance *s, int64_t block) {
+  const mpm_grid *grid = s->settings->grid;
+  const mpmi_blocks *blocks = &s->layout->blocks;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const int64_t first = (int64_t)blocks->coord[block][k] * blocks->edge - MPMI_RING - grid->below;
+    const int64_t end = first + MPMI_TILE_EDGE(grid->dim, grid->width);
+    if (grid->desc.periodic[k] && (first < 0 || end > grid->desc.cells[k])) return 1;
+  }
+  return 0;
+}
+
+static void add_block(mpmi_balance *s, const mpmi_visit *visit) {
+  mpmi_newton_work *work = &s->newton->work[visit->task];
+  mpmi_tile_of_unknowns(s, visit->block, work->tile_active);
+  mpmi_pass_block(&work->batch, visit->block, visit->next);
+}
+
+static void add_inner(void *user, const mpmi_visit *visit) {
+  if (!is_at_seam(user, visit->block)) add_block(user, visit);
+}
+
+static void add_at_seam(void *user, const mpmi_visit *visit) {
+  if (is_at_seam(user, visit->block)) add_block(user, visit);
+}
+
+mpm_status mpmi_stiffness(mpmi_balance *s, const double *u) {
+  static const mpmi_pass pass = {
+      .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .take = take_stiffness};
+  mpmi_newton *newton = s->newton;
+  const int32_t tasks = s->settings->tasks, remedy = s->settings->desc.locking_remedy;
+  mpm_status status = mpmi_run_tasks(s->settings, 0, tasks, clear_matrix_task, s);
+  if (!status && remedy) status = mpmi_locking_stiffness_begin(s);
+  for (int32_t k = 0; k < tasks; ++k) newton->work[k].symmetric = 1;
+  if (!status) status = begin_strain(s, u, &pass);
+  if (!status) status = mpmi_visit_colours(s->step, mpmi_has_host_law(s->layout), add_inner, s);
+  if (status) return status;
+  /* rows of images are written at their masters', anywhere: these blocks come one by one */
+  mpmi_visit_in_turn(s->step, add_at_seam, s);
+  if ((status = mpmi_step_failure(s->step))) return status;
+  newton->matrix.symmetric = 1;
+  for (int32_t k = 0; k < tasks; ++k) newton->matrix.symmetric &= newton->work[k].symmetric;
+  if (remedy) mpmi_locking_stiffness_end(s);
+  return MPM_OK;
+}

@@ -1,0 +1,134 @@
+#include "implicit/balance.h"
+#include "context/arena.h"
+#include "layout/tile.h"
+
+#include <string.h>
+
+static double *take_rows(mpmi_arena *from, int64_t rows, int64_t length) {
+  return mpmi_arena_take(from, rows * length, sizeof(double));
+}
+
+static void lay_out(const mpmi_balance *s, mpmi_arena *from, mpmi_newton_work *to) {
+  const mpm_grid *grid = s->settings->grid;
+  const int64_t row = grid->dim * MPMI_STENCIL_NODES(grid->dim, grid->width);
+  const int64_t tile = mpmi_tile_nodes(grid);
+  int64_t length = 0;
+  size_t tangent = 0;
+  for (int32_t m = 0; m < s->layout->member_count; ++m) {
+    const mpm_material *material = s->layout->member[m].set->material;
+    const int64_t ld = mpmi_law_batch_length(material);
+    const size_t bytes = mpmi_material_tangent_scratch(material, ld);
+    length = ld > length ? ld : length;
+    tangent = bytes > tangent ? bytes : tangent;
+  }
+  to->F_inc = take_rows(from, 9, length);
+  to->nominal = take_rows(from, 9, length);
+  to->stiffness = take_rows(from, 81, length);
+  to->tangent = take_rows(from, 81, length);
+  to->weight = take_rows(from, 1, length);
+  to->h = take_rows(from, 9, length);
+  to->inverse = take_rows(from, 9, length);
+  to->tangent_scratch = mpmi_arena_take(from, (int64_t)tangent, 1);
+  to->K = take_rows(from, row, row);
+  to->tile_active = mpmi_arena_take(from, tile, sizeof *to->tile_active);
+}
+
+static mpm_status prepare_work(mpmi_balance *s) {
+  mpmi_newton *newton = s->newton;
+  mpmi_arena counter = {NULL, 0};
+  mpmi_newton_work one;
+  lay_out(s, &counter, &one);
+  const size_t bytes = counter.used * (size_t)s->settings->tasks;
+  if (bytes > newton->work_bytes) {
+    char *memory = mpmi_alloc_zeroed(s->settings->context, bytes);
+    if (!memory) return MPM_E_NOMEM;
+    mpmi_free(s->settings->context, newton->work_memory, newton->work_bytes);
+    newton->work_memory = memory;
+    newton->work_bytes = bytes;
+  }
+  for (int32_t k = 0; k < s->settings->tasks; ++k) {
+    mpmi_arena from = {(char *)newton->work_memory + (size_t)k * counter.used, 0};
+    lay_out(s, &from, &newton->work[k]);
+    memset(newton->work[k].K, 0, (size_t)((char *)newton->work[k].tile_active - (char *)newton->work[k].K));
+  }
+  return MPM_OK;
+}
+
+mpm_status mpmi_newton_create(const mpmi_settings *settings, mpmi_newton **out) {
+  mpm_context *c = settings->context;
+  mpmi_newton *newton = mpmi_alloc_zeroed(c, sizeof *newton);
+  if (!newton) return MPM_E_NOMEM;
+  newton->version = -1;
+  newton->work = mpmi_alloc_zeroed(c, mpmi_bytes(settings->tasks, sizeof *newton->work));
+  if (!newton->work || mpmi_solver_create(c, &newton->solver)) {
+    mpmi_free(c, newton->work, mpmi_bytes(settings->tasks, sizeof *newton->work));
+    mpmi_free(c, newton, sizeof *newton);
+    return MPM_E_NOMEM;
+  }
+  mpmi_matrix_init(&newton->matrix, c);
+  *out = newton;
+  return MPM_OK;
+}
+
+static mpm_status prepare_history(mpmi_balance *s) {
+  mpmi_newton *newton = s->newton;
+  const int32_t wanted = s->settings->desc.newton_max_iterations + 1;
+  if (wanted <= newton->history_capacity) return MPM_OK;
+  double *history = mpmi_alloc(s->settings->context, mpmi_bytes(wanted, sizeof *history));
+  if (!history) return MPM_E_NOMEM;
+  mpmi_free(s->settings->context, newton->history, mpmi_bytes(newton->history_capacity, sizeof *history));
+  newton->history = history;
+  newton->history_capacity = wanted;
+  return MPM_OK;
+}
+
+static mpm_status reserve_nodal(mpm_context *c, mpmi_nodal *nodes, int64_t slots) {
+  nodes->values = 4;
+  return mpmi_reserve_more(c, (void **)&nodes->at, &nodes->capacity, 4 * slots, sizeof *nodes->at);
+}
+
+static void find_stencil(const mpmi_settings *settings, mpmi_stencil *to) {
+  const int32_t dim = settings->grid->dim, width = settings->grid->width;
+  to->count = mpmi_cube_places(dim, width, MPMI_TILE_EDGE(dim, width), to->in_tile);
+  mpmi_cube_places(dim, width, 2 * mpmi_coupling_span(settings) - 1, to->offset);
+}
+
+mpm_status mpmi_balance_prepare(mpmi_balance *s) {
+  mpm_context *c = s->settings->context;
+  const int64_t slots = mpmi_slots(s->layout);
+  mpmi_newton *newton = s->newton;
+  mpm_status status;
+  find_stencil(s->settings, &newton->stencil);
+  newton->history_count = 0;
+  newton->iterations = newton->solver_used = 0;
+  newton->linear_iterations = 0;
+  newton->factor_seconds = newton->solve_seconds = 0.0;
+  if ((status = prepare_history(s)) || (status = prepare_work(s)) ||
+      (status = reserve_nodal(c, &newton->force, slots)))
+    return status;
+  return reserve_nodal(c, &newton->external, slots);
+}
+
+void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {
+  mpm_context *c = settings->context;
+  if (!newton) return;
+  mpmi_matrix_free(&newton->matrix);
+  mpmi_solver_destroy(newton->solver);
+  mpmi_free(c, newton->active, mpmi_bytes(newton->active_capacity, sizeof *newton->active));
+  mpmi_free(c, newton->active_of, mpmi_bytes(newton->map_capacity, sizeof *newton->active_of));
+  mpmi_free(c, newton->place, mpmi_bytes(newton->place_capacity, sizeof *newton->place));
+  mpmi_free(c, newton->members, mpmi_bytes(newton->members_capacity, sizeof *newton->members));
+  mpmi_free(c, newton->members_start,
+            mpmi_bytes(newton->members_start_capacity, sizeof *newton->members_start));
+  mpmi_free(c, newton->diagonal, mpmi_bytes(newton->diagonal_capacity, sizeof *newton->diagonal));
+  mpmi_free(c, newton->mass, mpmi_bytes(newton->mass_capacity, sizeof *newton->mass));
+  mpmi_free(c, newton->vector_memory, mpmi_bytes(newton->vector_capacity, sizeof *newton->vector_memory));
+  mpmi_free(c, newton->force.at, mpmi_bytes(newton->force.capacity, sizeof(double)));
+  mpmi_free(c, newton->external.at, mpmi_bytes(newton->external.capacity, sizeof(double)));
+  mpmi_free(c, newton->cell, mpmi_bytes(newton->cell_capacity, sizeof *newton->cell));
+  mpmi_free(c, newton->cell_node, mpmi_bytes(newton->cell_node_capacity, sizeof *newton->cell_node));
+  mpmi_free(c, newton->work_memory, newton->work_bytes);
+  mpmi_free(c, newton->work, mpmi_bytes(settings->tasks, sizeof *newton->work));
+  mpmi_free(c, newton->history, mpmi_bytes(newton->history_capacity, sizeof *newton->history));
+  mpmi_free(c, newton, sizeof *newton);
+}

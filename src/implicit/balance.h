@@ -1,0 +1,145 @@
+/* Implicit steps: Newton's method for the displacements of the nodes over one step (Guilkey & Weiss 2003,
+ * section 3).
+ *
+ *   newmark.c              one step: the state on nodes, the iterations, the new state of the particles
+ *   newton.c               the iterations: residual, increment, line search, convergence
+ *   unknowns.c             active nodes, their numbering, who holds them
+ *   pattern.c              the pattern of the matrix
+ *   assembly.c             forces and stiffness of all particles
+ *   particle_stiffness.c   what one batch of particles adds to them
+ *   locking_stiffness.c    what the remedy against volumetric locking adds to the stiffness
+ *   reactions.c            what walls, the host and prescribed particles exert
+ *   balance.c              memory
+ *
+ * Vectors have matrix.rows * dim entries, one row per node that moves by itself; what happens at its periodic
+ * images and mirrored ghosts is folded into it with their signs (grid/constraints.h). */
+#ifndef MPMI_BALANCE_H
+#define MPMI_BALANCE_H
+
+#include "linalg/solver.h"
+#include "stages/batch.h"
+
+/* A node in the stencil of a particle, and the row that it moves with. */
+typedef struct mpmi_active_node {
+  int64_t slot;
+  int32_t row;
+  int32_t plain; /* all signs are 1 */
+  double sign[3];
+} mpmi_active_node;
+
+enum {
+  MPMI_U,        /* displacement over the step */
+  MPMI_V0,       /* velocity at its start */
+  MPMI_A0,       /* acceleration at its start */
+  MPMI_TARGET,   /* displacement of held components */
+  MPMI_EXTERNAL, /* external force, at its end */
+  MPMI_INTERNAL, /* internal force of the displacements as they are */
+  MPMI_RESIDUAL, /* internal + inertia - external */
+  MPMI_RHS,      /* right-hand side of the linear system */
+  MPMI_DIAGONAL, /* sizes of the diagonal entries of the matrix */
+  MPMI_DU,       /* increment of the displacement */
+  MPMI_TERMS,    /* of the sum that is being made */
+  MPMI_START,    /* displacement before the increment */
+  MPMI_VECTORS
+};
+
+/* The nodes of a stencil: where they lie in a tile, and among the offsets that couple. */
+enum { MPMI_MOST_NODES = MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH) };
+typedef struct mpmi_stencil {
+  int32_t count, in_tile[MPMI_MOST_NODES], offset[MPMI_MOST_NODES];
+} mpmi_stencil;
+
+/* What one task assembles with; component arrays have the length of the longest batch. */
+typedef struct mpmi_newton_work {
+  mpmi_batch batch;                      /* the particles at hand */
+  double *tile;                          /* forces on the nodes of the block at hand, 4 each */
+  double *F_inc, *nominal, *inverse, *h; /* [9] each */
+  double *stiffness, *tangent;           /* [81] each */
+  double *weight;                        /* [1] */
+  void *tangent_scratch;
+  double *K;            /* stiffness of one stencil */
+  int32_t *tile_active; /* active node at each place of the tile, or -1 */
+  int32_t symmetric;
+} mpmi_newton_work;
+
+typedef struct mpmi_newton {
+  mpmi_matrix matrix;
+  mpmi_solver *solver;
+  int64_t active_count, active_capacity;
+  mpmi_active_node *active;
+  int64_t map_capacity;
+  int32_t *active_of; /* [slots] active node, or -1 */
+  mpmi_stencil stencil;
+  int32_t offsets; /* nodes that share a stencil with one, itself among them */
+  int64_t place_capacity;
+  int32_t *place; /* [active][offsets] entry of the matrix that couples a node with the one that far away */
+  int64_t members_capacity, members_start_capacity;
+  int64_t *members_start, *members; /* active nodes by row */
+  int64_t diagonal_capacity;
+  int64_t *diagonal; /* [rows] entry */
+  int64_t mass_capacity;
+  double *mass; /* [rows] */
+  int64_t vector_capacity;
+  double *vector[MPMI_VECTORS];
+  double *vector_memory;
+  /* On nodes: internal force of the displacements as they are; external force, and what tells that a node has
+   * stiffness. */
+  mpmi_nodal force, external;
+  int64_t cell_capacity, cell_node_capacity;
+  double *cell;       /* by row of the lower corner of a cell: sums of the locking remedy */
+  int32_t *cell_node; /* active nodes of its stencils, or -1 */
+  int64_t version;    /* of the layout that the pattern was made for; -1: none */
+  void *work_memory;
+  size_t work_bytes;
+  mpmi_newton_work *work; /* [tasks] */
+  int32_t history_capacity, history_count;
+  double *history;
+  int32_t iterations, solver_used;
+  int64_t linear_iterations;
+  double factor_seconds, solve_seconds;
+} mpmi_newton;
+
+/* An implicit step under way: the balance of forces on its nodes. */
+typedef struct mpmi_balance {
+  mpmi_step *step;
+  const mpmi_settings *settings; /* of the step */
+  const mpmi_layout *layout;     /* of the step */
+  mpmi_nodes *nodes;
+  mpmi_newton *newton;
+} mpmi_balance;
+
+/* Nodes along an axis that couple: of a stencil, or with the locking remedy of all stencils of a cell. */
+static inline int32_t mpmi_coupling_span(const mpmi_settings *settings) {
+  return settings->grid->width + (settings->desc.locking_remedy ? settings->grid->centred : 0);
+}
+
+/* Places of the nodes of a cube of `width` in one of `edge`, the last axis fastest; how many there are. */
+static inline int32_t mpmi_cube_places(int32_t dim, int32_t width, int32_t edge, int32_t *place) {
+  int32_t count = 1;
+  place[0] = 0;
+  for (int32_t axis = 0; axis < dim; ++axis, count *= width)
+    for (int32_t n = count - 1; n >= 0; --n)
+      for (int32_t k = width - 1; k >= 0; --k) place[n * width + k] = place[n] * edge + k;
+  return count;
+}
+
+/* matrix.held: by whom; a component that nobody holds is an unknown. */
+enum { MPMI_ROW_FREE, MPMI_ROW_PRESCRIBED, MPMI_ROW_WALL };
+/* Acceleration that belongs to a displacement, by component of the vectors; on walls there is none. */
+static inline double mpmi_newmark_acceleration(const mpmi_balance *s, int64_t at) {
+  const mpmi_newton *newton = s->newton;
+  const double beta = s->settings->desc.newmark_beta, dt = s->step->dt;
+  const uint8_t held = newton->matrix.held[at];
+  if (held == MPMI_ROW_WALL || (held && s->settings->desc.boundary_zero_acceleration)) return 0.0;
+  return (newton->vector[MPMI_U][at] - dt * newton->vector[MPMI_V0][at] -
+          dt * dt * (0.5 - beta) * newton->vector[MPMI_A0][at]) /
+         (beta * dt * dt);
+}
+
+/* The memory of implicit steps, which stays with the stepper. */
+mpm_status mpmi_newton_create(const mpmi_settings *settings, mpmi_newton **out);
+void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings); /* NULL is fine */
+/* Memory for a step that does not depend on the unknowns; forgets the step before. */
+mpm_status mpmi_balance_prepare(mpmi_balance *s);
+
+#endif

@@ -1,0 +1,19 @@
+/* One implicit step by Newmark's rule (Guilkey & Weiss 2003, eqs 14-16, for any beta and gamma), or
+ * quasi-static without inertia:
+ *
+ *   particles -> nodes   M, v0 = sum w m v_p / M, a0 = sum w m a_p / M, external forces of the end of the
+ * step
+ *
+ *   nodes                f_int(u) + M a1 = f_ext,  a1 = (u - dt v0 - dt^2 (1/2 - beta) a0) / (beta dt^2)
+ *
+ *   nodes -> particles   x_p += sum w u,  a_p' = sum w a1,  v_p += dt ((1 - gamma) a_p + gamma a_p') */
+#ifndef MPMI_NEWMARK_H
+#define MPMI_NEWMARK_H
+
+#include "implicit/balance.h"
+
+mpm_status mpmi_newmark_step(mpmi_balance *s);
+/* The dt to try after a step that went well. */
+double mpmi_next_dt(const mpmi_newton *newton, double dt);
+
+#endif

@@ -1,0 +1,269 @@
+#include "implicit/newton.h"
+#include "context/reduce.h"
+#include "implicit/assembly.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Halvings of an increment before it is given up, and before a larger residual is accepted. */
+enum { MOST_HALVINGS = 12, RESIDUAL_HALVINGS = 4 };
+
+typedef struct iteration {
+  mpmi_balance *s;
+  mpmi_newton *newton;
+  int64_t n;            /* rows * dim */
+  double norm, scale;   /* of the residual; free components, all kinds of forces */
+  double stiffness;     /* largest diagonal entry, without inertia */
+  double inertia;       /* of the terms that M a is the difference of */
+  double inertia_share; /* of the diagonal of the matrix */
+  double du_largest, energy_first;
+} iteration;
+
+/* The sum, or the largest, of the terms that have just been written. */
+static double reduced(const iteration *it, int32_t operation) {
+  return mpmi_reduce(operation, 0.0, it->newton->vector[MPMI_TERMS], 1, NULL, it->n);
+}
+
+/* Of the free components alone, or of all. */
+static double dot_of(const iteration *it, const double *a, const double *b, int32_t free_only) {
+  const uint8_t *held = it->newton->matrix.held;
+  double *term = it->newton->vector[MPMI_TERMS];
+  for (int64_t i = 0; i < it->n; ++i) term[i] = free_only && held[i] ? 0.0 : a[i] * b[i];
+  return reduced(it, MPMI_REDUCE_SUM);
+}
+
+static double norm_of(const iteration *it, const double *v, int32_t free_only) {
+  return sqrt(dot_of(it, v, v, free_only));
+}
+
+/* Of an increment, by stiffness: a node at the rim of a body may move far and mean little. */
+static double length_of(const iteration *it, const double *du) {
+  double *term = it->newton->vector[MPMI_TERMS];
+  for (int64_t i = 0; i < it->n; ++i) term[i] = it->newton->vector[MPMI_DIAGONAL][i] * du[i] * du[i];
+  return sqrt(reduced(it, MPMI_REDUCE_SUM));
+}
+
+/* Residual of the internal forces as they are; the norm of the inertia is returned. */
+static double find_forces(iteration *it) {
+  const mpmi_balance *s = it->s;
+  mpmi_newton *newton = it->newton;
+  const double *internal = newton->vector[MPMI_INTERNAL], *external = newton->vector[MPMI_EXTERNAL];
+  double *residual = newton->vector[MPMI_RESIDUAL], *term = newton->vector[MPMI_TERMS];
+  const int32_t dim = s->settings->grid->dim, dynamic = mpmi_is_dynamic(s->settings);
+  for (int64_t i = 0; i < it->n; ++i) {
+    const double Ma = dynamic ? newton->mass[i / dim] * mpmi_newmark_acceleration(s, i) : 0.0;
+    residual[i] = internal[i] + Ma - external[i];
+    term[i] = Ma * Ma;
+  }
+  return sqrt(reduced(it, MPMI_REDUCE_SUM));
+}
+
+/* Norm of the terms that M a is the difference of. */
+static double inertia_terms(const iteration *it) {
+  const mpmi_balance *s = it->s;
+  const mpmi_newton *newton = it->newton;
+  const int32_t dim = s->settings->grid->dim;
+  const double dt = s->step->dt, beta = s->settings->desc.newmark_beta;
+  if (!mpmi_is_dynamic(s->settings)) return 0.0;
+  for (int64_t i = 0; i < it->n; ++i) {
+    const double reach = fabs(newton->vector[MPMI_U][i]) + dt * fabs(newton->vector[MPMI_V0][i]);
+    const double term = newton->mass[i / dim] * reach / (beta * dt * dt);
+    newton->vector[MPMI_TERMS][i] = term * term;
+  }
+  return sqrt(reduced(it, MPMI_REDUCE_SUM));
+}
+
+/* The scale knows reactions: they are internal forces of held components. */
+static void find_residual(iteration *it) {
+  double *const *vector = it->newton->vector;
+  const double inertia = find_forces(it);
+  it->inertia = inertia_terms(it);
+  it->norm = norm_of(it, vector[MPMI_RESIDUAL], 1);
+  it->scale =
+      fmax(inertia, fmax(norm_of(it, vector[MPMI_INTERNAL], 0), norm_of(it, vector[MPMI_EXTERNAL], 0)));
+}
+
+static double relative(const iteration *it) {
+  return it->scale > 0.0 ? it->norm / it->scale : 0.0;
+}
+
+/* Forces of displacements that are rounding of a cell, and rounding of inertia. */
+static double noise(const iteration *it) {
+  return 16.0 * DBL_EPSILON *
+         (it->stiffness * it->s->settings->grid->h_min * sqrt((double)it->n) + it->inertia);
+}
+
+static void note(iteration *it) {
+  mpmi_newton *newton = it->newton;
+  if (newton->history_count < newton->history_capacity)
+    newton->history[newton->history_count++] = relative(it);
+  it->s->step->info.residual = relative(it);
+}
+
+/* Puts the inertia onto the diagonal, and finds out how much each of the two weighs there. */
+static void add_inertia(iteration *it) {
+  const mpmi_balance *s = it->s;
+  mpmi_newton *newton = it->newton;
+  mpmi_matrix *A = &newton->matrix;
+  double *term = newton->vector[MPMI_TERMS], *size = newton->vector[MPMI_DIAGONAL];
+  const int32_t dim = s->settings->grid->dim;
+  const double beta = s->settings->desc.newmark_beta, dt = s->step->dt;
+  const double by_mass = mpmi_is_dynamic(s->settings) ? 1.0 / (beta * dt * dt) : 0.0;
+  for (int64_t i = 0; i < it->n; ++i) {
+    double *diagonal = A->value + (newton->diagonal[i / dim] * dim + i % dim) * dim + i % dim;
+    term[i] = fabs(*diagonal);
+    *diagonal += by_mass * newton->mass[i / dim];
+    size[i] = fabs(*diagonal);
+  }
+  it->stiffness = reduced(it, MPMI_REDUCE_MAX);
+  for (int64_t i = 0; i < it->n; ++i) term[i] = by_mass * newton->mass[i / dim];
+  const double inertia = reduced(it, MPMI_REDUCE_SUM);
+  const double total = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, size, 1, NULL, it->n);
+  it->inertia_share = total > 0.0 ? inertia / total : 0.0;
+}
+
+static mpm_status assemble(iteration *it) {
+  const mpm_status status = mpmi_stiffness(it->s, it->newton->vector[MPMI_U]);
+  if (!status) add_inertia(it);
+  return status;
+}
+
+/* The right-hand side, with what is left of the prescribed displacements on it; 1 if there is any. */
+static mpm_status find_rhs(iteration *it, int32_t *moves_held) {
+  mpmi_newton *newton = it->newton;
+  const uint8_t *held = newton->matrix.held;
+  double *rhs = newton->vector[MPMI_RHS], *du = newton->vector[MPMI_DU];
+  *moves_held = 0;
+  for (int64_t i = 0; i < it->n; ++i) {
+    du[i] = held[i] ? newton->vector[MPMI_TARGET][i] - newton->vector[MPMI_U][i] : 0.0;
+    *moves_held |= du[i] != 0.0;
+  }
+  memset(rhs, 0, (size_t)it->n * sizeof *rhs);
+  if (*moves_held) {
+    const mpm_status status = mpmi_matrix_apply(&newton->matrix, du, rhs);
+    if (status) return status;
+  }
+  for (int64_t i = 0; i < it->n; ++i) rhs[i] = held[i] ? 0.0 : -newton->vector[MPMI_RESIDUAL][i] - rhs[i];
+  return MPM_OK;
+}
+
+static mpm_status solve(iteration *it) {
+  mpmi_balance *s = it->s;
+  mpmi_newton *newton = it->newton;
+  const double *du_held = newton->vector[MPMI_DU];
+  double *x = newton->vector[MPMI_START];
+  mpm_status status = mpmi_matrix_eliminate(&newton->matrix);
+  if (status) return status;
+  memset(x, 0, (size_t)it->n * sizeof *x);
+  /* no digits are wanted that the next iteration throws away, and enough to keep it quadratic */
+  const double wanted = fmax(1e-10, fmin(1e-3, 0.1 * relative(it)));
+  const mpmi_solve_job job = {
+      .matrix = &newton->matrix,
+      .rhs = newton->vector[MPMI_RHS],
+      .x = x,
+      .choice = s->settings->desc.linear_solver,
+      .tolerance = s->settings->desc.linear_tolerance > 0.0 ? s->settings->desc.linear_tolerance : wanted,
+      .max_iterations = s->settings->desc.linear_max_iterations,
+      .host = s->settings->solver,
+      .host_user = s->settings->solver_user,
+      .expects_positive = newton->matrix.symmetric,
+      .inertia = it->inertia_share};
+  mpmi_solve_report report = {.node = -1};
+  status = mpmi_solve(newton->solver, &job, &report);
+  newton->factor_seconds += report.factor_seconds;
+  newton->solve_seconds += report.solve_seconds;
+  newton->linear_iterations += report.iterations;
+  newton->solver_used = report.solver;
+  ++newton->iterations;
+  if (status) {
+    s->step->failure.node = report.node;
+    s->step->failure.callback_status = report.callback_status;
+    return status;
+  }
+  for (int64_t i = 0; i < it->n; ++i) newton->vector[MPMI_DU][i] = newton->matrix.held[i] ? du_held[i] : x[i];
+  return MPM_OK;
+}
+
+/* Statuses of a trial that a shorter increment may mend. */
+static int32_t may_shrink(const mpmi_balance *s, mpm_status status) {
+  return !s->step->failure.callback_status && (status == MPM_INVERTED || status == MPM_NONFINITE);
+}
+
+/* Takes as much of the increment as keeps det F positive and the residual in bounds. */
+static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) {
+  mpmi_newton *newton = it->newton;
+  double *u = newton->vector[MPMI_U], *start = newton->vector[MPMI_START];
+  const double *du = newton->vector[MPMI_DU];
+  const double before = it->norm, slope = fabs(dot_of(it, du, newton->vector[MPMI_RESIDUAL], 1));
+  memcpy(start, u, (size_t)it->n * sizeof *u);
+  *taken = 1.0;
+  for (int32_t halvings = 0;; ++halvings, *taken *= 0.5) {
+    for (int64_t i = 0; i < it->n; ++i) u[i] = start[i] + *taken * du[i];
+    const mpm_status status = mpmi_internal_forces(it->s, u);
+    if (status && (!may_shrink(it->s, status) || halvings == MOST_HALVINGS)) return status;
+    if (status) continue;
+    find_residual(it);
+    if (!isfinite(it->norm))
+      return mpmi_fail(it->s->settings->context, MPM_NONFINITE,
+                       "the residual is not finite in the step from t = %g with "
+                       "dt = %g",
+                       it->s->step->t, it->s->step->dt);
+    if (moves_held || halvings >= RESIDUAL_HALVINGS || it->norm <= before ||
+        fabs(dot_of(it, du, newton->vector[MPMI_RESIDUAL], 1)) <= slope)
+      return MPM_OK;
+  }
+}
+
+/* Eq. 13, and a bound on the residual; the residual alone where it is rounding. */
+static int32_t converged(iteration *it, double du, double energy) {
+  const mpm_stepper_desc *d = &it->s->settings->desc;
+  it->du_largest = fmax(it->du_largest, du);
+  if (it->norm <= noise(it)) return 1;
+  return (it->norm <= d->newton_tolerance_residual * it->scale || it->norm <= d->newton_residual_floor) &&
+         du <= d->newton_tolerance_displacement * it->du_largest &&
+         energy <= d->newton_tolerance_energy * it->energy_first;
+}
+
+static mpm_status not_converged(const iteration *it) {
+  const mpmi_balance *s = it->s;
+  return mpmi_fail(
+      s->settings->context, MPM_NOT_CONVERGED,
+      "Newton's method has a relative residual of %g after %d iterations in the step from t = %g "
+      "with dt = %g: use a smaller dt, or mpm_advance",
+      relative(it), (int)it->newton->iterations, s->step->t, it->s->step->dt);
+}
+
+static mpm_status iterate(iteration *it) {
+  mpmi_newton *newton = it->newton;
+  for (;;) {
+    int32_t moves_held;
+    double taken;
+    mpm_status status;
+    if (newton->iterations >= it->s->settings->desc.newton_max_iterations) return not_converged(it);
+    if ((status = assemble(it)) || (status = find_rhs(it, &moves_held))) return status;
+    if (!moves_held && it->norm <= noise(it)) return MPM_OK;
+    if ((status = solve(it))) return status;
+    const double energy = fabs(dot_of(it, newton->vector[MPMI_DU], newton->vector[MPMI_RHS], 1));
+    if (newton->iterations == 1) it->energy_first = energy;
+    if ((status = line_search(it, moves_held, &taken))) return status;
+    note(it);
+    if (taken == 1.0 && converged(it, length_of(it, newton->vector[MPMI_DU]), energy)) return MPM_OK;
+    it->du_largest = fmax(it->du_largest, taken * length_of(it, newton->vector[MPMI_DU]));
+  }
+}
+
+mpm_status mpmi_newton_solve(mpmi_balance *s) {
+  mpmi_newton *newton = s->newton;
+  iteration it = {.s = s, .newton = newton, .n = newton->matrix.rows * s->settings->grid->dim};
+  memset(newton->vector[MPMI_U], 0, (size_t)it.n * sizeof(double));
+  mpm_status status = mpmi_internal_forces(s, newton->vector[MPMI_U]);
+  if (status) return status;
+  find_residual(&it);
+  note(&it);
+  status = iterate(&it);
+  s->step->info.newton_iterations = newton->iterations;
+  s->step->info.linear_solver = newton->solver_used;
+  s->step->info.linear_iterations = newton->linear_iterations;
+  return status;
+}

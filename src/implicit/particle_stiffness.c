@@ -1,0 +1,200 @@
+#include "implicit/particle_stiffness.h"
+#include "implicit/locking_stiffness.h"
+#include "layout/axes.h"
+#include "layout/tile.h"
+#include "stages/locking.h"
+
+#include <string.h>
+
+mpmi_force_scatter mpmi_force_scatter_of(const mpmi_settings *settings, const mpmi_member *member,
+                                         double *tile) {
+  const mpm_particles *set = member->set;
+  const mpm_grid *grid = settings->grid;
+  mpmi_force_scatter job = {.weights = settings->kernels->weights[grid->family][grid->dim],
+                            .points = mpmi_points_of(set, 0),
+                            .mass = mpmi_f64(set, MPMI_MASS, 0),
+                            .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
+                            .deforms = mpmi_material_kinematics(set->material) != MPMI_F_STAYS,
+                            .tile = tile};
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    job.gravity[k] = settings->desc.gravity[k];
+    job.force[k] = member->force ? member->force + k * set->ld : NULL;
+  }
+  return job;
+}
+
+void mpmi_tile_of_unknowns(const mpmi_balance *s, int64_t block, int32_t *to) {
+  const mpm_grid *grid = s->settings->grid;
+  const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width), low = MPMI_RING + grid->below;
+  const int32_t count = mpmi_tile_nodes(grid);
+  for (int32_t i = 0; i < count; ++i) {
+    int32_t rest = i, at[3];
+    for (int32_t k = grid->dim - 1; k >= 0; --k) {
+      at[k] = rest % edge - low;
+      rest /= edge;
+    }
+    const int64_t slot = mpmi_blocks_near(&s->layout->blocks, block, at);
+    to[i] = slot < 0 ? -1 : s->newton->active_of[slot];
+  }
+}
+
+MPMI_INLINE void add_block(int32_t dim, int32_t nodes, const double *K, const mpmi_active_node *A,
+                           const mpmi_active_node *B, double *value) {
+  const int32_t plain = A->plain && B->plain;
+  for (int32_t i = 0; i < dim; ++i)
+    for (int32_t j = 0; j < dim; ++j) {
+      const double entry = K[(i * dim * nodes + j) * nodes];
+      value[i * dim + j] += plain ? entry : A->sign[i] * B->sign[j] * entry;
+    }
+}
+
+MPMI_INLINE void add_stencil_in(int32_t dim, mpmi_newton *newton, const mpmi_newton_work *work, int32_t nodes,
+                                int32_t first) {
+  const mpmi_stencil *stencil = &newton->stencil;
+  int32_t active[MPMI_MOST_NODES];
+  for (int32_t a = 0; a < stencil->count; ++a) active[a] = work->tile_active[first + stencil->in_tile[a]];
+  for (int32_t a = 0; a < stencil->count; ++a) {
+    if (active[a] < 0) continue;
+    const int32_t *place =
+        newton->place + (int64_t)active[a] * newton->offsets + newton->offsets / 2 - stencil->offset[a];
+    for (int32_t b = 0; b < stencil->count; ++b)
+      if (active[b] >= 0)
+        add_block(dim, nodes, work->K + (int64_t)a * dim * nodes + b, &newton->active[active[a]],
+                  &newton->active[active[b]],
+                  newton->matrix.value + (int64_t)place[stencil->offset[b]] * dim * dim);
+  }
+}
+
+/* Adds the dense stiffness of the stencil whose first node lies at `first` of the tile, and clears it. */
+static void add_stencil(mpmi_balance *s, mpmi_newton_work *work, int32_t first) {
+  const int32_t dim = s->settings->grid->dim, nodes = MPMI_STENCIL_NODES(dim, s->settings->grid->width),
+                row = dim * nodes;
+  if (dim == 3)
+    add_stencil_in(3, s->newton, work, nodes, first);
+  else if (dim == 2)
+    add_stencil_in(2, s->newton, work, nodes, first);
+  else
+    add_stencil_in(1, s->newton, work, nodes, first);
+  memset(work->K, 0, (size_t)(row * row) * sizeof *work->K);
+}
+
+/* The share of one particle in what couples those of its cell. */
+static void add_to_cell(mpmi_balance *s, const mpmi_newton_work *work, const mpm_particles *set,
+                        const mpmi_weights *W, int64_t p, int32_t cell, int64_t slot, int64_t q, int64_t ld) {
+  const int32_t dim = s->settings->grid->dim;
+  mpmi_locking_particle of = {.volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot]};
+  for (int32_t i = 0; i < dim; ++i)
+    for (int32_t K = 0; K < dim; ++K) {
+      of.inverse[3 * K + i] = work->inverse[(3 * K + i) * ld + q];
+      for (int32_t k = 0; k < dim; ++k)
+        of.h[3 * i + K] +=
+            work->weight[q] * work->h[(3 * i + k) * ld + q] * work->inverse[(3 * K + k) * ld + q];
+    }
+  mpmi_locking_stiffness_add(s, work, W, p, cell, &of);
+}
+
+/* Particles with the same stencil follow each other for the most part: their stiffness is added up first. */
+static void add_stencils(mpmi_balance *s, mpmi_newton_work *work, const mpm_particles *set,
+                         const mpmi_axis *axis, int64_t begin, int64_t n, int64_t ld) {
+  const mpm_grid *grid = s->settings->grid;
+  const mpmi_points points = mpmi_points_of(set, 0);
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
+  mpmi_weights W;
+  int32_t first = -1, cell[MPMI_CHUNK];
+  for (int64_t at = 0; at < n; at += MPMI_CHUNK) {
+    s->settings->kernels->weights[grid->family][grid->dim](axis, MPMI_NEED_GRADIENT, &points, begin + at,
+                                                           MPMI_CHUNK, &W);
+    if (s->settings->desc.locking_remedy) mpmi_cell_places(grid, axis, &points, begin + at, MPMI_CHUNK, cell);
+    for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
+      if (id[at + p] < 0) continue;
+      if (s->settings->desc.locking_remedy)
+        add_to_cell(s, work, set, &W, p, cell[p], begin + at + p, at + p, ld);
+      if (first >= 0 && W.node[p] != first) add_stencil(s, work, first);
+      first = W.node[p];
+      s->settings->kernels->stiffness[grid->dim](grid->width, &W, p, work->stiffness + at + p, ld, work->K);
+    }
+  }
+  if (first >= 0) add_stencil(s, work, first);
+}
+
+/* V0 of the tangent: the law saw a dilation of `ratio` more than the volume has. */
+static void find_weights(const mpmi_balance *s, const mpm_particles *set, int64_t begin, int64_t n,
+                         double *weight) {
+  const double *volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin;
+  memcpy(weight, volume, (size_t)n * sizeof *weight);
+  if (!s->settings->desc.locking_remedy) return;
+  const double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
+  for (int64_t p = 0; p < n; ++p) weight[p] /= ratio[p];
+}
+
+static int32_t is_finite(const double *value, int32_t dim, int64_t ld, int64_t n, int64_t *bad) {
+  for (int32_t e = 0; e < 81; ++e) {
+    if (e / 27 >= dim || e / 9 % 3 >= dim || e / 3 % 3 >= dim || e % 3 >= dim) continue;
+    for (*bad = 0; *bad < n; ++*bad)
+      if (value[e * ld + *bad] - value[e * ld + *bad] != 0.0) return 0;
+  }
+  return 1;
+}
+
+static int32_t find_tangent(mpmi_balance *s, mpmi_newton_work *work, mpmi_batch *b) {
+  const mpm_particles *set = b->set;
+  const int32_t dim = s->settings->grid->dim;
+  const int64_t ld = b->law.ld, *id = mpmi_i64(set, MPMI_ID, 0) + b->begin;
+  const mpm_status status =
+      mpmi_material_tangent(set->material, s->settings->context->isa, dim, &b->law.batch,
+                            work->tangent_scratch, work->tangent, &work->symmetric);
+  if (status) {
+    mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
+                                                           "the tangent callback"});
+    return 0;
+  }
+  for (int64_t p = 0; p < b->n; ++p)
+    for (int32_t e = 0; e < 81 && id[p] < 0; ++e) work->tangent[e * ld + p] = 0.0;
+  int64_t bad;
+  if (is_finite(work->tangent, dim, ld, b->n, &bad)) return 1;
+  mpmi_batch_fail(b, MPM_NONFINITE, b->begin + bad, "the material's tangent is not finite");
+  return 0;
+}
+
+/* From stress and tangent, or with NULL the stress alone, to what the gradients of the nodes are multiplied
+ * by. */
+static void push_forward(mpmi_balance *s, mpmi_newton_work *work, const mpmi_batch *b,
+                         const double *tangent) {
+  const mpmi_push push = {.ld = b->law.ld,
+                          .F_inc = s->settings->desc.locking_remedy ? work->F_inc : b->law.F_inc,
+                          .stress = b->law.stress_new,
+                          .volume = mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin,
+                          .weight = work->weight,
+                          .tangent = tangent,
+                          .inverse = work->inverse,
+                          .nominal = work->nominal,
+                          .stiffness = work->stiffness};
+  s->settings->kernels->push[s->settings->grid->dim](&push, b->n);
+}
+
+static int32_t is_rigid(const mpmi_batch *b) {
+  return mpmi_material_kinematics(b->set->material) == MPMI_F_STAYS;
+}
+
+void mpmi_add_forces(mpmi_balance *s, mpmi_batch *b) {
+  const mpm_grid *grid = s->settings->grid;
+  mpmi_newton_work *work = &s->newton->work[b->task];
+  if (is_rigid(b)) return;
+  push_forward(s, work, b, NULL);
+  mpmi_force_scatter scatter = mpmi_force_scatter_of(s->settings, &s->layout->member[b->m], work->tile);
+  memcpy(scatter.axis, b->gather.axis, sizeof scatter.axis);
+  scatter.ld = b->law.ld;
+  scatter.nominal = work->nominal;
+  s->settings->kernels->force_scatter[grid->dim][grid->width](&scatter, b->begin, b->n);
+}
+
+void mpmi_add_stiffness(mpmi_balance *s, mpmi_batch *b) {
+  mpmi_newton_work *work = &s->newton->work[b->task];
+  if (is_rigid(b) || !find_tangent(s, work, b)) return;
+  find_weights(s, b->set, b->begin, b->n, work->weight);
+  if (s->settings->desc.locking_remedy)
+    mpmi_locking_stiffness_local(s->settings->grid->dim, &b->law, work->weight,
+                                 mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin, work->tangent, work->h);
+  push_forward(s, work, b, work->tangent);
+  add_stencils(s, work, b->set, b->gather.axis, b->begin, b->n, b->law.ld);
+}

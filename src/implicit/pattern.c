@@ -1,0 +1,136 @@
+#include "implicit/pattern.h"
+#include "layout/tasks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Slot of the node at an offset from the one in a slot, or -1. */
+static int64_t neighbour_slot(const mpmi_blocks *b, int64_t slot, const int32_t *offset) {
+  int32_t place = (int32_t)(slot % b->nodes), at[3];
+  for (int32_t k = b->grid->dim - 1; k >= 0; --k) {
+    at[k] = place % b->edge + offset[k];
+    place /= b->edge;
+  }
+  return mpmi_blocks_near(b, slot / b->nodes, at);
+}
+
+static void offset_of(const mpmi_balance *s, int32_t index, int32_t *offset) {
+  const int32_t span = mpmi_coupling_span(s->settings), reach = 2 * span - 1;
+  for (int32_t k = s->settings->grid->dim - 1; k >= 0; --k) {
+    offset[k] = index % reach - (span - 1);
+    index /= reach;
+  }
+}
+
+/* Active nodes by row, each row's in the order of their slots. */
+static void group(mpmi_newton *newton, int64_t rows) {
+  memset(newton->members_start, 0, (size_t)(rows + 1) * sizeof *newton->members_start);
+  for (int64_t i = 0; i < newton->active_count; ++i) ++newton->members_start[newton->active[i].row + 1];
+  for (int64_t r = 0; r < rows; ++r) newton->members_start[r + 1] += newton->members_start[r];
+  for (int64_t i = 0; i < newton->active_count; ++i)
+    newton->members[newton->members_start[newton->active[i].row]++] = i;
+  for (int64_t r = rows; r > 0; --r) newton->members_start[r] = newton->members_start[r - 1];
+  newton->members_start[0] = 0;
+}
+
+typedef struct pattern_job {
+  mpmi_balance *s;
+  int64_t rows;
+} pattern_job;
+
+/* Rows of the nodes around each active node, for now in the place of the entries. */
+static void neighbours_task(void *data, int64_t k) {
+  const pattern_job *job = data;
+  mpmi_balance *s = job->s;
+  mpmi_newton *newton = s->newton;
+  const int64_t tasks = s->settings->tasks, from = newton->active_count * k / tasks,
+                to = newton->active_count * (k + 1) / tasks;
+  for (int32_t o = 0; o < newton->offsets; ++o) {
+    int32_t offset[3];
+    offset_of(s, o, offset);
+    for (int64_t i = from; i < to; ++i) {
+      const int64_t slot = neighbour_slot(&s->layout->blocks, newton->active[i].slot, offset);
+      const int32_t other = slot < 0 ? -1 : newton->active_of[slot];
+      newton->place[i * newton->offsets + o] = other < 0 ? -1 : newton->active[other].row;
+    }
+  }
+}
+
+static int by_value(const void *a, const void *b) {
+  const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+  return (x > y) - (x < y);
+}
+
+enum { MOST_OFFSETS = 343 };
+
+/* Distinct columns of a row, ascending; a tie of many images gives them member by member. */
+static int32_t columns_of(const mpmi_newton *newton, int64_t row, int32_t *out) {
+  int32_t count = 0;
+  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
+    const int32_t *rows = newton->place + newton->members[m] * newton->offsets;
+    for (int32_t o = 0; o < newton->offsets; ++o)
+      if (rows[o] >= 0) out[count++] = rows[o];
+    qsort(out, (size_t)count, sizeof *out, by_value);
+    int32_t kept = 0;
+    for (int32_t i = 0; i < count; ++i)
+      if (!kept || out[kept - 1] != out[i]) out[kept++] = out[i];
+    count = kept;
+  }
+  return count;
+}
+
+static void count_task(void *data, int64_t k) {
+  const pattern_job *job = data;
+  mpmi_newton *newton = job->s->newton;
+  int32_t columns[2 * 8 * MOST_OFFSETS];
+  for (int64_t r = job->rows * k / job->s->settings->tasks; r < job->rows * (k + 1) / job->s->settings->tasks;
+       ++r)
+    newton->diagonal[r] = columns_of(newton, r, columns);
+}
+
+static void fill_task(void *data, int64_t k) {
+  const pattern_job *job = data;
+  mpmi_newton *newton = job->s->newton;
+  mpmi_matrix *A = &newton->matrix;
+  int32_t columns[2 * 8 * MOST_OFFSETS];
+  for (int64_t r = job->rows * k / job->s->settings->tasks; r < job->rows * (k + 1) / job->s->settings->tasks;
+       ++r) {
+    const int32_t count = columns_of(newton, r, columns);
+    int32_t *to = A->column + A->row_start[r];
+    memcpy(to, columns, (size_t)count * sizeof *columns);
+    for (int64_t m = newton->members_start[r]; m < newton->members_start[r + 1]; ++m) {
+      int32_t *place = newton->place + newton->members[m] * newton->offsets;
+      for (int32_t o = 0; o < newton->offsets; ++o) {
+        if (place[o] < 0) continue;
+        const int32_t *at = bsearch(&place[o], to, (size_t)count, sizeof *to, by_value);
+        place[o] = (int32_t)(A->row_start[r] + (at - to));
+      }
+    }
+    const int32_t own = (int32_t)r;
+    const int32_t *at = bsearch(&own, to, (size_t)count, sizeof *to, by_value);
+    newton->diagonal[r] = A->row_start[r] + (at - to);
+  }
+}
+
+mpm_status mpmi_make_pattern(mpmi_balance *s, int64_t rows) {
+  mpmi_newton *newton = s->newton;
+  mpmi_matrix *A = &newton->matrix;
+  pattern_job job = {s, rows};
+  mpm_status status;
+  group(newton, rows);
+  if ((status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, neighbours_task, &job)) ||
+      (status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, count_task, &job)))
+    return status;
+  int64_t entries = 0;
+  for (int64_t r = 0; r < rows; ++r) entries += newton->diagonal[r];
+  if (entries > INT32_MAX)
+    return mpmi_fail(s->settings->context, MPM_E_UNSUPPORTED,
+                     "the matrix would have %lld blocks, more than 2147483647: use an explicit scheme",
+                     (long long)entries);
+  if ((status = mpmi_matrix_reserve(A, rows, entries, s->settings->grid->dim))) return status;
+  A->row_start[0] = 0;
+  for (int64_t r = 0; r < rows; ++r) A->row_start[r + 1] = A->row_start[r] + newton->diagonal[r];
+  if ((status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, fill_task, &job))) return status;
+  ++A->pattern_id;
+  return MPM_OK;
+}

@@ -1,0 +1,51 @@
+#include "implicit/reactions.h"
+#include "boundary/prescribed_nodes.h"
+
+#include <string.h>
+
+/* Force of constraints on one node, its own inertia among what they balance. */
+static double reaction_on(const mpmi_balance *s, const mpmi_active_node *node, int32_t c) {
+  const mpmi_newton *newton = s->newton;
+  const int64_t at = (int64_t)node->row * s->settings->grid->dim + c;
+  double force =
+      mpmi_momentum(&newton->force, node->slot)[c] - mpmi_momentum(&newton->external, node->slot)[c];
+  if (mpmi_is_dynamic(s->settings))
+    force += *mpmi_mass(&s->nodes->solved, node->slot) * node->sign[c] * mpmi_newmark_acceleration(s, at);
+  return force;
+}
+
+/* One component of one row: the nodes that move with it. */
+static void record_row(mpmi_balance *s, int64_t row, int32_t c) {
+  const mpmi_newton *newton = s->newton;
+  const mpmi_constraints *constraints = &s->layout->constraints;
+  double total = 0.0, along = 0.0;
+  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
+    const mpmi_active_node *node = &newton->active[newton->members[m]];
+    const double impulse = s->step->dt * reaction_on(s, node, c),
+                 mass = *mpmi_mass(&s->nodes->solved, node->slot);
+    s->nodes->impulse[node->slot].given[c] = impulse;
+    if (mass > 0.0) s->nodes->impulse[node->slot].change[c] = impulse / mass;
+    total += impulse;
+    along += node->sign[c] * impulse;
+  }
+  const int64_t slot = newton->active[newton->members[newton->members_start[row]]].slot;
+  const int32_t tie = constraints->tie_of[slot];
+  const int64_t master = tie < 0 ? slot : constraints->tie[tie].master;
+  if (mpmi_held_by(s->nodes, master, c))
+    s->step->host_work += along * s->nodes->held_value[master][c];
+  else if (tie < 0) /* nothing holds it: this is what the iterations have left */
+    s->nodes->impulse[slot].given[c] = s->nodes->impulse[slot].change[c] = 0.0;
+  else if (constraints->tie[tie].face[c] >= 0)
+    s->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total;
+}
+
+mpm_status mpmi_record_reactions(mpmi_balance *s) {
+  if (!s->nodes->has_impulses) return MPM_OK;
+  memset(s->nodes->impulse, 0, (size_t)mpmi_slots(s->layout) * sizeof *s->nodes->impulse);
+  for (int64_t r = 0; r < s->newton->matrix.rows; ++r)
+    for (int32_t c = 0; c < s->settings->grid->dim; ++c) record_row(s, r, c);
+  if (!s->nodes->prescription.any) return MPM_OK;
+  const mpmi_bound f = {
+      .step = s->step, .nodes = s->nodes, .values = &s->nodes->solved, .dim = s->settings->grid->dim};
+  return mpmi_prescribed_share(&f);
+}

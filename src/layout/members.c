@@ -1,0 +1,150 @@
+#include "layout/members.h"
+#include "particles/values.h"
+
+#include <string.h>
+
+/* ---- fields that exist as long as a stepper keeps them
+ * ----------------------------------------------------- */
+static mpm_status make_fields(mpm_particles *set, const mpm_stepper_desc *d) {
+  mpm_status status = MPM_OK;
+  if (d->reference_positions) status = mpmi_field_make_present(set, MPMI_REFERENCE);
+  if (!status && d->scheme == MPM_NEWMARK) status = mpmi_field_make_present(set, MPMI_ACCELERATION);
+  if (!status && d->locking_remedy) status = mpmi_field_make_present(set, MPMI_DILATION_RATIO);
+  if (status && !set->stepper) mpmi_field_make_absent(set, MPMI_REFERENCE);
+  return status;
+}
+
+/* Drops those that d does not ask for, all of them when it is NULL. */
+static void drop_fields(mpm_particles *set, const mpm_stepper_desc *d) {
+  if (!d || !d->reference_positions) mpmi_field_make_absent(set, MPMI_REFERENCE);
+  if ((d && d->locking_remedy) || !set->field[MPMI_DILATION_RATIO].present) return;
+  mpmi_field_make_absent(set, MPMI_DILATION_RATIO);
+  mpmi_field_written(set, MPMI_F); /* the law sees F as it is again */
+}
+
+mpm_status mpmi_members_keep_fields(mpmi_layout *layout, const mpmi_settings *settings,
+                                    const mpm_stepper_desc *desc) {
+  mpm_status status = MPM_OK;
+  for (int32_t m = 0; m < layout->member_count && !status; ++m)
+    status = make_fields(layout->member[m].set, desc);
+  /* those not wanted, or not to be had for all sets */
+  for (int32_t m = 0; m < layout->member_count; ++m)
+    drop_fields(layout->member[m].set, status ? &settings->desc : desc);
+  return status;
+}
+
+/* ---- coming and going
+ * -------------------------------------------------------------------------------------- */
+static mpm_status grow(mpmi_layout *layout, mpm_context *c) {
+  if (layout->member_count < layout->member_capacity) return MPM_OK;
+  const int32_t capacity = layout->member_capacity ? 2 * layout->member_capacity : 4;
+  mpmi_member *member = mpmi_alloc_zeroed(c, mpmi_bytes(capacity, sizeof *member));
+  if (!member) return MPM_E_NOMEM;
+  if (layout->member_count) memcpy(member, layout->member, (size_t)layout->member_count * sizeof *member);
+  mpmi_free(c, layout->member, mpmi_bytes(layout->member_capacity, sizeof *layout->member));
+  layout->member = member;
+  layout->member_capacity = capacity;
+  return MPM_OK;
+}
+
+mpm_status mpmi_members_add(mpmi_layout *layout, const mpmi_settings *settings, mpm_particles *set) {
+  mpm_context *c = settings->context;
+  mpm_status status;
+  if ((status = grow(layout, c)) || (status = make_fields(set, &settings->desc))) return status;
+  mpmi_member *member = &layout->member[layout->member_count++];
+  memset(member, 0, sizeof *member);
+  member->set = set;
+  mpmi_arrangement_init(&member->now, c);
+  mpmi_arrangement_init(&member->next, c);
+  set->dirty |= MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS;
+  return MPM_OK;
+}
+
+static void free_rows(mpm_context *c, double **rows, int64_t *ld, int32_t components) {
+  mpmi_free(c, *rows, mpmi_bytes(*ld * components, sizeof **rows));
+  *rows = NULL;
+  *ld = 0;
+}
+
+void mpmi_members_remove(mpmi_layout *layout, const mpmi_settings *settings, int32_t m) {
+  mpm_context *c = settings->context;
+  mpmi_member *member = &layout->member[m];
+  mpmi_arrangement_free(&member->now);
+  mpmi_arrangement_free(&member->next);
+  mpmi_sorting_free(&member->sorting, c);
+  free_rows(c, &member->force, &member->force_ld, settings->grid->dim);
+  free_rows(c, &member->mean, &member->mean_ld, settings->grid->dim);
+  free_rows(c, &member->wave_speed, &member->wave_speed_ld, 1);
+  drop_fields(member->set, NULL);
+  member->set->stepper = NULL;
+  member->set->dirty |= MPMI_DIRTY_PLACE;
+  for (int32_t i = m + 1; i < layout->member_count; ++i) layout->member[i - 1] = layout->member[i];
+  --layout->member_count;
+  mpmi_blocks_clear(&layout->blocks); /* the worklists counted its slots: the next step sorts anew */
+}
+
+mpm_status mpmi_members_find(const mpmi_layout *layout, const mpmi_settings *settings,
+                             const mpm_particles *set, int32_t *m) {
+  if (!set) return mpmi_fail(settings->context, MPM_E_ARG, "particles is NULL");
+  for (*m = 0; *m < layout->member_count; ++*m)
+    if (layout->member[*m].set == set) return MPM_OK;
+  return mpmi_fail(settings->context, MPM_E_NOT_FOUND, "the set is not in this stepper");
+}
+
+mpm_status mpmi_members_unmapped(const mpmi_layout *layout, const mpmi_settings *settings,
+                                 const char *before) {
+  for (int32_t m = 0; m < layout->member_count; ++m)
+    if (layout->member[m].set->mapped)
+      return mpmi_fail(settings->context, MPM_E_STATE, "set %d is mapped: release its views %s", (int)m,
+                       before);
+  return MPM_OK;
+}
+
+/* ---- what a step needs of them
+ * ----------------------------------------------------------------------------- */
+mpm_status mpmi_members_refresh(mpmi_layout *layout, const mpmi_settings *settings) {
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    mpm_particles *set = layout->member[m].set;
+    mpm_status status;
+    if (set->mapped)
+      return mpmi_fail(settings->context, MPM_E_STATE,
+                       "set %d has %d mapped views: release them before stepping", (int)m, (int)set->mapped);
+    if ((status = mpmi_particles_check_suspects(set)) || (status = mpmi_particles_refresh(set)))
+      return status;
+    if (mpmi_is_affine(settings) && !set->field[MPMI_L].present &&
+        (status = mpmi_field_make_present(set, MPMI_L)))
+      return status;
+  }
+  return MPM_OK;
+}
+
+/* Rows [components][ld of the set] where they are wanted, else none. */
+static mpm_status reserve_rows(mpm_context *c, const mpm_particles *set, int32_t wanted, int32_t components,
+                               double **rows, int64_t *ld) {
+  if (wanted ? *rows && *ld == set->ld : !*rows) return MPM_OK;
+  double *memory = NULL;
+  if (wanted && !(memory = mpmi_alloc(c, mpmi_bytes(set->ld * components, sizeof *memory))))
+    return MPM_E_NOMEM;
+  free_rows(c, rows, ld, components);
+  *rows = memory;
+  *ld = wanted ? set->ld : 0;
+  return MPM_OK;
+}
+
+mpm_status mpmi_members_reserve(mpmi_layout *layout, const mpmi_settings *settings) {
+  mpm_context *c = settings->context;
+  const int32_t dim = settings->grid->dim, asks = settings->acceleration || settings->force;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    mpmi_member *member = &layout->member[m];
+    const mpm_particles *set = member->set;
+    const int32_t forced = asks || set->field[MPMI_APPLIED_FORCE].present;
+    mpm_status status;
+    if ((status = reserve_rows(c, set, forced, dim, &member->force, &member->force_ld)) ||
+        (status = reserve_rows(c, set, member->prescribed && member->motion, dim, &member->mean,
+                               &member->mean_ld)) ||
+        (status = reserve_rows(c, set, mpmi_deforms_first(settings), 1, &member->wave_speed,
+                               &member->wave_speed_ld)))
+      return status;
+  }
+  return MPM_OK;
+}

@@ -1,0 +1,77 @@
+#include "layout/nodes.h"
+
+static mpm_status reserve_values(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values) {
+  nodes->values = values;
+  return mpmi_reserve_more(c, (void **)&nodes->at, &nodes->capacity, slots * values, sizeof *nodes->at);
+}
+
+static mpm_status reserve_held(mpm_context *c, mpmi_nodes *nodes, int64_t slots) {
+  int64_t capacity = nodes->held_capacity;
+  const mpm_status status =
+      mpmi_reserve_more(c, (void **)&nodes->held_value, &capacity, slots, sizeof *nodes->held_value);
+  if (status || capacity == nodes->held_capacity) return status;
+  mpmi_free(c, nodes->held, mpmi_bytes(nodes->held_capacity, sizeof *nodes->held));
+  nodes->held_capacity = capacity;
+  nodes->held = mpmi_alloc(c, mpmi_bytes(capacity, sizeof *nodes->held));
+  if (nodes->held) return MPM_OK;
+  mpmi_free(c, nodes->held_value, mpmi_bytes(capacity, sizeof *nodes->held_value));
+  nodes->held_value = NULL;
+  nodes->held_capacity = 0;
+  return MPM_E_NOMEM;
+}
+
+/* A whole step of a fused transfer needs no forces apart from the momentum. */
+static int32_t values_of_step(const mpmi_settings *settings, int32_t staged) {
+  const int32_t fused = settings->transfer->fused && !staged && !mpmi_has_hooks(settings);
+  return fused && settings->desc.position_order == 1 ? 4 : 8;
+}
+
+mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, const mpmi_layout *layout,
+                              int32_t staged) {
+  mpm_context *c = settings->context;
+  const int64_t slots = mpmi_slots(layout), ties = layout->constraints.tie_count;
+  const int32_t remedy = settings->desc.locking_remedy != MPM_LOCKING_NONE;
+  const int32_t corrected = mpmi_is_corrected(settings);
+  const int32_t projects = settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected;
+  mpm_status status;
+  nodes->shown = -1;
+  nodes->has_holders = settings->velocity_bc || nodes->prescription.any;
+  nodes->has_impulses = nodes->has_holders || ties || layout->constraints.contact_count;
+  if ((status = reserve_values(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
+      (status = projects ? reserve_values(c, &nodes->projected, slots, 4) : MPM_OK) ||
+      (status = corrected || remedy ? reserve_values(c, &nodes->sums, slots, 4) : MPM_OK) ||
+      (status = mpmi_reserve_more(c, (void **)&nodes->tie_state, &nodes->tie_capacity, ties,
+                                  sizeof *nodes->tie_state)))
+    return status;
+  if (nodes->has_impulses &&
+      (status = mpmi_reserve_more(c, (void **)&nodes->impulse, &nodes->impulse_capacity, slots,
+                                  sizeof *nodes->impulse)))
+    return status;
+  if (mpmi_has_hooks(settings) &&
+      (status = mpmi_reserve_more(c, (void **)&nodes->hook_impulse, &nodes->hook_capacity, slots,
+                                  sizeof *nodes->hook_impulse)))
+    return status;
+  return nodes->has_holders ? reserve_held(c, nodes, slots) : MPM_OK;
+}
+
+void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
+  mpmi_nodal *const values[] = {&nodes->solved, &nodes->projected, &nodes->sums};
+  for (int32_t i = 0; i < 3; ++i)
+    mpmi_free(c, values[i]->at, mpmi_bytes(values[i]->capacity, sizeof(double)));
+  mpmi_free(c, nodes->impulse, mpmi_bytes(nodes->impulse_capacity, sizeof *nodes->impulse));
+  mpmi_free(c, nodes->held, mpmi_bytes(nodes->held_capacity, sizeof *nodes->held));
+  mpmi_free(c, nodes->held_value, mpmi_bytes(nodes->held_capacity, sizeof *nodes->held_value));
+  mpmi_free(c, nodes->hook_impulse, mpmi_bytes(nodes->hook_capacity, sizeof *nodes->hook_impulse));
+  mpmi_free(c, nodes->tie_state, mpmi_bytes(nodes->tie_capacity, sizeof *nodes->tie_state));
+  mpmi_prescription *p = &nodes->prescription;
+  mpmi_free(c, p->sums, mpmi_bytes(p->sums_capacity, sizeof *p->sums));
+  mpmi_free(c, p->part, mpmi_bytes(p->part_capacity, sizeof *p->part));
+  mpmi_free(c, p->block, mpmi_bytes(p->block_capacity, sizeof *p->block));
+}
+
+int64_t mpmi_count_active(const mpmi_layout *layout, const mpmi_nodal *nodes) {
+  const int64_t slots = mpmi_slots(layout);
+  int64_t active = 0;
+  for (int64_t i = 0; i < slots; ++i) active += *mpmi_mass(nodes, i) > layout->mass_cut;
+  return active;
+}

@@ -1,0 +1,105 @@
+/* The nodes of one velocity field: what a step keeps for each slot of the layout's blocks.
+ *
+ * A node is reached through the accessors below, which alone know where its values stand. */
+#ifndef MPMI_NODES_H
+#define MPMI_NODES_H
+
+#include "layout/sorted_layout.h"
+
+/* Values of all nodes, 4 or 8 each: a vector and the mass; with 8 values another vector, and one unused. The
+ * first vector is the momentum, and the velocity once it has been divided by the mass; the second is the
+ * force, and the increment of the velocity. */
+typedef struct mpmi_nodal {
+  double *at;
+  int32_t values;
+  int64_t capacity; /* in doubles */
+} mpmi_nodal;
+
+static inline double *mpmi_nodal_at(const mpmi_nodal *nodes, int64_t slot) {
+  return nodes->at + slot * nodes->values;
+}
+static inline double *mpmi_momentum(const mpmi_nodal *nodes, int64_t slot) {
+  return mpmi_nodal_at(nodes, slot);
+}
+static inline double *mpmi_velocity(const mpmi_nodal *nodes, int64_t slot) {
+  return mpmi_nodal_at(nodes, slot);
+}
+static inline double *mpmi_mass(const mpmi_nodal *nodes, int64_t slot) {
+  return mpmi_nodal_at(nodes, slot) + 3;
+}
+/* Where nodes have 8 values: */
+static inline int32_t mpmi_has_increments(const mpmi_nodal *nodes) {
+  return nodes->values == 8;
+}
+static inline double *mpmi_increment(const mpmi_nodal *nodes, int64_t slot) {
+  return mpmi_nodal_at(nodes, slot) + 4;
+}
+static inline double *mpmi_force(const mpmi_nodal *nodes, int64_t slot) {
+  return mpmi_nodal_at(nodes, slot) + 4;
+}
+
+/* What walls and prescribed velocities gave to a node in the step, and by how much they changed the increment
+ * of its velocity. */
+typedef struct mpmi_impulse {
+  double given[3], change[3];
+} mpmi_impulse;
+
+/* Sums over the prescribed particles around a node: momentum and mass by axis; then the impulse on them by
+ * mass. They go through tiles of 8 values. */
+typedef struct mpmi_prescribed_sums {
+  double momentum[3], mass[3], unused[2];
+} mpmi_prescribed_sums;
+_Static_assert(sizeof(mpmi_prescribed_sums) == 8 * sizeof(double), "goes through tiles");
+
+/* Prescribed particles of one set in one block: impulse on the material, work of moving them. */
+typedef struct mpmi_prescribed_part {
+  double impulse[3], work;
+} mpmi_prescribed_part;
+
+/* Prescribed particles of a step (boundary/prescribed.h). */
+typedef struct mpmi_prescription {
+  int32_t any;                /* some set has them; only then is the rest there */
+  mpmi_prescribed_sums *sums; /* [slots] */
+  uint8_t *block;             /* [blocks] flags */
+  mpmi_prescribed_part *part; /* [blocks][members] */
+  int64_t sums_capacity, block_capacity, part_capacity;
+} mpmi_prescription;
+
+/* State of a tie from folding to unfolding: mass of all its nodes, the same with the followers' signs by
+ * component, what the master gave to particles before folding, impulse that is recorded already. */
+typedef struct mpmi_tie_state {
+  double mass, net[3], before[3], increment[3], recorded[3];
+} mpmi_tie_state;
+
+typedef struct mpmi_nodes {
+  mpmi_nodal solved;    /* the projection with forces, 4 or 8 values: what particles take from */
+  mpmi_nodal projected; /* the other projections, 4 values */
+  mpmi_nodal sums;      /* 4 values: the corrections of XPIC, or the cell sums of the locking remedy */
+  int32_t has_impulses; /* something can give nodes an impulse that has to be remembered; only then */
+  mpmi_impulse *impulse;
+  int64_t impulse_capacity;
+  int32_t has_holders; /* something may prescribe velocities of nodes; only then */
+  uint8_t (*held)[3];  /* who prescribes a component (boundary/boundary.h), 0: nobody */
+  double (*held_value)[3];
+  int64_t held_capacity;
+  double (*hook_impulse)[3]; /* where there are hooks */
+  int64_t hook_capacity;
+  mpmi_tie_state *tie_state; /* [ties] */
+  int64_t tie_capacity;
+  mpmi_prescription prescription;
+  double shown_dt; /* time over which forces changed the velocities that views show */
+  int64_t shown;   /* version of the layout that views show, or -1: nothing */
+} mpmi_nodes;
+
+static inline int32_t mpmi_held_by(const mpmi_nodes *nodes, int64_t slot, int32_t c) {
+  return nodes->has_holders ? nodes->held[slot][c] : 0;
+}
+
+/* Memory for a step in whole (staged: in parts), once the prescribed particles are known. */
+mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, const mpmi_layout *layout,
+                              int32_t staged);
+/* Nodes with mass. */
+int64_t mpmi_count_active(const mpmi_layout *layout, const mpmi_nodal *nodes);
+void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *context);
+
+#endif

@@ -1,0 +1,59 @@
+/* What the host has set: the method, the walls, its callbacks. Stages read it; only calls between steps write
+ * it. */
+#ifndef MPMI_SETTINGS_H
+#define MPMI_SETTINGS_H
+
+#include "grid/constraints.h"
+#include "layout/transfers.h"
+#include "transfer/kernels.h"
+
+typedef struct mpmi_settings {
+  mpm_context *context;
+  const mpm_grid *grid;
+  const mpmi_kernels *kernels;
+  int32_t tasks; /* how many work at a time; no result depends on it */
+  mpm_stepper_desc desc;
+  const mpmi_transfer *transfer; /* the row of desc.transfer */
+  mpmi_wall wall[6];
+  mpm_particle_fn acceleration, force;
+  void *acceleration_user, *force_user;
+  mpm_velocity_fn velocity_bc;
+  void *velocity_bc_user;
+  mpm_node_fn hook[3]; /* by stage, from MPM_AFTER_P2G */
+  void *hook_user[3];
+  mpm_progress_fn progress;
+  void *progress_user;
+  mpm_solve_fn solver;
+  void *solver_user;
+} mpmi_settings;
+
+static inline int32_t mpmi_is_implicit(const mpmi_settings *set) {
+  return set->desc.scheme == MPM_NEWMARK;
+}
+/* Do implicit steps have inertia? */
+static inline int32_t mpmi_is_dynamic(const mpmi_settings *set) {
+  return !set->desc.quasi_static;
+}
+/* Is the new stress there before the particles move? */
+static inline int32_t mpmi_deforms_first(const mpmi_settings *set) {
+  return set->desc.scheme == MPM_USF || mpmi_is_implicit(set);
+}
+static inline int32_t mpmi_is_affine(const mpmi_settings *set) {
+  return set->transfer->carries != MPMI_CARRIES_NOTHING;
+}
+/* Does the transfer project corrections? XPIC of order 1 is PIC. */
+static inline int32_t mpmi_is_corrected(const mpmi_settings *set) {
+  return set->transfer->takes == MPMI_TAKES_CORRECTED && set->desc.xpic_order > 1;
+}
+/* Share of FLIP in the blend of a step whose forces act over dt, 0 for the other transfers: MPoint theory,
+ * eqs 58 and 59. */
+static inline double mpmi_flip_share(const mpmi_settings *set, double dt) {
+  if (set->transfer->takes != MPMI_TAKES_BLEND) return 0.0;
+  const double kept = 1.0 - set->desc.pic_damping * dt;
+  return kept > 0.0 ? set->desc.flip * kept : 0.0;
+}
+static inline int32_t mpmi_has_hooks(const mpmi_settings *set) {
+  return set->hook[0] || set->hook[1] || set->hook[2];
+}
+
+#endif

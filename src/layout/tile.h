@@ -1,0 +1,18 @@
+/* Tiles: private copies of the nodes of a block and its halo, which kernels work on. */
+#ifndef MPMI_TILE_H
+#define MPMI_TILE_H
+
+#include "layout/nodes.h"
+
+int32_t mpmi_tile_nodes(const mpm_grid *grid);
+/* Fills a tile with tile_values per node: all of the nodes' values, or the first half of 8. */
+void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
+                    int32_t tile_values, double *tile);
+/* Prefetches the nodes that the block shares with its neighbours [begin, end), itself among them. */
+void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block,
+                     const mpmi_nodal *nodes, int32_t begin, int32_t end);
+/* Adds the tile, which has as many values per node, to the nodes and leaves it clean. */
+void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
+                   double *tile);
+
+#endif

@@ -1,0 +1,232 @@
+#include "stages/batch.h"
+#include "layout/axes.h"
+#include "layout/profile.h"
+#include "layout/tile.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- the set, the block
+ * ------------------------------------------------------------------------------------ */
+static void add_streams(mpmi_streams *streams, const mpm_particles *set, int32_t field, int32_t copy) {
+  const mpmi_field *f = &set->field[field];
+  for (int32_t c = 0; f->present && c < f->components && streams->count < MPMI_MAX_STREAMS; ++c)
+    streams->at[streams->count++] = mpmi_component_row(set, field, copy, c);
+}
+
+/* What a batch reads and writes, for prefetching. */
+static void list_streams(mpmi_batch *b) {
+  mpmi_streams *streams = &b->gather.streams;
+  streams->count = 0;
+  add_streams(streams, b->set, MPMI_POSITION, 0);
+  add_streams(streams, b->set, MPMI_INITIAL_VOLUME, 0);
+  if (b->pass->moves) {
+    add_streams(streams, b->set, MPMI_VELOCITY, 0);
+    add_streams(streams, b->set, MPMI_POSITION, 1);
+    add_streams(streams, b->set, MPMI_VELOCITY, 1);
+    add_streams(streams, b->set, MPMI_L, 1);
+  }
+  if (b->pass->deforms) {
+    add_streams(streams, b->set, MPMI_F, 0);
+    add_streams(streams, b->set, MPMI_F, 1);
+    add_streams(streams, b->set, MPMI_VOLUME, 0);
+    add_streams(streams, b->set, MPMI_MASS, 0);
+    add_streams(streams, b->set, MPMI_STRESS, 1);
+    if (!mpmi_material_stress_from_F(b->set->material)) add_streams(streams, b->set, MPMI_STRESS, 0);
+  }
+}
+
+static void bind_set(mpmi_batch *b, int32_t m) {
+  const mpmi_settings *settings = b->step->settings;
+  const mpm_grid *grid = settings->grid;
+  mpm_particles *set = b->step->layout->member[m].set;
+  b->m = m;
+  b->set = set;
+  mpmi_law_batch_bind(&b->law, set->material, b->scratch->batch_memory);
+  const int64_t ld = b->law.ld;
+  b->v_bar = b->scratch->gathered;
+  b->dv = b->v_bar + 3 * ld;
+  b->C = b->dv + 3 * ld;
+  memset(b->scratch->gathered, 0, (size_t)(15 * ld) * sizeof(double));
+  b->gather = (mpmi_gather){.weights = settings->kernels->weights[grid->family][grid->dim],
+                            .points = mpmi_points_of(set, 0),
+                            .need = b->need,
+                            .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
+                            .tile = b->scratch->tile,
+                            .ld = ld,
+                            .v = b->v_bar,
+                            .dv = b->dv,
+                            .L = b->law.L,
+                            .C = b->C};
+  list_streams(b);
+  if (b->pass->bind) b->pass->bind(b);
+}
+
+/* Increments are needed by blends and by second-order positions; C by transfers that carry it. */
+static void choose_form(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const mpmi_transfer *transfer = settings->transfer;
+  const int32_t moves = b->pass->moves;
+  const int32_t increments =
+      moves && (transfer->takes == MPMI_TAKES_BLEND || settings->desc.position_order == 2);
+  const int32_t matrix = moves && transfer->carries == MPMI_CARRIES_MATRIX;
+  if (transfer->moments == MPMI_NEED_MLS && !increments && !b->pass->plain) {
+    b->form = MPMI_GATHER_4_MLS;
+    b->need = 0;
+    return;
+  }
+  b->need = MPMI_NEED_GRADIENT | (matrix ? MPMI_NEED_MOMENT : 0);
+  if (increments)
+    b->form = matrix ? MPMI_GATHER_8_AFFINE : MPMI_GATHER_8;
+  else
+    b->form = matrix ? MPMI_GATHER_4_AFFINE : MPMI_GATHER_4;
+}
+
+/* ---- the walk
+ * ---------------------------------------------------------------------------------------------- */
+void mpmi_pass_begin(mpmi_batch *b, mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from,
+                     const mpmi_pass *pass, void *user, int32_t task) {
+  b->step = step;
+  b->nodes = nodes;
+  b->from = from;
+  b->pass = pass;
+  b->user = user;
+  b->task = task;
+  b->scratch = &step->work->scratch[task];
+  b->report = &step->work->report[task];
+  b->m = -1;
+  b->batches = 0;
+  choose_form(b);
+}
+
+static void take_batch(mpmi_batch *b, int64_t begin, int64_t n) {
+  const mpmi_settings *settings = b->step->settings;
+  b->begin = begin;
+  b->n = n;
+  b->flags = 0;
+  b->law_ran = 0;
+  settings->kernels->gather[settings->grid->dim][settings->grid->width][b->form](&b->gather, begin, n);
+  b->pass->take(b);
+  if (b->flags) mpmi_batch_check(b);
+}
+
+/* The nodes of the block after this are asked for meanwhile, share by share. */
+static void fetch_next(mpmi_batch *b, int64_t next, int64_t done, int64_t n, int64_t slots) {
+  const mpmi_blocks *blocks = &b->step->layout->blocks;
+  mpmi_tile_fetch(b->step->settings->kernels, blocks, next, b->from,
+                  (int32_t)(blocks->neighbours * done / slots),
+                  (int32_t)(blocks->neighbours * (done + n) / slots));
+}
+
+/* A pass that deforms starts the sums of energies, or the first that moves. */
+static int32_t starts_sums(const mpmi_batch *b) {
+  return b->pass->deforms || (b->pass->moves && !mpmi_deforms_first(b->step->settings));
+}
+
+void mpmi_pass_block(mpmi_batch *b, int64_t block, int64_t next) {
+  const mpmi_layout *layout = b->step->layout;
+  const mpmi_blocks *blocks = &layout->blocks;
+  b->block = block;
+  b->sums = &b->step->work->block_sums[block];
+  if (starts_sums(b)) memset(b->sums, 0, sizeof *b->sums);
+  mpmi_tile_load(b->step->settings->kernels, blocks, block, b->from, b->form >= MPMI_GATHER_8 ? 8 : 4,
+                 b->scratch->tile);
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const int64_t begin = layout->member[m].now.start[block], end = layout->member[m].now.start[block + 1];
+    if (begin == end) continue;
+    if (m != b->m) bind_set(b, m);
+    mpmi_block_axes(blocks->grid, blocks->coord[block], b->gather.axis);
+    if (b->pass->enter) b->pass->enter(b);
+    for (int64_t p = begin; p < end; p += b->law.ld) {
+      const int64_t n = end - p < b->law.ld ? end - p : b->law.ld;
+      if (m == 0 && next >= 0) fetch_next(b, next, p - begin, n, end - begin);
+      take_batch(b, p, n);
+    }
+    mpmi_sample_weights(b->step, b->task, b->gather.axis, b->need, &b->gather.points, begin, end);
+  }
+}
+
+typedef struct pass_job {
+  mpmi_step *step;
+  mpmi_nodes *nodes;
+  const mpmi_nodal *from;
+  const mpmi_pass *pass;
+  void *user;
+} pass_job;
+
+static void take_range(void *data, int32_t task, const int32_t *block, int64_t count) {
+  const pass_job *job = data;
+  mpmi_batch b;
+  mpmi_pass_begin(&b, job->step, job->nodes, job->from, job->pass, job->user, task);
+  for (int64_t i = 0; i < count; ++i) mpmi_pass_block(&b, block[i], i + 1 < count ? block[i + 1] : -1);
+}
+
+int32_t mpmi_has_host_law(const mpmi_layout *layout) {
+  for (int32_t m = 0; m < layout->member_count; ++m)
+    if (!layout->member[m].set->material->law) return 1;
+  return 0;
+}
+
+mpm_status mpmi_pass_run(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from, const mpmi_pass *pass,
+                         void *user) {
+  pass_job job = {step, nodes, from, pass, user};
+  const mpm_status status = mpmi_visit_ranges(step, mpmi_has_host_law(step->layout), take_range, &job);
+  return status ? status : mpmi_step_failure(step);
+}
+
+/* ---- what has gone wrong
+ * ----------------------------------------------------------------------------------- */
+void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what) {
+  mpmi_failure_take(&b->report->failure,
+                    &(mpmi_failure){cause, 0, b->m, mpmi_i64(b->set, MPMI_ID, 0)[slot], -1, what});
+}
+
+static int32_t finite_row(const mpm_particles *set, int32_t field, int32_t components, int64_t slot) {
+  for (int32_t c = 0; c < components; ++c)
+    if (!isfinite(mpmi_component_row(set, field, 1, c)[slot])) return 0;
+  return 1;
+}
+
+/* A hole weighs nothing, but nodes near it that are not finite make it so: it stays what it was. */
+static void restore_hole(mpmi_batch *b, int64_t slot) {
+  mpm_particles *set = b->set;
+  b->report->holes_restored = 1;
+  mpmi_f64(set, MPMI_VOLUME, 0)[slot] = 0.0;
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field *field = &set->field[f];
+    if (!field->present || !field->two_copies) continue;
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components; ++c) {
+      const size_t at = (size_t)(c * set->ld + slot) * size;
+      memcpy((char *)field->data[1] + at, (const char *)field->data[0] + at, size);
+    }
+  }
+}
+
+static int32_t law_is_finite(const mpmi_batch *b, int64_t slot) {
+  const mpm_particles *set = b->set;
+  const int64_t p = slot - b->begin;
+  return finite_row(set, MPMI_STRESS, mpmi_stress_components(set->grid->dim), slot) &&
+         finite_row(set, MPMI_STATE, set->material->state_count, slot) && isfinite(b->law.wave_speed[p]) &&
+         isfinite(b->law.viscosity[p]);
+}
+
+void mpmi_batch_check(mpmi_batch *b) {
+  const mpm_particles *set = b->set;
+  const int32_t dim = set->grid->dim;
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  const int32_t moved = b->pass->moves, deformed = b->pass->deforms;
+  for (int64_t slot = b->begin; slot < b->begin + b->n; ++slot) {
+    if (id[slot] < 0)
+      restore_hole(b, slot);
+    else if (moved &&
+             !(finite_row(set, MPMI_POSITION, dim, slot) && finite_row(set, MPMI_VELOCITY, dim, slot)))
+      mpmi_batch_fail(b, MPM_NONFINITE, slot, "position or velocity not finite");
+    else if (deformed && !finite_row(set, MPMI_F, mpmi_tensor_components(dim), slot))
+      mpmi_batch_fail(b, MPM_NONFINITE, slot, "deformation gradient not finite");
+    else if (deformed && !(mpmi_f64(set, MPMI_VOLUME, 0)[slot] > 0.0))
+      mpmi_batch_fail(b, MPM_INVERTED, slot, "det F is not positive");
+    else if (b->law_ran && !law_is_finite(b, slot))
+      mpmi_batch_fail(b, MPM_NONFINITE, slot, "the material's stress, state or wave speed is not finite");
+  }
+}

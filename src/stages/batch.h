@@ -1,0 +1,71 @@
+/* Batches of particles on their way through a pass from nodes to particles. A pass gathers from the nodes of
+ * a velocity field, block by block, and does with each batch what it is for. It reads copy 0 of the
+ * particles' fields and writes copy 1; only volume has one copy (strain.h). */
+#ifndef MPMI_BATCH_H
+#define MPMI_BATCH_H
+
+#include "layout/nodes.h"
+#include "layout/visit.h"
+#include "particles/law_batch.h"
+
+typedef struct mpmi_batch mpmi_batch;
+
+/* What a pass is for. */
+typedef struct mpmi_pass {
+  int32_t moves;   /* velocity and position of the particles: gathers what the transfer takes for that */
+  int32_t deforms; /* deformation gradient and stress */
+  int32_t plain;   /* gathers mean velocities whatever the transfer is */
+  void (*bind)(mpmi_batch *b);  /* a set comes; or NULL */
+  void (*enter)(mpmi_batch *b); /* a block comes; or NULL */
+  void (*take)(mpmi_batch *b);  /* a batch has been gathered */
+} mpmi_pass;
+
+struct mpmi_batch {
+  mpmi_step *step;
+  mpmi_nodes *nodes;
+  const mpmi_nodal *from; /* the nodes that are gathered from */
+  const mpmi_pass *pass;
+  void *user; /* of the pass */
+  mpmi_scratch *scratch;
+  mpmi_task_report *report;
+  int32_t task, form, need; /* of the gather */
+  /* The set at hand, -1: none yet; and what the kernels are given of it: */
+  int32_t m;
+  mpm_particles *set;
+  mpmi_law_batch law;
+  mpmi_gather gather;
+  mpmi_move move;
+  mpmi_deform deform;
+  mpmi_sums_job sums_job;
+  double *v_bar, *dv, *C; /* gathered, beside the gradient, which goes to the law */
+  /* The block at hand: */
+  int64_t block;
+  mpmi_sums *sums;
+  /* The batch at hand: */
+  int64_t begin, n;
+  uint32_t flags;  /* of the kernels: something to look at */
+  int32_t law_ran; /* its stress is that of this step */
+  int64_t batches; /* for sampling */
+};
+
+/* Component c of a field, at slot 0. */
+static inline double *mpmi_component_row(const mpm_particles *set, int32_t field, int32_t copy, int32_t c) {
+  return mpmi_f64(set, field, copy) + c * set->ld;
+}
+
+/* Runs a pass over all particles; MPM_OK, or the failure of the first particle. */
+mpm_status mpmi_pass_run(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from, const mpmi_pass *pass,
+                         void *user);
+/* The same block by block, for those who add to nodes meanwhile: a task begins once and then takes blocks. */
+void mpmi_pass_begin(mpmi_batch *b, mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from,
+                     const mpmi_pass *pass, void *user, int32_t task);
+void mpmi_pass_block(mpmi_batch *b, int64_t block, int64_t next);
+/* Is there a law of the host's? Then its callback may have to stay on one thread. */
+int32_t mpmi_has_host_law(const mpmi_layout *layout);
+
+/* Takes note of the failure of the particle in a slot. */
+void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what);
+/* Finds the particles behind the flags of the batch. */
+void mpmi_batch_check(mpmi_batch *b);
+
+#endif

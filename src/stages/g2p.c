@@ -1,0 +1,99 @@
+#include "stages/g2p.h"
+#include "stages/locking.h"
+#include "stages/motion.h"
+#include "stages/strain.h"
+
+#include <string.h>
+
+static void bind_both(mpmi_batch *b) {
+  mpmi_motion_bind(b);
+  mpmi_strain_bind(b);
+}
+
+static void enter_both(mpmi_batch *b) {
+  mpmi_motion_enter(b);
+  mpmi_strain_enter(b);
+}
+
+/* Of the MLS form with increments, C is the gradient too. */
+static void settle_gradient(mpmi_batch *b) {
+  if (b->step->settings->transfer->moments == MPMI_NEED_MLS && b->form == MPMI_GATHER_8_AFFINE)
+    memcpy(b->law.L, b->C, (size_t)(9 * b->law.ld) * sizeof(double));
+}
+
+static void take_both(mpmi_batch *b) {
+  settle_gradient(b);
+  mpmi_motion_take(b);
+  mpmi_gradient_keep(b);
+  if (mpmi_strain_deform(b)) mpmi_strain_law(b);
+  if (b->law_ran) mpmi_batch_sums(b, MPMI_SUMS_LAW | MPMI_SUMS_MOTION);
+}
+
+/* Where the law has run already, this is the last pass and sums up the motion. */
+static void take_motion(mpmi_batch *b) {
+  const int32_t last = mpmi_deforms_first(b->step->settings);
+  settle_gradient(b);
+  if (last) mpmi_wave_speed_fetch(b);
+  mpmi_motion_take(b);
+  mpmi_gradient_keep(b);
+  if (last) mpmi_batch_sums(b, MPMI_SUMS_MOTION);
+}
+
+static void take_strain(mpmi_batch *b) {
+  const int32_t first = mpmi_deforms_first(b->step->settings);
+  mpmi_gradient_keep(b);
+  if (mpmi_strain_deform(b)) mpmi_strain_law(b);
+  if (!b->law_ran) return;
+  if (first) mpmi_wave_speed_leave(b);
+  mpmi_batch_sums(b, first ? MPMI_SUMS_LAW : MPMI_SUMS_LAW | MPMI_SUMS_MOTION);
+}
+
+static void take_means(mpmi_batch *b, int32_t field) {
+  for (int32_t k = 0; k < b->set->grid->dim; ++k)
+    memcpy(mpmi_component_row(b->set, field, 1, k) + b->begin, b->v_bar + k * b->law.ld,
+           (size_t)b->n * sizeof(double));
+}
+
+static void take_velocities(mpmi_batch *b) {
+  take_means(b, MPMI_VELOCITY);
+}
+
+static void take_accelerations(mpmi_batch *b) {
+  if (b->set->dirty & MPMI_DIRTY_ACCELERATION) take_means(b, MPMI_ACCELERATION);
+}
+
+static const mpmi_pass both = {
+    .moves = 1, .deforms = 1, .bind = bind_both, .enter = enter_both, .take = take_both};
+static const mpmi_pass motion = {
+    .moves = 1, .bind = bind_both, .enter = mpmi_motion_enter, .take = take_motion};
+static const mpmi_pass strain = {
+    .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .take = take_strain};
+static const mpmi_pass velocities = {.plain = 1, .take = take_velocities};
+static const mpmi_pass accelerations = {.plain = 1, .take = take_accelerations};
+
+/* The locking remedy measures the dilation before a pass that deforms. */
+static mpm_status run(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from, const mpmi_pass *pass) {
+  const int32_t remedy = pass->deforms && step->settings->desc.locking_remedy;
+  const mpm_status status = remedy ? mpmi_locking_stage(step, nodes, from) : MPM_OK;
+  return status ? status : mpmi_pass_run(step, nodes, from, pass, NULL);
+}
+
+mpm_status mpmi_g2p_move_and_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
+  return run(step, nodes, from, &both);
+}
+
+mpm_status mpmi_g2p_move(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
+  return run(step, nodes, from, &motion);
+}
+
+mpm_status mpmi_g2p_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
+  return run(step, nodes, from, &strain);
+}
+
+mpm_status mpmi_g2p_velocities(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
+  return run(step, nodes, from, &velocities);
+}
+
+mpm_status mpmi_g2p_accelerations(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
+  return run(step, nodes, from, &accelerations);
+}

@@ -1,0 +1,150 @@
+#include "stages/motion.h"
+#include "boundary/prescribed.h"
+
+#include <math.h>
+#include <string.h>
+
+void mpmi_motion_bind(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const mpm_grid *grid = settings->grid;
+  const int32_t blends = settings->transfer->takes == MPMI_TAKES_BLEND && mpmi_is_dynamic(settings);
+  const int32_t rule = blends                        ? MPMI_MOVE_BLEND
+                       : mpmi_is_corrected(settings) ? MPMI_MOVE_CORRECT
+                                                     : MPMI_MOVE_SET;
+  b->move = (mpmi_move){.rule = rule,
+                        .dt = b->step->dt,
+                        .flip = mpmi_flip_share(settings, b->step->velocity_dt),
+                        .lag = settings->desc.position_order == 2 && !mpmi_is_implicit(settings) ? 0.5 : 0.0,
+                        .ld = b->law.ld,
+                        .v_bar = b->v_bar,
+                        .dv = b->dv};
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double length = grid->upper[k] - grid->desc.origin[k];
+    const int32_t periodic = grid->desc.periodic[k] != 0;
+    b->move.low[k] = grid->desc.origin[k];
+    b->move.high[k] = grid->upper[k];
+    b->move.period[k] = periodic ? length : 0.0;
+    b->move.inverse_period[k] = periodic ? 1.0 / length : 0.0;
+  }
+}
+
+/* Where the particles of a block may be before they have to be sorted anew, less a hair for rounding. */
+void mpmi_motion_enter(mpmi_batch *b) {
+  const mpmi_blocks *blocks = &b->step->layout->blocks;
+  const mpm_grid *grid = blocks->grid;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double first = (double)blocks->coord[b->block][k] * blocks->edge;
+    const double centre = first + 0.5 * (blocks->edge - grid->centred);
+    b->move.centre[k] = grid->desc.origin[k] + grid->desc.spacing[k] * centre;
+    b->move.half[k] = grid->desc.spacing[k] * (0.5 * blocks->edge + MPMI_RING) * (1.0 - 1e-9);
+  }
+}
+
+/* ---- beyond the faces of the grid
+ * -------------------------------------------------------------------------- */
+/* Periods that a particle may cross in one step: beyond them its position is rounding. */
+#define MOST_TURNS 2147483648.0
+
+/* A particle on a wall stands there but for rounding; this many cells beyond it are that. */
+#define WALL_ROUNDING 1e-12
+
+static int32_t is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
+  const mpm_grid *grid = settings->grid;
+  const int32_t above = *x > grid->upper[k];
+  const double face = above ? grid->upper[k] : grid->desc.origin[k];
+  if (settings->wall[2 * k + above].kind < MPM_WALL_FIXED) return 0;
+  if (!(fabs(*x - face) <= WALL_ROUNDING * grid->desc.spacing[k])) return 0;
+  *x = face;
+  return 1;
+}
+
+/* Moves a position by whole periods into the grid and counts them; 0 where that is beyond counting. */
+static int32_t wrap(const mpm_grid *grid, int32_t k, double *x, int64_t *image) {
+  const double length = grid->upper[k] - grid->desc.origin[k];
+  const double turns = floor((*x - grid->desc.origin[k]) / length);
+  if (fabs(turns) >= MOST_TURNS) return 0;
+  *x -= turns * length;
+  if (*x < grid->desc.origin[k]) *x = grid->desc.origin[k];
+  if (*x > grid->upper[k]) *x = grid->upper[k];
+  *image += (int64_t)turns;
+  return 1;
+}
+
+static int32_t is_placed(const mpm_particles *set, int64_t slot) {
+  int32_t placed = 1;
+  for (int32_t k = 0; k < set->grid->dim; ++k)
+    placed &= isfinite(mpmi_component_row(set, MPMI_POSITION, 1, k)[slot]) != 0;
+  return placed;
+}
+
+/* Particles beyond a face: wrapped, marked for removal, or the end of the step. */
+static void look_outside(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const mpm_grid *grid = settings->grid;
+  const int64_t *id = mpmi_i64(b->set, MPMI_ID, 0);
+  for (int64_t slot = b->begin; slot < b->begin + b->n; ++slot) {
+    if (id[slot] < 0 || !is_placed(b->set, slot)) continue; /* the check of values will say */
+    int32_t stays = 0, leaves = 0;
+    for (int32_t k = 0; k < grid->dim; ++k) {
+      double *x = mpmi_component_row(b->set, MPMI_POSITION, 1, k) + slot;
+      if (*x >= grid->desc.origin[k] && *x <= grid->upper[k]) continue;
+      if (grid->desc.periodic[k])
+        stays |= !wrap(grid, k, x, mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot);
+      else if (settings->wall[2 * k + (*x > grid->upper[k])].kind == MPM_WALL_OPEN)
+        leaves = 1;
+      else if (!is_on_wall(settings, k, x))
+        stays = 1;
+    }
+    if (stays)
+      mpmi_batch_fail(b, MPM_OFF_GRID, slot, "a particle would leave the grid");
+    else if (leaves)
+      b->report->removes = 1;
+  }
+}
+
+/* ---- a batch
+ * ----------------------------------------------------------------------------------------------- */
+/* From gathered dt a1 to what Newmark's rule adds to the velocities. */
+static void mean_accelerations(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const double dt = b->step->dt, gamma = settings->desc.newmark_gamma;
+  for (int32_t k = 0; k < settings->grid->dim; ++k) {
+    double *a = mpmi_component_row(b->set, MPMI_ACCELERATION, 1, k) + b->begin;
+    double *dv = b->dv + k * b->law.ld;
+    for (int64_t p = 0; p < b->n; ++p) {
+      const double new = dv[p] / dt;
+      dv[p] = dt * (1.0 - gamma) * a[p] + gamma * dv[p];
+      a[p] = new;
+    }
+  }
+}
+
+static void store_accelerations(mpmi_batch *b) {
+  for (int32_t k = 0; k < b->set->grid->dim; ++k)
+    for (int64_t p = 0; p < b->n; ++p)
+      mpmi_component_row(b->set, MPMI_ACCELERATION, 1, k)[b->begin + p] =
+          (b->move.v_new[k][p] - b->move.v_old[k][p]) / b->step->velocity_dt;
+}
+
+void mpmi_motion_take(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  mpm_particles *set = b->set;
+  const int64_t begin = b->begin, n = b->n;
+  for (int32_t k = 0; k < settings->grid->dim; ++k) {
+    b->move.x_old[k] = mpmi_component_row(set, MPMI_POSITION, 0, k) + begin;
+    b->move.v_old[k] = mpmi_component_row(set, MPMI_VELOCITY, 0, k) + begin;
+    b->move.x_new[k] = mpmi_component_row(set, MPMI_POSITION, 1, k) + begin;
+    b->move.v_new[k] = mpmi_component_row(set, MPMI_VELOCITY, 1, k) + begin;
+    if (set->field[MPMI_IMAGE].present)
+      memcpy(mpmi_i64(set, MPMI_IMAGE, 1) + k * set->ld + begin,
+             mpmi_i64(set, MPMI_IMAGE, 0) + k * set->ld + begin, (size_t)n * sizeof(int64_t));
+  }
+  if (mpmi_is_implicit(settings)) mean_accelerations(b);
+  uint32_t flags = settings->kernels->move[settings->grid->dim](&b->move, n);
+  if (b->step->layout->member[b->m].prescribed)
+    flags |= mpmi_prescribed_move(b->step, b->nodes, b->m, b->block, &b->move, begin, n);
+  if (flags & MPMI_LEFT_TILE) b->report->left_tile = 1;
+  if (flags & MPMI_OUTSIDE) look_outside(b);
+  if (set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(settings)) store_accelerations(b);
+  b->flags |= flags & MPMI_NONFINITE;
+}

@@ -1,0 +1,41 @@
+#include "stages/node_update.h"
+#include "layout/tasks.h"
+
+#include <string.h>
+
+typedef struct update_job {
+  mpmi_step *step;
+  mpmi_nodes *nodes;
+  const mpmi_nodal *values;
+  int32_t forgets_impulses, forgets_held; /* what the boundary stage will note, node by node */
+} update_job;
+
+static void update_task(void *data, int64_t k) {
+  const update_job *job = data;
+  const mpmi_step *step = job->step;
+  const mpmi_nodes *nodes = job->nodes;
+  const mpmi_share share = mpmi_share_of(step->settings, mpmi_slots(step->layout), k);
+  const int64_t count = share.end - share.begin;
+  step->work->report[k].active = 0;
+  if (!count) return; /* perhaps there are no nodes at all */
+  step->work->report[k].active =
+      step->settings->kernels->update(job->values->values, mpmi_nodal_at(job->values, share.begin), count,
+                                      step->layout->mass_cut, step->velocity_dt);
+  if (job->forgets_impulses && nodes->has_impulses)
+    memset(nodes->impulse + share.begin, 0, (size_t)count * sizeof *nodes->impulse);
+  if (job->forgets_held && nodes->has_holders)
+    memset(nodes->held + share.begin, 0, (size_t)count * sizeof *nodes->held);
+}
+
+mpm_status mpmi_node_update_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes) {
+  const mpmi_settings *settings = step->settings;
+  const int32_t main = projection == &mpmi_projections[MPMI_PROJECT_FORCES];
+  const int32_t first =
+      projection == &mpmi_projections[MPMI_PROJECT_CONTACT] || mpmi_asks_host(settings, projection);
+  update_job job = {step, nodes, mpmi_projected_nodes(nodes, projection), main, first};
+  const mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, update_task, &job);
+  if (status || !main) return status;
+  step->info.active_nodes = 0;
+  for (int32_t k = 0; k < settings->tasks; ++k) step->info.active_nodes += step->work->report[k].active;
+  return MPM_OK;
+}

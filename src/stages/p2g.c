@@ -1,0 +1,119 @@
+#include "stages/p2g.h"
+#include "layout/accumulate.h"
+#include "layout/axes.h"
+#include "layout/profile.h"
+#include "layout/tile.h"
+
+#include <string.h>
+
+typedef struct p2g_job {
+  mpmi_step *step;
+  const mpmi_projection *projection;
+  const mpmi_nodal *to;
+  int32_t affine, form, need;
+  int32_t stress_copy;
+} p2g_job;
+
+static void add_streams(mpmi_streams *streams, const double *const *rows, int32_t count) {
+  for (int32_t k = 0; k < count; ++k)
+    if (rows[k]) streams->at[streams->count++] = rows[k];
+}
+
+/* What the next chunk will read, for prefetching. */
+static void list_streams(const p2g_job *job, mpmi_scatter *scatter, int32_t dim) {
+  mpmi_streams *streams = &scatter->streams;
+  for (int32_t k = 0; k < dim; ++k) {
+    add_streams(streams, &scatter->points.x[k], 1);
+    add_streams(streams, &scatter->v[k], 1);
+    add_streams(streams, &scatter->force[k], 1);
+  }
+  add_streams(streams, &scatter->mass, 1);
+  if (job->projection->forces) {
+    add_streams(streams, &scatter->volume, 1);
+    add_streams(streams, scatter->stress, mpmi_stress_components(dim));
+  }
+  add_streams(streams, scatter->affine, 9);
+}
+
+static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatter *scatter) {
+  const mpmi_settings *settings = job->step->settings;
+  const mpmi_projection *projection = job->projection;
+  const mpm_particles *set = member->set;
+  const int32_t dim = settings->grid->dim, forces = projection->forces;
+  memset(scatter, 0, sizeof *scatter);
+  scatter->weights = settings->kernels->weights[settings->grid->family][dim];
+  scatter->points = mpmi_points_of(set, 0);
+  scatter->need = job->need;
+  scatter->mass = mpmi_f64(set, MPMI_MASS, 0);
+  scatter->volume = mpmi_f64(set, MPMI_VOLUME, 0);
+  for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
+    scatter->stress[c] = mpmi_f64(set, MPMI_STRESS, job->stress_copy) + c * set->ld;
+  for (int32_t k = 0; k < dim; ++k) {
+    scatter->v[k] = mpmi_f64(set, projection->field, projection->copy) + k * set->ld;
+    scatter->force[k] = member->force && forces ? member->force + k * set->ld : NULL;
+    scatter->gravity[k] = forces ? settings->desc.gravity[k] : 0.0;
+  }
+  for (int32_t c = 0; job->affine && c < mpmi_gradient_components(dim); ++c)
+    scatter->affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, projection->copy) + c * set->ld;
+  scatter->fused_dt = forces && !mpmi_has_increments(job->to) ? job->step->velocity_dt : 0.0;
+  list_streams(job, scatter, dim);
+}
+
+/* In as many pieces as the block has neighbours: in front of each, the nodes that the tile shares with one of
+ * them are asked for, so that they are near when the tile is added to them. */
+static void scatter_slots(const p2g_job *job, const mpmi_scatter *scatter, int64_t block, int64_t begin,
+                          int64_t end) {
+  const mpmi_settings *settings = job->step->settings;
+  const mpmi_blocks *blocks = &job->step->layout->blocks;
+  const int32_t pieces = blocks->neighbours;
+  const mpmi_scatter_fn kernel =
+      settings->kernels->scatter[settings->grid->dim][settings->grid->width][job->form];
+  const int64_t chunks = (end - begin + MPMI_CHUNK - 1) / MPMI_CHUNK;
+  for (int32_t k = 0; k < pieces; ++k) {
+    const int64_t from = begin + chunks * k / pieces * MPMI_CHUNK;
+    const int64_t to = begin + chunks * (k + 1) / pieces * MPMI_CHUNK;
+    mpmi_tile_fetch(settings->kernels, blocks, block, job->to, k, k + 1);
+    if (to > from) kernel(scatter, from, to < end ? to : end);
+  }
+}
+
+static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
+  const p2g_job *job = user;
+  const mpmi_layout *layout = job->step->layout;
+  mpmi_scatter scatter;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const int64_t begin = layout->member[m].now.start[visit->block];
+    const int64_t end = layout->member[m].now.start[visit->block + 1];
+    if (begin == end) continue;
+    scatter_of(job, &layout->member[m], &scatter);
+    mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[visit->block], scatter.axis);
+    scatter.tile = tile;
+    scatter_slots(job, &scatter, visit->block, begin, end);
+    mpmi_sample_weights(job->step, visit->task, scatter.axis, job->need, &scatter.points, begin, end);
+  }
+}
+
+static void choose_form(p2g_job *job) {
+  const mpmi_settings *settings = job->step->settings;
+  const int32_t moments = settings->transfer->moments;
+  if (mpmi_has_increments(job->to)) {
+    job->form = job->affine ? MPMI_SCATTER_8_AFFINE : MPMI_SCATTER_8;
+    job->need = moments == MPMI_NEED_MLS ? moments : MPMI_NEED_GRADIENT | (job->affine ? moments : 0);
+  } else if (job->affine && settings->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {
+    job->form = MPMI_SCATTER_4_UNEVEN;
+    job->need = MPMI_NEED_MOMENT;
+  } else {
+    job->form = job->affine ? MPMI_SCATTER_4_AFFINE : MPMI_SCATTER_4;
+  }
+}
+
+mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes) {
+  const int32_t main = projection == &mpmi_projections[MPMI_PROJECT_FORCES];
+  p2g_job job = {.step = step,
+                 .projection = projection,
+                 .to = mpmi_projected_nodes(nodes, projection),
+                 .affine = mpmi_is_affine(step->settings) && !projection->plain,
+                 .stress_copy = main && mpmi_deforms_first(step->settings)}; /* then it is updated already */
+  choose_form(&job);
+  return mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
+}

@@ -1,0 +1,136 @@
+#include "stages/strain.h"
+#include "layout/tile.h"
+#include "stages/locking.h"
+#include "stages/moments.h"
+
+#include <string.h>
+
+/* Reading the clock costs as much as the law of a few particles: one batch in so many stands for all. */
+enum { TIMED_BATCHES = 16 };
+
+void mpmi_strain_bind(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const mpm_grid *grid = settings->grid;
+  b->deform =
+      (mpmi_deform){.dt = b->step->dt,
+                    .ld = b->law.ld,
+                    .L = b->law.L,
+                    .F = b->law.F,
+                    .F_inc = b->set->material->law && !mpmi_is_implicit(settings) ? NULL : b->law.F_inc};
+  b->sums_job =
+      (mpmi_sums_job){.ld = b->law.ld,
+                      .wave_speed = b->law.wave_speed,
+                      .kinematic_viscosity = b->law.viscosity,
+                      .energy = b->law.energy,
+                      .viscous_factor = 2.0 * grid->dim / (grid->h_min * grid->h_min),
+                      .checked = {b->law.stress_new, b->law.state_new},
+                      .checked_rows = {mpmi_stress_components(grid->dim), b->set->material->state_count}};
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double length = grid->upper[k] - grid->desc.origin[k];
+    const int32_t periodic = grid->desc.periodic[k] != 0;
+    b->sums_job.period[k] = periodic ? length : 0.0;
+    b->sums_job.inverse_period[k] = periodic ? 1.0 / length : 0.0;
+    b->sums_job.gravity[k] = settings->desc.gravity[k];
+    b->sums_job.inverse_spacing[k] = grid->inverse_spacing[k];
+  }
+}
+
+void mpmi_strain_enter(mpmi_batch *b) {
+  if (b->step->settings->desc.locking_remedy && b->pass->deforms)
+    mpmi_tile_load(b->step->settings->kernels, &b->step->layout->blocks, b->block, &b->nodes->sums, 4,
+                   b->scratch->cells);
+}
+
+void mpmi_gradient_keep(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const int32_t dim = settings->grid->dim;
+  if (!b->set->field[MPMI_L].present) return;
+  if (!(mpmi_is_affine(settings) ? b->pass->moves : b->pass->deforms)) return;
+  const int32_t matrix = b->form == MPMI_GATHER_4_AFFINE || b->form == MPMI_GATHER_8_AFFINE;
+  const double *from = matrix ? b->C : b->law.L;
+  for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+    memcpy(mpmi_component_row(b->set, MPMI_L, 1, c) + b->begin, from + mpmi_gradient_map(dim)[c] * b->law.ld,
+           (size_t)b->n * sizeof(double));
+}
+
+int32_t mpmi_strain_deform(mpmi_batch *b) {
+  const mpmi_step *step = b->step;
+  mpm_particles *set = b->set;
+  const int32_t dim = set->grid->dim, stored = mpmi_tensor_components(dim);
+  const double *F[9];
+  for (int32_t c = 0; c < stored; ++c) {
+    b->deform.F_old[c] = mpmi_component_row(set, MPMI_F, 0, c) + b->begin;
+    b->deform.F_new[c] = mpmi_component_row(set, MPMI_F, 1, c) + b->begin;
+    F[c] = b->deform.F_new[c];
+  }
+  mpmi_law_batch_load(&b->law, set, b->begin, b->n, step->t + step->dt, step->dt);
+  step->settings->kernels->deform[mpmi_material_kinematics(set->material)][dim](&b->deform, b->n);
+  const uint32_t flags = step->settings->kernels->volume[dim](
+      F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin, mpmi_f64(set, MPMI_VOLUME, 0) + b->begin, b->n);
+  b->flags |= flags;
+  return !flags;
+}
+
+void mpmi_strain_law(mpmi_batch *b) {
+  const mpmi_step *step = b->step;
+  if (step->settings->desc.locking_remedy)
+    mpmi_locking_apply(step->settings->grid, b->scratch->cells, b->gather.axis, b->set, &b->law, b->begin,
+                       b->n, step->dt);
+  const int32_t timed = step->profile->sampled && b->batches++ % TIMED_BATCHES == 0;
+  const double started = timed ? mpmi_seconds() : 0.0;
+  const mpm_status status = mpmi_law_batch_run(&b->law, b->set);
+  if (timed) b->report->law_seconds += TIMED_BATCHES * (mpmi_seconds() - started);
+  if (status) {
+    mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
+                                                           "the material callback"});
+    return;
+  }
+  mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);
+  b->law_ran = 1;
+}
+
+void mpmi_wave_speed_leave(const mpmi_batch *b) {
+  memcpy(b->step->layout->member[b->m].wave_speed + b->begin, b->law.wave_speed,
+         (size_t)b->n * sizeof(double));
+}
+
+void mpmi_wave_speed_fetch(mpmi_batch *b) {
+  memcpy(b->law.wave_speed, b->step->layout->member[b->m].wave_speed + b->begin,
+         (size_t)b->n * sizeof(double));
+}
+
+void mpmi_batch_sums(mpmi_batch *b, int32_t what) {
+  const mpmi_settings *settings = b->step->settings;
+  const mpmi_member *member = &b->step->layout->member[b->m];
+  mpm_particles *set = b->set;
+  const int32_t dim = settings->grid->dim;
+  mpmi_sums_job *job = &b->sums_job;
+  job->what = what;
+  job->mass = mpmi_f64(set, MPMI_MASS, 0) + b->begin;
+  job->initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin;
+  for (int32_t k = 0; k < dim; ++k) {
+    job->x[k] = mpmi_component_row(set, MPMI_POSITION, 1, k) + b->begin;
+    job->v[k] = mpmi_component_row(set, MPMI_VELOCITY, 1, k) + b->begin;
+    job->x_old[k] = mpmi_component_row(set, MPMI_POSITION, 0, k) + b->begin;
+    job->force[k] = member->force ? member->force + k * set->ld + b->begin : NULL;
+  }
+  if (mpmi_is_affine(settings) && (what & MPMI_SUMS_MOTION)) {
+    mpmi_sums_moments(settings, set, 1, b->begin, b->n, b->law.ld, b->C,
+                      job); /* C is stored, its buffer free */
+    for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+      job->affine[mpmi_gradient_map(dim)[c]] = mpmi_component_row(set, MPMI_L, 1, c) + b->begin;
+  }
+  b->flags |= settings->kernels->sums[dim](job, b->n, b->sums);
+}
+
+void mpmi_make_volumes(const mpmi_layout *layout, const mpmi_settings *settings, int32_t copy) {
+  const int32_t dim = settings->grid->dim;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    mpm_particles *set = layout->member[m].set;
+    if (!set->slots) continue;
+    const double *F[9];
+    for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_component_row(set, MPMI_F, copy, c);
+    settings->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0),
+                                   set->slots);
+  }
+}

@@ -1,0 +1,73 @@
+#include "stepper/explicit.h"
+#include "boundary/boundary.h"
+#include "boundary/prescribed.h"
+#include "layout/profile.h"
+#include "stages/forces.h"
+#include "stages/g2p.h"
+#include "stages/node_update.h"
+#include "stages/p2g.h"
+#include "stages/xpic.h"
+
+/* A projection beside the one with the forces of the step, up to its boundary conditions. */
+static mpm_status project(mpmi_step *step, mpmi_nodes *nodes, int32_t projection, double *clock) {
+  const mpmi_projection *of = &mpmi_projections[projection];
+  mpm_status status = mpmi_p2g_stage(step, of, nodes);
+  mpmi_lap(step, MPMI_TIME_P2G, clock);
+  if (!status) status = mpmi_node_update_stage(step, of, nodes);
+  if (!status) status = mpmi_boundary_stage(step, of, nodes, 0.0);
+  mpmi_lap(step, MPMI_TIME_GRID, clock);
+  return status;
+}
+
+/* Strain and stress of the velocities of a projection. */
+static mpm_status deform(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
+  const mpm_status status = mpmi_g2p_deform(step, nodes, &nodes->projected);
+  mpmi_lap(step, MPMI_TIME_G2P, clock);
+  return status;
+}
+
+/* USF: strain and stress from the velocities at the start of the step. */
+static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
+  mpm_status status = MPM_OK;
+  if (step->layout->constraints.contact_count) status = project(step, nodes, MPMI_PROJECT_CONTACT, clock);
+  if (!status) status = project(step, nodes, MPMI_PROJECT_STRAIN, clock);
+  return status ? status : deform(step, nodes, clock);
+}
+
+mpm_status mpmi_explicit_begin(mpmi_step *step, mpmi_nodes *nodes) {
+  double clock = mpmi_seconds();
+  mpm_status status = mpmi_forces_stage(step, step->t);
+  if (!status) status = mpmi_prescribed_stage(step);
+  mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
+  if (!status && step->settings->desc.scheme == MPM_USF) status = deform_first(step, nodes, &clock);
+  if (!status) status = mpmi_p2g_stage(step, &mpmi_projections[MPMI_PROJECT_FORCES], nodes);
+  mpmi_lap(step, MPMI_TIME_P2G, &clock);
+  return status;
+}
+
+mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes) {
+  const mpmi_projection *forces = &mpmi_projections[MPMI_PROJECT_FORCES];
+  double clock = mpmi_seconds();
+  mpm_status status = mpmi_node_update_stage(step, forces, nodes);
+  if (!status) status = mpmi_boundary_stage(step, forces, nodes, 1.0);
+  if (!status && step->layout->constraints.tie_count)
+    step->info.active_nodes = mpmi_count_active(step->layout, &nodes->solved);
+  mpmi_lap(step, MPMI_TIME_GRID, &clock);
+  return status;
+}
+
+mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
+  const mpmi_settings *settings = step->settings;
+  double clock = mpmi_seconds();
+  mpm_status status = mpmi_is_corrected(settings) ? mpmi_xpic_stage(step, nodes) : MPM_OK;
+  if (!status)
+    status = settings->desc.scheme == MPM_USL ? mpmi_g2p_move_and_deform(step, nodes, &nodes->solved)
+                                              : mpmi_g2p_move(step, nodes, &nodes->solved);
+  mpmi_lap(step, MPMI_TIME_G2P, &clock);
+  if (!status && settings->desc.scheme == MPM_MUSL) {
+    status = project(step, nodes, MPMI_PROJECT_MOVED, &clock);
+    if (!status) status = deform(step, nodes, &clock);
+  }
+  mpmi_move_samples(step, MPMI_TIME_G2P);
+  return status;
+}

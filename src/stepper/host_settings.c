@@ -1,0 +1,72 @@
+/* What the host sets: walls, callbacks, hooks, the motion of prescribed particles. */
+#include "layout/members.h"
+#include "stepper/stepper.h"
+
+#include <math.h>
+
+mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, double friction) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = mpmi_stepper_idle(s);
+  if (status) return status;
+  if (face < 0 || face >= 2 * s->grid->dim)
+    return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
+                     (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
+  if (kind < MPM_WALL_NONE || kind > MPM_WALL_FRICTION)
+    return mpmi_fail(s->context, MPM_E_ARG, "kind is %d: it must be an MPM_WALL_NONE ... MPM_WALL_FRICTION",
+                     (int)kind);
+  if (s->grid->desc.periodic[face / 2] && kind != MPM_WALL_NONE)
+    return mpmi_fail(s->context, MPM_E_ARG, "face %d belongs to a periodic axis and can have no wall",
+                     (int)face);
+  if (kind == MPM_WALL_FRICTION && !(friction >= 0.0 && isfinite(friction)))
+    return mpmi_fail(s->context, MPM_E_ARG, "friction is %g: it must be finite and >= 0", friction);
+  if (kind == MPM_WALL_FRICTION && mpmi_is_implicit(&s->settings))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no friction walls: use MPM_WALL_SLIP or MPM_WALL_FIXED, or an "
+                     "explicit scheme");
+  if (s->settings.wall[face].kind != kind) s->layout.walls_changed = 1;
+  s->settings.wall[face] = (mpmi_wall){kind, kind == MPM_WALL_FRICTION ? friction : 0.0};
+  return MPM_OK;
+}
+
+#define SETTER(name, type, member)                                                                           \
+  mpm_status name(mpm_stepper *s, type fn, void *user) {                                                     \
+    MPMI_ENTER(s, MPMI_STEPPER);                                                                             \
+    mpm_status status = mpmi_stepper_idle(s);                                                                \
+    if (status) return status;                                                                               \
+    s->settings.member = fn;                                                                                 \
+    s->settings.member##_user = user;                                                                        \
+    return MPM_OK;                                                                                           \
+  }
+SETTER(mpm_stepper_set_acceleration, mpm_particle_fn, acceleration)
+SETTER(mpm_stepper_set_force, mpm_particle_fn, force)
+SETTER(mpm_stepper_set_velocity_bc, mpm_velocity_fn, velocity_bc)
+SETTER(mpm_stepper_set_progress, mpm_progress_fn, progress)
+SETTER(mpm_stepper_set_linear_solver, mpm_solve_fn, solver)
+
+mpm_status mpm_stepper_set_node_hook(mpm_stepper *s, int32_t stage, mpm_node_fn fn, void *user) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  const mpm_status status = mpmi_stepper_idle(s);
+  if (status) return status;
+  if (stage < MPM_AFTER_P2G || stage > MPM_AFTER_VELOCITY)
+    return mpmi_fail(s->context, MPM_E_ARG, "stage is %d: it must be an MPM_AFTER_P2G ... MPM_AFTER_VELOCITY",
+                     (int)stage);
+  if (fn && mpmi_is_implicit(&s->settings))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no node hooks: use force and velocity callbacks, or an explicit "
+                     "scheme");
+  s->settings.hook[stage - MPM_AFTER_P2G] = fn;
+  s->settings.hook_user[stage - MPM_AFTER_P2G] = user;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_set_motion(mpm_stepper *s, mpm_particles *particles, mpm_particle_fn mean_velocity,
+                                  void *user) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  int32_t m;
+  mpm_status status = mpmi_stepper_idle(s);
+  if (!status) status = mpmi_members_find(&s->layout, &s->settings, particles, &m);
+  if (status) return status;
+  s->layout.member[m].motion = mean_velocity;
+  s->layout.member[m].motion_user = user;
+  return MPM_OK;
+}

@@ -1,0 +1,227 @@
+#include "stepper/make_step.h"
+#include "boundary/prescribed.h"
+#include "implicit/newmark.h"
+#include "layout/members.h"
+#include "layout/profile.h"
+#include "stages/strain.h"
+#include "stepper/commit.h"
+#include "stepper/explicit.h"
+#include "stepper/reports.h"
+#include "stepper/state_sums.h"
+
+#include <math.h>
+
+/* ---- beginning
+ * --------------------------------------------------------------------------------------------- */
+static mpm_status check_dt(mpm_stepper *s, double dt) {
+  const double t = s->history.t;
+  if (!(dt > 0.0) || !isfinite(dt))
+    return mpmi_fail(s->context, MPM_E_ARG, "dt is %g: it must be positive and finite", dt);
+  if (!isfinite(t + dt) || t + dt == t)
+    return mpmi_fail(s->context, MPM_E_ARG, "dt = %g does not advance the time %g", dt, t);
+  const mpm_status status = mpmi_stepper_idle(s);
+  if (status) return status;
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE,
+                     "%d views of nodal fields are out: release them before stepping", (int)s->mapped);
+  return MPM_OK;
+}
+
+static void begin(mpm_stepper *s, double dt, int32_t staged) {
+  const mpmi_history *history = &s->history;
+  const int32_t mean = s->settings.desc.staggered && history->previous_dt > 0.0;
+  s->step = (mpmi_step){.phase = MPMI_RUNNING,
+                        .staged = staged,
+                        .settings = &s->settings,
+                        .layout = &s->layout,
+                        .work = &s->work,
+                        .profile = &s->profile,
+                        .t = history->t,
+                        .dt = dt,
+                        .velocity_dt = mean ? 0.5 * (history->previous_dt + dt) : dt,
+                        .info = history->last};
+  s->step.info.newton_iterations = s->step.info.linear_solver = 0;
+  s->step.info.linear_iterations = 0;
+  s->step.info.residual = 0.0;
+  mpmi_failure_clear(&s->step.failure);
+  mpmi_reports_clear(&s->work, s->settings.tasks);
+}
+
+/* Sets, layout and memory for the step. */
+static mpm_status prepare(mpm_stepper *s) {
+  const mpmi_settings *settings = &s->settings;
+  double clock = mpmi_seconds();
+  mpm_status status;
+  if ((status = mpmi_state_sums(s, &s->step.failure)) ||
+      (status = mpmi_members_refresh(&s->layout, settings)) ||
+      (status = mpmi_layout_prepare(&s->layout, settings)) ||
+      (status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
+      (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
+      (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
+      (status = mpmi_members_reserve(&s->layout, settings)))
+    return status;
+  if (mpmi_is_implicit(settings) && !s->newton && (status = mpmi_newton_create(settings, &s->newton)))
+    return status;
+  mpmi_lap(&s->step, MPMI_TIME_SORT, &clock);
+  return MPM_OK;
+}
+
+/* ---- the end
+ * ----------------------------------------------------------------------------------------------- */
+/* The step is over: what it knows of itself stays. */
+static void drop(mpm_stepper *s) {
+  s->history.last = s->step.info;
+  s->step = (mpmi_step){.phase = MPMI_IDLE};
+}
+
+/* Whatever has gone wrong: the particles are as before, the info says why. */
+static mpm_status give_up(mpm_stepper *s, mpm_status status) {
+  const mpmi_failure *failure = &s->step.failure;
+  mpm_step_info *info = &s->step.info;
+  mpmi_roll_back(s);
+  info->cause = status;
+  info->dt = s->step.dt;
+  info->dt_suggested = 0.6 * s->step.dt;
+  info->callback_status = failure->callback_status;
+  info->set = failure->set;
+  info->particle = failure->particle;
+  info->node = failure->node;
+  info->external_work = info->dissipation = 0.0;
+  drop(s);
+  return status;
+}
+
+/* The host may still cancel: it sees the info that the step is about to have. */
+static mpm_status ask_progress(mpm_stepper *s) {
+  const mpmi_settings *settings = &s->settings;
+  if (!settings->progress) return MPM_OK;
+  mpm_step_info info;
+  mpmi_fill_info(s, &s->step.info, &info);
+  info.t = s->step.t + s->step.dt;
+  info.dt = s->step.dt;
+  info.step = s->history.step + 1;
+  const mpm_status status = settings->progress(settings->progress_user, &info);
+  if (!status) return MPM_OK;
+  s->step.failure.callback_status = status;
+  return mpmi_fail(s->context, status > 0 ? MPM_CANCELLED : MPM_E_CALLBACK,
+                   "the progress callback returned %d in the step from t = %g", (int)status, s->step.t);
+}
+
+static mpm_status finish(mpm_stepper *s) {
+  mpm_step_info *info = &s->step.info;
+  const double dt = s->step.dt, velocity_dt = s->step.velocity_dt;
+  const mpm_status status = ask_progress(s);
+  if (status) return status;
+  mpmi_commit(s);
+  /* a removal leaves the sums to be made again; then the host's law may refuse, which is for the next call to
+   * say */
+  if (!s->history.has_sums && mpmi_state_sums(s, NULL)) s->context->error[0] = '\0';
+  info->cause = MPM_OK;
+  info->dt = dt;
+  info->dt_suggested =
+      mpmi_is_implicit(&s->settings) ? mpmi_next_dt(s->newton, dt) : mpmi_stable_dt(&s->history.sums);
+  info->callback_status = 0;
+  info->set = -1;
+  info->particle = info->node = -1;
+  drop(s);
+  s->nodes.shown = s->layout.version;
+  s->nodes.shown_dt = velocity_dt;
+  return MPM_OK;
+}
+
+/* ---- whole steps
+ * ------------------------------------------------------------------------------------------- */
+static mpm_status run_explicit(mpm_stepper *s) {
+  mpm_status status = mpmi_explicit_begin(&s->step, &s->nodes);
+  if (!status) status = mpmi_explicit_grid(&s->step, &s->nodes);
+  return status ? status : mpmi_explicit_end(&s->step, &s->nodes);
+}
+
+static mpm_status run_implicit(mpm_stepper *s) {
+  mpmi_balance balance = {&s->step, &s->settings, &s->layout, &s->nodes, s->newton};
+  return mpmi_newmark_step(&balance);
+}
+
+mpm_status mpmi_make_step(mpm_stepper *s, double dt) {
+  mpm_status status = check_dt(s, dt);
+  if (status) return status;
+  begin(s, dt, 0);
+  status = prepare(s);
+  if (!status) status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
+  if (!status) status = finish(s);
+  if (status) return give_up(s, status);
+  s->context->error[0] = '\0'; /* of attempts before */
+  return MPM_OK;
+}
+
+mpm_status mpm_step(mpm_stepper *s, double dt, mpm_step_info *info) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  const mpm_status status = mpmi_check_info(s, info);
+  return status ? status : mpmi_give_info(s, mpmi_make_step(s, dt), info);
+}
+
+/* ---- steps in parts
+ * ---------------------------------------------------------------------------------------- */
+mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = check_dt(s, dt);
+  if (status) return status;
+  if (mpmi_is_implicit(&s->settings))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no steps in parts: use mpm_step, or an explicit scheme");
+  begin(s, dt, 1);
+  status = prepare(s);
+  if (!status) status = mpmi_explicit_begin(&s->step, &s->nodes);
+  if (status) return give_up(s, status);
+  /* until the end the host sees the old state */
+  if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, &s->settings, 0);
+  s->step.phase = MPMI_BEGUN;
+  return MPM_OK;
+}
+
+static mpm_status in_phase(mpm_stepper *s, int32_t phase, const char *call, const char *before) {
+  if (s->step.phase != phase) return mpmi_fail(s->context, MPM_E_STATE, "%s must follow %s", call, before);
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them before %s",
+                     (int)s->mapped, call);
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    if (s->layout.member[m].set->mapped)
+      return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views before %s", (int)m,
+                       call);
+  return MPM_OK;
+}
+
+mpm_status mpm_step_grid(mpm_stepper *s) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = in_phase(s, MPMI_BEGUN, "mpm_step_grid", "mpm_step_begin");
+  if (status) return status;
+  s->step.phase = MPMI_RUNNING;
+  status = mpmi_explicit_grid(&s->step, &s->nodes);
+  if (status) return give_up(s, status);
+  s->step.phase = MPMI_SOLVED;
+  return MPM_OK;
+}
+
+mpm_status mpm_step_end(mpm_stepper *s, mpm_step_info *info) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_status status = in_phase(s, MPMI_SOLVED, "mpm_step_end", "mpm_step_grid");
+  if (!status) status = mpmi_check_info(s, info);
+  if (status) return status;
+  s->step.phase = MPMI_RUNNING;
+  if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, &s->settings, 1);
+  status = mpmi_explicit_end(&s->step, &s->nodes);
+  if (!status) status = finish(s);
+  return mpmi_give_info(s, status ? give_up(s, status) : MPM_OK, info);
+}
+
+mpm_status mpm_step_abort(mpm_stepper *s) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (s->step.phase != MPMI_BEGUN && s->step.phase != MPMI_SOLVED)
+    return mpmi_fail(s->context, MPM_E_STATE, "no step is under way");
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE,
+                     "%d views of nodal fields are out: release them before mpm_step_abort", (int)s->mapped);
+  mpmi_roll_back(s);
+  s->step = (mpmi_step){.phase = MPMI_IDLE};
+  return MPM_OK;
+}

@@ -1,0 +1,135 @@
+#include "context/structs.h"
+#include "stepper/reports.h"
+#include "layout/members.h"
+#include "stepper/state_sums.h"
+
+#include <string.h>
+
+/* ---- info
+ * -------------------------------------------------------------------------------------------------- */
+void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_info *info) {
+  const mpmi_sums *sums = &s->history.sums;
+  *info = *last;
+  info->struct_size = sizeof *info;
+  info->step = s->history.step;
+  info->removed = s->history.removed;
+  info->resorts = s->layout.sorts;
+  info->t = s->history.t;
+  info->kinetic_energy = sums->kinetic;
+  info->strain_energy = sums->strain;
+  for (int32_t k = 0; k < 3; ++k) {
+    info->momentum[k] = sums->momentum[k];
+    info->angular_momentum[k] = sums->angular[k];
+  }
+}
+
+mpm_status mpmi_give_info(const mpm_stepper *s, mpm_status status, mpm_step_info *info) {
+  if (!info) return status;
+  mpm_step_info now;
+  mpmi_fill_info(s, &s->history.last, &now);
+  now.cause = status;
+  const mpm_status written = mpmi_write_struct(s->context, "mpm_step_info", &now, sizeof now, info);
+  return status ? status : written;
+}
+
+mpm_status mpmi_check_info(const mpm_stepper *s, const mpm_step_info *info) {
+  return info ? mpmi_check_out_struct(s->context, "mpm_step_info", sizeof *info, info) : MPM_OK;
+}
+
+mpm_status mpm_stepper_info(const mpm_stepper *stepper, mpm_step_info *info) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  /* the sums are a cache of the particles' state */
+  mpm_stepper *s = (mpm_stepper *)(uintptr_t)stepper;
+  if (!info) return mpmi_fail(s->context, MPM_E_ARG, "info is NULL");
+  mpm_status status = mpmi_stepper_idle(s);
+  if (!status) status = mpmi_check_sets(s, MPM_WRITE);
+  if (!status) status = mpmi_state_sums(s, NULL);
+  if (status) return status;
+  mpm_step_info now;
+  mpmi_fill_info(s, &s->history.last, &now);
+  return mpmi_write_struct(s->context, "mpm_step_info", &now, sizeof now, info);
+}
+
+mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!dt) return mpmi_fail(s->context, MPM_E_ARG, "dt is NULL");
+  mpm_status status = mpmi_stepper_idle(s);
+  if (status) return status;
+  int64_t count = 0;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) count += s->layout.member[m].set->count;
+  if (!count) return mpmi_fail(s->context, MPM_E_STATE, "the stepper has no particles");
+  status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
+  if (!status) status = mpmi_state_sums(s, NULL);
+  if (status) return status;
+  const double stable = mpmi_stable_dt(&s->history.sums);
+  if (!(stable > 0.0))
+    return mpmi_fail(s->context, MPM_NONFINITE,
+                     "velocity and wave speed over the spacing are beyond the range of double precision: no "
+                     "step is stable");
+  *dt = stable;
+  return MPM_OK;
+}
+
+/* ---- reactions
+ * --------------------------------------------------------------------------------------------- */
+mpm_status mpm_stepper_wall_reaction(const mpm_stepper *s, int32_t face, double *force) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  const mpmi_history *history = &s->history;
+  if (!force) return mpmi_fail(s->context, MPM_E_ARG, "force is NULL");
+  if (face < 0 || face >= 2 * s->grid->dim)
+    return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
+                     (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
+  if (!history->has_reactions) return mpmi_fail(s->context, MPM_E_STATE, "no step has been made yet");
+  for (int32_t k = 0; k < s->grid->dim; ++k)
+    force[k] = history->impulse_by_face[face][k] / history->reaction_dt;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_particles_reaction(const mpm_stepper *s, const mpm_particles *prescribed,
+                                          double *force) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  int32_t m;
+  if (!force) return mpmi_fail(s->context, MPM_E_ARG, "force is NULL");
+  const mpm_status status = mpmi_members_find(&s->layout, &s->settings, prescribed, &m);
+  if (status) return status;
+  if (!s->history.has_reactions) return mpmi_fail(s->context, MPM_E_STATE, "no step has been made yet");
+  for (int32_t c = 0; c < s->grid->dim; ++c)
+    force[c] = s->layout.member[m].reaction[c] / s->history.reaction_dt;
+  return MPM_OK;
+}
+
+/* ---- Newton's method, time
+ * --------------------------------------------------------------------------------- */
+mpm_status mpm_stepper_residuals(const mpm_stepper *s, int32_t capacity, double *residual, int32_t *count) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!count) return mpmi_fail(s->context, MPM_E_ARG, "count is NULL");
+  if (capacity < 0) return mpmi_fail(s->context, MPM_E_ARG, "capacity is %d: it must be >= 0", (int)capacity);
+  if (capacity && !residual) return mpmi_fail(s->context, MPM_E_ARG, "residual is NULL");
+  const int32_t known = s->newton && mpmi_is_implicit(&s->settings) ? s->newton->history_count : 0;
+  for (int32_t i = 0; i < known && i < capacity; ++i) residual[i] = s->newton->history[i];
+  *count = known;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_profile(mpm_stepper *s, int32_t reset, mpm_profile *out) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!out) return mpmi_fail(s->context, MPM_E_ARG, "out is NULL");
+  const double *t = s->profile.seconds;
+  const mpm_profile profile = {.struct_size = sizeof profile,
+                               .sort = t[MPMI_TIME_SORT],
+                               .p2g = t[MPMI_TIME_P2G],
+                               .grid = t[MPMI_TIME_GRID],
+                               .g2p = t[MPMI_TIME_G2P],
+                               .law = t[MPMI_TIME_LAW],
+                               .assembly = t[MPMI_TIME_ASSEMBLY],
+                               .factor = t[MPMI_TIME_FACTOR],
+                               .solve = t[MPMI_TIME_SOLVE],
+                               .callbacks = t[MPMI_TIME_CALLBACKS],
+                               .total = t[MPMI_TIME_TOTAL],
+                               .weights = t[MPMI_TIME_WEIGHTS]};
+  const mpm_status status = mpmi_write_struct(s->context, "mpm_profile", &profile, sizeof profile, out);
+  if (status) return status;
+  s->profile.sampled = 1;
+  if (reset) memset(s->profile.seconds, 0, sizeof s->profile.seconds);
+  return MPM_OK;
+}

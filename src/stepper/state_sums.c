@@ -1,0 +1,125 @@
+#include "stepper/state_sums.h"
+#include "context/reduce.h"
+#include "stages/moments.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* ---- sums over blocks
+ * -------------------------------------------------------------------------------------- */
+enum { SUMS = sizeof(mpmi_sums) / sizeof(double) };
+
+static int32_t is_rate(size_t at) {
+  return at == offsetof(mpmi_sums, rate) || at == offsetof(mpmi_sums, viscous_rate);
+}
+
+mpmi_sums mpmi_block_sums(const mpmi_step *step) {
+  const mpmi_worklist *blocks = &step->layout->worklist[0];
+  mpmi_sums sums = {0};
+  double *to = (double *)&sums;
+  if (!blocks->count) return sums;
+  for (int32_t i = 0; i < SUMS; ++i)
+    to[i] = mpmi_reduce(is_rate((size_t)i * sizeof(double)) ? MPMI_REDUCE_MAX : MPMI_REDUCE_SUM, 0.0,
+                        (const double *)step->work->block_sums + i, SUMS, blocks->block, blocks->count);
+  return sums;
+}
+
+double mpmi_stable_dt(const mpmi_sums *sums) {
+  const double rate = sums->rate > sums->viscous_rate ? sums->rate : sums->viscous_rate;
+  return rate > 0.0 ? 1.0 / rate : (double)INFINITY;
+}
+
+/* ---- sums over particles
+ * ----------------------------------------------------------------------------------- */
+static void bind_particles(const mpm_stepper *s, const mpm_particles *set, const mpmi_law_batch *b,
+                           int64_t begin, int64_t n, double *moments, mpmi_sums_job *job) {
+  const mpm_grid *grid = s->grid;
+  *job = (mpmi_sums_job){.what = MPMI_SUMS_LAW | MPMI_SUMS_MOTION,
+                         .ld = b->ld,
+                         .mass = mpmi_f64(set, MPMI_MASS, 0) + begin,
+                         .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin,
+                         .wave_speed = b->wave_speed,
+                         .kinematic_viscosity = b->viscosity,
+                         .energy = b->energy,
+                         .viscous_factor = 2.0 * grid->dim / (grid->h_min * grid->h_min)};
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    job->x[k] = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + begin;
+    job->v[k] = mpmi_f64(set, MPMI_VELOCITY, 0) + k * set->ld + begin;
+    job->inverse_spacing[k] = grid->inverse_spacing[k];
+  }
+  if (!mpmi_is_affine(&s->settings) || !set->field[MPMI_L].present) return;
+  mpmi_sums_moments(&s->settings, set, 0, begin, n, b->ld, moments, job);
+  for (int32_t c = 0; c < mpmi_gradient_components(grid->dim); ++c)
+    job->affine[mpmi_gradient_map(grid->dim)[c]] = mpmi_f64(set, MPMI_L, 0) + c * set->ld + begin;
+}
+
+static mpm_status refused(mpm_stepper *s, int32_t m, mpm_status status, mpmi_failure *failure) {
+  if (failure) {
+    failure->callback_status = status;
+    failure->set = m;
+  }
+  return mpmi_fail(s->context, MPM_E_CALLBACK,
+                   "the material of set %d returned %d when asked for its wave speed", (int)m, (int)status);
+}
+
+/* The law is asked for the state as it is: F_inc = I, dt = 0. */
+static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failure *failure) {
+  mpm_particles *set = s->layout.member[m].set;
+  const size_t batch = mpmi_law_batch_bytes(set->material);
+  const size_t bytes = batch + mpmi_bytes(3 * mpmi_law_batch_length(set->material), sizeof(double));
+  char *memory = mpmi_alloc(s->context, bytes);
+  if (!memory) return MPM_E_NOMEM;
+  mpmi_law_batch b;
+  mpmi_law_batch_bind(&b, set->material, memory);
+  mpm_status status = MPM_OK;
+  for (int64_t begin = 0; begin < set->slots && !status; begin += b.ld) {
+    const int64_t n = set->slots - begin < b.ld ? set->slots - begin : b.ld;
+    mpmi_law_batch_load(&b, set, begin, n, s->history.t, 0.0);
+    mpmi_law_batch_load_F(&b, set, begin, n);
+    const mpm_status answer = mpmi_law_batch_run(&b, set);
+    if (answer) {
+      status = refused(s, m, answer, failure);
+      break;
+    }
+    mpmi_sums_job job;
+    bind_particles(s, set, &b, begin, n, (double *)(void *)(memory + batch), &job);
+    if (s->settings.kernels->sums[s->grid->dim](&job, n, sums))
+      status = mpmi_fail(s->context, MPM_NONFINITE,
+                         "the material of set %d gives a wave speed that is not finite", (int)m);
+  }
+  mpmi_free(s->context, memory, bytes);
+  return status;
+}
+
+mpm_status mpmi_check_sets(mpm_stepper *s, int32_t access) {
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    mpm_particles *set = s->layout.member[m].set;
+    for (int32_t v = 0; v < MPMI_MAX_VIEWS && set->mapped; ++v)
+      if (set->view[v].live && (set->view[v].access & access))
+        return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views first", (int)m);
+    if (mpmi_particles_check_suspects(set)) return MPM_E_STATE;
+  }
+  return MPM_OK;
+}
+
+mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure) {
+  mpmi_layout *layout = &s->layout;
+  uint32_t dirty = 0;
+  for (int32_t m = 0; m < layout->member_count; ++m) dirty |= layout->member[m].set->dirty;
+  if (s->history.has_sums && !(dirty & MPMI_DIRTY_SUMS)) return MPM_OK;
+  mpmi_sums sums = {0};
+  mpm_status status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
+  /* sums follow the order of the slots, which must not be that in which the host added particles; without
+   * such there is no sorting, which would end the nodal fields of the last step */
+  if (!status && dirty & MPMI_DIRTY_ORDER) status = mpmi_layout_sort(layout, &s->settings);
+  for (int32_t m = 0; m < layout->member_count && !status; ++m) {
+    status = mpmi_particles_refresh(layout->member[m].set);
+    if (!status) status = sum_set(s, m, &sums, failure);
+  }
+  if (status) return status;
+  for (int32_t m = 0; m < layout->member_count; ++m)
+    layout->member[m].set->dirty &= ~(uint32_t)MPMI_DIRTY_SUMS;
+  s->history.has_sums = 1;
+  s->history.sums = sums;
+  return MPM_OK;
+}
