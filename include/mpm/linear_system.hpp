@@ -6,7 +6,7 @@
 #define MPM_LINEAR_SYSTEM_HPP
 
 #include <mpm/callback.hpp>
-#include <mpm/stepper.h>
+#include <mpm/operator.h>
 
 namespace mpm {
 
