@@ -14,14 +14,14 @@
 
 namespace mpm {
 
-/** What a callback of the host may return to the library: nothing for "go on", or a status, > 0 to ask for
- * what the C declaration says (mostly a smaller dt), < 0 to stop. An exception stops, too, and comes out of
- * the call that ran the callback. Made from any copyable function object; empty from nullptr. */
+/** A function of the host. It returns to the library nothing for "go on", or a status: > 0 asks for what the
+ * C declaration says (mostly a smaller dt), < 0 stops. An exception stops, too, and comes out of the call
+ * that ran the function. A callback is made from any copyable function object; from nullptr it is empty. */
 template <class... A> class callback {
 public:
-  /** None. */
+  /** Makes an empty callback. */
   callback(std::nullptr_t = nullptr) {}
-  /** function(A...) returns void, mpm_status or one of the MPM_* constants. */
+  /** Takes a function object; function(A...) returns void, mpm_status or one of the MPM_* constants. */
   template <class F, class R = std::invoke_result_t<F &, A...>,
             class = std::enable_if_t<!std::is_same_v<std::decay_t<F>, callback>>>
   callback(F function) {
@@ -36,7 +36,7 @@ public:
       }
     };
   }
-  /** True unless it is empty. */
+  /** Tells whether there is a function. */
   explicit operator bool() const noexcept {
     return static_cast<bool>(call_);
   }
@@ -52,10 +52,10 @@ private:
 namespace detail {
 
 /** Exceptions that callbacks threw during a call, on any thread. Each has a number, which the library carries
- * as the status of the callback: so the one that comes out does not depend on threads. */
+ * as the status of the callback. So the exception that comes out does not depend on threads. */
 class thrown {
 public:
-  /** In a catch block: keeps the exception and gives the status that stands for it. */
+  /** Keeps the exception of the catch block it is called in, and gives the status that stands for it. */
   mpm_status keep() noexcept {
     try {
       const std::lock_guard<std::mutex> hold(mutex_);
@@ -65,7 +65,7 @@ public:
       return MPM_E_NOMEM;
     }
   }
-  /** Forgets all and gives the one that stands behind status, else the first, else none. */
+  /** Forgets all exceptions and gives the one for which status stands, else the first, else none. */
   std::exception_ptr take(mpm_status status) noexcept {
     const std::lock_guard<std::mutex> hold(mutex_);
     if (kept_.empty()) return nullptr;

@@ -1,6 +1,6 @@
 /**
  * @file context.h
- * The context: memory, threads, log and last error. All services of the host are optional.
+ * The context: memory, threads, log and last error. The host may leave out every service.
  */
 #ifndef MPM_CONTEXT_H
 #define MPM_CONTEXT_H
@@ -12,65 +12,75 @@
 extern "C" {
 #endif
 
-/** A task of the library: call it with the task_data given to mpm_parallel_for_fn and a number k. It
- * neither throws nor blocks, and may run on any thread. */
+/** A task of the library, which the host's executor calls with the task_data that it was given and a number
+ * k. A task neither throws nor blocks, and may run on any thread. */
 typedef void (*mpm_task_fn)(void *task_data, int64_t k);
 
 /**
- * The host's executor. Runs task(task_data, k) exactly once for each k in [0, count), in any order, on any
- * threads, and returns when all are done. The library's results do not depend on how. A return other than 0
- * makes the call that needed it fail with MPM_E_CALLBACK.
+ * The host's executor. It runs task(task_data, k) exactly once for each k in [0, count), in any order, on any
+ * threads, and returns when all are done. The library calls it on the calling thread, and its results do not
+ * depend on order and threads. A return other than 0 makes the call that needed it fail with MPM_E_CALLBACK.
  */
 typedef mpm_status (*mpm_parallel_for_fn)(void *user, int64_t count, mpm_task_fn task, void *task_data);
 
-/** Services of the host. Fill with mpm_context_desc_init(), then change what is wanted. */
+/** Services of the host. Fill the struct with mpm_context_desc_init(), then change what is wanted. */
 typedef struct mpm_context_desc {
   uint32_t struct_size; /**< sizeof(mpm_context_desc) of the caller */
-  /** 1: the calling thread only (default); N: a pool of N threads, the calling one included; 0: one per
-   * processor. The pool belongs to the context; its threads sleep when idle and never spin for longer
-   * than a few microseconds. Results do not depend on it. */
+  /** Number of threads. 1 (default): the calling thread only; N: a pool of N threads, the calling one
+   * included; 0: one per processor. The pool belongs to the context; its threads sleep when idle and never
+   * spin for longer than a few microseconds. Results do not depend on the number. */
   int32_t concurrency;
-  /** MPM_ISA_BEST (default) or a set to be used; MPM_E_UNSUPPORTED at creation if processor or library
-   * lacks it. With MPM_ISA_BEST the environment variable MPM_ISA (baseline, avx2, avx512), read once at
-   * creation, decides where it is set. */
+  /** Instruction set of the kernels: MPM_ISA_BEST (default) or the one to be used, which creation refuses
+   * with MPM_E_UNSUPPORTED if processor or library lacks it. With MPM_ISA_BEST the environment variable
+   * MPM_ISA (baseline, avx2, avx512) decides where it is set; it is read once, at creation. */
   int32_t isa;
-  /** 1: call the host from the calling thread only, also where a callback is marked (mt); default 0. */
+  /** 1: the library calls the host from the calling thread only, also where a callback is marked (mt).
+   * Default 0. */
   int32_t serial_callbacks;
-  /** Returns memory of at least bytes at a multiple of alignment (a power of two), or NULL. NULL
-   * (default): the C library's. Set together with release. Called on the calling thread only. */
+  /** Returns memory of at least so many bytes at a multiple of alignment, a power of two; or NULL if there is
+   * none. Default NULL: the C library's memory is used. alloc and release are set together. Called on the
+   * calling thread only. */
   void *(*alloc)(void *user, size_t bytes, size_t alignment);
   /** Takes back memory from alloc, with the same bytes and alignment. Called on the calling thread only. */
   void (*release)(void *user, void *memory, size_t bytes, size_t alignment);
-  void *alloc_user; /**< passed to alloc and release */
-  /** Replaces the pool, NULL (default): none. concurrency then says for how many threads to cut the work. */
+  void *alloc_user; /**< first argument of alloc and release */
+  /** The host's executor, which takes the place of the pool; concurrency then says for how many threads the
+   * work is cut. Default NULL: there is none. */
   mpm_parallel_for_fn parallel_for;
-  void *parallel_user; /**< passed to parallel_for */
-  /** Takes a finished text without newline, with a level MPM_LOG_*; text is valid during the call. NULL
-   * (default): the library is silent; it never writes to the standard streams. Called on the calling
+  void *parallel_user; /**< first argument of parallel_for */
+  /** Takes a finished text without newline, with a level MPM_LOG_*. The text is valid during the call.
+   * Default NULL: the library is silent, since it never writes to the standard streams. Called on the calling
    * thread only. */
   void (*log)(void *user, int32_t level, const char *text);
-  void *log_user; /**< passed to log */
+  void *log_user; /**< first argument of log */
 } mpm_context_desc;
 
-/** Fills desc with the defaults. struct_size: sizeof(mpm_context_desc) of the caller; no byte beyond is
- * written. MPM_E_ARG if it is smaller than the first released struct. */
+/** Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is
+ * written. MPM_E_ARG: it is smaller than the first released struct. Any thread, any time. */
 MPM_API mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size);
 
-/** Makes a context; desc is copied and may be NULL for the defaults. *out is NULL unless MPM_OK is
- * returned. MPM_E_ARG: a bad value, only one of alloc and release, or an unknown value of MPM_ISA.
- * MPM_E_NOMEM: memory or threads are not to be had. MPM_E_UNSUPPORTED: isa not available. */
+/** Makes a context. desc is copied and may be NULL for the defaults. *out is NULL unless MPM_OK is returned.
+ * The host ends the context with mpm_context_destroy(). A call that fails leaves no text, because there is no
+ * context to keep it.
+ *
+ * - MPM_E_ARG: a value is bad, only one of alloc and release is set, or the variable MPM_ISA has an unknown
+ *   value.
+ * - MPM_E_NOMEM: memory or threads are not to be had.
+ * - MPM_E_UNSUPPORTED: the instruction set is not available, or desc sets a field that this version of the
+ *   library does not know.
+ */
 MPM_API mpm_status mpm_context_create(const mpm_context_desc *desc, mpm_context **out);
 
-/** Bytes that the context and its objects hold now, and the most they ever held. Either pointer may be
- * NULL. */
+/** Tells how many bytes the context and its objects hold now, and the most that they ever held. Either output
+ * pointer may be NULL. */
 MPM_API mpm_status mpm_context_memory(const mpm_context *context, int64_t *bytes, int64_t *peak_bytes);
 
-/** Ends the pool and frees the context. MPM_E_STATE while objects made with it live. NULL is fine. */
+/** Ends the pool and frees the context. NULL is fine. MPM_E_STATE while objects made with it live. */
 MPM_API mpm_status mpm_context_destroy(mpm_context *context);
 
-/** One or two sentences on the last call of this context or its objects that did not return MPM_OK, with
- * the offending names and values. Valid until the next call on the context; "" if there is none or
- * context is NULL. */
+/** Gives one or two sentences on the last call on this context or its objects, with the offending names and
+ * values, if that call did not return MPM_OK; otherwise, and if context is NULL, "". The text belongs to the
+ * library and is valid until the next call on the context. */
 MPM_API const char *mpm_last_error(const mpm_context *context);
 
 #ifdef __cplusplus

@@ -9,29 +9,30 @@
 
 namespace mpm {
 
-/** Services of the host: the fields of mpm_context_desc with their defaults, and functions in place of its
- * pointers; a function that is set replaces them. */
+/** Services of the host: the fields of mpm_context_desc with their defaults, and function objects in place of
+ * its pointers. A function that is set replaces the pointers. */
 struct context_desc : mpm_context_desc {
-  /** log: takes a level MPM_LOG_* and a text. What it throws is dropped. */
+  /** Takes a level MPM_LOG_* and a text, as log does. What it throws is dropped. */
   std::function<void(int32_t level, const char *text)> on_log;
-  /** alloc(bytes, alignment), set together with on_release. An exception is as nullptr: MPM_E_NOMEM. */
+  /** Takes bytes and alignment, as alloc does, and is set together with on_release. An exception counts as a
+   * nullptr: MPM_E_NOMEM. */
   std::function<void *(std::size_t bytes, std::size_t alignment)> on_alloc;
-  /** release(memory, bytes, alignment). What it throws is dropped. */
+  /** Takes memory, bytes and alignment, as release does. What it throws is dropped. */
   std::function<void(void *memory, std::size_t bytes, std::size_t alignment)> on_release;
-  /** parallel_for(count, task): calls task(k), which does not throw, once for each k in [0, count). */
+  /** Takes count and task, and calls task(k), which does not throw, once for each k in [0, count). */
   callback<int64_t, const std::function<void(int64_t)> &> on_parallel_for;
 
-  /** The defaults. */
+  /** Starts with the defaults. */
   context_desc() : mpm_context_desc() {
     if (const mpm_status status = mpm_context_desc_init(this, sizeof(mpm_context_desc)))
       throw error(status, "mpm_context_desc_init");
   }
 };
 
-/** Bytes held now and the most ever held: see mpm_context_memory(). */
+/** What mpm_context_memory() tells. */
 struct memory_use {
-  int64_t bytes;      /**< now */
-  int64_t peak_bytes; /**< at most */
+  int64_t bytes;      /**< bytes that are held now */
+  int64_t peak_bytes; /**< most bytes that were ever held */
 };
 
 /**
@@ -40,8 +41,8 @@ struct memory_use {
  */
 class context : public wrapper<detail::context_core> {
 public:
-  /** mpm_context_create(). The library keeps no text for a context that could not be made; the status says
-   * which value was bad. */
+  /** Makes a context: see mpm_context_create(). The library keeps no text for a context that could not be
+   * made, so that error::what() has the names of the status and of the call only. */
   explicit context(context_desc desc = {}) {
     detail::context_core &c = core();
     bind(desc, c);
@@ -49,7 +50,7 @@ public:
       throw error(status, "mpm_context_create");
   }
 
-  /** mpm_context_memory(). */
+  /** Tells how much memory is held: see mpm_context_memory(). */
   memory_use memory() const {
     memory_use use{};
     core().check(mpm_context_memory(core().handle, &use.bytes, &use.peak_bytes));
@@ -92,12 +93,12 @@ private:
   }
 };
 
-/** Version of the library that runs, 0xMMmmpp: mpm_version(). */
+/** The version of the library that runs, 0xMMmmpp: see mpm_version(). */
 inline uint32_t version() noexcept {
   return mpm_version();
 }
 
-/** Name of a status: mpm_status_name(). */
+/** The name of a status: see mpm_status_name(). */
 inline const char *status_name(mpm_status status) noexcept {
   return mpm_status_name(status);
 }

@@ -1,7 +1,7 @@
 /**
  * @file grid.h
  * The background grid: a box of equal cells that bounds the particles, with a basis. Nodal fields belong to
- * the stepper, see mpm_grid_map() in stepper.h.
+ * the stepper: see mpm_grid_map() in stepper.h.
  */
 #ifndef MPM_GRID_H
 #define MPM_GRID_H
@@ -12,31 +12,32 @@
 extern "C" {
 #endif
 
-/** Box, cells and basis. Entries of axes beyond dim are ignored. */
+/** Box, cells and basis of a grid. Fill the struct with mpm_grid_desc_init(). Entries of axes beyond dim are
+ * ignored. */
 typedef struct mpm_grid_desc {
   uint32_t struct_size;   /**< sizeof(mpm_grid_desc) of the caller */
   int32_t dim;            /**< 1 (uniaxial strain), 2 (plane strain) or 3 (default) */
-  int32_t basis;          /**< MPM_LINEAR ... MPM_CPGIMP; default MPM_BSPLINE2 */
-  int32_t boundary_basis; /**< B-splines: MPM_BOUNDARY_GHOST (default) or MPM_BOUNDARY_OPEN_KNOT */
+  int32_t basis;          /**< MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2 */
+  int32_t boundary_basis; /**< for B-splines: MPM_BOUNDARY_GHOST (default) or MPM_BOUNDARY_OPEN_KNOT */
   int32_t periodic[3];    /**< 1: the axis is periodic; default 0 */
   int32_t reserved;       /**< 0 */
-  int64_t cells[3];       /**< cells along each axis, > 0. Bounds only: memory follows the material */
-  double origin[3];       /**< lower corner, length; default 0 */
-  double spacing[3];      /**< cell edges, length, > 0. The upper corner is origin + cells * spacing */
-  double smoothing;       /**< MPM_UGIMP: edge of the particle domains / spacing, in (0, 1]; default 0.5 */
+  int64_t cells[3];       /**< cells along each axis, > 0; memory follows the material, not their number */
+  double origin[3];       /**< lower corner of the box, length; default 0 */
+  double spacing[3];      /**< edges of a cell, length, > 0; the upper corner is origin + cells * spacing */
+  double smoothing;       /**< for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5 */
 } mpm_grid_desc;
 
-/** Fills desc with the defaults; cells and spacing are 0 and must be set. struct_size:
- * sizeof(mpm_grid_desc) of the caller. MPM_E_ARG if it is smaller than the first released struct. */
+/** Fills desc with the defaults; cells and spacing are 0, and the host must set them. struct_size is
+ * sizeof(mpm_grid_desc) of the caller; no byte beyond is written. MPM_E_ARG: it is smaller than the first
+ * released struct. Any thread, any time. */
 MPM_API mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size);
 
-/** Makes a grid; desc is copied. Shared by any number of sets and steppers, and outlives them. *out is
- * NULL unless MPM_OK is returned. MPM_E_ARG: a bad value,
- * or more nodes than 64-bit numbers can name. MPM_E_UNSUPPORTED: open knots with a basis other
- * than MPM_BSPLINE2 and MPM_BSPLINE3. */
+/** Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is
+ * NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can
+ * name. MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3. */
 MPM_API mpm_status mpm_grid_create(mpm_context *context, const mpm_grid_desc *desc, mpm_grid **out);
 
-/** Frees the grid. MPM_E_STATE while sets or steppers on it live. NULL is fine. */
+/** Frees the grid. NULL is fine. MPM_E_STATE while sets or steppers on it live. */
 MPM_API mpm_status mpm_grid_destroy(mpm_grid *grid);
 
 #ifdef __cplusplus

@@ -10,9 +10,9 @@
 
 namespace mpm {
 
-/** mpm_grid_desc with its defaults; cells and spacing are to be set. */
+/** An mpm_grid_desc that starts with the defaults; the host must set cells and spacing. */
 struct grid_desc : mpm_grid_desc {
-  /** The defaults. */
+  /** Starts with the defaults. */
   grid_desc() : mpm_grid_desc() {
     if (const mpm_status status = mpm_grid_desc_init(this, sizeof(mpm_grid_desc)))
       throw error(status, "mpm_grid_desc_init");
@@ -21,11 +21,11 @@ struct grid_desc : mpm_grid_desc {
 
 namespace detail {
 
-/** A grid and its context. */
+/** The grid of C with its context. */
 struct grid_core {
   std::shared_ptr<context_core> context; /**< outlives the grid */
   mpm_grid *handle = nullptr;            /**< what mpm_grid_create() gave */
-  int32_t dim = 0;                       /**< lengths of vectors that calls take */
+  int32_t dim = 0;                       /**< length of the vectors that calls take */
 
   explicit grid_core(std::shared_ptr<context_core> made_with) : context(std::move(made_with)) {}
   grid_core(const grid_core &) = delete;
@@ -37,17 +37,17 @@ struct grid_core {
 
 } // namespace detail
 
-/** A grid: see mpm_grid_create(). Sets and steppers on it keep it. */
+/** A grid: see grid.h. Sets and steppers on it keep it alive. */
 class grid : public wrapper<detail::grid_core> {
 public:
-  /** mpm_grid_create(). */
+  /** Makes a grid: see mpm_grid_create(). */
   grid(const context &made_with, const mpm_grid_desc &desc) : wrapper(made_with.shared()) {
     detail::grid_core &c = core();
     c.context->check(mpm_grid_create(c.context->handle, &desc, &c.handle));
     c.dim = desc.dim;
   }
 
-  /** 1, 2 or 3. */
+  /** The dimension: 1, 2 or 3. */
   int32_t dim() const {
     return core().dim;
   }

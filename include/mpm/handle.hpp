@@ -17,10 +17,10 @@ namespace detail {
 /** A handle of the C interface with all that must live as long: the cores of what it was made with, and
  * callbacks. Wrappers, views and the cores of other objects share it. */
 struct context_core {
-  mpm_context *handle = nullptr;                                        /**< what mpm_context_create() gave */
-  thrown exceptions;                                                    /**< of the call under way */
-  std::function<void(int32_t, const char *)> log;                       /**< see context_desc */
-  std::function<void *(std::size_t, std::size_t)> alloc;                /**< see context_desc */
+  mpm_context *handle = nullptr;                         /**< what mpm_context_create() gave */
+  thrown exceptions;                                     /**< what callbacks threw in the call under way */
+  std::function<void(int32_t, const char *)> log;        /**< see context_desc */
+  std::function<void *(std::size_t, std::size_t)> alloc; /**< see context_desc */
   std::function<void(void *, std::size_t, std::size_t)> release;        /**< see context_desc */
   callback<int64_t, const std::function<void(int64_t)> &> parallel_for; /**< see context_desc */
 
@@ -47,25 +47,25 @@ struct context_core {
 
 } // namespace detail
 
-/** What all wrappers of handles are: they move, and share a core with what was made from them. */
+/** The base of all wrappers of handles: they move, and share a core with what was made from them. */
 template <class Core> class wrapper {
 public:
-  /** False once it was moved from. */
+  /** Tells whether it holds a handle: false once it was moved from. */
   explicit operator bool() const noexcept {
     return static_cast<bool>(core_);
   }
-  /** The handle, for calls of the C interface; it stays the wrapper's. NULL once it was moved from. */
+  /** The handle, for calls of the C interface. It stays the wrapper's. NULL once it was moved from. */
   auto handle() const noexcept {
     return core_ ? core_->handle : nullptr;
   }
-  /** For other wrappers: the core, which is there. Throws error (MPM_E_ARG) if it was moved from. */
+  /** The core, for other wrappers. Throws error (MPM_E_ARG) if it was moved from. */
   const std::shared_ptr<Core> &shared() const {
     if (!core_) throw error(MPM_E_ARG, "the object was moved from");
     return core_;
   }
 
 protected:
-  /** A core of its own. */
+  /** Makes a core of its own. */
   template <class... A>
   explicit wrapper(A &&...arguments) : core_(std::make_shared<Core>(std::forward<A>(arguments)...)) {}
   /** Takes the core over. */

@@ -17,60 +17,71 @@
 extern "C" {
 #endif
 
-/** Bytes that mpm_state_save() needs now. */
+/** Tells how many bytes mpm_state_save() needs now. */
 MPM_API mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes);
 
-/** Writes the state into buffer, of capacity bytes. MPM_E_ARG: capacity too small. MPM_E_STATE: a view is out
- * for writing or a staged step is under way. */
+/** Writes the state into the host's buffer of capacity bytes. MPM_E_ARG: the capacity is too small.
+ * MPM_E_STATE: a view is out for writing, or a staged step is under way. */
 MPM_API mpm_status mpm_state_save(const mpm_stepper *stepper, void *buffer, int64_t capacity);
 
-/** Replaces the state by one saved with mpm_state_save(). MPM_E_FORMAT: not a state, damaged, of a later
- * format, or saved from an unlike setup; the error text names the first difference. MPM_E_STATE: a view
- * is out or a staged step is under way. */
+/** Replaces the state by one saved with mpm_state_save(), of so many bytes; the buffer is read during the
+ * call. MPM_E_FORMAT: the bytes are no state, or it is damaged, of a later format, or saved from an unlike
+ * setup; the error text names the first difference. MPM_E_STATE: a view is out, or a staged step is under
+ * way. */
 MPM_API mpm_status mpm_state_load(mpm_stepper *stepper, const void *buffer, int64_t bytes);
 
-/** As mpm_state_save(), into a file: written beside path and renamed, so that path holds the old state or
- * the new one. path is UTF-8. MPM_E_IO: the file could not be written. */
+/** Writes the state into a file, as mpm_state_save() does into memory. The file is written beside path and
+ * renamed, so that path holds the old state or the new one. path is UTF-8. MPM_E_IO: the file could not be
+ * written. */
 MPM_API mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path);
 
-/** As mpm_state_load(), from a file. MPM_E_IO: the file could not be read. */
+/** Replaces the state by one from a file. Errors are those of mpm_state_load(), and MPM_E_IO: the file could
+ * not be read. */
 MPM_API mpm_status mpm_state_load_file(mpm_stepper *stepper, const char *path);
 
-/** A hash of time, step and every field of every set. It does not depend on library order, on threads or
- * on optional fields not in use: equal physical state by id gives an equal hash. */
+/** Gives a hash of time, step and every field of every set. It does not depend on library order, on threads
+ * or on optional fields that are not in use: states that are equal by id have equal hashes. */
 MPM_API mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash);
 
-/** Writes a set as VTK poly data (.vtp, appended raw): points in order of ascending id, and the named
- * fields, tensors full, as point data; vectors have three components in 2-D and 3-D. count 0
- * (fields may be NULL): every field in use but "position", which the points are. MPM_E_NOT_FOUND: unknown
- * field. MPM_E_ARG: a field named twice. MPM_E_IO: the file could not be written. */
+/** Writes a set as VTK poly data (.vtp, appended raw): points in order of ascending id, and count named
+ * fields as point data, with full tensors and, in 2-D and 3-D, with three components per vector. With count
+ * 0, when fields may be NULL, it writes every field in use but "position", which the points are. path is
+ * UTF-8. MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: a field is named twice. MPM_E_IO: the file could
+ * not be written. */
 MPM_API mpm_status mpm_write_particles(const mpm_particles *particles, const char *path, int32_t count,
                                        const char *const *fields);
 
-/** Writes nodal fields of the last step, or of a staged step while one is under way, named as in
- * mpm_grid_map(), as VTK image data (.vti, appended raw) over the box of the active nodes; with open knots,
- * whose nodes are not evenly spaced at the faces, as a rectilinear grid (.vtr). Extents are indices of nodes;
- * zeros where no node is active. Vectors have three components in 2-D and 3-D. count 0 (fields may be NULL):
- * every field that the step has kept but "position", which is that of the points. Memory follows the active
- * nodes; long runs of zeros take no room on storage that knows holes. MPM_E_NOT_FOUND: unknown field.
- * MPM_E_STATE: nothing stepped yet. MPM_E_UNSUPPORTED: as mpm_grid_map(). MPM_E_ARG: a field named twice, a
- * path that ends with the other kind's suffix, or a box of more nodes than a file can hold. MPM_E_IO: the
- * file could not be written. */
+/**
+ * Writes nodal fields of the last step, or of a staged step while one is under way, over the box of the
+ * active nodes: as VTK image data (.vti, appended raw), or with open knots, whose nodes are not evenly spaced
+ * at the faces, as a rectilinear grid (.vtr). Fields are named as in mpm_grid_map(); vectors have three
+ * components in 2-D and 3-D. Extents are indices of nodes; where no node is active values are zero. With
+ * count 0, when fields may be NULL, it writes every field that the step has kept but "position", which is
+ * that of the points. Memory follows the active nodes; long runs of zeros take no room on storage that knows
+ * holes.
+ *
+ * - MPM_E_NOT_FOUND: there is no such field.
+ * - MPM_E_STATE: nothing has been stepped yet.
+ * - MPM_E_UNSUPPORTED: as in mpm_grid_map().
+ * - MPM_E_ARG: a field is named twice, the path ends with the other kind's suffix, or the box has more nodes
+ *   than a file can hold.
+ * - MPM_E_IO: the file could not be written.
+ */
 MPM_API mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count,
                                   const char *const *fields);
 
 /** A time series of output files (.pvd); its file is valid on disk after every append. */
 typedef struct mpm_series mpm_series;
 
-/** Starts a series in a new file at path; an old file there is replaced. *out is NULL unless MPM_OK is
+/** Starts a series in a new file at path, where it replaces an old one. *out is NULL unless MPM_OK is
  * returned. MPM_E_IO: the file could not be written. */
 MPM_API mpm_status mpm_series_open(mpm_context *context, const char *path, mpm_series **out);
 
-/** Appends an output file to the series at time t. file: its path as it is to stand in the series,
- * relative to the series' own file. MPM_E_IO: the file could not be written. */
+/** Appends an output file to the series at time t. file is its path as it is to stand in the series: relative
+ * to the series' own file. MPM_E_IO: the file could not be written. */
 MPM_API mpm_status mpm_series_append(mpm_series *series, double t, const char *file);
 
-/** Ends the series and frees it; its file stays. NULL is fine. */
+/** Ends the series and frees it. Its file stays. NULL is fine. */
 MPM_API mpm_status mpm_series_close(mpm_series *series);
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@ namespace mpm {
 
 namespace detail {
 
-/** A series and its context. */
+/** The series of C with its context. */
 struct series_core {
   std::shared_ptr<context_core> context; /**< outlives the series */
   mpm_series *handle = nullptr;          /**< what mpm_series_open() gave */
@@ -28,15 +28,16 @@ struct series_core {
 
 } // namespace detail
 
-/** A .pvd file, valid on disk after every append; destruction ends it. */
+/** A series of output files in a .pvd file, which is valid on disk after every append. Destruction ends the
+ * series. */
 class series : public wrapper<detail::series_core> {
 public:
-  /** mpm_series_open(). */
+  /** Starts a series: see mpm_series_open(). */
   series(const context &made_with, const std::string &path) : wrapper(made_with.shared()) {
     detail::series_core &c = core();
     c.context->check(mpm_series_open(c.context->handle, path.c_str(), &c.handle));
   }
-  /** mpm_series_append(). */
+  /** Appends a file at a time: see mpm_series_append(). */
   void append(double t, const std::string &file) {
     core().context->check(mpm_series_append(core().handle, t, file.c_str()));
   }

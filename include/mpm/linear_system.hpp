@@ -6,21 +6,22 @@
 #define MPM_LINEAR_SYSTEM_HPP
 
 #include <mpm/callback.hpp>
-#include <mpm/stepper.h>
+#include <mpm/operator.h>
 
 namespace mpm {
 
-/** A matrix by compressed rows: see mpm_operator_csr(). */
+/** A matrix by compressed rows: see mpm_operator_csr(). The arrays belong to the library. */
 struct csr_matrix {
-  span<const int64_t> row_start; /**< [rows + 1] */
-  span<const int32_t> column;    /**< [nonzeros] */
-  span<const double> value;      /**< [nonzeros] */
+  span<const int64_t> row_start; /**< [rows + 1] place of the first entry of each row */
+  span<const int32_t> column;    /**< [nonzeros] column of each entry */
+  span<const double> value;      /**< [nonzeros] value of each entry */
 };
 
-/** What a solve_callback is to solve; valid during the call. Its calls throw error, which ends the step. */
+/** The system that a solve_callback solves. It is valid during the call. Its calls throw error, which ends
+ * the step. */
 class linear_system {
 public:
-  /** As the arguments of mpm_solve_fn. */
+  /** Takes the arguments of mpm_solve_fn. */
   linear_system(const mpm_operator *matrix, const double *rhs, double *solution, double tolerance)
       : matrix_(matrix), tolerance_(tolerance) {
     info_.struct_size = sizeof info_;
@@ -28,7 +29,7 @@ public:
     rhs_ = {rhs, static_cast<std::size_t>(info_.rows)};
     solution_ = {solution, static_cast<std::size_t>(info_.rows)};
   }
-  /** Rows, symmetry and nodes: see mpm_operator_info. */
+  /** Describes rows, symmetry and nodes: see mpm_operator_info. */
   const mpm_operator_info &info() const noexcept {
     return info_;
   }
@@ -36,20 +37,20 @@ public:
   span<const double> rhs() const noexcept {
     return rhs_;
   }
-  /** To be solved for; preset to the best guess known. */
+  /** The solution, to be written by the host; it is preset to the best guess known. */
   span<double> solution() const noexcept {
     return solution_;
   }
-  /** Wanted ||K x - b|| / ||b||. */
+  /** The wanted ||matrix * solution - rhs|| / ||rhs||. */
   double tolerance() const noexcept {
     return tolerance_;
   }
-  /** y = matrix * x: mpm_operator_apply(). */
+  /** Computes y = matrix * x: see mpm_operator_apply(). */
   void apply(span<const double> x, span<double> y) const {
     detail::expect_size("x", x.size(), info_.rows), detail::expect_size("y", y.size(), info_.rows);
     check(mpm_operator_apply(matrix_, x.data(), y.data()), "mpm_operator_apply");
   }
-  /** The matrix by compressed rows: mpm_operator_csr(). */
+  /** The matrix by compressed rows: see mpm_operator_csr(). */
   csr_matrix csr() const {
     const int64_t *row_start = nullptr;
     const int32_t *column = nullptr;
@@ -71,8 +72,8 @@ private:
   span<double> solution_;
 };
 
-/** mpm_solve_fn: writes system.solution() and, where they are to be counted, the iterations. A status > 0
- * says that it was not solved. */
+/** As mpm_solve_fn: takes the system and the number of iterations, and writes system.solution() and, where
+ * they are to be counted, the iterations. A status > 0 says that the system was not solved. */
 using solve_callback = callback<const linear_system &, int64_t &>;
 
 } // namespace mpm

@@ -1,7 +1,7 @@
 /**
  * @file material.h
- * Constitutive laws: built in and found by name, or written by the host as callbacks over batches of
- * particles.
+ * Constitutive laws: those built in, which are found by name, and those that the host writes as callbacks
+ * over batches of particles.
  */
 #ifndef MPM_MATERIAL_H
 #define MPM_MATERIAL_H
@@ -13,7 +13,7 @@ extern "C" {
 #endif
 
 /**
- * Makes a material from a built-in law. Stresses are Cauchy; J = det F.
+ * Makes a material from a built-in law. In the table stresses are Cauchy stresses, and J = det F.
  *
  * | model                   | parameters                              | law                                 |
  * |-------------------------|-----------------------------------------|-------------------------------------|
@@ -28,26 +28,26 @@ extern "C" {
  * |                         |                                         | tension 0 cuts off p < 0            |
  * | "rigid"                 | density                                 | no stress; moves as prescribed      |
  *
- * params: count name-value pairs in any order, copied; parameters not named take their defaults.
- * mpm_material_model_param() lists units, defaults and ranges. *out is NULL unless MPM_OK is returned.
- * MPM_E_NOT_FOUND: unknown model or parameter. MPM_E_ARG: a value out of range, a name given twice, or a
- * parameter without default missing.
+ * params are count pairs of name and value in any order, which are copied; parameters that are not named take
+ * their defaults. mpm_material_model_param() lists units, defaults and ranges. *out is NULL unless MPM_OK is
+ * returned. MPM_E_NOT_FOUND: there is no such model or parameter. MPM_E_ARG: a value is out of range, a name
+ * is given twice, or a parameter without default is missing.
  */
 MPM_API mpm_status mpm_material_create(mpm_context *context, const char *model, const mpm_param *params,
                                        int32_t count, mpm_material **out);
 
-/** Number of built-in laws. Any thread, any time. */
+/** The number of built-in laws. Any thread, any time. */
 MPM_API int32_t mpm_material_model_count(void);
 
-/** Name of built-in law index, 0 <= index < mpm_material_model_count(); NULL otherwise. Static text. Any
- * thread, any time. */
+/** The name of the built-in law with number index, 0 <= index < mpm_material_model_count(), or NULL for
+ * another index. The text is static. Any thread, any time. */
 MPM_API const char *mpm_material_model_name(int32_t index);
 
 /**
- * Describes parameter index (from 0) of a built-in law: its name, its unit as a dimension (such as "stress"),
- * one line of text, its default (NaN: must be given) and its range [low, high]. Texts are static; output
- * pointers may be NULL. MPM_E_NOT_FOUND: unknown model, or index past the last parameter. Any thread, any
- * time.
+ * Describes the parameter with number index (from 0) of a built-in law: its name, its unit as a dimension
+ * (such as "stress"), one line of text, its default (NaN if it must be given) and its range [low, high].
+ * Texts are static, and output pointers may be NULL. MPM_E_NOT_FOUND: there is no such model, or index is
+ * past the last parameter. Any thread, any time.
  */
 MPM_API mpm_status mpm_material_model_param(const char *model, int32_t index, const char **name,
                                             const char **unit, const char **text, double *value_default,
@@ -55,92 +55,97 @@ MPM_API mpm_status mpm_material_model_param(const char *model, int32_t index, co
 
 /**
  * Particles of one set that a law is asked about. Arrays are [components][ld], of which the first n items of
- * each component count; the memory is the library's and valid during the call. Tensors are full: 3 * row +
- * column for F, F_inc and L, xx yy zz xy yz xz for stresses. Output arrays do not overlap input arrays.
+ * each component count. The memory belongs to the library and is valid during the call. Tensors are full: F,
+ * F_inc and L have component 3 * row + column, stresses xx yy zz xy yz xz. Output arrays do not overlap input
+ * arrays.
  */
 typedef struct mpm_material_batch {
-  uint32_t struct_size;        /**< sizeof(mpm_material_batch) of the library */
-  int32_t state_count;         /**< state variables per particle */
-  int64_t n;                   /**< particles, inert slots included */
-  int64_t ld;                  /**< from component c to c + 1, in elements; >= n */
+  uint32_t struct_size;        /**< sizeof(mpm_material_batch) of the library; see mpm.h */
+  int32_t state_count;         /**< number of state variables of a particle */
+  int64_t n;                   /**< number of particles, inert slots included */
+  int64_t ld;                  /**< distance from component c to c + 1, in elements; >= n */
   double t;                    /**< time at the end of the step */
-  double dt;                   /**< of the step; 0: the state as it is, see mpm_stress_fn */
+  double dt;                   /**< size of the step; 0: the state as it is, see mpm_stress_fn */
   const int64_t *id;           /**< [ld] ids, < 0 for inert slots */
   const double *F;             /**< [9][ld] deformation gradient at the end of the step */
-  const double *F_inc;         /**< [9][ld] that of this step: F = F_inc F_old */
+  const double *F_inc;         /**< [9][ld] deformation gradient of this step alone: F = F_inc F_old */
   const double *L;             /**< [9][ld] velocity gradient (F_inc - I) / dt, 1/time; 0 when dt is 0 */
   const double *stress;        /**< [6][ld] Cauchy stress before the step */
   const double *state;         /**< [state_count][ld] state variables before the step */
   double *stress_new;          /**< [6][ld] out: Cauchy stress after the step */
   double *state_new;           /**< [state_count][ld] out: state variables after the step */
   double *wave_speed;          /**< [ld] out: speed of the fastest elastic wave now, length/time */
-  double *kinematic_viscosity; /**< [ld] out, preset 0: length^2/time; limits the explicit dt */
+  double *kinematic_viscosity; /**< [ld] out, preset 0: length^2/time, limits the explicit dt */
   double *energy;              /**< [ld] out, preset NaN (not known): strain energy per initial volume */
-  const double *position;      /**< [dim][ld] at the start of the step */
-  const void *lookup;          /**< for mpm_batch_field() */
+  const double *position;      /**< [dim][ld] position at the start of the step */
+  const void *lookup;          /**< argument of mpm_batch_field() */
 } mpm_material_batch;
 
 /**
- * Lends a field of the set that a batch belongs to, built in or the host's own, aligned with the batch and
- * valid during the callback: component c of item i is (*data)[c * *component_stride + i], in elements of the
- * field's type. No copy: tensors have their stored components, as in views. lookup: that of the batch. May be
- * called from any thread on which a callback runs. MPM_E_NOT_FOUND: unknown field. MPM_E_STATE: an optional
- * field that the set does not have now.
+ * Lends a field of the set that a batch belongs to, built in or the host's own. It is aligned with the batch
+ * and valid during the callback: component c of item i is (*data)[c * *component_stride + i], in elements of
+ * the field's type. Nothing is copied, so tensors have their stored components, as in views. lookup is that
+ * of the batch. May be called from any thread on which a callback runs. MPM_E_NOT_FOUND: there is no such
+ * field. MPM_E_STATE: the field is optional, and the set does not have it now.
  */
 MPM_API mpm_status mpm_batch_field(const void *lookup, const char *field, const void **data,
                                    int64_t *component_stride);
 
 /**
- * A law (mt). Reads the state before the step and its deformation, and writes stress_new, state_new and
- * wave_speed of all n items, and kinematic_viscosity and energy where the law has them. It may be called
- * several times for one step, and nothing that it writes counts before the step is committed: it keeps no
- * state of its own.
+ * A law (mt). It reads the state before the step and the deformation of the step, and writes stress_new,
+ * state_new and wave_speed of all n items, and kinematic_viscosity and energy where it has them. It may be
+ * called several times for one step, and nothing that it writes counts before the step is committed: it keeps
+ * no state of its own.
  *
  * With dt = 0, F_inc = I and L = 0 the library asks for stress, wave speed and energy of the state as it is:
  * the law returns the stress that belongs to that state.
  *
- * Returns 0; > 0 to ask for a smaller dt (MPM_CUT_DT); < 0 to stop (MPM_E_CALLBACK).
+ * Returns 0, a value > 0 to ask for a smaller dt (MPM_CUT_DT), or a value < 0 to stop (MPM_E_CALLBACK).
  */
 typedef mpm_status (*mpm_stress_fn)(void *user, const mpm_material_batch *batch);
 
 /**
- * The tangent of a law (mt), for implicit steps: called after the law on the same batch, with its outputs in
- * place. Writes tangent[component * ld + i], in the form that tangent_form names. With tau = J stress and the
- * variation dF = L F, c is the derivative of the Lie derivative of tau:
+ * The tangent of a law (mt), for implicit steps. It is called after the law on the same batch, with the law's
+ * outputs in place, and writes tangent[component * ld + i], a stress, in the form that tangent_form names.
+ * With tau = J stress and the variation dF = L F, c is the derivative of the Lie derivative of tau:
  * c_ijkl = d tau_ij / d L_kl - delta_ik tau_jl - delta_jk tau_il.
  *
- * MPM_TANGENT_MINOR_SYMMETRIC: component 6 * row + column, rows and columns xx yy zz xy yz xz, columns for
- * engineering shear. MPM_TANGENT_GENERAL: component 9 * (3 * i + j) + 3 * k + l.
+ * - MPM_TANGENT_MINOR_SYMMETRIC has component 6 * row + column, where rows and columns are xx yy zz xy yz
+ *   xz, and columns are for engineering shear.
+ * - MPM_TANGENT_GENERAL has component 9 * (3 * i + j) + 3 * k + l.
  *
- * *symmetric: write 1 if c has major symmetry (c_ijkl = c_klij) at every item, 0 otherwise. Returns as
- * mpm_stress_fn.
+ * Into *symmetric the callback writes 1 if c has major symmetry (c_ijkl = c_klij) at every item, 0 otherwise.
+ * Returns as mpm_stress_fn does.
  */
 typedef mpm_status (*mpm_tangent_fn)(void *user, const mpm_material_batch *batch, double *tangent,
                                      int32_t *symmetric);
 
-/** A law of the host. */
+/** A law of the host. Fill the struct with mpm_material_desc_init(). */
 typedef struct mpm_material_desc {
-  uint32_t struct_size;             /**< sizeof(mpm_material_desc) of the caller */
-  int32_t state_count;              /**< state variables per particle, >= 0; default 0 */
-  int32_t tangent_form;             /**< MPM_TANGENT_MINOR_SYMMETRIC (default) or MPM_TANGENT_GENERAL */
-  int32_t reserved;                 /**< 0 */
-  double density;                   /**< mass per initial volume, > 0; must be set */
-  mpm_stress_fn stress;             /**< the law; must be set */
-  mpm_tangent_fn tangent;           /**< NULL (default): differenced, in the general form */
-  void *user;                       /**< passed to stress, tangent and release_user */
-  void (*release_user)(void *user); /**< when the material is destroyed, not when create fails; or NULL */
-  const double *state_initial;      /**< [state_count] of a new particle, copied; NULL (default): zeros */
+  uint32_t struct_size;   /**< sizeof(mpm_material_desc) of the caller */
+  int32_t state_count;    /**< number of state variables of a particle, >= 0; default 0 */
+  int32_t tangent_form;   /**< MPM_TANGENT_MINOR_SYMMETRIC (default) or MPM_TANGENT_GENERAL */
+  int32_t reserved;       /**< 0 */
+  double density;         /**< mass per initial volume, > 0; the host must set it */
+  mpm_stress_fn stress;   /**< the law; the host must set it */
+  mpm_tangent_fn tangent; /**< NULL (default): stresses are differenced, in the general form */
+  void *user;             /**< first argument of stress, tangent and release_user */
+  /** Called with user when the material is destroyed, not when create fails; may be NULL (default). */
+  void (*release_user)(void *user);
+  const double *state_initial; /**< [state_count] state of a new particle, copied; NULL (default): zeros */
 } mpm_material_desc;
 
-/** Fills desc with the defaults; density and stress must be set. struct_size: sizeof(mpm_material_desc) of
- * the caller. MPM_E_ARG if it is smaller than the first released struct. */
+/** Fills desc with the defaults; the host must set density and stress. struct_size is
+ * sizeof(mpm_material_desc) of the caller; no byte beyond is written. MPM_E_ARG: it is smaller than the first
+ * released struct. Any thread, any time. */
 MPM_API mpm_status mpm_material_desc_init(mpm_material_desc *desc, uint32_t struct_size);
 
-/** Makes a material from a law of the host; desc is copied. *out is NULL unless MPM_OK is returned. */
+/** Makes a material from a law of the host. desc is copied. *out is NULL unless MPM_OK is returned.
+ * MPM_E_ARG: a value is bad, or stress is NULL. */
 MPM_API mpm_status mpm_material_create_custom(mpm_context *context, const mpm_material_desc *desc,
                                               mpm_material **out);
 
-/** Frees the material and calls release_user. MPM_E_STATE while sets of it live. NULL is fine. */
+/** Frees the material and calls release_user. NULL is fine. MPM_E_STATE while sets of it live. */
 MPM_API mpm_status mpm_material_destroy(mpm_material *material);
 
 #ifdef __cplusplus

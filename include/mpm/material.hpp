@@ -10,35 +10,35 @@
 
 namespace mpm {
 
-/** A law of the host: mpm_material_desc with function objects (mt). */
+/** A law of the host: what mpm_material_desc has, with function objects (mt). */
 struct law {
-  double density = 0.0;                        /**< mass per initial volume, > 0; must be set */
-  int32_t state_count = 0;                     /**< state variables per particle */
-  std::vector<double> state_initial;           /**< [state_count] of a new particle; empty: zeros */
-  callback<const mpm_material_batch &> stress; /**< mpm_stress_fn; must be set */
-  /** mpm_tangent_fn: stress batch, tangent out, symmetric out (false unless it is set); empty: differenced.
-   */
+  double density = 0.0;                        /**< mass per initial volume, > 0; the host must set it */
+  int32_t state_count = 0;                     /**< number of state variables of a particle */
+  std::vector<double> state_initial;           /**< [state_count] state of a new particle; empty: zeros */
+  callback<const mpm_material_batch &> stress; /**< the law: see mpm_stress_fn; the host must set it */
+  /** The tangent: see mpm_tangent_fn. Takes the batch of the law, the tangent to be written, and a flag for
+   * major symmetry, which starts as false. Empty: stresses are differenced. */
   callback<const mpm_material_batch &, double *, bool &> tangent;
-  int32_t tangent_form = MPM_TANGENT_MINOR_SYMMETRIC; /**< of tangent */
+  int32_t tangent_form = MPM_TANGENT_MINOR_SYMMETRIC; /**< form in which the tangent is written */
 };
 
-/** A parameter of a built-in law: see mpm_material_model_param(). */
+/** What mpm_material_model_param() tells of a parameter of a built-in law. */
 struct parameter {
-  std::string name;     /**< as mpm_param has it */
-  std::string unit;     /**< a dimension, such as "stress" */
-  std::string text;     /**< one line */
-  double value_default; /**< NaN: must be given */
+  std::string name;     /**< name, as mpm_param has it */
+  std::string unit;     /**< unit as a dimension, such as "stress" */
+  std::string text;     /**< one line on its meaning */
+  double value_default; /**< default; NaN: it must be given */
   double low;           /**< least value */
   double high;          /**< largest value */
 };
 
 namespace detail {
 
-/** A material, its context and, for a law of the host, the functions. */
+/** The material of C with its context and, for a law of the host, the functions. */
 struct material_core {
   std::shared_ptr<context_core> context; /**< outlives the material */
   mpm_material *handle = nullptr;        /**< what mpm_material_create() gave */
-  law functions;                         /**< called by the library while the material lives */
+  law functions;                         /**< what the library calls while the material lives */
 
   explicit material_core(std::shared_ptr<context_core> made_with, law host = {})
       : context(std::move(made_with)), functions(std::move(host)) {}
@@ -66,17 +66,18 @@ struct material_core {
 
 } // namespace detail
 
-/** A material: see mpm_material_create() and mpm_material_create_custom(). Sets of it keep it. */
+/** A material: see material.h. Sets of it keep it alive. */
 class material : public wrapper<detail::material_core> {
 public:
-  /** A built-in law, with parameters such as {{"E", 1e6}, {"nu", 0.3}, {"density", 1e3}}. */
+  /** Makes a material from a built-in law, with parameters such as {{"E", 1e6}, {"nu", 0.3}, {"density",
+   * 1e3}}: see mpm_material_create(). */
   material(const context &made_with, const std::string &model, span<const mpm_param> parameters)
       : wrapper(made_with.shared()) {
     detail::material_core &c = core();
     c.context->check(mpm_material_create(c.context->handle, model.c_str(), parameters.data(),
                                          static_cast<int32_t>(parameters.size()), &c.handle));
   }
-  /** A law of the host. */
+  /** Makes a material from a law of the host: see mpm_material_create_custom(). */
   material(const context &made_with, law host) : wrapper(made_with.shared(), std::move(host)) {
     detail::material_core &c = core();
     const law &given = c.functions;
@@ -95,15 +96,15 @@ public:
   }
 };
 
-/** Names of the built-in laws: mpm_material_model_name(). */
+/** The names of the built-in laws: see mpm_material_model_name(). */
 inline std::vector<std::string> models() {
   std::vector<std::string> names;
   for (int32_t i = 0; i < mpm_material_model_count(); ++i) names.emplace_back(mpm_material_model_name(i));
   return names;
 }
 
-/** Parameters of a built-in law: mpm_material_model_param(). Throws error (MPM_E_NOT_FOUND) for an unknown
- * model. */
+/** The parameters of a built-in law: see mpm_material_model_param(). Throws error (MPM_E_NOT_FOUND) for an
+ * unknown model. */
 inline std::vector<parameter> model_parameters(const std::string &model) {
   std::vector<parameter> all;
   for (int32_t i = 0;; ++i) {
@@ -122,17 +123,17 @@ inline std::vector<parameter> model_parameters(const std::string &model) {
 
 /** A field beside a batch, valid during the callback: see mpm_batch_field(). */
 template <class T> struct batch_values {
-  const T *data;            /**< component 0 of item 0 */
-  int64_t component_stride; /**< from component c to c + 1, in elements */
+  const T *data;            /**< address of component 0 of item 0 */
+  int64_t component_stride; /**< distance from component c to c + 1, in elements */
 
-  /** Stored component component of item of the batch, not checked. */
+  /** A stored component of an item of the batch. The indices are not checked. */
   const T &operator()(int64_t item, int32_t component = 0) const noexcept {
     return data[component * component_stride + item];
   }
 };
 
-/** mpm_batch_field(): T is the type of the field's elements, which the library cannot check. Throws error,
- * which in a callback stops the call that runs it. */
+/** Lends a field beside a batch: see mpm_batch_field(). T is the type of the field's elements, which the
+ * library cannot check. Throws error, which in a callback stops the call that runs it. */
 template <class T> batch_values<T> batch_field(const void *lookup, const std::string &field) {
   static_assert(detail::type_of<T>() != 0);
   const void *data = nullptr;

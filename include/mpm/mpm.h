@@ -1,48 +1,69 @@
 /**
  * @file mpm.h
- * libmpm, the Material Point Method: all public headers. What stands here holds for all headers.
+ * libmpm, the Material Point Method: all public headers. What stands here holds for all of them.
  *
  * @par Status
- * 0 done; > 0 not done, state unchanged (1..5: a smaller dt may cure it); < 0 refused or failed, see
- * mpm_last_error(). Unless stated otherwise the objects are unchanged in either case. A value returned by a
- * callback is passed on in mpm_step_info.callback_status. Every function may return MPM_E_ARG (a NULL that is
- * not allowed, a value out of range, a bad struct_size), MPM_E_NOMEM, MPM_E_UNSUPPORTED (with a sentence that
- * says what to use instead), MPM_E_INTERNAL, and MPM_E_STATE (called from a callback); declarations name the
+ * A call returns 0 if it was done; a value > 0 if it was not done and the state is unchanged (1..5: a smaller
+ * dt may cure it); a value < 0 if it was refused or failed: see mpm_last_error(). Unless stated otherwise
+ * objects are unchanged in the last two cases. A value returned by a callback is passed on in
+ * mpm_step_info.callback_status. Every function may return MPM_E_ARG (a NULL that is not allowed, a value out
+ * of range, a bad struct_size), MPM_E_NOMEM, MPM_E_UNSUPPORTED (with a sentence that says what to use
+ * instead), MPM_E_INTERNAL, and MPM_E_STATE (the call was made from a callback). Declarations name the
  * statuses that mean more.
  *
  * @par Units
- * Any consistent set. 1-D is uniaxial strain per unit area, 2-D plane strain per unit thickness.
+ * Any consistent set of units will do. 1-D is uniaxial strain per unit area, 2-D plane strain per unit
+ * thickness.
  *
  * @par Structs
- * The caller sets struct_size = sizeof, or calls the _init; the library reads and writes no further.
- * Fields are only appended, and every appended default is all-zero bits: a library that meets a larger struct
- * accepts it when the unknown tail is zero and returns MPM_E_UNSUPPORTED otherwise. Reserved fields are zero.
+ * All public structs but mpm_param begin with struct_size, and later releases only append fields. The default
+ * of an appended field is all-zero bits and means what was so before it. Hosts and libraries of different
+ * releases work together:
+ *
+ * @par
+ * - Descriptors: the caller sets struct_size = sizeof, or calls the _init. The library reads no further. It
+ *   accepts every size from that of the first release on: fields that a smaller struct lacks have their
+ *   defaults, and a larger struct is accepted as long as the tail that the library does not know is zero
+ *   (MPM_E_UNSUPPORTED otherwise).
+ * - Outputs (mpm_step_info, mpm_view, mpm_profile, mpm_operator_info): the caller sets struct_size = sizeof,
+ *   and the library writes no further. Fields that it does not know stay as the caller left them, so zeros
+ *   are the values to start with.
+ * - Batches, and the info of mpm_progress_fn: the library sets struct_size to its own size. A host that uses
+ *   a field newer than the oldest library it runs with asks first whether struct_size reaches that far.
+ * - Fields called reserved are zero.
  *
  * @par Arrays
- * In callbacks and copies component-major: component c of item i is data[c * ld + i]. Tensors 3x3
- * have c = 3 * row + column and are full (plane strain: F33 = 1; 1-D: F22 = F33 = 1; laws that keep only the
- * volume, as the fluid: F = J^(1/3) I). Symmetric ones: xx yy zz xy yz xz. Views show the stored layout,
- * which may be compact: see the table of fields in particles.h. Arguments are read or copied during the call
- * unless stated otherwise; names are zero-terminated.
+ * In callbacks and copies arrays are component-major: component c of item i is data[c * ld + i]. Tensors of
+ * 3x3 have component c = 3 * row + column and are full (plane strain: F33 = 1; 1-D: F22 = F33 = 1; laws that
+ * keep only the volume, as the fluid does: F = J^(1/3) I). Symmetric ones have xx yy zz xy yz xz. Views show
+ * the stored layout, which may be compact: see the table of fields in particles.h. Arguments are read or
+ * copied during the call unless stated otherwise; names are zero-terminated. Memory that the library lends
+ * stays the library's: the host neither frees it nor keeps it beyond the time that the declaration names.
  *
  * @par Slots
- * Particle arrays in library order contain inert slots (id < 0, mass 0, F = I, position inside the
- * grid) that pad blocks for speed. Reading or computing on them is harmless; their results are ignored.
+ * Particle arrays in library order contain inert slots (id < 0, mass 0, F = I, position inside the grid) that
+ * pad blocks for speed. Reading them and computing on them is harmless; their results are ignored.
  *
  * @par Times
  * A step goes from t_n to t_n+1 = t_n + dt. Positions, masses and nodes in batches are those of t_n; t
  * in a batch is the time for which the value is wanted: t_n for explicit forces, t_n+1 for implicit ones.
  *
  * @par Threads
- * No globals. A context and its objects serve one thread at a time; several contexts serve several
+ * There are no globals. A context and its objects serve one thread at a time; several contexts serve several
  * threads. Callbacks marked (mt) may run on several threads at once when concurrency is not 1 and
  * serial_callbacks is 0; all others, and all of them with serial_callbacks, run on the calling thread. A
  * callback may call only mpm_operator_*, mpm_batch_field(), mpm_version() and mpm_status_name(); it must not
  * throw or jump out. alloc, release and log run on the calling thread only.
  *
  * @par Results
- * Same binary, same instruction set, same input: same bits, for any number of threads, any executor,
- * any order in which the same ids were added, and across save and load at any step.
+ * The same binary on the same instruction set gives, for the same input, the same bits: for any number of
+ * threads, any executor, any order in which the same ids were added, and across save and load at any step.
+ *
+ * @par Sources
+ * Equations are those of Guilkey, An Introduction to the Material Point Method; Guilkey and Weiss, Int. J.
+ * Numer. Meth. Engng. 57, 2003; MPoint Theory and Background; Steffen et al., CMES 31(2), 2008; Jiang et al.,
+ * ACM Trans. Graph. 34(4), 2015; Hu et al., ACM Trans. Graph. 37(4), 2018; Hammerquist and Nairn, Comput.
+ * Methods Appl. Mech. Engrg. 318, 2017.
  */
 #ifndef MPM_H
 #define MPM_H
@@ -53,6 +74,7 @@
 #include <mpm/grid.h>
 #include <mpm/io.h>
 #include <mpm/material.h>
+#include <mpm/operator.h>
 #include <mpm/particles.h>
 #include <mpm/stepper.h>
 

@@ -1,6 +1,7 @@
 /**
  * @file mpm.hpp
- * C++17 over the C interface: header-only, nothing but calls of it.
+ * The C interface from C++17. The wrapper is header-only and consists of nothing but calls of the C
+ * interface.
  *
  * @par Errors
  * A call that the library refuses (status < 0) throws mpm::error with the status and the sentence of
@@ -15,10 +16,10 @@
  * code by handle() and is in use there outlives its wrapper and is then leaked, not freed under the user.
  *
  * @par Callbacks
- * Any copyable function object, kept while it may be called. One that throws stops the call that runs it
- * (state as it was), which then throws the same exception; of several exceptions at once it is that of the
- * failure that the library reports, which does not depend on threads. Callbacks marked (mt) in the C headers
- * may run on several threads at once.
+ * A callback is any copyable function object, and is kept while it may be called. One that throws stops the
+ * call that runs it, with the state as it was, which then throws the same exception; of several exceptions at
+ * once it is that of the failure that the library reports, which does not depend on threads. Callbacks marked
+ * (mt) in the C headers may run on several threads at once.
  *
  * @par Threads
  * As in C: a context and everything made with it, destructors included, serve one thread at a time.

@@ -1,7 +1,7 @@
 /**
  * @file particles.h
- * Sets of particles: making, filling, removing; fields by name, as copies by id or as views of the library's
- * memory.
+ * Sets of particles: how they are made, filled and emptied; their fields by name, as copies by id or as views
+ * of the library's memory.
  *
  * | field                                | type | stored in 1-D / 2-D / 3-D                  | full | write |
  * |--------------------------------------|------|--------------------------------------------|------|-------|
@@ -20,23 +20,24 @@
  * | "dilation_ratio"                     | F64  | 1                                          | 1    | yes   |
  * | the host's own                       | any  | as made                                    | same | yes   |
  *
- * Views show the stored components; copies and callbacks have the full ones.
+ * Views show the stored components; copies and callbacks have the full ones. Where "write" says law, the host
+ * may write the field if the law computes it from rates.
  *
- * - position: length, inside the grid.
+ * - position: a length, inside the grid.
  * - velocity: length/time.
  * - acceleration: (v_new - v_old) / dt of the last step, once the host has set or mapped it; with staggered
  *   velocities over the mean of its dt and the one before.
  * - mass, initial_volume: > 0; a new particle has mass = density * initial_volume.
  * - volume: det F * initial_volume (MPoint theory, eq. 40).
  * - size: full initial edge lengths of the particle's domain, for MPM_GIMP and MPM_CPGIMP; edges beyond a
- * cell count as one cell. Until set or given it is that of a cube (2-D: square) of the initial volume.
+ *   cell count as one cell. Until set or given it is that of a cube (2-D: square) of the initial volume.
  * - applied_force: a force on the particle that stays until changed (f^app of MPoint theory, eq. 21).
  * - deformation_gradient: det F > 0.
- * - velocity_gradient: the matrix that the transfer carries, 1/time: affine (MPM_APIC, MPM_APIC_MLS,
- * MPM_AFLIP) or the gradient of the updated nodal velocities (MPM_TPIC, MPM_TFLIP); 0 in new particles. With
- * MPM_FLIP and MPM_XPIC it is kept only once the host has set or mapped it, and then is the L that deformed
- * the particle in the last step.
- * - stress: Cauchy; writable where the law is hypoelastic (linear_elastic, j2), else computed from F.
+ * - velocity_gradient: the matrix that the transfer carries, 1/time: the affine one (MPM_APIC, MPM_APIC_MLS,
+ *   MPM_AFLIP) or the gradient of the updated nodal velocities (MPM_TPIC, MPM_TFLIP); 0 in new particles.
+ *   With MPM_FLIP and MPM_XPIC it is kept only once the host has set or mapped it, and then is the L that
+ *   deformed the particle in the last step.
+ * - stress: Cauchy stress; writable where the law is hypoelastic (linear_elastic, j2), else computed from F.
  * - state: state variables of the law.
  * - reference_position: exists while a stepper with reference_positions holds the set, and starts as the
  *   unwrapped position at mpm_stepper_add().
@@ -50,9 +51,9 @@
  * size, acceleration, velocity_gradient, applied_force and prescribed take memory only when used; until then
  * all of these but size read as zeros.
  *
- * Fields are independent but for this: once deformation_gradient, dilation_ratio or initial_volume is set,
- * volume, and the stress of laws that compute it from F, are brought up to date before anything reads them
- * (get, map, callbacks, mpm_stable_dt(), mpm_step()).
+ * Fields are independent of each other, with one exception: once deformation_gradient, dilation_ratio or
+ * initial_volume is set, volume, and the stress of laws that compute it from F, are brought up to date before
+ * anything reads them (get, map, callbacks, mpm_stable_dt(), mpm_step()).
  *
  * Everything that changes a set returns MPM_E_STATE while a view of it is out or a staged step is under way.
  */
@@ -66,97 +67,103 @@ extern "C" {
 #endif
 
 /** Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned.
- * MPM_E_ARG: grid or material of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid. */
+ * MPM_E_ARG: grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid. */
 MPM_API mpm_status mpm_particles_create(mpm_context *context, mpm_grid *grid, mpm_material *material,
                                         mpm_particles **out);
 
-/** Frees the set. MPM_E_STATE while a stepper holds it or a view of it is out. NULL is fine. */
+/** Frees the set. NULL is fine. MPM_E_STATE while a stepper holds it or a view of it is out. */
 MPM_API mpm_status mpm_particles_destroy(mpm_particles *particles);
 
 /**
- * Adds n particles with F = I, zero stress and the law's initial state; all or none. The arrays are copied;
+ * Adds n particles with F = I, zero stress and the law's initial state: all or none. The arrays are copied;
  * position, velocity and size are [dim][n] with ld = n.
  *
- * - position: inside the grid; outside a periodic axis it is wrapped, and the images are counted.
- * - velocity: NULL for zeros.
- * - volume: [n] initial, of the undeformed material, > 0; mass = density * volume.
- * - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume. Used by
- *   MPM_GIMP and MPM_CPGIMP; on other grids it is kept as given.
- * - ids: [n] the host's own, >= 0 and unique in the set; NULL to number on from the largest so far.
- * - first_id: out, the first of the ids; may be NULL.
+ * - position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are
+ *   counted.
+ * - velocity: length/time; NULL for zeros.
+ * - volume: [n] initial volume, of the undeformed material, > 0; mass = density * volume.
+ * - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume.
+ *   MPM_GIMP and MPM_CPGIMP use it; on other grids it is kept as given.
+ * - ids: [n] the host's own ids, >= 0 and unique in the set; NULL to number on from the largest so far.
+ * - first_id: the first of the ids is written to it; may be NULL.
  *
- * MPM_E_ARG: values not finite, a position outside the grid, a volume or size <= 0, an id negative or in use.
+ * MPM_E_ARG: a value is not finite, a position is outside the grid, a volume or size is <= 0, or an id is
+ * negative or in use.
  */
 MPM_API mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const double *position,
                                      const double *velocity, const double *volume, const double *size,
                                      const int64_t *ids, int64_t *first_id);
 
 /**
- * Fills the box lower[dim] ... upper[dim] with particles at rest on a lattice aligned with the cells,
- * per_cell[dim] along each axis of a cell, wherever the centre is inside. Each has the volume and the size of
- * one lattice cell, so that domains of GIMP fill the body. The ids of the new particles are *first_id ...
- * *first_id + *count - 1; both pointers may be NULL. MPM_E_ARG: lower > upper, or per_cell < 1.
+ * Fills the box from lower[dim] to upper[dim] with particles at rest on a lattice aligned with the cells,
+ * with per_cell[dim] particles along each axis of a cell, wherever the centre is inside. Each has the volume
+ * and the size of one lattice cell, so that domains of GIMP fill the body. The ids of the new particles are
+ * *first_id to *first_id + *count - 1; both pointers may be NULL. MPM_E_ARG: lower > upper, or per_cell < 1.
  */
 MPM_API mpm_status mpm_particles_fill_box(mpm_particles *particles, const double *lower, const double *upper,
                                           const int32_t *per_cell, int64_t *first_id, int64_t *count);
 
-/** As mpm_particles_fill_box(), for the ball (2-D: disc, 1-D: interval) around centre[dim]; radius > 0. */
+/** Fills a ball (2-D: disc, 1-D: interval) around centre[dim] of a radius > 0, as mpm_particles_fill_box()
+ * fills a box. */
 MPM_API mpm_status mpm_particles_fill_ball(mpm_particles *particles, const double *centre, double radius,
                                            const int32_t *per_cell, int64_t *first_id, int64_t *count);
 
-/** Tells which of n points are inside a body: writes inside[i] = 1 or 0 for position[c * ld + i], c < dim.
- * Runs on the calling thread. A return other than 0 ends the fill with MPM_E_CALLBACK; nothing is added. */
+/** Tells which of n points are inside a body: the callback writes inside[i] = 1 or 0 for the point with the
+ * coordinates position[c * ld + i], c < dim. It runs on the calling thread. A return other than 0 ends the
+ * fill with MPM_E_CALLBACK; nothing is then added. */
 typedef mpm_status (*mpm_inside_fn)(void *user, int32_t dim, int64_t n, int64_t ld, const double *position,
                                     uint8_t *inside);
 
-/** As mpm_particles_fill_box(), for the points of the box that inside accepts. */
+/** Fills that part of a box which the callback accepts, as mpm_particles_fill_box() fills the whole. */
 MPM_API mpm_status mpm_particles_fill(mpm_particles *particles, const double *lower, const double *upper,
                                       const int32_t *per_cell, mpm_inside_fn inside, void *user,
                                       int64_t *first_id, int64_t *count);
 
-/** Removes the n particles with the given ids; all or none. MPM_E_NOT_FOUND: an id is not in the set.
+/** Removes the n particles with the given ids: all or none. MPM_E_NOT_FOUND: an id is not in the set.
  * MPM_E_ARG: an id is given twice. */
 MPM_API mpm_status mpm_particles_remove(mpm_particles *particles, int64_t n, const int64_t *ids);
 
-/** Number of particles, inert slots not counted; 0 for NULL. */
+/** The number of particles, inert slots not counted; 0 for NULL. */
 MPM_API int64_t mpm_particles_count(const mpm_particles *particles);
 
-/** Describes field index (from 0): name, type (MPM_F64 ...), components of copies and whether the host may
- * write it. The name is valid while the set lives; output pointers may be NULL. MPM_E_NOT_FOUND past the
- * last. */
+/** Describes the field with number index (from 0): its name, its type (MPM_F64, MPM_I64 or MPM_U8), the
+ * components of copies, and whether the host may write it. The name belongs to the library and is valid while
+ * the set lives; output pointers may be NULL. MPM_E_NOT_FOUND: index is past the last field. */
 MPM_API mpm_status mpm_particles_field_info(const mpm_particles *particles, int32_t index, const char **field,
                                             int32_t *type, int32_t *components, int32_t *writable);
 
-/** Adds a field of the host, zero in every particle: it travels with the particles, is saved, and reaches
- * callbacks through mpm_batch_field(). type: MPM_F64, MPM_I64 or MPM_U8; components >= 1. MPM_E_ARG: the
- * name is empty or taken. */
+/** Adds a field of the host, zero in every particle. It travels with the particles, is saved with them, and
+ * reaches callbacks through mpm_batch_field(). type is MPM_F64, MPM_I64 or MPM_U8, and components >= 1.
+ * MPM_E_ARG: the name is empty or taken, or a value is bad. */
 MPM_API mpm_status mpm_particles_add_field(mpm_particles *particles, const char *field, int32_t type,
                                            int32_t components);
 
 /**
- * Lends a field in library order, with its stored components and with inert slots (id < 0); map "id" to tell
- * which is which. access: MPM_READ, MPM_WRITE or both. Until mpm_view_release() steps return MPM_E_STATE. The
- * view's struct_size is set by the caller. MPM_E_NOT_FOUND: unknown field. MPM_E_ARG: MPM_WRITE on a field
- * that is not writable.
+ * Lends a field in library order, with its stored components and with inert slots (id < 0); a map of "id"
+ * tells which is which. access is MPM_READ, MPM_WRITE or both. The caller sets the view's struct_size. Until
+ * mpm_view_release() steps return MPM_E_STATE. MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: MPM_WRITE
+ * is asked for on a field that is not writable.
  */
 MPM_API mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_t access,
                                      mpm_view *view);
 
 /**
- * Copies a field of n particles into out, [components][n] with ld = n, tensors full. ids: [n], or NULL for
- * all by ascending id; n is then mpm_particles_count(). type and components must match the full field: a
- * guard on the buffer. MPM_E_NOT_FOUND: unknown field or id. MPM_E_ARG: type, components or n do not match.
+ * Copies a field of n particles into out, [components][n] with ld = n; tensors are full. ids are [n], or NULL
+ * for all particles by ascending id, where n is mpm_particles_count(). type and components must match the
+ * full field, to guard the host's buffer. MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type,
+ * components or n do not match.
  */
 MPM_API mpm_status mpm_particles_get(const mpm_particles *particles, const char *field, int32_t type,
                                      int32_t components, int64_t n, const int64_t *ids, void *out);
 
-/** Copies values into a field, laid out as in mpm_particles_get(); all or none. Values that are not finite
- * or give det F <= 0 are refused with MPM_E_ARG, as is a field that is not writable or a position outside
- * the grid. */
+/** Copies values into a field, laid out as in mpm_particles_get(): all or none. Errors are those of
+ * mpm_particles_get(), and MPM_E_ARG: a value is not finite or gives det F <= 0, a position is outside the
+ * grid, or the field is not writable. */
 MPM_API mpm_status mpm_particles_set(mpm_particles *particles, const char *field, int32_t type,
                                      int32_t components, int64_t n, const int64_t *ids, const void *values);
 
-/** As mpm_particles_set(), with one value[components] for every particle of the set. */
+/** Sets a field to one value[components] in every particle of the set. Errors are those of
+ * mpm_particles_set(). */
 MPM_API mpm_status mpm_particles_set_all(mpm_particles *particles, const char *field, int32_t type,
                                          int32_t components, const void *value);
 

@@ -13,32 +13,32 @@
 
 namespace mpm {
 
-/** Ids first ... first + count - 1 of particles that a call has made. */
+/** The ids of particles that a call has made: first to first + count - 1. */
 struct id_range {
-  int64_t first; /**< smallest */
-  int64_t count; /**< how many; may be 0 */
+  int64_t first; /**< smallest id */
+  int64_t count; /**< number of ids; may be 0 */
 };
 
-/** What particles::add() takes: arrays as mpm_particles_add() wants them, [dim][n]; empty for NULL. */
+/** What particles::add() takes: arrays as mpm_particles_add() wants them, empty where those may be NULL. */
 struct new_particles {
-  span<const double> position; /**< [dim][n] */
-  span<const double> velocity; /**< [dim][n]; empty: zeros */
-  span<const double> volume;   /**< [n] */
-  span<const double> size;     /**< [dim][n]; empty: cubes */
-  span<const int64_t> ids;     /**< [n]; empty: numbered on */
+  span<const double> position; /**< [dim][n], length */
+  span<const double> velocity; /**< [dim][n], length/time; empty: zeros */
+  span<const double> volume;   /**< [n] initial volumes */
+  span<const double> size;     /**< [dim][n] edges of the domains; empty: cubes */
+  span<const int64_t> ids;     /**< [n]; empty: ids number on from the largest */
 };
 
-/** A field of a set: see mpm_particles_field_info(). */
+/** What mpm_particles_field_info() tells of a field of a set. */
 struct field_info {
-  std::string name;   /**< as calls want it */
+  std::string name;   /**< name, as calls want it */
   int32_t type;       /**< MPM_F64, MPM_I64 or MPM_U8 */
-  int32_t components; /**< of copies */
-  bool writable;      /**< by the host */
+  int32_t components; /**< components of copies */
+  bool writable;      /**< whether the host may write it */
 };
 
 namespace detail {
 
-/** A set with its grid and material. */
+/** The set of C with its grid and material. */
 struct particles_core {
   std::shared_ptr<context_core> context;   /**< outlives the set */
   std::shared_ptr<grid_core> grid;         /**< outlives the set */
@@ -54,11 +54,11 @@ struct particles_core {
   }
 };
 
-/** Type of the elements of a container. */
+/** The type of the elements of a container. */
 template <class C>
 using element = std::remove_cv_t<std::remove_pointer_t<decltype(std::data(std::declval<C &>()))>>;
 
-/** Names of fields as C wants them; they live as long as names do. */
+/** The names of fields as C wants them. They live as long as `names` does. */
 inline std::vector<const char *> c_names(const std::vector<std::string> &names) {
   std::vector<const char *> pointers;
   for (const std::string &name : names) pointers.push_back(name.c_str());
@@ -67,16 +67,16 @@ inline std::vector<const char *> c_names(const std::vector<std::string> &names) 
 
 } // namespace detail
 
-/** A set of particles: see particles.h. A stepper that it was added to keeps it. */
+/** A set of particles: see particles.h. A stepper to which it was added keeps it alive. */
 class particles : public wrapper<detail::particles_core> {
 public:
-  /** mpm_particles_create(). */
+  /** Makes an empty set: see mpm_particles_create(). */
   particles(const grid &on, const material &of) : wrapper(on.shared(), of.shared()) {
     detail::particles_core &c = core();
     check(mpm_particles_create(c.context->handle, c.grid->handle, c.material->handle, &c.handle));
   }
 
-  /** mpm_particles_add(); gives the first id. */
+  /** Adds particles and gives the first of their ids: see mpm_particles_add(). */
   int64_t add(const new_particles &p) {
     const auto n = static_cast<int64_t>(p.volume.size()), coordinates = n * core().grid->dim;
     detail::expect_size("position", p.position.size(), coordinates);
@@ -88,7 +88,7 @@ public:
                             detail::not_null(p.volume), p.size.data(), p.ids.data(), &first));
     return first;
   }
-  /** mpm_particles_fill_box(); all arrays are [dim]. */
+  /** Fills a box: see mpm_particles_fill_box(). All arrays are [dim]. */
   id_range fill_box(span<const double> lower, span<const double> upper, span<const int32_t> per_cell) {
     expect_axes("lower", lower.size()), expect_axes("upper", upper.size()),
         expect_axes("per_cell", per_cell.size());
@@ -97,7 +97,7 @@ public:
                                  &made.count));
     return made;
   }
-  /** mpm_particles_fill_ball(); all arrays are [dim]. */
+  /** Fills a ball: see mpm_particles_fill_ball(). All arrays are [dim]. */
   id_range fill_ball(span<const double> centre, double radius, span<const int32_t> per_cell) {
     expect_axes("centre", centre.size()), expect_axes("per_cell", per_cell.size());
     id_range made{};
@@ -105,8 +105,8 @@ public:
                                   &made.count));
     return made;
   }
-  /** mpm_particles_fill(), with a function of one point x[dim]: bool inside(const double *x). What it throws
-   * comes out of this call, and nothing is added. */
+  /** Fills a body: see mpm_particles_fill(). The function is asked about one point x[dim] at a time: bool
+   * inside(const double *x). What it throws comes out of this call, and nothing is added. */
   template <class F>
   id_range fill(span<const double> lower, span<const double> upper, span<const int32_t> per_cell, F inside) {
     expect_axes("lower", lower.size()), expect_axes("upper", upper.size()),
@@ -131,16 +131,16 @@ public:
                              &made.first, &made.count));
     return made;
   }
-  /** mpm_particles_remove(). */
+  /** Removes particles by id: see mpm_particles_remove(). */
   void remove(span<const int64_t> ids) {
     check(mpm_particles_remove(core().handle, static_cast<int64_t>(ids.size()), detail::not_null(ids)));
   }
-  /** mpm_particles_count(). */
+  /** The number of particles: see mpm_particles_count(). */
   int64_t count() const {
     return mpm_particles_count(core().handle);
   }
 
-  /** All fields: mpm_particles_field_info(). */
+  /** Describes all fields: see mpm_particles_field_info(). */
   std::vector<field_info> fields() const {
     std::vector<field_info> all;
     for (int32_t i = 0;; ++i) {
@@ -154,51 +154,51 @@ public:
     }
     return all;
   }
-  /** Adds a field of the host: mpm_particles_add_field(). */
+  /** Adds a field of the host: see mpm_particles_add_field(). */
   template <class T> void add_field(const std::string &field, int32_t components = 1) {
     check(mpm_particles_add_field(core().handle, field.c_str(), detail::type_of<T>(), components));
   }
 
-  /** Copies a field of all particles by ascending id, [components][count()]: mpm_particles_get(). */
+  /** Copies a field of all particles by ascending id, [components][count()]: see mpm_particles_get(). */
   template <class T = double> std::vector<T> get(const std::string &field) const {
     return copy<T>(field, count(), nullptr);
   }
-  /** The same of the particles with the given ids. */
+  /** Copies a field of the particles with the given ids. */
   template <class T = double> std::vector<T> get(const std::string &field, span<const int64_t> ids) const {
     return copy<T>(field, static_cast<int64_t>(ids.size()), detail::not_null(ids));
   }
-  /** Copies values, [components][count()] by ascending id, into a field: mpm_particles_set(). */
+  /** Copies values, [components][count()] by ascending id, into a field: see mpm_particles_set(). */
   template <class C> void set(const std::string &field, const C &values) {
     write<detail::element<const C>>(field, count(), nullptr, values);
   }
-  /** The same for the particles with the given ids. */
+  /** Copies values into a field of the particles with the given ids. */
   template <class C> void set(const std::string &field, span<const int64_t> ids, const C &values) {
     write<detail::element<const C>>(field, static_cast<int64_t>(ids.size()), detail::not_null(ids), values);
   }
-  /** The same with a list in braces. */
+  /** Copies values from a list in braces. */
   template <class T>
   void set(const std::string &field, span<const int64_t> ids, std::initializer_list<T> values) {
     set<std::initializer_list<T>>(field, ids, values);
   }
-  /** One value, [components], for every particle: mpm_particles_set_all(). */
+  /** Sets one value, [components], in every particle: see mpm_particles_set_all(). */
   template <class C> void set_all(const std::string &field, const C &value) {
     const span<const detail::element<const C>> all(value);
     check(mpm_particles_set_all(core().handle, field.c_str(), detail::type_of<detail::element<const C>>(),
                                 static_cast<int32_t>(all.size()), detail::not_null(all)));
   }
-  /** The same with a list in braces, such as {1.0, 0.0}. */
+  /** Sets one value from a list in braces, such as {1.0, 0.0}. */
   template <class T> void set_all(const std::string &field, std::initializer_list<T> value) {
     set_all<std::initializer_list<T>>(field, value);
   }
-  /** Lends a field in library order: mpm_particles_map(). map<const double>() is for reading, map<double>()
-   * for reading and writing. */
+  /** Lends a field in library order: see mpm_particles_map(). map<const double>() is for reading,
+   * map<double>() for reading and writing. */
   template <class T> view<T> map(const std::string &field) {
     return view<T>(shared(), field, [&](int32_t access, mpm_view *out) {
       return mpm_particles_map(core().handle, field.c_str(), access, out);
     });
   }
 
-  /** Writes a .vtp file with the named fields, or all: mpm_write_particles(). */
+  /** Writes a .vtp file with the named fields, or with all: see mpm_write_particles(). */
   void write_file(const std::string &path, const std::vector<std::string> &names = {}) const {
     check(mpm_write_particles(core().handle, path.c_str(), static_cast<int32_t>(names.size()),
                               detail::c_names(names).data()));

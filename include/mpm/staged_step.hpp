@@ -9,8 +9,8 @@
 
 namespace mpm {
 
-/** A step in parts, as stepper::begin() makes it. Ended by end(); dropped by abort(), by destruction, and by
- * a part that is not done. */
+/** A step in parts, which stepper::begin() begins. It is ended by end(), and dropped by abort(), by
+ * destruction and by a part that is not done. */
 class staged_step {
 public:
   /** Takes the step over. */
@@ -26,27 +26,27 @@ public:
   ~staged_step() {
     if (core_) mpm_step_abort(core_->handle);
   }
-  /** What the first part came to; unless it was done there are no others. */
+  /** The outcome of the first part. Unless that was done there are no others. */
   const outcome &begun() const noexcept {
     return begun_;
   }
-  /** Second part: mpm_step_grid(). */
+  /** Makes the second part: see mpm_step_grid(). */
   outcome update_grid() {
     return part(mpm_step_grid(core().handle));
   }
-  /** Last part: mpm_step_end(). */
+  /** Makes the last part: see mpm_step_end(). */
   outcome end() {
     const outcome result = part(mpm_step_end(core().handle, nullptr));
     core_.reset();
     return result;
   }
-  /** The same, with what the step did. */
+  /** Makes the last part and fills info with what the step did. */
   outcome end(mpm_step_info &info) {
     const outcome result = part(mpm_step_end(core().handle, &info));
     core_.reset();
     return result;
   }
-  /** Drops the step: mpm_step_abort(). Throws error (MPM_E_STATE) while a view of nodal fields is out. */
+  /** Drops the step: see mpm_step_abort(). Throws error (MPM_E_STATE) while a view of nodal fields is out. */
   void abort() {
     core().context->check(mpm_step_abort(core().handle));
     core_.reset();

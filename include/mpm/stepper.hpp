@@ -14,39 +14,39 @@ namespace mpm {
 /** A stepper: see stepper.h. It keeps its sets alive until they are removed or it is destroyed. */
 class stepper : public wrapper<detail::stepper_core> {
 public:
-  /** mpm_stepper_create(). */
+  /** Makes a stepper: see mpm_stepper_create(). */
   explicit stepper(const grid &on, const mpm_stepper_desc &desc = stepper_desc()) : wrapper(on.shared()) {
     detail::stepper_core &c = core();
     check(mpm_stepper_create(c.context->handle, c.grid->handle, &desc, &c.handle));
   }
 
-  /** mpm_stepper_add(). */
+  /** Adds a set: see mpm_stepper_add(). */
   void add(particles &set) {
     core().sets.reserve(core().sets.size() + 1);
     check(mpm_stepper_add(core().handle, set.handle()));
     core().sets.push_back(set.shared());
   }
-  /** mpm_stepper_remove(). */
+  /** Takes a set out: see mpm_stepper_remove(). */
   void remove(particles &set) {
     detail::stepper_core &c = core();
     check(mpm_stepper_remove(c.handle, set.handle()));
     c.sets.erase(std::find(c.sets.begin(), c.sets.end(), set.shared()));
     forget_motion(set.handle());
   }
-  /** mpm_stepper_configure(). */
+  /** Replaces the options: see mpm_stepper_configure(). */
   void configure(const mpm_stepper_desc &desc) {
     check(mpm_stepper_configure(core().handle, &desc));
   }
-  /** mpm_stepper_set_time(). */
+  /** Sets time and step: see mpm_stepper_set_time(). */
   void set_time(double t, int64_t step) {
     check(mpm_stepper_set_time(core().handle, t, step));
   }
 
-  /** mpm_stepper_set_wall(). */
+  /** Sets what a face does: see mpm_stepper_set_wall(). */
   void set_wall(int32_t face, int32_t kind, double friction = 0.0) {
     check(mpm_stepper_set_wall(core().handle, face, kind, friction));
   }
-  /** Mean velocity of a set's prescribed particles, or nullptr: mpm_stepper_set_motion(). */
+  /** Sets the mean velocity of a set's prescribed particles; nullptr: none. See mpm_stepper_set_motion(). */
   void set_motion(particles &set, particle_callback mean_velocity) {
     detail::stepper_core &c = core();
     c.motions.reserve(c.motions.size() + 1);
@@ -55,19 +55,20 @@ public:
     forget_motion(set.handle());
     if (rule) c.motions.push_back({set.handle(), std::move(rule)});
   }
-  /** Body acceleration, or nullptr: mpm_stepper_set_acceleration(). */
+  /** Sets the acceleration of particles; nullptr: none. See mpm_stepper_set_acceleration(). */
   void set_acceleration(particle_callback function) {
     install(mpm_stepper_set_acceleration, core().acceleration, std::move(function), core().on_particles);
   }
-  /** Force on particles, or nullptr: mpm_stepper_set_force(). */
+  /** Sets the force on particles; nullptr: none. See mpm_stepper_set_force(). */
   void set_force(particle_callback function) {
     install(mpm_stepper_set_force, core().force, std::move(function), core().on_particles);
   }
-  /** Prescribed nodal velocities, or nullptr: mpm_stepper_set_velocity_bc(). */
+  /** Sets what prescribes nodal velocities; nullptr: none. See mpm_stepper_set_velocity_bc(). */
   void set_velocity_bc(velocity_callback function) {
     install(mpm_stepper_set_velocity_bc, core().velocity, std::move(function), core().on_velocity);
   }
-  /** Hook of a stage, MPM_AFTER_P2G ... MPM_AFTER_VELOCITY, or nullptr: mpm_stepper_set_node_hook(). */
+  /** Sets the hook of a stage, MPM_AFTER_P2G to MPM_AFTER_VELOCITY; nullptr: none. See
+   * mpm_stepper_set_node_hook(). */
   void set_node_hook(int32_t stage, node_callback function) {
     const auto set = [stage](mpm_stepper *s, mpm_node_fn fn, void *user) {
       return mpm_stepper_set_node_hook(s, stage, fn, user);
@@ -77,56 +78,56 @@ public:
     auto &place = known ? core().hooks[static_cast<std::size_t>(stage - MPM_AFTER_P2G)] : refused;
     install(set, place, std::move(function), core().on_nodes);
   }
-  /** Solver of MPM_SOLVER_HOST, or nullptr: mpm_stepper_set_linear_solver(). */
+  /** Sets the solver of MPM_SOLVER_HOST; nullptr: none. See mpm_stepper_set_linear_solver(). */
   void set_linear_solver(solve_callback function) {
     install(mpm_stepper_set_linear_solver, core().solver, std::move(function), core().on_solve);
   }
-  /** Progress, or nullptr: mpm_stepper_set_progress(). */
+  /** Sets what watches steps; nullptr: none. See mpm_stepper_set_progress(). */
   void set_progress(progress_callback function) {
     install(mpm_stepper_set_progress, core().progress, std::move(function), core().on_progress);
   }
 
-  /** mpm_stable_dt(). Throws error for any status but MPM_OK. */
+  /** The stable dt: see mpm_stable_dt(). Throws error for any status but MPM_OK. */
   double stable_dt() {
     double dt = 0.0;
     check(mpm_stable_dt(core().handle, &dt));
     return dt;
   }
-  /** mpm_step(). */
+  /** Makes a step: see mpm_step(). */
   outcome step(double dt) {
     return core().result(mpm_step(core().handle, dt, nullptr));
   }
-  /** The same; info is filled on success and on failure, also when it throws. */
+  /** Makes a step and fills info, on success and on failure, also when it throws. */
   outcome step(double dt, mpm_step_info &info) {
     return core().result(mpm_step(core().handle, dt, &info));
   }
-  /** mpm_advance(). */
+  /** Steps to a time: see mpm_advance(). */
   outcome advance(const mpm_advance_desc &desc) {
     return core().result(mpm_advance(core().handle, &desc, nullptr));
   }
-  /** The same; info is that of the last sub-step tried. */
+  /** Steps to a time and fills info with that of the last sub-step tried. */
   outcome advance(const mpm_advance_desc &desc, mpm_step_info &info) {
     return core().result(mpm_advance(core().handle, &desc, &info));
   }
-  /** A step in parts: mpm_step_begin(). */
+  /** Begins a step in parts: see mpm_step_begin(). */
   staged_step begin(double dt) {
     return staged_step(shared(), dt);
   }
 
-  /** mpm_stepper_info(). */
+  /** The info of the state as it is: see mpm_stepper_info(). */
   step_info info() const {
     step_info now;
     check(mpm_stepper_info(core().handle, &now));
     return now;
   }
-  /** Times since creation or the last reset: mpm_stepper_profile(). */
+  /** The times since creation or the last reset: see mpm_stepper_profile(). */
   mpm_profile profile(bool reset = false) {
     mpm_profile times{};
     times.struct_size = sizeof times;
     check(mpm_stepper_profile(core().handle, reset, &times));
     return times;
   }
-  /** Residuals of the last implicit step: mpm_stepper_residuals(). */
+  /** The residuals of the last implicit step: see mpm_stepper_residuals(). */
   std::vector<double> residuals() const {
     int32_t count = 0;
     check(mpm_stepper_residuals(core().handle, 0, nullptr, &count));
@@ -134,26 +135,27 @@ public:
     if (count) check(mpm_stepper_residuals(core().handle, count, all.data(), &count));
     return all;
   }
-  /** Lends a nodal field: mpm_grid_map(). map<const double>() is for reading, map<double>() for both. */
+  /** Lends a nodal field: see mpm_grid_map(). map<const double>() is for reading, map<double>() for reading
+   * and writing. */
   template <class T> view<T> map(const std::string &field, int32_t body = 0) {
     return view<T>(shared(), field, [&](int32_t access, mpm_view *out) {
       return mpm_grid_map(core().handle, body, field.c_str(), access, out);
     });
   }
-  /** Force of a wall on the material: mpm_stepper_wall_reaction(). Entries of unused axes are 0. */
+  /** The force of a wall on the material: see mpm_stepper_wall_reaction(). Entries of unused axes are 0. */
   std::array<double, 3> wall_reaction(int32_t face) const {
     std::array<double, 3> force{};
     check(mpm_stepper_wall_reaction(core().handle, face, force.data()));
     return force;
   }
-  /** Force of a set's prescribed particles on the material: mpm_stepper_particles_reaction(). */
+  /** The force of a set's prescribed particles on the material: see mpm_stepper_particles_reaction(). */
   std::array<double, 3> particles_reaction(const particles &set) const {
     std::array<double, 3> force{};
     check(mpm_stepper_particles_reaction(core().handle, set.handle(), force.data()));
     return force;
   }
 
-  /** The state: mpm_state_save(). */
+  /** The saved state: see mpm_state_save(). */
   std::vector<unsigned char> save() const {
     int64_t bytes = 0;
     check(mpm_state_size(core().handle, &bytes));
@@ -161,25 +163,26 @@ public:
     check(mpm_state_save(core().handle, state.data(), bytes));
     return state;
   }
-  /** Replaces the state by a saved one: mpm_state_load(). */
+  /** Replaces the state by a saved one: see mpm_state_load(). */
   void load(span<const unsigned char> state) {
     check(mpm_state_load(core().handle, detail::not_null(state), static_cast<int64_t>(state.size())));
   }
-  /** mpm_state_save_file(). */
+  /** Saves the state into a file: see mpm_state_save_file(). */
   void save_file(const std::string &path) const {
     check(mpm_state_save_file(core().handle, path.c_str()));
   }
-  /** mpm_state_load_file(). */
+  /** Replaces the state by one from a file: see mpm_state_load_file(). */
   void load_file(const std::string &path) {
     check(mpm_state_load_file(core().handle, path.c_str()));
   }
-  /** mpm_state_hash(). */
+  /** A hash of the state: see mpm_state_hash(). */
   uint64_t hash() const {
     uint64_t hash = 0;
     check(mpm_state_hash(core().handle, &hash));
     return hash;
   }
-  /** Writes a .vti file (open knots: .vtr) with the named nodal fields, or all: mpm_write_grid(). */
+  /** Writes a .vti file (with open knots a .vtr file) with the named nodal fields, or with all: see
+   * mpm_write_grid(). */
   void write_grid(const std::string &path, const std::vector<std::string> &names = {}) {
     check(mpm_write_grid(core().handle, path.c_str(), static_cast<int32_t>(names.size()),
                          detail::c_names(names).data()));

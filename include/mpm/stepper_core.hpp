@@ -13,18 +13,18 @@
 
 namespace mpm {
 
-/** mpm_stepper_desc with its defaults. */
+/** An mpm_stepper_desc that starts with the defaults. */
 struct stepper_desc : mpm_stepper_desc {
-  /** The defaults. */
+  /** Starts with the defaults. */
   stepper_desc() : mpm_stepper_desc() {
     if (const mpm_status status = mpm_stepper_desc_init(this, sizeof(mpm_stepper_desc)))
       throw error(status, "mpm_stepper_desc_init");
   }
 };
 
-/** mpm_advance_desc with its defaults. */
+/** An mpm_advance_desc that starts with the defaults. */
 struct advance_desc : mpm_advance_desc {
-  /** t: t_end, the time to reach. */
+  /** Starts with the defaults and t_end = t, the time to reach. */
   explicit advance_desc(double t = 0.0) : mpm_advance_desc() {
     if (const mpm_status status = mpm_advance_desc_init(this, sizeof(mpm_advance_desc)))
       throw error(status, "mpm_advance_desc_init");
@@ -32,36 +32,36 @@ struct advance_desc : mpm_advance_desc {
   }
 };
 
-/** mpm_step_info, ready to be filled. */
+/** An mpm_step_info that is ready to be filled. */
 struct step_info : mpm_step_info {
-  /** With struct_size set, else zeros. */
+  /** Starts with struct_size set and zeros elsewhere. */
   step_info() : mpm_step_info() {
     struct_size = sizeof(mpm_step_info);
   }
 };
 
-/** mpm_particle_fn: adds to add[c * batch.ld + i] (mt). */
+/** As mpm_particle_fn: takes batch and add, and adds to add[c * batch.ld + i] (mt). */
 using particle_callback = callback<const mpm_particle_batch &, double *>;
-/** mpm_velocity_fn: batch, prescribed, velocity (mt). */
+/** As mpm_velocity_fn: takes batch, prescribed and velocity (mt). */
 using velocity_callback = callback<const mpm_node_batch &, uint8_t *, double *>;
-/** mpm_node_fn: batch, velocity, force (mt). */
+/** As mpm_node_fn: takes batch, velocity and force (mt). */
 using node_callback = callback<const mpm_node_batch &, double *, double *>;
-/** mpm_progress_fn: a status > 0 ends the call with MPM_CANCELLED. */
+/** As mpm_progress_fn: a status > 0 ends the call with MPM_CANCELLED. */
 using progress_callback = callback<const mpm_step_info &>;
 
 namespace detail {
 
-/** A stepper with its grid, its sets and the host's functions. */
+/** The stepper of C with its grid, its sets and the host's functions. */
 struct stepper_core {
   /** A function where C finds it, as its user pointer. */
   template <class F> struct slot {
     F function;         /**< not empty */
-    thrown &exceptions; /**< of the context */
+    thrown &exceptions; /**< those of the context */
   };
-  /** Motion of a set's prescribed particles. */
+  /** The motion of a set's prescribed particles. */
   struct motion {
-    const mpm_particles *set;                      /**< whose */
-    std::unique_ptr<slot<particle_callback>> rule; /**< how they move */
+    const mpm_particles *set;                      /**< the set that moves */
+    std::unique_ptr<slot<particle_callback>> rule; /**< its mean velocity */
   };
 
   std::shared_ptr<context_core> context;                     /**< outlives the stepper */
@@ -85,8 +85,8 @@ struct stepper_core {
     mpm_stepper_destroy(handle);
   }
 
-  /** As context_core::result(), for calls that run callbacks: the exception that comes out is that of the
-   * failure that the library reports. */
+  /** Does as context_core::result(), for calls that run callbacks: the exception that comes out is that of
+   * the failure that the library reports. */
   outcome result(mpm_status status) {
     if (status != MPM_E_CALLBACK) return context->result(status);
     const std::string message = mpm_last_error(context->handle);
@@ -96,33 +96,33 @@ struct stepper_core {
     if (exception) std::rethrow_exception(exception);
     throw error(status, message);
   }
-  /** A function for C; NULL if it is empty. */
+  /** Makes a function ready for C; gives nullptr if it is empty. */
   template <class F> std::unique_ptr<slot<F>> keep(F function) {
     if (!function) return nullptr;
     return std::unique_ptr<slot<F>>(new slot<F>{std::move(function), context->exceptions});
   }
-  /** Calls the function that user is. */
+  /** Calls the function to which user points. */
   template <class F, class... A> static mpm_status call(void *user, A &&...arguments) noexcept {
     auto &at = *static_cast<slot<F> *>(user);
     return guarded(at.exceptions, at.function, std::forward<A>(arguments)...);
   }
-  /** mpm_particle_fn. */
+  /** The mpm_particle_fn that calls the host's function. */
   static mpm_status on_particles(void *user, const mpm_particle_batch *batch, double *add) {
     return call<particle_callback>(user, *batch, add);
   }
-  /** mpm_velocity_fn. */
+  /** The mpm_velocity_fn that calls the host's function. */
   static mpm_status on_velocity(void *user, const mpm_node_batch *batch, uint8_t *prescribed, double *value) {
     return call<velocity_callback>(user, *batch, prescribed, value);
   }
-  /** mpm_node_fn. */
+  /** The mpm_node_fn that calls the host's function. */
   static mpm_status on_nodes(void *user, const mpm_node_batch *batch, double *value, double *nodal_force) {
     return call<node_callback>(user, *batch, value, nodal_force);
   }
-  /** mpm_progress_fn. */
+  /** The mpm_progress_fn that calls the host's function. */
   static mpm_status on_progress(void *user, const mpm_step_info *info) {
     return call<progress_callback>(user, *info);
   }
-  /** mpm_solve_fn. */
+  /** The mpm_solve_fn that calls the host's function. */
   static mpm_status on_solve(void *user, const mpm_operator *matrix, const double *rhs, double *solution,
                              double tolerance, int64_t *iterations) {
     auto &at = *static_cast<slot<solve_callback> *>(user);

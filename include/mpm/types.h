@@ -8,10 +8,10 @@
 
 #include <stdint.h>
 
-/** Version of these headers, 0xMMmmpp (major, minor, patch). Compare with mpm_version(). */
+/** Version of these headers as 0xMMmmpp (major, minor, patch), to be compared with mpm_version(). */
 #define MPM_VERSION 0x000100
 
-/** Marks every exported function. Define it before the first include to replace the default. */
+/** Marks every exported function. A host may define it before the first include to replace the default. */
 #ifndef MPM_API
 #if defined(__GNUC__) || defined(__clang__)
 #define MPM_API __attribute__((visibility("default")))
@@ -24,107 +24,116 @@
 extern "C" {
 #endif
 
-/** Services of the host: memory, threads, log; counts the objects made with it. See context.h. */
+/** A context holds the services of the host (memory, threads, log) and the text of the last error. Every
+ * other object is made with one. See context.h. */
 typedef struct mpm_context mpm_context;
-/** Background grid: dimension, bounds, spacing, basis, periodic axes. See grid.h. */
+/** A background grid has a dimension, bounds, spacings, a basis and periodic axes. See grid.h. */
 typedef struct mpm_grid mpm_grid;
-/** One constitutive law with its parameters, shared by any number of sets. See material.h. */
+/** A material is one constitutive law with its parameters. Any number of sets share it. See material.h. */
 typedef struct mpm_material mpm_material;
-/** A set of particles of one material. See particles.h. */
+/** A set holds particles of one material on one grid. See particles.h. */
 typedef struct mpm_particles mpm_particles;
-/** One time loop: a grid, particle sets, a scheme, walls and forces. See stepper.h. */
+/** A stepper is one time loop with a grid, sets of particles, a scheme, walls and forces. See stepper.h. */
 typedef struct mpm_stepper mpm_stepper;
-/** The linear system of an implicit step, lent to a host solver. See stepper.h. */
+/** The linear system of an implicit step, which the library lends to the host's solver. See operator.h. */
 typedef struct mpm_operator mpm_operator;
 
-/** Result of a call: one of the values below. 0 done; > 0 not done; < 0 refused or failed. */
+/** The result of a call is one of the values below: 0 says that it was done, a positive value that it was not
+ * done, a negative value that it was refused or failed. */
 typedef int32_t mpm_status;
 
-/** Status values. Positive ones leave the state as it was; 1..5 may be cured by a smaller dt. */
+/** Status values. After a positive one the state is as it was before the call. A smaller dt may cure 1..5. */
 enum {
-  MPM_OK = 0,             /**< done */
+  MPM_OK = 0,             /**< the call did what it was asked to */
   MPM_CUT_DT = 1,         /**< a callback or a law asked for a smaller step */
   MPM_INVERTED = 2,       /**< det F <= 0 at a particle */
-  MPM_NONFINITE = 3,      /**< NaN or infinity appeared */
+  MPM_NONFINITE = 3,      /**< a NaN or an infinity appeared */
   MPM_NOT_CONVERGED = 4,  /**< the Newton iteration did not converge */
   MPM_SINGULAR = 5,       /**< the linear system is singular, or indefinite beyond repair */
   MPM_OFF_GRID = 6,       /**< a particle would leave through a face that does not let it */
-  MPM_CANCELLED = 7,      /**< by the progress callback */
+  MPM_CANCELLED = 7,      /**< the progress callback ended the call */
   MPM_E_ARG = -1,         /**< an argument is NULL, out of range or inconsistent */
   MPM_E_NOMEM = -2,       /**< the allocator returned NULL */
-  MPM_E_STATE = -3,       /**< not allowed now: objects alive, views out, a step begun */
+  MPM_E_STATE = -3,       /**< not allowed now: objects live, views are out, or a step is begun */
   MPM_E_CALLBACK = -4,    /**< a callback returned < 0, or the host's executor failed */
-  MPM_E_UNSUPPORTED = -5, /**< a combination or an extension that this library does not offer */
-  MPM_E_NOT_FOUND = -6,   /**< no such name, id or index; the error text lists the nearest names */
+  MPM_E_UNSUPPORTED = -5, /**< this version does not offer the combination or the extension */
+  MPM_E_NOT_FOUND = -6,   /**< there is no such name, id or index; the text lists the nearest names */
   MPM_E_IO = -7,          /**< a file could not be opened, read or written */
-  MPM_E_FORMAT = -8,      /**< data damaged, of another kind, or saved from an unlike setup */
-  MPM_E_INTERNAL = -99    /**< a fault of the library itself */
+  MPM_E_FORMAT = -8,      /**< data are damaged, of another kind, or from an unlike setup */
+  MPM_E_INTERNAL = -99    /**< the library itself is at fault */
 };
 
-/** Basis of the grid; h is the cell edge. */
+/** Basis functions of the grid. Here h is the edge of a cell. */
 enum {
-  MPM_LINEAR = 1,   /**< piecewise linear, 2h wide: Steffen et al. 2008, eqs 17-18 */
-  MPM_BSPLINE2 = 2, /**< quadratic B-spline, 3h wide: Steffen et al. 2008, eq. 21; MPoint theory, eqs 24-27 */
-  MPM_BSPLINE3 = 3, /**< cubic B-spline, 4h wide: Steffen et al. 2008, eqs 22-23 */
-  MPM_GIMP = 16,    /**< GIMP, edges "size", at most a cell: Steffen et al. 2008, eqs 26-29 */
-  MPM_UGIMP = 17,   /**< GIMP, one size for all: smoothing * spacing */
-  MPM_CPGIMP = 18   /**< GIMP, edges "size" * |F_ii|, at most a cell; depends on the axes */
+  MPM_LINEAR = 1, /**< piecewise linear functions, 2h wide: Steffen et al. 2008, eqs 17-18 */
+  /** Quadratic B-splines, 3h wide: Steffen et al. 2008, eq. 21; MPoint theory, eqs 24-27. */
+  MPM_BSPLINE2 = 2,
+  MPM_BSPLINE3 = 3, /**< cubic B-splines, 4h wide: Steffen et al. 2008, eqs 22-23 */
+  MPM_GIMP = 16,    /**< GIMP on domains of edges "size", at most a cell: Steffen et al. 2008, eqs 26-29 */
+  MPM_UGIMP = 17,   /**< GIMP on domains that all have edges of smoothing * spacing */
+  MPM_CPGIMP = 18   /**< GIMP on domains of edges "size" * |F_ii|, at most a cell; depends on the axes */
 };
 
-/** B-splines at the faces of the grid: Steffen et al. 2008, section 3.2. */
+/** What B-splines do at the faces of the grid: Steffen et al. 2008, section 3.2. */
 enum {
-  MPM_BOUNDARY_GHOST = 0, /**< the same splines everywhere, with nodes outside the faces */
-  /** Knots repeated at the faces, degree + 1 times: one function alone is 1 there. No nodes outside; nodes
-   * stand at the Greville points, cells + degree of them along an axis. Periodic axes keep plain splines. */
+  MPM_BOUNDARY_GHOST = 0, /**< splines are the same everywhere, with nodes outside the faces */
+  /** Knots are repeated degree + 1 times at the faces, where one function alone is then 1. There are no nodes
+   * outside: the cells + degree nodes of an axis stand at the Greville points. Periodic axes keep plain
+   * splines. */
   MPM_BOUNDARY_OPEN_KNOT = 1
 };
 
 /** Time integration scheme. */
 enum {
-  MPM_USL = 1,  /**< explicit, stress last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10 */
-  MPM_USF = 2,  /**< explicit, stress first, strain from the velocities at the start of the step: Guilkey, An
-                   Introduction to the MPM, eqs 2-10 */
-  MPM_MUSL = 3, /**< as MPM_USL, with velocities projected again before the stress update */
-  MPM_NEWMARK = 16 /**< implicit: Guilkey & Weiss 2003, eqs 11-16, generalised to any beta and gamma */
+  /** Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10. */
+  MPM_USL = 1,
+  /** Explicit, with stresses updated first, by the strain from the velocities at the start of the step:
+   * Guilkey, An Introduction to the MPM, eqs 2-10. */
+  MPM_USF = 2,
+  /** As MPM_USL, but velocities are projected a second time before stresses are updated. */
+  MPM_MUSL = 3,
+  /** Implicit, by Newmark's rule: Guilkey & Weiss 2003, eqs 11-16, generalised to any beta and gamma. */
+  MPM_NEWMARK = 16
 };
 
 /** Transfer of velocity between particles and grid. */
 enum {
-  MPM_FLIP = 1,    /**< FLIP, PIC and their blend by flip: MPoint theory, eqs 34-36 */
-  MPM_APIC = 2,    /**< affine, Jiang et al. 2015; inertia per axis and particle, any basis */
-  MPM_TPIC = 3,    /**< velocity gradient in the projection (MPoint theory, eq. 29), PIC update (eq. 35) */
-  MPM_TFLIP = 4,   /**< velocity gradient in the projection (MPoint theory, eq. 29), FLIP blend (eq. 36) */
-  MPM_AFLIP = 5,   /**< affine projection with the FLIP blend */
-  MPM_XPIC = 6,    /**< XPIC(m), Hammerquist & Nairn 2017; m is xpic_order */
-  MPM_APIC_MLS = 7 /**< affine, moving least squares, Hu et al. 2018: constant inertia, one fused matrix;
-                      quadratic and cubic B-splines with ghosts or periodic axes */
+  MPM_FLIP = 1,  /**< FLIP, PIC, and their blend by the field flip: MPoint theory, eqs 34-36 */
+  MPM_APIC = 2,  /**< affine, with the inertia of each axis and particle, for any basis: Jiang et al. 2015 */
+  MPM_TPIC = 3,  /**< projects the velocity gradient too (MPoint theory, eq. 29); PIC update (eq. 35) */
+  MPM_TFLIP = 4, /**< projects the velocity gradient too (MPoint theory, eq. 29); FLIP blend (eq. 36) */
+  MPM_AFLIP = 5, /**< affine projection with the FLIP blend */
+  MPM_XPIC = 6,  /**< XPIC(m), where m is xpic_order: Hammerquist & Nairn 2017 */
+  /** Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic
+   * B-splines with ghosts or periodic axes: Hu et al. 2018. */
+  MPM_APIC_MLS = 7
 };
 
-/** Instruction set of the kernels. Results of two sets agree to round-off, those of one set bit by bit. */
+/** Instruction set of the kernels. Results of two sets agree to round-off, those of one set to the bit. */
 enum {
-  MPM_ISA_BEST = 0,     /**< the best that processor and library have */
-  MPM_ISA_BASELINE = 1, /**< what the library was compiled for */
-  MPM_ISA_AVX2 = 2,     /**< x86-64 AVX2 with FMA */
-  MPM_ISA_AVX512 = 3    /**< x86-64 AVX-512 (F, DQ, VL) */
+  MPM_ISA_BEST = 0,     /**< the best one that both the processor and the library have */
+  MPM_ISA_BASELINE = 1, /**< the one that the library was compiled for */
+  MPM_ISA_AVX2 = 2,     /**< AVX2 with FMA, on x86-64 */
+  MPM_ISA_AVX512 = 3    /**< AVX-512 (F, DQ, VL), on x86-64 */
 };
 
 /** Level of a log text. */
 enum {
-  MPM_LOG_WARNING = 1, /**< something that the host should look at */
-  MPM_LOG_INFO = 2,    /**< rare events: choices made at creation, growth of storage */
-  MPM_LOG_DEBUG = 3    /**< per step */
+  MPM_LOG_WARNING = 1, /**< the host should look at it */
+  MPM_LOG_INFO = 2,    /**< a rare event: a choice made at creation, or growth of storage */
+  MPM_LOG_DEBUG = 3    /**< a text in every step */
 };
 
 /** Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient. */
 enum {
-  MPM_LOCKING_NONE = 0,        /**< none */
+  MPM_LOCKING_NONE = 0,        /**< there is no remedy */
   MPM_LOCKING_CELL_AVERAGE = 1 /**< the law sees the dilation averaged over the cell, weighted by volume */
 };
 
-/** Form of a law's tangent; the value is the number of components. See mpm_tangent_fn. */
+/** Form of a law's tangent. The value is the number of components. See mpm_tangent_fn. */
 enum {
-  MPM_TANGENT_MINOR_SYMMETRIC = 36, /**< Voigt, 6 x 6 */
-  MPM_TANGENT_GENERAL = 81          /**< 9 x 9 */
+  MPM_TANGENT_MINOR_SYMMETRIC = 36, /**< 6 x 6 components, in Voigt's notation */
+  MPM_TANGENT_GENERAL = 81          /**< 9 x 9 components */
 };
 
 /** Faces of the grid. */
@@ -139,21 +148,21 @@ enum {
 
 /** What a face of the grid does. */
 enum {
-  MPM_WALL_NONE = 0,    /**< default: leaving fails the step with MPM_OFF_GRID */
+  MPM_WALL_NONE = 0,    /**< default: a step in which a particle would leave fails with MPM_OFF_GRID */
   MPM_WALL_OPEN = 1,    /**< a particle that leaves is removed */
-  MPM_WALL_FIXED = 2,   /**< no slip, holds both ways */
-  MPM_WALL_SLIP = 3,    /**< symmetry plane, holds both ways, no tangential force */
-  MPM_WALL_FRICTION = 4 /**< contact: pushes, never pulls; Coulomb friction */
+  MPM_WALL_FIXED = 2,   /**< velocities at the face are zero: it pushes and pulls */
+  MPM_WALL_SLIP = 3,    /**< a symmetry plane: it pushes and pulls, without tangential force */
+  MPM_WALL_FRICTION = 4 /**< contact with Coulomb friction: it pushes, and never pulls */
 };
 
 /** Where in an explicit step a node hook runs. */
 enum {
-  MPM_AFTER_P2G = 1,     /**< mass and velocity projected, forces not yet known */
-  MPM_AFTER_FORCES = 2,  /**< internal and external forces complete */
-  MPM_AFTER_VELOCITY = 3 /**< velocity updated, walls and prescribed velocities applied */
+  MPM_AFTER_P2G = 1,     /**< mass and velocity are projected, forces are not yet known */
+  MPM_AFTER_FORCES = 2,  /**< internal and external forces are complete */
+  MPM_AFTER_VELOCITY = 3 /**< velocity is updated, and walls and prescribed velocities have acted on it */
 };
 
-/** Access to mapped memory; may be combined with |. */
+/** Access to mapped memory. The values may be combined with |. */
 enum {
   MPM_READ = 1, /**< the host reads */
   MPM_WRITE = 2 /**< the host writes */
@@ -168,50 +177,54 @@ enum {
 
 /** Linear solver of an implicit step. */
 enum {
-  MPM_SOLVER_AUTO = 0,         /**< the cheapest by size, stencil, symmetry and inertia */
-  MPM_SOLVER_CG = 1,           /**< conjugate gradients, diagonally scaled; symmetric positive definite */
-  MPM_SOLVER_MULTIGRID_CG = 2, /**< conjugate gradients with geometric multigrid: the same matrices */
-  MPM_SOLVER_LDLT = 3,         /**< direct; symmetric, may be indefinite */
-  MPM_SOLVER_GMRES = 4,        /**< for systems that are not symmetric */
+  MPM_SOLVER_AUTO = 0,         /**< the library chooses by size, stencil, symmetry and inertia */
+  MPM_SOLVER_CG = 1,           /**< conjugate gradients, for symmetric positive definite systems */
+  MPM_SOLVER_MULTIGRID_CG = 2, /**< conjugate gradients with geometric multigrid, for the same systems */
+  MPM_SOLVER_LDLT = 3,         /**< a direct solver, for symmetric systems that may be indefinite */
+  MPM_SOLVER_GMRES = 4,        /**< GMRES, for systems that are not symmetric */
   MPM_SOLVER_HOST = 100        /**< the callback of mpm_stepper_set_linear_solver() */
 };
 
-/** A named number. The name is read during the call only. */
+/** A named number. The library reads the name during the call only. The struct is closed: it has no
+ * struct_size and gets no further fields. */
 typedef struct mpm_param {
-  const char *name; /**< as listed by mpm_material_model_param() */
-  double value;     /**< in the host's units */
+  const char *name; /**< one of the names that mpm_material_model_param() lists */
+  double value;     /**< the value, in the host's units */
 } mpm_param;
 
 /**
- * Memory of the library, lent to the host until mpm_view_release():
- * element (i, c) = ((T *)data)[i * item_stride + c * component_stride].
- * The host sets struct_size before the call that fills the view and
- * changes no field afterwards.
+ * Memory of the library, lent to the host until mpm_view_release(). Component c of item i is
+ * ((T *)data)[i * item_stride + c * component_stride], where T is the type that `type` names. The host sets
+ * struct_size before the call that fills the view, and changes no field afterwards.
  */
 typedef struct mpm_view {
   uint32_t struct_size;     /**< sizeof(mpm_view) of the caller */
   int32_t type;             /**< MPM_F64, MPM_I64 or MPM_U8 */
-  int32_t components;       /**< stored components per item; tensors may be compact, see particles.h */
+  int32_t components;       /**< stored components of an item; tensors may be compact, see particles.h */
   int32_t access;           /**< MPM_READ, MPM_WRITE or both, as asked for */
-  int64_t count;            /**< items, inert slots included */
-  int64_t item_stride;      /**< from item i to i + 1, in elements */
-  int64_t component_stride; /**< from component c to c + 1, in elements */
-  void *data;               /**< element (0, 0) */
-  void *owner;              /**< the library's; NULL once released */
+  int64_t count;            /**< number of items, inert slots included */
+  int64_t item_stride;      /**< distance from item i to item i + 1, in elements */
+  int64_t component_stride; /**< distance from component c to component c + 1, in elements */
+  void *data;               /**< address of component 0 of item 0; NULL once released */
+  void *owner;              /**< for the library's use; NULL once released */
 } mpm_view;
 
-/** Version of the library that runs, 0xMMmmpp; compare with MPM_VERSION. Any thread, any time. */
+/** The version of the library that runs, as 0xMMmmpp, to be compared with MPM_VERSION. May be called from any
+ * thread at any time. */
 MPM_API uint32_t mpm_version(void);
 
-/** Name of a status constant, such as "MPM_E_ARG"; "unknown status" for any other value. Static text,
- * never NULL. Any thread, any time. */
+/** The name of a status constant, such as "MPM_E_ARG", or "unknown status" for any other value. The text is
+ * static, and the pointer is never NULL. May be called from any thread at any time. */
 MPM_API const char *mpm_status_name(mpm_status status);
 
 /**
- * Gives back the memory of a view made by mpm_particles_map() or mpm_grid_map(); afterwards data and owner
- * are NULL. A view with MPM_WRITE takes effect now. MPM_E_ARG if the host wrote values that are not finite or
- * give det F <= 0: the view is released all the same, and the set refuses to step (MPM_E_STATE) until they
- * are repaired. MPM_E_STATE if the view is not, or no longer, lent.
+ * Gives back the memory of a view that mpm_particles_map() or mpm_grid_map() filled. Afterwards its data and
+ * owner are NULL. What the host wrote through a view with MPM_WRITE takes effect now.
+ *
+ * - MPM_E_ARG: view is NULL, or the host wrote values that are not finite or give det F <= 0. In the second
+ *   case the view is released all the same, and the set refuses to step (MPM_E_STATE) until the values are
+ *   repaired; bad nodal values are dropped.
+ * - MPM_E_STATE: the view is not lent, or no longer.
  */
 MPM_API mpm_status mpm_view_release(mpm_view *view);
 

@@ -15,13 +15,14 @@
 #include <type_traits>
 #include <utility>
 
-/** The C++ interface. What it does not say stands at the C declaration that it wraps. */
+/** The C++ interface. What its comments do not say stands at the C declaration that is wrapped. */
 namespace mpm {
 
-/** A call that the library refused or could not do. what() starts with the name of the status. */
+/** The exception for a call that the library refused or could not do. what() starts with the name of the
+ * status. */
 class error : public std::runtime_error {
 public:
-  /** status: the MPM_* value; message: a sentence, as from mpm_last_error(). */
+  /** Takes a status MPM_* and a message, which is a sentence as from mpm_last_error(). */
   error(mpm_status status, const std::string &message)
       : std::runtime_error(message.empty() ? mpm_status_name(status)
                                            : mpm_status_name(status) + (": " + message)),
@@ -37,29 +38,30 @@ private:
 };
 
 /**
- * How a step ended: done, or not done with the state as it was (MPM_CUT_DT ... MPM_CANCELLED). These are
- * events that a time loop deals with, so they are returned; faults (status < 0) are thrown as error.
+ * How a step ended: it was done, or it was not and the state is as it was (MPM_CUT_DT to MPM_CANCELLED).
+ * These are events that a time loop deals with, so they are returned; faults (status < 0) are thrown as
+ * error.
  */
 class [[nodiscard]] outcome {
 public:
-  /** Done. */
+  /** The outcome of a step that was done. */
   outcome() = default;
-  /** status: >= 0; message: why it was not done. */
+  /** Takes a status >= 0 and a message that says why the step was not done. */
   outcome(mpm_status status, std::string message) : status_(status), message_(std::move(message)) {}
 
-  /** True if the step was done. */
+  /** Tells whether the step was done. */
   explicit operator bool() const noexcept {
     return status_ == MPM_OK;
   }
-  /** MPM_OK, or why it was not done. */
+  /** The status: MPM_OK, or why the step was not done. */
   mpm_status status() const noexcept {
     return status_;
   }
-  /** True if a smaller dt may cure it: MPM_CUT_DT ... MPM_SINGULAR. */
+  /** Tells whether a smaller dt may cure it: MPM_CUT_DT to MPM_SINGULAR. */
   bool retryable() const noexcept {
     return status_ >= MPM_CUT_DT && status_ <= MPM_SINGULAR;
   }
-  /** Why it was not done; empty if it was. */
+  /** The sentence that says why the step was not done; empty if it was. */
   const std::string &message() const noexcept {
     return message_;
   }
@@ -73,46 +75,46 @@ private:
   std::string message_;
 };
 
-/** Elements that belong to someone else; made from arrays, vectors and other containers, and, for arguments,
- * from lists in braces. */
+/** A span of elements that belong to someone else. It is made from arrays, vectors and other containers, and
+ * for arguments from lists in braces. */
 template <class T> class span {
   template <class C>
   using fits = std::enable_if_t<
       std::is_convertible_v<std::remove_pointer_t<decltype(std::data(std::declval<C &>()))> (*)[], T (*)[]>>;
 
 public:
-  /** No elements. */
+  /** Makes a span without elements. */
   span() = default;
-  /** size elements from data. */
+  /** Makes a span of size elements from data on. */
   span(T *data, std::size_t size) : data_(data), size_(size) {}
-  /** The elements of an array or a container. */
+  /** Makes a span of the elements of an array or a container. */
   template <class C, class = fits<C>>
   span(C &&container) : span(std::data(container), std::size(container)) {}
-  /** The elements of a list, which live as long as the call that they are an argument of. */
+  /** Makes a span of the elements of a list, which live as long as the call of which they are an argument. */
   template <class U = T, class = std::enable_if_t<std::is_const_v<U>>>
   span(std::initializer_list<std::remove_const_t<U>> list) : span(list.begin(), list.size()) {}
 
-  /** The first element; may be null if there are none. */
+  /** The address of the first element; may be null if there are none. */
   T *data() const noexcept {
     return data_;
   }
-  /** How many elements. */
+  /** The number of elements. */
   std::size_t size() const noexcept {
     return size_;
   }
-  /** True if there are none. */
+  /** Tells whether there are no elements. */
   bool empty() const noexcept {
     return size_ == 0;
   }
-  /** Element i, not checked. */
+  /** Element i. The index is not checked. */
   T &operator[](std::size_t i) const noexcept {
     return data_[i];
   }
-  /** The first element. */
+  /** The iterator to the first element. */
   T *begin() const noexcept {
     return data_;
   }
-  /** Past the last element. */
+  /** The iterator past the last element. */
   T *end() const noexcept {
     return data_ + size_;
   }
@@ -122,10 +124,10 @@ private:
   std::size_t size_ = 0;
 };
 
-/** Parts of the wrapper that hosts do not name. */
+/** The parts of the wrapper that hosts do not name. */
 namespace detail {
 
-/** MPM_F64, MPM_I64 or MPM_U8 for the type of a field's elements. */
+/** Gives MPM_F64, MPM_I64 or MPM_U8 for the type of a field's elements. */
 template <class T> constexpr int32_t type_of() {
   using value = std::remove_cv_t<T>;
   static_assert(std::is_same_v<value, double> || std::is_same_v<value, int64_t> ||
@@ -141,7 +143,8 @@ inline void expect_size(const char *what, std::size_t size, int64_t expected) {
                 what + (" has " + std::to_string(size)) + " values, must have " + std::to_string(expected));
 }
 
-/** A pointer that is not null even if there are no elements: to the library NULL means "not given". */
+/** Gives a pointer that is not null even if there are no elements, because NULL means "not given" to the
+ * library. */
 template <class T> const T *not_null(span<const T> elements) {
   static const T none{};
   return elements.data() ? elements.data() : &none;

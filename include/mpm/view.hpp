@@ -1,6 +1,6 @@
 /**
  * @file view.hpp
- * C++17: memory of the library, lent to the host. See mpm.hpp.
+ * C++17: views of the library's memory, which is lent to the host. See mpm.hpp.
  */
 #ifndef MPM_VIEW_HPP
 #define MPM_VIEW_HPP
@@ -10,8 +10,8 @@
 namespace mpm {
 
 /**
- * Memory of the library, lent until release() or destruction; see mpm_view. view<const double> is for
- * reading, view<double> for reading and writing. It keeps alive what it looks into.
+ * A view of the library's memory, which is lent until release() or destruction: see mpm_view.
+ * view<const double> is for reading, view<double> for reading and writing. It keeps alive what it looks into.
  */
 template <class T> class view {
 public:
@@ -40,15 +40,15 @@ public:
     const auto keep = std::move(keep_);
     context->check(mpm_view_release(&view_));
   }
-  /** Component component of item, not checked. */
+  /** A component of an item. The indices are not checked. */
   T &operator()(int64_t item, int32_t component = 0) const noexcept {
     return static_cast<T *>(view_.data)[item * view_.item_stride + component * view_.component_stride];
   }
-  /** Items, inert slots included. */
+  /** The number of items, inert slots included. */
   int64_t size() const noexcept {
     return view_.count;
   }
-  /** Stored components per item. */
+  /** The number of stored components of an item. */
   int32_t components() const noexcept {
     return view_.components;
   }
@@ -57,7 +57,7 @@ public:
     return view_;
   }
 
-  /** For particles::map() and stepper::map(): maps by map(view), and keeps the core of what is mapped. */
+  /** Maps by map(view) and keeps the core of what is mapped: for particles::map() and stepper::map(). */
   template <class Core, class Map>
   view(std::shared_ptr<Core> core, const std::string &field, Map map) : keep_(core), context_(core->context) {
     const int32_t type = detail::type_of<T>();

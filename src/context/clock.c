@@ -1,4 +1,4 @@
-/* Wall-clock time. */
+/* Wall-clock time for profiles. */
 #define _POSIX_C_SOURCE 200809L
 #include <time.h>
 

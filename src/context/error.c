@@ -7,7 +7,7 @@
 
 mpm_status mpmi_fail(mpm_context *context, mpm_status status, const char *format, ...) {
   if (!context) return status;
-  /* Formatted aside, because the old text may be among the arguments. */
+  /* The text is formatted aside, because the old one may be among the arguments. */
   char text[sizeof context->error];
   va_list arguments;
   va_start(arguments, format);
@@ -39,7 +39,7 @@ static size_t compared_length(const char *name) {
   return n;
 }
 
-/* Levenshtein distance of the first 63 characters, in one row of the table. */
+/* The Levenshtein distance of the first 63 characters, computed in one row of its table. */
 static int32_t edit_distance(const char *a, const char *b) {
   size_t na = compared_length(a), nb = compared_length(b);
   int32_t row[NAME_MAX_COMPARED + 1];

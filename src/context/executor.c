@@ -2,7 +2,7 @@
  *
  * The pool hands out tasks by compare-and-swap on one word, `ticket`: the number of the run in the upper
  * half, the tasks not yet handed out in the lower. A worker that wakes late finds a word that has moved on
- * and takes nothing, so a run ends as soon as its tasks are done: nobody waits for a worker that never came.
+ * and takes nothing. So a run ends as soon as its tasks are done, without a wait for workers that never came.
  */
 #define _POSIX_C_SOURCE 200809L
 #include <pthread.h>
@@ -13,25 +13,25 @@
 #include "context/context.h"
 
 enum {
-  SPIN_NS = 5000, /* longest wait before sleeping; a wake-up costs more than that */
-  CACHE_LINE = 64 /* what the threads hammer on is kept apart from what they read */
+  SPIN_NS = 5000, /* the longest wait before sleeping; a wake-up costs more than that */
+  CACHE_LINE = 64 /* words that threads write often are kept apart from those that they read */
 };
 #define TASKS_AT_ONCE ((int64_t)UINT32_MAX)
 
 struct mpmi_pool {
   _Alignas(CACHE_LINE) _Atomic uint64_t ticket;
-  _Alignas(CACHE_LINE) _Atomic int64_t unfinished; /* tasks of the run that are not done yet */
-  /* The run. Written only while no task can be taken; atomic because late workers may look. */
+  _Alignas(CACHE_LINE) _Atomic int64_t unfinished; /* number of tasks of the run that are not done yet */
+  /* What to run. It is written only while no task can be taken, and atomic because late workers may look. */
   _Alignas(CACHE_LINE) _Atomic(mpm_task_fn) task;
   _Atomic(void *) data;
   _Atomic int64_t first; /* number of the first task */
   _Atomic uint32_t count;
-  _Alignas(CACHE_LINE) _Atomic int32_t sleeping; /* workers that need a signal */
+  _Alignas(CACHE_LINE) _Atomic int32_t sleeping; /* number of workers that need a signal */
   _Atomic int32_t stop;
   pthread_mutex_t mutex;
   pthread_cond_t work, done;
-  int32_t workers; /* threads besides the caller's */
-  size_t bytes;    /* of this allocation */
+  int32_t workers; /* number of threads besides the caller's */
+  size_t bytes;    /* size of this allocation */
   pthread_t thread[];
 };
 
@@ -57,8 +57,8 @@ static int not_finished(mpmi_pool *pool) {
   return atomic_load(&pool->unfinished) != 0;
 }
 
-/* Waits a moment for the condition to end; true if it has not. The clock bounds the wait, because a pause
- * takes ten times longer on some processors than on others. */
+/* Waits a moment for the condition to end, and tells whether it still lasts. The clock bounds the wait,
+ * because a pause takes ten times longer on some processors than on others. */
 static int lasts(mpmi_pool *pool, int (*condition)(mpmi_pool *)) {
   if (!condition(pool)) return 0;
   int64_t end = nanoseconds() + SPIN_NS;
@@ -69,13 +69,13 @@ static int lasts(mpmi_pool *pool, int (*condition)(mpmi_pool *)) {
   return 1;
 }
 
-/* Runs tasks until none is left to take; the one that finishes the last task of a run wakes the caller. */
+/* Runs tasks until none is left to take. The thread that finishes the last task of a run wakes the caller. */
 static void take_part(mpmi_pool *pool) {
   int64_t finished = 0;
   uint64_t ticket = atomic_load(&pool->ticket);
   while ((uint32_t)ticket) {
-    /* Valid when the exchange succeeds: the run cannot end, and these cannot change, with a task not handed
-     * out. */
+    /* These are valid when the exchange succeeds: while a task is not handed out the run cannot end, and they
+     * cannot change. */
     mpm_task_fn task = atomic_load_explicit(&pool->task, memory_order_relaxed);
     void *data = atomic_load_explicit(&pool->data, memory_order_relaxed);
     int64_t first = atomic_load_explicit(&pool->first, memory_order_relaxed);
@@ -86,7 +86,7 @@ static void take_part(mpmi_pool *pool) {
     ticket = atomic_load(&pool->ticket);
   }
   if (finished && atomic_fetch_sub(&pool->unfinished, finished) == finished) {
-    pthread_mutex_lock(&pool->mutex); /* not between the caller's last look and its sleep */
+    pthread_mutex_lock(&pool->mutex); /* so as not to signal between the caller's last look and its sleep */
     pthread_mutex_unlock(&pool->mutex);
     pthread_cond_signal(&pool->done);
   }
@@ -94,7 +94,7 @@ static void take_part(mpmi_pool *pool) {
 
 static void sleep_until_work(mpmi_pool *pool) {
   pthread_mutex_lock(&pool->mutex);
-  atomic_fetch_add(&pool->sleeping, 1); /* before the last look: see the order in run() */
+  atomic_fetch_add(&pool->sleeping, 1); /* comes before the last look: see the order in run() */
   while (nothing_to_take(pool) && !atomic_load(&pool->stop)) pthread_cond_wait(&pool->work, &pool->mutex);
   atomic_fetch_sub(&pool->sleeping, 1);
   pthread_mutex_unlock(&pool->mutex);
@@ -121,7 +121,7 @@ static void run(mpmi_pool *pool, int64_t first, uint32_t count, mpm_task_fn task
   atomic_store(&pool->ticket, number << 32 | count);
   int32_t sleeping = atomic_load(&pool->sleeping);
   if (sleeping) {
-    pthread_mutex_lock(&pool->mutex); /* not between a worker's last look and its sleep */
+    pthread_mutex_lock(&pool->mutex); /* so as not to signal between a worker's last look and its sleep */
     pthread_mutex_unlock(&pool->mutex);
     if (count - 1 < (uint32_t)sleeping)
       for (uint32_t k = 1; k < count; ++k) pthread_cond_signal(&pool->work);

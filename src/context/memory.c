@@ -1,4 +1,5 @@
-/* Memory from the host's allocator, counted. Only the thread that calls the library allocates: no locks. */
+/* Memory from the host's allocator, which is counted. There are no locks, because only the thread that calls
+ * the library allocates. */
 #include <string.h>
 
 #include "context/context.h"

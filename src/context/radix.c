@@ -1,4 +1,5 @@
-/* Stable least-significant-digit radix sort: no comparisons, no memory but the caller's. */
+/* A stable radix sort from the least significant digit on. It compares nothing and uses no memory but the
+ * caller's. */
 #include <string.h>
 
 #include "context/radix.h"

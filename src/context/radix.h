@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-/* Stable ascending order of n keys: order[] receives the permutation (order[i] is the place of the i-th
- * smallest). All arrays have n entries; key and key_scratch are used up. */
+/* Finds the stable ascending order of n keys: order[i] becomes the place of the i-th smallest. All arrays
+ * have n entries; key and key_scratch are used up. */
 void mpmi_radix_sort(int64_t n, uint64_t *key, uint32_t *order, uint64_t *key_scratch,
                      uint32_t *order_scratch);
 

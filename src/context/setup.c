@@ -1,4 +1,4 @@
-/* Contexts: checks the host's wishes, chooses the instruction set and starts the pool. */
+/* Creation of contexts: this checks the host's wishes, chooses the instruction set and starts the pool. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdlib.h>
 #include <string.h>
@@ -46,7 +46,7 @@ static int processor_has(int32_t isa) {
   return 1;
 }
 
-/* The environment steers only those who left the choice to the library. */
+/* The environment steers only hosts that left the choice to the library. */
 static mpm_status wanted_isa(int32_t *isa) {
   const char *text = *isa == MPM_ISA_BEST ? getenv("MPM_ISA") : NULL;
   if (!text || !*text) return MPM_OK;
@@ -107,8 +107,7 @@ static void free_context(mpm_context *context) {
 mpm_status mpm_context_create(const mpm_context_desc *desc, mpm_context **out) {
   if (!out) return MPM_E_ARG;
   *out = NULL;
-  /* The context is the first thing it allocates: a stand-in counts its own bytes and checks their alignment.
-   */
+  /* The context is its own first allocation, so a stand-in counts these bytes and checks their alignment. */
   mpm_context first;
   memset(&first, 0, sizeof first);
   first.magic = MPMI_CONTEXT;

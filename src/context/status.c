@@ -1,4 +1,4 @@
-/* Version and names of statuses. */
+/* The version of the library, and the names of statuses. */
 #include "context/context.h"
 
 uint32_t mpm_version(void) {

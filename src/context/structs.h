@@ -1,7 +1,6 @@
 /* Versioned structs: public structs that begin with struct_size. Later releases append fields, and all-zero
  * bits of an appended field mean what was so before it. So the library meets structs of hosts that are older
- * or newer than itself.
- */
+ * or newer than itself. */
 #ifndef MPMI_STRUCTS_H
 #define MPMI_STRUCTS_H
 

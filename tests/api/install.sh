@@ -15,7 +15,7 @@ version=$("$PKG_CONFIG" --modversion mpm)
 
 # One version everywhere.
 grep -qx "version: $version" CITATION.cff
-[ "$(sed -n 's/^## //p' CHANGELOG.md | head -n 1)" = "$version" ]
+[ "$(sed -n '/(unreleased)$/d; s/^## //p' CHANGELOG.md | head -n 1)" = "$version" ]
 grep -qx "set(PACKAGE_VERSION \"$version\")" "$prefix/lib/cmake/mpm/mpmConfigVersion.cmake"
 
 flags() { "$PKG_CONFIG" "$@" mpm; }
