@@ -59,7 +59,7 @@ typedef struct node_role {
   int64_t master[3];
   double sign[3];
   int32_t face[3]; /* of the wall that takes a component's reaction, or -1 */
-  int32_t dependent;
+  int32_t follows;
 } node_role;
 
 /* The reaction of a component goes to the wall that faces it, else to the first that binds it. */
@@ -73,7 +73,7 @@ static node_role role_of(const mpm_grid *grid, const mpmi_wall *wall, const int6
   for (int32_t k = 0; k < grid->dim; ++k) {
     axis_role axis = role_on_axis(grid, wall, k, index[k]);
     role.master[k] = axis.master;
-    if (axis.master != index[k]) role.dependent = 1;
+    if (axis.master != index[k]) role.follows = 1;
     if (axis.face < 0) continue;
     take(&role, wall, axis.face, grid->dim);
     for (int32_t c = 0; c < grid->dim; ++c)
@@ -141,7 +141,7 @@ static int32_t on_plane(walk *w, const int64_t *index) {
 static void visit_linear(walk *w, int64_t slot, const int64_t *index) {
   const mpm_grid *grid = w->blocks->grid;
   const node_role role = role_of(grid, w->wall, index);
-  if (!role.dependent) {
+  if (!role.follows) {
     if (!on_plane(w, index)) return;
     const int32_t at = tie_at(w, slot);
     if (w->fill) hold_on_planes(w, &w->out->tie[at], index);
@@ -163,7 +163,7 @@ static void visit_linear(walk *w, int64_t slot, const int64_t *index) {
 /* Places the followers of each tie side by side, in the order of their slots. */
 static void place_follower(walk *w, int64_t slot, const int64_t *index) {
   const node_role role = role_of(w->blocks->grid, w->wall, index);
-  if (!role.dependent || w->out->tie_of[slot] < 0) return;
+  if (!role.follows || w->out->tie_of[slot] < 0) return;
   mpmi_tie *tie = &w->out->tie[w->out->tie_of[slot]];
   mpmi_follower *d = &w->out->follower[tie->first + tie->count++];
   d->slot = slot;

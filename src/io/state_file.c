@@ -28,7 +28,7 @@ mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path) {
 }
 
 /* Reads and checks the header before there is a buffer: what is no state may be of any size. */
-static mpm_status measure(mpm_context *context, const char *path, FILE *file, int64_t *bytes) {
+static mpm_status measure_file(mpm_context *context, const char *path, FILE *file, int64_t *bytes) {
   struct stat info;
   if (fstat(fileno(file), &info)) return mpmi_io_error(context, "read", path, errno);
   if (!S_ISREG(info.st_mode))
@@ -61,7 +61,7 @@ mpm_status mpm_state_load_file(mpm_stepper *stepper, const char *path) {
   FILE *file = fopen(path, "rbe");
   if (!file) return mpmi_io_error(stepper->context, "read", path, errno);
   int64_t bytes = 0;
-  status = measure(stepper->context, path, file, &bytes);
+  status = measure_file(stepper->context, path, file, &bytes);
   if (!status) status = load(stepper, path, file, bytes);
   fclose(file);
   return status;

@@ -50,7 +50,7 @@ static void setup_law(mpmi_archive *a, const mpm_material *material) {
   mpmi_archive_same_real(a, "density", material->density);
 }
 
-static void write_fields(mpmi_archive *a, const mpm_particles *set) {
+static void write_field_list(mpmi_archive *a, const mpm_particles *set) {
   int64_t count = set->field_count;
   mpmi_archive_bytes(a, &count, sizeof count);
   for (int32_t f = 0; f < set->field_count; ++f) {
@@ -129,7 +129,7 @@ void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set
     if (set)
       read_fields(a, &set[m]);
     else
-      write_fields(a, s->member[m].set);
+      write_field_list(a, s->member[m].set);
   }
   a->where[0] = '\0';
 }

@@ -40,13 +40,13 @@ static void turn_task(void *data, int64_t k) {
     p[i] = (inverse ? inverse[i] * r[i] : z[i]) + beta * p[i];
 }
 
-static mpm_status run(cg *c, mpm_task_fn task) {
+static mpm_status run_cg(cg *c, mpm_task_fn task) {
   return mpmi_run_chunks(c->system->context, &c->chunks, task, c);
 }
 
 /* x and r advance; z = M^-1 r and r . z follow. */
 static mpm_status advance(cg *c, double *rz) {
-  mpm_status status = run(c, advance_task);
+  mpm_status status = run_cg(c, advance_task);
   if (status) return status;
   *rz = mpmi_sum_in_order(c->rz, c->chunks.count);
   if (!c->precondition) return MPM_OK;
@@ -62,7 +62,7 @@ static mpm_status start(cg *c, double *rz) {
   memset(c->p, 0, (size_t)s->n * sizeof *c->p);
   memset(c->q, 0, (size_t)s->n * sizeof *c->q);
   if (!status) status = advance(c, rz);
-  return status ? status : run(c, turn_task);
+  return status ? status : run_cg(c, turn_task);
 }
 
 /* Iterates until the recursion's residual is as wanted or the limit is reached. */
@@ -82,7 +82,7 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
     c->beta = next / rz;
     rz = next;
     ++s->report->iterations;
-    if (norm > s->wanted && (status = run(c, turn_task))) return status;
+    if (norm > s->wanted && (status = run_cg(c, turn_task))) return status;
   }
   return MPM_OK;
 }

@@ -25,13 +25,10 @@ enum {
 #define UNROLL _Pragma("GCC unroll 8")
 #endif
 
-static int64_t pieces(int64_t count, int64_t size) {
-  return (count + size - 1) / size;
-}
-
 /* Four areas of the scratch: rows of L and of L D, rows of U transposed and of that times D. */
 static double *area(const mpmi_dense_front *f, int32_t which) {
-  return f->scratch + which * ROOM * (pieces(f->pivots, SLIVER) + pieces(f->rows, SLIVER));
+  return f->scratch +
+         which * ROOM * (mpmi_dense_pieces(f->pivots, SLIVER) + mpmi_dense_pieces(f->rows, SLIVER));
 }
 enum { L_ROWS, L_TIMES_D, U_ROWS, U_TIMES_D };
 
@@ -45,7 +42,7 @@ typedef struct span {
 } span;
 
 static span span_of(const mpmi_dense_front *f, int64_t number, int64_t size) {
-  const int64_t next = f->first + f->width, of_pivots = pieces(f->pivots - next, size);
+  const int64_t next = f->first + f->width, of_pivots = mpmi_dense_pieces(f->pivots - next, size);
   const int64_t first = number < of_pivots ? next + number * size : f->pivots + (number - of_pivots) * size;
   const int64_t end = number < of_pivots ? f->pivots : f->pivots + f->rows;
   return (span){first, end - first < size ? end - first : size};
@@ -199,7 +196,7 @@ MPMI_INLINE void update_tile(const double *a, const double *b, int64_t k, double
 static void update_strip(const mpmi_dense_front *f, int64_t strip, const double *rows_of,
                          const double *strips_of, double *panel, int32_t all) {
   const span columns = span_of(f, strip, STRIP);
-  const int64_t of_pivots = pieces(f->pivots - f->first - f->width, STRIP);
+  const int64_t of_pivots = mpmi_dense_pieces(f->pivots - f->first - f->width, STRIP);
   const int32_t inside = strip < of_pivots;
   const int64_t ld = inside ? f->pivots + f->rows : f->rows, base = inside ? 0 : f->pivots;
   const int64_t in_group = inside ? strip : strip - of_pivots, group = inside ? 0 : f->pivot_slivers;
@@ -213,7 +210,7 @@ static void update_strip(const mpmi_dense_front *f, int64_t strip, const double 
 }
 
 static void update_strips(const mpmi_dense_front *f, int64_t begin, int64_t end) {
-  const int64_t of_pivots = pieces(f->pivots - f->first - f->width, STRIP);
+  const int64_t of_pivots = mpmi_dense_pieces(f->pivots - f->first - f->width, STRIP);
   const double *l = area(f, L_ROWS), *ld = area(f, L_TIMES_D);
   if (is_symmetric(f)) {
     for (int64_t s = begin; s < end; ++s) update_strip(f, s, l, ld, f->lower, 0);

@@ -50,5 +50,9 @@ int64_t mpmi_dense_scratch(const mpmi_dense *kernels, int64_t pivots, int64_t ro
 /* The panel from pivot `first` on: sets first, width and the numbers of slivers. */
 void mpmi_dense_panel(const mpmi_dense *kernels, mpmi_dense_front *front, int64_t first);
 int64_t mpmi_dense_strips(const mpmi_dense *kernels, const mpmi_dense_front *front);
+/* How many pieces of a size make up a count; the last piece may be shorter. */
+static inline int64_t mpmi_dense_pieces(int64_t count, int64_t size) {
+  return (count + size - 1) / size;
+}
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "linalg/methods.h"
 
-enum { REFINEMENTS = 3, RESTART = 30, CYCLES = 3 };
+enum { REFINEMENTS = 3, FACTOR_RESTART = 30, FACTOR_CYCLES = 3 };
 
 static mpm_status times_factor(void *system, const double *r, double *z) {
   const mpmi_system *s = system;
@@ -71,7 +71,8 @@ mpm_status mpmi_direct(mpmi_system *s) {
   const int32_t useless = !(s->reached < s->b_norm);
   if (useless)
     for (int64_t i = 0; i < s->n; ++i) s->x[i] = 0.0;
-  const mpmi_gmres_plan plan = {times_factor, s, RESTART, 0, s->report->iterations + RESTART * CYCLES};
+  const mpmi_gmres_plan plan = {times_factor, s, FACTOR_RESTART, 0,
+                                s->report->iterations + FACTOR_RESTART * FACTOR_CYCLES};
   status = mpmi_gmres(s, &plan);
   return status == MPM_NOT_CONVERGED ? without_solution(s, useless) : status;
 }

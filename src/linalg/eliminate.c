@@ -175,7 +175,7 @@ static mpm_status eliminate(const factor_job *job, const mpmi_front *front, doub
   return MPM_OK;
 }
 
-static void eliminate_task(void *data, int64_t k) {
+static void front_task(void *data, int64_t k) {
   const factor_job *job = data;
   mpmi_factor *f = job->f;
   mpmi_front_task *task = &f->task[k];
@@ -190,7 +190,7 @@ static mpm_status eliminate_all(const factor_job *job, int64_t *failed) {
   mpmi_factor *f = job->f;
   *failed = -1;
   const mpmi_chunks tasks = {f->tasks, 1, f->tasks, f->unknowns < MPMI_ALONE_UNKNOWNS};
-  mpm_status status = mpmi_run_chunks(f->context, &tasks, eliminate_task, (void *)job);
+  mpm_status status = mpmi_run_chunks(f->context, &tasks, front_task, (void *)job);
   for (int32_t t = 0; t < f->tasks && !status && *failed < 0; ++t) *failed = f->task[t].failed;
   for (int32_t i = 0; i < f->fronts && !status && *failed < 0; ++i) {
     if (!f->front[i].top) continue;

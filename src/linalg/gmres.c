@@ -15,8 +15,8 @@ typedef struct gmres {
   double *hessenberg;                  /* [restart][restart + 1], by columns; triangular once rotated */
   double *cosine, *sine, *rest, *part; /* rest: right-hand side of the small system; part: sums by chunk */
   double scale;
-  int32_t last;  /* vectors that w is made orthogonal to */
-  int32_t again; /* second round */
+  int32_t last;         /* vectors that w is made orthogonal to */
+  int32_t second_round; /* of the two that make w orthogonal */
   mpmi_chunks chunks;
 } gmres;
 
@@ -30,7 +30,7 @@ static void project_task(void *data, int64_t k) {
   const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
   const double *h = g->hessenberg + (g->last - 1) * (g->plan->restart + 1);
   double *part = g->part + k * (g->plan->restart + 1);
-  if (g->again)
+  if (g->second_round)
     for (int32_t j = 0; j < g->last; ++j) {
       const double *v = vector(g, j);
       for (int64_t i = begin; i < end; ++i) g->w[i] -= h[j] * v[i];
@@ -58,7 +58,7 @@ static void clean_task(void *data, int64_t k) {
 }
 
 /* The next vector: w times a scale. */
-static void scale_task(void *data, int64_t k) {
+static void next_vector_task(void *data, int64_t k) {
   const gmres *g = data;
   double *v = vector(g, g->last);
   for (int64_t i = mpmi_chunk_begin(&g->chunks, k); i < mpmi_chunk_begin(&g->chunks, k + 1); ++i)
@@ -77,7 +77,7 @@ static void combine_task(void *data, int64_t k) {
   }
 }
 
-static mpm_status run(gmres *g, mpm_task_fn task) {
+static mpm_status run_gmres(gmres *g, mpm_task_fn task) {
   return mpmi_run_chunks(g->system->context, &g->chunks, task, g);
 }
 
@@ -95,18 +95,18 @@ static mpm_status extend(gmres *g, int32_t j, double *h) {
   mpm_status status = g->plan->precondition(g->plan->user, vector(g, j), z);
   if (!status) status = mpmi_matrix_apply(s->A, z, g->w);
   g->last = j + 1;
-  g->again = 0;
-  if (!status) status = run(g, project_task);
+  g->second_round = 0;
+  if (!status) status = run_gmres(g, project_task);
   if (status) return status;
   for (int32_t i = 0; i <= j; ++i) h[i] = sum_of(g, i);
-  g->again = 1;
-  if ((status = run(g, project_task))) return status;
+  g->second_round = 1;
+  if ((status = run_gmres(g, project_task))) return status;
   for (int32_t i = 0; i <= j; ++i) correction[i] = sum_of(g, i);
-  if ((status = run(g, clean_task))) return status;
+  if ((status = run_gmres(g, clean_task))) return status;
   for (int32_t i = 0; i <= j; ++i) h[i] += correction[i];
   h[j + 1] = sqrt(sum_of(g, 0));
   g->scale = h[j + 1] > 0.0 ? 1.0 / h[j + 1] : 0.0;
-  return run(g, scale_task);
+  return run_gmres(g, next_vector_task);
 }
 
 /* Rotates the new column so that the matrix is triangular; the norm of the residual that is left. */
@@ -136,17 +136,17 @@ static mpm_status step(gmres *g, int32_t count) {
     y[i] = pivot > 0.0 ? sum / pivot : 0.0; /* 0: the matrix has no such direction */
   }
   g->last = count;
-  return run(g, combine_task);
+  return run_gmres(g, combine_task);
 }
 
 /* From the residual in w, of norm s->reached, until the basis is full or the residual is as wanted. */
-static mpm_status cycle(gmres *g) {
+static mpm_status fill_basis(gmres *g) {
   mpmi_system *s = g->system;
   const int32_t ld = g->plan->restart + 1;
   g->last = 0;
   g->scale = 1.0 / s->reached;
   g->rest[0] = s->reached;
-  mpm_status status = run(g, scale_task);
+  mpm_status status = run_gmres(g, next_vector_task);
   int32_t j = 0;
   for (double left = s->reached; !status && left > s->wanted && j < g->plan->restart; ++j) {
     if (s->report->iterations >= g->plan->limit) break;
@@ -159,7 +159,7 @@ static mpm_status cycle(gmres *g) {
   return status ? status : step(g, j);
 }
 
-static mpm_status reserve(gmres *g) {
+static mpm_status reserve_basis(gmres *g) {
   const int64_t ld = g->plan->restart + 1, n = g->system->n;
   const mpm_status status = mpmi_system_work(g->system, 2 * ld, ld * ld + 4 * ld + ld * MPMI_MOST_CHUNKS);
   if (status) return status;
@@ -184,13 +184,13 @@ static int32_t goes_on(const gmres *g, double before) {
 
 mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {
   gmres g = {.system = s, .plan = plan, .chunks = mpmi_chunks_of(s->n, s->n)};
-  mpm_status status = reserve(&g);
+  mpm_status status = reserve_basis(&g);
   for (double before = (double)INFINITY; !status; before = s->reached) {
     int32_t good;
     if ((status = mpmi_matrix_residual(s->A, s->b, s->x, g.w, &s->reached))) break;
     if ((status = mpmi_system_good(s, s->reached, g.basis, &good)) || good) break;
     if (!isfinite(s->reached) || !goes_on(&g, before)) return MPM_NOT_CONVERGED;
-    status = cycle(&g);
+    status = fill_basis(&g);
   }
   return status;
 }

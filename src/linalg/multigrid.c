@@ -112,7 +112,7 @@ typedef struct cycle_job {
   mpmi_chunks chunks;
 } cycle_job;
 
-static mpm_status run(cycle_job *job, int64_t items, const mpmi_matrix *A, mpm_task_fn task) {
+static mpm_status run_level(cycle_job *job, int64_t items, const mpmi_matrix *A, mpm_task_fn task) {
   job->chunks = mpmi_chunks_of(items, mpmi_matrix_unknowns(A));
   return mpmi_run_chunks(job->g->context, &job->chunks, task, job);
 }
@@ -131,7 +131,7 @@ static mpm_status sweep(cycle_job *job, mpmi_sweep_fn fn, int32_t backwards) {
   for (int32_t i = 0; i < s->colours && !status; ++i) {
     const int32_t c = backwards ? s->colours - 1 - i : i;
     job->first = s->colour_start[c];
-    status = run(job, s->colour_start[c + 1] - job->first, job->fine->A, sweep_task);
+    status = run_level(job, s->colour_start[c + 1] - job->first, job->fine->A, sweep_task);
   }
   return status;
 }
@@ -207,18 +207,18 @@ static mpm_status cycle(cycle_job job, int32_t l) {
   job.fine = &g->level[l];
   job.coarse = &g->level[l + 1];
   job.factored = l + 2 == g->levels;
-  mpm_status status = sweep(&job, kernels->first, 0);
+  mpm_status status = sweep(&job, kernels->from_zero, 0);
   job.first = 0;
   job.sweep = kernels->residual;
-  if (!status) status = run(&job, job.fine->A->rows, job.fine->A, sweep_task);
-  if (!status) status = run(&job, job.coarse->A->rows, job.fine->A, restrict_task);
+  if (!status) status = run_level(&job, job.fine->A->rows, job.fine->A, sweep_task);
+  if (!status) status = run_level(&job, job.coarse->A->rows, job.fine->A, restrict_task);
   if (status) return status;
   if (job.factored)
     mpmi_factor_solve(&g->coarsest, job.coarse->A, g->rhs, g->x);
   else if ((status = cycle(job, l + 1)))
     return status;
-  if ((status = run(&job, job.fine->A->rows, job.fine->A, prolong_task))) return status;
-  return sweep(&job, kernels->again, 1);
+  if ((status = run_level(&job, job.fine->A->rows, job.fine->A, prolong_task))) return status;
+  return sweep(&job, kernels->full, 1);
 }
 
 mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z) {
@@ -232,7 +232,7 @@ mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z) {
   }
   norm *= g->largest_scale;
   cycle_job job = {.g = g, .fine = &g->level[0], .r = r, .z = z, .by = norm > 0.0 ? 1.0 / norm : 0.0};
-  if ((status = run(&job, A->rows, A, load_task)) || (status = cycle(job, 0))) return status;
+  if ((status = run_level(&job, A->rows, A, load_task)) || (status = cycle(job, 0))) return status;
   job.by = norm;
-  return run(&job, A->rows, A, store_task);
+  return run_level(&job, A->rows, A, store_task);
 }

@@ -23,7 +23,7 @@ static int32_t colour_nodes(const mpmi_matrix *A, int32_t *colour, int32_t *take
   return colours;
 }
 
-static mpm_status reserve(mpmi_smoother *s, const mpmi_matrix *A) {
+static mpm_status reserve_lists(mpmi_smoother *s, const mpmi_matrix *A) {
   const int64_t rows = A->rows, entries = A->row_start[rows] - rows, lanes = MPMI_PADDED(A->block);
   const int64_t area = A->block * A->block;
   mpmi_arena from = {NULL, 0};
@@ -55,7 +55,7 @@ void mpmi_smoother_free(mpmi_smoother *s, mpm_context *context) {
 }
 
 /* Places: colour by colour, each in the order of the rows. */
-static void order_nodes(mpmi_smoother *s, const int32_t *colour) {
+static void order_by_colour(mpmi_smoother *s, const int32_t *colour) {
   memset(s->colour_start, 0, (size_t)(s->colours + 1) * sizeof *s->colour_start);
   for (int64_t i = 0; i < s->rows; ++i) ++s->colour_start[colour[i] + 1];
   for (int32_t c = 0; c < s->colours; ++c) s->colour_start[c + 1] += s->colour_start[c];
@@ -94,9 +94,9 @@ mpm_status mpmi_smoother_analyse(mpmi_smoother *s, const mpmi_matrix *A, int32_t
   s->rows = A->rows;
   s->block = A->block;
   s->colours = colour_nodes(A, scratch, scratch + A->rows);
-  mpm_status status = reserve(s, A);
+  mpm_status status = reserve_lists(s, A);
   if (status) return status;
-  order_nodes(s, scratch);
+  order_by_colour(s, scratch);
   s->row_start[0] = 0;
   for (int64_t p = 0; p < s->rows; ++p) {
     const int64_t i = s->order[p];

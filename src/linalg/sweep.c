@@ -61,15 +61,15 @@ MPMI_INLINE void sweep_of(const mpmi_smoother *s, int32_t with, int64_t begin, i
     sweep(s, 1, with, begin, end);
 }
 
-static void first(const mpmi_smoother *s, int64_t begin, int64_t end) {
+static void from_zero(const mpmi_smoother *s, int64_t begin, int64_t end) {
   sweep_of(s, BEFORE, begin, end);
 }
 static void residual(const mpmi_smoother *s, int64_t begin, int64_t end) {
   sweep_of(s, AFTER, begin, end);
 }
-static void again(const mpmi_smoother *s, int64_t begin, int64_t end) {
+static void full(const mpmi_smoother *s, int64_t begin, int64_t end) {
   sweep_of(s, BEFORE | AFTER, begin, end);
 }
 
 extern const mpmi_sweeps KERNEL(sweeps);
-const mpmi_sweeps KERNEL(sweeps) = {first, residual, again};
+const mpmi_sweeps KERNEL(sweeps) = {from_zero, residual, full};

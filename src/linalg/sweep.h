@@ -28,9 +28,9 @@ typedef struct mpmi_smoother {
 /* Rows [begin, end) by place. */
 typedef void (*mpmi_sweep_fn)(const mpmi_smoother *s, int64_t begin, int64_t end);
 typedef struct mpmi_sweeps {
-  mpmi_sweep_fn first;    /* x of rhs, with what comes before; x of what comes later is 0 */
-  mpmi_sweep_fn residual; /* what that leaves: of a row only what comes later */
-  mpmi_sweep_fn again;    /* x of rhs with all others */
+  mpmi_sweep_fn from_zero; /* x of rhs, with what comes before; x of what comes later is 0 */
+  mpmi_sweep_fn residual;  /* what that leaves: of a row only what comes later */
+  mpmi_sweep_fn full;      /* x of rhs with all others */
 } mpmi_sweeps;
 const mpmi_sweeps *mpmi_sweeps_of(int32_t isa);
 

@@ -102,8 +102,8 @@ typedef struct source {
   int64_t item_stride, component_stride;
 } source;
 
-static mpm_status check_values(const mpm_particles *set, int32_t field, const selection *of,
-                               const source *from) {
+static mpm_status check_given(const mpm_particles *set, int32_t field, const selection *of,
+                              const source *from) {
   const double *values = (const double *)(const void *)from->values;
   const uint8_t *flags = (const uint8_t *)from->values;
   if (set->field[field].type != MPM_F64 && field != MPMI_PRESCRIBED) return MPM_OK;
@@ -151,7 +151,7 @@ static mpm_status write_field(mpm_particles *set, int32_t field, const selection
   }
   mpm_status status = mpmi_check_exists(set, field);
   if (!status) status = mpmi_check_writable(set, field);
-  if (!status) status = check_values(set, field, of, from);
+  if (!status) status = check_given(set, field, of, from);
   if (!status) status = mpmi_field_make_present(set, field);
   if (status) return status;
   copy_in(set, field, of, from);
