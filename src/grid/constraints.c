@@ -16,11 +16,11 @@ void mpmi_constraints_free(mpmi_constraints *c) {
   mpmi_constraints_init(c, context);
 }
 
-/* How one axis binds a node. */
+/* An axis_role says how one axis binds a node. */
 typedef struct axis_role {
-  int64_t master;   /* index of the master on this axis */
+  int64_t master;
   int32_t face;     /* wall that binds it, or -1 */
-  int32_t mirrored; /* a ghost: sign -1 of the components that the wall reverses */
+  int32_t mirrored; /* 1: a ghost, with sign -1 in the components that the wall reverses */
 } axis_role;
 
 static int32_t is_linear_wall(const mpmi_wall *wall) {
@@ -43,7 +43,7 @@ static axis_role role_on_axis(const mpm_grid *grid, const mpmi_wall *wall, int32
   return role;
 }
 
-/* Wall on whose plane a node lies, or -1. */
+/* Returns the wall on whose plane a node lies, or -1. */
 static int32_t plane_face(const mpm_grid *grid, const mpmi_wall *wall, int32_t axis, int64_t node) {
   if (grid->desc.periodic[axis]) return -1;
   for (int32_t face = 2 * axis; face < 2 * axis + 2; ++face)
@@ -58,7 +58,7 @@ static int32_t wall_takes(const mpmi_wall *wall, int32_t face, int32_t component
 typedef struct node_role {
   int64_t master[3];
   double sign[3];
-  int32_t face[3]; /* of the wall that takes a component's reaction, or -1 */
+  int32_t face[3]; /* wall that takes the reaction of a component, or -1 */
   int32_t follows;
 } node_role;
 
@@ -82,7 +82,7 @@ static node_role role_of(const mpm_grid *grid, const mpmi_wall *wall, const int6
   return role;
 }
 
-/* 1 when any node of the block can be bound: it reaches a plane, a ghost or a periodic image. */
+/* Returns 1 when any node of the block can be bound: it reaches a plane, a ghost or a periodic image. */
 static int32_t block_is_bound(const mpmi_blocks *b, const mpmi_wall *wall, int64_t block) {
   const mpm_grid *grid = b->grid;
   for (int32_t k = 0; k < grid->dim; ++k) {
@@ -98,7 +98,7 @@ static int32_t block_is_bound(const mpmi_blocks *b, const mpmi_wall *wall, int64
   return 0;
 }
 
-/* One walk over all bound nodes; called to count and then to fill. */
+/* A walk over all bound nodes is made once to count and once to fill. */
 typedef struct walk {
   const mpmi_blocks *blocks;
   const mpmi_wall *wall;
@@ -148,7 +148,7 @@ static void visit_linear(walk *w, int64_t slot, const int64_t *index) {
     return;
   }
   const int64_t master = mpmi_blocks_node(w->blocks, role.master);
-  if (master < 0) return; /* nothing can reach this ghost: its mirror has no storage */
+  if (master < 0) return; /* nothing can reach this ghost, because its mirror has no storage */
   const int32_t at = tie_at(w, master);
   w->out->tie_of[slot] = at;
   ++w->followers;

@@ -1,4 +1,5 @@
-/* The structure of the factor: the rows of every front, where entries of the matrix and updates go. */
+/* This file finds the structure of the factor: the rows of every front, and where the entries of the
+ * matrix and the updates of other fronts go. */
 #include <string.h>
 
 #include "linalg/factor.h"
@@ -23,17 +24,17 @@ void mpmi_factor_free(mpmi_factor *f) {
   mpmi_factor_init(f, context);
 }
 
-/* What is of use during the analysis only. */
+/* An analysis needs these lists only while it runs. */
 typedef struct analysis {
   mpmi_factor *f;
   const mpmi_matrix *A;
   mpmi_dissection dissection;
   int32_t *seen;     /* [nodes] by place: number + 1 of the last front that has it among its rows */
   int32_t *local_of; /* [nodes] by place: its first row in the present front */
-  int32_t waiting;   /* last front without a parent; the others hang on it by `sibling` */
+  int32_t waiting;   /* the last front without a parent; `sibling` chains the others */
 } analysis;
 
-/* Lists of one element per node, out of one piece of memory; the widest elements come first. */
+/* All lists of one element per node share one piece of memory; the widest elements come first. */
 static mpm_status place_lists(analysis *a) {
   mpmi_factor *f = a->f;
   const int64_t n = a->A->rows;
@@ -74,7 +75,7 @@ static void dissect_nodes(analysis *a) {
   f->unknowns = f->start[f->nodes];
 }
 
-/* Room for more elements, keeping the first `used`. */
+/* Makes room for more elements and keeps the first `used`. */
 static mpm_status grow(mpm_context *context, int32_t **at, int64_t *capacity, int64_t used, int64_t wanted) {
   if (wanted <= *capacity) return MPM_OK;
   const int64_t larger = 2 * wanted;
@@ -107,7 +108,7 @@ static void sort(int32_t *list, int64_t count) {
   }
 }
 
-/* A row of the front, if it is one and not known yet. */
+/* Adds a node to the rows of the front, unless the front eliminates it or has it already. */
 static mpm_status note_row(analysis *a, int32_t number, int32_t place) {
   mpmi_factor *f = a->f;
   mpmi_front *front = &f->front[number];
@@ -119,7 +120,8 @@ static mpm_status note_row(analysis *a, int32_t number, int32_t place) {
   return status;
 }
 
-/* The nodes that those of a part couple to, by themselves and by what they enclose. */
+/* Finds the rows of a front: the nodes that its own nodes couple to, and the rows that the enclosed fronts
+ * leave. */
 static mpm_status find_rows(analysis *a, int32_t number, int32_t whole) {
   mpmi_factor *f = a->f;
   mpmi_front *front = &f->front[number];
@@ -142,7 +144,7 @@ static mpm_status find_rows(analysis *a, int32_t number, int32_t whole) {
   return MPM_OK;
 }
 
-/* The unknowns of these nodes, and the row of the front at which those of each node begin. */
+/* Lists the unknowns of these nodes, and notes at which row of the front those of each node begin. */
 static mpm_status list_unknowns(analysis *a, mpmi_front *front) {
   mpmi_factor *f = a->f;
   for (int32_t at = front->begin; at < front->end; ++at)
@@ -158,7 +160,7 @@ static mpm_status list_unknowns(analysis *a, mpmi_front *front) {
   return MPM_OK;
 }
 
-/* Where entries of the matrix and the updates of the enclosed fronts go. */
+/* Notes where the entries of the matrix and the updates of the enclosed fronts go. */
 static void map_into(analysis *a, const mpmi_front *front) {
   mpmi_factor *f = a->f;
   const mpmi_matrix *A = a->A;
@@ -212,7 +214,7 @@ mpm_status mpmi_factor_analyse(mpmi_factor *f, const mpmi_matrix *A) {
   if (!status)
     status = mpmi_reserve(f->context, (void **)&f->local, &f->local_capacity, A->row_start[A->rows],
                           sizeof *f->local);
-  /* a single front leaves these without an entry, but not without a place */
+  /* A single front has no rows, but its empty lists still need an address. */
   if (!status) status = grow(f->context, &f->node_row, &f->node_row_capacity, 0, 1);
   if (!status) status = grow(f->context, &f->row, &f->row_capacity, 0, 1);
   if (!status) status = grow(f->context, &f->map, &f->map_capacity, 0, 1);
@@ -225,7 +227,7 @@ mpm_status mpmi_factor_analyse(mpmi_factor *f, const mpmi_matrix *A) {
     if ((status = add_front(&a, &a.dissection.part[p], node_rows))) return status;
     node_rows += f->front[p].node_rows;
   }
-  for (int32_t last = a.waiting; last >= 0;) { /* fronts that nothing encloses */
+  for (int32_t last = a.waiting; last >= 0;) { /* nothing encloses these fronts */
     const int32_t next = f->front[last].sibling;
     f->front[last].sibling = -1;
     last = next;

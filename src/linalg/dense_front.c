@@ -1,4 +1,4 @@
-/* Which kernels; how a front is cut into panels, slivers and strips. */
+/* This file chooses the kernels for an instruction set, and cuts a front into panels, slivers and strips. */
 #include "linalg/dense.h"
 
 #include <mpm/types.h>

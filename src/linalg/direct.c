@@ -1,4 +1,5 @@
-/* Solution with the factor, and what else it takes: refinement, GMRES with the factor as preconditioner. */
+/* The direct solver makes the factor, refines its solution, and lets GMRES go on with the factor as
+ * preconditioner where that is not enough. */
 #include <math.h>
 
 #include "linalg/methods.h"
@@ -25,7 +26,8 @@ static mpm_status make_factor(const mpmi_system *s) {
   return status;
 }
 
-/* x, then x plus the solution for what is left of the right-hand side, as long as this helps. */
+/* Solves for x, and then for corrections of x from what is left of the right-hand side, as long as this
+ * helps. */
 static mpm_status refine(mpmi_system *s, int32_t *good) {
   mpmi_factor *f = &s->solver->factor;
   mpm_status status = mpmi_system_work(s, 2, 0);
@@ -42,8 +44,9 @@ static mpm_status refine(mpmi_system *s, int32_t *good) {
   }
 }
 
-/* With a solution out of reach, there is none if a pivot is small, though no rounding, if the answer of the
- * factor was worse than none, or if this much of the right-hand side is left: rounding made the pivots. */
+/* Where the tolerance cannot be reached, the matrix counts as singular if its smallest pivot is small
+ * although not rounding of zero, if the answer of the factor was worse than x = 0, or if this share of the
+ * right-hand side is left: then the pivots are made of rounding. */
 static const double SMALL_PIVOT = 1e-9, UNSOLVED = 0.1;
 static mpm_status without_solution(const mpmi_system *s, int32_t useless) {
   int64_t row;

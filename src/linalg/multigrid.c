@@ -19,8 +19,8 @@ const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
   return &mpmi_sweeps_baseline;
 }
 
-/* Unknowns that are better factored than coarsened; where a coarser level has more than this share of the
- * nodes, so many. */
+/* A level of COARSEST unknowns or less is factored and not coarsened. Where the next level would have more
+ * than the share WORTH of the nodes, so is a level of FACTORED unknowns or less. */
 enum { COARSEST = 800, FACTORED = 50 * COARSEST };
 static const double WORTH = 0.7;
 
@@ -69,8 +69,8 @@ static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
   return MPM_OK;
 }
 
-/* A matrix may be of any size, and single precision has little room: a cycle's right-hand side is divided by
- * its norm and by this. */
+/* The values of a matrix may have any size, and single precision has little room. So the right-hand side
+ * of a cycle is divided by its norm and by the largest scale. */
 static void measure_scales(mpmi_multigrid *g) {
   const mpmi_smoother *s = &g->level[0].smoother;
   g->largest_scale = 0.0;
@@ -93,7 +93,7 @@ mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64
   measure_scales(g);
   const mpmi_matrix *last = g->level[g->levels - 1].A;
   int64_t bad = -1;
-  if ((status = mpmi_factor_analyse(&g->coarsest, last))) return status; /* if it is not symmetric any more */
+  if ((status = mpmi_factor_analyse(&g->coarsest, last))) return status; /* the symmetry may have changed */
   if ((status = mpmi_factor_numbers(&g->coarsest, last, &bad)) && g->levels == 1) *row = bad;
   if (status) return status;
   return A->symmetric && g->coarsest.negative ? MPM_SINGULAR : MPM_OK;
@@ -105,7 +105,7 @@ typedef struct cycle_job {
   const mpmi_level *fine;
   const mpmi_level *coarse;
   mpmi_sweep_fn sweep;
-  int64_t first; /* of a colour */
+  int64_t first; /* the first place of a colour */
   const double *r;
   double *z, by;
   int32_t factored; /* the coarse level is the coarsest */
@@ -123,7 +123,7 @@ static void sweep_task(void *data, int64_t k) {
              job->first + mpmi_chunk_begin(&job->chunks, k + 1));
 }
 
-/* Colour after colour, forwards or backwards. */
+/* Sweeps over one colour after the other, forwards or backwards. */
 static mpm_status sweep(cycle_job *job, mpmi_sweep_fn fn, int32_t backwards) {
   const mpmi_smoother *s = &job->fine->smoother;
   job->sweep = fn;
@@ -156,7 +156,7 @@ static void store_task(void *data, int64_t k) {
           job->by * s->scale[p * block + c] * (double)s->x[p * lanes + c];
 }
 
-/* The right-hand side of the coarse level: P^T times what is left on the fine one. */
+/* Makes the right-hand side of the coarse level: P^T times what is left on the fine one. */
 static void restrict_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_coarsening *P = &job->fine->next;
@@ -180,7 +180,7 @@ static void restrict_task(void *data, int64_t k) {
   }
 }
 
-/* Adds P times the coarse solution. */
+/* Adds P times the coarse solution to x. */
 static void prolong_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_coarsening *P = &job->fine->next;

@@ -1,4 +1,4 @@
-/* The linear system lent to the host's solver. */
+/* The host's solver borrows the linear system as an operator. */
 #include "linalg/operator.h"
 
 #include <string.h>
@@ -18,7 +18,7 @@ void mpmi_operator_free(mpm_operator *op) {
   memset(op, 0, sizeof *op);
 }
 
-/* Lists of one element per unknown of the matrix, out of one piece of memory. */
+/* All lists of one element per unknown of the matrix share one piece of memory. */
 static mpm_status divide_slab(mpm_operator *op, int64_t unknowns) {
   const size_t bytes =
       mpmi_bytes(unknowns + 1, 2 * sizeof(int64_t) + 2 * sizeof(int32_t) + 5 * sizeof(double));

@@ -1,4 +1,4 @@
-/* What a level is smoothed with: its nodes by colour, and the scaled copy of its matrix. */
+/* The smoother of a level orders its nodes by colour and keeps a scaled copy of its matrix. */
 #include <math.h>
 #include <string.h>
 
@@ -6,8 +6,8 @@
 #include "linalg/sweep.h"
 #include "linalg/vectors.h"
 
-/* Each node takes the first colour that none of its neighbours has. taken: [rows], for which node a colour
- * is. */
+/* Gives each node the first colour that none of its neighbours has. taken: [rows], by colour the last node
+ * that saw it at a neighbour. */
 static int32_t colour_nodes(const mpmi_matrix *A, int32_t *colour, int32_t *taken) {
   int32_t colours = 0;
   memset(colour, 0xff, (size_t)A->rows * sizeof *colour);
@@ -54,7 +54,7 @@ void mpmi_smoother_free(mpmi_smoother *s, mpm_context *context) {
   memset(s, 0, sizeof *s);
 }
 
-/* Places: colour by colour, each in the order of the rows. */
+/* Orders the places colour by colour, and within a colour in the order of the rows. */
 static void order_by_colour(mpmi_smoother *s, const int32_t *colour) {
   memset(s->colour_start, 0, (size_t)(s->colours + 1) * sizeof *s->colour_start);
   for (int64_t i = 0; i < s->rows; ++i) ++s->colour_start[colour[i] + 1];
@@ -107,7 +107,7 @@ mpm_status mpmi_smoother_analyse(mpmi_smoother *s, const mpmi_matrix *A, int32_t
 }
 
 /* ---- numbers ----------------------------------------------------------------------------------------- */
-/* The diagonal block of a row, scaled, inverted; by columns. */
+/* Scales and inverts the diagonal block of a row, and stores it by columns. */
 static void invert_diagonal(mpmi_smoother *s, const double *value, int64_t p) {
   const int32_t block = s->block;
   float *to = s->inverse + p * block * block;

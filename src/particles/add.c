@@ -1,4 +1,4 @@
-/* Particles from the host's arrays. */
+/* Particles are added from the host's arrays. */
 #include <math.h>
 #include <string.h>
 
@@ -34,7 +34,7 @@ static mpm_status check_arrays(const mpm_particles *set, const arrays *from) {
   return MPM_OK;
 }
 
-/* Refuses ids that the set has already, or that are given twice. order: of the ids, ascending. */
+/* Refuses ids that the set has already, or that are given twice. order: the ids, ascending. */
 static mpm_status check_known(const mpm_particles *set, int64_t n, const int64_t *ids,
                               const uint32_t *order) {
   for (int64_t i = 0; i < n; ++i) {
@@ -56,7 +56,7 @@ static mpm_status check_unique(mpm_particles *set, int64_t n, const int64_t *ids
   if (order) {
     for (int64_t i = 0; i < n; ++i) key[i] = (uint64_t)ids[i];
     mpmi_radix_sort(n, key, order, key + n, order + n);
-    /* An id beyond all that were ever used needs no look into the set. */
+    /* An id beyond all that were ever used cannot be in the set. */
     status = ids[order[0]] < set->next_id ? mpmi_index_build(set) : MPM_OK;
     if (!status) status = check_known(set, n, ids, order);
   }

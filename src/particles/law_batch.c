@@ -14,7 +14,7 @@ size_t mpmi_law_batch_bytes(const mpm_material *material) {
   return mpmi_bytes(rows * mpmi_law_batch_length(material), sizeof(double));
 }
 
-/* What a law need not fill: no viscosity, energy unknown. */
+/* Presets what a law need not fill: no viscosity, energy unknown. */
 static void preset_optional(mpmi_law_batch *b, int64_t n) {
   for (int64_t p = 0; p < n; ++p) {
     b->viscosity[p] = 0.0;
@@ -77,7 +77,8 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
   b->batch.t = t;
   b->batch.dt = dt;
   b->batch.id = mpmi_i64(set, MPMI_ID, 0) + begin;
-  if (!mpmi_material_stress_from_F(material) || dt == 0.0) /* the state as it is may have viscous stress */
+  /* With dt = 0 the law is asked for the state as it is, whose stress may be viscous. */
+  if (!mpmi_material_stress_from_F(material) || dt == 0.0)
     copy_batch_rows(b->stress, b->ld, mpmi_f64(set, MPMI_STRESS, 0) + begin, set->ld,
                     mpmi_stress_components(dim), n);
   if (material->state_count)
@@ -108,7 +109,7 @@ mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {
   const mpm_status status =
       mpmi_material_evaluate(set->material, set->context->isa, set->grid->dim, &b->batch);
   if (status || set->material->law) return status;
-  /* whatever the host made of inert slots must not get into sums */
+  /* Whatever the host made of inert slots must not get into sums. */
   for (int64_t p = 0; p < b->batch.n; ++p) {
     if (b->batch.id[p] >= 0) continue;
     for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = 0.0;

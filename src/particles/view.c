@@ -1,9 +1,9 @@
-/* Views: the library's own memory, lent until it is given back. */
+/* A view lends the library's own memory until it is given back. */
 #include <stddef.h>
 
 #include "particles/values.h"
 
-/* Size of the struct in its first release, which has all that a view needs. */
+/* The struct had this size in its first release, which is all that a view needs. */
 static const uint32_t least_size = offsetof(mpm_view, owner) + sizeof(void *);
 
 void mpmi_view_fill(mpm_view *view, int32_t type, int32_t components, int32_t access, int64_t count,
@@ -42,7 +42,8 @@ static mpm_status check_request(const mpm_particles *set, const char *field, int
   return access & MPM_WRITE || !set->field[*f].present ? mpmi_between_steps(set) : MPM_OK;
 }
 
-/* Writing takes effect: what follows from the field is out of date, and bad values bar the set from steps. */
+/* Lets writing take effect: what follows from the field is out of date, and bad values bar the set from
+ * steps. */
 static mpm_status accept_written(mpm_particles *set, int32_t field) {
   mpmi_restore_holes(set, field);
   mpm_status status = mpmi_check_stored(set, field);
