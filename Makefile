@@ -80,7 +80,8 @@ UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c
 UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
-.PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan mutate
+.PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
+.PHONY: check-hashes update-hashes check-structure measure-structure
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
 .PHONY: docs fuzz-programs fuzz check-fuzz verify verify-quick verify-plots
 .DELETE_ON_ERROR:
@@ -202,7 +203,7 @@ $(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(UNIT_OBJECTS) $(STATIC_LIB) $(CHECK_LIBS) $(LIBS) -o $@
 
-check: check-structure check-unit check-api check-examples verify-quick
+check: check-structure check-unit check-hashes check-api check-examples verify-quick
 
 # Which files of src/ need which others: no circles, and no arrow from a lower folder to a higher one. First the check
 # must notice what is planted in a small tree of its own. measure-structure: figures as well.
@@ -241,6 +242,16 @@ $(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile
 	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 check-instructions update-instructions: $(STEPS)
 	@$(TEST_ENVIRONMENT) bash tests/instructions/run.sh $(@:-instructions=)
+
+# State hashes of small scenes with every method, law and option, against tests/hashes/expected-*.txt.
+HASHES := $(BUILD)/tests/hashes/hashes
+$(HASHES): $(wildcard tests/hashes/*.[ch]) $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) -std=c11 -Iinclude $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) -ffp-contract=off $(filter %.c,$^) $(STATIC_LIB) \
+	  $(LDFLAGS) $(LIBS) -o $@
+check-hashes update-hashes: $(HASHES)
+	@$(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
 
 # The binary interface against abi/libmpm-x86_64.abi.xml, by abidiff; update-abi takes what is there as the new baseline.
 check-abi update-abi: $(SHARED_LIB)
