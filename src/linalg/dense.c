@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "transfer/lanes.h"
+#include "simd/lanes.h"
 
 /* A tile of the update is 2 registers of rows by STRIP columns: as many sums as hide the latency of a
  * multiply-add, and fit into the registers. */

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "linalg/multigrid.h"
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 typedef struct galerkin_job {
   const mpmi_matrix *A;

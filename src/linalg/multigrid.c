@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 extern const mpmi_sweeps mpmi_sweeps_baseline;
 #if MPMI_HAS_X86

@@ -8,6 +8,8 @@
 /* Lengths: short enough for the first-level cache where the law is ours; long where calling the host costs.
  */
 enum { MPMI_BATCH_OWN = 64, MPMI_BATCH_HOST = 256 };
+_Static_assert((int)MPMI_BATCH_OWN % (int)MPMI_CHUNK == 0 && (int)MPMI_BATCH_HOST % (int)MPMI_CHUNK == 0,
+               "batches hold whole chunks");
 
 /* Where a batch lies in its set: what the `lookup` of callbacks points to. */
 typedef struct mpmi_lookup {

@@ -1,8 +1,8 @@
 /* New particle velocity, position, deformation gradient and volume from what was gathered. */
 #include <string.h>
 
-#include "material/tensor.h"
-#include "material/vector_math.h"
+#include "simd/tensor.h"
+#include "simd/vector_math.h"
 #include "transfer/kernel_common.h"
 
 /*   FLIP/PIC blend  v = a (v_p + sum w dv) + (1 - a) sum w v     MPoint theory eq. 36
@@ -19,7 +19,7 @@ MPMI_INLINE uint32_t move(int32_t dim, const mpmi_move *job, int64_t n) {
     const double low = job->low[k], high = job->high[k], centre = job->centre[k], half = job->half[k];
     const double period = job->period[k], inverse = job->inverse_period[k];
     const double *v_bar = job->v_bar + k * job->ld, *dv = job->dv + k * job->ld;
-    for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+    for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
       const mpmi_lanes mean = mpmi_lanes_load(v_bar + s);
       mpmi_lanes v = mean;
       if (job->rule == MPMI_MOVE_BLEND)
@@ -59,7 +59,7 @@ MPMI_INLINE void increment(int32_t dim, const mpmi_deform *job, int64_t n) {
       const double *L = job->L + (3 * r + c) * job->ld;
       double *F_inc = job->F_inc + (3 * r + c) * job->ld;
       const double unit = r == c ? 1.0 : 0.0;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) F_inc[p] = unit + job->dt * L[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) F_inc[p] = unit + job->dt * L[p];
     }
 }
 
@@ -70,7 +70,7 @@ MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
   int32_t place[9];
   place_entries(dim, place);
   if (job->F_inc) increment(dim, job, n);
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
     mpmi_lanes old[3][3];
     for (int32_t r = 0; r < dim; ++r)
       for (int32_t c = 0; c < dim; ++c) old[r][c] = mpmi_lanes_load(job->F_old[place[3 * r + c]] + s);
@@ -105,7 +105,7 @@ MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t 
   mpmi_mask any = {0};
   int32_t place[9];
   place_entries(dim, place);
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
     const mpmi_lanes first = mpmi_lanes_load(job->F_old[0] + s);
     mpmi_mask other = {0};
     for (int32_t e = 1; e < 9; ++e)
@@ -115,7 +115,7 @@ MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t 
     any |= other;
   }
   if (!mpmi_lanes_any(any, 1)) return;
-  for (int64_t p = 0; p < mpmi_groups(n); ++p)
+  for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p)
     if (f[p] < 0.0) f[p] = 1.0 + mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log(-f[p]));
 }
 
@@ -127,7 +127,7 @@ MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
   double *f = job->F;
   stretch_of_volume(dim, job, n, f);
   if (job->F_inc) increment(dim, job, n);
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     const double d = mpmi_det_minus_1(dim, mpmi_load_mat(dim, L, ld, p, 0.0, dt));
     const double grown = dim == 1 ? d : mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log1p(d));
     /* an inverted increment stays one, and what is not finite does not become so */
@@ -137,7 +137,7 @@ MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
   for (int32_t e = 0; e < 9; ++e) {
     if (!has_entry(dim, e / 3, e % 3)) continue;
     double *F = job->F_new[stored++];
-    for (int64_t p = 0; p < mpmi_groups(n); ++p) F[p] = e % 4 ? 0.0 : f[p];
+    for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) F[p] = e % 4 ? 0.0 : f[p];
   }
   for (int32_t k = 1; k < diagonals; ++k) memcpy(job->F + 4 * k * ld, f, (size_t)n * sizeof *f);
 }
@@ -157,7 +157,7 @@ MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *i
                             int64_t n) {
   mpmi_lanes bad = {0.0};
   mpmi_mask inverted = {0};
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
     const mpmi_lanes J = determinant(dim, F, s);
     bad += J - J;
     inverted |= J <= 0.0;

@@ -2,13 +2,9 @@
 #ifndef MPMI_KERNEL_COMMON_H
 #define MPMI_KERNEL_COMMON_H
 
+#include "simd/rounding.h"
+#include "simd/vector.h"
 #include "transfer/kernels.h"
-#include "transfer/vector.h"
-
-/* Slots come in groups of 16; saying so lets the compiler drop remainders. */
-MPMI_INLINE int64_t mpmi_groups(int64_t n) {
-  return n & ~(int64_t)(MPMI_GROUP - 1);
-}
 
 /* Brings the next chunk's share of particle p (0 ... 15) nearer, to the second-level cache: a chunk of a
  * stream is two lines, and asking for all of them at once would fill the queues. */
@@ -21,31 +17,20 @@ MPMI_INLINE void mpmi_prefetch(const mpmi_streams *streams, int64_t next, int64_
 /* h^2 / D of the MLS form: quadratic and cubic B-splines have D = h^2 / 4 and h^2 / 3 everywhere. */
 #define MPMI_MLS_INVERSE(width) ((width) == 3 ? 4.0 : 3.0)
 
-/* Nearest integer for |x| < 2^51 by adding and taking away 1.5 * 2^52: every instruction set can vectorise
- * it. */
-MPMI_INLINE double mpmi_round(double x) {
-  const double big = 6755399441055744.0;
-  return (x + big) - big;
-}
-
-MPMI_INLINE double mpmi_floor(double x) {
-  double r = mpmi_round(x);
-  return r > x ? r - 1.0 : r;
-}
-
 /* n particles' four components, arrays a..d, to one vector per particle, `stride` doubles apart; and back (d
  * is dropped). */
 MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const double *c, const double *d,
                            double *out, int32_t stride) {
-  for (int64_t p = 0; p < mpmi_groups(n); p += MPMI_SIDE)
+  for (int64_t p = 0; p < mpmi_whole_chunks(n); p += MPMI_SIDE)
     mpmi_interleave(a + p, b + p, c + p, d + p, out + p * stride, stride);
 }
 /* Eight components, to eight values for each particle. */
 MPMI_INLINE void mpmi_pack8(int64_t n, const double *const *in, double *out) {
-  for (int64_t p = 0; p < mpmi_groups(n); p += MPMI_SIDE) mpmi_interleave8(in, p, out + 8 * p);
+  for (int64_t p = 0; p < mpmi_whole_chunks(n); p += MPMI_SIDE) mpmi_interleave8(in, p, out + 8 * p);
 }
 MPMI_INLINE void mpmi_unpack(int64_t n, const double *in, double *a, double *b, double *c) {
-  for (int64_t p = 0; p < mpmi_groups(n); p += MPMI_SIDE) mpmi_separate(in + 4 * p, a + p, b + p, c + p);
+  for (int64_t p = 0; p < mpmi_whole_chunks(n); p += MPMI_SIDE)
+    mpmi_separate(in + 4 * p, a + p, b + p, c + p);
 }
 
 #endif

@@ -13,11 +13,9 @@
 
 #include "grid/blocks.h"
 #include "material/material.h"
-#include "transfer/isa.h"
+#include "simd/chunk.h"
 
-/* A chunk is what a kernel has under way between particles and tile; longer ones push the tile out of the
- * first-level cache. */
-enum { MPMI_CHUNK = 16, MPMI_GROUP = 16, MPMI_MAX_WIDTH = 4 };
+enum { MPMI_MAX_WIDTH = 4 };
 #define MPMI_TILE_EDGE(dim, width) (MPMI_BLOCK_EDGE(dim) + 2 * MPMI_RING + (width)-1)
 
 /* One axis of the basis as seen from one block. */

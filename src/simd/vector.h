@@ -3,8 +3,8 @@
 #ifndef MPMI_VECTOR_H
 #define MPMI_VECTOR_H
 
-#include "transfer/isa.h"
-#include "transfer/lanes.h"
+#include "simd/isa.h"
+#include "simd/lanes.h"
 
 #if defined(__AVX__)
 typedef double mpmi_v4 __attribute__((vector_size(32)));
