@@ -105,7 +105,7 @@ static void restore_volumes(mpm_particles *fresh) {
   const double *F[9];
   for (int32_t c = 0; c < mpmi_tensor_components(fresh->grid->dim); ++c)
     F[c] = mpmi_f64(fresh, MPMI_F, 0) + c * fresh->ld;
-  mpmi_kernels_of(fresh->context->isa)
+  mpmi_deformation_of(fresh->context->isa)
       ->volume[fresh->grid->dim](F, mpmi_f64(fresh, MPMI_INITIAL_VOLUME, 0), mpmi_f64(fresh, MPMI_VOLUME, 0),
                                  fresh->slots);
 }

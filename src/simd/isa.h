@@ -10,11 +10,17 @@
 #define MPMI_GLUE(a, b)  MPMI_GLUE2(a, b)
 #define KERNEL(name)     MPMI_GLUE(mpmi_##name, MPMI_ISA)
 
-/* The instruction sets that this build has, for tables of kernels. */
+/* Tables of kernels NAME_baseline, NAME_avx2 ... of the instruction sets that this build has: their
+ * declarations, and the address of the one for an MPM_ISA_.... */
 #if defined(__x86_64__)
-#define MPMI_HAS_X86 1
+#define MPMI_HAS_X86                    1
+#define MPMI_DECLARE_TABLES(type, name) extern const type name##_baseline, name##_avx2, name##_avx512
+#define MPMI_TABLE_OF(isa, name)                                                                             \
+  ((isa) == MPM_ISA_AVX512 ? &name##_avx512 : (isa) == MPM_ISA_AVX2 ? &name##_avx2 : &name##_baseline)
 #else
-#define MPMI_HAS_X86 0
+#define MPMI_HAS_X86                    0
+#define MPMI_DECLARE_TABLES(type, name) extern const type name##_baseline
+#define MPMI_TABLE_OF(isa, name)        ((void)(isa), &name##_baseline)
 #endif
 
 #define MPMI_INLINE static inline __attribute__((always_inline))

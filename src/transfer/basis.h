@@ -10,7 +10,8 @@
 #ifndef MPMI_BASIS_H
 #define MPMI_BASIS_H
 
-#include "transfer/kernel_common.h"
+#include "simd/rounding.h"
+#include "transfer/weights.h"
 
 /* Below this share of h^2 an axis has no usable second moment and carries no affine part. */
 #define MPMI_MOMENT_CUT 1e-8

@@ -7,7 +7,8 @@
  * Summed node by node, row by row, axis by axis. The MLS form takes the moments of C about the middle of the
  * stencil, where distances are small integers, and moves them to the particle at the end; where D can be
  * small the digits lost in moving them would count. Holes have no initial volume and gather zeros. */
-#include "transfer/kernel_common.h"
+#include "simd/pack.h"
+#include "transfer/gather.h"
 
 /* Per particle of a chunk: v; dv when nodes have 8 values; gradients; sums of w v (x_i - x_p),
  * or of w v (i - middle) in the MLS form. */

@@ -6,8 +6,9 @@
  * Both are first-order forms  w a + sum_k column_k (w with axis k replaced by its second weight),  summed
  * hierarchically: axis by axis, row by row, node by node. Affine momentum alone is simpler: what a node
  * receives is w_ip times a linear function of its place. The MLS form puts the force into that function. */
+#include "simd/pack.h"
 #include "simd/tensor.h"
-#include "transfer/kernel_common.h"
+#include "transfer/scatter.h"
 
 /* The tile is apart from the weights, which may then stay in registers from row to row; with 16 registers the
  * forces need them for other things. */

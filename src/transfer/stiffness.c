@@ -7,7 +7,7 @@
  * The push-forward goes into what the gradients are multiplied by, so that the loops over nodes see G alone.
  */
 #include "simd/tensor.h"
-#include "transfer/kernel_common.h"
+#include "transfer/stiffness.h"
 
 /* F_inc^-1 of particle p, component 3 * k + i. */
 MPMI_INLINE void invert(int32_t dim, const double *F, int64_t ld, int64_t p, double *out) {

@@ -1,5 +1,7 @@
 /* Energies, momenta and the stable rate of a batch, and a look at what the law returned. */
-#include "transfer/kernel_common.h"
+#include "simd/chunk.h"
+#include "simd/rounding.h"
+#include "transfer/sums.h"
 
 typedef struct mpmi_tally {
   mpmi_lanes kinetic, strain, work, rate, viscosity, bad, momentum[3], angular[3];
