@@ -81,6 +81,7 @@ UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
 .PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
+.PHONY: check-hashes update-hashes
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
 .PHONY: docs fuzz-programs fuzz check-fuzz verify verify-quick verify-plots
 .DELETE_ON_ERROR:
@@ -202,7 +203,7 @@ $(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(UNIT_OBJECTS) $(STATIC_LIB) $(CHECK_LIBS) $(LIBS) -o $@
 
-check: check-unit check-api check-examples verify-quick
+check: check-unit check-hashes check-api check-examples verify-quick
 
 # Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together.
 SUITES ?= $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)
@@ -231,6 +232,16 @@ $(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile
 	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 check-instructions update-instructions: $(STEPS)
 	@$(TEST_ENVIRONMENT) bash tests/instructions/run.sh $(@:-instructions=)
+
+# State hashes of small scenes with every method, law and option, against tests/hashes/expected-*.txt.
+HASHES := $(BUILD)/tests/hashes/hashes
+$(HASHES): $(wildcard tests/hashes/*.[ch]) $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) -std=c11 -Iinclude $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) -ffp-contract=off $(filter %.c,$^) $(STATIC_LIB) \
+	  $(LDFLAGS) $(LIBS) -o $@
+check-hashes update-hashes: $(HASHES)
+	@$(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
 
 # The binary interface against abi/libmpm-x86_64.abi.xml, by abidiff; update-abi takes what is there as the new baseline.
 check-abi update-abi: $(SHARED_LIB)

@@ -1,0 +1,231 @@
+/* Setting up a scene: a body of at least four blocks (1-D: two) that soon meets the upper walls. */
+#include "scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const double spacing[3] = {0.1, 0.11, 0.09}, origin[3] = {-0.3, 0.2, 0.1};
+static const double speed = 10.0, explicit_dt = 1.6e-3, implicit_dt = 4e-3; /* 0.16 and 0.4 cells */
+
+void must_be_ok(const world *w, mpm_status status, const char *call) {
+  if (!status) return;
+  fprintf(stderr, "%s: %s: %s: %s\n", w->is->name, call, mpm_status_name(status), mpm_last_error(w->context));
+  exit(1);
+}
+
+/* The body: first cell, cells, and the cells of the grid on each axis. It stands across the edge of blocks,
+ * and where an axis is periodic, across the seam. */
+static void extent(const scene *is, int64_t *first, int64_t *count, int64_t *cells) {
+  static const int64_t body[3][3][3] = {
+      {{58, 20, 80}}, {{12, 7, 24}, {13, 7, 20}}, {{4, 3, 10}, {5, 3, 8}, {5, 3, 8}}};
+  static const int64_t large[3] = {40, 19, 6}, seam[3][2] = {{120, 132}, {30, 36}, {11, 13}};
+  for (int32_t k = 0; k < is->dim; ++k) {
+    const int64_t *b = body[is->dim - 1][k];
+    /* implicit steps in 3-D are dear: a smaller body */
+    count[k] = is->large ? large[is->dim - 1]
+                         : b[1] - (is->dim == 3 && is->scheme == MPM_NEWMARK && !is->quasi_static);
+    cells[k] = b[2];
+    first[k] = b[0] + b[1] - count[k];
+    if (k == 0 && is->quasi_static) first[k] = cells[k] - count[k];
+    if (first[k] < 0) first[k] = 0;
+    if (k == 0 && is->wall[MPM_X_MAX] == MPM_WALL_OPEN) cells[k] = first[k] + count[k] + 1;
+    if (!is->periodic[k]) continue;
+    first[k] = seam[is->dim - 1][0];
+    cells[k] = seam[is->dim - 1][1];
+  }
+}
+
+static mpm_grid_desc describe_grid(const scene *is) {
+  int64_t first[3], count[3];
+  mpm_grid_desc d;
+  mpm_grid_desc_init(&d, sizeof d);
+  d.dim = is->dim;
+  d.basis = is->basis;
+  d.boundary_basis = is->boundary;
+  d.smoothing = is->smoothing;
+  extent(is, first, count, d.cells);
+  for (int32_t k = 0; k < is->dim; ++k) {
+    d.origin[k] = origin[k];
+    d.spacing[k] = spacing[k];
+    d.periodic[k] = is->periodic[k];
+  }
+  return d;
+}
+
+mpm_stepper_desc describe_stepper(const scene *is) {
+  mpm_stepper_desc d;
+  mpm_stepper_desc_init(&d, sizeof d);
+  d.scheme = is->scheme;
+  d.quasi_static = is->quasi_static;
+  d.transfer = is->transfer;
+  d.xpic_order = is->xpic_order;
+  d.flip = is->flip;
+  d.pic_damping = is->pic_damping;
+  d.position_order = is->position_order;
+  d.staggered = is->staggered;
+  d.locking_remedy = is->remedy;
+  d.reference_positions = is->reference;
+  d.boundary_zero_acceleration = is->zero_acceleration;
+  d.linear_solver = is->solver;
+  const double weight = is->quasi_static ? 0.2 : 1.0;
+  d.gravity[0] = 20.0 * weight;
+  d.gravity[1] = -30.0 * weight;
+  d.gravity[2] = 10.0 * weight;
+  return d;
+}
+
+int32_t is_offered(const scene *is) {
+  world w = {.is = is};
+  const mpm_grid_desc g = describe_grid(is);
+  const mpm_stepper_desc s = describe_stepper(is);
+  must(&w, mpm_context_create(NULL, &w.context));
+  mpm_status status = mpm_grid_create(w.context, &g, &w.grid);
+  if (!status) status = mpm_stepper_create(w.context, w.grid, &s, &w.stepper);
+  if (status != MPM_E_UNSUPPORTED) must(&w, status);
+  close_world(&w);
+  return !status;
+}
+
+static void make_material(world *w, int32_t m) {
+  static const mpm_param solid[] = {
+      {"E", 3e5}, {"nu", 0.3}, {"density", 1e3}, {"yield_stress", 8e3}, {"hardening", 5e4}};
+  static const mpm_param decoupled[] = {{"mu", 1.2e5}, {"kappa", 2.4e5}, {"density", 1e3}};
+  static const mpm_param fluid[] = {
+      {"density", 1e3}, {"bulk_modulus", 3e5}, {"gamma", 7.0}, {"tension", 1.0}, {"viscosity", 60.0}};
+  mpm_material **out = &w->material[m];
+  switch (w->is->law[m]) {
+  case LAW_NEO_HOOKEAN:
+    must(w, mpm_material_create(w->context, "neo_hookean", solid, 3, out));
+    break;
+  case LAW_LINEAR_ELASTIC:
+    must(w, mpm_material_create(w->context, "linear_elastic", solid, 3, out));
+    break;
+  case LAW_J2:
+    must(w, mpm_material_create(w->context, "j2", solid, 5, out));
+    break;
+  case LAW_DECOUPLED:
+    must(w, mpm_material_create(w->context, "neo_hookean_decoupled", decoupled, 3, out));
+    break;
+  case LAW_FLUID:
+  case LAW_VISCOUS_FLUID:
+    must(w,
+         mpm_material_create(w->context, "newtonian_fluid", fluid, w->is->law[m] == LAW_FLUID ? 3 : 5, out));
+    break;
+  case LAW_RIGID:
+    must(w, mpm_material_create(w->context, "rigid", fluid, 1, out));
+    break;
+  default:
+    must(w, make_host_law(w->context, w->is->law[m], out));
+  }
+}
+
+/* Two particles on each axis in a cell, off their lattice; the body moves, turns, and all of it differs. */
+static void place(const scene *is, const int64_t *at, const int64_t *first, int64_t id, double *x,
+                  double *v) {
+  double middle[3] = {0.0, 0.0, 0.0};
+  for (int32_t k = 0; k < is->dim; ++k) {
+    const uint64_t seed = (uint64_t)(6 * id + 2 * k);
+    const double cell =
+        (double)first[k] + 0.5 * (double)at[k] + (is->quasi_static ? 0.13 : 0.25 + 0.1 * noise(seed));
+    x[k] = origin[k] + spacing[k] * cell;
+    middle[k] = 0.1 * (double)at[k] - 0.3;
+  }
+  const double turn[3] = {0.1 * middle[2] - 0.2 * middle[1], 0.2 * middle[0], -0.1 * middle[0]};
+  static const double along[3] = {1.0, 0.2, 0.1};
+  const double share = is->quasi_static ? 0.0 : speed;
+  for (int32_t k = 0; k < is->dim; ++k)
+    v[k] = share * (along[k] + turn[k] + 0.01 * noise((uint64_t)(6 * id + 2 * k + 1)));
+}
+
+static void add_particles(world *w, int32_t m) {
+  const scene *is = w->is;
+  int64_t first[3], cells[3], count[3] = {1, 1, 1}, all = 1, n = 0;
+  double volume = 1.0;
+  extent(is, first, count, cells);
+  for (int32_t k = 0; k < is->dim; ++k) {
+    volume *= 0.5 * spacing[k];
+    count[k] *= 2;
+    all *= count[k];
+  }
+  double *memory = calloc((size_t)(16 * all), sizeof *memory);
+  int64_t *ids = calloc((size_t)all, sizeof *ids);
+  if (!memory || !ids) exit(1);
+  double *at = memory, *speeds = memory + 3 * all, *x = memory + 6 * all, *v = memory + 9 * all;
+  double *size = memory + 12 * all, *volumes = memory + 15 * all;
+  for (int64_t i = 0; i < all; ++i) {
+    const int64_t cell[3] = {i % count[0], i / count[0] % count[1], i / count[0] / count[1]};
+    if (is->law[1] && (i % 3 == 1) != m) continue; /* both sets everywhere */
+    ids[n] = 2 * i + 1;
+    place(is, cell, first, ids[n], &at[3 * n], &speeds[3 * n]);
+    ++n;
+  }
+  for (int64_t i = 0; i < n; ++i) {
+    volumes[i] = volume * (1.0 + 0.05 * noise((uint64_t)(7000 + ids[i])));
+    for (int32_t k = 0; k < is->dim; ++k) {
+      x[k * n + i] = at[3 * i + k];
+      v[k * n + i] = speeds[3 * i + k];
+      size[k * n + i] = 0.5 * spacing[k];
+    }
+  }
+  const int32_t sized = is->basis >= MPM_GIMP && !(is->with & WITH_SPARE_SIZE);
+  must(w, mpm_particles_add(w->set[m], n, x, v, volumes, sized ? size : NULL, ids, NULL));
+  free(memory);
+  free(ids);
+}
+
+static void set_fields(world *w, int32_t m) {
+  const int32_t with = w->is->with, dim = w->is->dim, last = w->is->law[1] ? 1 : 0;
+  const int64_t n = mpm_particles_count(w->set[m]);
+  static const double zeros[9];
+  double *value = calloc((size_t)(3 * n + 1), sizeof *value);
+  uint8_t *flags = calloc((size_t)(3 * n + 1), 1);
+  if (!value || !flags) exit(1);
+  for (int64_t i = 0; i < 3 * n; ++i) value[i] = 40.0 * noise((uint64_t)(900 + i));
+  must(w, mpm_particles_set(w->set[m], "heat", MPM_F64, 1, n, NULL, value));
+  if (with & WITH_APPLIED_FORCE)
+    must(w, mpm_particles_set(w->set[m], "applied_force", MPM_F64, dim, n, NULL, value));
+  if (with & WITH_KEPT) {
+    must(w, mpm_particles_set_all(w->set[m], "acceleration", MPM_F64, dim, zeros));
+    must(w, mpm_particles_set_all(w->set[m], "velocity_gradient", MPM_F64, 9, zeros));
+  }
+  for (int64_t i = 0; i < n * dim; ++i) /* one particle in eight, on one axis or all */
+    flags[i] = i % n % 8 == 3 && (i % n % 16 == 3 || i / n == i % n % dim);
+  if (with & WITH_PRESCRIBED && m == last)
+    must(w, mpm_particles_set(w->set[m], "prescribed", MPM_U8, dim, n, NULL, flags));
+  free(value);
+  free(flags);
+}
+
+void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
+  const mpm_grid_desc g = describe_grid(is);
+  const mpm_stepper_desc s = describe_stepper(is);
+  mpm_context_desc c;
+  mpm_context_desc_init(&c, sizeof c);
+  c.isa = isa;
+  c.concurrency = is->concurrency;
+  *w = (world){.is = is, .dt = is->scheme == MPM_NEWMARK ? implicit_dt : explicit_dt};
+  must(w, mpm_context_create(&c, &w->context));
+  must(w, mpm_grid_create(w->context, &g, &w->grid));
+  must(w, mpm_stepper_create(w->context, w->grid, &s, &w->stepper));
+  for (int32_t m = 0; m < 2 && is->law[m]; ++m) {
+    make_material(w, m);
+    must(w, mpm_particles_create(w->context, w->grid, w->material[m], &w->set[m]));
+    must(w, mpm_particles_add_field(w->set[m], "heat", MPM_F64, 1));
+    if (!empty) add_particles(w, m);
+    if (!empty) set_fields(w, m);
+    must(w, mpm_stepper_add(w->stepper, w->set[m]));
+  }
+  for (int32_t face = 0; face < 2 * is->dim; ++face)
+    if (!is->periodic[face / 2])
+      must(w, mpm_stepper_set_wall(w->stepper, face, is->wall[face],
+                                   is->wall[face] == MPM_WALL_FRICTION ? 0.3 : 0.0));
+  set_callbacks(w);
+}
+
+void close_world(world *w) {
+  must(w, mpm_stepper_destroy(w->stepper));
+  for (int32_t m = 0; m < 2; ++m) must(w, mpm_particles_destroy(w->set[m]));
+  for (int32_t m = 0; m < 2; ++m) must(w, mpm_material_destroy(w->material[m]));
+  must(w, mpm_grid_destroy(w->grid));
+  mpm_context_destroy(w->context);
+}

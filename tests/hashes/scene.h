@@ -1,0 +1,101 @@
+/* A scene: a small body under a method and options of the library, how it is stepped, and the hash of what
+ * came of it. Everything goes through the public interface. */
+#ifndef HASHES_SCENE_H
+#define HASHES_SCENE_H
+
+#include <mpm/mpm.h>
+
+/* Laws of a set; the last two are the host's. */
+enum {
+  LAW_NONE,
+  LAW_NEO_HOOKEAN,
+  LAW_LINEAR_ELASTIC,
+  LAW_J2,
+  LAW_DECOUPLED,
+  LAW_FLUID,
+  LAW_VISCOUS_FLUID,
+  LAW_RIGID,
+  LAW_HOST,         /* with a state variable and its energy; the library differences its tangent */
+  LAW_HOST_TANGENT, /* with a tangent and without an energy */
+  LAWS
+};
+
+/* What the host adds, as bits. */
+enum {
+  WITH_FORCE = 1,
+  WITH_ACCELERATION = 2,
+  WITH_APPLIED_FORCE = 4,
+  WITH_VELOCITY = 8,
+  WITH_PRESCRIBED = 16,  /* some particles of the last set */
+  WITH_MOTION = 32,      /* of the prescribed ones */
+  WITH_HOOK = 64,        /* AFTER_P2G; the next two bits are the other stages */
+  WITH_KEPT = 512,       /* acceleration and velocity gradient are kept */
+  WITH_SPARE_SIZE = 1024 /* GIMP: sizes as the library finds them */
+};
+
+/* How it is stepped. */
+enum {
+  STORY_PLAIN,
+  STORY_STAGED_VELOCITY, /* in parts, with nodal velocities written */
+  STORY_STAGED_FORCE,
+  STORY_SAVED,   /* half-way saved, and loaded into a simulation set up alike */
+  STORY_ADVANCE, /* by mpm_advance() */
+  STORY_FAILING, /* half-way a step is far too large, and repeated */
+  STORY_CHANGED  /* half-way particles come and go, and another method takes over */
+};
+
+typedef struct scene {
+  char name[96];
+  int32_t dim, basis, boundary, scheme, quasi_static, transfer, xpic_order;
+  double smoothing, flip, pic_damping;
+  int32_t law[2]; /* of the sets; LAW_NONE for no second one */
+  int32_t position_order, staggered, remedy, reference, zero_acceleration;
+  int32_t wall[6];
+  int32_t periodic[3];
+  int32_t large; /* enough rows for several levels of multigrid */
+  int32_t with, solver, story, steps, concurrency;
+} scene;
+
+typedef struct world {
+  const scene *is;
+  mpm_context *context;
+  mpm_grid *grid;
+  mpm_material *material[2];
+  mpm_particles *set[2];
+  mpm_stepper *stepper;
+  mpm_step_info info;
+  double dt; /* of a middling step */
+  uint64_t hash;
+} world;
+
+/* Ends the program with the library's sentence unless the call succeeds. */
+#define must(w_, call) must_be_ok((w_), (call), #call)
+void must_be_ok(const world *w, mpm_status status, const char *call);
+
+/* Whether the library offers the grid and the method of the scene. */
+int32_t is_offered(const scene *is);
+/* empty: without particles. */
+void open_world(world *w, const scene *is, int32_t isa, int32_t empty);
+void close_world(world *w);
+mpm_stepper_desc describe_stepper(const scene *is);
+/* Tells the story of a scene; its hash. */
+uint64_t run_scene(const scene *is, int32_t isa);
+
+/* The same everywhere: uniform in [-1, 1]. */
+double noise(uint64_t seed);
+
+/* host.c: what the host adds, by the bits of the scene, and its laws. */
+void set_callbacks(world *w);
+mpm_status make_host_law(mpm_context *context, int32_t law, mpm_material **out);
+
+/* digest.c */
+void mix(uint64_t *hash, uint64_t word);
+void mix_double(uint64_t *hash, double value);
+void mix_info(uint64_t *hash, const mpm_step_info *info);
+/* State, reactions, nodal fields of the last step, history of the residual. */
+void mix_world(world *w);
+
+/* list.c: all scenes, in an order that stays. To be freed. */
+scene *list_scenes(int32_t *count);
+
+#endif

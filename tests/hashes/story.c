@@ -1,0 +1,141 @@
+/* How a scene is stepped, with dt that changes. A step that a smaller dt may cure is repeated with half of
+ * it, and its report counts. What a story is told for has to come to pass, or the program ends. */
+#include "scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static void expect(const world *w, int32_t holds, const char *what) {
+  if (holds) return;
+  fprintf(stderr, "%s: %s\n", w->is->name, what);
+  exit(1);
+}
+
+static double dt_of(const world *w, int32_t step) {
+  static const double share[] = {1.0, 0.75, 1.125, 0.875, 1.25};
+  return share[step % 5] * w->dt;
+}
+
+static void whole_step(world *w, double dt) {
+  mpm_status status = MPM_CUT_DT;
+  for (int32_t trial = 0; trial < 8 && status >= MPM_CUT_DT && status <= MPM_SINGULAR; ++trial, dt *= 0.5) {
+    status = mpm_step(w->stepper, dt, &w->info);
+    mix_info(&w->hash, &w->info);
+  }
+  must(w, status);
+}
+
+static void write_nodes(world *w, const char *field) {
+  const int32_t dim = w->is->dim;
+  mpm_view mass = {.struct_size = sizeof mass}, out = mass;
+  must(w, mpm_grid_map(w->stepper, 0, "mass", MPM_READ, &mass));
+  must(w, mpm_grid_map(w->stepper, 0, field, MPM_READ | MPM_WRITE, &out));
+  for (int64_t i = 0; i < out.count; ++i) {
+    const double m = ((const double *)mass.data)[i * mass.item_stride];
+    double *value = (double *)out.data + i * out.item_stride;
+    value[0] *= 0.995;
+    value[(dim - 1) * out.component_stride] += (w->is->story == STORY_STAGED_FORCE ? 50.0 * m : 0.05);
+  }
+  must(w, mpm_view_release(&out));
+  must(w, mpm_view_release(&mass));
+}
+
+/* "velocity" is written before the nodal update in even steps and after it in odd ones. */
+static void step_in_parts(world *w, int32_t step) {
+  const int32_t late = w->is->story == STORY_STAGED_VELOCITY && step % 2;
+  const char *field = w->is->story == STORY_STAGED_FORCE ? "force" : "velocity";
+  must(w, mpm_step_begin(w->stepper, dt_of(w, step)));
+  if (!late) write_nodes(w, field);
+  must(w, mpm_step_grid(w->stepper));
+  if (late) write_nodes(w, field);
+  must(w, mpm_step_end(w->stepper, &w->info));
+  mix_info(&w->hash, &w->info);
+}
+
+static void save_and_load(world *w, int32_t isa) {
+  world other;
+  int64_t bytes = 0;
+  must(w, mpm_state_size(w->stepper, &bytes));
+  void *buffer = malloc((size_t)bytes);
+  expect(w, buffer != NULL, "no memory");
+  must(w, mpm_state_save(w->stepper, buffer, bytes));
+  open_world(&other, w->is, isa, 1);
+  must(&other, mpm_state_load(other.stepper, buffer, bytes));
+  free(buffer);
+  other.hash = w->hash;
+  other.info = w->info;
+  close_world(w);
+  *w = other;
+}
+
+static void fail(world *w) {
+  const mpm_status status = mpm_step(w->stepper, 400.0 * w->dt, &w->info);
+  expect(w, status > 0, "the step that is far too large did not fail");
+  mix(&w->hash, (uint64_t)status);
+  mix_info(&w->hash, &w->info);
+}
+
+/* Some particles go, one comes, and the steps go on by another method. */
+static void change(world *w) {
+  const int64_t n = mpm_particles_count(w->set[0]), born = 5000;
+  int64_t *ids = malloc((size_t)n * sizeof *ids), some = 0;
+  double x[3] = {0.0, 0.0, 0.0}, v[3] = {1.0, 2.0, 3.0};
+  const double volume = 1e-4;
+  expect(w, ids != NULL, "no memory");
+  must(w, mpm_particles_get(w->set[0], "id", MPM_I64, 1, n, NULL, ids));
+  must(w, mpm_particles_get(w->set[0], "position", MPM_F64, w->is->dim, 1, &ids[n / 2], x));
+  for (int64_t i = 0; i < n; ++i)
+    if (i % 11 == 4) ids[some++] = ids[i];
+  must(w, mpm_particles_remove(w->set[0], some, ids));
+  free(ids);
+  must(w, mpm_particles_add(w->set[0], 1, x, v, &volume, NULL, &born, NULL));
+  mpm_stepper_desc d = describe_stepper(w->is);
+  d.scheme = w->is->scheme == MPM_MUSL ? MPM_USL : MPM_MUSL;
+  d.transfer = w->is->transfer == MPM_APIC ? MPM_FLIP : MPM_APIC;
+  d.quasi_static = d.staggered = 0;
+  must(w, mpm_stepper_configure(w->stepper, &d));
+  if (w->is->scheme == MPM_NEWMARK) w->dt /= 4.0;
+}
+
+static void advance(world *w) {
+  mpm_advance_desc d;
+  mpm_advance_desc_init(&d, sizeof d);
+  for (int32_t i = 1; i <= 3; ++i) {
+    d.t_end = i * w->is->steps / 3.0 * w->dt;
+    d.cfl = 0.25 + 0.1 * i;
+    d.dt_first = i == 1 ? 0.2 * w->dt : 0.0;
+    d.dt_max = i == 2 ? 0.7 * w->dt : 0.0;
+    must(w, mpm_advance(w->stepper, &d, &w->info));
+    expect(w, !(w->info.t < d.t_end), "the end was not reached");
+    mix_info(&w->hash, &w->info);
+  }
+}
+
+static void ck_told(const world *w) {
+  const scene *is = w->is;
+  if (is->wall[MPM_X_MAX] == MPM_WALL_OPEN && !is->periodic[0])
+    expect(w, w->info.removed > 0, "no particle left");
+  if (is->scheme != MPM_NEWMARK) expect(w, w->info.resorts > 1, "particles were not sorted anew");
+  expect(w, w->info.active_nodes > 0, "no node is active");
+}
+
+uint64_t run_scene(const scene *is, int32_t isa) {
+  world w;
+  open_world(&w, is, isa, 0);
+  w.info.struct_size = sizeof w.info;
+  for (int32_t i = 0; i < is->steps && is->story != STORY_ADVANCE; ++i) {
+    if (i == is->steps / 2 && is->story == STORY_SAVED) save_and_load(&w, isa);
+    if (i == is->steps / 2 && is->story == STORY_FAILING) fail(&w);
+    if (i == is->steps / 2 && is->story == STORY_CHANGED) change(&w);
+    if (is->story == STORY_STAGED_VELOCITY || is->story == STORY_STAGED_FORCE)
+      step_in_parts(&w, i);
+    else
+      whole_step(&w, dt_of(&w, i));
+  }
+  if (is->story == STORY_ADVANCE) advance(&w);
+  ck_told(&w);
+  mix_world(&w);
+  const uint64_t hash = w.hash;
+  close_world(&w);
+  return hash;
+}
