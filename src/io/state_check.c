@@ -89,11 +89,11 @@ static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_
   int64_t astray = 0;
   for (int64_t b = 0; b < blocks->count; ++b) {
     mpmi_block_axes(grid, blocks->coord[b], axis);
-    for (int64_t s = start[b]; s < start[b + 1]; s += MPMI_GROUP)
+    for (int64_t s = start[b]; s < start[b + 1]; s += MPMI_CHUNK)
       for (int32_t k = 0; k < grid->dim; ++k) {
         const mpmi_points points = {.x = {mpmi_f64(fresh, MPMI_POSITION, 0) + k * fresh->ld}};
-        weights(&axis[k], 0, &points, s, MPMI_GROUP, &W);
-        for (int32_t p = 0; p < MPMI_GROUP; ++p) astray += W.node[p] < 0 || W.node[p] > last;
+        weights(&axis[k], 0, &points, s, MPMI_CHUNK, &W);
+        for (int32_t p = 0; p < MPMI_CHUNK; ++p) astray += W.node[p] < 0 || W.node[p] > last;
       }
   }
   if (astray) mpmi_archive_damaged(a, "a particle is far from its block");
@@ -105,7 +105,7 @@ static void restore_volumes(mpm_particles *fresh) {
   const double *F[9];
   for (int32_t c = 0; c < mpmi_tensor_components(fresh->grid->dim); ++c)
     F[c] = mpmi_f64(fresh, MPMI_F, 0) + c * fresh->ld;
-  mpmi_kernels_of(fresh->context->isa)
+  mpmi_deformation_of(fresh->context->isa)
       ->volume[fresh->grid->dim](F, mpmi_f64(fresh, MPMI_INITIAL_VOLUME, 0), mpmi_f64(fresh, MPMI_VOLUME, 0),
                                  fresh->slots);
 }

@@ -5,7 +5,7 @@
 
 #include "linalg/matrix.h"
 #include "linalg/vectors.h"
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 enum { PRODUCT, RESIDUAL, ROUNDING };
 

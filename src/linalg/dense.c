@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "transfer/lanes.h"
+#include "simd/lanes.h"
 
 /* A tile of the update has 2 registers of rows and STRIP columns: enough sums to hide the latency of a
  * multiply-add, and few enough for the registers. */

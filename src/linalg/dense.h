@@ -7,7 +7,7 @@
 #ifndef MPMI_DENSE_H
 #define MPMI_DENSE_H
 
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 #include <stdint.h>
 

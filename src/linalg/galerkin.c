@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "linalg/level.h"
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 typedef struct galerkin_job {
   const mpmi_matrix *A;

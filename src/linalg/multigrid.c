@@ -1,23 +1,7 @@
+/* The levels of the multigrid, and the cycle over them. */
 #include "linalg/multigrid.h"
 
 #include <string.h>
-
-#include "transfer/isa.h"
-
-extern const mpmi_sweeps mpmi_sweeps_baseline;
-#if MPMI_HAS_X86
-extern const mpmi_sweeps mpmi_sweeps_avx2, mpmi_sweeps_avx512;
-#endif
-
-const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
-#if MPMI_HAS_X86
-  if (isa == MPM_ISA_AVX512) return &mpmi_sweeps_avx512;
-  if (isa == MPM_ISA_AVX2) return &mpmi_sweeps_avx2;
-#else
-  (void)isa;
-#endif
-  return &mpmi_sweeps_baseline;
-}
 
 /* A level of COARSEST unknowns or less is factored and not coarsened. Where the next level would have more
  * than the share WORTH of the nodes, so is a level of FACTORED unknowns or less. */

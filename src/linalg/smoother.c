@@ -5,6 +5,22 @@
 #include "context/arena.h"
 #include "linalg/sweep.h"
 #include "linalg/vectors.h"
+#include "simd/isa.h"
+
+extern const mpmi_sweeps mpmi_sweeps_baseline;
+#if MPMI_HAS_X86
+extern const mpmi_sweeps mpmi_sweeps_avx2, mpmi_sweeps_avx512;
+#endif
+
+const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
+#if MPMI_HAS_X86
+  if (isa == MPM_ISA_AVX512) return &mpmi_sweeps_avx512;
+  if (isa == MPM_ISA_AVX2) return &mpmi_sweeps_avx2;
+#else
+  (void)isa;
+#endif
+  return &mpmi_sweeps_baseline;
+}
 
 /* Gives each node the first colour that none of its neighbours has. taken: [rows], by colour the last node
  * that saw it at a neighbour. */

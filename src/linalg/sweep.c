@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 enum { BEFORE = 1, AFTER = 2 };
 

@@ -8,6 +8,8 @@
 /* A batch is short enough for the first-level cache where the law is ours, and long where calling the host
  * costs. */
 enum { MPMI_BATCH_OWN = 64, MPMI_BATCH_HOST = 256 };
+_Static_assert((int)MPMI_BATCH_OWN % (int)MPMI_CHUNK == 0 && (int)MPMI_BATCH_HOST % (int)MPMI_CHUNK == 0,
+               "batches hold whole chunks");
 
 /* A lookup says where a batch lies in its set; the `lookup` of callbacks points to it. */
 typedef struct mpmi_lookup {

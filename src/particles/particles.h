@@ -8,8 +8,10 @@
 
 #include "grid/grid.h"
 #include "material/material.h"
+#include "simd/chunk.h"
 
 enum { MPMI_PAD = 16 }; /* every block's slot range is a multiple of this */
+_Static_assert((int)MPMI_PAD % (int)MPMI_CHUNK == 0, "blocks hold whole chunks");
 
 /* Built-in fields have the order of the public table; the host's own follow. */
 enum {

@@ -1,6 +1,6 @@
 /* Volume and stress are brought up to date after the host has set F or the initial volume. */
+#include "material/deformation.h"
 #include "particles/law_batch.h"
-#include "transfer/kernels.h"
 
 #include <string.h>
 
@@ -9,7 +9,6 @@
 mpm_status mpmi_particles_refresh(mpm_particles *set) {
   if (!set->slots) set->dirty &= ~(uint32_t)MPMI_DIRTY_STRESS;
   if (!(set->dirty & MPMI_DIRTY_STRESS)) return MPM_OK;
-  const mpmi_kernels *kernels = mpmi_kernels_of(set->context->isa);
   const int32_t dim = set->grid->dim;
   const size_t bytes = mpmi_law_batch_bytes(set->material);
   void *memory = mpmi_alloc(set->context, bytes);
@@ -37,7 +36,8 @@ mpm_status mpmi_particles_refresh(mpm_particles *set) {
              (size_t)set->slots * sizeof(double));
   const double *F[9];
   for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld;
-  kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0), set->slots);
+  mpmi_deformation_of(set->context->isa)
+      ->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0), set->slots);
   set->dirty &= ~(uint32_t)MPMI_DIRTY_STRESS;
   return MPM_OK;
 }

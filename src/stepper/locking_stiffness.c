@@ -6,6 +6,7 @@
  * and force is divided by a ratio that grows by theta' - theta. With h_ik = c_ikll / d + (2 / d - 1) tau_ik
  * that gives h_ik g_a,k (theta' - theta): the part of theta goes into the tangent of the particle, that of
  * theta' couples all particles of the cell and is one outer product for it. It is not symmetric. */
+#include "simd/tensor.h"
 #include "stepper/locking.h"
 #include "stepper/newton.h"
 
@@ -40,14 +41,13 @@ void mpmi_locking_stiffness_local(const mpm_stepper *s, const mpmi_law_batch *la
                                   const double *volume, double *tangent, double *h) {
   const int32_t dim = s->grid->dim;
   const int64_t ld = law->ld;
-  static const int32_t row[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t k = 0; k < dim; ++k) {
       double *to = h + (3 * i + k) * ld;
       for (int64_t p = 0; p < law->batch.n; ++p) {
         /* tau of the dilation that the law sees: volume / weight is its J */
         const double tau =
-            weight[p] > 0.0 ? volume[p] / weight[p] * law->stress_new[row[i][k] * ld + p] : 0.0;
+            weight[p] > 0.0 ? volume[p] / weight[p] * law->stress_new[mpmi_sym_index(i, k) * ld + p] : 0.0;
         to[p] = (2.0 / dim - 1.0) * tau;
         for (int32_t l = 0; l < dim; ++l) to[p] += tangent[(9 * (3 * i + k) + 4 * l) * ld + p] / dim;
       }
