@@ -42,8 +42,8 @@ LIBS := -lm -lpthread
 # once, without it, so that only the kernels' results depend on the instruction set.
 KERNEL_PATTERNS := src/transfer/bspline*.c src/transfer/open_bspline*.c src/transfer/gimp.c \
   src/transfer/scatter.c src/transfer/gather.c src/transfer/stiffness.c \
-  src/transfer/box.c src/transfer/update.c src/transfer/advance.c src/transfer/sums.c \
-  src/transfer/kernels.c src/material/law_*.c src/linalg/dense.c src/linalg/sweep.c
+  src/transfer/box.c src/transfer/update.c src/transfer/move.c src/transfer/sums.c \
+  src/transfer/kernels.c src/material/law_*.c src/material/deformation.c src/linalg/dense.c src/linalg/sweep.c
 KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))
 PLAIN := $(filter-out $(KERNELS),$(sort $(wildcard src/*/*.c)))
 HEADERS := $(sort $(wildcard include/mpm/*.h include/mpm/*.hpp))
@@ -80,8 +80,8 @@ UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c
 UNIT := $(BUILD)/tests/unit
 
 .PHONY: all install uninstall examples demo bench bench-quick clean format format-check
-.PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan mutate
-.PHONY: check-hashes update-hashes
+.PHONY: check check-setup check-unit check-api check-examples check-asan check-tsan mutate
+.PHONY: check-hashes update-hashes check-structure measure-structure
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
 .PHONY: docs fuzz-programs fuzz check-fuzz verify verify-quick verify-plots
 .DELETE_ON_ERROR:

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Block coordinates start at -1 (ghost nodes) or -2 (periodic halo of the first block): shifted to be
- * positive. */
+/* Block coordinates start at -1 (ghost nodes) or -2 (periodic halo of the first block), and are shifted to
+ * be positive. */
 enum { COORD_SHIFT = 4, FIRST_CAPACITY = 64 };
 
 static uint64_t spread(uint64_t v, int32_t dim) {
@@ -50,8 +50,8 @@ void mpmi_blocks_init(mpmi_blocks *b, const mpm_grid *grid) {
   }
 }
 
-/* Every array of the structure with its size per block, so that allocation, release and growth are one loop
- * each. */
+/* This lists every array of the structure with its size per block, so that allocation, release and growth
+ * are one loop each. */
 enum { ARRAYS = 7 };
 typedef struct block_array {
   void **at;
@@ -177,7 +177,7 @@ static void neighbour_coord(const int32_t *coord, int32_t which, int32_t dim, in
   }
 }
 
-/* Blocks that hold the periodic originals of this block's nodes. */
+/* Inserts the blocks that hold the periodic originals of this block's nodes. */
 static mpm_status insert_originals(mpmi_blocks *b, int64_t of) {
   const mpm_grid *grid = b->grid;
   int32_t choice[3][8], choices[3] = {1, 1, 1}, coord[3], unused;
@@ -192,7 +192,7 @@ static mpm_status insert_originals(mpmi_blocks *b, int64_t of) {
       const int32_t at = (int32_t)((node - floor_div(node, cells) * cells) / b->edge);
       int32_t known = 0;
       for (int32_t i = 0; i < choices[k]; ++i) known |= choice[k][i] == at;
-      /* nodes within reach of a stencil lie in at most three blocks on either side of the seam */
+      /* The nodes within reach of a stencil lie in at most three blocks on either side of the seam. */
       if (!known && choices[k] < 8) choice[k][choices[k]++] = at;
     }
   }

@@ -1,15 +1,14 @@
-/* Sparse nodal storage: blocks of nodes that exist where there is material, in Morton order.
- *
- * A block holds edge^dim nodes (x slowest). A particle belongs to the block of its anchor (grid.h). Blocks
- * with particles have all 3^dim neighbours, so that a tile (block and halo) can be read and written without
- * looking anything up. */
+/* Nodal storage is sparse: blocks of nodes exist where there is material, in Morton order. A block holds
+ * edge^dim nodes (x slowest). A particle belongs to the block of its anchor (grid.h). Blocks with
+ * particles have all 3^dim neighbours, so that a tile (block and halo) can be read and written without a
+ * search. */
 #ifndef MPMI_BLOCKS_H
 #define MPMI_BLOCKS_H
 
 #include "grid/grid.h"
 
-/* Edge of a block, and the loose ring: a particle may drift this many cells out of its block before a
- * re-sort. */
+/* MPMI_BLOCK_EDGE is the edge of a block in nodes. A particle may drift MPMI_RING cells out of its block
+ * before the next sort. */
 #define MPMI_BLOCK_EDGE(dim) ((dim) == 1 ? 64 : (dim) == 2 ? 16 : 6)
 enum { MPMI_RING = 1 };
 
@@ -23,7 +22,7 @@ typedef struct mpmi_blocks {
   uint64_t *key;                             /* [count] Morton key, ascending once ordered */
   int32_t (*coord)[3];                       /* [count] */
   int32_t (*neighbour)[MPMI_MAX_NEIGHBOURS]; /* [count], lowest corner first; MPMI_NO_BLOCK where absent */
-  uint32_t *order, *order_scratch; /* [capacity] scratch of the ordering; order: provisional -> final */
+  uint32_t *order, *order_scratch;           /* [capacity] order: provisional -> final; else scratch */
   uint64_t *key_scratch;
   int32_t (*coord_scratch)[3];
   int64_t table_size; /* hash table from key to block, a power of two */
@@ -34,21 +33,21 @@ typedef struct mpmi_blocks {
 void mpmi_blocks_init(mpmi_blocks *blocks, const mpm_grid *grid);
 void mpmi_blocks_free(mpmi_blocks *blocks);
 void mpmi_blocks_clear(mpmi_blocks *blocks);
-/* Finds or adds a block by its coordinates; *block is provisional until mpmi_blocks_order. */
+/* Finds or adds a block by its coordinates; *block is provisional until mpmi_blocks_order(). */
 mpm_status mpmi_blocks_insert(mpmi_blocks *blocks, const int32_t *coord, int32_t *block);
-int32_t mpmi_blocks_find(const mpmi_blocks *blocks, const int32_t *coord); /* or MPMI_NO_BLOCK */
-/* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and links neighbours.
- * After it order[provisional] is the block's final index. */
+int32_t mpmi_blocks_find(const mpmi_blocks *blocks, const int32_t *coord); /* or returns MPMI_NO_BLOCK */
+/* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and links
+ * neighbours. Afterwards order[provisional] is the final index of a block. */
 mpm_status mpmi_blocks_order(mpmi_blocks *blocks);
-/* Block of a position that lies inside the grid. */
+/* Finds the block of a position that lies inside the grid. */
 void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stride, int32_t edge,
                              int32_t *coord);
-/* Slot (block * nodes + place) of a node by its index, or -1 when its block is not there. */
+/* Returns the slot (block * nodes + place) of a node by its index, or -1 when its block does not exist. */
 int64_t mpmi_blocks_node(const mpmi_blocks *blocks, const int64_t *index);
-/* Slot of the node `at` steps from the first of a block, in it or in a neighbour; -1 when that is not there.
- */
+/* Returns the slot of the node `at` steps from the first node of a block, in it or in a neighbour, or -1
+ * when that block does not exist. */
 int64_t mpmi_blocks_near(const mpmi_blocks *blocks, int64_t block, const int32_t *at);
-/* Index of the node in a slot. */
+/* Finds the index of the node in a slot. */
 void mpmi_blocks_index(const mpmi_blocks *blocks, int64_t slot, int64_t *index);
 
 #endif

@@ -16,11 +16,11 @@ void mpmi_constraints_free(mpmi_constraints *c) {
   mpmi_constraints_init(c, context);
 }
 
-/* How one axis binds a node. */
+/* An axis_role says how one axis binds a node. */
 typedef struct axis_role {
-  int64_t master;   /* index of the master on this axis */
+  int64_t master;
   int32_t face;     /* wall that binds it, or -1 */
-  int32_t mirrored; /* a ghost: sign -1 of the components that the wall reverses */
+  int32_t mirrored; /* 1: a ghost, with sign -1 in the components that the wall reverses */
 } axis_role;
 
 static int32_t is_linear_wall(const mpmi_wall *wall) {
@@ -43,7 +43,7 @@ static axis_role role_on_axis(const mpm_grid *grid, const mpmi_wall *wall, int32
   return role;
 }
 
-/* Wall on whose plane a node lies, or -1. */
+/* Returns the wall on whose plane a node lies, or -1. */
 static int32_t plane_face(const mpm_grid *grid, const mpmi_wall *wall, int32_t axis, int64_t node) {
   if (grid->desc.periodic[axis]) return -1;
   for (int32_t face = 2 * axis; face < 2 * axis + 2; ++face)
@@ -58,8 +58,8 @@ static int32_t wall_takes(const mpmi_wall *wall, int32_t face, int32_t component
 typedef struct node_role {
   int64_t master[3];
   double sign[3];
-  int32_t face[3]; /* of the wall that takes a component's reaction, or -1 */
-  int32_t dependent;
+  int32_t face[3]; /* wall that takes the reaction of a component, or -1 */
+  int32_t follows;
 } node_role;
 
 /* The reaction of a component goes to the wall that faces it, else to the first that binds it. */
@@ -73,7 +73,7 @@ static node_role role_of(const mpm_grid *grid, const mpmi_wall *wall, const int6
   for (int32_t k = 0; k < grid->dim; ++k) {
     axis_role axis = role_on_axis(grid, wall, k, index[k]);
     role.master[k] = axis.master;
-    if (axis.master != index[k]) role.dependent = 1;
+    if (axis.master != index[k]) role.follows = 1;
     if (axis.face < 0) continue;
     take(&role, wall, axis.face, grid->dim);
     for (int32_t c = 0; c < grid->dim; ++c)
@@ -82,7 +82,7 @@ static node_role role_of(const mpm_grid *grid, const mpmi_wall *wall, const int6
   return role;
 }
 
-/* 1 when any node of the block can be bound: it reaches a plane, a ghost or a periodic image. */
+/* Returns 1 when any node of the block can be bound: it reaches a plane, a ghost or a periodic image. */
 static int32_t block_is_bound(const mpmi_blocks *b, const mpmi_wall *wall, int64_t block) {
   const mpm_grid *grid = b->grid;
   for (int32_t k = 0; k < grid->dim; ++k) {
@@ -98,7 +98,7 @@ static int32_t block_is_bound(const mpmi_blocks *b, const mpmi_wall *wall, int64
   return 0;
 }
 
-/* One walk over all bound nodes; called to count and then to fill. */
+/* A walk over all bound nodes is made once to count and once to fill. */
 typedef struct walk {
   const mpmi_blocks *blocks;
   const mpmi_wall *wall;
@@ -141,14 +141,14 @@ static int32_t on_plane(walk *w, const int64_t *index) {
 static void visit_linear(walk *w, int64_t slot, const int64_t *index) {
   const mpm_grid *grid = w->blocks->grid;
   const node_role role = role_of(grid, w->wall, index);
-  if (!role.dependent) {
+  if (!role.follows) {
     if (!on_plane(w, index)) return;
     const int32_t at = tie_at(w, slot);
     if (w->fill) hold_on_planes(w, &w->out->tie[at], index);
     return;
   }
   const int64_t master = mpmi_blocks_node(w->blocks, role.master);
-  if (master < 0) return; /* nothing can reach this ghost: its mirror has no storage */
+  if (master < 0) return; /* nothing can reach this ghost, because its mirror has no storage */
   const int32_t at = tie_at(w, master);
   w->out->tie_of[slot] = at;
   ++w->followers;
@@ -163,7 +163,7 @@ static void visit_linear(walk *w, int64_t slot, const int64_t *index) {
 /* Places the followers of each tie side by side, in the order of their slots. */
 static void place_follower(walk *w, int64_t slot, const int64_t *index) {
   const node_role role = role_of(w->blocks->grid, w->wall, index);
-  if (!role.dependent || w->out->tie_of[slot] < 0) return;
+  if (!role.follows || w->out->tie_of[slot] < 0) return;
   mpmi_tie *tie = &w->out->tie[w->out->tie_of[slot]];
   mpmi_follower *d = &w->out->follower[tie->first + tie->count++];
   d->slot = slot;

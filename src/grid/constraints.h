@@ -1,6 +1,6 @@
-/* Nodes that are not free: periodic images, mirrored ghosts, nodes on a wall, contact pairs.
+/* Some nodes are not free: periodic images, mirrored ghosts, nodes on a wall, contact pairs.
  *
- * Seen from the grid update every linear condition is the same thing: the velocity of a dependent node is
+ * Seen from the grid update every linear condition is the same thing: the velocity of a node that follows is
  * that of its master, component by component with a sign:
  *
  *   periodic image   v_image = v_master
@@ -9,10 +9,10 @@
  *
  *   fixed wall       v_ghost = -v_mirror, v_wall = 0
  *
- * A tie is a master with its followers; conditions on several axes multiply. Mass, momentum and force of
- * a tie are folded into the master, solved there, and copied back, which conserves what the condition does
- * not take away. Friction walls are contacts between the nodes of a wall and, for wide stencils, pairs of
- * ghost and mirror. */
+ * A tie is a master with its followers; the signs of conditions on several axes multiply. Mass, momentum and
+ * force of a tie are folded into the master, solved there, and copied back, which conserves what the
+ * condition does not take away. Friction walls are contacts: of a node on the wall, or of a ghost and its
+ * mirror where the stencil is wide. */
 #ifndef MPMI_CONSTRAINTS_H
 #define MPMI_CONSTRAINTS_H
 
@@ -30,16 +30,16 @@ typedef struct mpmi_follower {
 
 typedef struct mpmi_tie {
   int64_t master;
-  int64_t first, count; /* followers */
-  int32_t zero[3];      /* component held at 0 by a wall */
+  int64_t first, count; /* its followers are [first, first + count) */
+  int32_t zero[3];      /* 1: a wall holds the component at 0 */
   int32_t face[3];      /* wall that takes the reaction of a component, or -1 */
 } mpmi_tie;
 
-/* A node on a friction wall, or a ghost and its mirror. */
+/* A contact is a node on a friction wall, or a ghost and its mirror. */
 typedef struct mpmi_contact {
-  int64_t slot, partner; /* partner -1: alone */
+  int64_t slot, partner; /* partner: the mirror, or -1 without one */
   int32_t face;
-  int32_t closed, stuck; /* as found with forces; projections without them keep to it */
+  int32_t closed, stuck; /* found with forces; projections without forces keep to it */
 } mpmi_contact;
 
 typedef struct mpmi_constraints {
@@ -49,18 +49,18 @@ typedef struct mpmi_constraints {
   int64_t follower_count, follower_capacity;
   mpmi_follower *follower;
   int64_t contact_count, contact_capacity;
-  mpmi_contact *contact; /* face by face */
+  mpmi_contact *contact; /* ordered by face */
   int64_t map_capacity;
-  int32_t *tie_of; /* [slots]: tie of a node, or -1; a follower has that of its master */
+  int32_t *tie_of; /* [slots] tie of a master or follower, or -1 */
 } mpmi_constraints;
 
 void mpmi_constraints_init(mpmi_constraints *constraints, mpm_context *context);
 void mpmi_constraints_free(mpmi_constraints *constraints);
-/* Finds every constrained node of the blocks. On failure the contents are undefined: build into a spare and
- * swap. */
+/* Finds every constrained node of the blocks. On failure the contents are undefined, so build into a spare
+ * and swap. */
 mpm_status mpmi_constraints_build(mpmi_constraints *constraints, const mpmi_blocks *blocks,
                                   const mpmi_wall *wall);
-/* 1 when the node in a slot moves by itself: not a follower. */
+/* Returns 1 when the node in a slot moves by itself and follows no other. */
 int32_t mpmi_constraints_is_free(const mpmi_constraints *constraints, int64_t slot);
 
 #endif

@@ -1,13 +1,13 @@
-/* Grids: what a description may ask for, numbering of nodes, bounds and periods. */
+/* Grids are described and checked here; so are the numbering of nodes, bounds and periods. */
 #include <math.h>
 #include <string.h>
 
 #include "context/structs.h"
 #include "grid/grid.h"
 
-enum { MOST_CELLS = 6 << 20 }; /* block coordinates take 21 bits per axis, and a block has up to 6 cells */
+enum { MOST_CELLS = 6 << 20 }; /* block coordinates have 21 bits per axis, and a block has up to 6 cells */
 
-/* Farther off, a wrapped position has no digits worth having. */
+/* A position more periods away than this has no digits worth having once it is wrapped. */
 static const double most_periods = 2147483648.0;
 
 mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size) {
@@ -62,7 +62,7 @@ static mpm_status check_axis(mpm_context *context, const mpm_grid_desc *desc, in
   return MPM_OK;
 }
 
-/* Nodes along an axis with one layer of ghosts on either side, whatever the basis. */
+/* Counts the nodes along an axis with one layer of ghosts on either side, whatever the basis. */
 static int64_t axis_nodes(const mpm_grid *grid, int32_t axis) {
   return grid->desc.cells[axis] + 3;
 }
@@ -92,7 +92,7 @@ static mpm_status check_desc(mpm_context *context, const mpm_grid_desc *desc) {
   return MPM_OK;
 }
 
-/* By family: width, below, centred, ghosts, second moment where it is constant. */
+/* By family: width, below, centred, ghosts, and the second moment where it is constant. */
 static const struct {
   int32_t width, below, centred, ghosts;
   double moment;
@@ -188,7 +188,8 @@ double mpmi_node_position(const mpm_grid *grid, int32_t axis, int64_t index) {
   const double cells = (double)grid->desc.cells[axis];
   double place = (double)index;
   if (grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {
-    /* mean of the inner knots of the function: knots are the integers, kept within the faces */
+    /* The node stands at the mean of the inner knots of its function. Knots are the integers, moved onto
+     * the face where they would lie beyond it. */
     const int32_t knots = grid->width - 1, open = mpmi_is_open(grid, axis);
     double sum = 0.0;
     for (int32_t j = 0; j < knots; ++j) {
@@ -201,18 +202,18 @@ double mpmi_node_position(const mpm_grid *grid, int32_t axis, int64_t index) {
   return grid->desc.origin[axis] + place * grid->desc.spacing[axis];
 }
 
-/* Last axis fastest; the first node of an axis is the lower ghost. */
+/* The last axis is the fastest; the first node of an axis is the lower ghost. */
 int64_t mpmi_node_number(const mpm_grid *grid, const int64_t *index) {
   int64_t number = 0;
   for (int32_t k = 0; k < grid->dim; ++k) number = number * axis_nodes(grid, k) + index[k] + 1;
   return number;
 }
 
-/* The position in [lower, upper) that is congruent to x, and how many periods it was away. */
+/* Returns the position in [lower, upper) that is congruent to x; *periods is how many periods x was away. */
 static double wrapped(double x, double lower, double upper, int64_t *periods) {
   double crossed = floor((x - lower) / (upper - lower));
   double place = x - crossed * (upper - lower);
-  if (place >= upper) { /* by rounding: x lies just below a face */
+  if (place >= upper) { /* rounding does this where x lies just below a face */
     place = lower;
     crossed += 1.0;
   }

@@ -1,8 +1,9 @@
-/* The background grid: a description only. Nodal storage belongs to the stepper (grid/blocks.h).
+/* The background grid is a description only. Nodal storage belongs to the stepper (grid/blocks.h).
  *
- * Basis functions ("nodes") have integer indices along each axis. A particle has an anchor, the nearest node
- * or the lower node of its cell as the basis says, and its stencil is `width` nodes from anchor - below on.
- * Node i lies at origin + i * spacing, except with open knots, where it stands at its Greville point. */
+ * Basis functions ("nodes") have integer indices along each axis. A particle has an anchor, which is the
+ * nearest node or the lower node of its cell as the basis says; its stencil is `width` nodes from anchor -
+ * below on. Node i lies at origin + i * spacing, except with open knots, where it stands at its Greville
+ * point. */
 #ifndef MPMI_GRID_H
 #define MPMI_GRID_H
 
@@ -13,7 +14,7 @@ enum {
   MPMI_FAMILY_BSPLINE2,
   MPMI_FAMILY_BSPLINE3,
   MPMI_FAMILY_GIMP,
-  MPMI_FAMILY_OPEN_BSPLINE2, /* knots at the nodes, repeated at the faces */
+  MPMI_FAMILY_OPEN_BSPLINE2, /* knots lie at the nodes and are repeated at the faces */
   MPMI_FAMILY_OPEN_BSPLINE3,
   MPMI_FAMILIES
 };
@@ -24,12 +25,12 @@ struct mpm_grid {
   mpm_context *context;
   mpm_grid_desc desc;
   int32_t dim;
-  int32_t family;  /* MPMI_FAMILY_..., which functions make the weights */
+  int32_t family;  /* MPMI_FAMILY_...: the functions that make the weights */
   int32_t width;   /* nodes of the stencil per axis */
-  int32_t below;   /* of them below the anchor */
-  int32_t centred; /* the anchor is the nearest node, else the lower node of the cell */
-  int32_t ghosts;  /* there are nodes beyond the faces: -1 and cells + 1 */
-  double moment;   /* sum w (x_i - x_p)^2 / h^2 where the basis has the same everywhere, else 0 */
+  int32_t below;   /* how many of these lie below the anchor */
+  int32_t centred; /* 1: the anchor is the nearest node; 0: the lower node of the cell */
+  int32_t ghosts;  /* 1: there are nodes beyond the faces, -1 and cells + 1 */
+  double moment;   /* sum w (x_i - x_p)^2 / h^2 where that is the same everywhere, else 0 */
   double upper[3], inverse_spacing[3];
   double h_min; /* smallest spacing */
 };
@@ -42,15 +43,15 @@ static inline int32_t mpmi_is_open(const mpm_grid *grid, int32_t axis) {
 static inline int32_t mpmi_has_domains(const mpm_grid *grid) {
   return grid->desc.basis == MPM_GIMP || grid->desc.basis == MPM_CPGIMP;
 }
-/* Index of the node on a face: the one whose velocity is that of the material at the face, or about whose
- * plane the ghosts mirror. */
+/* Returns the index of the node on a face: the one whose velocity is that of the material at the face, or
+ * about whose plane the ghosts mirror. */
 int64_t mpmi_face_node(const mpm_grid *grid, int32_t face);
-/* Where a node stands. */
+/* Returns where a node stands on an axis. */
 double mpmi_node_position(const mpm_grid *grid, int32_t axis, int64_t index);
-/* Number of a node as reported in mpm_step_info.node. */
+/* Returns the number of a node that mpm_step_info.node reports. */
 int64_t mpmi_node_number(const mpm_grid *grid, const int64_t *index);
 
-/* Bounds test and periodic wrap of one position (strided by `stride`). Wraps periodic axes, adding the
+/* Tests a position (strided by `stride`) against the bounds and wraps it on periodic axes, adding the
  * periods crossed to image[] (may be NULL). Returns the first axis on which the position is not finite or
  * lies outside the bounds, or -1. A position on a bound is inside. */
 int32_t mpmi_grid_place(const mpm_grid *grid, double *position, int64_t stride, int64_t *image,

@@ -1,4 +1,5 @@
 #include "implicit/locking_stiffness.h"
+#include "simd/tensor.h"
 
 #include <string.h>
 
@@ -30,14 +31,13 @@ mpm_status mpmi_locking_stiffness_begin(mpmi_balance *s) {
 void mpmi_locking_stiffness_local(int32_t dim, const mpmi_law_batch *law, const double *weight,
                                   const double *volume, double *tangent, double *h) {
   const int64_t ld = law->ld;
-  static const int32_t row[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t k = 0; k < dim; ++k) {
       double *to = h + (3 * i + k) * ld;
       for (int64_t p = 0; p < law->batch.n; ++p) {
         /* tau of the dilation that the law sees: volume / weight is its J */
         const double tau =
-            weight[p] > 0.0 ? volume[p] / weight[p] * law->stress_new[row[i][k] * ld + p] : 0.0;
+            weight[p] > 0.0 ? volume[p] / weight[p] * law->stress_new[mpmi_sym_index(i, k) * ld + p] : 0.0;
         to[p] = (2.0 / dim - 1.0) * tau;
         for (int32_t l = 0; l < dim; ++l) to[p] += tangent[(9 * (3 * i + k) + 4 * l) * ld + p] / dim;
       }

@@ -9,8 +9,8 @@ void mpmi_checksum_begin(mpmi_checksum *sum) {
   *sum = (mpmi_checksum){{MPMI_MIX_A, MPMI_MIX_B, MPMI_MIX_C, ~MPMI_MIX_A}, 0};
 }
 
-/* For a given lane one to one in the word, and for a given word one to one in the lane: no change of a single
- * word can go unnoticed. */
+/* The step is one to one in the word for a given lane, and one to one in the lane for a given word. So no
+ * change of a single word can go unnoticed. */
 static uint64_t step_lane(uint64_t lane, const unsigned char *at) {
   uint64_t word;
   memcpy(&word, at, sizeof word);
@@ -73,7 +73,7 @@ const void *mpmi_archive_take(mpmi_archive *a, int64_t bytes) {
   return taken;
 }
 
-/* Whole words. */
+/* Writes whole words. */
 static void put(mpmi_archive *a, const void *data, int64_t bytes) {
   if (a->mode != MPMI_MEASURE && bytes > 0) mpmi_checksum_add(&a->checksum, data, bytes);
   if (a->mode == MPMI_TO_MEMORY && bytes > 0) memcpy(a->to + a->at, data, (size_t)bytes);
@@ -95,7 +95,7 @@ void mpmi_archive_bytes(mpmi_archive *a, void *data, int64_t bytes) {
   put(a, last, WORD);
 }
 
-/* Reading compares; writing and measuring leave the value as it is. */
+/* Does the archive compare? Writing and measuring leave the value as it is. */
 static int32_t reads(const mpmi_archive *a) {
   return a->mode == MPMI_FROM_MEMORY && !a->status;
 }

@@ -1,5 +1,5 @@
-/* A sequence of bytes with a checksum, written or read by one and the same description: every call writes
- * what it is given, or reads it back, as the mode says. Everything starts at a multiple of 8 bytes. */
+/* An archive is a sequence of bytes with a checksum. One description writes and reads it: every call
+ * writes what it is given, or reads it back, as the mode says. Everything starts at a multiple of 8 bytes. */
 #ifndef MPMI_ARCHIVE_H
 #define MPMI_ARCHIVE_H
 
@@ -9,7 +9,7 @@ typedef struct mpmi_checksum {
   uint64_t lane[4], words;
 } mpmi_checksum;
 void mpmi_checksum_begin(mpmi_checksum *sum);
-void mpmi_checksum_add(mpmi_checksum *sum, const void *data, int64_t bytes); /* a multiple of 8 */
+void mpmi_checksum_add(mpmi_checksum *sum, const void *data, int64_t bytes); /* bytes: a multiple of 8 */
 uint64_t mpmi_checksum_end(const mpmi_checksum *sum);
 
 enum { MPMI_MEASURE, MPMI_TO_MEMORY, MPMI_TO_FILE, MPMI_FROM_MEMORY };
@@ -17,28 +17,28 @@ enum { MPMI_MEASURE, MPMI_TO_MEMORY, MPMI_TO_FILE, MPMI_FROM_MEMORY };
 typedef struct mpmi_archive {
   mpm_context *context;
   int32_t mode;
-  mpm_status status;         /* of the first failure, after which nothing more is done; not of file errors */
-  int64_t at;                /* bytes written or read so far */
-  unsigned char *to;         /* MPMI_TO_MEMORY */
-  mpmi_output *file;         /* MPMI_TO_FILE; keeps its errors */
-  const unsigned char *from; /* MPMI_FROM_MEMORY, */
-  int64_t size;              /* of so many bytes */
-  mpmi_checksum checksum;    /* of what was written */
-  char where[48];            /* what the description is about, for error texts; "" or ending in a space */
+  mpm_status status; /* the first failure, after which nothing more is done; file errors are kept by `file` */
+  int64_t at;        /* bytes written or read so far */
+  unsigned char *to; /* MPMI_TO_MEMORY */
+  mpmi_output *file; /* MPMI_TO_FILE; it keeps its own errors */
+  const unsigned char *from; /* MPMI_FROM_MEMORY */
+  int64_t size;              /* how many bytes `from` has */
+  mpmi_checksum checksum;    /* sum over what was written */
+  char where[48];            /* for error texts: the part under way, "" or ending in a space */
 } mpmi_archive;
 
 void mpmi_archive_begin(mpmi_archive *a, mpm_context *context, int32_t mode);
-/* Writes `bytes` bytes, filled up to a multiple of 8, or reads them. */
+/* Writes `bytes` bytes, filled up to a multiple of 8, or reads them back. */
 void mpmi_archive_bytes(mpmi_archive *a, void *data, int64_t bytes);
-/* Reading: lends the next bytes, or NULL after a failure. */
+/* Lends the next bytes while reading, or returns NULL after a failure. */
 const void *mpmi_archive_take(mpmi_archive *a, int64_t bytes);
-/* Writes a value of the setup; or reads it and fails unless it is that of the present setup. */
+/* Writes a value of the setup, or reads it and fails unless it is that of the present setup. */
 void mpmi_archive_same_int(mpmi_archive *a, const char *what, int64_t here);
 void mpmi_archive_same_real(mpmi_archive *a, const char *what, double here);
 void mpmi_archive_same_text(mpmi_archive *a, const char *what,
-                            const char *here); /* up to MPMI_TEXT - 1 characters */
+                            const char *here); /* of at most MPMI_TEXT - 1 characters */
 enum { MPMI_TEXT = 48 };
-/* Reading: fails with MPM_E_FORMAT and what is wrong, unless it has failed before. */
+/* Fails with MPM_E_FORMAT and says what is wrong, unless the archive has failed before. */
 mpm_status mpmi_archive_damaged(mpmi_archive *a, const char *what);
 
 #endif

@@ -1,5 +1,5 @@
-/* A hash of the physical state: a sum over particles, so that neither their order nor how the work is cut
- * matters. */
+/* The hash of a physical state is a sum over particles, so that neither their order nor the cut of the
+ * work matters. */
 #include "io/mix.h"
 #include "particles/values.h"
 #include "stepper/stepper.h"
@@ -32,8 +32,8 @@ static uint64_t seed_of(const char *name) {
   return mpmi_avalanche(h);
 }
 
-/* Fields that every set has count whatever their values; the others only where they differ from what they
- * read as when they are absent, so that presence alone makes no difference. */
+/* Fields that every set has count whatever their values. Others count only where they differ from what
+ * they read as when absent, so that presence alone makes no difference. */
 static int32_t always_counts(int32_t field) {
   switch (field) {
   case MPMI_POSITION:
@@ -58,10 +58,10 @@ static void load_words(const mpmi_field *field, const char *row, int64_t begin, 
     for (int64_t i = 0; i < n; ++i) word[i] = ((const uint8_t *)row)[begin + i];
 }
 
-/* What the field reads as when it is absent, in the bits of component c. */
+/* Loads what the field reads as when it is absent, in the bits of component c. */
 static void load_defaults(const mpm_particles *set, int32_t f, int32_t c, int64_t begin, int64_t n,
                           uint64_t *word) {
-  if (f == MPMI_SIZE && c > 0) return; /* the same for every component, and it takes a root */
+  if (f == MPMI_SIZE && c > 0) return; /* the size is the same for every component, and costs a root */
   for (int64_t i = 0; i < n; ++i)
     word[i] = f == MPMI_SIZE || f == MPMI_REFERENCE ? bits(mpmi_absent_value(set, f, c, begin + i)) : 0;
 }
@@ -120,7 +120,7 @@ mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
                       (uint64_t)stepper->layout.member_count);
   for (int32_t m = 0; m < stepper->layout.member_count; ++m) {
     mpm_particles *set = stepper->layout.member[m].set;
-    /* what follows from F may have been left for later: const or not, the host sees the same */
+    /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
     mpm_status status = mpmi_settle(set, MPMI_STRESS);
     if (status) return status;
     h = absorb(h, hash_set(set, m));

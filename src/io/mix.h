@@ -1,4 +1,4 @@
-/* Mixing of 64-bit words, for checksums and hashes. */
+/* Checksums and hashes mix 64-bit words with these functions. */
 #ifndef MPMI_MIX_H
 #define MPMI_MIX_H
 
@@ -12,7 +12,7 @@ static inline uint64_t mpmi_rotate(uint64_t x, int32_t k) {
   return x << k | x >> (64 - k);
 }
 
-/* One to one, and every bit of the result depends on every bit of x. */
+/* This is one to one, and every bit of the result depends on every bit of x. */
 static inline uint64_t mpmi_avalanche(uint64_t x) {
   x = (x ^ x >> 30) * MPMI_MIX_B;
   x = (x ^ x >> 27) * MPMI_MIX_C;

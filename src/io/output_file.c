@@ -34,7 +34,8 @@ static mpm_status check_target(mpm_context *context, const char *path) {
   return mpmi_fail(context, MPM_E_IO, "cannot write %s: it is not a regular file", path);
 }
 
-/* A name that nobody else uses: other processes and threads may write the same path. */
+/* Creates a file under a name that nobody else uses, because other processes and threads may write the
+ * same path. */
 static int create_temporary(mpmi_output *out) {
   for (int32_t k = 0; k < ATTEMPTS; ++k) {
     snprintf(out->temporary, out->temporary_bytes, "%s.tmp%ld-%d", out->path, (long)getpid(), (int)k);
@@ -62,7 +63,8 @@ mpm_status mpmi_output_open(mpmi_output *out, mpm_context *context, const char *
   return mpmi_io_error(context, "write", path, error);
 }
 
-/* The new name is on the storage once the directory is. Not every system offers that: no error. */
+/* The new name is on the storage once the directory is. Not every system offers that, so it is no error if
+ * it fails. */
 static void sync_directory(mpmi_output *out) {
   char *slash = strrchr(out->temporary, '/');
   if (slash) slash[slash == out->temporary] = '\0';
@@ -72,7 +74,7 @@ static void sync_directory(mpmi_output *out) {
   close(directory);
 }
 
-/* Keeps the number of the first error: those that follow would hide it. */
+/* Keeps the number of the first error, which those that follow would hide. */
 static void note(mpmi_output *out, int failed) {
   if (failed && !out->error) out->error = errno ? errno : EIO;
 }
@@ -88,7 +90,7 @@ void mpmi_output_zeros(mpmi_output *out, int64_t bytes) {
   errno = 0;
   if (bytes >= LONG_GAP) {
     note(out, fseeko(out->stream, bytes, SEEK_CUR));
-    if (out->error == EINVAL || out->error == EOVERFLOW) out->error = EFBIG; /* no such place in a file */
+    if (out->error == EINVAL || out->error == EOVERFLOW) out->error = EFBIG; /* a file cannot be that long */
     return;
   }
   for (; bytes > 0; bytes -= (int64_t)sizeof zero)

@@ -1,5 +1,5 @@
-/* Files that are written beside their path and renamed when complete: the path holds the old contents or the
- * new. */
+/* Files are written beside their path and renamed when they are complete. So the path holds the old
+ * contents or the new. */
 #ifndef MPMI_OUTPUT_FILE_H
 #define MPMI_OUTPUT_FILE_H
 
@@ -9,28 +9,28 @@
 
 typedef struct mpmi_output {
   mpm_context *context;
-  FILE *stream; /* for text; errors are looked at when the file is closed */
+  FILE *stream; /* for text; closing the file looks for its errors */
   int error;    /* number of the first error, or 0 */
   const char *path;
   char *temporary;
   size_t temporary_bytes;
 } mpmi_output;
 
-/* MPM_E_IO with path and cause. `path` must live as long as the file is open. */
+/* Opens a file for writing: MPM_E_IO names path and cause. `path` must live as long as the file is open. */
 mpm_status mpmi_output_open(mpmi_output *out, mpm_context *context, const char *path);
 void mpmi_output_write(mpmi_output *out, const void *data, size_t bytes);
-/* Zeros; long runs of them take no room on the storage where it knows holes. More data must follow. */
+/* Writes zeros. Long runs take no room on storage that knows holes. More data must follow. */
 void mpmi_output_zeros(mpmi_output *out, int64_t bytes);
-void mpmi_output_rewind(mpmi_output *out); /* writes on at the first byte */
-/* Completes the file under its path, or removes what was written: MPM_E_IO. durable: waits for the storage.
- */
+void mpmi_output_rewind(mpmi_output *out); /* what follows is written from the first byte on */
+/* Completes the file under its path, or removes what was written: MPM_E_IO. With `durable` it waits for
+ * the storage. */
 mpm_status mpmi_output_close(mpmi_output *out, int32_t durable);
-/* MPM_E_ARG when path is NULL or "". */
+/* Refuses a path that is NULL or "": MPM_E_ARG. */
 mpm_status mpmi_check_path(mpm_context *context, const char *path);
-/* MPM_E_IO: "cannot <verb> <path>: <text of error>". */
+/* Fails with MPM_E_IO and the text "cannot <verb> <path>: <text of error>". */
 mpm_status mpmi_io_error(mpm_context *context, const char *verb, const char *path, int error);
-/* Shortest decimal that reads back as a finite value, with a point in any locale; text has MPMI_REAL bytes.
- */
+/* Prints the shortest decimal that reads back as the same finite value, with a point in any locale; text
+ * has MPMI_REAL bytes. */
 enum { MPMI_REAL = 40 };
 void mpmi_print_real(double value, char *text);
 

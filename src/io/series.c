@@ -1,4 +1,4 @@
-/* A time series of output files: a .pvd whose closing tags are overwritten by the next entry. */
+/* A time series of output files is a .pvd file. Each new entry overwrites its closing tags. */
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
 #include "io/output_file.h"
@@ -24,7 +24,7 @@ static const char head[] = "<?xml version=\"1.0\"?>\n"
 static const char tail[] = "  </Collection>\n"
                            "</VTKFile>\n";
 
-/* 0, or the number of the error. */
+/* Returns 0 or the number of the error. */
 static int write_at(int file, int64_t at, const char *text, size_t bytes) {
   while (bytes) {
     const ssize_t written = pwrite(file, text, bytes, at);
@@ -37,7 +37,7 @@ static int write_at(int file, int64_t at, const char *text, size_t bytes) {
   return 0;
 }
 
-/* Bytes of the UTF-8 character at c if XML 1.0 can hold it, else 0. */
+/* Returns the bytes of the UTF-8 character at c if XML 1.0 can hold it, else 0. */
 static size_t character(const unsigned char *c) {
   static const struct {
     unsigned char mask, lead;
@@ -59,7 +59,7 @@ static size_t character(const unsigned char *c) {
 
 enum { LONGEST_ESCAPE = 6 };
 
-/* The text as an attribute's value; NULL when XML cannot hold it. Returns the end of what was written. */
+/* Writes the text as the value of an attribute and returns the end of it, or NULL when XML cannot hold it. */
 static char *escape(const char *text, char *out) {
   static const char special[] = "&<>\"'";
   static const char *const entity[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"};
@@ -89,7 +89,7 @@ static void free_series(mpm_series *series) {
   mpmi_free(context, series, sizeof *series);
 }
 
-/* Creates the file of an empty series; 0, or the number of the error. */
+/* Creates the file of an empty series. Returns 0 or the number of the error. */
 static int create(mpm_series *series) {
   series->file = open(series->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (series->file < 0) return errno;
@@ -128,7 +128,7 @@ mpm_status mpm_series_open(mpm_context *context, const char *path, mpm_series **
   return MPM_OK;
 }
 
-/* Writes entry and closing tags over the old ones; after an error the file is what it was. */
+/* Writes entry and closing tags over the old ones. After an error the file is what it was. */
 static mpm_status add_entry(mpm_series *series, const char *entry, size_t bytes) {
   const int error = write_at(series->file, series->end, entry, bytes + sizeof tail - 1);
   if (!error) {
@@ -137,7 +137,7 @@ static mpm_status add_entry(mpm_series *series, const char *entry, size_t bytes)
   }
   write_at(series->file, series->end, tail, sizeof tail - 1);
   if (ftruncate(series->file, series->end + (int64_t)sizeof tail - 1)) {
-    /* the first error is the one to report */
+    /* The first error is the one to report. */
   }
   return mpmi_io_error(series->context, "write", series->path, error);
 }

@@ -1,4 +1,5 @@
-/* Which slots lie in which block: the order in which a continued step adds things up. */
+/* A state says which slots lie in which block, because a continued step must add things up in the same
+ * order. */
 #include "io/state.h"
 
 #include <string.h>
@@ -36,7 +37,8 @@ void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s) {
   }
 }
 
-/* Blocks with slots, in the order of the state: provisional ones, which must come out in the same order. */
+/* Reads the blocks with slots, in the order of the state. They are inserted as provisional blocks and must
+ * come out in the same order. */
 static mpm_status read_coordinates(mpmi_archive *a, mpmi_blocks *blocks, int64_t count) {
   const mpm_grid *grid = blocks->grid;
   mpm_status status;
@@ -60,7 +62,7 @@ static mpm_status read_coordinates(mpmi_archive *a, mpmi_blocks *blocks, int64_t
   return MPM_OK;
 }
 
-/* First slots of a set in each of the state's blocks, and the number of slots. */
+/* Returns entry i of a list of first slots: one for each of the state's blocks, then the number of slots. */
 static int64_t saved_start(const unsigned char *starts, int64_t i) {
   int64_t value;
   memcpy(&value, starts + (size_t)i * sizeof value, sizeof value);
@@ -86,7 +88,7 @@ static mpm_status read_starts(mpmi_archive *a, const mpmi_blocks *blocks, int64_
   mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
   if (status) return status;
   int64_t i = 0;
-  for (int64_t b = 0; b <= blocks->count; ++b) { /* blocks that the halo brings have no slots */
+  for (int64_t b = 0; b <= blocks->count; ++b) { /* blocks that only the halo brings have no slots */
     to->start[b] = saved_start(starts, i);
     if (i < count && (int64_t)blocks->order[i] == b) ++i;
   }

@@ -1,5 +1,5 @@
-/* What the values of a loaded set must fulfil, so that a step can work with them: kernels do not look twice.
- */
+/* The values of a loaded set must fulfil certain conditions so that a step can work with them, because
+ * kernels do not look twice. */
 #include "io/state.h"
 #include "layout/axes.h"
 
@@ -20,7 +20,7 @@ static void check_ids(mpmi_archive *a, mpm_particles *fresh) {
   mpmi_index_drop(fresh);
 }
 
-/* Holes are inert whatever the state says: their nonsense would spread over the nodes. */
+/* Makes holes inert whatever the state says, because bad values would spread over the nodes. */
 static void restore_holes(mpm_particles *fresh) {
   const int64_t *id = mpmi_i64(fresh, MPMI_ID, 0);
   for (int64_t s = 0; s < fresh->slots; ++s)
@@ -29,7 +29,7 @@ static void restore_holes(mpm_particles *fresh) {
 
 enum { ANY, NOT_NEGATIVE, POSITIVE };
 
-/* Particles need finite values, some with a sign; of holes only the position counts. */
+/* Particles need finite values, and some fields a sign; holes need finite values only. */
 static void check_field(mpmi_archive *a, const mpm_particles *fresh, int32_t f, int32_t sign) {
   const mpmi_field *field = &fresh->field[f];
   const int64_t *id = mpmi_i64(fresh, MPMI_ID, 0);
@@ -55,7 +55,7 @@ static void check_prescribed(mpmi_archive *a, const mpm_particles *fresh) {
   if (bad) mpmi_archive_damaged(a, "values of prescribed make no sense");
 }
 
-/* Holes too: kernels compute on them. */
+/* Holes must lie inside too, because kernels compute on them. */
 static void check_inside(mpmi_archive *a, const mpm_particles *fresh) {
   int64_t outside = 0;
   for (int32_t k = 0; k < fresh->grid->dim; ++k) {
@@ -66,7 +66,7 @@ static void check_inside(mpmi_archive *a, const mpm_particles *fresh) {
   if (outside) mpmi_archive_damaged(a, "a position lies outside the grid");
 }
 
-/* Counts go on from here: far from where they would overflow. */
+/* Counts go on from here, and must start far from where they would overflow. */
 static void check_images(mpmi_archive *a, const mpm_particles *fresh) {
   const mpmi_field *field = &fresh->field[MPMI_IMAGE];
   int64_t far = 0;
@@ -78,8 +78,8 @@ static void check_images(mpmi_archive *a, const mpm_particles *fresh) {
   if (far) mpmi_archive_damaged(a, "values of image make no sense");
 }
 
-/* Every stencil, that of a hole too, must lie in the tile of its block: asks the function that the kernels
- * ask. */
+/* Every stencil, that of a hole too, must lie in the tile of its block. The function that the kernels use
+ * says where it lies. */
 static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_blocks *blocks,
                         const int64_t *start) {
   const mpm_grid *grid = fresh->grid;
@@ -90,23 +90,23 @@ static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_
   int64_t astray = 0;
   for (int64_t b = 0; b < blocks->count; ++b) {
     mpmi_block_axes(grid, blocks->coord[b], axis);
-    for (int64_t s = start[b]; s < start[b + 1]; s += MPMI_GROUP)
+    for (int64_t s = start[b]; s < start[b + 1]; s += MPMI_CHUNK)
       for (int32_t k = 0; k < grid->dim; ++k) {
         const mpmi_points points = {.x = {mpmi_f64(fresh, MPMI_POSITION, 0) + k * fresh->ld}};
-        weights(&axis[k], 0, &points, s, MPMI_GROUP, &W);
-        for (int32_t p = 0; p < MPMI_GROUP; ++p) astray += W.node[p] < 0 || W.node[p] > last;
+        weights(&axis[k], 0, &points, s, MPMI_CHUNK, &W);
+        for (int32_t p = 0; p < MPMI_CHUNK; ++p) astray += W.node[p] < 0 || W.node[p] > last;
       }
   }
   if (astray) mpmi_archive_damaged(a, "a particle is far from its block");
 }
 
-/* Follows from F, by the very function that steps use, so that a step that fails can make it again: another
- * instruction set rounds otherwise. */
+/* Computes volumes from F by the very function that steps use, because another instruction set rounds
+ * otherwise, and a step that fails must be able to make them again. */
 static void restore_volumes(mpm_particles *fresh) {
   const double *F[9];
   for (int32_t c = 0; c < mpmi_tensor_components(fresh->grid->dim); ++c)
     F[c] = mpmi_f64(fresh, MPMI_F, 0) + c * fresh->ld;
-  mpmi_kernels_of(fresh->context->isa)
+  mpmi_deformation_of(fresh->context->isa)
       ->volume[fresh->grid->dim](F, mpmi_f64(fresh, MPMI_INITIAL_VOLUME, 0), mpmi_f64(fresh, MPMI_VOLUME, 0),
                                  fresh->slots);
 }

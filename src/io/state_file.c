@@ -1,4 +1,4 @@
-/* States in files. */
+/* States are saved in files and loaded from files. */
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
 #include "io/state.h"
@@ -14,7 +14,7 @@ mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path) {
   mpmi_output out;
   if (!status) status = mpmi_output_open(&out, context, path);
   if (status) return status;
-  /* the header, which knows the checksum, comes last: until then its place is empty */
+  /* The header has the checksum and so comes last; until then its place is empty. */
   mpmi_state_header header = {"", 0, 0, 0, 0};
   mpmi_output_write(&out, &header, sizeof header);
   mpmi_archive a;
@@ -27,8 +27,8 @@ mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path) {
   return mpmi_output_close(&out, 1);
 }
 
-/* Reads and checks the header before there is a buffer: what is no state may be of any size. */
-static mpm_status measure(mpm_context *context, const char *path, FILE *file, int64_t *bytes) {
+/* Reads and checks the header before there is a buffer, because a file that is no state may have any size. */
+static mpm_status measure_file(mpm_context *context, const char *path, FILE *file, int64_t *bytes) {
   struct stat info;
   if (fstat(fileno(file), &info)) return mpmi_io_error(context, "read", path, errno);
   if (!S_ISREG(info.st_mode))
@@ -61,7 +61,7 @@ mpm_status mpm_state_load_file(mpm_stepper *stepper, const char *path) {
   FILE *file = fopen(path, "rbe");
   if (!file) return mpmi_io_error(stepper->context, "read", path, errno);
   int64_t bytes = 0;
-  status = measure(stepper->context, path, file, &bytes);
+  status = measure_file(stepper->context, path, file, &bytes);
   if (!status) status = load(stepper, path, file, bytes);
   fclose(file);
   return status;

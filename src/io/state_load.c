@@ -1,16 +1,16 @@
-/* Loading: everything is read into new storage and checked before anything of the stepper changes. */
+/* Loading reads everything into new storage and checks it before anything of the stepper changes. */
 #include "io/state.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A state on its way in. */
+/* A state that is being loaded. */
 typedef struct loading {
   mpmi_archive archive;
   mpm_stepper *stepper;
   mpmi_state_numbers numbers;
   mpmi_state_set *set; /* [sets] */
-  int64_t slots;       /* of all sets */
+  int64_t slots;       /* slots of all sets */
 } loading;
 
 mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header *header, int64_t bytes) {
@@ -53,7 +53,7 @@ static mpm_status check_idle(const mpm_stepper *s) {
   return MPM_OK;
 }
 
-/* The set as it is, but without storage. */
+/* Starts with a copy of the set that has no storage. */
 static void start_set(mpmi_state_set *to, const mpm_particles *set) {
   mpm_particles *fresh = &to->fresh;
   *fresh = *set;
@@ -67,7 +67,7 @@ static int32_t is_magnitude(double x) {
   return isfinite(x) && x >= 0.0;
 }
 
-/* Counts go on from here: far from where they would overflow. */
+/* Counts go on from here, and must start far from where they would overflow. */
 static int32_t is_count(int64_t n) {
   return n >= 0 && n <= INT64_MAX / 2;
 }
@@ -96,7 +96,7 @@ static void read_numbers(loading *l) {
 }
 
 static mpm_status read_blocks(loading *l) {
-  /* each takes at least one group of slots */
+  /* Each block takes at least one group of slots. */
   if (l->numbers.blocks > l->slots / MPMI_PAD)
     mpmi_archive_damaged(&l->archive, "it has blocks without slots");
   if (l->archive.status) return l->archive.status;
@@ -154,7 +154,7 @@ static mpm_status read_state(loading *l) {
   return status;
 }
 
-/* The old storage goes where the new one came from, to be freed with it. */
+/* Exchanges the storage, so that the old one is freed where the new one came from. */
 static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
   for (int32_t f = 0; f < set->field_count; ++f) {
     const mpmi_field field = set->field[f];
@@ -173,7 +173,7 @@ static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
   mpmi_index_drop(set);
 }
 
-/* Cannot fail. */
+/* Takes the loaded state over, which cannot fail. */
 static void take_over(loading *l) {
   mpm_stepper *s = l->stepper;
   const mpmi_state_numbers *n = &l->numbers;

@@ -23,7 +23,7 @@ mpm_status mpmi_state_settle(const mpm_stepper *s) {
     status = check_views(s, m);
     /* Bad values written through a view bar saving as they bar a step; the text says which. */
     if (!status && mpmi_particles_check_suspects(s->layout.member[m].set)) status = MPM_E_STATE;
-    /* What follows from F may have been left for later: const or not, the host sees the same. */
+    /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
     if (!status) status = mpmi_particles_refresh(s->layout.member[m].set);
   }
   return status;

@@ -1,4 +1,4 @@
-/* The part of a state that must be the same in the stepper that loads it. */
+/* The setup is the part of a state that must be the same in the stepper that loads it. */
 #include "io/state.h"
 
 #include <string.h>
@@ -28,8 +28,8 @@ static void setup_grid(mpmi_archive *a, const mpm_grid_desc *d) {
   mpmi_archive_same_real(a, "smoothing", d->basis == MPM_UGIMP ? d->smoothing : 0.0);
 }
 
-/* What belongs to the scheme; forces, damping, boundary conditions and tolerances are the host's to change.
- */
+/* Compares what belongs to the scheme. The host may change forces, damping, boundary conditions and
+ * tolerances. */
 static void setup_scheme(mpmi_archive *a, const mpm_stepper_desc *d) {
   mpmi_archive_same_int(a, "scheme", d->scheme);
   mpmi_archive_same_int(a, "transfer", d->transfer);
@@ -50,7 +50,7 @@ static void setup_law(mpmi_archive *a, const mpm_material *material) {
   mpmi_archive_same_real(a, "density", material->density);
 }
 
-static void write_fields(mpmi_archive *a, const mpm_particles *set) {
+static void write_field_list(mpmi_archive *a, const mpm_particles *set) {
   int64_t count = set->field_count;
   mpmi_archive_bytes(a, &count, sizeof count);
   for (int32_t f = 0; f < set->field_count; ++f) {
@@ -72,7 +72,7 @@ static mpm_status refuse_field(mpmi_archive *a, const char *name, const char *wh
                    name, what);
 }
 
-/* Finds the field in the set; its presence there follows the state where that is a matter of use. */
+/* Finds the field in the set. Where a field may be absent, its presence is taken from the state. */
 static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
   mpmi_state_field saved;
   mpmi_archive_bytes(a, &saved, sizeof saved);
@@ -116,7 +116,7 @@ static void read_fields(mpmi_archive *a, mpmi_state_set *to) {
 _Static_assert(MPMI_MAX_FIELDS <= 64, "one bit for each field");
 
 void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set) {
-  /* which library and instruction set wrote the state: for information only */
+  /* Library version and instruction set are for information only. */
   int64_t version = MPM_VERSION, isa = s->context->isa;
   mpmi_archive_bytes(a, &version, sizeof version);
   mpmi_archive_bytes(a, &isa, sizeof isa);
@@ -129,7 +129,7 @@ void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set
     if (set)
       read_fields(a, &set[m]);
     else
-      write_fields(a, s->layout.member[m].set);
+      write_field_list(a, s->layout.member[m].set);
   }
   a->where[0] = '\0';
 }

@@ -22,7 +22,7 @@ mpm_status mpmi_vtk_add_named(mpmi_vtk_file *file, const char *name, int32_t fie
   return MPM_OK;
 }
 
-/* With the number of its bytes, which stands before it. */
+/* Adds the bytes of an array and of the number that stands before it. Returns 0 when the sum overflows. */
 static int32_t add_bytes(const mpmi_vtk_array *a, int64_t *sum) {
   int64_t bytes;
   return !__builtin_mul_overflow(a->tuples, a->components * (int64_t)mpmi_type_size(a->type), &bytes) &&
@@ -31,7 +31,7 @@ static int32_t add_bytes(const mpmi_vtk_array *a, int64_t *sum) {
 }
 
 int32_t mpmi_vtk_fits(const mpmi_vtk_file *file) {
-  int64_t sum = 1 << 20; /* the head */
+  int64_t sum = 1 << 20; /* more than the head takes */
   for (int32_t i = 0; i < file->count; ++i)
     if (!add_bytes(&file->list[i], &sum)) return 0;
   return 1;

@@ -1,6 +1,6 @@
-/* Nodal fields as VTK image data over the box of the active nodes, or as a rectilinear grid where open knots
- * leave nodes that are not a spacing apart. Nodes are visited in the order of the image; what lies between
- * them is zeros, so that memory follows the material and not the box. */
+/* Nodal fields are written as VTK image data over the box of the active nodes, or as a rectilinear grid
+ * where open knots space nodes unevenly. Nodes are visited in the order of the image, with zeros between
+ * them, so that memory follows the material and not the box. */
 #include "context/radix.h"
 #include "io/vtk_file.h"
 #include "stepper/node_view.h"
@@ -9,18 +9,18 @@
 #include <string.h>
 
 enum { BUFFER = 4096 };
-enum { COORDINATES = -1 }; /* and less: of an axis, beside the numbers of fields */
+enum { COORDINATES = -1 }; /* and less: coordinates of an axis; the numbers of fields are not negative */
 
 typedef struct image {
   mpm_stepper *s;
   mpmi_vtk_file file;
-  int32_t uneven;          /* nodes are not a spacing apart */
-  int64_t low[3], size[3]; /* of the box, in nodes; 1 on axes that do not exist */
-  int64_t points;          /* of the box */
-  int64_t n;               /* active nodes, by ascending place: */
+  int32_t uneven;          /* 1: nodes are not all one spacing apart */
+  int64_t low[3], size[3]; /* of the box, in nodes; size 1 on axes that do not exist */
+  int64_t points;          /* nodes of the box */
+  int64_t n;               /* active nodes, listed by ascending place */
   int64_t *slot;           /* [n] */
   uint64_t *place;         /* [n] in the image, x fastest */
-  size_t bytes;            /* of both */
+  size_t bytes;            /* memory of both lists */
 } image;
 
 static int32_t shown_components(const mpm_stepper *s, int32_t field) {
@@ -41,7 +41,7 @@ static mpm_status choose_arrays(image *w, int32_t count, const char *const *fiel
                                   shown_components(s, f), w->points);
   }
   for (int32_t f = 0; f < MPMI_NODE_FIELDS && !count && !status; ++f) {
-    /* the points of the image are the positions, and only what the step has kept is there */
+    /* The points of the image are the positions, and only what the step has kept can be shown. */
     if (f == MPMI_NODE_POSITION || !mpmi_node_keeps(s, f)) continue;
     mpmi_vtk_add(&w->file, mpmi_node_fields[f].name, f, mpmi_node_fields[f].type, shown_components(s, f),
                  w->points);
@@ -154,7 +154,7 @@ static void write_coordinates(image *w, int32_t axis) {
 
 static void write_array(image *w, const mpmi_vtk_array *a) {
   const int64_t tuple = a->components * (int64_t)mpmi_type_size(a->type), most = BUFFER / a->components;
-  double buffer[BUFFER]; /* of I64 too, which are as large */
+  double buffer[BUFFER]; /* holds I64 as well, which has the same size */
   int64_t end = 0;
   mpmi_vtk_start_array(&w->file, a);
   if (a->field <= COORDINATES) {
@@ -164,7 +164,7 @@ static void write_array(image *w, const mpmi_vtk_array *a) {
   for (int64_t i = 0, run; i < w->n; i += run) {
     const int64_t begin = (int64_t)w->place[i];
     for (run = 1; run < most && i + run < w->n && (int64_t)w->place[i + run] == begin + run;) ++run;
-    memset(buffer, 0, (size_t)(run * tuple)); /* the axes that do not exist */
+    memset(buffer, 0, (size_t)(run * tuple)); /* axes that do not exist stay 0 */
     mpmi_node_values(w->s, a->field, w->slot + i, run, a->components, 1, buffer);
     mpmi_output_zeros(&w->file.out, (begin - end) * tuple);
     mpmi_output_write(&w->file.out, buffer, (size_t)(run * tuple));
@@ -173,7 +173,7 @@ static void write_array(image *w, const mpmi_vtk_array *a) {
   mpmi_output_zeros(&w->file.out, (w->points - end) * tuple);
 }
 
-/* Readers choose by the suffix what they expect to find. */
+/* Readers choose by the suffix what they expect in a file. */
 static mpm_status check_suffix(const image *w, const char *path) {
   const char *suffix = strrchr(path, '.');
   if (!suffix || strcmp(suffix, w->uneven ? ".vti" : ".vtr")) return MPM_OK;

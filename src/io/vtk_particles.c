@@ -1,11 +1,11 @@
-/* A particle set as VTK poly data. */
+/* A particle set is written as VTK poly data. */
 #include "io/vtk_file.h"
 #include "particles/values.h"
 #include "stepper/stepper.h"
 
 #include <string.h>
 
-enum { POINTS = -1, NUMBERS = -2, ENDS = -3 }; /* beside the numbers of fields */
+enum { POINTS = -1, NUMBERS = -2, ENDS = -3 }; /* the numbers of fields are not negative */
 enum { BUFFER = 4096 };
 
 typedef struct writer {
@@ -13,7 +13,7 @@ typedef struct writer {
   mpmi_vtk_file file;
 } writer;
 
-/* Vectors have three components for VTK, which would not take them for vectors otherwise. */
+/* Vectors are shown with three components, because VTK would not take them for vectors otherwise. */
 static int32_t shown_components(const mpmi_field *field, int32_t f, int32_t dim) {
   const int32_t is_vector = f < MPMI_BUILTIN_FIELDS && f != MPMI_STATE && f != MPMI_STRESS && f != MPMI_F &&
                             f != MPMI_L && field->type == MPM_F64 && dim > 1 && field->full_components == dim;
@@ -66,7 +66,8 @@ static void write_head(writer *w) {
   fputs("      </PointData>\n", stream);
 }
 
-/* Component c of the particles [begin, begin + n) by ascending id, to every `stride`-th element of out. */
+/* Gathers component c of the particles [begin, begin + n) by ascending id into every `stride`-th element
+ * of out. */
 static void gather(const mpm_particles *set, int32_t f, int32_t c, int64_t begin, int64_t n, int32_t stride,
                    double *out) {
   const mpmi_field *field = &set->field[f];
@@ -104,10 +105,10 @@ static void write_array(writer *w, const mpmi_vtk_array *a) {
   }
 }
 
-/* What the arrays need before they can be read. */
+/* Brings up to date what the arrays need before they can be read. */
 static mpm_status settle(const writer *w) {
   mpm_particles *set =
-      (mpm_particles *)(uintptr_t)w->set; /* what follows from F, and the index, are caches */
+      (mpm_particles *)(uintptr_t)w->set; /* the index, and what follows from F, are caches */
   mpm_status status = MPM_OK;
   for (int32_t i = 0; i < w->file.count && !status; ++i) status = mpmi_settle(set, w->file.list[i].field);
   return status ? status : mpmi_index_build(set);

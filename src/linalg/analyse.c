@@ -1,4 +1,5 @@
-/* The structure of the factor: the rows of every front, where entries of the matrix and updates go. */
+/* This file finds the structure of the factor: the rows of every front, and where the entries of the
+ * matrix and the updates of other fronts go. */
 #include <string.h>
 
 #include "linalg/factor.h"
@@ -23,48 +24,48 @@ void mpmi_factor_free(mpmi_factor *f) {
   mpmi_factor_init(f, context);
 }
 
-/* What is of use during the analysis only. */
+/* An analysis needs these lists only while it runs. */
 typedef struct analysis {
   mpmi_factor *f;
   const mpmi_matrix *A;
-  mpmi_dissection cut;
+  mpmi_dissection dissection;
   int32_t *seen;     /* [nodes] by place: number + 1 of the last front that has it among its rows */
   int32_t *local_of; /* [nodes] by place: its first row in the present front */
-  int32_t waiting;   /* last front without a parent; the others hang on it by `sibling` */
+  int32_t waiting;   /* the last front without a parent; `sibling` chains the others */
 } analysis;
 
-/* Lists of one element per node, out of one piece of memory; the widest elements come first. */
-static mpm_status carve(analysis *a) {
+/* All lists of one element per node share one piece of memory; the widest elements come first. */
+static mpm_status place_lists(analysis *a) {
   mpmi_factor *f = a->f;
   const int64_t n = a->A->rows;
-  const size_t per_node =
-      sizeof *f->front + sizeof *f->task + sizeof *f->start + sizeof *a->cut.part + 6 * sizeof(int32_t);
+  const size_t per_node = sizeof *f->front + sizeof *f->task + sizeof *f->start + sizeof *a->dissection.part +
+                          6 * sizeof(int32_t);
   const size_t bytes = mpmi_bytes(n + 1, per_node);
   const mpm_status status = mpmi_reserve(f->context, (void **)&f->slab, &f->slab_capacity,
                                          bytes < INT64_MAX ? (int64_t)bytes : INT64_MAX, 1);
   if (status) return status;
   char *at = f->slab;
 #define TAKE(list) ((list) = (void *)at, at += (size_t)(n + 1) * sizeof *(list))
-  TAKE(f->front), TAKE(f->task), TAKE(f->start), TAKE(a->cut.part), TAKE(f->order), TAKE(f->place);
-  TAKE(a->cut.label), TAKE(a->cut.spare), TAKE(a->seen), TAKE(a->local_of);
+  TAKE(f->front), TAKE(f->task), TAKE(f->start), TAKE(a->dissection.part), TAKE(f->order), TAKE(f->place);
+  TAKE(a->dissection.label), TAKE(a->dissection.spare), TAKE(a->seen), TAKE(a->local_of);
 #undef TAKE
   return MPM_OK;
 }
 
-static void order_nodes(analysis *a) {
+static void dissect_nodes(analysis *a) {
   mpmi_factor *f = a->f;
   const mpmi_matrix *A = a->A;
   int32_t component[3];
   f->nodes = 0;
   for (int64_t i = 0; i < A->rows; ++i) {
-    a->cut.label[i] = 0;
+    a->dissection.label[i] = 0;
     f->place[i] = -1;
     if (mpmi_free_components(A, i, component)) f->order[f->nodes++] = (int32_t)i;
   }
-  a->cut.A = A;
-  a->cut.order = f->order;
-  a->cut.nodes = f->nodes;
-  mpmi_dissect(&a->cut);
+  a->dissection.A = A;
+  a->dissection.order = f->order;
+  a->dissection.nodes = f->nodes;
+  mpmi_dissect(&a->dissection);
   f->start[0] = 0;
   for (int32_t at = 0; at < f->nodes; ++at) {
     f->place[f->order[at]] = at;
@@ -74,7 +75,7 @@ static void order_nodes(analysis *a) {
   f->unknowns = f->start[f->nodes];
 }
 
-/* Room for more elements, keeping the first `used`. */
+/* Makes room for more elements and keeps the first `used`. */
 static mpm_status grow(mpm_context *context, int32_t **at, int64_t *capacity, int64_t used, int64_t wanted) {
   if (wanted <= *capacity) return MPM_OK;
   const int64_t larger = 2 * wanted;
@@ -107,8 +108,8 @@ static void sort(int32_t *list, int64_t count) {
   }
 }
 
-/* A row of the front, if it is one and not known yet. */
-static mpm_status add_row(analysis *a, int32_t number, int32_t place) {
+/* Adds a node to the rows of the front, unless the front eliminates it or has it already. */
+static mpm_status note_row(analysis *a, int32_t number, int32_t place) {
   mpmi_factor *f = a->f;
   mpmi_front *front = &f->front[number];
   if (place < front->end || a->seen[place] == number + 1) return MPM_OK;
@@ -119,14 +120,15 @@ static mpm_status add_row(analysis *a, int32_t number, int32_t place) {
   return status;
 }
 
-/* The nodes that those of a part couple to, by themselves and by what they enclose. */
+/* Finds the rows of a front: the nodes that its own nodes couple to, and the rows that the enclosed fronts
+ * leave. */
 static mpm_status find_rows(analysis *a, int32_t number, int32_t whole) {
   mpmi_factor *f = a->f;
   mpmi_front *front = &f->front[number];
   mpm_status status;
   for (int32_t at = front->begin; at < front->end; ++at)
     for (int64_t e = a->A->row_start[f->order[at]]; e < a->A->row_start[f->order[at] + 1]; ++e)
-      if ((status = add_row(a, number, f->place[a->A->column[e]]))) return status;
+      if ((status = note_row(a, number, f->place[a->A->column[e]]))) return status;
   while (a->waiting >= 0 && f->front[a->waiting].begin >= whole) {
     const int32_t child = a->waiting;
     mpmi_front *of = &f->front[child];
@@ -136,13 +138,13 @@ static mpm_status find_rows(analysis *a, int32_t number, int32_t whole) {
     front->child = child;
     front->lowest = of->lowest;
     for (int32_t r = 0; r < of->node_rows; ++r)
-      if ((status = add_row(a, number, f->node_row[of->node_row + r]))) return status;
+      if ((status = note_row(a, number, f->node_row[of->node_row + r]))) return status;
   }
   sort(f->node_row + front->node_row, front->node_rows);
   return MPM_OK;
 }
 
-/* The unknowns of these nodes, and the row of the front at which those of each node begin. */
+/* Lists the unknowns of these nodes, and notes at which row of the front those of each node begin. */
 static mpm_status list_unknowns(analysis *a, mpmi_front *front) {
   mpmi_factor *f = a->f;
   for (int32_t at = front->begin; at < front->end; ++at)
@@ -158,7 +160,7 @@ static mpm_status list_unknowns(analysis *a, mpmi_front *front) {
   return MPM_OK;
 }
 
-/* Where entries of the matrix and the updates of the enclosed fronts go. */
+/* Notes where the entries of the matrix and the updates of the enclosed fronts go. */
 static void map_into(analysis *a, const mpmi_front *front) {
   mpmi_factor *f = a->f;
   const mpmi_matrix *A = a->A;
@@ -208,24 +210,24 @@ mpm_status mpmi_factor_analyse(mpmi_factor *f, const mpmi_matrix *A) {
   if (mpmi_matrix_unknowns(A) > INT32_MAX)
     return mpmi_fail(f->context, MPM_E_NOMEM, "out of memory: no direct solver for %lld unknowns",
                      (long long)mpmi_matrix_unknowns(A));
-  mpm_status status = carve(&a);
+  mpm_status status = place_lists(&a);
   if (!status)
     status = mpmi_reserve(f->context, (void **)&f->local, &f->local_capacity, A->row_start[A->rows],
                           sizeof *f->local);
-  /* a single front leaves these without an entry, but not without a place */
+  /* A single front has no rows, but its empty lists still need an address. */
   if (!status) status = grow(f->context, &f->node_row, &f->node_row_capacity, 0, 1);
   if (!status) status = grow(f->context, &f->row, &f->row_capacity, 0, 1);
   if (!status) status = grow(f->context, &f->map, &f->map_capacity, 0, 1);
   if (status) return status;
-  order_nodes(&a);
+  dissect_nodes(&a);
   f->fronts = 0;
   f->rows = 0;
   int64_t node_rows = 0;
-  for (int32_t p = 0; p < a.cut.parts; ++p) {
-    if ((status = add_front(&a, &a.cut.part[p], node_rows))) return status;
+  for (int32_t p = 0; p < a.dissection.parts; ++p) {
+    if ((status = add_front(&a, &a.dissection.part[p], node_rows))) return status;
     node_rows += f->front[p].node_rows;
   }
-  for (int32_t last = a.waiting; last >= 0;) { /* fronts that nothing encloses */
+  for (int32_t last = a.waiting; last >= 0;) { /* nothing encloses these fronts */
     const int32_t next = f->front[last].sibling;
     f->front[last].sibling = -1;
     last = next;

@@ -1,10 +1,11 @@
-/* Products of a block matrix with a vector: chunks of rows, one loop per size of the blocks. */
+/* Products of a block matrix with a vector are made here: tasks take chunks of rows, and each size of the
+ * blocks has a loop of its own. */
 #include <float.h>
 #include <math.h>
 
 #include "linalg/matrix.h"
 #include "linalg/vectors.h"
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 enum { PRODUCT, RESIDUAL, ROUNDING };
 
@@ -24,7 +25,7 @@ MPMI_INLINE void row_times_vector(const mpmi_matrix *A, int32_t block, int32_t a
   for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e, value += block * block) {
     const double *at = x + (int64_t)A->column[e] * block;
     for (int32_t r = 0; r < block; ++r) {
-      double of_block = 0.0; /* first, so that blocks wait for one addition each */
+      double of_block = 0.0; /* a block adds up first, so that it waits for one addition only */
       for (int32_t c = 0; c < block; ++c) {
         const double term = value[r * block + c] * at[c];
         of_block += absolute ? fabs(term) : term;
@@ -34,7 +35,7 @@ MPMI_INLINE void row_times_vector(const mpmi_matrix *A, int32_t block, int32_t a
   }
 }
 
-/* The sum is that of x . y for a product, of y . y for the others. */
+/* Returns x . y for a product and y . y for the others. */
 MPMI_INLINE double apply_rows(const apply_job *job, int32_t block, int32_t what, int64_t begin, int64_t end) {
   double sum = 0.0;
   for (int64_t i = begin; i < end; ++i) {

@@ -1,4 +1,4 @@
-/* Conjugate gradients, with diagonal scaling or a preconditioner of the caller's. */
+/* The method of conjugate gradients scales with the diagonal, or takes the preconditioner of the caller. */
 #include <math.h>
 #include <string.h>
 
@@ -6,7 +6,7 @@
 
 typedef struct cg {
   mpmi_system *system;
-  mpmi_precondition_fn precondition; /* NULL: by the diagonal, in the passes over the vectors */
+  mpmi_precondition_fn precondition; /* NULL: the passes over the vectors scale with the diagonal */
   void *user;
   const double *inverse; /* of the diagonal */
   double *r, *p, *q;     /* residual, direction, A p */
@@ -16,7 +16,7 @@ typedef struct cg {
   double rz[MPMI_MOST_CHUNKS], rr[MPMI_MOST_CHUNKS]; /* by chunk: r . D^-1 r and r . r */
 } cg;
 
-/* x += alpha p, r -= alpha q, and the sums of the new r. */
+/* Sets x += alpha p and r -= alpha q, and sums over the new r. */
 static void advance_task(void *data, int64_t k) {
   cg *c = data;
   double *x = c->system->x, *r = c->r, rz = 0.0, rr = 0.0;
@@ -31,7 +31,7 @@ static void advance_task(void *data, int64_t k) {
   c->rr[k] = rr;
 }
 
-/* p = M^-1 r + beta p */
+/* Sets p = M^-1 r + beta p. */
 static void turn_task(void *data, int64_t k) {
   const cg *c = data;
   double *p = c->p;
@@ -40,13 +40,13 @@ static void turn_task(void *data, int64_t k) {
     p[i] = (inverse ? inverse[i] * r[i] : z[i]) + beta * p[i];
 }
 
-static mpm_status run(cg *c, mpm_task_fn task) {
+static mpm_status run_cg(cg *c, mpm_task_fn task) {
   return mpmi_run_chunks(c->system->context, &c->chunks, task, c);
 }
 
-/* x and r advance; z = M^-1 r and r . z follow. */
+/* Advances x and r, and then forms z = M^-1 r and r . z. */
 static mpm_status advance(cg *c, double *rz) {
-  mpm_status status = run(c, advance_task);
+  mpm_status status = run_cg(c, advance_task);
   if (status) return status;
   *rz = mpmi_sum_in_order(c->rz, c->chunks.count);
   if (!c->precondition) return MPM_OK;
@@ -54,7 +54,7 @@ static mpm_status advance(cg *c, double *rz) {
   return status ? status : mpmi_dot(c->system->context, c->r, c->z, c->system->n, rz);
 }
 
-/* r = b - A x with its sums, and the direction that it gives. */
+/* Starts from r = b - A x, with its sums and the direction that it gives. */
 static mpm_status start(cg *c, double *rz) {
   mpmi_system *s = c->system;
   mpm_status status = mpmi_matrix_residual(s->A, s->b, s->x, c->r, &s->reached);
@@ -62,7 +62,7 @@ static mpm_status start(cg *c, double *rz) {
   memset(c->p, 0, (size_t)s->n * sizeof *c->p);
   memset(c->q, 0, (size_t)s->n * sizeof *c->q);
   if (!status) status = advance(c, rz);
-  return status ? status : run(c, turn_task);
+  return status ? status : run_cg(c, turn_task);
 }
 
 /* Iterates until the recursion's residual is as wanted or the limit is reached. */
@@ -82,13 +82,13 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
     c->beta = next / rz;
     rz = next;
     ++s->report->iterations;
-    if (norm > s->wanted && (status = run(c, turn_task))) return status;
+    if (norm > s->wanted && (status = run_cg(c, turn_task))) return status;
   }
   return MPM_OK;
 }
 
-/* The recursion drifts from the true residual: where that is not as wanted yet, the iteration starts again
- * from it, as long as this helps. */
+/* The residual of the recursion drifts away from the true one. Where the true one is not as wanted yet,
+ * the iteration starts again from it, as long as this helps. */
 mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user, int64_t limit) {
   mpm_status status = mpmi_system_work(s, precondition ? 4 : 3, 0);
   if (status) return status;

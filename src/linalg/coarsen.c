@@ -1,4 +1,4 @@
-/* The next coarser level: every other grid line, linear interpolation. */
+/* The next coarser level has the nodes of every other grid line, and interpolates linearly between them. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,8 +11,8 @@ static int64_t half_of(int64_t index) {
   return index >= 0 ? index / 2 : -((1 - index) / 2);
 }
 
-/* Where the coarse nodes around a node lie; a periodic axis with an odd number of nodes keeps the last one.
- */
+/* Finds where the coarse nodes around a node lie. A periodic axis with an odd number of nodes keeps its
+ * last node. */
 static int32_t parents_of(const mpmi_matrix *A, int64_t row, int64_t index[MOST_PARENTS][3]) {
   int32_t count = 1;
   for (int32_t k = 0; k < 3; ++k) {
@@ -39,7 +39,7 @@ static int64_t count_parents(const mpmi_matrix *A) {
   return count;
 }
 
-/* Coarse nodes by where they lie. */
+/* A hash table finds coarse nodes by where they lie. */
 typedef struct node_list {
   int64_t (*index)[3];
   int64_t count, slots; /* slots: a power of two */
@@ -60,7 +60,7 @@ static int32_t find_or_add(node_list *n, const int64_t *index) {
   }
 }
 
-/* Parents of all nodes; coarse nodes are numbered as they are met. */
+/* Finds the parents of all nodes, and numbers coarse nodes as they are met. */
 static void find_parents(const mpmi_matrix *A, node_list *n, mpmi_coarsening *to) {
   int64_t count = 0;
   memset(n->table, 0xff, (size_t)n->slots * sizeof *n->table);
@@ -89,15 +89,15 @@ static void find_children(int64_t rows, int64_t coarse, mpmi_coarsening *to) {
 typedef struct pattern_job {
   const mpmi_matrix *A;
   const mpmi_coarsening *P;
-  mpmi_matrix *coarse; /* to be filled, or NULL */
+  mpmi_matrix *coarse; /* NULL: the columns are only counted */
   int64_t rows;
   mpmi_chunks tasks;
   int64_t *count; /* [rows] columns */
   int64_t *most;  /* [tasks] */
-  int32_t *seen;  /* [tasks][rows of A, then coarse ones] for which row */
+  int32_t *seen;  /* [tasks][rows of A, then coarse rows] the coarse row that met a node last */
 } pattern_job;
 
-/* Columns of a coarse row: parents of all that couple with its children. */
+/* Lists or counts the columns of a coarse row: the parents of all nodes that couple with its children. */
 static int64_t columns_of(const pattern_job *job, int64_t row, int32_t *seen, int32_t *out, int64_t *nodes) {
   const mpmi_matrix *A = job->A;
   const mpmi_coarsening *P = job->P;

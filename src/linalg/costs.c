@@ -1,9 +1,9 @@
-/* What each method would cost, as far as can be said from the pattern. */
+/* This file estimates from the pattern what each method would cost. */
 #include "linalg/costs.h"
 
 #include <math.h>
 
-/* Nodes along the axes, longest first. */
+/* Counts the nodes along each axis; the longest comes first. */
 static void extents_of(const mpmi_matrix *A, double *extent) {
   for (int32_t k = 0; k < 3; ++k) {
     int64_t low = A->rows ? A->index[0][k] : 0, high = low;
@@ -23,8 +23,9 @@ mpmi_costs mpmi_costs_of(const mpmi_matrix *A, double inertia) {
   const double entries = (double)A->row_start[A->rows], rows = (double)A->rows;
   const double dim = 1.0 + (extent[1] > 1.0) + (extent[2] > 1.0);
   const double half_stencil = fmax(1.0, 0.5 * (pow(entries / rows, 1.0 / dim) - 1.0));
-  /* work of the factor is that of its separators, as wide as half a stencil, of which a long body has many:
-   * 7 times the cube of one, and 20 multiplications in the time of one of a product */
+  /* The factor spends its work on separators. They are half a stencil wide, and a long body has many of
+   * them. One takes 7 times the cube of its size, and 20 of these multiplications take as long as one of a
+   * product. */
   const double separator = (double)mpmi_matrix_unknowns(A) / extent[0] * half_stencil;
   const double factor = 7.0 * separator * separator * separator * extent[0] / extent[1];
   mpmi_costs c;

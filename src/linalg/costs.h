@@ -1,4 +1,4 @@
-/* What each method would cost, so that the cheapest can be taken. */
+/* The cost of each method is estimated, so that the cheapest can be taken. */
 #ifndef MPMI_COSTS_H
 #define MPMI_COSTS_H
 

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "transfer/lanes.h"
+#include "simd/lanes.h"
 
-/* A tile of the update is 2 registers of rows by STRIP columns: as many sums as hide the latency of a
- * multiply-add, and fit into the registers. */
+/* A tile of the update has 2 registers of rows and STRIP columns: enough sums to hide the latency of a
+ * multiply-add, and few enough for the registers. */
 enum {
   SLIVER = 2 * MPMI_LANES,
 #if defined(__AVX512F__)
@@ -25,13 +25,10 @@ enum {
 #define UNROLL _Pragma("GCC unroll 8")
 #endif
 
-static int64_t pieces(int64_t count, int64_t size) {
-  return (count + size - 1) / size;
-}
-
-/* Four areas of the scratch: rows of L and of L D, rows of U transposed and of that times D. */
+/* The scratch has four areas: rows of L and of L D, and rows of U transposed and of that times D. */
 static double *area(const mpmi_dense_front *f, int32_t which) {
-  return f->scratch + which * ROOM * (pieces(f->pivots, SLIVER) + pieces(f->rows, SLIVER));
+  return f->scratch +
+         which * ROOM * (mpmi_dense_pieces(f->pivots, SLIVER) + mpmi_dense_pieces(f->rows, SLIVER));
 }
 enum { L_ROWS, L_TIMES_D, U_ROWS, U_TIMES_D };
 
@@ -39,13 +36,14 @@ static int32_t is_symmetric(const mpmi_dense_front *f) {
   return f->upper == f->lower;
 }
 
-/* First row of a sliver or strip, of `size` rows each, and how many it has; the pivots' come first. */
+/* A span is the rows of one sliver or strip. Those of the pivots come first, and the last one of a group
+ * may be shorter than `size`. */
 typedef struct span {
   int64_t first, count;
 } span;
 
 static span span_of(const mpmi_dense_front *f, int64_t number, int64_t size) {
-  const int64_t next = f->first + f->width, of_pivots = pieces(f->pivots - next, size);
+  const int64_t next = f->first + f->width, of_pivots = mpmi_dense_pieces(f->pivots - next, size);
   const int64_t first = number < of_pivots ? next + number * size : f->pivots + (number - of_pivots) * size;
   const int64_t end = number < of_pivots ? f->pivots : f->pivots + f->rows;
   return (span){first, end - first < size ? end - first : size};
@@ -66,7 +64,7 @@ static void store_block(const mpmi_dense_front *f, const double *block, double *
       panel[(f->first + c) * ld + f->first + r] = block[c * MPMI_PANEL + r];
 }
 
-/* block -= scaled column times the row that `times` has below its diagonal. */
+/* Subtracts from the block the scaled column times the row that `times` holds below its diagonal. */
 static void take_column(const double *scaled, const double *times, int64_t j, int64_t width, double *block) {
   for (int64_t c = j + 1; c < width; ++c) {
     const double factor = times[c];
@@ -79,7 +77,7 @@ static int64_t factor_block(mpmi_dense_front *f) {
   double *lower = f->lower_block, *upper = f->upper_block, scaled[2][MPMI_PANEL];
   const int32_t symmetric = is_symmetric(f);
   const int64_t width = f->width;
-  memset(lower, 0, sizeof f->lower_block); /* what lies beyond the width counts as zero in solve_sliver() */
+  memset(lower, 0, sizeof f->lower_block); /* solve_sliver() takes what lies beyond the width as zero */
   fetch_block(f, f->lower, lower);
   if (!symmetric) {
     memset(upper, 0, sizeof f->upper_block);
@@ -107,7 +105,8 @@ static int64_t factor_block(mpmi_dense_front *f) {
 }
 
 /* ---- the rows below ---------------------------------------------------------------------------------- */
-/* Columns [j, j + AT_ONCE) of a sliver, those before them being solved for. triangle: [column][row]. */
+/* Solves for the columns [j, j + AT_ONCE) of a sliver; those before them are solved for already. triangle:
+ * [column][row]. */
 MPMI_INLINE void solve_columns(const double *triangle, int64_t j, double *w) {
   mpmi_lanes sum[AT_ONCE][2];
   UNROLL for (int32_t c = 0; c < AT_ONCE; ++c) {
@@ -134,8 +133,8 @@ MPMI_INLINE void solve_columns(const double *triangle, int64_t j, double *w) {
   }
 }
 
-/* Rows of the panel over a unit triangle give rows times D; they are kept side by side for the update, with
- * zeros for rows that there are not. */
+/* Divides rows of the panel by a unit triangle, which leaves rows times D. The update finds both side by
+ * side, with zeros in place of rows that do not exist. */
 MPMI_INLINE void solve_sliver(const mpmi_dense_front *f, double *panel, const double *triangle, span rows,
                               double *scaled, double *times_d) {
   const int64_t ld = f->pivots + f->rows, width = f->width;
@@ -166,7 +165,7 @@ static void solve_slivers(const mpmi_dense_front *f, int64_t begin, int64_t end)
 }
 
 /* ---- the update of the columns to the right ---------------------------------------------------------- */
-/* to[column][row] -= a times b transposed, over k pivots. */
+/* Subtracts a times b transposed, over k pivots, from to[column][row]. */
 MPMI_INLINE void update_tile(const double *a, const double *b, int64_t k, double *to, int64_t ld,
                              int64_t rows, int64_t columns) {
   mpmi_lanes sum[STRIP][2];
@@ -195,11 +194,11 @@ MPMI_INLINE void update_tile(const double *a, const double *b, int64_t k, double
     for (int64_t r = 0; r < rows; ++r) to[c * ld + r] -= spill[c][r];
 }
 
-/* One strip of columns under what is at or below its diagonal, or under all of the update matrix. */
+/* Updates one strip of columns: at and below the diagonal, or over all rows of the update matrix. */
 static void update_strip(const mpmi_dense_front *f, int64_t strip, const double *rows_of,
                          const double *strips_of, double *panel, int32_t all) {
   const span columns = span_of(f, strip, STRIP);
-  const int64_t of_pivots = pieces(f->pivots - f->first - f->width, STRIP);
+  const int64_t of_pivots = mpmi_dense_pieces(f->pivots - f->first - f->width, STRIP);
   const int32_t inside = strip < of_pivots;
   const int64_t ld = inside ? f->pivots + f->rows : f->rows, base = inside ? 0 : f->pivots;
   const int64_t in_group = inside ? strip : strip - of_pivots, group = inside ? 0 : f->pivot_slivers;
@@ -213,7 +212,7 @@ static void update_strip(const mpmi_dense_front *f, int64_t strip, const double 
 }
 
 static void update_strips(const mpmi_dense_front *f, int64_t begin, int64_t end) {
-  const int64_t of_pivots = pieces(f->pivots - f->first - f->width, STRIP);
+  const int64_t of_pivots = mpmi_dense_pieces(f->pivots - f->first - f->width, STRIP);
   const double *l = area(f, L_ROWS), *ld = area(f, L_TIMES_D);
   if (is_symmetric(f)) {
     for (int64_t s = begin; s < end; ++s) update_strip(f, s, l, ld, f->lower, 0);

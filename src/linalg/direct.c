@@ -1,9 +1,10 @@
-/* Solution with the factor, and what else it takes: refinement, GMRES with the factor as preconditioner. */
+/* The direct solver makes the factor, refines its solution, and lets GMRES go on with the factor as
+ * preconditioner where that is not enough. */
 #include <math.h>
 
 #include "linalg/methods.h"
 
-enum { REFINEMENTS = 3, RESTART = 30, CYCLES = 3 };
+enum { REFINEMENTS = 3, FACTOR_RESTART = 30, FACTOR_CYCLES = 3 };
 
 static mpm_status times_factor(void *system, const double *r, double *z) {
   const mpmi_system *s = system;
@@ -25,7 +26,8 @@ static mpm_status make_factor(const mpmi_system *s) {
   return status;
 }
 
-/* x, then x plus the solution for what is left of the right-hand side, as long as this helps. */
+/* Solves for x, and then for corrections of x from what is left of the right-hand side, as long as this
+ * helps. */
 static mpm_status refine(mpmi_system *s, int32_t *good) {
   mpmi_factor *f = &s->solver->factor;
   mpm_status status = mpmi_system_work(s, 2, 0);
@@ -42,8 +44,9 @@ static mpm_status refine(mpmi_system *s, int32_t *good) {
   }
 }
 
-/* With a solution out of reach, there is none if a pivot is small, though no rounding, if the answer of the
- * factor was worse than none, or if this much of the right-hand side is left: rounding made the pivots. */
+/* Where the tolerance cannot be reached, the matrix counts as singular if its smallest pivot is small
+ * although not rounding of zero, if the answer of the factor was worse than x = 0, or if this share of the
+ * right-hand side is left: then the pivots are made of rounding. */
 static const double SMALL_PIVOT = 1e-9, UNSOLVED = 0.1;
 static mpm_status without_solution(const mpmi_system *s, int32_t useless) {
   int64_t row;
@@ -71,7 +74,8 @@ mpm_status mpmi_direct(mpmi_system *s) {
   const int32_t useless = !(s->reached < s->b_norm);
   if (useless)
     for (int64_t i = 0; i < s->n; ++i) s->x[i] = 0.0;
-  const mpmi_gmres_plan plan = {times_factor, s, RESTART, 0, s->report->iterations + RESTART * CYCLES};
+  const mpmi_gmres_plan plan = {times_factor, s, FACTOR_RESTART, 0,
+                                s->report->iterations + FACTOR_RESTART * FACTOR_CYCLES};
   status = mpmi_gmres(s, &plan);
   return status == MPM_NOT_CONVERGED ? without_solution(s, useless) : status;
 }

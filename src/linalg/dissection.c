@@ -1,13 +1,13 @@
-/* Nested dissection: a piece is cut at the median plane across its longest axis; the separator is those nodes
- * of one side that couple to the other, and so is as wide as the stencil, also around a periodic axis. */
+/* Nested dissection cuts a piece at the median plane across its longest axis. The separator is those nodes
+ * of one side that couple to the other side; so it is as wide as the stencil, also around a periodic axis. */
 #include "linalg/dissection.h"
 
 enum {
-  LEAF_UNKNOWNS = 24, /* pieces of so many, about, are eliminated as they are */
+  LEAF_UNKNOWNS = 24, /* pieces of about this size are not cut any more */
   DEEPEST = 64
 };
 
-/* Nodes of [begin, end) that lie at or below the plane. */
+/* Counts the nodes of [begin, end) that lie at or below the plane. */
 static int32_t count_below(const mpmi_dissection *d, int32_t begin, int32_t end, int32_t axis,
                            int64_t plane) {
   int32_t count = 0;
@@ -32,7 +32,7 @@ static extent extent_of(const mpmi_dissection *d, int32_t begin, int32_t end) {
   return box;
 }
 
-/* The plane with half of the nodes at or below it. */
+/* Finds the plane with half of the nodes at or below it. */
 static int64_t median(const mpmi_dissection *d, int32_t begin, int32_t end, int32_t axis, int64_t low,
                       int64_t high) {
   while (low < high) {
@@ -52,7 +52,7 @@ static int32_t touches(const mpmi_dissection *d, int32_t node, int32_t label) {
   return 0;
 }
 
-/* How many nodes of a piece couple to another. */
+/* Counts the nodes of a piece that couple to another piece. */
 static int32_t count_border(const mpmi_dissection *d, int32_t begin, int32_t end, int32_t label,
                             int32_t other) {
   int32_t count = 0;
@@ -80,7 +80,7 @@ static void arrange(mpmi_dissection *d, int32_t begin, int32_t end, int32_t lowe
   for (int32_t at = *last, i = end - begin; at < end; ++at) d->order[at] = d->spare[--i];
 }
 
-/* Cuts across the axis; 0 where that leaves nothing on one side. */
+/* Cuts across the axis. Returns 0 where the separator would leave nothing on one side. */
 static int32_t cut(mpmi_dissection *d, int32_t begin, int32_t end, int32_t axis, int64_t plane,
                    int32_t *middle, int32_t *last) {
   const int32_t lower = ++d->labels, upper = ++d->labels;
@@ -96,7 +96,7 @@ static int32_t cut(mpmi_dissection *d, int32_t begin, int32_t end, int32_t axis,
   const int32_t from_below = above_border == above || (below_border < below && below_border <= above_border);
   if (from_below ? below_border == below : above_border == above) return 0;
   const int32_t side = from_below ? lower : upper, other = from_below ? upper : lower;
-  for (int32_t at = begin; at < end; ++at) /* a separator's label is none that is asked for */
+  for (int32_t at = begin; at < end; ++at) /* nobody asks for the label 0, which the separator gets */
     if (d->label[d->order[at]] == side && touches(d, d->order[at], other)) d->label[d->order[at]] = 0;
   arrange(d, begin, end, lower, upper, middle, last);
   return 1;

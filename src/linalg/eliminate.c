@@ -1,4 +1,5 @@
-/* The numbers of the factor: fronts are put together and eliminated, from the leaves to the root. */
+/* The numbers of the factor are made here: fronts are put together and eliminated, from the leaves to the
+ * root. */
 #include "linalg/factor.h"
 
 #include <float.h>
@@ -26,7 +27,8 @@ static const double *block_of(const mpmi_matrix *A, int64_t row, int64_t column)
   return A->value + low * A->block * A->block;
 }
 
-/* The entries of the matrix that belong to one of the front's nodes: those with nodes of a higher place. */
+/* Adds the entries of the matrix that belong to one node of the front: those with nodes of a higher place
+ * in the order. */
 static void add_node(const factor_job *job, const mpmi_front *front, int32_t at) {
   const mpmi_factor *f = job->f;
   const mpmi_matrix *A = job->A;
@@ -97,7 +99,7 @@ static void put_together(const factor_job *job, const mpmi_front *front) {
 
 /* ---- eliminating it ---------------------------------------------------------------------------------- */
 enum { SLIVERS_AT_ONCE = 4, STRIPS_AT_ONCE = 4 };
-static const double worth_sharing = 1e6; /* multiplications of a panel */
+static const double worth_sharing = 1e6; /* multiplications of a panel; smaller ones stay in one thread */
 
 typedef struct share {
   const mpmi_dense *kernels;
@@ -119,7 +121,7 @@ static void update_share(void *data, int64_t k) {
   s->kernels->update_strips(s->front, k * STRIPS_AT_ONCE, share_end(s, k, STRIPS_AT_ONCE));
 }
 
-/* The panel's rows and its update, by the calling thread or by all. */
+/* Solves for the rows below the panel and makes its update, in the calling thread or in all threads. */
 static mpm_status finish_panel(const mpmi_factor *f, const mpmi_dense_front *front, int32_t shared) {
   share s = {f->kernels, front, front->slivers};
   const int64_t strips = mpmi_dense_strips(f->kernels, front);
@@ -149,7 +151,7 @@ static void keep_update(const mpmi_factor *f, const mpmi_front *front) {
   }
 }
 
-/* *failed: the unknown with a tiny pivot, or -1. */
+/* Eliminates the pivots of a front. *failed becomes the unknown with a pivot that is not finite, or -1. */
 static mpm_status eliminate(const factor_job *job, const mpmi_front *front, double *scratch, int32_t shared,
                             int64_t *failed) {
   const mpmi_factor *f = job->f;
@@ -175,7 +177,7 @@ static mpm_status eliminate(const factor_job *job, const mpmi_front *front, doub
   return MPM_OK;
 }
 
-static void eliminate_task(void *data, int64_t k) {
+static void front_task(void *data, int64_t k) {
   const factor_job *job = data;
   mpmi_factor *f = job->f;
   mpmi_front_task *task = &f->task[k];
@@ -190,7 +192,7 @@ static mpm_status eliminate_all(const factor_job *job, int64_t *failed) {
   mpmi_factor *f = job->f;
   *failed = -1;
   const mpmi_chunks tasks = {f->tasks, 1, f->tasks, f->unknowns < MPMI_ALONE_UNKNOWNS};
-  mpm_status status = mpmi_run_chunks(f->context, &tasks, eliminate_task, (void *)job);
+  mpm_status status = mpmi_run_chunks(f->context, &tasks, front_task, (void *)job);
   for (int32_t t = 0; t < f->tasks && !status && *failed < 0; ++t) *failed = f->task[t].failed;
   for (int32_t i = 0; i < f->fronts && !status && *failed < 0; ++i) {
     if (!f->front[i].top) continue;
@@ -229,7 +231,7 @@ static int64_t node_of_unknown(const mpmi_factor *f, int64_t unknown) {
   return f->order[low];
 }
 
-/* Rounding leaves of a pivot that should be zero about the root of the number of unknowns, in units of the
+/* Where a pivot should be zero, rounding leaves about the root of the number of unknowns, in units of the
  * last place. */
 static double tiny_pivot(const mpmi_factor *f) {
   return 8.0 * DBL_EPSILON * (8.0 + sqrt((double)f->unknowns));

@@ -1,4 +1,4 @@
-/* Solutions with the factor. */
+/* Solutions with the factor go down the fronts with L, and up again with D and L transposed, or U. */
 #include <string.h>
 
 #include "linalg/factor.h"

@@ -1,15 +1,16 @@
-/* Which fronts are eliminated side by side, and where panels, updates and scratch lie: settled beforehand, so
- * that results do not depend on who does what when. */
+/* It is settled beforehand which fronts are eliminated side by side, and where panels, updates and scratch
+ * lie. So results do not depend on which thread does what, and when. */
 #include "linalg/factor.h"
 #include "linalg/vectors.h"
 
-enum { SHARE = 16, LINE = 8 }; /* a task has at most a SHAREth of the work; doubles per cache line */
+enum { SHARE = 16, LINE = 8 }; /* a task has at most a SHAREth of the work; a cache line has LINE doubles */
 
 static int64_t whole_lines(int64_t doubles) {
   return (doubles + LINE - 1) / LINE * LINE;
 }
 
-/* Panels one after the other; the work of fronts with what they enclose. Returns all of it. */
+/* Places panels one after the other, and adds up the work of each front and of those that it encloses.
+ * Returns the work of all. */
 static double place_panels(mpmi_factor *f) {
   double all = 0.0;
   f->panels = f->largest = 0;
@@ -37,8 +38,9 @@ static void choose_tasks(mpmi_factor *f, double most) {
   }
 }
 
-/* Scratch for the largest of these fronts, then a stack: an update is made above those that go into it, and
- * takes their place when they have been used. Updates of tasks stay where they are until the end. */
+/* Places the scratch of the largest of these fronts, and above it a stack of updates. An update is made
+ * above those that go into it, and moves to their place once they have been used. Updates of tasks stay
+ * where they are until the end. */
 static int64_t place_updates(mpmi_factor *f, int32_t begin, int32_t end, int32_t top, int64_t base) {
   int64_t scratch = 0;
   for (int32_t i = begin; i < end; ++i) {

@@ -1,28 +1,30 @@
-/* Numbers of a coarser level: P^T A P, row by row. First a row of P^T A, then what P makes of it. */
+/* The matrix of a coarser level is P^T A P. It is made row by row: first a row of P^T A, then its product
+ * with P. */
 #include <string.h>
 
 #include "linalg/level.h"
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 typedef struct galerkin_job {
   const mpmi_matrix *A;
   const mpmi_coarsening *P;
   mpmi_matrix *coarse;
   mpmi_chunks tasks;
-  int64_t ints; /* of one task's scratch */
-  int32_t
-      *scratch; /* place in the sums of each row of A, or -1; nodes that have one; entry of each coarse row */
+  int64_t ints;     /* in the scratch of one task */
+  int32_t *scratch; /* three lists for each task, see row_job */
   double *sums;
 } galerkin_job;
 
 typedef struct row_job {
   const galerkin_job *of;
-  int32_t *place, *node, *entry;
-  double *sums;
+  int32_t *place; /* [rows of A] place of a row in the sums, or -1 */
+  int32_t *node;  /* [count] rows of A that have a place */
+  int32_t *entry; /* [coarse rows] entry of a column in the row at hand */
+  double *sums;   /* [count] blocks */
   int32_t count;
 } row_job;
 
-/* The diagonal of a held unknown is 1, and P leaves it out. */
+/* Adds a row of A, without the diagonal of held unknowns: it is 1 there, and P leaves them out. */
 MPMI_INLINE void add_child(row_job *r, int32_t block, int64_t i, double weight) {
   const mpmi_matrix *A = r->of->A;
   for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e) {

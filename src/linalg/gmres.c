@@ -1,22 +1,22 @@
-/* Flexible GMRES with restarts: what the preconditioner made of each vector is kept, so that it need not be
- * linear to the last digit, as a cycle in single precision is not. Vectors are made orthogonal by two rounds
- * of classical Gram-Schmidt, whose sums are formed side by side. */
+/* Flexible GMRES with restarts keeps what the preconditioner made of each vector. So the preconditioner
+ * need not be linear to the last digit, and a cycle in single precision is not. Two rounds of classical
+ * Gram-Schmidt make the vectors orthogonal, with all sums of a round in one pass. */
 #include <math.h>
 #include <string.h>
 
 #include "linalg/methods.h"
 
-enum { SLOW_CYCLES = 12 }; /* the impatient go on only if as many cycles would do */
+enum { SLOW_CYCLES = 12 }; /* with `impatient`, the most cycles that may still be expected */
 
 typedef struct gmres {
   mpmi_system *system;
   const mpmi_gmres_plan *plan;
-  double *basis, *ready, *w;           /* [restart + 1][n]; [restart][n] M^-1 of it; [n] */
+  double *basis, *ready, *w;           /* [restart + 1][n]; [restart][n] M^-1 times the basis; [n] */
   double *hessenberg;                  /* [restart][restart + 1], by columns; triangular once rotated */
   double *cosine, *sine, *rest, *part; /* rest: right-hand side of the small system; part: sums by chunk */
   double scale;
-  int32_t last;  /* vectors that w is made orthogonal to */
-  int32_t again; /* second round */
+  int32_t last;         /* how many vectors w is made orthogonal to */
+  int32_t second_round; /* 0: the first round of Gram-Schmidt, 1: the second */
   mpmi_chunks chunks;
 } gmres;
 
@@ -24,13 +24,13 @@ static double *vector(const gmres *g, int32_t j) {
   return g->basis + j * g->system->n;
 }
 
-/* Sums of w with the vectors; before them w loses what the first round found. */
+/* Sums the products of w with the vectors. In the second round w first loses what the first round found. */
 static void project_task(void *data, int64_t k) {
   const gmres *g = data;
   const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
   const double *h = g->hessenberg + (g->last - 1) * (g->plan->restart + 1);
   double *part = g->part + k * (g->plan->restart + 1);
-  if (g->again)
+  if (g->second_round)
     for (int32_t j = 0; j < g->last; ++j) {
       const double *v = vector(g, j);
       for (int64_t i = begin; i < end; ++i) g->w[i] -= h[j] * v[i];
@@ -43,7 +43,8 @@ static void project_task(void *data, int64_t k) {
   }
 }
 
-/* w loses what the second round found, which is left in `rest` beyond the vectors; its square is summed. */
+/* Takes from w what the second round found, which stands in `rest` beyond the vectors, and sums the square
+ * of w. */
 static void clean_task(void *data, int64_t k) {
   const gmres *g = data;
   const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
@@ -57,15 +58,15 @@ static void clean_task(void *data, int64_t k) {
   g->part[k * (g->plan->restart + 1)] = sum;
 }
 
-/* The next vector: w times a scale. */
-static void scale_task(void *data, int64_t k) {
+/* Makes the next vector: w times a scale. */
+static void next_vector_task(void *data, int64_t k) {
   const gmres *g = data;
   double *v = vector(g, g->last);
   for (int64_t i = mpmi_chunk_begin(&g->chunks, k); i < mpmi_chunk_begin(&g->chunks, k + 1); ++i)
     v[i] = g->w[i] * g->scale;
 }
 
-/* x += sum y_j M^-1 v_j, with y in the second half of `rest`. */
+/* Adds sum y_j M^-1 v_j to x; y is the second half of `rest`. */
 static void combine_task(void *data, int64_t k) {
   const gmres *g = data;
   const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
@@ -77,7 +78,7 @@ static void combine_task(void *data, int64_t k) {
   }
 }
 
-static mpm_status run(gmres *g, mpm_task_fn task) {
+static mpm_status run_gmres(gmres *g, mpm_task_fn task) {
   return mpmi_run_chunks(g->system->context, &g->chunks, task, g);
 }
 
@@ -87,7 +88,7 @@ static double sum_of(const gmres *g, int32_t j) {
   return sum;
 }
 
-/* w = A M^-1 v_j made orthogonal to v_0 ... v_j; column j of the Hessenberg matrix. */
+/* Makes w = A M^-1 v_j orthogonal to v_0 ... v_j, which gives column j of the Hessenberg matrix. */
 static mpm_status extend(gmres *g, int32_t j, double *h) {
   mpmi_system *s = g->system;
   double *correction = g->rest + g->plan->restart + 1;
@@ -95,21 +96,22 @@ static mpm_status extend(gmres *g, int32_t j, double *h) {
   mpm_status status = g->plan->precondition(g->plan->user, vector(g, j), z);
   if (!status) status = mpmi_matrix_apply(s->A, z, g->w);
   g->last = j + 1;
-  g->again = 0;
-  if (!status) status = run(g, project_task);
+  g->second_round = 0;
+  if (!status) status = run_gmres(g, project_task);
   if (status) return status;
   for (int32_t i = 0; i <= j; ++i) h[i] = sum_of(g, i);
-  g->again = 1;
-  if ((status = run(g, project_task))) return status;
+  g->second_round = 1;
+  if ((status = run_gmres(g, project_task))) return status;
   for (int32_t i = 0; i <= j; ++i) correction[i] = sum_of(g, i);
-  if ((status = run(g, clean_task))) return status;
+  if ((status = run_gmres(g, clean_task))) return status;
   for (int32_t i = 0; i <= j; ++i) h[i] += correction[i];
   h[j + 1] = sqrt(sum_of(g, 0));
   g->scale = h[j + 1] > 0.0 ? 1.0 / h[j + 1] : 0.0;
-  return run(g, scale_task);
+  return run_gmres(g, next_vector_task);
 }
 
-/* Rotates the new column so that the matrix is triangular; the norm of the residual that is left. */
+/* Rotates the new column so that the matrix stays triangular. Returns the norm of the residual that is
+ * left. */
 static double rotate(gmres *g, int32_t j, double *h) {
   for (int32_t i = 0; i < j; ++i) {
     const double upper = h[i];
@@ -125,7 +127,7 @@ static double rotate(gmres *g, int32_t j, double *h) {
   return fabs(g->rest[j + 1]);
 }
 
-/* x += M^-1 of the combination of `count` vectors that is best. */
+/* Adds to x the combination of `count` vectors M^-1 v that leaves the least residual. */
 static mpm_status step(gmres *g, int32_t count) {
   const int32_t ld = g->plan->restart + 1;
   double *y = g->rest + ld;
@@ -133,20 +135,21 @@ static mpm_status step(gmres *g, int32_t count) {
     double sum = g->rest[i];
     for (int32_t j = i + 1; j < count; ++j) sum -= g->hessenberg[j * ld + i] * y[j];
     const double pivot = g->hessenberg[i * ld + i];
-    y[i] = pivot > 0.0 ? sum / pivot : 0.0; /* 0: the matrix has no such direction */
+    y[i] = pivot > 0.0 ? sum / pivot : 0.0; /* 0: the small system is singular in this direction */
   }
   g->last = count;
-  return run(g, combine_task);
+  return run_gmres(g, combine_task);
 }
 
-/* From the residual in w, of norm s->reached, until the basis is full or the residual is as wanted. */
-static mpm_status cycle(gmres *g) {
+/* Starts from the residual in w, whose norm is s->reached, and ends when the basis is full or the residual
+ * is as wanted. */
+static mpm_status fill_basis(gmres *g) {
   mpmi_system *s = g->system;
   const int32_t ld = g->plan->restart + 1;
   g->last = 0;
   g->scale = 1.0 / s->reached;
   g->rest[0] = s->reached;
-  mpm_status status = run(g, scale_task);
+  mpm_status status = run_gmres(g, next_vector_task);
   int32_t j = 0;
   for (double left = s->reached; !status && left > s->wanted && j < g->plan->restart; ++j) {
     if (s->report->iterations >= g->plan->limit) break;
@@ -159,7 +162,7 @@ static mpm_status cycle(gmres *g) {
   return status ? status : step(g, j);
 }
 
-static mpm_status reserve(gmres *g) {
+static mpm_status reserve_basis(gmres *g) {
   const int64_t ld = g->plan->restart + 1, n = g->system->n;
   const mpm_status status = mpmi_system_work(g->system, 2 * ld, ld * ld + 4 * ld + ld * MPMI_MOST_CHUNKS);
   if (status) return status;
@@ -174,7 +177,7 @@ static mpm_status reserve(gmres *g) {
   return MPM_OK;
 }
 
-/* Whether the cycles to come are worth their time. */
+/* Are further cycles worth their time? */
 static int32_t goes_on(const gmres *g, double before) {
   const double share = g->system->reached / before;
   if (!(share < 0.99) || g->system->report->iterations >= g->plan->limit) return 0;
@@ -184,13 +187,13 @@ static int32_t goes_on(const gmres *g, double before) {
 
 mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {
   gmres g = {.system = s, .plan = plan, .chunks = mpmi_chunks_of(s->n, s->n)};
-  mpm_status status = reserve(&g);
+  mpm_status status = reserve_basis(&g);
   for (double before = (double)INFINITY; !status; before = s->reached) {
     int32_t good;
     if ((status = mpmi_matrix_residual(s->A, s->b, s->x, g.w, &s->reached))) break;
     if ((status = mpmi_system_good(s, s->reached, g.basis, &good)) || good) break;
     if (!isfinite(s->reached) || !goes_on(&g, before)) return MPM_NOT_CONVERGED;
-    status = cycle(&g);
+    status = fill_basis(&g);
   }
   return status;
 }

@@ -1,9 +1,10 @@
-/* The host's solver: lends it the system, and does not take its word for the answer. */
+/* The host's solver borrows the system. Its answer is checked and not taken on trust. */
 #include <math.h>
 
 #include "linalg/methods.h"
 
-/* What it may miss the tolerance by: hosts measure residuals in norms of their own. */
+/* A residual may be `allowance` times the tolerance, or `always_allowed`, because hosts measure residuals
+ * in norms of their own. */
 static const double allowance = 100.0, always_allowed = 1e-6;
 
 static mpm_status call(const mpmi_system *s, const mpmi_solve_job *job, double *rhs, double *solution) {

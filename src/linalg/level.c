@@ -1,4 +1,4 @@
-/* Memory and tasks of the steps that make levels. */
+/* The steps that make levels share their memory, and cut their work into tasks in the same way. */
 #include "linalg/level.h"
 
 mpm_status mpmi_workspace_reserve(mpmi_workspace *w, size_t bytes) {

@@ -5,21 +5,21 @@
 #include "linalg/sweep.h"
 #include "linalg/vectors.h"
 
-/* Nodes of a level and those of the next. */
+/* How the nodes of a level and those of the next coarser one belong together. */
 typedef struct mpmi_coarsening {
   int64_t *parent_start; /* [rows + 1] */
-  int32_t *parent;       /* coarse nodes that a node lies between; each has the weight 1 / their number */
+  int32_t *parent;       /* the coarse nodes that a node lies between; each has the weight 1 / their number */
   int64_t *child_start;  /* [coarse rows + 1] */
-  int32_t *child;        /* nodes that a coarse one is a parent of */
-  int64_t most_nodes;    /* that couple with the children of a node */
+  int32_t *child;        /* the nodes that have a coarse node as parent */
+  int64_t most_nodes;    /* the most nodes that couple with the children of one coarse node */
   char *slab;
   int64_t slab_capacity;
 } mpmi_coarsening;
 
 typedef struct mpmi_level {
-  const mpmi_matrix *A; /* of the system, or own */
+  const mpmi_matrix *A; /* the matrix of the system, or own */
   mpmi_matrix own;
-  mpmi_coarsening next; /* but for the coarsest */
+  mpmi_coarsening next; /* not used on the coarsest level */
   mpmi_smoother smoother;
 } mpmi_level;
 
@@ -35,9 +35,10 @@ mpm_status mpmi_workspace_reserve(mpmi_workspace *w, size_t bytes);
 /* Tasks with scratch of their own: as many as run at once, or one where threads are not worth waking. */
 mpmi_chunks mpmi_workspace_tasks(const mpmi_workspace *w, const mpmi_matrix *A);
 
-/* The next level of l: its own matrix gets pattern and held unknowns (coarsen.c). */
+/* Makes the next coarser level of l: its nodes, and the pattern and held unknowns of its matrix
+ * (coarsen.c). */
 mpm_status mpmi_coarsen(mpmi_workspace *w, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to);
-/* The numbers of its matrix (galerkin.c). */
+/* Makes the numbers of the matrix of the coarse level (galerkin.c). */
 mpm_status mpmi_galerkin(mpmi_workspace *w, const mpmi_level *fine, mpmi_level *coarse);
 
 #endif

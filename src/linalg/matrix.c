@@ -1,4 +1,5 @@
-/* Memory of block matrices, their held unknowns, and the inverse of a block. */
+/* Block matrices get their memory here, rows and columns of held unknowns are removed, and single blocks
+ * inverted. */
 #include "linalg/matrix.h"
 
 #include <math.h>
@@ -6,7 +7,7 @@
 
 #include "linalg/vectors.h"
 
-enum { ARRAYS = 7, SLACK = 8 }; /* room for a SLACKth more: active nodes come and go */
+enum { ARRAYS = 7, SLACK = 8 }; /* a SLACKth more room than asked for, because active nodes come and go */
 
 typedef struct array {
   void **at;
@@ -14,7 +15,7 @@ typedef struct array {
   size_t size;
 } array;
 
-/* What there is for the capacities and the block as they stand. */
+/* Lists the arrays with their sizes for the present capacities and block. */
 static void arrays_of(mpmi_matrix *A, array *list) {
   const int64_t rows = A->row_capacity, entries = A->entry_capacity;
   const size_t block = (size_t)A->block;
@@ -93,7 +94,7 @@ mpm_status mpmi_matrix_eliminate(mpmi_matrix *A) {
   return mpmi_run_chunks(A->context, &job.chunks, eliminate_task, &job);
 }
 
-/* Gauss-Jordan with row pivoting. */
+/* The method is that of Gauss and Jordan, with row pivoting. */
 int32_t mpmi_invert_block(int32_t n, double a[3][3]) {
   double inverse[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
   for (int32_t c = 0; c < n; ++c) {

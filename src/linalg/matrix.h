@@ -1,5 +1,5 @@
-/* Sparse matrices of small dense blocks: one block row per node, 1 to 3 unknowns each. Vectors hold the
- * unknowns of a node side by side. */
+/* Sparse matrices are made of small dense blocks: each node has one block row and 1 to 3 unknowns. Vectors
+ * hold the unknowns of a node side by side. */
 #ifndef MPMI_MATRIX_H
 #define MPMI_MATRIX_H
 
@@ -10,7 +10,7 @@ typedef struct mpmi_matrix {
   int32_t block;                        /* 1, 2 or 3 unknowns per node */
   int32_t symmetric;                    /* value is symmetric: solvers may use it */
   int64_t rows;                         /* nodes = block rows */
-  int64_t row_capacity, entry_capacity; /* of mpmi_matrix_reserve() */
+  int64_t row_capacity, entry_capacity; /* the room that mpmi_matrix_reserve() has made */
   int64_t *row_start;                   /* [rows + 1], in blocks */
   int32_t *column;     /* [entries] ascending within a row, diagonal always present; pattern symmetric */
   double *value;       /* [entries][block * block], row-major: row of the block, column of the block */
@@ -24,24 +24,26 @@ typedef struct mpmi_matrix {
 
 void mpmi_matrix_init(mpmi_matrix *A, mpm_context *context);
 void mpmi_matrix_free(mpmi_matrix *A);
-/* Room for so many; what was there is lost. Sets rows and block. Without memory the matrix is left empty. */
+/* Makes room for so many rows and entries, and sets rows and block; what was there is lost. On failure the
+ * matrix is left empty. */
 mpm_status mpmi_matrix_reserve(mpmi_matrix *A, int64_t rows, int64_t entries, int32_t block);
-/* Rows and columns of held unknowns become those of the identity; what they did to the right-hand side is the
- * caller's to subtract before. */
+/* Makes rows and columns of held unknowns those of the identity. The caller has subtracted their part from
+ * the right-hand side before. */
 mpm_status mpmi_matrix_eliminate(mpmi_matrix *A);
 
-/* y = A x over all rows, held ones too (apply.c). */
+/* Sets y = A x over all rows, those of held unknowns too (apply.c). */
 mpm_status mpmi_matrix_apply(const mpmi_matrix *A, const double *x, double *y);
-/* The same, and x . y. */
+/* Does the same, and sets *dot = x . y. */
 mpm_status mpmi_matrix_apply_dot(const mpmi_matrix *A, const double *x, double *y, double *dot);
-/* r = b - A x, and its norm. */
+/* Sets r = b - A x, and *norm to its norm. */
 mpm_status mpmi_matrix_residual(const mpmi_matrix *A, const double *b, const double *x, double *r,
                                 double *norm);
-/* What rounding may leave of a residual: a norm of |A| |x| + |b| times a few units of the last place. */
+/* Sets *norm to what rounding may leave of a residual: the norm of |A| |x| + |b| times a few units of the
+ * last place. */
 mpm_status mpmi_matrix_rounding(const mpmi_matrix *A, const double *b, const double *x, double *scratch,
                                 double *norm);
 
-/* The inverse of a block of n unknowns in place; 0 if there is none. */
+/* Inverts a block of n unknowns in place. Returns 0 if it has no inverse. */
 int32_t mpmi_invert_block(int32_t n, double a[3][3]);
 
 static inline int64_t mpmi_matrix_unknowns(const mpmi_matrix *A) {

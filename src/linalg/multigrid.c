@@ -1,26 +1,10 @@
+/* The levels of the multigrid, and the cycle over them. */
 #include "linalg/multigrid.h"
 
 #include <string.h>
 
-#include "transfer/isa.h"
-
-extern const mpmi_sweeps mpmi_sweeps_baseline;
-#if MPMI_HAS_X86
-extern const mpmi_sweeps mpmi_sweeps_avx2, mpmi_sweeps_avx512;
-#endif
-
-const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
-#if MPMI_HAS_X86
-  if (isa == MPM_ISA_AVX512) return &mpmi_sweeps_avx512;
-  if (isa == MPM_ISA_AVX2) return &mpmi_sweeps_avx2;
-#else
-  (void)isa;
-#endif
-  return &mpmi_sweeps_baseline;
-}
-
-/* Unknowns that are better factored than coarsened; where a coarser level has more than this share of the
- * nodes, so many. */
+/* A level of COARSEST unknowns or less is factored and not coarsened. Where the next level would have more
+ * than the share WORTH of the nodes, so is a level of FACTORED unknowns or less. */
 enum { COARSEST = 800, FACTORED = 50 * COARSEST };
 static const double WORTH = 0.7;
 
@@ -69,8 +53,8 @@ static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
   return MPM_OK;
 }
 
-/* A matrix may be of any size, and single precision has little room: a cycle's right-hand side is divided by
- * its norm and by this. */
+/* The values of a matrix may have any size, and single precision has little room. So the right-hand side
+ * of a cycle is divided by its norm and by the largest scale. */
 static void measure_scales(mpmi_multigrid *g) {
   const mpmi_smoother *s = &g->level[0].smoother;
   g->largest_scale = 0.0;
@@ -93,7 +77,7 @@ mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64
   measure_scales(g);
   const mpmi_matrix *last = g->level[g->levels - 1].A;
   int64_t bad = -1;
-  if ((status = mpmi_factor_analyse(&g->coarsest, last))) return status; /* if it is not symmetric any more */
+  if ((status = mpmi_factor_analyse(&g->coarsest, last))) return status; /* the symmetry may have changed */
   if ((status = mpmi_factor_numbers(&g->coarsest, last, &bad)) && g->levels == 1) *row = bad;
   if (status) return status;
   return A->symmetric && g->coarsest.negative ? MPM_SINGULAR : MPM_OK;
@@ -105,14 +89,14 @@ typedef struct cycle_job {
   const mpmi_level *fine;
   const mpmi_level *coarse;
   mpmi_sweep_fn sweep;
-  int64_t first; /* of a colour */
+  int64_t first; /* the first place of a colour */
   const double *r;
   double *z, by;
   int32_t factored; /* the coarse level is the coarsest */
   mpmi_chunks chunks;
 } cycle_job;
 
-static mpm_status run(cycle_job *job, int64_t items, const mpmi_matrix *A, mpm_task_fn task) {
+static mpm_status run_level(cycle_job *job, int64_t items, const mpmi_matrix *A, mpm_task_fn task) {
   job->chunks = mpmi_chunks_of(items, mpmi_matrix_unknowns(A));
   return mpmi_run_chunks(job->g->context, &job->chunks, task, job);
 }
@@ -123,7 +107,7 @@ static void sweep_task(void *data, int64_t k) {
              job->first + mpmi_chunk_begin(&job->chunks, k + 1));
 }
 
-/* Colour after colour, forwards or backwards. */
+/* Sweeps over one colour after the other, forwards or backwards. */
 static mpm_status sweep(cycle_job *job, mpmi_sweep_fn fn, int32_t backwards) {
   const mpmi_smoother *s = &job->fine->smoother;
   job->sweep = fn;
@@ -131,7 +115,7 @@ static mpm_status sweep(cycle_job *job, mpmi_sweep_fn fn, int32_t backwards) {
   for (int32_t i = 0; i < s->colours && !status; ++i) {
     const int32_t c = backwards ? s->colours - 1 - i : i;
     job->first = s->colour_start[c];
-    status = run(job, s->colour_start[c + 1] - job->first, job->fine->A, sweep_task);
+    status = run_level(job, s->colour_start[c + 1] - job->first, job->fine->A, sweep_task);
   }
   return status;
 }
@@ -156,7 +140,7 @@ static void store_task(void *data, int64_t k) {
           job->by * s->scale[p * block + c] * (double)s->x[p * lanes + c];
 }
 
-/* The right-hand side of the coarse level: P^T times what is left on the fine one. */
+/* Makes the right-hand side of the coarse level: P^T times what is left on the fine one. */
 static void restrict_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_coarsening *P = &job->fine->next;
@@ -180,7 +164,7 @@ static void restrict_task(void *data, int64_t k) {
   }
 }
 
-/* Adds P times the coarse solution. */
+/* Adds P times the coarse solution to x. */
 static void prolong_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_coarsening *P = &job->fine->next;
@@ -207,18 +191,18 @@ static mpm_status cycle(cycle_job job, int32_t l) {
   job.fine = &g->level[l];
   job.coarse = &g->level[l + 1];
   job.factored = l + 2 == g->levels;
-  mpm_status status = sweep(&job, kernels->first, 0);
+  mpm_status status = sweep(&job, kernels->from_zero, 0);
   job.first = 0;
   job.sweep = kernels->residual;
-  if (!status) status = run(&job, job.fine->A->rows, job.fine->A, sweep_task);
-  if (!status) status = run(&job, job.coarse->A->rows, job.fine->A, restrict_task);
+  if (!status) status = run_level(&job, job.fine->A->rows, job.fine->A, sweep_task);
+  if (!status) status = run_level(&job, job.coarse->A->rows, job.fine->A, restrict_task);
   if (status) return status;
   if (job.factored)
     mpmi_factor_solve(&g->coarsest, job.coarse->A, g->rhs, g->x);
   else if ((status = cycle(job, l + 1)))
     return status;
-  if ((status = run(&job, job.fine->A->rows, job.fine->A, prolong_task))) return status;
-  return sweep(&job, kernels->again, 1);
+  if ((status = run_level(&job, job.fine->A->rows, job.fine->A, prolong_task))) return status;
+  return sweep(&job, kernels->full, 1);
 }
 
 mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z) {
@@ -232,7 +216,7 @@ mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z) {
   }
   norm *= g->largest_scale;
   cycle_job job = {.g = g, .fine = &g->level[0], .r = r, .z = z, .by = norm > 0.0 ? 1.0 / norm : 0.0};
-  if ((status = run(&job, A->rows, A, load_task)) || (status = cycle(job, 0))) return status;
+  if ((status = run_level(&job, A->rows, A, load_task)) || (status = cycle(job, 0))) return status;
   job.by = norm;
-  return run(&job, A->rows, A, store_task);
+  return run_level(&job, A->rows, A, store_task);
 }

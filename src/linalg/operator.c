@@ -1,4 +1,4 @@
-/* The linear system lent to the host's solver. */
+/* The host's solver borrows the linear system as an operator. */
 #include "context/structs.h"
 #include "linalg/operator.h"
 
@@ -19,8 +19,8 @@ void mpmi_operator_free(mpm_operator *op) {
   memset(op, 0, sizeof *op);
 }
 
-/* Lists of one element per unknown of the matrix, out of one piece of memory. */
-static mpm_status carve(mpm_operator *op, int64_t unknowns) {
+/* All lists of one element per unknown of the matrix share one piece of memory. */
+static mpm_status divide_slab(mpm_operator *op, int64_t unknowns) {
   const size_t bytes =
       mpmi_bytes(unknowns + 1, 2 * sizeof(int64_t) + 2 * sizeof(int32_t) + 5 * sizeof(double));
   const mpm_status status = mpmi_reserve(op->context, (void **)&op->slab, &op->slab_capacity,
@@ -71,7 +71,7 @@ mpm_status mpmi_operator_open(mpm_operator *op, const mpmi_matrix *A, int32_t po
   if (unknowns > INT32_MAX)
     return mpmi_fail(op->context, MPM_E_UNSUPPORTED, "%lld unknowns are more than columns can be numbered",
                      (long long)unknowns);
-  const mpm_status status = carve(op, unknowns);
+  const mpm_status status = divide_slab(op, unknowns);
   if (status) return status;
   op->A = A;
   op->positive_definite = positive_definite;
@@ -94,7 +94,7 @@ void mpmi_operator_expand(const mpm_operator *op, const double *rows, double *fu
   for (int64_t u = 0; u < mpmi_matrix_unknowns(op->A); ++u) full[u] = op->row[u] < 0 ? 0.0 : rows[op->row[u]];
 }
 
-static void add_row(mpm_operator *op, int64_t r, int64_t *count) {
+static void write_row(mpm_operator *op, int64_t r, int64_t *count) {
   const mpmi_matrix *A = op->A;
   const int64_t block = A->block, node = op->unknown[r] / block, component = op->unknown[r] % block;
   for (int64_t e = A->row_start[node]; e < A->row_start[node + 1]; ++e)
@@ -119,7 +119,7 @@ static mpm_status make_rows(mpm_operator *op) {
   int64_t count = 0;
   for (int64_t r = 0; r < op->rows; ++r) {
     op->row_start[r] = count;
-    add_row(op, r, &count);
+    write_row(op, r, &count);
   }
   op->row_start[op->rows] = count;
   op->has_rows = 1;

@@ -1,4 +1,4 @@
-/* The linear system as the host's solver sees it: unknowns only, held ones removed. */
+/* The host's solver sees the linear system without held unknowns. */
 #ifndef MPMI_OPERATOR_H
 #define MPMI_OPERATOR_H
 
@@ -6,7 +6,7 @@
 
 struct mpm_operator {
   uint32_t magic;
-  int32_t open; /* within the solve callback */
+  int32_t open; /* 1: the solve callback is running */
   mpm_context *context;
   const mpmi_matrix *A;
   int32_t positive_definite;
@@ -17,7 +17,7 @@ struct mpm_operator {
   int32_t *component; /* [rows] */
   double *position;   /* [3][rows] */
   double *x, *y;      /* [unknowns of the matrix] */
-  /* Compressed rows, made when they are asked for. */
+  /* Compressed rows are made when the host asks for them. */
   int32_t has_rows;
   int64_t *row_start;
   int32_t *column;
@@ -32,7 +32,8 @@ void mpmi_operator_free(mpm_operator *op);
 mpm_status mpmi_operator_open(mpm_operator *op, const mpmi_matrix *A, int32_t positive_definite);
 void mpmi_operator_close(mpm_operator *op);
 
-/* Between vectors of the matrix and those of the host: rows only, and zeros where held. */
+/* These convert between vectors of the matrix and those of the host, which have no held unknowns;
+ * expanding writes zeros there. */
 void mpmi_operator_compress(const mpm_operator *op, const double *full, double *rows);
 void mpmi_operator_expand(const mpm_operator *op, const double *rows, double *full);
 

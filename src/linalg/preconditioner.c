@@ -1,4 +1,4 @@
-/* Diagonal preconditioners: entries for CG, blocks of nodes for GMRES. */
+/* The diagonal preconditions CG, and its blocks by node precondition GMRES. */
 #include <math.h>
 #include <string.h>
 

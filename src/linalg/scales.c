@@ -1,17 +1,17 @@
-/* Scales that make the diagonal of a matrix 1 in size. */
+/* The factor scales a matrix so that its diagonal is 1 in size. */
 #include <math.h>
 
 #include "linalg/factor.h"
 #include "linalg/vectors.h"
 
-/* A diagonal smaller than this share of its row is no measure of the row. */
+/* A diagonal entry smaller than this share of the largest entry of its row does not measure the row. */
 static const double no_measure = 1e-13;
 
 typedef struct scale_job {
   mpmi_factor *f;
   const mpmi_matrix *A;
   mpmi_chunks chunks;
-  mpmi_chunk_failures bad; /* nodes that have no scale */
+  mpmi_chunk_failures bad; /* nodes for which there is no scale */
 } scale_job;
 
 static mpm_status scale_node(const scale_job *job, int64_t node) {

@@ -1,13 +1,29 @@
-/* What a level is smoothed with: its nodes by colour, and the scaled copy of its matrix. */
+/* The smoother of a level orders its nodes by colour and keeps a scaled copy of its matrix. */
 #include <math.h>
 #include <string.h>
 
 #include "context/arena.h"
 #include "linalg/sweep.h"
 #include "linalg/vectors.h"
+#include "simd/isa.h"
 
-/* Each node takes the first colour that none of its neighbours has. taken: [rows], for which node a colour
- * is. */
+extern const mpmi_sweeps mpmi_sweeps_baseline;
+#if MPMI_HAS_X86
+extern const mpmi_sweeps mpmi_sweeps_avx2, mpmi_sweeps_avx512;
+#endif
+
+const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
+#if MPMI_HAS_X86
+  if (isa == MPM_ISA_AVX512) return &mpmi_sweeps_avx512;
+  if (isa == MPM_ISA_AVX2) return &mpmi_sweeps_avx2;
+#else
+  (void)isa;
+#endif
+  return &mpmi_sweeps_baseline;
+}
+
+/* Gives each node the first colour that none of its neighbours has. taken: [rows], by colour the last node
+ * that saw it at a neighbour. */
 static int32_t colour_nodes(const mpmi_matrix *A, int32_t *colour, int32_t *taken) {
   int32_t colours = 0;
   memset(colour, 0xff, (size_t)A->rows * sizeof *colour);
@@ -23,7 +39,7 @@ static int32_t colour_nodes(const mpmi_matrix *A, int32_t *colour, int32_t *take
   return colours;
 }
 
-static mpm_status reserve(mpmi_smoother *s, const mpmi_matrix *A) {
+static mpm_status reserve_lists(mpmi_smoother *s, const mpmi_matrix *A) {
   const int64_t rows = A->rows, entries = A->row_start[rows] - rows, lanes = MPMI_PADDED(A->block);
   const int64_t area = A->block * A->block;
   mpmi_arena from = {NULL, 0};
@@ -54,8 +70,8 @@ void mpmi_smoother_free(mpmi_smoother *s, mpm_context *context) {
   memset(s, 0, sizeof *s);
 }
 
-/* Places: colour by colour, each in the order of the rows. */
-static void order_nodes(mpmi_smoother *s, const int32_t *colour) {
+/* Orders the places colour by colour, and within a colour in the order of the rows. */
+static void order_by_colour(mpmi_smoother *s, const int32_t *colour) {
   memset(s->colour_start, 0, (size_t)(s->colours + 1) * sizeof *s->colour_start);
   for (int64_t i = 0; i < s->rows; ++i) ++s->colour_start[colour[i] + 1];
   for (int32_t c = 0; c < s->colours; ++c) s->colour_start[c + 1] += s->colour_start[c];
@@ -94,9 +110,9 @@ mpm_status mpmi_smoother_analyse(mpmi_smoother *s, const mpmi_matrix *A, int32_t
   s->rows = A->rows;
   s->block = A->block;
   s->colours = colour_nodes(A, scratch, scratch + A->rows);
-  mpm_status status = reserve(s, A);
+  mpm_status status = reserve_lists(s, A);
   if (status) return status;
-  order_nodes(s, scratch);
+  order_by_colour(s, scratch);
   s->row_start[0] = 0;
   for (int64_t p = 0; p < s->rows; ++p) {
     const int64_t i = s->order[p];
@@ -107,7 +123,7 @@ mpm_status mpmi_smoother_analyse(mpmi_smoother *s, const mpmi_matrix *A, int32_t
 }
 
 /* ---- numbers ----------------------------------------------------------------------------------------- */
-/* The diagonal block of a row, scaled, inverted; by columns. */
+/* Scales and inverts the diagonal block of a row, and stores it by columns. */
 static void invert_diagonal(mpmi_smoother *s, const double *value, int64_t p) {
   const int32_t block = s->block;
   float *to = s->inverse + p * block * block;

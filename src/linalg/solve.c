@@ -1,4 +1,4 @@
-/* Which method solves a linear system, and what follows when it does not. */
+/* This file chooses the method that solves a linear system, and goes on to another one where that fails. */
 #include <math.h>
 #include <string.h>
 
@@ -65,7 +65,7 @@ static mpm_status by_multigrid(mpmi_system *s, int64_t limit) {
   return status == MPM_SINGULAR && !s->report->indefinite ? not_positive(s) : status;
 }
 
-/* Preconditioned by a cycle, or by the blocks of the diagonal where there is no hierarchy. */
+/* The preconditioner is a cycle of multigrid, or the blocks of the diagonal where there are no levels. */
 static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient, int32_t multigrid) {
   mpmi_gmres_plan plan = {mpmi_times_inverse_blocks, s, RESTART, impatient, limit};
   mpm_status status = multigrid ? prepare_multigrid(s) : MPM_SINGULAR;
@@ -78,7 +78,7 @@ static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient, int
     const double started = mpmi_seconds();
     s->report->indefinite = 0;
     s->report->node = -1;
-    s->context->error[0] = '\0'; /* of the hierarchy that there is not */
+    s->context->error[0] = '\0'; /* drops what prepare_multigrid() wrote */
     status = mpmi_inverse_blocks(s, &row);
     s->report->factor_seconds += mpmi_seconds() - started;
     if (status == MPM_NONFINITE) return bad_diagonal(s, row);
@@ -87,7 +87,7 @@ static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient, int
   return status == MPM_NOT_CONVERGED ? mpmi_system_not_converged(s, "GMRES") : status;
 }
 
-/* The last word, up to a factor that a machine has room for. */
+/* Solves with the factor where iterations have failed, unless the factor is too large for a machine. */
 static mpm_status fall_back(mpmi_system *s, mpm_status status) {
   const double most = 4.0e9;
   const mpm_status analysed = mpmi_factor_analyse(&s->solver->factor, s->A);
@@ -101,8 +101,8 @@ static mpm_status fall_back(mpmi_system *s, mpm_status status) {
         "body in each direction, use a smaller dt%s",
         (long long)s->n, s->report->indefinite ? "not positive definite" : "too hard for iterations",
         1e-9 * bytes, s->A->symmetric ? ", or MPM_SOLVER_LDLT if there is room" : "");
-  s->report->indefinite = 0;   /* for the factor to say */
-  s->context->error[0] = '\0'; /* of the iterations */
+  s->report->indefinite = 0;   /* the factor will say whether it is */
+  s->context->error[0] = '\0'; /* drops what the iterations wrote */
   s->report->node = -1;
   return mpmi_direct(s);
 }
@@ -167,7 +167,7 @@ static mpm_status check_rhs(const mpmi_system *s) {
   return mpmi_fail(s->context, MPM_NONFINITE, "the right-hand side of the linear system is too large");
 }
 
-/* Guesses that are worse than none are dropped. */
+/* Keeps a guess only if its residual is smaller than that of x = 0. */
 static mpm_status take_guess(mpmi_system *s) {
   int32_t any = 0;
   for (int64_t i = 0; i < s->n; ++i) {

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 enum { BEFORE = 1, AFTER = 2 };
 
@@ -14,16 +14,16 @@ MPMI_INLINE quad load(const float *at) {
   return q;
 }
 
-/* sum -= the rows of entries [begin, end); a sum for each column of the blocks, so that none waits for
- * another. */
+/* Subtracts the product of entries [begin, end) with x from sum. Each column of the blocks has a sum of
+ * its own, so that none waits for another. */
 MPMI_INLINE void subtract(const mpmi_smoother *s, int32_t block, int64_t begin, int64_t end, float *sum) {
   const float *value = s->value + begin * block * block;
   quad part[3] = {{0.0F}, {0.0F}, {0.0F}};
   for (int64_t e = begin; e < end; ++e, value += block * block) {
     const float *x = s->x + (int64_t)s->column[e] * MPMI_PADDED(block);
-    if (block == 3) /* the last lane takes what follows a column */
+    if (block == 3) /* the fourth lane reads what follows the column */
       for (int32_t c = 0; c < 3; ++c) part[c] += load(value + 3 * c) * x[c];
-    else if (block == 2) /* both columns side by side */
+    else if (block == 2) /* one load takes both columns */
       part[e & 1] += load(value) * (quad){x[0], x[0], x[1], x[1]};
     else
       sum[0] -= value[0] * x[0];
@@ -33,7 +33,9 @@ MPMI_INLINE void subtract(const mpmi_smoother *s, int32_t block, int64_t begin, 
   for (int32_t l = 0; l < MPMI_PADDED(block); ++l) sum[l] -= block == 2 ? all[l] + all[l + 2] : all[l];
 }
 
-/* What the other nodes leave of the right-hand side, and what that makes of x. */
+/* Takes from the right-hand side of each row what the nodes before it, after it or both contribute, and
+ * solves for x of the row. With AFTER alone there is no right-hand side, and the difference is stored as
+ * the residual. */
 MPMI_INLINE void sweep(const mpmi_smoother *s, int32_t block, int32_t with, int64_t begin, int64_t end) {
   const int32_t lanes = MPMI_PADDED(block);
   for (int64_t i = begin; i < end; ++i) {
@@ -61,15 +63,15 @@ MPMI_INLINE void sweep_of(const mpmi_smoother *s, int32_t with, int64_t begin, i
     sweep(s, 1, with, begin, end);
 }
 
-static void first(const mpmi_smoother *s, int64_t begin, int64_t end) {
+static void from_zero(const mpmi_smoother *s, int64_t begin, int64_t end) {
   sweep_of(s, BEFORE, begin, end);
 }
 static void residual(const mpmi_smoother *s, int64_t begin, int64_t end) {
   sweep_of(s, AFTER, begin, end);
 }
-static void again(const mpmi_smoother *s, int64_t begin, int64_t end) {
+static void full(const mpmi_smoother *s, int64_t begin, int64_t end) {
   sweep_of(s, BEFORE | AFTER, begin, end);
 }
 
 extern const mpmi_sweeps KERNEL(sweeps);
-const mpmi_sweeps KERNEL(sweeps) = {first, residual, again};
+const mpmi_sweeps KERNEL(sweeps) = {from_zero, residual, full};

@@ -1,8 +1,8 @@
-/* Memory of a solver, and what every method asks of the system at hand. */
+/* A solver has its memory here, and every method asks here whether its solution is good enough. */
 #include "linalg/system.h"
 
-/* Terms of A x may be so many times as large as b before what they leave is no solution: slender beams have
- * 3, bodies that nothing holds hundreds. */
+/* Where the terms of A x are more than this many times as large as b, what rounding leaves of them is no
+ * solution. Slender beams reach 3, bodies that nothing holds reach hundreds. */
 static const double MOST_ROUNDING = 32.0;
 
 mpm_status mpmi_solver_create(mpm_context *context, mpmi_solver **out) {
@@ -38,7 +38,8 @@ mpm_status mpmi_system_good(const mpmi_system *s, double norm, double *scratch, 
   if (*good || !(norm < s->b_norm)) return MPM_OK;
   double rounding;
   const mpm_status status = mpmi_matrix_rounding(s->A, s->b, s->x, scratch, &rounding);
-  *good = norm <= rounding && rounding < MOST_ROUNDING * s->b_norm; /* more is what no solution looks like */
+  *good = norm <= rounding &&
+          rounding < MOST_ROUNDING * s->b_norm; /* beyond that the terms cancel and say nothing */
   return status;
 }
 

@@ -1,4 +1,4 @@
-/* One linear system on its way to a solution: what the methods share. */
+/* The methods of solution share one description of the linear system that they solve. */
 #ifndef MPMI_SYSTEM_H
 #define MPMI_SYSTEM_H
 
@@ -11,31 +11,31 @@ struct mpmi_solver {
   mpm_context *context;
   mpmi_factor factor;
   mpmi_multigrid multigrid;
-  mpm_operator lent; /* to the host's solver */
-  double *work;      /* vectors */
+  mpm_operator lent; /* the operator that the host's solver borrows */
+  double *work;      /* room for vectors */
   int64_t work_capacity;
   double *diagonal; /* inverse of the diagonal, or of its blocks */
   int64_t diagonal_capacity;
 };
 
-/* One system on its way. */
+/* A system stands between job and report. */
 typedef struct mpmi_system {
   mpmi_solver *solver;
   mpm_context *context;
   const mpmi_matrix *A;
   const double *b;
   double *x;
-  int64_t n;      /* unknowns, held ones too */
+  int64_t n;      /* unknowns, with those that are held */
   double b_norm;  /* > 0 */
-  double wanted;  /* norm of the residual */
-  double reached; /* that of the last solution */
+  double wanted;  /* the residual must have this norm or less */
+  double reached; /* norm of the residual of the last solution */
   mpmi_solve_report *report;
 } mpmi_system;
 
-/* Room for so many vectors. */
+/* Makes room for so many vectors of unknowns and `more` doubles. */
 mpm_status mpmi_system_work(const mpmi_system *s, int64_t vectors, int64_t more);
-/* Whether a residual of this norm will do: it is as wanted, or all that rounding leaves of A x - b. scratch:
- * a vector. */
+/* Sets *good to 1 if a residual of this norm is small enough: as small as wanted, or all that rounding
+ * leaves of A x - b. scratch: a vector. */
 mpm_status mpmi_system_good(const mpmi_system *s, double norm, double *scratch, int32_t *good);
 
 /* Fails with a sentence that names a row of the matrix, which goes into the report. */

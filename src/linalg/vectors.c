@@ -1,4 +1,4 @@
-/* Chunks of vectors, and sums over them. */
+/* Vectors are cut into chunks, and sums over them are formed in the order of the chunks. */
 #include "linalg/vectors.h"
 
 #include <math.h>
@@ -42,7 +42,7 @@ static void dot_task(void *data, int64_t k) {
   dot_job *job = data;
   const double *a = job->a, *b = job->b;
   const int64_t end = mpmi_chunk_begin(&job->chunks, k + 1);
-  double sum[4] = {0.0, 0.0, 0.0, 0.0}; /* four at a time: one sum would wait for each addition */
+  double sum[4] = {0.0, 0.0, 0.0, 0.0}; /* one sum would wait for each addition, four do not */
   int64_t i = mpmi_chunk_begin(&job->chunks, k);
   for (; i + 4 <= end; i += 4)
     for (int32_t l = 0; l < 4; ++l) sum[l] += a[i + l] * b[i + l];

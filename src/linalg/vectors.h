@@ -1,5 +1,5 @@
-/* Vectors of unknowns. Work on them is cut into chunks that depend on the length alone, and sums are formed
- * in the order of the chunks: the bits do not depend on the number of threads. */
+/* Work on vectors of unknowns is cut into chunks that depend on the length alone, and sums are formed in
+ * the order of the chunks. So no bit of a result depends on the number of threads. */
 #ifndef MPMI_VECTORS_H
 #define MPMI_VECTORS_H
 
@@ -16,20 +16,20 @@ typedef struct mpmi_chunks {
   int32_t alone;              /* the calling thread does them all */
 } mpmi_chunks;
 
-/* Items may be unknowns or nodes; unknowns: of the whole system. */
+/* Cuts items, which may be unknowns or nodes, into chunks; unknowns: how many the whole system has. */
 mpmi_chunks mpmi_chunks_of(int64_t items, int64_t unknowns);
 static inline int64_t mpmi_chunk_begin(const mpmi_chunks *chunks, int64_t k) {
   return k * chunks->size < chunks->items ? k * chunks->size : chunks->items;
 }
-/* One task per chunk. */
+/* Runs one task per chunk. */
 mpm_status mpmi_run_chunks(mpm_context *context, const mpmi_chunks *chunks, mpm_task_fn task, void *data);
 
-/* What went wrong in each chunk, if anything, and at which item. */
+/* Each chunk notes whether it failed, and at which item. */
 typedef struct mpmi_chunk_failures {
   mpm_status status[MPMI_MOST_CHUNKS];
   int64_t item[MPMI_MOST_CHUNKS];
 } mpmi_chunk_failures;
-/* The first one in the order of the chunks; *item is left alone where there is none. */
+/* Returns the first failure in the order of the chunks; without one *item stays as it is. */
 mpm_status mpmi_first_failure(const mpmi_chunk_failures *of, int64_t chunks, int64_t *item);
 
 double mpmi_sum_in_order(const double *part, int64_t count);

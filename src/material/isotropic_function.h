@@ -8,8 +8,8 @@
 
 #include <math.h>
 
-#include "material/tensor.h"
-#include "material/vector_math.h"
+#include "simd/tensor.h"
+#include "simd/vector_math.h"
 
 /* l1 is the extreme eigenvalue that stands further off the middle one, l2 the middle; none of the differences
  * is 0. */

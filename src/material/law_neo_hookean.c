@@ -6,7 +6,7 @@
 #include "material/laws.h"
 #include "material/stretch_bounds.h"
 #include "material/tangent_rows.h"
-#include "material/vector_math.h"
+#include "simd/vector_math.h"
 
 MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_material_batch *batch) {
   const double lambda = constants[MPMI_C_LAMBDA], mu = constants[MPMI_C_MU];

@@ -6,7 +6,7 @@
 #include "material/laws.h"
 #include "material/stretch_bounds.h"
 #include "material/tangent_rows.h"
-#include "material/vector_math.h"
+#include "simd/vector_math.h"
 
 /* The acoustic tensor for a direction n, times J, has in the frame of n the entries
  *   kappa (1 - ln J) + 5/3 mean - 1/3 b_nn along n, b_nn across it, and -2/3 |t| between n and t,

@@ -3,7 +3,7 @@
 #define MPMI_LAWS_H
 
 #include "material/material.h"
-#include "transfer/isa.h"
+#include "simd/chunk.h"
 
 /* Each law has those that it needs; the others are 0. */
 enum {
@@ -24,6 +24,11 @@ enum {
   MPMI_C_COUNT
 };
 _Static_assert((int)MPMI_C_COUNT <= (int)MPMI_MAX_CONSTANTS, "constants of a law");
+
+/* Particles of a batch. */
+MPMI_INLINE int64_t mpmi_batch_items(const mpm_material_batch *batch) {
+  return mpmi_whole_chunks(batch->n);
+}
 
 /* A built-in law by name, or NULL. */
 const mpmi_law *mpmi_law_by_name(const char *name);

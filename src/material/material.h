@@ -7,6 +7,7 @@
 #define MPMI_MATERIAL_H
 
 #include "context/context.h"
+#include "material/deformation.h"
 
 enum {
   MPMI_LAW_NEO_HOOKEAN,
@@ -18,8 +19,6 @@ enum {
   MPMI_LAW_COUNT,
   MPMI_LAW_CUSTOM = MPMI_LAW_COUNT
 };
-/* What a step does to F: all of it; only its volume, F = J^(1/3) I (1-D: F11 = J); nothing. */
-enum { MPMI_F_DEFORMS, MPMI_F_DILATES, MPMI_F_STAYS, MPMI_F_KINDS };
 enum { MPMI_MAX_PARAMS = 8, MPMI_MAX_CONSTANTS = 16 };
 
 /* Evaluates a built-in law on batch->n particles (a multiple of 16). constants: made by the law's prepare

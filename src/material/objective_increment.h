@@ -10,8 +10,8 @@
 
 #include "material/isotropic_function.h"
 #include "material/laws.h"
-#include "material/tensor.h"
-#include "material/vector_math.h"
+#include "simd/tensor.h"
+#include "simd/vector_math.h"
 
 MPMI_INLINE mpmi_sym mpmi_increment_2d(mpmi_mat g, mpmi_sym *stress) {
   /* V is symmetric when R turns by the angle whose cosine and sine are as along and across. Written as a

@@ -8,7 +8,7 @@
 #ifndef MPMI_SPIN_H
 #define MPMI_SPIN_H
 
-#include "material/tensor.h"
+#include "simd/tensor.h"
 
 typedef struct mpmi_vector {
   double x, y, z;

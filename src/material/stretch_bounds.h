@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-#include "material/tensor.h"
-#include "material/vector_math.h"
+#include "simd/tensor.h"
+#include "simd/vector_math.h"
 
 MPMI_INLINE double mpmi_largest_stretch_squared(int dim, mpmi_sym e) {
   if (dim == 1) return 1.0 + e.xx;

@@ -4,14 +4,8 @@
 #ifndef MPMI_TANGENT_ROWS_H
 #define MPMI_TANGENT_ROWS_H
 
-#include "material/tensor.h"
-
-enum { MPMI_CHUNK = 16 };
-
-/* Which of xx yy zz xy yz xz is ij. */
-MPMI_INLINE int mpmi_sym_index(int i, int j) {
-  return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
-}
+#include "simd/chunk.h"
+#include "simd/tensor.h"
 
 /* isotropic: volumetric d_ij d_kl + shear (d_ik d_jl + d_il d_jk). mixed: adds s_ij d_kl + d_ij s_kl. */
 #define MPMI_DECLARE_TANGENT_ROWS(isa)                                                                       \

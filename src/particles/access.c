@@ -1,19 +1,20 @@
-/* Copies of fields by id, in the full layout. */
+/* Fields are copied by id here, in the full layout. */
 #include <string.h>
 
 #include "particles/values.h"
 
 enum { CHUNK = 256 };
 
-/* Which particles a call is about, and how its buffer is laid out: ids[n], or all by ascending id; or, with
- * `uniform`, all slots in library order with one value for all. */
+/* A selection says which particles a call is about, and how its buffer is laid out: by ids[n], or all by
+ * ascending id. With `uniform` it is all slots in library order, with one value for all. */
 typedef struct selection {
   int64_t n;
   const int64_t *ids;
   int32_t uniform;
 } selection;
 
-/* Slots of the items [begin, begin + CHUNK) of a selection whose ids are known to exist; returns how many. */
+/* Lists the slots of the items [begin, begin + CHUNK) of a selection whose ids are known to exist. Returns
+ * how many there are. */
 static int64_t slots_of(const mpm_particles *set, const selection *of, int64_t begin, int64_t *slot) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   int64_t end = of->n - begin < CHUNK ? of->n : begin + CHUNK, found = 0;
@@ -33,7 +34,8 @@ static mpm_status check_layout(const mpm_particles *set, int32_t field, int32_t 
                    type_name[type >= MPM_F64 && type <= MPM_U8 ? type : 0], (int)components);
 }
 
-/* Checks what is selected and builds the index that it needs: a cache, which const sets have too. */
+/* Checks what is selected and builds the index that it needs. The index is a cache, which const sets have
+ * too. */
 static mpm_status check_selection(const mpm_particles *set, const selection *of) {
   mpm_context *context = set->context;
   if (!of->ids && of->n != set->count)
@@ -55,7 +57,7 @@ static void copy_element(void *to, const void *from, size_t size) {
     memcpy(to, from, sizeof(double));
 }
 
-/* One component of a chunk from the field's storage, or its default, to out[]. */
+/* Copies one component of a chunk to out[], from the storage of the field or from its default. */
 static void copy_out(const mpm_particles *set, int32_t field, int32_t c, int64_t n, const int64_t *slot,
                      char *out) {
   const mpmi_field *at = &set->field[field];
@@ -85,7 +87,7 @@ mpm_status mpm_particles_get(const mpm_particles *particles, const char *field, 
   status = check_selection(particles, &of);
   if (!status && !out && n > 0 && components > 0)
     status = mpmi_fail(particles->context, MPM_E_ARG, "out is NULL");
-  /* What follows from F may have been left for later: const or not, the host sees the same. */
+  /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
   if (!status) status = mpmi_settle((mpm_particles *)particles, f);
   int64_t slot[CHUNK];
   for (int64_t begin = 0; begin < n && !status; begin += CHUNK) {
@@ -96,14 +98,14 @@ mpm_status mpm_particles_get(const mpm_particles *particles, const char *field, 
   return status;
 }
 
-/* Values as the host gave them: component c of item i is at i * item_stride + c * component_stride. */
+/* A source is the host's array: component c of item i is at i * item_stride + c * component_stride. */
 typedef struct source {
   const char *values;
   int64_t item_stride, component_stride;
 } source;
 
-static mpm_status check_values(const mpm_particles *set, int32_t field, const selection *of,
-                               const source *from) {
+static mpm_status check_given(const mpm_particles *set, int32_t field, const selection *of,
+                              const source *from) {
   const double *values = (const double *)(const void *)from->values;
   const uint8_t *flags = (const uint8_t *)from->values;
   if (set->field[field].type != MPM_F64 && field != MPMI_PRESCRIBED) return MPM_OK;
@@ -120,7 +122,8 @@ static mpm_status check_values(const mpm_particles *set, int32_t field, const se
   return MPM_OK;
 }
 
-/* One item after the other, so that of two values for one particle the later stands and both are wrapped. */
+/* Copies one item after the other, so that of two values for one particle the later stands, and both are
+ * wrapped. */
 static void copy_in(mpm_particles *set, int32_t field, const selection *of, const source *from) {
   const mpmi_field *at = &set->field[field];
   size_t size = mpmi_type_size(at->type);
@@ -147,11 +150,11 @@ static mpm_status write_field(mpm_particles *set, int32_t field, const selection
   if (field == MPMI_PRESCRIBED && !at->present) {
     int64_t i = 0;
     while (i < given && from->values[i] == 0) ++i;
-    if (i == given) return MPM_OK; /* what it is anyway */
+    if (i == given) return MPM_OK; /* an absent field reads as 0 anyway */
   }
   mpm_status status = mpmi_check_exists(set, field);
   if (!status) status = mpmi_check_writable(set, field);
-  if (!status) status = check_values(set, field, of, from);
+  if (!status) status = check_given(set, field, of, from);
   if (!status) status = mpmi_field_make_present(set, field);
   if (status) return status;
   copy_in(set, field, of, from);

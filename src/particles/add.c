@@ -1,4 +1,4 @@
-/* Particles from the host's arrays. */
+/* Particles are added from the host's arrays. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ typedef struct arrays {
   const int64_t *ids;
 } arrays;
 
-static mpm_status check_values(const mpm_particles *set, const arrays *from) {
+static mpm_status check_arrays(const mpm_particles *set, const arrays *from) {
   const struct {
     int32_t field;
     const double *value;
@@ -34,7 +34,7 @@ static mpm_status check_values(const mpm_particles *set, const arrays *from) {
   return MPM_OK;
 }
 
-/* Refuses ids that the set has already, or that are given twice. order: of the ids, ascending. */
+/* Refuses ids that the set has already, or that are given twice. order: the ids, ascending. */
 static mpm_status check_known(const mpm_particles *set, int64_t n, const int64_t *ids,
                               const uint32_t *order) {
   for (int64_t i = 0; i < n; ++i) {
@@ -56,7 +56,7 @@ static mpm_status check_unique(mpm_particles *set, int64_t n, const int64_t *ids
   if (order) {
     for (int64_t i = 0; i < n; ++i) key[i] = (uint64_t)ids[i];
     mpmi_radix_sort(n, key, order, key + n, order + n);
-    /* An id beyond all that were ever used needs no look into the set. */
+    /* An id beyond all that were ever used cannot be in the set. */
     status = ids[order[0]] < set->next_id ? mpmi_index_build(set) : MPM_OK;
     if (!status) status = check_known(set, n, ids, order);
   }
@@ -78,7 +78,7 @@ static void copy_rows(mpm_particles *set, int32_t field, int64_t slot, const dou
     memcpy(mpmi_f64(set, field, 0) + c * set->ld + slot, from + c * n, (size_t)n * sizeof *from);
 }
 
-static void copy_in(mpm_particles *set, int64_t slot, const arrays *from) {
+static void copy_arrays(mpm_particles *set, int64_t slot, const arrays *from) {
   copy_rows(set, MPMI_POSITION, slot, from->position, from->n);
   copy_rows(set, MPMI_INITIAL_VOLUME, slot, from->volume, from->n);
   if (from->velocity) copy_rows(set, MPMI_VELOCITY, slot, from->velocity, from->n);
@@ -98,11 +98,11 @@ mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const double *
   if (n > 0) {
     arrays from = {n, position, velocity, volume, size, ids};
     status = mpmi_check_room(particles, n, ids == NULL);
-    if (!status) status = check_values(particles, &from);
+    if (!status) status = check_arrays(particles, &from);
     if (!status && ids) status = check_ids(particles, n, ids);
     if (!status) status = mpmi_append_begin(particles, n, size != NULL, &slot);
     if (status) return status;
-    copy_in(particles, slot, &from);
+    copy_arrays(particles, slot, &from);
     mpmi_append_finish(particles, slot, n, size != NULL, ids);
   }
   if (first_id) *first_id = first;

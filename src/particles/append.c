@@ -1,4 +1,4 @@
-/* New particles at the end of a set. */
+/* New particles go to the end of a set. */
 #include <string.h>
 
 #include "particles/append.h"
@@ -13,7 +13,7 @@ mpm_status mpmi_check_room(const mpm_particles *set, int64_t n, int32_t numbered
   return MPM_OK;
 }
 
-/* Inert slots of the last group, which new particles may take. */
+/* Counts the inert slots at the end of the last group, which new particles may take. */
 static int64_t free_tail(const mpm_particles *set) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   int64_t tail = 0;
@@ -29,8 +29,8 @@ static mpm_status grow(mpm_particles *set, int64_t slots) {
   return mpmi_particles_reserve(set, wanted > MPMI_MAX_SLOTS ? MPMI_MAX_SLOTS : wanted);
 }
 
-/* Such a law has no stress: its particles act only by being prescribed, and are unless the host says
- * otherwise. */
+/* A law without stress is rigid: its particles act only by being prescribed, and they are unless the host
+ * says otherwise. */
 static int32_t is_rigid(const mpm_particles *set) {
   return set->material->law && !strcmp(set->material->law->name, "rigid");
 }
@@ -48,7 +48,8 @@ mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, i
   return MPM_OK;
 }
 
-/* Fields that are kept, and that have a default other than 0 which the caller has not written. */
+/* Writes the default of a field that is kept, where the default is not 0 and the caller has not written
+ * the field. */
 static void write_derived(mpm_particles *set, int32_t field, int64_t begin, int64_t end) {
   if (!set->field[field].present) return;
   for (int32_t c = 0; c < set->field[field].components; ++c)

@@ -1,17 +1,16 @@
-/* New particles at the end of a set, in three moves: begin, the caller writes what it knows, finish. */
+/* New particles come to the end of a set in three moves: begin, the caller writes what it knows, finish. */
 #ifndef MPMI_APPEND_H
 #define MPMI_APPEND_H
 
 #include "particles/layout.h"
 
-/* Does everything that may fail, for n particles that there is room for; on failure the set is unchanged. On
- * success the slots
- * [*slot, *slot + n) hold inert defaults in every field, and the caller writes position (in reach of a wrap),
- * velocity and initial_volume, and size when with_size. */
+/* Does everything that may fail, for n particles that there is room for; on failure the set is unchanged.
+ * On success the slots [*slot, *slot + n) hold inert defaults in every field. The caller then writes
+ * position (in reach of a wrap), velocity and initial_volume, and size when with_size is 1. */
 mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, int64_t *slot);
-/* Writes what follows from that and makes them particles. ids NULL: numbered on. */
+/* Writes what follows from these fields and makes the slots particles. Without ids they are numbered on. */
 void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids);
-/* Refuses n more particles when the slots would run out, or the numbers for ids. */
+/* Refuses n more particles when slots or numbers for ids would run out. */
 mpm_status mpmi_check_room(const mpm_particles *set, int64_t n, int32_t numbered);
 
 #endif

@@ -1,4 +1,4 @@
-/* Storage of fields: capacity, optional fields, inert slots. */
+/* Fields have their storage here: capacity, optional fields, inert slots. */
 #include <math.h>
 #include <string.h>
 
@@ -8,8 +8,9 @@ enum { COPIES = 2 };
 
 int64_t mpmi_leading_dimension(int64_t slots) {
   int64_t groups = (slots + MPMI_PAD - 1) / MPMI_PAD;
-  /* Groups are 128 bytes of doubles. Neighbouring components should meet neither the same cache sets nor the
-   * same address modulo a page (32 groups): an odd number of groups that is not next to a multiple of 32. */
+  /* A group is 128 bytes of doubles. Neighbouring components should meet neither the same cache sets nor
+   * the same address modulo a page (32 groups). So the number of groups is odd and not next to a multiple
+   * of 32. */
   groups |= 1;
   while (groups > 1 && (groups % 32 < 3 || groups % 32 > 29)) groups += 2;
   return groups * MPMI_PAD;
@@ -26,7 +27,7 @@ static void free_copies(mpm_particles *set, const mpmi_field *field, void *data[
   }
 }
 
-/* Both or none; an empty set has no arrays. */
+/* Allocates both copies or none; an empty set has no arrays. */
 static mpm_status alloc_copies(mpm_particles *set, const mpmi_field *field, void *data[COPIES], int64_t ld) {
   data[0] = data[1] = NULL;
   if (ld == 0) return MPM_OK;
@@ -63,7 +64,7 @@ mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
   for (int32_t f = 0; f < set->field_count; ++f) {
     mpmi_field *field = &set->field[f];
     if (!field->present) continue;
-    /* The second copy is scratch between steps: only the first is moved. */
+    /* The second copy is scratch between steps, so only the first is moved. */
     move_rows(field, field->data[0], set->ld, fresh[f][0], ld, set->slots);
     free_copies(set, field, field->data, set->ld);
     memcpy(field->data, fresh[f], sizeof field->data);
@@ -135,13 +136,13 @@ void mpmi_wrap_slot(mpm_particles *set, int64_t slot) {
 }
 
 void mpmi_restore_holes(mpm_particles *set, int32_t field) {
-  /* Any position inside will do: holes are placed anew with the sort that a change of positions brings. */
+  /* Any position inside the grid will do, because the sort after a change of positions places holes anew. */
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   for (int64_t s = 0; s < set->slots; ++s)
     if (id[s] < 0) write_holes(set, field, 0, s, s + 1, set->grid->desc.origin);
 }
 
-/* Absent fields read as these values, so that becoming present changes nothing. */
+/* Absent fields read as these values, so a field that becomes present changes nothing. */
 static void write_defaults(mpm_particles *set, int32_t field) {
   const mpmi_field *at = &set->field[field];
   write_holes(set, field, 0, 0, set->slots, set->grid->desc.origin);

@@ -1,5 +1,6 @@
-/* Lattices of particles. One path for every shape: the points of a box are offered to a function in batches,
- * its answers are kept as one bit each, and those taken are then written straight into the set. */
+/* A lattice of particles fills a shape, and every shape takes the same path: the points of a box are
+ * offered to a function in batches, its answers are kept as one bit each, and the chosen points are then
+ * written straight into the set. */
 #include <math.h>
 #include <string.h>
 
@@ -9,8 +10,8 @@ enum { BATCH = 4096, MOST_PER_CELL = 64 };
 
 static const double most_points = 4294967296.0;
 
-/* Points [begin, begin + n) of the lattice that has `per` points along each axis of a cell, last axis
- * fastest. */
+/* A lattice has the points [begin, begin + n) of those with `per` points along each axis of a cell, last
+ * axis fastest. */
 typedef struct lattice {
   const mpm_grid *grid;
   int64_t per[3], begin[3], n[3], points;
@@ -23,7 +24,7 @@ static double coordinate(const lattice *on, int32_t axis, int64_t i) {
   return desc->origin[axis] + ((double)(i / on->per[axis]) + in_cell) * desc->spacing[axis];
 }
 
-/* The first point of an axis that is not below x. */
+/* Returns the first point of an axis that is not below x. */
 static int64_t first_from(const lattice *on, int32_t axis, double x) {
   const mpm_grid *grid = on->grid;
   int64_t all = grid->desc.cells[axis] * on->per[axis];
@@ -59,7 +60,7 @@ static mpm_status lay_lattice(mpm_particles *set, const double *lower, const dou
   return MPM_OK;
 }
 
-/* Positions of the points [first, first + n), components ld apart. */
+/* Writes the positions of the points [first, first + n), with components ld apart. */
 static void points_at(const lattice *on, int64_t first, int64_t n, double *position, int64_t ld) {
   int64_t at[3] = {0, 0, 0}, rest = first;
   int32_t dim = on->grid->dim;
@@ -73,12 +74,12 @@ static void points_at(const lattice *on, int64_t first, int64_t n, double *posit
   }
 }
 
-/* Scratch of a fill: a batch of points, and a bit for every point of the lattice. */
+/* A sieve is the scratch of a fill: a batch of points, and a bit for every point of the lattice. */
 typedef struct sieve {
   double *position; /* [dim][BATCH] */
   uint8_t *inside;  /* [BATCH] */
-  uint8_t *taken;   /* bits */
-  int64_t count;    /* of bits set */
+  uint8_t *taken;   /* [points] as bits */
+  int64_t count;    /* how many bits are set */
 } sieve;
 
 static int64_t batch_length(const lattice *on, int64_t first) {
@@ -165,7 +166,7 @@ static mpm_status fill(mpm_particles *set, const lattice *on, mpm_inside_fn insi
   return MPM_OK;
 }
 
-/* Bounds up to round-off of the grid's. */
+/* A box may lie beyond the bounds of the grid by round-off. */
 static mpm_status check_inside_grid(const mpm_particles *set, const char *name, const double *x) {
   const mpm_grid *grid = set->grid;
   for (int32_t k = 0; k < grid->dim; ++k) {
@@ -236,7 +237,7 @@ static mpm_status inside_ball(void *user, int32_t dim, int64_t n, int64_t ld, co
   return MPM_OK;
 }
 
-/* A ball may reach over the faces: what lies inside the grid is filled, as symmetry planes want it. */
+/* A ball may reach over the faces, as symmetry planes want it: what lies inside the grid is filled. */
 mpm_status mpm_particles_fill_ball(mpm_particles *particles, const double *centre, double radius,
                                    const int32_t *per_cell, int64_t *first_id, int64_t *count) {
   MPMI_ENTER(particles, MPMI_PARTICLES);

@@ -14,7 +14,7 @@ size_t mpmi_law_batch_bytes(const mpm_material *material) {
   return mpmi_bytes(rows * mpmi_law_batch_length(material), sizeof(double));
 }
 
-/* What a law need not fill: no viscosity, energy unknown. */
+/* Presets what a law need not fill: no viscosity, energy unknown. */
 static void preset_optional(mpmi_law_batch *b, int64_t n) {
   for (int64_t p = 0; p < n; ++p) {
     b->viscosity[p] = 0.0;
@@ -63,8 +63,8 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
                                   .lookup = &b->lookup};
 }
 
-static void copy_rows(double *to, int64_t to_ld, const double *from, int64_t from_ld, int32_t rows,
-                      int64_t n) {
+static void copy_batch_rows(double *to, int64_t to_ld, const double *from, int64_t from_ld, int32_t rows,
+                            int64_t n) {
   for (int32_t r = 0; r < rows; ++r) memcpy(to + r * to_ld, from + r * from_ld, (size_t)n * sizeof(double));
 }
 
@@ -77,12 +77,14 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
   b->batch.t = t;
   b->batch.dt = dt;
   b->batch.id = mpmi_i64(set, MPMI_ID, 0) + begin;
-  if (!mpmi_material_stress_from_F(material) || dt == 0.0) /* the state as it is may have viscous stress */
-    copy_rows(b->stress, b->ld, mpmi_f64(set, MPMI_STRESS, 0) + begin, set->ld, mpmi_stress_components(dim),
-              n);
+  /* With dt = 0 the law is asked for the state as it is, whose stress may be viscous. */
+  if (!mpmi_material_stress_from_F(material) || dt == 0.0)
+    copy_batch_rows(b->stress, b->ld, mpmi_f64(set, MPMI_STRESS, 0) + begin, set->ld,
+                    mpmi_stress_components(dim), n);
   if (material->state_count)
-    copy_rows(b->state, b->ld, mpmi_f64(set, MPMI_STATE, 0) + begin, set->ld, material->state_count, n);
-  if (!material->law) copy_rows(b->position, b->ld, mpmi_f64(set, MPMI_POSITION, 0) + begin, set->ld, dim, n);
+    copy_batch_rows(b->state, b->ld, mpmi_f64(set, MPMI_STATE, 0) + begin, set->ld, material->state_count, n);
+  if (!material->law)
+    copy_batch_rows(b->position, b->ld, mpmi_f64(set, MPMI_POSITION, 0) + begin, set->ld, dim, n);
   if (!material->law) preset_optional(b, n);
 }
 
@@ -107,7 +109,7 @@ mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {
   const mpm_status status =
       mpmi_material_evaluate(set->material, set->context->isa, set->grid->dim, &b->batch);
   if (status || set->material->law) return status;
-  /* whatever the host made of inert slots must not get into sums */
+  /* Whatever the host made of inert slots must not get into sums. */
   for (int64_t p = 0; p < b->batch.n; ++p) {
     if (b->batch.id[p] >= 0) continue;
     for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = 0.0;
@@ -120,11 +122,11 @@ mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {
 
 void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,
                           int64_t n) {
-  copy_rows(mpmi_f64(set, MPMI_STRESS, copy) + begin, set->ld, b->stress_new, b->ld,
-            mpmi_stress_components(set->grid->dim), n);
+  copy_batch_rows(mpmi_f64(set, MPMI_STRESS, copy) + begin, set->ld, b->stress_new, b->ld,
+                  mpmi_stress_components(set->grid->dim), n);
   if (set->material->state_count)
-    copy_rows(mpmi_f64(set, MPMI_STATE, copy) + begin, set->ld, b->state_new, b->ld,
-              set->material->state_count, n);
+    copy_batch_rows(mpmi_f64(set, MPMI_STATE, copy) + begin, set->ld, b->state_new, b->ld,
+                    set->material->state_count, n);
 }
 
 mpm_status mpm_batch_field(const void *lookup, const char *field, const void **data,

@@ -1,15 +1,17 @@
-/* The buffers of one batch of particles on its way through a constitutive law, and the public batch that
- * shows them. */
+/* One batch of particles on its way through a constitutive law has these buffers, and the public batch
+ * shows them to the law. */
 #ifndef MPMI_LAW_BATCH_H
 #define MPMI_LAW_BATCH_H
 
 #include "particles/particles.h"
 
-/* Lengths: short enough for the first-level cache where the law is ours; long where calling the host costs.
- */
+/* A batch is short enough for the first-level cache where the law is ours, and long where calling the host
+ * costs. */
 enum { MPMI_BATCH_OWN = 64, MPMI_BATCH_HOST = 256 };
+_Static_assert((int)MPMI_BATCH_OWN % (int)MPMI_CHUNK == 0 && (int)MPMI_BATCH_HOST % (int)MPMI_CHUNK == 0,
+               "batches hold whole chunks");
 
-/* Where a batch lies in its set: what the `lookup` of callbacks points to. */
+/* A lookup says where a batch lies in its set; the `lookup` of callbacks points to it. */
 typedef struct mpmi_lookup {
   const mpm_particles *set;
   int64_t begin;
@@ -24,19 +26,21 @@ typedef struct mpmi_law_batch {
 } mpmi_law_batch;
 
 int64_t mpmi_law_batch_length(const mpm_material *material);
-/* Bytes of the buffers for a material, a multiple of 64. */
+/* Returns the bytes of the buffers for a material, a multiple of 64. */
 size_t mpmi_law_batch_bytes(const mpm_material *material);
-/* Lays the buffers out in 64-byte aligned memory and presets them to the state that does not change: F_inc =
+/* Lays the buffers out in 64-byte aligned memory and presets them to a state that does not change: F_inc =
  * I, L = 0. */
 void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *memory);
-/* Fills the batch with n slots from `begin`: old stress and state, position, ids; t and dt of the step. */
+/* Fills the batch with n slots from `begin`: old stress and state, position, ids, and t and dt of the
+ * step. */
 void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double t,
                          double dt);
-/* F -> ratio^(1/d) F in the axes that the grid has: the dilation that the locking remedy shows to the law. */
+/* Replaces F by ratio^(1/d) F in the axes that the grid has: the locking remedy shows the law this
+ * dilation. */
 void mpmi_law_batch_scale_F(mpmi_law_batch *b, int32_t dim, const double *ratio, int64_t n);
-/* F from storage, for evaluating the state as it is. */
+/* Loads F from storage, to evaluate the state as it is. */
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
-/* Runs the law; then the new stress and state may be stored in copy `copy` of the set's fields. */
+/* Runs the law. Afterwards the new stress and state may be stored in copy `copy` of the set's fields. */
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set);
 void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,
                           int64_t n);

@@ -1,4 +1,4 @@
-/* The table of built-in fields, and the maps between stored and full components. */
+/* This file has the table of built-in fields, and the maps between stored and full components. */
 #include <string.h>
 
 #include "particles/layout.h"
@@ -10,7 +10,7 @@ typedef struct builtin_field {
   int32_t type, shape, writable, two_copies, present;
 } builtin_field;
 
-/* "stress" becomes writable, "state" and "image" present, as law and grid say. */
+/* Law and grid decide whether "stress" is writable and whether "state" and "image" are present. */
 static const builtin_field builtin[MPMI_BUILTIN_FIELDS] = {
     [MPMI_ID] = {"id", MPM_I64, SCALAR, 0, 0, 1},
     [MPMI_POSITION] = {"position", MPM_F64, VECTOR, 1, 1, 1},
@@ -47,8 +47,8 @@ int32_t mpmi_stress_components(int32_t dim) {
   return dim == 1 ? 3 : dim == 2 ? 4 : 6;
 }
 
-static const int32_t plane_map[] = {0, 1, 3, 4,
-                                    8}; /* and its first entry for 1-D, first four for gradients */
+/* The map of 1-D is the first entry of the map of 2-D; gradients use the first 1, 4 or 9 entries. */
+static const int32_t plane_map[] = {0, 1, 3, 4, 8};
 static const int32_t whole_map[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
 
 const int32_t *mpmi_tensor_map(int32_t dim) {
@@ -85,7 +85,7 @@ void mpmi_layout_builtin(mpm_particles *set) {
     memcpy(field->name, from->name, strlen(from->name) + 1);
     field->type = from->type;
     field->components = shape_components(from->shape, dim, state_count);
-    /* Tensors are full in three dimensions; nothing else depends on the dimension of the copy. */
+    /* Full tensors have three dimensions, full vectors those of the grid. */
     field->full_components = shape_components(from->shape, from->shape == VECTOR ? dim : 3, state_count);
     field->writable = from->writable;
     field->two_copies = from->two_copies;

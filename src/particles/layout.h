@@ -1,21 +1,24 @@
-/* How fields are laid out: the built-in ones by dimension and law, and where full tensors keep entries. */
+/* The layout says what the built-in fields are by dimension and law, and where full tensors keep their
+ * entries. */
 #ifndef MPMI_LAYOUT_H
 #define MPMI_LAYOUT_H
 
 #include "particles/particles.h"
 
-/* Slots are numbered with 32 bits in sorts, the last number being none. */
+/* Sorts number slots with 32 bits; the last number stands for none. */
 #define MPMI_MAX_SLOTS INT64_C(0xfffffffe)
 
-enum { MPMI_MAX_COMPONENTS = 64 }; /* of a field of the host */
+enum { MPMI_MAX_COMPONENTS = 64 }; /* the most that a field of the host may have */
 
 /* Describes the built-in fields of a set whose grid and material are known; allocates nothing. */
 void mpmi_layout_builtin(mpm_particles *set);
-/* The stored component that holds component c of the full layout, or -1. */
+/* Returns the stored component that holds component c of the full layout, or -1. */
 int32_t mpmi_stored_component(const mpm_particles *set, int32_t field, int32_t c);
-/* Value of a component of the full layout that is not stored: the identity's for F, else 0. */
+/* Returns the value of a component of the full layout that is not stored: that of the identity for F, else
+ * 0. */
 double mpmi_unstored_value(int32_t field, int32_t c);
-/* Index of the field that the host names: MPM_E_ARG for NULL, MPM_E_NOT_FOUND with the nearest names. */
+/* Finds the index of the field that the host names: MPM_E_ARG for NULL, MPM_E_NOT_FOUND with the nearest
+ * names. */
 mpm_status mpmi_require_field(const mpm_particles *set, const char *name, int32_t *field);
 
 /* Refuses in the middle of a staged step: MPM_E_STATE. */

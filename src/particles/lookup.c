@@ -1,4 +1,5 @@
-/* From id to slot: a table ascending by id, built when asked for, dropped when particles come, go or move. */
+/* A table leads from ids to slots. It ascends by id, is built when asked for, and dropped when particles
+ * come, go or move. */
 #include "context/radix.h"
 #include "particles/particles.h"
 
@@ -24,7 +25,7 @@ int32_t mpmi_ids_ascend(const mpm_particles *set) {
   return 1;
 }
 
-/* Ids that ascend with the slots are as good as sorted, and need no scratch. */
+/* Ids that ascend with the slots are sorted already, and need no scratch. */
 static mpm_status list(mpm_particles *set) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   set->index = mpmi_alloc(set->context, mpmi_bytes(set->count, sizeof *set->index));
@@ -65,7 +66,7 @@ int64_t mpmi_index_find(const mpm_particles *set, int64_t id) {
   int64_t low = 0, high = set->index_capacity;
   if (high == 0 || id < index[0].id) return -1;
   int64_t ahead = id - index[0].id;
-  if (ahead < high && index[ahead].id == id) return index[ahead].slot; /* ids without gaps */
+  if (ahead < high && index[ahead].id == id) return index[ahead].slot; /* ids have no gaps */
   while (low < high) {
     int64_t middle = low + (high - low) / 2;
     if (index[middle].id < id)

@@ -1,17 +1,19 @@
-/* A particle set: fields by name in component arrays, in an order that follows the grid's blocks.
+/* A particle set keeps fields by name in component arrays, in an order that follows the blocks of the grid.
  *
  * Slots [0, slots) hold the particles and inert holes (id -1, mass 0, F = I). Component c of slot s of a
  * field is data[0][c * ld + s]. Fields that a step changes have a second copy data[1]: a step reads copy 0,
- * writes copy 1 and swaps at commit; the same copy receives a re-sort. */
+ * writes copy 1 and swaps at commit; a sort writes the same copy. */
 #ifndef MPMI_PARTICLES_H
 #define MPMI_PARTICLES_H
 
 #include "grid/grid.h"
 #include "material/material.h"
+#include "simd/chunk.h"
 
 enum { MPMI_PAD = 16 }; /* every block's slot range is a multiple of this */
+_Static_assert((int)MPMI_PAD % (int)MPMI_CHUNK == 0, "blocks hold whole chunks");
 
-/* Built-in fields in the order of the public table; the host's own follow. */
+/* Built-in fields have the order of the public table; the host's own follow. */
 enum {
   MPMI_ID,
   MPMI_POSITION,
@@ -37,15 +39,15 @@ enum { MPMI_MAX_FIELDS = 64, MPMI_MAX_VIEWS = 64, MPMI_NAME = 48 };
 typedef struct mpmi_field {
   char name[MPMI_NAME];
   int32_t type;            /* MPM_F64 ... */
-  int32_t components;      /* stored */
-  int32_t full_components; /* in get, set and callbacks */
-  int32_t writable;        /* by the host */
+  int32_t components;      /* how many are stored */
+  int32_t full_components; /* how many get, set and callbacks show */
+  int32_t writable;        /* the host may write it */
   int32_t two_copies;      /* a step writes it: data[1] exists whenever data[0] does */
   int32_t present;         /* takes part in sorting and saving; optional fields start absent */
   void *data[2];           /* [components][ld] */
 } mpmi_field;
 
-/* What has changed since the last step or refresh. */
+/* These flags say what has changed since the last step or refresh. */
 enum {
   MPMI_DIRTY_ORDER = 1,  /* particles were added: the next sort orders blocks by id */
   MPMI_DIRTY_PLACE = 2,  /* positions changed, or a particle left its loose tile: sort before the next step */
@@ -54,7 +56,7 @@ enum {
   MPMI_DIRTY_ACCELERATION = 16 /* accelerations are not those of an implicit step, nor given by the host */
 };
 
-/* A view that is out, of a set or of a stepper's nodes. */
+/* A record stands for a view that is out, of a set or of the nodes of a stepper. */
 typedef struct mpmi_view_record mpmi_view_record;
 struct mpmi_view_record {
   int32_t live, field, access;
@@ -63,7 +65,7 @@ struct mpmi_view_record {
   mpm_status (*release)(mpmi_view_record *record, mpm_view *view);
 };
 
-/* What a set asks of the stepper that holds it. */
+/* A set asks these questions of the stepper that holds it. */
 typedef struct mpmi_owner {
   int32_t (*in_step)(const mpm_stepper *stepper); /* is a step under way, whole or staged? */
   double (*time)(const mpm_stepper *stepper);     /* the present time */
@@ -75,10 +77,10 @@ struct mpm_particles {
   mpm_context *context;
   mpm_grid *grid;
   mpm_material *material;
-  mpm_stepper *stepper;    /* that holds the set, or NULL */
-  const mpmi_owner *owner; /* where there is a stepper */
+  mpm_stepper *stepper;    /* holds the set, or NULL */
+  const mpmi_owner *owner; /* set where there is a stepper */
   int64_t count;           /* live particles */
-  int64_t slots;           /* used, a multiple of MPMI_PAD */
+  int64_t slots;           /* slots in use, a multiple of MPMI_PAD */
   int64_t ld;              /* capacity of every component array */
   int64_t next_id;
   uint32_t dirty;   /* MPMI_DIRTY_... */
@@ -87,7 +89,7 @@ struct mpm_particles {
   int32_t field_count;
   mpmi_field field[MPMI_MAX_FIELDS];
   mpmi_view_record view[MPMI_MAX_VIEWS];
-  /* lookup from id to slot (lookup.c), built when asked for, dropped when slots move */
+  /* The lookup from id to slot is built when asked for, and dropped when slots move (lookup.c). */
   struct mpmi_id_slot {
     int64_t id, slot;
   } * index; /* [count] ascending by id, or NULL */
@@ -101,45 +103,45 @@ static inline int64_t *mpmi_i64(const mpm_particles *set, int32_t field, int32_t
   return (int64_t *)set->field[field].data[copy];
 }
 size_t mpmi_type_size(int32_t type);
-/* Index of a field by name, or -1. */
+/* Returns the index of a field by name, or -1. */
 int32_t mpmi_find_field(const mpm_particles *set, const char *name);
 
-/* Stored components of a tensor by dimension: entry c of a compact tensor is entry map[c] of the full one. */
+/* Tensors store components by dimension: entry c of a compact tensor is entry map[c] of the full one. */
 int32_t mpmi_tensor_components(int32_t dim);   /* F: 1, 5, 9 */
 const int32_t *mpmi_tensor_map(int32_t dim);   /* F: {0}, {0 1 3 4 8}, {0..8} */
 int32_t mpmi_gradient_components(int32_t dim); /* L: 1, 4, 9 */
 const int32_t *mpmi_gradient_map(int32_t dim); /* L: {0}, {0 1 3 4}, {0..8} */
 int32_t mpmi_stress_components(int32_t dim);   /* 3, 4, 6 */
 
-/* Storage (fields.c): all or nothing; on failure the set is unchanged. */
-mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots); /* ld >= slots */
-mpm_status mpmi_field_make_present(mpm_particles *set,
-                                   int32_t field); /* allocates an absent field, default values */
+/* These change the storage (fields.c). They do all or nothing: on failure the set is unchanged. */
+mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots);  /* ld >= slots */
+mpm_status mpmi_field_make_present(mpm_particles *set, int32_t field); /* with default values */
 void mpmi_field_make_absent(mpm_particles *set, int32_t field);
 /* Writes inert slots [begin, end) into copy `copy` of every present field; position is that of the hole. */
 void mpmi_fill_holes(mpm_particles *set, int32_t copy, int64_t begin, int64_t end, const double *position);
-/* Turns the particle in `slot` into a hole (copy 0 of all fields; its position stays). Does not count it. */
+/* Turns the particle in `slot` into a hole: copy 0 of all fields but its position. The caller counts it. */
 void mpmi_make_hole(mpm_particles *set, int64_t slot);
-/* Value that an absent optional field has for the particle in `slot`, component c of the full layout. */
+/* Returns the value that an absent optional field has for the particle in `slot`, component c of the full
+ * layout. */
 double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int64_t slot);
-/* Leading dimension for at least `slots` slots: a multiple of MPMI_PAD whose stride does not alias in the
- * caches. */
+/* Returns the leading dimension for at least `slots` slots: a multiple of MPMI_PAD whose stride does not
+ * alias in the caches. */
 int64_t mpmi_leading_dimension(int64_t slots);
 
-/* Lookup by id (lookup.c). */
-mpm_status mpmi_index_build(mpm_particles *set);   /* no work when it is there */
-int32_t mpmi_ids_ascend(const mpm_particles *set); /* with the slots */
+/* These find slots by id (lookup.c). */
+mpm_status mpmi_index_build(mpm_particles *set);   /* does nothing when it is there */
+int32_t mpmi_ids_ascend(const mpm_particles *set); /* 1: ids ascend with the slots */
 void mpmi_index_drop(mpm_particles *set);
 int64_t mpmi_index_find(const mpm_particles *set, int64_t id); /* slot, or -1; index must be built */
 
-/* Checks the values of the fields in `suspect` and clears the mask when they are good (access.c); otherwise
- * MPM_E_ARG naming field, value and particle id. */
+/* Checks the values of the fields in `suspect` and clears the mask when they are good (values.c);
+ * otherwise MPM_E_ARG names field, value and particle id. */
 mpm_status mpmi_particles_check_suspects(mpm_particles *set);
 /* Brings volume and stress up to date after F or initial_volume was set (refresh.c). */
 mpm_status mpmi_particles_refresh(mpm_particles *set);
 /* Refuses when the set is mapped or in the middle of a staged step: MPM_E_STATE. */
 mpm_status mpmi_particles_changeable(mpm_particles *set);
-/* Views shared by particles and nodes (view.c): the check of the host's struct, then what it is told. */
+/* Views of particles or of nodes (view.c): the check of the host's struct, then what it is told. */
 mpm_status mpmi_view_check(mpm_context *context, const mpm_view *view);
 void mpmi_view_fill(mpm_view *view, int32_t type, int32_t components, int32_t access, int64_t count,
                     int64_t ld, void *data, mpmi_view_record *record);

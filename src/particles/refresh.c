@@ -1,15 +1,14 @@
-/* Volume and stress after the host has set F or the initial volume. */
+/* Volume and stress are brought up to date after the host has set F or the initial volume. */
+#include "material/deformation.h"
 #include "particles/law_batch.h"
-#include "transfer/kernels.h"
 
 #include <string.h>
 
-/* The law is asked for the state as it is: F_inc = I, dt = 0. Stresses go to the second copy first, so that a
- * refusing law changes nothing. */
+/* The law is asked for the state as it is: F_inc = I, dt = 0. Stresses go to the second copy first, so
+ * that nothing changes when the law refuses. */
 mpm_status mpmi_particles_refresh(mpm_particles *set) {
   if (!set->slots) set->dirty &= ~(uint32_t)MPMI_DIRTY_STRESS;
   if (!(set->dirty & MPMI_DIRTY_STRESS)) return MPM_OK;
-  const mpmi_kernels *kernels = mpmi_kernels_of(set->context->isa);
   const int32_t dim = set->grid->dim;
   const size_t bytes = mpmi_law_batch_bytes(set->material);
   void *memory = mpmi_alloc(set->context, bytes);
@@ -30,14 +29,15 @@ mpm_status mpmi_particles_refresh(mpm_particles *set) {
   if (status)
     return mpmi_fail(set->context, MPM_E_CALLBACK,
                      "the material returned %d when asked for the stress of the given F", (int)status);
-  /* copied, not swapped: a view of the stress may be out */
+  /* The stress is copied and not swapped, because a view of it may be out. */
   if (!keeps_stress)
     for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
       memcpy(mpmi_f64(set, MPMI_STRESS, 0) + c * set->ld, mpmi_f64(set, MPMI_STRESS, 1) + c * set->ld,
              (size_t)set->slots * sizeof(double));
   const double *F[9];
   for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld;
-  kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0), set->slots);
+  mpmi_deformation_of(set->context->isa)
+      ->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0), set->slots);
   set->dirty &= ~(uint32_t)MPMI_DIRTY_STRESS;
   return MPM_OK;
 }

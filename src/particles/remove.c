@@ -1,9 +1,8 @@
-/* Particles taken out: their slots become inert until the next sort closes the gaps. */
+/* Particles that are taken out leave inert slots until the next sort closes the gaps. */
 #include "particles/particles.h"
 
-/* Ids are distinct as long as each finds its own number in its slot: a found one is marked by the complement,
- * which is negative, so that a second look at it fails. Returns how many were marked before the first bad
- * one. */
+/* Marks the particles by the complement of their ids, which is negative. So an id that is given twice is
+ * not found the second time. Returns how many were marked before the first bad one. */
 static int64_t mark(const mpm_particles *set, int64_t n, const int64_t *ids, int64_t *id) {
   for (int64_t i = 0; i < n; ++i) {
     int64_t slot = mpmi_index_find(set, ids[i]);

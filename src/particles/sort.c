@@ -24,8 +24,8 @@ mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *a, int64_t blocks) 
                       blocks + 1 > a->start_capacity ? 2 * blocks + 2 : 0, sizeof *a->start);
 }
 
-/* The provisional block of each slot, from mpmi_sort_blocks to mpmi_sort_plan: where positions will be after
- * the next step. */
+/* From mpmi_sort_blocks() to mpmi_sort_plan() the memory for the next positions holds the provisional
+ * block of each slot. */
 static uint32_t *blocks_of_slots(const mpm_particles *set) {
   return set->field[MPMI_POSITION].data[1];
 }
@@ -74,7 +74,7 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
                              sizeof *sorting->source)))
     return status;
   if (slots) memset(sorting->source, 0xff, (size_t)slots * sizeof *sorting->source);
-  /* start[b] serves as the cursor of block b and is put back afterwards */
+  /* start[b] serves as the cursor of block b and is put back afterwards. */
   const int64_t n = by_id ? set->count : set->slots;
   for (int64_t i = 0; i < n; ++i) {
     const int64_t s = by_id ? set->index[i].slot : i;
@@ -82,10 +82,11 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
   }
   for (int64_t b = blocks->count; b > 0; --b) to->start[b] = padded(to->start[b - 1]);
   to->start[0] = 0;
-  return mpmi_particles_reserve(set, slots); /* last: it may take the second copies elsewhere */
+  return mpmi_particles_reserve(set,
+                                slots); /* last, because the second copies may move, and with them of_slot */
 }
 
-/* One component array to move, and where to. */
+/* A move takes one component array from one place to another. */
 typedef struct move {
   const char *from;
   char *to;
@@ -126,7 +127,8 @@ static void run(mpm_particles *set, moving *m) {
   m->count = 0;
 }
 
-/* Component arrays that a sort may use as scratch: the second copies, before they receive their own field. */
+/* Collects component arrays that a sort may use as scratch: the second copies, before they receive their
+ * own field. */
 static int32_t collect_spares(const mpm_particles *set, char **spare, int32_t capacity) {
   int32_t count = 0;
   for (int32_t f = 0; f < set->field_count; ++f) {
@@ -137,7 +139,7 @@ static int32_t collect_spares(const mpm_particles *set, char **spare, int32_t ca
   return count;
 }
 
-/* Fields with one copy: out to the spares by the new order, and straight back. */
+/* Fields with one copy go out to the spares in the new order, and straight back. */
 static void sort_single_copies(mpm_particles *set, const uint32_t *source, int64_t slots) {
   char *spare[MAX_MOVES];
   const int32_t spares = collect_spares(set, spare, MAX_MOVES);
@@ -182,7 +184,7 @@ static void sort_double_copies(mpm_particles *set, const uint32_t *source, int64
   }
 }
 
-/* A place inside both the block and the grid. */
+/* Finds a place inside both the block and the grid. */
 static void hole_position(const mpm_grid *grid, const mpmi_blocks *blocks, int64_t b, double *x) {
   for (int32_t k = 0; k < grid->dim; ++k) {
     x[k] =

@@ -1,20 +1,20 @@
-/* Sorting a set by blocks: stable, so that the order is a function of the state alone. */
+/* A set is sorted by blocks, and the sort is stable, so that the order is a function of the state alone. */
 #ifndef MPMI_SORT_H
 #define MPMI_SORT_H
 
 #include "grid/blocks.h"
 #include "particles/particles.h"
 
-/* Where the slots of one set lie. start[b] .. start[b + 1] are the slots of block b. */
+/* An arrangement says where the slots of one set lie: start[b] .. start[b + 1] are the slots of block b. */
 typedef struct mpmi_arrangement {
   mpm_context *context;
   int64_t *start; /* [blocks + 1] */
   int64_t start_capacity;
 } mpmi_arrangement;
 
-/* What a sort of one set needs from its second part to its last. */
+/* A sort of one set hands this from its second part to its last. */
 typedef struct mpmi_sorting {
-  uint32_t *source; /* [slots] slot that a slot's particle comes from */
+  uint32_t *source; /* [slots] the slot that a particle comes from */
   int64_t source_capacity;
 } mpmi_sorting;
 
@@ -23,9 +23,10 @@ void mpmi_arrangement_free(mpmi_arrangement *arrangement);
 void mpmi_sorting_free(mpmi_sorting *sorting, mpm_context *context);
 mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *arrangement, int64_t blocks);
 
-/* The three parts of a sort. The first two may fail and change nothing that matters; the third cannot fail.
- * blocks: inserts the blocks of the set's particles. plan: `to` receives the new arrangement and the set's
- * storage the room for it. apply: moves the particles and clears the set's ORDER and PLACE flags. */
+/* A sort has three parts. The first two may fail and change nothing that matters; the third cannot fail.
+ * mpmi_sort_blocks() inserts the blocks of the set's particles. mpmi_sort_plan() writes the new
+ * arrangement into `to` and makes room in the set. mpmi_sort_apply() moves the particles and clears the
+ * set's ORDER and PLACE flags. */
 mpm_status mpmi_sort_blocks(mpm_particles *set, mpmi_blocks *blocks);
 mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                           mpmi_arrangement *to);

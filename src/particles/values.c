@@ -1,4 +1,4 @@
-/* Which values fields may hold, and what follows when the host has written them. */
+/* This file says which values fields may hold, and what follows when the host has written them. */
 #include <math.h>
 #include <stdio.h>
 
@@ -58,7 +58,7 @@ mpm_status mpmi_check_value(const mpm_particles *set, int32_t field, const doubl
     if (positive && !(v > 0)) return refuse(set, field, c, v, who, "> 0");
     if (field == MPMI_MASS && v <= 0) return refuse(set, field, c, v, who, "> 0");
     if (mpmi_stored_component(set, field, c) >= 0) continue;
-    double is = mpmi_unstored_value(field, c); /* as for every state of this dimension */
+    double is = mpmi_unstored_value(field, c); /* the value that every state of this dimension has */
     if (v < is || v > is)
       return refuse(set, field, c, v, who, is > 0 ? "1 in this dimension" : "0 in this dimension");
   }
@@ -72,7 +72,7 @@ mpm_status mpmi_check_flags(const mpm_particles *set, int32_t field, const uint8
   return MPM_OK;
 }
 
-/* The tensor of a slot with all its components; other fields are stored as they are copied. */
+/* Writes out the tensor of a slot with all its components; other fields are stored as they are copied. */
 static void expand(const mpm_particles *set, int32_t field, int64_t slot, double *full) {
   for (int32_t c = 0; c < set->field[field].full_components; ++c) {
     int32_t stored = mpmi_stored_component(set, field, c);
@@ -141,7 +141,7 @@ mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field) {
 static double largest_mass(const mpm_particles *set) {
   const double *mass = mpmi_f64(set, MPMI_MASS, 0);
   double largest = 0.0;
-  for (int64_t s = 0; s < set->slots; ++s) /* holes have none */
+  for (int64_t s = 0; s < set->slots; ++s) /* holes have no mass */
     if (mass[s] > largest) largest = mass[s];
   return largest;
 }

@@ -1,4 +1,4 @@
-/* Views: the library's own memory, lent until it is given back. */
+/* A view lends the library's own memory until it is given back. */
 #include <string.h>
 
 #include "context/structs.h"
@@ -49,7 +49,8 @@ static mpm_status check_request(const mpm_particles *set, const char *field, int
   return access & MPM_WRITE || !set->field[*f].present ? mpmi_between_steps(set) : MPM_OK;
 }
 
-/* Writing takes effect: what follows from the field is out of date, and bad values bar the set from steps. */
+/* Lets writing take effect: what follows from the field is out of date, and bad values bar the set from
+ * steps. */
 static mpm_status accept_written(mpm_particles *set, int32_t field) {
   mpmi_restore_holes(set, field);
   mpm_status status = mpmi_check_stored(set, field);

@@ -10,7 +10,8 @@
 #ifndef MPMI_BASIS_H
 #define MPMI_BASIS_H
 
-#include "transfer/kernel_common.h"
+#include "simd/rounding.h"
+#include "transfer/weights.h"
 
 /* Below this share of h^2 an axis has no usable second moment and carries no affine part. */
 #define MPMI_MOMENT_CUT 1e-8
@@ -34,7 +35,7 @@ MPMI_INLINE void mpmi_moments(int32_t width, int32_t spaced, double h, int32_t n
                               const mpmi_stencils *at, double (*u)[MPMI_CHUNK], double *inverse_moment) {
   const double cut = MPMI_MOMENT_CUT * h * h;
   double(*w)[MPMI_CHUNK] = at->w;
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     double D = 0.0;
     for (int32_t k = 0; k < width; ++k) {
       double d = (spaced == EVEN ? at->first[p] + k : at->distance[k][p]) * h, ud = w[k][p] * d;
@@ -45,12 +46,12 @@ MPMI_INLINE void mpmi_moments(int32_t width, int32_t spaced, double h, int32_t n
   }
   if (need & MPMI_NEED_MLS)
     for (int32_t k = 0; k < width; ++k)
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) at->g[k][p] = u[k][p] * inverse_moment[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) at->g[k][p] = u[k][p] * inverse_moment[p];
 }
 
 /* The first nodes of stencils, relative to the tile, in the periodic image that lies in the tile. */
 MPMI_INLINE void mpmi_into_tile(const mpmi_axis *a, int64_t n, double *place) {
-  if (a->period > 0.0) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  if (a->period > 0.0) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
       double at = place[p];
       place[p] = at - a->period * mpmi_round((at - a->middle) * a->inverse_period);
     }
@@ -66,7 +67,7 @@ MPMI_INLINE double mpmi_cell(const mpmi_axis *a, double xi) {
 MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (*place)[MPMI_CHUNK],
                                  int32_t *node) {
   const double edge = MPMI_TILE_EDGE(dim, width);
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     double at = place[0][p];
     if (dim > 1) at = at * edge + place[1][p];
     if (dim > 2) at = at * edge + place[2][p];

@@ -1,5 +1,6 @@
 /* Boxes of nodes between the tile of a block and the nodes of that block or of a neighbour. */
-#include "transfer/kernel_common.h"
+#include "simd/vector.h"
+#include "transfer/box.h"
 
 /* nodes += tile, and the tile is clean again. */
 MPMI_INLINE void add_box(int32_t values, const mpmi_box *box) {

@@ -6,7 +6,7 @@ MPMI_INLINE void bspline2_axis(const mpmi_axis *a, int64_t n, const mpmi_chunk *
                                const mpmi_stencils *out) {
   const double origin = a->origin, inverse = a->inverse_spacing, corner = a->tile_base + 1.0;
   double(*w)[MPMI_CHUNK] = out->w, (*g)[MPMI_CHUNK] = out->g;
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     double xi = (at->x[p] - origin) * inverse;
     double middle = mpmi_round(xi);
     double f = xi - middle, below = 0.5 - f, above = 0.5 + f; /* f in [-1/2, 1/2] */

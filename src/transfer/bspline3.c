@@ -6,7 +6,7 @@ MPMI_INLINE void bspline3_axis(const mpmi_axis *a, int64_t n, const mpmi_chunk *
                                const mpmi_stencils *out) {
   const double inverse = a->inverse_spacing, corner = a->tile_base + 1.0;
   double(*w)[MPMI_CHUNK] = out->w, (*g)[MPMI_CHUNK] = out->g;
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     double xi = (at->x[p] - a->origin) * inverse, cell = mpmi_cell(a, xi);
     double f = xi - cell, e = 1.0 - f, ff = f * f, ee = e * e;
     w[0][p] = 1.0 / 6.0 * ee * e;

@@ -7,7 +7,8 @@
  * Summed node by node, row by row, axis by axis. The MLS form takes the moments of C about the middle of the
  * stencil, where distances are small integers, and moves them to the particle at the end; where D can be
  * small the digits lost in moving them would count. Holes have no initial volume and gather zeros. */
-#include "transfer/kernel_common.h"
+#include "simd/pack.h"
+#include "transfer/gather.h"
 
 /* Per particle of a chunk: v; dv when nodes have 8 values; gradients; sums of w v (x_i - x_p),
  * or of w v (i - middle) in the MLS form. */
@@ -102,7 +103,7 @@ MPMI_INLINE void unpack_mls(int32_t width, double h, int32_t k, int64_t n, const
   for (int32_t r = 0; r < 3; ++r) {
     const double *vr = v + r * ld;
     double *to = C[r];
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to[p] =
+    MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to[p] =
         (to[p] + (W->first[k][p] + MIDDLE(width)) * vr[p]) * factor;
   }
 }
@@ -112,7 +113,7 @@ MPMI_INLINE void unpack_affine(int32_t k, int64_t n, const mpmi_weights *W, cons
   mpmi_unpack(n, in->M[k], C[0], C[1], C[2]);
   for (int32_t r = 0; r < 3; ++r) {
     double *to = C[r];
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to[p] *= W->inverse_moment[k][p];
+    MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to[p] *= W->inverse_moment[k][p];
   }
 }
 
@@ -145,7 +146,7 @@ MPMI_INLINE void gather(int32_t dim, int32_t width, int32_t form, const mpmi_gat
     const int64_t n = count - s < MPMI_CHUNK ? count - s : MPMI_CHUNK;
     const double *volume = job->initial_volume + begin + s;
     job->weights(job->axis, job->need, &job->points, begin + s, n, &W);
-    for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+    for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
         double live = volume[p] > 0.0 ? 1.0 : 0.0;
         W.w[0][k][p] *= live;
         if (form != MPMI_GATHER_4_MLS) W.g[0][k][p] *= live;

@@ -10,16 +10,16 @@
 /* Edges of the domains in cells: size |F_kk| / h, within (0, 1]. */
 MPMI_INLINE void domain_edges(const mpmi_axis *a, int64_t n, const mpmi_chunk *at, double *edge) {
   if (!at->size) {
-    for (int64_t p = 0; p < mpmi_groups(n); ++p) edge[p] = a->domain;
+    for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) edge[p] = a->domain;
   } else if (!at->stretch) {
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) edge[p] = at->size[p] * a->inverse_spacing;
+    MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) edge[p] = at->size[p] * a->inverse_spacing;
   } else {
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+    MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
       double stretch = at->stretch[p] < 0.0 ? -at->stretch[p] : at->stretch[p];
       edge[p] = at->size[p] * a->inverse_spacing * stretch;
     }
   }
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     double l = edge[p] < 1.0 ? edge[p] : 1.0;
     edge[p] = l > SMALLEST_DOMAIN ? l : SMALLEST_DOMAIN;
   }
@@ -31,7 +31,7 @@ MPMI_INLINE void gimp_axis(const mpmi_axis *a, int64_t n, const mpmi_chunk *at, 
   const double inverse = a->inverse_spacing, corner = a->tile_base + 1.0;
   double(*w)[MPMI_CHUNK] = out->w, (*g)[MPMI_CHUNK] = out->g;
   domain_edges(a, n, at, edge);
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     double xi = (at->x[p] - a->origin) * inverse;
     double node = mpmi_round(xi), f = xi - node, l = edge[p];
     double upper = 0.5 * l + f, lower = 0.5 * l - f; /* how far the domain reaches beyond the node */

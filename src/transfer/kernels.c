@@ -20,10 +20,6 @@ BASIS(open_bspline3)
 #include "transfer/instances.h"
 #define PER_DIM(dim)                                                                                         \
   uint32_t KERNEL(move_##dim)(const mpmi_move *, int64_t);                                                   \
-  void KERNEL(deform_##dim)(const mpmi_deform *, int64_t);                                                   \
-  void KERNEL(dilate_##dim)(const mpmi_deform *, int64_t);                                                   \
-  void KERNEL(stay_##dim)(const mpmi_deform *, int64_t);                                                     \
-  uint32_t KERNEL(volume_##dim)(const double *const *, const double *, double *, int64_t);                   \
   uint32_t KERNEL(sums_##dim)(const mpmi_sums_job *, int64_t, mpmi_sums *);                                  \
   void KERNEL(push_##dim)(const mpmi_push *, int64_t);                                                       \
   void KERNEL(force_scatter_##dim##_2)(const mpmi_force_scatter *, int64_t, int64_t);                        \
@@ -34,12 +30,28 @@ PER_DIM(1)
 PER_DIM(2)
 PER_DIM(3)
 
+/* Those of mpmi_deformation_of(), for who has this table at hand. */
+#define FORWARD(name, kind, dim)                                                                             \
+  static void name##_##dim(const mpmi_deform *job, int64_t n) {                                              \
+    KERNEL(deformation).deform[kind][dim](job, n);                                                           \
+  }
+#define FORWARD_DIM(dim)                                                                                     \
+  FORWARD(deform, MPMI_F_DEFORMS, dim)                                                                       \
+  FORWARD(dilate, MPMI_F_DILATES, dim)                                                                       \
+  FORWARD(stay, MPMI_F_STAYS, dim)                                                                           \
+  static uint32_t volume_##dim(const double *const *F, const double *initial_volume, double *out,            \
+                               int64_t n) {                                                                  \
+    return KERNEL(deformation).volume[dim](F, initial_volume, out, n);                                       \
+  }
+FORWARD_DIM(1)
+FORWARD_DIM(2)
+FORWARD_DIM(3)
+
 void KERNEL(add_box)(int32_t, const mpmi_box *);
 void KERNEL(fetch_box)(int32_t, const mpmi_box *);
 void KERNEL(load_box)(int32_t, int32_t, const mpmi_box *);
 int64_t KERNEL(update)(int32_t, double *, int64_t, double, double);
 
-extern const mpmi_kernels KERNEL(kernels);
 const mpmi_kernels KERNEL(kernels) = {
     .weights = {[MPMI_FAMILY_BSPLINE1] = BY_DIM(bspline1),
                 [MPMI_FAMILY_BSPLINE2] = BY_DIM(bspline2),
@@ -55,9 +67,10 @@ const mpmi_kernels KERNEL(kernels) = {
     .load_box = KERNEL(load_box),
     .update = KERNEL(update),
     .move = BY_DIM(move),
-    .deform =
-        {[MPMI_F_DEFORMS] = BY_DIM(deform), [MPMI_F_DILATES] = BY_DIM(dilate), [MPMI_F_STAYS] = BY_DIM(stay)},
-    .volume = BY_DIM(volume),
+    .deform = {[MPMI_F_DEFORMS] = {NULL, deform_1, deform_2, deform_3},
+               [MPMI_F_DILATES] = {NULL, dilate_1, dilate_2, dilate_3},
+               [MPMI_F_STAYS] = {NULL, stay_1, stay_2, stay_3}},
+    .volume = {NULL, volume_1, volume_2, volume_3},
     .sums = BY_DIM(sums),
     .push = BY_DIM(push),
 #define BY_WIDTH(name)                                                                                       \

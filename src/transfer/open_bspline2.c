@@ -5,7 +5,7 @@ MPMI_INLINE void open_bspline2_axis(const mpmi_axis *a, int64_t n, const mpmi_ch
                                     const mpmi_stencils *out) {
   const double inverse = a->inverse_spacing;
   double(*w)[MPMI_CHUNK] = out->w, (*g)[MPMI_CHUNK] = out->g, (*d)[MPMI_CHUNK] = out->distance;
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     const double xi = (at->x[p] - a->origin) * inverse, cell = mpmi_cell(a, xi);
     const mpmi_knots t = mpmi_knots_of(a, cell, xi);
     const double linear[2] = {t.above[0], t.below[0]};

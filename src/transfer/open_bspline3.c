@@ -6,7 +6,7 @@ MPMI_INLINE void open_bspline3_axis(const mpmi_axis *a, int64_t n, const mpmi_ch
   const double inverse = a->inverse_spacing, corner = a->tile_base + 1.0;
   double(*w)[MPMI_CHUNK] = out->w, (*g)[MPMI_CHUNK] = out->g, (*d)[MPMI_CHUNK] = out->distance;
   /* too long for some compilers to vectorise: they are not asked to */
-  for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     const double xi = (at->x[p] - a->origin) * inverse, cell = mpmi_cell(a, xi);
     const mpmi_knots t = mpmi_knots_of(a, cell, xi);
     const double linear[2] = {t.above[0], t.below[0]};

@@ -6,7 +6,9 @@
  * Both are first-order forms  w a + sum_k column_k (w with axis k replaced by its second weight),  summed
  * hierarchically: axis by axis, row by row, node by node. Affine momentum alone is simpler: what a node
  * receives is w_ip times a linear function of its place. The MLS form puts the force into that function. */
-#include "transfer/kernel_common.h"
+#include "simd/pack.h"
+#include "simd/tensor.h"
+#include "transfer/scatter.h"
 
 /* The tile is apart from the weights, which may then stay in registers from row to row; with 16 registers the
  * forces need them for other things. */
@@ -130,8 +132,17 @@ MPMI_INLINE int32_t is_affine(int32_t form) {
 
 _Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
 
-/* Column k of a symmetric tensor stored xx yy zz xy yz xz: rows of that column. */
-static const int32_t stress_of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+/* The stress of all particles, by column and row. */
+typedef struct mpmi_stress_rows {
+  const double *at[3][3];
+} mpmi_stress_rows;
+
+MPMI_INLINE mpmi_stress_rows stress_rows(int32_t dim, const mpmi_scatter *job) {
+  mpmi_stress_rows rows;
+  for (int32_t k = 0; k < dim; ++k)
+    for (int32_t r = 0; r < dim; ++r) rows.at[k][r] = job->stress[mpmi_sym_index(k, r)];
+  return rows;
+}
 
 /* What the particles of a chunk give, component by component. */
 typedef struct mpmi_given {
@@ -140,46 +151,50 @@ typedef struct mpmi_given {
 } mpmi_given;
 
 /* -V sigma, of which the lower triangle is filled, and the external force. */
-MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, int64_t s, int64_t n, mpmi_given *to) {
+MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s,
+                            int64_t n, mpmi_given *to) {
   const double *volume = job->volume + s, *mass = job->mass + s;
   for (int32_t r = 0; r < dim; ++r) {
     const double g = job->gravity[r];
     if (job->force[r]) {
       const double *added = job->force[r] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->force[r][p] = mass[p] * g + added[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->force[r][p] = mass[p] * g + added[p];
     } else {
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->force[r][p] = mass[p] * g;
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->force[r][p] = mass[p] * g;
     }
     for (int32_t k = 0; k <= r; ++k) {
-      const double *sigma = job->stress[stress_of[k][r]] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->stress[k][r][p] = -volume[p] * sigma[p];
+      const double *sigma = stress->at[k][r] + s;
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->stress[k][r][p] =
+          -volume[p] * sigma[p];
     }
   }
 }
 
 /* Momentum. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis; there the
  * fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Other affine forms: the columns of m C. */
-MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t s,
-                               int64_t n, const mpmi_weights *W, mpmi_given *to) {
+MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job,
+                               const mpmi_stress_rows *stress, int64_t s, int64_t n, const mpmi_weights *W,
+                               mpmi_given *to) {
   const int32_t linear = form == MPMI_SCATTER_4_AFFINE, affine = is_affine(form);
   const int32_t fused = linear && job->fused_dt != 0.0;
   const double *mass = job->mass + s, *volume = job->volume + s;
   for (int32_t r = 0; r < dim; ++r) {
     const double *v = job->v[r] + s;
     const double dv = fused ? job->fused_dt * job->gravity[r] : 0.0;
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->momentum[r][p] = mass[p] * (v[p] + dv);
+    MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->momentum[r][p] = mass[p] * (v[p] + dv);
     if (fused && job->force[r]) {
       const double *added = job->force[r] + s;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->momentum[r][p] += job->fused_dt * added[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->momentum[r][p] +=
+          job->fused_dt * added[p];
     }
     for (int32_t k = 0; affine && k < dim; ++k) {
-      const double *C = job->affine[3 * r + k] + s, *sigma = job->stress[stress_of[k][r]] + s;
+      const double *C = job->affine[3 * r + k] + s, *sigma = stress->at[k][r] + s;
       const double h = job->axis[k].spacing;
       const double scale = fused ? -job->fused_dt * MPMI_MLS_INVERSE(width) / h : 0.0;
       if (!linear) {
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) to->affine[k][r][p] = mass[p] * C[p];
+        MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->affine[k][r][p] = mass[p] * C[p];
       } else {
-        MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+        MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
           double growth = mass[p] * C[p] * h + scale * volume[p] * sigma[p];
           to->affine[k][r][p] = growth;
           to->momentum[r][p] += W->first[k][p] * growth;
@@ -212,14 +227,15 @@ MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, 
 
 MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
                          int64_t end) {
+  const mpmi_stress_rows stress = stress_rows(dim, job);
   mpmi_weights W;
   mpmi_given given;
   mpmi_first_order of;
   for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
     const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
     job->weights(job->axis, job->need, &job->points, s, n, &W);
-    give_momentum(dim, width, form, job, s, n, &W, &given);
-    if (form >= MPMI_SCATTER_8) give_force(dim, job, s, n, &given);
+    give_momentum(dim, width, form, job, &stress, s, n, &W, &given);
+    if (form >= MPMI_SCATTER_8) give_force(dim, job, &stress, s, n, &given);
     pack(dim, form, job->mass + s, n, &given, &of);
     for (int64_t p = 0; p < n; ++p) {
       mpmi_prefetch(&job->streams, s + MPMI_CHUNK, p);

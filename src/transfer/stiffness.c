@@ -6,7 +6,8 @@
  *
  * The push-forward goes into what the gradients are multiplied by, so that the loops over nodes see G alone.
  */
-#include "transfer/kernel_common.h"
+#include "simd/tensor.h"
+#include "transfer/stiffness.h"
 
 /* F_inc^-1 of particle p, component 3 * k + i. */
 MPMI_INLINE void invert(int32_t dim, const double *F, int64_t ld, int64_t p, double *out) {
@@ -33,25 +34,20 @@ MPMI_INLINE void invert(int32_t dim, const double *F, int64_t ld, int64_t p, dou
 #undef F_
 }
 
-/* Row of the symmetric stress that holds component (i, k). */
-MPMI_INLINE int32_t stress_row(int32_t i, int32_t k) {
-  return i == k ? i : i + k == 1 ? 3 : i + k == 3 ? 4 : 5;
-}
-
 /* A = inverse . (weight c + V delta sigma) . inverse^T in the second and fourth index. */
-MPMI_INLINE void push_stiffness(int32_t dim, const mpmi_push *job, const double (*inverse)[MPMI_GROUP],
+MPMI_INLINE void push_stiffness(int32_t dim, const mpmi_push *job, const double (*inverse)[MPMI_CHUNK],
                                 int64_t s) {
   const int64_t ld = job->ld;
-  double half[3][3][MPMI_GROUP];
+  double half[3][3][MPMI_CHUNK];
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t j = 0; j < dim; ++j) {
       /* half_kL = sum_l a_ikjl inverse_Ll */
       for (int32_t k = 0; k < dim; ++k)
-        for (int32_t L = 0; L < dim; ++L) MPMI_IVDEP for (int64_t p = 0; p < MPMI_GROUP; ++p) {
+        for (int32_t L = 0; L < dim; ++L) MPMI_IVDEP for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
             double sum = 0.0;
             for (int32_t l = 0; l < dim; ++l) {
               double a = job->weight[s + p] * job->tangent[(9 * (3 * i + k) + 3 * j + l) * ld + s + p];
-              if (i == j) a += job->volume[s + p] * job->stress[stress_row(k, l) * ld + s + p];
+              if (i == j) a += job->volume[s + p] * job->stress[mpmi_sym_index(k, l) * ld + s + p];
               sum += a * inverse[3 * L + l][p];
             }
             half[k][L][p] = sum;
@@ -59,7 +55,7 @@ MPMI_INLINE void push_stiffness(int32_t dim, const mpmi_push *job, const double 
       for (int32_t K = 0; K < dim; ++K)
         for (int32_t L = 0; L < dim; ++L) {
           double *A = job->stiffness + (9 * (3 * i + K) + 3 * j + L) * ld + s;
-          MPMI_IVDEP for (int64_t p = 0; p < MPMI_GROUP; ++p) {
+          MPMI_IVDEP for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
             double sum = 0.0;
             for (int32_t k = 0; k < dim; ++k) sum += inverse[3 * K + k][p] * half[k][L][p];
             A[p] = sum;
@@ -70,9 +66,9 @@ MPMI_INLINE void push_stiffness(int32_t dim, const mpmi_push *job, const double 
 
 MPMI_INLINE void push(int32_t dim, const mpmi_push *job, int64_t n) {
   const int64_t ld = job->ld;
-  double inverse[9][MPMI_GROUP];
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_GROUP) {
-    MPMI_IVDEP for (int64_t p = 0; p < MPMI_GROUP; ++p) {
+  double inverse[9][MPMI_CHUNK];
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_CHUNK) {
+    MPMI_IVDEP for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
       double one[9];
       invert(dim, job->F_inc, ld, s + p, one);
       for (int32_t e = 0; e < 9; ++e)
@@ -81,14 +77,14 @@ MPMI_INLINE void push(int32_t dim, const mpmi_push *job, int64_t n) {
     for (int32_t i = 0; i < dim; ++i)
       for (int32_t K = 0; K < dim; ++K) {
         double *P = job->nominal + (3 * i + K) * ld + s;
-        MPMI_IVDEP for (int64_t p = 0; p < MPMI_GROUP; ++p) {
+        MPMI_IVDEP for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
           double sum = 0.0;
           for (int32_t k = 0; k < dim; ++k)
-            sum += job->stress[stress_row(i, k) * ld + s + p] * inverse[3 * K + k][p];
+            sum += job->stress[mpmi_sym_index(i, k) * ld + s + p] * inverse[3 * K + k][p];
           P[p] = job->volume[s + p] * sum;
         }
       }
-    if (job->tangent) push_stiffness(dim, job, (const double(*)[MPMI_GROUP])inverse, s);
+    if (job->tangent) push_stiffness(dim, job, (const double(*)[MPMI_CHUNK])inverse, s);
   }
 }
 

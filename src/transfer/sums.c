@@ -1,5 +1,7 @@
 /* Energies, momenta and the stable rate of a batch, and a look at what the law returned. */
-#include "transfer/kernel_common.h"
+#include "simd/chunk.h"
+#include "simd/rounding.h"
+#include "transfer/sums.h"
 
 typedef struct mpmi_tally {
   mpmi_lanes kinetic, strain, work, rate, viscosity, bad, momentum[3], angular[3];
@@ -65,7 +67,7 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpm
 MPMI_INLINE uint32_t sum_batch(int32_t dim, const mpmi_sums_job *job, int64_t n, mpmi_sums *sums) {
   const mpmi_lanes zero = {0.0};
   mpmi_tally t = {zero, zero, zero, zero, zero, zero, {zero, zero, zero}, {zero, zero, zero}};
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) add_group(dim, job, s, &t);
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_group(dim, job, s, &t);
   sums->kinetic += 0.5 * mpmi_lanes_sum(t.kinetic);
   sums->strain += mpmi_lanes_sum(t.strain);
   sums->work += mpmi_lanes_sum(t.work);

@@ -1,6 +1,8 @@
 /* Nodal velocities: v = p / m, dv = dt f / m, v~ = v + dv (MPoint theory eqs 30-32), on every node as if it
  * were free. Nodes lighter than the cut stay at rest: dividing by their mass would only make noise. */
-#include "transfer/kernel_common.h"
+#include <stdint.h>
+
+#include "simd/vector.h"
 
 MPMI_INLINE int64_t update(int32_t values, double *nodes, int64_t count, double cut, double dt) {
   int64_t active = 0;

@@ -1,7 +1,8 @@
 /* Fluids and rigid particles in the time loop: what becomes of F, and flows that are known: Couette's
  * start-up and a column at rest. The laws themselves are tested in material_fluid.c. */
 #include "support.h"
-#include "transfer/kernels.h"
+#include "material/deformation.h"
+#include "simd/flags.h"
 
 static const mpm_param water[] = {
     {"density", 1e3}, {"bulk_modulus", 1e5}, {"gamma", 7.0}, {"viscosity", 20.0}};
@@ -239,7 +240,7 @@ static void deforming_clear(deforming *d, int32_t dim, dice *toss) {
   }
 }
 
-static uint32_t run_kernel(deforming *d, const mpmi_kernels *kernels, int32_t dim) {
+static uint32_t run_kernel(deforming *d, const mpmi_deformation *kernels, int32_t dim) {
   const double *F[9];
   for (int32_t e = 0; e < 9; ++e) F[e] = d->now[e];
   kernels->deform[MPMI_F_DILATES][dim](&d->job, ITEMS);
@@ -256,7 +257,7 @@ START_TEST(kernel) {
   if (status == MPM_E_UNSUPPORTED) return;
   ck_assert_int_eq(status, MPM_OK);
   ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
-  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  const mpmi_deformation *kernels = mpmi_deformation_of(isa);
   static deforming a, b;
   const double turned[9] = {-1.1, 0.0, 0.0, 0.0, -1.2, 0.0, 0.0, 0.0, 0.9};
   dice first = {5}, second = {5};

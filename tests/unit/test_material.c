@@ -1,7 +1,7 @@
 /* Materials as handles: the registry and refused arguments; and the logarithms of the
  * kernels. The laws themselves are tested in material_*.c. */
 #include "law_sample.h"
-#include "material/vector_math.h"
+#include "simd/vector_math.h"
 
 static mpm_context *context;
 static mpm_material *material;

@@ -3,9 +3,9 @@
 #ifndef MPMI_TENSOR_H
 #define MPMI_TENSOR_H
 
-#include <mpm/mpm.h>
+#include <stdint.h>
 
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 typedef struct mpmi_sym {
   double xx, yy, zz, xy, yz, xz;
@@ -15,9 +15,9 @@ typedef struct mpmi_mat {
   double xx, xy, xz, yx, yy, yz, zx, zy, zz;
 } mpmi_mat;
 
-/* Batches hold whole groups of 16; saying so lets the compiler drop remainders. */
-MPMI_INLINE int64_t mpmi_batch_items(const mpm_material_batch *batch) {
-  return batch->n & ~(int64_t)15;
+/* Which of xx yy zz xy yz xz holds component (i, j): the order in which symmetric tensors are stored. */
+MPMI_INLINE int32_t mpmi_sym_index(int32_t i, int32_t j) {
+  return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
 }
 
 /* scale * (A - shift I), with zeros where `dim` has no component. */

@@ -3,8 +3,8 @@
 #ifndef MPMI_VECTOR_H
 #define MPMI_VECTOR_H
 
-#include "transfer/isa.h"
-#include "transfer/lanes.h"
+#include "simd/isa.h"
+#include "simd/lanes.h"
 
 #if defined(__AVX__)
 typedef double mpmi_v4 __attribute__((vector_size(32)));
@@ -85,89 +85,6 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
   c->high = __builtin_shufflevector(tc.high, td.high, 0, 2);
   d->low = __builtin_shufflevector(ta.high, tb.high, 1, 3);
   d->high = __builtin_shufflevector(tc.high, td.high, 1, 3);
-}
-#endif
-
-/* The four components of some particles side by side in memory, to one vector per particle and back. */
-#if defined(__AVX512F__)
-enum { MPMI_SIDE = 8 };
-MPMI_INLINE void mpmi_store_halves(double *low, double *high, mpmi_lanes v) {
-  mpmi_store4(low, __builtin_shufflevector(v, v, 0, 1, 2, 3));
-  mpmi_store4(high, __builtin_shufflevector(v, v, 4, 5, 6, 7));
-}
-MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double *c, const double *d,
-                                 double *out, int32_t stride) {
-  const mpmi_lanes va = mpmi_lanes_load(a), vb = mpmi_lanes_load(b), vc = mpmi_lanes_load(c),
-                   vd = mpmi_lanes_load(d);
-  const mpmi_lanes ab_even = __builtin_shufflevector(va, vb, 0, 8, 2, 10, 4, 12, 6, 14),
-                   ab_odd = __builtin_shufflevector(va, vb, 1, 9, 3, 11, 5, 13, 7, 15),
-                   cd_even = __builtin_shufflevector(vc, vd, 0, 8, 2, 10, 4, 12, 6, 14),
-                   cd_odd = __builtin_shufflevector(vc, vd, 1, 9, 3, 11, 5, 13, 7, 15);
-  mpmi_store_halves(out, out + 2 * stride,
-                    __builtin_shufflevector(ab_even, cd_even, 0, 1, 8, 9, 2, 3, 10, 11));
-  mpmi_store_halves(out + stride, out + 3 * stride,
-                    __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 8, 9, 2, 3, 10, 11));
-  mpmi_store_halves(out + 4 * stride, out + 6 * stride,
-                    __builtin_shufflevector(ab_even, cd_even, 4, 5, 12, 13, 6, 7, 14, 15));
-  mpmi_store_halves(out + 5 * stride, out + 7 * stride,
-                    __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
-}
-/* Eight components of as many particles: a store for each, for a load that wants all of it back at once would
- * wait for the end of two stores. */
-MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *out) {
-  mpmi_lanes pair[2][4]; /* of two components, of even and odd particles */
-  for (int32_t c = 0; c < 4; ++c) {
-    const mpmi_lanes a = mpmi_lanes_load(in[2 * c] + p), b = mpmi_lanes_load(in[2 * c + 1] + p);
-    pair[0][c] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
-    pair[1][c] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-  }
-  for (int32_t odd = 0; odd < 2; ++odd) {
-    const mpmi_lanes low_04 = __builtin_shufflevector(pair[odd][0], pair[odd][1], 0, 1, 4, 5, 8, 9, 12, 13),
-                     low_26 = __builtin_shufflevector(pair[odd][0], pair[odd][1], 2, 3, 6, 7, 10, 11, 14, 15),
-                     high_04 = __builtin_shufflevector(pair[odd][2], pair[odd][3], 0, 1, 4, 5, 8, 9, 12, 13),
-                     high_26 =
-                         __builtin_shufflevector(pair[odd][2], pair[odd][3], 2, 3, 6, 7, 10, 11, 14, 15);
-    double *row = out + 8 * odd;
-    mpmi_lanes_store(row, __builtin_shufflevector(low_04, high_04, 0, 1, 4, 5, 8, 9, 12, 13));
-    mpmi_lanes_store(row + 16, __builtin_shufflevector(low_26, high_26, 0, 1, 4, 5, 8, 9, 12, 13));
-    mpmi_lanes_store(row + 32, __builtin_shufflevector(low_04, high_04, 2, 3, 6, 7, 10, 11, 14, 15));
-    mpmi_lanes_store(row + 48, __builtin_shufflevector(low_26, high_26, 2, 3, 6, 7, 10, 11, 14, 15));
-  }
-}
-MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c) {
-  const mpmi_lanes r01 = mpmi_lanes_load(in), r23 = mpmi_lanes_load(in + 8), r45 = mpmi_lanes_load(in + 16),
-                   r67 = mpmi_lanes_load(in + 24);
-  const mpmi_lanes ab_low = __builtin_shufflevector(r01, r23, 0, 4, 8, 12, 1, 5, 9, 13),
-                   ab_high = __builtin_shufflevector(r45, r67, 0, 4, 8, 12, 1, 5, 9, 13),
-                   c_low = __builtin_shufflevector(r01, r23, 2, 6, 10, 14, 3, 7, 11, 15),
-                   c_high = __builtin_shufflevector(r45, r67, 2, 6, 10, 14, 3, 7, 11, 15);
-  mpmi_lanes_store(a, __builtin_shufflevector(ab_low, ab_high, 0, 1, 2, 3, 8, 9, 10, 11));
-  mpmi_lanes_store(b, __builtin_shufflevector(ab_low, ab_high, 4, 5, 6, 7, 12, 13, 14, 15));
-  mpmi_lanes_store(c, __builtin_shufflevector(c_low, c_high, 0, 1, 2, 3, 8, 9, 10, 11));
-}
-#else
-enum { MPMI_SIDE = 4 };
-
-MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double *c, const double *d,
-                                 double *out, int32_t stride) {
-  mpmi_v4 va = mpmi_load4(a), vb = mpmi_load4(b), vc = mpmi_load4(c), vd = mpmi_load4(d);
-  mpmi_transpose4(&va, &vb, &vc, &vd);
-  mpmi_store4(out, va);
-  mpmi_store4(out + stride, vb);
-  mpmi_store4(out + 2 * stride, vc);
-  mpmi_store4(out + 3 * stride, vd);
-}
-MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *out) {
-  for (int32_t half = 0; half < 2; ++half)
-    mpmi_interleave(in[4 * half] + p, in[4 * half + 1] + p, in[4 * half + 2] + p, in[4 * half + 3] + p,
-                    out + 4 * half, 8);
-}
-MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c) {
-  mpmi_v4 va = mpmi_load4(in), vb = mpmi_load4(in + 4), vc = mpmi_load4(in + 8), vd = mpmi_load4(in + 12);
-  mpmi_transpose4(&va, &vb, &vc, &vd);
-  mpmi_store4(a, va);
-  mpmi_store4(b, vb);
-  mpmi_store4(c, vc);
 }
 #endif
 

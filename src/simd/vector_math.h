@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "transfer/isa.h"
+#include "simd/rounding.h"
 
 #define MPMI_ONE_BITS       UINT64_C(0x3ff0000000000000)
 #define MPMI_SQRT_HALF_BITS UINT64_C(0x3fe6a09e667f3bcd)
@@ -76,9 +76,8 @@ MPMI_INLINE double mpmi_lane_log1p(double x) {
  * mantissa of 1.5 * 2^52 + k. Not finite from x = 709.4 on. */
 MPMI_INLINE double mpmi_lane_expm1(double x) {
   const double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 5.497923018708371e-14; /* as in the logarithm */
-  const double shift = 6755399441055744.0;
-  double within = x < -80.0 ? -80.0 : x > 710.0 ? 710.0 : x; /* keeps a NaN */
-  double shifted = within * 1.4426950408889634 + shift, k = shifted - shift;
+  double within = x < -80.0 ? -80.0 : x > 710.0 ? 710.0 : x;                     /* keeps a NaN */
+  double shifted = within * 1.4426950408889634 + MPMI_ROUNDING_SHIFT, k = shifted - MPMI_ROUNDING_SHIFT;
   double power = mpmi_from_bits((mpmi_bits_of(shifted) + UINT64_C(1023)) << 52);
   double r = (within - k * ln2_high) - k * ln2_low, z = r * r, w = z * z;
   double low = (0.5 + r * 0.1666666666666667) + z * (0.04166666666666667 + r * 0.008333333333326136);

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "transfer/isa.h"
+#include "simd/isa.h"
 
 #if defined(__AVX512F__)
 enum { MPMI_LANES = 8 };
@@ -37,11 +37,6 @@ MPMI_INLINE mpmi_lanes mpmi_lanes_abs(mpmi_lanes v) {
 MPMI_INLINE mpmi_lanes mpmi_lanes_max(mpmi_lanes a, mpmi_lanes b) {
   const mpmi_mask larger = b > a;
   return (mpmi_lanes)(((mpmi_mask)b & larger) | ((mpmi_mask)a & ~larger));
-}
-/* Nearest integers; see mpmi_round. */
-MPMI_INLINE mpmi_lanes mpmi_lanes_round(mpmi_lanes v) {
-  const double big = 6755399441055744.0;
-  return (v + big) - big;
 }
 MPMI_INLINE double mpmi_lanes_sum(mpmi_lanes v) {
   double sum = v[0];

@@ -1,45 +1,12 @@
-/* New particle velocity, position, deformation gradient and volume from what was gathered. */
+/* New deformation gradient and volume of particles, from the velocity gradient. */
 #include <string.h>
 
-#include "material/tensor.h"
-#include "material/vector_math.h"
-#include "transfer/kernel_common.h"
-
-/*   FLIP/PIC blend  v = a (v_p + sum w dv) + (1 - a) sum w v     MPoint theory eq. 36
- *   affine, PIC     v = sum w v
- *   XPIC            v = sum w v + correction                     stepper/xpic.c
- *   position        x = x_p + dt sum w v                         Guilkey eq. 10, Steffen et al. 2008 eq. 10
- *   second order    x = x_p + dt sum w (v - dv / 2)              MPoint theory eq. 37, its misprint mended
- */
-MPMI_INLINE uint32_t move(int32_t dim, const mpmi_move *job, int64_t n) {
-  const double dt = job->dt, flip = job->flip, pic = 1.0 - flip;
-  mpmi_lanes bad = {0.0};
-  mpmi_mask outside = {0}, left = {0};
-  for (int32_t k = 0; k < dim; ++k) {
-    const double low = job->low[k], high = job->high[k], centre = job->centre[k], half = job->half[k];
-    const double period = job->period[k], inverse = job->inverse_period[k];
-    const double *v_bar = job->v_bar + k * job->ld, *dv = job->dv + k * job->ld;
-    for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
-      const mpmi_lanes mean = mpmi_lanes_load(v_bar + s);
-      mpmi_lanes v = mean;
-      if (job->rule == MPMI_MOVE_BLEND)
-        v = flip * (mpmi_lanes_load(job->v_old[k] + s) + mpmi_lanes_load(dv + s)) + pic * mean;
-      if (job->rule == MPMI_MOVE_CORRECT) v = mean + mpmi_lanes_load(job->v_new[k] + s);
-      mpmi_lanes path = mean;
-      if (job->lag > 0.0) path -= job->lag * mpmi_lanes_load(dv + s);
-      const mpmi_lanes x = mpmi_lanes_load(job->x_old[k] + s) + dt * path;
-      mpmi_lanes_store(job->v_new[k] + s, v);
-      mpmi_lanes_store(job->x_new[k] + s, x);
-      mpmi_lanes away = x - centre;
-      away -= period * mpmi_lanes_round(away * inverse);
-      bad += (v - v) + (x - x);
-      outside |= (x < low) | (x > high);
-      left |= mpmi_lanes_abs(away) > half;
-    }
-  }
-  return (mpmi_lanes_sum(bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE) |
-         mpmi_lanes_any(outside, MPMI_OUTSIDE) | mpmi_lanes_any(left, MPMI_LEFT_TILE);
-}
+#include "material/deformation.h"
+#include "simd/chunk.h"
+#include "simd/flags.h"
+#include "simd/lanes.h"
+#include "simd/tensor.h"
+#include "simd/vector_math.h"
 
 /* Full 3x3 entries that may differ from the identity: a plane strain tensor keeps its zz. */
 MPMI_INLINE int32_t has_entry(int32_t dim, int32_t row, int32_t column) {
@@ -59,7 +26,7 @@ MPMI_INLINE void increment(int32_t dim, const mpmi_deform *job, int64_t n) {
       const double *L = job->L + (3 * r + c) * job->ld;
       double *F_inc = job->F_inc + (3 * r + c) * job->ld;
       const double unit = r == c ? 1.0 : 0.0;
-      MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) F_inc[p] = unit + job->dt * L[p];
+      MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) F_inc[p] = unit + job->dt * L[p];
     }
 }
 
@@ -70,7 +37,7 @@ MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
   int32_t place[9];
   place_entries(dim, place);
   if (job->F_inc) increment(dim, job, n);
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
     mpmi_lanes old[3][3];
     for (int32_t r = 0; r < dim; ++r)
       for (int32_t c = 0; c < dim; ++c) old[r][c] = mpmi_lanes_load(job->F_old[place[3 * r + c]] + s);
@@ -105,7 +72,7 @@ MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t 
   mpmi_mask any = {0};
   int32_t place[9];
   place_entries(dim, place);
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
     const mpmi_lanes first = mpmi_lanes_load(job->F_old[0] + s);
     mpmi_mask other = {0};
     for (int32_t e = 1; e < 9; ++e)
@@ -115,7 +82,7 @@ MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t 
     any |= other;
   }
   if (!mpmi_lanes_any(any, 1)) return;
-  for (int64_t p = 0; p < mpmi_groups(n); ++p)
+  for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p)
     if (f[p] < 0.0) f[p] = 1.0 + mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log(-f[p]));
 }
 
@@ -127,7 +94,7 @@ MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
   double *f = job->F;
   stretch_of_volume(dim, job, n, f);
   if (job->F_inc) increment(dim, job, n);
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_groups(n); ++p) {
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     const double d = mpmi_det_minus_1(dim, mpmi_load_mat(dim, L, ld, p, 0.0, dt));
     const double grown = dim == 1 ? d : mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log1p(d));
     /* an inverted increment stays one, and what is not finite does not become so */
@@ -137,7 +104,7 @@ MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
   for (int32_t e = 0; e < 9; ++e) {
     if (!has_entry(dim, e / 3, e % 3)) continue;
     double *F = job->F_new[stored++];
-    for (int64_t p = 0; p < mpmi_groups(n); ++p) F[p] = e % 4 ? 0.0 : f[p];
+    for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) F[p] = e % 4 ? 0.0 : f[p];
   }
   for (int32_t k = 1; k < diagonals; ++k) memcpy(job->F + 4 * k * ld, f, (size_t)n * sizeof *f);
 }
@@ -157,7 +124,7 @@ MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *i
                             int64_t n) {
   mpmi_lanes bad = {0.0};
   mpmi_mask inverted = {0};
-  for (int64_t s = 0; s < mpmi_groups(n); s += MPMI_LANES) {
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
     const mpmi_lanes J = determinant(dim, F, s);
     bad += J - J;
     inverted |= J <= 0.0;
@@ -167,29 +134,27 @@ MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *i
          mpmi_lanes_any(inverted, MPMI_NOT_POSITIVE);
 }
 
-#define ADVANCE(dim)                                                                                         \
-  uint32_t KERNEL(move_##dim)(const mpmi_move *job, int64_t n);                                              \
-  uint32_t KERNEL(move_##dim)(const mpmi_move *job, int64_t n) {                                             \
-    return move(dim, job, n);                                                                                \
-  }                                                                                                          \
-  void KERNEL(deform_##dim)(const mpmi_deform *job, int64_t n);                                              \
-  void KERNEL(deform_##dim)(const mpmi_deform *job, int64_t n) {                                             \
+#define BY_DIM(dim)                                                                                          \
+  static void deform_##dim(const mpmi_deform *job, int64_t n) {                                              \
     deform(dim, job, n);                                                                                     \
   }                                                                                                          \
-  void KERNEL(dilate_##dim)(const mpmi_deform *job, int64_t n);                                              \
-  void KERNEL(dilate_##dim)(const mpmi_deform *job, int64_t n) {                                             \
+  static void dilate_##dim(const mpmi_deform *job, int64_t n) {                                              \
     dilate(dim, job, n);                                                                                     \
   }                                                                                                          \
-  void KERNEL(stay_##dim)(const mpmi_deform *job, int64_t n);                                                \
-  void KERNEL(stay_##dim)(const mpmi_deform *job, int64_t n) {                                               \
+  static void stay_##dim(const mpmi_deform *job, int64_t n) {                                                \
     stay(dim, job, n);                                                                                       \
   }                                                                                                          \
-  uint32_t KERNEL(volume_##dim)(const double *const *F, const double *initial_volume, double *out,           \
-                                int64_t n);                                                                  \
-  uint32_t KERNEL(volume_##dim)(const double *const *F, const double *initial_volume, double *out,           \
-                                int64_t n) {                                                                 \
+  static uint32_t volume_##dim(const double *const *F, const double *initial_volume, double *out,            \
+                               int64_t n) {                                                                  \
     return volume(dim, F, initial_volume, out, n);                                                           \
   }
-ADVANCE(1)
-ADVANCE(2)
-ADVANCE(3)
+BY_DIM(1)
+BY_DIM(2)
+BY_DIM(3)
+
+const mpmi_deformation KERNEL(deformation) = {
+    .deform = {[MPMI_F_DEFORMS] = {NULL, deform_1, deform_2, deform_3},
+               [MPMI_F_DILATES] = {NULL, dilate_1, dilate_2, dilate_3},
+               [MPMI_F_STAYS] = {NULL, stay_1, stay_2, stay_3}},
+    .volume = {NULL, volume_1, volume_2, volume_3},
+};

@@ -1,0 +1,35 @@
+/* Kernels are compiled once for each instruction set, with MPMI_ISA naming it; KERNEL(f) is f_baseline,
+ * f_avx2 ... */
+#ifndef MPMI_ISA_H
+#define MPMI_ISA_H
+
+#ifndef MPMI_ISA
+#define MPMI_ISA baseline
+#endif
+#define MPMI_GLUE2(a, b) a##_##b
+#define MPMI_GLUE(a, b)  MPMI_GLUE2(a, b)
+#define KERNEL(name)     MPMI_GLUE(mpmi_##name, MPMI_ISA)
+
+/* Tables of kernels NAME_baseline, NAME_avx2 ... of the instruction sets that this build has: their
+ * declarations, and the address of the one for an MPM_ISA_.... */
+#if defined(__x86_64__)
+#define MPMI_HAS_X86                    1
+#define MPMI_DECLARE_TABLES(type, name) extern const type name##_baseline, name##_avx2, name##_avx512
+#define MPMI_TABLE_OF(isa, name)                                                                             \
+  ((isa) == MPM_ISA_AVX512 ? &name##_avx512 : (isa) == MPM_ISA_AVX2 ? &name##_avx2 : &name##_baseline)
+#else
+#define MPMI_HAS_X86                    0
+#define MPMI_DECLARE_TABLES(type, name) extern const type name##_baseline
+#define MPMI_TABLE_OF(isa, name)        ((void)(isa), &name##_baseline)
+#endif
+
+#define MPMI_INLINE static inline __attribute__((always_inline))
+#if defined(__clang__)
+#define MPMI_IVDEP  _Pragma("clang loop vectorize(assume_safety)")
+#define MPMI_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define MPMI_IVDEP  _Pragma("GCC ivdep")
+#define MPMI_UNROLL _Pragma("GCC unroll 4")
+#endif
+
+#endif

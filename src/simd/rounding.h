@@ -1,0 +1,23 @@
+/* Rounding to integers without instructions of its own, so that every instruction set can vectorise it. */
+#ifndef MPMI_ROUNDING_H
+#define MPMI_ROUNDING_H
+
+#include "simd/lanes.h"
+
+/* 1.5 * 2^52: a sum with it keeps no digits behind the point. */
+#define MPMI_ROUNDING_SHIFT 6755399441055744.0
+
+/* The nearest integer, for |x| < 2^51. */
+MPMI_INLINE double mpmi_round(double x) {
+  return (x + MPMI_ROUNDING_SHIFT) - MPMI_ROUNDING_SHIFT;
+}
+MPMI_INLINE mpmi_lanes mpmi_lanes_round(mpmi_lanes v) {
+  return (v + MPMI_ROUNDING_SHIFT) - MPMI_ROUNDING_SHIFT;
+}
+
+MPMI_INLINE double mpmi_floor(double x) {
+  double r = mpmi_round(x);
+  return r > x ? r - 1.0 : r;
+}
+
+#endif

@@ -1,0 +1,37 @@
+/* P2G: what the particles of one block give to its tile. */
+#ifndef MPMI_SCATTER_H
+#define MPMI_SCATTER_H
+
+#include "transfer/streams.h"
+#include "transfer/weights.h"
+
+/* Forms of the scatter: 4 values (momentum and mass; the fused MLS force may ride on the momentum) or 8
+ * (force apart), with or without the affine part of the velocity; UNEVEN: of nodes that are not a spacing
+ * apart. */
+enum {
+  MPMI_SCATTER_4,
+  MPMI_SCATTER_4_AFFINE,
+  MPMI_SCATTER_4_UNEVEN,
+  MPMI_SCATTER_8,
+  MPMI_SCATTER_8_AFFINE,
+  MPMI_SCATTER_FORMS
+};
+
+/* Component arrays of a set, each at slot 0. */
+typedef struct mpmi_scatter {
+  mpmi_axis axis[3];
+  mpmi_weights_fn weights;
+  int32_t need;
+  mpmi_points points;
+  const double *v[3], *mass, *volume;
+  const double *stress[6]; /* by (xx yy zz xy yz xz) */
+  const double *affine[9]; /* row * 3 + column; for the affine forms */
+  const double *force[3];  /* external force on the particle beside gravity, or NULL */
+  double gravity[3];
+  double fused_dt; /* form 4 affine: time that the force acts on the momentum; 0: no force */
+  double *tile;
+  mpmi_streams streams;
+} mpmi_scatter;
+typedef void (*mpmi_scatter_fn)(const mpmi_scatter *job, int64_t begin, int64_t end);
+
+#endif
