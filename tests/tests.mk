@@ -166,7 +166,6 @@ verify-quick: $(VERIFY)
 	@bash tests/verification/run.sh $(VERIFIED)/quick $(VERIFY_JOBS) --quick $(VERIFY)
 #: verify-plots          the numbers of the last `make verify` into docs/verification: plots, and tables of its page
 verify-plots:
-	cp $(VERIFIED)/full/*.csv docs/verification
-	/usr/bin/python3 docs/verification/plot.py
+	/usr/bin/python3 docs/verification/plot.py --from $(VERIFIED)/full
 
 -include $(UNIT_OBJECTS:.o=.d) $(STEPS).d $(FUZZ_TARGETS:%=$(BUILD)/fuzz/%.d)

@@ -12,9 +12,11 @@ export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1
   "$work/kept" "$work/seeds" "$build/fuzz/corpus/$target" > "$work/log" 2>&1 || { tail -60 "$work/log"; exit 1; }
 number=0
 while read -r _ name; do
-  cp "$work/kept/$name" "$work/packed/$(printf '%04d' $((number += 1)))"
+  number=$((number + 1))
+  cp "$work/kept/$name" "$work/packed/$(printf %04d $number)"
 done < <(cd "$work/kept" && sha1sum -- * | while read -r sum name; do echo "$(stat -c %s "$name") $sum $name"; done |
   LC_ALL=C sort -n -k 1,1 -k 2,2 | cut -d ' ' -f 1,3)
+[ "$number" -gt 0 ] || { echo "fuzz-corpus: $target: nothing is left" >&2; exit 1; }
 chmod 644 "$work/packed"/*
 (cd "$work/packed" && LC_ALL=C tar --format=ustar --owner=0 --group=0 --numeric-owner --mtime=@0 -cf - [0-9]*) |
   gzip -9n > "tests/fuzz/corpus/$target.tar.gz"
