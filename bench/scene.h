@@ -43,8 +43,8 @@ typedef struct bench_scene {
 /* On failure the context's last error says why; bench_close() takes what is there. */
 mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_options *options);
 void bench_close(bench_scene *scene);
-/* Useful floating-point operations and bytes of particle fields per particle and step, counted in the source.
- */
+/* Useful floating-point operations and bytes of particle fields per particle and
+ * step, counted in the source. */
 double bench_flops(const bench_case *of);
 /* Nodes in the stencil of a particle. */
 double bench_nodes(const bench_case *of);

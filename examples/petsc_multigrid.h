@@ -14,9 +14,9 @@
 #include <mpm/mpm.h>
 #include <petscksp.h>
 
-/* Multigrid wants as many unknowns at each node as there are axes. Those that a symmetry plane holds are not
- * in the library's rows, and come back here as rows of the identity, as large as the diagonal of their
- * neighbours. */
+/* Multigrid wants as many unknowns at each node as there are axes. Those that a symmetry plane
+ * holds are not in the library's rows, and come back here as rows of the identity, as large as
+ * the diagonal of their neighbours. */
 typedef struct multigrid {
   int64_t pattern_id;
   PetscInt n;

@@ -2,11 +2,11 @@
  *
  *   taylor_bar [directory [cells in the radius]]
  *
- * A quarter of the bar, between two symmetry planes; its face is held to the wall and slides on it without
- * friction. Prints length, radius of the foot, largest plastic strain and energies against time, and at the
- * end the first three beside those of axisymmetric finite elements with 16 elements in the radius. Writes
- * into the directory (default: here) a picture of the section (taylor_bar.svg) and the end state for ParaView
- * (taylor_bar.vtp).
+ * A quarter of the bar, between two symmetry planes; its face is held to the wall and slides on it
+ * without friction. Prints length, radius of the foot, largest plastic strain and energies against time,
+ * and at the end the first three beside those of axisymmetric finite elements with 16 elements in the
+ * radius. Writes into the directory (default: here) a picture of the section (taylor_bar.svg) and the
+ * end state for ParaView (taylor_bar.vtp).
  *
  * What to expect: 5 cells in the radius, the default, take seconds and come within 0.2 % of the length and
  * the radius, part of it by luck: with 3, 4, 5, 6 and 8 cells the length is 21.77, 21.62, 21.55, 21.51

@@ -1,6 +1,6 @@
-/* Loads and boundary conditions of the host: a bar is fixed to the wall x = 0 and drawn out by a grip at x =
- * 1, while a body acceleration along the bar is switched on slowly and the air resists. Three callbacks say
- * so:
+/* Loads and boundary conditions of the host: a bar is fixed to the wall x = 0 and drawn out
+ * by a grip at x = 1, while a body acceleration along the bar is switched on slowly and the
+ * air resists. Three callbacks say so:
  *
  *   acceleration   g(t) on every particle,
  *   force          -damping * mass * velocity on every particle,
@@ -115,8 +115,8 @@ int main(void) {
              now.kinetic_energy + now.strain_energy);
   }
 
-  /* Statics: the normal force falls linearly from the wall to the grip; the grip also holds its own piece of
-   * bar. */
+  /* Statics: the normal force falls linearly from the wall to the grip;
+   * the grip also holds its own piece of bar. */
   const double area = width, stretch = 1.0 + pull / length, weight = density * area * length * g_full;
   const double mean_force = 0.5 * E * area * (stretch - 1.0 / stretch);
   const double wall_static = -(mean_force + 0.5 * weight);

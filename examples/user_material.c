@@ -1,9 +1,9 @@
 /* Laws of the host, written as callbacks over batches of particles.
  *
- * 1. The neo-Hookean law of the library, written again: a block sheared and let go moves as with the built-in
- * law.
- * 2. A visco-elastic law with one state variable, which the library does not have: an elastic spring beside a
- * Maxwell element. A bar of it, plucked in its first mode, rings down as theory says. */
+ * 1. The neo-Hookean law of the library, written again: a block sheared and let go moves as with the
+ *    built-in law.
+ * 2. A visco-elastic law with one state variable, which the library does not have: an elastic spring beside
+ *    a Maxwell element. A bar of it, plucked in its first mode, rings down as theory says. */
 #include <mpm/mpm.h>
 
 #include <math.h>
@@ -12,8 +12,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* ---- 1. neo-Hookean ---------------------------------------------------------------------------------------
- */
+/* ---- 1. neo-Hookean ------------------------------------------------------------------------------------ */
 
 typedef struct neo_hookean {
   double lambda, mu, density;

@@ -21,7 +21,7 @@ def clouds(name, key, colour, text, form, size, width=3.2, height=3.2, label="{:
     for panel, t in zip(ax, times):
         at = rows(data, **{key: t})
         drawn = panel.scatter(at[x], at[y], c=at[colour], s=size, vmin=0, vmax=top, cmap="viridis", linewidths=0,
-                              rasterized=True)
+                              antialiased=False, rasterized=True)
         panel.set_aspect("equal")
         panel.set_title(label.format(t), fontsize=9)
     figure.colorbar(drawn, ax=ax, label=text, shrink=0.8)
@@ -142,7 +142,7 @@ def taylor_bar():
     figure, ax = axes(1, 4.0, 5.6)
     data = read("taylor_bar_cloud")
     drawn = ax.scatter(data["r"], data["z"], c=data["plastic_strain"], s=5, cmap="viridis", linewidths=0,
-                       rasterized=True)
+                       antialiased=False, rasterized=True)
     ax.plot([7.206], [0], "k<", label="radius, FEM")
     ax.plot([0], [21.58], "kv", label="length, FEM")
     ax.set_aspect("equal")
@@ -171,9 +171,10 @@ def couette():
     data = read("couette")
     for i, t in enumerate(sorted(set(data["t"]))):
         at = rows(data, t=t)
-        order = sorted(range(len(at["y"])), key=lambda k: at["y"][k])
+        order = sorted({y: k for k, y in enumerate(at["y"])}.values(), key=lambda k: at["y"][k]) # one of each row
         ax.plot([at["u_exact"][k] for k in order], [at["y"][k] for k in order], "k-", linewidth=1)
-        ax.plot(at["u"], at["y"], f"C{i}.", markersize=3, label=rf"$\nu t / H^2$ = {t:g}")
+        ax.plot([at["u"][k] for k in order], [at["y"][k] for k in order], f"C{i}.", markersize=3,
+                label=rf"$\nu t / H^2$ = {t:g}")
     ax.set_xlabel("u / U")
     ax.set_ylabel("y / H")
     ax.legend()

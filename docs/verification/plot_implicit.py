@@ -84,7 +84,7 @@ def cook_cloud():
     for panel, remedy, title in zip(ax, (0.0, 1.0), ("plain", "remedy")):
         at = rows(data, remedy=remedy)
         drawn = panel.scatter(at["x"], at["y"], c=at["pressure"], s=3, vmin=-0.4, vmax=0.4, cmap="coolwarm",
-                              linewidths=0, rasterized=True)
+                              linewidths=0, antialiased=False, rasterized=True)
         panel.set_aspect("equal")
         panel.set_title(title, fontsize=9)
     figure.colorbar(drawn, ax=ax, label="pressure", shrink=0.8)
@@ -184,5 +184,5 @@ def billet():
 
 @plot
 def billet_particles():
-    return clouds("billet_particles", "compression", "mises", "von Mises stress / (dyn/cm$^2$)", ("x", "y"), 3, width=4.4,
+    return clouds("billet_particles", "compression", "mises", "von Mises stress / (dyn/cm$^2$)", ("x", "y"), 8, width=4.4,
                   height=3.6, label="compression {:g}")

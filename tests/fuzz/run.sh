@@ -3,8 +3,10 @@
 # left in build/fuzz; give it to the program as its only argument to see it again.
 set -euo pipefail
 build=$1 target=$2 seconds=$3
-seeds=tests/fuzz/corpus/$target found=$build/fuzz/corpus/$target
+seeds=$build/fuzz/seeds/$target found=$build/fuzz/corpus/$target
+rm -rf "$seeds"
 mkdir -p "$found" "$seeds"
+tar -xzf "tests/fuzz/corpus/$target.tar.gz" -C "$seeds"
 limits="-rss_limit_mb=2048 -malloc_limit_mb=1024 -timeout=25 -max_len=384 -len_control=0 -artifact_prefix=$build/fuzz/$target-"
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1
 quietly() { "$@" > "$build/fuzz/$target.log" 2>&1 || { tail -60 "$build/fuzz/$target.log"; echo "fuzz: $target: a finding"; exit 1; }; }

@@ -45,8 +45,8 @@ static void write_image(mpm_stepper *stepper, const char *directory, const char 
   fclose(out);
 }
 
-/* Two bodies apart, one in a corner, walls and a periodic axis: ghosts and images are active, and there are
- * gaps. */
+/* Two bodies apart, one in a corner, walls and a periodic axis:
+ * ghosts and images are active, and there are gaps. */
 static mpm_stepper *open_scene(int32_t dim, int32_t open_knots, int32_t transfer, mpm_grid **grid,
                                mpm_material **material, mpm_particles **set) {
   mpm_stepper *stepper;

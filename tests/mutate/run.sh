@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Plants the faults of faults.txt one by one in a copy of the sources and runs the suite that is named beside each
-# (wrapper: tests/api/wrapper.sh; verify/CASE: tests/verification/CASE.c, quick); a fault that it does not notice is a gap in the tests. An argument selects the files whose path contains it.
+# Plants the faults of faults.txt one by one in a copy of the sources and runs the suite that is named beside each; a
+# fault that it does not notice is a gap in the tests. An argument selects the files whose path contains it.
 set -euo pipefail
 BUILD=${BUILD:-build} MAKE=${MAKE:-make} CC=${CC:-cc} CXX=${CXX:-g++}
 copy=$BUILD/mutate
 rm -rf "$copy"
-mkdir -p "$copy/scratch"
+mkdir -p "$copy/scratch" "$copy/original"
 cp -a Makefile include src tests "$copy"
+cp -a include src "$copy/original"
 rm -rf "$copy"/tests/examples
 cd "$copy"
 
@@ -29,25 +30,23 @@ program || { cat log; echo "mutate: the tests do not compile without a fault" >&
 
 planted=0 missed=0
 miss() { echo "mutate: $1: $2"; missed=$((missed + 1)); }
-while read -r name file fault; do
-  case $name in '' | '#'*) continue ;; esac
-  case $file in *"${1:-}"*) ;; *) continue ;; esac
-  cp -p "$file" original
-  sed "$fault" original > "$file"
+python3 tests/mutate/plant.py list "${1:-}" > list
+while read -r number name file function <&3; do
   planted=$((planted + 1))
-  if cmp -s "$file" original; then
-    miss "no longer applies" "$file $fault"
+  if ! what=$(python3 tests/mutate/plant.py plant "$number"); then
+    miss "no longer applies" "$what"
+    continue
   elif ! program; then
-    miss "does not compile" "$file $fault"
+    miss "does not compile" "$what"
   elif suite "$name"; then
-    miss "not noticed by $name" "$file $fault"
+    miss "not noticed by $name" "$what"
   elif ! grep -Eq ':[FE]:|\] +(FAILED|MET)$' log; then
-    miss "$name did not run to its end" "$file $fault"
+    miss "$name did not run to its end" "$what"
   fi
-  cp original "$file" # with a new time, so that it is compiled again
-done < tests/mutate/faults.txt
+  cp "original/$file" "$file" # with a new time, so that it is compiled again
+done 3< list
 program
-for name in $(sed -n 's,^\([a-z_/]*\) \(src\|include\).*,\1,p' tests/mutate/faults.txt | sort -u); do
+for name in $(cut -d ' ' -f 2 list | sort -u); do
   suite "$name" || miss "fails without a fault" "$name"
 done
 echo "mutate: $planted faults, $((planted - missed)) noticed"

@@ -5,8 +5,8 @@
 #include "options.h"
 #include "support.h"
 
-/* What a combination chooses: the place of each value in the tables of options.h; dim, position order as they
- * are. */
+/* What a combination chooses: the place of each value in the tables of options.h; dim,
+ * position order as they are. */
 enum {
   CHOOSE_DIM,
   CHOOSE_BASIS,

@@ -1,5 +1,5 @@
-/* Weights along one axis, for every basis and instruction set: exact at nodes, faces, half nodes and
- * anywhere. */
+/* Weights along one axis, for every basis and instruction set: exact at nodes,
+ * faces, half nodes and anywhere. */
 #include "exact.h"
 
 #include "transfer/kernels.h"
@@ -73,8 +73,8 @@ static void by_node(const mpmi_weights *W, int32_t p, int32_t order, double corn
   }
 }
 
-/* One-sided differences of second order within a half cell, where weights are quadratic: exact but for
- * rounding. */
+/* One-sided differences of second order within a half cell,
+ * where weights are quadratic: exact but for rounding. */
 static void check_gradient(const char *name, mpmi_weights_fn fn, const mpmi_axis *axis, int32_t order,
                            const double *x, const mpmi_weights *W) {
   double x_near[2][MPMI_CHUNK], eps[MPMI_CHUNK];

@@ -10,8 +10,8 @@ static double of_dim(int32_t dim, const double *tensor, int32_t c, double diagon
   return c / 3 < dim && c % 3 < dim ? tensor[c] : c % 4 == 0 ? diagonal : 0.0;
 }
 
-/* A block of CELLS^dim cells of aligned particles, all with the deformation gradient F_patch and v = L_patch
- * x. */
+/* A block of CELLS^dim cells of aligned particles, all with the deformation
+ * gradient F_patch and v = L_patch x. */
 static mpm_particles *open_patch(world *w, const method *how, int32_t dim, int32_t side, int32_t deformed) {
   const int32_t per_cell[3] = {side, side, side};
   const double lower[3] = {low, low, low}, upper[3] = {low + CELLS * h, low + CELLS * h, low + CELLS * h};
@@ -36,8 +36,8 @@ static mpm_particles *open_patch(world *w, const method *how, int32_t dim, int32
   return set;
 }
 
-/* Largest force on a node more than `margin` cells inside the body, over stress times h^(dim - 1); nodes
- * there. */
+/* Largest force on a node more than `margin` cells inside the body,
+ * over stress times h^(dim - 1); nodes there. */
 static double imbalance(world *w, mpm_particles *set, double margin, double length, int64_t *inside) {
   int64_t n;
   ck_ok(w, mpm_step_begin(w->stepper, 1e-6));

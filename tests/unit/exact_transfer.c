@@ -108,8 +108,8 @@ START_TEST(steps_conserve) {
 }
 END_TEST
 
-/* Three parts in a row are the step: bit by bit, but to rounding where a whole step fuses force and momentum.
- */
+/* Three parts in a row are the step: bit by bit, but to rounding where a whole
+ * step fuses force and momentum. */
 START_TEST(parts_are_the_step) {
   const method *how = &methods[_i];
   world w[2];

@@ -147,8 +147,7 @@ START_TEST(inverted) {
 }
 END_TEST
 
-/* ---- callbacks -------------------------------------------------------------------------------------------
- */
+/* ---- callbacks ----------------------------------------------------------------------------------------- */
 typedef struct trouble {
   mpm_status stress, tangent;
   int32_t nan;
@@ -237,8 +236,7 @@ START_TEST(force_in_trouble) {
 }
 END_TEST
 
-/* ---- the host's solver -----------------------------------------------------------------------------------
- */
+/* ---- the host's solver --------------------------------------------------------------------------------- */
 typedef struct own_solver {
   mpm_status says;
   int32_t nan, wrong, calls;
@@ -324,8 +322,7 @@ START_TEST(host_solver) {
 }
 END_TEST
 
-/* ---- what is refused -------------------------------------------------------------------------------------
- */
+/* ---- what is refused ----------------------------------------------------------------------------------- */
 static mpm_status hook(void *user, const mpm_node_batch *b, double *velocity, double *force) {
   (void)user, (void)b, (void)velocity, (void)force;
   return MPM_OK;
@@ -385,8 +382,8 @@ START_TEST(refused) {
 }
 END_TEST
 
-/* A body that flies out: refused where nothing is said of the face, removed particle by particle where it is
- * open. */
+/* A body that flies out: refused where nothing is said of the face,
+ * removed particle by particle where it is open. */
 START_TEST(off_the_grid) {
   for (int32_t open = 0; open < 2; ++open) {
     block b;

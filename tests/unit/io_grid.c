@@ -1,5 +1,5 @@
-/* Nodal fields in files: every byte of the image, sparse boxes, and what is refused. VTK reads such files
- * elsewhere. */
+/* Nodal fields in files: every byte of the image, sparse boxes, and what is refused.
+ * VTK reads such files elsewhere. */
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
 #include "io_world.h"
@@ -82,8 +82,8 @@ static int64_t *places(const image *f, mpm_stepper *s, int64_t *count) {
   return place;
 }
 
-/* The named field at every active node; with `zeros`, zero at all other points. Returns whether it is there.
- */
+/* The named field at every active node; with `zeros`, zero at all other points.
+ * Returns whether it is there. */
 static int32_t check_field(const image *f, mpm_stepper *s, const char *name, int32_t zeros) {
   int32_t components;
   const int64_t array = find_array(f, name, &components);

@@ -63,8 +63,8 @@ START_TEST(every_value_matters) {
 }
 END_TEST
 
-/* Exchanging values between particles, components or sets changes the hash, although every sum is the same.
- */
+/* Exchanging values between particles, components or sets changes the hash,
+ * although every sum is the same. */
 START_TEST(places_matter) {
   io_setup setup = io_plain(2);
   io_world w;

@@ -1,5 +1,5 @@
-/* Files for visualisation: what is refused, and what stands in a series. Their contents are read with VTK
- * elsewhere. */
+/* Files for visualisation: what is refused, and what stands in a series.
+ * Their contents are read with VTK elsewhere. */
 #define _POSIX_C_SOURCE 200809L
 #include "io_world.h"
 

@@ -83,8 +83,8 @@ static inline tensor turned(tensor q, tensor x) {
   return multiply(q, multiply(x, transpose(q)));
 }
 
-/* Eigenvalues (on the diagonal of *x afterwards) and eigenvectors (columns) by Jacobi rotations until done.
- */
+/* Eigenvalues (on the diagonal of *x afterwards) and eigenvectors (columns) by
+ * Jacobi rotations until done. */
 static inline tensor diagonalise(tensor *x) {
   tensor q = identity();
   for (int sweep = 0; sweep < 30; ++sweep)

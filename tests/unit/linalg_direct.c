@@ -207,8 +207,8 @@ START_TEST(iteration_first) {
 }
 END_TEST
 
-/* Convection so strong that restarts do not get through it: the factor does, and the impatient see it early.
- */
+/* Convection so strong that restarts do not get through it: the factor does,
+ * and the impatient see it early. */
 START_TEST(stalled) {
   springs of = chains;
   of.chains = 0;

@@ -89,8 +89,8 @@ START_TEST(no_load) {
 }
 END_TEST
 
-/* A guess near the solution saves iterations, one far off costs none, and at held unknowns it does not count.
- */
+/* A guess near the solution saves iterations, one far off costs none,
+ * and at held unknowns it does not count. */
 START_TEST(guesses) {
   const int32_t choice = _i ? MPM_SOLVER_GMRES : MPM_SOLVER_CG;
   springs_build(&A, context, &shapes[5]);

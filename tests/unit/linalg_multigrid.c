@@ -225,8 +225,8 @@ START_TEST(instruction_sets) {
 }
 END_TEST
 
-/* What is chosen: the factor where it is cheap, multigrid for large bodies, plain iterations where inertia
- * rules. */
+/* What is chosen: the factor where it is cheap, multigrid for large bodies,
+ * plain iterations where inertia rules. */
 START_TEST(choice) {
   static const struct {
     springs of;

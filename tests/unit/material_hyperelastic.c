@@ -1,6 +1,6 @@
-/* Laws whose stress follows from F, on every instruction set and dimension: their formulas in extended
- * precision, the energy as potential of the stress, objectivity, and the wave speed against the acoustic
- * tensor. */
+/* Laws whose stress follows from F, on every instruction set and dimension: their formulas
+ * in extended precision, the energy as potential of the stress, objectivity, and the wave
+ * speed against the acoustic tensor. */
 #include "law_sample.h"
 
 /* In terms of h = F - I, as extended precision alone does not carry strains of 1e-12. */
@@ -291,8 +291,8 @@ START_TEST(wave_speed) {
 }
 END_TEST
 
-/* A compressed auxetic softens until its waves stand still; the reported speed keeps the time step in bounds.
- */
+/* A compressed auxetic softens until its waves stand still;
+ * the reported speed keeps the time step in bounds. */
 START_TEST(wave_speed_has_a_floor) {
   int32_t dim = loop_dim(_i);
   const mpm_param auxetic[] = {{"E", 2.5e6}, {"nu", -0.5}, {"density", 1.2e3}};

@@ -23,8 +23,8 @@ static tensor diagonal(real x, real y, real z) {
   return t;
 }
 
-/* Increments F_inc - I about as large as `size`: items 0 to 9 have coinciding or nearly coinciding stretches.
- */
+/* Increments F_inc - I about as large as `size`: items 0 to 9 have coinciding or
+ * nearly coinciding stretches. */
 static tensor increment(uint64_t *state, int32_t dim, real size, int i) {
   static const real gaps[] = {0, 1e-15L, 1e-11L, 1e-8L, 1e-5L, 1e-2L};
   for (;;) {

@@ -1,6 +1,6 @@
-/* The options of the explicit method, each with the name that tests print, and which of them the library does
- * not have yet. A test that goes through a table here skips what is not ready and needs no change when it
- * comes. */
+/* The options of the explicit method, each with the name that tests print, and which of them
+ * the library does not have yet. A test that goes through a table here skips what is not ready
+ * and needs no change when it comes. */
 #ifndef OPTIONS_H
 #define OPTIONS_H
 

@@ -20,8 +20,8 @@ int64_t reference_last(const reference_axis *a) {
   return a->basis == MPM_LINEAR ? a->cells : a->cells + 1;
 }
 
-/* Knots of a function in cells, degree + 2 of them: open ones are those outside the grid moved onto its
- * faces. */
+/* Knots of a function in cells, degree + 2 of them: open ones are those outside
+ * the grid moved onto its faces. */
 static void knots_of(const reference_axis *a, int64_t index, double *knot) {
   const int32_t degree = degree_of(a->basis), open = a->boundary == MPM_BOUNDARY_OPEN_KNOT;
   const double first = (double)index - (open && degree == 2 ? 2.0 : 0.5 * (degree + 1));

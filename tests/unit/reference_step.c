@@ -237,8 +237,8 @@ static void affine_matrix(const sums *s, int64_t p, double *C) {
   }
 }
 
-/* Velocities and positions; x_new is kept apart, because weights belong to the old ones. dt_v: of velocities.
- */
+/* Velocities and positions; x_new is kept apart, because weights belong to the
+ * old ones. dt_v: of velocities. */
 static void move(const sums *s, double dt, double dt_v, double *x_new) {
   const mpm_stepper_desc *d = &s->r->stepper;
   reference_cloud *c = s->c;

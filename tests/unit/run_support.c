@@ -54,8 +54,7 @@ double run_noise(uint64_t seed) {
   return (double)(mixed(seed) >> 11) * 0x1p-52 - 1.0;
 }
 
-/* ---- the host's services ---------------------------------------------------------------------------------
- */
+/* ---- the host's services ------------------------------------------------------------------------------- */
 static void *counted_alloc(void *user, size_t bytes, size_t alignment) {
   run_memory *m = user;
   if (++m->calls == m->fail_at) return NULL;
@@ -129,8 +128,7 @@ static mpm_status hook(void *user, const mpm_node_batch *b, double *velocity, do
   return 0;
 }
 
-/* ---- the body --------------------------------------------------------------------------------------------
- */
+/* ---- the body ------------------------------------------------------------------------------------------ */
 /* First cell and number of cells on each axis. */
 static void extent(const run_options *o, int64_t *first, int64_t *count) {
   static const int64_t cells[2][3][3][2] = {
@@ -391,8 +389,7 @@ void run_steps(run *r, int32_t n) {
   for (int32_t i = 0; i < n; ++i) run_step_of(r, RUN_DT);
 }
 
-/* ---- what has to be equal --------------------------------------------------------------------------------
- */
+/* ---- what has to be equal ------------------------------------------------------------------------------ */
 uint64_t run_hash(const run *r) {
   uint64_t hash = 0;
   run_ok(r, mpm_state_hash(r->stepper, &hash));

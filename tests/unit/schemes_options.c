@@ -173,9 +173,9 @@ static double spin_of(const mpm_grid_desc *grid, int64_t n, const double *m, con
   return L;
 }
 
-/* A step of APIC keeps the angular momentum, affine parts included, for every basis and up to the faces:
- * those that it starts with and those that it leaves both belong to the moments at the positions where it
- * starts. */
+/* A step of APIC keeps the angular momentum, affine parts included, for every basis and up
+ * to the faces: those that it starts with and those that it leaves both belong to the
+ * moments at the positions where it starts. */
 START_TEST(apic_keeps_angular_momentum) {
   const basis_option *basis = &basis_options[_i];
   for (int32_t scheme = 0; scheme < SCHEMES; ++scheme) {

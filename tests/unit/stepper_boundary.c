@@ -243,8 +243,7 @@ START_TEST(node_that_failed) {
 }
 END_TEST
 
-/* ---- open walls ------------------------------------------------------------------------------------------
- */
+/* ---- open walls ---------------------------------------------------------------------------------------- */
 /* Particles that left are gone for every call, also where the set had an index of its ids. */
 START_TEST(those_that_left) {
   run r;

@@ -178,8 +178,7 @@ START_TEST(optional_fields) {
 }
 END_TEST
 
-/* ---- sources add up --------------------------------------------------------------------------------------
- */
+/* ---- sources add up ------------------------------------------------------------------------------------ */
 static mpm_status by_id(void *user, const mpm_particle_batch *b, double *add) {
   const double factor = *(double *)user;
   for (int32_t c = 0; c < b->dim; ++c)
@@ -261,8 +260,7 @@ START_TEST(inert_slots_rest) {
 }
 END_TEST
 
-/* ---- refusals and calls from inside ----------------------------------------------------------------------
- */
+/* ---- refusals and calls from inside -------------------------------------------------------------------- */
 static struct {
   mpm_status answer;
   int32_t calls;
@@ -359,8 +357,7 @@ START_TEST(calls_from_inside) {
 }
 END_TEST
 
-/* ---- threads ---------------------------------------------------------------------------------------------
- */
+/* ---- threads ------------------------------------------------------------------------------------------- */
 static pthread_t caller;
 static int32_t elsewhere; /* calls on other threads; written by one thread or not at all where that counts */
 

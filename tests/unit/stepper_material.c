@@ -4,8 +4,7 @@
 
 static run r;
 
-/* ---- the same law, built in and by callback --------------------------------------------------------------
- */
+/* ---- the same law, built in and by callback ------------------------------------------------------------ */
 START_TEST(as_good_as_built_in) {
   run_options o = {.dim = 1 + _i / RUN_METHODS, .stress = run_neo_hookean};
   run_use(&o, &run_methods[_i % RUN_METHODS]);
@@ -44,8 +43,7 @@ START_TEST(as_good_as_built_in) {
 }
 END_TEST
 
-/* ---- what a batch has ------------------------------------------------------------------------------------
- */
+/* ---- what a batch has ---------------------------------------------------------------------------------- */
 static struct {
   double t, dt;
   int64_t seen, asked_as_it_is;
@@ -129,8 +127,7 @@ START_TEST(batches) {
 }
 END_TEST
 
-/* ---- refusals --------------------------------------------------------------------------------------------
- */
+/* ---- refusals ------------------------------------------------------------------------------------------ */
 static struct {
   mpm_status answer;
   int32_t as_it_is; /* refuse when dt is 0, else when it is not */
@@ -175,8 +172,7 @@ START_TEST(refusals) {
 }
 END_TEST
 
-/* ---- wave speed, viscosity, energy -----------------------------------------------------------------------
- */
+/* ---- wave speed, viscosity, energy --------------------------------------------------------------------- */
 static struct {
   double wave, viscosity;
   int32_t no_energy;
@@ -228,8 +224,7 @@ START_TEST(what_limits_the_step) {
 }
 END_TEST
 
-/* ---- a law that depends on the place ---------------------------------------------------------------------
- */
+/* ---- a law that depends on the place ------------------------------------------------------------------- */
 static mpm_status graded(void *user, const mpm_material_batch *b) {
   run_neo_hookean(user, b);
   for (int64_t i = 0; i < b->n; ++i) {

@@ -215,8 +215,7 @@ START_TEST(failing_parts_abort) {
 }
 END_TEST
 
-/* ---- what the host changes -------------------------------------------------------------------------------
- */
+/* ---- what the host changes ----------------------------------------------------------------------------- */
 static mpm_status constant(void *user, const mpm_particle_batch *b, double *add) {
   const double *a = user;
   for (int32_t c = 0; c < b->dim; ++c)

@@ -39,8 +39,8 @@ static mpm_status neo_hookean(void *user, const mpm_material_batch *batch) {
   return h->stress_calls == h->fails_at ? h->answer : MPM_OK;
 }
 
-/* A different number in every component: stress = stiffness F_inc F_inc^T + viscosity (L + L^T) + old stress.
- */
+/* A different number in every component: stress = stiffness F_inc F_inc^T +
+ * viscosity (L + L^T) + old stress. */
 static mpm_status rate_law(void *user, const mpm_material_batch *batch) {
   host *h = user;
   h->stress_calls++;

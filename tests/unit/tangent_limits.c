@@ -1,5 +1,5 @@
-/* Tangents where they are known: at rest, in and out of yield, without pressure; and at very large
- * increments. */
+/* Tangents where they are known: at rest, in and out of yield, without pressure;
+ * and at very large increments. */
 #include "tangent_sample.h"
 
 static const mpm_param elastic[] = {
@@ -88,8 +88,8 @@ static tensor stress_change(const tangent_batch *b, int i, tensor d) {
   return change;
 }
 
-/* Back from yield the tangent is the elastic one; beyond it, without hardening, no D changes the von Mises
- * stress. */
+/* Back from yield the tangent is the elastic one; beyond it, without hardening,
+ * no D changes the von Mises stress. */
 START_TEST(loading_and_unloading) {
   const int32_t isa = loop_isa(_i), dim = loop_dim(_i);
   mpm_material *plastic = law_material(isa, "j2", elastic, 5);

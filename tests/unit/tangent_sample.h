@@ -35,8 +35,8 @@ static inline tensor tangent_stretches(int32_t dim, real x, real y, real z) {
   return tangent_diagonal(x, dim > 1 ? y : 0, dim > 2 ? z : 0);
 }
 
-/* Increments of 20 %, 2 % and 1e-9; none; turns by any angle; equal and nearly equal stretches; one stretch
- * alone. */
+/* Increments of 20 %, 2 % and 1e-9; none; turns by any angle;
+ * equal and nearly equal stretches; one stretch alone. */
 static inline tensor tangent_increment(uint64_t *state, int32_t dim, int i) {
   const real a = 0.2L * uniform(state), b = 0.2L * uniform(state);
   const tensor q = random_rotation(state, dim), any = random_tensor(state, dim, 0.2L);

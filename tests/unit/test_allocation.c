@@ -1,6 +1,6 @@
-/* Memory that runs out: every allocation of a whole run fails once, the call that needed it says so and
- * changes nothing, and the same call succeeds when memory is there again. In the steady state nothing is
- * allocated. */
+/* Memory that runs out: every allocation of a whole run fails once, the call that needed it
+ * says so and changes nothing, and the same call succeeds when memory is there again. In the
+ * steady state nothing is allocated. */
 #include "run_support.h"
 
 enum { STEPS = 15, SAVED_AT = 6 };
@@ -242,8 +242,8 @@ START_TEST(steady_state) {
 }
 END_TEST
 
-/* A body in uniform motion around a periodic axis: once each block has been seen, sorting anew needs nothing.
- */
+/* A body in uniform motion around a periodic axis: once each block has been seen,
+ * sorting anew needs nothing. */
 START_TEST(steady_resorts) {
   run_memory memory = {0};
   run_options o = {.dim = 3, .periodic = 1, .memory = &memory};

@@ -1,8 +1,8 @@
-/* Every combination of options that has a meaning works, and every other is refused with a sentence that says
- * what to use instead. Each is stepped on a body whose motion is known: a translation across cells, and a
- * patch of uniform deformation and stress in an affine velocity field under gravity. With MPM_FULL=1 in the
- * environment the list is whole and the bodies have 27 blocks and more; without, it is a sample on small
- * ones. */
+/* Every combination of options that has a meaning works, and every other is refused with a sentence
+ * that says what to use instead. Each is stepped on a body whose motion is known: a translation
+ * across cells, and a patch of uniform deformation and stress in an affine velocity field under
+ * gravity. With MPM_FULL=1 in the environment the list is whole and the bodies have 27 blocks and
+ * more; without, it is a sample on small ones. */
 #include "combinations.h"
 #include "reference.h"
 #include "stepper/stepper.h"

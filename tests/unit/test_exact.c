@@ -9,8 +9,8 @@ static void fly(const method *how, int32_t dim, int32_t periodic) {
   world w;
   world_desc desc = world_default(dim, periodic ? 8 : 24, h);
   world_use(&desc, how);
-  /* with the linear basis light nodes make rounding grow by (c dt / h)^2 / share of mass a step: a soft law
-   */
+  /* with the linear basis light nodes make rounding grow by (c dt / h)^2 / share
+   * of mass a step: a soft law */
   if (how->basis == MPM_LINEAR) desc.E = 1e3;
   for (int32_t k = 0; k < dim; ++k) {
     lower[k] = periodic ? 0.5 : start[k] - 0.125;
@@ -111,8 +111,8 @@ START_TEST(free_fall) {
 }
 END_TEST
 
-/* Small-strain law of constant volume: stress = E strain / J, so that V stress = V0 E strain. State: the
- * strain. */
+/* Small-strain law of constant volume: stress = E strain / J,
+ * so that V stress = V0 E strain. State: the strain. */
 static mpm_status spring(void *user, const mpm_material_batch *b) {
   const double E = *(const double *)user;
   for (int64_t p = 0; p < b->n; ++p) {
@@ -126,8 +126,8 @@ static mpm_status spring(void *user, const mpm_material_batch *b) {
   return MPM_OK;
 }
 
-/* No projected velocity, force or acceleration of node 0, so that the wall takes nothing from the particle.
- */
+/* No projected velocity, force or acceleration of node 0,
+ * so that the wall takes nothing from the particle. */
 static void clear_node_0(world *w) {
   static const char *const fields[] = {"velocity", "force"};
   int64_t n;
@@ -142,8 +142,8 @@ static void clear_node_0(world *w) {
   free(index);
 }
 
-/* One particle in one cell whose left node is fixed: v = v0 cos 2 pi t, x = x0 exp(v0 sin(2 pi t) / (2 pi)).
- */
+/* One particle in one cell whose left node is fixed: v = v0 cos 2 pi t,
+ * x = x0 exp(v0 sin(2 pi t) / (2 pi)). */
 START_TEST(single_particle_oscillates) {
   const double x0 = 0.5, v0 = 0.01, one = 1.0, dt = _i ? 2.5e-4 : 5e-5;
   const int32_t steps = (int32_t)(10.0 / dt + 0.5);
@@ -151,8 +151,8 @@ START_TEST(single_particle_oscillates) {
   world w;
   world_desc desc = world_default(1, 2, 1.0);
   desc.grid.basis = MPM_LINEAR;
-  /* USL takes L from v + dt f / m of a node that has half the mass: damped by dt omega^2 / 2, hence the small
-   * dt */
+  /* USL takes L from v + dt f / m of a node that has half the mass:
+   * damped by dt omega^2 / 2, hence the small dt */
   desc.stepper.scheme = _i ? MPM_MUSL : MPM_USL;
   world_open(&w, &desc);
   mpm_material *law;

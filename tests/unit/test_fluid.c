@@ -468,8 +468,8 @@ START_TEST(rigid_set) {
 }
 END_TEST
 
-/* A rigid set that shares cells with a fluid takes no part in the averages of the remedy: its ratio stays 1.
- */
+/* A rigid set that shares cells with a fluid takes no part in the averages of
+ * the remedy: its ratio stays 1. */
 START_TEST(rigid_set_and_remedy) {
   world w;
   world_desc desc = fluid_desc(2, &methods[0]);

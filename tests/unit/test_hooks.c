@@ -1,5 +1,5 @@
-/* Node hooks: what they are shown at each stage, what comes of what they write, work and momentum of it,
- * refusals. */
+/* Node hooks: what they are shown at each stage, what comes of what they write,
+ * work and momentum of it, refusals. */
 #include "support.h"
 
 enum { CLOUD = 300 };
@@ -180,8 +180,8 @@ static mpm_status damp(void *user, const mpm_node_batch *b, double *velocity, do
   return 0;
 }
 
-/* A body in uniform motion, whose nodes lose a tenth of their velocity in each step: an impulse of the host.
- */
+/* A body in uniform motion, whose nodes lose a tenth of their velocity in each
+ * step: an impulse of the host. */
 START_TEST(damping) {
   const method *how = &methods[_i];
   const double v0[3] = {0.3, -0.2, 0.1}, dt = 1e-3, unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

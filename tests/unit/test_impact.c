@@ -1,5 +1,5 @@
-/* Impact and contact: two disks (Sulsky, Chen and Schreyer 1994), a disk that bounces, a block that slides.
- */
+/* Impact and contact: two disks (Sulsky, Chen and Schreyer 1994),
+ * a disk that bounces, a block that slides. */
 #include "walls.h"
 
 static void mean_velocity(const world *w, const mpm_particles *set, double *mean) {

@@ -303,8 +303,8 @@ START_TEST(patch) {
 }
 END_TEST
 
-/* A dead load under which the first increment would turn the cell inside out: it is halved until it does not.
- */
+/* A dead load under which the first increment would turn the cell inside out:
+ * it is halved until it does not. */
 START_TEST(halved_increments) {
   const double h = 0.5, volume = 0.4, at = 0.5 * h;
   world w;
@@ -327,9 +327,8 @@ START_TEST(halved_increments) {
 }
 END_TEST
 
-/* Forces are wanted for the end of the step; dynamic ones, where accelerations are to be found, first for its
- * start.
- */
+/* Forces are wanted for the end of the step; dynamic ones,
+ * where accelerations are to be found, first for its start. */
 typedef struct times {
   double t[8];
   int32_t count;

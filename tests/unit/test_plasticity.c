@@ -85,8 +85,8 @@ START_TEST(uniaxial_strain) {
 }
 END_TEST
 
-/* Work on a body without inertia to speak of: what is not stored goes into plastic flow, q times the plastic
- * strain. */
+/* Work on a body without inertia to speak of: what is not stored goes into plastic flow,
+ * q times the plastic strain. */
 START_TEST(plastic_work_is_dissipated) {
   const double lower[2] = {0.2, 0.2}, upper[2] = {0.6, 0.6}, dt = 1e-3;
   const int32_t per_cell[2] = {2, 2};

@@ -89,8 +89,8 @@ static double mass_of(const world *w, const mpm_particles *set) {
   return sum;
 }
 
-/* What the prescribed set and the walls exert on the other, with its weight, is the change of its momentum.
- */
+/* What the prescribed set and the walls exert on the other, with its weight,
+ * is the change of its momentum. */
 START_TEST(reactions_balance) {
   const method *how = &methods[_i % METHODS];
   const int32_t dim = 2 + _i / METHODS % 2, walled = _i / METHODS / 2;
@@ -368,8 +368,8 @@ static mpm_status double_speed(void *user, const mpm_particle_batch *b, double *
   return 0;
 }
 
-/* Twice as fast: the work is the change of momentum times the mean velocity of the step, whatever gravity
- * does. */
+/* Twice as fast: the work is the change of momentum times the mean velocity of the
+ * step, whatever gravity does. */
 START_TEST(work_of_moving_itself) {
   const method *how = &methods[_i % METHODS];
   const double lower = 0.2, upper = 0.6, v0 = 0.4;

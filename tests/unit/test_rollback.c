@@ -110,8 +110,7 @@ static void fails(run *r, double dt, const expected *e) {
   wrong.dt = 0.0;
 }
 
-/* ---- the stories -----------------------------------------------------------------------------------------
- */
+/* ---- the stories --------------------------------------------------------------------------------------- */
 typedef void (*story_fn)(run *r);
 
 static run_options options_of(int32_t i, int32_t threads) {
@@ -338,8 +337,7 @@ START_TEST(first_of_the_inverted) {
 }
 END_TEST
 
-/* ---- off the grid ----------------------------------------------------------------------------------------
- */
+/* ---- off the grid -------------------------------------------------------------------------------------- */
 /* One particle of each set flies out far ahead of all others; a wall does not hold what jumps over it. */
 static void fly(run *r, const int64_t *id, int32_t face) {
   const int32_t axis = face / 2, dim = r->options.dim;
@@ -392,8 +390,7 @@ START_TEST(off_the_grid) {
 }
 END_TEST
 
-/* ---- the host's executor ---------------------------------------------------------------------------------
- */
+/* ---- the host's executor ------------------------------------------------------------------------------- */
 static mpm_status failing_executor(void *user, int64_t count, mpm_task_fn task, void *task_data) {
   trouble *t = user;
   const int32_t fails_now = t->executor && --t->runs == 0;

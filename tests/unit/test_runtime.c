@@ -1,9 +1,8 @@
 /* Particles that come and go during a run, in combination with all that such a run may meet: open walls,
  * periodic axes, two sets, fields of the host, saved states, threads, views.
  *
- * A stream without stress: every particle has the same velocity, so that places, images and removals are
- * known.
- */
+ * A stream without stress: every particle has the same velocity, so that places,
+ * images and removals are known. */
 #include "run_support.h"
 
 enum { SETS = 2, MOST = 4000, PER_EMISSION = 3 };
@@ -426,8 +425,8 @@ START_TEST(only_what_is_committed) {
 }
 END_TEST
 
-/* Periods are counted whichever way and however many in one step, from where particles were added, and over
- * saving. */
+/* Periods are counted whichever way and however many in one step,
+ * from where particles were added, and over saving. */
 START_TEST(images) {
   stream s, other;
   open_stream(&s, 2, 1, MPM_FLIP, 1);

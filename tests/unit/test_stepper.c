@@ -101,8 +101,7 @@ START_TEST(free_fall) {
 }
 END_TEST
 
-/* ---- fields that a stepper keeps -------------------------------------------------------------------------
- */
+/* ---- fields that a stepper keeps ----------------------------------------------------------------------- */
 START_TEST(reference_positions) {
   run_options o = {.dim = 1 + _i % 3, .periodic = _i / 3};
   run r;
@@ -193,8 +192,7 @@ START_TEST(accelerations) {
 }
 END_TEST
 
-/* ---- changes between steps -------------------------------------------------------------------------------
- */
+/* ---- changes between steps ----------------------------------------------------------------------------- */
 /* Whatever was configured before, a step depends on the descriptor and the state alone. */
 START_TEST(configured_mid_run) {
   run r, other;

@@ -1,6 +1,6 @@
-/* Tangents of the built-in laws: against differences of the stress, major symmetry, and frames, on every
- * instruction set and dimension. Limits are tested in tangent_limits.c, laws of the host in tangent_host.c.
- */
+/* Tangents of the built-in laws: against differences of the stress, major symmetry, and
+ * frames, on every instruction set and dimension. Limits are tested in tangent_limits.c, laws
+ * of the host in tangent_host.c. */
 #include "tangent_sample.h"
 
 static const tangent_law laws[] = {

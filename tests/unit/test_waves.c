@@ -72,8 +72,8 @@ START_TEST(first_mode) {
 }
 END_TEST
 
-/* Tenth mode, 25 cells to the wave length, for ten periods. USL damps short waves by omega^2 dt, hence no
- * energy. */
+/* Tenth mode, 25 cells to the wave length, for ten periods.
+ * USL damps short waves by omega^2 dt, hence no energy. */
 START_TEST(tenth_mode) {
   const double period = 10.0 / 19.0;
   const vibration now = vibrate(&bars[_i], 10, 240, 10.0 * period, 0.1);

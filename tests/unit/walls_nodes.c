@@ -1,5 +1,5 @@
-/* What walls do to nodes, for every basis, at faces, edges and corners, and on grids of one to three cells.
- */
+/* What walls do to nodes, for every basis, at faces, edges and corners,
+ * and on grids of one to three cells. */
 #include "walls.h"
 
 enum { CLOUD = 160 };

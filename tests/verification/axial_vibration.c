@@ -1,8 +1,8 @@
 /* Axial vibration of a bar held at one end (Bardenhagen 2002): L = 25, E = 100, density 1, initial velocity
  * 0.1 sin(beta x), beta = (2 n - 1) pi / (2 L). With quadratic B-splines, lumped masses and FLIP the
- * frequency is low by (beta h)^2 / 4 in the limit of small h, one half from lumping and one from the way of
- * the increments through particles (derived: each is a factor sin(beta h / 2)^3 / (beta h / 2)^3 on the
- * acceleration). */
+ * frequency is low by (beta h)^2 / 4 in the limit of small h, one half from lumping and one from the way
+ * of the increments through particles (derived: each is a factor sin(beta h / 2)^3 / (beta h / 2)^3 on
+ * the acceleration). */
 #include "verify.h"
 
 static const double L = 25.0, E = 100.0, amplitude = 0.1;

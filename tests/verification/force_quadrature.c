@@ -1,6 +1,6 @@
-/* Steffen et al. 2008, fig. 6 and eqs 40-42: what the sum over particles leaves of the internal force under a
- * constant stress of 1, which is 0 in exact integration, against the spacing of particles; h = 1, l = h/10.
- */
+/* Steffen et al. 2008, fig. 6 and eqs 40-42: what the sum over particles leaves of the
+ * internal force under a constant stress of 1, which is 0 in exact integration, against the
+ * spacing of particles; h = 1, l = h/10. */
 #include "verify.h"
 
 enum { SPACINGS = 14, BASES = 4, CELLS = 32, FILLS = 32 };
@@ -11,8 +11,8 @@ static double jitter(uint64_t *seed) {
   return 0.5 + (double)(*seed >> 11) * 0x1p-53;
 }
 
-/* Particles of uniform density side by side from 4 to at least CELLS - 4; their widths vary about the
- * spacing. */
+/* Particles of uniform density side by side from 4 to at least CELLS - 4;
+ * their widths vary about the spacing. */
 static void fill(verify_world *w, mpm_particles *set, double spacing, uint64_t seed) {
   const int64_t most = (int64_t)(2 * CELLS / spacing);
   double *x = verify_array(most), *width = verify_array(most), edge = 4.0;

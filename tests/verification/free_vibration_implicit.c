@@ -1,7 +1,7 @@
-/* A quarter of a neo-Hookean block, 10 x 10 cm in cells of 1 cm, vibrates freely: symmetry planes at x = 0
- * and y = 0, initial velocity 10 cm/s times sin(pi x / 2 L) along x. Gates: the trapezoidal rule adds no
- * energy however long the step; what is lost at short steps is the remap's, and as much as a prototype lost.
- */
+/* A quarter of a neo-Hookean block, 10 x 10 cm in cells of 1 cm, vibrates freely: symmetry planes
+ * at x = 0 and y = 0, initial velocity 10 cm/s times sin(pi x / 2 L) along x. Gates: the
+ * trapezoidal rule adds no energy however long the step; what is lost at short steps is the
+ * remap's, and as much as a prototype lost. */
 #include "verify.h"
 
 static const double mu = 6e6, kappa = 6e7, density = 10.0, L = 10.0, speed = 10.0;

@@ -29,8 +29,8 @@ typedef struct outcome {
   double energy;  /* at the end, over that of the start */
   double most;    /* largest on the way, over that of the start */
   double angular; /* angular momentum at the end over that of the start; NaN for the bar */
-  double quality; /* rebound over the FEM's 0.1286; largest deviation of det F from 1; amplitude of the last
-                     period */
+  double quality; /* rebound over the FEM's 0.1286; largest deviation of det F from 1;
+                     amplitude of the last period */
   int broke;      /* status of the step that failed, or 0 */
 } outcome;
 

@@ -1,0 +1,196 @@
+# The tests of libmpm, included by the Makefile at the top of the sources, from where all paths start.
+
+.PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
+.PHONY: mutate mutate-check check-hashes update-hashes
+.PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
+.PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
+
+# ---- tests -----------------------------------------------------------------------------------------------
+# Every tests/unit/test_X.c defines Suite *X_suite(void), listed in tests/unit/suites.h. The program is linked to
+# the static library, so that it reaches internal functions. CHECK_LIBS are asked for only when needed: a demo or
+# an installation does without pkg-config.
+UNIT_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(sort $(wildcard tests/unit/*.c)))
+UNIT := $(BUILD)/tests/unit
+CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
+CHECK_LIBS = $(shell $(PKG_CONFIG) --libs check)
+TEST_ENVIRONMENT = CC="$(CC)" CXX="$(CXX)" MAKE="$(MAKE)" PKG_CONFIG="$(PKG_CONFIG)" BUILD="$(abspath $(BUILD))" \
+  MPM_SCRATCH="$(abspath $(BUILD))/tests/scratch"
+
+$(BUILD)/obj/tests/%.o: tests/%.c Makefile tests/tests.mk
+	@mkdir -p $(@D)
+	$(call SAY,CC)
+	$(Q)$(CC) $(COMMON) $(CHECK_CFLAGS) -O1 -c $< -o $@
+
+$(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(UNIT_OBJECTS) $(STATIC_LIB) $(CHECK_LIBS) $(LIBS) -o $@
+
+#: check                 what a change must pass: the checks of structure, units, hashes, interface, examples, faults, and
+#:                       verify-quick
+check: check-structure check-unit check-hashes check-api check-examples mutate-check verify-quick
+
+# First the check must notice what is planted in a small tree of its own.
+STRUCTURE = python3 tests/structure/check.py --objects $(BUILD)/obj/src
+#: check-structure       which files of src/ need which others: no circles, no arrow from a lower folder to a higher one
+check-structure: $(STATIC_LIB)
+	@mkdir -p $(BUILD)/tests/scratch
+	@$(TEST_ENVIRONMENT) python3 tests/structure/planted.py $(BUILD)/tests/scratch
+	@$(STRUCTURE)
+#: measure-structure     the same with figures: arrows between folders, the longest chain of includes, lines
+measure-structure: $(STATIC_LIB)
+	@$(STRUCTURE) --measure
+
+# Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together.
+#: check-unit            the unit tests, by Check; SUITES="a b" selects
+SUITES ?= $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)
+JOBS ?= $(shell nproc)
+check-unit: $(UNIT)
+	@mkdir -p $(SUITES:%=$(BUILD)/tests/scratch/%)
+	@printf '%s\n' $(SUITES) | $(TEST_ENVIRONMENT) xargs -P $(JOBS) -I{} sh -c \
+	  'out=$$(CK_RUN_SUITE={} MPM_SCRATCH="$$MPM_SCRATCH/{}" $(UNIT) 2>&1); status=$$?; echo "$$out"; exit $$status'
+
+# Every method that the library offers on 1, 2, 3, 4, 7 threads, by pool and executor, on each instruction set; `check`
+# has a sample of it.
+#: check-determinism     the same bits from every method, on 1 to 7 threads and each instruction set
+check-determinism: $(UNIT)
+	@printf '%s\n' 3-D 2-D 1-D hashes | xargs -P $(JOBS) -I{} sh -c \
+	  'out=$$(MPM_FULL=1 CK_RUN_SUITE=determinism CK_RUN_CASE={} $(UNIT) 2>&1); status=$$?; echo "{}: $$out"; exit $$status'
+
+# `check` has a sample of it.
+#: check-combinations    every combination of options, on bodies of 27 blocks and more
+check-combinations: $(UNIT)
+	@printf '%s\n' rules 'first half' 'second half' | xargs -P $(JOBS) -I{} sh -c \
+	  'out=$$(MPM_FULL=1 CK_RUN_SUITE=combinations CK_RUN_CASE="{}" $(UNIT) 2>&1); status=$$?; echo "{}: $$out"; exit $$status'
+
+#: check-instructions    instructions of a particle-step under callgrind, within 3 % of tests/instructions/expected.txt
+#: update-instructions   takes what is counted as what is expected
+STEPS := $(BUILD)/tests/instructions/steps
+$(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile tests/tests.mk
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+check-instructions update-instructions: $(STEPS)
+	@$(TEST_ENVIRONMENT) bash tests/instructions/run.sh $(@:-instructions=)
+
+# The scenes are a host program, without contraction.
+HASHES := $(BUILD)/tests/hashes/hashes
+$(HASHES): $(wildcard tests/hashes/*.[ch]) $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) -std=c11 -Iinclude $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) -ffp-contract=off $(filter %.c,$^) $(STATIC_LIB) \
+	  $(LDFLAGS) $(LIBS) -o $@
+#: check-hashes          state hashes of small scenes with every method, law and option, against tests/hashes/expected-*.txt
+#: update-hashes         takes the hashes that are there as the expected ones
+check-hashes update-hashes: $(HASHES)
+	@$(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
+
+#: check-abi             the binary interface against abi/libmpm-x86_64.abi.xml, by abidiff
+#: update-abi            takes the interface that is there as the baseline
+check-abi update-abi: $(SHARED_LIB)
+	@$(TEST_ENVIRONMENT) bash tests/abi/run.sh $(@:-abi=)
+
+#: check-aarch64         the library and its unit tests for another processor, run by qemu
+check-aarch64:
+	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/aarch64/run.sh
+
+#: check-api             the installation, the headers, the exported symbols, the programs of the documents: tests/api
+check-api: all
+	@mkdir -p $(BUILD)/tests/scratch
+	@for script in $(sort $(wildcard tests/api/*.sh)); do \
+	  echo "$$script"; env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash $$script || exit 1; done
+
+#: check-examples        every example, with the numbers that it prints
+check-examples: examples
+	@mkdir -p $(BUILD)/tests/scratch
+	@for script in $(sort $(wildcard tests/examples/*.sh)); do \
+	  echo "$$script"; $(TEST_ENVIRONMENT) bash $$script || exit 1; done
+
+# With `make -j check-setup check` the tools come before the first file that needs them.
+ifneq (,$(filter check-setup,$(MAKECMDGOALS)))
+$(UNIT_OBJECTS) $(UNIT) check-unit check-api check-examples mutate-check: | check-setup
+endif
+
+#: check-setup           installs what `check` needs, on Debian: Check, pkg-config, a C++ compiler, Python
+check-setup:
+	@if $(PKG_CONFIG) --exists check 2>/dev/null && command -v g++ >/dev/null && command -v python3 >/dev/null; then exit 0; fi; \
+	sudo=; if [ "$$(id -u)" != 0 ]; then sudo=sudo; fi; \
+	$$sudo apt-get update -q && \
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q check pkg-config g++ python3
+
+# Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
+SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS=long EXAMPLES="two_disks user_material host_threads staged_coupling cpp_block" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
+#: check-asan            check-unit and check-examples under the address and the undefined-behaviour sanitizer
+check-asan:
+	+ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
+	  BUILD=$(BUILD)-asan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
+
+# The fork of each test would hide threads from the sanitizer.
+TSAN_SUITES ?= context executor threads rollback restart linalg
+#: check-tsan            the suites with threads under the thread sanitizer
+check-tsan:
+	+CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" \
+	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
+
+# libFuzzer on saved states, descriptors and small clouds of particles; what is new stays in $(FUZZ)/fuzz/corpus.
+FUZZ = $(BUILD)-fuzz
+FUZZ_TARGETS ?= state descriptors clouds
+FUZZ_SECONDS ?= 600
+FUZZ_FLAGS = -g -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
+FUZZ_CC ?= clang
+#: fuzz-programs         the fuzz targets, by clang, in $(BUILD)-fuzz
+fuzz-programs:
+	@$(MAKE) CC=$(FUZZ_CC) BUILD=$(FUZZ) OPT=-O1 KERNEL_OPT="-O1 -Wno-pass-failed" CFLAGS="$(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp" \
+	  $(FUZZ_TARGETS:%=$(FUZZ)/fuzz/%)
+$(BUILD)/fuzz/%: tests/fuzz/%.c tests/fuzz/fuzz.h $(STATIC_LIB) Makefile tests/tests.mk
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(COMMON) -O1 -MF $@.d -MT $@ -fsanitize=fuzzer $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+
+#: fuzz                  FUZZ_SECONDS (600) for each of FUZZ_TARGETS, from the committed corpora
+fuzz: fuzz-programs
+	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target $(FUZZ_SECONDS) || exit 1; done
+#: check-fuzz            the committed corpora, then a minute in all
+check-fuzz: FUZZ_SECONDS = 20
+check-fuzz: fuzz-programs
+	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target $(FUZZ_SECONDS) || exit 1; done
+#: fuzz-corpus           packs the corpora again, with what was found that covers more
+fuzz-corpus: fuzz-programs
+	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/pack.sh $(FUZZ) $$target || exit 1; done
+
+#: mutate                plants known faults one by one in a copy of the sources: the tests must notice each
+mutate: $(UNIT)
+	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/run.sh
+#: mutate-check          whether each of these faults still has its place in the sources; compiles nothing
+mutate-check:
+	@python3 tests/mutate/plant.py check
+
+# ---- verification ----------------------------------------------------------------------------------------
+# Every tests/verification/X.c is a host program of the shared library that compares it with exact solutions and prints
+# its gates; CSV files, logs and the table of gates go to $(VERIFIED). A file with a header of its name is shared by the
+# cases. The long cases start first. CASES="a b" selects.
+VERIFIED = $(BUILD)/verification
+VERIFY_HEADERS := $(sort $(wildcard tests/verification/*.h))
+VERIFY_SHARED := $(VERIFY_HEADERS:.h=.c)
+VERIFY_LONG := cube_convergence taylor_bar four_discs transfers water_column
+VERIFY_ALL := $(basename $(notdir $(filter-out $(VERIFY_SHARED),$(sort $(wildcard tests/verification/*.c)))))
+CASES ?= $(filter $(VERIFY_LONG),$(VERIFY_ALL)) $(filter-out $(VERIFY_LONG),$(VERIFY_ALL))
+VERIFY := $(CASES:%=$(VERIFIED)/%)
+VERIFY_JOBS ?= 2
+$(VERIFIED)/%: tests/verification/%.c $(VERIFY_SHARED) $(VERIFY_HEADERS) $(SHARED_LIB) Makefile tests/tests.mk
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) -std=c11 -Iinclude $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) $(filter %.c,$^) -L$(BUILD) \
+	  -Wl,-rpath,'$$ORIGIN/..' $(LDFLAGS) -lmpm -lm -o $@
+
+#: verify                the method against exact solutions, with a table of gates: docs/verification.md
+verify: $(VERIFY)
+	@bash tests/verification/run.sh $(VERIFIED)/full $(VERIFY_JOBS) $(VERIFY)
+#: verify-quick          the same in small
+verify-quick: $(VERIFY)
+	@bash tests/verification/run.sh $(VERIFIED)/quick $(VERIFY_JOBS) --quick $(VERIFY)
+#: verify-plots          the numbers of the last `make verify` into docs/verification: plots, and tables of its page
+verify-plots:
+	/usr/bin/python3 docs/verification/plot.py --from $(VERIFIED)/full
+
+-include $(UNIT_OBJECTS:.o=.d) $(STEPS).d $(FUZZ_TARGETS:%=$(BUILD)/fuzz/%.d)
