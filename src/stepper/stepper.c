@@ -123,7 +123,7 @@ static mpm_status without_explicit_parts(const mpm_stepper *s) {
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no node hooks: unset them, or use an explicit scheme");
   for (int32_t f = 0; f < 2 * s->grid->dim; ++f)
-    if (s->settings.wall[f].kind == MPM_WALL_FRICTION)
+    if (mpmi_wall_kind_of(s->settings.wall[f].kind)->rubs)
       return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                        "scheme MPM_NEWMARK has no friction walls, and face %d is one: use MPM_WALL_SLIP or "
                        "MPM_WALL_FIXED, or an explicit scheme",
