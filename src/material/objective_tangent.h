@@ -32,9 +32,9 @@ MPMI_INLINE void mpmi_objective_load(int dim, mpmi_objective *o, int p, const mp
 }
 
 /* The chunk from particle `begin` on, elastic. */
-MPMI_INLINE void mpmi_elastic_chunk(int dim, const double *constants, const mpm_material_batch *batch,
+MPMI_INLINE void mpmi_elastic_chunk(int dim, const mpmi_elastic *c, const mpm_material_batch *batch,
                                     int64_t begin, mpmi_objective *o) {
-  const double mu = constants[MPMI_C_MU], bulk = constants[MPMI_C_LAMBDA] + (2.0 / 3.0) * mu;
+  const double mu = c->mu, bulk = c->lambda + (2.0 / 3.0) * mu;
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_objective_load(dim, o, p, batch, begin + p);
@@ -46,13 +46,6 @@ MPMI_INLINE void mpmi_elastic_chunk(int dim, const double *constants, const mpm_
 }
 
 /* The tangent of a chunk that has all but its slopes; added to what is there where add is 1. */
-#define MPMI_DECLARE_OBJECTIVE_ROWS(isa)                                                                     \
-  void mpmi_objective_rows_##isa(int32_t dim, int32_t add, mpmi_objective *o, double *tangent, int64_t ld);
-
-MPMI_DECLARE_OBJECTIVE_ROWS(baseline)
-#if MPMI_HAS_X86
-MPMI_DECLARE_OBJECTIVE_ROWS(avx2)
-MPMI_DECLARE_OBJECTIVE_ROWS(avx512)
-#endif
+void KERNEL(objective_rows)(int32_t dim, int32_t add, mpmi_objective *o, double *tangent, int64_t ld);
 
 #endif

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "material/laws.h"
-#include "material/tangent_rows.h"
+#include "material/material.h"
+#include "simd/tensor.h"
 
 enum { STRESS_ROWS = 6, F_ROWS = 9 };
 /* Rows of a batch that differs in F, F_inc and L and has outputs of its own; then tau at one side of the
@@ -135,17 +135,13 @@ static mpm_status difference_law(const mpm_material *material, int32_t dim, cons
 }
 
 /* ---- all materials ------------------------------------------------------------------------------------ */
-/* Not in general where the stress depends on the step: see the theory. One component is symmetric. */
-static int32_t law_is_symmetric(const mpm_material *material, int32_t dim) {
-  return dim == 1 || (material->law->stress_from_F && material->constants[MPMI_C_VISCOSITY] == 0.0);
-}
-
 mpm_status mpmi_material_tangent(const mpm_material *material, int32_t isa, int32_t dim,
                                  const mpm_material_batch *batch, void *scratch, double *tangent,
                                  int32_t *symmetric) {
+  (void)isa; /* that of the material's context */
   if (material->law) {
-    mpmi_tangent_kernel(isa, material->law->index)(material->constants, dim, batch, tangent);
-    if (!law_is_symmetric(material, dim)) *symmetric = 0;
+    material->law->tangent(material->constants, dim, batch, tangent);
+    if (dim > 1 && !material->law->is_symmetric(material->constants)) *symmetric = 0;
     return MPM_OK;
   }
   if (material->custom.tangent) return call_tangent(material, dim, batch, scratch, tangent, symmetric);

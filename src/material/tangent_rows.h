@@ -8,15 +8,8 @@
 #include "simd/tensor.h"
 
 /* isotropic: volumetric d_ij d_kl + shear (d_ik d_jl + d_il d_jk). mixed: adds s_ij d_kl + d_ij s_kl. */
-#define MPMI_DECLARE_TANGENT_ROWS(isa)                                                                       \
-  void mpmi_isotropic_rows_##isa(int32_t dim, const double *volumetric, const double *shear,                 \
-                                 double *tangent, int64_t ld);                                               \
-  void mpmi_add_mixed_rows_##isa(int32_t dim, const double(*s)[MPMI_CHUNK], double *tangent, int64_t ld);
-
-MPMI_DECLARE_TANGENT_ROWS(baseline)
-#if MPMI_HAS_X86
-MPMI_DECLARE_TANGENT_ROWS(avx2)
-MPMI_DECLARE_TANGENT_ROWS(avx512)
-#endif
+void KERNEL(isotropic_rows)(int32_t dim, const double *volumetric, const double *shear, double *tangent,
+                            int64_t ld);
+void KERNEL(add_mixed_rows)(int32_t dim, const double (*s)[MPMI_CHUNK], double *tangent, int64_t ld);
 
 #endif

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "material/laws.h"
 #include "material/material.h"
 
 /* Exact values are meant to be of higher precision than what they are compared with. */
@@ -230,8 +231,8 @@ static inline void sample_check_untouched(const sample *s, int32_t dim) {
               s->energy[i] == sample_unset);
 }
 
-static inline void sample_evaluate(sample *s, const mpm_material *material, int32_t isa, int32_t dim) {
-  ck_assert_int_eq(mpmi_material_evaluate(material, isa, dim, &s->batch), MPM_OK);
+static inline void sample_evaluate(sample *s, const mpm_material *material, int32_t dim) {
+  ck_assert_int_eq(mpmi_material_evaluate(material, dim, &s->batch), MPM_OK);
 }
 
 /* Loop tests run over instruction sets and dimensions. */

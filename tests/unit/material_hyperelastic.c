@@ -145,7 +145,7 @@ START_TEST(formula) {
   for (int k = 0; k < 5; ++k) {
     sample_clear(&s, 0.5);
     for (int i = 0; i < ITEMS; ++i) sample_set(s.F, i, random_f(&state, dim, sizes[k]));
-    sample_evaluate(&s, material, loop_isa(_i % LAW_LOOPS), dim);
+    sample_evaluate(&s, material, dim);
     sample_check_untouched(&s, dim);
     for (int i = 0; i < ITEMS; ++i) {
       /* Relative to the strain: small strains keep their digits. */
@@ -166,7 +166,7 @@ START_TEST(at_rest) {
   if (!material) return;
   sample s;
   sample_clear(&s, 0.5);
-  sample_evaluate(&s, material, loop_isa(_i % LAW_LOOPS), dim);
+  sample_evaluate(&s, material, dim);
   for (int i = 0; i < ITEMS; ++i) {
     ck_assert(norm(sample_stress(&s, dim, i)) == 0);
     ck_assert(s.energy[i] == 0.0 && s.viscosity[i] == 0.0);
@@ -196,9 +196,9 @@ START_TEST(energy_is_the_potential) {
     sample_set(ahead.F, i, combine(1, f, h, direction[i]));
     sample_set(behind.F, i, combine(1, f, -h, direction[i]));
   }
-  sample_evaluate(&at, material, loop_isa(_i % LAW_LOOPS), dim);
-  sample_evaluate(&ahead, material, loop_isa(_i % LAW_LOOPS), dim);
-  sample_evaluate(&behind, material, loop_isa(_i % LAW_LOOPS), dim);
+  sample_evaluate(&at, material, dim);
+  sample_evaluate(&ahead, material, dim);
+  sample_evaluate(&behind, material, dim);
   for (int i = 0; i < ITEMS; ++i) {
     tensor f = sample_f(&at, i), stress = sample_stress(&at, dim, i);
     real expected = det(f) * contract(multiply(stress, transpose(inverse(f))), direction[i]);
@@ -225,8 +225,8 @@ START_TEST(objectivity) {
     sample_set(s.F, i, f);
     sample_set(r.F, i, multiply(q[i], f));
   }
-  sample_evaluate(&s, material, loop_isa(_i % LAW_LOOPS), dim);
-  sample_evaluate(&r, material, loop_isa(_i % LAW_LOOPS), dim);
+  sample_evaluate(&s, material, dim);
+  sample_evaluate(&r, material, dim);
   for (int i = 0; i < ITEMS; ++i) {
     tensor expected = turned(q[i], sample_stress(&s, dim, i));
     ck_assert(sample_error(&r, dim, i, expected) <= 1e-13L * stiffness(law, sample_f(&s, i)));
@@ -278,7 +278,7 @@ START_TEST(wave_speed) {
   for (int c = 0; c < 27; ++c) s.F[c % 9 * LD + 20 + c / 9] = c % 9 % 4 == 0;
   s.F[21] = 12.0; /* transverse waves are the fastest here */
   s.F[22] = 0.3;
-  sample_evaluate(&s, material, loop_isa(_i % LAW_LOOPS), dim);
+  sample_evaluate(&s, material, dim);
   for (int i = 0; i < ITEMS; ++i) {
     real exact = sqrtl(fastest_squared(law, sample_f(&s, i), dim) / density);
     real floor = sqrtl(law->floor / density), rest = sqrtl(law->p_modulus / density);
@@ -302,7 +302,7 @@ START_TEST(wave_speed_has_a_floor) {
   sample_clear(&s, 0.5);
   for (int i = 0; i < ITEMS; ++i)
     for (int k = 0; k < dim; ++k) s.F[4 * k * LD + i] = 0.1 + 0.02 * i;
-  sample_evaluate(&s, material, loop_isa(_i % LAW_LOOPS), dim);
+  sample_evaluate(&s, material, dim);
   const double slowest = sqrt(2.5e6 / (2 * 0.5) / 1.2e3);
   for (int i = 0; i < ITEMS; ++i) ck_assert(s.wave_speed[i] >= slowest * (1 - 1e-14));
   law_material_free(material);
@@ -318,8 +318,8 @@ START_TEST(inverted_items_do_not_trap) {
   sample_clear(&s, 0.5);
   sample_clear(&good, 0.5);
   for (int i = 0; i < ITEMS; i += 2) s.F[i] = i % 4 ? -0.5 : 0.0;
-  sample_evaluate(&s, material, loop_isa(_i % LAW_LOOPS), dim);
-  sample_evaluate(&good, material, loop_isa(_i % LAW_LOOPS), dim);
+  sample_evaluate(&s, material, dim);
+  sample_evaluate(&good, material, dim);
   for (int i = 1; i < ITEMS; i += 2) ck_assert(sample_error(&s, dim, i, sample_stress(&good, dim, i)) == 0);
   law_material_free(material);
 }

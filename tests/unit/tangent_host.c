@@ -179,7 +179,7 @@ START_TEST(forms_agree) {
     host h;
     mpm_material *material = host_material(&h, neo_hookean, way[k].tangent, way[k].form);
     fill(dim);
-    sample_evaluate(&b.s, material, MPM_ISA_BASELINE, dim);
+    sample_evaluate(&b.s, material, dim);
     ck_assert_uint_eq(mpmi_material_tangent_scratch(material, LD), (size_t)way[k].rows * LD * sizeof(double));
     ck_assert_int_eq(run(material, dim), MPM_OK);
     const real error = against(exact, dim);
@@ -225,7 +225,7 @@ START_TEST(rate_of_deformation) {
   host h;
   mpm_material *material = host_material(&h, rate_law, NULL, MPM_TANGENT_MINOR_SYMMETRIC);
   fill(dim);
-  sample_evaluate(&b.s, material, MPM_ISA_BASELINE, dim);
+  sample_evaluate(&b.s, material, dim);
   ck_assert_int_eq(run(material, dim), MPM_OK);
   ck_assert_int_eq(b.symmetric, 0);
   for (int p = 0; p < ITEMS; ++p) {
