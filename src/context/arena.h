@@ -1,5 +1,5 @@
-/* An arena hands out aligned pieces of one allocation. Without memory it only adds up how many bytes they take, so that
- * the same calls first find the size of the allocation and then place the pieces in it.
+/* An arena hands out aligned pieces of one allocation. Without memory it only adds up how many bytes they
+ * take, so that the same calls first find the size of the allocation and then place the pieces in it.
  */
 #ifndef MPMI_ARENA_H
 #define MPMI_ARENA_H
