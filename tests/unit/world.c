@@ -118,6 +118,7 @@ mpm_status law_create(mpm_context *context, const world_law *of, mpm_material **
     d.stress = of->stress;
     d.tangent = of->tangent;
     d.state_count = of->state_count;
+    d.state_initial = of->state_initial;
     d.user = of->user;
     return mpm_material_create_custom(context, &d, out);
   }

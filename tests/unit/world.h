@@ -111,6 +111,7 @@ typedef struct world_law {
   mpm_stress_fn stress; /* the host's law */
   mpm_tangent_fn tangent;
   int32_t state_count;
+  const double *state_initial;
   void *user;
 } world_law;
 mpm_status law_create(mpm_context *context, const world_law *of, mpm_material **out);
@@ -231,7 +232,7 @@ void bits_drop(world_bits *bits);
 /* A field of the sets that both worlds have, within a relative tolerance of its largest value. */
 void world_agree(const char *name, const world *a, const world *b, const char *field, int32_t components,
                  double tolerance);
-void same_info(const world *a, const world *b);
+void same_info(const world *a, const world *b); /* of the steppers, byte by byte */
 
 typedef struct saved_state {
   unsigned char *data;
