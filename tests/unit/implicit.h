@@ -5,7 +5,7 @@
 #include "world.h"
 
 enum { IMPLICIT_BASES = 7, IMPLICIT_HISTORY = 64 };
-/* All but uGIMP. */
+/* These are all bases but uGIMP. */
 const basis_option *implicit_basis(int32_t i);
 
 /* MPM_NEWMARK on a grid of `cells` cells of edge h. */

@@ -226,8 +226,8 @@ static mpm_status solve(void *user, const mpm_operator *matrix, const double *rh
   const int64_t *start;
   const int32_t *column;
   const double *value;
-  ck_assert_int_eq(mpm_operator_get_info(matrix, &info), MPM_OK);
-  ck_assert_int_eq(mpm_operator_csr(matrix, &start, &column, &value), MPM_OK);
+  ck_ok(NULL, mpm_operator_get_info(matrix, &info));
+  ck_ok(NULL, mpm_operator_csr(matrix, &start, &column, &value));
   ck_assert_int_eq(info.symmetric, 1);
   ck_assert_int_eq(start[info.rows], info.nonzeros);
   ++own->calls;
@@ -246,7 +246,7 @@ static mpm_status solve(void *user, const mpm_operator *matrix, const double *rh
   const double enough = 1e-4 * tolerance * tolerance * norm;
   for (*iterations = 0; *iterations < 20000 && norm > enough; ++*iterations) {
     double curvature = 0.0, next = 0.0;
-    ck_assert_int_eq(mpm_operator_apply(matrix, p, q), MPM_OK);
+    ck_ok(NULL, mpm_operator_apply(matrix, p, q));
     for (int64_t i = 0; i < n; ++i) curvature += p[i] * q[i];
     norm = 0.0;
     for (int64_t i = 0; i < n; ++i) {

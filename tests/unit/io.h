@@ -1,4 +1,4 @@
-/* What tests of states and files share: two bodies of different laws, with fields of the host, that move fast
+/* Tests of states and files share two bodies of different laws with fields of the host, which move fast
  * enough to be sorted anew every few steps. */
 #ifndef IO_H
 #define IO_H
@@ -14,7 +14,7 @@ typedef struct io_setup {
 io_setup io_plain(int32_t dim);
 world_desc io_desc(const io_setup *setup);
 void io_open(world *w, const io_setup *setup);
-/* The same laws and settings on this grid, without fields, particles and walls. */
+/* Has the same laws and settings on this grid, without fields, particles and walls. */
 world_desc io_bare_desc(const mpm_grid_desc *grid);
 
 TCase *io_state_case(void);

@@ -1,5 +1,5 @@
-/* The methods that tests go through: every value of each option with the name that tests print, and whole
- * methods made of them. */
+/* The methods that tests go through are listed here: every value of each option with the name that tests
+ * print, and whole methods made of them. */
 #ifndef METHODS_H
 #define METHODS_H
 
@@ -35,7 +35,7 @@ typedef struct law_option {
 enum { LAWS = 7 };
 extern const law_option law_options[LAWS];
 
-/* A whole method. Where a value is 0 the default of the library stands, but for flip. */
+/* A value that is 0 stands for the default of the library, except flip and pic_damping. */
 typedef struct method {
   int32_t basis, scheme, transfer;
   double flip;
@@ -50,11 +50,11 @@ typedef struct method {
  * the rest have every further option at least once. */
 enum { METHODS = 18, ALL_METHODS = METHODS + 13 };
 extern const method methods[ALL_METHODS];
-/* Those for bodies that move: the first are plain, the others have the further options. */
+/* Bodies that move go through these: the first are plain, the others have the further options. */
 enum { PLAIN = 10, BROAD = PLAIN + 11 };
 extern const method *const broad_methods[BROAD];
 
-/* One value of each kind. */
+/* Makes a method of one value of each kind. */
 method method_of(const basis_option *b, const scheme_option *s, const transfer_option *t);
 void method_use(const method *how, mpm_grid_desc *grid, mpm_stepper_desc *stepper);
 void use_basis(const basis_option *b, mpm_grid_desc *grid);

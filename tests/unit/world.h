@@ -1,5 +1,5 @@
-/* The world of the tests: a context, a grid, laws, up to two sets and a stepper, opened from one description;
- * how tests spell a call that succeeds or is refused; what they read, write and compare. */
+/* The world of the tests is a context, a grid, laws, sets and a stepper, opened from one description. Here is
+ * also how tests spell a call that succeeds or is refused, and what they read, write and compare. */
 #ifndef WORLD_H
 #define WORLD_H
 
@@ -25,7 +25,7 @@ typedef struct world world;
 mpm_context *context_of_world(const world *w);
 const mpm_context *context_itself(const void *context);
 
-/* What the library says of the last failed call; `of` is a world, a context or NULL. */
+/* This is the library's sentence about the last call that failed; `of` is a world, a context or NULL. */
 #define last_error_of(of)                                                                                    \
   mpm_last_error(_Generic((of), world *                                                                      \
                           : context_of_world, const world *                                                  \
@@ -33,14 +33,14 @@ const mpm_context *context_itself(const void *context);
                           : context_itself, void *                                                           \
                           : context_itself)(of))
 
-/* The call succeeds, or the test ends with the call, its status and the library's sentence. */
+/* The call must succeed; else the test prints the call, its status and the library's sentence. */
 #define ck_ok(of, call)                                                                                      \
   do {                                                                                                       \
     const mpm_status status_ = (call);                                                                       \
     if (status_) ck_abort_msg("%s: %s: %s", #call, mpm_status_name(status_), last_error_of(of));             \
   } while (0)
 
-/* The call is refused with this status, and the sentence names what is at fault. */
+/* The call must be refused with this status, and the library's sentence must contain the text. */
 #define ck_refused(of, call, wanted, text)                                                                   \
   do {                                                                                                       \
     const mpm_status status_ = (call), wanted_ = (wanted);                                                   \
@@ -50,13 +50,13 @@ const mpm_context *context_itself(const void *context);
   } while (0)
 
 /* ---- values ---- */
-/* For inner loops: Check's own macros tell the parent process of every pass. */
+/* Inner loops use this, because Check's own macros tell the parent process of every pass. */
 #define ck_holds(condition)                                                                                  \
   do {                                                                                                       \
     if (!(condition)) ck_abort_msg("not true: %s", #condition);                                              \
   } while (0)
 
-/* |value - wanted| <= tolerance; NaN fails. */
+/* The value must differ from the wanted one by no more than the tolerance; NaN fails. */
 #define ck_within(name, value, wanted, tolerance)                                                            \
   do {                                                                                                       \
     const double value_ = (value), wanted_ = (wanted), tolerance_ = (tolerance);                             \
@@ -64,7 +64,7 @@ const mpm_context *context_itself(const void *context);
       ck_abort_msg("%s: %s = %.17g, wanted %.17g within %g", name, #value, value_, wanted_, tolerance_);     \
   } while (0)
 
-/* low <= value <= high; NaN fails. */
+/* The value must lie between low and high; NaN fails. */
 #define ck_between(name, value, low, high)                                                                   \
   do {                                                                                                       \
     const double value_ = (value), low_ = (low), high_ = (high);                                             \
@@ -72,31 +72,31 @@ const mpm_context *context_itself(const void *context);
       ck_abort_msg("%s: %s = %.17g, wanted in [%g, %g]", name, #value, value_, low_, high_);                 \
   } while (0)
 
-/* Measured numbers, for those who set MPM_SHOW in the environment. */
+/* Measured numbers are printed for those who set MPM_SHOW in the environment. */
 #define show(...)                                                                                            \
   do {                                                                                                       \
     if (getenv("MPM_SHOW")) printf(__VA_ARGS__), fflush(stdout);                                             \
   } while (0)
 
 /* ---- the host's services ---- */
-/* Memory that is counted and, when new, holds no numbers; allocation number fail_at, from 1, fails. */
+/* The host's memory is counted, and holds no numbers when it is new. Allocation number fail_at, from 1,
+ * fails. */
 typedef struct host_memory {
   int64_t held, calls, fail_at;
   uint8_t filling; /* of new memory; 0: NaN */
 } host_memory;
 void memory_lend(mpm_context_desc *desc, host_memory *m);
 
-/* A context with the defaults but for these; NULL if the processor lacks the instruction set. m may be NULL.
- */
+/* The context has the defaults but for these; it is NULL if the processor lacks the instruction set. */
 mpm_context *context_with(int32_t concurrency, int32_t isa, host_memory *m);
 
 int32_t has_isa(int32_t isa);
 
-/* A file in the folder for scratch files. */
+/* Writes the path of a file in the folder for scratch files, and returns it. */
 const char *scratch_path(const char *name, char *path, size_t size);
 
 /* ---- descriptions ---- */
-/* Descriptors with the library's defaults. */
+/* These are the library's descriptors with its defaults. */
 mpm_context_desc context_desc(void);
 mpm_grid_desc grid_desc(int32_t dim, int64_t cells, double spacing); /* alike on all axes, at the origin */
 mpm_stepper_desc stepper_desc(void);
@@ -116,7 +116,8 @@ typedef struct world_law {
 } world_law;
 mpm_status law_create(mpm_context *context, const world_law *of, mpm_material **out);
 
-/* A body of two sets that moves along x, with gravity, every kind of wall and callbacks: body.c. */
+/* body.c makes this body of two sets, which moves along x through gravity, every kind of wall and callbacks.
+ */
 typedef struct body_desc {
   int32_t dim;
   method method;       /* 0: the defaults of the library, FLIP without PIC */
@@ -132,7 +133,7 @@ typedef struct body_desc {
   mpm_stress_fn stress; /* the law of set 1; NULL: "j2" */
 } body_desc;
 
-/* A call that fills a set, or that equips the stepper: any of them may fail and be repeated. */
+/* These calls fill a set or equip the stepper. Any of them may fail and be repeated. */
 typedef mpm_status (*fill_fn)(world *w, int32_t set);
 typedef mpm_status (*equip_fn)(world *w);
 
@@ -151,8 +152,8 @@ typedef struct world_desc {
   body_desc body;
 } world_desc;
 
-/* A cubic grid of `cells` cells of edge h at the origin; neo-Hookean with E = 1e5, nu = 0.3, density = 1e3;
- * one set. */
+/* The grid is a cube of `cells` cells of edge h at the origin; the law of its one set is neo-Hookean with E =
+ * 1e5, nu = 0.3 and density = 1e3. */
 world_desc world_default(int32_t dim, int64_t cells, double h);
 void world_use(world_desc *desc, const method *how);
 
@@ -172,11 +173,11 @@ struct world {
   mpm_step_info info; /* of the last step */
 };
 
-/* Opens a world whose desc is set and all else zero, or goes on where a failed call left it. */
+/* Opens a world of which only desc and memory are set, or goes on where a failed call left it. */
 mpm_status world_try_open(world *w);
-/* Returns the first set, if there is one. */
+/* Opens a world, or ends the test; returns the first set. */
 mpm_particles *world_open(world *w, const world_desc *desc);
-/* One set more in the stepper, of a law of its own unless that is NULL. */
+/* Adds one more set to the stepper; it has the law of the first where `of` is NULL. */
 mpm_particles *world_add_set(world *w, const world_law *of);
 mpm_status world_try_close(world *w);
 void world_close(world *w); /* closes what is open; no memory is left */
@@ -188,38 +189,37 @@ void world_steps(world *w, int32_t n); /* of desc.dt */
 double world_stable_dt(world *w);
 int64_t world_blocks(const world *w); /* with particles, after a step */
 
-/* Walls of a kind on all faces but those of periodic axes. */
+/* Sets walls of one kind on all faces but those of periodic axes. */
 void world_walls(world *w, int32_t kind, double friction);
-/* A box of per_axis particles per cell and axis; returns how many there are in the set. */
+/* Fills a box with per_axis particles per cell and axis; returns how many the set then has. */
 int64_t world_fill(world *w, mpm_particles *set, const double *lower, const double *upper, int32_t per_axis);
-/* The same with two per cell from low to high on every axis. */
+/* Does the same from low to high on every axis, with two particles per cell and axis. */
 int64_t world_fill_cube(world *w, mpm_particles *set, double low, double high);
 
 /* ---- fields ---- */
-/* All of a field by ascending id, [components][count]; to be freed. */
+/* These return a whole field by ascending id, as [components][count]. The caller frees it. */
 double *fetch(const world *w, const mpm_particles *set, const char *field, int32_t components);
 void *fetch_as(const world *w, const mpm_particles *set, const char *field, int32_t type, int32_t components);
 int64_t *fetch_ids(const world *w, const mpm_particles *set);
 void put(const world *w, mpm_particles *set, const char *field, int32_t components, const double *values);
-/* One value of one particle. */
+/* Returns one value of one particle. */
 double fetch1(const world *w, const mpm_particles *set, const char *field, int32_t components, int32_t c,
               int64_t id);
-/* A field of the active nodes, [components][*n]; to be freed. */
+/* These return a field of the active nodes as [components][*n]. The caller frees it. */
 double *fetch_nodes(world *w, const char *field, int64_t *n);
 int64_t *fetch_node_indices(world *w, int64_t *n);
 
 double mass_of(const world *w, const mpm_particles *set); /* of all particles */
 double sum_of(int64_t n, const double *a);
-/* sum m a_c */
-double weighted_sum(int64_t n, const double *mass, const double *a);
-double largest(int64_t n, const double *a); /* of |a|; NaN if one is */
-double determinant(const double *F);        /* of nine components in a row */
+double weighted_sum(int64_t n, const double *mass, const double *a); /* sum m a */
+double largest(int64_t n, const double *a);                          /* of |a|; NaN if any of them is */
+double determinant(const double *F);                                 /* of nine components in a row */
 
 /* ---- states ---- */
 uint64_t world_hash(const world *w);
-/* Every field of a set by ascending id, one after the other; to be freed. */
+/* Returns every field of a set by ascending id, one after the other. The caller frees it. */
 char *world_fields(const world *w, int32_t m, size_t *bytes);
-/* The bits of all fields of all sets. */
+/* All bits of all fields of all sets, kept to be compared with later ones. */
 typedef struct world_bits {
   char *field[MOST_SETS];
   size_t bytes[MOST_SETS];
@@ -229,7 +229,7 @@ world_bits world_take(const world *w);
 void world_same(const world *w, const world_bits *was, const char *what); /* frees nothing */
 void bits_drop(world_bits *bits);
 
-/* A field of the sets that both worlds have, within a relative tolerance of its largest value. */
+/* A field of the sets that both worlds have must agree, relative to its largest value. */
 void world_agree(const char *name, const world *a, const world *b, const char *field, int32_t components,
                  double tolerance);
 void same_info(const world *a, const world *b); /* of the steppers, byte by byte */
@@ -246,15 +246,15 @@ void world_copy(const world *from, world *to); /* saves the one into the other *
 uint64_t mixed(uint64_t seed);
 double noise_at(uint64_t seed); /* uniform in [-1, 1] */
 
-/* Uniform in [low, high). */
+/* A sequence of numbers that are uniform in [low, high). */
 typedef struct dice {
   uint64_t state;
 } dice;
 double throw_between(dice *d, double low, double high);
 
-/* n particles at random places of the box low ... high on every axis, with random velocities up to `speed`,
- * volumes and small random deformations. Places are odd multiples of h / 32, so that no node is so light that
- * it is cut. */
+/* Adds n particles at random places of the box low ... high on every axis, with random velocities up to
+ * `speed`, volumes and small random deformations. Places are odd multiples of h / 32, so that no node is so
+ * light that it is cut. */
 void add_cloud(const world *w, mpm_particles *set, dice *d, int64_t n, double h, double low, double high,
                double speed);
 /* Sets random affine matrices with entries up to `rate`. */

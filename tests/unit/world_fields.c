@@ -72,7 +72,7 @@ double weighted_sum(int64_t n, const double *mass, const double *a) {
 
 double largest(int64_t n, const double *a) {
   double most = 0.0;
-  for (int64_t i = 0; i < n; ++i)
+  for (int64_t i = 0; i < n && !isnan(most); ++i)
     if (!(fabs(a[i]) <= most)) most = fabs(a[i]);
   return most;
 }
