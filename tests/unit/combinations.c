@@ -114,8 +114,7 @@ world_desc describe_combination(const combination *c) {
   const int32_t *is = c->choice;
   const method how = method_of(&basis_options[is[CHOOSE_BASIS]], &scheme_options[is[CHOOSE_SCHEME]],
                                &transfer_options[is[CHOOSE_TRANSFER]]);
-  world_desc d = world_default(is[CHOOSE_DIM], 8, 0.25);
-  world_use(&d, &how);
+  world_desc d = world_with(&how, is[CHOOSE_DIM], 8, 0.25);
   d.grid.periodic[0] = is[CHOOSE_PERIODIC];
   d.stepper.position_order = is[CHOOSE_ORDER];
   d.stepper.staggered = is[CHOOSE_STAGGERED];

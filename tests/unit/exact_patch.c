@@ -14,8 +14,7 @@ static double of_dim(int32_t dim, const double *tensor, int32_t c, double diagon
  * x. */
 static mpm_particles *open_patch(world *w, const method *how, int32_t dim, int32_t side, int32_t deformed) {
   const double lower[3] = {low, low, low}, upper[3] = {low + CELLS * h, low + CELLS * h, low + CELLS * h};
-  world_desc desc = world_default(dim, CELLS + 8, h);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, CELLS + 8, h);
   mpm_particles *set = world_open(w, &desc);
   const int64_t n = world_fill(w, set, lower, upper, side);
   double F[9], C[9], *x = fetch(w, set, "position", dim), *v = calloc((size_t)(n * dim), sizeof *v);
@@ -116,8 +115,7 @@ START_TEST(affine_transfer_of_a_cloud) {
   if (how->transfer == MPM_FLIP) return;
   for (int32_t dim = 1; dim <= 3; ++dim) {
     world w;
-    world_desc desc = world_default(dim, CELLS + 8, h);
-    world_use(&desc, how);
+    world_desc desc = world_with(how, dim, CELLS + 8, h);
     mpm_particles *set = world_open(&w, &desc);
     dice d = {77};
     add_cloud(&w, set, &d, CLOUD, h, 1.0, 3.0, 0.0);
@@ -154,8 +152,7 @@ START_TEST(unaligned_particles_give_the_order) {
   double error[LEVELS], spacing[LEVELS];
   for (int32_t level = 0; level < LEVELS; ++level) {
     world w;
-    world_desc desc = world_default(1, 108, h);
-    world_use(&desc, how);
+    world_desc desc = world_with(how, 1, 108, h);
     mpm_particles *set = world_open(&w, &desc);
     spacing[level] = h / ((1 << (level + 1)) + 0.37);
     const int64_t n = (int64_t)(length / spacing[level]);

@@ -50,8 +50,7 @@ START_TEST(steps_conserve) {
   const int32_t dim = _i / METHODS + 1;
   const double h = 0.05, gravity[3] = {1.0, -9.81, 0.5};
   world w;
-  world_desc desc = world_default(dim, 20, h);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, 20, h);
   memcpy(desc.stepper.gravity, gravity, sizeof gravity);
   mpm_particles *set = world_open(&w, &desc);
   dice d = {(uint64_t)_i + 10};
@@ -105,8 +104,7 @@ START_TEST(parts_are_the_step) {
   world w[2];
   double *x[2], *v[2], *F[2];
   for (int32_t i = 0; i < 2; ++i) {
-    world_desc desc = world_default(2, 20, 0.05);
-    world_use(&desc, how);
+    world_desc desc = world_with(how, 2, 20, 0.05);
     mpm_particles *set = world_open(&w[i], &desc);
     dice d = {5};
     add_cloud(&w[i], set, &d, CLOUD, 0.05, 0.3, 0.7, 1.0);
@@ -133,12 +131,11 @@ END_TEST
 
 /* An elastic square of side 0.4 turns once; returns (L1 - L0) / L0. */
 static double turn(const method *how, int64_t cells, int32_t steps) {
-  const double omega = 2.0 * PI, lower[] = {0.3, 0.3}, upper[] = {0.7, 0.7};
+  const double omega = 2.0 * PI;
   world w;
-  world_desc desc = world_default(2, cells, 1.0 / (double)cells);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, cells, 1.0 / (double)cells);
   mpm_particles *set = world_open(&w, &desc);
-  const int64_t n = world_fill(&w, set, lower, upper, 2);
+  const int64_t n = world_fill_cube(&w, set, 0.3, 0.7);
   double *x = fetch(&w, set, "position", 2), *v = malloc((size_t)n * 2 * sizeof *v);
   for (int64_t p = 0; p < n; ++p) {
     v[p] = -omega * (x[n + p] - 0.5);

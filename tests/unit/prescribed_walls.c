@@ -13,8 +13,7 @@ static mpm_status against(void *user, const mpm_particle_batch *b, double *add) 
 /* A cloud with prescribed particles, `from` cells along the periodic x axis. */
 static void open_shifted(world *w, const method *how, int64_t from) {
   static double middle = 0.8;
-  world_desc desc = world_default(2, 8, 0.125);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 8, 0.125);
   desc.grid.periodic[0] = 1;
   mpm_particles *set = world_open(w, &desc);
   dice d = {31};
@@ -65,8 +64,7 @@ START_TEST(half_on_a_slip_wall) {
     const double shift = k ? 0.0 : -0.8, lower[2] = {0.3, k ? 0.4 : 0.0}, upper[2] = {0.9, 1.2 + shift};
     static double middle[2];
     middle[k] = plane + shift;
-    world_desc desc = world_default(2, 16, 0.1);
-    world_use(&desc, how);
+    world_desc desc = world_with(how, 2, 16, 0.1);
     mpm_particles *set = world_open(&w[k], &desc);
     world_fill(&w[k], set, lower, upper, 2);
     if (!k) ck_ok(&w[k], mpm_stepper_set_wall(w[k].stepper, MPM_Y_MIN, MPM_WALL_SLIP, 0.0));

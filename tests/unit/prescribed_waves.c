@@ -14,8 +14,7 @@ static pushed push_bar(const method *how, int32_t cells) {
                bar[2] = {1.0 + 5.0 * h, 2.0 + 5.0 * h};
   const uint8_t yes = 1;
   world w;
-  world_desc desc = world_default(1, 4 * cells, h);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 1, 4 * cells, h);
   desc.law = (world_law){.model = "linear_elastic", .E = 1.0, .density = 1.0};
   desc.sets = 2;
   world_open(&w, &desc);

@@ -404,7 +404,6 @@ START_TEST(names_tell_methods_apart) {
 }
 END_TEST
 
-Suite *combinations_suite(void);
 Suite *combinations_suite(void) {
   Suite *suite = suite_create("combinations");
   full = getenv("MPM_FULL") != NULL;

@@ -367,7 +367,6 @@ START_TEST(nearest_names) {
 }
 END_TEST
 
-Suite *context_suite(void);
 Suite *context_suite(void) {
   Suite *suite = suite_create("context");
   TCase *creation = tcase_create("creation");

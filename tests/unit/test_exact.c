@@ -7,8 +7,7 @@ static void fly(const method *how, int32_t dim, int32_t periodic) {
   const int32_t steps = 1000;
   double lower[3], upper[3];
   world w;
-  world_desc desc = world_default(dim, periodic ? 8 : 24, h);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, periodic ? 8 : 24, h);
   /* with the linear basis light nodes make rounding grow by (c dt / h)^2 / share of mass a step: a soft law
    */
   if (how->basis == MPM_LINEAR) desc.law.E = 1e3;
@@ -69,8 +68,7 @@ START_TEST(free_fall) {
   double g[3] = {1.0, -9.81, 2.0};
   for (int32_t dim = 1; dim <= 3; ++dim) {
     world w;
-    world_desc desc = world_default(dim, 16, 0.5);
-    world_use(&desc, how);
+    world_desc desc = world_with(how, dim, 16, 0.5);
     if (way == BY_GRAVITY) memcpy(desc.stepper.gravity, g, sizeof g);
     mpm_particles *set = world_open(&w, &desc);
     const int64_t n = world_fill(&w, set, lower, upper, 2);
@@ -180,7 +178,6 @@ START_TEST(single_particle_oscillates) {
 }
 END_TEST
 
-Suite *exact_suite(void);
 Suite *exact_suite(void) {
   Suite *suite = suite_create("exact");
   TCase *motion = tcase_create("motion");

@@ -183,7 +183,6 @@ START_TEST(contexts_side_by_side) {
 }
 END_TEST
 
-Suite *executor_suite(void);
 Suite *executor_suite(void) {
   Suite *suite = suite_create("executor");
   TCase *threads = tcase_create("threads");

@@ -458,7 +458,6 @@ START_TEST(refused_basis) {
 }
 END_TEST
 
-Suite *fluid_suite(void);
 Suite *fluid_suite(void) {
   Suite *suite = suite_create("fluid");
   TCase *tc = tcase_create("fluid");

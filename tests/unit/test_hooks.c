@@ -7,8 +7,7 @@ static const double g[3] = {1.0, -10.0, 3.0};
 
 /* A free cloud in 2-D or 3-D, x periodic; `walled` puts walls of all kinds around. */
 static void open_cloud(world *w, const method *how, int32_t dim, int32_t walled) {
-  world_desc desc = world_default(dim, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, 8, 0.1);
   desc.grid.periodic[0] = 1;
   world_open(w, &desc);
   dice d = {11};
@@ -223,8 +222,7 @@ static void staged_kick(world *w, double dt) {
 START_TEST(as_in_a_step_in_parts) {
   const method *how = &methods[_i % METHODS];
   world a, b;
-  world_desc desc = world_default(2, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 8, 0.1);
   world *both[2] = {&a, &b};
   for (int32_t k = 0; k < 2; ++k) {
     dice d = {5};

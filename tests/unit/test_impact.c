@@ -77,8 +77,7 @@ START_TEST(disk_bounces) {
   const double h = 1.0 / 40.0, friction = _i % 2 ? 0.5 : 0.0, v[2] = {0.05, -0.1}, centre[2] = {0.4, 0.26};
   const int32_t per_cell[2] = {2, 2};
   world w;
-  world_desc desc = world_default(2, 40, h);
-  world_use(&desc, &how);
+  world_desc desc = world_with(&how, 2, 40, h);
   desc.law.E = 1000.0;
   mpm_particles *set = world_open(&w, &desc);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, friction));
@@ -136,8 +135,7 @@ START_TEST(block_on_incline) {
   slow_gravity weight = {{g * sin(PI / 3.0), -g * cos(PI / 3.0)}, 0.15};
   const double wanted = fmax(0.0, weight.g[0] + friction * weight.g[1]);
   world w;
-  world_desc desc = world_default(2, 60, h);
-  world_use(&desc, &how);
+  world_desc desc = world_with(&how, 2, 60, h);
   desc.law.E = 1e6;
   mpm_particles *set = world_open(&w, &desc);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, friction));
@@ -167,7 +165,6 @@ START_TEST(block_on_incline) {
 }
 END_TEST
 
-Suite *impact_suite(void);
 Suite *impact_suite(void) {
   Suite *suite = suite_create("impact");
   TCase *tc = tcase_create("impact");

@@ -39,8 +39,7 @@ START_TEST(uniaxial_strain) {
   const double lower[3] = {0.2, 0.2, 0.2}, upper[3] = {0.5, 0.4, 0.4}, dt = 1e-4;
   lead l = {0.0};
   world w;
-  world_desc desc = world_default(dim, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, 8, 0.1);
   desc.law.model = "j2";
   desc.law.hardening = hardens ? 2e4 : 0.0;
   mpm_particles *set = world_open(&w, &desc);
@@ -86,7 +85,7 @@ END_TEST
 /* Work on a body without inertia to speak of: what is not stored goes into plastic flow, q times the plastic
  * strain. */
 START_TEST(plastic_work_is_dissipated) {
-  const double lower[2] = {0.2, 0.2}, upper[2] = {0.6, 0.6}, dt = 1e-3;
+  const double dt = 1e-3;
   lead l = {0.005};
   world w;
   world_desc desc = world_default(2, 10, 0.1);
@@ -94,7 +93,7 @@ START_TEST(plastic_work_is_dissipated) {
       .model = "j2", .E = 1e5, .nu = 0.3, .density = 1e-6, .yield_stress = 100.0, .hardening = 1e4};
   desc.stepper.flip = 0.0;
   mpm_particles *set = world_open(&w, &desc);
-  world_fill(&w, set, lower, upper, 2);
+  world_fill_cube(&w, set, 0.2, 0.6);
   ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, lead_nodes, &l));
   path exact = {0.0, 0.0, 0.0};
   double work = 0.0, lost = 0.0, flow = 0.0;
@@ -114,7 +113,6 @@ START_TEST(plastic_work_is_dissipated) {
 }
 END_TEST
 
-Suite *plasticity_suite(void);
 Suite *plasticity_suite(void) {
   Suite *suite = suite_create("plasticity");
   TCase *tc = tcase_create("plasticity");

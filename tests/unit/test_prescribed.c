@@ -3,8 +3,7 @@
 #include "prescribed.h"
 
 void open_clouds(world *w, const method *how, int32_t dim, int32_t walled, int32_t all) {
-  world_desc desc = world_default(dim, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, 8, 0.1);
   desc.grid.periodic[0] = 1;
   memcpy(desc.stepper.gravity, (double[]){1.0, -5.0, 2.0}, 3 * sizeof(double));
   desc.sets = 2;
@@ -132,8 +131,7 @@ START_TEST(two_sets_on_one_node) {
   int32_t number[2] = {0, 1};
   const uint8_t yes = 1;
   world w;
-  world_desc desc = world_default(1, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 1, 8, 0.1);
   desc.sets = 2;
   world_open(&w, &desc);
   speeds[0] = 0.3, speeds[1] = -0.5;
@@ -214,8 +212,7 @@ START_TEST(precedence) {
   const double lower[2] = {0.1, 0.0}, upper[2] = {1.1, 0.4}, down[2] = {0.0, -1.0};
   const double pressed[9] = {1.0, 0.0, 0.0, 0.0, 0.98, 0.0, 0.0, 0.0, 1.0};
   world w;
-  world_desc desc = world_default(2, 12, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 12, 0.1);
   desc.stepper.boundary_zero_acceleration = _i / METHODS / 3;
   mpm_particles *set = world_open(&w, &desc);
   world_fill(&w, set, lower, upper, 2);
@@ -284,8 +281,7 @@ START_TEST(driven_along_a_wall) {
   const double lower[2] = {0.1, 0.0}, upper[2] = {0.7, 0.4}, down[2] = {0.0, -1.0};
   const uint8_t along[2] = {1, 0};
   world w;
-  world_desc desc = world_default(2, 12, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 12, 0.1);
   mpm_particles *set = world_open(&w, &desc);
   world_fill(&w, set, lower, upper, 2);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, down));
@@ -317,15 +313,14 @@ END_TEST
  * strain; and when it is made faster, the work is that of its momentum. */
 START_TEST(nothing_to_push) {
   const method *how = &methods[_i];
-  const double lower[3] = {0.2, 0.2, 0.2}, upper[3] = {0.6, 0.6, 0.6}, v0[3] = {0.4, -0.3, 0.2};
+  const double v0[3] = {0.4, -0.3, 0.2};
   const uint8_t all[3] = {1, 1, 1};
   world w;
-  world_desc desc = world_default(3, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 3, 8, 0.1);
   memcpy(desc.stepper.gravity, (double[]){1.0, -5.0, 2.0}, 3 * sizeof(double));
   mpm_particles *set = world_open(&w, &desc);
   double force[3];
-  world_fill(&w, set, lower, upper, 2);
+  world_fill_cube(&w, set, 0.2, 0.6);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 3, v0));
   ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 3, all));
   ck_refused(&w, mpm_stepper_particles_reaction(w.stepper, set, force), MPM_E_STATE, "no step");
@@ -359,8 +354,7 @@ START_TEST(work_of_moving_itself) {
   const double lower = 0.2, upper = 0.6, v0 = 0.4;
   const uint8_t yes = 1;
   world w;
-  world_desc desc = world_default(1, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 1, 8, 0.1);
   desc.stepper.gravity[0] = -7.0;
   desc.stepper.boundary_zero_acceleration = _i / METHODS;
   mpm_particles *set = world_open(&w, &desc);

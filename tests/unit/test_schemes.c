@@ -125,7 +125,6 @@ START_TEST(a_bar_through_many_steps) {
 }
 END_TEST
 
-Suite *schemes_suite(void);
 Suite *schemes_suite(void) {
   Suite *suite = suite_create("schemes");
   TCase *tc = tcase_create("reference");

@@ -13,8 +13,7 @@ START_TEST(periodic_grid_has_no_place) {
     double *v[2], *F[2];
     for (int32_t moved = 0; moved < 2; ++moved) {
       world w;
-      world_desc desc = world_default(dim, 8, h);
-      world_use(&desc, how);
+      world_desc desc = world_with(how, dim, 8, h);
       desc.stepper.locking_remedy = dim > 1 ? _i % 2 : MPM_LOCKING_NONE;
       desc.law.E = 1e3;
       for (int32_t k = 0; k < dim; ++k) desc.grid.periodic[k] = 1;
@@ -50,14 +49,13 @@ START_TEST(wall_carries_the_weight) {
                                   {METHOD(LINEAR, MUSL, FLIP, 0.5, "linear blend MUSL")}};
   const method *how = &rests[_i % 5];
   const int32_t kind = wall_kinds[_i / 5];
-  const double lower[2] = {0.0, 0.0}, upper[2] = {0.4, 0.4}, dt = 1e-3;
+  const double dt = 1e-3;
   world w;
-  world_desc desc = world_default(2, 10, 0.05);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 10, 0.05);
   desc.stepper.gravity[0] = -2.0;
   desc.stepper.gravity[1] = -10.0;
   mpm_particles *set = world_open(&w, &desc);
-  world_fill(&w, set, lower, upper, 2);
+  world_fill_cube(&w, set, 0.0, 0.4);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, kind, 0.0));
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, kind, 0.0));
   const double weight[2] = {-2.0 * desc.law.density * 0.16, -10.0 * desc.law.density * 0.16};
@@ -105,8 +103,7 @@ START_TEST(prescribed_nodes_do_work) {
   const double h = 0.1, lower[2] = {0.0, 0.2}, upper[2] = {1.0, 0.5}, dt = 1e-4;
   piston move = {0.85, -0.2};
   world w;
-  world_desc desc = world_default(2, 14, h);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 14, h);
   mpm_particles *set = world_open(&w, &desc);
   world_fill(&w, set, lower, upper, 2);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
@@ -138,7 +135,6 @@ START_TEST(prescribed_nodes_do_work) {
 }
 END_TEST
 
-Suite *walls_suite(void);
 Suite *walls_suite(void) {
   Suite *suite = suite_create("walls");
   TCase *tc = tcase_create("walls");

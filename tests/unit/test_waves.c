@@ -8,8 +8,7 @@ static const method *const bars[4] = {&methods[10], &methods[11], &methods[0], &
 static mpm_particles *open_bar(world *w, const method *how, double length, int32_t cells, int32_t per_cell,
                                double E, const char *model) {
   const double h = length / cells, lower = 0.0;
-  world_desc desc = world_default(1, cells + 4, h);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 1, cells + 4, h);
   desc.law = (world_law){.model = model, .E = E, .density = 1.0};
   mpm_particles *set = world_open(w, &desc);
   ck_assert_int_eq(world_fill(w, set, &lower, &length, per_cell), cells * per_cell);
@@ -187,8 +186,7 @@ START_TEST(rod_between_rollers) {
                upper[3] = {1.0, 2.0 * h, 2.0 * h};
   const double c = sqrt((1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)));
   world w;
-  world_desc desc = world_default(3, 2, h);
-  world_use(&desc, bars[2 + _i]);
+  world_desc desc = world_with(bars[2 + _i], 3, 2, h);
   desc.grid.cells[0] = 104;
   desc.law = (world_law){.model = "neo_hookean", .E = 1.0, .nu = nu, .density = 1.0};
   mpm_particles *set = world_open(&w, &desc);
@@ -248,7 +246,6 @@ START_TEST(bar_hits_wall) {
 }
 END_TEST
 
-Suite *waves_suite(void);
 Suite *waves_suite(void) {
   Suite *suite = suite_create("waves");
   TCase *vibration_case = tcase_create("vibration");

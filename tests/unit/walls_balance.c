@@ -65,8 +65,7 @@ static void check_step(books *b, const wall_setup *walls, double friction, const
 static void check_balance(const method *how, const wall_setup *walls, int32_t dim, int64_t cells) {
   const double gravity[3] = {3.0, -10.0, 1.0}, friction = 0.3;
   books b = {.dt = 2e-5};
-  world_desc desc = world_default(dim, cells, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, cells, 0.1);
   wall_describe(walls, &desc.grid);
   memcpy(desc.stepper.gravity, gravity, sizeof gravity);
   snprintf(b.name, sizeof b.name, "%s, %d-D, walls %d, %d cells", how->name, (int)dim,

@@ -75,8 +75,7 @@ static int64_t check_planes(const char *name, const mpm_grid_desc *grid, const w
 static void check_nodes(const method *how, const wall_setup *walls, int32_t dim, int64_t cells) {
   char name[96];
   world w;
-  world_desc desc = world_default(dim, cells, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, cells, 0.1);
   wall_describe(walls, &desc.grid);
   snprintf(name, sizeof name, "%s, %d-D, walls %d, %d cells", how->name, (int)dim, (int)(walls - wall_setups),
            (int)cells);

@@ -34,8 +34,7 @@ static fields run(const method *how, int32_t kind, int32_t dim, int32_t whole, i
   const double lower[3] = {whole ? plane - 0.4 : plane, along, along},
                upper[3] = {plane + 0.4, along + 0.4, along + 0.4};
   world w;
-  world_desc desc = world_default(dim, 16 * fine, 0.1 / fine);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, 16 * fine, 0.1 / fine);
   if (!whole) {
     desc.grid.origin[0] = plane;
     desc.grid.cells[0] = 8 * fine;

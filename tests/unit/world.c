@@ -150,6 +150,12 @@ world_desc world_default(int32_t dim, int64_t cells, double h) {
       .sets = 1};
 }
 
+world_desc world_with(const method *how, int32_t dim, int64_t cells, double h) {
+  world_desc d = world_default(dim, cells, h);
+  world_use(&d, how);
+  return d;
+}
+
 void world_use(world_desc *desc, const method *how) {
   method_use(how, &desc->grid, &desc->stepper);
 }

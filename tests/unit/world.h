@@ -155,6 +155,7 @@ typedef struct world_desc {
 /* The grid is a cube of `cells` cells of edge h at the origin; the law of its one set is neo-Hookean with E =
  * 1e5, nu = 0.3 and density = 1e3. */
 world_desc world_default(int32_t dim, int64_t cells, double h);
+world_desc world_with(const method *how, int32_t dim, int64_t cells, double h); /* the same with a method */
 void world_use(world_desc *desc, const method *how);
 
 /* ---- the world ---- */
