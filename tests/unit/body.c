@@ -52,7 +52,7 @@ static mpm_status hook(void *user, const mpm_node_batch *b, double *velocity, do
 }
 
 /* ---- the body ---- */
-/* First cell and number of cells on each axis. */
+/* Gives the first cell and the number of cells on each axis. */
 static void extent(const body_desc *o, int64_t *first, int64_t *count) {
   static const int64_t cells[2][3][3][2] = {
       {{{0, 140}}, {{10, 26}, {0, 18}}, {{4, 5}, {0, 8}, {0, 7}}},
@@ -106,7 +106,7 @@ static mpm_status add_particles(world *w, int32_t m) {
   double *position = malloc((size_t)(10 * n) * sizeof *position), *velocity = position + 3 * n;
   double *size = position + 7 * n; /* of domains: a share of the cell */
   mpm_status status = MPM_OK;
-  /* in two portions when shuffled */
+  /* a shuffled body is added in two portions */
   for (int64_t begin = 0, part; begin < n && !status; begin += part) {
     part = o->shuffled && begin == 0 ? n / 3 : n - begin;
     for (int64_t i = 0; i < part; ++i) {
@@ -140,7 +140,7 @@ static mpm_status set_heat(world *w, int32_t m) {
   return status;
 }
 
-/* One particle in eight of set 1, on one axis or all. */
+/* One particle in eight of set 1 is prescribed, on one axis or on all. */
 static mpm_status set_prescribed(world *w) {
   if (!w->desc.body.led) return MPM_OK;
   const int64_t n = mpm_particles_count(w->set[1]);
@@ -195,7 +195,7 @@ world_desc world_of_body(const body_desc *of) {
     d.grid.spacing[k] = body_spacing[k];
     d.grid.cells[k] = first[k] + count[k];
   }
-  d.grid.cells[0] += 2; /* soon crossed */
+  d.grid.cells[0] += 2; /* the body soon crosses these and leaves */
   if (of->dim == 3) d.grid.cells[1] += 3;
   d.grid.periodic[0] = of->periodic;
   memcpy(d.stepper.gravity, (const double[]){2.0, -10.0, 1.0}, sizeof d.stepper.gravity);

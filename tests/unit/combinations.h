@@ -35,7 +35,7 @@ int32_t pair_refused(int32_t what, int32_t value, int32_t other, int32_t other_v
 combination *list_combinations(int32_t *count);
 
 const char *name_of(const combination *c, char *text, size_t size);
-/* On 8 cells of edge 0.25 along each axis. */
+/* Describes a world of 8 cells of edge 0.25 along each axis. */
 world_desc describe_combination(const combination *c);
 
 #endif

@@ -10,7 +10,7 @@ const basis_option *implicit_basis(int32_t i);
 
 /* MPM_NEWMARK on a grid of `cells` cells of edge h. */
 world_desc implicit_default(int32_t dim, int64_t cells, double h, const basis_option *basis);
-/* A block of 2 particles per cell along each axis; velocity may be NULL. Returns how many there are. */
+/* Fills a block with 2 particles per cell along each axis and returns how many; velocity may be NULL. */
 int64_t implicit_block(world *w, mpm_particles *set, double low, double high, const double *velocity);
 /* Residuals of the last step. */
 int32_t implicit_history(const world *w, double *residual);

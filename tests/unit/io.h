@@ -14,7 +14,7 @@ typedef struct io_setup {
 io_setup io_plain(int32_t dim);
 world_desc io_desc(const io_setup *setup);
 void io_open(world *w, const io_setup *setup);
-/* Has the same laws and settings on this grid, without fields, particles and walls. */
+/* Describes the same laws and settings on this grid, without fields, particles and walls. */
 world_desc io_bare_desc(const mpm_grid_desc *grid);
 
 TCase *io_state_case(void);

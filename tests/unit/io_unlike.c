@@ -1,7 +1,7 @@
 /* States of other setups: refused, with the first difference and both values. */
 #include "io.h"
 
-enum { SAME, FEWER, WIDER, RETYPED, MORE }; /* the fields of the host */
+enum { SAME, FEWER, WIDER, RETYPED, MORE }; /* how the fields of the host differ */
 static int32_t fields;
 
 static mpm_status add_unlike(world *w, int32_t m) {
@@ -64,7 +64,7 @@ static mpm_status some_stress(void *user, const mpm_material_batch *b) {
   return MPM_OK;
 }
 
-/* So many sets of the given law in the stepper, of two that there are. */
+/* Opens two sets of the given law, of which so many are in the stepper. */
 static void open_single(world *w, const char *model, double young, int32_t state_count, int32_t sets) {
   const io_setup setup = io_plain(1);
   world_desc d = io_desc(&setup);

@@ -10,7 +10,7 @@ world_desc sets_desc(const mpm_grid_desc *grid, const char *model) {
   world_desc d = world_default(grid->dim, 1, 1.0);
   d.grid = *grid;
   d.law = (world_law){.model = model, .E = 1e6, .nu = 0.3, .density = 2e3};
-  d.memory.filling = 0xa5; /* no id either */
+  d.memory.filling = 0xa5; /* this is neither a number that spreads nor the id of an inert slot */
   d.bare = 1;
   return d;
 }

@@ -11,7 +11,7 @@ world_desc sets_desc(const mpm_grid_desc *grid, const char *model);
 /* Opens a set with n particles of sets_add(). A world that is open is closed first. */
 void sets_open(world *w, int32_t dim, const char *model, int64_t n);
 void sets_open_on(world *w, const mpm_grid_desc *grid, const char *model, int64_t n);
-void sets_close(world *w); /* with a look at the slots */
+void sets_close(world *w); /* checks the slots first */
 /* Adds n particles on a line inside that grid, with the given ids or those that the set gives. */
 void sets_add(world *w, int64_t n, const int64_t *ids);
 /* Returns one value of a particle of the set. */

@@ -110,7 +110,7 @@ START_TEST(bad_values) {
 }
 END_TEST
 
-/* sum m v_c */
+/* Sums m v_c over all particles. */
 static double particle_momentum(const world *r, int32_t c) {
   double sum = 0.0;
   for (int32_t m = 0; m < 2; ++m) {

@@ -144,7 +144,7 @@ static int32_t list_method(int32_t dim, const basis_option *b, const scheme_opti
                            const transfer_option *t, int32_t periodic) {
   if (t->transfer == MPM_APIC_MLS && !fits_mls(b)) return 0;
   body_desc o = {.dim = dim, .large = 1, .periodic = periodic, .method = method_of(b, s, t)};
-  o.method.smoothing = 0.0; /* the default */
+  o.method.smoothing = 0.0; /* uGIMP has the default here */
   if (t->flip <= 0.0) o.method.flip = 0.05;
   list[listed++] = o;
   return 1;

@@ -13,7 +13,7 @@ static mpm_status add_fields(world *w, int32_t m) {
   return status ? status : mpm_particles_add_field(w->set[0], "temperature", MPM_F64, 1);
 }
 
-/* Bodies on a collision course, and values in the host's fields that tell the particles apart. */
+/* The bodies are on a collision course, and values in the host's fields tell the particles apart. */
 static mpm_status fill(world *w, int32_t m) {
   static const double lower[2][3] = {{-0.5, 0.0, 0.0}, {2.0, 0.0, 0.0}};
   static const double upper[2][3] = {{1.0, 1.0, 1.0}, {3.0, 1.5, 1.0}};
@@ -49,7 +49,7 @@ world_desc io_bare_desc(const mpm_grid_desc *grid) {
       (world_law){.model = "j2", .E = 2e6, .nu = 0.2, .density = 1e3, .yield_stress = 1e4, .hardening = 1e4};
   d.sets = 2;
   d.dt = 0.004;
-  d.memory.filling = 0xa5; /* no id either */
+  d.memory.filling = 0xa5; /* this is neither a number that spreads nor the id of an inert slot */
   return d;
 }
 

@@ -18,7 +18,7 @@ static void remove_one(world *r) {
   ck_ok(r, mpm_particles_remove(r->set[0], 1, &id));
 }
 
-/* Of the steppers, and what their last calls have given. */
+/* The steppers must agree byte by byte, and so must what their last calls have given. */
 static void same_infos(const world *a, const world *b) {
   same_info(a, b);
   ck_assert_mem_eq(&a->info, &b->info, sizeof a->info);

@@ -178,7 +178,7 @@ static void step(world *s) {
       ck_abort_msg("the nodes of the last step are not its own");
 }
 
-/* The state of the one, and what is counted with it. */
+/* Copies the state, and with it the count of removed particles. */
 static void copy_state(const world *from, world *to) {
   world_copy(from, to);
   to->info.removed = from->info.removed;

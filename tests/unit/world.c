@@ -108,7 +108,7 @@ mpm_advance_desc advance_desc(double t_end) {
   return d;
 }
 
-/* Of all that the law knows a model is given the parameters that it has. */
+/* A model is given those constants of the law that it has as parameters. */
 mpm_status law_create(mpm_context *context, const world_law *of, mpm_material **out) {
   if (!of->model) {
     mpm_material_desc d;
