@@ -10,7 +10,7 @@ static tensor strain(tensor f, real *log_j) {
   return combine(1, combine(1, h, 1, transpose(h)), 1, multiply(h, transpose(h)));
 }
 
-/* ---- neo_hookean: Steffen et al. 2008, eq. 46 --------------------------------------------------------- */
+/* ---- neo_hookean: Steffen et al. 2008, eq. 46 ---- */
 static const mpm_param coupled_params[] = {{"E", 2.5e6}, {"nu", 0.3}, {"density", 1.2e3}};
 static const real density = 1.2e3L, mu = 2.5e6L / (2 * (1 + (real)0.3));
 static const real lambda = 2.5e6L / (1 + (real)0.3) * (real)0.3 / (1 - 2 * (real)0.3);
@@ -26,7 +26,7 @@ static real coupled_energy(tensor f) {
   return lambda / 2 * log_j * log_j + mu * (trace(e) / 2 - log_j);
 }
 
-/* ---- neo_hookean_decoupled: Guilkey & Weiss 2003, eq. 20 ---------------------------------------------- */
+/* ---- neo_hookean_decoupled: Guilkey & Weiss 2003, eq. 20 ---- */
 static const mpm_param decoupled_params[] = {{"mu", 1e6}, {"kappa", 2.5e6}, {"density", 1.2e3}};
 static const real shear = 1e6L, kappa = 2.5e6L;
 
@@ -46,7 +46,7 @@ static real decoupled_energy(tensor f) {
   return kappa / 2 * log_j * log_j + shear / 2 * trace(b);
 }
 
-/* ---- newtonian_fluid at rest: p = K/gamma (J^-gamma - 1) ----------------------------------------------- */
+/* ---- newtonian_fluid at rest: p = K/gamma (J^-gamma - 1) ---- */
 static const mpm_param fluid_params[] = {{"bulk_modulus", 2.5e6}, {"density", 1.2e3}};
 static const mpm_param gas_params[] = {{"bulk_modulus", 2.5e6}, {"density", 1.2e3}, {"gamma", 1.0}};
 static const mpm_param spray_params[] = {{"bulk_modulus", 2.5e6}, {"density", 1.2e3}, {"tension", 0.0}};
@@ -79,7 +79,7 @@ static real spray_energy(tensor f) {
   return log_of_volume(f) < 0 ? fluid_energy(f) : 0;
 }
 
-/* ---- what the tests need of a law --------------------------------------------------------------------- */
+/* ---- what the tests need of a law ---- */
 typedef struct hyperelastic {
   const char *model;
   const mpm_param *params;
@@ -91,8 +91,8 @@ typedef struct hyperelastic {
   real (*energy)(tensor f);
 } hyperelastic;
 
-enum { LAWS = 5 };
-static const hyperelastic laws[LAWS] = {
+enum { MODELS = 5 };
+static const hyperelastic laws[MODELS] = {
     {"neo_hookean", coupled_params, 3, lambda + 2 * mu, 0, 0, coupled_stress, coupled_energy},
     {"neo_hookean_decoupled", decoupled_params, 3, kappa + 4 * shear / 3, 0, 0, decoupled_stress,
      decoupled_energy},
@@ -328,12 +328,12 @@ END_TEST
 TCase *hyperelastic_case(void) {
   TCase *tc = tcase_create("hyperelastic");
   tcase_set_timeout(tc, 60);
-  tcase_add_loop_test(tc, formula, 0, LAWS * LAW_LOOPS);
-  tcase_add_loop_test(tc, at_rest, 0, LAWS * LAW_LOOPS);
-  tcase_add_loop_test(tc, energy_is_the_potential, 0, LAWS * LAW_LOOPS);
-  tcase_add_loop_test(tc, objectivity, 0, LAWS * LAW_LOOPS);
-  tcase_add_loop_test(tc, wave_speed, 0, LAWS * LAW_LOOPS);
+  tcase_add_loop_test(tc, formula, 0, MODELS * LAW_LOOPS);
+  tcase_add_loop_test(tc, at_rest, 0, MODELS * LAW_LOOPS);
+  tcase_add_loop_test(tc, energy_is_the_potential, 0, MODELS * LAW_LOOPS);
+  tcase_add_loop_test(tc, objectivity, 0, MODELS * LAW_LOOPS);
+  tcase_add_loop_test(tc, wave_speed, 0, MODELS * LAW_LOOPS);
   tcase_add_loop_test(tc, wave_speed_has_a_floor, 0, LAW_LOOPS);
-  tcase_add_loop_test(tc, inverted_items_do_not_trap, 0, LAWS * LAW_LOOPS);
+  tcase_add_loop_test(tc, inverted_items_do_not_trap, 0, MODELS * LAW_LOOPS);
   return tc;
 }
