@@ -229,8 +229,8 @@ static inline void sample_check_untouched(const sample *s, int32_t dim) {
               s->energy[i] == sample_unset);
 }
 
-static inline void sample_evaluate(sample *s, const mpm_material *material, int32_t isa, int32_t dim) {
-  ck_ok(material->context, mpmi_material_evaluate(material, isa, dim, &s->batch));
+static inline void sample_evaluate(sample *s, const mpm_material *material, int32_t dim) {
+  ck_ok(material->context, mpmi_material_evaluate(material, dim, &s->batch));
 }
 
 /* Loop tests run over instruction sets and dimensions. */

@@ -220,7 +220,7 @@ START_TEST(rate_of_deformation) {
   host h;
   mpm_material *material = host_material(&h, rate_law, NULL, MPM_TANGENT_MINOR_SYMMETRIC);
   fill(dim);
-  sample_evaluate(&b.s, material, MPM_ISA_BASELINE, dim);
+  sample_evaluate(&b.s, material, dim);
   ck_ok(material->context, run(material, dim));
   ck_assert_int_eq(b.symmetric, 0);
   for (int p = 0; p < ITEMS; ++p) {

@@ -216,7 +216,7 @@ static uint32_t run_kernel(deforming *d, const mpmi_deformation *kernels, int32_
 START_TEST(kernel) {
   const int32_t dim = 1 + _i % 3, isa = MPM_ISA_BASELINE + _i / 3;
   if (!has_isa(isa)) return;
-  const mpmi_kernels *kernels = mpmi_kernels_of(isa);
+  const mpmi_deformation *kernels = mpmi_deformation_of(isa);
   static deforming a, b;
   const double turned[9] = {-1.1, 0.0, 0.0, 0.0, -1.2, 0.0, 0.0, 0.0, 0.9};
   dice first = {5}, second = {5};

@@ -76,7 +76,7 @@ START_TEST(adds_in_every_dimension) {
     ck_ok(&w, mpm_particles_add(w.set[0], 2, x, v, volume, NULL, NULL, &first));
     ck_assert_int_eq(first, 0);
     ck_assert_uint_eq(w.set[0]->dirty,
-                      MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SURVEY | MPMI_DIRTY_ACCELERATION);
+                      MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION);
     ck_assert_double_eq(w.set[0]->mass_max, 16e3);
     for (int64_t i = 0; i < 2; ++i) {
       for (int32_t k = 0; k < dim; ++k) {
@@ -234,7 +234,7 @@ START_TEST(removes) {
   w.set[0]->dirty = 0;
   ck_ok(&w, mpm_particles_remove(w.set[0], 3, (int64_t[]){39, 0, 17}));
   ck_assert_int_eq(mpm_particles_count(w.set[0]), 37);
-  ck_assert_uint_eq(w.set[0]->dirty, MPMI_DIRTY_SURVEY);
+  ck_assert_uint_eq(w.set[0]->dirty, MPMI_DIRTY_SUMS);
   sets_check_slots(&w);
   double mass;
   ck_refused(&w, mpm_particles_get(w.set[0], "mass", MPM_F64, 1, 1, (int64_t[]){17}, &mass), MPM_E_NOT_FOUND,

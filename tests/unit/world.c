@@ -265,7 +265,7 @@ double world_stable_dt(world *w) {
 }
 
 int64_t world_blocks(const world *w) {
-  return w->stepper->cut.count;
+  return w->stepper->layout.worklist[0].count;
 }
 
 void world_walls(world *w, int32_t kind, double friction) {
