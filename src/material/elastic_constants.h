@@ -4,7 +4,7 @@
 
 #include "material/law_file.h"
 
-/* The first parameters of such a law, in this order. */
+/* A law that uses mpmi_elastic_of() has these parameters first, in this order. */
 #define PARAMS_ELASTIC                                                                                       \
   {"E", "stress", "Young's modulus", MUST_BE_GIVEN, POSITIVE},                                               \
       {"nu",                                                                                                 \
@@ -35,7 +35,7 @@ static inline mpmi_elastic mpmi_elastic_of(const double *value) {
   return c;
 }
 
-/* prepare of a law that needs nothing else. */
+/* For a law whose constants are these alone. */
 static inline void mpmi_elastic_prepare(const double *value, void *constants) {
   *(mpmi_elastic *)constants = mpmi_elastic_of(value);
 }

@@ -26,14 +26,14 @@ typedef void (*mpmi_tangent_fn)(const void *constants, int32_t dim, const mpm_ma
 
 typedef struct mpmi_law {
   const char *name;
-  const mpmi_law_param *param; /* one is "density" */
+  const mpmi_law_param *param; /* every law has a "density" */
   int32_t param_count;
   int32_t state_count;
   const double *state_initial; /* [state_count], or NULL: zeros */
   int32_t stress_from_F; /* 1: hyperelastic, fluid, rigid; 0: hypoelastic, the host may set the stress */
   int32_t kinematics;    /* MPMI_F_... */
-  /* What the kernels need of the parameters, a struct of doubles: its size, and how it is made. A law may do
-   * without: 0 and NULL. All of it must be finite. */
+  /* The kernels work with constants that `prepare` makes from the values of the parameters: a struct of
+   * doubles, all of which must be finite. A law without constants has 0 and NULL here. */
   size_t constants_size;
   void (*prepare)(const double *value, void *constants);
   mpmi_law_fn stress;

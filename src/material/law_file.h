@@ -12,8 +12,8 @@
 #include "simd/chunk.h"
 #include "simd/rounding.h"
 
-/* The last entries of a parameter. Open ranges are written with their outermost members, so that low and high
- * themselves are accepted. */
+/* Entries of a parameter: its range, its default. Open ranges are written with their outermost members, so
+ * that low and high themselves are accepted. */
 #define POSITIVE      DBL_MIN, DBL_MAX, "must be finite and > 0", 0
 #define NOT_NEGATIVE  0.0, DBL_MAX, "must be finite and >= 0", 0
 #define AT_LEAST_ONE  1.0, DBL_MAX, "must be finite and >= 1", 0
@@ -22,7 +22,7 @@
 #define PARAM_DENSITY                                                                                        \
   { "density", "mass/length^3", "mass per initial volume", MUST_BE_GIVEN, POSITIVE }
 
-/* param and param_count of an array of parameters. */
+/* Sets param and param_count to an array of parameters. */
 #define MPMI_PARAMS(array) .param = (array), .param_count = (int32_t)(sizeof(array) / sizeof *(array))
 
 /* Particles of a batch. */
@@ -53,7 +53,8 @@ MPMI_INLINE int64_t mpmi_batch_items(const mpm_material_batch *batch) {
       tangent_of(1, c, batch, rows);                                                                         \
   }
 
-/* Symmetry of the tangent: where stress is a function of F alone; where it depends on the step. */
+/* For is_symmetric: the tangent is symmetric where the stress is a function of F alone, and is not where the
+ * stress depends on the step. */
 static inline int32_t mpmi_symmetric(const void *constants) {
   (void)constants;
   return 1;

@@ -11,7 +11,7 @@ static const mpmi_law_param params[] = {
 
 typedef struct j2_constants {
   mpmi_elastic elastic;
-  double yield_initial, hardening; /* of the yield stress: at first, and over the equivalent plastic strain */
+  double yield_initial, hardening; /* yield stress = yield_initial + hardening * plastic strain */
   double return_inverse;           /* 1 / (3 mu + hardening) */
 } j2_constants;
 

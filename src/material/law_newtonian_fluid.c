@@ -19,7 +19,7 @@ typedef struct fluid_constants {
   double bulk, bulk_by_gamma;
   double gamma_minus_1; /* never 0 */
   double viscosity, density_inverse;
-  double largest_J_minus_1; /* from there on there is no pressure: 0 without tension */
+  double largest_J_minus_1; /* above it there is no pressure: 0 without tension */
 } fluid_constants;
 
 static void prepare(const double *value, void *constants) {
@@ -58,7 +58,8 @@ MPMI_INLINE void compression(int dim, const fluid_constants *c, const mpm_materi
   }
 }
 
-/* Of the step; or, asked for the state as it is, that which the old stress has. */
+/* Adds the viscous stress: of the step; or, where the law is asked for the state as it is (dt = 0), the
+ * deviator of the old stress, which is the viscous stress of the last step. */
 MPMI_INLINE void add_shear(int dim, const fluid_constants *c, const mpm_material_batch *batch) {
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double dt = batch->dt, factor = dt > 0.0 ? 2.0 * c->viscosity / dt : 1.0;
@@ -85,8 +86,8 @@ MPMI_INLINE void newtonian_fluid(int dim, const fluid_constants *c, const mpm_ma
   if (c->viscosity > 0.0) add_shear(dim, c, batch);
 }
 
-/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). At the J from which on there is no
- * pressure it is that of compression: a fluid at rest there is stiff. */
+/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). Where the
+ * pressure is about to be cut off, the tangent is that of compression: a fluid at rest is stiff. */
 MPMI_INLINE void compression_tangent(int dim, const fluid_constants *c, const mpm_material_batch *batch,
                                      double *tangent) {
   const double bulk_by_gamma = c->bulk_by_gamma, exponent = c->gamma_minus_1;
@@ -124,7 +125,7 @@ MPMI_INLINE void add_shear_tangent(int dim, const fluid_constants *c, const mpm_
   memset(o.bend, 0, sizeof o.bend);
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     shear_chunk(dim, c, batch, i, &o);
-    memset(o.turned, 0, sizeof o.turned); /* the old stress has no part in it */
+    memset(o.turned, 0, sizeof o.turned); /* the viscous stress does not depend on the old stress */
     KERNEL(objective_rows)(dim, 1, &o, tangent + i, batch->ld);
   }
 }

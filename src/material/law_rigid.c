@@ -1,4 +1,4 @@
-/* No stress, no energy, no waves: where such particles go, others say. */
+/* The particles have no stress, no energy and no waves: the host prescribes where they go. */
 #include "material/law_file.h"
 #include "material/tangent_rows.h"
 

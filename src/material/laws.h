@@ -1,6 +1,5 @@
-/* The built-in laws. A new law is a file law_NAME.c, which defines the mpmi_law KERNEL(law_NAME), and a line
- * here.
- */
+/* The built-in laws. A new law is a file law_NAME.c, which defines
+ * const mpmi_law KERNEL(law_NAME), and a line here. */
 #ifndef MPMI_LAWS_H
 #define MPMI_LAWS_H
 

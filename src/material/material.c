@@ -75,7 +75,7 @@ static mpm_status prepare_constants(mpm_context *context, const mpmi_law *law, c
   return MPM_OK;
 }
 
-/* With room for further bytes after it. */
+/* Allocates a material with room for further bytes in its `memory`. */
 static mpm_material *make(mpm_context *context, size_t further) {
   const size_t size = sizeof(mpm_material) + further;
   mpm_material *material = mpmi_alloc(context, size);
@@ -83,7 +83,7 @@ static mpm_material *make(mpm_context *context, size_t further) {
   return material;
 }
 
-/* Values and constants of a built-in law. */
+/* Fills a material with the values and constants of a built-in law. */
 static mpm_status set_law(mpm_material *material, const mpmi_law *law, const mpm_param *params,
                           int32_t count) {
   double *value = material->memory, *constants = value + law->param_count;
@@ -163,8 +163,9 @@ mpm_status mpm_material_create_custom(mpm_context *context, const mpm_material_d
   if (!status) status = check_desc(context, &custom);
   if (status) return status;
 
-  const int32_t kept = custom.state_initial ? custom.state_count : 0; /* of the initial state: */
-  const size_t bytes = mpmi_bytes(kept, sizeof(double)); /* the caller's array may be gone tomorrow */
+  /* The initial state is copied, because the caller's array may be gone tomorrow. */
+  const int32_t kept = custom.state_initial ? custom.state_count : 0;
+  const size_t bytes = mpmi_bytes(kept, sizeof(double));
   mpm_material *material = make(context, bytes);
   if (!material) return MPM_E_NOMEM;
   material->density = custom.density;

@@ -7,16 +7,16 @@
 
 struct mpm_material {
   uint32_t magic;
-  int32_t users; /* sets */
+  int32_t users; /* sets of particles that have this material */
   mpm_context *context;
-  const mpmi_law *law;   /* with the kernels of the context's instruction set; NULL: the host's */
-  const double *value;   /* of a built-in law's parameters */
-  const void *constants; /* that it has made of them */
+  const mpmi_law *law;   /* with the kernels of the context's instruction set; NULL: the law is the host's */
+  const double *value;   /* parameters of a built-in law */
+  const void *constants; /* what the law has made of them */
   double density;
   int32_t state_count;
   const double *state_initial; /* [state_count], or NULL: zeros */
   mpm_material_desc custom;    /* the host's callbacks */
-  size_t size;                 /* bytes, with what follows */
+  size_t size;                 /* of the whole allocation, `memory` included */
   double memory[];             /* values, then constants; or the host's initial state */
 };
 

@@ -73,7 +73,8 @@ MPMI_INLINE mpmi_sym mpmi_log_increment(int dim, mpmi_mat g, mpmi_sym *stress) {
   return v;
 }
 
-/* What the trial stress needs, read before the loop: the compiler must see that stores leave it alone. */
+/* What the trial stress needs. It is read before the loop, so that the compiler sees that no store changes
+ * it. */
 typedef struct mpmi_increments {
   const double *L, *stress;
   int64_t ld;

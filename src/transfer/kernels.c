@@ -30,7 +30,7 @@ PER_DIM(1)
 PER_DIM(2)
 PER_DIM(3)
 
-/* Those of mpmi_deformation_of(), for who has this table at hand. */
+/* The kernels of mpmi_deformation_of(), for callers that have this table at hand. */
 #define FORWARD(name, kind, dim)                                                                             \
   static void name##_##dim(const mpmi_deform *job, int64_t n) {                                              \
     KERNEL(deformation).deform[kind][dim](job, n);                                                           \
