@@ -140,9 +140,8 @@ static int32_t find_tangent(mpmi_balance *s, mpmi_newton_work *work, mpmi_batch 
   const mpm_particles *set = b->set;
   const int32_t dim = s->settings->grid->dim;
   const int64_t ld = b->law.ld, *id = mpmi_i64(set, MPMI_ID, 0) + b->begin;
-  const mpm_status status =
-      mpmi_material_tangent(set->material, s->settings->context->isa, dim, &b->law.batch,
-                            work->tangent_scratch, work->tangent, &work->symmetric);
+  const mpm_status status = mpmi_material_tangent(set->material, dim, &b->law.batch, work->tangent_scratch,
+                                                  work->tangent, &work->symmetric);
   if (status) {
     mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
                                                            "the tangent callback"});

@@ -34,8 +34,7 @@ int32_t mpmi_material_kinematics(const mpm_material *material);
  * mpmi_material_tangent_scratch(material, batch->ld) bytes, 64-byte aligned. *symmetric is set to 0 where c
  * has no major symmetry, else left alone. Callback statuses pass through. */
 size_t mpmi_material_tangent_scratch(const mpm_material *material, int64_t ld);
-mpm_status mpmi_material_tangent(const mpm_material *material, int32_t isa, int32_t dim,
-                                 const mpm_material_batch *batch, void *scratch, double *tangent,
-                                 int32_t *symmetric);
+mpm_status mpmi_material_tangent(const mpm_material *material, int32_t dim, const mpm_material_batch *batch,
+                                 void *scratch, double *tangent, int32_t *symmetric);
 
 #endif

@@ -136,10 +136,8 @@ static mpm_status difference_law(const mpm_material *material, int32_t dim, cons
 }
 
 /* ---- all materials ------------------------------------------------------------------------------------ */
-mpm_status mpmi_material_tangent(const mpm_material *material, int32_t isa, int32_t dim,
-                                 const mpm_material_batch *batch, void *scratch, double *tangent,
-                                 int32_t *symmetric) {
-  (void)isa; /* the law has the kernels of the material's context */
+mpm_status mpmi_material_tangent(const mpm_material *material, int32_t dim, const mpm_material_batch *batch,
+                                 void *scratch, double *tangent, int32_t *symmetric) {
   if (material->law) {
     material->law->tangent(material->constants, dim, batch, tangent);
     if (dim > 1 && !material->law->is_symmetric(material->constants)) *symmetric = 0;

@@ -83,12 +83,12 @@ static inline void tangent_fill(tangent_batch *b, uint64_t *state, int32_t dim) 
 }
 
 /* Law, then tangent, into a buffer whose rows and items of no concern stay as they are. */
-static inline void tangent_run(tangent_batch *b, const mpm_material *material, int32_t isa, int32_t dim) {
+static inline void tangent_run(tangent_batch *b, const mpm_material *material, int32_t dim) {
   sample_evaluate(&b->s, material, dim);
   for (int k = 0; k < 81 * LD; ++k) b->c[k] = sample_unset;
   b->symmetric = 1;
   ck_assert_uint_eq(mpmi_material_tangent_scratch(material, LD), 0);
-  ck_ok(material->context, mpmi_material_tangent(material, isa, dim, &b->s.batch, NULL, b->c, &b->symmetric));
+  ck_ok(material->context, mpmi_material_tangent(material, dim, &b->s.batch, NULL, b->c, &b->symmetric));
 }
 
 /* ---- the derivative by differences ---- */
