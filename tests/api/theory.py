@@ -1,9 +1,10 @@
 """Do the files and symbols that the documents name exist?  theory.py [ROOT]
 
-In docs/theory.md everything in backticks is looked at: a file must be there, and be named so that it is the only one;
-an identifier must be a function, macro, constant, type or member of src/ or include/, or a name of the interface (a
-string in src/). A symbol that stands in front of a file, "`symbol`, ..., `file`" or "`symbol` in `file`", must be of that
-file. In the other documents files and names that begin with mpm_ or mpmi_ are looked at.
+In docs/theory.md everything in backticks is looked at. A file must be there, and be the only one that its name can
+mean. An identifier must be a function, macro, constant, type or member of src/ or include/, or a name of the interface
+(a string in src/). A symbol in front of a file, "`symbol`, ..., `file`" or "`symbol` in `file`", must be declared there,
+and each internal function must stand so in one place at least. In the other documents files and names that begin with
+mpm_ or mpmi_ are looked at.
 """
 import collections
 import os
@@ -12,8 +13,6 @@ import sys
 
 ROOT = sys.argv[1] if len(sys.argv) > 1 else '.'
 STRICT = 'docs/theory.md'
-OTHERS = ['docs/cpp.md', 'docs/guide.md', 'docs/options.md', 'docs/performance.md', 'docs/reference.md',
-          'docs/verification.md', 'README.md', 'ABI.md']
 
 # What is no name of the sources though it looks like one.
 NO_CODE = {
@@ -30,6 +29,7 @@ PLANTED = [
     ('`MPM_WALL_SLIP`', '`MPM_WALL_SLIPS`', '`MPM_WALL_SLIPS` is nowhere'),
     ('`gravity`', '`gravitation`', '`gravitation` is nowhere'),
     ('`..._axis`', '`..._axes_of`', 'nothing ends as `..._axes_of`'),
+    ('`find_mass_cut`, `src/layout/sorted_layout.c`', '`find_mass_cut`', '`find_mass_cut` is nowhere with its file'),
 ]
 
 # ---- the sources -----------------------------------------------------------------------------------------
@@ -140,7 +140,7 @@ for folder, folders, here in os.walk(ROOT):
     files += [os.path.relpath(os.path.join(folder, name), ROOT) for name in here]
 files = set(files)
 places = files | {f[:i] for f in files for i in range(len(f)) if f[i] == '/'}
-symbols_in, every, interface = {}, set(), set()
+symbols_in, every, interface, public = {}, set(), set(), set()
 for path in files:
     if re.match(r'(src|include)/.*\.(c|h|hpp)$', path):
         text = read(path)
@@ -148,7 +148,9 @@ for path in files:
         every |= symbols_in[path]
         interface |= literals
         if path.startswith('include/'):
-            every |= set(re.findall(r'\w+', STRIP.sub(' ', text)))
+            public |= set(re.findall(r'\w+', STRIP.sub(' ', text)))
+functions = {name for name in every - public - interface if name.islower()}  # with types and members
+every |= public
 by_suffix = collections.defaultdict(set)
 for path in places:
     parts = path.split('/')
@@ -166,8 +168,11 @@ TOGETHER = re.compile(r'(,|\s|and|in|of|\([^()`]*\)|[()|])*')
 
 
 def find_file(token):
-    """The one file that is meant, and what is wrong with the name: one of them."""
+    """The one file that is meant, and what is wrong with the name: one of them. NAME stands for any name."""
     name = token.rstrip('/')
+    if 'NAME' in name:
+        pattern = re.compile(re.escape(name).replace('NAME', r'\w+') + '$')
+        return None, None if any(pattern.match(p) for p in by_suffix) else f'no file is like `{token}`'
     found = by_suffix.get(name, set())
     for path in (name, os.path.normpath(os.path.join('docs', name))):
         if path in found:
@@ -184,8 +189,12 @@ def find_file(token):
 def is_known(name, before):
     if name in every or name in interface or ISA.sub('', name) in every:
         return True
-    # "_END" is the end of another name that begins as the one before it
+    # "_END" is the end of another name that begins as the one before it, "MPM_WALL_..." the beginning of several
     return name.startswith('_') and any(before[:k] + name in every for k in range(1, len(before)))
+
+
+def is_beginning(name):
+    return any(symbol.startswith(name) and symbol != name for symbol in every)
 
 
 def check(document, text):
@@ -193,6 +202,7 @@ def check(document, text):
     strict = document == STRICT
     text = re.sub(r'^```.*?^```', lambda m: re.sub(r'[^\n]', ' ', m.group(0)), text, flags=re.S | re.M)
     count, bad, before, group, end = 0, [], '', [], 0
+    internal, placed = {}, set()  # functions of src/ and the line that names them first; symbols with their file
     for match in re.finditer(r'`([^`\n]+(?:\n[^`\n]+)?)`', text):
         token = ' '.join(match.group(1).split())
         line = text.count('\n', 0, match.start()) + 1
@@ -209,24 +219,29 @@ def check(document, text):
                 bad.append((line, wrong))
             bad += [(line, f'`{name}` is not in {path}') for name in group
                     if path in symbols_in and name not in symbols_in[path]]
+            placed.update(group)
             group = []
         elif token.startswith('...'):
             if not any(s.endswith(token[3:]) for s in every):
                 bad.append((line, f'nothing ends as `{token}`'))
         else:
             for name in IDENTIFIER.findall(token):
-                if not strict and not PUBLIC.match(name):
+                if not strict and not PUBLIC.match(name) or name + '...' in token and is_beginning(name):
                     continue
                 if not is_known(name, before):
                     bad.append((line, f'`{name}` is nowhere in src/ and include/'))
                 elif name == token and name in every:
                     group.append(name)
+                    if strict and name in functions:
+                        internal.setdefault(name, line)
                 before = before if name.startswith('_') else name
+    bad += [(line, f'`{name}` is nowhere with its file') for name, line in internal.items() if name not in placed]
     return count, bad
 
 
+documents = [STRICT] + sorted(f for f in files if re.match(r'(docs/\w+|README|ABI)\.md$', f) and f != STRICT)
 count, wrong = {}, 0
-for document in [STRICT] + OTHERS:
+for document in documents:
     count[document], bad = check(document, read(document))
     wrong += len(bad)
     for line, what in bad:
