@@ -158,8 +158,8 @@ for path in places:
         by_suffix['/'.join(parts[i:])].add(path)
 
 # ---- the documents ---------------------------------------------------------------------------------------
-FILE = re.compile(r'[\w.-]+(/[\w.-]+)*/?$')
-ENDING = re.compile(r'\.(c|h|hpp|md|sh|py|svg|csv|txt|mk|xml|map)$')
+FILE = re.compile(r'[\w.-]+(/[\w.-]+)*(/|\[ch\])?$')
+ENDING = re.compile(r'\.(c|h|\[ch\]|hpp|md|sh|py|svg|csv|txt|mk|xml|map)$')
 IDENTIFIER = re.compile(r'(?<![\w.\\])[A-Za-z_]\w+')
 PUBLIC = re.compile(r'(mpmi?|MPMI?)_\w')
 ISA = re.compile(r'_(baseline|avx2|avx512)$')
@@ -170,6 +170,9 @@ TOGETHER = re.compile(r'(,|\s|and|in|of|\([^()`]*\)|[()|])*')
 def find_file(token):
     """The one file that is meant, and what is wrong with the name: one of them. NAME stands for any name."""
     name = token.rstrip('/')
+    if name.endswith('[ch]'):
+        both = [find_file(name[:-4] + c) for c in 'ch']
+        return both[0] if both[0][1] else both[1]
     if 'NAME' in name:
         pattern = re.compile(re.escape(name).replace('NAME', r'\w+') + '$')
         return None, None if any(pattern.match(p) for p in by_suffix) else f'no file is like `{token}`'
