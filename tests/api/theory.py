@@ -49,17 +49,17 @@ def declared(head, names):
     for i, token in enumerate(head):
         after = head[i + 1] if i + 1 < len(head) else ';'
         if token in '([{':
-            # KERNEL(name)(...) and (*name)(...)
             depth += 1
         elif token in ')]}':
             depth -= 1
         elif NAME.match(token) and token not in WORDS:
+            # KERNEL(name)(...), (*name)(...) and MACRO(name, ...)
             kernel = i >= 2 and head[i - 2:i] == ['KERNEL', '(']
             pointer = i >= 2 and head[i - 1] == '*' and head[i - 2] == '('
-            called_macro = depth == 1 and token.islower() and i >= 2 and head[0].isupper() and head[1] == '('
+            of_macro = depth == 1 and token.islower() and i >= 2 and head[0].isupper() and head[1] == '('
             if kernel:
                 names.update((token, 'mpmi_' + token))
-            elif (depth == 0 and (after in '([=,;:' or after == '{')) or pointer or called_macro:
+            elif (depth == 0 and after in '([=,;:') or pointer or of_macro:
                 names.add(token)
 
 
