@@ -1,7 +1,8 @@
 /* Fluids and rigid particles in the time loop: what becomes of F, and flows that are known: Couette's
  * start-up and a column at rest. The laws themselves are tested in material_fluid.c. */
 #include "world.h"
-#include "transfer/kernels.h"
+#include "material/deformation.h"
+#include "simd/flags.h"
 
 static const mpm_param water[] = {
     {"density", 1e3}, {"bulk_modulus", 1e5}, {"gamma", 7.0}, {"viscosity", 20.0}};
