@@ -168,7 +168,7 @@ $(BENCH): $(wildcard bench/*.[ch] examples/*.h) $(SHARED_LIB) $(STATIC_LIB) Make
 	$(Q)$(MAKE) -s install PREFIX=$(abspath $(@D))/installed DESTDIR= > /dev/null
 	$(call SAY,LINK)
 	$(Q)$(CC) -std=c11 $(WARNINGS) $(CFLAGS) -O3 -ffp-contract=fast -fno-math-errno -Wno-psabi $(BENCH_HOSTS) $(wildcard bench/*.c) \
-	  -I$(@D)/installed/include -L$(@D)/installed/lib -Wl,-rpath,$(abspath $(@D))/installed/lib $(LDFLAGS) -lmpm \
+	  -I$(@D)/installed/include -L$(@D)/installed/lib -Wl,--enable-new-dtags,-rpath,$(abspath $(@D))/installed/lib $(LDFLAGS) -lmpm \
 	  $(BENCH_HOST_LIBS) -lm -o $@
 
 examples: $(EXAMPLES)
@@ -177,12 +177,20 @@ demo: $(BUILD)/examples/two_disks
 	@mkdir -p $(BUILD)/demo
 	cd $(BUILD)/demo && $(abspath $<)
 
-# All cases on one and two threads, with tables in $(BUILD)/bench; explicit steps in under a minute: bench-quick.
+# All cases on one and two threads, with tables in $(BUILD)/bench; explicit steps in under a minute: bench-quick. With
+# AGAINST=PREFIX both run the cases in small by turns with the library installed there and this one, ROUNDS times.
+AGAINST ?=
+ROUNDS ?= 5
+against = python3 bench/against.py $(1) --rounds $(ROUNDS) $(BENCH) $(AGAINST) $(BUILD)/bench/installed
 bench: $(BENCH)
+ifeq ($(AGAINST),)
 	$(BENCH) --csv $(BUILD)/bench/bench.csv
 	$(BENCH) --implicit --csv $(BUILD)/bench/implicit.csv
+else
+	@$(call against)
+endif
 bench-quick: $(BENCH)
-	$(BENCH) --quick
+	$(if $(AGAINST),@$(call against,--quick),$(BENCH) --quick)
 
 # ---- tests -----------------------------------------------------------------------------------------------
 # Every tests/unit/test_X.c defines Suite *X_suite(void), listed in tests/unit/suites.h. The program is linked to
