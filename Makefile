@@ -2,7 +2,7 @@
 #
 #   make                 both libraries in $(BUILD)
 #   make install         PREFIX=/usr/local, DESTDIR=
-#   make check           unit tests, interface tests, examples, verify-quick (needs Check and pkg-config: make check-setup)
+#   make check           unit tests, state hashes, interface tests, examples, verify-quick (needs Check and pkg-config: make check-setup)
 #   make verify          the method against exact solutions, with a table of gates: docs/verification.md
 #   make demo            one example, with nothing but a C compiler
 #
@@ -249,7 +249,7 @@ $(HASHES): $(wildcard tests/hashes/*.[ch]) $(STATIC_LIB) Makefile
 	$(Q)$(CC) -std=c11 -Iinclude $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) -ffp-contract=off $(filter %.c,$^) $(STATIC_LIB) \
 	  $(LDFLAGS) $(LIBS) -o $@
 check-hashes update-hashes: $(HASHES)
-	@$(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
+	@$(TEST_ENVIRONMENT) CFLAGS="$(CFLAGS)" JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
 
 # The binary interface against abi/libmpm-x86_64.abi.xml, by abidiff; update-abi takes what is there as the new baseline.
 check-abi update-abi: $(SHARED_LIB)
