@@ -175,7 +175,7 @@ $(BENCH): $(wildcard bench/*.[ch] examples/*.h) $(SHARED_LIB) $(STATIC_LIB) Make
 	$(Q)$(MAKE) -s install PREFIX=$(abspath $(@D))/installed DESTDIR= > /dev/null
 	$(call SAY,LINK)
 	$(Q)$(CC) -std=c11 $(WARNINGS) $(CFLAGS) -O3 -ffp-contract=fast -fno-math-errno -Wno-psabi $(BENCH_HOSTS) $(wildcard bench/*.c) \
-	  -I$(@D)/installed/include -L$(@D)/installed/lib -Wl,-rpath,$(abspath $(@D))/installed/lib $(LDFLAGS) -lmpm \
+	  -I$(@D)/installed/include -L$(@D)/installed/lib -Wl,--enable-new-dtags,-rpath,$(abspath $(@D))/installed/lib $(LDFLAGS) -lmpm \
 	  $(BENCH_HOST_LIBS) -lm -o $@
 
 #: examples              the programs of examples/, in $(BUILD)/examples
@@ -186,13 +186,21 @@ demo: $(BUILD)/examples/two_disks
 	@mkdir -p $(BUILD)/demo
 	$< $(BUILD)/demo
 
-#: bench                 speed of all cases on one and two threads; tables in $(BUILD)/bench
+#: bench                 speed of all cases on one and two threads; tables in $(BUILD)/bench. With AGAINST=PREFIX the
+#:                       cases in small, by turns with the library installed there and this one, ROUNDS (5) times
+AGAINST ?=
+ROUNDS ?= 5
+against = python3 bench/against.py $(1) --rounds $(ROUNDS) $(BENCH) $(AGAINST) $(BUILD)/bench/installed
 bench: $(BENCH)
+ifeq ($(AGAINST),)
 	$(BENCH) --csv $(BUILD)/bench/bench.csv
 	$(BENCH) --implicit --csv $(BUILD)/bench/implicit.csv
-#: bench-quick           explicit steps alone, in under a minute
+else
+	@$(call against)
+endif
+#: bench-quick           explicit steps alone, in under a minute; AGAINST as well
 bench-quick: $(BENCH)
-	$(BENCH) --quick
+	$(if $(AGAINST),@$(call against,--quick),$(BENCH) --quick)
 
 include tests/tests.mk
 

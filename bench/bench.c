@@ -2,15 +2,18 @@
  * every step, re-sorts included, with momentum, energy and the hash of the state looked at in the end.
  *
  *   bench [--quick] [--implicit] [--only TEXT] [--particles N,N] [--threads N,N] [--repeats N] [--spread X]
- *         [--csv FILE]
+ *         [--csv FILE] [--case NAME] [--list] [--bare]
  *
  * --implicit: implicit steps in their place, implicit.c.
- * --only: cases whose name contains the text. --spread: bounds of the grid over the size of the body. A line
- * gives the median and the best of the repeats, nanoseconds per particle and step by stage (weights are part
- * of P2G and G2P), those of a thread for each node of the stencil, the rate as a share of what one core,
- * times the threads, can do in multiply-adds and in memory traffic, and the peak of the whole process. */
+ * --only: cases whose name contains the text; --case: the one of this name. --list: their names, those with a
+ * solver of the host left out. --bare: for against.py, see choice.h. --spread: bounds of the grid over the
+ * size of the body. A line gives the median and the best of the repeats, nanoseconds per particle and step by
+ * stage (weights are part of P2G and G2P), those of a thread for each node of the stencil, the rate as a
+ * share of what one core, times the threads, can do in multiply-adds and in memory traffic, and the peak of
+ * the whole process. */
 #include "apart.h"
 #include "ceilings.h"
+#include "choice.h"
 #include "implicit.h"
 #include "scene.h"
 
@@ -56,7 +59,8 @@ static const bench_case cases[] = {
 enum { CASES = sizeof cases / sizeof *cases, MOST_NUMBERS = 16, MOST_REPEATS = 99, WARM_UP = 45 };
 
 typedef struct settings {
-  const char *only, *csv;
+  bench_choice choice;
+  const char *csv;
   int32_t repeats, implicit;
   struct numbers {
     int32_t count;
@@ -93,7 +97,7 @@ static double size_of(const double *v) {
 static mpm_status measure(const bench_scene *scene, const bench_case *of, const settings *how, result *r) {
   mpm_step_info first = {.struct_size = sizeof first}, info = {.struct_size = sizeof info};
   mpm_profile stage = {.struct_size = sizeof stage};
-  double rate[MOST_REPEATS];
+  double rate[MOST_REPEATS], (*seconds)(void) = how->choice.bare ? bench_processor_seconds : bench_seconds;
   mpm_status status = mpm_stepper_info(scene->stepper, &first);
   for (int32_t i = 0; i < WARM_UP && !status; ++i) status = one_step(scene, of, &info);
   if (status) return status;
@@ -101,10 +105,10 @@ static mpm_status measure(const bench_scene *scene, const bench_case *of, const 
   const int64_t sorted = info.resorts, allocated = scene->allocations;
   const double n = (double)mpm_particles_count(scene->body), steps = (double)of->steps;
   for (int32_t k = 0; k < how->repeats; ++k) {
-    const double from = bench_seconds();
+    const double from = seconds();
     for (int32_t i = 0; i < of->steps && !status; ++i) status = one_step(scene, of, &info);
     if (status) return status;
-    rate[k] = n * steps / (bench_seconds() - from);
+    rate[k] = n * steps / (seconds() - from);
   }
   mpm_stepper_profile(scene->stepper, 0, &stage);
   const double peak = bench_peak_bytes(); /* of the steps: the hash lists the ids for itself */
@@ -191,7 +195,10 @@ static int32_t run_threads(const bench_case *of, const settings *how, int64_t pa
     bench_apart(run, &job, &r, sizeof r);
     if (r.failed) fprintf(stderr, "%s: %s\n", of->name, r.error);
     if (r.failed) return 1;
-    print(csv, of, threads, how->spread, &r, peak, bandwidth);
+    if (how->choice.bare)
+      bench_print_bare(of->name, threads, 1e-6 * r.best, r.hash);
+    else
+      print(csv, of, threads, how->spread, &r, peak, bandwidth);
     bad |= !is_sound(of, &r);
     if (t > 0 && r.hash != hash) {
       fprintf(stderr, "%s: another hash on %d threads\n", of->name, (int)threads);
@@ -202,8 +209,7 @@ static int32_t run_threads(const bench_case *of, const settings *how, int64_t pa
   return bad;
 }
 
-static int32_t run_all(const settings *how, FILE *csv) {
-  const double peak = bench_fma_peak(), bandwidth = bench_update_bandwidth();
+static void print_heads(FILE *csv, double peak, double bandwidth) {
   printf("one core: %.1f GFLOP/s in multiply-adds, %.1f GB/s in an in-place update\n\n", peak, bandwidth);
   printf("%-26s %7s %2s %7s %7s  %4s %5s %4s %5s %5s %4s %4s %5s  %4s %4s  %4s  %3s %2s\n", "", "", "",
          "median", "best", "ns:", "", "", "", "", "", "call", "per", "", "", "B per", "", "");
@@ -219,11 +225,19 @@ static int32_t run_all(const settings *how, FILE *csv) {
         "callbacks_ns,ns_per_node,share_of_fma,share_of_bandwidth,bytes_per_particle,resorts,"
         "allocations,hash\n");
   }
+}
+
+static int32_t run_all(const settings *how, FILE *csv) {
+  const int32_t bare = how->choice.bare || how->choice.list;
+  const double peak = bare ? 1.0 : bench_fma_peak(), bandwidth = bare ? 1.0 : bench_update_bandwidth();
+  if (!bare) print_heads(csv, peak, bandwidth);
   int32_t bad = 0;
-  for (int32_t c = 0; c < CASES; ++c)
-    for (int32_t n = 0; n < how->particles.count; ++n)
-      if (!how->only || strstr(cases[c].name, how->only))
-        bad |= run_threads(&cases[c], how, how->particles.at[n], csv, peak, bandwidth);
+  for (int32_t c = 0; c < CASES; ++c) {
+    if (!bench_chosen(&how->choice, cases[c].name)) continue;
+    if (how->choice.list) puts(cases[c].name);
+    for (int32_t n = 0; n < how->particles.count && !how->choice.list; ++n)
+      bad |= run_threads(&cases[c], how, how->particles.at[n], csv, peak, bandwidth);
+  }
   return bad;
 }
 
@@ -245,14 +259,20 @@ static int32_t read_options(int argc, char **argv, settings *how) {
       how->repeats = 3;
       continue;
     }
-    if (!strcmp(argv[i], "--implicit")) {
-      how->implicit = 1;
+    int32_t *flag = !strcmp(argv[i], "--implicit") ? &how->implicit
+                    : !strcmp(argv[i], "--list")   ? &how->choice.list
+                    : !strcmp(argv[i], "--bare")   ? &how->choice.bare
+                                                   : NULL;
+    if (flag) {
+      *flag = 1;
       continue;
     }
     const char *value = i + 1 < argc ? argv[i + 1] : NULL;
     int32_t good = value != NULL;
     if (good && !strcmp(argv[i], "--only"))
-      how->only = value;
+      how->choice.only = value;
+    else if (good && !strcmp(argv[i], "--case"))
+      how->choice.exactly = value;
     else if (good && !strcmp(argv[i], "--csv"))
       how->csv = value;
     else if (good && !strcmp(argv[i], "--particles"))
@@ -282,8 +302,9 @@ int main(int argc, char **argv) {
     perror(how.csv);
     return 2;
   }
+  if (how.choice.bare && !bench_print_library()) return 2;
   const int32_t bad = how.implicit
-                          ? bench_implicit(how.only, how.repeats, how.threads.at, how.threads.count, csv)
+                          ? bench_implicit(&how.choice, how.repeats, how.threads.at, how.threads.count, csv)
                           : run_all(&how, csv);
   if (csv && fclose(csv)) return 2;
   return bad;

@@ -9,5 +9,7 @@ double bench_fma_peak(void);
 double bench_update_bandwidth(void);
 
 double bench_seconds(void);
+/* Of the processor, in all threads of the process: others that use the machine count less. */
+double bench_processor_seconds(void);
 
 #endif

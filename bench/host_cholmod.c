@@ -1,6 +1,7 @@
+#include "hosts.h"
+
 #ifdef BENCH_CHOLMOD
 #include "../examples/cholmod_direct.h"
-#include "hosts.h"
 
 static void *start(void) {
   cholmod_direct *own = malloc(sizeof *own);

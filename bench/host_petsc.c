@@ -1,6 +1,7 @@
+#include "hosts.h"
+
 #ifdef BENCH_PETSC
 #include "../examples/petsc_multigrid.h"
-#include "hosts.h"
 
 #include <stdlib.h>
 

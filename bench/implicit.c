@@ -51,13 +51,14 @@ typedef struct implicit_result {
   int32_t failed;
   char error[200];
   int64_t unknowns, iterations;
-  double total, assembly, set_up, solve, bytes; /* seconds; peak of the process for each unknown */
+  double total, best, assembly, set_up, solve, bytes; /* seconds; peak of the process for each unknown */
   double residual;
 } implicit_result;
 
 typedef struct implicit_job {
   const implicit_case *of;
   int32_t threads, repeats;
+  double (*seconds)(void);
 } implicit_job;
 
 static double noise(uint64_t *state) {
@@ -153,9 +154,9 @@ static mpm_status measure(const world *w, const implicit_job *job, implicit_resu
   const double begin = bench_seconds();
   int32_t k = 0;
   for (; k < job->repeats && (k == 0 || bench_seconds() - begin < 60.0); ++k) {
-    const double from = bench_seconds();
+    const double from = job->seconds();
     const mpm_status status = mpm_step(w->stepper, 1.0, &info);
-    total[k] = bench_seconds() - from;
+    total[k] = job->seconds() - from;
     if (status != MPM_NOT_CONVERGED || info.linear_solver != job->of->solver)
       return status ? status : MPM_SINGULAR;
     mpm_stepper_profile(w->stepper, 1, &stage);
@@ -168,6 +169,7 @@ static mpm_status measure(const world *w, const implicit_job *job, implicit_resu
     qsort(all[i], (size_t)k, sizeof(double), ascending);
     *to[i] = all[i][k / 2];
   }
+  r->best = total[0];
   r->unknowns = info.active_nodes * job->of->dim;
   r->iterations = info.linear_iterations;
   r->residual = info.residual;
@@ -203,26 +205,43 @@ static void print(FILE *csv, const implicit_job *job, const implicit_result *r) 
   fflush(csv);
 }
 
-int32_t bench_implicit(const char *only, int32_t repeats, const int64_t *threads, int32_t count, FILE *csv) {
-  int32_t bad = 0;
+static void print_heads(FILE *csv) {
   printf("%-30s %8s %2s  %5s  %7s  %7s %7s %7s  %5s\n", "one Newton iteration", "unknowns", "th", "iter.",
          "seconds", "assemb.", "set-up", "solve", "B/unk");
   if (csv)
     fprintf(csv, "case,unknowns,threads,iterations,seconds,assembly_s,set_up_s,solve_s,bytes_per_unknown\n");
   if (csv) fflush(csv); /* the process of a case would write what is still in the buffer once more */
+}
+
+static uint64_t bits_of(double value) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+int32_t bench_implicit(const bench_choice *choice, int32_t repeats, const int64_t *threads, int32_t count,
+                       FILE *csv) {
+  int32_t bad = 0;
+  if (!choice->bare && !choice->list) print_heads(csv);
   for (int32_t c = 0; c < CASES; ++c) {
     double residual = 0.0;
-    if (cases[c].host && !bench_find_host(cases[c].host)) continue;
+    if (!bench_chosen(choice, cases[c].name)) continue;
+    if (choice->list && !cases[c].host) puts(cases[c].name);
+    if (choice->list || (cases[c].host && !bench_find_host(cases[c].host))) continue;
     const int32_t runs = cases[c].host ? 1 : count; /* these have threads of their own, if any */
-    for (int32_t t = 0; t < runs && (!only || strstr(cases[c].name, only)); ++t) {
-      const implicit_job job = {&cases[c], (int32_t)threads[t], repeats};
+    for (int32_t t = 0; t < runs; ++t) {
+      const implicit_job job = {&cases[c], (int32_t)threads[t], repeats,
+                                choice->bare ? bench_processor_seconds : bench_seconds};
       implicit_result r = {.failed = 1, .error = "the process died"};
       bench_apart(run, &job, &r, sizeof r);
       bad |= r.failed;
       if (r.failed) fprintf(stderr, "%s: %s\n", cases[c].name, r.error);
       if (r.failed) break;
-      print(csv, &job, &r);
-      if (t > 0 && memcmp(&r.residual, &residual, sizeof residual)) {
+      if (choice->bare)
+        bench_print_bare(cases[c].name, job.threads, r.best, bits_of(r.residual));
+      else
+        print(csv, &job, &r);
+      if (t > 0 && bits_of(r.residual) != bits_of(residual)) {
         fprintf(stderr, "%s: another residual on %d threads\n", cases[c].name, (int)threads[t]);
         bad = 1;
       }

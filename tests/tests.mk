@@ -83,7 +83,7 @@ $(HASHES): $(wildcard tests/hashes/*.[ch]) $(STATIC_LIB) Makefile
 #: check-hashes          state hashes of small scenes with every method, law and option, against tests/hashes/expected-*.txt
 #: update-hashes         takes the hashes that are there as the expected ones
 check-hashes update-hashes: $(HASHES)
-	@$(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
+	@$(TEST_ENVIRONMENT) CFLAGS="$(CFLAGS)" JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
 
 #: check-abi             the binary interface against abi/libmpm-x86_64.abi.xml, by abidiff
 #: update-abi            takes the interface that is there as the baseline
