@@ -26,7 +26,8 @@ int64_t mpmi_state_count_blocks(const mpm_stepper *s) {
 void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s) {
   for (int64_t b = 0; b < s->layout.blocks.count; ++b) {
     if (!has_slots(s, b)) continue;
-    int64_t coord[3] = {s->layout.blocks.coord[b][0], s->layout.blocks.coord[b][1], s->layout.blocks.coord[b][2]};
+    int64_t coord[3] = {s->layout.blocks.coord[b][0], s->layout.blocks.coord[b][1],
+                        s->layout.blocks.coord[b][2]};
     mpmi_archive_bytes(a, coord, sizeof coord);
   }
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
