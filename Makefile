@@ -47,7 +47,7 @@ LIBS := -lm -lpthread
 KERNEL_PATTERNS := src/transfer/bspline*.c src/transfer/open_bspline*.c src/transfer/gimp.c \
   src/transfer/scatter.c src/transfer/gather.c src/transfer/stiffness.c \
   src/transfer/box.c src/transfer/update.c src/transfer/move.c src/transfer/sums.c \
-  src/transfer/kernels.c src/material/law_*.c src/material/deformation.c src/linalg/dense.c src/linalg/sweep.c
+  src/transfer/kernels.c src/material/law_*.c src/material/tangent_rows.c src/material/deformation.c src/linalg/dense.c src/linalg/sweep.c
 KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))
 PLAIN := $(filter-out $(KERNELS),$(sort $(wildcard src/*/*.c)))
 HEADERS := $(sort $(wildcard include/mpm/*.h include/mpm/*.hpp))

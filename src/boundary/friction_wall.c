@@ -65,14 +65,15 @@ static double stopping(const mpmi_bound *f, const contact_nodes *n, int32_t c) {
 
 /* Pushes but never pulls; Coulomb: the tangential impulse stops sliding or is friction times the normal one.
  * Returns the velocity that it stopped. */
-static double contact(const mpmi_bound *f, mpmi_contact *pair, int32_t sweep) {
+static double contact(const mpmi_bound *f, const mpmi_contact *pair, mpmi_contact_state *state,
+                      int32_t sweep) {
   const int32_t axis = pair->face / 2;
   contact_nodes n;
-  if (!sweep) pair->closed = pair->stuck = 0;
+  if (!sweep) state->closed = state->stuck = 0;
   if (!collect(f, pair, &n)) return 0.0;
   const double inward = pair->face % 2 ? -1.0 : 1.0, normal = inward * stopping(f, &n, axis);
   if (normal <= 0.0) return 0.0;
-  pair->closed = 1;
+  state->closed = 1;
   give(f, &n, pair->face, axis, inward * normal);
   double stop[3] = {0.0, 0.0, 0.0}, squared = 0.0;
   for (int32_t c = 0; c < f->dim; ++c) {
@@ -80,8 +81,8 @@ static double contact(const mpmi_bound *f, mpmi_contact *pair, int32_t sweep) {
     squared += stop[c] * stop[c];
   }
   const double size = sqrt(squared), most = f->step->settings->wall[pair->face].friction * normal;
-  pair->stuck = most >= size;
-  const double share = pair->stuck ? 1.0 : most / size;
+  state->stuck = most >= size;
+  const double share = state->stuck ? 1.0 : most / size;
   for (int32_t c = 0; share > 0.0 && c < f->dim; ++c)
     if (c != axis) give(f, &n, pair->face, c, share * stop[c]);
   return normal * n.compliance[axis];
@@ -89,12 +90,12 @@ static double contact(const mpmi_bound *f, mpmi_contact *pair, int32_t sweep) {
 
 /* A projection without forces moves with the one that had them: a contact that was closed stays so, one that
  * was open is free. */
-static double keep_contact(const mpmi_bound *f, const mpmi_contact *pair) {
+static double keep_contact(const mpmi_bound *f, const mpmi_contact *pair, const mpmi_contact_state *state) {
   contact_nodes n;
   double stopped = 0.0;
-  if (!pair->closed || !collect(f, pair, &n)) return 0.0;
+  if (!state->closed || !collect(f, pair, &n)) return 0.0;
   for (int32_t c = 0; c < f->dim; ++c) {
-    if (c != pair->face / 2 && !pair->stuck) continue;
+    if (c != pair->face / 2 && !state->stuck) continue;
     const double stop = stopping(f, &n, c);
     give(f, &n, pair->face, c, stop);
     stopped = fmax(stopped, fabs(stop) * n.compliance[c]);
@@ -114,8 +115,9 @@ void mpmi_friction_walls(const mpmi_bound *f, int32_t keep) {
   for (int32_t sweep = 0; count && sweep < SWEEPS; ++sweep) {
     double most = 0.0;
     for (int64_t i = 0; i < count; ++i) {
-      mpmi_contact *pair = &constraints->contact[i];
-      most = fmax(most, keep ? keep_contact(f, pair) : contact(f, pair, sweep));
+      const mpmi_contact *pair = &constraints->contact[i];
+      mpmi_contact_state *state = &f->nodes->contact_state[i];
+      most = fmax(most, keep ? keep_contact(f, pair, state) : contact(f, pair, state, sweep));
     }
     if (!sweep) first = most;
     /* of one face no two contacts share a node */

@@ -24,7 +24,7 @@ typedef struct axis_role {
 } axis_role;
 
 static int32_t is_linear_wall(const mpmi_wall *wall) {
-  return wall->kind == MPM_WALL_FIXED || wall->kind == MPM_WALL_SLIP;
+  return mpmi_wall_kind_of(wall->kind)->holds != MPMI_HOLDS_NOTHING;
 }
 
 static axis_role role_on_axis(const mpm_grid *grid, const mpmi_wall *wall, int32_t axis, int64_t node) {
@@ -52,7 +52,7 @@ static int32_t plane_face(const mpm_grid *grid, const mpmi_wall *wall, int32_t a
 }
 
 static int32_t wall_takes(const mpmi_wall *wall, int32_t face, int32_t component) {
-  return wall[face].kind == MPM_WALL_FIXED || face / 2 == component;
+  return mpmi_wall_kind_of(wall[face].kind)->holds == MPMI_HOLDS_ALL || face / 2 == component;
 }
 
 typedef struct node_role {
@@ -90,8 +90,8 @@ static int32_t block_is_bound(const mpmi_blocks *b, const mpmi_wall *wall, int64
     const int64_t cells = grid->desc.cells[k];
     if (grid->desc.periodic[k]) {
       if (first < 0 || last >= cells) return 1;
-    } else if ((wall[2 * k].kind >= MPM_WALL_FIXED && first <= 1) ||
-               (wall[2 * k + 1].kind >= MPM_WALL_FIXED && last >= cells - 1)) {
+    } else if ((mpmi_is_solid(&wall[2 * k]) && first <= 1) ||
+               (mpmi_is_solid(&wall[2 * k + 1]) && last >= cells - 1)) {
       return 1;
     }
   }
@@ -176,7 +176,7 @@ static void visit_contact(walk *w, int32_t face, int64_t slot, const int64_t *in
   const int64_t plane = mpmi_face_node(grid, face), ghost = face % 2 ? plane + 1 : plane - 1;
   const int32_t is_ghost = grid->ghosts && index[axis] == ghost;
   if ((index[axis] != plane && !is_ghost) || !mpmi_constraints_is_free(w->out, slot)) return;
-  mpmi_contact contact = {slot, -1, face, 0, 0};
+  mpmi_contact contact = {slot, -1, face};
   if (is_ghost) {
     int64_t mirror[3] = {index[0], index[1], index[2]};
     mirror[axis] = 2 * plane - ghost;
@@ -211,7 +211,7 @@ static void clear_map(mpmi_constraints *c, const mpmi_blocks *b) {
 static void visit_contacts(walk *w) {
   w->contacts = 0;
   for (int32_t face = 0; face < 2 * w->blocks->grid->dim; ++face)
-    if (w->wall[face].kind == MPM_WALL_FRICTION && !w->blocks->grid->desc.periodic[face / 2])
+    if (mpmi_wall_kind_of(w->wall[face].kind)->rubs && !w->blocks->grid->desc.periodic[face / 2])
       visit_all(w, VISIT_CONTACTS, face);
 }
 

@@ -17,11 +17,7 @@
 #define MPMI_CONSTRAINTS_H
 
 #include "grid/blocks.h"
-
-typedef struct mpmi_wall {
-  int32_t kind;
-  double friction;
-} mpmi_wall;
+#include "grid/walls.h"
 
 typedef struct mpmi_follower {
   int64_t slot;
@@ -39,7 +35,6 @@ typedef struct mpmi_tie {
 typedef struct mpmi_contact {
   int64_t slot, partner; /* partner: the mirror, or -1 without one */
   int32_t face;
-  int32_t closed, stuck; /* found with forces; projections without forces keep to it */
 } mpmi_contact;
 
 typedef struct mpmi_constraints {

@@ -29,19 +29,22 @@ static int32_t values_of_step(const mpmi_settings *settings, int32_t staged) {
 mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, const mpmi_layout *layout,
                               int32_t staged) {
   mpm_context *c = settings->context;
-  const int64_t slots = mpmi_slots(layout), ties = layout->constraints.tie_count;
+  const int64_t slots = mpmi_slots(layout), ties = layout->constraints.tie_count,
+                contacts = layout->constraints.contact_count;
   const int32_t remedy = settings->desc.locking_remedy != MPM_LOCKING_NONE;
   const int32_t corrected = mpmi_is_corrected(settings);
   const int32_t projects = settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected;
   mpm_status status;
   nodes->shown = -1;
   nodes->has_holders = settings->velocity_bc || nodes->prescription.any;
-  nodes->has_impulses = nodes->has_holders || ties || layout->constraints.contact_count;
+  nodes->has_impulses = nodes->has_holders || ties || contacts;
   if ((status = reserve_values(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
       (status = projects ? reserve_values(c, &nodes->projected, slots, 4) : MPM_OK) ||
       (status = corrected || remedy ? reserve_values(c, &nodes->sums, slots, 4) : MPM_OK) ||
       (status = mpmi_reserve_more(c, (void **)&nodes->tie_state, &nodes->tie_capacity, ties,
-                                  sizeof *nodes->tie_state)))
+                                  sizeof *nodes->tie_state)) ||
+      (status = mpmi_reserve_more(c, (void **)&nodes->contact_state, &nodes->contact_capacity, contacts,
+                                  sizeof *nodes->contact_state)))
     return status;
   if (nodes->has_impulses &&
       (status = mpmi_reserve_more(c, (void **)&nodes->impulse, &nodes->impulse_capacity, slots,
@@ -62,6 +65,7 @@ void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
   mpmi_free(c, nodes->held, mpmi_bytes(nodes->held_capacity, sizeof *nodes->held));
   mpmi_free(c, nodes->held_value, mpmi_bytes(nodes->held_capacity, sizeof *nodes->held_value));
   mpmi_free(c, nodes->hook_impulse, mpmi_bytes(nodes->hook_capacity, sizeof *nodes->hook_impulse));
+  mpmi_free(c, nodes->contact_state, mpmi_bytes(nodes->contact_capacity, sizeof *nodes->contact_state));
   mpmi_free(c, nodes->tie_state, mpmi_bytes(nodes->tie_capacity, sizeof *nodes->tie_state));
   mpmi_prescription *p = &nodes->prescription;
   mpmi_free(c, p->sums, mpmi_bytes(p->sums_capacity, sizeof *p->sums));

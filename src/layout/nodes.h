@@ -71,6 +71,11 @@ typedef struct mpmi_tie_state {
   double mass, net[3], before[3], increment[3], recorded[3];
 } mpmi_tie_state;
 
+/* State of a contact with a friction wall, as it was found with forces; projections without them keep to it. */
+typedef struct mpmi_contact_state {
+  int32_t closed, stuck;
+} mpmi_contact_state;
+
 typedef struct mpmi_nodes {
   mpmi_nodal solved;    /* the projection with forces, 4 or 8 values: what particles take from */
   mpmi_nodal projected; /* the other projections, 4 values */
@@ -86,6 +91,8 @@ typedef struct mpmi_nodes {
   int64_t hook_capacity;
   mpmi_tie_state *tie_state; /* [ties] */
   int64_t tie_capacity;
+  mpmi_contact_state *contact_state; /* [contacts] */
+  int64_t contact_capacity;
   mpmi_prescription prescription;
   double shown_dt; /* time over which forces changed the velocities that views show */
   int64_t shown;   /* version of the layout that views show, or -1: nothing */

@@ -5,13 +5,15 @@
 
 #include "grid/constraints.h"
 #include "layout/transfers.h"
+#include "material/deformation.h"
 #include "transfer/kernels.h"
 
 typedef struct mpmi_settings {
   mpm_context *context;
   const mpm_grid *grid;
-  const mpmi_kernels *kernels;
-  int32_t tasks; /* how many work at a time; no result depends on it */
+  const mpmi_kernels *kernels;         /* of transfer/ */
+  const mpmi_deformation *deformation; /* kernels of material/deformation.c */
+  int32_t tasks;                       /* how many work at a time; no result depends on it */
   mpm_stepper_desc desc;
   const mpmi_transfer *transfer; /* the row of desc.transfer */
   mpmi_wall wall[6];

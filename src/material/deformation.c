@@ -8,7 +8,7 @@
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
 
-/* Full 3x3 entries that may differ from the identity: a plane strain tensor keeps its zz. */
+/* Whether an entry of the full 3x3 tensor may differ from the identity: plane strain keeps its zz. */
 MPMI_INLINE int32_t has_entry(int32_t dim, int32_t row, int32_t column) {
   return (row < dim && column < dim) || (dim == 2 && row == 2 && column == 2);
 }
@@ -19,7 +19,7 @@ MPMI_INLINE void place_entries(int32_t dim, int32_t *place) {
   for (int32_t e = 0; e < 9; ++e) place[e] = has_entry(dim, e / 3, e % 3) ? stored++ : -1;
 }
 
-/* F_inc = I + dt L. */
+/* Writes F_inc = I + dt L. */
 MPMI_INLINE void increment(int32_t dim, const mpmi_deform *job, int64_t n) {
   for (int32_t r = 0; r < dim; ++r)
     for (int32_t c = 0; c < dim; ++c) {
@@ -77,7 +77,7 @@ MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t 
     mpmi_mask other = {0};
     for (int32_t e = 1; e < 9; ++e)
       if (place[e] >= 0) other |= mpmi_lanes_load(job->F_old[place[e]] + s) != (e % 4 ? zero : first);
-    const mpmi_lanes minus_J = -determinant(dim, job->F_old, s); /* the sign marks it */
+    const mpmi_lanes minus_J = -determinant(dim, job->F_old, s); /* negative: not yet a stretch */
     mpmi_lanes_store(f + s, mpmi_lanes_where(~other, first) + mpmi_lanes_where(other, minus_J));
     any |= other;
   }
@@ -97,7 +97,7 @@ MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
   MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     const double d = mpmi_det_minus_1(dim, mpmi_load_mat(dim, L, ld, p, 0.0, dt));
     const double grown = dim == 1 ? d : mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log1p(d));
-    /* an inverted increment stays one, and what is not finite does not become so */
+    /* an inverted increment gives an f that is not positive, and what is not finite stays so */
     f[p] = (d > -1.0 ? f[p] + f[p] * grown : 1.0 + d) + (d - d);
   }
   int32_t stored = 0;

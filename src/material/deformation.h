@@ -7,7 +7,8 @@
 
 #include "simd/isa.h"
 
-/* What a step does to F: all of it; only its volume, F = J^(1/3) I (1-D: F11 = J); nothing. */
+/* What a step does to F: it multiplies F by F_inc; it keeps the volume alone, F = J^(1/3) I (in 1-D F11 = J);
+ * it leaves F as it is. */
 enum { MPMI_F_DEFORMS, MPMI_F_DILATES, MPMI_F_STAYS, MPMI_F_KINDS };
 
 /* F_new from F_old and L; F_inc = I + dt L when asked for. */
@@ -21,8 +22,8 @@ typedef struct mpmi_deform {
 } mpmi_deform;
 typedef void (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
 
-/* volume = det F * initial volume from stored components: the one place where volumes are made, so that they
- * can be made again with the same bits. Returns MPMI_NOT_POSITIVE / MPMI_NONFINITE. */
+/* volume = det F * initial volume, from the stored components of F. All volumes are made here, so that they
+ * can be made again with the same bits. Returns MPMI_NOT_POSITIVE and MPMI_NONFINITE where they apply. */
 typedef uint32_t (*mpmi_volume_fn)(const double *const *F, const double *initial_volume, double *volume,
                                    int64_t n);
 

@@ -2,11 +2,32 @@
  * return (Simo & Hughes 1998, box 3.1). One state variable, the equivalent plastic strain. */
 #include "material/objective_tangent.h"
 
-MPMI_INLINE void j2(int dim, const double *constants, const mpm_material_batch *batch) {
-  const double yield_initial = constants[MPMI_C_YIELD], hardening = constants[MPMI_C_HARDENING];
-  const double return_inverse = constants[MPMI_C_RETURN], mu3 = 3.0 * constants[MPMI_C_MU];
+enum { YIELD_STRESS = 3, HARDENING };
+static const mpmi_law_param params[] = {
+    PARAMS_ELASTIC,
+    [YIELD_STRESS] = {"yield_stress", "stress", "initial yield stress in tension", MUST_BE_GIVEN, POSITIVE},
+    [HARDENING] = {"hardening", "stress", "slope of the yield stress over the equivalent plastic strain", 0.0,
+                   NOT_NEGATIVE}};
+
+typedef struct j2_constants {
+  mpmi_elastic elastic;
+  double yield_initial, hardening; /* yield stress = yield_initial + hardening * plastic strain */
+  double return_inverse;           /* 1 / (3 mu + hardening) */
+} j2_constants;
+
+static void prepare(const double *value, void *constants) {
+  j2_constants *c = constants;
+  c->elastic = mpmi_elastic_of(value);
+  c->yield_initial = value[YIELD_STRESS];
+  c->hardening = value[HARDENING];
+  c->return_inverse = 1.0 / (mpmi_rounded(3.0 * c->elastic.mu) + c->hardening);
+}
+
+MPMI_INLINE void j2(int dim, const j2_constants *c, const mpm_material_batch *batch) {
+  const double yield_initial = c->yield_initial, hardening = c->hardening;
+  const double return_inverse = c->return_inverse, mu3 = 3.0 * c->elastic.mu;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
-  const mpmi_increments in = mpmi_increments_of(constants, batch);
+  const mpmi_increments in = mpmi_increments_of(&c->elastic, batch);
   const double *plastic_old = batch->state;
   double *stress = batch->stress_new, *plastic_new = batch->state_new;
   if (batch->dt == 0.0) {
@@ -27,17 +48,15 @@ MPMI_INLINE void j2(int dim, const double *constants, const mpm_material_batch *
       plastic_new[i] = plastic + increment;
     }
   }
-  mpmi_elastic_outputs(dim, constants, batch);
+  mpmi_elastic_outputs(dim, &c->elastic, batch);
 }
-
-MPMI_LAW_BY_DIM(law_j2, j2)
 
 /* With the trial deviator d, its von Mises stress m and the yield stress y, the factor of d that the law
  * keeps, 1 - 3 mu / (3 mu + hardening) (1 - y / m), changes by -3 mu / (3 mu + hardening) y / m 3/2 d :
  * (change of d) / m^2. */
-MPMI_INLINE void j2_chunk(int dim, const double *constants, const double *plastic, mpmi_objective *o) {
-  const double yield_initial = constants[MPMI_C_YIELD], hardening = constants[MPMI_C_HARDENING];
-  const double return_inverse = constants[MPMI_C_RETURN], mu = constants[MPMI_C_MU], mu3 = 3.0 * mu;
+MPMI_INLINE void j2_chunk(int dim, const j2_constants *c, const double *plastic, mpmi_objective *o) {
+  const double yield_initial = c->yield_initial, hardening = c->hardening;
+  const double return_inverse = c->return_inverse, mu = c->elastic.mu, mu3 = 3.0 * mu;
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_sym s = mpmi_load_sym(dim, o->turned[0], MPMI_CHUNK, p);
@@ -54,14 +73,25 @@ MPMI_INLINE void j2_chunk(int dim, const double *constants, const double *plasti
   }
 }
 
-MPMI_INLINE void j2_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+MPMI_INLINE void j2_tangent(int dim, const j2_constants *c, const mpm_material_batch *batch,
                             double *tangent) {
   mpmi_objective o;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
-    mpmi_elastic_chunk(dim, constants, batch, i, &o);
-    j2_chunk(dim, constants, batch->state + i, &o);
+    mpmi_elastic_chunk(dim, &c->elastic, batch, i, &o);
+    j2_chunk(dim, c, batch->state + i, &o);
     KERNEL(objective_rows)(dim, 0, &o, tangent + i, batch->ld);
   }
 }
 
-MPMI_TANGENT_BY_DIM(tangent_j2, j2_tangent)
+MPMI_LAW_KERNELS(j2_constants, j2, j2_tangent)
+
+const mpmi_law KERNEL(law_j2) = {
+    .name = "j2",
+    MPMI_PARAMS(params),
+    .state_count = 1,
+    .constants_size = sizeof(j2_constants),
+    .prepare = prepare,
+    .stress = stress_kernel,
+    .tangent = tangent_kernel,
+    .is_symmetric = mpmi_unsymmetric,
+};

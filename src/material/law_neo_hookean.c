@@ -3,14 +3,16 @@
  *   energy per initial volume W = lambda/2 ln^2 J - mu ln J + mu/2 (tr F F^T - 3). */
 #include <math.h>
 
-#include "material/laws.h"
+#include "material/elastic_constants.h"
 #include "material/stretch_bounds.h"
 #include "material/tangent_rows.h"
 #include "simd/vector_math.h"
 
-MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_material_batch *batch) {
-  const double lambda = constants[MPMI_C_LAMBDA], mu = constants[MPMI_C_MU];
-  const double density_inverse = constants[MPMI_C_DENSITY_INVERSE];
+static const mpmi_law_param params[] = {PARAMS_ELASTIC};
+
+MPMI_INLINE void neo_hookean(int dim, const mpmi_elastic *c, const mpm_material_batch *batch) {
+  const double lambda = c->lambda, mu = c->mu;
+  const double density_inverse = c->density_inverse;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F;
   double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
@@ -39,12 +41,10 @@ MPMI_INLINE void neo_hookean(int dim, const double *constants, const mpm_materia
   }
 }
 
-MPMI_LAW_BY_DIM(law_neo_hookean, neo_hookean)
-
 /* c_ijkl = lambda d_ij d_kl + (mu - lambda ln J) (d_ik d_jl + d_il d_jk) */
-MPMI_INLINE void neo_hookean_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+MPMI_INLINE void neo_hookean_tangent(int dim, const mpmi_elastic *c, const mpm_material_batch *batch,
                                      double *tangent) {
-  const double lambda = constants[MPMI_C_LAMBDA], mu = constants[MPMI_C_MU];
+  const double lambda = c->lambda, mu = c->mu;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     _Alignas(64) double volumetric[MPMI_CHUNK], shear[MPMI_CHUNK];
     MPMI_IVDEP
@@ -57,4 +57,15 @@ MPMI_INLINE void neo_hookean_tangent(int dim, const double *constants, const mpm
   }
 }
 
-MPMI_TANGENT_BY_DIM(tangent_neo_hookean, neo_hookean_tangent)
+MPMI_LAW_KERNELS(mpmi_elastic, neo_hookean, neo_hookean_tangent)
+
+const mpmi_law KERNEL(law_neo_hookean) = {
+    .name = "neo_hookean",
+    MPMI_PARAMS(params),
+    .stress_from_F = 1,
+    .constants_size = sizeof(mpmi_elastic),
+    .prepare = mpmi_elastic_prepare,
+    .stress = stress_kernel,
+    .tangent = tangent_kernel,
+    .is_symmetric = mpmi_symmetric,
+};

@@ -3,10 +3,27 @@
  *   energy per initial volume W = kappa/2 ln^2 J + mu/2 (tr b_bar - 3). */
 #include <math.h>
 
-#include "material/laws.h"
+#include "material/law_file.h"
 #include "material/stretch_bounds.h"
 #include "material/tangent_rows.h"
 #include "simd/vector_math.h"
+
+enum { MU, KAPPA, DENSITY };
+static const mpmi_law_param params[] = {
+    [MU] = {"mu", "stress", "shear modulus", MUST_BE_GIVEN, POSITIVE},
+    [KAPPA] = {"kappa", "stress", "bulk modulus", MUST_BE_GIVEN, POSITIVE},
+    [DENSITY] = PARAM_DENSITY};
+
+typedef struct decoupled_constants {
+  double mu, kappa, density_inverse;
+} decoupled_constants;
+
+static void prepare(const double *value, void *constants) {
+  decoupled_constants *c = constants;
+  c->mu = value[MU];
+  c->kappa = value[KAPPA];
+  c->density_inverse = 1.0 / value[DENSITY];
+}
 
 /* The acoustic tensor for a direction n, times J, has in the frame of n the entries
  *   kappa (1 - ln J) + 5/3 mean - 1/3 b_nn along n, b_nn across it, and -2/3 |t| between n and t,
@@ -18,9 +35,10 @@ MPMI_INLINE double stiffest(double volumetric, double mean, double low, double h
   return 0.5 * (along + high) + sqrt(half * half + between * between);
 }
 
-MPMI_INLINE void neo_hookean_decoupled(int dim, const double *constants, const mpm_material_batch *batch) {
-  const double kappa = constants[MPMI_C_BULK], mu = constants[MPMI_C_MU];
-  const double density_inverse = constants[MPMI_C_DENSITY_INVERSE];
+MPMI_INLINE void neo_hookean_decoupled(int dim, const decoupled_constants *c,
+                                       const mpm_material_batch *batch) {
+  const double kappa = c->kappa, mu = c->mu;
+  const double density_inverse = c->density_inverse;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F;
   double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
@@ -52,14 +70,12 @@ MPMI_INLINE void neo_hookean_decoupled(int dim, const double *constants, const m
   }
 }
 
-MPMI_LAW_BY_DIM(law_neo_hookean_decoupled, neo_hookean_decoupled)
-
 /* With s = mu dev(b_bar) and m = mu tr(b_bar) / 3,
  *   c_ijkl = (kappa - 2/3 m) d_ij d_kl + (m - kappa ln J) (d_ik d_jl + d_il d_jk) - 2/3 (s_ij d_kl + d_ij
  * s_kl). */
-MPMI_INLINE void neo_hookean_decoupled_tangent(int dim, const double *constants,
+MPMI_INLINE void neo_hookean_decoupled_tangent(int dim, const decoupled_constants *c,
                                                const mpm_material_batch *batch, double *tangent) {
-  const double kappa = constants[MPMI_C_BULK], mu = constants[MPMI_C_MU];
+  const double kappa = c->kappa, mu = c->mu;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     _Alignas(64) double volumetric[MPMI_CHUNK], shear[MPMI_CHUNK], mixed[6][MPMI_CHUNK];
     MPMI_IVDEP
@@ -78,4 +94,15 @@ MPMI_INLINE void neo_hookean_decoupled_tangent(int dim, const double *constants,
   }
 }
 
-MPMI_TANGENT_BY_DIM(tangent_neo_hookean_decoupled, neo_hookean_decoupled_tangent)
+MPMI_LAW_KERNELS(decoupled_constants, neo_hookean_decoupled, neo_hookean_decoupled_tangent)
+
+const mpmi_law KERNEL(law_neo_hookean_decoupled) = {
+    .name = "neo_hookean_decoupled",
+    MPMI_PARAMS(params),
+    .stress_from_F = 1,
+    .constants_size = sizeof(decoupled_constants),
+    .prepare = prepare,
+    .stress = stress_kernel,
+    .tangent = tangent_kernel,
+    .is_symmetric = mpmi_symmetric,
+};

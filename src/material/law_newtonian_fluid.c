@@ -6,11 +6,39 @@
 
 #include "material/objective_tangent.h"
 
-MPMI_INLINE void compression(int dim, const double *constants, const mpm_material_batch *batch) {
-  const double bulk_by_gamma = constants[MPMI_C_BULK_BY_GAMMA], exponent = constants[MPMI_C_GAMMA_MINUS_1];
-  const double exponent_inverse = 1.0 / exponent, most = constants[MPMI_C_LARGEST_J_MINUS_1];
-  const double density_inverse = constants[MPMI_C_DENSITY_INVERSE], viscosity = constants[MPMI_C_VISCOSITY];
-  const double c_squared = constants[MPMI_C_BULK] * density_inverse, nu = viscosity * density_inverse;
+enum { DENSITY, BULK, GAMMA, VISCOSITY, TENSION };
+static const mpmi_law_param params[] = {
+    [DENSITY] = PARAM_DENSITY,
+    [BULK] = {"bulk_modulus", "stress", "bulk modulus at the initial volume", MUST_BE_GIVEN, POSITIVE},
+    [GAMMA] = {"gamma", "1", "exponent of the volume: pressure = bulk_modulus / gamma (J^-gamma - 1)", 7.0,
+               AT_LEAST_ONE},
+    [VISCOSITY] = {"viscosity", "stress*time", "dynamic viscosity", 0.0, NOT_NEGATIVE},
+    [TENSION] = {"tension", "1", "1: pressure may be negative; 0: it is cut off at 0", 1.0, ZERO_OR_ONE}};
+
+typedef struct fluid_constants {
+  double bulk, bulk_by_gamma;
+  double gamma_minus_1; /* never 0 */
+  double viscosity, density_inverse;
+  double largest_J_minus_1; /* above it there is no pressure: 0 without tension */
+} fluid_constants;
+
+static void prepare(const double *value, void *constants) {
+  fluid_constants *c = constants;
+  const double gamma_minus_1 = value[GAMMA] - 1.0;
+  c->bulk = value[BULK];
+  c->bulk_by_gamma = value[BULK] / value[GAMMA];
+  /* (J^(1 - gamma) - 1) / (gamma - 1) is -ln J to the last digit for one so small */
+  c->gamma_minus_1 = gamma_minus_1 > 0.0 ? gamma_minus_1 : 1e-100;
+  c->viscosity = value[VISCOSITY];
+  c->density_inverse = 1.0 / value[DENSITY];
+  c->largest_J_minus_1 = value[TENSION] > 0.0 ? DBL_MAX : 0.0;
+}
+
+MPMI_INLINE void compression(int dim, const fluid_constants *c, const mpm_material_batch *batch) {
+  const double bulk_by_gamma = c->bulk_by_gamma, exponent = c->gamma_minus_1;
+  const double exponent_inverse = 1.0 / exponent, most = c->largest_J_minus_1;
+  const double density_inverse = c->density_inverse, viscosity = c->viscosity;
+  const double c_squared = c->bulk * density_inverse, nu = viscosity * density_inverse;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F;
   double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
@@ -30,10 +58,11 @@ MPMI_INLINE void compression(int dim, const double *constants, const mpm_materia
   }
 }
 
-/* Of the step; or, asked for the state as it is, that which the old stress has. */
-MPMI_INLINE void add_shear(int dim, const double *constants, const mpm_material_batch *batch) {
+/* Adds the viscous stress: of the step; or, where the law is asked for the state as it is (dt = 0), the
+ * deviator of the old stress, which is the viscous stress of the last step. */
+MPMI_INLINE void add_shear(int dim, const fluid_constants *c, const mpm_material_batch *batch) {
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
-  const double dt = batch->dt, factor = dt > 0.0 ? 2.0 * constants[MPMI_C_VISCOSITY] / dt : 1.0;
+  const double dt = batch->dt, factor = dt > 0.0 ? 2.0 * c->viscosity / dt : 1.0;
   const double *L = batch->L, *old = batch->stress;
   double *stress = batch->stress_new;
   MPMI_IVDEP
@@ -52,19 +81,17 @@ MPMI_INLINE void add_shear(int dim, const double *constants, const mpm_material_
   }
 }
 
-MPMI_INLINE void newtonian_fluid(int dim, const double *constants, const mpm_material_batch *batch) {
-  compression(dim, constants, batch);
-  if (constants[MPMI_C_VISCOSITY] > 0.0) add_shear(dim, constants, batch);
+MPMI_INLINE void newtonian_fluid(int dim, const fluid_constants *c, const mpm_material_batch *batch) {
+  compression(dim, c, batch);
+  if (c->viscosity > 0.0) add_shear(dim, c, batch);
 }
 
-MPMI_LAW_BY_DIM(law_newtonian_fluid, newtonian_fluid)
-
-/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). At the J from which on there is no
- * pressure it is that of compression: a fluid at rest there is stiff. */
-MPMI_INLINE void compression_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). Where the
+ * pressure is about to be cut off, the tangent is that of compression: a fluid at rest is stiff. */
+MPMI_INLINE void compression_tangent(int dim, const fluid_constants *c, const mpm_material_batch *batch,
                                      double *tangent) {
-  const double bulk_by_gamma = constants[MPMI_C_BULK_BY_GAMMA], exponent = constants[MPMI_C_GAMMA_MINUS_1];
-  const double most = constants[MPMI_C_LARGEST_J_MINUS_1];
+  const double bulk_by_gamma = c->bulk_by_gamma, exponent = c->gamma_minus_1;
+  const double most = c->largest_J_minus_1;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     _Alignas(64) double volumetric[MPMI_CHUNK], shear[MPMI_CHUNK];
     MPMI_IVDEP
@@ -78,9 +105,9 @@ MPMI_INLINE void compression_tangent(int dim, const double *constants, const mpm
   }
 }
 
-MPMI_INLINE void shear_chunk(int dim, const double *constants, const mpm_material_batch *batch, int64_t begin,
-                             mpmi_objective *o) {
-  const double shear = constants[MPMI_C_VISCOSITY] / batch->dt;
+MPMI_INLINE void shear_chunk(int dim, const fluid_constants *c, const mpm_material_batch *batch,
+                             int64_t begin, mpmi_objective *o) {
+  const double shear = c->viscosity / batch->dt;
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     double mean_log;
@@ -92,21 +119,38 @@ MPMI_INLINE void shear_chunk(int dim, const double *constants, const mpm_materia
   }
 }
 
-MPMI_INLINE void add_shear_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+MPMI_INLINE void add_shear_tangent(int dim, const fluid_constants *c, const mpm_material_batch *batch,
                                    double *tangent) {
   mpmi_objective o;
   memset(o.bend, 0, sizeof o.bend);
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
-    shear_chunk(dim, constants, batch, i, &o);
-    memset(o.turned, 0, sizeof o.turned); /* the old stress has no part in it */
+    shear_chunk(dim, c, batch, i, &o);
+    memset(o.turned, 0, sizeof o.turned); /* the viscous stress does not depend on the old stress */
     KERNEL(objective_rows)(dim, 1, &o, tangent + i, batch->ld);
   }
 }
 
-MPMI_INLINE void newtonian_fluid_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+MPMI_INLINE void newtonian_fluid_tangent(int dim, const fluid_constants *c, const mpm_material_batch *batch,
                                          double *tangent) {
-  compression_tangent(dim, constants, batch, tangent);
-  if (constants[MPMI_C_VISCOSITY] > 0.0) add_shear_tangent(dim, constants, batch, tangent);
+  compression_tangent(dim, c, batch, tangent);
+  if (c->viscosity > 0.0) add_shear_tangent(dim, c, batch, tangent);
 }
 
-MPMI_TANGENT_BY_DIM(tangent_newtonian_fluid, newtonian_fluid_tangent)
+MPMI_LAW_KERNELS(fluid_constants, newtonian_fluid, newtonian_fluid_tangent)
+
+static int32_t is_inviscid(const void *constants) {
+  const fluid_constants *c = constants;
+  return c->viscosity == 0.0;
+}
+
+const mpmi_law KERNEL(law_newtonian_fluid) = {
+    .name = "newtonian_fluid",
+    MPMI_PARAMS(params),
+    .stress_from_F = 1,
+    .kinematics = MPMI_F_DILATES,
+    .constants_size = sizeof(fluid_constants),
+    .prepare = prepare,
+    .stress = stress_kernel,
+    .tangent = tangent_kernel,
+    .is_symmetric = is_inviscid,
+};

@@ -1,8 +1,10 @@
-/* No stress, no energy, no waves: where such particles go, others say. */
-#include "material/laws.h"
+/* The particles have no stress, no energy and no waves: the host prescribes where they go. */
+#include "material/law_file.h"
 #include "material/tangent_rows.h"
 
-MPMI_INLINE void rigid(int dim, const double *constants, const mpm_material_batch *batch) {
+static const mpmi_law_param params[] = {PARAM_DENSITY};
+
+MPMI_INLINE void rigid(int dim, const void *constants, const mpm_material_batch *batch) {
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
   (void)constants;
@@ -15,9 +17,7 @@ MPMI_INLINE void rigid(int dim, const double *constants, const mpm_material_batc
   }
 }
 
-MPMI_LAW_BY_DIM(law_rigid, rigid)
-
-MPMI_INLINE void rigid_tangent(int dim, const double *constants, const mpm_material_batch *batch,
+MPMI_INLINE void rigid_tangent(int dim, const void *constants, const mpm_material_batch *batch,
                                double *tangent) {
   const double none[MPMI_CHUNK] = {0.0};
   (void)constants;
@@ -25,4 +25,14 @@ MPMI_INLINE void rigid_tangent(int dim, const double *constants, const mpm_mater
     KERNEL(isotropic_rows)(dim, none, none, tangent + i, batch->ld);
 }
 
-MPMI_TANGENT_BY_DIM(tangent_rigid, rigid_tangent)
+MPMI_LAW_KERNELS(void, rigid, rigid_tangent)
+
+const mpmi_law KERNEL(law_rigid) = {
+    .name = "rigid",
+    MPMI_PARAMS(params),
+    .stress_from_F = 1,
+    .kinematics = MPMI_F_STAYS,
+    .stress = stress_kernel,
+    .tangent = tangent_kernel,
+    .is_symmetric = mpmi_symmetric,
+};

@@ -4,6 +4,7 @@
 
 #include "context/structs.h"
 #include "material/laws.h"
+#include "material/material.h"
 
 enum { MAX_STATE_COUNT = 64 };
 
@@ -13,39 +14,48 @@ static int32_t is_context(const mpm_context *context) {
 
 static mpm_status refuse_model(mpm_context *context, const char *model) {
   const char *names[MPMI_LAW_COUNT];
-  for (int32_t i = 0; i < MPMI_LAW_COUNT; ++i) names[i] = mpmi_law_by_index(i)->name;
+  for (int32_t i = 0; i < MPMI_LAW_COUNT; ++i) names[i] = mpm_material_model_name(i);
   char nearest[256];
   mpmi_nearest_names(model, names, MPMI_LAW_COUNT, nearest, sizeof nearest);
   return mpmi_fail(context, MPM_E_NOT_FOUND, "no model \"%s\"; nearest: %s", model, nearest);
 }
 
 static mpm_status refuse_param(mpm_context *context, const mpmi_law *law, const char *name) {
-  const char *names[MPMI_MAX_PARAMS];
+  const size_t bytes = mpmi_bytes(law->param_count, sizeof(char *));
+  const char **names = mpmi_alloc(context, bytes);
+  if (!names) return MPM_E_NOMEM;
   for (int32_t k = 0; k < law->param_count; ++k) names[k] = law->param[k].name;
   char nearest[256];
   mpmi_nearest_names(name, names, law->param_count, nearest, sizeof nearest);
+  mpmi_free(context, names, bytes);
   return mpmi_fail(context, MPM_E_NOT_FOUND, "%s has no parameter \"%s\"; nearest: %s", law->name, name,
                    nearest);
 }
 
+static mpm_status read_param(mpm_context *context, const mpmi_law *law, const mpm_param *params, int32_t i,
+                             double *value) {
+  const char *name = params[i].name;
+  if (!name) return mpmi_fail(context, MPM_E_ARG, "%s: params[%d].name is NULL", law->name, i);
+  int32_t k = 0;
+  while (k < law->param_count && strcmp(law->param[k].name, name) != 0) ++k;
+  if (k == law->param_count) return refuse_param(context, law, name);
+  for (int32_t before = 0; before < i; ++before)
+    if (!strcmp(params[before].name, name))
+      return mpmi_fail(context, MPM_E_ARG, "%s: parameter \"%s\" is given twice", law->name, name);
+  value[k] = params[i].value;
+  const mpmi_law_param *param = &law->param[k];
+  if (!(value[k] >= param->low && value[k] <= param->high) || (param->whole && value[k] != floor(value[k])))
+    return mpmi_fail(context, MPM_E_ARG, "%s: %s = %.17g, but it %s", law->name, name, value[k],
+                     param->range);
+  return MPM_OK;
+}
+
 static mpm_status read_params(mpm_context *context, const mpmi_law *law, const mpm_param *params,
                               int32_t count, double *value) {
-  int32_t given[MPMI_MAX_PARAMS] = {0};
   for (int32_t k = 0; k < law->param_count; ++k) value[k] = law->param[k].value;
   for (int32_t i = 0; i < count; ++i) {
-    const char *name = params[i].name;
-    if (!name) return mpmi_fail(context, MPM_E_ARG, "%s: params[%d].name is NULL", law->name, i);
-    int32_t k = 0;
-    while (k < law->param_count && strcmp(law->param[k].name, name) != 0) ++k;
-    if (k == law->param_count) return refuse_param(context, law, name);
-    if (given[k])
-      return mpmi_fail(context, MPM_E_ARG, "%s: parameter \"%s\" is given twice", law->name, name);
-    given[k] = 1;
-    value[k] = params[i].value;
-    const mpmi_law_param *param = &law->param[k];
-    if (!(value[k] >= param->low && value[k] <= param->high) || (param->whole && value[k] != floor(value[k])))
-      return mpmi_fail(context, MPM_E_ARG, "%s: %s = %.17g, but it %s", law->name, name, value[k],
-                       param->range);
+    const mpm_status status = read_param(context, law, params, i, value);
+    if (status) return status;
   }
   for (int32_t k = 0; k < law->param_count; ++k)
     if (isnan(value[k]))
@@ -58,10 +68,35 @@ static mpm_status read_params(mpm_context *context, const mpmi_law *law, const m
 static mpm_status prepare_constants(mpm_context *context, const mpmi_law *law, const double *value,
                                     double *constants) {
   if (law->prepare) law->prepare(value, constants);
-  for (int32_t i = 0; i < MPMI_MAX_CONSTANTS; ++i)
+  for (size_t i = 0; i < law->constants_size / sizeof *constants; ++i)
     if (!isfinite(constants[i]))
       return mpmi_fail(context, MPM_E_ARG,
                        "%s: the parameters together are beyond the range of double precision", law->name);
+  return MPM_OK;
+}
+
+/* Allocates a material with room for further bytes in its `memory`. */
+static mpm_material *make(mpm_context *context, size_t further) {
+  const size_t size = sizeof(mpm_material) + further;
+  mpm_material *material = mpmi_alloc(context, size);
+  if (material) *material = (mpm_material){.magic = MPMI_MATERIAL, .context = context, .size = size};
+  return material;
+}
+
+/* Fills a material with the values and constants of a built-in law. */
+static mpm_status set_law(mpm_material *material, const mpmi_law *law, const mpm_param *params,
+                          int32_t count) {
+  double *value = material->memory, *constants = value + law->param_count;
+  mpm_status status = read_params(material->context, law, params, count, value);
+  if (!status) status = prepare_constants(material->context, law, value, constants);
+  if (status) return status;
+  material->law = law;
+  material->value = value;
+  material->constants = constants;
+  material->state_count = law->state_count;
+  material->state_initial = law->state_initial;
+  for (int32_t k = 0; k < law->param_count; ++k)
+    if (!strcmp(law->param[k].name, "density")) material->density = value[k];
   return MPM_OK;
 }
 
@@ -72,23 +107,19 @@ mpm_status mpm_material_create(mpm_context *context, const char *model, const mp
   context->error[0] = '\0';
   if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_material_create: out is NULL");
   if (!model) return mpmi_fail(context, MPM_E_ARG, "mpm_material_create: model is NULL");
-  const mpmi_law *law = mpmi_law_by_name(model);
+  const mpmi_law *law = mpmi_law_by_name(context->isa, model);
   if (!law) return refuse_model(context, model);
   if (count < 0) return mpmi_fail(context, MPM_E_ARG, "%s: count = %d is negative", model, count);
   if (count > 0 && !params)
     return mpmi_fail(context, MPM_E_ARG, "%s: params is NULL, but count is %d", model, count);
 
-  mpm_material made = {
-      .magic = MPMI_MATERIAL, .context = context, .law = law, .state_count = law->state_count};
-  mpm_status status = read_params(context, law, params, count, made.value);
-  if (!status) status = prepare_constants(context, law, made.value, made.constants);
-  if (status) return status;
-  for (int32_t k = 0; k < law->param_count; ++k)
-    if (!strcmp(law->param[k].name, "density")) made.density = made.value[k];
-
-  mpm_material *material = mpmi_alloc(context, sizeof *material);
+  mpm_material *material = make(context, mpmi_bytes(law->param_count, sizeof(double)) + law->constants_size);
   if (!material) return MPM_E_NOMEM;
-  *material = made;
+  const mpm_status status = set_law(material, law, params, count);
+  if (status) {
+    mpmi_free(context, material, material->size);
+    return status;
+  }
   context->children++;
   *out = material;
   return MPM_OK;
@@ -121,10 +152,6 @@ static mpm_status check_desc(mpm_context *context, const mpm_material_desc *d) {
   return MPM_OK;
 }
 
-static size_t state_bytes(int32_t state_count) {
-  return mpmi_bytes(state_count, sizeof(double));
-}
-
 mpm_status mpm_material_create_custom(mpm_context *context, const mpm_material_desc *desc,
                                       mpm_material **out) {
   if (out) *out = NULL;
@@ -136,22 +163,16 @@ mpm_status mpm_material_create_custom(mpm_context *context, const mpm_material_d
   if (!status) status = check_desc(context, &custom);
   if (status) return status;
 
-  mpm_material *material = mpmi_alloc(context, sizeof *material);
+  /* The initial state is copied, because the caller's array may be gone tomorrow. */
+  const int32_t kept = custom.state_initial ? custom.state_count : 0;
+  const size_t bytes = mpmi_bytes(kept, sizeof(double));
+  mpm_material *material = make(context, bytes);
   if (!material) return MPM_E_NOMEM;
-  *material = (mpm_material){.magic = MPMI_MATERIAL,
-                             .context = context,
-                             .density = custom.density,
-                             .state_count = custom.state_count,
-                             .custom = custom};
-  if (custom.state_initial && custom.state_count > 0) {
-    material->state_initial = mpmi_alloc(context, state_bytes(custom.state_count));
-    if (!material->state_initial) {
-      mpmi_free(context, material, sizeof *material);
-      return MPM_E_NOMEM;
-    }
-    memcpy(material->state_initial, custom.state_initial, state_bytes(custom.state_count));
-  }
-  material->custom.state_initial = material->state_initial; /* the caller's array may be gone tomorrow */
+  material->density = custom.density;
+  material->state_count = custom.state_count;
+  material->custom = custom;
+  if (kept > 0) material->state_initial = memcpy(material->memory, custom.state_initial, bytes);
+  material->custom.state_initial = material->state_initial;
   context->children++;
   *out = material;
   return MPM_OK;
@@ -166,16 +187,15 @@ mpm_status mpm_material_destroy(mpm_material *material) {
                      material->users);
   if (material->custom.release_user) material->custom.release_user(material->custom.user);
   material->magic = 0;
-  mpmi_free(context, material->state_initial, state_bytes(material->state_count));
-  mpmi_free(context, material, sizeof *material);
+  mpmi_free(context, material, material->size);
   context->children--;
   return MPM_OK;
 }
 
-mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t isa, int32_t dim,
+mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t dim,
                                   const mpm_material_batch *batch) {
   if (!material->law) return material->custom.stress(material->custom.user, batch);
-  mpmi_law_kernel(isa, material->law->index)(material->constants, dim, batch);
+  material->law->stress(material->constants, dim, batch);
   return MPM_OK;
 }
 

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "material/elastic_constants.h"
 #include "material/isotropic_function.h"
-#include "material/laws.h"
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
 
@@ -73,16 +73,16 @@ MPMI_INLINE mpmi_sym mpmi_log_increment(int dim, mpmi_mat g, mpmi_sym *stress) {
   return v;
 }
 
-/* What the trial stress needs, read before the loop: the compiler must see that stores leave it alone. */
+/* What the trial stress needs. It is read before the loop, so that the compiler sees that no store changes
+ * it. */
 typedef struct mpmi_increments {
   const double *L, *stress;
   int64_t ld;
   double dt, lambda, mu;
 } mpmi_increments;
 
-MPMI_INLINE mpmi_increments mpmi_increments_of(const double *constants, const mpm_material_batch *batch) {
-  mpmi_increments in = {
-      batch->L, batch->stress, batch->ld, batch->dt, constants[MPMI_C_LAMBDA], constants[MPMI_C_MU]};
+MPMI_INLINE mpmi_increments mpmi_increments_of(const mpmi_elastic *c, const mpm_material_batch *batch) {
+  mpmi_increments in = {batch->L, batch->stress, batch->ld, batch->dt, c->lambda, c->mu};
   return in;
 }
 
@@ -112,9 +112,9 @@ MPMI_INLINE double mpmi_square(mpmi_sym s) {
 }
 
 /* Elastic wave speed at the current density, and energy J/2 stress : S : stress per initial volume. */
-MPMI_INLINE void mpmi_elastic_outputs(int dim, const double *constants, const mpm_material_batch *batch) {
-  const double p_wave = constants[MPMI_C_P_WAVE_SQUARED];
-  const double by_mean = constants[MPMI_C_MEAN_ENERGY], by_deviator = constants[MPMI_C_SHEAR_ENERGY];
+MPMI_INLINE void mpmi_elastic_outputs(int dim, const mpmi_elastic *c, const mpm_material_batch *batch) {
+  const double p_wave = c->p_wave_squared;
+  const double by_mean = c->mean_energy, by_deviator = c->shear_energy;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F, *stress = batch->stress_new;
   double *wave_speed = batch->wave_speed, *energy = batch->energy;

@@ -1,6 +1,6 @@
-/* Tangents of laws in objective increments (objective_increment.h), 16 particles at a time: the derivative of
- *   mean(J) I + keep (dev(R stress R^T) + 2 shear dev(ln V))
- * to dF_inc = D F_inc, with keep the radial return of j2. */
+/* Tangents of laws in objective increments (objective_increment.h), for a chunk of particles: the derivative
+ * of mean(J) I + keep (dev(R stress R^T) + 2 shear dev(ln V)) to dF_inc = D F_inc, with keep the radial
+ * return of j2. */
 #ifndef MPMI_OBJECTIVE_TANGENT_H
 #define MPMI_OBJECTIVE_TANGENT_H
 
@@ -16,7 +16,7 @@ typedef struct mpmi_objective {
   double slope[6][6][MPMI_CHUNK]; /* of the stress: by D, then by component */
 } mpmi_objective;
 
-/* What all of these laws take from particle p of the chunk, i of the batch. */
+/* Loads what all of these laws need of a particle: p in the chunk, i in the batch. */
 MPMI_INLINE void mpmi_objective_load(int dim, mpmi_objective *o, int p, const mpm_material_batch *batch,
                                      int64_t i) {
   const int64_t ld = batch->ld;
@@ -31,10 +31,10 @@ MPMI_INLINE void mpmi_objective_load(int dim, mpmi_objective *o, int p, const mp
   mpmi_store_sym(dim, o->turning[0], MPMI_CHUNK, p, spins.turning);
 }
 
-/* The chunk from particle `begin` on, elastic. */
-MPMI_INLINE void mpmi_elastic_chunk(int dim, const double *constants, const mpm_material_batch *batch,
+/* Loads the chunk from particle `begin` on for an elastic law. */
+MPMI_INLINE void mpmi_elastic_chunk(int dim, const mpmi_elastic *c, const mpm_material_batch *batch,
                                     int64_t begin, mpmi_objective *o) {
-  const double mu = constants[MPMI_C_MU], bulk = constants[MPMI_C_LAMBDA] + (2.0 / 3.0) * mu;
+  const double mu = c->mu, bulk = c->lambda + (2.0 / 3.0) * mu;
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     mpmi_objective_load(dim, o, p, batch, begin + p);
@@ -45,14 +45,7 @@ MPMI_INLINE void mpmi_elastic_chunk(int dim, const double *constants, const mpm_
   }
 }
 
-/* The tangent of a chunk that has all but its slopes; added to what is there where add is 1. */
-#define MPMI_DECLARE_OBJECTIVE_ROWS(isa)                                                                     \
-  void mpmi_objective_rows_##isa(int32_t dim, int32_t add, mpmi_objective *o, double *tangent, int64_t ld);
-
-MPMI_DECLARE_OBJECTIVE_ROWS(baseline)
-#if MPMI_HAS_X86
-MPMI_DECLARE_OBJECTIVE_ROWS(avx2)
-MPMI_DECLARE_OBJECTIVE_ROWS(avx512)
-#endif
+/* Writes the tangent of a chunk of which everything but the slopes is known, or adds it where add is 1. */
+void KERNEL(objective_rows)(int32_t dim, int32_t add, mpmi_objective *o, double *tangent, int64_t ld);
 
 #endif

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "material/laws.h"
-#include "material/tangent_rows.h"
+#include "material/material.h"
+#include "simd/tensor.h"
 
 enum { STRESS_ROWS = 6, F_ROWS = 9 };
 /* Rows of a batch that differs in F, F_inc and L and has outputs of its own; then tau at one side of the
@@ -26,7 +26,7 @@ static double *row_of(double *tangent, int64_t ld, int i, int j, int k, int l) {
 }
 
 /* ---- the host's callback ------------------------------------------------------------------------------ */
-/* Whatever the host made of inert slots must not get into sums. */
+/* Inert slots get zeros: what the host made of them must not get into sums. */
 static void take_row(const mpm_material_batch *batch, const double *from, double *row) {
   for (int64_t p = 0; p < batch->n; ++p) row[p] = batch->id[p] < 0 ? 0.0 : from[p];
 }
@@ -84,7 +84,8 @@ static double jacobian(const double *F, int64_t ld, int64_t p) {
   return 1.0 + mpmi_J_minus_1(3, mpmi_load_F_minus_1(3, F, ld, p));
 }
 
-/* Runs the law with L_kl = e beside what there is. */
+/* Runs the law on the batch with F, F_inc and L changed as by dF = e E_kl F, where E_kl has a 1 at kl and
+ * else zeros. */
 static mpm_status run_varied(const mpm_material *material, const mpm_material_batch *batch, varied *v, int k,
                              int l, double e) {
   add_row(v->F, batch->F, batch->F, e, k, l, batch);
@@ -135,17 +136,13 @@ static mpm_status difference_law(const mpm_material *material, int32_t dim, cons
 }
 
 /* ---- all materials ------------------------------------------------------------------------------------ */
-/* Not in general where the stress depends on the step: see the theory. One component is symmetric. */
-static int32_t law_is_symmetric(const mpm_material *material, int32_t dim) {
-  return dim == 1 || (material->law->stress_from_F && material->constants[MPMI_C_VISCOSITY] == 0.0);
-}
-
 mpm_status mpmi_material_tangent(const mpm_material *material, int32_t isa, int32_t dim,
                                  const mpm_material_batch *batch, void *scratch, double *tangent,
                                  int32_t *symmetric) {
+  (void)isa; /* the law has the kernels of the material's context */
   if (material->law) {
-    mpmi_tangent_kernel(isa, material->law->index)(material->constants, dim, batch, tangent);
-    if (!law_is_symmetric(material, dim)) *symmetric = 0;
+    material->law->tangent(material->constants, dim, batch, tangent);
+    if (dim > 1 && !material->law->is_symmetric(material->constants)) *symmetric = 0;
     return MPM_OK;
   }
   if (material->custom.tangent) return call_tangent(material, dim, batch, scratch, tangent, symmetric);

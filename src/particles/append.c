@@ -29,10 +29,10 @@ static mpm_status grow(mpm_particles *set, int64_t slots) {
   return mpmi_particles_reserve(set, wanted > MPMI_MAX_SLOTS ? MPMI_MAX_SLOTS : wanted);
 }
 
-/* A law without stress is rigid: its particles act only by being prescribed, and they are unless the host
+/* Particles whose F stays have no stress: they act only by being prescribed, and they are unless the host
  * says otherwise. */
 static int32_t is_rigid(const mpm_particles *set) {
-  return set->material->law && !strcmp(set->material->law->name, "rigid");
+  return mpmi_material_kinematics(set->material) == MPMI_F_STAYS;
 }
 
 mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, int64_t *slot) {

@@ -106,8 +106,7 @@ void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t 
 }
 
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {
-  const mpm_status status =
-      mpmi_material_evaluate(set->material, set->context->isa, set->grid->dim, &b->batch);
+  const mpm_status status = mpmi_material_evaluate(set->material, set->grid->dim, &b->batch);
   if (status || set->material->law) return status;
   /* Whatever the host made of inert slots must not get into sums. */
   for (int64_t p = 0; p < b->batch.n; ++p) {

@@ -1,4 +1,5 @@
-/* What kernels tell of a batch as a whole: that some particle deserves a look. */
+/* Bits that kernels return for a batch of particles when one of them deserves a look: it has left its tile or
+ * the grid, or a value is not finite, or a volume is not positive. */
 #ifndef MPMI_FLAGS_H
 #define MPMI_FLAGS_H
 

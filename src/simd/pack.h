@@ -30,8 +30,8 @@ MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double 
   mpmi_store_halves(out + 5 * stride, out + 7 * stride,
                     __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
 }
-/* Eight components of as many particles: a store for each, for a load that wants all of it back at once would
- * wait for the end of two stores. */
+/* Eight components of eight particles. Those of one particle are written by one store, because a load of all
+ * of them would have to wait for two stores to end. */
 MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *out) {
   mpmi_lanes pair[2][4]; /* of two components, of even and odd particles */
   for (int32_t c = 0; c < 4; ++c) {

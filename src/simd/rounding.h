@@ -15,6 +15,12 @@ MPMI_INLINE mpmi_lanes mpmi_lanes_round(mpmi_lanes v) {
   return (v + MPMI_ROUNDING_SHIFT) - MPMI_ROUNDING_SHIFT;
 }
 
+/* x as a double of its own: where it is a product, no sum around it becomes a fused multiply-add. */
+MPMI_INLINE double mpmi_rounded(double x) {
+  volatile double rounded = x;
+  return rounded;
+}
+
 MPMI_INLINE double mpmi_floor(double x) {
   double r = mpmi_round(x);
   return r > x ? r - 1.0 : r;

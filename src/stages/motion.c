@@ -52,7 +52,7 @@ static int32_t is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
   const mpm_grid *grid = settings->grid;
   const int32_t above = *x > grid->upper[k];
   const double face = above ? grid->upper[k] : grid->desc.origin[k];
-  if (settings->wall[2 * k + above].kind < MPM_WALL_FIXED) return 0;
+  if (!mpmi_is_solid(&settings->wall[2 * k + above])) return 0;
   if (!(fabs(*x - face) <= WALL_ROUNDING * grid->desc.spacing[k])) return 0;
   *x = face;
   return 1;
@@ -90,7 +90,7 @@ static void look_outside(mpmi_batch *b) {
       if (*x >= grid->desc.origin[k] && *x <= grid->upper[k]) continue;
       if (grid->desc.periodic[k])
         stays |= !wrap(grid, k, x, mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot);
-      else if (settings->wall[2 * k + (*x > grid->upper[k])].kind == MPM_WALL_OPEN)
+      else if (mpmi_wall_kind_of(settings->wall[2 * k + (*x > grid->upper[k])].kind)->opens)
         leaves = 1;
       else if (!is_on_wall(settings, k, x))
         stays = 1;

@@ -64,8 +64,8 @@ int32_t mpmi_strain_deform(mpmi_batch *b) {
     F[c] = b->deform.F_new[c];
   }
   mpmi_law_batch_load(&b->law, set, b->begin, b->n, step->t + step->dt, step->dt);
-  step->settings->kernels->deform[mpmi_material_kinematics(set->material)][dim](&b->deform, b->n);
-  const uint32_t flags = step->settings->kernels->volume[dim](
+  step->settings->deformation->deform[mpmi_material_kinematics(set->material)][dim](&b->deform, b->n);
+  const uint32_t flags = step->settings->deformation->volume[dim](
       F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin, mpmi_f64(set, MPMI_VOLUME, 0) + b->begin, b->n);
   b->flags |= flags;
   return !flags;
@@ -130,7 +130,7 @@ void mpmi_make_volumes(const mpmi_layout *layout, const mpmi_settings *settings,
     if (!set->slots) continue;
     const double *F[9];
     for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_component_row(set, MPMI_F, copy, c);
-    settings->kernels->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0),
-                                   set->slots);
+    settings->deformation->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
+                                       mpmi_f64(set, MPMI_VOLUME, 0), set->slots);
   }
 }

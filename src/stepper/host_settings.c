@@ -11,20 +11,21 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
   if (face < 0 || face >= 2 * s->grid->dim)
     return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
                      (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
-  if (kind < MPM_WALL_NONE || kind > MPM_WALL_FRICTION)
+  const mpmi_wall_kind *row = mpmi_wall_kind_of(kind);
+  if (!row)
     return mpmi_fail(s->context, MPM_E_ARG, "kind is %d: it must be an MPM_WALL_NONE ... MPM_WALL_FRICTION",
                      (int)kind);
   if (s->grid->desc.periodic[face / 2] && kind != MPM_WALL_NONE)
     return mpmi_fail(s->context, MPM_E_ARG, "face %d belongs to a periodic axis and can have no wall",
                      (int)face);
-  if (kind == MPM_WALL_FRICTION && !(friction >= 0.0 && isfinite(friction)))
+  if (row->rubs && !(friction >= 0.0 && isfinite(friction)))
     return mpmi_fail(s->context, MPM_E_ARG, "friction is %g: it must be finite and >= 0", friction);
-  if (kind == MPM_WALL_FRICTION && mpmi_is_implicit(&s->settings))
+  if (row->rubs && mpmi_is_implicit(&s->settings))
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no friction walls: use MPM_WALL_SLIP or MPM_WALL_FIXED, or an "
                      "explicit scheme");
   if (s->settings.wall[face].kind != kind) s->layout.walls_changed = 1;
-  s->settings.wall[face] = (mpmi_wall){kind, kind == MPM_WALL_FRICTION ? friction : 0.0};
+  s->settings.wall[face] = (mpmi_wall){kind, row->rubs ? friction : 0.0};
   return MPM_OK;
 }
 

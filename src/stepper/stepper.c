@@ -36,6 +36,7 @@ mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_st
   s->settings = (mpmi_settings){.context = context,
                                 .grid = grid,
                                 .kernels = mpmi_kernels_of(context->isa),
+                                .deformation = mpmi_deformation_of(context->isa),
                                 .tasks = context->concurrency,
                                 .desc = d,
                                 .transfer = mpmi_transfer_of(d.transfer)};
@@ -123,7 +124,7 @@ static mpm_status without_explicit_parts(const mpm_stepper *s) {
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no node hooks: unset them, or use an explicit scheme");
   for (int32_t f = 0; f < 2 * s->grid->dim; ++f)
-    if (s->settings.wall[f].kind == MPM_WALL_FRICTION)
+    if (mpmi_wall_kind_of(s->settings.wall[f].kind)->rubs)
       return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                        "scheme MPM_NEWMARK has no friction walls, and face %d is one: use MPM_WALL_SLIP or "
                        "MPM_WALL_FIXED, or an explicit scheme",

@@ -49,7 +49,8 @@ MPMI_INLINE void mpmi_moments(int32_t width, int32_t spaced, double h, int32_t n
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) at->g[k][p] = u[k][p] * inverse_moment[p];
 }
 
-/* The first nodes of stencils, relative to the tile, in the periodic image that lies in the tile. */
+/* Moves the first nodes of stencils, which are relative to the tile, to the periodic image that lies in the
+ * tile. */
 MPMI_INLINE void mpmi_into_tile(const mpmi_axis *a, int64_t n, double *place) {
   if (a->period > 0.0) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
       double at = place[p];
@@ -63,7 +64,7 @@ MPMI_INLINE double mpmi_cell(const mpmi_axis *a, double xi) {
   return cell > a->last_cell ? a->last_cell : cell;
 }
 
-/* Place of each stencil in the tile. */
+/* Finds the place of each stencil in the tile. */
 MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (*place)[MPMI_CHUNK],
                                  int32_t *node) {
   const double edge = MPMI_TILE_EDGE(dim, width);

@@ -2,7 +2,7 @@
 #include "simd/vector.h"
 #include "transfer/box.h"
 
-/* nodes += tile, and the tile is clean again. */
+/* Adds the tile to the nodes and clears it. */
 MPMI_INLINE void add_box(int32_t values, const mpmi_box *box) {
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW;
   const mpmi_node zero = mpmi_node_zero();
@@ -19,8 +19,8 @@ MPMI_INLINE void add_box(int32_t values, const mpmi_box *box) {
     }
 }
 
-/* tile = nodes; a tile of 4 values per node can be had from nodes with 8: the velocities without their
- * changes. */
+/* Copies the nodes into the tile. A tile of 4 values per node may be filled from nodes with 8: it then holds
+ * the velocities without their changes. */
 MPMI_INLINE void load_box(int32_t values, int32_t node_values, const mpmi_box *box) {
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW;
   for (int32_t i = 0; i < box->count[0]; ++i)

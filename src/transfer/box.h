@@ -9,11 +9,11 @@ typedef struct mpmi_box {
   double *tile, *nodes;
   int32_t count[3], tile_stride[2], node_stride[2];
 } mpmi_box;
-/* nodes += tile, tile = 0, both with `values` per node. */
+/* Adds the tile to the nodes and clears it; both have `values` per node. */
 typedef void (*mpmi_add_box_fn)(int32_t values, const mpmi_box *box);
 /* Prefetches the nodes. */
 typedef void (*mpmi_fetch_box_fn)(int32_t values, const mpmi_box *box);
-/* tile = nodes: 8 from 8, or 4 from 4 or from the first half of 8. */
+/* Copies nodes into the tile: 8 values from 8, or 4 from 4 or from the first half of 8. */
 typedef void (*mpmi_load_box_fn)(int32_t values, int32_t node_values, const mpmi_box *box);
 
 #endif

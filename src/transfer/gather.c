@@ -16,7 +16,7 @@ typedef struct mpmi_gathered {
   _Alignas(64) double v[4 * MPMI_CHUNK], dv[4 * MPMI_CHUNK], L[3][4 * MPMI_CHUNK], M[3][4 * MPMI_CHUNK];
 } mpmi_gathered;
 
-/* The node about which moments are taken. */
+/* The node of a stencil, counted along an axis, about which moments are taken. */
 #define MIDDLE(width) ((width) > 2 ? 1 : 0)
 
 /* sum += w_k v_k; with `moment` also *m += (k - middle) w_k v_k. Called for k = 0, 1 ... in order. */

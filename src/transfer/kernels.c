@@ -30,23 +30,6 @@ PER_DIM(1)
 PER_DIM(2)
 PER_DIM(3)
 
-/* Those of mpmi_deformation_of(), for who has this table at hand. */
-#define FORWARD(name, kind, dim)                                                                             \
-  static void name##_##dim(const mpmi_deform *job, int64_t n) {                                              \
-    KERNEL(deformation).deform[kind][dim](job, n);                                                           \
-  }
-#define FORWARD_DIM(dim)                                                                                     \
-  FORWARD(deform, MPMI_F_DEFORMS, dim)                                                                       \
-  FORWARD(dilate, MPMI_F_DILATES, dim)                                                                       \
-  FORWARD(stay, MPMI_F_STAYS, dim)                                                                           \
-  static uint32_t volume_##dim(const double *const *F, const double *initial_volume, double *out,            \
-                               int64_t n) {                                                                  \
-    return KERNEL(deformation).volume[dim](F, initial_volume, out, n);                                       \
-  }
-FORWARD_DIM(1)
-FORWARD_DIM(2)
-FORWARD_DIM(3)
-
 void KERNEL(add_box)(int32_t, const mpmi_box *);
 void KERNEL(fetch_box)(int32_t, const mpmi_box *);
 void KERNEL(load_box)(int32_t, int32_t, const mpmi_box *);
@@ -67,10 +50,6 @@ const mpmi_kernels KERNEL(kernels) = {
     .load_box = KERNEL(load_box),
     .update = KERNEL(update),
     .move = BY_DIM(move),
-    .deform = {[MPMI_F_DEFORMS] = {NULL, deform_1, deform_2, deform_3},
-               [MPMI_F_DILATES] = {NULL, dilate_1, dilate_2, dilate_3},
-               [MPMI_F_STAYS] = {NULL, stay_1, stay_2, stay_3}},
-    .volume = {NULL, volume_1, volume_2, volume_3},
     .sums = BY_DIM(sums),
     .push = BY_DIM(push),
 #define BY_WIDTH(name)                                                                                       \

@@ -10,7 +10,6 @@
 #ifndef MPMI_KERNELS_H
 #define MPMI_KERNELS_H
 
-#include "material/deformation.h"
 #include "transfer/box.h"
 #include "transfer/gather.h"
 #include "transfer/move.h"
@@ -30,8 +29,6 @@ typedef struct mpmi_kernels {
   mpmi_load_box_fn load_box;
   mpmi_update_fn update;
   mpmi_move_fn move[4];
-  mpmi_deform_fn deform[MPMI_F_KINDS][4]; /* those of mpmi_deformation_of() */
-  mpmi_volume_fn volume[4];
   mpmi_sums_fn sums[4];
   mpmi_push_fn push[4];
   mpmi_force_scatter_fn force_scatter[4][MPMI_MAX_WIDTH + 1];

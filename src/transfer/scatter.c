@@ -132,7 +132,7 @@ MPMI_INLINE int32_t is_affine(int32_t form) {
 
 _Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
 
-/* The stress of all particles, by column and row. */
+/* The component arrays of the stress, by column and row. */
 typedef struct mpmi_stress_rows {
   const double *at[3][3];
 } mpmi_stress_rows;
@@ -204,7 +204,7 @@ MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const m
   }
 }
 
-/* As nodes have it. Components that the grid does not have are zero. */
+/* Packs what was given in the order of a node's values. Components that the grid does not have are zero. */
 MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, const mpmi_given *given,
                       mpmi_first_order *of) {
   const int32_t eight = form >= MPMI_SCATTER_8, affine = is_affine(form);

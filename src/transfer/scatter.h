@@ -5,9 +5,9 @@
 #include "transfer/streams.h"
 #include "transfer/weights.h"
 
-/* Forms of the scatter: 4 values (momentum and mass; the fused MLS force may ride on the momentum) or 8
- * (force apart), with or without the affine part of the velocity; UNEVEN: of nodes that are not a spacing
- * apart. */
+/* Forms of the scatter. With 4 values nodes receive momentum and mass, and the fused MLS force may be part of
+ * the momentum; with 8 values they receive the force as well. AFFINE adds the affine part of the velocity;
+ * UNEVEN does so for nodes that are not a spacing apart. */
 enum {
   MPMI_SCATTER_4,
   MPMI_SCATTER_4_AFFINE,
@@ -17,7 +17,7 @@ enum {
   MPMI_SCATTER_FORMS
 };
 
-/* Component arrays of a set, each at slot 0. */
+/* A scatter reads component arrays of a set, each from slot 0 on. */
 typedef struct mpmi_scatter {
   mpmi_axis axis[3];
   mpmi_weights_fn weights;

@@ -26,10 +26,10 @@ typedef struct mpmi_force_scatter {
   mpmi_weights_fn weights;
   mpmi_points points;
   int64_t ld;                                     /* of nominal */
-  const double *nominal;                          /* [9] at 0, or NULL: then */
-  const double *mass, *initial_volume, *force[3]; /* at slot 0; force beside gravity, or NULL */
+  const double *nominal;                          /* [9] gives the internal force; NULL: */
+  const double *mass, *initial_volume, *force[3]; /* these the external one; at slot 0, force may be NULL */
   double gravity[3];
-  int32_t deforms; /* 0: gives no stiffness */
+  int32_t deforms; /* 0: its particles have no stiffness */
   double *tile;
 } mpmi_force_scatter;
 typedef void (*mpmi_force_scatter_fn)(const mpmi_force_scatter *job, int64_t begin, int64_t n);
@@ -38,7 +38,8 @@ typedef void (*mpmi_force_scatter_fn)(const mpmi_force_scatter *job, int64_t beg
  * is K[(i * nodes + a) * dim * nodes + j * nodes + b]. */
 #define MPMI_STENCIL_NODES(dim, width)                                                                       \
   ((((dim) > 2 ? (width) * (width) * (width) : (dim) > 1 ? (width) * (width) : (width)) + 3) / 4 * 4)
-/* Adds particle p of a chunk, whose weights and gradients are at hand; stiffness: its first component. */
+/* Adds to K the stiffness of particle p of a chunk. W holds its weights and gradients; stiffness points at
+ * its first component of mpmi_push. */
 typedef void (*mpmi_stiffness_fn)(int32_t width, const mpmi_weights *W, int64_t p, const double *stiffness,
                                   int64_t ld, double *K);
 

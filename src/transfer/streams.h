@@ -4,7 +4,7 @@
 
 #include "simd/chunk.h"
 
-/* Component arrays, each at slot 0, that the chunk after the present one will touch. */
+/* Component arrays, each at slot 0, that are read or written chunk by chunk. */
 enum { MPMI_MAX_STREAMS = 64 };
 typedef struct mpmi_streams {
   int32_t count;

@@ -4,8 +4,8 @@
 
 #include "simd/flags.h"
 
-/* Sums over a batch: energies, momenta and the largest rate (|v_k| + c) / h_k. A job looks at what the law
- * gave, at the motion, or at both. */
+/* Sums over a batch: energies, momenta and the largest rate (|v_k| + c) / h_k. A job sums what the law
+ * gave, what the motion gives, or both. */
 enum { MPMI_SUMS_LAW = 1, MPMI_SUMS_MOTION = 2 };
 typedef struct mpmi_sums {
   double kinetic, strain, work, rate, viscous_rate;
@@ -16,13 +16,13 @@ typedef struct mpmi_sums_job {
   int64_t ld; /* of wave_speed ... */
   const double *x[3], *v[3], *mass, *initial_volume;
   const double *wave_speed, *kinematic_viscosity, *energy; /* [ld] of the batch */
-  const double *affine[9];                                 /* or NULL: of APIC, for the angular momentum */
-  const double *force[3];                                  /* external force or NULL, */
-  const double *x_old[3]; /* and old position: work over the step; NULL: no work */
+  const double *affine[9];                                 /* C of APIC for the angular momentum, or NULL */
+  const double *force[3];                                  /* external force beside gravity, or NULL */
+  const double *x_old[3]; /* for the work over the step; NULL: there is none */
   double gravity[3], period[3], inverse_period[3];
   double inverse_spacing[3], viscous_factor; /* 2 dim / h_min^2 */
   const double *moment[3];   /* sum w (x_i - x)^2 of each particle along each axis, or NULL: */
-  double constant_moment[3]; /* the same for all */
+  double constant_moment[3]; /* where it is the same for all particles */
   const double *checked[2];  /* [checked_rows][ld] further values that must be finite */
   int32_t checked_rows[2];
 } mpmi_sums_job;

@@ -11,7 +11,7 @@ enum { MPMI_MAX_WIDTH = 4 };
 /* One axis of the basis as seen from one block. */
 typedef struct mpmi_axis {
   double origin, spacing, inverse_spacing;
-  double last_cell;              /* the last one has particles on the upper face too */
+  double last_cell;              /* takes the particles on the upper face too */
   double first_knot, last_knot;  /* in cells: open knot vectors are repeated there; else far away */
   double domain;                 /* edge of the particle domains in cells, where particles have none */
   double period, inverse_period; /* in cells; 0 when the axis is not periodic */
@@ -40,7 +40,7 @@ typedef struct mpmi_weights {
 /* h^2 / D of the MLS form: quadratic and cubic B-splines have D = h^2 / 4 and h^2 / 3 everywhere. */
 #define MPMI_MLS_INVERSE(width) ((width) == 3 ? 4.0 : 3.0)
 
-/* What a transfer needs beside w and first. */
+/* What a transfer needs beside w and first: bits. */
 enum {
   MPMI_NEED_GRADIENT = 1, /* g */
   MPMI_NEED_MOMENT = 2,   /* u and inverse_moment */
@@ -48,8 +48,8 @@ enum {
   MPMI_NO_PLACE = 8       /* but not node: the particles may lie anywhere */
 };
 
-/* Weights of n (a multiple of 16, at most a chunk) particles along all axes: one function per basis and dim;
- * everything else is common. */
+/* Weights of n particles (MPMI_CHUNK of them) along all axes. Each basis has such a function for each dim;
+ * everything else is common to all. */
 typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,
                                 int64_t n, mpmi_weights *out);
 

@@ -35,9 +35,14 @@ int main(int argc, char **argv) {
   const char *name = argc == 3 ? argv[2] : "";
   const int64_t part = argc == 4 ? atoi(argv[2]) : 0, parts = argc == 4 ? atoi(argv[3]) : 1;
   if (parts < 1) return 1;
-  for (int64_t i = part * count / parts; i < (part + 1) * count / parts; ++i)
-    if (!strncmp(list[i].name, name, strlen(name)))
-      printf("%s %016" PRIx64 "\n", list[i].name, run_scene(&list[i], isa));
+  for (int64_t i = part * count / parts; i < (part + 1) * count / parts; ++i) {
+    uint64_t hash = 0;
+    if (strncmp(list[i].name, name, strlen(name))) continue;
+    if (run_scene(&list[i], isa, &hash))
+      printf("%s %016" PRIx64 "\n", list[i].name, hash);
+    else
+      printf("%s failed\n", list[i].name);
+  }
   free(list);
   return 0;
 }

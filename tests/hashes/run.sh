@@ -45,6 +45,10 @@ for set in baseline avx2 avx512; do
   fi
   for part in $(seq 0 $((parts - 1))); do cat "$folder/$set.$part"; done > "$folder/$set.lines"
   if [ "$mode" = update ]; then
+    if grep -q ' failed$' "$folder/$set.lines"; then
+      echo "update-hashes: $set: scenes fail" >&2
+      exit 1
+    fi
     { echo "# compiler: $compiler, C library: $library; written by: make update-hashes"; cat "$folder/$set.lines"; } \
       > "$expected"
     echo "$expected: $(wc -l < "$folder/$set.lines") scenes"
@@ -63,7 +67,7 @@ for set in baseline avx2 avx512; do
   fi
   if ! diff <(grep -Ev "$leave" "$expected") <(grep -Ev "$leave" "$folder/$set.lines") > "$folder/$set.diff"; then
     failed=1
-    sed -n "s/^</$set: expected/p; s/^>/$set: found   /p" "$folder/$set.diff" | sort -k 3
+    sed -n "s/^</$set: expected/p; s/^>/$set: found   /p" "$folder/$set.diff" | sort -b -k 3
     echo "$set: $(grep -c '^>' "$folder/$set.diff") of $(wc -l < "$folder/$set.lines") scenes differ"
   else
     echo "check-hashes: $set: $(grep -Evc "$leave" "$folder/$set.lines") scenes as expected"

@@ -10,7 +10,7 @@ static const double speed = 10.0, explicit_dt = 1.6e-3, implicit_dt = 4e-3; /* 0
 void must_be_ok(const world *w, mpm_status status, const char *call) {
   if (!status) return;
   fprintf(stderr, "%s: %s: %s: %s\n", w->is->name, call, mpm_status_name(status), mpm_last_error(w->context));
-  exit(1);
+  give_up();
 }
 
 /* The body: first cell, cells, and the cells of the grid on each axis. It stands across the edge of blocks,

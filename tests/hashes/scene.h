@@ -68,7 +68,7 @@ typedef struct world {
   uint64_t hash;
 } world;
 
-/* Ends the program with the library's sentence unless the call succeeds. */
+/* Ends the scene with the library's sentence unless the call succeeds. */
 #define must(w_, call) must_be_ok((w_), (call), #call)
 void must_be_ok(const world *w, mpm_status status, const char *call);
 
@@ -78,8 +78,11 @@ int32_t is_offered(const scene *is);
 void open_world(world *w, const scene *is, int32_t isa, int32_t empty);
 void close_world(world *w);
 mpm_stepper_desc describe_stepper(const scene *is);
-/* Tells the story of a scene; its hash. */
-uint64_t run_scene(const scene *is, int32_t isa);
+/* Tells the story of a scene; 0 if it failed, which is on the standard error and leaves behind what was open.
+ */
+int32_t run_scene(const scene *is, int32_t isa, uint64_t *hash);
+/* Ends the scene that is told as failed; the program where none is. */
+_Noreturn void give_up(void);
 
 /* The same everywhere: uniform in [-1, 1]. */
 double noise(uint64_t seed);

@@ -3,27 +3,6 @@
 const int32_t choice_first[CHOICES] = {1, 0, 0, 0, 1, 0, 0, 0, 0};
 const int32_t choice_end[CHOICES] = {4, BASES, SCHEMES, TRANSFERS, 3, 2, 2, LAWS, 2};
 
-int32_t choice_ready(int32_t what, int32_t value) {
-  switch (what) {
-  case CHOOSE_BASIS:
-    return basis_ready(&basis_options[value]);
-  case CHOOSE_SCHEME:
-    return scheme_ready(&scheme_options[value]);
-  case CHOOSE_TRANSFER:
-    return transfer_ready(&transfer_options[value]);
-  case CHOOSE_ORDER:
-    return option_ready(OPTION_POSITION_ORDER, value);
-  case CHOOSE_STAGGERED:
-    return option_ready(OPTION_STAGGERED, value);
-  case CHOOSE_REMEDY:
-    return option_ready(OPTION_LOCKING, value);
-  case CHOOSE_LAW:
-    return law_ready(value);
-  default:
-    return 1;
-  }
-}
-
 static int32_t is_fluid(int32_t law) {
   return law_options[law].model && !strcmp(law_options[law].model, "newtonian_fluid");
 }
@@ -54,7 +33,6 @@ typedef struct listing {
   combination *item;
   int32_t count, capacity;
   uint64_t seed;
-  int32_t value[CHOICES][TRANSFERS], values[CHOICES]; /* those that are ready */
 } listing;
 
 static void append(listing *l, const combination *c) {
@@ -65,13 +43,17 @@ static void append(listing *l, const combination *c) {
   l->item[l->count++] = *c;
 }
 
+static int32_t values_of(int32_t what) {
+  return choice_end[what] - choice_first[what];
+}
+
 /* Other choices than those given, until nothing is against it; 0 if there are none. */
 static int32_t complete(listing *l, combination *c, const int32_t *given) {
   dice random = {l->seed++};
   for (int32_t trial = 0; trial < 1000; ++trial) {
     for (int32_t k = 0; k < CHOICES; ++k) {
-      const int32_t at = (int32_t)throw_between(&random, 0.0, l->values[k]);
-      if (!given[k]) c->choice[k] = l->value[k][at];
+      const int32_t at = (int32_t)throw_between(&random, 0.0, values_of(k));
+      if (!given[k]) c->choice[k] = choice_first[k] + at;
     }
     if (!refusal_of(c)) return 1;
   }
@@ -80,15 +62,13 @@ static int32_t complete(listing *l, combination *c, const int32_t *given) {
 
 static void list_methods(listing *l) {
   const int32_t given[CHOICES] = {1, 1, 1, 1, 0, 0, 0, 0, 0};
-  int32_t at[4];
   combination c = {{0}};
-  for (at[0] = 0; at[0] < l->values[0]; ++at[0])
-    for (at[1] = 0; at[1] < l->values[1]; ++at[1])
-      for (at[2] = 0; at[2] < l->values[2]; ++at[2])
-        for (at[3] = 0; at[3] < l->values[3]; ++at[3]) {
-          for (int32_t k = 0; k < 4; ++k) c.choice[k] = l->value[k][at[k]];
+  int32_t *is = c.choice;
+  for (is[0] = choice_first[0]; is[0] < choice_end[0]; ++is[0])
+    for (is[1] = choice_first[1]; is[1] < choice_end[1]; ++is[1])
+      for (is[2] = choice_first[2]; is[2] < choice_end[2]; ++is[2])
+        for (is[3] = choice_first[3]; is[3] < choice_end[3]; ++is[3])
           if (complete(l, &c, given)) append(l, &c);
-        }
 }
 
 static int32_t listed(const listing *l, int32_t a, int32_t value, int32_t b, int32_t other) {
@@ -100,8 +80,8 @@ static int32_t listed(const listing *l, int32_t a, int32_t value, int32_t b, int
 static void list_pairs(listing *l) {
   for (int32_t a = 0; a < CHOICES; ++a)
     for (int32_t b = a + 1; b < CHOICES; ++b)
-      for (int32_t i = 0; i < l->values[a] * l->values[b]; ++i) {
-        const int32_t value = l->value[a][i / l->values[b]], other = l->value[b][i % l->values[b]];
+      for (int32_t i = 0; i < values_of(a) * values_of(b); ++i) {
+        const int32_t value = choice_first[a] + i / values_of(b), other = choice_first[b] + i % values_of(b);
         int32_t given[CHOICES] = {0};
         combination c = {{0}};
         given[a] = given[b] = 1;
@@ -113,9 +93,6 @@ static void list_pairs(listing *l) {
 
 combination *list_combinations(int32_t *count) {
   listing l = {.seed = 1};
-  for (int32_t k = 0; k < CHOICES; ++k)
-    for (int32_t value = choice_first[k]; value < choice_end[k]; ++value)
-      if (choice_ready(k, value)) l.value[k][l.values[k]++] = value;
   list_methods(&l);
   list_pairs(&l);
   *count = l.count;
@@ -133,24 +110,14 @@ const char *name_of(const combination *c, char *text, size_t size) {
   return text;
 }
 
-void describe_combination(const combination *c, mpm_grid_desc *grid, mpm_stepper_desc *stepper) {
+world_desc describe_combination(const combination *c) {
   const int32_t *is = c->choice;
-  const basis_option *basis = &basis_options[is[CHOOSE_BASIS]];
-  const transfer_option *transfer = &transfer_options[is[CHOOSE_TRANSFER]];
-  ck_assert_int_eq(mpm_grid_desc_init(grid, sizeof *grid), MPM_OK);
-  ck_assert_int_eq(mpm_stepper_desc_init(stepper, sizeof *stepper), MPM_OK);
-  grid->dim = is[CHOOSE_DIM];
-  grid->basis = basis->basis;
-  grid->boundary_basis = basis->boundary;
-  grid->smoothing = basis->smoothing;
-  grid->periodic[0] = is[CHOOSE_PERIODIC];
-  for (int32_t k = 0; k < 3; ++k) grid->cells[k] = 8, grid->spacing[k] = 0.25;
-  stepper->scheme = scheme_options[is[CHOOSE_SCHEME]].scheme;
-  stepper->transfer = transfer->transfer;
-  stepper->xpic_order = transfer->xpic_order;
-  stepper->flip = transfer->flip;
-  stepper->pic_damping = transfer->pic_damping;
-  stepper->position_order = is[CHOOSE_ORDER];
-  stepper->staggered = is[CHOOSE_STAGGERED];
-  stepper->locking_remedy = is[CHOOSE_REMEDY];
+  const method how = method_of(&basis_options[is[CHOOSE_BASIS]], &scheme_options[is[CHOOSE_SCHEME]],
+                               &transfer_options[is[CHOOSE_TRANSFER]]);
+  world_desc d = world_with(&how, is[CHOOSE_DIM], 8, 0.25);
+  d.grid.periodic[0] = is[CHOOSE_PERIODIC];
+  d.stepper.position_order = is[CHOOSE_ORDER];
+  d.stepper.staggered = is[CHOOSE_STAGGERED];
+  d.stepper.locking_remedy = is[CHOOSE_REMEDY];
+  return d;
 }

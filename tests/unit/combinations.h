@@ -2,11 +2,10 @@
 #ifndef COMBINATIONS_H
 #define COMBINATIONS_H
 
-#include "options.h"
-#include "support.h"
+#include "world.h"
 
-/* What a combination chooses: the place of each value in the tables of options.h; dim,
- * position order as they are. */
+/* What a combination chooses: the place of each value in the lists of methods.h; dim, position order as they
+ * are. */
 enum {
   CHOOSE_DIM,
   CHOOSE_BASIS,
@@ -25,19 +24,18 @@ typedef struct combination {
 
 /* First value of each choice, and one past the last. */
 extern const int32_t choice_first[CHOICES], choice_end[CHOICES];
-/* Is the value in the library, whatever it is combined with? */
-int32_t choice_ready(int32_t what, int32_t value);
 
 /* Why the library may refuse it, NULL where it must not. */
 const char *refusal_of(const combination *c);
 /* Are these two values refused in every combination? */
 int32_t pair_refused(int32_t what, int32_t value, int32_t other, int32_t other_value);
 
-/* Every dim, basis, scheme and transfer that is there, with the other choices in turn, and then as many as it
+/* Every dim, basis, scheme and transfer, with the other choices in turn, and then as many as it
  * takes to have every two values together. Freed by the caller. */
 combination *list_combinations(int32_t *count);
 
 const char *name_of(const combination *c, char *text, size_t size);
-void describe_combination(const combination *c, mpm_grid_desc *grid, mpm_stepper_desc *stepper);
+/* Describes a world of 8 cells of edge 0.25 along each axis. */
+world_desc describe_combination(const combination *c);
 
 #endif

@@ -2,7 +2,7 @@
 #ifndef EXACT_H
 #define EXACT_H
 
-#include "support.h"
+#include "world.h"
 
 TCase *basis_case(void);
 TCase *conservation_case(void);

@@ -24,16 +24,6 @@ static void run(mpmi_weights_fn fn, const mpmi_axis *axis, int32_t need, const d
   fn(axis, need, &points, 0, MPMI_CHUNK, out);
 }
 
-static int32_t available(int32_t isa) {
-  mpm_context *context;
-  mpm_context_desc desc;
-  ck_assert_int_eq(mpm_context_desc_init(&desc, sizeof desc), MPM_OK);
-  desc.isa = isa;
-  if (mpm_context_create(&desc, &context)) return 0;
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
-  return 1;
-}
-
 /* Nodes, half nodes, faces and their neighbourhoods in the first round, then anywhere. */
 static void fill_positions(dice *d, int32_t round, double *x) {
   static const double special[16] = {0.0,  0.5,  1.0, 1.5,         5.0,        4.5,        9.5,        9.0,
@@ -97,7 +87,7 @@ static void check_gradient(const char *name, mpmi_weights_fn fn, const mpmi_axis
 START_TEST(weights_are_exact) {
   static const char *const names[] = {"baseline", "avx2", "avx512"};
   const int32_t isa = MPM_ISA_BASELINE + _i;
-  if (!available(isa)) return;
+  if (!has_isa(isa)) return;
   const mpmi_kernels *kernels = mpmi_kernels_of(isa);
   dice d = {1};
   for (int32_t order = 1; order <= 2; ++order)
@@ -117,7 +107,7 @@ END_TEST
 /* u = w (x_i - x_p), D = sum u (x_i - x_p); moving least squares: the second weight is u / D. A linear basis
  * has no D at a node, a quadratic one h^2 / 4 everywhere. */
 START_TEST(moments_are_exact) {
-  if (!available(MPM_ISA_BASELINE + _i)) return;
+  if (!has_isa(MPM_ISA_BASELINE + _i)) return;
   const mpmi_kernels *kernels = mpmi_kernels_of(MPM_ISA_BASELINE + _i);
   dice d = {2};
   for (int32_t trial = 0; trial < 8; ++trial) {
@@ -148,7 +138,7 @@ END_TEST
 /* On a periodic axis the weights are the same, and the stencil lies in the tile whatever image the particle
  * is in. */
 START_TEST(periodic_images_reach_the_tile) {
-  if (!available(MPM_ISA_BASELINE + _i)) return;
+  if (!has_isa(MPM_ISA_BASELINE + _i)) return;
   const mpmi_kernels *kernels = mpmi_kernels_of(MPM_ISA_BASELINE + _i);
   dice d = {3};
   for (int32_t order = 1; order <= 2; ++order) {

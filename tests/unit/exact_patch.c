@@ -13,14 +13,10 @@ static double of_dim(int32_t dim, const double *tensor, int32_t c, double diagon
 /* A block of CELLS^dim cells of aligned particles, all with the deformation
  * gradient F_patch and v = L_patch x. */
 static mpm_particles *open_patch(world *w, const method *how, int32_t dim, int32_t side, int32_t deformed) {
-  const int32_t per_cell[3] = {side, side, side};
   const double lower[3] = {low, low, low}, upper[3] = {low + CELLS * h, low + CELLS * h, low + CELLS * h};
-  world_desc desc = world_default(dim, CELLS + 8, h);
-  world_use(&desc, how);
-  world_open(w, &desc);
-  mpm_particles *set = world_add_set(w);
-  ck_ok(w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
-  const int64_t n = mpm_particles_count(set);
+  world_desc desc = world_with(how, dim, CELLS + 8, h);
+  mpm_particles *set = world_open(w, &desc);
+  const int64_t n = world_fill(w, set, lower, upper, side);
   double F[9], C[9], *x = fetch(w, set, "position", dim), *v = calloc((size_t)(n * dim), sizeof *v);
   for (int32_t c = 0; c < 9; ++c) {
     F[c] = of_dim(dim, F_patch, c, 1.0);
@@ -119,10 +115,8 @@ START_TEST(affine_transfer_of_a_cloud) {
   if (how->transfer == MPM_FLIP) return;
   for (int32_t dim = 1; dim <= 3; ++dim) {
     world w;
-    world_desc desc = world_default(dim, CELLS + 8, h);
-    world_use(&desc, how);
-    world_open(&w, &desc);
-    mpm_particles *set = world_add_set(&w);
+    world_desc desc = world_with(how, dim, CELLS + 8, h);
+    mpm_particles *set = world_open(&w, &desc);
     dice d = {77};
     add_cloud(&w, set, &d, CLOUD, h, 1.0, 3.0, 0.0);
     double F[9], C[9], v[3 * CLOUD] = {0.0}, *x = fetch(&w, set, "position", dim);
@@ -153,16 +147,13 @@ END_TEST
  * linear basis and of second order with the quadratic one (Steffen et al. 2008, eqs 40-42). */
 START_TEST(unaligned_particles_give_the_order) {
   enum { LEVELS = 5 };
-  static const method bases[2] = {{MPM_LINEAR, MPM_USL, MPM_FLIP, 1.0, "linear"},
-                                  {MPM_BSPLINE2, MPM_USL, MPM_FLIP, 1.0, "quadratic"}};
+  const method *how = &methods[_i ? 0 : 10]; /* quadratic and linear FLIP by USL */
   const double length = 100.0 * h, F[9] = {1.1, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
   double error[LEVELS], spacing[LEVELS];
   for (int32_t level = 0; level < LEVELS; ++level) {
     world w;
-    world_desc desc = world_default(1, 108, h);
-    world_use(&desc, &bases[_i]);
-    world_open(&w, &desc);
-    mpm_particles *set = world_add_set(&w);
+    world_desc desc = world_with(how, 1, 108, h);
+    mpm_particles *set = world_open(&w, &desc);
     spacing[level] = h / ((1 << (level + 1)) + 0.37);
     const int64_t n = (int64_t)(length / spacing[level]);
     double *x = malloc((size_t)n * 2 * sizeof *x), *volume = x + n;
@@ -179,10 +170,10 @@ START_TEST(unaligned_particles_give_the_order) {
     world_close(&w);
   }
   for (int32_t level = 0; level < LEVELS; ++level)
-    show("patch %s ppc %.2f imbalance %.3e order %.2f\n", bases[_i].name, h / spacing[level], error[level],
+    show("patch %s ppc %.2f imbalance %.3e order %.2f\n", how->name, h / spacing[level], error[level],
          level ? log(error[level] / error[level - 1]) / log(spacing[level] / spacing[level - 1]) : 0.0);
   const double order = log(error[LEVELS - 1] / error[0]) / log(spacing[LEVELS - 1] / spacing[0]);
-  ck_within(bases[_i].name, order, _i ? 2.0 : 1.0, 0.15);
+  ck_within(how->name, order, _i ? 2.0 : 1.0, 0.15);
 }
 END_TEST
 

@@ -30,24 +30,16 @@ static void add_affine_part(int32_t basis, double h, int32_t dim, int64_t n, con
   }
 }
 
-static int32_t is_affine(const method *how) {
-  return how->transfer == MPM_APIC || how->transfer == MPM_APIC_MLS;
-}
-
 /* Sums over nodes of a step begun: those of the particles; the internal force is in balance. */
 static void check_nodes(world *w, const char *name, const double *gravity, double mass,
                         const double *momentum, double scale) {
   int64_t n;
   double *m = fetch_nodes(w, "mass", &n), *v = fetch_nodes(w, "velocity", &n),
          *f = fetch_nodes(w, "force", &n);
-  double total = 0.0;
-  for (int64_t i = 0; i < n; ++i) total += m[i];
-  ck_within(name, total, mass, 1e-12 * mass);
+  ck_within(name, sum_of(n, m), mass, 1e-12 * mass);
   for (int32_t k = 0; k < w->dim; ++k) {
-    double force = 0.0;
-    for (int64_t i = 0; i < n; ++i) force += f[k * n + i];
     ck_within(name, weighted_sum(n, m, v + k * n), momentum[k], 1e-12 * scale);
-    ck_within(name, force, mass * gravity[k], 1e-12 * (double)n * largest(n * w->dim, f));
+    ck_within(name, sum_of(n, f + k * n), mass * gravity[k], 1e-12 * (double)n * largest(n * w->dim, f));
   }
   free(m), free(v), free(f);
 }
@@ -58,17 +50,14 @@ START_TEST(steps_conserve) {
   const int32_t dim = _i / METHODS + 1;
   const double h = 0.05, gravity[3] = {1.0, -9.81, 0.5};
   world w;
-  world_desc desc = world_default(dim, 20, h);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, 20, h);
   memcpy(desc.stepper.gravity, gravity, sizeof gravity);
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
+  mpm_particles *set = world_open(&w, &desc);
   dice d = {(uint64_t)_i + 10};
   add_cloud(&w, set, &d, CLOUD, 0.05, 0.3, 0.7, 1.0);
   if (is_affine(how)) add_affine(&w, set, &d, 10.0);
   double *mass = fetch(&w, set, "mass", 1);
-  double total = 0.0;
-  for (int64_t p = 0; p < CLOUD; ++p) total += mass[p];
+  const double total = sum_of(CLOUD, mass);
   const double dt = 0.02 * world_stable_dt(&w);
   for (int32_t step = 0; step < 3; ++step) {
     const mpm_step_info before = world_info(&w);
@@ -115,20 +104,15 @@ START_TEST(parts_are_the_step) {
   world w[2];
   double *x[2], *v[2], *F[2];
   for (int32_t i = 0; i < 2; ++i) {
-    world_desc desc = world_default(2, 20, 0.05);
-    world_use(&desc, how);
-    world_open(&w[i], &desc);
-    mpm_particles *set = world_add_set(&w[i]);
+    world_desc desc = world_with(how, 2, 20, 0.05);
+    mpm_particles *set = world_open(&w[i], &desc);
     dice d = {5};
     add_cloud(&w[i], set, &d, CLOUD, 0.05, 0.3, 0.7, 1.0);
     for (int32_t step = 0; step < 3; ++step) {
-      if (i == 0) {
+      if (i == 0)
         world_step(&w[i], 1e-5);
-        continue;
-      }
-      ck_ok(&w[i], mpm_step_begin(w[i].stepper, 1e-5));
-      ck_ok(&w[i], mpm_step_grid(w[i].stepper));
-      ck_ok(&w[i], mpm_step_end(w[i].stepper, NULL));
+      else
+        world_staged_step(&w[i], 1e-5);
     }
     x[i] = fetch(&w[i], set, "position", 2);
     v[i] = fetch(&w[i], set, "velocity", 2);
@@ -147,15 +131,11 @@ END_TEST
 
 /* An elastic square of side 0.4 turns once; returns (L1 - L0) / L0. */
 static double turn(const method *how, int64_t cells, int32_t steps) {
-  const double omega = 2.0 * PI, lower[] = {0.3, 0.3}, upper[] = {0.7, 0.7};
-  const int32_t per_cell[] = {2, 2};
+  const double omega = 2.0 * PI;
   world w;
-  world_desc desc = world_default(2, cells, 1.0 / (double)cells);
-  world_use(&desc, how);
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
-  const int64_t n = mpm_particles_count(set);
+  world_desc desc = world_with(how, 2, cells, 1.0 / (double)cells);
+  mpm_particles *set = world_open(&w, &desc);
+  const int64_t n = world_fill_cube(&w, set, 0.3, 0.7);
   double *x = fetch(&w, set, "position", 2), *v = malloc((size_t)n * 2 * sizeof *v);
   for (int64_t p = 0; p < n; ++p) {
     v[p] = -omega * (x[n + p] - 0.5);
@@ -167,7 +147,7 @@ static double turn(const method *how, int64_t cells, int32_t steps) {
   const mpm_step_info start = world_info(&w);
   mpm_step_info now = start;
   for (int32_t i = 0; i < steps; ++i) now = world_step(&w, 1.0 / steps);
-  const double scale = omega * 0.15 * 0.16 * desc.density; /* about sum m |v| */
+  const double scale = omega * 0.15 * 0.16 * desc.law.density; /* about sum m |v| */
   for (int32_t k = 0; k < 2; ++k) ck_within(how->name, now.momentum[k], 0.0, 1e-12 * scale * sqrt(steps));
   free(x), free(v);
   world_close(&w);

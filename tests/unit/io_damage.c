@@ -1,22 +1,22 @@
 /* Buffers that are not what mpm_state_save() wrote. */
-#include "io_world.h"
+#include "io.h"
 
-static io_world world;
-static io_buffer saved;
+static world w;
+static saved_state saved;
 static uint64_t before;
 
 /* A small sorted state, and a world to load it into. */
 static void open_in(int32_t dim) {
   const io_setup setup = {
       .dim = dim, .transfer = MPM_APIC, .scheme = MPM_USL, .periodic = dim > 1, .concurrency = 1};
-  io_world from;
+  world from;
   io_open(&from, &setup);
-  io_steps(&from, 1);
+  world_steps(&from, 1);
   ck_assert_int_eq(mpmi_state_is_sorted(from.stepper), 1);
-  saved = io_save(&from);
-  io_close(&from);
-  io_open(&world, &setup);
-  before = io_hash(&world);
+  saved = world_save(&from);
+  world_close(&from);
+  io_open(&w, &setup);
+  before = world_hash(&w);
 }
 
 static void open_small(void) {
@@ -25,21 +25,21 @@ static void open_small(void) {
 
 static void close_small(void) {
   free(saved.data);
-  io_close(&world);
+  world_close(&w);
 }
 
 /* Copies, so that reading past the end is noticed by memory checkers. */
 static mpm_status load_copy(const unsigned char *data, int64_t bytes) {
   unsigned char *copy = malloc((size_t)bytes + (bytes == 0));
   memcpy(copy, data, (size_t)bytes);
-  const mpm_status status = mpm_state_load(world.stepper, copy, bytes);
+  const mpm_status status = mpm_state_load(w.stepper, copy, bytes);
   free(copy);
   return status;
 }
 
 static void refuses(const unsigned char *data, int64_t bytes, const char *text) {
-  ck_refused(world.f.context, load_copy(data, bytes), MPM_E_FORMAT, text);
-  ck_assert_uint_eq(io_hash(&world), before);
+  ck_refused(&w, load_copy(data, bytes), MPM_E_FORMAT, text);
+  ck_assert_uint_eq(world_hash(&w), before);
 }
 
 START_TEST(truncated_at_every_length) {
@@ -56,7 +56,7 @@ START_TEST(every_byte_counts) {
     refuses(saved.data, saved.bytes, "");
     saved.data[i] = kept;
   }
-  ck_ok(load_copy(saved.data, saved.bytes));
+  ck_ok(&w, load_copy(saved.data, saved.bytes));
 }
 END_TEST
 
@@ -77,8 +77,8 @@ END_TEST
 START_TEST(buffers_need_no_alignment) {
   unsigned char *data = malloc((size_t)saved.bytes + 1);
   memcpy(data + 1, saved.data, (size_t)saved.bytes);
-  ck_ok(mpm_state_load(world.stepper, data + 1, saved.bytes));
-  ck_ok(mpm_state_save(world.stepper, data + 1, saved.bytes));
+  ck_ok(&w, mpm_state_load(w.stepper, data + 1, saved.bytes));
+  ck_ok(&w, mpm_state_save(w.stepper, data + 1, saved.bytes));
   ck_assert_mem_eq(data + 1, saved.data, (size_t)saved.bytes);
   free(data);
 }
@@ -106,20 +106,20 @@ static void try_forged(const unsigned char *data, int64_t bytes) {
   const mpm_status status = load_copy(data, bytes);
   if (status) {
     ck_assert_int_eq(status, MPM_E_FORMAT);
-    ck_assert_uint_eq(io_hash(&world), before);
+    ck_assert_uint_eq(world_hash(&w), before);
     return;
   }
-  for (int32_t i = 0; i < 3; ++i) mpm_step(world.stepper, 1e-3, NULL);
-  ck_ok(load_copy(saved.data, saved.bytes));
-  before = io_hash(&world);
+  for (int32_t i = 0; i < 3; ++i) mpm_step(w.stepper, 1e-3, NULL);
+  ck_ok(&w, load_copy(saved.data, saved.bytes));
+  before = world_hash(&w);
 }
 
 START_TEST(forged_words) {
   static const int64_t odd[] = {
       0, 1, -1, 16, 17, INT64_MAX, INT64_MIN, 0x7ff8000000000000, 0x7fefffffffffffff, 48};
   unsigned char *data = malloc((size_t)saved.bytes);
-  ck_ok(load_copy(saved.data, saved.bytes));
-  before = io_hash(&world);
+  ck_ok(&w, load_copy(saved.data, saved.bytes));
+  before = world_hash(&w);
   for (int64_t at = sizeof(mpmi_state_header); at < saved.bytes; at += 8)
     for (size_t k = 0; k < sizeof odd / sizeof *odd; ++k) {
       memcpy(data, saved.data, (size_t)saved.bytes);
@@ -137,27 +137,27 @@ START_TEST(forged_fields) {
   const double mark[] = {12345.678}, bad = NOT_A_NUMBER;
   io_setup setup = io_plain(1);
   setup.references = 1;
-  io_world other;
+  world other;
   io_open(&other, &setup);
   for (int32_t i = 0; i < 2; ++i) {
-    ck_ok(mpm_particles_set_all(other.set[0], field[i], MPM_F64, 1, mark));
-    const io_buffer good = io_save(&other);
+    ck_ok(&other, mpm_particles_set_all(other.set[0], field[i], MPM_F64, 1, mark));
+    const saved_state good = world_save(&other);
     int64_t found = 0;
     for (int64_t at = 0; at + 8 <= good.bytes && !found; at += 8)
       if (!memcmp(good.data + at, mark, 8)) found = at;
     ck_assert_int_gt(found, 0);
     memcpy(good.data + found, &bad, 8);
     seal(good.data, good.bytes);
-    const uint64_t hash = io_hash(&other);
-    ck_refused(other.f.context, mpm_state_load(other.stepper, good.data, good.bytes), MPM_E_FORMAT, field[i]);
-    ck_assert_uint_eq(io_hash(&other), hash);
+    const uint64_t hash = world_hash(&other);
+    ck_refused(&other, mpm_state_load(other.stepper, good.data, good.bytes), MPM_E_FORMAT, field[i]);
+    ck_assert_uint_eq(world_hash(&other), hash);
     memcpy(good.data + found, mark, 8);
     seal(good.data, good.bytes);
-    io_load(&other, &good);
-    ck_ok(mpm_particles_set_all(other.set[0], field[i], MPM_F64, 1, (double[]){0.5}));
+    world_load(&other, &good);
+    ck_ok(&other, mpm_particles_set_all(other.set[0], field[i], MPM_F64, 1, (double[]){0.5}));
     free(good.data);
   }
-  io_close(&other);
+  world_close(&other);
 }
 END_TEST
 
@@ -165,11 +165,11 @@ END_TEST
 START_TEST(forged_volume) {
   const io_setup setup = io_plain(2);
   const double force[] = {1e300, 0.0};
-  io_world other;
+  world other;
   io_open(&other, &setup);
-  io_steps(&other, 1);
-  const io_buffer good = io_save(&other);
-  const uint64_t hash = io_hash(&other);
+  world_steps(&other, 1);
+  const saved_state good = world_save(&other);
+  const uint64_t hash = world_hash(&other);
   double *volume = mpmi_f64(other.set[1], MPMI_VOLUME, 0);
   int32_t found = 0;
   for (int64_t at = 0; at + 8 <= good.bytes; at += 8)
@@ -181,14 +181,14 @@ START_TEST(forged_volume) {
     }
   ck_assert_int_eq(found, 1);
   seal(good.data, good.bytes);
-  io_load(&other, &good);
-  ck_assert_uint_eq(io_hash(&other), hash);
-  ck_ok(mpm_particles_set_all(other.set[0], "applied_force", MPM_F64, 2, force));
-  const uint64_t loaded = io_hash(&other);
+  world_load(&other, &good);
+  ck_assert_uint_eq(world_hash(&other), hash);
+  ck_ok(&other, mpm_particles_set_all(other.set[0], "applied_force", MPM_F64, 2, force));
+  const uint64_t loaded = world_hash(&other);
   ck_assert_int_gt(mpm_step(other.stepper, 1e200, NULL), 0);
-  ck_assert_uint_eq(io_hash(&other), loaded);
+  ck_assert_uint_eq(world_hash(&other), loaded);
   free(good.data);
-  io_close(&other);
+  world_close(&other);
 }
 END_TEST
 
@@ -200,8 +200,8 @@ START_TEST(forged_at_random) {
                 first = span < 5000 ? span : 5000;
   unsigned char *data = malloc((size_t)saved.bytes);
   uint64_t random = 7;
-  ck_ok(load_copy(saved.data, saved.bytes));
-  before = io_hash(&world);
+  ck_ok(&w, load_copy(saved.data, saved.bytes));
+  before = world_hash(&w);
   for (int32_t i = 0; i < 2000; ++i) {
     memcpy(data, saved.data, (size_t)saved.bytes);
     int64_t bytes = saved.bytes;

@@ -2,7 +2,7 @@
  * VTK reads such files elsewhere. */
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
-#include "io_world.h"
+#include "io.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -61,15 +61,15 @@ static void read_tuple(const image *f, int64_t array, int64_t point, int32_t com
   ck_assert_uint_eq(fread(out, 8, (size_t)components, f->file), (size_t)components);
 }
 
-static mpm_view map(mpm_stepper *s, const char *field) {
+static mpm_view map(const world *w, const char *field) {
   mpm_view v = {.struct_size = sizeof v};
-  ck_ok(mpm_grid_map(s, 0, field, MPM_READ, &v));
+  ck_ok(w, mpm_grid_map(w->stepper, 0, field, MPM_READ, &v));
   return v;
 }
 
 /* Where the nodes of the stepper lie in the image, in the order of its views; to be freed. */
-static int64_t *places(const image *f, mpm_stepper *s, int64_t *count) {
-  mpm_view v = map(s, "index");
+static int64_t *places(const image *f, const world *w, int64_t *count) {
+  mpm_view v = map(w, "index");
   int64_t *place = calloc((size_t)v.count + 1, sizeof *place);
   for (int64_t i = 0; i < v.count; ++i)
     for (int32_t k = v.components - 1; k >= 0; --k) {
@@ -78,20 +78,20 @@ static int64_t *places(const image *f, mpm_stepper *s, int64_t *count) {
       place[i] = place[i] * (f->high[k] - f->low[k] + 1) + index - f->low[k];
     }
   *count = v.count;
-  ck_ok(mpm_view_release(&v));
+  ck_ok(w, mpm_view_release(&v));
   return place;
 }
 
-/* The named field at every active node; with `zeros`, zero at all other points.
- * Returns whether it is there. */
-static int32_t check_field(const image *f, mpm_stepper *s, const char *name, int32_t zeros) {
+/* The named field at every active node; with `zeros`, zero at all other points. Returns whether it is there.
+ */
+static int32_t check_field(const image *f, const world *w, const char *name, int32_t zeros) {
   int32_t components;
   const int64_t array = find_array(f, name, &components);
   if (array < 0) return 0;
   int64_t n;
-  int64_t *place = places(f, s, &n), is[3], wanted[3];
+  int64_t *place = places(f, w, &n), is[3], wanted[3];
   unsigned char *seen = zeros ? calloc(1, (size_t)points(f) + 1) : NULL;
-  mpm_view v = map(s, name);
+  mpm_view v = map(w, name);
   ck_assert_int_eq(components, v.components > 1 ? 3 : 1);
   for (int64_t i = 0; i < n; ++i) {
     memset(wanted, 0, sizeof wanted);
@@ -107,7 +107,7 @@ static int32_t check_field(const image *f, mpm_stepper *s, const char *name, int
     for (int32_t c = 0; c < components; ++c)
       if (is[c]) ck_abort_msg("%s is not zero where there is no node", name);
   }
-  ck_ok(mpm_view_release(&v));
+  ck_ok(w, mpm_view_release(&v));
   free(seen);
   free(place);
   return 1;
@@ -119,70 +119,64 @@ START_TEST(every_number) {
   io_setup setup = io_plain(dim);
   setup.transfer = mls ? MPM_APIC_MLS : MPM_FLIP;
   setup.periodic = dim == 3;
-  io_world w;
+  world w;
   io_open(&w, &setup);
-  io_steps(&w, 2);
-  if (staged) ck_ok(mpm_step_begin(w.stepper, 0.004));
+  world_steps(&w, 2);
+  if (staged) ck_ok(&w, mpm_step_begin(w.stepper, 0.004));
   static image f;
-  io_path("all.vti", f.path, sizeof f.path);
-  ck_ok(mpm_write_grid(w.stepper, f.path, 0, NULL));
+  scratch_path("all.vti", f.path, sizeof f.path);
+  ck_ok(&w, mpm_write_grid(w.stepper, f.path, 0, NULL));
   open_image(&f);
   int64_t n;
-  free(places(&f, w.stepper, &n));
+  free(places(&f, &w, &n));
   ck_assert_int_ge(points(&f), n + (dim > 1)); /* there is a gap */
   for (int32_t k = 0; k < ALL; ++k) {
     const int32_t kept = k != 1 && !(mls && !staged && (k == 4 || k == 5));
-    ck_assert_int_eq(check_field(&f, w.stepper, all[k], 1), kept);
+    ck_assert_int_eq(check_field(&f, &w, all[k], 1), kept);
   }
   char text[80];
   snprintf(text, sizeof text, "Origin=\"-35 %s", dim == 1 ? "0 0\"" : dim == 2 ? "-1 0\"" : "-1 -1\"");
   ck_assert_ptr_nonnull(strstr(f.head, text));
   fclose(f.file);
   static const char *const some[] = {"velocity", "position"};
-  ck_ok(mpm_write_grid(w.stepper, f.path, 2, some));
+  ck_ok(&w, mpm_write_grid(w.stepper, f.path, 2, some));
   open_image(&f);
-  for (int32_t k = 0; k < ALL; ++k) ck_assert_int_eq(check_field(&f, w.stepper, all[k], 1), k == 1 || k == 3);
+  for (int32_t k = 0; k < ALL; ++k) ck_assert_int_eq(check_field(&f, &w, all[k], 1), k == 1 || k == 3);
   fclose(f.file);
-  if (staged) ck_ok(mpm_step_abort(w.stepper));
-  io_close(&w);
+  if (staged) ck_ok(&w, mpm_step_abort(w.stepper));
+  world_close(&w);
 }
 END_TEST
 
 /* A world of two particles in corners of a grid of so many cells, so that the last node is not active. */
-static void open_apart(io_world *w, int32_t dim, int64_t cells) {
-  mpm_grid_desc grid = fixture_grid(dim);
-  for (int32_t k = 0; k < dim; ++k) grid.cells[k] = cells, grid.spacing[k] = 1.0, grid.origin[k] = 0.0;
-  io_open_context(w, 1);
-  ck_ok(mpm_grid_create(w->f.context, &grid, &w->f.grid));
-  io_open_sets(w);
-  const io_setup setup = io_plain(dim);
-  const mpm_stepper_desc desc = io_stepper_desc(&setup);
-  ck_ok(mpm_stepper_create(w->f.context, w->f.grid, &desc, &w->stepper));
-  for (int32_t m = 0; m < WORLD_SETS; ++m) {
+static void open_apart(world *w, int32_t dim, int64_t cells) {
+  const mpm_grid_desc grid = grid_desc(dim, cells, 1.0);
+  const world_desc d = io_bare_desc(&grid);
+  world_open(w, &d);
+  for (int32_t m = 0; m < 2; ++m) {
     const double near = 3.3, far = (double)cells - 4.3;
     const double x[] = {m ? far : near, m ? near : far, m ? far : near}, v[] = {1.0, 2.0, 3.0}, volume = 1.0;
-    ck_ok(mpm_stepper_add(w->stepper, w->set[m]));
-    ck_ok(mpm_particles_add(w->set[m], 1, x, v, &volume, NULL, NULL, NULL));
+    ck_ok(w, mpm_particles_add(w->set[m], 1, x, v, &volume, NULL, NULL, NULL));
   }
-  ck_ok(mpm_step(w->stepper, 1e-4, NULL));
+  world_step(w, 1e-4);
 }
 
 /* 40000 x 40000 nodes, of which 18 are active: memory and time are theirs. */
 START_TEST(sparse_box) {
   static const char *const some[] = {"mass", "velocity"};
-  io_world w;
+  world w;
   open_apart(&w, 2, 40000);
   static image f;
-  io_path("sparse.vti", f.path, sizeof f.path);
+  scratch_path("sparse.vti", f.path, sizeof f.path);
   int64_t before, peak;
-  ck_ok(mpm_context_memory(w.f.context, &before, NULL));
-  ck_ok(mpm_write_grid(w.stepper, f.path, 2, some));
-  ck_ok(mpm_context_memory(w.f.context, NULL, &peak));
+  ck_ok(&w, mpm_context_memory(w.context, &before, NULL));
+  ck_ok(&w, mpm_write_grid(w.stepper, f.path, 2, some));
+  ck_ok(&w, mpm_context_memory(w.context, NULL, &peak));
   ck_assert_int_lt(peak - before, 100000);
   open_image(&f);
   ck_assert_int_gt(points(&f), INT64_C(1500000000));
-  ck_assert_int_eq(check_field(&f, w.stepper, "mass", 0), 1);
-  ck_assert_int_eq(check_field(&f, w.stepper, "velocity", 0), 1);
+  ck_assert_int_eq(check_field(&f, &w, "mass", 0), 1);
+  ck_assert_int_eq(check_field(&f, &w, "velocity", 0), 1);
   int32_t components;
   const int64_t array = find_array(&f, "velocity", &components);
   for (int64_t p = 100; p < points(&f) - 100; p += 15485863) { /* nowhere near the particles */
@@ -195,41 +189,41 @@ START_TEST(sparse_box) {
   ck_assert_int_gt(info.st_size, points(&f) * 32);
   fclose(f.file);
   unlink(f.path);
-  io_close(&w);
+  world_close(&w);
 }
 END_TEST
 
 START_TEST(box_beyond_a_file) {
   static const char *const some[] = {"mass"};
-  io_world w;
+  world w;
   char path[640];
-  io_path("beyond.vti", path, sizeof path);
+  scratch_path("beyond.vti", path, sizeof path);
   unlink(path);
   open_apart(&w, 3, 2000000);
-  ck_refused(w.f.context, mpm_write_grid(w.stepper, path, 1, some), MPM_E_ARG, "mpm_grid_map()");
+  ck_refused(&w, mpm_write_grid(w.stepper, path, 1, some), MPM_E_ARG, "mpm_grid_map()");
   ck_assert_int_ne(access(path, F_OK), 0);
-  io_close(&w);
+  world_close(&w);
   open_apart(&w, 3, 900000); /* offsets could name it, but no file is as long */
-  ck_refused(w.f.context, mpm_write_grid(w.stepper, path, 1, some), MPM_E_IO, "beyond.vti");
+  ck_refused(&w, mpm_write_grid(w.stepper, path, 1, some), MPM_E_IO, "beyond.vti");
   ck_assert_int_ne(access(path, F_OK), 0);
-  io_close(&w);
+  world_close(&w);
 }
 END_TEST
 
 START_TEST(refused) {
   io_setup setup = io_plain(2);
-  io_world w;
+  world w;
   io_open(&w, &setup);
-  mpm_context *c = w.f.context;
+  mpm_context *c = w.context;
   char path[640];
-  io_path("refused.vti", path, sizeof path);
+  scratch_path("refused.vti", path, sizeof path);
   unlink(path);
   const char *const bad[] = {"mass", "velocty"}, *const twice[] = {"mass", "force", "mass"},
                     *const none[] = {NULL}, *const force[] = {"force"},
                     *const acceleration[] = {"acceleration"};
   ck_assert_int_eq(mpm_write_grid(NULL, path, 0, NULL), MPM_E_ARG);
   ck_refused(c, mpm_write_grid(w.stepper, path, 0, NULL), MPM_E_STATE, "no nodal fields");
-  io_steps(&w, 1);
+  world_steps(&w, 1);
   ck_refused(c, mpm_write_grid(w.stepper, NULL, 0, NULL), MPM_E_ARG, "path");
   ck_refused(c, mpm_write_grid(w.stepper, "", 0, NULL), MPM_E_ARG, "path");
   ck_refused(c, mpm_write_grid(w.stepper, path, -1, bad), MPM_E_ARG, "count is -1");
@@ -241,69 +235,63 @@ START_TEST(refused) {
   ck_assert_int_ne(access(path, F_OK), 0);
   ck_refused(c, mpm_write_grid(w.stepper, "refused.vtr", 0, NULL), MPM_E_ARG, "end with .vti");
   for (int64_t k = 1; k <= 3; ++k) { /* the list of nodes; places; order; the file's name */
-    w.f.calls = 0;
-    w.f.fail_at = k;
+    w.memory.calls = 0;
+    w.memory.fail_at = k;
     ck_assert_int_eq(mpm_write_grid(w.stepper, path, 0, NULL), MPM_E_NOMEM);
     ck_assert_int_ne(access(path, F_OK), 0);
   }
-  w.f.fail_at = 0;
-  ck_ok(mpm_write_grid(w.stepper, path, 0, NULL));
+  w.memory.fail_at = 0;
+  ck_ok(&w, mpm_write_grid(w.stepper, path, 0, NULL));
   ck_assert_str_eq(mpm_last_error(c), "");
-  mpm_stepper_desc desc = io_stepper_desc(&setup);
+  mpm_stepper_desc desc = w.desc.stepper;
   desc.transfer = MPM_APIC_MLS;
-  ck_ok(mpm_stepper_configure(w.stepper, &desc));
-  ck_ok(mpm_write_grid(w.stepper, path, 1, force)); /* the last step was another */
-  io_steps(&w, 1);
+  ck_ok(&w, mpm_stepper_configure(w.stepper, &desc));
+  ck_ok(&w, mpm_write_grid(w.stepper, path, 1, force)); /* the last step was another */
+  world_steps(&w, 1);
   ck_refused(c, mpm_write_grid(w.stepper, path, 1, force), MPM_E_UNSUPPORTED, "MPM_APIC");
   ck_refused(c, mpm_write_grid(w.stepper, path, 1, acceleration), MPM_E_UNSUPPORTED, "staged step");
-  ck_ok(mpm_write_grid(w.stepper, path, 0, NULL));
+  ck_ok(&w, mpm_write_grid(w.stepper, path, 0, NULL));
   ck_assert_str_eq(mpm_last_error(c), "");
-  io_close(&w);
+  world_close(&w);
 }
 END_TEST
 
 /* Nodal fields are those of the last step whatever has happened to the particles since. */
 START_TEST(fields_of_the_last_step) {
   const io_setup setup = io_plain(2);
-  io_world w;
+  world w;
   io_open(&w, &setup);
-  io_steps(&w, 3);
+  world_steps(&w, 3);
   static image f;
-  io_path("last.vti", f.path, sizeof f.path);
-  mpm_view kept = map(w.stepper, "force"); /* the list of nodes is in use */
-  ck_ok(mpm_write_grid(w.stepper, f.path, 0, NULL));
-  ck_ok(mpm_view_release(&kept));
+  scratch_path("last.vti", f.path, sizeof f.path);
+  mpm_view kept = map(&w, "force"); /* the list of nodes is in use */
+  ck_ok(&w, mpm_write_grid(w.stepper, f.path, 0, NULL));
+  ck_ok(&w, mpm_view_release(&kept));
   open_image(&f);
-  ck_assert_int_eq(check_field(&f, w.stepper, "force", 1), 1);
+  ck_assert_int_eq(check_field(&f, &w, "force", 1), 1);
   const int64_t gone[] = {0, 1, 2};
   double dt;
-  ck_ok(mpm_particles_remove(w.set[0], 3, gone));
-  ck_ok(mpm_stable_dt(w.stepper, &dt));
-  ck_assert_int_eq(check_field(&f, w.stepper, "force", 1), 1);
+  ck_ok(&w, mpm_particles_remove(w.set[0], 3, gone));
+  ck_ok(&w, mpm_stable_dt(w.stepper, &dt));
+  ck_assert_int_eq(check_field(&f, &w, "force", 1), 1);
   fclose(f.file);
-  io_close(&w);
+  world_close(&w);
 }
 END_TEST
 
 /* ---- open knots: nodes at Greville points ---- */
-static void open_knots(io_world *w, int32_t dim, int32_t basis) {
-  mpm_grid_desc grid = fixture_grid(dim);
-  const int32_t per_cell[3] = {2, 2, 2};
+static void open_knots(world *w, int32_t dim, int32_t basis) {
+  mpm_grid_desc grid = grid_desc(dim, 9, 0.1);
   grid.basis = basis;
   grid.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
   for (int32_t k = 0; k < dim; ++k)
-    grid.cells[k] = 9, grid.spacing[k] = 0.1 + 0.07 * k, grid.origin[k] = k - 0.3, grid.periodic[k] = k == 1;
+    grid.spacing[k] = 0.1 + 0.07 * k, grid.origin[k] = k - 0.3, grid.periodic[k] = k == 1;
   double upper[3];
   for (int32_t k = 0; k < 3; ++k) upper[k] = grid.origin[k] + (k ? 6.0 : 9.0) * grid.spacing[k];
-  io_open_context(w, 1);
-  ck_ok(mpm_grid_create(w->f.context, &grid, &w->f.grid));
-  io_open_sets(w);
-  const io_setup setup = io_plain(dim);
-  const mpm_stepper_desc desc = io_stepper_desc(&setup);
-  ck_ok(mpm_stepper_create(w->f.context, w->f.grid, &desc, &w->stepper));
-  for (int32_t m = 0; m < WORLD_SETS; ++m) ck_ok(mpm_stepper_add(w->stepper, w->set[m]));
-  ck_ok(mpm_particles_fill_box(w->set[0], grid.origin, upper, per_cell, NULL, NULL));
-  ck_ok(mpm_step(w->stepper, 1e-5, NULL));
+  const world_desc d = io_bare_desc(&grid);
+  world_open(w, &d);
+  world_fill(w, w->set[0], grid.origin, upper, 2);
+  world_step(w, 1e-5);
 }
 
 /* First byte of the coordinates along an axis. */
@@ -327,20 +315,20 @@ static int64_t find_coordinates(const image *f, int32_t axis) {
 /* Points stand where the nodes do, to the bit, and fields are the nodes' own. */
 START_TEST(open_knots_are_rectilinear) {
   const int32_t dim = 1 + _i % 3, cubic = _i / 3;
-  io_world w;
+  world w;
   open_knots(&w, dim, cubic ? MPM_BSPLINE3 : MPM_BSPLINE2);
   static image f;
-  io_path("open.vti", f.path, sizeof f.path);
+  scratch_path("open.vti", f.path, sizeof f.path);
   unlink(f.path);
-  ck_refused(w.f.context, mpm_write_grid(w.stepper, f.path, 0, NULL), MPM_E_ARG, ".vtr");
+  ck_refused(&w, mpm_write_grid(w.stepper, f.path, 0, NULL), MPM_E_ARG, ".vtr");
   ck_assert_int_ne(access(f.path, F_OK), 0);
-  io_path("open.vtr", f.path, sizeof f.path);
-  ck_ok(mpm_write_grid(w.stepper, f.path, 0, NULL));
+  scratch_path("open.vtr", f.path, sizeof f.path);
+  ck_ok(&w, mpm_write_grid(w.stepper, f.path, 0, NULL));
   open_image(&f);
   ck_assert_ptr_nonnull(strstr(f.head, "<VTKFile type=\"RectilinearGrid\""));
   ck_assert_ptr_null(strstr(f.head, "Spacing"));
-  for (int32_t k = 0; k < ALL; ++k) ck_assert_int_eq(check_field(&f, w.stepper, all[k], 1), k != 1);
-  mpm_view index = map(w.stepper, "index"), position = map(w.stepper, "position");
+  for (int32_t k = 0; k < ALL; ++k) ck_assert_int_eq(check_field(&f, &w, all[k], 1), k != 1);
+  mpm_view index = map(&w, "index"), position = map(&w, "position");
   for (int32_t k = 0; k < 3; ++k) {
     const int64_t array = find_coordinates(&f, k);
     double x = 1.0, last;
@@ -361,10 +349,10 @@ START_TEST(open_knots_are_rectilinear) {
   ck_assert_double_eq_tol(second, -0.3 + 0.1 * (cubic ? 1.0 / 3.0 : 0.5), 1e-15);
   ck_assert_int_eq(f.low[0], cubic ? -1 : 0);
   ck_assert_int_eq(f.high[0], 10);
-  ck_ok(mpm_view_release(&position));
-  ck_ok(mpm_view_release(&index));
+  ck_ok(&w, mpm_view_release(&position));
+  ck_ok(&w, mpm_view_release(&index));
   fclose(f.file);
-  io_close(&w);
+  world_close(&w);
 }
 END_TEST
 

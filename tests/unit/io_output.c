@@ -1,7 +1,7 @@
 /* Files for visualisation: what is refused, and what stands in a series.
  * Their contents are read with VTK elsewhere. */
 #define _POSIX_C_SOURCE 200809L
-#include "io_world.h"
+#include "io.h"
 
 #include <locale.h>
 #include <signal.h>
@@ -25,14 +25,14 @@ static void contains(const char *wanted) {
 
 START_TEST(particle_arguments) {
   const io_setup setup = io_plain(2);
-  io_world w;
+  world w;
   io_open(&w, &setup);
-  mpm_context *c = w.f.context;
+  mpm_context *c = w.context;
   const mpm_particles *set = w.set[0];
   const char *const bad[] = {"velocity", "strain"}, *const twice[] = {"mass", "id", "mass"};
   const char *const unknown[] = {NULL}, *const state[] = {"state"},
                     *const reference[] = {"reference_position"};
-  io_path("refused.vtp", path, sizeof path);
+  scratch_path("refused.vtp", path, sizeof path);
   unlink(path);
   ck_assert_int_eq(mpm_write_particles(NULL, path, 0, NULL), MPM_E_ARG);
   ck_refused(c, mpm_write_particles(set, NULL, 0, NULL), MPM_E_ARG, "path");
@@ -46,18 +46,18 @@ START_TEST(particle_arguments) {
   ck_refused(c, mpm_write_particles(set, path, 1, reference), MPM_E_STATE, "reference_position");
   ck_assert_int_ne(access(path, F_OK), 0);
   ck_refused(c, mpm_write_particles(set, "no/such/place.vtp", 0, NULL), MPM_E_IO, "no/such/place.vtp");
-  ck_ok(mpm_write_particles(set, path, 2, twice));
+  ck_ok(c, mpm_write_particles(set, path, 2, twice));
   contains("NumberOfPoints=\"36\"");
   contains("Name=\"mass\" NumberOfComponents=\"1\"");
   ck_assert_ptr_null(strstr(text, "velocity"));
-  w.f.calls = 0;
+  w.memory.calls = 0;
   for (int64_t k = 1; k <= 2; ++k) { /* the index is there already: only the file's name is allocated */
-    w.f.fail_at = w.f.calls + 1;
+    w.memory.fail_at = w.memory.calls + 1;
     ck_assert_int_eq(mpm_write_particles(set, path, 0, NULL), MPM_E_NOMEM);
-    w.f.fail_at = 0;
+    w.memory.fail_at = 0;
   }
   contains("Name=\"mass\"");
-  io_close(&w);
+  world_close(&w);
 }
 END_TEST
 
@@ -74,41 +74,39 @@ static void check_series(int32_t entries) {
 }
 
 START_TEST(series_is_valid_after_every_append) {
-  mpm_context *c;
+  mpm_context *c = context_with(1, MPM_ISA_BEST, NULL);
   mpm_series *series;
-  ck_ok(mpm_context_create(NULL, &c));
-  io_path("run.pvd", path, sizeof path);
+  scratch_path("run.pvd", path, sizeof path);
   for (int32_t again = 0; again < 2; ++again) { /* an old file is replaced */
-    ck_ok(mpm_series_open(c, path, &series));
+    ck_ok(c, mpm_series_open(c, path, &series));
     check_series(0);
     for (int32_t k = 0; k < 20; ++k) {
       char name[40];
       snprintf(name, sizeof name, "out_%d.vtp", (int)k);
-      ck_ok(mpm_series_append(series, 0.1 * k, name));
+      ck_ok(c, mpm_series_append(series, 0.1 * k, name));
       check_series(k + 1);
       contains(name);
     }
     contains("timestep=\"0.1\"");
     contains("timestep=\"0.30000000000000004\"");
     ck_refused(c, mpm_context_destroy(c), MPM_E_STATE, "live");
-    ck_ok(mpm_series_close(series));
+    ck_ok(c, mpm_series_close(series));
     check_series(20);
   }
-  ck_ok(mpm_series_close(NULL));
-  ck_ok(mpm_context_destroy(c));
+  ck_ok(c, mpm_series_close(NULL));
+  ck_ok(c, mpm_context_destroy(c));
 }
 END_TEST
 
 START_TEST(series_names) {
-  mpm_context *c;
+  mpm_context *c = context_with(1, MPM_ISA_BEST, NULL);
   mpm_series *series;
-  ck_ok(mpm_context_create(NULL, &c));
-  io_path("names.pvd", path, sizeof path);
-  ck_ok(mpm_series_open(c, path, &series));
-  ck_ok(mpm_series_append(series, -1e-300, "a&b<c>\"d'.vtp"));
+  scratch_path("names.pvd", path, sizeof path);
+  ck_ok(c, mpm_series_open(c, path, &series));
+  ck_ok(c, mpm_series_append(series, -1e-300, "a&b<c>\"d'.vtp"));
   contains("file=\"a&amp;b&lt;c&gt;&quot;d&apos;.vtp\"");
   contains("timestep=\"-1e-300\"");
-  ck_ok(mpm_series_append(series, 2.5, "d\xc3\xbcnn/\xe2\x82\xac/\xf0\x9d\x84\x9e.vtp"));
+  ck_ok(c, mpm_series_append(series, 2.5, "d\xc3\xbcnn/\xe2\x82\xac/\xf0\x9d\x84\x9e.vtp"));
   contains("file=\"d\xc3\xbcnn/\xe2\x82\xac/\xf0\x9d\x84\x9e.vtp\"");
   static const char *const bad[] = {"a\nb",     "\x01",         "\xff.vtp",     "cut\xc3",
                                     "\xc0\xaf", "\xed\xa0\x80", "\xef\xbf\xbf", "\xf5\x80\x80\x80"};
@@ -120,17 +118,16 @@ START_TEST(series_names) {
   ck_refused(c, mpm_series_append(series, 1.0, ""), MPM_E_ARG, "empty");
   ck_assert_int_eq(mpm_series_append(NULL, 1.0, "x"), MPM_E_ARG);
   check_series(2);
-  ck_ok(mpm_series_close(series));
-  ck_ok(mpm_context_destroy(c));
+  ck_ok(c, mpm_series_close(series));
+  ck_ok(c, mpm_context_destroy(c));
 }
 END_TEST
 
 START_TEST(series_failures) {
-  fixture f;
+  host_memory memory = {0};
+  mpm_context *c = context_with(1, MPM_ISA_BEST, &memory);
   mpm_series *series;
-  fixture_context(&f);
-  mpm_context *c = f.context;
-  io_path("failing.pvd", path, sizeof path);
+  scratch_path("failing.pvd", path, sizeof path);
   ck_assert_int_eq(mpm_series_open(NULL, path, &series), MPM_E_ARG);
   ck_assert_ptr_null(series);
   ck_refused(c, mpm_series_open(c, path, NULL), MPM_E_ARG, "out");
@@ -138,18 +135,18 @@ START_TEST(series_failures) {
   ck_refused(c, mpm_series_open(c, "no/such/place.pvd", &series), MPM_E_IO, "no/such/place.pvd");
   ck_refused(c, mpm_series_open(c, "/dev/full", &series), MPM_E_IO, "/dev/full");
   for (int64_t k = 1; k <= 2; ++k) {
-    f.calls = 0;
-    f.fail_at = k;
+    memory.calls = 0;
+    memory.fail_at = k;
     ck_assert_int_eq(mpm_series_open(c, path, &series), MPM_E_NOMEM);
     ck_assert_ptr_null(series);
   }
-  f.fail_at = 0;
-  ck_ok(mpm_series_open(c, path, &series));
-  ck_ok(mpm_series_append(series, 1.0, "first"));
-  f.calls = 0;
-  f.fail_at = 1;
+  memory.fail_at = 0;
+  ck_ok(c, mpm_series_open(c, path, &series));
+  ck_ok(c, mpm_series_append(series, 1.0, "first"));
+  memory.calls = 0;
+  memory.fail_at = 1;
   ck_assert_int_eq(mpm_series_append(series, 2.0, "second"), MPM_E_NOMEM);
-  f.fail_at = 0;
+  memory.fail_at = 0;
   check_series(1);
   /* storage that is full: the entries so far stay valid */
   struct rlimit old, low;
@@ -162,11 +159,11 @@ START_TEST(series_failures) {
   setrlimit(RLIMIT_FSIZE, &old);
   signal(SIGXFSZ, handler);
   check_series(1);
-  ck_ok(mpm_series_append(series, 2.0, "second"));
+  ck_ok(c, mpm_series_append(series, 2.0, "second"));
   check_series(2);
-  ck_ok(mpm_series_close(series));
-  ck_ok(mpm_context_destroy(c));
-  ck_assert_int_eq(f.held, 0);
+  ck_ok(c, mpm_series_close(series));
+  ck_ok(c, mpm_context_destroy(c));
+  ck_assert_int_eq(memory.held, 0);
 }
 END_TEST
 
@@ -176,15 +173,14 @@ START_TEST(series_in_a_locale_with_commas) {
                                       "fr_FR",       "ps_AF.UTF-8", "fa_IR.UTF-8"};
   size_t i = 0;
   while (i < sizeof names / sizeof *names && !setlocale(LC_NUMERIC, names[i])) ++i;
-  mpm_context *c;
+  mpm_context *c = context_with(1, MPM_ISA_BEST, NULL);
   mpm_series *series;
-  ck_ok(mpm_context_create(NULL, &c));
-  io_path("locale.pvd", path, sizeof path);
-  ck_ok(mpm_series_open(c, path, &series));
-  ck_ok(mpm_series_append(series, 2.5, "x"));
+  scratch_path("locale.pvd", path, sizeof path);
+  ck_ok(c, mpm_series_open(c, path, &series));
+  ck_ok(c, mpm_series_append(series, 2.5, "x"));
   contains("timestep=\"2.5\"");
-  ck_ok(mpm_series_close(series));
-  ck_ok(mpm_context_destroy(c));
+  ck_ok(c, mpm_series_close(series));
+  ck_ok(c, mpm_context_destroy(c));
   setlocale(LC_NUMERIC, "C");
 }
 END_TEST

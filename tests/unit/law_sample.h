@@ -3,12 +3,11 @@
 #ifndef LAW_SAMPLE_H
 #define LAW_SAMPLE_H
 
-#include <check.h>
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
+#include "material/laws.h"
 #include "material/material.h"
+#include "world.h"
 
 /* Exact values are meant to be of higher precision than what they are compared with. */
 #if defined(__clang__)
@@ -116,7 +115,7 @@ static inline tensor polar_log(tensor g, tensor *rotation) {
   return turned(q, log_v);
 }
 
-/* ---- pseudo-random tensors --------------------------------------------------------------------------- */
+/* ---- pseudo-random tensors ---- */
 static inline real uniform(uint64_t *state) { /* in [-1, 1), repeatable everywhere */
   *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
   return (real)(int64_t)(*state >> 11) / (real)(INT64_C(1) << 52) - 1;
@@ -146,7 +145,7 @@ static inline tensor random_stress(uint64_t *state, int32_t dim, real size) {
   return combine(0.5L, t, 0.5L, transpose(t));
 }
 
-/* ---- a batch ----------------------------------------------------------------------------------------- */
+/* ---- a batch ---- */
 typedef struct sample {
   _Alignas(64) double F[9 * LD], F_inc[9 * LD], L[9 * LD], stress[6 * LD], state[LD];
   double stress_new[6 * LD], state_new[LD], wave_speed[LD], viscosity[LD], energy[LD];
@@ -230,8 +229,8 @@ static inline void sample_check_untouched(const sample *s, int32_t dim) {
               s->energy[i] == sample_unset);
 }
 
-static inline void sample_evaluate(sample *s, const mpm_material *material, int32_t isa, int32_t dim) {
-  ck_assert_int_eq(mpmi_material_evaluate(material, isa, dim, &s->batch), MPM_OK);
+static inline void sample_evaluate(sample *s, const mpm_material *material, int32_t dim) {
+  ck_ok(material->context, mpmi_material_evaluate(material, dim, &s->batch));
 }
 
 /* Loop tests run over instruction sets and dimensions. */
@@ -246,21 +245,16 @@ static inline int32_t loop_dim(int loop) {
 /* A material in a context of its own; NULL where the processor lacks the instruction set. */
 static inline mpm_material *law_material(int32_t isa, const char *model, const mpm_param *params,
                                          int32_t count) {
-  mpm_context_desc desc;
-  mpm_context *context;
+  mpm_context *context = context_with(1, isa, NULL);
   mpm_material *material;
-  ck_assert_int_eq(mpm_context_desc_init(&desc, sizeof desc), MPM_OK);
-  desc.isa = isa;
-  mpm_status status = mpm_context_create(&desc, &context);
-  if (status == MPM_E_UNSUPPORTED) return NULL;
-  ck_assert_int_eq(status, MPM_OK);
-  ck_assert_int_eq(mpm_material_create(context, model, params, count, &material), MPM_OK);
+  if (!context) return NULL;
+  ck_ok(context, mpm_material_create(context, model, params, count, &material));
   return material;
 }
 static inline void law_material_free(mpm_material *material) {
   mpm_context *context = material->context;
-  ck_assert_int_eq(mpm_material_destroy(material), MPM_OK);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  ck_ok(context, mpm_material_destroy(material));
+  ck_ok(context, mpm_context_destroy(context));
 }
 
 TCase *custom_material_case(void);

@@ -3,14 +3,11 @@
 #ifndef LINALG_H
 #define LINALG_H
 
-#include <check.h>
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "linalg/solver.h"
 #include "linalg/vectors.h"
+#include "world.h"
 
 /* Springs between all nodes within `reach` of each other, each of them stiff along and across itself. */
 typedef struct springs {
@@ -40,25 +37,11 @@ double *dense_of(const mpmi_matrix *A);
 void dense_solve(int64_t n, double *a, double *b); /* b becomes the solution */
 int64_t dense_negative(int64_t n, double *a);      /* eigenvalues < 0 of a symmetric one, by rotations */
 
-typedef struct counting {
-  int64_t held, calls, fail_at;
-} counting;
-mpm_context *context_of(int32_t concurrency, int32_t isa, counting *memory);
-
 /* A job with the usual settings, and what it must come to. */
 mpmi_solve_job job_of(const mpmi_matrix *A, const double *b, double *x, int32_t choice);
-#define solved(solver_, job_, report_)                                                                       \
-  do {                                                                                                       \
-    const mpm_status status_ = mpmi_solve(solver_, job_, report_);                                           \
-    if (status_) ck_abort_msg("%s: %s", mpm_status_name(status_), mpm_last_error((job_)->matrix->context));  \
-  } while (0)
+#define solved(solver_, job_, report_) ck_ok((job_)->matrix->context, mpmi_solve(solver_, job_, report_))
 #define refused(solver_, job_, report_, wanted_, text_)                                                      \
-  do {                                                                                                       \
-    const mpm_status status_ = mpmi_solve(solver_, job_, report_);                                           \
-    if (status_ != (wanted_) || !strstr(mpm_last_error((job_)->matrix->context), text_))                     \
-      ck_abort_msg("%s, wanted " #wanted_ ": \"%s\" in \"%s\"", mpm_status_name(status_), text_,             \
-                   mpm_last_error((job_)->matrix->context));                                                 \
-  } while (0)
+  ck_refused((job_)->matrix->context, mpmi_solve(solver_, job_, report_), wanted_, text_)
 
 TCase *linalg_matrix_case(void);
 TCase *linalg_methods_case(void);

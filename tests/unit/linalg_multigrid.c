@@ -108,7 +108,7 @@ START_TEST(galerkin) {
   int64_t row;
   springs_build(&A, context, &bodies[_i]);
   mpmi_multigrid_init(&g, context);
-  ck_assert_int_eq(mpmi_multigrid_prepare(&g, &A, &row), MPM_OK);
+  ck_ok(context, mpmi_multigrid_prepare(&g, &A, &row));
   ck_assert_int_ge(g.levels, 2);
   for (int32_t l = 0; l + 1 < g.levels; ++l) {
     const mpmi_matrix *fine = g.level[l].A, *coarse = g.level[l + 1].A;
@@ -149,11 +149,11 @@ START_TEST(one_cycle) {
   springs_build(&A, context, &bodies[_i]);
   const int64_t n = mpmi_matrix_unknowns(&A);
   mpmi_multigrid_init(&g, context);
-  ck_assert_int_eq(mpmi_multigrid_prepare(&g, &A, &row), MPM_OK);
+  ck_ok(context, mpmi_multigrid_prepare(&g, &A, &row));
   double *r = noise_vector(&A, 1), *q = noise_vector(&A, 2), *zr = calloc((size_t)n, sizeof *zr),
          *zq = calloc((size_t)n, sizeof *zq), rq = 0.0, qr = 0.0, size = 0.0;
-  ck_assert_int_eq(mpmi_multigrid_cycle(&g, r, zr), MPM_OK);
-  ck_assert_int_eq(mpmi_multigrid_cycle(&g, q, zq), MPM_OK);
+  ck_ok(context, mpmi_multigrid_cycle(&g, r, zr));
+  ck_ok(context, mpmi_multigrid_cycle(&g, q, zq));
   for (int64_t i = 0; i < n; ++i) {
     if (A.held[i]) ck_assert(zr[i] == 0.0);
     rq += r[i] * zq[i];
@@ -167,7 +167,7 @@ START_TEST(one_cycle) {
   ck_assert_double_lt(after, (bodies[_i].light > 0.0 ? 0.95 : 0.5) * before);
   free(left);
   for (int64_t i = 0; i < n; ++i) r[i] *= 1e-60;
-  ck_assert_int_eq(mpmi_multigrid_cycle(&g, r, zq), MPM_OK);
+  ck_ok(context, mpmi_multigrid_cycle(&g, r, zq));
   for (int64_t i = 0; i < n; ++i) zq[i] *= 1e60;
   ck_assert_double_lt(distance(n, zq, zr), 1e-5);
   free(r), free(q), free(zr), free(zq);
@@ -194,7 +194,7 @@ START_TEST(far_apart) {
   for (int64_t i = 0; i < A.rows; ++i)
     for (int32_t k = 0; k < 3; ++k) A.index[i][k] *= 4;
   mpmi_multigrid_init(&g, context);
-  ck_assert_int_eq(mpmi_multigrid_prepare(&g, &A, &row), MPM_OK);
+  ck_ok(context, mpmi_multigrid_prepare(&g, &A, &row));
   ck_assert_int_gt(g.levels, 3);
   ck_assert_int_lt(mpmi_matrix_unknowns(g.level[g.levels - 1].A), 1000);
   mpmi_multigrid_free(&g);
@@ -210,16 +210,16 @@ START_TEST(instruction_sets) {
   job.tolerance = 1e-12;
   solved(solver, &job, &report);
   for (int32_t isa = MPM_ISA_BASELINE; isa <= MPM_ISA_AVX512; ++isa) {
-    mpm_context *other = context_of(1, isa, NULL);
+    mpm_context *other = context_with(1, isa, NULL);
     mpmi_solver *by;
     if (!other) continue;
-    ck_assert_int_eq(mpmi_solver_create(other, &by), MPM_OK);
+    ck_ok(other, mpmi_solver_create(other, &by));
     job = job_of(&A, b, y, MPM_SOLVER_MULTIGRID_CG);
     job.tolerance = 1e-12;
     solved(by, &job, &report);
     ck_assert_double_lt(distance(n, y, x), 1e-8);
     mpmi_solver_destroy(by);
-    ck_assert_int_eq(mpm_context_destroy(other), MPM_OK);
+    ck_ok(other, mpm_context_destroy(other));
   }
   free(b), free(x), free(y);
 }

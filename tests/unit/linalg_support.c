@@ -104,7 +104,7 @@ void springs_build(mpmi_matrix *A, mpm_context *context, const springs *of) {
   int64_t width = 1;
   for (int32_t k = 0; k < of->dim; ++k) width *= 2 * of->reach + 1;
   mpmi_matrix_init(A, context);
-  ck_assert_int_eq(mpmi_matrix_reserve(A, rows, rows * width, of->block), MPM_OK);
+  ck_ok(A->context, mpmi_matrix_reserve(A, rows, rows * width, of->block));
   A->symmetric = of->convection == 0.0;
   A->pattern_id = 1;
   A->period[0] = of->periodic ? n[0] : 0;
@@ -126,7 +126,7 @@ void springs_build(mpmi_matrix *A, mpm_context *context, const springs *of) {
   A->row_start[rows] = entries;
   set_values(A, of);
   if (of->light > 0.0) make_light(A, of->light);
-  ck_assert_int_eq(mpmi_matrix_eliminate(A), MPM_OK);
+  ck_ok(A->context, mpmi_matrix_eliminate(A));
   free(row);
 }
 
@@ -139,7 +139,7 @@ double *noise_vector(const mpmi_matrix *A, uint64_t seed) {
 
 double *rhs_for(const mpmi_matrix *A, const double *x) {
   double *b = malloc((size_t)mpmi_matrix_unknowns(A) * sizeof *b);
-  ck_assert_int_eq(mpmi_matrix_apply(A, x, b), MPM_OK);
+  ck_ok(A->context, mpmi_matrix_apply(A, x, b));
   return b;
 }
 
@@ -216,40 +216,6 @@ int64_t dense_negative(int64_t n, double *a) {
     negative += a[k * n + k] < 0.0;
   }
   return negative;
-}
-
-static void *counted_alloc(void *user, size_t bytes, size_t alignment) {
-  counting *m = user;
-  if (++m->calls == m->fail_at) return NULL;
-  void *memory = aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (!memory) return NULL;
-  memset(memory, 0xff, bytes); /* numbers that are none */
-  m->held += (int64_t)bytes;
-  return memory;
-}
-
-static void counted_release(void *user, void *memory, size_t bytes, size_t alignment) {
-  counting *m = user;
-  (void)alignment;
-  m->held -= (int64_t)bytes;
-  free(memory);
-}
-
-mpm_context *context_of(int32_t concurrency, int32_t isa, counting *memory) {
-  mpm_context_desc desc;
-  mpm_context *context;
-  ck_assert_int_eq(mpm_context_desc_init(&desc, sizeof desc), MPM_OK);
-  desc.concurrency = concurrency;
-  desc.isa = isa;
-  if (memory) {
-    desc.alloc = counted_alloc;
-    desc.release = counted_release;
-    desc.alloc_user = memory;
-  }
-  const mpm_status status = mpm_context_create(&desc, &context);
-  if (status == MPM_E_UNSUPPORTED) return NULL; /* the processor does not have it */
-  ck_assert_int_eq(status, MPM_OK);
-  return context;
 }
 
 mpmi_solve_job job_of(const mpmi_matrix *A, const double *b, double *x, int32_t choice) {

@@ -74,7 +74,7 @@ START_TEST(formula) {
       sample_set_increment(&s, i, increment(&state, dim, sizes[k / 2], i), identity());
       sample_set_stress(&s, dim, i, random_stress(&state, dim, stress_size));
     }
-    sample_evaluate(&s, material, loop_isa(_i), dim);
+    sample_evaluate(&s, material, dim);
     sample_check_untouched(&s, dim);
     for (int i = 0; i < ITEMS; ++i) {
       /* Relative to the strain, as far as the ratio of the squared stretches allows. */
@@ -103,7 +103,7 @@ START_TEST(rotation_leaves_no_stress) {
     sample_set_stress(&s, dim, i, stress);
     expected[i] = turned(q, stress);
   }
-  sample_evaluate(&s, material, loop_isa(_i), dim);
+  sample_evaluate(&s, material, dim);
   for (int i = 0; i < ITEMS; ++i) ck_assert(sample_error(&s, dim, i, expected[i]) <= 2e-15L * p_modulus());
   law_material_free(material);
 }
@@ -126,8 +126,8 @@ START_TEST(objectivity) {
     sample_set_stress(&s, dim, i, stress);
     sample_set_stress(&r, dim, i, turned(q[i], stress));
   }
-  sample_evaluate(&s, material, loop_isa(_i), dim);
-  sample_evaluate(&r, material, loop_isa(_i), dim);
+  sample_evaluate(&s, material, dim);
+  sample_evaluate(&r, material, dim);
   for (int i = 0; i < ITEMS; ++i) {
     ck_assert(sample_error(&r, dim, i, turned(q[i], sample_stress(&s, dim, i))) <= 1e-13L * p_modulus());
     ck_assert_double_eq_tol(r.energy[i], s.energy[i], 1e-13 * 2.5e6);
@@ -154,7 +154,7 @@ START_TEST(uniaxial_strain_path) {
     tensor g = rounded(diagonal(k < 200 ? 0.005L : -0.02L, 0, 0));
     stretch *= 1 + g.m[0][0];
     for (int i = 0; i < ITEMS; ++i) sample_set_increment(&s, i, g, diagonal(stretch, 1, 1));
-    sample_evaluate(&s, material, loop_isa(_i), dim);
+    sample_evaluate(&s, material, dim);
     carry_over(&s);
   }
   real strain = logl(stretch);
@@ -191,7 +191,7 @@ START_TEST(full_turn) {
     sample_set_increment(&s, i, combine(1, step[i], -1, identity()), identity());
   }
   for (int k = 0; k < 250; ++k) {
-    sample_evaluate(&s, material, loop_isa(_i), dim);
+    sample_evaluate(&s, material, dim);
     carry_over(&s);
   }
   for (int i = 0; i < ITEMS; ++i) ck_assert(sample_error(&s, dim, i, first[i]) <= 1e-13L * p_modulus());
@@ -216,7 +216,7 @@ START_TEST(no_time_no_change) {
       s.state[i] = 0.25 * i;
     }
     s.stress[1] = -0.0;
-    sample_evaluate(&s, material, loop_isa(_i), dim);
+    sample_evaluate(&s, material, dim);
     sample_check_untouched(&s, dim);
     for (int c = 0; c < 6; ++c)
       if (stress_exists(dim, c))

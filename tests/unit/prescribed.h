@@ -2,18 +2,10 @@
 #ifndef PRESCRIBED_H
 #define PRESCRIBED_H
 
-#include "support.h"
+#include "world.h"
 
 /* Particles of one set. */
 enum { CLOUD = 200 };
-
-/* The call is refused with this status, and the sentence names what is at fault. */
-#define ck_fails(w_, call, wanted, text)                                                                     \
-  do {                                                                                                       \
-    ck_assert_int_eq(call, wanted);                                                                          \
-    if (!strstr(mpm_last_error((w_)->context), text))                                                        \
-      ck_abort_msg("\"%s\" is not in: %s", text, mpm_last_error((w_)->context));                             \
-  } while (0)
 
 /* Two clouds through each other, the second prescribed on some axes of some particles, or on all. */
 void open_clouds(world *w, const method *how, int32_t dim, int32_t walled, int32_t all);

@@ -13,12 +13,10 @@ static mpm_status against(void *user, const mpm_particle_batch *b, double *add) 
 /* A cloud with prescribed particles, `from` cells along the periodic x axis. */
 static void open_shifted(world *w, const method *how, int64_t from) {
   static double middle = 0.8;
-  world_desc desc = world_default(2, 8, 0.125);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 8, 0.125);
   desc.grid.periodic[0] = 1;
-  world_open(w, &desc);
+  mpm_particles *set = world_open(w, &desc);
   dice d = {31};
-  mpm_particles *set = world_add_set(w);
   add_cloud(w, set, &d, CLOUD, 0.125, 0.25, 0.75, 1.0);
   double *x = fetch(w, set, "position", 2);
   uint8_t flags[2 * CLOUD];
@@ -64,14 +62,11 @@ START_TEST(half_on_a_slip_wall) {
   double *x[2], *v[2];
   for (int32_t k = 0; k < 2; ++k) { /* the half is above the plane: 1 is the whole */
     const double shift = k ? 0.0 : -0.8, lower[2] = {0.3, k ? 0.4 : 0.0}, upper[2] = {0.9, 1.2 + shift};
-    const int32_t per_cell[2] = {2, 2};
     static double middle[2];
     middle[k] = plane + shift;
-    world_desc desc = world_default(2, 16, 0.1);
-    world_use(&desc, how);
-    world_open(&w[k], &desc);
-    mpm_particles *set = world_add_set(&w[k]);
-    ck_ok(&w[k], mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+    world_desc desc = world_with(how, 2, 16, 0.1);
+    mpm_particles *set = world_open(&w[k], &desc);
+    world_fill(&w[k], set, lower, upper, 2);
     if (!k) ck_ok(&w[k], mpm_stepper_set_wall(w[k].stepper, MPM_Y_MIN, MPM_WALL_SLIP, 0.0));
     const int64_t n = mpm_particles_count(set);
     double *at = fetch(&w[k], set, "position", 2), *speed = fetch(&w[k], set, "velocity", 2);

@@ -12,17 +12,15 @@ typedef struct pushed {
 static pushed push_bar(const method *how, int32_t cells) {
   const double h = 1.0 / cells, v = 0.001, platen[2] = {1.0, 1.0 + 5.0 * h},
                bar[2] = {1.0 + 5.0 * h, 2.0 + 5.0 * h};
-  const int32_t per_cell = 2;
   const uint8_t yes = 1;
   world w;
-  world_desc desc = world_default(1, 4 * cells, h);
-  world_use(&desc, how);
-  desc.model = "linear_elastic";
-  desc.E = 1.0, desc.nu = 0.0, desc.density = 1.0;
+  world_desc desc = world_with(how, 1, 4 * cells, h);
+  desc.law = (world_law){.model = "linear_elastic", .E = 1.0, .density = 1.0};
+  desc.sets = 2;
   world_open(&w, &desc);
-  mpm_particles *tool = world_add_set(&w), *body = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(tool, &platen[0], &platen[1], &per_cell, NULL, NULL));
-  ck_ok(&w, mpm_particles_fill_box(body, &bar[0], &bar[1], &per_cell, NULL, NULL));
+  mpm_particles *tool = w.set[0], *body = w.set[1];
+  world_fill(&w, tool, &platen[0], &platen[1], 2);
+  world_fill(&w, body, &bar[0], &bar[1], 2);
   ck_ok(&w, mpm_particles_set_all(tool, "velocity", MPM_F64, 1, &v));
   ck_ok(&w, mpm_particles_set_all(tool, "prescribed", MPM_U8, 1, &yes));
   const mpm_step_info start = world_info(&w);

@@ -3,8 +3,7 @@
 #ifndef REFERENCE_H
 #define REFERENCE_H
 
-#include "options.h"
-#include "support.h"
+#include "world.h"
 
 /* ---- weights ---- */
 typedef struct reference_axis {

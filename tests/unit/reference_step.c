@@ -43,11 +43,6 @@ void reference_drop(reference_cloud *c) {
   free(c->stress), free(c->m), free(c->V0), free(c->size), free(c->J_bar);
 }
 
-static double det(const double *F) {
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-         F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-
 static void tensor_of(const reference_cloud *c, const double *field, int64_t p, double *T) {
   for (int32_t i = 0; i < 9; ++i) T[i] = get(c, field, i, p);
 }
@@ -55,12 +50,12 @@ static void tensor_of(const reference_cloud *c, const double *field, int64_t p, 
 static double volume_of(const reference_cloud *c, int64_t p) {
   double F[9];
   tensor_of(c, c->F, p, F);
-  return det(F) * c->V0[p];
+  return determinant(F) * c->V0[p];
 }
 
 void reference_stress(double E, double nu, const double *F, double *stress) {
   static const int32_t row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
-  const double mu = E / (2.0 * (1.0 + nu)), lambda = 2.0 * mu * nu / (1.0 - 2.0 * nu), J = det(F);
+  const double mu = E / (2.0 * (1.0 + nu)), lambda = 2.0 * mu * nu / (1.0 - 2.0 * nu), J = determinant(F);
   for (int32_t s = 0; s < 6; ++s) {
     double b = 0.0;
     for (int32_t k = 0; k < 3; ++k) b += F[3 * row[s] + k] * F[3 * column[s] + k];
@@ -197,13 +192,13 @@ static void deform(const sums *s, double (*v)[3], double dt) {
       for (int32_t k = 0; k < 3; ++k) now[i] += increment[i / 3 * 3 + k] * F[3 * k + i % 3];
       c->F[i * c->n + p] = now[i];
     }
-    dilation[p] = det(increment);
+    dilation[p] = determinant(increment);
   }
   if (c->J_bar) average_dilation(s, dilation, V);
   for (int64_t p = 0; p < c->n; ++p) {
     double F[9], stress[6];
     tensor_of(c, c->F, p, F);
-    const double factor = c->J_bar ? pow(c->J_bar[p] / det(F), 1.0 / s->dim) : 1.0;
+    const double factor = c->J_bar ? pow(c->J_bar[p] / determinant(F), 1.0 / s->dim) : 1.0;
     for (int32_t i = 0; i < 9; ++i)
       if (i / 3 < s->dim && i % 3 < s->dim) F[i] *= factor;
     reference_stress(s->r->E, s->r->nu, F, stress);

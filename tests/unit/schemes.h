@@ -2,7 +2,7 @@
 #ifndef SCHEMES_H
 #define SCHEMES_H
 
-#include "support.h"
+#include "world.h"
 
 TCase *schemes_options_case(void);
 

@@ -7,21 +7,11 @@ static const double h = 0.25;
 
 static world_desc described(int32_t dim, const basis_option *b, int32_t scheme, int32_t transfer) {
   world_desc d = world_default(dim, 8, h);
-  d.E = 1e3;
-  d.grid.basis = b->basis;
-  d.grid.boundary_basis = b->boundary;
-  d.grid.smoothing = b->smoothing;
+  d.law.E = 1e3;
+  use_basis(b, &d.grid);
   d.stepper.scheme = scheme;
   d.stepper.transfer = transfer;
   return d;
-}
-
-static mpm_particles *add_block(world *w, double low, double high) {
-  const double lower[3] = {low, low, low}, upper[3] = {high, high, high};
-  const int32_t per_cell[3] = {2, 2, 2};
-  mpm_particles *set = world_add_set(w);
-  ck_ok(w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
-  return set;
 }
 
 /* Constant acceleration: positions of second order are exact, and so are those of velocities that live half a
@@ -37,12 +27,10 @@ START_TEST(falls_are_exact) {
       d.stepper.staggered = staggered;
       d.stepper.position_order = staggered ? 1 : 2;
       memcpy(d.stepper.gravity, g, sizeof g);
-      if (!basis_ready(basis) || !stepper_ready(&d.stepper)) continue;
       if (d.stepper.transfer == MPM_APIC_MLS && !fits_mls(basis)) continue;
       world w;
-      world_open(&w, &d);
-      mpm_particles *set = add_block(&w, 0.5, 1.0);
-      const int64_t n = mpm_particles_count(set);
+      mpm_particles *set = world_open(&w, &d);
+      const int64_t n = world_fill_cube(&w, set, 0.5, 1.0);
       const double first = 0.005;
       double start[3], t = 0.0, *x0 = fetch(&w, set, "position", 2);
       for (int32_t k = 0; k < 2; ++k) start[k] = v0[k] - (staggered ? 0.5 * first * g[k] : 0.0);
@@ -68,8 +56,7 @@ END_TEST
 /* Velocities after steps of a random cloud, by ascending id; to be freed. */
 static double *after_steps(const world_desc *d, int32_t steps, double dt, int64_t *count) {
   world w;
-  world_open(&w, d);
-  mpm_particles *set = world_add_set(&w);
+  mpm_particles *set = world_open(&w, d);
   dice random = {42};
   add_cloud(&w, set, &random, 60, h, 0.5, 1.5, 1.0);
   if (carries_matrix(d->stepper.transfer)) add_affine(&w, set, &random, 1.0);
@@ -92,7 +79,6 @@ START_TEST(xpic_of_order_one_is_pic) {
     for (int32_t s = 0; s < SCHEMES; ++s) {
       world_desc d = described(2, &basis_options[b], scheme_options[s].scheme, MPM_XPIC);
       d.stepper.xpic_order = 1;
-      if (!basis_ready(&basis_options[b]) || !stepper_ready(&d.stepper)) continue;
       double *x = after_steps(&d, 5, 1e-3, &n);
       d.stepper.transfer = MPM_FLIP;
       d.stepper.flip = 0.0;
@@ -114,7 +100,6 @@ START_TEST(damping_is_a_rate) {
   world_desc d = described(2, &basis_options[1], MPM_USL, transfers[_i]);
   int64_t n;
   d.stepper.pic_damping = beta;
-  if (!stepper_ready(&d.stepper)) return;
   d.stepper.flip = flip;
   double *damped = after_steps(&d, 4, dt, &n);
   d.stepper.pic_damping = 0.0;
@@ -180,10 +165,8 @@ START_TEST(apic_keeps_angular_momentum) {
   const basis_option *basis = &basis_options[_i];
   for (int32_t scheme = 0; scheme < SCHEMES; ++scheme) {
     world_desc d = described(2, basis, scheme_options[scheme].scheme, MPM_APIC);
-    if (!basis_ready(basis) || !stepper_ready(&d.stepper)) continue;
     world w;
-    world_open(&w, &d);
-    mpm_particles *set = world_add_set(&w);
+    mpm_particles *set = world_open(&w, &d);
     dice random = {5};
     add_cloud(&w, set, &random, 80, h, 0.0, 2.0, 1.0);
     add_affine(&w, set, &random, 5.0);
@@ -228,11 +211,6 @@ static mpm_status watch(void *user, const mpm_material_batch *b) {
   return MPM_OK;
 }
 
-static double det(const double *F) {
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-         F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-
 static void product(const double *A, const double *B, double *C) {
   for (int32_t c = 0; c < 9; ++c) {
     C[c] = 0.0;
@@ -247,20 +225,10 @@ START_TEST(remedy_averages_the_cell) {
   const double dt = 1e-2;
   world_desc d = described(dim, &basis_options[1], scheme_options[_i / 2].scheme, MPM_FLIP);
   d.stepper.locking_remedy = MPM_LOCKING_CELL_AVERAGE;
-  if (!stepper_ready(&d.stepper)) return;
   world w;
-  world_open(&w, &d);
   witness seen = {0};
-  mpm_material *law;
-  mpm_material_desc material;
-  ck_ok(&w, mpm_material_desc_init(&material, sizeof material));
-  material.density = 1e3;
-  material.stress = watch;
-  material.user = &seen;
-  ck_ok(&w, mpm_material_create_custom(w.context, &material, &law));
-  mpm_particles *set;
-  ck_ok(&w, mpm_particles_create(w.context, w.grid, law, &set));
-  ck_ok(&w, mpm_stepper_add(w.stepper, set));
+  d.law = (world_law){.density = 1e3, .stress = watch, .user = &seen};
+  mpm_particles *set = world_open(&w, &d);
   enum { CLOUD = 100 };
   dice random = {3};
   double x[3 * CLOUD], v[3 * CLOUD], V[CLOUD], J_bar[CLOUD], F_last[CLOUD][9];
@@ -274,8 +242,7 @@ START_TEST(remedy_averages_the_cell) {
     }
   }
   ck_ok(&w, mpm_particles_add(set, CLOUD, x, v, V, NULL, NULL, NULL));
-  int64_t ids[CLOUD];
-  ck_ok(&w, mpm_particles_get(set, "id", MPM_I64, 1, CLOUD, NULL, ids));
+  int64_t *ids = fetch_ids(&w, set);
   for (int32_t step = 0; step < 5; ++step) {
     double *at = fetch(&w, set, "position", dim), *old = fetch(&w, set, "deformation_gradient", 9);
     double *volume = fetch(&w, set, "volume", 1);
@@ -287,7 +254,7 @@ START_TEST(remedy_averages_the_cell) {
       for (int32_t i = 0; i < 2; ++i) {
         double T[9];
         for (int32_t c = 0; c < 9; ++c) T[c] = (i ? F : old)[c * CLOUD + p];
-        J[i][p] = det(T);
+        J[i][p] = determinant(T);
       }
     double grown[CLOUD];
     for (int32_t p = 0; p < CLOUD; ++p) {
@@ -319,9 +286,7 @@ START_TEST(remedy_averages_the_cell) {
     ck_assert_double_gt(changed, 1e-4);
     free(at), free(old), free(volume), free(F), free(V1);
   }
-  ck_ok(&w, mpm_stepper_remove(w.stepper, set));
-  ck_ok(&w, mpm_particles_destroy(set));
-  ck_ok(&w, mpm_material_destroy(law));
+  free(ids);
   world_close(&w);
 }
 END_TEST

@@ -1,7 +1,7 @@
 /* mpm_advance(): the sub-steps that it chooses, cuts and grows, and where it ends. */
 #include "stepper_parts.h"
 
-static run r;
+static world r;
 static mpm_advance_desc d;
 
 /* What the sub-steps were, and what the progress callback is to answer. */
@@ -42,20 +42,19 @@ static void open_run(void) {
   memset(&seen, 0, sizeof seen);
   memset(&strict, 0, sizeof strict);
   strict.answer = 1;
-  run_open(&r, &(run_options){.dim = 2});
-  run_ok(&r, mpm_stepper_set_progress(r.stepper, watch, NULL));
-  ck_assert_int_eq(mpm_advance_desc_init(&d, sizeof d), MPM_OK);
-  r.info.struct_size = sizeof r.info;
+  body_open(&r, &(body_desc){.dim = 2});
+  ck_ok(&r, mpm_stepper_set_progress(r.stepper, watch, NULL));
+  d = advance_desc(0.0);
 }
 static void close_run(void) {
-  run_close(&r);
+  world_close(&r);
 }
 
 START_TEST(defaults) {
   memset(&d, 0x5a, sizeof d);
   ck_assert_int_eq(mpm_advance_desc_init(NULL, sizeof d), MPM_E_ARG);
   ck_assert_int_eq(mpm_advance_desc_init(&d, sizeof d - 1), MPM_E_ARG);
-  ck_assert_int_eq(mpm_advance_desc_init(&d, sizeof d), MPM_OK);
+  ck_ok(NULL, mpm_advance_desc_init(&d, sizeof d));
   ck_assert_uint_eq(d.struct_size, sizeof d);
   ck_assert_double_eq(d.cfl, 0.5);
   ck_assert(d.t_end == 0.0 && d.dt_first == 0.0 && d.dt_min == 0.0 && d.dt_max == 0.0);
@@ -65,37 +64,37 @@ START_TEST(defaults) {
 END_TEST
 
 START_TEST(refused_values) {
-  run_ok(&r, mpm_stepper_set_time(r.stepper, 2.0, 5));
-  run_refused(&r, mpm_advance(r.stepper, NULL, NULL), MPM_E_ARG, "desc is NULL");
+  ck_ok(&r, mpm_stepper_set_time(r.stepper, 2.0, 5));
+  ck_refused(&r, mpm_advance(r.stepper, NULL, NULL), MPM_E_ARG, "desc is NULL");
   const mpm_advance_desc good = {.struct_size = sizeof good, .t_end = 3.0, .cfl = 0.5};
 #define REFUSED(field, value, text)                                                                          \
   d = good;                                                                                                  \
   d.field = value;                                                                                           \
-  run_refused(&r, mpm_advance(r.stepper, &d, NULL), MPM_E_ARG, text)
+  ck_refused(&r, mpm_advance(r.stepper, &d, NULL), MPM_E_ARG, text)
   REFUSED(struct_size, 0, "struct_size is 0");
   REFUSED(reserved, 1, "reserved is 1");
   REFUSED(t_end, 1.5, "t_end is 1.5");
-  REFUSED(t_end, RUN_NAN, "t_end is nan");
-  REFUSED(t_end, RUN_INFINITY, "t_end is inf");
+  REFUSED(t_end, NOT_A_NUMBER, "t_end is nan");
+  REFUSED(t_end, INFINITE, "t_end is inf");
   REFUSED(cfl, 0.0, "cfl is 0");
   REFUSED(cfl, 1.5, "cfl is 1.5");
-  REFUSED(cfl, RUN_NAN, "cfl is nan");
+  REFUSED(cfl, NOT_A_NUMBER, "cfl is nan");
   REFUSED(dt_first, -1.0, "dt_first is -1");
-  REFUSED(dt_first, RUN_NAN, "dt_first is nan");
+  REFUSED(dt_first, NOT_A_NUMBER, "dt_first is nan");
   REFUSED(dt_min, -2.0, "dt_min is -2");
-  REFUSED(dt_min, RUN_INFINITY, "dt_min is inf");
+  REFUSED(dt_min, INFINITE, "dt_min is inf");
   REFUSED(dt_max, -3.0, "dt_max is -3");
-  REFUSED(dt_max, RUN_NAN, "dt_max is nan");
+  REFUSED(dt_max, NOT_A_NUMBER, "dt_max is nan");
   REFUSED(max_steps, -1, "max_steps is -1");
   d = good;
   d.dt_min = 0.2;
   d.dt_max = 0.1;
-  run_refused(&r, mpm_advance(r.stepper, &d, NULL), MPM_E_ARG, "dt_min is 0.2");
+  ck_refused(&r, mpm_advance(r.stepper, &d, NULL), MPM_E_ARG, "dt_min is 0.2");
 #undef REFUSED
-  run_ok(&r, mpm_stepper_info(r.stepper, &r.info));
+  ck_ok(&r, mpm_stepper_info(r.stepper, &r.info));
   ck_assert_int_eq(r.info.step, 5);
-  for (int32_t m = 0; m < 2; ++m) run_ok(&r, mpm_stepper_remove(r.stepper, r.set[m]));
-  run_refused(&r, mpm_advance(r.stepper, &good, NULL), MPM_E_STATE, "no particles");
+  for (int32_t m = 0; m < 2; ++m) ck_ok(&r, mpm_stepper_remove(r.stepper, r.set[m]));
+  ck_refused(&r, mpm_advance(r.stepper, &good, NULL), MPM_E_STATE, "no particles");
 }
 END_TEST
 
@@ -106,7 +105,7 @@ START_TEST(ends_exactly) {
     d.t_end = ends[i];
     d.dt_max = 1e-3;
     seen.n = 0;
-    run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+    ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
     ck_assert_double_eq(r.info.t, ends[i]);
     ck_assert_int_gt(seen.n, 0);
     for (int32_t k = 0; k < seen.n; ++k) {
@@ -115,7 +114,7 @@ START_TEST(ends_exactly) {
     }
     const int64_t step = r.info.step;
     seen.n = 0;
-    run_ok(&r, mpm_advance(r.stepper, &d, &r.info)); /* there already */
+    ck_ok(&r, mpm_advance(r.stepper, &d, &r.info)); /* there already */
     ck_assert_int_eq(r.info.step, step);
     ck_assert_int_eq(seen.n, 0);
   }
@@ -126,11 +125,11 @@ END_TEST
 START_TEST(ends_exactly_whatever_rounds) {
   int32_t rounds = 0;
   for (int32_t i = 0; i < 30; ++i) {
-    const double t = -2e-4 * (1.0 + 0.5 * run_noise((uint64_t)i));
-    d.t_end = 1e-6 * (1.0 + 0.5 * run_noise((uint64_t)(i + 100)));
+    const double t = -2e-4 * (1.0 + 0.5 * noise_at((uint64_t)i));
+    d.t_end = 1e-6 * (1.0 + 0.5 * noise_at((uint64_t)(i + 100)));
     rounds += t + (d.t_end - t) != d.t_end;
-    run_ok(&r, mpm_stepper_set_time(r.stepper, t, 0));
-    run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+    ck_ok(&r, mpm_stepper_set_time(r.stepper, t, 0));
+    ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
     ck_assert_int_eq(r.info.step, 1);
     ck_assert_double_eq(r.info.t, d.t_end);
   }
@@ -145,15 +144,15 @@ START_TEST(share_of_the_stable_step) {
   d.max_steps = 1;
   for (int32_t i = 0; i < 4; ++i) {
     d.cfl = 0.1 + 0.05 * i;
-    run_ok(&r, mpm_stable_dt(r.stepper, &stable));
-    run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+    ck_ok(&r, mpm_stable_dt(r.stepper, &stable));
+    ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
     ck_assert_double_eq(r.info.dt, d.cfl * stable);
     ck_assert_int_eq(r.info.step, i + 1);
-    run_ok(&r, mpm_stable_dt(r.stepper, &stable));
+    ck_ok(&r, mpm_stable_dt(r.stepper, &stable));
     ck_assert_double_eq(r.info.dt_suggested, stable);
   }
   d.dt_max = 0.01 * stable;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_double_eq(r.info.dt, 0.01 * stable);
 }
 END_TEST
@@ -162,7 +161,7 @@ START_TEST(first_and_growth) {
   d.t_end = 1.0;
   d.dt_first = 1e-6;
   d.max_steps = 6;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_int_eq(seen.n, 6);
   ck_assert_double_eq(seen.dt[0], 1e-6);
   for (int32_t k = 1; k < 6; ++k) {
@@ -172,7 +171,7 @@ START_TEST(first_and_growth) {
   /* and in the next call it goes on from there */
   d.dt_first = 0.0;
   d.max_steps = 1;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_double_gt(r.info.dt, 1.2 * seen.dt[5]);
   ck_assert_double_lt(r.info.dt, 4.0 * seen.dt[5]);
 }
@@ -181,7 +180,7 @@ END_TEST
 START_TEST(runs_out_of_steps) {
   d.t_end = 1.0;
   d.max_steps = 7;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_int_eq(r.info.step, 7);
   ck_assert_double_lt(r.info.t, 1.0);
   ck_assert_double_eq(r.info.t, seen.t[6]);
@@ -192,19 +191,18 @@ END_TEST
 /* Cut to 0.6 of it until the callback is content; failed tries do not count as sub-steps. */
 START_TEST(cuts) {
   strict.limit = 1e-5;
-  run_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
   d.t_end = 1.0;
   d.max_steps = 1;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_int_eq(r.info.step, 1);
   ck_assert_int_gt(strict.n, 4);
-  for (int32_t k = 1; k < strict.n; ++k)
-    parts_close(strict.tried[k], 0.6 * strict.tried[k - 1], 1e-18, "cut");
-  parts_close(r.info.dt, 0.6 * strict.tried[strict.n - 1], 1e-18, "last cut");
+  for (int32_t k = 1; k < strict.n; ++k) ck_within("cut", strict.tried[k], 0.6 * strict.tried[k - 1], 1e-18);
+  ck_within("last cut", r.info.dt, 0.6 * strict.tried[strict.n - 1], 1e-18);
   /* all the way, with cuts in between */
   d.t_end = r.info.t + 2e-4;
   d.max_steps = 0;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_double_eq(r.info.t, d.t_end);
   for (int32_t k = 0; k < seen.n; ++k) ck_assert_double_le(seen.dt[k], 1e-5);
 }
@@ -212,41 +210,41 @@ END_TEST
 
 START_TEST(not_below_dt_min) {
   strict.limit = 1e-9;
-  run_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
   d.t_end = 1.0;
   d.dt_min = 1e-5;
-  const uint64_t hash = run_hash(&r);
+  const uint64_t hash = world_hash(&r);
   for (int32_t again = 0; again < 3; ++again) { /* the bound holds in the next call, too */
     strict.n = 0;
-    run_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_CUT_DT, "force callback");
+    ck_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_CUT_DT, "force callback");
     ck_assert_int_eq(r.info.cause, MPM_CUT_DT);
     ck_assert_int_eq(r.info.callback_status, 1);
     ck_assert_int_eq(r.info.step, 0);
     ck_assert_double_eq(r.info.t, 0.0);
-    ck_assert(run_hash(&r) == hash);
+    ck_assert(world_hash(&r) == hash);
     for (int32_t k = 0; k < strict.n; ++k) ck_assert_double_ge(strict.tried[k], 1e-5);
   }
   strict.limit = 1.0;
   d.max_steps = 2;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
 }
 END_TEST
 
 /* Without a bound cutting ends too, at t = 0, where every number advances the time. */
 START_TEST(cuts_end) {
   strict.limit = 0.0;
-  run_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
   d.t_end = 1.0;
-  run_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_CUT_DT, "force callback");
+  ck_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_CUT_DT, "force callback");
   ck_assert_double_eq(r.info.t, 0.0);
 }
 END_TEST
 
 /* A clock that the stable step does not move is an error, not a jump to the end. */
 START_TEST(steps_too_small_for_the_clock) {
-  run_ok(&r, mpm_stepper_set_time(r.stepper, 1e18, 3));
+  ck_ok(&r, mpm_stepper_set_time(r.stepper, 1e18, 3));
   d.t_end = 1e18 + 4096.0;
-  run_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_E_ARG, "does not advance the time 1e+18");
+  ck_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_E_ARG, "does not advance the time 1e+18");
   ck_assert_int_eq(r.info.step, 3);
   ck_assert_double_eq(r.info.t, 1e18);
 }
@@ -255,9 +253,9 @@ END_TEST
 /* A failure that no smaller step cures ends the call at the last committed sub-step. */
 START_TEST(not_curable) {
   strict.answer = -9;
-  run_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
   d.t_end = 1.0;
-  run_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_E_CALLBACK, "returned -9");
+  ck_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_E_CALLBACK, "returned -9");
   ck_assert_int_eq(strict.n, 1);
   ck_assert_int_eq(r.info.cause, MPM_E_CALLBACK);
   ck_assert_int_eq(r.info.callback_status, -9);
@@ -266,39 +264,39 @@ END_TEST
 
 /* Cancelled in the middle: what was done stays, and going on gives what it gives without. */
 START_TEST(cancelled) {
-  run other;
-  run_open(&other, &(run_options){.dim = 2});
+  world other;
+  body_open(&other, &(body_desc){.dim = 2});
   d.t_end = 0.01;
   mpm_advance_desc plain = d;
-  run_ok(&other, mpm_advance(other.stepper, &plain, NULL));
+  ck_ok(&other, mpm_advance(other.stepper, &plain, NULL));
   for (int32_t k = 0; k < 2; ++k) {
     seen.cancel_at = 3 + k;
     seen.answer = k ? -6 : 6;
-    run_refused(&r, mpm_advance(r.stepper, &d, &r.info), k ? MPM_E_CALLBACK : MPM_CANCELLED, "progress");
+    ck_refused(&r, mpm_advance(r.stepper, &d, &r.info), k ? MPM_E_CALLBACK : MPM_CANCELLED, "progress");
     ck_assert_int_eq(r.info.cause, k ? MPM_E_CALLBACK : MPM_CANCELLED);
     ck_assert_int_eq(r.info.callback_status, seen.answer);
     ck_assert_int_eq(r.info.step, 2 + k);
     ck_assert_double_eq(r.info.t, seen.t[1 + k]);
   }
   seen.cancel_at = 0;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_double_eq(r.info.t, 0.01);
-  ck_assert_msg(run_hash(&r) == run_hash(&other), "cancelling has changed the sub-steps that follow");
-  run_close(&other);
+  ck_assert_msg(world_hash(&r) == world_hash(&other), "cancelling has changed the sub-steps that follow");
+  world_close(&other);
 }
 END_TEST
 
 /* Each sub-step asks once, with the info that it is about to have. */
 START_TEST(progress) {
   d.t_end = 0.005;
-  run_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_int_eq(seen.n, r.info.step);
   double t = 0.0;
   for (int32_t k = 0; k < seen.n; ++k) {
-    parts_close(seen.t[k], t + seen.dt[k], 1e-17, "time in the progress callback");
+    ck_within("time in the progress callback", seen.t[k], t + seen.dt[k], 1e-17);
     t = seen.t[k];
   }
-  parts_close(t, 0.005, 1e-17, "last time");
+  ck_within("last time", t, 0.005, 1e-17);
 }
 END_TEST
 

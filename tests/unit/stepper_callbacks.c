@@ -4,19 +4,19 @@
 
 #include "stepper_parts.h"
 
-static run r;
+static world r;
 
 static void open_run(void) {
-  run_open(&r, &(run_options){.dim = 2});
-  parts_calm(&r);
+  body_open(&r, &(body_desc){.dim = 2});
+  body_calm(&r);
 }
 static void close_run(void) {
-  run_close(&r);
+  world_close(&r);
 }
 
 /* A batch is compared with what the set says of its particles before the step. */
 static struct {
-  run *r;
+  world *r;
   double t, dt;
   int64_t seen[2], tensors;
   int32_t references, calls;
@@ -24,20 +24,18 @@ static struct {
   double *x[2], *v[2], *mass[2], *volume[2], *F[2], *heat[2];
 } known;
 
-static void know(run *of) {
-  const int32_t dim = of->options.dim;
+static void know(world *of) {
+  const int32_t dim = of->dim;
   memset(&known, 0, sizeof known);
   known.r = of;
   for (int32_t m = 0; m < 2; ++m) {
-    const int64_t n = mpm_particles_count(of->set[m]);
-    known.ids[m] = malloc((size_t)n * sizeof *known.ids[m]);
-    run_ok(of, mpm_particles_get(of->set[m], "id", MPM_I64, 1, n, NULL, known.ids[m]));
-    known.x[m] = run_get(of, m, "position", dim);
-    known.v[m] = run_get(of, m, "velocity", dim);
-    known.mass[m] = run_get(of, m, "mass", 1);
-    known.volume[m] = run_get(of, m, "volume", 1);
-    known.F[m] = run_get(of, m, "deformation_gradient", 9);
-    known.heat[m] = run_get(of, m, "heat", 1);
+    known.ids[m] = fetch_ids(of, of->set[m]);
+    known.x[m] = fetch(of, of->set[m], "position", dim);
+    known.v[m] = fetch(of, of->set[m], "velocity", dim);
+    known.mass[m] = fetch(of, of->set[m], "mass", 1);
+    known.volume[m] = fetch(of, of->set[m], "volume", 1);
+    known.F[m] = fetch(of, of->set[m], "deformation_gradient", 9);
+    known.heat[m] = fetch(of, of->set[m], "heat", 1);
   }
 }
 static void forget(void) {
@@ -49,45 +47,45 @@ static void forget(void) {
 
 static const double *looked_up(const mpm_particle_batch *b, const char *field, int64_t *stride) {
   const void *data = NULL;
-  parts_holds(mpm_batch_field(b->lookup, field, &data, stride) == MPM_OK);
-  parts_holds(*stride >= b->n);
+  ck_holds(mpm_batch_field(b->lookup, field, &data, stride) == MPM_OK);
+  ck_holds(*stride >= b->n);
   return data;
 }
 
 static void check_item(const mpm_particle_batch *b, int32_t m, int64_t p, int64_t i) {
   const int64_t n = mpm_particles_count(known.r->set[m]);
   for (int32_t c = 0; c < b->dim; ++c) {
-    parts_holds(b->position[c * b->ld + p] == known.x[m][c * n + i]);
-    parts_holds(b->velocity[c * b->ld + p] == known.v[m][c * n + i]);
+    ck_holds(b->position[c * b->ld + p] == known.x[m][c * n + i]);
+    ck_holds(b->velocity[c * b->ld + p] == known.v[m][c * n + i]);
   }
-  parts_holds(b->mass[p] == known.mass[m][i]);
-  parts_holds(b->volume[p] == known.volume[m][i]);
+  ck_holds(b->mass[p] == known.mass[m][i]);
+  ck_holds(b->volume[p] == known.volume[m][i]);
   int64_t stride;
-  parts_holds(looked_up(b, "heat", &stride)[p] == known.heat[m][i]);
-  parts_holds(((const int64_t *)(const void *)looked_up(b, "id", &stride))[p] == b->id[p]);
+  ck_holds(looked_up(b, "heat", &stride)[p] == known.heat[m][i]);
+  ck_holds(((const int64_t *)(const void *)looked_up(b, "id", &stride))[p] == b->id[p]);
   if (!known.tensors) return;
   const double *F = looked_up(b, "deformation_gradient", &stride);
   static const int32_t stored[3][9] = {{0}, {0, 1, 3, 4, 8}, {0, 1, 2, 3, 4, 5, 6, 7, 8}},
                        count[3] = {1, 5, 9};
   for (int32_t c = 0; c < count[b->dim - 1]; ++c)
-    parts_holds(F[c * stride + p] == known.F[m][stored[b->dim - 1][c] * n + i]);
+    ck_holds(F[c * stride + p] == known.F[m][stored[b->dim - 1][c] * n + i]);
 }
 
 static mpm_status inspect(void *user, const mpm_particle_batch *b, double *add) {
   ck_assert_ptr_eq(user, &known);
   ck_assert_uint_eq(b->struct_size, sizeof *b);
-  parts_holds(b->dim == known.r->options.dim);
-  parts_holds(b->t == known.t); /* explicit forces: t_n */
-  parts_holds(b->dt == known.dt);
+  ck_holds(b->dim == known.r->dim);
+  ck_holds(b->t == known.t); /* explicit forces: t_n */
+  ck_holds(b->dt == known.dt);
   ck_assert_int_ge(b->ld, b->n);
   ck_assert(b->particles == known.r->set[0] || b->particles == known.r->set[1]);
   const int32_t m = b->particles == known.r->set[1];
-  parts_holds((b->reference_position != NULL) == known.references);
+  ck_holds((b->reference_position != NULL) == known.references);
   ++known.calls;
   for (int64_t p = 0; p < b->n; ++p) {
-    for (int32_t c = 0; c < b->dim; ++c) parts_holds(add[c * b->ld + p] == 0.0);
+    for (int32_t c = 0; c < b->dim; ++c) ck_holds(add[c * b->ld + p] == 0.0);
     if (b->id[p] < 0) { /* inert */
-      parts_holds(b->mass[p] == 0.0);
+      ck_holds(b->mass[p] == 0.0);
       continue;
     }
     int64_t i = 0;
@@ -97,21 +95,21 @@ static mpm_status inspect(void *user, const mpm_particle_batch *b, double *add) 
   }
   const void *data;
   int64_t stride;
-  parts_holds(mpm_batch_field(b->lookup, "warmth", &data, &stride) == MPM_E_NOT_FOUND);
-  parts_holds(mpm_batch_field(NULL, "heat", &data, &stride) == MPM_E_ARG);
-  parts_holds(mpm_batch_field(b->lookup, NULL, &data, &stride) == MPM_E_ARG);
-  parts_holds(mpm_batch_field(b->lookup, "heat", NULL, &stride) == MPM_E_ARG);
-  parts_holds(mpm_batch_field(b->lookup, "heat", &data, NULL) == MPM_E_ARG);
+  ck_holds(mpm_batch_field(b->lookup, "warmth", &data, &stride) == MPM_E_NOT_FOUND);
+  ck_holds(mpm_batch_field(NULL, "heat", &data, &stride) == MPM_E_ARG);
+  ck_holds(mpm_batch_field(b->lookup, NULL, &data, &stride) == MPM_E_ARG);
+  ck_holds(mpm_batch_field(b->lookup, "heat", NULL, &stride) == MPM_E_ARG);
+  ck_holds(mpm_batch_field(b->lookup, "heat", &data, NULL) == MPM_E_ARG);
   return 0;
 }
 
-static void inspect_steps(run *of, int32_t references) {
+static void inspect_steps(world *of, int32_t references) {
   for (int32_t i = 0; i < 8; ++i) { /* over a new sort */
     know(of);
     known.references = references;
     known.t = of->info.t;
-    known.dt = RUN_DT * (1.0 + 0.1 * i);
-    run_step_of(of, known.dt);
+    known.dt = BODY_DT * (1.0 + 0.1 * i);
+    world_step(of, known.dt);
     ck_assert_int_eq(known.seen[0], mpm_particles_count(of->set[0]));
     ck_assert_int_eq(known.seen[1], mpm_particles_count(of->set[1]));
     forget();
@@ -119,20 +117,20 @@ static void inspect_steps(run *of, int32_t references) {
 }
 
 START_TEST(batches) {
-  run other;
-  run_open(&other, &(run_options){.dim = 1 + _i % 3, .periodic = 1});
-  run_ok(&other, mpm_stepper_set_force(other.stepper, NULL, NULL)); /* sources add to the same array */
-  run_ok(&other, mpm_stepper_set_acceleration(other.stepper, NULL, NULL));
+  world other;
+  body_open(&other, &(body_desc){.dim = 1 + _i % 3, .periodic = 1});
+  ck_ok(&other, mpm_stepper_set_force(other.stepper, NULL, NULL)); /* sources add to the same array */
+  ck_ok(&other, mpm_stepper_set_acceleration(other.stepper, NULL, NULL));
   if (_i < 3)
-    run_ok(&other, mpm_stepper_set_force(other.stepper, inspect, &known));
+    ck_ok(&other, mpm_stepper_set_force(other.stepper, inspect, &known));
   else
-    run_ok(&other, mpm_stepper_set_acceleration(other.stepper, inspect, &known));
+    ck_ok(&other, mpm_stepper_set_acceleration(other.stepper, inspect, &known));
   inspect_steps(&other, 0);
-  mpm_stepper_desc d = parts_desc(&other);
+  mpm_stepper_desc d = body_stepper(&other);
   d.reference_positions = 1;
-  run_ok(&other, mpm_stepper_configure(other.stepper, &d));
+  ck_ok(&other, mpm_stepper_configure(other.stepper, &d));
   inspect_steps(&other, 1);
-  run_close(&other);
+  world_close(&other);
 }
 END_TEST
 
@@ -142,18 +140,18 @@ static mpm_status inspect_tensors(void *user, const mpm_particle_batch *b, doubl
   return inspect(user, b, add);
 }
 START_TEST(stored_tensors) {
-  run other;
-  run_open(&other, &(run_options){.dim = 1 + _i});
-  parts_calm(&other);
-  run_steps(&other, 2);
+  world other;
+  body_open(&other, &(body_desc){.dim = 1 + _i});
+  body_calm(&other);
+  world_steps(&other, 2);
   know(&other);
   known.t = other.info.t;
-  known.dt = RUN_DT;
-  run_ok(&other, mpm_stepper_set_force(other.stepper, inspect_tensors, &known));
-  run_step_of(&other, RUN_DT);
+  known.dt = BODY_DT;
+  ck_ok(&other, mpm_stepper_set_force(other.stepper, inspect_tensors, &known));
+  world_step(&other, BODY_DT);
   ck_assert_int_gt(known.calls, 0);
   forget();
-  run_close(&other);
+  world_close(&other);
 }
 END_TEST
 
@@ -172,63 +170,62 @@ static mpm_status absent_fields(void *user, const mpm_particle_batch *b, double 
 }
 START_TEST(optional_fields) {
   int32_t calls = 0;
-  run_ok(&r, mpm_stepper_set_force(r.stepper, absent_fields, &calls));
-  run_steps(&r, 1);
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, absent_fields, &calls));
+  world_steps(&r, 1);
   ck_assert_int_gt(calls, 0);
 }
 END_TEST
 
-/* ---- sources add up ------------------------------------------------------------------------------------ */
+/* ---- sources add up ---- */
 static mpm_status by_id(void *user, const mpm_particle_batch *b, double *add) {
   const double factor = *(double *)user;
   for (int32_t c = 0; c < b->dim; ++c)
     for (int64_t p = 0; p < b->n; ++p)
-      add[c * b->ld + p] += factor * (double)(b->id[p] % 7 - c) * (b->id[p] < 0 ? RUN_NAN : 1.0);
+      add[c * b->ld + p] += factor * (double)(b->id[p] % 7 - c) * (b->id[p] < 0 ? NOT_A_NUMBER : 1.0);
   return 0;
 }
 
 /* The same force as applied_force, from the callback and, by mass, as an acceleration; inert slots may be
  * given anything. */
 START_TEST(three_ways_of_a_force) {
-  run way[3];
+  world way[3];
   double force = 0.125, acceleration = 0.0;
   for (int32_t k = 0; k < 3; ++k) {
-    run_open(&way[k], &(run_options){.dim = 2});
-    parts_calm(&way[k]);
-    const double mass = run_get1(&way[k], 0, "mass", 1, 0, 1);
+    body_open(&way[k], &(body_desc){.dim = 2});
+    body_calm(&way[k]);
+    const double mass = fetch1(&way[k], way[k].set[0], "mass", 1, 0, 1);
     acceleration = force / mass;
-    if (k == 0) run_ok(&way[k], mpm_stepper_set_force(way[k].stepper, by_id, &force));
-    if (k == 1) run_ok(&way[k], mpm_stepper_set_acceleration(way[k].stepper, by_id, &acceleration));
+    if (k == 0) ck_ok(&way[k], mpm_stepper_set_force(way[k].stepper, by_id, &force));
+    if (k == 1) ck_ok(&way[k], mpm_stepper_set_acceleration(way[k].stepper, by_id, &acceleration));
     for (int32_t m = 0; m < 2 && k == 2; ++m) {
       const int64_t n = mpm_particles_count(way[k].set[m]);
       double *f = malloc((size_t)(2 * n) * sizeof *f);
-      int64_t *ids = malloc((size_t)n * sizeof *ids);
-      run_ok(&way[k], mpm_particles_get(way[k].set[m], "id", MPM_I64, 1, n, NULL, ids));
+      int64_t *ids = fetch_ids(&way[k], way[k].set[m]);
       for (int64_t i = 0; i < 2 * n; ++i) f[i] = force * (double)(ids[i % n] % 7 - i / n);
-      run_put(&way[k], m, "applied_force", 2, f);
+      put(&way[k], way[k].set[m], "applied_force", 2, f);
       free(f);
       free(ids);
     }
-    run_steps(&way[k], 9);
+    world_steps(&way[k], 9);
   }
-  parts_agree(&way[0], &way[2], "position", 2, 0.0);
-  parts_agree(&way[0], &way[2], "velocity", 2, 0.0);
-  parts_agree(&way[0], &way[1], "position", 2, 1e-13);
-  parts_agree(&way[0], &way[1], "velocity", 2, 1e-13);
+  world_agree("bodies", &way[0], &way[2], "position", 2, 0.0);
+  world_agree("bodies", &way[0], &way[2], "velocity", 2, 0.0);
+  world_agree("bodies", &way[0], &way[1], "position", 2, 1e-13);
+  world_agree("bodies", &way[0], &way[1], "velocity", 2, 1e-13);
   /* all of them at once are the sum */
-  run all;
-  run_open(&all, &(run_options){.dim = 2});
-  parts_calm(&all);
+  world all;
+  body_open(&all, &(body_desc){.dim = 2});
+  body_calm(&all);
   double parts[2] = {0.5 * force, 0.5 * acceleration};
-  run_ok(&all, mpm_stepper_set_force(all.stepper, by_id, &parts[0]));
-  run_ok(&all, mpm_stepper_set_acceleration(all.stepper, by_id, &parts[1]));
-  run_steps(&all, 9);
-  parts_agree(&all, &way[0], "velocity", 2, 1e-13);
-  run_ok(&all, mpm_stepper_set_force(all.stepper, NULL, NULL));
-  run_ok(&all, mpm_stepper_set_acceleration(all.stepper, NULL, NULL));
-  run_steps(&all, 1);
-  for (int32_t k = 0; k < 3; ++k) run_close(&way[k]);
-  run_close(&all);
+  ck_ok(&all, mpm_stepper_set_force(all.stepper, by_id, &parts[0]));
+  ck_ok(&all, mpm_stepper_set_acceleration(all.stepper, by_id, &parts[1]));
+  world_steps(&all, 9);
+  world_agree("bodies", &all, &way[0], "velocity", 2, 1e-13);
+  ck_ok(&all, mpm_stepper_set_force(all.stepper, NULL, NULL));
+  ck_ok(&all, mpm_stepper_set_acceleration(all.stepper, NULL, NULL));
+  world_steps(&all, 1);
+  for (int32_t k = 0; k < 3; ++k) world_close(&way[k]);
+  world_close(&all);
 }
 END_TEST
 
@@ -237,7 +234,7 @@ static mpm_status look_at_inert(void *user, const mpm_particle_batch *b, double 
   const void *lent;
   int64_t stride;
   (void)add;
-  ck_assert_int_eq(mpm_batch_field(b->lookup, "velocity", &lent, &stride), MPM_OK);
+  ck_ok(NULL, mpm_batch_field(b->lookup, "velocity", &lent, &stride));
   const double *v = lent;
   for (int64_t p = 0; p < b->n; ++p) {
     if (b->id[p] >= 0) continue;
@@ -248,19 +245,18 @@ static mpm_status look_at_inert(void *user, const mpm_particle_batch *b, double 
 }
 
 START_TEST(inert_slots_rest) {
-  run other;
+  world other;
   int64_t seen = 0;
-  run_options o = {.dim = 1 + _i / RUN_METHODS};
-  run_use(&o, &run_methods[_i % RUN_METHODS]);
-  run_open(&other, &o);
-  run_ok(&other, mpm_stepper_set_force(other.stepper, look_at_inert, &seen));
-  run_steps(&other, 6);
+  body_desc o = {.dim = 1 + _i / PLAIN, .method = *broad_methods[_i % PLAIN]};
+  body_open(&other, &o);
+  ck_ok(&other, mpm_stepper_set_force(other.stepper, look_at_inert, &seen));
+  world_steps(&other, 6);
   ck_assert_int_gt(seen, 0);
-  run_close(&other);
+  world_close(&other);
 }
 END_TEST
 
-/* ---- refusals and calls from inside -------------------------------------------------------------------- */
+/* ---- refusals and calls from inside ---- */
 static struct {
   mpm_status answer;
   int32_t calls;
@@ -275,18 +271,18 @@ START_TEST(answers) {
   static const mpm_status answer[] = {1, 6, INT32_MAX, -1, -8, INT32_MIN};
   mpm_step_info info = {.struct_size = sizeof info};
   char text[64];
-  run_ok(&r, mpm_stepper_set_acceleration(r.stepper, answering, NULL));
+  ck_ok(&r, mpm_stepper_set_acceleration(r.stepper, answering, NULL));
   for (int32_t i = 0; i < 6; ++i) {
     told.answer = answer[i];
     snprintf(text, sizeof text, "acceleration callback returned %d for set 0", (int)answer[i]);
-    run_refused(&r, mpm_step(r.stepper, RUN_DT, &info), answer[i] > 0 ? MPM_CUT_DT : MPM_E_CALLBACK, text);
+    ck_refused(&r, mpm_step(r.stepper, BODY_DT, &info), answer[i] > 0 ? MPM_CUT_DT : MPM_E_CALLBACK, text);
     ck_assert_int_eq(info.callback_status, answer[i]);
     ck_assert_int_eq(info.set, 0);
-    run_ok(&r, mpm_stepper_info(r.stepper, &info)); /* kept until the next step */
+    ck_ok(&r, mpm_stepper_info(r.stepper, &info)); /* kept until the next step */
     ck_assert_int_eq(info.callback_status, answer[i]);
   }
   told.answer = 0;
-  run_ok(&r, mpm_step(r.stepper, RUN_DT, &info));
+  ck_ok(&r, mpm_step(r.stepper, BODY_DT, &info));
   ck_assert_int_eq(info.callback_status, 0);
   ck_assert_int_eq(info.set, -1);
   ck_assert_int_eq(info.cause, MPM_OK);
@@ -294,9 +290,9 @@ START_TEST(answers) {
 END_TEST
 
 static mpm_status calls_the_library(void *user, const mpm_particle_batch *b, double *add) {
-  run *of = user;
-  const mpm_stepper_desc d = parts_desc(of);
-  mpm_advance_desc advance;
+  world *of = user;
+  const mpm_stepper_desc d = body_stepper(of);
+  const mpm_advance_desc advance = advance_desc(1.0);
   mpm_step_info info = {.struct_size = sizeof info};
   mpm_view view = {.struct_size = sizeof view};
   double dt, value[2] = {0.0, 0.0};
@@ -304,11 +300,9 @@ static mpm_status calls_the_library(void *user, const mpm_particle_batch *b, dou
   int64_t id = 1;
   char byte;
   (void)b, (void)add;
-  ck_assert_int_eq(mpm_advance_desc_init(&advance, sizeof advance), MPM_OK);
-  advance.t_end = 1.0;
   const mpm_status refused[] = {
-      mpm_step(of->stepper, RUN_DT, NULL),
-      mpm_step_begin(of->stepper, RUN_DT),
+      mpm_step(of->stepper, BODY_DT, NULL),
+      mpm_step_begin(of->stepper, BODY_DT),
       mpm_step_grid(of->stepper),
       mpm_step_end(of->stepper, NULL),
       mpm_step_abort(of->stepper),
@@ -344,20 +338,20 @@ static mpm_status calls_the_library(void *user, const mpm_particle_batch *b, dou
 }
 
 START_TEST(calls_from_inside) {
-  run other;
-  run_open(&other, &(run_options){.dim = 2});
-  parts_calm(&other);
+  world other;
+  body_open(&other, &(body_desc){.dim = 2});
+  body_calm(&other);
   told.calls = 0;
-  run_ok(&r, mpm_stepper_set_force(r.stepper, calls_the_library, &r));
-  run_steps(&r, 2);
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, calls_the_library, &r));
+  world_steps(&r, 2);
   ck_assert_int_gt(told.calls, 1);
-  run_steps(&other, 2);
-  ck_assert(run_hash(&r) == run_hash(&other));
-  run_close(&other);
+  world_steps(&other, 2);
+  ck_assert(world_hash(&r) == world_hash(&other));
+  world_close(&other);
 }
 END_TEST
 
-/* ---- threads ------------------------------------------------------------------------------------------- */
+/* ---- threads ---- */
 static pthread_t caller;
 static int32_t elsewhere; /* calls on other threads; written by one thread or not at all where that counts */
 
@@ -376,49 +370,25 @@ static mpm_status where_nodes(void *user, const mpm_node_batch *b, uint8_t *pres
 }
 static mpm_status where_law(void *user, const mpm_material_batch *b) {
   note_thread();
-  return run_neo_hookean(user, b);
+  return host_neo_hookean(user, b);
 }
 
 /* With one thread, and with serial_callbacks, the host is called on the calling thread only. */
 START_TEST(serial_callbacks) {
-  mpm_context_desc d;
-  mpm_grid_desc g;
-  mpm_material_desc l;
-  mpm_context *context;
-  mpm_grid *grid;
-  mpm_material *law;
-  mpm_particles *set;
-  mpm_stepper *stepper;
+  world w;
+  world_desc d = world_default(2, 80, 0.1);
+  d.context.concurrency = 1 + 3 * _i;
+  d.context.serial_callbacks = _i;
+  d.law = (world_law){.density = body_density, .stress = where_law};
   caller = pthread_self();
   elsewhere = 0;
-  ck_assert_int_eq(mpm_context_desc_init(&d, sizeof d), MPM_OK);
-  ck_assert_int_eq(mpm_grid_desc_init(&g, sizeof g), MPM_OK);
-  ck_assert_int_eq(mpm_material_desc_init(&l, sizeof l), MPM_OK);
-  d.concurrency = 1 + 3 * _i;
-  d.serial_callbacks = _i;
-  ck_assert_int_eq(mpm_context_create(&d, &context), MPM_OK);
-  g.dim = 2;
-  g.cells[0] = g.cells[1] = 80;
-  g.spacing[0] = g.spacing[1] = 0.1;
-  ck_assert_int_eq(mpm_grid_create(context, &g, &grid), MPM_OK);
-  l.density = run_density;
-  l.stress = where_law;
-  ck_assert_int_eq(mpm_material_create_custom(context, &l, &law), MPM_OK);
-  ck_assert_int_eq(mpm_particles_create(context, grid, law, &set), MPM_OK);
-  ck_assert_int_eq(
-      mpm_particles_fill_box(set, (double[]){1.0, 1.0}, (double[]){7.0, 7.0}, (int32_t[]){2, 2}, NULL, NULL),
-      MPM_OK);
-  ck_assert_int_eq(mpm_stepper_create(context, grid, NULL, &stepper), MPM_OK);
-  ck_assert_int_eq(mpm_stepper_add(stepper, set), MPM_OK);
-  ck_assert_int_eq(mpm_stepper_set_force(stepper, where_force, NULL), MPM_OK);
-  ck_assert_int_eq(mpm_stepper_set_velocity_bc(stepper, where_nodes, NULL), MPM_OK);
-  for (int32_t i = 0; i < 20; ++i) ck_assert_int_eq(mpm_step(stepper, 1e-4, NULL), MPM_OK);
+  mpm_particles *set = world_open(&w, &d);
+  world_fill_cube(&w, set, 1.0, 7.0);
+  ck_ok(&w, mpm_stepper_set_force(w.stepper, where_force, NULL));
+  ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, where_nodes, NULL));
+  for (int32_t i = 0; i < 20; ++i) world_step(&w, 1e-4);
   ck_assert_int_eq(elsewhere, 0);
-  ck_assert_int_eq(mpm_stepper_destroy(stepper), MPM_OK);
-  ck_assert_int_eq(mpm_particles_destroy(set), MPM_OK);
-  ck_assert_int_eq(mpm_material_destroy(law), MPM_OK);
-  ck_assert_int_eq(mpm_grid_destroy(grid), MPM_OK);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  world_close(&w);
 }
 END_TEST
 
@@ -430,7 +400,7 @@ TCase *stepper_callbacks_case(void) {
   tcase_add_loop_test(tests, stored_tensors, 0, 3);
   tcase_add_test(tests, optional_fields);
   tcase_add_test(tests, three_ways_of_a_force);
-  tcase_add_loop_test(tests, inert_slots_rest, 0, 3 * RUN_METHODS);
+  tcase_add_loop_test(tests, inert_slots_rest, 0, 3 * PLAIN);
   tcase_add_test(tests, answers);
   tcase_add_test(tests, calls_from_inside);
   tcase_add_loop_test(tests, serial_callbacks, 0, 2);

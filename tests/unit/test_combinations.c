@@ -5,7 +5,6 @@
  * more; without, it is a sample on small ones. */
 #include "combinations.h"
 #include "reference.h"
-#include "stepper/stepper.h"
 
 static const double h = 0.25, E = 100.0, nu = 0.3, density = 1e3;
 static combination *list;
@@ -16,8 +15,7 @@ typedef struct body {
   world w;
   mpm_particles *set;
   const combination *c;
-  mpm_grid_desc grid;
-  int32_t dim, periodic, per_cell;
+  int32_t dim, periodic;
   int64_t cells; /* of the body along each axis */
   double low[3];
   char name[128];
@@ -35,57 +33,39 @@ static mpm_status host_law(void *user, const mpm_material_batch *b) {
   return MPM_OK;
 }
 
-static mpm_status make_law(const world *w, int32_t law, mpm_material **out) {
-  const char *model = law_options[law].model;
-  const double mu = E / (2.0 * (1.0 + nu)), kappa = E / (3.0 * (1.0 - 2.0 * nu));
-  if (!model) {
-    mpm_material_desc d;
-    ck_assert_int_eq(mpm_material_desc_init(&d, sizeof d), MPM_OK);
-    d.density = density;
-    d.stress = host_law;
-    return mpm_material_create_custom(w->context, &d, out);
-  }
-  const mpm_param all[] = {{"density", density},   {"E", E},   {"nu", nu},       {"yield_stress", 0.01 * E},
-                           {"hardening", 0.1 * E}, {"mu", mu}, {"kappa", kappa}, {"bulk_modulus", E},
-                           {"viscosity", 1e-2 * E}};
-  mpm_param given[sizeof all / sizeof *all];
-  int32_t count = 0;
-  const char *wanted;
-  for (int32_t i = 0; mpm_material_model_param(model, i, &wanted, NULL, NULL, NULL, NULL, NULL) == MPM_OK;
-       ++i)
-    for (size_t k = 0; k < sizeof all / sizeof *all; ++k)
-      if (!strcmp(all[k].name, wanted)) given[count++] = all[k];
-  return mpm_material_create(w->context, model, given, count, out);
+static world_desc describe(const combination *c) {
+  world_desc d = describe_combination(c);
+  d.law = (world_law){.model = law_options[c->choice[CHOOSE_LAW]].model,
+                      .E = E,
+                      .nu = nu,
+                      .density = density,
+                      .yield_stress = 0.01 * E,
+                      .hardening = 0.1 * E,
+                      .stress = host_law};
+  return d;
 }
 
 /* `before` and `after`: free cells on both sides of the body, but for a periodic axis. */
 static void open_body(body *b, const combination *c, int64_t cells, int32_t per_cell, int64_t before,
-                      int64_t after, const double *gravity) {
+                      int64_t after, const double *g) {
+  world_desc d = describe(c);
+  double low[3], high[3];
+  memcpy(d.stepper.gravity, g, sizeof d.stepper.gravity);
+  for (int32_t k = 0; k < d.grid.dim; ++k) {
+    const int32_t around = d.grid.periodic[k];
+    d.grid.cells[k] = around ? cells : before + cells + after;
+    low[k] = around ? 0.0 : h * (double)before;
+    high[k] = low[k] + h * (double)cells;
+  }
   memset(b, 0, sizeof *b);
-  mpm_stepper_desc stepper;
-  const int32_t lattice[3] = {per_cell, per_cell, per_cell};
-  double high[3];
-  describe_combination(c, &b->grid, &stepper);
-  memcpy(stepper.gravity, gravity, sizeof stepper.gravity);
   b->c = c;
-  b->dim = b->w.dim = b->grid.dim;
+  b->dim = d.grid.dim;
   b->periodic = c->choice[CHOOSE_PERIODIC];
   b->cells = cells;
-  b->per_cell = per_cell;
+  memcpy(b->low, low, sizeof low);
   name_of(c, b->name, sizeof b->name);
-  for (int32_t k = 0; k < b->dim; ++k) {
-    const int32_t around = b->grid.periodic[k];
-    b->grid.spacing[k] = h;
-    b->grid.cells[k] = around ? cells : before + cells + after;
-    b->low[k] = around ? 0.0 : h * (double)before;
-    high[k] = b->low[k] + h * (double)cells;
-  }
-  ck_assert_int_eq(mpm_context_create(NULL, &b->w.context), MPM_OK);
-  ck_ok(&b->w, mpm_grid_create(b->w.context, &b->grid, &b->w.grid));
-  ck_ok(&b->w, make_law(&b->w, c->choice[CHOOSE_LAW], &b->w.material));
-  ck_ok(&b->w, mpm_stepper_create(b->w.context, b->w.grid, &stepper, &b->w.stepper));
-  b->set = world_add_set(&b->w);
-  ck_ok(&b->w, mpm_particles_fill_box(b->set, b->low, high, lattice, NULL, NULL));
+  b->set = world_open(&b->w, &d);
+  world_fill(&b->w, b->set, low, high, per_cell);
 }
 
 static const char *model_of(const body *b) {
@@ -108,10 +88,9 @@ static double momentum_of(const body *b, const double *m, const double *v, int32
 /* The grid has the particles' mass; where an axis is periodic nodes are listed with their images. */
 static void check_nodal_mass(body *b, const double *m) {
   int64_t nodes;
-  double *mass = fetch_nodes(&b->w, "mass", &nodes), sum = 0.0, total = 0.0;
-  for (int64_t i = 0; i < nodes; ++i) sum += mass[i];
-  for (int64_t p = 0; p < mpm_particles_count(b->set); ++p) total += m[p];
-  if (!b->periodic) ck_within(b->name, sum, total, 1e-12 * total);
+  double *mass = fetch_nodes(&b->w, "mass", &nodes);
+  const double total = sum_of(mpm_particles_count(b->set), m);
+  if (!b->periodic) ck_within(b->name, sum_of(nodes, mass), total, 1e-12 * total);
   free(mass);
 }
 
@@ -129,13 +108,12 @@ static void check_translation(const combination *c) {
   check_nodal_mass(&b, m0);
   double *x = fetch(&b.w, b.set, "position", b.dim), *m = fetch(&b.w, b.set, "mass", 1);
   double *u = fetch(&b.w, b.set, "velocity", b.dim), *stress = fetch(&b.w, b.set, "stress", 6);
-  int64_t *image = calloc((size_t)(b.dim * n), sizeof *image);
-  if (b.periodic) ck_ok(&b.w, mpm_particles_get(b.set, "image", MPM_I64, b.dim, n, NULL, image));
+  int64_t *image = fetch_as(&b.w, b.set, "image", MPM_I64, b.dim);
   if (memcmp(m, m0, (size_t)n * sizeof *m)) ck_abort_msg("%s: masses have changed", b.name);
   for (int32_t k = 0; k < b.dim; ++k)
     for (int64_t p = 0; p < n; ++p) {
       const int64_t i = k * n + p;
-      const double flown = x[i] - x0[i] + (double)image[i] * h * (double)b.grid.cells[k];
+      const double flown = x[i] - x0[i] + (double)image[i] * h * (double)b.w.desc.grid.cells[k];
       ck_within(b.name, u[i], v[k], 1e-12);
       ck_within(b.name, flown, v[k] * FLIGHT * dt, 1e-12);
     }
@@ -173,9 +151,7 @@ static patch make_patch(const body *b, double dt) {
     q.F_new[c] = q.F[c];
     for (int32_t k = 0; k < 3; ++k) q.F_new[c] += dt * q.L[c / 3 * 3 + k] * q.F[3 * k + c % 3];
   }
-  const double *F = q.F_new;
-  q.J_new = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-            F[2] * (F[3] * F[7] - F[4] * F[6]);
+  q.J_new = determinant(q.F_new);
   return q;
 }
 
@@ -295,11 +271,11 @@ static void check_patch(const combination *c) {
   double *x0 = fetch(&b.w, b.set, "position", b.dim), *v0 = fetch(&b.w, b.set, "velocity", b.dim);
   double *m0 = fetch(&b.w, b.set, "mass", 1);
   world_step(&b.w, dt);
-  if (full) ck_assert_int_ge(b.w.stepper->cut.count, 27);
+  if (full) ck_assert_int_ge(world_blocks(&b.w), 27);
   check_nodal_mass(&b, m0);
-  double *m = fetch(&b.w, b.set, "mass", 1), *v = fetch(&b.w, b.set, "velocity", b.dim), total = 0.0;
+  double *m = fetch(&b.w, b.set, "mass", 1), *v = fetch(&b.w, b.set, "velocity", b.dim);
+  const double total = sum_of(n, m);
   if (memcmp(m, m0, (size_t)n * sizeof *m)) ck_abort_msg("%s: masses have changed", b.name);
-  for (int64_t p = 0; p < n; ++p) total += m[p];
   for (int32_t k = 0; k < b.dim; ++k) {
     double scale = 0.0;
     const double before = momentum_of(&b, m, v0, k, &scale), after = momentum_of(&b, m, v, k, &scale);
@@ -331,13 +307,12 @@ START_TEST(combination_works) {
 }
 END_TEST
 
-/* Every two values that are ready are together in some combination, but those that are refused. */
+/* Every two values are together in some combination, but those that are refused. */
 START_TEST(every_pair_is_listed) {
   for (int32_t a = 0; a < CHOICES; ++a)
     for (int32_t b = a + 1; b < CHOICES; ++b)
       for (int32_t value = choice_first[a]; value < choice_end[a]; ++value)
         for (int32_t other = choice_first[b]; other < choice_end[b]; ++other) {
-          if (!choice_ready(a, value) || !choice_ready(b, other)) continue;
           int32_t times = 0;
           for (int32_t i = 0; i < listed; ++i)
             times += list[i].choice[a] == value && list[i].choice[b] == other;
@@ -367,33 +342,20 @@ END_TEST
 /* Whatever is refused is refused by a call before the first step, with a sentence that names what to use. */
 static void expect_refusal(const combination *c, const char *why) {
   char name[128];
-  mpm_grid_desc g;
-  mpm_stepper_desc s;
-  world w = {0};
-  describe_combination(c, &g, &s);
+  world w = {.desc = describe(c)};
   name_of(c, name, sizeof name);
-  ck_assert_int_eq(mpm_context_create(NULL, &w.context), MPM_OK);
-  mpm_particles *set = NULL;
-  mpm_stepper *plain = NULL;
-  mpm_status status = mpm_grid_create(w.context, &g, &w.grid);
-  if (!status) status = make_law(&w, c->choice[CHOOSE_LAW], &w.material);
-  if (!status) status = mpm_particles_create(w.context, w.grid, w.material, &set);
-  if (!status) status = mpm_stepper_create(w.context, w.grid, &s, &w.stepper);
+  mpm_status status = world_try_open(&w);
   if (status != MPM_E_UNSUPPORTED || !strstr(mpm_last_error(w.context), "use"))
     ck_abort_msg("%s (%s): %s: \"%s\"", name, why, mpm_status_name(status), mpm_last_error(w.context));
   /* and so where a stepper that exists is asked for it */
-  if (set) {
-    ck_ok(&w, mpm_stepper_create(w.context, w.grid, NULL, &plain));
-    status = mpm_stepper_configure(plain, &s);
+  if (w.set[0]) {
+    ck_ok(&w, mpm_stepper_create(w.context, w.grid, NULL, &w.stepper));
+    status = mpm_stepper_configure(w.stepper, &w.desc.stepper);
     if (status != MPM_E_UNSUPPORTED || !strstr(mpm_last_error(w.context), "use"))
       ck_abort_msg("configure %s (%s): %s: \"%s\"", name, why, mpm_status_name(status),
                    mpm_last_error(w.context));
   }
-  ck_ok(&w, mpm_stepper_destroy(plain));
-  ck_ok(&w, mpm_particles_destroy(set));
-  ck_ok(&w, mpm_material_destroy(w.material));
-  ck_ok(&w, mpm_grid_destroy(w.grid));
-  ck_ok(&w, mpm_context_destroy(w.context));
+  world_close(&w);
 }
 
 START_TEST(refusals_say_what_to_use) {
@@ -423,48 +385,25 @@ END_TEST
 /* Open knots are for B-splines of order two and three. */
 START_TEST(open_knots_want_splines) {
   static const int32_t others[] = {MPM_LINEAR, MPM_GIMP, MPM_UGIMP, MPM_CPGIMP};
-  mpm_context *context;
-  mpm_grid *grid;
-  mpm_grid_desc d;
-  ck_assert_int_eq(mpm_context_create(NULL, &context), MPM_OK);
-  ck_assert_int_eq(mpm_grid_desc_init(&d, sizeof d), MPM_OK);
-  d.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
-  for (int32_t k = 0; k < 3; ++k) d.cells[k] = 8, d.spacing[k] = h;
   for (size_t i = 0; i < sizeof others / sizeof *others; ++i) {
-    d.basis = others[i];
-    ck_assert_int_eq(mpm_grid_create(context, &d, &grid), MPM_E_UNSUPPORTED);
-    ck_assert_ptr_nonnull(strstr(mpm_last_error(context), "use"));
-  }
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
-}
-END_TEST
-
-/* The list of what is not there yet hides nothing that is there. */
-START_TEST(what_is_not_yet_is_refused) {
-  for (const option_value *o = options_not_yet; o->kind; ++o) {
-    combination c = {{2, 1, 0, 0, 1, 0, 0, 0, 0}};
-    for (int32_t i = 0; i < BASES; ++i)
-      if ((o->kind == OPTION_BASIS && basis_options[i].basis == o->value) ||
-          (o->kind == OPTION_BOUNDARY && basis_options[i].boundary == o->value))
-        c.choice[CHOOSE_BASIS] = i;
-    for (int32_t i = 0; i < SCHEMES && o->kind == OPTION_SCHEME; ++i)
-      if (scheme_options[i].scheme == o->value) c.choice[CHOOSE_SCHEME] = i;
-    for (int32_t i = 0; i < TRANSFERS; ++i)
-      if ((o->kind == OPTION_TRANSFER && transfer_options[i].transfer == o->value) ||
-          (o->kind == OPTION_PIC_DAMPING && transfer_options[i].transfer == MPM_FLIP &&
-           transfer_options[i].pic_damping > 0.0))
-        c.choice[CHOOSE_TRANSFER] = i;
-    if (o->kind == OPTION_POSITION_ORDER) c.choice[CHOOSE_ORDER] = o->value;
-    if (o->kind == OPTION_STAGGERED) c.choice[CHOOSE_STAGGERED] = o->value;
-    if (o->kind == OPTION_LOCKING) c.choice[CHOOSE_REMEDY] = o->value;
-    if (o->kind == OPTION_LAW) c.choice[CHOOSE_LAW] = o->value;
-    ck_assert_ptr_null(refusal_of(&c));
-    expect_refusal(&c, "not yet: take it out of options_not_yet if it is there");
+    world w = {.desc = world_default(3, 8, h)};
+    w.desc.grid.basis = others[i];
+    w.desc.grid.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
+    ck_refused(&w, world_try_open(&w), MPM_E_UNSUPPORTED, "use");
+    world_close(&w);
   }
 }
 END_TEST
 
-Suite *combinations_suite(void);
+/* No two methods of the list have the same name, so that a message says which one failed. */
+START_TEST(names_tell_methods_apart) {
+  for (int32_t i = 0; i < ALL_METHODS; ++i) {
+    ck_assert_int_gt((int)strlen(methods[i].name), 0);
+    for (int32_t k = 0; k < i; ++k) ck_assert_str_ne(methods[i].name, methods[k].name);
+  }
+}
+END_TEST
+
 Suite *combinations_suite(void) {
   Suite *suite = suite_create("combinations");
   full = getenv("MPM_FULL") != NULL;
@@ -475,7 +414,7 @@ Suite *combinations_suite(void) {
   tcase_add_test(rules, patches_have_an_inside);
   tcase_add_loop_test(rules, refusals_say_what_to_use, 1, 4);
   tcase_add_test(rules, open_knots_want_splines);
-  tcase_add_test(rules, what_is_not_yet_is_refused);
+  tcase_add_test(rules, names_tell_methods_apart);
   suite_add_tcase(suite, rules);
   /* in two parts, for as many processes */
   static const char *const parts[2] = {"first half", "second half"};

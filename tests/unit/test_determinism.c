@@ -2,9 +2,7 @@
  * round-off. Bodies of many blocks that move through them, lose particles and are sorted anew. With
  * MPM_FULL=1 in the environment the list is all that the library offers, on every count of threads, by pool
  * and by executor, for each instruction set; without, a sample of it. */
-#include "options.h"
-#include "run_support.h"
-#include "stepper/stepper.h"
+#include "body.h"
 
 enum { REMOVED_AT = 6, COMPARED_AT = 10 };
 
@@ -18,15 +16,16 @@ static const struct {
   int32_t components; /* 0: dim */
 } sampled[3] = {{"position", 0}, {"velocity", 0}, {"stress", 6}};
 
-static int32_t components_of(const run *r, int32_t f) {
-  return sampled[f].components ? sampled[f].components : r->options.dim;
+static int32_t components_of(int32_t dim, int32_t f) {
+  return sampled[f].components ? sampled[f].components : dim;
 }
 
-static sample take_sample(const run *r) {
+static sample take_sample(const world *r) {
   sample s;
   for (int32_t m = 0; m < 2; ++m) {
     s.n[m] = mpm_particles_count(r->set[m]);
-    for (int32_t f = 0; f < 3; ++f) s.value[m][f] = run_get(r, m, sampled[f].name, components_of(r, f));
+    for (int32_t f = 0; f < 3; ++f)
+      s.value[m][f] = fetch(r, r->set[m], sampled[f].name, components_of(r->dim, f));
   }
   return s;
 }
@@ -36,56 +35,52 @@ static void drop_sample(sample *s) {
     for (int32_t f = 0; f < 3; ++f) free(s->value[m][f]);
 }
 
-static void ck_agree(const run *r, const sample *a, const sample *b) {
+static void ck_agree(int32_t dim, const sample *a, const sample *b) {
   for (int32_t m = 0; m < 2; ++m) {
     ck_assert_int_eq(a->n[m], b->n[m]);
     for (int32_t f = 0; f < 3; ++f) {
-      double largest = 0.0, apart = 0.0;
-      for (int64_t i = 0; i < a->n[m] * components_of(r, f); ++i) {
-        largest = fmax(largest, fabs(a->value[m][f][i]));
-        apart = fmax(apart, fabs(a->value[m][f][i] - b->value[m][f][i]));
-      }
-      ck_assert_msg(largest > 0.0 && apart <= 1e-12 * largest, "%s of set %d: %g apart of %g",
-                    sampled[f].name, (int)m, apart, largest);
+      const int64_t n = a->n[m] * components_of(dim, f);
+      const double scale = largest(n, a->value[m][f]);
+      ck_assert_double_gt(scale, 0.0);
+      for (int64_t i = 0; i < n; ++i)
+        ck_within(sampled[f].name, b->value[m][f][i], a->value[m][f][i], 1e-12 * scale);
     }
   }
 }
 
-static void remove_some(run *r) {
+static void remove_some(world *r) {
   for (int32_t m = 0; m < 2; ++m) {
     const int64_t n = mpm_particles_count(r->set[m]);
-    int64_t *ids = malloc((size_t)n * sizeof *ids), some = 0;
-    run_ok(r, mpm_particles_get(r->set[m], "id", MPM_I64, 1, n, NULL, ids));
+    int64_t *ids = fetch_ids(r, r->set[m]), some = 0;
     for (int64_t i = 0; i < n; ++i)
       if (ids[i] % 13 == 4) ids[some++] = ids[i];
     ck_assert_int_gt(some, 3);
-    run_ok(r, mpm_particles_remove(r->set[m], some, ids));
+    ck_ok(r, mpm_particles_remove(r->set[m], some, ids));
     free(ids);
   }
 }
 
 /* Light nodes can end a run of the linear basis with so few particles: then the state that is left is the end
  * of the story, and 0 is returned. */
-static int32_t go_on(run *r, int32_t steps) {
-  if (r->options.basis != MPM_LINEAR) {
-    run_steps(r, steps);
+static int32_t go_on(world *r, int32_t steps) {
+  if (r->desc.body.method.basis != MPM_LINEAR) {
+    world_steps(r, steps);
     return 1;
   }
-  r->info.struct_size = sizeof r->info;
   for (int32_t i = 0; i < steps; ++i) {
-    const mpm_status status = mpm_step(r->stepper, RUN_DT, &r->info);
+    const mpm_status status = mpm_step(r->stepper, BODY_DT, &r->info);
     if (status == MPM_INVERTED) return 0;
-    run_ok(r, status);
+    ck_ok(r, status);
   }
   return 1;
 }
 
 /* The whole story of one run; at: receives the fields after COMPARED_AT steps, or NULL. */
-static uint64_t tell(const run_options *options, sample *at) {
-  run r;
-  run_open(&r, options);
-  run_steps(&r, REMOVED_AT);
-  ck_assert_int_ge(r.stepper->cut.count, 27);
+static uint64_t tell(const body_desc *options, sample *at) {
+  world r;
+  body_open(&r, options);
+  world_steps(&r, REMOVED_AT);
+  ck_assert_int_ge(world_blocks(&r), 27);
   remove_some(&r);
   int32_t lasts = go_on(&r, COMPARED_AT - REMOVED_AT);
   if (at) *at = take_sample(&r);
@@ -98,19 +93,9 @@ static uint64_t tell(const run_options *options, sample *at) {
       ck_assert_int_gt(r.info.removed, 0);
     ck_assert(isfinite(r.info.strain_energy) && r.info.strain_energy > 0.0);
   }
-  const uint64_t hash = run_hash(&r);
-  run_close(&r);
+  const uint64_t hash = world_hash(&r);
+  world_close(&r);
   return hash;
-}
-
-static int32_t has_isa(int32_t isa) {
-  mpm_context_desc d;
-  mpm_context *context;
-  ck_assert_int_eq(mpm_context_desc_init(&d, sizeof d), MPM_OK);
-  d.isa = isa;
-  const mpm_status status = mpm_context_create(&d, &context);
-  if (status == MPM_OK) mpm_context_destroy(context);
-  return status == MPM_OK;
 }
 
 enum { BRIEF, THOROUGH, FULL };
@@ -118,20 +103,20 @@ static const int32_t threads[] = {1, 2, 3, 4, 7};
 enum { COUNTS = sizeof threads / sizeof *threads };
 
 /* One instruction set. */
-static void one_isa(run_options o, int32_t care, sample *at) {
+static void one_isa(body_desc o, int32_t care, sample *at) {
   const uint64_t alone = tell(&o, at);
   for (int32_t i = 1; i < COUNTS && care > BRIEF; ++i) {
     o.concurrency = threads[i];
     ck_assert_msg(tell(&o, NULL) == alone, "%d threads give another hash than one", (int)threads[i]);
   }
-  o.own_order = 1;
+  o.random_order = 1;
   for (int32_t i = care == FULL ? 0 : COUNTS - 1; i < COUNTS; ++i) {
     o.concurrency = threads[i];
     ck_assert_msg(tell(&o, NULL) == alone, "tasks for %d threads in another order give another hash",
                   (int)threads[i]);
   }
   if (care == BRIEF) return;
-  o.own_order = 0;
+  o.random_order = 0;
   o.concurrency = 2;
   o.shuffled = 1;
   ck_assert_msg(tell(&o, NULL) == alone, "another order of filling gives another hash");
@@ -139,48 +124,29 @@ static void one_isa(run_options o, int32_t care, sample *at) {
 
 /* Whether the library takes the combination; what fails otherwise than by a refusal will fail in its run. */
 static int32_t offers(int32_t dim, int32_t basis, int32_t boundary, int32_t scheme, int32_t transfer) {
-  mpm_context *context = NULL;
-  mpm_grid *grid = NULL;
-  mpm_stepper *stepper = NULL;
-  mpm_grid_desc g;
-  mpm_stepper_desc s;
-  mpm_grid_desc_init(&g, sizeof g);
-  mpm_stepper_desc_init(&s, sizeof s);
-  g.dim = dim;
-  g.basis = basis;
-  g.boundary_basis = boundary;
-  for (int32_t k = 0; k < dim; ++k) g.spacing[k] = 1.0, g.cells[k] = 8;
-  s.scheme = scheme;
-  s.transfer = transfer;
-  mpm_status status = mpm_context_create(NULL, &context);
-  if (!status) status = mpm_grid_create(context, &g, &grid);
-  if (!status) status = mpm_stepper_create(context, grid, &s, &stepper);
-  mpm_stepper_destroy(stepper);
-  mpm_grid_destroy(grid);
-  mpm_context_destroy(context);
+  world w = {.desc = world_default(dim, 8, 1.0)};
+  w.desc.grid.basis = basis;
+  w.desc.grid.boundary_basis = boundary;
+  w.desc.stepper.scheme = scheme;
+  w.desc.stepper.transfer = transfer;
+  const mpm_status status = world_try_open(&w);
+  world_close(&w);
   return status != MPM_E_UNSUPPORTED && status != MPM_E_ARG;
 }
 
 static int32_t full;
-static run_options list[3 * (4 * BASES * SCHEMES * TRANSFERS + RUN_METHODS)];
+static body_desc list[3 * (4 * BASES * SCHEMES * TRANSFERS + PLAIN)];
 static int32_t listed;
 
 /* With gravity, walls and callbacks; the remedy, positions of second order and staggering have no part in how
  * work is cut and stay away. */
 static int32_t list_method(int32_t dim, const basis_option *b, const scheme_option *s,
                            const transfer_option *t, int32_t periodic) {
-  if (!basis_ready(b) || !scheme_ready(s) || !transfer_ready(t)) return 0;
   if (t->transfer == MPM_APIC_MLS && !fits_mls(b)) return 0;
-  list[listed++] = (run_options){.dim = dim,
-                                 .large = 1,
-                                 .periodic = periodic,
-                                 .basis = b->basis,
-                                 .boundary_basis = b->boundary,
-                                 .scheme = s->scheme,
-                                 .transfer = t->transfer,
-                                 .xpic_order = t->xpic_order,
-                                 .flip = t->flip > 0.0 ? t->flip : 0.05,
-                                 .pic_damping = t->pic_damping};
+  body_desc o = {.dim = dim, .large = 1, .periodic = periodic, .method = method_of(b, s, t)};
+  o.method.smoothing = 0.0; /* uGIMP has the default here */
+  if (t->flip <= 0.0) o.method.flip = 0.05;
+  list[listed++] = o;
   return 1;
 }
 
@@ -201,15 +167,14 @@ static void list_methods(int32_t dim) {
                          &transfer_options[4 * i % TRANSFERS], (had + b) % 2);
   }
   /* with hooks and prescribed particles */
-  for (int32_t i = 0; i < (full ? RUN_METHODS : 2); ++i) {
-    run_options o = {.dim = dim, .large = 1, .periodic = i % 2, .led = 1};
-    run_use(&o, &run_methods[i]);
+  for (int32_t i = 0; i < (full ? PLAIN : 2); ++i) {
+    body_desc o = {.dim = dim, .large = 1, .periodic = i % 2, .led = 1, .method = *broad_methods[i]};
     list[listed++] = o;
   }
 }
 
 START_TEST(same_bits) {
-  run_options o = list[_i];
+  body_desc o = list[_i];
   sample first = {{0, 0}, {{NULL}}};
   int32_t tried = 0;
   for (int32_t isa = MPM_ISA_AVX512; isa >= MPM_ISA_BASELINE; --isa) {
@@ -218,8 +183,7 @@ START_TEST(same_bits) {
     o.isa = isa;
     one_isa(o, full ? FULL : tried ? BRIEF : THOROUGH, tried ? &other : &first);
     if (tried++) {
-      run r = {.options = o};
-      ck_agree(&r, &first, &other);
+      ck_agree(o.dim, &first, &other);
       drop_sample(&other);
     }
   }
@@ -228,55 +192,52 @@ START_TEST(same_bits) {
 }
 END_TEST
 
-static int32_t in_table(int32_t basis, int32_t boundary, int32_t scheme, int32_t transfer) {
+static int32_t in_lists(int32_t basis, int32_t boundary, int32_t scheme, int32_t transfer) {
   int32_t has_basis = 0, has_scheme = 0, has_transfer = 0, mls = 1;
   for (int32_t i = 0; i < BASES; ++i)
-    if (basis_options[i].basis == basis && basis_options[i].boundary == boundary &&
-        basis_ready(&basis_options[i])) {
+    if (basis_options[i].basis == basis && basis_options[i].boundary == boundary) {
       has_basis = 1;
       mls = fits_mls(&basis_options[i]);
     }
-  for (int32_t i = 0; i < SCHEMES; ++i)
-    has_scheme |= scheme_options[i].scheme == scheme && scheme_ready(&scheme_options[i]);
-  for (int32_t i = 0; i < TRANSFERS; ++i)
-    has_transfer |= transfer_options[i].transfer == transfer && transfer_ready(&transfer_options[i]);
+  for (int32_t i = 0; i < SCHEMES; ++i) has_scheme |= scheme_options[i].scheme == scheme;
+  for (int32_t i = 0; i < TRANSFERS; ++i) has_transfer |= transfer_options[i].transfer == transfer;
   return has_basis && has_scheme && has_transfer && (transfer != MPM_APIC_MLS || mls);
 }
 
-/* The tables of options.h have what the library offers, by asking for each value that has a name. */
-START_TEST(table_is_complete) {
+/* The lists of methods.h have what the library offers, by asking for each value that has a name. */
+START_TEST(lists_are_complete) {
   for (int32_t dim = 1; dim <= 3; ++dim)
     for (int32_t basis = 1; basis <= MPM_CPGIMP; ++basis)
       for (int32_t boundary = MPM_BOUNDARY_GHOST; boundary <= MPM_BOUNDARY_OPEN_KNOT; ++boundary)
         for (int32_t scheme = 1; scheme < MPM_NEWMARK; ++scheme)
           for (int32_t transfer = 1; transfer <= MPM_APIC_MLS; ++transfer)
-            if (offers(dim, basis, boundary, scheme, transfer) != in_table(basis, boundary, scheme, transfer))
+            if (offers(dim, basis, boundary, scheme, transfer) != in_lists(basis, boundary, scheme, transfer))
               ck_abort_msg(
-                  "basis %d with boundary %d, scheme %d, transfer %d is in one only: library or table",
+                  "basis %d with boundary %d, scheme %d, transfer %d is in one only: library or lists",
                   (int)basis, (int)boundary, (int)scheme, (int)transfer);
 }
 END_TEST
 
 /* The hash tells runs apart. */
 START_TEST(hash_differs) {
-  run_options o = {.dim = 2};
-  run a, b;
-  run_open(&a, &o);
-  run_open(&b, &o);
-  run_steps(&a, 3);
-  run_steps(&b, 3);
-  ck_assert(run_hash(&a) == run_hash(&b));
-  run_step_of(&a, RUN_DT);
-  run_step_of(&b, RUN_DT * (1.0 + 1e-15));
-  ck_assert(run_hash(&a) != run_hash(&b));
-  run_close(&a);
-  run_close(&b);
+  body_desc o = {.dim = 2};
+  world a, b;
+  body_open(&a, &o);
+  body_open(&b, &o);
+  world_steps(&a, 3);
+  world_steps(&b, 3);
+  ck_assert(world_hash(&a) == world_hash(&b));
+  world_step(&a, BODY_DT);
+  world_step(&b, BODY_DT * (1.0 + 1e-15));
+  ck_assert(world_hash(&a) != world_hash(&b));
+  world_close(&a);
+  world_close(&b);
 }
 END_TEST
 
 /* MPM_ISA_BEST is one of the sets, and a pool is as good as an executor of the host on it. */
 START_TEST(best_isa_is_one_of_them) {
-  run_options o = {.dim = 3, .large = 1};
+  body_desc o = {.dim = 3, .large = 1};
   const uint64_t best = tell(&o, NULL);
   int32_t same = 0;
   for (o.isa = MPM_ISA_BASELINE; o.isa <= MPM_ISA_AVX512; ++o.isa)
@@ -293,16 +254,16 @@ Suite *determinism_suite(void) {
   for (int32_t dim = 1; dim <= 3; ++dim) {
     const int32_t first = listed;
     list_methods(dim);
-    TCase *methods = tcase_create(cases[dim - 1]);
-    tcase_set_tags(methods, "long");
-    tcase_set_timeout(methods, 900);
-    tcase_add_loop_test(methods, same_bits, first, listed);
-    suite_add_tcase(suite, methods);
+    TCase *tests = tcase_create(cases[dim - 1]);
+    tcase_set_tags(tests, "long");
+    tcase_set_timeout(tests, 900);
+    tcase_add_loop_test(tests, same_bits, first, listed);
+    suite_add_tcase(suite, tests);
   }
   TCase *hashes = tcase_create("hashes");
   tcase_set_tags(hashes, "long");
   tcase_set_timeout(hashes, 900);
-  tcase_add_test(hashes, table_is_complete);
+  tcase_add_test(hashes, lists_are_complete);
   tcase_add_test(hashes, hash_differs);
   tcase_add_test(hashes, best_isa_is_one_of_them);
   suite_add_tcase(suite, hashes);

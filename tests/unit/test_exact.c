@@ -4,30 +4,27 @@
 /* A stress-free block of 4 cells edge flies 1000 steps across many cells. */
 static void fly(const method *how, int32_t dim, int32_t periodic) {
   const double v[3] = {0.3, -0.2, 0.1}, h = 0.25, dt = 0.01, start[3] = {1.0, 3.5, 1.0};
-  const int32_t per_cell[3] = {2, 2, 2}, steps = 1000;
+  const int32_t steps = 1000;
   double lower[3], upper[3];
   world w;
-  world_desc desc = world_default(dim, periodic ? 8 : 24, h);
-  world_use(&desc, how);
-  /* with the linear basis light nodes make rounding grow by (c dt / h)^2 / share
-   * of mass a step: a soft law */
-  if (how->basis == MPM_LINEAR) desc.E = 1e3;
+  world_desc desc = world_with(how, dim, periodic ? 8 : 24, h);
+  /* with the linear basis light nodes make rounding grow by (c dt / h)^2 / share of mass a step: a soft law
+   */
+  if (how->basis == MPM_LINEAR) desc.law.E = 1e3;
   for (int32_t k = 0; k < dim; ++k) {
     lower[k] = periodic ? 0.5 : start[k] - 0.125;
     upper[k] = lower[k] + 1.0;
     desc.grid.periodic[k] = periodic;
   }
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 2);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, v));
   const int64_t n = mpm_particles_count(set);
   double *x0 = fetch(&w, set, "position", dim);
   for (int32_t i = 0; i < steps; ++i) world_step(&w, dt);
   double *x = fetch(&w, set, "position", dim), *v1 = fetch(&w, set, "velocity", dim);
   double *stress = fetch(&w, set, "stress", 6);
-  int64_t *image = malloc((size_t)(dim * n) * sizeof *image), crossed = 0;
-  ck_ok(&w, mpm_particles_get(set, "image", MPM_I64, dim, n, NULL, image));
+  int64_t *image = fetch_as(&w, set, "image", MPM_I64, dim), crossed = 0;
   for (int32_t k = 0; k < dim; ++k)
     for (int64_t p = 0; p < n; ++p) {
       const int64_t i = k * n + p;
@@ -37,7 +34,7 @@ static void fly(const method *how, int32_t dim, int32_t periodic) {
       ck_within(how->name, unwrapped, x0[i] + v[k] * steps * dt, 1e-12);
     }
   ck_assert_int_eq(crossed > 0, periodic);
-  ck_within(how->name, largest(6 * n, stress) / desc.E, 0.0, 1e-12);
+  ck_within(how->name, largest(6 * n, stress) / desc.law.E, 0.0, 1e-12);
   free(x0), free(x), free(v1), free(stress), free(image);
   world_close(&w);
 }
@@ -66,21 +63,17 @@ static mpm_status weigh(void *user, const mpm_particle_batch *b, double *add) {
 START_TEST(free_fall) {
   enum { BY_GRAVITY, BY_ACCELERATION, BY_FORCE, BY_FIELD, WAYS };
   const method *how = &methods[_i / WAYS];
-  const int32_t way = _i % WAYS, steps = 200, per_cell[3] = {2, 2, 2};
+  const int32_t way = _i % WAYS, steps = 200;
   const double lower[3] = {0.5, 5.5, 0.5}, upper[3] = {1.5, 6.5, 1.5}, dt = 1.0 / steps;
   double g[3] = {1.0, -9.81, 2.0};
   for (int32_t dim = 1; dim <= 3; ++dim) {
     world w;
-    world_desc desc = world_default(dim, 16, 0.5);
-    world_use(&desc, how);
+    world_desc desc = world_with(how, dim, 16, 0.5);
     if (way == BY_GRAVITY) memcpy(desc.stepper.gravity, g, sizeof g);
-    world_open(&w, &desc);
-    mpm_particles *set = world_add_set(&w);
-    ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
-    const int64_t n = mpm_particles_count(set);
-    double *x0 = fetch(&w, set, "position", dim), *mass = fetch(&w, set, "mass", 1), total = 0.0;
-    for (int64_t p = 0; p < n; ++p) total += mass[p];
-    double weight[3];
+    mpm_particles *set = world_open(&w, &desc);
+    const int64_t n = world_fill(&w, set, lower, upper, 2);
+    double *x0 = fetch(&w, set, "position", dim), *mass = fetch(&w, set, "mass", 1), weight[3];
+    const double total = sum_of(n, mass);
     for (int32_t k = 0; k < 3; ++k) weight[k] = mass[0] * g[k];
     if (way == BY_ACCELERATION) ck_ok(&w, mpm_stepper_set_acceleration(w.stepper, fall, g));
     if (way == BY_FORCE) ck_ok(&w, mpm_stepper_set_force(w.stepper, weigh, g));
@@ -102,7 +95,7 @@ START_TEST(free_fall) {
       expected_loss +=
           0.5 * total * g[k] * g[k] * dt; /* m g x is more than m v^2 / 2: the last dt counts whole */
     }
-    ck_within(how->name, largest(6 * n, stress) / desc.E, 0.0, 1e-12);
+    ck_within(how->name, largest(6 * n, stress) / desc.law.E, 0.0, 1e-12);
     ck_within(how->name, work, expected_work, 1e-12 * expected_work);
     ck_within(how->name, lost, expected_loss, 1e-11 * expected_work);
     free(x0), free(mass), free(x), free(v), free(stress);
@@ -154,18 +147,8 @@ START_TEST(single_particle_oscillates) {
   /* USL takes L from v + dt f / m of a node that has half the mass:
    * damped by dt omega^2 / 2, hence the small dt */
   desc.stepper.scheme = _i ? MPM_MUSL : MPM_USL;
-  world_open(&w, &desc);
-  mpm_material *law;
-  mpm_material_desc material;
-  ck_ok(&w, mpm_material_desc_init(&material, sizeof material));
-  material.density = 1.0;
-  material.state_count = 1;
-  material.stress = spring;
-  material.user = &E;
-  ck_ok(&w, mpm_material_create_custom(w.context, &material, &law));
-  mpm_particles *set;
-  ck_ok(&w, mpm_particles_create(w.context, w.grid, law, &set));
-  ck_ok(&w, mpm_stepper_add(w.stepper, set));
+  desc.law = (world_law){.density = 1.0, .state_count = 1, .stress = spring, .user = &E};
+  mpm_particles *set = world_open(&w, &desc);
   ck_ok(&w, mpm_particles_add(set, 1, &x0, &v0, &one, NULL, NULL, NULL));
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
   double last = v0, first_zero = 0.0, last_zero = 0.0, top = 0.0;
@@ -175,9 +158,7 @@ START_TEST(single_particle_oscillates) {
     clear_node_0(&w);
     ck_ok(&w, mpm_step_grid(w.stepper));
     ck_ok(&w, mpm_step_end(w.stepper, NULL));
-    double v, x;
-    ck_ok(&w, mpm_particles_get(set, "velocity", MPM_F64, 1, 1, NULL, &v));
-    ck_ok(&w, mpm_particles_get(set, "position", MPM_F64, 1, 1, NULL, &x));
+    const double v = fetch1(&w, set, "velocity", 1, 0, 0), x = fetch1(&w, set, "position", 1, 0, 0);
     ck_within("oscillator", v, v0 * cos(2.0 * PI * i * dt), 0.01 * v0);
     ck_within("oscillator", x, x0 * exp(v0 * sin(2.0 * PI * i * dt) / (2.0 * PI)),
               0.01 * x0 * v0 / (2.0 * PI));
@@ -193,14 +174,10 @@ START_TEST(single_particle_oscillates) {
   ck_within("oscillator", period, 1.0, 1e-3);
   ck_within("oscillator", top / v0, 1.0, 0.01);
   show("oscillator T %.8f amplitude %.8f\n", period, top / v0);
-  ck_ok(&w, mpm_stepper_remove(w.stepper, set));
-  ck_ok(&w, mpm_particles_destroy(set));
-  ck_ok(&w, mpm_material_destroy(law));
   world_close(&w);
 }
 END_TEST
 
-Suite *exact_suite(void);
 Suite *exact_suite(void) {
   Suite *suite = suite_create("exact");
   TCase *motion = tcase_create("motion");

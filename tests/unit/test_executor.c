@@ -1,25 +1,22 @@
 /* Tasks on the library's own threads and on the host's executor. */
 #define _POSIX_C_SOURCE 200809L
-#include <check.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "context/context.h"
+#include "world.h"
 
 static mpm_context_desc desc_for(int32_t concurrency) {
-  mpm_context_desc desc;
-  ck_assert_int_eq(mpm_context_desc_init(&desc, sizeof desc), MPM_OK);
+  mpm_context_desc desc = context_desc();
   desc.concurrency = concurrency;
   return desc;
 }
 
 static mpm_context *make(const mpm_context_desc *desc) {
   mpm_context *context = NULL;
-  ck_assert_int_eq(mpm_context_create(desc, &context), MPM_OK);
+  ck_ok(NULL, mpm_context_create(desc, &context));
   return context;
 }
 
@@ -40,7 +37,7 @@ static void count_task(void *data, int64_t k) {
 static void expect_each_once(mpm_context *context, int64_t count) {
   tally t = {.count = count};
   t.seen = calloc((size_t)count + 1, sizeof *t.seen);
-  ck_assert_int_eq(mpmi_parallel_for(context, count, count_task, &t), MPM_OK);
+  ck_ok(context, mpmi_parallel_for(context, count, count_task, &t));
   for (int64_t k = 0; k < count; ++k)
     if (t.seen[k] != 1) ck_abort_msg("task %d of %d ran %d times", (int)k, (int)count, (int)t.seen[k]);
   ck_assert_int_eq(t.out_of_range, 0);
@@ -57,7 +54,7 @@ START_TEST(every_task_once) {
     for (int64_t count = 0; count < 70; ++count) expect_each_once(context, count);
     expect_each_once(context, 1000);
     expect_each_once(context, 100003);
-    ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+    ck_ok(context, mpm_context_destroy(context));
   }
 }
 END_TEST
@@ -79,10 +76,10 @@ START_TEST(many_short_runs) {
   int64_t sums[5] = {0}, runs = 4000;
   for (int64_t r = 0; r < runs; ++r) {
     if (r % 16 == 0) idle(20000);
-    ck_assert_int_eq(mpmi_parallel_for(context, 5, add_task, sums), MPM_OK);
+    ck_ok(context, mpmi_parallel_for(context, 5, add_task, sums));
   }
   for (int64_t k = 0; k < 5; ++k) ck_assert_int_eq(sums[k], runs * (k + 1));
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  ck_ok(context, mpm_context_destroy(context));
 }
 END_TEST
 
@@ -97,10 +94,10 @@ START_TEST(slow_tasks) {
   mpm_context_desc desc = desc_for(3);
   mpm_context *context = make(&desc);
   _Atomic int64_t done = 0;
-  for (int r = 0; r < 5; ++r) ck_assert_int_eq(mpmi_parallel_for(context, 7, slow_task, &done), MPM_OK);
+  for (int r = 0; r < 5; ++r) ck_ok(context, mpmi_parallel_for(context, 7, slow_task, &done));
   ck_assert_int_eq(done, 35);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
-  ck_assert_int_eq(mpm_context_destroy(make(&desc)), MPM_OK);
+  ck_ok(context, mpm_context_destroy(context));
+  ck_ok(NULL, mpm_context_destroy(make(&desc)));
 }
 END_TEST
 
@@ -121,8 +118,8 @@ START_TEST(workers_take_no_signals) {
   pthread_sigmask(SIG_SETMASK, NULL, &after);
   for (int s = 1; s < 32; ++s) ck_assert_int_eq(sigismember(&before, s), sigismember(&after, s));
   pthread_t self = pthread_self();
-  ck_assert_int_eq(mpmi_parallel_for(context, 8, mask_task, &self), MPM_OK);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  ck_ok(context, mpmi_parallel_for(context, 8, mask_task, &self));
+  ck_ok(context, mpm_context_destroy(context));
 }
 END_TEST
 
@@ -154,16 +151,15 @@ START_TEST(host_executor) {
   ck_assert_int_eq(e.calls, 1);
   int64_t sums[3] = {0};
   e.status = 42;
-  ck_assert_int_eq(mpmi_parallel_for(context, 3, add_task, sums), MPM_E_CALLBACK);
-  ck_assert_ptr_nonnull(strstr(mpm_last_error(context), "42"));
+  ck_refused(context, mpmi_parallel_for(context, 3, add_task, sums), MPM_E_CALLBACK, "42");
   ck_assert_int_eq(sums[2], 0);
   mpmi_parallel_for_sure(context, 3, add_task, sums);
   ck_assert_int_eq(sums[2], 3);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  ck_ok(context, mpm_context_destroy(context));
   desc.concurrency = 0;
   context = make(&desc);
   ck_assert_int_ge(context->concurrency, 1);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  ck_ok(context, mpm_context_destroy(context));
 }
 END_TEST
 
@@ -175,7 +171,7 @@ static void *own_context(void *argument) {
     expect_each_once(context, 100 + r);
     mpmi_fail(context, MPM_E_IO, "run %d", r);
     ck_assert_int_eq(mpm_last_error(context)[4] - '0', r < 10 ? r : r / 10);
-    ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+    ck_ok(context, mpm_context_destroy(context));
   }
   return NULL;
 }
@@ -187,7 +183,6 @@ START_TEST(contexts_side_by_side) {
 }
 END_TEST
 
-Suite *executor_suite(void);
 Suite *executor_suite(void) {
   Suite *suite = suite_create("executor");
   TCase *threads = tcase_create("threads");

@@ -1,31 +1,18 @@
 /* Fields of a set by name: what there is, what the host adds, and the storage below. */
 #include "context/radix.h"
-#include "set_fixture.h"
+#include "sets.h"
 
-static fixture f;
+static world w;
 
 static void open_set(void) {
-  fixture_open(&f, 3, "linear_elastic");
-  fixture_add(&f, 20, NULL);
-}
-
-static void open_on(const mpm_grid_desc *grid, const char *model) {
-  fixture_close(&f);
-  fixture_open_on(&f, grid, model);
-  fixture_add(&f, 20, NULL);
-}
-
-static void open_dim(int32_t dim, const char *model) {
-  mpm_grid_desc grid = fixture_grid(dim);
-  open_on(&grid, model);
+  sets_open(&w, 3, "linear_elastic", 20);
 }
 
 static void close_set(void) {
-  fixture_check_slots(&f);
-  fixture_close(&f);
+  sets_close(&w);
 }
 
-/* ---- what there is ----------------------------------------------------------------------------------- */
+/* ---- what there is ---- */
 typedef struct row {
   const char *name;
   int32_t type, stored[3], full[3], writable;
@@ -51,21 +38,21 @@ static const row table[] = {{"id", MPM_I64, {1, 1, 1}, {1, 1, 1}, 0},
 
 START_TEST(built_in_fields) {
   for (int32_t dim = 1; dim <= 3; ++dim) {
-    open_dim(dim, "linear_elastic");
+    sets_open(&w, dim, "linear_elastic", 20);
     for (int32_t i = 0; i < 17; ++i) {
       const char *name;
       int32_t type, components, writable;
-      ck_ok(mpm_particles_field_info(f.set, i, &name, &type, &components, &writable));
+      ck_ok(&w, mpm_particles_field_info(w.set[0], i, &name, &type, &components, &writable));
       ck_assert_str_eq(name, table[i].name);
       ck_assert_int_eq(type, table[i].type);
       ck_assert_int_eq(components, table[i].full[dim - 1]);
       ck_assert_int_eq(writable, table[i].writable);
-      ck_assert_int_eq(f.set->field[i].components, table[i].stored[dim - 1]);
-      ck_ok(mpm_particles_field_info(f.set, i, NULL, NULL, NULL, NULL));
+      ck_assert_int_eq(w.set[0]->field[i].components, table[i].stored[dim - 1]);
+      ck_ok(&w, mpm_particles_field_info(w.set[0], i, NULL, NULL, NULL, NULL));
     }
-    ck_refused(f.context, mpm_particles_field_info(f.set, 17, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND,
+    ck_refused(&w, mpm_particles_field_info(w.set[0], 17, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND,
                "17 fields");
-    ck_refused(f.context, mpm_particles_field_info(f.set, -1, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND, "-1");
+    ck_refused(&w, mpm_particles_field_info(w.set[0], -1, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND, "-1");
     ck_assert_int_eq(mpm_particles_field_info(NULL, 0, NULL, NULL, NULL, NULL), MPM_E_ARG);
   }
 }
@@ -76,7 +63,7 @@ START_TEST(present_and_doubled) {
   uint32_t present = 0, copies = 0;
   for (int i = 0; i < 4; ++i) copies |= 1u << doubled[i];
   for (int32_t i = 0; i < MPMI_BUILTIN_FIELDS; ++i) {
-    const mpmi_field *field = &f.set->field[i];
+    const mpmi_field *field = &w.set[0]->field[i];
     if (field->present) present |= 1u << i;
     ck_assert_int_eq(field->data[0] != NULL, field->present);
     ck_assert_int_eq(field->data[1] != NULL, copies >> i & 1);
@@ -84,35 +71,35 @@ START_TEST(present_and_doubled) {
   }
   ck_assert_uint_eq(present,
                     copies | 1u << MPMI_ID | 1u << MPMI_MASS | 1u << MPMI_VOLUME | 1u << MPMI_INITIAL_VOLUME);
-  mpm_grid_desc grid = fixture_grid(3);
+  mpm_grid_desc grid = sets_grid(3);
   grid.periodic[2] = 1;
-  open_on(&grid, "linear_elastic");
-  ck_assert_int_eq(f.set->field[MPMI_IMAGE].present, 1);
-  ck_assert_ptr_nonnull(f.set->field[MPMI_IMAGE].data[1]);
+  sets_open_on(&w, &grid, "linear_elastic", 20);
+  ck_assert_int_eq(w.set[0]->field[MPMI_IMAGE].present, 1);
+  ck_assert_ptr_nonnull(w.set[0]->field[MPMI_IMAGE].data[1]);
 }
 END_TEST
 
 START_TEST(added_fields) {
   int32_t type, components, writable;
   const char *name;
-  ck_ok(mpm_particles_add_field(f.set, "temperature_0", MPM_F64, 1));
-  ck_ok(mpm_particles_add_field(f.set, "label", MPM_I64, 2));
-  ck_ok(mpm_particles_add_field(f.set, "flags", MPM_U8, 64));
-  ck_ok(mpm_particles_field_info(f.set, 18, &name, &type, &components, &writable));
+  ck_ok(&w, mpm_particles_add_field(w.set[0], "temperature_0", MPM_F64, 1));
+  ck_ok(&w, mpm_particles_add_field(w.set[0], "label", MPM_I64, 2));
+  ck_ok(&w, mpm_particles_add_field(w.set[0], "flags", MPM_U8, 64));
+  ck_ok(&w, mpm_particles_field_info(w.set[0], 18, &name, &type, &components, &writable));
   ck_assert_str_eq(name, "label");
   ck_assert_int_eq(type, MPM_I64);
   ck_assert_int_eq(components, 2);
   ck_assert_int_eq(writable, 1);
   uint8_t flags[20 * 64];
   memset(flags, 9, sizeof flags);
-  ck_ok(mpm_particles_get(f.set, "flags", MPM_U8, 64, 20, NULL, flags));
+  ck_ok(&w, mpm_particles_get(w.set[0], "flags", MPM_U8, 64, 20, NULL, flags));
   for (int i = 0; i < 20 * 64; ++i) ck_assert_int_eq(flags[i], 0);
   /* They travel with growth, and new particles have zeros. */
   int64_t label[40], more[240];
   for (int i = 0; i < 40; ++i) label[i] = 1000 - i;
-  ck_ok(mpm_particles_set(f.set, "label", MPM_I64, 2, 20, NULL, label));
-  fixture_add(&f, 100, NULL);
-  ck_ok(mpm_particles_get(f.set, "label", MPM_I64, 2, 120, NULL, more));
+  ck_ok(&w, mpm_particles_set(w.set[0], "label", MPM_I64, 2, 20, NULL, label));
+  sets_add(&w, 100, NULL);
+  ck_ok(&w, mpm_particles_get(w.set[0], "label", MPM_I64, 2, 120, NULL, more));
   for (int i = 0; i < 120; ++i)
     for (int c = 0; c < 2; ++c) ck_assert_int_eq(more[120 * c + i], i < 20 ? label[20 * c + i] : 0);
 }
@@ -122,31 +109,31 @@ START_TEST(bad_added_fields) {
   static const char *const bad[] = {"", "Mass", "a-b", "a b", "\xc3\xa4"};
   char longest[MPMI_NAME + 1] = {0};
   memset(longest, 'a', MPMI_NAME);
-  fixture_counts was = fixture_take(&f);
-  ck_refused(f.context, mpm_particles_add_field(f.set, NULL, MPM_F64, 1), MPM_E_ARG, "field is NULL");
+  sets_counts was = sets_take(&w);
+  ck_refused(&w, mpm_particles_add_field(w.set[0], NULL, MPM_F64, 1), MPM_E_ARG, "field is NULL");
   for (int i = 0; i < 5; ++i)
-    ck_refused(f.context, mpm_particles_add_field(f.set, bad[i], MPM_F64, 1), MPM_E_ARG, "names are made of");
-  ck_refused(f.context, mpm_particles_add_field(f.set, longest, MPM_F64, 1), MPM_E_ARG, "48 characters");
-  ck_refused(f.context, mpm_particles_add_field(f.set, "mass", MPM_F64, 1), MPM_E_ARG, "\"mass\" already");
-  ck_refused(f.context, mpm_particles_add_field(f.set, "t", 0, 1), MPM_E_ARG, "type is 0");
-  ck_refused(f.context, mpm_particles_add_field(f.set, "t", 4, 1), MPM_E_ARG, "type is 4");
-  ck_refused(f.context, mpm_particles_add_field(f.set, "t", MPM_F64, 0), MPM_E_ARG, "components is 0");
-  ck_refused(f.context, mpm_particles_add_field(f.set, "t", MPM_F64, 65), MPM_E_ARG, "components is 65");
+    ck_refused(&w, mpm_particles_add_field(w.set[0], bad[i], MPM_F64, 1), MPM_E_ARG, "names are made of");
+  ck_refused(&w, mpm_particles_add_field(w.set[0], longest, MPM_F64, 1), MPM_E_ARG, "48 characters");
+  ck_refused(&w, mpm_particles_add_field(w.set[0], "mass", MPM_F64, 1), MPM_E_ARG, "\"mass\" already");
+  ck_refused(&w, mpm_particles_add_field(w.set[0], "t", 0, 1), MPM_E_ARG, "type is 0");
+  ck_refused(&w, mpm_particles_add_field(w.set[0], "t", 4, 1), MPM_E_ARG, "type is 4");
+  ck_refused(&w, mpm_particles_add_field(w.set[0], "t", MPM_F64, 0), MPM_E_ARG, "components is 0");
+  ck_refused(&w, mpm_particles_add_field(w.set[0], "t", MPM_F64, 65), MPM_E_ARG, "components is 65");
   ck_assert_int_eq(mpm_particles_add_field(NULL, "t", MPM_F64, 1), MPM_E_ARG);
-  fixture_unchanged(&f, was);
+  sets_unchanged(&w, was);
   longest[MPMI_NAME - 1] = '\0';
-  ck_ok(mpm_particles_add_field(f.set, longest, MPM_F64, 1));
-  ck_refused(f.context, mpm_particles_add_field(f.set, longest, MPM_U8, 2), MPM_E_ARG, "already");
-  for (char name[] = "x0"; f.set->field_count < MPMI_MAX_FIELDS;) {
-    name[0] = (char)('a' + f.set->field_count % 26);
-    name[1] = (char)('0' + f.set->field_count / 26);
-    ck_ok(mpm_particles_add_field(f.set, name, MPM_U8, 1));
+  ck_ok(&w, mpm_particles_add_field(w.set[0], longest, MPM_F64, 1));
+  ck_refused(&w, mpm_particles_add_field(w.set[0], longest, MPM_U8, 2), MPM_E_ARG, "already");
+  for (char name[] = "x0"; w.set[0]->field_count < MPMI_MAX_FIELDS;) {
+    name[0] = (char)('a' + w.set[0]->field_count % 26);
+    name[1] = (char)('0' + w.set[0]->field_count / 26);
+    ck_ok(&w, mpm_particles_add_field(w.set[0], name, MPM_U8, 1));
   }
-  ck_refused(f.context, mpm_particles_add_field(f.set, "t", MPM_F64, 1), MPM_E_STATE, "64 fields");
+  ck_refused(&w, mpm_particles_add_field(w.set[0], "t", MPM_F64, 1), MPM_E_STATE, "64 fields");
 }
 END_TEST
 
-/* ---- storage ----------------------------------------------------------------------------------------- */
+/* ---- storage ---- */
 START_TEST(leading_dimensions) {
   ck_assert_int_eq(mpmi_leading_dimension(1), 16);
   for (int64_t slots = 1; slots < 200000; slots = slots * 5 / 4 + 1) {
@@ -160,39 +147,39 @@ START_TEST(leading_dimensions) {
 END_TEST
 
 START_TEST(reserving) {
-  int64_t ld = f.set->ld, held = f.held;
-  ck_ok(mpmi_particles_reserve(f.set, ld));
-  ck_assert_int_eq(f.held, held);
-  ck_refused(f.context, mpmi_particles_reserve(f.set, INT64_C(0xffffffff)), MPM_E_ARG, "too many");
+  int64_t ld = w.set[0]->ld, held = w.memory.held;
+  ck_ok(&w, mpmi_particles_reserve(w.set[0], ld));
+  ck_assert_int_eq(w.memory.held, held);
+  ck_refused(&w, mpmi_particles_reserve(w.set[0], INT64_C(0xffffffff)), MPM_E_ARG, "too many");
   for (int64_t k = 1; k <= 12; ++k) { /* 8 fields, 4 of them twice */
-    f.fail_at = f.calls + k;
-    ck_refused(f.context, mpmi_particles_reserve(f.set, 1000), MPM_E_NOMEM, "out of memory");
-    ck_assert_int_eq(f.held, held);
-    ck_assert_int_eq(f.set->ld, ld);
+    w.memory.fail_at = w.memory.calls + k;
+    ck_refused(&w, mpmi_particles_reserve(w.set[0], 1000), MPM_E_NOMEM, "out of memory");
+    ck_assert_int_eq(w.memory.held, held);
+    ck_assert_int_eq(w.set[0]->ld, ld);
   }
-  f.fail_at = 0;
-  ck_ok(mpmi_particles_reserve(f.set, 1000));
-  ck_assert_int_ge(f.set->ld, 1000);
+  w.memory.fail_at = 0;
+  ck_ok(&w, mpmi_particles_reserve(w.set[0], 1000));
+  ck_assert_int_ge(w.set[0]->ld, 1000);
   for (int64_t id = 0; id < 20; ++id)
-    ck_assert_double_eq(fixture_get1(&f, "volume", 1, 0, id), 0.125 * (double)(id + 1));
+    ck_assert_double_eq(sets_get(&w, "volume", 1, 0, id), 0.125 * (double)(id + 1));
 }
 END_TEST
 
 START_TEST(lookups) {
   const int64_t ids[] = {1000, 25, 26, 27, 500};
-  fixture_add(&f, 5, ids);
-  ck_ok(mpmi_index_build(f.set));
+  sets_add(&w, 5, ids);
+  ck_ok(&w, mpmi_index_build(w.set[0]));
   for (int64_t id = -3; id < 1005; ++id) {
-    int64_t slot = mpmi_index_find(f.set, id);
+    int64_t slot = mpmi_index_find(w.set[0], id);
     int known = (id >= 0 && id < 20) || (id >= 25 && id <= 27) || id == 500 || id == 1000;
     ck_assert_int_eq(slot >= 0, known);
-    if (known) ck_assert_int_eq(mpmi_i64(f.set, MPMI_ID, 0)[slot], id);
+    if (known) ck_assert_int_eq(mpmi_i64(w.set[0], MPMI_ID, 0)[slot], id);
   }
-  ck_assert_int_eq(mpmi_index_find(f.set, INT64_MIN), -1);
-  ck_assert_int_eq(mpmi_index_find(f.set, INT64_MAX), -1);
-  int64_t calls = f.calls;
-  ck_ok(mpmi_index_build(f.set));
-  ck_assert_int_eq(f.calls, calls);
+  ck_assert_int_eq(mpmi_index_find(w.set[0], INT64_MIN), -1);
+  ck_assert_int_eq(mpmi_index_find(w.set[0], INT64_MAX), -1);
+  int64_t calls = w.memory.calls;
+  ck_ok(&w, mpmi_index_build(w.set[0]));
+  ck_assert_int_eq(w.memory.calls, calls);
 }
 END_TEST
 

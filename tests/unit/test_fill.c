@@ -1,98 +1,91 @@
 /* Lattices: which points of boxes, balls and the host's own shapes become particles. */
-#include "set_fixture.h"
+#include "sets.h"
 
-static fixture f;
-static int32_t in_dim;
+static world w;
 
 static void open_set(void) {
-  fixture_open(&f, 3, "linear_elastic");
-  in_dim = 3;
-}
-
-static void open_dim(int32_t dim) {
-  fixture_close(&f);
-  fixture_open(&f, dim, "linear_elastic");
-  in_dim = dim;
+  sets_open(&w, 3, "linear_elastic", 0);
 }
 
 static void close_set(void) {
-  fixture_check_slots(&f);
-  fixture_close(&f);
+  sets_close(&w);
 }
 
 static const double low_corner[] = {-1, -1, -1};
 
 START_TEST(fills_boxes) {
   for (int32_t dim = 1; dim <= 3; ++dim) {
-    open_dim(dim);
+    sets_open(&w, dim, "linear_elastic", 0);
     int32_t per[] = {2, 2, 2};
     double lower[] = {0, 0.5, -0.5}, upper[] = {1.5, 1, 0.5};
     int64_t first = -1, count = -1, expected = 6;
     if (dim > 1) expected *= 2;
     if (dim > 2) expected *= 4;
-    f.set->next_id = 100;
-    ck_ok(mpm_particles_fill_box(f.set, lower, upper, per, &first, &count));
+    w.set[0]->next_id = 100;
+    ck_ok(&w, mpm_particles_fill_box(w.set[0], lower, upper, per, &first, &count));
     ck_assert_int_eq(first, 100);
     ck_assert_int_eq(count, expected);
-    ck_assert_int_eq(mpm_particles_count(f.set), expected);
-    ck_assert_int_eq(f.set->next_id, 100 + expected);
-    ck_assert_int_eq(f.set->field[MPMI_SIZE].present, 0);
+    ck_assert_int_eq(mpm_particles_count(w.set[0]), expected);
+    ck_assert_int_eq(w.set[0]->next_id, 100 + expected);
+    ck_assert_int_eq(w.set[0]->field[MPMI_SIZE].present, 0);
     double volume = pow(0.25, dim);
     for (int64_t id = 100; id < 100 + count; ++id) {
       int64_t rest = id - 100; /* last axis fastest */
       for (int32_t k = dim - 1; k >= 0; --k) {
         int64_t n = (int64_t)((upper[k] - lower[k]) / 0.25);
-        ck_assert_double_eq(fixture_get1(&f, "position", dim, k, id),
+        ck_assert_double_eq(sets_get(&w, "position", dim, k, id),
                             lower[k] + 0.125 + 0.25 * (double)(rest % n));
         rest /= n;
       }
-      ck_assert_double_eq(fixture_get1(&f, "volume", 1, 0, id), volume);
-      ck_assert_double_eq(fixture_get1(&f, "mass", 1, 0, id), 2e3 * volume);
+      ck_assert_double_eq(sets_get(&w, "volume", 1, 0, id), volume);
+      ck_assert_double_eq(sets_get(&w, "mass", 1, 0, id), 2e3 * volume);
     }
-    ck_ok(mpm_particles_fill_box(f.set, lower, upper, per, NULL, NULL));
-    fixture_check_slots(&f);
+    ck_ok(&w, mpm_particles_fill_box(w.set[0], lower, upper, per, NULL, NULL));
+    sets_check_slots(&w);
   }
 }
 END_TEST
 
 START_TEST(boxes_are_half_open) {
-  open_dim(1);
+  sets_open(&w, 1, "linear_elastic", 0);
   int64_t count;
   /* centres at -0.75, -0.25, 0.25 ... */
-  ck_ok(mpm_particles_fill_box(f.set, (double[]){-0.25}, (double[]){0.75}, (int32_t[]){1}, NULL, &count));
+  ck_ok(&w,
+        mpm_particles_fill_box(w.set[0], (double[]){-0.25}, (double[]){0.75}, (int32_t[]){1}, NULL, &count));
   ck_assert_int_eq(count, 2);
-  ck_assert_double_eq(fixture_get1(&f, "position", 1, 0, 0), -0.25);
-  ck_ok(mpm_particles_fill_box(f.set, (double[]){-0.2}, (double[]){0.2}, (int32_t[]){1}, NULL, &count));
+  ck_assert_double_eq(sets_get(&w, "position", 1, 0, 0), -0.25);
+  ck_ok(&w,
+        mpm_particles_fill_box(w.set[0], (double[]){-0.2}, (double[]){0.2}, (int32_t[]){1}, NULL, &count));
   ck_assert_int_eq(count, 0);
-  ck_ok(mpm_particles_fill_box(f.set, (double[]){-1 - 4e-12}, (double[]){4 + 4e-12}, (int32_t[]){3}, NULL,
-                               &count));
+  ck_ok(&w, mpm_particles_fill_box(w.set[0], (double[]){-1 - 4e-12}, (double[]){4 + 4e-12}, (int32_t[]){3},
+                                   NULL, &count));
   ck_assert_int_eq(count, 30);
 }
 END_TEST
 
 START_TEST(uneven_lattices_keep_sizes) {
   int64_t count;
-  ck_ok(mpm_particles_fill_box(f.set, low_corner, (double[]){-0.5, -0.5, -0.5}, (int32_t[]){1, 2, 4}, NULL,
-                               &count));
+  ck_ok(&w, mpm_particles_fill_box(w.set[0], low_corner, (double[]){-0.5, -0.5, -0.5}, (int32_t[]){1, 2, 4},
+                                   NULL, &count));
   ck_assert_int_eq(count, 8);
-  ck_assert_int_eq(f.set->field[MPMI_SIZE].present, 1);
-  ck_assert_double_eq(fixture_get1(&f, "size", 3, 0, 3), 0.5);
-  ck_assert_double_eq(fixture_get1(&f, "size", 3, 1, 3), 0.25);
-  ck_assert_double_eq(fixture_get1(&f, "size", 3, 2, 3), 0.125);
-  ck_assert_double_eq(fixture_get1(&f, "volume", 1, 0, 3), 0.5 * 0.25 * 0.125);
-  ck_ok(mpm_particles_fill_box(f.set, low_corner, (double[]){-0.5, -0.5, -0.5}, (int32_t[]){1, 1, 1}, NULL,
-                               &count));
-  ck_assert_double_eq_tol(fixture_get1(&f, "size", 3, 1, 8), 0.5, 1e-15);
+  ck_assert_int_eq(w.set[0]->field[MPMI_SIZE].present, 1);
+  ck_assert_double_eq(sets_get(&w, "size", 3, 0, 3), 0.5);
+  ck_assert_double_eq(sets_get(&w, "size", 3, 1, 3), 0.25);
+  ck_assert_double_eq(sets_get(&w, "size", 3, 2, 3), 0.125);
+  ck_assert_double_eq(sets_get(&w, "volume", 1, 0, 3), 0.5 * 0.25 * 0.125);
+  ck_ok(&w, mpm_particles_fill_box(w.set[0], low_corner, (double[]){-0.5, -0.5, -0.5}, (int32_t[]){1, 1, 1},
+                                   NULL, &count));
+  ck_assert_double_eq_tol(sets_get(&w, "size", 3, 1, 8), 0.5, 1e-15);
 }
 END_TEST
 
 START_TEST(bad_boxes) {
   const double upper[] = {0, 0, 0};
   const int32_t per[] = {1, 1, 1};
-  fixture_counts was = fixture_take(&f);
+  sets_counts was = sets_take(&w);
   int64_t first = 7, count = 7;
 #define REFUSED(low, up, cell, text)                                                                         \
-  ck_refused(f.context, mpm_particles_fill_box(f.set, low, up, cell, &first, &count), MPM_E_ARG, text)
+  ck_refused(&w, mpm_particles_fill_box(w.set[0], low, up, cell, &first, &count), MPM_E_ARG, text)
   REFUSED(NULL, upper, per, "lower is NULL");
   REFUSED(low_corner, NULL, per, "upper is NULL");
   REFUSED(low_corner, upper, NULL, "per_cell is NULL");
@@ -106,39 +99,38 @@ START_TEST(bad_boxes) {
   REFUSED(low_corner, upper, ((int32_t[]){1, 65, 1}), "per_cell[1] is 65");
   REFUSED(low_corner, upper, ((int32_t[]){1, 1, -3}), "per_cell[2] is -3");
 #undef REFUSED
-  ck_refused(f.context, mpm_particles_fill(f.set, low_corner, upper, per, NULL, NULL, NULL, NULL), MPM_E_ARG,
+  ck_refused(&w, mpm_particles_fill(w.set[0], low_corner, upper, per, NULL, NULL, NULL, NULL), MPM_E_ARG,
              "inside is NULL");
   ck_assert_int_eq(mpm_particles_fill_box(NULL, low_corner, upper, per, NULL, NULL), MPM_E_ARG);
   ck_assert_int_eq(first, 7);
   ck_assert_int_eq(count, 7);
-  fixture_unchanged(&f, was);
+  sets_unchanged(&w, was);
 }
 END_TEST
 
 START_TEST(too_many_points) {
-  mpm_grid_desc grid = fixture_grid(2);
+  mpm_grid_desc grid = sets_grid(2);
   grid.cells[0] = grid.cells[1] = 2000;
-  fixture_close(&f);
-  fixture_open_on(&f, &grid, "linear_elastic");
-  ck_refused(f.context,
-             mpm_particles_fill_box(f.set, low_corner, (double[]){999, 999}, (int32_t[]){64, 64}, NULL, NULL),
-             MPM_E_ARG, "lattice points");
+  sets_open_on(&w, &grid, "linear_elastic", 0);
+  ck_refused(
+      w.context,
+      mpm_particles_fill_box(w.set[0], low_corner, (double[]){999, 999}, (int32_t[]){64, 64}, NULL, NULL),
+      MPM_E_ARG, "lattice points");
   int64_t peak;
-  ck_ok(mpm_context_memory(f.context, NULL, &peak));
+  ck_ok(&w, mpm_context_memory(w.context, NULL, &peak));
   ck_assert_int_lt(peak, 1 << 20);
 }
 END_TEST
 
 START_TEST(lattice_cells_without_volume) {
-  mpm_grid_desc grid = fixture_grid(3);
+  mpm_grid_desc grid = sets_grid(3);
   for (int k = 0; k < 3; ++k) {
     grid.spacing[k] = 1e-110;
     grid.origin[k] = 0.0;
   }
-  fixture_close(&f);
-  fixture_open_on(&f, &grid, "linear_elastic");
-  ck_refused(f.context,
-             mpm_particles_fill_ball(f.set, (double[]){0, 0, 0}, 1e-109, (int32_t[]){1, 1, 1}, NULL, NULL),
+  sets_open_on(&w, &grid, "linear_elastic", 0);
+  ck_refused(w.context,
+             mpm_particles_fill_ball(w.set[0], (double[]){0, 0, 0}, 1e-109, (int32_t[]){1, 1, 1}, NULL, NULL),
              MPM_E_ARG, "a lattice cell has volume 0");
 }
 END_TEST
@@ -146,12 +138,12 @@ END_TEST
 /* Lattice points within the radius, found the long way round. */
 static int64_t points_in_ball(const double *centre, double radius, int32_t per) {
   int64_t found = 0, n[3] = {1, 1, 1}, i[3];
-  for (int32_t k = 0; k < in_dim; ++k) n[k] = f.grid->desc.cells[k] * per;
+  for (int32_t k = 0; k < w.dim; ++k) n[k] = w.grid->desc.cells[k] * per;
   for (i[0] = 0; i[0] < n[0]; ++i[0])
     for (i[1] = 0; i[1] < n[1]; ++i[1])
       for (i[2] = 0; i[2] < n[2]; ++i[2]) {
         double square = 0;
-        for (int32_t k = 0; k < in_dim; ++k) {
+        for (int32_t k = 0; k < w.dim; ++k) {
           double d = -1.0 + ((double)i[k] + 0.5) * 0.5 / per - centre[k];
           square += d * d;
         }
@@ -165,13 +157,14 @@ START_TEST(fills_balls) {
   static const double radius[] = {0.9, 1.2345, 1.1, 40.0, 1e-3};
   for (int32_t dim = 1; dim <= 3; ++dim)
     for (int i = 0; i < 5; ++i) {
-      open_dim(dim);
+      sets_open(&w, dim, "linear_elastic", 0);
       int64_t count = -1, first = -1;
-      ck_ok(mpm_particles_fill_ball(f.set, centre[i], radius[i], (int32_t[]){4, 4, 4}, &first, &count));
+      ck_ok(&w,
+            mpm_particles_fill_ball(w.set[0], centre[i], radius[i], (int32_t[]){4, 4, 4}, &first, &count));
       ck_assert_int_eq(count, points_in_ball(centre[i], radius[i], 4));
-      ck_assert_int_eq(count, mpm_particles_count(f.set));
+      ck_assert_int_eq(count, mpm_particles_count(w.set[0]));
       ck_assert_int_eq(first, 0);
-      fixture_check_slots(&f);
+      sets_check_slots(&w);
     }
 }
 END_TEST
@@ -181,20 +174,19 @@ START_TEST(bad_balls) {
   const int32_t per[] = {1, 1, 1};
   static const double bad[] = {0.0, -1.0, NOT_A_NUMBER, INFINITE};
   for (int i = 0; i < 4; ++i)
-    ck_refused(f.context, mpm_particles_fill_ball(f.set, centre, bad[i], per, NULL, NULL), MPM_E_ARG,
+    ck_refused(&w, mpm_particles_fill_ball(w.set[0], centre, bad[i], per, NULL, NULL), MPM_E_ARG,
                "radius is");
-  ck_refused(f.context, mpm_particles_fill_ball(f.set, NULL, 1, per, NULL, NULL), MPM_E_ARG,
-             "centre is NULL");
-  ck_refused(f.context, mpm_particles_fill_ball(f.set, centre, 1, NULL, NULL, NULL), MPM_E_ARG,
+  ck_refused(&w, mpm_particles_fill_ball(w.set[0], NULL, 1, per, NULL, NULL), MPM_E_ARG, "centre is NULL");
+  ck_refused(&w, mpm_particles_fill_ball(w.set[0], centre, 1, NULL, NULL, NULL), MPM_E_ARG,
              "per_cell is NULL");
-  ck_refused(f.context, mpm_particles_fill_ball(f.set, (double[]){1, 9, 1}, 1, per, NULL, NULL), MPM_E_ARG,
+  ck_refused(&w, mpm_particles_fill_ball(w.set[0], (double[]){1, 9, 1}, 1, per, NULL, NULL), MPM_E_ARG,
              "centre[1] is 9");
-  ck_refused(f.context, mpm_particles_fill_ball(f.set, (double[]){1, 1, NOT_A_NUMBER}, 1, per, NULL, NULL),
+  ck_refused(&w, mpm_particles_fill_ball(w.set[0], (double[]){1, 1, NOT_A_NUMBER}, 1, per, NULL, NULL),
              MPM_E_ARG, "centre[2] is nan");
-  ck_refused(f.context, mpm_particles_fill_ball(f.set, centre, 1, (int32_t[]){1, 0, 1}, NULL, NULL),
-             MPM_E_ARG, "per_cell[1] is 0");
+  ck_refused(&w, mpm_particles_fill_ball(w.set[0], centre, 1, (int32_t[]){1, 0, 1}, NULL, NULL), MPM_E_ARG,
+             "per_cell[1] is 0");
   ck_assert_int_eq(mpm_particles_fill_ball(NULL, centre, 1, per, NULL, NULL), MPM_E_ARG);
-  ck_assert_int_eq(mpm_particles_count(f.set), 0);
+  ck_assert_int_eq(mpm_particles_count(w.set[0]), 0);
 }
 END_TEST
 
@@ -207,7 +199,7 @@ typedef struct shape {
 static mpm_status every_third(void *user, int32_t dim, int64_t n, int64_t ld, const double *position,
                               uint8_t *inside) {
   shape *s = user;
-  ck_assert_int_eq(dim, in_dim);
+  ck_assert_int_eq(dim, w.dim);
   ck_assert_int_ge(n, 1);
   ck_assert_int_le(n, 4096);
   ck_assert_int_ge(ld, n);
@@ -224,41 +216,40 @@ START_TEST(fills_by_function) {
   const int32_t per[] = {2, 2, 2}; /* 20 x 18 x 16 = 5760 points */
   shape s = {0, 0, 0, MPM_OK};
   int64_t count;
-  ck_ok(mpm_particles_fill(f.set, low_corner, upper, per, every_third, &s, NULL, &count));
+  ck_ok(&w, mpm_particles_fill(w.set[0], low_corner, upper, per, every_third, &s, NULL, &count));
   ck_assert_int_eq(s.calls, 2);
   ck_assert_int_eq(s.points, 5760);
   ck_assert_int_eq(count, 1920);
   static const int64_t id[] = {0, 1365, 1366, 1919}; /* points 0, 4095, 4098, 5757 */
   for (int i = 0; i < 4; ++i) {
     int64_t point = 3 * id[i];
-    ck_assert_double_eq(fixture_get1(&f, "position", 3, 0, id[i]), -0.875 + 0.25 * (double)(point / 288));
-    ck_assert_double_eq(fixture_get1(&f, "position", 3, 1, id[i]), -0.875 + 0.25 * (double)(point / 16 % 18));
-    ck_assert_double_eq(fixture_get1(&f, "position", 3, 2, id[i]), -0.875 + 0.25 * (double)(point % 16));
+    ck_assert_double_eq(sets_get(&w, "position", 3, 0, id[i]), -0.875 + 0.25 * (double)(point / 288));
+    ck_assert_double_eq(sets_get(&w, "position", 3, 1, id[i]), -0.875 + 0.25 * (double)(point / 16 % 18));
+    ck_assert_double_eq(sets_get(&w, "position", 3, 2, id[i]), -0.875 + 0.25 * (double)(point % 16));
   }
   static const mpm_status status[] = {MPM_CUT_DT, -44};
   static const char *const text[] = {"returned 1", "returned -44"};
-  fixture_counts was = fixture_take(&f);
+  sets_counts was = sets_take(&w);
   for (int i = 0; i < 2; ++i) {
     s = (shape){0, 0, 2, status[i]};
-    ck_refused(f.context, mpm_particles_fill(f.set, low_corner, upper, per, every_third, &s, NULL, NULL),
+    ck_refused(&w, mpm_particles_fill(w.set[0], low_corner, upper, per, every_third, &s, NULL, NULL),
                MPM_E_CALLBACK, text[i]);
-    fixture_unchanged(&f, was);
-    ck_assert_int_eq(f.held, was.held);
+    sets_unchanged(&w, was);
+    ck_assert_int_eq(w.memory.held, was.held);
   }
 }
 END_TEST
 
 START_TEST(memory_of_a_fill) {
-  mpm_grid_desc grid = fixture_grid(3);
+  mpm_grid_desc grid = sets_grid(3);
   for (int k = 0; k < 3; ++k) grid.cells[k] = 24;
-  fixture_close(&f);
-  fixture_open_on(&f, &grid, "linear_elastic");
-  int64_t before = f.held, count, peak;
-  ck_ok(
-      mpm_particles_fill_box(f.set, low_corner, (double[]){11, 11, 11}, (int32_t[]){2, 2, 2}, NULL, &count));
+  sets_open_on(&w, &grid, "linear_elastic", 0);
+  int64_t before = w.memory.held, count, peak;
+  ck_ok(&w, mpm_particles_fill_box(w.set[0], low_corner, (double[]){11, 11, 11}, (int32_t[]){2, 2, 2}, NULL,
+                                   &count));
   ck_assert_int_eq(count, 48 * 48 * 48);
-  ck_ok(mpm_context_memory(f.context, NULL, &peak));
-  double each = (double)(f.held - before) / (double)count;
+  ck_ok(&w, mpm_context_memory(w.context, NULL, &peak));
+  double each = (double)(w.memory.held - before) / (double)count;
   if (each > 400.0) ck_abort_msg("%g bytes per particle", each);
   if ((double)(peak - before) / (double)count > 405.0) ck_abort_msg("peak %d", (int)(peak - before));
 }

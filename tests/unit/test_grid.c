@@ -1,34 +1,33 @@
 /* Grids: descriptions that are taken and refused, numbers of nodes, bounds and periods. */
-#include "set_fixture.h"
+#include "sets.h"
 
-static fixture f;
+static world w;
 
 static void open_context(void) {
-  fixture_context(&f);
+  w.context = context_with(1, MPM_ISA_BEST, &w.memory);
 }
 
 static void close_context(void) {
-  ck_assert_int_eq(f.context->children, 0);
-  ck_ok(mpm_context_destroy(f.context));
-  ck_assert_int_eq(f.held, 0);
+  ck_assert_int_eq(w.context->children, 0);
+  world_close(&w);
 }
 
 static void refused(const mpm_grid_desc *desc, mpm_status status, const char *text) {
   mpm_grid *grid = (mpm_grid *)&grid;
-  ck_refused(f.context, mpm_grid_create(f.context, desc, &grid), status, text);
+  ck_refused(&w, mpm_grid_create(w.context, desc, &grid), status, text);
   ck_assert_ptr_null(grid);
 }
 
 static mpm_grid *made(const mpm_grid_desc *desc) {
   mpm_grid *grid = NULL;
-  if (mpm_grid_create(f.context, desc, &grid)) ck_abort_msg("%s", mpm_last_error(f.context));
+  ck_ok(&w, mpm_grid_create(w.context, desc, &grid));
   return grid;
 }
 
 START_TEST(defaults) {
   mpm_grid_desc d;
   memset(&d, 0xff, sizeof d);
-  ck_ok(mpm_grid_desc_init(&d, sizeof d));
+  ck_ok(&w, mpm_grid_desc_init(&d, sizeof d));
   ck_assert_uint_eq(d.struct_size, sizeof d);
   ck_assert_int_eq(d.dim, 3);
   ck_assert_int_eq(d.basis, MPM_BSPLINE2);
@@ -48,27 +47,27 @@ END_TEST
 START_TEST(derived_values) {
   for (int32_t dim = 1; dim <= 3; ++dim)
     for (int32_t basis = MPM_LINEAR; basis <= MPM_BSPLINE3; ++basis) {
-      mpm_grid_desc d = fixture_grid(dim);
+      mpm_grid_desc d = sets_grid(dim);
       d.basis = basis;
       d.spacing[dim - 1] = 0.25;
       mpm_grid *grid = made(&d);
       ck_assert_int_eq(grid->dim, dim);
       ck_assert_int_eq(grid->family, MPMI_FAMILY_BSPLINE1 + basis - MPM_LINEAR);
       ck_assert_int_eq(grid->width, basis + 1);
-      ck_assert_int_eq(f.context->children, 1);
+      ck_assert_int_eq(w.context->children, 1);
       ck_assert_double_eq(grid->h_min, 0.25);
       for (int32_t k = 0; k < dim; ++k) {
         ck_assert_double_eq(grid->upper[k], -1.0 + (double)d.cells[k] * d.spacing[k]);
         ck_assert_double_eq(grid->inverse_spacing[k], 1.0 / d.spacing[k]);
       }
-      ck_ok(mpm_grid_destroy(grid));
+      ck_ok(&w, mpm_grid_destroy(grid));
     }
 }
 END_TEST
 
 START_TEST(axes_beyond_dim_are_ignored) {
   for (int32_t dim = 1; dim <= 2; ++dim) {
-    mpm_grid_desc d = fixture_grid(dim);
+    mpm_grid_desc d = sets_grid(dim);
     for (int32_t k = dim; k < 3; ++k) {
       d.cells[k] = -5;
       d.spacing[k] = d.origin[k] = NOT_A_NUMBER;
@@ -79,13 +78,13 @@ START_TEST(axes_beyond_dim_are_ignored) {
     ck_assert_int_eq(grid->desc.periodic[2], 0);
     ck_assert_double_eq(grid->desc.spacing[2], 1.0);
     ck_assert_double_eq(grid->h_min, 0.5);
-    ck_ok(mpm_grid_destroy(grid));
+    ck_ok(&w, mpm_grid_destroy(grid));
   }
 }
 END_TEST
 
 START_TEST(bad_values_are_named) {
-  const mpm_grid_desc good = fixture_grid(3);
+  const mpm_grid_desc good = sets_grid(3);
   mpm_grid_desc d;
 #define REFUSED(set, text) (d = good, set, refused(&d, MPM_E_ARG, text))
   REFUSED(d.dim = 0, "dim is 0");
@@ -122,7 +121,7 @@ END_TEST
 
 START_TEST(open_knots_are_for_splines) {
   static const int32_t basis[] = {MPM_LINEAR, MPM_GIMP, MPM_UGIMP, MPM_CPGIMP};
-  mpm_grid_desc d = fixture_grid(2);
+  mpm_grid_desc d = sets_grid(2);
   d.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
   for (int i = 0; i < 4; ++i) {
     d.basis = basis[i];
@@ -133,7 +132,7 @@ END_TEST
 
 /* Greville points: the mean of the inner knots of each function. */
 START_TEST(places_of_nodes) {
-  mpm_grid_desc d = fixture_grid(1);
+  mpm_grid_desc d = sets_grid(1);
   const double cells = (double)d.cells[0], quadratic[] = {0.0, 0.5, 1.5},
                cubic[] = {0.0, 1.0 / 3.0, 1.0, 2.0};
   d.boundary_basis = MPM_BOUNDARY_OPEN_KNOT;
@@ -146,7 +145,7 @@ START_TEST(places_of_nodes) {
   }
   ck_assert_int_eq(mpmi_face_node(grid, MPM_X_MIN), 0);
   ck_assert_int_eq(mpmi_face_node(grid, MPM_X_MAX), d.cells[0] + 1);
-  ck_ok(mpm_grid_destroy(grid));
+  ck_ok(&w, mpm_grid_destroy(grid));
   d.basis = MPM_BSPLINE3;
   grid = made(&d);
   for (int32_t i = 0; i < 4; ++i) {
@@ -155,48 +154,55 @@ START_TEST(places_of_nodes) {
                             -1.0 + (cells - cubic[i]) * d.spacing[0], 1e-14);
   }
   ck_assert_int_eq(mpmi_face_node(grid, MPM_X_MIN), -1);
-  ck_ok(mpm_grid_destroy(grid));
+  ck_ok(&w, mpm_grid_destroy(grid));
 }
 END_TEST
 
 START_TEST(limits_are_inside) {
-  mpm_grid_desc d = fixture_grid(2);
+  mpm_grid_desc d = sets_grid(2);
   d.cells[0] = d.cells[1] = 6 << 20;
   d.spacing[0] = d.spacing[1] = 1e-3;
   d.smoothing = 1e-9;
-  ck_ok(mpm_grid_destroy(made(&d)));
+  ck_ok(&w, mpm_grid_destroy(made(&d)));
   d.cells[0] = d.cells[1] = 1;
   d.periodic[0] = 1;
-  ck_ok(mpm_grid_destroy(made(&d)));
+  ck_ok(&w, mpm_grid_destroy(made(&d)));
 }
 END_TEST
 
+static mpm_material *some_material(void) {
+  mpm_material *material;
+  ck_ok(&w, law_create(w.context, &(world_law){.model = "neo_hookean", .E = 1e6, .nu = 0.3, .density = 2e3},
+                       &material));
+  return material;
+}
+
 START_TEST(misuse) {
-  mpm_grid_desc d = fixture_grid(3);
+  mpm_grid_desc d = sets_grid(3);
   mpm_grid *grid;
-  mpm_material *material = fixture_material(f.context, "neo_hookean");
+  mpm_material *material = some_material();
   ck_assert_int_eq(mpm_grid_create(NULL, &d, &grid), MPM_E_ARG);
   ck_assert_int_eq(mpm_grid_create((mpm_context *)material, &d, &grid), MPM_E_ARG);
-  ck_refused(f.context, mpm_grid_create(f.context, &d, NULL), MPM_E_ARG, "out");
+  ck_refused(&w, mpm_grid_create(w.context, &d, NULL), MPM_E_ARG, "out");
   refused(NULL, MPM_E_ARG, "mpm_grid_desc is NULL");
-  ck_ok(mpm_grid_destroy(NULL));
+  ck_ok(&w, mpm_grid_destroy(NULL));
   ck_assert_int_eq(mpm_grid_destroy((mpm_grid *)material), MPM_E_ARG);
-  ck_ok(mpm_material_destroy(material));
-  f.fail_at = f.calls + 1;
+  ck_ok(&w, mpm_material_destroy(material));
+  w.memory.fail_at = w.memory.calls + 1;
   refused(&d, MPM_E_NOMEM, "out of memory");
 }
 END_TEST
 
 START_TEST(goes_after_its_sets) {
-  mpm_grid_desc d = fixture_grid(3);
+  mpm_grid_desc d = sets_grid(3);
   mpm_grid *grid = made(&d);
-  mpm_material *material = fixture_material(f.context, "neo_hookean");
+  mpm_material *material = some_material();
   mpm_particles *set;
-  ck_ok(mpm_particles_create(f.context, grid, material, &set));
-  ck_refused(f.context, mpm_grid_destroy(grid), MPM_E_STATE, "1 sets and steppers");
-  ck_ok(mpm_particles_destroy(set));
-  ck_ok(mpm_grid_destroy(grid));
-  ck_ok(mpm_material_destroy(material));
+  ck_ok(&w, mpm_particles_create(w.context, grid, material, &set));
+  ck_refused(&w, mpm_grid_destroy(grid), MPM_E_STATE, "1 sets and steppers");
+  ck_ok(&w, mpm_particles_destroy(set));
+  ck_ok(&w, mpm_grid_destroy(grid));
+  ck_ok(&w, mpm_material_destroy(material));
 }
 END_TEST
 
@@ -209,24 +215,24 @@ static void check_numbers(const mpm_grid *grid, const int64_t *low, const int64_
 }
 
 START_TEST(node_numbers) {
-  mpm_grid_desc d = fixture_grid(3);
+  mpm_grid_desc d = sets_grid(3);
   mpm_grid *grid = made(&d);
   check_numbers(grid, (int64_t[]){-1, -1, -1}, (int64_t[]){11, 10, 9});
-  ck_ok(mpm_grid_destroy(grid));
+  ck_ok(&w, mpm_grid_destroy(grid));
   d.basis = MPM_LINEAR;
   d.periodic[1] = 1;
   grid = made(&d);
   check_numbers(grid, (int64_t[]){-1, -1, -1}, (int64_t[]){11, 10, 9});
-  ck_ok(mpm_grid_destroy(grid));
-  d = fixture_grid(1);
+  ck_ok(&w, mpm_grid_destroy(grid));
+  d = sets_grid(1);
   grid = made(&d);
   check_numbers(grid, (int64_t[]){-1, 0, 0}, (int64_t[]){11, 0, 0});
-  ck_ok(mpm_grid_destroy(grid));
+  ck_ok(&w, mpm_grid_destroy(grid));
 }
 END_TEST
 
 START_TEST(places_inside_and_outside) {
-  mpm_grid_desc d = fixture_grid(3); /* [-1, 4] x [-1, 3.5] x [-1, 3] */
+  mpm_grid_desc d = sets_grid(3); /* [-1, 4] x [-1, 3.5] x [-1, 3] */
   mpm_grid *grid = made(&d);
   double on_bounds[] = {-1.0, 3.5, 3.0};
   ck_assert_int_eq(mpmi_grid_place(grid, on_bounds, 1, NULL, 0), -1);
@@ -237,12 +243,12 @@ START_TEST(places_inside_and_outside) {
       x[2 * k] = bad[i];
       ck_assert_int_eq(mpmi_grid_place(grid, x, 2, NULL, 0), k);
     }
-  ck_ok(mpm_grid_destroy(grid));
+  ck_ok(&w, mpm_grid_destroy(grid));
 }
 END_TEST
 
 START_TEST(wraps_periods) {
-  mpm_grid_desc d = fixture_grid(2); /* [-1, 4] x [-1, 3.5] */
+  mpm_grid_desc d = sets_grid(2); /* [-1, 4] x [-1, 3.5] */
   d.periodic[0] = 1;
   mpm_grid *grid = made(&d);
   static const double from[] = {4.0, -1.0, 4.5, -1.5, 14.25, -11.0, 3.75};
@@ -274,7 +280,7 @@ START_TEST(wraps_periods) {
     ck_assert_int_eq(mpmi_grid_place(grid, x, 1, image, 1), i == 0);
     ck_assert_int_eq(memcmp(x, bad[i], sizeof x), 0);
   }
-  ck_ok(mpm_grid_destroy(grid));
+  ck_ok(&w, mpm_grid_destroy(grid));
 }
 END_TEST
 

@@ -4,9 +4,8 @@
 
 static void mean_velocity(const world *w, const mpm_particles *set, double *mean) {
   const int64_t n = mpm_particles_count(set);
-  double *v = fetch(w, set, "velocity", 2), *mass = fetch(w, set, "mass", 1), total = 0.0;
-  for (int64_t p = 0; p < n; ++p) total += mass[p];
-  for (int32_t k = 0; k < 2; ++k) mean[k] = weighted_sum(n, mass, v + k * n) / total;
+  double *v = fetch(w, set, "velocity", 2), *mass = fetch(w, set, "mass", 1);
+  for (int32_t k = 0; k < 2; ++k) mean[k] = weighted_sum(n, mass, v + k * n) / sum_of(n, mass);
   free(v), free(mass);
 }
 
@@ -18,12 +17,13 @@ START_TEST(two_disks) {
   world w;
   world_desc desc = world_default(2, 44, h);
   desc.stepper.scheme = MPM_MUSL;
-  desc.E = 1000.0;
+  desc.law.E = 1000.0;
   desc.grid.origin[0] = desc.grid.origin[1] = -ring; /* the disks touch the unit box */
+  desc.sets = 2;
   world_open(&w, &desc);
   for (int32_t i = 0; i < 2; ++i) {
     const double centre[2] = {i ? 0.8 : 0.2, i ? 0.8 : 0.2}, v[2] = {i ? -0.1 : 0.1, i ? -0.1 : 0.1};
-    mpm_particles *set = world_add_set(&w);
+    mpm_particles *set = w.set[i];
     ck_ok(&w, mpm_particles_fill_ball(set, centre, 0.2, per_cell, NULL, NULL));
     ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
   }
@@ -61,38 +61,25 @@ END_TEST
 
 /* Bases and schemes whose contacts differ. Not linear USL: its light nodes tear the free surface long before
  * a wall is reached. */
-typedef struct contact_method {
-  int32_t basis, scheme, transfer; /* basis: place in basis_options */
-  const char *name;
-} contact_method;
 enum { CONTACT_METHODS = 14 };
-static const contact_method contacts[CONTACT_METHODS] = {
-    {0, MPM_MUSL, MPM_FLIP, "linear MUSL"},         {1, MPM_USL, MPM_FLIP, "quadratic USL"},
-    {1, MPM_MUSL, MPM_FLIP, "quadratic MUSL"},      {1, MPM_USF, MPM_FLIP, "quadratic USF"},
-    {1, MPM_USL, MPM_APIC, "quadratic APIC"},       {2, MPM_USL, MPM_FLIP, "cubic USL"},
-    {2, MPM_MUSL, MPM_FLIP, "cubic MUSL"},          {3, MPM_USL, MPM_FLIP, "open quadratic USL"},
-    {3, MPM_MUSL, MPM_FLIP, "open quadratic MUSL"}, {4, MPM_MUSL, MPM_FLIP, "open cubic MUSL"},
-    {5, MPM_MUSL, MPM_FLIP, "GIMP MUSL"},           {5, MPM_USF, MPM_FLIP, "GIMP USF"},
-    {6, MPM_MUSL, MPM_FLIP, "uGIMP MUSL"},          {7, MPM_MUSL, MPM_FLIP, "cpGIMP MUSL"}};
-
-static void use_contact(world_desc *desc, const contact_method *how) {
-  wall_use_basis(&desc->grid, &basis_options[how->basis]);
-  desc->stepper.scheme = how->scheme;
-  desc->stepper.transfer = how->transfer;
-  desc->stepper.flip = 1.0;
+static method contact_method(int32_t i) {
+  enum { USL, MUSL, USF, FLIP = 0, APIC = 3 }; /* places in the lists of methods.h */
+  static const int32_t way[CONTACT_METHODS][3] = {
+      {0, MUSL, FLIP}, {1, USL, FLIP},  {1, MUSL, FLIP}, {1, USF, FLIP},  {1, USL, APIC},
+      {2, USL, FLIP},  {2, MUSL, FLIP}, {3, USL, FLIP},  {3, MUSL, FLIP}, {4, MUSL, FLIP},
+      {5, MUSL, FLIP}, {5, USF, FLIP},  {6, MUSL, FLIP}, {7, MUSL, FLIP}};
+  return method_of(&basis_options[way[i][0]], &scheme_options[way[i][1]], &transfer_options[way[i][2]]);
 }
 
 /* A disk flies at a friction wall aslant: its energy never exceeds the first by 1 %, and it flies off. */
 START_TEST(disk_bounces) {
-  const contact_method *how = &contacts[_i / 2];
+  const method how = contact_method(_i / 2);
   const double h = 1.0 / 40.0, friction = _i % 2 ? 0.5 : 0.0, v[2] = {0.05, -0.1}, centre[2] = {0.4, 0.26};
   const int32_t per_cell[2] = {2, 2};
   world w;
-  world_desc desc = world_default(2, 40, h);
-  use_contact(&desc, how);
-  desc.E = 1000.0;
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
+  world_desc desc = world_with(&how, 2, 40, h);
+  desc.law.E = 1000.0;
+  mpm_particles *set = world_open(&w, &desc);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, friction));
   ck_ok(&w, mpm_particles_fill_ball(set, centre, 0.2, per_cell, NULL, NULL));
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
@@ -109,17 +96,17 @@ START_TEST(disk_bounces) {
     if (now.t > 2.5) late += force[1];
     highest = fmax(highest, (now.kinetic_energy + now.strain_energy) / E0);
   }
-  show("bounce %s friction %.1f: highest E %.5f, last %.5f, rebound %.4f, sideways %.4f\n", how->name,
+  show("bounce %s friction %.1f: highest E %.5f, last %.5f, rebound %.4f, sideways %.4f\n", how.name,
        friction, highest, (now.kinetic_energy + now.strain_energy) / E0, now.momentum[1] / mass,
        now.momentum[0] / mass);
-  ck_between(how->name, highest, 0.0, 1.01);
-  ck_within(how->name, late, 0.0, 0.0);
-  ck_between(how->name, now.momentum[1] / mass, 0.08, 0.1);
-  ck_within(how->name, now.momentum[1] / mass + 0.1, pushed / mass, 1e-12);
+  ck_between(how.name, highest, 0.0, 1.01);
+  ck_within(how.name, late, 0.0, 0.0);
+  ck_between(how.name, now.momentum[1] / mass, 0.08, 0.1);
+  ck_within(how.name, now.momentum[1] / mass + 0.1, pushed / mass, 1e-12);
   if (friction > 0.0)
     ck_assert_double_lt(now.momentum[0] / mass, 0.04);
   else
-    ck_within(how->name, now.momentum[0] / mass, 0.05, 1e-13);
+    ck_within(how.name, now.momentum[0] / mass, 0.05, 1e-13);
   world_close(&w);
 }
 END_TEST
@@ -141,26 +128,22 @@ static mpm_status slowly(void *user, const mpm_particle_batch *b, double *out) {
  * where it is if mu > tan (Bardenhagen et al. 2000); by far, since near the limit it creeps where its ends
  * are light. */
 START_TEST(block_on_incline) {
-  const contact_method *how = &contacts[_i / 4];
+  const method how = contact_method(_i / 4);
   static const double frictions[4] = {0.0, 0.3, 0.7, 4.0};
   const double h = 0.05, friction = frictions[_i % 4], g = 10.0, t_half = 0.2, t_end = 0.4;
   const double lower[2] = {0.2, 0.0}, upper[2] = {1.0, 0.1};
-  const int32_t per_cell[2] = {2, 2};
   slow_gravity weight = {{g * sin(PI / 3.0), -g * cos(PI / 3.0)}, 0.15};
   const double wanted = fmax(0.0, weight.g[0] + friction * weight.g[1]);
   world w;
-  world_desc desc = world_default(2, 60, h);
-  use_contact(&desc, how);
-  desc.E = 1e6;
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
+  world_desc desc = world_with(&how, 2, 60, h);
+  desc.law.E = 1e6;
+  mpm_particles *set = world_open(&w, &desc);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, friction));
   ck_ok(&w, mpm_stepper_set_acceleration(w.stepper, slowly, &weight));
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
-  double mass = 0.0, *masses = fetch(&w, set, "mass", 1), half = 0.0, force[2], *x[2];
-  const int64_t n = mpm_particles_count(set);
-  for (int64_t p = 0; p < n; ++p) mass += masses[p];
-  const double limit = 0.2 * world_stable_dt(&w), steps = ceil(t_half / limit), dt = t_half / steps;
+  const int64_t n = world_fill(&w, set, lower, upper, 2);
+  double half = 0.0, force[2], *x[2];
+  const double mass = mass_of(&w, set), limit = 0.2 * world_stable_dt(&w), steps = ceil(t_half / limit),
+               dt = t_half / steps;
   mpm_step_info now = world_info(&w);
   x[0] = fetch(&w, set, "position", 2);
   for (int32_t i = 0; i < 2 * (int32_t)steps; ++i) {
@@ -174,15 +157,14 @@ START_TEST(block_on_incline) {
   x[1] = fetch(&w, set, "position", 2);
   double moved = 0.0;
   for (int64_t p = 0; p < n; ++p) moved += fabs(x[1][p] - x[0][p]) / (double)n;
-  show("incline %s friction %.1f: a %.5f, wanted %.5f, moved %.5f\n", how->name, friction, a, wanted, moved);
-  ck_within(how->name, a, wanted, 0.03 * (wanted > 0.0 ? wanted : g));
-  if (friction > sqrt(3.0)) ck_between(how->name, moved, 0.0, 0.005 * h); /* it leans over, no more */
-  free(masses), free(x[0]), free(x[1]);
+  show("incline %s friction %.1f: a %.5f, wanted %.5f, moved %.5f\n", how.name, friction, a, wanted, moved);
+  ck_within(how.name, a, wanted, 0.03 * (wanted > 0.0 ? wanted : g));
+  if (friction > sqrt(3.0)) ck_between(how.name, moved, 0.0, 0.005 * h); /* it leans over, no more */
+  free(x[0]), free(x[1]);
   world_close(&w);
 }
 END_TEST
 
-Suite *impact_suite(void);
 Suite *impact_suite(void) {
   Suite *suite = suite_create("impact");
   TCase *tc = tcase_create("impact");

@@ -1,31 +1,22 @@
 /* Implicit steps: Newmark's rule, convergence of the iteration, reactions, initial accelerations. */
 #include "implicit.h"
-#include "run_support.h"
+#include "body.h"
 
-const implicit_basis implicit_bases[IMPLICIT_BASES] = {
-    {MPM_LINEAR, MPM_BOUNDARY_GHOST, "linear"},
-    {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, "quadratic"},
-    {MPM_BSPLINE3, MPM_BOUNDARY_GHOST, "cubic"},
-    {MPM_BSPLINE2, MPM_BOUNDARY_OPEN_KNOT, "open quadratic"},
-    {MPM_BSPLINE3, MPM_BOUNDARY_OPEN_KNOT, "open cubic"},
-    {MPM_GIMP, MPM_BOUNDARY_GHOST, "GIMP"},
-    {MPM_CPGIMP, MPM_BOUNDARY_GHOST, "cpGIMP"}};
+const basis_option *implicit_basis(int32_t i) {
+  return &basis_options[i < 6 ? i : 7];
+}
 
-world_desc implicit_default(int32_t dim, int64_t cells, double h, const implicit_basis *basis) {
+world_desc implicit_default(int32_t dim, int64_t cells, double h, const basis_option *basis) {
   world_desc d = world_default(dim, cells, h);
-  d.grid.basis = basis->basis;
-  d.grid.boundary_basis = basis->boundary;
+  use_basis(basis, &d.grid);
   d.stepper.scheme = MPM_NEWMARK;
-  d.stepper.transfer = MPM_FLIP;
-  d.stepper.flip = 1.0;
   return d;
 }
 
-void implicit_block(world *w, mpm_particles *set, double low, double high, const double *velocity) {
-  const double lower[3] = {low, low, low}, upper[3] = {high, high, high};
-  const int32_t per_cell[3] = {2, 2, 2};
-  ck_ok(w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+int64_t implicit_block(world *w, mpm_particles *set, double low, double high, const double *velocity) {
+  const int64_t n = world_fill_cube(w, set, low, high);
   if (velocity) ck_ok(w, mpm_particles_set_all(set, "velocity", MPM_F64, w->dim, velocity));
+  return n;
 }
 
 int32_t implicit_history(const world *w, double *residual) {
@@ -55,20 +46,18 @@ void implicit_quadratic(const char *name, const world *w, double C) {
 
 /* A free body keeps its velocity and its shape at any dt. */
 START_TEST(free_flight) {
-  const implicit_basis *basis = &implicit_bases[_i % IMPLICIT_BASES];
+  const basis_option *basis = implicit_basis(_i % IMPLICIT_BASES);
   const int32_t dim = 1 + _i / IMPLICIT_BASES;
   world w;
   world_desc d = implicit_default(dim, 12, 0.1, basis);
-  world_open(&w, &d);
+  mpm_particles *set = world_open(&w, &d);
   const double v[3] = {0.7, -0.4, 0.3};
-  mpm_particles *set = world_add_set(&w);
-  implicit_block(&w, set, 0.42, 0.67, v);
+  const int64_t n = implicit_block(&w, set, 0.42, 0.67, v);
   double *x0 = fetch(&w, set, "position", dim);
   const double dt = 0.05;
   for (int32_t k = 1; k <= 3; ++k) {
     const mpm_step_info info = world_step(&w, dt);
     ck_assert_int_le(info.newton_iterations, 3);
-    const int64_t n = mpm_particles_count(set);
     double *x = fetch(&w, set, "position", dim), *u = fetch(&w, set, "velocity", dim);
     double *F = fetch(&w, set, "deformation_gradient", 9), *a = fetch(&w, set, "acceleration", dim);
     for (int64_t i = 0; i < n * dim; ++i) {
@@ -89,19 +78,18 @@ END_TEST
 START_TEST(one_unknown) {
   const double betas[] = {0.25, 0.3025, 0.5}, gammas[] = {0.5, 0.6, 0.5};
   const double beta = betas[_i], gamma = gammas[_i], h = 0.5, g = -3.0, dt = 0.02;
-  const implicit_basis linear = implicit_bases[0];
   world w;
-  world_desc d = implicit_default(1, 4, h, &linear);
+  world_desc d = implicit_default(1, 4, h, implicit_basis(0));
   d.stepper.newmark_beta = beta;
   d.stepper.newmark_gamma = gamma;
   d.stepper.gravity[0] = g;
-  world_open(&w, &d);
+  mpm_particles *set = world_open(&w, &d);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
-  mpm_particles *set = world_add_set(&w);
   const double at = 0.5 * h, volume = 0.4;
   ck_ok(&w, mpm_particles_add(set, 1, &at, NULL, &volume, NULL, NULL, NULL));
-  const double lambda = d.E * d.nu / ((1.0 + d.nu) * (1.0 - 2.0 * d.nu)), mu = d.E / (2.0 * (1.0 + d.nu));
-  const double m = d.density * volume;
+  const double lambda = d.law.E * d.law.nu / ((1.0 + d.law.nu) * (1.0 - 2.0 * d.law.nu)),
+               mu = d.law.E / (2.0 * (1.0 + d.law.nu));
+  const double m = d.law.density * volume;
   double x = at, v = 0.0, a = 0.0, F = 1.0;
   for (int32_t k = 0; k < 25; ++k) {
     const double weight = x / h, M = weight * m, G = 1.0 / h;
@@ -142,14 +130,13 @@ END_TEST
 /* A block in three dimensions and less sags on its fixed foot between slip walls, quasi-static and dynamic:
  * every basis and dimension converges quadratically, and walls carry the weight. */
 START_TEST(sagging_block) {
-  const implicit_basis *basis = &implicit_bases[_i % IMPLICIT_BASES];
+  const basis_option *basis = implicit_basis(_i % IMPLICIT_BASES);
   const int32_t dim = 1 + _i / IMPLICIT_BASES % 3, quasi_static = _i / IMPLICIT_BASES / 3;
   world w;
   world_desc d = implicit_default(dim, 8, 0.1, basis);
   d.stepper.quasi_static = quasi_static;
   d.stepper.gravity[dim - 1] = -30.0;
-  world_open(&w, &d);
-  mpm_particles *set = world_add_set(&w);
+  mpm_particles *set = world_open(&w, &d);
   implicit_block(&w, set, 0.0, 0.4, NULL);
   for (int32_t k = 0; k < dim; ++k)
     ck_ok(&w, mpm_stepper_set_wall(w.stepper, 2 * k, k == dim - 1 ? MPM_WALL_FIXED : MPM_WALL_SLIP, 0.0));
@@ -158,7 +145,7 @@ START_TEST(sagging_block) {
   world_step(&w, 0.05);
   implicit_quadratic(name, &w, 60.0);
   if (quasi_static) {
-    double force[3], weight = 30.0 * d.density * pow(0.4, dim);
+    double force[3], weight = 30.0 * d.law.density * pow(0.4, dim);
     ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, 2 * (dim - 1), force));
     ck_within(name, force[dim - 1], weight, 1e-7 * weight);
     const mpm_step_info info = world_info(&w);
@@ -173,34 +160,27 @@ END_TEST
 START_TEST(every_law) {
   static const mpm_param decoupled[] = {{"mu", 4e4}, {"kappa", 4e5}, {"density", 1e3}};
   static const mpm_param fluid[] = {{"bulk_modulus", 1e5}, {"viscosity", 300.0}, {"density", 1e3}};
-  const struct {
-    const char *model;
-    const mpm_param *params;
-    int32_t count;
-  } laws[] = {{"neo_hookean", NULL, 0},
-              {"linear_elastic", NULL, 0},
-              {"j2", NULL, 0},
-              {"newtonian_fluid", fluid, 3},
-              {"neo_hookean_decoupled", decoupled, 3}};
+  static const world_law laws[] = {
+      {.model = "neo_hookean", .E = 1e5, .nu = 0.3, .density = 1e3},
+      {.model = "linear_elastic", .E = 1e5, .nu = 0.3, .density = 1e3},
+      {.model = "j2", .E = 1e5, .nu = 0.3, .density = 1e3, .yield_stress = 900.0, .hardening = 1e4},
+      {.model = "newtonian_fluid", .params = fluid, .param_count = 3},
+      {.model = "neo_hookean_decoupled", .params = decoupled, .param_count = 3}};
   const int32_t remedy = _i / 5 % 2, dim = 2 + _i / 10 % 2;
-  const implicit_basis *basis = &implicit_bases[_i / 20];
+  const basis_option *basis = implicit_basis(_i / 20);
   world w;
   world_desc d = implicit_default(dim, 6, 0.1, basis);
-  d.model = laws[_i % 5].model;
-  d.params = laws[_i % 5].params;
-  d.param_count = laws[_i % 5].count;
-  d.yield_stress = 900.0;
-  d.hardening = 1e4;
+  d.law = laws[_i % 5];
   d.stepper.gravity[dim - 1] = -30.0;
   d.stepper.gravity[0] = 6.0;
   d.stepper.locking_remedy = remedy;
-  world_open(&w, &d);
-  mpm_particles *set = world_add_set(&w);
+  mpm_particles *set = world_open(&w, &d);
   implicit_block(&w, set, 0.0, 0.3, NULL);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, 2 * (dim - 1), MPM_WALL_FIXED, 0.0));
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
   char name[80];
-  snprintf(name, sizeof name, "%s, %s in %d-D%s", d.model, basis->name, (int)dim, remedy ? ", remedy" : "");
+  snprintf(name, sizeof name, "%s, %s in %d-D%s", d.law.model, basis->name, (int)dim,
+           remedy ? ", remedy" : "");
   world_step(&w, 0.03);
   world_step(&w, 0.03);
   implicit_quadratic(name, &w, 100.0);
@@ -211,14 +191,13 @@ END_TEST
 /* Falling freely, a body has the acceleration of gravity from its first implicit step on: it is found, not
  * taken to be zero; after explicit steps too. */
 START_TEST(initial_acceleration) {
-  const implicit_basis *basis = &implicit_bases[1];
+  const basis_option *basis = implicit_basis(1);
   world w;
   world_desc d = implicit_default(2, 10, 0.1, basis);
   d.stepper.gravity[1] = -9.0;
   d.stepper.scheme = _i ? MPM_USL : MPM_NEWMARK;
-  world_open(&w, &d);
-  mpm_particles *set = world_add_set(&w);
-  implicit_block(&w, set, 0.4, 0.7, NULL);
+  mpm_particles *set = world_open(&w, &d);
+  const int64_t n = implicit_block(&w, set, 0.4, 0.7, NULL);
   double t = 0.0;
   if (_i) {
     for (int32_t k = 0; k < 3; ++k) world_step(&w, 1e-3);
@@ -229,7 +208,6 @@ START_TEST(initial_acceleration) {
   const double dt = 0.01;
   for (int32_t k = 1; k <= 4; ++k) {
     world_step(&w, dt);
-    const int64_t n = mpm_particles_count(set);
     double *v = fetch(&w, set, "velocity", 2), *a = fetch(&w, set, "acceleration", 2);
     for (int64_t i = 0; i < n; ++i) {
       ck_within("v", v[n + i], -9.0 * (t + k * dt), 1e-10);
@@ -245,30 +223,21 @@ END_TEST
  * and known. GIMP with domains that follow F is exact while the platen is in line with nodes. */
 START_TEST(patch) {
   static const double kappa = 6e7, mu = 6e6;
-  static const mpm_param rubber[] = {{"mu", 6e6}, {"kappa", 6e7}, {"density", 10.0}},
-                         steel[] = {{"density", 10.0}};
+  static const mpm_param rubber[] = {{"mu", 6e6}, {"kappa", 6e7}, {"density", 10.0}};
   const double h = 0.5, L = 4.0;
   world w;
-  world_desc d = implicit_default(2, 16, h, &implicit_bases[6]);
-  d.model = "neo_hookean_decoupled";
-  d.params = rubber;
-  d.param_count = 3;
+  world_desc d = implicit_default(2, 16, h, implicit_basis(6));
+  d.law = (world_law){.model = "neo_hookean_decoupled", .params = rubber, .param_count = 3};
   d.stepper.quasi_static = 1;
-  world_open(&w, &d);
-  mpm_particles *block = world_add_set(&w), *platen;
-  mpm_material *rigid;
-  ck_ok(&w, mpm_material_create(w.context, "rigid", steel, 1, &rigid));
-  ck_ok(&w, mpm_particles_create(w.context, w.grid, rigid, &platen));
-  ck_ok(&w, mpm_stepper_add(w.stepper, platen));
-  implicit_block(&w, block, 0.0, L, NULL);
+  mpm_particles *block = world_open(&w, &d);
+  mpm_particles *platen = world_add_set(&w, &(world_law){.model = "rigid", .density = 10.0});
+  const int64_t n = implicit_block(&w, block, 0.0, L, NULL);
   const double lower[] = {0.0, L}, upper[] = {7.5, L + h}, speed[] = {0.0, -h};
-  const int32_t per_cell[] = {2, 2};
-  ck_ok(&w, mpm_particles_fill_box(platen, lower, upper, per_cell, NULL, NULL));
+  world_fill(&w, platen, lower, upper, 2);
   ck_ok(&w, mpm_particles_set_all(platen, "velocity", MPM_F64, 2, speed));
   ck_ok(&w, mpm_particles_set_all(platen, "prescribed", MPM_U8, 2, (const uint8_t[]){0, 1}));
   for (int32_t face = MPM_X_MIN; face <= MPM_Y_MIN; ++face)
     ck_ok(&w, mpm_stepper_set_wall(w.stepper, face, MPM_WALL_SLIP, 0.0));
-  const int64_t n = mpm_particles_count(block);
   for (int32_t k = 1; k <= 4; ++k) {
     world_step(&w, 1.0);
     const double y = 1.0 - k * h / L;
@@ -296,9 +265,6 @@ START_TEST(patch) {
     ck_within("platen", force[1], tau / y * L, 1e-8 * fabs(tau) * L);
     ck_within("floor", floor[1], -force[1], 1e-8 * fabs(tau) * L);
   }
-  ck_ok(&w, mpm_stepper_remove(w.stepper, platen));
-  ck_ok(&w, mpm_particles_destroy(platen));
-  ck_ok(&w, mpm_material_destroy(rigid));
   world_close(&w);
 }
 END_TEST
@@ -308,14 +274,14 @@ END_TEST
 START_TEST(halved_increments) {
   const double h = 0.5, volume = 0.4, at = 0.5 * h;
   world w;
-  world_desc d = implicit_default(1, 4, h, &implicit_bases[0]);
-  const double lambda = d.E * d.nu / ((1.0 + d.nu) * (1.0 - 2.0 * d.nu)), mu = d.E / (2.0 * (1.0 + d.nu));
-  const double m = d.density * volume, load = -1.5 * volume * (lambda + 2.0 * mu) / h;
+  world_desc d = implicit_default(1, 4, h, implicit_basis(0));
+  const double lambda = d.law.E * d.law.nu / ((1.0 + d.law.nu) * (1.0 - 2.0 * d.law.nu)),
+               mu = d.law.E / (2.0 * (1.0 + d.law.nu));
+  const double m = d.law.density * volume, load = -1.5 * volume * (lambda + 2.0 * mu) / h;
   d.stepper.quasi_static = 1;
   d.stepper.gravity[0] = load / (0.5 * m);
-  world_open(&w, &d);
+  mpm_particles *set = world_open(&w, &d);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
-  mpm_particles *set = world_add_set(&w);
   ck_ok(&w, mpm_particles_add(set, 1, &at, NULL, &volume, NULL, NULL, NULL));
   world_step(&w, 1.0);
   double *F = fetch(&w, set, "deformation_gradient", 9);
@@ -344,11 +310,10 @@ static mpm_status note_time(void *user, const mpm_particle_batch *b, double *add
 
 START_TEST(time_of_forces) {
   world w;
-  world_desc d = implicit_default(2, 8, 0.1, &implicit_bases[1]);
+  world_desc d = implicit_default(2, 8, 0.1, implicit_basis(1));
   d.stepper.quasi_static = _i;
   d.stepper.gravity[1] = -5.0;
-  world_open(&w, &d);
-  mpm_particles *set = world_add_set(&w);
+  mpm_particles *set = world_open(&w, &d);
   implicit_block(&w, set, 0.0, 0.3, NULL);
   for (int32_t face = MPM_X_MIN; face <= MPM_Y_MIN; face += 2)
     ck_ok(&w, mpm_stepper_set_wall(w.stepper, face, MPM_WALL_SLIP, 0.0));
@@ -370,19 +335,16 @@ END_TEST
 /* With the remedy particles of a cell couple across the seam of a periodic axis, however few cells it has. */
 START_TEST(remedy_across_a_seam) {
   static const int64_t cells[] = {1, 2, 3, 5, 17};
-  const implicit_basis *basis = &implicit_bases[_i % IMPLICIT_BASES];
+  const basis_option *basis = implicit_basis(_i % IMPLICIT_BASES);
   const int64_t across = cells[_i / IMPLICIT_BASES];
   world w;
   world_desc d = implicit_default(2, 8, 0.1, basis);
   d.grid.cells[0] = across;
   d.grid.periodic[0] = 1;
   d.stepper.locking_remedy = 1;
-  world_open(&w, &d);
-  mpm_particles *set = world_add_set(&w);
+  mpm_particles *set = world_open(&w, &d);
   const double lower[] = {0.0, 0.2}, upper[] = {0.1 * (double)across, 0.5};
-  const int32_t per_cell[] = {2, 2};
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
-  const int64_t n = mpm_particles_count(set);
+  const int64_t n = world_fill(&w, set, lower, upper, 2);
   double *v = malloc((size_t)(2 * n) * sizeof *v);
   dice d7 = {7};
   for (int64_t i = 0; i < 2 * n; ++i) v[i] = throw_between(&d7, -1.0, 1.0);
@@ -400,16 +362,14 @@ END_TEST
 /* However short the step, forces count: rounding is that of what moves, not of inertia over dt^2. */
 START_TEST(short_steps) {
   world w;
-  world_desc d = implicit_default(2, 8, 1.0, &implicit_bases[1]);
+  world_desc d = implicit_default(2, 8, 1.0, implicit_basis(1));
   d.stepper.gravity[1] = -10.0;
-  world_open(&w, &d);
-  mpm_particles *set = world_add_set(&w);
-  implicit_block(&w, set, 3.0, 5.0, NULL);
+  mpm_particles *set = world_open(&w, &d);
+  const int64_t n = implicit_block(&w, set, 3.0, 5.0, NULL);
   const double dt = 1e-9;
   for (int32_t k = 1; k <= 3; ++k) {
     world_step(&w, dt);
     double *v = fetch(&w, set, "velocity", 2);
-    const int64_t n = mpm_particles_count(set);
     for (int64_t i = 0; i < n; ++i) ck_within("v", v[n + i], -10.0 * k * dt, 1e-6 * dt);
     free(v);
   }
@@ -426,13 +386,9 @@ static mpm_status sink(void *user, const mpm_particle_batch *b, double *add) {
 /* A platen in the air: nothing acts on the material but what its own motion takes. */
 START_TEST(platen_in_the_air) {
   world w;
-  world_desc d = implicit_default(2, 8, 0.1, &implicit_bases[1]);
-  const mpm_param steel[] = {{"density", 1e3}};
-  d.model = "rigid";
-  d.params = steel;
-  d.param_count = 1;
-  world_open(&w, &d);
-  mpm_particles *set = world_add_set(&w);
+  world_desc d = implicit_default(2, 8, 0.1, implicit_basis(1));
+  d.law = (world_law){.model = "rigid", .density = 1e3};
+  mpm_particles *set = world_open(&w, &d);
   implicit_block(&w, set, 0.3, 0.5, NULL);
   ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, sink, NULL));
   for (int32_t k = 0; k < 4; ++k) {
@@ -448,21 +404,20 @@ END_TEST
 /* The same bits on any number of threads, by the pool and by an executor in random order. */
 START_TEST(threads) {
   static const int32_t counts[] = {1, 2, 3, 4, 7};
-  const run_method *how = &run_methods[RUN_ALL - 3 + _i % 3];
-  run_options o = {.dim = 1 + _i / 3 % 3, .velocity_bc = 1, .led = 1, .periodic = _i / 9};
-  run_use(&o, how);
+  body_desc o = {.dim = 1 + _i / 3 % 3, .velocity_bc = 1, .led = 1, .periodic = _i / 9};
+  o.method = *broad_methods[BROAD - 3 + _i % 3]; /* by Newmark's rule */
   uint64_t alone = 0;
   for (int32_t i = 0; i < 6; ++i) {
-    run r;
+    world r;
     o.concurrency = counts[i % 5];
-    o.own_order = i == 5;
+    o.random_order = i == 5;
     if (i == 5) o.concurrency = 4;
-    run_open(&r, &o);
-    for (int32_t k = 0; k < 4; ++k) run_step_of(&r, 5.0 * RUN_DT);
+    body_open(&r, &o);
+    for (int32_t k = 0; k < 4; ++k) world_step(&r, 5.0 * BODY_DT);
     ck_assert_int_gt(r.info.newton_iterations, 0);
-    if (!i) alone = run_hash(&r);
-    ck_assert_msg(run_hash(&r) == alone, "%d threads give another hash than one", (int)o.concurrency);
-    run_close(&r);
+    if (!i) alone = world_hash(&r);
+    ck_assert_msg(world_hash(&r) == alone, "%d threads give another hash than one", (int)o.concurrency);
+    world_close(&r);
   }
 }
 END_TEST

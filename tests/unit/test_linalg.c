@@ -50,14 +50,14 @@ START_TEST(threads) {
   mpmi_solve_report first_report = {0}, report;
   double *first = NULL;
   for (int32_t t = 0; t < 5; ++t) {
-    mpm_context *context = context_of(counts[t], MPM_ISA_BEST, NULL);
+    mpm_context *context = context_with(counts[t], MPM_ISA_BEST, NULL);
     mpmi_matrix A;
     mpmi_solver *solver;
     springs_build(&A, context, &at->of);
     const size_t bytes = (size_t)mpmi_matrix_unknowns(&A) * sizeof(double);
     double *b = noise_vector(&A, 2), *x = malloc(bytes);
     const mpmi_solve_job job = job_of(&A, b, x, at->choice);
-    ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
+    ck_ok(context, mpmi_solver_create(context, &solver));
     solved(solver, &job, &report);
     if (!first) {
       first = memcpy(malloc(bytes), x, bytes);
@@ -68,7 +68,7 @@ START_TEST(threads) {
     free(b), free(x);
     mpmi_solver_destroy(solver);
     mpmi_matrix_free(&A);
-    ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+    ck_ok(context, mpm_context_destroy(context));
   }
   free(first);
 }
@@ -88,35 +88,34 @@ static mpm_status run_tasks(void *user, int64_t count, mpm_task_fn task, void *d
 }
 
 static double *solution_of(const scene *at) {
-  mpm_context *context = context_of(2, MPM_ISA_BEST, NULL);
+  mpm_context *context = context_with(2, MPM_ISA_BEST, NULL);
   mpmi_matrix A;
   mpmi_solver *solver;
   mpmi_solve_report report;
   springs_build(&A, context, &at->of);
   double *b = noise_vector(&A, 2), *x = malloc((size_t)mpmi_matrix_unknowns(&A) * sizeof *x);
   const mpmi_solve_job job = job_of(&A, b, x, at->choice);
-  ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
+  ck_ok(context, mpmi_solver_create(context, &solver));
   solved(solver, &job, &report);
   free(b);
   mpmi_solver_destroy(solver);
   mpmi_matrix_free(&A);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  ck_ok(context, mpm_context_destroy(context));
   return x;
 }
 
 START_TEST(executors) {
   const scene *at = &scenes[_i];
   moody m = {0};
-  mpm_context_desc desc;
+  mpm_context_desc desc = context_desc();
   mpm_context *context;
   mpmi_matrix A;
   mpmi_solver *solver;
   mpmi_solve_report report;
-  ck_assert_int_eq(mpm_context_desc_init(&desc, sizeof desc), MPM_OK);
   desc.parallel_for = run_tasks;
   desc.parallel_user = &m;
-  ck_assert_int_eq(mpm_context_create(&desc, &context), MPM_OK);
-  ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
+  ck_ok(NULL, mpm_context_create(&desc, &context));
+  ck_ok(context, mpmi_solver_create(context, &solver));
   springs_build(&A, context, &at->of);
   double *b = noise_vector(&A, 2), *x = malloc((size_t)mpmi_matrix_unknowns(&A) * sizeof *x);
   mpmi_solve_job job = job_of(&A, b, x, at->choice);
@@ -148,7 +147,7 @@ START_TEST(executors) {
   free(b), free(x);
   mpmi_solver_destroy(solver);
   mpmi_matrix_free(&A);
-  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+  ck_ok(context, mpm_context_destroy(context));
 }
 END_TEST
 
@@ -164,12 +163,12 @@ START_TEST(out_of_memory) {
                       .mass = 0.5,
                       .rollers = 1,
                       .convection = _i == 5 ? 0.2 : 0.0};
-  counting memory = {0};
+  host_memory memory = {0};
   mpmi_solve_report report;
   int32_t failures = 0;
   for (int64_t fail_at = 1, done = 0; !done; ++fail_at) {
-    memory = (counting){0};
-    mpm_context *context = context_of(1, MPM_ISA_BEST, &memory);
+    memory = (host_memory){0};
+    mpm_context *context = context_with(1, MPM_ISA_BEST, &memory);
     mpmi_matrix A;
     mpmi_solver *solver;
     springs_build(&A, context, &of);
@@ -183,7 +182,7 @@ START_TEST(out_of_memory) {
       ck_assert_int_eq(status, MPM_E_NOMEM);
       ck_assert_ptr_null(solver);
       ck_assert_int_eq(memory.held, held);
-      ck_assert_int_eq(mpmi_solver_create(context, &solver), MPM_OK);
+      ck_ok(context, mpmi_solver_create(context, &solver));
     } else {
       status = mpmi_solve(solver, &job, &report);
       /* what it needs within the callback is the callback's failure */
@@ -204,7 +203,7 @@ START_TEST(out_of_memory) {
     mpmi_solver_destroy(solver);
     ck_assert_int_eq(memory.held, held);
     mpmi_matrix_free(&A);
-    ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+    ck_ok(context, mpm_context_destroy(context));
     ck_assert_int_eq(memory.held, 0);
   }
   ck_assert_int_ge(failures, 3);

@@ -3,14 +3,14 @@
 #include "prescribed.h"
 
 void open_clouds(world *w, const method *how, int32_t dim, int32_t walled, int32_t all) {
-  world_desc desc = world_default(dim, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, dim, 8, 0.1);
   desc.grid.periodic[0] = 1;
   memcpy(desc.stepper.gravity, (double[]){1.0, -5.0, 2.0}, 3 * sizeof(double));
+  desc.sets = 2;
   world_open(w, &desc);
   dice d = {29};
   const double low = walled ? 0.0 : 0.2, high = walled ? 0.8 : 0.6;
-  for (int32_t m = 0; m < 2; ++m) add_cloud(w, world_add_set(w), &d, CLOUD, 0.1, low, high, 1.0);
+  for (int32_t m = 0; m < 2; ++m) add_cloud(w, w->set[m], &d, CLOUD, 0.1, low, high, 1.0);
   uint8_t *flags = malloc((size_t)(dim * CLOUD));
   for (int32_t i = 0; i < dim * CLOUD; ++i) flags[i] = all || throw_between(&d, 0.0, 1.0) < 0.1;
   ck_ok(w, mpm_particles_set(w->set[1], "prescribed", MPM_U8, dim, CLOUD, NULL, flags));
@@ -32,10 +32,7 @@ mpm_status prescribed_turn(void *user, const mpm_particle_batch *b, double *add)
 }
 
 uint8_t *fetch_flags(const world *w, const mpm_particles *set) {
-  const int64_t n = mpm_particles_count(set);
-  uint8_t *flags = malloc((size_t)(w->dim * n));
-  ck_ok(w, mpm_particles_get(set, "prescribed", MPM_U8, w->dim, n, NULL, flags));
-  return flags;
+  return fetch_as(w, set, "prescribed", MPM_U8, w->dim);
 }
 
 /* v = u and x += dt u to the last bit but one, whatever the transfer; others move on as they do. */
@@ -82,15 +79,8 @@ static double of_field(const world *w, const mpm_particles *set, const char *fie
   return sum;
 }
 
-static double mass_of(const world *w, const mpm_particles *set) {
-  double *mass = fetch(w, set, "mass", 1), sum = 0.0;
-  for (int64_t p = 0; p < mpm_particles_count(set); ++p) sum += mass[p];
-  free(mass);
-  return sum;
-}
-
-/* What the prescribed set and the walls exert on the other, with its weight,
- * is the change of its momentum. */
+/* What the prescribed set and the walls exert on the other, with its weight, is the change of its momentum.
+ */
 START_TEST(reactions_balance) {
   const method *how = &methods[_i % METHODS];
   const int32_t dim = 2 + _i / METHODS % 2, walled = _i / METHODS / 2;
@@ -141,18 +131,16 @@ START_TEST(two_sets_on_one_node) {
   int32_t number[2] = {0, 1};
   const uint8_t yes = 1;
   world w;
-  world_desc desc = world_default(1, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 1, 8, 0.1);
+  desc.sets = 2;
   world_open(&w, &desc);
-  mpm_particles *third;
   speeds[0] = 0.3, speeds[1] = -0.5;
   for (int32_t m = 0; m < 2; ++m) {
-    ck_ok(&w, mpm_particles_add(world_add_set(&w), 1, &x[m], NULL, &volume[m], NULL, NULL, NULL));
+    ck_ok(&w, mpm_particles_add(w.set[m], 1, &x[m], NULL, &volume[m], NULL, NULL, NULL));
     ck_ok(&w, mpm_particles_set_all(w.set[m], "prescribed", MPM_U8, 1, &yes));
     ck_ok(&w, mpm_stepper_set_motion(w.stepper, w.set[m], both_alike, &number[m]));
   }
-  ck_ok(&w, mpm_particles_create(w.context, w.grid, w.material, &third));
-  ck_ok(&w, mpm_stepper_add(w.stepper, third));
+  mpm_particles *third = world_add_set(&w, NULL);
   ck_ok(&w, mpm_particles_add(third, 1, &xm, NULL, &vm, NULL, NULL, NULL));
   world_step(&w, 1e-3);
   int64_t n;
@@ -192,9 +180,8 @@ START_TEST(two_sets_on_one_node) {
   }
   free(index), free(v), free(r);
   ck_ok(&w, mpm_stepper_remove(w.stepper, third));
-  ck_fails(&w, mpm_stepper_particles_reaction(w.stepper, third, force), MPM_E_NOT_FOUND,
-           "not in this stepper");
-  ck_ok(&w, mpm_particles_destroy(third));
+  ck_refused(&w, mpm_stepper_particles_reaction(w.stepper, third, force), MPM_E_NOT_FOUND,
+             "not in this stepper");
   world_close(&w);
 }
 END_TEST
@@ -221,16 +208,14 @@ static mpm_status to_corner(void *user, const mpm_particle_batch *b, double *add
 START_TEST(precedence) {
   const method *how = &methods[_i % METHODS];
   static const int32_t kinds[3] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION};
-  const int32_t kind = kinds[_i / METHODS % 3], per_cell[2] = {2, 2};
+  const int32_t kind = kinds[_i / METHODS % 3];
   const double lower[2] = {0.1, 0.0}, upper[2] = {1.1, 0.4}, down[2] = {0.0, -1.0};
   const double pressed[9] = {1.0, 0.0, 0.0, 0.0, 0.98, 0.0, 0.0, 0.0, 1.0};
   world w;
-  world_desc desc = world_default(2, 12, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 12, 0.1);
   desc.stepper.boundary_zero_acceleration = _i / METHODS / 3;
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 2);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, down));
   ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, pressed));
   const int64_t count = mpm_particles_count(set);
@@ -294,14 +279,11 @@ static mpm_status slide_along(void *user, const mpm_particle_batch *b, double *a
 START_TEST(driven_along_a_wall) {
   const method *how = &methods[_i];
   const double lower[2] = {0.1, 0.0}, upper[2] = {0.7, 0.4}, down[2] = {0.0, -1.0};
-  const int32_t per_cell[2] = {2, 2};
   const uint8_t along[2] = {1, 0};
   world w;
-  world_desc desc = world_default(2, 12, 0.1);
-  world_use(&desc, how);
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  world_desc desc = world_with(how, 2, 12, 0.1);
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 2);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, down));
   ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 2, along));
   ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, slide_along, NULL));
@@ -331,20 +313,17 @@ END_TEST
  * strain; and when it is made faster, the work is that of its momentum. */
 START_TEST(nothing_to_push) {
   const method *how = &methods[_i];
-  const double lower[3] = {0.2, 0.2, 0.2}, upper[3] = {0.6, 0.6, 0.6}, v0[3] = {0.4, -0.3, 0.2};
-  const int32_t per_cell[3] = {2, 2, 2};
+  const double v0[3] = {0.4, -0.3, 0.2};
   const uint8_t all[3] = {1, 1, 1};
   world w;
-  world_desc desc = world_default(3, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 3, 8, 0.1);
   memcpy(desc.stepper.gravity, (double[]){1.0, -5.0, 2.0}, 3 * sizeof(double));
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
+  mpm_particles *set = world_open(&w, &desc);
   double force[3];
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  world_fill_cube(&w, set, 0.2, 0.6);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 3, v0));
   ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 3, all));
-  ck_fails(&w, mpm_stepper_particles_reaction(w.stepper, set, force), MPM_E_STATE, "no step");
+  ck_refused(&w, mpm_stepper_particles_reaction(w.stepper, set, force), MPM_E_STATE, "no step");
   const double mass = mass_of(&w, set), squared = 0.29;
   for (int32_t i = 0; i < 5; ++i) {
     const mpm_step_info info = world_step(&w, 1e-3);
@@ -373,16 +352,13 @@ static mpm_status double_speed(void *user, const mpm_particle_batch *b, double *
 START_TEST(work_of_moving_itself) {
   const method *how = &methods[_i % METHODS];
   const double lower = 0.2, upper = 0.6, v0 = 0.4;
-  const int32_t per_cell = 2;
   const uint8_t yes = 1;
   world w;
-  world_desc desc = world_default(1, 8, 0.1);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 1, 8, 0.1);
   desc.stepper.gravity[0] = -7.0;
   desc.stepper.boundary_zero_acceleration = _i / METHODS;
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, &lower, &upper, &per_cell, NULL, NULL));
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, &lower, &upper, 2);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 1, &v0));
   ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 1, &yes));
   ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, double_speed, NULL));
@@ -414,14 +390,12 @@ static double moment_of_nodes(world *w) {
  * about it: it is missed as soon as it has left its tile, not when the nodes would have taken it there. */
 START_TEST(light_through_heavy) {
   const double lower[2] = {0.0, 0.0}, upper[2] = {4.0, 0.4}, x[2] = {1.42, 0.2}, volume = 1e-4;
-  const int32_t per_cell[2] = {1, 1};
   const int64_t id = 1000;
   const uint8_t all[2] = {1, 1};
   world w;
   world_desc desc = world_default(2, 40, 0.1);
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 1);
   ck_ok(&w, mpm_particles_add(set, 1, x, NULL, &volume, NULL, &id, NULL));
   ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 2, all));
   ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, only_light, NULL));

@@ -1,9 +1,10 @@
 /* Particles that come and go during a run, in combination with all that such a run may meet: open walls,
  * periodic axes, two sets, fields of the host, saved states, threads, views.
  *
- * A stream without stress: every particle has the same velocity, so that places,
- * images and removals are known. */
-#include "run_support.h"
+ * A stream without stress: every particle has the same velocity, so that places, images and removals are
+ * known.
+ */
+#include "body.h"
 
 enum { SETS = 2, MOST = 4000, PER_EMISSION = 3 };
 
@@ -16,88 +17,59 @@ typedef struct birth {
   double x[3], t;
 } birth;
 
-typedef struct stream {
-  mpm_context *context;
-  mpm_grid *grid;
-  mpm_material *material[SETS];
-  mpm_particles *set[SETS];
-  mpm_stepper *stepper;
-  int32_t dim, periodic;
-  mpm_step_info info;
-} stream;
-
 typedef struct births {
   birth list[SETS][MOST];
   int64_t count[SETS];
 } births;
 
-static void open_stream(stream *s, int32_t dim, int32_t periodic, int32_t transfer, int32_t concurrency) {
-  /* soft: nodes that are too light to count strain a particle near them by some 1e-9 */
-  const mpm_param params[] = {
-      {"E", 1e-3}, {"nu", 0.3}, {"density", 2e3}, {"yield_stress", 1.0}, {"hardening", 1.0}};
-  memset(s, 0, sizeof *s);
-  s->info.struct_size = sizeof s->info;
-  s->dim = dim;
-  s->periodic = periodic && dim > 1;
-  mpm_context_desc c;
-  mpm_grid_desc g;
-  mpm_stepper_desc d;
-  ck_assert_int_eq(mpm_context_desc_init(&c, sizeof c), MPM_OK);
-  c.concurrency = concurrency;
-  ck_assert_int_eq(mpm_context_create(&c, &s->context), MPM_OK);
-  run_ok(s, mpm_grid_desc_init(&g, sizeof g));
-  g.dim = dim;
-  for (int32_t k = 0; k < dim; ++k) {
-    g.cells[k] = k ? 12 : periodic ? 40 : 160;
-    g.spacing[k] = period[k] / (double)g.cells[k];
-    g.origin[k] = low;
-    g.periodic[k] = k && periodic;
-  }
-  run_ok(s, mpm_grid_create(s->context, &g, &s->grid));
-  run_ok(s, mpm_stepper_desc_init(&d, sizeof d));
-  d.transfer = transfer;
-  run_ok(s, mpm_stepper_create(s->context, s->grid, &d, &s->stepper));
-  for (int32_t m = 0; m < SETS; ++m) {
-    run_ok(s, mpm_material_create(s->context, m ? "j2" : "neo_hookean", params, m ? 5 : 3, &s->material[m]));
-    run_ok(s, mpm_particles_create(s->context, s->grid, s->material[m], &s->set[m]));
-    run_ok(s, mpm_particles_add_field(s->set[m], "born", MPM_F64, 1));
-    run_ok(s, mpm_particles_add_field(s->set[m], "label", MPM_I64, 2));
-    run_ok(s, mpm_particles_add_field(s->set[m], "colour", MPM_U8, 3));
-    run_ok(s, mpm_stepper_add(s->stepper, s->set[m]));
-  }
-  for (int32_t face = 0; face < 2 * dim; ++face)
-    if (face < 2 || !periodic) run_ok(s, mpm_stepper_set_wall(s->stepper, face, MPM_WALL_OPEN, 0.0));
+static mpm_status add_fields(world *w, int32_t m) {
+  mpm_status status = mpm_particles_add_field(w->set[m], "born", MPM_F64, 1);
+  if (!status) status = mpm_particles_add_field(w->set[m], "label", MPM_I64, 2);
+  return status ? status : mpm_particles_add_field(w->set[m], "colour", MPM_U8, 3);
 }
 
-static void close_stream(stream *s) {
-  run_ok(s, mpm_stepper_destroy(s->stepper));
-  for (int32_t m = 0; m < SETS; ++m) run_ok(s, mpm_particles_destroy(s->set[m]));
-  for (int32_t m = 0; m < SETS; ++m) run_ok(s, mpm_material_destroy(s->material[m]));
-  run_ok(s, mpm_grid_destroy(s->grid));
-  run_ok(s, mpm_context_destroy(s->context));
+static void open_stream(world *w, int32_t dim, int32_t periodic, int32_t transfer, int32_t concurrency) {
+  static const fill_fn fill[] = {add_fields, NULL};
+  world_desc d = world_default(dim, 12, 1.0);
+  /* soft: nodes that are too light to count strain a particle near them by some 1e-9 */
+  d.law = (world_law){.model = "neo_hookean", .E = 1e-3, .nu = 0.3, .density = 2e3};
+  d.other_law =
+      (world_law){.model = "j2", .E = 1e-3, .nu = 0.3, .density = 2e3, .yield_stress = 1.0, .hardening = 1.0};
+  d.context.concurrency = concurrency;
+  d.stepper.transfer = transfer;
+  d.sets = SETS;
+  d.fill = fill;
+  d.grid.cells[0] = periodic ? 40 : 160;
+  for (int32_t k = 0; k < dim; ++k) {
+    d.grid.spacing[k] = period[k] / (double)d.grid.cells[k];
+    d.grid.origin[k] = low;
+    d.grid.periodic[k] = k && periodic;
+  }
+  world_open(w, &d);
+  world_walls(w, MPM_WALL_OPEN, 0.0);
 }
 
 /* Where a new particle starts; on periodic axes perhaps periods away from the grid. */
-static void start(const stream *s, int64_t number, birth *b) {
+static void start(const world *s, int64_t number, birth *b) {
   for (int32_t k = 0; k < s->dim; ++k) {
-    b->x[k] = low + period[k] * (0.45 + 0.4 * run_noise((uint64_t)(3 * number + k)));
-    if (k && s->periodic) b->x[k] += period[k] * (double)(number % 5 - 2);
+    b->x[k] = low + period[k] * (0.45 + 0.4 * noise_at((uint64_t)(3 * number + k)));
+    if (s->desc.grid.periodic[k]) b->x[k] += period[k] * (double)(number % 5 - 2);
   }
-  b->x[0] = low + 0.03 * period[0] * (1.5 + run_noise((uint64_t)(3 * number)));
+  b->x[0] = low + 0.03 * period[0] * (1.5 + noise_at((uint64_t)(3 * number)));
 }
 
 /* Writes what the host knows of a particle into its fields. */
-static void label(stream *s, int32_t m, const birth *b) {
+static void label(world *s, int32_t m, const birth *b) {
   const int64_t words[] = {b->id * b->id, -m};
   const uint8_t colour[] = {(uint8_t)b->id, (uint8_t)(b->id / 7), (uint8_t)(250 + m)};
-  run_ok(s, mpm_particles_set(s->set[m], "born", MPM_F64, 1, 1, &b->id, &b->t));
-  run_ok(s, mpm_particles_set(s->set[m], "label", MPM_I64, 2, 1, &b->id, words));
-  run_ok(s, mpm_particles_set(s->set[m], "colour", MPM_U8, 3, 1, &b->id, colour));
+  ck_ok(s, mpm_particles_set(s->set[m], "born", MPM_F64, 1, 1, &b->id, &b->t));
+  ck_ok(s, mpm_particles_set(s->set[m], "label", MPM_I64, 2, 1, &b->id, words));
+  ck_ok(s, mpm_particles_set(s->set[m], "colour", MPM_U8, 3, 1, &b->id, colour));
 }
 
 /* Adds particles to a set: to set 0 with ids of the host, every third number; to set 1 numbered on. With
  * `backwards` in the opposite order. */
-static void emit(stream *s, int32_t m, const birth *b, int64_t n, int32_t backwards) {
+static void emit(world *s, int32_t m, const birth *b, int64_t n, int32_t backwards) {
   double x[3 * PER_EMISSION], v[3 * PER_EMISSION], V[PER_EMISSION];
   int64_t ids[PER_EMISSION], first = -1;
   for (int64_t i = 0; i < n; ++i) {
@@ -107,12 +79,12 @@ static void emit(stream *s, int32_t m, const birth *b, int64_t n, int32_t backwa
     ids[i] = from->id;
   }
   const int32_t numbered = m && !backwards;
-  run_ok(s, mpm_particles_add(s->set[m], n, x, v, V, NULL, numbered ? NULL : ids, &first));
+  ck_ok(s, mpm_particles_add(s->set[m], n, x, v, V, NULL, numbered ? NULL : ids, &first));
   ck_assert_int_eq(first, backwards ? b[n - 1].id : b[0].id);
   for (int64_t i = 0; i < n; ++i) label(s, m, &b[i]);
 }
 
-static void new_births(const stream *s, births *all, double t) {
+static void new_births(const world *s, births *all, double t) {
   for (int32_t m = 0; m < SETS; ++m)
     for (int32_t i = 0; i < PER_EMISSION; ++i) {
       birth *b = &all->list[m][all->count[m]];
@@ -126,20 +98,14 @@ static int32_t stays(const birth *b, double t) {
   return b->x[0] + velocity[0] * (t - b->t) <= low + period[0];
 }
 
-static void *fetch(const stream *s, int32_t m, const char *field, int32_t type, int32_t components) {
-  const int64_t n = mpm_particles_count(s->set[m]);
-  void *values = malloc(8 * (size_t)(n * components + 1));
-  run_ok(s, mpm_particles_get(s->set[m], field, type, components, n, NULL, values));
-  return values;
-}
-
 /* Every particle that was born and has not left is where it must be, and has what the host gave it. */
-static int64_t check_set(const stream *s, int32_t m, const births *all, double t) {
+static int64_t check_set(const world *s, int32_t m, const births *all, double t) {
   const int64_t n = mpm_particles_count(s->set[m]);
-  int64_t *id = fetch(s, m, "id", MPM_I64, 1), *image = fetch(s, m, "image", MPM_I64, s->dim),
-          *words = fetch(s, m, "label", MPM_I64, 2), at = 0;
-  double *x = fetch(s, m, "position", MPM_F64, s->dim), *born = fetch(s, m, "born", MPM_F64, 1);
-  uint8_t *colour = fetch(s, m, "colour", MPM_U8, 3);
+  int64_t *id = fetch_ids(s, s->set[m]), *image = fetch_as(s, s->set[m], "image", MPM_I64, s->dim),
+          *words = fetch_as(s, s->set[m], "label", MPM_I64, 2), at = 0;
+  double *x = fetch_as(s, s->set[m], "position", MPM_F64, s->dim),
+         *born = fetch_as(s, s->set[m], "born", MPM_F64, 1);
+  uint8_t *colour = fetch_as(s, s->set[m], "colour", MPM_U8, 3);
   for (int64_t i = 0; i < all->count[m]; ++i) {
     const birth *b = &all->list[m][i];
     if (!stays(b, t)) continue;
@@ -150,7 +116,8 @@ static int64_t check_set(const stream *s, int32_t m, const births *all, double t
       if (!(fabs(place - wanted) < 1e-11))
         ck_abort_msg("particle %d, axis %d: %g is off by %g", (int)b->id, (int)k, place, place - wanted);
       if (x[k * n + at] < low || x[k * n + at] > low + period[k]) ck_abort_msg("outside the grid");
-      if (!(k && s->periodic) && image[k * n + at]) ck_abort_msg("image on an axis that is not periodic");
+      if (!s->desc.grid.periodic[k] && image[k * n + at])
+        ck_abort_msg("image on an axis that is not periodic");
     }
     if (born[at] != b->t || words[at] != b->id * b->id || words[n + at] != -m ||
         colour[at] != (uint8_t)b->id || colour[n + at] != (uint8_t)(b->id / 7) ||
@@ -164,37 +131,37 @@ static int64_t check_set(const stream *s, int32_t m, const births *all, double t
 }
 
 /* Sum of mass and first moments of the particles, or of the nodes of the last step. */
-static void of_particles(const stream *s, double *sum) {
+static void of_particles(const world *s, double *sum) {
   for (int32_t m = 0; m < SETS; ++m) {
     const int64_t n = mpm_particles_count(s->set[m]);
-    double *x = fetch(s, m, "position", MPM_F64, s->dim);
+    double *x = fetch_as(s, s->set[m], "position", MPM_F64, s->dim);
     sum[0] += 2e3 * volume * (double)n;
     for (int64_t i = 0; i < n * s->dim; ++i) sum[1 + i / n] += 2e3 * volume * x[i];
     free(x);
   }
 }
 
-static void of_nodes(stream *s, double *sum) {
+static void of_nodes(world *s, double *sum) {
   mpm_view mass = {.struct_size = sizeof mass}, x = mass;
-  run_ok(s, mpm_grid_map(s->stepper, 0, "mass", MPM_READ, &mass));
-  run_ok(s, mpm_grid_map(s->stepper, 0, "position", MPM_READ, &x));
+  ck_ok(s, mpm_grid_map(s->stepper, 0, "mass", MPM_READ, &mass));
+  ck_ok(s, mpm_grid_map(s->stepper, 0, "position", MPM_READ, &x));
   ck_assert_int_eq(mass.count, s->info.active_nodes);
   for (int64_t i = 0; i < mass.count; ++i) {
     const double m = ((double *)mass.data)[i];
     sum[0] += m;
     for (int32_t k = 0; k < s->dim; ++k) sum[1 + k] += m * ((double *)x.data)[i + k * x.component_stride];
   }
-  run_ok(s, mpm_view_release(&mass));
-  run_ok(s, mpm_view_release(&x));
+  ck_ok(s, mpm_view_release(&mass));
+  ck_ok(s, mpm_view_release(&x));
 }
 
-static void step(stream *s) {
+static void step(world *s) {
   int64_t before = 0, after = 0;
   const int64_t removed = s->info.removed;
   double particles[4] = {0.0}, nodes[4] = {0.0};
   of_particles(s, particles);
   for (int32_t m = 0; m < SETS; ++m) before += mpm_particles_count(s->set[m]);
-  run_ok(s, mpm_step(s->stepper, dt, &s->info));
+  ck_ok(s, mpm_step(s->stepper, dt, &s->info));
   for (int32_t m = 0; m < SETS; ++m) after += mpm_particles_count(s->set[m]);
   if (s->info.removed - removed != before - after) ck_abort_msg("removed particles are not counted");
   double square = 0.0;
@@ -204,28 +171,17 @@ static void step(stream *s) {
     ck_abort_msg("kinetic energy of those who stay");
   /* what has left takes its energy along: nothing is lost in the step */
   if (!(fabs(s->info.dissipation) <= 1e-9 * scale)) ck_abort_msg("dissipation is %g", s->info.dissipation);
-  if (s->periodic) return; /* images are listed beside their nodes */
+  if (s->desc.grid.periodic[1]) return; /* images are listed beside their nodes */
   of_nodes(s, nodes);
   for (int32_t k = 0; k <= s->dim; ++k)
     if (!(fabs(nodes[k] - particles[k]) <= 1e-9 * particles[0]))
       ck_abort_msg("the nodes of the last step are not its own");
 }
 
-static uint64_t hash_of(const stream *s) {
-  uint64_t hash;
-  run_ok(s, mpm_state_hash(s->stepper, &hash));
-  return hash;
-}
-
-/* Saves `from` and loads it into `to`. */
-static void copy_state(const stream *from, stream *to) {
-  int64_t bytes;
-  run_ok(from, mpm_state_size(from->stepper, &bytes));
-  void *state = malloc((size_t)bytes);
-  run_ok(from, mpm_state_save(from->stepper, state, bytes));
-  run_ok(to, mpm_state_load(to->stepper, state, bytes));
+/* Copies the state, and with it the count of removed particles. */
+static void copy_state(const world *from, world *to) {
+  world_copy(from, to);
   to->info.removed = from->info.removed;
-  free(state);
 }
 
 static const int32_t transfers[] = {MPM_FLIP, MPM_APIC, MPM_APIC_MLS};
@@ -235,7 +191,7 @@ static births all;
  * first one's states now and then. */
 START_TEST(emission_through_open_walls) {
   const int32_t dim = 1 + _i % 3, periodic = dim > 1;
-  stream s, twin;
+  world s, twin;
   memset(&all, 0, sizeof all);
   open_stream(&s, dim, periodic, transfers[_i / 3], 1);
   open_stream(&twin, dim, periodic, transfers[_i / 3], 3);
@@ -253,29 +209,27 @@ START_TEST(emission_through_open_walls) {
     if (k % 37 == 20) copy_state(&s, &twin);
     step(&s);
     step(&twin);
-    if (hash_of(&s) != hash_of(&twin)) ck_abort_msg("the twin differs after step %d", k);
+    if (world_hash(&s) != world_hash(&twin)) ck_abort_msg("the twin differs after step %d", k);
     if (k % 5 == 0)
       for (int32_t m = 0; m < SETS; ++m) here = check_set(&s, m, &all, s.info.t);
   }
   ck_assert_int_gt(s.info.removed, 300);
   ck_assert_int_gt(here, 40);
   ck_assert_int_gt(s.info.resorts, 10);
-  stream late;
-  mpm_step_info info = {.struct_size = sizeof info};
+  world late;
   open_stream(&late, dim, periodic, transfers[_i / 3], 1);
   copy_state(&s, &late);
-  run_ok(&late, mpm_stepper_info(late.stepper, &info));
-  ck_assert_int_eq(info.removed, s.info.removed);
-  close_stream(&late);
-  close_stream(&s);
-  close_stream(&twin);
+  ck_assert_int_eq(world_info(&late).removed, s.info.removed);
+  world_close(&late);
+  world_close(&s);
+  world_close(&twin);
 }
 END_TEST
 
 /* Without periodic axes particles leave through all faces, and nodal fields are looked at in each step. */
 START_TEST(open_on_all_sides) {
   const int32_t dim = 1 + _i;
-  stream s;
+  world s;
   memset(&all, 0, sizeof all);
   open_stream(&s, dim, 0, MPM_FLIP, 1);
   for (int32_t k = 0; k < 260; ++k) { /* the last ones leave blocks behind while others go through the wall */
@@ -287,13 +241,13 @@ START_TEST(open_on_all_sides) {
     step(&s);
   }
   ck_assert_int_gt(s.info.removed, 100);
-  close_stream(&s);
+  world_close(&s);
 }
 END_TEST
 
-static void remove_all(stream *s, int32_t m) {
-  int64_t *id = fetch(s, m, "id", MPM_I64, 1);
-  run_ok(s, mpm_particles_remove(s->set[m], mpm_particles_count(s->set[m]), id));
+static void remove_all(world *s, int32_t m) {
+  int64_t *id = fetch_ids(s, s->set[m]);
+  ck_ok(s, mpm_particles_remove(s->set[m], mpm_particles_count(s->set[m]), id));
   ck_assert_int_eq(mpm_particles_count(s->set[m]), 0);
   free(id);
 }
@@ -301,7 +255,7 @@ static void remove_all(stream *s, int32_t m) {
 /* A run goes on without particles, and with new ones; it then is one that had these only. */
 START_TEST(all_removed_and_anew) {
   const int32_t dim = 1 + _i;
-  stream s, fresh;
+  world s, fresh;
   double stable;
   memset(&all, 0, sizeof all);
   open_stream(&s, dim, 1, MPM_APIC, 1);
@@ -312,19 +266,19 @@ START_TEST(all_removed_and_anew) {
   remove_all(&s, 0);
   for (int32_t k = 0; k < 5; ++k) step(&s);
   remove_all(&s, 1);
-  run_refused(&s, mpm_stable_dt(s.stepper, &stable), MPM_E_STATE, "no particles");
+  ck_refused(&s, mpm_stable_dt(s.stepper, &stable), MPM_E_STATE, "no particles");
   for (int32_t k = 0; k < 5; ++k) {
-    run_ok(&s, mpm_step(s.stepper, dt, &s.info));
+    ck_ok(&s, mpm_step(s.stepper, dt, &s.info));
     ck_assert_int_eq(s.info.active_nodes, 0);
     ck_assert_double_eq(s.info.kinetic_energy, 0.0);
     ck_assert_double_eq(s.info.strain_energy, 0.0);
   }
   mpm_view v = {.struct_size = sizeof v};
-  run_ok(&s, mpm_grid_map(s.stepper, 0, "velocity", MPM_READ, &v));
+  ck_ok(&s, mpm_grid_map(s.stepper, 0, "velocity", MPM_READ, &v));
   ck_assert_int_eq(v.count, 0);
-  run_ok(&s, mpm_view_release(&v));
+  ck_ok(&s, mpm_view_release(&v));
   copy_state(&s, &s); /* the numbers that ids go on from are kept */
-  run_ok(&fresh, mpm_stepper_set_time(fresh.stepper, s.info.t, s.info.step));
+  ck_ok(&fresh, mpm_stepper_set_time(fresh.stepper, s.info.t, s.info.step));
   const births before = all;
   new_births(&s, &all, s.info.t);
   for (int32_t m = 0; m < SETS; ++m) {
@@ -334,49 +288,49 @@ START_TEST(all_removed_and_anew) {
   for (int32_t k = 0; k < 20; ++k) {
     step(&s);
     step(&fresh);
-    ck_assert_uint_eq(hash_of(&s), hash_of(&fresh));
+    ck_assert_uint_eq(world_hash(&s), world_hash(&fresh));
   }
-  close_stream(&s);
-  close_stream(&fresh);
+  world_close(&s);
+  world_close(&fresh);
 }
 END_TEST
 
 /* Ids of the host and of the library mix: numbers go on from the largest so far and are never used again. */
 START_TEST(ids_go_on) {
-  stream s, other;
+  world s, other;
   const double x[] = {0.1, 0.1}, V[] = {volume, volume};
   int64_t first;
   open_stream(&s, 1, 0, MPM_FLIP, 1);
   open_stream(&other, 1, 0, MPM_FLIP, 1);
   mpm_particles *set = s.set[0];
   const int64_t far[] = {700, 40}, again[] = {41, 700}, small[] = {2, 3};
-  run_ok(&s, mpm_particles_add(set, 2, x, NULL, V, NULL, far, &first));
+  ck_ok(&s, mpm_particles_add(set, 2, x, NULL, V, NULL, far, &first));
   ck_assert_int_eq(first, 700);
-  run_ok(&s, mpm_particles_add(set, 2, x, NULL, V, NULL, NULL, &first));
+  ck_ok(&s, mpm_particles_add(set, 2, x, NULL, V, NULL, NULL, &first));
   ck_assert_int_eq(first, 701);
-  run_ok(&s, mpm_step(s.stepper, dt, NULL));
-  run_refused(&s, mpm_particles_add(set, 2, x, NULL, V, NULL, again, NULL), MPM_E_ARG, "id 700 is in use");
+  ck_ok(&s, mpm_step(s.stepper, dt, NULL));
+  ck_refused(&s, mpm_particles_add(set, 2, x, NULL, V, NULL, again, NULL), MPM_E_ARG, "id 700 is in use");
   ck_assert_int_eq(mpm_particles_count(set), 4);
   remove_all(&s, 0);
-  run_ok(&s, mpm_step(s.stepper, dt, NULL));
+  ck_ok(&s, mpm_step(s.stepper, dt, NULL));
   copy_state(&s, &other);
   for (int32_t k = 0; k < 2; ++k) {
-    stream *at = k ? &other : &s;
-    run_ok(at, mpm_particles_add(at->set[0], 2, x, NULL, V, NULL, NULL, &first));
+    world *at = k ? &other : &s;
+    ck_ok(at, mpm_particles_add(at->set[0], 2, x, NULL, V, NULL, NULL, &first));
     ck_assert_int_eq(first, 703);
-    run_ok(at,
-           mpm_particles_add(at->set[0], 2, x, NULL, V, NULL, small, &first)); /* free, and the host's own */
+    ck_ok(at,
+          mpm_particles_add(at->set[0], 2, x, NULL, V, NULL, small, &first)); /* free, and the host's own */
     ck_assert_int_eq(first, 2);
-    run_ok(at, mpm_particles_add(at->set[0], 1, x, NULL, V, NULL, NULL, &first));
+    ck_ok(at, mpm_particles_add(at->set[0], 1, x, NULL, V, NULL, NULL, &first));
     ck_assert_int_eq(first, 705);
-    run_ok(at,
-           mpm_particles_add(at->set[1], 1, x, NULL, V, NULL, NULL, &first)); /* each set counts for itself */
+    ck_ok(at,
+          mpm_particles_add(at->set[1], 1, x, NULL, V, NULL, NULL, &first)); /* each set counts for itself */
     ck_assert_int_eq(first, 0);
-    run_ok(at, mpm_step(at->stepper, dt, NULL));
+    ck_ok(at, mpm_step(at->stepper, dt, NULL));
   }
-  ck_assert_uint_eq(hash_of(&s), hash_of(&other));
-  close_stream(&s);
-  close_stream(&other);
+  ck_assert_uint_eq(world_hash(&s), world_hash(&other));
+  world_close(&s);
+  world_close(&other);
 }
 END_TEST
 
@@ -387,57 +341,57 @@ static mpm_status refuse_late(void *user, const mpm_particle_batch *b, double *a
 
 /* A step that fails, or that the host aborts, removes nothing; views and parts of a step bar both ways. */
 START_TEST(only_what_is_committed) {
-  stream s;
+  world s;
   double last = 1e9;
   memset(&all, 0, sizeof all);
   open_stream(&s, 2, 1, MPM_FLIP, 1);
   new_births(&s, &all, 0.0);
   for (int32_t m = 0; m < SETS; ++m) emit(&s, m, all.list[m], PER_EMISSION, 0);
-  run_ok(&s, mpm_stepper_set_progress(s.stepper, NULL, NULL));
-  run_ok(&s, mpm_stepper_set_force(s.stepper, refuse_late, &last));
+  ck_ok(&s, mpm_stepper_set_progress(s.stepper, NULL, NULL));
+  ck_ok(&s, mpm_stepper_set_force(s.stepper, refuse_late, &last));
   int64_t left = 0;
   for (int32_t k = 0; k < 300 && left < 4; ++k) {
-    const uint64_t hash = hash_of(&s);
+    const uint64_t hash = world_hash(&s);
     const int64_t removed = s.info.removed;
-    run_ok(&s, mpm_step_begin(s.stepper, dt));
+    ck_ok(&s, mpm_step_begin(s.stepper, dt));
     const double x[] = {0.0, 0.0};
     const int64_t id = all.list[0][0].id;
-    run_refused(&s, mpm_particles_add(s.set[0], 1, x, NULL, &volume, NULL, NULL, NULL), MPM_E_STATE, "step");
-    run_refused(&s, mpm_particles_remove(s.set[0], 1, &id), MPM_E_STATE, "step");
-    run_ok(&s, mpm_step_grid(s.stepper));
-    run_ok(&s, mpm_step_abort(s.stepper));
-    ck_assert_uint_eq(hash_of(&s), hash);
+    ck_refused(&s, mpm_particles_add(s.set[0], 1, x, NULL, &volume, NULL, NULL, NULL), MPM_E_STATE, "step");
+    ck_refused(&s, mpm_particles_remove(s.set[0], 1, &id), MPM_E_STATE, "step");
+    ck_ok(&s, mpm_step_grid(s.stepper));
+    ck_ok(&s, mpm_step_abort(s.stepper));
+    ck_assert_uint_eq(world_hash(&s), hash);
     mpm_view v = {.struct_size = sizeof v};
-    run_ok(&s, mpm_particles_map(s.set[0], "velocity", MPM_READ, &v));
-    run_refused(&s, mpm_particles_add(s.set[0], 1, x, NULL, &volume, NULL, NULL, NULL), MPM_E_STATE, "views");
-    run_refused(&s, mpm_step(s.stepper, dt, NULL), MPM_E_STATE, "mapped");
-    run_ok(&s, mpm_view_release(&v));
+    ck_ok(&s, mpm_particles_map(s.set[0], "velocity", MPM_READ, &v));
+    ck_refused(&s, mpm_particles_add(s.set[0], 1, x, NULL, &volume, NULL, NULL, NULL), MPM_E_STATE, "views");
+    ck_refused(&s, mpm_step(s.stepper, dt, NULL), MPM_E_STATE, "mapped");
+    ck_ok(&s, mpm_view_release(&v));
     last = -1.0;
-    run_refused(&s, mpm_step(s.stepper, dt, &s.info), MPM_E_CALLBACK, "-3");
+    ck_refused(&s, mpm_step(s.stepper, dt, &s.info), MPM_E_CALLBACK, "-3");
     ck_assert_int_eq(s.info.removed, removed);
-    ck_assert_uint_eq(hash_of(&s), hash);
+    ck_assert_uint_eq(world_hash(&s), hash);
     last = 1e9;
     step(&s);
     left += s.info.removed - removed;
   }
   ck_assert_int_ge(left, 4);
-  close_stream(&s);
+  world_close(&s);
 }
 END_TEST
 
 /* Periods are counted whichever way and however many in one step,
  * from where particles were added, and over saving. */
 START_TEST(images) {
-  stream s, other;
+  world s, other;
   open_stream(&s, 2, 1, MPM_FLIP, 1);
   open_stream(&other, 2, 1, MPM_FLIP, 1);
   const double y = low + 0.31 * period[1];
   const double x[] = {0.0, 0.7, y + 3.0 * period[1], y - 2.0 * period[1]};
   const double v[] = {0.0, 0.0, 2.6 * period[1] / dt, -1.7 * period[1] / dt}, V[] = {volume, volume};
-  run_ok(&s, mpm_particles_add(s.set[0], 2, x, v, V, NULL, NULL, NULL));
+  ck_ok(&s, mpm_particles_add(s.set[0], 2, x, v, V, NULL, NULL, NULL));
   for (int32_t k = 0; k <= 12; ++k) {
-    int64_t *image = fetch(&s, 0, "image", MPM_I64, 2);
-    double *at = fetch(&s, 0, "position", MPM_F64, 2);
+    int64_t *image = fetch_as(&s, s.set[0], "image", MPM_I64, 2);
+    double *at = fetch_as(&s, s.set[0], "position", MPM_F64, 2);
     for (int32_t p = 0; p < 2; ++p) {
       const double periods = (p ? -2.0 : 3.0) + 0.31 + (p ? -1.7 : 2.6) * k;
       ck_assert_int_eq(image[2 + p], (int64_t)floor(periods));
@@ -447,25 +401,24 @@ START_TEST(images) {
     free(image), free(at);
     if (k == 6) {
       copy_state(&s, &other);
-      ck_assert_uint_eq(hash_of(&s), hash_of(&other));
+      ck_assert_uint_eq(world_hash(&s), world_hash(&other));
       copy_state(&other, &s);
     }
-    run_ok(&s, mpm_step(s.stepper, dt, NULL));
+    ck_ok(&s, mpm_step(s.stepper, dt, NULL));
   }
-  close_stream(&s);
-  close_stream(&other);
+  world_close(&s);
+  world_close(&other);
 }
 END_TEST
 
 /* Reference positions start where particles are added, periods included. */
 START_TEST(reference_positions) {
-  stream s;
+  world s;
   memset(&all, 0, sizeof all);
   open_stream(&s, 3, 1, MPM_FLIP, 1);
-  mpm_stepper_desc d;
-  run_ok(&s, mpm_stepper_desc_init(&d, sizeof d));
+  mpm_stepper_desc d = stepper_desc();
   d.reference_positions = 1;
-  run_ok(&s, mpm_stepper_configure(s.stepper, &d));
+  ck_ok(&s, mpm_stepper_configure(s.stepper, &d));
   for (int32_t k = 0; k < 60; ++k) {
     if (k % 6 == 0) {
       const births before = all;
@@ -480,10 +433,10 @@ START_TEST(reference_positions) {
       const birth *b = &all.list[m][i];
       double x[3];
       if (!stays(b, s.info.t)) continue;
-      run_ok(&s, mpm_particles_get(s.set[m], "reference_position", MPM_F64, 3, 1, &b->id, x));
+      ck_ok(&s, mpm_particles_get(s.set[m], "reference_position", MPM_F64, 3, 1, &b->id, x));
       for (int32_t k = 0; k < 3; ++k) ck_assert_double_eq_tol(x[k], b->x[k], 1e-14);
     }
-  close_stream(&s);
+  world_close(&s);
 }
 END_TEST
 

@@ -2,12 +2,12 @@
  * pool, and give what they give alone. */
 #include <pthread.h>
 
-#include "run_support.h"
+#include "body.h"
 
 enum { RUNS = 6, STEPS = 20 };
 
 typedef struct job {
-  run_options options;
+  world_desc desc;
   uint64_t hash;
   int32_t failed;
 } job;
@@ -15,18 +15,13 @@ typedef struct job {
 /* Check's macros may not be used beside the main thread. */
 static void *tell(void *argument) {
   job *j = argument;
-  run r;
-  memset(&r, 0, sizeof r);
-  r.options = j->options;
-  j->failed = run_try_open(&r) != MPM_OK;
-  for (int32_t i = 0; i < STEPS && !j->failed; ++i) j->failed = mpm_step(r.stepper, RUN_DT, NULL) != MPM_OK;
+  world r = {.desc = j->desc};
+  j->failed = world_try_open(&r) != MPM_OK;
+  for (int32_t i = 0; i < STEPS && !j->failed; ++i) j->failed = mpm_step(r.stepper, BODY_DT, NULL) != MPM_OK;
   /* what is refused must not disturb the others */
   j->failed |= mpm_step(r.stepper, -1.0, NULL) != MPM_E_ARG || !strstr(mpm_last_error(r.context), "-1");
   j->failed |= mpm_state_hash(r.stepper, &j->hash) != MPM_OK;
-  j->failed |= mpm_stepper_destroy(r.stepper) || mpm_particles_destroy(r.set[0]) ||
-               mpm_particles_destroy(r.set[1]) || mpm_material_destroy(r.material[0]) ||
-               mpm_material_destroy(r.material[1]) || mpm_grid_destroy(r.grid) ||
-               mpm_context_destroy(r.context);
+  j->failed |= world_try_close(&r) != MPM_OK;
   return NULL;
 }
 
@@ -34,8 +29,9 @@ START_TEST(several_contexts_at_once) {
   job alone[RUNS], beside[RUNS];
   pthread_t thread[RUNS];
   for (int32_t i = 0; i < RUNS; ++i) {
-    alone[i] = (job){.options = {.dim = 1 + i % 3, .concurrency = 1 + i % 2, .periodic = i / 3}};
-    run_use(&alone[i].options, &run_methods[i]);
+    const body_desc o = {
+        .dim = 1 + i % 3, .concurrency = 1 + i % 2, .periodic = i / 3, .method = *broad_methods[i]};
+    alone[i] = (job){.desc = world_of_body(&o)};
     beside[i] = alone[i];
     tell(&alone[i]);
     ck_assert_int_eq(alone[i].failed, 0);

@@ -1,25 +1,23 @@
 /* Views of a set: memory lent, given back, and what the host may have done to it meanwhile. */
 #include "particles/values.h"
-#include "set_fixture.h"
+#include "sets.h"
 
-static fixture f;
+static world w;
 
 static void open_set(void) {
-  fixture_open(&f, 2, "linear_elastic");
-  fixture_add(&f, 20, NULL);
+  sets_open(&w, 2, "linear_elastic", 20);
 }
 
 static void close_set(void) {
-  ck_assert_int_eq(f.set->mapped, 0);
-  fixture_check_slots(&f);
-  fixture_close(&f);
+  ck_assert_int_eq(w.set[0]->mapped, 0);
+  sets_close(&w);
 }
 
 static mpm_view mapped(const char *field, int32_t access) {
   mpm_view view;
   memset(&view, 0xff, sizeof view);
   view.struct_size = sizeof view;
-  if (mpm_particles_map(f.set, field, access, &view)) ck_abort_msg("%s", mpm_last_error(f.context));
+  ck_ok(&w, mpm_particles_map(w.set[0], field, access, &view));
   return view;
 }
 
@@ -32,12 +30,12 @@ START_TEST(shows_the_storage) {
   ck_assert_int_eq(F.access, MPM_READ);
   ck_assert_int_eq(F.count, 32);
   ck_assert_int_eq(F.item_stride, 1);
-  ck_assert_int_eq(F.component_stride, f.set->ld);
-  ck_assert_ptr_eq(F.data, f.set->field[MPMI_F].data[0]);
+  ck_assert_int_eq(F.component_stride, w.set[0]->ld);
+  ck_assert_ptr_eq(F.data, w.set[0]->field[MPMI_F].data[0]);
   ck_assert_ptr_nonnull(F.owner);
   for (int64_t i = 0; i < 32; ++i) ck_assert_int_eq(((int64_t *)id.data)[i], i < 20 ? i : -1);
-  ck_ok(mpm_view_release(&F));
-  ck_ok(mpm_view_release(&id));
+  ck_ok(&w, mpm_view_release(&F));
+  ck_ok(&w, mpm_view_release(&id));
   ck_assert_ptr_null(F.data);
   ck_assert_ptr_null(F.owner);
 }
@@ -46,8 +44,8 @@ END_TEST
 START_TEST(bad_requests) {
   mpm_view view = {.struct_size = sizeof view}, small = {.struct_size = 48};
   ck_assert_int_eq(mpm_particles_map(NULL, "mass", MPM_READ, &view), MPM_E_ARG);
-  ck_assert_int_eq(mpm_particles_map((mpm_particles *)f.grid, "mass", MPM_READ, &view), MPM_E_ARG);
-#define REFUSED(status, text, ...) ck_refused(f.context, mpm_particles_map(f.set, __VA_ARGS__), status, text)
+  ck_assert_int_eq(mpm_particles_map((mpm_particles *)w.grid, "mass", MPM_READ, &view), MPM_E_ARG);
+#define REFUSED(status, text, ...) ck_refused(&w, mpm_particles_map(w.set[0], __VA_ARGS__), status, text)
   REFUSED(MPM_E_ARG, "view is NULL", "mass", MPM_READ, NULL);
   REFUSED(MPM_E_ARG, "struct_size is 48", "mass", MPM_READ, &small);
   REFUSED(MPM_E_ARG, "access is 0", "mass", 0, &view);
@@ -61,19 +59,17 @@ START_TEST(bad_requests) {
   REFUSED(MPM_E_STATE, "reference_positions = 1", "reference_position", MPM_READ, &view);
 #undef REFUSED
   ck_assert_ptr_null(view.data);
-  ck_assert_int_eq(f.set->mapped, 0);
+  ck_assert_int_eq(w.set[0]->mapped, 0);
 }
 END_TEST
 
 START_TEST(stress_that_follows_from_F) {
-  fixture_close(&f);
-  fixture_open(&f, 2, "neo_hookean");
-  fixture_add(&f, 20, NULL);
+  sets_open(&w, 2, "neo_hookean", 20);
   mpm_view view = {.struct_size = sizeof view};
-  ck_refused(f.context, mpm_particles_map(f.set, "stress", MPM_WRITE, &view), MPM_E_UNSUPPORTED,
+  ck_refused(&w, mpm_particles_map(w.set[0], "stress", MPM_WRITE, &view), MPM_E_UNSUPPORTED,
              "deformation_gradient");
   view = mapped("stress", MPM_READ);
-  ck_ok(mpm_view_release(&view));
+  ck_ok(&w, mpm_view_release(&view));
 }
 END_TEST
 
@@ -84,21 +80,21 @@ START_TEST(released_once) {
   mpm_view moved = view;
   moved.data = (double *)moved.data + 1;
   ck_assert_int_eq(mpm_view_release(&moved), MPM_E_STATE);
-  ck_assert_int_eq(f.set->mapped, 1);
-  ck_ok(mpm_view_release(&view));
+  ck_assert_int_eq(w.set[0]->mapped, 1);
+  ck_ok(&w, mpm_view_release(&view));
   ck_assert_int_eq(mpm_view_release(&view), MPM_E_STATE);
   ck_assert_int_eq(mpm_view_release(&copy), MPM_E_STATE);
-  ck_assert_int_eq(f.set->mapped, 0);
+  ck_assert_int_eq(w.set[0]->mapped, 0);
 }
 END_TEST
 
 START_TEST(as_many_as_there_are_records) {
   mpm_view view[MPMI_MAX_VIEWS], one_more = {.struct_size = sizeof one_more};
   for (int i = 0; i < MPMI_MAX_VIEWS; ++i) view[i] = mapped("velocity", i % 2 ? MPM_READ : MPM_WRITE);
-  ck_refused(f.context, mpm_particles_map(f.set, "velocity", MPM_READ, &one_more), MPM_E_STATE, "64 views");
-  ck_ok(mpm_view_release(&view[17]));
+  ck_refused(&w, mpm_particles_map(w.set[0], "velocity", MPM_READ, &one_more), MPM_E_STATE, "64 views");
+  ck_ok(&w, mpm_view_release(&view[17]));
   view[17] = mapped("mass", MPM_READ);
-  for (int i = 0; i < MPMI_MAX_VIEWS; ++i) ck_ok(mpm_view_release(&view[i]));
+  for (int i = 0; i < MPMI_MAX_VIEWS; ++i) ck_ok(&w, mpm_view_release(&view[i]));
 }
 END_TEST
 
@@ -106,21 +102,21 @@ START_TEST(nothing_moves_meanwhile) {
   double x[] = {0, 0}, one[] = {1};
   int64_t id = 3;
   mpm_view view = mapped("mass", MPM_READ);
-  fixture_counts was = fixture_take(&f);
-#define REFUSED(call) ck_refused(f.context, call, MPM_E_STATE, "1 views of the set are out")
-  REFUSED(mpm_particles_add(f.set, 1, x, NULL, one, NULL, NULL, NULL));
-  REFUSED(mpm_particles_fill_box(f.set, x, one, (int32_t[]){1, 1}, NULL, NULL));
-  REFUSED(mpm_particles_fill_ball(f.set, x, 1.0, (int32_t[]){1, 1}, NULL, NULL));
-  REFUSED(mpm_particles_remove(f.set, 1, &id));
-  REFUSED(mpm_particles_add_field(f.set, "heat", MPM_F64, 1));
-  REFUSED(mpm_particles_set(f.set, "mass", MPM_F64, 1, 1, &id, one));
-  REFUSED(mpm_particles_set_all(f.set, "mass", MPM_F64, 1, one));
-  REFUSED(mpm_particles_destroy(f.set));
+  sets_counts was = sets_take(&w);
+#define REFUSED(call) ck_refused(&w, call, MPM_E_STATE, "1 views of the set are out")
+  REFUSED(mpm_particles_add(w.set[0], 1, x, NULL, one, NULL, NULL, NULL));
+  REFUSED(mpm_particles_fill_box(w.set[0], x, one, (int32_t[]){1, 1}, NULL, NULL));
+  REFUSED(mpm_particles_fill_ball(w.set[0], x, 1.0, (int32_t[]){1, 1}, NULL, NULL));
+  REFUSED(mpm_particles_remove(w.set[0], 1, &id));
+  REFUSED(mpm_particles_add_field(w.set[0], "heat", MPM_F64, 1));
+  REFUSED(mpm_particles_set(w.set[0], "mass", MPM_F64, 1, 1, &id, one));
+  REFUSED(mpm_particles_set_all(w.set[0], "mass", MPM_F64, 1, one));
+  REFUSED(mpm_particles_destroy(w.set[0]));
 #undef REFUSED
-  fixture_unchanged(&f, was);
-  ck_assert_double_eq(fixture_get1(&f, "volume", 1, 0, 3), 0.5); /* reading is fine */
-  ck_assert_ptr_eq(view.data, f.set->field[MPMI_MASS].data[0]);
-  ck_ok(mpm_view_release(&view));
+  sets_unchanged(&w, was);
+  ck_assert_double_eq(sets_get(&w, "volume", 1, 0, 3), 0.5); /* reading is fine */
+  ck_assert_ptr_eq(view.data, w.set[0]->field[MPMI_MASS].data[0]);
+  ck_ok(&w, mpm_view_release(&view));
 }
 END_TEST
 
@@ -128,25 +124,23 @@ START_TEST(optional_fields_appear) {
   static const char *const optional[] = {"acceleration", "size",          "velocity_gradient",
                                          "prescribed",   "applied_force", "image"};
   for (int i = 0; i < 6; ++i) {
-    const mpmi_field *field = &f.set->field[mpmi_find_field(f.set, optional[i])];
+    const mpmi_field *field = &w.set[0]->field[mpmi_find_field(w.set[0], optional[i])];
     ck_assert_int_eq(field->present, 0);
     mpm_view view = mapped(optional[i], MPM_READ);
     ck_assert_int_eq(field->present, 1);
     ck_assert_ptr_eq(view.data, field->data[0]);
     ck_assert_int_eq(field->data[1] != NULL, field->two_copies);
-    ck_ok(mpm_view_release(&view));
+    ck_ok(&w, mpm_view_release(&view));
   }
-  ck_assert_double_eq(fixture_get1(&f, "size", 2, 1, 7), 1.0);
-  f.fail_at = f.calls + 1;
-  mpmi_field_make_absent(f.set, MPMI_L);
+  ck_assert_double_eq(sets_get(&w, "size", 2, 1, 7), 1.0);
+  w.memory.fail_at = w.memory.calls + 1;
+  mpmi_field_make_absent(w.set[0], MPMI_L);
   mpm_view view = {.struct_size = sizeof view};
-  ck_refused(f.context, mpm_particles_map(f.set, "velocity_gradient", MPM_READ, &view), MPM_E_NOMEM,
-             "memory");
-  f.fail_at = f.calls + 2; /* its second copy */
-  ck_refused(f.context, mpm_particles_map(f.set, "velocity_gradient", MPM_READ, &view), MPM_E_NOMEM,
-             "memory");
-  ck_assert_int_eq(f.set->field[MPMI_L].present, 0);
-  ck_assert_int_eq(f.set->mapped, 0);
+  ck_refused(&w, mpm_particles_map(w.set[0], "velocity_gradient", MPM_READ, &view), MPM_E_NOMEM, "memory");
+  w.memory.fail_at = w.memory.calls + 2; /* its second copy */
+  ck_refused(&w, mpm_particles_map(w.set[0], "velocity_gradient", MPM_READ, &view), MPM_E_NOMEM, "memory");
+  ck_assert_int_eq(w.set[0]->field[MPMI_L].present, 0);
+  ck_assert_int_eq(w.set[0]->mapped, 0);
 }
 END_TEST
 
@@ -161,25 +155,25 @@ START_TEST(written_values_count) {
               {"deformation_gradient", MPMI_DIRTY_STRESS | MPMI_DIRTY_SUMS},
               {"initial_volume", MPMI_DIRTY_STRESS | MPMI_DIRTY_SUMS}};
   for (int i = 0; i < 6; ++i) {
-    f.set->dirty = 0;
+    w.set[0]->dirty = 0;
     mpm_view view = mapped(list[i].field, MPM_READ);
-    ck_ok(mpm_view_release(&view));
-    ck_assert_uint_eq(f.set->dirty, 0);
+    ck_ok(&w, mpm_view_release(&view));
+    ck_assert_uint_eq(w.set[0]->dirty, 0);
     view = mapped(list[i].field, MPM_READ | MPM_WRITE);
     double *value = view.data;
     /* Every slot, the inert ones too; F stays invertible. */
     for (int32_t c = 0; c < view.components; ++c)
       for (int64_t s = 0; s < view.count; ++s)
         value[c * view.component_stride + s] = 0.5 + (c == 0 || c == 3 || c == 4);
-    ck_ok(mpm_view_release(&view));
-    ck_assert_uint_eq(f.set->dirty, list[i].dirty);
-    fixture_check_slots(&f);
-    ck_assert_double_eq(fixture_get1(&f, list[i].field,
-                                     f.set->field[mpmi_find_field(f.set, list[i].field)].full_components, 0,
-                                     5),
+    ck_ok(&w, mpm_view_release(&view));
+    ck_assert_uint_eq(w.set[0]->dirty, list[i].dirty);
+    sets_check_slots(&w);
+    ck_assert_double_eq(sets_get(&w, list[i].field,
+                                 w.set[0]->field[mpmi_find_field(w.set[0], list[i].field)].full_components, 0,
+                                 5),
                         1.5);
   }
-  ck_assert_double_eq(f.set->mass_max, 1.5);
+  ck_assert_double_eq(w.set[0]->mass_max, 1.5);
 }
 END_TEST
 
@@ -195,29 +189,29 @@ START_TEST(bad_values_bar_the_set) {
               {"deformation_gradient", "particle with id 6 has determinant -1", -1.0, 1.0},
               {"stress", "component 0, is inf", INFINITE, 0.0}};
   for (int i = 0; i < 7; ++i) {
-    int32_t field = mpmi_find_field(f.set, list[i].field), n = f.set->field[field].full_components;
+    int32_t field = mpmi_find_field(w.set[0], list[i].field), n = w.set[0]->field[field].full_components;
     mpm_view view = mapped(list[i].field, MPM_WRITE);
     ((double *)view.data)[6] = list[i].bad;
-    ck_refused(f.context, mpm_view_release(&view), MPM_E_ARG, list[i].text);
+    ck_refused(&w, mpm_view_release(&view), MPM_E_ARG, list[i].text);
     ck_assert_ptr_null(view.data);
-    ck_assert_int_eq(f.set->mapped, 0);
-    ck_assert_uint_eq(f.set->suspect, 1u << field);
-    ck_refused(f.context, mpmi_particles_check_suspects(f.set), MPM_E_ARG, list[i].text);
-    ck_assert_uint_eq(f.set->suspect, 1u << field);
+    ck_assert_int_eq(w.set[0]->mapped, 0);
+    ck_assert_uint_eq(w.set[0]->suspect, 1u << field);
+    ck_refused(&w, mpmi_particles_check_suspects(w.set[0]), MPM_E_ARG, list[i].text);
+    ck_assert_uint_eq(w.set[0]->suspect, 1u << field);
     if (i % 2) { /* repaired by a copy, or by another view */
       double value[9];
-      ck_ok(mpm_particles_get(f.set, list[i].field, MPM_F64, n, 1, (int64_t[]){6}, value));
+      ck_ok(&w, mpm_particles_get(w.set[0], list[i].field, MPM_F64, n, 1, (int64_t[]){6}, value));
       value[0] = list[i].good;
-      ck_ok(mpm_particles_set(f.set, list[i].field, MPM_F64, n, 1, (int64_t[]){6}, value));
-      ck_ok(mpmi_particles_check_suspects(f.set));
+      ck_ok(&w, mpm_particles_set(w.set[0], list[i].field, MPM_F64, n, 1, (int64_t[]){6}, value));
+      ck_ok(&w, mpmi_particles_check_suspects(w.set[0]));
     } else {
       view = mapped(list[i].field, MPM_WRITE);
       ((double *)view.data)[6] = list[i].good;
-      ck_ok(mpm_view_release(&view));
+      ck_ok(&w, mpm_view_release(&view));
     }
-    ck_assert_uint_eq(f.set->suspect, 0);
-    ck_ok(mpmi_particles_check_suspects(f.set));
-    ck_assert_double_le(f.set->mass_max, 1e4);
+    ck_assert_uint_eq(w.set[0]->suspect, 0);
+    ck_ok(&w, mpmi_particles_check_suspects(w.set[0]));
+    ck_assert_double_le(w.set[0]->mass_max, 1e4);
   }
 }
 END_TEST
@@ -227,101 +221,97 @@ START_TEST(nothing_is_computed_from_bad_values) {
   ((double *)view.data)[6] = NOT_A_NUMBER;
   ck_assert_int_eq(mpm_view_release(&view), MPM_E_ARG);
   double volume;
-  ck_refused(f.context, mpm_particles_get(f.set, "volume", MPM_F64, 1, 1, (int64_t[]){3}, &volume), MPM_E_ARG,
+  ck_refused(&w, mpm_particles_get(w.set[0], "volume", MPM_F64, 1, 1, (int64_t[]){3}, &volume), MPM_E_ARG,
              "id 6");
   view = (mpm_view){.struct_size = sizeof view};
-  ck_refused(f.context, mpm_particles_map(f.set, "stress", MPM_READ, &view), MPM_E_ARG, "id 6");
-  ck_assert_int_eq(f.set->mapped, 0);
+  ck_refused(&w, mpm_particles_map(w.set[0], "stress", MPM_READ, &view), MPM_E_ARG, "id 6");
+  ck_assert_int_eq(w.set[0]->mapped, 0);
   double identity[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  ck_ok(mpm_particles_set(f.set, "deformation_gradient", MPM_F64, 9, 1, (int64_t[]){6}, identity));
-  ck_assert_double_eq(fixture_get1(&f, "volume", 1, 0, 3), 0.5);
+  ck_ok(&w, mpm_particles_set(w.set[0], "deformation_gradient", MPM_F64, 9, 1, (int64_t[]){6}, identity));
+  ck_assert_double_eq(sets_get(&w, "volume", 1, 0, 3), 0.5);
 }
 END_TEST
 
 START_TEST(the_hosts_fields) {
-  ck_ok(mpm_particles_add_field(f.set, "heat", MPM_F64, 1));
-  ck_ok(mpm_particles_add_field(f.set, "label", MPM_U8, 2));
+  ck_ok(&w, mpm_particles_add_field(w.set[0], "heat", MPM_F64, 1));
+  ck_ok(&w, mpm_particles_add_field(w.set[0], "label", MPM_U8, 2));
   mpm_view view = mapped("label", MPM_WRITE);
   ck_assert_int_eq(view.type, MPM_U8);
   for (int64_t s = 0; s < view.count; ++s)
     for (int64_t c = 0; c < 2; ++c)
       ((uint8_t *)view.data)[c * view.component_stride + s] = (uint8_t)(s + 100 * c);
-  ck_ok(mpm_view_release(&view));
+  ck_ok(&w, mpm_view_release(&view));
   uint8_t label[2];
-  ck_ok(mpm_particles_get(f.set, "label", MPM_U8, 2, 1, (int64_t[]){9}, label));
+  ck_ok(&w, mpm_particles_get(w.set[0], "label", MPM_U8, 2, 1, (int64_t[]){9}, label));
   ck_assert_int_eq(label[0], 9);
   ck_assert_int_eq(label[1], 109);
   view = mapped("heat", MPM_WRITE);
   ((double *)view.data)[2] = NOT_A_NUMBER;
-  ck_refused(f.context, mpm_view_release(&view), MPM_E_ARG, "heat of the particle with id 2 is nan");
-  ck_assert_uint_eq(f.set->suspect, 0); /* nothing of the step reads it */
+  ck_refused(&w, mpm_view_release(&view), MPM_E_ARG, "heat of the particle with id 2 is nan");
+  ck_assert_uint_eq(w.set[0]->suspect, 0); /* nothing of the step reads it */
 }
 END_TEST
 
 START_TEST(positions_are_wrapped) {
-  mpm_grid_desc grid = fixture_grid(2);
+  mpm_grid_desc grid = sets_grid(2);
   grid.periodic[0] = 1; /* [-1, 4] */
-  fixture_close(&f);
-  fixture_open_on(&f, &grid, "linear_elastic");
-  fixture_add(&f, 20, NULL);
+  sets_open_on(&w, &grid, "linear_elastic", 20);
   mpm_view view = mapped("position", MPM_WRITE);
   ((double *)view.data)[4] = 11.5;
-  ck_ok(mpm_view_release(&view));
-  ck_assert_double_eq(fixture_get1(&f, "position", 2, 0, 4), 1.5);
+  ck_ok(&w, mpm_view_release(&view));
+  ck_assert_double_eq(sets_get(&w, "position", 2, 0, 4), 1.5);
   int64_t image[2];
-  ck_ok(mpm_particles_get(f.set, "image", MPM_I64, 2, 1, (int64_t[]){4}, image));
+  ck_ok(&w, mpm_particles_get(w.set[0], "image", MPM_I64, 2, 1, (int64_t[]){4}, image));
   ck_assert_int_eq(image[0], 2);
   ck_assert_int_eq(image[1], 0);
 }
 END_TEST
 
 START_TEST(an_empty_set) {
-  ck_ok(mpm_particles_destroy(f.set));
-  ck_ok(mpm_particles_create(f.context, f.grid, f.material, &f.set));
+  ck_ok(&w, mpm_particles_destroy(w.set[0]));
+  ck_ok(&w, mpm_particles_create(w.context, w.grid, w.material[0], &w.set[0]));
   mpm_view view = mapped("position", MPM_READ | MPM_WRITE);
   ck_assert_int_eq(view.count, 0);
-  ck_ok(mpm_view_release(&view));
+  ck_ok(&w, mpm_view_release(&view));
   view = mapped("size", MPM_READ);
-  ck_ok(mpm_view_release(&view));
-  ck_ok(mpm_particles_get(f.set, "size", MPM_F64, 2, 0, NULL, NULL));
-  ck_ok(mpm_particles_set(f.set, "size", MPM_F64, 2, 0, NULL, NULL));
-  ck_ok(mpm_particles_set_all(f.set, "size", MPM_F64, 2, (double[]){1, 2}));
-  fixture_add(&f, 3, NULL);
-  ck_assert_double_eq(fixture_get1(&f, "size", 2, 1, 1), 0.5);
+  ck_ok(&w, mpm_view_release(&view));
+  ck_ok(&w, mpm_particles_get(w.set[0], "size", MPM_F64, 2, 0, NULL, NULL));
+  ck_ok(&w, mpm_particles_set(w.set[0], "size", MPM_F64, 2, 0, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(w.set[0], "size", MPM_F64, 2, (double[]){1, 2}));
+  sets_add(&w, 3, NULL);
+  ck_assert_double_eq(sets_get(&w, "size", 2, 1, 1), 0.5);
 }
 END_TEST
 
 /* Between mpm_step_begin() and its end the set is read, not changed. */
 START_TEST(staged_steps) {
-  mpm_stepper_desc desc;
   mpm_stepper *stepper;
   double one[] = {1}, x[] = {0, 0};
   int64_t id = 3;
-  ck_ok(mpm_stepper_desc_init(&desc, sizeof desc));
-  ck_ok(mpm_stepper_create(f.context, f.grid, &desc, &stepper));
-  ck_ok(mpm_stepper_add(stepper, f.set));
-  ck_ok(mpm_particles_set_all(f.set, "mass", MPM_F64, 1, one));
-  if (mpm_step_begin(stepper, 1e-6)) ck_abort_msg("%s", mpm_last_error(f.context));
+  ck_ok(&w, mpm_stepper_create(w.context, w.grid, NULL, &stepper));
+  ck_ok(&w, mpm_stepper_add(stepper, w.set[0]));
+  ck_ok(&w, mpm_particles_set_all(w.set[0], "mass", MPM_F64, 1, one));
+  ck_ok(&w, mpm_step_begin(stepper, 1e-6));
   mpm_view view = {.struct_size = sizeof view};
-#define REFUSED(call) ck_refused(f.context, call, MPM_E_STATE, "staged step")
-  REFUSED(mpm_particles_add(f.set, 1, x, NULL, one, NULL, NULL, NULL));
-  REFUSED(mpm_particles_fill_box(f.set, x, one, (int32_t[]){1, 1}, NULL, NULL));
-  REFUSED(mpm_particles_fill_ball(f.set, x, 1.0, (int32_t[]){1, 1}, NULL, NULL));
-  REFUSED(mpm_particles_remove(f.set, 1, &id));
-  REFUSED(mpm_particles_add_field(f.set, "heat", MPM_F64, 1));
-  REFUSED(mpm_particles_set(f.set, "mass", MPM_F64, 1, 1, &id, one));
-  REFUSED(mpm_particles_set_all(f.set, "mass", MPM_F64, 1, one));
-  REFUSED(mpm_particles_map(f.set, "mass", MPM_WRITE, &view));
-  REFUSED(mpm_particles_map(f.set, "applied_force", MPM_READ, &view));
+#define REFUSED(call) ck_refused(&w, call, MPM_E_STATE, "staged step")
+  REFUSED(mpm_particles_add(w.set[0], 1, x, NULL, one, NULL, NULL, NULL));
+  REFUSED(mpm_particles_fill_box(w.set[0], x, one, (int32_t[]){1, 1}, NULL, NULL));
+  REFUSED(mpm_particles_fill_ball(w.set[0], x, 1.0, (int32_t[]){1, 1}, NULL, NULL));
+  REFUSED(mpm_particles_remove(w.set[0], 1, &id));
+  REFUSED(mpm_particles_add_field(w.set[0], "heat", MPM_F64, 1));
+  REFUSED(mpm_particles_set(w.set[0], "mass", MPM_F64, 1, 1, &id, one));
+  REFUSED(mpm_particles_set_all(w.set[0], "mass", MPM_F64, 1, one));
+  REFUSED(mpm_particles_map(w.set[0], "mass", MPM_WRITE, &view));
+  REFUSED(mpm_particles_map(w.set[0], "applied_force", MPM_READ, &view));
 #undef REFUSED
   view = mapped("mass", MPM_READ);
-  ck_assert_double_eq(fixture_get1(&f, "mass", 1, 0, 3), 1.0);
-  ck_ok(mpm_view_release(&view));
-  ck_ok(mpm_step_abort(stepper));
-  ck_ok(mpm_particles_set_all(f.set, "mass", MPM_F64, 1, one));
-  ck_refused(f.context, mpm_particles_destroy(f.set), MPM_E_STATE, "mpm_stepper_remove");
-  ck_ok(mpm_stepper_remove(stepper, f.set));
-  ck_ok(mpm_stepper_destroy(stepper));
+  ck_assert_double_eq(sets_get(&w, "mass", 1, 0, 3), 1.0);
+  ck_ok(&w, mpm_view_release(&view));
+  ck_ok(&w, mpm_step_abort(stepper));
+  ck_ok(&w, mpm_particles_set_all(w.set[0], "mass", MPM_F64, 1, one));
+  ck_refused(&w, mpm_particles_destroy(w.set[0]), MPM_E_STATE, "mpm_stepper_remove");
+  ck_ok(&w, mpm_stepper_remove(stepper, w.set[0]));
+  ck_ok(&w, mpm_stepper_destroy(stepper));
 }
 END_TEST
 

@@ -4,26 +4,20 @@
 enum { CLOUD = 300 };
 static const int32_t wall_kinds[3] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION};
 
-static int32_t is_affine(const method *how) {
-  return how->transfer == MPM_APIC || how->transfer == MPM_APIC_MLS;
-}
-
 /* On periodic axes a body may be moved by whole cells, also across the seam, and nothing changes; nor do the
  * averages over cells of the locking remedy. */
 START_TEST(periodic_grid_has_no_place) {
-  const wall_method chosen = wall_method_of(_i / 2), *how = &chosen;
+  const method chosen = wall_method_of(_i / 2), *how = &chosen;
   const double h = 0.125; /* a power of two: moving by cells does not round */
   for (int32_t dim = 1; dim <= 3; ++dim) {
     double *v[2], *F[2];
     for (int32_t moved = 0; moved < 2; ++moved) {
       world w;
-      world_desc desc = world_default(dim, 8, h);
-      wall_use(&desc, how);
+      world_desc desc = world_with(how, dim, 8, h);
       desc.stepper.locking_remedy = dim > 1 ? _i % 2 : MPM_LOCKING_NONE;
-      desc.E = 1e3;
+      desc.law.E = 1e3;
       for (int32_t k = 0; k < dim; ++k) desc.grid.periodic[k] = 1;
-      world_open(&w, &desc);
-      mpm_particles *set = world_add_set(&w);
+      mpm_particles *set = world_open(&w, &desc);
       dice d = {3};
       add_cloud(&w, set, &d, CLOUD, h, 0.25, 0.75, 1.0);
       double *x = fetch(&w, set, "position", dim);
@@ -48,25 +42,23 @@ END_TEST
 
 /* A block that has come to rest weighs on its wall what it weighs, at the bottom and at the side. */
 START_TEST(wall_carries_the_weight) {
-  static const method rests[5] = {{MPM_BSPLINE2, MPM_USL, MPM_FLIP, 0.5, "quadratic blend USL"},
-                                  {MPM_BSPLINE2, MPM_MUSL, MPM_FLIP, 0.5, "quadratic blend MUSL"},
-                                  {MPM_BSPLINE2, MPM_MUSL, MPM_APIC, 1.0, "quadratic APIC"},
-                                  {MPM_BSPLINE2, MPM_USL, MPM_APIC_MLS, 1.0, "quadratic MLS"},
-                                  {MPM_LINEAR, MPM_MUSL, MPM_FLIP, 0.5, "linear blend MUSL"}};
+  static const method rests[5] = {{METHOD(BSPLINE2, USL, FLIP, 0.5, "quadratic blend USL")},
+                                  {METHOD(BSPLINE2, MUSL, FLIP, 0.5, "quadratic blend MUSL")},
+                                  {METHOD(BSPLINE2, MUSL, APIC, 1.0, "quadratic APIC")},
+                                  {METHOD(BSPLINE2, USL, APIC_MLS, 1.0, "quadratic MLS")},
+                                  {METHOD(LINEAR, MUSL, FLIP, 0.5, "linear blend MUSL")}};
   const method *how = &rests[_i % 5];
-  const int32_t kind = wall_kinds[_i / 5], per_cell[2] = {2, 2};
-  const double lower[2] = {0.0, 0.0}, upper[2] = {0.4, 0.4}, dt = 1e-3;
+  const int32_t kind = wall_kinds[_i / 5];
+  const double dt = 1e-3;
   world w;
-  world_desc desc = world_default(2, 10, 0.05);
-  world_use(&desc, how);
+  world_desc desc = world_with(how, 2, 10, 0.05);
   desc.stepper.gravity[0] = -2.0;
   desc.stepper.gravity[1] = -10.0;
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill_cube(&w, set, 0.0, 0.4);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, kind, 0.0));
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, kind, 0.0));
-  const double weight[2] = {-2.0 * desc.density * 0.16, -10.0 * desc.density * 0.16};
+  const double weight[2] = {-2.0 * desc.law.density * 0.16, -10.0 * desc.law.density * 0.16};
   double impulse[2] = {0.0, 0.0}, mean[2], force[2];
   mpm_step_info begin = {.t = 0.0}, now = {.t = 0.0};
   for (int32_t i = 0; i < 4000; ++i) {
@@ -109,18 +101,15 @@ static mpm_status push(void *user, const mpm_node_batch *b, uint8_t *prescribed,
 START_TEST(prescribed_nodes_do_work) {
   const method *how = &methods[_i];
   const double h = 0.1, lower[2] = {0.0, 0.2}, upper[2] = {1.0, 0.5}, dt = 1e-4;
-  const int32_t per_cell[2] = {2, 2};
   piston move = {0.85, -0.2};
   world w;
-  world_desc desc = world_default(2, 14, h);
-  world_use(&desc, how);
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  world_desc desc = world_with(how, 2, 14, h);
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 2);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
   ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, push, &move));
   double *mass = fetch(&w, set, "mass", 1);
-  const double scale = desc.density * 0.3 * 0.2;
+  const double scale = desc.law.density * 0.3 * 0.2;
   mpm_step_info before = world_info(&w);
   for (int32_t step = 0; step < 100; ++step) {
     const mpm_step_info after = world_step(&w, dt);
@@ -146,7 +135,6 @@ START_TEST(prescribed_nodes_do_work) {
 }
 END_TEST
 
-Suite *walls_suite(void);
 Suite *walls_suite(void) {
   Suite *suite = suite_create("walls");
   TCase *tc = tcase_create("walls");

@@ -1,6 +1,6 @@
 #include "walls.h"
 
-wall_method wall_method_of(int32_t i) {
+method wall_method_of(int32_t i) {
   static const struct {
     int32_t scheme, transfer;
     double flip, damping;
@@ -9,37 +9,23 @@ wall_method wall_method_of(int32_t i) {
                        {MPM_USL, MPM_TFLIP, 0.9, 5.0},   {MPM_USL, MPM_XPIC, 1.0, 0.0},
                        {MPM_USF, MPM_APIC_MLS, 1.0, 0.0}};
   const int32_t way = i % WALL_WAYS;
-  wall_method how = {&basis_options[i / WALL_WAYS], NULL, NULL, ""};
+  const basis_option *basis = &basis_options[i / WALL_WAYS];
+  const scheme_option *scheme = NULL;
+  const transfer_option *chosen = NULL;
   int32_t transfer = ways[way].transfer;
-  if (transfer == MPM_APIC_MLS && !fits_mls(how.basis)) transfer = MPM_AFLIP;
+  if (transfer == MPM_APIC_MLS && !fits_mls(basis)) transfer = MPM_AFLIP;
   for (int32_t k = 0; k < SCHEMES; ++k)
-    if (scheme_options[k].scheme == ways[way].scheme) how.scheme = &scheme_options[k];
+    if (scheme_options[k].scheme == ways[way].scheme) scheme = &scheme_options[k];
   for (int32_t k = 0; k < TRANSFERS; ++k) {
     const transfer_option *t = &transfer_options[k];
     /* exact: these are the numbers of the table */
     if (t->transfer == transfer && !(t->flip < ways[way].flip) && !(t->flip > ways[way].flip) &&
         !(t->pic_damping < ways[way].damping) && !(t->pic_damping > ways[way].damping))
-      how.transfer = t;
+      chosen = t;
   }
-  ck_assert_ptr_nonnull(how.scheme);
-  ck_assert_ptr_nonnull(how.transfer);
-  snprintf(how.name, sizeof how.name, "%s %s %s", how.basis->name, how.scheme->name, how.transfer->name);
-  return how;
-}
-
-void wall_use_basis(mpm_grid_desc *grid, const basis_option *basis) {
-  grid->basis = basis->basis;
-  grid->boundary_basis = basis->boundary;
-  grid->smoothing = basis->smoothing;
-}
-
-void wall_use(world_desc *desc, const wall_method *how) {
-  wall_use_basis(&desc->grid, how->basis);
-  desc->stepper.scheme = how->scheme->scheme;
-  desc->stepper.transfer = how->transfer->transfer;
-  desc->stepper.flip = how->transfer->flip;
-  desc->stepper.xpic_order = how->transfer->xpic_order;
-  desc->stepper.pic_damping = how->transfer->pic_damping;
+  ck_assert_ptr_nonnull(scheme);
+  ck_assert_ptr_nonnull(chosen);
+  return method_of(basis, scheme, chosen);
 }
 
 enum { N = MPM_WALL_NONE, O = MPM_WALL_OPEN, F = MPM_WALL_FIXED, S = MPM_WALL_SLIP, C = MPM_WALL_FRICTION };

@@ -3,19 +3,10 @@
 #ifndef WALLS_H
 #define WALLS_H
 
-#include "options.h"
-#include "support.h"
+#include "world.h"
 
-typedef struct wall_method {
-  const basis_option *basis;
-  const scheme_option *scheme;
-  const transfer_option *transfer;
-  char name[64];
-} wall_method;
 enum { WALL_WAYS = 7, WALL_METHODS = BASES * WALL_WAYS };
-wall_method wall_method_of(int32_t i);
-void wall_use(world_desc *desc, const wall_method *how);
-void wall_use_basis(mpm_grid_desc *grid, const basis_option *basis);
+method wall_method_of(int32_t i);
 
 /* Kinds by face; the second axis may be periodic. Every kind alone first, in the order of the constants. */
 typedef struct wall_setup {

@@ -50,9 +50,7 @@ static void check_step(books *b, const wall_setup *walls, double friction, const
     work += b->mass[i % CLOUD] * gravity[i / CLOUD] * away;
   }
   for (int32_t c = 0; c < dim; ++c) {
-    double sum = 0.0;
-    for (int64_t i = 0; i < n; ++i) sum += of_nodes[c * n + i];
-    ck_within(b->name, b->dt * sum, b->dt * reaction[c], 1e-12 * scale);
+    ck_within(b->name, b->dt * sum_of(n, of_nodes + c * n), b->dt * reaction[c], 1e-12 * scale);
     ck_within(b->name, after.momentum[c] - before.momentum[c], b->dt * (reaction[c] + b->total * gravity[c]),
               1e-12 * scale);
   }
@@ -64,23 +62,21 @@ static void check_step(books *b, const wall_setup *walls, double friction, const
   free(v0), free(x0), free(x1), free(of_nodes);
 }
 
-static void check_balance(const wall_method *how, const wall_setup *walls, int32_t dim, int64_t cells) {
+static void check_balance(const method *how, const wall_setup *walls, int32_t dim, int64_t cells) {
   const double gravity[3] = {3.0, -10.0, 1.0}, friction = 0.3;
   books b = {.dt = 2e-5};
-  world_desc desc = world_default(dim, cells, 0.1);
-  wall_use(&desc, how);
+  world_desc desc = world_with(how, dim, cells, 0.1);
   wall_describe(walls, &desc.grid);
   memcpy(desc.stepper.gravity, gravity, sizeof gravity);
   snprintf(b.name, sizeof b.name, "%s, %d-D, walls %d, %d cells", how->name, (int)dim,
            (int)(walls - wall_setups), (int)cells);
-  world_open(&b.w, &desc);
-  b.set = world_add_set(&b.w);
+  b.set = world_open(&b.w, &desc);
   dice d = {11};
   add_cloud(&b.w, b.set, &d, CLOUD, 0.1, 0.0, 0.1 * (double)cells, 1.0);
-  if (carries_matrix(how->transfer->transfer)) add_affine(&b.w, b.set, &d, 3.0);
+  if (carries_matrix(how->transfer)) add_affine(&b.w, b.set, &d, 3.0);
   wall_set(&b.w, walls, friction);
   b.mass = fetch(&b.w, b.set, "mass", 1);
-  for (int64_t p = 0; p < CLOUD; ++p) b.total += b.mass[p];
+  b.total = sum_of(CLOUD, b.mass);
   for (int32_t step = 0; step < 4; ++step) check_step(&b, walls, friction, gravity);
   free(b.mass);
   world_close(&b.w);
@@ -89,14 +85,14 @@ static void check_balance(const wall_method *how, const wall_setup *walls, int32
 /* What the walls give is what the particles get: reactions and weight are the change of momentum, and the
  * reactions of nodes add up to those of faces. */
 START_TEST(impulses_balance) {
-  const wall_method how = wall_method_of(_i);
+  const method how = wall_method_of(_i);
   for (int32_t setup = 0; setup < WALL_SETUPS; ++setup)
     for (int32_t dim = 1; dim <= 3; ++dim) check_balance(&how, &wall_setups[setup], dim, 6);
 }
 END_TEST
 
 START_TEST(impulses_balance_on_tiny_grids) {
-  const wall_method how = wall_method_of(_i);
+  const method how = wall_method_of(_i);
   for (int32_t setup = 0; setup < WALL_SETUPS; ++setup)
     for (int32_t dim = 1; dim <= 3; ++dim)
       for (int64_t cells = 1; cells <= 3; ++cells) check_balance(&how, &wall_setups[setup], dim, cells);

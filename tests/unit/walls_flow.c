@@ -5,23 +5,19 @@
  * so that the flux, which grows with W^3, tells W. PIC-like transfers would add viscosity of their own. */
 static double width_of(const basis_option *basis, int32_t scheme, int32_t transfer) {
   const double nu = 0.5, g = 1e-2, h = 0.05, lower[2] = {0.0, 0.0}, upper[2] = {3 * h, 1.0};
-  const int32_t per_cell[2] = {2, 2};
   const mpm_param oil[] = {{"density", 1.0}, {"bulk_modulus", 10.0}, {"viscosity", nu}};
   world w;
   world_desc desc = world_default(2, 20, h);
-  wall_use_basis(&desc.grid, basis);
+  use_basis(basis, &desc.grid);
   desc.stepper.scheme = scheme;
   desc.stepper.transfer = transfer;
   desc.stepper.flip = 1.0;
   desc.stepper.gravity[0] = g;
-  desc.model = "newtonian_fluid";
-  desc.params = oil;
-  desc.param_count = 3;
+  desc.law = (world_law){.model = "newtonian_fluid", .params = oil, .param_count = 3};
   desc.grid.cells[0] = 3;
   desc.grid.periodic[0] = 1;
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
-  ck_ok(&w, mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL));
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill(&w, set, lower, upper, 2);
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MAX, MPM_WALL_FIXED, 0.0));
   const double dt = 0.5 * world_stable_dt(&w), volume = 3 * h;

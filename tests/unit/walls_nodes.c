@@ -72,16 +72,14 @@ static int64_t check_planes(const char *name, const mpm_grid_desc *grid, const w
   return checked;
 }
 
-static void check_nodes(const wall_method *how, const wall_setup *walls, int32_t dim, int64_t cells) {
+static void check_nodes(const method *how, const wall_setup *walls, int32_t dim, int64_t cells) {
   char name[96];
   world w;
-  world_desc desc = world_default(dim, cells, 0.1);
-  wall_use(&desc, how);
+  world_desc desc = world_with(how, dim, cells, 0.1);
   wall_describe(walls, &desc.grid);
   snprintf(name, sizeof name, "%s, %d-D, walls %d, %d cells", how->name, (int)dim, (int)(walls - wall_setups),
            (int)cells);
-  world_open(&w, &desc);
-  mpm_particles *set = world_add_set(&w);
+  mpm_particles *set = world_open(&w, &desc);
   dice d = {7};
   add_cloud(&w, set, &d, CLOUD, 0.1, 0.0, 0.1 * (double)cells, 1.0);
   wall_set(&w, walls, 0.4);
@@ -113,7 +111,7 @@ static void check_nodes(const wall_method *how, const wall_setup *walls, int32_t
 }
 
 START_TEST(nodes_obey_walls) {
-  const wall_method how = wall_method_of(_i);
+  const method how = wall_method_of(_i);
   for (int32_t setup = 2; setup < WALL_SETUPS; ++setup)
     for (int32_t dim = 1; dim <= 3; ++dim) check_nodes(&how, &wall_setups[setup], dim, 6);
 }
@@ -121,7 +119,7 @@ END_TEST
 
 /* Where every node is near two walls of an axis. */
 START_TEST(tiny_grids_obey_walls) {
-  const wall_method how = wall_method_of(_i);
+  const method how = wall_method_of(_i);
   for (int32_t setup = 2; setup < WALL_SETUPS; ++setup)
     for (int32_t dim = 1; dim <= 3; ++dim)
       for (int64_t cells = 1; cells <= 3; ++cells) check_nodes(&how, &wall_setups[setup], dim, cells);
@@ -137,11 +135,10 @@ START_TEST(material_on_walls_stands) {
   for (int32_t dim = 1; dim <= 3; ++dim) {
     world w;
     world_desc desc = world_default(dim, 5, 0.1);
-    wall_use_basis(&desc.grid, basis);
+    use_basis(basis, &desc.grid);
     for (int32_t k = 1; k < dim; ++k) desc.grid.periodic[k] = kind == MPM_WALL_SLIP;
     desc.stepper.flip = 0.0;
-    world_open(&w, &desc);
-    mpm_particles *set = world_add_set(&w);
+    mpm_particles *set = world_open(&w, &desc);
     dice d = {19};
     add_cloud(&w, set, &d, CLOUD, 0.1, 0.0, 0.5, 1.0);
     /* some are on the lower or the upper face of the first axis, and of the second: edges and corners too */
@@ -154,8 +151,7 @@ START_TEST(material_on_walls_stands) {
     /* without stress: its force on a node where it has no mass would be lost */
     static const double none[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, none));
-    for (int32_t face = 0; face < 2 * dim; ++face)
-      if (face < 2 || kind == MPM_WALL_FIXED) ck_ok(&w, mpm_stepper_set_wall(w.stepper, face, kind, 0.0));
+    world_walls(&w, kind, 0.0);
     const mpm_step_info before = world_info(&w), after = world_step(&w, 1e-5);
     double *v = fetch(&w, set, "velocity", dim), *now = fetch(&w, set, "position", dim);
     /* with open knots and the linear basis one node alone acts there; else two cancel */
@@ -184,10 +180,9 @@ START_TEST(faces_keep_affine_fields) {
     for (int64_t cells = 1; cells <= 5; ++cells) {
       world w;
       world_desc desc = world_default(dim, cells, 0.1);
-      wall_use_basis(&desc.grid, basis);
+      use_basis(basis, &desc.grid);
       desc.stepper.transfer = MPM_TPIC;
-      world_open(&w, &desc);
-      mpm_particles *set = world_add_set(&w);
+      mpm_particles *set = world_open(&w, &desc);
       dice d = {23};
       add_cloud(&w, set, &d, CLOUD, 0.1, 0.0, 0.1 * (double)cells, 0.0);
       double *x = fetch(&w, set, "position", dim), *v = calloc((size_t)(dim * CLOUD), sizeof *v), L[9];
@@ -203,16 +198,13 @@ START_TEST(faces_keep_affine_fields) {
       put(&w, set, "velocity", dim, v);
       ck_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, L));
       ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, none));
-      for (int32_t face = 0; face < 2 * dim; ++face)
-        ck_ok(&w, mpm_stepper_set_wall(w.stepper, face, MPM_WALL_OPEN, 0.0));
-      double *mass = fetch(&w, set, "mass", 1), total = 0.0, sum = 0.0;
-      for (int64_t p = 0; p < CLOUD; ++p) total += mass[p];
+      world_walls(&w, MPM_WALL_OPEN, 0.0);
+      const double total = mass_of(&w, set);
       world_step(&w, 1e-9);
       int64_t n;
       double *of_nodes = fetch_nodes(&w, "mass", &n), *at = fetch_nodes(&w, "position", &n);
       double *v_nodes = fetch_nodes(&w, "velocity", &n);
-      for (int64_t i = 0; i < n; ++i) sum += of_nodes[i];
-      ck_within(basis->name, sum, total, 1e-13 * total);
+      ck_within(basis->name, sum_of(n, of_nodes), total, 1e-13 * total);
       for (int64_t i = 0; i < n; ++i)
         for (int32_t k = 0; k < dim; ++k) {
           double wanted = b[k];
@@ -226,7 +218,7 @@ START_TEST(faces_keep_affine_fields) {
         for (int32_t k = 0; k < dim; ++k) ck_within(basis->name, after[k], v[k * CLOUD + id], 1e-12);
       }
       ck_assert_int_ge(mpm_particles_count(set), CLOUD - 2 * dim);
-      free(x), free(v), free(mass), free(of_nodes), free(at), free(v_nodes);
+      free(x), free(v), free(of_nodes), free(at), free(v_nodes);
       world_close(&w);
     }
 }

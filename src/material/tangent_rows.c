@@ -1,4 +1,4 @@
-/* Rows of tangents c_ijkl, [81][ld], from values of 16 particles. */
+/* Rows of tangents c_ijkl, [81][ld], from the values of a chunk of particles. */
 #include "material/objective_tangent.h"
 
 MPMI_INLINE void mpmi_isotropic_row(int i, int j, int k, int l, const double *volumetric, const double *shear,

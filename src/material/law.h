@@ -1,0 +1,45 @@
+/* What a built-in law is: its description and its kernels for one instruction set. */
+#ifndef MPMI_LAW_H
+#define MPMI_LAW_H
+
+#include <mpm/mpm.h>
+#include <stddef.h>
+
+#include "material/deformation.h"
+
+typedef struct mpmi_law_param {
+  const char *name, *unit, *text;
+  double value, low, high; /* default (NaN: must be given); inclusive range */
+  const char *range;       /* the same in words */
+  int32_t whole;           /* 1: whole numbers only */
+} mpmi_law_param;
+
+/* Evaluates a law on batch->n particles, whole chunks of them; every array is 64-byte aligned. dim tells
+ * which entries of the full tensors can be anything but those of the identity, so that 1-D and 2-D need not
+ * pay for 3-D; stress_new has all six rows written for the components that exist in `dim` (xx yy zz; xy in
+ * 2-D; yz xz in 3-D), others are left alone. */
+typedef void (*mpmi_law_fn)(const void *constants, int32_t dim, const mpm_material_batch *batch);
+
+/* The tangent of a law at a batch whose law has just run, as mpmi_material_tangent() writes it. */
+typedef void (*mpmi_tangent_fn)(const void *constants, int32_t dim, const mpm_material_batch *batch,
+                                double *tangent);
+
+typedef struct mpmi_law {
+  const char *name;
+  const mpmi_law_param *param; /* every law has a "density" */
+  int32_t param_count;
+  int32_t state_count;
+  const double *state_initial; /* [state_count], or NULL: zeros */
+  int32_t stress_from_F; /* 1: hyperelastic, fluid, rigid; 0: hypoelastic, the host may set the stress */
+  int32_t kinematics;    /* MPMI_F_... */
+  /* The kernels work with constants that `prepare` makes from the values of the parameters: a struct of
+   * doubles, all of which must be finite. A law without constants has 0 and NULL here. */
+  size_t constants_size;
+  void (*prepare)(const double *value, void *constants);
+  mpmi_law_fn stress;
+  mpmi_tangent_fn tangent;
+  /* 1 when the tangent has major symmetry in 2-D and 3-D too. */
+  int32_t (*is_symmetric)(const void *constants);
+} mpmi_law;
+
+#endif

@@ -1,0 +1,67 @@
+/* What the file of a law needs to describe it: ranges of parameters, kernels by dimension, symmetry.
+ *
+ * The file is compiled once for each instruction set, and so is its `prepare`: a product there that something
+ * is added to goes through mpmi_rounded(), or the constants would depend on the instruction set. */
+#ifndef MPMI_LAW_FILE_H
+#define MPMI_LAW_FILE_H
+
+#include <float.h>
+#include <math.h>
+
+#include "material/laws.h"
+#include "simd/chunk.h"
+#include "simd/rounding.h"
+
+/* Entries of a parameter: its range, its default. Open ranges are written with their outermost members, so
+ * that low and high themselves are accepted. */
+#define POSITIVE      DBL_MIN, DBL_MAX, "must be finite and > 0", 0
+#define NOT_NEGATIVE  0.0, DBL_MAX, "must be finite and >= 0", 0
+#define AT_LEAST_ONE  1.0, DBL_MAX, "must be finite and >= 1", 0
+#define ZERO_OR_ONE   0.0, 1.0, "must be 0 or 1", 1
+#define MUST_BE_GIVEN ((double)NAN)
+#define PARAM_DENSITY                                                                                        \
+  { "density", "mass/length^3", "mass per initial volume", MUST_BE_GIVEN, POSITIVE }
+
+/* Sets param and param_count to an array of parameters. */
+#define MPMI_PARAMS(array) .param = (array), .param_count = (int32_t)(sizeof(array) / sizeof *(array))
+
+/* Particles of a batch. */
+MPMI_INLINE int64_t mpmi_batch_items(const mpm_material_batch *batch) {
+  return mpmi_whole_chunks(batch->n);
+}
+
+/* Makes stress_kernel and tangent_kernel from stress_of(dim, constants, batch) and tangent_of(dim, constants,
+ * batch, tangent), specialised for each dim. type: of the constants. */
+#define MPMI_LAW_KERNELS(type, stress_of, tangent_of)                                                        \
+  static void stress_kernel(const void *constants, int32_t dim, const mpm_material_batch *batch) {           \
+    const type *c = constants;                                                                               \
+    if (dim == 3)                                                                                            \
+      stress_of(3, c, batch);                                                                                \
+    else if (dim == 2)                                                                                       \
+      stress_of(2, c, batch);                                                                                \
+    else                                                                                                     \
+      stress_of(1, c, batch);                                                                                \
+  }                                                                                                          \
+  static void tangent_kernel(const void *constants, int32_t dim, const mpm_material_batch *batch,            \
+                             double *rows) {                                                                 \
+    const type *c = constants;                                                                               \
+    if (dim == 3)                                                                                            \
+      tangent_of(3, c, batch, rows);                                                                         \
+    else if (dim == 2)                                                                                       \
+      tangent_of(2, c, batch, rows);                                                                         \
+    else                                                                                                     \
+      tangent_of(1, c, batch, rows);                                                                         \
+  }
+
+/* For is_symmetric: the tangent is symmetric where the stress is a function of F alone, and is not where the
+ * stress depends on the step. */
+static inline int32_t mpmi_symmetric(const void *constants) {
+  (void)constants;
+  return 1;
+}
+static inline int32_t mpmi_unsymmetric(const void *constants) {
+  (void)constants;
+  return 0;
+}
+
+#endif
