@@ -2,6 +2,7 @@
 #include "layout/axes.h"
 #include "layout/profile.h"
 #include "layout/tile.h"
+#include "layout/visit.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #define MPMI_BATCH_H
 
 #include "layout/nodes.h"
-#include "layout/visit.h"
+#include "layout/step.h"
 #include "particles/law_batch.h"
 
 typedef struct mpmi_batch mpmi_batch;
