@@ -41,6 +41,30 @@ START_TEST(refused_requests) {
 }
 END_TEST
 
+/* Energies are summed up in the order of the blocks: when the host has added a particle and asks for them, the
+ * particles are sorted, and the nodes of the last step are no more. */
+START_TEST(nodes_end_with_their_layout) {
+  world r;
+  mpm_view v = {.struct_size = sizeof v};
+  body_open(&r, &(body_desc){.dim = 2});
+  world_steps(&r, 1);
+  int64_t *ids = fetch_ids(&r, r.set[0]);
+  double x[2];
+  const double velocity[2] = {0.0, 0.0}, volume = 1e-4;
+  for (int32_t k = 0; k < 2; ++k) x[k] = fetch1(&r, r.set[0], "position", 2, k, ids[0]);
+  ck_ok(&r, mpm_particles_add(r.set[0], 1, x, velocity, &volume, NULL, NULL, NULL));
+  ck_ok(&r, mpm_grid_map(r.stepper, 0, "mass", MPM_READ, &v));
+  ck_ok(&r, mpm_view_release(&v));
+  world_info(&r);
+  ck_refused(&r, mpm_grid_map(r.stepper, 0, "mass", MPM_READ, &v), MPM_E_STATE, "no nodal fields");
+  world_steps(&r, 1);
+  ck_ok(&r, mpm_grid_map(r.stepper, 0, "mass", MPM_READ, &v));
+  ck_ok(&r, mpm_view_release(&v));
+  free(ids);
+  world_close(&r);
+}
+END_TEST
+
 /* Fused nodes of whole MLS steps have no force of their own. */
 START_TEST(fused_nodes) {
   world r;
@@ -232,6 +256,7 @@ TCase *stepper_nodes_case(void) {
   TCase *tests = tcase_create("nodes");
   tcase_set_timeout(tests, 120);
   tcase_add_test(tests, refused_requests);
+  tcase_add_test(tests, nodes_end_with_their_layout);
   tcase_add_test(tests, fused_nodes);
   tcase_add_test(tests, lent_and_released);
   tcase_add_test(tests, bad_values);
