@@ -7,8 +7,7 @@
 #include <pthread.h>
 #include <stdio.h>
 
-/* ---- a pool of the host: three sleeping threads beside the calling one
- * -------------------------------------- */
+/* ---- a pool of the host: three sleeping threads beside the calling one -------------------------------- */
 
 enum { HELPERS = 3 };
 typedef struct host_pool {
@@ -79,8 +78,7 @@ static void pool_stop(host_pool *pool) {
   pthread_mutex_destroy(&pool->lock);
 }
 
-/* ---- tasks in random order
- * ---------------------------------------------------------------------------------- */
+/* ---- tasks in random order ---------------------------------------------------------------------------- */
 
 static int64_t common_divisor(int64_t a, int64_t b) {
   return b ? common_divisor(b, a % b) : a;
@@ -99,8 +97,7 @@ static mpm_status in_random_order(void *user, int64_t count, mpm_task_fn task, v
   return MPM_OK;
 }
 
-/* ---- the simulation: an elastic ball is thrown on the floor
- * ------------------------------------------------- */
+/* ---- the simulation: an elastic ball is thrown on the floor ------------------------------------------- */
 
 /* A callback marked (mt) may run on several threads at once: it touches nothing but its batch. */
 static mpm_status wind(void *user, const mpm_particle_batch *b, double *add) {

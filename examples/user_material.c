@@ -97,8 +97,7 @@ static double largest_difference(int64_t n, const double *a, const double *b) {
   return most / scale;
 }
 
-/* ---- 2. a spring beside a Maxwell element
- * ------------------------------------------------------------------ */
+/* ---- 2. a spring beside a Maxwell element ------------------------------------------------------------- */
 
 typedef struct viscoelastic {
   double stiffness, maxwell_stiffness, relaxation_time, density; /* moduli of uniaxial strain */

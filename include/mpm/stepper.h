@@ -165,7 +165,7 @@ typedef mpm_status (*mpm_particle_fn)(void *user, const mpm_particle_batch *batc
  * Prescribes nodal velocities (mt). For the nodes and axes to hold, the callback sets prescribed[c * ld + i]
  * = 1 (preset 0), and velocity[c * ld + i] to the mean velocity of the step, so that the displacement
  * increment is dt * velocity in every scheme. Where several prescribe one node and axis, the first of these
- * wins: this callback, prescribed particles (their mean weighted by mass), walls; the reaction is booked to
+ * wins: this callback, prescribed particles (their mean weighted by mass), walls; the reaction counts for
  * the winner. The callback is asked once per step, in the first projection of particles onto nodes; further
  * projections keep to the answer. Returns as mpm_particle_fn does.
  */

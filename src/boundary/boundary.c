@@ -6,16 +6,16 @@
 #include "boundary/ties.h"
 
 /* Between folding and unfolding: what acts on nodes, the host's hooks around it. */
-static mpm_status act(const mpmi_bound *f, const mpmi_projection *projection) {
+static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
   mpm_status status;
-  if ((status = mpmi_hooks_begin(f)) || (status = mpmi_hooks_run(f, MPM_AFTER_P2G)) ||
-      (status = mpmi_hooks_run(f, MPM_AFTER_FORCES)) ||
-      (status = mpmi_asks_host(f->step->settings, projection) ? mpmi_held_find(f) : MPM_OK) ||
-      (status = mpmi_held_set(f)))
+  if ((status = mpmi_hooks_begin(bound)) || (status = mpmi_hooks_run(bound, MPM_AFTER_P2G)) ||
+      (status = mpmi_hooks_run(bound, MPM_AFTER_FORCES)) ||
+      (status = mpmi_asks_host(bound->step->settings, projection) ? mpmi_held_find(bound) : MPM_OK) ||
+      (status = mpmi_held_set(bound)))
     return status;
-  mpmi_ties_hold_walls(f);
-  mpmi_friction_walls(f, 0);
-  return mpmi_hooks_run(f, MPM_AFTER_VELOCITY);
+  mpmi_ties_hold_walls(bound);
+  mpmi_friction_walls(bound, 0);
+  return mpmi_hooks_run(bound, MPM_AFTER_VELOCITY);
 }
 
 /* Other projections have no hooks. That of USF comes first and asks who holds nodes; the second one of MUSL
@@ -24,21 +24,21 @@ static mpm_status act(const mpmi_bound *f, const mpmi_projection *projection) {
  * Which contacts are closed is for a projection with forces to say. Without them a body that expands against
  * a wall seems to leave it, and USF would strain it less in the rebound than in the approach, which makes
  * energy. */
-static mpm_status act_on_velocities(const mpmi_bound *f, const mpmi_projection *projection) {
+static mpm_status act_on_velocities(mpmi_bound *bound, const mpmi_projection *projection) {
   mpm_status status = MPM_OK;
-  if (mpmi_asks_host(f->step->settings, projection)) status = mpmi_held_find(f);
-  if (!status && projection->held) status = mpmi_held_set(f);
-  mpmi_ties_hold_walls(f);
+  if (mpmi_asks_host(bound->step->settings, projection)) status = mpmi_held_find(bound);
+  if (!status && projection->held) status = mpmi_held_set(bound);
+  mpmi_ties_hold_walls(bound);
   if (projection->contact != MPMI_CONTACT_NONE)
-    mpmi_friction_walls(f, projection->contact == MPMI_CONTACT_KEEPS);
+    mpmi_friction_walls(bound, projection->contact == MPMI_CONTACT_KEEPS);
   return status;
 }
 
 mpm_status mpmi_boundary_hold(mpmi_step *step, mpmi_nodes *nodes) {
-  const mpmi_bound f = {
+  mpmi_bound bound = {
       .step = step, .nodes = nodes, .values = &nodes->solved, .dim = step->settings->grid->dim};
-  mpmi_ties_fold(&f);
-  return mpmi_held_find(&f);
+  mpmi_ties_fold(&bound);
+  return mpmi_held_find(&bound);
 }
 
 mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes,
@@ -46,18 +46,18 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
   const mpmi_settings *settings = step->settings;
   const int32_t main = projection == &mpmi_projections[MPMI_PROJECT_FORCES];
   const int32_t both = mpmi_has_increments(&nodes->solved);
-  const mpmi_bound f = {.step = step,
-                        .nodes = nodes,
-                        .values = mpmi_projected_nodes(nodes, projection),
-                        .flip = both ? mpmi_flip_share(settings, step->velocity_dt) : 0.0,
-                        .share = share,
-                        .dim = settings->grid->dim,
-                        .records = projection->recorded && nodes->has_impulses};
-  mpmi_ties_fold(&f);
-  mpm_status status = main ? act(&f, projection) : act_on_velocities(&f, projection);
+  mpmi_bound bound = {.step = step,
+                      .nodes = nodes,
+                      .values = mpmi_projected_nodes(nodes, projection),
+                      .flip = both ? mpmi_flip_share(settings, step->velocity_dt) : 0.0,
+                      .share = share,
+                      .dim = settings->grid->dim,
+                      .records = projection->recorded && nodes->has_impulses};
+  mpmi_ties_fold(&bound);
+  mpm_status status = main ? act(&bound, projection) : act_on_velocities(&bound, projection);
   if (status) return status;
-  mpmi_ties_unfold(&f);
+  mpmi_ties_unfold(&bound);
   if (!main) return MPM_OK;
-  if (nodes->prescription.any && (status = mpmi_prescribed_share(&f))) return status;
-  return mpmi_hooks_end(&f);
+  if (nodes->prescription.any && (status = mpmi_prescribed_share(&bound))) return status;
+  return mpmi_hooks_end(&bound);
 }

@@ -3,11 +3,11 @@
 #include <math.h>
 
 /* Changes a free node's velocity by a contact. */
-static double push(const mpmi_bound *f, int64_t slot, int32_t c, double by) {
-  const mpmi_component before = mpmi_component_of(f, slot, c);
-  mpmi_velocity(f->values, slot)[c] += by;
-  if (mpmi_has_increments(f->values)) mpmi_increment(f->values, slot)[c] += by;
-  return mpmi_record_whole(f, slot, c, before);
+static double push(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
+  const mpmi_component before = mpmi_component_of(bound, slot, c);
+  mpmi_velocity(bound->values, slot)[c] += by;
+  if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] += by;
+  return mpmi_record_whole(bound, slot, c, before);
 }
 
 /* A contact acts on the sum of the velocities of its nodes, which is what the wall's plane sees of them. Its
@@ -19,85 +19,84 @@ typedef struct contact_nodes {
   double inverse_mass[2][3], moving[3], compliance[3];
 } contact_nodes;
 
-static double sum_of(const mpmi_bound *f, const contact_nodes *n, int32_t c) {
+static double sum_of(mpmi_bound *bound, const contact_nodes *n, int32_t c) {
   double sum = 0.0;
-  for (int32_t i = 0; i < n->count; ++i) sum += mpmi_velocity(f->values, n->slot[i])[c];
+  for (int32_t i = 0; i < n->count; ++i) sum += mpmi_velocity(bound->values, n->slot[i])[c];
   return sum;
 }
 
-static void give(const mpmi_bound *f, const contact_nodes *n, int32_t face, int32_t c, double impulse) {
+static void give(mpmi_bound *bound, const contact_nodes *n, int32_t face, int32_t c, double impulse) {
   for (int32_t i = 0; i < n->count; ++i) {
     if (!(n->inverse_mass[i][c] > 0.0)) continue;
-    const double impulse_given = push(f, n->slot[i], c, impulse / n->moving[c] * n->inverse_mass[i][c]);
-    if (f->records) f->step->impulse_by_face[face][c] += impulse_given;
+    const double impulse_given = push(bound, n->slot[i], c, impulse / n->moving[c] * n->inverse_mass[i][c]);
+    if (bound->records) bound->step->impulse_by_face[face][c] += impulse_given;
   }
 }
 
-static int32_t on_wall(const mpmi_bound *f, int64_t slot, int32_t c) {
-  const mpmi_constraints *constraints = mpmi_constraints_of(f);
+static int32_t on_wall(mpmi_bound *bound, int64_t slot, int32_t c) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int32_t tie = constraints->tie_of[slot];
   return tie >= 0 && constraints->tie[tie].zero[c];
 }
 
-static int32_t collect(const mpmi_bound *f, const mpmi_contact *pair, contact_nodes *n) {
+static int32_t collect(mpmi_bound *bound, const mpmi_contact *pair, contact_nodes *n) {
   *n = (contact_nodes){.slot = {pair->slot, pair->partner}, .count = pair->partner < 0 ? 1 : 2};
   for (int32_t i = 0; i < n->count; ++i) {
-    const double mass = mpmi_moving_mass(f, n->slot[i]);
-    if (mass <= f->step->layout->mass_cut) return 0;
-    for (int32_t c = 0; c < f->dim; ++c) {
-      const int32_t held = mpmi_held_by(f->nodes, n->slot[i], c);
+    const double mass = mpmi_moving_mass(bound, n->slot[i]);
+    if (mass <= bound->step->layout->mass_cut) return 0;
+    for (int32_t c = 0; c < bound->dim; ++c) {
+      const int32_t held = mpmi_held_by(bound->nodes, n->slot[i], c);
       if (held == MPMI_HELD_BY_HOST) return 0; /* that comes before walls, on all axes */
       n->held[c] |= held;
-      if (on_wall(f, n->slot[i], c)) continue;
+      if (on_wall(bound, n->slot[i], c)) continue;
       n->inverse_mass[i][c] = 1.0 / mass;
       n->moving[c] += 1.0;
     }
   }
-  for (int32_t c = 0; c < f->dim; ++c)
+  for (int32_t c = 0; c < bound->dim; ++c)
     if (n->moving[c] > 0.0) n->compliance[c] = (n->inverse_mass[0][c] + n->inverse_mass[1][c]) / n->moving[c];
   return 1;
 }
 
 /* Impulse that would stop a component; none where nothing gives way. */
-static double stopping(const mpmi_bound *f, const contact_nodes *n, int32_t c) {
-  return n->held[c] || !(n->moving[c] > 0.0) ? 0.0 : -sum_of(f, n, c) / n->compliance[c];
+static double stopping(mpmi_bound *bound, const contact_nodes *n, int32_t c) {
+  return n->held[c] || !(n->moving[c] > 0.0) ? 0.0 : -sum_of(bound, n, c) / n->compliance[c];
 }
 
 /* Pushes but never pulls; Coulomb: the tangential impulse stops sliding or is friction times the normal one.
  * Returns the velocity that it stopped. */
-static double contact(const mpmi_bound *f, const mpmi_contact *pair, mpmi_contact_state *state,
-                      int32_t sweep) {
+static double contact(mpmi_bound *bound, const mpmi_contact *pair, mpmi_contact_state *state, int32_t sweep) {
   const int32_t axis = pair->face / 2;
   contact_nodes n;
   if (!sweep) state->closed = state->stuck = 0;
-  if (!collect(f, pair, &n)) return 0.0;
-  const double inward = pair->face % 2 ? -1.0 : 1.0, normal = inward * stopping(f, &n, axis);
+  if (!collect(bound, pair, &n)) return 0.0;
+  const double inward = pair->face % 2 ? -1.0 : 1.0, normal = inward * stopping(bound, &n, axis);
   if (normal <= 0.0) return 0.0;
   state->closed = 1;
-  give(f, &n, pair->face, axis, inward * normal);
+  give(bound, &n, pair->face, axis, inward * normal);
   double stop[3] = {0.0, 0.0, 0.0}, squared = 0.0;
-  for (int32_t c = 0; c < f->dim; ++c) {
-    if (c != axis) stop[c] = stopping(f, &n, c);
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    if (c != axis) stop[c] = stopping(bound, &n, c);
     squared += stop[c] * stop[c];
   }
-  const double size = sqrt(squared), most = f->step->settings->wall[pair->face].friction * normal;
+  const double size = sqrt(squared), most = bound->step->settings->wall[pair->face].friction * normal;
   state->stuck = most >= size;
   const double share = state->stuck ? 1.0 : most / size;
-  for (int32_t c = 0; share > 0.0 && c < f->dim; ++c)
-    if (c != axis) give(f, &n, pair->face, c, share * stop[c]);
+  for (int32_t c = 0; share > 0.0 && c < bound->dim; ++c)
+    if (c != axis) give(bound, &n, pair->face, c, share * stop[c]);
   return normal * n.compliance[axis];
 }
 
 /* A projection without forces moves with the one that had them: a contact that was closed stays so, one that
  * was open is free. */
-static double keep_contact(const mpmi_bound *f, const mpmi_contact *pair, const mpmi_contact_state *state) {
+static double keep_contact(mpmi_bound *bound, const mpmi_contact *pair, const mpmi_contact_state *state) {
   contact_nodes n;
   double stopped = 0.0;
-  if (!state->closed || !collect(f, pair, &n)) return 0.0;
-  for (int32_t c = 0; c < f->dim; ++c) {
+  if (!state->closed || !collect(bound, pair, &n)) return 0.0;
+  for (int32_t c = 0; c < bound->dim; ++c) {
     if (c != pair->face / 2 && !state->stuck) continue;
-    const double stop = stopping(f, &n, c);
-    give(f, &n, pair->face, c, stop);
+    const double stop = stopping(bound, &n, c);
+    give(bound, &n, pair->face, c, stop);
     stopped = fmax(stopped, fabs(stop) * n.compliance[c]);
   }
   return stopped;
@@ -108,16 +107,16 @@ static double keep_contact(const mpmi_bound *f, const mpmi_contact *pair, const 
 static const double settled = 1e-13;
 enum { SWEEPS = 100 };
 
-void mpmi_friction_walls(const mpmi_bound *f, int32_t keep) {
-  const mpmi_constraints *constraints = mpmi_constraints_of(f);
+void mpmi_friction_walls(mpmi_bound *bound, int32_t keep) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int64_t count = constraints->contact_count;
   double first = 0.0;
   for (int32_t sweep = 0; count && sweep < SWEEPS; ++sweep) {
     double most = 0.0;
     for (int64_t i = 0; i < count; ++i) {
       const mpmi_contact *pair = &constraints->contact[i];
-      mpmi_contact_state *state = &f->nodes->contact_state[i];
-      most = fmax(most, keep ? keep_contact(f, pair, state) : contact(f, pair, state, sweep));
+      mpmi_contact_state *state = &bound->nodes->contact_state[i];
+      most = fmax(most, keep ? keep_contact(bound, pair, state) : contact(bound, pair, state, sweep));
     }
     if (!sweep) first = most;
     /* of one face no two contacts share a node */

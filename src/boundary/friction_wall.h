@@ -5,6 +5,6 @@
 #include "boundary/impulses.h"
 
 /* keep: contacts stay closed or open as they were found, in a projection without forces. */
-void mpmi_friction_walls(const mpmi_bound *f, int32_t keep);
+void mpmi_friction_walls(mpmi_bound *bound, int32_t keep);
 
 #endif

@@ -5,8 +5,8 @@
 #include "boundary/impulses.h"
 
 /* Asks the host and the prescribed particles who holds what. */
-mpm_status mpmi_held_find(const mpmi_bound *f);
+mpm_status mpmi_held_find(mpmi_bound *bound);
 /* Sets the components that are held, as they were found. */
-mpm_status mpmi_held_set(const mpmi_bound *f);
+mpm_status mpmi_held_set(mpmi_bound *bound);
 
 #endif

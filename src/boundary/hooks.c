@@ -6,7 +6,7 @@
 #include <string.h>
 
 typedef struct hook_job {
-  const mpmi_bound *f;
+  mpmi_bound *bound;
   int32_t stage;
 } hook_job;
 
@@ -15,57 +15,57 @@ typedef struct hook_values {
   double shown[2][3 * MPMI_NODE_BATCH], velocity[3 * MPMI_NODE_BATCH], force[3 * MPMI_NODE_BATCH];
 } hook_values;
 
-static void shift_node(const mpmi_bound *f, int64_t slot, int32_t c, double velocity, double increment) {
-  mpmi_velocity(f->values, slot)[c] += velocity;
-  mpmi_increment(f->values, slot)[c] += increment;
+static void shift_node(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment) {
+  mpmi_velocity(bound->values, slot)[c] += velocity;
+  mpmi_increment(bound->values, slot)[c] += increment;
 }
 
 /* Changes v~ and dv of a free node with its tie; what particles take of that is the hook's impulse. */
-static void shift(const mpmi_bound *f, int64_t slot, int32_t c, double velocity, double increment) {
-  const mpmi_constraints *constraints = mpmi_constraints_of(f);
+static void shift(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int32_t at = constraints->tie_of[slot];
-  const double given = f->flip * increment + (1.0 - f->flip) * velocity;
-  f->nodes->hook_impulse[slot][c] += mpmi_moving_mass(f, slot) * given;
-  shift_node(f, slot, c, velocity, increment);
+  const double given = bound->flip * increment + (1.0 - bound->flip) * velocity;
+  bound->nodes->hook_impulse[slot][c] += mpmi_moving_mass(bound, slot) * given;
+  shift_node(bound, slot, c, velocity, increment);
   if (at < 0) return;
-  mpmi_tie_state *state = &f->nodes->tie_state[at];
+  mpmi_tie_state *state = &bound->nodes->tie_state[at];
   state->before[c] += given;
   state->increment[c] += increment;
   for (int64_t d = 0; d < constraints->tie[at].count; ++d) {
     const mpmi_follower *follower = &constraints->follower[constraints->tie[at].first + d];
-    shift_node(f, follower->slot, c, follower->sign[c] * velocity, follower->sign[c] * increment);
+    shift_node(bound, follower->slot, c, follower->sign[c] * velocity, follower->sign[c] * increment);
   }
 }
 
 static void show_node(const hook_job *job, const mpmi_node_list *list, int64_t i, hook_values *values) {
-  const mpmi_bound *f = job->f;
-  for (int32_t c = 0; c < f->dim; ++c) {
+  mpmi_bound *bound = job->bound;
+  for (int32_t c = 0; c < bound->dim; ++c) {
     const int64_t at = c * MPMI_NODE_BATCH + i;
-    const double v = mpmi_velocity(f->values, list->slot[i])[c];
-    const double dv = mpmi_increment(f->values, list->slot[i])[c];
+    const double v = mpmi_velocity(bound->values, list->slot[i])[c];
+    const double dv = mpmi_increment(bound->values, list->slot[i])[c];
     values->shown[0][at] = job->stage == MPM_AFTER_VELOCITY ? v : v - dv;
-    values->shown[1][at] = job->stage == MPM_AFTER_P2G ? 0.0 : list->mass[i] * dv / f->step->velocity_dt;
+    values->shown[1][at] = job->stage == MPM_AFTER_P2G ? 0.0 : list->mass[i] * dv / bound->step->velocity_dt;
   }
 }
 
 /* What was written, against what was shown: values that are not touched leave every bit of the node. */
 static void take_node(const hook_job *job, const mpmi_node_list *list, int64_t i, const hook_values *values) {
-  const mpmi_bound *f = job->f;
-  for (int32_t c = 0; c < f->dim; ++c) {
+  mpmi_bound *bound = job->bound;
+  for (int32_t c = 0; c < bound->dim; ++c) {
     const int64_t at = c * MPMI_NODE_BATCH + i, slot = list->slot[i];
     const double change = values->velocity[at] - values->shown[0][at];
     const double force = values->force[at] - values->shown[1][at];
     if (job->stage == MPM_AFTER_VELOCITY) {
-      if (change != 0.0) shift(f, slot, c, change, change);
+      if (change != 0.0) shift(bound, slot, c, change, change);
       continue;
     }
-    const double gained = force * f->step->velocity_dt / list->mass[i];
-    if (change != 0.0 || force != 0.0) shift(f, slot, c, change + gained, gained);
+    const double gained = force * bound->step->velocity_dt / list->mass[i];
+    if (change != 0.0 || force != 0.0) shift(bound, slot, c, change + gained, gained);
   }
 }
 
 static int32_t is_finite(const hook_job *job, int64_t i, const hook_values *values) {
-  for (int32_t c = 0; c < job->f->dim; ++c) {
+  for (int32_t c = 0; c < job->bound->dim; ++c) {
     const int64_t at = c * MPMI_NODE_BATCH + i;
     if (!isfinite(values->velocity[at])) return 0;
     if (job->stage != MPM_AFTER_VELOCITY && !isfinite(values->force[at])) return 0;
@@ -79,9 +79,9 @@ static void call_hook(const hook_job *job, int64_t block, mpmi_node_list *list, 
   static const char *const bad[] = {"velocity or force of the hook after P2G not finite",
                                     "velocity or force of the hook after forces not finite",
                                     "velocity of the hook after velocity not finite"};
-  const mpmi_settings *settings = job->f->step->settings;
+  const mpmi_settings *settings = job->bound->step->settings;
   const int32_t h = job->stage - MPM_AFTER_P2G;
-  if (!mpmi_list_nodes(job->f, block, list)) return;
+  if (!mpmi_list_nodes(job->bound, block, list)) return;
   hook_values values = {{{0.0}}, {0.0}, {0.0}};
   for (int64_t i = 0; i < list->n; ++i) show_node(job, list, i, &values);
   memcpy(values.velocity, values.shown[0], sizeof values.velocity);
@@ -93,58 +93,59 @@ static void call_hook(const hook_job *job, int64_t block, mpmi_node_list *list, 
     return;
   }
   for (int64_t i = 0; i < list->n; ++i)
-    if (!is_finite(job, i, &values)) mpmi_bad_node(job->f, list, i, bad[h], failure);
+    if (!is_finite(job, i, &values)) mpmi_bad_node(job->bound, list, i, bad[h], failure);
   if (failure->cause) return;
   for (int64_t i = 0; i < list->n; ++i) take_node(job, list, i, &values);
 }
 
 static void hook_task(void *data, int64_t k) {
   const hook_job *job = data;
-  const mpmi_step *step = job->f->step;
+  const mpmi_step *step = job->bound->step;
   const mpmi_share share = mpmi_share_of(step->settings, step->layout->blocks.count, k);
   mpmi_node_list list;
   for (int64_t b = share.begin; b < share.end; ++b) call_hook(job, b, &list, &step->work->report[k].failure);
 }
 
-mpm_status mpmi_hooks_run(const mpmi_bound *f, int32_t stage) {
-  const mpmi_settings *settings = f->step->settings;
-  hook_job job = {f, stage};
+mpm_status mpmi_hooks_run(mpmi_bound *bound, int32_t stage) {
+  const mpmi_settings *settings = bound->step->settings;
+  hook_job job = {bound, stage};
   if (!settings->hook[stage - MPM_AFTER_P2G]) return MPM_OK;
   const mpm_status status = mpmi_run_tasks(settings, 1, settings->tasks, hook_task, &job);
-  return status ? status : mpmi_step_failure(f->step);
+  return status ? status : mpmi_step_failure(bound->step);
 }
 
 /* Like that of every external force: impulse times the velocity with which the node moves in the step. */
 static void work_task(void *data, int64_t k) {
-  const mpmi_bound *f = data;
-  const mpmi_blocks *blocks = &f->step->layout->blocks;
-  const mpmi_share share = mpmi_share_of(f->step->settings, blocks->count, k);
+  mpmi_bound *bound = data;
+  const mpmi_blocks *blocks = &bound->step->layout->blocks;
+  const mpmi_share share = mpmi_share_of(bound->step->settings, blocks->count, k);
   for (int64_t b = share.begin; b < share.end; ++b) {
     double work = 0.0;
     for (int64_t slot = b * blocks->nodes; slot < (b + 1) * blocks->nodes; ++slot)
-      for (int32_t c = 0; c < f->dim; ++c)
-        work += f->nodes->hook_impulse[slot][c] * mpmi_velocity(f->values, slot)[c];
-    f->step->work->block_work[b] = work;
+      for (int32_t c = 0; c < bound->dim; ++c)
+        work += bound->nodes->hook_impulse[slot][c] * mpmi_velocity(bound->values, slot)[c];
+    bound->step->work->block_work[b] = work;
   }
 }
 
 static void forget_task(void *data, int64_t k) {
-  const mpmi_bound *f = data;
-  mpmi_clear_share(f->step->settings, (double *)f->nodes->hook_impulse, mpmi_slots(f->step->layout), 3, k);
+  mpmi_bound *bound = data;
+  mpmi_clear_share(bound->step->settings, (double *)bound->nodes->hook_impulse,
+                   mpmi_slots(bound->step->layout), 3, k);
 }
 
-static mpm_status run_all(const mpmi_bound *f, mpm_task_fn task) {
-  const mpmi_settings *settings = f->step->settings;
-  return mpmi_run_tasks(settings, 0, settings->tasks, task, (void *)(uintptr_t)f);
+static mpm_status run_all(mpmi_bound *bound, mpm_task_fn task) {
+  const mpmi_settings *settings = bound->step->settings;
+  return mpmi_run_tasks(settings, 0, settings->tasks, task, bound);
 }
 
-mpm_status mpmi_hooks_begin(const mpmi_bound *f) {
-  return mpmi_has_hooks(f->step->settings) ? run_all(f, forget_task) : MPM_OK;
+mpm_status mpmi_hooks_begin(mpmi_bound *bound) {
+  return mpmi_has_hooks(bound->step->settings) ? run_all(bound, forget_task) : MPM_OK;
 }
 
-mpm_status mpmi_hooks_end(const mpmi_bound *f) {
-  if (!mpmi_has_hooks(f->step->settings)) return MPM_OK;
-  const mpm_status status = run_all(f, work_task);
-  if (!status) mpmi_add_block_work(f->step);
+mpm_status mpmi_hooks_end(mpmi_bound *bound) {
+  if (!mpmi_has_hooks(bound->step->settings)) return MPM_OK;
+  const mpm_status status = run_all(bound, work_task);
+  if (!status) mpmi_add_block_work(bound->step);
   return status;
 }

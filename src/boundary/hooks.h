@@ -11,9 +11,9 @@
 #include "boundary/impulses.h"
 
 /* Around all hooks of a step; nothing happens where there are none. The end adds up their work. */
-mpm_status mpmi_hooks_begin(const mpmi_bound *f);
-mpm_status mpmi_hooks_end(const mpmi_bound *f);
+mpm_status mpmi_hooks_begin(mpmi_bound *bound);
+mpm_status mpmi_hooks_end(mpmi_bound *bound);
 /* Calls the hook of a stage, MPM_AFTER_P2G ..., if there is one. */
-mpm_status mpmi_hooks_run(const mpmi_bound *f, int32_t stage);
+mpm_status mpmi_hooks_run(mpmi_bound *bound, int32_t stage);
 
 #endif

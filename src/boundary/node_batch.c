@@ -1,22 +1,22 @@
 #include "boundary/node_batch.h"
 
-int64_t mpmi_list_nodes(const mpmi_bound *f, int64_t block, mpmi_node_list *list) {
-  const mpmi_step *step = f->step;
+int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *list) {
+  const mpmi_step *step = bound->step;
   const mpmi_blocks *b = &step->layout->blocks;
   list->n = 0;
   for (int64_t slot = block * b->nodes; slot < (block + 1) * b->nodes; ++slot) {
-    if (!mpmi_moves(f, slot)) continue;
+    if (!mpmi_moves(bound, slot)) continue;
     int64_t index[3];
     mpmi_blocks_index(b, slot, index);
-    for (int32_t k = 0; k < f->dim; ++k) {
+    for (int32_t k = 0; k < bound->dim; ++k) {
       list->index[k * MPMI_NODE_BATCH + list->n] = index[k];
       list->position[k * MPMI_NODE_BATCH + list->n] = mpmi_node_position(b->grid, k, index[k]);
     }
-    list->mass[list->n] = mpmi_moving_mass(f, slot);
+    list->mass[list->n] = mpmi_moving_mass(bound, slot);
     list->slot[list->n++] = slot;
   }
   list->batch = (mpm_node_batch){.struct_size = sizeof list->batch,
-                                 .dim = f->dim,
+                                 .dim = bound->dim,
                                  .n = list->n,
                                  .ld = MPMI_NODE_BATCH,
                                  .t = step->t,
@@ -27,10 +27,10 @@ int64_t mpmi_list_nodes(const mpmi_bound *f, int64_t block, mpmi_node_list *list
   return list->n;
 }
 
-void mpmi_bad_node(const mpmi_bound *f, const mpmi_node_list *list, int64_t i, const char *what,
+void mpmi_bad_node(const mpmi_bound *bound, const mpmi_node_list *list, int64_t i, const char *what,
                    mpmi_failure *failure) {
   int64_t index[3];
-  const mpmi_blocks *b = &f->step->layout->blocks;
+  const mpmi_blocks *b = &bound->step->layout->blocks;
   mpmi_blocks_index(b, list->slot[i], index);
   mpmi_failure_take(failure,
                     &(mpmi_failure){MPM_NONFINITE, 0, -1, -1, mpmi_node_number(b->grid, index), what});

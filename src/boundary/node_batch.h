@@ -16,9 +16,9 @@ typedef struct mpmi_node_list {
 } mpmi_node_list;
 
 /* Masters stand for their ties, with the mass of all of it. Returns how many nodes there are. */
-int64_t mpmi_list_nodes(const mpmi_bound *f, int64_t block, mpmi_node_list *list);
+int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *list);
 /* A value of the host on node i that is not finite. */
-void mpmi_bad_node(const mpmi_bound *f, const mpmi_node_list *list, int64_t i, const char *what,
+void mpmi_bad_node(const mpmi_bound *bound, const mpmi_node_list *list, int64_t i, const char *what,
                    mpmi_failure *failure);
 
 #endif

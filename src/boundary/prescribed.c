@@ -64,8 +64,7 @@ mpm_status mpmi_prescribed_prepare(mpmi_layout *layout, mpmi_nodes *nodes, const
   return MPM_OK;
 }
 
-/* ---- mean velocities of the coming step
- * -------------------------------------------------------------------- */
+/* ---- mean velocities of the coming step --------------------------------------------------------------- */
 static void ask_batch(void *user, int32_t m, const mpm_particle_batch *batch, int64_t begin,
                       mpmi_failure *failure) {
   const mpmi_step *step = user;
@@ -91,8 +90,7 @@ mpm_status mpmi_prescribed_stage(mpmi_step *step) {
   return mpmi_step_failure(step);
 }
 
-/* ---- motion
- * ------------------------------------------------------------------------------------------------ */
+/* ---- motion ------------------------------------------------------------------------------------------- */
 static uint32_t flags_of(const mpmi_move *move, int32_t c, double x) {
   double away = x - move->centre[c];
   away -= move->period[c] * nearbyint(away * move->inverse_period[c]);
@@ -128,8 +126,7 @@ uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t 
   return flags;
 }
 
-/* ---- reports
- * ----------------------------------------------------------------------------------------------- */
+/* ---- reports ------------------------------------------------------------------------------------------ */
 void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes) {
   const mpmi_layout *layout = step->layout;
   for (int32_t m = 0; m < layout->member_count; ++m) {

@@ -24,8 +24,8 @@ static inline int32_t mpmi_block_is(const mpmi_nodes *nodes, int64_t block, int3
   return nodes->prescription.block[block] & flag;
 }
 
-/* Is the particle in a slot prescribed on axis c? Holes are not. Only for members with prescribed particles.
- */
+/* Is the particle in a slot prescribed on axis c? A hole is not. For members with
+ * prescribed particles. */
 static inline int32_t mpmi_is_prescribed(const mpm_particles *set, int64_t slot, int32_t c) {
   return ((const uint8_t *)set->field[MPMI_PRESCRIBED].data[0])[c * set->ld + slot];
 }
@@ -44,8 +44,8 @@ static inline mpmi_prescribed_part *mpmi_part_of(const mpmi_layout *layout, cons
 mpm_status mpmi_prescribed_prepare(mpmi_layout *layout, mpmi_nodes *nodes, const mpmi_settings *settings);
 /* Mean velocities of the step, from the host where there is a motion. */
 mpm_status mpmi_prescribed_stage(mpmi_step *step);
-/* After a batch was moved as any other: prescribed particles of it move as they must. Returns flags of move.
- */
+/* After a batch was moved as any other: its prescribed particles move as they must. Returns flags of
+ * mpmi_move. */
 uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t m, int64_t block,
                               const mpmi_move *move, int64_t begin, int64_t n);
 /* What they did in the step: the sets' reactions, and the work of moving them. */

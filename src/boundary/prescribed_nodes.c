@@ -33,7 +33,7 @@ static void find_stencil(const mpm_grid *grid, const mpmi_weights *W, int64_t p,
 
 /* One member's prescribed particles in one block, with the block's tile of sums. */
 typedef struct visit {
-  const mpmi_bound *f;
+  mpmi_bound *bound;
   const mpmi_member *member;
   double *tile;
   mpmi_prescribed_part *part;
@@ -43,7 +43,7 @@ typedef void (*visit_fn)(const visit *v, int64_t slot, const stencil *nodes);
 static void visit_chunk(const visit *v, const mpmi_axis *axis, int64_t begin, visit_fn fn) {
   const mpm_particles *set = v->member->set;
   const mpm_grid *grid = set->grid;
-  const mpmi_weights_fn weights = v->f->step->settings->kernels->weights[grid->family][grid->dim];
+  const mpmi_weights_fn weights = v->bound->step->settings->kernels->weights[grid->family][grid->dim];
   const mpmi_points points = mpmi_points_of(set, 0);
   mpmi_weights W;
   stencil nodes;
@@ -59,12 +59,12 @@ static void visit_chunk(const visit *v, const mpmi_axis *axis, int64_t begin, vi
   }
 }
 
-static void visit_particles(const mpmi_bound *f, int64_t block, double *tile, visit_fn fn) {
-  const mpmi_layout *layout = f->step->layout;
+static void visit_particles(mpmi_bound *bound, int64_t block, double *tile, visit_fn fn) {
+  const mpmi_layout *layout = bound->step->layout;
   mpmi_axis axis[3];
   mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[block], axis);
   for (int32_t m = 0; m < layout->member_count; ++m) {
-    const visit v = {f, &layout->member[m], tile, mpmi_part_of(layout, f->nodes, block, m)};
+    const visit v = {bound, &layout->member[m], tile, mpmi_part_of(layout, bound->nodes, block, m)};
     const int64_t *start = v.member->now.start;
     for (int64_t at = start[block]; at < start[block + 1] && v.member->prescribed; at += MPMI_CHUNK)
       visit_chunk(&v, axis, at, fn);
@@ -72,12 +72,11 @@ static void visit_particles(const mpmi_bound *f, int64_t block, double *tile, vi
 }
 _Static_assert((int)MPMI_PAD % (int)MPMI_CHUNK == 0, "blocks have whole chunks");
 
-/* ---- the nodes that they hold ----------------------------------------------------------------------------
- */
+/* ---- the nodes that they hold -------------------------------------------------------------------------- */
 static void give_momentum(const visit *v, int64_t slot, const stencil *nodes) {
   const mpm_particles *set = v->member->set;
   const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot], *mean = mpmi_mean_velocity(v->member);
-  for (int32_t c = 0; c < v->f->dim; ++c) {
+  for (int32_t c = 0; c < v->bound->dim; ++c) {
     if (!mpmi_is_prescribed(set, slot, c)) continue;
     const double momentum = mass * mean[c * set->ld + slot];
     for (int32_t n = 0; n < nodes->count; ++n) {
@@ -100,45 +99,45 @@ static mpmi_nodal sums_of(const mpmi_nodes *nodes) {
   return (mpmi_nodal){.at = (double *)nodes->prescription.sums, .values = 8};
 }
 
-static int32_t is_touched(const mpmi_bound *f, int64_t slot) {
-  return mpmi_block_is(f->nodes, slot / f->step->layout->blocks.nodes, MPMI_TOUCHED);
+static int32_t is_touched(mpmi_bound *bound, int64_t slot) {
+  return mpmi_block_is(bound->nodes, slot / bound->step->layout->blocks.nodes, MPMI_TOUCHED);
 }
 
 /* Runs over the slots of the blocks that are touched. */
-typedef void (*slots_fn)(const mpmi_bound *f, int64_t begin, int64_t end, mpmi_failure *failure);
+typedef void (*slots_fn)(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failure *failure);
 typedef struct slots_job {
-  const mpmi_bound *f;
+  mpmi_bound *bound;
   slots_fn fn;
 } slots_job;
 
 static void slots_task(void *data, int64_t k) {
   const slots_job *job = data;
-  const mpmi_step *step = job->f->step;
+  const mpmi_step *step = job->bound->step;
   const mpmi_blocks *blocks = &step->layout->blocks;
   const mpmi_share share = mpmi_share_of(step->settings, blocks->count, k);
   for (int64_t b = share.begin; b < share.end; ++b)
-    if (mpmi_block_is(job->f->nodes, b, MPMI_TOUCHED))
-      job->fn(job->f, b * blocks->nodes, (b + 1) * blocks->nodes, &step->work->report[k].failure);
+    if (mpmi_block_is(job->bound->nodes, b, MPMI_TOUCHED))
+      job->fn(job->bound, b * blocks->nodes, (b + 1) * blocks->nodes, &step->work->report[k].failure);
 }
 
-static mpm_status over_slots(const mpmi_bound *f, slots_fn fn) {
-  slots_job job = {f, fn};
-  return mpmi_run_tasks(f->step->settings, 0, f->step->settings->tasks, slots_task, &job);
+static mpm_status over_slots(mpmi_bound *bound, slots_fn fn) {
+  slots_job job = {bound, fn};
+  return mpmi_run_tasks(bound->step->settings, 0, bound->step->settings->tasks, slots_task, &job);
 }
 
 /* A tie moves as one, component by component with its sign. */
 static void fold_task(void *data, int64_t k) {
-  const mpmi_bound *f = data;
-  const mpmi_constraints *constraints = mpmi_constraints_of(f);
-  const mpmi_share share = mpmi_share_of(f->step->settings, constraints->tie_count, k);
+  mpmi_bound *bound = data;
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
+  const mpmi_share share = mpmi_share_of(bound->step->settings, constraints->tie_count, k);
   for (int64_t i = share.begin; i < share.end; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
-    mpmi_prescribed_sums *master = sums_at(f->nodes, tie->master);
+    mpmi_prescribed_sums *master = sums_at(bound->nodes, tie->master);
     for (int64_t d = tie->first; d < tie->first + tie->count; ++d) {
       const mpmi_follower *follower = &constraints->follower[d];
-      if (!is_touched(f, follower->slot) || !is_touched(f, tie->master)) continue;
-      const mpmi_prescribed_sums *sums = sums_at(f->nodes, follower->slot);
-      for (int32_t c = 0; c < f->dim; ++c) {
+      if (!is_touched(bound, follower->slot) || !is_touched(bound, tie->master)) continue;
+      const mpmi_prescribed_sums *sums = sums_at(bound->nodes, follower->slot);
+      for (int32_t c = 0; c < bound->dim; ++c) {
         master->momentum[c] += follower->sign[c] * sums->momentum[c];
         master->mass[c] += sums->mass[c];
       }
@@ -147,12 +146,12 @@ static void fold_task(void *data, int64_t k) {
 }
 
 /* After the host: it comes first. */
-static void hold_slots(const mpmi_bound *f, int64_t begin, int64_t end, mpmi_failure *failure) {
-  const mpmi_blocks *blocks = &f->step->layout->blocks;
+static void hold_slots(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failure *failure) {
+  const mpmi_blocks *blocks = &bound->step->layout->blocks;
   for (int64_t slot = begin; slot < end; ++slot)
-    for (int32_t c = 0; c < f->dim && mpmi_moves(f, slot); ++c) {
-      const mpmi_prescribed_sums *sums = sums_at(f->nodes, slot);
-      if (f->nodes->held[slot][c] || !(sums->mass[c] > f->step->layout->mass_cut)) continue;
+    for (int32_t c = 0; c < bound->dim && mpmi_moves(bound, slot); ++c) {
+      const mpmi_prescribed_sums *sums = sums_at(bound->nodes, slot);
+      if (bound->nodes->held[slot][c] || !(sums->mass[c] > bound->step->layout->mass_cut)) continue;
       const double value = sums->momentum[c] / sums->mass[c];
       if (!isfinite(value)) {
         int64_t index[3];
@@ -161,63 +160,63 @@ static void hold_slots(const mpmi_bound *f, int64_t begin, int64_t end, mpmi_fai
                           &(mpmi_failure){MPM_NONFINITE, 0, -1, -1, mpmi_node_number(blocks->grid, index),
                                           "velocity by prescribed particles not finite"});
       }
-      f->nodes->held[slot][c] = MPMI_HELD_BY_PARTICLES;
-      f->nodes->held_value[slot][c] = value;
+      bound->nodes->held[slot][c] = MPMI_HELD_BY_PARTICLES;
+      bound->nodes->held_value[slot][c] = value;
     }
 }
 
-mpm_status mpmi_prescribed_hold(const mpmi_bound *f) {
-  const mpmi_nodal sums = sums_of(f->nodes);
-  mpm_status status = mpmi_accumulate(f->step, &(mpmi_accumulation){.to = &sums,
-                                                                    .give = give_block,
-                                                                    .fold = fold_task,
-                                                                    .user = (void *)(uintptr_t)f,
-                                                                    .flags = f->nodes->prescription.block,
-                                                                    .giving = MPMI_WITH_PRESCRIBED,
-                                                                    .receiving = MPMI_TOUCHED});
-  if (!status) status = over_slots(f, hold_slots);
-  return status ? status : mpmi_step_failure(f->step);
+mpm_status mpmi_prescribed_hold(mpmi_bound *bound) {
+  const mpmi_nodal sums = sums_of(bound->nodes);
+  mpm_status status =
+      mpmi_accumulate(bound->step, &(mpmi_accumulation){.to = &sums,
+                                                        .give = give_block,
+                                                        .fold = fold_task,
+                                                        .user = bound,
+                                                        .flags = bound->nodes->prescription.block,
+                                                        .giving = MPMI_WITH_PRESCRIBED,
+                                                        .receiving = MPMI_TOUCHED});
+  if (!status) status = over_slots(bound, hold_slots);
+  return status ? status : mpmi_step_failure(bound->step);
 }
 
-/* ---- their share of the impulses
- * --------------------------------------------------------------------------- */
-/* The sums become impulse by prescribed mass: of free nodes here, of ties below. */
-static void divide_impulses(const mpmi_bound *f, int64_t begin, int64_t end, mpmi_failure *failure) {
+/* ---- their share of the impulses ---------------------------------------------------------------------- */
+/* In place of the momentum comes impulse / prescribed mass: here on nodes without ties, below on those with. */
+static void divide_impulses(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failure *failure) {
   (void)failure;
   for (int64_t slot = begin; slot < end; ++slot)
-    for (int32_t c = 0; c < f->dim; ++c) {
-      mpmi_prescribed_sums *sums = sums_at(f->nodes, slot);
-      const int32_t theirs = mpmi_constraints_of(f)->tie_of[slot] < 0 &&
-                             mpmi_held_by(f->nodes, slot, c) == MPMI_HELD_BY_PARTICLES;
-      sums->momentum[c] = theirs ? f->nodes->impulse[slot].given[c] / sums->mass[c] : 0.0;
+    for (int32_t c = 0; c < bound->dim; ++c) {
+      mpmi_prescribed_sums *sums = sums_at(bound->nodes, slot);
+      const int32_t theirs = mpmi_constraints_of(bound)->tie_of[slot] < 0 &&
+                             mpmi_held_by(bound->nodes, slot, c) == MPMI_HELD_BY_PARTICLES;
+      sums->momentum[c] = theirs ? bound->nodes->impulse[slot].given[c] / sums->mass[c] : 0.0;
     }
 }
 
-static void divide_of_tie(const mpmi_bound *f, const mpmi_tie *tie, int32_t c) {
-  const mpmi_follower *follower = tie->count ? mpmi_constraints_of(f)->follower + tie->first : NULL;
-  double total = f->nodes->impulse[tie->master].given[c];
-  for (int64_t d = 0; d < tie->count; ++d) total += f->nodes->impulse[follower[d].slot].given[c];
-  const double by_mass = total / sums_at(f->nodes, tie->master)->mass[c];
-  sums_at(f->nodes, tie->master)->momentum[c] = by_mass;
+static void divide_of_tie(mpmi_bound *bound, const mpmi_tie *tie, int32_t c) {
+  const mpmi_follower *follower = tie->count ? mpmi_constraints_of(bound)->follower + tie->first : NULL;
+  double total = bound->nodes->impulse[tie->master].given[c];
+  for (int64_t d = 0; d < tie->count; ++d) total += bound->nodes->impulse[follower[d].slot].given[c];
+  const double by_mass = total / sums_at(bound->nodes, tie->master)->mass[c];
+  sums_at(bound->nodes, tie->master)->momentum[c] = by_mass;
   for (int64_t d = 0; d < tie->count; ++d)
-    if (is_touched(f, follower[d].slot)) sums_at(f->nodes, follower[d].slot)->momentum[c] = by_mass;
+    if (is_touched(bound, follower[d].slot)) sums_at(bound->nodes, follower[d].slot)->momentum[c] = by_mass;
 }
 
 static void ties_task(void *data, int64_t k) {
-  const mpmi_bound *f = data;
-  const mpmi_constraints *constraints = mpmi_constraints_of(f);
-  const mpmi_share share = mpmi_share_of(f->step->settings, constraints->tie_count, k);
+  mpmi_bound *bound = data;
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
+  const mpmi_share share = mpmi_share_of(bound->step->settings, constraints->tie_count, k);
   for (int64_t i = share.begin; i < share.end; ++i)
-    for (int32_t c = 0; c < f->dim; ++c)
-      if (mpmi_held_by(f->nodes, constraints->tie[i].master, c) == MPMI_HELD_BY_PARTICLES)
-        divide_of_tie(f, &constraints->tie[i], c);
+    for (int32_t c = 0; c < bound->dim; ++c)
+      if (mpmi_held_by(bound->nodes, constraints->tie[i].master, c) == MPMI_HELD_BY_PARTICLES)
+        divide_of_tie(bound, &constraints->tie[i], c);
 }
 
 static void take_share(const visit *v, int64_t slot, const stencil *nodes) {
   const mpm_particles *set = v->member->set;
-  const mpmi_step *step = v->f->step;
+  const mpmi_step *step = v->bound->step;
   const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot];
-  for (int32_t c = 0; c < v->f->dim; ++c) {
+  for (int32_t c = 0; c < v->bound->dim; ++c) {
     if (!mpmi_is_prescribed(set, slot, c)) continue;
     double force = mass * step->settings->desc.gravity[c], impulse = 0.0;
     if (v->member->force) force += v->member->force[c * set->ld + slot];
@@ -228,22 +227,22 @@ static void take_share(const visit *v, int64_t slot, const stencil *nodes) {
 }
 
 static void share_block(void *user, const mpmi_visit *at) {
-  const mpmi_bound *f = user;
-  const mpmi_step *step = f->step;
-  const mpmi_nodal sums = sums_of(f->nodes);
+  mpmi_bound *bound = user;
+  const mpmi_step *step = bound->step;
+  const mpmi_nodal sums = sums_of(bound->nodes);
   double *tile = step->work->scratch[at->task].tile;
-  if (!mpmi_block_is(f->nodes, at->block, MPMI_WITH_PRESCRIBED)) return;
-  memset(mpmi_part_of(step->layout, f->nodes, at->block, 0), 0,
+  if (!mpmi_block_is(bound->nodes, at->block, MPMI_WITH_PRESCRIBED)) return;
+  memset(mpmi_part_of(step->layout, bound->nodes, at->block, 0), 0,
          (size_t)step->layout->member_count * sizeof(mpmi_prescribed_part));
   mpmi_tile_load(step->settings->kernels, &step->layout->blocks, at->block, &sums, 8, tile);
-  visit_particles(f, at->block, tile, take_share);
+  visit_particles(bound, at->block, tile, take_share);
 }
 
-mpm_status mpmi_prescribed_share(const mpmi_bound *f) {
-  const mpmi_settings *settings = f->step->settings;
-  void *user = (void *)(uintptr_t)f;
-  mpm_status status = over_slots(f, divide_impulses);
+mpm_status mpmi_prescribed_share(mpmi_bound *bound) {
+  const mpmi_settings *settings = bound->step->settings;
+  void *user = bound;
+  mpm_status status = over_slots(bound, divide_impulses);
   if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, ties_task, user);
-  if (!status) status = mpmi_visit_blocks(f->step, 0, share_block, user);
+  if (!status) status = mpmi_visit_blocks(bound->step, 0, share_block, user);
   return status;
 }

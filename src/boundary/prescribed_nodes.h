@@ -6,8 +6,8 @@
 #include "boundary/impulses.h"
 
 /* Finds the nodes that they hold, and their velocities; what the host holds stays the host's. */
-mpm_status mpmi_prescribed_hold(const mpmi_bound *f);
+mpm_status mpmi_prescribed_hold(mpmi_bound *bound);
 /* Gives them their share of the impulses on these nodes, in the parts of the prescription. */
-mpm_status mpmi_prescribed_share(const mpmi_bound *f);
+mpm_status mpmi_prescribed_share(mpmi_bound *bound);
 
 #endif

@@ -5,6 +5,6 @@
 #include "boundary/impulses.h"
 
 /* Asks it for all free nodes that move; its answers go into held and held_value. */
-mpm_status mpmi_ask_velocities(const mpmi_bound *f);
+mpm_status mpmi_ask_velocities(mpmi_bound *bound);
 
 #endif

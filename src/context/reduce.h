@@ -1,5 +1,5 @@
-/* One number from many parts. Energies, the stable dt, norms and dot products of the whole problem all come
- * through here: parts are taken in the order of their numbers, so that no bit depends on who made them. */
+/* One number from the parts that different tasks made: energies, the stable dt, norms, dot products. Parts
+ * are taken in the order of their numbers, so that no bit depends on who made them. */
 #ifndef MPMI_REDUCE_H
 #define MPMI_REDUCE_H
 

@@ -5,7 +5,6 @@
 #include <mpm/mpm.h>
 
 typedef struct mpmi_wall_kind {
-  const char *name;
   int32_t opens; /* particles that reach it are removed */
   int32_t holds; /* MPMI_HOLDS_...: what is 0 on its plane, and mirrored by ghosts behind it */
   int32_t rubs;  /* nodes on it are unilateral contacts with friction */

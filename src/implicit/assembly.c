@@ -10,8 +10,7 @@
 
 #include <string.h>
 
-/* ---- external forces
- * --------------------------------------------------------------------------------------- */
+/* ---- external forces ---------------------------------------------------------------------------------- */
 static void give_external(void *user, const mpmi_visit *visit, double *tile) {
   const mpmi_balance *s = user;
   const mpm_grid *grid = s->settings->grid;
@@ -30,8 +29,7 @@ mpm_status mpmi_external_forces(mpmi_balance *s) {
                          &(mpmi_accumulation){.to = &s->newton->external, .give = give_external, .user = s});
 }
 
-/* ---- strain of given displacements
- * ------------------------------------------------------------------------- */
+/* ---- strain of given displacements -------------------------------------------------------------------- */
 /* Displacements as mean velocities of the step, on all nodes that move with a row. */
 typedef struct spread_job {
   mpmi_balance *s;
@@ -67,7 +65,7 @@ static mpm_status begin_strain(mpmi_balance *s, const double *u, const mpmi_pass
   return status;
 }
 
-/* Stress of a batch, then what it adds to the nodes. */
+/* The stress of a batch; then `add` puts its force or its stiffness on the nodes. */
 static void take(mpmi_batch *b, void (*add)(mpmi_balance *, mpmi_batch *)) {
   mpmi_balance *s = b->user;
   mpmi_gradient_keep(b);
@@ -81,8 +79,7 @@ static void take(mpmi_batch *b, void (*add)(mpmi_balance *, mpmi_batch *)) {
   mpmi_batch_sums(b, MPMI_SUMS_LAW);
 }
 
-/* ---- internal forces
- * --------------------------------------------------------------------------------------- */
+/* ---- internal forces ---------------------------------------------------------------------------------- */
 static void take_forces(mpmi_batch *b) {
   take(b, mpmi_add_forces);
 }
@@ -108,8 +105,7 @@ mpm_status mpmi_internal_forces(mpmi_balance *s, const double *u) {
   return status;
 }
 
-/* ---- stiffness
- * --------------------------------------------------------------------------------------------- */
+/* ---- stiffness ---------------------------------------------------------------------------------------- */
 static void take_stiffness(mpmi_batch *b) {
   take(b, mpmi_add_stiffness);
 }

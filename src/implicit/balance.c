@@ -82,11 +82,6 @@ static mpm_status prepare_history(mpmi_balance *s) {
   return MPM_OK;
 }
 
-static mpm_status reserve_nodal(mpm_context *c, mpmi_nodal *nodes, int64_t slots) {
-  nodes->values = 4;
-  return mpmi_reserve_more(c, (void **)&nodes->at, &nodes->capacity, 4 * slots, sizeof *nodes->at);
-}
-
 static void find_stencil(const mpmi_settings *settings, mpmi_stencil *to) {
   const int32_t dim = settings->grid->dim, width = settings->grid->width;
   to->count = mpmi_cube_places(dim, width, MPMI_TILE_EDGE(dim, width), to->in_tile);
@@ -100,13 +95,10 @@ mpm_status mpmi_balance_prepare(mpmi_balance *s) {
   mpm_status status;
   find_stencil(s->settings, &newton->stencil);
   newton->history_count = 0;
-  newton->iterations = newton->solver_used = 0;
-  newton->linear_iterations = 0;
-  newton->factor_seconds = newton->solve_seconds = 0.0;
   if ((status = prepare_history(s)) || (status = prepare_work(s)) ||
-      (status = reserve_nodal(c, &newton->force, slots)))
+      (status = mpmi_nodal_reserve(c, &newton->force, slots, 4)))
     return status;
-  return reserve_nodal(c, &newton->external, slots);
+  return mpmi_nodal_reserve(c, &newton->external, slots, 4);
 }
 
 void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {

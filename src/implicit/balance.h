@@ -94,9 +94,6 @@ typedef struct mpmi_newton {
   mpmi_newton_work *work; /* [tasks] */
   int32_t history_capacity, history_count;
   double *history;
-  int32_t iterations, solver_used;
-  int64_t linear_iterations;
-  double factor_seconds, solve_seconds;
 } mpmi_newton;
 
 /* An implicit step under way: the balance of forces on its nodes. */
@@ -106,6 +103,10 @@ typedef struct mpmi_balance {
   const mpmi_layout *layout;     /* of the step */
   mpmi_nodes *nodes;
   mpmi_newton *newton;
+  /* What the iterations have taken so far: */
+  int32_t iterations, solver_used;
+  int64_t linear_iterations;
+  double factor_seconds, solve_seconds;
 } mpmi_balance;
 
 /* Nodes along an axis that couple: of a stencil, or with the locking remedy of all stencils of a cell. */

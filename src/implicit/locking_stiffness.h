@@ -17,8 +17,8 @@ mpm_status mpmi_locking_stiffness_begin(mpmi_balance *s);
  * particles of a cell; */
 void mpmi_locking_stiffness_local(int32_t dim, const mpmi_law_batch *law, const double *weight,
                                   const double *volume, double *tangent, double *h);
-/* each particle adds weight h F_inc^-T, F_inc^-1 and its new volume to its cell, components 3 * row + column;
- */
+/* each particle adds weight h F_inc^-T, F_inc^-1 and its new volume to its cell, with the
+ * components 3 * row + column; */
 typedef struct mpmi_locking_particle {
   double h[9], inverse[9], volume;
 } mpmi_locking_particle;

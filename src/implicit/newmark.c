@@ -170,19 +170,18 @@ static void show_velocities(mpmi_balance *s) {
   }
 }
 
-double mpmi_next_dt(const mpmi_newton *newton, double dt) {
+double mpmi_next_dt(int32_t iterations, double dt) {
   enum { FEW_ITERATIONS = 4 };
-  return newton->iterations <= FEW_ITERATIONS ? 2.0 * dt : dt;
+  return iterations <= FEW_ITERATIONS ? 2.0 * dt : dt;
 }
 
 /* The iterations; what is neither factorisation nor solution is assembly. */
 static mpm_status solve(mpmi_balance *s, double *clock) {
-  const mpmi_newton *newton = s->newton;
   const mpm_status status = mpmi_newton_solve(s);
   mpmi_lap(s->step, MPMI_TIME_ASSEMBLY, clock);
-  s->step->profile->seconds[MPMI_TIME_FACTOR] += newton->factor_seconds;
-  s->step->profile->seconds[MPMI_TIME_SOLVE] += newton->solve_seconds;
-  s->step->profile->seconds[MPMI_TIME_ASSEMBLY] -= newton->factor_seconds + newton->solve_seconds;
+  s->step->profile->seconds[MPMI_TIME_FACTOR] += s->factor_seconds;
+  s->step->profile->seconds[MPMI_TIME_SOLVE] += s->solve_seconds;
+  s->step->profile->seconds[MPMI_TIME_ASSEMBLY] -= s->factor_seconds + s->solve_seconds;
   mpmi_move_samples(s->step, MPMI_TIME_ASSEMBLY);
   return status;
 }

@@ -1,8 +1,7 @@
 /* One implicit step by Newmark's rule (Guilkey & Weiss 2003, eqs 14-16, for any beta and gamma), or
  * quasi-static without inertia:
  *
- *   particles -> nodes   M, v0 = sum w m v_p / M, a0 = sum w m a_p / M, external forces of the end of the
- * step
+ *   particles -> nodes   M, v0 = sum w m v_p / M, a0 = sum w m a_p / M, external forces of its end
  *
  *   nodes                f_int(u) + M a1 = f_ext,  a1 = (u - dt v0 - dt^2 (1/2 - beta) a0) / (beta dt^2)
  *
@@ -13,7 +12,7 @@
 #include "implicit/balance.h"
 
 mpm_status mpmi_newmark_step(mpmi_balance *s);
-/* The dt to try after a step that went well. */
-double mpmi_next_dt(const mpmi_newton *newton, double dt);
+/* The dt to try after a step that went well, in so many iterations. */
+double mpmi_next_dt(int32_t iterations, double dt);
 
 #endif

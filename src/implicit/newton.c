@@ -20,12 +20,12 @@ typedef struct iteration {
   double du_largest, energy_first;
 } iteration;
 
-/* The sum, or the largest, of the terms that have just been written. */
+/* The sum, or the largest, of all entries of MPMI_TERMS. */
 static double reduced(const iteration *it, int32_t operation) {
   return mpmi_reduce(operation, 0.0, it->newton->vector[MPMI_TERMS], 1, NULL, it->n);
 }
 
-/* Of the free components alone, or of all. */
+/* Dot product of the free components alone, or of all. */
 static double dot_of(const iteration *it, const double *a, const double *b, int32_t free_only) {
   const uint8_t *held = it->newton->matrix.held;
   double *term = it->newton->vector[MPMI_TERMS];
@@ -37,7 +37,7 @@ static double norm_of(const iteration *it, const double *v, int32_t free_only) {
   return sqrt(dot_of(it, v, v, free_only));
 }
 
-/* Of an increment, by stiffness: a node at the rim of a body may move far and mean little. */
+/* Length of an increment, weighted by stiffness: a node at the rim of a body may move far and mean little. */
 static double length_of(const iteration *it, const double *du) {
   double *term = it->newton->vector[MPMI_TERMS];
   for (int64_t i = 0; i < it->n; ++i) term[i] = it->newton->vector[MPMI_DIAGONAL][i] * du[i] * du[i];
@@ -171,11 +171,11 @@ static mpm_status solve(iteration *it) {
       .inertia = it->inertia_share};
   mpmi_solve_report report = {.node = -1};
   status = mpmi_solve(newton->solver, &job, &report);
-  newton->factor_seconds += report.factor_seconds;
-  newton->solve_seconds += report.solve_seconds;
-  newton->linear_iterations += report.iterations;
-  newton->solver_used = report.solver;
-  ++newton->iterations;
+  s->factor_seconds += report.factor_seconds;
+  s->solve_seconds += report.solve_seconds;
+  s->linear_iterations += report.iterations;
+  s->solver_used = report.solver;
+  ++s->iterations;
   if (status) {
     s->step->failure.node = report.node;
     s->step->failure.callback_status = report.callback_status;
@@ -231,7 +231,7 @@ static mpm_status not_converged(const iteration *it) {
       s->settings->context, MPM_NOT_CONVERGED,
       "Newton's method has a relative residual of %g after %d iterations in the step from t = %g "
       "with dt = %g: use a smaller dt, or mpm_advance",
-      relative(it), (int)it->newton->iterations, s->step->t, it->s->step->dt);
+      relative(it), (int)s->iterations, s->step->t, s->step->dt);
 }
 
 static mpm_status iterate(iteration *it) {
@@ -240,12 +240,12 @@ static mpm_status iterate(iteration *it) {
     int32_t moves_held;
     double taken;
     mpm_status status;
-    if (newton->iterations >= it->s->settings->desc.newton_max_iterations) return not_converged(it);
+    if (it->s->iterations >= it->s->settings->desc.newton_max_iterations) return not_converged(it);
     if ((status = assemble(it)) || (status = find_rhs(it, &moves_held))) return status;
     if (!moves_held && it->norm <= noise(it)) return MPM_OK;
     if ((status = solve(it))) return status;
     const double energy = fabs(dot_of(it, newton->vector[MPMI_DU], newton->vector[MPMI_RHS], 1));
-    if (newton->iterations == 1) it->energy_first = energy;
+    if (it->s->iterations == 1) it->energy_first = energy;
     if ((status = line_search(it, moves_held, &taken))) return status;
     note(it);
     if (taken == 1.0 && converged(it, length_of(it, newton->vector[MPMI_DU]), energy)) return MPM_OK;
@@ -262,8 +262,8 @@ mpm_status mpmi_newton_solve(mpmi_balance *s) {
   find_residual(&it);
   note(&it);
   status = iterate(&it);
-  s->step->info.newton_iterations = newton->iterations;
-  s->step->info.linear_solver = newton->solver_used;
-  s->step->info.linear_iterations = newton->linear_iterations;
+  s->step->info.newton_iterations = s->iterations;
+  s->step->info.linear_solver = s->solver_used;
+  s->step->info.linear_iterations = s->linear_iterations;
   return status;
 }

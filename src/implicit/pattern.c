@@ -43,12 +43,11 @@ static void neighbours_task(void *data, int64_t k) {
   const pattern_job *job = data;
   mpmi_balance *s = job->s;
   mpmi_newton *newton = s->newton;
-  const int64_t tasks = s->settings->tasks, from = newton->active_count * k / tasks,
-                to = newton->active_count * (k + 1) / tasks;
+  const mpmi_share share = mpmi_share_of(s->settings, newton->active_count, k);
   for (int32_t o = 0; o < newton->offsets; ++o) {
     int32_t offset[3];
     offset_of(s, o, offset);
-    for (int64_t i = from; i < to; ++i) {
+    for (int64_t i = share.begin; i < share.end; ++i) {
       const int64_t slot = neighbour_slot(&s->layout->blocks, newton->active[i].slot, offset);
       const int32_t other = slot < 0 ? -1 : newton->active_of[slot];
       newton->place[i * newton->offsets + o] = other < 0 ? -1 : newton->active[other].row;
@@ -83,9 +82,8 @@ static void count_task(void *data, int64_t k) {
   const pattern_job *job = data;
   mpmi_newton *newton = job->s->newton;
   int32_t columns[2 * 8 * MOST_OFFSETS];
-  for (int64_t r = job->rows * k / job->s->settings->tasks; r < job->rows * (k + 1) / job->s->settings->tasks;
-       ++r)
-    newton->diagonal[r] = columns_of(newton, r, columns);
+  const mpmi_share share = mpmi_share_of(job->s->settings, job->rows, k);
+  for (int64_t r = share.begin; r < share.end; ++r) newton->diagonal[r] = columns_of(newton, r, columns);
 }
 
 static void fill_task(void *data, int64_t k) {
@@ -93,8 +91,8 @@ static void fill_task(void *data, int64_t k) {
   mpmi_newton *newton = job->s->newton;
   mpmi_matrix *A = &newton->matrix;
   int32_t columns[2 * 8 * MOST_OFFSETS];
-  for (int64_t r = job->rows * k / job->s->settings->tasks; r < job->rows * (k + 1) / job->s->settings->tasks;
-       ++r) {
+  const mpmi_share share = mpmi_share_of(job->s->settings, job->rows, k);
+  for (int64_t r = share.begin; r < share.end; ++r) {
     const int32_t count = columns_of(newton, r, columns);
     int32_t *to = A->column + A->row_start[r];
     memcpy(to, columns, (size_t)count * sizeof *columns);

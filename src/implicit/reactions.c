@@ -45,7 +45,7 @@ mpm_status mpmi_record_reactions(mpmi_balance *s) {
   for (int64_t r = 0; r < s->newton->matrix.rows; ++r)
     for (int32_t c = 0; c < s->settings->grid->dim; ++c) record_row(s, r, c);
   if (!s->nodes->prescription.any) return MPM_OK;
-  const mpmi_bound f = {
+  mpmi_bound bound = {
       .step = s->step, .nodes = s->nodes, .values = &s->nodes->solved, .dim = s->settings->grid->dim};
-  return mpmi_prescribed_share(&f);
+  return mpmi_prescribed_share(&bound);
 }

@@ -116,7 +116,7 @@ static void number(mpmi_balance *s) {
   }
 }
 
-/* Room for one more than there are, so that none has a place. */
+/* Room for one more of each, so that no array is empty. */
 static mpm_status reserve(mpmi_balance *s, int64_t active, int64_t rows) {
   mpmi_newton *newton = s->newton;
   mpm_context *c = s->settings->context;

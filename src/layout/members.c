@@ -3,8 +3,7 @@
 
 #include <string.h>
 
-/* ---- fields that exist as long as a stepper keeps them
- * ----------------------------------------------------- */
+/* ---- fields that exist as long as a stepper keeps them ------------------------------------------------ */
 static mpm_status make_fields(mpm_particles *set, const mpm_stepper_desc *d) {
   mpm_status status = MPM_OK;
   if (d->reference_positions) status = mpmi_field_make_present(set, MPMI_REFERENCE);
@@ -33,8 +32,7 @@ mpm_status mpmi_members_keep_fields(mpmi_layout *layout, const mpmi_settings *se
   return status;
 }
 
-/* ---- coming and going
- * -------------------------------------------------------------------------------------- */
+/* ---- coming and going --------------------------------------------------------------------------------- */
 static mpm_status grow(mpmi_layout *layout, mpm_context *c) {
   if (layout->member_count < layout->member_capacity) return MPM_OK;
   const int32_t capacity = layout->member_capacity ? 2 * layout->member_capacity : 4;
@@ -100,8 +98,7 @@ mpm_status mpmi_members_unmapped(const mpmi_layout *layout, const mpmi_settings 
   return MPM_OK;
 }
 
-/* ---- what a step needs of them
- * ----------------------------------------------------------------------------- */
+/* ---- what a step needs of them ------------------------------------------------------------------------ */
 mpm_status mpmi_members_refresh(mpmi_layout *layout, const mpmi_settings *settings) {
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpm_particles *set = layout->member[m].set;
@@ -123,7 +120,7 @@ static mpm_status reserve_rows(mpm_context *c, const mpm_particles *set, int32_t
                                double **rows, int64_t *ld) {
   if (wanted ? *rows && *ld == set->ld : !*rows) return MPM_OK;
   double *memory = NULL;
-  if (wanted && !(memory = mpmi_alloc(c, mpmi_bytes(set->ld * components, sizeof *memory))))
+  if (wanted && !(memory = mpmi_alloc_zeroed(c, mpmi_bytes(set->ld * components, sizeof *memory))))
     return MPM_E_NOMEM;
   free_rows(c, rows, ld, components);
   *rows = memory;

@@ -1,6 +1,6 @@
 #include "layout/nodes.h"
 
-static mpm_status reserve_values(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values) {
+mpm_status mpmi_nodal_reserve(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values) {
   nodes->values = values;
   return mpmi_reserve_more(c, (void **)&nodes->at, &nodes->capacity, slots * values, sizeof *nodes->at);
 }
@@ -35,12 +35,11 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   const int32_t corrected = mpmi_is_corrected(settings);
   const int32_t projects = settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected;
   mpm_status status;
-  nodes->shown = -1;
   nodes->has_holders = settings->velocity_bc || nodes->prescription.any;
   nodes->has_impulses = nodes->has_holders || ties || contacts;
-  if ((status = reserve_values(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
-      (status = projects ? reserve_values(c, &nodes->projected, slots, 4) : MPM_OK) ||
-      (status = corrected || remedy ? reserve_values(c, &nodes->sums, slots, 4) : MPM_OK) ||
+  if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
+      (status = projects ? mpmi_nodal_reserve(c, &nodes->projected, slots, 4) : MPM_OK) ||
+      (status = corrected || remedy ? mpmi_nodal_reserve(c, &nodes->sums, slots, 4) : MPM_OK) ||
       (status = mpmi_reserve_more(c, (void **)&nodes->tie_state, &nodes->tie_capacity, ties,
                                   sizeof *nodes->tie_state)) ||
       (status = mpmi_reserve_more(c, (void **)&nodes->contact_state, &nodes->contact_capacity, contacts,

@@ -15,6 +15,9 @@ typedef struct mpmi_nodal {
   int64_t capacity; /* in doubles */
 } mpmi_nodal;
 
+/* Memory for so many values of each node; they are not cleared. */
+mpm_status mpmi_nodal_reserve(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values);
+
 static inline double *mpmi_nodal_at(const mpmi_nodal *nodes, int64_t slot) {
   return nodes->at + slot * nodes->values;
 }
@@ -27,14 +30,11 @@ static inline double *mpmi_velocity(const mpmi_nodal *nodes, int64_t slot) {
 static inline double *mpmi_mass(const mpmi_nodal *nodes, int64_t slot) {
   return mpmi_nodal_at(nodes, slot) + 3;
 }
-/* Where nodes have 8 values: */
+/* Are there 8 values, with the increment of the velocity? */
 static inline int32_t mpmi_has_increments(const mpmi_nodal *nodes) {
   return nodes->values == 8;
 }
 static inline double *mpmi_increment(const mpmi_nodal *nodes, int64_t slot) {
-  return mpmi_nodal_at(nodes, slot) + 4;
-}
-static inline double *mpmi_force(const mpmi_nodal *nodes, int64_t slot) {
   return mpmi_nodal_at(nodes, slot) + 4;
 }
 

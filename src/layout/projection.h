@@ -23,11 +23,10 @@ enum {
 };
 
 enum {
-  MPMI_PROJECT_FORCES,  /* momentum and force */
-  MPMI_PROJECT_STRAIN,  /* momentum, from the velocities at the start of the step */
-  MPMI_PROJECT_CONTACT, /* momentum and force at the start of the step, to find the contacts that are closed
-                         */
-  MPMI_PROJECT_MOVED,   /* momentum, from the new velocities */
+  MPMI_PROJECT_FORCES,       /* momentum and force */
+  MPMI_PROJECT_STRAIN,       /* momentum, from the velocities at the start of the step */
+  MPMI_PROJECT_CONTACT,      /* momentum and force at the start of the step, to find closed contacts */
+  MPMI_PROJECT_MOVED,        /* momentum, from the new velocities */
   MPMI_PROJECT_CORRECTION,   /* momentum without its affine part, from the second copy of the velocities */
   MPMI_PROJECT_ACCELERATION, /* mass times acceleration, from the second copy */
   MPMI_PROJECTIONS

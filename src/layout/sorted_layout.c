@@ -3,7 +3,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings) {
   mpm_context *c = settings->context;

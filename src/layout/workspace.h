@@ -24,7 +24,7 @@ typedef struct mpmi_scratch {
   int64_t blocks_seen; /* for sampling the weights */
 } mpmi_scratch;
 
-/* Memory of all tasks. Nothing in it outlives a step. */
+/* Memory of all tasks. Nothing in it but blocks_seen outlives a step. */
 typedef struct mpmi_workspace {
   mpmi_scratch *scratch;    /* [tasks] */
   mpmi_task_report *report; /* [tasks] */

@@ -1,8 +1,9 @@
-/* Products of a block matrix with a vector are made here: tasks take chunks of rows, and each size of the
+/* Products of a block matrix with a vector are made here: tasks take ranges of rows, and each size of the
  * blocks has a loop of its own. */
 #include <float.h>
 #include <math.h>
 
+#include "context/reduce.h"
 #include "linalg/matrix.h"
 #include "linalg/vectors.h"
 #include "simd/isa.h"
@@ -14,8 +15,8 @@ typedef struct apply_job {
   const double *b, *x;
   double *y;
   int32_t what;
-  mpmi_chunks chunks;
-  double part[MPMI_MOST_CHUNKS];
+  mpmi_ranges ranges;
+  double part[MPMI_MOST_RANGES];
 } apply_job;
 
 MPMI_INLINE void row_times_vector(const mpmi_matrix *A, int32_t block, int32_t absolute, int64_t i,
@@ -60,7 +61,7 @@ MPMI_INLINE double apply_blocks(const apply_job *job, int32_t what, int64_t begi
 
 static void apply_task(void *data, int64_t k) {
   apply_job *job = data;
-  const int64_t begin = mpmi_chunk_begin(&job->chunks, k), end = mpmi_chunk_begin(&job->chunks, k + 1);
+  const int64_t begin = mpmi_range_begin(&job->ranges, k), end = mpmi_range_begin(&job->ranges, k + 1);
   if (job->what == PRODUCT)
     job->part[k] = apply_blocks(job, PRODUCT, begin, end);
   else if (job->what == RESIDUAL)
@@ -72,9 +73,9 @@ static void apply_task(void *data, int64_t k) {
 static mpm_status apply(const mpmi_matrix *A, int32_t what, const double *b, const double *x, double *y,
                         double *sum) {
   apply_job job = {.A = A, .b = b, .x = x, .y = y, .what = what};
-  job.chunks = mpmi_chunks_of(A->rows, mpmi_matrix_unknowns(A));
-  const mpm_status status = mpmi_run_chunks(A->context, &job.chunks, apply_task, &job);
-  *sum = status ? 0.0 : mpmi_sum_in_order(job.part, job.chunks.count);
+  job.ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A));
+  const mpm_status status = mpmi_run_ranges(A->context, &job.ranges, apply_task, &job);
+  *sum = status ? 0.0 : mpmi_reduce(MPMI_REDUCE_SUM, 0.0, job.part, 1, NULL, job.ranges.count);
   return status;
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "context/reduce.h"
 #include "linalg/methods.h"
 
 typedef struct cg {
@@ -12,8 +13,8 @@ typedef struct cg {
   double *r, *p, *q;     /* residual, direction, A p */
   double *z;             /* M^-1 r of a preconditioner */
   double alpha, beta;
-  mpmi_chunks chunks;
-  double rz[MPMI_MOST_CHUNKS], rr[MPMI_MOST_CHUNKS]; /* by chunk: r . D^-1 r and r . r */
+  mpmi_ranges ranges;
+  double rz[MPMI_MOST_RANGES], rr[MPMI_MOST_RANGES]; /* by range: r . D^-1 r and r . r */
 } cg;
 
 /* Sets x += alpha p and r -= alpha q, and sums over the new r. */
@@ -21,7 +22,7 @@ static void advance_task(void *data, int64_t k) {
   cg *c = data;
   double *x = c->system->x, *r = c->r, rz = 0.0, rr = 0.0;
   const double *p = c->p, *q = c->q, *inverse = c->inverse, alpha = c->alpha;
-  for (int64_t i = mpmi_chunk_begin(&c->chunks, k); i < mpmi_chunk_begin(&c->chunks, k + 1); ++i) {
+  for (int64_t i = mpmi_range_begin(&c->ranges, k); i < mpmi_range_begin(&c->ranges, k + 1); ++i) {
     x[i] += alpha * p[i];
     r[i] -= alpha * q[i];
     rr += r[i] * r[i];
@@ -36,19 +37,19 @@ static void turn_task(void *data, int64_t k) {
   const cg *c = data;
   double *p = c->p;
   const double *r = c->r, *z = c->z, *inverse = c->inverse, beta = c->beta;
-  for (int64_t i = mpmi_chunk_begin(&c->chunks, k); i < mpmi_chunk_begin(&c->chunks, k + 1); ++i)
+  for (int64_t i = mpmi_range_begin(&c->ranges, k); i < mpmi_range_begin(&c->ranges, k + 1); ++i)
     p[i] = (inverse ? inverse[i] * r[i] : z[i]) + beta * p[i];
 }
 
 static mpm_status run_cg(cg *c, mpm_task_fn task) {
-  return mpmi_run_chunks(c->system->context, &c->chunks, task, c);
+  return mpmi_run_ranges(c->system->context, &c->ranges, task, c);
 }
 
 /* Advances x and r, and then forms z = M^-1 r and r . z. */
 static mpm_status advance(cg *c, double *rz) {
   mpm_status status = run_cg(c, advance_task);
   if (status) return status;
-  *rz = mpmi_sum_in_order(c->rz, c->chunks.count);
+  *rz = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, c->rz, 1, NULL, c->ranges.count);
   if (!c->precondition) return MPM_OK;
   status = c->precondition(c->user, c->r, c->z);
   return status ? status : mpmi_dot(c->system->context, c->r, c->z, c->system->n, rz);
@@ -78,7 +79,7 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
     c->alpha = rz / curvature;
     double next;
     if ((status = advance(c, &next))) return status;
-    norm = sqrt(mpmi_sum_in_order(c->rr, c->chunks.count));
+    norm = sqrt(mpmi_reduce(MPMI_REDUCE_SUM, 0.0, c->rr, 1, NULL, c->ranges.count));
     c->beta = next / rz;
     rz = next;
     ++s->report->iterations;
@@ -92,7 +93,7 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
 mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user, int64_t limit) {
   mpm_status status = mpmi_system_work(s, precondition ? 4 : 3, 0);
   if (status) return status;
-  cg c = {.system = s, .precondition = precondition, .user = user, .chunks = mpmi_chunks_of(s->n, s->n)};
+  cg c = {.system = s, .precondition = precondition, .user = user, .ranges = mpmi_ranges_of(s->n, s->n)};
   c.inverse = precondition ? NULL : s->solver->diagonal;
   c.r = s->solver->work;
   c.p = c.r + s->n;

@@ -85,13 +85,13 @@ static void find_children(int64_t rows, int64_t coarse, mpmi_coarsening *to) {
   start[0] = 0;
 }
 
-/* ---- pattern ----------------------------------------------------------------------------------------- */
+/* ---- pattern ------------------------------------------------------------------------------------------- */
 typedef struct pattern_job {
   const mpmi_matrix *A;
   const mpmi_coarsening *P;
   mpmi_matrix *coarse; /* NULL: the columns are only counted */
   int64_t rows;
-  mpmi_chunks tasks;
+  mpmi_ranges tasks;
   int64_t *count; /* [rows] columns */
   int64_t *most;  /* [tasks] */
   int32_t *seen;  /* [tasks][rows of A, then coarse rows] the coarse row that met a node last */
@@ -144,7 +144,7 @@ static void pattern_task(void *data, int64_t k) {
 static mpm_status make_pattern(pattern_job *job, mpmi_matrix *coarse, int64_t (*index)[3],
                                mpmi_coarsening *to) {
   mpm_context *context = coarse->context;
-  mpm_status status = mpmi_run_chunks(context, &job->tasks, pattern_task, job);
+  mpm_status status = mpmi_run_ranges(context, &job->tasks, pattern_task, job);
   if (status) return status;
   int64_t entries = 0;
   for (int64_t i = 0; i < job->rows; ++i) entries += job->count[i];
@@ -153,14 +153,14 @@ static mpm_status make_pattern(pattern_job *job, mpmi_matrix *coarse, int64_t (*
   for (int64_t i = 0; i < job->rows; ++i) coarse->row_start[i + 1] = coarse->row_start[i] + job->count[i];
   memcpy(coarse->index, index, (size_t)job->rows * sizeof *index);
   job->coarse = coarse;
-  status = mpmi_run_chunks(context, &job->tasks, pattern_task, job);
+  status = mpmi_run_ranges(context, &job->tasks, pattern_task, job);
   to->most_nodes = 0;
   for (int64_t k = 0; k < job->tasks.count; ++k)
     if (job->most[k] > to->most_nodes) to->most_nodes = job->most[k];
   return status;
 }
 
-/* ---- held unknowns ----------------------------------------------------------------------------------- */
+/* ---- held unknowns ------------------------------------------------------------------------------------- */
 static void hold(const mpmi_matrix *A, const mpmi_coarsening *P, mpmi_matrix *coarse) {
   for (int64_t I = 0; I < coarse->rows; ++I)
     for (int32_t c = 0; c < A->block; ++c) {
@@ -190,11 +190,11 @@ static mpm_status reserve_slab(mpm_context *context, mpmi_coarsening *to, int64_
   }
 }
 
-mpm_status mpmi_coarsen(mpmi_workspace *w, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to) {
+mpm_status mpmi_coarsen(mpmi_level_memory *w, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to) {
   const mpmi_matrix *A = l->A;
   const int64_t parents = count_parents(A);
   node_list n = {.count = 0, .slots = 64};
-  pattern_job job = {.A = A, .P = to, .tasks = mpmi_workspace_tasks(w, A)};
+  pattern_job job = {.A = A, .P = to, .tasks = mpmi_level_memory_tasks(w, A)};
   mpm_status status = reserve_slab(w->context, to, A->rows, parents);
   if (status) return status;
   while (n.slots < 2 * parents) n.slots *= 2;
@@ -206,7 +206,7 @@ mpm_status mpmi_coarsen(mpmi_workspace *w, const mpmi_level *l, mpmi_level *next
     job.most = mpmi_arena_take(&from, job.tasks.count, sizeof *job.most);
     job.seen = mpmi_arena_take(&from, job.tasks.count * (A->rows + parents), sizeof *job.seen);
     if (from.memory) break;
-    if ((status = mpmi_workspace_reserve(w, from.used))) return status;
+    if ((status = mpmi_level_memory_reserve(w, from.used))) return status;
     from = (mpmi_arena){w->memory, 0};
   }
   find_parents(A, &n, to);

@@ -49,7 +49,7 @@ static span span_of(const mpmi_dense_front *f, int64_t number, int64_t size) {
   return (span){first, end - first < size ? end - first : size};
 }
 
-/* ---- the panel's own block --------------------------------------------------------------------------- */
+/* ---- the panel's own block ----------------------------------------------------------------------------- */
 static void fetch_block(const mpmi_dense_front *f, const double *panel, double *block) {
   const int64_t ld = f->pivots + f->rows;
   for (int64_t c = 0; c < f->width; ++c)
@@ -104,7 +104,7 @@ static int64_t factor_block(mpmi_dense_front *f) {
   return -1;
 }
 
-/* ---- the rows below ---------------------------------------------------------------------------------- */
+/* ---- the rows below ------------------------------------------------------------------------------------ */
 /* Solves for the columns [j, j + AT_ONCE) of a sliver; those before them are solved for already. triangle:
  * [column][row]. */
 MPMI_INLINE void solve_columns(const double *triangle, int64_t j, double *w) {
@@ -164,7 +164,7 @@ static void solve_slivers(const mpmi_dense_front *f, int64_t begin, int64_t end)
   }
 }
 
-/* ---- the update of the columns to the right ---------------------------------------------------------- */
+/* ---- the update of the columns to the right ------------------------------------------------------------ */
 /* Subtracts a times b transposed, over k pivots, from to[column][row]. */
 MPMI_INLINE void update_tile(const double *a, const double *b, int64_t k, double *to, int64_t ld,
                              int64_t rows, int64_t columns) {
@@ -225,7 +225,7 @@ static void update_strips(const mpmi_dense_front *f, int64_t begin, int64_t end)
   }
 }
 
-/* ---- triangular solutions ---------------------------------------------------------------------------- */
+/* ---- triangular solutions ------------------------------------------------------------------------------ */
 static void forward(const double *restrict panel, int64_t pivots, int64_t rows, double *restrict y) {
   const int64_t m = pivots + rows;
   int64_t j = 0;

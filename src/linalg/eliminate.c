@@ -14,7 +14,7 @@ typedef struct factor_job {
   double tiny;
 } factor_job;
 
-/* ---- putting a front together ------------------------------------------------------------------------ */
+/* ---- putting a front together -------------------------------------------------------------------------- */
 static const double *block_of(const mpmi_matrix *A, int64_t row, int64_t column) {
   int64_t low = A->row_start[row], high = A->row_start[row + 1] - 1;
   while (low < high) {
@@ -97,7 +97,7 @@ static void put_together(const factor_job *job, const mpmi_front *front) {
       add_general_update(f, front, &f->front[child]);
 }
 
-/* ---- eliminating it ---------------------------------------------------------------------------------- */
+/* ---- eliminating it ------------------------------------------------------------------------------------ */
 enum { SLIVERS_AT_ONCE = 4, STRIPS_AT_ONCE = 4 };
 static const double worth_sharing = 1e6; /* multiplications of a panel; smaller ones stay in one thread */
 
@@ -191,8 +191,8 @@ static void front_task(void *data, int64_t k) {
 static mpm_status eliminate_all(const factor_job *job, int64_t *failed) {
   mpmi_factor *f = job->f;
   *failed = -1;
-  const mpmi_chunks tasks = {f->tasks, 1, f->tasks, f->unknowns < MPMI_ALONE_UNKNOWNS};
-  mpm_status status = mpmi_run_chunks(f->context, &tasks, front_task, (void *)job);
+  const mpmi_ranges tasks = {f->tasks, 1, f->tasks, f->unknowns < MPMI_ALONE_UNKNOWNS};
+  mpm_status status = mpmi_run_ranges(f->context, &tasks, front_task, (void *)job);
   for (int32_t t = 0; t < f->tasks && !status && *failed < 0; ++t) *failed = f->task[t].failed;
   for (int32_t i = 0; i < f->fronts && !status && *failed < 0; ++i) {
     if (!f->front[i].top) continue;

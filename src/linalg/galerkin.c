@@ -9,7 +9,7 @@ typedef struct galerkin_job {
   const mpmi_matrix *A;
   const mpmi_coarsening *P;
   mpmi_matrix *coarse;
-  mpmi_chunks tasks;
+  mpmi_ranges tasks;
   int64_t ints;     /* in the scratch of one task */
   int32_t *scratch; /* three lists for each task, see row_job */
   double *sums;
@@ -86,17 +86,17 @@ static void galerkin_task(void *data, int64_t k) {
   }
 }
 
-mpm_status mpmi_galerkin(mpmi_workspace *w, const mpmi_level *fine, mpmi_level *coarse) {
+mpm_status mpmi_galerkin(mpmi_level_memory *w, const mpmi_level *fine, mpmi_level *coarse) {
   galerkin_job job = {
-      .A = fine->A, .P = &fine->next, .coarse = &coarse->own, .tasks = mpmi_workspace_tasks(w, fine->A)};
+      .A = fine->A, .P = &fine->next, .coarse = &coarse->own, .tasks = mpmi_level_memory_tasks(w, fine->A)};
   const int64_t area = job.A->block * job.A->block;
   job.ints = job.A->rows + job.P->most_nodes + coarse->own.rows;
   const size_t sums = mpmi_bytes(job.tasks.count * job.P->most_nodes * area, sizeof *job.sums);
   mpm_status status =
-      mpmi_workspace_reserve(w, sums + mpmi_bytes(job.tasks.count * job.ints, sizeof *job.scratch));
+      mpmi_level_memory_reserve(w, sums + mpmi_bytes(job.tasks.count * job.ints, sizeof *job.scratch));
   if (status) return status;
   job.sums = (double *)(void *)w->memory;
   job.scratch = (int32_t *)(void *)(w->memory + sums);
-  status = mpmi_run_chunks(w->context, &job.tasks, galerkin_task, &job);
+  status = mpmi_run_ranges(w->context, &job.tasks, galerkin_task, &job);
   return status ? status : mpmi_matrix_eliminate(&coarse->own);
 }

@@ -2,8 +2,8 @@
  * need not be linear to the last digit, and a cycle in single precision is not. Two rounds of classical
  * Gram-Schmidt make the vectors orthogonal, with all sums of a round in one pass. */
 #include <math.h>
-#include <string.h>
 
+#include "context/reduce.h"
 #include "linalg/methods.h"
 
 enum { SLOW_CYCLES = 12 }; /* with `impatient`, the most cycles that may still be expected */
@@ -13,11 +13,11 @@ typedef struct gmres {
   const mpmi_gmres_plan *plan;
   double *basis, *ready, *w;           /* [restart + 1][n]; [restart][n] M^-1 times the basis; [n] */
   double *hessenberg;                  /* [restart][restart + 1], by columns; triangular once rotated */
-  double *cosine, *sine, *rest, *part; /* rest: right-hand side of the small system; part: sums by chunk */
+  double *cosine, *sine, *rest, *part; /* rest: right-hand side of the small system; part: sums by range */
   double scale;
   int32_t last;         /* how many vectors w is made orthogonal to */
   int32_t second_round; /* 0: the first round of Gram-Schmidt, 1: the second */
-  mpmi_chunks chunks;
+  mpmi_ranges ranges;
 } gmres;
 
 static double *vector(const gmres *g, int32_t j) {
@@ -27,7 +27,7 @@ static double *vector(const gmres *g, int32_t j) {
 /* Sums the products of w with the vectors. In the second round w first loses what the first round found. */
 static void project_task(void *data, int64_t k) {
   const gmres *g = data;
-  const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
+  const int64_t begin = mpmi_range_begin(&g->ranges, k), end = mpmi_range_begin(&g->ranges, k + 1);
   const double *h = g->hessenberg + (g->last - 1) * (g->plan->restart + 1);
   double *part = g->part + k * (g->plan->restart + 1);
   if (g->second_round)
@@ -47,7 +47,7 @@ static void project_task(void *data, int64_t k) {
  * of w. */
 static void clean_task(void *data, int64_t k) {
   const gmres *g = data;
-  const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
+  const int64_t begin = mpmi_range_begin(&g->ranges, k), end = mpmi_range_begin(&g->ranges, k + 1);
   const double *h = g->rest + g->plan->restart + 1;
   double sum = 0.0;
   for (int32_t j = 0; j < g->last; ++j) {
@@ -62,14 +62,14 @@ static void clean_task(void *data, int64_t k) {
 static void next_vector_task(void *data, int64_t k) {
   const gmres *g = data;
   double *v = vector(g, g->last);
-  for (int64_t i = mpmi_chunk_begin(&g->chunks, k); i < mpmi_chunk_begin(&g->chunks, k + 1); ++i)
+  for (int64_t i = mpmi_range_begin(&g->ranges, k); i < mpmi_range_begin(&g->ranges, k + 1); ++i)
     v[i] = g->w[i] * g->scale;
 }
 
 /* Adds sum y_j M^-1 v_j to x; y is the second half of `rest`. */
 static void combine_task(void *data, int64_t k) {
   const gmres *g = data;
-  const int64_t begin = mpmi_chunk_begin(&g->chunks, k), end = mpmi_chunk_begin(&g->chunks, k + 1);
+  const int64_t begin = mpmi_range_begin(&g->ranges, k), end = mpmi_range_begin(&g->ranges, k + 1);
   const double *y = g->rest + g->plan->restart + 1;
   double *x = g->system->x;
   for (int32_t j = 0; j < g->last; ++j) {
@@ -79,13 +79,11 @@ static void combine_task(void *data, int64_t k) {
 }
 
 static mpm_status run_gmres(gmres *g, mpm_task_fn task) {
-  return mpmi_run_chunks(g->system->context, &g->chunks, task, g);
+  return mpmi_run_ranges(g->system->context, &g->ranges, task, g);
 }
 
 static double sum_of(const gmres *g, int32_t j) {
-  double sum = 0.0;
-  for (int64_t k = 0; k < g->chunks.count; ++k) sum += g->part[k * (g->plan->restart + 1) + j];
-  return sum;
+  return mpmi_reduce(MPMI_REDUCE_SUM, 0.0, g->part + j, g->plan->restart + 1, NULL, g->ranges.count);
 }
 
 /* Makes w = A M^-1 v_j orthogonal to v_0 ... v_j, which gives column j of the Hessenberg matrix. */
@@ -164,7 +162,7 @@ static mpm_status fill_basis(gmres *g) {
 
 static mpm_status reserve_basis(gmres *g) {
   const int64_t ld = g->plan->restart + 1, n = g->system->n;
-  const mpm_status status = mpmi_system_work(g->system, 2 * ld, ld * ld + 4 * ld + ld * MPMI_MOST_CHUNKS);
+  const mpm_status status = mpmi_system_work(g->system, 2 * ld, ld * ld + 4 * ld + ld * MPMI_MOST_RANGES);
   if (status) return status;
   g->basis = g->system->solver->work;
   g->ready = g->basis + ld * n;
@@ -186,7 +184,7 @@ static int32_t goes_on(const gmres *g, double before) {
 }
 
 mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {
-  gmres g = {.system = s, .plan = plan, .chunks = mpmi_chunks_of(s->n, s->n)};
+  gmres g = {.system = s, .plan = plan, .ranges = mpmi_ranges_of(s->n, s->n)};
   mpm_status status = reserve_basis(&g);
   for (double before = (double)INFINITY; !status; before = s->reached) {
     int32_t good;

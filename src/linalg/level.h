@@ -24,21 +24,21 @@ typedef struct mpmi_level {
 } mpmi_level;
 
 /* Memory that serves one step after the other. */
-typedef struct mpmi_workspace {
+typedef struct mpmi_level_memory {
   mpm_context *context;
   char *memory;
   int64_t capacity;
-} mpmi_workspace;
+} mpmi_level_memory;
 
 /* Makes room for so many bytes; what was there is lost. */
-mpm_status mpmi_workspace_reserve(mpmi_workspace *w, size_t bytes);
+mpm_status mpmi_level_memory_reserve(mpmi_level_memory *w, size_t bytes);
 /* Tasks with scratch of their own: as many as run at once, or one where threads are not worth waking. */
-mpmi_chunks mpmi_workspace_tasks(const mpmi_workspace *w, const mpmi_matrix *A);
+mpmi_ranges mpmi_level_memory_tasks(const mpmi_level_memory *w, const mpmi_matrix *A);
 
 /* Makes the next coarser level of l: its nodes, and the pattern and held unknowns of its matrix
  * (coarsen.c). */
-mpm_status mpmi_coarsen(mpmi_workspace *w, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to);
+mpm_status mpmi_coarsen(mpmi_level_memory *w, const mpmi_level *l, mpmi_level *next, mpmi_coarsening *to);
 /* Makes the numbers of the matrix of the coarse level (galerkin.c). */
-mpm_status mpmi_galerkin(mpmi_workspace *w, const mpmi_level *fine, mpmi_level *coarse);
+mpm_status mpmi_galerkin(mpmi_level_memory *w, const mpmi_level *fine, mpmi_level *coarse);
 
 #endif

@@ -71,14 +71,14 @@ mpm_status mpmi_matrix_reserve(mpmi_matrix *A, int64_t rows, int64_t entries, in
 
 typedef struct eliminate_job {
   mpmi_matrix *A;
-  mpmi_chunks chunks;
+  mpmi_ranges ranges;
 } eliminate_job;
 
 static void eliminate_task(void *data, int64_t k) {
   const eliminate_job *job = data;
   mpmi_matrix *A = job->A;
   const int32_t block = A->block;
-  for (int64_t i = mpmi_chunk_begin(&job->chunks, k); i < mpmi_chunk_begin(&job->chunks, k + 1); ++i)
+  for (int64_t i = mpmi_range_begin(&job->ranges, k); i < mpmi_range_begin(&job->ranges, k + 1); ++i)
     for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e) {
       const int64_t j = A->column[e];
       double *value = A->value + e * block * block;
@@ -90,8 +90,8 @@ static void eliminate_task(void *data, int64_t k) {
 }
 
 mpm_status mpmi_matrix_eliminate(mpmi_matrix *A) {
-  eliminate_job job = {A, mpmi_chunks_of(A->rows, mpmi_matrix_unknowns(A))};
-  return mpmi_run_chunks(A->context, &job.chunks, eliminate_task, &job);
+  eliminate_job job = {A, mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A))};
+  return mpmi_run_ranges(A->context, &job.ranges, eliminate_task, &job);
 }
 
 /* The method is that of Gauss and Jordan, with row pivoting. */

@@ -38,7 +38,7 @@ static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
     if ((status = mpmi_coarsen(&g->scratch, level, next, &level->next))) return status;
     if ((double)next->own.rows > WORTH * (double)level->A->rows && mpmi_matrix_unknowns(level->A) <= FACTORED)
       break;
-    if ((status = mpmi_workspace_reserve(&g->scratch, mpmi_bytes(level->A->rows, 2 * sizeof(int32_t)))) ||
+    if ((status = mpmi_level_memory_reserve(&g->scratch, mpmi_bytes(level->A->rows, 2 * sizeof(int32_t)))) ||
         (status = mpmi_smoother_analyse(&level->smoother, level->A, (int32_t *)(void *)g->scratch.memory)))
       return status;
   }
@@ -83,7 +83,7 @@ mpm_status mpmi_multigrid_prepare(mpmi_multigrid *g, const mpmi_matrix *A, int64
   return A->symmetric && g->coarsest.negative ? MPM_SINGULAR : MPM_OK;
 }
 
-/* ---- the cycle --------------------------------------------------------------------------------------- */
+/* ---- the cycle ----------------------------------------------------------------------------------------- */
 typedef struct cycle_job {
   mpmi_multigrid *g;
   const mpmi_level *fine;
@@ -93,18 +93,18 @@ typedef struct cycle_job {
   const double *r;
   double *z, by;
   int32_t factored; /* the coarse level is the coarsest */
-  mpmi_chunks chunks;
+  mpmi_ranges ranges;
 } cycle_job;
 
 static mpm_status run_level(cycle_job *job, int64_t items, const mpmi_matrix *A, mpm_task_fn task) {
-  job->chunks = mpmi_chunks_of(items, mpmi_matrix_unknowns(A));
-  return mpmi_run_chunks(job->g->context, &job->chunks, task, job);
+  job->ranges = mpmi_ranges_of(items, mpmi_matrix_unknowns(A));
+  return mpmi_run_ranges(job->g->context, &job->ranges, task, job);
 }
 
 static void sweep_task(void *data, int64_t k) {
   const cycle_job *job = data;
-  job->sweep(&job->fine->smoother, job->first + mpmi_chunk_begin(&job->chunks, k),
-             job->first + mpmi_chunk_begin(&job->chunks, k + 1));
+  job->sweep(&job->fine->smoother, job->first + mpmi_range_begin(&job->ranges, k),
+             job->first + mpmi_range_begin(&job->ranges, k + 1));
 }
 
 /* Sweeps over one colour after the other, forwards or backwards. */
@@ -124,7 +124,7 @@ static void load_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_smoother *s = &job->fine->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p)
+  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p)
     for (int32_t c = 0; c < block; ++c)
       s->rhs[p * lanes + c] =
           (float)(job->by * s->scale[p * block + c] * job->r[(int64_t)s->order[p] * block + c]);
@@ -134,7 +134,7 @@ static void store_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_smoother *s = &job->fine->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p)
+  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p)
     for (int32_t c = 0; c < block; ++c)
       job->z[(int64_t)s->order[p] * block + c] =
           job->by * s->scale[p * block + c] * (double)s->x[p * lanes + c];
@@ -146,7 +146,7 @@ static void restrict_task(void *data, int64_t k) {
   const mpmi_coarsening *P = &job->fine->next;
   const mpmi_smoother *s = &job->fine->smoother, *to = &job->coarse->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p) {
+  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p) {
     const int64_t I = job->factored ? p : to->order[p];
     double sum[3] = {0.0, 0.0, 0.0};
     for (int64_t e = P->child_start[I]; e < P->child_start[I + 1]; ++e) {
@@ -170,7 +170,7 @@ static void prolong_task(void *data, int64_t k) {
   const mpmi_coarsening *P = &job->fine->next;
   const mpmi_smoother *s = &job->fine->smoother, *from = &job->coarse->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p) {
+  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p) {
     const int64_t i = s->order[p], begin = P->parent_start[i], end = P->parent_start[i + 1];
     double sum[3] = {0.0, 0.0, 0.0};
     for (int64_t e = begin; e < end; ++e) {

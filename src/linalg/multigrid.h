@@ -30,7 +30,7 @@ typedef struct mpmi_multigrid {
   mpmi_factor coarsest;
   double *rhs, *x; /* right-hand side and solution of the coarsest level */
   int64_t coarsest_capacity;
-  mpmi_workspace scratch;
+  mpmi_level_memory scratch;
 } mpmi_multigrid;
 
 void mpmi_multigrid_init(mpmi_multigrid *g, mpm_context *context);

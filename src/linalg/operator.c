@@ -126,7 +126,7 @@ static mpm_status make_rows(mpm_operator *op) {
   return MPM_OK;
 }
 
-/* ---- public ------------------------------------------------------------------------------------------ */
+/* ---- public -------------------------------------------------------------------------------------------- */
 static mpm_status check_open(const mpm_operator *op) {
   if (op->open) return MPM_OK;
   return mpmi_fail(op->context, MPM_E_STATE, "the linear system is lent during the solve callback only");

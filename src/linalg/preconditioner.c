@@ -1,6 +1,5 @@
 /* The diagonal preconditions CG, and its blocks by node precondition GMRES. */
 #include <math.h>
-#include <string.h>
 
 #include "linalg/methods.h"
 
@@ -57,13 +56,13 @@ typedef struct times_job {
   const mpmi_system *s;
   const double *r;
   double *z;
-  mpmi_chunks chunks;
+  mpmi_ranges ranges;
 } times_job;
 
 static void times_task(void *data, int64_t k) {
   const times_job *job = data;
   const int32_t n = job->s->A->block;
-  for (int64_t i = mpmi_chunk_begin(&job->chunks, k); i < mpmi_chunk_begin(&job->chunks, k + 1); ++i) {
+  for (int64_t i = mpmi_range_begin(&job->ranges, k); i < mpmi_range_begin(&job->ranges, k + 1); ++i) {
     const double *block = job->s->solver->diagonal + i * n * n;
     for (int32_t r = 0; r < n; ++r) {
       double sum = 0.0;
@@ -75,6 +74,6 @@ static void times_task(void *data, int64_t k) {
 
 mpm_status mpmi_times_inverse_blocks(void *system, const double *r, double *z) {
   const mpmi_system *s = system;
-  times_job job = {s, r, z, mpmi_chunks_of(s->A->rows, s->n)};
-  return mpmi_run_chunks(s->context, &job.chunks, times_task, &job);
+  times_job job = {s, r, z, mpmi_ranges_of(s->A->rows, s->n)};
+  return mpmi_run_ranges(s->context, &job.ranges, times_task, &job);
 }

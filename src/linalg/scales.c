@@ -10,8 +10,8 @@ static const double no_measure = 1e-13;
 typedef struct scale_job {
   mpmi_factor *f;
   const mpmi_matrix *A;
-  mpmi_chunks chunks;
-  mpmi_chunk_failures bad; /* nodes for which there is no scale */
+  mpmi_ranges ranges;
+  mpmi_range_failures bad; /* nodes for which there is no scale */
 } scale_job;
 
 static mpm_status scale_node(const scale_job *job, int64_t node) {
@@ -42,9 +42,9 @@ static mpm_status scale_node(const scale_job *job, int64_t node) {
 
 static void scale_task(void *data, int64_t k) {
   scale_job *job = data;
-  const int64_t end = mpmi_chunk_begin(&job->chunks, k + 1);
+  const int64_t end = mpmi_range_begin(&job->ranges, k + 1);
   job->bad.status[k] = MPM_OK;
-  for (int64_t i = mpmi_chunk_begin(&job->chunks, k); i < end && !job->bad.status[k]; ++i) {
+  for (int64_t i = mpmi_range_begin(&job->ranges, k); i < end && !job->bad.status[k]; ++i) {
     if (job->f->place[i] < 0) continue;
     job->bad.status[k] = scale_node(job, i);
     job->bad.item[k] = i;
@@ -52,7 +52,7 @@ static void scale_task(void *data, int64_t k) {
 }
 
 mpm_status mpmi_factor_scales(mpmi_factor *f, const mpmi_matrix *A, int64_t *node) {
-  scale_job job = {.f = f, .A = A, .chunks = mpmi_chunks_of(A->rows, mpmi_matrix_unknowns(A))};
-  const mpm_status status = mpmi_run_chunks(f->context, &job.chunks, scale_task, &job);
-  return status ? status : mpmi_first_failure(&job.bad, job.chunks.count, node);
+  scale_job job = {.f = f, .A = A, .ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A))};
+  const mpm_status status = mpmi_run_ranges(f->context, &job.ranges, scale_task, &job);
+  return status ? status : mpmi_first_failure(&job.bad, job.ranges.count, node);
 }

@@ -86,15 +86,15 @@ static void order_by_colour(mpmi_smoother *s, const int32_t *colour) {
 typedef struct smoother_job {
   mpmi_smoother *s;
   const mpmi_matrix *A;
-  mpmi_chunks chunks;
-  mpmi_chunk_failures bad; /* rows with a bad diagonal */
+  mpmi_ranges ranges;
+  mpmi_range_failures bad; /* rows with a bad diagonal */
 } smoother_job;
 
 static void columns_task(void *data, int64_t k) {
   const smoother_job *job = data;
   mpmi_smoother *s = job->s;
   const mpmi_matrix *A = job->A;
-  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p) {
+  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p) {
     const int64_t i = s->order[p];
     int64_t before = s->row_start[p], after = before;
     for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e) after += s->place[A->column[e]] < p;
@@ -118,11 +118,11 @@ mpm_status mpmi_smoother_analyse(mpmi_smoother *s, const mpmi_matrix *A, int32_t
     const int64_t i = s->order[p];
     s->row_start[p + 1] = s->row_start[p] + A->row_start[i + 1] - A->row_start[i] - 1;
   }
-  smoother_job job = {.s = s, .A = A, .chunks = mpmi_chunks_of(A->rows, mpmi_matrix_unknowns(A))};
-  return mpmi_run_chunks(A->context, &job.chunks, columns_task, &job);
+  smoother_job job = {.s = s, .A = A, .ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A))};
+  return mpmi_run_ranges(A->context, &job.ranges, columns_task, &job);
 }
 
-/* ---- numbers ----------------------------------------------------------------------------------------- */
+/* ---- numbers ------------------------------------------------------------------------------------------- */
 /* Scales and inverts the diagonal block of a row, and stores it by columns. */
 static void invert_diagonal(mpmi_smoother *s, const double *value, int64_t p) {
   const int32_t block = s->block;
@@ -159,9 +159,9 @@ static mpm_status scale_row(mpmi_smoother *s, const mpmi_matrix *A, int64_t p) {
 
 static void scales_task(void *data, int64_t k) {
   smoother_job *job = data;
-  const int64_t end = mpmi_chunk_begin(&job->chunks, k + 1);
+  const int64_t end = mpmi_range_begin(&job->ranges, k + 1);
   job->bad.status[k] = MPM_OK;
-  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < end && !job->bad.status[k]; ++p) {
+  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < end && !job->bad.status[k]; ++p) {
     job->bad.status[k] = scale_row(job->s, job->A, p);
     job->bad.item[k] = job->s->order[p];
   }
@@ -172,7 +172,7 @@ static void values_task(void *data, int64_t k) {
   mpmi_smoother *s = job->s;
   const mpmi_matrix *A = job->A;
   const int32_t block = s->block;
-  for (int64_t p = mpmi_chunk_begin(&job->chunks, k); p < mpmi_chunk_begin(&job->chunks, k + 1); ++p) {
+  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p) {
     int64_t before = s->row_start[p], after = s->middle[p];
     for (int64_t e = A->row_start[s->order[p]]; e < A->row_start[s->order[p] + 1]; ++e) {
       const int64_t other = s->place[A->column[e]];
@@ -188,11 +188,11 @@ static void values_task(void *data, int64_t k) {
 }
 
 mpm_status mpmi_smoother_numbers(mpmi_smoother *s, const mpmi_matrix *A, int64_t *row) {
-  smoother_job job = {.s = s, .A = A, .chunks = mpmi_chunks_of(A->rows, mpmi_matrix_unknowns(A))};
+  smoother_job job = {.s = s, .A = A, .ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A))};
   const size_t bytes = (size_t)(s->rows * MPMI_PADDED(s->block)) * sizeof *s->x;
   memset(s->rhs, 0, bytes);
   memset(s->x, 0, bytes);
-  mpm_status status = mpmi_run_chunks(A->context, &job.chunks, scales_task, &job);
-  if (!status) status = mpmi_first_failure(&job.bad, job.chunks.count, row);
-  return status ? status : mpmi_run_chunks(A->context, &job.chunks, values_task, &job);
+  mpm_status status = mpmi_run_ranges(A->context, &job.ranges, scales_task, &job);
+  if (!status) status = mpmi_first_failure(&job.bad, job.ranges.count, row);
+  return status ? status : mpmi_run_ranges(A->context, &job.ranges, values_task, &job);
 }

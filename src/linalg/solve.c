@@ -7,7 +7,7 @@
 
 enum { RESTART = 60, MOST_RESTARTS = 50, MOST_CYCLES = 500 };
 
-/* ---- methods ----------------------------------------------------------------------------------------- */
+/* ---- methods ------------------------------------------------------------------------------------------- */
 static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
   return mpmi_system_fail_at(s, MPM_NONFINITE, row, "a diagonal entry of the linear system is not finite");
 }
@@ -139,7 +139,7 @@ static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
   }
 }
 
-/* ---- the call ---------------------------------------------------------------------------------------- */
+/* ---- the call ------------------------------------------------------------------------------------------ */
 static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) {
   const int32_t choice = job->choice;
   if (choice == MPM_SOLVER_HOST && !job->host)

@@ -51,7 +51,7 @@ MPMI_INLINE mpmi_sym mpmi_turned(mpmi_mat r, mpmi_sym s) {
 
 MPMI_INLINE mpmi_sym mpmi_increment_3d(mpmi_mat g, mpmi_sym *stress) {
   mpmi_sym e = mpmi_left_cauchy_green_minus_1(3, g);
-  mpmi_nodes n = mpmi_eigenvalues(e);
+  mpmi_eigenvalue_nodes n = mpmi_eigenvalues(e);
   mpmi_sym q = mpmi_quadratic(e, n), w = mpmi_inverse_stretch(e, q, n);
   /* R = V^-1 F_inc = V^-1 + V^-1 G */
   mpmi_mat r = {

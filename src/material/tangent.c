@@ -25,7 +25,7 @@ static double *row_of(double *tangent, int64_t ld, int i, int j, int k, int l) {
   return tangent + (9 * (3 * i + j) + 3 * k + l) * ld;
 }
 
-/* ---- the host's callback ------------------------------------------------------------------------------ */
+/* ---- the host's callback ------------------------------------------------------------------------------- */
 /* Inert slots get zeros: what the host made of them must not get into sums. */
 static void take_row(const mpm_material_batch *batch, const double *from, double *row) {
   for (int64_t p = 0; p < batch->n; ++p) row[p] = batch->id[p] < 0 ? 0.0 : from[p];
@@ -51,7 +51,7 @@ static mpm_status call_tangent(const mpm_material *material, int32_t dim, const 
   return MPM_OK;
 }
 
-/* ---- differences of the host's law -------------------------------------------------------------------- */
+/* ---- differences of the host's law --------------------------------------------------------------------- */
 typedef struct varied {
   double *F, *F_inc, *L, *tau;
   mpm_material_batch batch;
@@ -135,7 +135,7 @@ static mpm_status difference_law(const mpm_material *material, int32_t dim, cons
   return MPM_OK;
 }
 
-/* ---- all materials ------------------------------------------------------------------------------------ */
+/* ---- all materials ------------------------------------------------------------------------------------- */
 mpm_status mpmi_material_tangent(const mpm_material *material, int32_t dim, const mpm_material_batch *batch,
                                  void *scratch, double *tangent, int32_t *symmetric) {
   if (material->law) {

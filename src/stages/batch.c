@@ -7,8 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- the set, the block
- * ------------------------------------------------------------------------------------ */
+/* ---- the set, the block ------------------------------------------------------------------------------- */
 static void add_streams(mpmi_streams *streams, const mpm_particles *set, int32_t field, int32_t copy) {
   const mpmi_field *f = &set->field[field];
   for (int32_t c = 0; f->present && c < f->components && streams->count < MPMI_MAX_STREAMS; ++c)
@@ -83,8 +82,7 @@ static void choose_form(mpmi_batch *b) {
     b->form = matrix ? MPMI_GATHER_4_AFFINE : MPMI_GATHER_4;
 }
 
-/* ---- the walk
- * ---------------------------------------------------------------------------------------------- */
+/* ---- the walk ----------------------------------------------------------------------------------------- */
 void mpmi_pass_begin(mpmi_batch *b, mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from,
                      const mpmi_pass *pass, void *user, int32_t task) {
   b->step = step;
@@ -175,8 +173,7 @@ mpm_status mpmi_pass_run(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *f
   return status ? status : mpmi_step_failure(step);
 }
 
-/* ---- what has gone wrong
- * ----------------------------------------------------------------------------------- */
+/* ---- what has gone wrong ------------------------------------------------------------------------------ */
 void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what) {
   mpmi_failure_take(&b->report->failure,
                     &(mpmi_failure){cause, 0, b->m, mpmi_i64(b->set, MPMI_ID, 0)[slot], -1, what});

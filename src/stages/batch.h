@@ -29,7 +29,7 @@ struct mpmi_batch {
   mpmi_scratch *scratch;
   mpmi_task_report *report;
   int32_t task, form, need; /* of the gather */
-  /* The set at hand, -1: none yet; and what the kernels are given of it: */
+  /* The member whose particles are at hand, or -1; its set; and what the kernels are given: */
   int32_t m;
   mpm_particles *set;
   mpmi_law_batch law;
@@ -43,9 +43,9 @@ struct mpmi_batch {
   mpmi_sums *sums;
   /* The batch at hand: */
   int64_t begin, n;
-  uint32_t flags;  /* of the kernels: something to look at */
-  int32_t law_ran; /* its stress is that of this step */
-  int64_t batches; /* for sampling */
+  uint32_t flags;  /* that the kernels returned: particles that want a closer look */
+  int32_t law_ran; /* the law has answered for this batch */
+  int64_t batches; /* seen so far, to sample their times */
 };
 
 /* Component c of a field, at slot 0. */

@@ -15,7 +15,7 @@ static void enter_both(mpmi_batch *b) {
   mpmi_strain_enter(b);
 }
 
-/* Of the MLS form with increments, C is the gradient too. */
+/* An MLS transfer that gathers increments finds C, which is the velocity gradient as well. */
 static void settle_gradient(mpmi_batch *b) {
   if (b->step->settings->transfer->moments == MPMI_NEED_MLS && b->form == MPMI_GATHER_8_AFFINE)
     memcpy(b->law.L, b->C, (size_t)(9 * b->law.ld) * sizeof(double));

@@ -40,8 +40,7 @@ void mpmi_motion_enter(mpmi_batch *b) {
   }
 }
 
-/* ---- beyond the faces of the grid
- * -------------------------------------------------------------------------- */
+/* ---- beyond the faces of the grid --------------------------------------------------------------------- */
 /* Periods that a particle may cross in one step: beyond them its position is rounding. */
 #define MOST_TURNS 2147483648.0
 
@@ -102,8 +101,7 @@ static void look_outside(mpmi_batch *b) {
   }
 }
 
-/* ---- a batch
- * ----------------------------------------------------------------------------------------------- */
+/* ---- a batch ------------------------------------------------------------------------------------------ */
 /* From gathered dt a1 to what Newmark's rule adds to the velocities. */
 static void mean_accelerations(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;

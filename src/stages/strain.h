@@ -20,8 +20,8 @@ void mpmi_strain_law(mpmi_batch *b);
 void mpmi_wave_speed_leave(const mpmi_batch *b);
 void mpmi_wave_speed_fetch(mpmi_batch *b);
 
-/* Adds energies, momenta and rates of the batch to those of its block; what: MPMI_SUMS_LAW, MPMI_SUMS_MOTION.
- */
+/* Adds energies, momenta and rates of the batch to those of its block; what:
+ * MPMI_SUMS_LAW, MPMI_SUMS_MOTION. */
 void mpmi_batch_sums(mpmi_batch *b, int32_t what);
 
 /* Volumes, of which there is one copy, by a copy of F: after a step that failed, and where the host looks on

@@ -4,7 +4,7 @@
 
 #include "stepper/stepper.h"
 
-/* Cannot fail. Afterwards the step under way is what it was but for its phase. */
+/* Cannot fail. Adds the work of the host to the balance, and its own time to the report. */
 void mpmi_commit(mpm_stepper *s);
 /* Only volumes were overwritten: F is still there to make them again. */
 void mpmi_roll_back(mpm_stepper *s);

@@ -11,8 +11,7 @@
 
 #include <math.h>
 
-/* ---- beginning
- * --------------------------------------------------------------------------------------------- */
+/* ---- beginning ---------------------------------------------------------------------------------------- */
 static mpm_status check_dt(mpm_stepper *s, double dt) {
   const double t = s->history.t;
   if (!(dt > 0.0) || !isfinite(dt))
@@ -53,8 +52,10 @@ static mpm_status prepare(mpm_stepper *s) {
   double clock = mpmi_seconds();
   mpm_status status;
   if ((status = mpmi_state_sums(s, &s->step.failure)) ||
-      (status = mpmi_members_refresh(&s->layout, settings)) ||
-      (status = mpmi_layout_prepare(&s->layout, settings)) ||
+      (status = mpmi_members_refresh(&s->layout, settings)))
+    return status;
+  s->nodes.shown = -1;
+  if ((status = mpmi_layout_prepare(&s->layout, settings)) ||
       (status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
       (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
       (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
@@ -66,8 +67,7 @@ static mpm_status prepare(mpm_stepper *s) {
   return MPM_OK;
 }
 
-/* ---- the end
- * ----------------------------------------------------------------------------------------------- */
+/* ---- the end ------------------------------------------------------------------------------------------ */
 /* The step is over: what it knows of itself stays. */
 static void drop(mpm_stepper *s) {
   s->history.last = s->step.info;
@@ -118,8 +118,8 @@ static mpm_status finish(mpm_stepper *s) {
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) s->context->error[0] = '\0';
   info->cause = MPM_OK;
   info->dt = dt;
-  info->dt_suggested =
-      mpmi_is_implicit(&s->settings) ? mpmi_next_dt(s->newton, dt) : mpmi_stable_dt(&s->history.sums);
+  info->dt_suggested = mpmi_is_implicit(&s->settings) ? mpmi_next_dt(s->step.info.newton_iterations, dt)
+                                                      : mpmi_stable_dt(&s->history.sums);
   info->callback_status = 0;
   info->set = -1;
   info->particle = info->node = -1;
@@ -129,8 +129,7 @@ static mpm_status finish(mpm_stepper *s) {
   return MPM_OK;
 }
 
-/* ---- whole steps
- * ------------------------------------------------------------------------------------------- */
+/* ---- whole steps -------------------------------------------------------------------------------------- */
 static mpm_status run_explicit(mpm_stepper *s) {
   mpm_status status = mpmi_explicit_begin(&s->step, &s->nodes);
   if (!status) status = mpmi_explicit_grid(&s->step, &s->nodes);
@@ -138,7 +137,11 @@ static mpm_status run_explicit(mpm_stepper *s) {
 }
 
 static mpm_status run_implicit(mpm_stepper *s) {
-  mpmi_balance balance = {&s->step, &s->settings, &s->layout, &s->nodes, s->newton};
+  mpmi_balance balance = {.step = &s->step,
+                          .settings = &s->settings,
+                          .layout = &s->layout,
+                          .nodes = &s->nodes,
+                          .newton = s->newton};
   return mpmi_newmark_step(&balance);
 }
 
@@ -160,8 +163,7 @@ mpm_status mpm_step(mpm_stepper *s, double dt, mpm_step_info *info) {
   return status ? status : mpmi_give_info(s, mpmi_make_step(s, dt), info);
 }
 
-/* ---- steps in parts
- * ---------------------------------------------------------------------------------------- */
+/* ---- steps in parts ----------------------------------------------------------------------------------- */
 mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_status status = check_dt(s, dt);

@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-/* ---- info
- * -------------------------------------------------------------------------------------------------- */
+/* ---- info --------------------------------------------------------------------------------------------- */
 void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_info *info) {
   const mpmi_sums *sums = &s->history.sums;
   *info = *last;
@@ -70,8 +69,7 @@ mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
   return MPM_OK;
 }
 
-/* ---- reactions
- * --------------------------------------------------------------------------------------------- */
+/* ---- reactions ---------------------------------------------------------------------------------------- */
 mpm_status mpm_stepper_wall_reaction(const mpm_stepper *s, int32_t face, double *force) {
   MPMI_ENTER(s, MPMI_STEPPER);
   const mpmi_history *history = &s->history;
@@ -98,8 +96,7 @@ mpm_status mpm_stepper_particles_reaction(const mpm_stepper *s, const mpm_partic
   return MPM_OK;
 }
 
-/* ---- Newton's method, time
- * --------------------------------------------------------------------------------- */
+/* ---- Newton's method, time ---------------------------------------------------------------------------- */
 mpm_status mpm_stepper_residuals(const mpm_stepper *s, int32_t capacity, double *residual, int32_t *count) {
   MPMI_ENTER(s, MPMI_STEPPER);
   if (!count) return mpmi_fail(s->context, MPM_E_ARG, "count is NULL");

@@ -5,8 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* ---- sums over blocks
- * -------------------------------------------------------------------------------------- */
+/* ---- sums over blocks --------------------------------------------------------------------------------- */
 enum { SUMS = sizeof(mpmi_sums) / sizeof(double) };
 
 static int32_t is_rate(size_t at) {
@@ -29,8 +28,7 @@ double mpmi_stable_dt(const mpmi_sums *sums) {
   return rate > 0.0 ? 1.0 / rate : (double)INFINITY;
 }
 
-/* ---- sums over particles
- * ----------------------------------------------------------------------------------- */
+/* ---- sums over particles ------------------------------------------------------------------------------ */
 static void bind_particles(const mpm_stepper *s, const mpm_particles *set, const mpmi_law_batch *b,
                            int64_t begin, int64_t n, double *moments, mpmi_sums_job *job) {
   const mpm_grid *grid = s->grid;

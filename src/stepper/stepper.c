@@ -4,8 +4,7 @@
 
 #include <math.h>
 
-/* ---- making and destroying
- * --------------------------------------------------------------------------------- */
+/* ---- making and destroying ---------------------------------------------------------------------------- */
 static void free_parts(mpm_stepper *s) {
   mpm_context *c = s->context;
   for (int32_t i = 0; i < MPMI_NODE_VIEWS; ++i) mpmi_free(c, s->view_memory[i], s->view_bytes[i]);
@@ -71,8 +70,7 @@ mpm_status mpm_stepper_destroy(mpm_stepper *s) {
   return MPM_OK;
 }
 
-/* ---- sets
- * -------------------------------------------------------------------------------------------------- */
+/* ---- sets --------------------------------------------------------------------------------------------- */
 static int32_t in_step(const mpm_stepper *s) {
   return s->step.phase != MPMI_IDLE;
 }
@@ -116,8 +114,7 @@ mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
   return MPM_OK;
 }
 
-/* ---- another description
- * ----------------------------------------------------------------------------------- */
+/* ---- another description ------------------------------------------------------------------------------ */
 /* What the host has set and implicit steps do not have. */
 static mpm_status without_explicit_parts(const mpm_stepper *s) {
   if (mpmi_has_hooks(&s->settings))

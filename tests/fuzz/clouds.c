@@ -24,7 +24,7 @@ typedef struct cloud {
   int32_t callback_status;
 } cloud;
 
-/* ---- callbacks ---------------------------------------------------------------------------------------- */
+/* ---- callbacks ----------------------------------------------------------------------------------------- */
 static mpm_status push(void *user, const mpm_particle_batch *b, double *add) {
   const cloud *c = user;
   for (int32_t k = 0; k < b->dim; ++k)
@@ -71,7 +71,7 @@ static mpm_status host_law(void *user, const mpm_material_batch *b) {
   return 0;
 }
 
-/* ---- options ------------------------------------------------------------------------------------------ */
+/* ---- options ------------------------------------------------------------------------------------------- */
 static void open_grid(cloud *c) {
   static const int32_t basis[] = {MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP, MPM_UGIMP, MPM_CPGIMP};
   MUST(!mpm_grid_desc_init(&c->g, sizeof c->g));

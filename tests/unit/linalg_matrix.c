@@ -67,7 +67,7 @@ START_TEST(elimination) {
 }
 END_TEST
 
-/* Sums of all lengths around the size of a chunk. */
+/* Sums of all lengths around the size of a range. */
 START_TEST(dots) {
   static const int64_t lengths[] = {0, 1, 3, 5, 511, 512, 513, 1500, 2000, 131072, 131073, 200001};
   mpm_context *context = context_with(2, MPM_ISA_BEST, NULL);

@@ -269,8 +269,7 @@ START_TEST(instruction_sets_agree) {
 }
 END_TEST
 
-/* ---- logarithms and the exponential
- * -------------------------------------------------------------------------------------- */
+/* ---- logarithms and the exponential ------------------------------------------------------------------- */
 static real relative_error(double got, real exact) {
   return exact == 0 ? fabsl(got) : fabsl(got / exact - 1);
 }
