@@ -35,7 +35,7 @@ static void find_stencil(const mpm_grid *grid, const mpmi_weights *W, int64_t p,
 typedef struct visit {
   mpmi_bound *bound;
   const mpmi_member *member;
-  double *tile;
+  mpmi_prescribed_sums *tile;
   mpmi_prescribed_part *part;
 } visit;
 typedef void (*visit_fn)(const visit *v, int64_t slot, const stencil *nodes);
@@ -64,7 +64,8 @@ static void visit_particles(mpmi_bound *bound, int64_t block, double *tile, visi
   mpmi_axis axis[3];
   mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[block], axis);
   for (int32_t m = 0; m < layout->member_count; ++m) {
-    const visit v = {bound, &layout->member[m], tile, mpmi_part_of(layout, bound->nodes, block, m)};
+    const visit v = {bound, &layout->member[m], (mpmi_prescribed_sums *)tile,
+                     mpmi_part_of(layout, bound->nodes, block, m)};
     const int64_t *start = v.member->now.start;
     for (int64_t at = start[block]; at < start[block + 1] && v.member->prescribed; at += MPMI_CHUNK)
       visit_chunk(&v, axis, at, fn);
@@ -80,9 +81,9 @@ static void give_momentum(const visit *v, int64_t slot, const stencil *nodes) {
     if (!mpmi_is_prescribed(set, slot, c)) continue;
     const double momentum = mass * mean[c * set->ld + slot];
     for (int32_t n = 0; n < nodes->count; ++n) {
-      double *sums = v->tile + 8 * (int64_t)nodes->at[n];
-      sums[c] += nodes->w[n] * momentum;
-      sums[3 + c] += nodes->w[n] * mass;
+      mpmi_prescribed_sums *sums = v->tile + nodes->at[n];
+      sums->momentum[c] += nodes->w[n] * momentum;
+      sums->mass[c] += nodes->w[n] * mass;
     }
   }
 }
@@ -220,8 +221,7 @@ static void take_share(const visit *v, int64_t slot, const stencil *nodes) {
     if (!mpmi_is_prescribed(set, slot, c)) continue;
     double force = mass * step->settings->desc.gravity[c], impulse = 0.0;
     if (v->member->force) force += v->member->force[c * set->ld + slot];
-    for (int32_t n = 0; n < nodes->count; ++n)
-      impulse += nodes->w[n] * v->tile[8 * (int64_t)nodes->at[n] + c];
+    for (int32_t n = 0; n < nodes->count; ++n) impulse += nodes->w[n] * v->tile[nodes->at[n]].momentum[c];
     v->part->impulse[c] += mass * impulse + step->velocity_dt * force;
   }
 }

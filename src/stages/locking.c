@@ -6,6 +6,13 @@
 
 #include <math.h>
 
+/* Sums over the particles in a cell, in the place of the four values of a node. */
+typedef struct cell_sums {
+  double dilation, volume; /* volume times j; volume */
+  double unused[2];
+} cell_sums;
+_Static_assert(sizeof(cell_sums) == 4 * sizeof(double), "goes through tiles");
+
 /* Place of each particle's cell in the tile. On a periodic axis any image that lies in the tile will do. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
                       int64_t n, int32_t *place) {
@@ -50,14 +57,14 @@ typedef struct locking_job {
 
 /* The cells of a chunk get volume times j, and volume. */
 static void add_chunk(const mpm_particles *set, int64_t begin, int64_t n, const int32_t *place,
-                      double *tile) {
+                      cell_sums *tile) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
   const double *j = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
   const double *volume = mpmi_f64(set, MPMI_VOLUME, 0) + begin;
   for (int64_t p = 0; p < n; ++p) {
     if (id[p] < 0) continue;
-    tile[4 * place[p]] += volume[p] * j[p];
-    tile[4 * place[p] + 1] += volume[p];
+    tile[place[p]].dilation += volume[p] * j[p];
+    tile[place[p]].volume += volume[p];
   }
 }
 
@@ -76,7 +83,7 @@ static void add_block(void *user, const mpmi_visit *visit, double *tile) {
     for (int64_t at = layout->member[m].now.start[visit->block]; at < end; at += MPMI_CHUNK) {
       const int64_t n = end - at < MPMI_CHUNK ? end - at : MPMI_CHUNK;
       mpmi_cell_places(grid, axis, &points, at, n, place);
-      add_chunk(set, at, n, place, tile);
+      add_chunk(set, at, n, place, (cell_sums *)tile);
     }
   }
 }
@@ -119,9 +126,9 @@ void mpmi_locking_apply(const mpm_grid *grid, const double *cells, const mpmi_ax
     if (p % MPMI_CHUNK == 0)
       mpmi_cell_places(grid, axis, &points, begin + p, n - p < MPMI_CHUNK ? n - p : MPMI_CHUNK, place);
     if (rigid || id[p] < 0) continue;
-    const double *cell = cells + 4 * place[p % MPMI_CHUNK];
+    const cell_sums *cell = (const cell_sums *)cells + place[p % MPMI_CHUNK];
     const double j = det_minus_1(dim, b->L + p, b->ld, dt);
-    const double mean = cell[1] > 0.0 ? cell[0] / cell[1] : j;
+    const double mean = cell->volume > 0.0 ? cell->dilation / cell->volume : j;
     /* an inverted increment ends the step elsewhere */
     const double growth = j > -1.0 && mean > -1.0 ? log1p(mean) - log1p(j) : 0.0;
     const double f_minus_1 = expm1(growth / dim);

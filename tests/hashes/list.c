@@ -96,6 +96,7 @@ static void list_methods(listing *l, int32_t dim) {
 
 /* Basis and transfer for the n-th scene with a scheme; cpGIMP, which not every law goes with, is the last. */
 static scene in_turn(int32_t dim, int32_t scheme, int32_t n) {
+  _Static_assert(TRANSFERS % 5, "a stride of 5 reaches every transfer: with a multiple of 5 take another");
   scene is = method(dim, scheme, n % (BASES - 1), 5 * n % TRANSFERS);
   return is_offered(&is) ? is : method(dim, scheme, n % (BASES - 1), 3);
 }

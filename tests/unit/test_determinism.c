@@ -154,6 +154,7 @@ static int32_t list_method(int32_t dim, const basis_option *b, const scheme_opti
  * which other dimensions and bases pair otherwise. */
 static void list_methods(int32_t dim) {
   enum { EACH = 3 };
+  _Static_assert(TRANSFERS % 2, "a stride of 4 reaches every transfer: with an even number take another");
   if (full) {
     for (int32_t i = 0; i < 2 * BASES * SCHEMES * TRANSFERS; ++i)
       list_method(dim, &basis_options[i / 2 / TRANSFERS / SCHEMES],
