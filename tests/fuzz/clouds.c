@@ -241,8 +241,8 @@ static void check_state(cloud *c) {
 /* After calls whose steps were not followed one by one. */
 static void look_anew(cloud *c) {
   c->memory.fail_at = 0;
-  c->t = c->stepper->t;
-  c->removed = c->stepper->removed;
+  c->t = c->stepper->history.t;
+  c->removed = c->stepper->history.removed;
   c->count = count_all(c);
   c->mass = mass_all(c);
 }
@@ -291,8 +291,8 @@ static void advance(cloud *c) {
   d.max_steps = 8;
   const double t = c->t;
   const mpm_status status = fuzz_status(c->context, mpm_advance(c->stepper, &d, &info));
-  info.t = c->stepper->t;
-  info.removed = c->stepper->removed;
+  info.t = c->stepper->history.t;
+  info.removed = c->stepper->history.removed;
   MUST(info.t >= t && info.t <= d.t_end && (status || info.t > t || d.t_end == t));
   check_steps(c, &info);
 }
