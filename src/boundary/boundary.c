@@ -1,9 +1,5 @@
 #include "boundary/boundary.h"
-#include "boundary/friction_wall.h"
-#include "boundary/held_nodes.h"
-#include "boundary/hooks.h"
-#include "boundary/prescribed_nodes.h"
-#include "boundary/ties.h"
+#include "boundary/bound.h"
 
 /* Between folding and unfolding: what acts on nodes, the host's hooks around it. */
 static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {

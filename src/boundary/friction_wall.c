@@ -1,4 +1,5 @@
-#include "boundary/friction_wall.h"
+/* Friction walls: unilateral contacts of nodes on a wall's plane, and of ghosts with their mirrors. */
+#include "boundary/bound.h"
 
 #include <math.h>
 

@@ -1,6 +1,5 @@
-#include "boundary/held_nodes.h"
-#include "boundary/prescribed_nodes.h"
-#include "boundary/velocity_callback.h"
+/* Components of nodes that the host or prescribed particles hold. */
+#include "boundary/bound.h"
 #include "layout/tasks.h"
 
 /* Sets a component that the host prescribes; its increment is that of eq. 30, or 0 by option. */

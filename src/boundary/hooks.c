@@ -1,5 +1,11 @@
-#include "boundary/hooks.h"
-#include "boundary/node_batch.h"
+/* Node hooks: the host reads and changes nodal velocities and forces at a stage of the step.
+ *
+ * All stages run after the nodes have been updated and ties folded, because both are linear: there a node
+ * has its updated velocity v~ and the increment dv, hence the projected velocity v = v~ - dv and the force m
+ * dv / dt. A change of force is one of dv and v~; a change of v is one of v~; a change of v~ is an impulse,
+ * one of both. It is laid on every node of the tie, as if the host had written there: so it is no reaction
+ * of the constraint. */
+#include "boundary/bound.h"
 #include "layout/tasks.h"
 
 #include <math.h>

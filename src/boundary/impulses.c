@@ -1,4 +1,4 @@
-#include "boundary/impulses.h"
+#include "boundary/bound.h"
 #include "context/reduce.h"
 
 void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse, double change) {

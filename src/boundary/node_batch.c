@@ -1,4 +1,5 @@
-#include "boundary/node_batch.h"
+/* Free nodes of one block with mass, for the host: batches do not depend on the cut of the work. */
+#include "boundary/bound.h"
 
 int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *list) {
   const mpmi_step *step = bound->step;

@@ -1,9 +1,10 @@
-#include "boundary/prescribed_nodes.h"
+/* The nodes that prescribed particles hold, and what of the nodes' impulses is theirs: sums go from particles
+ * to nodes and back block by block, as P2G and G2P do. */
+#include "boundary/bound.h"
 #include "boundary/prescribed.h"
 #include "layout/accumulate.h"
-#include "layout/axes.h"
-#include "layout/tasks.h"
 #include "layout/tile.h"
+#include "layout/tasks.h"
 
 #include <math.h>
 #include <string.h>

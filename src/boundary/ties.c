@@ -1,4 +1,6 @@
-#include "boundary/ties.h"
+/* Nodes that are tied together (grid/constraints.h) move as one: folded into their masters while host, walls
+ * and contacts act, and unfolded afterwards. */
+#include "boundary/bound.h"
 
 void mpmi_ties_fold(mpmi_bound *bound) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);

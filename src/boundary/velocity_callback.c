@@ -1,5 +1,5 @@
-#include "boundary/velocity_callback.h"
-#include "boundary/node_batch.h"
+/* The host's callback that prescribes velocities of nodes. */
+#include "boundary/bound.h"
 #include "layout/tasks.h"
 
 #include <math.h>

@@ -1,12 +1,9 @@
-#include "implicit/assembly.h"
-#include "implicit/locking_stiffness.h"
-#include "implicit/particle_stiffness.h"
-#include "implicit/unknowns.h"
+/* Forces and stiffness of the particles on the nodes, for implicit steps. */
+#include "implicit/balance.h"
 #include "layout/accumulate.h"
-#include "layout/axes.h"
+#include "layout/tile.h"
 #include "layout/tasks.h"
-#include "stages/locking.h"
-#include "stages/strain.h"
+#include "stages/stages.h"
 
 #include <string.h>
 

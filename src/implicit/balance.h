@@ -143,4 +143,59 @@ void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings); /* NU
 /* Memory for a step that does not depend on the unknowns; forgets the step before. */
 mpm_status mpmi_balance_prepare(mpmi_balance *s);
 
+/* ---- unknowns.c -------------------------------------------------------------------------------------- */
+/* From the masses of the nodes and the external forces, whose fourth value tells the nodes that have
+ * stiffness. */
+mpm_status mpmi_unknowns_find(mpmi_balance *s);
+/* Sums of nodal forces over the nodes that move with each row. */
+void mpmi_unknowns_fold(const mpmi_balance *s, const mpmi_nodal *forces, double *vector);
+
+/* ---- pattern.c --------------------------------------------------------------------------------------- */
+/* Of the active nodes as they are numbered, with so many rows. */
+mpm_status mpmi_make_pattern(mpmi_balance *s, int64_t rows);
+
+/* ---- assembly.c -------------------------------------------------------------------------------------- */
+/* External forces, whose fourth value tells the nodes that have stiffness. */
+mpm_status mpmi_external_forces(mpmi_balance *s);
+/* Stress of the displacements u, and the internal force that it makes. Fails as the law does. */
+mpm_status mpmi_internal_forces(mpmi_balance *s, const double *u);
+/* Stress of the displacements u, and the stiffness at them. */
+mpm_status mpmi_stiffness(mpmi_balance *s, const double *u);
+
+/* ---- particle_stiffness.c ---------------------------------------------------------------------------- */
+/* Spreads the external forces of a set; with a nominal stress the internal ones. */
+mpmi_force_scatter mpmi_force_scatter_of(const mpmi_settings *settings, const mpmi_member *member,
+                                         double *tile);
+/* Active node at each place of the tile of a block, or -1. */
+void mpmi_tile_of_unknowns(const mpmi_balance *s, int64_t block, int32_t *to);
+/* Adds the internal forces of a batch to the tile of its task. */
+void mpmi_add_forces(mpmi_balance *s, mpmi_batch *b);
+/* Adds its stiffness to the matrix. */
+void mpmi_add_stiffness(mpmi_balance *s, mpmi_batch *b);
+
+/* ---- locking_stiffness.c ----------------------------------------------------------------------------- */
+/* First all cells are cleared; */
+mpm_status mpmi_locking_stiffness_begin(mpmi_balance *s);
+/* then of each batch the part of theta goes into the tangent, in place, with h [9][ld] for what couples the
+ * particles of a cell; */
+void mpmi_locking_stiffness_local(int32_t dim, const mpmi_law_batch *law, const double *weight,
+                                  const double *volume, double *tangent, double *h);
+/* each particle adds weight h F_inc^-T, F_inc^-1 and its new volume to its cell, with the
+ * components 3 * row + column; */
+typedef struct mpmi_locking_particle {
+  double h[9], inverse[9], volume;
+} mpmi_locking_particle;
+void mpmi_locking_stiffness_add(mpmi_balance *s, const mpmi_newton_work *work, const mpmi_weights *W,
+                                int64_t p, int32_t cell_place, const mpmi_locking_particle *of);
+/* and at last the cells go into the matrix. */
+void mpmi_locking_stiffness_end(mpmi_balance *s);
+
+/* ---- newton.c ---------------------------------------------------------------------------------------- */
+/* The displacements of the step in vector[MPMI_U], forces and stress in place. */
+mpm_status mpmi_newton_solve(mpmi_balance *s);
+
+/* ---- reactions.c ------------------------------------------------------------------------------------- */
+/* Impulses of what holds nodes; then the prescribed particles' share. */
+mpm_status mpmi_record_reactions(mpmi_balance *s);
+
 #endif

@@ -1,4 +1,12 @@
-#include "implicit/locking_stiffness.h"
+/* What the locking remedy adds to the stiffness. With j' the mean of det F_inc - 1 over a cell, weighted by
+ * the old volumes V, and theta = div du of a particle, the law sees L' = L + (theta' - theta) / d I, where
+ *
+ *   theta' = sum V (1 + j) theta / sum V (1 + j)                          over the cell,
+ *
+ * and force is divided by a ratio that grows by theta' - theta. With h_ik = c_ikll / d + (2 / d - 1) tau_ik
+ * that gives h_ik g_a,k (theta' - theta): the part of theta goes into the tangent of the particle, that of
+ * theta' couples all particles of the cell and is one outer product for it. It is not symmetric. */
+#include "implicit/balance.h"
 #include "simd/tensor.h"
 
 #include <string.h>

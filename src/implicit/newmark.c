@@ -1,15 +1,7 @@
 #include "implicit/newmark.h"
 #include "boundary/boundary.h"
 #include "boundary/prescribed.h"
-#include "implicit/assembly.h"
-#include "implicit/newton.h"
-#include "implicit/reactions.h"
-#include "implicit/unknowns.h"
-#include "layout/profile.h"
-#include "stages/forces.h"
-#include "stages/g2p.h"
-#include "stages/node_update.h"
-#include "stages/p2g.h"
+#include "stages/stages.h"
 
 #include <string.h>
 

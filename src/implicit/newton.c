@@ -1,6 +1,11 @@
-#include "implicit/newton.h"
+/* Newton's method for the displacements of one implicit step: Guilkey & Weiss 2003, eqs 11-13, for any beta
+ * and gamma.
+ *
+ * The first increment carries the prescribed displacements on its right-hand side (tangent predictor): nodes
+ * that are moved at once, with the rest at rest, turn cells inside out. Increments that do so all the same,
+ * or that take the residual up, are halved. */
+#include "implicit/balance.h"
 #include "context/reduce.h"
-#include "implicit/assembly.h"
 
 #include <float.h>
 #include <math.h>

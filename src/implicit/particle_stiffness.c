@@ -1,8 +1,8 @@
-#include "implicit/particle_stiffness.h"
-#include "implicit/locking_stiffness.h"
-#include "layout/axes.h"
+/* What one batch of particles adds to forces and stiffness of the nodes: its law has run, its nominal stress
+ * and its tangent are pushed forward (transfer/stiffness.c) and spread over the nodes of their stencils. */
+#include "implicit/balance.h"
 #include "layout/tile.h"
-#include "stages/locking.h"
+#include "stages/stages.h"
 
 #include <string.h>
 

@@ -1,4 +1,6 @@
-#include "implicit/pattern.h"
+/* The pattern of the matrix: which rows couple. Nodes couple when a stencil holds both, or with the locking
+ * remedy a cell; what its images and ghosts couple with is a row's too. */
+#include "implicit/balance.h"
 #include "layout/tasks.h"
 
 #include <stdlib.h>

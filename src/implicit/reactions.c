@@ -1,5 +1,8 @@
-#include "implicit/reactions.h"
-#include "boundary/prescribed_nodes.h"
+/* What holds nodes in an implicit step: the residual of their balance is the force of the constraint. It is
+ * recorded as the boundary stage does: to the host and to prescribed particles what acts on the components
+ * that they hold, the rest of a tie to the wall that binds it. */
+#include "implicit/balance.h"
+#include "boundary/bound.h"
 
 #include <string.h>
 

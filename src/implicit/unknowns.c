@@ -1,5 +1,6 @@
-#include "implicit/unknowns.h"
-#include "implicit/pattern.h"
+/* Unknowns of an implicit step: nodes that are active, the rows that they move with, who holds them. All of
+ * it is frozen during the step. */
+#include "implicit/balance.h"
 
 #include <math.h>
 #include <string.h>

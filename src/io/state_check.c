@@ -1,7 +1,7 @@
 /* The values of a loaded set must fulfil certain conditions so that a step can work with them, because
  * kernels do not look twice. */
 #include "io/state.h"
-#include "layout/axes.h"
+#include "layout/tile.h"
 
 static void check_ids(mpmi_archive *a, mpm_particles *fresh) {
   const int64_t *id = mpmi_i64(fresh, MPMI_ID, 0);

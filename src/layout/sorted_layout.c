@@ -1,5 +1,4 @@
 #include "layout/sorted_layout.h"
-#include "layout/axes.h"
 
 #include <float.h>
 #include <math.h>
@@ -46,6 +45,50 @@ static void swap_in_next(mpmi_layout *layout) {
   }
 }
 
+static int64_t slots_in_block(const mpmi_layout *layout, int64_t block) {
+  int64_t slots = 0;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const int64_t *start = layout->member[m].next.start;
+    slots += start[block + 1] - start[block];
+  }
+  return slots;
+}
+
+static int32_t colour_of(int32_t dim, const int32_t *coord) {
+  int32_t colour = 0;
+  for (int32_t k = 0; k < dim; ++k) colour = 2 * colour + (coord[k] & 1);
+  return colour;
+}
+
+/* Contiguous ranges of about equal numbers of slots. Results do not depend on where they end. */
+static void set_bounds(const mpmi_layout *layout, int32_t tasks, mpmi_worklist *list) {
+  int64_t total = 0, so_far = 0;
+  for (int64_t i = 0; i < list->count; ++i) total += slots_in_block(layout, list->block[i]);
+  int32_t task = 0;
+  list->bound[0] = 0;
+  for (int64_t i = 0; i < list->count; ++i) {
+    while (task + 1 < tasks && so_far * tasks >= total * (task + 1)) list->bound[++task] = i;
+    so_far += slots_in_block(layout, list->block[i]);
+  }
+  while (task < tasks) list->bound[++task] = list->count;
+}
+
+/* Of the blocks and arrangements that are called next. */
+static void make_worklists(mpmi_layout *layout, const mpmi_settings *settings) {
+  const mpmi_blocks *blocks = &layout->next_blocks;
+  int32_t *memory = layout->list_memory;
+  for (int32_t l = 0; l < MPMI_WORKLISTS; ++l) {
+    mpmi_worklist *list = &layout->worklist[l];
+    *list = (mpmi_worklist){memory, 0, layout->bound_memory + (settings->tasks + 1) * l};
+    for (int64_t i = 0; i < blocks->count; ++i)
+      if (slots_in_block(layout, i) > 0 &&
+          (l == 0 || colour_of(blocks->grid->dim, blocks->coord[i]) == l - 1))
+        list->block[list->count++] = (int32_t)i;
+    set_bounds(layout, settings->tasks, list);
+    memory += list->count;
+  }
+}
+
 mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings) {
   const int64_t blocks = layout->next_blocks.count;
   mpm_status status;
@@ -54,8 +97,7 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
       (status = mpmi_reserve_more(settings->context, (void **)&layout->list_memory, &layout->list_capacity,
                                   2 * blocks + 1, sizeof *layout->list_memory)))
     return status;
-  mpmi_worklists_make(layout->worklist, settings, &layout->next_blocks, layout->member, layout->member_count,
-                      layout->list_memory, layout->bound_memory);
+  make_worklists(layout, settings);
   swap_in_next(layout);
   return MPM_OK;
 }
@@ -80,6 +122,20 @@ static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
   for (int32_t m = 0; m < layout->member_count; ++m)
     if (share * layout->member[m].set->mass_max > layout->mass_cut)
       layout->mass_cut = share * layout->member[m].set->mass_max;
+}
+
+mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {
+  const mpm_grid *grid = set->grid;
+  mpmi_points points = {{NULL}, {NULL}, {NULL}};
+  int32_t stored = 0;
+  if (!set->ld) return points; /* nothing was ever added */
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    points.x[k] = mpmi_f64(set, MPMI_POSITION, copy) + k * set->ld;
+    if (mpmi_has_domains(grid)) points.size[k] = mpmi_f64(set, MPMI_SIZE, 0) + k * set->ld;
+    while (mpmi_tensor_map(grid->dim)[stored] != 4 * k) ++stored;
+    if (grid->desc.basis == MPM_CPGIMP) points.stretch[k] = mpmi_f64(set, MPMI_F, copy) + stored * set->ld;
+  }
+  return points;
 }
 
 /* GIMP takes domains wider than a cell as one cell: the host should know how many there are. */

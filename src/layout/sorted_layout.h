@@ -4,7 +4,36 @@
 #ifndef MPMI_SORTED_LAYOUT_H
 #define MPMI_SORTED_LAYOUT_H
 
-#include "layout/worklist.h"
+#include "layout/settings.h"
+#include "particles/sort.h"
+
+/* A set of particles in a stepper: where its particles lie, and what acts on them. */
+typedef struct mpmi_member {
+  mpm_particles *set;
+  mpmi_arrangement now, next; /* slots by block: of the last sort; of the one being made */
+  mpmi_sorting sorting;
+  double *force; /* [dim][ld] external force beside gravity, or NULL */
+  int64_t force_ld;
+  double *wave_speed; /* [ld] where the law runs before the particles move, or NULL */
+  int64_t wave_speed_ld;
+  mpm_particle_fn motion; /* of prescribed particles, or NULL: they keep their velocity */
+  void *motion_user;
+  int32_t prescribed; /* 1: some of its particles are prescribed */
+  double *mean;       /* [dim][ld] their mean velocities in a step where there is a motion, or NULL */
+  int64_t mean_ld;
+  double reaction[3]; /* impulse of its prescribed particles on the material in the last step */
+} mpmi_member;
+
+/* Blocks with particles, shared out among tasks: task k works on block[bound[k]] ... block[bound[k + 1] - 1]. */
+typedef struct mpmi_worklist {
+  int32_t *block;
+  int64_t count;
+  int64_t *bound; /* [tasks + 1] */
+} mpmi_worklist;
+
+/* Blocks of one colour have the same parity of coordinates on each axis: their tiles do not overlap. There is
+ * one list of all blocks with particles, and then one for each colour. */
+enum { MPMI_COLOURS = 8, MPMI_WORKLISTS = 1 + MPMI_COLOURS };
 
 typedef struct mpmi_layout {
   int32_t member_count, member_capacity;
@@ -37,5 +66,8 @@ mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings);
 /* Makes the layout of the blocks and arrangements that are called next; the last part of a sort, and of
  * loading a sorted state. */
 mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings);
+
+/* For kernels: where the particles of a set are, and how large; copy: of position and deformation gradient. */
+mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy);
 
 #endif

@@ -3,7 +3,46 @@
 #ifndef MPMI_STEP_H
 #define MPMI_STEP_H
 
-#include "layout/workspace.h"
+#include "layout/sorted_layout.h"
+
+/* What ends a step early. Failures of tasks are collected, and the first decides so that reports repeat: that
+ * of the smallest (set, particle), then of the smallest node. */
+typedef struct mpmi_failure {
+  mpm_status cause;
+  int32_t callback_status, set;
+  int64_t particle, node;
+  const char *what;
+} mpmi_failure;
+
+/* What one task has to tell at the end. */
+typedef struct mpmi_task_report {
+  mpmi_failure failure;
+  int32_t left_tile, removes; /* a particle left its loose tile; one left through an open wall */
+  int32_t holes_restored;     /* sums over the particles may not be finite */
+  int64_t active;             /* nodes with mass in its share */
+  double law_seconds, weights_seconds;
+} mpmi_task_report;
+
+/* Memory that one task works in. */
+typedef struct mpmi_scratch {
+  double *tile;        /* of one block: of the nodes that particles take from, or of sums */
+  double *sum_tile;    /* of sums that are made while particles take; of implicit steps */
+  double *gathered;    /* v, dv, C of one batch */
+  double *cells;       /* tile of cell sums, for the locking remedy */
+  void *batch_memory;  /* of the law */
+  int64_t blocks_seen; /* for sampling the weights */
+} mpmi_scratch;
+
+/* Memory of all tasks. Nothing in it but blocks_seen outlives a step. */
+typedef struct mpmi_workspace {
+  mpmi_scratch *scratch;    /* [tasks] */
+  mpmi_task_report *report; /* [tasks] */
+  void *scratch_memory;
+  size_t scratch_bytes;
+  mpmi_sums *block_sums; /* [blocks] energies, momenta and rates of the new state */
+  double *block_work;    /* [blocks] work of the host on nodes */
+  int64_t block_sums_capacity, block_work_capacity;
+} mpmi_workspace;
 
 /* Seconds by stage, in the order of mpm_profile. */
 enum {
@@ -33,7 +72,7 @@ typedef struct mpmi_step {
   const mpmi_settings *settings;
   const mpmi_layout *layout;
   mpmi_workspace *work;
-  mpmi_profile *profile; /* of all steps (profile.h) */
+  mpmi_profile *profile; /* of all steps */
   double t, dt;
   double velocity_dt; /* over which forces change velocities: dt, or staggered the mean of two steps */
   mpmi_failure failure;
@@ -42,8 +81,31 @@ typedef struct mpmi_step {
   mpm_step_info info;           /* what the step reports, as far as it is known */
 } mpmi_step;
 
+void mpmi_failure_clear(mpmi_failure *failure);
+/* Takes the other one where it comes before what is there. */
+void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other);
+/* What a callback's status makes of the step: > 0 cuts dt, < 0 stops it. */
+mpm_status mpmi_callback_cause(mpm_status status);
+/* The status of a step from t over dt that fails so, with its sentence. */
+mpm_status mpmi_failure_report(mpm_context *context, const mpmi_failure *failure, double t, double dt);
 void mpmi_failures_clear(mpmi_step *step);
 /* Status of the step from the first failure among the tasks, with its sentence; MPM_OK when none. */
 mpm_status mpmi_step_failure(mpmi_step *step);
+
+mpm_status mpmi_workspace_create(mpmi_workspace *work, const mpmi_settings *settings);
+void mpmi_workspace_free(mpmi_workspace *work, const mpmi_settings *settings);
+/* Memory for a step with the present layout. */
+mpm_status mpmi_workspace_prepare(mpmi_workspace *work, const mpmi_settings *settings,
+                                  const mpmi_layout *layout);
+/* Forgets what tasks have told. */
+void mpmi_reports_clear(mpmi_workspace *work, int32_t tasks);
+
+/* Adds the seconds since *from to a stage and restarts the clock. */
+void mpmi_lap(mpmi_step *step, int32_t stage, double *from);
+/* The law runs inside the tasks of a stage: its share of their time is moved from there. */
+void mpmi_move_samples(mpmi_step *step, int32_t stage);
+/* Now and then makes the weights of the slots [begin, end) once more, to know how long that takes. */
+void mpmi_sample_weights(mpmi_step *step, int32_t task, const mpmi_axis *axis, int32_t need,
+                         const mpmi_points *points, int64_t begin, int64_t end);
 
 #endif

@@ -1,4 +1,5 @@
-/* Tiles: private copies of the nodes of a block and its halo, which kernels work on. */
+/* What kernels are told of a block: its tile, which is a private copy of its nodes and their halo, and the axes
+ * of the basis as seen from it. */
 #ifndef MPMI_TILE_H
 #define MPMI_TILE_H
 
@@ -14,5 +15,8 @@ void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t 
 /* Adds the tile, which has as many values per node, to the nodes and leaves it clean. */
 void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                    double *tile);
+
+/* Axes of the basis as seen from the block at `coord`. */
+void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis);
 
 #endif

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/costs.h"
 #include "linalg/methods.h"
 
 enum { RESTART = 60, MOST_RESTARTS = 50, MOST_CYCLES = 500 };
@@ -107,8 +106,48 @@ static mpm_status fall_back(mpmi_system *s, mpm_status status) {
   return mpmi_direct(s);
 }
 
+/* Costs are in products of the matrix with a vector, measured on bodies of soft matter. Iterations of CG grow
+ * with the number of nodes in a row, or with the step: inertia is its share of the diagonal. Cycles of
+ * multigrid grow with the overlap of stencils, because nodes at the rim of a body then share few particles.
+ */
+typedef struct costs {
+  double cg, multigrid, factor;
+} costs;
+
+/* Counts the nodes along each axis; the longest comes first. */
+static void extents_of(const mpmi_matrix *A, double *extent) {
+  for (int32_t k = 0; k < 3; ++k) {
+    int64_t low = A->rows ? A->index[0][k] : 0, high = low;
+    for (int64_t i = 1; i < A->rows; ++i) {
+      if (A->index[i][k] < low) low = A->index[i][k];
+      if (A->index[i][k] > high) high = A->index[i][k];
+    }
+    int32_t at = k;
+    for (; at > 0 && extent[at - 1] < (double)(high - low + 1); --at) extent[at] = extent[at - 1];
+    extent[at] = (double)(high - low + 1);
+  }
+}
+
+static costs costs_of(const mpmi_matrix *A, double inertia) {
+  double extent[3];
+  extents_of(A, extent);
+  const double entries = (double)A->row_start[A->rows], rows = (double)A->rows;
+  const double dim = 1.0 + (extent[1] > 1.0) + (extent[2] > 1.0);
+  const double half_stencil = fmax(1.0, 0.5 * (pow(entries / rows, 1.0 / dim) - 1.0));
+  /* The factor spends its work on separators. They are half a stencil wide, and a long body has many of
+   * them. One takes 7 times the cube of its size, and 20 of these multiplications take as long as one of a
+   * product. */
+  const double separator = (double)mpmi_matrix_unknowns(A) / extent[0] * half_stencil;
+  const double factor = 7.0 * separator * separator * separator * extent[0] / extent[1];
+  costs c;
+  c.cg = fmin(20.0 * extent[0], inertia > 0.0 ? 20.0 / sqrt(inertia) : (double)INFINITY);
+  c.multigrid = 20.0 + 70.0 * half_stencil * half_stencil;
+  c.factor = factor / (20.0 * entries * (double)(A->block * A->block));
+  return c;
+}
+
 static mpm_status by_cheapest(mpmi_system *s, const mpmi_solve_job *job) {
-  const mpmi_costs c = mpmi_costs_of(s->A, job->inertia);
+  const costs c = costs_of(s->A, job->inertia);
   const int64_t limit = job->max_iterations;
   mpm_status status;
   if (c.factor <= fmin(c.cg, c.multigrid)) return mpmi_direct(s);
@@ -127,7 +166,7 @@ static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
   case MPM_SOLVER_HOST:
     return mpmi_solve_by_host(s, job);
   case MPM_SOLVER_CG:
-    return by_cg(s, limit ? limit : 5000 + 30 * (int64_t)mpmi_costs_of(s->A, 0.0).cg);
+    return by_cg(s, limit ? limit : 5000 + 30 * (int64_t)costs_of(s->A, 0.0).cg);
   case MPM_SOLVER_MULTIGRID_CG:
     return by_multigrid(s, limit ? limit : 10 * MOST_CYCLES);
   case MPM_SOLVER_LDLT:

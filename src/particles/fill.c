@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "particles/append.h"
+#include "particles/add.h"
 
 enum { BATCH = 4096, MOST_PER_CELL = 64 };
 

@@ -1,6 +1,4 @@
 #include "stages/batch.h"
-#include "layout/axes.h"
-#include "layout/profile.h"
 #include "layout/tile.h"
 #include "layout/visit.h"
 

@@ -1,6 +1,6 @@
 /* Batches of particles on their way through a pass from nodes to particles. A pass gathers from the nodes of
  * a velocity field, block by block, and does with each batch what it is for. It reads copy 0 of the
- * particles' fields and writes copy 1; only volume has one copy (strain.h). */
+ * particles' fields and writes copy 1; only volume has one copy (strain.c). */
 #ifndef MPMI_BATCH_H
 #define MPMI_BATCH_H
 
@@ -67,5 +67,40 @@ int32_t mpmi_has_host_law(const mpmi_layout *layout);
 void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what);
 /* Finds the particles behind the flags of the batch. */
 void mpmi_batch_check(mpmi_batch *b);
+
+/* ---- motion.c ---------------------------------------------------------------------------------------- */
+void mpmi_motion_bind(mpmi_batch *b);
+void mpmi_motion_enter(mpmi_batch *b);
+/* New velocities and positions of the batch; prescribed particles move as they must. */
+void mpmi_motion_take(mpmi_batch *b);
+
+/* ---- strain.c ---------------------------------------------------------------------------------------- */
+void mpmi_strain_bind(mpmi_batch *b);
+void mpmi_strain_enter(mpmi_batch *b);
+/* Keeps the gradient of the batch: what an affine transfer carries comes with the velocities, in the pass
+ * that moves; otherwise that of the strain is kept where the host wants it. */
+void mpmi_gradient_keep(mpmi_batch *b);
+/* New deformation gradient and volume; 0 where they are no state that a law can be asked about. */
+int32_t mpmi_strain_deform(mpmi_batch *b);
+/* The law at that; b->law_ran tells whether it has answered. */
+void mpmi_strain_law(mpmi_batch *b);
+
+/* Where the law runs before the particles move, the sums over the motion want its wave speed: it is left in
+ * the member's row meanwhile. */
+void mpmi_wave_speed_leave(const mpmi_batch *b);
+void mpmi_wave_speed_fetch(mpmi_batch *b);
+
+/* Adds energies, momenta and rates of the batch to those of its block; what:
+ * MPMI_SUMS_LAW, MPMI_SUMS_MOTION. */
+void mpmi_batch_sums(mpmi_batch *b, int32_t what);
+
+/* Volumes, of which there is one copy, by a copy of F: after a step that failed, and where the host looks on
+ * in between. */
+void mpmi_make_volumes(const mpmi_layout *layout, const mpmi_settings *settings, int32_t copy);
+
+/* Second moments of the basis at particles, for the affine part of the angular momentum: gives the job those of
+ * n particles from slot `begin`; copy: of their positions. buffer: [3][ld]. */
+void mpmi_sums_moments(const mpmi_settings *settings, const mpm_particles *set, int32_t copy, int64_t begin,
+                       int64_t n, int64_t ld, double *buffer, mpmi_sums_job *job);
 
 #endif

@@ -1,4 +1,6 @@
-#include "stages/forces.h"
+/* External forces on particles: f = m (g + b) + f_app (MPoint theory eq. 21). Gravity needs no storage and is
+ * added in the scatter; everything else is collected here. */
+#include "stages/stages.h"
 #include "layout/particle_batch.h"
 
 #include <string.h>

@@ -1,7 +1,6 @@
-#include "stages/g2p.h"
-#include "stages/locking.h"
-#include "stages/motion.h"
-#include "stages/strain.h"
+/* G2P: the named passes from nodes to particles. */
+#include "stages/stages.h"
+#include "stages/batch.h"
 
 #include <string.h>
 

@@ -1,6 +1,14 @@
-#include "stages/locking.h"
+/* Remedy against volumetric locking (MPoint theory eqs 47-53, carried to the deformation gradient). The law
+ * sees
+ *
+ *   F_inc' = f F_inc,  f^d = (1 + j') / (1 + j),  j = det F_inc - 1,  j' = sum V j / sum V over the cell
+ *
+ * and F' = r^(1/d) F, where the ratio r grows by f^d in each step; in plane strain only the axes of the plane
+ * are scaled. F, the volume and the positions are those without the remedy. The cell of a particle is known
+ * by the node of its lower corner: sums over cells go the way of nodal sums (layout/accumulate.h). */
+#include "stages/stages.h"
 #include "layout/accumulate.h"
-#include "layout/axes.h"
+#include "layout/tile.h"
 #include "layout/tasks.h"
 #include "stages/batch.h"
 

@@ -1,4 +1,5 @@
-#include "stages/motion.h"
+/* Motion: velocity and position of particles from what a batch has gathered, MPoint theory eqs 34 to 37. */
+#include "stages/batch.h"
 #include "boundary/prescribed.h"
 
 #include <math.h>

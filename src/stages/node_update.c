@@ -1,4 +1,6 @@
-#include "stages/node_update.h"
+/* The grid's own part of a step, on every node as if it were free: momentum to velocity, force to increment
+ * (transfer/update.c). */
+#include "stages/stages.h"
 #include "layout/tasks.h"
 
 #include <string.h>

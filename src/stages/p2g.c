@@ -1,7 +1,6 @@
-#include "stages/p2g.h"
+/* P2G: particles to nodes. */
+#include "stages/stages.h"
 #include "layout/accumulate.h"
-#include "layout/axes.h"
-#include "layout/profile.h"
 #include "layout/tile.h"
 
 #include <string.h>

@@ -1,9 +1,15 @@
-#include "stages/xpic.h"
+/* XPIC(m) (Hammerquist & Nairn 2017): with S the interpolation to particles and S+ the mass-weighted
+ * projection to nodes, the new velocity is  (I - (I - S S+)^m) v_p + dt S a.  Expanded, its first part is S
+ * v^ with
+ *
+ *   v^ = m sum_r (-1)^(r+1) v_r,   v_1 = v_i,   v_r = (m - r + 1) / r S+ S v_r-1
+ *
+ * PIC has S v_i in its place (m = 1). What is gathered at the end of a step is S (v_i + dt a), so that S (v^
+ * - v_i) remains: it is made here. The terms obey the boundary conditions that are linear: walls and images.
+ */
+#include "stages/stages.h"
 #include "boundary/boundary.h"
 #include "layout/tasks.h"
-#include "stages/g2p.h"
-#include "stages/node_update.h"
-#include "stages/p2g.h"
 
 typedef struct xpic_job {
   const mpmi_step *step;

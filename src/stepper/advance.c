@@ -1,7 +1,6 @@
 /* Sub-steps to a given time: cut on failure, grown on success. */
 #include "context/structs.h"
-#include "stepper/make_step.h"
-#include "stepper/reports.h"
+#include "stepper/stepper.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
-#include "stepper/commit.h"
+/* The end of a step: the second copies become the state, or are dropped. */
+#include "stepper/stepper.h"
 #include "boundary/prescribed.h"
-#include "stages/strain.h"
-#include "stepper/state_sums.h"
+#include "stages/batch.h"
 
 #include <string.h>
 

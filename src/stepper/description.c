@@ -1,4 +1,5 @@
-#include "stepper/description.h"
+/* The description of a stepper: its defaults, and what it may ask for. */
+#include "stepper/stepper.h"
 #include "context/structs.h"
 #include "layout/transfers.h"
 

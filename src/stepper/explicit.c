@@ -1,12 +1,9 @@
-#include "stepper/explicit.h"
+/* Explicit steps in three parts, with the host in between where it wants: particles to nodes, the nodes' own
+ * part, nodes to particles. USL, USF and MUSL are an order of stages (table in docs/theory.md). */
+#include "stepper/stepper.h"
 #include "boundary/boundary.h"
 #include "boundary/prescribed.h"
-#include "layout/profile.h"
-#include "stages/forces.h"
-#include "stages/g2p.h"
-#include "stages/node_update.h"
-#include "stages/p2g.h"
-#include "stages/xpic.h"
+#include "stages/stages.h"
 
 /* A projection beside the one with the forces of the step, up to its boundary conditions. */
 static mpm_status project(mpmi_step *step, mpmi_nodes *nodes, int32_t projection, double *clock) {

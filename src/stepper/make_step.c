@@ -1,13 +1,8 @@
-#include "stepper/make_step.h"
+/* Steps, whole or in three parts with the host in between: preparation, the scheme's stages, and the end. */
+#include "stepper/stepper.h"
 #include "boundary/prescribed.h"
 #include "implicit/newmark.h"
 #include "layout/members.h"
-#include "layout/profile.h"
-#include "stages/strain.h"
-#include "stepper/commit.h"
-#include "stepper/explicit.h"
-#include "stepper/reports.h"
-#include "stepper/state_sums.h"
 
 #include <math.h>
 

@@ -1,7 +1,8 @@
+/* What a stepper reports: the info of the state and of the last step, reactions, where the time went. */
 #include "context/structs.h"
-#include "stepper/reports.h"
+#include "stepper/stepper.h"
+#include "implicit/balance.h"
 #include "layout/members.h"
-#include "stepper/state_sums.h"
 
 #include <string.h>
 

@@ -1,6 +1,8 @@
-#include "stepper/state_sums.h"
+/* Energies, momenta and rates of the present state. After a step they are there; after the host has changed
+ * something, or before the first step, the particles are asked. */
+#include "stepper/stepper.h"
 #include "context/reduce.h"
-#include "stages/moments.h"
+#include "stages/batch.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -25,7 +25,7 @@ PLANTED = [
     ('`mpmi_layout_prepare`', '`mpmi_layout_prepares`', '`mpmi_layout_prepares` is nowhere'),
     ('`src/stages/p2g.c`', '`src/stages/p2q.c`', '`src/stages/p2q.c` is no file'),
     ('`src/boundary/hooks.c`', '`src/boundary/ties.c`', '`show_node` is not in src/boundary/ties.c'),
-    ('`costs.c`', '`layout.c`, `cost.c`', '`cost.c` is no file'),
+    ('`gmres.c`', '`layout.c`, `gmre.c`', '`gmre.c` is no file'),
     ('`MPM_WALL_SLIP`', '`MPM_WALL_SLIPS`', '`MPM_WALL_SLIPS` is nowhere'),
     ('`gravity`', '`gravitation`', '`gravitation` is nowhere'),
     ('`..._axis`', '`..._axes_of`', 'nothing ends as `..._axes_of`'),

@@ -1,6 +1,6 @@
 /* New particles come to the end of a set in three moves: begin, the caller writes what it knows, finish. */
-#ifndef MPMI_APPEND_H
-#define MPMI_APPEND_H
+#ifndef MPMI_ADD_H
+#define MPMI_ADD_H
 
 #include "particles/layout.h"
 

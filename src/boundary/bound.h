@@ -1,8 +1,8 @@
 /* Nodes between P2G and G2P as the parts of the boundary stage see them. Whatever changes a velocity changes
  * its increment by as much, so that the acceleration of a bound node is that of Steffen et al. 2008, eq. 30,
  * and mass times the change is the impulse that was given. */
-#ifndef MPMI_IMPULSES_H
-#define MPMI_IMPULSES_H
+#ifndef MPMI_BOUND_H
+#define MPMI_BOUND_H
 
 #include "layout/nodes.h"
 #include "layout/step.h"
@@ -66,5 +66,58 @@ double mpmi_record_whole(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_compon
 
 /* Adds the works by block, in the order of blocks, to the work of the step. */
 void mpmi_add_block_work(mpmi_step *step);
+
+/* ---- ties.c ------------------------------------------------------------------------------------------ */
+/* The master gets the velocity that the whole tie has, before the forces and after them. */
+void mpmi_ties_fold(mpmi_bound *bound);
+/* Sets the components that fixed and slip walls hold. */
+void mpmi_ties_hold_walls(mpmi_bound *bound);
+/* The followers get the master's velocity, with their signs; impulses and reactions are recorded. */
+void mpmi_ties_unfold(mpmi_bound *bound);
+
+/* ---- held_nodes.c ------------------------------------------------------------------------------------ */
+/* Asks the host and the prescribed particles who holds what. */
+mpm_status mpmi_held_find(mpmi_bound *bound);
+/* Sets the components that are held, as they were found. */
+mpm_status mpmi_held_set(mpmi_bound *bound);
+
+/* ---- velocity_callback.c ----------------------------------------------------------------------------- */
+/* Asks it for all free nodes that move; its answers go into held and held_value. */
+mpm_status mpmi_ask_velocities(mpmi_bound *bound);
+
+/* ---- prescribed_nodes.c ------------------------------------------------------------------------------ */
+/* Finds the nodes that they hold, and their velocities; what the host holds stays the host's. */
+mpm_status mpmi_prescribed_hold(mpmi_bound *bound);
+/* Gives them their share of the impulses on these nodes, in the parts of the prescription. */
+mpm_status mpmi_prescribed_share(mpmi_bound *bound);
+
+/* ---- friction_wall.c --------------------------------------------------------------------------------- */
+/* keep: contacts stay closed or open as they were found, in a projection without forces. */
+void mpmi_friction_walls(mpmi_bound *bound, int32_t keep);
+
+/* ---- node_batch.c ------------------------------------------------------------------------------------ */
+enum { MPMI_NODE_BATCH = 256 }; /* the most nodes that a block has */
+_Static_assert(MPMI_BLOCK_EDGE(1) <= MPMI_NODE_BATCH, "1-D");
+_Static_assert(MPMI_BLOCK_EDGE(2) * MPMI_BLOCK_EDGE(2) <= MPMI_NODE_BATCH, "2-D");
+_Static_assert(MPMI_BLOCK_EDGE(3) * MPMI_BLOCK_EDGE(3) * MPMI_BLOCK_EDGE(3) <= MPMI_NODE_BATCH, "3-D");
+
+typedef struct mpmi_node_list {
+  int64_t n, slot[MPMI_NODE_BATCH], index[3 * MPMI_NODE_BATCH];
+  double position[3 * MPMI_NODE_BATCH], mass[MPMI_NODE_BATCH];
+  mpm_node_batch batch;
+} mpmi_node_list;
+
+/* Masters stand for their ties, with the mass of all of it. Returns how many nodes there are. */
+int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *list);
+/* A value of the host on node i that is not finite. */
+void mpmi_bad_node(const mpmi_bound *bound, const mpmi_node_list *list, int64_t i, const char *what,
+                   mpmi_failure *failure);
+
+/* ---- hooks.c ----------------------------------------------------------------------------------------- */
+/* Around all hooks of a step; nothing happens where there are none. The end adds up their work. */
+mpm_status mpmi_hooks_begin(mpmi_bound *bound);
+mpm_status mpmi_hooks_end(mpmi_bound *bound);
+/* Calls the hook of a stage, MPM_AFTER_P2G ..., if there is one. */
+mpm_status mpmi_hooks_run(mpmi_bound *bound, int32_t stage);
 
 #endif

@@ -1,6 +1,6 @@
 #include "stepper/stepper.h"
+#include "implicit/balance.h"
 #include "layout/members.h"
-#include "stepper/description.h"
 
 #include <math.h>
 

@@ -1,0 +1,49 @@
+/* The stages of a step, in its order. */
+#ifndef MPMI_STAGES_H
+#define MPMI_STAGES_H
+
+#include "layout/projection.h"
+#include "layout/step.h"
+#include "particles/law_batch.h"
+
+/* ---- forces.c ---------------------------------------------------------------------------------------- */
+/* At time t, into the members' forces. */
+mpm_status mpmi_forces_stage(mpmi_step *step, double t);
+
+/* ---- p2g.c ------------------------------------------------------------------------------------------- */
+mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes);
+
+/* ---- node_update.c ----------------------------------------------------------------------------------- */
+mpm_status mpmi_node_update_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes);
+
+/* ---- xpic.c ------------------------------------------------------------------------------------------ */
+/* Leaves the corrections in the second copy of the particles' velocities. */
+mpm_status mpmi_xpic_stage(mpmi_step *step, mpmi_nodes *nodes);
+
+/* ---- locking.c --------------------------------------------------------------------------------------- */
+/* Cell averages of the dilation that these nodal velocities make, into the sums of the nodes, for the pass
+ * that deforms. */
+mpm_status mpmi_locking_stage(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
+
+/* Scales the deformation that the law is about to see, and gives the particles their new ratio. cells: tile
+ * of cell sums. */
+void mpmi_locking_apply(const mpm_grid *grid, const double *cells, const mpmi_axis *axis, mpm_particles *set,
+                        mpmi_law_batch *b, int64_t begin, int64_t n, double dt);
+
+/* Place in the tile of the lower corner of the cells of n particles, at most a chunk. */
+void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
+                      int64_t n, int32_t *place);
+
+/* ---- g2p.c ------------------------------------------------------------------------------------------- */
+/* Velocity and position, deformation gradient and stress: all of USL. */
+mpm_status mpmi_g2p_move_and_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
+/* Velocity and position alone. */
+mpm_status mpmi_g2p_move(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
+/* Deformation gradient and stress alone. */
+mpm_status mpmi_g2p_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
+/* The nodes' vectors, interpolated, into the second copy of the particles' velocities; or of their
+ * accelerations, of the sets that do not know them. */
+mpm_status mpmi_g2p_velocities(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
+mpm_status mpmi_g2p_accelerations(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
+
+#endif
