@@ -54,11 +54,9 @@ mpm_status mpmi_prescribed_prepare(mpmi_layout *layout, mpmi_nodes *nodes, const
   }
   if (!p->any) return MPM_OK;
   const int64_t blocks = layout->blocks.count;
-  if ((status =
-           mpmi_reserve_more(c, (void **)&p->sums, &p->sums_capacity, mpmi_slots(layout), sizeof *p->sums)) ||
-      (status = mpmi_reserve_more(c, (void **)&p->part, &p->part_capacity, blocks * layout->member_count,
-                                  sizeof *p->part)) ||
-      (status = mpmi_reserve_more(c, (void **)&p->block, &p->block_capacity, blocks, sizeof *p->block)))
+  if ((status = MPMI_RESERVE_MORE(c, p->sums, p->sums_capacity, mpmi_slots(layout))) ||
+      (status = MPMI_RESERVE_MORE(c, p->part, p->part_capacity, blocks * layout->member_count)) ||
+      (status = MPMI_RESERVE_MORE(c, p->block, p->block_capacity, blocks)))
     return status;
   find_blocks(layout, p->block);
   return MPM_OK;

@@ -58,6 +58,10 @@ mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int6
 mpm_status mpmi_reserve_more(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size);
 /* Gives count * size, or where that overflows SIZE_MAX, which mpmi_alloc refuses. */
 size_t mpmi_bytes(int64_t count, size_t size);
+/* The same for an array of a type. */
+#define MPMI_RESERVE_MORE(context, array, capacity, wanted)                                                  \
+  mpmi_reserve_more(context, (void **)&(array), &(capacity), wanted, sizeof *(array))
+#define MPMI_FREE_ARRAY(context, array, count) mpmi_free(context, array, mpmi_bytes(count, sizeof *(array)))
 
 /* Runs task(data, k) for k in [0, count) on the pool, the host's executor or the calling thread. If the
  * host's executor fails it returns MPM_E_CALLBACK with a text; some tasks may then not have run. */

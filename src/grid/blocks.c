@@ -77,8 +77,8 @@ void mpmi_blocks_free(mpmi_blocks *b) {
     mpmi_free(b->context, *a[i].at, mpmi_bytes(b->capacity, a[i].size));
     *a[i].at = NULL;
   }
-  mpmi_free(b->context, b->table_key, mpmi_bytes(b->table_size, sizeof *b->table_key));
-  mpmi_free(b->context, b->table_block, mpmi_bytes(b->table_size, sizeof *b->table_block));
+  MPMI_FREE_ARRAY(b->context, b->table_key, b->table_size);
+  MPMI_FREE_ARRAY(b->context, b->table_block, b->table_size);
   b->table_key = NULL;
   b->table_block = NULL;
   b->capacity = b->table_size = b->count = 0;

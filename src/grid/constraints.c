@@ -9,10 +9,10 @@ void mpmi_constraints_init(mpmi_constraints *c, mpm_context *context) {
 
 void mpmi_constraints_free(mpmi_constraints *c) {
   mpm_context *context = c->context;
-  mpmi_free(context, c->tie, mpmi_bytes(c->tie_capacity, sizeof *c->tie));
-  mpmi_free(context, c->follower, mpmi_bytes(c->follower_capacity, sizeof *c->follower));
-  mpmi_free(context, c->contact, mpmi_bytes(c->contact_capacity, sizeof *c->contact));
-  mpmi_free(context, c->tie_of, mpmi_bytes(c->map_capacity, sizeof *c->tie_of));
+  MPMI_FREE_ARRAY(context, c->tie, c->tie_capacity);
+  MPMI_FREE_ARRAY(context, c->follower, c->follower_capacity);
+  MPMI_FREE_ARRAY(context, c->contact, c->contact_capacity);
+  MPMI_FREE_ARRAY(context, c->tie_of, c->map_capacity);
   mpmi_constraints_init(c, context);
 }
 
@@ -217,15 +217,13 @@ static void visit_contacts(walk *w) {
 
 mpm_status mpmi_constraints_build(mpmi_constraints *c, const mpmi_blocks *b, const mpmi_wall *wall) {
   mpm_context *context = c->context;
-  mpm_status status = mpmi_reserve_more(context, (void **)&c->tie_of, &c->map_capacity, b->count * b->nodes,
-                                        sizeof *c->tie_of);
+  mpm_status status = MPMI_RESERVE_MORE(context, c->tie_of, c->map_capacity, b->count * b->nodes);
   if (status) return status;
   walk w = {b, wall, c, 0, 0, 0, 0};
   clear_map(c, b);
   visit_all(&w, VISIT_LINEAR, 0);
-  if ((status = mpmi_reserve_more(context, (void **)&c->tie, &c->tie_capacity, w.ties, sizeof *c->tie)) ||
-      (status = mpmi_reserve_more(context, (void **)&c->follower, &c->follower_capacity, w.followers,
-                                  sizeof *c->follower)))
+  if ((status = MPMI_RESERVE_MORE(context, c->tie, c->tie_capacity, w.ties)) ||
+      (status = MPMI_RESERVE_MORE(context, c->follower, c->follower_capacity, w.followers)))
     return status;
   clear_map(c, b);
   w = (walk){b, wall, c, 1, 0, 0, 0};
@@ -241,9 +239,7 @@ mpm_status mpmi_constraints_build(mpmi_constraints *c, const mpmi_blocks *b, con
   visit_all(&w, VISIT_PLACE, 0);
   w.fill = 0;
   visit_contacts(&w);
-  if ((status = mpmi_reserve_more(context, (void **)&c->contact, &c->contact_capacity, w.contacts,
-                                  sizeof *c->contact)))
-    return status;
+  if ((status = MPMI_RESERVE_MORE(context, c->contact, c->contact_capacity, w.contacts))) return status;
   w.fill = 1;
   visit_contacts(&w);
   c->contact_count = w.contacts;

@@ -61,7 +61,7 @@ mpm_status mpmi_newton_create(const mpmi_settings *settings, mpmi_newton **out) 
   newton->version = -1;
   newton->work = mpmi_alloc_zeroed(c, mpmi_bytes(settings->tasks, sizeof *newton->work));
   if (!newton->work || mpmi_solver_create(c, &newton->solver)) {
-    mpmi_free(c, newton->work, mpmi_bytes(settings->tasks, sizeof *newton->work));
+    MPMI_FREE_ARRAY(c, newton->work, settings->tasks);
     mpmi_free(c, newton, sizeof *newton);
     return MPM_E_NOMEM;
   }
@@ -106,21 +106,20 @@ void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {
   if (!newton) return;
   mpmi_matrix_free(&newton->matrix);
   mpmi_solver_destroy(newton->solver);
-  mpmi_free(c, newton->active, mpmi_bytes(newton->active_capacity, sizeof *newton->active));
-  mpmi_free(c, newton->active_of, mpmi_bytes(newton->map_capacity, sizeof *newton->active_of));
-  mpmi_free(c, newton->place, mpmi_bytes(newton->place_capacity, sizeof *newton->place));
-  mpmi_free(c, newton->members, mpmi_bytes(newton->members_capacity, sizeof *newton->members));
-  mpmi_free(c, newton->members_start,
-            mpmi_bytes(newton->members_start_capacity, sizeof *newton->members_start));
-  mpmi_free(c, newton->diagonal, mpmi_bytes(newton->diagonal_capacity, sizeof *newton->diagonal));
-  mpmi_free(c, newton->mass, mpmi_bytes(newton->mass_capacity, sizeof *newton->mass));
-  mpmi_free(c, newton->vector_memory, mpmi_bytes(newton->vector_capacity, sizeof *newton->vector_memory));
+  MPMI_FREE_ARRAY(c, newton->active, newton->active_capacity);
+  MPMI_FREE_ARRAY(c, newton->active_of, newton->map_capacity);
+  MPMI_FREE_ARRAY(c, newton->place, newton->place_capacity);
+  MPMI_FREE_ARRAY(c, newton->members, newton->members_capacity);
+  MPMI_FREE_ARRAY(c, newton->members_start, newton->members_start_capacity);
+  MPMI_FREE_ARRAY(c, newton->diagonal, newton->diagonal_capacity);
+  MPMI_FREE_ARRAY(c, newton->mass, newton->mass_capacity);
+  MPMI_FREE_ARRAY(c, newton->vector_memory, newton->vector_capacity);
   mpmi_free(c, newton->force.at, mpmi_bytes(newton->force.capacity, sizeof(double)));
   mpmi_free(c, newton->external.at, mpmi_bytes(newton->external.capacity, sizeof(double)));
-  mpmi_free(c, newton->cell, mpmi_bytes(newton->cell_capacity, sizeof *newton->cell));
-  mpmi_free(c, newton->cell_node, mpmi_bytes(newton->cell_node_capacity, sizeof *newton->cell_node));
+  MPMI_FREE_ARRAY(c, newton->cell, newton->cell_capacity);
+  MPMI_FREE_ARRAY(c, newton->cell_node, newton->cell_node_capacity);
   mpmi_free(c, newton->work_memory, newton->work_bytes);
-  mpmi_free(c, newton->work, mpmi_bytes(settings->tasks, sizeof *newton->work));
-  mpmi_free(c, newton->history, mpmi_bytes(newton->history_capacity, sizeof *newton->history));
+  MPMI_FREE_ARRAY(c, newton->work, settings->tasks);
+  MPMI_FREE_ARRAY(c, newton->history, newton->history_capacity);
   mpmi_free(c, newton, sizeof *newton);
 }

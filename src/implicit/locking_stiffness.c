@@ -26,10 +26,10 @@ mpm_status mpmi_locking_stiffness_begin(mpmi_balance *s) {
   mpmi_newton *newton = s->newton;
   const int64_t cells = newton->matrix.rows, nodes = nodes_of(s);
   mpm_status status;
-  if ((status = mpmi_reserve_more(s->settings->context, (void **)&newton->cell, &newton->cell_capacity,
-                                  cells * cell_values(s), sizeof *newton->cell)) ||
-      (status = mpmi_reserve_more(s->settings->context, (void **)&newton->cell_node,
-                                  &newton->cell_node_capacity, cells * nodes, sizeof *newton->cell_node)))
+  if ((status = MPMI_RESERVE_MORE(s->settings->context, newton->cell, newton->cell_capacity,
+                                  cells * cell_values(s))) ||
+      (status = MPMI_RESERVE_MORE(s->settings->context, newton->cell_node, newton->cell_node_capacity,
+                                  cells * nodes)))
     return status;
   memset(newton->cell, 0, (size_t)(cells * cell_values(s)) * sizeof *newton->cell);
   for (int64_t i = 0; i < cells * nodes; ++i) newton->cell_node[i] = -1;

@@ -123,20 +123,15 @@ static mpm_status reserve(mpmi_balance *s, int64_t active, int64_t rows) {
   mpm_context *c = s->settings->context;
   const int32_t dim = s->settings->grid->dim;
   mpm_status status;
-  if ((status = mpmi_reserve_more(c, (void **)&newton->active, &newton->active_capacity, active + 1,
-                                  sizeof *newton->active)) ||
-      (status = mpmi_reserve_more(c, (void **)&newton->members, &newton->members_capacity, active + 1,
-                                  sizeof *newton->members)) ||
-      (status = mpmi_reserve_more(c, (void **)&newton->members_start, &newton->members_start_capacity,
-                                  rows + 1, sizeof *newton->members_start)) ||
-      (status = mpmi_reserve_more(c, (void **)&newton->place, &newton->place_capacity,
-                                  (active + 1) * newton->offsets, sizeof *newton->place)) ||
-      (status = mpmi_reserve_more(c, (void **)&newton->diagonal, &newton->diagonal_capacity, rows + 1,
-                                  sizeof *newton->diagonal)) ||
-      (status = mpmi_reserve_more(c, (void **)&newton->mass, &newton->mass_capacity, rows + 1,
-                                  sizeof *newton->mass)) ||
-      (status = mpmi_reserve_more(c, (void **)&newton->vector_memory, &newton->vector_capacity,
-                                  MPMI_VECTORS * (rows + 1) * dim, sizeof *newton->vector_memory)))
+  if ((status = MPMI_RESERVE_MORE(c, newton->active, newton->active_capacity, active + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, newton->members, newton->members_capacity, active + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, newton->members_start, newton->members_start_capacity, rows + 1)) ||
+      (status =
+           MPMI_RESERVE_MORE(c, newton->place, newton->place_capacity, (active + 1) * newton->offsets)) ||
+      (status = MPMI_RESERVE_MORE(c, newton->diagonal, newton->diagonal_capacity, rows + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, newton->mass, newton->mass_capacity, rows + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, newton->vector_memory, newton->vector_capacity,
+                                  MPMI_VECTORS * (rows + 1) * dim)))
     return status;
   for (int32_t v = 0; v < MPMI_VECTORS; ++v) newton->vector[v] = newton->vector_memory + v * rows * dim;
   return MPM_OK;
@@ -188,8 +183,8 @@ mpm_status mpmi_unknowns_find(mpmi_balance *s) {
   mpmi_newton *newton = s->newton;
   int64_t active, rows;
   mpm_status status;
-  if ((status = mpmi_reserve_more(s->settings->context, (void **)&newton->active_of, &newton->map_capacity,
-                                  mpmi_slots(s->layout), sizeof *newton->active_of)))
+  if ((status = MPMI_RESERVE_MORE(s->settings->context, newton->active_of, newton->map_capacity,
+                                  mpmi_slots(s->layout))))
     return status;
   int32_t offsets = 1;
   for (int32_t k = 0; k < s->settings->grid->dim; ++k) offsets *= 2 * mpmi_coupling_span(s->settings) - 1;

@@ -39,7 +39,7 @@ static mpm_status grow(mpmi_layout *layout, mpm_context *c) {
   mpmi_member *member = mpmi_alloc_zeroed(c, mpmi_bytes(capacity, sizeof *member));
   if (!member) return MPM_E_NOMEM;
   if (layout->member_count) memcpy(member, layout->member, (size_t)layout->member_count * sizeof *member);
-  mpmi_free(c, layout->member, mpmi_bytes(layout->member_capacity, sizeof *layout->member));
+  MPMI_FREE_ARRAY(c, layout->member, layout->member_capacity);
   layout->member = member;
   layout->member_capacity = capacity;
   return MPM_OK;

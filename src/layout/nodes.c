@@ -2,19 +2,18 @@
 
 mpm_status mpmi_nodal_reserve(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values) {
   nodes->values = values;
-  return mpmi_reserve_more(c, (void **)&nodes->at, &nodes->capacity, slots * values, sizeof *nodes->at);
+  return MPMI_RESERVE_MORE(c, nodes->at, nodes->capacity, slots * values);
 }
 
 static mpm_status reserve_held(mpm_context *c, mpmi_nodes *nodes, int64_t slots) {
   int64_t capacity = nodes->held_capacity;
-  const mpm_status status =
-      mpmi_reserve_more(c, (void **)&nodes->held_value, &capacity, slots, sizeof *nodes->held_value);
+  const mpm_status status = MPMI_RESERVE_MORE(c, nodes->held_value, capacity, slots);
   if (status || capacity == nodes->held_capacity) return status;
-  mpmi_free(c, nodes->held, mpmi_bytes(nodes->held_capacity, sizeof *nodes->held));
+  MPMI_FREE_ARRAY(c, nodes->held, nodes->held_capacity);
   nodes->held_capacity = capacity;
   nodes->held = mpmi_alloc(c, mpmi_bytes(capacity, sizeof *nodes->held));
   if (nodes->held) return MPM_OK;
-  mpmi_free(c, nodes->held_value, mpmi_bytes(capacity, sizeof *nodes->held_value));
+  MPMI_FREE_ARRAY(c, nodes->held_value, capacity);
   nodes->held_value = NULL;
   nodes->held_capacity = 0;
   return MPM_E_NOMEM;
@@ -40,18 +39,13 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
       (status = projects ? mpmi_nodal_reserve(c, &nodes->projected, slots, 4) : MPM_OK) ||
       (status = corrected || remedy ? mpmi_nodal_reserve(c, &nodes->sums, slots, 4) : MPM_OK) ||
-      (status = mpmi_reserve_more(c, (void **)&nodes->tie_state, &nodes->tie_capacity, ties,
-                                  sizeof *nodes->tie_state)) ||
-      (status = mpmi_reserve_more(c, (void **)&nodes->contact_state, &nodes->contact_capacity, contacts,
-                                  sizeof *nodes->contact_state)))
+      (status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties)) ||
+      (status = MPMI_RESERVE_MORE(c, nodes->contact_state, nodes->contact_capacity, contacts)))
     return status;
-  if (nodes->has_impulses &&
-      (status = mpmi_reserve_more(c, (void **)&nodes->impulse, &nodes->impulse_capacity, slots,
-                                  sizeof *nodes->impulse)))
+  if (nodes->has_impulses && (status = MPMI_RESERVE_MORE(c, nodes->impulse, nodes->impulse_capacity, slots)))
     return status;
   if (mpmi_has_hooks(settings) &&
-      (status = mpmi_reserve_more(c, (void **)&nodes->hook_impulse, &nodes->hook_capacity, slots,
-                                  sizeof *nodes->hook_impulse)))
+      (status = MPMI_RESERVE_MORE(c, nodes->hook_impulse, nodes->hook_capacity, slots)))
     return status;
   return nodes->has_holders ? reserve_held(c, nodes, slots) : MPM_OK;
 }
@@ -60,16 +54,16 @@ void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
   mpmi_nodal *const values[] = {&nodes->solved, &nodes->projected, &nodes->sums};
   for (int32_t i = 0; i < 3; ++i)
     mpmi_free(c, values[i]->at, mpmi_bytes(values[i]->capacity, sizeof(double)));
-  mpmi_free(c, nodes->impulse, mpmi_bytes(nodes->impulse_capacity, sizeof *nodes->impulse));
-  mpmi_free(c, nodes->held, mpmi_bytes(nodes->held_capacity, sizeof *nodes->held));
-  mpmi_free(c, nodes->held_value, mpmi_bytes(nodes->held_capacity, sizeof *nodes->held_value));
-  mpmi_free(c, nodes->hook_impulse, mpmi_bytes(nodes->hook_capacity, sizeof *nodes->hook_impulse));
-  mpmi_free(c, nodes->contact_state, mpmi_bytes(nodes->contact_capacity, sizeof *nodes->contact_state));
-  mpmi_free(c, nodes->tie_state, mpmi_bytes(nodes->tie_capacity, sizeof *nodes->tie_state));
+  MPMI_FREE_ARRAY(c, nodes->impulse, nodes->impulse_capacity);
+  MPMI_FREE_ARRAY(c, nodes->held, nodes->held_capacity);
+  MPMI_FREE_ARRAY(c, nodes->held_value, nodes->held_capacity);
+  MPMI_FREE_ARRAY(c, nodes->hook_impulse, nodes->hook_capacity);
+  MPMI_FREE_ARRAY(c, nodes->contact_state, nodes->contact_capacity);
+  MPMI_FREE_ARRAY(c, nodes->tie_state, nodes->tie_capacity);
   mpmi_prescription *p = &nodes->prescription;
-  mpmi_free(c, p->sums, mpmi_bytes(p->sums_capacity, sizeof *p->sums));
-  mpmi_free(c, p->part, mpmi_bytes(p->part_capacity, sizeof *p->part));
-  mpmi_free(c, p->block, mpmi_bytes(p->block_capacity, sizeof *p->block));
+  MPMI_FREE_ARRAY(c, p->sums, p->sums_capacity);
+  MPMI_FREE_ARRAY(c, p->part, p->part_capacity);
+  MPMI_FREE_ARRAY(c, p->block, p->block_capacity);
 }
 
 int64_t mpmi_count_active(const mpmi_layout *layout, const mpmi_nodal *nodes) {

@@ -20,9 +20,9 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
   mpmi_blocks_free(&layout->next_blocks);
   mpmi_constraints_free(&layout->constraints);
   mpmi_constraints_free(&layout->next_constraints);
-  mpmi_free(c, layout->list_memory, mpmi_bytes(layout->list_capacity, sizeof *layout->list_memory));
+  MPMI_FREE_ARRAY(c, layout->list_memory, layout->list_capacity);
   mpmi_free(c, layout->bound_memory, mpmi_bytes((settings->tasks + 1) * MPMI_WORKLISTS, sizeof(int64_t)));
-  mpmi_free(c, layout->member, mpmi_bytes(layout->member_capacity, sizeof *layout->member));
+  MPMI_FREE_ARRAY(c, layout->member, layout->member_capacity);
 }
 
 static void swap_constraints(mpmi_layout *layout) {
@@ -94,8 +94,8 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
   mpm_status status;
   if ((status = mpmi_constraints_build(&layout->next_constraints, &layout->next_blocks, settings->wall)) ||
       /* last, because the present worklists point into this memory; some of it without blocks, too */
-      (status = mpmi_reserve_more(settings->context, (void **)&layout->list_memory, &layout->list_capacity,
-                                  2 * blocks + 1, sizeof *layout->list_memory)))
+      (status =
+           MPMI_RESERVE_MORE(settings->context, layout->list_memory, layout->list_capacity, 2 * blocks + 1)))
     return status;
   make_worklists(layout, settings);
   swap_in_next(layout);

@@ -63,10 +63,10 @@ mpm_status mpmi_workspace_create(mpmi_workspace *work, const mpmi_settings *sett
 void mpmi_workspace_free(mpmi_workspace *work, const mpmi_settings *settings) {
   mpm_context *c = settings->context;
   mpmi_free(c, work->scratch_memory, work->scratch_bytes);
-  mpmi_free(c, work->scratch, mpmi_bytes(settings->tasks, sizeof *work->scratch));
-  mpmi_free(c, work->report, mpmi_bytes(settings->tasks, sizeof *work->report));
-  mpmi_free(c, work->block_sums, mpmi_bytes(work->block_sums_capacity, sizeof *work->block_sums));
-  mpmi_free(c, work->block_work, mpmi_bytes(work->block_work_capacity, sizeof *work->block_work));
+  MPMI_FREE_ARRAY(c, work->scratch, settings->tasks);
+  MPMI_FREE_ARRAY(c, work->report, settings->tasks);
+  MPMI_FREE_ARRAY(c, work->block_sums, work->block_sums_capacity);
+  MPMI_FREE_ARRAY(c, work->block_work, work->block_work_capacity);
 }
 
 /* Rows of v, dv and C of a batch. */
@@ -95,10 +95,8 @@ mpm_status mpmi_workspace_prepare(mpmi_workspace *work, const mpmi_settings *set
   mpm_context *c = settings->context;
   const int64_t blocks = layout->blocks.count;
   mpm_status status;
-  if ((status = mpmi_reserve_more(c, (void **)&work->block_sums, &work->block_sums_capacity, blocks,
-                                  sizeof *work->block_sums)) ||
-      (status = mpmi_reserve_more(c, (void **)&work->block_work, &work->block_work_capacity, blocks,
-                                  sizeof *work->block_work)))
+  if ((status = MPMI_RESERVE_MORE(c, work->block_sums, work->block_sums_capacity, blocks)) ||
+      (status = MPMI_RESERVE_MORE(c, work->block_work, work->block_work_capacity, blocks)))
     return status;
   mpmi_arena counter = {NULL, 0};
   mpmi_scratch one;

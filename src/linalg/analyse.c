@@ -13,14 +13,14 @@ void mpmi_factor_init(mpmi_factor *f, mpm_context *context) {
 void mpmi_factor_free(mpmi_factor *f) {
   mpm_context *context = f->context;
   mpmi_free(context, f->slab, (size_t)f->slab_capacity);
-  mpmi_free(context, f->local, mpmi_bytes(f->local_capacity, sizeof *f->local));
-  mpmi_free(context, f->node_row, mpmi_bytes(f->node_row_capacity, sizeof *f->node_row));
-  mpmi_free(context, f->row, mpmi_bytes(f->row_capacity, sizeof *f->row));
-  mpmi_free(context, f->map, mpmi_bytes(f->map_capacity, sizeof *f->map));
-  mpmi_free(context, f->number, mpmi_bytes(f->number_capacity, sizeof *f->number));
-  mpmi_free(context, f->lower, mpmi_bytes(f->panel_capacity[0], sizeof *f->lower));
-  mpmi_free(context, f->upper, mpmi_bytes(f->panel_capacity[1], sizeof *f->upper));
-  mpmi_free(context, f->arena, mpmi_bytes(f->arena_capacity, sizeof *f->arena));
+  MPMI_FREE_ARRAY(context, f->local, f->local_capacity);
+  MPMI_FREE_ARRAY(context, f->node_row, f->node_row_capacity);
+  MPMI_FREE_ARRAY(context, f->row, f->row_capacity);
+  MPMI_FREE_ARRAY(context, f->map, f->map_capacity);
+  MPMI_FREE_ARRAY(context, f->number, f->number_capacity);
+  MPMI_FREE_ARRAY(context, f->lower, f->panel_capacity[0]);
+  MPMI_FREE_ARRAY(context, f->upper, f->panel_capacity[1]);
+  MPMI_FREE_ARRAY(context, f->arena, f->arena_capacity);
   mpmi_factor_init(f, context);
 }
 

@@ -24,7 +24,7 @@ void mpmi_multigrid_free(mpmi_multigrid *g) {
     mpmi_free(g->context, level->next.slab, (size_t)level->next.slab_capacity);
   }
   mpmi_factor_free(&g->coarsest);
-  mpmi_free(g->context, g->rhs, mpmi_bytes(g->coarsest_capacity, sizeof *g->rhs));
+  MPMI_FREE_ARRAY(g->context, g->rhs, g->coarsest_capacity);
   mpmi_free(g->context, g->scratch.memory, (size_t)g->scratch.capacity);
 }
 

@@ -13,9 +13,9 @@ void mpmi_operator_init(mpm_operator *op, mpm_context *context) {
 void mpmi_operator_free(mpm_operator *op) {
   mpm_context *context = op->context;
   mpmi_free(context, op->slab, (size_t)op->slab_capacity);
-  mpmi_free(context, op->row_start, mpmi_bytes(op->row_start_capacity, sizeof *op->row_start));
-  mpmi_free(context, op->column, mpmi_bytes(op->column_capacity, sizeof *op->column));
-  mpmi_free(context, op->value, mpmi_bytes(op->value_capacity, sizeof *op->value));
+  MPMI_FREE_ARRAY(context, op->row_start, op->row_start_capacity);
+  MPMI_FREE_ARRAY(context, op->column, op->column_capacity);
+  MPMI_FREE_ARRAY(context, op->value, op->value_capacity);
   memset(op, 0, sizeof *op);
 }
 

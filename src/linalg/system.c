@@ -22,8 +22,8 @@ void mpmi_solver_destroy(mpmi_solver *solver) {
   mpmi_factor_free(&solver->factor);
   mpmi_multigrid_free(&solver->multigrid);
   mpmi_operator_free(&solver->lent);
-  mpmi_free(context, solver->work, mpmi_bytes(solver->work_capacity, sizeof *solver->work));
-  mpmi_free(context, solver->diagonal, mpmi_bytes(solver->diagonal_capacity, sizeof *solver->diagonal));
+  MPMI_FREE_ARRAY(context, solver->work, solver->work_capacity);
+  MPMI_FREE_ARRAY(context, solver->diagonal, solver->diagonal_capacity);
   mpmi_free(context, solver, sizeof *solver);
 }
 

@@ -19,4 +19,7 @@
 enum { MPMI_LAWS(MPMI_LAW_PLACE) MPMI_LAW_COUNT };
 MPMI_LAWS(MPMI_DECLARE_LAW)
 
+/* A law with the kernels of an instruction set, by its place in the list; NULL where there is none. */
+const mpmi_law *mpmi_law_of(int32_t isa, int32_t place);
+
 #endif

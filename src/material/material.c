@@ -9,7 +9,7 @@
 enum { MAX_STATE_COUNT = 64 };
 
 /* ---- the built-in laws ------------------------------------------------------------------------------- */
-static const mpmi_law *law_of(int32_t isa, int32_t place) {
+const mpmi_law *mpmi_law_of(int32_t isa, int32_t place) {
 #define ENTRY(name) MPMI_TABLE_OF(isa, mpmi_law_##name),
   const mpmi_law *const laws[MPMI_LAW_COUNT] = {MPMI_LAWS(ENTRY)};
   return place >= 0 && place < MPMI_LAW_COUNT ? laws[place] : NULL;
@@ -17,7 +17,7 @@ static const mpmi_law *law_of(int32_t isa, int32_t place) {
 
 static const mpmi_law *law_by_name(int32_t isa, const char *name) {
   for (int32_t i = 0; i < MPMI_LAW_COUNT; ++i)
-    if (!strcmp(law_of(isa, i)->name, name)) return law_of(isa, i);
+    if (!strcmp(mpmi_law_of(isa, i)->name, name)) return mpmi_law_of(isa, i);
   return NULL;
 }
 
@@ -27,7 +27,7 @@ int32_t mpm_material_model_count(void) {
 
 /* Descriptions do not depend on the instruction set. */
 const char *mpm_material_model_name(int32_t index) {
-  const mpmi_law *law = law_of(MPM_ISA_BASELINE, index);
+  const mpmi_law *law = mpmi_law_of(MPM_ISA_BASELINE, index);
   return law ? law->name : NULL;
 }
 

@@ -56,7 +56,7 @@ mpm_status mpmi_index_build(mpm_particles *set) {
 }
 
 void mpmi_index_drop(mpm_particles *set) {
-  mpmi_free(set->context, set->index, mpmi_bytes(set->index_capacity, sizeof *set->index));
+  MPMI_FREE_ARRAY(set->context, set->index, set->index_capacity);
   set->index = NULL;
   set->index_capacity = 0;
 }

@@ -10,12 +10,12 @@ void mpmi_arrangement_init(mpmi_arrangement *a, mpm_context *context) {
 }
 
 void mpmi_arrangement_free(mpmi_arrangement *a) {
-  mpmi_free(a->context, a->start, mpmi_bytes(a->start_capacity, sizeof *a->start));
+  MPMI_FREE_ARRAY(a->context, a->start, a->start_capacity);
   mpmi_arrangement_init(a, a->context);
 }
 
 void mpmi_sorting_free(mpmi_sorting *sorting, mpm_context *context) {
-  mpmi_free(context, sorting->source, mpmi_bytes(sorting->source_capacity, sizeof *sorting->source));
+  MPMI_FREE_ARRAY(context, sorting->source, sorting->source_capacity);
   memset(sorting, 0, sizeof *sorting);
 }
 

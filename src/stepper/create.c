@@ -8,7 +8,7 @@
 static void free_parts(mpm_stepper *s) {
   mpm_context *c = s->context;
   for (int32_t i = 0; i < MPMI_NODE_VIEWS; ++i) mpmi_free(c, s->view_memory[i], s->view_bytes[i]);
-  mpmi_free(c, s->active, mpmi_bytes(s->active_capacity, sizeof *s->active));
+  MPMI_FREE_ARRAY(c, s->active, s->active_capacity);
   mpmi_newton_free(s->newton, &s->settings);
   mpmi_workspace_free(&s->work, &s->settings);
   mpmi_nodes_free(&s->nodes, c);

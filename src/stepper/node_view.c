@@ -61,7 +61,7 @@ mpm_status mpmi_nodes_list(mpm_stepper *s) {
   if (count > s->active_capacity) {
     int64_t *memory = mpmi_alloc(s->context, mpmi_bytes(count, sizeof *memory));
     if (!memory) return MPM_E_NOMEM;
-    mpmi_free(s->context, s->active, mpmi_bytes(s->active_capacity, sizeof *s->active));
+    MPMI_FREE_ARRAY(s->context, s->active, s->active_capacity);
     s->active = memory;
     s->active_capacity = count;
   }
