@@ -31,7 +31,7 @@ MPMI_INLINE void j2(int dim, const j2_constants *c, const mpm_material_batch *ba
   const double *plastic_old = batch->state;
   double *stress = batch->stress_new, *plastic_new = batch->state_new;
   if (batch->dt == 0.0) {
-    mpmi_keep_rows(mpmi_stress_rows(dim), batch->stress, stress, batch);
+    mpmi_keep_rows(mpmi_stress_components(dim), batch->stress, stress, batch);
     mpmi_keep_rows(1, plastic_old, plastic_new, batch);
   } else {
     MPMI_IVDEP

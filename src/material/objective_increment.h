@@ -134,8 +134,4 @@ MPMI_INLINE void mpmi_keep_rows(int64_t rows, const double *from, double *to,
     memcpy(to + c * batch->ld, from + c * batch->ld, (size_t)batch->n * sizeof *to);
 }
 
-MPMI_INLINE int64_t mpmi_stress_rows(int dim) {
-  return dim == 1 ? 3 : dim == 2 ? 4 : 6;
-}
-
 #endif

@@ -43,10 +43,6 @@ int32_t mpmi_gradient_components(int32_t dim) {
   return dim * dim;
 }
 
-int32_t mpmi_stress_components(int32_t dim) {
-  return dim == 1 ? 3 : dim == 2 ? 4 : 6;
-}
-
 /* The map of 1-D is the first entry of the map of 2-D; gradients use the first 1, 4 or 9 entries. */
 static const int32_t plane_map[] = {0, 1, 3, 4, 8};
 static const int32_t whole_map[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};

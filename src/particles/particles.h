@@ -9,6 +9,7 @@
 #include "grid/grid.h"
 #include "material/material.h"
 #include "simd/chunk.h"
+#include "simd/tensor.h"
 
 enum { MPMI_PAD = 16 }; /* every block's slot range is a multiple of this */
 _Static_assert((int)MPMI_PAD % (int)MPMI_CHUNK == 0, "blocks hold whole chunks");
@@ -111,7 +112,6 @@ int32_t mpmi_tensor_components(int32_t dim);   /* F: 1, 5, 9 */
 const int32_t *mpmi_tensor_map(int32_t dim);   /* F: {0}, {0 1 3 4 8}, {0..8} */
 int32_t mpmi_gradient_components(int32_t dim); /* L: 1, 4, 9 */
 const int32_t *mpmi_gradient_map(int32_t dim); /* L: {0}, {0 1 3 4}, {0..8} */
-int32_t mpmi_stress_components(int32_t dim);   /* 3, 4, 6 */
 
 /* These change the storage (fields.c). They do all or nothing: on failure the set is unchanged. */
 mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots);  /* ld >= slots */

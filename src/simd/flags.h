@@ -3,6 +3,8 @@
 #ifndef MPMI_FLAGS_H
 #define MPMI_FLAGS_H
 
+#include <stdint.h>
+
 enum { MPMI_LEFT_TILE = 1, MPMI_OUTSIDE = 2, MPMI_NONFINITE = 4, MPMI_NOT_POSITIVE = 8 };
 
 #endif

@@ -20,6 +20,11 @@ MPMI_INLINE int32_t mpmi_sym_index(int32_t i, int32_t j) {
   return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
 }
 
+/* How many of them exist: xx yy zz, and the shear components that `dim` has. */
+MPMI_INLINE int32_t mpmi_stress_components(int dim) {
+  return dim == 1 ? 3 : dim == 2 ? 4 : 6;
+}
+
 /* scale * (A - shift I), with zeros where `dim` has no component. */
 MPMI_INLINE mpmi_mat mpmi_load_mat(int dim, const double *a, int64_t ld, int64_t i, double shift,
                                    double scale) {
