@@ -11,7 +11,7 @@
  * stage (weights are part of P2G and G2P), those of a thread for each node of the stencil, the rate as a
  * share of what one core, times the threads, can do in multiply-adds and in memory traffic, and the peak of
  * the whole process. */
-#include "apart.h"
+#include "process.h"
 #include "ceilings.h"
 #include "choice.h"
 #include "implicit.h"
@@ -192,7 +192,7 @@ static int32_t run_threads(const bench_case *of, const settings *how, int64_t pa
     const int32_t threads = (int32_t)how->threads.at[t];
     const run_job job = {of, how, particles, threads};
     result r = {.failed = 1, .error = "the process died"};
-    bench_apart(run, &job, &r, sizeof r);
+    bench_in_process(run, &job, &r, sizeof r);
     if (r.failed) fprintf(stderr, "%s: %s\n", of->name, r.error);
     if (r.failed) return 1;
     if (how->choice.bare)

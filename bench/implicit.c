@@ -3,7 +3,7 @@
  * new residual. */
 #include "implicit.h"
 
-#include "apart.h"
+#include "process.h"
 #include "ceilings.h"
 #include "hosts.h"
 
@@ -233,7 +233,7 @@ int32_t bench_implicit(const bench_choice *choice, int32_t repeats, const int64_
       const implicit_job job = {&cases[c], (int32_t)threads[t], repeats,
                                 choice->bare ? bench_processor_seconds : bench_seconds};
       implicit_result r = {.failed = 1, .error = "the process died"};
-      bench_apart(run, &job, &r, sizeof r);
+      bench_in_process(run, &job, &r, sizeof r);
       bad |= r.failed;
       if (r.failed) fprintf(stderr, "%s: %s\n", cases[c].name, r.error);
       if (r.failed) break;

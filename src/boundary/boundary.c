@@ -40,7 +40,6 @@ mpm_status mpmi_boundary_hold(mpmi_step *step, mpmi_nodes *nodes) {
 mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes,
                                double share) {
   const mpmi_settings *settings = step->settings;
-  const int32_t main = projection == &mpmi_projections[MPMI_PROJECT_FORCES];
   const int32_t both = mpmi_has_increments(&nodes->solved);
   mpmi_bound bound = {.step = step,
                       .nodes = nodes,
@@ -50,10 +49,10 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
                       .dim = settings->grid->dim,
                       .records = projection->recorded && nodes->has_impulses};
   mpmi_ties_fold(&bound);
-  mpm_status status = main ? act(&bound, projection) : act_on_velocities(&bound, projection);
+  mpm_status status = projection->main ? act(&bound, projection) : act_on_velocities(&bound, projection);
   if (status) return status;
   mpmi_ties_unfold(&bound);
-  if (!main) return MPM_OK;
+  if (!projection->main) return MPM_OK;
   if (nodes->prescription.any && (status = mpmi_prescribed_share(&bound))) return status;
   return mpmi_hooks_end(&bound);
 }

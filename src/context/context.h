@@ -73,14 +73,16 @@ void mpmi_parallel_for_sure(mpm_context *context, int64_t count, mpm_task_fn tas
 /* The library's own threads (executor.c). */
 mpm_status mpmi_pool_create(mpm_context *context, int32_t threads, mpmi_pool **out);
 void mpmi_pool_destroy(mpm_context *context, mpmi_pool *pool);
-void mpmi_pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *data);
 
 /* Seconds of a clock that only goes forward (clock.c). */
 double mpmi_seconds(void);
 
-/* Writes the names among `candidates` that are closest to `wanted` into buffer, as "a, b, c", for texts of
- * errors. */
+/* Writes the names among `candidates` that are closest to `wanted` into buffer, as "a, b, c". */
 void mpmi_nearest_names(const char *wanted, const char *const *candidates, int32_t count, char *buffer,
                         size_t capacity);
+/* Refuses a name with MPM_E_NOT_FOUND, and says which of those that there are come closest to it; the sentence
+ * begins with `refusal`. */
+mpm_status mpmi_refuse_name(mpm_context *context, const char *refusal, const char *wanted,
+                            const char *const *candidates, int32_t count);
 
 #endif

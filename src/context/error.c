@@ -90,3 +90,10 @@ void mpmi_nearest_names(const char *wanted, const char *const *candidates, int32
     used += (size_t)snprintf(buffer + used, capacity - used, "%s%s", separator, name);
   }
 }
+
+mpm_status mpmi_refuse_name(mpm_context *context, const char *refusal, const char *wanted,
+                            const char *const *candidates, int32_t count) {
+  char nearest[256];
+  mpmi_nearest_names(wanted, candidates, count, nearest, sizeof nearest);
+  return mpmi_fail(context, MPM_E_NOT_FOUND, "%s \"%s\"; nearest: %s", refusal, wanted, nearest);
+}

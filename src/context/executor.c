@@ -139,7 +139,7 @@ static void run_inline(int64_t count, mpm_task_fn task, void *data) {
   for (int64_t k = 0; k < count; ++k) task(data, k);
 }
 
-void mpmi_pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *data) {
+static void pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *data) {
   if (count <= 1) {
     run_inline(count, task, data);
     return;
@@ -197,7 +197,7 @@ mpm_status mpmi_parallel_for(mpm_context *context, int64_t count, mpm_task_fn ta
     mpm_status status = host->parallel_for(host->parallel_user, count, task, data);
     if (status) return mpmi_fail(context, MPM_E_CALLBACK, "the host's parallel_for returned %d", (int)status);
   } else if (count > 1 && context->pool) {
-    mpmi_pool_run(context->pool, count, task, data);
+    pool_run(context->pool, count, task, data);
   } else {
     run_inline(count, task, data);
   }

@@ -162,7 +162,7 @@ mpm_status mpmi_blocks_insert(mpmi_blocks *b, const int32_t *coord, int32_t *blo
   return MPM_OK;
 }
 
-int32_t mpmi_blocks_find(const mpmi_blocks *b, const int32_t *coord) {
+static int32_t find_block(const mpmi_blocks *b, const int32_t *coord) {
   return table_get(b, morton(coord, b->grid->dim));
 }
 
@@ -235,7 +235,7 @@ mpm_status mpmi_blocks_order(mpmi_blocks *b) {
   for (int64_t i = 0; i < b->count; ++i)
     for (int32_t n = 0; n < b->neighbours; ++n) {
       neighbour_coord(b->coord[i], n, dim, coord);
-      b->neighbour[i][n] = mpmi_blocks_find(b, coord);
+      b->neighbour[i][n] = find_block(b, coord);
     }
   return MPM_OK;
 }
@@ -260,7 +260,7 @@ int64_t mpmi_blocks_node(const mpmi_blocks *b, const int64_t *index) {
     coord[k] = (int32_t)floor_div(index[k], b->edge);
     place = place * b->edge + (index[k] - (int64_t)coord[k] * b->edge);
   }
-  const int32_t block = mpmi_blocks_find(b, coord);
+  const int32_t block = find_block(b, coord);
   return block < 0 ? -1 : (int64_t)block * b->nodes + place;
 }
 

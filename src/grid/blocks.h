@@ -35,7 +35,6 @@ void mpmi_blocks_free(mpmi_blocks *blocks);
 void mpmi_blocks_clear(mpmi_blocks *blocks);
 /* Finds or adds a block by its coordinates; *block is provisional until mpmi_blocks_order(). */
 mpm_status mpmi_blocks_insert(mpmi_blocks *blocks, const int32_t *coord, int32_t *block);
-int32_t mpmi_blocks_find(const mpmi_blocks *blocks, const int32_t *coord); /* or returns MPMI_NO_BLOCK */
 /* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and links
  * neighbours. Afterwards order[provisional] is the final index of a block. */
 mpm_status mpmi_blocks_order(mpmi_blocks *blocks);

@@ -21,16 +21,36 @@ mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size) {
   return mpmi_init_struct("mpm_grid_desc", &defaults, sizeof defaults, desc, struct_size);
 }
 
+/* What a basis is made of: its family of functions, also with open knots, and the domains of particles. */
+typedef struct basis {
+  int32_t family, open_family, domains;
+} basis;
+static const basis bases[] = {
+    [MPM_LINEAR] = {MPMI_FAMILY_BSPLINE1, MPMI_FAMILY_BSPLINE1, MPMI_DOMAINS_NONE},
+    [MPM_BSPLINE2] = {MPMI_FAMILY_BSPLINE2, MPMI_FAMILY_OPEN_BSPLINE2, MPMI_DOMAINS_NONE},
+    [MPM_BSPLINE3] = {MPMI_FAMILY_BSPLINE3, MPMI_FAMILY_OPEN_BSPLINE3, MPMI_DOMAINS_NONE},
+    [MPM_GIMP] = {MPMI_FAMILY_GIMP, MPMI_FAMILY_GIMP, MPMI_DOMAINS_OWN},
+    [MPM_UGIMP] = {MPMI_FAMILY_GIMP, MPMI_FAMILY_GIMP, MPMI_DOMAINS_ALIKE},
+    [MPM_CPGIMP] = {MPMI_FAMILY_GIMP, MPMI_FAMILY_GIMP, MPMI_DOMAINS_STRETCHED},
+};
+
+/* Returns the row of MPM_LINEAR ... MPM_CPGIMP, or NULL for other values. */
+static const basis *basis_of(int32_t value) {
+  const int32_t count = (int32_t)(sizeof bases / sizeof *bases);
+  const int32_t known = value >= MPM_LINEAR && value < count && (value <= MPM_BSPLINE3 || value >= MPM_GIMP);
+  return known ? &bases[value] : NULL;
+}
+
 static mpm_status check_basis(mpm_context *context, const mpm_grid_desc *desc) {
-  const int32_t spline = desc->basis >= MPM_LINEAR && desc->basis <= MPM_BSPLINE3;
-  if (!spline && (desc->basis < MPM_GIMP || desc->basis > MPM_CPGIMP))
+  const basis *row = basis_of(desc->basis);
+  if (!row)
     return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: basis is %d, which is none of the constants",
                      (int)desc->basis);
   if (desc->boundary_basis != MPM_BOUNDARY_GHOST && desc->boundary_basis != MPM_BOUNDARY_OPEN_KNOT)
     return mpmi_fail(context, MPM_E_ARG,
                      "mpm_grid_desc: boundary_basis is %d, which is none of the constants",
                      (int)desc->boundary_basis);
-  if (desc->boundary_basis == MPM_BOUNDARY_OPEN_KNOT && (!spline || desc->basis == MPM_LINEAR))
+  if (desc->boundary_basis == MPM_BOUNDARY_OPEN_KNOT && row->open_family == row->family)
     return mpmi_fail(context, MPM_E_UNSUPPORTED,
                      "mpm_grid_desc: boundary_basis MPM_BOUNDARY_OPEN_KNOT is for MPM_BSPLINE2 and "
                      "MPM_BSPLINE3: use one of them, or MPM_BOUNDARY_GHOST with basis %d",
@@ -103,19 +123,10 @@ static const struct {
 };
 
 static int32_t family_of(const mpm_grid_desc *desc) {
+  const basis *row = basis_of(desc->basis);
   int32_t faces = 0;
   for (int32_t k = 0; k < desc->dim; ++k) faces |= !desc->periodic[k];
-  const int32_t open = faces && desc->boundary_basis == MPM_BOUNDARY_OPEN_KNOT;
-  switch (desc->basis) {
-  case MPM_LINEAR:
-    return MPMI_FAMILY_BSPLINE1;
-  case MPM_BSPLINE2:
-    return open ? MPMI_FAMILY_OPEN_BSPLINE2 : MPMI_FAMILY_BSPLINE2;
-  case MPM_BSPLINE3:
-    return open ? MPMI_FAMILY_OPEN_BSPLINE3 : MPMI_FAMILY_BSPLINE3;
-  default:
-    return MPMI_FAMILY_GIMP;
-  }
+  return faces && desc->boundary_basis == MPM_BOUNDARY_OPEN_KNOT ? row->open_family : row->family;
 }
 
 static void derive(mpm_grid *grid) {
@@ -129,6 +140,7 @@ static void derive(mpm_grid *grid) {
   }
   grid->dim = desc->dim;
   grid->family = family_of(desc);
+  grid->domains = basis_of(desc->basis)->domains;
   grid->width = families[grid->family].width;
   grid->below = families[grid->family].below;
   grid->centred = families[grid->family].centred;

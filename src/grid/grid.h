@@ -19,6 +19,14 @@ enum {
   MPMI_FAMILIES
 };
 
+/* Which domains particles have in the eyes of the basis. */
+enum {
+  MPMI_DOMAINS_NONE,     /* they are points */
+  MPMI_DOMAINS_ALIKE,    /* all have the edges smoothing * spacing */
+  MPMI_DOMAINS_OWN,      /* each has edges of its field "size" */
+  MPMI_DOMAINS_STRETCHED /* which F stretches */
+};
+
 struct mpm_grid {
   uint32_t magic;
   int32_t children; /* sets and steppers on this grid */
@@ -26,6 +34,7 @@ struct mpm_grid {
   mpm_grid_desc desc;
   int32_t dim;
   int32_t family;  /* MPMI_FAMILY_...: the functions that make the weights */
+  int32_t domains; /* MPMI_DOMAINS_... */
   int32_t width;   /* nodes of the stencil per axis */
   int32_t below;   /* how many of these lie below the anchor */
   int32_t centred; /* 1: the anchor is the nearest node; 0: the lower node of the cell */
@@ -41,7 +50,7 @@ static inline int32_t mpmi_is_open(const mpm_grid *grid, int32_t axis) {
 }
 /* Does the weight of a particle depend on the size of its domain? */
 static inline int32_t mpmi_has_domains(const mpm_grid *grid) {
-  return grid->desc.basis == MPM_GIMP || grid->desc.basis == MPM_CPGIMP;
+  return grid->domains >= MPMI_DOMAINS_OWN;
 }
 /* Returns the index of the node on a face: the one whose velocity is that of the material at the face, or
  * about whose plane the ghosts mirror. */

@@ -54,7 +54,7 @@ static mpm_status begin_strain(mpmi_balance *s, const double *u, const mpmi_pass
   mpm_status status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, spread_task, &spread);
   if (!status && s->settings->desc.locking_remedy) {
     /* the averages weigh with the volumes of the start of the step */
-    mpmi_make_volumes(s->layout, s->settings, 0);
+    mpmi_make_volumes(s->layout, 0);
     status = mpmi_locking_stage(s->step, s->nodes, &s->nodes->solved);
   }
   for (int32_t k = 0; k < s->settings->tasks; ++k)

@@ -114,8 +114,8 @@ void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, newton->diagonal, newton->diagonal_capacity);
   MPMI_FREE_ARRAY(c, newton->mass, newton->mass_capacity);
   MPMI_FREE_ARRAY(c, newton->vector_memory, newton->vector_capacity);
-  mpmi_free(c, newton->force.at, mpmi_bytes(newton->force.capacity, sizeof(double)));
-  mpmi_free(c, newton->external.at, mpmi_bytes(newton->external.capacity, sizeof(double)));
+  mpmi_nodal_free(c, &newton->force);
+  mpmi_nodal_free(c, &newton->external);
   MPMI_FREE_ARRAY(c, newton->cell, newton->cell_capacity);
   MPMI_FREE_ARRAY(c, newton->cell_node, newton->cell_node_capacity);
   mpmi_free(c, newton->work_memory, newton->work_bytes);

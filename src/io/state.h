@@ -17,7 +17,7 @@
 #define MPMI_STATE_H
 
 #include "io/archive.h"
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 #include "stepper/stepper.h"
 
 #define MPMI_STATE_MAGIC      "MPMSTATE"

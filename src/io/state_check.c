@@ -100,17 +100,6 @@ static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_
   if (astray) mpmi_archive_damaged(a, "a particle is far from its block");
 }
 
-/* Computes volumes from F by the very function that steps use, because another instruction set rounds
- * otherwise, and a step that fails must be able to make them again. */
-static void restore_volumes(mpm_particles *fresh) {
-  const double *F[9];
-  for (int32_t c = 0; c < mpmi_tensor_components(fresh->grid->dim); ++c)
-    F[c] = mpmi_f64(fresh, MPMI_F, 0) + c * fresh->ld;
-  mpmi_deformation_of(fresh->context->isa)
-      ->volume[fresh->grid->dim](F, mpmi_f64(fresh, MPMI_INITIAL_VOLUME, 0), mpmi_f64(fresh, MPMI_VOLUME, 0),
-                                 fresh->slots);
-}
-
 void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_blocks *blocks,
                           const int64_t *start) {
   if (fresh->slots == 0) return;
@@ -131,7 +120,7 @@ void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_bloc
                 {MPMI_REFERENCE, ANY},
                 {MPMI_APPLIED_FORCE, ANY}};
   restore_holes(fresh);
-  restore_volumes(fresh);
+  mpmi_particles_make_volumes(fresh, 0);
   check_ids(a, fresh);
   for (size_t i = 0; i < sizeof demand / sizeof *demand; ++i)
     check_field(a, fresh, demand[i].field, demand[i].sign);

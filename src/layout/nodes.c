@@ -5,6 +5,10 @@ mpm_status mpmi_nodal_reserve(mpm_context *c, mpmi_nodal *nodes, int64_t slots, 
   return MPMI_RESERVE_MORE(c, nodes->at, nodes->capacity, slots * values);
 }
 
+void mpmi_nodal_free(mpm_context *c, mpmi_nodal *nodes) {
+  MPMI_FREE_ARRAY(c, nodes->at, nodes->capacity);
+}
+
 static mpm_status reserve_held(mpm_context *c, mpmi_nodes *nodes, int64_t slots) {
   int64_t capacity = nodes->held_capacity;
   const mpm_status status = MPMI_RESERVE_MORE(c, nodes->held_value, capacity, slots);
@@ -51,9 +55,9 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
 }
 
 void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
-  mpmi_nodal *const values[] = {&nodes->solved, &nodes->projected, &nodes->sums};
-  for (int32_t i = 0; i < 3; ++i)
-    mpmi_free(c, values[i]->at, mpmi_bytes(values[i]->capacity, sizeof(double)));
+  mpmi_nodal_free(c, &nodes->solved);
+  mpmi_nodal_free(c, &nodes->projected);
+  mpmi_nodal_free(c, &nodes->sums);
   MPMI_FREE_ARRAY(c, nodes->impulse, nodes->impulse_capacity);
   MPMI_FREE_ARRAY(c, nodes->held, nodes->held_capacity);
   MPMI_FREE_ARRAY(c, nodes->held_value, nodes->held_capacity);

@@ -17,6 +17,7 @@ typedef struct mpmi_nodal {
 
 /* Memory for so many values of each node; they are not cleared. */
 mpm_status mpmi_nodal_reserve(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values);
+void mpmi_nodal_free(mpm_context *c, mpmi_nodal *nodes);
 
 static inline double *mpmi_nodal_at(const mpmi_nodal *nodes, int64_t slot) {
   return nodes->at + slot * nodes->values;

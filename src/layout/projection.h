@@ -7,6 +7,7 @@
 #include "layout/nodes.h"
 
 typedef struct mpmi_projection {
+  int32_t main;     /* the one of the step itself: hooks run, old impulses are forgotten, nodes are counted */
   int32_t forces;   /* with forces, into the nodes that are solved for; else into those that are projected */
   int32_t copy;     /* of the particles' field */
   int32_t field;    /* that is projected: velocity or acceleration */

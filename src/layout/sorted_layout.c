@@ -133,7 +133,8 @@ mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {
     points.x[k] = mpmi_f64(set, MPMI_POSITION, copy) + k * set->ld;
     if (mpmi_has_domains(grid)) points.size[k] = mpmi_f64(set, MPMI_SIZE, 0) + k * set->ld;
     while (mpmi_tensor_map(grid->dim)[stored] != 4 * k) ++stored;
-    if (grid->desc.basis == MPM_CPGIMP) points.stretch[k] = mpmi_f64(set, MPMI_F, copy) + stored * set->ld;
+    if (grid->domains == MPMI_DOMAINS_STRETCHED)
+      points.stretch[k] = mpmi_f64(set, MPMI_F, copy) + stored * set->ld;
   }
   return points;
 }

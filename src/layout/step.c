@@ -3,18 +3,6 @@
 #include "layout/tile.h"
 #include "particles/law_batch.h"
 
-void mpmi_failures_clear(mpmi_step *step) {
-  mpmi_failure_clear(&step->failure);
-  for (int32_t k = 0; k < step->settings->tasks; ++k) mpmi_failure_clear(&step->work->report[k].failure);
-}
-
-mpm_status mpmi_step_failure(mpmi_step *step) {
-  for (int32_t k = 0; k < step->settings->tasks; ++k)
-    mpmi_failure_take(&step->failure, &step->work->report[k].failure);
-  return mpmi_failure_report(step->settings->context, &step->failure, step->t, step->dt);
-}
-
-/* ---- failure ----------------------------------------------------------------------------------------- */
 void mpmi_failure_clear(mpmi_failure *failure) {
   *failure = (mpmi_failure){MPM_OK, 0, -1, -1, -1, ""};
 }
@@ -36,7 +24,8 @@ mpm_status mpmi_callback_cause(mpm_status status) {
   return status > 0 ? MPM_CUT_DT : MPM_E_CALLBACK;
 }
 
-mpm_status mpmi_failure_report(mpm_context *context, const mpmi_failure *f, double t, double dt) {
+/* Returns the status of a step from t over dt that fails so, with its sentence. */
+static mpm_status report(mpm_context *context, const mpmi_failure *f, double t, double dt) {
   if (!f->cause) return MPM_OK;
   if (f->callback_status && f->set >= 0)
     return mpmi_fail(context, f->cause, "%s returned %d for set %d in the step from t = %g with dt = %g",
@@ -49,6 +38,17 @@ mpm_status mpmi_failure_report(mpm_context *context, const mpmi_failure *f, doub
                      f->what, (long long)f->particle, (int)f->set, t, dt);
   return mpmi_fail(context, f->cause, "%s at node %lld in the step from t = %g with dt = %g", f->what,
                    (long long)f->node, t, dt);
+}
+
+void mpmi_failures_clear(mpmi_step *step) {
+  mpmi_failure_clear(&step->failure);
+  for (int32_t k = 0; k < step->settings->tasks; ++k) mpmi_failure_clear(&step->work->report[k].failure);
+}
+
+mpm_status mpmi_step_failure(mpmi_step *step) {
+  for (int32_t k = 0; k < step->settings->tasks; ++k)
+    mpmi_failure_take(&step->failure, &step->work->report[k].failure);
+  return report(step->settings->context, &step->failure, step->t, step->dt);
 }
 
 /* ---- workspace --------------------------------------------------------------------------------------- */

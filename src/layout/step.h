@@ -86,8 +86,6 @@ void mpmi_failure_clear(mpmi_failure *failure);
 void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other);
 /* What a callback's status makes of the step: > 0 cuts dt, < 0 stops it. */
 mpm_status mpmi_callback_cause(mpm_status status);
-/* The status of a step from t over dt that fails so, with its sentence. */
-mpm_status mpmi_failure_report(mpm_context *context, const mpmi_failure *failure, double t, double dt);
 void mpmi_failures_clear(mpmi_step *step);
 /* Status of the step from the first failure among the tasks, with its sentence; MPM_OK when none. */
 mpm_status mpmi_step_failure(mpmi_step *step);

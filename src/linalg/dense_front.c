@@ -3,19 +3,10 @@
 
 #include <mpm/types.h>
 
-extern const mpmi_dense mpmi_dense_baseline;
-#if MPMI_HAS_X86
-extern const mpmi_dense mpmi_dense_avx2, mpmi_dense_avx512;
-#endif
+MPMI_DECLARE_TABLES(mpmi_dense, mpmi_dense);
 
 const mpmi_dense *mpmi_dense_of(int32_t isa) {
-#if MPMI_HAS_X86
-  if (isa == MPM_ISA_AVX512) return &mpmi_dense_avx512;
-  if (isa == MPM_ISA_AVX2) return &mpmi_dense_avx2;
-#else
-  (void)isa;
-#endif
-  return &mpmi_dense_baseline;
+  return MPMI_TABLE_OF(isa, mpmi_dense);
 }
 
 int64_t mpmi_dense_scratch(const mpmi_dense *kernels, int64_t pivots, int64_t rows, int32_t symmetric) {

@@ -7,19 +7,10 @@
 #include "linalg/vectors.h"
 #include "simd/isa.h"
 
-extern const mpmi_sweeps mpmi_sweeps_baseline;
-#if MPMI_HAS_X86
-extern const mpmi_sweeps mpmi_sweeps_avx2, mpmi_sweeps_avx512;
-#endif
+MPMI_DECLARE_TABLES(mpmi_sweeps, mpmi_sweeps);
 
 const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
-#if MPMI_HAS_X86
-  if (isa == MPM_ISA_AVX512) return &mpmi_sweeps_avx512;
-  if (isa == MPM_ISA_AVX2) return &mpmi_sweeps_avx2;
-#else
-  (void)isa;
-#endif
-  return &mpmi_sweeps_baseline;
+  return MPMI_TABLE_OF(isa, mpmi_sweeps);
 }
 
 /* Gives each node the first colour that none of its neighbours has. taken: [rows], by colour the last node

@@ -1,5 +1,6 @@
 /* Materials as handles: a built-in law with checked parameters, or the host's callbacks. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "context/structs.h"
@@ -55,9 +56,7 @@ static int32_t is_context(const mpm_context *context) {
 static mpm_status refuse_model(mpm_context *context, const char *model) {
   const char *names[MPMI_LAW_COUNT];
   for (int32_t i = 0; i < MPMI_LAW_COUNT; ++i) names[i] = mpm_material_model_name(i);
-  char nearest[256];
-  mpmi_nearest_names(model, names, MPMI_LAW_COUNT, nearest, sizeof nearest);
-  return mpmi_fail(context, MPM_E_NOT_FOUND, "no model \"%s\"; nearest: %s", model, nearest);
+  return mpmi_refuse_name(context, "no model", model, names, MPMI_LAW_COUNT);
 }
 
 static mpm_status refuse_param(mpm_context *context, const mpmi_law *law, const char *name) {
@@ -65,11 +64,11 @@ static mpm_status refuse_param(mpm_context *context, const mpmi_law *law, const 
   const char **names = mpmi_alloc(context, bytes);
   if (!names) return MPM_E_NOMEM;
   for (int32_t k = 0; k < law->param_count; ++k) names[k] = law->param[k].name;
-  char nearest[256];
-  mpmi_nearest_names(name, names, law->param_count, nearest, sizeof nearest);
+  char refusal[96];
+  snprintf(refusal, sizeof refusal, "%s has no parameter", law->name);
+  const mpm_status status = mpmi_refuse_name(context, refusal, name, names, law->param_count);
   mpmi_free(context, names, bytes);
-  return mpmi_fail(context, MPM_E_NOT_FOUND, "%s has no parameter \"%s\"; nearest: %s", law->name, name,
-                   nearest);
+  return status;
 }
 
 static mpm_status read_param(mpm_context *context, const mpmi_law *law, const mpm_param *params, int32_t i,

@@ -2,7 +2,7 @@
 #ifndef MPMI_ADD_H
 #define MPMI_ADD_H
 
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 
 /* Does everything that may fail, for n particles that there is room for; on failure the set is unchanged.
  * On success the slots [*slot, *slot + n) hold inert defaults in every field. The caller then writes

@@ -1,5 +1,5 @@
 /* Particle sets are made and freed here, and refuse changes while they are mapped or in a step. */
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 
 mpm_status mpmi_between_steps(const mpm_particles *set) {
   if (!set->stepper || !set->owner->in_step(set->stepper)) return MPM_OK;
@@ -24,7 +24,7 @@ static mpm_status check_parts(mpm_context *context, const mpm_grid *grid, const 
   if (grid->context != context) return mpmi_fail(context, MPM_E_ARG, "grid belongs to another context");
   if (material->context != context)
     return mpmi_fail(context, MPM_E_ARG, "material belongs to another context");
-  if (grid->desc.basis == MPM_CPGIMP && mpmi_material_kinematics(material) == MPMI_F_DILATES)
+  if (grid->domains == MPMI_DOMAINS_STRETCHED && mpmi_material_kinematics(material) == MPMI_F_DILATES)
     return mpmi_fail(context, MPM_E_UNSUPPORTED,
                      "%s keeps the volume of F only, of which MPM_CPGIMP cannot make particle domains: use "
                      "MPM_UGIMP or a B-spline basis",
@@ -46,7 +46,7 @@ mpm_status mpm_particles_create(mpm_context *context, mpm_grid *grid, mpm_materi
   set->context = context;
   set->grid = grid;
   set->material = material;
-  mpmi_layout_builtin(set);
+  mpmi_fields_builtin(set);
   grid->children++;
   material->users++;
   context->children++;

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 
 enum { COPIES = 2 };
 

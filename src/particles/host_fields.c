@@ -1,7 +1,7 @@
 /* The host lists the fields of a set and adds fields of its own. */
 #include <string.h>
 
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 
 mpm_status mpm_particles_field_info(const mpm_particles *particles, int32_t index, const char **field,
                                     int32_t *type, int32_t *components, int32_t *writable) {

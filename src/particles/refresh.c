@@ -4,6 +4,16 @@
 
 #include <string.h>
 
+void mpmi_particles_make_volumes(mpm_particles *set, int32_t copy) {
+  const double *F[9];
+  if (!set->slots) return;
+  for (int32_t c = 0; c < set->field[MPMI_F].components; ++c)
+    F[c] = mpmi_f64(set, MPMI_F, copy) + c * set->ld;
+  mpmi_deformation_of(set->context->isa)
+      ->volume[set->grid->dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0),
+                               set->slots);
+}
+
 /* The law is asked for the state as it is: F_inc = I, dt = 0. Stresses go to the second copy first, so
  * that nothing changes when the law refuses. */
 mpm_status mpmi_particles_refresh(mpm_particles *set) {
@@ -34,10 +44,7 @@ mpm_status mpmi_particles_refresh(mpm_particles *set) {
     for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
       memcpy(mpmi_f64(set, MPMI_STRESS, 0) + c * set->ld, mpmi_f64(set, MPMI_STRESS, 1) + c * set->ld,
              (size_t)set->slots * sizeof(double));
-  const double *F[9];
-  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld;
-  mpmi_deformation_of(set->context->isa)
-      ->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0), set->slots);
+  mpmi_particles_make_volumes(set, 0);
   set->dirty &= ~(uint32_t)MPMI_DIRTY_STRESS;
   return MPM_OK;
 }

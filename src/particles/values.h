@@ -2,7 +2,7 @@
 #ifndef MPMI_VALUES_H
 #define MPMI_VALUES_H
 
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 
 /* An error text names a particle: `kind` is "id" or "index", or NULL for all particles. */
 typedef struct mpmi_who {

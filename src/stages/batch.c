@@ -80,6 +80,63 @@ static void choose_form(mpmi_batch *b) {
     b->form = matrix ? MPMI_GATHER_4_AFFINE : MPMI_GATHER_4;
 }
 
+/* ---- what has gone wrong ------------------------------------------------------------------------------ */
+void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what) {
+  mpmi_failure_take(&b->report->failure,
+                    &(mpmi_failure){cause, 0, b->m, mpmi_i64(b->set, MPMI_ID, 0)[slot], -1, what});
+}
+
+static int32_t finite_row(const mpm_particles *set, int32_t field, int32_t components, int64_t slot) {
+  for (int32_t c = 0; c < components; ++c)
+    if (!isfinite(mpmi_component_row(set, field, 1, c)[slot])) return 0;
+  return 1;
+}
+
+/* A hole weighs nothing, but nodes near it that are not finite make it so: it stays what it was. */
+static void restore_hole(mpmi_batch *b, int64_t slot) {
+  mpm_particles *set = b->set;
+  b->report->holes_restored = 1;
+  mpmi_f64(set, MPMI_VOLUME, 0)[slot] = 0.0;
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field *field = &set->field[f];
+    if (!field->present || !field->two_copies) continue;
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components; ++c) {
+      const size_t at = (size_t)(c * set->ld + slot) * size;
+      memcpy((char *)field->data[1] + at, (const char *)field->data[0] + at, size);
+    }
+  }
+}
+
+static int32_t law_is_finite(const mpmi_batch *b, int64_t slot) {
+  const mpm_particles *set = b->set;
+  const int64_t p = slot - b->begin;
+  return finite_row(set, MPMI_STRESS, mpmi_stress_components(set->grid->dim), slot) &&
+         finite_row(set, MPMI_STATE, set->material->state_count, slot) && isfinite(b->law.wave_speed[p]) &&
+         isfinite(b->law.viscosity[p]);
+}
+
+/* Finds the particles behind the flags of the batch. */
+static void check_batch(mpmi_batch *b) {
+  const mpm_particles *set = b->set;
+  const int32_t dim = set->grid->dim;
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  const int32_t moved = b->pass->moves, deformed = b->pass->deforms;
+  for (int64_t slot = b->begin; slot < b->begin + b->n; ++slot) {
+    if (id[slot] < 0)
+      restore_hole(b, slot);
+    else if (moved &&
+             !(finite_row(set, MPMI_POSITION, dim, slot) && finite_row(set, MPMI_VELOCITY, dim, slot)))
+      mpmi_batch_fail(b, MPM_NONFINITE, slot, "position or velocity not finite");
+    else if (deformed && !finite_row(set, MPMI_F, mpmi_tensor_components(dim), slot))
+      mpmi_batch_fail(b, MPM_NONFINITE, slot, "deformation gradient not finite");
+    else if (deformed && !(mpmi_f64(set, MPMI_VOLUME, 0)[slot] > 0.0))
+      mpmi_batch_fail(b, MPM_INVERTED, slot, "det F is not positive");
+    else if (b->law_ran && !law_is_finite(b, slot))
+      mpmi_batch_fail(b, MPM_NONFINITE, slot, "the material's stress, state or wave speed is not finite");
+  }
+}
+
 /* ---- the walk ----------------------------------------------------------------------------------------- */
 void mpmi_pass_begin(mpmi_batch *b, mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from,
                      const mpmi_pass *pass, void *user, int32_t task) {
@@ -104,7 +161,7 @@ static void take_batch(mpmi_batch *b, int64_t begin, int64_t n) {
   b->law_ran = 0;
   settings->kernels->gather[settings->grid->dim][settings->grid->width][b->form](&b->gather, begin, n);
   b->pass->take(b);
-  if (b->flags) mpmi_batch_check(b);
+  if (b->flags) check_batch(b);
 }
 
 /* The nodes of the block after this are asked for meanwhile, share by share. */
@@ -169,60 +226,4 @@ mpm_status mpmi_pass_run(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *f
   pass_job job = {step, nodes, from, pass, user};
   const mpm_status status = mpmi_visit_ranges(step, mpmi_has_host_law(step->layout), take_range, &job);
   return status ? status : mpmi_step_failure(step);
-}
-
-/* ---- what has gone wrong ------------------------------------------------------------------------------ */
-void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what) {
-  mpmi_failure_take(&b->report->failure,
-                    &(mpmi_failure){cause, 0, b->m, mpmi_i64(b->set, MPMI_ID, 0)[slot], -1, what});
-}
-
-static int32_t finite_row(const mpm_particles *set, int32_t field, int32_t components, int64_t slot) {
-  for (int32_t c = 0; c < components; ++c)
-    if (!isfinite(mpmi_component_row(set, field, 1, c)[slot])) return 0;
-  return 1;
-}
-
-/* A hole weighs nothing, but nodes near it that are not finite make it so: it stays what it was. */
-static void restore_hole(mpmi_batch *b, int64_t slot) {
-  mpm_particles *set = b->set;
-  b->report->holes_restored = 1;
-  mpmi_f64(set, MPMI_VOLUME, 0)[slot] = 0.0;
-  for (int32_t f = 0; f < set->field_count; ++f) {
-    const mpmi_field *field = &set->field[f];
-    if (!field->present || !field->two_copies) continue;
-    const size_t size = mpmi_type_size(field->type);
-    for (int32_t c = 0; c < field->components; ++c) {
-      const size_t at = (size_t)(c * set->ld + slot) * size;
-      memcpy((char *)field->data[1] + at, (const char *)field->data[0] + at, size);
-    }
-  }
-}
-
-static int32_t law_is_finite(const mpmi_batch *b, int64_t slot) {
-  const mpm_particles *set = b->set;
-  const int64_t p = slot - b->begin;
-  return finite_row(set, MPMI_STRESS, mpmi_stress_components(set->grid->dim), slot) &&
-         finite_row(set, MPMI_STATE, set->material->state_count, slot) && isfinite(b->law.wave_speed[p]) &&
-         isfinite(b->law.viscosity[p]);
-}
-
-void mpmi_batch_check(mpmi_batch *b) {
-  const mpm_particles *set = b->set;
-  const int32_t dim = set->grid->dim;
-  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
-  const int32_t moved = b->pass->moves, deformed = b->pass->deforms;
-  for (int64_t slot = b->begin; slot < b->begin + b->n; ++slot) {
-    if (id[slot] < 0)
-      restore_hole(b, slot);
-    else if (moved &&
-             !(finite_row(set, MPMI_POSITION, dim, slot) && finite_row(set, MPMI_VELOCITY, dim, slot)))
-      mpmi_batch_fail(b, MPM_NONFINITE, slot, "position or velocity not finite");
-    else if (deformed && !finite_row(set, MPMI_F, mpmi_tensor_components(dim), slot))
-      mpmi_batch_fail(b, MPM_NONFINITE, slot, "deformation gradient not finite");
-    else if (deformed && !(mpmi_f64(set, MPMI_VOLUME, 0)[slot] > 0.0))
-      mpmi_batch_fail(b, MPM_INVERTED, slot, "det F is not positive");
-    else if (b->law_ran && !law_is_finite(b, slot))
-      mpmi_batch_fail(b, MPM_NONFINITE, slot, "the material's stress, state or wave speed is not finite");
-  }
 }

@@ -65,8 +65,6 @@ int32_t mpmi_has_host_law(const mpmi_layout *layout);
 
 /* Takes note of the failure of the particle in a slot. */
 void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what);
-/* Finds the particles behind the flags of the batch. */
-void mpmi_batch_check(mpmi_batch *b);
 
 /* ---- motion.c ---------------------------------------------------------------------------------------- */
 void mpmi_motion_bind(mpmi_batch *b);
@@ -96,7 +94,7 @@ void mpmi_batch_sums(mpmi_batch *b, int32_t what);
 
 /* Volumes, of which there is one copy, by a copy of F: after a step that failed, and where the host looks on
  * in between. */
-void mpmi_make_volumes(const mpmi_layout *layout, const mpmi_settings *settings, int32_t copy);
+void mpmi_make_volumes(const mpmi_layout *layout, int32_t copy);
 
 /* Second moments of the basis at particles, for the affine part of the angular momentum: gives the job those of
  * n particles from slot `begin`; copy: of their positions. buffer: [3][ld]. */

@@ -31,12 +31,11 @@ static void update_task(void *data, int64_t k) {
 
 mpm_status mpmi_node_update_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes) {
   const mpmi_settings *settings = step->settings;
-  const int32_t main = projection == &mpmi_projections[MPMI_PROJECT_FORCES];
   const int32_t first =
       projection == &mpmi_projections[MPMI_PROJECT_CONTACT] || mpmi_asks_host(settings, projection);
-  update_job job = {step, nodes, mpmi_projected_nodes(nodes, projection), main, first};
+  update_job job = {step, nodes, mpmi_projected_nodes(nodes, projection), projection->main, first};
   const mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, update_task, &job);
-  if (status || !main) return status;
+  if (status || !projection->main) return status;
   step->info.active_nodes = 0;
   for (int32_t k = 0; k < settings->tasks; ++k) step->info.active_nodes += step->work->report[k].active;
   return MPM_OK;

@@ -107,12 +107,12 @@ static void choose_form(p2g_job *job) {
 }
 
 mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes) {
-  const int32_t main = projection == &mpmi_projections[MPMI_PROJECT_FORCES];
   p2g_job job = {.step = step,
                  .projection = projection,
                  .to = mpmi_projected_nodes(nodes, projection),
                  .affine = mpmi_is_affine(step->settings) && !projection->plain,
-                 .stress_copy = main && mpmi_deforms_first(step->settings)}; /* then it is updated already */
+                 .stress_copy =
+                     projection->main && mpmi_deforms_first(step->settings)}; /* then it is updated already */
   choose_form(&job);
   return mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
 }

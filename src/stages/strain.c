@@ -37,7 +37,7 @@ void mpmi_strain_bind(mpmi_batch *b) {
 }
 
 void mpmi_strain_enter(mpmi_batch *b) {
-  if (b->step->settings->desc.locking_remedy && b->pass->deforms)
+  if (b->step->settings->desc.locking_remedy)
     mpmi_tile_load(b->step->settings->kernels, &b->step->layout->blocks, b->block, &b->nodes->sums, 4,
                    b->scratch->cells);
 }
@@ -124,16 +124,8 @@ void mpmi_batch_sums(mpmi_batch *b, int32_t what) {
   b->flags |= settings->kernels->sums[dim](job, b->n, b->sums);
 }
 
-void mpmi_make_volumes(const mpmi_layout *layout, const mpmi_settings *settings, int32_t copy) {
-  const int32_t dim = settings->grid->dim;
-  for (int32_t m = 0; m < layout->member_count; ++m) {
-    mpm_particles *set = layout->member[m].set;
-    if (!set->slots) continue;
-    const double *F[9];
-    for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_component_row(set, MPMI_F, copy, c);
-    settings->deformation->volume[dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
-                                       mpmi_f64(set, MPMI_VOLUME, 0), set->slots);
-  }
+void mpmi_make_volumes(const mpmi_layout *layout, int32_t copy) {
+  for (int32_t m = 0; m < layout->member_count; ++m) mpmi_particles_make_volumes(layout->member[m].set, copy);
 }
 
 /* ---- moments ----------------------------------------------------------------------------------------- */

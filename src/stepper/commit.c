@@ -92,5 +92,5 @@ void mpmi_commit(mpm_stepper *s) {
 }
 
 void mpmi_roll_back(mpm_stepper *s) {
-  mpmi_make_volumes(&s->layout, &s->settings, 0);
+  mpmi_make_volumes(&s->layout, 0);
 }

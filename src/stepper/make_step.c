@@ -171,7 +171,7 @@ mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
   if (!status) status = mpmi_explicit_begin(&s->step, &s->nodes);
   if (status) return give_up(s, status);
   /* until the end the host sees the old state */
-  if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, &s->settings, 0);
+  if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, 0);
   s->step.phase = MPMI_BEGUN;
   return MPM_OK;
 }
@@ -181,11 +181,7 @@ static mpm_status in_phase(mpm_stepper *s, int32_t phase, const char *call, cons
   if (s->mapped)
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them before %s",
                      (int)s->mapped, call);
-  for (int32_t m = 0; m < s->layout.member_count; ++m)
-    if (s->layout.member[m].set->mapped)
-      return mpmi_fail(s->context, MPM_E_STATE, "set %d is mapped: release its views before %s", (int)m,
-                       call);
-  return MPM_OK;
+  return mpmi_members_unmapped(&s->layout, &s->settings, "before the step goes on");
 }
 
 mpm_status mpm_step_grid(mpm_stepper *s) {
@@ -205,7 +201,7 @@ mpm_status mpm_step_end(mpm_stepper *s, mpm_step_info *info) {
   if (!status) status = mpmi_check_info(s, info);
   if (status) return status;
   s->step.phase = MPMI_RUNNING;
-  if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, &s->settings, 1);
+  if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, 1);
   status = mpmi_explicit_end(&s->step, &s->nodes);
   if (!status) status = finish(s);
   return mpmi_give_info(s, status ? give_up(s, status) : MPM_OK, info);

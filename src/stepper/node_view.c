@@ -79,9 +79,7 @@ mpm_status mpmi_node_require(mpm_context *context, const char *name, int32_t *fi
     names[f] = mpmi_node_fields[f].name;
     if (strcmp(name, names[f]) == 0) return MPM_OK;
   }
-  char near[256];
-  mpmi_nearest_names(name, names, MPMI_NODE_FIELDS, near, sizeof near);
-  return mpmi_fail(context, MPM_E_NOT_FOUND, "nodes have no field \"%s\"; there are: %s", name, near);
+  return mpmi_refuse_name(context, "nodes have no field", name, names, MPMI_NODE_FIELDS);
 }
 
 mpm_status mpmi_nodes_ready(const mpm_stepper *s) {
@@ -101,6 +99,43 @@ mpm_status mpmi_node_check_kept(const mpm_stepper *s, int32_t field) {
   return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                    "a whole step of MPM_APIC_MLS does not keep \"%s\" apart: use a staged step, or MPM_APIC",
                    mpmi_node_fields[field].name);
+}
+
+static mpm_status write_back(mpm_stepper *s, int32_t field, const double *value) {
+  for (int64_t i = 0; i < s->active_count * s->grid->dim; ++i) {
+    if (isfinite(value[i])) continue;
+    int64_t index[3];
+    mpmi_blocks_index(&s->layout.blocks, s->active[i % s->active_count], index);
+    return mpmi_fail(s->context, MPM_E_ARG, "nodal \"%s\" is %g at node %lld: nothing was written",
+                     mpmi_node_fields[field].name, value[i], (long long)mpmi_node_number(s->grid, index));
+  }
+  for (int64_t i = 0; i < s->active_count; ++i)
+    for (int32_t c = 0; c < s->grid->dim; ++c) {
+      const double mass = *mpmi_mass(&s->nodes.solved, s->active[i]);
+      double *v = mpmi_velocity(&s->nodes.solved, s->active[i]) + c;
+      double *second = mpmi_increment(&s->nodes.solved, s->active[i]) + c;
+      const double wanted = value[c * s->active_count + i];
+      if (field == MPMI_NODE_FORCE) {
+        *second = wanted;
+      } else if (s->step.phase == MPMI_BEGUN) {
+        /* untouched values must come back as they were: p / m * m rounds */
+        if (wanted != *v / mass) *v = wanted * mass;
+      } else {
+        *second += wanted - *v;
+        *v = wanted;
+      }
+    }
+  return MPM_OK;
+}
+
+/* Ends a view: written values go back to the nodes. */
+static mpm_status release_view(mpmi_view_record *record, mpm_view *view) {
+  mpm_stepper *s = record->lender;
+  s->context->error[0] = '\0';
+  record->live = 0;
+  --s->mapped;
+  view->data = view->owner = NULL;
+  return record->access & MPM_WRITE ? write_back(s, record->field, record->data) : MPM_OK;
 }
 
 static mpm_status check_map(mpm_stepper *s, int32_t body, const char *field, int32_t access,
@@ -150,45 +185,9 @@ mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t
                                    .access = access,
                                    .data = s->view_memory[at],
                                    .lender = s,
-                                   .release = mpmi_node_view_release};
+                                   .release = release_view};
   mpmi_view_fill(view, mpmi_node_fields[which].type, components, access, s->active_count, s->active_count,
                  s->view_memory[at], &s->view[at]);
   ++s->mapped;
   return MPM_OK;
-}
-
-static mpm_status write_back(mpm_stepper *s, int32_t field, const double *value) {
-  for (int64_t i = 0; i < s->active_count * s->grid->dim; ++i) {
-    if (isfinite(value[i])) continue;
-    int64_t index[3];
-    mpmi_blocks_index(&s->layout.blocks, s->active[i % s->active_count], index);
-    return mpmi_fail(s->context, MPM_E_ARG, "nodal \"%s\" is %g at node %lld: nothing was written",
-                     mpmi_node_fields[field].name, value[i], (long long)mpmi_node_number(s->grid, index));
-  }
-  for (int64_t i = 0; i < s->active_count; ++i)
-    for (int32_t c = 0; c < s->grid->dim; ++c) {
-      const double mass = *mpmi_mass(&s->nodes.solved, s->active[i]);
-      double *v = mpmi_velocity(&s->nodes.solved, s->active[i]) + c;
-      double *second = mpmi_increment(&s->nodes.solved, s->active[i]) + c;
-      const double wanted = value[c * s->active_count + i];
-      if (field == MPMI_NODE_FORCE) {
-        *second = wanted;
-      } else if (s->step.phase == MPMI_BEGUN) {
-        /* untouched values must come back as they were: p / m * m rounds */
-        if (wanted != *v / mass) *v = wanted * mass;
-      } else {
-        *second += wanted - *v;
-        *v = wanted;
-      }
-    }
-  return MPM_OK;
-}
-
-mpm_status mpmi_node_view_release(mpmi_view_record *record, mpm_view *view) {
-  mpm_stepper *s = record->lender;
-  s->context->error[0] = '\0';
-  record->live = 0;
-  --s->mapped;
-  view->data = view->owner = NULL;
-  return record->access & MPM_WRITE ? write_back(s, record->field, record->data) : MPM_OK;
 }

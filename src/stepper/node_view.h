@@ -33,7 +33,4 @@ mpm_status mpmi_nodes_list(mpm_stepper *s);
 void mpmi_node_values(const mpm_stepper *s, int32_t field, const int64_t *slot, int64_t n,
                       int64_t item_stride, int64_t component_stride, void *out);
 
-/* Ends a view made by mpm_grid_map: written values go back to the nodes. */
-mpm_status mpmi_node_view_release(mpmi_view_record *record, mpm_view *view);
-
 #endif

@@ -27,19 +27,17 @@ def folder_of(node):
 
 
 def read_layers(path):
-    order, circles = [], set()
+    order = []
     with open(path) as lines:
         for line in lines:
             words = line.split('#')[0].split()
             if not words:
                 continue
-            if len(words) == 2 and words[0] == 'allow-circles':
-                circles.add(words[1])
-            elif len(words) == 1:
+            if len(words) == 1:
                 order.append(words[0])
             else:
                 sys.exit(f'{path}: cannot read "{line.strip()}"')
-    return order, circles
+    return order
 
 
 def find_sources(top):
@@ -146,7 +144,7 @@ def show(arrow):
     print(f'  {arrow.file} -> {arrow.end}: {arrow.symbol}')
 
 
-def check(sources, arrows, order, allowed):
+def check(sources, arrows, order):
     failures = 0
     level = {folder: k for k, folder in enumerate(order)}
     for folder in sorted({folder_of(source) for source in sources} - set(order)):
@@ -163,7 +161,7 @@ def check(sources, arrows, order, allowed):
     for circle in circles_of({a.start for a in between}, between):
         print('structure: a circle of folders: ' + ', '.join(sorted(circle)))
         failures += 1
-    inside = [a for a in arrows if folder_of(a.start) == folder_of(a.end) and folder_of(a.start) not in allowed]
+    inside = [a for a in arrows if folder_of(a.start) == folder_of(a.end)]
     for circle in circles_of({a.start for a in inside}, inside):
         print('structure: a circle of files:')
         for arrow in inside:
@@ -218,9 +216,9 @@ def main():
     parser.add_argument('--measure', action='store_true', help='prints sizes and numbers of arrows as well')
     options = parser.parse_args()
     sources = find_sources(options.source)
-    order, allowed = read_layers(options.layers)
+    order = read_layers(options.layers)
     arrows = find_arrows(sources, options.objects)
-    failures = check(sources, arrows, order, allowed)
+    failures = check(sources, arrows, order)
     if options.measure:
         measure(sources, arrows)
     print(f'structure: {len({s[:-2] for s in sources})} files and headers, {len(arrows)} arrows, {failures} failures')

@@ -4,7 +4,7 @@
 #define IO_H
 
 #include "io/state.h"
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 #include "world.h"
 
 typedef struct io_setup {

@@ -229,7 +229,7 @@ START_TEST(refused) {
   ck_refused(c, mpm_write_grid(w.stepper, path, -1, bad), MPM_E_ARG, "count is -1");
   ck_refused(c, mpm_write_grid(w.stepper, path, 1, NULL), MPM_E_ARG, "fields");
   ck_refused(c, mpm_write_grid(w.stepper, path, 1, none), MPM_E_ARG, "NULL");
-  ck_refused(c, mpm_write_grid(w.stepper, path, 2, bad), MPM_E_NOT_FOUND, "there are: velocity");
+  ck_refused(c, mpm_write_grid(w.stepper, path, 2, bad), MPM_E_NOT_FOUND, "nearest: velocity");
   ck_refused(c, mpm_write_grid(w.stepper, path, 3, twice), MPM_E_ARG, "\"mass\" is named twice");
   ck_refused(c, mpm_write_grid(w.stepper, "no/such/place.vti", 0, NULL), MPM_E_IO, "no/such/place.vti");
   ck_assert_int_ne(access(path, F_OK), 0);

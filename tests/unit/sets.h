@@ -2,7 +2,7 @@
 #ifndef SETS_H
 #define SETS_H
 
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 #include "world.h"
 
 /* The grid has 10, 9 and 8 cells of edge 0.5, from -1 on. */

@@ -1,7 +1,7 @@
 /* This file has the table of built-in fields, and the maps between stored and full components. */
 #include <string.h>
 
-#include "particles/layout.h"
+#include "particles/builtin_fields.h"
 
 enum { SCALAR, VECTOR, TENSOR, GRADIENT, STRESS, STATE };
 
@@ -72,7 +72,7 @@ static int32_t shape_components(int32_t shape, int32_t dim, int32_t state_count)
   }
 }
 
-void mpmi_layout_builtin(mpm_particles *set) {
+void mpmi_fields_builtin(mpm_particles *set) {
   int32_t dim = set->grid->dim, state_count = set->material->state_count;
   const int32_t *periodic = set->grid->desc.periodic;
   for (int32_t f = 0; f < MPMI_BUILTIN_FIELDS; ++f) {
@@ -118,8 +118,6 @@ mpm_status mpmi_require_field(const mpm_particles *set, const char *name, int32_
   *field = mpmi_find_field(set, name);
   if (*field >= 0) return MPM_OK;
   const char *names[MPMI_MAX_FIELDS];
-  char nearest[4 * MPMI_NAME];
   for (int32_t f = 0; f < set->field_count; ++f) names[f] = set->field[f].name;
-  mpmi_nearest_names(name, names, set->field_count, nearest, sizeof nearest);
-  return mpmi_fail(set->context, MPM_E_NOT_FOUND, "the set has no field \"%s\"; nearest: %s", name, nearest);
+  return mpmi_refuse_name(set->context, "the set has no field", name, names, set->field_count);
 }

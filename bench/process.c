@@ -1,11 +1,11 @@
 #define _DEFAULT_SOURCE
-#include "apart.h"
+#include "process.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-int bench_apart(bench_fn fn, const void *job, void *result, size_t size) {
+int bench_in_process(bench_fn fn, const void *job, void *result, size_t size) {
   int ends[2], status;
   if (pipe(ends)) return 0;
   const pid_t child = fork();

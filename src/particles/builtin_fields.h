@@ -1,7 +1,6 @@
-/* The layout says what the built-in fields are by dimension and law, and where full tensors keep their
- * entries. */
-#ifndef MPMI_LAYOUT_H
-#define MPMI_LAYOUT_H
+/* The built-in fields by dimension and law, and where full tensors keep their entries. */
+#ifndef MPMI_BUILTIN_FIELDS_H
+#define MPMI_BUILTIN_FIELDS_H
 
 #include "particles/particles.h"
 
@@ -11,7 +10,7 @@
 enum { MPMI_MAX_COMPONENTS = 64 }; /* the most that a field of the host may have */
 
 /* Describes the built-in fields of a set whose grid and material are known; allocates nothing. */
-void mpmi_layout_builtin(mpm_particles *set);
+void mpmi_fields_builtin(mpm_particles *set);
 /* Returns the stored component that holds component c of the full layout, or -1. */
 int32_t mpmi_stored_component(const mpm_particles *set, int32_t field, int32_t c);
 /* Returns the value of a component of the full layout that is not stored: that of the identity for F, else
