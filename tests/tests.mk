@@ -158,9 +158,10 @@ check-fuzz: fuzz-programs
 fuzz-corpus: fuzz-programs
 	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/pack.sh $(FUZZ) $$target || exit 1; done
 
-#: mutate                plants known faults one by one in a copy of the sources: the tests must notice each
-mutate: $(UNIT)
-	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/run.sh
+#: mutate                plants known faults one at a time in copies of the sources: the tests must notice each.
+#:                       FAULTS="src/io 1/8": of those of src/io every eighth
+mutate:
+	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/mutate/run.sh $(FAULTS)
 #: mutate-check          whether each of these faults still has its place in the sources; compiles nothing
 mutate-check:
 	@python3 tests/mutate/plant.py check
