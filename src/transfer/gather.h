@@ -15,7 +15,7 @@ enum {
   MPMI_GATHER_FORMS
 };
 
-/* Gathered quantities of a batch, [components][ld] each; L and C full 3x3: columns that the grid
+/* Holds the gathered quantities of a batch, [components][ld] each; L and C full 3x3: columns that the grid
  * does not have are left alone, rows are zero. */
 typedef struct mpmi_gather {
   mpmi_axis axis[3];
