@@ -217,9 +217,10 @@ FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp src/*/*.[ch] examples/*
 #: format                clang-format on all sources
 format:
 	clang-format -i $(FORMATTED)
-#: format-check          fails where clang-format would change something
+#: format-check          fails where clang-format would change something, or a line is wider than 110 columns
 format-check:
 	clang-format --dry-run -Werror $(FORMATTED)
+	@! grep -nE '.{111}' $(FORMATTED) || { echo 'these lines are longer than 110 columns' >&2; exit 1; }
 
 #: clean                 takes all build folders away
 clean:

@@ -53,14 +53,15 @@ typedef struct mpm_stepper_desc {
   double gravity[3];    /**< acceleration of all particles, length/time^2; default 0 */
   double newmark_beta;  /**< Newmark's beta: default 1/4, as Guilkey & Weiss 2003, eqs 14-15 */
   double newmark_gamma; /**< Newmark's gamma: default 1/2, as there; larger values damp high frequencies */
-  /** Bound on the displacement increment against the largest of the step, both measured by the diagonal of
-   * the stiffness, in which light nodes count little: Guilkey & Weiss 2003, eq. 13, eps_d. Newton iterations
-   * end when the bounds on displacement, energy and residual hold together. Default 1e-8. */
+  /** Newton iterations end when the displacement increment is at most this share of the largest of the step,
+   * both measured by the diagonal of the stiffness, in which light nodes count little (Guilkey & Weiss 2003,
+   * eq. 13, eps_d), and the next two bounds hold as well. Default 1e-8. */
   double newton_tolerance_displacement;
-  /** Bound on the increment times the residual against the first of the step: the same, eps_e. Default
-   * 1e-14. */
+  /** They end when the increment times the residual is at most this share of the first of the step (eps_e in
+   * the same eq. 13), and the other two bounds hold. Default 1e-14. */
   double newton_tolerance_energy;
-  /** Bound on the norm of the residual over a scale that includes reactions. Default 1e-8. */
+  /** They end when the norm of the residual is at most this share of a scale that includes reactions, and the
+   * other two bounds hold. Default 1e-8. */
   double newton_tolerance_residual;
   /** Norm of the residual, a force, up to which its bound holds whatever the scale. Default 0. */
   double newton_residual_floor;

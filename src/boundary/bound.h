@@ -11,10 +11,12 @@
 typedef struct mpmi_bound {
   mpmi_step *step;
   mpmi_nodes *nodes;
-  const mpmi_nodal *values; /* of the projection */
-  double flip;              /* share of the increment in what particles take */
-  double share;             /* of the velocities in what particles take: impulses count as much */
-  int32_t dim, records;     /* records: impulses count as reactions */
+  const mpmi_nodal *values; /* the nodes of the projection */
+  /* share of the increment that particles take (FLIP); of the velocity they take 1 - flip */
+  double flip;
+  /* weight of this projection's impulses: the share of its velocities that particles take */
+  double share;
+  int32_t dim, records; /* records: impulses count as reactions */
 } mpmi_bound;
 
 /* Who holds a component of a node, in held[][]. */
@@ -28,20 +30,20 @@ static inline double mpmi_increment_of(const mpmi_bound *bound, int64_t slot, in
   return mpmi_has_increments(bound->values) ? mpmi_increment(bound->values, slot)[c] : 0.0;
 }
 
-/* What particles take from a node's velocity per unit of its mass: the change with FLIP, the whole with the
- * others. The impulse of a boundary is how much more of it there is. */
+/* Returns the momentum per mass that particles take from a node: its increment with FLIP, else its velocity.
+ * A boundary's impulse is the change of this times the mass. */
 static inline double mpmi_given(const mpmi_bound *bound, int64_t slot, int32_t c) {
   return bound->flip * mpmi_increment_of(bound, slot, c) +
          (1.0 - bound->flip) * mpmi_velocity(bound->values, slot)[c];
 }
 
-/* Mass that moves with a free node: its own, or that of its tie. */
+/* Returns the mass that moves with a free node: its own, or that of its tie. */
 static inline double mpmi_moving_mass(const mpmi_bound *bound, int64_t slot) {
   const int32_t tie = mpmi_constraints_of(bound)->tie_of[slot];
   return tie < 0 ? *mpmi_mass(bound->values, slot) : bound->nodes->tie_state[tie].mass;
 }
 
-/* Does a free node that moves take part? */
+/* Returns 1 when the node follows no other and is heavy enough to move. */
 static inline int32_t mpmi_moves(const mpmi_bound *bound, int64_t slot) {
   return mpmi_constraints_is_free(mpmi_constraints_of(bound), slot) &&
          mpmi_moving_mass(bound, slot) > bound->step->layout->mass_cut;
@@ -58,21 +60,21 @@ static inline mpmi_component mpmi_component_of(const mpmi_bound *bound, int64_t 
 
 /* Notes the impulse of a boundary on a node, and by how much it changed the node's increment. */
 void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse, double change);
-/* Records what a free node gives to the particles more than before: the impulse is returned. */
+/* Records how much more a free node now gives to particles, and returns it: the impulse. */
 double mpmi_record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before);
-/* The same for a contact, which acts on the whole mass that moves with the node: what mirrored ghosts take of
- * it the other way round is the reaction of the wall that mirrors them. */
+/* Does the same for a contact, whose impulse acts on all the mass that moves with the node; what mirrored
+ * ghosts take the other way round is the wall's reaction. */
 double mpmi_record_whole(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before);
 
-/* Adds the works by block, in the order of blocks, to the work of the step. */
+/* Adds the work of all blocks, in their order, to the work of the step. */
 void mpmi_add_block_work(mpmi_step *step);
 
 /* ---- ties.c ------------------------------------------------------------------------------------------ */
-/* The master gets the velocity that the whole tie has, before the forces and after them. */
+/* Gives each master the velocity of its whole tie, before the forces and after them. */
 void mpmi_ties_fold(mpmi_bound *bound);
 /* Sets the components that fixed and slip walls hold. */
 void mpmi_ties_hold_walls(mpmi_bound *bound);
-/* The followers get the master's velocity, with their signs; impulses and reactions are recorded. */
+/* Gives the followers their master's velocity, with their signs, and records impulses and reactions. */
 void mpmi_ties_unfold(mpmi_bound *bound);
 
 /* ---- held_nodes.c ------------------------------------------------------------------------------------ */
@@ -82,17 +84,19 @@ mpm_status mpmi_held_find(mpmi_bound *bound);
 mpm_status mpmi_held_set(mpmi_bound *bound);
 
 /* ---- velocity_callback.c ----------------------------------------------------------------------------- */
-/* Asks it for all free nodes that move; its answers go into held and held_value. */
+/* Asks the host's velocity callback about all free nodes that move; its answers go into held and
+ * held_value. */
 mpm_status mpmi_ask_velocities(mpmi_bound *bound);
 
 /* ---- prescribed_nodes.c ------------------------------------------------------------------------------ */
-/* Finds the nodes that they hold, and their velocities; what the host holds stays the host's. */
+/* Finds the nodes that prescribed particles hold, and their velocities; what the host holds stays the
+ * host's. */
 mpm_status mpmi_prescribed_hold(mpmi_bound *bound);
-/* Gives them their share of the impulses on these nodes, in the parts of the prescription. */
+/* Gives prescribed particles their share of the impulses on these nodes, in the parts of the prescription. */
 mpm_status mpmi_prescribed_share(mpmi_bound *bound);
 
 /* ---- friction_wall.c --------------------------------------------------------------------------------- */
-/* keep: contacts stay closed or open as they were found, in a projection without forces. */
+/* Lets friction walls act. With keep, in a projection without forces, contacts stay as they were found. */
 void mpmi_friction_walls(mpmi_bound *bound, int32_t keep);
 
 /* ---- node_batch.c ------------------------------------------------------------------------------------ */
@@ -107,14 +111,15 @@ typedef struct mpmi_node_list {
   mpm_node_batch batch;
 } mpmi_node_list;
 
-/* Masters stand for their ties, with the mass of all of it. Returns how many nodes there are. */
+/* Lists the nodes of a block that move, and returns how many there are. Masters stand for their ties, with
+ * the mass of the whole tie. */
 int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *list);
-/* A value of the host on node i that is not finite. */
+/* Notes in `failure` that the host's value on node i is not finite. */
 void mpmi_bad_node(const mpmi_bound *bound, const mpmi_node_list *list, int64_t i, const char *what,
                    mpmi_failure *failure);
 
 /* ---- hooks.c ----------------------------------------------------------------------------------------- */
-/* Around all hooks of a step; nothing happens where there are none. The end adds up their work. */
+/* These enclose the hooks of a step and do nothing where there are none; the end adds up their work. */
 mpm_status mpmi_hooks_begin(mpmi_bound *bound);
 mpm_status mpmi_hooks_end(mpmi_bound *bound);
 /* Calls the hook of a stage, MPM_AFTER_P2G ..., if there is one. */

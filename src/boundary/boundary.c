@@ -1,7 +1,8 @@
+/* The boundary stage: in which order conditions act on the nodes of a projection. */
 #include "boundary/boundary.h"
 #include "boundary/bound.h"
 
-/* Between folding and unfolding: what acts on nodes, the host's hooks around it. */
+/* Lets all that acts on folded nodes act, in order: conditions, with the host's hooks between them. */
 static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
   mpm_status status;
   if ((status = mpmi_hooks_begin(bound)) || (status = mpmi_hooks_run(bound, MPM_AFTER_P2G)) ||
@@ -14,10 +15,11 @@ static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
   return mpmi_hooks_run(bound, MPM_AFTER_VELOCITY);
 }
 
-/* Other projections have no hooks. That of USF comes first and asks who holds nodes; the second one of MUSL
- * keeps to what was said of the first; the terms of XPIC obey what is linear and the same for all of them.
+/* Acts in projections other than the main one, which have no hooks. The projection of USF comes first and
+ * asks who holds nodes; that of MUSL keeps these answers; the terms of XPIC obey walls and images only, which
+ * are linear.
  *
- * Which contacts are closed is for a projection with forces to say. Without them a body that expands against
+ * Only a projection with forces can tell which contacts are closed. Without them a body that expands against
  * a wall seems to leave it, and USF would strain it less in the rebound than in the approach, which makes
  * energy. */
 static mpm_status act_on_velocities(mpmi_bound *bound, const mpmi_projection *projection) {

@@ -8,6 +8,7 @@
  *   velocity_callback.c, prescribed_nodes.c   which these are
  *   friction_wall.c     unilateral contact with walls
  *   hooks.c             the host's own part in between
+ *   node_batch.c        the nodes of a block as callbacks and hooks see them
  *
  * All of it works on the velocities that nodes would have if they were free. Ties are folded into their
  * masters first and unfolded last. */
@@ -17,11 +18,11 @@
 #include "layout/projection.h"
 #include "layout/step.h"
 
-/* Velocities of a projection: unfolded at the end. share: of these velocities in what particles take;
- * impulses count as much. */
+/* Puts the conditions on the nodes of a projection; ties are unfolded at the end. share is the share of these
+ * velocities that particles take; impulses are weighted by it. */
 mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes,
                                double share);
-/* Only finds who holds which nodes, in `held` and `held_value`; masters stay folded. For implicit steps. */
+/* Finds who holds which nodes, in `held` and `held_value`; ties stay folded. Implicit steps use it. */
 mpm_status mpmi_boundary_hold(mpmi_step *step, mpmi_nodes *nodes);
 
 #endif

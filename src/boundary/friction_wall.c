@@ -59,13 +59,13 @@ static int32_t collect(mpmi_bound *bound, const mpmi_contact *pair, contact_node
   return 1;
 }
 
-/* Impulse that would stop a component; none where nothing gives way. */
+/* Returns the impulse that would stop a component, 0 where no node can move. */
 static double stopping(mpmi_bound *bound, const contact_nodes *n, int32_t c) {
   return n->held[c] || !(n->moving[c] > 0.0) ? 0.0 : -sum_of(bound, n, c) / n->compliance[c];
 }
 
-/* Pushes but never pulls; Coulomb: the tangential impulse stops sliding or is friction times the normal one.
- * Returns the velocity that it stopped. */
+/* Lets a contact act. It pushes and never pulls; its tangential impulse stops sliding, up to friction times
+ * the normal one. Returns the velocity that it stopped. */
 static double contact(mpmi_bound *bound, const mpmi_contact *pair, mpmi_contact_state *state, int32_t sweep) {
   const int32_t axis = pair->face / 2;
   contact_nodes n;
@@ -88,8 +88,8 @@ static double contact(mpmi_bound *bound, const mpmi_contact *pair, mpmi_contact_
   return normal * n.compliance[axis];
 }
 
-/* A projection without forces moves with the one that had them: a contact that was closed stays so, one that
- * was open is free. */
+/* Lets a contact act in a projection without forces: one that was closed stays so, one that was open is free.
+ * Returns the largest velocity that it stopped. */
 static double keep_contact(mpmi_bound *bound, const mpmi_contact *pair, const mpmi_contact_state *state) {
   contact_nodes n;
   double stopped = 0.0;
@@ -120,7 +120,7 @@ void mpmi_friction_walls(mpmi_bound *bound, int32_t keep) {
       most = fmax(most, keep ? keep_contact(bound, pair, state) : contact(bound, pair, state, sweep));
     }
     if (!sweep) first = most;
-    /* of one face no two contacts share a node */
+    /* contacts of one face share no node: one sweep is enough */
     if (!(most > settled * first) || constraints->contact[0].face == constraints->contact[count - 1].face)
       return;
   }

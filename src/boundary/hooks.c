@@ -1,10 +1,10 @@
 /* Node hooks: the host reads and changes nodal velocities and forces at a stage of the step.
  *
- * All stages run after the nodes have been updated and ties folded, because both are linear: there a node
- * has its updated velocity v~ and the increment dv, hence the projected velocity v = v~ - dv and the force m
- * dv / dt. A change of force is one of dv and v~; a change of v is one of v~; a change of v~ is an impulse,
- * one of both. It is laid on every node of the tie, as if the host had written there: so it is no reaction
- * of the constraint. */
+ * All stages run after the nodes have been updated and ties folded, because both are linear: there a node has
+ * its updated velocity v~ and the increment dv, hence the projected velocity v = v~ - dv and the force m dv /
+ * dt. A change of force changes dv and v~ alike; a change of v changes v~ alone; a change of v~ is an impulse
+ * and changes both. Each is laid on every node of the tie, as if the host had written there: so it is no
+ * reaction of the constraint. */
 #include "boundary/bound.h"
 #include "layout/tasks.h"
 
@@ -16,7 +16,7 @@ typedef struct hook_job {
   int32_t stage;
 } hook_job;
 
-/* Velocity and force on both sides of the call. */
+/* Holds what a hook is shown, and what it leaves. */
 typedef struct hook_values {
   double shown[2][3 * MPMI_NODE_BATCH], velocity[3 * MPMI_NODE_BATCH], force[3 * MPMI_NODE_BATCH];
 } hook_values;
@@ -54,7 +54,7 @@ static void show_node(const hook_job *job, const mpmi_node_list *list, int64_t i
   }
 }
 
-/* What was written, against what was shown: values that are not touched leave every bit of the node. */
+/* Adds what the hook has changed: values left alone change no bit. */
 static void take_node(const hook_job *job, const mpmi_node_list *list, int64_t i, const hook_values *values) {
   mpmi_bound *bound = job->bound;
   for (int32_t c = 0; c < bound->dim; ++c) {
@@ -120,7 +120,7 @@ mpm_status mpmi_hooks_run(mpmi_bound *bound, int32_t stage) {
   return status ? status : mpmi_step_failure(bound->step);
 }
 
-/* Like that of every external force: impulse times the velocity with which the node moves in the step. */
+/* Adds up the hooks' work by block: impulse times the velocity of the node in the step. */
 static void work_task(void *data, int64_t k) {
   mpmi_bound *bound = data;
   const mpmi_blocks *blocks = &bound->step->layout->blocks;

@@ -1,3 +1,4 @@
+/* What boundary conditions give to the particles, recorded as impulses on nodes and ties. */
 #include "boundary/bound.h"
 #include "context/reduce.h"
 
@@ -7,7 +8,8 @@ void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impuls
   bound->nodes->impulse[slot].change[c] += bound->share * change;
 }
 
-/* whole: as if no part of a tie were an image with the opposite sign. */
+/* Records the impulse of a component that has changed. With whole, it counts on all mass of the tie, also on
+ * images that move the other way. */
 static double record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before, int32_t whole) {
   const double more = mpmi_given(bound, slot, c) - before.given;
   const int32_t tie = mpmi_constraints_of(bound)->tie_of[slot];

@@ -1,4 +1,5 @@
-/* Free nodes of one block with mass, for the host: batches do not depend on the cut of the work. */
+/* Free nodes of one block with mass, for the host, which sees nodes in batches of one block: so batches do
+ * not depend on how tasks share the blocks. */
 #include "boundary/bound.h"
 
 int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *list) {

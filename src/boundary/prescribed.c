@@ -1,3 +1,4 @@
+/* Prescribed particles: which they are, their velocities, their motion, what they report. */
 #include "boundary/prescribed.h"
 #include "layout/particle_batch.h"
 
@@ -18,7 +19,7 @@ static void touch_around(const mpmi_blocks *b, uint8_t *flag, int64_t block) {
     if (b->neighbour[block][n] != MPMI_NO_BLOCK) flag[b->neighbour[block][n]] |= MPMI_TOUCHED;
 }
 
-/* A master takes what its followers are given, wherever it lies. */
+/* Marks the blocks of masters as well, which take what their followers are given, wherever they lie. */
 static void touch_masters(const mpmi_constraints *constraints, int32_t block_nodes, uint8_t *flag) {
   for (int64_t i = 0; i < constraints->tie_count; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
@@ -110,7 +111,7 @@ uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t 
       if (!mpmi_is_prescribed(set, begin + p, c)) continue;
       const double u = mean[c * set->ld + begin + p], moved = move->v_new[c][p];
       if (mpmi_is_dynamic(settings)) {
-        /* of an implicit step the nodes' balance is that at its end */
+        /* an implicit step balances the nodes at its end: the gain is that of the new acceleration */
         const double gained = mpmi_is_implicit(settings)
                                   ? move->dt * (mpmi_f64(set, MPMI_ACCELERATION, 1) + c * set->ld)[begin + p]
                                   : moved - move->v_old[c][p];

@@ -24,13 +24,13 @@ static inline int32_t mpmi_block_is(const mpmi_nodes *nodes, int64_t block, int3
   return nodes->prescription.block[block] & flag;
 }
 
-/* Is the particle in a slot prescribed on axis c? A hole is not. For members with
- * prescribed particles. */
+/* Returns 1 when the particle in a slot is prescribed on axis c; a hole never is. The member must have such
+ * particles. */
 static inline int32_t mpmi_is_prescribed(const mpm_particles *set, int64_t slot, int32_t c) {
   return ((const uint8_t *)set->field[MPMI_PRESCRIBED].data[0])[c * set->ld + slot];
 }
 
-/* [dim][ld of the set]: mean velocities of the step. */
+/* Returns the mean velocities of the step, [dim][ld of the set]. */
 static inline const double *mpmi_mean_velocity(const mpmi_member *member) {
   return member->motion ? member->mean : mpmi_f64(member->set, MPMI_VELOCITY, 0);
 }
@@ -40,15 +40,15 @@ static inline mpmi_prescribed_part *mpmi_part_of(const mpmi_layout *layout, cons
   return &nodes->prescription.part[block * layout->member_count + m];
 }
 
-/* Finds the prescribed particles, and memory for their sums on the nodes. */
+/* Finds the prescribed particles, and makes room for their sums on the nodes. */
 mpm_status mpmi_prescribed_prepare(mpmi_layout *layout, mpmi_nodes *nodes, const mpmi_settings *settings);
-/* Mean velocities of the step, from the host where there is a motion. */
+/* Asks the host for the mean velocities of the step where there is a motion. */
 mpm_status mpmi_prescribed_stage(mpmi_step *step);
-/* After a batch was moved as any other: its prescribed particles move as they must. Returns flags of
- * mpmi_move. */
+/* Moves the prescribed particles of a batch, which was moved as any other, as they must move; returns flags
+ * of mpmi_move. */
 uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t m, int64_t block,
                               const mpmi_move *move, int64_t begin, int64_t n);
-/* What they did in the step: the sets' reactions, and the work of moving them. */
+/* Reports the sets' reactions and the work of moving them. */
 void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes);
 
 #endif

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Nodes of the stencil of one particle: places in the tile, weights. */
+/* Holds the nodes that one particle reaches: their places in the tile, and their weights. */
 enum { MOST_NODES = MPMI_MAX_WIDTH * MPMI_MAX_WIDTH * MPMI_MAX_WIDTH };
 typedef struct stencil {
   int32_t count, at[MOST_NODES];
@@ -32,7 +32,7 @@ static void find_stencil(const mpm_grid *grid, const mpmi_weights *W, int64_t p,
   for (int32_t n = 0; n < to->count; ++n) to->at[n] += W->node[p];
 }
 
-/* One member's prescribed particles in one block, with the block's tile of sums. */
+/* Holds one member's prescribed particles in one block, with the block's tile of sums. */
 typedef struct visit {
   mpmi_bound *bound;
   const mpmi_member *member;
@@ -127,7 +127,8 @@ static mpm_status over_slots(mpmi_bound *bound, slots_fn fn) {
   return mpmi_run_tasks(bound->step->settings, 0, bound->step->settings->tasks, slots_task, &job);
 }
 
-/* A tie moves as one, component by component with its sign. */
+/* Adds the sums of followers to those of their master: a tie moves as one, component by component with its
+ * sign. */
 static void fold_task(void *data, int64_t k) {
   mpmi_bound *bound = data;
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
@@ -147,7 +148,7 @@ static void fold_task(void *data, int64_t k) {
   }
 }
 
-/* After the host: it comes first. */
+/* Holds nodes that the host has not held: the host comes first. */
 static void hold_slots(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failure *failure) {
   const mpmi_blocks *blocks = &bound->step->layout->blocks;
   for (int64_t slot = begin; slot < end; ++slot)
@@ -182,7 +183,8 @@ mpm_status mpmi_prescribed_hold(mpmi_bound *bound) {
 }
 
 /* ---- their share of the impulses ---------------------------------------------------------------------- */
-/* In place of the momentum comes impulse / prescribed mass: here on nodes without ties, below on those with. */
+/* Replaces momentum by impulse over prescribed mass: here on nodes without ties; on the others
+ * divide_of_tie() does it. */
 static void divide_impulses(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failure *failure) {
   (void)failure;
   for (int64_t slot = begin; slot < end; ++slot)

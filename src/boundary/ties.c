@@ -40,8 +40,9 @@ void mpmi_ties_fold(mpmi_bound *bound) {
   }
 }
 
-/* A node on the plane is its own mirror image: the projected velocity of the component is 0 as well, so that
- * there is no increment. Only so is half a symmetric body on a slip wall the same as the whole. */
+/* Holds at 0 what walls hold. A node on the plane is its own mirror image: the projected velocity of the
+ * component is 0 as well, so that there is no increment. Only so is half a symmetric body on a slip wall the
+ * same as the whole. */
 void mpmi_ties_hold_walls(mpmi_bound *bound) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   for (int64_t i = 0; i < constraints->tie_count; ++i) {
@@ -54,7 +55,7 @@ void mpmi_ties_hold_walls(mpmi_bound *bound) {
   }
 }
 
-/* One component of a follower; its impulse is returned. */
+/* Gives a follower one component of its master's velocity; returns the impulse. */
 static double follow(mpmi_bound *bound, int64_t master, const mpmi_follower *follower, int32_t c) {
   const int64_t slot = follower->slot;
   const mpmi_component before = mpmi_component_of(bound, slot, c);

@@ -53,12 +53,12 @@ void mpmi_free(mpm_context *context, void *memory, size_t bytes); /* memory may 
 /* Makes room for `wanted` elements where there is less; what was there is then lost. On failure nothing has
  * changed. */
 mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size);
-/* The same with room for a quarter more where it has to grow, so that lists whose length varies a little from
- * step to step soon need no more memory. */
+/* Does the same with room for a quarter more where it has to grow, so that lists whose length varies a little
+ * from step to step soon need no more memory. */
 mpm_status mpmi_reserve_more(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size);
-/* Gives count * size, or where that overflows SIZE_MAX, which mpmi_alloc refuses. */
+/* Returns count * size, or where that overflows SIZE_MAX, which mpmi_alloc refuses. */
 size_t mpmi_bytes(int64_t count, size_t size);
-/* The same for an array of a type. */
+/* These make room for an array, as mpmi_reserve_more() does, and free one: they know the size of its type. */
 #define MPMI_RESERVE_MORE(context, array, capacity, wanted)                                                  \
   mpmi_reserve_more(context, (void **)&(array), &(capacity), wanted, sizeof *(array))
 #define MPMI_FREE_ARRAY(context, array, count) mpmi_free(context, array, mpmi_bytes(count, sizeof *(array)))
@@ -80,8 +80,8 @@ double mpmi_seconds(void);
 /* Writes the names among `candidates` that are closest to `wanted` into buffer, as "a, b, c". */
 void mpmi_nearest_names(const char *wanted, const char *const *candidates, int32_t count, char *buffer,
                         size_t capacity);
-/* Refuses a name with MPM_E_NOT_FOUND, and says which of those that there are come closest to it; the sentence
- * begins with `refusal`. */
+/* Refuses a name with MPM_E_NOT_FOUND, and says which of those that there are come closest to it; the
+ * sentence begins with `refusal`. */
 mpm_status mpmi_refuse_name(mpm_context *context, const char *refusal, const char *wanted,
                             const char *const *candidates, int32_t count);
 

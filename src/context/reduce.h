@@ -7,8 +7,8 @@
 
 enum { MPMI_REDUCE_SUM, MPMI_REDUCE_MAX };
 
-/* start, with the parts added to it or the largest of it and the parts: part[stride * i] for i in [0, count), or
- * with a list for i in list[0 ... count - 1]. A part that is not a number is never the largest. */
+/* Returns start, with the parts added to it or the largest of it and the parts: part[stride * i] for i in [0,
+ * count), or with a list for i in list[0 ... count - 1]. A part that is not a number is never the largest. */
 double mpmi_reduce(int32_t operation, double start, const double *part, int64_t stride, const int32_t *list,
                    int64_t count);
 

@@ -36,7 +36,7 @@ mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_
 mpm_status mpmi_init_struct(const char *name, const void *defaults, uint32_t known, void *out,
                             uint32_t struct_size);
 
-/* The same for structs of a table other than mpmi_releases. */
+/* These do the same for structs of a table other than mpmi_releases. */
 mpm_status mpmi_read_release(const mpmi_release *table, mpm_context *context, const char *name,
                              const void *desc, uint32_t known, void *out);
 mpm_status mpmi_init_release(const mpmi_release *table, const char *name, const void *defaults,

@@ -162,6 +162,7 @@ mpm_status mpmi_blocks_insert(mpmi_blocks *b, const int32_t *coord, int32_t *blo
   return MPM_OK;
 }
 
+/* Finds a block, or returns MPMI_NO_BLOCK. */
 static int32_t find_block(const mpmi_blocks *b, const int32_t *coord) {
   return table_get(b, morton(coord, b->grid->dim));
 }

@@ -1,4 +1,5 @@
-/* The background grid is a description only. Nodal storage belongs to the stepper (grid/blocks.h).
+/* The background grid is a description only. Nodes are stored sparsely (grid/blocks.h); their values belong
+ * to steppers.
  *
  * Basis functions ("nodes") have integer indices along each axis. A particle has an anchor, which is the
  * nearest node or the lower node of its cell as the basis says; its stencil is `width` nodes from anchor -
@@ -44,11 +45,11 @@ struct mpm_grid {
   double h_min; /* smallest spacing */
 };
 
-/* Are the functions of an axis those of an open knot vector? Periodic axes have no ends. */
+/* Returns 1 when the functions of an axis are those of an open knot vector. Periodic axes have no ends. */
 static inline int32_t mpmi_is_open(const mpm_grid *grid, int32_t axis) {
   return grid->family >= MPMI_FAMILY_OPEN_BSPLINE2 && !grid->desc.periodic[axis];
 }
-/* Does the weight of a particle depend on the size of its domain? */
+/* Returns 1 when the weight of a particle depends on the size of its domain. */
 static inline int32_t mpmi_has_domains(const mpm_grid *grid) {
   return grid->domains >= MPMI_DOMAINS_OWN;
 }

@@ -18,10 +18,10 @@ typedef struct mpmi_wall {
   double friction;
 } mpmi_wall;
 
-/* The row of MPM_WALL_NONE ..., or NULL for other values. */
+/* Returns the row of MPM_WALL_NONE ..., or NULL for other values. */
 const mpmi_wall_kind *mpmi_wall_kind_of(int32_t kind);
 
-/* Do particles stop at the wall? */
+/* Returns 1 when particles stop at the wall. */
 static inline int32_t mpmi_is_solid(const mpmi_wall *wall) {
   const mpmi_wall_kind *kind = mpmi_wall_kind_of(wall->kind);
   return kind->holds || kind->rubs;

@@ -27,7 +27,7 @@ mpm_status mpmi_external_forces(mpmi_balance *s) {
 }
 
 /* ---- strain of given displacements -------------------------------------------------------------------- */
-/* Displacements as mean velocities of the step, on all nodes that move with a row. */
+/* Spreads displacements over all nodes that move with a row, as mean velocities of the step. */
 typedef struct spread_job {
   mpmi_balance *s;
   const double *u;
@@ -47,7 +47,7 @@ static void spread_task(void *data, int64_t k) {
   }
 }
 
-/* Nodes with the velocities of u; all tasks begin a pass that deforms. */
+/* Gives the nodes the velocities of u, and lets all tasks begin a pass that deforms. */
 static mpm_status begin_strain(mpmi_balance *s, const double *u, const mpmi_pass *pass) {
   spread_job spread = {s, u};
   mpmi_failures_clear(s->step);
@@ -62,12 +62,12 @@ static mpm_status begin_strain(mpmi_balance *s, const double *u, const mpmi_pass
   return status;
 }
 
-/* The stress of a batch; then `add` puts its force or its stiffness on the nodes. */
+/* Computes the stress of a batch; then `add` puts its force or its stiffness on the nodes. */
 static void take(mpmi_batch *b, void (*add)(mpmi_balance *, mpmi_batch *)) {
   mpmi_balance *s = b->user;
   mpmi_gradient_keep(b);
   if (!mpmi_strain_deform(b)) return;
-  if (s->settings->desc.locking_remedy) /* the law will see another one */
+  if (s->settings->desc.locking_remedy) /* kept, because the remedy changes what the law sees */
     memcpy(s->newton->work[b->task].F_inc, b->law.F_inc, (size_t)(9 * b->law.ld) * sizeof(double));
   mpmi_strain_law(b);
   if (!b->law_ran) return;
@@ -113,7 +113,7 @@ static void clear_matrix_task(void *data, int64_t k) {
   mpmi_clear_share(s->settings, A->value, A->row_start[A->rows], (int64_t)A->block * A->block, k);
 }
 
-/* Does the tile of a block reach over the end of a periodic axis? */
+/* Returns 1 when the tile of a block reaches over the end of a periodic axis. */
 static int32_t is_at_seam(const mpmi_balance *s, int64_t block) {
   const mpm_grid *grid = s->settings->grid;
   const mpmi_blocks *blocks = &s->layout->blocks;
@@ -150,7 +150,7 @@ mpm_status mpmi_stiffness(mpmi_balance *s, const double *u) {
   if (!status) status = begin_strain(s, u, &pass);
   if (!status) status = mpmi_visit_colours(s->step, mpmi_has_host_law(s->layout), add_inner, s);
   if (status) return status;
-  /* rows of images are written at their masters', anywhere: these blocks come one by one */
+  /* images add to rows of masters in any block: blocks at a seam come one by one */
   mpmi_visit_in_turn(s->step, add_at_seam, s);
   if ((status = mpmi_step_failure(s->step))) return status;
   newton->matrix.symmetric = 1;

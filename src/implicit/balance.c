@@ -1,3 +1,4 @@
+/* Memory of implicit steps: what stays with the stepper, and what the tasks of one step assemble with. */
 #include "implicit/balance.h"
 #include "context/arena.h"
 #include "layout/tile.h"

@@ -38,7 +38,7 @@ enum {
   MPMI_RHS,      /* right-hand side of the linear system */
   MPMI_DIAGONAL, /* sizes of the diagonal entries of the matrix */
   MPMI_DU,       /* increment of the displacement */
-  MPMI_TERMS,    /* of the sum that is being made */
+  MPMI_TERMS,    /* terms of the sum that is being made */
   MPMI_START,    /* displacement before the increment */
   MPMI_VECTORS
 };
@@ -109,12 +109,14 @@ typedef struct mpmi_balance {
   double factor_seconds, solve_seconds;
 } mpmi_balance;
 
-/* Nodes along an axis that couple: of a stencil, or with the locking remedy of all stencils of a cell. */
+/* Returns how many nodes along an axis couple: those of a stencil, or with the locking remedy those of all
+ * stencils of a cell. */
 static inline int32_t mpmi_coupling_span(const mpmi_settings *settings) {
   return settings->grid->width + (settings->desc.locking_remedy ? settings->grid->centred : 0);
 }
 
-/* Places of the nodes of a cube of `width` in one of `edge`, the last axis fastest; how many there are. */
+/* Finds the places of the nodes of a cube of `width` in one of `edge`, the last axis fastest; returns how
+ * many there are. */
 static inline int32_t mpmi_cube_places(int32_t dim, int32_t width, int32_t edge, int32_t *place) {
   int32_t count = 1;
   place[0] = 0;
@@ -124,9 +126,9 @@ static inline int32_t mpmi_cube_places(int32_t dim, int32_t width, int32_t edge,
   return count;
 }
 
-/* matrix.held: by whom; a component that nobody holds is an unknown. */
+/* These values of matrix.held say who holds a component; one that nobody holds is an unknown. */
 enum { MPMI_ROW_FREE, MPMI_ROW_PRESCRIBED, MPMI_ROW_WALL };
-/* Acceleration that belongs to a displacement, by component of the vectors; on walls there is none. */
+/* Returns the acceleration that belongs to a displacement, by component of the vectors; on walls it is 0. */
 static inline double mpmi_newmark_acceleration(const mpmi_balance *s, int64_t at) {
   const mpmi_newton *newton = s->newton;
   const double beta = s->settings->desc.newmark_beta, dt = s->step->dt;
@@ -137,65 +139,66 @@ static inline double mpmi_newmark_acceleration(const mpmi_balance *s, int64_t at
          (beta * dt * dt);
 }
 
-/* The memory of implicit steps, which stays with the stepper. */
+/* Makes and frees the memory of implicit steps, which stays with the stepper. */
 mpm_status mpmi_newton_create(const mpmi_settings *settings, mpmi_newton **out);
 void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings); /* NULL is fine */
-/* Memory for a step that does not depend on the unknowns; forgets the step before. */
+/* Makes room for what does not depend on the unknowns of a step, and forgets the step before. */
 mpm_status mpmi_balance_prepare(mpmi_balance *s);
 
 /* ---- unknowns.c -------------------------------------------------------------------------------------- */
-/* From the masses of the nodes and the external forces, whose fourth value tells the nodes that have
- * stiffness. */
+/* Finds active nodes, rows and held components, from the masses and from the external forces, whose fourth
+ * value is > 0 where a node has stiffness. */
 mpm_status mpmi_unknowns_find(mpmi_balance *s);
-/* Sums of nodal forces over the nodes that move with each row. */
+/* Sums nodal forces over the nodes that move with each row. */
 void mpmi_unknowns_fold(const mpmi_balance *s, const mpmi_nodal *forces, double *vector);
 
 /* ---- pattern.c --------------------------------------------------------------------------------------- */
-/* Of the active nodes as they are numbered, with so many rows. */
+/* Makes the pattern for the active nodes as numbered, with so many rows. */
 mpm_status mpmi_make_pattern(mpmi_balance *s, int64_t rows);
 
 /* ---- assembly.c -------------------------------------------------------------------------------------- */
-/* External forces, whose fourth value tells the nodes that have stiffness. */
+/* Computes the external forces; their fourth value tells the nodes that have stiffness. */
 mpm_status mpmi_external_forces(mpmi_balance *s);
-/* Stress of the displacements u, and the internal force that it makes. Fails as the law does. */
+/* Computes the stress of the displacements u, and the internal force that it makes. Fails as the law does. */
 mpm_status mpmi_internal_forces(mpmi_balance *s, const double *u);
-/* Stress of the displacements u, and the stiffness at them. */
+/* Computes the stress of the displacements u, and the stiffness at them. Fails as the law does. */
 mpm_status mpmi_stiffness(mpmi_balance *s, const double *u);
 
 /* ---- particle_stiffness.c ---------------------------------------------------------------------------- */
-/* Spreads the external forces of a set; with a nominal stress the internal ones. */
+/* Prepares the kernel that spreads a set's external forces, or with a nominal stress the internal ones. */
 mpmi_force_scatter mpmi_force_scatter_of(const mpmi_settings *settings, const mpmi_member *member,
                                          double *tile);
-/* Active node at each place of the tile of a block, or -1. */
+/* Finds the active node at each place of the tile of a block, or -1. */
 void mpmi_tile_of_unknowns(const mpmi_balance *s, int64_t block, int32_t *to);
 /* Adds the internal forces of a batch to the tile of its task. */
 void mpmi_add_forces(mpmi_balance *s, mpmi_batch *b);
-/* Adds its stiffness to the matrix. */
+/* Adds the stiffness of a batch to the matrix. */
 void mpmi_add_stiffness(mpmi_balance *s, mpmi_batch *b);
 
 /* ---- locking_stiffness.c ----------------------------------------------------------------------------- */
-/* First all cells are cleared; */
+/* Makes room for the sums of all cells, and clears them. */
 mpm_status mpmi_locking_stiffness_begin(mpmi_balance *s);
-/* then of each batch the part of theta goes into the tangent, in place, with h [9][ld] for what couples the
- * particles of a cell; */
+/* Puts the part of theta that each particle of a batch has into the tangent, in place, and makes h [9][ld],
+ * for what couples the particles of a cell. */
 void mpmi_locking_stiffness_local(int32_t dim, const mpmi_law_batch *law, const double *weight,
                                   const double *volume, double *tangent, double *h);
-/* each particle adds weight h F_inc^-T, F_inc^-1 and its new volume to its cell, with the
- * components 3 * row + column; */
+/* Holds what a particle gives to its cell: weight h F_inc^-T, F_inc^-1 with the components 3 * row + column,
+ * and its new volume. */
 typedef struct mpmi_locking_particle {
   double h[9], inverse[9], volume;
 } mpmi_locking_particle;
+/* Adds particle p of a chunk to the sums of the cell whose lower corner is at this place of the tile. */
 void mpmi_locking_stiffness_add(mpmi_balance *s, const mpmi_newton_work *work, const mpmi_weights *W,
                                 int64_t p, int32_t cell_place, const mpmi_locking_particle *of);
-/* and at last the cells go into the matrix. */
+/* Adds to the matrix what couples the particles of each cell. */
 void mpmi_locking_stiffness_end(mpmi_balance *s);
 
 /* ---- newton.c ---------------------------------------------------------------------------------------- */
-/* The displacements of the step in vector[MPMI_U], forces and stress in place. */
+/* Finds the displacements of the step, in vector[MPMI_U]; forces and stress are then those of them. */
 mpm_status mpmi_newton_solve(mpmi_balance *s);
 
 /* ---- reactions.c ------------------------------------------------------------------------------------- */
-/* Impulses of what holds nodes; then the prescribed particles' share. */
+/* Records the impulses of what holds nodes; then gives the prescribed particles their share. */
 mpm_status mpmi_record_reactions(mpmi_balance *s);
 
 #endif

@@ -17,7 +17,8 @@ static int32_t nodes_of(const mpmi_balance *s) {
   return s->settings->grid->dim == 3 ? span * span * span : span * span;
 }
 
-/* Of one cell: sum of new volumes, then by node and axis sum h g and sum V (1 + j) g. */
+/* Returns how many values a cell has: the sum of new volumes, then by node and axis sum h g and sum V (1 + j)
+ * g. */
 static int64_t cell_values(const mpmi_balance *s) {
   return 1 + 2 * (int64_t)nodes_of(s) * s->settings->grid->dim;
 }
@@ -65,7 +66,7 @@ void mpmi_locking_stiffness_add(mpmi_balance *s, const mpmi_newton_work *work, c
                 span = mpmi_coupling_span(s->settings);
   const int32_t corner = work->tile_active[cell_place];
   int32_t base = 0, scale = 1, cell_rest = cell_place, node_rest = W->node[p], in_cell[MPMI_MOST_NODES];
-  if (corner < 0) return; /* a lone particle on it: no other is in its cell */
+  if (corner < 0) return; /* the corner node is not active: the particle lies on it, alone in its cell */
   for (int32_t k = dim - 1; k >= 0; --k) {
     int32_t shift = node_rest % edge - (cell_rest % edge - grid->below);
     if (grid->desc.periodic[k]) { /* cell and stencil may have been placed at different images */
@@ -104,7 +105,7 @@ void mpmi_locking_stiffness_add(mpmi_balance *s, const mpmi_newton_work *work, c
   }
 }
 
-/* Entry of two active nodes: by their distance; on a periodic seam they may have been seen from two sides. */
+/* Finds the entry of two active nodes by their offset, or by search where a seam makes that ambiguous. */
 static double *entry_of(mpmi_newton *newton, int32_t from, int32_t to, int32_t offset) {
   mpmi_matrix *A = &newton->matrix;
   const int64_t values = (int64_t)A->block * A->block;

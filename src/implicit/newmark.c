@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-/* Sums over the nodes of each row of mass and mass times value, as they are projected; then the
- * quotient. */
+/* Computes means by row: sums mass and mass times value of its nodes, and divides. */
 static void fold_means(const mpmi_balance *s, double *mean) {
   mpmi_newton *newton = s->newton;
   const int32_t dim = s->settings->grid->dim;
@@ -23,7 +22,7 @@ static void fold_means(const mpmi_balance *s, double *mean) {
     mean[i] = newton->mass[i / dim] > 0.0 ? mean[i] / newton->mass[i / dim] : 0.0;
 }
 
-/* A projection of velocities or accelerations. */
+/* Makes a projection of velocities or accelerations. */
 static mpm_status project(mpmi_balance *s, int32_t projection, double *clock) {
   const mpmi_projection *of = &mpmi_projections[projection];
   mpm_status status = mpmi_p2g_stage(s->step, of, s->nodes);
@@ -33,7 +32,7 @@ static mpm_status project(mpmi_balance *s, int32_t projection, double *clock) {
   return status;
 }
 
-/* Masses of the nodes, and who holds them. */
+/* Finds the nodes' masses and who holds nodes. */
 static mpm_status find_nodes(mpmi_balance *s, double *clock) {
   const int64_t slots = mpmi_slots(s->layout);
   mpm_status status = project(s, MPMI_PROJECT_STRAIN, clock);
@@ -54,7 +53,8 @@ static mpm_status find_external(mpmi_balance *s, double t, double *clock) {
   return status;
 }
 
-/* M a0 = f_ext - f_int at the start of the step; held components have none. */
+/* Puts the accelerations at the start of the step on the nodes: M a0 = f_ext - f_int, and 0 for held
+ * components. */
 static mpm_status balance_start(mpmi_balance *s) {
   mpmi_newton *newton = s->newton;
   const int32_t dim = s->settings->grid->dim;
@@ -83,7 +83,7 @@ static int32_t lacks_accelerations(const mpmi_balance *s) {
   return lacks && mpmi_is_dynamic(s->settings);
 }
 
-/* Of the sets that do not know their accelerations, from those of the nodes. */
+/* Finds the accelerations of sets that lack them, from those of the nodes. */
 static mpm_status find_accelerations(mpmi_balance *s, double *clock) {
   mpm_status status = balance_start(s);
   mpmi_lap(s->step, MPMI_TIME_ASSEMBLY, clock);
@@ -92,7 +92,7 @@ static mpm_status find_accelerations(mpmi_balance *s, double *clock) {
   return status;
 }
 
-/* Accelerations at the start of the step into the second copy of the particles', and onto the nodes. */
+/* Brings the accelerations at the start of the step into the second copies and onto the nodes. */
 static mpm_status prepare_accelerations(mpmi_balance *s, int32_t unknown, double *clock) {
   for (int32_t m = 0; m < s->layout->member_count; ++m) {
     const mpm_particles *set = s->layout->member[m].set;
@@ -106,7 +106,7 @@ static mpm_status prepare_accelerations(mpmi_balance *s, int32_t unknown, double
   return status;
 }
 
-/* Everything that the balance of the nodes needs to know. */
+/* Projects all that the balance needs. */
 static mpm_status particles_to_grid(mpmi_balance *s, double *clock) {
   const double dt = s->step->dt;
   mpmi_newton *newton = s->newton;
@@ -125,7 +125,7 @@ static mpm_status particles_to_grid(mpmi_balance *s, double *clock) {
   return MPM_OK;
 }
 
-/* What particles take from the nodes: [u / dt, m, a1 dt]. */
+/* Sets what particles take from the nodes: [u / dt, m, a1 dt]. */
 static void set_nodes(mpmi_balance *s) {
   const double dt = s->step->dt;
   const mpmi_newton *newton = s->newton;
@@ -142,7 +142,7 @@ static void set_nodes(mpmi_balance *s) {
   }
 }
 
-/* Nodes show the velocity at the end of the step. */
+/* Lets the nodes show the velocity at the end of the step. */
 static void show_velocities(mpmi_balance *s) {
   const double dt = s->step->dt;
   const mpmi_newton *newton = s->newton;
@@ -167,7 +167,7 @@ double mpmi_next_dt(int32_t iterations, double dt) {
   return iterations <= FEW_ITERATIONS ? 2.0 * dt : dt;
 }
 
-/* The iterations; what is neither factorisation nor solution is assembly. */
+/* Iterates; time that is neither factor nor solve is assembly. */
 static mpm_status solve(mpmi_balance *s, double *clock) {
   const mpm_status status = mpmi_newton_solve(s);
   mpmi_lap(s->step, MPMI_TIME_ASSEMBLY, clock);

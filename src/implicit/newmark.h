@@ -11,8 +11,9 @@
 
 #include "implicit/balance.h"
 
+/* Makes one implicit step up to its commit. */
 mpm_status mpmi_newmark_step(mpmi_balance *s);
-/* The dt to try after a step that went well, in so many iterations. */
+/* Returns the dt to try after a step that went well, in so many iterations. */
 double mpmi_next_dt(int32_t iterations, double dt);
 
 #endif

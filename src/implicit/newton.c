@@ -11,26 +11,26 @@
 #include <math.h>
 #include <string.h>
 
-/* Halvings of an increment before it is given up, and before a larger residual is accepted. */
+/* How often an increment is halved at most, and before a larger residual is accepted. */
 enum { MOST_HALVINGS = 12, RESIDUAL_HALVINGS = 4 };
 
 typedef struct iteration {
   mpmi_balance *s;
   mpmi_newton *newton;
   int64_t n;            /* rows * dim */
-  double norm, scale;   /* of the residual; free components, all kinds of forces */
+  double norm, scale;   /* norm of the residual, of free components; scale from all kinds of forces */
   double stiffness;     /* largest diagonal entry, without inertia */
-  double inertia;       /* of the terms that M a is the difference of */
-  double inertia_share; /* of the diagonal of the matrix */
+  double inertia;       /* norm of the terms of M a before they cancel: its rounding grows with them */
+  double inertia_share; /* share of inertia in the diagonal of the matrix */
   double du_largest, energy_first;
 } iteration;
 
-/* The sum, or the largest, of all entries of MPMI_TERMS. */
+/* Returns the sum, or the largest, of all entries of MPMI_TERMS. */
 static double reduced(const iteration *it, int32_t operation) {
   return mpmi_reduce(operation, 0.0, it->newton->vector[MPMI_TERMS], 1, NULL, it->n);
 }
 
-/* Dot product of the free components alone, or of all. */
+/* Returns the dot product of the free components alone, or of all. */
 static double dot_of(const iteration *it, const double *a, const double *b, int32_t free_only) {
   const uint8_t *held = it->newton->matrix.held;
   double *term = it->newton->vector[MPMI_TERMS];
@@ -42,14 +42,15 @@ static double norm_of(const iteration *it, const double *v, int32_t free_only) {
   return sqrt(dot_of(it, v, v, free_only));
 }
 
-/* Length of an increment, weighted by stiffness: a node at the rim of a body may move far and mean little. */
+/* Returns the length of an increment, weighted by stiffness: a node at the rim of a body may move far and
+ * mean little. */
 static double length_of(const iteration *it, const double *du) {
   double *term = it->newton->vector[MPMI_TERMS];
   for (int64_t i = 0; i < it->n; ++i) term[i] = it->newton->vector[MPMI_DIAGONAL][i] * du[i] * du[i];
   return sqrt(reduced(it, MPMI_REDUCE_SUM));
 }
 
-/* Residual of the internal forces as they are; the norm of the inertia is returned. */
+/* Computes the residual of the internal forces as they are; returns the norm of the inertia. */
 static double find_forces(iteration *it) {
   const mpmi_balance *s = it->s;
   mpmi_newton *newton = it->newton;
@@ -64,7 +65,7 @@ static double find_forces(iteration *it) {
   return sqrt(reduced(it, MPMI_REDUCE_SUM));
 }
 
-/* Norm of the terms that M a is the difference of. */
+/* Returns the norm of the terms of M a before they cancel: its rounding grows with them. */
 static double inertia_terms(const iteration *it) {
   const mpmi_balance *s = it->s;
   const mpmi_newton *newton = it->newton;
@@ -79,7 +80,7 @@ static double inertia_terms(const iteration *it) {
   return sqrt(reduced(it, MPMI_REDUCE_SUM));
 }
 
-/* The scale knows reactions: they are internal forces of held components. */
+/* Computes residual and scale; reactions are in the scale, as internal forces of held components. */
 static void find_residual(iteration *it) {
   double *const *vector = it->newton->vector;
   const double inertia = find_forces(it);
@@ -93,7 +94,8 @@ static double relative(const iteration *it) {
   return it->scale > 0.0 ? it->norm / it->scale : 0.0;
 }
 
-/* Forces of displacements that are rounding of a cell, and rounding of inertia. */
+/* Returns what rounding may leave in the residual: the force of displacements that are rounding of a cell's
+ * edge, and the rounding of the inertia terms. */
 static double noise(const iteration *it) {
   return 16.0 * DBL_EPSILON *
          (it->stiffness * it->s->settings->grid->h_min * sqrt((double)it->n) + it->inertia);
@@ -134,7 +136,8 @@ static mpm_status assemble(iteration *it) {
   return status;
 }
 
-/* The right-hand side, with what is left of the prescribed displacements on it; 1 if there is any. */
+/* Computes the right-hand side, with what is left of the prescribed displacements on it; tells whether there
+ * is any. */
 static mpm_status find_rhs(iteration *it, int32_t *moves_held) {
   mpmi_newton *newton = it->newton;
   const uint8_t *held = newton->matrix.held;
@@ -161,7 +164,7 @@ static mpm_status solve(iteration *it) {
   mpm_status status = mpmi_matrix_eliminate(&newton->matrix);
   if (status) return status;
   memset(x, 0, (size_t)it->n * sizeof *x);
-  /* no digits are wanted that the next iteration throws away, and enough to keep it quadratic */
+  /* as many digits as keep the iteration quadratic, and none that the next one throws away */
   const double wanted = fmax(1e-10, fmin(1e-3, 0.1 * relative(it)));
   const mpmi_solve_job job = {
       .matrix = &newton->matrix,
@@ -190,7 +193,7 @@ static mpm_status solve(iteration *it) {
   return MPM_OK;
 }
 
-/* Statuses of a trial that a shorter increment may mend. */
+/* Returns 1 for statuses of a trial that a shorter increment may mend. */
 static int32_t may_shrink(const mpmi_balance *s, mpm_status status) {
   return !s->step->failure.callback_status && (status == MPM_INVERTED || status == MPM_NONFINITE);
 }
@@ -220,7 +223,7 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
   }
 }
 
-/* Eq. 13, and a bound on the residual; the residual alone where it is rounding. */
+/* Tells whether the bounds of eq. 13 and of the residual hold, or the residual is rounding. */
 static int32_t converged(iteration *it, double du, double energy) {
   const mpm_stepper_desc *d = &it->s->settings->desc;
   it->du_largest = fmax(it->du_largest, du);

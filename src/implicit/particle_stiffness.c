@@ -78,7 +78,7 @@ static void add_stencil(mpmi_balance *s, mpmi_newton_work *work, int32_t first) 
   memset(work->K, 0, (size_t)(row * row) * sizeof *work->K);
 }
 
-/* The share of one particle in what couples those of its cell. */
+/* Adds one particle's share of what couples its cell. */
 static void add_to_cell(mpmi_balance *s, const mpmi_newton_work *work, const mpm_particles *set,
                         const mpmi_weights *W, int64_t p, int32_t cell, int64_t slot, int64_t q, int64_t ld) {
   const int32_t dim = s->settings->grid->dim;
@@ -93,7 +93,8 @@ static void add_to_cell(mpmi_balance *s, const mpmi_newton_work *work, const mpm
   mpmi_locking_stiffness_add(s, work, W, p, cell, &of);
 }
 
-/* Particles with the same stencil follow each other for the most part: their stiffness is added up first. */
+/* Adds the stiffness of a batch to the matrix. Particles with the same stencil follow each other for the most
+ * part: their stiffness is added up first. */
 static void add_stencils(mpmi_balance *s, mpmi_newton_work *work, const mpm_particles *set,
                          const mpmi_axis *axis, int64_t begin, int64_t n, int64_t ld) {
   const mpm_grid *grid = s->settings->grid;
@@ -117,7 +118,7 @@ static void add_stencils(mpmi_balance *s, mpmi_newton_work *work, const mpm_part
   if (first >= 0) add_stencil(s, work, first);
 }
 
-/* V0 of the tangent: the law saw a dilation of `ratio` more than the volume has. */
+/* Finds V0 of the tangent, less the dilation that the law saw beside that of the volume (`ratio`). */
 static void find_weights(const mpmi_balance *s, const mpm_particles *set, int64_t begin, int64_t n,
                          double *weight) {
   const double *volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin;
@@ -155,8 +156,7 @@ static int32_t find_tangent(mpmi_balance *s, mpmi_newton_work *work, mpmi_batch 
   return 0;
 }
 
-/* From stress and tangent, or with NULL the stress alone, to what the gradients of the nodes are multiplied
- * by. */
+/* Turns stress and tangent (or with NULL stress alone) into what the nodes' gradients are multiplied by. */
 static void push_forward(mpmi_balance *s, mpmi_newton_work *work, const mpmi_batch *b,
                          const double *tangent) {
   const mpmi_push push = {.ld = b->law.ld,

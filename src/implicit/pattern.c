@@ -1,12 +1,12 @@
 /* The pattern of the matrix: which rows couple. Nodes couple when a stencil holds both, or with the locking
- * remedy a cell; what its images and ghosts couple with is a row's too. */
+ * remedy a cell; what a row's images and ghosts couple with, the row couples with too. */
 #include "implicit/balance.h"
 #include "layout/tasks.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Slot of the node at an offset from the one in a slot, or -1. */
+/* Returns the slot of the node at an offset from the one in a slot, or -1. */
 static int64_t neighbour_slot(const mpmi_blocks *b, int64_t slot, const int32_t *offset) {
   int32_t place = (int32_t)(slot % b->nodes), at[3];
   for (int32_t k = b->grid->dim - 1; k >= 0; --k) {
@@ -24,7 +24,7 @@ static void offset_of(const mpmi_balance *s, int32_t index, int32_t *offset) {
   }
 }
 
-/* Active nodes by row, each row's in the order of their slots. */
+/* Lists active nodes by row, each row's in the order of their slots. */
 static void group(mpmi_newton *newton, int64_t rows) {
   memset(newton->members_start, 0, (size_t)(rows + 1) * sizeof *newton->members_start);
   for (int64_t i = 0; i < newton->active_count; ++i) ++newton->members_start[newton->active[i].row + 1];
@@ -40,7 +40,7 @@ typedef struct pattern_job {
   int64_t rows;
 } pattern_job;
 
-/* Rows of the nodes around each active node, for now in the place of the entries. */
+/* Finds the rows of the nodes around each active node, for now in the place of the entries. */
 static void neighbours_task(void *data, int64_t k) {
   const pattern_job *job = data;
   mpmi_balance *s = job->s;
@@ -64,7 +64,8 @@ static int by_value(const void *a, const void *b) {
 
 enum { MOST_OFFSETS = 343 };
 
-/* Distinct columns of a row, ascending; a tie of many images gives them member by member. */
+/* Lists the distinct columns of a row, ascending, and returns how many; a tie of many images gives them
+ * member by member. */
 static int32_t columns_of(const mpmi_newton *newton, int64_t row, int32_t *out) {
   int32_t count = 0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Force of constraints on one node, its own inertia among what they balance. */
+/* Returns the force of constraints on a node; the node's own inertia is among what they balance. */
 static double reaction_on(const mpmi_balance *s, const mpmi_active_node *node, int32_t c) {
   const mpmi_newton *newton = s->newton;
   const int64_t at = (int64_t)node->row * s->settings->grid->dim + c;
@@ -17,7 +17,7 @@ static double reaction_on(const mpmi_balance *s, const mpmi_active_node *node, i
   return force;
 }
 
-/* One component of one row: the nodes that move with it. */
+/* Records one component of one row, on the nodes that move with it. */
 static void record_row(mpmi_balance *s, int64_t row, int32_t c) {
   const mpmi_newton *newton = s->newton;
   const mpmi_constraints *constraints = &s->layout->constraints;

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Nodes with stiffness, or in a dynamic step with inertia. Light ones stay in: leaving them out would hold
- * them. What is left out is rounding of weights that are zero. */
+/* A node is active when it has stiffness, or in a dynamic step inertia; light ones too, because leaving them
+ * out would hold them. Amounts below these cuts are rounding of weights that are zero. */
 typedef struct cuts {
   double stiffness, mass;
 } cuts;
@@ -32,8 +32,9 @@ static int64_t master_of(const mpmi_balance *s, int64_t slot) {
   return tie < 0 ? slot : s->layout->constraints.tie[tie].master;
 }
 
-/* Without inertia only stiffness and what is held can carry a force: that of rigid particles beyond both has
- * no balance. What is left of the weights of nodes that are not active is none. */
+/* Without inertia only stiffness or a held component can carry a force; a force on a node with neither has no
+ * balance. Forces up to FORCE_ROUNDING of the largest are what rounding leaves of vanishing weights, and
+ * count as none. */
 static const double FORCE_ROUNDING = 1e-10;
 static mpm_status check_carried(mpmi_balance *s) {
   const mpmi_newton *newton = s->newton;
@@ -62,7 +63,7 @@ static mpm_status check_carried(mpmi_balance *s) {
   return MPM_OK;
 }
 
-/* Marks active nodes and the masters that they move with; counts. */
+/* Marks active nodes and the masters that they move with, and counts both. */
 static void mark(mpmi_balance *s, int64_t *active, int64_t *rows) {
   mpmi_newton *newton = s->newton;
   const int64_t slots = mpmi_slots(s->layout);
@@ -89,7 +90,7 @@ static int32_t same_as_before(const mpmi_balance *s, int64_t active) {
   return 1;
 }
 
-/* Active nodes in the order of their slots; rows in that of their masters. */
+/* Numbers active nodes in the order of their slots, and rows in that of their masters. */
 static void number(mpmi_balance *s) {
   mpmi_newton *newton = s->newton;
   const mpmi_constraints *c = &s->layout->constraints;
@@ -117,7 +118,7 @@ static void number(mpmi_balance *s) {
   }
 }
 
-/* Room for one more of each, so that no array is empty. */
+/* Makes room for one more of each than needed, so that no array is empty. */
 static mpm_status reserve(mpmi_balance *s, int64_t active, int64_t rows) {
   mpmi_newton *newton = s->newton;
   mpm_context *c = s->settings->context;
@@ -137,7 +138,8 @@ static mpm_status reserve(mpmi_balance *s, int64_t active, int64_t rows) {
   return MPM_OK;
 }
 
-/* Numbers and positions of the nodes behind the rows: messages, solvers and the host ask for them. */
+/* Fills in numbers and positions of the nodes behind the rows: messages, solvers and the host ask for
+ * them. */
 static void place_rows(mpmi_balance *s) {
   mpmi_newton *newton = s->newton;
   mpmi_matrix *A = &newton->matrix;
@@ -156,7 +158,7 @@ static void place_rows(mpmi_balance *s) {
   }
 }
 
-/* Components that walls, the host or prescribed particles hold, and how far they move. */
+/* Finds the components that walls, the host or prescribed particles hold, and how far they move. */
 static void hold(mpmi_balance *s) {
   mpmi_newton *newton = s->newton;
   mpmi_matrix *A = &newton->matrix;

@@ -95,7 +95,7 @@ void mpmi_archive_bytes(mpmi_archive *a, void *data, int64_t bytes) {
   put(a, last, WORD);
 }
 
-/* Does the archive compare? Writing and measuring leave the value as it is. */
+/* Returns 1 while the archive compares. Writing and measuring leave the value as it is. */
 static int32_t reads(const mpmi_archive *a) {
   return a->mode == MPMI_FROM_MEMORY && !a->status;
 }

@@ -63,7 +63,7 @@ typedef struct mpmi_state_set {
  * when writing. */
 void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set);
 
-/* Will the next step keep the present order of the slots? (state_blocks.c) */
+/* Returns 1 when the next step will keep the present order of the slots (state_blocks.c). */
 int32_t mpmi_state_is_sorted(const mpm_stepper *s);
 int64_t mpmi_state_count_blocks(const mpm_stepper *s); /* counts blocks with slots */
 void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s);

@@ -1,3 +1,4 @@
+/* Saving brings the sets up to date, then writes everything after the header, and last the header. */
 #include "io/state.h"
 
 #include <string.h>

@@ -31,7 +31,7 @@ void mpmi_vtk_add(mpmi_vtk_file *file, const char *name, int32_t field, int32_t 
 /* Does the same for a field that the host names: MPM_E_ARG when it is there already. */
 mpm_status mpmi_vtk_add_named(mpmi_vtk_file *file, const char *name, int32_t field, int32_t type,
                               int32_t components, int64_t tuples);
-/* Is there an offset for every byte of the arrays? */
+/* Returns 1 when there is an offset for every byte of the arrays. */
 int32_t mpmi_vtk_fits(const mpmi_vtk_file *file);
 
 /* The calls come in this order. Between the first two the writer prints tags of its own to out.stream. */

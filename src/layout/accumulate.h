@@ -13,15 +13,16 @@ typedef struct mpmi_accumulation {
   const mpmi_nodal *to;
   /* Adds what the particles of a block give to a clean tile, with as many values per node as `to` has. */
   void (*give)(void *user, const mpmi_visit *visit, double *tile);
-  mpm_task_fn fold; /* by all tasks once the sums are there, or NULL */
+  mpm_task_fn fold; /* run by all tasks once the sums are there, or NULL */
   void *user;       /* of give and fold */
   int32_t calls_host;
-  int32_t gathers; /* give fills the other tile of its task meanwhile */
+  int32_t gathers; /* 1: give gathers into `tile` meanwhile, so the sums are made in `sum_tile` */
   /* Flags of blocks, or NULL: those with `giving` give, those with `receiving` have nodes to be cleared. */
   const uint8_t *flags;
   uint8_t giving, receiving;
 } mpmi_accumulation;
 
+/* Makes the sums that `sum` describes. */
 mpm_status mpmi_accumulate(mpmi_step *step, const mpmi_accumulation *sum);
 
 #endif

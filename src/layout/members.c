@@ -13,7 +13,7 @@ static mpm_status make_fields(mpm_particles *set, const mpm_stepper_desc *d) {
   return status;
 }
 
-/* Drops those that d does not ask for, all of them when it is NULL. */
+/* Drops the fields that d does not ask for, all of them when it is NULL. */
 static void drop_fields(mpm_particles *set, const mpm_stepper_desc *d) {
   if (!d || !d->reference_positions) mpmi_field_make_absent(set, MPMI_REFERENCE);
   if ((d && d->locking_remedy) || !set->field[MPMI_DILATION_RATIO].present) return;
@@ -26,7 +26,7 @@ mpm_status mpmi_members_keep_fields(mpmi_layout *layout, const mpmi_settings *se
   mpm_status status = MPM_OK;
   for (int32_t m = 0; m < layout->member_count && !status; ++m)
     status = make_fields(layout->member[m].set, desc);
-  /* those not wanted, or not to be had for all sets */
+  /* drops what is not wanted, or what could not be made for all sets */
   for (int32_t m = 0; m < layout->member_count; ++m)
     drop_fields(layout->member[m].set, status ? &settings->desc : desc);
   return status;
@@ -115,7 +115,7 @@ mpm_status mpmi_members_refresh(mpmi_layout *layout, const mpmi_settings *settin
   return MPM_OK;
 }
 
-/* Rows [components][ld of the set] where they are wanted, else none. */
+/* Makes room for rows [components][ld of the set] where they are wanted, else frees them. */
 static mpm_status reserve_rows(mpm_context *c, const mpm_particles *set, int32_t wanted, int32_t components,
                                double **rows, int64_t *ld) {
   if (wanted ? *rows && *ld == set->ld : !*rows) return MPM_OK;

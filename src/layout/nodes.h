@@ -15,7 +15,7 @@ typedef struct mpmi_nodal {
   int64_t capacity; /* in doubles */
 } mpmi_nodal;
 
-/* Memory for so many values of each node; they are not cleared. */
+/* Makes room for so many values of each node; they are not cleared. */
 mpm_status mpmi_nodal_reserve(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values);
 void mpmi_nodal_free(mpm_context *c, mpmi_nodal *nodes);
 
@@ -31,7 +31,7 @@ static inline double *mpmi_velocity(const mpmi_nodal *nodes, int64_t slot) {
 static inline double *mpmi_mass(const mpmi_nodal *nodes, int64_t slot) {
   return mpmi_nodal_at(nodes, slot) + 3;
 }
-/* Are there 8 values, with the increment of the velocity? */
+/* Returns 1 when there are 8 values, with the increment of the velocity. */
 static inline int32_t mpmi_has_increments(const mpmi_nodal *nodes) {
   return nodes->values == 8;
 }
@@ -45,14 +45,15 @@ typedef struct mpmi_impulse {
   double given[3], change[3];
 } mpmi_impulse;
 
-/* Sums over the prescribed particles around a node: momentum and mass by axis; then the impulse on them by
- * mass. They go through tiles of 8 values. */
+/* Sums over the prescribed particles around a node: momentum and mass by axis; then, in place of the
+ * momentum, the impulse on them by mass. They go through tiles of 8 values. */
 typedef struct mpmi_prescribed_sums {
   double momentum[3], mass[3], unused[2];
 } mpmi_prescribed_sums;
 _Static_assert(sizeof(mpmi_prescribed_sums) == 8 * sizeof(double), "goes through tiles");
 
-/* Prescribed particles of one set in one block: impulse on the material, work of moving them. */
+/* Holds, for the prescribed particles of one set in one block, their impulse on the material and the work of
+ * moving them. */
 typedef struct mpmi_prescribed_part {
   double impulse[3], work;
 } mpmi_prescribed_part;
@@ -66,13 +67,17 @@ typedef struct mpmi_prescription {
   int64_t sums_capacity, block_capacity, part_capacity;
 } mpmi_prescription;
 
-/* State of a tie from folding to unfolding: mass of all its nodes, the same with the followers' signs by
- * component, what the master gave to particles before folding, impulse that is recorded already. */
+/* State of a tie from folding to unfolding. */
 typedef struct mpmi_tie_state {
-  double mass, net[3], before[3], increment[3], recorded[3];
+  double mass;         /* of all its nodes */
+  double net[3];       /* the same with the followers' signs, by component */
+  double before[3];    /* what the master gave to particles before folding, by mass */
+  double increment[3]; /* of the master's velocity before folding */
+  double recorded[3];  /* impulse that is recorded already */
 } mpmi_tie_state;
 
-/* State of a contact with a friction wall, as it was found with forces; projections without them keep to it. */
+/* State of a contact with a friction wall, as it was found with forces; projections without them keep to
+ * it. */
 typedef struct mpmi_contact_state {
   int32_t closed, stuck;
 } mpmi_contact_state;
@@ -81,14 +86,14 @@ typedef struct mpmi_nodes {
   mpmi_nodal solved;    /* the projection with forces, 4 or 8 values: what particles take from */
   mpmi_nodal projected; /* the other projections, 4 values */
   mpmi_nodal sums;      /* 4 values: the corrections of XPIC, or the cell sums of the locking remedy */
-  int32_t has_impulses; /* something can give nodes an impulse that has to be remembered; only then */
+  int32_t has_impulses; /* 1: impulses on nodes must be remembered; else `impulse` is not there */
   mpmi_impulse *impulse;
   int64_t impulse_capacity;
-  int32_t has_holders; /* something may prescribe velocities of nodes; only then */
-  uint8_t (*held)[3];  /* who prescribes a component (boundary/boundary.h), 0: nobody */
+  int32_t has_holders; /* 1: velocities may be prescribed; else `held` and `held_value` are not there */
+  uint8_t (*held)[3];  /* who prescribes a component (boundary/bound.h), 0: nobody */
   double (*held_value)[3];
   int64_t held_capacity;
-  double (*hook_impulse)[3]; /* where there are hooks */
+  double (*hook_impulse)[3]; /* there only where there are hooks */
   int64_t hook_capacity;
   mpmi_tie_state *tie_state; /* [ties] */
   int64_t tie_capacity;
@@ -103,10 +108,10 @@ static inline int32_t mpmi_held_by(const mpmi_nodes *nodes, int64_t slot, int32_
   return nodes->has_holders ? nodes->held[slot][c] : 0;
 }
 
-/* Memory for a step in whole (staged: in parts), once the prescribed particles are known. */
+/* Makes room for a step in whole, or with `staged` in parts, once the prescribed particles are known. */
 mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, const mpmi_layout *layout,
                               int32_t staged);
-/* Nodes with mass. */
+/* Returns the number of nodes that are heavier than the cut. */
 int64_t mpmi_count_active(const mpmi_layout *layout, const mpmi_nodal *nodes);
 void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *context);
 

@@ -34,11 +34,12 @@ enum {
 };
 extern const mpmi_projection mpmi_projections[MPMI_PROJECTIONS];
 
-/* The nodes that a projection goes into. */
+/* Returns the nodes that a projection goes into. */
 static inline mpmi_nodal *mpmi_projected_nodes(mpmi_nodes *nodes, const mpmi_projection *projection) {
   return projection->forces ? &nodes->solved : &nodes->projected;
 }
-/* The first projection of a step asks the host for prescribed velocities; later ones keep to the answer. */
+/* Returns 1 for the first projection of a step, which asks the host for prescribed velocities; later ones
+ * keep to the answer. */
 static inline int32_t mpmi_asks_host(const mpmi_settings *settings, const mpmi_projection *projection) {
   return projection ==
          &mpmi_projections[mpmi_deforms_first(settings) ? MPMI_PROJECT_STRAIN : MPMI_PROJECT_FORCES];

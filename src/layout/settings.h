@@ -32,23 +32,23 @@ typedef struct mpmi_settings {
 static inline int32_t mpmi_is_implicit(const mpmi_settings *set) {
   return set->desc.scheme == MPM_NEWMARK;
 }
-/* Do implicit steps have inertia? */
+/* Returns 1 when implicit steps have inertia. */
 static inline int32_t mpmi_is_dynamic(const mpmi_settings *set) {
   return !set->desc.quasi_static;
 }
-/* Is the new stress there before the particles move? */
+/* Returns 1 when the new stress is there before the particles move. */
 static inline int32_t mpmi_deforms_first(const mpmi_settings *set) {
   return set->desc.scheme == MPM_USF || mpmi_is_implicit(set);
 }
 static inline int32_t mpmi_is_affine(const mpmi_settings *set) {
   return set->transfer->carries != MPMI_CARRIES_NOTHING;
 }
-/* Does the transfer project corrections? XPIC of order 1 is PIC. */
+/* Returns 1 when the transfer projects corrections. XPIC of order 1 is PIC. */
 static inline int32_t mpmi_is_corrected(const mpmi_settings *set) {
   return set->transfer->takes == MPMI_TAKES_CORRECTED && set->desc.xpic_order > 1;
 }
-/* Share of FLIP in the blend of a step whose forces act over dt, 0 for the other transfers: MPoint theory,
- * eqs 58 and 59. */
+/* Returns the share of FLIP in the blend of a step whose forces act over dt, 0 for the other transfers:
+ * MPoint theory, eqs 58 and 59. */
 static inline double mpmi_flip_share(const mpmi_settings *set, double dt) {
   if (set->transfer->takes != MPMI_TAKES_BLEND) return 0.0;
   const double kept = 1.0 - set->desc.pic_damping * dt;

@@ -60,7 +60,8 @@ static int32_t colour_of(int32_t dim, const int32_t *coord) {
   return colour;
 }
 
-/* Contiguous ranges of about equal numbers of slots. Results do not depend on where they end. */
+/* Cuts a list into contiguous ranges of about equal numbers of slots; results do not depend on where they
+ * end. */
 static void set_bounds(const mpmi_layout *layout, int32_t tasks, mpmi_worklist *list) {
   int64_t total = 0, so_far = 0;
   for (int64_t i = 0; i < list->count; ++i) total += slots_in_block(layout, list->block[i]);
@@ -73,7 +74,7 @@ static void set_bounds(const mpmi_layout *layout, int32_t tasks, mpmi_worklist *
   while (task < tasks) list->bound[++task] = list->count;
 }
 
-/* Of the blocks and arrangements that are called next. */
+/* Makes the worklists of next_blocks and the next arrangements. */
 static void make_worklists(mpmi_layout *layout, const mpmi_settings *settings) {
   const mpmi_blocks *blocks = &layout->next_blocks;
   int32_t *memory = layout->list_memory;
@@ -93,7 +94,7 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
   const int64_t blocks = layout->next_blocks.count;
   mpm_status status;
   if ((status = mpmi_constraints_build(&layout->next_constraints, &layout->next_blocks, settings->wall)) ||
-      /* last, because the present worklists point into this memory; some of it without blocks, too */
+      /* this comes last, because the present worklists point there; + 1 so that it exists without blocks */
       (status =
            MPMI_RESERVE_MORE(settings->context, layout->list_memory, layout->list_capacity, 2 * blocks + 1)))
     return status;
@@ -112,9 +113,9 @@ static void find_largest_masses(mpmi_layout *layout) {
   }
 }
 
-/* Below this a node is too light to divide by its mass. Of the linear basis force stays where mass vanishes;
- * of the smooth ones it vanishes too, and a node in the corner of a cubic stencil weighs (d^3 / 6)^3.
- * Implicit steps do not divide: stiffness moves the lightest node. */
+/* Finds the mass cut: a node that is lighter is not divided by its mass. With the linear basis a force
+ * remains where mass vanishes; with smooth ones it vanishes too, and a node in the corner of a cubic stencil
+ * weighs (d^3 / 6)^3. Implicit steps do not divide: stiffness moves the lightest node. */
 static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
   const int32_t divides = settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings);
   const double share = divides ? 1e-12 : 1e-40;
@@ -139,7 +140,7 @@ mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {
   return points;
 }
 
-/* GIMP takes domains wider than a cell as one cell: the host should know how many there are. */
+/* Counts the domains that are wider than a cell, which GIMP takes as one cell, and tells the host. */
 static void count_wide_domains(mpmi_layout *layout, const mpmi_settings *settings) {
   const mpm_grid *grid = settings->grid;
   if (!mpmi_has_domains(grid)) return;

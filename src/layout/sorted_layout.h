@@ -10,7 +10,7 @@
 /* A set of particles in a stepper: where its particles lie, and what acts on them. */
 typedef struct mpmi_member {
   mpm_particles *set;
-  mpmi_arrangement now, next; /* slots by block: of the last sort; of the one being made */
+  mpmi_arrangement now, next; /* slots by block, of the last sort and of the one being made */
   mpmi_sorting sorting;
   double *force; /* [dim][ld] external force beside gravity, or NULL */
   int64_t force_ld;
@@ -24,7 +24,8 @@ typedef struct mpmi_member {
   double reaction[3]; /* impulse of its prescribed particles on the material in the last step */
 } mpmi_member;
 
-/* Blocks with particles, shared out among tasks: task k works on block[bound[k]] ... block[bound[k + 1] - 1]. */
+/* Blocks with particles, shared out among tasks: task k works on block[i] with bound[k] <= i < bound[k +
+ * 1]. */
 typedef struct mpmi_worklist {
   int32_t *block;
   int64_t count;
@@ -41,12 +42,12 @@ typedef struct mpmi_layout {
   mpmi_blocks blocks, next_blocks;
   mpmi_constraints constraints, next_constraints;
   mpmi_worklist worklist[MPMI_WORKLISTS]; /* all blocks with particles, then by colour */
-  int32_t *list_memory;                   /* of all worklists */
+  int32_t *list_memory;                   /* memory of all worklists */
   int64_t list_capacity;
   int64_t *bound_memory;
   int64_t version; /* counts changes of blocks and constraints */
   int64_t sorts;
-  int64_t wide_domains; /* of GIMP, at the last sort */
+  int64_t wide_domains; /* domains wider than a cell at the last sort (GIMP) */
   double mass_cut;      /* a node that is not heavier is at rest */
   int32_t walls_changed;
 } mpmi_layout;
@@ -63,11 +64,12 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings);
 mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings);
 /* Sorts where particles have left their tiles or are new. */
 mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings);
-/* Makes the layout of the blocks and arrangements that are called next; the last part of a sort, and of
- * loading a sorted state. */
+/* Turns next_blocks and the next arrangements into the layout: the last part of a sort and of loading a
+ * sorted state. */
 mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings);
 
-/* For kernels: where the particles of a set are, and how large; copy: of position and deformation gradient. */
+/* Tells kernels where the particles of a set are and how large; `copy` is that of position and deformation
+ * gradient. */
 mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy);
 
 #endif

@@ -7,7 +7,8 @@ void mpmi_failure_clear(mpmi_failure *failure) {
   *failure = (mpmi_failure){MPM_OK, 0, -1, -1, -1, ""};
 }
 
-/* Smallest (set, particle); failures without a particle (nodes, callbacks) come first in their set. */
+/* Keeps the failure with the smallest (set, particle); failures without a particle (nodes, callbacks) come
+ * first in their set. */
 void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other) {
   if (!other->cause) return;
   int32_t before = !first->cause;
@@ -72,7 +73,7 @@ void mpmi_workspace_free(mpmi_workspace *work, const mpmi_settings *settings) {
 /* Rows of v, dv and C of a batch. */
 enum { GATHERED_ROWS = 3 + 3 + 9 };
 
-/* The longest batch and the most memory that the laws of the sets take. */
+/* Places one task's scratch, with room for the longest batch and the largest law. */
 static void lay_out(mpmi_arena *from, const mpmi_settings *settings, const mpmi_layout *layout,
                     mpmi_scratch *to) {
   const int64_t tile = 8 * (int64_t)mpmi_tile_nodes(settings->grid);

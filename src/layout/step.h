@@ -25,11 +25,11 @@ typedef struct mpmi_task_report {
 
 /* Memory that one task works in. */
 typedef struct mpmi_scratch {
-  double *tile;        /* of one block: of the nodes that particles take from, or of sums */
-  double *sum_tile;    /* of sums that are made while particles take; of implicit steps */
+  double *tile;        /* one block's nodes to gather from, or sums to be added */
+  double *sum_tile;    /* sums made while `tile` is gathered from; implicit steps only */
   double *gathered;    /* v, dv, C of one batch */
   double *cells;       /* tile of cell sums, for the locking remedy */
-  void *batch_memory;  /* of the law */
+  void *batch_memory;  /* memory of the law */
   int64_t blocks_seen; /* for sampling the weights */
 } mpmi_scratch;
 
@@ -74,7 +74,7 @@ typedef struct mpmi_step {
   mpmi_workspace *work;
   mpmi_profile *profile; /* of all steps */
   double t, dt;
-  double velocity_dt; /* over which forces change velocities: dt, or staggered the mean of two steps */
+  double velocity_dt; /* time over which forces change velocities: dt, or staggered the mean of two steps */
   mpmi_failure failure;
   double impulse_by_face[6][3]; /* on the walls */
   double host_work;             /* of prescribed velocities, prescribed particles and hooks */
@@ -82,17 +82,18 @@ typedef struct mpmi_step {
 } mpmi_step;
 
 void mpmi_failure_clear(mpmi_failure *failure);
-/* Takes the other one where it comes before what is there. */
+/* Replaces `first` by `other` if that comes before it. */
 void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other);
-/* What a callback's status makes of the step: > 0 cuts dt, < 0 stops it. */
+/* Turns a callback's status into a cause: > 0 cuts dt, < 0 stops. */
 mpm_status mpmi_callback_cause(mpm_status status);
 void mpmi_failures_clear(mpmi_step *step);
-/* Status of the step from the first failure among the tasks, with its sentence; MPM_OK when none. */
+/* Returns the status of the step from the first failure among the tasks, and writes its sentence; MPM_OK when
+ * none failed. */
 mpm_status mpmi_step_failure(mpmi_step *step);
 
 mpm_status mpmi_workspace_create(mpmi_workspace *work, const mpmi_settings *settings);
 void mpmi_workspace_free(mpmi_workspace *work, const mpmi_settings *settings);
-/* Memory for a step with the present layout. */
+/* Makes room for a step with the present layout. */
 mpm_status mpmi_workspace_prepare(mpmi_workspace *work, const mpmi_settings *settings,
                                   const mpmi_layout *layout);
 /* Forgets what tasks have told. */
@@ -100,7 +101,8 @@ void mpmi_reports_clear(mpmi_workspace *work, int32_t tasks);
 
 /* Adds the seconds since *from to a stage and restarts the clock. */
 void mpmi_lap(mpmi_step *step, int32_t stage, double *from);
-/* The law runs inside the tasks of a stage: its share of their time is moved from there. */
+/* Moves the time of laws, which run inside a stage's tasks, from that stage to the law's entry, and adds that
+ * of the weights. */
 void mpmi_move_samples(mpmi_step *step, int32_t stage);
 /* Now and then makes the weights of the slots [begin, end) once more, to know how long that takes. */
 void mpmi_sample_weights(mpmi_step *step, int32_t task, const mpmi_axis *axis, int32_t need,

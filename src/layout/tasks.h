@@ -16,7 +16,7 @@ typedef struct mpmi_share {
 static inline mpmi_share mpmi_share_of(const mpmi_settings *settings, int64_t items, int64_t k) {
   return (mpmi_share){items * k / settings->tasks, items * (k + 1) / settings->tasks};
 }
-/* Task k's share of an array of doubles, `each` per item, becomes 0. */
+/* Sets task k's share of an array of doubles, `each` per item, to 0. */
 void mpmi_clear_share(const mpmi_settings *settings, double *at, int64_t items, int64_t each, int64_t k);
 
 #endif

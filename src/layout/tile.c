@@ -1,3 +1,4 @@
+/* Tiles and the blocks around them: loads, adds and fetches box by box, by the kernels of transfer/box.c. */
 #include "layout/tile.h"
 
 /* Along an axis a tile spans parts of the lower neighbour, the block and the upper neighbour. */
@@ -18,7 +19,7 @@ int32_t mpmi_tile_nodes(const mpm_grid *grid) {
   return count;
 }
 
-/* The box of nodes that the tile shares with neighbour n of a block. */
+/* Returns the box of nodes that the tile shares with neighbour n of a block. */
 static mpmi_box box_of(const mpmi_blocks *b, const span *spans, int64_t block, int32_t n,
                        const mpmi_nodal *nodes, double *tile, int32_t tile_values) {
   const int32_t dim = b->grid->dim, edge = b->edge, tile_edge = MPMI_TILE_EDGE(dim, b->grid->width);
@@ -65,7 +66,7 @@ void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t bl
   }
 }
 
-/* Beyond all knots. */
+/* Stands for a knot that is out of reach. */
 #define FAR 1e300
 
 void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis) {

@@ -1,10 +1,11 @@
-/* What kernels are told of a block: its tile, which is a private copy of its nodes and their halo, and the axes
- * of the basis as seen from it. */
+/* What kernels are told of a block: its tile, which is a private copy of its nodes and their halo, and the
+ * axes of the basis as seen from it. */
 #ifndef MPMI_TILE_H
 #define MPMI_TILE_H
 
 #include "layout/nodes.h"
 
+/* Returns the number of nodes of a tile. */
 int32_t mpmi_tile_nodes(const mpm_grid *grid);
 /* Fills a tile with tile_values per node: all of the nodes' values, or the first half of 8. */
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
@@ -16,7 +17,7 @@ void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t 
 void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                    double *tile);
 
-/* Axes of the basis as seen from the block at `coord`. */
+/* Describes the axes of the basis as seen from the block at `coord`. */
 void mpmi_block_axes(const mpm_grid *grid, const int32_t *coord, mpmi_axis *axis);
 
 #endif

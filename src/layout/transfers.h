@@ -24,7 +24,7 @@ typedef struct mpmi_transfer {
   int32_t fused;   /* a whole step adds the force to the momentum, which needs the MLS form of the basis */
 } mpmi_transfer;
 
-/* The row of MPM_FLIP ... MPM_APIC_MLS, or NULL for other values. */
+/* Returns the row of MPM_FLIP ... MPM_APIC_MLS, or NULL for other values. */
 const mpmi_transfer *mpmi_transfer_of(int32_t transfer);
 
 #endif

@@ -10,16 +10,16 @@ typedef struct mpmi_visit {
 } mpmi_visit;
 typedef void (*mpmi_visit_fn)(void *user, const mpmi_visit *visit);
 
-/* A range of blocks, all of one task; for visits to every block that write to no node and keep something from
- * one block to the next. */
 typedef void (*mpmi_range_fn)(void *user, int32_t task, const int32_t *block, int64_t count);
+/* Visits ranges of blocks, each of one task; for visits to every block that write to no node and keep
+ * something from one block to the next. */
 mpm_status mpmi_visit_ranges(const mpmi_step *step, int32_t calls_host, mpmi_range_fn visit, void *user);
-/* Each block once; for visits that write to no node. */
+/* Visits each block once; for visits that write to no node. */
 mpm_status mpmi_visit_blocks(const mpmi_step *step, int32_t calls_host, mpmi_visit_fn visit, void *user);
-/* Colour by colour: blocks that are visited at the same time share no node of their tiles, so that what is
- * added to nodes is added in one order. */
+/* Visits blocks colour by colour: those that are visited at the same time share no node of their tiles, so
+ * that what is added to nodes is added in one order. */
 mpm_status mpmi_visit_colours(const mpmi_step *step, int32_t calls_host, mpmi_visit_fn visit, void *user);
-/* One block after the other, by task 0; for visits that write anywhere. */
+/* Visits one block after the other, by task 0; for visits that write anywhere. */
 void mpmi_visit_in_turn(const mpmi_step *step, mpmi_visit_fn visit, void *user);
 
 #endif

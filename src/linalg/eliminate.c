@@ -1,5 +1,5 @@
-/* The numbers of the factor are made here: fronts are put together and eliminated, from the leaves to the
- * root. */
+/* The numbers of the factor are made here: fronts are put together and eliminated by the kernels of dense.c,
+ * from the leaves to the root. */
 #include "linalg/factor.h"
 
 #include <float.h>

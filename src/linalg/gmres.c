@@ -175,7 +175,7 @@ static mpm_status reserve_basis(gmres *g) {
   return MPM_OK;
 }
 
-/* Are further cycles worth their time? */
+/* Tells whether further cycles are worth their time. */
 static int32_t goes_on(const gmres *g, double before) {
   const double share = g->system->reached / before;
   if (!(share < 0.99) || g->system->report->iterations >= g->plan->limit) return 0;

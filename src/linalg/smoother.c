@@ -1,4 +1,5 @@
-/* The smoother of a level orders its nodes by colour and keeps a scaled copy of its matrix. */
+/* The smoother of a level orders its nodes by colour and keeps a scaled copy of its matrix, for the kernels
+ * of sweep.c. */
 #include <math.h>
 #include <string.h>
 

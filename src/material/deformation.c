@@ -8,12 +8,12 @@
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
 
-/* Whether an entry of the full 3x3 tensor may differ from the identity: plane strain keeps its zz. */
+/* Tells whether an entry of the full 3x3 tensor may differ from the identity: plane strain keeps its zz. */
 MPMI_INLINE int32_t has_entry(int32_t dim, int32_t row, int32_t column) {
   return (row < dim && column < dim) || (dim == 2 && row == 2 && column == 2);
 }
 
-/* Place of each entry of the full tensor among the stored ones, or -1. */
+/* Finds the place of each entry of the full tensor among the stored ones, or -1. */
 MPMI_INLINE void place_entries(int32_t dim, int32_t *place) {
   int32_t stored = 0;
   for (int32_t e = 0; e < 9; ++e) place[e] = has_entry(dim, e / 3, e % 3) ? stored++ : -1;
@@ -30,7 +30,7 @@ MPMI_INLINE void increment(int32_t dim, const mpmi_deform *job, int64_t n) {
     }
 }
 
-/* F = (I + dt L) F_old: MPoint theory eq. 39, Steffen et al. 2008 eq. 8. */
+/* Deforms: F = (I + dt L) F_old (MPoint theory eq. 39, Steffen et al. 2008 eq. 8). */
 MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
   const double dt = job->dt;
   const int64_t ld = job->ld;
@@ -66,7 +66,7 @@ MPMI_INLINE mpmi_lanes determinant(int32_t dim, const double *const *F, int64_t 
 #undef F_
 }
 
-/* The f > 0 of F_old = f I, or J^(1/3) where the host has set an F of another shape. */
+/* Finds the f > 0 of F_old = f I, or J^(1/3) where the host has set an F of another shape. */
 MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t n, double *f) {
   const mpmi_lanes zero = {0.0};
   mpmi_mask any = {0};
@@ -86,7 +86,7 @@ MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t 
     if (f[p] < 0.0) f[p] = 1.0 + mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log(-f[p]));
 }
 
-/* F = J^(1/3) I with J = det(I + dt L) J_old; in 1-D, where only F11 is stored, F11 = J. */
+/* Dilates: F = J^(1/3) I with J = det(I + dt L) J_old; in 1-D, where only F11 is stored, F11 = J. */
 MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
   const double dt = job->dt, *L = job->L;
   const int64_t ld = job->ld;
@@ -119,7 +119,7 @@ MPMI_INLINE void stay(int32_t dim, const mpmi_deform *job, int64_t n) {
   }
 }
 
-/* V = det F V0: MPoint theory eq. 40. */
+/* Computes volumes, V = det F V0 (MPoint theory eq. 40); returns the flags of those that are no volume. */
 MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *initial_volume, double *out,
                             int64_t n) {
   mpmi_lanes bad = {0.0};

@@ -11,7 +11,7 @@
  * it leaves F as it is. */
 enum { MPMI_F_DEFORMS, MPMI_F_DILATES, MPMI_F_STAYS, MPMI_F_KINDS };
 
-/* F_new from F_old and L; F_inc = I + dt L when asked for. */
+/* Makes F_new from F_old and L, and F_inc = I + dt L when asked for. */
 typedef struct mpmi_deform {
   double dt;
   int64_t ld;
@@ -22,8 +22,9 @@ typedef struct mpmi_deform {
 } mpmi_deform;
 typedef void (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
 
-/* volume = det F * initial volume, from the stored components of F. All volumes are made here, so that they
- * can be made again with the same bits. Returns MPMI_NOT_POSITIVE and MPMI_NONFINITE where they apply. */
+/* Computes volume = det F * initial volume from the stored components of F. All volumes are made here, so
+ * that they can be made again with the same bits. Returns MPMI_NOT_POSITIVE and MPMI_NONFINITE where they
+ * apply. */
 typedef uint32_t (*mpmi_volume_fn)(const double *const *F, const double *initial_volume, double *volume,
                                    int64_t n);
 

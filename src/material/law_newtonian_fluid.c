@@ -86,8 +86,8 @@ MPMI_INLINE void newtonian_fluid(int dim, const fluid_constants *c, const mpm_ma
   if (c->viscosity > 0.0) add_shear(dim, c, batch);
 }
 
-/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). Where the
- * pressure is about to be cut off, the tangent is that of compression: a fluid at rest is stiff. */
+/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). Where the pressure is about to be
+ * cut off, the tangent is that of compression: a fluid at rest is stiff. */
 MPMI_INLINE void compression_tangent(int dim, const fluid_constants *c, const mpm_material_batch *batch,
                                      double *tangent) {
   const double bulk_by_gamma = c->bulk_by_gamma, exponent = c->gamma_minus_1;

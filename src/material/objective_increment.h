@@ -13,6 +13,7 @@
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
 
+/* Does what mpmi_log_increment() does, in 2-D. */
 MPMI_INLINE mpmi_sym mpmi_increment_2d(mpmi_mat g, mpmi_sym *stress) {
   /* V is symmetric when R turns by the angle whose cosine and sine are as along and across. Written as a
    * change of the stress, so that no rotation leaves it as it is. */
@@ -36,7 +37,7 @@ MPMI_INLINE mpmi_sym mpmi_increment_2d(mpmi_mat g, mpmi_sym *stress) {
   return log_v;
 }
 
-/* R S R^T */
+/* Returns R S R^T. */
 MPMI_INLINE mpmi_sym mpmi_turned(mpmi_mat r, mpmi_sym s) {
   mpmi_mat a = {r.xx * s.xx + r.xy * s.xy + r.xz * s.xz, r.xx * s.xy + r.xy * s.yy + r.xz * s.yz,
                 r.xx * s.xz + r.xy * s.yz + r.xz * s.zz, r.yx * s.xx + r.yy * s.xy + r.yz * s.xz,
@@ -49,6 +50,7 @@ MPMI_INLINE mpmi_sym mpmi_turned(mpmi_mat r, mpmi_sym s) {
   return t;
 }
 
+/* Does what mpmi_log_increment() does, in 3-D. */
 MPMI_INLINE mpmi_sym mpmi_increment_3d(mpmi_mat g, mpmi_sym *stress) {
   mpmi_sym e = mpmi_left_cauchy_green_minus_1(3, g);
   mpmi_eigenvalue_nodes n = mpmi_eigenvalues(e);
@@ -64,7 +66,7 @@ MPMI_INLINE mpmi_sym mpmi_increment_3d(mpmi_mat g, mpmi_sym *stress) {
   return mpmi_log_stretch(e, q, n);
 }
 
-/* Turns the stress with R and gives ln V; g = F_inc - I. */
+/* Turns the stress with R and returns ln V; g = F_inc - I. */
 MPMI_INLINE mpmi_sym mpmi_log_increment(int dim, mpmi_mat g, mpmi_sym *stress) {
   mpmi_sym v = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   if (dim == 2) return mpmi_increment_2d(g, stress);
@@ -73,8 +75,8 @@ MPMI_INLINE mpmi_sym mpmi_log_increment(int dim, mpmi_mat g, mpmi_sym *stress) {
   return v;
 }
 
-/* What the trial stress needs. It is read before the loop, so that the compiler sees that no store changes
- * it. */
+/* Holds what the trial stress needs. It is read before the loop, so that the compiler sees that no store
+ * changes it. */
 typedef struct mpmi_increments {
   const double *L, *stress;
   int64_t ld;
@@ -86,7 +88,7 @@ MPMI_INLINE mpmi_increments mpmi_increments_of(const mpmi_elastic *c, const mpm_
   return in;
 }
 
-/* Old stress turned, plus lambda tr(ln V) I + 2 mu ln V. */
+/* Returns the old stress turned, plus lambda tr(ln V) I + 2 mu ln V. */
 MPMI_INLINE mpmi_sym mpmi_trial_stress(int dim, mpmi_increments in, int64_t i) {
   mpmi_sym s = mpmi_load_sym(dim, in.stress, in.ld, i);
   mpmi_sym v = mpmi_log_increment(dim, mpmi_load_mat(dim, in.L, in.ld, i, 0.0, in.dt), &s);
@@ -100,7 +102,7 @@ MPMI_INLINE mpmi_sym mpmi_trial_stress(int dim, mpmi_increments in, int64_t i) {
   return s;
 }
 
-/* Deviator of s; a third of the trace goes to *mean. */
+/* Returns the deviator of s; a third of the trace goes to *mean. */
 MPMI_INLINE mpmi_sym mpmi_deviator(mpmi_sym s, double *mean) {
   *mean = (s.xx + s.yy + s.zz) * (1.0 / 3.0);
   mpmi_sym d = {s.xx - *mean, s.yy - *mean, s.zz - *mean, s.xy, s.yz, s.xz};
@@ -111,7 +113,8 @@ MPMI_INLINE double mpmi_square(mpmi_sym s) {
   return 2.0 * (s.xy * s.xy + s.yz * s.yz + s.xz * s.xz) + s.xx * s.xx + s.yy * s.yy + s.zz * s.zz;
 }
 
-/* Elastic wave speed at the current density, and energy J/2 stress : S : stress per initial volume. */
+/* Computes the elastic wave speed at the current density, and the energy J/2 stress : S : stress per initial
+ * volume. */
 MPMI_INLINE void mpmi_elastic_outputs(int dim, const mpmi_elastic *c, const mpm_material_batch *batch) {
   const double p_wave = c->p_wave_squared;
   const double by_mean = c->mean_energy, by_deviator = c->shear_energy;
@@ -127,7 +130,7 @@ MPMI_INLINE void mpmi_elastic_outputs(int dim, const mpmi_elastic *c, const mpm_
   }
 }
 
-/* dt = 0 asks about the state as it is: its stress is given back bit for bit. */
+/* Gives rows back bit for bit: dt = 0 asks about the state as it is. */
 MPMI_INLINE void mpmi_keep_rows(int64_t rows, const double *from, double *to,
                                 const mpm_material_batch *batch) {
   for (int64_t c = 0; c < rows; ++c)

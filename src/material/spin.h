@@ -14,7 +14,7 @@ typedef struct mpmi_vector {
   double x, y, z;
 } mpmi_vector;
 
-/* Axial vector of a d - d a; spin(w) has w.z in yx, w.x in zy, w.y in xz. */
+/* Returns the axial vector of a d - d a; spin(w) has w.z in yx, w.x in zy, w.y in xz. */
 MPMI_INLINE mpmi_vector mpmi_commutator(int dim, mpmi_sym a, mpmi_sym d) {
   mpmi_vector u = {0.0, 0.0, 0.0};
   if (dim >= 2) u.z = a.xy * (d.xx - d.yy) - d.xy * (a.xx - a.yy);
@@ -26,7 +26,7 @@ MPMI_INLINE mpmi_vector mpmi_commutator(int dim, mpmi_sym a, mpmi_sym d) {
   return u;
 }
 
-/* m u, of which 2-D has the z alone. */
+/* Returns m u, of which 2-D has the z alone. */
 MPMI_INLINE mpmi_vector mpmi_transformed(int dim, mpmi_sym m, mpmi_vector u) {
   mpmi_vector t = {0.0, 0.0, m.zz * u.z};
   if (dim == 3) {
@@ -37,7 +37,7 @@ MPMI_INLINE mpmi_vector mpmi_transformed(int dim, mpmi_sym m, mpmi_vector u) {
   return t;
 }
 
-/* s + a spin(w) - spin(w) a */
+/* Returns s + a spin(w) - spin(w) a. */
 MPMI_INLINE mpmi_sym mpmi_add_turning(int dim, mpmi_sym s, mpmi_sym a, mpmi_vector w) {
   if (dim >= 2) {
     s.xx += 2.0 * a.xy * w.z;
@@ -55,7 +55,7 @@ MPMI_INLINE mpmi_sym mpmi_add_turning(int dim, mpmi_sym s, mpmi_sym a, mpmi_vect
   return s;
 }
 
-/* q and r by Lambert's continued fractions,
+/* These return q and r of y = x^2, by Lambert's continued fractions,
  *   x coth x - 1 = x^2 / (3 + x^2 / (5 + ...   and   tanh(x/2) / x = 1/2 / (1 + x^2/4 / (3 + ...,
  * cut after 17 and 13: x coth x and tanh(x/2) are off by 2e-14 where one stretch of the step is 4 times
  * another, by 2e-11 at 10 times. */
@@ -69,7 +69,7 @@ MPMI_INLINE double mpmi_turning(double y) {
   return above / (8648640.0 + y * (997920.0 + y * (12600.0 + y * 28.0)));
 }
 
-/* a b of two that commute: symmetric. */
+/* Returns the product of two tensors that commute: it is symmetric. */
 MPMI_INLINE mpmi_sym mpmi_commuting_product(mpmi_sym a, mpmi_sym b) {
   mpmi_sym p = {a.xx * b.xx + a.xy * b.xy + a.xz * b.xz, a.xy * b.xy + a.yy * b.yy + a.yz * b.yz,
                 a.xz * b.xz + a.yz * b.yz + a.zz * b.zz, a.xx * b.xy + a.xy * b.yy + a.xz * b.yz,
@@ -77,13 +77,13 @@ MPMI_INLINE mpmi_sym mpmi_commuting_product(mpmi_sym a, mpmi_sym b) {
   return p;
 }
 
-/* f a + c I */
+/* Returns f a + c I. */
 MPMI_INLINE mpmi_sym mpmi_shifted(double f, mpmi_sym a, double c) {
   mpmi_sym s = {c + f * a.xx, c + f * a.yy, c + f * a.zz, f * a.xy, f * a.yz, f * a.xz};
   return s;
 }
 
-/* A step of Horner's rule for polynomials of h: h p + c I. */
+/* Returns a step of Horner's rule for polynomials of h: h p + c I. */
 MPMI_INLINE mpmi_sym mpmi_horner(mpmi_sym p, mpmi_sym h, double c) {
   return mpmi_shifted(1.0, mpmi_commuting_product(h, p), c);
 }
@@ -110,7 +110,8 @@ MPMI_INLINE mpmi_sym mpmi_turning_3d(mpmi_sym h) {
                                 mpmi_inverse(mpmi_horner(below, h, 8648640.0)));
 }
 
-/* q(H) and r(H) for a = ln V; 2-D has their zz alone, 1-D none. With a deviator H is 2 (a : a) I - 3 a a. */
+/* Holds q(H) and r(H) for a = ln V; 2-D has their zz alone, 1-D none. With a deviator a,
+ * H is 2 (a : a) I - 3 a a. */
 typedef struct mpmi_spins {
   mpmi_sym stretching, turning;
 } mpmi_spins;
@@ -118,7 +119,7 @@ typedef struct mpmi_spins {
 MPMI_INLINE mpmi_spins mpmi_spins_of(int dim, mpmi_sym a) {
   mpmi_spins s = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}};
   if (dim == 2) {
-    double apart = a.xx - a.yy, y = apart * apart + 4.0 * a.xy * a.xy;
+    double difference = a.xx - a.yy, y = difference * difference + 4.0 * a.xy * a.xy;
     s.stretching.zz = mpmi_stretching(y);
     s.turning.zz = mpmi_turning(y);
   } else if (dim == 3) {

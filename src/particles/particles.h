@@ -139,8 +139,8 @@ int64_t mpmi_index_find(const mpm_particles *set, int64_t id); /* slot, or -1; i
 mpm_status mpmi_particles_check_suspects(mpm_particles *set);
 /* Brings volume and stress up to date after F or initial_volume was set (refresh.c). */
 mpm_status mpmi_particles_refresh(mpm_particles *set);
-/* Volumes from a copy of F by the one function that makes them, so that they can be made again with the same
- * bits. */
+/* Makes volumes from a copy of F, by the one function that makes them, so that they can be made again with
+ * the same bits. */
 void mpmi_particles_make_volumes(mpm_particles *set, int32_t copy);
 /* Refuses when the set is mapped or in the middle of a staged step: MPM_E_STATE. */
 mpm_status mpmi_particles_changeable(mpm_particles *set);

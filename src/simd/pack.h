@@ -5,8 +5,8 @@
 #include "simd/chunk.h"
 #include "simd/vector.h"
 
-/* MPMI_SIDE particles at a time: four components from as many arrays, to vectors `stride` doubles apart; and
- * vectors of four to three arrays, without the last component. */
+/* Work on MPMI_SIDE particles at a time: mpmi_interleave() turns four component arrays into vectors, `stride`
+ * doubles apart; mpmi_separate() turns vectors of four into three arrays, without the last component. */
 #if defined(__AVX512F__)
 enum { MPMI_SIDE = 8 };
 MPMI_INLINE void mpmi_store_halves(double *low, double *high, mpmi_lanes v) {
@@ -30,8 +30,8 @@ MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double 
   mpmi_store_halves(out + 5 * stride, out + 7 * stride,
                     __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
 }
-/* Eight components of eight particles. Those of one particle are written by one store, because a load of all
- * of them would have to wait for two stores to end. */
+/* Turns eight components of eight particles into eight values for each. Those of one particle are written by
+ * one store, because a load of all of them would have to wait for two stores to end. */
 MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *out) {
   mpmi_lanes pair[2][4]; /* of two components, of even and odd particles */
   for (int32_t c = 0; c < 4; ++c) {
@@ -89,17 +89,17 @@ MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c
 }
 #endif
 
-/* n particles' four components, arrays a..d, to one vector per particle, `stride` doubles apart. */
+/* Turns four component arrays of n particles into one vector per particle, `stride` doubles apart. */
 MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const double *c, const double *d,
                            double *out, int32_t stride) {
   for (int64_t p = 0; p < mpmi_whole_chunks(n); p += MPMI_SIDE)
     mpmi_interleave(a + p, b + p, c + p, d + p, out + p * stride, stride);
 }
-/* Eight components, to eight values for each particle. */
+/* Turns eight component arrays into eight values for each particle. */
 MPMI_INLINE void mpmi_pack8(int64_t n, const double *const *in, double *out) {
   for (int64_t p = 0; p < mpmi_whole_chunks(n); p += MPMI_SIDE) mpmi_interleave8(in, p, out + 8 * p);
 }
-/* Vectors of four to three component arrays. */
+/* Turns vectors of four into three component arrays. */
 MPMI_INLINE void mpmi_unpack(int64_t n, const double *in, double *a, double *b, double *c) {
   for (int64_t p = 0; p < mpmi_whole_chunks(n); p += MPMI_SIDE)
     mpmi_separate(in + 4 * p, a + p, b + p, c + p);

@@ -88,8 +88,8 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
 }
 #endif
 
-/* A node holds four values (LOW) or eight (BOTH). Operands whose lower half is zero may say HIGH. The part is
- * always a constant. */
+/* The values of a node: four (LOW) or eight (BOTH). Operands whose lower half is zero may be taken as HIGH.
+ * The part is always a constant. */
 enum { MPMI_LOW = 1, MPMI_HIGH = 2, MPMI_BOTH = 3 };
 
 #if defined(__AVX512F__)
@@ -112,7 +112,7 @@ MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
     r.eight = mpmi_lanes_load(a);
   return r;
 }
-/* The upper half, kept by itself. */
+/* Loads the upper half alone; the lower half is zero. */
 MPMI_INLINE mpmi_node mpmi_node_load_high(const double *a) {
   mpmi_node r = mpmi_node_zero();
   r.eight = __builtin_shufflevector(mpmi_zero4(), mpmi_load4(a), 0, 1, 2, 3, 4, 5, 6, 7);

@@ -1,3 +1,5 @@
+/* Batches of particles in a pass: gathered from the nodes of a block by the kernels of transfer/gather.c,
+ * handed on, and looked at where a value has gone wrong. */
 #include "stages/batch.h"
 #include "layout/tile.h"
 #include "layout/visit.h"
@@ -12,7 +14,7 @@ static void add_streams(mpmi_streams *streams, const mpm_particles *set, int32_t
     streams->at[streams->count++] = mpmi_component_row(set, field, copy, c);
 }
 
-/* What a batch reads and writes, for prefetching. */
+/* Lists what a batch reads and writes, for prefetching. */
 static void list_streams(mpmi_batch *b) {
   mpmi_streams *streams = &b->gather.streams;
   streams->count = 0;
@@ -60,7 +62,8 @@ static void bind_set(mpmi_batch *b, int32_t m) {
   if (b->pass->bind) b->pass->bind(b);
 }
 
-/* Increments are needed by blends and by second-order positions; C by transfers that carry it. */
+/* Chooses the form of the gather: increments are needed by blends and by second-order positions, C by
+ * transfers that carry it. */
 static void choose_form(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpmi_transfer *transfer = settings->transfer;
@@ -92,7 +95,7 @@ static int32_t finite_row(const mpm_particles *set, int32_t field, int32_t compo
   return 1;
 }
 
-/* A hole weighs nothing, but nodes near it that are not finite make it so: it stays what it was. */
+/* Gives a hole its old values back, which nodes near it that are not finite have spoilt. */
 static void restore_hole(mpmi_batch *b, int64_t slot) {
   mpm_particles *set = b->set;
   b->report->holes_restored = 1;
@@ -164,7 +167,7 @@ static void take_batch(mpmi_batch *b, int64_t begin, int64_t n) {
   if (b->flags) check_batch(b);
 }
 
-/* The nodes of the block after this are asked for meanwhile, share by share. */
+/* Fetches a share of the nodes of the block that comes next, while the particles of this one are at work. */
 static void fetch_next(mpmi_batch *b, int64_t next, int64_t done, int64_t n, int64_t slots) {
   const mpmi_blocks *blocks = &b->step->layout->blocks;
   mpmi_tile_fetch(b->step->settings->kernels, blocks, next, b->from,
@@ -172,7 +175,7 @@ static void fetch_next(mpmi_batch *b, int64_t next, int64_t done, int64_t n, int
                   (int32_t)(blocks->neighbours * (done + n) / slots));
 }
 
-/* A pass that deforms starts the sums of energies, or the first that moves. */
+/* Returns 1 for the pass that starts the sums: one that deforms, or one that moves where that is first. */
 static int32_t starts_sums(const mpmi_batch *b) {
   return b->pass->deforms || (b->pass->moves && !mpmi_deforms_first(b->step->settings));
 }

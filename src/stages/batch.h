@@ -43,61 +43,65 @@ struct mpmi_batch {
   mpmi_sums *sums;
   /* The batch at hand: */
   int64_t begin, n;
-  uint32_t flags;  /* that the kernels returned: particles that want a closer look */
+  uint32_t flags;  /* what the kernels returned: it tells of particles that want a closer look */
   int32_t law_ran; /* the law has answered for this batch */
   int64_t batches; /* seen so far, to sample their times */
 };
 
-/* Component c of a field, at slot 0. */
+/* Returns component c of a field, at slot 0. */
 static inline double *mpmi_component_row(const mpm_particles *set, int32_t field, int32_t copy, int32_t c) {
   return mpmi_f64(set, field, copy) + c * set->ld;
 }
 
-/* Runs a pass over all particles; MPM_OK, or the failure of the first particle. */
+/* Runs a pass over all particles; returns MPM_OK, or the failure of the first particle. */
 mpm_status mpmi_pass_run(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from, const mpmi_pass *pass,
                          void *user);
-/* The same block by block, for those who add to nodes meanwhile: a task begins once and then takes blocks. */
+/* Do the same block by block, for those who add to nodes meanwhile: a task begins once and then takes
+ * blocks. */
 void mpmi_pass_begin(mpmi_batch *b, mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from,
                      const mpmi_pass *pass, void *user, int32_t task);
 void mpmi_pass_block(mpmi_batch *b, int64_t block, int64_t next);
-/* Is there a law of the host's? Then its callback may have to stay on one thread. */
+/* Returns 1 when there is a law of the host's: then its callback may have to stay on one thread. */
 int32_t mpmi_has_host_law(const mpmi_layout *layout);
 
 /* Takes note of the failure of the particle in a slot. */
 void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what);
 
 /* ---- motion.c ---------------------------------------------------------------------------------------- */
+/* These prepare motion for a set and for a block. */
 void mpmi_motion_bind(mpmi_batch *b);
 void mpmi_motion_enter(mpmi_batch *b);
-/* New velocities and positions of the batch; prescribed particles move as they must. */
+/* Computes new velocities and positions of the batch; prescribed particles move as they must. */
 void mpmi_motion_take(mpmi_batch *b);
 
 /* ---- strain.c ---------------------------------------------------------------------------------------- */
+/* These prepare strain and sums for a set, and strain for a block. */
 void mpmi_strain_bind(mpmi_batch *b);
 void mpmi_strain_enter(mpmi_batch *b);
 /* Keeps the gradient of the batch: what an affine transfer carries comes with the velocities, in the pass
  * that moves; otherwise that of the strain is kept where the host wants it. */
 void mpmi_gradient_keep(mpmi_batch *b);
-/* New deformation gradient and volume; 0 where they are no state that a law can be asked about. */
+/* Computes deformation gradient and volume; returns 0 where they are no state that a law can be asked
+ * about. */
 int32_t mpmi_strain_deform(mpmi_batch *b);
-/* The law at that; b->law_ran tells whether it has answered. */
+/* Runs the law there; b->law_ran tells whether it has answered. */
 void mpmi_strain_law(mpmi_batch *b);
 
-/* Where the law runs before the particles move, the sums over the motion want its wave speed: it is left in
- * the member's row meanwhile. */
+/* Where the law runs before the particles move, the sums over the motion want its wave speed: these leave it
+ * in the member's row meanwhile, and fetch it from there. */
 void mpmi_wave_speed_leave(const mpmi_batch *b);
 void mpmi_wave_speed_fetch(mpmi_batch *b);
 
-/* Adds energies, momenta and rates of the batch to those of its block; what:
- * MPMI_SUMS_LAW, MPMI_SUMS_MOTION. */
+/* Adds energies, momenta and rates of the batch to those of its block; what: MPMI_SUMS_LAW,
+ * MPMI_SUMS_MOTION. */
 void mpmi_batch_sums(mpmi_batch *b, int32_t what);
 
-/* Volumes, of which there is one copy, by a copy of F: after a step that failed, and where the host looks on
+/* Makes volumes, which have one copy, from a copy of F: after a step that failed, and where the host looks on
  * in between. */
 void mpmi_make_volumes(const mpmi_layout *layout, int32_t copy);
 
-/* Second moments of the basis at particles, for the affine part of the angular momentum: gives the job those of
- * n particles from slot `begin`; copy: of their positions. buffer: [3][ld]. */
+/* Gives the job the second moments of the basis at n particles from slot `begin`, for the affine part of the
+ * angular momentum; copy: of their positions. buffer: [3][ld]. */
 void mpmi_sums_moments(const mpmi_settings *settings, const mpm_particles *set, int32_t copy, int64_t begin,
                        int64_t n, int64_t ld, double *buffer, mpmi_sums_job *job);
 

@@ -1,4 +1,4 @@
-/* G2P: the named passes from nodes to particles. */
+/* G2P: the named passes from nodes to particles, which gather by the kernels of transfer/gather.c. */
 #include "stages/stages.h"
 #include "stages/batch.h"
 
@@ -28,7 +28,7 @@ static void take_both(mpmi_batch *b) {
   if (b->law_ran) mpmi_batch_sums(b, MPMI_SUMS_LAW | MPMI_SUMS_MOTION);
 }
 
-/* Where the law has run already, this is the last pass and sums up the motion. */
+/* Moves a batch. Where the law has run already, this is the last pass and sums up the motion. */
 static void take_motion(mpmi_batch *b) {
   const int32_t last = mpmi_deforms_first(b->step->settings);
   settle_gradient(b);
@@ -70,7 +70,7 @@ static const mpmi_pass strain = {
 static const mpmi_pass velocities = {.plain = 1, .take = take_velocities};
 static const mpmi_pass accelerations = {.plain = 1, .take = take_accelerations};
 
-/* The locking remedy measures the dilation before a pass that deforms. */
+/* Runs a pass; the locking remedy measures the dilation before one that deforms. */
 static mpm_status run(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from, const mpmi_pass *pass) {
   const int32_t remedy = pass->deforms && step->settings->desc.locking_remedy;
   const mpm_status status = remedy ? mpmi_locking_stage(step, nodes, from) : MPM_OK;

@@ -21,7 +21,8 @@ typedef struct cell_sums {
 } cell_sums;
 _Static_assert(sizeof(cell_sums) == 4 * sizeof(double), "goes through tiles");
 
-/* Place of each particle's cell in the tile. On a periodic axis any image that lies in the tile will do. */
+/* Finds the place of each particle's cell in the tile. On a periodic axis any image that lies in the tile
+ * will do. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
                       int64_t n, int32_t *place) {
   const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width);
@@ -38,7 +39,7 @@ void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_po
   }
 }
 
-/* det(I + dt L) - 1, expanded so that a small dt L keeps its digits. */
+/* Returns det(I + dt L) - 1, expanded so that a small dt L keeps its digits. */
 static double det_minus_1(int32_t dim, const double *L, int64_t ld, double dt) {
 #define G(r, c) (dt * L[(3 * (r) + (c)) * ld])
   const double plane = (G(0, 0) + G(1, 1)) + G(0, 0) * G(1, 1) - G(0, 1) * G(1, 0);
@@ -49,7 +50,7 @@ static double det_minus_1(int32_t dim, const double *L, int64_t ld, double dt) {
 #undef G
 }
 
-/* det F_inc - 1 of each particle of a batch, into the second copy of its dilation ratio. */
+/* Measures det F_inc - 1 of each particle of a batch, into the second copy of its dilation ratio. */
 static void measure(mpmi_batch *b) {
   double *j = mpmi_f64(b->set, MPMI_DILATION_RATIO, 1) + b->begin;
   for (int64_t p = 0; p < b->n; ++p) {
@@ -63,7 +64,7 @@ typedef struct locking_job {
   const mpmi_nodal *cells;
 } locking_job;
 
-/* The cells of a chunk get volume times j, and volume. */
+/* Adds volume times j, and volume, of a chunk to the cells of its particles. */
 static void add_chunk(const mpm_particles *set, int64_t begin, int64_t n, const int32_t *place,
                       cell_sums *tile) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
@@ -96,7 +97,8 @@ static void add_block(void *user, const mpmi_visit *visit, double *tile) {
   }
 }
 
-/* Cells at a periodic seam have been added up on both sides of it. Ghosts of walls hold no cell. */
+/* Joins the two halves of cells at a periodic seam, which have been added up on both sides of it. Ghosts of
+ * walls hold no cell. */
 static void join_images(void *data, int64_t k) {
   const locking_job *job = data;
   const mpmi_constraints *c = &job->step->layout->constraints;

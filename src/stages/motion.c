@@ -1,4 +1,5 @@
-/* Motion: velocity and position of particles from what a batch has gathered, MPoint theory eqs 34 to 37. */
+/* Motion: velocity and position of particles from what a batch has gathered, by the kernels of
+ * transfer/move.c (MPoint theory eqs 34 to 37). */
 #include "stages/batch.h"
 #include "boundary/prescribed.h"
 
@@ -29,7 +30,7 @@ void mpmi_motion_bind(mpmi_batch *b) {
   }
 }
 
-/* Where the particles of a block may be before they have to be sorted anew, less a hair for rounding. */
+/* Sets where particles may be before all are sorted anew, less a hair for rounding. */
 void mpmi_motion_enter(mpmi_batch *b) {
   const mpmi_blocks *blocks = &b->step->layout->blocks;
   const mpm_grid *grid = blocks->grid;
@@ -42,10 +43,10 @@ void mpmi_motion_enter(mpmi_batch *b) {
 }
 
 /* ---- beyond the faces of the grid --------------------------------------------------------------------- */
-/* Periods that a particle may cross in one step: beyond them its position is rounding. */
+/* A particle may cross this many periods in one step: beyond them its position is rounding. */
 #define MOST_TURNS 2147483648.0
 
-/* A particle on a wall stands there but for rounding; this many cells beyond it are that. */
+/* A particle no further beyond a wall than this, in cells, stands on it: the rest is rounding. */
 #define WALL_ROUNDING 1e-12
 
 static int32_t is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
@@ -77,13 +78,13 @@ static int32_t is_placed(const mpm_particles *set, int64_t slot) {
   return placed;
 }
 
-/* Particles beyond a face: wrapped, marked for removal, or the end of the step. */
+/* Wraps particles beyond a face, marks them for removal, or ends the step. */
 static void look_outside(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpm_grid *grid = settings->grid;
   const int64_t *id = mpmi_i64(b->set, MPMI_ID, 0);
   for (int64_t slot = b->begin; slot < b->begin + b->n; ++slot) {
-    if (id[slot] < 0 || !is_placed(b->set, slot)) continue; /* the check of values will say */
+    if (id[slot] < 0 || !is_placed(b->set, slot)) continue; /* the check of values reports it */
     int32_t stays = 0, leaves = 0;
     for (int32_t k = 0; k < grid->dim; ++k) {
       double *x = mpmi_component_row(b->set, MPMI_POSITION, 1, k) + slot;
@@ -103,7 +104,7 @@ static void look_outside(mpmi_batch *b) {
 }
 
 /* ---- a batch ------------------------------------------------------------------------------------------ */
-/* From gathered dt a1 to what Newmark's rule adds to the velocities. */
+/* Turns gathered dt a1 into what Newmark's rule adds to velocities, and keeps a1. */
 static void mean_accelerations(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const double dt = b->step->dt, gamma = settings->desc.newmark_gamma;

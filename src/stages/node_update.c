@@ -9,7 +9,7 @@ typedef struct update_job {
   mpmi_step *step;
   mpmi_nodes *nodes;
   const mpmi_nodal *values;
-  int32_t forgets_impulses, forgets_held; /* what the boundary stage will note, node by node */
+  int32_t forgets_impulses, forgets_held; /* 1: clears what the boundary stage will write */
 } update_job;
 
 static void update_task(void *data, int64_t k) {

@@ -1,4 +1,4 @@
-/* P2G: particles to nodes. */
+/* P2G: particles to nodes, by the kernels of transfer/scatter.c. */
 #include "stages/stages.h"
 #include "layout/accumulate.h"
 #include "layout/tile.h"
@@ -18,7 +18,7 @@ static void add_streams(mpmi_streams *streams, const double *const *rows, int32_
     if (rows[k]) streams->at[streams->count++] = rows[k];
 }
 
-/* What the next chunk will read, for prefetching. */
+/* Lists what the next chunk will read, for prefetching. */
 static void list_streams(const p2g_job *job, mpmi_scatter *scatter, int32_t dim) {
   mpmi_streams *streams = &scatter->streams;
   for (int32_t k = 0; k < dim; ++k) {
@@ -58,8 +58,8 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   list_streams(job, scatter, dim);
 }
 
-/* In as many pieces as the block has neighbours: in front of each, the nodes that the tile shares with one of
- * them are asked for, so that they are near when the tile is added to them. */
+/* Scatters in as many pieces as the block has neighbours; in front of each, the nodes that the tile shares
+ * with one of them are fetched, so that they are near when the tile is added to them. */
 static void scatter_slots(const p2g_job *job, const mpmi_scatter *scatter, int64_t block, int64_t begin,
                           int64_t end) {
   const mpmi_settings *settings = job->step->settings;
@@ -111,8 +111,8 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
                  .projection = projection,
                  .to = mpmi_projected_nodes(nodes, projection),
                  .affine = mpmi_is_affine(step->settings) && !projection->plain,
-                 .stress_copy =
-                     projection->main && mpmi_deforms_first(step->settings)}; /* then it is updated already */
+                 /* the main projection comes after USF's strain: the stress is new then */
+                 .stress_copy = projection->main && mpmi_deforms_first(step->settings)};
   choose_form(&job);
   return mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
 }

@@ -7,13 +7,15 @@
 #include "particles/law_batch.h"
 
 /* ---- forces.c ---------------------------------------------------------------------------------------- */
-/* At time t, into the members' forces. */
+/* Collects the external forces at time t in the members' rows. */
 mpm_status mpmi_forces_stage(mpmi_step *step, double t);
 
 /* ---- p2g.c ------------------------------------------------------------------------------------------- */
+/* Projects all particles onto the nodes of a projection: their sums are made anew. */
 mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes);
 
 /* ---- node_update.c ----------------------------------------------------------------------------------- */
+/* Turns momenta into velocities and forces into increments, on every node as if it were free. */
 mpm_status mpmi_node_update_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes);
 
 /* ---- xpic.c ------------------------------------------------------------------------------------------ */
@@ -21,28 +23,28 @@ mpm_status mpmi_node_update_stage(mpmi_step *step, const mpmi_projection *projec
 mpm_status mpmi_xpic_stage(mpmi_step *step, mpmi_nodes *nodes);
 
 /* ---- locking.c --------------------------------------------------------------------------------------- */
-/* Cell averages of the dilation that these nodal velocities make, into the sums of the nodes, for the pass
- * that deforms. */
+/* Averages over cells the dilation that these nodal velocities make, into the nodes' sums, for the pass that
+ * deforms. */
 mpm_status mpmi_locking_stage(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
 
-/* Scales the deformation that the law is about to see, and gives the particles their new ratio. cells: tile
+/* Scales the deformation that the law is about to see, and gives the particles their new ratio; cells: tile
  * of cell sums. */
 void mpmi_locking_apply(const mpm_grid *grid, const double *cells, const mpmi_axis *axis, mpm_particles *set,
                         mpmi_law_batch *b, int64_t begin, int64_t n, double dt);
 
-/* Place in the tile of the lower corner of the cells of n particles, at most a chunk. */
+/* Finds the place in the tile of the lower corner of the cells of n particles, at most a chunk. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
                       int64_t n, int32_t *place);
 
 /* ---- g2p.c ------------------------------------------------------------------------------------------- */
-/* Velocity and position, deformation gradient and stress: all of USL. */
+/* Moves and deforms: velocity and position, deformation gradient and stress. That is all of USL. */
 mpm_status mpmi_g2p_move_and_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
-/* Velocity and position alone. */
+/* Moves alone: velocity and position. */
 mpm_status mpmi_g2p_move(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
-/* Deformation gradient and stress alone. */
+/* Deforms alone: deformation gradient and stress. */
 mpm_status mpmi_g2p_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
-/* The nodes' vectors, interpolated, into the second copy of the particles' velocities; or of their
- * accelerations, of the sets that do not know them. */
+/* Interpolate the nodes' vectors into the second copy of the particles' velocities; or of the accelerations
+ * of the sets that do not know them. */
 mpm_status mpmi_g2p_velocities(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
 mpm_status mpmi_g2p_accelerations(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
 

@@ -1,5 +1,6 @@
 /* Strain: deformation gradient, volume and stress of particles from the velocity gradient that a batch has
- * gathered, MPoint theory eqs 38 to 40; and what the step sums up over particles. */
+ * gathered, by the kernels of material/deformation.c (MPoint theory eqs 38 to 40); and what the step sums up
+ * over particles, by those of transfer/sums.c. */
 #include "stages/batch.h"
 #include "layout/tile.h"
 #include "stages/stages.h"

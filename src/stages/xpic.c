@@ -14,10 +14,10 @@
 typedef struct xpic_job {
   const mpmi_step *step;
   const mpmi_nodes *nodes;
-  double scale, share; /* of the term, and of it in the sum */
+  double scale, share; /* scale of the term; its share of the sum */
 } xpic_job;
 
-/* The first term, the velocities before the forces, and what the sum has of it. */
+/* Makes the first term, the velocities before the forces, and what the sum has of it. */
 static void first_term(void *data, int64_t k) {
   const xpic_job *job = data;
   const mpmi_nodes *nodes = job->nodes;
@@ -34,6 +34,7 @@ static void first_term(void *data, int64_t k) {
   }
 }
 
+/* Scales the term that was projected, and adds what the sum has of it. */
 static void next_term(void *data, int64_t k) {
   const xpic_job *job = data;
   const mpmi_nodes *nodes = job->nodes;
@@ -47,7 +48,8 @@ static void next_term(void *data, int64_t k) {
   }
 }
 
-/* How much of a velocity that is added to v_r comes to be in v^: by way of the terms after it too. */
+/* Returns the weight with which a velocity added to v_r enters v^: directly, and through the later terms that
+ * are made from v_r. */
 static double share_of(int32_t m, int32_t r) {
   double share = 0.0;
   for (int32_t k = m; k >= r; --k) share = (k % 2 ? m : -m) + (m - k) / (k + 1.0) * share;

@@ -7,7 +7,7 @@
 
 static const mpm_advance_desc defaults = {.struct_size = sizeof(mpm_advance_desc), .cfl = 0.5};
 
-/* Proven in practice: cut to 0.6, double after success. */
+/* A step that failed is cut to 0.6, one that went well lets the next be twice as long: proven in practice. */
 static const double CUT = 0.6, GROW = 2.0;
 
 mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct_size) {
@@ -36,7 +36,7 @@ static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {
   return MPM_OK;
 }
 
-/* The sub-step that the bounds allow, cut so that no sliver remains before t_end. */
+/* Chooses the sub-step that the bounds allow, cut so that no sliver remains before t_end. */
 static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, int32_t *last) {
   const double left = d->t_end - s->history.t;
   *dt = left;
@@ -55,8 +55,8 @@ static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, 
   return MPM_OK;
 }
 
-/* Explicit: until it no longer bounds the stable dt. Implicit: as the iterations went; a step that t_end cut
- * says nothing of longer ones. */
+/* Lets the controller's dt grow: explicit until it no longer bounds the stable dt, implicit as the iterations
+ * went, and never down, because a step cut by t_end says nothing of longer ones. */
 static void let_grow(mpm_stepper *s, double dt) {
   if (mpmi_is_implicit(&s->settings)) {
     s->history.controller_dt = fmax(s->history.controller_dt, s->history.last.dt_suggested);
@@ -66,7 +66,7 @@ static void let_grow(mpm_stepper *s, double dt) {
   if (s->history.controller_dt > 1e6 * dt) s->history.controller_dt = 0.0;
 }
 
-/* The first matrix of a quasi-static step does not know dt: cutting that would not help. */
+/* Returns 1 where no smaller dt helps: the first matrix of a quasi-static step does not depend on it. */
 static int32_t no_cut_helps(const mpm_stepper *s, mpm_status status) {
   return status == MPM_SINGULAR && s->settings.desc.quasi_static && s->history.last.newton_iterations <= 1;
 }

@@ -22,7 +22,7 @@ static int32_t written_by_step(int32_t field) {
   }
 }
 
-/* Particles that went through an open wall become holes. The hole stays where the particle was before the
+/* Makes holes of particles that went through an open wall. The hole stays where the particle was before the
  * step, inside its tile. */
 static void remove_outside(mpm_stepper *s, mpm_particles *set) {
   const mpm_grid *grid = s->grid;
@@ -45,7 +45,7 @@ static void remove_outside(mpm_stepper *s, mpm_particles *set) {
   }
 }
 
-/* The new copies of what a step writes. */
+/* Makes the new copies the state. */
 static void swap_copies(const mpm_stepper *s, mpm_particles *set, int32_t left_tile) {
   for (int32_t f = 0; f < set->field_count; ++f) {
     mpmi_field *field = &set->field[f];

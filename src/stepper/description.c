@@ -50,7 +50,7 @@ static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm
   return MPM_OK;
 }
 
-/* Options beside scheme, transfer and forces. */
+/* Checks the options beside scheme, transfer and forces. */
 static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
   if (d->quasi_static != 0 && d->quasi_static != 1)
     return mpmi_fail(c, MPM_E_ARG, "quasi_static is %d: it must be 0 or 1", (int)d->quasi_static);
@@ -74,7 +74,7 @@ static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_
   return MPM_OK;
 }
 
-/* Options of implicit steps, and what they do not go with. */
+/* Checks the options of implicit steps, and what they do not go with. */
 static mpm_status known_implicit(mpm_context *c, const mpm_stepper_desc *d) {
   const struct {
     const char *name;

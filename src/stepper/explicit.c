@@ -5,7 +5,7 @@
 #include "boundary/prescribed.h"
 #include "stages/stages.h"
 
-/* A projection beside the one with the forces of the step, up to its boundary conditions. */
+/* Makes a projection beside the one with the forces of the step, up to its boundary conditions. */
 static mpm_status project(mpmi_step *step, mpmi_nodes *nodes, int32_t projection, double *clock) {
   const mpmi_projection *of = &mpmi_projections[projection];
   mpm_status status = mpmi_p2g_stage(step, of, nodes);
@@ -16,14 +16,14 @@ static mpm_status project(mpmi_step *step, mpmi_nodes *nodes, int32_t projection
   return status;
 }
 
-/* Strain and stress of the velocities of a projection. */
+/* Strains the particles by the velocities of a projection, and computes their stress. */
 static mpm_status deform(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
   const mpm_status status = mpmi_g2p_deform(step, nodes, &nodes->projected);
   mpmi_lap(step, MPMI_TIME_G2P, clock);
   return status;
 }
 
-/* USF: strain and stress from the velocities at the start of the step. */
+/* Strains the particles of USF by the velocities at the start of the step. */
 static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
   mpm_status status = MPM_OK;
   if (step->layout->constraints.contact_count) status = project(step, nodes, MPMI_PROJECT_CONTACT, clock);

@@ -1,3 +1,4 @@
+/* Steppers are made and destroyed, take sets in and give them back, and change their description. */
 #include "stepper/stepper.h"
 #include "implicit/balance.h"
 #include "layout/members.h"
@@ -115,7 +116,7 @@ mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
 }
 
 /* ---- another description ------------------------------------------------------------------------------ */
-/* What the host has set and implicit steps do not have. */
+/* Refuses what the host has set and implicit steps do not offer. */
 static mpm_status without_explicit_parts(const mpm_stepper *s) {
   if (mpmi_has_hooks(&s->settings))
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,

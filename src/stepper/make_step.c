@@ -41,7 +41,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
   mpmi_reports_clear(&s->work, s->settings.tasks);
 }
 
-/* Sets, layout and memory for the step. */
+/* Brings sets, layout and memory up to date for the step. */
 static mpm_status prepare(mpm_stepper *s) {
   const mpmi_settings *settings = &s->settings;
   double clock = mpmi_seconds();
@@ -63,13 +63,13 @@ static mpm_status prepare(mpm_stepper *s) {
 }
 
 /* ---- the end ------------------------------------------------------------------------------------------ */
-/* The step is over: what it knows of itself stays. */
+/* Ends the step and keeps its info. */
 static void drop(mpm_stepper *s) {
   s->history.last = s->step.info;
   s->step = (mpmi_step){.phase = MPMI_IDLE};
 }
 
-/* Whatever has gone wrong: the particles are as before, the info says why. */
+/* Leaves particles as they were; the info says why. */
 static mpm_status give_up(mpm_stepper *s, mpm_status status) {
   const mpmi_failure *failure = &s->step.failure;
   mpm_step_info *info = &s->step.info;
@@ -86,7 +86,7 @@ static mpm_status give_up(mpm_stepper *s, mpm_status status) {
   return status;
 }
 
-/* The host may still cancel: it sees the info that the step is about to have. */
+/* Asks the host whether to go on, and shows it the info that the step is about to have. */
 static mpm_status ask_progress(mpm_stepper *s) {
   const mpmi_settings *settings = &s->settings;
   if (!settings->progress) return MPM_OK;
@@ -108,8 +108,7 @@ static mpm_status finish(mpm_stepper *s) {
   const mpm_status status = ask_progress(s);
   if (status) return status;
   mpmi_commit(s);
-  /* a removal leaves the sums to be made again; then the host's law may refuse, which is for the next call to
-   * say */
+  /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) s->context->error[0] = '\0';
   info->cause = MPM_OK;
   info->dt = dt;
@@ -148,7 +147,7 @@ mpm_status mpmi_make_step(mpm_stepper *s, double dt) {
   if (!status) status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
   if (!status) status = finish(s);
   if (status) return give_up(s, status);
-  s->context->error[0] = '\0'; /* of attempts before */
+  s->context->error[0] = '\0'; /* drops the texts of failed attempts */
   return MPM_OK;
 }
 

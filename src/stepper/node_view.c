@@ -15,7 +15,8 @@ static int32_t components_of(const mpm_stepper *s, int32_t field) {
   return mpmi_node_fields[field].scalar ? 1 : s->grid->dim;
 }
 
-/* Nodes hold [p m f 0] until velocities are solved for, then [v m dv 0]; fused nodes have no second half. */
+/* Returns a component of a field at a node. Nodes hold [p m f 0] until velocities are solved for, then [v m
+ * dv 0]; fused nodes have no second half. */
 static double value_of(const mpm_stepper *s, int32_t field, int64_t slot, int32_t c) {
   const mpmi_nodal *values = &s->nodes.solved;
   const double mass = *mpmi_mass(values, slot), v = mpmi_velocity(values, slot)[c];

@@ -20,16 +20,17 @@ typedef struct mpmi_node_field {
 } mpmi_node_field;
 extern const mpmi_node_field mpmi_node_fields[MPMI_NODE_FIELDS];
 
-/* The field that the host names: MPM_E_ARG for NULL, MPM_E_NOT_FOUND with the nearest names. */
+/* Finds the field that the host names: MPM_E_ARG for NULL, MPM_E_NOT_FOUND with the nearest names. */
 mpm_status mpmi_node_require(mpm_context *context, const char *name, int32_t *field);
-/* MPM_E_STATE while there are no nodal fields. */
+/* Returns MPM_E_STATE while there are no nodal fields. */
 mpm_status mpmi_nodes_ready(const mpm_stepper *s);
-/* Has this kind of step kept the field? The check is MPM_E_UNSUPPORTED if not. */
+/* Tells whether this kind of step has kept the field; the check returns MPM_E_UNSUPPORTED if not. */
 int32_t mpmi_node_keeps(const mpm_stepper *s, int32_t field);
 mpm_status mpmi_node_check_kept(const mpm_stepper *s, int32_t field);
 /* Lists the slots of the active nodes in s->active; while nodal views are out it is there already. */
 mpm_status mpmi_nodes_list(mpm_stepper *s);
-/* Component c of the node in slot[i] to out[i * item_stride + c * component_stride], of the field's type. */
+/* Writes component c of the node in slot[i] to out[i * item_stride + c * component_stride], of the field's
+ * type. */
 void mpmi_node_values(const mpm_stepper *s, int32_t field, const int64_t *slot, int64_t n,
                       int64_t item_stride, int64_t component_stride, void *out);
 

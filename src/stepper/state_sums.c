@@ -62,7 +62,7 @@ static mpm_status refused(mpm_stepper *s, int32_t m, mpm_status status, mpmi_fai
                    "the material of set %d returned %d when asked for its wave speed", (int)m, (int)status);
 }
 
-/* The law is asked for the state as it is: F_inc = I, dt = 0. */
+/* Adds the sums of a set. The law is asked for the state as it is: F_inc = I, dt = 0. */
 static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failure *failure) {
   mpm_particles *set = s->layout.member[m].set;
   const size_t batch = mpmi_law_batch_bytes(set->material);
@@ -109,8 +109,8 @@ mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure) {
   if (s->history.has_sums && !(dirty & MPMI_DIRTY_SUMS)) return MPM_OK;
   mpmi_sums sums = {0};
   mpm_status status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
-  /* sums follow the order of the slots, which must not be that in which the host added particles; without
-   * such there is no sorting, which would end the nodal fields of the last step */
+  /* sums follow the order of slots, which must not be the order of adding; so new particles are sorted first,
+   * and else nothing is, because that would end the nodal fields */
   if (!status && dirty & MPMI_DIRTY_ORDER) status = mpmi_layout_sort(layout, &s->settings);
   for (int32_t m = 0; m < layout->member_count && !status; ++m) {
     status = mpmi_particles_refresh(layout->member[m].set);

@@ -16,11 +16,11 @@
 typedef struct mpmi_history {
   double t;
   int64_t step, removed;
-  double previous_dt;   /* of the last step, for the next one's mean; 0: none */
-  double controller_dt; /* of mpm_advance; 0: none yet */
+  double previous_dt;   /* dt of the last step, for the next one's mean; 0: none */
+  double controller_dt; /* the most that mpm_advance takes for dt; 0: no such bound */
   int32_t has_sums;     /* the sums are those of the present state */
   mpmi_sums sums;
-  mpm_step_info last; /* of the last step */
+  mpm_step_info last; /* info of the last step */
   int32_t has_reactions;
   double impulse_by_face[6][3], reaction_dt; /* on the walls in the last step */
 } mpmi_history;
@@ -47,53 +47,53 @@ struct mpm_stepper {
   int64_t active_count, active_capacity;
 };
 
-/* MPM_E_STATE while a step is under way. */
+/* Returns MPM_E_STATE while a step is under way. */
 static inline mpm_status mpmi_stepper_idle(const mpm_stepper *s) {
   if (s->step.phase == MPMI_IDLE) return MPM_OK;
   return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
 }
 
 /* ---- description.c ----------------------------------------------------------------------------------- */
-/* The host's description, or the defaults for NULL, checked for a grid. */
+/* Reads the host's description, or the defaults for NULL, and checks it for a grid. */
 mpm_status mpmi_description_read(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *desc,
                                  mpm_stepper_desc *out);
 
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */
 mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure);
-/* The sums over the blocks of a step, in the order of the blocks. */
+/* Returns the sums over the blocks of a step, in the order of the blocks. */
 mpmi_sums mpmi_block_sums(const mpmi_step *step);
-/* The largest stable step: Courant's condition and that of viscosity. */
+/* Returns the largest stable step: Courant's condition and that of viscosity. */
 double mpmi_stable_dt(const mpmi_sums *sums);
-/* MPM_E_STATE when a set has views out of the given access, or holds bad values. */
+/* Returns MPM_E_STATE when a set has views out of the given access, or holds bad values. */
 mpm_status mpmi_check_sets(mpm_stepper *s, int32_t access);
 
 /* ---- reports.c --------------------------------------------------------------------------------------- */
-/* The info of the state and of a step: the last one, or the one under way. */
+/* Fills in the info of the state and of a step: the last one, or the one under way. */
 void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_info *info);
 /* Gives the host the info of a call that ends with this status, which stays the status of the call unless
  * only the writing fails. info may be NULL. */
 mpm_status mpmi_give_info(const mpm_stepper *s, mpm_status status, mpm_step_info *info);
-/* The check that writing makes, for calls that must know before they do anything. */
+/* Makes the check that writing makes, for calls that must know before they do anything. */
 mpm_status mpmi_check_info(const mpm_stepper *s, const mpm_step_info *info);
 
 /* ---- explicit.c -------------------------------------------------------------------------------------- */
-/* Particles to nodes, and forces. */
+/* Brings particles to nodes, with their forces. */
 mpm_status mpmi_explicit_begin(mpmi_step *step, mpmi_nodes *nodes);
-/* Velocities, walls, prescribed velocities. */
+/* Solves for the velocities of the nodes, under walls and prescribed velocities. */
 mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes);
-/* USL: everything from the updated nodal velocity. MUSL: L from the velocity that the new particles give the
- * nodes. USF has its strain already. */
+/* Brings nodes back to particles. USL: everything from the updated nodal velocity. MUSL: L from the velocity
+ * that the new particles give the nodes. USF has its strain already. */
 mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes);
 
 /* ---- commit.c ---------------------------------------------------------------------------------------- */
-/* Cannot fail. Adds the work of the host to the balance, and its own time to the report. */
+/* Commits the step; cannot fail. Adds the host's work to the balance. */
 void mpmi_commit(mpm_stepper *s);
-/* Only volumes were overwritten: F is still there to make them again. */
+/* Makes the volumes again, which alone were overwritten. */
 void mpmi_roll_back(mpm_stepper *s);
 
 /* ---- make_step.c ------------------------------------------------------------------------------------- */
-/* A whole step. On failure the particles are as before, and the info of the last step says why. */
+/* Makes a whole step. On failure the particles are as before, and the info of the last step says why. */
 mpm_status mpmi_make_step(mpm_stepper *s, double dt);
 
 #endif

@@ -23,14 +23,14 @@ typedef struct mpmi_chunk {
   const double *x, *size, *stretch;
 } mpmi_chunk;
 
-/* Their stencils along that axis, component arrays of a chunk. */
+/* Holds the stencils of a chunk along an axis, in component arrays. */
 typedef struct mpmi_stencils {
   double (*w)[MPMI_CHUNK], (*g)[MPMI_CHUNK], *first, *place;
   double (*distance)[MPMI_CHUNK]; /* from the particle to each node, in cells; UNEVEN only */
 } mpmi_stencils;
 
-/* From w and the distances d_k of the nodes from the particle: D = sum w_k d_k^2, its inverse, and u_k = w_k
- * d_k; the MLS form puts u_k / D in the place of the gradient. */
+/* Computes from w and the distances d_k of the nodes from the particle: D = sum w_k d_k^2, its inverse, and
+ * u_k = w_k d_k; the MLS form puts u_k / D in the place of the gradient. */
 MPMI_INLINE void mpmi_moments(int32_t width, int32_t spaced, double h, int32_t need, int64_t n,
                               const mpmi_stencils *at, double (*u)[MPMI_CHUNK], double *inverse_moment) {
   const double cut = MPMI_MOMENT_CUT * h * h;
@@ -58,7 +58,7 @@ MPMI_INLINE void mpmi_into_tile(const mpmi_axis *a, int64_t n, double *place) {
     }
 }
 
-/* The cell that holds a particle at xi; the last one when it is on the upper face. */
+/* Returns the cell that holds a particle at xi; the last one when it is on the upper face. */
 MPMI_INLINE double mpmi_cell(const mpmi_axis *a, double xi) {
   const double cell = mpmi_floor(xi);
   return cell > a->last_cell ? a->last_cell : cell;

@@ -10,8 +10,8 @@
 #include "simd/pack.h"
 #include "transfer/gather.h"
 
-/* Per particle of a chunk: v; dv when nodes have 8 values; gradients; sums of w v (x_i - x_p),
- * or of w v (i - middle) in the MLS form. */
+/* Holds, per particle of a chunk: v; dv when nodes have 8 values; gradients; sums of w v (x_i - x_p), or of w
+ * v (i - middle) in the MLS form. */
 typedef struct mpmi_gathered {
   _Alignas(64) double v[4 * MPMI_CHUNK], dv[4 * MPMI_CHUNK], L[3][4 * MPMI_CHUNK], M[3][4 * MPMI_CHUNK];
 } mpmi_gathered;

@@ -5,18 +5,17 @@
 #include "transfer/streams.h"
 #include "transfer/weights.h"
 
-/* Forms of the gather: 4 values: velocity and L; and C beside L; C of the MLS form in place of L; 8 values:
- * velocity, its change and L; and C. */
+/* Forms of the gather: how many values nodes have, and what particles take from them. */
 enum {
-  MPMI_GATHER_4,
-  MPMI_GATHER_4_AFFINE,
-  MPMI_GATHER_4_MLS,
-  MPMI_GATHER_8,
-  MPMI_GATHER_8_AFFINE,
+  MPMI_GATHER_4,        /* 4 values: velocity and L */
+  MPMI_GATHER_4_AFFINE, /* 4 values: velocity, L and C */
+  MPMI_GATHER_4_MLS,    /* 4 values: velocity, and in the place of L the C of the MLS form */
+  MPMI_GATHER_8,        /* 8 values: velocity, its change and L */
+  MPMI_GATHER_8_AFFINE, /* 8 values: velocity, its change, L and C */
   MPMI_GATHER_FORMS
 };
 
-/* Gathered quantities of a batch, [components][ld] each; L and C full 3x3: columns that the grid
+/* Holds the gathered quantities of a batch, [components][ld] each; L and C full 3x3: columns that the grid
  * does not have are left alone, rows are zero. */
 typedef struct mpmi_gather {
   mpmi_axis axis[3];

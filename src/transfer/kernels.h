@@ -17,7 +17,7 @@
 #include "transfer/stiffness.h"
 #include "transfer/sums.h"
 
-/* Momenta and forces of `count` nodes to velocities and increments; returns how many have mass. */
+/* Turns momenta and forces of `count` nodes into velocities and increments; returns how many have mass. */
 typedef int64_t (*mpmi_update_fn)(int32_t values, double *nodes, int64_t count, double cut, double dt);
 
 typedef struct mpmi_kernels {

@@ -5,7 +5,7 @@
 
 /*   FLIP/PIC blend  v = a (v_p + sum w dv) + (1 - a) sum w v     MPoint theory eq. 36
  *   affine, PIC     v = sum w v
- *   XPIC            v = sum w v + correction                     stepper/xpic.c
+ *   XPIC            v = sum w v + correction                     stages/xpic.c
  *   position        x = x_p + dt sum w v                         Guilkey eq. 10, Steffen et al. 2008 eq. 10
  *   second order    x = x_p + dt sum w (v - dv / 2)              MPoint theory eq. 37, its misprint mended
  */

@@ -24,7 +24,7 @@ typedef struct mpmi_first_order {
   _Alignas(64) double a[8 * MPMI_CHUNK], column[3][8 * MPMI_CHUNK];
 } mpmi_first_order;
 
-/* Mass and momentum. */
+/* Scatters mass and momentum. */
 MPMI_INLINE void scatter_plain(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
                                const mpmi_first_order *of, double *restrict tile) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
@@ -45,7 +45,8 @@ MPMI_INLINE void scatter_plain(int32_t dim, int32_t width, const mpmi_weights *W
   }
 }
 
-/* Mass and affine momentum: a is the function at the first node, column[k] its growth per node of axis k. */
+/* Scatters mass and affine momentum: a is the function at the first node, column[k] its growth per node of
+ * axis k. */
 MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
                                 const mpmi_first_order *of, double *restrict tile) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
@@ -72,12 +73,12 @@ MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *
   }
 }
 
-/* Second weight of node k of an axis: of the momentum, of the force. */
+/* Returns the second weights of node k of an axis: that of the momentum and that of the force. */
 MPMI_INLINE mpmi_pair second(int32_t affine, const mpmi_weights *W, int32_t axis, int32_t k, int64_t p) {
   return mpmi_pair_of(affine ? W->u[axis][k][p] : W->g[axis][k][p], W->g[axis][k][p]);
 }
 
-/* a += second weight * column; with 4 values there is only the momentum's. */
+/* Returns a + second weight * column; with 4 values there is only the momentum's. */
 MPMI_INLINE mpmi_node add_second(int32_t values, int32_t part, mpmi_node a, int32_t affine,
                                  const mpmi_weights *W, int32_t axis, int32_t k, int64_t p,
                                  mpmi_node column) {
@@ -85,8 +86,8 @@ MPMI_INLINE mpmi_node add_second(int32_t values, int32_t part, mpmi_node a, int3
   return mpmi_node_fma_pair(part, a, second(affine, W, axis, k, p), column);
 }
 
-/* Mass, momentum and force, or with 4 values mass and affine momentum. Without an affine part the columns
- * have nothing to give to momentum. */
+/* Scatters mass, momentum and force, or with 4 values mass and affine momentum. Without an affine part the
+ * columns have nothing to give to momentum. */
 MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t values, int32_t affine,
                                      const mpmi_weights *W, int64_t p, const mpmi_first_order *of,
                                      double *MPMI_APART tile) {
@@ -150,7 +151,7 @@ typedef struct mpmi_given {
   double force[3][MPMI_CHUNK], stress[3][3][MPMI_CHUNK];
 } mpmi_given;
 
-/* -V sigma, of which the lower triangle is filled, and the external force. */
+/* Computes -V sigma, of which the lower triangle is filled, and the external force. */
 MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s,
                             int64_t n, mpmi_given *to) {
   const double *volume = job->volume + s, *mass = job->mass + s;
@@ -170,8 +171,9 @@ MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_str
   }
 }
 
-/* Momentum. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis; there the
- * fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Other affine forms: the columns of m C. */
+/* Computes momentum. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis;
+ * there the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Other affine forms: the columns of
+ * m C. */
 MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job,
                                const mpmi_stress_rows *stress, int64_t s, int64_t n, const mpmi_weights *W,
                                mpmi_given *to) {

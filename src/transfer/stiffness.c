@@ -9,7 +9,7 @@
 #include "simd/tensor.h"
 #include "transfer/stiffness.h"
 
-/* F_inc^-1 of particle p, component 3 * k + i. */
+/* Computes F_inc^-1 of particle p, component 3 * k + i. */
 MPMI_INLINE void invert(int32_t dim, const double *F, int64_t ld, int64_t p, double *out) {
 #define F_(r, c) F[(3 * (r) + (c)) * ld + p]
   if (dim == 1) {

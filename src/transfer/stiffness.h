@@ -25,9 +25,11 @@ typedef struct mpmi_force_scatter {
   mpmi_axis axis[3];
   mpmi_weights_fn weights;
   mpmi_points points;
-  int64_t ld;                                     /* of nominal */
-  const double *nominal;                          /* [9] gives the internal force; NULL: */
-  const double *mass, *initial_volume, *force[3]; /* these the external one; at slot 0, force may be NULL */
+  int64_t ld; /* leading dimension of nominal */
+  /* With nominal [9] it is the internal force; with NULL the external one, from mass, initial_volume and
+   * force, which stand at slot 0. force may be NULL. */
+  const double *nominal;
+  const double *mass, *initial_volume, *force[3];
   double gravity[3];
   int32_t deforms; /* 0: its particles have no stiffness */
   double *tile;

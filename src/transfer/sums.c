@@ -7,14 +7,15 @@ typedef struct mpmi_tally {
   mpmi_lanes kinetic, strain, work, rate, viscosity, bad, momentum[3], angular[3];
 } mpmi_tally;
 
-/* Second moment D of the basis at a particle, for the affine part of the angular momentum. */
+/* Returns the second moment D of the basis at a particle, for the affine part of the angular momentum. */
 MPMI_INLINE mpmi_lanes second_moment(const mpmi_sums_job *job, int32_t axis, int64_t s) {
   if (job->moment[axis]) return mpmi_lanes_load(job->moment[axis] + s);
   const mpmi_lanes zero = {0.0};
   return zero + job->constant_moment[axis];
 }
 
-/* m (x x v + sum_k D_k e_k x C e_k): component r of the angular momentum, with a, b the two other axes. */
+/* Adds component r of the angular momentum, m (x x v + sum_k D_k e_k x C e_k), with a, b the two other
+ * axes. */
 MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t r, mpmi_lanes m,
                              const mpmi_lanes *x, const mpmi_lanes *v, mpmi_tally *t) {
   const int32_t a = (r + 1) % 3, b = (r + 2) % 3;
@@ -25,7 +26,7 @@ MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, i
                         second_moment(job, b, s) * mpmi_lanes_load(job->affine[3 * a + b] + s));
 }
 
-/* Work of gravity and of the other external forces along axis k. */
+/* Adds the work of gravity and of the other external forces along axis k. */
 MPMI_INLINE void add_work(const mpmi_sums_job *job, int64_t s, int32_t k, mpmi_lanes m, mpmi_lanes x,
                           mpmi_tally *t) {
   if (!job->x_old[0] || (job->gravity[k] == 0.0 && !job->force[0])) return;

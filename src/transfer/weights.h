@@ -44,12 +44,12 @@ typedef struct mpmi_weights {
 enum {
   MPMI_NEED_GRADIENT = 1, /* g */
   MPMI_NEED_MOMENT = 2,   /* u and inverse_moment */
-  MPMI_NEED_MLS = 4,      /* these, and g = u / D in place of the gradient */
-  MPMI_NO_PLACE = 8       /* but not node: the particles may lie anywhere */
+  MPMI_NEED_MLS = 4,      /* g, u and inverse_moment, with g = u / D */
+  MPMI_NO_PLACE = 8       /* do not find node: the particles may lie anywhere */
 };
 
-/* Weights of n particles (MPMI_CHUNK of them) along all axes. Each basis has such a function for each dim;
- * everything else is common to all. */
+/* Computes the weights of n particles (MPMI_CHUNK of them) along all axes. Each basis has such a function for
+ * each dim; everything else is common to all. */
 typedef void (*mpmi_weights_fn)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,
                                 int64_t n, mpmi_weights *out);
 

@@ -67,7 +67,7 @@ static double *after_steps(const world_desc *d, int32_t steps, double dt, int64_
   return v;
 }
 
-static double apart(const double *a, const double *b, int64_t n) {
+static double difference(const double *a, const double *b, int64_t n) {
   double most = 0.0;
   for (int64_t i = 0; i < n; ++i) most = fmax(most, fabs(a[i] - b[i]));
   return most;
@@ -83,10 +83,10 @@ START_TEST(xpic_of_order_one_is_pic) {
       d.stepper.transfer = MPM_FLIP;
       d.stepper.flip = 0.0;
       double *y = after_steps(&d, 5, 1e-3, &n);
-      ck_within(basis_options[b].name, apart(x, y, n), 0.0, 1e-11);
+      ck_within(basis_options[b].name, difference(x, y, n), 0.0, 1e-11);
       d.stepper.flip = 1.0;
       double *z = after_steps(&d, 5, 1e-3, &n);
-      ck_assert_double_gt(apart(x, z, n), 1e-3);
+      ck_assert_double_gt(difference(x, z, n), 1e-3);
       free(x), free(y), free(z);
     }
 }
@@ -105,7 +105,7 @@ START_TEST(damping_is_a_rate) {
   d.stepper.pic_damping = 0.0;
   d.stepper.flip = flip * (1.0 - beta * dt);
   double *blended = after_steps(&d, 4, dt, &n);
-  ck_within("damping", apart(damped, blended, n), 0.0, 1e-13);
+  ck_within("damping", difference(damped, blended, n), 0.0, 1e-13);
   free(damped), free(blended);
   /* beyond 1 / dt: PIC */
   d.stepper.flip = flip;
@@ -114,7 +114,7 @@ START_TEST(damping_is_a_rate) {
   d.stepper.pic_damping = 0.0;
   d.stepper.flip = 0.0;
   blended = after_steps(&d, 2, dt, &n);
-  ck_within("damping", apart(damped, blended, n), 0.0, 1e-13);
+  ck_within("damping", difference(damped, blended, n), 0.0, 1e-13);
   free(damped), free(blended);
   /* What damping takes off in the time of one step, by one step and by two of half the size. The forces of
    * the cloud act alike on both, but for terms of order dt^2. */
@@ -127,7 +127,7 @@ START_TEST(damping_is_a_rate) {
       damped = after_steps(&d, 1 + halves, span / (1 + halves), &n);
       d.stepper.pic_damping = 0.0;
       blended = after_steps(&d, 1 + halves, span / (1 + halves), &n);
-      taken[level][halves] = apart(damped, blended, n);
+      taken[level][halves] = difference(damped, blended, n);
       free(damped), free(blended);
     }
   for (int32_t level = 0; level < 2; ++level) {
@@ -291,9 +291,9 @@ START_TEST(remedy_averages_the_cell) {
 }
 END_TEST
 
-/* Energy, momenta and the stable step are summed up while a step passes over the particles, where the law may have run
- * before the particles moved. They must be those of the state that the step leaves: describing the stepper once more
- * makes it forget them, and they are made again from the particles. */
+/* Energy, momenta and the stable step are summed up while a step passes over the particles, where the law may
+ * have run before the particles moved. They must be those of the state that the step leaves: describing the
+ * stepper once more makes it forget them, and they are made again from the particles. */
 START_TEST(sums_are_those_of_the_state) {
   const basis_option *basis = &basis_options[_i % BASES];
   const int32_t s = _i / BASES, scheme = s < SCHEMES ? scheme_options[s].scheme : MPM_NEWMARK;

@@ -122,17 +122,17 @@ START_TEST(callback_before_walls) {
     shown.axis = 1;
     shown_step(&r);
     int64_t n, on_wall = 0, *index = fetch_node_indices(&r, &n);
-    double *v = fetch_nodes(&r, "velocity", &n), *reaction = fetch_nodes(&r, "reaction", &n), booked = 0.0;
+    double *v = fetch_nodes(&r, "velocity", &n), *reaction = fetch_nodes(&r, "reaction", &n), sum = 0.0;
     for (int64_t i = 0; i < n; ++i) {
       const int64_t row = index[n + i];
       if (row == 0) ++on_wall;
       if (row >= 0) ck_within("held velocity", v[n + i], -7.0, 1e-12);
-      booked += fabs(reaction[n + i]);
+      sum += fabs(reaction[n + i]);
     }
     ck_assert_int_gt(on_wall, 10);
-    ck_assert_double_gt(booked, 1.0);
+    ck_assert_double_gt(sum, 1.0);
     ck_ok(&r, mpm_stepper_wall_reaction(r.stepper, MPM_Y_MIN, force));
-    ck_within("normal reaction of a wall that holds nothing", force[1], 0.0, 1e-9 * booked);
+    ck_within("normal reaction of a wall that holds nothing", force[1], 0.0, 1e-9 * sum);
     free(index), free(v), free(reaction);
     world_close(&r);
   }

@@ -41,8 +41,8 @@ START_TEST(refused_requests) {
 }
 END_TEST
 
-/* Energies are summed up in the order of the blocks: when the host has added a particle and asks for them, the
- * particles are sorted, and the nodes of the last step are no more. */
+/* Energies are summed up in the order of the blocks: when the host has added a particle and asks for them,
+ * the particles are sorted, and the nodes of the last step are no more. */
 START_TEST(nodes_end_with_their_layout) {
   world r;
   mpm_view v = {.struct_size = sizeof v};
@@ -199,13 +199,13 @@ START_TEST(fields_fit_together) {
   ck_ok(&r, mpm_step_grid(r.stepper));
   double *after = fetch_nodes(&r, "velocity", &n), *same = fetch_nodes(&r, "force", &n);
   double *total = fetch_nodes(&r, "acceleration", &n), *reaction = fetch_nodes(&r, "reaction", &n);
-  double booked[3] = {0.0, 0.0, 0.0};
+  double sum[3] = {0.0, 0.0, 0.0};
   for (int32_t c = 0; c < o.dim; ++c)
     for (int64_t i = 0; i < n; ++i) {
       const int64_t k = c * n + i;
       const double scale = largest_f + mass[i] * largest_v / BODY_DT;
       ck_within("force after the update", same[k], force[k], 1e-10 * scale);
-      booked[c] += reaction[k];
+      sum[c] += reaction[k];
       if (!inside[i]) continue; /* at a wall nodes and ghosts move together */
       ck_within("m a = f + reaction", mass[i] * total[k], force[k] + reaction[k], 1e-10 * scale);
       ck_within("dv", after[k] - before[k], BODY_DT * total[k],
@@ -222,7 +222,7 @@ START_TEST(fields_fit_together) {
         walls += f[c];
         scale += fabs(f[c]);
       }
-      ck_within("reactions", booked[c], walls, 1e-10 * scale);
+      ck_within("reactions", sum[c], walls, 1e-10 * scale);
     }
   double *const arrays[] = {mass, before, force, a, none, after, same, total, reaction, last};
   for (int32_t i = 0; i < 10; ++i) free(arrays[i]);

@@ -1,4 +1,4 @@
-/* Walls and periodic axes: nodal conditions, symmetry, reactions, the books of impulse, work and energy. */
+/* Walls and periodic axes: nodal conditions, symmetry, reactions, the balance of impulse, work and energy. */
 #include "walls.h"
 
 enum { CLOUD = 300 };

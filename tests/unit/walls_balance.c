@@ -1,16 +1,16 @@
-/* The books of walls: impulse, work and energy, for every basis and kind of wall. */
+/* The balance of walls: impulse, work and energy, for every basis and kind of wall. */
 #include "walls.h"
 
 enum { CLOUD = 160 };
 
-typedef struct books {
+typedef struct balance {
   world w;
   mpm_particles *set;
   double *mass, total, dt, scale;
   char name[96];
-} books;
+} balance;
 
-static double reaction_of(books *b, const wall_setup *walls, int32_t face, double friction, double *force) {
+static double reaction_of(balance *b, const wall_setup *walls, int32_t face, double friction, double *force) {
   ck_ok(&b->w, mpm_stepper_wall_reaction(b->w.stepper, face, force));
   const int32_t k = face / 2, kind = walls->kind[face];
   const double normal = face % 2 ? -force[k] : force[k];
@@ -23,7 +23,7 @@ static double reaction_of(books *b, const wall_setup *walls, int32_t face, doubl
   return normal;
 }
 
-static void check_step(books *b, const wall_setup *walls, double friction, const double *gravity) {
+static void check_step(balance *b, const wall_setup *walls, double friction, const double *gravity) {
   const int32_t dim = b->w.dim;
   const mpm_step_info before = world_info(&b->w);
   double *v0 = fetch(&b->w, b->set, "velocity", dim), *x0 = fetch(&b->w, b->set, "position", dim);
@@ -64,7 +64,7 @@ static void check_step(books *b, const wall_setup *walls, double friction, const
 
 static void check_balance(const method *how, const wall_setup *walls, int32_t dim, int64_t cells) {
   const double gravity[3] = {3.0, -10.0, 1.0}, friction = 0.3;
-  books b = {.dt = 2e-5};
+  balance b = {.dt = 2e-5};
   world_desc desc = world_with(how, dim, cells, 0.1);
   wall_describe(walls, &desc.grid);
   memcpy(desc.stepper.gravity, gravity, sizeof gravity);

@@ -181,7 +181,7 @@ static double asymmetry(const double *d, int64_t cells) {
 }
 
 /* Largest difference of the momentum of a disc, over that of all. */
-static double apart(const double *a, const double *b) {
+static double difference(const double *a, const double *b) {
   double worst = 0.0, all = 0.0;
   for (int k = 0; k < DISCS; ++k) worst = fmax(worst, fabs(a[k] - b[k])), all += a[k];
   return worst / all;
@@ -245,7 +245,7 @@ int main(int argc, char **argv) {
     const double *e = explicit.difference[f], *i = implicit.difference[f];
     const char *agree = "Guilkey & Weiss 2003, 5.2: good agreement; set tolerance";
     verify_gate(SAY("t = %.1f: momentum of a disc, Newmark less MUSL, over all", due[f]),
-                apart(explicit.momentum[f], implicit.momentum[f]), 0.0, 0.01, agree);
+                difference(explicit.momentum[f], implicit.momentum[f]), 0.0, 0.01, agree);
     verify_gate(SAY("t = %.1f: correlation of the fringes, Newmark and MUSL", due[f]),
                 correlation(e, i, cells), alike, 1.0, agree);
     verify_gate(SAY("t = %.1f: noise of the stress, Newmark over MUSL", due[f]),
