@@ -9,69 +9,71 @@
 
 /* ---- external forces ---------------------------------------------------------------------------------- */
 static void give_external(void *user, const mpmi_visit *visit, double *tile) {
-  const mpmi_balance *s = user;
-  const mpm_grid *grid = s->settings->grid;
-  const mpmi_force_scatter_fn kernel = s->settings->kernels->force_scatter[grid->dim][grid->width];
-  for (int32_t m = 0; m < s->layout->member_count; ++m) {
-    const int64_t *start = s->layout->member[m].now.start + visit->block;
+  const mpmi_balance *balance = user;
+  const mpm_grid *grid = balance->settings->grid;
+  const mpmi_force_scatter_fn kernel = balance->settings->kernels->force_scatter[grid->dim][grid->width];
+  for (int32_t m = 0; m < balance->layout->member_count; ++m) {
+    const int64_t *start = balance->layout->member[m].now.start + visit->block;
     if (start[0] == start[1]) continue;
-    mpmi_force_scatter scatter = mpmi_force_scatter_of(s->settings, &s->layout->member[m], tile);
-    mpmi_block_axes(grid, s->layout->blocks.coord[visit->block], scatter.axis);
+    mpmi_force_scatter scatter = mpmi_force_scatter_of(balance->settings, &balance->layout->member[m], tile);
+    mpmi_block_axes(grid, balance->layout->blocks.coord[visit->block], scatter.axis);
     kernel(&scatter, start[0], start[1] - start[0]);
   }
 }
 
-mpm_status mpmi_external_forces(mpmi_balance *s) {
-  return mpmi_accumulate(s->step,
-                         &(mpmi_accumulation){.to = &s->newton->external, .give = give_external, .user = s});
+mpm_status mpmi_external_forces(mpmi_balance *balance) {
+  return mpmi_accumulate(
+      balance->step,
+      &(mpmi_accumulation){.to = &balance->newton->external, .give = give_external, .user = balance});
 }
 
 /* ---- strain of given displacements -------------------------------------------------------------------- */
 /* Spreads displacements over all nodes that move with a row, as mean velocities of the step. */
 typedef struct spread_job {
-  mpmi_balance *s;
+  mpmi_balance *balance;
   const double *u;
 } spread_job;
 
 static void spread_task(void *data, int64_t k) {
   const spread_job *job = data;
-  const mpmi_balance *s = job->s;
-  const mpmi_newton *newton = s->newton;
-  const int32_t dim = s->settings->grid->dim;
-  const mpmi_share share = mpmi_share_of(s->settings, newton->active_count, k);
+  const mpmi_balance *balance = job->balance;
+  const mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim;
+  const mpmi_share share = mpmi_share_of(balance->settings, newton->active_count, k);
   for (int64_t i = share.begin; i < share.end; ++i) {
     const mpmi_active_node *node = &newton->active[i];
     for (int32_t c = 0; c < dim; ++c)
-      mpmi_velocity(&s->nodes->solved, node->slot)[c] =
-          node->sign[c] * (job->u[(int64_t)node->row * dim + c] / s->step->dt);
+      mpmi_velocity(&balance->nodes->solved, node->slot)[c] =
+          node->sign[c] * (job->u[(int64_t)node->row * dim + c] / balance->step->dt);
   }
 }
 
 /* Gives the nodes the velocities of u, and lets all tasks begin a pass that deforms. */
-static mpm_status begin_strain(mpmi_balance *s, const double *u, const mpmi_pass *pass) {
-  spread_job spread = {s, u};
-  mpmi_failures_clear(s->step);
-  mpm_status status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, spread_task, &spread);
-  if (!status && s->settings->desc.locking_remedy) {
+static mpm_status begin_strain(mpmi_balance *balance, const double *u, const mpmi_pass *pass) {
+  spread_job spread = {balance, u};
+  mpmi_failures_clear(balance->step);
+  mpm_status status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, spread_task, &spread);
+  if (!status && balance->settings->desc.locking_remedy) {
     /* the averages weigh with the volumes of the start of the step */
-    mpmi_make_volumes(s->layout, 0);
-    status = mpmi_locking_stage(s->step, s->nodes, &s->nodes->solved);
+    mpmi_make_volumes(balance->layout, 0);
+    status = mpmi_locking_stage(balance->step, balance->nodes, &balance->nodes->solved);
   }
-  for (int32_t k = 0; k < s->settings->tasks; ++k)
-    mpmi_pass_begin(&s->newton->work[k].batch, s->step, s->nodes, &s->nodes->solved, pass, s, k);
+  for (int32_t k = 0; k < balance->settings->tasks; ++k)
+    mpmi_pass_begin(&balance->newton->work[k].batch, balance->step, balance->nodes, &balance->nodes->solved,
+                    pass, balance, k);
   return status;
 }
 
 /* Computes the stress of a batch; then `add` puts its force or its stiffness on the nodes. */
 static void take(mpmi_batch *b, void (*add)(mpmi_balance *, mpmi_batch *)) {
-  mpmi_balance *s = b->user;
+  mpmi_balance *balance = b->user;
   mpmi_gradient_keep(b);
   if (!mpmi_strain_deform(b)) return;
-  if (s->settings->desc.locking_remedy) /* kept, because the remedy changes what the law sees */
-    memcpy(s->newton->work[b->task].F_inc, b->law.F_inc, (size_t)(9 * b->law.ld) * sizeof(double));
+  if (balance->settings->desc.locking_remedy) /* kept, because the remedy changes what the law sees */
+    memcpy(balance->newton->work[b->task].F_inc, b->law.F_inc, (size_t)(9 * b->law.ld) * sizeof(double));
   mpmi_strain_law(b);
   if (!b->law_ran) return;
-  add(s, b);
+  add(balance, b);
   mpmi_wave_speed_leave(b);
   mpmi_batch_sums(b, MPMI_SUMS_LAW);
 }
@@ -82,23 +84,24 @@ static void take_forces(mpmi_batch *b) {
 }
 
 static void give_internal(void *user, const mpmi_visit *visit, double *tile) {
-  mpmi_balance *s = user;
-  s->newton->work[visit->task].tile = tile;
-  mpmi_pass_block(&s->newton->work[visit->task].batch, visit->block, visit->next);
+  mpmi_balance *balance = user;
+  balance->newton->work[visit->task].tile = tile;
+  mpmi_pass_block(&balance->newton->work[visit->task].batch, visit->block, visit->next);
 }
 
-mpm_status mpmi_internal_forces(mpmi_balance *s, const double *u) {
+mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
   static const mpmi_pass pass = {
       .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .take = take_forces};
-  mpm_status status = begin_strain(s, u, &pass);
+  mpm_status status = begin_strain(balance, u, &pass);
   if (!status)
-    status = mpmi_accumulate(s->step, &(mpmi_accumulation){.to = &s->newton->force,
-                                                           .give = give_internal,
-                                                           .user = s,
-                                                           .calls_host = mpmi_has_host_law(s->layout),
-                                                           .gathers = 1});
-  if (!status) status = mpmi_step_failure(s->step);
-  if (!status) mpmi_unknowns_fold(s, &s->newton->force, s->newton->vector[MPMI_INTERNAL]);
+    status =
+        mpmi_accumulate(balance->step, &(mpmi_accumulation){.to = &balance->newton->force,
+                                                            .give = give_internal,
+                                                            .user = balance,
+                                                            .calls_host = mpmi_has_host_law(balance->layout),
+                                                            .gathers = 1});
+  if (!status) status = mpmi_step_failure(balance->step);
+  if (!status) mpmi_unknowns_fold(balance, &balance->newton->force, balance->newton->vector[MPMI_INTERNAL]);
   return status;
 }
 
@@ -108,15 +111,15 @@ static void take_stiffness(mpmi_batch *b) {
 }
 
 static void clear_matrix_task(void *data, int64_t k) {
-  const mpmi_balance *s = data;
-  const mpmi_matrix *A = &s->newton->matrix;
-  mpmi_clear_share(s->settings, A->value, A->row_start[A->rows], (int64_t)A->block * A->block, k);
+  const mpmi_balance *balance = data;
+  const mpmi_matrix *A = &balance->newton->matrix;
+  mpmi_clear_share(balance->settings, A->value, A->row_start[A->rows], (int64_t)A->block * A->block, k);
 }
 
 /* Returns 1 when the tile of a block reaches over the end of a periodic axis. */
-static int32_t is_at_seam(const mpmi_balance *s, int64_t block) {
-  const mpm_grid *grid = s->settings->grid;
-  const mpmi_blocks *blocks = &s->layout->blocks;
+static int32_t is_at_seam(const mpmi_balance *balance, int64_t block) {
+  const mpm_grid *grid = balance->settings->grid;
+  const mpmi_blocks *blocks = &balance->layout->blocks;
   for (int32_t k = 0; k < grid->dim; ++k) {
     const int64_t first = (int64_t)blocks->coord[block][k] * blocks->edge - MPMI_RING - grid->below;
     const int64_t end = first + MPMI_TILE_EDGE(grid->dim, grid->width);
@@ -125,9 +128,9 @@ static int32_t is_at_seam(const mpmi_balance *s, int64_t block) {
   return 0;
 }
 
-static void add_block(mpmi_balance *s, const mpmi_visit *visit) {
-  mpmi_newton_work *work = &s->newton->work[visit->task];
-  mpmi_tile_of_unknowns(s, visit->block, work->tile_active);
+static void add_block(mpmi_balance *balance, const mpmi_visit *visit) {
+  mpmi_newton_work *work = &balance->newton->work[visit->task];
+  mpmi_tile_of_unknowns(balance, visit->block, work->tile_active);
   mpmi_pass_block(&work->batch, visit->block, visit->next);
 }
 
@@ -139,22 +142,23 @@ static void add_at_seam(void *user, const mpmi_visit *visit) {
   if (is_at_seam(user, visit->block)) add_block(user, visit);
 }
 
-mpm_status mpmi_stiffness(mpmi_balance *s, const double *u) {
+mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
   static const mpmi_pass pass = {
       .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .take = take_stiffness};
-  mpmi_newton *newton = s->newton;
-  const int32_t tasks = s->settings->tasks, remedy = s->settings->desc.locking_remedy;
-  mpm_status status = mpmi_run_tasks(s->settings, 0, tasks, clear_matrix_task, s);
-  if (!status && remedy) status = mpmi_locking_stiffness_begin(s);
+  mpmi_newton *newton = balance->newton;
+  const int32_t tasks = balance->settings->tasks, remedy = balance->settings->desc.locking_remedy;
+  mpm_status status = mpmi_run_tasks(balance->settings, 0, tasks, clear_matrix_task, balance);
+  if (!status && remedy) status = mpmi_locking_stiffness_begin(balance);
   for (int32_t k = 0; k < tasks; ++k) newton->work[k].symmetric = 1;
-  if (!status) status = begin_strain(s, u, &pass);
-  if (!status) status = mpmi_visit_colours(s->step, mpmi_has_host_law(s->layout), add_inner, s);
+  if (!status) status = begin_strain(balance, u, &pass);
+  if (!status)
+    status = mpmi_visit_colours(balance->step, mpmi_has_host_law(balance->layout), add_inner, balance);
   if (status) return status;
   /* images add to rows of masters in any block: blocks at a seam come one by one */
-  mpmi_visit_in_turn(s->step, add_at_seam, s);
-  if ((status = mpmi_step_failure(s->step))) return status;
+  mpmi_visit_in_turn(balance->step, add_at_seam, balance);
+  if ((status = mpmi_step_failure(balance->step))) return status;
   newton->matrix.symmetric = 1;
   for (int32_t k = 0; k < tasks; ++k) newton->matrix.symmetric &= newton->work[k].symmetric;
-  if (remedy) mpmi_locking_stiffness_end(s);
+  if (remedy) mpmi_locking_stiffness_end(balance);
   return MPM_OK;
 }

@@ -9,14 +9,14 @@ static double *take_rows(mpmi_arena *from, int64_t rows, int64_t length) {
   return mpmi_arena_take(from, rows * length, sizeof(double));
 }
 
-static void lay_out(const mpmi_balance *s, mpmi_arena *from, mpmi_newton_work *to) {
-  const mpm_grid *grid = s->settings->grid;
+static void lay_out(const mpmi_balance *balance, mpmi_arena *from, mpmi_newton_work *to) {
+  const mpm_grid *grid = balance->settings->grid;
   const int64_t row = grid->dim * MPMI_STENCIL_NODES(grid->dim, grid->width);
   const int64_t tile = mpmi_tile_nodes(grid);
   int64_t length = 0;
   size_t tangent = 0;
-  for (int32_t m = 0; m < s->layout->member_count; ++m) {
-    const mpm_material *material = s->layout->member[m].set->material;
+  for (int32_t m = 0; m < balance->layout->member_count; ++m) {
+    const mpm_material *material = balance->layout->member[m].set->material;
     const int64_t ld = mpmi_law_batch_length(material);
     const size_t bytes = mpmi_material_tangent_scratch(material, ld);
     length = ld > length ? ld : length;
@@ -34,22 +34,22 @@ static void lay_out(const mpmi_balance *s, mpmi_arena *from, mpmi_newton_work *t
   to->tile_active = mpmi_arena_take(from, tile, sizeof *to->tile_active);
 }
 
-static mpm_status prepare_work(mpmi_balance *s) {
-  mpmi_newton *newton = s->newton;
+static mpm_status prepare_work(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
   mpmi_arena counter = {NULL, 0};
   mpmi_newton_work one;
-  lay_out(s, &counter, &one);
-  const size_t bytes = counter.used * (size_t)s->settings->tasks;
+  lay_out(balance, &counter, &one);
+  const size_t bytes = counter.used * (size_t)balance->settings->tasks;
   if (bytes > newton->work_bytes) {
-    char *memory = mpmi_alloc_zeroed(s->settings->context, bytes);
+    char *memory = mpmi_alloc_zeroed(balance->settings->context, bytes);
     if (!memory) return MPM_E_NOMEM;
-    mpmi_free(s->settings->context, newton->work_memory, newton->work_bytes);
+    mpmi_free(balance->settings->context, newton->work_memory, newton->work_bytes);
     newton->work_memory = memory;
     newton->work_bytes = bytes;
   }
-  for (int32_t k = 0; k < s->settings->tasks; ++k) {
+  for (int32_t k = 0; k < balance->settings->tasks; ++k) {
     mpmi_arena from = {(char *)newton->work_memory + (size_t)k * counter.used, 0};
-    lay_out(s, &from, &newton->work[k]);
+    lay_out(balance, &from, &newton->work[k]);
     memset(newton->work[k].K, 0, (size_t)((char *)newton->work[k].tile_active - (char *)newton->work[k].K));
   }
   return MPM_OK;
@@ -71,13 +71,14 @@ mpm_status mpmi_newton_create(const mpmi_settings *settings, mpmi_newton **out) 
   return MPM_OK;
 }
 
-static mpm_status prepare_history(mpmi_balance *s) {
-  mpmi_newton *newton = s->newton;
-  const int32_t wanted = s->settings->desc.newton_max_iterations + 1;
+static mpm_status prepare_history(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  const int32_t wanted = balance->settings->desc.newton_max_iterations + 1;
   if (wanted <= newton->history_capacity) return MPM_OK;
-  double *history = mpmi_alloc(s->settings->context, mpmi_bytes(wanted, sizeof *history));
+  double *history = mpmi_alloc(balance->settings->context, mpmi_bytes(wanted, sizeof *history));
   if (!history) return MPM_E_NOMEM;
-  mpmi_free(s->settings->context, newton->history, mpmi_bytes(newton->history_capacity, sizeof *history));
+  mpmi_free(balance->settings->context, newton->history,
+            mpmi_bytes(newton->history_capacity, sizeof *history));
   newton->history = history;
   newton->history_capacity = wanted;
   return MPM_OK;
@@ -89,14 +90,14 @@ static void find_stencil(const mpmi_settings *settings, mpmi_stencil *to) {
   mpmi_cube_places(dim, width, 2 * mpmi_coupling_span(settings) - 1, to->offset);
 }
 
-mpm_status mpmi_balance_prepare(mpmi_balance *s) {
-  mpm_context *c = s->settings->context;
-  const int64_t slots = mpmi_slots(s->layout);
-  mpmi_newton *newton = s->newton;
+mpm_status mpmi_balance_prepare(mpmi_balance *balance) {
+  mpm_context *c = balance->settings->context;
+  const int64_t slots = mpmi_slots(balance->layout);
+  mpmi_newton *newton = balance->newton;
   mpm_status status;
-  find_stencil(s->settings, &newton->stencil);
+  find_stencil(balance->settings, &newton->stencil);
   newton->history_count = 0;
-  if ((status = prepare_history(s)) || (status = prepare_work(s)) ||
+  if ((status = prepare_history(balance)) || (status = prepare_work(balance)) ||
       (status = mpmi_nodal_reserve(c, &newton->force, slots, 4)))
     return status;
   return mpmi_nodal_reserve(c, &newton->external, slots, 4);

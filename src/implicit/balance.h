@@ -129,11 +129,11 @@ static inline int32_t mpmi_cube_places(int32_t dim, int32_t width, int32_t edge,
 /* These values of matrix.held say who holds a component; one that nobody holds is an unknown. */
 enum { MPMI_ROW_FREE, MPMI_ROW_PRESCRIBED, MPMI_ROW_WALL };
 /* Returns the acceleration that belongs to a displacement, by component of the vectors; on walls it is 0. */
-static inline double mpmi_newmark_acceleration(const mpmi_balance *s, int64_t at) {
-  const mpmi_newton *newton = s->newton;
-  const double beta = s->settings->desc.newmark_beta, dt = s->step->dt;
+static inline double mpmi_newmark_acceleration(const mpmi_balance *balance, int64_t at) {
+  const mpmi_newton *newton = balance->newton;
+  const double beta = balance->settings->desc.newmark_beta, dt = balance->step->dt;
   const uint8_t held = newton->matrix.held[at];
-  if (held == MPMI_ROW_WALL || (held && s->settings->desc.boundary_zero_acceleration)) return 0.0;
+  if (held == MPMI_ROW_WALL || (held && balance->settings->desc.boundary_zero_acceleration)) return 0.0;
   return (newton->vector[MPMI_U][at] - dt * newton->vector[MPMI_V0][at] -
           dt * dt * (0.5 - beta) * newton->vector[MPMI_A0][at]) /
          (beta * dt * dt);
@@ -143,41 +143,41 @@ static inline double mpmi_newmark_acceleration(const mpmi_balance *s, int64_t at
 mpm_status mpmi_newton_create(const mpmi_settings *settings, mpmi_newton **out);
 void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings); /* NULL is fine */
 /* Makes room for what does not depend on the unknowns of a step, and forgets the step before. */
-mpm_status mpmi_balance_prepare(mpmi_balance *s);
+mpm_status mpmi_balance_prepare(mpmi_balance *balance);
 
 /* ---- unknowns.c -------------------------------------------------------------------------------------- */
 /* Finds active nodes, rows and held components, from the masses and from the external forces, whose fourth
  * value is > 0 where a node has stiffness. */
-mpm_status mpmi_unknowns_find(mpmi_balance *s);
+mpm_status mpmi_unknowns_find(mpmi_balance *balance);
 /* Sums nodal forces over the nodes that move with each row. */
-void mpmi_unknowns_fold(const mpmi_balance *s, const mpmi_nodal *forces, double *vector);
+void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, double *vector);
 
 /* ---- pattern.c --------------------------------------------------------------------------------------- */
 /* Makes the pattern for the active nodes as numbered, with so many rows. */
-mpm_status mpmi_make_pattern(mpmi_balance *s, int64_t rows);
+mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows);
 
 /* ---- assembly.c -------------------------------------------------------------------------------------- */
 /* Computes the external forces; their fourth value tells the nodes that have stiffness. */
-mpm_status mpmi_external_forces(mpmi_balance *s);
+mpm_status mpmi_external_forces(mpmi_balance *balance);
 /* Computes the stress of the displacements u, and the internal force that it makes. Fails as the law does. */
-mpm_status mpmi_internal_forces(mpmi_balance *s, const double *u);
+mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u);
 /* Computes the stress of the displacements u, and the stiffness at them. Fails as the law does. */
-mpm_status mpmi_stiffness(mpmi_balance *s, const double *u);
+mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u);
 
 /* ---- particle_stiffness.c ---------------------------------------------------------------------------- */
 /* Prepares the kernel that spreads a set's external forces, or with a nominal stress the internal ones. */
 mpmi_force_scatter mpmi_force_scatter_of(const mpmi_settings *settings, const mpmi_member *member,
                                          double *tile);
 /* Finds the active node at each place of the tile of a block, or -1. */
-void mpmi_tile_of_unknowns(const mpmi_balance *s, int64_t block, int32_t *to);
+void mpmi_tile_of_unknowns(const mpmi_balance *balance, int64_t block, int32_t *to);
 /* Adds the internal forces of a batch to the tile of its task. */
-void mpmi_add_forces(mpmi_balance *s, mpmi_batch *b);
+void mpmi_add_forces(mpmi_balance *balance, mpmi_batch *b);
 /* Adds the stiffness of a batch to the matrix. */
-void mpmi_add_stiffness(mpmi_balance *s, mpmi_batch *b);
+void mpmi_add_stiffness(mpmi_balance *balance, mpmi_batch *b);
 
 /* ---- locking_stiffness.c ----------------------------------------------------------------------------- */
 /* Makes room for the sums of all cells, and clears them. */
-mpm_status mpmi_locking_stiffness_begin(mpmi_balance *s);
+mpm_status mpmi_locking_stiffness_begin(mpmi_balance *balance);
 /* Puts the part of theta that each particle of a batch has into the tangent, in place, and makes h [9][ld],
  * for what couples the particles of a cell. */
 void mpmi_locking_stiffness_local(int32_t dim, const mpmi_law_batch *law, const double *weight,
@@ -188,17 +188,17 @@ typedef struct mpmi_locking_particle {
   double h[9], inverse[9], volume;
 } mpmi_locking_particle;
 /* Adds particle p of a chunk to the sums of the cell whose lower corner is at this place of the tile. */
-void mpmi_locking_stiffness_add(mpmi_balance *s, const mpmi_newton_work *work, const mpmi_weights *W,
+void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *work, const mpmi_weights *W,
                                 int64_t p, int32_t cell_place, const mpmi_locking_particle *of);
 /* Adds to the matrix what couples the particles of each cell. */
-void mpmi_locking_stiffness_end(mpmi_balance *s);
+void mpmi_locking_stiffness_end(mpmi_balance *balance);
 
 /* ---- newton.c ---------------------------------------------------------------------------------------- */
 /* Finds the displacements of the step, in vector[MPMI_U]; forces and stress are then those of them. */
-mpm_status mpmi_newton_solve(mpmi_balance *s);
+mpm_status mpmi_newton_solve(mpmi_balance *balance);
 
 /* ---- reactions.c ------------------------------------------------------------------------------------- */
 /* Records the impulses of what holds nodes; then gives the prescribed particles their share. */
-mpm_status mpmi_record_reactions(mpmi_balance *s);
+mpm_status mpmi_record_reactions(mpmi_balance *balance);
 
 #endif

@@ -12,27 +12,27 @@
 #include <string.h>
 
 enum { MOST_SPAN = 4, MOST_NODES = MOST_SPAN * MOST_SPAN * MOST_SPAN };
-static int32_t nodes_of(const mpmi_balance *s) {
-  const int32_t span = mpmi_coupling_span(s->settings);
-  return s->settings->grid->dim == 3 ? span * span * span : span * span;
+static int32_t nodes_of(const mpmi_balance *balance) {
+  const int32_t span = mpmi_coupling_span(balance->settings);
+  return balance->settings->grid->dim == 3 ? span * span * span : span * span;
 }
 
 /* Returns how many values a cell has: the sum of new volumes, then by node and axis sum h g and sum V (1 + j)
  * g. */
-static int64_t cell_values(const mpmi_balance *s) {
-  return 1 + 2 * (int64_t)nodes_of(s) * s->settings->grid->dim;
+static int64_t cell_values(const mpmi_balance *balance) {
+  return 1 + 2 * (int64_t)nodes_of(balance) * balance->settings->grid->dim;
 }
 
-mpm_status mpmi_locking_stiffness_begin(mpmi_balance *s) {
-  mpmi_newton *newton = s->newton;
-  const int64_t cells = newton->matrix.rows, nodes = nodes_of(s);
+mpm_status mpmi_locking_stiffness_begin(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  const int64_t cells = newton->matrix.rows, nodes = nodes_of(balance);
   mpm_status status;
-  if ((status = MPMI_RESERVE_MORE(s->settings->context, newton->cell, newton->cell_capacity,
-                                  cells * cell_values(s))) ||
-      (status = MPMI_RESERVE_MORE(s->settings->context, newton->cell_node, newton->cell_node_capacity,
+  if ((status = MPMI_RESERVE_MORE(balance->settings->context, newton->cell, newton->cell_capacity,
+                                  cells * cell_values(balance))) ||
+      (status = MPMI_RESERVE_MORE(balance->settings->context, newton->cell_node, newton->cell_node_capacity,
                                   cells * nodes)))
     return status;
-  memset(newton->cell, 0, (size_t)(cells * cell_values(s)) * sizeof *newton->cell);
+  memset(newton->cell, 0, (size_t)(cells * cell_values(balance)) * sizeof *newton->cell);
   for (int64_t i = 0; i < cells * nodes; ++i) newton->cell_node[i] = -1;
   return MPM_OK;
 }
@@ -58,12 +58,12 @@ void mpmi_locking_stiffness_local(int32_t dim, const mpmi_law_batch *law, const 
           tangent[(9 * (3 * i + k) + 4 * l) * ld + p] -= h[(3 * i + k) * ld + p];
 }
 
-void mpmi_locking_stiffness_add(mpmi_balance *s, const mpmi_newton_work *work, const mpmi_weights *W,
+void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *work, const mpmi_weights *W,
                                 int64_t p, int32_t cell_place, const mpmi_locking_particle *of) {
-  mpmi_newton *newton = s->newton;
-  const mpm_grid *grid = s->settings->grid;
+  mpmi_newton *newton = balance->newton;
+  const mpm_grid *grid = balance->settings->grid;
   const int32_t dim = grid->dim, edge = MPMI_TILE_EDGE(dim, grid->width),
-                span = mpmi_coupling_span(s->settings);
+                span = mpmi_coupling_span(balance->settings);
   const int32_t corner = work->tile_active[cell_place];
   int32_t base = 0, scale = 1, cell_rest = cell_place, node_rest = W->node[p], in_cell[MPMI_MOST_NODES];
   if (corner < 0) return; /* the corner node is not active: the particle lies on it, alone in its cell */
@@ -79,8 +79,8 @@ void mpmi_locking_stiffness_add(mpmi_balance *s, const mpmi_newton_work *work, c
     cell_rest /= edge;
   }
   const int32_t count = mpmi_cube_places(dim, grid->width, span, in_cell);
-  const int64_t cell = newton->active[corner].row, nodes = nodes_of(s);
-  double *sums = newton->cell + cell * cell_values(s);
+  const int64_t cell = newton->active[corner].row, nodes = nodes_of(balance);
+  double *sums = newton->cell + cell * cell_values(balance);
   *sums++ += of->volume;
   for (int32_t a = 0; a < count; ++a) {
     int32_t rest = a, at[3];
@@ -117,10 +117,11 @@ static double *entry_of(mpmi_newton *newton, int32_t from, int32_t to, int32_t o
   return NULL;
 }
 
-static void add_cell(mpmi_balance *s, int64_t cell) {
-  mpmi_newton *newton = s->newton;
-  const int32_t dim = s->settings->grid->dim, span = mpmi_coupling_span(s->settings), nodes = nodes_of(s);
-  const double *sums = newton->cell + cell * cell_values(s), volume = *sums++;
+static void add_cell(mpmi_balance *balance, int64_t cell) {
+  mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim, span = mpmi_coupling_span(balance->settings),
+                nodes = nodes_of(balance);
+  const double *sums = newton->cell + cell * cell_values(balance), volume = *sums++;
   const int32_t *node = newton->cell_node + cell * nodes;
   if (!(volume > 0.0)) return;
   int32_t place[MOST_NODES];
@@ -138,7 +139,7 @@ static void add_cell(mpmi_balance *s, int64_t cell) {
     }
 }
 
-void mpmi_locking_stiffness_end(mpmi_balance *s) {
-  for (int64_t cell = 0; cell < s->newton->matrix.rows; ++cell) add_cell(s, cell);
-  s->newton->matrix.symmetric = 0;
+void mpmi_locking_stiffness_end(mpmi_balance *balance) {
+  for (int64_t cell = 0; cell < balance->newton->matrix.rows; ++cell) add_cell(balance, cell);
+  balance->newton->matrix.symmetric = 0;
 }

@@ -12,7 +12,7 @@
 #include "implicit/balance.h"
 
 /* Makes one implicit step up to its commit. */
-mpm_status mpmi_newmark_step(mpmi_balance *s);
+mpm_status mpmi_newmark_step(mpmi_balance *balance);
 /* Returns the dt to try after a step that went well, in so many iterations. */
 double mpmi_next_dt(int32_t iterations, double dt);
 

@@ -15,7 +15,7 @@
 enum { MOST_HALVINGS = 12, RESIDUAL_HALVINGS = 4 };
 
 typedef struct iteration {
-  mpmi_balance *s;
+  mpmi_balance *balance;
   mpmi_newton *newton;
   int64_t n;            /* rows * dim */
   double norm, scale;   /* norm of the residual, of free components; scale from all kinds of forces */
@@ -52,13 +52,13 @@ static double length_of(const iteration *it, const double *du) {
 
 /* Computes the residual of the internal forces as they are; returns the norm of the inertia. */
 static double find_forces(iteration *it) {
-  const mpmi_balance *s = it->s;
+  const mpmi_balance *balance = it->balance;
   mpmi_newton *newton = it->newton;
   const double *internal = newton->vector[MPMI_INTERNAL], *external = newton->vector[MPMI_EXTERNAL];
   double *residual = newton->vector[MPMI_RESIDUAL], *term = newton->vector[MPMI_TERMS];
-  const int32_t dim = s->settings->grid->dim, dynamic = mpmi_is_dynamic(s->settings);
+  const int32_t dim = balance->settings->grid->dim, dynamic = mpmi_is_dynamic(balance->settings);
   for (int64_t i = 0; i < it->n; ++i) {
-    const double Ma = dynamic ? newton->mass[i / dim] * mpmi_newmark_acceleration(s, i) : 0.0;
+    const double Ma = dynamic ? newton->mass[i / dim] * mpmi_newmark_acceleration(balance, i) : 0.0;
     residual[i] = internal[i] + Ma - external[i];
     term[i] = Ma * Ma;
   }
@@ -67,11 +67,11 @@ static double find_forces(iteration *it) {
 
 /* Returns the norm of the terms of M a before they cancel: its rounding grows with them. */
 static double inertia_terms(const iteration *it) {
-  const mpmi_balance *s = it->s;
+  const mpmi_balance *balance = it->balance;
   const mpmi_newton *newton = it->newton;
-  const int32_t dim = s->settings->grid->dim;
-  const double dt = s->step->dt, beta = s->settings->desc.newmark_beta;
-  if (!mpmi_is_dynamic(s->settings)) return 0.0;
+  const int32_t dim = balance->settings->grid->dim;
+  const double dt = balance->step->dt, beta = balance->settings->desc.newmark_beta;
+  if (!mpmi_is_dynamic(balance->settings)) return 0.0;
   for (int64_t i = 0; i < it->n; ++i) {
     const double reach = fabs(newton->vector[MPMI_U][i]) + dt * fabs(newton->vector[MPMI_V0][i]);
     const double term = newton->mass[i / dim] * reach / (beta * dt * dt);
@@ -98,25 +98,25 @@ static double relative(const iteration *it) {
  * edge, and the rounding of the inertia terms. */
 static double noise(const iteration *it) {
   return 16.0 * DBL_EPSILON *
-         (it->stiffness * it->s->settings->grid->h_min * sqrt((double)it->n) + it->inertia);
+         (it->stiffness * it->balance->settings->grid->h_min * sqrt((double)it->n) + it->inertia);
 }
 
 static void note(iteration *it) {
   mpmi_newton *newton = it->newton;
   if (newton->history_count < newton->history_capacity)
     newton->history[newton->history_count++] = relative(it);
-  it->s->step->info.residual = relative(it);
+  it->balance->step->info.residual = relative(it);
 }
 
 /* Puts the inertia onto the diagonal, and finds out how much each of the two weighs there. */
 static void add_inertia(iteration *it) {
-  const mpmi_balance *s = it->s;
+  const mpmi_balance *balance = it->balance;
   mpmi_newton *newton = it->newton;
   mpmi_matrix *A = &newton->matrix;
   double *term = newton->vector[MPMI_TERMS], *size = newton->vector[MPMI_DIAGONAL];
-  const int32_t dim = s->settings->grid->dim;
-  const double beta = s->settings->desc.newmark_beta, dt = s->step->dt;
-  const double by_mass = mpmi_is_dynamic(s->settings) ? 1.0 / (beta * dt * dt) : 0.0;
+  const int32_t dim = balance->settings->grid->dim;
+  const double beta = balance->settings->desc.newmark_beta, dt = balance->step->dt;
+  const double by_mass = mpmi_is_dynamic(balance->settings) ? 1.0 / (beta * dt * dt) : 0.0;
   for (int64_t i = 0; i < it->n; ++i) {
     double *diagonal = A->value + (newton->diagonal[i / dim] * dim + i % dim) * dim + i % dim;
     term[i] = fabs(*diagonal);
@@ -131,7 +131,7 @@ static void add_inertia(iteration *it) {
 }
 
 static mpm_status assemble(iteration *it) {
-  const mpm_status status = mpmi_stiffness(it->s, it->newton->vector[MPMI_U]);
+  const mpm_status status = mpmi_stiffness(it->balance, it->newton->vector[MPMI_U]);
   if (!status) add_inertia(it);
   return status;
 }
@@ -157,7 +157,7 @@ static mpm_status find_rhs(iteration *it, int32_t *moves_held) {
 }
 
 static mpm_status solve(iteration *it) {
-  mpmi_balance *s = it->s;
+  mpmi_balance *balance = it->balance;
   mpmi_newton *newton = it->newton;
   const double *du_held = newton->vector[MPMI_DU];
   double *x = newton->vector[MPMI_START];
@@ -166,27 +166,28 @@ static mpm_status solve(iteration *it) {
   memset(x, 0, (size_t)it->n * sizeof *x);
   /* as many digits as keep the iteration quadratic, and none that the next one throws away */
   const double wanted = fmax(1e-10, fmin(1e-3, 0.1 * relative(it)));
-  const mpmi_solve_job job = {
-      .matrix = &newton->matrix,
-      .rhs = newton->vector[MPMI_RHS],
-      .x = x,
-      .choice = s->settings->desc.linear_solver,
-      .tolerance = s->settings->desc.linear_tolerance > 0.0 ? s->settings->desc.linear_tolerance : wanted,
-      .max_iterations = s->settings->desc.linear_max_iterations,
-      .host = s->settings->solver,
-      .host_user = s->settings->solver_user,
-      .expects_positive = newton->matrix.symmetric,
-      .inertia = it->inertia_share};
+  const mpmi_solve_job job = {.matrix = &newton->matrix,
+                              .rhs = newton->vector[MPMI_RHS],
+                              .x = x,
+                              .choice = balance->settings->desc.linear_solver,
+                              .tolerance = balance->settings->desc.linear_tolerance > 0.0
+                                               ? balance->settings->desc.linear_tolerance
+                                               : wanted,
+                              .max_iterations = balance->settings->desc.linear_max_iterations,
+                              .host = balance->settings->solver,
+                              .host_user = balance->settings->solver_user,
+                              .expects_positive = newton->matrix.symmetric,
+                              .inertia = it->inertia_share};
   mpmi_solve_report report = {.node = -1};
   status = mpmi_solve(newton->solver, &job, &report);
-  s->factor_seconds += report.factor_seconds;
-  s->solve_seconds += report.solve_seconds;
-  s->linear_iterations += report.iterations;
-  s->solver_used = report.solver;
-  ++s->iterations;
+  balance->factor_seconds += report.factor_seconds;
+  balance->solve_seconds += report.solve_seconds;
+  balance->linear_iterations += report.iterations;
+  balance->solver_used = report.solver;
+  ++balance->iterations;
   if (status) {
-    s->step->failure.node = report.node;
-    s->step->failure.callback_status = report.callback_status;
+    balance->step->failure.node = report.node;
+    balance->step->failure.callback_status = report.callback_status;
     return status;
   }
   for (int64_t i = 0; i < it->n; ++i) newton->vector[MPMI_DU][i] = newton->matrix.held[i] ? du_held[i] : x[i];
@@ -194,8 +195,8 @@ static mpm_status solve(iteration *it) {
 }
 
 /* Returns 1 for statuses of a trial that a shorter increment may mend. */
-static int32_t may_shrink(const mpmi_balance *s, mpm_status status) {
-  return !s->step->failure.callback_status && (status == MPM_INVERTED || status == MPM_NONFINITE);
+static int32_t may_shrink(const mpmi_balance *balance, mpm_status status) {
+  return !balance->step->failure.callback_status && (status == MPM_INVERTED || status == MPM_NONFINITE);
 }
 
 /* Takes as much of the increment as keeps det F positive and the residual in bounds. */
@@ -208,15 +209,15 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
   *taken = 1.0;
   for (int32_t halvings = 0;; ++halvings, *taken *= 0.5) {
     for (int64_t i = 0; i < it->n; ++i) u[i] = start[i] + *taken * du[i];
-    const mpm_status status = mpmi_internal_forces(it->s, u);
-    if (status && (!may_shrink(it->s, status) || halvings == MOST_HALVINGS)) return status;
+    const mpm_status status = mpmi_internal_forces(it->balance, u);
+    if (status && (!may_shrink(it->balance, status) || halvings == MOST_HALVINGS)) return status;
     if (status) continue;
     find_residual(it);
     if (!isfinite(it->norm))
-      return mpmi_fail(it->s->settings->context, MPM_NONFINITE,
+      return mpmi_fail(it->balance->settings->context, MPM_NONFINITE,
                        "the residual is not finite in the step from t = %g with "
                        "dt = %g",
-                       it->s->step->t, it->s->step->dt);
+                       it->balance->step->t, it->balance->step->dt);
     if (moves_held || halvings >= RESIDUAL_HALVINGS || it->norm <= before ||
         fabs(dot_of(it, du, newton->vector[MPMI_RESIDUAL], 1)) <= slope)
       return MPM_OK;
@@ -225,7 +226,7 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
 
 /* Tells whether the bounds of eq. 13 and of the residual hold, or the residual is rounding. */
 static int32_t converged(iteration *it, double du, double energy) {
-  const mpm_stepper_desc *d = &it->s->settings->desc;
+  const mpm_stepper_desc *d = &it->balance->settings->desc;
   it->du_largest = fmax(it->du_largest, du);
   if (it->norm <= noise(it)) return 1;
   return (it->norm <= d->newton_tolerance_residual * it->scale || it->norm <= d->newton_residual_floor) &&
@@ -234,12 +235,12 @@ static int32_t converged(iteration *it, double du, double energy) {
 }
 
 static mpm_status not_converged(const iteration *it) {
-  const mpmi_balance *s = it->s;
+  const mpmi_balance *balance = it->balance;
   return mpmi_fail(
-      s->settings->context, MPM_NOT_CONVERGED,
+      balance->settings->context, MPM_NOT_CONVERGED,
       "Newton's method has a relative residual of %g after %d iterations in the step from t = %g "
       "with dt = %g: use a smaller dt, or mpm_advance",
-      relative(it), (int)s->iterations, s->step->t, s->step->dt);
+      relative(it), (int)balance->iterations, balance->step->t, balance->step->dt);
 }
 
 static mpm_status iterate(iteration *it) {
@@ -248,12 +249,13 @@ static mpm_status iterate(iteration *it) {
     int32_t moves_held;
     double taken;
     mpm_status status;
-    if (it->s->iterations >= it->s->settings->desc.newton_max_iterations) return not_converged(it);
+    if (it->balance->iterations >= it->balance->settings->desc.newton_max_iterations)
+      return not_converged(it);
     if ((status = assemble(it)) || (status = find_rhs(it, &moves_held))) return status;
     if (!moves_held && it->norm <= noise(it)) return MPM_OK;
     if ((status = solve(it))) return status;
     const double energy = fabs(dot_of(it, newton->vector[MPMI_DU], newton->vector[MPMI_RHS], 1));
-    if (it->s->iterations == 1) it->energy_first = energy;
+    if (it->balance->iterations == 1) it->energy_first = energy;
     if ((status = line_search(it, moves_held, &taken))) return status;
     note(it);
     if (taken == 1.0 && converged(it, length_of(it, newton->vector[MPMI_DU]), energy)) return MPM_OK;
@@ -261,17 +263,18 @@ static mpm_status iterate(iteration *it) {
   }
 }
 
-mpm_status mpmi_newton_solve(mpmi_balance *s) {
-  mpmi_newton *newton = s->newton;
-  iteration it = {.s = s, .newton = newton, .n = newton->matrix.rows * s->settings->grid->dim};
+mpm_status mpmi_newton_solve(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  iteration it = {
+      .balance = balance, .newton = newton, .n = newton->matrix.rows * balance->settings->grid->dim};
   memset(newton->vector[MPMI_U], 0, (size_t)it.n * sizeof(double));
-  mpm_status status = mpmi_internal_forces(s, newton->vector[MPMI_U]);
+  mpm_status status = mpmi_internal_forces(balance, newton->vector[MPMI_U]);
   if (status) return status;
   find_residual(&it);
   note(&it);
   status = iterate(&it);
-  s->step->info.newton_iterations = s->iterations;
-  s->step->info.linear_solver = s->solver_used;
-  s->step->info.linear_iterations = s->linear_iterations;
+  balance->step->info.newton_iterations = balance->iterations;
+  balance->step->info.linear_solver = balance->solver_used;
+  balance->step->info.linear_iterations = balance->linear_iterations;
   return status;
 }

@@ -23,8 +23,8 @@ mpmi_force_scatter mpmi_force_scatter_of(const mpmi_settings *settings, const mp
   return job;
 }
 
-void mpmi_tile_of_unknowns(const mpmi_balance *s, int64_t block, int32_t *to) {
-  const mpm_grid *grid = s->settings->grid;
+void mpmi_tile_of_unknowns(const mpmi_balance *balance, int64_t block, int32_t *to) {
+  const mpm_grid *grid = balance->settings->grid;
   const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width), low = MPMI_RING + grid->below;
   const int32_t count = mpmi_tile_nodes(grid);
   for (int32_t i = 0; i < count; ++i) {
@@ -33,8 +33,8 @@ void mpmi_tile_of_unknowns(const mpmi_balance *s, int64_t block, int32_t *to) {
       at[k] = rest % edge - low;
       rest /= edge;
     }
-    const int64_t slot = mpmi_blocks_near(&s->layout->blocks, block, at);
-    to[i] = slot < 0 ? -1 : s->newton->active_of[slot];
+    const int64_t slot = mpmi_blocks_near(&balance->layout->blocks, block, at);
+    to[i] = slot < 0 ? -1 : balance->newton->active_of[slot];
   }
 }
 
@@ -66,22 +66,22 @@ MPMI_INLINE void add_stencil_in(int32_t dim, mpmi_newton *newton, const mpmi_new
 }
 
 /* Adds the dense stiffness of the stencil whose first node lies at `first` of the tile, and clears it. */
-static void add_stencil(mpmi_balance *s, mpmi_newton_work *work, int32_t first) {
-  const int32_t dim = s->settings->grid->dim, nodes = MPMI_STENCIL_NODES(dim, s->settings->grid->width),
-                row = dim * nodes;
+static void add_stencil(mpmi_balance *balance, mpmi_newton_work *work, int32_t first) {
+  const int32_t dim = balance->settings->grid->dim,
+                nodes = MPMI_STENCIL_NODES(dim, balance->settings->grid->width), row = dim * nodes;
   if (dim == 3)
-    add_stencil_in(3, s->newton, work, nodes, first);
+    add_stencil_in(3, balance->newton, work, nodes, first);
   else if (dim == 2)
-    add_stencil_in(2, s->newton, work, nodes, first);
+    add_stencil_in(2, balance->newton, work, nodes, first);
   else
-    add_stencil_in(1, s->newton, work, nodes, first);
+    add_stencil_in(1, balance->newton, work, nodes, first);
   memset(work->K, 0, (size_t)(row * row) * sizeof *work->K);
 }
 
 /* Adds one particle's share of what couples its cell. */
-static void add_to_cell(mpmi_balance *s, const mpmi_newton_work *work, const mpm_particles *set,
+static void add_to_cell(mpmi_balance *balance, const mpmi_newton_work *work, const mpm_particles *set,
                         const mpmi_weights *W, int64_t p, int32_t cell, int64_t slot, int64_t q, int64_t ld) {
-  const int32_t dim = s->settings->grid->dim;
+  const int32_t dim = balance->settings->grid->dim;
   mpmi_locking_particle of = {.volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot]};
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t K = 0; K < dim; ++K) {
@@ -90,40 +90,42 @@ static void add_to_cell(mpmi_balance *s, const mpmi_newton_work *work, const mpm
         of.h[3 * i + K] +=
             work->weight[q] * work->h[(3 * i + k) * ld + q] * work->inverse[(3 * K + k) * ld + q];
     }
-  mpmi_locking_stiffness_add(s, work, W, p, cell, &of);
+  mpmi_locking_stiffness_add(balance, work, W, p, cell, &of);
 }
 
 /* Adds the stiffness of a batch to the matrix. Particles with the same stencil follow each other for the most
  * part: their stiffness is added up first. */
-static void add_stencils(mpmi_balance *s, mpmi_newton_work *work, const mpm_particles *set,
+static void add_stencils(mpmi_balance *balance, mpmi_newton_work *work, const mpm_particles *set,
                          const mpmi_axis *axis, int64_t begin, int64_t n, int64_t ld) {
-  const mpm_grid *grid = s->settings->grid;
+  const mpm_grid *grid = balance->settings->grid;
   const mpmi_points points = mpmi_points_of(set, 0);
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
   mpmi_weights W;
   int32_t first = -1, cell[MPMI_CHUNK];
   for (int64_t at = 0; at < n; at += MPMI_CHUNK) {
-    s->settings->kernels->weights[grid->family][grid->dim](axis, MPMI_NEED_GRADIENT, &points, begin + at,
-                                                           MPMI_CHUNK, &W);
-    if (s->settings->desc.locking_remedy) mpmi_cell_places(grid, axis, &points, begin + at, MPMI_CHUNK, cell);
+    balance->settings->kernels->weights[grid->family][grid->dim](axis, MPMI_NEED_GRADIENT, &points,
+                                                                 begin + at, MPMI_CHUNK, &W);
+    if (balance->settings->desc.locking_remedy)
+      mpmi_cell_places(grid, axis, &points, begin + at, MPMI_CHUNK, cell);
     for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
       if (id[at + p] < 0) continue;
-      if (s->settings->desc.locking_remedy)
-        add_to_cell(s, work, set, &W, p, cell[p], begin + at + p, at + p, ld);
-      if (first >= 0 && W.node[p] != first) add_stencil(s, work, first);
+      if (balance->settings->desc.locking_remedy)
+        add_to_cell(balance, work, set, &W, p, cell[p], begin + at + p, at + p, ld);
+      if (first >= 0 && W.node[p] != first) add_stencil(balance, work, first);
       first = W.node[p];
-      s->settings->kernels->stiffness[grid->dim](grid->width, &W, p, work->stiffness + at + p, ld, work->K);
+      balance->settings->kernels->stiffness[grid->dim](grid->width, &W, p, work->stiffness + at + p, ld,
+                                                       work->K);
     }
   }
-  if (first >= 0) add_stencil(s, work, first);
+  if (first >= 0) add_stencil(balance, work, first);
 }
 
 /* Finds V0 of the tangent, less the dilation that the law saw beside that of the volume (`ratio`). */
-static void find_weights(const mpmi_balance *s, const mpm_particles *set, int64_t begin, int64_t n,
+static void find_weights(const mpmi_balance *balance, const mpm_particles *set, int64_t begin, int64_t n,
                          double *weight) {
   const double *volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin;
   memcpy(weight, volume, (size_t)n * sizeof *weight);
-  if (!s->settings->desc.locking_remedy) return;
+  if (!balance->settings->desc.locking_remedy) return;
   const double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
   for (int64_t p = 0; p < n; ++p) weight[p] /= ratio[p];
 }
@@ -137,9 +139,9 @@ static int32_t is_finite(const double *value, int32_t dim, int64_t ld, int64_t n
   return 1;
 }
 
-static int32_t find_tangent(mpmi_balance *s, mpmi_newton_work *work, mpmi_batch *b) {
+static int32_t find_tangent(mpmi_balance *balance, mpmi_newton_work *work, mpmi_batch *b) {
   const mpm_particles *set = b->set;
-  const int32_t dim = s->settings->grid->dim;
+  const int32_t dim = balance->settings->grid->dim;
   const int64_t ld = b->law.ld, *id = mpmi_i64(set, MPMI_ID, 0) + b->begin;
   const mpm_status status = mpmi_material_tangent(set->material, dim, &b->law.batch, work->tangent_scratch,
                                                   work->tangent, &work->symmetric);
@@ -157,10 +159,10 @@ static int32_t find_tangent(mpmi_balance *s, mpmi_newton_work *work, mpmi_batch 
 }
 
 /* Turns stress and tangent (or with NULL stress alone) into what the nodes' gradients are multiplied by. */
-static void push_forward(mpmi_balance *s, mpmi_newton_work *work, const mpmi_batch *b,
+static void push_forward(mpmi_balance *balance, mpmi_newton_work *work, const mpmi_batch *b,
                          const double *tangent) {
   const mpmi_push push = {.ld = b->law.ld,
-                          .F_inc = s->settings->desc.locking_remedy ? work->F_inc : b->law.F_inc,
+                          .F_inc = balance->settings->desc.locking_remedy ? work->F_inc : b->law.F_inc,
                           .stress = b->law.stress_new,
                           .volume = mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin,
                           .weight = work->weight,
@@ -168,32 +170,33 @@ static void push_forward(mpmi_balance *s, mpmi_newton_work *work, const mpmi_bat
                           .inverse = work->inverse,
                           .nominal = work->nominal,
                           .stiffness = work->stiffness};
-  s->settings->kernels->push[s->settings->grid->dim](&push, b->n);
+  balance->settings->kernels->push[balance->settings->grid->dim](&push, b->n);
 }
 
 static int32_t is_rigid(const mpmi_batch *b) {
   return mpmi_material_kinematics(b->set->material) == MPMI_F_STAYS;
 }
 
-void mpmi_add_forces(mpmi_balance *s, mpmi_batch *b) {
-  const mpm_grid *grid = s->settings->grid;
-  mpmi_newton_work *work = &s->newton->work[b->task];
+void mpmi_add_forces(mpmi_balance *balance, mpmi_batch *b) {
+  const mpm_grid *grid = balance->settings->grid;
+  mpmi_newton_work *work = &balance->newton->work[b->task];
   if (is_rigid(b)) return;
-  push_forward(s, work, b, NULL);
-  mpmi_force_scatter scatter = mpmi_force_scatter_of(s->settings, &s->layout->member[b->m], work->tile);
+  push_forward(balance, work, b, NULL);
+  mpmi_force_scatter scatter =
+      mpmi_force_scatter_of(balance->settings, &balance->layout->member[b->m], work->tile);
   memcpy(scatter.axis, b->gather.axis, sizeof scatter.axis);
   scatter.ld = b->law.ld;
   scatter.nominal = work->nominal;
-  s->settings->kernels->force_scatter[grid->dim][grid->width](&scatter, b->begin, b->n);
+  balance->settings->kernels->force_scatter[grid->dim][grid->width](&scatter, b->begin, b->n);
 }
 
-void mpmi_add_stiffness(mpmi_balance *s, mpmi_batch *b) {
-  mpmi_newton_work *work = &s->newton->work[b->task];
-  if (is_rigid(b) || !find_tangent(s, work, b)) return;
-  find_weights(s, b->set, b->begin, b->n, work->weight);
-  if (s->settings->desc.locking_remedy)
-    mpmi_locking_stiffness_local(s->settings->grid->dim, &b->law, work->weight,
+void mpmi_add_stiffness(mpmi_balance *balance, mpmi_batch *b) {
+  mpmi_newton_work *work = &balance->newton->work[b->task];
+  if (is_rigid(b) || !find_tangent(balance, work, b)) return;
+  find_weights(balance, b->set, b->begin, b->n, work->weight);
+  if (balance->settings->desc.locking_remedy)
+    mpmi_locking_stiffness_local(balance->settings->grid->dim, &b->law, work->weight,
                                  mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin, work->tangent, work->h);
-  push_forward(s, work, b, work->tangent);
-  add_stencils(s, work, b->set, b->gather.axis, b->begin, b->n, b->law.ld);
+  push_forward(balance, work, b, work->tangent);
+  add_stencils(balance, work, b->set, b->gather.axis, b->begin, b->n, b->law.ld);
 }

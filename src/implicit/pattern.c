@@ -16,9 +16,9 @@ static int64_t neighbour_slot(const mpmi_blocks *b, int64_t slot, const int32_t 
   return mpmi_blocks_near(b, slot / b->nodes, at);
 }
 
-static void offset_of(const mpmi_balance *s, int32_t index, int32_t *offset) {
-  const int32_t span = mpmi_coupling_span(s->settings), reach = 2 * span - 1;
-  for (int32_t k = s->settings->grid->dim - 1; k >= 0; --k) {
+static void offset_of(const mpmi_balance *balance, int32_t index, int32_t *offset) {
+  const int32_t span = mpmi_coupling_span(balance->settings), reach = 2 * span - 1;
+  for (int32_t k = balance->settings->grid->dim - 1; k >= 0; --k) {
     offset[k] = index % reach - (span - 1);
     index /= reach;
   }
@@ -36,21 +36,21 @@ static void group(mpmi_newton *newton, int64_t rows) {
 }
 
 typedef struct pattern_job {
-  mpmi_balance *s;
+  mpmi_balance *balance;
   int64_t rows;
 } pattern_job;
 
 /* Finds the rows of the nodes around each active node, for now in the place of the entries. */
 static void neighbours_task(void *data, int64_t k) {
   const pattern_job *job = data;
-  mpmi_balance *s = job->s;
-  mpmi_newton *newton = s->newton;
-  const mpmi_share share = mpmi_share_of(s->settings, newton->active_count, k);
+  mpmi_balance *balance = job->balance;
+  mpmi_newton *newton = balance->newton;
+  const mpmi_share share = mpmi_share_of(balance->settings, newton->active_count, k);
   for (int32_t o = 0; o < newton->offsets; ++o) {
     int32_t offset[3];
-    offset_of(s, o, offset);
+    offset_of(balance, o, offset);
     for (int64_t i = share.begin; i < share.end; ++i) {
-      const int64_t slot = neighbour_slot(&s->layout->blocks, newton->active[i].slot, offset);
+      const int64_t slot = neighbour_slot(&balance->layout->blocks, newton->active[i].slot, offset);
       const int32_t other = slot < 0 ? -1 : newton->active_of[slot];
       newton->place[i * newton->offsets + o] = other < 0 ? -1 : newton->active[other].row;
     }
@@ -83,18 +83,18 @@ static int32_t columns_of(const mpmi_newton *newton, int64_t row, int32_t *out) 
 
 static void count_task(void *data, int64_t k) {
   const pattern_job *job = data;
-  mpmi_newton *newton = job->s->newton;
+  mpmi_newton *newton = job->balance->newton;
   int32_t columns[2 * 8 * MOST_OFFSETS];
-  const mpmi_share share = mpmi_share_of(job->s->settings, job->rows, k);
+  const mpmi_share share = mpmi_share_of(job->balance->settings, job->rows, k);
   for (int64_t r = share.begin; r < share.end; ++r) newton->diagonal[r] = columns_of(newton, r, columns);
 }
 
 static void fill_task(void *data, int64_t k) {
   const pattern_job *job = data;
-  mpmi_newton *newton = job->s->newton;
+  mpmi_newton *newton = job->balance->newton;
   mpmi_matrix *A = &newton->matrix;
   int32_t columns[2 * 8 * MOST_OFFSETS];
-  const mpmi_share share = mpmi_share_of(job->s->settings, job->rows, k);
+  const mpmi_share share = mpmi_share_of(job->balance->settings, job->rows, k);
   for (int64_t r = share.begin; r < share.end; ++r) {
     const int32_t count = columns_of(newton, r, columns);
     int32_t *to = A->column + A->row_start[r];
@@ -113,25 +113,26 @@ static void fill_task(void *data, int64_t k) {
   }
 }
 
-mpm_status mpmi_make_pattern(mpmi_balance *s, int64_t rows) {
-  mpmi_newton *newton = s->newton;
+mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
+  mpmi_newton *newton = balance->newton;
   mpmi_matrix *A = &newton->matrix;
-  pattern_job job = {s, rows};
+  pattern_job job = {balance, rows};
   mpm_status status;
   group(newton, rows);
-  if ((status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, neighbours_task, &job)) ||
-      (status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, count_task, &job)))
+  if ((status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, neighbours_task, &job)) ||
+      (status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job)))
     return status;
   int64_t entries = 0;
   for (int64_t r = 0; r < rows; ++r) entries += newton->diagonal[r];
   if (entries > INT32_MAX)
-    return mpmi_fail(s->settings->context, MPM_E_UNSUPPORTED,
+    return mpmi_fail(balance->settings->context, MPM_E_UNSUPPORTED,
                      "the matrix would have %lld blocks, more than 2147483647: use an explicit scheme",
                      (long long)entries);
-  if ((status = mpmi_matrix_reserve(A, rows, entries, s->settings->grid->dim))) return status;
+  if ((status = mpmi_matrix_reserve(A, rows, entries, balance->settings->grid->dim))) return status;
   A->row_start[0] = 0;
   for (int64_t r = 0; r < rows; ++r) A->row_start[r + 1] = A->row_start[r] + newton->diagonal[r];
-  if ((status = mpmi_run_tasks(s->settings, 0, s->settings->tasks, fill_task, &job))) return status;
+  if ((status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, fill_task, &job)))
+    return status;
   ++A->pattern_id;
   return MPM_OK;
 }

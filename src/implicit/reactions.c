@@ -7,48 +7,51 @@
 #include <string.h>
 
 /* Returns the force of constraints on a node; the node's own inertia is among what they balance. */
-static double reaction_on(const mpmi_balance *s, const mpmi_active_node *node, int32_t c) {
-  const mpmi_newton *newton = s->newton;
-  const int64_t at = (int64_t)node->row * s->settings->grid->dim + c;
+static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *node, int32_t c) {
+  const mpmi_newton *newton = balance->newton;
+  const int64_t at = (int64_t)node->row * balance->settings->grid->dim + c;
   double force =
       mpmi_momentum(&newton->force, node->slot)[c] - mpmi_momentum(&newton->external, node->slot)[c];
-  if (mpmi_is_dynamic(s->settings))
-    force += *mpmi_mass(&s->nodes->solved, node->slot) * node->sign[c] * mpmi_newmark_acceleration(s, at);
+  if (mpmi_is_dynamic(balance->settings))
+    force += *mpmi_mass(&balance->nodes->solved, node->slot) * node->sign[c] *
+             mpmi_newmark_acceleration(balance, at);
   return force;
 }
 
 /* Records one component of one row, on the nodes that move with it. */
-static void record_row(mpmi_balance *s, int64_t row, int32_t c) {
-  const mpmi_newton *newton = s->newton;
-  const mpmi_constraints *constraints = &s->layout->constraints;
+static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
+  const mpmi_newton *newton = balance->newton;
+  const mpmi_constraints *constraints = &balance->layout->constraints;
   double total = 0.0, along = 0.0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
     const mpmi_active_node *node = &newton->active[newton->members[m]];
-    const double impulse = s->step->dt * reaction_on(s, node, c),
-                 mass = *mpmi_mass(&s->nodes->solved, node->slot);
-    s->nodes->impulse[node->slot].given[c] = impulse;
-    if (mass > 0.0) s->nodes->impulse[node->slot].change[c] = impulse / mass;
+    const double impulse = balance->step->dt * reaction_on(balance, node, c),
+                 mass = *mpmi_mass(&balance->nodes->solved, node->slot);
+    balance->nodes->impulse[node->slot].given[c] = impulse;
+    if (mass > 0.0) balance->nodes->impulse[node->slot].change[c] = impulse / mass;
     total += impulse;
     along += node->sign[c] * impulse;
   }
   const int64_t slot = newton->active[newton->members[newton->members_start[row]]].slot;
   const int32_t tie = constraints->tie_of[slot];
   const int64_t master = tie < 0 ? slot : constraints->tie[tie].master;
-  if (mpmi_held_by(s->nodes, master, c))
-    s->step->host_work += along * s->nodes->held_value[master][c];
+  if (mpmi_held_by(balance->nodes, master, c))
+    balance->step->host_work += along * balance->nodes->held_value[master][c];
   else if (tie < 0) /* nothing holds it: this is what the iterations have left */
-    s->nodes->impulse[slot].given[c] = s->nodes->impulse[slot].change[c] = 0.0;
+    balance->nodes->impulse[slot].given[c] = balance->nodes->impulse[slot].change[c] = 0.0;
   else if (constraints->tie[tie].face[c] >= 0)
-    s->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total;
+    balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total;
 }
 
-mpm_status mpmi_record_reactions(mpmi_balance *s) {
-  if (!s->nodes->has_impulses) return MPM_OK;
-  memset(s->nodes->impulse, 0, (size_t)mpmi_slots(s->layout) * sizeof *s->nodes->impulse);
-  for (int64_t r = 0; r < s->newton->matrix.rows; ++r)
-    for (int32_t c = 0; c < s->settings->grid->dim; ++c) record_row(s, r, c);
-  if (!s->nodes->prescription.any) return MPM_OK;
-  mpmi_bound bound = {
-      .step = s->step, .nodes = s->nodes, .values = &s->nodes->solved, .dim = s->settings->grid->dim};
+mpm_status mpmi_record_reactions(mpmi_balance *balance) {
+  if (!balance->nodes->has_impulses) return MPM_OK;
+  memset(balance->nodes->impulse, 0, (size_t)mpmi_slots(balance->layout) * sizeof *balance->nodes->impulse);
+  for (int64_t r = 0; r < balance->newton->matrix.rows; ++r)
+    for (int32_t c = 0; c < balance->settings->grid->dim; ++c) record_row(balance, r, c);
+  if (!balance->nodes->prescription.any) return MPM_OK;
+  mpmi_bound bound = {.step = balance->step,
+                      .nodes = balance->nodes,
+                      .values = &balance->nodes->solved,
+                      .dim = balance->settings->grid->dim};
   return mpmi_prescribed_share(&bound);
 }

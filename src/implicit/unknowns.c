@@ -12,95 +12,95 @@ typedef struct cuts {
 } cuts;
 static const double STIFFNESS_ROUNDING = 1e-26, MASS_ROUNDING = 1e-14;
 
-static cuts find_cuts(const mpmi_balance *s) {
-  const int64_t slots = mpmi_slots(s->layout);
+static cuts find_cuts(const mpmi_balance *balance) {
+  const int64_t slots = mpmi_slots(balance->layout);
   cuts most = {0.0, 0.0};
   for (int64_t i = 0; i < slots; ++i) {
-    most.stiffness = fmax(most.stiffness, *mpmi_mass(&s->newton->external, i));
-    most.mass = fmax(most.mass, *mpmi_mass(&s->nodes->solved, i));
+    most.stiffness = fmax(most.stiffness, *mpmi_mass(&balance->newton->external, i));
+    most.mass = fmax(most.mass, *mpmi_mass(&balance->nodes->solved, i));
   }
   return (cuts){STIFFNESS_ROUNDING * most.stiffness, MASS_ROUNDING * most.mass};
 }
 
-static int32_t is_active(const mpmi_balance *s, const cuts *cut, int64_t slot) {
-  return *mpmi_mass(&s->newton->external, slot) > cut->stiffness ||
-         (mpmi_is_dynamic(s->settings) && *mpmi_mass(&s->nodes->solved, slot) > cut->mass);
+static int32_t is_active(const mpmi_balance *balance, const cuts *cut, int64_t slot) {
+  return *mpmi_mass(&balance->newton->external, slot) > cut->stiffness ||
+         (mpmi_is_dynamic(balance->settings) && *mpmi_mass(&balance->nodes->solved, slot) > cut->mass);
 }
 
-static int64_t master_of(const mpmi_balance *s, int64_t slot) {
-  const int32_t tie = s->layout->constraints.tie_of[slot];
-  return tie < 0 ? slot : s->layout->constraints.tie[tie].master;
+static int64_t master_of(const mpmi_balance *balance, int64_t slot) {
+  const int32_t tie = balance->layout->constraints.tie_of[slot];
+  return tie < 0 ? slot : balance->layout->constraints.tie[tie].master;
 }
 
 /* Without inertia only stiffness or a held component can carry a force; a force on a node with neither has no
  * balance. Forces up to FORCE_ROUNDING of the largest are what rounding leaves of vanishing weights, and
  * count as none. */
 static const double FORCE_ROUNDING = 1e-10;
-static mpm_status check_carried(mpmi_balance *s) {
-  const mpmi_newton *newton = s->newton;
-  const int64_t slots = mpmi_slots(s->layout);
-  const int32_t dim = s->settings->grid->dim;
+static mpm_status check_carried(mpmi_balance *balance) {
+  const mpmi_newton *newton = balance->newton;
+  const int64_t slots = mpmi_slots(balance->layout);
+  const int32_t dim = balance->settings->grid->dim;
   double most = 0.0;
   for (int64_t i = 0; i < slots; ++i)
     for (int32_t c = 0; c < dim; ++c) most = fmax(most, fabs(mpmi_momentum(&newton->external, i)[c]));
   for (int64_t i = 0; i < slots; ++i)
     for (int32_t c = 0; c < dim && newton->active_of[i] < 0; ++c) {
       const double force = mpmi_momentum(&newton->external, i)[c];
-      const int64_t master = master_of(s, i);
-      const int32_t tie = s->layout->constraints.tie_of[i];
-      const int32_t held =
-          mpmi_held_by(s->nodes, master, c) || (tie >= 0 && s->layout->constraints.tie[tie].zero[c]);
+      const int64_t master = master_of(balance, i);
+      const int32_t tie = balance->layout->constraints.tie_of[i];
+      const int32_t held = mpmi_held_by(balance->nodes, master, c) ||
+                           (tie >= 0 && balance->layout->constraints.tie[tie].zero[c]);
       if (held || fabs(force) <= FORCE_ROUNDING * most) continue;
       int64_t index[3] = {0, 0, 0};
-      mpmi_blocks_index(&s->layout->blocks, i, index);
-      s->step->failure.node = mpmi_node_number(s->settings->grid, index);
+      mpmi_blocks_index(&balance->layout->blocks, i, index);
+      balance->step->failure.node = mpmi_node_number(balance->settings->grid, index);
       return mpmi_fail(
-          s->settings->context, MPM_SINGULAR,
+          balance->settings->context, MPM_SINGULAR,
           "nothing carries the force %g on the rigid particles around node %lld, axis %d: prescribe "
           "their motion, or set quasi_static = 0",
-          force, (long long)s->step->failure.node, (int)c);
+          force, (long long)balance->step->failure.node, (int)c);
     }
   return MPM_OK;
 }
 
 /* Marks active nodes and the masters that they move with, and counts both. */
-static void mark(mpmi_balance *s, int64_t *active, int64_t *rows) {
-  mpmi_newton *newton = s->newton;
-  const int64_t slots = mpmi_slots(s->layout);
-  const cuts cut = find_cuts(s);
+static void mark(mpmi_balance *balance, int64_t *active, int64_t *rows) {
+  mpmi_newton *newton = balance->newton;
+  const int64_t slots = mpmi_slots(balance->layout);
+  const cuts cut = find_cuts(balance);
   for (int64_t i = 0; i < slots; ++i) newton->active_of[i] = -1;
   for (int64_t i = 0; i < slots; ++i)
-    if (is_active(s, &cut, i)) newton->active_of[i] = newton->active_of[master_of(s, i)] = 0;
+    if (is_active(balance, &cut, i)) newton->active_of[i] = newton->active_of[master_of(balance, i)] = 0;
   /* images of what is active are too: a cell may be seen from either side of a seam */
   for (int64_t i = 0; i < slots; ++i)
-    if (newton->active_of[i] < 0 && newton->active_of[master_of(s, i)] >= 0) newton->active_of[i] = 0;
+    if (newton->active_of[i] < 0 && newton->active_of[master_of(balance, i)] >= 0) newton->active_of[i] = 0;
   *active = *rows = 0;
   for (int64_t i = 0; i < slots; ++i) {
     if (newton->active_of[i] < 0) continue;
     ++*active;
-    *rows += master_of(s, i) == i;
+    *rows += master_of(balance, i) == i;
   }
 }
 
-static int32_t same_as_before(const mpmi_balance *s, int64_t active) {
-  const mpmi_newton *newton = s->newton;
-  if (newton->version != s->layout->version || newton->active_count != active) return 0;
+static int32_t same_as_before(const mpmi_balance *balance, int64_t active) {
+  const mpmi_newton *newton = balance->newton;
+  if (newton->version != balance->layout->version || newton->active_count != active) return 0;
   for (int64_t i = 0; i < active; ++i)
     if (newton->active_of[newton->active[i].slot] < 0) return 0;
   return 1;
 }
 
 /* Numbers active nodes in the order of their slots, and rows in that of their masters. */
-static void number(mpmi_balance *s) {
-  mpmi_newton *newton = s->newton;
-  const mpmi_constraints *c = &s->layout->constraints;
-  const int64_t slots = mpmi_slots(s->layout);
+static void number(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  const mpmi_constraints *c = &balance->layout->constraints;
+  const int64_t slots = mpmi_slots(balance->layout);
   int64_t count = 0, rows = 0;
   for (int64_t i = 0; i < slots; ++i) {
     if (newton->active_of[i] < 0) continue;
     newton->active_of[i] = (int32_t)count;
     newton->active[count++] =
-        (mpmi_active_node){i, master_of(s, i) == i ? (int32_t)rows++ : -1, 1, {1.0, 1.0, 1.0}};
+        (mpmi_active_node){i, master_of(balance, i) == i ? (int32_t)rows++ : -1, 1, {1.0, 1.0, 1.0}};
   }
   newton->active_count = count;
   for (int64_t i = 0; i < c->tie_count; ++i) {
@@ -113,16 +113,16 @@ static void number(mpmi_balance *s) {
       mpmi_active_node *node = &newton->active[newton->active_of[follower->slot]];
       node->row = row;
       memcpy(node->sign, follower->sign, sizeof node->sign);
-      for (int32_t k = 0; k < s->settings->grid->dim; ++k) node->plain &= node->sign[k] > 0.0;
+      for (int32_t k = 0; k < balance->settings->grid->dim; ++k) node->plain &= node->sign[k] > 0.0;
     }
   }
 }
 
 /* Makes room for one more of each than needed, so that no array is empty. */
-static mpm_status reserve(mpmi_balance *s, int64_t active, int64_t rows) {
-  mpmi_newton *newton = s->newton;
-  mpm_context *c = s->settings->context;
-  const int32_t dim = s->settings->grid->dim;
+static mpm_status reserve(mpmi_balance *balance, int64_t active, int64_t rows) {
+  mpmi_newton *newton = balance->newton;
+  mpm_context *c = balance->settings->context;
+  const int32_t dim = balance->settings->grid->dim;
   mpm_status status;
   if ((status = MPMI_RESERVE_MORE(c, newton->active, newton->active_capacity, active + 1)) ||
       (status = MPMI_RESERVE_MORE(c, newton->members, newton->members_capacity, active + 1)) ||
@@ -140,82 +140,84 @@ static mpm_status reserve(mpmi_balance *s, int64_t active, int64_t rows) {
 
 /* Fills in numbers and positions of the nodes behind the rows: messages, solvers and the host ask for
  * them. */
-static void place_rows(mpmi_balance *s) {
-  mpmi_newton *newton = s->newton;
+static void place_rows(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
   mpmi_matrix *A = &newton->matrix;
-  for (int32_t k = 0; k < s->settings->grid->dim; ++k)
-    A->period[k] = s->settings->grid->desc.periodic[k] ? s->settings->grid->desc.cells[k] : 0;
+  for (int32_t k = 0; k < balance->settings->grid->dim; ++k)
+    A->period[k] = balance->settings->grid->desc.periodic[k] ? balance->settings->grid->desc.cells[k] : 0;
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const mpmi_active_node *node = &newton->active[i];
-    if (master_of(s, node->slot) != node->slot) continue;
+    if (master_of(balance, node->slot) != node->slot) continue;
     int64_t *index = A->index[node->row];
     index[0] = index[1] = index[2] = 0;
-    mpmi_blocks_index(&s->layout->blocks, node->slot, index);
-    A->number[node->row] = mpmi_node_number(s->settings->grid, index);
+    mpmi_blocks_index(&balance->layout->blocks, node->slot, index);
+    A->number[node->row] = mpmi_node_number(balance->settings->grid, index);
     for (int32_t k = 0; k < 3; ++k)
       A->position[3 * node->row + k] =
-          k < s->settings->grid->dim ? mpmi_node_position(s->settings->grid, k, index[k]) : 0.0;
+          k < balance->settings->grid->dim ? mpmi_node_position(balance->settings->grid, k, index[k]) : 0.0;
   }
 }
 
 /* Finds the components that walls, the host or prescribed particles hold, and how far they move. */
-static void hold(mpmi_balance *s) {
-  mpmi_newton *newton = s->newton;
+static void hold(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
   mpmi_matrix *A = &newton->matrix;
-  const int32_t dim = s->settings->grid->dim;
+  const int32_t dim = balance->settings->grid->dim;
   int32_t changed = 0;
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const int64_t slot = newton->active[i].slot;
-    if (master_of(s, slot) != slot) continue;
-    const int32_t tie = s->layout->constraints.tie_of[slot];
+    if (master_of(balance, slot) != slot) continue;
+    const int32_t tie = balance->layout->constraints.tie_of[slot];
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)newton->active[i].row * dim + c;
-      const int32_t by_host = mpmi_held_by(s->nodes, slot, c) != 0;
-      const int32_t on_wall = tie >= 0 && s->layout->constraints.tie[tie].zero[c];
+      const int32_t by_host = mpmi_held_by(balance->nodes, slot, c) != 0;
+      const int32_t on_wall = tie >= 0 && balance->layout->constraints.tie[tie].zero[c];
       const uint8_t held = by_host ? MPMI_ROW_PRESCRIBED : on_wall ? MPMI_ROW_WALL : MPMI_ROW_FREE;
       changed |= held != A->held[at];
       A->held[at] = held;
-      newton->vector[MPMI_TARGET][at] = by_host ? s->step->dt * s->nodes->held_value[slot][c] : 0.0;
+      newton->vector[MPMI_TARGET][at] =
+          by_host ? balance->step->dt * balance->nodes->held_value[slot][c] : 0.0;
     }
   }
   A->pattern_id += changed;
 }
 
-mpm_status mpmi_unknowns_find(mpmi_balance *s) {
-  mpmi_newton *newton = s->newton;
+mpm_status mpmi_unknowns_find(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
   int64_t active, rows;
   mpm_status status;
-  if ((status = MPMI_RESERVE_MORE(s->settings->context, newton->active_of, newton->map_capacity,
-                                  mpmi_slots(s->layout))))
+  if ((status = MPMI_RESERVE_MORE(balance->settings->context, newton->active_of, newton->map_capacity,
+                                  mpmi_slots(balance->layout))))
     return status;
   int32_t offsets = 1;
-  for (int32_t k = 0; k < s->settings->grid->dim; ++k) offsets *= 2 * mpmi_coupling_span(s->settings) - 1;
+  for (int32_t k = 0; k < balance->settings->grid->dim; ++k)
+    offsets *= 2 * mpmi_coupling_span(balance->settings) - 1;
   if (newton->offsets != offsets) newton->version = -1;
   newton->offsets = offsets;
-  mark(s, &active, &rows);
-  if (!mpmi_is_dynamic(s->settings) && (status = check_carried(s))) return status;
+  mark(balance, &active, &rows);
+  if (!mpmi_is_dynamic(balance->settings) && (status = check_carried(balance))) return status;
   if (active > INT32_MAX)
-    return mpmi_fail(s->settings->context, MPM_E_UNSUPPORTED,
+    return mpmi_fail(balance->settings->context, MPM_E_UNSUPPORTED,
                      "%lld nodes are active, more than 2147483647: use an explicit scheme",
                      (long long)active);
-  if (same_as_before(s, active)) {
+  if (same_as_before(balance, active)) {
     for (int64_t i = 0; i < active; ++i) newton->active_of[newton->active[i].slot] = (int32_t)i;
   } else {
     newton->version = -1;
-    if ((status = reserve(s, active, rows))) return status;
-    number(s);
-    if ((status = mpmi_make_pattern(s, rows))) return status;
-    place_rows(s);
-    memset(newton->matrix.held, 0, (size_t)(rows * s->settings->grid->dim));
-    newton->version = s->layout->version;
+    if ((status = reserve(balance, active, rows))) return status;
+    number(balance);
+    if ((status = mpmi_make_pattern(balance, rows))) return status;
+    place_rows(balance);
+    memset(newton->matrix.held, 0, (size_t)(rows * balance->settings->grid->dim));
+    newton->version = balance->layout->version;
   }
-  hold(s);
+  hold(balance);
   return MPM_OK;
 }
 
-void mpmi_unknowns_fold(const mpmi_balance *s, const mpmi_nodal *forces, double *vector) {
-  const mpmi_newton *newton = s->newton;
-  const int32_t dim = s->settings->grid->dim;
+void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, double *vector) {
+  const mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim;
   memset(vector, 0, (size_t)(newton->matrix.rows * dim) * sizeof *vector);
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const mpmi_active_node *node = &newton->active[i];
