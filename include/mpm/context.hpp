@@ -54,7 +54,8 @@ public:
       desc.error_text = nullptr, desc.error_bytes = 0;
       status = mpm_context_create(&desc, &c.handle);
     }
-    if (status) throw error(status, desc.error_text && *desc.error_text ? desc.error_text : "mpm_context_create");
+    if (status)
+      throw error(status, desc.error_text && *desc.error_text ? desc.error_text : "mpm_context_create");
   }
 
   /** Tells how much memory is held: see mpm_context_memory(). */
