@@ -53,6 +53,10 @@ typedef struct mpm_context_desc {
    * thread only. */
   void (*log)(void *user, int32_t level, const char *text);
   void *log_user; /**< first argument of log */
+  /** The host's memory for a sentence that says why mpm_context_create() has failed: it is cut to fit, and ends
+   * with a zero; after MPM_OK it is as before. Used during that call only. Default NULL: there is none. */
+  char *error_text;
+  uint64_t error_bytes; /**< size of error_text in bytes; 0 exactly where error_text is NULL */
 } mpm_context_desc;
 
 /** Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is
@@ -60,11 +64,11 @@ typedef struct mpm_context_desc {
 MPM_API mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size);
 
 /** Makes a context. desc is copied and may be NULL for the defaults. *out is NULL unless MPM_OK is returned.
- * The host ends the context with mpm_context_destroy(). A call that fails leaves no text, because there is no
- * context to keep it.
+ * The host ends the context with mpm_context_destroy(). There is no context to ask why a call has failed: the
+ * sentence goes to error_text, and to log with MPM_LOG_WARNING, as far as desc sets them.
  *
- * - MPM_E_ARG: a value is bad, only one of alloc and release is set, or the variable MPM_ISA has an unknown
- *   value.
+ * - MPM_E_ARG: a value is bad, only one of alloc and release or of error_text and error_bytes is set, or the
+ *   variable MPM_ISA has an unknown value.
  * - MPM_E_NOMEM: memory or threads are not to be had.
  * - MPM_E_UNSUPPORTED: the instruction set is not available, or desc sets a field that this version of the
  *   library does not know.
@@ -72,15 +76,19 @@ MPM_API mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct
 MPM_API mpm_status mpm_context_create(const mpm_context_desc *desc, mpm_context **out);
 
 /** Tells how many bytes the context and its objects hold now, and the most that they ever held. Either output
- * pointer may be NULL. */
+ * pointer may be NULL. Any thread, any time while the context lives, also in callbacks. */
 MPM_API mpm_status mpm_context_memory(const mpm_context *context, int64_t *bytes, int64_t *peak_bytes);
 
-/** Ends the pool and frees the context. NULL is fine. MPM_E_STATE while objects made with it live. */
+/** Ends the pool and frees the context. NULL is fine. MPM_E_STATE while objects made with it live, and in its own
+ * callbacks. */
 MPM_API mpm_status mpm_context_destroy(mpm_context *context);
 
-/** Gives one or two sentences on the last call on this context or its objects, with the offending names and
- * values, if that call did not return MPM_OK; otherwise, and if context is NULL, "". The text belongs to the
- * library and is valid until the next call on the context. */
+/** Gives one or two sentences, with the offending names and values, on the last call on this context or its objects
+ * that did not return MPM_OK. Calls that succeed leave them as they are, so that a host may clean up and log first
+ * and ask then; "" while no call has failed. The text belongs to the library and is valid until the next call on the
+ * context. Where no context is at hand (NULL, or one that was destroyed), a sentence that says so: the calls that
+ * get no further than to a NULL handle, or to one of another kind, have no other. May be called in callbacks, too,
+ * on the thread of the call. */
 MPM_API const char *mpm_last_error(const mpm_context *context);
 
 #ifdef __cplusplus

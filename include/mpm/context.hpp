@@ -41,13 +41,21 @@ struct memory_use {
  */
 class context : public wrapper<detail::context_core> {
 public:
-  /** Makes a context: see mpm_context_create(). The library keeps no text for a context that could not be
-   * made, so that error::what() has the names of the status and of the call only. */
+  /** Makes a context: see mpm_context_create(). error::what() has the sentence that says why there is none; it goes
+   * to error_text of the descriptor as well, where that is set. */
   explicit context(context_desc desc = {}) {
     detail::context_core &c = core();
+    char text[1024] = "";
+    const bool own = !desc.error_text && !desc.error_bytes;
+    if (own) desc.error_text = text, desc.error_bytes = sizeof text;
     bind(desc, c);
-    if (const mpm_status status = mpm_context_create(&desc, &c.handle))
-      throw error(status, "mpm_context_create");
+    mpm_status status = mpm_context_create(&desc, &c.handle);
+    if (own && status == MPM_E_UNSUPPORTED && !*text) { // a library of before there was error_text
+      desc.error_text = nullptr, desc.error_bytes = 0;
+      status = mpm_context_create(&desc, &c.handle);
+    }
+    if (status)
+      throw error(status, desc.error_text && *desc.error_text ? desc.error_text : "mpm_context_create");
   }
 
   /** Tells how much memory is held: see mpm_context_memory(). */
@@ -101,6 +109,11 @@ inline uint32_t version() noexcept {
 /** The name of a status: see mpm_status_name(). */
 inline const char *status_name(mpm_status status) noexcept {
   return mpm_status_name(status);
+}
+
+/** What a status says, in a sentence without names and values: see mpm_status_text(). */
+inline const char *status_text(mpm_status status) noexcept {
+  return mpm_status_text(status);
 }
 
 } // namespace mpm

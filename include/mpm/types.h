@@ -217,6 +217,10 @@ MPM_API uint32_t mpm_version(void);
  * static, and the pointer is never NULL. May be called from any thread at any time. */
 MPM_API const char *mpm_status_name(mpm_status status);
 
+/** What a status says, in a sentence without names and values: for calls that have no context to keep a text, as
+ * those on NULL. Static, and never NULL: see mpm_last_error() for more. May be called from any thread at any time. */
+MPM_API const char *mpm_status_text(mpm_status status);
+
 /**
  * Gives back the memory of a view that mpm_particles_map() or mpm_grid_map() filled. Afterwards its data and
  * owner are NULL. What the host wrote through a view with MPM_WRITE takes effect now.
@@ -224,7 +228,7 @@ MPM_API const char *mpm_status_name(mpm_status status);
  * - MPM_E_ARG: view is NULL, or the host wrote values that are not finite or give det F <= 0. In the second
  *   case the view is released all the same, and the set refuses to step (MPM_E_STATE) until the values are
  *   repaired; bad nodal values are dropped.
- * - MPM_E_STATE: the view is not lent, or no longer.
+ * - MPM_E_STATE: the view is not lent, or no longer. A view that was never filled has no context to keep a text.
  */
 MPM_API mpm_status mpm_view_release(mpm_view *view);
 

@@ -93,7 +93,7 @@ static void call_hook(const hook_job *job, int64_t block, mpmi_node_list *list, 
   memcpy(values.velocity, values.shown[0], sizeof values.velocity);
   memcpy(values.force, values.shown[1], sizeof values.force);
   const mpm_status status =
-      settings->hook[h](settings->hook_user[h], &list->batch, values.velocity, values.force);
+      mpmi_from_host(settings->hook[h](settings->hook_user[h], &list->batch, values.velocity, values.force));
   if (status) {
     mpmi_failure_take(failure, &(mpmi_failure){mpmi_callback_cause(status), status, -1, -1, -1, what[h]});
     return;

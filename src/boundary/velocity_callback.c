@@ -10,7 +10,7 @@ static void ask_host(mpmi_bound *bound, int64_t block, mpmi_node_list *list, mpm
   double velocity[3 * MPMI_NODE_BATCH] = {0.0};
   if (!mpmi_list_nodes(bound, block, list)) return;
   const mpm_status status =
-      settings->velocity_bc(settings->velocity_bc_user, &list->batch, prescribed, velocity);
+      mpmi_from_host(settings->velocity_bc(settings->velocity_bc_user, &list->batch, prescribed, velocity));
   if (status) {
     mpmi_failure_take(
         failure, &(mpmi_failure){mpmi_callback_cause(status), status, -1, -1, -1, "the velocity callback"});

@@ -4,6 +4,9 @@
 #define MPMI_CONTEXT_H
 
 #include <mpm/mpm.h>
+#include <stdatomic.h>
+
+#include "context/environment.h"
 
 /* The first word of every handle, which tells a live object of the right kind from anything else. */
 enum {
@@ -16,31 +19,59 @@ enum {
   MPMI_OPERATOR = 0x6d706d07
 };
 
-enum { MPMI_ALIGNMENT = 64 };
+enum { MPMI_ALIGNMENT = 64, MPMI_SENTENCE = 1024 };
 
 typedef struct mpmi_pool mpmi_pool;
 
 struct mpm_context {
   uint32_t magic;
-  int32_t children;      /* number of live objects made with this context */
-  int32_t isa;           /* the instruction set in use: never MPM_ISA_BEST */
-  int32_t concurrency;   /* how many tasks may run at once, >= 1 */
-  mpm_context_desc host; /* the services; alloc and release are always set */
-  mpmi_pool *pool;       /* own threads; NULL when concurrency is 1 or the host has an executor */
-  int64_t bytes, peak_bytes;
-  char error[1024];
+  int32_t children;                  /* number of live objects made with this context */
+  int32_t isa;                       /* the instruction set in use: never MPM_ISA_BEST */
+  int32_t concurrency;               /* how many tasks may run at once, >= 1 */
+  mpm_context_desc host;             /* the services; alloc and release are always set */
+  mpmi_pool *pool;                   /* own threads; NULL when concurrency is 1 or the host has an executor */
+  _Atomic int64_t bytes, peak_bytes; /* written by the thread of the call, read by any */
+  _Atomic uint32_t busy;             /* a call on the context or one of its objects is under way */
+  /* What the last failure said. A call writes into one text and leaves alone that which was there when it began,
+   * so that a failure that it gets over can be forgotten. */
+  _Atomic(const char *) error;
+  const char *kept, *said; /* the error when the call began; what the call itself has said, or NULL */
+  char text[2][MPMI_SENTENCE];
 };
 
 /* Writes the text of the last error and returns status, so that callers can `return mpmi_fail(...)`. Without
  * a context there is no text. */
 mpm_status mpmi_fail(mpm_context *context, mpm_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Checks the handle's magic word and clears the last error. This is the first line of every public call. */
+/* The call has got over what went wrong in it: the last error is again that of an earlier call. */
+void mpmi_forget(mpm_context *context);
+
+/* An entry is open while a public call runs. It marks the context as busy, so that calls from callbacks and from
+ * other threads are refused, and keeps the floating-point environment of the host. */
+typedef struct mpmi_entry {
+  mpm_context *context; /* whose call this is; NULL for calls on what is lent to a callback */
+  _Atomic uint32_t
+      *busy;    /* what is to be cleared; NULL: nothing, because the call was refused or has freed it */
+  int32_t open; /* the environment is to be restored */
+  mpmi_environment host;
+} mpmi_entry;
+/* MPM_E_STATE with a text where another call is under way. Then, too, the entry may be left. */
+mpm_status mpmi_enter(mpmi_entry *entry, mpm_context *context);
+/* The same for what is lent to a callback while its context is busy, and has a mark of its own. */
+mpm_status mpmi_enter_lent(mpmi_entry *entry, mpm_context *context, _Atomic uint32_t *busy);
+void mpmi_leave(mpmi_entry *entry);
+/* This is the first line of every public call, after outputs were cleared: it checks the handle's magic word, and
+ * opens an entry that is left on every way out. */
 #define MPMI_ENTER(handle, kind)                                                                             \
-  do {                                                                                                       \
-    if (!(handle) || (handle)->magic != (uint32_t)(kind)) return MPM_E_ARG;                                  \
-    (handle)->context->error[0] = '\0';                                                                      \
-  } while (0)
+  if (!(handle) || (handle)->magic != (uint32_t)(kind)) return MPM_E_ARG;                                    \
+  MPMI_ENTER_CONTEXT((handle)->context)
+#define MPMI_ENTER_CONTEXT(context)                                                                          \
+  if (!(context) || (context)->magic != (uint32_t)MPMI_CONTEXT) return MPM_E_ARG;                            \
+  __attribute__((cleanup(mpmi_leave))) mpmi_entry entry_;                                                    \
+  if (mpmi_enter(&entry_, context)) return MPM_E_STATE
+/* Passes on what a callback has returned. The callback may have left another environment behind. */
+mpm_status mpmi_from_host(mpm_status returned);
+
 /* Gives a text to the host's log, if it has one. */
 void mpmi_log(mpm_context *context, int32_t level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -8,27 +8,39 @@
 mpm_status mpmi_fail(mpm_context *context, mpm_status status, const char *format, ...) {
   if (!context) return status;
   /* The text is formatted aside, because the old one may be among the arguments. */
-  char text[sizeof context->error];
+  char text[MPMI_SENTENCE];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  memcpy(context->error, text, strlen(text) + 1);
+  char *to = context->text[context->kept == context->text[0]];
+  memcpy(to, text, strlen(text) + 1);
+  context->said = to;
+  atomic_store(&context->error, to);
   return status;
+}
+
+void mpmi_forget(mpm_context *context) {
+  if (context->said) atomic_store(&context->error, context->kept);
+  context->said = NULL;
 }
 
 void mpmi_log(mpm_context *context, int32_t level, const char *format, ...) {
   if (!context->host.log) return;
-  char text[sizeof context->error];
+  char text[MPMI_SENTENCE];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
   context->host.log(context->host.log_user, level, text);
+  mpmi_environment_mend();
 }
 
 const char *mpm_last_error(const mpm_context *context) {
-  return context && context->magic == MPMI_CONTEXT ? context->error : "";
+  if (context && context->magic == MPMI_CONTEXT) return atomic_load(&context->error);
+  return "there is no context to keep a text: a handle is NULL, destroyed or of another kind; "
+         "mpm_status_text() says "
+         "what the status means";
 }
 
 enum { NAME_MAX_COMPARED = 63, NAMES_LISTED = 3 };

@@ -102,6 +102,7 @@ static void sleep_until_work(mpmi_pool *pool) {
 
 static void *work(void *argument) {
   mpmi_pool *pool = argument;
+  mpmi_environment_mend(); /* threads begin with that of the thread that starts them */
   while (!atomic_load(&pool->stop)) {
     take_part(pool);
     if (lasts(pool, nothing_to_take)) sleep_until_work(pool);
@@ -191,12 +192,29 @@ void mpmi_pool_destroy(mpm_context *context, mpmi_pool *pool) {
   mpmi_free(context, pool, pool->bytes);
 }
 
-mpm_status mpmi_parallel_for(mpm_context *context, int64_t count, mpm_task_fn task, void *data) {
-  const mpm_context_desc *host = &context->host;
-  if (count > 1 && host->parallel_for) {
-    mpm_status status = host->parallel_for(host->parallel_user, count, task, data);
-    if (status) return mpmi_fail(context, MPM_E_CALLBACK, "the host's parallel_for returned %d", (int)status);
-  } else if (count > 1 && context->pool) {
+/* A task that the host's executor runs: its threads have environments of their own. */
+typedef struct hosted {
+  mpm_task_fn task;
+  void *data;
+} hosted;
+
+static void run_hosted(void *data, int64_t k) {
+  const hosted *h = data;
+  mpmi_environment host;
+  mpmi_environment_enter(&host);
+  h->task(h->data, k);
+  mpmi_environment_leave(&host);
+}
+
+/* What the host's executor returned. */
+static mpm_status run_by_host(const mpm_context_desc *host, int64_t count, mpm_task_fn task, void *data) {
+  hosted h = {task, data};
+  return mpmi_from_host(host->parallel_for(host->parallel_user, count, run_hosted, &h));
+}
+
+static mpm_status run_anywhere(mpm_context *context, int64_t count, mpm_task_fn task, void *data) {
+  if (count > 1 && context->host.parallel_for) return run_by_host(&context->host, count, task, data);
+  if (count > 1 && context->pool) {
     pool_run(context->pool, count, task, data);
   } else {
     run_inline(count, task, data);
@@ -204,6 +222,12 @@ mpm_status mpmi_parallel_for(mpm_context *context, int64_t count, mpm_task_fn ta
   return MPM_OK;
 }
 
+mpm_status mpmi_parallel_for(mpm_context *context, int64_t count, mpm_task_fn task, void *data) {
+  const mpm_status status = run_anywhere(context, count, task, data);
+  if (!status) return MPM_OK;
+  return mpmi_fail(context, MPM_E_CALLBACK, "the host's parallel_for returned %d", (int)status);
+}
+
 void mpmi_parallel_for_sure(mpm_context *context, int64_t count, mpm_task_fn task, void *data) {
-  if (mpmi_parallel_for(context, count, task, data)) run_inline(count, task, data);
+  if (run_anywhere(context, count, task, data)) run_inline(count, task, data);
 }

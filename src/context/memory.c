@@ -17,6 +17,7 @@ void *mpmi_alloc(mpm_context *context, size_t bytes) {
     return NULL;
   }
   void *memory = host->alloc(host->alloc_user, size, MPMI_ALIGNMENT);
+  mpmi_environment_mend();
   if (!memory) {
     mpmi_fail(context, MPM_E_NOMEM, "out of memory: %zu bytes refused, %lld held", size,
               (long long)context->bytes);
@@ -25,12 +26,13 @@ void *mpmi_alloc(mpm_context *context, size_t bytes) {
   /* Kernels use aligned loads: a careless allocator would crash there, far from the cause. */
   if ((uintptr_t)memory % MPMI_ALIGNMENT) {
     host->release(host->alloc_user, memory, size, MPMI_ALIGNMENT);
+    mpmi_environment_mend();
     mpmi_fail(context, MPM_E_NOMEM, "the host's alloc returned memory that is not aligned to %d bytes",
               MPMI_ALIGNMENT);
     return NULL;
   }
   context->bytes += (int64_t)size;
-  if (context->bytes > context->peak_bytes) context->peak_bytes = context->bytes;
+  if (context->bytes > context->peak_bytes) context->peak_bytes = (int64_t)context->bytes;
   return memory;
 }
 
@@ -46,6 +48,7 @@ void mpmi_free(mpm_context *context, void *memory, size_t bytes) {
   size_t size = granted(bytes);
   context->bytes -= (int64_t)size;
   host->release(host->alloc_user, memory, size, MPMI_ALIGNMENT);
+  mpmi_environment_mend();
 }
 
 size_t mpmi_bytes(int64_t count, size_t size) {

@@ -9,6 +9,8 @@
 
 enum { MOST_THREADS = 1024 };
 
+static const char *const isa_name[] = {"best", "baseline", "avx2", "avx512"}; /* by MPM_ISA_... */
+
 static void *default_alloc(void *user, size_t bytes, size_t alignment) {
   (void)user;
   void *memory;
@@ -47,54 +49,61 @@ static int processor_has(int32_t isa) {
 }
 
 /* The environment steers only hosts that left the choice to the library. */
-static mpm_status wanted_isa(int32_t *isa) {
+static mpm_status wanted_isa(mpm_context *context, int32_t *isa) {
   const char *text = *isa == MPM_ISA_BEST ? getenv("MPM_ISA") : NULL;
   if (!text || !*text) return MPM_OK;
-  if (!strcmp(text, "baseline"))
-    *isa = MPM_ISA_BASELINE;
-  else if (!strcmp(text, "avx2"))
-    *isa = MPM_ISA_AVX2;
-  else if (!strcmp(text, "avx512"))
-    *isa = MPM_ISA_AVX512;
-  else
-    return MPM_E_ARG;
-  return MPM_OK;
+  for (int32_t k = MPM_ISA_BASELINE; k <= MPM_ISA_AVX512; ++k)
+    if (!strcmp(text, isa_name[k])) {
+      *isa = k;
+      return MPM_OK;
+    }
+  return mpmi_fail(context, MPM_E_ARG, "the variable MPM_ISA is \"%.80s\", must be baseline, avx2 or avx512",
+                   text);
 }
 
-static mpm_status resolve_isa(int32_t *isa) {
-  if (*isa < MPM_ISA_BEST || *isa > MPM_ISA_AVX512) return MPM_E_ARG;
-  mpm_status status = wanted_isa(isa);
+static mpm_status resolve_isa(mpm_context *context, int32_t *isa) {
+  if (*isa < MPM_ISA_BEST || *isa > MPM_ISA_AVX512)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_context_desc: isa is %d, which is none of the constants",
+                     (int)*isa);
+  mpm_status status = wanted_isa(context, isa);
   if (status) return status;
   if (*isa == MPM_ISA_BEST) {
     *isa = MPM_ISA_AVX512;
     while (!processor_has(*isa)) --*isa;
   }
-  return processor_has(*isa) ? MPM_OK : MPM_E_UNSUPPORTED;
+  if (processor_has(*isa)) return MPM_OK;
+  return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                   "processor or library lack the instruction set %s: use MPM_ISA_BEST or MPM_ISA_BASELINE",
+                   isa_name[*isa]);
 }
 
-static mpm_status resolve_concurrency(int32_t *concurrency) {
-  if (*concurrency < 0 || *concurrency > MOST_THREADS) return MPM_E_ARG;
+static mpm_status resolve_concurrency(mpm_context *context, int32_t *concurrency) {
+  if (*concurrency < 0 || *concurrency > MOST_THREADS)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_context_desc: concurrency is %d, must be 0 to %d",
+                     (int)*concurrency, (int)MOST_THREADS);
   if (*concurrency) return MPM_OK;
   long processors = sysconf(_SC_NPROCESSORS_ONLN);
   *concurrency = processors < 1 ? 1 : processors > MOST_THREADS ? MOST_THREADS : (int32_t)processors;
   return MPM_OK;
 }
 
-/* Reads the descriptor into `host` and settles what it leaves open. */
-static mpm_status resolve(const mpm_context_desc *desc, mpm_context_desc *host) {
-  *host = default_desc();
-  if (desc) {
-    mpm_status status = mpmi_read_struct(NULL, "mpm_context_desc", desc, sizeof *host, host);
-    if (status) return status;
-  }
-  if (!host->alloc != !host->release) return MPM_E_ARG;
-  if (host->serial_callbacks != 0 && host->serial_callbacks != 1) return MPM_E_ARG;
+/* Checks the descriptor and settles what it leaves open. */
+static mpm_status resolve(mpm_context *context, mpm_context_desc *host) {
+  if (!host->alloc != !host->release)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_context_desc: %s is set without %s",
+                     host->alloc ? "alloc" : "release", host->alloc ? "release" : "alloc");
+  if (host->serial_callbacks != 0 && host->serial_callbacks != 1)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_context_desc: serial_callbacks is %d, must be 0 or 1",
+                     (int)host->serial_callbacks);
+  if (!host->error_text != !host->error_bytes)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_context_desc: error_text is %s, but error_bytes is %llu",
+                     host->error_text ? "set" : "NULL", (unsigned long long)host->error_bytes);
   if (!host->alloc) {
     host->alloc = default_alloc;
     host->release = default_release;
   }
-  mpm_status status = resolve_concurrency(&host->concurrency);
-  return status ? status : resolve_isa(&host->isa);
+  mpm_status status = resolve_concurrency(context, &host->concurrency);
+  return status ? status : resolve_isa(context, &host->isa);
 }
 
 static void free_context(mpm_context *context) {
@@ -102,37 +111,74 @@ static void free_context(mpm_context *context) {
   mpmi_pool_destroy(context, context->pool);
   context->magic = 0; /* a handle used after this is refused as long as the memory is not reused */
   host.release(host.alloc_user, context, sizeof *context, MPMI_ALIGNMENT);
+  mpmi_environment_mend();
+}
+
+/* A copy of the context that keeps its text; `from` may be on the stack. */
+static void move_context(mpm_context *to, const mpm_context *from) {
+  memcpy(to, from, sizeof *to);
+  to->error = to->kept = to->text[0];
+}
+
+/* The context is its own first allocation: until then a stand-in counts its bytes and keeps its text. */
+static mpm_status make(mpm_context *first, const mpm_context_desc *desc, mpm_context **out) {
+  mpm_context_desc *host = &first->host;
+  mpm_status status = desc ? mpmi_read_struct(first, "mpm_context_desc", desc, sizeof *host, host) : MPM_OK;
+  /* it says where to complain, too */
+  if (status == MPM_E_UNSUPPORTED) mpmi_read_known("mpm_context_desc", desc, sizeof *host, host);
+  if (!status && !out) status = mpmi_fail(first, MPM_E_ARG, "mpm_context_create: out is NULL");
+  if (!status) status = resolve(first, host);
+  if (status) return status;
+  first->isa = host->isa;
+  first->concurrency = host->concurrency;
+  mpm_context *context = mpmi_alloc(first, sizeof *context);
+  if (!context) return MPM_E_NOMEM;
+  move_context(context, first);
+  context->host.error_text = NULL; /* that is the host's, and was lent for this call */
+  context->host.error_bytes = 0;
+  if (context->concurrency > 1 && !context->host.parallel_for)
+    status = mpmi_pool_create(context, context->concurrency, &context->pool);
+  if (status) {
+    mpmi_fail(first, status, "%s", mpm_last_error(context));
+    free_context(context);
+    return status;
+  }
+  *out = context;
+  return MPM_OK;
+}
+
+/* Without a context the host learns from its own text, and from its log, why there is none. */
+static void tell_failure(mpm_context *first) {
+  const mpm_context_desc *host = &first->host;
+  const char *text = mpm_last_error(first);
+  mpmi_log(first, MPM_LOG_WARNING, "no context: %s", text);
+  if (!host->error_text || !host->error_bytes) return;
+  size_t length = strlen(text);
+  if (length >= host->error_bytes) length = (size_t)host->error_bytes - 1;
+  memcpy(host->error_text, text, length);
+  host->error_text[length] = '\0';
 }
 
 mpm_status mpm_context_create(const mpm_context_desc *desc, mpm_context **out) {
-  if (!out) return MPM_E_ARG;
-  *out = NULL;
-  /* The context is its own first allocation, so a stand-in counts these bytes and checks their alignment. */
+  if (out) *out = NULL;
+  mpmi_environment environment;
+  mpmi_environment_enter(&environment);
   mpm_context first;
   memset(&first, 0, sizeof first);
   first.magic = MPMI_CONTEXT;
-  mpm_status status = resolve(desc, &first.host);
-  if (status) return status;
-  first.isa = first.host.isa;
-  first.concurrency = first.host.concurrency;
-  mpm_context *context = mpmi_alloc(&first, sizeof *context);
-  if (!context) return MPM_E_NOMEM;
-  memcpy(context, &first, sizeof first);
-  if (context->concurrency > 1 && !context->host.parallel_for) {
-    status = mpmi_pool_create(context, context->concurrency, &context->pool);
-    if (status) {
-      free_context(context);
-      return status;
-    }
-  }
-  static const char *const isa_name[] = {"best", "baseline", "avx2", "avx512"};
-  mpmi_log(context, MPM_LOG_INFO, "context: instruction set %s, concurrency %d, %s", isa_name[context->isa],
-           (int)context->concurrency,
-           context->host.parallel_for ? "the host's executor"
-           : context->pool            ? "own threads"
-                                      : "no threads");
-  *out = context;
-  return MPM_OK;
+  first.host = default_desc();
+  first.error = first.kept = first.text[0];
+  const mpm_status status = make(&first, desc, out);
+  if (status)
+    tell_failure(&first);
+  else
+    mpmi_log(*out, MPM_LOG_INFO, "context: instruction set %s, concurrency %d, %s", isa_name[first.isa],
+             (int)first.concurrency,
+             first.host.parallel_for ? "the host's executor"
+             : (*out)->pool          ? "own threads"
+                                     : "no threads");
+  mpmi_environment_leave(&environment);
+  return status;
 }
 
 mpm_status mpm_context_memory(const mpm_context *context, int64_t *bytes, int64_t *peak_bytes) {
@@ -144,10 +190,11 @@ mpm_status mpm_context_memory(const mpm_context *context, int64_t *bytes, int64_
 
 mpm_status mpm_context_destroy(mpm_context *context) {
   if (!context) return MPM_OK;
-  if (context->magic != MPMI_CONTEXT) return MPM_E_ARG;
+  MPMI_ENTER_CONTEXT(context);
   if (context->children)
     return mpmi_fail(context, MPM_E_STATE, "%d objects of the context still live: destroy them first",
                      (int)context->children);
+  entry_.busy = NULL; /* it goes with the context, which stays busy until then */
   free_context(context);
   return MPM_OK;
 }

@@ -11,6 +11,7 @@
 #define RELEASES(X)                                                                                          \
   X(mpm_view, owner, 56)                                                                                     \
   X(mpm_context_desc, log_user, 72)                                                                          \
+  X(mpm_context_desc, error_bytes, 88)                                                                       \
   X(mpm_grid_desc, smoothing, 112)                                                                           \
   X(mpm_material_batch, lookup, 144)                                                                         \
   X(mpm_material_desc, state_initial, 64)                                                                    \
@@ -58,6 +59,12 @@ uint32_t mpmi_first_size(const char *name) {
   return first_size(mpmi_releases, name);
 }
 
+static void copy_known(const void *desc, uint32_t whole, uint32_t known, void *out) {
+  memset(out, 0, known);
+  memcpy(out, desc, whole);
+  memcpy(out, &known, sizeof known);
+}
+
 mpm_status mpmi_read_release(const mpmi_release *table, mpm_context *context, const char *name,
                              const void *desc, uint32_t known, void *out) {
   if (!desc) return mpmi_fail(context, MPM_E_ARG, "%s is NULL", name);
@@ -72,15 +79,18 @@ mpm_status mpmi_read_release(const mpmi_release *table, mpm_context *context, co
       return mpmi_fail(context, MPM_E_UNSUPPORTED,
                        "%s sets a field that this version of the library does not know (byte %u of %u)", name,
                        i, given);
-  memset(out, 0, known);
-  memcpy(out, desc, whole);
-  memcpy(out, &known, sizeof known);
+  copy_known(desc, whole, known, out);
   return MPM_OK;
 }
 
 mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known,
                             void *out) {
   return mpmi_read_release(mpmi_releases, context, name, desc, known, out);
+}
+
+void mpmi_read_known(const char *name, const void *desc, uint32_t known, void *out) {
+  const uint32_t given = struct_size_of(desc);
+  copy_known(desc, whole_size(mpmi_releases, name, given < known ? given : known), known, out);
 }
 
 mpm_status mpmi_check_out_struct(mpm_context *context, const char *name, uint32_t known, const void *out) {

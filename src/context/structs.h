@@ -24,6 +24,8 @@ uint32_t mpmi_first_size(const char *name);
  * error text. */
 mpm_status mpmi_read_struct(mpm_context *context, const char *name, const void *desc, uint32_t known,
                             void *out);
+/* The fields that both know of a struct that was refused with MPM_E_UNSUPPORTED. */
+void mpmi_read_known(const char *name, const void *desc, uint32_t known, void *out);
 /* Writes `value`, of `known` bytes, to the host's `out` as far as its struct_size, which stays, reaches. What
  * the host's struct has beyond stays as it was. */
 mpm_status mpmi_write_struct(mpm_context *context, const char *name, const void *value, uint32_t known,

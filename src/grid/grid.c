@@ -155,10 +155,9 @@ static void derive(mpm_grid *grid) {
 }
 
 mpm_status mpm_grid_create(mpm_context *context, const mpm_grid_desc *desc, mpm_grid **out) {
-  if (!context || context->magic != MPMI_CONTEXT) return MPM_E_ARG;
-  context->error[0] = '\0';
+  if (out) *out = NULL;
+  MPMI_ENTER_CONTEXT(context);
   if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_grid_create: out is NULL");
-  *out = NULL;
   mpm_grid made;
   memset(&made, 0, sizeof made);
   mpm_status status = mpmi_read_struct(context, "mpm_grid_desc", desc, sizeof made.desc, &made.desc);

@@ -114,8 +114,6 @@ static uint64_t hash_set(const mpm_particles *set, int32_t number) {
 mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
   if (!hash) return mpmi_fail(stepper->context, MPM_E_ARG, "hash is NULL");
-  if (stepper->step.phase == MPMI_RUNNING)
-    return mpmi_fail(stepper->context, MPM_E_STATE, "mpm_state_hash() must not be called from a callback");
   uint64_t h = absorb(absorb(absorb(MPMI_MIX_A, bits(stepper->history.t)), (uint64_t)stepper->history.step),
                       (uint64_t)stepper->layout.member_count);
   for (int32_t m = 0; m < stepper->layout.member_count; ++m) {

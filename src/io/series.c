@@ -101,8 +101,7 @@ static int create(mpm_series *series) {
 
 mpm_status mpm_series_open(mpm_context *context, const char *path, mpm_series **out) {
   if (out) *out = NULL;
-  if (!context || context->magic != MPMI_CONTEXT) return MPM_E_ARG;
-  context->error[0] = '\0';
+  MPMI_ENTER_CONTEXT(context);
   if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_series_open: out is NULL");
   mpm_status status = mpmi_check_path(context, path);
   if (status) return status;

@@ -118,8 +118,6 @@ mpm_status mpm_write_particles(const mpm_particles *particles, const char *path,
                                const char *const *fields) {
   MPMI_ENTER(particles, MPMI_PARTICLES);
   mpm_context *context = particles->context;
-  if (particles->stepper && particles->stepper->step.phase == MPMI_RUNNING)
-    return mpmi_fail(context, MPM_E_STATE, "mpm_write_particles() must not be called from a callback");
   writer w = {.set = particles, .file = {.context = context}};
   mpm_status status = mpmi_check_path(context, path);
   if (!status) status = choose_arrays(&w, count, fields);

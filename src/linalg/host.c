@@ -12,7 +12,8 @@ static mpm_status call(const mpmi_system *s, const mpmi_solve_job *job, double *
   int64_t iterations = 0;
   mpmi_operator_compress(op, s->b, rhs);
   mpmi_operator_compress(op, s->x, solution);
-  const mpm_status returned = job->host(job->host_user, op, rhs, solution, job->tolerance, &iterations);
+  const mpm_status returned =
+      mpmi_from_host(job->host(job->host_user, op, rhs, solution, job->tolerance, &iterations));
   s->report->callback_status = returned;
   if (returned)
     return mpmi_fail(s->context, returned > 0 ? MPM_CUT_DT : MPM_E_CALLBACK, "the linear solver returned %d",

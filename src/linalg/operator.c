@@ -127,13 +127,20 @@ static mpm_status make_rows(mpm_operator *op) {
 }
 
 /* ---- public -------------------------------------------------------------------------------------------- */
+/* The context is busy with the solve callback, in which these calls are made: the system has a mark of its own. */
+#define ENTER(matrix)                                                                                        \
+  if (!(matrix) || (matrix)->magic != (uint32_t)MPMI_OPERATOR) return MPM_E_ARG;                             \
+  __attribute__((cleanup(mpmi_leave))) mpmi_entry entry_;                                                    \
+  if (mpmi_enter_lent(&entry_, (matrix)->context, &((mpm_operator *)(uintptr_t)(matrix))->busy))             \
+  return MPM_E_STATE
+
 static mpm_status check_open(const mpm_operator *op) {
   if (op->open) return MPM_OK;
   return mpmi_fail(op->context, MPM_E_STATE, "the linear system is lent during the solve callback only");
 }
 
 mpm_status mpm_operator_get_info(const mpm_operator *matrix, mpm_operator_info *info) {
-  MPMI_ENTER(matrix, MPMI_OPERATOR);
+  ENTER(matrix);
   mpm_status status = check_open(matrix);
   if (status) return status;
   if (!info) return mpmi_fail(matrix->context, MPM_E_ARG, "info is NULL");
@@ -152,7 +159,7 @@ mpm_status mpm_operator_get_info(const mpm_operator *matrix, mpm_operator_info *
 }
 
 mpm_status mpm_operator_apply(const mpm_operator *matrix, const double *x, double *y) {
-  MPMI_ENTER(matrix, MPMI_OPERATOR);
+  ENTER(matrix);
   mpm_status status = check_open(matrix);
   if (status) return status;
   if (!x || !y) return mpmi_fail(matrix->context, MPM_E_ARG, "%s is NULL", x ? "y" : "x");
@@ -165,7 +172,7 @@ mpm_status mpm_operator_apply(const mpm_operator *matrix, const double *x, doubl
 /* Making the rows changes nothing that the host sees of the system. */
 mpm_status mpm_operator_csr(const mpm_operator *matrix, const int64_t **row_start, const int32_t **column,
                             const double **value) {
-  MPMI_ENTER(matrix, MPMI_OPERATOR);
+  ENTER(matrix);
   mpm_status status = check_open(matrix);
   if (status) return status;
   if (!row_start || !column || !value)

@@ -6,7 +6,8 @@
 
 struct mpm_operator {
   uint32_t magic;
-  int32_t open; /* 1: the solve callback is running */
+  int32_t open;          /* 1: the solve callback is running */
+  _Atomic uint32_t busy; /* a call on the system is under way */
   mpm_context *context;
   const mpmi_matrix *A;
   int32_t positive_definite;

@@ -77,7 +77,7 @@ static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient, int
     const double started = mpmi_seconds();
     s->report->indefinite = 0;
     s->report->node = -1;
-    s->context->error[0] = '\0'; /* drops what prepare_multigrid() wrote */
+    mpmi_forget(s->context); /* drops what prepare_multigrid() wrote */
     status = mpmi_inverse_blocks(s, &row);
     s->report->factor_seconds += mpmi_seconds() - started;
     if (status == MPM_NONFINITE) return bad_diagonal(s, row);
@@ -100,8 +100,8 @@ static mpm_status fall_back(mpmi_system *s, mpm_status status) {
         "body in each direction, use a smaller dt%s",
         (long long)s->n, s->report->indefinite ? "not positive definite" : "too hard for iterations",
         1e-9 * bytes, s->A->symmetric ? ", or MPM_SOLVER_LDLT if there is room" : "");
-  s->report->indefinite = 0;   /* the factor will say whether it is */
-  s->context->error[0] = '\0'; /* drops what the iterations wrote */
+  s->report->indefinite = 0; /* the factor will say whether it is */
+  mpmi_forget(s->context);   /* drops what the iterations wrote */
   s->report->node = -1;
   return mpmi_direct(s);
 }

@@ -49,10 +49,6 @@ mpm_status mpm_material_model_param(const char *model, int32_t index, const char
 }
 
 /* ---- handles ----------------------------------------------------------------------------------------- */
-static int32_t is_context(const mpm_context *context) {
-  return context && context->magic == MPMI_CONTEXT;
-}
-
 static mpm_status refuse_model(mpm_context *context, const char *model) {
   const char *names[MPMI_LAW_COUNT];
   for (int32_t i = 0; i < MPMI_LAW_COUNT; ++i) names[i] = mpm_material_model_name(i);
@@ -142,8 +138,7 @@ static mpm_status set_law(mpm_material *material, const mpmi_law *law, const mpm
 mpm_status mpm_material_create(mpm_context *context, const char *model, const mpm_param *params,
                                int32_t count, mpm_material **out) {
   if (out) *out = NULL;
-  if (!is_context(context)) return MPM_E_ARG;
-  context->error[0] = '\0';
+  MPMI_ENTER_CONTEXT(context);
   if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_material_create: out is NULL");
   if (!model) return mpmi_fail(context, MPM_E_ARG, "mpm_material_create: model is NULL");
   const mpmi_law *law = law_by_name(context->isa, model);
@@ -194,8 +189,7 @@ static mpm_status check_desc(mpm_context *context, const mpm_material_desc *d) {
 mpm_status mpm_material_create_custom(mpm_context *context, const mpm_material_desc *desc,
                                       mpm_material **out) {
   if (out) *out = NULL;
-  if (!is_context(context)) return MPM_E_ARG;
-  context->error[0] = '\0';
+  MPMI_ENTER_CONTEXT(context);
   if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_material_create_custom: out is NULL");
   mpm_material_desc custom;
   mpm_status status = mpmi_read_struct(context, "mpm_material_desc", desc, sizeof custom, &custom);
@@ -224,7 +218,10 @@ mpm_status mpm_material_destroy(mpm_material *material) {
   if (material->users > 0)
     return mpmi_fail(context, MPM_E_STATE, "the material is still used by %d set(s) of particles",
                      material->users);
-  if (material->custom.release_user) material->custom.release_user(material->custom.user);
+  if (material->custom.release_user) {
+    material->custom.release_user(material->custom.user);
+    mpmi_environment_mend();
+  }
   material->magic = 0;
   mpmi_free(context, material, material->size);
   context->children--;
@@ -233,7 +230,7 @@ mpm_status mpm_material_destroy(mpm_material *material) {
 
 mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t dim,
                                   const mpm_material_batch *batch) {
-  if (!material->law) return material->custom.stress(material->custom.user, batch);
+  if (!material->law) return mpmi_from_host(material->custom.stress(material->custom.user, batch));
   material->law->stress(material->constants, dim, batch);
   return MPM_OK;
 }

@@ -36,7 +36,7 @@ static mpm_status call_tangent(const mpm_material *material, int32_t dim, const 
                                double *given, double *tangent, int32_t *symmetric) {
   const mpm_material_desc *custom = &material->custom;
   int32_t is_symmetric = 0;
-  const mpm_status status = custom->tangent(custom->user, batch, given, &is_symmetric);
+  const mpm_status status = mpmi_from_host(custom->tangent(custom->user, batch, given, &is_symmetric));
   if (status) return status;
   if (!is_symmetric) *symmetric = 0;
   const int32_t general = custom->tangent_form == MPM_TANGENT_GENERAL;
@@ -95,7 +95,7 @@ static mpm_status run_varied(const mpm_material *material, const mpm_material_ba
     v->batch.kinematic_viscosity[p] = 0.0;
     v->batch.energy[p] = (double)NAN;
   }
-  return material->custom.stress(material->custom.user, &v->batch);
+  return mpmi_from_host(material->custom.stress(material->custom.user, &v->batch));
 }
 
 /* c_ijkl of one kl, from tau with L_kl = step (in v->tau) and -step (what the law has just computed). */

@@ -34,10 +34,9 @@ static mpm_status check_parts(mpm_context *context, const mpm_grid *grid, const 
 
 mpm_status mpm_particles_create(mpm_context *context, mpm_grid *grid, mpm_material *material,
                                 mpm_particles **out) {
-  if (!context || context->magic != MPMI_CONTEXT) return MPM_E_ARG;
-  context->error[0] = '\0';
+  if (out) *out = NULL;
+  MPMI_ENTER_CONTEXT(context);
   if (!out) return mpmi_fail(context, MPM_E_ARG, "mpm_particles_create: out is NULL");
-  *out = NULL;
   mpm_status status = check_parts(context, grid, material);
   if (status) return status;
   mpm_particles *set = mpmi_alloc_zeroed(context, sizeof *set);

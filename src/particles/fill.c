@@ -92,7 +92,8 @@ static mpm_status choose(mpm_context *context, const lattice *on, mpm_inside_fn 
     int64_t n = batch_length(on, first);
     points_at(on, first, n, through->position, BATCH);
     memset(through->inside, 0, BATCH);
-    mpm_status status = inside(user, on->grid->dim, n, BATCH, through->position, through->inside);
+    const mpm_status status =
+        mpmi_from_host(inside(user, on->grid->dim, n, BATCH, through->position, through->inside));
     if (status)
       return mpmi_fail(context, MPM_E_CALLBACK, "the function that tells what is inside returned %d",
                        (int)status);

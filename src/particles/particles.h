@@ -61,6 +61,7 @@ enum {
 typedef struct mpmi_view_record mpmi_view_record;
 struct mpmi_view_record {
   int32_t live, field, access;
+  mpm_context *context; /* stays when the view is given back, for the text of a second time */
   void *data;
   void *lender; /* the set or the stepper */
   mpm_status (*release)(mpmi_view_record *record, mpm_view *view);

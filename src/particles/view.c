@@ -65,9 +65,8 @@ static mpm_status accept_written(mpm_particles *set, int32_t field) {
 static mpm_status release_field(mpmi_view_record *record, mpm_view *view) {
   mpm_particles *set = record->lender;
   int32_t field = record->field, access = record->access;
-  set->context->error[0] = '\0';
   set->mapped--;
-  *record = (mpmi_view_record){0};
+  record->live = 0;
   view->data = view->owner = NULL;
   return access & MPM_WRITE ? accept_written(set, field) : MPM_OK;
 }
@@ -85,7 +84,13 @@ mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_
   if (!status) status = mpmi_field_make_present(particles, f);
   if (status) return status;
   const mpmi_field *at = &particles->field[f];
-  *record = (mpmi_view_record){1, f, access, at->data[0], particles, release_field};
+  *record = (mpmi_view_record){.live = 1,
+                               .field = f,
+                               .access = access,
+                               .context = particles->context,
+                               .data = at->data[0],
+                               .lender = particles,
+                               .release = release_field};
   particles->mapped++;
   mpmi_view_fill(view, at->type, at->components, access, particles->slots, particles->ld, at->data[0],
                  record);
@@ -95,6 +100,9 @@ mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_
 mpm_status mpm_view_release(mpm_view *view) {
   if (!view) return MPM_E_ARG;
   mpmi_view_record *record = view->owner;
-  if (!record || !record->live || record->data != view->data) return MPM_E_STATE;
+  if (!record) return MPM_E_STATE;
+  MPMI_ENTER_CONTEXT(record->context);
+  if (!record->live || record->data != view->data)
+    return mpmi_fail(record->context, MPM_E_STATE, "the view is not lent, or was given back already");
   return record->release(record, view);
 }

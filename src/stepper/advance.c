@@ -41,7 +41,7 @@ static mpm_status choose(mpm_stepper *s, const mpm_advance_desc *d, double *dt, 
   const double left = d->t_end - s->history.t;
   *dt = left;
   if (!mpmi_is_implicit(&s->settings)) {
-    const mpm_status status = mpm_stable_dt(s, dt);
+    const mpm_status status = mpmi_tell_stable_dt(s, dt);
     if (status) return status;
     *dt *= d->cfl;
   }

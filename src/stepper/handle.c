@@ -21,8 +21,7 @@ static void free_parts(mpm_stepper *s) {
 mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_stepper_desc *desc,
                               mpm_stepper **out) {
   if (out) *out = NULL;
-  if (!context || context->magic != (uint32_t)MPMI_CONTEXT) return MPM_E_ARG;
-  context->error[0] = '\0';
+  MPMI_ENTER_CONTEXT(context);
   if (!out) return mpmi_fail(context, MPM_E_ARG, "out is NULL");
   if (!grid || grid->magic != (uint32_t)MPMI_GRID || grid->context != context)
     return mpmi_fail(context, MPM_E_ARG, "grid is NULL, destroyed or of another context");

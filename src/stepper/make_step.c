@@ -95,7 +95,7 @@ static mpm_status ask_progress(mpm_stepper *s) {
   info.t = s->step.t + s->step.dt;
   info.dt = s->step.dt;
   info.step = s->history.step + 1;
-  const mpm_status status = settings->progress(settings->progress_user, &info);
+  const mpm_status status = mpmi_from_host(settings->progress(settings->progress_user, &info));
   if (!status) return MPM_OK;
   s->step.failure.callback_status = status;
   return mpmi_fail(s->context, status > 0 ? MPM_CANCELLED : MPM_E_CALLBACK,
@@ -109,7 +109,7 @@ static mpm_status finish(mpm_stepper *s) {
   if (status) return status;
   mpmi_commit(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
-  if (!s->history.has_sums && mpmi_state_sums(s, NULL)) s->context->error[0] = '\0';
+  if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
   info->cause = MPM_OK;
   info->dt = dt;
   info->dt_suggested = mpmi_is_implicit(&s->settings) ? mpmi_next_dt(s->step.info.newton_iterations, dt)
@@ -147,7 +147,7 @@ mpm_status mpmi_make_step(mpm_stepper *s, double dt) {
   if (!status) status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
   if (!status) status = finish(s);
   if (status) return give_up(s, status);
-  s->context->error[0] = '\0'; /* drops the texts of failed attempts */
+  mpmi_forget(s->context); /* drops the texts of failed attempts */
   return MPM_OK;
 }
 

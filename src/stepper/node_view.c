@@ -85,7 +85,7 @@ mpm_status mpmi_node_require(mpm_context *context, const char *name, int32_t *fi
 
 mpm_status mpmi_nodes_ready(const mpm_stepper *s) {
   const int32_t shown = s->nodes.shown == s->layout.version;
-  if (s->step.phase == MPMI_RUNNING || (s->step.phase == MPMI_IDLE && !shown))
+  if (s->step.phase == MPMI_IDLE && !shown)
     return mpmi_fail(s->context, MPM_E_STATE, "there are no nodal fields: make a step or begin one first");
   return MPM_OK;
 }
@@ -132,7 +132,6 @@ static mpm_status write_back(mpm_stepper *s, int32_t field, const double *value)
 /* Ends a view: written values go back to the nodes. */
 static mpm_status release_view(mpmi_view_record *record, mpm_view *view) {
   mpm_stepper *s = record->lender;
-  s->context->error[0] = '\0';
   record->live = 0;
   --s->mapped;
   view->data = view->owner = NULL;
@@ -184,6 +183,7 @@ mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t
   s->view[at] = (mpmi_view_record){.live = 1,
                                    .field = which,
                                    .access = access,
+                                   .context = s->context,
                                    .data = s->view_memory[at],
                                    .lender = s,
                                    .release = release_view};

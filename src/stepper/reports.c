@@ -50,9 +50,7 @@ mpm_status mpm_stepper_info(const mpm_stepper *stepper, mpm_step_info *info) {
   return mpmi_write_struct(s->context, "mpm_step_info", &now, sizeof now, info);
 }
 
-mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
-  MPMI_ENTER(s, MPMI_STEPPER);
-  if (!dt) return mpmi_fail(s->context, MPM_E_ARG, "dt is NULL");
+mpm_status mpmi_tell_stable_dt(mpm_stepper *s, double *dt) {
   mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
   int64_t count = 0;
@@ -68,6 +66,12 @@ mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
                      "step is stable");
   *dt = stable;
   return MPM_OK;
+}
+
+mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!dt) return mpmi_fail(s->context, MPM_E_ARG, "dt is NULL");
+  return mpmi_tell_stable_dt(s, dt);
 }
 
 /* ---- reactions ---------------------------------------------------------------------------------------- */

@@ -76,6 +76,8 @@ void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_in
 mpm_status mpmi_give_info(const mpm_stepper *s, mpm_status status, mpm_step_info *info);
 /* Makes the check that writing makes, for calls that must know before they do anything. */
 mpm_status mpmi_check_info(const mpm_stepper *s, const mpm_step_info *info);
+/* The largest stable step of the present state, or why there is none. */
+mpm_status mpmi_tell_stable_dt(mpm_stepper *s, double *dt);
 
 /* ---- explicit.c -------------------------------------------------------------------------------------- */
 /* Brings particles to nodes, with their forces. */

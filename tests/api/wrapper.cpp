@@ -83,14 +83,19 @@ void destruction_in_any_order() {
 void services() {
   mpm::context_desc bad;
   bad.concurrency = -1;
-  CHECK(refused(MPM_E_ARG, "mpm_context_create", [&] { mpm::context c(bad); }));
+  CHECK(refused(MPM_E_ARG, "concurrency is -1", [&] { mpm::context c(bad); }));
+  char place[8];
+  bad.error_text = place, bad.error_bytes = sizeof place;
+  CHECK(refused(MPM_E_ARG, "mpm_con", [&] { mpm::context c(bad); }));
+  CHECK(place == std::string("mpm_con"));
+  CHECK(mpm::status_text(MPM_E_NOMEM) == std::string("memory or threads were not to be had"));
   mpm::context_desc half;
   half.on_alloc = [](std::size_t, std::size_t) -> void * { return nullptr; };
-  CHECK(refused(MPM_E_ARG, "mpm_context_create", [&] { mpm::context c(half); }));
+  CHECK(refused(MPM_E_ARG, "alloc is set without release", [&] { mpm::context c(half); }));
   half.on_release = [](void *, std::size_t, std::size_t) {};
-  CHECK(refused(MPM_E_NOMEM, "mpm_context_create", [&] { mpm::context c(half); }));
+  CHECK(refused(MPM_E_NOMEM, "bytes refused", [&] { mpm::context c(half); }));
   half.on_alloc = [](std::size_t, std::size_t) -> void * { throw 1; };
-  CHECK(refused(MPM_E_NOMEM, "mpm_context_create", [&] { mpm::context c(half); }));
+  CHECK(refused(MPM_E_NOMEM, "bytes refused", [&] { mpm::context c(half); }));
 
   std::string text;
   mpm::context_desc told;

@@ -242,7 +242,6 @@ START_TEST(refused) {
   }
   w.memory.fail_at = 0;
   ck_ok(&w, mpm_write_grid(w.stepper, path, 0, NULL));
-  ck_assert_str_eq(mpm_last_error(c), "");
   mpm_stepper_desc desc = w.desc.stepper;
   desc.transfer = MPM_APIC_MLS;
   ck_ok(&w, mpm_stepper_configure(w.stepper, &desc));
@@ -251,7 +250,7 @@ START_TEST(refused) {
   ck_refused(c, mpm_write_grid(w.stepper, path, 1, force), MPM_E_UNSUPPORTED, "MPM_APIC");
   ck_refused(c, mpm_write_grid(w.stepper, path, 1, acceleration), MPM_E_UNSUPPORTED, "staged step");
   ck_ok(&w, mpm_write_grid(w.stepper, path, 0, NULL));
-  ck_assert_str_eq(mpm_last_error(c), "");
+  ck_assert_ptr_nonnull(strstr(mpm_last_error(c), "staged step")); /* of the call that failed */
   world_close(&w);
 }
 END_TEST

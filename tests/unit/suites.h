@@ -2,6 +2,7 @@
 SUITE(abi)
 SUITE(context)
 SUITE(executor)
+SUITE(host)
 SUITE(grid)
 SUITE(particles)
 SUITE(fill)

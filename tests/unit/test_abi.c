@@ -114,7 +114,7 @@ END_TEST
 
 #define STRUCT mpm_context_desc
 START_TEST(layout_of_context_desc) {
-  SIZE(72);
+  SIZE(88);
   AT(0, struct_size);
   AT(4, concurrency);
   AT(8, isa);
@@ -126,6 +126,8 @@ START_TEST(layout_of_context_desc) {
   AT(48, parallel_user);
   AT(56, log);
   AT(64, log_user);
+  AT(72, error_text);
+  AT(80, error_bytes);
 }
 END_TEST
 #undef STRUCT
