@@ -1,23 +1,21 @@
 /* Creation of contexts: this checks the host's wishes, chooses the instruction set and starts the pool. */
-#define _POSIX_C_SOURCE 200809L
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "context/structs.h"
 #include "context/context.h"
+#include "platform/platform.h"
 
 enum { MOST_THREADS = 1024 };
 
 static void *default_alloc(void *user, size_t bytes, size_t alignment) {
   (void)user;
-  void *memory;
-  return posix_memalign(&memory, alignment, bytes) ? NULL : memory;
+  return mpmi_system_alloc(bytes, alignment);
 }
 
 static void default_release(void *user, void *memory, size_t bytes, size_t alignment) {
   (void)user, (void)bytes, (void)alignment;
-  free(memory);
+  mpmi_system_release(memory);
 }
 
 static mpm_context_desc default_desc(void) {
@@ -34,7 +32,7 @@ mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size) {
 }
 
 static int processor_has(int32_t isa) {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(MPM_BASELINE_ONLY)
   int avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   int avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                __builtin_cpu_supports("avx512dq");
@@ -75,8 +73,8 @@ static mpm_status resolve_isa(int32_t *isa) {
 static mpm_status resolve_concurrency(int32_t *concurrency) {
   if (*concurrency < 0 || *concurrency > MOST_THREADS) return MPM_E_ARG;
   if (*concurrency) return MPM_OK;
-  long processors = sysconf(_SC_NPROCESSORS_ONLN);
-  *concurrency = processors < 1 ? 1 : processors > MOST_THREADS ? MOST_THREADS : (int32_t)processors;
+  const int32_t processors = mpmi_processors();
+  *concurrency = processors > MOST_THREADS ? MOST_THREADS : processors;
   return MPM_OK;
 }
 

@@ -12,7 +12,7 @@
 
 /* Tables of kernels NAME_baseline, NAME_avx2 ... of the instruction sets that this build has: their
  * declarations, and the address of the one for an MPM_ISA_.... */
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(MPM_BASELINE_ONLY)
 #define MPMI_HAS_X86                    1
 #define MPMI_DECLARE_TABLES(type, name) extern const type name##_baseline, name##_avx2, name##_avx512
 #define MPMI_TABLE_OF(isa, name)                                                                             \
