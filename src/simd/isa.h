@@ -3,6 +3,14 @@
 #ifndef MPMI_ISA_H
 #define MPMI_ISA_H
 
+#include <float.h>
+
+/* Kernels round by adding large numbers, and index memory by what comes out: a register that holds more digits than a
+ * double, as the x87 has, gives other cells. */
+#if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 1
+#error "doubles are not evaluated as doubles: on 32-bit x86 compile with -msse2 -mfpmath=sse"
+#endif
+
 #ifndef MPMI_ISA
 #define MPMI_ISA baseline
 #endif
