@@ -37,7 +37,7 @@ endif
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion $(WERROR)
 CXX_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(WERROR)
 COMMON = -std=c11 -MMD -MP -Iinclude -Isrc $(WARNINGS) $(CPPFLAGS) $(CFLAGS)
-LIBRARY = $(COMMON) $(PIC)
+LIBRARY = $(COMMON) $(OBJECT_FLAGS)
 include platform.mk
 
 # ---- sources ---------------------------------------------------------------------------------------------
@@ -89,13 +89,13 @@ help:
 	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk
 	@printf '\n%s\n' 'V=1 shows the commands, -jN sets how many run at once, BUILD=folder builds there, CC and CFLAGS are yours.'
 
-$(BUILD)/obj/src/%.o: src/%.c Makefile
+$(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk
 	@mkdir -p $(@D)
 	$(call SAY,CC)
 	$(Q)$(CC) $(LIBRARY) $(OPT) -ffp-contract=off -c $< -o $@
 
 define kernel_rule
-$(BUILD)/obj/src/%.$(1).o: src/%.c Makefile
+$(BUILD)/obj/src/%.$(1).o: src/%.c Makefile platform.mk
 	@mkdir -p $$(@D)
 	$$(call SAY,CC)
 	$$(Q)$$(CC) $$(LIBRARY) $$(KERNEL_FLAGS) $$(ISA_$(1)) -DMPMI_ISA=$(1) -c $$< -o $$@
@@ -228,6 +228,6 @@ format-check:
 
 #: clean                 takes all build folders away
 clean:
-	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan $(BUILD)-aarch64 $(FUZZ)
+	rm -rf $(addprefix $(BUILD),/ -asan -tsan -aarch64 -windows -wasm -builds) $(FUZZ)
 
 -include $(OBJECTS:.o=.d) $(EXAMPLES:=.d)
