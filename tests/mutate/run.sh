@@ -6,7 +6,7 @@ BUILD=${BUILD:-build} MAKE=${MAKE:-make} CC=${CC:-cc} CXX=${CXX:-g++}
 copy=$BUILD/mutate
 rm -rf "$copy"
 mkdir -p "$copy/scratch" "$copy/original"
-cp -a Makefile include src tests "$copy"
+cp -a Makefile platform.mk include src tests "$copy"
 cp -a include src "$copy/original"
 rm -rf "$copy"/tests/examples
 cd "$copy"

@@ -27,7 +27,7 @@ build() {
   if ! { "$MAKE" -j"$JOBS" BUILD="$out/$name" WERROR=-Werror KERNEL_OPT=-O1 OPT=-O1 CFLAGS= "$@" "$out/$name/libmpm.a" &&
     $compiler -std=c11 -Iinclude $smoke ${FLAGS-} "$out/$name/libmpm.a" -lm ${LINK--lpthread} -o "$out/$name/smoke" &&
     $run "$out/$name/smoke" baseline "$out/$name/files" > "$out/$name/found" 2> "$out/$name/said" &&
-    diff "$out/expected" "$out/$name/found"; } > "$out/$name/log" 2>&1; then
+    diff "$out/expected" "$out/$name/found" && $run "$out/$name/smoke" best "$out/$name/files"; } > "$out/$name/log" 2>&1; then
     tail -n 20 "$out/$name/log" "$out/$name"/found "$out/$name"/said >&2 || :
     echo "$name: failed: see $out/$name/log"
     failed=1
