@@ -1,11 +1,10 @@
 # libmpm: the libraries, their installation, the examples and the reference; tests/tests.mk has the tests.
 #
 # `make help` lists the targets. It prints the lines that begin with "#:", under the headings of the sections.
-# CFLAGS and LDFLAGS are the user's; OPT and KERNEL_OPT, which come after CFLAGS, set the optimisation.
+# CFLAGS and LDFLAGS are the user's; OPT and KERNEL_OPT, which come after CFLAGS, set the optimisation. Warnings are errors
+# with WERROR=-Werror.
 
 VERSION := 0.1.0
-SONAME := libmpm.so.0
-SHARED := libmpm.so.$(VERSION)
 
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
@@ -18,7 +17,7 @@ CFLAGS ?= -g
 CXXFLAGS ?= $(CFLAGS)
 OPT ?= -O2
 KERNEL_OPT ?= -O3
-WERROR ?= -Werror
+WERROR ?=
 PKG_CONFIG ?= pkg-config
 ifndef V
 Q := @
@@ -38,8 +37,8 @@ endif
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion $(WERROR)
 CXX_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(WERROR)
 COMMON = -std=c11 -MMD -MP -Iinclude -Isrc $(WARNINGS) $(CPPFLAGS) $(CFLAGS)
-LIBRARY = $(COMMON) -fPIC -fvisibility=hidden
-LIBS := -lm -lpthread
+LIBRARY = $(COMMON) $(OBJECT_FLAGS)
+include platform.mk
 
 # ---- sources ---------------------------------------------------------------------------------------------
 # Kernels are compiled once for each instruction set, with contraction to fused multiply-add; all other files
@@ -52,10 +51,6 @@ KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))
 PLAIN := $(filter-out $(KERNELS),$(sort $(wildcard src/*/*.c)))
 HEADERS := $(sort $(wildcard include/mpm/*.h include/mpm/*.hpp))
 
-ISAS := baseline
-ifneq (,$(findstring x86_64,$(shell $(CC) -dumpmachine)))
-ISAS += avx2 avx512
-endif
 ISA_baseline :=
 ISA_avx2 := -mavx2 -mfma
 ISA_avx512 := -mavx512f -mavx512vl -mavx512dq -mavx2 -mfma -mprefer-vector-width=512
@@ -64,7 +59,6 @@ KERNEL_FLAGS = $(KERNEL_OPT) -ffp-contract=fast -fno-math-errno -fno-trapping-ma
 
 OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/obj/%.$(isa).o))
 STATIC_LIB := $(BUILD)/libmpm.a
-SHARED_LIB := $(BUILD)/$(SHARED)
 
 # Two examples show CHOLMOD and PETSc as the host's solver, where these are installed.
 HAS_CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null > /dev/null 2>&1 && echo yes)
@@ -95,13 +89,13 @@ help:
 	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk
 	@printf '\n%s\n' 'V=1 shows the commands, -jN sets how many run at once, BUILD=folder builds there, CC and CFLAGS are yours.'
 
-$(BUILD)/obj/src/%.o: src/%.c Makefile
+$(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk
 	@mkdir -p $(@D)
 	$(call SAY,CC)
 	$(Q)$(CC) $(LIBRARY) $(OPT) -ffp-contract=off -c $< -o $@
 
 define kernel_rule
-$(BUILD)/obj/src/%.$(1).o: src/%.c Makefile
+$(BUILD)/obj/src/%.$(1).o: src/%.c Makefile platform.mk
 	@mkdir -p $$(@D)
 	$$(call SAY,CC)
 	$$(Q)$$(CC) $$(LIBRARY) $$(KERNEL_FLAGS) $$(ISA_$(1)) -DMPMI_ISA=$(1) -c $$< -o $$@
@@ -113,46 +107,57 @@ $(STATIC_LIB): $(OBJECTS)
 	$(call SAY,AR)
 	$(Q)$(AR) rcs $@ $(OBJECTS)
 
-NO_UNDEFINED ?= -Wl,-z,defs
-$(SHARED_LIB): $(OBJECTS) src/libmpm.map
+$(SHARED_LIB): $(OBJECTS) src/libmpm.map platform.mk
 	$(call SAY,LINK)
-	$(Q)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--version-script=src/libmpm.map $(NO_UNDEFINED) -Wl,-z,noexecstack \
-	  $(CFLAGS) $(LDFLAGS) $(OBJECTS) $(LIBS) -o $@
-	$(Q)ln -sf $(SHARED) $(BUILD)/$(SONAME)
-	$(Q)ln -sf $(SHARED) $(BUILD)/libmpm.so
+	$(Q)$(CC) $(SHARED_FLAGS) $(CFLAGS) $(LDFLAGS) $(OBJECTS) $(LIBS) -o $@
+	$(Q)for name in $(SHARED_LINKS); do ln -sf $(SHARED) $(BUILD)/$$name; done
 
 # ---- installation ----------------------------------------------------------------------------------------
-# Where libraries and headers both lie under the prefix, the CMake package finds one from the other, wherever the
-# installation is moved to.
+# Where libraries and headers both lie under the prefix, the packages for CMake and pkg-config find one from the other,
+# wherever the installation is moved to. Only under /usr, from where nobody moves it, pkg-config has to recognise the
+# system's folders. The functions of make take a path with spaces for several: `whole` hides them, `spaced` shows them.
 CMAKEDIR = $(LIBDIR)/cmake/mpm
-inside_prefix = $(patsubst $(PREFIX)/%,%,$(filter $(PREFIX)/%,$(1)))
-up_to_prefix = $(subst $(space),/,$(patsubst %,..,$(subst /, ,$(call inside_prefix,$(CMAKEDIR)))))
+PKGCONFIGDIR = $(LIBDIR)/pkgconfig
+BINDIR ?= $(PREFIX)/bin
 space := $(subst ,, )
-INCLUDEDIR_FROM_CMAKEDIR = $(if $(and $(call inside_prefix,$(LIBDIR)),$(call inside_prefix,$(INCLUDEDIR))),$(\
-  )$(up_to_prefix)/$(call inside_prefix,$(INCLUDEDIR)),$(INCLUDEDIR))
+whole = $(subst $(space),|,$(1))
+spaced = $(subst |,$(space),$(1))
+inside_prefix = $(patsubst $(call whole,$(PREFIX))/%,%,$(filter $(call whole,$(PREFIX))/%,$(call whole,$(1))))
+up_to_prefix = $(subst $(space),/,$(patsubst %,..,$(subst /, ,$(call inside_prefix,$(1)))))
+is_movable = $(and $(call inside_prefix,$(LIBDIR)),$(call inside_prefix,$(INCLUDEDIR)))
+INCLUDEDIR_FROM_CMAKEDIR = $(if $(is_movable),$(call up_to_prefix,$(CMAKEDIR))/$(call spaced,$(call inside_prefix,$(INCLUDEDIR))),$(INCLUDEDIR))
+PC_PREFIX = $(if $(and $(is_movable),$(filter-out /usr,$(call whole,$(PREFIX)))),$${pcfiledir}/$(call up_to_prefix,$(PKGCONFIGDIR)),$(PREFIX))
+PC_LIBDIR = $(if $(is_movable),$${prefix}/$(call spaced,$(call inside_prefix,$(LIBDIR))),$(LIBDIR))
+PC_INCLUDEDIR = $(if $(is_movable),$${prefix}/$(call spaced,$(call inside_prefix,$(INCLUDEDIR))),$(INCLUDEDIR))
 POINTER_BYTES = $(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)
-SUBSTITUTE = sed $(foreach name,PREFIX LIBDIR INCLUDEDIR VERSION SHARED SONAME INCLUDEDIR_FROM_CMAKEDIR \
-  POINTER_BYTES,-e 's|@$(name)@|$($(name))|')
+SUBSTITUTE = sed $(foreach name,PC_PREFIX PC_LIBDIR PC_INCLUDEDIR VERSION SHARED SONAME INCLUDEDIR_FROM_CMAKEDIR \
+  POINTER_BYTES LIBS,-e 's|@$(name)@|$($(name))|')
+# Where files are installed, for the shell.
+to = "$(DESTDIR)$($(1))$(2)"
 
 #: install               headers, libraries, pkg-config and CMake files, under PREFIX (/usr/local), in DESTDIR
 install: all
-	install -d $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(CMAKEDIR)
-	install -m 644 $(HEADERS) $(DESTDIR)$(INCLUDEDIR)/mpm
-	install -m 644 $(STATIC_LIB) $(DESTDIR)$(LIBDIR)
-	install -m 755 $(SHARED_LIB) $(DESTDIR)$(LIBDIR)
-	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
-	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/libmpm.so
-	$(SUBSTITUTE) pkgconfig/mpm.pc.in > $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc
-	$(SUBSTITUTE) cmake/mpmConfig.cmake.in > $(DESTDIR)$(CMAKEDIR)/mpmConfig.cmake
-	$(SUBSTITUTE) cmake/mpmConfigVersion.cmake.in > $(DESTDIR)$(CMAKEDIR)/mpmConfigVersion.cmake
-	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/mpm.pc $(DESTDIR)$(CMAKEDIR)/*.cmake
+	install -d $(call to,INCLUDEDIR,/mpm) $(call to,PKGCONFIGDIR) $(call to,CMAKEDIR)
+	install -m 644 $(HEADERS) $(call to,INCLUDEDIR,/mpm)
+	install -m 644 $(STATIC_LIB) $(IMPORT_LIB:%=$(BUILD)/%) $(call to,LIBDIR)
+ifneq (,$(IMPORT_LIB))
+	install -d $(call to,BINDIR)
+	install -m 755 $(SHARED_LIB) $(call to,BINDIR)
+else ifneq (,$(SHARED))
+	install -m 755 $(SHARED_LIB) $(call to,LIBDIR)
+	for name in $(SHARED_LINKS); do ln -sf $(SHARED) $(call to,LIBDIR)/$$name; done
+endif
+	for name in mpm mpm-static; do $(SUBSTITUTE) pkgconfig/$$name.pc.in > $(call to,PKGCONFIGDIR)/$$name.pc; done
+	$(SUBSTITUTE) cmake/mpmConfig.cmake.in > $(call to,CMAKEDIR)/mpmConfig.cmake
+	$(SUBSTITUTE) cmake/mpmConfigVersion.cmake.in > $(call to,CMAKEDIR)/mpmConfigVersion.cmake
+	chmod 644 $(call to,PKGCONFIGDIR)/mpm*.pc $(call to,CMAKEDIR)/*.cmake
 
 #: uninstall             takes them away again
 uninstall:
-	rm -f $(HEADERS:include/%=$(DESTDIR)$(INCLUDEDIR)/%)
-	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libmpm.a $(SHARED) $(SONAME) libmpm.so pkgconfig/mpm.pc)
-	rm -f $(addprefix $(DESTDIR)$(CMAKEDIR)/,mpmConfig.cmake mpmConfigVersion.cmake)
-	rmdir $(DESTDIR)$(INCLUDEDIR)/mpm $(DESTDIR)$(CMAKEDIR) 2>/dev/null || :
+	cd $(call to,INCLUDEDIR) && rm -f $(HEADERS:include/%=%)
+	cd $(call to,LIBDIR) && rm -f libmpm.a $(SHARED) $(SHARED_LINKS) $(IMPORT_LIB) pkgconfig/mpm.pc pkgconfig/mpm-static.pc
+	rm -f $(if $(IMPORT_LIB),$(call to,BINDIR,/$(SHARED))) $(call to,CMAKEDIR)/mpmConfig.cmake $(call to,CMAKEDIR)/mpmConfigVersion.cmake
+	rmdir $(call to,INCLUDEDIR,/mpm) $(call to,CMAKEDIR) 2>/dev/null || :
 
 # ---- examples and benchmarks -----------------------------------------------------------------------------
 $(BUILD)/examples/%: examples/%.c $(STATIC_LIB) Makefile
@@ -224,6 +229,6 @@ format-check:
 
 #: clean                 takes all build folders away
 clean:
-	rm -rf $(BUILD) $(BUILD)-asan $(BUILD)-tsan $(BUILD)-aarch64 $(FUZZ)
+	rm -rf $(addprefix $(BUILD),/ -asan -tsan -aarch64 -windows -wasm -builds) $(FUZZ)
 
 -include $(OBJECTS:.o=.d) $(EXAMPLES:=.d)

@@ -1,6 +1,7 @@
 # The tests of libmpm, included by the Makefile at the top of the sources, from where all paths start.
 
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
+.PHONY: check-builds check-windows check-wasm
 .PHONY: mutate mutate-check check-hashes update-hashes
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
 .PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
@@ -93,6 +94,18 @@ check-abi update-abi: $(SHARED_LIB)
 #: check-aarch64         the library and its unit tests for another processor, run by qemu
 check-aarch64:
 	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/aarch64/run.sh
+
+# A host program for systems on which the unit tests do not run; here it says what their bits must be.
+SMOKE := $(BUILD)/tests/platform/smoke
+$(SMOKE): tests/platform/smoke.c $(STATIC_LIB) Makefile tests/tests.mk
+	@mkdir -p $(@D) $(BUILD)/tests/scratch
+	$(call SAY,LINK)
+	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+#: check-builds          other compilers, optimisations and C libraries, those that are installed; BUILDS="gcc-11 musl" selects
+#: check-windows         the library for Windows by mingw-w64, run by wine
+#: check-wasm            the library for WebAssembly by Emscripten and wasi-libc, run by node; SYSTEMS="wasi" selects
+check-builds check-windows check-wasm: $(SMOKE) $(SHARED_LIB)
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/platform/$(@:check-%=%).sh
 
 #: check-api             the installation, the headers, the exported symbols, the programs of the documents: tests/api
 check-api: all

@@ -28,7 +28,11 @@ typedef struct mpm_context_desc {
   uint32_t struct_size; /**< sizeof(mpm_context_desc) of the caller */
   /** Number of threads. 1 (default): the calling thread only; N: a pool of N threads, the calling one
    * included; 0: one per processor. The pool belongs to the context; its threads sleep when idle and never
-   * spin for longer than a few microseconds. Results do not depend on the number. */
+   * spin for longer than a few microseconds. Results do not depend on the number. A build without threads
+   * (MPM_NO_THREADS) takes 0 and 1, or any number with parallel_for, else MPM_E_UNSUPPORTED.
+   *
+   * A process that fork() makes between two calls has the context and its objects, but none of the pool's threads:
+   * there everything runs on the calling thread, with the same results, and destroying frees as ever. */
   int32_t concurrency;
   /** Instruction set of the kernels: MPM_ISA_BEST (default) or the one to be used, which creation refuses
    * with MPM_E_UNSUPPORTED if processor or library lacks it. With MPM_ISA_BEST the environment variable
@@ -70,8 +74,8 @@ MPM_API mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct
  * - MPM_E_ARG: a value is bad, only one of alloc and release or of error_text and error_bytes is set, or the
  *   variable MPM_ISA has an unknown value.
  * - MPM_E_NOMEM: memory or threads are not to be had.
- * - MPM_E_UNSUPPORTED: the instruction set is not available, or desc sets a field that this version of the
- *   library does not know.
+ * - MPM_E_UNSUPPORTED: the instruction set is not available, the build has no threads, or desc sets a field that
+ *   this version of the library does not know.
  */
 MPM_API mpm_status mpm_context_create(const mpm_context_desc *desc, mpm_context **out);
 

@@ -11,9 +11,16 @@
 /** Version of these headers as 0xMMmmpp (major, minor, patch), to be compared with mpm_version(). */
 #define MPM_VERSION 0x000100
 
-/** Marks every exported function. A host may define it before the first include to replace the default. */
+/** Marks every exported function. A host may define it before the first include to replace the default. On Windows a
+ * host that links to the DLL may define MPM_DLL, which saves a jump for each call; one that links statically must not. */
 #ifndef MPM_API
-#if defined(__GNUC__) || defined(__clang__)
+#if defined(_WIN32) && defined(MPM_BUILD)
+#define MPM_API __declspec(dllexport)
+#elif defined(_WIN32) && defined(MPM_DLL)
+#define MPM_API __declspec(dllimport)
+#elif defined(_WIN32)
+#define MPM_API
+#elif defined(__GNUC__) || defined(__clang__)
 #define MPM_API __attribute__((visibility("default")))
 #else
 #define MPM_API

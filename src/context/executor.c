@@ -4,13 +4,10 @@
  * half, the tasks not yet handed out in the lower. A worker that wakes late finds a word that has moved on
  * and takes nothing. So a run ends as soon as its tasks are done, without a wait for workers that never came.
  */
-#define _POSIX_C_SOURCE 200809L
-#include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
-#include <time.h>
 
 #include "context/context.h"
+#include "platform/platform.h"
 
 enum {
   SPIN_NS = 5000, /* the longest wait before sleeping; a wake-up costs more than that */
@@ -28,11 +25,12 @@ struct mpmi_pool {
   _Atomic uint32_t count;
   _Alignas(CACHE_LINE) _Atomic int32_t sleeping; /* number of workers that need a signal */
   _Atomic int32_t stop;
-  pthread_mutex_t mutex;
-  pthread_cond_t work, done;
+  mpmi_monitor monitor;
+  int64_t
+      process; /* in which the threads are; a fork takes the pool into another one and leaves them behind */
   int32_t workers; /* number of threads besides the caller's */
   size_t bytes;    /* size of this allocation */
-  pthread_t thread[];
+  mpmi_system_thread thread[];
 };
 
 static void pause_briefly(void) {
@@ -41,12 +39,6 @@ static void pause_briefly(void) {
 #elif defined(__aarch64__)
   __asm__ volatile("yield");
 #endif
-}
-
-static int64_t nanoseconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
 static int nothing_to_take(mpmi_pool *pool) {
@@ -61,11 +53,11 @@ static int not_finished(mpmi_pool *pool) {
  * because a pause takes ten times longer on some processors than on others. */
 static int lasts(mpmi_pool *pool, int (*condition)(mpmi_pool *)) {
   if (!condition(pool)) return 0;
-  int64_t end = nanoseconds() + SPIN_NS;
+  int64_t end = mpmi_nanoseconds() + SPIN_NS;
   do {
     for (int32_t k = 0; k < 4; ++k) pause_briefly();
     if (!condition(pool)) return 0;
-  } while (nanoseconds() < end);
+  } while (mpmi_nanoseconds() < end);
   return 1;
 }
 
@@ -86,18 +78,18 @@ static void take_part(mpmi_pool *pool) {
     ticket = atomic_load(&pool->ticket);
   }
   if (finished && atomic_fetch_sub(&pool->unfinished, finished) == finished) {
-    pthread_mutex_lock(&pool->mutex); /* so as not to signal between the caller's last look and its sleep */
-    pthread_mutex_unlock(&pool->mutex);
-    pthread_cond_signal(&pool->done);
+    mpmi_lock(&pool->monitor); /* so as not to signal between the caller's last look and its sleep */
+    mpmi_unlock(&pool->monitor);
+    mpmi_wake_one(&pool->monitor, MPMI_DONE);
   }
 }
 
 static void sleep_until_work(mpmi_pool *pool) {
-  pthread_mutex_lock(&pool->mutex);
+  mpmi_lock(&pool->monitor);
   atomic_fetch_add(&pool->sleeping, 1); /* comes before the last look: see the order in run() */
-  while (nothing_to_take(pool) && !atomic_load(&pool->stop)) pthread_cond_wait(&pool->work, &pool->mutex);
+  while (nothing_to_take(pool) && !atomic_load(&pool->stop)) mpmi_wait(&pool->monitor, MPMI_WORK);
   atomic_fetch_sub(&pool->sleeping, 1);
-  pthread_mutex_unlock(&pool->mutex);
+  mpmi_unlock(&pool->monitor);
 }
 
 static void *work(void *argument) {
@@ -122,26 +114,31 @@ static void run(mpmi_pool *pool, int64_t first, uint32_t count, mpm_task_fn task
   atomic_store(&pool->ticket, number << 32 | count);
   int32_t sleeping = atomic_load(&pool->sleeping);
   if (sleeping) {
-    pthread_mutex_lock(&pool->mutex); /* so as not to signal between a worker's last look and its sleep */
-    pthread_mutex_unlock(&pool->mutex);
+    mpmi_lock(&pool->monitor); /* so as not to signal between a worker's last look and its sleep */
+    mpmi_unlock(&pool->monitor);
     if (count - 1 < (uint32_t)sleeping)
-      for (uint32_t k = 1; k < count; ++k) pthread_cond_signal(&pool->work);
+      for (uint32_t k = 1; k < count; ++k) mpmi_wake_one(&pool->monitor, MPMI_WORK);
     else
-      pthread_cond_broadcast(&pool->work);
+      mpmi_wake_all(&pool->monitor, MPMI_WORK);
   }
   take_part(pool);
   if (!lasts(pool, not_finished)) return;
-  pthread_mutex_lock(&pool->mutex);
-  while (not_finished(pool)) pthread_cond_wait(&pool->done, &pool->mutex);
-  pthread_mutex_unlock(&pool->mutex);
+  mpmi_lock(&pool->monitor);
+  while (not_finished(pool)) mpmi_wait(&pool->monitor, MPMI_DONE);
+  mpmi_unlock(&pool->monitor);
 }
 
 static void run_inline(int64_t count, mpm_task_fn task, void *data) {
   for (int64_t k = 0; k < count; ++k) task(data, k);
 }
 
+/* In a child of fork the threads are gone, and the monitor is as they happened to hold it: it is not touched. */
+static int32_t has_threads(const mpmi_pool *pool) {
+  return pool->process == mpmi_process();
+}
+
 static void pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *data) {
-  if (count <= 1) {
+  if (count <= 1 || !has_threads(pool)) {
     run_inline(count, task, data);
     return;
   }
@@ -151,26 +148,21 @@ static void pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *dat
   }
 }
 
-static void start_workers(mpmi_pool *pool, int32_t workers) {
-  /* Signals belong to the host's threads: workers inherit a mask that blocks them all. */
-  sigset_t all, old;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &old);
-  while (pool->workers < workers && !pthread_create(&pool->thread[pool->workers], NULL, work, pool))
-    pool->workers++;
-  pthread_sigmask(SIG_SETMASK, &old, NULL);
-}
-
 mpm_status mpmi_pool_create(mpm_context *context, int32_t threads, mpmi_pool **out) {
+  if (!MPMI_HAS_THREADS)
+    return mpmi_fail(
+        context, MPM_E_UNSUPPORTED,
+        "concurrency is %d, but this build has no threads: it must be 0 or 1, or parallel_for set",
+        (int)threads);
   int32_t workers = threads - 1;
-  size_t bytes = sizeof(mpmi_pool) + mpmi_bytes(workers, sizeof(pthread_t));
+  size_t bytes = sizeof(mpmi_pool) + mpmi_bytes(workers, sizeof(mpmi_system_thread));
   mpmi_pool *pool = mpmi_alloc_zeroed(context, bytes);
   if (!pool) return MPM_E_NOMEM;
   pool->bytes = bytes;
-  pthread_mutex_init(&pool->mutex, NULL);
-  pthread_cond_init(&pool->work, NULL);
-  pthread_cond_init(&pool->done, NULL);
-  start_workers(pool, workers);
+  pool->process = mpmi_process();
+  mpmi_monitor_begin(&pool->monitor);
+  while (pool->workers < workers && mpmi_thread_start(&pool->thread[pool->workers], work, pool))
+    pool->workers++;
   if (pool->workers < workers) {
     mpmi_pool_destroy(context, pool);
     return mpmi_fail(context, MPM_E_NOMEM, "the system refuses to start %d threads", workers);
@@ -179,16 +171,18 @@ mpm_status mpmi_pool_create(mpm_context *context, int32_t threads, mpmi_pool **o
   return MPM_OK;
 }
 
+static void end_workers(mpmi_pool *pool) {
+  mpmi_lock(&pool->monitor);
+  atomic_store(&pool->stop, 1);
+  mpmi_wake_all(&pool->monitor, MPMI_WORK);
+  mpmi_unlock(&pool->monitor);
+  for (int32_t k = 0; k < pool->workers; ++k) mpmi_thread_join(&pool->thread[k]);
+  mpmi_monitor_end(&pool->monitor);
+}
+
 void mpmi_pool_destroy(mpm_context *context, mpmi_pool *pool) {
   if (!pool) return;
-  pthread_mutex_lock(&pool->mutex);
-  atomic_store(&pool->stop, 1);
-  pthread_cond_broadcast(&pool->work);
-  pthread_mutex_unlock(&pool->mutex);
-  for (int32_t k = 0; k < pool->workers; ++k) pthread_join(pool->thread[k], NULL);
-  pthread_cond_destroy(&pool->done);
-  pthread_cond_destroy(&pool->work);
-  pthread_mutex_destroy(&pool->mutex);
+  if (has_threads(pool)) end_workers(pool);
   mpmi_free(context, pool, pool->bytes);
 }
 

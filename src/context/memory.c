@@ -19,7 +19,7 @@ void *mpmi_alloc(mpm_context *context, size_t bytes) {
   void *memory = host->alloc(host->alloc_user, size, MPMI_ALIGNMENT);
   mpmi_environment_mend();
   if (!memory) {
-    mpmi_fail(context, MPM_E_NOMEM, "out of memory: %zu bytes refused, %lld held", size,
+    mpmi_fail(context, MPM_E_NOMEM, "out of memory: %llu bytes refused, %lld held", (unsigned long long)size,
               (long long)context->bytes);
     return NULL;
   }

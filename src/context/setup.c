@@ -1,11 +1,10 @@
 /* Creation of contexts: this checks the host's wishes, chooses the instruction set and starts the pool. */
-#define _POSIX_C_SOURCE 200809L
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "context/structs.h"
 #include "context/context.h"
+#include "platform/platform.h"
 
 enum { MOST_THREADS = 1024 };
 
@@ -13,13 +12,12 @@ static const char *const isa_name[] = {"best", "baseline", "avx2", "avx512"}; /*
 
 static void *default_alloc(void *user, size_t bytes, size_t alignment) {
   (void)user;
-  void *memory;
-  return posix_memalign(&memory, alignment, bytes) ? NULL : memory;
+  return mpmi_system_alloc(bytes, alignment);
 }
 
 static void default_release(void *user, void *memory, size_t bytes, size_t alignment) {
   (void)user, (void)bytes, (void)alignment;
-  free(memory);
+  mpmi_system_release(memory);
 }
 
 static mpm_context_desc default_desc(void) {
@@ -36,7 +34,7 @@ mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size) {
 }
 
 static int processor_has(int32_t isa) {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(MPM_BASELINE_ONLY)
   int avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   int avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                __builtin_cpu_supports("avx512dq");
@@ -82,8 +80,8 @@ static mpm_status resolve_concurrency(mpm_context *context, int32_t *concurrency
     return mpmi_fail(context, MPM_E_ARG, "mpm_context_desc: concurrency is %d, must be 0 to %d",
                      (int)*concurrency, (int)MOST_THREADS);
   if (*concurrency) return MPM_OK;
-  long processors = sysconf(_SC_NPROCESSORS_ONLN);
-  *concurrency = processors < 1 ? 1 : processors > MOST_THREADS ? MOST_THREADS : (int32_t)processors;
+  const int32_t processors = mpmi_processors();
+  *concurrency = processors > MOST_THREADS ? MOST_THREADS : processors;
   return MPM_OK;
 }
 

@@ -1,17 +1,14 @@
 /* A time series of output files is a .pvd file. Each new entry overwrites its closing tags. */
-#define _POSIX_C_SOURCE   200809L
-#define _FILE_OFFSET_BITS 64
-#include "io/output_file.h"
-
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
+
+#include "io/output_file.h"
+#include "platform/platform.h"
 
 struct mpm_series {
   uint32_t magic;
-  int file;
+  FILE *file;
   mpm_context *context;
   int64_t end; /* bytes before the closing tags */
   size_t path_bytes;
@@ -23,19 +20,6 @@ static const char head[] = "<?xml version=\"1.0\"?>\n"
                            "  <Collection>\n";
 static const char tail[] = "  </Collection>\n"
                            "</VTKFile>\n";
-
-/* Returns 0 or the number of the error. */
-static int write_at(int file, int64_t at, const char *text, size_t bytes) {
-  while (bytes) {
-    const ssize_t written = pwrite(file, text, bytes, at);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return written ? errno : EIO;
-    text += written;
-    at += written;
-    bytes -= (size_t)written;
-  }
-  return 0;
-}
 
 /* Returns the bytes of the UTF-8 character at c if XML 1.0 can hold it, else 0. */
 static size_t character(const unsigned char *c) {
@@ -91,11 +75,11 @@ static void free_series(mpm_series *series) {
 
 /* Creates the file of an empty series. Returns 0 or the number of the error. */
 static int create(mpm_series *series) {
-  series->file = open(series->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (series->file < 0) return errno;
-  int error = write_at(series->file, 0, head, sizeof head - 1);
-  if (!error) error = write_at(series->file, sizeof head - 1, tail, sizeof tail - 1);
-  if (error) close(series->file);
+  int error = mpmi_file_create(series->path, &series->file);
+  if (error) return error;
+  error = mpmi_file_write_at(series->file, 0, head, sizeof head - 1);
+  if (!error) error = mpmi_file_write_at(series->file, sizeof head - 1, tail, sizeof tail - 1);
+  if (error) fclose(series->file);
   return error;
 }
 
@@ -129,15 +113,13 @@ mpm_status mpm_series_open(mpm_context *context, const char *path, mpm_series **
 
 /* Writes entry and closing tags over the old ones. After an error the file is what it was. */
 static mpm_status add_entry(mpm_series *series, const char *entry, size_t bytes) {
-  const int error = write_at(series->file, series->end, entry, bytes + sizeof tail - 1);
+  const int error = mpmi_file_write_at(series->file, series->end, entry, bytes + sizeof tail - 1);
   if (!error) {
     series->end += (int64_t)bytes;
     return MPM_OK;
   }
-  write_at(series->file, series->end, tail, sizeof tail - 1);
-  if (ftruncate(series->file, series->end + (int64_t)sizeof tail - 1)) {
-    /* The first error is the one to report. */
-  }
+  mpmi_file_write_at(series->file, series->end, tail, sizeof tail - 1);
+  mpmi_file_cut(series->file, series->end + (int64_t)sizeof tail - 1);
   return mpmi_io_error(series->context, "write", series->path, error);
 }
 
@@ -172,7 +154,9 @@ mpm_status mpm_series_close(mpm_series *series) {
   MPMI_ENTER(series, MPMI_SERIES);
   mpm_context *context = series->context;
   mpm_status status = MPM_OK;
-  if (close(series->file) && errno != EINTR) status = mpmi_io_error(context, "write", series->path, errno);
+  errno = 0;
+  if (fclose(series->file))
+    status = mpmi_io_error(context, "write", series->path, errno ? errno : MPMI_STORAGE_FAILED);
   context->children--;
   free_series(series);
   return status;

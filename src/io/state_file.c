@@ -1,10 +1,8 @@
 /* States are saved in files and loaded from files. */
-#define _POSIX_C_SOURCE   200809L
-#define _FILE_OFFSET_BITS 64
-#include "io/state.h"
-
 #include <errno.h>
-#include <sys/stat.h>
+
+#include "io/state.h"
+#include "platform/platform.h"
 
 mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
@@ -28,16 +26,11 @@ mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path) {
 }
 
 /* Reads and checks the header before there is a buffer, because a file that is no state may have any size. */
-static mpm_status measure_file(mpm_context *context, const char *path, FILE *file, int64_t *bytes) {
-  struct stat info;
-  if (fstat(fileno(file), &info)) return mpmi_io_error(context, "read", path, errno);
-  if (!S_ISREG(info.st_mode))
-    return mpmi_fail(context, MPM_E_IO, "cannot read %s: it is not a regular file", path);
-  *bytes = info.st_size;
+static mpm_status check_head(mpm_context *context, const char *path, FILE *file, int64_t bytes) {
   mpmi_state_header header = {"", 0, 0, 0, 0};
-  if (*bytes >= (int64_t)sizeof header && fread(&header, sizeof header, 1, file) != 1)
-    return mpmi_io_error(context, "read", path, EIO);
-  return mpmi_state_check_header(context, &header, *bytes);
+  if (bytes >= (int64_t)sizeof header && fread(&header, sizeof header, 1, file) != 1)
+    return mpmi_io_error(context, "read", path, MPMI_STORAGE_FAILED);
+  return mpmi_state_check_header(context, &header, bytes);
 }
 
 static mpm_status load(mpm_stepper *s, const char *path, FILE *file, int64_t bytes) {
@@ -49,7 +42,7 @@ static mpm_status load(mpm_stepper *s, const char *path, FILE *file, int64_t byt
   if (fread(buffer, 1, (size_t)bytes, file) == (size_t)bytes)
     status = mpmi_state_load(s, buffer, bytes);
   else
-    status = mpmi_io_error(s->context, "read", path, errno ? errno : EIO);
+    status = mpmi_io_error(s->context, "read", path, errno ? errno : MPMI_STORAGE_FAILED);
   mpmi_free(s->context, buffer, (size_t)bytes);
   return status;
 }
@@ -58,10 +51,11 @@ mpm_status mpm_state_load_file(mpm_stepper *stepper, const char *path) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
   mpm_status status = mpmi_check_path(stepper->context, path);
   if (status) return status;
-  FILE *file = fopen(path, "rbe");
-  if (!file) return mpmi_io_error(stepper->context, "read", path, errno);
-  int64_t bytes = 0;
-  status = measure_file(stepper->context, path, file, &bytes);
+  FILE *file;
+  int64_t bytes;
+  const int error = mpmi_file_read(path, &file, &bytes);
+  if (error) return mpmi_io_error(stepper->context, "read", path, error);
+  status = check_head(stepper->context, path, file, bytes);
   if (!status) status = load(stepper, path, file, bytes);
   fclose(file);
   return status;

@@ -137,7 +137,7 @@ void mpmi_sample_weights(mpmi_step *step, int32_t task, const mpmi_axis *axis, i
   const double started = mpmi_seconds();
   for (int64_t at = begin; at < end; at += MPMI_CHUNK)
     weights(axis, need, points, at, end - at < MPMI_CHUNK ? end - at : MPMI_CHUNK, &W);
-  step->work->report[task].weights_seconds += SAMPLED_BLOCKS * (mpmi_seconds() - started);
+  step->work->report[task].weights_seconds += (double)SAMPLED_BLOCKS * (mpmi_seconds() - started);
 }
 
 void mpmi_lap(mpmi_step *step, int32_t stage, double *from) {

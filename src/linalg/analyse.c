@@ -42,7 +42,7 @@ static mpm_status place_lists(analysis *a) {
                           6 * sizeof(int32_t);
   const size_t bytes = mpmi_bytes(n + 1, per_node);
   const mpm_status status = mpmi_reserve(f->context, (void **)&f->slab, &f->slab_capacity,
-                                         bytes < INT64_MAX ? (int64_t)bytes : INT64_MAX, 1);
+                                         (uint64_t)bytes < INT64_MAX ? (int64_t)bytes : INT64_MAX, 1);
   if (status) return status;
   char *at = f->slab;
 #define TAKE(list) ((list) = (void *)at, at += (size_t)(n + 1) * sizeof *(list))

@@ -65,7 +65,7 @@ static int64_t place_updates(mpmi_factor *f, int32_t begin, int32_t end, int32_t
 
 void mpmi_factor_lay_out(mpmi_factor *f) {
   const double all = place_panels(f);
-  choose_tasks(f, f->unknowns < MPMI_ALONE_UNKNOWNS ? all : all / SHARE);
+  choose_tasks(f, f->unknowns < MPMI_ALONE_UNKNOWNS ? all : all / (double)SHARE);
   int64_t at = 0;
   for (int32_t t = 0; t < f->tasks; ++t) {
     f->task[t].scratch = at;

@@ -23,8 +23,8 @@ static mpm_status check_name(const mpm_particles *set, const char *name) {
   if (length == 0 || name[length])
     return mpmi_fail(set->context, MPM_E_ARG, "field is \"%s\": names are made of a-z, 0-9 and _", name);
   if (length >= MPMI_NAME)
-    return mpmi_fail(set->context, MPM_E_ARG, "field has a name of %zu characters, must be at most %d",
-                     length, (int)MPMI_NAME - 1);
+    return mpmi_fail(set->context, MPM_E_ARG, "field has a name of %d characters, must be at most %d",
+                     length > INT32_MAX ? INT32_MAX : (int)length, (int)MPMI_NAME - 1);
   if (mpmi_find_field(set, name) >= 0)
     return mpmi_fail(set->context, MPM_E_ARG, "the set has a field \"%s\" already", name);
   return MPM_OK;

@@ -3,6 +3,14 @@
 #ifndef MPMI_ISA_H
 #define MPMI_ISA_H
 
+#include <float.h>
+
+/* Kernels round by adding large numbers, and index memory by what comes out: a register that holds more digits than a
+ * double, as the x87 has, gives other cells. */
+#if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 1
+#error "doubles are not evaluated as doubles: on 32-bit x86 compile with -msse2 -mfpmath=sse"
+#endif
+
 #ifndef MPMI_ISA
 #define MPMI_ISA baseline
 #endif
@@ -12,7 +20,7 @@
 
 /* Tables of kernels NAME_baseline, NAME_avx2 ... of the instruction sets that this build has: their
  * declarations, and the address of the one for an MPM_ISA_.... */
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(MPM_BASELINE_ONLY)
 #define MPMI_HAS_X86                    1
 #define MPMI_DECLARE_TABLES(type, name) extern const type name##_baseline, name##_avx2, name##_avx512
 #define MPMI_TABLE_OF(isa, name)                                                                             \

@@ -10,25 +10,23 @@
 #if defined(__AVX512F__)
 enum { MPMI_SIDE = 8 };
 MPMI_INLINE void mpmi_store_halves(double *low, double *high, mpmi_lanes v) {
-  mpmi_store4(low, __builtin_shufflevector(v, v, 0, 1, 2, 3));
-  mpmi_store4(high, __builtin_shufflevector(v, v, 4, 5, 6, 7));
+  mpmi_store4(low, mpmi_low_half(v));
+  mpmi_store4(high, mpmi_high_half(v));
 }
 MPMI_INLINE void mpmi_interleave(const double *a, const double *b, const double *c, const double *d,
                                  double *out, int32_t stride) {
   const mpmi_lanes va = mpmi_lanes_load(a), vb = mpmi_lanes_load(b), vc = mpmi_lanes_load(c),
                    vd = mpmi_lanes_load(d);
-  const mpmi_lanes ab_even = __builtin_shufflevector(va, vb, 0, 8, 2, 10, 4, 12, 6, 14),
-                   ab_odd = __builtin_shufflevector(va, vb, 1, 9, 3, 11, 5, 13, 7, 15),
-                   cd_even = __builtin_shufflevector(vc, vd, 0, 8, 2, 10, 4, 12, 6, 14),
-                   cd_odd = __builtin_shufflevector(vc, vd, 1, 9, 3, 11, 5, 13, 7, 15);
-  mpmi_store_halves(out, out + 2 * stride,
-                    __builtin_shufflevector(ab_even, cd_even, 0, 1, 8, 9, 2, 3, 10, 11));
-  mpmi_store_halves(out + stride, out + 3 * stride,
-                    __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 8, 9, 2, 3, 10, 11));
+  const mpmi_lanes ab_even = MPMI_SHUFFLE(va, vb, 0, 8, 2, 10, 4, 12, 6, 14),
+                   ab_odd = MPMI_SHUFFLE(va, vb, 1, 9, 3, 11, 5, 13, 7, 15),
+                   cd_even = MPMI_SHUFFLE(vc, vd, 0, 8, 2, 10, 4, 12, 6, 14),
+                   cd_odd = MPMI_SHUFFLE(vc, vd, 1, 9, 3, 11, 5, 13, 7, 15);
+  mpmi_store_halves(out, out + 2 * stride, MPMI_SHUFFLE(ab_even, cd_even, 0, 1, 8, 9, 2, 3, 10, 11));
+  mpmi_store_halves(out + stride, out + 3 * stride, MPMI_SHUFFLE(ab_odd, cd_odd, 0, 1, 8, 9, 2, 3, 10, 11));
   mpmi_store_halves(out + 4 * stride, out + 6 * stride,
-                    __builtin_shufflevector(ab_even, cd_even, 4, 5, 12, 13, 6, 7, 14, 15));
+                    MPMI_SHUFFLE(ab_even, cd_even, 4, 5, 12, 13, 6, 7, 14, 15));
   mpmi_store_halves(out + 5 * stride, out + 7 * stride,
-                    __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
+                    MPMI_SHUFFLE(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
 }
 /* Turns eight components of eight particles into eight values for each. Those of one particle are written by
  * one store, because a load of all of them would have to wait for two stores to end. */
@@ -36,32 +34,31 @@ MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *ou
   mpmi_lanes pair[2][4]; /* of two components, of even and odd particles */
   for (int32_t c = 0; c < 4; ++c) {
     const mpmi_lanes a = mpmi_lanes_load(in[2 * c] + p), b = mpmi_lanes_load(in[2 * c + 1] + p);
-    pair[0][c] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
-    pair[1][c] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    pair[0][c] = MPMI_SHUFFLE(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    pair[1][c] = MPMI_SHUFFLE(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
   }
   for (int32_t odd = 0; odd < 2; ++odd) {
-    const mpmi_lanes low_04 = __builtin_shufflevector(pair[odd][0], pair[odd][1], 0, 1, 4, 5, 8, 9, 12, 13),
-                     low_26 = __builtin_shufflevector(pair[odd][0], pair[odd][1], 2, 3, 6, 7, 10, 11, 14, 15),
-                     high_04 = __builtin_shufflevector(pair[odd][2], pair[odd][3], 0, 1, 4, 5, 8, 9, 12, 13),
-                     high_26 =
-                         __builtin_shufflevector(pair[odd][2], pair[odd][3], 2, 3, 6, 7, 10, 11, 14, 15);
+    const mpmi_lanes low_04 = MPMI_SHUFFLE(pair[odd][0], pair[odd][1], 0, 1, 4, 5, 8, 9, 12, 13),
+                     low_26 = MPMI_SHUFFLE(pair[odd][0], pair[odd][1], 2, 3, 6, 7, 10, 11, 14, 15),
+                     high_04 = MPMI_SHUFFLE(pair[odd][2], pair[odd][3], 0, 1, 4, 5, 8, 9, 12, 13),
+                     high_26 = MPMI_SHUFFLE(pair[odd][2], pair[odd][3], 2, 3, 6, 7, 10, 11, 14, 15);
     double *row = out + 8 * odd;
-    mpmi_lanes_store(row, __builtin_shufflevector(low_04, high_04, 0, 1, 4, 5, 8, 9, 12, 13));
-    mpmi_lanes_store(row + 16, __builtin_shufflevector(low_26, high_26, 0, 1, 4, 5, 8, 9, 12, 13));
-    mpmi_lanes_store(row + 32, __builtin_shufflevector(low_04, high_04, 2, 3, 6, 7, 10, 11, 14, 15));
-    mpmi_lanes_store(row + 48, __builtin_shufflevector(low_26, high_26, 2, 3, 6, 7, 10, 11, 14, 15));
+    mpmi_lanes_store(row, MPMI_SHUFFLE(low_04, high_04, 0, 1, 4, 5, 8, 9, 12, 13));
+    mpmi_lanes_store(row + 16, MPMI_SHUFFLE(low_26, high_26, 0, 1, 4, 5, 8, 9, 12, 13));
+    mpmi_lanes_store(row + 32, MPMI_SHUFFLE(low_04, high_04, 2, 3, 6, 7, 10, 11, 14, 15));
+    mpmi_lanes_store(row + 48, MPMI_SHUFFLE(low_26, high_26, 2, 3, 6, 7, 10, 11, 14, 15));
   }
 }
 MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c) {
   const mpmi_lanes r01 = mpmi_lanes_load(in), r23 = mpmi_lanes_load(in + 8), r45 = mpmi_lanes_load(in + 16),
                    r67 = mpmi_lanes_load(in + 24);
-  const mpmi_lanes ab_low = __builtin_shufflevector(r01, r23, 0, 4, 8, 12, 1, 5, 9, 13),
-                   ab_high = __builtin_shufflevector(r45, r67, 0, 4, 8, 12, 1, 5, 9, 13),
-                   c_low = __builtin_shufflevector(r01, r23, 2, 6, 10, 14, 3, 7, 11, 15),
-                   c_high = __builtin_shufflevector(r45, r67, 2, 6, 10, 14, 3, 7, 11, 15);
-  mpmi_lanes_store(a, __builtin_shufflevector(ab_low, ab_high, 0, 1, 2, 3, 8, 9, 10, 11));
-  mpmi_lanes_store(b, __builtin_shufflevector(ab_low, ab_high, 4, 5, 6, 7, 12, 13, 14, 15));
-  mpmi_lanes_store(c, __builtin_shufflevector(c_low, c_high, 0, 1, 2, 3, 8, 9, 10, 11));
+  const mpmi_lanes ab_low = MPMI_SHUFFLE(r01, r23, 0, 4, 8, 12, 1, 5, 9, 13),
+                   ab_high = MPMI_SHUFFLE(r45, r67, 0, 4, 8, 12, 1, 5, 9, 13),
+                   c_low = MPMI_SHUFFLE(r01, r23, 2, 6, 10, 14, 3, 7, 11, 15),
+                   c_high = MPMI_SHUFFLE(r45, r67, 2, 6, 10, 14, 3, 7, 11, 15);
+  mpmi_lanes_store(a, MPMI_SHUFFLE(ab_low, ab_high, 0, 1, 2, 3, 8, 9, 10, 11));
+  mpmi_lanes_store(b, MPMI_SHUFFLE(ab_low, ab_high, 4, 5, 6, 7, 12, 13, 14, 15));
+  mpmi_lanes_store(c, MPMI_SHUFFLE(c_low, c_high, 0, 1, 2, 3, 8, 9, 10, 11));
 }
 #else
 enum { MPMI_SIDE = 4 };

@@ -5,6 +5,7 @@
 
 #include "simd/isa.h"
 #include "simd/lanes.h"
+#include "simd/shuffle.h"
 
 #if defined(__AVX__)
 typedef double mpmi_v4 __attribute__((vector_size(32)));
@@ -33,14 +34,12 @@ MPMI_INLINE mpmi_v4 mpmi_difference4(mpmi_v4 a, mpmi_v4 b) {
   return a - b;
 }
 MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d) {
-  mpmi_v4 ab_even = __builtin_shufflevector(*a, *b, 0, 4, 2, 6),
-          ab_odd = __builtin_shufflevector(*a, *b, 1, 5, 3, 7);
-  mpmi_v4 cd_even = __builtin_shufflevector(*c, *d, 0, 4, 2, 6),
-          cd_odd = __builtin_shufflevector(*c, *d, 1, 5, 3, 7);
-  *a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
-  *b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
-  *c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
-  *d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+  mpmi_v4 ab_even = MPMI_SHUFFLE(*a, *b, 0, 4, 2, 6), ab_odd = MPMI_SHUFFLE(*a, *b, 1, 5, 3, 7);
+  mpmi_v4 cd_even = MPMI_SHUFFLE(*c, *d, 0, 4, 2, 6), cd_odd = MPMI_SHUFFLE(*c, *d, 1, 5, 3, 7);
+  *a = MPMI_SHUFFLE(ab_even, cd_even, 0, 1, 4, 5);
+  *b = MPMI_SHUFFLE(ab_odd, cd_odd, 0, 1, 4, 5);
+  *c = MPMI_SHUFFLE(ab_even, cd_even, 2, 3, 6, 7);
+  *d = MPMI_SHUFFLE(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
 #else
@@ -77,14 +76,14 @@ MPMI_INLINE mpmi_v4 mpmi_difference4(mpmi_v4 a, mpmi_v4 b) {
 }
 MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d) {
   const mpmi_v4 ta = *a, tb = *b, tc = *c, td = *d;
-  a->low = __builtin_shufflevector(ta.low, tb.low, 0, 2);
-  a->high = __builtin_shufflevector(tc.low, td.low, 0, 2);
-  b->low = __builtin_shufflevector(ta.low, tb.low, 1, 3);
-  b->high = __builtin_shufflevector(tc.low, td.low, 1, 3);
-  c->low = __builtin_shufflevector(ta.high, tb.high, 0, 2);
-  c->high = __builtin_shufflevector(tc.high, td.high, 0, 2);
-  d->low = __builtin_shufflevector(ta.high, tb.high, 1, 3);
-  d->high = __builtin_shufflevector(tc.high, td.high, 1, 3);
+  a->low = MPMI_SHUFFLE(ta.low, tb.low, 0, 2);
+  a->high = MPMI_SHUFFLE(tc.low, td.low, 0, 2);
+  b->low = MPMI_SHUFFLE(ta.low, tb.low, 1, 3);
+  b->high = MPMI_SHUFFLE(tc.low, td.low, 1, 3);
+  c->low = MPMI_SHUFFLE(ta.high, tb.high, 0, 2);
+  c->high = MPMI_SHUFFLE(tc.high, td.high, 0, 2);
+  d->low = MPMI_SHUFFLE(ta.high, tb.high, 1, 3);
+  d->high = MPMI_SHUFFLE(tc.high, td.high, 1, 3);
 }
 #endif
 
@@ -93,6 +92,36 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
 enum { MPMI_LOW = 1, MPMI_HIGH = 2, MPMI_BOTH = 3 };
 
 #if defined(__AVX512F__)
+/* The halves of a register, and a register of two halves. */
+MPMI_INLINE mpmi_v4 mpmi_low_half(mpmi_lanes v) {
+#if defined(__clang__) || __GNUC__ >= 12
+  return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+#else
+  mpmi_v4 half;
+  __builtin_memcpy(&half, &v, sizeof half);
+  return half;
+#endif
+}
+MPMI_INLINE mpmi_v4 mpmi_high_half(mpmi_lanes v) {
+#if defined(__clang__) || __GNUC__ >= 12
+  return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+#else
+  mpmi_v4 half;
+  __builtin_memcpy(&half, (const char *)&v + sizeof half, sizeof half);
+  return half;
+#endif
+}
+MPMI_INLINE mpmi_lanes mpmi_of_halves(mpmi_v4 low, mpmi_v4 high) {
+#if defined(__clang__) || __GNUC__ >= 12
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  mpmi_lanes v;
+  __builtin_memcpy(&v, &low, sizeof low);
+  __builtin_memcpy((char *)&v + sizeof low, &high, sizeof high);
+  return v;
+#endif
+}
+
 enum { MPMI_HALF = MPMI_BOTH }; /* how to work with a node of eight when only its lower half counts */
 typedef struct mpmi_node {
   mpmi_v4 four;
@@ -115,7 +144,7 @@ MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
 /* Loads the upper half alone; the lower half is zero. */
 MPMI_INLINE mpmi_node mpmi_node_load_high(const double *a) {
   mpmi_node r = mpmi_node_zero();
-  r.eight = __builtin_shufflevector(mpmi_zero4(), mpmi_load4(a), 0, 1, 2, 3, 4, 5, 6, 7);
+  r.eight = mpmi_of_halves(mpmi_zero4(), mpmi_load4(a));
   return r;
 }
 MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
@@ -125,10 +154,10 @@ MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
     mpmi_lanes_store(a, v.eight);
 }
 MPMI_INLINE mpmi_v4 mpmi_node_low(int32_t part, mpmi_node a) {
-  return part == MPMI_LOW ? a.four : __builtin_shufflevector(a.eight, a.eight, 0, 1, 2, 3);
+  return part == MPMI_LOW ? a.four : mpmi_low_half(a.eight);
 }
 MPMI_INLINE mpmi_v4 mpmi_node_high(mpmi_node a) {
-  return __builtin_shufflevector(a.eight, a.eight, 4, 5, 6, 7);
+  return mpmi_high_half(a.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_scale(int32_t part, double s, mpmi_node a) {
   if (part == MPMI_LOW)

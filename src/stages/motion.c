@@ -38,7 +38,7 @@ void mpmi_motion_enter(mpmi_batch *b) {
     const double first = (double)blocks->coord[b->block][k] * blocks->edge;
     const double centre = first + 0.5 * (blocks->edge - grid->centred);
     b->move.centre[k] = grid->desc.origin[k] + grid->desc.spacing[k] * centre;
-    b->move.half[k] = grid->desc.spacing[k] * (0.5 * blocks->edge + MPMI_RING) * (1.0 - 1e-9);
+    b->move.half[k] = grid->desc.spacing[k] * (0.5 * blocks->edge + (double)MPMI_RING) * (1.0 - 1e-9);
   }
 }
 

@@ -81,7 +81,7 @@ void mpmi_strain_law(mpmi_batch *b) {
   const int32_t timed = step->profile->sampled && b->batches++ % TIMED_BATCHES == 0;
   const double started = timed ? mpmi_seconds() : 0.0;
   const mpm_status status = mpmi_law_batch_run(&b->law, b->set);
-  if (timed) b->report->law_seconds += TIMED_BATCHES * (mpmi_seconds() - started);
+  if (timed) b->report->law_seconds += (double)TIMED_BATCHES * (mpmi_seconds() - started);
   if (status) {
     mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
                                                            "the material callback"});

@@ -18,16 +18,15 @@ grep -qx "version: $version" CITATION.cff
 [ "$(sed -n '/(unreleased)$/d; s/^## //p' CHANGELOG.md | head -n 1)" = "$version" ]
 grep -qx "set(PACKAGE_VERSION \"$version\")" "$prefix/lib/cmake/mpm/mpmConfigVersion.cmake"
 
-flags() { "$PKG_CONFIG" "$@" mpm; }
+flags() { "$PKG_CONFIG" "$@"; }
 build() { # compiler, standard, source, program, libraries...
   local compiler=$1 standard=$2 source=$3 program=$scratch/$4
   shift 4
   # shellcheck disable=SC2046
-  "$compiler" -std="$standard" -Wall -Wextra -Werror $(flags --cflags) "$source" -o "$program" "$@"
+  "$compiler" -std="$standard" -Wall -Wextra -Werror $(flags --cflags mpm) "$source" -o "$program" "$@"
 }
 # shellcheck disable=SC2207
-shared=($(flags --libs)) static=($(flags --static --libs))
-static=("${static[@]/-lmpm/-l:libmpm.a}")
+shared=($(flags --libs mpm)) static=($(flags --libs mpm-static))
 
 build "$CC" c99 tests/api/host.c c_shared "${shared[@]}"
 build "$CC" c99 tests/api/host.c c_static "${static[@]}"
@@ -45,9 +44,13 @@ if readelf -d "$scratch/c_static" | grep libmpm; then
   exit 1
 fi
 
-# A package is staged under DESTDIR, but its files speak of the prefix.
+# A package is staged under DESTDIR. Under a prefix of its own its files find each other wherever they are moved; under
+# /usr they speak of the prefix, so that pkg-config knows the folders of the system.
 "$MAKE" -s install BUILD="$BUILD" CC="$CC" PREFIX=/opt/mpm DESTDIR="$scratch/stage" > /dev/null
-grep -q '^prefix=/opt/mpm$' "$scratch/stage/opt/mpm/lib/pkgconfig/mpm.pc"
+[ "$(PKG_CONFIG_PATH=$scratch/stage/opt/mpm/lib/pkgconfig flags --variable=includedir mpm | xargs realpath)" = \
+  "$(realpath "$scratch/stage/opt/mpm/include")" ]
+"$MAKE" -s install BUILD="$BUILD" CC="$CC" PREFIX=/usr LIBDIR=/usr/lib/x DESTDIR="$scratch/stage" > /dev/null
+[ "$(PKG_CONFIG_PATH=$scratch/stage/usr/lib/x/pkgconfig flags --cflags mpm)" = "" ]
 
 "$MAKE" -s uninstall PREFIX="$prefix" DESTDIR= > /dev/null
 if find "$prefix" -type f -o -type l | grep .; then

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Reads which files of src/ need which others, and refuses circles and arrows that point upward.
 
+Headers of an operating system are for the folder `platform` alone: what other files include of no folder here is ISO C11.
+
 A node is a header X.h together with the X.c beside it. An arrow goes from a node to one whose header it includes, and
 to one whose functions or data it uses; the second is read from the object files, and from the text of the functions
 that are defined in headers. Of kernels only the objects of the baseline are read: the others have the same arrows.
@@ -15,6 +17,12 @@ import subprocess
 import sys
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^"]+)"', re.M)
+SYSTEM_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*<([^">]+)>', re.M)
+FEATURES = re.compile(r'^[ \t]*#[ \t]*define[ \t]+(_(?:POSIX_C|DEFAULT|GNU|BSD|XOPEN|DARWIN_C)_SOURCE)\b', re.M)
+ISO_C11 = {name + '.h' for name in (
+    'assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic '
+    'stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype').split()}
+SYSTEM_FOLDER = 'platform'
 NOT_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.S)
 FUNCTION = re.compile(r'\)\s*\{')
 NAME = re.compile(r'\bmpmi?_\w+')
@@ -156,6 +164,13 @@ def check(sources, arrows, order):
             print(f'structure: {start} lies below {end}:')
             show(arrow)
             failures += 1
+    for source, text in sorted(sources.items()):
+        if folder_of(source) != SYSTEM_FOLDER:
+            foreign = [f'includes <{name}>' for name in SYSTEM_INCLUDE.findall(text)
+                       if name not in ISO_C11 and not name.startswith('mpm/')]
+            for what in foreign + [f'defines {name}' for name in FEATURES.findall(text)]:
+                print(f'structure: {source} {what}, which is not ISO C11: only {SYSTEM_FOLDER} may')
+                failures += 1
     between = [Arrow(folder_of(a.start), folder_of(a.end), a.file, a.symbol) for a in arrows
                if folder_of(a.start) != folder_of(a.end)]
     for circle in circles_of({a.start for a in between}, between):

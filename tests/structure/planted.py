@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Plants an upward include, an upward call, a circle of files and an unlisted folder in a small source tree of its own
-and expects check.py to name each of them, and nothing before they are planted.
+"""Plants an upward include, an upward call, a circle of files, an unlisted folder and a system's header in a small source
+tree of its own and expects check.py to name each of them, and nothing before they are planted.
 
     planted.py SCRATCH      CC and NM from the environment
 """
@@ -11,6 +11,7 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 CLEAN = {
+    'platform/system.c': '#define _POSIX_C_SOURCE 200809L\n#include <unistd.h>\nlong mpmi_id(void) { return getpid(); }\n',
     'low/base.h': 'int mpmi_base(int x);\n',
     'low/base.c': '#include "low/base.h"\nint mpmi_base(int x) { return x + 1; }\n',
     'low/twice.h': '#include "low/base.h"\nint mpmi_twice(int x);\n',
@@ -27,6 +28,8 @@ PLANTED = [
     ('a circle of files', {'low/base.c': 'int mpmi_twice(int x);\nint mpmi_back(int x) { return mpmi_twice(x); }\n'},
      'low/base.c -> low/twice: mpmi_twice'),
     ('a circle through a header', {'low/base.h': INLINE}, 'low/base.h -> low/twice: mpmi_twice'),
+    ('a header of the system', {'low/base.c': '#include <unistd.h>\n'}, 'low/base.c includes <unistd.h>'),
+    ('a feature of the system', {'low/base.h': '#define _POSIX_C_SOURCE 200809L\n'}, 'low/base.h defines _POSIX_C_SOURCE'),
     ('a folder that is not listed', {'odd/one.h': '\n'}, 'odd is not in the list'),
 ]
 
@@ -45,7 +48,7 @@ def run_check(top, change):
                             os.path.join(objects, name[:-2] + '.o')], check=True)
     layers = os.path.join(top, 'layers.txt')
     with open(layers, 'w') as file:
-        file.write('low\nhigh\n')
+        file.write('platform\nlow\nhigh\n')
     return subprocess.run([sys.executable, os.path.join(HERE, 'check.py'), '--source', source, '--objects', objects,
                            '--layers', layers], text=True, stdout=subprocess.PIPE)
 

@@ -22,6 +22,7 @@ TCase *io_unlike_case(void);
 TCase *io_damage_case(void);
 TCase *io_hash_case(void);
 TCase *io_file_case(void);
+TCase *io_replace_case(void);
 TCase *io_output_case(void);
 TCase *io_grid_case(void);
 

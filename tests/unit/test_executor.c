@@ -3,7 +3,9 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "context/context.h"
 #include "world.h"
@@ -183,6 +185,74 @@ START_TEST(contexts_side_by_side) {
 }
 END_TEST
 
+/* In the child: 0 where the world steps on as it would have, and everything can be freed. */
+static int32_t child_of(world *w, uint64_t expected) {
+  alarm(60); /* a lost thread that is waited for */
+  world_steps(w, 5);
+  const int32_t same = world_hash(w) == expected;
+  world_close(w);
+#if !defined(__SANITIZE_THREAD__) /* it ends children that start threads */
+  mpm_context_desc desc = desc_for(3);
+  mpm_context *context = make(&desc);
+  expect_each_once(context, 100);
+  ck_ok(context, mpm_context_destroy(context));
+#endif
+  return same ? 0 : 3;
+}
+
+/* Of the threads of a process none is in the child that it forks. */
+START_TEST(children_of_fork) {
+  for (int32_t stepped = 0; stepped < 2; ++stepped) { /* the pool sleeps, or is about to */
+    world_desc d = world_default(2, 40, 0.05);
+    d.context.concurrency = 4;
+    d.dt = 1e-5;
+    world w;
+    world_open(&w, &d);
+    world_fill_cube(&w, w.set[0], 0.3, 1.5);
+    if (stepped) world_steps(&w, 3);
+    const saved_state before = world_save(&w);
+    world_steps(&w, 5);
+    const uint64_t expected = world_hash(&w);
+    ck_ok(&w, mpm_state_load(w.stepper, before.data, before.bytes));
+    free(before.data);
+    fflush(NULL);
+    const pid_t child = fork();
+    ck_assert_int_ge(child, 0);
+    if (!child) _exit(child_of(&w, expected));
+    int status = 0;
+    ck_assert_int_eq(waitpid(child, &status, 0), child);
+    if (WIFSIGNALED(status)) ck_abort_msg("the child ended by signal %d", WTERMSIG(status));
+    ck_assert_int_eq(WEXITSTATUS(status), 0);
+    world_steps(&w, 5); /* the parent has its threads still */
+    ck_assert_uint_eq(world_hash(&w), expected);
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* The child may fork on, and its own pools work there as little as those that it has from its parent. */
+START_TEST(pools_know_their_process) {
+  mpm_context_desc desc = desc_for(2);
+  mpm_context *context = make(&desc);
+  fflush(NULL);
+  const pid_t child = fork();
+  if (!child) {
+    alarm(60);
+    expect_each_once(context, 50);
+    pid_t inner = fork();
+    expect_each_once(context, 50);
+    ck_ok(context, mpm_context_destroy(context));
+    int status = 0;
+    if (inner && (waitpid(inner, &status, 0) != inner || status)) _exit(4);
+    _exit(0);
+  }
+  int status = 0;
+  ck_assert_int_eq(waitpid(child, &status, 0), child);
+  ck_assert_int_eq(status, 0);
+  ck_ok(context, mpm_context_destroy(context));
+}
+END_TEST
+
 Suite *executor_suite(void) {
   Suite *suite = suite_create("executor");
   TCase *threads = tcase_create("threads");
@@ -193,6 +263,8 @@ Suite *executor_suite(void) {
   tcase_add_test(threads, workers_take_no_signals);
   tcase_add_test(threads, host_executor);
   tcase_add_test(threads, contexts_side_by_side);
+  tcase_add_test(threads, children_of_fork);
+  tcase_add_test(threads, pools_know_their_process);
   suite_add_tcase(suite, threads);
   return suite;
 }

@@ -82,6 +82,7 @@ Suite *io_suite(void) {
   suite_add_tcase(suite, io_damage_case());
   suite_add_tcase(suite, io_hash_case());
   suite_add_tcase(suite, io_file_case());
+  suite_add_tcase(suite, io_replace_case());
   suite_add_tcase(suite, io_output_case());
   suite_add_tcase(suite, io_grid_case());
   return suite;
