@@ -8,7 +8,6 @@
 #define BARRIER() __asm__ volatile("" ::: "memory")
 
 #if defined(MPMI_ENVIRONMENT_X86)
-#include <xmmintrin.h>
 
 enum {
   SSE_DEFAULT = 0x1f80, /* to nearest, all exceptions masked, tiny numbers kept */
@@ -25,8 +24,8 @@ static void mend_x87(uint16_t control) {
 
 OPAQUE void mpmi_environment_enter(mpmi_environment *host) {
   BARRIER();
-  host->mxcsr = _mm_getcsr();
-  _mm_setcsr(SSE_DEFAULT);
+  host->mxcsr = __builtin_ia32_stmxcsr();
+  __builtin_ia32_ldmxcsr(SSE_DEFAULT);
   __asm__ volatile("fnstenv %0" : "=m"(host->x87)); /* masks the exceptions, too */
   if (host->x87.word[0] & X87_ROUNDING) mend_x87((uint16_t)host->x87.word[0]);
   BARRIER();
@@ -35,14 +34,14 @@ OPAQUE void mpmi_environment_enter(mpmi_environment *host) {
 OPAQUE void mpmi_environment_leave(const mpmi_environment *host) {
   BARRIER();
   __asm__ volatile("fldenv %0" ::"m"(host->x87));
-  _mm_setcsr(host->mxcsr);
+  __builtin_ia32_ldmxcsr(host->mxcsr);
   BARRIER();
 }
 
 OPAQUE void mpmi_environment_mend(void) {
   BARRIER();
   uint16_t control;
-  if ((_mm_getcsr() & SSE_CONTROL) != SSE_DEFAULT) _mm_setcsr(SSE_DEFAULT);
+  if ((__builtin_ia32_stmxcsr() & SSE_CONTROL) != SSE_DEFAULT) __builtin_ia32_ldmxcsr(SSE_DEFAULT);
   __asm__ volatile("fnstcw %0" : "=m"(control));
   mend_x87(control);
   BARRIER();
