@@ -145,9 +145,9 @@ ifneq (,$(IMPORT_LIB))
 	install -m 755 $(SHARED_LIB) $(call to,BINDIR)
 else ifneq (,$(SHARED))
 	install -m 755 $(SHARED_LIB) $(call to,LIBDIR)
-	for name in $(SHARED_LINKS); do ln -sf $(SHARED) $(call to,LIBDIR)/$$name; done
+	for name in $(SHARED_LINKS); do ln -sf $(SHARED) $(call to,LIBDIR)/$$name || exit 1; done
 endif
-	for name in mpm mpm-static; do $(SUBSTITUTE) pkgconfig/$$name.pc.in > $(call to,PKGCONFIGDIR)/$$name.pc; done
+	for name in mpm mpm-static; do $(SUBSTITUTE) pkgconfig/$$name.pc.in > $(call to,PKGCONFIGDIR)/$$name.pc || exit 1; done
 	$(SUBSTITUTE) cmake/mpmConfig.cmake.in > $(call to,CMAKEDIR)/mpmConfig.cmake
 	$(SUBSTITUTE) cmake/mpmConfigVersion.cmake.in > $(call to,CMAKEDIR)/mpmConfigVersion.cmake
 	chmod 644 $(call to,PKGCONFIGDIR)/mpm*.pc $(call to,CMAKEDIR)/*.cmake

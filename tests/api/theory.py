@@ -36,6 +36,7 @@ PLANTED = [
 STRIP = re.compile(r'/\*.*?\*/|//[^\n]*|"((?:\\.|[^"\\\n])*)"|\'(?:\\.|[^\'\\\n])+\'', re.S)
 DIRECTIVE = re.compile(r'^[ \t]*#(?:[^\n\\]|\\.|\\\n)*', re.M)
 DEFINE = re.compile(r'\s*#\s*define\s+(\w+)')
+ASKED = re.compile(r'defined\((MPM_\w+)\)')  # macros that a host or a build defines
 TOKEN = re.compile(r'[A-Za-z_]\w*|[^\s\w]')
 SKIPPED = re.compile(r'__attribute__\s*\(\([^()]*(?:\([^()]*\))?[^()]*\)\)|_Alignas\(\w+\)')
 WORDS = {'if', 'for', 'while', 'switch', 'return', 'sizeof', 'void', 'int', 'char', 'double', 'float', 'const',
@@ -81,6 +82,7 @@ def symbols_of(text):
         if define:
             names.add(define.group(1))
             macros.append(match.group(0)[define.end():])
+        names.update(ASKED.findall(match.group(0)))
         return ''
 
     text = SKIPPED.sub('', DIRECTIVE.sub(directive, text))

@@ -42,7 +42,7 @@ refused() { # name, what it needs, words, command...
   shift 3
   if ! eval "$needs" > /dev/null 2>&1; then
     echo "$name: skipped: not installed ($needs)"
-  elif "$@" 2>&1 | grep -q "$words"; then
+  elif grep -q "$words" <<< "$("$@" 2>&1)"; then
     echo "$name: refused, as it must be"
   else
     echo "$name: failed: it is not refused with the words: $words"
