@@ -41,8 +41,9 @@ LIBRARY = $(COMMON) $(OBJECT_FLAGS)
 include platform.mk
 
 # ---- sources ---------------------------------------------------------------------------------------------
-# Kernels are compiled once for each instruction set, with contraction to fused multiply-add; all other files
-# once, without it, so that only the kernels' results depend on the instruction set.
+# Kernels are compiled once for each instruction set; all other files once. Only the sets that have a fused multiply-add
+# by definition contract to it: so the baseline gives the same bits on every platform, and only the kernels' results
+# depend on the instruction set.
 KERNEL_PATTERNS := src/transfer/bspline*.c src/transfer/open_bspline*.c src/transfer/gimp.c \
   src/transfer/scatter.c src/transfer/gather.c src/transfer/stiffness.c \
   src/transfer/box.c src/transfer/update.c src/transfer/move.c src/transfer/sums.c \
@@ -51,11 +52,12 @@ KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))
 PLAIN := $(filter-out $(KERNELS),$(sort $(wildcard src/*/*.c)))
 HEADERS := $(sort $(wildcard include/mpm/*.h include/mpm/*.hpp))
 
-ISA_baseline :=
-ISA_avx2 := -mavx2 -mfma
-ISA_avx512 := -mavx512f -mavx512vl -mavx512dq -mavx2 -mfma -mprefer-vector-width=512
+ISA_baseline := -ffp-contract=off
+ISA_avx2 := -ffp-contract=fast -mavx2 -mfma
+ISA_avx512 := -ffp-contract=fast -mavx512f -mavx512vl -mavx512dq -mavx2 -mfma -mprefer-vector-width=512
+ISA_neon := -ffp-contract=fast
 # Of kernels debuggers are told the lines only: to follow all of their variables takes compilers minutes.
-KERNEL_FLAGS = $(KERNEL_OPT) -ffp-contract=fast -fno-math-errno -fno-trapping-math -Wno-psabi $(if $(filter -g,$(CFLAGS)),-g1)
+KERNEL_FLAGS = $(KERNEL_OPT) -fno-math-errno -fno-trapping-math -Wno-psabi $(if $(filter -g,$(CFLAGS)),-g1)
 
 OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/obj/%.$(isa).o))
 STATIC_LIB := $(BUILD)/libmpm.a

@@ -16,6 +16,9 @@ ISAS := baseline
 ifneq (,$(findstring x86_64,$(TARGET)))
 ISAS += avx2 avx512
 endif
+ifneq (,$(filter aarch64% arm64%,$(TARGET)))
+ISAS += neon
+endif
 
 # SHARED is the file, SHARED_LINKS other names of it, SHARED_FLAGS how it is linked.
 SONAME := libmpm.so.0

@@ -3,7 +3,7 @@
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
 .PHONY: check-builds check-windows check-wasm
 .PHONY: mutate mutate-check check-hashes update-hashes
-.PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
+.PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-portable check-abi update-abi
 .PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
 
 # ---- tests -----------------------------------------------------------------------------------------------
@@ -85,6 +85,11 @@ $(HASHES): $(wildcard tests/hashes/*.[ch]) $(STATIC_LIB) Makefile
 #: update-hashes         takes the hashes that are there as the expected ones
 check-hashes update-hashes: $(HASHES)
 	@$(TEST_ENVIRONMENT) CFLAGS="$(CFLAGS)" JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
+
+#: check-portable        the same bits on every platform whose compiler and emulator are there: a table. SCENES=all, gate;
+#:                       PLATFORMS="gcc s390x"
+check-portable:
+	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/portable/run.sh
 
 #: check-abi             the binary interface against abi/libmpm-x86_64.abi.xml, by abidiff
 #: update-abi            takes the interface that is there as the baseline

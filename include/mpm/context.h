@@ -36,7 +36,7 @@ typedef struct mpm_context_desc {
   int32_t concurrency;
   /** Instruction set of the kernels: MPM_ISA_BEST (default) or the one to be used, which creation refuses
    * with MPM_E_UNSUPPORTED if processor or library lacks it. With MPM_ISA_BEST the environment variable
-   * MPM_ISA (baseline, avx2, avx512) decides where it is set; it is read once, at creation. */
+   * MPM_ISA (portable or baseline, avx2, avx512, neon) decides where it is set; it is read once, at creation. */
   int32_t isa;
   /** 1: the library calls the host from the calling thread only, also where a callback is marked (mt).
    * Default 0. */

@@ -76,6 +76,16 @@
  * The same binary on the same instruction set gives, for the same input, the same bits: for any number of
  * threads, any executor, any order in which the same ids were added, and across save and load at any step.
  *
+ * @par
+ * With MPM_ISA_PORTABLE it gives the same bits on every platform as well: processor, byte order, size of
+ * pointers, operating system, C library, compiler and its optimisation do not matter, and a state saved on one
+ * platform goes on with the same bits on another. That holds for one version of the library, where doubles are
+ * those of IEEE 754 with all of their operations rounded to nearest once, the library was compiled without
+ * options that let the compiler change results (-ffast-math and its like), and callbacks keep the same rules:
+ * of the C library's functions sqrt, fma, floor and their like have the same bits everywhere, exp, sin and pow
+ * have not. Sign and payload of values that are not numbers are left open. docs/portability.md lists the
+ * platforms on which this is tested.
+ *
  * @par Sources
  * Equations are those of Guilkey, An Introduction to the Material Point Method; Guilkey and Weiss, Int. J.
  * Numer. Meth. Engng. 57, 2003; MPoint Theory and Background; Steffen et al., CMES 31(2), 2008; Jiang et al.,

@@ -121,7 +121,9 @@ enum {
   MPM_ISA_BEST = 0,     /**< the best one that both the processor and the library have */
   MPM_ISA_BASELINE = 1, /**< the one that the library was compiled for */
   MPM_ISA_AVX2 = 2,     /**< AVX2 with FMA, on x86-64 */
-  MPM_ISA_AVX512 = 3    /**< AVX-512 (F, DQ, VL), on x86-64 */
+  MPM_ISA_AVX512 = 3,   /**< AVX-512 (F, DQ, VL), on x86-64 */
+  MPM_ISA_NEON = 4,     /**< NEON with FMA, on aarch64 */
+  MPM_ISA_PORTABLE = 1  /**< the baseline by its promise: the same bits on every platform (mpm.h, Results) */
 };
 
 /** Level of a log text. */

@@ -8,7 +8,7 @@
 
 enum { MOST_THREADS = 1024 };
 
-static const char *const isa_name[] = {"best", "baseline", "avx2", "avx512"}; /* by MPM_ISA_... */
+static const char *const isa_name[] = {"best", "baseline", "avx2", "avx512", "neon"}; /* by MPM_ISA_... */
 
 static void *default_alloc(void *user, size_t bytes, size_t alignment) {
   (void)user;
@@ -41,8 +41,14 @@ static int processor_has(int32_t isa) {
 #else
   int avx2 = 0, avx512 = 0;
 #endif
+#if defined(__aarch64__) && !defined(MPM_BASELINE_ONLY)
+  const int neon = 1; /* all of them have it */
+#else
+  const int neon = 0;
+#endif
   if (isa == MPM_ISA_AVX512) return avx512;
   if (isa == MPM_ISA_AVX2) return avx2;
+  if (isa == MPM_ISA_NEON) return neon;
   return 1;
 }
 
@@ -50,23 +56,25 @@ static int processor_has(int32_t isa) {
 static mpm_status wanted_isa(mpm_context *context, int32_t *isa) {
   const char *text = *isa == MPM_ISA_BEST ? getenv("MPM_ISA") : NULL;
   if (!text || !*text) return MPM_OK;
-  for (int32_t k = MPM_ISA_BASELINE; k <= MPM_ISA_AVX512; ++k)
+  if (!strcmp(text, "portable")) text = isa_name[MPM_ISA_PORTABLE];
+  for (int32_t k = MPM_ISA_BASELINE; k <= MPM_ISA_NEON; ++k)
     if (!strcmp(text, isa_name[k])) {
       *isa = k;
       return MPM_OK;
     }
-  return mpmi_fail(context, MPM_E_ARG, "the variable MPM_ISA is \"%.80s\", must be baseline, avx2 or avx512",
+  return mpmi_fail(context, MPM_E_ARG,
+                   "the variable MPM_ISA is \"%.80s\", must be portable, baseline, avx2, avx512 or neon",
                    text);
 }
 
 static mpm_status resolve_isa(mpm_context *context, int32_t *isa) {
-  if (*isa < MPM_ISA_BEST || *isa > MPM_ISA_AVX512)
+  if (*isa < MPM_ISA_BEST || *isa > MPM_ISA_NEON)
     return mpmi_fail(context, MPM_E_ARG, "mpm_context_desc: isa is %d, which is none of the constants",
                      (int)*isa);
   mpm_status status = wanted_isa(context, isa);
   if (status) return status;
   if (*isa == MPM_ISA_BEST) {
-    *isa = MPM_ISA_AVX512;
+    *isa = MPM_ISA_NEON;
     while (!processor_has(*isa)) --*isa;
   }
   if (processor_has(*isa)) return MPM_OK;

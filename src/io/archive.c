@@ -1,4 +1,5 @@
 #include "io/archive.h"
+#include "io/byte_order.h"
 #include "io/mix.h"
 
 #include <string.h>
@@ -14,7 +15,7 @@ void mpmi_checksum_begin(mpmi_checksum *sum) {
 static uint64_t step_lane(uint64_t lane, const unsigned char *at) {
   uint64_t word;
   memcpy(&word, at, sizeof word);
-  return mpmi_rotate(lane + word * MPMI_MIX_B, 31) * MPMI_MIX_A;
+  return mpmi_rotate(lane + mpmi_little_64(word) * MPMI_MIX_B, 31) * MPMI_MIX_A;
 }
 
 void mpmi_checksum_add(mpmi_checksum *sum, const void *data, int64_t bytes) {
@@ -95,6 +96,47 @@ void mpmi_archive_bytes(mpmi_archive *a, void *data, int64_t bytes) {
   put(a, last, WORD);
 }
 
+/* Turns whole words, of 8 bytes or as pairs of 4, from the machine's byte order into the archive's, or back. */
+static void turn(void *data, int64_t bytes, int32_t unit) {
+  unsigned char *at = data;
+  for (int64_t i = 0; i < bytes; i += unit) {
+    uint64_t word;
+    uint32_t half;
+    if (unit == WORD) {
+      memcpy(&word, at + i, sizeof word);
+      word = mpmi_little_64(word);
+      memcpy(at + i, &word, sizeof word);
+    } else {
+      memcpy(&half, at + i, sizeof half);
+      half = mpmi_little_32(half);
+      memcpy(at + i, &half, sizeof half);
+    }
+  }
+}
+
+static void archive_numbers(mpmi_archive *a, void *data, int64_t bytes, int32_t unit) {
+  if (!MPMI_BIG_ENDIAN || a->mode == MPMI_MEASURE || a->mode == MPMI_FROM_MEMORY) {
+    mpmi_archive_bytes(a, data, bytes);
+    if (MPMI_BIG_ENDIAN && a->mode == MPMI_FROM_MEMORY && !a->status) turn(data, bytes, unit);
+    return;
+  }
+  unsigned char turned[64 * WORD]; /* what is written stays as it is */
+  for (int64_t done = 0; done < bytes; done += (int64_t)sizeof turned) {
+    const int64_t part = bytes - done < (int64_t)sizeof turned ? bytes - done : (int64_t)sizeof turned;
+    memcpy(turned, (const unsigned char *)data + done, (size_t)part);
+    turn(turned, part, unit);
+    mpmi_archive_bytes(a, turned, part);
+  }
+}
+
+void mpmi_archive_words(mpmi_archive *a, void *data, int64_t bytes) {
+  archive_numbers(a, data, bytes, WORD);
+}
+
+void mpmi_archive_halves(mpmi_archive *a, void *data, int64_t bytes) {
+  archive_numbers(a, data, bytes, WORD / 2);
+}
+
 /* Returns 1 while the archive compares. Writing and measuring leave the value as it is. */
 static int32_t reads(const mpmi_archive *a) {
   return a->mode == MPMI_FROM_MEMORY && !a->status;
@@ -102,7 +144,7 @@ static int32_t reads(const mpmi_archive *a) {
 
 void mpmi_archive_same_int(mpmi_archive *a, const char *what, int64_t here) {
   int64_t saved = here;
-  mpmi_archive_bytes(a, &saved, sizeof saved);
+  mpmi_archive_words(a, &saved, sizeof saved);
   if (reads(a) && saved != here)
     a->status =
         mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %s%s is %lld there, %lld here",
@@ -111,7 +153,7 @@ void mpmi_archive_same_int(mpmi_archive *a, const char *what, int64_t here) {
 
 void mpmi_archive_same_real(mpmi_archive *a, const char *what, double here) {
   double saved = here;
-  mpmi_archive_bytes(a, &saved, sizeof saved);
+  mpmi_archive_words(a, &saved, sizeof saved);
   if (reads(a) && !(saved == here))
     a->status = mpmi_fail(a->context, MPM_E_FORMAT,
                           "the state is of an unlike setup: %s%s is %.17g there, %.17g here", a->where, what,

@@ -30,6 +30,9 @@ typedef struct mpmi_archive {
 void mpmi_archive_begin(mpmi_archive *a, mpm_context *context, int32_t mode);
 /* Writes `bytes` bytes, filled up to a multiple of 8, or reads them back. */
 void mpmi_archive_bytes(mpmi_archive *a, void *data, int64_t bytes);
+/* The same of numbers with 8 bytes each, and with 4, which are little-endian in the archive. */
+void mpmi_archive_words(mpmi_archive *a, void *data, int64_t bytes);
+void mpmi_archive_halves(mpmi_archive *a, void *data, int64_t bytes);
 /* Lends the next bytes while reading, or returns NULL after a failure. */
 const void *mpmi_archive_take(mpmi_archive *a, int64_t bytes);
 /* Writes a value of the setup, or reads it and fails unless it is that of the present setup. */

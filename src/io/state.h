@@ -11,8 +11,9 @@
  *
  *   fields    for each set those that are present, component by component, over all slots
  *
- * Any change of this raises MPMI_STATE_FORMAT. The structs below are written as they are: their members have
- * 8 bytes, and there are no gaps. */
+ * Any change of this raises MPMI_STATE_FORMAT. The structs below are written as they are, with numbers in
+ * little-endian order: their members have 8 bytes but for those that begin the header and the step info, and there
+ * are no gaps. */
 #ifndef MPMI_STATE_H
 #define MPMI_STATE_H
 
@@ -78,6 +79,11 @@ void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_bloc
 /* Brings what follows from the fields up to date, and refuses a state that cannot be saved now
  * (state_save.c). */
 mpm_status mpmi_state_settle(const mpm_stepper *s);
+/* Numbers of the time loop, and one component of a field. */
+void mpmi_state_archive_numbers(mpmi_archive *a, mpmi_state_numbers *n);
+void mpmi_state_archive_row(mpmi_archive *a, int32_t type, void *row, int64_t bytes);
+/* A header from the machine's byte order to that of states, or back. */
+mpmi_state_header mpmi_state_turn_header(mpmi_state_header header);
 /* The first writes everything after the header, the second makes the header of what was written. */
 void mpmi_state_write(mpmi_archive *a, const mpm_stepper *s);
 mpmi_state_header mpmi_state_header_of(const mpmi_archive *a);

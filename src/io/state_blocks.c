@@ -1,5 +1,6 @@
 /* A state says which slots lie in which block, because a continued step must add things up in the same
  * order. */
+#include "io/byte_order.h"
 #include "io/state.h"
 
 #include <string.h>
@@ -28,13 +29,13 @@ void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s) {
     if (!has_slots(s, b)) continue;
     int64_t coord[3] = {s->layout.blocks.coord[b][0], s->layout.blocks.coord[b][1],
                         s->layout.blocks.coord[b][2]};
-    mpmi_archive_bytes(a, coord, sizeof coord);
+    mpmi_archive_words(a, coord, sizeof coord);
   }
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     int64_t *start = s->layout.member[m].now.start;
     for (int64_t b = 0; b < s->layout.blocks.count; ++b)
-      if (has_slots(s, b)) mpmi_archive_bytes(a, start + b, sizeof *start);
-    mpmi_archive_bytes(a, start + s->layout.blocks.count, sizeof *start);
+      if (has_slots(s, b)) mpmi_archive_words(a, start + b, sizeof *start);
+    mpmi_archive_words(a, start + s->layout.blocks.count, sizeof *start);
   }
 }
 
@@ -46,7 +47,7 @@ static mpm_status read_coordinates(mpmi_archive *a, mpmi_blocks *blocks, int64_t
   for (int64_t i = 0; i < count; ++i) {
     int64_t saved[3];
     int32_t coord[3] = {0, 0, 0}, block = 0;
-    mpmi_archive_bytes(a, saved, sizeof saved);
+    mpmi_archive_words(a, saved, sizeof saved);
     if (a->status) return a->status;
     for (int32_t k = 0; k < grid->dim; ++k) {
       if (saved[k] < 0 || saved[k] > grid->desc.cells[k] / blocks->edge)
@@ -67,7 +68,7 @@ static mpm_status read_coordinates(mpmi_archive *a, mpmi_blocks *blocks, int64_t
 static int64_t saved_start(const unsigned char *starts, int64_t i) {
   int64_t value;
   memcpy(&value, starts + (size_t)i * sizeof value, sizeof value);
-  return value;
+  return (int64_t)mpmi_little_64((uint64_t)value);
 }
 
 static int32_t starts_are_good(const unsigned char *starts, int64_t count, int64_t slots) {

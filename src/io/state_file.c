@@ -30,6 +30,7 @@ static mpm_status check_head(mpm_context *context, const char *path, FILE *file,
   mpmi_state_header header = {"", 0, 0, 0, 0};
   if (bytes >= (int64_t)sizeof header && fread(&header, sizeof header, 1, file) != 1)
     return mpmi_io_error(context, "read", path, MPMI_STORAGE_FAILED);
+  header = mpmi_state_turn_header(header);
   return mpmi_state_check_header(context, &header, bytes);
 }
 

@@ -20,7 +20,7 @@ mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header
     return mpmi_fail(context, MPM_E_FORMAT, "this is not a state of libmpm");
   if (header->byte_order != MPMI_STATE_BYTE_ORDER)
     return mpmi_fail(context, MPM_E_FORMAT,
-                     "the state has another byte order than this machine, or is damaged");
+                     "the state has the byte order of a machine on which 0.1.0 saved it, or is damaged");
   if (header->format != MPMI_STATE_FORMAT)
     return mpmi_fail(context, MPM_E_FORMAT, "the state has format %u: this library knows format %d",
                      (unsigned)header->format, (int)MPMI_STATE_FORMAT);
@@ -75,7 +75,7 @@ static int32_t is_count(int64_t n) {
 static void read_numbers(loading *l) {
   mpmi_archive *a = &l->archive;
   mpmi_state_numbers *n = &l->numbers;
-  mpmi_archive_bytes(a, n, sizeof *n);
+  mpmi_state_archive_numbers(a, n);
   if (a->status) return;
   if (!isfinite(n->t) || !is_count(n->step) || !is_count(n->resorts) || !is_count(n->removed) ||
       n->blocks < -1 || !is_magnitude(n->previous_dt) || !is_magnitude(n->controller_dt) ||
@@ -85,7 +85,7 @@ static void read_numbers(loading *l) {
                 flags = MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION | (n->blocks < 0 ? unsorted : 0);
   for (int32_t m = 0; m < l->stepper->layout.member_count && !a->status; ++m) {
     mpmi_state_set_numbers *of = &l->set[m].numbers;
-    mpmi_archive_bytes(a, of, sizeof *of);
+    mpmi_archive_words(a, of, sizeof *of);
     if (a->status) return;
     if (of->slots < 0 || of->slots > MPMI_MAX_SLOTS || of->slots % MPMI_PAD || of->count < 0 ||
         of->count > of->slots || of->next_id < 0 || of->dirty & ~flags || !is_magnitude(of->mass_max))
@@ -123,7 +123,7 @@ static mpm_status read_set(loading *l, int32_t m) {
     const mpmi_field *field = &fresh->field[from->field[i]];
     const int64_t size = (int64_t)mpmi_type_size(field->type);
     for (int32_t c = 0; c < field->components && field->present; ++c)
-      mpmi_archive_bytes(a, (char *)field->data[0] + c * fresh->ld * size, slots * size);
+      mpmi_state_archive_row(a, field->type, (char *)field->data[0] + c * fresh->ld * size, slots * size);
   }
   fresh->slots = slots;
   fresh->count = from->numbers.count;
@@ -202,6 +202,7 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   mpmi_state_header header;
   memset(&header, 0, sizeof header);
   memcpy(&header, buffer, bytes < (int64_t)sizeof header ? (size_t)bytes : sizeof header);
+  header = mpmi_state_turn_header(header);
   mpm_status status = check_idle(s);
   if (!status) status = mpmi_state_check_header(s->context, &header, bytes);
   if (status) return status;

@@ -1,6 +1,8 @@
 /* Saving brings the sets up to date, then writes everything after the header, and last the header. */
+#include "io/byte_order.h"
 #include "io/state.h"
 
+#include <stddef.h>
 #include <string.h>
 
 static mpm_status check_between_steps(const mpm_stepper *s) {
@@ -30,6 +32,29 @@ mpm_status mpmi_state_settle(const mpm_stepper *s) {
   return status;
 }
 
+/* The info is all words but for what begins it. */
+void mpmi_state_archive_numbers(mpmi_archive *a, mpmi_state_numbers *n) {
+  enum { BEFORE = offsetof(mpmi_state_numbers, last), HALVES = offsetof(mpm_step_info, step) };
+  mpmi_archive_words(a, n, BEFORE);
+  mpmi_archive_halves(a, &n->last, HALVES);
+  mpmi_archive_words(a, &n->last.step, (int64_t)sizeof n->last - HALVES);
+}
+
+void mpmi_state_archive_row(mpmi_archive *a, int32_t type, void *row, int64_t bytes) {
+  if (mpmi_type_size(type) == 1)
+    mpmi_archive_bytes(a, row, bytes);
+  else
+    mpmi_archive_words(a, row, bytes);
+}
+
+mpmi_state_header mpmi_state_turn_header(mpmi_state_header h) {
+  h.byte_order = mpmi_little_32(h.byte_order);
+  h.format = mpmi_little_32(h.format);
+  h.bytes = (int64_t)mpmi_little_64((uint64_t)h.bytes);
+  h.checksum = mpmi_little_64(h.checksum);
+  return h;
+}
+
 static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
   mpmi_state_numbers n = {.t = s->history.t,
                           .previous_dt = s->history.previous_dt,
@@ -45,13 +70,13 @@ static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
                           .sums = s->history.sums,
                           .last = s->history.last};
   memcpy(n.impulse_by_face, s->history.impulse_by_face, sizeof n.impulse_by_face);
-  mpmi_archive_bytes(a, &n, sizeof n);
+  mpmi_state_archive_numbers(a, &n);
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     const mpm_particles *set = s->layout.member[m].set;
     const double *reaction = s->layout.member[m].reaction;
     mpmi_state_set_numbers of_set = {set->count, set->slots,    set->next_id,
                                      set->dirty, set->mass_max, {reaction[0], reaction[1], reaction[2]}};
-    mpmi_archive_bytes(a, &of_set, sizeof of_set);
+    mpmi_archive_words(a, &of_set, sizeof of_set);
   }
 }
 
@@ -60,7 +85,7 @@ static void write_fields(mpmi_archive *a, const mpm_particles *set) {
     const mpmi_field *field = &set->field[f];
     const int64_t size = (int64_t)mpmi_type_size(field->type);
     for (int32_t c = 0; c < field->components && field->present && set->slots > 0; ++c)
-      mpmi_archive_bytes(a, (char *)field->data[0] + c * set->ld * size, set->slots * size);
+      mpmi_state_archive_row(a, field->type, (char *)field->data[0] + c * set->ld * size, set->slots * size);
   }
 }
 
@@ -75,7 +100,7 @@ mpmi_state_header mpmi_state_header_of(const mpmi_archive *a) {
   mpmi_state_header header = {"", MPMI_STATE_BYTE_ORDER, MPMI_STATE_FORMAT, (int64_t)sizeof header + a->at,
                               mpmi_checksum_end(&a->checksum)};
   memcpy(header.magic, MPMI_STATE_MAGIC, sizeof header.magic);
-  return header;
+  return mpmi_state_turn_header(header);
 }
 
 static int64_t measure(const mpm_stepper *s) {

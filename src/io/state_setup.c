@@ -50,14 +50,19 @@ static void setup_law(mpmi_archive *a, const mpm_material *material) {
   mpmi_archive_same_real(a, "density", material->density);
 }
 
+static void archive_field(mpmi_archive *a, mpmi_state_field *field) {
+  mpmi_archive_bytes(a, field->name, sizeof field->name);
+  mpmi_archive_words(a, &field->type, sizeof *field - sizeof field->name);
+}
+
 static void write_field_list(mpmi_archive *a, const mpm_particles *set) {
   int64_t count = set->field_count;
-  mpmi_archive_bytes(a, &count, sizeof count);
+  mpmi_archive_words(a, &count, sizeof count);
   for (int32_t f = 0; f < set->field_count; ++f) {
     const mpmi_field *field = &set->field[f];
     mpmi_state_field saved = {{0}, field->type, field->components, field->present};
     memcpy(saved.name, field->name, strlen(field->name));
-    mpmi_archive_bytes(a, &saved, sizeof saved);
+    archive_field(a, &saved);
   }
 }
 
@@ -75,7 +80,7 @@ static mpm_status refuse_field(mpmi_archive *a, const char *name, const char *wh
 /* Finds the field in the set. Where a field may be absent, its presence is taken from the state. */
 static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
   mpmi_state_field saved;
-  mpmi_archive_bytes(a, &saved, sizeof saved);
+  archive_field(a, &saved);
   if (a->status) return;
   saved.name[MPMI_NAME - 1] = '\0';
   const int32_t f = mpmi_find_field(&to->fresh, saved.name);
@@ -106,7 +111,7 @@ static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
 static void read_fields(mpmi_archive *a, mpmi_state_set *to) {
   int64_t count = 0;
   uint64_t found = 0;
-  mpmi_archive_bytes(a, &count, sizeof count);
+  mpmi_archive_words(a, &count, sizeof count);
   if (count < 0 || count > MPMI_MAX_FIELDS) mpmi_archive_damaged(a, "its list of fields makes no sense");
   for (int64_t i = 0; i < count && !a->status; ++i) read_field(a, to, &found);
   for (int32_t f = 0; f < to->fresh.field_count && !a->status; ++f)
@@ -118,8 +123,8 @@ _Static_assert(MPMI_MAX_FIELDS <= 64, "one bit for each field");
 void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set) {
   /* Library version and instruction set are for information only. */
   int64_t version = MPM_VERSION, isa = s->context->isa;
-  mpmi_archive_bytes(a, &version, sizeof version);
-  mpmi_archive_bytes(a, &isa, sizeof isa);
+  mpmi_archive_words(a, &version, sizeof version);
+  mpmi_archive_words(a, &isa, sizeof isa);
   setup_grid(a, &s->grid->desc);
   setup_scheme(a, &s->settings.desc);
   mpmi_archive_same_int(a, "number of sets", s->layout.member_count);

@@ -10,7 +10,7 @@
  * multiply-add, and few enough for the registers. */
 enum {
   SLIVER = 2 * MPMI_LANES,
-#if defined(__AVX512F__)
+#if MPMI_WIDTH == 8
   STRIP = 8,
 #else
   STRIP = 4,

@@ -5,6 +5,7 @@
 
 #include "context/reduce.h"
 #include "linalg/methods.h"
+#include "simd/elementary.h"
 
 enum { SLOW_CYCLES = 12 }; /* with `impatient`, the most cycles that may still be expected */
 
@@ -116,7 +117,7 @@ static double rotate(gmres *g, int32_t j, double *h) {
     h[i] = g->cosine[i] * upper + g->sine[i] * h[i + 1];
     h[i + 1] = g->cosine[i] * h[i + 1] - g->sine[i] * upper;
   }
-  const double length = hypot(h[j], h[j + 1]);
+  const double length = mpmi_hypot(h[j], h[j + 1]);
   g->cosine[j] = length > 0.0 ? h[j] / length : 1.0;
   g->sine[j] = length > 0.0 ? h[j + 1] / length : 0.0;
   h[j] = length;
@@ -180,7 +181,7 @@ static int32_t goes_on(const gmres *g, double before) {
   const double share = g->system->reached / before;
   if (!(share < 0.99) || g->system->report->iterations >= g->plan->limit) return 0;
   return !g->plan->impatient ||
-         log(g->system->wanted / g->system->reached) / log(share) < (double)SLOW_CYCLES;
+         mpmi_ln(g->system->wanted / g->system->reached) / mpmi_ln(share) < (double)SLOW_CYCLES;
 }
 
 mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "linalg/methods.h"
+#include "simd/elementary.h"
 
 enum { RESTART = 60, MOST_RESTARTS = 50, MOST_CYCLES = 500 };
 
@@ -133,7 +134,7 @@ static costs costs_of(const mpmi_matrix *A, double inertia) {
   extents_of(A, extent);
   const double entries = (double)A->row_start[A->rows], rows = (double)A->rows;
   const double dim = 1.0 + (extent[1] > 1.0) + (extent[2] > 1.0);
-  const double half_stencil = fmax(1.0, 0.5 * (pow(entries / rows, 1.0 / dim) - 1.0));
+  const double half_stencil = fmax(1.0, 0.5 * (mpmi_pow(entries / rows, 1.0 / dim) - 1.0));
   /* The factor spends its work on separators. They are half a stencil wide, and a long body has many of
    * them. One takes 7 times the cube of its size, and 20 of these multiplications take as long as one of a
    * product. */

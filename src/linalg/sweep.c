@@ -22,7 +22,7 @@ MPMI_INLINE void subtract(const mpmi_smoother *s, int32_t block, int64_t begin, 
   for (int64_t e = begin; e < end; ++e, value += block * block) {
     const float *x = s->x + (int64_t)s->column[e] * MPMI_PADDED(block);
     if (block == 3) /* the fourth lane reads what follows the column */
-      for (int32_t c = 0; c < 3; ++c) part[c] += load(value + 3 * c) * x[c];
+      for (int32_t c = 0; c < 3; ++c) part[c] += load(value + 3 * c) * (quad){x[c], x[c], x[c], x[c]};
     else if (block == 2) /* one load takes both columns */
       part[e & 1] += load(value) * (quad){x[0], x[0], x[1], x[1]};
     else

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "particles/builtin_fields.h"
+#include "simd/elementary.h"
 
 enum { COPIES = 2 };
 
@@ -77,7 +78,7 @@ double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int
   const mpm_grid *grid = set->grid;
   if (field == MPMI_SIZE) {
     double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot];
-    return grid->dim == 1 ? volume : grid->dim == 2 ? sqrt(volume) : cbrt(volume);
+    return grid->dim == 1 ? volume : grid->dim == 2 ? sqrt(volume) : mpmi_cbrt(volume);
   }
   if (field == MPMI_REFERENCE) {
     double x = mpmi_f64(set, MPMI_POSITION, 0)[c * set->ld + slot];

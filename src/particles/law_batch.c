@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "simd/elementary.h"
+
 enum { FIXED_ROWS = 9 + 9 + 9 + 6 + 6 + 1 + 1 + 1 + 3 };
 
 int64_t mpmi_law_batch_length(const mpm_material *material) {
@@ -90,7 +92,7 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
 
 void mpmi_law_batch_scale_F(mpmi_law_batch *b, int32_t dim, const double *ratio, int64_t n) {
   for (int64_t p = 0; p < n; ++p) {
-    const double f = dim == 2 ? sqrt(ratio[p]) : cbrt(ratio[p]);
+    const double f = dim == 2 ? sqrt(ratio[p]) : mpmi_cbrt(ratio[p]);
     for (int32_t r = 0; r < dim; ++r)
       for (int32_t c = 0; c < dim; ++c) b->F[(3 * r + c) * b->ld + p] *= f;
   }

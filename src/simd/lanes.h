@@ -8,13 +8,7 @@
 
 #include "simd/isa.h"
 
-#if defined(__AVX512F__)
-enum { MPMI_LANES = 8 };
-#elif defined(__AVX__)
-enum { MPMI_LANES = 4 };
-#else
-enum { MPMI_LANES = 2 };
-#endif
+enum { MPMI_LANES = MPMI_WIDTH };
 typedef double mpmi_lanes __attribute__((vector_size(MPMI_LANES * 8)));
 typedef int64_t mpmi_mask __attribute__((vector_size(MPMI_LANES * 8)));
 

@@ -7,7 +7,7 @@
 
 /* Work on MPMI_SIDE particles at a time: mpmi_interleave() turns four component arrays into vectors, `stride`
  * doubles apart; mpmi_separate() turns vectors of four into three arrays, without the last component. */
-#if defined(__AVX512F__)
+#if MPMI_WIDTH == 8
 enum { MPMI_SIDE = 8 };
 MPMI_INLINE void mpmi_store_halves(double *low, double *high, mpmi_lanes v) {
   mpmi_store4(low, mpmi_low_half(v));

@@ -7,7 +7,7 @@
 #include "simd/lanes.h"
 #include "simd/shuffle.h"
 
-#if defined(__AVX__)
+#if MPMI_WIDTH >= 4
 typedef double mpmi_v4 __attribute__((vector_size(32)));
 
 MPMI_INLINE mpmi_v4 mpmi_zero4(void) {
@@ -91,7 +91,7 @@ MPMI_INLINE void mpmi_transpose4(mpmi_v4 *a, mpmi_v4 *b, mpmi_v4 *c, mpmi_v4 *d)
  * The part is always a constant. */
 enum { MPMI_LOW = 1, MPMI_HIGH = 2, MPMI_BOTH = 3 };
 
-#if defined(__AVX512F__)
+#if MPMI_WIDTH == 8
 /* The halves of a register, and a register of two halves. */
 MPMI_INLINE mpmi_v4 mpmi_low_half(mpmi_lanes v) {
 #if defined(__clang__) || __GNUC__ >= 12

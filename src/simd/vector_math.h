@@ -12,6 +12,11 @@
 #define MPMI_SQRT_HALF_BITS UINT64_C(0x3fe6a09e667f3bcd)
 #define MPMI_MANTISSA_BITS  UINT64_C(0x000fffffffffffff)
 
+/* 42 bits of ln 2, so that their product with an exponent is exact, and the rest. */
+#define MPMI_LN2_HIGH 0x1.62e42fefa3800p-1
+#define MPMI_LN2_LOW  5.497923018708371e-14
+#define MPMI_LOG2_E   1.4426950408889634
+
 MPMI_INLINE uint64_t mpmi_bits_of(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);
@@ -32,17 +37,22 @@ MPMI_INLINE double mpmi_min(double a, double b) {
   return a < b ? a : b;
 }
 
+/* 2 artanh(s) / s - 2 for z = s^2 < 0.0295: a minimax polynomial, of relative error 1.3e-18 with the 2. */
+MPMI_INLINE double mpmi_log_series(double z) {
+  const double w = z * z;
+  const double even = w * (0.3999999999941487 + w * (0.2222219857624919 + w * 0.15314053867034655));
+  const double odd = z * (0.6666666666666734 +
+                          w * (0.2857142874235307 + w * (0.18183564183964648 + w * 0.14795919028641485)));
+  return even + odd;
+}
+
 /* k ln 2 + log(1 + f) for |f| < 0.42: with s = f / (2 + f), log(1 + f) = 2 artanh s = f - f^2/2 + s (f^2/2 +
- * R), where R(s^2) is the minimax polynomial of 2 artanh(s) / s - 2 with relative error 1.3e-18. */
+ * R), R of mpmi_log_series(). */
 MPMI_INLINE double mpmi_log_reduced(double k, double f) {
-  const double ln2_high = 0x1.62e42fefa3800p-1; /* 42 bits: k * ln2_high is exact */
-  const double ln2_low = 5.497923018708371e-14;
-  double s = f / (2.0 + f), z = s * s, w = z * z;
-  double even = w * (0.3999999999941487 + w * (0.2222219857624919 + w * 0.15314053867034655));
-  double odd = z * (0.6666666666666734 +
-                    w * (0.2857142874235307 + w * (0.18183564183964648 + w * 0.14795919028641485)));
+  double s = f / (2.0 + f);
   double half_square = 0.5 * f * f;
-  return k * ln2_high - ((half_square - (s * (half_square + (even + odd)) + k * ln2_low)) - f);
+  return k * MPMI_LN2_HIGH -
+         ((half_square - (s * (half_square + mpmi_log_series(s * s)) + k * MPMI_LN2_LOW)) - f);
 }
 
 /* x = 2^k (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)). The biased exponent becomes a double by way of the bits
@@ -71,20 +81,24 @@ MPMI_INLINE double mpmi_lane_log1p(double x) {
   return mpmi_log_reduced(b.k, b.k == 0.0 ? x : b.f);
 }
 
-/* exp(x) - 1 with x = k ln 2 + r, |r| <= ln 2 / 2: 2^k (exp(r) - 1) + (2^k - 1), where exp(r) - 1 = r + r^2
- * Q(r) and Q is the minimax polynomial with relative error 1.4e-18. k is read off the last bits of the
- * mantissa of 1.5 * 2^52 + k. Not finite from x = 709.4 on. */
+/* (exp(r) - 1 - r) / r^2 for |r| <= ln 2 / 2: a minimax polynomial, with which exp(r) - 1 has relative error 1.4e-18. */
+MPMI_INLINE double mpmi_exp_series(double r) {
+  const double z = r * r, w = z * z;
+  const double low = (0.5 + r * 0.1666666666666667) + z * (0.04166666666666667 + r * 0.008333333333326136);
+  const double middle = (0.0013888888888883748 + r * 0.00019841269874820627) +
+                        z * (2.4801587325547743e-05 + r * 2.7557255400206422e-06);
+  const double high = (2.75572736431103e-07 + r * 2.5105217004720745e-08) + z * 2.0914686968086876e-09;
+  return low + w * (middle + w * high);
+}
+
+/* exp(x) - 1 with x = k ln 2 + r: 2^k (exp(r) - 1) + (2^k - 1). k is read off the last bits of the mantissa of
+ * 1.5 * 2^52 + k. Not finite from x = 709.4 on. */
 MPMI_INLINE double mpmi_lane_expm1(double x) {
-  const double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 5.497923018708371e-14; /* as in the logarithm */
-  double within = x < -80.0 ? -80.0 : x > 710.0 ? 710.0 : x;                     /* keeps a NaN */
-  double shifted = within * 1.4426950408889634 + MPMI_ROUNDING_SHIFT, k = shifted - MPMI_ROUNDING_SHIFT;
+  double within = x < -80.0 ? -80.0 : x > 710.0 ? 710.0 : x; /* keeps a NaN */
+  double shifted = within * MPMI_LOG2_E + MPMI_ROUNDING_SHIFT, k = shifted - MPMI_ROUNDING_SHIFT;
   double power = mpmi_from_bits((mpmi_bits_of(shifted) + UINT64_C(1023)) << 52);
-  double r = (within - k * ln2_high) - k * ln2_low, z = r * r, w = z * z;
-  double low = (0.5 + r * 0.1666666666666667) + z * (0.04166666666666667 + r * 0.008333333333326136);
-  double middle = (0.0013888888888883748 + r * 0.00019841269874820627) +
-                  z * (2.4801587325547743e-05 + r * 2.7557255400206422e-06);
-  double high = (2.75572736431103e-07 + r * 2.5105217004720745e-08) + z * 2.0914686968086876e-09;
-  return power * (r + z * (low + w * (middle + w * high))) + (power - 1.0);
+  double r = (within - k * MPMI_LN2_HIGH) - k * MPMI_LN2_LOW;
+  return power * (r + r * r * mpmi_exp_series(r)) + (power - 1.0);
 }
 
 #endif

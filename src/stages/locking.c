@@ -10,6 +10,7 @@
 #include "layout/accumulate.h"
 #include "layout/tile.h"
 #include "layout/tasks.h"
+#include "simd/elementary.h"
 #include "stages/batch.h"
 
 #include <math.h>
@@ -140,9 +141,9 @@ void mpmi_locking_apply(const mpm_grid *grid, const double *cells, const mpmi_ax
     const double j = det_minus_1(dim, b->L + p, b->ld, dt);
     const double mean = cell->volume > 0.0 ? cell->dilation / cell->volume : j;
     /* an inverted increment ends the step elsewhere */
-    const double growth = j > -1.0 && mean > -1.0 ? log1p(mean) - log1p(j) : 0.0;
-    const double f_minus_1 = expm1(growth / dim);
-    ratio[p] = old[p] * exp(growth);
+    const double growth = j > -1.0 && mean > -1.0 ? (mean - j) / (1.0 + j) : 0.0;
+    const double f_minus_1 = mpmi_expm1(mpmi_log1p(growth) / dim);
+    ratio[p] = old[p] * (1.0 + growth);
     for (int32_t r = 0; r < dim; ++r)
       for (int32_t c = 0; c < dim; ++c) {
         double *L = b->L + (3 * r + c) * b->ld + p;

@@ -70,7 +70,7 @@ awk -v structs="$(tr '\n' ' ' <<< "$structs")" '
 objects=()
 {
   for source in src/*/*.c; do
-    kernel=("$BUILD/obj/${source%.c}".{baseline,avx2,avx512}.o)
+    kernel=("$BUILD/obj/${source%.c}".{baseline,avx2,avx512,neon}.o)
     for object in "${kernel[@]}"; do [ -e "$object" ] && objects+=("$object"); done
     [ -e "${kernel[0]}" ] && continue
     object=$scratch/library/$(tr / _ <<< "${source%.c}").o

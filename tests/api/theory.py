@@ -164,7 +164,7 @@ FILE = re.compile(r'[\w.-]+(/[\w.-]+)*(/|\[ch\])?$')
 ENDING = re.compile(r'\.(c|h|\[ch\]|hpp|md|sh|py|svg|csv|txt|mk|xml|map)$')
 IDENTIFIER = re.compile(r'(?<![\w.\\])[A-Za-z_]\w+')
 PUBLIC = re.compile(r'(mpmi?|MPMI?)_\w')
-ISA = re.compile(r'_(baseline|avx2|avx512)$')
+ISA = re.compile(r'_(baseline|avx2|avx512|neon)$')
 # Between a symbol and the file that it belongs to.
 TOGETHER = re.compile(r'(,|\s|and|in|of|\([^()`]*\)|[()|])*')
 

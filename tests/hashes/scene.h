@@ -78,9 +78,16 @@ int32_t is_offered(const scene *is);
 void open_world(world *w, const scene *is, int32_t isa, int32_t empty);
 void close_world(world *w);
 mpm_stepper_desc describe_stepper(const scene *is);
+/* A scene is told as a whole, or in halves with its state in a file between them, which may be on different
+ * machines: the second one gives the hash of the whole. */
+enum { WHOLE, FIRST_HALF, SECOND_HALF };
+typedef struct errand {
+  int32_t isa, half;
+  const char *file;
+} errand;
 /* Tells the story of a scene; 0 if it failed, which is on the standard error and leaves behind what was open.
  */
-int32_t run_scene(const scene *is, int32_t isa, uint64_t *hash);
+int32_t run_scene(const scene *is, const errand *how, uint64_t *hash);
 /* Ends the scene that is told as failed; the program where none is. */
 _Noreturn void give_up(void);
 

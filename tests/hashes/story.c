@@ -2,6 +2,7 @@
  * it, and its report counts. What a story is told for has to come to pass, or the scene fails. */
 #include "scene.h"
 
+#include <inttypes.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -120,11 +121,32 @@ static void ck_told(const world *w) {
   expect(w, w->info.active_nodes > 0, "no node is active");
 }
 
-static uint64_t tell(const scene *is, int32_t isa) {
+/* Beside the state what has been hashed so far. */
+static void leave(const world *w, const char *file) {
+  char name[520];
+  snprintf(name, sizeof name, "%s.hash", file);
+  FILE *out = fopen(name, "w");
+  expect(w, out && fprintf(out, "%016" PRIx64 "\n", w->hash) > 0 && !fclose(out), "the hash is not written");
+  must(w, mpm_state_save_file(w->stepper, file));
+}
+
+static void take(world *w, const char *file) {
+  char name[520];
+  snprintf(name, sizeof name, "%s.hash", file);
+  FILE *in = fopen(name, "r");
+  expect(w, in && fscanf(in, "%" SCNx64, &w->hash) == 1 && !fclose(in), "there is no hash of the first half");
+  must(w, mpm_state_load_file(w->stepper, file));
+}
+
+static uint64_t tell(const scene *is, const errand *how) {
+  const int32_t isa = how->isa, steps = how->half == FIRST_HALF ? is->steps / 2 : is->steps;
+  const int32_t first = how->half == SECOND_HALF ? is->steps / 2 : 0;
   world w;
-  open_world(&w, is, isa, 0);
+  open_world(&w, is, isa, how->half == SECOND_HALF);
   w.info.struct_size = sizeof w.info;
-  for (int32_t i = 0; i < is->steps && is->story != STORY_ADVANCE; ++i) {
+  if (how->half) expect(&w, is->story == STORY_PLAIN, "only scenes of plain steps are told in halves");
+  if (how->half == SECOND_HALF) take(&w, how->file);
+  for (int32_t i = first; i < steps && is->story != STORY_ADVANCE; ++i) {
     if (i == is->steps / 2 && is->story == STORY_SAVED) save_and_load(&w, isa);
     if (i == is->steps / 2 && is->story == STORY_FAILING) fail(&w);
     if (i == is->steps / 2 && is->story == STORY_CHANGED) change(&w);
@@ -134,8 +156,12 @@ static uint64_t tell(const scene *is, int32_t isa) {
       whole_step(&w, dt_of(&w, i));
   }
   if (is->story == STORY_ADVANCE) advance(&w);
-  ck_told(&w);
-  mix_world(&w);
+  if (how->half == FIRST_HALF) {
+    leave(&w, how->file);
+  } else {
+    ck_told(&w);
+    mix_world(&w);
+  }
   const uint64_t hash = w.hash;
   close_world(&w);
   return hash;
@@ -149,9 +175,9 @@ void give_up(void) {
   longjmp(failed, 1);
 }
 
-int32_t run_scene(const scene *is, int32_t isa, uint64_t *hash) {
+int32_t run_scene(const scene *is, const errand *how, uint64_t *hash) {
   is_told = 1;
   if (setjmp(failed)) return 0;
-  *hash = tell(is, isa);
+  *hash = tell(is, how);
   return 1;
 }

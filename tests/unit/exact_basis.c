@@ -85,7 +85,7 @@ static void check_gradient(const char *name, mpmi_weights_fn fn, const mpmi_axis
 }
 
 START_TEST(weights_are_exact) {
-  static const char *const names[] = {"baseline", "avx2", "avx512"};
+  static const char *const names[] = {"baseline", "avx2", "avx512", "neon"};
   const int32_t isa = MPM_ISA_BASELINE + _i;
   if (!has_isa(isa)) return;
   const mpmi_kernels *kernels = mpmi_kernels_of(isa);
@@ -167,8 +167,8 @@ END_TEST
 
 TCase *basis_case(void) {
   TCase *tc = tcase_create("basis");
-  tcase_add_loop_test(tc, weights_are_exact, 0, 3);
-  tcase_add_loop_test(tc, moments_are_exact, 0, 3);
-  tcase_add_loop_test(tc, periodic_images_reach_the_tile, 0, 3);
+  tcase_add_loop_test(tc, weights_are_exact, 0, 4);
+  tcase_add_loop_test(tc, moments_are_exact, 0, 4);
+  tcase_add_loop_test(tc, periodic_images_reach_the_tile, 0, 4);
   return tc;
 }

@@ -234,7 +234,7 @@ static inline void sample_evaluate(sample *s, const mpm_material *material, int3
 }
 
 /* Loop tests run over instruction sets and dimensions. */
-enum { LAW_LOOPS = 9 };
+enum { LAW_LOOPS = 12 };
 static inline int32_t loop_isa(int loop) {
   return MPM_ISA_BASELINE + loop / 3;
 }

@@ -1,6 +1,7 @@
 /* The suites of the unit test program: SUITE(x) runs x_suite() of test_x.c. */
 SUITE(abi)
 SUITE(context)
+SUITE(elementary)
 SUITE(executor)
 SUITE(host)
 SUITE(grid)

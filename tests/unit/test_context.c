@@ -102,7 +102,7 @@ START_TEST(bad_descs) {
     desc.concurrency = bad_concurrency[k];
     refuse(&desc, MPM_E_ARG);
   }
-  const int32_t bad_isa[] = {-1, 4, 99};
+  const int32_t bad_isa[] = {-1, 5, 99};
   for (int k = 0; k < 3; ++k) {
     desc = context_desc();
     desc.isa = bad_isa[k];
@@ -207,18 +207,19 @@ END_TEST
 
 /* ---- instruction sets ---- */
 START_TEST(isa_environment) {
-  static const char *const names[] = {"baseline", "avx2", "avx512"};
+  static const char *const names[] = {"baseline", "avx2", "avx512", "neon"};
   const char *outside = getenv("MPM_ISA");
   char *kept = outside ? strdup(outside) : NULL;
   unsetenv("MPM_ISA");
   mpm_context *context = make(NULL);
   int32_t best = context->isa;
   ck_ok(context, mpm_context_destroy(context));
-  for (int32_t isa = MPM_ISA_BASELINE; isa <= MPM_ISA_AVX512; ++isa) {
+  for (int32_t isa = MPM_ISA_BASELINE; isa <= MPM_ISA_NEON; ++isa) {
+    const int32_t has = best == MPM_ISA_NEON ? isa == MPM_ISA_BASELINE || isa == best : isa <= best;
     mpm_context_desc desc = context_desc();
     setenv("MPM_ISA", names[isa - 1], 1);
     mpm_status status = mpm_context_create(&desc, &context);
-    ck_assert_int_eq(status, isa <= best ? MPM_OK : MPM_E_UNSUPPORTED);
+    ck_assert_int_eq(status, has ? MPM_OK : MPM_E_UNSUPPORTED);
     if (context) ck_assert_int_eq(context->isa, isa);
     ck_ok(context, mpm_context_destroy(context));
     setenv("MPM_ISA", "baseline", 1); /* the descriptor wins */
@@ -227,6 +228,10 @@ START_TEST(isa_environment) {
     if (context) ck_assert_int_eq(context->isa, isa);
     ck_ok(context, mpm_context_destroy(context));
   }
+  setenv("MPM_ISA", "portable", 1);
+  context = make(NULL);
+  ck_assert_int_eq(context->isa, MPM_ISA_PORTABLE);
+  ck_ok(context, mpm_context_destroy(context));
   setenv("MPM_ISA", "sse9", 1);
   refuse(NULL, MPM_E_ARG);
   setenv("MPM_ISA", "", 1);
@@ -241,6 +246,9 @@ START_TEST(isa_has_kernels_of_its_own) {
 #if MPMI_HAS_X86
   for (int32_t isa = MPM_ISA_BASELINE; isa < MPM_ISA_AVX512; ++isa)
     ck_assert_ptr_ne(mpmi_kernels_of(isa), mpmi_kernels_of(isa + 1));
+#elif MPMI_HAS_NEON
+  ck_assert_ptr_ne(mpmi_kernels_of(MPM_ISA_BASELINE), mpmi_kernels_of(MPM_ISA_NEON));
+  ck_assert(has_isa(MPM_ISA_NEON));
 #endif
   ck_assert(mpmi_kernels_of(MPM_ISA_BASELINE)->scatter[3][3][MPMI_SCATTER_8] != NULL);
 }

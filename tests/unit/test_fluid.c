@@ -465,7 +465,7 @@ Suite *fluid_suite(void) {
   tcase_set_timeout(tc, 60.0);
   tcase_add_loop_test(tc, volume_alone, 0, 9);
   tcase_add_test(tc, viscous_stress_stays);
-  tcase_add_loop_test(tc, kernel, 0, 9);
+  tcase_add_loop_test(tc, kernel, 0, 12);
   tcase_add_loop_test(tc, rigid_set, 0, 6);
   tcase_add_test(tc, rigid_set_and_remedy);
   tcase_add_loop_test(tc, same_bits, 0, 8);

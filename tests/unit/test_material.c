@@ -72,6 +72,8 @@ START_TEST(kernels_differ) {
     ck_assert(mpmi_law_of(MPM_ISA_AVX2, law)->stress != baseline->stress);
     ck_assert(mpmi_law_of(MPM_ISA_AVX512, law)->stress != baseline->stress);
     ck_assert(mpmi_law_of(MPM_ISA_AVX512, law)->stress != mpmi_law_of(MPM_ISA_AVX2, law)->stress);
+#elif MPMI_HAS_NEON
+    ck_assert(mpmi_law_of(MPM_ISA_NEON, law)->stress != baseline->stress);
 #endif
   }
 }
@@ -319,7 +321,7 @@ Suite *material_suite(void) {
   tcase_add_test(handles, refused_arguments);
   tcase_add_test(handles, refused_values);
   tcase_add_test(handles, destroying);
-  tcase_add_loop_test(handles, constants_agree, 1, 3);
+  tcase_add_loop_test(handles, constants_agree, 1, 4);
   tcase_add_loop_test(handles, instruction_sets_agree, 0, LAW_LOOPS);
   tcase_add_test(handles, logarithms);
   tcase_add_test(handles, exponential);

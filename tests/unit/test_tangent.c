@@ -141,6 +141,8 @@ START_TEST(kernels_differ) {
     ck_assert(mpmi_law_of(MPM_ISA_AVX2, law)->tangent != baseline->tangent);
     ck_assert(mpmi_law_of(MPM_ISA_AVX512, law)->tangent != baseline->tangent);
     ck_assert(mpmi_law_of(MPM_ISA_AVX512, law)->tangent != mpmi_law_of(MPM_ISA_AVX2, law)->tangent);
+#elif MPMI_HAS_NEON
+    ck_assert(mpmi_law_of(MPM_ISA_NEON, law)->tangent != baseline->tangent);
 #endif
   }
 }
