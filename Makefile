@@ -75,7 +75,7 @@ $(BUILD)/examples/cholmod_solver: LIBS += -lcholmod
 PETSC_LIBS = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags-only-I --libs $(PETSC_PACKAGES)))
 $(BUILD)/examples/petsc_solver: LIBS += $(PETSC_LIBS)
 
-.PHONY: all help install uninstall examples demo bench bench-quick docs clean format format-check
+.PHONY: all help install uninstall amalgamation examples demo bench bench-quick docs clean format format-check
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -111,6 +111,14 @@ $(SHARED_LIB): $(OBJECTS) src/libmpm.map platform.mk
 	$(call SAY,LINK)
 	$(Q)$(CC) $(SHARED_FLAGS) $(CFLAGS) $(LDFLAGS) $(OBJECTS) $(LIBS) -o $@
 	$(Q)for name in $(SHARED_LINKS); do ln -sf $(SHARED) $(BUILD)/$$name; done
+
+# Two files in the place of the library, for hosts that build it with their own sources.
+AMALGAMATION := $(BUILD)/amalgamation
+#: amalgamation          the whole library as mpm.c and mpm.h, in $(BUILD)/amalgamation
+amalgamation: $(AMALGAMATION)/mpm.c
+$(AMALGAMATION)/mpm.c: tools/amalgamate.py $(wildcard src/*/*.[ch]) $(HEADERS) Makefile
+	$(call SAY,WRITE)
+	$(Q)python3 tools/amalgamate.py --version $(VERSION) $(@D)
 
 # ---- installation ----------------------------------------------------------------------------------------
 # Where libraries and headers both lie under the prefix, the packages for CMake and pkg-config find one from the other,

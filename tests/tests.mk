@@ -2,6 +2,7 @@
 
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
 .PHONY: check-builds check-windows check-wasm
+.PHONY: check-amalgamation check-cmake
 .PHONY: mutate mutate-check check-hashes update-hashes
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-abi update-abi
 .PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
@@ -112,6 +113,11 @@ check-api: all
 	@mkdir -p $(BUILD)/tests/scratch
 	@for script in $(sort $(wildcard tests/api/*.sh)); do \
 	  echo "$$script"; env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash $$script || exit 1; done
+
+#: check-amalgamation    mpm.c and mpm.h without a warning, with the README's program, the unit tests and the library's bits
+check-amalgamation: amalgamation $(HASHES)
+	@mkdir -p $(BUILD)/tests/scratch
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/amalgamation/run.sh full
 
 #: check-examples        every example, with the numbers that it prints
 check-examples: examples
