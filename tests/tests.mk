@@ -119,6 +119,11 @@ check-amalgamation: amalgamation $(HASHES)
 	@mkdir -p $(BUILD)/tests/scratch
 	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/amalgamation/run.sh full
 
+#: check-cmake           CMakeLists.txt: an installation, a folder of a host's sources, FetchContent
+check-cmake: all
+	@mkdir -p $(BUILD)/tests/scratch
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/api/cmake.sh full
+
 #: check-examples        every example, with the numbers that it prints
 check-examples: examples
 	@mkdir -p $(BUILD)/tests/scratch
