@@ -215,10 +215,10 @@ def write_source(top, output, version):
             continue
         stem = os.path.basename(path)[:-2]
         prefix = stem if stems[stem] == 1 else path[:-2].replace('/', '_')
-        text = rename(text, {name: f'{prefix}_{name}' for name in names[path]
+        text = rename(text, {name: f'{prefix}_c_{name}' for name in names[path]
                              if owners[name] > 1 and name not in made})
         shared = sorted(name for name in made if re.search(r'\b' + name + r'\b', text))
-        own = ''.join(f'#define {name} {prefix}_{name}\n' for name in shared)
+        own = ''.join(f'#define {name} {prefix}_c_{name}\n' for name in shared)
         ends = sorted(set(DEFINE.findall('\n'.join(DIRECTIVE.findall(text)))) - set(writer.features) | set(shared))
         writer.put(path, own + text)
         writer.out.extend(f'#undef {name}\n' for name in ends if not name.startswith('_'))

@@ -50,7 +50,7 @@ static mpm_status check_request(const mpm_particles *set, const char *field, int
 }
 
 /* ---- views for reading, with MPM_DEBUG ----------------------------------------------------------------- */
-#ifdef MPM_DEBUG
+#if defined(MPM_DEBUG)
 /* FNV over the slots of a field. */
 static uint64_t print_of(const mpm_particles *set, int32_t field) {
   const mpmi_field *at = &set->field[field];
