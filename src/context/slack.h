@@ -17,16 +17,18 @@
 #define MPMI_WATCHED 0
 #endif
 
+/* The sanitizer's own functions. */
 #if MPMI_WATCHED
-#include <sanitizer/asan_interface.h>
+void __asan_poison_memory_region(const volatile void *memory, size_t bytes);
+void __asan_unpoison_memory_region(const volatile void *memory, size_t bytes);
 #endif
 
 /* Of `held` bytes the first `used` are open and the rest is closed. */
 static inline void mpmi_slack(void *memory, size_t held, size_t used) {
 #if MPMI_WATCHED
   if (!memory) return;
-  ASAN_UNPOISON_MEMORY_REGION(memory, used);
-  ASAN_POISON_MEMORY_REGION((char *)memory + used, held - used);
+  __asan_unpoison_memory_region(memory, used);
+  __asan_poison_memory_region((char *)memory + used, held - used);
 #else
   (void)memory, (void)held, (void)used;
 #endif

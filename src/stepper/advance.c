@@ -4,7 +4,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 static const mpm_advance_desc defaults = {.struct_size = sizeof(mpm_advance_desc), .cfl = 0.5};
 
@@ -76,11 +75,9 @@ static int32_t no_cut_helps(const mpm_stepper *s, mpm_status status) {
 
 /* The next call starts from the dt that was cut first. */
 static mpm_status give_up(mpm_stepper *s, mpm_status status, int32_t cuts, double first, double dt) {
-  char why[sizeof s->context->error];
-  memcpy(why, s->context->error, sizeof why);
   s->history.controller_dt = first;
   return mpmi_fail(s->context, status, "gave up after %d cuts of dt from %g to %g: %s", (int)cuts, first, dt,
-                   why);
+                   mpm_last_error(s->context));
 }
 
 static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {

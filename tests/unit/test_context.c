@@ -300,8 +300,10 @@ START_TEST(memory_refused) {
 }
 END_TEST
 
-/* Under the address sanitizer what is held and not in use is closed, and what is in use is open. */
 #if MPMI_WATCHED
+#include <sanitizer/asan_interface.h>
+
+/* Under the address sanitizer what is held and not in use is closed, and what is in use is open. */
 START_TEST(slack_is_closed) {
   mpm_context *context;
   ck_assert_int_eq(mpm_context_create(NULL, &context), MPM_OK);
