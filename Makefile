@@ -41,23 +41,17 @@ LIBRARY = $(COMMON) $(OBJECT_FLAGS)
 include platform.mk
 
 # ---- sources ---------------------------------------------------------------------------------------------
-# Kernels are compiled once for each instruction set; all other files once. Only the sets that have a fused multiply-add
-# by definition contract to it: so the baseline gives the same bits on every platform, and only the kernels' results
-# depend on the instruction set.
-KERNEL_PATTERNS := src/transfer/bspline*.c src/transfer/open_bspline*.c src/transfer/gimp.c \
-  src/transfer/scatter.c src/transfer/gather.c src/transfer/stiffness.c \
-  src/transfer/box.c src/transfer/update.c src/transfer/move.c src/transfer/sums.c \
-  src/transfer/kernels.c src/material/law_*.c src/material/tangent_rows.c src/material/objective_tangent.c src/material/deformation.c src/linalg/dense.c src/linalg/sweep.c
-KERNELS := $(sort $(wildcard $(KERNEL_PATTERNS)))
+# Kernels are compiled once for each instruction set, all other files once, without contraction to fused multiply-add, so
+# that only the kernels' results depend on the instruction set. src/kernels.txt says which they are.
+kernel_entry = $(shell sed -n 's/^$(1) //p' src/kernels.txt)
+KERNELS := $(sort $(wildcard $(addprefix src/,$(call kernel_entry,kernel))))
 PLAIN := $(filter-out $(KERNELS),$(sort $(wildcard src/*/*.c)))
 HEADERS := $(sort $(wildcard include/mpm/*.h include/mpm/*.hpp))
 
-ISA_baseline := -ffp-contract=off
-ISA_avx2 := -ffp-contract=fast -mavx2 -mfma
-ISA_avx512 := -ffp-contract=fast -mavx512f -mavx512vl -mavx512dq -mavx2 -mfma -mprefer-vector-width=512
-ISA_neon := -ffp-contract=fast
+$(foreach isa,$(ISAS),$(eval ISA_$(isa) := $(call kernel_entry,set $(isa) [a-z0-9_]*)))
 # Of kernels debuggers are told the lines only: to follow all of their variables takes compilers minutes.
-KERNEL_FLAGS = $(KERNEL_OPT) -fno-math-errno -fno-trapping-math -Wno-psabi $(if $(filter -g,$(CFLAGS)),-g1)
+KERNEL_COMMON := $(call kernel_entry,flags)
+KERNEL_FLAGS = $(KERNEL_OPT) $(KERNEL_COMMON) $(if $(filter -g,$(CFLAGS)),-g1)
 
 OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/obj/%.$(isa).o))
 STATIC_LIB := $(BUILD)/libmpm.a
@@ -77,7 +71,7 @@ $(BUILD)/examples/cholmod_solver: LIBS += -lcholmod
 PETSC_LIBS = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags-only-I --libs $(PETSC_PACKAGES)))
 $(BUILD)/examples/petsc_solver: LIBS += $(PETSC_LIBS)
 
-.PHONY: all help install uninstall examples demo bench bench-quick docs clean format format-check
+.PHONY: all help install uninstall amalgamation examples demo bench bench-quick docs clean format format-check
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -91,13 +85,13 @@ help:
 	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk
 	@printf '\n%s\n' 'V=1 shows the commands, -jN sets how many run at once, BUILD=folder builds there, CC and CFLAGS are yours.'
 
-$(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk
+$(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk src/kernels.txt
 	@mkdir -p $(@D)
 	$(call SAY,CC)
 	$(Q)$(CC) $(LIBRARY) $(OPT) -ffp-contract=off -c $< -o $@
 
 define kernel_rule
-$(BUILD)/obj/src/%.$(1).o: src/%.c Makefile platform.mk
+$(BUILD)/obj/src/%.$(1).o: src/%.c Makefile platform.mk src/kernels.txt
 	@mkdir -p $$(@D)
 	$$(call SAY,CC)
 	$$(Q)$$(CC) $$(LIBRARY) $$(KERNEL_FLAGS) $$(ISA_$(1)) -DMPMI_ISA=$(1) -c $$< -o $$@
@@ -113,6 +107,14 @@ $(SHARED_LIB): $(OBJECTS) src/libmpm.map platform.mk
 	$(call SAY,LINK)
 	$(Q)$(CC) $(SHARED_FLAGS) $(CFLAGS) $(LDFLAGS) $(OBJECTS) $(LIBS) -o $@
 	$(Q)for name in $(SHARED_LINKS); do ln -sf $(SHARED) $(BUILD)/$$name; done
+
+# Two files in the place of the library, for hosts that build it with their own sources.
+AMALGAMATION := $(BUILD)/amalgamation
+#: amalgamation          the whole library as mpm.c and mpm.h, in $(BUILD)/amalgamation
+amalgamation: $(AMALGAMATION)/mpm.c
+$(AMALGAMATION)/mpm.c: tools/amalgamate.py $(wildcard src/*/*.[ch]) $(HEADERS) Makefile
+	$(call SAY,WRITE)
+	$(Q)python3 tools/amalgamate.py --version $(VERSION) $(@D)
 
 # ---- installation ----------------------------------------------------------------------------------------
 # Where libraries and headers both lie under the prefix, the packages for CMake and pkg-config find one from the other,

@@ -12,13 +12,8 @@ ifeq (1,$(shell echo __FLT_EVAL_METHOD__ | $(CC) $(CFLAGS) -std=c11 -E -P -))
 OBJECT_FLAGS += -fexcess-precision=fast
 endif
 
-ISAS := baseline
-ifneq (,$(findstring x86_64,$(TARGET)))
-ISAS += avx2 avx512
-endif
-ifneq (,$(filter aarch64% arm64%,$(TARGET)))
-ISAS += neon
-endif
+# The sets of src/kernels.txt that are for this processor.
+ISAS := $(shell awk -v target=$(TARGET) '/^set / && ($$3 == "any" || index(target, $$3)) { print $$2 }' src/kernels.txt)
 
 # SHARED is the file, SHARED_LINKS other names of it, SHARED_FLAGS how it is linked.
 SONAME := libmpm.so.0

@@ -2,6 +2,7 @@
 
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
 .PHONY: check-builds check-windows check-wasm
+.PHONY: check-amalgamation check-cmake mutate-slack
 .PHONY: mutate mutate-check check-hashes update-hashes
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-portable check-abi update-abi
 .PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
@@ -118,6 +119,16 @@ check-api: all
 	@for script in $(sort $(wildcard tests/api/*.sh)); do \
 	  echo "$$script"; env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash $$script || exit 1; done
 
+#: check-amalgamation    mpm.c and mpm.h without a warning, with the README's program, the unit tests and the library's bits
+check-amalgamation: amalgamation $(HASHES)
+	@mkdir -p $(BUILD)/tests/scratch
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/amalgamation/run.sh full
+
+#: check-cmake           CMakeLists.txt: an installation, a folder of a host's sources, FetchContent
+check-cmake: all
+	@mkdir -p $(BUILD)/tests/scratch
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/api/cmake.sh full
+
 #: check-examples        every example, with the numbers that it prints
 check-examples: examples
 	@mkdir -p $(BUILD)/tests/scratch
@@ -141,7 +152,8 @@ SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS=long EXAMPLES="two_disks use
 #: check-asan            check-unit and check-examples under the address and the undefined-behaviour sanitizer
 check-asan:
 	+ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
-	  BUILD=$(BUILD)-asan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
+	  BUILD=$(BUILD)-asan CPPFLAGS="$(CPPFLAGS) -DMPM_DEBUG" \
+	  CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 
 # The fork of each test would hide threads from the sanitizer.
 TSAN_SUITES ?= context executor threads rollback restart linalg
@@ -183,6 +195,10 @@ mutate:
 #: mutate-check          whether each of these faults still has its place in the sources; compiles nothing
 mutate-check:
 	@python3 tests/mutate/plant.py check
+	@MUTATE_FAULTS=tests/mutate/slack.txt python3 tests/mutate/plant.py check
+#: mutate-slack          the same with faults that only the address sanitizer sees: reads and writes in slack
+mutate-slack:
+	@env -u MAKEFLAGS -u MFLAGS $(TEST_ENVIRONMENT) bash tests/mutate/slack.sh
 
 # ---- verification ----------------------------------------------------------------------------------------
 # Every tests/verification/X.c is a host program of the shared library that compares it with exact solutions and prints

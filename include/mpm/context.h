@@ -26,7 +26,7 @@ typedef mpm_status (*mpm_parallel_for_fn)(void *user, int64_t count, mpm_task_fn
 /** Services of the host. Fill the struct with mpm_context_desc_init(), then change what is wanted. */
 typedef struct mpm_context_desc {
   uint32_t struct_size; /**< sizeof(mpm_context_desc) of the caller */
-  /** Number of threads. 1 (default): the calling thread only; N: a pool of N threads, the calling one
+  /** Number of threads, 0 to 1024. 1 (default): the calling thread only; N: a pool of N threads, the calling one
    * included; 0: one per processor. The pool belongs to the context; its threads sleep when idle and never
    * spin for longer than a few microseconds. Results do not depend on the number. A build without threads
    * (MPM_NO_THREADS) takes 0 and 1, or any number with parallel_for, else MPM_E_UNSUPPORTED.

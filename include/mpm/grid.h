@@ -21,7 +21,7 @@ typedef struct mpm_grid_desc {
   int32_t boundary_basis; /**< for B-splines: MPM_BOUNDARY_GHOST (default) or MPM_BOUNDARY_OPEN_KNOT */
   int32_t periodic[3];    /**< 1: the axis is periodic; default 0 */
   int32_t reserved;       /**< 0 */
-  int64_t cells[3];       /**< cells along each axis, > 0; memory follows the material, not their number */
+  int64_t cells[3];       /**< cells along each axis, 1 to 6291456; memory follows the material */
   double origin[3];       /**< lower corner of the box, length; default 0 */
   double spacing[3];      /**< edges of a cell, length, > 0; the upper corner is origin + cells * spacing */
   double smoothing;       /**< for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5 */

@@ -93,7 +93,9 @@ MPM_API mpm_status mpm_batch_field(const void *lookup, const char *field, const 
 
 /**
  * A law (mt). It reads the state before the step and the deformation of the step, and writes stress_new,
- * state_new and wave_speed of all n items, and kinematic_viscosity and energy where it has them. It may be
+ * state_new and wave_speed of all n items, and kinematic_viscosity and energy where it has them. A wave speed or a
+ * viscosity below 0 stops the step or the call that asked (MPM_E_CALLBACK), and an infinite energy or any other
+ * value that is not finite is MPM_NONFINITE; both name the particle. The law may be
  * called several times for one step, and nothing that it writes counts before the step is committed: it keeps
  * no state of its own.
  *
@@ -123,7 +125,7 @@ typedef mpm_status (*mpm_tangent_fn)(void *user, const mpm_material_batch *batch
 /** A law of the host. Fill the struct with mpm_material_desc_init(). */
 typedef struct mpm_material_desc {
   uint32_t struct_size;   /**< sizeof(mpm_material_desc) of the caller */
-  int32_t state_count;    /**< number of state variables of a particle, >= 0; default 0 */
+  int32_t state_count;    /**< number of state variables of a particle, 0 to 64; default 0 */
   int32_t tangent_form;   /**< MPM_TANGENT_MINOR_SYMMETRIC (default) or MPM_TANGENT_GENERAL */
   int32_t reserved;       /**< 0 */
   double density;         /**< mass per initial volume, > 0; the host must set it */

@@ -85,6 +85,7 @@ MPM_API mpm_status mpm_particles_destroy(mpm_particles *particles);
  * - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume.
  *   MPM_GIMP and MPM_CPGIMP use it; on other grids it is kept as given.
  * - ids: [n] the host's own ids, >= 0 and unique in the set; NULL to number on from the largest so far.
+ *   A set holds fewer than 2^32 particles.
  * - first_id: the first of the ids is written to it; may be NULL.
  *
  * MPM_E_ARG: a value is not finite, a position is outside the grid, a volume or size is <= 0, or an id is
@@ -98,13 +99,20 @@ MPM_API mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const 
  * Fills the box from lower[dim] to upper[dim] with particles at rest on a lattice aligned with the cells,
  * with per_cell[dim] particles along each axis of a cell, wherever the centre is inside. Each has the volume
  * and the size of one lattice cell, so that domains of GIMP fill the body. The ids of the new particles are
- * *first_id to *first_id + *count - 1; both pointers may be NULL. MPM_E_ARG: lower > upper, or per_cell < 1.
+ * *first_id to *first_id + *count - 1; both pointers may be NULL.
+ *
+ * What a shape has beyond the grid is left out, on periodic axes too, as symmetry planes want it: *count tells
+ * how many particles there are. That holds for all three fills. per_cell is 1 to 64, and a box has at most 2^32
+ * lattice points, in the shape or not.
+ *
+ * MPM_E_ARG: a bound is not finite, lower >= upper on an axis, the box does not meet the grid, or a limit is
+ * exceeded.
  */
 MPM_API mpm_status mpm_particles_fill_box(mpm_particles *particles, const double *lower, const double *upper,
                                           const int32_t *per_cell, int64_t *first_id, int64_t *count);
 
 /** Fills a ball (2-D: disc, 1-D: interval) around centre[dim] of a radius > 0, as mpm_particles_fill_box()
- * fills a box. */
+ * fills a box. The centre lies in the grid. */
 MPM_API mpm_status mpm_particles_fill_ball(mpm_particles *particles, const double *centre, double radius,
                                            const int32_t *per_cell, int64_t *first_id, int64_t *count);
 
@@ -133,16 +141,18 @@ MPM_API mpm_status mpm_particles_field_info(const mpm_particles *particles, int3
                                             int32_t *type, int32_t *components, int32_t *writable);
 
 /** Adds a field of the host, zero in every particle. It travels with the particles, is saved with them, and
- * reaches callbacks through mpm_batch_field(). type is MPM_F64, MPM_I64 or MPM_U8, and components >= 1.
- * MPM_E_ARG: the name is empty or taken, or a value is bad. */
+ * reaches callbacks through mpm_batch_field(). The name has 1 to 47 characters of a-z, 0-9 and _; type is
+ * MPM_F64, MPM_I64 or MPM_U8; components are 1 to 64. A set has at most 64 fields, the 17 of the table included.
+ * MPM_E_ARG: the name is bad or taken, or a value is. MPM_E_STATE: there is no room for one more. */
 MPM_API mpm_status mpm_particles_add_field(mpm_particles *particles, const char *field, int32_t type,
                                            int32_t components);
 
 /**
  * Lends a field in library order, with its stored components and with inert slots (id < 0); a map of "id"
  * tells which is which. access is MPM_READ, MPM_WRITE or both. The caller sets the view's struct_size. Until
- * mpm_view_release() steps return MPM_E_STATE. MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: MPM_WRITE
- * is asked for on a field that is not writable.
+ * mpm_view_release() steps return MPM_E_STATE. Of a set at most 64 views are out at once. A view without
+ * MPM_WRITE is for reading: see mpm_view_release() for what becomes of changes. MPM_E_NOT_FOUND: there is no such
+ * field. MPM_E_ARG: MPM_WRITE is asked for on a field that is not writable. MPM_E_STATE: 64 views are out.
  */
 MPM_API mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_t access,
                                      mpm_view *view);

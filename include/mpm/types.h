@@ -232,12 +232,15 @@ MPM_API const char *mpm_status_text(mpm_status status);
 
 /**
  * Gives back the memory of a view that mpm_particles_map() or mpm_grid_map() filled. Afterwards its data and
- * owner are NULL. What the host wrote through a view with MPM_WRITE takes effect now.
+ * owner are NULL. What the host wrote through a view with MPM_WRITE takes effect now. Memory of a view without
+ * it is not to be changed: whatever is written there harms no step beyond its numbers, and a library built with
+ * MPM_DEBUG notices.
  *
  * - MPM_E_ARG: view is NULL, or the host wrote values that are not finite or give det F <= 0. In the second
  *   case the view is released all the same, and the set refuses to step (MPM_E_STATE) until the values are
  *   repaired; bad nodal values are dropped.
- * - MPM_E_STATE: the view is not lent, or no longer. A view that was never filled has no context to keep a text.
+ * - MPM_E_STATE: the view is not lent, or no longer; or, with MPM_DEBUG, it was lent for reading and its memory
+ *   has changed: it is then released all the same. A view that was never filled has no context to keep a text.
  */
 MPM_API mpm_status mpm_view_release(mpm_view *view);
 

@@ -82,7 +82,7 @@ void *mpmi_alloc(mpm_context *context, size_t bytes);
 void *mpmi_alloc_zeroed(mpm_context *context, size_t bytes);
 void mpmi_free(mpm_context *context, void *memory, size_t bytes); /* memory may be NULL */
 /* Makes room for `wanted` elements where there is less; what was there is then lost. On failure nothing has
- * changed. */
+ * changed. Only these elements may be touched: the rest of the capacity is slack (slack.h). */
 mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size);
 /* Does the same with room for a quarter more where it has to grow, so that lists whose length varies a little
  * from step to step soon need no more memory. */

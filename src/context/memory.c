@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "context/context.h"
+#include "context/slack.h"
 
 /* A request of 0 bytes takes one line, so that every result is a valid pointer of its own. */
 static size_t granted(size_t bytes) {
@@ -47,6 +48,7 @@ void mpmi_free(mpm_context *context, void *memory, size_t bytes) {
   const mpm_context_desc *host = &context->host;
   size_t size = granted(bytes);
   context->bytes -= (int64_t)size;
+  mpmi_slack(memory, size, size);
   host->release(host->alloc_user, memory, size, MPMI_ALIGNMENT);
   mpmi_environment_mend();
 }
@@ -57,17 +59,22 @@ size_t mpmi_bytes(int64_t count, size_t size) {
 }
 
 mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size) {
-  if (wanted <= *capacity) return MPM_OK;
-  void *memory = mpmi_alloc(context, mpmi_bytes(wanted, size));
-  if (!memory) return MPM_E_NOMEM;
-  mpmi_free(context, *at, mpmi_bytes(*capacity, size));
-  *at = memory;
-  *capacity = wanted;
+  if (wanted > *capacity) {
+    void *memory = mpmi_alloc(context, mpmi_bytes(wanted, size));
+    if (!memory) return MPM_E_NOMEM;
+    mpmi_free(context, *at, mpmi_bytes(*capacity, size));
+    *at = memory;
+    *capacity = wanted;
+  }
+  mpmi_slack(*at, mpmi_bytes(*capacity, size), mpmi_bytes(wanted, size));
   return MPM_OK;
 }
 
 mpm_status mpmi_reserve_more(mpm_context *context, void **at, int64_t *capacity, int64_t wanted,
                              size_t size) {
   const int64_t few = 64; /* short lists double soon */
-  return mpmi_reserve(context, at, capacity, wanted > *capacity ? wanted + wanted / 4 + few : 0, size);
+  const mpm_status status =
+      mpmi_reserve(context, at, capacity, wanted > *capacity ? wanted + wanted / 4 + few : wanted, size);
+  if (!status) mpmi_slack(*at, mpmi_bytes(*capacity, size), mpmi_bytes(wanted, size));
+  return status;
 }

@@ -246,7 +246,9 @@ void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stri
   for (int32_t k = 0; k < grid->dim; ++k) {
     const double xi = (x[k * stride] - grid->desc.origin[k]) * grid->inverse_spacing[k];
     const int64_t cells = grid->desc.cells[k];
-    int64_t node = (int64_t)floor(grid->centred ? xi + 0.5 : xi);
+    /* a position that a host has spoilt behind the library's back has no block: any will do */
+    const double place = floor(grid->centred ? xi + 0.5 : xi), far = 1e15;
+    int64_t node = (int64_t)(!(place > -far) ? -far : place < far ? place : far);
     if (grid->desc.periodic[k]) node -= floor_div(node, cells) * cells;
     const int64_t high = grid->centred ? cells : cells - 1;
     node = node < 0 ? 0 : node > high ? high : node;

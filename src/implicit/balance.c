@@ -31,6 +31,7 @@ static void lay_out(const mpmi_balance *balance, mpmi_arena *from, mpmi_newton_w
   to->inverse = take_rows(from, 9, length);
   to->tangent_scratch = mpmi_arena_take(from, (int64_t)tangent, 1);
   to->K = take_rows(from, row, row);
+  if (to->K) memset(to->K, 0, (size_t)(row * row) * sizeof *to->K);
   to->tile_active = mpmi_arena_take(from, tile, sizeof *to->tile_active);
 }
 
@@ -50,7 +51,6 @@ static mpm_status prepare_work(mpmi_balance *balance) {
   for (int32_t k = 0; k < balance->settings->tasks; ++k) {
     mpmi_arena from = {(char *)newton->work_memory + (size_t)k * counter.used, 0};
     lay_out(balance, &from, &newton->work[k]);
-    memset(newton->work[k].K, 0, (size_t)((char *)newton->work[k].tile_active - (char *)newton->work[k].K));
   }
   return MPM_OK;
 }

@@ -98,8 +98,9 @@ static mpm_status prepare_accelerations(mpmi_balance *balance, int32_t unknown, 
   for (int32_t m = 0; m < balance->layout->member_count; ++m) {
     const mpm_particles *set = balance->layout->member[m].set;
     if ((set->dirty & MPMI_DIRTY_ACCELERATION) || !set->ld) continue; /* or nothing was ever added */
-    memcpy(mpmi_f64(set, MPMI_ACCELERATION, 1), mpmi_f64(set, MPMI_ACCELERATION, 0),
-           (size_t)(balance->settings->grid->dim * set->ld) * sizeof(double));
+    for (int32_t c = 0; c < balance->settings->grid->dim; ++c)
+      memcpy(mpmi_component_row(set, MPMI_ACCELERATION, 1, c),
+             mpmi_component_row(set, MPMI_ACCELERATION, 0, c), (size_t)set->slots * sizeof(double));
   }
   mpm_status status = unknown ? find_accelerations(balance, clock) : MPM_OK;
   if (!status) status = project(balance, MPMI_PROJECT_ACCELERATION, clock);

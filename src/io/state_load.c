@@ -169,6 +169,7 @@ static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
   set->next_id = fresh->next_id;
   set->dirty = fresh->dirty;
   set->mass_max = fresh->mass_max;
+  mpmi_particles_watch(set, set->slots);
   set->suspect = 0;
   mpmi_index_drop(set);
 }

@@ -89,7 +89,7 @@ static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
     return;
   }
   mpmi_field *field = &to->fresh.field[f];
-  char what[MPMI_NAME + 16];
+  char what[MPMI_NAME + 32];
   snprintf(what, sizeof what, "type of %s", field->name);
   if (saved.type != field->type || saved.components != field->components) {
     if (saved.components != field->components)

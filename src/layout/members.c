@@ -1,4 +1,5 @@
 #include "layout/members.h"
+#include "context/slack.h"
 #include "particles/values.h"
 
 #include <string.h>
@@ -33,6 +34,12 @@ mpm_status mpmi_members_keep_fields(mpmi_layout *layout, const mpmi_settings *se
 }
 
 /* ---- coming and going --------------------------------------------------------------------------------- */
+/* The first `count` members may be touched. */
+static void watch(mpmi_layout *layout, int32_t count) {
+  const size_t size = sizeof *layout->member;
+  mpmi_slack(layout->member, (size_t)layout->member_capacity * size, (size_t)count * size);
+}
+
 static mpm_status grow(mpmi_layout *layout, mpm_context *c) {
   if (layout->member_count < layout->member_capacity) return MPM_OK;
   const int32_t capacity = layout->member_capacity ? 2 * layout->member_capacity : 4;
@@ -49,6 +56,7 @@ mpm_status mpmi_members_add(mpmi_layout *layout, const mpmi_settings *settings, 
   mpm_context *c = settings->context;
   mpm_status status;
   if ((status = grow(layout, c)) || (status = make_fields(set, &settings->desc))) return status;
+  watch(layout, layout->member_count + 1);
   mpmi_member *member = &layout->member[layout->member_count++];
   memset(member, 0, sizeof *member);
   member->set = set;
@@ -77,7 +85,7 @@ void mpmi_members_remove(mpmi_layout *layout, const mpmi_settings *settings, int
   member->set->stepper = NULL;
   member->set->dirty |= MPMI_DIRTY_PLACE;
   for (int32_t i = m + 1; i < layout->member_count; ++i) layout->member[i - 1] = layout->member[i];
-  --layout->member_count;
+  watch(layout, --layout->member_count);
   mpmi_blocks_clear(&layout->blocks); /* the worklists counted its slots: the next step sorts anew */
 }
 
@@ -118,13 +126,15 @@ mpm_status mpmi_members_refresh(mpmi_layout *layout, const mpmi_settings *settin
 /* Makes room for rows [components][ld of the set] where they are wanted, else frees them. */
 static mpm_status reserve_rows(mpm_context *c, const mpm_particles *set, int32_t wanted, int32_t components,
                                double **rows, int64_t *ld) {
-  if (wanted ? *rows && *ld == set->ld : !*rows) return MPM_OK;
-  double *memory = NULL;
-  if (wanted && !(memory = mpmi_alloc_zeroed(c, mpmi_bytes(set->ld * components, sizeof *memory))))
-    return MPM_E_NOMEM;
-  free_rows(c, rows, ld, components);
-  *rows = memory;
-  *ld = wanted ? set->ld : 0;
+  if (wanted ? !*rows || *ld != set->ld : *rows != NULL) {
+    double *memory = NULL;
+    if (wanted && !(memory = mpmi_alloc_zeroed(c, mpmi_bytes(set->ld * components, sizeof *memory))))
+      return MPM_E_NOMEM;
+    free_rows(c, rows, ld, components);
+    *rows = memory;
+    *ld = wanted ? set->ld : 0;
+  }
+  mpmi_slack_rows(*rows, (size_t)components, (size_t)*ld, (size_t)set->slots, sizeof **rows);
   return MPM_OK;
 }
 

@@ -47,6 +47,7 @@ mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, i
   if (!status && is_rigid(set)) status = mpmi_field_make_present(set, MPMI_PRESCRIBED);
   if (status) return status;
   set->slots = slots;
+  mpmi_particles_watch(set, slots);
   mpmi_fill_holes(set, 0, first, slots, set->grid->desc.origin);
   *slot = first;
   return MPM_OK;

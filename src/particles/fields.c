@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "context/slack.h"
 #include "particles/builtin_fields.h"
 #include "simd/elementary.h"
 
@@ -48,7 +49,17 @@ static void move_rows(const mpmi_field *field, const char *from, int64_t from_ld
     memcpy(to + (size_t)(c * to_ld) * size, from + (size_t)(c * from_ld) * size, (size_t)slots * size);
 }
 
-mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
+static void watch_field(const mpmi_field *field, int64_t ld, int64_t slots) {
+  for (int32_t k = 0; k < COPIES && field->present; ++k)
+    mpmi_slack_rows(field->data[k], (size_t)field->components, (size_t)ld, (size_t)slots,
+                    mpmi_type_size(field->type));
+}
+
+void mpmi_particles_watch(const mpm_particles *set, int64_t slots) {
+  for (int32_t f = 0; f < set->field_count; ++f) watch_field(&set->field[f], set->ld, slots);
+}
+
+static mpm_status reserve_copies(mpm_particles *set, int64_t slots) {
   if (slots <= set->ld) return MPM_OK;
   if (slots > MPMI_MAX_SLOTS)
     return mpmi_fail(set->context, MPM_E_ARG, "a set has room for %lld slots: %lld are too many",
@@ -72,6 +83,12 @@ mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
   }
   set->ld = ld;
   return MPM_OK;
+}
+
+mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
+  const mpm_status status = reserve_copies(set, slots);
+  if (!status) mpmi_particles_watch(set, slots > set->slots ? slots : set->slots);
+  return status;
 }
 
 double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int64_t slot) {
@@ -160,6 +177,7 @@ mpm_status mpmi_field_make_present(mpm_particles *set, int32_t field) {
   mpm_status status = alloc_copies(set, at, at->data, set->ld);
   if (status) return status;
   at->present = 1;
+  watch_field(at, set->ld, set->slots);
   write_defaults(set, field);
   return MPM_OK;
 }

@@ -167,26 +167,37 @@ static mpm_status fill(mpm_particles *set, const lattice *on, mpm_inside_fn insi
   return MPM_OK;
 }
 
-/* A box may lie beyond the bounds of the grid by round-off. */
-static mpm_status check_inside_grid(const mpm_particles *set, const char *name, const double *x) {
+/* Shapes may reach over the faces, as symmetry planes want it: what lies inside the grid is filled. */
+static mpm_status check_box(const mpm_particles *set, const double *lower, const double *upper) {
   const mpm_grid *grid = set->grid;
   for (int32_t k = 0; k < grid->dim; ++k) {
-    double lower = grid->desc.origin[k], upper = grid->upper[k], slack = 1e-12 * (upper - lower);
-    if (x[k] >= lower - slack && x[k] <= upper + slack) continue;
-    return mpmi_fail(set->context, MPM_E_ARG, "%s[%d] is %.12g, must be inside the grid, in [%.12g, %.12g]",
-                     name, (int)k, x[k], lower, upper);
+    const double first = grid->desc.origin[k], last = grid->upper[k];
+    for (int32_t i = 0; i < 2; ++i)
+      if (!isfinite(i ? upper[k] : lower[k]))
+        return mpmi_fail(set->context, MPM_E_ARG, "%s[%d] is %g, must be finite", i ? "upper" : "lower",
+                         (int)k, i ? upper[k] : lower[k]);
+    if (!(lower[k] < upper[k]))
+      return mpmi_fail(set->context, MPM_E_ARG, "lower[%d] is %g, must be below upper[%d] = %g", (int)k,
+                       lower[k], (int)k, upper[k]);
+    if (upper[k] < first || lower[k] > last)
+      return mpmi_fail(
+          set->context, MPM_E_ARG,
+          "the box lies beyond the grid: from %.12g to %.12g on axis %d, where that has [%.12g, %.12g]",
+          lower[k], upper[k], (int)k, first, last);
   }
   return MPM_OK;
 }
 
-static mpm_status check_box(const mpm_particles *set, const double *lower, const double *upper) {
-  mpm_status status = check_inside_grid(set, "lower", lower);
-  if (!status) status = check_inside_grid(set, "upper", upper);
-  for (int32_t k = 0; k < set->grid->dim && !status; ++k)
-    if (!(lower[k] < upper[k]))
-      status = mpmi_fail(set->context, MPM_E_ARG, "lower[%d] is %g, must be below upper[%d] = %g", (int)k,
-                         lower[k], (int)k, upper[k]);
-  return status;
+static mpm_status check_centre(const mpm_particles *set, const double *centre) {
+  const mpm_grid *grid = set->grid;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double lower = grid->desc.origin[k], upper = grid->upper[k], slack = 1e-12 * (upper - lower);
+    if (centre[k] >= lower - slack && centre[k] <= upper + slack) continue;
+    return mpmi_fail(set->context, MPM_E_ARG,
+                     "centre[%d] is %.12g, must be inside the grid, in [%.12g, %.12g]", (int)k, centre[k],
+                     lower, upper);
+  }
+  return MPM_OK;
 }
 
 mpm_status mpm_particles_fill(mpm_particles *particles, const double *lower, const double *upper,
@@ -238,7 +249,6 @@ static mpm_status inside_ball(void *user, int32_t dim, int64_t n, int64_t ld, co
   return MPM_OK;
 }
 
-/* A ball may reach over the faces, as symmetry planes want it: what lies inside the grid is filled. */
 mpm_status mpm_particles_fill_ball(mpm_particles *particles, const double *centre, double radius,
                                    const int32_t *per_cell, int64_t *first_id, int64_t *count) {
   MPMI_ENTER(particles, MPMI_PARTICLES);
@@ -248,7 +258,7 @@ mpm_status mpm_particles_fill_ball(mpm_particles *particles, const double *centr
     return mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL", centre ? "per_cell" : "centre");
   if (!(radius > 0) || !isfinite(radius))
     return mpmi_fail(particles->context, MPM_E_ARG, "radius is %g, must be > 0 and finite", radius);
-  status = check_inside_grid(particles, "centre", centre);
+  status = check_centre(particles, centre);
   if (status) return status;
   double lower[3], upper[3];
   for (int32_t k = 0; k < particles->grid->dim; ++k) {

@@ -28,6 +28,7 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
   const int64_t ld = mpmi_law_batch_length(material);
   double *at = memory;
   b->ld = ld;
+  b->fault = (mpmi_law_fault){MPM_OK, -1, ""};
   b->F = at, at += 9 * ld;
   b->F_inc = at, at += 9 * ld;
   b->L = at, at += 9 * ld;
@@ -107,18 +108,36 @@ void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t 
     mpmi_law_batch_scale_F(b, dim, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
 }
 
+/* A negative speed or viscosity would not bound the step, and an infinite energy would spoil all sums. What is
+ * not finite beyond that is found with the stress. */
+static void look(mpmi_law_batch *b, int64_t p) {
+  mpmi_law_fault *fault = &b->fault;
+  if (fault->cause) return;
+  fault->particle = b->batch.id[p];
+  if (b->wave_speed[p] < 0.0)
+    fault->cause = MPM_E_CALLBACK, fault->what = "the material's wave speed is negative";
+  else if (b->viscosity[p] < 0.0)
+    fault->cause = MPM_E_CALLBACK, fault->what = "the material's kinematic viscosity is negative";
+  else if (isinf(b->energy[p]))
+    fault->cause = MPM_NONFINITE, fault->what = "the material's energy is infinite";
+}
+
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {
+  b->fault.cause = MPM_OK;
   const mpm_status status = mpmi_material_evaluate(set->material, set->grid->dim, &b->batch);
   if (status || set->material->law) return status;
   /* Whatever the host made of inert slots must not get into sums. */
   for (int64_t p = 0; p < b->batch.n; ++p) {
-    if (b->batch.id[p] >= 0) continue;
+    if (b->batch.id[p] >= 0) {
+      look(b, p);
+      continue;
+    }
     for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = 0.0;
     for (int32_t c = 0; c < set->material->state_count; ++c)
       b->state_new[c * b->ld + p] = b->state[c * b->ld + p];
     b->wave_speed[p] = b->viscosity[p] = 0.0;
   }
-  return MPM_OK;
+  return b->fault.cause;
 }
 
 void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,

@@ -25,20 +25,48 @@ int32_t mpmi_ids_ascend(const mpm_particles *set) {
   return 1;
 }
 
+/* A host that writes ids through a view for reading makes them neither unique nor as many as particles. */
+static int32_t is_sound(const mpm_particles *set, int64_t listed) {
+  int64_t last = -1;
+  for (int64_t i = 0; i < listed; ++i) {
+    if (set->index[i].id <= last || set->index[i].id >= set->next_id) return 0;
+    last = set->index[i].id;
+  }
+  return listed == set->count;
+}
+
 /* Ids that ascend with the slots are sorted already, and need no scratch. */
 static mpm_status list(mpm_particles *set) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   set->index = mpmi_alloc(set->context, mpmi_bytes(set->count, sizeof *set->index));
   if (!set->index) return MPM_E_NOMEM;
   set->index_capacity = 0;
-  for (int64_t s = 0; s < set->slots; ++s)
-    if (id[s] >= 0) set->index[set->index_capacity++] = (id_slot){id[s], s};
+  int64_t listed = 0;
+  for (int64_t s = 0; s < set->slots; ++s) {
+    if (id[s] >= 0 && listed < set->count) set->index[listed] = (id_slot){id[s], s};
+    listed += id[s] >= 0;
+  }
+  set->index_capacity = listed;
   return MPM_OK;
+}
+
+static mpm_status check_index(mpm_particles *set) {
+  const int64_t listed = set->index_capacity;
+  set->index_capacity = set->count;
+  if (listed <= set->count && is_sound(set, listed)) return MPM_OK;
+  mpmi_index_drop(set);
+  return mpmi_fail(
+      set->context, MPM_E_STATE,
+      "the ids of the set are not those of its %lld particles: a view for reading was written to",
+      (long long)set->count);
 }
 
 mpm_status mpmi_index_build(mpm_particles *set) {
   if (set->index) return MPM_OK;
-  if (mpmi_ids_ascend(set)) return list(set);
+  if (mpmi_ids_ascend(set)) {
+    const mpm_status status = list(set);
+    return status ? status : check_index(set);
+  }
   mpm_context *context = set->context;
   size_t key_bytes = mpmi_bytes(2 * set->slots, sizeof(uint64_t));
   size_t order_bytes = mpmi_bytes(2 * set->slots, sizeof(uint32_t));
@@ -52,7 +80,7 @@ mpm_status mpmi_index_build(mpm_particles *set) {
   }
   mpmi_free(context, order, order_bytes);
   mpmi_free(context, key, key_bytes);
-  return index ? MPM_OK : MPM_E_NOMEM;
+  return index ? check_index(set) : MPM_E_NOMEM;
 }
 
 void mpmi_index_drop(mpm_particles *set) {

@@ -63,7 +63,9 @@ struct mpmi_view_record {
   int32_t live, field, access;
   mpm_context *context; /* stays when the view is given back, for the text of a second time */
   void *data;
-  void *lender; /* the set or the stepper */
+  void *lender;      /* the set or the stepper */
+  uint64_t print;    /* with MPM_DEBUG: of the memory as it was lent */
+  int32_t has_print; /* lent for reading while nothing was lent for writing */
   mpm_status (*release)(mpmi_view_record *record, mpm_view *view);
 };
 
@@ -115,7 +117,9 @@ int32_t mpmi_gradient_components(int32_t dim); /* L: 1, 4, 9 */
 const int32_t *mpmi_gradient_map(int32_t dim); /* L: {0}, {0 1 3 4}, {0..8} */
 
 /* These change the storage (fields.c). They do all or nothing: on failure the set is unchanged. */
-mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots);  /* ld >= slots */
+mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots); /* ld >= slots */
+/* Slots from `slots` on are slack in all fields (context/slack.h). */
+void mpmi_particles_watch(const mpm_particles *set, int64_t slots);
 mpm_status mpmi_field_make_present(mpm_particles *set, int32_t field); /* with default values */
 void mpmi_field_make_absent(mpm_particles *set, int32_t field);
 /* Writes inert slots [begin, end) into copy `copy` of every present field; position is that of the hole. */

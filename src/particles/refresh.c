@@ -36,6 +36,10 @@ mpm_status mpmi_particles_refresh(mpm_particles *set) {
     if (!status) mpmi_law_batch_store(&b, set, 1, s, n);
   }
   mpmi_free(set->context, memory, bytes);
+  if (b.fault.cause)
+    return mpmi_fail(set->context, b.fault.cause,
+                     "%s at particle %lld, when asked for the stress of the given F", b.fault.what,
+                     (long long)b.fault.particle);
   if (status)
     return mpmi_fail(set->context, MPM_E_CALLBACK,
                      "the material returned %d when asked for the stress of the given F", (int)status);

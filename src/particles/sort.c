@@ -1,4 +1,5 @@
 #include "particles/sort.h"
+#include "context/slack.h"
 
 #include <string.h>
 
@@ -20,8 +21,12 @@ void mpmi_sorting_free(mpmi_sorting *sorting, mpm_context *context) {
 }
 
 mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *a, int64_t blocks) {
-  return mpmi_reserve(a->context, (void **)&a->start, &a->start_capacity,
-                      blocks + 1 > a->start_capacity ? 2 * blocks + 2 : 0, sizeof *a->start);
+  const mpm_status status =
+      mpmi_reserve(a->context, (void **)&a->start, &a->start_capacity,
+                   blocks + 1 > a->start_capacity ? 2 * blocks + 2 : blocks + 1, sizeof *a->start);
+  const size_t size = sizeof *a->start;
+  if (!status) mpmi_slack(a->start, (size_t)a->start_capacity * size, (size_t)(blocks + 1) * size);
+  return status;
 }
 
 /* From mpmi_sort_blocks() to mpmi_sort_plan() the memory for the next positions holds the provisional
@@ -209,6 +214,7 @@ void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_s
     mpmi_fill_holes(set, 0, begin, end, position);
   }
   set->slots = slots;
+  mpmi_particles_watch(set, slots);
   set->dirty &= ~(uint32_t)(MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE);
   mpmi_index_drop(set);
 }

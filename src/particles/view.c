@@ -49,6 +49,44 @@ static mpm_status check_request(const mpm_particles *set, const char *field, int
   return access & MPM_WRITE || !set->field[*f].present ? mpmi_between_steps(set) : MPM_OK;
 }
 
+/* ---- views for reading, with MPM_DEBUG ----------------------------------------------------------------- */
+#if defined(MPM_DEBUG)
+/* FNV over the slots of a field. */
+static uint64_t print_of(const mpm_particles *set, int32_t field) {
+  const mpmi_field *at = &set->field[field];
+  const size_t size = mpmi_type_size(at->type);
+  uint64_t print = 0xcbf29ce484222325u;
+  for (int32_t c = 0; c < at->components; ++c) {
+    const uint8_t *row = (const uint8_t *)at->data[0] + (size_t)(c * set->ld) * size;
+    for (size_t i = 0; i < (size_t)set->slots * size; ++i) print = (print ^ row[i]) * 0x100000001b3u;
+  }
+  return print;
+}
+
+/* What is lent for writing may change whatever else is lent: its records hold for as long as nothing is. */
+static void take_print(mpm_particles *set, mpmi_view_record *record) {
+  int32_t writes = 0;
+  for (int32_t i = 0; i < MPMI_MAX_VIEWS; ++i) writes |= set->view[i].live && set->view[i].access & MPM_WRITE;
+  for (int32_t i = 0; i < MPMI_MAX_VIEWS && writes; ++i) set->view[i].has_print = 0;
+  record->has_print = !writes;
+  if (!writes) record->print = print_of(set, record->field);
+}
+
+static mpm_status check_print(mpm_particles *set, const mpmi_view_record *record) {
+  if (!record->has_print || print_of(set, record->field) == record->print) return MPM_OK;
+  return mpmi_fail(set->context, MPM_E_STATE, "%s was lent for reading, and its memory has changed",
+                   set->field[record->field].name);
+}
+#else
+static void take_print(mpm_particles *set, mpmi_view_record *record) {
+  (void)set, (void)record;
+}
+static mpm_status check_print(mpm_particles *set, const mpmi_view_record *record) {
+  (void)set, (void)record;
+  return MPM_OK;
+}
+#endif
+
 /* Lets writing take effect: what follows from the field is out of date, and bad values bar the set from
  * steps. */
 static mpm_status accept_written(mpm_particles *set, int32_t field) {
@@ -65,10 +103,11 @@ static mpm_status accept_written(mpm_particles *set, int32_t field) {
 static mpm_status release_field(mpmi_view_record *record, mpm_view *view) {
   mpm_particles *set = record->lender;
   int32_t field = record->field, access = record->access;
+  const mpm_status status = check_print(set, record);
   set->mapped--;
   record->live = 0;
   view->data = view->owner = NULL;
-  return access & MPM_WRITE ? accept_written(set, field) : MPM_OK;
+  return access & MPM_WRITE ? accept_written(set, field) : status;
 }
 
 mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_t access, mpm_view *view) {
@@ -91,6 +130,7 @@ mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_
                                .data = at->data[0],
                                .lender = particles,
                                .release = release_field};
+  take_print(particles, record);
   particles->mapped++;
   mpmi_view_fill(view, at->type, at->components, access, particles->slots, particles->ld, at->data[0],
                  record);

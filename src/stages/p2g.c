@@ -83,7 +83,7 @@ static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const int64_t begin = layout->member[m].now.start[visit->block];
     const int64_t end = layout->member[m].now.start[visit->block + 1];
-    if (begin == end) continue;
+    if (begin == end || !mpmi_is_in_place(job->step, visit, m)) continue;
     scatter_of(job, &layout->member[m], &scatter);
     mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[visit->block], scatter.axis);
     scatter.tile = tile;
@@ -114,5 +114,7 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
                  /* the main projection comes after USF's strain: the stress is new then */
                  .stress_copy = projection->main && mpmi_deforms_first(step->settings)};
   choose_form(&job);
-  return mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
+  const mpm_status status =
+      mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
+  return status ? status : mpmi_step_failure(step);
 }

@@ -4,11 +4,19 @@
 
 #include "layout/projection.h"
 #include "layout/step.h"
+#include "layout/visit.h"
 #include "particles/law_batch.h"
 
 /* ---- forces.c ---------------------------------------------------------------------------------------- */
 /* Collects the external forces at time t in the members' rows. */
 mpm_status mpmi_forces_stage(mpmi_step *step, double t);
+
+/* ---- places.c ---------------------------------------------------------------------------------------- */
+/* Whether all particles of set m in a block have their stencils in its tile; if not, one is noted as the failure
+ * of the task. Only a host that writes to what it was lent for reading can bring them elsewhere. */
+int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m);
+/* The same of all blocks and sets, for a step under way in which the host could read positions. */
+mpm_status mpmi_places_check(mpmi_step *step);
 
 /* ---- p2g.c ------------------------------------------------------------------------------------------- */
 /* Projects all particles onto the nodes of a projection: their sums are made anew. */

@@ -82,6 +82,12 @@ void mpmi_strain_law(mpmi_batch *b) {
   const double started = timed ? mpmi_seconds() : 0.0;
   const mpm_status status = mpmi_law_batch_run(&b->law, b->set);
   if (timed) b->report->law_seconds += (double)TIMED_BATCHES * (mpmi_seconds() - started);
+  if (b->law.fault.cause) {
+    const mpmi_law_fault *fault = &b->law.fault;
+    mpmi_failure_take(&b->report->failure,
+                      &(mpmi_failure){fault->cause, 0, b->m, fault->particle, -1, fault->what});
+    return;
+  }
   if (status) {
     mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
                                                            "the material callback"});

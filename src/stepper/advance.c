@@ -9,6 +9,8 @@ static const mpm_advance_desc defaults = {.struct_size = sizeof(mpm_advance_desc
 
 /* A step that failed is cut to 0.6, one that went well lets the next be twice as long: proven in practice. */
 static const double CUT = 0.6, GROW = 2.0;
+/* What max_cuts = 0 means: no cause that a smaller dt cures needs as many. */
+enum { MOST_CUTS = 60 };
 
 mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct_size) {
   return mpmi_init_struct("mpm_advance_desc", &defaults, sizeof defaults, desc, struct_size);
@@ -30,7 +32,7 @@ static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {
       return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and >= 0", bound[i].name, bound[i].value);
   if (d->dt_max > 0.0 && d->dt_min > d->dt_max)
     return mpmi_fail(c, MPM_E_ARG, "dt_min is %g, more than dt_max = %g", d->dt_min, d->dt_max);
-  if (d->reserved) return mpmi_fail(c, MPM_E_ARG, "reserved is %d: it must be 0", (int)d->reserved);
+  if (d->max_cuts < 0) return mpmi_fail(c, MPM_E_ARG, "max_cuts is %d: it must be >= 0", (int)d->max_cuts);
   if (d->max_steps < 0)
     return mpmi_fail(c, MPM_E_ARG, "max_steps is %lld: it must be >= 0", (long long)d->max_steps);
   return MPM_OK;
@@ -71,7 +73,17 @@ static int32_t no_cut_helps(const mpm_stepper *s, mpm_status status) {
   return status == MPM_SINGULAR && s->settings.desc.quasi_static && s->history.last.newton_iterations <= 1;
 }
 
+/* The next call starts from the dt that was cut first. */
+static mpm_status give_up(mpm_stepper *s, mpm_status status, int32_t cuts, double first, double dt) {
+  s->history.controller_dt = first;
+  return mpmi_fail(s->context, status, "gave up after %d cuts of dt from %g to %g: %s", (int)cuts, first, dt,
+                   mpm_last_error(s->context));
+}
+
 static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
+  const int32_t most = d->max_cuts ? d->max_cuts : MOST_CUTS;
+  int32_t cuts = 0;
+  double first = 0.0;
   if (d->dt_first > 0.0) s->history.controller_dt = d->dt_first;
   for (int64_t step = 0; s->history.t < d->t_end && (!d->max_steps || step < d->max_steps);) {
     double dt;
@@ -88,13 +100,17 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
       if (last) s->history.t = d->t_end;
       let_grow(s, dt);
       ++step;
+      cuts = 0;
       continue;
     }
+    if (!cuts) first = dt;
     const double smaller = CUT * dt;
     /* cutting ends where numbers lose digits: the smallest would be cut to itself */
     if (status < MPM_CUT_DT || status > MPM_SINGULAR || no_cut_helps(s, status) || smaller < d->dt_min ||
         smaller < DBL_MIN || s->history.t + smaller == s->history.t)
       return status;
+    if (cuts == most) return give_up(s, status, cuts, first, dt);
+    ++cuts;
     s->history.controller_dt = smaller;
   }
   return MPM_OK;

@@ -1,5 +1,6 @@
 /* Steps, whole or in three parts with the host in between: preparation, the scheme's stages, and the end. */
 #include "stepper/stepper.h"
+#include "stages/stages.h"
 #include "boundary/prescribed.h"
 #include "implicit/newmark.h"
 #include "layout/members.h"
@@ -188,7 +189,8 @@ mpm_status mpm_step_grid(mpm_stepper *s) {
   mpm_status status = in_phase(s, MPMI_BEGUN, "mpm_step_grid", "mpm_step_begin");
   if (status) return status;
   s->step.phase = MPMI_RUNNING;
-  status = mpmi_explicit_grid(&s->step, &s->nodes);
+  status = mpmi_places_check(&s->step);
+  if (!status) status = mpmi_explicit_grid(&s->step, &s->nodes);
   if (status) return give_up(s, status);
   s->step.phase = MPMI_SOLVED;
   return MPM_OK;
@@ -201,7 +203,8 @@ mpm_status mpm_step_end(mpm_stepper *s, mpm_step_info *info) {
   if (status) return status;
   s->step.phase = MPMI_RUNNING;
   if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, 1);
-  status = mpmi_explicit_end(&s->step, &s->nodes);
+  status = mpmi_places_check(&s->step);
+  if (!status) status = mpmi_explicit_end(&s->step, &s->nodes);
   if (!status) status = finish(s);
   return mpmi_give_info(s, status ? give_up(s, status) : MPM_OK, info);
 }

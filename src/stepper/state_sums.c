@@ -53,7 +53,13 @@ static void bind_particles(const mpm_stepper *s, const mpm_particles *set, const
     job->affine[mpmi_gradient_map(grid->dim)[c]] = mpmi_f64(set, MPMI_L, 0) + c * set->ld + begin;
 }
 
-static mpm_status refused(mpm_stepper *s, int32_t m, mpm_status status, mpmi_failure *failure) {
+static mpm_status refused(mpm_stepper *s, int32_t m, mpm_status status, const mpmi_law_fault *fault,
+                          mpmi_failure *failure) {
+  if (failure && fault->cause)
+    *failure = (mpmi_failure){fault->cause, 0, m, fault->particle, -1, fault->what};
+  if (fault->cause)
+    return mpmi_fail(s->context, fault->cause, "%s at particle %lld of set %d, as it is", fault->what,
+                     (long long)fault->particle, (int)m);
   if (failure) {
     failure->callback_status = status;
     failure->set = m;
@@ -78,7 +84,7 @@ static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failu
     mpmi_law_batch_load_F(&b, set, begin, n);
     const mpm_status answer = mpmi_law_batch_run(&b, set);
     if (answer) {
-      status = refused(s, m, answer, failure);
+      status = refused(s, m, answer, &b.fault, failure);
       break;
     }
     mpmi_sums_job job;

@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
 # The CMake package: hosts in C and in C++, shared and static, find an installation in a prefix, one that was moved, and
-# one staged under DESTDIR with another layout.
+# one staged under DESTDIR with another layout. CMakeLists.txt compiles what the Makefile compiles.
+#
+#   cmake.sh full    builds by CMakeLists.txt as well: an installation, and hosts that have the library as a folder of
+#                    theirs and by FetchContent
 set -euo pipefail
 BUILD=${BUILD:-build} CC=${CC:-cc} CXX=${CXX:-g++} MAKE=${MAKE:-make}
 BUILD=$(cd "$BUILD" && pwd)
@@ -36,6 +39,45 @@ hosts() { # name, prefix, library folder
   done
   "$scratch/$name-CXX/wrapper" | grep '^result: '
 }
+
+configure() { # build folder, source folder, options
+  CC=$CC CXX=$CXX cmake -S "$2" -B "$1" "${@:3}" > "$1.log" || { cat "$1.log"; exit 1; }
+}
+version=$(sed -n 's/^VERSION := //p' Makefile)
+
+# One object for each pair of a source and an instruction set, by both.
+configure "$scratch/own" . -DCMAKE_BUILD_TYPE=Debug -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_INSTALL_LIBDIR=lib \
+  -DCMAKE_INSTALL_PREFIX="$scratch/by-cmake"
+sed -n 's/.*"command": "\(.*\)".*/\1/p' "$scratch/own/compile_commands.json" \
+  | sed -E "s|.*-DMPMI_ISA=([a-z0-9_]+) .* -c [^ ]*/src/(.*)\.c$|\2.\1.o|; s|.* -c [^ ]*/src/(.*)\.c$|\1.o|" | sort > "$scratch/cmake-objects"
+"$MAKE" -s BUILD="$BUILD" CC="$CC" --eval 'show-objects:; @printf "%s\n" $(OBJECTS:$(BUILD)/obj/src/%=%)' show-objects \
+  | sort > "$scratch/make-objects"
+if ! diff "$scratch/make-objects" "$scratch/cmake-objects"; then
+  echo "cmake.sh: '<' is compiled by the Makefile alone, '>' by CMakeLists.txt alone" >&2
+  exit 1
+fi
+echo "cmake.sh: $(wc -l < "$scratch/cmake-objects") objects by CMakeLists.txt as by the Makefile"
+
+if [ "${1:-}" = full ]; then
+  cmake --build "$scratch/own" --parallel "${JOBS:-2}" > "$scratch/own.log" || { cat "$scratch/own.log"; exit 1; }
+  cmake --install "$scratch/own" > "$scratch/own.log"
+  mv "$scratch/by-cmake" "$scratch/by-cmake-moved"
+  (cd "$scratch/by-cmake-moved" && find . -type f -o -type l) | sort > "$scratch/by-cmake.list"
+  "$MAKE" -s install BUILD="$BUILD" CC="$CC" PREFIX="$scratch/by-make" DESTDIR= > /dev/null
+  (cd "$scratch/by-make" && find . -type f -o -type l) | sort | diff - "$scratch/by-cmake.list" \
+    || { echo "cmake.sh: the two installations have other files" >&2; exit 1; }
+  hosts by-cmake "$scratch/by-cmake-moved" "$scratch/by-cmake-moved/lib"
+  PKG_CONFIG_PATH=$scratch/by-make/lib/pkgconfig ${PKG_CONFIG:-pkg-config} --modversion mpm > /dev/null
+  grep -q "^Version: $version$" "$scratch/by-cmake-moved/lib/pkgconfig/mpm.pc"
+  for way in subdirectory fetch; do
+    configure "$scratch/$way" tests/api/cmake/ways -DWAY=$way -DMPM_SOURCE="$PWD" -DMPM_BASELINE_ONLY=ON -DCMAKE_BUILD_TYPE=Debug
+    cmake --build "$scratch/$way" --parallel "${JOBS:-2}" > "$scratch/$way.log" || { cat "$scratch/$way.log"; exit 1; }
+    for program in shared static; do
+      printf 'cmake.sh: %s, %s: ' $way $program
+      "$scratch/$way/$program" "$version"
+    done
+  done
+fi
 
 "$MAKE" -s install BUILD="$BUILD" CC="$CC" PREFIX="$scratch/prefix" DESTDIR= > /dev/null
 mv "$scratch/prefix" "$scratch/moved"

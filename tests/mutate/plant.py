@@ -8,11 +8,12 @@
 PATH selects the faults whose file contains it. All run at the top of the sources; faults.txt says how a fault is
 written. An expression is compared token by token, so that white space, line breaks and comments do not matter."""
 import bisect
+import os
 import pathlib
 import re
 import sys
 
-FAULTS = pathlib.Path("tests/mutate/faults.txt")
+FAULTS = pathlib.Path(os.environ.get("MUTATE_FAULTS", "tests/mutate/faults.txt"))
 SOURCES = ("src/**/*.[ch]", "include/mpm/*.h", "include/mpm/*.hpp")
 
 TOKEN = re.compile(r"""

@@ -59,7 +59,7 @@ START_TEST(defaults) {
   ck_assert_double_eq(d.cfl, 0.5);
   ck_assert(d.t_end == 0.0 && d.dt_first == 0.0 && d.dt_min == 0.0 && d.dt_max == 0.0);
   ck_assert_int_eq(d.max_steps, 0);
-  ck_assert_int_eq(d.reserved, 0);
+  ck_assert_int_eq(d.max_cuts, 0);
 }
 END_TEST
 
@@ -72,7 +72,7 @@ START_TEST(refused_values) {
   d.field = value;                                                                                           \
   ck_refused(&r, mpm_advance(r.stepper, &d, NULL), MPM_E_ARG, text)
   REFUSED(struct_size, 0, "struct_size is 0");
-  REFUSED(reserved, 1, "reserved is 1");
+  REFUSED(max_cuts, -1, "max_cuts is -1");
   REFUSED(t_end, 1.5, "t_end is 1.5");
   REFUSED(t_end, NOT_A_NUMBER, "t_end is nan");
   REFUSED(t_end, INFINITE, "t_end is inf");
@@ -230,13 +230,26 @@ START_TEST(not_below_dt_min) {
 }
 END_TEST
 
-/* Without a bound cutting ends too, at t = 0, where every number advances the time. */
+/* Without a bound cutting ends too, at t = 0, where every number advances the time: after 60 cuts, or as many as
+ * the host grants, for which a sub-step that was committed starts anew. The next call starts where this did. */
 START_TEST(cuts_end) {
-  strict.limit = 0.0;
   ck_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
   d.t_end = 1.0;
-  ck_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_CUT_DT, "force callback");
-  ck_assert_double_eq(r.info.t, 0.0);
+  for (int32_t k = 0; k < 3; ++k) {
+    static const char *const text[] = {"gave up after 60 cuts", "gave up after 3 cuts", "the force callback"};
+    strict.n = 0;
+    d.max_cuts = k ? 3 : 0;
+    ck_refused(&r, mpm_advance(r.stepper, &d, &r.info), MPM_CUT_DT, text[k]);
+    ck_assert_int_eq(strict.n, k ? 4 : 61);
+    ck_assert_double_eq(r.info.t, 0.0);
+    static double first;
+    if (k) ck_assert_double_eq(strict.tried[0], first);
+    first = strict.tried[0];
+  }
+  strict.limit = 0.3 * strict.tried[0]; /* three cuts lead below it, and then one now and then */
+  d.max_steps = 20;
+  ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
+  ck_assert_int_eq(r.info.step, 20);
 }
 END_TEST
 

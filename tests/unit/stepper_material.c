@@ -209,6 +209,67 @@ START_TEST(what_limits_the_step) {
 }
 END_TEST
 
+/* What a law must not give is refused with the particle's id, by a step and where the state is asked for. */
+static struct {
+  int32_t what;
+  int64_t id;
+} bad;
+static mpm_status giving_bad(void *user, const mpm_material_batch *b) {
+  host_neo_hookean(user, b);
+  for (int64_t i = 0; i < b->n; ++i) {
+    if (b->id[i] != bad.id) continue;
+    if (bad.what == 1) b->wave_speed[i] = -5.0;
+    if (bad.what == 2) b->kinematic_viscosity[i] = -1e-9;
+    if (bad.what == 3) b->energy[i] = INFINITE;
+    if (bad.what == 4) b->energy[i] = -INFINITE;
+  }
+  return 0;
+}
+
+START_TEST(refused_answers) {
+  static const char *const value[] = {"", "wave speed is negative", "kinematic viscosity is negative",
+                                      "energy is infinite", "energy is infinite"};
+  mpm_step_info info = {.struct_size = sizeof info};
+  double dt, unit[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  const int32_t scheme[] = {MPM_USL, MPM_USF, MPM_NEWMARK};
+  for (int32_t k = 0; k < 3; ++k) {
+    bad.id = -7;
+    body_open(&r, &(body_desc){.dim = 2, .stress = giving_bad, .method.scheme = scheme[k]});
+    world_steps(&r, 1);
+    int64_t *ids = fetch_ids(&r, r.set[1]);
+    const int64_t one = ids[2];
+    free(ids);
+    for (bad.what = 1; bad.what <= 4; ++bad.what) {
+      char text[96];
+      snprintf(text, sizeof text, "%s at particle %lld of set 1", value[bad.what], (long long)one);
+      const mpm_status cause = bad.what < 3 ? MPM_E_CALLBACK : MPM_NONFINITE;
+      const uint64_t hash = world_hash(&r);
+      bad.id = one;
+      ck_refused(&r, mpm_step(r.stepper, BODY_DT, &info), cause, text);
+      ck_assert_int_eq(info.cause, cause);
+      ck_assert_int_eq(info.particle, one);
+      ck_assert_int_eq(info.set, 1);
+      ck_assert_int_eq(info.callback_status, 0);
+      ck_assert(world_hash(&r) == hash);
+      ck_ok(&r,
+            mpm_particles_set_all(r.set[0], "velocity", MPM_F64, 2, (double[]){0.0, 0.0})); /* asks anew */
+      ck_refused(&r, mpm_stable_dt(r.stepper, &dt), cause, text);
+      bad.id = -7;
+      world_steps(&r, 1);
+    }
+    ck_ok(&r, mpm_particles_set_all(r.set[1], "deformation_gradient", MPM_F64, 9, unit));
+    bad.id = one, bad.what = 1;
+    double *stress = calloc((size_t)mpm_particles_count(r.set[1]) * 6, sizeof *stress);
+    ck_refused(&r,
+               mpm_particles_get(r.set[1], "stress", MPM_F64, 6, mpm_particles_count(r.set[1]), NULL, stress),
+               MPM_E_CALLBACK, "wave speed is negative at particle");
+    free(stress);
+    bad.id = -7;
+    world_close(&r);
+  }
+}
+END_TEST
+
 /* ---- a law that depends on the place ---- */
 static mpm_status graded(void *user, const mpm_material_batch *b) {
   host_neo_hookean(user, b);
@@ -268,6 +329,7 @@ TCase *stepper_material_case(void) {
   tcase_add_loop_test(tests, batches, 0, 6);
   tcase_add_test(tests, refusals);
   tcase_add_test(tests, what_limits_the_step);
+  tcase_add_test(tests, refused_answers);
   tcase_add_loop_test(tests, by_place, 0, 6);
   return tests;
 }

@@ -298,7 +298,7 @@ END_TEST
 START_TEST(layout_of_advance_desc) {
   SIZE(56);
   AT(0, struct_size);
-  AT(4, reserved);
+  AT(4, max_cuts);
   AT(8, t_end);
   AT(16, cfl);
   AT(24, dt_first);

@@ -2,9 +2,10 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "context/structs.h"
-#include "context/context.h"
+#include "context/arena.h"
 #include "transfer/kernels.h"
-#include "world.h"
+#include "particles/particles.h"
+#include "body.h"
 
 /* ---- a host that counts ---- */
 typedef struct host {
@@ -307,6 +308,65 @@ START_TEST(memory_refused) {
 }
 END_TEST
 
+#if MPMI_WATCHED
+#include <sanitizer/asan_interface.h>
+
+/* Under the address sanitizer what is held and not in use is closed, and what is in use is open. */
+START_TEST(slack_is_closed) {
+  mpm_context *context;
+  ck_assert_int_eq(mpm_context_create(NULL, &context), MPM_OK);
+  mpmi_arena count = {NULL, 0};
+  for (int32_t i = 0; i < 3; ++i) mpmi_arena_take(&count, 5, sizeof(double));
+  char *memory = mpmi_alloc(context, count.used);
+  mpmi_arena from = {memory, 0};
+  for (int32_t i = 0; i < 3; ++i) {
+    char *at = mpmi_arena_take(&from, 5, sizeof(double));
+    ck_assert(!__asan_region_is_poisoned(at, 5 * sizeof(double)));
+    for (char *k = at + 5 * sizeof(double); k < memory + from.used; ++k)
+      ck_assert(__asan_address_is_poisoned(k));
+  }
+  mpmi_free(context, memory, count.used);
+  int64_t *list = NULL, capacity = 0;
+  for (int64_t n = 1; n < 100; n += 7) {
+    ck_assert_int_eq(MPMI_RESERVE_MORE(context, list, capacity, n), MPM_OK);
+    ck_assert(!__asan_region_is_poisoned(list, (size_t)n * sizeof *list));
+    for (int64_t k = n; k < capacity; ++k) ck_assert(__asan_address_is_poisoned(list + k));
+  }
+  MPMI_FREE_ARRAY(context, list, capacity);
+  ck_assert_int_eq(mpm_context_destroy(context), MPM_OK);
+}
+END_TEST
+
+/* The slots that a set has room for beyond those in use, in every field, and the members of a stepper. */
+START_TEST(slack_of_sets_is_closed) {
+  world w;
+  int32_t seen = 0;
+  body_open(&w, &(body_desc){.dim = 2});
+  for (int32_t again = 0; again < 3; ++again) {
+    for (int32_t m = 0; m < 2; ++m) {
+      const mpm_particles *set = w.set[m];
+      if (set->slots == set->ld) continue;
+      ++seen;
+      for (int32_t f = 0; f < set->field_count; ++f)
+        for (int32_t copy = 0; copy < 2 && set->field[f].data[copy]; ++copy)
+          for (int32_t c = 0; c < set->field[f].components; ++c) {
+            const size_t size = mpmi_type_size(set->field[f].type);
+            const char *row = (const char *)set->field[f].data[copy] + (size_t)(c * set->ld) * size;
+            ck_assert(!__asan_address_is_poisoned(row + (size_t)set->slots * size - 1));
+            ck_assert(__asan_address_is_poisoned(row + (size_t)set->slots * size));
+            ck_assert(__asan_address_is_poisoned(row + (size_t)set->ld * size - 1));
+          }
+    }
+    const double x[] = {w.grid->desc.origin[0] + 0.5, w.grid->desc.origin[1] + 0.5}, volume[] = {1e-6};
+    if (again) world_steps(&w, 1);
+    ck_ok(&w, mpm_particles_add(w.set[0], 1, x, NULL, volume, NULL, NULL, NULL));
+  }
+  ck_assert_int_gt(seen, 2);
+  world_close(&w);
+}
+END_TEST
+#endif
+
 START_TEST(living_children) {
   mpm_context *context = make(NULL);
   context->children = 2;
@@ -393,6 +453,10 @@ Suite *context_suite(void) {
   tcase_add_test(memory, memory_counted);
   tcase_add_test(memory, memory_refused);
   tcase_add_test(memory, living_children);
+#if MPMI_WATCHED
+  tcase_add_test(memory, slack_is_closed);
+  tcase_add_test(memory, slack_of_sets_is_closed);
+#endif
   suite_add_tcase(suite, memory);
   TCase *texts = tcase_create("texts");
   tcase_add_test(texts, last_error);

@@ -63,6 +63,34 @@ START_TEST(boxes_are_half_open) {
 }
 END_TEST
 
+static mpm_status everywhere(void *user, int32_t dim, int64_t n, int64_t ld, const double *position,
+                             uint8_t *inside) {
+  (void)user, (void)dim, (void)ld, (void)position;
+  memset(inside, 1, (size_t)n);
+  return 0;
+}
+
+/* Every shape is cut off at the faces of the grid, and the count says what is left. */
+START_TEST(shapes_beyond_the_grid) {
+  for (int32_t dim = 1; dim <= 3; ++dim) {
+    sets_open(&w, dim, "linear_elastic", 0);
+    const double low[] = {-1e6, -1.5, -9}, inner[] = {-1, -1, -1}, high[] = {0.5, 0, 0.5},
+                 centre[] = {-1, -1, -1};
+    const int32_t per[] = {2, 2, 2};
+    int64_t inside, count;
+    ck_ok(&w, mpm_particles_fill_box(w.set[0], inner, high, per, NULL, &inside));
+    ck_assert_int_gt(inside, 0);
+    ck_ok(&w, mpm_particles_fill_box(w.set[0], low, high, per, NULL, &count));
+    ck_assert_int_eq(count, inside);
+    ck_ok(&w, mpm_particles_fill(w.set[0], low, high, per, everywhere, NULL, NULL, &count));
+    ck_assert_int_eq(count, inside);
+    ck_ok(&w, mpm_particles_fill_ball(w.set[0], centre, 0.9, per, NULL, &count)); /* a part of the ball */
+    ck_assert_int_gt(count, 0);
+    sets_check_slots(&w);
+  }
+}
+END_TEST
+
 START_TEST(uneven_lattices_keep_sizes) {
   int64_t count;
   ck_ok(&w, mpm_particles_fill_box(w.set[0], low_corner, (double[]){-0.5, -0.5, -0.5}, (int32_t[]){1, 2, 4},
@@ -89,9 +117,10 @@ START_TEST(bad_boxes) {
   REFUSED(NULL, upper, per, "lower is NULL");
   REFUSED(low_corner, NULL, per, "upper is NULL");
   REFUSED(low_corner, upper, NULL, "per_cell is NULL");
-  REFUSED(((double[]){-1.1, -1, -1}), upper, per, "lower[0] is -1.1");
+  REFUSED(((double[]){-3, -1, -1}), ((double[]){-1.1, 0, 0}), per, "beyond the grid");
   REFUSED(((double[]){-1, NOT_A_NUMBER, -1}), upper, per, "lower[1] is nan");
-  REFUSED(low_corner, ((double[]){0, 3.6, 0}), per, "upper[1] is 3.6");
+  REFUSED(((double[]){0, 40, 0}), ((double[]){1, 41, 1}), per, "from 40 to 41 on axis 1");
+  REFUSED(low_corner, ((double[]){-1, 0, 0}), per, "must be below upper[0]");
   REFUSED(low_corner, ((double[]){0, 0, INFINITE}), per, "upper[2] is inf");
   REFUSED(low_corner, ((double[]){0, 0, -1}), per, "lower[2] is -1, must be below upper[2]");
   REFUSED(upper, low_corner, per, "must be below");
@@ -261,6 +290,7 @@ Suite *fill_suite(void) {
   tcase_add_checked_fixture(tests, open_set, close_set);
   tcase_add_test(tests, fills_boxes);
   tcase_add_test(tests, boxes_are_half_open);
+  tcase_add_test(tests, shapes_beyond_the_grid);
   tcase_add_test(tests, uneven_lattices_keep_sizes);
   tcase_add_test(tests, bad_boxes);
   tcase_add_test(tests, too_many_points);

@@ -1,4 +1,5 @@
 /* Views of a set: memory lent, given back, and what the host may have done to it meanwhile. */
+#include "body.h"
 #include "particles/values.h"
 #include "sets.h"
 
@@ -315,6 +316,94 @@ START_TEST(staged_steps) {
 }
 END_TEST
 
+/* ---- what a view for reading was changed to ------------------------------------------------------------ */
+static const struct {
+  const char *field;
+  double value;
+} spoilt[] = {{"position", 1e30},
+              {"position", -5.0},
+              {"position", NOT_A_NUMBER},
+              {"position", 0.9},
+              {"mass", -1.0},
+              {"mass", NOT_A_NUMBER},
+              {"mass", 0.0},
+              {"volume", NOT_A_NUMBER},
+              {"id", 77777},
+              {"id", -1},
+              {"id", 3},
+              {"velocity", INFINITE},
+              {"stress", 1e300},
+              {"deformation_gradient", -1.0}};
+enum { SPOILT = sizeof spoilt / sizeof *spoilt };
+
+/* Five slots, a hole or not, take the value; the library may notice it now. */
+static void spoil(world *b, int32_t k, mpm_particles *set) {
+  mpm_view view = {.struct_size = sizeof view};
+  ck_ok(b, mpm_particles_map(set, spoilt[k].field, MPM_READ, &view));
+  for (int64_t i = 0; i < 5; ++i) {
+    if (view.type == MPM_I64)
+      ((int64_t *)view.data)[i] = (int64_t)spoilt[k].value;
+    else
+      ((double *)view.data)[i] = spoilt[k].value;
+  }
+  const mpm_status status = mpm_view_release(&view);
+  ck_assert(status == MPM_OK || status == MPM_E_STATE);
+  if (status) ck_assert_ptr_nonnull(strstr(mpm_last_error(b->context), "lent for reading"));
+  ck_assert_int_eq(set->mapped, 0);
+}
+
+/* Nothing that is written there makes a step read or write where it must not; positions are named. */
+START_TEST(spoilt_views_for_reading) {
+  static const int32_t scheme[] = {MPM_USL, MPM_USF, MPM_MUSL, MPM_NEWMARK};
+  const int32_t k = _i % SPOILT;
+  for (int32_t s = 0; s < 4; ++s)
+    for (int32_t other = 0; other < 2; ++other) {
+      world b;
+      body_open(&b, &(body_desc){.dim = 2, .method.scheme = scheme[s]});
+      mpm_stepper_desc d = body_stepper(&b);
+      d.locking_remedy = other;
+      ck_ok(&b, mpm_stepper_configure(b.stepper, &d));
+      world_steps(&b, 2);
+      const int64_t n = mpm_particles_count(b.set[0]);
+      double *x = fetch(&b, b.set[0], "position", 2);
+      spoil(&b, k, b.set[0]);
+      for (int32_t again = 0; again < 4; ++again) {
+        const mpm_status status = mpm_step(b.stepper, BODY_DT, NULL);
+        if (k < 3) {
+          ck_assert_int_eq(status, MPM_E_STATE);
+          ck_assert_ptr_nonnull(strstr(mpm_last_error(b.context), "written through a view for reading"));
+        }
+      }
+      const double v[2] = {0.0, 0.0};
+      mpm_particles_set_all(b.set[0], "velocity", MPM_F64, 2, v);
+      mpm_particles_add(b.set[1], 1, (double[]){x[0], x[n]}, NULL, (double[]){1e-6}, NULL, NULL, NULL);
+      mpm_step(b.stepper, BODY_DT, NULL); /* sorts */
+      if (k < 4) {                        /* positions can be set right */
+        ck_ok(&b, mpm_particles_set(b.set[0], "position", MPM_F64, 2, n, NULL, x));
+        world_steps(&b, 1);
+      }
+      free(x);
+      world_close(&b);
+    }
+}
+END_TEST
+
+/* Also between the parts of a step. */
+START_TEST(spoilt_in_a_staged_step) {
+  for (int32_t part = 0; part < 2; ++part) {
+    world b;
+    body_open(&b, &(body_desc){.dim = 2, .method.scheme = MPM_USL});
+    world_steps(&b, 1);
+    ck_ok(&b, mpm_step_begin(b.stepper, BODY_DT));
+    if (part) ck_ok(&b, mpm_step_grid(b.stepper));
+    spoil(&b, 0, b.set[0]);
+    ck_refused(&b, part ? mpm_step_end(b.stepper, NULL) : mpm_step_grid(b.stepper), MPM_E_STATE,
+               "written through a view for reading");
+    world_close(&b);
+  }
+}
+END_TEST
+
 Suite *views_suite(void) {
   Suite *suite = suite_create("views");
   TCase *tests = tcase_create("views");
@@ -333,6 +422,8 @@ Suite *views_suite(void) {
   tcase_add_test(tests, positions_are_wrapped);
   tcase_add_test(tests, an_empty_set);
   tcase_add_test(tests, staged_steps);
+  tcase_add_loop_test(tests, spoilt_views_for_reading, 0, SPOILT);
+  tcase_add_test(tests, spoilt_in_a_staged_step);
   suite_add_tcase(suite, tests);
   return suite;
 }

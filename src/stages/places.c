@@ -1,0 +1,67 @@
+/* Whether particles are where their blocks expect them. */
+#include "stages/stages.h"
+#include "simd/rounding.h"
+
+#include <math.h>
+
+/* Where the particles of a block have their stencils in its tile: the bounds of motion.c. */
+typedef struct reach {
+  double centre, half, period, inverse_period;
+} reach;
+
+static reach reach_of(const mpmi_blocks *blocks, int64_t block, int32_t k) {
+  const mpm_grid *grid = blocks->grid;
+  const double first = (double)blocks->coord[block][k] * blocks->edge, h = grid->desc.spacing[k];
+  const double length = grid->desc.periodic[k] ? grid->upper[k] - grid->desc.origin[k] : 0.0;
+  return (reach){.centre = grid->desc.origin[k] + h * (first + 0.5 * (blocks->edge - grid->centred)),
+                 .half = h * (0.5 * blocks->edge + MPMI_RING) * (1.0 - 1e-9),
+                 .period = length,
+                 .inverse_period = length > 0.0 ? 1.0 / length : 0.0};
+}
+
+/* Nothing but a host that writes through a view for reading can bring a particle out of its tile, where its
+ * stencil would be beyond the tile's memory. */
+static int32_t any_astray(const double *x, const reach *of, int64_t n) {
+  mpmi_mask near = ~(mpmi_mask){0};
+  for (int64_t p = 0; p < n; p += MPMI_LANES) {
+    mpmi_lanes away = mpmi_lanes_load(x + p) - of->centre;
+    if (of->period > 0.0) away -= of->period * mpmi_lanes_round(away * of->inverse_period);
+    near &= mpmi_lanes_abs(away) <= of->half;
+  }
+  return mpmi_lanes_any(~near, 1) != 0;
+}
+
+static int32_t is_astray(double x, const reach *of) {
+  double away = x - of->centre;
+  if (of->period > 0.0) away -= of->period * mpmi_round(away * of->inverse_period);
+  return !(fabs(away) <= of->half);
+}
+
+int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m) {
+  const mpmi_layout *layout = step->layout;
+  const mpm_particles *set = layout->member[m].set;
+  const int64_t *start = layout->member[m].now.start;
+  const int64_t begin = start[visit->block], n = start[visit->block + 1] - begin;
+  for (int32_t k = 0; k < set->grid->dim; ++k) {
+    const reach of = reach_of(&layout->blocks, visit->block, k);
+    const double *x = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + begin;
+    if (!any_astray(x, &of, n)) continue;
+    int64_t p = 0;
+    while (!is_astray(x[p], &of)) ++p;
+    mpmi_failure_take(&step->work->report[visit->task].failure,
+                      &(mpmi_failure){MPM_E_STATE, 0, m, mpmi_i64(set, MPMI_ID, 0)[begin + p], -1,
+                                      "a position that was written through a view for reading"});
+    return 0;
+  }
+  return 1;
+}
+
+static void check_block(void *user, const mpmi_visit *visit) {
+  mpmi_step *step = user;
+  for (int32_t m = 0; m < step->layout->member_count; ++m) mpmi_is_in_place(step, visit, m);
+}
+
+mpm_status mpmi_places_check(mpmi_step *step) {
+  const mpm_status status = mpmi_visit_blocks(step, 0, check_block, step);
+  return status ? status : mpmi_step_failure(step);
+}
