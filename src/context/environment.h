@@ -31,8 +31,7 @@ typedef struct mpmi_environment {
 void mpmi_environment_enter(mpmi_environment *host);
 /* Puts back what mpmi_environment_enter() noted, with the flags of then. */
 void mpmi_environment_leave(const mpmi_environment *host);
-/* Sets the default environment where the thread has another one: for the library's own threads, and after the host
- * was called. */
+/* Sets the default environment where the thread has another one: after the host was called. */
 void mpmi_environment_mend(void);
 
 #endif

@@ -94,7 +94,6 @@ static void sleep_until_work(mpmi_pool *pool) {
 
 static void *work(void *argument) {
   mpmi_pool *pool = argument;
-  mpmi_environment_mend(); /* threads begin with that of the thread that starts them */
   while (!atomic_load(&pool->stop)) {
     take_part(pool);
     if (lasts(pool, nothing_to_take)) sleep_until_work(pool);

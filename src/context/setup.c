@@ -167,7 +167,7 @@ static void tell_failure(mpm_context *first) {
 
 mpm_status mpm_context_create(const mpm_context_desc *desc, mpm_context **out) {
   if (out) *out = NULL;
-  mpmi_environment environment;
+  mpmi_environment environment; /* threads of a pool begin with that of the thread that starts them */
   mpmi_environment_enter(&environment);
   mpm_context first;
   memset(&first, 0, sizeof first);
