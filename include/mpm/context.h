@@ -26,17 +26,19 @@ typedef mpm_status (*mpm_parallel_for_fn)(void *user, int64_t count, mpm_task_fn
 /** Services of the host. Fill the struct with mpm_context_desc_init(), then change what is wanted. */
 typedef struct mpm_context_desc {
   uint32_t struct_size; /**< sizeof(mpm_context_desc) of the caller */
-  /** Number of threads, 0 to 1024. 1 (default): the calling thread only; N: a pool of N threads, the calling one
-   * included; 0: one per processor. The pool belongs to the context; its threads sleep when idle and never
-   * spin for longer than a few microseconds. Results do not depend on the number. A build without threads
-   * (MPM_NO_THREADS) takes 0 and 1, or any number with parallel_for, else MPM_E_UNSUPPORTED.
+  /** Number of threads, 0 to 1024. 1 (default): the calling thread only; N: a pool of N threads, the calling
+   * one included; 0: one per processor. The pool belongs to the context; its threads sleep when idle and
+   * never spin for longer than a few microseconds. Results do not depend on the number. A build without
+   * threads (MPM_NO_THREADS) takes 0 and 1, or any number with parallel_for, else MPM_E_UNSUPPORTED.
    *
-   * A process that fork() makes between two calls has the context and its objects, but none of the pool's threads:
-   * there everything runs on the calling thread, with the same results, and destroying frees as ever. */
+   * A process that fork() makes between two calls has the context and its objects, but none of the pool's
+   * threads: there everything runs on the calling thread, with the same results, and destroying frees as
+   * ever. */
   int32_t concurrency;
   /** Instruction set of the kernels: MPM_ISA_BEST (default) or the one to be used, which creation refuses
    * with MPM_E_UNSUPPORTED if processor or library lacks it. With MPM_ISA_BEST the environment variable
-   * MPM_ISA (portable or baseline, avx2, avx512, neon) decides where it is set; it is read once, at creation. */
+   * MPM_ISA (portable or baseline, avx2, avx512, neon) decides where it is set; it is read once, at
+   * creation. */
   int32_t isa;
   /** 1: the library calls the host from the calling thread only, also where a callback is marked (mt).
    * Default 0. */
@@ -57,8 +59,9 @@ typedef struct mpm_context_desc {
    * thread only. */
   void (*log)(void *user, int32_t level, const char *text);
   void *log_user; /**< first argument of log */
-  /** The host's memory for a sentence that says why mpm_context_create() has failed: it is cut to fit, and ends
-   * with a zero; after MPM_OK it is as before. Used during that call only. Default NULL: there is none. */
+  /** The host's memory for a sentence that says why mpm_context_create() has failed: it is cut to fit, and
+   * ends with a zero; after MPM_OK it is as before. Used during that call only. Default NULL: there is
+   * none. */
   char *error_text;
   uint64_t error_bytes; /**< size of error_text in bytes; 0 exactly where error_text is NULL */
 } mpm_context_desc;
@@ -74,8 +77,8 @@ MPM_API mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct
  * - MPM_E_ARG: a value is bad, only one of alloc and release or of error_text and error_bytes is set, or the
  *   variable MPM_ISA has an unknown value.
  * - MPM_E_NOMEM: memory or threads are not to be had.
- * - MPM_E_UNSUPPORTED: the instruction set is not available, the build has no threads, or desc sets a field that
- *   this version of the library does not know.
+ * - MPM_E_UNSUPPORTED: the instruction set is not available, the build has no threads, or desc sets a field
+ *   that this version of the library does not know.
  */
 MPM_API mpm_status mpm_context_create(const mpm_context_desc *desc, mpm_context **out);
 
@@ -83,16 +86,16 @@ MPM_API mpm_status mpm_context_create(const mpm_context_desc *desc, mpm_context 
  * pointer may be NULL. Any thread, any time while the context lives, also in callbacks. */
 MPM_API mpm_status mpm_context_memory(const mpm_context *context, int64_t *bytes, int64_t *peak_bytes);
 
-/** Ends the pool and frees the context. NULL is fine. MPM_E_STATE while objects made with it live, and in its own
- * callbacks. */
+/** Ends the pool and frees the context. NULL is fine. MPM_E_STATE while objects made with it live, and in its
+ * own callbacks. */
 MPM_API mpm_status mpm_context_destroy(mpm_context *context);
 
-/** Gives one or two sentences, with the offending names and values, on the last call on this context or its objects
- * that did not return MPM_OK. Calls that succeed leave them as they are, so that a host may clean up and log first
- * and ask then; "" while no call has failed. The text belongs to the library and is valid until the next call on the
- * context. Where no context is at hand (NULL, or one that was destroyed), a sentence that says so: the calls that
- * get no further than to a NULL handle, or to one of another kind, have no other. May be called in callbacks, too,
- * on the thread of the call. */
+/** Gives one or two sentences, with the offending names and values, on the last call on this context or its
+ * objects that did not return MPM_OK. Calls that succeed leave them as they are, so that a host may clean up
+ * and log first and ask then; "" while no call has failed. The text belongs to the library and is valid until
+ * the next call on the context. Where no context is at hand (NULL, or one that was destroyed), a sentence
+ * that says so: the calls that get no further than to a NULL handle, or to one of another kind, have no
+ * other. May be called in callbacks, too, on the thread of the call. */
 MPM_API const char *mpm_last_error(const mpm_context *context);
 
 #ifdef __cplusplus

@@ -93,9 +93,9 @@ MPM_API mpm_status mpm_batch_field(const void *lookup, const char *field, const 
 
 /**
  * A law (mt). It reads the state before the step and the deformation of the step, and writes stress_new,
- * state_new and wave_speed of all n items, and kinematic_viscosity and energy where it has them. A wave speed or a
- * viscosity below 0 stops the step or the call that asked (MPM_E_CALLBACK), and an infinite energy or any other
- * value that is not finite is MPM_NONFINITE; both name the particle. The law may be
+ * state_new and wave_speed of all n items, and kinematic_viscosity and energy where it has them. A wave speed
+ * or a viscosity below 0 stops the step or the call that asked (MPM_E_CALLBACK), and an infinite energy or
+ * any other value that is not finite is MPM_NONFINITE; both name the particle. The law may be
  * called several times for one step, and nothing that it writes counts before the step is committed: it keeps
  * no state of its own.
  *

@@ -101,9 +101,9 @@ MPM_API mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const 
  * and the size of one lattice cell, so that domains of GIMP fill the body. The ids of the new particles are
  * *first_id to *first_id + *count - 1; both pointers may be NULL.
  *
- * What a shape has beyond the grid is left out, on periodic axes too, as symmetry planes want it: *count tells
- * how many particles there are. That holds for all three fills. per_cell is 1 to 64, and a box has at most 2^32
- * lattice points, in the shape or not.
+ * What a shape has beyond the grid is left out, on periodic axes too, as symmetry planes want it: *count
+ * tells how many particles there are. That holds for all three fills. per_cell is 1 to 64, and a box has at
+ * most 2^32 lattice points, in the shape or not.
  *
  * MPM_E_ARG: a bound is not finite, lower >= upper on an axis, the box does not meet the grid, or a limit is
  * exceeded.
@@ -142,8 +142,9 @@ MPM_API mpm_status mpm_particles_field_info(const mpm_particles *particles, int3
 
 /** Adds a field of the host, zero in every particle. It travels with the particles, is saved with them, and
  * reaches callbacks through mpm_batch_field(). The name has 1 to 47 characters of a-z, 0-9 and _; type is
- * MPM_F64, MPM_I64 or MPM_U8; components are 1 to 64. A set has at most 64 fields, the 17 of the table included.
- * MPM_E_ARG: the name is bad or taken, or a value is. MPM_E_STATE: there is no room for one more. */
+ * MPM_F64, MPM_I64 or MPM_U8; components are 1 to 64. A set has at most 64 fields, the 17 of the table
+ * included. MPM_E_ARG: the name is bad or taken, or a value is. MPM_E_STATE: there is no room for one
+ * more. */
 MPM_API mpm_status mpm_particles_add_field(mpm_particles *particles, const char *field, int32_t type,
                                            int32_t components);
 
@@ -151,8 +152,9 @@ MPM_API mpm_status mpm_particles_add_field(mpm_particles *particles, const char 
  * Lends a field in library order, with its stored components and with inert slots (id < 0); a map of "id"
  * tells which is which. access is MPM_READ, MPM_WRITE or both. The caller sets the view's struct_size. Until
  * mpm_view_release() steps return MPM_E_STATE. Of a set at most 64 views are out at once. A view without
- * MPM_WRITE is for reading: see mpm_view_release() for what becomes of changes. MPM_E_NOT_FOUND: there is no such
- * field. MPM_E_ARG: MPM_WRITE is asked for on a field that is not writable. MPM_E_STATE: 64 views are out.
+ * MPM_WRITE is for reading: see mpm_view_release() for what becomes of changes. MPM_E_NOT_FOUND: there is no
+ * such field. MPM_E_ARG: MPM_WRITE is asked for on a field that is not writable. MPM_E_STATE: 64 views are
+ * out.
  */
 MPM_API mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_t access,
                                      mpm_view *view);

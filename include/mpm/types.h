@@ -11,8 +11,9 @@
 /** Version of these headers as 0xMMmmpp (major, minor, patch), to be compared with mpm_version(). */
 #define MPM_VERSION 0x000100
 
-/** Marks every exported function. A host may define it before the first include to replace the default. On Windows a
- * host that links to the DLL may define MPM_DLL, which saves a jump for each call; one that links statically must not. */
+/** Marks every exported function. A host may define it before the first include to replace the default. On
+ * Windows a host that links to the DLL may define MPM_DLL, which saves a jump for each call; one that links
+ * statically must not. */
 #ifndef MPM_API
 #if defined(_WIN32) && defined(MPM_BUILD)
 #define MPM_API __declspec(dllexport)
@@ -226,21 +227,23 @@ MPM_API uint32_t mpm_version(void);
  * static, and the pointer is never NULL. May be called from any thread at any time. */
 MPM_API const char *mpm_status_name(mpm_status status);
 
-/** What a status says, in a sentence without names and values: for calls that have no context to keep a text, as
- * those on NULL. Static, and never NULL: see mpm_last_error() for more. May be called from any thread at any time. */
+/** What a status says, in a sentence without names and values: for calls that have no context to keep a text,
+ * as those on NULL. Static, and never NULL: see mpm_last_error() for more. May be called from any thread at
+ * any time. */
 MPM_API const char *mpm_status_text(mpm_status status);
 
 /**
  * Gives back the memory of a view that mpm_particles_map() or mpm_grid_map() filled. Afterwards its data and
- * owner are NULL. What the host wrote through a view with MPM_WRITE takes effect now. Memory of a view without
- * it is not to be changed: whatever is written there harms no step beyond its numbers, and a library built with
- * MPM_DEBUG notices.
+ * owner are NULL. What the host wrote through a view with MPM_WRITE takes effect now. Memory of a view
+ * without it is not to be changed: whatever is written there harms no step beyond its numbers, and a library
+ * built with MPM_DEBUG notices.
  *
  * - MPM_E_ARG: view is NULL, or the host wrote values that are not finite or give det F <= 0. In the second
  *   case the view is released all the same, and the set refuses to step (MPM_E_STATE) until the values are
  *   repaired; bad nodal values are dropped.
- * - MPM_E_STATE: the view is not lent, or no longer; or, with MPM_DEBUG, it was lent for reading and its memory
- *   has changed: it is then released all the same. A view that was never filled has no context to keep a text.
+ * - MPM_E_STATE: the view is not lent, or no longer; or, with MPM_DEBUG, it was lent for reading and its
+ *   memory has changed: it is then released all the same. A view that was never filled has no context to keep
+ *   a text.
  */
 MPM_API mpm_status mpm_view_release(mpm_view *view);
 

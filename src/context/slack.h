@@ -1,5 +1,5 @@
-/* Memory that is held and not in use: gaps between the pieces of one allocation, and room that an array has not
- * grown into. Under the address sanitizer it is closed, so that a read or write there is reported as one
+/* Memory that is held and not in use: gaps between the pieces of one allocation, and room that an array has
+ * not grown into. Under the address sanitizer it is closed, so that a read or write there is reported as one
  * beyond an allocation would be; elsewhere nothing happens. */
 #ifndef MPMI_SLACK_H
 #define MPMI_SLACK_H
@@ -40,7 +40,8 @@ static inline void mpmi_slack_rows(void *memory, size_t rows, size_t ld, size_t 
     mpmi_slack((char *)memory + c * ld * size, ld * size, count * size);
 }
 
-/* Bytes between pieces of one allocation: a line where nobody watches, else as far as an index may go astray. */
+/* Bytes between pieces of one allocation: a line where nobody watches, else as far as an index may go
+ * astray. */
 static inline size_t mpmi_gap(size_t bytes, size_t alignment) {
   const size_t most = (size_t)1 << 16, away = bytes < most ? bytes : most;
   return MPMI_WATCHED ? (away + alignment) / alignment * alignment : 0;

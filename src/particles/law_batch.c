@@ -108,8 +108,8 @@ void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t 
     mpmi_law_batch_scale_F(b, dim, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
 }
 
-/* A negative speed or viscosity would not bound the step, and an infinite energy would spoil all sums. What is
- * not finite beyond that is found with the stress. */
+/* A negative speed or viscosity would not bound the step, and an infinite energy would spoil all sums. What
+ * is not finite beyond that is found with the stress. */
 static void look(mpmi_law_batch *b, int64_t p) {
   mpmi_law_fault *fault = &b->fault;
   if (fault->cause) return;

@@ -230,8 +230,9 @@ START_TEST(not_below_dt_min) {
 }
 END_TEST
 
-/* Without a bound cutting ends too, at t = 0, where every number advances the time: after 60 cuts, or as many as
- * the host grants, for which a sub-step that was committed starts anew. The next call starts where this did. */
+/* Without a bound cutting ends too, at t = 0, where every number advances the time: after 60 cuts, or as many
+ * as the host grants, for which a sub-step that was committed starts anew. The next call starts where this
+ * did. */
 START_TEST(cuts_end) {
   ck_ok(&r, mpm_stepper_set_force(r.stepper, refuse_long, NULL));
   d.t_end = 1.0;
