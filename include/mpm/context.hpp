@@ -41,8 +41,8 @@ struct memory_use {
  */
 class context : public wrapper<detail::context_core> {
 public:
-  /** Makes a context: see mpm_context_create(). error::what() has the sentence that says why there is none; it goes
-   * to error_text of the descriptor as well, where that is set. */
+  /** Makes a context: see mpm_context_create(). error::what() has the sentence that says why there is none;
+   * it goes to error_text of the descriptor as well, where that is set. */
   explicit context(context_desc desc = {}) {
     detail::context_core &c = core();
     char text[1024] = "";

@@ -9,14 +9,16 @@
  * sets may be empty.
  *
  * States and VTK files take the place of the file at their path when they are complete. Until then they are
- * written beside it under the name path.tmp0, or path.tmp1 ... where several are being written, and path holds the
- * old contents. Symbolic links are followed: the file that they lead to is replaced, in its own folder. The mode of
- * a file that was there is kept, and owner and group as far as the process may give files away; if the group
- * cannot be kept, it gets no rights that all others do not have. Another hard link keeps the old contents.
+ * written beside it under the name path.tmp0, or path.tmp1 ... where several are being written, and path
+ * holds the old contents. Symbolic links are followed: the file that they lead to is replaced, in its own
+ * folder. The mode of a file that was there is kept, and owner and group as far as the process may give files
+ * away; if the group cannot be kept, it gets no rights that all others do not have. Another hard link keeps
+ * the old contents.
  *
- * A process that dies while it writes leaves its temporary file behind. The next write to the same path removes it:
- * the writer of a temporary file holds a lock on it (flock), and a file is removed only if its lock is free. On
- * storage without locks none is removed. On Windows modes and owners are those of new files in the folder.
+ * A process that dies while it writes leaves its temporary file behind. The next write to the same path
+ * removes it: the writer of a temporary file holds a lock on it (flock), and a file is removed only if its
+ * lock is free. On storage without locks none is removed. On Windows modes and owners are those of new files
+ * in the folder.
  *
  * Paths are UTF-8, also on Windows. In a build without files (MPM_NO_FILES) every call with a path gives
  * MPM_E_UNSUPPORTED.
@@ -43,8 +45,8 @@ MPM_API mpm_status mpm_state_save(const mpm_stepper *stepper, void *buffer, int6
  * way. */
 MPM_API mpm_status mpm_state_load(mpm_stepper *stepper, const void *buffer, int64_t bytes);
 
-/** Writes the state into a file, as mpm_state_save() does into memory, and waits for the storage: path holds the
- * old state or the new one. MPM_E_IO: the file could not be written. */
+/** Writes the state into a file, as mpm_state_save() does into memory, and waits for the storage: path holds
+ * the old state or the new one. MPM_E_IO: the file could not be written. */
 MPM_API mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path);
 
 /** Replaces the state by one from a file. Errors are those of mpm_state_load(), and MPM_E_IO: the file could

@@ -4,14 +4,13 @@
  *
  * @par Status
  * A call returns 0 if it was done; a value > 0 if it was not done and the state is unchanged (1..5: a smaller
- * dt may cure it); a value < 0 if it was refused or failed. In both cases mpm_last_error() says why, until another
- * call fails; where there is no context to ask, mpm_status_text() does in general. Unless stated otherwise
- * objects are unchanged in the last two cases. A value returned by a callback is passed on in
+ * dt may cure it); a value < 0 if it was refused or failed. In both cases mpm_last_error() says why, until
+ * another call fails; where there is no context to ask, mpm_status_text() does in general. Unless stated
+ * otherwise objects are unchanged in the last two cases. A value returned by a callback is passed on in
  * mpm_step_info.callback_status. Every function may return MPM_E_ARG (a NULL that is not allowed, a value out
  * of range, a bad struct_size), MPM_E_NOMEM, MPM_E_UNSUPPORTED (with a sentence that says what to use
- * instead), MPM_E_INTERNAL, and MPM_E_STATE (another call on the context is under way: the call was made from a
- * callback, or from another thread). Declarations name the
- * statuses that mean more.
+ * instead), MPM_E_INTERNAL, and MPM_E_STATE (another call on the context is under way: the call was made from
+ * a callback, or from another thread). Declarations name the statuses that mean more.
  *
  * @par Units
  * Any consistent set of units will do. 1-D is uniaxial strain per unit area, 2-D plane strain per unit
@@ -57,20 +56,21 @@
  * release and log run on the calling thread only. A callback must not throw or jump out.
  *
  * @par Calls in callbacks
- * While a call on a context or one of its objects is under way, every other is refused with MPM_E_STATE and changes
- * nothing: in callbacks of every kind, alloc, release, log and parallel_for included, and in other threads. Free are
- * mpm_batch_field(), mpm_particles_count(), mpm_context_memory(), mpm_last_error() and, in the callback of
- * mpm_stepper_set_linear_solver() and one at a time, mpm_operator_*; all functions without a handle, such as
- * mpm_version(), mpm_status_name(), mpm_status_text() and the _init of descriptors; and all calls on other contexts.
+ * While a call on a context or one of its objects is under way, every other is refused with MPM_E_STATE and
+ * changes nothing: in callbacks of every kind, alloc, release, log and parallel_for included, and in other
+ * threads. Free are mpm_batch_field(), mpm_particles_count(), mpm_context_memory(), mpm_last_error() and, in
+ * the callback of mpm_stepper_set_linear_solver() and one at a time, mpm_operator_*; all functions without a
+ * handle, such as mpm_version(), mpm_status_name(), mpm_status_text() and the _init of descriptors; and all
+ * calls on other contexts.
  *
  * @par Floating-point environment
- * The library computes in the default environment (to nearest, no traps, tiny numbers kept), whatever that of the
- * host is and whenever it was set. A host that traps exceptions is not trapped in a call; rounding and flushing to
- * zero change no status, no bit of a state and no file; and after the call the host has its environment back, with the
- * flags as they were before. The same holds on the threads of a host's executor. Callbacks find the default
- * environment, too, on whatever thread they run, so that their results do not depend on it either. What they leave
- * behind is dropped, flags included: a callback that wants traps sets them when it begins and looks at flags before it
- * returns.
+ * The library computes in the default environment (to nearest, no traps, tiny numbers kept), whatever that of
+ * the host is and whenever it was set. A host that traps exceptions is not trapped in a call; rounding and
+ * flushing to zero change no status, no bit of a state and no file; and after the call the host has its
+ * environment back, with the flags as they were before. The same holds on the threads of a host's executor.
+ * Callbacks find the default environment, too, on whatever thread they run, so that their results do not
+ * depend on it either. What they leave behind is dropped, flags included: a callback that wants traps sets
+ * them when it begins and looks at flags before it returns.
  *
  * @par Results
  * The same binary on the same instruction set gives, for the same input, the same bits: for any number of
@@ -78,13 +78,13 @@
  *
  * @par
  * With MPM_ISA_PORTABLE it gives the same bits on every platform as well: processor, byte order, size of
- * pointers, operating system, C library, compiler and its optimisation do not matter, and a state saved on one
- * platform goes on with the same bits on another. That holds for one version of the library, where doubles are
- * those of IEEE 754 with all of their operations rounded to nearest once, the library was compiled without
- * options that let the compiler change results (-ffast-math and its like), and callbacks keep the same rules:
- * of the C library's functions sqrt, fma, floor and their like have the same bits everywhere, exp, sin and pow
- * have not. Sign and payload of values that are not numbers are left open. docs/portability.md lists the
- * platforms on which this is tested.
+ * pointers, operating system, C library, compiler and its optimisation do not matter, and a state saved on
+ * one platform goes on with the same bits on another. That holds for one version of the library, where
+ * doubles are those of IEEE 754 with all of their operations rounded to nearest once, the library was
+ * compiled without options that let the compiler change results (-ffast-math and its like), and callbacks
+ * keep the same rules: of the C library's functions sqrt, fma, floor and their like have the same bits
+ * everywhere, exp, sin and pow have not. Sign and payload of values that are not numbers are left open.
+ * docs/portability.md lists the platforms on which this is tested.
  *
  * @par Sources
  * Equations are those of Guilkey, An Introduction to the Material Point Method; Guilkey and Weiss, Int. J.

@@ -32,8 +32,8 @@ struct mpm_context {
   mpmi_pool *pool;                   /* own threads; NULL when concurrency is 1 or the host has an executor */
   _Atomic int64_t bytes, peak_bytes; /* written by the thread of the call, read by any */
   _Atomic uint32_t busy;             /* a call on the context or one of its objects is under way */
-  /* What the last failure said. A call writes into one text and leaves alone that which was there when it began,
-   * so that a failure that it gets over can be forgotten. */
+  /* What the last failure said. A call writes into one text and leaves alone that which was there when it
+   * began, so that a failure that it gets over can be forgotten. */
   _Atomic(const char *) error;
   const char *kept, *said; /* the error when the call began; what the call itself has said, or NULL */
   char text[2][MPMI_SENTENCE];
@@ -46,8 +46,8 @@ mpm_status mpmi_fail(mpm_context *context, mpm_status status, const char *format
 /* The call has got over what went wrong in it: the last error is again that of an earlier call. */
 void mpmi_forget(mpm_context *context);
 
-/* An entry is open while a public call runs. It marks the context as busy, so that calls from callbacks and from
- * other threads are refused, and keeps the floating-point environment of the host. */
+/* An entry is open while a public call runs. It marks the context as busy, so that calls from callbacks and
+ * from other threads are refused, and keeps the floating-point environment of the host. */
 typedef struct mpmi_entry {
   mpm_context *context; /* whose call this is; NULL for calls on what is lent to a callback */
   _Atomic uint32_t
@@ -60,8 +60,8 @@ mpm_status mpmi_enter(mpmi_entry *entry, mpm_context *context);
 /* The same for what is lent to a callback while its context is busy, and has a mark of its own. */
 mpm_status mpmi_enter_lent(mpmi_entry *entry, mpm_context *context, _Atomic uint32_t *busy);
 void mpmi_leave(mpmi_entry *entry);
-/* This is the first line of every public call, after outputs were cleared: it checks the handle's magic word, and
- * opens an entry that is left on every way out. */
+/* This is the first line of every public call, after outputs were cleared: it checks the handle's magic word,
+ * and opens an entry that is left on every way out. */
 #define MPMI_ENTER(handle, kind)                                                                             \
   if (!(handle) || (handle)->magic != (uint32_t)(kind)) return MPM_E_ARG;                                    \
   MPMI_ENTER_CONTEXT((handle)->context)

@@ -1,9 +1,9 @@
-/* Sets and restores the floating-point environment: by the registers of x86 and aarch64, which also say what becomes of
- * tiny numbers, and else by what ISO C knows of it. */
+/* Sets and restores the floating-point environment: by the registers of x86 and aarch64, which also say what
+ * becomes of tiny numbers, and else by what ISO C knows of it. */
 #include "context/environment.h"
 
-/* Compilers know nothing of what arithmetic owes to the environment. They keep it on its side of these functions as
- * long as they cannot see into them, and must read memory anew behind them. */
+/* Compilers know nothing of what arithmetic owes to the environment. They keep it on its side of these
+ * functions as long as they cannot see into them, and must read memory anew behind them. */
 #define OPAQUE    __attribute__((noinline))
 #define BARRIER() __asm__ volatile("" ::: "memory")
 

@@ -1,6 +1,6 @@
-/* The floating-point environment of a thread: rounding, traps, the treatment of tiny numbers, and flags of what has
- * happened. That of a host may be any. The library computes in the default one, because its numbers must not depend
- * on the host, and because its kernels raise flags for numbers that they then drop. */
+/* The floating-point environment of a thread: rounding, traps, the treatment of tiny numbers, and flags of
+ * what has happened. That of a host may be any. The library computes in the default one, because its numbers
+ * must not depend on the host, and because its kernels raise flags for numbers that they then drop. */
 #ifndef MPMI_ENVIRONMENT_H
 #define MPMI_ENVIRONMENT_H
 

@@ -131,7 +131,8 @@ static void run_inline(int64_t count, mpm_task_fn task, void *data) {
   for (int64_t k = 0; k < count; ++k) task(data, k);
 }
 
-/* In a child of fork the threads are gone, and the monitor is as they happened to hold it: it is not touched. */
+/* In a child of fork the threads are gone, and the monitor is as they happened to hold it: it is not
+ * touched. */
 static int32_t has_threads(const mpmi_pool *pool) {
   return pool->process == mpmi_process();
 }

@@ -96,7 +96,8 @@ void mpmi_archive_bytes(mpmi_archive *a, void *data, int64_t bytes) {
   put(a, last, WORD);
 }
 
-/* Turns whole words, of 8 bytes or as pairs of 4, from the machine's byte order into the archive's, or back. */
+/* Turns whole words, of 8 bytes or as pairs of 4, from the machine's byte order into the archive's, or
+ * back. */
 static void turn(void *data, int64_t bytes, int32_t unit) {
   unsigned char *at = data;
   for (int64_t i = 0; i < bytes; i += unit) {

@@ -26,8 +26,8 @@ void mpmi_output_rewind(mpmi_output *out); /* what follows is written from the f
 mpm_status mpmi_output_close(mpmi_output *out, int32_t durable);
 /* Refuses a path that is NULL or "": MPM_E_ARG. */
 mpm_status mpmi_check_path(mpm_context *context, const char *path);
-/* Fails with MPM_E_IO and the text "cannot <verb> <path>: <text of error>"; with MPM_E_UNSUPPORTED in a build without
- * files. */
+/* Fails with MPM_E_IO and the text "cannot <verb> <path>: <text of error>"; with MPM_E_UNSUPPORTED in a build
+ * without files. */
 mpm_status mpmi_io_error(mpm_context *context, const char *verb, const char *path, int error);
 /* Prints the shortest decimal that reads back as the same finite value, with a point in any locale; text
  * has MPMI_REAL bytes. */

@@ -12,8 +12,8 @@
  *   fields    for each set those that are present, component by component, over all slots
  *
  * Any change of this raises MPMI_STATE_FORMAT. The structs below are written as they are, with numbers in
- * little-endian order: their members have 8 bytes but for those that begin the header and the step info, and there
- * are no gaps. */
+ * little-endian order: their members have 8 bytes but for those that begin the header and the step info, and
+ * there are no gaps. */
 #ifndef MPMI_STATE_H
 #define MPMI_STATE_H
 

@@ -127,7 +127,8 @@ static mpm_status make_rows(mpm_operator *op) {
 }
 
 /* ---- public -------------------------------------------------------------------------------------------- */
-/* The context is busy with the solve callback, in which these calls are made: the system has a mark of its own. */
+/* The context is busy with the solve callback, in which these calls are made: the system has a mark of its
+ * own. */
 #define ENTER(matrix)                                                                                        \
   if (!(matrix) || (matrix)->magic != (uint32_t)MPMI_OPERATOR) return MPM_E_ARG;                             \
   __attribute__((cleanup(mpmi_leave))) mpmi_entry entry_;                                                    \

@@ -1,5 +1,5 @@
-/* What is done without a system: threads and files that a build leaves out, and where the system is neither POSIX nor
- * Windows everything else by ISO C alone. */
+/* What is done without a system: threads and files that a build leaves out, and where the system is neither
+ * POSIX nor Windows everything else by ISO C alone. */
 #include "platform/platform.h"
 
 #include <string.h>

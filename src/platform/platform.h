@@ -1,9 +1,9 @@
-/* What the library needs of the system beyond ISO C11: aligned memory, processors, a clock, threads, files that
- * appear whole. Nothing outside this folder includes a header of an operating system.
+/* What the library needs of the system beyond ISO C11: aligned memory, processors, a clock, threads, files
+ * that appear whole. Nothing outside this folder includes a header of an operating system.
  *
- * posix.c and windows.c serve these systems; none.c gives what is left: everything by ISO C alone where the system
- * is neither, no threads with MPM_NO_THREADS, no files with MPM_NO_FILES. Each is compiled everywhere and is empty
- * where it does not apply. */
+ * posix.c and windows.c serve these systems; none.c gives what is left: everything by ISO C alone where the
+ * system is neither, no threads with MPM_NO_THREADS, no files with MPM_NO_FILES. Each is compiled everywhere
+ * and is empty where it does not apply. */
 #ifndef MPMI_PLATFORM_H
 #define MPMI_PLATFORM_H
 
@@ -55,8 +55,8 @@ typedef union mpmi_monitor {
 } mpmi_monitor;
 enum { MPMI_WORK, MPMI_DONE };
 
-/* Starts a thread that takes no signals. Thread and argument stay where they are until it ends. Returns whether
- * there is one. */
+/* Starts a thread that takes no signals. Thread and argument stay where they are until it ends. Returns
+ * whether there is one. */
 int32_t mpmi_thread_start(mpmi_system_thread *thread, void *(*body)(void *), void *argument);
 void mpmi_thread_join(mpmi_system_thread *thread);
 void mpmi_monitor_begin(mpmi_monitor *monitor);
@@ -72,8 +72,9 @@ void mpmi_wake_all(mpmi_monitor *monitor, int32_t condition);
 enum { MPMI_NO_FILES = -1, MPMI_NOT_REGULAR = -2, MPMI_STORAGE_FAILED = -3 };
 enum { MPMI_PATH = 4096 };
 
-/* A file that takes the place of another when it is complete. It is written beside it, under a name of its own that
- * is locked until then, so that what a process leaves behind that dies can be told from what another one writes. */
+/* A file that takes the place of another when it is complete. It is written beside it, under a name of its
+ * own that is locked until then, so that what a process leaves behind that dies can be told from what another
+ * one writes. */
 typedef struct mpmi_replacement {
   FILE *stream;
   intptr_t lock;
@@ -83,8 +84,8 @@ typedef struct mpmi_replacement {
 
 /* Opens a file for a path. What earlier writers of this path left behind is removed if none of them lives. */
 int mpmi_replacement_open(mpmi_replacement *file, const char *path);
-/* Puts the file in its place, with the old one's mode and owner; or removes it, if there was an error. With durable
- * it waits for the storage. Returns the first error. */
+/* Puts the file in its place, with the old one's mode and owner; or removes it, if there was an error. With
+ * durable it waits for the storage. Returns the first error. */
 int mpmi_replacement_close(mpmi_replacement *file, int error, int32_t durable);
 
 int mpmi_file_read(const char *path, FILE **file,

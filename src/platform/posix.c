@@ -109,8 +109,8 @@ void mpmi_wake_all(mpmi_monitor *m, int32_t condition) {
 #if MPMI_HAS_FILES
 enum { ATTEMPTS = 100, MOST_LINKS = 40 };
 
-/* Copies the path without the links that it ends in; what they lead to need not exist yet. Links among the folders
- * are the system's affair. */
+/* Copies the path without the links that it ends in; what they lead to need not exist yet. Links among the
+ * folders are the system's affair. */
 static int follow_links(const char *path, char *target) {
   if (strlen(path) >= MPMI_PATH) return ENAMETOOLONG;
   strcpy(target, path);
@@ -135,8 +135,8 @@ static int32_t leads_to(const char *name, int file) {
          named.st_ino == opened.st_ino;
 }
 
-/* Removes the temporary file of a writer that has died, if there is one under this name. While the lock is held the
- * name cannot come to lead to another file, because only who has the lock removes or renames. */
+/* Removes the temporary file of a writer that has died, if there is one under this name. While the lock is
+ * held the name cannot come to lead to another file, because only who has the lock removes or renames. */
 static void remove_abandoned(const char *name) {
   const int file = open(name, O_RDWR | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
   if (file < 0) return;
@@ -146,8 +146,8 @@ static void remove_abandoned(const char *name) {
   close(file);
 }
 
-/* Between its creation and this lock another writer may have taken the file for abandoned. Storage that knows no
- * locks gives none, and then no file of it is found abandoned either. */
+/* Between its creation and this lock another writer may have taken the file for abandoned. Storage that knows
+ * no locks gives none, and then no file of it is found abandoned either. */
 static int32_t keep_for_me(int file, const char *name) {
   return flock(file, LOCK_EX | LOCK_NB) ? errno != EWOULDBLOCK : leads_to(name, file);
 }
@@ -206,8 +206,8 @@ int mpmi_replacement_open(mpmi_replacement *r, const char *path) {
   return error;
 }
 
-/* Gives the new file the old one's owner, group and mode, as far as the system lets us. Where the group cannot be
- * kept, the new one gets no rights that all others do not have. */
+/* Gives the new file the old one's owner, group and mode, as far as the system lets us. Where the group
+ * cannot be kept, the new one gets no rights that all others do not have. */
 static void keep_owner_and_mode(int file, const char *target) {
   struct stat from, now;
   if (stat(target, &from) || fstat(file, &now)) return;
@@ -222,7 +222,8 @@ static void keep_owner_and_mode(int file, const char *target) {
   }
 }
 
-/* The new name is on the storage once the folder is. Not every system offers that, so it is no error if it fails. */
+/* The new name is on the storage once the folder is. Not every system offers that, so it is no error if it
+ * fails. */
 static void sync_folder(char *name) {
   char *slash = strrchr(name, '/');
   if (slash) slash[slash == name] = '\0';

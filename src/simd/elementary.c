@@ -1,5 +1,5 @@
-/* Exponentials, logarithms and roots. The polynomials are those of the kernels (vector_math.h); what these lose by
- * rounding is kept here in second doubles. */
+/* Exponentials, logarithms and roots. The polynomials are those of the kernels (vector_math.h); what these
+ * lose by rounding is kept here in second doubles. */
 #include "simd/elementary.h"
 
 #include <float.h>
@@ -93,8 +93,8 @@ double mpmi_log1p(double x) {
 
 /* ---- powers ---- */
 
-/* log x to 65 bits: 2 artanh s = 2 s (1 + z / 3 + z^2 / 5 + ...) with s = f / (2 + f) and z = s^2 < 0.0295, after 16
- * terms. */
+/* log x to 65 bits: 2 artanh s = 2 s (1 + z / 3 + z^2 / 5 + ...) with s = f / (2 + f) and z = s^2 < 0.0295,
+ * after 16 terms. */
 static mpmi_twofold long_log(double x) {
   const mpmi_binade b = split(x);
   const mpmi_twofold s = mpmi_twofold_quotient((mpmi_twofold){b.f, 0.0}, mpmi_ordered_sum(2.0, b.f));
@@ -134,9 +134,9 @@ double mpmi_pow(double x, double y) {
 
 /* ---- roots ---- */
 
-/* Bits of a double, as a number, grow nearly like its logarithm: a third of them and two thirds of those of 1, less
- * 3.4 % of a binade, are those of the root within 3.2 %. Two of Halley's steps make that 1e-13. The last one starts from
- * the 26 upper bits, whose square is exact. */
+/* Bits of a double, as a number, grow nearly like its logarithm: a third of them and two thirds of those of
+ * 1, less 3.4 % of a binade, are those of the root within 3.2 %. Two of Halley's steps make that 1e-13. The
+ * last one starts from the 26 upper bits, whose square is exact. */
 static const uint64_t two_thirds_of_1 = UINT64_C(0x2a9f74bc6a7ef9dc);
 
 double mpmi_cbrt(double x) {

@@ -1,7 +1,8 @@
-/* Elementary functions whose bits are the same on every platform: C libraries differ in the last digit of theirs. No
- * number that reaches a state comes from the C library but square roots and what is exact (tests/api/libm.sh lists what
- * is allowed); that holds for callbacks of tests and for parameters of laws as well. Special values are those of C's
- * functions, errno is left alone. Each is within 1 unit in the last place (measured: 0.88). */
+/* Elementary functions whose bits are the same on every platform: C libraries differ in the last digit of
+ * theirs. No number that reaches a state comes from the C library but square roots and what is exact
+ * (tests/api/libm.sh lists what is allowed); that holds for callbacks of tests and for parameters of laws as
+ * well. Special values are those of C's functions, errno is left alone. Each is within 1 unit in the last
+ * place (measured: 0.88). */
 #ifndef MPMI_ELEMENTARY_H
 #define MPMI_ELEMENTARY_H
 

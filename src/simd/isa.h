@@ -5,8 +5,8 @@
 
 #include <float.h>
 
-/* Kernels round by adding large numbers, and index memory by what comes out: a register that holds more digits than a
- * double, as the x87 has, gives other cells. */
+/* Kernels round by adding large numbers, and index memory by what comes out: a register that holds more
+ * digits than a double, as the x87 has, gives other cells. */
 #if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 1
 #error "doubles are not evaluated as doubles: on 32-bit x86 compile with -msse2 -mfpmath=sse"
 #endif
@@ -18,8 +18,8 @@
 #define MPMI_GLUE(a, b)  MPMI_GLUE2(a, b)
 #define KERNEL(name)     MPMI_GLUE(mpmi_##name, MPMI_ISA)
 
-/* Doubles in a register of the set. Sums over lanes depend on it, so that it follows from the name alone: flags for
- * a better processor, as -march=native, must not change what the baseline gives. */
+/* Doubles in a register of the set. Sums over lanes depend on it, so that it follows from the name alone:
+ * flags for a better processor, as -march=native, must not change what the baseline gives. */
 #define MPMI_WIDTH_baseline 2
 #define MPMI_WIDTH_neon     2
 #define MPMI_WIDTH_avx2     4

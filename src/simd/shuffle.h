@@ -1,5 +1,5 @@
-/* Lanes of two vectors in another order: MPMI_SHUFFLE(a, b, k, ...) takes lane k of a, or of b from a's count on. As
- * many come out as a has. */
+/* Lanes of two vectors in another order: MPMI_SHUFFLE(a, b, k, ...) takes lane k of a, or of b from a's count
+ * on. As many come out as a has. */
 #ifndef MPMI_SHUFFLE_H
 #define MPMI_SHUFFLE_H
 

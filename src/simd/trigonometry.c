@@ -1,12 +1,13 @@
-/* Sine, cosine and tangent. x = k pi / 2 + r with |r| <= pi / 4; the series of Taylor are cut after r^19 and r^20. */
+/* Sine, cosine and tangent. x = k pi / 2 + r with |r| <= pi / 4; the series of Taylor are cut after r^19 and
+ * r^20. */
 #include <math.h>
 
 #include "simd/elementary.h"
 #include "simd/rounding.h"
 #include "simd/twofold.h"
 
-/* Three parts of pi / 2 with 33 bits each, whose products with k < 2^20 are exact, and what is left: pi / 2 to 150
- * bits, so that r has all of its digits beside every multiple of pi / 2. */
+/* Three parts of pi / 2 with 33 bits each, whose products with k < 2^20 are exact, and what is left: pi / 2
+ * to 150 bits, so that r has all of its digits beside every multiple of pi / 2. */
 static const double two_over_pi = 0x1.45f306dc9c883p-1;
 static const double part_1 = 0x1.921fb54400000p+0, part_2 = 0x1.0b4611a600000p-34,
                     part_3 = 0x1.3198a2e000000p-69, part_4 = 0x1.b839a252049c1p-104;

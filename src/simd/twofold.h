@@ -1,5 +1,6 @@
 /* Sums of two doubles, high + low, where one would lose digits that the result needs. Exact in files that are
- * compiled without contraction; no fused multiply-add is asked for, which would be slow where it is emulated. */
+ * compiled without contraction; no fused multiply-add is asked for, which would be slow where it is
+ * emulated. */
 #ifndef MPMI_TWOFOLD_H
 #define MPMI_TWOFOLD_H
 

@@ -81,7 +81,8 @@ MPMI_INLINE double mpmi_lane_log1p(double x) {
   return mpmi_log_reduced(b.k, b.k == 0.0 ? x : b.f);
 }
 
-/* (exp(r) - 1 - r) / r^2 for |r| <= ln 2 / 2: a minimax polynomial, with which exp(r) - 1 has relative error 1.4e-18. */
+/* (exp(r) - 1 - r) / r^2 for |r| <= ln 2 / 2: a minimax polynomial, with which exp(r) - 1 has relative error
+ * 1.4e-18. */
 MPMI_INLINE double mpmi_exp_series(double r) {
   const double z = r * r, w = z * z;
   const double low = (0.5 + r * 0.1666666666666667) + z * (0.04166666666666667 + r * 0.008333333333326136);
@@ -91,8 +92,8 @@ MPMI_INLINE double mpmi_exp_series(double r) {
   return low + w * (middle + w * high);
 }
 
-/* exp(x) - 1 with x = k ln 2 + r: 2^k (exp(r) - 1) + (2^k - 1). k is read off the last bits of the mantissa of
- * 1.5 * 2^52 + k. Not finite from x = 709.4 on. */
+/* exp(x) - 1 with x = k ln 2 + r: 2^k (exp(r) - 1) + (2^k - 1). k is read off the last bits of the mantissa
+ * of 1.5 * 2^52 + k. Not finite from x = 709.4 on. */
 MPMI_INLINE double mpmi_lane_expm1(double x) {
   double within = x < -80.0 ? -80.0 : x > 710.0 ? 710.0 : x; /* keeps a NaN */
   double shifted = within * MPMI_LOG2_E + MPMI_ROUNDING_SHIFT, k = shifted - MPMI_ROUNDING_SHIFT;

@@ -1,7 +1,7 @@
 /* hashes SET [part PART PARTS | [save FOLDER | load FOLDER] NAME ...]: the scenes on an instruction set
- * (portable, baseline, avx2, avx512, neon), one in a line with its hash; of PARTS equal parts the one with number PART,
- * from 0; or the scenes of these names. With "save" they go half-way and leave their states in FOLDER, from
- * where "load" takes them to the end. Ends with 3 where processor or library lack the set. */
+ * (portable, baseline, avx2, avx512, neon), one in a line with its hash; of PARTS equal parts the one with
+ * number PART, from 0; or the scenes of these names. With "save" they go half-way and leave their states in
+ * FOLDER, from where "load" takes them to the end. Ends with 3 where processor or library lack the set. */
 #include "scene.h"
 
 #include <inttypes.h>

@@ -1,7 +1,7 @@
-/* smoke ISA FOLDER: a host program for systems on which the unit tests do not run. It prints hashes of states, for
- * comparison with another system's, and ends with 1 where something is not as the headers say: steps on one thread and
- * on several, files of every kind in FOLDER, what is refused. Builds without threads or without files are told so by
- * the statuses, and say it. */
+/* smoke ISA FOLDER: a host program for systems on which the unit tests do not run. It prints hashes of
+ * states, for comparison with another system's, and ends with 1 where something is not as the headers say:
+ * steps on one thread and on several, files of every kind in FOLDER, what is refused. Builds without threads
+ * or without files are told so by the statuses, and say it. */
 #include <inttypes.h>
 #include <mpm/mpm.h>
 #include <stdio.h>
@@ -135,7 +135,8 @@ static void check(const world *w, const char *what, int32_t holds) {
   if (!holds) fail(w, what, MPM_OK);
 }
 
-/* Writes, overwrites and reads under names in ASCII and in other letters. Returns whether the build has files. */
+/* Writes, overwrites and reads under names in ASCII and in other letters. Returns whether the build has
+ * files. */
 static int32_t round_trip(int32_t isa, const char *folder) {
   static const char *const names[] = {"smoke.state",
                                       "zust\xc3\xa4nde-\xe2\x82\xac-\xe7\x8a\xb6\xe6\x85\x8b.state"};

@@ -1,5 +1,5 @@
-/* A host that sets every callback there is; what environment its callbacks find, and what becomes of that which they
- * leave behind. */
+/* A host that sets every callback there is; what environment its callbacks find, and what becomes of that
+ * which they leave behind. */
 #define _GNU_SOURCE
 #include <fenv.h>
 
@@ -169,8 +169,8 @@ static uint64_t mix(uint64_t h, const void *data, size_t bytes) {
   return h;
 }
 
-/* After F was set the law is asked by whatever call needs the stress. What is computed here is exact, because a test
- * may round otherwise. */
+/* After F was set the law is asked by whatever call needs the stress. What is computed here is exact, because
+ * a test may round otherwise. */
 static void stretch(world *w, int32_t k) {
   const double s = 1.0 + k / 1024.0, F[9] = {s, 0, 0, 0, 1, 0, 0, 0, 1};
   ck_ok(w, mpm_particles_set_all(w->set[0], "deformation_gradient", MPM_F64, 9, F));

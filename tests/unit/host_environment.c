@@ -1,5 +1,5 @@
-/* The floating-point environment of a host is any: traps, rounding, tiny numbers flushed to zero. The library neither
- * depends on it nor leaves a trace in it. */
+/* The floating-point environment of a host is any: traps, rounding, tiny numbers flushed to zero. The library
+ * neither depends on it nor leaves a trace in it. */
 #define _GNU_SOURCE
 #include <fenv.h>
 #include <pthread.h>
@@ -178,8 +178,8 @@ START_TEST(every_environment_gives_the_same_bits) {
 }
 END_TEST
 
-/* Threads of a pool that is made in a strange environment: each takes one task, because none goes on before all have
- * one. */
+/* Threads of a pool that is made in a strange environment: each takes one task, because none goes on before
+ * all have one. */
 enum { POOL = 4 };
 typedef struct meeting {
   pthread_barrier_t all;

@@ -1,5 +1,5 @@
-/* What a callback calls on the context that has called it is refused, whatever the callback, the call and the thread,
- * and does no harm. */
+/* What a callback calls on the context that has called it is refused, whatever the callback, the call and the
+ * thread, and does no harm. */
 #include <pthread.h>
 
 #include "host_parts.h"

@@ -1,5 +1,5 @@
-/* What a written file takes over from the one whose place it takes: links, mode, owner; and what writers leave behind
- * that die. */
+/* What a written file takes over from the one whose place it takes: links, mode, owner; and what writers
+ * leave behind that die. */
 #define _POSIX_C_SOURCE 200809L
 #define _DEFAULT_SOURCE 1 /* flock */
 #include "io.h"
@@ -113,8 +113,8 @@ START_TEST(owner_is_kept_where_permitted) {
   ck_assert_int_eq((int)info.st_uid, may ? 1234 : (int)geteuid());
   if (may) ck_assert_int_eq((int)info.st_gid, 4321);
   if (geteuid()) return;
-  /* Who is not root writes over a file of root's in a folder of everyone's: the file is its own then, and the group
-   * that it could not keep takes no rights along. */
+  /* Who is not root writes over a file of root's in a folder of everyone's: the file is its own then, and the
+   * group that it could not keep takes no rights along. */
   ck_assert_int_eq(chmod(folder, 0777), 0);
   ck_assert_int_eq(chown(path, 0, 0), 0);
   ck_assert_int_eq(chmod(path, 0674), 0);
@@ -203,7 +203,8 @@ START_TEST(what_is_no_temporary_file_is_left) {
 }
 END_TEST
 
-/* Processes that write the same path side by side: all succeed, what stands there is whole, nothing is left. */
+/* Processes that write the same path side by side: all succeed, what stands there is whole, nothing is
+ * left. */
 START_TEST(writers_side_by_side) {
   enum { WRITERS = 4 };
   pid_t child[WRITERS];

@@ -1,5 +1,5 @@
-/* The library's own elementary functions: against those of long double where that has more digits than double, and bit
- * for bit against what they are on every platform. */
+/* The library's own elementary functions: against those of long double where that has more digits than
+ * double, and bit for bit against what they are on every platform. */
 #include <check.h>
 #include <float.h>
 #include <inttypes.h>
@@ -27,8 +27,8 @@ static uint64_t bits_of(double x) {
   return bits;
 }
 
-/* The i-th number within [low, high]; every fourth one has any exponent, and lies outside only where no such one is
- * found. */
+/* The i-th number within [low, high]; every fourth one has any exponent, and lies outside only where no such
+ * one is found. */
 static double argument(uint64_t i, double low, double high) {
   const uint64_t word = scrambled(UINT64_C(0x9e3779b97f4a7c15) * (i + 1));
   const double any = of_bits(word);

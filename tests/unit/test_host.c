@@ -1,5 +1,5 @@
-/* The library in hosts that it does not know: whatever their floating-point environment is, whatever their callbacks
- * call, and with a sentence for everything that fails. */
+/* The library in hosts that it does not know: whatever their floating-point environment is, whatever their
+ * callbacks call, and with a sentence for everything that fails. */
 #include "host_parts.h"
 
 Suite *host_suite(void) {

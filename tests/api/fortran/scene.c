@@ -1,5 +1,5 @@
-/* The part of the Fortran host that is easier in C: a scene with a law that divides by zero where the host's own code
- * must not. Every function returns the first status that is not MPM_OK. */
+/* The part of the Fortran host that is easier in C: a scene with a law that divides by zero where the host's
+ * own code must not. Every function returns the first status that is not MPM_OK. */
 #include <mpm/mpm.h>
 #include <stddef.h>
 
