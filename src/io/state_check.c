@@ -14,10 +14,12 @@ static void check_ids(mpmi_archive *a, mpm_particles *fresh) {
     mpmi_archive_damaged(a, "its ids make no sense");
     return;
   }
-  if ((a->status = mpmi_index_build(fresh))) return;
-  for (int64_t i = 1; i < fresh->count; ++i)
-    if (fresh->index[i - 1].id == fresh->index[i].id) mpmi_archive_damaged(a, "an id stands there twice");
+  const mpm_status status = mpmi_index_build(fresh);
   mpmi_index_drop(fresh);
+  if (status == MPM_E_STATE)
+    mpmi_archive_damaged(a, "an id stands there twice");
+  else
+    a->status = status;
 }
 
 /* Makes holes inert whatever the state says, because bad values would spread over the nodes. */
