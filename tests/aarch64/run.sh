@@ -5,6 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 out=$(mkdir -p "${BUILD:-build}-aarch64" && cd "${BUILD:-build}-aarch64" && pwd)
+export MPM_EMULATED=1
 triplet=aarch64-linux-gnu MAKE=${MAKE:-make} JOBS=${JOBS:-$(nproc)}
 # Left out unless SUITES asks: runs against analytical solutions and through every failing allocation, minutes each, that
 # show no more of the processor than those that stay.
