@@ -42,7 +42,7 @@ static mpm_status reserve_lists(mpmi_smoother *s, const mpmi_matrix *A) {
     s->order = mpmi_arena_take(&from, rows, sizeof *s->order);
     s->place = mpmi_arena_take(&from, rows, sizeof *s->place);
     s->column = mpmi_arena_take(&from, entries, sizeof *s->column);
-    s->value = mpmi_arena_take(&from, entries * area, sizeof *s->value);
+    s->value = mpmi_arena_take(&from, entries * area + 1, sizeof *s->value); /* lanes read one more */
     s->inverse = mpmi_arena_take(&from, rows * area, sizeof *s->inverse);
     s->scale = mpmi_arena_take(&from, rows * A->block, sizeof *s->scale);
     s->unscale = mpmi_arena_take(&from, rows * A->block, sizeof *s->unscale);
