@@ -42,12 +42,13 @@ int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m) {
   const mpm_particles *set = layout->member[m].set;
   const int64_t *start = layout->member[m].now.start;
   const int64_t begin = start[visit->block], n = start[visit->block + 1] - begin;
+  if (!n) return 1; /* an empty set has no rows */
   for (int32_t k = 0; k < set->grid->dim; ++k) {
     const reach of = reach_of(&layout->blocks, visit->block, k);
     const double *x = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + begin;
     if (!any_astray(x, &of, n)) continue;
     int64_t p = 0;
-    while (!is_astray(x[p], &of)) ++p;
+    while (p < n - 1 && !is_astray(x[p], &of)) ++p;
     mpmi_failure_take(&step->work->report[visit->task].failure,
                       &(mpmi_failure){MPM_E_STATE, 0, m, mpmi_i64(set, MPMI_ID, 0)[begin + p], -1,
                                       "a position that was written through a view for reading"});
