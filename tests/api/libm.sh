@@ -19,7 +19,7 @@ grep -qx expm1 "$scratch/mathematics"
 # The functions of libm that files need and must not: one in a line.
 forbidden() {
   nm -u "$@" 2> /dev/null | awk '$1 == "U" || $1 == "w" { sub(/@.*/, "", $2); print $2 }' | sort -u |
-    comm -12 - "$scratch/mathematics" | grep -vE "$allowed" || true
+    comm -12 - "$scratch/mathematics" | awk -v allowed="$allowed" '$0 !~ allowed'
 }
 
 echo 'extern double expm1(double), floor(double); double planted(double x) { return expm1(x) + floor(x); }' |
