@@ -130,13 +130,15 @@ escaped = $(subst $(space),\\ ,$(call spaced,$(1)))
 inside_prefix = $(patsubst $(call whole,$(PREFIX))/%,%,$(filter $(call whole,$(PREFIX))/%,$(call whole,$(1))))
 up_to_prefix = $(subst $(space),/,$(patsubst %,..,$(subst /, ,$(call inside_prefix,$(1)))))
 is_movable = $(and $(call inside_prefix,$(LIBDIR)),$(call inside_prefix,$(INCLUDEDIR)))
-INCLUDEDIR_FROM_CMAKEDIR = $(if $(is_movable),$(call up_to_prefix,$(CMAKEDIR))/$(call spaced,$(call inside_prefix,$(INCLUDEDIR))),$(INCLUDEDIR))
+from_cmakedir = $(if $(and $(is_movable),$(call inside_prefix,$(1))),$(call up_to_prefix,$(CMAKEDIR))/$(call spaced,$(call inside_prefix,$(1))),$(1))
+INCLUDEDIR_FROM_CMAKEDIR = $(call from_cmakedir,$(INCLUDEDIR))
+BINDIR_FROM_CMAKEDIR = $(call from_cmakedir,$(BINDIR))
 PC_PREFIX = $(if $(and $(is_movable),$(filter-out /usr,$(call whole,$(PREFIX)))),$${pcfiledir}/$(call up_to_prefix,$(PKGCONFIGDIR)),$(call escaped,$(PREFIX)))
 PC_LIBDIR = $(call escaped,$(if $(is_movable),$${prefix}/$(call inside_prefix,$(LIBDIR)),$(LIBDIR)))
 PC_INCLUDEDIR = $(call escaped,$(if $(is_movable),$${prefix}/$(call inside_prefix,$(INCLUDEDIR)),$(INCLUDEDIR)))
 POINTER_BYTES = $(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)
-SUBSTITUTE = sed $(foreach name,PC_PREFIX PC_LIBDIR PC_INCLUDEDIR VERSION SHARED SONAME INCLUDEDIR_FROM_CMAKEDIR \
-  POINTER_BYTES LIBS,-e 's|@$(name)@|$($(name))|')
+SUBSTITUTE = sed $(foreach name,PC_PREFIX PC_LIBDIR PC_INCLUDEDIR VERSION SHARED SONAME IMPORT_LIB INCLUDEDIR_FROM_CMAKEDIR \
+  BINDIR_FROM_CMAKEDIR POINTER_BYTES LIBS,-e 's|@$(name)@|$($(name))|')
 # Where files are installed, for the shell.
 to = "$(DESTDIR)$($(1))$(2)"
 

@@ -30,6 +30,7 @@ struct mpm_context {
   int32_t concurrency;               /* how many tasks may run at once, >= 1 */
   mpm_context_desc host;             /* the services; alloc and release are always set */
   mpmi_pool *pool;                   /* own threads; NULL when concurrency is 1 or the host has an executor */
+  int32_t pool_runs;                 /* in this process: 1, -1: not, 0: this call has not asked yet */
   _Atomic int64_t bytes, peak_bytes; /* written by the thread of the call, read by any */
   _Atomic uint32_t busy;             /* a call on the context or one of its objects is under way */
   /* What the last failure said. A call writes into one text and leaves alone that which was there when it

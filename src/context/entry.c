@@ -28,6 +28,7 @@ mpm_status mpmi_enter(mpmi_entry *entry, mpm_context *context) {
   entry->context = context;
   context->kept = atomic_load(&context->error);
   context->said = NULL;
+  context->pool_runs = 0;
   return MPM_OK;
 }
 

@@ -138,10 +138,6 @@ static int32_t has_threads(const mpmi_pool *pool) {
 }
 
 static void pool_run(mpmi_pool *pool, int64_t count, mpm_task_fn task, void *data) {
-  if (count <= 1 || !has_threads(pool)) {
-    run_inline(count, task, data);
-    return;
-  }
   for (int64_t first = 0; first < count; first += TASKS_AT_ONCE) {
     int64_t rest = count - first;
     run(pool, first, (uint32_t)(rest < TASKS_AT_ONCE ? rest : TASKS_AT_ONCE), task, data);
@@ -206,9 +202,16 @@ static mpm_status run_by_host(const mpm_context_desc *host, int64_t count, mpm_t
   return mpmi_from_host(host->parallel_for(host->parallel_user, count, run_hosted, &h));
 }
 
+/* The system is asked once per call, because to ask takes as long as a small task. */
+static int32_t pool_runs(mpm_context *context) {
+  if (!context->pool) return 0;
+  if (!context->pool_runs) context->pool_runs = has_threads(context->pool) ? 1 : -1;
+  return context->pool_runs > 0;
+}
+
 static mpm_status run_anywhere(mpm_context *context, int64_t count, mpm_task_fn task, void *data) {
   if (count > 1 && context->host.parallel_for) return run_by_host(&context->host, count, task, data);
-  if (count > 1 && context->pool) {
+  if (count > 1 && pool_runs(context)) {
     pool_run(context->pool, count, task, data);
   } else {
     run_inline(count, task, data);

@@ -68,6 +68,18 @@ static mpm_status refused(mpm_stepper *s, int32_t m, mpm_status status, const mp
                    "the material of set %d returned %d when asked for its wave speed", (int)m, (int)status);
 }
 
+static mpm_status not_finite(mpm_stepper *s, int32_t m, const mpmi_law_batch *b, mpmi_failure *failure) {
+  int64_t p = 0;
+  while (p + 1 < b->batch.n &&
+         (b->batch.id[p] < 0 || (isfinite(b->wave_speed[p]) && isfinite(b->viscosity[p]))))
+    ++p;
+  if (failure)
+    *failure = (mpmi_failure){MPM_NONFINITE, 0, m, b->batch.id[p], -1, "the wave speed is not finite"};
+  return mpmi_fail(s->context, MPM_NONFINITE,
+                   "the material gives wave speed %g and kinematic viscosity %g at particle %lld of set %d",
+                   b->wave_speed[p], b->viscosity[p], (long long)b->batch.id[p], (int)m);
+}
+
 /* Adds the sums of a set. The law is asked for the state as it is: F_inc = I, dt = 0. */
 static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failure *failure) {
   mpm_particles *set = s->layout.member[m].set;
@@ -89,9 +101,7 @@ static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failu
     }
     mpmi_sums_job job;
     bind_particles(s, set, &b, begin, n, (double *)(void *)(memory + batch), &job);
-    if (s->settings.kernels->sums[s->grid->dim](&job, n, sums))
-      status = mpmi_fail(s->context, MPM_NONFINITE,
-                         "the material of set %d gives a wave speed that is not finite", (int)m);
+    if (s->settings.kernels->sums[s->grid->dim](&job, n, sums)) status = not_finite(s, m, &b, failure);
   }
   mpmi_free(s->context, memory, bytes);
   return status;

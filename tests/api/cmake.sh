@@ -66,9 +66,11 @@ if [ "${1:-}" = full ]; then
   "$MAKE" -s install BUILD="$BUILD" CC="$CC" PREFIX="$scratch/by-make" DESTDIR= > /dev/null
   (cd "$scratch/by-make" && find . -type f -o -type l) | sort | diff - "$scratch/by-cmake.list" \
     || { echo "cmake.sh: the two installations have other files" >&2; exit 1; }
+  for folder in pkgconfig cmake; do # other files say the same, too
+    diff -r "$scratch/by-make/lib/$folder" "$scratch/by-cmake-moved/lib/$folder" || { echo "cmake.sh: '<' by make, '>' by cmake" >&2; exit 1; }
+  done
   hosts by-cmake "$scratch/by-cmake-moved" "$scratch/by-cmake-moved/lib"
-  PKG_CONFIG_PATH=$scratch/by-make/lib/pkgconfig ${PKG_CONFIG:-pkg-config} --modversion mpm > /dev/null
-  grep -q "^Version: $version$" "$scratch/by-cmake-moved/lib/pkgconfig/mpm.pc"
+  [ "$(PKG_CONFIG_PATH=$scratch/by-cmake-moved/lib/pkgconfig "${PKG_CONFIG:-pkg-config}" --modversion mpm)" = "$version" ]
   for way in subdirectory fetch; do
     configure "$scratch/$way" tests/api/cmake/ways -DWAY=$way -DMPM_SOURCE="$PWD" -DMPM_BASELINE_ONLY=ON -DCMAKE_BUILD_TYPE=Debug
     cmake --build "$scratch/$way" --parallel "${JOBS:-2}" > "$scratch/$way.log" || { cat "$scratch/$way.log"; exit 1; }
@@ -77,6 +79,19 @@ if [ "${1:-}" = full ]; then
       "$scratch/$way/$program" "$version"
     done
   done
+  # for Windows, where the tools for it are there: the DLL, found in the installation
+  if command -v x86_64-w64-mingw32-gcc > /dev/null; then
+    cross=(-DCMAKE_SYSTEM_NAME=Windows -DCMAKE_C_COMPILER=x86_64-w64-mingw32-gcc -DCMAKE_RC_COMPILER=x86_64-w64-mingw32-windres)
+    configure "$scratch/windows" . "${cross[@]}" -DMPM_BASELINE_ONLY=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_INSTALL_PREFIX="$scratch/for-windows"
+    cmake --build "$scratch/windows" --parallel "${JOBS:-2}" --target install > "$scratch/windows.log" || { cat "$scratch/windows.log"; exit 1; }
+    ls "$scratch/for-windows/bin/libmpm-${version%%.*}.dll" "$scratch/for-windows/lib/libmpm.dll.a" "$scratch/for-windows/lib/libmpm.a" > /dev/null
+    configure "$scratch/windows-host" tests/api/cmake "${cross[@]}" -DLANGUAGE=C -DCMAKE_PREFIX_PATH="$scratch/for-windows" \
+      -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=BOTH
+    cmake --build "$scratch/windows-host" > "$scratch/windows-host.log" || { cat "$scratch/windows-host.log"; exit 1; }
+    x86_64-w64-mingw32-objdump -p "$scratch/windows-host/shared.exe" | grep -q "DLL Name: libmpm-${version%%.*}.dll"
+    if x86_64-w64-mingw32-objdump -p "$scratch/windows-host/static.exe" | grep 'DLL Name: libmpm'; then exit 1; fi
+    echo "cmake.sh: the DLL and hosts of it, for Windows"
+  fi
 fi
 
 "$MAKE" -s install BUILD="$BUILD" CC="$CC" PREFIX="$scratch/prefix" DESTDIR= > /dev/null

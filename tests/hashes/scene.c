@@ -204,7 +204,12 @@ void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
   c.isa = isa;
   c.concurrency = is->concurrency;
   *w = (world){.is = is, .dt = is->scheme == MPM_NEWMARK ? implicit_dt : explicit_dt};
-  must(w, mpm_context_create(&c, &w->context));
+  mpm_status made = mpm_context_create(&c, &w->context);
+  if (made == MPM_E_UNSUPPORTED) { /* a build without threads, which must give the same bits */
+    c.concurrency = 1;
+    made = mpm_context_create(&c, &w->context);
+  }
+  must(w, made);
   must(w, mpm_grid_create(w->context, &g, &w->grid));
   must(w, mpm_stepper_create(w->context, w->grid, &s, &w->stepper));
   for (int32_t m = 0; m < 2 && is->law[m]; ++m) {

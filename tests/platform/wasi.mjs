@@ -1,8 +1,8 @@
-// wasi.mjs PROGRAM FOLDER: runs a WASI program by node, which sees FOLDER as /files.
+// wasi.mjs PROGRAM ARGUMENTS...: runs a WASI program by node. It sees the folder in which node was started.
 import { readFileSync } from 'node:fs';
 import { WASI } from 'node:wasi';
 
-const [program, folder] = process.argv.slice(2);
-const wasi = new WASI({ version: 'preview1', args: [program, 'baseline', '/files'], preopens: { '/files': folder } });
-const { instance } = await WebAssembly.instantiate(readFileSync(program), wasi.getImportObject());
+const args = process.argv.slice(2);
+const wasi = new WASI({ version: 'preview1', args, preopens: { '.': '.' } });
+const { instance } = await WebAssembly.instantiate(readFileSync(args[0]), wasi.getImportObject());
 process.exitCode = wasi.start(instance);

@@ -17,19 +17,29 @@ mkdir -p "$out"
 # flag gcc contracts nothing, and could not show that it must not.
 level='-O1 -fexpensive-optimizations'
 
-# name | compiler | its flags | what runs the program | the platform
+# name | compiler | its flags | for linking | what runs the program | the platform
 platforms() {
   cat << 'LIST'
-gcc|gcc|||x86-64, gcc
-clang|clang|||x86-64, clang
-musl|musl-gcc|||x86-64, musl
-i686|i686-linux-gnu-gcc|-msse2 -mfpmath=sse||i686 with SSE2
-aarch64|aarch64-linux-gnu-gcc||qemu-aarch64|aarch64
-armhf|arm-linux-gnueabihf-gcc||qemu-arm|armhf
-riscv64|riscv64-linux-gnu-gcc||qemu-riscv64|riscv64
-ppc64le|powerpc64le-linux-gnu-gcc||qemu-ppc64le|ppc64le
-s390x|s390x-linux-gnu-gcc||qemu-s390x|s390x, big endian
+gcc|gcc||-static||x86-64, gcc
+clang|clang||-static||x86-64, clang
+musl|musl-gcc||-static||x86-64, musl
+i686|i686-linux-gnu-gcc|-msse2 -mfpmath=sse|-static||i686 with SSE2
+aarch64|aarch64-linux-gnu-gcc||-static|qemu-aarch64|aarch64
+armhf|arm-linux-gnueabihf-gcc||-static|qemu-arm|armhf
+riscv64|riscv64-linux-gnu-gcc||-static|qemu-riscv64|riscv64
+ppc64le|powerpc64le-linux-gnu-gcc||-static|qemu-ppc64le|ppc64le
+s390x|s390x-linux-gnu-gcc||-static|qemu-s390x|s390x, big endian
+windows|x86_64-w64-mingw32-gcc|-D__USE_MINGW_ANSI_STDIO=1|-static|wine|Windows, by wine
+wasi|clang --target=wasm32-wasi|||node --no-warnings tests/platform/wasi.mjs|WebAssembly, WASI
+emscripten|emcc||-sALLOW_MEMORY_GROWTH=1 -sNODERAWFS=1 -sEXIT_RUNTIME=1|node --no-experimental-fetch|WebAssembly, emcc
 LIST
+}
+export WINEDEBUG=-all WINEARCH=win64 WINEPREFIX=$PWD/$out/wine NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
+
+missing() { # compiler, runner: what of a platform is not there
+  local tool
+  for tool in ${1%% *} ${2%% *}; do command -v "$tool" > /dev/null || { echo "$tool" && return; }; done
+  case $1 in *wasm32-wasi) [ -e /usr/lib/wasm32-wasi/libc.a ] && command -v wasm-ld > /dev/null || echo wasi-libc ;; esac
 }
 
 # Every basis, scheme, transfer, law and option that a scene's name may have.
@@ -71,25 +81,28 @@ folder_of() {
 
 failed=0 first=
 printf '%-18s %7s  %-16s  %s\n' platform scenes hash 'states continued'
-while IFS='|' read -r name compiler flags runner platform; do
+while IFS='|' read -r name compiler flags link runner platform; do
   case " ${PLATFORMS-$name} " in *" $name "*) ;; *) continue ;; esac
-  if ! command -v "$compiler" > /dev/null || { [ -n "$runner" ] && ! command -v "$runner" > /dev/null; }; then
-    printf '%-18s skipped: no %s\n' "$platform" "$compiler${runner:+ or no $runner}"
+  if [ -n "$(missing "$compiler" "$runner")" ]; then
+    printf '%-18s skipped: no %s\n' "$platform" "$(missing "$compiler" "$runner")"
     [ -z "${PLATFORMS-}" ] || failed=1
     continue
   fi
   folder=$(folder_of "$name")
-  options=(BUILD="$folder" CC="$compiler" LDFLAGS=-static)
+  options=(BUILD="$folder" CC="$compiler" LDFLAGS="$link")
   if [ "$folder" = "$out/$name" ]; then options+=(CFLAGS="$flags" OPT="$level" KERNEL_OPT="$level" WERROR=); fi
+  case $name in wasi) options+=(AR="$(command -v llvm-ar llvm-ar-14 | head -n 1)") ;; emscripten) options+=(AR=emar) ;; esac
   "$MAKE" -j"$JOBS" "${options[@]}" "$folder/tests/hashes/hashes" > "$out/$name.log" 2>&1 || {
     tail -n 20 "$out/$name.log"
     printf '%-18s does not compile\n' "$platform"
     failed=1
     continue
   }
-  program=(${runner:+"$runner"} "$folder/tests/hashes/hashes" portable)
+  if [ "$name" = windows ]; then (timeout 300 wineboot -i > /dev/null 2>&1) || :; fi
+  # shellcheck disable=SC2206
+  program=($runner "$folder/tests/hashes/hashes" portable)
   printf '%s\0' "${names[@]}" | xargs -0 -P "$JOBS" -n $(((${#names[@]} + 2 * JOBS - 1) / (2 * JOBS))) \
-    "${program[@]}" > "$out/$name.lines" && same=yes || same=no
+    "${program[@]}" | tr -d '\r' > "$out/$name.lines" && same=yes || same=no
   diff <(sort "$out/expected") <(sort "$out/$name.lines") > "$out/$name.diff" || same=no
 
   # to this platform from the first one, and back
@@ -103,7 +116,7 @@ while IFS='|' read -r name compiler flags runner platform; do
       rm -f "$out/states-$name"/*
       if [ $way = there ]; then from=("${first[@]}") to=("${program[@]}"); else from=("${program[@]}") to=("${first[@]}"); fi
       "${from[@]}" save "$out/states-$name" "${moved[@]}" > /dev/null &&
-        "${to[@]}" load "$out/states-$name" "${moved[@]}" | sort | diff "$out/moved" - > "$out/$name.$way" || continued=no
+        "${to[@]}" load "$out/states-$name" "${moved[@]}" | tr -d '\r' | sort | diff "$out/moved" - > "$out/$name.$way" || continued=no
     done
   fi
   printf '%-18s %7d  %s  %s\n' "$platform" "$(wc -l < "$out/$name.lines")" "$(sort "$out/$name.lines" | digest)" $continued

@@ -42,5 +42,10 @@ typedef struct reference {
 } reference;
 void reference_step(reference *r, reference_cloud *cloud, double dt);
 void reference_stress(double E, double nu, const double *F, double *stress);
+/* The same as a host's law; user is a reference_law. */
+typedef struct reference_law {
+  double E, nu, wave_speed;
+} reference_law;
+mpm_status reference_law_stress(void *user, const mpm_material_batch *b);
 
 #endif

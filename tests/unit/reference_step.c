@@ -63,6 +63,18 @@ void reference_stress(double E, double nu, const double *F, double *stress) {
   }
 }
 
+mpm_status reference_law_stress(void *user, const mpm_material_batch *b) {
+  const reference_law *law = user;
+  for (int64_t p = 0; p < b->n; ++p) {
+    double F[9], stress[6];
+    for (int32_t c = 0; c < 9; ++c) F[c] = b->F[c * b->ld + p];
+    reference_stress(law->E, law->nu, F, stress);
+    for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = stress[c];
+    b->wave_speed[p] = law->wave_speed;
+  }
+  return MPM_OK;
+}
+
 /* ---- weights of the step ---- */
 static void touch_nodes(sums *s, int64_t p) {
   const mpm_grid_desc *grid = &s->r->grid;

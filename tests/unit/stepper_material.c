@@ -222,6 +222,7 @@ static mpm_status giving_bad(void *user, const mpm_material_batch *b) {
     if (bad.what == 2) b->kinematic_viscosity[i] = -1e-9;
     if (bad.what == 3) b->energy[i] = INFINITE;
     if (bad.what == 4) b->energy[i] = -INFINITE;
+    if (bad.what == 5) b->wave_speed[i] = INFINITE;
   }
   return 0;
 }
@@ -257,8 +258,14 @@ START_TEST(refused_answers) {
       bad.id = -7;
       world_steps(&r, 1);
     }
+    char text[96];
+    snprintf(text, sizeof text, "gives wave speed inf and kinematic viscosity 0 at particle %lld of set 1",
+             (long long)one);
+    bad.id = one, bad.what = 5;
+    ck_ok(&r, mpm_particles_set_all(r.set[0], "velocity", MPM_F64, 2, (double[]){0.0, 0.0}));
+    ck_refused(&r, mpm_stable_dt(r.stepper, &dt), MPM_NONFINITE, text);
     ck_ok(&r, mpm_particles_set_all(r.set[1], "deformation_gradient", MPM_F64, 9, unit));
-    bad.id = one, bad.what = 1;
+    bad.what = 1;
     double *stress = calloc((size_t)mpm_particles_count(r.set[1]) * 6, sizeof *stress);
     ck_refused(&r,
                mpm_particles_get(r.set[1], "stress", MPM_F64, 6, mpm_particles_count(r.set[1]), NULL, stress),
