@@ -1,7 +1,7 @@
 # The tests of libmpm, included by the Makefile at the top of the sources, from where all paths start.
 
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
-.PHONY: check-builds check-windows check-wasm
+.PHONY: check-builds check-windows check-wasm check-valgrind
 .PHONY: check-amalgamation check-cmake mutate-slack
 .PHONY: mutate mutate-check check-hashes update-hashes
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-portable check-abi update-abi
@@ -163,6 +163,17 @@ TSAN_SUITES ?= context executor threads rollback restart linalg
 check-tsan:
 	+CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
+
+# Valgrind has no traps of the processor, knows nothing of slack, and takes twenty times as long.
+VALGRIND_SUITES ?= context fields host:callbacks host:reentry host:texts
+#: check-valgrind        calls from callbacks, errors and fields under valgrind; VALGRIND_SUITES="io" selects
+check-valgrind: $(UNIT)
+	@mkdir -p $(BUILD)/tests/scratch
+	@for suite in $(VALGRIND_SUITES); do \
+	  case $$suite in *:*) name=$${suite#*:};; *) name=;; esac; \
+	  MPM_SCRATCH=$(abspath $(BUILD))/tests/scratch CK_TIMEOUT_MULTIPLIER=40 CK_FORK=no CK_EXCLUDE_TAGS=long CK_RUN_SUITE=$${suite%%:*} $${name:+env CK_RUN_CASE=$$name} \
+	    valgrind -q --error-exitcode=1 --leak-check=full $(UNIT) || exit 1; \
+	done
 
 # libFuzzer on saved states, descriptors and small clouds of particles; what is new stays in $(FUZZ)/fuzz/corpus.
 FUZZ = $(BUILD)-fuzz
