@@ -135,21 +135,42 @@ static int32_t leads_to(const char *name, int file) {
          named.st_ino == opened.st_ino;
 }
 
+/* Emscripten says that it locks, and does not; and where it should make a second descriptor it opens the file
+ * again as it was opened, O_EXCL included. */
+#if defined(__EMSCRIPTEN__)
+static int32_t lock(int file) {
+  (void)file;
+  errno = ENOLCK;
+  return 0;
+}
+static int second_descriptor(int file, const char *name) {
+  (void)file;
+  return open(name, O_WRONLY | O_CLOEXEC);
+}
+#else
+static int32_t lock(int file) {
+  return !flock(file, LOCK_EX | LOCK_NB);
+}
+static int second_descriptor(int file, const char *name) {
+  (void)name;
+  return fcntl(file, F_DUPFD_CLOEXEC, 0);
+}
+#endif
+
 /* Removes the temporary file of a writer that has died, if there is one under this name. While the lock is
  * held the name cannot come to lead to another file, because only who has the lock removes or renames. */
 static void remove_abandoned(const char *name) {
   const int file = open(name, O_RDWR | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
   if (file < 0) return;
   struct stat info;
-  if (!fstat(file, &info) && S_ISREG(info.st_mode) && !flock(file, LOCK_EX | LOCK_NB) && leads_to(name, file))
-    unlink(name);
+  if (!fstat(file, &info) && S_ISREG(info.st_mode) && lock(file) && leads_to(name, file)) unlink(name);
   close(file);
 }
 
 /* Between its creation and this lock another writer may have taken the file for abandoned. Storage that knows
  * no locks gives none, and then no file of it is found abandoned either. */
 static int32_t keep_for_me(int file, const char *name) {
-  return flock(file, LOCK_EX | LOCK_NB) ? errno != EWOULDBLOCK : leads_to(name, file);
+  return lock(file) ? leads_to(name, file) : errno != EWOULDBLOCK;
 }
 
 static void name_temporary(mpmi_replacement *r, int32_t k) {
@@ -196,7 +217,7 @@ int mpmi_replacement_open(mpmi_replacement *r, const char *path) {
   /* What is to have the old one's mode is nobody else's to read until it has it. */
   const int file = create_temporary(r, exists ? 0600 : 0666);
   if (file < 0) return errno;
-  r->lock = fcntl(file, F_DUPFD_CLOEXEC, 0); /* holds the lock when the stream is closed */
+  r->lock = second_descriptor(file, r->temporary); /* holds the lock when the stream is closed */
   r->stream = r->lock < 0 ? NULL : fdopen(file, "wb");
   if (r->stream) return 0;
   error = errno;

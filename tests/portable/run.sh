@@ -34,7 +34,7 @@ wasi|clang --target=wasm32-wasi|||node --no-warnings tests/platform/wasi.mjs|Web
 emscripten|emcc||-sALLOW_MEMORY_GROWTH=1 -sNODERAWFS=1 -sEXIT_RUNTIME=1|node --no-experimental-fetch|WebAssembly, emcc
 LIST
 }
-export WINEDEBUG=-all WINEARCH=win64 WINEPREFIX=$PWD/$out/wine NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
+export WINEDEBUG=-all WINEARCH=win64 WINEPREFIX=$(cd "$out" && pwd)/wine NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
 
 missing() { # compiler, runner: what of a platform is not there
   local tool
@@ -100,7 +100,9 @@ while IFS='|' read -r name compiler flags link runner platform; do
   }
   if [ "$name" = windows ]; then (timeout 300 wineboot -i > /dev/null 2>&1) || :; fi
   # shellcheck disable=SC2206
-  program=($runner "$folder/tests/hashes/hashes" portable)
+  binary=$folder/tests/hashes/hashes
+  if [ -e "$binary.exe" ]; then binary=$binary.exe; fi
+  program=($runner "$binary" portable)
   printf '%s\0' "${names[@]}" | xargs -0 -P "$JOBS" -n $(((${#names[@]} + 2 * JOBS - 1) / (2 * JOBS))) \
     "${program[@]}" | tr -d '\r' > "$out/$name.lines" && same=yes || same=no
   diff <(sort "$out/expected") <(sort "$out/$name.lines") > "$out/$name.diff" || same=no
