@@ -13,8 +13,8 @@ static reach reach_of(const mpmi_blocks *blocks, int64_t block, int32_t k) {
   const mpm_grid *grid = blocks->grid;
   const double first = (double)blocks->coord[block][k] * blocks->edge, h = grid->desc.spacing[k];
   const double length = grid->desc.periodic[k] ? grid->upper[k] - grid->desc.origin[k] : 0.0;
-  return (reach){.centre = grid->desc.origin[k] + h * (first + 0.5 * (blocks->edge - grid->centred)),
-                 .half = h * (0.5 * blocks->edge + MPMI_RING) * (1.0 - 1e-9),
+  return (reach){.centre = grid->desc.origin[k] + h * (first + 0.5 * (double)(blocks->edge - grid->centred)),
+                 .half = h * (0.5 * (double)blocks->edge + (double)MPMI_RING) * (1.0 - 1e-9),
                  .period = length,
                  .inverse_period = length > 0.0 ? 1.0 / length : 0.0};
 }

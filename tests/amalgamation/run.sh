@@ -72,10 +72,10 @@ for compiler in "${compilers[@]}"; do
   # shellcheck disable=SC2086
   $compiler -std=c11 -O1 -ffp-contract=off -I"$scratch/include" tests/hashes/*.c "$at.o" -lm $threads -o "$at.hashes"
   for part in 7 18; do
-    "$at.hashes" baseline $part "$SCENES"
+    "$at.hashes" baseline part $part "$SCENES"
   done > "$at.found"
   for part in 7 18; do
-    "$BUILD/tests/hashes/hashes" baseline $part "$SCENES"
+    "$BUILD/tests/hashes/hashes" baseline part $part "$SCENES"
   done > "$scratch/expected"
   grep -q . "$scratch/expected" || fail "no scene was compared"
   grep ' failed$' "$scratch/expected" && fail "scenes fail"

@@ -86,8 +86,8 @@ for name in $BUILDS; do
   gcc-* | clang-*) build "$name" "command -v $name" '' CC="$name" ;;
   musl) LINK=-static build musl 'command -v musl-gcc' '' CC=musl-gcc ;;
   i686)
-    FLAGS='-m32 -msse2 -mfpmath=sse' build i686 'echo "#include <stdio.h>" | cc -m32 -E -' '' ISAS=baseline \
-      CFLAGS='-m32 -msse2 -mfpmath=sse'
+    FLAGS='-msse2 -mfpmath=sse -static' build i686 'command -v i686-linux-gnu-gcc' '' CC=i686-linux-gnu-gcc \
+      AR=i686-linux-gnu-ar CFLAGS='-msse2 -mfpmath=sse'
     ;;
   x87) refused x87 'cc -m32 -E -x c /dev/null' 'doubles are not evaluated as doubles' \
     cc -m32 -mno-sse -ffreestanding -std=c11 -Iinclude -Isrc -fsyntax-only src/transfer/update.c ;;
