@@ -40,9 +40,9 @@ static mpm_status place_lists(analysis *a) {
   const int64_t n = a->A->rows;
   const size_t per_node = sizeof *f->front + sizeof *f->task + sizeof *f->start + sizeof *a->dissection.part +
                           6 * sizeof(int32_t);
-  const size_t bytes = mpmi_bytes(n + 1, per_node);
+  const uint64_t bytes = mpmi_bytes(n + 1, per_node);
   const mpm_status status = mpmi_reserve(f->context, (void **)&f->slab, &f->slab_capacity,
-                                         (uint64_t)bytes < INT64_MAX ? (int64_t)bytes : INT64_MAX, 1);
+                                         bytes < INT64_MAX ? (int64_t)bytes : INT64_MAX, 1);
   if (status) return status;
   char *at = f->slab;
 #define TAKE(list) ((list) = (void *)at, at += (size_t)(n + 1) * sizeof *(list))
