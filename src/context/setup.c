@@ -16,8 +16,8 @@ static void *default_alloc(void *user, size_t bytes, size_t alignment) {
 }
 
 static void default_release(void *user, void *memory, size_t bytes, size_t alignment) {
-  (void)user, (void)bytes, (void)alignment;
-  mpmi_system_release(memory);
+  (void)user;
+  mpmi_system_release(memory, bytes, alignment);
 }
 
 static mpm_context_desc default_desc(void) {

@@ -46,12 +46,12 @@ MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
         mpmi_lanes rate = {0.0};
         for (int32_t k = 0; k < dim; ++k) rate += mpmi_lanes_load(job->L + (3 * r + k) * ld + s) * old[k][c];
         const mpmi_lanes F = old[r][c] + dt * rate;
-        mpmi_lanes_store(job->F + (3 * r + c) * ld + s, F);
+        if (job->F) mpmi_lanes_store(job->F + (3 * r + c) * ld + s, F);
         mpmi_lanes_store(job->F_new[place[3 * r + c]] + s, F);
       }
     if (dim == 2) { /* plane strain keeps its zz */
       const mpmi_lanes zz = mpmi_lanes_load(job->F_old[4] + s);
-      mpmi_lanes_store(job->F + 8 * ld + s, zz);
+      if (job->F) mpmi_lanes_store(job->F + 8 * ld + s, zz);
       mpmi_lanes_store(job->F_new[4] + s, zz);
     }
   }

@@ -60,7 +60,8 @@ void *mpmi_system_alloc(size_t bytes, size_t alignment) {
                                       : aligned_alloc(alignment, (bytes + alignment - 1) & ~(alignment - 1));
 }
 
-void mpmi_system_release(void *memory) {
+void mpmi_system_release(void *memory, size_t bytes, size_t alignment) {
+  (void)bytes, (void)alignment;
   free(memory);
 }
 

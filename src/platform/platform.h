@@ -33,9 +33,10 @@
 #endif
 
 /* ---- the machine ---- */
-/* Memory at a multiple of alignment, a power of two; NULL where there is none. */
+/* Memory at a multiple of alignment, a power of two; NULL where there is none. It is released with the same
+ * bytes and alignment. */
 void *mpmi_system_alloc(size_t bytes, size_t alignment);
-void mpmi_system_release(void *memory);
+void mpmi_system_release(void *memory, size_t bytes, size_t alignment);
 int32_t mpmi_processors(void);  /* at least 1; 1 where there are no threads */
 int64_t mpmi_nanoseconds(void); /* of a clock that only goes forward, where the system has one */
 /* Differs between a process and those that it forks. */

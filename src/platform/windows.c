@@ -19,7 +19,8 @@ void *mpmi_system_alloc(size_t bytes, size_t alignment) {
   return _aligned_malloc(bytes, alignment);
 }
 
-void mpmi_system_release(void *memory) {
+void mpmi_system_release(void *memory, size_t bytes, size_t alignment) {
+  (void)bytes, (void)alignment;
   _aligned_free(memory);
 }
 

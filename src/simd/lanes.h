@@ -27,10 +27,18 @@ MPMI_INLINE mpmi_lanes mpmi_lanes_where(mpmi_mask mask, mpmi_lanes v) {
 MPMI_INLINE mpmi_lanes mpmi_lanes_abs(mpmi_lanes v) {
   return (mpmi_lanes)((mpmi_mask)v & INT64_MAX);
 }
+/* a where the mask is set, else b. */
+MPMI_INLINE mpmi_lanes mpmi_lanes_select(mpmi_mask mask, mpmi_lanes a, mpmi_lanes b) {
+  return (mpmi_lanes)(((mpmi_mask)a & mask) | ((mpmi_mask)b & ~mask));
+}
 /* The larger one; a when b is not a number. */
 MPMI_INLINE mpmi_lanes mpmi_lanes_max(mpmi_lanes a, mpmi_lanes b) {
-  const mpmi_mask larger = b > a;
-  return (mpmi_lanes)(((mpmi_mask)b & larger) | ((mpmi_mask)a & ~larger));
+  return mpmi_lanes_select(b > a, b, a);
+}
+MPMI_INLINE void mpmi_lanes_store_int32(int32_t *a, mpmi_lanes v) {
+  typedef int32_t integers __attribute__((vector_size(MPMI_LANES * 4)));
+  const integers r = __builtin_convertvector(v, integers);
+  __builtin_memcpy(a, &r, sizeof r);
 }
 MPMI_INLINE double mpmi_lanes_sum(mpmi_lanes v) {
   double sum = v[0];

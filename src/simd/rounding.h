@@ -25,5 +25,9 @@ MPMI_INLINE double mpmi_floor(double x) {
   double r = mpmi_round(x);
   return r > x ? r - 1.0 : r;
 }
+MPMI_INLINE mpmi_lanes mpmi_lanes_floor(mpmi_lanes v) {
+  const mpmi_lanes r = mpmi_lanes_round(v);
+  return mpmi_lanes_select(r > v, r - 1.0, r);
+}
 
 #endif

@@ -122,7 +122,9 @@ MPMI_INLINE mpmi_lanes mpmi_of_halves(mpmi_v4 low, mpmi_v4 high) {
 #endif
 }
 
-enum { MPMI_HALF = MPMI_BOTH }; /* how to work with a node of eight when only its lower half counts */
+/* A node of eight of which the lower half counts alone is worked with in half of the register: `four` is
+ * always that half of `eight`, which costs nothing. */
+enum { MPMI_HALF = MPMI_LOW };
 typedef struct mpmi_node {
   mpmi_v4 four;
   mpmi_lanes eight;
@@ -130,22 +132,21 @@ typedef struct mpmi_node {
 /* Weights that differ between the halves: momentum takes moments of the basis where force takes gradients. */
 typedef mpmi_lanes mpmi_pair;
 
+MPMI_INLINE mpmi_node mpmi_node_of4(mpmi_v4 four) {
+  return (mpmi_node){four, {0.0}};
+}
+MPMI_INLINE mpmi_node mpmi_node_of8(mpmi_lanes eight) {
+  return (mpmi_node){mpmi_low_half(eight), eight};
+}
 MPMI_INLINE mpmi_node mpmi_node_zero(void) {
   return (mpmi_node){mpmi_zero4(), {0.0}};
 }
 MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
-  mpmi_node r = mpmi_node_zero();
-  if (part == MPMI_LOW)
-    r.four = mpmi_load4(a);
-  else
-    r.eight = mpmi_lanes_load(a);
-  return r;
+  return part == MPMI_LOW ? mpmi_node_of4(mpmi_load4(a)) : mpmi_node_of8(mpmi_lanes_load(a));
 }
 /* Loads the upper half alone; the lower half is zero. */
 MPMI_INLINE mpmi_node mpmi_node_load_high(const double *a) {
-  mpmi_node r = mpmi_node_zero();
-  r.eight = mpmi_of_halves(mpmi_zero4(), mpmi_load4(a));
-  return r;
+  return mpmi_node_of8(mpmi_of_halves(mpmi_zero4(), mpmi_load4(a)));
 }
 MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
   if (part == MPMI_LOW)
@@ -154,46 +155,30 @@ MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
     mpmi_lanes_store(a, v.eight);
 }
 MPMI_INLINE mpmi_v4 mpmi_node_low(int32_t part, mpmi_node a) {
-  return part == MPMI_LOW ? a.four : mpmi_low_half(a.eight);
+  (void)part;
+  return a.four;
 }
 MPMI_INLINE mpmi_v4 mpmi_node_high(mpmi_node a) {
   return mpmi_high_half(a.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_scale(int32_t part, double s, mpmi_node a) {
-  if (part == MPMI_LOW)
-    a.four = s * a.four;
-  else
-    a.eight = s * a.eight;
-  return a;
+  return part == MPMI_LOW ? mpmi_node_of4(s * a.four) : mpmi_node_of8(s * a.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_fma(int32_t part, mpmi_node a, double s, mpmi_node b) {
-  if (part == MPMI_LOW)
-    a.four = a.four + s * b.four;
-  else
-    a.eight = a.eight + s * b.eight;
-  return a;
+  return part == MPMI_LOW ? mpmi_node_of4(a.four + s * b.four) : mpmi_node_of8(a.eight + s * b.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
-  if (part == MPMI_LOW)
-    a.four = a.four + b.four;
-  else
-    a.eight = a.eight + b.eight;
-  return a;
+  return part == MPMI_LOW ? mpmi_node_of4(a.four + b.four) : mpmi_node_of8(a.eight + b.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_difference(int32_t part, mpmi_node a, mpmi_node b) {
-  if (part == MPMI_LOW)
-    a.four = a.four - b.four;
-  else
-    a.eight = a.eight - b.eight;
-  return a;
+  return part == MPMI_LOW ? mpmi_node_of4(a.four - b.four) : mpmi_node_of8(a.eight - b.eight);
 }
 MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {
   return (mpmi_pair){low, low, low, low, high, high, high, high};
 }
 MPMI_INLINE mpmi_node mpmi_node_fma_pair(int32_t part, mpmi_node a, mpmi_pair s, mpmi_node b) {
   (void)part;
-  a.eight = a.eight + s * b.eight;
-  return a;
+  return mpmi_node_of8(a.eight + s * b.eight);
 }
 
 #else

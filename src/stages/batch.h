@@ -37,6 +37,7 @@ struct mpmi_batch {
   mpmi_move move;
   mpmi_deform deform;
   mpmi_sums_job sums_job;
+  int32_t in_place; /* the law reads and writes the set's arrays, which are laid out as its batch would be */
   double *v_bar, *dv, *C; /* gathered, beside the gradient, which goes to the law */
   /* The block at hand: */
   int64_t block;

@@ -10,17 +10,28 @@
 /* Reading the clock costs as much as the law of a few particles: one batch in so many stands for all. */
 enum { TIMED_BATCHES = 16 };
 
+/* In 3-D the stored components of F and stress are those of a batch. Laws that look at F alone then need no
+ * copy of them. */
+static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles *set) {
+  const mpm_material *material = set->material;
+  return set->grid->dim == 3 && material->law && mpmi_material_stress_from_F(material) &&
+         mpmi_material_kinematics(material) == MPMI_F_DEFORMS && !material->state_count &&
+         !settings->desc.locking_remedy && !mpmi_is_implicit(settings);
+}
+
 void mpmi_strain_bind(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpm_grid *grid = settings->grid;
+  b->in_place = works_in_place(settings, b->set);
+  if (b->in_place) b->law.batch.ld = b->set->ld;
   b->deform =
       (mpmi_deform){.dt = b->step->dt,
                     .ld = b->law.ld,
                     .L = b->law.L,
-                    .F = b->law.F,
+                    .F = b->in_place ? NULL : b->law.F,
                     .F_inc = b->set->material->law && !mpmi_is_implicit(settings) ? NULL : b->law.F_inc};
   b->sums_job =
-      (mpmi_sums_job){.ld = b->law.ld,
+      (mpmi_sums_job){.ld = b->law.batch.ld,
                       .wave_speed = b->law.wave_speed,
                       .kinematic_viscosity = b->law.viscosity,
                       .energy = b->law.energy,
@@ -65,6 +76,11 @@ int32_t mpmi_strain_deform(mpmi_batch *b) {
     b->deform.F_new[c] = mpmi_component_row(set, MPMI_F, 1, c) + b->begin;
     F[c] = b->deform.F_new[c];
   }
+  if (b->in_place) {
+    b->law.batch.F = F[0];
+    b->law.batch.stress_new = mpmi_component_row(set, MPMI_STRESS, 1, 0) + b->begin;
+    b->sums_job.checked[0] = b->law.batch.stress_new;
+  }
   mpmi_law_batch_load(&b->law, set, b->begin, b->n, step->t + step->dt, step->dt);
   step->settings->deformation->deform[mpmi_material_kinematics(set->material)][dim](&b->deform, b->n);
   const uint32_t flags = step->settings->deformation->volume[dim](
@@ -93,7 +109,7 @@ void mpmi_strain_law(mpmi_batch *b) {
                                                            "the material callback"});
     return;
   }
-  mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);
+  if (!b->in_place) mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);
   b->law_ran = 1;
 }
 

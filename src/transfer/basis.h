@@ -6,7 +6,14 @@
  * for n particles along one axis: weights w[k], their gradients g[k] when asked for, the distance in cells
  * from the particle to the first node of its stencil, and the place of that node in the tile; then says
  * MPMI_BASIS(NAME, width, EVEN) when its nodes are a spacing apart, and MPMI_BASIS(NAME, width, UNEVEN) when
- * it gives the distance of each node. kernels.c lists it. */
+ * it gives the distance of each node. Or, where a position is all that it needs and its nodes are a spacing
+ * apart, it defines
+ *
+ *   MPMI_INLINE mpmi_lanes NAME_lanes(const mpmi_axis *axis, mpmi_lanes x, int32_t gradient, mpmi_lanes *w,
+ *                                     mpmi_lanes *g, mpmi_lanes *first)
+ *
+ * for as many particles as a register holds, which returns the place, and says MPMI_BASIS_LANES(NAME, width).
+ * kernels.c lists it. */
 #ifndef MPMI_BASIS_H
 #define MPMI_BASIS_H
 
@@ -58,10 +65,14 @@ MPMI_INLINE void mpmi_into_tile(const mpmi_axis *a, int64_t n, double *place) {
     }
 }
 
-/* Returns the cell that holds a particle at xi; the last one when it is on the upper face. */
+/* Return the cells that hold particles at xi; the last one for those on the upper face. */
 MPMI_INLINE double mpmi_cell(const mpmi_axis *a, double xi) {
   const double cell = mpmi_floor(xi);
   return cell > a->last_cell ? a->last_cell : cell;
+}
+MPMI_INLINE mpmi_lanes mpmi_lanes_cell(const mpmi_axis *a, mpmi_lanes xi) {
+  const mpmi_lanes zero = {0.0}, cell = mpmi_lanes_floor(xi), last = zero + a->last_cell;
+  return mpmi_lanes_select(cell > last, last, cell);
 }
 
 /* Finds the place of each stencil in the tile. */
@@ -99,5 +110,50 @@ MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (
   MPMI_BASIS_IN(1, name, width, spaced)                                                                      \
   MPMI_BASIS_IN(2, name, width, spaced)                                                                      \
   MPMI_BASIS_IN(3, name, width, spaced)
+
+/* The weights of a chunk a register at a time: all axes of some particles before the next ones, so that what
+ * leads from a position to the place of its stencil stays in registers. */
+#define MPMI_BASIS_LANES_IN(dim, name, width)                                                                \
+  MPMI_INLINE void name##_chunk_##dim(const mpmi_axis *axis, int32_t gradient, int32_t placed,               \
+                                      const mpmi_points *points, int64_t begin, int64_t n,                   \
+                                      mpmi_weights *W) {                                                     \
+    const double edge = MPMI_TILE_EDGE(dim, width);                                                          \
+    for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {                                         \
+      mpmi_lanes node = {0.0};                                                                               \
+      for (int32_t k = 0; k < (dim); ++k) {                                                                  \
+        const mpmi_axis *a = axis + k;                                                                       \
+        mpmi_lanes w[width], g[width], first;                                                                \
+        mpmi_lanes place =                                                                                   \
+            name##_lanes(a, mpmi_lanes_load(points->x[k] + begin + s), gradient, w, g, &first);              \
+        if (a->period > 0.0) place -= a->period * mpmi_lanes_round((place - a->middle) * a->inverse_period); \
+        for (int32_t i = 0; i < (width); ++i) {                                                              \
+          mpmi_lanes_store(W->w[k][i] + s, w[i]);                                                            \
+          if (gradient) mpmi_lanes_store(W->g[k][i] + s, g[i]);                                              \
+        }                                                                                                    \
+        mpmi_lanes_store(W->first[k] + s, first);                                                            \
+        node = k ? node * edge + place : place;                                                              \
+      }                                                                                                      \
+      if (placed) mpmi_lanes_store_int32(W->node + s, node);                                                 \
+    }                                                                                                        \
+  }                                                                                                          \
+  void KERNEL(name##_##dim)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,   \
+                            int64_t n, mpmi_weights *W);                                                     \
+  void KERNEL(name##_##dim)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,   \
+                            int64_t n, mpmi_weights *W) {                                                    \
+    if (need & MPMI_NO_PLACE)                                                                                \
+      name##_chunk_##dim(axis, need &MPMI_NEED_GRADIENT, 0, points, begin, n, W);                            \
+    else if (need & MPMI_NEED_GRADIENT)                                                                      \
+      name##_chunk_##dim(axis, 1, 1, points, begin, n, W);                                                   \
+    else                                                                                                     \
+      name##_chunk_##dim(axis, 0, 1, points, begin, n, W);                                                   \
+    for (int32_t k = 0; k < (dim) && need & (MPMI_NEED_MOMENT | MPMI_NEED_MLS); ++k) {                       \
+      const mpmi_stencils at = {W->w[k], W->g[k], W->first[k], NULL, NULL};                                  \
+      mpmi_moments(width, EVEN, axis[k].spacing, need, n, &at, W->u[k], W->inverse_moment[k]);               \
+    }                                                                                                        \
+  }
+#define MPMI_BASIS_LANES(name, width)                                                                        \
+  MPMI_BASIS_LANES_IN(1, name, width)                                                                        \
+  MPMI_BASIS_LANES_IN(2, name, width)                                                                        \
+  MPMI_BASIS_LANES_IN(3, name, width)
 
 #endif

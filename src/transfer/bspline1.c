@@ -1,21 +1,18 @@
 /* Linear basis (Steffen et al. 2008 eq. 17): node i and i + 1 of the cell that holds the particle. */
 #include "transfer/basis.h"
 
-MPMI_INLINE void bspline1_axis(const mpmi_axis *a, int64_t n, const mpmi_chunk *at, int32_t gradient,
-                               const mpmi_stencils *out) {
-  double(*w)[MPMI_CHUNK] = out->w, (*g)[MPMI_CHUNK] = out->g;
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
-    double xi = (at->x[p] - a->origin) * a->inverse_spacing, cell = mpmi_cell(a, xi), f = xi - cell;
-    w[0][p] = 1.0 - f;
-    w[1][p] = f;
-    out->first[p] = -f;
-    out->place[p] = cell - a->tile_base;
+MPMI_INLINE mpmi_lanes bspline1_lanes(const mpmi_axis *a, mpmi_lanes x, int32_t gradient, mpmi_lanes *w,
+                                      mpmi_lanes *g, mpmi_lanes *first) {
+  const mpmi_lanes zero = {0.0}, xi = (x - a->origin) * a->inverse_spacing;
+  const mpmi_lanes cell = mpmi_lanes_cell(a, xi), f = xi - cell;
+  w[0] = 1.0 - f;
+  w[1] = f;
+  if (gradient) {
+    g[0] = zero - a->inverse_spacing;
+    g[1] = zero + a->inverse_spacing;
   }
-  mpmi_into_tile(a, n, out->place);
-  if (gradient) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
-      g[0][p] = -a->inverse_spacing;
-      g[1][p] = a->inverse_spacing;
-    }
+  *first = -f;
+  return cell - a->tile_base;
 }
 
-MPMI_BASIS(bspline1, 2, EVEN)
+MPMI_BASIS_LANES(bspline1, 2)

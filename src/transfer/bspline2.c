@@ -2,26 +2,21 @@
  * neighbours. */
 #include "transfer/basis.h"
 
-MPMI_INLINE void bspline2_axis(const mpmi_axis *a, int64_t n, const mpmi_chunk *at, int32_t gradient,
-                               const mpmi_stencils *out) {
-  const double origin = a->origin, inverse = a->inverse_spacing, corner = a->tile_base + 1.0;
-  double(*w)[MPMI_CHUNK] = out->w, (*g)[MPMI_CHUNK] = out->g;
-  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
-    double xi = (at->x[p] - origin) * inverse;
-    double middle = mpmi_round(xi);
-    double f = xi - middle, below = 0.5 - f, above = 0.5 + f; /* f in [-1/2, 1/2] */
-    w[0][p] = 0.5 * below * below;
-    w[1][p] = 0.75 - f * f;
-    w[2][p] = 0.5 * above * above;
-    if (gradient) {
-      g[0][p] = below * -inverse;
-      g[1][p] = f * (-2.0 * inverse);
-      g[2][p] = above * inverse;
-    }
-    out->first[p] = -1.0 - f;
-    out->place[p] = middle - corner;
+MPMI_INLINE mpmi_lanes bspline2_lanes(const mpmi_axis *a, mpmi_lanes x, int32_t gradient, mpmi_lanes *w,
+                                      mpmi_lanes *g, mpmi_lanes *first) {
+  const double inverse = a->inverse_spacing;
+  const mpmi_lanes xi = (x - a->origin) * inverse, middle = mpmi_lanes_round(xi);
+  const mpmi_lanes f = xi - middle, below = 0.5 - f, above = 0.5 + f; /* f in [-1/2, 1/2] */
+  w[0] = 0.5 * below * below;
+  w[1] = 0.75 - f * f;
+  w[2] = 0.5 * above * above;
+  if (gradient) {
+    g[0] = below * -inverse;
+    g[1] = f * (-2.0 * inverse);
+    g[2] = above * inverse;
   }
-  mpmi_into_tile(a, n, out->place);
+  *first = -1.0 - f;
+  return middle - (a->tile_base + 1.0);
 }
 
-MPMI_BASIS(bspline2, 3, EVEN)
+MPMI_BASIS_LANES(bspline2, 3)

@@ -2,6 +2,7 @@
  * changes nothing, and the same call succeeds when memory is there again. In the steady state nothing is
  * allocated. */
 #include "body.h"
+#include "context/context.h"
 
 enum { STEPS = 15, SAVED_AT = 6 };
 
@@ -134,6 +135,33 @@ static int64_t tell(const body_desc *o, int64_t fail_at, uint64_t *hash, int32_t
   return calls;
 }
 
+/* The library's own memory, below and above what large pages are for: aligned, and its to write as a whole. */
+START_TEST(sizes_around_large_pages) {
+  enum { LARGE = 1 << 21, ARRAYS = 8 };
+  static const int32_t near[] = {-64, 0, 64, LARGE - 8};
+  mpm_context *context;
+  ck_assert_int_eq(mpm_context_create(NULL, &context), MPM_OK);
+  char *array[ARRAYS];
+  for (int32_t k = 0; k < ARRAYS; ++k) {
+    const size_t bytes = (size_t)(LARGE + near[k % 4]);
+    array[k] = mpmi_alloc(context, bytes);
+    ck_assert_ptr_nonnull(array[k]);
+    ck_assert_uint_eq((uintptr_t)array[k] % MPMI_ALIGNMENT, 0);
+    memset(array[k], k, bytes);
+  }
+  for (int32_t k = 0; k < ARRAYS; ++k) {
+    const size_t bytes = (size_t)(LARGE + near[k % 4]);
+    ck_assert_int_eq(array[k][0], k);
+    ck_assert_int_eq(array[k][bytes - 1], k);
+    mpmi_free(context, array[k], bytes);
+  }
+  int64_t held, peak;
+  ck_assert_int_eq(mpm_context_memory(context, &held, &peak), MPM_OK);
+  ck_assert(peak > ARRAYS * (int64_t)LARGE && held < LARGE);
+  mpm_context_destroy(context);
+}
+END_TEST
+
 START_TEST(every_allocation_fails_once) {
   static const body_desc cases[] = {
       {.dim = 2,
@@ -259,6 +287,7 @@ Suite *allocation_suite(void) {
   suite_add_tcase(suite, failing);
   TCase *steady = tcase_create("steady");
   tcase_set_timeout(steady, 600);
+  tcase_add_test(steady, sizes_around_large_pages);
   tcase_add_loop_test(steady, steady_state, 0, BROAD);
   tcase_add_loop_test(steady, steady_resorts, 0, 6);
   suite_add_tcase(suite, steady);
