@@ -169,7 +169,7 @@ static void hold_slots(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failu
 }
 
 mpm_status mpmi_prescribed_hold(mpmi_bound *bound) {
-  const mpmi_nodal sums = sums_of(bound->nodes);
+  mpmi_nodal sums = sums_of(bound->nodes);
   mpm_status status =
       mpmi_accumulate(bound->step, &(mpmi_accumulation){.to = &sums,
                                                         .give = give_block,
@@ -237,6 +237,7 @@ static void share_block(void *user, const mpmi_visit *at) {
   if (!mpmi_block_is(bound->nodes, at->block, MPMI_WITH_PRESCRIBED)) return;
   memset(mpmi_part_of(step->layout, bound->nodes, at->block, 0), 0,
          (size_t)step->layout->member_count * sizeof(mpmi_prescribed_part));
+  mpmi_tile_use(step->settings->grid, tile, 8);
   mpmi_tile_load(step->settings->kernels, &step->layout->blocks, at->block, &sums, 8, tile);
   visit_particles(bound, at->block, tile, take_share);
 }

@@ -52,7 +52,7 @@ void mpmi_blocks_init(mpmi_blocks *b, const mpm_grid *grid) {
 
 /* This lists every array of the structure with its size per block, so that allocation, release and growth
  * are one loop each. */
-enum { ARRAYS = 7 };
+enum { ARRAYS = 8 };
 typedef struct block_array {
   void **at;
   size_t size;
@@ -60,6 +60,7 @@ typedef struct block_array {
 static void arrays_of(mpmi_blocks *b, block_array *a) {
   const block_array list[ARRAYS] = {
       {(void **)&b->key, sizeof *b->key},
+      {(void **)&b->reached, sizeof *b->reached},
       {(void **)&b->coord, sizeof *b->coord},
       {(void **)&b->neighbour, sizeof *b->neighbour},
       {(void **)&b->order, sizeof *b->order},

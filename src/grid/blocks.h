@@ -14,6 +14,11 @@ enum { MPMI_RING = 1 };
 
 enum { MPMI_MAX_NEIGHBOURS = 27, MPMI_NO_BLOCK = -1 };
 
+/* The box of a block's nodes that tiles overlap: low <= place < high, by axis; empty where low >= high. */
+typedef struct mpmi_reached {
+  uint8_t low[3], high[3];
+} mpmi_reached;
+
 typedef struct mpmi_blocks {
   const mpm_grid *grid;
   mpm_context *context;
@@ -22,6 +27,7 @@ typedef struct mpmi_blocks {
   uint64_t *key;                             /* [count] Morton key, ascending once ordered */
   int32_t (*coord)[3];                       /* [count] */
   int32_t (*neighbour)[MPMI_MAX_NEIGHBOURS]; /* [count], lowest corner first; MPMI_NO_BLOCK where absent */
+  mpmi_reached *reached;                     /* [count] once the layout is sorted (layout/tile.c) */
   uint32_t *order, *order_scratch;           /* [capacity] order: provisional -> final; else scratch */
   uint64_t *key_scratch;
   int32_t (*coord_scratch)[3];

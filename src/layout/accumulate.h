@@ -10,7 +10,7 @@
 #include "layout/visit.h"
 
 typedef struct mpmi_accumulation {
-  const mpmi_nodal *to;
+  mpmi_nodal *to;
   /* Adds what the particles of a block give to a clean tile, with as many values per node as `to` has. */
   void (*give)(void *user, const mpmi_visit *visit, double *tile);
   mpm_task_fn fold; /* run by all tasks once the sums are there, or NULL */

@@ -1,8 +1,11 @@
 #include "layout/nodes.h"
 
 mpm_status mpmi_nodal_reserve(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values) {
+  const int64_t had = nodes->capacity;
+  const mpm_status status = MPMI_RESERVE_MORE(c, nodes->at, nodes->capacity, slots * values);
+  if (nodes->values != values || nodes->capacity != had) nodes->zero_elsewhere = -1;
   nodes->values = values;
-  return MPMI_RESERVE_MORE(c, nodes->at, nodes->capacity, slots * values);
+  return status;
 }
 
 void mpmi_nodal_free(mpm_context *c, mpmi_nodal *nodes) {

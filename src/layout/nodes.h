@@ -13,7 +13,13 @@ typedef struct mpmi_nodal {
   double *at;
   int32_t values;
   int64_t capacity; /* in doubles */
+  /* The version of the layout in which all nodes that no tile overlaps are 0, or -1: they must be cleared. */
+  int64_t zero_elsewhere;
 } mpmi_nodal;
+
+static inline int32_t mpmi_zero_elsewhere(const mpmi_layout *layout, const mpmi_nodal *nodes) {
+  return nodes->zero_elsewhere == layout->version;
+}
 
 /* Makes room for so many values of each node; they are not cleared. */
 mpm_status mpmi_nodal_reserve(mpm_context *c, mpmi_nodal *nodes, int64_t slots, int32_t values);

@@ -1,4 +1,5 @@
 #include "layout/sorted_layout.h"
+#include "layout/reached.h"
 
 #include <float.h>
 #include <math.h>
@@ -99,6 +100,7 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
            MPMI_RESERVE_MORE(settings->context, layout->list_memory, layout->list_capacity, 2 * blocks + 1)))
     return status;
   make_worklists(layout, settings);
+  mpmi_tiles_reach(&layout->next_blocks, layout->worklist[0].block, layout->worklist[0].count);
   swap_in_next(layout);
   return MPM_OK;
 }

@@ -1,17 +1,6 @@
 /* Tiles and the blocks around them: loads, adds and fetches box by box, by the kernels of transfer/box.c. */
 #include "layout/tile.h"
-
-/* Along an axis a tile spans parts of the lower neighbour, the block and the upper neighbour. */
-typedef struct span {
-  int32_t tile, block, length; /* first place in the tile, first place in the block, nodes */
-} span;
-
-static void spans_of(const mpm_grid *grid, int32_t edge, span *out) {
-  const int32_t low = MPMI_RING + grid->below, high = MPMI_RING + grid->width - 1 - grid->below;
-  out[0] = (span){0, edge - low, low};
-  out[1] = (span){low, 0, edge};
-  out[2] = (span){low + edge, 0, high};
-}
+#include "layout/reached.h"
 
 int32_t mpmi_tile_nodes(const mpm_grid *grid) {
   int32_t count = 1;
@@ -20,12 +9,12 @@ int32_t mpmi_tile_nodes(const mpm_grid *grid) {
 }
 
 /* Returns the box of nodes that the tile shares with neighbour n of a block. */
-static mpmi_box box_of(const mpmi_blocks *b, const span *spans, int64_t block, int32_t n,
+static mpmi_box box_of(const mpmi_blocks *b, const mpmi_span *spans, int64_t block, int32_t n,
                        const mpmi_nodal *nodes, double *tile, int32_t tile_values) {
   const int32_t dim = b->grid->dim, edge = b->edge, tile_edge = MPMI_TILE_EDGE(dim, b->grid->width);
-  static const span flat = {0, 0, 1}; /* an axis that the grid does not have */
-  const span *x = dim == 3 ? &spans[n / 9] : &flat, *y = dim >= 2 ? &spans[n / 3 % 3] : &flat,
-             *z = &spans[n % 3];
+  static const mpmi_span flat = {0, 0, 1}; /* an axis that the grid does not have */
+  const mpmi_span *x = dim == 3 ? &spans[n / 9] : &flat, *y = dim >= 2 ? &spans[n / 3 % 3] : &flat,
+                  *z = &spans[n % 3];
   const int64_t in_tile = ((int64_t)x->tile * tile_edge + y->tile) * tile_edge + z->tile;
   const int64_t in_block =
       ((int64_t)b->neighbour[block][n] * b->nodes) + ((int64_t)x->block * edge + y->block) * edge + z->block;
@@ -38,8 +27,8 @@ static mpmi_box box_of(const mpmi_blocks *b, const span *spans, int64_t block, i
 
 void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block,
                      const mpmi_nodal *nodes, int32_t begin, int32_t end) {
-  span spans[3];
-  spans_of(b->grid, b->edge, spans);
+  mpmi_span spans[3];
+  mpmi_spans(b->grid, b->edge, spans);
   for (int32_t n = begin; n < end; ++n) {
     const mpmi_box box = box_of(b, spans, block, n, nodes, nodes->at, 0);
     kernels->fetch_box(nodes->values, &box);
@@ -48,8 +37,8 @@ void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t 
 
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                     int32_t tile_values, double *tile) {
-  span spans[3];
-  spans_of(b->grid, b->edge, spans);
+  mpmi_span spans[3];
+  mpmi_spans(b->grid, b->edge, spans);
   for (int32_t n = 0; n < b->neighbours; ++n) {
     const mpmi_box box = box_of(b, spans, block, n, nodes, tile, tile_values);
     kernels->load_box(tile_values, nodes->values, &box);
@@ -58,8 +47,8 @@ void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t b
 
 void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                    double *tile) {
-  span spans[3];
-  spans_of(b->grid, b->edge, spans);
+  mpmi_span spans[3];
+  mpmi_spans(b->grid, b->edge, spans);
   for (int32_t n = 0; n < b->neighbours; ++n) {
     const mpmi_box box = box_of(b, spans, block, n, nodes, tile, nodes->values);
     kernels->add_box(nodes->values, &box);

@@ -3,10 +3,17 @@
 #ifndef MPMI_TILE_H
 #define MPMI_TILE_H
 
+#include "context/slack.h"
 #include "layout/nodes.h"
 
 /* Returns the number of nodes of a tile. */
 int32_t mpmi_tile_nodes(const mpm_grid *grid);
+/* Says with how many values per node a tile that has room for 8 is used from now on: the rest is slack. */
+static inline void mpmi_tile_use(const mpm_grid *grid, double *tile, int32_t values) {
+  if (!MPMI_WATCHED) return;
+  const size_t node = (size_t)mpmi_tile_nodes(grid) * sizeof(double);
+  mpmi_slack(tile, 8 * node, (size_t)values * node);
+}
 /* Fills a tile with tile_values per node: all of the nodes' values, or the first half of 8. */
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                     int32_t tile_values, double *tile);

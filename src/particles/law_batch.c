@@ -40,13 +40,9 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
   b->position = at, at += 3 * ld;
   b->state = at, at += material->state_count * ld;
   b->state_new = at;
-  for (int32_t e = 0; e < 9; ++e)
-    for (int64_t p = 0; p < ld; ++p) {
-      b->F[e * ld + p] = b->F_inc[e * ld + p] = e % 4 == 0 ? 1.0 : 0.0;
-      b->L[e * ld + p] = 0.0;
-    }
-  memset(b->stress, 0, (size_t)(6 * ld) * sizeof(double));
-  memset(b->stress_new, 0, (size_t)(6 * ld) * sizeof(double));
+  memset(b->F, 0, (size_t)(b->wave_speed - b->F) * sizeof(double));
+  for (int32_t e = 0; e < 9; e += 4)
+    for (int64_t p = 0; p < ld; ++p) b->F[e * ld + p] = b->F_inc[e * ld + p] = 1.0;
   memset(b->wave_speed, 0, (size_t)ld * sizeof(double));
   preset_optional(b, ld);
   b->batch = (mpm_material_batch){.struct_size = sizeof b->batch,

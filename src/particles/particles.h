@@ -78,6 +78,7 @@ typedef struct mpmi_owner {
 struct mpm_particles {
   uint32_t magic;
   int32_t mapped; /* live views */
+  int32_t lent;   /* a view has shown positions since the last step: the host may have written there */
   mpm_context *context;
   mpm_grid *grid;
   mpm_material *material;

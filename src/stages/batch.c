@@ -187,8 +187,9 @@ void mpmi_pass_block(mpmi_batch *b, int64_t block, int64_t next) {
   b->block = block;
   b->sums = &b->step->work->block_sums[block];
   if (starts_sums(b)) memset(b->sums, 0, sizeof *b->sums);
-  mpmi_tile_load(b->step->settings->kernels, blocks, block, b->from, b->form >= MPMI_GATHER_8 ? 8 : 4,
-                 b->scratch->tile);
+  const int32_t values = b->form >= MPMI_GATHER_8 ? 8 : 4;
+  mpmi_tile_use(blocks->grid, b->scratch->tile, values);
+  mpmi_tile_load(b->step->settings->kernels, blocks, block, b->from, values, b->scratch->tile);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const int64_t begin = layout->member[m].now.start[block], end = layout->member[m].now.start[block + 1];
     if (begin == end) continue;

@@ -2,6 +2,7 @@
  * (transfer/update.c). */
 #include "stages/stages.h"
 #include "layout/tasks.h"
+#include "layout/reached.h"
 
 #include <string.h>
 
@@ -12,6 +13,20 @@ typedef struct update_job {
   int32_t forgets_impulses, forgets_held; /* 1: clears what the boundary stage will write */
 } update_job;
 
+/* Runs of nodes, for a task. */
+typedef struct update_runs {
+  const update_job *job;
+  int64_t active;
+} update_runs;
+
+static void update_run(void *user, int64_t slot, int64_t count) {
+  update_runs *runs = user;
+  const mpmi_step *step = runs->job->step;
+  const mpmi_nodal *values = runs->job->values;
+  runs->active += step->settings->kernels->update(values->values, mpmi_nodal_at(values, slot), count,
+                                                  step->layout->mass_cut, step->velocity_dt);
+}
+
 static void update_task(void *data, int64_t k) {
   const update_job *job = data;
   const mpmi_step *step = job->step;
@@ -20,9 +35,14 @@ static void update_task(void *data, int64_t k) {
   const int64_t count = share.end - share.begin;
   step->work->report[k].active = 0;
   if (!count) return; /* perhaps there are no nodes at all */
-  step->work->report[k].active =
-      step->settings->kernels->update(job->values->values, mpmi_nodal_at(job->values, share.begin), count,
-                                      step->layout->mass_cut, step->velocity_dt);
+  update_runs runs = {job, 0};
+  if (mpmi_zero_elsewhere(step->layout, job->values)) {
+    const mpmi_share blocks = mpmi_share_of(step->settings, step->layout->blocks.count, k);
+    mpmi_reached_runs(&step->layout->blocks, blocks.begin, blocks.end, update_run, &runs);
+  } else {
+    update_run(&runs, share.begin, count);
+  }
+  step->work->report[k].active = runs.active;
   if (job->forgets_impulses && nodes->has_impulses)
     memset(nodes->impulse + share.begin, 0, (size_t)count * sizeof *nodes->impulse);
   if (job->forgets_held && nodes->has_holders)

@@ -8,7 +8,7 @@
 typedef struct p2g_job {
   mpmi_step *step;
   const mpmi_projection *projection;
-  const mpmi_nodal *to;
+  mpmi_nodal *to;
   int32_t affine, form, need;
   int32_t stress_copy;
 } p2g_job;
@@ -76,6 +76,13 @@ static void scatter_slots(const p2g_job *job, const mpmi_scatter *scatter, int64
   }
 }
 
+/* Tells whether the host has seen positions since the last step, through a view or in the batches of its
+ * callbacks: then it may have written there, whatever it was asked not to do. */
+static int32_t were_shown(const mpmi_settings *settings, const mpmi_member *member) {
+  return member->set->lent || !member->set->material->law || member->motion || settings->force ||
+         settings->acceleration;
+}
+
 static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
   const p2g_job *job = user;
   const mpmi_layout *layout = job->step->layout;
@@ -83,8 +90,10 @@ static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const int64_t begin = layout->member[m].now.start[visit->block];
     const int64_t end = layout->member[m].now.start[visit->block + 1];
-    if (begin == end || !mpmi_is_in_place(job->step, visit, m)) continue;
-    scatter_of(job, &layout->member[m], &scatter);
+    const mpmi_member *member = &layout->member[m];
+    if (begin == end) continue;
+    if (were_shown(job->step->settings, member) && !mpmi_is_in_place(job->step, visit, m)) continue;
+    scatter_of(job, member, &scatter);
     mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[visit->block], scatter.axis);
     scatter.tile = tile;
     scatter_slots(job, &scatter, visit->block, begin, end);

@@ -54,6 +54,7 @@ static void swap_copies(const mpm_stepper *s, mpm_particles *set, int32_t left_t
     field->data[0] = field->data[1];
     field->data[1] = swap;
   }
+  if (!set->mapped) set->lent = 0;
   if (left_tile) set->dirty |= MPMI_DIRTY_PLACE;
   set->dirty &= ~(uint32_t)(MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION);
   if (!mpmi_is_implicit(&s->settings) || s->settings.desc.quasi_static) set->dirty |= MPMI_DIRTY_ACCELERATION;
