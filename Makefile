@@ -36,7 +36,9 @@ endif
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion $(WERROR)
 CXX_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(WERROR)
-COMMON = -std=c11 -MMD -MP -Iinclude -Isrc $(WARNINGS) $(CPPFLAGS) $(CFLAGS)
+# A file of dependencies holds for $(BUILD) however it is written: relative here, absolute in a script of the tests.
+NEEDS = -MMD -MP -MT '$$(BUILD)$(patsubst $(BUILD)%,%,$@)'
+COMMON = -std=c11 $(NEEDS) -Iinclude -Isrc $(WARNINGS) $(CPPFLAGS) $(CFLAGS)
 LIBRARY = $(COMMON) $(OBJECT_FLAGS)
 include platform.mk
 
@@ -170,12 +172,12 @@ uninstall:
 $(BUILD)/examples/%: examples/%.c $(STATIC_LIB) Makefile
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
-	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 
 $(BUILD)/examples/%: examples/%.cpp $(STATIC_LIB) Makefile
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
-	$(Q)$(CXX) -std=c++17 -MMD -MP -Iinclude $(CXX_WARNINGS) $(CPPFLAGS) $(CXXFLAGS) $(OPT) -MF $@.d -MT $@ $< \
+	$(Q)$(CXX) -std=c++17 $(NEEDS) -Iinclude $(CXX_WARNINGS) $(CPPFLAGS) $(CXXFLAGS) $(OPT) -MF $@.d $< \
 	  $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 
 # The benchmark is a host program: it is compiled against an installation and runs the shared library; with the

@@ -71,7 +71,7 @@ STEPS := $(BUILD)/tests/instructions/steps
 $(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile tests/tests.mk
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
-	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 check-instructions update-instructions: $(STEPS)
 	@$(TEST_ENVIRONMENT) bash tests/instructions/run.sh $(@:-instructions=)
 
@@ -106,7 +106,7 @@ SMOKE := $(BUILD)/tests/platform/smoke
 $(SMOKE): tests/platform/smoke.c $(STATIC_LIB) Makefile tests/tests.mk
 	@mkdir -p $(@D) $(BUILD)/tests/scratch
 	$(call SAY,LINK)
-	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d -MT $@ $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+	$(Q)$(CC) $(COMMON) $(OPT) -MF $@.d $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 #: check-builds          other compilers, optimisations and C libraries, those that are installed; BUILDS="gcc-11 musl" selects
 #: check-windows         the library for Windows by mingw-w64, run by wine
 #: check-wasm            the library for WebAssembly by Emscripten and wasi-libc, run by node; SYSTEMS="wasi" selects
@@ -188,7 +188,7 @@ fuzz-programs:
 $(BUILD)/fuzz/%: tests/fuzz/%.c tests/fuzz/fuzz.h $(STATIC_LIB) Makefile tests/tests.mk
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
-	$(Q)$(CC) $(COMMON) -O1 -MF $@.d -MT $@ -fsanitize=fuzzer $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+	$(Q)$(CC) $(COMMON) -O1 -MF $@.d -fsanitize=fuzzer $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
 
 #: fuzz                  FUZZ_SECONDS (600) for each of FUZZ_TARGETS, from the committed corpora
 fuzz: fuzz-programs
