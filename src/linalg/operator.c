@@ -21,10 +21,10 @@ void mpmi_operator_free(mpm_operator *op) {
 
 /* All lists of one element per unknown of the matrix share one piece of memory. */
 static mpm_status divide_slab(mpm_operator *op, int64_t unknowns) {
-  const size_t bytes =
+  const uint64_t bytes =
       mpmi_bytes(unknowns + 1, 2 * sizeof(int64_t) + 2 * sizeof(int32_t) + 5 * sizeof(double));
   const mpm_status status = mpmi_reserve(op->context, (void **)&op->slab, &op->slab_capacity,
-                                         (uint64_t)bytes < INT64_MAX ? (int64_t)bytes : INT64_MAX, 1);
+                                         bytes < INT64_MAX ? (int64_t)bytes : INT64_MAX, 1);
   if (status) return status;
   const int64_t n = unknowns + 1;
   op->position = (double *)(void *)op->slab;
