@@ -238,6 +238,6 @@ format-check:
 
 #: clean                 takes all build folders away
 clean:
-	rm -rf $(addprefix $(BUILD),/ -asan -tsan -aarch64 -windows -wasm -builds) $(FUZZ)
+	rm -rf $(addprefix $(BUILD),/ -asan -tsan -aarch64 -windows -wasm -builds -portable) $(FUZZ)
 
 -include $(OBJECTS:.o=.d) $(EXAMPLES:=.d)

@@ -27,7 +27,7 @@ typedef struct mpmi_blocks {
   uint64_t *key;                             /* [count] Morton key, ascending once ordered */
   int32_t (*coord)[3];                       /* [count] */
   int32_t (*neighbour)[MPMI_MAX_NEIGHBOURS]; /* [count], lowest corner first; MPMI_NO_BLOCK where absent */
-  mpmi_reached *reached;                     /* [count] once the layout is sorted (layout/tile.c) */
+  mpmi_reached *reached;                     /* [count] once the layout is sorted (layout/reached.c) */
   uint32_t *order, *order_scratch;           /* [capacity] order: provisional -> final; else scratch */
   uint64_t *key_scratch;
   int32_t (*coord_scratch)[3];

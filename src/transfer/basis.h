@@ -141,7 +141,7 @@ MPMI_INLINE void mpmi_find_nodes(int32_t dim, int32_t width, int64_t n, double (
   void KERNEL(name##_##dim)(const mpmi_axis *axis, int32_t need, const mpmi_points *points, int64_t begin,   \
                             int64_t n, mpmi_weights *W) {                                                    \
     if (need & MPMI_NO_PLACE)                                                                                \
-      name##_chunk_##dim(axis, need &MPMI_NEED_GRADIENT, 0, points, begin, n, W);                            \
+      name##_chunk_##dim(axis, (need & MPMI_NEED_GRADIENT) != 0, 0, points, begin, n, W);                    \
     else if (need & MPMI_NEED_GRADIENT)                                                                      \
       name##_chunk_##dim(axis, 1, 1, points, begin, n, W);                                                   \
     else                                                                                                     \
