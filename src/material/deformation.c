@@ -1,10 +1,8 @@
 /* New deformation gradient and volume of particles, from the velocity gradient. */
 #include <string.h>
 
-#include "material/deformation.h"
+#include "material/deform_lanes.h"
 #include "simd/chunk.h"
-#include "simd/flags.h"
-#include "simd/lanes.h"
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
 
@@ -15,8 +13,30 @@ MPMI_INLINE int32_t has_entry(int32_t dim, int32_t row, int32_t column) {
 
 /* Finds the place of each entry of the full tensor among the stored ones, or -1. */
 MPMI_INLINE void place_entries(int32_t dim, int32_t *place) {
-  int32_t stored = 0;
-  for (int32_t e = 0; e < 9; ++e) place[e] = has_entry(dim, e / 3, e % 3) ? stored++ : -1;
+  for (int32_t e = 0; e < 9; ++e)
+    place[e] = has_entry(dim, e / 3, e % 3) ? mpmi_stored_entry(dim, e / 3, e % 3) : -1;
+}
+
+MPMI_INLINE void load_stored(int32_t dim, const double *const *F, int64_t s, mpmi_lanes *out) {
+  for (int32_t c = 0; c < mpmi_stored_entries(dim); ++c) out[c] = mpmi_lanes_load(F[c] + s);
+}
+
+/* Computes volumes; returns the flags of those that are no volume. */
+MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *initial_volume, double *out,
+                            int64_t n) {
+  mpmi_deformed made = mpmi_nothing_deformed();
+  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
+    mpmi_lanes stored[9];
+    load_stored(dim, F, s, stored);
+    mpmi_volume_lanes(dim, stored, initial_volume + s, out + s, &made);
+  }
+  return mpmi_deform_flags(&made);
+}
+
+MPMI_INLINE uint32_t volume_of(int32_t dim, const mpmi_deform *job, int64_t n) {
+  const double *F[9];
+  for (int32_t c = 0; c < 9; ++c) F[c] = job->F_new[c];
+  return volume(dim, F, job->initial_volume, job->volume, n);
 }
 
 /* Writes F_inc = I + dt L. */
@@ -30,40 +50,15 @@ MPMI_INLINE void increment(int32_t dim, const mpmi_deform *job, int64_t n) {
     }
 }
 
-/* Deforms: F = (I + dt L) F_old (MPoint theory eq. 39, Steffen et al. 2008 eq. 8). */
-MPMI_INLINE void deform(int32_t dim, const mpmi_deform *job, int64_t n) {
-  const double dt = job->dt;
-  const int64_t ld = job->ld;
-  int32_t place[9];
-  place_entries(dim, place);
-  if (job->F_inc) increment(dim, job, n);
+MPMI_INLINE uint32_t deform(int32_t dim, const mpmi_deform *job, int64_t n) {
+  mpmi_deformed deformed = mpmi_nothing_deformed();
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
-    mpmi_lanes old[3][3];
+    mpmi_lanes L[3][3];
     for (int32_t r = 0; r < dim; ++r)
-      for (int32_t c = 0; c < dim; ++c) old[r][c] = mpmi_lanes_load(job->F_old[place[3 * r + c]] + s);
-    for (int32_t r = 0; r < dim; ++r)
-      for (int32_t c = 0; c < dim; ++c) {
-        mpmi_lanes rate = {0.0};
-        for (int32_t k = 0; k < dim; ++k) rate += mpmi_lanes_load(job->L + (3 * r + k) * ld + s) * old[k][c];
-        const mpmi_lanes F = old[r][c] + dt * rate;
-        if (job->F) mpmi_lanes_store(job->F + (3 * r + c) * ld + s, F);
-        mpmi_lanes_store(job->F_new[place[3 * r + c]] + s, F);
-      }
-    if (dim == 2) { /* plane strain keeps its zz */
-      const mpmi_lanes zz = mpmi_lanes_load(job->F_old[4] + s);
-      if (job->F) mpmi_lanes_store(job->F + 8 * ld + s, zz);
-      mpmi_lanes_store(job->F_new[4] + s, zz);
-    }
+      for (int32_t c = 0; c < dim; ++c) L[r][c] = mpmi_lanes_load(job->L + (3 * r + c) * job->ld + s);
+    mpmi_deform_lanes(dim, job, s, L, &deformed);
   }
-}
-
-MPMI_INLINE mpmi_lanes determinant(int32_t dim, const double *const *F, int64_t s) {
-#define F_(c) mpmi_lanes_load(F[c] + s)
-  if (dim == 1) return F_(0);
-  if (dim == 2) return (F_(0) * F_(3) - F_(1) * F_(2)) * F_(4);
-  return F_(0) * (F_(4) * F_(8) - F_(5) * F_(7)) - F_(1) * (F_(3) * F_(8) - F_(5) * F_(6)) +
-         F_(2) * (F_(3) * F_(7) - F_(4) * F_(6));
-#undef F_
+  return mpmi_deform_flags(&deformed);
 }
 
 /* Finds the f > 0 of F_old = f I, or J^(1/3) where the host has set an F of another shape. */
@@ -77,7 +72,9 @@ MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t 
     mpmi_mask other = {0};
     for (int32_t e = 1; e < 9; ++e)
       if (place[e] >= 0) other |= mpmi_lanes_load(job->F_old[place[e]] + s) != (e % 4 ? zero : first);
-    const mpmi_lanes minus_J = -determinant(dim, job->F_old, s); /* negative: not yet a stretch */
+    mpmi_lanes F[9];
+    load_stored(dim, job->F_old, s, F);
+    const mpmi_lanes minus_J = -mpmi_determinant(dim, F); /* negative: not yet a stretch */
     mpmi_lanes_store(f + s, mpmi_lanes_where(~other, first) + mpmi_lanes_where(other, minus_J));
     any |= other;
   }
@@ -87,7 +84,7 @@ MPMI_INLINE void stretch_of_volume(int32_t dim, const mpmi_deform *job, int64_t 
 }
 
 /* Dilates: F = J^(1/3) I with J = det(I + dt L) J_old; in 1-D, where only F11 is stored, F11 = J. */
-MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
+MPMI_INLINE uint32_t dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
   const double dt = job->dt, *L = job->L;
   const int64_t ld = job->ld;
   const int32_t diagonals = dim == 1 ? 1 : 3;
@@ -107,9 +104,10 @@ MPMI_INLINE void dilate(int32_t dim, const mpmi_deform *job, int64_t n) {
     for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) F[p] = e % 4 ? 0.0 : f[p];
   }
   for (int32_t k = 1; k < diagonals; ++k) memcpy(job->F + 4 * k * ld, f, (size_t)n * sizeof *f);
+  return volume_of(dim, job, n);
 }
 
-MPMI_INLINE void stay(int32_t dim, const mpmi_deform *job, int64_t n) {
+MPMI_INLINE uint32_t stay(int32_t dim, const mpmi_deform *job, int64_t n) {
   int32_t place[9];
   place_entries(dim, place);
   for (int32_t e = 0; e < 9; ++e) {
@@ -117,32 +115,18 @@ MPMI_INLINE void stay(int32_t dim, const mpmi_deform *job, int64_t n) {
     memcpy(job->F + e * job->ld, job->F_old[place[e]], (size_t)n * sizeof(double));
     memcpy(job->F_new[place[e]], job->F_old[place[e]], (size_t)n * sizeof(double));
   }
-}
-
-/* Computes volumes, V = det F V0 (MPoint theory eq. 40); returns the flags of those that are no volume. */
-MPMI_INLINE uint32_t volume(int32_t dim, const double *const *F, const double *initial_volume, double *out,
-                            int64_t n) {
-  mpmi_lanes bad = {0.0};
-  mpmi_mask inverted = {0};
-  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
-    const mpmi_lanes J = determinant(dim, F, s);
-    bad += J - J;
-    inverted |= J <= 0.0;
-    mpmi_lanes_store(out + s, J * mpmi_lanes_load(initial_volume + s));
-  }
-  return (mpmi_lanes_sum(bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE) |
-         mpmi_lanes_any(inverted, MPMI_NOT_POSITIVE);
+  return volume_of(dim, job, n);
 }
 
 #define BY_DIM(dim)                                                                                          \
-  static void deform_##dim(const mpmi_deform *job, int64_t n) {                                              \
-    deform(dim, job, n);                                                                                     \
+  static uint32_t deform_##dim(const mpmi_deform *job, int64_t n) {                                          \
+    return deform(dim, job, n);                                                                              \
   }                                                                                                          \
-  static void dilate_##dim(const mpmi_deform *job, int64_t n) {                                              \
-    dilate(dim, job, n);                                                                                     \
+  static uint32_t dilate_##dim(const mpmi_deform *job, int64_t n) {                                          \
+    return dilate(dim, job, n);                                                                              \
   }                                                                                                          \
-  static void stay_##dim(const mpmi_deform *job, int64_t n) {                                                \
-    stay(dim, job, n);                                                                                       \
+  static uint32_t stay_##dim(const mpmi_deform *job, int64_t n) {                                            \
+    return stay(dim, job, n);                                                                                \
   }                                                                                                          \
   static uint32_t volume_##dim(const double *const *F, const double *initial_volume, double *out,            \
                                int64_t n) {                                                                  \

@@ -11,20 +11,21 @@
  * it leaves F as it is. */
 enum { MPMI_F_DEFORMS, MPMI_F_DILATES, MPMI_F_STAYS, MPMI_F_KINDS };
 
-/* Makes F_new from F_old and L, and F_inc = I + dt L when asked for. */
+/* Makes F_new from F_old and L, volume = det F_new * initial volume, and F_inc = I + dt L when asked for. */
 typedef struct mpmi_deform {
   double dt;
   int64_t ld;
   const double *L;        /* [9][ld] */
-  double *F, *F_inc;      /* [9][ld] out, full; F_inc may be NULL */
+  double *F, *F_inc;      /* [9][ld] out, full; either may be NULL where F deforms, F_inc always */
   const double *F_old[9]; /* the components that are stored */
   double *F_new[9];
+  const double *initial_volume;
+  double *volume;
 } mpmi_deform;
-typedef void (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
 
-/* Computes volume = det F * initial volume from the stored components of F. All volumes are made here, so
- * that they can be made again with the same bits. Returns MPMI_NOT_POSITIVE and MPMI_NONFINITE where they
- * apply. */
+/* Return MPMI_NOT_POSITIVE and MPMI_NONFINITE where a volume is no volume. The second makes volumes again
+ * from stored components of F, with the same bits. */
+typedef uint32_t (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
 typedef uint32_t (*mpmi_volume_fn)(const double *const *F, const double *initial_volume, double *volume,
                                    int64_t n);
 

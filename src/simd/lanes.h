@@ -5,6 +5,9 @@
 #define MPMI_LANES_H
 
 #include <stdint.h>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 #include "simd/isa.h"
 
@@ -31,10 +34,36 @@ MPMI_INLINE mpmi_lanes mpmi_lanes_abs(mpmi_lanes v) {
 MPMI_INLINE mpmi_lanes mpmi_lanes_select(mpmi_mask mask, mpmi_lanes a, mpmi_lanes b) {
   return (mpmi_lanes)(((mpmi_mask)a & mask) | ((mpmi_mask)b & ~mask));
 }
-/* The larger one; a when b is not a number. */
+/* The larger and the smaller one; a when b is not a number. */
+#if defined(__SSE2__) && MPMI_WIDTH == 2
+MPMI_INLINE mpmi_lanes mpmi_lanes_max(mpmi_lanes a, mpmi_lanes b) {
+  return _mm_max_pd(b, a);
+}
+MPMI_INLINE mpmi_lanes mpmi_lanes_min(mpmi_lanes a, mpmi_lanes b) {
+  return _mm_min_pd(b, a);
+}
+#elif defined(__AVX2__) && MPMI_WIDTH == 4
+MPMI_INLINE mpmi_lanes mpmi_lanes_max(mpmi_lanes a, mpmi_lanes b) {
+  return _mm256_max_pd(b, a);
+}
+MPMI_INLINE mpmi_lanes mpmi_lanes_min(mpmi_lanes a, mpmi_lanes b) {
+  return _mm256_min_pd(b, a);
+}
+#elif defined(__AVX512F__) && MPMI_WIDTH == 8
+MPMI_INLINE mpmi_lanes mpmi_lanes_max(mpmi_lanes a, mpmi_lanes b) {
+  return _mm512_max_pd(b, a);
+}
+MPMI_INLINE mpmi_lanes mpmi_lanes_min(mpmi_lanes a, mpmi_lanes b) {
+  return _mm512_min_pd(b, a);
+}
+#else
 MPMI_INLINE mpmi_lanes mpmi_lanes_max(mpmi_lanes a, mpmi_lanes b) {
   return mpmi_lanes_select(b > a, b, a);
 }
+MPMI_INLINE mpmi_lanes mpmi_lanes_min(mpmi_lanes a, mpmi_lanes b) {
+  return mpmi_lanes_select(b < a, b, a);
+}
+#endif
 MPMI_INLINE void mpmi_lanes_store_int32(int32_t *a, mpmi_lanes v) {
   typedef int32_t integers __attribute__((vector_size(MPMI_LANES * 4)));
   const integers r = __builtin_convertvector(v, integers);
@@ -49,6 +78,11 @@ MPMI_INLINE double mpmi_lanes_largest(mpmi_lanes v) {
   double largest = v[0];
   for (int32_t i = 1; i < MPMI_LANES; ++i) largest = v[i] > largest ? v[i] : largest;
   return largest;
+}
+MPMI_INLINE double mpmi_lanes_smallest(mpmi_lanes v) {
+  double smallest = v[0];
+  for (int32_t i = 1; i < MPMI_LANES; ++i) smallest = v[i] < smallest ? v[i] : smallest;
+  return smallest;
 }
 MPMI_INLINE uint32_t mpmi_lanes_any(mpmi_mask mask, uint32_t flag) {
   int64_t any = 0;

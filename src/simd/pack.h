@@ -5,8 +5,8 @@
 #include "simd/chunk.h"
 #include "simd/vector.h"
 
-/* Work on MPMI_SIDE particles at a time: mpmi_interleave() turns four component arrays into vectors, `stride`
- * doubles apart; mpmi_separate() turns vectors of four into three arrays, without the last component. */
+/* mpmi_interleave() turns four component arrays of MPMI_SIDE particles into vectors, `stride` doubles apart;
+ * mpmi_separate() turns the vectors of four of MPMI_LANES particles into the first three components. */
 #if MPMI_WIDTH == 8
 enum { MPMI_SIDE = 8 };
 MPMI_INLINE void mpmi_store_halves(double *low, double *high, mpmi_lanes v) {
@@ -49,16 +49,16 @@ MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *ou
     mpmi_lanes_store(row + 48, MPMI_SHUFFLE(low_26, high_26, 2, 3, 6, 7, 10, 11, 14, 15));
   }
 }
-MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c) {
+MPMI_INLINE void mpmi_separate(const double *in, mpmi_lanes *out) {
   const mpmi_lanes r01 = mpmi_lanes_load(in), r23 = mpmi_lanes_load(in + 8), r45 = mpmi_lanes_load(in + 16),
                    r67 = mpmi_lanes_load(in + 24);
   const mpmi_lanes ab_low = MPMI_SHUFFLE(r01, r23, 0, 4, 8, 12, 1, 5, 9, 13),
                    ab_high = MPMI_SHUFFLE(r45, r67, 0, 4, 8, 12, 1, 5, 9, 13),
                    c_low = MPMI_SHUFFLE(r01, r23, 2, 6, 10, 14, 3, 7, 11, 15),
                    c_high = MPMI_SHUFFLE(r45, r67, 2, 6, 10, 14, 3, 7, 11, 15);
-  mpmi_lanes_store(a, MPMI_SHUFFLE(ab_low, ab_high, 0, 1, 2, 3, 8, 9, 10, 11));
-  mpmi_lanes_store(b, MPMI_SHUFFLE(ab_low, ab_high, 4, 5, 6, 7, 12, 13, 14, 15));
-  mpmi_lanes_store(c, MPMI_SHUFFLE(c_low, c_high, 0, 1, 2, 3, 8, 9, 10, 11));
+  out[0] = MPMI_SHUFFLE(ab_low, ab_high, 0, 1, 2, 3, 8, 9, 10, 11);
+  out[1] = MPMI_SHUFFLE(ab_low, ab_high, 4, 5, 6, 7, 12, 13, 14, 15);
+  out[2] = MPMI_SHUFFLE(c_low, c_high, 0, 1, 2, 3, 8, 9, 10, 11);
 }
 #else
 enum { MPMI_SIDE = 4 };
@@ -77,13 +77,20 @@ MPMI_INLINE void mpmi_interleave8(const double *const *in, int64_t p, double *ou
     mpmi_interleave(in[4 * half] + p, in[4 * half + 1] + p, in[4 * half + 2] + p, in[4 * half + 3] + p,
                     out + 4 * half, 8);
 }
-MPMI_INLINE void mpmi_separate(const double *in, double *a, double *b, double *c) {
-  mpmi_v4 va = mpmi_load4(in), vb = mpmi_load4(in + 4), vc = mpmi_load4(in + 8), vd = mpmi_load4(in + 12);
-  mpmi_transpose4(&va, &vb, &vc, &vd);
-  mpmi_store4(a, va);
-  mpmi_store4(b, vb);
-  mpmi_store4(c, vc);
+#if MPMI_WIDTH == 4
+MPMI_INLINE void mpmi_separate(const double *in, mpmi_lanes *out) {
+  mpmi_v4 a = mpmi_load4(in), b = mpmi_load4(in + 4), c = mpmi_load4(in + 8), d = mpmi_load4(in + 12);
+  mpmi_transpose4(&a, &b, &c, &d);
+  out[0] = a, out[1] = b, out[2] = c;
 }
+#else
+MPMI_INLINE void mpmi_separate(const double *in, mpmi_lanes *out) {
+  const mpmi_v4 a = mpmi_load4(in), b = mpmi_load4(in + 4);
+  out[0] = MPMI_SHUFFLE(a.low, b.low, 0, 2);
+  out[1] = MPMI_SHUFFLE(a.low, b.low, 1, 3);
+  out[2] = MPMI_SHUFFLE(a.high, b.high, 0, 2);
+}
+#endif
 #endif
 
 /* Turns four component arrays of n particles into one vector per particle, `stride` doubles apart. */
@@ -95,11 +102,6 @@ MPMI_INLINE void mpmi_pack(int64_t n, const double *a, const double *b, const do
 /* Turns eight component arrays into eight values for each particle. */
 MPMI_INLINE void mpmi_pack8(int64_t n, const double *const *in, double *out) {
   for (int64_t p = 0; p < mpmi_whole_chunks(n); p += MPMI_SIDE) mpmi_interleave8(in, p, out + 8 * p);
-}
-/* Turns vectors of four into three component arrays. */
-MPMI_INLINE void mpmi_unpack(int64_t n, const double *in, double *a, double *b, double *c) {
-  for (int64_t p = 0; p < mpmi_whole_chunks(n); p += MPMI_SIDE)
-    mpmi_separate(in + 4 * p, a + p, b + p, c + p);
 }
 
 #endif

@@ -56,11 +56,10 @@ static void bind_set(mpmi_batch *b, int32_t m) {
                             .tile = b->scratch->tile,
                             .ld = ld,
                             .v = b->v_bar,
-                            .dv = b->dv,
-                            .L = b->law.L,
-                            .C = b->C};
+                            .dv = b->dv};
   list_streams(b);
   if (b->pass->bind) b->pass->bind(b);
+  mpmi_gradient_bind(b);
 }
 
 /* Chooses the form of the gather: increments are needed by blends and by second-order positions, C by
@@ -163,7 +162,11 @@ static void take_batch(mpmi_batch *b, int64_t begin, int64_t n) {
   b->n = n;
   b->flags = 0;
   b->law_ran = 0;
-  settings->kernels->gather[settings->grid->dim][settings->grid->width][b->form](&b->gather, begin, n);
+  if (b->pass->moves) mpmi_motion_aim(b);
+  if (b->pass->deforms) mpmi_strain_aim(b);
+  mpmi_gradient_aim(b);
+  b->taken =
+      settings->kernels->gather[settings->grid->dim][settings->grid->width][b->form](&b->gather, begin, n);
   b->pass->take(b);
   if (b->flags) check_batch(b);
 }

@@ -38,15 +38,17 @@ struct mpmi_batch {
   mpmi_deform deform;
   mpmi_sums_job sums_job;
   int32_t in_place; /* the law reads and writes the set's arrays, which are laid out as its batch would be */
-  double *v_bar, *dv, *C; /* gathered, beside the gradient, which goes to the law */
+  double *v_bar, *dv, *C; /* rows of what is gathered, beside the gradient, which goes to the law */
+  int32_t keeps;          /* the set keeps the gradient: MPMI_KEEPS_... */
   /* The block at hand: */
   int64_t block;
   mpmi_sums *sums;
   /* The batch at hand: */
   int64_t begin, n;
-  uint32_t flags;  /* what the kernels returned: it tells of particles that want a closer look */
-  int32_t law_ran; /* the law has answered for this batch */
-  int64_t batches; /* seen so far, to sample their times */
+  mpmi_taken taken; /* what moving and deforming returned where the gather has done that */
+  uint32_t flags;   /* what the kernels returned: it tells of particles that want a closer look */
+  int32_t law_ran;  /* the law has answered for this batch */
+  int64_t batches;  /* seen so far, to sample their times */
 };
 
 /* Returns component c of a field, at slot 0. */
@@ -72,17 +74,26 @@ void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *
 /* These prepare motion for a set and for a block. */
 void mpmi_motion_bind(mpmi_batch *b);
 void mpmi_motion_enter(mpmi_batch *b);
-/* Computes new velocities and positions of the batch; prescribed particles move as they must. */
+/* Points at the particles of the batch, before it is gathered. */
+void mpmi_motion_aim(mpmi_batch *b);
+/* Completes new velocities and positions of the batch; prescribed particles move as they must. */
 void mpmi_motion_take(mpmi_batch *b);
 
 /* ---- strain.c ---------------------------------------------------------------------------------------- */
 /* These prepare strain and sums for a set, and strain for a block. */
 void mpmi_strain_bind(mpmi_batch *b);
 void mpmi_strain_enter(mpmi_batch *b);
-/* Keeps the gradient of the batch: what an affine transfer carries comes with the velocities, in the pass
- * that moves; otherwise that of the strain is kept where the host wants it. */
+/* Points at the particles of the batch, and loads what the law sees of them. */
+void mpmi_strain_aim(mpmi_batch *b);
+
+/* The gradient goes to the law's rows, to those of the set, or nowhere. What an affine transfer carries comes
+ * with the velocities, in the pass that moves, and is kept; otherwise that of the strain is kept where the
+ * host wants it: copied, or stored by the gather where nobody else reads it. */
+enum { MPMI_KEEPS_NOTHING, MPMI_KEEPS_COPY, MPMI_KEEPS_DIRECTLY };
+void mpmi_gradient_bind(mpmi_batch *b);
+void mpmi_gradient_aim(mpmi_batch *b);
 void mpmi_gradient_keep(mpmi_batch *b);
-/* Computes deformation gradient and volume; returns 0 where they are no state that a law can be asked
+/* Completes deformation gradient and volume; returns 0 where they are no state that a law can be asked
  * about. */
 int32_t mpmi_strain_deform(mpmi_batch *b);
 /* Runs the law there; b->law_ran tells whether it has answered. */

@@ -14,14 +14,7 @@ static void enter_both(mpmi_batch *b) {
   mpmi_strain_enter(b);
 }
 
-/* An MLS transfer that gathers increments finds C, which is the velocity gradient as well. */
-static void settle_gradient(mpmi_batch *b) {
-  if (b->step->settings->transfer->moments == MPMI_NEED_MLS && b->form == MPMI_GATHER_8_AFFINE)
-    memcpy(b->law.L, b->C, (size_t)(9 * b->law.ld) * sizeof(double));
-}
-
 static void take_both(mpmi_batch *b) {
-  settle_gradient(b);
   mpmi_motion_take(b);
   mpmi_gradient_keep(b);
   if (mpmi_strain_deform(b)) mpmi_strain_law(b);
@@ -31,7 +24,6 @@ static void take_both(mpmi_batch *b) {
 /* Moves a batch. Where the law has run already, this is the last pass and sums up the motion. */
 static void take_motion(mpmi_batch *b) {
   const int32_t last = mpmi_deforms_first(b->step->settings);
-  settle_gradient(b);
   if (last) mpmi_wave_speed_fetch(b);
   mpmi_motion_take(b);
   mpmi_gradient_keep(b);

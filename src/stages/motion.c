@@ -28,6 +28,9 @@ void mpmi_motion_bind(mpmi_batch *b) {
     b->move.period[k] = periodic ? length : 0.0;
     b->move.inverse_period[k] = periodic ? 1.0 / length : 0.0;
   }
+  if (!b->pass->moves || mpmi_is_implicit(settings)) return;
+  b->gather.move = &b->move;
+  b->gather.v = NULL;
 }
 
 /* Sets where particles may be before all are sorted anew, less a hair for rounding. */
@@ -126,25 +129,34 @@ static void store_accelerations(mpmi_batch *b) {
           (b->move.v_new[k][p] - b->move.v_old[k][p]) / b->step->velocity_dt;
 }
 
+void mpmi_motion_aim(mpmi_batch *b) {
+  for (int32_t k = 0; k < b->set->grid->dim; ++k) {
+    b->move.x_old[k] = mpmi_component_row(b->set, MPMI_POSITION, 0, k) + b->begin;
+    b->move.v_old[k] = mpmi_component_row(b->set, MPMI_VELOCITY, 0, k) + b->begin;
+    b->move.x_new[k] = mpmi_component_row(b->set, MPMI_POSITION, 1, k) + b->begin;
+    b->move.v_new[k] = mpmi_component_row(b->set, MPMI_VELOCITY, 1, k) + b->begin;
+  }
+}
+
+static void copy_images(const mpmi_batch *b) {
+  const mpm_particles *set = b->set;
+  for (int32_t k = 0; set->field[MPMI_IMAGE].present && k < set->grid->dim; ++k)
+    memcpy(mpmi_i64(set, MPMI_IMAGE, 1) + k * set->ld + b->begin,
+           mpmi_i64(set, MPMI_IMAGE, 0) + k * set->ld + b->begin, (size_t)b->n * sizeof(int64_t));
+}
+
 void mpmi_motion_take(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
-  mpm_particles *set = b->set;
-  const int64_t begin = b->begin, n = b->n;
-  for (int32_t k = 0; k < settings->grid->dim; ++k) {
-    b->move.x_old[k] = mpmi_component_row(set, MPMI_POSITION, 0, k) + begin;
-    b->move.v_old[k] = mpmi_component_row(set, MPMI_VELOCITY, 0, k) + begin;
-    b->move.x_new[k] = mpmi_component_row(set, MPMI_POSITION, 1, k) + begin;
-    b->move.v_new[k] = mpmi_component_row(set, MPMI_VELOCITY, 1, k) + begin;
-    if (set->field[MPMI_IMAGE].present)
-      memcpy(mpmi_i64(set, MPMI_IMAGE, 1) + k * set->ld + begin,
-             mpmi_i64(set, MPMI_IMAGE, 0) + k * set->ld + begin, (size_t)n * sizeof(int64_t));
+  uint32_t flags = b->taken.moved;
+  copy_images(b);
+  if (!b->gather.move) {
+    mean_accelerations(b);
+    flags = settings->kernels->move[settings->grid->dim](&b->move, b->n);
   }
-  if (mpmi_is_implicit(settings)) mean_accelerations(b);
-  uint32_t flags = settings->kernels->move[settings->grid->dim](&b->move, n);
   if (b->step->layout->member[b->m].prescribed)
-    flags |= mpmi_prescribed_move(b->step, b->nodes, b->m, b->block, &b->move, begin, n);
+    flags |= mpmi_prescribed_move(b->step, b->nodes, b->m, b->block, &b->move, b->begin, b->n);
   if (flags & MPMI_LEFT_TILE) b->report->left_tile = 1;
   if (flags & MPMI_OUTSIDE) look_outside(b);
-  if (set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(settings)) store_accelerations(b);
+  if (b->set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(settings)) store_accelerations(b);
   b->flags |= flags & MPMI_NONFINITE;
 }

@@ -10,15 +10,24 @@
 /* Reading the clock costs as much as the law of a few particles: one batch in so many stands for all. */
 enum { TIMED_BATCHES = 16 };
 
+static int32_t looks_at_F_alone(const mpm_material *material) {
+  return material->law && mpmi_material_stress_from_F(material) &&
+         mpmi_material_kinematics(material) == MPMI_F_DEFORMS;
+}
+
 /* In 3-D the stored components of F and stress are those of a batch. Laws that look at F alone then need no
  * copy of them. */
 static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles *set) {
-  const mpm_material *material = set->material;
-  return set->grid->dim == 3 && material->law && mpmi_material_stress_from_F(material) &&
-         mpmi_material_kinematics(material) == MPMI_F_DEFORMS && !material->state_count &&
+  return set->grid->dim == 3 && looks_at_F_alone(set->material) && !set->material->state_count &&
          !settings->desc.locking_remedy && !mpmi_is_implicit(settings);
 }
 
+/* An MLS transfer that gathers increments finds C, which is the velocity gradient as well. */
+static int32_t finds_only_C(const mpmi_batch *b) {
+  return b->step->settings->transfer->moments == MPMI_NEED_MLS && b->form == MPMI_GATHER_8_AFFINE;
+}
+
+/* ---- before the batches of a set ---------------------------------------------------------------------- */
 void mpmi_strain_bind(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpm_grid *grid = settings->grid;
@@ -46,6 +55,34 @@ void mpmi_strain_bind(mpmi_batch *b) {
     b->sums_job.gravity[k] = settings->desc.gravity[k];
     b->sums_job.inverse_spacing[k] = grid->inverse_spacing[k];
   }
+  if (b->pass->deforms && !mpmi_is_implicit(settings) && !finds_only_C(b) &&
+      mpmi_material_kinematics(b->set->material) == MPMI_F_DEFORMS)
+    b->gather.deform = &b->deform;
+}
+
+static int32_t is_matrix(int32_t form) {
+  return form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;
+}
+
+/* Tells whether anything reads the rows of the gradient after the gather. */
+static int32_t reads_gradient(const mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  if (b->pass->plain) return 0;
+  if (b->pass->moves && !b->pass->deforms) return finds_only_C(b);
+  return !b->gather.deform || !looks_at_F_alone(b->set->material) || settings->desc.locking_remedy;
+}
+
+void mpmi_gradient_bind(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const int32_t reads = reads_gradient(b), matrix = is_matrix(b->form);
+  for (int32_t e = 0; e < 9; ++e) {
+    b->gather.L[e] = reads ? b->law.L + e * b->law.ld : NULL;
+    b->gather.C[e] = b->C + e * b->law.ld;
+  }
+  b->keeps = MPMI_KEEPS_NOTHING;
+  if (!b->set->field[MPMI_L].present) return;
+  if (!(mpmi_is_affine(settings) ? b->pass->moves : b->pass->deforms)) return;
+  b->keeps = finds_only_C(b) || (reads && !matrix) ? MPMI_KEEPS_COPY : MPMI_KEEPS_DIRECTLY;
 }
 
 void mpmi_strain_enter(mpmi_batch *b) {
@@ -54,37 +91,46 @@ void mpmi_strain_enter(mpmi_batch *b) {
                    b->scratch->cells);
 }
 
-void mpmi_gradient_keep(mpmi_batch *b) {
-  const mpmi_settings *settings = b->step->settings;
-  const int32_t dim = settings->grid->dim;
-  if (!b->set->field[MPMI_L].present) return;
-  if (!(mpmi_is_affine(settings) ? b->pass->moves : b->pass->deforms)) return;
-  const int32_t matrix = b->form == MPMI_GATHER_4_AFFINE || b->form == MPMI_GATHER_8_AFFINE;
-  const double *from = matrix ? b->C : b->law.L;
-  for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
-    memcpy(mpmi_component_row(b->set, MPMI_L, 1, c) + b->begin, from + mpmi_gradient_map(dim)[c] * b->law.ld,
-           (size_t)b->n * sizeof(double));
-}
-
-int32_t mpmi_strain_deform(mpmi_batch *b) {
+/* ---- a batch ------------------------------------------------------------------------------------------ */
+void mpmi_strain_aim(mpmi_batch *b) {
   const mpmi_step *step = b->step;
   mpm_particles *set = b->set;
-  const int32_t dim = set->grid->dim, stored = mpmi_tensor_components(dim);
-  const double *F[9];
-  for (int32_t c = 0; c < stored; ++c) {
+  for (int32_t c = 0; c < mpmi_tensor_components(set->grid->dim); ++c) {
     b->deform.F_old[c] = mpmi_component_row(set, MPMI_F, 0, c) + b->begin;
     b->deform.F_new[c] = mpmi_component_row(set, MPMI_F, 1, c) + b->begin;
-    F[c] = b->deform.F_new[c];
   }
+  b->deform.initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin;
+  b->deform.volume = mpmi_f64(set, MPMI_VOLUME, 0) + b->begin;
   if (b->in_place) {
-    b->law.batch.F = F[0];
+    b->law.batch.F = b->deform.F_new[0];
     b->law.batch.stress_new = mpmi_component_row(set, MPMI_STRESS, 1, 0) + b->begin;
     b->sums_job.checked[0] = b->law.batch.stress_new;
   }
   mpmi_law_batch_load(&b->law, set, b->begin, b->n, step->t + step->dt, step->dt);
-  step->settings->deformation->deform[mpmi_material_kinematics(set->material)][dim](&b->deform, b->n);
-  const uint32_t flags = step->settings->deformation->volume[dim](
-      F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin, mpmi_f64(set, MPMI_VOLUME, 0) + b->begin, b->n);
+}
+
+void mpmi_gradient_aim(mpmi_batch *b) {
+  const int32_t dim = b->set->grid->dim;
+  if (b->keeps != MPMI_KEEPS_DIRECTLY) return;
+  double **to = is_matrix(b->form) ? b->gather.C : b->gather.L;
+  for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+    to[mpmi_gradient_map(dim)[c]] = mpmi_component_row(b->set, MPMI_L, 1, c) + b->begin;
+}
+
+void mpmi_gradient_keep(mpmi_batch *b) {
+  const int32_t dim = b->set->grid->dim;
+  if (finds_only_C(b)) memcpy(b->law.L, b->C, (size_t)(9 * b->law.ld) * sizeof(double));
+  if (b->keeps != MPMI_KEEPS_COPY) return;
+  for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+    memcpy(mpmi_component_row(b->set, MPMI_L, 1, c) + b->begin,
+           b->law.L + mpmi_gradient_map(dim)[c] * b->law.ld, (size_t)b->n * sizeof(double));
+}
+
+int32_t mpmi_strain_deform(mpmi_batch *b) {
+  const mpmi_deformation *by = b->step->settings->deformation;
+  const int32_t kinematics = mpmi_material_kinematics(b->set->material);
+  const uint32_t flags =
+      b->gather.deform ? b->taken.deformed : by->deform[kinematics][b->set->grid->dim](&b->deform, b->n);
   b->flags |= flags;
   return !flags;
 }

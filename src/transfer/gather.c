@@ -7,8 +7,10 @@
  * Summed node by node, row by row, axis by axis. The MLS form takes the moments of C about the middle of the
  * stencil, where distances are small integers, and moves them to the particle at the end; where D can be
  * small the digits lost in moving them would count. Holes have no initial volume and gather zeros. */
+#include "material/deform_lanes.h"
 #include "simd/pack.h"
 #include "transfer/gather.h"
+#include "transfer/move_lanes.h"
 
 /* Holds, per particle of a chunk: v; dv when nodes have 8 values; gradients; sums of w v (x_i - x_p), or of w
  * v (i - middle) in the MLS form. */
@@ -47,6 +49,7 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW, part = values == 8 ? MPMI_HALF : MPMI_LOW;
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1, mid = dim >= 2 ? dim - 2 : 0;
   const double *stencil = tile + (int64_t)values * W->node[p];
+  MPMI_SETTLE(stencil);
   const mpmi_node zero = mpmi_node_zero();
   mpmi_node v = zero, L[3] = {zero, zero, zero}, M[3] = {zero, zero, zero};    /* over the whole stencil, */
   mpmi_node pv = zero, pL[3] = {zero, zero, zero}, pM[3] = {zero, zero, zero}; /* over a plane of rows, */
@@ -95,53 +98,59 @@ MPMI_INLINE void gather_particle(int32_t dim, int32_t width, int32_t form, const
   }
 }
 
-/* Column k of C in the MLS form. */
-MPMI_INLINE void unpack_mls(int32_t width, double h, int32_t k, int64_t n, const mpmi_weights *W,
-                            const mpmi_gathered *in, const double *v, int64_t ld, double *const *C) {
+/* Column k of C in the MLS form, from its moments about the middle of the stencil. */
+MPMI_INLINE void mls_column(int32_t width, double h, int32_t dim, mpmi_lanes first, const mpmi_lanes *v,
+                            mpmi_lanes *column) {
   const double factor = MPMI_MLS_INVERSE(width) / h;
-  mpmi_unpack(n, in->M[k], C[0], C[1], C[2]);
-  for (int32_t r = 0; r < 3; ++r) {
-    const double *vr = v + r * ld;
-    double *to = C[r];
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to[p] =
-        (to[p] + (W->first[k][p] + MIDDLE(width)) * vr[p]) * factor;
-  }
+  for (int32_t r = 0; r < dim; ++r) column[r] = (column[r] + (first + MIDDLE(width)) * v[r]) * factor;
 }
 
-MPMI_INLINE void unpack_affine(int32_t k, int64_t n, const mpmi_weights *W, const mpmi_gathered *in,
-                               double *const *C) {
-  mpmi_unpack(n, in->M[k], C[0], C[1], C[2]);
-  for (int32_t r = 0; r < 3; ++r) {
-    double *to = C[r];
-    MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to[p] *= W->inverse_moment[k][p];
-  }
+/* What the particles of a batch are made of, by the kernels of others, while it is in registers. */
+typedef struct mpmi_made {
+  mpmi_moved moved;
+  mpmi_deformed deformed;
+} mpmi_made;
+
+MPMI_INLINE void store_matrix(int32_t dim, double *const *to, int64_t s, mpmi_lanes (*matrix)[3]) {
+  for (int32_t r = 0; r < dim; ++r)
+    for (int32_t k = 0; k < dim; ++k) mpmi_lanes_store(to[3 * r + k] + s, matrix[r][k]);
 }
 
-/* Component arrays from what was gathered; components that the grid does not have are zero on nodes too. */
-MPMI_INLINE void unpack(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t s,
-                        int64_t n, const mpmi_weights *W, const mpmi_gathered *in) {
-  const int64_t ld = job->ld;
-  double *v = job->v + s, *dv = job->dv + s;
-  mpmi_unpack(n, in->v, v, v + ld, v + 2 * ld);
-  if (form >= MPMI_GATHER_8) mpmi_unpack(n, in->dv, dv, dv + ld, dv + 2 * ld);
+/* Hands on what was gathered for as many particles as a register holds, from q in the chunk and s in the batch
+ * on. */
+MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t q,
+                         int64_t s, const mpmi_weights *W, const mpmi_gathered *in, mpmi_made *made) {
+  const int32_t affine = form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;
+  const int32_t mls = form == MPMI_GATHER_4_MLS;
+  mpmi_lanes v[3], dv[3] = {{0.0}}, L[3][3], column[3];
+  mpmi_separate(in->v + 4 * q, v);
+  if (form >= MPMI_GATHER_8) mpmi_separate(in->dv + 4 * q, dv);
   for (int32_t k = 0; k < dim; ++k) {
-    double *L[3], *C[3];
-    for (int32_t r = 0; r < 3; ++r) {
-      L[r] = job->L + (3 * r + k) * ld + s;
-      C[r] = job->C + (3 * r + k) * ld + s;
-    }
-    if (form == MPMI_GATHER_4_MLS)
-      unpack_mls(width, job->axis[k].spacing, k, n, W, in, v, ld, L);
-    else
-      mpmi_unpack(n, in->L[k], L[0], L[1], L[2]);
-    if (form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE) unpack_affine(k, n, W, in, C);
+    mpmi_separate((mls ? in->M : in->L)[k] + 4 * q, column);
+    if (mls) mls_column(width, job->axis[k].spacing, dim, mpmi_lanes_load(W->first[k] + q), v, column);
+    for (int32_t r = 0; r < dim; ++r) L[r][k] = column[r];
   }
+  if (job->v)
+    for (int32_t k = 0; k < dim; ++k) {
+      mpmi_lanes_store(job->v + k * job->ld + s, v[k]);
+      if (form >= MPMI_GATHER_8) mpmi_lanes_store(job->dv + k * job->ld + s, dv[k]);
+    }
+  if (job->L[0]) store_matrix(dim, job->L, s, L);
+  if (job->move) mpmi_move_lanes(dim, job->move, s, v, dv, &made->moved);
+  if (job->deform) mpmi_deform_lanes(dim, job->deform, s, L, &made->deformed);
+  if (!affine) return;
+  for (int32_t k = 0; k < dim; ++k) {
+    mpmi_separate(in->M[k] + 4 * q, column);
+    for (int32_t r = 0; r < dim; ++r) L[r][k] = column[r] * mpmi_lanes_load(W->inverse_moment[k] + q);
+  }
+  store_matrix(dim, job->C, s, L);
 }
 
-MPMI_INLINE void gather(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t begin,
-                        int64_t count) {
+MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t begin,
+                              int64_t count) {
   mpmi_weights W;
   mpmi_gathered out;
+  mpmi_made made = {mpmi_nothing_moved(), mpmi_nothing_deformed()};
   for (int64_t s = 0; s < count; s += MPMI_CHUNK) {
     const int64_t n = count - s < MPMI_CHUNK ? count - s : MPMI_CHUNK;
     const double *volume = job->initial_volume + begin + s;
@@ -156,13 +165,15 @@ MPMI_INLINE void gather(int32_t dim, int32_t width, int32_t form, const mpmi_gat
       mpmi_prefetch(&job->streams, begin + s + MPMI_CHUNK, p);
       gather_particle(dim, width, form, &W, p, job->tile, &out);
     }
-    unpack(dim, width, form, job, s, n, &W, &out);
+    for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES)
+      hand_on(dim, width, form, job, q, s + q, &W, &out, &made);
   }
+  return (mpmi_taken){mpmi_move_flags(&made.moved), mpmi_deform_flags(&made.deformed)};
 }
 
 #define GATHER(dim, width, form, name)                                                                       \
-  void KERNEL(name)(const mpmi_gather *job, int64_t begin, int64_t n);                                       \
-  void KERNEL(name)(const mpmi_gather *job, int64_t begin, int64_t n) {                                      \
-    gather(dim, width, form, job, begin, n);                                                                 \
+  mpmi_taken KERNEL(name)(const mpmi_gather *job, int64_t begin, int64_t n);                                 \
+  mpmi_taken KERNEL(name)(const mpmi_gather *job, int64_t begin, int64_t n) {                                \
+    return gather(dim, width, form, job, begin, n);                                                          \
   }
 #include "transfer/instances.h"

@@ -2,6 +2,8 @@
 #ifndef MPMI_GATHER_H
 #define MPMI_GATHER_H
 
+#include "material/deformation.h"
+#include "transfer/move.h"
 #include "transfer/streams.h"
 #include "transfer/weights.h"
 
@@ -15,8 +17,10 @@ enum {
   MPMI_GATHER_FORMS
 };
 
-/* Holds the gathered quantities of a batch, [components][ld] each; L and C full 3x3: columns that the grid
- * does not have are left alone, rows are zero. */
+/* A batch of particles and what becomes of what is gathered for them. Rows are stored as [components][ld], at
+ * 0 for the first particle of the batch, for the components that the grid has: velocities and their changes
+ * where v is not NULL, L, full 3x3, where it has rows, and C. What `move` and `deform`
+ * make of them, where they are not NULL, is made while they are in registers. */
 typedef struct mpmi_gather {
   mpmi_axis axis[3];
   mpmi_weights_fn weights;
@@ -25,9 +29,16 @@ typedef struct mpmi_gather {
   const double *initial_volume; /* a hole has none: everything gathered for it is 0 */
   const double *tile;
   int64_t ld;
-  double *v, *dv, *L, *C; /* [3], [3], [9], [9]; outputs, slot `begin` at 0 */
+  double *v, *dv, *L[9], *C[9];
+  const mpmi_move *move;
+  const mpmi_deform *deform;
   mpmi_streams streams;
 } mpmi_gather;
-typedef void (*mpmi_gather_fn)(const mpmi_gather *job, int64_t begin, int64_t n);
+
+/* Flags of what was moved and deformed. */
+typedef struct mpmi_taken {
+  uint32_t moved, deformed;
+} mpmi_taken;
+typedef mpmi_taken (*mpmi_gather_fn)(const mpmi_gather *job, int64_t begin, int64_t n);
 
 #endif

@@ -16,7 +16,7 @@ BASIS(open_bspline3)
 #define BY_DIM(name)                                                                                         \
   { NULL, KERNEL(name##_1), KERNEL(name##_2), KERNEL(name##_3) }
 #define SCATTER(dim, width, form, name) void KERNEL(name)(const mpmi_scatter *, int64_t, int64_t);
-#define GATHER(dim, width, form, name)  void KERNEL(name)(const mpmi_gather *, int64_t, int64_t);
+#define GATHER(dim, width, form, name)  mpmi_taken KERNEL(name)(const mpmi_gather *, int64_t, int64_t);
 #include "transfer/instances.h"
 #define PER_DIM(dim)                                                                                         \
   uint32_t KERNEL(move_##dim)(const mpmi_move *, int64_t);                                                   \

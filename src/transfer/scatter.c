@@ -10,7 +10,7 @@
 #include "simd/tensor.h"
 #include "transfer/scatter.h"
 
-/* The tile is apart from the weights, which may then stay in registers from row to row; with 16 registers the
+/* The stencil's nodes are apart from the weights, which may then stay in registers from row to row; with 16 registers the
  * forces need them for other things. */
 #if defined(__AVX512F__) || defined(__aarch64__)
 #define MPMI_APART restrict
@@ -26,10 +26,9 @@ typedef struct mpmi_first_order {
 
 /* Scatters mass and momentum. */
 MPMI_INLINE void scatter_plain(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
-                               const mpmi_first_order *of, double *restrict tile) {
+                               const mpmi_first_order *of, double *restrict stencil) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
   const mpmi_node a = mpmi_node_load(MPMI_LOW, of->a + 4 * p);
-  double *stencil = tile + 4 * (int64_t)W->node[p];
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
     if (dim < 3 && i > 0) break;
     MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
@@ -48,11 +47,10 @@ MPMI_INLINE void scatter_plain(int32_t dim, int32_t width, const mpmi_weights *W
 /* Scatters mass and affine momentum: a is the function at the first node, column[k] its growth per node of
  * axis k. */
 MPMI_INLINE void scatter_linear(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
-                                const mpmi_first_order *of, double *restrict tile) {
+                                const mpmi_first_order *of, double *restrict stencil) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
   mpmi_node plane = mpmi_node_load(MPMI_LOW, of->a + 4 * p), step[3];
   for (int32_t k = 0; k < dim; ++k) step[k] = mpmi_node_load(MPMI_LOW, of->column[k] + 4 * p);
-  double *stencil = tile + 4 * (int64_t)W->node[p];
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
     if (dim < 3 && i > 0) break;
     mpmi_node row = plane;
@@ -90,7 +88,7 @@ MPMI_INLINE mpmi_node add_second(int32_t values, int32_t part, mpmi_node a, int3
  * columns have nothing to give to momentum. */
 MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t values, int32_t affine,
                                      const mpmi_weights *W, int64_t p, const mpmi_first_order *of,
-                                     double *MPMI_APART tile) {
+                                     double *MPMI_APART stencil) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
   const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW;
   const int32_t part = values == 4 ? MPMI_LOW : affine ? MPMI_BOTH : MPMI_HIGH; /* of the columns */
@@ -99,7 +97,6 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t values,
   for (int32_t k = 0; k < dim; ++k)
     column[k] = part == MPMI_HIGH ? mpmi_node_load_high(of->column[k] + 4 * p)
                                   : mpmi_node_load(part, of->column[k] + values * p);
-  double *stencil = tile + values * (int64_t)W->node[p];
   /* sums over the axes before the last: node += w_k value + s_k slope */
   mpmi_node plane = a, plane_1 = column[0], plane_2 = column[last], value = a, slope = column[last];
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
@@ -229,6 +226,7 @@ MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, 
 
 MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
                          int64_t end) {
+  const int64_t values = form >= MPMI_SCATTER_8 ? 8 : 4;
   const mpmi_stress_rows stress = stress_rows(dim, job);
   mpmi_weights W;
   mpmi_given given;
@@ -240,15 +238,17 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
     if (form >= MPMI_SCATTER_8) give_force(dim, job, &stress, s, n, &given);
     pack(dim, form, job->mass + s, n, &given, &of);
     for (int64_t p = 0; p < n; ++p) {
+      double *stencil = job->tile + values * W.node[p];
+      MPMI_SETTLE(stencil);
       mpmi_prefetch(&job->streams, s + MPMI_CHUNK, p);
       if (form == MPMI_SCATTER_4)
-        scatter_plain(dim, width, &W, p, &of, job->tile);
+        scatter_plain(dim, width, &W, p, &of, stencil);
       else if (form == MPMI_SCATTER_4_AFFINE)
-        scatter_linear(dim, width, &W, p, &of, job->tile);
+        scatter_linear(dim, width, &W, p, &of, stencil);
       else if (form == MPMI_SCATTER_4_UNEVEN)
-        scatter_first_order(dim, width, 4, 1, &W, p, &of, job->tile);
+        scatter_first_order(dim, width, 4, 1, &W, p, &of, stencil);
       else
-        scatter_first_order(dim, width, 8, form == MPMI_SCATTER_8_AFFINE, &W, p, &of, job->tile);
+        scatter_first_order(dim, width, 8, form == MPMI_SCATTER_8_AFFINE, &W, p, &of, stencil);
     }
   }
 }
