@@ -94,7 +94,7 @@ static uint32_t flags_of(const mpmi_move *move, int32_t c, double x) {
   double away = x - move->centre[c];
   away -= move->period[c] * nearbyint(away * move->inverse_period[c]);
   return (x < move->low[c] || x > move->high[c] ? (uint32_t)MPMI_OUTSIDE : 0u) |
-         (fabs(away) > move->half[c] ? (uint32_t)MPMI_LEFT_TILE : 0u);
+         (fabs(away) > move->half[c] ? (uint32_t)MPMI_LEFT_BOUNDS : 0u);
 }
 
 uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t m, int64_t block,

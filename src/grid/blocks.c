@@ -52,7 +52,7 @@ void mpmi_blocks_init(mpmi_blocks *b, const mpm_grid *grid) {
 
 /* This lists every array of the structure with its size per block, so that allocation, release and growth
  * are one loop each. */
-enum { ARRAYS = 8 };
+enum { ARRAYS = 9 };
 typedef struct block_array {
   void **at;
   size_t size;
@@ -60,6 +60,7 @@ typedef struct block_array {
 static void arrays_of(mpmi_blocks *b, block_array *a) {
   const block_array list[ARRAYS] = {
       {(void **)&b->key, sizeof *b->key},
+      {(void **)&b->cover, sizeof *b->cover},
       {(void **)&b->reached, sizeof *b->reached},
       {(void **)&b->coord, sizeof *b->coord},
       {(void **)&b->neighbour, sizeof *b->neighbour},
@@ -242,18 +243,21 @@ mpm_status mpmi_blocks_order(mpmi_blocks *b) {
   return MPM_OK;
 }
 
+int32_t mpmi_anchor(const mpm_grid *grid, int32_t axis, double x) {
+  const double xi = (x - grid->desc.origin[axis]) * grid->inverse_spacing[axis];
+  const int64_t cells = grid->desc.cells[axis];
+  /* a position that a host has spoilt behind the library's back has no anchor: any will do */
+  const double place = floor(grid->centred ? xi + 0.5 : xi), far = 1e15;
+  int64_t node = (int64_t)(!(place > -far) ? -far : place < far ? place : far);
+  if (grid->desc.periodic[axis]) node -= floor_div(node, cells) * cells;
+  const int64_t high = grid->centred ? cells : cells - 1;
+  return (int32_t)(node < 0 ? 0 : node > high ? high : node);
+}
+
 void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stride, int32_t edge,
                              int32_t *coord) {
   for (int32_t k = 0; k < grid->dim; ++k) {
-    const double xi = (x[k * stride] - grid->desc.origin[k]) * grid->inverse_spacing[k];
-    const int64_t cells = grid->desc.cells[k];
-    /* a position that a host has spoilt behind the library's back has no block: any will do */
-    const double place = floor(grid->centred ? xi + 0.5 : xi), far = 1e15;
-    int64_t node = (int64_t)(!(place > -far) ? -far : place < far ? place : far);
-    if (grid->desc.periodic[k]) node -= floor_div(node, cells) * cells;
-    const int64_t high = grid->centred ? cells : cells - 1;
-    node = node < 0 ? 0 : node > high ? high : node;
-    coord[k] = (int32_t)(node / edge);
+    coord[k] = mpmi_anchor(grid, k, x[k * stride]) / edge;
   }
 }
 

@@ -14,10 +14,17 @@ enum { MPMI_RING = 1 };
 
 enum { MPMI_MAX_NEIGHBOURS = 27, MPMI_NO_BLOCK = -1 };
 
-/* The box of a block's nodes that tiles overlap: low <= place < high, by axis; empty where low >= high. */
-typedef struct mpmi_reached {
+/* A box of nodes in a block or in a tile: low <= place < high, by axis; empty where low >= high. */
+typedef struct mpmi_node_box {
   uint8_t low[3], high[3];
-} mpmi_reached;
+} mpmi_node_box;
+
+/* Where the particles of a block may be until this is found anew, |x - centre| <= half by axis, and the nodes of
+ * its tile that their stencils then meet. */
+typedef struct mpmi_cover {
+  double centre[3], half[3];
+  mpmi_node_box nodes;
+} mpmi_cover;
 
 typedef struct mpmi_blocks {
   const mpm_grid *grid;
@@ -27,8 +34,9 @@ typedef struct mpmi_blocks {
   uint64_t *key;                             /* [count] Morton key, ascending once ordered */
   int32_t (*coord)[3];                       /* [count] */
   int32_t (*neighbour)[MPMI_MAX_NEIGHBOURS]; /* [count], lowest corner first; MPMI_NO_BLOCK where absent */
-  mpmi_reached *reached;                     /* [count] once the layout is sorted (layout/reached.c) */
-  uint32_t *order, *order_scratch;           /* [capacity] order: provisional -> final; else scratch */
+  mpmi_cover *cover; /* [count] of blocks with particles, and the box of nodes of any block that stencils */
+  mpmi_node_box *reached;          /* meet; both are there once the layout is prepared (layout/reached.c) */
+  uint32_t *order, *order_scratch; /* [capacity] order: provisional -> final; else scratch */
   uint64_t *key_scratch;
   int32_t (*coord_scratch)[3];
   int64_t table_size; /* hash table from key to block, a power of two */
@@ -44,6 +52,8 @@ mpm_status mpmi_blocks_insert(mpmi_blocks *blocks, const int32_t *coord, int32_t
 /* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and links
  * neighbours. Afterwards order[provisional] is the final index of a block. */
 mpm_status mpmi_blocks_order(mpmi_blocks *blocks);
+/* Returns the anchor along an axis of a position that lies inside the grid. */
+int32_t mpmi_anchor(const mpm_grid *grid, int32_t axis, double x);
 /* Finds the block of a position that lies inside the grid. */
 void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stride, int32_t edge,
                              int32_t *coord);

@@ -62,7 +62,7 @@ mpm_status mpmi_accumulate(mpmi_step *step, const mpmi_accumulation *sum) {
   const mpmi_settings *settings = step->settings;
   sum_job job = {step, sum};
   mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, clear_task, &job);
-  sum->to->zero_elsewhere = stays_zero_elsewhere(step, sum) ? step->layout->version : -1;
+  sum->to->zero_elsewhere = stays_zero_elsewhere(step, sum) ? step->layout->covers : -1;
   if (!status) status = mpmi_visit_colours(step, sum->calls_host, add_block, &job);
   if (!status && sum->fold) status = mpmi_run_tasks(settings, 0, settings->tasks, sum->fold, sum->user);
   return status;

@@ -13,12 +13,12 @@ typedef struct mpmi_nodal {
   double *at;
   int32_t values;
   int64_t capacity; /* in doubles */
-  /* The version of the layout in which all nodes that no tile overlaps are 0, or -1: they must be cleared. */
+  /* The count of covers of the layout when all nodes that no stencil meets were 0, or -1: they must be cleared. */
   int64_t zero_elsewhere;
 } mpmi_nodal;
 
 static inline int32_t mpmi_zero_elsewhere(const mpmi_layout *layout, const mpmi_nodal *nodes) {
-  return nodes->zero_elsewhere == layout->version;
+  return nodes->zero_elsewhere == layout->covers;
 }
 
 /* Makes room for so many values of each node; they are not cleared. */

@@ -1,36 +1,132 @@
 #include "layout/reached.h"
+#include "simd/lanes.h"
 #include "transfer/weights.h"
 
-void mpmi_spans(const mpm_grid *grid, int32_t edge, mpmi_span *out) {
-  const int32_t low = MPMI_RING + grid->below, high = MPMI_RING + grid->width - 1 - grid->below;
-  out[0] = (mpmi_span){0, edge - low, low};
-  out[1] = (mpmi_span){low, 0, edge};
-  out[2] = (mpmi_span){low + edge, 0, high};
+#include <math.h>
+
+/* ---- spans -------------------------------------------------------------------------------------------- */
+static mpmi_span cut(mpmi_span of, int32_t low, int32_t high) {
+  const int32_t first = of.tile > low ? of.tile : low, end = of.tile + of.length;
+  const int32_t last = end < high ? end : high;
+  return (mpmi_span){first, of.block + first - of.tile, last > first ? last - first : 0};
 }
 
-void mpmi_tiles_reach(mpmi_blocks *b, const int32_t *block, int64_t count) {
-  static const mpmi_span flat = {0, 0, 1}; /* an axis that the grid does not have */
-  mpmi_span spans[3];
-  mpmi_spans(b->grid, b->edge, spans);
-  for (int64_t i = 0; i < b->count; ++i) b->reached[i] = (mpmi_reached){{255, 255, 255}, {0, 0, 0}};
-  for (int64_t i = 0; i < count; ++i)
-    for (int32_t n = 0; n < b->neighbours; ++n) {
-      mpmi_reached *r = &b->reached[b->neighbour[block[i]][n]];
-      const mpmi_span *at[3] = {b->grid->dim == 3 ? &spans[n / 9] : &flat,
-                                b->grid->dim >= 2 ? &spans[n / 3 % 3] : &flat, &spans[n % 3]};
-      for (int32_t k = 0; k < 3; ++k) {
-        const int32_t high = at[k]->block + at[k]->length;
-        if (at[k]->block < r->low[k]) r->low[k] = (uint8_t)at[k]->block;
-        if (high > r->high[k]) r->high[k] = (uint8_t)high;
-      }
+mpmi_spans mpmi_spans_of(const mpmi_blocks *b, int64_t block) {
+  const mpm_grid *grid = b->grid;
+  const mpmi_node_box *box = &b->cover[block].nodes;
+  const int32_t edge = b->edge, low = MPMI_RING + grid->below,
+                high = MPMI_RING + grid->width - 1 - grid->below;
+  mpmi_spans spans;
+  for (int32_t k = 0; k < 3; ++k) {
+    const int32_t axis = k - (3 - grid->dim); /* the last axes are those of the grid */
+    if (axis < 0) {
+      spans.at[k][0] = (mpmi_span){0, 0, 1};
+      continue;
     }
+    spans.at[k][0] = cut((mpmi_span){0, edge - low, low}, box->low[axis], box->high[axis]);
+    spans.at[k][1] = cut((mpmi_span){low, 0, edge}, box->low[axis], box->high[axis]);
+    spans.at[k][2] = cut((mpmi_span){low + edge, 0, high}, box->low[axis], box->high[axis]);
+  }
+  return spans;
+}
+
+/* ---- where particles are ------------------------------------------------------------------------------ */
+void mpmi_tile_bounds(const mpmi_blocks *b, int64_t block, double *centre, double *half) {
+  const mpm_grid *grid = b->grid;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double first = (double)b->coord[block][k] * b->edge;
+    const double middle = first + 0.5 * (b->edge - grid->centred);
+    centre[k] = grid->desc.origin[k] + grid->desc.spacing[k] * middle;
+    half[k] = grid->desc.spacing[k] * (0.5 * b->edge + (double)MPMI_RING) * (1.0 - 1e-9);
+  }
+}
+
+/* Widens [low, high] to the n positions x, whole chunks of them. */
+static void widen(const double *x, int64_t n, double *low, double *high) {
+  const mpmi_lanes zero = {0.0};
+  mpmi_lanes least = zero + *low, most = zero + *high;
+  for (int64_t p = 0; p < n; p += MPMI_LANES) {
+    least = mpmi_lanes_min(least, mpmi_lanes_load(x + p));
+    most = mpmi_lanes_max(most, mpmi_lanes_load(x + p));
+  }
+  *low = mpmi_lanes_smallest(least);
+  *high = mpmi_lanes_largest(most);
+}
+
+/* Returns the place in the tile of the first node of a stencil. */
+static int32_t first_place(const mpmi_blocks *b, int64_t block, int32_t k, double x) {
+  const int32_t place = mpmi_anchor(b->grid, k, x) - b->coord[block][k] * b->edge + MPMI_RING;
+  const int32_t last = b->edge + 2 * MPMI_RING - 1;
+  return place < 0 ? 0 : place > last ? last : place;
+}
+
+/* Narrows the cover of a block along an axis to its particles and a drift, with a hair for rounding. */
+static void narrow(const mpmi_layout *layout, int64_t block, int32_t k, mpmi_cover *cover) {
+  const mpmi_blocks *b = &layout->blocks;
+  const double h = b->grid->desc.spacing[k], tile_low = cover->centre[k] - cover->half[k],
+               tile_high = cover->centre[k] + cover->half[k];
+  double low = (double)INFINITY, high = (double)-INFINITY;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const mpm_particles *set = layout->member[m].set;
+    const int64_t *start = layout->member[m].now.start;
+    if (start[block + 1] > start[block])
+      widen(mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + start[block], start[block + 1] - start[block],
+            &low, &high);
+  }
+  low -= MPMI_COVER_DRIFT * h;
+  high += MPMI_COVER_DRIFT * h;
+  if (!(low > tile_low)) low = tile_low;
+  if (!(high < tile_high)) high = tile_high;
+  if (!(low < high)) return; /* positions that were spoilt: they are reported where they count */
+  cover->centre[k] = 0.5 * (low + high);
+  cover->half[k] = 0.5 * (high - low) * (1.0 - 1e-9); /* never beyond the tile */
+  cover->nodes.low[k] = (uint8_t)first_place(b, block, k, low - 1e-6 * h);
+  cover->nodes.high[k] = (uint8_t)(first_place(b, block, k, high + 1e-6 * h) + b->grid->width);
+}
+
+static void find_cover(mpmi_layout *layout, int64_t block) {
+  mpmi_blocks *b = &layout->blocks;
+  mpmi_cover *cover = &b->cover[block];
+  mpmi_tile_bounds(b, block, cover->centre, cover->half);
+  for (int32_t k = 0; k < b->grid->dim; ++k) {
+    cover->nodes.low[k] = 0;
+    cover->nodes.high[k] = (uint8_t)MPMI_TILE_EDGE(b->grid->dim, b->grid->width);
+    if (!b->grid->desc.periodic[k]) narrow(layout, block, k, cover);
+  }
+}
+
+/* ---- which nodes they meet ---------------------------------------------------------------------------- */
+static void reach_from(mpmi_blocks *b, int64_t block) {
+  const mpmi_spans spans = mpmi_spans_of(b, block);
+  for (int32_t n = 0; n < b->neighbours; ++n) {
+    mpmi_node_box *r = &b->reached[b->neighbour[block][n]];
+    const mpmi_span *at[3] = {&spans.at[0][n / 9], &spans.at[1][n / 3 % 3], &spans.at[2][n % 3]};
+    if (!at[0]->length || !at[1]->length || !at[2]->length) continue;
+    for (int32_t k = 0; k < 3; ++k) {
+      const int32_t high = at[k]->block + at[k]->length;
+      if (at[k]->block < r->low[k]) r->low[k] = (uint8_t)at[k]->block;
+      if (high > r->high[k]) r->high[k] = (uint8_t)high;
+    }
+  }
+}
+
+void mpmi_layout_cover(mpmi_layout *layout) {
+  mpmi_blocks *b = &layout->blocks;
+  const mpmi_worklist *list = &layout->worklist[0];
+  for (int64_t i = 0; i < b->count; ++i) b->reached[i] = (mpmi_node_box){{255, 255, 255}, {0, 0, 0}};
+  for (int64_t i = 0; i < list->count; ++i) {
+    find_cover(layout, list->block[i]);
+    reach_from(b, list->block[i]);
+  }
+  layout->cover_is_old = 0;
+  ++layout->covers;
 }
 
 void mpmi_reached_runs(const mpmi_blocks *b, int64_t begin, int64_t end, mpmi_run_fn fn, void *user) {
   const int32_t edge_y = b->grid->dim >= 2 ? b->edge : 1, edge_z = b->edge;
   int64_t slot = 0, run = 0;
   for (int64_t block = begin; block < end; ++block) {
-    const mpmi_reached *r = &b->reached[block];
+    const mpmi_node_box *r = &b->reached[block];
     const int64_t length = r->high[2] - r->low[2];
     for (int32_t x = r->low[0]; x < r->high[0]; ++x)
       for (int32_t y = r->low[1]; y < r->high[1]; ++y) {

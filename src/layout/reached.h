@@ -1,19 +1,31 @@
-/* Which nodes of the blocks around it the tile of a block overlaps. Blocks without particles are there for
- * their neighbours' sake, and most of their nodes are in no tile: nothing is ever given to these. */
+/* Which nodes the particles of a block meet: those of its tile that their stencils may touch, and so which nodes
+ * of the blocks around it. Blocks without particles are there for their neighbours' sake, and most of their
+ * nodes are met by none: nothing is ever given to these. */
 #ifndef MPMI_REACHED_H
 #define MPMI_REACHED_H
 
-#include "grid/blocks.h"
+#include "layout/sorted_layout.h"
 
 /* Along an axis a tile spans parts of the lower neighbour, the block and the upper neighbour. */
 typedef struct mpmi_span {
   int32_t tile, block, length; /* first place in the tile, first place in the block, nodes */
 } mpmi_span;
-void mpmi_spans(const mpm_grid *grid, int32_t edge, mpmi_span *out);
 
-/* Finds which nodes the tiles of these blocks overlap. */
-void mpmi_tiles_reach(mpmi_blocks *b, const int32_t *block, int64_t count);
-/* Goes through the nodes of blocks [begin, end) that tiles overlap, in runs of neighbouring slots. */
+/* The spans of the nodes that the particles of a block meet, by axis and neighbour; an axis that the grid does
+ * not have is one node wide. */
+typedef struct mpmi_spans {
+  mpmi_span at[3][3];
+} mpmi_spans;
+mpmi_spans mpmi_spans_of(const mpmi_blocks *b, int64_t block);
+
+/* Finds where the particles of each block are and which nodes they meet. A particle may drift so far, in cells,
+ * before that is found anew. */
+#define MPMI_COVER_DRIFT 0.5
+void mpmi_layout_cover(mpmi_layout *layout);
+/* Sets the bounds of a block's whole tile: beyond them all particles are sorted anew. */
+void mpmi_tile_bounds(const mpmi_blocks *b, int64_t block, double *centre, double *half);
+
+/* Goes through the nodes of blocks [begin, end) that are met, in runs of neighbouring slots. */
 typedef void (*mpmi_run_fn)(void *user, int64_t slot, int64_t count);
 void mpmi_reached_runs(const mpmi_blocks *b, int64_t begin, int64_t end, mpmi_run_fn fn, void *user);
 

@@ -100,8 +100,8 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
            MPMI_RESERVE_MORE(settings->context, layout->list_memory, layout->list_capacity, 2 * blocks + 1)))
     return status;
   make_worklists(layout, settings);
-  mpmi_tiles_reach(&layout->next_blocks, layout->worklist[0].block, layout->worklist[0].count);
   swap_in_next(layout);
+  layout->cover_is_old = 1;
   return MPM_OK;
 }
 
@@ -207,6 +207,7 @@ mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings) 
 mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings) {
   const mpm_status status = mpmi_layout_sort(layout, settings);
   if (status) return status;
+  if (layout->cover_is_old) mpmi_layout_cover(layout);
   find_mass_cut(layout, settings);
   return layout->walls_changed ? find_ties(layout, settings) : MPM_OK;
 }

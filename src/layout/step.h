@@ -17,9 +17,10 @@ typedef struct mpmi_failure {
 /* What one task has to tell at the end. */
 typedef struct mpmi_task_report {
   mpmi_failure failure;
-  int32_t left_tile, removes; /* a particle left its loose tile; one left through an open wall */
-  int32_t holes_restored;     /* sums over the particles may not be finite */
-  int64_t active;             /* nodes with mass in its share */
+  int32_t left_cover, left_tile; /* a particle left the cover of its block, its loose tile */
+  int32_t removes;               /* one left through an open wall */
+  int32_t holes_restored;        /* sums over the particles may not be finite */
+  int64_t active;                /* nodes with mass in its share */
   double law_seconds, weights_seconds;
 } mpmi_task_report;
 

@@ -8,51 +8,55 @@ int32_t mpmi_tile_nodes(const mpm_grid *grid) {
   return count;
 }
 
-/* Returns the box of nodes that the tile shares with neighbour n of a block. */
-static mpmi_box box_of(const mpmi_blocks *b, const mpmi_span *spans, int64_t block, int32_t n,
-                       const mpmi_nodal *nodes, double *tile, int32_t tile_values) {
-  const int32_t dim = b->grid->dim, edge = b->edge, tile_edge = MPMI_TILE_EDGE(dim, b->grid->width);
-  static const mpmi_span flat = {0, 0, 1}; /* an axis that the grid does not have */
-  const mpmi_span *x = dim == 3 ? &spans[n / 9] : &flat, *y = dim >= 2 ? &spans[n / 3 % 3] : &flat,
-                  *z = &spans[n % 3];
+/* Finds the box of nodes that the particles of a block meet in its neighbour n; returns 0 where there is
+ * none. */
+static int32_t find_box(const mpmi_blocks *b, const mpmi_spans *spans, int64_t block, int32_t n,
+                        const mpmi_nodal *nodes, double *tile, int32_t tile_values, mpmi_box *box) {
+  const mpmi_span *x = &spans->at[0][n / 9], *y = &spans->at[1][n / 3 % 3], *z = &spans->at[2][n % 3];
+  if (!x->length || !y->length || !z->length) return 0;
+  const int32_t edge = b->edge, tile_edge = MPMI_TILE_EDGE(b->grid->dim, b->grid->width);
   const int64_t in_tile = ((int64_t)x->tile * tile_edge + y->tile) * tile_edge + z->tile;
   const int64_t in_block =
       ((int64_t)b->neighbour[block][n] * b->nodes) + ((int64_t)x->block * edge + y->block) * edge + z->block;
-  return (mpmi_box){.tile = tile + in_tile * tile_values,
+  *box = (mpmi_box){.tile = tile + in_tile * tile_values,
                     .nodes = mpmi_nodal_at(nodes, in_block),
                     .count = {x->length, y->length, z->length},
                     .tile_stride = {tile_edge * tile_edge, tile_edge},
                     .node_stride = {edge * edge, edge}};
+  return 1;
+}
+
+/* Nodes that all fit into the second-level cache need not be asked for. */
+static int32_t are_near(const mpmi_blocks *b, const mpmi_nodal *nodes) {
+  const int64_t near = 512 * 1024;
+  return b->count * b->nodes * nodes->values * (int64_t)sizeof(double) <= near;
 }
 
 void mpmi_tile_fetch(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block,
                      const mpmi_nodal *nodes, int32_t begin, int32_t end) {
-  mpmi_span spans[3];
-  mpmi_spans(b->grid, b->edge, spans);
-  for (int32_t n = begin; n < end; ++n) {
-    const mpmi_box box = box_of(b, spans, block, n, nodes, nodes->at, 0);
-    kernels->fetch_box(nodes->values, &box);
-  }
+  mpmi_box box;
+  if (begin >= end || are_near(b, nodes)) return;
+  const mpmi_spans spans = mpmi_spans_of(b, block);
+  for (int32_t n = begin; n < end; ++n)
+    if (find_box(b, &spans, block, n, nodes, nodes->at, 0, &box)) kernels->fetch_box(nodes->values, &box);
 }
 
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                     int32_t tile_values, double *tile) {
-  mpmi_span spans[3];
-  mpmi_spans(b->grid, b->edge, spans);
-  for (int32_t n = 0; n < b->neighbours; ++n) {
-    const mpmi_box box = box_of(b, spans, block, n, nodes, tile, tile_values);
-    kernels->load_box(tile_values, nodes->values, &box);
-  }
+  const mpmi_spans spans = mpmi_spans_of(b, block);
+  mpmi_box box;
+  for (int32_t n = 0; n < b->neighbours; ++n)
+    if (find_box(b, &spans, block, n, nodes, tile, tile_values, &box))
+      kernels->load_box(tile_values, nodes->values, &box);
 }
 
 void mpmi_tile_add(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                    double *tile) {
-  mpmi_span spans[3];
-  mpmi_spans(b->grid, b->edge, spans);
-  for (int32_t n = 0; n < b->neighbours; ++n) {
-    const mpmi_box box = box_of(b, spans, block, n, nodes, tile, nodes->values);
-    kernels->add_box(nodes->values, &box);
-  }
+  const mpmi_spans spans = mpmi_spans_of(b, block);
+  mpmi_box box;
+  for (int32_t n = 0; n < b->neighbours; ++n)
+    if (find_box(b, &spans, block, n, nodes, tile, nodes->values, &box))
+      kernels->add_box(nodes->values, &box);
 }
 
 /* Stands for a knot that is out of reach. */

@@ -2,6 +2,7 @@
  * transfer/move.c (MPoint theory eqs 34 to 37). */
 #include "stages/batch.h"
 #include "boundary/prescribed.h"
+#include "layout/reached.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,16 +34,11 @@ void mpmi_motion_bind(mpmi_batch *b) {
   b->gather.v = NULL;
 }
 
-/* Sets where particles may be before all are sorted anew, less a hair for rounding. */
+/* Sets where particles may be before it is found anew where they are. */
 void mpmi_motion_enter(mpmi_batch *b) {
-  const mpmi_blocks *blocks = &b->step->layout->blocks;
-  const mpm_grid *grid = blocks->grid;
-  for (int32_t k = 0; k < grid->dim; ++k) {
-    const double first = (double)blocks->coord[b->block][k] * blocks->edge;
-    const double centre = first + 0.5 * (blocks->edge - grid->centred);
-    b->move.centre[k] = grid->desc.origin[k] + grid->desc.spacing[k] * centre;
-    b->move.half[k] = grid->desc.spacing[k] * (0.5 * blocks->edge + (double)MPMI_RING) * (1.0 - 1e-9);
-  }
+  const mpmi_cover *cover = &b->step->layout->blocks.cover[b->block];
+  memcpy(b->move.centre, cover->centre, sizeof b->move.centre);
+  memcpy(b->move.half, cover->half, sizeof b->move.half);
 }
 
 /* ---- beyond the faces of the grid --------------------------------------------------------------------- */
@@ -145,6 +141,15 @@ static void copy_images(const mpmi_batch *b) {
            mpmi_i64(set, MPMI_IMAGE, 0) + k * set->ld + b->begin, (size_t)b->n * sizeof(int64_t));
 }
 
+/* Some have left the cover of their block: perhaps its tile as well. */
+static void look_astray(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  mpmi_move move = b->move;
+  b->report->left_cover = 1;
+  mpmi_tile_bounds(&b->step->layout->blocks, b->block, move.centre, move.half);
+  if (settings->kernels->look[settings->grid->dim](&move, b->n) & MPMI_LEFT_BOUNDS) b->report->left_tile = 1;
+}
+
 void mpmi_motion_take(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   uint32_t flags = b->taken.moved;
@@ -155,7 +160,7 @@ void mpmi_motion_take(mpmi_batch *b) {
   }
   if (b->step->layout->member[b->m].prescribed)
     flags |= mpmi_prescribed_move(b->step, b->nodes, b->m, b->block, &b->move, b->begin, b->n);
-  if (flags & MPMI_LEFT_TILE) b->report->left_tile = 1;
+  if (flags & MPMI_LEFT_BOUNDS) look_astray(b);
   if (flags & MPMI_OUTSIDE) look_outside(b);
   if (b->set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(settings)) store_accelerations(b);
   b->flags |= flags & MPMI_NONFINITE;

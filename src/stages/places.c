@@ -4,23 +4,23 @@
 
 #include <math.h>
 
-/* Where the particles of a block have their stencils in its tile: the bounds of motion.c. */
+/* Where the particles of a block may be along an axis: the bounds of motion.c. */
 typedef struct reach {
   double centre, half, period, inverse_period;
 } reach;
 
 static reach reach_of(const mpmi_blocks *blocks, int64_t block, int32_t k) {
   const mpm_grid *grid = blocks->grid;
-  const double first = (double)blocks->coord[block][k] * blocks->edge, h = grid->desc.spacing[k];
+  const mpmi_cover *cover = &blocks->cover[block];
   const double length = grid->desc.periodic[k] ? grid->upper[k] - grid->desc.origin[k] : 0.0;
-  return (reach){.centre = grid->desc.origin[k] + h * (first + 0.5 * (double)(blocks->edge - grid->centred)),
-                 .half = h * (0.5 * (double)blocks->edge + (double)MPMI_RING) * (1.0 - 1e-9),
+  return (reach){.centre = cover->centre[k],
+                 .half = cover->half[k],
                  .period = length,
                  .inverse_period = length > 0.0 ? 1.0 / length : 0.0};
 }
 
-/* Nothing but a host that writes through a view for reading can bring a particle out of its tile, where its
- * stencil would be beyond the tile's memory. */
+/* Nothing but a host that writes through a view for reading can bring a particle there, where its stencil would
+ * meet nodes that nobody looks after, or lie beyond the tile's memory. */
 static int32_t any_astray(const double *x, const reach *of, int64_t n) {
   mpmi_mask near = ~(mpmi_mask){0};
   for (int64_t p = 0; p < n; p += MPMI_LANES) {

@@ -79,15 +79,17 @@ static void commit_history(mpm_stepper *s) {
 }
 
 void mpmi_commit(mpm_stepper *s) {
-  int32_t left = 0, removes = 0, restored = 0;
+  int32_t left = 0, removes = 0, restored = 0, old = 0;
   for (int32_t k = 0; k < s->settings.tasks; ++k) {
     left |= s->work.report[k].left_tile;
+    old |= s->work.report[k].left_cover;
     removes |= s->work.report[k].removes;
     restored |= s->work.report[k].holes_restored;
   }
   mpmi_prescribed_report(&s->step, &s->nodes);
   commit_history(s);
   for (int32_t m = 0; m < s->layout.member_count; ++m) swap_copies(s, s->layout.member[m].set, left);
+  if (old) s->layout.cover_is_old = 1;
   if (restored) s->history.has_sums = 0;
   for (int32_t m = 0; m < s->layout.member_count && removes; ++m) remove_outside(s, s->layout.member[m].set);
 }

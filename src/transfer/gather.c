@@ -146,6 +146,23 @@ MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_ga
   store_matrix(dim, job->C, s, L);
 }
 
+MPMI_INLINE int32_t has_hole(const double *volume, int64_t n) {
+  mpmi_lanes smallest = mpmi_lanes_load(volume);
+  for (int64_t p = MPMI_LANES; p < mpmi_whole_chunks(n); p += MPMI_LANES)
+    smallest = mpmi_lanes_min(smallest, mpmi_lanes_load(volume + p));
+  return !(mpmi_lanes_smallest(smallest) > 0.0);
+}
+
+/* Takes the weight from holes, of whose nodes nothing is known. */
+MPMI_INLINE void mask_holes(int32_t width, int32_t form, const double *volume, int64_t n, mpmi_weights *W) {
+  for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
+      const double live = volume[p] > 0.0 ? 1.0 : 0.0;
+      W->w[0][k][p] *= live;
+      if (form != MPMI_GATHER_4_MLS) W->g[0][k][p] *= live;
+      if (form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE) W->u[0][k][p] *= live;
+    }
+}
+
 MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t begin,
                               int64_t count) {
   mpmi_weights W;
@@ -153,14 +170,9 @@ MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mp
   mpmi_made made = {mpmi_nothing_moved(), mpmi_nothing_deformed()};
   for (int64_t s = 0; s < count; s += MPMI_CHUNK) {
     const int64_t n = count - s < MPMI_CHUNK ? count - s : MPMI_CHUNK;
-    const double *volume = job->initial_volume + begin + s;
     job->weights(job->axis, job->need, &job->points, begin + s, n, &W);
-    for (int32_t k = 0; k < width; ++k) MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
-        double live = volume[p] > 0.0 ? 1.0 : 0.0;
-        W.w[0][k][p] *= live;
-        if (form != MPMI_GATHER_4_MLS) W.g[0][k][p] *= live;
-        if (form == MPMI_GATHER_4_AFFINE) W.u[0][k][p] *= live;
-      }
+    if (has_hole(job->initial_volume + begin + s, n))
+      mask_holes(width, form, job->initial_volume + begin + s, n, &W);
     for (int64_t p = 0; p < n; ++p) {
       mpmi_prefetch(&job->streams, begin + s + MPMI_CHUNK, p);
       gather_particle(dim, width, form, &W, p, job->tile, &out);

@@ -20,6 +20,7 @@ BASIS(open_bspline3)
 #include "transfer/instances.h"
 #define PER_DIM(dim)                                                                                         \
   uint32_t KERNEL(move_##dim)(const mpmi_move *, int64_t);                                                   \
+  uint32_t KERNEL(look_##dim)(const mpmi_move *, int64_t);                                                   \
   uint32_t KERNEL(sums_##dim)(const mpmi_sums_job *, int64_t, mpmi_sums *);                                  \
   void KERNEL(push_##dim)(const mpmi_push *, int64_t);                                                       \
   void KERNEL(force_scatter_##dim##_2)(const mpmi_force_scatter *, int64_t, int64_t);                        \
@@ -50,6 +51,7 @@ const mpmi_kernels KERNEL(kernels) = {
     .load_box = KERNEL(load_box),
     .update = KERNEL(update),
     .move = BY_DIM(move),
+    .look = BY_DIM(look),
     .sums = BY_DIM(sums),
     .push = BY_DIM(push),
 #define BY_WIDTH(name)                                                                                       \

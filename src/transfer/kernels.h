@@ -28,7 +28,7 @@ typedef struct mpmi_kernels {
   mpmi_fetch_box_fn fetch_box;
   mpmi_load_box_fn load_box;
   mpmi_update_fn update;
-  mpmi_move_fn move[4];
+  mpmi_move_fn move[4], look[4];
   mpmi_sums_fn sums[4];
   mpmi_push_fn push[4];
   mpmi_force_scatter_fn force_scatter[4][MPMI_MAX_WIDTH + 1];

@@ -20,7 +20,7 @@ typedef struct mpmi_move {
   const double *v_bar, *dv;          /* gathered, [3][ld] */
   const double *x_old[3], *v_old[3]; /* at the batch's first slot */
   double *x_new[3], *v_new[3];
-  double centre[3], half[3];           /* of the loose tile */
+  double centre[3], half[3];           /* where particles may be: |x - centre| <= half */
   double low[3], high[3];              /* bounds of the grid */
   double period[3], inverse_period[3]; /* lengths; 0 when not periodic */
 } mpmi_move;

@@ -13,7 +13,7 @@
 #include "transfer/move.h"
 
 /* What is known of the particles that have moved: bad is 0 where all is finite, outside the largest way beyond
- * a face of the grid, astray that beyond the loose tile. */
+ * a face of the grid, astray that beyond the bounds. */
 typedef struct mpmi_moved {
   mpmi_lanes bad, outside, astray;
 } mpmi_moved;
@@ -57,7 +57,7 @@ MPMI_INLINE void mpmi_move_lanes(int32_t dim, const mpmi_move *job, int64_t s, c
 MPMI_INLINE uint32_t mpmi_move_flags(const mpmi_moved *t) {
   return (mpmi_lanes_sum(t->bad) == 0.0 ? 0u : (uint32_t)MPMI_NONFINITE) |
          (mpmi_lanes_largest(t->outside) > 0.0 ? (uint32_t)MPMI_OUTSIDE : 0u) |
-         (mpmi_lanes_largest(t->astray) > 0.0 ? (uint32_t)MPMI_LEFT_TILE : 0u);
+         (mpmi_lanes_largest(t->astray) > 0.0 ? (uint32_t)MPMI_LEFT_BOUNDS : 0u);
 }
 
 #endif
