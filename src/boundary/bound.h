@@ -71,11 +71,11 @@ void mpmi_add_block_work(mpmi_step *step);
 
 /* ---- ties.c ------------------------------------------------------------------------------------------ */
 /* Gives each master the velocity of its whole tie, before the forces and after them. */
-void mpmi_ties_fold(mpmi_bound *bound);
+mpm_status mpmi_ties_fold(mpmi_bound *bound);
 /* Sets the components that fixed and slip walls hold. */
-void mpmi_ties_hold_walls(mpmi_bound *bound);
+mpm_status mpmi_ties_hold_walls(mpmi_bound *bound);
 /* Gives the followers their master's velocity, with their signs, and records impulses and reactions. */
-void mpmi_ties_unfold(mpmi_bound *bound);
+mpm_status mpmi_ties_unfold(mpmi_bound *bound);
 
 /* ---- held_nodes.c ------------------------------------------------------------------------------------ */
 /* Asks the host and the prescribed particles who holds what. */

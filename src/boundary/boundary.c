@@ -10,7 +10,7 @@ static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
       (status = mpmi_asks_host(bound->step->settings, projection) ? mpmi_held_find(bound) : MPM_OK) ||
       (status = mpmi_held_set(bound)))
     return status;
-  mpmi_ties_hold_walls(bound);
+  if ((status = mpmi_ties_hold_walls(bound))) return status;
   mpmi_friction_walls(bound, 0);
   return mpmi_hooks_run(bound, MPM_AFTER_VELOCITY);
 }
@@ -26,8 +26,8 @@ static mpm_status act_on_velocities(mpmi_bound *bound, const mpmi_projection *pr
   mpm_status status = MPM_OK;
   if (mpmi_asks_host(bound->step->settings, projection)) status = mpmi_held_find(bound);
   if (!status && projection->held) status = mpmi_held_set(bound);
-  mpmi_ties_hold_walls(bound);
-  if (projection->contact != MPMI_CONTACT_NONE)
+  if (!status) status = mpmi_ties_hold_walls(bound);
+  if (!status && projection->contact != MPMI_CONTACT_NONE)
     mpmi_friction_walls(bound, projection->contact == MPMI_CONTACT_KEEPS);
   return status;
 }
@@ -35,8 +35,8 @@ static mpm_status act_on_velocities(mpmi_bound *bound, const mpmi_projection *pr
 mpm_status mpmi_boundary_hold(mpmi_step *step, mpmi_nodes *nodes) {
   mpmi_bound bound = {
       .step = step, .nodes = nodes, .values = &nodes->solved, .dim = step->settings->grid->dim};
-  mpmi_ties_fold(&bound);
-  return mpmi_held_find(&bound);
+  const mpm_status status = mpmi_ties_fold(&bound);
+  return status ? status : mpmi_held_find(&bound);
 }
 
 mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes,
@@ -50,10 +50,10 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
                       .share = share,
                       .dim = settings->grid->dim,
                       .records = projection->recorded && nodes->has_impulses};
-  mpmi_ties_fold(&bound);
-  mpm_status status = projection->main ? act(&bound, projection) : act_on_velocities(&bound, projection);
+  mpm_status status = mpmi_ties_fold(&bound);
+  if (!status) status = projection->main ? act(&bound, projection) : act_on_velocities(&bound, projection);
+  if (!status) status = mpmi_ties_unfold(&bound);
   if (status) return status;
-  mpmi_ties_unfold(&bound);
   if (!projection->main) return MPM_OK;
   if (nodes->prescription.any && (status = mpmi_prescribed_share(&bound))) return status;
   return mpmi_hooks_end(&bound);

@@ -1,11 +1,39 @@
 /* Nodes that are tied together (grid/constraints.h) move as one: folded into their masters while host, walls
  * and contacts act, and unfolded afterwards. */
 #include "boundary/bound.h"
+#include "layout/tasks.h"
 
-void mpmi_ties_fold(mpmi_bound *bound) {
+/* ---- the walk ----------------------------------------------------------------------------------------- */
+/* Ties share no node, so that they are shared out among tasks; waking these costs as much as some of them. */
+enum { FEW_TIES = 128 };
+
+typedef void (*tie_fn)(mpmi_bound *bound, int64_t begin, int64_t end);
+typedef struct tie_job {
+  mpmi_bound *bound;
+  tie_fn fn;
+} tie_job;
+
+static void take_share(void *data, int64_t k) {
+  const tie_job *job = data;
+  const mpmi_share share =
+      mpmi_share_of(job->bound->step->settings, mpmi_constraints_of(job->bound)->tie_count, k);
+  job->fn(job->bound, share.begin, share.end);
+}
+
+static mpm_status over_ties(mpmi_bound *bound, tie_fn fn) {
+  const mpmi_settings *settings = bound->step->settings;
+  const int64_t count = mpmi_constraints_of(bound)->tie_count;
+  tie_job job = {bound, fn};
+  if (count >= FEW_TIES) return mpmi_run_tasks(settings, 0, settings->tasks, take_share, &job);
+  fn(bound, 0, count);
+  return MPM_OK;
+}
+
+/* ---- what is done to ties ----------------------------------------------------------------------------- */
+static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int32_t both = mpmi_has_increments(bound->values);
-  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+  for (int64_t i = begin; i < end; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
     mpmi_tie_state *state = &bound->nodes->tie_state[i];
     double *v = mpmi_velocity(bound->values, tie->master), *dv = mpmi_increment(bound->values, tie->master);
@@ -40,12 +68,16 @@ void mpmi_ties_fold(mpmi_bound *bound) {
   }
 }
 
+mpm_status mpmi_ties_fold(mpmi_bound *bound) {
+  return over_ties(bound, fold);
+}
+
 /* Holds at 0 what walls hold. A node on the plane is its own mirror image: the projected velocity of the
  * component is 0 as well, so that there is no increment. Only so is half a symmetric body on a slip wall the
  * same as the whole. */
-void mpmi_ties_hold_walls(mpmi_bound *bound) {
+static void hold(mpmi_bound *bound, int64_t begin, int64_t end) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
-  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+  for (int64_t i = begin; i < end; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
     for (int32_t c = 0; c < bound->dim; ++c) {
       if (!tie->zero[c] || mpmi_held_by(bound->nodes, tie->master, c)) continue;
@@ -53,6 +85,10 @@ void mpmi_ties_hold_walls(mpmi_bound *bound) {
       if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, tie->master)[c] = 0.0;
     }
   }
+}
+
+mpm_status mpmi_ties_hold_walls(mpmi_bound *bound) {
+  return over_ties(bound, hold);
 }
 
 /* Gives a follower one component of its master's velocity; returns the impulse. */
@@ -67,11 +103,12 @@ static double follow(mpmi_bound *bound, int64_t master, const mpmi_follower *fol
   return impulse;
 }
 
-void mpmi_ties_unfold(mpmi_bound *bound) {
+/* What a tie's wall gets is left in the tie, to be added up in the order of the ties. */
+static void unfold(mpmi_bound *bound, int64_t begin, int64_t end) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
-  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+  for (int64_t i = begin; i < end; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
-    const mpmi_tie_state *state = &bound->nodes->tie_state[i];
+    mpmi_tie_state *state = &bound->nodes->tie_state[i];
     for (int32_t c = 0; c < bound->dim; ++c) {
       double total =
           *mpmi_mass(bound->values, tie->master) * (mpmi_given(bound, tie->master, c) - state->before[c]);
@@ -79,8 +116,24 @@ void mpmi_ties_unfold(mpmi_bound *bound) {
                         mpmi_increment_of(bound, tie->master, c) - state->increment[c]);
       for (int64_t d = tie->first; d < tie->first + tie->count; ++d)
         total += follow(bound, tie->master, &constraints->follower[d], c);
-      if (bound->records && tie->face[c] >= 0 && !mpmi_held_by(bound->nodes, tie->master, c))
-        bound->step->impulse_by_face[tie->face[c]][c] += bound->share * (total - state->recorded[c]);
+      state->recorded[c] = total - state->recorded[c];
     }
   }
+}
+
+static void add_reactions(mpmi_bound *bound) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
+  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
+    for (int32_t c = 0; c < bound->dim; ++c)
+      if (tie->face[c] >= 0 && !mpmi_held_by(bound->nodes, tie->master, c))
+        bound->step->impulse_by_face[tie->face[c]][c] +=
+            bound->share * bound->nodes->tie_state[i].recorded[c];
+  }
+}
+
+mpm_status mpmi_ties_unfold(mpmi_bound *bound) {
+  const mpm_status status = over_ties(bound, unfold);
+  if (!status && bound->records) add_reactions(bound);
+  return status;
 }

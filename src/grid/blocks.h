@@ -19,8 +19,8 @@ typedef struct mpmi_node_box {
   uint8_t low[3], high[3];
 } mpmi_node_box;
 
-/* Where the particles of a block may be until this is found anew, |x - centre| <= half by axis, and the nodes of
- * its tile that their stencils then meet. */
+/* Where the particles of a block may be until this is found anew, |x - centre| <= half by axis, and the nodes
+ * of its tile that their stencils then meet. */
 typedef struct mpmi_cover {
   double centre[3], half[3];
   mpmi_node_box nodes;

@@ -90,8 +90,11 @@ static void give_internal(void *user, const mpmi_visit *visit, double *tile) {
 }
 
 mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
-  static const mpmi_pass pass = {
-      .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .take = take_forces};
+  static const mpmi_pass pass = {.deforms = 1,
+                                 .bind = mpmi_strain_bind,
+                                 .enter = mpmi_strain_enter,
+                                 .aim = mpmi_strain_aim,
+                                 .take = take_forces};
   mpm_status status = begin_strain(balance, u, &pass);
   if (!status)
     status =
@@ -143,8 +146,11 @@ static void add_at_seam(void *user, const mpmi_visit *visit) {
 }
 
 mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
-  static const mpmi_pass pass = {
-      .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .take = take_stiffness};
+  static const mpmi_pass pass = {.deforms = 1,
+                                 .bind = mpmi_strain_bind,
+                                 .enter = mpmi_strain_enter,
+                                 .aim = mpmi_strain_aim,
+                                 .take = take_stiffness};
   mpmi_newton *newton = balance->newton;
   const int32_t tasks = balance->settings->tasks, remedy = balance->settings->desc.locking_remedy;
   mpm_status status = mpmi_run_tasks(balance->settings, 0, tasks, clear_matrix_task, balance);

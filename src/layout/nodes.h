@@ -13,7 +13,8 @@ typedef struct mpmi_nodal {
   double *at;
   int32_t values;
   int64_t capacity; /* in doubles */
-  /* The count of covers of the layout when all nodes that no stencil meets were 0, or -1: they must be cleared. */
+  /* The count of covers of the layout when all nodes that no stencil meets were 0, or -1: they must be
+   * cleared. */
   int64_t zero_elsewhere;
 } mpmi_nodal;
 
@@ -79,7 +80,7 @@ typedef struct mpmi_tie_state {
   double net[3];       /* the same with the followers' signs, by component */
   double before[3];    /* what the master gave to particles before folding, by mass */
   double increment[3]; /* of the master's velocity before folding */
-  double recorded[3];  /* impulse that is recorded already */
+  double recorded[3];  /* impulse that is recorded already; in the end what the walls got beside */
 } mpmi_tie_state;
 
 /* State of a contact with a friction wall, as it was found with forces; projections without them keep to

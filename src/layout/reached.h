@@ -1,6 +1,6 @@
-/* Which nodes the particles of a block meet: those of its tile that their stencils may touch, and so which nodes
- * of the blocks around it. Blocks without particles are there for their neighbours' sake, and most of their
- * nodes are met by none: nothing is ever given to these. */
+/* Which nodes the particles of a block meet: those of its tile that their stencils may touch, and so which
+ * nodes of the blocks around it. Blocks without particles are there for their neighbours' sake, and most of
+ * their nodes are met by none: nothing is ever given to these. */
 #ifndef MPMI_REACHED_H
 #define MPMI_REACHED_H
 
@@ -11,15 +11,15 @@ typedef struct mpmi_span {
   int32_t tile, block, length; /* first place in the tile, first place in the block, nodes */
 } mpmi_span;
 
-/* The spans of the nodes that the particles of a block meet, by axis and neighbour; an axis that the grid does
- * not have is one node wide. */
+/* The spans of the nodes that the particles of a block meet, by axis and neighbour; an axis that the grid
+ * does not have is one node wide. */
 typedef struct mpmi_spans {
   mpmi_span at[3][3];
 } mpmi_spans;
 mpmi_spans mpmi_spans_of(const mpmi_blocks *b, int64_t block);
 
-/* Finds where the particles of each block are and which nodes they meet. A particle may drift so far, in cells,
- * before that is found anew. */
+/* Finds where the particles of each block are and which nodes they meet. A particle may drift so far, in
+ * cells, before that is found anew. */
 #define MPMI_COVER_DRIFT 0.5
 void mpmi_layout_cover(mpmi_layout *layout);
 /* Sets the bounds of a block's whole tile: beyond them all particles are sorted anew. */

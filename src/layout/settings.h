@@ -6,6 +6,7 @@
 #include "grid/constraints.h"
 #include "layout/transfers.h"
 #include "material/deformation.h"
+#include "material/dilation.h"
 #include "transfer/kernels.h"
 
 typedef struct mpmi_settings {
@@ -13,6 +14,7 @@ typedef struct mpmi_settings {
   const mpm_grid *grid;
   const mpmi_kernels *kernels;         /* of transfer/ */
   const mpmi_deformation *deformation; /* kernels of material/deformation.c */
+  const mpmi_dilation *dilation;       /* kernels of material/dilation.c */
   int32_t tasks;                       /* how many work at a time; no result depends on it */
   mpm_stepper_desc desc;
   const mpmi_transfer *transfer; /* the row of desc.transfer */

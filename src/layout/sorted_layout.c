@@ -1,5 +1,4 @@
 #include "layout/sorted_layout.h"
-#include "layout/reached.h"
 
 #include <float.h>
 #include <math.h>
@@ -207,7 +206,6 @@ mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings) 
 mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings) {
   const mpm_status status = mpmi_layout_sort(layout, settings);
   if (status) return status;
-  if (layout->cover_is_old) mpmi_layout_cover(layout);
   find_mass_cut(layout, settings);
   return layout->walls_changed ? find_ties(layout, settings) : MPM_OK;
 }

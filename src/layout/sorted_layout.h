@@ -45,9 +45,9 @@ typedef struct mpmi_layout {
   int32_t *list_memory;                   /* memory of all worklists */
   int64_t list_capacity;
   int64_t *bound_memory;
-  int64_t version; /* counts changes of blocks and constraints */
-  int64_t covers;  /* counts how often it was found which nodes are met */
-  int32_t cover_is_old;
+  int64_t version;      /* counts changes of blocks and constraints */
+  int64_t covers;       /* counts how often it was found which nodes are met */
+  int32_t cover_is_old; /* find it anew (layout/reached.c) before the next step */
   int64_t sorts;
   int64_t wide_domains; /* domains wider than a cell at the last sort (GIMP) */
   double mass_cut;      /* a node that is not heavier is at rest */

@@ -1,7 +1,7 @@
 /* New deformation gradient and volume of particles, from the velocity gradient. */
 #include <string.h>
 
-#include "material/deform_lanes.h"
+#include "material/deformation.h"
 #include "simd/chunk.h"
 #include "simd/tensor.h"
 #include "simd/vector_math.h"

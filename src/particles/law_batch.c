@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "simd/elementary.h"
+#include "material/dilation.h"
 
 enum { FIXED_ROWS = 9 + 9 + 9 + 6 + 6 + 1 + 1 + 1 + 3 };
 
@@ -87,21 +87,14 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
   if (!material->law) preset_optional(b, n);
 }
 
-void mpmi_law_batch_scale_F(mpmi_law_batch *b, int32_t dim, const double *ratio, int64_t n) {
-  for (int64_t p = 0; p < n; ++p) {
-    const double f = dim == 2 ? sqrt(ratio[p]) : mpmi_cbrt(ratio[p]);
-    for (int32_t r = 0; r < dim; ++r)
-      for (int32_t c = 0; c < dim; ++c) b->F[(3 * r + c) * b->ld + p] *= f;
-  }
-}
-
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {
   const int32_t dim = set->grid->dim, *map = mpmi_tensor_map(dim);
   const double *F = mpmi_f64(set, MPMI_F, 0) + begin;
   for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
     memcpy(b->F + map[c] * b->ld, F + c * set->ld, (size_t)n * sizeof(double));
   if (set->field[MPMI_DILATION_RATIO].present)
-    mpmi_law_batch_scale_F(b, dim, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
+    mpmi_dilation_of(set->context->isa)
+        ->scale[dim](b->F, b->ld, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
 }
 
 /* A negative speed or viscosity would not bound the step, and an infinite energy would spoil all sums. What

@@ -43,9 +43,6 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
  * step. */
 void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double t,
                          double dt);
-/* Replaces F by ratio^(1/d) F in the axes that the grid has: the locking remedy shows the law this
- * dilation. */
-void mpmi_law_batch_scale_F(mpmi_law_batch *b, int32_t dim, const double *ratio, int64_t n);
 /* Loads F from storage, to evaluate the state as it is. */
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
 /* Runs the law, and looks at what one of the host's gave; a fault's cause is returned as the status.

@@ -1,5 +1,5 @@
-/* Bits that kernels return for a batch of particles when one of them deserves a look: it has left its bounds or
- * the grid, or a value is not finite, or a volume is not positive. */
+/* Bits that kernels return for a batch of particles when one of them deserves a look: it has left its bounds
+ * or the grid, or a value is not finite, or a volume is not positive. */
 #ifndef MPMI_FLAGS_H
 #define MPMI_FLAGS_H
 

@@ -7,8 +7,8 @@
 #include "simd/lanes.h"
 #include "simd/shuffle.h"
 
-/* Hides from the compiler what an address is the sum of: it would add that up anew for each node of a stencil,
- * or hand every load two registers, which takes some processors two steps. */
+/* Hides from the compiler what an address is the sum of: it would add that up anew for each node of a
+ * stencil, or hand every load two registers, which takes some processors two steps. */
 #define MPMI_SETTLE(address) __asm__("" : "+r"(address))
 
 #if MPMI_WIDTH >= 4

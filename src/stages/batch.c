@@ -57,9 +57,12 @@ static void bind_set(mpmi_batch *b, int32_t m) {
                             .ld = ld,
                             .v = b->v_bar,
                             .dv = b->dv};
+  for (int32_t e = 0; e < 9; ++e) {
+    b->gather.L[e] = b->pass->plain ? NULL : b->law.L + e * ld;
+    b->gather.C[e] = b->C + e * ld;
+  }
   list_streams(b);
   if (b->pass->bind) b->pass->bind(b);
-  mpmi_gradient_bind(b);
 }
 
 /* Chooses the form of the gather: increments are needed by blends and by second-order positions, C by
@@ -162,9 +165,7 @@ static void take_batch(mpmi_batch *b, int64_t begin, int64_t n) {
   b->n = n;
   b->flags = 0;
   b->law_ran = 0;
-  if (b->pass->moves) mpmi_motion_aim(b);
-  if (b->pass->deforms) mpmi_strain_aim(b);
-  mpmi_gradient_aim(b);
+  if (b->pass->aim) b->pass->aim(b);
   b->taken =
       settings->kernels->gather[settings->grid->dim][settings->grid->width][b->form](&b->gather, begin, n);
   b->pass->take(b);

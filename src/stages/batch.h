@@ -17,6 +17,7 @@ typedef struct mpmi_pass {
   int32_t plain;   /* gathers mean velocities whatever the transfer is */
   void (*bind)(mpmi_batch *b);  /* a set comes; or NULL */
   void (*enter)(mpmi_batch *b); /* a block comes; or NULL */
+  void (*aim)(mpmi_batch *b);   /* a batch is about to be gathered; or NULL */
   void (*take)(mpmi_batch *b);  /* a batch has been gathered */
 } mpmi_pass;
 
@@ -83,14 +84,13 @@ void mpmi_motion_take(mpmi_batch *b);
 /* These prepare strain and sums for a set, and strain for a block. */
 void mpmi_strain_bind(mpmi_batch *b);
 void mpmi_strain_enter(mpmi_batch *b);
-/* Points at the particles of the batch, and loads what the law sees of them. */
+/* Points at the particles of the batch, and loads what the law sees of them; tells where its gradient goes. */
 void mpmi_strain_aim(mpmi_batch *b);
 
 /* The gradient goes to the law's rows, to those of the set, or nowhere. What an affine transfer carries comes
  * with the velocities, in the pass that moves, and is kept; otherwise that of the strain is kept where the
  * host wants it: copied, or stored by the gather where nobody else reads it. */
 enum { MPMI_KEEPS_NOTHING, MPMI_KEEPS_COPY, MPMI_KEEPS_DIRECTLY };
-void mpmi_gradient_bind(mpmi_batch *b);
 void mpmi_gradient_aim(mpmi_batch *b);
 void mpmi_gradient_keep(mpmi_batch *b);
 /* Completes deformation gradient and volume; returns 0 where they are no state that a law can be asked

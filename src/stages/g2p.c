@@ -14,6 +14,16 @@ static void enter_both(mpmi_batch *b) {
   mpmi_strain_enter(b);
 }
 
+static void aim_both(mpmi_batch *b) {
+  mpmi_motion_aim(b);
+  mpmi_strain_aim(b);
+}
+
+static void aim_motion(mpmi_batch *b) {
+  mpmi_motion_aim(b);
+  mpmi_gradient_aim(b);
+}
+
 static void take_both(mpmi_batch *b) {
   mpmi_motion_take(b);
   mpmi_gradient_keep(b);
@@ -54,11 +64,14 @@ static void take_accelerations(mpmi_batch *b) {
 }
 
 static const mpmi_pass both = {
-    .moves = 1, .deforms = 1, .bind = bind_both, .enter = enter_both, .take = take_both};
+    .moves = 1, .deforms = 1, .bind = bind_both, .enter = enter_both, .aim = aim_both, .take = take_both};
 static const mpmi_pass motion = {
-    .moves = 1, .bind = bind_both, .enter = mpmi_motion_enter, .take = take_motion};
-static const mpmi_pass strain = {
-    .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .take = take_strain};
+    .moves = 1, .bind = bind_both, .enter = mpmi_motion_enter, .aim = aim_motion, .take = take_motion};
+static const mpmi_pass strain = {.deforms = 1,
+                                 .bind = mpmi_strain_bind,
+                                 .enter = mpmi_strain_enter,
+                                 .aim = mpmi_strain_aim,
+                                 .take = take_strain};
 static const mpmi_pass velocities = {.plain = 1, .take = take_velocities};
 static const mpmi_pass accelerations = {.plain = 1, .take = take_accelerations};
 

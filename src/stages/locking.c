@@ -10,8 +10,8 @@
 #include "layout/accumulate.h"
 #include "layout/tile.h"
 #include "layout/tasks.h"
-#include "simd/elementary.h"
 #include "stages/batch.h"
+#include "transfer/basis.h"
 
 #include <math.h>
 
@@ -22,42 +22,29 @@ typedef struct cell_sums {
 } cell_sums;
 _Static_assert(sizeof(cell_sums) == 4 * sizeof(double), "goes through tiles");
 
-/* Finds the place of each particle's cell in the tile. On a periodic axis any image that lies in the tile
- * will do. */
+/* Finds the place of each particle's cell in the tile, of whole chunks. On a periodic axis any image that lies
+ * in the tile will do. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
                       int64_t n, int32_t *place) {
-  const int32_t edge = MPMI_TILE_EDGE(grid->dim, grid->width);
-  for (int64_t p = 0; p < n; ++p) {
-    place[p] = 0;
+  const double edge = MPMI_TILE_EDGE(grid->dim, grid->width);
+  for (int64_t p = 0; p < n; p += MPMI_LANES) {
+    mpmi_lanes at = {0.0};
     for (int32_t k = 0; k < grid->dim; ++k) {
       const mpmi_axis *a = axis + k;
-      double cell = floor((points->x[k][begin + p] - a->origin) * a->inverse_spacing);
-      if (cell > a->last_cell) cell = a->last_cell;
-      double at = cell - a->tile_base;
-      if (a->period > 0.0) at -= a->period * rint((at - a->middle) * a->inverse_period);
-      place[p] = place[p] * edge + (int32_t)at;
+      const mpmi_lanes xi = (mpmi_lanes_load(points->x[k] + begin + p) - a->origin) * a->inverse_spacing;
+      mpmi_lanes along = mpmi_lanes_cell(a, xi) - a->tile_base;
+      if (a->period > 0.0) along -= a->period * mpmi_lanes_round((along - a->middle) * a->inverse_period);
+      at = at * edge + along;
     }
+    mpmi_lanes_store_int32(place + p, at);
   }
 }
 
-/* Returns det(I + dt L) - 1, expanded so that a small dt L keeps its digits. */
-static double det_minus_1(int32_t dim, const double *L, int64_t ld, double dt) {
-#define G(r, c) (dt * L[(3 * (r) + (c)) * ld])
-  const double plane = (G(0, 0) + G(1, 1)) + G(0, 0) * G(1, 1) - G(0, 1) * G(1, 0);
-  if (dim == 2) return plane;
-  const double x = G(1, 0) * G(2, 1) - G(2, 0) * (1.0 + G(1, 1));
-  const double y = (1.0 + G(0, 0)) * G(2, 1) - G(2, 0) * G(0, 1);
-  return plane + G(2, 2) * (1.0 + plane) + G(0, 2) * x - G(1, 2) * y;
-#undef G
-}
-
-/* Measures det F_inc - 1 of each particle of a batch, into the second copy of its dilation ratio. */
+/* Measures det F_inc - 1 of each particle of a batch, into the second copy of its dilation ratio. Where it is
+ * not finite the step will fail at this particle, and not at its neighbours. */
 static void measure(mpmi_batch *b) {
-  double *j = mpmi_f64(b->set, MPMI_DILATION_RATIO, 1) + b->begin;
-  for (int64_t p = 0; p < b->n; ++p) {
-    j[p] = det_minus_1(b->set->grid->dim, b->law.L + p, b->law.ld, b->step->dt);
-    if (!isfinite(j[p])) j[p] = 0.0; /* the step will fail at this particle and not at its neighbours */
-  }
+  b->step->settings->dilation->measure[b->set->grid->dim](
+      b->law.L, b->law.ld, b->step->dt, b->n, mpmi_f64(b->set, MPMI_DILATION_RATIO, 1) + b->begin);
 }
 
 typedef struct locking_job {
@@ -123,33 +110,36 @@ mpm_status mpmi_locking_stage(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nod
       step, &(mpmi_accumulation){.to = &nodes->sums, .give = add_block, .fold = join_images, .user = &job});
 }
 
-void mpmi_locking_apply(const mpm_grid *grid, const double *cells, const mpmi_axis *axis, mpm_particles *set,
-                        mpmi_law_batch *b, int64_t begin, int64_t n, double dt) {
-  const int32_t dim = grid->dim;
-  const mpmi_points points = mpmi_points_of(set, 0);
-  const double *old = mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin;
-  double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
-  const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
-  const int32_t rigid = mpmi_material_kinematics(set->material) == MPMI_F_STAYS;
-  int32_t place[MPMI_CHUNK];
+/* Finds the mean of the cell of each particle of a chunk; none for rigid ones and for holes. */
+static void find_means(const cell_sums *cells, const int32_t *place, const int64_t *id, int32_t rigid,
+                       int64_t n, double *mean) {
   for (int64_t p = 0; p < n; ++p) {
-    ratio[p] = old[p];
-    if (p % MPMI_CHUNK == 0)
-      mpmi_cell_places(grid, axis, &points, begin + p, n - p < MPMI_CHUNK ? n - p : MPMI_CHUNK, place);
-    if (rigid || id[p] < 0) continue;
-    const cell_sums *cell = (const cell_sums *)cells + place[p % MPMI_CHUNK];
-    const double j = det_minus_1(dim, b->L + p, b->ld, dt);
-    const double mean = cell->volume > 0.0 ? cell->dilation / cell->volume : j;
-    /* an inverted increment ends the step elsewhere */
-    const double growth = j > -1.0 && mean > -1.0 ? (mean - j) / (1.0 + j) : 0.0;
-    const double f_minus_1 = mpmi_expm1(mpmi_log1p(growth) / dim);
-    ratio[p] = old[p] * (1.0 + growth);
-    for (int32_t r = 0; r < dim; ++r)
-      for (int32_t c = 0; c < dim; ++c) {
-        double *L = b->L + (3 * r + c) * b->ld + p;
-        *L += f_minus_1 * (*L + (r == c ? 1.0 / dt : 0.0));
-        b->F_inc[(3 * r + c) * b->ld + p] = (r == c ? 1.0 : 0.0) + dt * *L;
-      }
+    const cell_sums *cell = &cells[place[p]];
+    mean[p] = rigid || id[p] < 0 || !(cell->volume > 0.0) ? (double)NAN : cell->dilation / cell->volume;
   }
-  mpmi_law_batch_scale_F(b, dim, ratio, n);
+}
+
+void mpmi_locking_apply(const mpmi_settings *settings, const double *cells, const mpmi_axis *axis,
+                        mpm_particles *set, mpmi_law_batch *b, int64_t begin, int64_t n, double dt) {
+  const int32_t dim = settings->grid->dim;
+  const mpmi_points points = mpmi_points_of(set, 0);
+  const int32_t rigid = mpmi_material_kinematics(set->material) == MPMI_F_STAYS;
+  double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
+  for (int64_t p = 0; p < n; p += MPMI_CHUNK) {
+    double mean[MPMI_CHUNK];
+    int32_t place[MPMI_CHUNK];
+    mpmi_cell_places(settings->grid, axis, &points, begin + p, MPMI_CHUNK, place);
+    find_means((const cell_sums *)cells, place, mpmi_i64(set, MPMI_ID, 0) + begin + p, rigid, MPMI_CHUNK,
+               mean);
+    settings->dilation->exchange[dim](
+        &(mpmi_exchange){.dt = dt,
+                         .ld = b->ld,
+                         .L = b->L + p,
+                         .F_inc = b->F_inc + p,
+                         .mean = mean,
+                         .old_ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin + p,
+                         .ratio = ratio + p},
+        MPMI_CHUNK);
+  }
+  settings->dilation->scale[dim](b->F, b->ld, ratio, n);
 }

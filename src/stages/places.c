@@ -19,8 +19,8 @@ static reach reach_of(const mpmi_blocks *blocks, int64_t block, int32_t k) {
                  .inverse_period = length > 0.0 ? 1.0 / length : 0.0};
 }
 
-/* Nothing but a host that writes through a view for reading can bring a particle there, where its stencil would
- * meet nodes that nobody looks after, or lie beyond the tile's memory. */
+/* Nothing but a host that writes through a view for reading can bring a particle there, where its stencil
+ * would meet nodes that nobody looks after, or lie beyond the tile's memory. */
 static int32_t any_astray(const double *x, const reach *of, int64_t n) {
   mpmi_mask near = ~(mpmi_mask){0};
   for (int64_t p = 0; p < n; p += MPMI_LANES) {

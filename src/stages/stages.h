@@ -37,8 +37,8 @@ mpm_status mpmi_locking_stage(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nod
 
 /* Scales the deformation that the law is about to see, and gives the particles their new ratio; cells: tile
  * of cell sums. */
-void mpmi_locking_apply(const mpm_grid *grid, const double *cells, const mpmi_axis *axis, mpm_particles *set,
-                        mpmi_law_batch *b, int64_t begin, int64_t n, double dt);
+void mpmi_locking_apply(const mpmi_settings *settings, const double *cells, const mpmi_axis *axis,
+                        mpm_particles *set, mpmi_law_batch *b, int64_t begin, int64_t n, double dt);
 
 /* Finds the place in the tile of the lower corner of the cells of n particles, at most a chunk. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,

@@ -28,6 +28,27 @@ static int32_t finds_only_C(const mpmi_batch *b) {
 }
 
 /* ---- before the batches of a set ---------------------------------------------------------------------- */
+static int32_t is_matrix(int32_t form) {
+  return form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;
+}
+
+/* Tells whether anything reads the rows of the gradient after the gather. */
+static int32_t reads_gradient(const mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  if (b->pass->moves && !b->pass->deforms) return finds_only_C(b);
+  return !b->gather.deform || !looks_at_F_alone(b->set->material) || settings->desc.locking_remedy;
+}
+
+static void bind_gradient(mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const int32_t reads = reads_gradient(b), matrix = is_matrix(b->form);
+  for (int32_t e = 0; e < 9 && !reads; ++e) b->gather.L[e] = NULL;
+  b->keeps = MPMI_KEEPS_NOTHING;
+  if (!b->set->field[MPMI_L].present) return;
+  if (!(mpmi_is_affine(settings) ? b->pass->moves : b->pass->deforms)) return;
+  b->keeps = finds_only_C(b) || (reads && !matrix) ? MPMI_KEEPS_COPY : MPMI_KEEPS_DIRECTLY;
+}
+
 void mpmi_strain_bind(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpm_grid *grid = settings->grid;
@@ -58,31 +79,7 @@ void mpmi_strain_bind(mpmi_batch *b) {
   if (b->pass->deforms && !mpmi_is_implicit(settings) && !finds_only_C(b) &&
       mpmi_material_kinematics(b->set->material) == MPMI_F_DEFORMS)
     b->gather.deform = &b->deform;
-}
-
-static int32_t is_matrix(int32_t form) {
-  return form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;
-}
-
-/* Tells whether anything reads the rows of the gradient after the gather. */
-static int32_t reads_gradient(const mpmi_batch *b) {
-  const mpmi_settings *settings = b->step->settings;
-  if (b->pass->plain) return 0;
-  if (b->pass->moves && !b->pass->deforms) return finds_only_C(b);
-  return !b->gather.deform || !looks_at_F_alone(b->set->material) || settings->desc.locking_remedy;
-}
-
-void mpmi_gradient_bind(mpmi_batch *b) {
-  const mpmi_settings *settings = b->step->settings;
-  const int32_t reads = reads_gradient(b), matrix = is_matrix(b->form);
-  for (int32_t e = 0; e < 9; ++e) {
-    b->gather.L[e] = reads ? b->law.L + e * b->law.ld : NULL;
-    b->gather.C[e] = b->C + e * b->law.ld;
-  }
-  b->keeps = MPMI_KEEPS_NOTHING;
-  if (!b->set->field[MPMI_L].present) return;
-  if (!(mpmi_is_affine(settings) ? b->pass->moves : b->pass->deforms)) return;
-  b->keeps = finds_only_C(b) || (reads && !matrix) ? MPMI_KEEPS_COPY : MPMI_KEEPS_DIRECTLY;
+  bind_gradient(b);
 }
 
 void mpmi_strain_enter(mpmi_batch *b) {
@@ -92,6 +89,14 @@ void mpmi_strain_enter(mpmi_batch *b) {
 }
 
 /* ---- a batch ------------------------------------------------------------------------------------------ */
+void mpmi_gradient_aim(mpmi_batch *b) {
+  const int32_t dim = b->set->grid->dim;
+  if (b->keeps != MPMI_KEEPS_DIRECTLY) return;
+  double **to = is_matrix(b->form) ? b->gather.C : b->gather.L;
+  for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
+    to[mpmi_gradient_map(dim)[c]] = mpmi_component_row(b->set, MPMI_L, 1, c) + b->begin;
+}
+
 void mpmi_strain_aim(mpmi_batch *b) {
   const mpmi_step *step = b->step;
   mpm_particles *set = b->set;
@@ -107,14 +112,7 @@ void mpmi_strain_aim(mpmi_batch *b) {
     b->sums_job.checked[0] = b->law.batch.stress_new;
   }
   mpmi_law_batch_load(&b->law, set, b->begin, b->n, step->t + step->dt, step->dt);
-}
-
-void mpmi_gradient_aim(mpmi_batch *b) {
-  const int32_t dim = b->set->grid->dim;
-  if (b->keeps != MPMI_KEEPS_DIRECTLY) return;
-  double **to = is_matrix(b->form) ? b->gather.C : b->gather.L;
-  for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
-    to[mpmi_gradient_map(dim)[c]] = mpmi_component_row(b->set, MPMI_L, 1, c) + b->begin;
+  mpmi_gradient_aim(b);
 }
 
 void mpmi_gradient_keep(mpmi_batch *b) {
@@ -138,8 +136,8 @@ int32_t mpmi_strain_deform(mpmi_batch *b) {
 void mpmi_strain_law(mpmi_batch *b) {
   const mpmi_step *step = b->step;
   if (step->settings->desc.locking_remedy)
-    mpmi_locking_apply(step->settings->grid, b->scratch->cells, b->gather.axis, b->set, &b->law, b->begin,
-                       b->n, step->dt);
+    mpmi_locking_apply(step->settings, b->scratch->cells, b->gather.axis, b->set, &b->law, b->begin, b->n,
+                       step->dt);
   const int32_t timed = step->profile->sampled && b->batches++ % TIMED_BATCHES == 0;
   const double started = timed ? mpmi_seconds() : 0.0;
   const mpm_status status = mpmi_law_batch_run(&b->law, b->set);

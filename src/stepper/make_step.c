@@ -4,6 +4,7 @@
 #include "boundary/prescribed.h"
 #include "implicit/newmark.h"
 #include "layout/members.h"
+#include "layout/reached.h"
 
 #include <math.h>
 
@@ -51,8 +52,9 @@ static mpm_status prepare(mpm_stepper *s) {
       (status = mpmi_members_refresh(&s->layout, settings)))
     return status;
   s->nodes.shown = -1;
-  if ((status = mpmi_layout_prepare(&s->layout, settings)) ||
-      (status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
+  if ((status = mpmi_layout_prepare(&s->layout, settings))) return status;
+  if (s->layout.cover_is_old) mpmi_layout_cover(&s->layout);
+  if ((status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
       (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
       (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
       (status = mpmi_members_reserve(&s->layout, settings)))

@@ -7,10 +7,8 @@
  * Summed node by node, row by row, axis by axis. The MLS form takes the moments of C about the middle of the
  * stencil, where distances are small integers, and moves them to the particle at the end; where D can be
  * small the digits lost in moving them would count. Holes have no initial volume and gather zeros. */
-#include "material/deform_lanes.h"
 #include "simd/pack.h"
 #include "transfer/gather.h"
-#include "transfer/move_lanes.h"
 
 /* Holds, per particle of a chunk: v; dv when nodes have 8 values; gradients; sums of w v (x_i - x_p), or of w
  * v (i - middle) in the MLS form. */
@@ -116,8 +114,8 @@ MPMI_INLINE void store_matrix(int32_t dim, double *const *to, int64_t s, mpmi_la
     for (int32_t k = 0; k < dim; ++k) mpmi_lanes_store(to[3 * r + k] + s, matrix[r][k]);
 }
 
-/* Hands on what was gathered for as many particles as a register holds, from q in the chunk and s in the batch
- * on. */
+/* Hands on what was gathered for as many particles as a register holds, from q in the chunk and s in the
+ * batch on. */
 MPMI_INLINE void hand_on(int32_t dim, int32_t width, int32_t form, const mpmi_gather *job, int64_t q,
                          int64_t s, const mpmi_weights *W, const mpmi_gathered *in, mpmi_made *made) {
   const int32_t affine = form == MPMI_GATHER_4_AFFINE || form == MPMI_GATHER_8_AFFINE;

@@ -1,6 +1,6 @@
 /* New velocity and position of a batch whose gathered velocities lie in rows. */
 #include "simd/chunk.h"
-#include "transfer/move_lanes.h"
+#include "transfer/move.h"
 
 MPMI_INLINE uint32_t move(int32_t dim, const mpmi_move *job, int64_t n) {
   mpmi_moved moved = mpmi_nothing_moved();

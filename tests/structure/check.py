@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Reads which files of src/ need which others, and refuses circles and arrows that point upward.
 
-Headers of an operating system are for the folder `platform` alone: what other files include of no folder here is ISO C11.
+Headers of an operating system are for the folder `platform` alone: what other files include of no folder here is ISO C11,
+or, in `simd`, names the processor's instructions.
 
 A node is a header X.h together with the X.c beside it. An arrow goes from a node to one whose header it includes, and
 to one whose functions or data it uses; the second is read from the object files, and from the text of the functions
@@ -19,6 +20,7 @@ import sys
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^"]+)"', re.M)
 SYSTEM_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*<([^">]+)>', re.M)
 FEATURES = re.compile(r'^[ \t]*#[ \t]*define[ \t]+(_(?:POSIX_C|DEFAULT|GNU|BSD|XOPEN|DARWIN_C)_SOURCE)\b', re.M)
+OF_THE_PROCESSOR = {('simd', 'immintrin.h')}
 ISO_C11 = {name + '.h' for name in (
     'assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic '
     'stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype').split()}
@@ -167,7 +169,8 @@ def check(sources, arrows, order):
     for source, text in sorted(sources.items()):
         if folder_of(source) != SYSTEM_FOLDER:
             foreign = [f'includes <{name}>' for name in SYSTEM_INCLUDE.findall(text)
-                       if name not in ISO_C11 and not name.startswith('mpm/')]
+                       if name not in ISO_C11 and not name.startswith('mpm/')
+                       and (folder_of(source), name) not in OF_THE_PROCESSOR]
             for what in foreign + [f'defines {name}' for name in FEATURES.findall(text)]:
                 print(f'structure: {source} {what}, which is not ISO C11: only {SYSTEM_FOLDER} may')
                 failures += 1

@@ -135,7 +135,7 @@ static int64_t tell(const body_desc *o, int64_t fail_at, uint64_t *hash, int32_t
   return calls;
 }
 
-/* The library's own memory, below and above what large pages are for: aligned, and its to write as a whole. */
+/* The library's own memory, below and above what large pages are for: aligned, and its to write whole. */
 START_TEST(sizes_around_large_pages) {
   enum { LARGE = 1 << 21, ARRAYS = 8 };
   static const int32_t near[] = {-64, 0, 64, LARGE - 8};
