@@ -28,9 +28,9 @@ MPMI_INLINE void exchange(int32_t dim, const mpmi_exchange *job, int64_t n) {
   const int64_t ld = job->ld;
   MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     const double j = mpmi_det_minus_1(dim, mpmi_load_mat(dim, L, ld, p, 0.0, dt));
-    /* an inverted increment ends the step elsewhere */
-    const double lesser = mean[p] < j ? mean[p] : j;
-    const double change = (mean[p] - j) / (1.0 + j), growth = lesser > -1.0 ? change : 0.0;
+    /* a mean that is not a number changes nothing; an inverted increment ends the step elsewhere */
+    const double change = (mean[p] - j) / (1.0 + j), known = mean[p] > -1.0 ? change : 0.0;
+    const double growth = j > -1.0 ? known : 0.0;
     const double stretch = root_minus_1(dim, growth);
     ratio[p] = old[p] * (1.0 + growth);
     for (int32_t r = 0; r < dim; ++r)

@@ -84,7 +84,7 @@ void mpmi_motion_take(mpmi_batch *b);
 /* These prepare strain and sums for a set, and strain for a block. */
 void mpmi_strain_bind(mpmi_batch *b);
 void mpmi_strain_enter(mpmi_batch *b);
-/* Points at the particles of the batch, and loads what the law sees of them; tells where its gradient goes. */
+/* Points at the particles of the batch, loads what the law sees of them, tells where the gradient goes. */
 void mpmi_strain_aim(mpmi_batch *b);
 
 /* The gradient goes to the law's rows, to those of the set, or nowhere. What an affine transfer carries comes

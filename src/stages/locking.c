@@ -22,8 +22,8 @@ typedef struct cell_sums {
 } cell_sums;
 _Static_assert(sizeof(cell_sums) == 4 * sizeof(double), "goes through tiles");
 
-/* Finds the place of each particle's cell in the tile, of whole chunks. On a periodic axis any image that lies
- * in the tile will do. */
+/* Finds the place of each particle's cell in the tile, of whole chunks. On a periodic axis any image that
+ * lies in the tile will do. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
                       int64_t n, int32_t *place) {
   const double edge = MPMI_TILE_EDGE(grid->dim, grid->width);

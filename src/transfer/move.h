@@ -34,8 +34,8 @@ typedef struct mpmi_move {
 } mpmi_move;
 typedef uint32_t (*mpmi_move_fn)(const mpmi_move *job, int64_t n);
 
-/* What is known of the particles that have moved: bad is 0 where all is finite, outside the largest way beyond
- * a face of the grid, astray that beyond the bounds. */
+/* What is known of the particles that have moved: bad is 0 where all is finite, outside the largest way
+ * beyond a face of the grid, astray that beyond the bounds. */
 typedef struct mpmi_moved {
   mpmi_lanes bad, outside, astray;
 } mpmi_moved;

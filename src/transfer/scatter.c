@@ -10,8 +10,8 @@
 #include "simd/tensor.h"
 #include "transfer/scatter.h"
 
-/* The stencil's nodes are apart from the weights, which may then stay in registers from row to row; with 16 registers the
- * forces need them for other things. */
+/* The stencil's nodes are apart from the weights, which may then stay in registers from row to row; with 16
+ * registers the forces need them for other things. */
 #if defined(__AVX512F__) || defined(__aarch64__)
 #define MPMI_APART restrict
 #else
