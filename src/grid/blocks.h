@@ -19,10 +19,11 @@ typedef struct mpmi_node_box {
   uint8_t low[3], high[3];
 } mpmi_node_box;
 
-/* Where the particles of a block may be until this is found anew, |x - centre| <= half by axis, and the nodes
- * of its tile that their stencils then meet. */
+/* Where the particles of a block may be, by axis, and the nodes of its tile that their stencils then meet.
+ * Once one has |x - centre| > half, this is found anew; they are never beyond low and high, which are a hair
+ * wider and end at the faces of the grid. On periodic axes the tile alone bounds them. */
 typedef struct mpmi_cover {
-  double centre[3], half[3];
+  double centre[3], half[3], low[3], high[3];
   mpmi_node_box nodes;
 } mpmi_cover;
 
@@ -34,8 +35,10 @@ typedef struct mpmi_blocks {
   uint64_t *key;                             /* [count] Morton key, ascending once ordered */
   int32_t (*coord)[3];                       /* [count] */
   int32_t (*neighbour)[MPMI_MAX_NEIGHBOURS]; /* [count], lowest corner first; MPMI_NO_BLOCK where absent */
-  mpmi_cover *cover; /* [count] of blocks with particles, and the box of nodes of any block that stencils */
-  mpmi_node_box *reached;          /* meet; both are there once the layout is prepared (layout/reached.c) */
+  /* Of blocks with particles, and of any block the box of its nodes that stencils meet; both are found before
+   * a step (layout/reached.c). */
+  mpmi_cover *cover;               /* [count] */
+  mpmi_node_box *reached;          /* [count] */
   uint32_t *order, *order_scratch; /* [capacity] order: provisional -> final; else scratch */
   uint64_t *key_scratch;
   int32_t (*coord_scratch)[3];

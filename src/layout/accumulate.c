@@ -51,7 +51,7 @@ static void add_block(void *user, const mpmi_visit *visit) {
   mpmi_tile_add(job->step->settings->kernels, &job->step->layout->blocks, visit->block, sum->to, tile);
 }
 
-/* Tied nodes get values where no tile is, and so may hosts and implicit steps give them. */
+/* Tied nodes get values where no stencil is, and so may hosts and implicit steps give them. */
 static int32_t stays_zero_elsewhere(const mpmi_step *step, const mpmi_accumulation *sum) {
   const mpmi_settings *settings = step->settings;
   return !sum->flags && !step->layout->constraints.tie_count && !settings->velocity_bc &&

@@ -60,11 +60,12 @@ static int32_t first_place(const mpmi_blocks *b, int64_t block, int32_t k, doubl
   return place < 0 ? 0 : place > last ? last : place;
 }
 
-/* Narrows the cover of a block along an axis to its particles and a drift, with a hair for rounding. */
+/* Narrows the cover of a block along an axis to its particles and a drift. */
 static void narrow(const mpmi_layout *layout, int64_t block, int32_t k, mpmi_cover *cover) {
   const mpmi_blocks *b = &layout->blocks;
-  const double h = b->grid->desc.spacing[k], tile_low = cover->centre[k] - cover->half[k],
-               tile_high = cover->centre[k] + cover->half[k];
+  const mpm_grid *grid = b->grid;
+  const double h = grid->desc.spacing[k], drift = MPMI_COVER_DRIFT * h, hair = 1e-6 * h;
+  const double tile_low = cover->centre[k] - cover->half[k], tile_high = cover->centre[k] + cover->half[k];
   double low = (double)INFINITY, high = (double)-INFINITY;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpm_particles *set = layout->member[m].set;
@@ -73,15 +74,16 @@ static void narrow(const mpmi_layout *layout, int64_t block, int32_t k, mpmi_cov
       widen(mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + start[block], start[block + 1] - start[block],
             &low, &high);
   }
-  low -= MPMI_COVER_DRIFT * h;
-  high += MPMI_COVER_DRIFT * h;
-  if (!(low > tile_low)) low = tile_low;
-  if (!(high < tile_high)) high = tile_high;
-  if (!(low < high)) return; /* positions that were spoilt: they are reported where they count */
+  low = low - drift > tile_low ? low - drift : tile_low;
+  high = high + drift < tile_high ? high + drift : tile_high;
+  if (!(low < high))
+    low = tile_low, high = tile_high; /* spoilt positions: they are reported where they count */
   cover->centre[k] = 0.5 * (low + high);
   cover->half[k] = 0.5 * (high - low) * (1.0 - 1e-9); /* never beyond the tile */
-  cover->nodes.low[k] = (uint8_t)first_place(b, block, k, low - 1e-6 * h);
-  cover->nodes.high[k] = (uint8_t)(first_place(b, block, k, high + 1e-6 * h) + b->grid->width);
+  cover->low[k] = low > grid->desc.origin[k] ? low : grid->desc.origin[k];
+  cover->high[k] = high < grid->upper[k] ? high : grid->upper[k];
+  cover->nodes.low[k] = (uint8_t)first_place(b, block, k, low - hair);
+  cover->nodes.high[k] = (uint8_t)(first_place(b, block, k, high + hair) + grid->width);
 }
 
 static void find_cover(mpmi_layout *layout, int64_t block) {
@@ -89,9 +91,14 @@ static void find_cover(mpmi_layout *layout, int64_t block) {
   mpmi_cover *cover = &b->cover[block];
   mpmi_tile_bounds(b, block, cover->centre, cover->half);
   for (int32_t k = 0; k < b->grid->dim; ++k) {
+    if (!b->grid->desc.periodic[k]) {
+      narrow(layout, block, k, cover);
+      continue;
+    }
+    cover->low[k] = (double)-INFINITY;
+    cover->high[k] = (double)INFINITY;
     cover->nodes.low[k] = 0;
     cover->nodes.high[k] = (uint8_t)MPMI_TILE_EDGE(b->grid->dim, b->grid->width);
-    if (!b->grid->desc.periodic[k]) narrow(layout, block, k, cover);
   }
 }
 

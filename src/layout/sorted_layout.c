@@ -30,6 +30,7 @@ static void swap_constraints(mpmi_layout *layout) {
   layout->constraints = layout->next_constraints;
   layout->next_constraints = constraints;
   layout->walls_changed = 0;
+  layout->cover_is_old = 1; /* and with it what is known of nodes that no stencil meets */
   ++layout->version;
 }
 
@@ -100,7 +101,6 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
     return status;
   make_worklists(layout, settings);
   swap_in_next(layout);
-  layout->cover_is_old = 1;
   return MPM_OK;
 }
 

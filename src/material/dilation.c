@@ -47,7 +47,7 @@ MPMI_INLINE void scale(int32_t dim, double *F, int64_t ld, const double *ratio, 
   MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
     const double f = dim == 1   ? ratio[p]
                      : dim == 2 ? sqrt(ratio[p])
-                                : 1.0 + mpmi_lane_expm1((1.0 / 3.0) * mpmi_lane_log(ratio[p]));
+                                : mpmi_lane_exp((1.0 / 3.0) * mpmi_lane_log(ratio[p]));
     for (int32_t r = 0; r < dim; ++r)
       for (int32_t c = 0; c < dim; ++c) F[(3 * r + c) * ld + p] *= f;
   }

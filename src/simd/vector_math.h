@@ -92,14 +92,31 @@ MPMI_INLINE double mpmi_exp_series(double r) {
   return low + w * (middle + w * high);
 }
 
-/* exp(x) - 1 with x = k ln 2 + r: 2^k (exp(r) - 1) + (2^k - 1). k is read off the last bits of the mantissa
- * of 1.5 * 2^52 + k. Not finite from x = 709.4 on. */
-MPMI_INLINE double mpmi_lane_expm1(double x) {
-  double within = x < -80.0 ? -80.0 : x > 710.0 ? 710.0 : x; /* keeps a NaN */
+/* exp(x) = 2^k (1 + rest) with x = k ln 2 + r, rest = exp(r) - 1. k is read off the last bits of the mantissa
+ * of 1.5 * 2^52 + k. Not finite from x = 709.4 on; a lesser x than the
+ * lowest is taken for that. */
+typedef struct mpmi_power {
+  double two_to_k, rest;
+} mpmi_power;
+
+MPMI_INLINE mpmi_power mpmi_split_power(double x, double lowest) {
+  double within = x < lowest ? lowest : x > 710.0 ? 710.0 : x; /* keeps a NaN */
   double shifted = within * MPMI_LOG2_E + MPMI_ROUNDING_SHIFT, k = shifted - MPMI_ROUNDING_SHIFT;
-  double power = mpmi_from_bits((mpmi_bits_of(shifted) + UINT64_C(1023)) << 52);
   double r = (within - k * MPMI_LN2_HIGH) - k * MPMI_LN2_LOW;
-  return power * (r + r * r * mpmi_exp_series(r)) + (power - 1.0);
+  return (mpmi_power){mpmi_from_bits((mpmi_bits_of(shifted) + UINT64_C(1023)) << 52),
+                      r + r * r * mpmi_exp_series(r)};
+}
+
+/* exp(x) for x >= -700. */
+MPMI_INLINE double mpmi_lane_exp(double x) {
+  mpmi_power p = mpmi_split_power(x, -700.0);
+  return p.two_to_k + p.two_to_k * p.rest;
+}
+
+/* exp(x) - 1. */
+MPMI_INLINE double mpmi_lane_expm1(double x) {
+  mpmi_power p = mpmi_split_power(x, -80.0);
+  return p.two_to_k * p.rest + (p.two_to_k - 1.0);
 }
 
 #endif

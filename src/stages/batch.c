@@ -55,7 +55,7 @@ static void bind_set(mpmi_batch *b, int32_t m) {
                             .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
                             .tile = b->scratch->tile,
                             .ld = ld,
-                            .v = b->v_bar,
+                            .v = b->pass->plain || b->pass->moves ? b->v_bar : NULL,
                             .dv = b->dv};
   for (int32_t e = 0; e < 9; ++e) {
     b->gather.L[e] = b->pass->plain ? NULL : b->law.L + e * ld;

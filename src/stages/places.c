@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-/* Where the particles of a block may be along an axis: the bounds of motion.c. */
+/* Where the particles of a block may be along an axis; on periodic ones their image that is near counts. */
 typedef struct reach {
-  double centre, half, period, inverse_period;
+  double centre, half, period, inverse_period, low, high;
 } reach;
 
 static reach reach_of(const mpmi_blocks *blocks, int64_t block, int32_t k) {
@@ -16,25 +16,29 @@ static reach reach_of(const mpmi_blocks *blocks, int64_t block, int32_t k) {
   return (reach){.centre = cover->centre[k],
                  .half = cover->half[k],
                  .period = length,
-                 .inverse_period = length > 0.0 ? 1.0 / length : 0.0};
+                 .inverse_period = length > 0.0 ? 1.0 / length : 0.0,
+                 .low = cover->low[k],
+                 .high = cover->high[k]};
+}
+
+static mpmi_mask are_near(mpmi_lanes x, const reach *of) {
+  if (!(of->period > 0.0)) return (x >= of->low) & (x <= of->high);
+  mpmi_lanes away = x - of->centre;
+  away -= of->period * mpmi_lanes_round(away * of->inverse_period);
+  return mpmi_lanes_abs(away) <= of->half;
 }
 
 /* Nothing but a host that writes through a view for reading can bring a particle there, where its stencil
  * would meet nodes that nobody looks after, or lie beyond the tile's memory. */
 static int32_t any_astray(const double *x, const reach *of, int64_t n) {
   mpmi_mask near = ~(mpmi_mask){0};
-  for (int64_t p = 0; p < n; p += MPMI_LANES) {
-    mpmi_lanes away = mpmi_lanes_load(x + p) - of->centre;
-    if (of->period > 0.0) away -= of->period * mpmi_lanes_round(away * of->inverse_period);
-    near &= mpmi_lanes_abs(away) <= of->half;
-  }
+  for (int64_t p = 0; p < n; p += MPMI_LANES) near &= are_near(mpmi_lanes_load(x + p), of);
   return mpmi_lanes_any(~near, 1) != 0;
 }
 
 static int32_t is_astray(double x, const reach *of) {
-  double away = x - of->centre;
-  if (of->period > 0.0) away -= of->period * mpmi_round(away * of->inverse_period);
-  return !(fabs(away) <= of->half);
+  const mpmi_lanes zero = {0.0};
+  return mpmi_lanes_any(~are_near(zero + x, of), 1) != 0;
 }
 
 int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m) {

@@ -12,7 +12,7 @@
 mpm_status mpmi_forces_stage(mpmi_step *step, double t);
 
 /* ---- places.c ---------------------------------------------------------------------------------------- */
-/* Whether all particles of set m in a block have their stencils in its tile; if not, one is noted as the
+/* Whether all particles of set m in a block are within its cover; if not, one is noted as the
  * failure of the task. Only a host that writes to what it was lent for reading can bring them elsewhere. */
 int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m);
 /* The same of all blocks and sets, for a step under way in which the host could read positions. */

@@ -42,7 +42,7 @@ static int32_t reads_gradient(const mpmi_batch *b) {
 static void bind_gradient(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const int32_t reads = reads_gradient(b), matrix = is_matrix(b->form);
-  for (int32_t e = 0; e < 9 && !reads; ++e) b->gather.L[e] = NULL;
+  for (int32_t e = 0; e < 9 && (!reads || finds_only_C(b)); ++e) b->gather.L[e] = NULL;
   b->keeps = MPMI_KEEPS_NOTHING;
   if (!b->set->field[MPMI_L].present) return;
   if (!(mpmi_is_affine(settings) ? b->pass->moves : b->pass->deforms)) return;

@@ -23,7 +23,7 @@ static int32_t written_by_step(int32_t field) {
 }
 
 /* Makes holes of particles that went through an open wall. The hole stays where the particle was before the
- * step, inside its tile. */
+ * step, inside the cover of its block. */
 static void remove_outside(mpm_stepper *s, mpm_particles *set) {
   const mpm_grid *grid = s->grid;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);

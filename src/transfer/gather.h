@@ -17,10 +17,10 @@ enum {
   MPMI_GATHER_FORMS
 };
 
-/* A batch of particles and what becomes of what is gathered for them. Rows are stored as [components][ld], at
- * 0 for the first particle of the batch, for the components that the grid has: velocities and their changes
- * where v is not NULL, L, full 3x3, where it has rows, and C. What `move` and `deform`
- * make of them, where they are not NULL, is made while they are in registers. */
+/* A batch of particles, and what becomes of what is gathered for them. `move` and `deform` work on it while
+ * it is in registers, where they are not NULL. Rows are stored for those that read them later, of the
+ * components that the grid has and from the first particle of the batch on: v and dv as [3][ld] unless v is
+ * NULL, L and C as full 3x3 by rows of their own, L unless it has none. */
 typedef struct mpmi_gather {
   mpmi_axis axis[3];
   mpmi_weights_fn weights;

@@ -208,10 +208,9 @@ static void deforming_clear(deforming *d, int32_t dim, dice *toss) {
 }
 
 static uint32_t run_kernel(deforming *d, const mpmi_deformation *kernels, int32_t dim) {
-  const double *F[9];
-  for (int32_t e = 0; e < 9; ++e) F[e] = d->now[e];
-  kernels->deform[MPMI_F_DILATES][dim](&d->job, ITEMS);
-  return kernels->volume[dim](F, d->volume0, d->volume, ITEMS);
+  d->job.initial_volume = d->volume0;
+  d->job.volume = d->volume;
+  return kernels->deform[MPMI_F_DILATES][dim](&d->job, ITEMS);
 }
 
 START_TEST(kernel) {
