@@ -189,16 +189,9 @@ static void sort_double_copies(mpm_particles *set, const uint32_t *source, int64
   }
 }
 
-/* Finds a place for the holes of a block: that of a particle, so that they reach no further, or else any
- * inside both the block and the grid. */
-static void hole_position(const mpm_particles *set, const mpmi_blocks *blocks, int64_t b, int64_t particle,
-                          double *x) {
-  const mpm_grid *grid = set->grid;
+/* Finds a place inside both the block and the grid. */
+static void hole_position(const mpm_grid *grid, const mpmi_blocks *blocks, int64_t b, double *x) {
   for (int32_t k = 0; k < grid->dim; ++k) {
-    if (particle >= 0) {
-      x[k] = mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + particle];
-      continue;
-    }
     x[k] =
         grid->desc.origin[k] + grid->desc.spacing[k] * (((double)blocks->coord[b][k] + 0.5) * blocks->edge);
     if (x[k] > grid->upper[k]) x[k] = grid->upper[k];
@@ -217,7 +210,7 @@ void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_s
     while (begin > to->start[b] && sorting->source[begin - 1] == NONE) --begin;
     if (begin == end) continue;
     double position[3];
-    hole_position(set, blocks, b, begin > to->start[b] ? begin - 1 : -1, position);
+    hole_position(set->grid, blocks, b, position);
     mpmi_fill_holes(set, 0, begin, end, position);
   }
   set->slots = slots;
