@@ -93,8 +93,7 @@ MPMI_INLINE double mpmi_exp_series(double r) {
 }
 
 /* exp(x) = 2^k (1 + rest) with x = k ln 2 + r, rest = exp(r) - 1. k is read off the last bits of the mantissa
- * of 1.5 * 2^52 + k. Not finite from x = 709.4 on; a lesser x than the
- * lowest is taken for that. */
+ * of 1.5 * 2^52 + k. Not finite from x = 709.4 on; a lesser x than the lowest is taken for that. */
 typedef struct mpmi_power {
   double two_to_k, rest;
 } mpmi_power;
