@@ -33,8 +33,8 @@ static uint64_t morton(const int32_t *coord, int32_t dim) {
   return key;
 }
 
-static uint64_t hash(uint64_t key) {
-  key *= 0x9e3779b97f4a7c15u;
+static uint64_t hash(uint64_t key, int32_t body) {
+  key = (key + ((uint64_t)body << 52)) * 0x9e3779b97f4a7c15u;
   return key ^ (key >> 29);
 }
 
@@ -52,7 +52,7 @@ void mpmi_blocks_init(mpmi_blocks *b, const mpm_grid *grid) {
 
 /* This lists every array of the structure with its size per block, so that allocation, release and growth
  * are one loop each. */
-enum { ARRAYS = 9 };
+enum { ARRAYS = 11 };
 typedef struct block_array {
   void **at;
   size_t size;
@@ -62,11 +62,13 @@ static void arrays_of(mpmi_blocks *b, block_array *a) {
       {(void **)&b->key, sizeof *b->key},
       {(void **)&b->cover, sizeof *b->cover},
       {(void **)&b->reached, sizeof *b->reached},
+      {(void **)&b->body, sizeof *b->body},
       {(void **)&b->coord, sizeof *b->coord},
       {(void **)&b->neighbour, sizeof *b->neighbour},
       {(void **)&b->order, sizeof *b->order},
       {(void **)&b->order_scratch, sizeof *b->order_scratch},
       {(void **)&b->key_scratch, sizeof *b->key_scratch},
+      {(void **)&b->body_scratch, sizeof *b->body_scratch},
       {(void **)&b->coord_scratch, sizeof *b->coord_scratch},
   };
   memcpy(a, list, sizeof list);
@@ -86,25 +88,25 @@ void mpmi_blocks_free(mpmi_blocks *b) {
   b->capacity = b->table_size = b->count = 0;
 }
 
-static void table_put(mpmi_blocks *b, uint64_t key, int32_t block) {
-  const uint64_t mask = (uint64_t)b->table_size - 1;
-  uint64_t at = hash(key) & mask;
+static void table_put(mpmi_blocks *b, int32_t block) {
+  const uint64_t key = b->key[block], mask = (uint64_t)b->table_size - 1;
+  uint64_t at = hash(key, b->body[block]) & mask;
   while (b->table_block[at] >= 0) at = (at + 1) & mask;
   b->table_key[at] = key;
   b->table_block[at] = block;
 }
 
-static int32_t table_get(const mpmi_blocks *b, uint64_t key) {
+static int32_t table_get(const mpmi_blocks *b, int32_t body, uint64_t key) {
   if (!b->table_size) return MPMI_NO_BLOCK;
   const uint64_t mask = (uint64_t)b->table_size - 1;
-  for (uint64_t at = hash(key) & mask; b->table_block[at] >= 0; at = (at + 1) & mask)
-    if (b->table_key[at] == key) return b->table_block[at];
+  for (uint64_t at = hash(key, body) & mask; b->table_block[at] >= 0; at = (at + 1) & mask)
+    if (b->table_key[at] == key && b->body[b->table_block[at]] == body) return b->table_block[at];
   return MPMI_NO_BLOCK;
 }
 
 static void table_fill(mpmi_blocks *b) {
   for (int64_t i = 0; i < b->table_size; ++i) b->table_block[i] = MPMI_NO_BLOCK;
-  for (int64_t i = 0; i < b->count; ++i) table_put(b, b->key[i], (int32_t)i);
+  for (int64_t i = 0; i < b->count; ++i) table_put(b, (int32_t)i);
 }
 
 void mpmi_blocks_clear(mpmi_blocks *b) {
@@ -147,10 +149,10 @@ static mpm_status grow(mpmi_blocks *b) {
   return MPM_OK;
 }
 
-mpm_status mpmi_blocks_insert(mpmi_blocks *b, const int32_t *coord, int32_t *block) {
+mpm_status mpmi_blocks_insert(mpmi_blocks *b, int32_t body, const int32_t *coord, int32_t *block) {
   const int32_t dim = b->grid->dim;
   const uint64_t key = morton(coord, dim);
-  *block = table_get(b, key);
+  *block = table_get(b, body, key);
   if (*block >= 0) return MPM_OK;
   if (b->count == b->capacity) {
     mpm_status status = grow(b);
@@ -159,14 +161,15 @@ mpm_status mpmi_blocks_insert(mpmi_blocks *b, const int32_t *coord, int32_t *blo
   *block = (int32_t)b->count;
   for (int32_t k = 0; k < 3; ++k) b->coord[b->count][k] = k < dim ? coord[k] : 0;
   b->key[b->count] = key;
+  b->body[b->count] = body;
   ++b->count;
-  table_put(b, key, *block);
+  table_put(b, *block);
   return MPM_OK;
 }
 
 /* Finds a block, or returns MPMI_NO_BLOCK. */
-static int32_t find_block(const mpmi_blocks *b, const int32_t *coord) {
-  return table_get(b, morton(coord, b->grid->dim));
+static int32_t find_block(const mpmi_blocks *b, int32_t body, const int32_t *coord) {
+  return table_get(b, body, morton(coord, b->grid->dim));
 }
 
 static int64_t floor_div(int64_t a, int64_t b) {
@@ -206,10 +209,38 @@ static mpm_status insert_originals(mpmi_blocks *b, int64_t of) {
         coord[0] = choice[0][i];
         if (grid->dim > 1) coord[1] = choice[1][j];
         if (grid->dim > 2) coord[2] = choice[2][l];
-        mpm_status status = mpmi_blocks_insert(b, coord, &unused);
+        mpm_status status = mpmi_blocks_insert(b, b->body[of], coord, &unused);
         if (status) return status;
       }
   return MPM_OK;
+}
+
+/* Puts blocks at one place in the order of their bodies: place[i] is the block that is i-th by place. */
+static void order_bodies(const mpmi_blocks *b, uint32_t *place) {
+  for (int64_t i = 1; i < b->count; ++i) {
+    const uint32_t block = place[i];
+    int64_t at = i;
+    while (at > 0 && memcmp(b->coord[place[at - 1]], b->coord[block], sizeof *b->coord) == 0 &&
+           b->body[place[at - 1]] > b->body[block]) {
+      place[at] = place[at - 1];
+      --at;
+    }
+    place[at] = block;
+  }
+}
+
+static void sort_blocks(mpmi_blocks *b) {
+  mpmi_radix_sort(b->count, b->key, b->order_scratch, b->key_scratch, b->order);
+  order_bodies(b, b->order_scratch);
+  memcpy(b->coord_scratch, b->coord, (size_t)b->count * sizeof *b->coord);
+  memcpy(b->body_scratch, b->body, (size_t)b->count * sizeof *b->body);
+  for (int64_t i = 0; i < b->count; ++i) {
+    const uint32_t from = b->order_scratch[i];
+    memcpy(b->coord[i], b->coord_scratch[from], sizeof *b->coord);
+    b->body[i] = b->body_scratch[from];
+    b->order[from] = (uint32_t)i;
+    b->key[i] = morton(b->coord[i], b->grid->dim);
+  }
 }
 
 mpm_status mpmi_blocks_order(mpmi_blocks *b) {
@@ -220,25 +251,19 @@ mpm_status mpmi_blocks_order(mpmi_blocks *b) {
   for (int64_t i = 0; i < with_particles; ++i)
     for (int32_t n = 0; n < b->neighbours; ++n) {
       neighbour_coord(b->coord[i], n, dim, coord);
-      if ((status = mpmi_blocks_insert(b, coord, &unused))) return status;
+      if ((status = mpmi_blocks_insert(b, b->body[i], coord, &unused))) return status;
     }
   const int64_t with_halo = b->count;
   for (int64_t i = 0; i < with_halo; ++i)
     if ((status = insert_originals(b, i))) return status;
 
   if (!b->count) return MPM_OK;
-  mpmi_radix_sort(b->count, b->key, b->order_scratch, b->key_scratch, b->order);
-  memcpy(b->coord_scratch, b->coord, (size_t)b->count * sizeof *b->coord);
-  for (int64_t i = 0; i < b->count; ++i) {
-    memcpy(b->coord[i], b->coord_scratch[b->order_scratch[i]], sizeof *b->coord);
-    b->order[b->order_scratch[i]] = (uint32_t)i;
-    b->key[i] = morton(b->coord[i], dim);
-  }
+  sort_blocks(b);
   table_fill(b);
   for (int64_t i = 0; i < b->count; ++i)
     for (int32_t n = 0; n < b->neighbours; ++n) {
       neighbour_coord(b->coord[i], n, dim, coord);
-      b->neighbour[i][n] = find_block(b, coord);
+      b->neighbour[i][n] = find_block(b, b->body[i], coord);
     }
   return MPM_OK;
 }
@@ -261,14 +286,14 @@ void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stri
   }
 }
 
-int64_t mpmi_blocks_node(const mpmi_blocks *b, const int64_t *index) {
+int64_t mpmi_blocks_node(const mpmi_blocks *b, int32_t body, const int64_t *index) {
   int32_t coord[3];
   int64_t place = 0;
   for (int32_t k = 0; k < b->grid->dim; ++k) {
     coord[k] = (int32_t)floor_div(index[k], b->edge);
     place = place * b->edge + (index[k] - (int64_t)coord[k] * b->edge);
   }
-  const int32_t block = find_block(b, coord);
+  const int32_t block = find_block(b, body, coord);
   return block < 0 ? -1 : (int64_t)block * b->nodes + place;
 }
 

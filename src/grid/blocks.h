@@ -1,7 +1,11 @@
 /* Nodal storage is sparse: blocks of nodes exist where there is material, in Morton order. A block holds
  * edge^dim nodes (x slowest). A particle belongs to the block of its anchor (grid.h). Blocks with
  * particles have all 3^dim neighbours, so that a tile (block and halo) can be read and written without a
- * search. */
+ * search.
+ *
+ * Each body has blocks of its own, and so nodes and velocities of its own. Where two bodies are near each
+ * other, blocks of both stand side by side in the list. Neighbours and periodic images are of the same
+ * body. */
 #ifndef MPMI_BLOCKS_H
 #define MPMI_BLOCKS_H
 
@@ -32,7 +36,8 @@ typedef struct mpmi_blocks {
   mpm_context *context;
   int32_t edge, nodes, neighbours; /* nodes = edge^dim, neighbours = 3^dim */
   int64_t count, capacity;
-  uint64_t *key;                             /* [count] Morton key, ascending once ordered */
+  uint64_t *key;                             /* [count] Morton key; (key, body) ascends once ordered */
+  int32_t *body;                             /* [count] */
   int32_t (*coord)[3];                       /* [count] */
   int32_t (*neighbour)[MPMI_MAX_NEIGHBOURS]; /* [count], lowest corner first; MPMI_NO_BLOCK where absent */
   /* Of blocks with particles, and of any block the box of its nodes that stencils meet; both are found before
@@ -41,8 +46,9 @@ typedef struct mpmi_blocks {
   mpmi_node_box *reached;          /* [count] */
   uint32_t *order, *order_scratch; /* [capacity] order: provisional -> final; else scratch */
   uint64_t *key_scratch;
+  int32_t *body_scratch;
   int32_t (*coord_scratch)[3];
-  int64_t table_size; /* hash table from key to block, a power of two */
+  int64_t table_size; /* hash table from key and body to block, a power of two */
   uint64_t *table_key;
   int32_t *table_block;
 } mpmi_blocks;
@@ -50,9 +56,9 @@ typedef struct mpmi_blocks {
 void mpmi_blocks_init(mpmi_blocks *blocks, const mpm_grid *grid);
 void mpmi_blocks_free(mpmi_blocks *blocks);
 void mpmi_blocks_clear(mpmi_blocks *blocks);
-/* Finds or adds a block by its coordinates; *block is provisional until mpmi_blocks_order(). */
-mpm_status mpmi_blocks_insert(mpmi_blocks *blocks, const int32_t *coord, int32_t *block);
-/* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and links
+/* Finds or adds a block of a body by its coordinates; *block is provisional until mpmi_blocks_order(). */
+mpm_status mpmi_blocks_insert(mpmi_blocks *blocks, int32_t body, const int32_t *coord, int32_t *block);
+/* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and body and links
  * neighbours. Afterwards order[provisional] is the final index of a block. */
 mpm_status mpmi_blocks_order(mpmi_blocks *blocks);
 /* Returns the anchor along an axis of a position that lies inside the grid. */
@@ -60,8 +66,9 @@ int32_t mpmi_anchor(const mpm_grid *grid, int32_t axis, double x);
 /* Finds the block of a position that lies inside the grid. */
 void mpmi_blocks_of_position(const mpm_grid *grid, const double *x, int64_t stride, int32_t edge,
                              int32_t *coord);
-/* Returns the slot (block * nodes + place) of a node by its index, or -1 when its block does not exist. */
-int64_t mpmi_blocks_node(const mpmi_blocks *blocks, const int64_t *index);
+/* Returns the slot (block * nodes + place) of a body's node by its index, or -1 when its block does not
+ * exist. */
+int64_t mpmi_blocks_node(const mpmi_blocks *blocks, int32_t body, const int64_t *index);
 /* Returns the slot of the node `at` steps from the first node of a block, in it or in a neighbour, or -1
  * when that block does not exist. */
 int64_t mpmi_blocks_near(const mpmi_blocks *blocks, int64_t block, const int32_t *at);

@@ -107,6 +107,10 @@ typedef struct walk {
   int64_t ties, followers, contacts;
 } walk;
 
+static int32_t body_of(const walk *w, int64_t slot) {
+  return w->blocks->body[slot / w->blocks->nodes];
+}
+
 static int32_t tie_at(walk *w, int64_t master) {
   int32_t *of = w->out->tie_of + master;
   if (*of < 0) {
@@ -147,7 +151,7 @@ static void visit_linear(walk *w, int64_t slot, const int64_t *index) {
     if (w->fill) hold_on_planes(w, &w->out->tie[at], index);
     return;
   }
-  const int64_t master = mpmi_blocks_node(w->blocks, role.master);
+  const int64_t master = mpmi_blocks_node(w->blocks, body_of(w, slot), role.master);
   if (master < 0) return; /* nothing can reach this ghost, because its mirror has no storage */
   const int32_t at = tie_at(w, master);
   w->out->tie_of[slot] = at;
@@ -180,7 +184,7 @@ static void visit_contact(walk *w, int32_t face, int64_t slot, const int64_t *in
   if (is_ghost) {
     int64_t mirror[3] = {index[0], index[1], index[2]};
     mirror[axis] = 2 * plane - ghost;
-    contact.partner = mpmi_blocks_node(w->blocks, mirror);
+    contact.partner = mpmi_blocks_node(w->blocks, body_of(w, slot), mirror);
     if (contact.partner < 0) return;
   }
   if (w->fill) w->out->contact[w->contacts] = contact;

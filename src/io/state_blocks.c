@@ -54,7 +54,7 @@ static mpm_status read_coordinates(mpmi_archive *a, mpmi_blocks *blocks, int64_t
         return mpmi_archive_damaged(a, "a block lies outside the grid");
       coord[k] = (int32_t)saved[k];
     }
-    if ((status = mpmi_blocks_insert(blocks, coord, &block))) return status;
+    if ((status = mpmi_blocks_insert(blocks, 0, coord, &block))) return status;
     if (block != i) return mpmi_archive_damaged(a, "a block stands there twice");
   }
   if ((status = mpmi_blocks_order(blocks))) return status;

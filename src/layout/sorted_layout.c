@@ -171,7 +171,8 @@ static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings) 
   mpm_status status;
   mpmi_blocks_clear(&layout->next_blocks);
   for (int32_t m = 0; m < layout->member_count; ++m)
-    if ((status = mpmi_sort_blocks(layout->member[m].set, &layout->next_blocks))) return status;
+    if ((status = mpmi_sort_blocks(layout->member[m].set, layout->member[m].body, &layout->next_blocks)))
+      return status;
   if ((status = mpmi_blocks_order(&layout->next_blocks))) return status;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpmi_member *member = &layout->member[m];

@@ -10,6 +10,7 @@
 /* A set of particles in a stepper: where its particles lie, and what acts on them. */
 typedef struct mpmi_member {
   mpm_particles *set;
+  int32_t body;               /* sets of one body share its nodes */
   mpmi_arrangement now, next; /* slots by block, of the last sort and of the one being made */
   mpmi_sorting sorting;
   double *force; /* [dim][ld] external force beside gravity, or NULL */

@@ -35,7 +35,7 @@ static uint32_t *blocks_of_slots(const mpm_particles *set) {
   return set->field[MPMI_POSITION].data[1];
 }
 
-mpm_status mpmi_sort_blocks(mpm_particles *set, mpmi_blocks *blocks) {
+mpm_status mpmi_sort_blocks(mpm_particles *set, int32_t body, mpmi_blocks *blocks) {
   uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
@@ -46,7 +46,7 @@ mpm_status mpmi_sort_blocks(mpm_particles *set, mpmi_blocks *blocks) {
     if (id[s] < 0) continue;
     mpmi_blocks_of_position(set->grid, x + s, set->ld, blocks->edge, coord);
     if (block < 0 || memcmp(coord, last, sizeof coord) != 0) {
-      if ((status = mpmi_blocks_insert(blocks, coord, &block))) return status;
+      if ((status = mpmi_blocks_insert(blocks, body, coord, &block))) return status;
       memcpy(last, coord, sizeof coord);
     }
     of_slot[s] = (uint32_t)block;

@@ -24,10 +24,10 @@ void mpmi_sorting_free(mpmi_sorting *sorting, mpm_context *context);
 mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *arrangement, int64_t blocks);
 
 /* A sort has three parts. The first two may fail and change nothing that matters; the third cannot fail.
- * mpmi_sort_blocks() inserts the blocks of the set's particles. mpmi_sort_plan() writes the new
- * arrangement into `to` and makes room in the set. mpmi_sort_apply() moves the particles and clears the
- * set's ORDER and PLACE flags. */
-mpm_status mpmi_sort_blocks(mpm_particles *set, mpmi_blocks *blocks);
+ * mpmi_sort_blocks() inserts the blocks of the set's particles, which are those of a body.
+ * mpmi_sort_plan() writes the new arrangement into `to` and makes room in the set. mpmi_sort_apply() moves
+ * the particles and clears the set's ORDER and PLACE flags. */
+mpm_status mpmi_sort_blocks(mpm_particles *set, int32_t body, mpmi_blocks *blocks);
 mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                           mpmi_arrangement *to);
 void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_sorting *sorting,

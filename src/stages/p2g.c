@@ -25,12 +25,11 @@ static void list_streams(const p2g_job *job, mpmi_scatter *scatter, int32_t dim)
     add_streams(streams, &scatter->points.x[k], 1);
     add_streams(streams, &scatter->v[k], 1);
     add_streams(streams, &scatter->force[k], 1);
+    for (int32_t r = 0; r <= k && job->projection->forces; ++r)
+      add_streams(streams, &scatter->stress[mpmi_sym_index(k, r)], 1);
   }
   add_streams(streams, &scatter->mass, 1);
-  if (job->projection->forces) {
-    add_streams(streams, &scatter->volume, 1);
-    add_streams(streams, scatter->stress, mpmi_stress_components(dim));
-  }
+  if (job->projection->forces) add_streams(streams, &scatter->volume, 1);
   add_streams(streams, scatter->affine, 9);
 }
 

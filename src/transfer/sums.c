@@ -67,7 +67,9 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpm
 
 MPMI_INLINE uint32_t sum_batch(int32_t dim, const mpmi_sums_job *job, int64_t n, mpmi_sums *sums) {
   const mpmi_lanes zero = {0.0};
-  mpmi_tally t = {zero, zero, zero, zero, zero, zero, {zero, zero, zero}, {zero, zero, zero}};
+  mpmi_tally t;
+  t.kinetic = t.strain = t.work = t.rate = t.viscosity = t.bad = zero;
+  for (int32_t k = 0; k < 3; ++k) t.momentum[k] = t.angular[k] = zero;
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_group(dim, job, s, &t);
   sums->kinetic += 0.5 * mpmi_lanes_sum(t.kinetic);
   sums->strain += mpmi_lanes_sum(t.strain);
