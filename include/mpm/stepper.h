@@ -112,6 +112,8 @@ typedef struct mpm_step_info {
   double dissipation;
   double momentum[3];         /**< sum m v */
   double angular_momentum[3]; /**< sum m x cross v; in 2-D about z, in [2]; in 1-D 0 */
+  /** Sum of external_work over all committed steps since the stepper was made or its time was set. */
+  double external_work_total;
 } mpm_step_info;
 
 /**
@@ -226,7 +228,9 @@ MPM_API mpm_status mpm_stepper_remove(mpm_stepper *stepper, mpm_particles *parti
  * of mpm_stepper_create(), and MPM_E_STATE during a staged step. */
 MPM_API mpm_status mpm_stepper_configure(mpm_stepper *stepper, const mpm_stepper_desc *desc);
 
-/** Sets the time and the number of steps counted. MPM_E_ARG: t is not finite, or step < 0. */
+/** Sets the time and the number of steps counted. Sums over steps (mpm_stepper_wall_impulse(),
+ * mpm_stepper_particles_impulse(), external_work_total) start anew from 0. MPM_E_ARG: t is not finite, or
+ * step < 0. */
 MPM_API mpm_status mpm_stepper_set_time(mpm_stepper *stepper, double t, int64_t step);
 
 /**
@@ -408,6 +412,19 @@ MPM_API mpm_status mpm_stepper_wall_reaction(const mpm_stepper *stepper, int32_t
  * MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_STATE before the first step. */
 MPM_API mpm_status mpm_stepper_particles_reaction(const mpm_stepper *stepper, const mpm_particles *prescribed,
                                                   double *force);
+
+/** Gives the impulse[dim] of the wall at a face on the material, mass * length/time: the sum of
+ * mpm_stepper_wall_reaction() times the time over which it acted, over all committed steps since the stepper
+ * was made or mpm_stepper_set_time() was called; 0 before the first. A host that uses mpm_advance() measures
+ * forces by it: the difference of two calls over the time between them is the mean force. Steps that fail
+ * add nothing, and a saved state holds it. MPM_E_ARG: there is no such face. */
+MPM_API mpm_status mpm_stepper_wall_impulse(const mpm_stepper *stepper, int32_t face, double *impulse);
+
+/** Gives the impulse[dim] of the prescribed particles of a set on the material, the sum of
+ * mpm_stepper_particles_reaction() in the same way. It is 0 when a set is added, and forgotten when it is
+ * removed. MPM_E_NOT_FOUND: the set is not in this stepper. */
+MPM_API mpm_status mpm_stepper_particles_impulse(const mpm_stepper *stepper, const mpm_particles *prescribed,
+                                                 double *impulse);
 
 #ifdef __cplusplus
 }

@@ -154,6 +154,18 @@ public:
     check(mpm_stepper_particles_reaction(core().handle, set.handle(), force.data()));
     return force;
   }
+  /** The impulse of a wall on the material over all steps: see mpm_stepper_wall_impulse(). */
+  std::array<double, 3> wall_impulse(int32_t face) const {
+    std::array<double, 3> impulse{};
+    check(mpm_stepper_wall_impulse(core().handle, face, impulse.data()));
+    return impulse;
+  }
+  /** The impulse of a set's prescribed particles over all steps: see mpm_stepper_particles_impulse(). */
+  std::array<double, 3> particles_impulse(const particles &set) const {
+    std::array<double, 3> impulse{};
+    check(mpm_stepper_particles_impulse(core().handle, set.handle(), impulse.data()));
+    return impulse;
+  }
 
   /** The saved state: see mpm_state_save(). */
   std::vector<unsigned char> save() const {

@@ -21,9 +21,12 @@
 #include "particles/builtin_fields.h"
 #include "stepper/stepper.h"
 
+#include <stddef.h>
+
 #define MPMI_STATE_MAGIC      "MPMSTATE"
 #define MPMI_STATE_BYTE_ORDER 0x01020304u
-enum { MPMI_STATE_FORMAT = 2 };
+/* Format 2 is that of 0.1.0: it has no sums over steps, and the info is as long as it was then. */
+enum { MPMI_STATE_FORMAT = 3, MPMI_STATE_FIRST_FORMAT = 2 };
 
 typedef struct mpmi_state_header {
   char magic[8];
@@ -39,12 +42,16 @@ typedef struct mpmi_state_numbers {
   double impulse_by_face[6][3];
   mpmi_sums sums;
   mpm_step_info last;
+  mpmi_totals totals; /* from format 3 on */
 } mpmi_state_numbers;
-_Static_assert(sizeof(mpmi_state_numbers) == 11 * 8 + 18 * 8 + 11 * 8 + 192, "part of the format");
+_Static_assert(offsetof(mpmi_state_numbers, last) == 11 * 8 + 18 * 8 + 11 * 8, "part of the format");
+_Static_assert(offsetof(mpm_step_info, external_work_total) == 192, "part of the format");
+_Static_assert(sizeof(mpmi_totals) == 19 * 8, "part of the format");
 
 typedef struct mpmi_state_set_numbers {
   int64_t count, slots, next_id, dirty;
   double mass_max, reaction[3];
+  double impulse_total[3]; /* from format 3 on */
 } mpmi_state_set_numbers;
 
 typedef struct mpmi_state_field {
@@ -79,8 +86,9 @@ void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_bloc
 /* Brings what follows from the fields up to date, and refuses a state that cannot be saved now
  * (state_save.c). */
 mpm_status mpmi_state_settle(const mpm_stepper *s);
-/* Numbers of the time loop, and one component of a field. */
-void mpmi_state_archive_numbers(mpmi_archive *a, mpmi_state_numbers *n);
+/* Numbers of the time loop and of a set as a format has them, and one component of a field. */
+void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_numbers *n);
+void mpmi_state_archive_set_numbers(mpmi_archive *a, uint32_t format, mpmi_state_set_numbers *n);
 void mpmi_state_archive_row(mpmi_archive *a, int32_t type, void *row, int64_t bytes);
 /* A header from the machine's byte order to that of states, or back. */
 mpmi_state_header mpmi_state_turn_header(mpmi_state_header header);

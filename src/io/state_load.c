@@ -7,6 +7,7 @@
 /* A state that is being loaded. */
 typedef struct loading {
   mpmi_archive archive;
+  uint32_t format;
   mpm_stepper *stepper;
   mpmi_state_numbers numbers;
   mpmi_state_set *set; /* [sets] */
@@ -21,9 +22,9 @@ mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header
   if (header->byte_order != MPMI_STATE_BYTE_ORDER)
     return mpmi_fail(context, MPM_E_FORMAT,
                      "the state has the byte order of a machine on which 0.1.0 saved it, or is damaged");
-  if (header->format != MPMI_STATE_FORMAT)
-    return mpmi_fail(context, MPM_E_FORMAT, "the state has format %u: this library knows format %d",
-                     (unsigned)header->format, (int)MPMI_STATE_FORMAT);
+  if (header->format < MPMI_STATE_FIRST_FORMAT || header->format > MPMI_STATE_FORMAT)
+    return mpmi_fail(context, MPM_E_FORMAT, "the state has format %u: this library knows formats %d to %d",
+                     (unsigned)header->format, (int)MPMI_STATE_FIRST_FORMAT, (int)MPMI_STATE_FORMAT);
   if (header->bytes != bytes)
     return mpmi_fail(context, MPM_E_FORMAT, "the state has %lld bytes, of which there are %lld",
                      (long long)header->bytes, (long long)bytes);
@@ -75,7 +76,7 @@ static int32_t is_count(int64_t n) {
 static void read_numbers(loading *l) {
   mpmi_archive *a = &l->archive;
   mpmi_state_numbers *n = &l->numbers;
-  mpmi_state_archive_numbers(a, n);
+  mpmi_state_archive_numbers(a, l->format, n);
   if (a->status) return;
   if (!isfinite(n->t) || !is_count(n->step) || !is_count(n->resorts) || !is_count(n->removed) ||
       n->blocks < -1 || !is_magnitude(n->previous_dt) || !is_magnitude(n->controller_dt) ||
@@ -85,7 +86,7 @@ static void read_numbers(loading *l) {
                 flags = MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION | (n->blocks < 0 ? unsorted : 0);
   for (int32_t m = 0; m < l->stepper->layout.member_count && !a->status; ++m) {
     mpmi_state_set_numbers *of = &l->set[m].numbers;
-    mpmi_archive_words(a, of, sizeof *of);
+    mpmi_state_archive_set_numbers(a, l->format, of);
     if (a->status) return;
     if (of->slots < 0 || of->slots > MPMI_MAX_SLOTS || of->slots % MPMI_PAD || of->count < 0 ||
         of->count > of->slots || of->next_id < 0 || of->dirty & ~flags || !is_magnitude(of->mass_max))
@@ -180,7 +181,9 @@ static void take_over(loading *l) {
   const mpmi_state_numbers *n = &l->numbers;
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     exchange_storage(s->layout.member[m].set, &l->set[m].fresh);
-    memcpy(s->layout.member[m].reaction, l->set[m].numbers.reaction, sizeof s->layout.member[m].reaction);
+    mpmi_member *member = &s->layout.member[m];
+    memcpy(member->reaction, l->set[m].numbers.reaction, sizeof member->reaction);
+    memcpy(member->impulse_total, l->set[m].numbers.impulse_total, sizeof member->impulse_total);
   }
   if (n->blocks < 0) mpmi_blocks_clear(&s->layout.blocks);
   s->nodes.shown = -1;
@@ -197,6 +200,7 @@ static void take_over(loading *l) {
   s->history.has_reactions = n->has_reactions != 0;
   memcpy(s->history.impulse_by_face, n->impulse_by_face, sizeof n->impulse_by_face);
   s->history.last = n->last;
+  s->history.totals = n->totals;
 }
 
 mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
@@ -209,7 +213,7 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   if (status) return status;
   const unsigned char *body = (const unsigned char *)buffer + sizeof header;
   if ((status = check_checksum(s->context, &header, body))) return status;
-  loading l = {.stepper = s};
+  loading l = {.stepper = s, .format = header.format};
   const size_t set_bytes = mpmi_bytes(s->layout.member_count, sizeof *l.set);
   l.set = mpmi_alloc_zeroed(s->context, set_bytes);
   if (!l.set) return MPM_E_NOMEM;

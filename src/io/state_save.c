@@ -33,11 +33,23 @@ mpm_status mpmi_state_settle(const mpm_stepper *s) {
 }
 
 /* The info is all words but for what begins it. */
-void mpmi_state_archive_numbers(mpmi_archive *a, mpmi_state_numbers *n) {
-  enum { BEFORE = offsetof(mpmi_state_numbers, last), HALVES = offsetof(mpm_step_info, step) };
+void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_numbers *n) {
+  enum {
+    BEFORE = offsetof(mpmi_state_numbers, last),
+    HALVES = offsetof(mpm_step_info, step),
+    INFO_2 = offsetof(mpm_step_info, external_work_total),
+    INFO_3 = INFO_2 + sizeof n->last.external_work_total
+  };
+  const int64_t info = format == 2 ? INFO_2 : INFO_3;
   mpmi_archive_words(a, n, BEFORE);
   mpmi_archive_halves(a, &n->last, HALVES);
-  mpmi_archive_words(a, &n->last.step, (int64_t)sizeof n->last - HALVES);
+  mpmi_archive_words(a, &n->last.step, info - HALVES);
+  if (format > 2) mpmi_archive_words(a, &n->totals, sizeof n->totals);
+}
+
+void mpmi_state_archive_set_numbers(mpmi_archive *a, uint32_t format, mpmi_state_set_numbers *n) {
+  enum { NUMBERS_2 = offsetof(mpmi_state_set_numbers, impulse_total) };
+  mpmi_archive_words(a, n, format == 2 ? NUMBERS_2 : (int64_t)sizeof *n);
 }
 
 void mpmi_state_archive_row(mpmi_archive *a, int32_t type, void *row, int64_t bytes) {
@@ -68,15 +80,20 @@ static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
                           .has_reactions = s->history.has_reactions != 0,
                           .blocks = mpmi_state_is_sorted(s) ? mpmi_state_count_blocks(s) : -1,
                           .sums = s->history.sums,
-                          .last = s->history.last};
+                          .last = s->history.last,
+                          .totals = s->history.totals};
   memcpy(n.impulse_by_face, s->history.impulse_by_face, sizeof n.impulse_by_face);
-  mpmi_state_archive_numbers(a, &n);
+  mpmi_state_archive_numbers(a, MPMI_STATE_FORMAT, &n);
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     const mpm_particles *set = s->layout.member[m].set;
-    const double *reaction = s->layout.member[m].reaction;
-    mpmi_state_set_numbers of_set = {set->count, set->slots,    set->next_id,
-                                     set->dirty, set->mass_max, {reaction[0], reaction[1], reaction[2]}};
-    mpmi_archive_words(a, &of_set, sizeof of_set);
+    mpmi_state_set_numbers of_set = {.count = set->count,
+                                     .slots = set->slots,
+                                     .next_id = set->next_id,
+                                     .dirty = set->dirty,
+                                     .mass_max = set->mass_max};
+    memcpy(of_set.reaction, s->layout.member[m].reaction, sizeof of_set.reaction);
+    memcpy(of_set.impulse_total, s->layout.member[m].impulse_total, sizeof of_set.impulse_total);
+    mpmi_state_archive_set_numbers(a, MPMI_STATE_FORMAT, &of_set);
   }
 }
 

@@ -60,6 +60,17 @@ static void swap_copies(const mpm_stepper *s, mpm_particles *set, int32_t left_t
   if (!mpmi_is_implicit(&s->settings) || s->settings.desc.quasi_static) set->dirty |= MPMI_DIRTY_ACCELERATION;
 }
 
+static void add_to_totals(mpm_stepper *s, double work) {
+  mpmi_totals *totals = &s->history.totals;
+  totals->external_work += work;
+  for (int32_t face = 0; face < 6; ++face)
+    for (int32_t c = 0; c < 3; ++c) totals->impulse_by_face[face][c] += s->step.impulse_by_face[face][c];
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    mpmi_member *member = &s->layout.member[m];
+    for (int32_t c = 0; c < 3; ++c) member->impulse_total[c] += member->reaction[c];
+  }
+}
+
 static void commit_history(mpm_stepper *s) {
   mpmi_step *step = &s->step;
   mpmi_history *history = &s->history;
@@ -73,6 +84,7 @@ static void commit_history(mpm_stepper *s) {
   step->info.external_work = work;
   step->info.dissipation = before.kinetic + before.strain + work - after->kinetic - after->strain;
   memcpy(history->impulse_by_face, step->impulse_by_face, sizeof history->impulse_by_face);
+  add_to_totals(s, work);
   history->reaction_dt = step->velocity_dt;
   history->previous_dt = s->settings.desc.staggered ? step->dt : 0.0;
   history->has_reactions = 1;

@@ -158,5 +158,8 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   if (step < 0) return mpmi_fail(s->context, MPM_E_ARG, "step is %lld: it must be >= 0", (long long)step);
   s->history.t = t;
   s->history.step = step;
+  s->history.totals = (mpmi_totals){.external_work = 0.0};
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    for (int32_t c = 0; c < 3; ++c) s->layout.member[m].impulse_total[c] = 0.0;
   return MPM_OK;
 }

@@ -15,6 +15,7 @@ void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_in
   info->removed = s->history.removed;
   info->resorts = s->layout.sorts;
   info->t = s->history.t;
+  info->external_work_total = s->history.totals.external_work;
   info->kinetic_energy = sums->kinetic;
   info->strain_energy = sums->strain;
   for (int32_t k = 0; k < 3; ++k) {
@@ -75,13 +76,18 @@ mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
 }
 
 /* ---- reactions ---------------------------------------------------------------------------------------- */
+static mpm_status check_face(const mpm_stepper *s, int32_t face) {
+  if (face >= 0 && face < 2 * s->grid->dim) return MPM_OK;
+  return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
+                   (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
+}
+
 mpm_status mpm_stepper_wall_reaction(const mpm_stepper *s, int32_t face, double *force) {
   MPMI_ENTER(s, MPMI_STEPPER);
   const mpmi_history *history = &s->history;
   if (!force) return mpmi_fail(s->context, MPM_E_ARG, "force is NULL");
-  if (face < 0 || face >= 2 * s->grid->dim)
-    return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
-                     (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
+  const mpm_status status = check_face(s, face);
+  if (status) return status;
   if (!history->has_reactions) return mpmi_fail(s->context, MPM_E_STATE, "no step has been made yet");
   for (int32_t k = 0; k < s->grid->dim; ++k)
     force[k] = history->impulse_by_face[face][k] / history->reaction_dt;
@@ -98,6 +104,26 @@ mpm_status mpm_stepper_particles_reaction(const mpm_stepper *s, const mpm_partic
   if (!s->history.has_reactions) return mpmi_fail(s->context, MPM_E_STATE, "no step has been made yet");
   for (int32_t c = 0; c < s->grid->dim; ++c)
     force[c] = s->layout.member[m].reaction[c] / s->history.reaction_dt;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_wall_impulse(const mpm_stepper *s, int32_t face, double *impulse) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!impulse) return mpmi_fail(s->context, MPM_E_ARG, "impulse is NULL");
+  const mpm_status status = check_face(s, face);
+  if (status) return status;
+  for (int32_t c = 0; c < s->grid->dim; ++c) impulse[c] = s->history.totals.impulse_by_face[face][c];
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_particles_impulse(const mpm_stepper *s, const mpm_particles *prescribed,
+                                         double *impulse) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  int32_t m;
+  if (!impulse) return mpmi_fail(s->context, MPM_E_ARG, "impulse is NULL");
+  const mpm_status status = mpmi_members_find(&s->layout, &s->settings, prescribed, &m);
+  if (status) return status;
+  for (int32_t c = 0; c < s->grid->dim; ++c) impulse[c] = s->layout.member[m].impulse_total[c];
   return MPM_OK;
 }
 

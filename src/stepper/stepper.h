@@ -12,6 +12,12 @@
 #include "layout/nodes.h"
 #include "layout/step.h"
 
+/* Sums over all committed steps since the stepper was made or its time was set; those of a set's prescribed
+ * particles are the member's. */
+typedef struct mpmi_totals {
+  double impulse_by_face[6][3], external_work;
+} mpmi_totals;
+
 /* What one step leaves to the next, and to reports: the state beside that of the particles. */
 typedef struct mpmi_history {
   double t;
@@ -23,6 +29,7 @@ typedef struct mpmi_history {
   mpm_step_info last; /* info of the last step */
   int32_t has_reactions;
   double impulse_by_face[6][3], reaction_dt; /* on the walls in the last step */
+  mpmi_totals totals;
 } mpmi_history;
 
 enum { MPMI_NODE_VIEWS = 8 };

@@ -4,7 +4,8 @@
 # - against headers in which every versioned struct has got one more field, with today's library, as long as the host
 #   leaves the field at zero; a descriptor in which it is set is refused with a sentence;
 # - against all of these with a library that knows the field.
-# That library is built of today's kernels, which hold no such struct, and of all other files anew.
+# That library is built of today's kernels, which hold no such struct, and of all other files anew. And a state that 0.1.0
+# saved (tests/abi/old_state.c save) is loaded as it was and goes on; state.txt is what 0.1.0 says of it.
 set -euo pipefail
 BUILD=${BUILD:-build} CC=${CC:-cc}
 scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/releases
@@ -26,6 +27,8 @@ flags="-std=c11 -Wall -Wextra -Wpedantic -Werror -g"
 host() { # name, folder of headers, flags
   # shellcheck disable=SC2086
   "$CC" $flags "-I$2" ${3:-} tests/abi/host.c -o "$scratch/$1" -L"$BUILD" -lmpm -lm
+  # shellcheck disable=SC2086
+  "$CC" $flags "-I$2" tests/abi/old_state.c -o "$scratch/$1-state" -L"$BUILD" -lmpm -lm
 }
 host released tests/abi/0.1.0/include
 host today include
@@ -44,6 +47,11 @@ same() { # library, host
 }
 same present today
 same present newer
+old_state() { # library, host
+  LD_LIBRARY_PATH=$scratch/$1 "$scratch/$2-state" load tests/abi/0.1.0/state.mpm > "$scratch/out" || fail "$2 host, $1 library: $(tail -n 1 "$scratch/out")"
+  diff tests/abi/0.1.0/state.txt "$scratch/out" || fail "$2 host, $1 library: '<' is what 0.1.0 says of its state"
+}
+for host in released today newer; do old_state present $host; done
 
 refused=0
 for name in $structs; do
@@ -79,14 +87,14 @@ objects=()
     echo "$source $object"
   done
 } > "$scratch/library/sources"
-# The assertion that the format of saved states, which holds an mpm_step_info, is raised with it does not matter here.
 # shellcheck disable=SC2016
-xargs -P "$(nproc)" -L 1 sh -c '"$0" -std=c11 -O0 "-D_Static_assert(holds, text)=" -ffp-contract=off -fPIC -fvisibility=hidden -I"$1" -Isrc -c "$2" -o "$3"' \
+xargs -P "$(nproc)" -L 1 sh -c '"$0" -std=c11 -O0 -ffp-contract=off -fPIC -fvisibility=hidden -I"$1" -Isrc -c "$2" -o "$3"' \
   "$CC" "$scratch/grown" < "$scratch/library/sources"
 "$CC" -shared -Wl,-soname,libmpm.so.0 -Wl,--version-script=src/libmpm.map "${objects[@]}" -lm -lpthread \
   -o "$scratch/library/libmpm.so.0"
 same library released
 same library newer
+old_state library released
 for name in $structs; do
   case $name in *_desc) ;; *) continue ;; esac
   run library newer "$name" > "$scratch/out" || fail "$name: the library refuses a field that it knows"

@@ -68,6 +68,10 @@ void walls() {
   // The momentum that gravity gives and the floor leaves.
   CHECK(force[1] > 0.0 && force[2] == 0.0 && std::abs((force[1] - 5000.0) * 1e-4 - info.momentum[1]) < 1e-9);
   CHECK(refused(MPM_E_ARG, "face", [&] { stepper.wall_reaction(9); }));
+  CHECK(stepper.step(1e-4, info));
+  const auto impulse = stepper.wall_impulse(MPM_Y_MIN);
+  CHECK(impulse[1] > force[1] * 1e-4 && std::abs(impulse[1] - 5000.0 * info.t - info.momentum[1]) < 1e-9);
+  CHECK(refused(MPM_E_ARG, "face", [&] { stepper.wall_impulse(9); }));
 }
 
 void parts() {

@@ -472,6 +472,8 @@ static void look(cloud *c) {
   }
   fuzz_status(c->context, mpm_stepper_wall_reaction(c->stepper, fuzz_below(&c->in, 6), force));
   fuzz_status(c->context, mpm_stepper_particles_reaction(c->stepper, c->set[0], force));
+  fuzz_status(c->context, mpm_stepper_wall_impulse(c->stepper, fuzz_below(&c->in, 6), force));
+  fuzz_status(c->context, mpm_stepper_particles_impulse(c->stepper, c->set[c->sets - 1], force));
 }
 
 static void act(cloud *c) {

@@ -75,8 +75,8 @@ static uint64_t hash_of(const world *w) {
 }
 
 /* A header that belongs to the contents: without it few bytes would get past the checksum. */
-static void seal(uint8_t *state, int64_t bytes) {
-  mpmi_state_header header = {MPMI_STATE_MAGIC, MPMI_STATE_BYTE_ORDER, MPMI_STATE_FORMAT, bytes, 0};
+static void seal(uint8_t *state, uint32_t format, int64_t bytes) {
+  mpmi_state_header header = {MPMI_STATE_MAGIC, MPMI_STATE_BYTE_ORDER, format, bytes, 0};
   mpmi_checksum sum;
   if (bytes < (int64_t)sizeof header || bytes % 8) return;
   memcpy(header.magic, MPMI_STATE_MAGIC, sizeof header.magic);
@@ -84,6 +84,27 @@ static void seal(uint8_t *state, int64_t bytes) {
   mpmi_checksum_add(&sum, state + sizeof header, bytes - (int64_t)sizeof header);
   header.checksum = mpmi_checksum_end(&sum);
   memcpy(state, &header, sizeof header);
+}
+
+/* Takes out of a state what format 2 does not have: the sums over steps. */
+static int64_t as_format_2(const world *w, uint8_t *state, int64_t bytes) {
+  enum {
+    INFO = offsetof(mpmi_state_numbers, last) + offsetof(mpm_step_info, external_work_total),
+    TOTALS = 8 + sizeof(mpmi_totals),
+    SET = offsetof(mpmi_state_set_numbers, impulse_total),
+    OF_SET = sizeof(mpmi_state_set_numbers) - SET
+  };
+  mpmi_archive setup;
+  mpmi_archive_begin(&setup, w->context, MPMI_MEASURE);
+  mpmi_state_setup(&setup, w->stepper, NULL);
+  int64_t at = (int64_t)sizeof(mpmi_state_header) + setup.at + INFO;
+  for (int32_t m = 0; m <= 2; ++m) {
+    const int64_t cut = m ? OF_SET : TOTALS;
+    bytes -= cut;
+    memmove(state + at, state + at + cut, (size_t)(bytes - at));
+    at += SET;
+  }
+  return bytes;
 }
 
 /* A change at a place of the state, or far from it: a word, a byte, a copy of other words, words put in or
@@ -160,17 +181,18 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   fuzz_input in = {data, data + size};
   world w;
   open_world(&w, fuzz_below(&in, SETUPS));
-  const uint32_t how = fuzz_byte(&in);
+  const uint32_t how = fuzz_byte(&in), format = how / 8 % 4 ? MPMI_STATE_FORMAT : 2;
   int64_t bytes;
   if (how % 8 < 6) { /* a state of this setup, changed */
     MUST(!mpm_state_size(w.stepper, &bytes) && bytes < ROOM);
     MUST(!mpm_state_save(w.stepper, state, bytes));
+    if (format == 2) bytes = as_format_2(&w, state, bytes);
     while (fuzz_left(&in)) bytes = change(&in, state, bytes);
   } else { /* the input itself */
     bytes = in.end - in.at;
     memcpy(state, in.at, (size_t)bytes);
   }
-  if (how % 8 != 5 && how % 8 != 6) seal(state, bytes);
+  if (how % 8 != 5 && how % 8 != 6) seal(state, format, bytes);
   uint8_t *exact = malloc((size_t)bytes + 1); /* reading past the end is noticed */
   memcpy(exact, state, (size_t)bytes);
   const uint64_t before = hash_of(&w);

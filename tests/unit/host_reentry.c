@@ -83,6 +83,8 @@ static void try_all(int32_t kind) {
       mpm_stepper_residuals(stepper, 1, value, &count),
       mpm_stepper_wall_reaction(stepper, 0, value),
       mpm_stepper_particles_reaction(stepper, w.set[1], value),
+      mpm_stepper_wall_impulse(stepper, 0, value),
+      mpm_stepper_particles_impulse(stepper, w.set[1], value),
       mpm_grid_map(stepper, 0, "mass", MPM_READ, &view),
       mpm_state_size(stepper, &bytes),
       mpm_state_save(stepper, byte, sizeof byte),

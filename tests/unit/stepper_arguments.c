@@ -45,6 +45,7 @@ START_TEST(no_stepper) {
     ck_assert_int_eq(mpm_stepper_info(s, &info), MPM_E_ARG);
     ck_assert_int_eq(mpm_grid_map(s, 0, "mass", MPM_READ, &view), MPM_E_ARG);
     ck_assert_int_eq(mpm_stepper_wall_reaction(s, 0, value), MPM_E_ARG);
+    ck_assert_int_eq(mpm_stepper_wall_impulse(s, 0, value), MPM_E_ARG);
   }
 }
 END_TEST

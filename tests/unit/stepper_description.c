@@ -206,6 +206,7 @@ START_TEST(bare_calls) {
   ck_assert_int_eq(mpm_stepper_set_linear_solver(NULL, NULL, NULL), MPM_E_ARG);
   ck_assert_int_eq(mpm_stepper_residuals(NULL, 0, NULL, &count), MPM_E_ARG);
   ck_assert_int_eq(mpm_stepper_particles_reaction(NULL, r.set[0], value), MPM_E_ARG);
+  ck_assert_int_eq(mpm_stepper_particles_impulse(NULL, r.set[0], value), MPM_E_ARG);
   ck_assert_int_eq(mpm_operator_get_info(NULL, NULL), MPM_E_ARG);
   ck_assert_int_eq(mpm_operator_apply(NULL, value, value), MPM_E_ARG);
   ck_assert_int_eq(mpm_operator_csr(NULL, NULL, NULL, NULL), MPM_E_ARG);

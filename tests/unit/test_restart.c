@@ -30,11 +30,17 @@ static void same_reactions(world *a, world *b) {
     ck_ok(a, mpm_stepper_wall_reaction(a->stepper, face, x));
     ck_ok(b, mpm_stepper_wall_reaction(b->stepper, face, y));
     for (int32_t k = 0; k < a->dim; ++k) ck_assert_double_eq(x[k], y[k]);
+    ck_ok(a, mpm_stepper_wall_impulse(a->stepper, face, x));
+    ck_ok(b, mpm_stepper_wall_impulse(b->stepper, face, y));
+    for (int32_t k = 0; k < a->dim; ++k) ck_assert_double_eq(x[k], y[k]);
   }
   for (int32_t m = 0; m < 2; ++m) {
     double x[3], y[3];
     ck_ok(a, mpm_stepper_particles_reaction(a->stepper, a->set[m], x));
     ck_ok(b, mpm_stepper_particles_reaction(b->stepper, b->set[m], y));
+    for (int32_t k = 0; k < a->dim; ++k) ck_assert_double_eq(x[k], y[k]);
+    ck_ok(a, mpm_stepper_particles_impulse(a->stepper, a->set[m], x));
+    ck_ok(b, mpm_stepper_particles_impulse(b->stepper, b->set[m], y));
     for (int32_t k = 0; k < a->dim; ++k) ck_assert_double_eq(x[k], y[k]);
   }
 }
