@@ -114,6 +114,10 @@ typedef struct mpm_step_info {
   double angular_momentum[3]; /**< sum m x cross v; in 2-D about z, in [2]; in 1-D 0 */
   /** Sum of external_work over all committed steps since the stepper was made or its time was set. */
   double external_work_total;
+  /** sum m tr(C D C^T) / 2: kinetic energy of the matrices that APIC, APIC_MLS, TPIC, TFLIP and AFLIP carry
+   * (C is "velocity_gradient", D the second moments of the basis), whose angular momentum is part of
+   * angular_momentum. It is not part of kinetic_energy. 0 with other transfers. */
+  double affine_kinetic_energy;
 } mpm_step_info;
 
 /**

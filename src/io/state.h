@@ -25,7 +25,8 @@
 
 #define MPMI_STATE_MAGIC      "MPMSTATE"
 #define MPMI_STATE_BYTE_ORDER 0x01020304u
-/* Format 2 is that of 0.1.0: it has no sums over steps, and the info is as long as it was then. */
+/* Format 2 is that of 0.1.0: it has no sums over steps and no energy of the affine part, and the info is as
+ * long as it was then. */
 enum { MPMI_STATE_FORMAT = 3, MPMI_STATE_FIRST_FORMAT = 2 };
 
 typedef struct mpmi_state_header {
@@ -44,7 +45,7 @@ typedef struct mpmi_state_numbers {
   mpm_step_info last;
   mpmi_totals totals; /* from format 3 on */
 } mpmi_state_numbers;
-_Static_assert(offsetof(mpmi_state_numbers, last) == 11 * 8 + 18 * 8 + 11 * 8, "part of the format");
+_Static_assert(offsetof(mpmi_state_numbers, last) == 11 * 8 + 18 * 8 + 12 * 8, "part of the format");
 _Static_assert(offsetof(mpm_step_info, external_work_total) == 192, "part of the format");
 _Static_assert(sizeof(mpmi_totals) == 19 * 8, "part of the format");
 

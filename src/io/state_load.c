@@ -195,7 +195,8 @@ static void take_over(loading *l) {
   s->history.step = n->step;
   s->layout.sorts = n->resorts;
   s->history.removed = n->removed;
-  s->history.has_sums = n->energies_valid != 0;
+  /* of format 2 the energy of the affine part is not known */
+  s->history.has_sums = n->energies_valid && (l->format > 2 || !mpmi_is_affine(&s->settings));
   s->history.sums = n->sums;
   s->history.has_reactions = n->has_reactions != 0;
   memcpy(s->history.impulse_by_face, n->impulse_by_face, sizeof n->impulse_by_face);

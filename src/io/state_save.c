@@ -35,13 +35,14 @@ mpm_status mpmi_state_settle(const mpm_stepper *s) {
 /* The info is all words but for what begins it. */
 void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_numbers *n) {
   enum {
-    BEFORE = offsetof(mpmi_state_numbers, last),
+    SUMS_2 = offsetof(mpmi_state_numbers, sums) + offsetof(mpmi_sums, affine),
+    SUMS_3 = offsetof(mpmi_state_numbers, last),
     HALVES = offsetof(mpm_step_info, step),
     INFO_2 = offsetof(mpm_step_info, external_work_total),
-    INFO_3 = INFO_2 + sizeof n->last.external_work_total
+    INFO_3 = INFO_2 + sizeof n->last.external_work_total + sizeof n->last.affine_kinetic_energy
   };
   const int64_t info = format == 2 ? INFO_2 : INFO_3;
-  mpmi_archive_words(a, n, BEFORE);
+  mpmi_archive_words(a, n, format == 2 ? SUMS_2 : SUMS_3);
   mpmi_archive_halves(a, &n->last, HALVES);
   mpmi_archive_words(a, &n->last.step, info - HALVES);
   if (format > 2) mpmi_archive_words(a, &n->totals, sizeof n->totals);

@@ -17,6 +17,7 @@ void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_in
   info->t = s->history.t;
   info->external_work_total = s->history.totals.external_work;
   info->kinetic_energy = sums->kinetic;
+  info->affine_kinetic_energy = sums->affine;
   info->strain_energy = sums->strain;
   for (int32_t k = 0; k < 3; ++k) {
     info->momentum[k] = sums->momentum[k];

@@ -4,10 +4,11 @@
 #include "transfer/sums.h"
 
 typedef struct mpmi_tally {
-  mpmi_lanes kinetic, strain, work, rate, viscosity, bad, momentum[3], angular[3];
+  mpmi_lanes kinetic, affine, strain, work, rate, viscosity, bad, momentum[3], angular[3];
 } mpmi_tally;
 
-/* Returns the second moment D of the basis at a particle, for the affine part of the angular momentum. */
+/* Returns the second moment D of the basis at a particle, for the affine part of energy and angular
+ * momentum. */
 MPMI_INLINE mpmi_lanes second_moment(const mpmi_sums_job *job, int32_t axis, int64_t s) {
   if (job->moment[axis]) return mpmi_lanes_load(job->moment[axis] + s);
   const mpmi_lanes zero = {0.0};
@@ -24,6 +25,18 @@ MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, i
   if (!job->affine[0]) return;
   t->angular[r] += m * (second_moment(job, a, s) * mpmi_lanes_load(job->affine[3 * b + a] + s) -
                         second_moment(job, b, s) * mpmi_lanes_load(job->affine[3 * a + b] + s));
+}
+
+/* Adds twice the energy of the affine part, m sum_k D_k |C e_k|^2. */
+MPMI_INLINE void add_affine(int32_t dim, const mpmi_sums_job *job, int64_t s, mpmi_lanes m, mpmi_tally *t) {
+  for (int32_t k = 0; job->affine[0] && k < dim; ++k) {
+    mpmi_lanes square = {0.0};
+    for (int32_t r = 0; r < dim; ++r) {
+      const mpmi_lanes c = mpmi_lanes_load(job->affine[3 * r + k] + s);
+      square += c * c;
+    }
+    t->affine += m * second_moment(job, k, s) * square;
+  }
 }
 
 /* Adds the work of gravity and of the other external forces along axis k. */
@@ -63,15 +76,17 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpm
     add_work(job, s, k, m, x[k], t);
   }
   for (int32_t r = 0; r < 3; ++r) add_angular(dim, job, s, r, m, x, v, t);
+  add_affine(dim, job, s, m, t);
 }
 
 MPMI_INLINE uint32_t sum_batch(int32_t dim, const mpmi_sums_job *job, int64_t n, mpmi_sums *sums) {
   const mpmi_lanes zero = {0.0};
   mpmi_tally t;
-  t.kinetic = t.strain = t.work = t.rate = t.viscosity = t.bad = zero;
+  t.kinetic = t.affine = t.strain = t.work = t.rate = t.viscosity = t.bad = zero;
   for (int32_t k = 0; k < 3; ++k) t.momentum[k] = t.angular[k] = zero;
   for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) add_group(dim, job, s, &t);
   sums->kinetic += 0.5 * mpmi_lanes_sum(t.kinetic);
+  sums->affine += 0.5 * mpmi_lanes_sum(t.affine);
   sums->strain += mpmi_lanes_sum(t.strain);
   sums->work += mpmi_lanes_sum(t.work);
   for (int32_t k = 0; k < 3; ++k) {

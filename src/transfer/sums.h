@@ -10,15 +10,16 @@ enum { MPMI_SUMS_LAW = 1, MPMI_SUMS_MOTION = 2 };
 typedef struct mpmi_sums {
   double kinetic, strain, work, rate, viscous_rate;
   double momentum[3], angular[3];
+  double affine; /* kinetic energy of the matrices that transfers carry */
 } mpmi_sums;
 typedef struct mpmi_sums_job {
   int32_t what;
   int64_t ld; /* of wave_speed ... */
   const double *x[3], *v[3], *mass, *initial_volume;
   const double *wave_speed, *kinematic_viscosity, *energy; /* [ld] of the batch */
-  const double *affine[9];                                 /* C of APIC for the angular momentum, or NULL */
-  const double *force[3];                                  /* external force beside gravity, or NULL */
-  const double *x_old[3]; /* for the work over the step; NULL: there is none */
+  const double *affine[9]; /* C of APIC for its energy and angular momentum, or NULL */
+  const double *force[3];  /* external force beside gravity, or NULL */
+  const double *x_old[3];  /* for the work over the step; NULL: there is none */
   double gravity[3], period[3], inverse_period[3];
   double inverse_spacing[3], viscous_factor; /* 2 dim / h_min^2 */
   const double *moment[3];   /* sum w (x_i - x)^2 of each particle along each axis, or NULL: */

@@ -86,24 +86,26 @@ static void seal(uint8_t *state, uint32_t format, int64_t bytes) {
   memcpy(state, &header, sizeof header);
 }
 
-/* Takes out of a state what format 2 does not have: the sums over steps. */
+/* Takes words out of a state, and returns the bytes that are left. */
+static int64_t cut(uint8_t *state, int64_t at, int64_t words, int64_t bytes) {
+  memmove(state + at, state + at + 8 * words, (size_t)(bytes - at - 8 * words));
+  return bytes - 8 * words;
+}
+
+/* Takes out of a state what format 2 does not have: the energy of the affine part and the sums over steps. */
 static int64_t as_format_2(const world *w, uint8_t *state, int64_t bytes) {
   enum {
-    INFO = offsetof(mpmi_state_numbers, last) + offsetof(mpm_step_info, external_work_total),
-    TOTALS = 8 + sizeof(mpmi_totals),
-    SET = offsetof(mpmi_state_set_numbers, impulse_total),
-    OF_SET = sizeof(mpmi_state_set_numbers) - SET
+    SUMS = offsetof(mpmi_state_numbers, sums) + offsetof(mpmi_sums, affine),
+    INFO = offsetof(mpm_step_info, external_work_total),
+    SET = offsetof(mpmi_state_set_numbers, impulse_total)
   };
   mpmi_archive setup;
   mpmi_archive_begin(&setup, w->context, MPMI_MEASURE);
   mpmi_state_setup(&setup, w->stepper, NULL);
-  int64_t at = (int64_t)sizeof(mpmi_state_header) + setup.at + INFO;
-  for (int32_t m = 0; m <= 2; ++m) {
-    const int64_t cut = m ? OF_SET : TOTALS;
-    bytes -= cut;
-    memmove(state + at, state + at + cut, (size_t)(bytes - at));
-    at += SET;
-  }
+  int64_t at = (int64_t)sizeof(mpmi_state_header) + setup.at + SUMS;
+  bytes = cut(state, at, 1, bytes);
+  bytes = cut(state, at += INFO, 2 + (int64_t)(sizeof(mpmi_totals) / 8), bytes);
+  for (int32_t m = 0; m < 2; ++m) bytes = cut(state, at += SET, 3, bytes);
   return bytes;
 }
 

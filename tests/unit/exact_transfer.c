@@ -13,6 +13,24 @@ static void add_orbital(int32_t dim, int64_t n, const double *mass, const double
   }
 }
 
+static double second_moment(int32_t basis, double h, double x) {
+  const double f = x / h - floor(x / h);
+  return h * h * (basis == MPM_LINEAR ? f * (1.0 - f) : 0.25);
+}
+
+/* sum m sum_rk D_k C_rk^2 / 2 */
+static double affine_energy(int32_t basis, double h, int32_t dim, int64_t n, const double *mass,
+                            const double *x, const double *C) {
+  double energy = 0.0;
+  for (int64_t p = 0; p < n; ++p)
+    for (int32_t e = 0; e < dim * dim; ++e) {
+      const int32_t r = e / dim, k = e % dim;
+      const double c = C[(3 * r + k) * n + p];
+      energy += 0.5 * mass[p] * second_moment(basis, h, x[k * n + p]) * c * c;
+    }
+  return energy;
+}
+
 /* sum m (D_a C_ba - D_b C_ab), with the second moments of the basis at x. */
 static void add_affine_part(int32_t basis, double h, int32_t dim, int64_t n, const double *mass,
                             const double *x, const double *C, double *L) {
@@ -20,10 +38,7 @@ static void add_affine_part(int32_t basis, double h, int32_t dim, int64_t n, con
     const int32_t axis[2] = {(r + 1) % 3, (r + 2) % 3};
     for (int64_t p = 0; p < n; ++p) {
       double D[2];
-      for (int32_t i = 0; i < 2; ++i) {
-        const double xi = x[axis[i] * n + p] / h, f = xi - floor(xi);
-        D[i] = h * h * (basis == MPM_LINEAR ? f * (1.0 - f) : 0.25);
-      }
+      for (int32_t i = 0; i < 2; ++i) D[i] = second_moment(basis, h, x[axis[i] * n + p]);
       L[r] +=
           mass[p] * (D[0] * C[(3 * axis[1] + axis[0]) * n + p] - D[1] * C[(3 * axis[0] + axis[1]) * n + p]);
     }
@@ -70,6 +85,9 @@ START_TEST(steps_conserve) {
     add_orbital(dim, CLOUD, mass, x, v, L);
     if (is_affine(how)) add_affine_part(desc.grid.basis, h, dim, CLOUD, mass, x, C, L);
     for (int32_t k = 0; k < 3; ++k) ck_within(how->name, before.angular_momentum[k], L[k], 1e-13 * scale);
+    const double energy = is_affine(how) ? affine_energy(desc.grid.basis, h, dim, CLOUD, mass, x, C) : 0.0;
+    ck_within(how->name, before.affine_kinetic_energy, energy, 1e-12 * energy);
+    ck_assert(!is_affine(how) || energy > 0.0);
 
     ck_ok(&w, mpm_step_begin(w.stepper, dt));
     check_nodes(&w, how->name, gravity, total, before.momentum, scale);
@@ -146,6 +164,9 @@ static double turn(const method *how, int64_t cells, int32_t steps) {
   if (is_affine(how)) ck_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, spin));
   const mpm_step_info start = world_info(&w);
   mpm_step_info now = start;
+  /* in a rigid rotation energy is half of omega times angular momentum, each with its affine part */
+  const double half = 0.5 * omega * start.angular_momentum[2];
+  ck_within(how->name, start.kinetic_energy + start.affine_kinetic_energy, half, 1e-12 * half);
   for (int32_t i = 0; i < steps; ++i) now = world_step(&w, 1.0 / steps);
   const double scale = omega * 0.15 * 0.16 * desc.law.density; /* about sum m |v| */
   for (int32_t k = 0; k < 2; ++k) ck_within(how->name, now.momentum[k], 0.0, 1e-12 * scale * sqrt(steps));

@@ -227,7 +227,7 @@ END_TEST
 
 #define STRUCT mpm_step_info
 START_TEST(layout_of_step_info) {
-  SIZE(200);
+  SIZE(208);
   AT(0, struct_size);
   AT(4, cause);
   AT(8, callback_status);
@@ -252,6 +252,7 @@ START_TEST(layout_of_step_info) {
   AT(144, momentum);
   AT(168, angular_momentum);
   AT(192, external_work_total);
+  AT(200, affine_kinetic_energy);
 }
 END_TEST
 #undef STRUCT
