@@ -3,10 +3,11 @@
  * Saved states and output for ParaView and VTK.
  *
  * A state holds time, step and the controller's dt, the sets in order of mpm_stepper_add() with every field
- * (library order included, so that continuing is bitwise identical), and a description of grid, materials and
- * scheme. Callbacks and walls are not in it: the host sets them as before. Loading needs a stepper that is
- * set up alike: same grid, scheme, number of sets, laws and host fields; the particles are replaced, and the
- * sets may be empty.
+ * (library order included, so that continuing is bitwise identical), the sums over steps, and a description
+ * of grid, materials and scheme. Callbacks and walls are not in it: the host sets them as before. Loading
+ * needs a stepper that is set up alike: same grid, scheme, number of sets, laws and host fields; the
+ * particles are replaced, and the sets may be empty. States of all versions from 0.1.0 on load; in those of
+ * 0.1.0 sums over steps are 0.
  *
  * States and VTK files take the place of the file at their path when they are complete. Until then they are
  * written beside it under the name path.tmp0, or path.tmp1 ... where several are being written, and path

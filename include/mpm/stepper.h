@@ -420,8 +420,9 @@ MPM_API mpm_status mpm_stepper_particles_reaction(const mpm_stepper *stepper, co
 /** Gives the impulse[dim] of the wall at a face on the material, mass * length/time: the sum of
  * mpm_stepper_wall_reaction() times the time over which it acted, over all committed steps since the stepper
  * was made or mpm_stepper_set_time() was called; 0 before the first. A host that uses mpm_advance() measures
- * forces by it: the difference of two calls over the time between them is the mean force. Steps that fail
- * add nothing, and a saved state holds it. MPM_E_ARG: there is no such face. */
+ * forces by it: the difference of two calls over the time between them is the mean force. With MPM_NEWMARK
+ * a step adds dt times the force at its end, and with `staggered` the mean of two dt times its force. Steps
+ * that fail add nothing, and a saved state holds it. MPM_E_ARG: there is no such face. */
 MPM_API mpm_status mpm_stepper_wall_impulse(const mpm_stepper *stepper, int32_t face, double *impulse);
 
 /** Gives the impulse[dim] of the prescribed particles of a set on the material, the sum of

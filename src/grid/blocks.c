@@ -34,7 +34,7 @@ static uint64_t morton(const int32_t *coord, int32_t dim) {
 }
 
 static uint64_t hash(uint64_t key, int32_t body) {
-  key = (key + ((uint64_t)body << 52)) * 0x9e3779b97f4a7c15u;
+  key = (key ^ (uint64_t)body * 0xd6e8feb86659fd93u) * 0x9e3779b97f4a7c15u;
   return key ^ (key >> 29);
 }
 

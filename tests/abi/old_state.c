@@ -74,7 +74,10 @@ int main(int argc, char **argv) {
     OK(mpm_state_load_file(stepper, argv[2]));
   }
   if (show(stepper, set)) return 1;
-  if (strcmp(argv[1], "load") == 0) OK(mpm_step(stepper, 1e-3, NULL));
+  if (strcmp(argv[1], "load") == 0) {
+    OK(mpm_step(stepper, 1e-3, NULL));
+    if (show(stepper, set)) return 1;
+  }
   OK(mpm_stepper_destroy(stepper));
   for (int m = 0; m < 2; ++m) OK(mpm_particles_destroy(set[m]));
   OK(mpm_material_destroy(law));

@@ -72,6 +72,17 @@ void walls() {
   const auto impulse = stepper.wall_impulse(MPM_Y_MIN);
   CHECK(impulse[1] > force[1] * 1e-4 && std::abs(impulse[1] - 5000.0 * info.t - info.momentum[1]) < 1e-9);
   CHECK(refused(MPM_E_ARG, "face", [&] { stepper.wall_impulse(9); }));
+  mpm::particles platen(grid, rubber);
+  platen.fill_box({1.0, 0.5}, {2.0, 1.0}, {2, 2});
+  platen.set_all("prescribed", std::array<uint8_t, 2>{1, 1});
+  platen.set_all("velocity", std::array<double, 2>{0.0, -1.0});
+  stepper.add(platen);
+  CHECK(stepper.step(1e-4, info));
+  double pushed[2] = {0.0, 0.0};
+  CHECK(mpm_stepper_particles_impulse(stepper.handle(), platen.handle(), pushed) == MPM_OK &&
+        pushed[1] < 0.0);
+  CHECK(stepper.particles_impulse(platen)[1] == pushed[1] && stepper.particles_impulse(platen)[2] == 0.0);
+  CHECK(stepper.particles_impulse(set)[1] == 0.0);
 }
 
 void parts() {

@@ -1,8 +1,7 @@
 /* States that were damaged, cut, forged or made up: loaded whole, or refused with a sentence and nothing
  * changed. What was loaded can be stepped, shown and saved again. */
+#include "../unit/old_format.h"
 #include "fuzz.h"
-#include "io/archive.h"
-#include "io/state.h"
 
 typedef struct world {
   fuzz_memory memory;
@@ -76,37 +75,7 @@ static uint64_t hash_of(const world *w) {
 
 /* A header that belongs to the contents: without it few bytes would get past the checksum. */
 static void seal(uint8_t *state, uint32_t format, int64_t bytes) {
-  mpmi_state_header header = {MPMI_STATE_MAGIC, MPMI_STATE_BYTE_ORDER, format, bytes, 0};
-  mpmi_checksum sum;
-  if (bytes < (int64_t)sizeof header || bytes % 8) return;
-  memcpy(header.magic, MPMI_STATE_MAGIC, sizeof header.magic);
-  mpmi_checksum_begin(&sum);
-  mpmi_checksum_add(&sum, state + sizeof header, bytes - (int64_t)sizeof header);
-  header.checksum = mpmi_checksum_end(&sum);
-  memcpy(state, &header, sizeof header);
-}
-
-/* Takes words out of a state, and returns the bytes that are left. */
-static int64_t cut(uint8_t *state, int64_t at, int64_t words, int64_t bytes) {
-  memmove(state + at, state + at + 8 * words, (size_t)(bytes - at - 8 * words));
-  return bytes - 8 * words;
-}
-
-/* Takes out of a state what format 2 does not have: the energy of the affine part and the sums over steps. */
-static int64_t as_format_2(const world *w, uint8_t *state, int64_t bytes) {
-  enum {
-    SUMS = offsetof(mpmi_state_numbers, sums) + offsetof(mpmi_sums, affine),
-    INFO = offsetof(mpm_step_info, external_work_total),
-    SET = offsetof(mpmi_state_set_numbers, impulse_total)
-  };
-  mpmi_archive setup;
-  mpmi_archive_begin(&setup, w->context, MPMI_MEASURE);
-  mpmi_state_setup(&setup, w->stepper, NULL);
-  int64_t at = (int64_t)sizeof(mpmi_state_header) + setup.at + SUMS;
-  bytes = cut(state, at, 1, bytes);
-  bytes = cut(state, at += INFO, 2 + (int64_t)(sizeof(mpmi_totals) / 8), bytes);
-  for (int32_t m = 0; m < 2; ++m) bytes = cut(state, at += SET, 3, bytes);
-  return bytes;
+  if (bytes >= (int64_t)sizeof(mpmi_state_header) && bytes % 8 == 0) seal_state(state, format, bytes);
 }
 
 /* A change at a place of the state, or far from it: a word, a byte, a copy of other words, words put in or
@@ -188,7 +157,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (how % 8 < 6) { /* a state of this setup, changed */
     MUST(!mpm_state_size(w.stepper, &bytes) && bytes < ROOM);
     MUST(!mpm_state_save(w.stepper, state, bytes));
-    if (format == 2) bytes = as_format_2(&w, state, bytes);
+    if (format == 2) bytes = contents_of_format_2(w.stepper, state, bytes);
     while (fuzz_left(&in)) bytes = change(&in, state, bytes);
   } else { /* the input itself */
     bytes = in.end - in.at;

@@ -164,7 +164,7 @@ static double turn(const method *how, int64_t cells, int32_t steps) {
   if (is_affine(how)) ck_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, spin));
   const mpm_step_info start = world_info(&w);
   mpm_step_info now = start;
-  /* in a rigid rotation energy is half of omega times angular momentum, each with its affine part */
+  /* the centre is at rest: energy is half of omega times angular momentum, each with its affine part */
   const double half = 0.5 * omega * start.angular_momentum[2];
   ck_within(how->name, start.kinetic_energy + start.affine_kinetic_energy, half, 1e-12 * half);
   for (int32_t i = 0; i < steps; ++i) now = world_step(&w, 1.0 / steps);

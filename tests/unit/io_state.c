@@ -1,5 +1,6 @@
 /* States in memory: what is loaded is what was saved, and goes on with the same bits. */
 #include "io.h"
+#include "old_format.h"
 
 enum { FIRST_STEPS = 14, MORE_STEPS = 12 };
 
@@ -243,10 +244,48 @@ START_TEST(every_failing_allocation) {
 }
 END_TEST
 
+/* What format 2 does not have is found anew, or begins at 0. */
+START_TEST(states_of_the_first_format) {
+  const io_setup *setup = &setups[_i];
+  world a, b;
+  io_open(&a, setup);
+  io_open(&b, setup);
+  world_steps(&a, 9);
+  world_steps(&b, 3);
+  const mpm_step_info was = world_info(&a);
+  ck_assert_double_ne(was.external_work_total, 0.0);
+  ck_assert_double_ne(world_info(&b).external_work_total, 0.0);
+  saved_state saved = world_save(&a);
+  saved.bytes = contents_of_format_2(a.stepper, saved.data, saved.bytes);
+  seal_state(saved.data, MPMI_STATE_FIRST_FORMAT, saved.bytes);
+  world_load(&b, &saved);
+  ck_assert_uint_eq(world_hash(&b), world_hash(&a));
+  const mpm_step_info now = world_info(&b);
+  ck_assert_double_eq(now.external_work_total, 0.0);
+  for (int32_t face = 0; face < 2 * b.dim; ++face) {
+    double impulse[3];
+    ck_ok(&b, mpm_stepper_wall_impulse(b.stepper, face, impulse));
+    for (int32_t c = 0; c < b.dim; ++c) ck_assert_double_eq(impulse[c], 0.0);
+  }
+  ck_assert((was.affine_kinetic_energy > 0.0) == (setup->transfer != MPM_FLIP));
+  ck_within("affine", now.affine_kinetic_energy, was.affine_kinetic_energy, 1e-13 * was.kinetic_energy);
+  ck_within("kinetic", now.kinetic_energy, was.kinetic_energy, 1e-13 * was.kinetic_energy);
+  for (int32_t i = 0; i < MORE_STEPS; ++i) {
+    world_steps(&a, 1);
+    world_steps(&b, 1);
+    ck_assert_uint_eq(world_hash(&a), world_hash(&b));
+  }
+  free(saved.data);
+  world_close(&a);
+  world_close(&b);
+}
+END_TEST
+
 TCase *io_state_case(void) {
   TCase *tests = tcase_create("states");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, goes_on_with_the_same_bits, 0, SETUPS);
+  tcase_add_loop_test(tests, states_of_the_first_format, 0, SETUPS);
   tcase_add_loop_test(tests, keeps_every_field, 1, 4);
   tcase_add_test(tests, host_fields_in_any_order);
   tcase_add_test(tests, views_and_staged_steps_bar_it);

@@ -45,7 +45,7 @@ START_TEST(sums_of_reactions) {
   const method *how = broad_methods[_i];
   const int32_t implicit = how->scheme == MPM_NEWMARK;
   world w;
-  body_open(&w, &(body_desc){.dim = 2, .method = *how, .led = !implicit});
+  body_open(&w, &(body_desc){.dim = 2, .method = *how, .led = 1});
   totals sum = {.work = 0.0}, none = {.work = 0.0}, now = totals_of(&w);
   same_totals(&now, &none);
   for (int32_t i = 0; i < 6; ++i) {
@@ -66,6 +66,26 @@ START_TEST(sums_of_reactions) {
   add_step(&w, BODY_DT, &sum);
   now = totals_of(&w);
   totals_within(how->name, &now, &sum);
+  world_close(&w);
+}
+END_TEST
+
+/* Staggered steps: forces act from the middle of the last step to the middle of this one. */
+START_TEST(staggered_steps) {
+  method how = methods[_i];
+  how.staggered = 1;
+  world w;
+  body_open(&w, &(body_desc){.dim = 2, .method = how, .led = 1});
+  totals sum = {.work = 0.0};
+  double last = BODY_DT;
+  for (int32_t i = 0; i < 6; ++i) {
+    const double dt = BODY_DT / (double)(1 + i % 3);
+    world_step(&w, dt);
+    add_step(&w, 0.5 * (last + dt), &sum);
+    last = dt;
+  }
+  const totals now = totals_of(&w);
+  totals_within(how.name, &now, &sum);
   world_close(&w);
 }
 END_TEST
@@ -154,6 +174,7 @@ Suite *totals_suite(void) {
   Suite *suite = suite_create("totals");
   TCase *sums = tcase_create("sums"), *state = tcase_create("state");
   tcase_add_loop_test(sums, sums_of_reactions, 0, BROAD);
+  tcase_add_loop_test(sums, staggered_steps, 0, METHODS);
   tcase_add_loop_test(sums, impulse_of_a_floor, 0, METHODS);
   tcase_add_loop_test(state, kept_and_dropped, 0, METHODS);
   tcase_add_test(state, refusals);

@@ -1,0 +1,44 @@
+/* Turns a state that the library has saved into one of format 2, which is that of 0.1.0. */
+#ifndef OLD_FORMAT_H
+#define OLD_FORMAT_H
+
+#include <string.h>
+
+#include "io/state.h"
+
+/* Takes words out, and returns the bytes that are left. */
+static inline int64_t cut_words(uint8_t *state, int64_t at, int64_t words, int64_t bytes) {
+  memmove(state + at, state + at + 8 * words, (size_t)(bytes - at - 8 * words));
+  return bytes - 8 * words;
+}
+
+/* Takes out what format 2 does not have: the energy of the affine part and the sums over steps. */
+static inline int64_t contents_of_format_2(const mpm_stepper *s, uint8_t *state, int64_t bytes) {
+  enum {
+    SUMS = offsetof(mpmi_state_numbers, sums) + offsetof(mpmi_sums, affine),
+    INFO = offsetof(mpm_step_info, external_work_total),
+    SET = offsetof(mpmi_state_set_numbers, impulse_total)
+  };
+  mpmi_archive setup;
+  mpmi_archive_begin(&setup, s->context, MPMI_MEASURE);
+  mpmi_state_setup(&setup, s, NULL);
+  int64_t at = (int64_t)sizeof(mpmi_state_header) + setup.at + SUMS;
+  bytes = cut_words(state, at, 1, bytes);
+  bytes = cut_words(state, at += INFO, 2 + (int64_t)(sizeof(mpmi_totals) / 8), bytes);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) bytes = cut_words(state, at += SET, 3, bytes);
+  return bytes;
+}
+
+/* Writes a header that belongs to the contents. */
+static inline void seal_state(uint8_t *state, uint32_t format, int64_t bytes) {
+  mpmi_state_header header = {MPMI_STATE_MAGIC, MPMI_STATE_BYTE_ORDER, format, bytes, 0};
+  mpmi_checksum sum;
+  memcpy(header.magic, MPMI_STATE_MAGIC, sizeof header.magic);
+  mpmi_checksum_begin(&sum);
+  mpmi_checksum_add(&sum, state + sizeof header, bytes - (int64_t)sizeof header);
+  header.checksum = mpmi_checksum_end(&sum);
+  header = mpmi_state_turn_header(header);
+  memcpy(state, &header, sizeof header);
+}
+
+#endif
