@@ -57,11 +57,40 @@ START_TEST(blocks_of_bodies) {
 }
 END_TEST
 
+/* So many bodies at one place that their entries meet in the hash table. */
+START_TEST(many_bodies) {
+  enum { MANY = 1000 };
+  const int32_t coord[3] = {1, 1, 1};
+  world_desc desc = world_default(2, 4 * MPMI_BLOCK_EDGE(2), 0.5);
+  desc.bare = 1;
+  world w;
+  world_open(&w, &desc);
+  mpmi_blocks blocks;
+  mpmi_blocks_init(&blocks, w.grid);
+  for (int32_t round = 0; round < 2; ++round)
+    for (int32_t i = 0; i < MANY; ++i) {
+      int32_t block;
+      ck_ok(&w, mpmi_blocks_insert(&blocks, MANY - 1 - i, coord, &block));
+      ck_holds(block == i);
+    }
+  ck_ok(&w, mpmi_blocks_order(&blocks));
+  ck_assert_int_eq(blocks.count, 9 * MANY);
+  const int64_t index[3] = {MPMI_BLOCK_EDGE(2), MPMI_BLOCK_EDGE(2), 0};
+  for (int32_t body = 0; body < MANY; ++body) {
+    const int64_t slot = mpmi_blocks_node(&blocks, body, index);
+    ck_holds(slot >= 0 && blocks.body[slot / blocks.nodes] == body);
+    ck_holds(slot / blocks.nodes == blocks.order[MANY - 1 - body]);
+  }
+  mpmi_blocks_free(&blocks);
+  world_close(&w);
+}
+END_TEST
+
 /* ---- steps ---- */
 enum { FIRST = 1, SECOND = 2 };
 
-/* Two cubes that overlap by half and move towards each other, between walls of every kind, or on a periodic
- * axis; or one of them alone. */
+/* Two cubes that overlap by half and move through each other and against walls of every kind, or on a
+ * periodic axis; or one of them alone. */
 static void open_cubes(world *w, const method *how, int32_t dim, int32_t periodic, int32_t which) {
   const double h = 0.25, size = h * (double)(2 * MPMI_BLOCK_EDGE(dim));
   const double low[2] = {0.0, 0.15 * size}, high[2] = {0.3 * size, 0.45 * size};
@@ -81,7 +110,8 @@ static void open_cubes(world *w, const method *how, int32_t dim, int32_t periodi
     mpm_particles *set = w->set[m++];
     const int64_t n = world_fill_cube(w, set, low[i], high[i]);
     double *v = calloc((size_t)(dim * n), sizeof *v);
-    for (int64_t p = 0; p < dim * n; ++p) v[p] = (i ? -3.0 : 3.0) + noise_at((uint64_t)(p + i * dim * n));
+    for (int64_t p = 0; p < dim * n; ++p)
+      v[p] = (p < n && i == 0 ? 3.0 : -3.0) + noise_at((uint64_t)(p + i * dim * n));
     put(w, set, "velocity", dim, v);
     free(v);
   }
@@ -126,6 +156,7 @@ Suite *bodies_suite(void) {
   Suite *suite = suite_create("bodies");
   TCase *blocks = tcase_create("blocks"), *steps = tcase_create("steps");
   tcase_add_loop_test(blocks, blocks_of_bodies, 0, 3);
+  tcase_add_test(blocks, many_bodies);
   tcase_add_loop_test(steps, bodies_as_if_alone, 0, BROAD);
   tcase_set_timeout(steps, 60);
   suite_add_tcase(suite, blocks);
