@@ -75,7 +75,7 @@ MPM_API mpm_status mpm_write_particles(const mpm_particles *particles, const cha
  * that of the points. Memory follows the active nodes; long runs of zeros take no room on storage that knows
  * holes.
  *
- * - MPM_E_NOT_FOUND: there is no such field.
+ * - MPM_E_NOT_FOUND: there is no such field, or no set is in body 0.
  * - MPM_E_STATE: nothing has been stepped yet.
  * - MPM_E_UNSUPPORTED: as in mpm_grid_map().
  * - MPM_E_ARG: a field is named twice, the path ends with the other kind's suffix, or the box has more nodes
@@ -84,6 +84,11 @@ MPM_API mpm_status mpm_write_particles(const mpm_particles *particles, const cha
  */
 MPM_API mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count,
                                   const char *const *fields);
+
+/** Does as mpm_write_grid() for the nodes of one body; that one writes those of body 0. MPM_E_NOT_FOUND: no
+ * set of the stepper is in the body. */
+MPM_API mpm_status mpm_write_body_grid(mpm_stepper *stepper, int32_t body, const char *path, int32_t count,
+                                       const char *const *fields);
 
 /** A time series of output files (.pvd); its file is valid on disk after every append. */
 typedef struct mpm_series mpm_series;

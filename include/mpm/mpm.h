@@ -97,6 +97,7 @@
 
 #include <mpm/types.h>
 
+#include <mpm/contact.h>
 #include <mpm/context.h>
 #include <mpm/grid.h>
 #include <mpm/io.h>

@@ -118,6 +118,11 @@ typedef struct mpm_step_info {
    * (C is "velocity_gradient", D the second moments of the basis), whose angular momentum is part of
    * angular_momentum. It is not part of kinetic_energy. 0 with other transfers. */
   double affine_kinetic_energy;
+  /** Energy that contact between bodies took in the step; see contact.h. */
+  double contact_dissipation;
+  int64_t contact_nodes; /**< nodes at which bodies gave each other an impulse */
+  int32_t body;          /**< velocity field of `node`; 0 where there is none */
+  int32_t reserved;      /**< 0 */
 } mpm_step_info;
 
 /**
@@ -150,7 +155,7 @@ typedef struct mpm_particle_batch {
 typedef struct mpm_node_batch {
   uint32_t struct_size; /**< sizeof(mpm_node_batch) of the library; see mpm.h */
   int32_t dim;          /**< dimension of the grid */
-  int32_t body;         /**< velocity field of the nodes; 0 for now */
+  int32_t body;         /**< velocity field of the nodes; see mpm_stepper_set_body() */
   int32_t reserved;     /**< 0 */
   int64_t n;            /**< number of nodes */
   int64_t ld;           /**< distance from component c to c + 1, in elements; >= n */
@@ -221,8 +226,8 @@ MPM_API mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, cons
 MPM_API mpm_status mpm_stepper_destroy(mpm_stepper *stepper);
 
 /** Adds a set to the time loop. The host keeps owning it, and cannot destroy it while it is in. All sets
- * share one velocity field. MPM_E_STATE: the set is in a stepper already. MPM_E_ARG: it is on another grid.
- */
+ * of a body share one velocity field; this one comes into body 0. MPM_E_STATE: the set is in a stepper
+ * already. MPM_E_ARG: it is on another grid. */
 MPM_API mpm_status mpm_stepper_add(mpm_stepper *stepper, mpm_particles *particles);
 
 /** Takes a set out of the time loop. MPM_E_NOT_FOUND: it is not in this stepper. */
@@ -395,8 +400,11 @@ MPM_API mpm_status mpm_step_abort(mpm_stepper *stepper);
  * | "position" "velocity"              | F64  | dim        | length, length/time                           |
  * | "force" "acceleration"             | F64  | dim        | internal and external force; length/time^2    |
  * | "reaction"                         | F64  | dim        | force of walls and prescribed velocities      |
+ * | "contact_force"                    | F64  | dim        | force of other bodies                         |
+ * | "contact_normal"                   | F64  | dim        | unit, away from the body, where bodies meet   |
+ * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where bodies do not meet     |
  *
- * - body: velocity field, 0.
+ * - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
  * - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
  * - MPM_E_NOT_FOUND: there is no such field or body.
  * - MPM_E_ARG: MPM_WRITE is asked for on a field other than "velocity" and "force".

@@ -46,6 +46,28 @@ public:
   void set_wall(int32_t face, int32_t kind, double friction = 0.0) {
     check(mpm_stepper_set_wall(core().handle, face, kind, friction));
   }
+  /** Puts a set into a body: see mpm_stepper_set_body(). */
+  void set_body(const particles &set, int32_t body) {
+    check(mpm_stepper_set_body(core().handle, set.handle(), body));
+  }
+  /** The body of a set: see mpm_stepper_body(). */
+  int32_t body(const particles &set) const {
+    int32_t body = 0;
+    check(mpm_stepper_body(core().handle, set.handle(), &body));
+    return body;
+  }
+  /** Sets how two bodies meet, or all with MPM_BODY_ANY: see mpm_stepper_set_contact(). */
+  void set_contact(int32_t body_a, int32_t body_b, const mpm_contact_desc &desc) {
+    check(mpm_stepper_set_contact(core().handle, body_a, body_b, &desc));
+  }
+  /** Takes back how two bodies meet: see mpm_stepper_set_contact(). */
+  void reset_contact(int32_t body_a, int32_t body_b) {
+    check(mpm_stepper_set_contact(core().handle, body_a, body_b, nullptr));
+  }
+  /** Sets what gives coefficients of friction; nullptr: none. See mpm_stepper_set_friction(). */
+  void set_friction(friction_callback function) {
+    install(mpm_stepper_set_friction, core().friction, std::move(function), core().on_contact);
+  }
   /** Sets the mean velocity of a set's prescribed particles; nullptr: none. See mpm_stepper_set_motion(). */
   void set_motion(particles &set, particle_callback mean_velocity) {
     detail::stepper_core &c = core();
@@ -154,6 +176,12 @@ public:
     check(mpm_stepper_particles_reaction(core().handle, set.handle(), force.data()));
     return force;
   }
+  /** What two bodies did to each other in the last step: see mpm_stepper_contact_info(). */
+  mpm::contact_info contact(int32_t body_a, int32_t body_b) const {
+    mpm::contact_info info;
+    check(mpm_stepper_contact_info(core().handle, body_a, body_b, &info));
+    return info;
+  }
   /** The impulse of a wall on the material over all steps: see mpm_stepper_wall_impulse(). */
   std::array<double, 3> wall_impulse(int32_t face) const {
     std::array<double, 3> impulse{};
@@ -198,6 +226,11 @@ public:
   void write_grid(const std::string &path, const std::vector<std::string> &names = {}) {
     check(mpm_write_grid(core().handle, path.c_str(), static_cast<int32_t>(names.size()),
                          detail::c_names(names).data()));
+  }
+  /** Does the same for the nodes of a body: see mpm_write_body_grid(). */
+  void write_body_grid(int32_t body, const std::string &path, const std::vector<std::string> &names = {}) {
+    check(mpm_write_body_grid(core().handle, body, path.c_str(), static_cast<int32_t>(names.size()),
+                              detail::c_names(names).data()));
   }
 
 private:

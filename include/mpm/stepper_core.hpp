@@ -5,6 +5,7 @@
 #ifndef MPM_STEPPER_CORE_HPP
 #define MPM_STEPPER_CORE_HPP
 
+#include <mpm/contact.h>
 #include <mpm/linear_system.hpp>
 #include <mpm/particles.hpp>
 #include <mpm/stepper.h>
@@ -40,12 +41,31 @@ struct step_info : mpm_step_info {
   }
 };
 
+/** An mpm_contact_desc that starts with the defaults. */
+struct contact_desc : mpm_contact_desc {
+  /** Starts with the defaults. */
+  contact_desc() : mpm_contact_desc() {
+    if (const mpm_status status = mpm_contact_desc_init(this, sizeof(mpm_contact_desc)))
+      throw error(status, "mpm_contact_desc_init");
+  }
+};
+
+/** An mpm_contact_info that is ready to be filled. */
+struct contact_info : mpm_contact_info {
+  /** Starts with struct_size set and zeros elsewhere. */
+  contact_info() : mpm_contact_info() {
+    struct_size = sizeof(mpm_contact_info);
+  }
+};
+
 /** As mpm_particle_fn: takes batch and add, and adds to add[c * batch.ld + i] (mt). */
 using particle_callback = callback<const mpm_particle_batch &, double *>;
 /** As mpm_velocity_fn: takes batch, prescribed and velocity (mt). */
 using velocity_callback = callback<const mpm_node_batch &, uint8_t *, double *>;
 /** As mpm_node_fn: takes batch, velocity and force (mt). */
 using node_callback = callback<const mpm_node_batch &, double *, double *>;
+/** As mpm_friction_fn: takes batch and friction (mt). */
+using friction_callback = callback<const mpm_contact_batch &, double *>;
 /** As mpm_progress_fn: a status > 0 ends the call with MPM_CANCELLED. */
 using progress_callback = callback<const mpm_step_info &>;
 
@@ -72,6 +92,7 @@ struct stepper_core {
   std::unique_ptr<slot<particle_callback>> force;            /**< see stepper::set_force() */
   std::unique_ptr<slot<velocity_callback>> velocity;         /**< see stepper::set_velocity_bc() */
   std::array<std::unique_ptr<slot<node_callback>>, 3> hooks; /**< see stepper::set_node_hook() */
+  std::unique_ptr<slot<friction_callback>> friction;         /**< see stepper::set_friction() */
   std::unique_ptr<slot<solve_callback>> solver;              /**< see stepper::set_linear_solver() */
   std::unique_ptr<slot<progress_callback>> progress;         /**< see stepper::set_progress() */
   mpm_stepper *handle = nullptr;                             /**< what mpm_stepper_create() gave */
@@ -117,6 +138,10 @@ struct stepper_core {
   /** The mpm_node_fn that calls the host's function. */
   static mpm_status on_nodes(void *user, const mpm_node_batch *batch, double *value, double *nodal_force) {
     return call<node_callback>(user, *batch, value, nodal_force);
+  }
+  /** The mpm_friction_fn that calls the host's function. */
+  static mpm_status on_contact(void *user, const mpm_contact_batch *batch, double *value) {
+    return call<friction_callback>(user, *batch, value);
   }
   /** The mpm_progress_fn that calls the host's function. */
   static mpm_status on_progress(void *user, const mpm_step_info *info) {

@@ -39,8 +39,7 @@ static inline double mpmi_given(const mpmi_bound *bound, int64_t slot, int32_t c
 
 /* Returns the mass that moves with a free node: its own, or that of its tie. */
 static inline double mpmi_moving_mass(const mpmi_bound *bound, int64_t slot) {
-  const int32_t tie = mpmi_constraints_of(bound)->tie_of[slot];
-  return tie < 0 ? *mpmi_mass(bound->values, slot) : bound->nodes->tie_state[tie].mass;
+  return mpmi_mass_moving(bound->step->layout, bound->nodes, bound->values, slot);
 }
 
 /* Returns 1 when the node follows no other and is heavy enough to move. */
@@ -62,8 +61,11 @@ static inline mpmi_component mpmi_component_of(const mpmi_bound *bound, int64_t 
 void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse, double change);
 /* Records how much more a free node now gives to particles, and returns it: the impulse. */
 double mpmi_record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before);
-/* Does the same for a contact, whose impulse acts on all the mass that moves with the node; what mirrored
- * ghosts take the other way round is the wall's reaction. */
+/* Changes a component of a free node's velocity by an impulse that is no reaction of walls or prescribed
+ * velocities: that of another body. */
+void mpmi_push_node(mpmi_bound *bound, int64_t slot, int32_t c, double by);
+/* Does the same as mpmi_record() for a contact with a wall, whose impulse acts on all the mass that moves
+ * with the node; what mirrored ghosts take the other way round is the wall's reaction. */
 double mpmi_record_whole(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before);
 
 /* Adds the work of all blocks, in their order, to the work of the step. */
@@ -95,9 +97,27 @@ mpm_status mpmi_prescribed_hold(mpmi_bound *bound);
 /* Gives prescribed particles their share of the impulses on these nodes, in the parts of the prescription. */
 mpm_status mpmi_prescribed_share(mpmi_bound *bound);
 
+/* ---- body_contact.c ---------------------------------------------------------------------------------- */
+/* Returns 1 when there are nodes at which bodies may touch. */
+static inline int32_t mpmi_bodies_touch(const mpmi_bound *bound) {
+  return bound->step->layout->groups.count && bound->nodes->contact.touch_count;
+}
+/* Finds where bodies may touch, and asks the host for coefficients of friction. */
+mpm_status mpmi_body_contacts_find(mpmi_bound *bound);
+/* Lets bodies act on each other, or with keeps, in a projection without forces, keeps their contacts as they
+ * were found. Rounds after the first go on from there. *most becomes the largest velocity that changed. */
+mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t first_round, double *most);
+/* Adds up what they did, for reports. */
+void mpmi_body_contacts_sum(mpmi_bound *bound);
+
+/* ---- friction_callback.c ----------------------------------------------------------------------------- */
+/* Asks the host for the coefficients of friction of the touches that may close. */
+mpm_status mpmi_ask_friction(mpmi_bound *bound);
+
 /* ---- friction_wall.c --------------------------------------------------------------------------------- */
-/* Lets friction walls act. With keep, in a projection without forces, contacts stay as they were found. */
-void mpmi_friction_walls(mpmi_bound *bound, int32_t keep);
+/* Lets friction walls act. With keep, in a projection without forces, contacts stay as they were found.
+ * Rounds after the first go on from there. Returns the largest velocity that was stopped at first. */
+double mpmi_friction_walls(mpmi_bound *bound, int32_t keep, int32_t first_round);
 
 /* ---- node_batch.c ------------------------------------------------------------------------------------ */
 enum { MPMI_NODE_BATCH = 256 }; /* the most nodes that a block has */

@@ -2,6 +2,25 @@
 #include "boundary/boundary.h"
 #include "boundary/bound.h"
 
+/* Contacts between bodies and with friction walls share nodes where bodies meet on a wall: there they act in
+ * turn until what is left is this share of the first round. */
+static const double settled = 1e-13;
+enum { ROUNDS = 30 };
+
+static mpm_status act_in_contact(mpmi_bound *bound, int32_t keeps) {
+  double first = 0.0, most;
+  mpm_status status = keeps ? MPM_OK : mpmi_body_contacts_find(bound);
+  const int32_t both = mpmi_constraints_of(bound)->contact_count > 0 && mpmi_bodies_touch(bound);
+  for (int32_t round = 0; round < ROUNDS && !status; ++round) {
+    status = mpmi_body_contacts_act(bound, keeps, !round, &most);
+    const double at_walls = mpmi_friction_walls(bound, keeps, !round);
+    most = at_walls > most ? at_walls : most;
+    if (!round) first = most;
+    if (!both || !(most > settled * first)) break;
+  }
+  return status;
+}
+
 /* Lets all that acts on folded nodes act, in order: conditions, with the host's hooks between them. */
 static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
   mpm_status status;
@@ -11,7 +30,8 @@ static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
       (status = mpmi_held_set(bound)))
     return status;
   if ((status = mpmi_ties_hold_walls(bound))) return status;
-  mpmi_friction_walls(bound, 0);
+  if ((status = act_in_contact(bound, 0))) return status;
+  if (projection->main) mpmi_body_contacts_sum(bound);
   return mpmi_hooks_run(bound, MPM_AFTER_VELOCITY);
 }
 
@@ -28,7 +48,7 @@ static mpm_status act_on_velocities(mpmi_bound *bound, const mpmi_projection *pr
   if (!status && projection->held) status = mpmi_held_set(bound);
   if (!status) status = mpmi_ties_hold_walls(bound);
   if (!status && projection->contact != MPMI_CONTACT_NONE)
-    mpmi_friction_walls(bound, projection->contact == MPMI_CONTACT_KEEPS);
+    status = act_in_contact(bound, projection->contact == MPMI_CONTACT_KEEPS);
   return status;
 }
 

@@ -4,7 +4,7 @@
 #include <math.h>
 
 /* Changes a free node's velocity by a contact. */
-static double push(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
+static double press(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
   const mpmi_component before = mpmi_component_of(bound, slot, c);
   mpmi_velocity(bound->values, slot)[c] += by;
   if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] += by;
@@ -29,7 +29,7 @@ static double sum_of(mpmi_bound *bound, const contact_nodes *n, int32_t c) {
 static void give(mpmi_bound *bound, const contact_nodes *n, int32_t face, int32_t c, double impulse) {
   for (int32_t i = 0; i < n->count; ++i) {
     if (!(n->inverse_mass[i][c] > 0.0)) continue;
-    const double impulse_given = push(bound, n->slot[i], c, impulse / n->moving[c] * n->inverse_mass[i][c]);
+    const double impulse_given = press(bound, n->slot[i], c, impulse / n->moving[c] * n->inverse_mass[i][c]);
     if (bound->records) bound->step->impulse_by_face[face][c] += impulse_given;
   }
 }
@@ -66,10 +66,10 @@ static double stopping(mpmi_bound *bound, const contact_nodes *n, int32_t c) {
 
 /* Lets a contact act. It pushes and never pulls; its tangential impulse stops sliding, up to friction times
  * the normal one. Returns the velocity that it stopped. */
-static double contact(mpmi_bound *bound, const mpmi_contact *pair, mpmi_contact_state *state, int32_t sweep) {
+static double contact(mpmi_bound *bound, const mpmi_contact *pair, mpmi_contact_state *state, int32_t first) {
   const int32_t axis = pair->face / 2;
   contact_nodes n;
-  if (!sweep) state->closed = state->stuck = 0;
+  if (first) state->closed = state->stuck = 0;
   if (!collect(bound, pair, &n)) return 0.0;
   const double inward = pair->face % 2 ? -1.0 : 1.0, normal = inward * stopping(bound, &n, axis);
   if (normal <= 0.0) return 0.0;
@@ -108,7 +108,7 @@ static double keep_contact(mpmi_bound *bound, const mpmi_contact *pair, const mp
 static const double settled = 1e-13;
 enum { SWEEPS = 100 };
 
-void mpmi_friction_walls(mpmi_bound *bound, int32_t keep) {
+double mpmi_friction_walls(mpmi_bound *bound, int32_t keep, int32_t first_round) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int64_t count = constraints->contact_count;
   double first = 0.0;
@@ -117,11 +117,13 @@ void mpmi_friction_walls(mpmi_bound *bound, int32_t keep) {
     for (int64_t i = 0; i < count; ++i) {
       const mpmi_contact *pair = &constraints->contact[i];
       mpmi_contact_state *state = &bound->nodes->contact_state[i];
-      most = fmax(most, keep ? keep_contact(bound, pair, state) : contact(bound, pair, state, sweep));
+      most = fmax(most, keep ? keep_contact(bound, pair, state)
+                             : contact(bound, pair, state, first_round && !sweep));
     }
     if (!sweep) first = most;
     /* contacts of one face share no node: one sweep is enough */
     if (!(most > settled * first) || constraints->contact[0].face == constraints->contact[count - 1].face)
-      return;
+      break;
   }
+  return first;
 }

@@ -32,6 +32,24 @@ double mpmi_record_whole(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_compon
   return record(bound, slot, c, before, 1);
 }
 
+/* What walls take of it the other way round, through mirrored ghosts, is theirs. Of nodes that are not tied
+ * the party remembers the change. */
+void mpmi_push_node(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
+  const int32_t tie = constraints->tie_of[slot];
+  mpmi_velocity(bound->values, slot)[c] += by;
+  if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] += by;
+  if (tie < 0) return;
+  /* unfolding counts all changes of tied nodes as reactions, this one too */
+  bound->nodes->tie_state[tie].recorded[c] += bound->nodes->tie_state[tie].mass * by;
+  mpmi_note_impulse(bound, slot, c, -*mpmi_mass(bound->values, slot) * by, 0.0);
+  for (int64_t i = 0; i < constraints->tie[tie].count; ++i) {
+    const mpmi_follower *follower = &constraints->follower[constraints->tie[tie].first + i];
+    const double mass = *mpmi_mass(bound->values, follower->slot);
+    mpmi_note_impulse(bound, follower->slot, c, -mass * follower->sign[c] * by, 0.0);
+  }
+}
+
 void mpmi_add_block_work(mpmi_step *step) {
   step->host_work = mpmi_reduce(MPMI_REDUCE_SUM, step->host_work, step->work->block_work, 1, NULL,
                                 step->layout->blocks.count);

@@ -19,6 +19,7 @@ int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *
   }
   list->batch = (mpm_node_batch){.struct_size = sizeof list->batch,
                                  .dim = bound->dim,
+                                 .body = b->body[block],
                                  .n = list->n,
                                  .ld = MPMI_NODE_BATCH,
                                  .t = step->t,
@@ -34,6 +35,6 @@ void mpmi_bad_node(const mpmi_bound *bound, const mpmi_node_list *list, int64_t 
   int64_t index[3];
   const mpmi_blocks *b = &bound->step->layout->blocks;
   mpmi_blocks_index(b, list->slot[i], index);
-  mpmi_failure_take(failure,
-                    &(mpmi_failure){MPM_NONFINITE, 0, -1, -1, mpmi_node_number(b->grid, index), what});
+  mpmi_failure_take(failure, &(mpmi_failure){MPM_NONFINITE, 0, -1, -1, mpmi_node_number(b->grid, index), what,
+                                             b->body[list->slot[i] / b->nodes]});
 }

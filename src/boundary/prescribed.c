@@ -77,7 +77,7 @@ static void ask_batch(void *user, int32_t m, const mpm_particle_batch *batch, in
     for (int64_t p = 0; p < batch->n; ++p)
       if (mpmi_is_prescribed(member->set, begin + p, c) && !isfinite(mean[c * batch->ld + p]))
         mpmi_failure_take(failure, &(mpmi_failure){MPM_NONFINITE, 0, m, batch->id[p], -1,
-                                                   "prescribed velocity not finite"});
+                                                   "prescribed velocity not finite", 0});
 }
 
 mpm_status mpmi_prescribed_stage(mpmi_step *step) {

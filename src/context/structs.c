@@ -17,7 +17,10 @@
   X(mpm_material_desc, state_initial, 64)                                                                    \
   X(mpm_stepper_desc, reserved, 152)                                                                         \
   X(mpm_step_info, angular_momentum, 192)                                                                    \
-  X(mpm_step_info, affine_kinetic_energy, 208)                                                               \
+  X(mpm_step_info, reserved, 232)                                                                            \
+  X(mpm_contact_desc, direction, 72)                                                                         \
+  X(mpm_contact_info, impulse, 160)                                                                          \
+  X(mpm_contact_batch, pressure, 96)                                                                         \
   X(mpm_particle_batch, lookup, 104)                                                                         \
   X(mpm_node_batch, mass, 72)                                                                                \
   X(mpm_advance_desc, max_steps, 56)                                                                         \

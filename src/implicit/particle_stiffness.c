@@ -147,7 +147,7 @@ static int32_t find_tangent(mpmi_balance *balance, mpmi_newton_work *work, mpmi_
                                                   work->tangent, &work->symmetric);
   if (status) {
     mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
-                                                           "the tangent callback"});
+                                                           "the tangent callback", 0});
     return 0;
   }
   for (int64_t p = 0; p < b->n; ++p)

@@ -6,8 +6,11 @@
  *
  *   numbers   mpmi_state_numbers, then one mpmi_state_set_numbers for each set
  *
- *   blocks    if the state is sorted: coordinates of the blocks with slots, by Morton key; then for each set
- *             the first slot in each of these blocks, and the number of slots
+ *   contact   from format 3 on: how many rules there are and how many pairs of bodies, and these
+ *
+ *   blocks    if the state is sorted: coordinates and, from format 3 on, body of the blocks with slots, by
+ *             Morton key and body; then for each set the first slot in each of these blocks, and the number
+ *             of slots
  *
  *   fields    for each set those that are present, component by component, over all slots
  *
@@ -25,8 +28,8 @@
 
 #define MPMI_STATE_MAGIC      "MPMSTATE"
 #define MPMI_STATE_BYTE_ORDER 0x01020304u
-/* Format 2 is that of 0.1.0: it has no sums over steps and no energy of the affine part, and the info is as
- * long as it was then. */
+/* Format 2 is that of 0.1.0: it has no sums over steps, no energy of the affine part and no bodies, and the
+ * info is as long as it was then. */
 enum { MPMI_STATE_FORMAT = 3, MPMI_STATE_FIRST_FORMAT = 2 };
 
 typedef struct mpmi_state_header {
@@ -53,6 +56,7 @@ typedef struct mpmi_state_set_numbers {
   int64_t count, slots, next_id, dirty;
   double mass_max, reaction[3];
   double impulse_total[3]; /* from format 3 on */
+  int64_t body;            /* the same; before it all sets were in body 0 */
 } mpmi_state_set_numbers;
 
 typedef struct mpmi_state_field {
@@ -77,7 +81,13 @@ int32_t mpmi_state_is_sorted(const mpm_stepper *s);
 int64_t mpmi_state_count_blocks(const mpm_stepper *s); /* counts blocks with slots */
 void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s);
 /* Reads into next_blocks and the next arrangements; count: blocks with slots. */
-mpm_status mpmi_state_read_blocks(mpmi_archive *a, mpm_stepper *s, int64_t count, const mpmi_state_set *set);
+mpm_status mpmi_state_read_blocks(mpmi_archive *a, mpm_stepper *s, uint32_t format, int64_t count,
+                                  const mpmi_state_set *set);
+
+/* Rules of contact, and what pairs of bodies did to each other (state_contact.c). They are read into new
+ * lists, which the caller frees after a failure as well. */
+void mpmi_state_write_contact(mpmi_archive *a, const mpm_stepper *s);
+mpm_status mpmi_state_read_contact(mpmi_archive *a, mpmi_contact_rules *rules, mpmi_pair_records *pairs);
 
 /* Refuses values with which a step could not work safely (state_check.c). blocks: those of the state, or
  * NULL when it is not sorted; start: where the set's slots lie in them. */

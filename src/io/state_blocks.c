@@ -27,9 +27,9 @@ int64_t mpmi_state_count_blocks(const mpm_stepper *s) {
 void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s) {
   for (int64_t b = 0; b < s->layout.blocks.count; ++b) {
     if (!has_slots(s, b)) continue;
-    int64_t coord[3] = {s->layout.blocks.coord[b][0], s->layout.blocks.coord[b][1],
-                        s->layout.blocks.coord[b][2]};
-    mpmi_archive_words(a, coord, sizeof coord);
+    int64_t place[4] = {s->layout.blocks.coord[b][0], s->layout.blocks.coord[b][1],
+                        s->layout.blocks.coord[b][2], s->layout.blocks.body[b]};
+    mpmi_archive_words(a, place, sizeof place);
   }
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     int64_t *start = s->layout.member[m].now.start;
@@ -41,20 +41,22 @@ void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s) {
 
 /* Reads the blocks with slots, in the order of the state. They are inserted as provisional blocks and must
  * come out in the same order. */
-static mpm_status read_coordinates(mpmi_archive *a, mpmi_blocks *blocks, int64_t count) {
+static mpm_status read_places(mpmi_archive *a, mpmi_blocks *blocks, uint32_t format, int64_t count) {
   const mpm_grid *grid = blocks->grid;
   mpm_status status;
   for (int64_t i = 0; i < count; ++i) {
-    int64_t saved[3];
+    int64_t saved[4] = {0, 0, 0, 0};
     int32_t coord[3] = {0, 0, 0}, block = 0;
-    mpmi_archive_words(a, saved, sizeof saved);
+    mpmi_archive_words(a, saved, (format > 2 ? 4 : 3) * (int64_t)sizeof *saved);
     if (a->status) return a->status;
+    if (saved[3] < 0 || saved[3] >= MPMI_MAX_BODIES)
+      return mpmi_archive_damaged(a, "the body of a block makes no sense");
     for (int32_t k = 0; k < grid->dim; ++k) {
       if (saved[k] < 0 || saved[k] > grid->desc.cells[k] / blocks->edge)
         return mpmi_archive_damaged(a, "a block lies outside the grid");
       coord[k] = (int32_t)saved[k];
     }
-    if ((status = mpmi_blocks_insert(blocks, 0, coord, &block))) return status;
+    if ((status = mpmi_blocks_insert(blocks, (int32_t)saved[3], coord, &block))) return status;
     if (block != i) return mpmi_archive_damaged(a, "a block stands there twice");
   }
   if ((status = mpmi_blocks_order(blocks))) return status;
@@ -81,27 +83,31 @@ static int32_t starts_are_good(const unsigned char *starts, int64_t count, int64
   return before == slots;
 }
 
-static mpm_status read_starts(mpmi_archive *a, const mpmi_blocks *blocks, int64_t count, int64_t slots,
-                              mpmi_arrangement *to) {
+static mpm_status read_starts(mpmi_archive *a, const mpmi_blocks *blocks, int64_t count,
+                              const mpmi_state_set_numbers *set, mpmi_arrangement *to) {
   const unsigned char *starts = mpmi_archive_take(a, (count + 1) * (int64_t)sizeof(int64_t));
   if (!starts) return a->status;
-  if (!starts_are_good(starts, count, slots))
+  if (!starts_are_good(starts, count, set->slots))
     return mpmi_archive_damaged(a, "the slots of a set make no sense");
   mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
   if (status) return status;
   int64_t i = 0;
   for (int64_t b = 0; b <= blocks->count; ++b) { /* blocks that only the halo brings have no slots */
     to->start[b] = saved_start(starts, i);
-    if (i < count && (int64_t)blocks->order[i] == b) ++i;
+    if (i == count || (int64_t)blocks->order[i] != b) continue;
+    ++i;
+    if (blocks->body[b] != set->body && saved_start(starts, i) != to->start[b])
+      return mpmi_archive_damaged(a, "a set has slots in blocks of another body");
   }
   return MPM_OK;
 }
 
-mpm_status mpmi_state_read_blocks(mpmi_archive *a, mpm_stepper *s, int64_t count, const mpmi_state_set *set) {
+mpm_status mpmi_state_read_blocks(mpmi_archive *a, mpm_stepper *s, uint32_t format, int64_t count,
+                                  const mpmi_state_set *set) {
   mpmi_blocks *blocks = &s->layout.next_blocks;
   mpmi_blocks_clear(blocks);
-  mpm_status status = read_coordinates(a, blocks, count);
+  mpm_status status = read_places(a, blocks, format, count);
   for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
-    status = read_starts(a, blocks, count, set[m].numbers.slots, &s->layout.member[m].next);
+    status = read_starts(a, blocks, count, &set[m].numbers, &s->layout.member[m].next);
   return status;
 }

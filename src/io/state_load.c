@@ -11,7 +11,9 @@ typedef struct loading {
   mpm_stepper *stepper;
   mpmi_state_numbers numbers;
   mpmi_state_set *set; /* [sets] */
-  int64_t slots;       /* slots of all sets */
+  mpmi_contact_rules rules;
+  mpmi_pair_records pairs;
+  int64_t slots; /* slots of all sets */
 } loading;
 
 mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header *header, int64_t bytes) {
@@ -89,7 +91,8 @@ static void read_numbers(loading *l) {
     mpmi_state_archive_set_numbers(a, l->format, of);
     if (a->status) return;
     if (of->slots < 0 || of->slots > MPMI_MAX_SLOTS || of->slots % MPMI_PAD || of->count < 0 ||
-        of->count > of->slots || of->next_id < 0 || of->dirty & ~flags || !is_magnitude(of->mass_max))
+        of->count > of->slots || of->next_id < 0 || of->body < 0 || of->body >= MPMI_MAX_BODIES ||
+        of->dirty & ~flags || !is_magnitude(of->mass_max))
       mpmi_archive_damaged(a, "the numbers of a set make no sense");
     else
       l->slots += of->slots;
@@ -101,7 +104,7 @@ static mpm_status read_blocks(loading *l) {
   if (l->numbers.blocks > l->slots / MPMI_PAD)
     mpmi_archive_damaged(&l->archive, "it has blocks without slots");
   if (l->archive.status) return l->archive.status;
-  return mpmi_state_read_blocks(&l->archive, l->stepper, l->numbers.blocks, l->set);
+  return mpmi_state_read_blocks(&l->archive, l->stepper, l->format, l->numbers.blocks, l->set);
 }
 
 static int64_t bytes_per_slot(const mpm_particles *set) {
@@ -146,6 +149,7 @@ static mpm_status read_state(loading *l) {
   mpmi_state_setup(a, s, l->set);
   read_numbers(l);
   mpm_status status = a->status;
+  if (!status && l->format > 2) status = mpmi_state_read_contact(a, &l->rules, &l->pairs);
   if (!status && l->numbers.blocks >= 0) status = read_blocks(l);
   for (int32_t m = 0; m < s->layout.member_count && !status; ++m) status = read_set(l, m);
   if (!status && a->at != a->size) {
@@ -183,6 +187,7 @@ static void take_over(loading *l) {
     exchange_storage(s->layout.member[m].set, &l->set[m].fresh);
     mpmi_member *member = &s->layout.member[m];
     memcpy(member->reaction, l->set[m].numbers.reaction, sizeof member->reaction);
+    member->body = (int32_t)l->set[m].numbers.body;
     memcpy(member->impulse_total, l->set[m].numbers.impulse_total, sizeof member->impulse_total);
   }
   if (n->blocks < 0) mpmi_blocks_clear(&s->layout.blocks);
@@ -202,6 +207,14 @@ static void take_over(loading *l) {
   memcpy(s->history.impulse_by_face, n->impulse_by_face, sizeof n->impulse_by_face);
   s->history.last = n->last;
   s->history.totals = n->totals;
+  const mpmi_contact_rules rules = s->settings.contact;
+  const mpmi_pair_records pairs = s->history.pairs;
+  if (l->format > 2) {
+    s->settings.contact = l->rules;
+    l->rules = rules;
+  }
+  s->history.pairs = l->pairs;
+  l->pairs = pairs;
 }
 
 mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
@@ -227,6 +240,8 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   if (!status) take_over(&l);
   for (int32_t m = 0; m < s->layout.member_count; ++m)
     for (int32_t f = 0; f < l.set[m].fresh.field_count; ++f) mpmi_field_make_absent(&l.set[m].fresh, f);
+  mpmi_contact_rules_free(&l.rules, s->context);
+  MPMI_FREE_ARRAY(s->context, l.pairs.record, l.pairs.capacity);
   mpmi_free(s->context, l.set, set_bytes);
   return status;
 }

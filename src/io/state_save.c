@@ -39,12 +39,13 @@ void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_num
     SUMS_3 = offsetof(mpmi_state_numbers, last),
     HALVES = offsetof(mpm_step_info, step),
     INFO_2 = offsetof(mpm_step_info, external_work_total),
-    INFO_3 = INFO_2 + sizeof n->last.external_work_total + sizeof n->last.affine_kinetic_energy
+    INFO_3 = offsetof(mpm_step_info, body)
   };
   const int64_t info = format == 2 ? INFO_2 : INFO_3;
   mpmi_archive_words(a, n, format == 2 ? SUMS_2 : SUMS_3);
   mpmi_archive_halves(a, &n->last, HALVES);
   mpmi_archive_words(a, &n->last.step, info - HALVES);
+  if (format > 2) mpmi_archive_halves(a, &n->last.body, sizeof n->last - INFO_3);
   if (format > 2) mpmi_archive_words(a, &n->totals, sizeof n->totals);
 }
 
@@ -91,7 +92,8 @@ static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
                                      .slots = set->slots,
                                      .next_id = set->next_id,
                                      .dirty = set->dirty,
-                                     .mass_max = set->mass_max};
+                                     .mass_max = set->mass_max,
+                                     .body = s->layout.member[m].body};
     memcpy(of_set.reaction, s->layout.member[m].reaction, sizeof of_set.reaction);
     memcpy(of_set.impulse_total, s->layout.member[m].impulse_total, sizeof of_set.impulse_total);
     mpmi_state_archive_set_numbers(a, MPMI_STATE_FORMAT, &of_set);
@@ -110,6 +112,7 @@ static void write_fields(mpmi_archive *a, const mpm_particles *set) {
 void mpmi_state_write(mpmi_archive *a, const mpm_stepper *s) {
   mpmi_state_setup(a, s, NULL);
   write_numbers(a, s);
+  mpmi_state_write_contact(a, s);
   if (mpmi_state_is_sorted(s)) mpmi_state_write_blocks(a, s);
   for (int32_t m = 0; m < s->layout.member_count; ++m) write_fields(a, s->layout.member[m].set);
 }

@@ -17,6 +17,7 @@ typedef struct image {
   int32_t uneven;          /* 1: nodes are not all one spacing apart */
   int64_t low[3], size[3]; /* of the box, in nodes; size 1 on axes that do not exist */
   int64_t points;          /* nodes of the box */
+  int64_t first, active;   /* those of the body in the stepper's list of active nodes */
   int64_t n;               /* active nodes, listed by ascending place */
   int64_t *slot;           /* [n] */
   uint64_t *place;         /* [n] in the image, x fastest */
@@ -43,6 +44,7 @@ static mpm_status choose_arrays(image *w, int32_t count, const char *const *fiel
   for (int32_t f = 0; f < MPMI_NODE_FIELDS && !count && !status; ++f) {
     /* The points of the image are the positions, and only what the step has kept can be shown. */
     if (f == MPMI_NODE_POSITION || !mpmi_node_keeps(s, f)) continue;
+    if (f >= MPMI_NODE_CONTACT_FORCE && !s->layout.groups.count) continue;
     mpmi_vtk_add(&w->file, mpmi_node_fields[f].name, f, mpmi_node_fields[f].type, shown_components(s, f),
                  w->points);
   }
@@ -54,9 +56,9 @@ static mpm_status choose_arrays(image *w, int32_t count, const char *const *fiel
 static void find_box(image *w) {
   const mpm_stepper *s = w->s;
   int64_t high[3] = {0, 0, 0};
-  for (int64_t i = 0; i < s->active_count; ++i) {
+  for (int64_t i = 0; i < w->active; ++i) {
     int64_t index[3] = {0, 0, 0};
-    mpmi_blocks_index(&s->layout.blocks, s->active[i], index);
+    mpmi_blocks_index(&s->layout.blocks, s->active[w->first + i], index);
     for (int32_t k = 0; k < 3; ++k) {
       if (i == 0 || index[k] < w->low[k]) w->low[k] = index[k];
       if (i == 0 || index[k] > high[k]) high[k] = index[k];
@@ -64,7 +66,7 @@ static void find_box(image *w) {
   }
   w->points = 1; /* does not overflow: grids have no more nodes than 63 bits can number */
   for (int32_t k = 0; k < 3; ++k) {
-    w->size[k] = s->active_count ? high[k] - w->low[k] + 1 : 0;
+    w->size[k] = w->active ? high[k] - w->low[k] + 1 : 0;
     w->points *= w->size[k];
   }
 }
@@ -88,11 +90,11 @@ static uint64_t place_of(const image *w, int64_t slot) {
 static mpm_status sort_nodes(image *w) {
   const mpm_stepper *s = w->s;
   mpm_context *context = s->context;
-  if (s->active_count > UINT32_MAX)
+  if (w->active > UINT32_MAX)
     return mpmi_fail(context, MPM_E_UNSUPPORTED,
                      "%lld active nodes are too many for one image: read the fields with mpm_grid_map()",
-                     (long long)s->active_count);
-  w->n = s->active_count;
+                     (long long)w->active);
+  w->n = w->active;
   w->bytes = mpmi_bytes(w->n, sizeof *w->slot + sizeof *w->place);
   const size_t order_bytes = mpmi_bytes(w->n, 2 * sizeof(uint32_t));
   w->slot = mpmi_alloc(context, w->bytes);
@@ -102,10 +104,10 @@ static mpm_status sort_nodes(image *w) {
     return MPM_E_NOMEM;
   }
   w->place = (uint64_t *)w->slot + w->n;
-  for (int64_t i = 0; i < w->n; ++i) w->place[i] = place_of(w, s->active[i]);
+  for (int64_t i = 0; i < w->n; ++i) w->place[i] = place_of(w, s->active[w->first + i]);
   mpmi_radix_sort(w->n, w->place, order, (uint64_t *)w->slot, order + w->n);
   for (int64_t i = 0; i < w->n; ++i) {
-    w->slot[i] = s->active[order[i]];
+    w->slot[i] = s->active[w->first + order[i]];
     w->place[i] = place_of(w, w->slot[i]);
   }
   mpmi_free(context, order, order_bytes);
@@ -186,8 +188,8 @@ static mpm_status check_suffix(const image *w, const char *path) {
                    path);
 }
 
-mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count, const char *const *fields) {
-  MPMI_ENTER(stepper, MPMI_STEPPER);
+static mpm_status write_body(mpm_stepper *stepper, int32_t body, const char *path, int32_t count,
+                             const char *const *fields) {
   mpm_context *context = stepper->context;
   image w = {.s = stepper,
              .file = {.context = context},
@@ -195,7 +197,7 @@ mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count,
   mpm_status status = mpmi_check_path(context, path);
   if (!status) status = check_suffix(&w, path);
   if (!status) status = mpmi_nodes_ready(stepper);
-  if (!status) status = mpmi_nodes_list(stepper);
+  if (!status) status = mpmi_nodes_list(stepper, body, &w.first, &w.active);
   if (status) return status;
   find_box(&w);
   status = choose_arrays(&w, count, fields);
@@ -211,4 +213,15 @@ mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count,
   }
   mpmi_free(context, w.slot, w.bytes);
   return status;
+}
+
+mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count, const char *const *fields) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  return write_body(stepper, 0, path, count, fields);
+}
+
+mpm_status mpm_write_body_grid(mpm_stepper *stepper, int32_t body, const char *path, int32_t count,
+                               const char *const *fields) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  return write_body(stepper, body, path, count, fields);
 }

@@ -43,6 +43,7 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   mpm_status status;
   nodes->has_holders = settings->velocity_bc || nodes->prescription.any;
   nodes->has_impulses = nodes->has_holders || ties || contacts;
+  nodes->contact.listed = 0;
   if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
       (status = projects ? mpmi_nodal_reserve(c, &nodes->projected, slots, 4) : MPM_OK) ||
       (status = corrected || remedy ? mpmi_nodal_reserve(c, &nodes->sums, slots, 4) : MPM_OK) ||
@@ -61,6 +62,7 @@ void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
   mpmi_nodal_free(c, &nodes->solved);
   mpmi_nodal_free(c, &nodes->projected);
   mpmi_nodal_free(c, &nodes->sums);
+  mpmi_contact_nodes_free(&nodes->contact, c);
   MPMI_FREE_ARRAY(c, nodes->impulse, nodes->impulse_capacity);
   MPMI_FREE_ARRAY(c, nodes->held, nodes->held_capacity);
   MPMI_FREE_ARRAY(c, nodes->held_value, nodes->held_capacity);

@@ -107,9 +107,17 @@ typedef struct mpmi_nodes {
   mpmi_contact_state *contact_state; /* [contacts] */
   int64_t contact_capacity;
   mpmi_prescription prescription;
-  double shown_dt; /* time over which forces changed the velocities that views show */
-  int64_t shown;   /* version of the layout that views show, or -1: nothing */
+  mpmi_contact_nodes contact; /* nodes where bodies meet */
+  double shown_dt;            /* time over which forces changed the velocities that views show */
+  int64_t shown;              /* version of the layout that views show, or -1: nothing */
 } mpmi_nodes;
+
+/* Returns the mass that moves with a free node: its own, or that of its tie once that is folded. */
+static inline double mpmi_mass_moving(const mpmi_layout *layout, const mpmi_nodes *nodes,
+                                      const mpmi_nodal *values, int64_t slot) {
+  const int32_t tie = layout->constraints.tie_of[slot];
+  return tie < 0 ? *mpmi_mass(values, slot) : nodes->tie_state[tie].mass;
+}
 
 static inline int32_t mpmi_held_by(const mpmi_nodes *nodes, int64_t slot, int32_t c) {
   return nodes->has_holders ? nodes->held[slot][c] : 0;

@@ -4,6 +4,7 @@
 #define MPMI_SETTINGS_H
 
 #include "grid/constraints.h"
+#include "layout/contact_rules.h"
 #include "layout/transfers.h"
 #include "material/deformation.h"
 #include "material/dilation.h"
@@ -27,6 +28,9 @@ typedef struct mpmi_settings {
   void *hook_user[3];
   mpm_progress_fn progress;
   void *progress_user;
+  mpmi_contact_rules contact; /* how bodies meet */
+  mpm_friction_fn friction;
+  void *friction_user;
   mpm_solve_fn solver;
   void *solver_user;
 } mpmi_settings;

@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings) {
   mpm_context *c = settings->context;
@@ -20,6 +21,8 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
   mpmi_blocks_free(&layout->next_blocks);
   mpmi_constraints_free(&layout->constraints);
   mpmi_constraints_free(&layout->next_constraints);
+  MPMI_FREE_ARRAY(c, layout->groups.group, layout->groups.capacity);
+  MPMI_FREE_ARRAY(c, layout->next_groups.group, layout->next_groups.capacity);
   MPMI_FREE_ARRAY(c, layout->list_memory, layout->list_capacity);
   mpmi_free(c, layout->bound_memory, mpmi_bytes((settings->tasks + 1) * MPMI_WORKLISTS, sizeof(int64_t)));
   MPMI_FREE_ARRAY(c, layout->member, layout->member_capacity);
@@ -38,6 +41,9 @@ static void swap_in_next(mpmi_layout *layout) {
   const mpmi_blocks blocks = layout->blocks;
   layout->blocks = layout->next_blocks;
   layout->next_blocks = blocks;
+  const mpmi_block_groups groups = layout->groups;
+  layout->groups = layout->next_groups;
+  layout->next_groups = groups;
   swap_constraints(layout);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpmi_arrangement arrangement = layout->member[m].now;
@@ -91,14 +97,32 @@ static void make_worklists(mpmi_layout *layout, const mpmi_settings *settings) {
   }
 }
 
+/* Lists the places where several bodies have blocks, which stand side by side; returns how many there are,
+ * and fills `group` unless it is NULL. */
+static int64_t list_groups(const mpmi_blocks *b, mpmi_block_group *group) {
+  int64_t groups = 0, count;
+  for (int64_t first = 0; first < b->count; first += count) {
+    for (count = 1; first + count < b->count && b->key[first + count] == b->key[first] &&
+                    memcmp(b->coord[first + count], b->coord[first], sizeof *b->coord) == 0;)
+      ++count;
+    if (count < 2) continue;
+    if (group) group[groups] = (mpmi_block_group){(int32_t)first, (int32_t)count};
+    ++groups;
+  }
+  return groups;
+}
+
 mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings) {
-  const int64_t blocks = layout->next_blocks.count;
+  const int64_t blocks = layout->next_blocks.count, groups = list_groups(&layout->next_blocks, NULL);
+  mpmi_block_groups *next = &layout->next_groups;
   mpm_status status;
   if ((status = mpmi_constraints_build(&layout->next_constraints, &layout->next_blocks, settings->wall)) ||
       /* this comes last, because the present worklists point there; + 1 so that it exists without blocks */
+      (status = MPMI_RESERVE_MORE(settings->context, next->group, next->capacity, groups)) ||
       (status =
            MPMI_RESERVE_MORE(settings->context, layout->list_memory, layout->list_capacity, 2 * blocks + 1)))
     return status;
+  next->count = list_groups(&layout->next_blocks, next->group);
   make_worklists(layout, settings);
   swap_in_next(layout);
   return MPM_OK;

@@ -4,6 +4,7 @@
 #ifndef MPMI_SORTED_LAYOUT_H
 #define MPMI_SORTED_LAYOUT_H
 
+#include "layout/contact_nodes.h"
 #include "layout/settings.h"
 #include "particles/sort.h"
 
@@ -47,6 +48,7 @@ typedef struct mpmi_layout {
   int32_t *list_memory;                   /* memory of all worklists */
   int64_t list_capacity;
   int64_t *bound_memory;
+  mpmi_block_groups groups, next_groups;
   int64_t version;      /* counts changes of blocks and constraints */
   int64_t covers;       /* counts how often it was found which nodes are met */
   int32_t cover_is_old; /* find it anew (layout/reached.c) before the next step */

@@ -4,7 +4,7 @@
 #include "particles/law_batch.h"
 
 void mpmi_failure_clear(mpmi_failure *failure) {
-  *failure = (mpmi_failure){MPM_OK, 0, -1, -1, -1, ""};
+  *failure = (mpmi_failure){MPM_OK, 0, -1, -1, -1, "", 0};
 }
 
 /* Keeps the failure with the smallest (set, particle); failures without a particle (nodes, callbacks) come
@@ -17,7 +17,7 @@ void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other) {
   else if (!before && other->particle != first->particle)
     before = other->particle < first->particle;
   else if (!before)
-    before = other->node < first->node;
+    before = other->node < first->node || (other->node == first->node && other->body < first->body);
   if (before) *first = *other;
 }
 

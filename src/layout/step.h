@@ -12,6 +12,7 @@ typedef struct mpmi_failure {
   int32_t callback_status, set;
   int64_t particle, node;
   const char *what;
+  int32_t body; /* of the node */
 } mpmi_failure;
 
 /* What one task has to tell at the end. */
@@ -21,6 +22,7 @@ typedef struct mpmi_task_report {
   int32_t removes;               /* one left through an open wall */
   int32_t holes_restored;        /* sums over the particles may not be finite */
   int64_t active;                /* nodes with mass in its share */
+  double contact_change;         /* largest change of a velocity by contact of bodies */
   double law_seconds, weights_seconds;
 } mpmi_task_report;
 
@@ -73,7 +75,8 @@ typedef struct mpmi_step {
   const mpmi_settings *settings;
   const mpmi_layout *layout;
   mpmi_workspace *work;
-  mpmi_profile *profile; /* of all steps */
+  mpmi_profile *profile;    /* of all steps */
+  mpmi_pair_records *pairs; /* of bodies, with what they do to each other in the step */
   double t, dt;
   double velocity_dt; /* time over which forces change velocities: dt, or staggered the mean of two steps */
   mpmi_failure failure;

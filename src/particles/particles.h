@@ -64,6 +64,8 @@ struct mpmi_view_record {
   mpm_context *context; /* stays when the view is given back, for the text of a second time */
   void *data;
   void *lender;      /* the set or the stepper */
+  int64_t first;     /* of nodes: the first of the stepper's list of active nodes */
+  int64_t items;     /* the same: how many */
   uint64_t print;    /* with MPM_DEBUG: of the memory as it was lent */
   int32_t has_print; /* lent for reading while nothing was lent for writing */
   mpm_status (*release)(mpmi_view_record *record, mpm_view *view);

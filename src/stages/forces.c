@@ -15,7 +15,7 @@ static void check_finite(int32_t m, const mpm_particle_batch *batch, const doubl
     for (int64_t p = 0; p < batch->n; ++p)
       if (force[k * batch->ld + p] - force[k * batch->ld + p] != 0.0)
         mpmi_failure_take(
-            failure, &(mpmi_failure){MPM_NONFINITE, 0, m, batch->id[p], -1, "external force not finite"});
+            failure, &(mpmi_failure){MPM_NONFINITE, 0, m, batch->id[p], -1, "external force not finite", 0});
 }
 
 static void forces_of_batch(void *user, int32_t m, const mpm_particle_batch *batch, int64_t begin,

@@ -55,7 +55,7 @@ int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m) {
     while (p < n - 1 && !is_astray(x[p], &of)) ++p;
     mpmi_failure_take(&step->work->report[visit->task].failure,
                       &(mpmi_failure){MPM_E_STATE, 0, m, mpmi_i64(set, MPMI_ID, 0)[begin + p], -1,
-                                      "a position that was written through a view for reading"});
+                                      "a position that was written through a view for reading", 0});
     return 0;
   }
   return 1;

@@ -145,12 +145,12 @@ void mpmi_strain_law(mpmi_batch *b) {
   if (b->law.fault.cause) {
     const mpmi_law_fault *fault = &b->law.fault;
     mpmi_failure_take(&b->report->failure,
-                      &(mpmi_failure){fault->cause, 0, b->m, fault->particle, -1, fault->what});
+                      &(mpmi_failure){fault->cause, 0, b->m, fault->particle, -1, fault->what, 0});
     return;
   }
   if (status) {
     mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
-                                                           "the material callback"});
+                                                           "the material callback", 0});
     return;
   }
   if (!b->in_place) mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);

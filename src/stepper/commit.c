@@ -85,6 +85,7 @@ static void commit_history(mpm_stepper *s) {
   step->info.dissipation = before.kinetic + before.strain + work - after->kinetic - after->strain;
   memcpy(history->impulse_by_face, step->impulse_by_face, sizeof history->impulse_by_face);
   add_to_totals(s, work);
+  mpmi_pairs_commit(&history->pairs);
   history->reaction_dt = step->velocity_dt;
   history->previous_dt = s->settings.desc.staggered ? step->dt : 0.0;
   history->has_reactions = 1;

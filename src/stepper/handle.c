@@ -10,6 +10,8 @@ static void free_parts(mpm_stepper *s) {
   mpm_context *c = s->context;
   for (int32_t i = 0; i < MPMI_NODE_VIEWS; ++i) mpmi_free(c, s->view_memory[i], s->view_bytes[i]);
   MPMI_FREE_ARRAY(c, s->active, s->active_capacity);
+  mpmi_contact_rules_free(&s->settings.contact, c);
+  MPMI_FREE_ARRAY(c, s->history.pairs.record, s->history.pairs.capacity);
   mpmi_newton_free(s->newton, &s->settings);
   mpmi_workspace_free(&s->work, &s->settings);
   mpmi_nodes_free(&s->nodes, c);
@@ -94,7 +96,9 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
     return mpmi_fail(s->context, MPM_E_STATE, "the set already belongs to %s stepper",
                      set->stepper == s ? "this" : "another");
   if (set->mapped) return mpmi_fail(s->context, MPM_E_STATE, "the set is mapped: release its views first");
-  if ((status = mpmi_members_add(&s->layout, &s->settings, set))) return status;
+  if ((status = mpmi_check_bodies(s, s->settings.desc.scheme, 0)) ||
+      (status = mpmi_members_add(&s->layout, &s->settings, set)))
+    return status;
   set->stepper = s;
   set->owner = &owner_of_sets;
   s->nodes.shown = -1;
@@ -138,6 +142,7 @@ mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   mpm_stepper_desc d;
   if ((status = mpmi_description_read(s->context, s->grid, desc, &d)) ||
       (status = d.scheme == MPM_NEWMARK ? without_explicit_parts(s) : MPM_OK) ||
+      (status = mpmi_check_bodies(s, d.scheme, -1)) ||
       (status = mpmi_members_unmapped(&s->layout, &s->settings, "first")) ||
       (status = mpmi_members_keep_fields(&s->layout, &s->settings, &d)))
     return status;
@@ -159,6 +164,7 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   s->history.t = t;
   s->history.step = step;
   s->history.totals = (mpmi_totals){.external_work = 0.0};
+  mpmi_pairs_forget(&s->history.pairs);
   for (int32_t m = 0; m < s->layout.member_count; ++m)
     for (int32_t c = 0; c < 3; ++c) s->layout.member[m].impulse_total[c] = 0.0;
   return MPM_OK;

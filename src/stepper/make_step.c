@@ -2,6 +2,7 @@
 #include "stepper/stepper.h"
 #include "stages/stages.h"
 #include "boundary/prescribed.h"
+#include "contact/contact.h"
 #include "implicit/newmark.h"
 #include "layout/members.h"
 #include "layout/reached.h"
@@ -32,6 +33,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
                         .layout = &s->layout,
                         .work = &s->work,
                         .profile = &s->profile,
+                        .pairs = &s->history.pairs,
                         .t = history->t,
                         .dt = dt,
                         .velocity_dt = mean ? 0.5 * (history->previous_dt + dt) : dt,
@@ -39,6 +41,8 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
   s->step.info.newton_iterations = s->step.info.linear_solver = 0;
   s->step.info.linear_iterations = 0;
   s->step.info.residual = 0.0;
+  s->step.info.contact_nodes = 0;
+  s->step.info.contact_dissipation = 0.0;
   mpmi_failure_clear(&s->step.failure);
   mpmi_reports_clear(&s->work, s->settings.tasks);
 }
@@ -57,8 +61,10 @@ static mpm_status prepare(mpm_stepper *s) {
   if ((status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
       (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
       (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
-      (status = mpmi_members_reserve(&s->layout, settings)))
+      (status = mpmi_members_reserve(&s->layout, settings)) ||
+      (status = mpmi_contact_prepare(&s->layout, settings, &s->history.pairs)))
     return status;
+  mpmi_pairs_begin(&s->history.pairs);
   if (mpmi_is_implicit(settings) && !s->newton && (status = mpmi_newton_create(settings, &s->newton)))
     return status;
   mpmi_lap(&s->step, MPMI_TIME_SORT, &clock);
@@ -84,6 +90,9 @@ static mpm_status give_up(mpm_stepper *s, mpm_status status) {
   info->set = failure->set;
   info->particle = failure->particle;
   info->node = failure->node;
+  info->body = failure->body;
+  info->contact_nodes = 0;
+  info->contact_dissipation = 0.0;
   info->external_work = info->dissipation = 0.0;
   drop(s);
   return status;
@@ -120,6 +129,7 @@ static mpm_status finish(mpm_stepper *s) {
   info->callback_status = 0;
   info->set = -1;
   info->particle = info->node = -1;
+  info->body = 0;
   drop(s);
   s->nodes.shown = s->layout.version;
   s->nodes.shown_dt = velocity_dt;

@@ -5,14 +5,51 @@
 #include <string.h>
 
 const mpmi_node_field mpmi_node_fields[MPMI_NODE_FIELDS] = {
-    [MPMI_NODE_INDEX] = {"index", MPM_I64, 0},       [MPMI_NODE_POSITION] = {"position", MPM_F64, 0},
-    [MPMI_NODE_MASS] = {"mass", MPM_F64, 1},         [MPMI_NODE_VELOCITY] = {"velocity", MPM_F64, 0},
-    [MPMI_NODE_FORCE] = {"force", MPM_F64, 0},       [MPMI_NODE_ACCELERATION] = {"acceleration", MPM_F64, 0},
+    [MPMI_NODE_INDEX] = {"index", MPM_I64, 0},
+    [MPMI_NODE_POSITION] = {"position", MPM_F64, 0},
+    [MPMI_NODE_MASS] = {"mass", MPM_F64, 1},
+    [MPMI_NODE_VELOCITY] = {"velocity", MPM_F64, 0},
+    [MPMI_NODE_FORCE] = {"force", MPM_F64, 0},
+    [MPMI_NODE_ACCELERATION] = {"acceleration", MPM_F64, 0},
     [MPMI_NODE_REACTION] = {"reaction", MPM_F64, 0},
+    [MPMI_NODE_CONTACT_FORCE] = {"contact_force", MPM_F64, 0},
+    [MPMI_NODE_CONTACT_NORMAL] = {"contact_normal", MPM_F64, 0},
+    [MPMI_NODE_CONTACT_GAP] = {"contact_gap", MPM_F64, 1},
+    [MPMI_NODE_CONTACT_AREA] = {"contact_area", MPM_F64, 1},
 };
 
 static int32_t components_of(const mpm_stepper *s, int32_t field) {
   return mpmi_node_fields[field].scalar ? 1 : s->grid->dim;
+}
+
+/* Returns the cloud of a node at which bodies met in the step that is shown, or NULL. */
+static const mpmi_cloud *cloud_at(const mpm_stepper *s, int64_t slot) {
+  const mpmi_contact_nodes *contact = &s->nodes.contact;
+  const int32_t known = contact->listed && s->layout.groups.count && s->step.phase != MPMI_BEGUN;
+  return known && contact->cloud_of[slot] >= 0 ? &contact->cloud[contact->cloud_of[slot]] : NULL;
+}
+
+/* Returns by how much contact changed a component of a node's velocity. */
+static double contact_change(const mpm_stepper *s, const mpmi_cloud *cloud, int32_t c) {
+  const double sign = cloud->follower < 0 ? 1.0 : s->layout.constraints.follower[cloud->follower].sign[c];
+  return sign * s->nodes.contact.party[cloud->party].given[c];
+}
+
+/* Returns a component of normal, gap or area, towards the body that is nearest; the normal points away
+ * from the node's own body. */
+static double meeting_value(const mpm_stepper *s, int32_t field, const mpmi_cloud *cloud, int32_t c) {
+  const mpmi_contact_nodes *contact = &s->nodes.contact;
+  const mpmi_meeting *meeting = &contact->meeting[contact->party[cloud->party].meeting];
+  const mpmi_touch *nearest = NULL;
+  for (int64_t i = meeting->first_touch; i < meeting->first_touch + meeting->touch_count; ++i) {
+    const mpmi_touch *touch = &contact->touch[i];
+    if (touch->party[0] != cloud->party && touch->party[1] != cloud->party) continue;
+    if (!nearest || touch->gap < nearest->gap) nearest = touch;
+  }
+  const double sign = (nearest->party[0] == cloud->party) == !(cloud->mirrored >> c & 1) ? 1.0 : -1.0;
+  return field == MPMI_NODE_CONTACT_NORMAL ? sign * nearest->normal[c]
+         : field == MPMI_NODE_CONTACT_GAP  ? nearest->gap
+                                           : nearest->area;
 }
 
 /* Returns a component of a field at a node. Nodes hold [p m f 0] until velocities are solved for, then [v m
@@ -23,7 +60,11 @@ static double value_of(const mpm_stepper *s, int32_t field, int64_t slot, int32_
   const double dv = mpmi_has_increments(values) ? mpmi_increment(values, slot)[c] : 0.0;
   const int32_t solved = s->step.phase != MPMI_BEGUN;
   const mpmi_impulse *bound = s->nodes.has_impulses && solved ? &s->nodes.impulse[slot] : NULL;
-  const double impulse = bound ? bound->given[c] : 0.0, change = bound ? bound->change[c] : 0.0;
+  const mpmi_cloud *cloud = cloud_at(s, slot);
+  const double impulse = bound ? bound->given[c] : 0.0, contact = cloud ? contact_change(s, cloud, c) : 0.0;
+  /* of tied nodes the impulse knows all changes */
+  const double change =
+      (bound ? bound->change[c] : 0.0) + (s->layout.constraints.tie_of[slot] < 0 ? contact : 0.0);
   const double dt = s->step.phase == MPMI_IDLE ? s->nodes.shown_dt : s->step.velocity_dt;
   switch (field) {
   case MPMI_NODE_MASS:
@@ -34,8 +75,14 @@ static double value_of(const mpm_stepper *s, int32_t field, int64_t slot, int32_
     return solved ? mass * (dv - change) / dt : dv;
   case MPMI_NODE_ACCELERATION:
     return solved ? dv / dt : dv / mass;
-  default:
+  case MPMI_NODE_REACTION:
     return impulse / dt;
+  case MPMI_NODE_CONTACT_FORCE:
+    return mass * contact / dt;
+  default:
+    return cloud                            ? meeting_value(s, field, cloud, c)
+           : field == MPMI_NODE_CONTACT_GAP ? (double)INFINITY
+                                            : 0.0;
   }
 }
 
@@ -56,9 +103,33 @@ void mpmi_node_values(const mpm_stepper *s, int32_t field, const int64_t *slot, 
   }
 }
 
-mpm_status mpmi_nodes_list(mpm_stepper *s) {
-  if (s->mapped) return MPM_OK;
-  const int64_t slots = mpmi_slots(&s->layout), count = mpmi_count_active(&s->layout, &s->nodes.solved);
+/* Returns the next body after `after` that a set belongs to, or -1. */
+static int32_t next_body(const mpm_stepper *s, int32_t after) {
+  int32_t next = -1;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    const int32_t body = s->layout.member[m].body;
+    if (body > after && (next < 0 || body < next)) next = body;
+  }
+  return next;
+}
+
+/* Counts the active nodes of a body, and lists them unless `list` is NULL. */
+static int64_t list_body(const mpm_stepper *s, int32_t body, int64_t *list) {
+  const mpmi_blocks *b = &s->layout.blocks;
+  int64_t count = 0;
+  for (int64_t block = 0; block < b->count; ++block) {
+    if (b->body[block] != body) continue;
+    for (int64_t i = block * b->nodes; i < (block + 1) * b->nodes; ++i) {
+      if (!(*mpmi_mass(&s->nodes.solved, i) > s->layout.mass_cut)) continue;
+      if (list) list[count] = i;
+      ++count;
+    }
+  }
+  return count;
+}
+
+static mpm_status list_all(mpm_stepper *s) {
+  const int64_t count = mpmi_count_active(&s->layout, &s->nodes.solved);
   if (count > s->active_capacity) {
     int64_t *memory = mpmi_alloc(s->context, mpmi_bytes(count, sizeof *memory));
     if (!memory) return MPM_E_NOMEM;
@@ -67,8 +138,22 @@ mpm_status mpmi_nodes_list(mpm_stepper *s) {
     s->active_capacity = count;
   }
   s->active_count = 0;
-  for (int64_t i = 0; i < slots; ++i)
-    if (*mpmi_mass(&s->nodes.solved, i) > s->layout.mass_cut) s->active[s->active_count++] = i;
+  for (int32_t body = next_body(s, -1); body >= 0; body = next_body(s, body))
+    s->active_count += list_body(s, body, s->active + s->active_count);
+  return MPM_OK;
+}
+
+mpm_status mpmi_nodes_list(mpm_stepper *s, int32_t body, int64_t *first, int64_t *count) {
+  int32_t exists = body == 0 && !s->layout.member_count;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) exists |= s->layout.member[m].body == body;
+  if (!exists)
+    return mpmi_fail(s->context, MPM_E_NOT_FOUND, "body is %d: no set of the stepper is in it", (int)body);
+  const mpm_status status = s->mapped ? MPM_OK : list_all(s);
+  if (status) return status;
+  *first = 0;
+  for (int32_t other = next_body(s, -1); other >= 0 && other < body; other = next_body(s, other))
+    *first += list_body(s, other, NULL);
+  *count = list_body(s, body, NULL);
   return MPM_OK;
 }
 
@@ -102,20 +187,21 @@ mpm_status mpmi_node_check_kept(const mpm_stepper *s, int32_t field) {
                    mpmi_node_fields[field].name);
 }
 
-static mpm_status write_back(mpm_stepper *s, int32_t field, const double *value) {
-  for (int64_t i = 0; i < s->active_count * s->grid->dim; ++i) {
+static mpm_status write_back(mpm_stepper *s, int32_t field, const int64_t *slot, int64_t count,
+                             const double *value) {
+  for (int64_t i = 0; i < count * s->grid->dim; ++i) {
     if (isfinite(value[i])) continue;
     int64_t index[3];
-    mpmi_blocks_index(&s->layout.blocks, s->active[i % s->active_count], index);
+    mpmi_blocks_index(&s->layout.blocks, slot[i % count], index);
     return mpmi_fail(s->context, MPM_E_ARG, "nodal \"%s\" is %g at node %lld: nothing was written",
                      mpmi_node_fields[field].name, value[i], (long long)mpmi_node_number(s->grid, index));
   }
-  for (int64_t i = 0; i < s->active_count; ++i)
+  for (int64_t i = 0; i < count; ++i)
     for (int32_t c = 0; c < s->grid->dim; ++c) {
-      const double mass = *mpmi_mass(&s->nodes.solved, s->active[i]);
-      double *v = mpmi_velocity(&s->nodes.solved, s->active[i]) + c;
-      double *second = mpmi_increment(&s->nodes.solved, s->active[i]) + c;
-      const double wanted = value[c * s->active_count + i];
+      const double mass = *mpmi_mass(&s->nodes.solved, slot[i]);
+      double *v = mpmi_velocity(&s->nodes.solved, slot[i]) + c;
+      double *second = mpmi_increment(&s->nodes.solved, slot[i]) + c;
+      const double wanted = value[c * count + i];
       if (field == MPMI_NODE_FORCE) {
         *second = wanted;
       } else if (s->step.phase == MPMI_BEGUN) {
@@ -135,15 +221,15 @@ static mpm_status release_view(mpmi_view_record *record, mpm_view *view) {
   record->live = 0;
   --s->mapped;
   view->data = view->owner = NULL;
-  return record->access & MPM_WRITE ? write_back(s, record->field, record->data) : MPM_OK;
+  if (!(record->access & MPM_WRITE)) return MPM_OK;
+  return write_back(s, record->field, s->active + record->first, record->items, record->data);
 }
 
-static mpm_status check_map(mpm_stepper *s, int32_t body, const char *field, int32_t access,
-                            const mpm_view *view, int32_t *which) {
+static mpm_status check_map(mpm_stepper *s, const char *field, int32_t access, const mpm_view *view,
+                            int32_t *which) {
   mpm_context *c = s->context;
   mpm_status status = mpmi_view_check(c, view);
   if (status) return status;
-  if (body != 0) return mpmi_fail(c, MPM_E_NOT_FOUND, "body is %d: there is only body 0", (int)body);
   if (access != MPM_READ && access != MPM_WRITE && access != (MPM_READ | MPM_WRITE))
     return mpmi_fail(c, MPM_E_ARG, "access is %d: it must be MPM_READ, MPM_WRITE or both", (int)access);
   status = mpmi_node_require(c, field, which);
@@ -163,15 +249,16 @@ static mpm_status check_map(mpm_stepper *s, int32_t body, const char *field, int
 mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t access, mpm_view *view) {
   MPMI_ENTER(s, MPMI_STEPPER);
   int32_t which, at = 0;
-  mpm_status status = check_map(s, body, field, access, view, &which);
+  int64_t first, count;
+  mpm_status status = check_map(s, field, access, view, &which);
   if (status) return status;
   while (at < MPMI_NODE_VIEWS && s->view[at].live) ++at;
   if (at == MPMI_NODE_VIEWS)
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release one first",
                      MPMI_NODE_VIEWS);
-  if ((status = mpmi_nodes_list(s))) return status;
+  if ((status = mpmi_nodes_list(s, body, &first, &count))) return status;
   const int32_t components = components_of(s, which);
-  const size_t bytes = mpmi_bytes(s->active_count * components, sizeof(double));
+  const size_t bytes = mpmi_bytes(count * components, sizeof(double));
   if (bytes > s->view_bytes[at] || !s->view_memory[at]) {
     void *memory = mpmi_alloc(s->context, bytes);
     if (!memory) return MPM_E_NOMEM;
@@ -179,16 +266,18 @@ mpm_status mpm_grid_map(mpm_stepper *s, int32_t body, const char *field, int32_t
     s->view_memory[at] = memory;
     s->view_bytes[at] = bytes;
   }
-  mpmi_node_values(s, which, s->active, s->active_count, 1, s->active_count, s->view_memory[at]);
+  mpmi_node_values(s, which, s->active + first, count, 1, count, s->view_memory[at]);
   s->view[at] = (mpmi_view_record){.live = 1,
                                    .field = which,
                                    .access = access,
                                    .context = s->context,
                                    .data = s->view_memory[at],
+                                   .first = first,
+                                   .items = count,
                                    .lender = s,
                                    .release = release_view};
-  mpmi_view_fill(view, mpmi_node_fields[which].type, components, access, s->active_count, s->active_count,
-                 s->view_memory[at], &s->view[at]);
+  mpmi_view_fill(view, mpmi_node_fields[which].type, components, access, count, count, s->view_memory[at],
+                 &s->view[at]);
   ++s->mapped;
   return MPM_OK;
 }

@@ -12,6 +12,10 @@ enum {
   MPMI_NODE_FORCE,
   MPMI_NODE_ACCELERATION,
   MPMI_NODE_REACTION,
+  MPMI_NODE_CONTACT_FORCE, /* from here on: of bodies that meet */
+  MPMI_NODE_CONTACT_NORMAL,
+  MPMI_NODE_CONTACT_GAP,
+  MPMI_NODE_CONTACT_AREA,
   MPMI_NODE_FIELDS
 };
 typedef struct mpmi_node_field {
@@ -27,8 +31,10 @@ mpm_status mpmi_nodes_ready(const mpm_stepper *s);
 /* Tells whether this kind of step has kept the field; the check returns MPM_E_UNSUPPORTED if not. */
 int32_t mpmi_node_keeps(const mpm_stepper *s, int32_t field);
 mpm_status mpmi_node_check_kept(const mpm_stepper *s, int32_t field);
-/* Lists the slots of the active nodes in s->active; while nodal views are out it is there already. */
-mpm_status mpmi_nodes_list(mpm_stepper *s);
+/* Lists the slots of the active nodes in s->active, body by body; while nodal views are out it is there
+ * already. *first becomes the first one of the body and *count how many it has. MPM_E_NOT_FOUND: there is no
+ * such body. */
+mpm_status mpmi_nodes_list(mpm_stepper *s, int32_t body, int64_t *first, int64_t *count);
 /* Writes component c of the node in slot[i] to out[i * item_stride + c * component_stride], of the field's
  * type. */
 void mpmi_node_values(const mpm_stepper *s, int32_t field, const int64_t *slot, int64_t n,

@@ -30,6 +30,7 @@ typedef struct mpmi_history {
   int32_t has_reactions;
   double impulse_by_face[6][3], reaction_dt; /* on the walls in the last step */
   mpmi_totals totals;
+  mpmi_pair_records pairs; /* of bodies that ever were near each other */
 } mpmi_history;
 
 enum { MPMI_NODE_VIEWS = 8 };
@@ -64,6 +65,18 @@ static inline mpm_status mpmi_stepper_idle(const mpm_stepper *s) {
 /* Reads the host's description, or the defaults for NULL, and checks it for a grid. */
 mpm_status mpmi_description_read(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *desc,
                                  mpm_stepper_desc *out);
+
+/* ---- contact_settings.c ------------------------------------------------------------------------------ */
+/* Refuses bodies that touch in implicit steps; with_body: of a set that is about to be added, or -1. */
+mpm_status mpmi_check_bodies(const mpm_stepper *s, int32_t scheme, int32_t with_body);
+/* Checks the values of a rule, whose bodies are named in the refusal. */
+mpm_status mpmi_contact_desc_check(mpm_context *c, int32_t a, int32_t b, const mpm_contact_desc *desc);
+
+/* ---- contact_reports.c ------------------------------------------------------------------------------- */
+/* Empty what a step will write; make it what the last step did, which cannot fail; forget sums over steps. */
+void mpmi_pairs_begin(mpmi_pair_records *pairs);
+void mpmi_pairs_commit(mpmi_pair_records *pairs);
+void mpmi_pairs_forget(mpmi_pair_records *pairs);
 
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */

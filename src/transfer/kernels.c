@@ -26,7 +26,11 @@ BASIS(open_bspline3)
   void KERNEL(force_scatter_##dim##_2)(const mpmi_force_scatter *, int64_t, int64_t);                        \
   void KERNEL(force_scatter_##dim##_3)(const mpmi_force_scatter *, int64_t, int64_t);                        \
   void KERNEL(force_scatter_##dim##_4)(const mpmi_force_scatter *, int64_t, int64_t);                        \
-  void KERNEL(stiffness_##dim)(int32_t, const mpmi_weights *, int64_t, const double *, int64_t, double *);
+  void KERNEL(stiffness_##dim)(int32_t, const mpmi_weights *, int64_t, const double *, int64_t, double *);   \
+  int32_t KERNEL(discriminate_##dim)(mpmi_separation *);                                                     \
+  int32_t KERNEL(fit_##dim)(mpmi_separation *);                                                              \
+  void KERNEL(project_##dim)(const mpmi_separation *, const double *, const double *, double, double *,      \
+                             double *, double *);
 PER_DIM(1)
 PER_DIM(2)
 PER_DIM(3)
@@ -54,6 +58,9 @@ const mpmi_kernels KERNEL(kernels) = {
     .look = BY_DIM(look),
     .sums = BY_DIM(sums),
     .push = BY_DIM(push),
+    .discriminate = BY_DIM(discriminate),
+    .fit = BY_DIM(fit),
+    .project = BY_DIM(project),
 #define BY_WIDTH(name)                                                                                       \
   { NULL, NULL, KERNEL(name##_2), KERNEL(name##_3), KERNEL(name##_4) }
     .force_scatter = {{NULL},

@@ -14,6 +14,7 @@
 #include "transfer/gather.h"
 #include "transfer/move.h"
 #include "transfer/scatter.h"
+#include "transfer/separation.h"
 #include "transfer/stiffness.h"
 #include "transfer/sums.h"
 
@@ -33,6 +34,8 @@ typedef struct mpmi_kernels {
   mpmi_push_fn push[4];
   mpmi_force_scatter_fn force_scatter[4][MPMI_MAX_WIDTH + 1];
   mpmi_stiffness_fn stiffness[4];
+  mpmi_separate_fn discriminate[4], fit[4];
+  mpmi_project_fn project[4];
 } mpmi_kernels;
 
 MPMI_DECLARE_TABLES(mpmi_kernels, mpmi_kernels);

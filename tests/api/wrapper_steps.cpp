@@ -85,6 +85,42 @@ void walls() {
   CHECK(stepper.particles_impulse(set)[1] == 0.0);
 }
 
+void bodies() {
+  const mpm::context context;
+  const mpm::grid grid(context, box(2));
+  const mpm::material rubber(context, "neo_hookean", {{"E", 1e5}, {"nu", 0.25}, {"density", 500.0}});
+  mpm::particles left(grid, rubber), right(grid, rubber);
+  left.fill_box({1.0, 1.0}, {2.0, 2.0}, {2, 2});
+  right.fill_box({2.0, 1.0}, {3.0, 2.0}, {2, 2});
+  left.set_all("velocity", {1.0, 0.0});
+  mpm::stepper stepper(grid);
+  stepper.add(left), stepper.add(right);
+  stepper.set_body(right, 1);
+  CHECK(stepper.body(left) == 0 && stepper.body(right) == 1);
+  CHECK(refused(MPM_E_ARG, "body", [&] { stepper.set_body(left, -1); }));
+  mpm::contact_desc desc;
+  CHECK(desc.kind == MPM_CONTACT_UNILATERAL && desc.struct_size == sizeof(mpm_contact_desc));
+  desc.friction = 0.2;
+  stepper.set_contact(0, 1, desc);
+  int asked = 0;
+  stepper.set_friction([&](const mpm_contact_batch &b, double *friction) {
+    ++asked;
+    for (int64_t i = 0; i < b.n; ++i) friction[i] = 0.4;
+  });
+  CHECK(refused(MPM_E_STATE, "step", [&] { stepper.contact(0, 1); }));
+  CHECK(stepper.step(1e-4) && asked > 0);
+  const mpm::contact_info touch = stepper.contact(0, 1);
+  CHECK(touch.touching == 1 && touch.force[0] > 0.0 && stepper.contact(1, 0).force[0] == -touch.force[0]);
+  CHECK(stepper.map<const double>("contact_force", 1).size() > 0);
+  stepper.set_friction([](const mpm_contact_batch &, double *) { throw 7; });
+  CHECK(thrown_by<int>([&] { (void)stepper.step(1e-4); }) == 7);
+  stepper.set_friction(nullptr);
+  desc.friction = -1.0;
+  CHECK(refused(MPM_E_ARG, "friction", [&] { stepper.set_contact(0, 1, desc); }));
+  stepper.reset_contact(0, 1);
+  CHECK(stepper.step(1e-4));
+}
+
 void parts() {
   world whole, staged;
   mpm::step_info info;
@@ -143,5 +179,6 @@ void test_steps() {
   outcomes();
   descriptors();
   walls();
+  bodies();
   parts();
 }

@@ -170,6 +170,27 @@ static void draw_wall(cloud *c) {
   fuzz_status(c->context, mpm_stepper_set_wall(c->stepper, face, kind, fuzz_between(&c->in, 0.0, 1.0)));
 }
 
+static void draw_bodies(cloud *c) {
+  mpm_contact_desc d;
+  MUST(!mpm_contact_desc_init(&d, sizeof d));
+  d.kind = fuzz_below(&c->in, 3);
+  d.normal = fuzz_below(&c->in, 3);
+  d.detection = fuzz_below(&c->in, 3);
+  d.friction = fuzz_between(&c->in, 0.0, 1.0);
+  d.adhesion = fuzz_between(&c->in, 0.0, 10.0);
+  d.offset = fuzz_between(&c->in, -0.1, 0.1);
+  fuzz_status(c->context, mpm_stepper_set_body(c->stepper, c->set[c->sets - 1], fuzz_below(&c->in, 3)));
+  fuzz_status(c->context,
+              mpm_stepper_set_contact(c->stepper, fuzz_below(&c->in, 4) - 1, fuzz_below(&c->in, 4) - 1,
+                                      fuzz_below(&c->in, 8) ? &d : NULL));
+}
+
+static mpm_status rub(void *user, const mpm_contact_batch *b, double *friction) {
+  cloud *c = user;
+  for (int64_t i = 0; i < b->n; ++i) friction[i] = fuzz_between(&c->in, 0.0, 1.0);
+  return fuzz_below(&c->in, 64) == 1 ? fuzz_below(&c->in, 3) - 1 : MPM_OK;
+}
+
 static void open_stepper(cloud *c) {
   const mpm_stepper_desc d = supported(c, draw_stepper(c));
   MUST(!mpm_stepper_create(c->context, c->grid, &d, &c->stepper));
@@ -183,6 +204,8 @@ static void open_stepper(cloud *c) {
   if (with & 16)
     fuzz_status(c->context, mpm_stepper_set_node_hook(c->stepper, 1 + fuzz_below(&c->in, 3), hook, c));
   if (with & 32) fuzz_status(c->context, mpm_stepper_set_motion(c->stepper, c->set[0], push, c));
+  if (with & 64) draw_bodies(c);
+  if (with & 128) fuzz_status(c->context, mpm_stepper_set_friction(c->stepper, rub, c));
 }
 
 /* ---- what must hold ------------------------------------------------------------------------------------ */
@@ -461,15 +484,19 @@ static void leave_and_return(cloud *c) {
 }
 
 static void look(cloud *c) {
-  static const char *const field[] = {"mass", "force", "reaction", "acceleration", "velocity", "index"};
+  static const char *const field[] = {"mass",  "force",         "reaction",       "acceleration", "velocity",
+                                      "index", "contact_force", "contact_normal", "contact_area"};
   mpm_view v = {.struct_size = sizeof v};
+  mpm_contact_info contact = {.struct_size = sizeof contact};
   double force[3];
-  if (!fuzz_status(c->context, mpm_grid_map(c->stepper, 0, field[fuzz_below(&c->in, 6)], MPM_READ, &v))) {
+  const int32_t body = fuzz_below(&c->in, 8) ? 0 : fuzz_below(&c->in, 3);
+  if (!fuzz_status(c->context, mpm_grid_map(c->stepper, body, field[fuzz_below(&c->in, 9)], MPM_READ, &v))) {
     for (int64_t i = 0; i < v.count && v.type == MPM_F64; ++i)
       for (int32_t k = 0; k < v.components; ++k)
         MUST(isfinite(((double *)v.data)[i * v.item_stride + k * v.component_stride]));
     MUST(!mpm_view_release(&v));
   }
+  fuzz_status(c->context, mpm_stepper_contact_info(c->stepper, fuzz_below(&c->in, 4) - 1, 1, &contact));
   fuzz_status(c->context, mpm_stepper_wall_reaction(c->stepper, fuzz_below(&c->in, 6), force));
   fuzz_status(c->context, mpm_stepper_particles_reaction(c->stepper, c->set[0], force));
   fuzz_status(c->context, mpm_stepper_wall_impulse(c->stepper, fuzz_below(&c->in, 6), force));
@@ -525,6 +552,9 @@ static void act(cloud *c) {
     break;
   case 18:
     look(c);
+    break;
+  case 19:
+    draw_bodies(c);
     break;
   default:
     step(c);

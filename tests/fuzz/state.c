@@ -53,7 +53,14 @@ static void open_world(world *w, int32_t setup) {
   s.reference_positions = kind == 3;
   s.gravity[0] = 1.0;
   MUST(!mpm_stepper_create(w->context, w->grid, &s, &w->stepper));
+  mpm_contact_desc contact;
+  MUST(!mpm_contact_desc_init(&contact, sizeof contact));
+  contact.friction = 0.2;
   for (int32_t m = 0; m < 2; ++m) MUST(!mpm_stepper_add(w->stepper, w->set[m]));
+  if (kind == 1) {
+    MUST(!mpm_stepper_set_body(w->stepper, w->set[0], 3));
+    MUST(!mpm_stepper_set_contact(w->stepper, 0, 3, &contact));
+  }
   for (int32_t face = kind == 1 ? 2 : 0; face < 2 * dim; ++face)
     MUST(!mpm_stepper_set_wall(w->stepper, face, 1 + (setup + face) % 4, 0.3));
   for (int32_t i = 0; i < kind; ++i) MUST(!mpm_step(w->stepper, 1e-3, NULL));

@@ -164,6 +164,8 @@ enum {
   GMRES,
   HOST_SOLVER,
   EVERYTHING,
+  CONTACT,
+  CONTACT_PERIODIC,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -203,6 +205,8 @@ static const option options[OPTIONS] = {
     [GMRES] = {"GMRES", 0, 1, 1},
     [HOST_SOLVER] = {"host solver", 0, 1, 1},
     [EVERYTHING] = {"two sets, periodic x, and all callbacks", 1, 1, 0},
+    [CONTACT] = {"contact, saved and loaded", 1, 0, 0},
+    [CONTACT_PERIODIC] = {"contact, periodic", 1, 0, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -213,6 +217,7 @@ static void apply_walls(scene *is, int32_t o) {
   if (o >= FIXED && o <= OPEN) all_walls(is, kind[o]);
   is->periodic[0] = o == PERIODIC_X || o == PERIODIC || o == EVERYTHING;
   is->periodic[1] = is->periodic[2] = o == PERIODIC;
+  if (o == CONTACT_PERIODIC) is->periodic[0] = is->periodic[1] = is->periodic[2] = 1;
   if (is->periodic[0]) is->steps += is->steps / 2;
 }
 
@@ -235,10 +240,13 @@ static void apply(scene *is, int32_t o) {
       [SAVED] = WITH_KEPT | WITH_FORCE,
       [EVERYTHING] = WITH_FORCE | WITH_ACCELERATION | WITH_APPLIED_FORCE | WITH_VELOCITY | WITH_PRESCRIBED |
                      WITH_MOTION | WITH_KEPT,
+      [CONTACT] = WITH_BODIES,
+      [CONTACT_PERIODIC] = WITH_BODIES | WITH_FORCE,
   };
   static const int32_t story[OPTIONS] = {[STAGED_VELOCITY] = STORY_STAGED_VELOCITY,
                                          [STAGED_FORCE] = STORY_STAGED_FORCE,
                                          [SAVED] = STORY_SAVED,
+                                         [CONTACT] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};
@@ -257,7 +265,7 @@ static void apply(scene *is, int32_t o) {
   is->zero_acceleration = o == ZERO_ACCELERATION;
   if (o == ORDER_2) is->position_order = 2;
   is->staggered = o == STAGGERED;
-  if (o == TWO_SETS || o == SAVED || o == EVERYTHING) is->law[1] = LAW_J2;
+  if (o == TWO_SETS || o == SAVED || o == EVERYTHING || is->with & WITH_BODIES) is->law[1] = LAW_J2;
   if (o == EVERYTHING && is->scheme != MPM_NEWMARK) is->with |= 7 * WITH_HOOK;
   apply_walls(is, o);
   if (is->with & WITH_PRESCRIBED) let_out(is);

@@ -154,7 +154,8 @@ static void add_particles(world *w, int32_t m) {
   double *size = memory + 12 * all, *volumes = memory + 15 * all;
   for (int64_t i = 0; i < all; ++i) {
     const int64_t cell[3] = {i % count[0], i / count[0] % count[1], i / count[0] / count[1]};
-    if (is->law[1] && (i % 3 == 1) != m) continue; /* both sets everywhere */
+    const int32_t second = is->with & WITH_BODIES ? 2 * cell[0] >= count[0] : i % 3 == 1;
+    if (is->law[1] && second != m) continue; /* side by side, or both everywhere */
     ids[n] = 2 * i + 1;
     place(is, cell, first, ids[n], &at[3 * n], &speeds[3 * n]);
     ++n;
@@ -219,6 +220,13 @@ void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
     if (!empty) add_particles(w, m);
     if (!empty) set_fields(w, m);
     must(w, mpm_stepper_add(w->stepper, w->set[m]));
+    if (is->with & WITH_BODIES) must(w, mpm_stepper_set_body(w->stepper, w->set[m], m));
+  }
+  if (is->with & WITH_BODIES) {
+    mpm_contact_desc contact;
+    must(w, mpm_contact_desc_init(&contact, sizeof contact));
+    contact.friction = 0.3;
+    must(w, mpm_stepper_set_contact(w->stepper, 0, 1, &contact));
   }
   for (int32_t face = 0; face < 2 * is->dim; ++face)
     if (!is->periodic[face / 2])

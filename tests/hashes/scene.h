@@ -26,11 +26,12 @@ enum {
   WITH_ACCELERATION = 2,
   WITH_APPLIED_FORCE = 4,
   WITH_VELOCITY = 8,
-  WITH_PRESCRIBED = 16,  /* some particles of the last set */
-  WITH_MOTION = 32,      /* of the prescribed ones */
-  WITH_HOOK = 64,        /* AFTER_P2G; the next two bits are the other stages */
-  WITH_KEPT = 512,       /* acceleration and velocity gradient are kept */
-  WITH_SPARE_SIZE = 1024 /* GIMP: sizes as the library finds them */
+  WITH_PRESCRIBED = 16,   /* some particles of the last set */
+  WITH_MOTION = 32,       /* of the prescribed ones */
+  WITH_HOOK = 64,         /* AFTER_P2G; the next two bits are the other stages */
+  WITH_KEPT = 512,        /* acceleration and velocity gradient are kept */
+  WITH_SPARE_SIZE = 1024, /* GIMP: sizes as the library finds them */
+  WITH_BODIES = 2048      /* the sets stand side by side and rub against each other */
 };
 
 /* How it is stepped. */

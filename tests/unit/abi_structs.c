@@ -171,7 +171,10 @@ START_TEST(table) {
                {"mpm_node_batch", 72, sizeof(mpm_node_batch)},
                {"mpm_advance_desc", 56, sizeof(mpm_advance_desc)},
                {"mpm_profile", 96, sizeof(mpm_profile)},
-               {"mpm_operator_info", 72, sizeof(mpm_operator_info)}};
+               {"mpm_operator_info", 72, sizeof(mpm_operator_info)},
+               {"mpm_contact_desc", 72, sizeof(mpm_contact_desc)},
+               {"mpm_contact_info", 160, sizeof(mpm_contact_info)},
+               {"mpm_contact_batch", 96, sizeof(mpm_contact_batch)}};
   const size_t count = sizeof known / sizeof *known;
   size_t found = 0;
   for (const mpmi_release *at = mpmi_releases; at->name; ++at) {

@@ -77,6 +77,13 @@ static mpm_status hook(void *user, const mpm_node_batch *b, double *velocity, do
   return MPM_OK;
 }
 
+static mpm_status rub(void *user, const mpm_contact_batch *b, double *friction) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i) friction[i] = 1.0 / 3.0;
+  visit(FROM_FRICTION);
+  return MPM_OK;
+}
+
 static double dot(int64_t n, const double *a, const double *b) {
   double sum = 0.0;
   for (int64_t i = 0; i < n; ++i) sum += a[i] * b[i];
@@ -156,6 +163,13 @@ void every_callback_open(world *w, int32_t scheme) {
   ck_ok(w, mpm_stepper_set_linear_solver(w->stepper, solve, NULL));
   for (int32_t at = MPM_AFTER_P2G; at <= MPM_AFTER_VELOCITY && !implicit; ++at)
     ck_ok(w, mpm_stepper_set_node_hook(w->stepper, at, hook, NULL));
+  if (implicit) return;
+  mpm_contact_desc contact;
+  ck_ok(w, mpm_contact_desc_init(&contact, sizeof contact));
+  contact.offset = 0.2; /* they are half of that apart */
+  ck_ok(w, mpm_stepper_set_body(w->stepper, led, 1));
+  ck_ok(w, mpm_stepper_set_contact(w->stepper, 0, 1, &contact));
+  ck_ok(w, mpm_stepper_set_friction(w->stepper, rub, NULL));
 }
 
 static uint64_t mix(uint64_t h, const void *data, size_t bytes) {
@@ -254,7 +268,7 @@ START_TEST(callbacks_find_the_default) {
     ck_assert_int_eq(flags, 0);
     ck_assert_uint_eq(hash, wanted);
     for (int32_t k = 0; k < KINDS; ++k) {
-      const int32_t none = _i ? k == FROM_HOOK : k == FROM_TANGENT || k == FROM_SOLVER;
+      const int32_t none = _i ? k == FROM_HOOK || k == FROM_FRICTION : k == FROM_TANGENT || k == FROM_SOLVER;
       ck_assert_msg(none || host_visits.seen[k] > 0, "kind %d was never called", (int)k);
     }
     world_close(&w);

@@ -25,6 +25,7 @@ static void try_all(int32_t kind) {
   mpm_view view = {.struct_size = sizeof view};
   mpm_step_info info = {.struct_size = sizeof info};
   mpm_profile profile = {.struct_size = sizeof profile};
+  mpm_contact_info contact = {.struct_size = sizeof contact};
   const char *name;
   double value[64];
   unsigned char byte[8] = {0};
@@ -64,6 +65,11 @@ static void try_all(int32_t kind) {
       mpm_stepper_configure(stepper, &s),
       mpm_stepper_set_time(stepper, 0.0, 0),
       mpm_stepper_set_motion(stepper, set, NULL, NULL),
+      mpm_stepper_set_body(stepper, set, 1),
+      mpm_stepper_body(stepper, set, &count),
+      mpm_stepper_set_contact(stepper, 0, 1, NULL),
+      mpm_stepper_set_friction(stepper, NULL, NULL),
+      mpm_stepper_contact_info(stepper, 0, 1, &contact),
       mpm_stepper_set_wall(stepper, 0, MPM_WALL_SLIP, 0.0),
       mpm_stepper_set_acceleration(stepper, NULL, NULL),
       mpm_stepper_set_force(stepper, NULL, NULL),
@@ -94,6 +100,7 @@ static void try_all(int32_t kind) {
       mpm_state_hash(stepper, &hash),
       mpm_write_particles(set, path, 0, NULL),
       mpm_write_grid(stepper, path, 0, NULL),
+      mpm_write_body_grid(stepper, 0, path, 0, NULL),
   };
   for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i)
     if (refused[i] != MPM_E_STATE)

@@ -20,6 +20,8 @@ START_TEST(no_stepper) {
   const mpm_advance_desc advance = {.struct_size = sizeof advance};
   mpm_step_info info = {.struct_size = sizeof info};
   mpm_profile profile = {.struct_size = sizeof profile};
+  mpm_contact_info contact = {.struct_size = sizeof contact};
+  int32_t body;
   mpm_view view = {.struct_size = sizeof view};
   mpm_stepper *const none[] = {NULL, (mpm_stepper *)r.grid, (mpm_stepper *)r.context};
   double value[3];
@@ -46,6 +48,12 @@ START_TEST(no_stepper) {
     ck_assert_int_eq(mpm_grid_map(s, 0, "mass", MPM_READ, &view), MPM_E_ARG);
     ck_assert_int_eq(mpm_stepper_wall_reaction(s, 0, value), MPM_E_ARG);
     ck_assert_int_eq(mpm_stepper_wall_impulse(s, 0, value), MPM_E_ARG);
+    ck_assert_int_eq(mpm_stepper_set_body(s, r.set[0], 0), MPM_E_ARG);
+    ck_assert_int_eq(mpm_stepper_body(s, r.set[0], &body), MPM_E_ARG);
+    ck_assert_int_eq(mpm_stepper_set_contact(s, 0, 1, NULL), MPM_E_ARG);
+    ck_assert_int_eq(mpm_stepper_set_friction(s, NULL, NULL), MPM_E_ARG);
+    ck_assert_int_eq(mpm_stepper_contact_info(s, 0, 1, &contact), MPM_E_ARG);
+    ck_assert_int_eq(mpm_write_body_grid(s, 0, "none.vti", 0, NULL), MPM_E_ARG);
   }
 }
 END_TEST

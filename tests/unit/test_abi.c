@@ -70,6 +70,17 @@ START_TEST(constants) {
   VALUE(MPM_WALL_FIXED, 2);
   VALUE(MPM_WALL_SLIP, 3);
   VALUE(MPM_WALL_FRICTION, 4);
+  VALUE(MPM_CONTACT_UNILATERAL, 0);
+  VALUE(MPM_CONTACT_NONE, 1);
+  VALUE(MPM_CONTACT_TIED, 2);
+  VALUE(MPM_NORMAL_LOGISTIC, 0);
+  VALUE(MPM_NORMAL_DISCRIMINANT, 1);
+  VALUE(MPM_NORMAL_GRADIENT, 2);
+  VALUE(MPM_NORMAL_FIXED, 3);
+  VALUE(MPM_DETECT_DEFAULT, 0);
+  VALUE(MPM_DETECT_GAP, 1);
+  VALUE(MPM_DETECT_VELOCITY, 2);
+  VALUE(MPM_BODY_ANY, -1);
   VALUE(MPM_AFTER_P2G, 1);
   VALUE(MPM_AFTER_FORCES, 2);
   VALUE(MPM_AFTER_VELOCITY, 3);
@@ -227,7 +238,7 @@ END_TEST
 
 #define STRUCT mpm_step_info
 START_TEST(layout_of_step_info) {
-  SIZE(208);
+  SIZE(232);
   AT(0, struct_size);
   AT(4, cause);
   AT(8, callback_status);
@@ -253,6 +264,69 @@ START_TEST(layout_of_step_info) {
   AT(168, angular_momentum);
   AT(192, external_work_total);
   AT(200, affine_kinetic_energy);
+  AT(208, contact_dissipation);
+  AT(216, contact_nodes);
+  AT(224, body);
+  AT(228, reserved);
+}
+END_TEST
+#undef STRUCT
+
+#define STRUCT mpm_contact_desc
+START_TEST(layout_of_contact_desc) {
+  SIZE(72);
+  AT(0, struct_size);
+  AT(4, kind);
+  AT(8, normal);
+  AT(12, detection);
+  AT(16, friction);
+  AT(24, friction_static);
+  AT(32, adhesion);
+  AT(40, offset);
+  AT(48, direction);
+}
+END_TEST
+#undef STRUCT
+
+#define STRUCT mpm_contact_info
+START_TEST(layout_of_contact_info) {
+  SIZE(160);
+  AT(0, struct_size);
+  AT(4, touching);
+  AT(8, nodes);
+  AT(16, closed);
+  AT(24, stuck);
+  AT(32, ambiguous);
+  AT(40, force);
+  AT(64, torque);
+  AT(88, normal_force);
+  AT(96, area);
+  AT(104, pressure_max);
+  AT(112, gap);
+  AT(120, dissipation);
+  AT(128, friction_work);
+  AT(136, impulse);
+}
+END_TEST
+#undef STRUCT
+
+#define STRUCT mpm_contact_batch
+START_TEST(layout_of_contact_batch) {
+  SIZE(96);
+  AT(0, struct_size);
+  AT(4, dim);
+  AT(8, body_a);
+  AT(12, body_b);
+  AT(16, n);
+  AT(24, ld);
+  AT(32, t);
+  AT(40, dt);
+  AT(48, position);
+  AT(56, normal);
+  AT(64, gap);
+  AT(72, area);
+  AT(80, slip);
+  AT(88, pressure);
 }
 END_TEST
 #undef STRUCT
@@ -364,6 +438,9 @@ Suite *abi_suite(void) {
     tcase_add_test(frozen, layout_of_material_desc);
     tcase_add_test(frozen, layout_of_stepper_desc);
     tcase_add_test(frozen, layout_of_step_info);
+    tcase_add_test(frozen, layout_of_contact_desc);
+    tcase_add_test(frozen, layout_of_contact_info);
+    tcase_add_test(frozen, layout_of_contact_batch);
     tcase_add_test(frozen, layout_of_particle_batch);
     tcase_add_test(frozen, layout_of_node_batch);
     tcase_add_test(frozen, layout_of_advance_desc);

@@ -102,8 +102,12 @@ static void open_cubes(world *w, const method *how, int32_t dim, int32_t periodi
   world_open(w, &desc);
   if (which == (FIRST | SECOND)) {
     world_add_set(w, NULL);
-    w->stepper->layout.member[0].body = 2;
-    w->stepper->layout.member[1].body = 1;
+    mpm_contact_desc none;
+    ck_ok(w, mpm_contact_desc_init(&none, sizeof none));
+    none.kind = MPM_CONTACT_NONE;
+    ck_ok(w, mpm_stepper_set_contact(w->stepper, 2, MPM_BODY_ANY, &none));
+    ck_ok(w, mpm_stepper_set_body(w->stepper, w->set[0], 2));
+    ck_ok(w, mpm_stepper_set_body(w->stepper, w->set[1], 1));
   }
   for (int32_t i = 0, m = 0; i < 2; ++i) {
     if (!(which & (i ? SECOND : FIRST))) continue;

@@ -1,0 +1,287 @@
+/* Contact of bodies at the nodes that they share (docs/theory.md, contact): an impulse that closes the gap
+ * and never more, with Coulomb friction; ties; and the projections without forces, which keep to what was
+ * found. An impulse acts on the nodes of one meeting alone, so that meetings are independent of each
+ * other. */
+#include "boundary/bound.h"
+#include "contact/contact.h"
+#include "layout/tasks.h"
+
+#include <math.h>
+
+/* Touches of one meeting are swept until what is left is this share of the first sweep. */
+static const double settled = 1e-13;
+enum { SWEEPS = 30 };
+
+/* ---- parties ------------------------------------------------------------------------------------------- */
+static void weigh_party(const mpmi_bound *bound, mpmi_party *party, int32_t keeps) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
+  const int32_t tie = constraints->tie_of[party->slot];
+  const double mass = mpmi_moving_mass(bound, party->slot);
+  for (int32_t c = 0; c < 3; ++c) {
+    const int32_t held = c >= bound->dim || mpmi_held_by(bound->nodes, party->slot, c) ||
+                         (tie >= 0 && constraints->tie[tie].zero[c]);
+    party->inverse_mass[c] = held || !(mass > bound->step->layout->mass_cut) ? 0.0 : 1.0 / mass;
+    if (!keeps) party->given[c] = 0.0;
+  }
+}
+
+/* Two parties as an impulse sees them: the velocity of the second relative to the first, and the change of
+ * that for a unit impulse, by component. */
+typedef struct encounter {
+  mpmi_party *party[2];
+  double velocity[3], compliance[3];
+} encounter;
+
+static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch) {
+  mpmi_party *party = bound->nodes->contact.party;
+  encounter e = {{&party[touch->party[0]], &party[touch->party[1]]}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    e.velocity[c] =
+        mpmi_velocity(bound->values, e.party[1]->slot)[c] - mpmi_velocity(bound->values, e.party[0]->slot)[c];
+    e.compliance[c] = e.party[0]->inverse_mass[c] + e.party[1]->inverse_mass[c];
+  }
+  return e;
+}
+
+static double weighted(const encounter *e, const double *n) {
+  return n[0] * n[0] * e->compliance[0] + n[1] * n[1] * e->compliance[1] + n[2] * n[2] * e->compliance[2];
+}
+
+static double inner(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Gives an impulse to the second party, and its opposite to the first; returns the energy that it takes. */
+static double give(mpmi_bound *bound, const encounter *e, const double *impulse, int32_t keeps) {
+  double taken = 0.0;
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    for (int32_t i = 0; i < 2; ++i) {
+      const double by = (i ? impulse[c] : -impulse[c]) * e->party[i]->inverse_mass[c];
+      if (!(by < 0.0 || by > 0.0)) continue;
+      mpmi_push_node(bound, e->party[i]->slot, c, by);
+      if (!keeps) e->party[i]->given[c] += by;
+    }
+    taken -= impulse[c] * (e->velocity[c] + 0.5 * e->compliance[c] * impulse[c]);
+  }
+  return taken;
+}
+
+/* ---- one touch ----------------------------------------------------------------------------------------- */
+/* Stops the whole relative velocity; returns the largest component of it that could be stopped. */
+static double tie(mpmi_bound *bound, mpmi_touch *touch) {
+  const encounter e = encounter_of(bound, touch);
+  double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    if (!(e.compliance[c] > 0.0)) continue;
+    impulse[c] = -e.velocity[c] / e.compliance[c];
+    stopped = fmax(stopped, fabs(e.velocity[c]));
+  }
+  touch->dissipation += give(bound, &e, impulse, 0);
+  const double along = inner(impulse, touch->normal);
+  touch->normal_impulse += along;
+  for (int32_t c = 0; c < bound->dim; ++c) touch->tangential[c] += impulse[c] - along * touch->normal[c];
+  touch->closed = touch->stuck = 1;
+  return stopped;
+}
+
+/* Returns the tangential impulse after this sweep, by Coulomb's law, in `after`. */
+static void rub(const mpmi_touch *touch, const encounter *e, double approach, double most, double most_stuck,
+                double *after, int32_t *stuck) {
+  double slip[3], squared = 0.0, size = 0.0;
+  for (int32_t c = 0; c < 3; ++c) {
+    slip[c] = e->velocity[c] - approach * touch->normal[c];
+    squared += slip[c] * slip[c];
+    after[c] = touch->tangential[c];
+  }
+  const double compliance = squared > 0.0 ? weighted(e, slip) / squared : 0.0;
+  for (int32_t c = 0; c < 3; ++c) {
+    if (compliance > 0.0) after[c] -= slip[c] / compliance;
+    size += after[c] * after[c];
+  }
+  size = sqrt(size);
+  *stuck = size <= most_stuck;
+  for (int32_t c = 0; c < 3 && !*stuck; ++c) after[c] *= most / size;
+}
+
+/* Lets the bodies push each other. Impulses of further sweeps are added to those of the first, and only the
+ * sum must push. Returns by how much velocities changed. */
+static double push(mpmi_bound *bound, mpmi_touch *touch) {
+  const mpm_contact_desc *rule = touch->rule;
+  const encounter e = encounter_of(bound, touch);
+  const double compliance = weighted(&e, touch->normal), approach = inner(e.velocity, touch->normal);
+  if (!(compliance > 0.0)) {
+    touch->ambiguous = 1; /* both are held */
+    return 0.0;
+  }
+  const int32_t by_velocity = mpmi_detects_by_velocity(rule), apart = !by_velocity && touch->gap > 0.0;
+  const double closing = apart ? touch->gap / bound->step->dt : 0.0;
+  const double pull = apart ? 0.0 : rule->adhesion * touch->area * bound->step->velocity_dt;
+  const double normal = fmax(-pull, touch->normal_impulse - (approach + closing) / compliance);
+  double tangential[3], impulse[3], rubbed = 0.0;
+  rub(touch, &e, approach, touch->friction * (normal + pull), touch->friction_static * (normal + pull),
+      tangential, &touch->stuck);
+  touch->closed = normal > 0.0 || normal < 0.0;
+  touch->stuck &= touch->closed;
+  for (int32_t c = 0; c < 3; ++c) {
+    const double change = tangential[c] - touch->tangential[c];
+    impulse[c] = (normal - touch->normal_impulse) * touch->normal[c] + change;
+  }
+  touch->dissipation += give(bound, &e, impulse, 0);
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    const double change = tangential[c] - touch->tangential[c];
+    rubbed = fmax(rubbed, fabs(change) * e.compliance[c]);
+    touch->friction_work -= change * (e.velocity[c] + 0.5 * e.compliance[c] * impulse[c]);
+    touch->tangential[c] = tangential[c];
+  }
+  const double moved = fabs(normal - touch->normal_impulse) * compliance;
+  touch->normal_impulse = normal;
+  return fmax(moved, rubbed);
+}
+
+/* Keeps a touch as it was found, in a projection without forces: a closed one stays closed both ways. */
+static double keep(mpmi_bound *bound, const mpmi_touch *touch) {
+  if (!touch->closed) return 0.0;
+  const encounter e = encounter_of(bound, touch);
+  const double compliance = weighted(&e, touch->normal), approach = inner(e.velocity, touch->normal);
+  double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    if (touch->stuck && e.compliance[c] > 0.0) {
+      impulse[c] = -e.velocity[c] / e.compliance[c];
+      stopped = fmax(stopped, fabs(e.velocity[c]));
+    } else if (!touch->stuck && compliance > 0.0) {
+      impulse[c] = -approach / compliance * touch->normal[c];
+      stopped = fabs(approach);
+    }
+  }
+  give(bound, &e, impulse, 1);
+  return stopped;
+}
+
+/* ---- meetings ------------------------------------------------------------------------------------------ */
+typedef struct contact_job {
+  mpmi_bound *bound;
+  int32_t keeps, first_round;
+  double *most; /* [tasks] by how much velocities changed */
+} contact_job;
+
+static double act_once(const contact_job *job, mpmi_touch *touch) {
+  if (job->keeps) return keep(job->bound, touch);
+  if (touch->open) return 0.0;
+  return touch->rule->kind == MPM_CONTACT_TIED ? tie(job->bound, touch) : push(job->bound, touch);
+}
+
+/* One touch alone between nodes that are free is settled at once. */
+static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_meeting *meeting) {
+  if (meeting->touch_count != 1) return 0;
+  const mpmi_touch *touch = &contact->touch[meeting->first_touch];
+  for (int32_t i = 0; i < 2; ++i) {
+    const double *inverse = contact->party[touch->party[i]].inverse_mass;
+    for (int32_t c = 1; c < 3; ++c)
+      if (inverse[c] < inverse[0] || inverse[c] > inverse[0]) return 0;
+  }
+  return 1;
+}
+
+static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting) {
+  mpmi_contact_nodes *contact = &job->bound->nodes->contact;
+  const int64_t end = meeting->first_touch + meeting->touch_count;
+  double first = 0.0;
+  if (!meeting->touch_count) return 0.0;
+  for (int64_t p = meeting->first_party; p < meeting->first_party + meeting->party_count && job->first_round;
+       ++p)
+    weigh_party(job->bound, &contact->party[p], job->keeps);
+  for (int64_t i = meeting->first_touch; i < end && job->first_round && !job->keeps; ++i) {
+    mpmi_touch *touch = &contact->touch[i];
+    touch->closed = touch->stuck = 0;
+    touch->normal_impulse = touch->dissipation = touch->friction_work = 0.0;
+    touch->tangential[0] = touch->tangential[1] = touch->tangential[2] = 0.0;
+  }
+  for (int32_t sweep = 0; sweep < SWEEPS; ++sweep) {
+    double most = 0.0;
+    for (int64_t i = meeting->first_touch; i < end; ++i) most = fmax(most, act_once(job, &contact->touch[i]));
+    if (!sweep) first = most;
+    if (!(most > settled * first) || is_settled_at_once(contact, meeting)) break;
+  }
+  return first;
+}
+
+static void sweep_task(void *data, int64_t k) {
+  const contact_job *job = data;
+  const mpmi_contact_nodes *contact = &job->bound->nodes->contact;
+  const mpmi_share share = mpmi_share_of(job->bound->step->settings, contact->meeting_count, k);
+  double most = 0.0;
+  for (int64_t m = share.begin; m < share.end; ++m)
+    most = fmax(most, sweep_meeting(job, &contact->meeting[m]));
+  job->bound->step->work->report[k].contact_change = most;
+}
+
+mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
+  mpmi_contact_nodes *contact = &bound->nodes->contact;
+  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact};
+  mpm_status status = MPM_OK;
+  if (!bound->step->layout->groups.count) return MPM_OK;
+  if (!contact->listed) {
+    status = mpmi_meetings_find(&search);
+    if (!status) status = mpmi_clouds_fill(&search);
+    contact->listed = !status;
+  }
+  if (!status) status = mpmi_gaps_find(&search);
+  return status ? status : mpmi_ask_friction(bound);
+}
+
+mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t first_round, double *most) {
+  const mpmi_settings *settings = bound->step->settings;
+  contact_job job = {bound, keeps, first_round, NULL};
+  *most = 0.0;
+  if (!mpmi_bodies_touch(bound)) return MPM_OK;
+  const mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, sweep_task, &job);
+  for (int32_t k = 0; k < settings->tasks && !status; ++k)
+    *most = fmax(*most, bound->step->work->report[k].contact_change);
+  return status;
+}
+
+/* ---- sums ---------------------------------------------------------------------------------------------- */
+static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_sums *sums) {
+  const mpmi_blocks *b = &bound->step->layout->blocks;
+  double impulse[3], x[3] = {0.0, 0.0, 0.0};
+  int64_t index[3];
+  mpmi_blocks_index(b, bound->nodes->contact.party[touch->party[0]].slot, index);
+  for (int32_t k = 0; k < bound->dim; ++k) x[k] = mpmi_node_position(b->grid, k, index[k]);
+  for (int32_t c = 0; c < 3; ++c) {
+    impulse[c] = touch->normal_impulse * touch->normal[c] + touch->tangential[c];
+    sums->impulse[c] += impulse[c];
+  }
+  for (int32_t c = 0; c < 3; ++c)
+    sums->angular_impulse[c] += x[(c + 1) % 3] * impulse[(c + 2) % 3] - x[(c + 2) % 3] * impulse[(c + 1) % 3];
+  sums->normal_impulse += touch->normal_impulse;
+  sums->area += touch->area;
+  const double force = touch->normal_impulse / bound->step->velocity_dt;
+  if (touch->area > 0.0) sums->pressure_max = fmax(sums->pressure_max, force / touch->area);
+}
+
+void mpmi_body_contacts_sum(mpmi_bound *bound) {
+  const mpmi_contact_nodes *contact = &bound->nodes->contact;
+  mpm_step_info *info = &bound->step->info;
+  info->contact_nodes = 0;
+  info->contact_dissipation = 0.0;
+  if (!bound->step->layout->groups.count) return;
+  for (int64_t m = 0; m < contact->meeting_count; ++m) {
+    const mpmi_meeting *meeting = &contact->meeting[m];
+    int32_t closed = 0;
+    for (int64_t i = meeting->first_touch; i < meeting->first_touch + meeting->touch_count; ++i) {
+      const mpmi_touch *touch = &contact->touch[i];
+      mpmi_pair_sums *sums = &bound->step->pairs->record[touch->record].now;
+      ++sums->nodes;
+      sums->closed += touch->closed;
+      sums->stuck += touch->stuck;
+      sums->ambiguous += touch->ambiguous;
+      sums->gap = fmin(sums->gap, touch->gap);
+      sums->dissipation += touch->dissipation;
+      sums->friction_work += touch->friction_work;
+      info->contact_dissipation += touch->dissipation;
+      closed |= touch->closed;
+      if (touch->closed) add_impulse(bound, touch, sums);
+    }
+    info->contact_nodes += closed;
+  }
+}

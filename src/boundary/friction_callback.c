@@ -1,0 +1,132 @@
+/* The host's coefficients of friction. It sees touches in batches of one pair of bodies, which do not depend
+ * on how tasks share them. */
+#include "boundary/bound.h"
+#include "layout/tasks.h"
+
+#include <math.h>
+
+enum { RANGE = 256 };
+
+typedef struct touch_list {
+  int64_t n, touch[RANGE];
+  double position[3 * RANGE], normal[3 * RANGE], slip[3 * RANGE], gap[RANGE], area[RANGE], pressure[RANGE];
+  double friction[RANGE];
+} touch_list;
+
+static void show_touch(const mpmi_bound *bound, const mpmi_touch *touch, touch_list *list) {
+  const mpmi_blocks *b = &bound->step->layout->blocks;
+  const mpmi_party *party = bound->nodes->contact.party;
+  const int64_t slot[2] = {party[touch->party[0]].slot, party[touch->party[1]].slot}, at = list->n;
+  const double mass[2] = {mpmi_moving_mass(bound, slot[0]), mpmi_moving_mass(bound, slot[1])};
+  double u[3] = {0.0, 0.0, 0.0}, approach = 0.0;
+  int64_t index[3];
+  mpmi_blocks_index(b, slot[0], index);
+  for (int32_t k = 0; k < bound->dim; ++k) {
+    u[k] = mpmi_velocity(bound->values, slot[1])[k] - mpmi_velocity(bound->values, slot[0])[k];
+    approach += u[k] * touch->normal[k];
+    list->position[k * RANGE + at] = mpmi_node_position(b->grid, k, index[k]);
+    list->normal[k * RANGE + at] = touch->normal[k];
+  }
+  for (int32_t k = 0; k < bound->dim; ++k) list->slip[k * RANGE + at] = u[k] - approach * touch->normal[k];
+  const double closing = touch->gap > 0.0 ? touch->gap / bound->step->dt : 0.0;
+  const double impulse = -(approach + closing) / (1.0 / mass[0] + 1.0 / mass[1]);
+  list->gap[at] = touch->gap;
+  list->area[at] = touch->area;
+  list->pressure[at] =
+      impulse > 0.0 && touch->area > 0.0 ? impulse / (touch->area * bound->step->velocity_dt) : 0.0;
+  list->friction[at] = touch->friction;
+}
+
+static void take_answers(mpmi_bound *bound, const touch_list *list, mpmi_failure *failure) {
+  mpmi_contact_nodes *contact = &bound->nodes->contact;
+  for (int64_t i = 0; i < list->n; ++i) {
+    mpmi_touch *touch = &contact->touch[list->touch[i]];
+    const double value = list->friction[i];
+    if (value >= 0.0 && isfinite(value)) {
+      touch->friction = value;
+      touch->friction_static =
+          fmax(value,
+               value > touch->rule->friction || value < touch->rule->friction ? 0.0 : touch->friction_static);
+      continue;
+    }
+    const mpmi_blocks *b = &bound->step->layout->blocks;
+    const mpmi_party *party = &contact->party[touch->party[0]];
+    int64_t index[3];
+    mpmi_blocks_index(b, party->slot, index);
+    mpmi_failure_take(failure,
+                      &(mpmi_failure){.cause = value < 0.0 ? MPM_E_CALLBACK : MPM_NONFINITE,
+                                      .set = -1,
+                                      .particle = -1,
+                                      .node = mpmi_node_number(b->grid, index),
+                                      .body = party->body,
+                                      .what = value < 0.0 ? "the friction of the callback is negative"
+                                                          : "the friction of the callback not finite"});
+  }
+}
+
+/* Asks about the touches of one pair of bodies in [begin, end). */
+static void ask_pair(mpmi_bound *bound, int64_t begin, int64_t end, int64_t record, mpmi_failure *failure) {
+  const mpmi_settings *settings = bound->step->settings;
+  const mpmi_contact_nodes *contact = &bound->nodes->contact;
+  const mpmi_pair_record *pair = &bound->step->pairs->record[record];
+  touch_list list;
+  list.n = 0;
+  for (int64_t i = begin; i < end; ++i) {
+    const mpmi_touch *touch = &contact->touch[i];
+    if (touch->record != record || touch->open || touch->rule->kind != MPM_CONTACT_UNILATERAL) continue;
+    list.touch[list.n] = i;
+    show_touch(bound, touch, &list);
+    ++list.n;
+  }
+  if (!list.n) return;
+  const mpm_contact_batch batch = {.struct_size = sizeof batch,
+                                   .dim = bound->dim,
+                                   .body_a = pair->a,
+                                   .body_b = pair->b,
+                                   .n = list.n,
+                                   .ld = RANGE,
+                                   .t = bound->step->t,
+                                   .dt = bound->step->dt,
+                                   .position = list.position,
+                                   .normal = list.normal,
+                                   .gap = list.gap,
+                                   .area = list.area,
+                                   .slip = list.slip,
+                                   .pressure = list.pressure};
+  const mpm_status status =
+      mpmi_from_host(settings->friction(settings->friction_user, &batch, list.friction));
+  if (status)
+    mpmi_failure_take(failure, &(mpmi_failure){.cause = mpmi_callback_cause(status),
+                                               .callback_status = status,
+                                               .set = -1,
+                                               .particle = -1,
+                                               .node = -1,
+                                               .what = "the friction callback"});
+  else
+    take_answers(bound, &list, failure);
+}
+
+static void ask_range(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failure *failure) {
+  const mpmi_contact_nodes *contact = &bound->nodes->contact;
+  for (int64_t i = begin; i < end && !failure->cause; ++i) {
+    int32_t asked = 0;
+    for (int64_t j = begin; j < i; ++j) asked |= contact->touch[j].record == contact->touch[i].record;
+    if (!asked) ask_pair(bound, begin, end, contact->touch[i].record, failure);
+  }
+}
+
+static void ask_task(void *data, int64_t k) {
+  mpmi_bound *bound = data;
+  const int64_t count = bound->nodes->contact.touch_count;
+  const mpmi_share share = mpmi_share_of(bound->step->settings, (count + RANGE - 1) / RANGE, k);
+  for (int64_t r = share.begin; r < share.end; ++r)
+    ask_range(bound, r * RANGE, (r + 1) * RANGE < count ? (r + 1) * RANGE : count,
+              &bound->step->work->report[k].failure);
+}
+
+mpm_status mpmi_ask_friction(mpmi_bound *bound) {
+  const mpmi_settings *settings = bound->step->settings;
+  if (!settings->friction || !bound->nodes->contact.touch_count) return MPM_OK;
+  const mpm_status status = mpmi_run_tasks(settings, 1, settings->tasks, ask_task, bound);
+  return status ? status : mpmi_step_failure(bound->step);
+}

@@ -1,0 +1,234 @@
+/* Clouds: the particles that have weight at the nodes of a meeting. They are found in two passes through the
+ * blocks around these nodes, one that counts and one that writes, both colour by colour, so that each cloud
+ * has one order. */
+#include "contact/contact.h"
+#include "layout/reached.h"
+#include "layout/tile.h"
+#include "layout/visit.h"
+
+#include <string.h>
+
+typedef struct cloud_job {
+  mpmi_contact_search *search;
+  int32_t fill;
+} cloud_job;
+
+/* ---- which blocks have particles near these nodes ------------------------------------------------------ */
+static void mark_near(const mpmi_contact_search *search) {
+  const mpmi_blocks *b = &search->step->layout->blocks;
+  mpmi_contact_nodes *contact = search->contact;
+  const int32_t dim = b->grid->dim, edge = b->edge, low = MPMI_RING + b->grid->below,
+                high = MPMI_RING + b->grid->width - 1 - b->grid->below;
+  memset(contact->near, 0, (size_t)b->count);
+  for (int64_t i = 0; i < contact->cloud_count; ++i) {
+    const int64_t block = contact->cloud[i].slot / b->nodes;
+    int64_t place = contact->cloud[i].slot % b->nodes;
+    int32_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0}; /* neighbours whose tiles hold the node, by axis */
+    for (int32_t k = dim - 1; k >= 0; --k) {
+      const int64_t at = place % edge;
+      place /= edge;
+      from[k] = at < high ? 0 : 1;
+      to[k] = at >= edge - low ? 2 : 1;
+    }
+    for (int32_t x = from[0]; x <= to[0]; ++x)
+      for (int32_t y = from[1]; y <= to[1]; ++y)
+        for (int32_t z = from[2]; z <= to[2]; ++z) {
+          const int32_t n = dim == 1 ? x : dim == 2 ? 3 * x + y : 9 * x + 3 * y + z;
+          const int32_t other = b->neighbour[block][n];
+          if (other != MPMI_NO_BLOCK) contact->near[other] = 1;
+        }
+  }
+}
+
+/* ---- what a block knows of them ------------------------------------------------------------------------ */
+/* The clouds of the nodes of a tile, or -1, and by the first node of a stencil whether it meets any. */
+typedef struct cloud_tile {
+  int32_t *cloud, *count; /* count: particles by first node of their stencils */
+  uint8_t *meets;
+  int32_t any, edge[3]; /* edge: 1 on axes that the grid does not have, which come first */
+} cloud_tile;
+
+static void load_box(const mpmi_contact_nodes *contact, const mpmi_blocks *b, int64_t block, int32_t n,
+                     const mpmi_spans *spans, cloud_tile *tile) {
+  const mpmi_span *x = &spans->at[0][n / 9], *y = &spans->at[1][n / 3 % 3], *z = &spans->at[2][n % 3];
+  if (!x->length || !y->length || !z->length) return;
+  const int64_t first = (int64_t)b->neighbour[block][n] * b->nodes;
+  for (int32_t i = 0; i < x->length; ++i)
+    for (int32_t j = 0; j < y->length; ++j)
+      for (int32_t k = 0; k < z->length; ++k) {
+        const int64_t slot =
+            first + ((int64_t)(x->block + i) * b->edge + y->block + j) * b->edge + z->block + k;
+        const int32_t at = ((x->tile + i) * tile->edge[1] + y->tile + j) * tile->edge[2] + z->tile + k;
+        tile->cloud[at] = contact->cloud_of[slot];
+        tile->any |= tile->cloud[at] >= 0;
+      }
+}
+
+/* The places of the first nodes of stencils that meet a node. */
+typedef struct first_nodes {
+  int32_t low[3], high[3];
+} first_nodes;
+
+static first_nodes first_nodes_of(const cloud_tile *tile, int32_t width, int32_t node) {
+  first_nodes of;
+  for (int32_t k = 2; k >= 0; --k) {
+    const int32_t at = node % tile->edge[k], reach = tile->edge[k] > 1 ? width - 1 : 0;
+    of.low[k] = at > reach ? at - reach : 0;
+    of.high[k] = at < tile->edge[k] - 1 - reach ? at : tile->edge[k] - 1 - reach;
+    node /= tile->edge[k];
+  }
+  return of;
+}
+
+static void mark_first_nodes(const cloud_tile *tile, int32_t width, int32_t node) {
+  const first_nodes of = first_nodes_of(tile, width, node);
+  for (int32_t i = of.low[0]; i <= of.high[0]; ++i)
+    for (int32_t j = of.low[1]; j <= of.high[1]; ++j)
+      for (int32_t k = of.low[2]; k <= of.high[2]; ++k)
+        tile->meets[(i * tile->edge[1] + j) * tile->edge[2] + k] = 1;
+}
+
+static int64_t count_at(const cloud_tile *tile, int32_t width, int32_t node) {
+  const first_nodes of = first_nodes_of(tile, width, node);
+  int64_t count = 0;
+  for (int32_t i = of.low[0]; i <= of.high[0]; ++i)
+    for (int32_t j = of.low[1]; j <= of.high[1]; ++j)
+      for (int32_t k = of.low[2]; k <= of.high[2]; ++k)
+        count += tile->count[(i * tile->edge[1] + j) * tile->edge[2] + k];
+  return count;
+}
+
+static cloud_tile load_tile(const mpmi_contact_search *search, int64_t block, double *memory) {
+  const mpmi_blocks *b = &search->step->layout->blocks;
+  const mpm_grid *grid = b->grid;
+  const int32_t nodes = mpmi_tile_nodes(grid), edge = MPMI_TILE_EDGE(grid->dim, grid->width);
+  cloud_tile tile = {(int32_t *)(void *)memory, NULL, NULL, 0, {1, 1, 1}};
+  tile.count = tile.cloud + nodes;
+  tile.meets = (uint8_t *)(tile.count + nodes);
+  for (int32_t k = 3 - grid->dim; k < 3; ++k) tile.edge[k] = edge;
+  for (int32_t i = 0; i < nodes; ++i) tile.cloud[i] = -1;
+  const mpmi_spans spans = mpmi_spans_of(b, block);
+  for (int32_t n = 0; n < b->neighbours; ++n) load_box(search->contact, b, block, n, &spans, &tile);
+  if (!tile.any) return tile;
+  memset(tile.meets, 0, (size_t)nodes);
+  for (int32_t i = 0; i < nodes; ++i)
+    if (tile.cloud[i] >= 0) mark_first_nodes(&tile, grid->width, i);
+  return tile;
+}
+
+/* ---- particles ----------------------------------------------------------------------------------------- */
+/* A chunk of a set's particles. */
+typedef struct cloud_particles {
+  const mpmi_weights *weights;
+  const cloud_tile *tile;
+  int64_t slot; /* of the first of them */
+  int32_t member;
+  const double *volume;
+} cloud_particles;
+
+/* One axis of a particle's stencil; an axis that the grid does not have is one node wide. */
+typedef struct stencil_axis {
+  int32_t width;
+  double w[MPMI_MAX_WIDTH], g[MPMI_MAX_WIDTH];
+} stencil_axis;
+
+static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of, const mpm_grid *grid,
+                         int64_t p) {
+  const cloud_tile *tile = of->tile;
+  const int32_t first = of->weights->node[p];
+  const double volume = of->volume[of->slot + p];
+  stencil_axis axis[3];
+  for (int32_t k = 0; k < 3; ++k) {
+    const int32_t of_grid = k - (3 - grid->dim);
+    axis[k].width = of_grid < 0 ? 1 : grid->width;
+    axis[k].w[0] = 1.0, axis[k].g[0] = 0.0;
+    for (int32_t a = 0; a < grid->width && of_grid >= 0; ++a) {
+      axis[k].w[a] = of->weights->w[of_grid][a][p];
+      axis[k].g[a] = of->weights->g[of_grid][a][p];
+    }
+  }
+  for (int32_t i = 0; i < axis[0].width; ++i)
+    for (int32_t j = 0; j < axis[1].width; ++j) {
+      const double w = axis[0].w[i] * axis[1].w[j], g0 = volume * axis[0].g[i] * axis[1].w[j];
+      const double g1 = volume * axis[0].w[i] * axis[1].g[j];
+      const int32_t *cloud = tile->cloud + first + (i * tile->edge[1] + j) * tile->edge[2];
+      for (int32_t k = 0; k < axis[2].width; ++k) {
+        if (cloud[k] < 0 || !(w * axis[2].w[k] > 0.0)) continue;
+        mpmi_cloud *to = &contact->cloud[cloud[k]];
+        contact->entry[to->first + to->count++] = (mpmi_cloud_entry){
+            .slot = (uint32_t)(of->slot + p), .member = of->member, .weight = w * axis[2].w[k]};
+        to->gradient[0] += g0 * axis[2].w[k]; /* the last axes are those of the grid */
+        to->gradient[1] += g1 * axis[2].w[k];
+        to->gradient[2] += volume * w * axis[2].g[k];
+      }
+    }
+}
+
+/* Adds the counts of the tile to those of the clouds, which may be too large: a particle at the edge of its
+ * stencil has no weight there. */
+static void add_counts(mpmi_contact_nodes *contact, const cloud_tile *tile, const mpm_grid *grid) {
+  for (int32_t i = 0; i < mpmi_tile_nodes(grid); ++i)
+    if (tile->cloud[i] >= 0) contact->cloud[tile->cloud[i]].count += count_at(tile, grid->width, i);
+}
+
+static void visit_block(void *user, const mpmi_visit *visit) {
+  const cloud_job *job = user;
+  mpmi_contact_search *search = job->search;
+  const mpmi_step *step = search->step;
+  const mpmi_layout *layout = step->layout;
+  const mpm_grid *grid = layout->blocks.grid;
+  if (!search->contact->near[visit->block]) return;
+  mpmi_tile_use(grid, step->work->scratch[visit->task].tile, 8);
+  const cloud_tile tile = load_tile(search, visit->block, step->work->scratch[visit->task].tile);
+  if (!tile.any) return;
+  mpmi_axis axis[3];
+  mpmi_weights W;
+  mpmi_block_axes(grid, layout->blocks.coord[visit->block], axis);
+  memset(tile.count, 0, (size_t)mpmi_tile_nodes(grid) * sizeof *tile.count);
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const mpmi_member *member = &layout->member[m];
+    const int64_t begin = member->now.start[visit->block], end = member->now.start[visit->block + 1];
+    if (begin == end) continue;
+    const mpmi_points points = mpmi_points_of(member->set, 0);
+    const int64_t *id = mpmi_i64(member->set, MPMI_ID, 0);
+    for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
+      const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
+      step->settings->kernels->weights[grid->family][grid->dim](axis, job->fill ? MPMI_NEED_GRADIENT : 0,
+                                                                &points, s, n, &W);
+      const cloud_particles of = {&W, &tile, s, m, mpmi_f64(member->set, MPMI_VOLUME, 0)};
+      for (int64_t p = 0; p < n; ++p) {
+        if (id[s + p] < 0 || !tile.meets[W.node[p]]) continue;
+        if (job->fill)
+          add_particle(search->contact, &of, grid, p);
+        else
+          ++tile.count[W.node[p]];
+      }
+    }
+  }
+  if (!job->fill) add_counts(search->contact, &tile, grid);
+}
+
+mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {
+  mpm_context *c = search->step->settings->context;
+  mpmi_contact_nodes *contact = search->contact;
+  cloud_job job = {search, 0};
+  mpm_status status =
+      MPMI_RESERVE_MORE(c, contact->near, contact->near_capacity, search->step->layout->blocks.count);
+  if (status) return status;
+  mark_near(search);
+  if ((status = mpmi_visit_colours(search->step, 0, visit_block, &job))) return status;
+  contact->entry_count = 0;
+  for (int64_t i = 0; i < contact->cloud_count; ++i) {
+    contact->cloud[i].first = contact->entry_count; /* images count none */
+    contact->entry_count += contact->cloud[i].count;
+    contact->cloud[i].count = 0;
+  }
+  status = MPMI_RESERVE_MORE(c, contact->entry, contact->entry_capacity, contact->entry_count);
+  job.fill = 1;
+  if (!status) status = mpmi_visit_colours(search->step, 0, visit_block, &job);
+  const int32_t unused = 3 - search->step->layout->blocks.grid->dim;
+  for (int64_t i = 0; i < contact->cloud_count && unused; ++i)
+    for (int32_t k = 0; k < 3; ++k)
+      contact->cloud[i].gradient[k] = k + unused < 3 ? contact->cloud[i].gradient[k + unused] : 0.0;
+  return status;
+}

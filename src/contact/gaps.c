@@ -1,0 +1,301 @@
+/* Normal, gap and area of each touch, from the particles around its node. */
+#include "contact/contact.h"
+#include "layout/tasks.h"
+#include "particles/particles.h"
+#include "simd/elementary.h"
+
+#include <math.h>
+
+/* Particles are looked at as far as this from the line through the node along the normal, in spacings: those
+ * farther off belong to another part of the surface. */
+static const double reach = 0.75;
+/* A gap above this share of the spacing, and above what both bodies can close in two steps, stays open: no
+ * better normal is looked for. */
+static const double surely_open = 0.25;
+
+/* ---- particles of a touch ------------------------------------------------------------------------------ */
+/* The particles of the two parties, side by side in arrays, those of the second from padded[0] on. */
+typedef struct around {
+  const mpmi_contact_search *search;
+  const mpmi_party *party[2];
+  mpmi_separation points;
+  double *x[3], *weight, *half_edge; /* the last: half the edge of the cube that a particle has been */
+  double *along, *off;               /* of the normal that is looked at */
+} around;
+enum { ROWS = 7 };
+
+static int64_t party_particles(const mpmi_contact_nodes *contact, const mpmi_party *party) {
+  int64_t count = 0;
+  for (int64_t i = 0; i < party->cloud_count; ++i)
+    count += contact->cloud[contact->cloud[party->first_cloud + i].source].count;
+  return count;
+}
+
+static int64_t padded(int64_t count) {
+  return (count + MPMI_CHUNK - 1) / MPMI_CHUNK * MPMI_CHUNK;
+}
+
+static double half_edge(int32_t dim, double volume) {
+  switch (dim) {
+  case 1:
+    return 0.5 * volume;
+  case 2:
+    return 0.5 * sqrt(volume);
+  default:
+    return 0.5 * mpmi_cbrt(volume);
+  }
+}
+
+/* From the node of a cloud to a particle, in cells, as the master of the cloud's party sees it. */
+static void place_of(const around *of, const mpmi_cloud *cloud, const double *node,
+                     const mpmi_cloud_entry *entry, double *x) {
+  const mpm_particles *set = of->search->step->layout->member[entry->member].set;
+  const mpm_grid *grid = set->grid;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    double from = mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + entry->slot] - node[k];
+    if (grid->desc.periodic[k]) {
+      const double period = (double)grid->desc.cells[k] * grid->desc.spacing[k];
+      from -= period * rint(from / period);
+    }
+    x[k] = (cloud->mirrored >> k & 1 ? -from : from) * grid->inverse_spacing[k];
+  }
+}
+
+static void node_of(const mpmi_blocks *b, int64_t slot, double *at) {
+  int64_t index[3];
+  mpmi_blocks_index(b, slot, index);
+  for (int32_t k = 0; k < b->grid->dim; ++k) at[k] = mpmi_node_position(b->grid, k, index[k]);
+}
+
+/* Collects the particles of one party. Equal volumes in a row have equal edges. */
+static void collect(around *of, int32_t which) {
+  const mpmi_layout *layout = of->search->step->layout;
+  const mpm_grid *grid = layout->blocks.grid;
+  const mpmi_contact_nodes *contact = of->search->contact;
+  const mpmi_party *party = of->party[which];
+  int64_t at = of->points.first[which];
+  double last_volume = -1.0, r = 0.0, ball = 0.0;
+  for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
+    const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
+    double node[3];
+    node_of(&layout->blocks, cloud->slot, node);
+    for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
+      const mpmi_cloud_entry *entry = &contact->entry[e];
+      const mpm_particles *set = layout->member[entry->member].set;
+      const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[entry->slot];
+      double x[3];
+      place_of(of, cloud, node, entry, x);
+      for (int32_t k = 0; k < grid->dim; ++k) of->x[k][at] = x[k];
+      of->weight[at] = entry->weight * mpmi_f64(set, MPMI_VOLUME, 0)[entry->slot];
+      if (volume < last_volume || volume > last_volume) r = half_edge(grid->dim, volume);
+      last_volume = volume;
+      of->half_edge[at] = r;
+      ball += of->weight[at] * r * r / 3.0;
+    }
+  }
+  for (int32_t k = 0; k < grid->dim; ++k)
+    of->points.ball[which][k] = ball * grid->inverse_spacing[k] * grid->inverse_spacing[k];
+  for (; at < of->points.first[which] + of->points.padded[which]; ++at) {
+    for (int32_t k = 0; k < grid->dim; ++k) of->x[k][at] = 0.0;
+    of->weight[at] = 0.0;
+  }
+}
+
+/* ---- gaps ---------------------------------------------------------------------------------------------- */
+/* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F has
+ * deformed; at most half a cell. n: as the particle itself sees it. */
+static double half_width(const mpm_particles *set, int64_t slot, double edge, const double *n) {
+  const mpm_grid *grid = set->grid;
+  const double *F = mpmi_f64(set, MPMI_F, 0);
+  const int32_t dim = grid->dim, *map = mpmi_tensor_map(dim), components = mpmi_tensor_components(dim);
+  double along[3] = {0.0, 0.0, 0.0}, width = 0.0; /* F^T n */
+  for (int32_t c = 0; c < components; ++c)
+    if (map[c] / 3 < dim && map[c] % 3 < dim) along[map[c] % 3] += F[c * set->ld + slot] * n[map[c] / 3];
+  if (mpmi_has_domains(grid)) {
+    for (int32_t k = 0; k < dim; ++k)
+      width += 0.5 * mpmi_f64(set, MPMI_SIZE, 0)[k * set->ld + slot] * fabs(along[k]);
+  } else {
+    for (int32_t k = 0; k < dim; ++k) width += along[k] * along[k];
+    width = edge * sqrt(width);
+  }
+  return width < 0.5 * grid->h_min ? width : 0.5 * grid->h_min;
+}
+
+/* Returns how far a party reaches along the unit vector n of the projection, or against it for the second
+ * one: the largest x . n + R over its particles that are off the line through the node by no more than the
+ * limit. most: the same without R. */
+static double extent(const around *of, int32_t which, const double *n, double limit, double most) {
+  const mpmi_layout *layout = of->search->step->layout;
+  const mpm_grid *grid = layout->blocks.grid;
+  const mpmi_contact_nodes *contact = of->search->contact;
+  const mpmi_party *party = of->party[which];
+  const double half = 0.5 * grid->h_min, sign = which ? -1.0 : 1.0;
+  int64_t at = of->points.first[which];
+  for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
+    const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
+    double seen[3] = {0.0, 0.0, 0.0};
+    for (int32_t k = 0; k < grid->dim; ++k) seen[k] = cloud->mirrored >> k & 1 ? -n[k] : n[k];
+    for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
+      const double along = sign * of->along[at];
+      if (along + half <= most || of->off[at] > limit) continue;
+      const mpmi_cloud_entry *entry = &contact->entry[e];
+      const double far =
+          along + half_width(layout->member[entry->member].set, entry->slot, of->half_edge[at], seen);
+      most = far > most ? far : most;
+    }
+  }
+  return most;
+}
+
+/* The gap between all particles of both, or between those near the line through the node; infinite where one
+ * of them has none. */
+static double gap_along(const around *of, const double *n, int32_t whole) {
+  const mpmi_step *step = of->search->step;
+  const mpm_grid *grid = step->layout->blocks.grid;
+  const double limit = whole || grid->dim == 1 ? (double)INFINITY : reach * reach * grid->h_min * grid->h_min;
+  double most[2];
+  step->settings->kernels->project[grid->dim](&of->points, grid->desc.spacing, n, limit, of->along, of->off,
+                                              most);
+  return -extent(of, 0, n, limit, most[0]) - extent(of, 1, n, limit, most[1]);
+}
+
+/* ---- normals ------------------------------------------------------------------------------------------- */
+/* Makes a unit vector of the direction of a plane in cells. */
+static void normal_of_plane(const mpm_grid *grid, const double *plane, double *n) {
+  double squared = 0.0;
+  for (int32_t k = 0; k < 3; ++k) {
+    n[k] = k < grid->dim ? plane[k] * grid->inverse_spacing[k] : 0.0;
+    squared += n[k] * n[k];
+  }
+  for (int32_t k = 0; k < 3; ++k) n[k] /= sqrt(squared);
+}
+
+/* The mean gradient of both, G_a - G_b: twice the area of the node times its normal; with or without what
+ * stands beyond walls on whose plane the node lies. */
+static void mean_gradient(const around *of, int32_t images, double *gradient) {
+  const mpmi_contact_nodes *contact = of->search->contact;
+  for (int32_t k = 0; k < 3; ++k) gradient[k] = 0.0;
+  for (int32_t which = 0; which < 2; ++which) {
+    const mpmi_party *party = of->party[which];
+    const double sign = which ? -1.0 : 1.0;
+    for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
+      const mpmi_cloud *cloud = &contact->cloud[i];
+      if (!images && cloud->source != i) continue;
+      for (int32_t k = 0; k < 3; ++k)
+        gradient[k] += (cloud->mirrored >> k & 1 ? -sign : sign) * contact->cloud[cloud->source].gradient[k];
+    }
+  }
+}
+
+static int32_t gradient_normal(const double *gradient, double *n) {
+  const double squared = gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
+  if (!(squared > 0.0)) return 0;
+  for (int32_t k = 0; k < 3; ++k) n[k] = gradient[k] / sqrt(squared);
+  return 1;
+}
+
+/* How fast the bodies move against each other at the node. */
+static double relative_speed(const around *of) {
+  const mpmi_nodal *values = of->search->values;
+  double squared = 0.0;
+  for (int32_t k = 0; k < of->search->step->layout->blocks.grid->dim; ++k) {
+    const double u =
+        mpmi_velocity(values, of->party[1]->slot)[k] - mpmi_velocity(values, of->party[0]->slot)[k];
+    squared += u * u;
+  }
+  return sqrt(squared);
+}
+
+/* Finds the normal by the particles. Returns 0 where there is none; open becomes 1 where the bodies are too
+ * far apart to need a better one than that of the discriminant. */
+static int32_t plane_normal(around *of, mpmi_touch *touch) {
+  const mpmi_step *step = of->search->step;
+  const mpm_grid *grid = step->layout->blocks.grid;
+  const mpmi_kernels *kernels = step->settings->kernels;
+  if (!kernels->discriminate[grid->dim](&of->points)) return 0;
+  normal_of_plane(grid, of->points.plane, touch->normal);
+  if (!mpmi_detects_by_velocity(touch->rule)) {
+    const double least = fmax(surely_open * grid->h_min, 2.0 * step->dt * relative_speed(of));
+    /* that of all particles is no wider than that of some */
+    double gap = gap_along(of, touch->normal, 0) - touch->rule->offset;
+    if (gap > least) gap = gap_along(of, touch->normal, 1) - touch->rule->offset;
+    touch->open = gap > least;
+    if (touch->open) touch->gap = gap;
+  }
+  if (touch->open || touch->rule->normal == MPM_NORMAL_DISCRIMINANT) return 1;
+  double fitted[3];
+  if (!kernels->fit[grid->dim](&of->points)) return 1;
+  normal_of_plane(grid, of->points.plane, fitted);
+  if (!(fitted[0] - fitted[0] + fitted[1] - fitted[1] + fitted[2] - fitted[2] == 0.0)) return 1;
+  for (int32_t k = 0; k < 3; ++k) touch->normal[k] = fitted[k];
+  return 1;
+}
+
+static int32_t find_normal(around *of, const double *gradient, mpmi_touch *touch) {
+  const mpm_contact_desc *rule = touch->rule;
+  if (rule->kind == MPM_CONTACT_TIED || rule->normal == MPM_NORMAL_GRADIENT)
+    return gradient_normal(gradient, touch->normal);
+  if (rule->normal != MPM_NORMAL_FIXED) return plane_normal(of, touch);
+  for (int32_t k = 0; k < 3; ++k) touch->normal[k] = touch->direction_sign * rule->direction[k];
+  return 1;
+}
+
+static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, double *memory) {
+  const mpmi_contact_nodes *contact = search->contact;
+  const mpm_grid *grid = search->step->layout->blocks.grid;
+  around of = {.search = search,
+               .party = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]}};
+  touch->open = touch->ambiguous = 0;
+  touch->gap = (double)INFINITY;
+  touch->friction = touch->rule->friction;
+  touch->friction_static = fmax(touch->rule->friction, touch->rule->friction_static);
+  int64_t first = 0;
+  for (int32_t c = 0; c < 2; ++c) {
+    of.points.count[c] = party_particles(contact, of.party[c]);
+    of.points.first[c] = first;
+    of.points.padded[c] = padded(of.points.count[c]);
+    first += of.points.padded[c];
+  }
+  for (int32_t k = 0; k < 3; ++k) of.points.x[k] = of.x[k] = memory + k * first;
+  of.points.weight = of.weight = memory + 3 * first;
+  of.half_edge = memory + 4 * first;
+  of.along = memory + 5 * first;
+  of.off = memory + 6 * first;
+  collect(&of, 0);
+  collect(&of, 1);
+  double gradient[3], along = 0.0;
+  mean_gradient(&of, 1, gradient);
+  if (!find_normal(&of, gradient, touch)) {
+    touch->open = touch->ambiguous = touch->rule->kind != MPM_CONTACT_TIED;
+    return;
+  }
+  mean_gradient(&of, 0, gradient);
+  for (int32_t k = 0; k < 3; ++k) along += gradient[k] * touch->normal[k];
+  touch->area = 0.5 * fabs(along);
+  if (touch->open || touch->rule->kind == MPM_CONTACT_TIED) return;
+  touch->gap = gap_along(&of, touch->normal, 0) - touch->rule->offset;
+  if (!mpmi_detects_by_velocity(touch->rule)) touch->open = !(touch->gap <= grid->h_min);
+}
+
+static void find_task(void *data, int64_t k) {
+  const mpmi_contact_search *search = data;
+  mpmi_contact_nodes *contact = search->contact;
+  const mpmi_share share = mpmi_share_of(search->step->settings, contact->touch_count, k);
+  for (int64_t i = share.begin; i < share.end; ++i)
+    find_touch(search, &contact->touch[i], contact->work + k * contact->work_each);
+}
+
+mpm_status mpmi_gaps_find(mpmi_contact_search *search) {
+  const mpmi_settings *settings = search->step->settings;
+  mpmi_contact_nodes *contact = search->contact;
+  contact->work_each = 0;
+  for (int64_t i = 0; i < contact->touch_count; ++i) {
+    int64_t most = 0;
+    for (int32_t c = 0; c < 2; ++c)
+      most += padded(party_particles(contact, &contact->party[contact->touch[i].party[c]]));
+    if (ROWS * most > contact->work_each) contact->work_each = ROWS * most;
+  }
+  const mpm_status status = MPMI_RESERVE_MORE(settings->context, contact->work, contact->work_capacity,
+                                              contact->work_each * settings->tasks);
+  return status ? status : mpmi_run_tasks(settings, 0, settings->tasks, find_task, search);
+}

@@ -1,0 +1,114 @@
+/* Nodes at which bodies meet, as contact finds them in a step. Nodes of several bodies at one index are a
+ * meeting; each of its bodies is a party, with the nodes that are tied together as one; each two of its
+ * parties that may act on each other are a touch. The particles that have weight at a node of a party are a
+ * cloud.
+ *
+ * All lists have one order, which follows from blocks, nodes, bodies and slots. */
+#ifndef MPMI_CONTACT_NODES_H
+#define MPMI_CONTACT_NODES_H
+
+#include "grid/constraints.h"
+#include "layout/contact_rules.h"
+
+/* Blocks of several bodies at one place: [first, first + count) of the list of blocks. */
+typedef struct mpmi_block_group {
+  int32_t first, count;
+} mpmi_block_group;
+typedef struct mpmi_block_groups {
+  int64_t count, capacity;
+  mpmi_block_group *group;
+} mpmi_block_groups;
+
+/* A particle with weight at a node. */
+typedef struct mpmi_cloud_entry {
+  uint32_t slot;
+  int32_t member;
+  double weight;
+} mpmi_cloud_entry;
+
+/* The particles with weight at one node of a party: its master, or one that follows it. A node on the
+ * plane of a wall is its own mirror image, and has the cloud of its particles twice. */
+typedef struct mpmi_cloud {
+  int64_t slot;
+  int64_t party;
+  int64_t source;       /* the cloud that has its particles: itself, or that of which it is the image */
+  int64_t first, count; /* of the entries */
+  int64_t follower;     /* of the constraints, or -1 for the master */
+  int32_t mirrored;     /* bits: axes on which it is the master's mirror image */
+  double gradient[3];   /* sum of V grad w: the surface integral of w n */
+} mpmi_cloud;
+
+typedef struct mpmi_party {
+  int64_t slot; /* of the master */
+  int32_t body;
+  int64_t meeting;
+  int64_t first_cloud, cloud_count;
+  double inverse_mass[3]; /* of all that moves with it; 0 where the component is held */
+  double given[3];        /* by how much contact has changed what particles take per mass */
+} mpmi_party;
+
+/* What happened between two bodies at a node. The normal is that from the first to the second party. */
+typedef struct mpmi_touch {
+  int64_t party[2];
+  const mpm_contact_desc *rule;
+  int64_t record; /* of the pair of bodies */
+  double direction_sign;
+  double friction, friction_static;
+  double normal[3];
+  double gap;  /* infinite: no contact */
+  double area; /* length^(dim - 1) */
+  double normal_impulse, tangential[3];
+  double dissipation, friction_work;
+  int32_t open, closed, stuck, ambiguous; /* open: it cannot close in this step */
+} mpmi_touch;
+
+typedef struct mpmi_meeting {
+  int64_t first_party, party_count, first_touch, touch_count;
+} mpmi_meeting;
+
+/* What two bodies do to each other in a step, or have done. */
+typedef struct mpmi_pair_sums {
+  int64_t nodes, closed, stuck, ambiguous;
+  double impulse[3], angular_impulse[3], normal_impulse, area, pressure_max, gap, dissipation, friction_work;
+} mpmi_pair_sums;
+
+typedef struct mpmi_pair_record {
+  int32_t a, b; /* a < b */
+  mpmi_pair_sums last, now;
+  double impulse_total[3]; /* of all committed steps */
+} mpmi_pair_record;
+
+/* Pairs of bodies that ever were near each other, ordered by (a, b). */
+typedef struct mpmi_pair_records {
+  int64_t count, capacity;
+  mpmi_pair_record *record;
+} mpmi_pair_records;
+
+/* Returns the number of a pair's record, or -1. */
+int64_t mpmi_pair_find(const mpmi_pair_records *records, int32_t a, int32_t b);
+/* Adds an empty record for a pair that has none. */
+mpm_status mpmi_pair_add(mpmi_pair_records *records, mpm_context *context, int32_t a, int32_t b);
+
+/* What contact works with in a step. */
+typedef struct mpmi_contact_nodes {
+  int64_t meeting_count, party_count, touch_count, cloud_count, entry_count;
+  int64_t meeting_capacity, party_capacity, touch_capacity, cloud_capacity, entry_capacity;
+  mpmi_meeting *meeting;
+  mpmi_party *party;
+  mpmi_touch *touch;
+  mpmi_cloud *cloud;
+  mpmi_cloud_entry *entry;
+  int32_t *cloud_of;            /* [slots] the cloud of a node, or -1 */
+  int64_t map_capacity, mapped; /* mapped: the version of the layout for which cloud_of was made */
+  uint8_t *near;                /* [blocks] 1: particles of the block may belong to clouds */
+  int64_t near_capacity;
+  int64_t *group_count; /* [groups][2] meetings and parties, then the numbers of the first ones */
+  int64_t group_capacity;
+  double *work; /* [tasks][work_each] memory to find normals in */
+  int64_t work_capacity, work_each;
+  int32_t listed; /* meetings and clouds are those of the step */
+} mpmi_contact_nodes;
+
+void mpmi_contact_nodes_free(mpmi_contact_nodes *contact, mpm_context *context);
+
+#endif

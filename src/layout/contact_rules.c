@@ -1,0 +1,77 @@
+#include "layout/contact_rules.h"
+#include "context/structs.h"
+
+#include <string.h>
+
+static const mpm_contact_desc defaults = {.struct_size = sizeof defaults};
+
+mpm_status mpm_contact_desc_init(mpm_contact_desc *desc, uint32_t struct_size) {
+  return mpmi_init_struct("mpm_contact_desc", &defaults, sizeof defaults, desc, struct_size);
+}
+
+/* Returns the place of a pair in the list, or where it would have to be inserted. */
+static int64_t place_of(const mpmi_contact_rules *rules, int32_t a, int32_t b) {
+  int64_t low = 0, high = rules->count;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    const mpmi_contact_rule *rule = &rules->rule[middle];
+    if (rule->a < a || (rule->a == a && rule->b < b))
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+const mpm_contact_desc *mpmi_contact_rule_at(const mpmi_contact_rules *rules, int32_t a, int32_t b) {
+  const int64_t at = place_of(rules, a, b);
+  return at < rules->count && rules->rule[at].a == a && rules->rule[at].b == b ? &rules->rule[at].desc : NULL;
+}
+
+const mpm_contact_desc *mpmi_contact_rule_of(const mpmi_contact_rules *rules, int32_t a, int32_t b,
+                                             double *sign) {
+  const mpm_contact_desc *desc = mpmi_contact_rule_at(rules, a, b);
+  *sign = 1.0;
+  if (!desc && (desc = mpmi_contact_rule_at(rules, MPM_BODY_ANY, a)))
+    *sign = -1.0; /* it is from any other to a */
+  if (!desc) desc = mpmi_contact_rule_at(rules, MPM_BODY_ANY, b);
+  if (!desc) desc = mpmi_contact_rule_at(rules, MPM_BODY_ANY, MPM_BODY_ANY);
+  return desc ? desc : &defaults;
+}
+
+mpm_status mpmi_contact_rules_set(mpmi_contact_rules *rules, mpm_context *context, int32_t a, int32_t b,
+                                  const mpm_contact_desc *desc) {
+  const int64_t at = place_of(rules, a, b);
+  const int32_t there = mpmi_contact_rule_at(rules, a, b) != NULL;
+  if (!desc) {
+    if (!there) return MPM_OK;
+    --rules->count;
+    memmove(rules->rule + at, rules->rule + at + 1, (size_t)(rules->count - at) * sizeof *rules->rule);
+    return MPM_OK;
+  }
+  if (!there && rules->count == rules->capacity) {
+    const int64_t capacity = rules->capacity ? 2 * rules->capacity : 4;
+    mpmi_contact_rule *rule = mpmi_alloc(context, mpmi_bytes(capacity, sizeof *rule));
+    if (!rule) return MPM_E_NOMEM;
+    if (rules->count) memcpy(rule, rules->rule, (size_t)rules->count * sizeof *rule);
+    MPMI_FREE_ARRAY(context, rules->rule, rules->capacity);
+    rules->rule = rule;
+    rules->capacity = capacity;
+  }
+  if (!there) {
+    memmove(rules->rule + at + 1, rules->rule + at, (size_t)(rules->count - at) * sizeof *rules->rule);
+    ++rules->count;
+  }
+  rules->rule[at] = (mpmi_contact_rule){a, b, *desc};
+  return MPM_OK;
+}
+
+void mpmi_contact_rules_free(mpmi_contact_rules *rules, mpm_context *context) {
+  MPMI_FREE_ARRAY(context, rules->rule, rules->capacity);
+  *rules = (mpmi_contact_rules){0, 0, NULL};
+}
+
+int32_t mpmi_detects_by_velocity(const mpm_contact_desc *desc) {
+  return desc->detection == MPM_DETECT_VELOCITY ||
+         (desc->detection == MPM_DETECT_DEFAULT && desc->normal == MPM_NORMAL_GRADIENT);
+}

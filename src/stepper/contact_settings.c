@@ -1,0 +1,145 @@
+/* Which sets are a body, and how bodies meet. */
+#include "context/structs.h"
+#include "layout/members.h"
+#include "stepper/stepper.h"
+
+#include <math.h>
+
+/* ---- what is offered ----------------------------------------------------------------------------------- */
+mpm_status mpmi_check_bodies(const mpm_stepper *s, int32_t scheme, int32_t with_body) {
+  const mpmi_layout *layout = &s->layout;
+  for (int32_t m = 0; m < layout->member_count && scheme == MPM_NEWMARK; ++m)
+    for (int32_t n = m + 1; n <= layout->member_count; ++n) {
+      const int32_t a = layout->member[m].body,
+                    b = n < layout->member_count ? layout->member[n].body : with_body;
+      const int32_t low = a < b ? a : b, high = a < b ? b : a;
+      double sign;
+      if (low == high || low < 0) continue;
+      if (mpmi_contact_rule_of(&s->settings.contact, low, high, &sign)->kind != MPM_CONTACT_NONE)
+        return mpmi_fail(
+            s->context, MPM_E_UNSUPPORTED,
+            "scheme MPM_NEWMARK has no contact of bodies, such as %d and %d: set MPM_CONTACT_NONE "
+            "for them, put their sets into one body, or use an explicit scheme",
+            (int)low, (int)high);
+    }
+  return MPM_OK;
+}
+
+/* ---- bodies -------------------------------------------------------------------------------------------- */
+static mpm_status check_body(const mpm_stepper *s, int32_t body) {
+  if (body >= 0 && body < MPMI_MAX_BODIES) return MPM_OK;
+  return mpmi_fail(s->context, MPM_E_ARG, "body is %d: it must be 0 ... %d", (int)body, MPMI_MAX_BODIES - 1);
+}
+
+mpm_status mpm_stepper_set_body(mpm_stepper *s, mpm_particles *particles, int32_t body) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  int32_t m;
+  mpm_status status = mpmi_stepper_idle(s);
+  if (!status) status = mpmi_members_find(&s->layout, &s->settings, particles, &m);
+  if (!status) status = check_body(s, body);
+  if (status) return status;
+  mpmi_member *member = &s->layout.member[m];
+  const int32_t was = member->body;
+  if (body == was) return MPM_OK;
+  member->body = body;
+  if ((status = mpmi_check_bodies(s, s->settings.desc.scheme, -1))) {
+    member->body = was;
+    return status;
+  }
+  particles->dirty |= MPMI_DIRTY_PLACE;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_body(const mpm_stepper *s, const mpm_particles *particles, int32_t *body) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  int32_t m;
+  if (!body) return mpmi_fail(s->context, MPM_E_ARG, "body is NULL");
+  const mpm_status status = mpmi_members_find(&s->layout, &s->settings, particles, &m);
+  if (!status) *body = s->layout.member[m].body;
+  return status;
+}
+
+/* ---- rules --------------------------------------------------------------------------------------------- */
+static mpm_status check_magnitude(mpm_context *c, const char *name, double value) {
+  if (value >= 0.0 && isfinite(value)) return MPM_OK;
+  return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and >= 0", name, value);
+}
+
+static mpm_status check_choice(mpm_context *c, const char *name, int32_t value, const char *range,
+                               int32_t last) {
+  if (value >= 0 && value <= last) return MPM_OK;
+  return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be an %s", name, (int)value, range);
+}
+
+mpm_status mpmi_contact_desc_check(mpm_context *c, int32_t a, int32_t b, const mpm_contact_desc *d) {
+  mpm_status status;
+  if ((status = check_choice(c, "kind", d->kind, "MPM_CONTACT_UNILATERAL ... MPM_CONTACT_TIED",
+                             MPM_CONTACT_TIED)) ||
+      (status = check_choice(c, "normal", d->normal, "MPM_NORMAL_LOGISTIC ... MPM_NORMAL_FIXED",
+                             MPM_NORMAL_FIXED)) ||
+      (status = check_choice(c, "detection", d->detection, "MPM_DETECT_DEFAULT ... MPM_DETECT_VELOCITY",
+                             MPM_DETECT_VELOCITY)) ||
+      (status = check_magnitude(c, "friction", d->friction)) ||
+      (status = check_magnitude(c, "friction_static", d->friction_static)) ||
+      (status = check_magnitude(c, "adhesion", d->adhesion)))
+    return status;
+  if (d->friction_static > 0.0 && d->friction_static < d->friction)
+    return mpmi_fail(c, MPM_E_ARG, "friction_static is %g, less than friction %g", d->friction_static,
+                     d->friction);
+  if (!isfinite(d->offset)) return mpmi_fail(c, MPM_E_ARG, "offset is %g: it must be finite", d->offset);
+  const double *n = d->direction, length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  if (d->normal == MPM_NORMAL_FIXED && !(fabs(length - 1.0) <= 1e-6))
+    return mpmi_fail(c, MPM_E_ARG, "direction of the contact of bodies %d and %d has length %g: it must be 1",
+                     (int)a, (int)b, length);
+  return MPM_OK;
+}
+
+static mpm_status check_pair(const mpm_stepper *s, int32_t a, int32_t b) {
+  mpm_status status = a == MPM_BODY_ANY ? MPM_OK : check_body(s, a);
+  if (!status && b != MPM_BODY_ANY) status = check_body(s, b);
+  if (!status && a == b && a != MPM_BODY_ANY)
+    status =
+        mpmi_fail(s->context, MPM_E_ARG, "a body has no contact with itself: both bodies are %d", (int)a);
+  return status;
+}
+
+/* Components on axes that the grid does not have are 0 in a fixed direction. */
+static mpm_status check_axes(const mpm_stepper *s, const mpm_contact_desc *d) {
+  for (int32_t k = s->grid->dim; k < 3 && d->normal == MPM_NORMAL_FIXED; ++k)
+    if (d->direction[k] < 0.0 || d->direction[k] > 0.0)
+      return mpmi_fail(s->context, MPM_E_ARG, "direction[%d] is %g: a %d-D grid does not have the axis",
+                       (int)k, d->direction[k], (int)s->grid->dim);
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_set_contact(mpm_stepper *s, int32_t body_a, int32_t body_b,
+                                   const mpm_contact_desc *desc) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  mpm_contact_desc d;
+  mpm_status status = mpmi_stepper_idle(s);
+  if (!status) status = check_pair(s, body_a, body_b);
+  if (!status && desc) status = mpmi_read_struct(s->context, "mpm_contact_desc", desc, sizeof d, &d);
+  if (!status && desc) status = mpmi_contact_desc_check(s->context, body_a, body_b, &d);
+  if (!status && desc) status = check_axes(s, &d);
+  if (status) return status;
+  const int32_t low = body_a < body_b ? body_a : body_b, high = body_a < body_b ? body_b : body_a;
+  for (int32_t k = 0; k < 3 && desc && body_a > body_b; ++k) d.direction[k] = -d.direction[k];
+  mpmi_contact_rules *rules = &s->settings.contact;
+  const mpm_contact_desc *there = mpmi_contact_rule_at(rules, low, high);
+  const int32_t had = there != NULL;
+  const mpm_contact_desc was = had ? *there : (mpm_contact_desc){.struct_size = sizeof was};
+  if ((status = mpmi_contact_rules_set(rules, s->context, low, high, desc ? &d : NULL))) return status;
+  status = mpmi_check_bodies(s, s->settings.desc.scheme, -1);
+  if (status) /* there is room for what was there: this cannot fail */
+    (void)mpmi_contact_rules_set(rules, s->context, low, high, had ? &was : NULL);
+  return status;
+}
+
+mpm_status mpm_stepper_set_friction(mpm_stepper *s, mpm_friction_fn fn, void *user) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  const mpm_status status = mpmi_stepper_idle(s);
+  if (status) return status;
+  s->settings.friction = fn;
+  s->settings.friction_user = user;
+  return MPM_OK;
+}
