@@ -1,0 +1,214 @@
+/* Elastic bars in a row collide: E = density = 1, the first one moves with speed 0.01 along x.
+ * One-dimensional waves give the exact answers. Each bar is a body; 2-D and 3-D bars have nu = 0 and so
+ * the same answers. */
+#include "verify.h"
+
+static const double speed = 0.01;
+
+typedef struct row {
+  int32_t dim, bars, scheme, transfer, basis, detection;
+  int64_t cells; /* per unit of length */
+  double length[5], modulus[5], density[5], gap, end;
+} row;
+
+typedef struct outcome {
+  double velocity[5];       /* mean of each bar at the end, over the speed of the first */
+  double stress, scatter;   /* between the first two bars, over that of the wave: mean and deviation */
+  double first, last;       /* time at which they first and last touched */
+  double energy, momentum;  /* largest energy over the first; largest change of momentum, relative */
+  double least_dissipation; /* of a step, over the energy */
+} outcome;
+
+static void open_row(verify_world *w, const row *r) {
+  const double h = 1.0 / (double)r->cells;
+  double total = 0.0;
+  for (int32_t i = 0; i < r->bars; ++i) total += r->length[i] + r->gap;
+  verify_setup setup = verify_defaults(r->dim, 6, h);
+  setup.grid.basis = r->basis;
+  setup.grid.cells[0] = (int64_t)ceil((total + 1.0) / h);
+  setup.grid.origin[0] = -0.5;
+  setup.stepper.scheme = r->scheme;
+  setup.stepper.transfer = r->transfer;
+  verify_open(w, &setup);
+  double x = 0.0;
+  for (int32_t i = 0; i < r->bars; ++i) {
+    const double low[3] = {x, 2.0 * h, 2.0 * h}, high[3] = {x + r->length[i], 4.0 * h, 4.0 * h};
+    mpm_particles *bar = verify_set(w, verify_elastic(w, "neo_hookean", r->modulus[i], 0.0, r->density[i]));
+    verify_fill_box(w, bar, low, high, 2); /* on the cells: the bar is moved from there */
+    const int64_t n = mpm_particles_count(bar);
+    double *place = verify_get(w, bar, "position", r->dim);
+    for (int64_t p = 0; p < n; ++p) place[p] += i * r->gap;
+    verify_put(w, bar, "position", r->dim, place);
+    free(place);
+    verify_ok(w, mpm_stepper_set_body(w->stepper, bar, i));
+    const double v[3] = {i ? 0.0 : speed, 0.0, 0.0};
+    verify_ok(w, mpm_particles_set_all(bar, "velocity", MPM_F64, r->dim, v));
+    x += r->length[i];
+  }
+  mpm_contact_desc contact;
+  verify_ok(w, mpm_contact_desc_init(&contact, sizeof contact));
+  contact.detection = r->detection;
+  verify_ok(w, mpm_stepper_set_contact(w->stepper, MPM_BODY_ANY, MPM_BODY_ANY, &contact));
+}
+
+static double mean_velocity(const verify_world *w, const mpm_particles *set) {
+  const int64_t n = mpm_particles_count(set);
+  double *v = verify_get(w, set, "velocity", w->dim), *m = verify_get(w, set, "mass", 1), p = 0.0, mass = 0.0;
+  for (int64_t i = 0; i < n; ++i) p += m[i] * v[i], mass += m[i];
+  free(v);
+  free(m);
+  return p / mass;
+}
+
+/* The stress is measured between the shares .1 and .9 of the first wave's time. */
+static outcome collide(const row *r, FILE *csv) {
+  verify_world w;
+  open_row(&w, r);
+  const double area = r->dim == 1   ? 1.0
+                      : r->dim == 2 ? 2.0 / (double)r->cells
+                                    : pow(2.0 / (double)r->cells, 2);
+  const double z[2] = {sqrt(r->modulus[0] * r->density[0]), sqrt(r->modulus[1] * r->density[1])};
+  const double wave = z[0] * z[1] / (z[0] + z[1]) * speed, touch = r->gap / speed;
+  const double duration = 2.0 * r->length[0] / sqrt(r->modulus[0] / r->density[0]);
+  outcome out = {.first = -1.0};
+  mpm_step_info now = verify_info(&w);
+  const double energy = now.kinetic_energy, momentum = now.momentum[0];
+  double sum = 0.0, square = 0.0;
+  int64_t samples = 0;
+  while (now.t < r->end) {
+    double dt;
+    verify_ok(&w, mpm_stable_dt(w.stepper, &dt));
+    now = verify_step(&w, fmin(0.4 * dt, r->end - now.t + 1e-9));
+    mpm_contact_info info = {.struct_size = sizeof info};
+    verify_ok(&w, mpm_stepper_contact_info(w.stepper, 0, 1, &info));
+    const double stress = info.force[0] / area / wave;
+    if (info.touching) {
+      out.last = now.t;
+      if (out.first < 0.0) out.first = now.t - now.dt;
+    }
+    if (now.t > touch + 0.1 * duration && now.t < touch + 0.9 * duration)
+      sum += stress, square += stress * stress, ++samples;
+    out.energy = fmax(out.energy, (now.kinetic_energy + now.strain_energy) / energy);
+    out.momentum = fmax(out.momentum, fabs(now.momentum[0] / momentum - 1.0));
+    out.least_dissipation = fmin(out.least_dissipation, now.contact_dissipation / energy);
+    if (csv)
+      fprintf(csv, "%.6f,%.6e,%.6e\n", now.t, stress, (now.kinetic_energy + now.strain_energy) / energy);
+  }
+  out.stress = sum / (double)samples;
+  out.scatter = sqrt(fmax(0.0, square / (double)samples - out.stress * out.stress));
+  for (int32_t i = 0; i < r->bars; ++i) out.velocity[i] = mean_velocity(&w, w.set[i]) / speed;
+  verify_close(&w);
+  return out;
+}
+
+static void show(const char *name, const row *r, const outcome *o, FILE *table) {
+  fprintf(table, "%s,%lld,%.5f,%.5f,%.5f,%.5f,%.6f,%.2e", name, (long long)r->cells, o->stress, o->scatter,
+          o->first, o->last, o->energy, o->momentum);
+  for (int32_t i = 0; i < r->bars; ++i) fprintf(table, ",%.5f", o->velocity[i]);
+  fprintf(table, "\n");
+  verify_progress("%s, %lld cells per length", name, (long long)r->cells);
+}
+
+static void keeps_laws(const char *name, const outcome *o) {
+  char what[96];
+  snprintf(what, sizeof what, "%s: largest change of momentum", name);
+  verify_gate(what, o->momentum, 0.0, 1e-12, "conservation");
+  snprintf(what, sizeof what, "%s: largest energy / first", name);
+  verify_gate(what, o->energy, 0.0, 1.0 + 1e-9, "contact takes energy and never gives any");
+  snprintf(what, sizeof what, "%s: least dissipation of a step / energy", name);
+  verify_gate(what, o->least_dissipation, -1e-12, 0.0, "contact takes energy and never gives any");
+}
+
+int main(int argc, char **argv) {
+  verify_begin("contact_bars", argc, argv);
+  FILE *csv = verify_csv("contact_bars"), *table = verify_csv("contact_bars_table");
+  fprintf(csv, "t,stress,energy\n");
+  fprintf(table, "case,cells,stress,scatter,first,last,energy,momentum,v1,v2,v3,v4,v5\n");
+  const char *source = "waves in bars; set tolerance";
+  row touching = {.dim = 1,
+                  .bars = 2,
+                  .scheme = MPM_MUSL,
+                  .transfer = MPM_FLIP,
+                  .basis = MPM_BSPLINE2,
+                  .cells = 100,
+                  .length = {0.6, 1.5},
+                  .modulus = {1, 1, 1, 1, 1},
+                  .density = {1, 1, 1, 1, 1},
+                  .end = 3.0};
+  static const char *const name[3] = {"unequal bars", "unequal bars, 2-D", "unequal bars, 3-D"};
+  for (int32_t dim = 1; dim <= (verify_quick() ? 1 : 3); ++dim) {
+    touching.dim = dim;
+    const outcome o = collide(&touching, dim == 1 ? csv : NULL);
+    char what[96];
+    show(name[dim - 1], &touching, &o, table);
+    snprintf(what, sizeof what, "%s: mean stress / (density c v / 2)", name[dim - 1]);
+    verify_gate(what, o.stress, 0.995, 1.005, source);
+    snprintf(what, sizeof what, "%s: scatter of the stress", name[dim - 1]);
+    verify_gate(what, o.scatter, 0.0, 0.02, source);
+    snprintf(what, sizeof what, "%s: velocity of the first bar", name[dim - 1]);
+    verify_gate(what, fabs(o.velocity[0]), 0.0, 0.02, source);
+    snprintf(what, sizeof what, "%s: velocity of the second bar", name[dim - 1]);
+    verify_gate(what, o.velocity[1], 0.39, 0.41, source);
+    keeps_laws(name[dim - 1], &o);
+  }
+  row apart = touching;
+  apart.dim = 1;
+  apart.cells = 100;
+  apart.length[0] = apart.length[1] = 1.0;
+  apart.gap = 0.003;
+  outcome o = collide(&apart, NULL);
+  show("bars with a gap", &apart, &o, table);
+  verify_gate("bars with a gap: first force", o.first, 0.3 - 0.008, 0.3 + 0.02, "gap / speed, less one step");
+  verify_gate("bars with a gap: last force", o.last, 2.27, 2.33, source);
+  verify_gate("bars with a gap: velocity of the first bar", fabs(o.velocity[0]), 0.0, 0.02, source);
+  verify_gate("bars with a gap: velocity of the second bar", o.velocity[1], 0.98, 1.0, source);
+  keeps_laws("bars with a gap", &o);
+  apart.detection = MPM_DETECT_VELOCITY;
+  o = collide(&apart, NULL);
+  show("bars with a gap, by velocity", &apart, &o, table);
+  verify_gate("bars with a gap, by velocity: first force", o.first, 0.0, 1e-9, "they share nodes at once");
+
+  row unlike = {.dim = 1,
+                .bars = 2,
+                .scheme = MPM_MUSL,
+                .transfer = MPM_FLIP,
+                .basis = MPM_BSPLINE2,
+                .cells = 100,
+                .length = {1.0, 1.5},
+                .modulus = {1, 4},
+                .density = {1, 4},
+                .end = 2.2};
+  o = collide(&unlike, NULL);
+  show("unlike bars", &unlike, &o, table);
+  verify_gate("unlike bars: mean stress / (4/5 density c v)", o.stress, 0.995, 1.005, source);
+  keeps_laws("unlike bars", &o);
+
+  row five = {.dim = 1,
+              .bars = 5,
+              .scheme = MPM_MUSL,
+              .transfer = MPM_FLIP,
+              .basis = MPM_BSPLINE2,
+              .cells = 100,
+              .length = {0.5, 0.5, 0.5, 0.5, 0.5},
+              .modulus = {1, 1, 1, 1, 1},
+              .density = {1, 1, 1, 1, 1},
+              .end = 4.0};
+  double last[2];
+  for (int32_t k = 0; k < 2; ++k) {
+    five.cells = 100 << k;
+    o = collide(&five, NULL);
+    show("five bars", &five, &o, table);
+    last[k] = o.velocity[4];
+    double most = 0.0;
+    for (int32_t i = 0; i < 4; ++i) most = fmax(most, fabs(o.velocity[i]));
+    if (k) break;
+    verify_gate("five bars: velocity of the last", o.velocity[4], 0.96, 1.0, source);
+    verify_gate("five bars: largest velocity of the others", most, 0.0, 0.05, source);
+    keeps_laws("five bars", &o);
+  }
+  verify_gate("five bars: error of the last, h/2 over h", (1.0 - last[1]) / (1.0 - last[0]), 0.0, 1.0,
+              "it converges");
+  fclose(csv);
+  fclose(table);
+  return verify_end();
+}
