@@ -1,6 +1,7 @@
 /* Contact of bodies: what it keeps, what it reports, what it refuses; its numbers are verified by the cases
  * contact_... of the verification. */
 #include "body.h"
+#include "io/state.h"
 
 enum { THIRD = 1 << 4, ROUND = 1 << 5 };
 
@@ -108,6 +109,87 @@ START_TEST(momentum_and_energy) {
       world w;
       open_boxes(&w, &(boxes){.dim = dim, .flags = flags, .method = *how, .contact = contact_desc(0.3)});
       follow_impulses(&w, how->name);
+      world_close(&w);
+    }
+}
+END_TEST
+
+/* Nodes before and after contact, by the hooks around it: what they lose of their energy is the
+ * dissipation. */
+static mpm_status add_energy(void *user, const mpm_node_batch *b, double *velocity, double *force) {
+  double *energy = user;
+  for (int32_t c = 0; c < b->dim; ++c)
+    for (int64_t i = 0; i < b->n; ++i) {
+      const double v = velocity[c * b->ld + i] + box_dt * force[c * b->ld + i] / b->mass[i];
+      *energy += 0.5 * b->mass[i] * v * v;
+    }
+  return MPM_OK;
+}
+static mpm_status take_energy(void *user, const mpm_node_batch *b, double *velocity, double *force) {
+  double *energy = user;
+  (void)force;
+  for (int32_t c = 0; c < b->dim; ++c)
+    for (int64_t i = 0; i < b->n; ++i) {
+      const double v = velocity[c * b->ld + i];
+      *energy -= 0.5 * b->mass[i] * v * v;
+    }
+  return MPM_OK;
+}
+
+START_TEST(energy_of_nodes) {
+  for (int32_t flags = 0; flags <= THIRD; flags += THIRD) {
+    world w;
+    double lost = 0.0, most = 0.0;
+    open_boxes(&w, &(boxes){.dim = _i, .flags = flags, .method = methods[0], .contact = contact_desc(0.3)});
+    const double energy = world_info(&w).kinetic_energy;
+    ck_ok(&w, mpm_stepper_set_node_hook(w.stepper, MPM_AFTER_FORCES, add_energy, &lost));
+    ck_ok(&w, mpm_stepper_set_node_hook(w.stepper, MPM_AFTER_VELOCITY, take_energy, &lost));
+    for (int32_t step = 0; step < 20; ++step) {
+      lost = 0.0;
+      const mpm_step_info info = world_step(&w, box_dt);
+      ck_within("energy of nodes", info.contact_dissipation, lost, 1e-12 * energy);
+      most = fmax(most, lost);
+    }
+    ck_assert_double_gt(most, 1e-4 * energy);
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* The particles of a cloud have the mass of its node, wherever the bodies lie in their blocks. */
+START_TEST(clouds_have_the_mass_of_nodes) {
+  const method *how = broad_methods[_i];
+  if (how->scheme == MPM_NEWMARK) return;
+  for (int32_t dim = 1; dim <= 3; ++dim)
+    for (int32_t flags = 0; flags <= ROUND; flags += ROUND) {
+      if (dim == 1 && how->remedy) continue;
+      world w;
+      open_boxes(&w, &(boxes){.dim = dim, .flags = flags, .method = *how, .contact = contact_desc(0.0)});
+      int64_t seen = 0;
+      for (int32_t move = 0; move < 6; ++move) { /* diagonally, past the corners of blocks */
+        for (int32_t m = 0; m < 2 && move; ++m) {
+          const int64_t n = mpm_particles_count(w.set[m]);
+          double *x = fetch(&w, w.set[m], "position", dim);
+          for (int64_t i = 0; i < n * dim; ++i) x[i] += (move < 4 ? 0.5 : -1.7) * spacing;
+          put(&w, w.set[m], "position", dim, x);
+          free(x);
+        }
+        world_step(&w, 1e-6);
+        const mpmi_contact_nodes *contact = &w.stepper->nodes.contact;
+        for (int64_t i = 0; i < contact->cloud_count; ++i) {
+          const mpmi_cloud *cloud = &contact->cloud[i];
+          double mass = 0.0;
+          for (int64_t e = cloud->first; e < cloud->first + cloud->count; ++e) {
+            const mpmi_cloud_entry *entry = &contact->entry[e];
+            mass += entry->weight *
+                    mpmi_f64(w.stepper->layout.member[entry->member].set, MPMI_MASS, 0)[entry->slot];
+          }
+          const double wanted = *mpmi_mass(&w.stepper->nodes.solved, cloud->slot);
+          ck_within(how->name, mass, wanted, 1e-12 * wanted);
+          seen += cloud->count;
+        }
+      }
+      ck_assert_int_gt(seen, 0);
       world_close(&w);
     }
 }
@@ -319,9 +401,12 @@ END_TEST
 START_TEST(saved_in_contact) {
   const method *how = broad_methods[_i];
   if (how->scheme == MPM_NEWMARK) return;
-  const boxes of = {.dim = 2, .flags = THIRD | ROUND, .method = *how, .contact = contact_desc(0.3)};
+  boxes of = {.dim = 2, .flags = THIRD | ROUND, .method = *how, .contact = contact_desc(0.3)};
   boxes plain = of;
   plain.contact = contact_desc(0.0);
+  of.contact.friction_static = 0.5;
+  of.contact.adhesion = 1.0;
+  of.contact.offset = 1e-3;
   world w, other;
   open_boxes(&w, &of);
   open_boxes(&other, &plain);
@@ -339,6 +424,16 @@ START_TEST(saved_in_contact) {
   }
   mpm_contact_info was = contact_of(&w, 3, 1), now = contact_of(&other, 3, 1);
   ck_assert_mem_eq(&now, &was, sizeof now);
+  unsigned char bytes[2][4096];
+  memset(bytes, 0, sizeof bytes);
+  for (int32_t i = 0; i < 2; ++i) {
+    mpmi_archive a;
+    mpmi_archive_begin(&a, w.context, MPMI_TO_MEMORY);
+    a.to = bytes[i];
+    mpmi_state_write_contact(&a, i ? other.stepper : w.stepper);
+    ck_assert_int_le(a.at, sizeof bytes[i]);
+  }
+  ck_assert_mem_eq(bytes[0], bytes[1], sizeof bytes[0]);
   for (int32_t step = 0; step < 8; ++step) {
     world_step(&w, box_dt);
     world_step(&other, box_dt);
@@ -610,6 +705,8 @@ Suite *contact_suite(void) {
   Suite *suite = suite_create("contact");
   TCase *law = tcase_create("law"), *bits = tcase_create("bits"), *reports = tcase_create("reports");
   tcase_add_loop_test(law, momentum_and_energy, 0, BROAD);
+  tcase_add_loop_test(law, energy_of_nodes, 1, 4);
+  tcase_add_loop_test(law, clouds_have_the_mass_of_nodes, 0, BROAD);
   tcase_add_loop_test(law, options_of_contact, 1, 4);
   tcase_add_loop_test(law, tied_is_one, 1, 4);
   tcase_add_loop_test(law, adhesion, 1, 4);

@@ -125,12 +125,67 @@ START_TEST(a_bar_through_many_steps) {
 }
 END_TEST
 
+/* A velocity gradient that only the set keeps is that of the step: F from the unit tensor is 1 + dt L. */
+START_TEST(kept_gradient) {
+  static const char *const law[2] = {"neo_hookean", "j2"};
+  for (int32_t dim = 1; dim <= 3; ++dim)
+    for (int32_t l = 0; l < 2; ++l) {
+      world_desc d = world_with(&methods[0], dim, 8, 0.25);
+      d.stepper.scheme = scheme_options[_i].scheme;
+      d.law = (world_law){.model = law[l], .E = 1e5, .nu = 0.3, .density = 1e3, .yield_stress = 1e9};
+      world w;
+      mpm_particles *set = world_open(&w, &d);
+      const int64_t n = world_fill_cube(&w, set, 0.5, 1.25);
+      const double zeros[9] = {0.0}, dt = 1e-3;
+      double *v = calloc((size_t)(9 * n), sizeof *v);
+      for (int64_t p = 0; p < dim * n; ++p) v[p] = noise_at((uint64_t)p);
+      put(&w, set, "velocity", dim, v);
+      ck_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, zeros));
+      world_step(&w, dt);
+      double *L = fetch(&w, set, "velocity_gradient", 9), *F = fetch(&w, set, "deformation_gradient", 9);
+      ck_assert_double_gt(largest(9 * n, L), 0.1);
+      for (int64_t c = 0; c < 9; ++c)
+        for (int64_t p = 0; p < n; ++p)
+          ck_within(law[l], dt * L[c * n + p], F[c * n + p] - (c % 4 == 0 ? 1.0 : 0.0), 1e-14);
+      free(v), free(L), free(F);
+      world_close(&w);
+    }
+}
+END_TEST
+
+/* Steps in parts of MPM_APIC_MLS have more values for each node than whole ones. In turn both leave nodes
+ * that no stencil meets at 0: the nodes have the mass of the particles and no more. */
+START_TEST(steps_in_turn) {
+  world_desc d = world_with(&methods[8], 2, 40, 0.25);
+  ck_assert_int_eq(methods[8].transfer, MPM_APIC_MLS);
+  world w;
+  mpm_particles *set = world_open(&w, &d);
+  world_fill_cube(&w, set, 4.0, 5.0);
+  const double v[2] = {30.0, 20.0}, mass = mass_of(&w, set);
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
+  for (int32_t i = 0; i < 24; ++i) {
+    if (i % 4 < 2)
+      world_staged_step(&w, 2e-3);
+    else
+      world_step(&w, 2e-3);
+    int64_t n;
+    double *nodal = fetch_nodes(&w, "mass", &n);
+    ck_within("mass", sum_of(n, nodal), mass, 1e-12 * mass);
+    ck_assert_int_eq(n, w.info.active_nodes);
+    free(nodal);
+  }
+  world_close(&w);
+}
+END_TEST
+
 Suite *schemes_suite(void) {
   Suite *suite = suite_create("schemes");
   TCase *tc = tcase_create("reference");
   tcase_set_timeout(tc, 120.0);
   tcase_add_loop_test(tc, steps_are_those_of_the_book, 0, 3 * BASES);
   tcase_add_loop_test(tc, a_bar_through_many_steps, 0, BASES);
+  tcase_add_loop_test(tc, kept_gradient, 0, SCHEMES);
+  tcase_add_test(tc, steps_in_turn);
   suite_add_tcase(suite, tc);
   suite_add_tcase(suite, schemes_options_case());
   return suite;
