@@ -83,6 +83,56 @@ def wall_impact():
 
 
 @plot
+def contact_bars():
+    figure, ax = axes()
+    data = read("contact_bars")
+    ax.plot([0, 0, 1.2, 1.2, 3], [0, 1, 1, 0, 0], "k-", linewidth=1, label="exact")
+    ax.plot(data["t"], data["stress"], "C1-", linewidth=0.8, label="100 cells")
+    ax.set_xlabel("t")
+    ax.set_ylabel("stress between the bars / (density c v / 2)")
+    ax.legend()
+    return figure
+
+
+@plot
+def contact_discs():
+    figure, ax = axes(2)
+    data, table = read("contact_discs"), read("contact_discs_table")
+    fine = [(1 / n, 0.909 - r) for case, n, r in zip(table["case"], table["cells"], table["rebound"]) if case == "refinement"]
+    ax[0].plot(*zip(*fine), "o-", label="0.909 - rebound")
+    slope(ax[0], [fine[0][0], fine[-1][0]], fine[0][1], 1)
+    loglog(ax[0], "h", "error of the rebound")
+    ax[0].legend()
+    for key in ("total", "kinetic", "strain"):
+        scale = data["kinetic"][0] if key != "total" else 1
+        ax[1].plot(data["t"], [v / scale for v in data[key]], label=key)
+    ax[1].plot([2.104], [0.136 / 2.513274], "k+", markersize=9, label="least kinetic energy, FEM")
+    ax[1].set_xlabel("t")
+    ax[1].set_ylabel("energy / first")
+    ax[1].legend()
+    return figure
+
+
+@plot
+def contact_block():
+    figure, ax = axes(2)
+    data = read("contact_block")
+    rows = list(zip(data["case"], data["basis"], data["shift"], data["way"], data["exact"]))
+    for basis in ("linear", "quadratic", "cubic"):
+        slides = [(s, w / e) for case, b, s, w, e in rows if case == "slides" and b == basis]
+        rests = [(s, 1000 * w) for case, b, s, w, e in rows if case == "rests" and b == basis]
+        ax[0].plot(*zip(*slides), "o-", label=basis)
+        ax[1].plot(*zip(*rests), "o-", label=basis)
+    ax[0].axhline(1, color="k", linewidth=0.8)
+    ax[0].set_ylabel("way / exact, friction 0.3")
+    ax[1].set_ylabel("creep in 0.5 s / mm, friction 0.7")
+    for a in ax:
+        a.set_xlabel("place of the floor in its cell / h")
+        a.legend()
+    return figure
+
+
+@plot
 def two_disks():
     figure, ax = axes()
     data = read("two_disks")

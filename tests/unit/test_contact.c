@@ -703,15 +703,16 @@ END_TEST
 Suite *contact_suite(void);
 Suite *contact_suite(void) {
   Suite *suite = suite_create("contact");
-  TCase *law = tcase_create("law"), *bits = tcase_create("bits"), *reports = tcase_create("reports");
+  TCase *law = tcase_create("law"), *options = tcase_create("options"), *bits = tcase_create("bits"),
+        *reports = tcase_create("reports");
   tcase_add_loop_test(law, momentum_and_energy, 0, BROAD);
-  tcase_add_loop_test(law, energy_of_nodes, 1, 4);
+  tcase_add_loop_test(options, energy_of_nodes, 1, 4);
   tcase_add_loop_test(law, clouds_have_the_mass_of_nodes, 0, BROAD);
   tcase_add_loop_test(law, options_of_contact, 1, 4);
-  tcase_add_loop_test(law, tied_is_one, 1, 4);
-  tcase_add_loop_test(law, adhesion, 1, 4);
-  tcase_add_loop_test(law, half_on_a_wall, 0, METHODS);
-  tcase_add_loop_test(law, friction_callback, 0, METHODS);
+  tcase_add_loop_test(options, tied_is_one, 1, 4);
+  tcase_add_loop_test(options, adhesion, 1, 4);
+  tcase_add_loop_test(options, half_on_a_wall, 0, METHODS);
+  tcase_add_loop_test(options, friction_callback, 0, METHODS);
   tcase_add_loop_test(bits, threads_and_order, 0, BROAD);
   tcase_add_loop_test(bits, saved_in_contact, 0, BROAD);
   tcase_add_loop_test(bits, name_of_a_body, 0, METHODS);
@@ -722,9 +723,12 @@ Suite *contact_suite(void) {
   tcase_add_test(reports, refusals);
   tcase_add_test(reports, implicit_bodies);
   tcase_add_test(reports, memory_runs_out);
+  tcase_set_tags(law, "long");
   tcase_set_timeout(law, 60);
+  tcase_set_timeout(options, 60);
   tcase_set_timeout(bits, 60);
   suite_add_tcase(suite, law);
+  suite_add_tcase(suite, options);
   suite_add_tcase(suite, bits);
   suite_add_tcase(suite, reports);
   return suite;

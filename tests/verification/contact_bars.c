@@ -135,7 +135,7 @@ int main(int argc, char **argv) {
                   .modulus = {1, 1, 1, 1, 1},
                   .density = {1, 1, 1, 1, 1},
                   .end = 3.0};
-  static const char *const name[3] = {"unequal bars", "unequal bars, 2-D", "unequal bars, 3-D"};
+  static const char *const name[3] = {"unequal bars", "unequal bars in 2-D", "unequal bars in 3-D"};
   for (int32_t dim = 1; dim <= (verify_quick() ? 1 : 3); ++dim) {
     touching.dim = dim;
     const outcome o = collide(&touching, dim == 1 ? csv : NULL);
@@ -165,8 +165,8 @@ int main(int argc, char **argv) {
   keeps_laws("bars with a gap", &o);
   apart.detection = MPM_DETECT_VELOCITY;
   o = collide(&apart, NULL);
-  show("bars with a gap, by velocity", &apart, &o, table);
-  verify_gate("bars with a gap, by velocity: first force", o.first, 0.0, 1e-9, "they share nodes at once");
+  show("bars with a gap by velocity", &apart, &o, table);
+  verify_gate("bars with a gap by velocity: first force", o.first, 0.0, 1e-9, "they share nodes at once");
 
   row unlike = {.dim = 1,
                 .bars = 2,

@@ -203,7 +203,7 @@ static void oblique(FILE *table) {
     a.friction = friction[i % 3];
     const outcome o = collide(&a, NULL);
     char name[80];
-    snprintf(name, sizeof name, "oblique, friction %g, %s", a.friction, i < 3 ? "quadratic" : "cubic");
+    snprintf(name, sizeof name, "oblique with friction %g (%s)", a.friction, i < 3 ? "quadratic" : "cubic");
     show(name, &a, &o, table);
     keeps_laws(name, &o);
     gate(name, "change of angular momentum / (m v R)", o.angular, 0.0, 1e-11, "conservation");
