@@ -56,9 +56,11 @@ typedef struct mpm_contact_desc {
   int32_t detection;      /**< an MPM_DETECT_...; default MPM_DETECT_DEFAULT */
   double friction;        /**< Coulomb's coefficient of sliding, >= 0; default 0 */
   double friction_static; /**< that of sticking, >= friction; 0 (default): the same as friction */
-  double adhesion;        /**< largest tensile traction while the gap is closed, stress, >= 0; default 0 */
-  double offset;          /**< distance that the surfaces keep, length; < 0: overlap is let be; default 0 */
-  double direction[3];    /**< MPM_NORMAL_FIXED: unit normal, from the first body to the second */
+  double adhesion; /**< largest tensile traction while the gap is closed, stress, >= 0; default 0. Not with
+                               detection by velocity, which knows no gap */
+  double offset;   /**< distance that the surfaces keep, length; < 0: overlap is let be; default 0. Bodies see
+                               each other from about a cell on: more than that they do not keep */
+  double direction[3]; /**< MPM_NORMAL_FIXED: unit normal, from the first body to the second */
 } mpm_contact_desc;
 
 /** What two bodies did to each other in the last step, and since then. The caller sets struct_size. Forces
@@ -101,13 +103,15 @@ typedef struct mpm_contact_batch {
   const double *pressure; /**< [ld] normal traction of the frictionless impulse, stress */
 } mpm_contact_batch;
 
-/** Sets the coefficients of friction of nodes (mt): friction[ld], preset to that of the pair of bodies, may
- * be changed to any finite value >= 0; it then also is that of sticking. Returns as mpm_particle_fn does. */
+/** Sets the coefficients of friction of nodes (mt): friction[ld], preset to that of the pair of bodies,
+ * may be changed to any finite value >= 0; it then also is that of sticking. It is asked once in a step,
+ * with MPM_USF twice: first with the forces of the old stress. Returns as mpm_particle_fn does. */
 typedef mpm_status (*mpm_friction_fn)(void *user, const mpm_contact_batch *batch, double *friction);
 
 /** Puts a set into a body: 0 <= body < 4096, at first 0. Between steps, also with particles in it. Sets of
  * one body share one velocity field. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_ARG: there is no
- * such body. MPM_E_UNSUPPORTED: bodies that touch, with MPM_NEWMARK. MPM_E_STATE during a staged step. */
+ * such body. MPM_E_UNSUPPORTED: bodies that touch, with MPM_NEWMARK. MPM_E_STATE during a staged step, or
+ * while a view of nodal fields is out; there are no nodal fields then until the next step. */
 MPM_API mpm_status mpm_stepper_set_body(mpm_stepper *stepper, mpm_particles *particles, int32_t body);
 
 /** Gives the body of a set. MPM_E_NOT_FOUND: it is not in this stepper. */
@@ -119,11 +123,12 @@ MPM_API mpm_status mpm_stepper_body(const mpm_stepper *stepper, const mpm_partic
 MPM_API mpm_status mpm_contact_desc_init(mpm_contact_desc *desc, uint32_t struct_size);
 
 /** Sets how two bodies meet; desc is copied. The order of the bodies matters for `direction` alone. With
- * MPM_BODY_ANY for one body: how the other meets those that have no rule of their own with it; for both: how
- * all meet that have no closer rule. Of the rules of two bodies each with MPM_BODY_ANY, that of the lower
- * number counts. A later call replaces an earlier one for the same pair; NULL takes the rule back. Without
- * any rule the defaults of mpm_contact_desc_init() hold. A saved state holds the rules. MPM_E_ARG: a value is
- * bad. MPM_E_UNSUPPORTED: bodies that touch, with MPM_NEWMARK. MPM_E_STATE during a staged step. */
+ * MPM_BODY_ANY for one body: how the other meets those that have no rule of their own with it; for both:
+ * how all meet that have no closer rule. Of the rules of two bodies each with MPM_BODY_ANY, that of the
+ * lower number counts. A later call replaces an earlier one for the same pair; NULL takes the rule back.
+ * Without any rule the defaults of mpm_contact_desc_init() hold. A saved state holds the rules. MPM_E_ARG:
+ * a value is bad. MPM_E_UNSUPPORTED: bodies that touch, with MPM_NEWMARK; adhesion with detection by
+ * velocity. MPM_E_STATE during a staged step. */
 MPM_API mpm_status mpm_stepper_set_contact(mpm_stepper *stepper, int32_t body_a, int32_t body_b,
                                            const mpm_contact_desc *desc);
 

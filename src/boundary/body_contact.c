@@ -80,7 +80,8 @@ static double tie(mpmi_bound *bound, mpmi_touch *touch) {
   const double along = inner(impulse, touch->normal);
   touch->normal_impulse += along;
   for (int32_t c = 0; c < bound->dim; ++c) touch->tangential[c] += impulse[c] - along * touch->normal[c];
-  touch->closed = touch->stuck = 1;
+  touch->closed = touch->stuck = weighted(&e, (const double[]){1.0, 1.0, 1.0}) > 0.0;
+  touch->ambiguous = !touch->closed;
   return stopped;
 }
 
@@ -113,7 +114,9 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
     touch->ambiguous = 1; /* both are held */
     return 0.0;
   }
-  const int32_t by_velocity = mpmi_detects_by_velocity(rule), apart = !by_velocity && touch->gap > 0.0;
+  /* after an impulse the gap is 0 but for rounding, on which adhesion must not hang */
+  const double hair = rule->adhesion > 0.0 ? 1e-6 * bound->step->settings->grid->h_min : 0.0;
+  const int32_t apart = !mpmi_detects_by_velocity(rule) && touch->gap > hair;
   const double closing = apart ? touch->gap / bound->step->dt : 0.0;
   const double pull = apart ? 0.0 : rule->adhesion * touch->area * bound->step->velocity_dt;
   const double normal = fmax(-pull, touch->normal_impulse - (approach + closing) / compliance);
@@ -171,12 +174,13 @@ static double act_once(const contact_job *job, mpmi_touch *touch) {
 }
 
 /* One touch alone between nodes that are free is settled at once. */
-static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_meeting *meeting) {
+static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_meeting *meeting,
+                                  int32_t dim) {
   if (meeting->touch_count != 1) return 0;
   const mpmi_touch *touch = &contact->touch[meeting->first_touch];
   for (int32_t i = 0; i < 2; ++i) {
     const double *inverse = contact->party[touch->party[i]].inverse_mass;
-    for (int32_t c = 1; c < 3; ++c)
+    for (int32_t c = 1; c < dim; ++c)
       if (inverse[c] < inverse[0] || inverse[c] > inverse[0]) return 0;
   }
   return 1;
@@ -187,9 +191,8 @@ static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting)
   const int64_t end = meeting->first_touch + meeting->touch_count;
   double first = 0.0;
   if (!meeting->touch_count) return 0.0;
-  for (int64_t p = meeting->first_party; p < meeting->first_party + meeting->party_count && job->first_round;
-       ++p)
-    weigh_party(job->bound, &contact->party[p], job->keeps);
+  for (int64_t p = 0; p < meeting->party_count && job->first_round && job->keeps; ++p)
+    weigh_party(job->bound, &contact->party[meeting->first_party + p], 1);
   for (int64_t i = meeting->first_touch; i < end && job->first_round && !job->keeps; ++i) {
     mpmi_touch *touch = &contact->touch[i];
     touch->closed = touch->stuck = 0;
@@ -200,7 +203,7 @@ static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting)
     double most = 0.0;
     for (int64_t i = meeting->first_touch; i < end; ++i) most = fmax(most, act_once(job, &contact->touch[i]));
     if (!sweep) first = most;
-    if (!(most > settled * first) || is_settled_at_once(contact, meeting)) break;
+    if (!(most > settled * first) || is_settled_at_once(contact, meeting, job->bound->dim)) break;
   }
   return first;
 }
@@ -222,11 +225,13 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   if (!bound->step->layout->groups.count) return MPM_OK;
   if (!contact->listed) {
     status = mpmi_meetings_find(&search);
-    if (!status) status = mpmi_clouds_fill(&search);
+    if (!status && contact->touch_count) status = mpmi_clouds_fill(&search);
     contact->listed = !status;
   }
-  if (!status) status = mpmi_gaps_find(&search);
-  return status ? status : mpmi_ask_friction(bound);
+  if (status || !contact->touch_count) return status;
+  if ((status = mpmi_gaps_find(&search))) return status;
+  for (int64_t p = 0; p < contact->party_count; ++p) weigh_party(bound, &contact->party[p], 0);
+  return mpmi_ask_friction(bound);
 }
 
 mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t first_round, double *most) {
@@ -241,16 +246,28 @@ mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t firs
 }
 
 /* ---- sums ---------------------------------------------------------------------------------------------- */
+/* What holds a component of a node takes the impulse on it, and does work where it moves the node. */
+static void add_work(mpmi_bound *bound, const mpmi_party *party, double sign, const double *impulse) {
+  for (int32_t c = 0; c < bound->dim; ++c)
+    if (mpmi_held_by(bound->nodes, party->slot, c))
+      bound->step->host_work -= sign * impulse[c] * bound->nodes->held_value[party->slot][c];
+}
+
 static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_sums *sums) {
   const mpmi_blocks *b = &bound->step->layout->blocks;
+  const mpmi_party *party = bound->nodes->contact.party;
+  const mpmi_party *pair[2] = {&party[touch->party[0]], &party[touch->party[1]]};
   double impulse[3], x[3] = {0.0, 0.0, 0.0};
   int64_t index[3];
-  mpmi_blocks_index(b, bound->nodes->contact.party[touch->party[0]].slot, index);
+  mpmi_blocks_index(b, pair[0]->slot, index);
   for (int32_t k = 0; k < bound->dim; ++k) x[k] = mpmi_node_position(b->grid, k, index[k]);
   for (int32_t c = 0; c < 3; ++c) {
-    impulse[c] = touch->normal_impulse * touch->normal[c] + touch->tangential[c];
+    const int32_t moves = pair[0]->inverse_mass[c] > 0.0 || pair[1]->inverse_mass[c] > 0.0;
+    impulse[c] = moves ? touch->normal_impulse * touch->normal[c] + touch->tangential[c] : 0.0;
     sums->impulse[c] += impulse[c];
   }
+  add_work(bound, pair[0], -1.0, impulse);
+  add_work(bound, pair[1], 1.0, impulse);
   for (int32_t c = 0; c < 3; ++c)
     sums->angular_impulse[c] += x[(c + 1) % 3] * impulse[(c + 2) % 3] - x[(c + 2) % 3] * impulse[(c + 1) % 3];
   sums->normal_impulse += touch->normal_impulse;

@@ -17,19 +17,21 @@ static void show_touch(const mpmi_bound *bound, const mpmi_touch *touch, touch_l
   const mpmi_blocks *b = &bound->step->layout->blocks;
   const mpmi_party *party = bound->nodes->contact.party;
   const int64_t slot[2] = {party[touch->party[0]].slot, party[touch->party[1]].slot}, at = list->n;
-  const double mass[2] = {mpmi_moving_mass(bound, slot[0]), mpmi_moving_mass(bound, slot[1])};
-  double u[3] = {0.0, 0.0, 0.0}, approach = 0.0;
+  double u[3] = {0.0, 0.0, 0.0}, approach = 0.0, compliance = 0.0;
   int64_t index[3];
   mpmi_blocks_index(b, slot[0], index);
   for (int32_t k = 0; k < bound->dim; ++k) {
     u[k] = mpmi_velocity(bound->values, slot[1])[k] - mpmi_velocity(bound->values, slot[0])[k];
     approach += u[k] * touch->normal[k];
+    for (int32_t i = 0; i < 2; ++i)
+      compliance += party[touch->party[i]].inverse_mass[k] * touch->normal[k] * touch->normal[k];
     list->position[k * RANGE + at] = mpmi_node_position(b->grid, k, index[k]);
     list->normal[k * RANGE + at] = touch->normal[k];
   }
   for (int32_t k = 0; k < bound->dim; ++k) list->slip[k * RANGE + at] = u[k] - approach * touch->normal[k];
-  const double closing = touch->gap > 0.0 ? touch->gap / bound->step->dt : 0.0;
-  const double impulse = -(approach + closing) / (1.0 / mass[0] + 1.0 / mass[1]);
+  const int32_t apart = touch->gap > 0.0 && !mpmi_detects_by_velocity(touch->rule);
+  const double closing = apart ? touch->gap / bound->step->dt : 0.0;
+  const double impulse = compliance > 0.0 ? -(approach + closing) / compliance : 0.0;
   list->gap[at] = touch->gap;
   list->area[at] = touch->area;
   list->pressure[at] =
@@ -43,10 +45,8 @@ static void take_answers(mpmi_bound *bound, const touch_list *list, mpmi_failure
     mpmi_touch *touch = &contact->touch[list->touch[i]];
     const double value = list->friction[i];
     if (value >= 0.0 && isfinite(value)) {
+      if (value < touch->friction || value > touch->friction) touch->friction_static = value;
       touch->friction = value;
-      touch->friction_static =
-          fmax(value,
-               value > touch->rule->friction || value < touch->rule->friction ? 0.0 : touch->friction_static);
       continue;
     }
     const mpmi_blocks *b = &bound->step->layout->blocks;
@@ -108,7 +108,7 @@ static void ask_pair(mpmi_bound *bound, int64_t begin, int64_t end, int64_t reco
 
 static void ask_range(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failure *failure) {
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
-  for (int64_t i = begin; i < end && !failure->cause; ++i) {
+  for (int64_t i = begin; i < end; ++i) {
     int32_t asked = 0;
     for (int64_t j = begin; j < i; ++j) asked |= contact->touch[j].record == contact->touch[i].record;
     if (!asked) ask_pair(bound, begin, end, contact->touch[i].record, failure);

@@ -161,7 +161,8 @@ static void hold_slots(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failu
         mpmi_blocks_index(blocks, slot, index);
         mpmi_failure_take(failure,
                           &(mpmi_failure){MPM_NONFINITE, 0, -1, -1, mpmi_node_number(blocks->grid, index),
-                                          "velocity by prescribed particles not finite", 0});
+                                          "velocity by prescribed particles not finite",
+                                          blocks->body[slot / blocks->nodes]});
       }
       bound->nodes->held[slot][c] = MPMI_HELD_BY_PARTICLES;
       bound->nodes->held_value[slot][c] = value;

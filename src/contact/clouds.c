@@ -156,7 +156,7 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
         if (cloud[k] < 0 || !(w * axis[2].w[k] > 0.0)) continue;
         mpmi_cloud *to = &contact->cloud[cloud[k]];
         contact->entry[to->first + to->count++] = (mpmi_cloud_entry){
-            .slot = (uint32_t)(of->slot + p), .member = of->member, .weight = w * axis[2].w[k]};
+            .slot = (uint32_t)(of->slot + p), .member = of->member, .volume = volume * w * axis[2].w[k]};
         to->gradient[0] += g0 * axis[2].w[k]; /* the last axes are those of the grid */
         to->gradient[1] += g1 * axis[2].w[k];
         to->gradient[2] += volume * w * axis[2].g[k];

@@ -86,7 +86,7 @@ static void collect(around *of, int32_t which) {
       double x[3];
       place_of(of, cloud, node, entry, x);
       for (int32_t k = 0; k < grid->dim; ++k) of->x[k][at] = x[k];
-      of->weight[at] = entry->weight * mpmi_f64(set, MPMI_VOLUME, 0)[entry->slot];
+      of->weight[at] = entry->volume;
       if (volume < last_volume || volume > last_volume) r = half_edge(grid->dim, volume);
       last_volume = volume;
       of->half_edge[at] = r;

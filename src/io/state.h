@@ -87,7 +87,8 @@ mpm_status mpmi_state_read_blocks(mpmi_archive *a, mpm_stepper *s, uint32_t form
 /* Rules of contact, and what pairs of bodies did to each other (state_contact.c). They are read into new
  * lists, which the caller frees after a failure as well. */
 void mpmi_state_write_contact(mpmi_archive *a, const mpm_stepper *s);
-mpm_status mpmi_state_read_contact(mpmi_archive *a, mpmi_contact_rules *rules, mpmi_pair_records *pairs);
+mpm_status mpmi_state_read_contact(mpmi_archive *a, const mpm_grid *grid, mpmi_contact_rules *rules,
+                                   mpmi_pair_records *pairs);
 
 /* Refuses values with which a step could not work safely (state_check.c). blocks: those of the state, or
  * NULL when it is not sorted; start: where the set's slots lie in them. */

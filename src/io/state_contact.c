@@ -49,13 +49,19 @@ static int32_t is_int(int64_t value) {
   return value >= 0 && value <= INT32_MAX;
 }
 
-static mpm_status read_rule(mpmi_archive *a, mpmi_contact_rules *rules) {
+/* Lists of pairs are in order. */
+static int32_t comes_after(int64_t a, int64_t b, int32_t last_a, int32_t last_b) {
+  return a > last_a || (a == last_a && b > last_b);
+}
+
+static mpm_status read_rule(mpmi_archive *a, const mpm_grid *grid, mpmi_contact_rules *rules) {
   saved_rule rule = {0};
   mpmi_archive_words(a, &rule, sizeof rule);
   if (a->status) return a->status;
   if (!is_body(rule.a, MPM_BODY_ANY) || !is_body(rule.b, rule.a) || (rule.a == rule.b && rule.a >= 0) ||
       !is_int(rule.kind) || !is_int(rule.normal) || !is_int(rule.detection) ||
-      mpmi_contact_rule_at(rules, (int32_t)rule.a, (int32_t)rule.b))
+      (rules->count &&
+       !comes_after(rule.a, rule.b, rules->rule[rules->count - 1].a, rules->rule[rules->count - 1].b)))
     return mpmi_archive_damaged(a, "a rule of contact makes no sense");
   mpm_contact_desc d = {.struct_size = sizeof d,
                         .kind = (int32_t)rule.kind,
@@ -66,7 +72,7 @@ static mpm_status read_rule(mpmi_archive *a, mpmi_contact_rules *rules) {
                         .adhesion = rule.adhesion,
                         .offset = rule.offset,
                         .direction = {rule.direction[0], rule.direction[1], rule.direction[2]}};
-  if (mpmi_contact_desc_check(a->context, (int32_t)rule.a, (int32_t)rule.b, &d))
+  if (mpmi_contact_desc_check(grid, (int32_t)rule.a, (int32_t)rule.b, &d))
     return mpmi_archive_damaged(a, "a rule of contact makes no sense");
   return mpmi_contact_rules_set(rules, a->context, (int32_t)rule.a, (int32_t)rule.b, &d);
 }
@@ -76,21 +82,23 @@ static mpm_status read_pair(mpmi_archive *a, mpmi_pair_records *pairs) {
   mpmi_archive_words(a, &pair, sizeof pair);
   if (a->status) return a->status;
   if (!is_body(pair.a, 0) || !is_body(pair.b, pair.a + 1) ||
-      mpmi_pair_find(pairs, (int32_t)pair.a, (int32_t)pair.b) >= 0)
+      (pairs->count &&
+       !comes_after(pair.a, pair.b, pairs->record[pairs->count - 1].a, pairs->record[pairs->count - 1].b)))
     return mpmi_archive_damaged(a, "a pair of bodies makes no sense");
   const mpm_status status = mpmi_pair_add(pairs, a->context, (int32_t)pair.a, (int32_t)pair.b);
   if (status) return status;
-  mpmi_pair_record *record = &pairs->record[mpmi_pair_find(pairs, (int32_t)pair.a, (int32_t)pair.b)];
+  mpmi_pair_record *record = &pairs->record[pairs->count - 1];
   record->last = pair.last;
   for (int32_t c = 0; c < 3; ++c) record->impulse_total[c] = pair.impulse_total[c];
   return MPM_OK;
 }
 
-mpm_status mpmi_state_read_contact(mpmi_archive *a, mpmi_contact_rules *rules, mpmi_pair_records *pairs) {
+mpm_status mpmi_state_read_contact(mpmi_archive *a, const mpm_grid *grid, mpmi_contact_rules *rules,
+                                   mpmi_pair_records *pairs) {
   int64_t counts[2] = {0, 0};
   mpmi_archive_words(a, counts, sizeof counts);
   for (int64_t i = 0; i < counts[0] && !a->status; ++i) {
-    const mpm_status status = read_rule(a, rules);
+    const mpm_status status = read_rule(a, grid, rules);
     if (status) return status;
   }
   for (int64_t i = 0; i < counts[1] && !a->status; ++i) {

@@ -149,7 +149,7 @@ static mpm_status read_state(loading *l) {
   mpmi_state_setup(a, s, l->set);
   read_numbers(l);
   mpm_status status = a->status;
-  if (!status && l->format > 2) status = mpmi_state_read_contact(a, &l->rules, &l->pairs);
+  if (!status && l->format > 2) status = mpmi_state_read_contact(a, s->grid, &l->rules, &l->pairs);
   if (!status && l->numbers.blocks >= 0) status = read_blocks(l);
   for (int32_t m = 0; m < s->layout.member_count && !status; ++m) status = read_set(l, m);
   if (!status && a->at != a->size) {
@@ -177,6 +177,23 @@ static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
   mpmi_particles_watch(set, set->slots);
   set->suspect = 0;
   mpmi_index_drop(set);
+}
+
+/* Refuses bodies of the state that this stepper does not offer, with its rules. */
+static mpm_status check_bodies(loading *l) {
+  mpm_stepper *s = l->stepper;
+  const mpmi_contact_rules rules = s->settings.contact;
+  mpm_status status = MPM_OK;
+  for (int32_t swap = 0; swap < 2; ++swap) { /* there and back */
+    if (l->format > 2) s->settings.contact = swap ? rules : l->rules;
+    for (int32_t m = 0; m < s->layout.member_count; ++m) {
+      const int32_t body = s->layout.member[m].body;
+      s->layout.member[m].body = (int32_t)l->set[m].numbers.body;
+      l->set[m].numbers.body = body;
+    }
+    if (!swap) status = mpmi_check_bodies(s, s->settings.desc.scheme, -1);
+  }
+  return status;
 }
 
 /* Takes the loaded state over, which cannot fail. */
@@ -236,6 +253,7 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   l.archive.from = body;
   l.archive.size = bytes - (int64_t)sizeof header;
   status = read_state(&l);
+  if (!status) status = check_bodies(&l);
   if (!status && l.numbers.blocks >= 0) status = mpmi_layout_adopt(&s->layout, &s->settings);
   if (!status) take_over(&l);
   for (int32_t m = 0; m < s->layout.member_count; ++m)

@@ -23,7 +23,7 @@ typedef struct mpmi_block_groups {
 typedef struct mpmi_cloud_entry {
   uint32_t slot;
   int32_t member;
-  double weight;
+  double volume; /* w V at the start of the step */
 } mpmi_cloud_entry;
 
 /* The particles with weight at one node of a party: its master, or one that follows it. A node on the

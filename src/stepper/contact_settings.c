@@ -41,12 +41,16 @@ mpm_status mpm_stepper_set_body(mpm_stepper *s, mpm_particles *particles, int32_
   mpmi_member *member = &s->layout.member[m];
   const int32_t was = member->body;
   if (body == was) return MPM_OK;
+  if (s->mapped)
+    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them first",
+                     (int)s->mapped);
   member->body = body;
   if ((status = mpmi_check_bodies(s, s->settings.desc.scheme, -1))) {
     member->body = was;
     return status;
   }
   particles->dirty |= MPMI_DIRTY_PLACE;
+  s->nodes.shown = -1;
   return MPM_OK;
 }
 
@@ -71,7 +75,8 @@ static mpm_status check_choice(mpm_context *c, const char *name, int32_t value, 
   return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be an %s", name, (int)value, range);
 }
 
-mpm_status mpmi_contact_desc_check(mpm_context *c, int32_t a, int32_t b, const mpm_contact_desc *d) {
+mpm_status mpmi_contact_desc_check(const mpm_grid *grid, int32_t a, int32_t b, const mpm_contact_desc *d) {
+  mpm_context *c = grid->context;
   mpm_status status;
   if ((status = check_choice(c, "kind", d->kind, "MPM_CONTACT_UNILATERAL ... MPM_CONTACT_TIED",
                              MPM_CONTACT_TIED)) ||
@@ -87,10 +92,21 @@ mpm_status mpmi_contact_desc_check(mpm_context *c, int32_t a, int32_t b, const m
     return mpmi_fail(c, MPM_E_ARG, "friction_static is %g, less than friction %g", d->friction_static,
                      d->friction);
   if (!isfinite(d->offset)) return mpmi_fail(c, MPM_E_ARG, "offset is %g: it must be finite", d->offset);
+  if (d->adhesion > 0.0 && mpmi_detects_by_velocity(d))
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "the contact of bodies %d and %d has adhesion, which acts while a gap is closed, but is found by "
+        "velocity: use MPM_DETECT_GAP",
+        (int)a, (int)b);
+  if (d->normal != MPM_NORMAL_FIXED) return MPM_OK;
   const double *n = d->direction, length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  if (d->normal == MPM_NORMAL_FIXED && !(fabs(length - 1.0) <= 1e-6))
+  if (!(fabs(length - 1.0) <= 1e-6))
     return mpmi_fail(c, MPM_E_ARG, "direction of the contact of bodies %d and %d has length %g: it must be 1",
                      (int)a, (int)b, length);
+  for (int32_t k = grid->dim; k < 3; ++k)
+    if (n[k] < 0.0 || n[k] > 0.0)
+      return mpmi_fail(c, MPM_E_ARG, "direction[%d] is %g: a %d-D grid does not have the axis", (int)k, n[k],
+                       (int)grid->dim);
   return MPM_OK;
 }
 
@@ -103,15 +119,6 @@ static mpm_status check_pair(const mpm_stepper *s, int32_t a, int32_t b) {
   return status;
 }
 
-/* Components on axes that the grid does not have are 0 in a fixed direction. */
-static mpm_status check_axes(const mpm_stepper *s, const mpm_contact_desc *d) {
-  for (int32_t k = s->grid->dim; k < 3 && d->normal == MPM_NORMAL_FIXED; ++k)
-    if (d->direction[k] < 0.0 || d->direction[k] > 0.0)
-      return mpmi_fail(s->context, MPM_E_ARG, "direction[%d] is %g: a %d-D grid does not have the axis",
-                       (int)k, d->direction[k], (int)s->grid->dim);
-  return MPM_OK;
-}
-
 mpm_status mpm_stepper_set_contact(mpm_stepper *s, int32_t body_a, int32_t body_b,
                                    const mpm_contact_desc *desc) {
   MPMI_ENTER(s, MPMI_STEPPER);
@@ -119,11 +126,14 @@ mpm_status mpm_stepper_set_contact(mpm_stepper *s, int32_t body_a, int32_t body_
   mpm_status status = mpmi_stepper_idle(s);
   if (!status) status = check_pair(s, body_a, body_b);
   if (!status && desc) status = mpmi_read_struct(s->context, "mpm_contact_desc", desc, sizeof d, &d);
-  if (!status && desc) status = mpmi_contact_desc_check(s->context, body_a, body_b, &d);
-  if (!status && desc) status = check_axes(s, &d);
+  if (!status && desc) status = mpmi_contact_desc_check(s->grid, body_a, body_b, &d);
   if (status) return status;
   const int32_t low = body_a < body_b ? body_a : body_b, high = body_a < body_b ? body_b : body_a;
-  for (int32_t k = 0; k < 3 && desc && body_a > body_b; ++k) d.direction[k] = -d.direction[k];
+  if (desc && d.normal == MPM_NORMAL_FIXED) {
+    double *n = d.direction;
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), sign = body_a > body_b ? -1.0 : 1.0;
+    for (int32_t k = 0; k < 3; ++k) n[k] *= sign / length;
+  }
   mpmi_contact_rules *rules = &s->settings.contact;
   const mpm_contact_desc *there = mpmi_contact_rule_at(rules, low, high);
   const int32_t had = there != NULL;

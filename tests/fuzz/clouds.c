@@ -174,7 +174,8 @@ static void draw_bodies(cloud *c) {
   mpm_contact_desc d;
   MUST(!mpm_contact_desc_init(&d, sizeof d));
   d.kind = fuzz_below(&c->in, 3);
-  d.normal = fuzz_below(&c->in, 3);
+  d.normal = fuzz_below(&c->in, 4);
+  d.direction[0] = 1.0;
   d.detection = fuzz_below(&c->in, 3);
   d.friction = fuzz_between(&c->in, 0.0, 1.0);
   d.adhesion = fuzz_between(&c->in, 0.0, 10.0);
