@@ -164,7 +164,6 @@ static double keep(mpmi_bound *bound, const mpmi_touch *touch) {
 typedef struct contact_job {
   mpmi_bound *bound;
   int32_t keeps, first_round;
-  double *most; /* [tasks] by how much velocities changed */
 } contact_job;
 
 static double act_once(const contact_job *job, mpmi_touch *touch) {
@@ -186,6 +185,8 @@ static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_
   return 1;
 }
 
+/* Sweeps the touches of a meeting until they are settled; returns by how much the first sweep changed
+ * velocities. */
 static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting) {
   mpmi_contact_nodes *contact = &job->bound->nodes->contact;
   const int64_t end = meeting->first_touch + meeting->touch_count;
@@ -236,7 +237,7 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
 
 mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t first_round, double *most) {
   const mpmi_settings *settings = bound->step->settings;
-  contact_job job = {bound, keeps, first_round, NULL};
+  contact_job job = {bound, keeps, first_round};
   *most = 0.0;
   if (!mpmi_bodies_touch(bound)) return MPM_OK;
   const mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, sweep_task, &job);
