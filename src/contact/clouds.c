@@ -48,8 +48,8 @@ typedef struct cloud_tile {
   int32_t any, edge[3]; /* edge: 1 on axes that the grid does not have, which come first */
 } cloud_tile;
 
-static void load_box(const mpmi_contact_nodes *contact, const mpmi_blocks *b, int64_t block, int32_t n,
-                     const mpmi_spans *spans, cloud_tile *tile) {
+static void load_neighbour(const mpmi_contact_nodes *contact, const mpmi_blocks *b, int64_t block, int32_t n,
+                           const mpmi_spans *spans, cloud_tile *tile) {
   const mpmi_span *x = &spans->at[0][n / 9], *y = &spans->at[1][n / 3 % 3], *z = &spans->at[2][n % 3];
   if (!x->length || !y->length || !z->length) return;
   const int64_t first = (int64_t)b->neighbour[block][n] * b->nodes;
@@ -108,7 +108,7 @@ static cloud_tile load_tile(const mpmi_contact_search *search, int64_t block, do
   for (int32_t k = 3 - grid->dim; k < 3; ++k) tile.edge[k] = edge;
   for (int32_t i = 0; i < nodes; ++i) tile.cloud[i] = -1;
   const mpmi_spans spans = mpmi_spans_of(b, block);
-  for (int32_t n = 0; n < b->neighbours; ++n) load_box(search->contact, b, block, n, &spans, &tile);
+  for (int32_t n = 0; n < b->neighbours; ++n) load_neighbour(search->contact, b, block, n, &spans, &tile);
   if (!tile.any) return tile;
   memset(tile.meets, 0, (size_t)nodes);
   for (int32_t i = 0; i < nodes; ++i)

@@ -130,7 +130,7 @@ static int64_t list_body(const mpm_stepper *s, int32_t body, int64_t *list) {
 
 static mpm_status list_all(mpm_stepper *s) {
   const int64_t count = mpmi_count_active(&s->layout, &s->nodes.solved);
-  if (count > s->active_capacity) {
+  if (count > s->active_capacity || !s->active) {
     int64_t *memory = mpmi_alloc(s->context, mpmi_bytes(count, sizeof *memory));
     if (!memory) return MPM_E_NOMEM;
     MPMI_FREE_ARRAY(s->context, s->active, s->active_capacity);
