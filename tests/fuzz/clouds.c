@@ -186,10 +186,11 @@ static void draw_bodies(cloud *c) {
                                       fuzz_below(&c->in, 8) ? &d : NULL));
 }
 
+/* The same for the same step, so that a loaded state goes on as before. */
 static mpm_status rub(void *user, const mpm_contact_batch *b, double *friction) {
-  cloud *c = user;
-  for (int64_t i = 0; i < b->n; ++i) friction[i] = fuzz_between(&c->in, 0.0, 1.0);
-  return fuzz_below(&c->in, 64) == 1 ? fuzz_below(&c->in, 3) - 1 : MPM_OK;
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i) friction[i] = fabs(b->normal[i]);
+  return b->n % 64 == 63 ? 1 : MPM_OK;
 }
 
 static void open_stepper(cloud *c) {
