@@ -117,8 +117,8 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
   mpmi_block_groups *next = &layout->next_groups;
   mpm_status status;
   if ((status = mpmi_constraints_build(&layout->next_constraints, &layout->next_blocks, settings->wall)) ||
-      /* this comes last, because the present worklists point there; + 1 so that it exists without blocks */
       (status = MPMI_RESERVE_MORE(settings->context, next->group, next->capacity, groups)) ||
+      /* this comes last, because the present worklists point there; + 1 so that it exists without blocks */
       (status =
            MPMI_RESERVE_MORE(settings->context, layout->list_memory, layout->list_capacity, 2 * blocks + 1)))
     return status;
