@@ -15,22 +15,8 @@ void mpmi_contact_nodes_free(mpmi_contact_nodes *contact, mpm_context *c) {
   MPMI_FREE_ARRAY(c, contact->work, contact->work_capacity);
 }
 
-/* Returns the place of a pair in the list, or where it would have to be inserted. */
-static int64_t place_of(const mpmi_pair_records *records, int32_t a, int32_t b) {
-  int64_t low = 0, high = records->count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    const mpmi_pair_record *record = &records->record[middle];
-    if (record->a < a || (record->a == a && record->b < b))
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 int64_t mpmi_pair_find(const mpmi_pair_records *records, int32_t a, int32_t b) {
-  const int64_t at = place_of(records, a, b);
+  const int64_t at = mpmi_pair_place(records->record, sizeof *records->record, records->count, a, b);
   return at < records->count && records->record[at].a == a && records->record[at].b == b ? at : -1;
 }
 
@@ -45,7 +31,7 @@ mpm_status mpmi_pair_add(mpmi_pair_records *records, mpm_context *context, int32
     records->record = record;
     records->capacity = capacity;
   }
-  const int64_t at = place_of(records, a, b);
+  const int64_t at = mpmi_pair_place(records->record, sizeof *records->record, records->count, a, b);
   memmove(records->record + at + 1, records->record + at,
           (size_t)(records->count - at) * sizeof *records->record);
   ++records->count;

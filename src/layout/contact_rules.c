@@ -9,13 +9,13 @@ mpm_status mpm_contact_desc_init(mpm_contact_desc *desc, uint32_t struct_size) {
   return mpmi_init_struct("mpm_contact_desc", &defaults, sizeof defaults, desc, struct_size);
 }
 
-/* Returns the place of a pair in the list, or where it would have to be inserted. */
-static int64_t place_of(const mpmi_contact_rules *rules, int32_t a, int32_t b) {
-  int64_t low = 0, high = rules->count;
+int64_t mpmi_pair_place(const void *list, size_t each, int64_t count, int32_t a, int32_t b) {
+  int64_t low = 0, high = count;
   while (low < high) {
     const int64_t middle = low + (high - low) / 2;
-    const mpmi_contact_rule *rule = &rules->rule[middle];
-    if (rule->a < a || (rule->a == a && rule->b < b))
+    int32_t pair[2];
+    memcpy(pair, (const char *)list + (size_t)middle * each, sizeof pair);
+    if (pair[0] < a || (pair[0] == a && pair[1] < b))
       low = middle + 1;
     else
       high = middle;
@@ -24,7 +24,7 @@ static int64_t place_of(const mpmi_contact_rules *rules, int32_t a, int32_t b) {
 }
 
 const mpm_contact_desc *mpmi_contact_rule_at(const mpmi_contact_rules *rules, int32_t a, int32_t b) {
-  const int64_t at = place_of(rules, a, b);
+  const int64_t at = mpmi_pair_place(rules->rule, sizeof *rules->rule, rules->count, a, b);
   return at < rules->count && rules->rule[at].a == a && rules->rule[at].b == b ? &rules->rule[at].desc : NULL;
 }
 
@@ -41,7 +41,7 @@ const mpm_contact_desc *mpmi_contact_rule_of(const mpmi_contact_rules *rules, in
 
 mpm_status mpmi_contact_rules_set(mpmi_contact_rules *rules, mpm_context *context, int32_t a, int32_t b,
                                   const mpm_contact_desc *desc) {
-  const int64_t at = place_of(rules, a, b);
+  const int64_t at = mpmi_pair_place(rules->rule, sizeof *rules->rule, rules->count, a, b);
   const int32_t there = mpmi_contact_rule_at(rules, a, b) != NULL;
   if (!desc) {
     if (!there) return MPM_OK;

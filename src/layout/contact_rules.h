@@ -22,6 +22,9 @@ typedef struct mpmi_contact_rules {
  * direction is that from b to a, else 1. */
 const mpm_contact_desc *mpmi_contact_rule_of(const mpmi_contact_rules *rules, int32_t a, int32_t b,
                                              double *sign);
+/* Returns the place of a pair in a list that is ordered by pairs, or where it would have to be inserted. Each
+ * item begins with the numbers of its two bodies. */
+int64_t mpmi_pair_place(const void *list, size_t each, int64_t count, int32_t a, int32_t b);
 /* Returns the rule that was set for just this pair, a <= b, or NULL. */
 const mpm_contact_desc *mpmi_contact_rule_at(const mpmi_contact_rules *rules, int32_t a, int32_t b);
 /* Sets the rule of a pair, a <= b, or takes it back where desc is NULL. */
