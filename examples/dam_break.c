@@ -153,9 +153,9 @@ int main(int argc, char **argv) {
       mpm_particles_create(ctx, grid, material, &water) ||
       mpm_particles_fill_box(water, lower, upper, per_cell, NULL, NULL) ||
       mpm_stepper_create(ctx, grid, &sd, &stepper) || mpm_stepper_add(stepper, water) ||
-      mpm_stepper_set_wall(stepper, MPM_X_MIN, MPM_WALL_FRICTION, 0.0) ||
-      mpm_stepper_set_wall(stepper, MPM_X_MAX, MPM_WALL_FRICTION, 0.0) ||
-      mpm_stepper_set_wall(stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.0))
+      mpm_stepper_set_wall(stepper, MPM_X_MIN, MPM_WALL_FRICTION_NODES, 0.0) ||
+      mpm_stepper_set_wall(stepper, MPM_X_MAX, MPM_WALL_FRICTION_NODES, 0.0) ||
+      mpm_stepper_set_wall(stepper, MPM_Y_MIN, MPM_WALL_FRICTION_NODES, 0.0))
     goto failed;
 
   snapshot shot[SHOTS], now_is;

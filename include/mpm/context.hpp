@@ -37,7 +37,7 @@ struct memory_use {
 
 /**
  * A context. The C object lives until the wrapper and everything made with it are gone, in whatever order:
- * grids, materials, sets, steppers, series and views keep it.
+ * grids, materials, sets, obstacles, steppers, series and views keep it.
  */
 class context : public wrapper<detail::context_core> {
 public:

@@ -26,9 +26,9 @@
  *   accepts every size from that of the first release on: fields that a smaller struct lacks have their
  *   defaults, and a larger struct is accepted as long as the tail that the library does not know is zero
  *   (MPM_E_UNSUPPORTED otherwise).
- * - Outputs (mpm_step_info, mpm_view, mpm_profile, mpm_operator_info): the caller sets struct_size = sizeof,
- *   and the library writes no further. Fields that it does not know stay as the caller left them, so zeros
- *   are the values to start with.
+ * - Outputs (mpm_step_info, mpm_contact_info, mpm_view, mpm_profile, mpm_operator_info): the caller sets
+ *   struct_size = sizeof, and the library writes no further. Fields that it does not know stay as the caller
+ *   left them, so zeros are the values to start with.
  * - Batches, and the info of mpm_progress_fn: the library sets struct_size to its own size. A host that uses
  *   a field newer than the oldest library it runs with asks first whether struct_size reaches that far.
  * - Fields called reserved are zero.
@@ -102,6 +102,7 @@
 #include <mpm/grid.h>
 #include <mpm/io.h>
 #include <mpm/material.h>
+#include <mpm/obstacle.h>
 #include <mpm/operator.h>
 #include <mpm/particles.h>
 #include <mpm/stepper.h>

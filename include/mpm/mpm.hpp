@@ -11,9 +11,10 @@
  *
  * @par Lifetimes
  * Wrappers move and do not copy. Each shares ownership of what it was made with: a grid keeps its context, a
- * set its grid and its material, a stepper its grid and its sets, a view what it looks into. Wrappers may be
- * destroyed in any order; a C object is destroyed with the last that needs it. An object that was handed to C
- * code by handle() and is in use there outlives its wrapper and is then leaked, not freed under the user.
+ * set its grid and its material, a stepper its grid, its sets and its obstacles, a view what it looks into.
+ * Wrappers may be destroyed in any order; a C object is destroyed with the last that needs it. An object that
+ * was handed to C code by handle() and is in use there outlives its wrapper and is then leaked, not freed
+ * under the user.
  *
  * @par Callbacks
  * A callback is any copyable function object, and is kept while it may be called. One that throws stops the
@@ -27,10 +28,12 @@
 #ifndef MPM_HPP
 #define MPM_HPP
 
+#include <mpm/contact.hpp>
 #include <mpm/context.hpp>
 #include <mpm/grid.hpp>
 #include <mpm/io.hpp>
 #include <mpm/material.hpp>
+#include <mpm/obstacle.hpp>
 #include <mpm/particles.hpp>
 #include <mpm/stepper.hpp>
 #include <mpm/mpm.h>

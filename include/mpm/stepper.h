@@ -118,9 +118,9 @@ typedef struct mpm_step_info {
    * (C is "velocity_gradient", D the second moments of the basis), whose angular momentum is part of
    * angular_momentum. It is not part of kinetic_energy. 0 with other transfers. */
   double affine_kinetic_energy;
-  /** Energy that contact between bodies took in the step; see contact.h. */
+  /** Energy that contact of bodies, obstacles and MPM_WALL_FRICTION took in the step; see contact.h. */
   double contact_dissipation;
-  int64_t contact_nodes; /**< nodes at which bodies gave each other an impulse */
+  int64_t contact_nodes; /**< nodes at which these gave each other an impulse */
   int32_t body;          /**< velocity field of `node`; 0 where there is none */
   int32_t reserved;      /**< 0 */
 } mpm_step_info;
@@ -256,8 +256,8 @@ MPM_API mpm_status mpm_stepper_set_time(mpm_stepper *stepper, double t, int64_t 
 MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *particles,
                                           mpm_particle_fn mean_velocity, void *user);
 
-/** Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION.
- * friction is the Coulomb coefficient, >= 0, of MPM_WALL_FRICTION, and is not used otherwise. Such a wall is
+/** Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES.
+ * friction is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is
  * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that.
  * MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED:
  * friction with MPM_NEWMARK. */
@@ -289,7 +289,8 @@ MPM_API mpm_status mpm_stepper_set_progress(mpm_stepper *stepper, mpm_progress_f
  * Gives the stable dt of an explicit step from the present state, at CFL number 1 (MPoint theory, eqs 45-46):
  * 1 / max over particles and axes of (|v_k| + c) / h_k, where c is the law's current wave speed, and at most
  * h^2 / (2 dim nu) where a law reports a kinematic viscosity nu; h is the smallest spacing. Explicit steps
- * want a share of it. It is infinite where nothing moves and no law has waves. The call runs the laws.
+ * want a share of it. It is infinite where nothing moves and no law has waves. Obstacles that move count by
+ * the speed of their fastest point. The call runs the laws.
  * MPM_E_STATE: there are no particles, or a view is out.
  */
 MPM_API mpm_status mpm_stable_dt(mpm_stepper *stepper, double *dt);
@@ -400,9 +401,9 @@ MPM_API mpm_status mpm_step_abort(mpm_stepper *stepper);
  * | "position" "velocity"              | F64  | dim        | length, length/time                           |
  * | "force" "acceleration"             | F64  | dim        | internal and external force; length/time^2    |
  * | "reaction"                         | F64  | dim        | force of walls and prescribed velocities      |
- * | "contact_force"                    | F64  | dim        | force of other bodies                         |
- * | "contact_normal"                   | F64  | dim        | unit, away from the body, where bodies meet   |
- * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where bodies do not meet     |
+ * | "contact_force"                    | F64  | dim        | force of other bodies and of obstacles        |
+ * | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
+ * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
  *
  * - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
  * - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.

@@ -11,7 +11,8 @@
 
 namespace mpm {
 
-/** A stepper: see stepper.h. It keeps its sets alive until they are removed or it is destroyed. */
+/** A stepper: see stepper.h. It keeps its sets and obstacles alive until they are removed or it is
+ * destroyed. */
 class stepper : public wrapper<detail::stepper_core> {
 public:
   /** Makes a stepper: see mpm_stepper_create(). */
@@ -32,6 +33,18 @@ public:
     check(mpm_stepper_remove(c.handle, set.handle()));
     c.sets.erase(std::find(c.sets.begin(), c.sets.end(), set.shared()));
     forget_motion(set.handle());
+  }
+  /** Puts an obstacle in: see mpm_stepper_add_obstacle(). */
+  void add(obstacle &body) {
+    core().obstacles.reserve(core().obstacles.size() + 1);
+    check(mpm_stepper_add_obstacle(core().handle, body.handle()));
+    core().obstacles.push_back(body.shared());
+  }
+  /** Takes an obstacle out: see mpm_stepper_remove_obstacle(). */
+  void remove(obstacle &body) {
+    detail::stepper_core &c = core();
+    check(mpm_stepper_remove_obstacle(c.handle, body.handle()));
+    c.obstacles.erase(std::find(c.obstacles.begin(), c.obstacles.end(), body.shared()));
   }
   /** Replaces the options: see mpm_stepper_configure(). */
   void configure(const mpm_stepper_desc &desc) {

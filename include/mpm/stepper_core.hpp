@@ -5,8 +5,8 @@
 #ifndef MPM_STEPPER_CORE_HPP
 #define MPM_STEPPER_CORE_HPP
 
-#include <mpm/contact.h>
 #include <mpm/linear_system.hpp>
+#include <mpm/obstacle.hpp>
 #include <mpm/particles.hpp>
 #include <mpm/stepper.h>
 
@@ -41,37 +41,18 @@ struct step_info : mpm_step_info {
   }
 };
 
-/** An mpm_contact_desc that starts with the defaults. */
-struct contact_desc : mpm_contact_desc {
-  /** Starts with the defaults. */
-  contact_desc() : mpm_contact_desc() {
-    if (const mpm_status status = mpm_contact_desc_init(this, sizeof(mpm_contact_desc)))
-      throw error(status, "mpm_contact_desc_init");
-  }
-};
-
-/** An mpm_contact_info that is ready to be filled. */
-struct contact_info : mpm_contact_info {
-  /** Starts with struct_size set and zeros elsewhere. */
-  contact_info() : mpm_contact_info() {
-    struct_size = sizeof(mpm_contact_info);
-  }
-};
-
 /** As mpm_particle_fn: takes batch and add, and adds to add[c * batch.ld + i] (mt). */
 using particle_callback = callback<const mpm_particle_batch &, double *>;
 /** As mpm_velocity_fn: takes batch, prescribed and velocity (mt). */
 using velocity_callback = callback<const mpm_node_batch &, uint8_t *, double *>;
 /** As mpm_node_fn: takes batch, velocity and force (mt). */
 using node_callback = callback<const mpm_node_batch &, double *, double *>;
-/** As mpm_friction_fn: takes batch and friction (mt). */
-using friction_callback = callback<const mpm_contact_batch &, double *>;
 /** As mpm_progress_fn: a status > 0 ends the call with MPM_CANCELLED. */
 using progress_callback = callback<const mpm_step_info &>;
 
 namespace detail {
 
-/** The stepper of C with its grid, its sets and the host's functions. */
+/** The stepper of C with its grid, its sets, its obstacles and the host's functions. */
 struct stepper_core {
   /** A function where C finds it, as its user pointer. */
   template <class F> struct slot {
@@ -87,6 +68,7 @@ struct stepper_core {
   std::shared_ptr<context_core> context;                     /**< outlives the stepper */
   std::shared_ptr<grid_core> grid;                           /**< outlives the stepper */
   std::vector<std::shared_ptr<particles_core>> sets;         /**< outlive the stepper, or are removed */
+  std::vector<std::shared_ptr<obstacle_core>> obstacles;     /**< outlive the stepper, or are removed */
   std::vector<motion> motions;                               /**< see stepper::set_motion() */
   std::unique_ptr<slot<particle_callback>> acceleration;     /**< see stepper::set_acceleration() */
   std::unique_ptr<slot<particle_callback>> force;            /**< see stepper::set_force() */

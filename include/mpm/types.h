@@ -158,11 +158,15 @@ enum {
 
 /** What a face of the grid does. */
 enum {
-  MPM_WALL_NONE = 0,    /**< default: a step in which a particle would leave fails with MPM_OFF_GRID */
-  MPM_WALL_OPEN = 1,    /**< a particle that leaves is removed */
-  MPM_WALL_FIXED = 2,   /**< velocities at the face are zero: it pushes and pulls */
-  MPM_WALL_SLIP = 3,    /**< a symmetry plane: it pushes and pulls, without tangential force */
-  MPM_WALL_FRICTION = 4 /**< contact with Coulomb friction: it pushes, and never pulls */
+  MPM_WALL_NONE = 0,  /**< default: a step in which a particle would leave fails with MPM_OFF_GRID */
+  MPM_WALL_OPEN = 1,  /**< a particle that leaves is removed */
+  MPM_WALL_FIXED = 2, /**< velocities at the face are zero: it pushes and pulls */
+  MPM_WALL_SLIP = 3,  /**< a symmetry plane: it pushes and pulls, without tangential force */
+  /** the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never pulls */
+  MPM_WALL_FRICTION = 4,
+  /** contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0. Material
+   * feels it about a cell and a half before its particles are there */
+  MPM_WALL_FRICTION_NODES = 5
 };
 
 /** Where in an explicit step a node hook runs. */

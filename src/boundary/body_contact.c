@@ -1,6 +1,7 @@
-/* Contact of bodies at the nodes that they share (docs/theory.md, contact): an impulse that closes the gap
- * and never more, with Coulomb friction; ties; and the projections without forces, which keep to what was
- * found. An impulse acts on the nodes of one meeting alone, so that meetings are independent of each
+/* Contact of bodies at the nodes that they share, and with obstacles and friction walls (docs/theory.md,
+ * contact): an impulse that closes the gap and never more, with Coulomb friction; ties; and the projections
+ * without forces, which keep to what was found. An impulse acts on the nodes of one meeting alone, so that
+ * meetings are independent of each other but for those of free obstacles, which are swept one after the
  * other. */
 #include "boundary/bound.h"
 #include "contact/contact.h"
@@ -13,7 +14,9 @@ static const double settled = 1e-13;
 enum { SWEEPS = 30 };
 
 /* ---- parties ------------------------------------------------------------------------------------------- */
+/* A surface counts by itself where it is free, and has no mass of its own else. */
 static void weigh_party(const mpmi_bound *bound, mpmi_party *party, int32_t keeps) {
+  if (party->surface >= 0) return;
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int32_t tie = constraints->tie_of[party->slot];
   const double mass = mpmi_moving_mass(bound, party->slot);
@@ -26,25 +29,38 @@ static void weigh_party(const mpmi_bound *bound, mpmi_party *party, int32_t keep
 }
 
 /* Two parties as an impulse sees them: the velocity of the second relative to the first, and the change of
- * that for a unit impulse, by component. */
+ * that for a unit impulse, by component; that of a free obstacle comes on top and couples components. */
 typedef struct encounter {
   mpmi_party *party[2];
-  double velocity[3], compliance[3];
+  mpmi_surface *surface, *free; /* the first party, or NULL */
+  double velocity[3], compliance[3], of_surface[3];
 } encounter;
 
-static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch) {
-  mpmi_party *party = bound->nodes->contact.party;
-  encounter e = {{&party[touch->party[0]], &party[touch->party[1]]}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+/* With keeps nothing pushes a free obstacle: its velocity is that of the step. */
+static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_t keeps) {
+  const mpmi_contact_nodes *contact = &bound->nodes->contact;
+  encounter e = {.party = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]}};
+  if (e.party[0]->surface >= 0) {
+    e.surface = &contact->surface[e.party[0]->surface];
+    mpmi_surface_velocity(e.surface, e.party[0]->arm, e.of_surface);
+    if (!keeps && mpmi_is_free(e.surface)) e.free = e.surface;
+  }
   for (int32_t c = 0; c < bound->dim; ++c) {
-    e.velocity[c] =
-        mpmi_velocity(bound->values, e.party[1]->slot)[c] - mpmi_velocity(bound->values, e.party[0]->slot)[c];
+    if (e.surface) e.of_surface[c] += e.party[0]->own_velocity[c];
+    const double first = e.surface ? e.of_surface[c] : mpmi_velocity(bound->values, e.party[0]->slot)[c];
+    e.velocity[c] = mpmi_velocity(bound->values, e.party[1]->slot)[c] - first;
     e.compliance[c] = e.party[0]->inverse_mass[c] + e.party[1]->inverse_mass[c];
   }
   return e;
 }
 
+static double of_free(const encounter *e, const double *n) {
+  return e->free ? mpmi_rigid_compliance(e->free, e->party[0]->arm, n) : 0.0;
+}
+
 static double weighted(const encounter *e, const double *n) {
-  return n[0] * n[0] * e->compliance[0] + n[1] * n[1] * e->compliance[1] + n[2] * n[2] * e->compliance[2];
+  return n[0] * n[0] * e->compliance[0] + n[1] * n[1] * e->compliance[1] + n[2] * n[2] * e->compliance[2] +
+         of_free(e, n);
 }
 
 static double inner(const double *a, const double *b) {
@@ -52,35 +68,57 @@ static double inner(const double *a, const double *b) {
 }
 
 /* Gives an impulse to the second party, and its opposite to the first; returns the energy that it takes. */
-static double give(mpmi_bound *bound, const encounter *e, const double *impulse, int32_t keeps) {
+static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, const double *impulse,
+                   int32_t keeps) {
+  const double back[3] = {-impulse[0], -impulse[1], -impulse[2]};
   double taken = 0.0;
   for (int32_t c = 0; c < bound->dim; ++c) {
     for (int32_t i = 0; i < 2; ++i) {
       const double by = (i ? impulse[c] : -impulse[c]) * e->party[i]->inverse_mass[c];
       if (!(by < 0.0 || by > 0.0)) continue;
-      mpmi_push_node(bound, e->party[i]->slot, c, by);
-      if (!keeps) e->party[i]->given[c] += by;
+      if (e->surface && e->surface->face >= 0) {
+        mpmi_press_node(bound, e->party[i]->slot, c, by); /* a reaction of walls */
+      } else {
+        mpmi_push_node(bound, e->party[i]->slot, c, by);
+        if (!keeps) e->party[i]->given[c] += by;
+      }
     }
     taken -= impulse[c] * (e->velocity[c] + 0.5 * e->compliance[c] * impulse[c]);
   }
-  return taken;
+  if (keeps || !e->surface) return taken;
+  const double half = 0.5 * of_free(e, impulse);
+  touch->work -= half;
+  for (int32_t c = 0; c < bound->dim; ++c)
+    if (e->free || e->compliance[c] > 0.0) touch->work += impulse[c] * e->of_surface[c];
+  if (e->free) mpmi_rigid_push(e->free, e->party[0]->arm, back);
+  return taken - half;
 }
 
 /* ---- one touch ----------------------------------------------------------------------------------------- */
-/* Stops the whole relative velocity; returns the largest component of it that could be stopped. */
-static double tie(mpmi_bound *bound, mpmi_touch *touch) {
-  const encounter e = encounter_of(bound, touch);
-  double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
-  for (int32_t c = 0; c < bound->dim; ++c) {
-    if (!(e.compliance[c] > 0.0)) continue;
-    impulse[c] = -e.velocity[c] / e.compliance[c];
-    stopped = fmax(stopped, fabs(e.velocity[c]));
-  }
-  touch->dissipation += give(bound, &e, impulse, 0);
+static void tie_by(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, const double *impulse) {
+  touch->dissipation += give(bound, touch, e, impulse, 0);
   const double along = inner(impulse, touch->normal);
   touch->normal_impulse += along;
   for (int32_t c = 0; c < bound->dim; ++c) touch->tangential[c] += impulse[c] - along * touch->normal[c];
-  touch->closed = touch->stuck = weighted(&e, (const double[]){1.0, 1.0, 1.0}) > 0.0;
+}
+
+/* Stops the whole relative velocity; returns the largest component of it that could be stopped. A free
+ * obstacle couples components, and so they are stopped one after the other. */
+static double tie(mpmi_bound *bound, mpmi_touch *touch) {
+  encounter e = encounter_of(bound, touch, 0);
+  double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    const double unit[3] = {c == 0, c == 1, c == 2}, compliance = e.compliance[c] + of_free(&e, unit);
+    if (!(compliance > 0.0)) continue;
+    impulse[c] = -e.velocity[c] / compliance;
+    stopped = fmax(stopped, fabs(e.velocity[c]));
+    if (!e.free) continue;
+    tie_by(bound, touch, &e, impulse);
+    impulse[c] = 0.0;
+    e = encounter_of(bound, touch, 0);
+  }
+  if (!e.free) tie_by(bound, touch, &e, impulse);
+  touch->closed = touch->stuck = e.free || weighted(&e, (const double[]){1.0, 1.0, 1.0}) > 0.0;
   touch->ambiguous = !touch->closed;
   return stopped;
 }
@@ -104,12 +142,41 @@ static void rub(const mpmi_touch *touch, const encounter *e, double approach, do
   for (int32_t c = 0; c < 3 && !*stuck; ++c) after[c] *= most / size;
 }
 
+/* Brings the normal impulse to a value. */
+static double press(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, double normal) {
+  double impulse[3];
+  for (int32_t c = 0; c < 3; ++c) impulse[c] = (normal - touch->normal_impulse) * touch->normal[c];
+  touch->normal_impulse = normal;
+  return give(bound, touch, e, impulse, 0);
+}
+
+/* Gives what an impulse of this sweep adds to friction, and what is left of the normal one. */
+static double give_friction(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, double normal,
+                            const double *tangential) {
+  double impulse[3], change[3], rubbed = 0.0;
+  for (int32_t c = 0; c < 3; ++c) {
+    change[c] = tangential[c] - touch->tangential[c];
+    impulse[c] = (normal - touch->normal_impulse) * touch->normal[c] + change[c];
+  }
+  touch->dissipation += give(bound, touch, e, impulse, 0);
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    rubbed = fmax(rubbed, fabs(change[c]) * e->compliance[c]);
+    touch->friction_work -= change[c] * (e->velocity[c] + 0.5 * e->compliance[c] * impulse[c]);
+    touch->tangential[c] = tangential[c];
+  }
+  if (!e->free) return rubbed;
+  touch->friction_work -= 0.5 * of_free(e, change);
+  const double size = sqrt(inner(change, change));
+  return size > 0.0 ? weighted(e, change) / size : 0.0;
+}
+
 /* Lets the bodies push each other. Impulses of further sweeps are added to those of the first, and only the
  * sum must push. Returns by how much velocities changed. */
 static double push(mpmi_bound *bound, mpmi_touch *touch) {
   const mpm_contact_desc *rule = touch->rule;
-  const encounter e = encounter_of(bound, touch);
-  const double compliance = weighted(&e, touch->normal), approach = inner(e.velocity, touch->normal);
+  encounter e = encounter_of(bound, touch, 0);
+  const double compliance = weighted(&e, touch->normal);
+  double approach = inner(e.velocity, touch->normal);
   if (!(compliance > 0.0)) {
     touch->ambiguous = 1; /* both are held */
     return 0.0;
@@ -120,31 +187,27 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
   const double closing = apart ? touch->gap / bound->step->dt : 0.0;
   const double pull = apart ? 0.0 : rule->adhesion * touch->area * bound->step->velocity_dt;
   const double normal = fmax(-pull, touch->normal_impulse - (approach + closing) / compliance);
-  double tangential[3], impulse[3], rubbed = 0.0;
+  const double moved = fabs(normal - touch->normal_impulse) * compliance;
+  if (e.free) { /* it turns, too, and slips otherwise than before */
+    touch->dissipation += press(bound, touch, &e, normal);
+    e = encounter_of(bound, touch, 0);
+    approach = inner(e.velocity, touch->normal);
+  }
+  double tangential[3];
   rub(touch, &e, approach, touch->friction * (normal + pull), touch->friction_static * (normal + pull),
       tangential, &touch->stuck);
-  touch->closed = normal > 0.0 || normal < 0.0;
+  /* with adhesion friction may act where nothing pushes */
+  touch->closed = normal > 0.0 || normal < 0.0 || inner(tangential, tangential) > 0.0;
   touch->stuck &= touch->closed;
-  for (int32_t c = 0; c < 3; ++c) {
-    const double change = tangential[c] - touch->tangential[c];
-    impulse[c] = (normal - touch->normal_impulse) * touch->normal[c] + change;
-  }
-  touch->dissipation += give(bound, &e, impulse, 0);
-  for (int32_t c = 0; c < bound->dim; ++c) {
-    const double change = tangential[c] - touch->tangential[c];
-    rubbed = fmax(rubbed, fabs(change) * e.compliance[c]);
-    touch->friction_work -= change * (e.velocity[c] + 0.5 * e.compliance[c] * impulse[c]);
-    touch->tangential[c] = tangential[c];
-  }
-  const double moved = fabs(normal - touch->normal_impulse) * compliance;
+  const double rubbed = give_friction(bound, touch, &e, normal, tangential);
   touch->normal_impulse = normal;
   return fmax(moved, rubbed);
 }
 
 /* Keeps a touch as it was found, in a projection without forces: a closed one stays closed both ways. */
-static double keep(mpmi_bound *bound, const mpmi_touch *touch) {
+static double keep(mpmi_bound *bound, mpmi_touch *touch) {
   if (!touch->closed) return 0.0;
-  const encounter e = encounter_of(bound, touch);
+  const encounter e = encounter_of(bound, touch, 1);
   const double compliance = weighted(&e, touch->normal), approach = inner(e.velocity, touch->normal);
   double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
   for (int32_t c = 0; c < bound->dim; ++c) {
@@ -156,7 +219,7 @@ static double keep(mpmi_bound *bound, const mpmi_touch *touch) {
       stopped = fabs(approach);
     }
   }
-  give(bound, &e, impulse, 1);
+  give(bound, touch, &e, impulse, 1);
   return stopped;
 }
 
@@ -172,11 +235,8 @@ static double act_once(const contact_job *job, mpmi_touch *touch) {
   return touch->rule->kind == MPM_CONTACT_TIED ? tie(job->bound, touch) : push(job->bound, touch);
 }
 
-/* One touch alone between nodes that are free is settled at once. */
-static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_meeting *meeting,
-                                  int32_t dim) {
-  if (meeting->touch_count != 1) return 0;
-  const mpmi_touch *touch = &contact->touch[meeting->first_touch];
+/* A touch between nodes that are free is settled at once. */
+static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_touch *touch, int32_t dim) {
   for (int32_t i = 0; i < 2; ++i) {
     const double *inverse = contact->party[touch->party[i]].inverse_mass;
     for (int32_t c = 1; c < dim; ++c)
@@ -185,26 +245,64 @@ static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_
   return 1;
 }
 
-/* Sweeps the touches of a meeting until they are settled; returns by how much the first sweep changed
- * velocities. */
-static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting) {
+static void begin_meeting(const contact_job *job, const mpmi_meeting *meeting) {
   mpmi_contact_nodes *contact = &job->bound->nodes->contact;
-  const int64_t end = meeting->first_touch + meeting->touch_count;
-  double first = 0.0;
-  if (!meeting->touch_count) return 0.0;
-  for (int64_t p = 0; p < meeting->party_count && job->first_round && job->keeps; ++p)
+  if (!job->first_round) return;
+  for (int64_t p = 0; p < meeting->party_count && job->keeps; ++p)
     weigh_party(job->bound, &contact->party[meeting->first_party + p], 1);
-  for (int64_t i = meeting->first_touch; i < end && job->first_round && !job->keeps; ++i) {
-    mpmi_touch *touch = &contact->touch[i];
+  for (int64_t i = 0; i < meeting->touch_count && !job->keeps; ++i) {
+    mpmi_touch *touch = &contact->touch[meeting->first_touch + i];
     touch->closed = touch->stuck = 0;
-    touch->normal_impulse = touch->dissipation = touch->friction_work = 0.0;
+    touch->normal_impulse = touch->dissipation = touch->friction_work = touch->work = 0.0;
     touch->tangential[0] = touch->tangential[1] = touch->tangential[2] = 0.0;
   }
+}
+
+static double sweep_once(const contact_job *job, int64_t first, int64_t count) {
+  const mpmi_contact_nodes *contact = &job->bound->nodes->contact;
+  double most = 0.0;
+  for (int64_t i = first; i < first + count; ++i) most = fmax(most, act_once(job, &contact->touch[i]));
+  return most;
+}
+
+/* Sweeps touches until they are settled; returns by how much the first sweep changed velocities. */
+static double sweep_touches(const contact_job *job, int64_t begin, int64_t count) {
+  const mpmi_contact_nodes *contact = &job->bound->nodes->contact;
+  const int32_t once = count == 1 && is_settled_at_once(contact, &contact->touch[begin], job->bound->dim);
+  double first = 0.0;
+  for (int32_t sweep = 0; sweep < SWEEPS; ++sweep) {
+    const double most = sweep_once(job, begin, count);
+    if (!sweep) first = most;
+    if (!(most > settled * first) || once) break;
+  }
+  return first;
+}
+
+/* Touches that share no body are settled by themselves, as if the others were not there. */
+static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting) {
+  double first = 0.0;
+  if (!meeting->touch_count || meeting->coupled) return 0.0;
+  begin_meeting(job, meeting);
+  if (!meeting->independent) return sweep_touches(job, meeting->first_touch, meeting->touch_count);
+  for (int64_t i = 0; i < meeting->touch_count; ++i)
+    first = fmax(first, sweep_touches(job, meeting->first_touch + i, 1));
+  return first;
+}
+
+/* Meetings of free obstacles depend on each other, and are swept together in their order. */
+static double sweep_coupled(const contact_job *job) {
+  const mpmi_contact_nodes *contact = &job->bound->nodes->contact;
+  double first = 0.0;
+  for (int64_t m = 0; m < contact->meeting_count; ++m)
+    if (contact->meeting[m].coupled) begin_meeting(job, &contact->meeting[m]);
   for (int32_t sweep = 0; sweep < SWEEPS; ++sweep) {
     double most = 0.0;
-    for (int64_t i = meeting->first_touch; i < end; ++i) most = fmax(most, act_once(job, &contact->touch[i]));
+    for (int64_t m = 0; m < contact->meeting_count; ++m) {
+      const mpmi_meeting *meeting = &contact->meeting[m];
+      if (meeting->coupled) most = fmax(most, sweep_once(job, meeting->first_touch, meeting->touch_count));
+    }
     if (!sweep) first = most;
-    if (!(most > settled * first) || is_settled_at_once(contact, meeting, job->bound->dim)) break;
+    if (!(most > settled * first)) break;
   }
   return first;
 }
@@ -223,10 +321,13 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
   mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact};
   mpm_status status = MPM_OK;
-  if (!bound->step->layout->groups.count) return MPM_OK;
+  mpmi_surfaces_predict(contact, bound->step->settings, bound->step->velocity_dt);
+  if (!contact->site_count) return MPM_OK;
   if (!contact->listed) {
-    status = mpmi_meetings_find(&search);
+    status = mpmi_sites_measure(&search);
+    if (!status) status = mpmi_meetings_find(&search);
     if (!status && contact->touch_count) status = mpmi_clouds_fill(&search);
+    if (!status && contact->touch_count) status = mpmi_surface_gaps_find(&search);
     contact->listed = !status;
   }
   if (status || !contact->touch_count) return status;
@@ -241,36 +342,47 @@ mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t firs
   *most = 0.0;
   if (!mpmi_bodies_touch(bound)) return MPM_OK;
   const mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, sweep_task, &job);
-  for (int32_t k = 0; k < settings->tasks && !status; ++k)
+  if (status) return status;
+  *most = sweep_coupled(&job);
+  for (int32_t k = 0; k < settings->tasks; ++k)
     *most = fmax(*most, bound->step->work->report[k].contact_change);
-  return status;
+  return MPM_OK;
 }
 
 /* ---- sums ---------------------------------------------------------------------------------------------- */
 /* What holds a component of a node takes the impulse on it, and does work where it moves the node. */
 static void add_work(mpmi_bound *bound, const mpmi_party *party, double sign, const double *impulse) {
-  for (int32_t c = 0; c < bound->dim; ++c)
+  for (int32_t c = 0; c < bound->dim && party->surface < 0; ++c)
     if (mpmi_held_by(bound->nodes, party->slot, c))
       bound->step->host_work -= sign * impulse[c] * bound->nodes->held_value[party->slot][c];
 }
 
+/* The impulse is on the second party. Bodies are turned about the origin, a surface about its centre, by the
+ * opposite. */
+static void add_torque(const mpmi_bound *bound, const mpmi_party *first, const mpmi_party *second,
+                       const double *impulse, mpmi_pair_sums *sums) {
+  double x[3] = {0.0, 0.0, 0.0};
+  if (first->surface < 0) mpmi_contact_position(&bound->step->layout->blocks, second->slot, x);
+  for (int32_t k = 0; k < 3 && first->surface >= 0; ++k) x[k] = -first->arm[k];
+  for (int32_t c = 0; c < 3; ++c)
+    sums->angular_impulse[c] += x[(c + 1) % 3] * impulse[(c + 2) % 3] - x[(c + 2) % 3] * impulse[(c + 1) % 3];
+}
+
 static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_sums *sums) {
-  const mpmi_blocks *b = &bound->step->layout->blocks;
-  const mpmi_party *party = bound->nodes->contact.party;
-  const mpmi_party *pair[2] = {&party[touch->party[0]], &party[touch->party[1]]};
-  double impulse[3], x[3] = {0.0, 0.0, 0.0};
-  int64_t index[3];
-  mpmi_blocks_index(b, pair[0]->slot, index);
-  for (int32_t k = 0; k < bound->dim; ++k) x[k] = mpmi_node_position(b->grid, k, index[k]);
+  const mpmi_contact_nodes *contact = &bound->nodes->contact;
+  const mpmi_party *pair[2] = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]};
+  const mpmi_surface *surface = pair[0]->surface < 0 ? NULL : &contact->surface[pair[0]->surface];
+  double impulse[3];
   for (int32_t c = 0; c < 3; ++c) {
-    const int32_t moves = pair[0]->inverse_mass[c] > 0.0 || pair[1]->inverse_mass[c] > 0.0;
+    const int32_t moves = pair[0]->inverse_mass[c] > 0.0 || pair[1]->inverse_mass[c] > 0.0 ||
+                          (c < bound->dim && surface && mpmi_is_free(surface));
     impulse[c] = moves ? touch->normal_impulse * touch->normal[c] + touch->tangential[c] : 0.0;
     sums->impulse[c] += impulse[c];
+    if (surface && surface->face >= 0) bound->step->impulse_by_face[surface->face][c] += impulse[c];
   }
   add_work(bound, pair[0], -1.0, impulse);
   add_work(bound, pair[1], 1.0, impulse);
-  for (int32_t c = 0; c < 3; ++c)
-    sums->angular_impulse[c] += x[(c + 1) % 3] * impulse[(c + 2) % 3] - x[(c + 2) % 3] * impulse[(c + 1) % 3];
+  add_torque(bound, pair[0], pair[1], impulse, sums);
   sums->normal_impulse += touch->normal_impulse;
   sums->area += touch->area;
   const double force = touch->normal_impulse / bound->step->velocity_dt;
@@ -282,7 +394,6 @@ void mpmi_body_contacts_sum(mpmi_bound *bound) {
   mpm_step_info *info = &bound->step->info;
   info->contact_nodes = 0;
   info->contact_dissipation = 0.0;
-  if (!bound->step->layout->groups.count) return;
   for (int64_t m = 0; m < contact->meeting_count; ++m) {
     const mpmi_meeting *meeting = &contact->meeting[m];
     int32_t closed = 0;
@@ -298,6 +409,7 @@ void mpmi_body_contacts_sum(mpmi_bound *bound) {
       sums->friction_work += touch->friction_work;
       info->contact_dissipation += touch->dissipation;
       closed |= touch->closed;
+      bound->step->host_work += touch->work;
       if (touch->closed) add_impulse(bound, touch, sums);
     }
     info->contact_nodes += closed;

@@ -64,9 +64,10 @@ double mpmi_record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component be
 /* Changes a component of a free node's velocity by an impulse that is no reaction of walls or prescribed
  * velocities: that of another body. */
 void mpmi_push_node(mpmi_bound *bound, int64_t slot, int32_t c, double by);
-/* Does the same as mpmi_record() for a contact with a wall, whose impulse acts on all the mass that moves
- * with the node; what mirrored ghosts take the other way round is the wall's reaction. */
-double mpmi_record_whole(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before);
+/* Changes a component of a free node's velocity by a contact with a wall, and records and returns the
+ * impulse. It acts on all the mass that moves with the node; what mirrored ghosts take the other way round is
+ * the wall's reaction. */
+double mpmi_press_node(mpmi_bound *bound, int64_t slot, int32_t c, double by);
 
 /* Adds the work of all blocks, in their order, to the work of the step. */
 void mpmi_add_block_work(mpmi_step *step);
@@ -100,7 +101,7 @@ mpm_status mpmi_prescribed_share(mpmi_bound *bound);
 /* ---- body_contact.c ---------------------------------------------------------------------------------- */
 /* Returns 1 when there are nodes at which bodies may touch. */
 static inline int32_t mpmi_bodies_touch(const mpmi_bound *bound) {
-  return bound->step->layout->groups.count && bound->nodes->contact.touch_count;
+  return bound->nodes->contact.touch_count > 0;
 }
 /* Finds where bodies may touch, and asks the host for coefficients of friction. */
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound);

@@ -73,7 +73,8 @@ static void ask_pair(mpmi_bound *bound, int64_t begin, int64_t end, int64_t reco
   list.n = 0;
   for (int64_t i = begin; i < end; ++i) {
     const mpmi_touch *touch = &contact->touch[i];
-    if (touch->record != record || touch->open || touch->rule->kind != MPM_CONTACT_UNILATERAL) continue;
+    if (touch->record != record || touch->open || touch->rule->kind != MPM_CONTACT_UNILATERAL || pair->a < 0)
+      continue;
     list.touch[list.n] = i;
     show_touch(bound, touch, &list);
     ++list.n;

@@ -3,14 +3,6 @@
 
 #include <math.h>
 
-/* Changes a free node's velocity by a contact. */
-static double press(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
-  const mpmi_component before = mpmi_component_of(bound, slot, c);
-  mpmi_velocity(bound->values, slot)[c] += by;
-  if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] += by;
-  return mpmi_record_whole(bound, slot, c, before);
-}
-
 /* A contact acts on the sum of the velocities of its nodes, which is what the wall's plane sees of them. Its
  * impulse is shared equally by those that move: a component that another wall holds does not. compliance is
  * the change of the sum for a unit impulse. */
@@ -29,7 +21,8 @@ static double sum_of(mpmi_bound *bound, const contact_nodes *n, int32_t c) {
 static void give(mpmi_bound *bound, const contact_nodes *n, int32_t face, int32_t c, double impulse) {
   for (int32_t i = 0; i < n->count; ++i) {
     if (!(n->inverse_mass[i][c] > 0.0)) continue;
-    const double impulse_given = press(bound, n->slot[i], c, impulse / n->moving[c] * n->inverse_mass[i][c]);
+    const double impulse_given =
+        mpmi_press_node(bound, n->slot[i], c, impulse / n->moving[c] * n->inverse_mass[i][c]);
     if (bound->records) bound->step->impulse_by_face[face][c] += impulse_given;
   }
 }

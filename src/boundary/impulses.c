@@ -28,7 +28,10 @@ double mpmi_record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component be
   return record(bound, slot, c, before, 0);
 }
 
-double mpmi_record_whole(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before) {
+double mpmi_press_node(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
+  const mpmi_component before = mpmi_component_of(bound, slot, c);
+  mpmi_velocity(bound->values, slot)[c] += by;
+  if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] += by;
   return record(bound, slot, c, before, 1);
 }
 

@@ -6,6 +6,7 @@
 #include "layout/tile.h"
 #include "layout/visit.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct cloud_job {
@@ -19,7 +20,7 @@ static void mark_near(const mpmi_contact_search *search) {
   mpmi_contact_nodes *contact = search->contact;
   const int32_t dim = b->grid->dim, edge = b->edge, low = MPMI_RING + b->grid->below,
                 high = MPMI_RING + b->grid->width - 1 - b->grid->below;
-  memset(contact->near, 0, (size_t)b->count);
+  memset(contact->in_reach, 0, (size_t)b->count);
   for (int64_t i = 0; i < contact->cloud_count; ++i) {
     const int64_t block = contact->cloud[i].slot / b->nodes;
     int64_t place = contact->cloud[i].slot % b->nodes;
@@ -35,7 +36,7 @@ static void mark_near(const mpmi_contact_search *search) {
         for (int32_t z = from[2]; z <= to[2]; ++z) {
           const int32_t n = dim == 1 ? x : dim == 2 ? 3 * x + y : 9 * x + 3 * y + z;
           const int32_t other = b->neighbour[block][n];
-          if (other != MPMI_NO_BLOCK) contact->near[other] = 1;
+          if (other != MPMI_NO_BLOCK) contact->in_reach[other] = 1;
         }
   }
 }
@@ -177,7 +178,7 @@ static void visit_block(void *user, const mpmi_visit *visit) {
   const mpmi_step *step = search->step;
   const mpmi_layout *layout = step->layout;
   const mpm_grid *grid = layout->blocks.grid;
-  if (!search->contact->near[visit->block]) return;
+  if (!search->contact->in_reach[visit->block]) return;
   mpmi_tile_use(grid, step->work->scratch[visit->task].tile, 8);
   const cloud_tile tile = load_tile(search, visit->block, step->work->scratch[visit->task].tile);
   if (!tile.any) return;
@@ -208,12 +209,32 @@ static void visit_block(void *user, const mpmi_visit *visit) {
   if (!job->fill) add_counts(search->contact, &tile, grid);
 }
 
+void mpmi_cloud_place(const mpmi_layout *layout, const mpmi_cloud *cloud, const double *node,
+                      const mpmi_cloud_entry *entry, double *x) {
+  const mpm_particles *set = layout->member[entry->member].set;
+  const mpm_grid *grid = set->grid;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    double from = mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + entry->slot] - node[k];
+    if (grid->desc.periodic[k]) {
+      const double period = (double)grid->desc.cells[k] * grid->desc.spacing[k];
+      from -= period * rint(from / period);
+    }
+    x[k] = (cloud->mirrored >> k & 1 ? -from : from) * grid->inverse_spacing[k];
+  }
+}
+
+void mpmi_contact_position(const mpmi_blocks *b, int64_t slot, double *at) {
+  int64_t index[3];
+  mpmi_blocks_index(b, slot, index);
+  for (int32_t k = 0; k < b->grid->dim; ++k) at[k] = mpmi_node_position(b->grid, k, index[k]);
+}
+
 mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {
   mpm_context *c = search->step->settings->context;
   mpmi_contact_nodes *contact = search->contact;
   cloud_job job = {search, 0};
   mpm_status status =
-      MPMI_RESERVE_MORE(c, contact->near, contact->near_capacity, search->step->layout->blocks.count);
+      MPMI_RESERVE_MORE(c, contact->in_reach, contact->reach_capacity, search->step->layout->blocks.count);
   if (status) return status;
   mark_near(search);
   if ((status = mpmi_visit_colours(search->step, 0, visit_block, &job))) return status;

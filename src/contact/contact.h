@@ -1,8 +1,11 @@
 /* Who meets whom, and where: what contact finds out from particles and nodal masses before impulses act.
  *
- *   meetings.c   nodes at which several bodies have mass
- *   clouds.c     the particles around these nodes
- *   gaps.c       normal, gap and area of each touch
+ *   sites.c          blocks of several bodies, and blocks near surfaces: obstacles and friction walls
+ *   meetings.c       nodes at which several bodies have mass, or one that a surface binds
+ *   clouds.c         the particles around these nodes
+ *   gaps.c           normal, gap and area of each touch of two bodies
+ *   surface_gaps.c   the same where a surface takes part
+ *   half_width.c     how far a particle reaches in a direction
  */
 #ifndef MPMI_CONTACT_FINDING_H
 #define MPMI_CONTACT_FINDING_H
@@ -25,8 +28,40 @@ mpm_status mpmi_clouds_fill(mpmi_contact_search *search);
 /* Finds normal, gap and area of each touch for the present velocities. */
 mpm_status mpmi_gaps_find(mpmi_contact_search *search);
 
-/* Makes records for the pairs of bodies that are near each other. */
+/* Does the same where a surface takes part; this does not depend on velocities. */
+mpm_status mpmi_surface_gaps_find(mpmi_contact_search *search);
+/* Returns 1 when the first party of a touch is a surface. */
+static inline int32_t mpmi_is_of_surface(const mpmi_contact_nodes *contact, const mpmi_touch *touch) {
+  return contact->party[touch->party[0]].surface >= 0;
+}
+
+/* Particles are looked at as far as this from the line through the node along the normal, in cells, axis by
+ * axis, and beside rounding: those farther off belong to another part of the surface. */
+#define MPMI_CONTACT_REACH (0.75 * (1.0 + 1e-9))
+
+/* Finds the place of a particle from the node of a cloud, in cells, as the master of the cloud's party sees
+ * it. */
+void mpmi_cloud_place(const mpmi_layout *layout, const mpmi_cloud *cloud, const double *node,
+                      const mpmi_cloud_entry *entry, double *x);
+void mpmi_contact_position(const mpmi_blocks *b, int64_t slot, double *at);
+
+/* Half the edge of the cube that a particle of a volume has been. */
+double mpmi_half_edge(int32_t dim, double volume);
+/* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F has
+ * deformed; at most half a cell. n: as the particle itself sees it. */
+double mpmi_half_width(const mpm_particles *set, int64_t slot, double edge, const double *n);
+
+/* Finds surfaces and sites of the step that is about to begin, and makes records for those that may meet. */
 mpm_status mpmi_contact_prepare(const mpmi_layout *layout, const mpmi_settings *settings,
-                                mpmi_pair_records *records);
+                                mpmi_contact_nodes *contact, mpmi_pair_records *records);
+/* Returns 1 when all of a block, so many nodes wider, is farther than `beyond` from a surface. */
+int32_t mpmi_block_is_far(const mpmi_blocks *b, int64_t block, int64_t margin, const mpmi_surface *surface,
+                          double beyond);
+/* Sets free surfaces to their velocities without contact. */
+void mpmi_surfaces_predict(mpmi_contact_nodes *contact, const mpmi_settings *settings, double velocity_dt);
+/* Returns 1 when the host is asked for distances. */
+int32_t mpmi_asks_distances(const mpmi_contact_nodes *contact);
+/* Finds distances and normals of the surfaces that are near sites, at their nodes. */
+mpm_status mpmi_sites_measure(mpmi_contact_search *search);
 
 #endif

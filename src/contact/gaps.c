@@ -2,13 +2,9 @@
 #include "contact/contact.h"
 #include "layout/tasks.h"
 #include "particles/particles.h"
-#include "simd/elementary.h"
 
 #include <math.h>
 
-/* Particles are looked at as far as this from the line through the node along the normal, in spacings: those
- * farther off belong to another part of the surface. */
-static const double reach = 0.75;
 /* A gap above this share of the spacing, and above what both bodies can close in two steps, stays open: no
  * better normal is looked for. */
 static const double surely_open = 0.25;
@@ -35,38 +31,6 @@ static int64_t padded(int64_t count) {
   return (count + MPMI_CHUNK - 1) / MPMI_CHUNK * MPMI_CHUNK;
 }
 
-static double half_edge(int32_t dim, double volume) {
-  switch (dim) {
-  case 1:
-    return 0.5 * volume;
-  case 2:
-    return 0.5 * sqrt(volume);
-  default:
-    return 0.5 * mpmi_cbrt(volume);
-  }
-}
-
-/* From the node of a cloud to a particle, in cells, as the master of the cloud's party sees it. */
-static void place_of(const around *of, const mpmi_cloud *cloud, const double *node,
-                     const mpmi_cloud_entry *entry, double *x) {
-  const mpm_particles *set = of->search->step->layout->member[entry->member].set;
-  const mpm_grid *grid = set->grid;
-  for (int32_t k = 0; k < grid->dim; ++k) {
-    double from = mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + entry->slot] - node[k];
-    if (grid->desc.periodic[k]) {
-      const double period = (double)grid->desc.cells[k] * grid->desc.spacing[k];
-      from -= period * rint(from / period);
-    }
-    x[k] = (cloud->mirrored >> k & 1 ? -from : from) * grid->inverse_spacing[k];
-  }
-}
-
-static void node_of(const mpmi_blocks *b, int64_t slot, double *at) {
-  int64_t index[3];
-  mpmi_blocks_index(b, slot, index);
-  for (int32_t k = 0; k < b->grid->dim; ++k) at[k] = mpmi_node_position(b->grid, k, index[k]);
-}
-
 /* Collects the particles of one party. Equal volumes in a row have equal edges. */
 static void collect(around *of, int32_t which) {
   const mpmi_layout *layout = of->search->step->layout;
@@ -78,16 +42,16 @@ static void collect(around *of, int32_t which) {
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
     double node[3];
-    node_of(&layout->blocks, cloud->slot, node);
+    mpmi_contact_position(&layout->blocks, cloud->slot, node);
     for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
       const mpm_particles *set = layout->member[entry->member].set;
       const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[entry->slot];
       double x[3];
-      place_of(of, cloud, node, entry, x);
+      mpmi_cloud_place(layout, cloud, node, entry, x);
       for (int32_t k = 0; k < grid->dim; ++k) of->x[k][at] = x[k];
       of->weight[at] = entry->volume;
-      if (volume < last_volume || volume > last_volume) r = half_edge(grid->dim, volume);
+      if (volume < last_volume || volume > last_volume) r = mpmi_half_edge(grid->dim, volume);
       last_volume = volume;
       of->half_edge[at] = r;
       ball += of->weight[at] * r * r / 3.0;
@@ -102,25 +66,6 @@ static void collect(around *of, int32_t which) {
 }
 
 /* ---- gaps ---------------------------------------------------------------------------------------------- */
-/* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F has
- * deformed; at most half a cell. n: as the particle itself sees it. */
-static double half_width(const mpm_particles *set, int64_t slot, double edge, const double *n) {
-  const mpm_grid *grid = set->grid;
-  const double *F = mpmi_f64(set, MPMI_F, 0);
-  const int32_t dim = grid->dim, *map = mpmi_tensor_map(dim), components = mpmi_tensor_components(dim);
-  double along[3] = {0.0, 0.0, 0.0}, width = 0.0; /* F^T n */
-  for (int32_t c = 0; c < components; ++c)
-    if (map[c] / 3 < dim && map[c] % 3 < dim) along[map[c] % 3] += F[c * set->ld + slot] * n[map[c] / 3];
-  if (mpmi_has_domains(grid)) {
-    for (int32_t k = 0; k < dim; ++k)
-      width += 0.5 * mpmi_f64(set, MPMI_SIZE, 0)[k * set->ld + slot] * fabs(along[k]);
-  } else {
-    for (int32_t k = 0; k < dim; ++k) width += along[k] * along[k];
-    width = edge * sqrt(width);
-  }
-  return width < 0.5 * grid->h_min ? width : 0.5 * grid->h_min;
-}
-
 /* Returns how far a party reaches along the unit vector n of the projection, or against it for the second
  * one: the largest x . n + R over its particles that are off the line through the node by no more than the
  * limit. most: the same without R. */
@@ -140,7 +85,7 @@ static double extent(const around *of, int32_t which, const double *n, double li
       if (along + half <= most || of->off[at] > limit) continue;
       const mpmi_cloud_entry *entry = &contact->entry[e];
       const double far =
-          along + half_width(layout->member[entry->member].set, entry->slot, of->half_edge[at], seen);
+          along + mpmi_half_width(layout->member[entry->member].set, entry->slot, of->half_edge[at], seen);
       most = far > most ? far : most;
     }
   }
@@ -152,7 +97,7 @@ static double extent(const around *of, int32_t which, const double *n, double li
 static double gap_along(const around *of, const double *n, int32_t whole) {
   const mpmi_step *step = of->search->step;
   const mpm_grid *grid = step->layout->blocks.grid;
-  const double limit = whole || grid->dim == 1 ? (double)INFINITY : reach * reach * grid->h_min * grid->h_min;
+  const double limit = whole || grid->dim == 1 ? (double)INFINITY : MPMI_CONTACT_REACH * MPMI_CONTACT_REACH;
   double most[2];
   step->settings->kernels->project[grid->dim](&of->points, grid->desc.spacing, n, limit, of->along, of->off,
                                               most);
@@ -282,7 +227,8 @@ static void find_task(void *data, int64_t k) {
   mpmi_contact_nodes *contact = search->contact;
   const mpmi_share share = mpmi_share_of(search->step->settings, contact->touch_count, k);
   for (int64_t i = share.begin; i < share.end; ++i)
-    find_touch(search, &contact->touch[i], contact->work + k * contact->work_each);
+    if (!mpmi_is_of_surface(contact, &contact->touch[i]))
+      find_touch(search, &contact->touch[i], contact->work + k * contact->work_each);
 }
 
 mpm_status mpmi_gaps_find(mpmi_contact_search *search) {
@@ -291,7 +237,7 @@ mpm_status mpmi_gaps_find(mpmi_contact_search *search) {
   contact->work_each = 0;
   for (int64_t i = 0; i < contact->touch_count; ++i) {
     int64_t most = 0;
-    for (int32_t c = 0; c < 2; ++c)
+    for (int32_t c = 0; c < 2 && !mpmi_is_of_surface(contact, &contact->touch[i]); ++c)
       most += padded(party_particles(contact, &contact->party[contact->touch[i].party[c]]));
     if (ROWS * most > contact->work_each) contact->work_each = ROWS * most;
   }

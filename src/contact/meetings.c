@@ -1,23 +1,9 @@
-/* Meetings: nodes at one index that several bodies have, each with mass. Nodes that are tied together
- * count as their master, with the mass of all. */
+/* Meetings: nodes at one index that several bodies have, each with mass, or one body and a surface that binds
+ * the node. Nodes that are tied together count as their master, with the mass of all. */
 #include "contact/contact.h"
 #include "layout/tasks.h"
 
 #include <math.h>
-
-mpm_status mpmi_contact_prepare(const mpmi_layout *layout, const mpmi_settings *settings,
-                                mpmi_pair_records *records) {
-  const int32_t *body = layout->blocks.body;
-  for (int64_t g = 0; g < layout->groups.count; ++g) {
-    const mpmi_block_group group = layout->groups.group[g];
-    for (int32_t i = group.first; i < group.first + group.count; ++i)
-      for (int32_t j = i + 1; j < group.first + group.count; ++j) {
-        const mpm_status status = mpmi_pair_add(records, settings->context, body[i], body[j]);
-        if (status) return status;
-      }
-  }
-  return MPM_OK;
-}
 
 /* ---- meetings and parties ------------------------------------------------------------------------------ */
 static int32_t takes_part(const mpmi_contact_search *search, int64_t slot) {
@@ -26,50 +12,80 @@ static int32_t takes_part(const mpmi_contact_search *search, int64_t slot) {
          mpmi_mass_moving(layout, search->nodes, search->values, slot) > layout->mass_cut;
 }
 
-/* Goes through the meetings of a group; returns how many there are and adds the number of their parties. With
- * `fill` they are written from `meeting` and `party` on. */
-static int64_t visit_group(const mpmi_contact_search *search, mpmi_block_group group, int32_t fill,
-                           int64_t meeting, int64_t *party) {
+/* Returns the value of a row of a near surface at a node of its site. */
+static double near_value(const mpmi_contact_search *search, int64_t near, int32_t row, int32_t n) {
+  const int32_t nodes = search->step->layout->blocks.nodes;
+  return search->contact->near_value[(near * MPMI_NEAR_ROWS + row) * nodes + n];
+}
+
+static mpmi_party party_of_surface(const mpmi_contact_search *search, int64_t near, int32_t n) {
+  const mpmi_blocks *b = &search->step->layout->blocks;
+  const mpmi_near *of = &search->contact->near_surface[near];
+  const mpmi_surface *surface = &search->contact->surface[of->surface];
+  mpmi_party party = {.slot = -1, .body = mpmi_code_of(surface), .surface = of->surface};
+  double x[3] = {0.0, 0.0, 0.0};
+  mpmi_contact_position(b, (int64_t)of->block * b->nodes + n, x);
+  mpmi_surface_arm(surface, x, party.arm);
+  for (int32_t k = 0; k < 3; ++k) {
+    party.normal[k] = near_value(search, near, MPMI_NEAR_NORMAL + k, n);
+    party.own_velocity[k] = near_value(search, near, MPMI_NEAR_VELOCITY + k, n);
+  }
+  return party;
+}
+
+/* Goes through the meetings of a site; returns how many there are and adds the number of their parties. With
+ * `fill` they are written from `meeting` and `party` on: bodies, then surfaces. */
+static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *site, int32_t fill,
+                          int64_t meeting, int64_t *party) {
   const mpmi_blocks *b = &search->step->layout->blocks;
   mpmi_contact_nodes *contact = search->contact;
+  const int64_t end = site->blocks.first + site->blocks.count;
+  const int64_t end_near = site->first_near + site->near_count;
   int64_t meetings = 0;
   for (int32_t n = 0; n < b->nodes; ++n) {
-    int64_t parties = 0;
-    for (int64_t i = group.first; i < group.first + group.count; ++i)
-      parties += takes_part(search, i * b->nodes + n);
-    if (parties < 2) continue;
-    if (fill) contact->meeting[meeting + meetings] = (mpmi_meeting){*party, parties, 0, 0};
-    ++meetings;
-    for (int64_t i = group.first; i < group.first + group.count && fill; ++i) {
+    int64_t bodies = 0, surfaces = 0;
+    for (int64_t i = site->blocks.first; i < end; ++i) bodies += takes_part(search, i * b->nodes + n);
+    for (int64_t i = site->first_near; i < end_near && bodies; ++i)
+      surfaces += near_value(search, i, MPMI_NEAR_DISTANCE, n) < (double)INFINITY;
+    if (!bodies || bodies + surfaces < 2) continue;
+    const int64_t number = meeting + meetings++;
+    if (fill) contact->meeting[number] = (mpmi_meeting){*party, bodies + surfaces, 0, 0, 0, 0};
+    for (int64_t i = site->blocks.first; i < end && fill; ++i) {
       const int64_t slot = i * b->nodes + n;
       if (!takes_part(search, slot)) continue;
       contact->party[*party] =
-          (mpmi_party){.slot = slot, .body = b->body[i], .meeting = meeting + meetings - 1};
+          (mpmi_party){.slot = slot, .body = b->body[i], .surface = -1, .meeting = number};
       ++*party;
     }
-    if (!fill) *party += parties;
+    for (int64_t i = site->first_near; i < end_near && fill; ++i) {
+      if (!(near_value(search, i, MPMI_NEAR_DISTANCE, n) < (double)INFINITY)) continue;
+      contact->party[*party] = party_of_surface(search, i, n);
+      contact->party[*party].meeting = number;
+      ++*party;
+    }
+    if (!fill) *party += bodies + surfaces;
   }
   return meetings;
 }
 
 static void count_task(void *data, int64_t k) {
   const mpmi_contact_search *search = data;
-  const mpmi_block_groups *groups = &search->step->layout->groups;
-  const mpmi_share share = mpmi_share_of(search->step->settings, groups->count, k);
+  const mpmi_contact_nodes *contact = search->contact;
+  const mpmi_share share = mpmi_share_of(search->step->settings, contact->site_count, k);
   for (int64_t g = share.begin; g < share.end; ++g) {
-    int64_t *of = search->contact->group_count + 2 * g;
+    int64_t *of = contact->site_sum + 2 * g;
     of[1] = 0;
-    of[0] = visit_group(search, groups->group[g], 0, 0, &of[1]);
+    of[0] = visit_site(search, &contact->site[g], 0, 0, &of[1]);
   }
 }
 
 static void fill_task(void *data, int64_t k) {
   const mpmi_contact_search *search = data;
-  const mpmi_block_groups *groups = &search->step->layout->groups;
-  const mpmi_share share = mpmi_share_of(search->step->settings, groups->count, k);
+  const mpmi_contact_nodes *contact = search->contact;
+  const mpmi_share share = mpmi_share_of(search->step->settings, contact->site_count, k);
   for (int64_t g = share.begin; g < share.end; ++g) {
-    int64_t party = search->contact->group_count[2 * g + 1];
-    visit_group(search, groups->group[g], 1, search->contact->group_count[2 * g], &party);
+    int64_t party = contact->site_sum[2 * g + 1];
+    visit_site(search, &contact->site[g], 1, contact->site_sum[2 * g], &party);
   }
 }
 
@@ -77,13 +93,13 @@ static mpm_status find_parties(mpmi_contact_search *search) {
   const mpmi_settings *settings = search->step->settings;
   mpm_context *c = settings->context;
   mpmi_contact_nodes *contact = search->contact;
-  const int64_t groups = search->step->layout->groups.count;
-  mpm_status status = MPMI_RESERVE_MORE(c, contact->group_count, contact->group_capacity, 2 * groups);
+  const int64_t sites = contact->site_count;
+  mpm_status status = MPMI_RESERVE_MORE(c, contact->site_sum, contact->sum_capacity, 2 * sites);
   if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, count_task, search);
   if (status) return status;
   int64_t meetings = 0, parties = 0;
-  for (int64_t g = 0; g < groups; ++g) {
-    int64_t *of = contact->group_count + 2 * g;
+  for (int64_t g = 0; g < sites; ++g) {
+    int64_t *of = contact->site_sum + 2 * g;
     const int64_t has[2] = {of[0], of[1]};
     of[0] = meetings;
     of[1] = parties;
@@ -99,32 +115,54 @@ static mpm_status find_parties(mpmi_contact_search *search) {
 }
 
 /* ---- touches ------------------------------------------------------------------------------------------- */
-/* Goes through the touches of all meetings; returns how many there are, and writes them with `fill`. */
+/* Two parties that may act on each other; a is a surface or the lower body. Returns 0 where they do not. */
+static int32_t find_pair(const mpmi_contact_search *search, int64_t a, int64_t b, mpmi_touch *touch) {
+  const mpmi_contact_nodes *contact = search->contact;
+  const mpmi_party *first = &contact->party[a], *second = &contact->party[b];
+  *touch = (mpmi_touch){.party = {a, b}, .direction_sign = 1.0, .gap = (double)INFINITY};
+  touch->rule = first->surface >= 0 ? &contact->surface[first->surface].rule
+                                    : mpmi_contact_rule_of(&search->step->settings->contact, first->body,
+                                                           second->body, &touch->direction_sign);
+  if (touch->rule->kind == MPM_CONTACT_NONE) return 0;
+  touch->record = mpmi_pair_find(search->step->pairs, first->body, second->body);
+  return 1;
+}
+
+static int32_t is_independent(const mpmi_contact_nodes *contact, const mpmi_meeting *meeting) {
+  if (meeting->touch_count < 2) return 1;
+  const mpmi_touch *touch = contact->touch + meeting->first_touch;
+  for (int64_t i = 0; i < meeting->touch_count; ++i)
+    for (int64_t j = i + 1; j < meeting->touch_count; ++j)
+      for (int32_t side = 0; side < 2; ++side)
+        if (touch[j].party[side] == touch[i].party[1] ||
+            (touch[j].party[side] == touch[i].party[0] && contact->party[touch[i].party[0]].surface < 0))
+          return 0;
+  return 1;
+}
+
+/* Goes through the touches of all meetings, those of bodies first; returns how many there are, and writes
+ * them with `fill`. */
 static int64_t visit_pairs(const mpmi_contact_search *search, int32_t fill) {
-  const mpmi_contact_rules *rules = &search->step->settings->contact;
   mpmi_contact_nodes *contact = search->contact;
   int64_t touches = 0;
   for (int64_t m = 0; m < contact->meeting_count; ++m) {
     mpmi_meeting *meeting = &contact->meeting[m];
     const int64_t end = meeting->first_party + meeting->party_count;
+    int64_t bodies = meeting->first_party;
+    while (bodies < end && contact->party[bodies].surface < 0) ++bodies;
     meeting->first_touch = touches;
-    for (int64_t a = meeting->first_party; a < end; ++a)
-      for (int64_t b = a + 1; b < end; ++b) {
-        mpmi_party *first = &contact->party[a], *second = &contact->party[b];
-        double sign;
-        const mpm_contact_desc *rule = mpmi_contact_rule_of(rules, first->body, second->body, &sign);
-        if (rule->kind == MPM_CONTACT_NONE) continue;
-        if (fill)
-          contact->touch[touches] =
-              (mpmi_touch){.party = {a, b},
-                           .rule = rule,
-                           .record = mpmi_pair_find(search->step->pairs, first->body, second->body),
-                           .direction_sign = sign,
-                           .gap = (double)INFINITY};
-        first->cloud_count = second->cloud_count = 1; /* it needs them */
+    for (int64_t i = meeting->first_party; i < end; ++i)
+      for (int64_t j = i < bodies ? i + 1 : meeting->first_party; j < bodies; ++j) {
+        mpmi_touch touch;
+        if (!find_pair(search, i, j, &touch)) continue;
+        if (fill) contact->touch[touches] = touch;
+        contact->party[i].cloud_count = contact->party[j].cloud_count = 1; /* it needs them */
+        const int32_t surface = contact->party[i].surface;
+        meeting->coupled |= surface >= 0 && mpmi_is_free(&contact->surface[surface]);
         ++touches;
       }
     meeting->touch_count = touches - meeting->first_touch;
+    if (fill) meeting->independent = is_independent(contact, meeting);
   }
   return touches;
 }
@@ -199,7 +237,7 @@ static int64_t list_clouds(const mpmi_contact_search *search, int32_t fill) {
   int64_t clouds = 0;
   for (int64_t p = 0; p < contact->party_count; ++p) {
     mpmi_party *party = &contact->party[p];
-    if (!party->cloud_count) continue;
+    if (!party->cloud_count || party->surface >= 0) continue;
     const int64_t count = list_party(search, p, clouds, fill);
     if (fill) {
       party->first_cloud = clouds;
@@ -240,7 +278,8 @@ mpm_status mpmi_meetings_find(mpmi_contact_search *search) {
   visit_pairs(search, 1);
   const int64_t clouds = list_clouds(search, 0);
   if (clouds > INT32_MAX)
-    return mpmi_fail(c, MPM_E_NOMEM, "bodies meet at %lld nodes, more than %d", (long long)clouds, INT32_MAX);
+    return mpmi_fail(c, MPM_E_NOMEM, "bodies and surfaces meet at %lld nodes, more than %d",
+                     (long long)clouds, INT32_MAX);
   status = MPMI_RESERVE_MORE(c, contact->cloud, contact->cloud_capacity, clouds);
   if (status) return status;
   list_clouds(search, 1);

@@ -16,7 +16,8 @@ enum {
   MPMI_PARTICLES = 0x6d706d04,
   MPMI_STEPPER = 0x6d706d05,
   MPMI_SERIES = 0x6d706d06,
-  MPMI_OPERATOR = 0x6d706d07
+  MPMI_OPERATOR = 0x6d706d07,
+  MPMI_OBSTACLE = 0x6d706d08
 };
 
 enum { MPMI_ALIGNMENT = 64, MPMI_SENTENCE = 1024 };
@@ -88,11 +89,16 @@ mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int6
 /* Does the same with room for a quarter more where it has to grow, so that lists whose length varies a little
  * from step to step soon need no more memory. */
 mpm_status mpmi_reserve_more(mpm_context *context, void **at, int64_t *capacity, int64_t wanted, size_t size);
+/* Makes room for one element after the `count` there are, which stay; twice as many where it has to grow. On
+ * failure nothing has changed. */
+mpm_status mpmi_reserve_next(mpm_context *context, void **at, int64_t *capacity, int64_t count, size_t size);
 /* Returns count * size, or where that overflows SIZE_MAX, which mpmi_alloc refuses. */
 size_t mpmi_bytes(int64_t count, size_t size);
 /* These make room for an array, as mpmi_reserve_more() does, and free one: they know the size of its type. */
 #define MPMI_RESERVE_MORE(context, array, capacity, wanted)                                                  \
   mpmi_reserve_more(context, (void **)&(array), &(capacity), wanted, sizeof *(array))
+#define MPMI_RESERVE_NEXT(context, array, capacity, count)                                                   \
+  mpmi_reserve_next(context, (void **)&(array), &(capacity), count, sizeof *(array))
 #define MPMI_FREE_ARRAY(context, array, count) mpmi_free(context, array, mpmi_bytes(count, sizeof *(array)))
 
 /* Runs task(data, k) for k in [0, count) on the pool, the host's executor or the calling thread. If the

@@ -70,6 +70,18 @@ mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int6
   return MPM_OK;
 }
 
+mpm_status mpmi_reserve_next(mpm_context *context, void **at, int64_t *capacity, int64_t count, size_t size) {
+  if (count < *capacity) return MPM_OK;
+  const int64_t wanted = count ? 2 * count : 4;
+  void *memory = mpmi_alloc(context, mpmi_bytes(wanted, size));
+  if (!memory) return MPM_E_NOMEM;
+  if (count) memcpy(memory, *at, mpmi_bytes(count, size));
+  mpmi_free(context, *at, mpmi_bytes(*capacity, size));
+  *at = memory;
+  *capacity = wanted;
+  return MPM_OK;
+}
+
 mpm_status mpmi_reserve_more(mpm_context *context, void **at, int64_t *capacity, int64_t wanted,
                              size_t size) {
   const int64_t few = 64; /* short lists double soon */

@@ -21,6 +21,8 @@
   X(mpm_contact_desc, direction, 72)                                                                         \
   X(mpm_contact_info, impulse, 160)                                                                          \
   X(mpm_contact_batch, pressure, 96)                                                                         \
+  X(mpm_distance_batch, velocity, 64)                                                                        \
+  X(mpm_obstacle_desc, upper, 296)                                                                           \
   X(mpm_particle_batch, lookup, 104)                                                                         \
   X(mpm_node_batch, mass, 72)                                                                                \
   X(mpm_advance_desc, max_steps, 56)                                                                         \

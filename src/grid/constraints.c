@@ -215,7 +215,8 @@ static void clear_map(mpmi_constraints *c, const mpmi_blocks *b) {
 static void visit_contacts(walk *w) {
   w->contacts = 0;
   for (int32_t face = 0; face < 2 * w->blocks->grid->dim; ++face)
-    if (mpmi_wall_kind_of(w->wall[face].kind)->rubs && !w->blocks->grid->desc.periodic[face / 2])
+    if (mpmi_wall_kind_of(w->wall[face].kind)->rubs == MPMI_RUBS_NODES &&
+        !w->blocks->grid->desc.periodic[face / 2])
       visit_all(w, VISIT_CONTACTS, face);
 }
 

@@ -7,10 +7,12 @@
 typedef struct mpmi_wall_kind {
   int32_t opens; /* particles that reach it are removed */
   int32_t holds; /* MPMI_HOLDS_...: what is 0 on its plane, and mirrored by ghosts behind it */
-  int32_t rubs;  /* nodes on it are unilateral contacts with friction */
+  int32_t rubs;  /* MPMI_RUBS_...: unilateral contact with friction */
 } mpmi_wall_kind;
 
 enum { MPMI_HOLDS_NOTHING, MPMI_HOLDS_NORMAL, MPMI_HOLDS_ALL };
+/* With friction a wall acts on the nodes on its plane, or as an obstacle whose surface its plane is. */
+enum { MPMI_RUBS_NOT, MPMI_RUBS_NODES, MPMI_RUBS_PLANE };
 
 /* A wall of a face, as the host has set it. */
 typedef struct mpmi_wall {

@@ -111,6 +111,13 @@ static uint64_t hash_set(const mpm_particles *set, int32_t number) {
   return mpmi_avalanche(absorb(sum, (uint64_t)set->count));
 }
 
+static uint64_t hash_pose(uint64_t h, const mpmi_pose *pose) {
+  for (int32_t k = 0; k < 3; ++k) h = absorb(absorb(h, bits(pose->centre[k])), bits(pose->velocity[k]));
+  for (int32_t k = 0; k < 3; ++k) h = absorb(h, bits(pose->spin[k]));
+  for (int32_t k = 0; k < 4; ++k) h = absorb(h, bits(pose->orientation[k]));
+  return h;
+}
+
 mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
   if (!hash) return mpmi_fail(stepper->context, MPM_E_ARG, "hash is NULL");
@@ -123,6 +130,8 @@ mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
     if (status) return status;
     h = absorb(h, hash_set(set, m));
   }
+  const mpmi_obstacles *obstacles = &stepper->settings.obstacles;
+  for (int64_t i = 0; i < obstacles->count; ++i) h = hash_pose(h, &obstacles->obstacle[i]->pose);
   *hash = mpmi_avalanche(h);
   return MPM_OK;
 }

@@ -6,6 +6,8 @@
  *
  *   numbers   mpmi_state_numbers, then one mpmi_state_set_numbers for each set
  *
+ *   obstacles from format 3 on: how many there are; what each is, which is compared, then mpmi_state_obstacle
+ *
  *   contact   from format 3 on: how many rules there are and how many pairs of bodies, and these
  *
  *   blocks    if the state is sorted: coordinates and, from format 3 on, body of the blocks with slots, by
@@ -87,8 +89,18 @@ mpm_status mpmi_state_read_blocks(mpmi_archive *a, mpm_stepper *s, uint32_t form
 /* Rules of contact, and what pairs of bodies did to each other (state_contact.c). They are read into new
  * lists, which the caller frees after a failure as well. */
 void mpmi_state_write_contact(mpmi_archive *a, const mpm_stepper *s);
-mpm_status mpmi_state_read_contact(mpmi_archive *a, const mpm_grid *grid, mpmi_contact_rules *rules,
+mpm_status mpmi_state_read_contact(mpmi_archive *a, const mpm_stepper *s, mpmi_contact_rules *rules,
                                    mpmi_pair_records *pairs);
+
+/* Obstacles (state_obstacles.c): how they move, read into an array with one item for each, and taken over. */
+typedef struct mpmi_state_obstacle {
+  mpmi_pose pose;
+  double force[3], torque[3];
+} mpmi_state_obstacle;
+_Static_assert(sizeof(mpmi_state_obstacle) == 19 * 8, "part of the format");
+void mpmi_state_write_obstacles(mpmi_archive *a, const mpm_stepper *s);
+mpm_status mpmi_state_read_obstacles(mpmi_archive *a, const mpm_stepper *s, mpmi_state_obstacle *saved);
+void mpmi_state_take_obstacles(const mpm_stepper *s, const mpmi_state_obstacle *saved);
 
 /* Refuses values with which a step could not work safely (state_check.c). blocks: those of the state, or
  * NULL when it is not sorted; start: where the set's slots lie in them. */

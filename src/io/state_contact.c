@@ -77,11 +77,13 @@ static mpm_status read_rule(mpmi_archive *a, const mpm_grid *grid, mpmi_contact_
   return mpmi_contact_rules_set(rules, a->context, (int32_t)rule.a, (int32_t)rule.b, &d);
 }
 
-static mpm_status read_pair(mpmi_archive *a, mpmi_pair_records *pairs) {
+/* lowest: the code of the last surface. */
+static mpm_status read_pair(mpmi_archive *a, int32_t lowest, mpmi_pair_records *pairs) {
   saved_pair pair = {.a = 0};
   mpmi_archive_words(a, &pair, sizeof pair);
   if (a->status) return a->status;
-  if (!is_body(pair.a, 0) || !is_body(pair.b, pair.a + 1) ||
+  if (pair.a < lowest || pair.a == MPM_BODY_ANY || !is_body(pair.b, pair.a < 0 ? 0 : pair.a + 1) ||
+      pair.a >= MPMI_MAX_BODIES ||
       (pairs->count &&
        !comes_after(pair.a, pair.b, pairs->record[pairs->count - 1].a, pairs->record[pairs->count - 1].b)))
     return mpmi_archive_damaged(a, "a pair of bodies makes no sense");
@@ -93,16 +95,16 @@ static mpm_status read_pair(mpmi_archive *a, mpmi_pair_records *pairs) {
   return MPM_OK;
 }
 
-mpm_status mpmi_state_read_contact(mpmi_archive *a, const mpm_grid *grid, mpmi_contact_rules *rules,
+mpm_status mpmi_state_read_contact(mpmi_archive *a, const mpm_stepper *s, mpmi_contact_rules *rules,
                                    mpmi_pair_records *pairs) {
   int64_t counts[2] = {0, 0};
   mpmi_archive_words(a, counts, sizeof counts);
   for (int64_t i = 0; i < counts[0] && !a->status; ++i) {
-    const mpm_status status = read_rule(a, grid, rules);
+    const mpm_status status = read_rule(a, s->grid, rules);
     if (status) return status;
   }
   for (int64_t i = 0; i < counts[1] && !a->status; ++i) {
-    const mpm_status status = read_pair(a, pairs);
+    const mpm_status status = read_pair(a, mpmi_code_of_obstacle(s->settings.obstacles.count) + 1, pairs);
     if (status) return status;
   }
   if (!a->status && (counts[0] < 0 || counts[1] < 0))

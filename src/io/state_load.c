@@ -13,7 +13,8 @@ typedef struct loading {
   mpmi_state_set *set; /* [sets] */
   mpmi_contact_rules rules;
   mpmi_pair_records pairs;
-  int64_t slots; /* slots of all sets */
+  mpmi_state_obstacle *obstacle; /* [obstacles] */
+  int64_t slots;                 /* slots of all sets */
 } loading;
 
 mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header *header, int64_t bytes) {
@@ -149,7 +150,12 @@ static mpm_status read_state(loading *l) {
   mpmi_state_setup(a, s, l->set);
   read_numbers(l);
   mpm_status status = a->status;
-  if (!status && l->format > 2) status = mpmi_state_read_contact(a, s->grid, &l->rules, &l->pairs);
+  if (!status && l->format > 2) status = mpmi_state_read_obstacles(a, s, l->obstacle);
+  if (!status && l->format > 2) status = mpmi_state_read_contact(a, s, &l->rules, &l->pairs);
+  if (!status && l->format <= 2 && s->settings.obstacles.count)
+    status = mpmi_fail(s->context, MPM_E_FORMAT,
+                       "the state is of an unlike setup: number of obstacles is 0 there, %lld here",
+                       (long long)s->settings.obstacles.count);
   if (!status && l->numbers.blocks >= 0) status = read_blocks(l);
   for (int32_t m = 0; m < s->layout.member_count && !status; ++m) status = read_set(l, m);
   if (!status && a->at != a->size) {
@@ -229,6 +235,7 @@ static void take_over(loading *l) {
   if (l->format > 2) {
     s->settings.contact = l->rules;
     l->rules = rules;
+    mpmi_state_take_obstacles(s, l->obstacle);
   }
   s->history.pairs = l->pairs;
   l->pairs = pairs;
@@ -248,6 +255,12 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   const size_t set_bytes = mpmi_bytes(s->layout.member_count, sizeof *l.set);
   l.set = mpmi_alloc_zeroed(s->context, set_bytes);
   if (!l.set) return MPM_E_NOMEM;
+  const int64_t obstacles = s->settings.obstacles.count;
+  l.obstacle = mpmi_alloc_zeroed(s->context, mpmi_bytes(obstacles, sizeof *l.obstacle));
+  if (!l.obstacle) {
+    mpmi_free(s->context, l.set, set_bytes);
+    return MPM_E_NOMEM;
+  }
   for (int32_t m = 0; m < s->layout.member_count; ++m) start_set(&l.set[m], s->layout.member[m].set);
   mpmi_archive_begin(&l.archive, s->context, MPMI_FROM_MEMORY);
   l.archive.from = body;
@@ -259,6 +272,7 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   for (int32_t m = 0; m < s->layout.member_count; ++m)
     for (int32_t f = 0; f < l.set[m].fresh.field_count; ++f) mpmi_field_make_absent(&l.set[m].fresh, f);
   mpmi_contact_rules_free(&l.rules, s->context);
+  MPMI_FREE_ARRAY(s->context, l.obstacle, obstacles);
   MPMI_FREE_ARRAY(s->context, l.pairs.record, l.pairs.capacity);
   mpmi_free(s->context, l.set, set_bytes);
   return status;

@@ -1,5 +1,6 @@
-/* Nodes at which bodies meet, as contact finds them in a step. Nodes of several bodies at one index are a
- * meeting; each of its bodies is a party, with the nodes that are tied together as one; each two of its
+/* Nodes at which bodies meet each other or a surface, as contact finds them in a step. Nodes of several
+ * bodies at one index are a meeting, and so is a node close to an obstacle or a friction wall; each of its
+ * bodies is a party, with the nodes that are tied together as one, and so is each surface; each two of its
  * parties that may act on each other are a touch. The particles that have weight at a node of a party are a
  * cloud.
  *
@@ -9,6 +10,7 @@
 
 #include "grid/constraints.h"
 #include "layout/contact_rules.h"
+#include "obstacle/obstacle.h"
 
 /* Blocks of several bodies at one place: [first, first + count) of the list of blocks. */
 typedef struct mpmi_block_group {
@@ -18,6 +20,19 @@ typedef struct mpmi_block_groups {
   int64_t count, capacity;
   mpmi_block_group *group;
 } mpmi_block_groups;
+
+/* Blocks at one place where there may be contact: those of several bodies, or some near surfaces. */
+typedef struct mpmi_site {
+  mpmi_block_group blocks;
+  int64_t first_near;
+  int32_t near_count;
+} mpmi_site;
+/* A surface near a site: rows over the nodes of a block, of the distance, infinite where it does not bind the
+ * node, the normal and the surface's own velocity. */
+enum { MPMI_NEAR_DISTANCE, MPMI_NEAR_NORMAL, MPMI_NEAR_VELOCITY = 4, MPMI_NEAR_ROWS = 7 };
+typedef struct mpmi_near {
+  int32_t surface, block; /* block: one at the site */
+} mpmi_near;
 
 /* A particle with weight at a node. */
 typedef struct mpmi_cloud_entry {
@@ -39,8 +54,10 @@ typedef struct mpmi_cloud {
 } mpmi_cloud;
 
 typedef struct mpmi_party {
-  int64_t slot; /* of the master */
-  int32_t body;
+  int64_t slot;                              /* of the master; -1 for a surface */
+  int32_t body;                              /* or the code of a surface */
+  int32_t surface;                           /* -1 for a body */
+  double arm[3], normal[3], own_velocity[3]; /* of a surface: from its centre to the node */
   int64_t meeting;
   int64_t first_cloud, cloud_count;
   double inverse_mass[3]; /* of all that moves with it; 0 where the component is held */
@@ -59,11 +76,14 @@ typedef struct mpmi_touch {
   double area; /* length^(dim - 1) */
   double normal_impulse, tangential[3];
   double dissipation, friction_work;
+  double work;                            /* of a surface on the material */
   int32_t open, closed, stuck, ambiguous; /* open: it cannot close in this step */
 } mpmi_touch;
 
 typedef struct mpmi_meeting {
   int64_t first_party, party_count, first_touch, touch_count;
+  int32_t coupled;     /* a free obstacle takes part, and so others depend on it */
+  int32_t independent; /* no body takes part in two touches */
 } mpmi_meeting;
 
 /* What two bodies do to each other in a step, or have done. */
@@ -73,7 +93,7 @@ typedef struct mpmi_pair_sums {
 } mpmi_pair_sums;
 
 typedef struct mpmi_pair_record {
-  int32_t a, b; /* a < b */
+  int32_t a, b; /* a < b; a may be the code of a surface */
   mpmi_pair_sums last, now;
   double impulse_total[3]; /* of all committed steps */
 } mpmi_pair_record;
@@ -88,9 +108,18 @@ typedef struct mpmi_pair_records {
 int64_t mpmi_pair_find(const mpmi_pair_records *records, int32_t a, int32_t b);
 /* Adds an empty record for a pair that has none. */
 mpm_status mpmi_pair_add(mpmi_pair_records *records, mpm_context *context, int32_t a, int32_t b);
+/* Drops the records of an obstacle; those of later ones go with their obstacles to the next lower number. */
+void mpmi_pairs_drop(mpmi_pair_records *records, int32_t code);
 
 /* What contact works with in a step. */
 typedef struct mpmi_contact_nodes {
+  int64_t surface_count, site_count, near_count;
+  int32_t at_walls; /* a friction wall is near some site */
+  int64_t surface_capacity, site_capacity, near_capacity, value_capacity;
+  mpmi_surface *surface; /* obstacles, then friction walls by face */
+  mpmi_site *site;
+  mpmi_near *near_surface;
+  double *near_value; /* [near][MPMI_NEAR_ROWS][nodes of a block] */
   int64_t meeting_count, party_count, touch_count, cloud_count, entry_count;
   int64_t meeting_capacity, party_capacity, touch_capacity, cloud_capacity, entry_capacity;
   mpmi_meeting *meeting;
@@ -100,10 +129,15 @@ typedef struct mpmi_contact_nodes {
   mpmi_cloud_entry *entry;
   int32_t *cloud_of;            /* [slots] the cloud of a node, or -1 */
   int64_t map_capacity, mapped; /* mapped: the version of the layout for which cloud_of was made */
-  uint8_t *near;                /* [blocks] 1: particles of the block may belong to clouds */
-  int64_t near_capacity;
-  int64_t *group_count; /* [groups][2] meetings and parties, then the numbers of the first ones */
-  int64_t group_capacity;
+  uint8_t *in_reach;            /* [blocks] 1: particles of the block may belong to clouds */
+  int64_t reach_capacity;
+  int64_t *site_sum; /* [sites][2] meetings and parties, then the numbers of the first ones */
+  int64_t sum_capacity;
+  int64_t *by_surface; /* [surfaces + 1] then [touches of surfaces]: where those of each begin, and these */
+  int64_t by_surface_capacity;
+  double *clearance;        /* of the surface that is looked at: [slots of all sets] */
+  int64_t *clearance_first; /* [sets] */
+  int64_t clearance_capacity, first_capacity;
   double *work; /* [tasks][work_each] memory to find normals in */
   int64_t work_capacity, work_each;
   int32_t listed; /* meetings and clouds are those of the step */

@@ -1,13 +1,7 @@
 #include "layout/contact_rules.h"
-#include "context/structs.h"
+#include "obstacle/contact_desc.h"
 
 #include <string.h>
-
-static const mpm_contact_desc defaults = {.struct_size = sizeof defaults};
-
-mpm_status mpm_contact_desc_init(mpm_contact_desc *desc, uint32_t struct_size) {
-  return mpmi_init_struct("mpm_contact_desc", &defaults, sizeof defaults, desc, struct_size);
-}
 
 int64_t mpmi_pair_place(const void *list, size_t each, int64_t count, int32_t a, int32_t b) {
   int64_t low = 0, high = count;
@@ -36,7 +30,7 @@ const mpm_contact_desc *mpmi_contact_rule_of(const mpmi_contact_rules *rules, in
     *sign = -1.0; /* it is from any other to a */
   if (!desc) desc = mpmi_contact_rule_at(rules, MPM_BODY_ANY, b);
   if (!desc) desc = mpmi_contact_rule_at(rules, MPM_BODY_ANY, MPM_BODY_ANY);
-  return desc ? desc : &defaults;
+  return desc ? desc : &mpmi_contact_defaults;
 }
 
 mpm_status mpmi_contact_rules_set(mpmi_contact_rules *rules, mpm_context *context, int32_t a, int32_t b,
@@ -49,15 +43,7 @@ mpm_status mpmi_contact_rules_set(mpmi_contact_rules *rules, mpm_context *contex
     memmove(rules->rule + at, rules->rule + at + 1, (size_t)(rules->count - at) * sizeof *rules->rule);
     return MPM_OK;
   }
-  if (!there && rules->count == rules->capacity) {
-    const int64_t capacity = rules->capacity ? 2 * rules->capacity : 4;
-    mpmi_contact_rule *rule = mpmi_alloc(context, mpmi_bytes(capacity, sizeof *rule));
-    if (!rule) return MPM_E_NOMEM;
-    if (rules->count) memcpy(rule, rules->rule, (size_t)rules->count * sizeof *rule);
-    MPMI_FREE_ARRAY(context, rules->rule, rules->capacity);
-    rules->rule = rule;
-    rules->capacity = capacity;
-  }
+  if (!there && MPMI_RESERVE_NEXT(context, rules->rule, rules->capacity, rules->count)) return MPM_E_NOMEM;
   if (!there) {
     memmove(rules->rule + at + 1, rules->rule + at, (size_t)(rules->count - at) * sizeof *rules->rule);
     ++rules->count;

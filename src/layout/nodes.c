@@ -42,7 +42,7 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   const int32_t projects = settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected;
   mpm_status status;
   nodes->has_holders = settings->velocity_bc || nodes->prescription.any;
-  nodes->has_impulses = nodes->has_holders || ties || contacts;
+  nodes->has_impulses = nodes->has_holders || ties || contacts || nodes->contact.at_walls;
   nodes->contact.listed = 0;
   if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
       (status = projects ? mpmi_nodal_reserve(c, &nodes->projected, slots, 4) : MPM_OK) ||

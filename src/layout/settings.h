@@ -8,6 +8,7 @@
 #include "layout/transfers.h"
 #include "material/deformation.h"
 #include "material/dilation.h"
+#include "obstacle/obstacle.h"
 #include "transfer/kernels.h"
 
 typedef struct mpmi_settings {
@@ -29,6 +30,7 @@ typedef struct mpmi_settings {
   mpm_progress_fn progress;
   void *progress_user;
   mpmi_contact_rules contact; /* how bodies meet */
+  mpmi_obstacles obstacles;
   mpm_friction_fn friction;
   void *friction_user;
   mpm_solve_fn solver;

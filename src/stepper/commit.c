@@ -86,6 +86,7 @@ static void commit_history(mpm_stepper *s) {
   memcpy(history->impulse_by_face, step->impulse_by_face, sizeof history->impulse_by_face);
   add_to_totals(s, work);
   mpmi_pairs_commit(&history->pairs);
+  mpmi_obstacles_commit(&s->settings.obstacles);
   history->reaction_dt = step->velocity_dt;
   history->previous_dt = s->settings.desc.staggered ? step->dt : 0.0;
   history->has_reactions = 1;

@@ -21,8 +21,7 @@ void mpmi_pairs_forget(mpmi_pair_records *pairs) {
     for (int32_t c = 0; c < 3; ++c) pairs->record[i].impulse_total[c] = 0.0;
 }
 
-/* Adds what a pair did; sign is -1 where the body that is asked about is the first one. */
-static void add_pair(const mpmi_pair_record *record, double sign, double dt, mpm_contact_info *info) {
+void mpmi_pair_tell(const mpmi_pair_record *record, double sign, double dt, mpm_contact_info *info) {
   const mpmi_pair_sums *sums = &record->last;
   info->touching |= sums->closed > 0;
   info->nodes += sums->nodes;
@@ -65,11 +64,12 @@ mpm_status mpm_stepper_contact_info(const mpm_stepper *s, int32_t body_a, int32_
   mpm_contact_info now = {.struct_size = sizeof now, .gap = (double)INFINITY};
   for (int64_t i = 0; i < s->history.pairs.count; ++i) {
     const mpmi_pair_record *record = &s->history.pairs.record[i];
+    if (record->a < 0) continue; /* of a surface */
     if ((body_a == MPM_BODY_ANY || body_a == record->a) && (body_b == MPM_BODY_ANY || body_b == record->b))
-      add_pair(record, 1.0, s->history.reaction_dt, &now);
+      mpmi_pair_tell(record, 1.0, s->history.reaction_dt, &now);
     else if ((body_a == MPM_BODY_ANY || body_a == record->b) &&
              (body_b == MPM_BODY_ANY || body_b == record->a))
-      add_pair(record, -1.0, s->history.reaction_dt, &now);
+      mpmi_pair_tell(record, -1.0, s->history.reaction_dt, &now);
   }
   return mpmi_write_struct(s->context, "mpm_contact_info", &now, sizeof now, info);
 }

@@ -1,6 +1,7 @@
 /* Which sets are a body, and how bodies meet. */
 #include "context/structs.h"
 #include "layout/members.h"
+#include "obstacle/contact_desc.h"
 #include "stepper/stepper.h"
 
 #include <math.h>
@@ -64,34 +65,15 @@ mpm_status mpm_stepper_body(const mpm_stepper *s, const mpm_particles *particles
 }
 
 /* ---- rules --------------------------------------------------------------------------------------------- */
-static mpm_status check_magnitude(mpm_context *c, const char *name, double value) {
-  if (value >= 0.0 && isfinite(value)) return MPM_OK;
-  return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and >= 0", name, value);
-}
-
-static mpm_status check_choice(mpm_context *c, const char *name, int32_t value, const char *range,
-                               int32_t last) {
-  if (value >= 0 && value <= last) return MPM_OK;
-  return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be an %s", name, (int)value, range);
-}
-
 mpm_status mpmi_contact_desc_check(const mpm_grid *grid, int32_t a, int32_t b, const mpm_contact_desc *d) {
   mpm_context *c = grid->context;
   mpm_status status;
-  if ((status = check_choice(c, "kind", d->kind, "MPM_CONTACT_UNILATERAL ... MPM_CONTACT_TIED",
-                             MPM_CONTACT_TIED)) ||
-      (status = check_choice(c, "normal", d->normal, "MPM_NORMAL_LOGISTIC ... MPM_NORMAL_FIXED",
-                             MPM_NORMAL_FIXED)) ||
-      (status = check_choice(c, "detection", d->detection, "MPM_DETECT_DEFAULT ... MPM_DETECT_VELOCITY",
-                             MPM_DETECT_VELOCITY)) ||
-      (status = check_magnitude(c, "friction", d->friction)) ||
-      (status = check_magnitude(c, "friction_static", d->friction_static)) ||
-      (status = check_magnitude(c, "adhesion", d->adhesion)))
+  if ((status = mpmi_contact_desc_check_values(c, d)) ||
+      (status = mpmi_check_choice(c, "normal", d->normal, "MPM_NORMAL_LOGISTIC ... MPM_NORMAL_FIXED",
+                                  MPM_NORMAL_FIXED)) ||
+      (status = mpmi_check_choice(c, "detection", d->detection, "MPM_DETECT_DEFAULT ... MPM_DETECT_VELOCITY",
+                                  MPM_DETECT_VELOCITY)))
     return status;
-  if (d->friction_static > 0.0 && d->friction_static < d->friction)
-    return mpmi_fail(c, MPM_E_ARG, "friction_static is %g, less than friction %g", d->friction_static,
-                     d->friction);
-  if (!isfinite(d->offset)) return mpmi_fail(c, MPM_E_ARG, "offset is %g: it must be finite", d->offset);
   if (d->adhesion > 0.0 && mpmi_detects_by_velocity(d))
     return mpmi_fail(
         c, MPM_E_UNSUPPORTED,

@@ -26,7 +26,7 @@ static mpm_status deform(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
 /* Strains the particles of USF by the velocities at the start of the step. */
 static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
   mpm_status status = MPM_OK;
-  if (step->layout->constraints.contact_count || step->layout->groups.count)
+  if (step->layout->constraints.contact_count || nodes->contact.site_count)
     status = project(step, nodes, MPMI_PROJECT_CONTACT, clock);
   if (!status) status = project(step, nodes, MPMI_PROJECT_STRAIN, clock);
   return status ? status : deform(step, nodes, clock);

@@ -11,6 +11,7 @@ static void free_parts(mpm_stepper *s) {
   for (int32_t i = 0; i < MPMI_NODE_VIEWS; ++i) mpmi_free(c, s->view_memory[i], s->view_bytes[i]);
   MPMI_FREE_ARRAY(c, s->active, s->active_capacity);
   mpmi_contact_rules_free(&s->settings.contact, c);
+  mpmi_obstacles_release(s);
   MPMI_FREE_ARRAY(c, s->history.pairs.record, s->history.pairs.capacity);
   mpmi_newton_free(s->newton, &s->settings);
   mpmi_workspace_free(&s->work, &s->settings);
@@ -74,16 +75,6 @@ mpm_status mpm_stepper_destroy(mpm_stepper *s) {
 }
 
 /* ---- sets --------------------------------------------------------------------------------------------- */
-static int32_t in_step(const mpm_stepper *s) {
-  return s->step.phase != MPMI_IDLE;
-}
-
-static double present_time(const mpm_stepper *s) {
-  return s->history.t;
-}
-
-static const mpmi_owner owner_of_sets = {in_step, present_time};
-
 mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_status status = mpmi_stepper_idle(s);
@@ -100,7 +91,7 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
       (status = mpmi_members_add(&s->layout, &s->settings, set)))
     return status;
   set->stepper = s;
-  set->owner = &owner_of_sets;
+  set->owner = &mpmi_stepper_owns;
   s->nodes.shown = -1;
   return MPM_OK;
 }
@@ -125,6 +116,9 @@ static mpm_status without_explicit_parts(const mpm_stepper *s) {
   if (mpmi_has_hooks(&s->settings))
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no node hooks: unset them, or use an explicit scheme");
+  if (s->settings.obstacles.count)
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no obstacles: remove them, or use an explicit scheme");
   for (int32_t f = 0; f < 2 * s->grid->dim; ++f)
     if (mpmi_wall_kind_of(s->settings.wall[f].kind)->rubs)
       return mpmi_fail(s->context, MPM_E_UNSUPPORTED,

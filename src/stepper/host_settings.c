@@ -13,7 +13,9 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
                      (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
   const mpmi_wall_kind *row = mpmi_wall_kind_of(kind);
   if (!row)
-    return mpmi_fail(s->context, MPM_E_ARG, "kind is %d: it must be an MPM_WALL_NONE ... MPM_WALL_FRICTION",
+    return mpmi_fail(s->context, MPM_E_ARG,
+                     "kind is %d: it must be an MPM_WALL_NONE ... "
+                     "MPM_WALL_FRICTION_NODES",
                      (int)kind);
   if (s->grid->desc.periodic[face / 2] && kind != MPM_WALL_NONE)
     return mpmi_fail(s->context, MPM_E_ARG, "face %d belongs to a periodic axis and can have no wall",

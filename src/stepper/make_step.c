@@ -2,7 +2,6 @@
 #include "stepper/stepper.h"
 #include "stages/stages.h"
 #include "boundary/prescribed.h"
-#include "contact/contact.h"
 #include "implicit/newmark.h"
 #include "layout/members.h"
 #include "layout/reached.h"
@@ -60,9 +59,10 @@ static mpm_status prepare(mpm_stepper *s) {
   if (s->layout.cover_is_old) mpmi_layout_cover(&s->layout);
   if ((status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
       (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
+      (status = mpmi_contact_prepare(&s->layout, settings, &s->nodes.contact, &s->history.pairs)) ||
       (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
       (status = mpmi_members_reserve(&s->layout, settings)) ||
-      (status = mpmi_contact_prepare(&s->layout, settings, &s->history.pairs)))
+      (status = mpmi_obstacles_begin(&s->step, &s->nodes.contact)))
     return status;
   mpmi_pairs_begin(&s->history.pairs);
   if (mpmi_is_implicit(settings) && !s->newton && (status = mpmi_newton_create(settings, &s->newton)))
@@ -117,15 +117,16 @@ static mpm_status ask_progress(mpm_stepper *s) {
 static mpm_status finish(mpm_stepper *s) {
   mpm_step_info *info = &s->step.info;
   const double dt = s->step.dt, velocity_dt = s->step.velocity_dt;
-  const mpm_status status = ask_progress(s);
+  mpm_status status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
+  if (!status) status = ask_progress(s);
   if (status) return status;
   mpmi_commit(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
   info->cause = MPM_OK;
   info->dt = dt;
-  info->dt_suggested = mpmi_is_implicit(&s->settings) ? mpmi_next_dt(s->step.info.newton_iterations, dt)
-                                                      : mpmi_stable_dt(&s->history.sums);
+  info->dt_suggested =
+      mpmi_is_implicit(&s->settings) ? mpmi_next_dt(s->step.info.newton_iterations, dt) : mpmi_stable_dt(s);
   info->callback_status = 0;
   info->set = -1;
   info->particle = info->node = -1;

@@ -25,7 +25,7 @@ static int32_t components_of(const mpm_stepper *s, int32_t field) {
 /* Returns the cloud of a node at which bodies met in the step that is shown, or NULL. */
 static const mpmi_cloud *cloud_at(const mpm_stepper *s, int64_t slot) {
   const mpmi_contact_nodes *contact = &s->nodes.contact;
-  const int32_t known = contact->listed && s->layout.groups.count && s->step.phase != MPMI_BEGUN;
+  const int32_t known = contact->listed && s->step.phase != MPMI_BEGUN;
   return known && contact->cloud_of[slot] >= 0 ? &contact->cloud[contact->cloud_of[slot]] : NULL;
 }
 

@@ -6,6 +6,17 @@
 
 #include <string.h>
 
+/* ---- to its sets and obstacles ------------------------------------------------------------------------- */
+static int32_t in_step(const mpm_stepper *s) {
+  return s->step.phase != MPMI_IDLE;
+}
+
+static double present_time(const mpm_stepper *s) {
+  return s->history.t;
+}
+
+const mpmi_owner mpmi_stepper_owns = {in_step, present_time};
+
 /* ---- info --------------------------------------------------------------------------------------------- */
 void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_info *info) {
   const mpmi_sums *sums = &s->history.sums;
@@ -61,7 +72,7 @@ mpm_status mpmi_tell_stable_dt(mpm_stepper *s, double *dt) {
   status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
   if (!status) status = mpmi_state_sums(s, NULL);
   if (status) return status;
-  const double stable = mpmi_stable_dt(&s->history.sums);
+  const double stable = mpmi_stable_dt(s);
   if (!(stable > 0.0))
     return mpmi_fail(s->context, MPM_NONFINITE,
                      "velocity and wave speed over the spacing are beyond the range of double precision: no "

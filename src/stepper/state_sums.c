@@ -25,8 +25,14 @@ mpmi_sums mpmi_block_sums(const mpmi_step *step) {
   return sums;
 }
 
-double mpmi_stable_dt(const mpmi_sums *sums) {
-  const double rate = sums->rate > sums->viscous_rate ? sums->rate : sums->viscous_rate;
+double mpmi_stable_dt(const mpm_stepper *s) {
+  const mpmi_sums *sums = &s->history.sums;
+  const mpmi_obstacles *obstacles = &s->settings.obstacles;
+  double rate = sums->rate > sums->viscous_rate ? sums->rate : sums->viscous_rate;
+  for (int64_t i = 0; i < obstacles->count; ++i) {
+    const double of_obstacle = mpmi_obstacle_rate(obstacles->obstacle[i]);
+    rate = of_obstacle > rate ? of_obstacle : rate;
+  }
   return rate > 0.0 ? 1.0 / rate : (double)INFINITY;
 }
 

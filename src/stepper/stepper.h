@@ -9,6 +9,7 @@
 #ifndef MPMI_STEPPER_H
 #define MPMI_STEPPER_H
 
+#include "contact/contact.h"
 #include "layout/nodes.h"
 #include "layout/step.h"
 
@@ -61,6 +62,9 @@ static inline mpm_status mpmi_stepper_idle(const mpm_stepper *s) {
   return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
 }
 
+/* What sets and obstacles ask of the stepper that has them (reports.c). */
+extern const mpmi_owner mpmi_stepper_owns;
+
 /* ---- description.c ----------------------------------------------------------------------------------- */
 /* Reads the host's description, or the defaults for NULL, and checks it for a grid. */
 mpm_status mpmi_description_read(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *desc,
@@ -77,6 +81,17 @@ mpm_status mpmi_contact_desc_check(const mpm_grid *grid, int32_t a, int32_t b, c
 void mpmi_pairs_begin(mpmi_pair_records *pairs);
 void mpmi_pairs_commit(mpmi_pair_records *pairs);
 void mpmi_pairs_forget(mpmi_pair_records *pairs);
+/* Adds what a pair did to a report; sign is -1 where the body that is asked about is the first one. */
+void mpmi_pair_tell(const mpmi_pair_record *record, double sign, double dt, mpm_contact_info *info);
+
+/* ---- obstacles.c ------------------------------------------------------------------------------------- */
+/* Lets all obstacles go. */
+void mpmi_obstacles_release(mpm_stepper *s);
+/* Finds velocities for the step that begins, at first without contact; finds the poses after it, which may
+ * fail; and makes these the state, which cannot. */
+mpm_status mpmi_obstacles_begin(mpmi_step *step, mpmi_contact_nodes *contact);
+mpm_status mpmi_obstacles_end(const mpmi_step *step, const mpmi_contact_nodes *contact);
+void mpmi_obstacles_commit(const mpmi_obstacles *list);
 
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */
@@ -84,7 +99,7 @@ mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure);
 /* Returns the sums over the blocks of a step, in the order of the blocks. */
 mpmi_sums mpmi_block_sums(const mpmi_step *step);
 /* Returns the largest stable step: Courant's condition and that of viscosity. */
-double mpmi_stable_dt(const mpmi_sums *sums);
+double mpmi_stable_dt(const mpm_stepper *s);
 /* Returns MPM_E_STATE when a set has views out of the given access, or holds bad values. */
 mpm_status mpmi_check_sets(mpm_stepper *s, int32_t access);
 

@@ -149,16 +149,18 @@ MPMI_INLINE int32_t fit(int32_t dim, mpmi_separation *io) {
 MPMI_INLINE void project(int32_t dim, const mpmi_separation *in, const double *spacing, const double *n,
                          double limit, double *along, double *off, double *most) {
   const mpmi_lanes zero = {0.0}, none = zero - (double)INFINITY;
+  double cells[3] = {0.0, 0.0, 0.0}; /* the line, in cells for a unit of length */
+  for (int32_t k = 0; k < dim; ++k) cells[k] = n[k] / spacing[k];
   for (int32_t c = 0; c < 2; ++c) {
     mpmi_lanes farthest = none;
     for (int64_t p = in->first[c]; p < in->first[c] + in->padded[c]; p += MPMI_LANES) {
-      mpmi_lanes sum = zero, squared = zero;
+      mpmi_lanes sum = zero, beside = zero;
+      for (int32_t k = 0; k < dim; ++k) sum += mpmi_lanes_load(in->x[k] + p) * spacing[k] * n[k];
       for (int32_t k = 0; k < dim; ++k) {
-        const mpmi_lanes x = mpmi_lanes_load(in->x[k] + p) * spacing[k];
-        sum += x * n[k];
-        squared += x * x;
+        const mpmi_lanes x = mpmi_lanes_load(in->x[k] + p) - sum * cells[k];
+        beside += x * x;
       }
-      const mpmi_lanes beside = squared - sum * sum, weight = mpmi_lanes_load(in->weight + p);
+      const mpmi_lanes weight = mpmi_lanes_load(in->weight + p);
       mpmi_lanes_store(along + p, sum);
       mpmi_lanes_store(off + p, beside);
       const mpmi_lanes far = mpmi_lanes_select((weight > 0.0) & (beside <= limit), c ? -sum : sum, none);

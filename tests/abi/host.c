@@ -124,6 +124,18 @@ static mpm_status host_hook(void *user, const mpm_node_batch *b, double *velocit
   for (int64_t i = 0; i < b->n; ++i) force[i] += 1e-3 * b->mass[i];
   return 0;
 }
+#ifdef MPM_OBSTACLE_H /* not in 0.1.0 */
+/* A surface that is far from everything. */
+static mpm_status host_distance(void *user, const mpm_distance_batch *b) {
+  EXPECT_AT_LEAST(b, velocity);
+  ++*(int64_t *)user;
+  for (int64_t i = 0; i < b->n; ++i) {
+    b->distance[i] = 1e3;
+    for (int32_t c = 0; c < b->dim; ++c) b->normal[c * b->ld + i] = c == 0;
+  }
+  return 0;
+}
+#endif
 static mpm_status host_progress(void *user, const mpm_step_info *info) {
   EXPECT_AT_LEAST(info, angular_momentum);
   ++*(int64_t *)user;
@@ -270,7 +282,19 @@ int main(int argc, char **argv) {
   OK(mpm_contact_desc_init(contact, sizeof *contact));
   APPEND(mpm_contact_desc, contact);
   OK(mpm_stepper_set_contact(stepper, 0, 1, contact));
-  free(contact);
+#endif
+#ifdef MPM_OBSTACLE_H
+  mpm_obstacle_desc *far = MAKE(mpm_obstacle_desc);
+  mpm_obstacle *obstacle;
+  int64_t asked = 0;
+  OK(mpm_obstacle_desc_init(far, sizeof *far));
+  far->shape = MPM_SHAPE_DISTANCE;
+  far->distance = host_distance;
+  far->user = &asked;
+  far->contact = contact;
+  APPEND(mpm_obstacle_desc, far);
+  OK(mpm_obstacle_create(context, far, &obstacle));
+  OK(mpm_stepper_add_obstacle(stepper, obstacle));
 #endif
   mpm_advance_desc *until = MAKE(mpm_advance_desc);
   double dt;
@@ -295,6 +319,13 @@ int main(int argc, char **argv) {
   OK(mpm_grid_map(stepper, 0, "reaction", MPM_READ, view));
   show_view("reaction", view);
 
+#ifdef MPM_OBSTACLE_H
+  mpm_contact_info *touch = MAKE(mpm_contact_info);
+  OK(mpm_obstacle_contact_info(obstacle, MPM_BODY_ANY, touch));
+  if (touch->touching || !asked) return 1;
+  OK(mpm_stepper_remove_obstacle(stepper, obstacle));
+  OK(mpm_obstacle_destroy(obstacle));
+#endif
   how->scheme = MPM_NEWMARK;
   how->transfer = MPM_FLIP;
   how->linear_solver = MPM_SOLVER_HOST;

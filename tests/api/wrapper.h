@@ -71,5 +71,6 @@ void test_objects();
 void test_fields(const std::string &scratch);
 void test_callbacks();
 void test_steps();
+void test_obstacles();
 
 #endif

@@ -7,7 +7,7 @@
 #include "fuzz.h"
 #include "stepper/stepper.h"
 
-enum { SETS = 3, MOST_ACTIONS = 24, MOST_PARTICLES = 200 };
+enum { SETS = 3, OBSTACLES = 3, MOST_ACTIONS = 24, MOST_PARTICLES = 200 };
 
 typedef struct cloud {
   fuzz_input in;
@@ -19,7 +19,8 @@ typedef struct cloud {
   mpm_material *material[SETS];
   mpm_particles *set[SETS];
   mpm_stepper *stepper;
-  int64_t count, removed; /* of all sets; through open walls */
+  mpm_obstacle *obstacle[OBSTACLES]; /* some NULL */
+  int64_t count, removed;            /* of all sets; through open walls */
   double mass, t;
   int32_t callback_status;
 } cloud;
@@ -166,7 +167,7 @@ static mpm_stepper_desc supported(cloud *c, mpm_stepper_desc d) {
 }
 
 static void draw_wall(cloud *c) {
-  const int32_t face = fuzz_below(&c->in, 6), kind = fuzz_below(&c->in, 5);
+  const int32_t face = fuzz_below(&c->in, 6), kind = fuzz_below(&c->in, 6);
   fuzz_status(c->context, mpm_stepper_set_wall(c->stepper, face, kind, fuzz_between(&c->in, 0.0, 1.0)));
 }
 
@@ -191,6 +192,72 @@ static mpm_status rub(void *user, const mpm_contact_batch *b, double *friction) 
   (void)user;
   for (int64_t i = 0; i < b->n; ++i) friction[i] = fabs(b->normal[i]);
   return b->n % 64 == 63 ? 1 : MPM_OK;
+}
+
+static mpm_status bowl(void *user, const mpm_distance_batch *b) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i) {
+    double squared = 0.0;
+    for (int32_t k = 0; k < b->dim; ++k) squared += b->position[k * b->ld + i] * b->position[k * b->ld + i];
+    const double r = sqrt(squared);
+    b->distance[i] = 0.4 - r;
+    for (int32_t k = 0; k < b->dim; ++k)
+      b->normal[k * b->ld + i] = r > 0.0 ? -b->position[k * b->ld + i] / r : k == 0;
+    if (b->velocity) b->velocity[i] = 0.1;
+  }
+  return b->n % 128 == 127 ? 1 : MPM_OK;
+}
+
+static mpm_status swing(void *user, double t, double dt, double *velocity, double *angular_velocity) {
+  (void)user, (void)dt;
+  velocity[0] = 0.3 - t;
+  angular_velocity[2] *= 0.9;
+  return MPM_OK;
+}
+
+/* Makes an obstacle, or moves or drops one that there is. */
+static void draw_obstacle(cloud *c) {
+  static const int32_t shapes[] = {MPM_SHAPE_PLANE,   MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER,
+                                   MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX,    MPM_SHAPE_DISTANCE};
+  mpm_obstacle **o = &c->obstacle[fuzz_below(&c->in, OBSTACLES)];
+  double v[4] = {1.0, 0.0, 0.0, 0.0};
+  for (int32_t k = 0; k < c->g.dim; ++k) v[k] = fuzz_between(&c->in, -0.5, 1.5);
+  if (*o) {
+    const int32_t what = fuzz_below(&c->in, 4);
+    if (what == 0) fuzz_status(c->context, mpm_obstacle_set_pose(*o, v, NULL, NULL, NULL));
+    if (what == 1) fuzz_status(c->context, mpm_obstacle_set_pose(*o, NULL, v, v, NULL));
+    if (what == 2) fuzz_status(c->context, mpm_obstacle_set_load(*o, v, v));
+    if (what == 3 && !fuzz_status(c->context, mpm_stepper_remove_obstacle(c->stepper, *o))) {
+      MUST(!mpm_obstacle_destroy(*o));
+      *o = NULL;
+    }
+    return;
+  }
+  mpm_obstacle_desc d;
+  mpm_contact_desc rule;
+  MUST(!mpm_obstacle_desc_init(&d, sizeof d) && !mpm_contact_desc_init(&rule, sizeof rule));
+  rule.kind = fuzz_below(&c->in, 3);
+  rule.friction = fuzz_between(&c->in, 0.0, 1.0);
+  rule.adhesion = fuzz_between(&c->in, 0.0, 10.0);
+  rule.offset = fuzz_between(&c->in, -0.1, 0.1);
+  d.contact = &rule;
+  d.shape = shapes[fuzz_below(&c->in, 6)];
+  d.motion = fuzz_below(&c->in, 3);
+  d.inside = fuzz_below(&c->in, 2);
+  d.distance = bowl;
+  d.mass = fuzz_between(&c->in, 0.01, 100.0);
+  for (int32_t k = 0; k < 3; ++k) {
+    d.size[k] = fuzz_between(&c->in, 0.05, 0.6);
+    d.position[k] = v[k];
+    d.inertia[4 * k] = fuzz_between(&c->in, 0.01, 1.0);
+    if (k < c->g.dim && d.motion) d.velocity[k] = fuzz_between(&c->in, -1.0, 1.0);
+  }
+  if (d.motion && c->g.dim > 1) d.angular_velocity[2] = fuzz_between(&c->in, -5.0, 5.0);
+  if (fuzz_status(c->context, mpm_obstacle_create(c->context, &d, o))) return;
+  if (d.motion == MPM_MOTION_PRESCRIBED && d.inside) MUST(!mpm_obstacle_set_motion(*o, swing, c));
+  if (!fuzz_status(c->context, mpm_stepper_add_obstacle(c->stepper, *o))) return;
+  MUST(!mpm_obstacle_destroy(*o));
+  *o = NULL;
 }
 
 static void open_stepper(cloud *c) {
@@ -499,6 +566,11 @@ static void look(cloud *c) {
     MUST(!mpm_view_release(&v));
   }
   fuzz_status(c->context, mpm_stepper_contact_info(c->stepper, fuzz_below(&c->in, 4) - 1, 1, &contact));
+  for (int32_t i = 0; i < OBSTACLES; ++i) {
+    if (!c->obstacle[i] || fuzz_status(c->context, mpm_obstacle_contact_info(c->obstacle[i], -1, &contact)))
+      continue;
+    for (int32_t k = 0; k < 3; ++k) MUST(isfinite(contact.force[k]) && isfinite(contact.torque[k]));
+  }
   fuzz_status(c->context, mpm_stepper_wall_reaction(c->stepper, fuzz_below(&c->in, 6), force));
   fuzz_status(c->context, mpm_stepper_particles_reaction(c->stepper, c->set[0], force));
   fuzz_status(c->context, mpm_stepper_wall_impulse(c->stepper, fuzz_below(&c->in, 6), force));
@@ -558,6 +630,10 @@ static void act(cloud *c) {
   case 19:
     draw_bodies(c);
     break;
+  case 20:
+  case 21:
+    draw_obstacle(c);
+    break;
   default:
     step(c);
   }
@@ -566,6 +642,7 @@ static void act(cloud *c) {
 
 static void close_cloud(cloud *c) {
   MUST(!mpm_stepper_destroy(c->stepper));
+  for (int32_t i = 0; i < OBSTACLES; ++i) MUST(!mpm_obstacle_destroy(c->obstacle[i]));
   for (int32_t m = 0; m < c->sets; ++m) MUST(!mpm_particles_destroy(c->set[m]));
   for (int32_t m = 0; m < c->sets; ++m) MUST(!mpm_material_destroy(c->material[m]));
   MUST(!mpm_grid_destroy(c->grid));

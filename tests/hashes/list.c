@@ -63,7 +63,7 @@ static scene method(int32_t dim, int32_t scheme, int32_t basis, int32_t transfer
   is.pic_damping = transfers[t].pic_damping;
   is.steps = is.quasi_static ? QUASI_STATIC_STEPS : implicit ? IMPLICIT_STEPS : dim == 3 ? 10 : 15;
   is.wall[MPM_X_MAX] = is.quasi_static || dim == 1 ? MPM_WALL_FIXED : MPM_WALL_SLIP;
-  is.wall[MPM_Y_MAX] = implicit ? MPM_WALL_SLIP : MPM_WALL_FRICTION;
+  is.wall[MPM_Y_MAX] = implicit ? MPM_WALL_SLIP : MPM_WALL_FRICTION_NODES;
   is.wall[MPM_Z_MAX] = MPM_WALL_SLIP;
   snprintf(is.name, sizeof is.name, "%d-D %s, %s, %s", (int)dim, bases[basis].name, schemes[scheme].name,
            transfers[t].name);
@@ -166,6 +166,8 @@ enum {
   EVERYTHING,
   CONTACT,
   CONTACT_PERIODIC,
+  PLANES,
+  OBSTACLES,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -207,14 +209,17 @@ static const option options[OPTIONS] = {
     [EVERYTHING] = {"two sets, periodic x, and all callbacks", 1, 1, 0},
     [CONTACT] = {"contact, saved and loaded", 1, 0, 0},
     [CONTACT_PERIODIC] = {"contact, periodic", 1, 0, 0},
+    [PLANES] = {"friction walls, planes", 1, 0, 0},
+    [OBSTACLES] = {"obstacles, saved and loaded", 1, 0, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {
   static const int32_t kind[] = {[FIXED] = MPM_WALL_FIXED,
                                  [SLIP] = MPM_WALL_SLIP,
-                                 [FRICTION] = MPM_WALL_FRICTION,
+                                 [FRICTION] = MPM_WALL_FRICTION_NODES,
                                  [OPEN] = MPM_WALL_OPEN};
   if (o >= FIXED && o <= OPEN) all_walls(is, kind[o]);
+  if (o == PLANES) all_walls(is, MPM_WALL_FRICTION);
   is->periodic[0] = o == PERIODIC_X || o == PERIODIC || o == EVERYTHING;
   is->periodic[1] = is->periodic[2] = o == PERIODIC;
   if (o == CONTACT_PERIODIC) is->periodic[0] = is->periodic[1] = is->periodic[2] = 1;
@@ -242,11 +247,13 @@ static void apply(scene *is, int32_t o) {
                      WITH_MOTION | WITH_KEPT,
       [CONTACT] = WITH_BODIES,
       [CONTACT_PERIODIC] = WITH_BODIES | WITH_FORCE,
+      [OBSTACLES] = WITH_BODIES | WITH_OBSTACLES,
   };
   static const int32_t story[OPTIONS] = {[STAGED_VELOCITY] = STORY_STAGED_VELOCITY,
                                          [STAGED_FORCE] = STORY_STAGED_FORCE,
                                          [SAVED] = STORY_SAVED,
                                          [CONTACT] = STORY_SAVED,
+                                         [OBSTACLES] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};

@@ -1,6 +1,7 @@
 /* Setting up a scene: a body of at least four blocks (1-D: two) that soon meets the upper walls. */
 #include "scene.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -197,6 +198,40 @@ static void set_fields(world *w, int32_t m) {
   free(flags);
 }
 
+/* They stand at the upper ends of the body, which moves there: a fixed plane, a driven box and a free ball;
+ * in 1-D planes, of which the material is inside. */
+static void add_obstacles(world *w) {
+  const scene *is = w->is;
+  int64_t first[3], count[3], cells[3];
+  mpm_contact_desc rule;
+  extent(is, first, count, cells);
+  must(w, mpm_contact_desc_init(&rule, sizeof rule));
+  rule.friction = 0.3;
+  for (int32_t i = 0; i < 3; ++i) {
+    static const int32_t shapes[3] = {MPM_SHAPE_PLANE, MPM_SHAPE_BOX, MPM_SHAPE_SPHERE};
+    const int32_t end = is->dim == 1 ? 0 : i % is->dim ? i % is->dim : i ? 1 : 0; /* the axis */
+    mpm_obstacle_desc d;
+    must(w, mpm_obstacle_desc_init(&d, sizeof d));
+    d.contact = &rule;
+    d.shape = is->dim == 1 ? MPM_SHAPE_PLANE : shapes[i];
+    d.motion = MPM_MOTION_FIXED + i;
+    d.inside = is->dim == 1;
+    for (int32_t c = 0; c < is->dim; ++c)
+      d.position[c] = origin[c] + spacing[c] * ((double)first[c] + 0.5 * (double)count[c]);
+    d.position[end] += spacing[end] * (0.5 * (double)count[end] + (end ? 0.02 : 1.4));
+    for (int32_t c = 0; c < 3; ++c) d.size[c] = spacing[end];
+    if (d.shape == MPM_SHAPE_PLANE && is->dim > 1) d.orientation[0] = d.orientation[3] = sqrt(0.5);
+    if (d.shape != MPM_SHAPE_PLANE) d.position[end] += spacing[end];
+    if (is->dim == 2 && i) d.position[0] += (i == 1 ? -2.0 : 2.0) * spacing[0];
+    if (i) d.velocity[end] = -0.1 * speed;
+    if (i && is->dim > 1) d.angular_velocity[2] = 0.2;
+    d.mass = 50.0;
+    for (int32_t c = 0; c < 3; ++c) d.inertia[4 * c] = 0.1 * (1.0 + c);
+    must(w, mpm_obstacle_create(w->context, &d, &w->obstacle[i]));
+    must(w, mpm_stepper_add_obstacle(w->stepper, w->obstacle[i]));
+  }
+}
+
 void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
   const mpm_grid_desc g = describe_grid(is);
   const mpm_stepper_desc s = describe_stepper(is);
@@ -228,15 +263,17 @@ void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
     contact.friction = 0.3;
     must(w, mpm_stepper_set_contact(w->stepper, 0, 1, &contact));
   }
+  if (is->with & WITH_OBSTACLES) add_obstacles(w);
   for (int32_t face = 0; face < 2 * is->dim; ++face)
     if (!is->periodic[face / 2])
       must(w, mpm_stepper_set_wall(w->stepper, face, is->wall[face],
-                                   is->wall[face] == MPM_WALL_FRICTION ? 0.3 : 0.0));
+                                   is->wall[face] >= MPM_WALL_FRICTION ? 0.3 : 0.0));
   set_callbacks(w);
 }
 
 void close_world(world *w) {
   must(w, mpm_stepper_destroy(w->stepper));
+  for (int32_t i = 0; i < 3; ++i) must(w, mpm_obstacle_destroy(w->obstacle[i]));
   for (int32_t m = 0; m < 2; ++m) must(w, mpm_particles_destroy(w->set[m]));
   for (int32_t m = 0; m < 2; ++m) must(w, mpm_material_destroy(w->material[m]));
   must(w, mpm_grid_destroy(w->grid));

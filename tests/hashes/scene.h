@@ -31,7 +31,8 @@ enum {
   WITH_HOOK = 64,         /* AFTER_P2G; the next two bits are the other stages */
   WITH_KEPT = 512,        /* acceleration and velocity gradient are kept */
   WITH_SPARE_SIZE = 1024, /* GIMP: sizes as the library finds them */
-  WITH_BODIES = 2048      /* the sets stand side by side and rub against each other */
+  WITH_BODIES = 2048,     /* the sets stand side by side and rub against each other */
+  WITH_OBSTACLES = 4096   /* one of each motion: fixed, driven, free */
 };
 
 /* How it is stepped. */
@@ -64,6 +65,7 @@ typedef struct world {
   mpm_material *material[2];
   mpm_particles *set[2];
   mpm_stepper *stepper;
+  mpm_obstacle *obstacle[3];
   mpm_step_info info;
   double dt; /* of a middling step */
   uint64_t hash;

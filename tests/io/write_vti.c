@@ -69,7 +69,7 @@ static mpm_stepper *open_scene(int32_t dim, int32_t open_knots, int32_t transfer
   OK(mpm_stepper_create(context, *grid, &s, &stepper));
   OK(mpm_stepper_add(stepper, *set));
   for (int32_t face = dim == 2 ? 2 : 0; face < 2 * dim; ++face)
-    OK(mpm_stepper_set_wall(stepper, face, face % 2 ? MPM_WALL_FIXED : MPM_WALL_FRICTION, 0.2));
+    OK(mpm_stepper_set_wall(stepper, face, face % 2 ? MPM_WALL_FIXED : MPM_WALL_FRICTION_NODES, 0.2));
   double lower[2][3], upper[2][3];
   const int32_t per_cell[] = {2, 2, 2};
   for (int32_t k = 0; k < dim; ++k) {

@@ -174,7 +174,9 @@ START_TEST(table) {
                {"mpm_operator_info", 72, sizeof(mpm_operator_info)},
                {"mpm_contact_desc", 72, sizeof(mpm_contact_desc)},
                {"mpm_contact_info", 160, sizeof(mpm_contact_info)},
-               {"mpm_contact_batch", 96, sizeof(mpm_contact_batch)}};
+               {"mpm_contact_batch", 96, sizeof(mpm_contact_batch)},
+               {"mpm_distance_batch", 64, sizeof(mpm_distance_batch)},
+               {"mpm_obstacle_desc", 296, sizeof(mpm_obstacle_desc)}};
   const size_t count = sizeof known / sizeof *known;
   size_t found = 0;
   for (const mpmi_release *at = mpmi_releases; at->name; ++at) {
@@ -213,6 +215,8 @@ START_TEST(init_functions) {
     mpm_material_desc material;
     mpm_stepper_desc stepper;
     mpm_advance_desc advance;
+    mpm_contact_desc contact;
+    mpm_obstacle_desc obstacle;
   } d;
 #define CHECK_INIT(name, at)                                                                                 \
   for (uint32_t bytes = 0; bytes < sizeof d; ++bytes) {                                                      \
@@ -229,6 +233,8 @@ START_TEST(init_functions) {
   CHECK_INIT(mpm_material_desc, &d.material);
   CHECK_INIT(mpm_stepper_desc, &d.stepper);
   CHECK_INIT(mpm_advance_desc, &d.advance);
+  CHECK_INIT(mpm_contact_desc, &d.contact);
+  CHECK_INIT(mpm_obstacle_desc, &d.obstacle);
 }
 END_TEST
 

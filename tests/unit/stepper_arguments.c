@@ -114,7 +114,7 @@ START_TEST(walls) {
   REFUSED("face is -1", -1, MPM_WALL_SLIP, 0.0);
   REFUSED("face is 4", MPM_Z_MIN, MPM_WALL_SLIP, 0.0);
   REFUSED("kind is -1", MPM_X_MIN, -1, 0.0);
-  REFUSED("kind is 5", MPM_X_MIN, 5, 0.0);
+  REFUSED("kind is 6", MPM_X_MIN, 6, 0.0);
   REFUSED("friction is -0.5", MPM_X_MIN, MPM_WALL_FRICTION, -0.5);
   REFUSED("friction is nan", MPM_X_MIN, MPM_WALL_FRICTION, NOT_A_NUMBER);
   REFUSED("friction is inf", MPM_X_MIN, MPM_WALL_FRICTION, INFINITE);
@@ -123,7 +123,7 @@ START_TEST(walls) {
   world_steps(&r, 1);
   world other;
   body_open(&other, &(body_desc){.dim = 2, .periodic = 1});
-  for (int32_t kind = MPM_WALL_OPEN; kind <= MPM_WALL_FRICTION; ++kind)
+  for (int32_t kind = MPM_WALL_OPEN; kind <= MPM_WALL_FRICTION_NODES; ++kind)
     for (int32_t face = MPM_X_MIN; face <= MPM_X_MAX; ++face)
       ck_refused(&other, mpm_stepper_set_wall(other.stepper, face, kind, 0.0), MPM_E_ARG, "periodic");
   world_close(&other);

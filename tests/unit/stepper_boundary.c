@@ -106,8 +106,8 @@ END_TEST
 
 /* Where a wall and the callback both want a node, the callback has it and takes the reaction. */
 START_TEST(callback_before_walls) {
-  static const int32_t kinds[] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION};
-  for (int32_t k = 0; k < 3; ++k) {
+  static const int32_t kinds[] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION, MPM_WALL_FRICTION_NODES};
+  for (int32_t k = 0; k < 4; ++k) {
     world r;
     double force[3];
     body_desc o = {.dim = 2};

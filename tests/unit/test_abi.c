@@ -70,6 +70,7 @@ START_TEST(constants) {
   VALUE(MPM_WALL_FIXED, 2);
   VALUE(MPM_WALL_SLIP, 3);
   VALUE(MPM_WALL_FRICTION, 4);
+  VALUE(MPM_WALL_FRICTION_NODES, 5);
   VALUE(MPM_CONTACT_UNILATERAL, 0);
   VALUE(MPM_CONTACT_NONE, 1);
   VALUE(MPM_CONTACT_TIED, 2);
@@ -81,6 +82,15 @@ START_TEST(constants) {
   VALUE(MPM_DETECT_GAP, 1);
   VALUE(MPM_DETECT_VELOCITY, 2);
   VALUE(MPM_BODY_ANY, -1);
+  VALUE(MPM_SHAPE_PLANE, 1);
+  VALUE(MPM_SHAPE_SPHERE, 2);
+  VALUE(MPM_SHAPE_CYLINDER, 3);
+  VALUE(MPM_SHAPE_CAPSULE, 4);
+  VALUE(MPM_SHAPE_BOX, 5);
+  VALUE(MPM_SHAPE_DISTANCE, 64);
+  VALUE(MPM_MOTION_FIXED, 0);
+  VALUE(MPM_MOTION_PRESCRIBED, 1);
+  VALUE(MPM_MOTION_FREE, 2);
   VALUE(MPM_AFTER_P2G, 1);
   VALUE(MPM_AFTER_FORCES, 2);
   VALUE(MPM_AFTER_VELOCITY, 3);
@@ -331,6 +341,45 @@ START_TEST(layout_of_contact_batch) {
 END_TEST
 #undef STRUCT
 
+#define STRUCT mpm_distance_batch
+START_TEST(layout_of_distance_batch) {
+  SIZE(64);
+  AT(0, struct_size);
+  AT(4, dim);
+  AT(8, n);
+  AT(16, ld);
+  AT(24, t);
+  AT(32, position);
+  AT(40, distance);
+  AT(48, normal);
+  AT(56, velocity);
+}
+END_TEST
+#undef STRUCT
+
+#define STRUCT mpm_obstacle_desc
+START_TEST(layout_of_obstacle_desc) {
+  SIZE(296);
+  AT(0, struct_size);
+  AT(4, shape);
+  AT(8, motion);
+  AT(12, inside);
+  AT(16, size);
+  AT(40, position);
+  AT(64, orientation);
+  AT(96, velocity);
+  AT(120, angular_velocity);
+  AT(144, mass);
+  AT(152, inertia);
+  AT(224, contact);
+  AT(232, distance);
+  AT(240, user);
+  AT(248, lower);
+  AT(272, upper);
+}
+END_TEST
+#undef STRUCT
+
 #define STRUCT mpm_particle_batch
 START_TEST(layout_of_particle_batch) {
   SIZE(104);
@@ -441,6 +490,8 @@ Suite *abi_suite(void) {
     tcase_add_test(frozen, layout_of_contact_desc);
     tcase_add_test(frozen, layout_of_contact_info);
     tcase_add_test(frozen, layout_of_contact_batch);
+    tcase_add_test(frozen, layout_of_distance_batch);
+    tcase_add_test(frozen, layout_of_obstacle_desc);
     tcase_add_test(frozen, layout_of_particle_batch);
     tcase_add_test(frozen, layout_of_node_batch);
     tcase_add_test(frozen, layout_of_advance_desc);

@@ -313,6 +313,36 @@ START_TEST(adhesion) {
 }
 END_TEST
 
+/* Cells four times as long as they are high: particles side by side are farther apart than the height of a
+ * cell, and bodies that meet face to face do so at every node between them. */
+START_TEST(unequal_spacings) {
+  const double h = spacing;
+  world w;
+  world_desc desc = world_with(&methods[1], _i, 12, h);
+  for (int32_t k = 0; k < _i - 1; ++k) desc.grid.spacing[k] = 4.0 * h;
+  world_open(&w, &desc);
+  for (int32_t m = 0; m < 2; ++m) {
+    mpm_particles *set = m ? world_add_set(&w, NULL) : w.set[0];
+    double lower[3], upper[3], v[3] = {0.0, 0.0, 0.0};
+    for (int32_t k = 0; k < _i; ++k) {
+      const int32_t across = k == _i - 1;
+      lower[k] = across ? h * (m ? 6.0 : 3.0) : 16.0 * h;
+      upper[k] = across ? h * (m ? 9.0 : 6.0) : 32.0 * h;
+    }
+    v[_i - 1] = m ? -box_speed : box_speed;
+    world_fill(&w, set, lower, upper, 2);
+    ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, _i, v));
+    ck_ok(&w, mpm_stepper_set_body(w.stepper, set, m));
+  }
+  for (int32_t i = 0; i < 20; ++i) world_step(&w, box_dt);
+  const mpm_contact_info info = contact_of(&w, 0, 1);
+  double area = 1.0;
+  for (int32_t k = 0; k < _i - 1; ++k) area *= 16.0 * h;
+  ck_within("area", info.area, area, 0.05 * area);
+  world_close(&w);
+}
+END_TEST
+
 /* Half of two bodies that collide symmetrically, on a slip wall in the plane of symmetry, is half of the
  * whole: particles beyond the wall are seen there. The upper faces of the one slide on the other as well. */
 START_TEST(half_on_a_wall) {
@@ -771,6 +801,7 @@ Suite *contact_suite(void) {
   tcase_add_loop_test(law, options_of_contact, 1, 4);
   tcase_add_loop_test(options, tied_is_one, 1, 4);
   tcase_add_loop_test(options, adhesion, 1, 4);
+  tcase_add_loop_test(options, unequal_spacings, 2, 4);
   tcase_add_loop_test(options, half_on_a_wall, 0, METHODS);
   tcase_add_loop_test(options, friction_callback, 0, METHODS);
   tcase_add_loop_test(bits, threads_and_order, 0, BROAD);

@@ -71,16 +71,19 @@ static method contact_method(int32_t i) {
   return method_of(&basis_options[way[i][0]], &scheme_options[way[i][1]], &transfer_options[way[i][2]]);
 }
 
-/* A disk flies at a friction wall aslant: its energy never exceeds the first by 1 %, and it flies off. */
+/* A disk flies at a friction wall aslant: its energy never exceeds the first by 1 %, and it flies off. Linear
+ * functions lose more at the plane of a wall than at its nodes. */
 START_TEST(disk_bounces) {
-  const method how = contact_method(_i / 2);
+  const method how = contact_method(_i / 4);
+  const int32_t plane = _i / 2 % 2;
   const double h = 1.0 / 40.0, friction = _i % 2 ? 0.5 : 0.0, v[2] = {0.05, -0.1}, centre[2] = {0.4, 0.26};
   const int32_t per_cell[2] = {2, 2};
   world w;
   world_desc desc = world_with(&how, 2, 40, h);
   desc.law.E = 1000.0;
   mpm_particles *set = world_open(&w, &desc);
-  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, friction));
+  const int32_t kind = plane ? MPM_WALL_FRICTION : MPM_WALL_FRICTION_NODES;
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, kind, friction));
   ck_ok(&w, mpm_particles_fill_ball(set, centre, 0.2, per_cell, NULL, NULL));
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
   mpm_step_info now = world_info(&w);
@@ -101,7 +104,7 @@ START_TEST(disk_bounces) {
        now.momentum[0] / mass);
   ck_between(how.name, highest, 0.0, 1.01);
   ck_within(how.name, late, 0.0, 0.0);
-  ck_between(how.name, now.momentum[1] / mass, 0.08, 0.1);
+  ck_between(how.name, now.momentum[1] / mass, plane && how.basis == MPM_LINEAR ? 0.075 : 0.08, 0.1);
   ck_within(how.name, now.momentum[1] / mass + 0.1, pushed / mass, 1e-12);
   if (friction > 0.0)
     ck_assert_double_lt(now.momentum[0] / mass, 0.04);
@@ -170,7 +173,7 @@ Suite *impact_suite(void) {
   TCase *tc = tcase_create("impact");
   tcase_set_timeout(tc, 60.0);
   tcase_add_test(tc, two_disks);
-  tcase_add_loop_test(tc, disk_bounces, 0, 2 * CONTACT_METHODS);
+  tcase_add_loop_test(tc, disk_bounces, 0, 4 * CONTACT_METHODS);
   suite_add_tcase(suite, tc);
   tc = tcase_create("incline");
   tcase_set_timeout(tc, 60.0);

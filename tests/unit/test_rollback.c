@@ -344,7 +344,7 @@ static void fly(world *r, const int64_t *id, int32_t face) {
 }
 
 START_TEST(off_the_grid) {
-  for (int32_t kind = MPM_WALL_NONE; kind <= MPM_WALL_FRICTION; ++kind) {
+  for (int32_t kind = MPM_WALL_NONE; kind <= MPM_WALL_FRICTION_NODES; ++kind) {
     if (kind == MPM_WALL_OPEN) continue;
     int64_t reported = -1;
     for (int32_t threads = 1; threads <= 3; threads += 2) {

@@ -292,7 +292,7 @@ START_TEST(walls_change) {
   body_desc o = {.dim = 3};
   body_open(&r, &o);
   body_open(&other, &o);
-  for (int32_t kind = MPM_WALL_NONE; kind <= MPM_WALL_FRICTION; ++kind) {
+  for (int32_t kind = MPM_WALL_NONE; kind <= MPM_WALL_FRICTION_NODES; ++kind) {
     world_steps(&r, 1);
     world_steps(&other, 1);
     ck_ok(&r, mpm_stepper_set_wall(r.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));

@@ -2,7 +2,8 @@
 #include "walls.h"
 
 enum { CLOUD = 300 };
-static const int32_t wall_kinds[3] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION};
+static const int32_t wall_kinds[4] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION,
+                                      MPM_WALL_FRICTION_NODES};
 
 /* On periodic axes a body may be moved by whole cells, also across the seam, and nothing changes; nor do the
  * averages over cells of the locking remedy. */
@@ -140,7 +141,7 @@ Suite *walls_suite(void) {
   TCase *tc = tcase_create("walls");
   tcase_set_timeout(tc, 30.0);
   tcase_add_loop_test(tc, periodic_grid_has_no_place, 0, 2 * WALL_METHODS);
-  tcase_add_loop_test(tc, wall_carries_the_weight, 0, 15);
+  tcase_add_loop_test(tc, wall_carries_the_weight, 0, 20);
   tcase_add_loop_test(tc, prescribed_nodes_do_work, 0, METHODS);
   suite_add_tcase(suite, tc);
   suite_add_tcase(suite, walls_nodes_case());

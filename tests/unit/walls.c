@@ -28,11 +28,19 @@ method wall_method_of(int32_t i) {
   return method_of(basis, scheme, chosen);
 }
 
-enum { N = MPM_WALL_NONE, O = MPM_WALL_OPEN, F = MPM_WALL_FIXED, S = MPM_WALL_SLIP, C = MPM_WALL_FRICTION };
+enum {
+  N = MPM_WALL_NONE,
+  O = MPM_WALL_OPEN,
+  F = MPM_WALL_FIXED,
+  S = MPM_WALL_SLIP,
+  C = MPM_WALL_FRICTION,
+  K = MPM_WALL_FRICTION_NODES
+};
 const wall_setup wall_setups[WALL_SETUPS] = {
     {{N, N, N, N, N, N}, 0}, {{O, O, O, O, O, O}, 0}, {{F, F, F, F, F, F}, 0}, {{S, S, S, S, S, S}, 0},
-    {{C, C, C, C, C, C}, 0}, {{F, S, C, F, S, C}, 0}, {{S, C, C, S, F, N}, 0}, {{C, F, S, C, O, S}, 0},
-    {{N, C, F, O, C, S}, 0}, {{F, S, N, N, C, S}, 1}, {{C, S, N, N, F, C}, 1}, {{C, C, N, N, S, F}, 1}};
+    {{C, C, C, C, C, C}, 0}, {{F, S, C, F, S, C}, 0}, {{S, C, K, S, F, N}, 0}, {{K, F, S, C, O, S}, 0},
+    {{N, C, F, O, C, S}, 0}, {{F, S, N, N, C, S}, 1}, {{K, S, N, N, F, C}, 1}, {{C, C, N, N, S, F}, 1},
+    {{K, K, K, K, K, K}, 0}};
 
 void wall_describe(const wall_setup *setup, mpm_grid_desc *grid) {
   if (grid->dim > 1) grid->periodic[1] = setup->periodic;

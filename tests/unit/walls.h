@@ -12,7 +12,7 @@ method wall_method_of(int32_t i);
 typedef struct wall_setup {
   int32_t kind[6], periodic;
 } wall_setup;
-enum { WALL_SETUPS = 12 };
+enum { WALL_SETUPS = 13 };
 extern const wall_setup wall_setups[WALL_SETUPS];
 void wall_describe(const wall_setup *setup, mpm_grid_desc *grid);
 void wall_set(world *w, const wall_setup *setup, double friction);

@@ -3,10 +3,11 @@
 #include "walls.h"
 
 enum { CLOUD = 160 };
+static const double time_step = 1e-5;
 
 typedef struct nodes {
   int64_t n, *index;
-  double *v;
+  double *v, *gap, *normal; /* gap, normal: to the nearest friction wall that is a plane */
   int32_t dim;
 } nodes;
 
@@ -50,7 +51,14 @@ static int64_t check_planes(const char *name, const mpm_grid_desc *grid, const w
       ck_within(name, a->v[c * a->n + i], 0.0, 0.0);
       ++checked;
     }
-    if (kind != MPM_WALL_FRICTION) continue;
+    const double outward = face % 2 ? 1.0 : -1.0;
+    if (kind == MPM_WALL_FRICTION && outward * a->normal[k * a->n + i] > 0.5) {
+      /* nothing moves farther than to the wall */
+      const double most = fmax(0.0, a->gap[i]) / time_step;
+      ck_between(name, outward * a->v[k * a->n + i], -INFINITY, most + 1e-12 * (1.0 + most));
+      ++checked;
+    }
+    if (kind != MPM_WALL_FRICTION_NODES) continue;
     /* nothing moves into a friction wall: a node on its plane, or the mean of ghost and mirror image */
     double inward = a->v[k * a->n + i];
     if (at != plane) {
@@ -83,11 +91,13 @@ static void check_nodes(const method *how, const wall_setup *walls, int32_t dim,
   dice d = {7};
   add_cloud(&w, set, &d, CLOUD, 0.1, 0.0, 0.1 * (double)cells, 1.0);
   wall_set(&w, walls, 0.4);
-  ck_ok(&w, mpm_step_begin(w.stepper, 1e-5));
+  ck_ok(&w, mpm_step_begin(w.stepper, time_step));
   ck_ok(&w, mpm_step_grid(w.stepper));
   nodes a = {.dim = dim};
   a.index = fetch_node_indices(&w, &a.n);
   a.v = fetch_nodes(&w, "velocity", &a.n);
+  a.gap = fetch_nodes(&w, "contact_gap", &a.n);
+  a.normal = fetch_nodes(&w, "contact_normal", &a.n);
   ck_ok(&w, mpm_step_abort(w.stepper));
   int64_t checked = 0;
   for (int64_t i = 0; i < a.n; ++i) {
@@ -106,7 +116,7 @@ static void check_nodes(const method *how, const wall_setup *walls, int32_t dim,
     ++checked;
   }
   if (walls->kind[0] >= MPM_WALL_FIXED) ck_assert_int_gt(checked, 0);
-  free(a.index), free(a.v);
+  free(a.index), free(a.v), free(a.gap), free(a.normal);
   world_close(&w);
 }
 

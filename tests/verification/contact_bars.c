@@ -35,11 +35,7 @@ static void open_row(verify_world *w, const row *r) {
     const double low[3] = {x, 2.0 * h, 2.0 * h}, high[3] = {x + r->length[i], 4.0 * h, 4.0 * h};
     mpm_particles *bar = verify_set(w, verify_elastic(w, "neo_hookean", r->modulus[i], 0.0, r->density[i]));
     verify_fill_box(w, bar, low, high, 2); /* on the cells: the bar is moved from there */
-    const int64_t n = mpm_particles_count(bar);
-    double *place = verify_get(w, bar, "position", r->dim);
-    for (int64_t p = 0; p < n; ++p) place[p] += i * r->gap;
-    verify_put(w, bar, "position", r->dim, place);
-    free(place);
+    verify_place(w, bar, 0.0, (const double[]){i * r->gap, 0.0, 0.0});
     verify_ok(w, mpm_stepper_set_body(w->stepper, bar, i));
     const double v[3] = {i ? 0.0 : speed, 0.0, 0.0};
     verify_ok(w, mpm_particles_set_all(bar, "velocity", MPM_F64, r->dim, v));

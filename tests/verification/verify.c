@@ -59,6 +59,13 @@ void verify_gate(const char *what, double value, double low, double high, const 
   result(what, value, low, high, ok ? "ok" : "FAILED", source, "");
 }
 
+void verify_gate_of(const char *name, const char *what, double value, double low, double high,
+                    const char *source) {
+  char both[160];
+  snprintf(both, sizeof both, "%s: %s", name, what);
+  verify_gate(both, value, low, high, source);
+}
+
 void verify_expected_failure(const char *what, double value, double low, double high, const char *source,
                              const char *reason) {
   const int met = value >= low && value <= high;
@@ -124,8 +131,31 @@ mpm_particles *verify_set(verify_world *w, mpm_material *material) {
   return *set;
 }
 
+mpm_obstacle_desc verify_obstacle_defaults(mpm_contact_desc *contact, int32_t shape, int32_t motion,
+                                           double friction, double turn) {
+  mpm_obstacle_desc desc;
+  if (mpm_contact_desc_init(contact, sizeof *contact) || mpm_obstacle_desc_init(&desc, sizeof desc))
+    stop("the library is older than its headers", "");
+  contact->friction = friction;
+  desc.contact = contact;
+  desc.shape = shape;
+  desc.motion = motion;
+  desc.orientation[0] = cos(0.5 * turn);
+  desc.orientation[3] = sin(0.5 * turn);
+  return desc;
+}
+
+mpm_obstacle *verify_obstacle(verify_world *w, const mpm_obstacle_desc *desc) {
+  if (w->obstacles == VERIFY_MOST) stop("too many obstacles", "");
+  mpm_obstacle **obstacle = &w->obstacle[w->obstacles++];
+  verify_ok(w, mpm_obstacle_create(w->context, desc, obstacle));
+  verify_ok(w, mpm_stepper_add_obstacle(w->stepper, *obstacle));
+  return *obstacle;
+}
+
 void verify_close(verify_world *w) {
   verify_ok(w, mpm_stepper_destroy(w->stepper));
+  for (int32_t i = 0; i < w->obstacles; ++i) verify_ok(w, mpm_obstacle_destroy(w->obstacle[i]));
   for (int32_t i = 0; i < w->sets; ++i) verify_ok(w, mpm_particles_destroy(w->set[i]));
   for (int32_t i = 0; i < w->materials; ++i) verify_ok(w, mpm_material_destroy(w->material[i]));
   verify_ok(w, mpm_grid_destroy(w->grid));
@@ -160,6 +190,21 @@ void verify_fill_box(const verify_world *w, mpm_particles *set, const double *lo
                      int32_t per_cell) {
   const int32_t n[3] = {per_cell, per_cell, per_cell};
   verify_ok(w, mpm_particles_fill_box(set, lower, upper, n, NULL, NULL));
+}
+
+void verify_place(const verify_world *w, mpm_particles *set, double turn, const double *by) {
+  const int64_t n = mpm_particles_count(set);
+  double *x = verify_get(w, set, "position", w->dim);
+  for (int64_t i = 0; i < n; ++i) {
+    if (w->dim > 1) {
+      const double a = x[i], b = x[n + i];
+      x[i] = cos(turn) * a - sin(turn) * b;
+      x[n + i] = sin(turn) * a + cos(turn) * b;
+    }
+    for (int32_t c = 0; c < w->dim; ++c) x[c * n + i] += by[c];
+  }
+  verify_put(w, set, "position", w->dim, x);
+  free(x);
 }
 
 mpm_step_info verify_advance(const verify_world *w, double cfl, double t) {

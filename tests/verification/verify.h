@@ -24,6 +24,9 @@ void verify_progress(const char *format, ...) __attribute__((format(printf, 1, 2
 /* low <= value <= high or the case fails; either may be infinite. A value that is not a number fails. source:
  * where the gate is from. */
 void verify_gate(const char *what, double value, double low, double high, const char *source);
+/* The same for "name: what". */
+void verify_gate_of(const char *name, const char *what, double value, double low, double high,
+                    const char *source);
 /* A gate that a correct method does not meet, for the reason given: listed apart, and the case fails once it
  * is met. */
 void verify_expected_failure(const char *what, double value, double low, double high, const char *source,
@@ -45,7 +48,8 @@ typedef struct verify_world {
   mpm_stepper *stepper;
   mpm_material *material[VERIFY_MOST];
   mpm_particles *set[VERIFY_MOST];
-  int32_t materials, sets, dim;
+  mpm_obstacle *obstacle[VERIFY_MOST];
+  int32_t materials, sets, obstacles, dim;
 } verify_world;
 
 /* The library's defaults on a grid of `cells` cells of edge h along each axis, from the origin. */
@@ -54,6 +58,11 @@ void verify_open(verify_world *w, const verify_setup *setup); /* on one thread *
 mpm_material *verify_material(verify_world *w, const char *model, const mpm_param *params, int32_t count);
 mpm_material *verify_elastic(verify_world *w, const char *model, double E, double nu, double density);
 mpm_particles *verify_set(verify_world *w, mpm_material *material); /* an empty one, in the stepper */
+/* The library's defaults but for shape, motion, friction, and an angle about the third axis. The desc points
+ * to `contact`. */
+mpm_obstacle_desc verify_obstacle_defaults(mpm_contact_desc *contact, int32_t shape, int32_t motion,
+                                           double friction, double turn);
+mpm_obstacle *verify_obstacle(verify_world *w, const mpm_obstacle_desc *desc); /* in the stepper */
 void verify_close(verify_world *w);
 
 /* Whole field of a set by ascending id, [components][n]; the caller frees it. */
@@ -65,6 +74,8 @@ double *verify_array(int64_t n); /* zeros */
 /* A box of particles, as many along each axis of a cell. */
 void verify_fill_box(const verify_world *w, mpm_particles *set, const double *lower, const double *upper,
                      int32_t per_cell);
+/* Turns a set about the third axis through the origin, then shifts it. */
+void verify_place(const verify_world *w, mpm_particles *set, double turn, const double *by);
 mpm_step_info verify_advance(const verify_world *w, double cfl, double t); /* to time t by stable steps */
 mpm_step_info verify_step(const verify_world *w, double dt);
 

@@ -23,7 +23,7 @@ static void open_tank(tank *it, double width, double depth, double tank_length, 
   it->water = verify_set(&it->w, verify_material(&it->w, "newtonian_fluid", params, 4));
   verify_fill_box(&it->w, it->water, (const double[]){0.0, 0.0}, (const double[]){width, depth}, 2);
   for (int32_t face = MPM_X_MIN; face <= MPM_Y_MIN; ++face)
-    verify_ok(&it->w, mpm_stepper_set_wall(it->w.stepper, face, MPM_WALL_FRICTION, 0.0));
+    verify_ok(&it->w, mpm_stepper_set_wall(it->w.stepper, face, MPM_WALL_FRICTION_NODES, 0.0));
   const int64_t n = mpm_particles_count(it->water);
   double *x = verify_get(&it->w, it->water, "position", 2), *F = verify_array(9 * n);
   for (int64_t i = 0; i < n; ++i) {

@@ -1,0 +1,213 @@
+/* The gap between a body and a surface at a node: the least clearance of the body's particles near the line
+ * through the node along the normal. Each particle's clearance, its distance less its half-width, is found
+ * once for each surface. */
+#include "contact/contact.h"
+#include "layout/tasks.h"
+
+#include <math.h>
+
+/* Particles farther from the surface, in spacings, cannot decide. */
+static const double near_enough = 2.0;
+
+typedef struct surface_job {
+  mpmi_contact_search *search;
+  int32_t surface;
+} surface_job;
+
+/* ---- clearances of particles --------------------------------------------------------------------------- */
+typedef struct half_edge_cache {
+  double volume, edge;
+} half_edge_cache;
+
+static void note_fault(const surface_job *job, int32_t member, const mpmi_distance_fault *fault,
+                       const int64_t *slot, mpmi_failure *failure) {
+  const mpm_particles *set = job->search->step->layout->member[member].set;
+  const int64_t particle = fault->point < 0 ? -1 : mpmi_i64(set, MPMI_ID, 0)[slot[fault->point]];
+  mpmi_failure_take(failure, &(mpmi_failure){.cause = fault->cause,
+                                             .callback_status = fault->returned,
+                                             .set = member,
+                                             .particle = particle,
+                                             .node = -1,
+                                             .what = fault->what});
+}
+
+/* Inert slots are no particles of clouds. */
+static void clear_chunk(const surface_job *job, int32_t member, int64_t begin, int64_t end,
+                        half_edge_cache *last, mpmi_failure *failure) {
+  const mpmi_contact_nodes *contact = job->search->contact;
+  const mpm_particles *set = job->search->step->layout->member[member].set;
+  const mpm_grid *grid = set->grid;
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  double *clearance = contact->clearance + contact->clearance_first[member];
+  mpmi_distances points = {.n = 0, .t = job->search->step->t};
+  mpmi_distance_fault fault;
+  int64_t slot[MPMI_DISTANCE_POINTS];
+  for (int64_t s = begin; s < end; ++s) {
+    if (id[s] < 0) continue;
+    for (int32_t k = 0; k < grid->dim; ++k)
+      points.position[k][points.n] = mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + s];
+    slot[points.n++] = s;
+  }
+  if (!points.n) return;
+  if (mpmi_surface_distances(&contact->surface[job->surface], &points, &fault)) {
+    note_fault(job, member, &fault, slot, failure);
+    return;
+  }
+  for (int64_t p = 0; p < points.n; ++p) {
+    const double distance = points.distance[p];
+    clearance[slot[p]] = distance;
+    if (distance > near_enough * grid->h_min) continue;
+    const double n[3] = {points.normal[0][p], points.normal[1][p], points.normal[2][p]};
+    const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot[p]];
+    if (volume < last->volume || volume > last->volume)
+      *last = (half_edge_cache){volume, mpmi_half_edge(grid->dim, volume)};
+    clearance[slot[p]] = distance - mpmi_half_width(set, slot[p], last->edge, n);
+  }
+}
+
+static void clear_block(const surface_job *job, int64_t block, mpmi_failure *failure) {
+  const mpmi_layout *layout = job->search->step->layout;
+  const mpmi_contact_nodes *contact = job->search->contact;
+  const mpmi_surface *surface = &contact->surface[job->surface];
+  const mpm_grid *grid = layout->blocks.grid;
+  half_edge_cache last = {-1.0, 0.0};
+  /* stencils and drift take particles less than three spacings out of their block's nodes */
+  const int32_t far = mpmi_block_is_far(&layout->blocks, block, 3, surface, near_enough * grid->h_min);
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const mpmi_member *member = &layout->member[m];
+    const int64_t end = member->now.start[block + 1];
+    double *clearance = contact->clearance + contact->clearance_first[m];
+    for (int64_t s = member->now.start[block]; s < end; s += MPMI_DISTANCE_POINTS) {
+      const int64_t upto = end - s < MPMI_DISTANCE_POINTS ? end : s + MPMI_DISTANCE_POINTS;
+      for (int64_t p = s; p < upto && far; ++p) clearance[p] = (double)INFINITY;
+      if (!far) clear_chunk(job, m, s, upto, &last, failure);
+    }
+  }
+}
+
+static void clear_task(void *data, int64_t k) {
+  const surface_job *job = data;
+  const mpmi_step *step = job->search->step;
+  const mpmi_share share = mpmi_share_of(step->settings, step->layout->blocks.count, k);
+  for (int64_t block = share.begin; block < share.end; ++block)
+    if (job->search->contact->in_reach[block]) clear_block(job, block, &step->work->report[k].failure);
+}
+
+/* ---- gaps ---------------------------------------------------------------------------------------------- */
+/* Returns 1 when a particle, at x in cells, is off the line through its node along n by no more than the
+ * reach. */
+static int32_t is_beside(const mpm_grid *grid, const double *x, const double *n) {
+  double along = 0.0, squared = 0.0;
+  for (int32_t k = 0; k < grid->dim; ++k) along += x[k] * grid->desc.spacing[k] * n[k];
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double off = x[k] - along * n[k] * grid->inverse_spacing[k];
+    squared += off * off;
+  }
+  return grid->dim == 1 || squared <= MPMI_CONTACT_REACH * MPMI_CONTACT_REACH;
+}
+
+static double gap_of(const mpmi_contact_search *search, const mpmi_party *party, const double *n) {
+  const mpmi_layout *layout = search->step->layout;
+  const mpmi_contact_nodes *contact = search->contact;
+  double gap = (double)INFINITY;
+  for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
+    const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
+    double node[3], x[3];
+    mpmi_contact_position(&layout->blocks, cloud->slot, node);
+    for (int64_t e = source->first; e < source->first + source->count; ++e) {
+      const mpmi_cloud_entry *entry = &contact->entry[e];
+      const double clearance = contact->clearance[contact->clearance_first[entry->member] + entry->slot];
+      if (!(clearance < gap)) continue;
+      mpmi_cloud_place(layout, cloud, node, entry, x);
+      if (is_beside(layout->blocks.grid, x, n)) gap = clearance;
+    }
+  }
+  return gap;
+}
+
+/* The area of the body's surface at the node, without what stands beyond walls. */
+static double area_of(const mpmi_contact_nodes *contact, const mpmi_party *party, const double *n) {
+  double along = 0.0;
+  for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
+    const mpmi_cloud *cloud = &contact->cloud[i];
+    for (int32_t k = 0; k < 3 && cloud->source == i; ++k)
+      along += (cloud->mirrored >> k & 1 ? -n[k] : n[k]) * cloud->gradient[k];
+  }
+  return fabs(along);
+}
+
+static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch) {
+  const mpmi_contact_nodes *contact = search->contact;
+  const mpmi_party *party = &contact->party[touch->party[1]];
+  for (int32_t k = 0; k < 3; ++k) touch->normal[k] = contact->party[touch->party[0]].normal[k];
+  touch->friction = touch->rule->friction;
+  touch->friction_static = fmax(touch->rule->friction, touch->rule->friction_static);
+  touch->area = area_of(contact, party, touch->normal);
+  touch->gap = gap_of(search, party, touch->normal);
+  touch->open =
+      touch->rule->kind == MPM_CONTACT_UNILATERAL && !(touch->gap <= search->step->settings->grid->h_min);
+}
+
+static void gap_task(void *data, int64_t k) {
+  const surface_job *job = data;
+  const mpmi_contact_nodes *contact = job->search->contact;
+  const int64_t *first = contact->by_surface + job->surface;
+  const mpmi_share share = mpmi_share_of(job->search->step->settings, first[1] - first[0], k);
+  const int64_t *list = contact->by_surface + contact->surface_count + 1 + first[0];
+  for (int64_t i = share.begin; i < share.end; ++i) find_touch(job->search, &contact->touch[list[i]]);
+}
+
+/* ---- surface by surface -------------------------------------------------------------------------------- */
+/* Lists the touches of each surface. */
+static mpm_status list_touches(const mpmi_contact_search *search) {
+  mpmi_contact_nodes *contact = search->contact;
+  const int64_t surfaces = contact->surface_count;
+  const mpm_status status =
+      MPMI_RESERVE_MORE(search->step->settings->context, contact->by_surface, contact->by_surface_capacity,
+                        surfaces + 1 + contact->touch_count);
+  if (status) return status;
+  int64_t *first = contact->by_surface, *list = first + surfaces + 1;
+  for (int64_t i = 0; i <= surfaces; ++i) first[i] = 0;
+  for (int64_t i = 0; i < contact->touch_count; ++i)
+    if (mpmi_is_of_surface(contact, &contact->touch[i]))
+      ++first[contact->party[contact->touch[i].party[0]].surface + 1];
+  for (int64_t i = 0; i < surfaces; ++i) first[i + 1] += first[i];
+  for (int64_t i = 0; i < contact->touch_count; ++i)
+    if (mpmi_is_of_surface(contact, &contact->touch[i]))
+      list[first[contact->party[contact->touch[i].party[0]].surface]++] = i;
+  for (int64_t i = surfaces; i > 0; --i) first[i] = first[i - 1];
+  first[0] = 0;
+  return MPM_OK;
+}
+
+static mpm_status reserve_clearances(const mpmi_contact_search *search) {
+  mpm_context *c = search->step->settings->context;
+  const mpmi_layout *layout = search->step->layout;
+  mpmi_contact_nodes *contact = search->contact;
+  mpm_status status =
+      MPMI_RESERVE_MORE(c, contact->clearance_first, contact->first_capacity, layout->member_count);
+  if (status) return status;
+  int64_t slots = 0;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    contact->clearance_first[m] = slots;
+    slots += layout->member[m].set->slots;
+  }
+  return MPMI_RESERVE_MORE(c, contact->clearance, contact->clearance_capacity, slots);
+}
+
+mpm_status mpmi_surface_gaps_find(mpmi_contact_search *search) {
+  const mpmi_settings *settings = search->step->settings;
+  const mpmi_contact_nodes *contact = search->contact;
+  if (!contact->near_count) return MPM_OK;
+  mpm_status status = list_touches(search);
+  if (!status) status = reserve_clearances(search);
+  for (int32_t i = 0; i < contact->surface_count && !status; ++i) {
+    surface_job job = {search, i};
+    if (contact->by_surface[i] == contact->by_surface[i + 1]) continue;
+    status = mpmi_run_tasks(settings, contact->surface[i].shape == MPM_SHAPE_DISTANCE, settings->tasks,
+                            clear_task, &job);
+    if (!status) status = mpmi_step_failure(search->step);
+    if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, gap_task, &job);
+  }
+  return status;
+}
