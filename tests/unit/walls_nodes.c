@@ -55,7 +55,7 @@ static int64_t check_planes(const char *name, const mpm_grid_desc *grid, const w
     if (kind == MPM_WALL_FRICTION && outward * a->normal[k * a->n + i] > 0.5) {
       /* nothing moves farther than to the wall */
       const double most = fmax(0.0, a->gap[i]) / time_step;
-      ck_between(name, outward * a->v[k * a->n + i], -INFINITY, most + 1e-12 * (1.0 + most));
+      ck_between(name, outward * a->v[k * a->n + i], -(double)INFINITY, most + 1e-12 * (1.0 + most));
       ++checked;
     }
     if (kind != MPM_WALL_FRICTION_NODES) continue;
