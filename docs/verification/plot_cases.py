@@ -95,6 +95,26 @@ def contact_bars():
 
 
 @plot
+def contact_implicit():
+    figure, ax = axes(2)
+    data, bars = read("contact_implicit"), read("contact_bars_table")
+    ax[0].plot(data["half_width"], data["width"], "o-", label="width of contact")
+    ax[0].plot(data["half_width"], data["pressure"], "s-", label="pressure, second cell")
+    ax[0].axhline(1, color="k", linewidth=0.8)
+    ax[0].set_xlabel("half the width by Hertz, cells")
+    ax[0].set_ylabel("measured / Hertz")
+    ax[0].legend()
+    names = [n for n in bars["case"] if n.startswith(("unequal", "implicit"))]
+    for i, key in enumerate(("stress", "energy")):
+        values = [v for n, v in zip(bars["case"], bars[key]) if n in names]
+        ax[1].plot(values, range(len(names)), "os"[i], label=("mean stress / exact", "largest energy / first")[i])
+    ax[1].set_yticks(range(len(names)), names)
+    ax[1].axvline(1, color="k", linewidth=0.8)
+    ax[1].legend(loc="lower left")
+    return figure
+
+
+@plot
 def contact_discs():
     figure, ax = axes(2)
     data, table = read("contact_discs"), read("contact_discs_table")

@@ -110,8 +110,9 @@ typedef mpm_status (*mpm_friction_fn)(void *user, const mpm_contact_batch *batch
 
 /** Puts a set into a body: 0 <= body < 4096, at first 0. Between steps, also with particles in it. Sets of
  * one body share one velocity field. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_ARG: there is no
- * such body. MPM_E_UNSUPPORTED: bodies that touch, with MPM_NEWMARK. MPM_E_STATE during a staged step, or
- * while a view of nodal fields is out; there are no nodal fields then until the next step. */
+ * such body. MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by
+ * MPM_SOLVER_MULTIGRID_CG. MPM_E_STATE during a staged step, or while a view of nodal fields is out; there
+ * are no nodal fields then until the next step. */
 MPM_API mpm_status mpm_stepper_set_body(mpm_stepper *stepper, mpm_particles *particles, int32_t body);
 
 /** Gives the body of a set. MPM_E_NOT_FOUND: it is not in this stepper. */
@@ -127,13 +128,13 @@ MPM_API mpm_status mpm_contact_desc_init(mpm_contact_desc *desc, uint32_t struct
  * how all meet that have no closer rule. Of the rules of two bodies each with MPM_BODY_ANY, that of the
  * lower number counts. A later call replaces an earlier one for the same pair; NULL takes the rule back.
  * Without any rule the defaults of mpm_contact_desc_init() hold. A saved state holds the rules. MPM_E_ARG:
- * a value is bad. MPM_E_UNSUPPORTED: bodies that touch, with MPM_NEWMARK; adhesion with detection by
- * velocity. MPM_E_STATE during a staged step. */
+ * a value is bad. MPM_E_UNSUPPORTED: adhesion with detection by velocity; with MPM_NEWMARK, adhesion, or
+ * MPM_SOLVER_MULTIGRID_CG, of bodies that there are. MPM_E_STATE during a staged step. */
 MPM_API mpm_status mpm_stepper_set_contact(mpm_stepper *stepper, int32_t body_a, int32_t body_b,
                                            const mpm_contact_desc *desc);
 
 /** Sets the callback for coefficients of friction. NULL takes it away. The host sets it again after it has
- * loaded a state into another stepper. */
+ * loaded a state into another stepper. MPM_E_UNSUPPORTED with MPM_NEWMARK. */
 MPM_API mpm_status mpm_stepper_set_friction(mpm_stepper *stepper, mpm_friction_fn fn, void *user);
 
 /** Gives what two bodies did in the last step; for body_a MPM_BODY_ANY the sum over all others, on body_b;

@@ -260,7 +260,7 @@ MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *p
  * friction is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is
  * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that.
  * MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED:
- * friction with MPM_NEWMARK. */
+ * MPM_WALL_FRICTION_NODES with MPM_NEWMARK. */
 MPM_API mpm_status mpm_stepper_set_wall(mpm_stepper *stepper, int32_t face, int32_t kind, double friction);
 
 /** Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is
@@ -416,7 +416,8 @@ MPM_API mpm_status mpm_grid_map(mpm_stepper *stepper, int32_t body, const char *
                                 mpm_view *view);
 
 /** Gives the force[dim] that the wall at a face exerts on the material: the mean over the last step, or with
- * MPM_NEWMARK the one at its end. MPM_E_ARG: there is no such face. MPM_E_STATE before the first step. */
+ * MPM_NEWMARK the one at its end, but for friction walls. MPM_E_ARG: there is no such face. MPM_E_STATE
+ * before the first step. */
 MPM_API mpm_status mpm_stepper_wall_reaction(const mpm_stepper *stepper, int32_t face, double *force);
 
 /** Gives the force[dim] that the prescribed particles of a set exert on the material, on the axes on which

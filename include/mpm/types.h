@@ -53,7 +53,7 @@ typedef int32_t mpm_status;
 /** Status values. After a positive one the state is as it was before the call. A smaller dt may cure 1..5. */
 enum {
   MPM_OK = 0,             /**< the call did what it was asked to */
-  MPM_CUT_DT = 1,         /**< a callback or a law asked for a smaller step */
+  MPM_CUT_DT = 1,         /**< a callback, a law or contact asked for a smaller step */
   MPM_INVERTED = 2,       /**< det F <= 0 at a particle */
   MPM_NONFINITE = 3,      /**< a NaN or an infinity appeared */
   MPM_NOT_CONVERGED = 4,  /**< the Newton iteration did not converge */

@@ -6,6 +6,7 @@
 #include "boundary/bound.h"
 #include "contact/contact.h"
 #include "layout/tasks.h"
+#include "simd/vector3.h"
 
 #include <math.h>
 
@@ -63,10 +64,6 @@ static double weighted(const encounter *e, const double *n) {
          of_free(e, n);
 }
 
-static double inner(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Gives an impulse to the second party, and its opposite to the first; returns the energy that it takes. */
 static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, const double *impulse,
                    int32_t keeps) {
@@ -97,7 +94,7 @@ static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
 /* ---- one touch ----------------------------------------------------------------------------------------- */
 static void tie_by(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, const double *impulse) {
   touch->dissipation += give(bound, touch, e, impulse, 0);
-  const double along = inner(impulse, touch->normal);
+  const double along = mpmi_inner(impulse, touch->normal);
   touch->normal_impulse += along;
   for (int32_t c = 0; c < bound->dim; ++c) touch->tangential[c] += impulse[c] - along * touch->normal[c];
 }
@@ -166,7 +163,7 @@ static double give_friction(mpmi_bound *bound, mpmi_touch *touch, const encounte
   }
   if (!e->free) return rubbed;
   touch->friction_work -= 0.5 * of_free(e, change);
-  const double size = sqrt(inner(change, change));
+  const double size = sqrt(mpmi_inner(change, change));
   return size > 0.0 ? weighted(e, change) / size : 0.0;
 }
 
@@ -176,9 +173,10 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
   const mpm_contact_desc *rule = touch->rule;
   encounter e = encounter_of(bound, touch, 0);
   const double compliance = weighted(&e, touch->normal);
-  double approach = inner(e.velocity, touch->normal);
-  if (!(compliance > 0.0)) {
-    touch->ambiguous = 1; /* both are held */
+  const double most = fmax(fmax(e.compliance[0], e.compliance[1]), e.compliance[2]);
+  double approach = mpmi_inner(e.velocity, touch->normal);
+  if (!(compliance > MPMI_NEARLY_HELD * most)) {
+    touch->ambiguous = 1; /* both are held along the normal */
     return 0.0;
   }
   /* after an impulse the gap is 0 but for rounding, on which adhesion must not hang */
@@ -191,13 +189,13 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
   if (e.free) { /* it turns, too, and slips otherwise than before */
     touch->dissipation += press(bound, touch, &e, normal);
     e = encounter_of(bound, touch, 0);
-    approach = inner(e.velocity, touch->normal);
+    approach = mpmi_inner(e.velocity, touch->normal);
   }
   double tangential[3];
   rub(touch, &e, approach, touch->friction * (normal + pull), touch->friction_static * (normal + pull),
       tangential, &touch->stuck);
   /* with adhesion friction may act where nothing pushes */
-  touch->closed = normal > 0.0 || normal < 0.0 || inner(tangential, tangential) > 0.0;
+  touch->closed = normal > 0.0 || normal < 0.0 || mpmi_inner(tangential, tangential) > 0.0;
   touch->stuck &= touch->closed;
   const double rubbed = give_friction(bound, touch, &e, normal, tangential);
   touch->normal_impulse = normal;
@@ -208,7 +206,7 @@ static double push(mpmi_bound *bound, mpmi_touch *touch) {
 static double keep(mpmi_bound *bound, mpmi_touch *touch) {
   if (!touch->closed) return 0.0;
   const encounter e = encounter_of(bound, touch, 1);
-  const double compliance = weighted(&e, touch->normal), approach = inner(e.velocity, touch->normal);
+  const double compliance = weighted(&e, touch->normal), approach = mpmi_inner(e.velocity, touch->normal);
   double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
   for (int32_t c = 0; c < bound->dim; ++c) {
     if (touch->stuck && e.compliance[c] > 0.0) {
@@ -361,11 +359,11 @@ static void add_work(mpmi_bound *bound, const mpmi_party *party, double sign, co
  * opposite. */
 static void add_torque(const mpmi_bound *bound, const mpmi_party *first, const mpmi_party *second,
                        const double *impulse, mpmi_pair_sums *sums) {
-  double x[3] = {0.0, 0.0, 0.0};
+  double x[3] = {0.0, 0.0, 0.0}, about[3];
   if (first->surface < 0) mpmi_contact_position(&bound->step->layout->blocks, second->slot, x);
   for (int32_t k = 0; k < 3 && first->surface >= 0; ++k) x[k] = -first->arm[k];
-  for (int32_t c = 0; c < 3; ++c)
-    sums->angular_impulse[c] += x[(c + 1) % 3] * impulse[(c + 2) % 3] - x[(c + 2) % 3] * impulse[(c + 1) % 3];
+  mpmi_cross(x, impulse, about);
+  for (int32_t c = 0; c < 3; ++c) sums->angular_impulse[c] += about[c];
 }
 
 static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_sums *sums) {

@@ -39,6 +39,10 @@ static inline int32_t mpmi_is_of_surface(const mpmi_contact_nodes *contact, cons
  * axis, and beside rounding: those farther off belong to another part of the surface. */
 #define MPMI_CONTACT_REACH (0.75 * (1.0 + 1e-9))
 
+/* Below this share of the mobility that a touch has across its normal, it has none along it: a node held by a
+ * wall would be thrown along the wall. */
+#define MPMI_NEARLY_HELD 1e-2
+
 /* Finds the place of a particle from the node of a cloud, in cells, as the master of the cloud's party sees
  * it. */
 void mpmi_cloud_place(const mpmi_layout *layout, const mpmi_cloud *cloud, const double *node,

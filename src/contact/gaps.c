@@ -160,7 +160,10 @@ static int32_t plane_normal(around *of, mpmi_touch *touch) {
   if (!kernels->discriminate[grid->dim](&of->points)) return 0;
   normal_of_plane(grid, of->points.plane, touch->normal);
   if (!mpmi_detects_by_velocity(touch->rule)) {
-    const double least = fmax(surely_open * grid->h_min, 2.0 * step->dt * relative_speed(of));
+    /* what an implicit step solves for may be faster than what it starts from */
+    const double least = mpmi_is_implicit(step->settings)
+                             ? grid->h_min
+                             : fmax(surely_open * grid->h_min, 2.0 * step->dt * relative_speed(of));
     /* that of all particles is no wider than that of some */
     double gap = gap_along(of, touch->normal, 0) - touch->rule->offset;
     if (gap > least) gap = gap_along(of, touch->normal, 1) - touch->rule->offset;

@@ -122,6 +122,7 @@ void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, newton->cell_node, newton->cell_node_capacity);
   mpmi_free(c, newton->work_memory, newton->work_bytes);
   MPMI_FREE_ARRAY(c, newton->work, settings->tasks);
+  MPMI_FREE_ARRAY(c, newton->constraint, newton->constraint_capacity);
   MPMI_FREE_ARRAY(c, newton->history, newton->history_capacity);
   mpmi_free(c, newton, sizeof *newton);
 }

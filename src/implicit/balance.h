@@ -8,6 +8,9 @@
  *   assembly.c             forces and stiffness of all particles
  *   particle_stiffness.c   what one batch of particles adds to them
  *   locking_stiffness.c    what the remedy against volumetric locking adds to the stiffness
+ *   active_set.c           contact: which touches of bodies are closed
+ *   contact_stiffness.c    their forces, and what they add to the matrix
+ *   contact_outcome.c      what contact did in the step
  *   reactions.c            what walls, the host and prescribed particles exert
  *   balance.c              memory
  *
@@ -34,7 +37,8 @@ enum {
   MPMI_TARGET,   /* displacement of held components */
   MPMI_EXTERNAL, /* external force, at its end */
   MPMI_INTERNAL, /* internal force of the displacements as they are */
-  MPMI_RESIDUAL, /* internal + inertia - external */
+  MPMI_CONTACT,  /* force of contact, as it is */
+  MPMI_RESIDUAL, /* internal + inertia - external - contact */
   MPMI_RHS,      /* right-hand side of the linear system */
   MPMI_DIAGONAL, /* sizes of the diagonal entries of the matrix */
   MPMI_DU,       /* increment of the displacement */
@@ -48,6 +52,24 @@ enum { MPMI_MOST_NODES = MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH) };
 typedef struct mpmi_stencil {
   int32_t count, in_tile[MPMI_MOST_NODES], offset[MPMI_MOST_NODES];
 } mpmi_stencil;
+
+/* A touch that may close, as a constraint on the displacements of the step. Forces are on the second
+ * party. */
+typedef struct mpmi_constraint {
+  int64_t touch;
+  int64_t coupling[2]; /* the entries of the matrix that couple the rows */
+  int32_t row[2];      /* -1: of a party that is moved from outside */
+  int32_t closed, stuck;
+  int32_t changes, slips;    /* how often either has changed */
+  int32_t turned, smooth;    /* friction has been turned round; there is none in this step */
+  int32_t stalls, gives_way; /* iterations without coming closer; it stays open in this step */
+  double missed;             /* by how much it was not closed in the iteration before */
+  double moves[3];           /* relative displacement by what is moved from outside */
+  double allowed;            /* how far the parties may approach, >= 0 */
+  double nodal_stiffness;
+  double stiffness;                     /* of the augmented Lagrangian; < 0: not known yet */
+  double force[3], start[3], target[3]; /* as it is, before the increment, after all of it */
+} mpmi_constraint;
 
 /* What one task assembles with; component arrays have the length of the longest batch. */
 typedef struct mpmi_newton_work {
@@ -86,12 +108,15 @@ typedef struct mpmi_newton {
    * stiffness. */
   mpmi_nodal force, external;
   int64_t cell_capacity, cell_node_capacity;
-  double *cell;       /* by row of the lower corner of a cell: sums of the locking remedy */
-  int32_t *cell_node; /* active nodes of its stencils, or -1 */
-  int64_t version;    /* of the layout that the pattern was made for; -1: none */
+  double *cell;           /* by row of the lower corner of a cell: sums of the locking remedy */
+  int32_t *cell_node;     /* active nodes of its stencils, or -1 */
+  int64_t version;        /* of the layout that the pattern was made for; -1: none */
+  int32_t couples_bodies; /* nodes of several bodies at one index are coupled */
   void *work_memory;
   size_t work_bytes;
   mpmi_newton_work *work; /* [tasks] */
+  int64_t constraint_count, constraint_capacity;
+  mpmi_constraint *constraint;
   int32_t history_capacity, history_count;
   double *history;
 } mpmi_newton;

@@ -1,4 +1,5 @@
 #include "implicit/newmark.h"
+#include "implicit/active_set.h"
 #include "boundary/boundary.h"
 #include "boundary/prescribed.h"
 #include "stages/stages.h"
@@ -120,6 +121,9 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
       (status = mpmi_unknowns_find(balance)))
     return status;
   fold_means(balance, newton->vector[MPMI_V0]);
+  status = mpmi_active_set_find(balance);
+  mpmi_lap(balance->step, MPMI_TIME_GRID, clock);
+  if (status) return status;
   memset(newton->vector[MPMI_A0], 0,
          (size_t)(newton->matrix.rows * balance->settings->grid->dim) * sizeof(double));
   if (mpmi_is_dynamic(balance->settings) && (status = prepare_accelerations(balance, unknown, clock)))
@@ -129,7 +133,25 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   return MPM_OK;
 }
 
-/* Sets what particles take from the nodes: [u / dt, m, a1 dt]. */
+/* Returns what contact adds to the acceleration of a row in the balance. */
+static double contact_acceleration(const mpmi_balance *balance, int64_t at) {
+  const mpmi_newton *newton = balance->newton;
+  const double mass = newton->mass[at / balance->settings->grid->dim];
+  return newton->matrix.held[at] || !(mass > 0.0) ? 0.0 : newton->vector[MPMI_CONTACT][at] / mass;
+}
+
+/* Returns by how much the velocity of a row changes in a step with contact, whose impulse comes on top of
+ * what the accelerations without it give. */
+static double increment_in_contact(const mpmi_balance *balance, int64_t at) {
+  const double dt = balance->step->dt, gamma = balance->settings->desc.newmark_gamma;
+  const double by_contact = contact_acceleration(balance, at);
+  const double after = mpmi_newmark_acceleration(balance, at) - by_contact;
+  return dt * ((1.0 - gamma) * balance->newton->vector[MPMI_A0][at] + gamma * after +
+               mpmi_contact_share(balance->settings) * by_contact);
+}
+
+/* Sets what particles take from the nodes: [u / dt, m, a1 dt], or in contact the whole increment of the
+ * velocity in place of the last. */
 static void set_nodes(mpmi_balance *balance) {
   const double dt = balance->step->dt;
   const mpmi_newton *newton = balance->newton;
@@ -141,10 +163,32 @@ static void set_nodes(mpmi_balance *balance) {
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)node->row * dim + c;
       v[c] = node->sign[c] * (newton->vector[MPMI_U][at] / dt);
-      dv[c] = mpmi_is_dynamic(balance->settings) ? node->sign[c] * dt * mpmi_newmark_acceleration(balance, at)
-                                                 : 0.0;
+      dv[c] = 0.0;
+      if (mpmi_is_dynamic(balance->settings))
+        dv[c] =
+            node->sign[c] * (balance->step->whole_increments ? increment_in_contact(balance, at)
+                                                             : dt * mpmi_newmark_acceleration(balance, at));
     }
   }
+}
+
+/* Gives particles the accelerations without contact, as they carry them to the next step: with it the
+ * trapezoid makes energy. They take the increments of the nodes then; by their own accelerations, which
+ * are uneven where bodies touch, they would drift away from them. */
+static mpm_status carry_accelerations(mpmi_balance *balance) {
+  const mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim;
+  balance->step->whole_increments = newton->constraint_count > 0 && mpmi_is_dynamic(balance->settings);
+  if (!balance->step->whole_increments) return MPM_OK;
+  for (int64_t i = 0; i < newton->active_count; ++i) {
+    const mpmi_active_node *node = &newton->active[i];
+    double *to = mpmi_velocity(&balance->nodes->projected, node->slot);
+    for (int32_t c = 0; c < dim; ++c) {
+      const int64_t at = (int64_t)node->row * dim + c;
+      to[c] = node->sign[c] * (mpmi_newmark_acceleration(balance, at) - contact_acceleration(balance, at));
+    }
+  }
+  return mpmi_g2p_all_accelerations(balance->step, balance->nodes, &balance->nodes->projected);
 }
 
 /* Lets the nodes show the velocity at the end of the step. */
@@ -160,9 +204,10 @@ static void show_velocities(mpmi_balance *balance) {
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)node->row * dim + c;
       if (newton->matrix.held[at]) continue; /* u / dt is what was prescribed */
-      v[c] =
-          node->sign[c] * (newton->vector[MPMI_V0][at] + dt * (1.0 - gamma) * newton->vector[MPMI_A0][at]) +
-          gamma * dv[c];
+      const double start = newton->vector[MPMI_V0][at],
+                   mean = dt * (1.0 - gamma) * newton->vector[MPMI_A0][at];
+      v[c] = balance->step->whole_increments ? node->sign[c] * start + dv[c]
+                                             : node->sign[c] * (start + mean) + gamma * dv[c];
     }
   }
 }
@@ -190,6 +235,9 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   if (!status) status = particles_to_grid(balance, &clock);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);
   if (!status) status = solve(balance, &clock);
+  if (status) return status;
+  status = mpmi_active_set_finish(balance);
+  if (!status) status = carry_accelerations(balance);
   if (status) return status;
   set_nodes(balance);
   status = mpmi_record_reactions(balance);

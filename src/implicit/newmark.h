@@ -3,7 +3,8 @@
  *
  *   particles -> nodes   M, v0 = sum w m v_p / M, a0 = sum w m a_p / M, external forces of its end
  *
- *   nodes                f_int(u) + M a1 = f_ext,  a1 = (u - dt v0 - dt^2 (1/2 - beta) a0) / (beta dt^2)
+ *   nodes                f_int(u) + M a1 = f_ext + f_contact,
+ *                        a1 = (u - dt v0 - dt^2 (1/2 - beta) a0) / (beta dt^2)
  *
  *   nodes -> particles   x_p += sum w u,  a_p' = sum w a1,  v_p += dt ((1 - gamma) a_p + gamma a_p') */
 #ifndef MPMI_NEWMARK_H

@@ -4,7 +4,7 @@
  * The first increment carries the prescribed displacements on its right-hand side (tangent predictor): nodes
  * that are moved at once, with the rest at rest, turn cells inside out. Increments that do so all the same,
  * or that take the residual up, are halved. */
-#include "implicit/balance.h"
+#include "implicit/active_set.h"
 #include "context/reduce.h"
 
 #include <float.h>
@@ -59,7 +59,7 @@ static double find_forces(iteration *it) {
   const int32_t dim = balance->settings->grid->dim, dynamic = mpmi_is_dynamic(balance->settings);
   for (int64_t i = 0; i < it->n; ++i) {
     const double Ma = dynamic ? newton->mass[i / dim] * mpmi_newmark_acceleration(balance, i) : 0.0;
-    residual[i] = internal[i] + Ma - external[i];
+    residual[i] = internal[i] + Ma - external[i] - newton->vector[MPMI_CONTACT][i];
     term[i] = Ma * Ma;
   }
   return sqrt(reduced(it, MPMI_REDUCE_SUM));
@@ -132,8 +132,10 @@ static void add_inertia(iteration *it) {
 
 static mpm_status assemble(iteration *it) {
   const mpm_status status = mpmi_stiffness(it->balance, it->newton->vector[MPMI_U]);
-  if (!status) add_inertia(it);
-  return status;
+  if (status) return status;
+  add_inertia(it);
+  mpmi_active_set_stiffen(it->balance);
+  return MPM_OK;
 }
 
 /* Computes the right-hand side, with what is left of the prescribed displacements on it; tells whether there
@@ -153,6 +155,7 @@ static mpm_status find_rhs(iteration *it, int32_t *moves_held) {
     if (status) return status;
   }
   for (int64_t i = 0; i < it->n; ++i) rhs[i] = held[i] ? 0.0 : -newton->vector[MPMI_RESIDUAL][i] - rhs[i];
+  mpmi_active_set_load(it->balance, rhs);
   return MPM_OK;
 }
 
@@ -164,8 +167,10 @@ static mpm_status solve(iteration *it) {
   mpm_status status = mpmi_matrix_eliminate(&newton->matrix);
   if (status) return status;
   memset(x, 0, (size_t)it->n * sizeof *x);
-  /* as many digits as keep the iteration quadratic, and none that the next one throws away */
-  const double wanted = fmax(1e-10, fmin(1e-3, 0.1 * relative(it)));
+  /* as many digits as keep the iteration quadratic, and none that the next one throws away; what contact
+   * closes has stiffness, and its part of the right-hand side takes some of them */
+  const double kept = newton->constraint_count ? 1e-3 : 1.0;
+  const double wanted = fmax(1e-10, kept * fmin(1e-3, 0.1 * relative(it)));
   const mpmi_solve_job job = {.matrix = &newton->matrix,
                               .rhs = newton->vector[MPMI_RHS],
                               .x = x,
@@ -177,7 +182,8 @@ static mpm_status solve(iteration *it) {
                               .host = balance->settings->solver,
                               .host_user = balance->settings->solver_user,
                               .expects_positive = newton->matrix.symmetric,
-                              .inertia = it->inertia_share};
+                              .inertia = it->inertia_share,
+                              .several_fields = newton->couples_bodies};
   mpmi_solve_report report = {.node = -1};
   status = mpmi_solve(newton->solver, &job, &report);
   balance->factor_seconds += report.factor_seconds;
@@ -204,14 +210,18 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
   mpmi_newton *newton = it->newton;
   double *u = newton->vector[MPMI_U], *start = newton->vector[MPMI_START];
   const double *du = newton->vector[MPMI_DU];
-  const double before = it->norm, slope = fabs(dot_of(it, du, newton->vector[MPMI_RESIDUAL], 1));
+  /* what contact still lacks is on the right-hand side alone */
+  const double lacks = newton->constraint_count ? norm_of(it, newton->vector[MPMI_RHS], 1) : 0.0;
+  const double before = fmax(it->norm, lacks), slope = fabs(dot_of(it, du, newton->vector[MPMI_RESIDUAL], 1));
   memcpy(start, u, (size_t)it->n * sizeof *u);
+  mpmi_active_set_aim(it->balance, du);
   *taken = 1.0;
   for (int32_t halvings = 0;; ++halvings, *taken *= 0.5) {
     for (int64_t i = 0; i < it->n; ++i) u[i] = start[i] + *taken * du[i];
     const mpm_status status = mpmi_internal_forces(it->balance, u);
     if (status && (!may_shrink(it->balance, status) || halvings == MOST_HALVINGS)) return status;
     if (status) continue;
+    mpmi_active_set_move(it->balance, *taken);
     find_residual(it);
     if (!isfinite(it->norm))
       return mpmi_fail(it->balance->settings->context, MPM_NONFINITE,
@@ -243,6 +253,16 @@ static mpm_status not_converged(const iteration *it) {
       relative(it), (int)balance->iterations, balance->step->t, balance->step->dt);
 }
 
+/* Brings the set of closed touches up to date; returns 1 when it was so already and all of them are
+ * closed. */
+static int32_t settle_contact(iteration *it) {
+  if (!it->newton->constraint_count) return 1;
+  const int64_t changed = mpmi_active_set_update(it->balance);
+  mpmi_active_set_fold(it->balance);
+  find_residual(it);
+  return !changed && mpmi_active_set_error(it->balance) <= 1.0;
+}
+
 static mpm_status iterate(iteration *it) {
   mpmi_newton *newton = it->newton;
   for (;;) {
@@ -252,13 +272,15 @@ static mpm_status iterate(iteration *it) {
     if (it->balance->iterations >= it->balance->settings->desc.newton_max_iterations)
       return not_converged(it);
     if ((status = assemble(it)) || (status = find_rhs(it, &moves_held))) return status;
-    if (!moves_held && it->norm <= noise(it)) return MPM_OK;
+    if (!moves_held && it->norm <= noise(it) && mpmi_active_set_error(it->balance) <= 1.0) return MPM_OK;
     if ((status = solve(it))) return status;
     const double energy = fabs(dot_of(it, newton->vector[MPMI_DU], newton->vector[MPMI_RHS], 1));
     if (it->balance->iterations == 1) it->energy_first = energy;
     if ((status = line_search(it, moves_held, &taken))) return status;
+    const int32_t settled = settle_contact(it);
     note(it);
-    if (taken == 1.0 && converged(it, length_of(it, newton->vector[MPMI_DU]), energy)) return MPM_OK;
+    if (taken == 1.0 && settled && converged(it, length_of(it, newton->vector[MPMI_DU]), energy))
+      return MPM_OK;
     it->du_largest = fmax(it->du_largest, taken * length_of(it, newton->vector[MPMI_DU]));
   }
 }

@@ -1,5 +1,6 @@
 /* The pattern of the matrix: which rows couple. Nodes couple when a stencil holds both, or with the locking
- * remedy a cell; what a row's images and ghosts couple with, the row couples with too. */
+ * remedy a cell; what a row's images and ghosts couple with, the row couples with too. So do nodes of bodies
+ * that may touch, at one index. */
 #include "implicit/balance.h"
 #include "layout/tasks.h"
 
@@ -62,21 +63,55 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-enum { MOST_OFFSETS = 343 };
+/* The most columns of a row before they are distinct. */
+enum { MOST_OFFSETS = 343, MOST_COLUMNS = 2 * 8 * MOST_OFFSETS + MPMI_MAX_BODIES };
+
+static int32_t sort_distinct(int32_t count, int32_t *list) {
+  int32_t kept = 0;
+  qsort(list, (size_t)count, sizeof *list, by_value);
+  for (int32_t i = 0; i < count; ++i)
+    if (!kept || list[kept - 1] != list[i]) list[kept++] = list[i];
+  return kept;
+}
+
+static int32_t may_touch(const mpmi_balance *balance, int64_t block, int64_t other) {
+  const int32_t *body = balance->layout->blocks.body;
+  const int32_t low = body[block] < body[other] ? body[block] : body[other];
+  double sign;
+  return mpmi_contact_rule_of(&balance->settings->contact, low, body[block] + body[other] - low, &sign)
+             ->kind != MPM_CONTACT_NONE;
+}
+
+/* Adds the rows of other bodies at the index of a node; their blocks are neighbours in the list. Masters meet
+ * masters. */
+static int32_t add_partners(const mpmi_balance *balance, int64_t slot, int32_t *out, int32_t count) {
+  const mpmi_newton *newton = balance->newton;
+  const mpmi_blocks *b = &balance->layout->blocks;
+  const int64_t block = slot / b->nodes, node = slot % b->nodes;
+  int64_t first = block, end = block + 1;
+  if (!mpmi_constraints_is_free(&balance->layout->constraints, slot)) return count;
+  while (first > 0 && b->key[first - 1] == b->key[block]) --first;
+  while (end < b->count && b->key[end] == b->key[block]) ++end;
+  for (int64_t other = first; other < end; ++other) {
+    const int32_t active = newton->active_of[other * b->nodes + node];
+    if (other != block && active >= 0 && may_touch(balance, block, other))
+      out[count++] = newton->active[active].row;
+  }
+  return count;
+}
 
 /* Lists the distinct columns of a row, ascending, and returns how many; a tie of many images gives them
  * member by member. */
-static int32_t columns_of(const mpmi_newton *newton, int64_t row, int32_t *out) {
+static int32_t columns_of(const mpmi_balance *balance, int64_t row, int32_t *out) {
+  const mpmi_newton *newton = balance->newton;
   int32_t count = 0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
     const int32_t *rows = newton->place + newton->members[m] * newton->offsets;
     for (int32_t o = 0; o < newton->offsets; ++o)
       if (rows[o] >= 0) out[count++] = rows[o];
-    qsort(out, (size_t)count, sizeof *out, by_value);
-    int32_t kept = 0;
-    for (int32_t i = 0; i < count; ++i)
-      if (!kept || out[kept - 1] != out[i]) out[kept++] = out[i];
-    count = kept;
+    if (newton->couples_bodies)
+      count = add_partners(balance, newton->active[newton->members[m]].slot, out, count);
+    count = sort_distinct(count, out);
   }
   return count;
 }
@@ -84,19 +119,20 @@ static int32_t columns_of(const mpmi_newton *newton, int64_t row, int32_t *out) 
 static void count_task(void *data, int64_t k) {
   const pattern_job *job = data;
   mpmi_newton *newton = job->balance->newton;
-  int32_t columns[2 * 8 * MOST_OFFSETS];
+  int32_t columns[MOST_COLUMNS];
   const mpmi_share share = mpmi_share_of(job->balance->settings, job->rows, k);
-  for (int64_t r = share.begin; r < share.end; ++r) newton->diagonal[r] = columns_of(newton, r, columns);
+  for (int64_t r = share.begin; r < share.end; ++r)
+    newton->diagonal[r] = columns_of(job->balance, r, columns);
 }
 
 static void fill_task(void *data, int64_t k) {
   const pattern_job *job = data;
   mpmi_newton *newton = job->balance->newton;
   mpmi_matrix *A = &newton->matrix;
-  int32_t columns[2 * 8 * MOST_OFFSETS];
+  int32_t columns[MOST_COLUMNS];
   const mpmi_share share = mpmi_share_of(job->balance->settings, job->rows, k);
   for (int64_t r = share.begin; r < share.end; ++r) {
-    const int32_t count = columns_of(newton, r, columns);
+    const int32_t count = columns_of(job->balance, r, columns);
     int32_t *to = A->column + A->row_start[r];
     memcpy(to, columns, (size_t)count * sizeof *columns);
     for (int64_t m = newton->members_start[r]; m < newton->members_start[r + 1]; ++m) {
@@ -113,12 +149,25 @@ static void fill_task(void *data, int64_t k) {
   }
 }
 
+/* Returns 1 when there are places with bodies that may touch. */
+static int32_t couples_bodies(const mpmi_balance *balance) {
+  const mpmi_block_groups *groups = &balance->layout->groups;
+  for (int64_t g = 0; g < groups->count; ++g) {
+    const int64_t first = groups->group[g].first, end = first + groups->group[g].count;
+    for (int64_t i = first; i < end; ++i)
+      for (int64_t j = i + 1; j < end; ++j)
+        if (may_touch(balance, i, j)) return 1;
+  }
+  return 0;
+}
+
 mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
   mpmi_newton *newton = balance->newton;
   mpmi_matrix *A = &newton->matrix;
   pattern_job job = {balance, rows};
   mpm_status status;
   group(newton, rows);
+  newton->couples_bodies = couples_bodies(balance);
   if ((status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, neighbours_task, &job)) ||
       (status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job)))
     return status;

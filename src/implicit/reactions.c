@@ -18,6 +18,31 @@ static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *n
   return force;
 }
 
+/* Returns what a node has of the contact force on its row, by its share of the mass. Where the component is
+ * held, the holder and contact each keep their own. */
+static double contact_on(const mpmi_balance *balance, const mpmi_active_node *node, int32_t c, double mass) {
+  const mpmi_newton *newton = balance->newton;
+  const int64_t at = (int64_t)node->row * balance->settings->grid->dim + c;
+  const double whole = newton->mass[node->row];
+  if (newton->matrix.held[at] || !(whole > 0.0)) return 0.0;
+  return node->sign[c] * mass / whole * newton->vector[MPMI_CONTACT][at];
+}
+
+/* Friction walls are surfaces, and nodes that they push have no other holder there. */
+static void record_friction_walls(mpmi_balance *balance) {
+  const mpmi_contact_nodes *contact = &balance->nodes->contact;
+  for (int64_t i = 0; i < contact->touch_count; ++i) {
+    const mpmi_touch *touch = &contact->touch[i];
+    const mpmi_party *wall = &contact->party[touch->party[0]], *body = &contact->party[touch->party[1]];
+    if (!touch->closed || wall->surface < 0 || contact->surface[wall->surface].face < 0) continue;
+    for (int32_t c = 0; c < balance->settings->grid->dim; ++c) {
+      const double impulse = touch->normal_impulse * touch->normal[c] + touch->tangential[c];
+      balance->nodes->impulse[body->slot].given[c] += impulse;
+      balance->nodes->impulse[body->slot].change[c] += impulse * body->inverse_mass[c];
+    }
+  }
+}
+
 /* Records one component of one row, on the nodes that move with it. */
 static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
@@ -25,8 +50,9 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   double total = 0.0, along = 0.0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
     const mpmi_active_node *node = &newton->active[newton->members[m]];
-    const double impulse = balance->step->dt * reaction_on(balance, node, c),
-                 mass = *mpmi_mass(&balance->nodes->solved, node->slot);
+    const double mass = *mpmi_mass(&balance->nodes->solved, node->slot);
+    const double impulse =
+        balance->step->dt * (reaction_on(balance, node, c) - contact_on(balance, node, c, mass));
     balance->nodes->impulse[node->slot].given[c] = impulse;
     if (mass > 0.0) balance->nodes->impulse[node->slot].change[c] = impulse / mass;
     total += impulse;
@@ -48,6 +74,7 @@ mpm_status mpmi_record_reactions(mpmi_balance *balance) {
   memset(balance->nodes->impulse, 0, (size_t)mpmi_slots(balance->layout) * sizeof *balance->nodes->impulse);
   for (int64_t r = 0; r < balance->newton->matrix.rows; ++r)
     for (int32_t c = 0; c < balance->settings->grid->dim; ++c) record_row(balance, r, c);
+  record_friction_walls(balance);
   if (!balance->nodes->prescription.any) return MPM_OK;
   mpmi_bound bound = {.step = balance->step,
                       .nodes = balance->nodes,

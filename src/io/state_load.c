@@ -197,7 +197,7 @@ static mpm_status check_bodies(loading *l) {
       s->layout.member[m].body = (int32_t)l->set[m].numbers.body;
       l->set[m].numbers.body = body;
     }
-    if (!swap) status = mpmi_check_bodies(s, s->settings.desc.scheme, -1);
+    if (!swap) status = mpmi_check_bodies(s, &s->settings.desc, -1);
   }
   return status;
 }

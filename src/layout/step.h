@@ -82,6 +82,7 @@ typedef struct mpmi_step {
   mpmi_failure failure;
   double impulse_by_face[6][3]; /* on the walls */
   double host_work;             /* of prescribed velocities, prescribed particles and hooks */
+  int32_t whole_increments;     /* implicit: nodes give particles the whole change of their velocity */
   mpm_step_info info;           /* what the step reports, as far as it is known */
 } mpmi_step;
 

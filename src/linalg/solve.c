@@ -129,7 +129,10 @@ static void extents_of(const mpmi_matrix *A, double *extent) {
   }
 }
 
-static costs costs_of(const mpmi_matrix *A, double inertia) {
+/* Stiff couplings of bodies in contact are hard for CG, and coarser levels do not know the bodies apart. */
+static const double cg_in_contact = 10.0;
+
+static costs costs_of(const mpmi_matrix *A, double inertia, int32_t several_fields) {
   double extent[3];
   extents_of(A, extent);
   const double entries = (double)A->row_start[A->rows], rows = (double)A->rows;
@@ -144,11 +147,15 @@ static costs costs_of(const mpmi_matrix *A, double inertia) {
   c.cg = fmin(20.0 * extent[0], inertia > 0.0 ? 20.0 / sqrt(inertia) : (double)INFINITY);
   c.multigrid = 20.0 + 70.0 * half_stencil * half_stencil;
   c.factor = factor / (20.0 * entries * (double)(A->block * A->block));
+  if (several_fields) {
+    c.cg *= cg_in_contact;
+    c.multigrid = (double)INFINITY;
+  }
   return c;
 }
 
 static mpm_status by_cheapest(mpmi_system *s, const mpmi_solve_job *job) {
-  const costs c = costs_of(s->A, job->inertia);
+  const costs c = costs_of(s->A, job->inertia, job->several_fields);
   const int64_t limit = job->max_iterations;
   mpm_status status;
   if (c.factor <= fmin(c.cg, c.multigrid)) return mpmi_direct(s);
@@ -167,13 +174,14 @@ static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
   case MPM_SOLVER_HOST:
     return mpmi_solve_by_host(s, job);
   case MPM_SOLVER_CG:
-    return by_cg(s, limit ? limit : 5000 + 30 * (int64_t)costs_of(s->A, 0.0).cg);
+    return by_cg(s, limit ? limit : 5000 + 30 * (int64_t)costs_of(s->A, 0.0, job->several_fields).cg);
   case MPM_SOLVER_MULTIGRID_CG:
     return by_multigrid(s, limit ? limit : 10 * MOST_CYCLES);
   case MPM_SOLVER_LDLT:
     return mpmi_direct(s);
   case MPM_SOLVER_GMRES:
-    return by_gmres(s, limit ? limit : RESTART * MOST_RESTARTS, 0, s->n > MPMI_ALONE_UNKNOWNS);
+    return by_gmres(s, limit ? limit : RESTART * MOST_RESTARTS, 0,
+                    s->n > MPMI_ALONE_UNKNOWNS && !job->several_fields);
   default:
     return by_cheapest(s, job);
   }
@@ -185,6 +193,10 @@ static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) 
   if (choice == MPM_SOLVER_HOST && !job->host)
     return mpmi_fail(context, MPM_E_STATE,
                      "MPM_SOLVER_HOST has no solver: call mpm_stepper_set_linear_solver first");
+  if (choice == MPM_SOLVER_MULTIGRID_CG && job->several_fields)
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "MPM_SOLVER_MULTIGRID_CG is for one body: where bodies touch use MPM_SOLVER_LDLT, "
+                     "MPM_SOLVER_CG or MPM_SOLVER_AUTO");
   static const char *symmetric_only[] = {[MPM_SOLVER_CG] = "MPM_SOLVER_CG",
                                          [MPM_SOLVER_MULTIGRID_CG] = "MPM_SOLVER_MULTIGRID_CG",
                                          [MPM_SOLVER_LDLT] = "MPM_SOLVER_LDLT"};

@@ -19,6 +19,7 @@ typedef struct mpmi_solve_job {
   void *host_user;
   int32_t expects_positive; /* 1: the host is told that the matrix should be positive definite */
   double inertia;           /* share of inertia in the diagonal; 0: none or not known */
+  int32_t several_fields;   /* rows of several bodies at one index are coupled: no multigrid */
 } mpmi_solve_job;
 
 typedef struct mpmi_solve_report {

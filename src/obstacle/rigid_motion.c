@@ -4,19 +4,12 @@
  * the end. */
 #include "obstacle/obstacle.h"
 #include "simd/elementary.h"
+#include "simd/vector3.h"
 
 #include <math.h>
 
-static void cross(const double *a, const double *b, double *out) {
-  for (int32_t k = 0; k < 3; ++k) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
-static double inner(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void apply(double (*A)[3], const double *v, double *out) {
-  for (int32_t i = 0; i < 3; ++i) out[i] = inner(A[i], v);
+  for (int32_t i = 0; i < 3; ++i) out[i] = mpmi_inner(A[i], v);
 }
 
 void mpmi_pose_axes(const double *q, double axis[3][3]) {
@@ -36,8 +29,9 @@ static void inverse_of(const double *inertia, int32_t dim, double out[3][3]) {
   if (dim == 2) out[2][2] = 1.0 / inertia[8];
   if (dim < 3) return;
   double column[3][3];
-  for (int32_t k = 0; k < 3; ++k) cross(inertia + 3 * ((k + 1) % 3), inertia + 3 * ((k + 2) % 3), column[k]);
-  const double determinant = inner(inertia, column[0]);
+  for (int32_t k = 0; k < 3; ++k)
+    mpmi_cross(inertia + 3 * ((k + 1) % 3), inertia + 3 * ((k + 2) % 3), column[k]);
+  const double determinant = mpmi_inner(inertia, column[0]);
   for (int32_t i = 0; i < 3; ++i)
     for (int32_t j = 0; j < 3; ++j) out[i][j] = column[j][i] / determinant;
 }
@@ -89,19 +83,19 @@ void mpmi_rigid_predict(mpmi_surface *s, const double *gravity, double dt) {
 
 /* What a torque changes the spin by. */
 static void spin_of(const mpmi_surface *s, const double *torque, double *out) {
-  for (int32_t i = 0; i < 3; ++i) out[i] = inner(s->inverse_inertia[i], torque);
+  for (int32_t i = 0; i < 3; ++i) out[i] = mpmi_inner(s->inverse_inertia[i], torque);
 }
 
 double mpmi_rigid_compliance(const mpmi_surface *s, const double *arm, const double *along) {
   double about[3], turned[3];
-  cross(arm, along, about);
+  mpmi_cross(arm, along, about);
   spin_of(s, about, turned);
-  return s->inverse_mass * inner(along, along) + inner(about, turned);
+  return s->inverse_mass * mpmi_inner(along, along) + mpmi_inner(about, turned);
 }
 
 void mpmi_rigid_push(mpmi_surface *s, const double *arm, const double *impulse) {
   double about[3], turned[3];
-  cross(arm, impulse, about);
+  mpmi_cross(arm, impulse, about);
   spin_of(s, about, turned);
   for (int32_t k = 0; k < 3; ++k) {
     s->velocity[k] += s->inverse_mass * impulse[k];
@@ -111,15 +105,15 @@ void mpmi_rigid_push(mpmi_surface *s, const double *arm, const double *impulse) 
 
 /* q becomes exp(dt w) q, of length 1. */
 static void turn(double *q, const double *spin, double dt) {
-  const double rate = sqrt(inner(spin, spin)), half = 0.5 * dt * rate;
+  const double rate = sqrt(mpmi_inner(spin, spin)), half = 0.5 * dt * rate;
   if (!(rate > 0.0)) return;
   const double c = mpmi_cos(half), s = mpmi_sin(half) / rate, u[3] = {s * spin[0], s * spin[1], s * spin[2]};
   const double w = q[0], *v = q + 1;
   double across[3], turned[4];
-  cross(u, v, across);
-  turned[0] = c * w - inner(u, v);
+  mpmi_cross(u, v, across);
+  turned[0] = c * w - mpmi_inner(u, v);
   for (int32_t k = 0; k < 3; ++k) turned[1 + k] = c * v[k] + w * u[k] + across[k];
-  const double length = sqrt(turned[0] * turned[0] + inner(turned + 1, turned + 1));
+  const double length = sqrt(turned[0] * turned[0] + mpmi_inner(turned + 1, turned + 1));
   for (int32_t k = 0; k < 4; ++k) q[k] = turned[k] / length;
 }
 

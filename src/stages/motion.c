@@ -103,9 +103,11 @@ static void look_outside(mpmi_batch *b) {
 }
 
 /* ---- a batch ------------------------------------------------------------------------------------------ */
-/* Turns gathered dt a1 into what Newmark's rule adds to velocities, and keeps a1. */
+/* Turns gathered dt a1 into what Newmark's rule adds to velocities, and keeps a1; unless what was gathered is
+ * that already. */
 static void mean_accelerations(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
+  if (b->step->whole_increments) return;
   const double dt = b->step->dt, gamma = settings->desc.newmark_gamma;
   for (int32_t k = 0; k < settings->grid->dim; ++k) {
     double *a = mpmi_component_row(b->set, MPMI_ACCELERATION, 1, k) + b->begin;

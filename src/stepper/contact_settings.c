@@ -1,5 +1,6 @@
 /* Which sets are a body, and how bodies meet. */
 #include "context/structs.h"
+#include "implicit/balance.h"
 #include "layout/members.h"
 #include "obstacle/contact_desc.h"
 #include "stepper/stepper.h"
@@ -7,23 +8,33 @@
 #include <math.h>
 
 /* ---- what is offered ----------------------------------------------------------------------------------- */
-mpm_status mpmi_check_bodies(const mpm_stepper *s, int32_t scheme, int32_t with_body) {
-  const mpmi_layout *layout = &s->layout;
-  for (int32_t m = 0; m < layout->member_count && scheme == MPM_NEWMARK; ++m)
-    for (int32_t n = m + 1; n <= layout->member_count; ++n) {
-      const int32_t a = layout->member[m].body,
-                    b = n < layout->member_count ? layout->member[n].body : with_body;
-      const int32_t low = a < b ? a : b, high = a < b ? b : a;
-      double sign;
-      if (low == high || low < 0) continue;
-      if (mpmi_contact_rule_of(&s->settings.contact, low, high, &sign)->kind != MPM_CONTACT_NONE)
-        return mpmi_fail(
-            s->context, MPM_E_UNSUPPORTED,
-            "scheme MPM_NEWMARK has no contact of bodies, such as %d and %d: set MPM_CONTACT_NONE "
-            "for them, put their sets into one body, or use an explicit scheme",
-            (int)low, (int)high);
-    }
+static mpm_status check_pair_offered(const mpm_stepper *s, const mpm_stepper_desc *d, int32_t a, int32_t b) {
+  const int32_t low = a < b ? a : b, high = a < b ? b : a;
+  double sign;
+  if (low == high || low < 0) return MPM_OK;
+  const mpm_contact_desc *rule = mpmi_contact_rule_of(&s->settings.contact, low, high, &sign);
+  if (rule->kind == MPM_CONTACT_NONE) return MPM_OK;
+  if (rule->adhesion > 0.0)
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "the contact of bodies %d and %d has adhesion, which MPM_NEWMARK does not offer: use "
+                     "MPM_USL, MPM_USF or MPM_MUSL",
+                     (int)low, (int)high);
+  if (d->linear_solver == MPM_SOLVER_MULTIGRID_CG)
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "MPM_SOLVER_MULTIGRID_CG is for one body, and bodies %d and %d may touch: use "
+                     "MPM_SOLVER_LDLT, MPM_SOLVER_CG or MPM_SOLVER_AUTO",
+                     (int)low, (int)high);
   return MPM_OK;
+}
+
+mpm_status mpmi_check_bodies(const mpm_stepper *s, const mpm_stepper_desc *desc, int32_t with_body) {
+  const mpmi_layout *layout = &s->layout;
+  mpm_status status = MPM_OK;
+  for (int32_t m = 0; m < layout->member_count && desc->scheme == MPM_NEWMARK; ++m)
+    for (int32_t n = m + 1; n <= layout->member_count && !status; ++n)
+      status = check_pair_offered(s, desc, layout->member[m].body,
+                                  n < layout->member_count ? layout->member[n].body : with_body);
+  return status;
 }
 
 /* ---- bodies -------------------------------------------------------------------------------------------- */
@@ -46,7 +57,7 @@ mpm_status mpm_stepper_set_body(mpm_stepper *s, mpm_particles *particles, int32_
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them first",
                      (int)s->mapped);
   member->body = body;
-  if ((status = mpmi_check_bodies(s, s->settings.desc.scheme, -1))) {
+  if ((status = mpmi_check_bodies(s, &s->settings.desc, -1))) {
     member->body = was;
     return status;
   }
@@ -121,9 +132,10 @@ mpm_status mpm_stepper_set_contact(mpm_stepper *s, int32_t body_a, int32_t body_
   const int32_t had = there != NULL;
   const mpm_contact_desc was = had ? *there : (mpm_contact_desc){.struct_size = sizeof was};
   if ((status = mpmi_contact_rules_set(rules, s->context, low, high, desc ? &d : NULL))) return status;
-  status = mpmi_check_bodies(s, s->settings.desc.scheme, -1);
+  status = mpmi_check_bodies(s, &s->settings.desc, -1);
   if (status) /* there is room for what was there: this cannot fail */
     (void)mpmi_contact_rules_set(rules, s->context, low, high, had ? &was : NULL);
+  if (s->newton) s->newton->version = -1; /* other nodes couple */
   return status;
 }
 
@@ -131,6 +143,11 @@ mpm_status mpm_stepper_set_friction(mpm_stepper *s, mpm_friction_fn fn, void *us
   MPMI_ENTER(s, MPMI_STEPPER);
   const mpm_status status = mpmi_stepper_idle(s);
   if (status) return status;
+  if (fn && mpmi_is_implicit(&s->settings))
+    return mpmi_fail(
+        s->context, MPM_E_UNSUPPORTED,
+        "scheme MPM_NEWMARK has no friction callback: set friction in mpm_contact_desc, or use an "
+        "explicit scheme");
   s->settings.friction = fn;
   s->settings.friction_user = user;
   return MPM_OK;

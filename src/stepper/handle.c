@@ -87,7 +87,7 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
     return mpmi_fail(s->context, MPM_E_STATE, "the set already belongs to %s stepper",
                      set->stepper == s ? "this" : "another");
   if (set->mapped) return mpmi_fail(s->context, MPM_E_STATE, "the set is mapped: release its views first");
-  if ((status = mpmi_check_bodies(s, s->settings.desc.scheme, 0)) ||
+  if ((status = mpmi_check_bodies(s, &s->settings.desc, 0)) ||
       (status = mpmi_members_add(&s->layout, &s->settings, set)))
     return status;
   set->stepper = s;
@@ -116,15 +116,23 @@ static mpm_status without_explicit_parts(const mpm_stepper *s) {
   if (mpmi_has_hooks(&s->settings))
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no node hooks: unset them, or use an explicit scheme");
-  if (s->settings.obstacles.count)
+  if (s->settings.friction)
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                     "scheme MPM_NEWMARK has no obstacles: remove them, or use an explicit scheme");
+                     "scheme MPM_NEWMARK has no friction callback: unset it, or use an explicit scheme");
+  for (int64_t i = 0; i < s->settings.obstacles.count; ++i)
+    if (s->settings.obstacles.obstacle[i]->desc.motion == MPM_MOTION_FREE)
+      return mpmi_fail(
+          s->context, MPM_E_UNSUPPORTED,
+          "scheme MPM_NEWMARK has no free obstacles, and obstacle %lld is one: take it out, or use "
+          "an explicit scheme",
+          (long long)i);
   for (int32_t f = 0; f < 2 * s->grid->dim; ++f)
-    if (mpmi_wall_kind_of(s->settings.wall[f].kind)->rubs)
-      return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                       "scheme MPM_NEWMARK has no friction walls, and face %d is one: use MPM_WALL_SLIP or "
-                       "MPM_WALL_FIXED, or an explicit scheme",
-                       (int)f);
+    if (mpmi_wall_kind_of(s->settings.wall[f].kind)->rubs == MPMI_RUBS_NODES)
+      return mpmi_fail(
+          s->context, MPM_E_UNSUPPORTED,
+          "scheme MPM_NEWMARK has no walls of the kind MPM_WALL_FRICTION_NODES, and face %d is one: "
+          "use MPM_WALL_FRICTION, or an explicit scheme",
+          (int)f);
   return MPM_OK;
 }
 
@@ -136,7 +144,7 @@ mpm_status mpm_stepper_configure(mpm_stepper *s, const mpm_stepper_desc *desc) {
   mpm_stepper_desc d;
   if ((status = mpmi_description_read(s->context, s->grid, desc, &d)) ||
       (status = d.scheme == MPM_NEWMARK ? without_explicit_parts(s) : MPM_OK) ||
-      (status = mpmi_check_bodies(s, d.scheme, -1)) ||
+      (status = mpmi_check_bodies(s, &d, -1)) ||
       (status = mpmi_members_unmapped(&s->layout, &s->settings, "first")) ||
       (status = mpmi_members_keep_fields(&s->layout, &s->settings, &d)))
     return status;

@@ -22,10 +22,10 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
                      (int)face);
   if (row->rubs && !(friction >= 0.0 && isfinite(friction)))
     return mpmi_fail(s->context, MPM_E_ARG, "friction is %g: it must be finite and >= 0", friction);
-  if (row->rubs && mpmi_is_implicit(&s->settings))
+  if (row->rubs == MPMI_RUBS_NODES && mpmi_is_implicit(&s->settings))
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                     "scheme MPM_NEWMARK has no friction walls: use MPM_WALL_SLIP or MPM_WALL_FIXED, or an "
-                     "explicit scheme");
+                     "scheme MPM_NEWMARK has no walls of the kind MPM_WALL_FRICTION_NODES: use "
+                     "MPM_WALL_FRICTION, or an explicit scheme");
   if (s->settings.wall[face].kind != kind) s->layout.walls_changed = 1;
   s->settings.wall[face] = (mpmi_wall){kind, row->rubs ? friction : 0.0};
   return MPM_OK;

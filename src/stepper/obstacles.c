@@ -16,10 +16,11 @@ mpm_status mpm_stepper_add_obstacle(mpm_stepper *s, mpm_obstacle *obstacle) {
   if (obstacle->stepper)
     return mpmi_fail(c, MPM_E_STATE, "the obstacle already belongs to %s stepper",
                      obstacle->stepper == s ? "this" : "another");
-  if (mpmi_is_implicit(&s->settings))
-    return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "scheme MPM_NEWMARK has no obstacles: use walls or prescribed particles, or an explicit "
-                     "scheme");
+  if (mpmi_is_implicit(&s->settings) && obstacle->desc.motion == MPM_MOTION_FREE)
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "scheme MPM_NEWMARK has no free obstacles: use MPM_MOTION_FIXED or MPM_MOTION_PRESCRIBED, "
+        "or an explicit scheme");
   if ((status = mpmi_obstacle_fits(obstacle, &obstacle->pose, s->grid->dim)) ||
       (status = MPMI_RESERVE_NEXT(c, list->obstacle, list->capacity, list->count)))
     return status;

@@ -72,7 +72,7 @@ mpm_status mpmi_description_read(mpm_context *c, const mpm_grid *grid, const mpm
 
 /* ---- contact_settings.c ------------------------------------------------------------------------------ */
 /* Refuses bodies that touch in implicit steps; with_body: of a set that is about to be added, or -1. */
-mpm_status mpmi_check_bodies(const mpm_stepper *s, int32_t scheme, int32_t with_body);
+mpm_status mpmi_check_bodies(const mpm_stepper *s, const mpm_stepper_desc *desc, int32_t with_body);
 /* Checks the values of a rule, whose bodies are named in the refusal. */
 mpm_status mpmi_contact_desc_check(const mpm_grid *grid, int32_t a, int32_t b, const mpm_contact_desc *desc);
 

@@ -207,10 +207,10 @@ static const option options[OPTIONS] = {
     [GMRES] = {"GMRES", 0, 1, 1},
     [HOST_SOLVER] = {"host solver", 0, 1, 1},
     [EVERYTHING] = {"two sets, periodic x, and all callbacks", 1, 1, 0},
-    [CONTACT] = {"contact, saved and loaded", 1, 0, 0},
-    [CONTACT_PERIODIC] = {"contact, periodic", 1, 0, 0},
-    [PLANES] = {"friction walls, planes", 1, 0, 0},
-    [OBSTACLES] = {"obstacles, saved and loaded", 1, 0, 0},
+    [CONTACT] = {"contact, saved and loaded", 1, 1, 1},
+    [CONTACT_PERIODIC] = {"contact, periodic", 1, 1, 0},
+    [PLANES] = {"friction walls, planes", 1, 1, 0},
+    [OBSTACLES] = {"obstacles, saved and loaded", 1, 1, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {

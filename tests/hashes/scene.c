@@ -215,6 +215,7 @@ static void add_obstacles(world *w) {
     d.contact = &rule;
     d.shape = is->dim == 1 ? MPM_SHAPE_PLANE : shapes[i];
     d.motion = MPM_MOTION_FIXED + i;
+    if (is->scheme == MPM_NEWMARK && i == 2) d.motion = MPM_MOTION_PRESCRIBED;
     d.inside = is->dim == 1;
     for (int32_t c = 0; c < is->dim; ++c)
       d.position[c] = origin[c] + spacing[c] * ((double)first[c] + 0.5 * (double)count[c]);

@@ -339,7 +339,8 @@ START_TEST(refused) {
   refuses(&b, &d, MPM_E_UNSUPPORTED, "use scheme MPM_NEWMARK");
   ck_assert_int_eq(mpm_step_begin(b.w.stepper, b.dt), MPM_E_UNSUPPORTED);
   ck_assert_int_eq(mpm_stepper_set_node_hook(b.w.stepper, MPM_AFTER_P2G, hook, NULL), MPM_E_UNSUPPORTED);
-  ck_assert_int_eq(mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_FRICTION, 0.3), MPM_E_UNSUPPORTED);
+  ck_assert_int_eq(mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_FRICTION_NODES, 0.3),
+                   MPM_E_UNSUPPORTED);
   /* set before, they stand in the way of the scheme */
   d = b.desc.stepper;
   d.scheme = MPM_USL;
@@ -347,7 +348,7 @@ START_TEST(refused) {
   ck_ok(&b.w, mpm_stepper_set_node_hook(b.w.stepper, MPM_AFTER_P2G, hook, NULL));
   refuses(&b, &b.desc.stepper, MPM_E_UNSUPPORTED, "no node hooks");
   ck_ok(&b.w, mpm_stepper_set_node_hook(b.w.stepper, MPM_AFTER_P2G, NULL, NULL));
-  ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_FRICTION, 0.3));
+  ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_FRICTION_NODES, 0.3));
   refuses(&b, &b.desc.stepper, MPM_E_UNSUPPORTED, "face 1 is one");
   ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, MPM_X_MAX, MPM_WALL_NONE, 0.0));
   configure(&b);

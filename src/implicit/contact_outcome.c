@@ -1,0 +1,87 @@
+/* What contact did in an implicit step, as the sweeps of explicit steps tell it. */
+#include "implicit/active_set.h"
+#include "boundary/bound.h"
+
+#include <math.h>
+
+/* Touches that push less than this share of the hardest may slide as they like: nodes at the rim of a body
+ * move far and mean little. */
+static const double pushes_at_all = 1e-3;
+
+/* Tells a touch what was done to it. */
+static void tell(mpmi_balance *balance, const mpmi_constraint *of) {
+  mpmi_contact_nodes *contact = &balance->nodes->contact;
+  mpmi_touch *touch = &contact->touch[of->touch];
+  const double dt = balance->step->dt, seconds = dt * mpmi_contact_share(balance->settings);
+  double move[3], impulse[3], along, across[3];
+  for (int32_t c = 0; c < 3; ++c) impulse[c] = of->closed ? seconds * of->force[c] : 0.0;
+  mpmi_split(impulse, touch->normal, &touch->normal_impulse, touch->tangential);
+  mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
+  mpmi_split(move, touch->normal, &along, across);
+  touch->closed = of->closed && (mpmi_inner(impulse, impulse) > 0.0 || mpmi_is_tie(balance, of));
+  touch->ambiguous |= of->gives_way;
+  touch->stuck = touch->closed && (mpmi_is_tie(balance, of) || of->stuck);
+  /* force times way, of which constraints that hold have but the gap that they close */
+  touch->friction_work =
+      touch->closed && !touch->stuck ? fmax(0.0, -mpmi_inner(touch->tangential, across) / dt) : 0.0;
+  touch->dissipation = touch->friction_work;
+  if (touch->closed && !mpmi_is_tie(balance, of))
+    touch->dissipation += touch->normal_impulse * of->allowed / dt;
+  touch->work = 0.0;
+  const mpmi_party *first = &contact->party[touch->party[0]];
+  if (first->surface >= 0) touch->work = -mpmi_inner(impulse, of->moves) / dt;
+  for (int32_t i = 0; i < 2; ++i) {
+    mpmi_party *party = &contact->party[touch->party[i]];
+    for (int32_t c = 0; c < 3 && (first->surface < 0 || contact->surface[first->surface].face < 0); ++c)
+      party->given[c] += (i ? impulse[c] : -impulse[c]) * party->inverse_mass[c];
+  }
+}
+
+/* Normals and gaps are those of the start: where bodies slide far along curved surfaces they mislead.
+ * Nodes at the rim that push little may slide as they like. */
+static int32_t may_slide(const mpmi_balance *balance, const mpmi_constraint *of) {
+  const mpmi_contact_nodes *contact = &balance->nodes->contact;
+  const mpmi_touch *touch = mpmi_touch_of(balance, of);
+  const mpmi_party *first = &contact->party[touch->party[0]];
+  return !of->closed || mpmi_is_tie(balance, of) || touch->rule->normal == MPM_NORMAL_FIXED ||
+         (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE);
+}
+
+static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
+  const mpmi_touch *touch = mpmi_touch_of(balance, of);
+  const double most = 0.5 * balance->settings->grid->h_min;
+  double move[3], along, across[3];
+  if (may_slide(balance, of) || mpmi_inner(of->force, touch->normal) <= pushes_at_all * most_force)
+    return MPM_OK;
+  mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
+  mpmi_split(move, touch->normal, &along, across);
+  const double slipped = sqrt(mpmi_inner(across, across));
+  if (slipped <= most) return MPM_OK;
+  int64_t index[3] = {0, 0, 0};
+  mpmi_blocks_index(&balance->layout->blocks, balance->nodes->contact.party[touch->party[1]].slot, index);
+  balance->step->failure.node = mpmi_node_number(balance->settings->grid, index);
+  return mpmi_fail(
+      balance->settings->context, MPM_CUT_DT,
+      "bodies in contact slide by %g at node %lld in the step from t = %g with dt = %g, more than "
+      "half a cell: use a smaller dt, or mpm_advance",
+      slipped, (long long)balance->step->failure.node, balance->step->t, balance->step->dt);
+}
+
+mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
+  const mpmi_newton *newton = balance->newton;
+  mpm_status status = MPM_OK;
+  double most = 0.0;
+  for (int64_t k = 0; k < newton->constraint_count; ++k)
+    most = fmax(most, mpmi_inner(newton->constraint[k].force,
+                                 mpmi_touch_of(balance, &newton->constraint[k])->normal));
+  for (int64_t k = 0; k < newton->constraint_count && !status; ++k)
+    status = check_slip(balance, &newton->constraint[k], most);
+  if (status) return status;
+  for (int64_t k = 0; k < newton->constraint_count; ++k) tell(balance, &newton->constraint[k]);
+  mpmi_bound bound = {.step = balance->step,
+                      .nodes = balance->nodes,
+                      .values = &balance->nodes->solved,
+                      .dim = balance->settings->grid->dim};
+  mpmi_body_contacts_sum(&bound);
+  return MPM_OK;
+}
