@@ -61,10 +61,10 @@ if wanted two_disks; then
   run two_disks disks
   check "least kinetic energy" "least kinetic energy" 0.05 0.2
   check "time of closest approach" "at t =" 1.98 2.13
-  check "rebound" "rebound speed" 0.1235 0.1337
-  check "energy" "energy drift" -2 2
+  check "rebound" "rebound speed" 0.1222 0.1300 # that of contact_discs in docs/verification.md
+  check "energy" "energy drift" -6 0
   check "momentum" "momentum at most" 0 1e-12
-  for file in two_disks.pvd two_disks.svg two_disks_energy.svg energy.csv particles_0000.vtp particles_0036.vtp; do
+  for file in two_disks.pvd two_disks.svg two_disks_energy.svg energy.csv disk_a_0000.vtp disk_b_0036.vtp; do
     [ -s "disks/$file" ] || fail "two_disks: $file is missing or empty"
   done
   [ "$(awk -F, 'NF == 6' disks/energy.csv | wc -l)" -eq 362 ] || fail "two_disks: energy.csv has not 362 rows of 6 columns"
@@ -78,7 +78,7 @@ for name in ("two_disks.svg", "two_disks_energy.svg"):
     assert root.tagName == "svg" and root.getElementsByTagName("path"), name
 series = xml.dom.minidom.parse(os.path.join(where, "two_disks.pvd"))
 entries = series.getElementsByTagName("DataSet")
-assert len(entries) == 37 == len(glob.glob(os.path.join(where, "particles_*.vtp"))), len(entries)
+assert len(entries) == 74 == len(glob.glob(os.path.join(where, "disk_*.vtp"))), len(entries)
 for entry in entries:
     with open(os.path.join(where, entry.getAttribute("file")), "rb") as f:
         data = f.read()
