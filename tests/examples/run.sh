@@ -133,6 +133,15 @@ if wanted two_materials; then
   done
 fi
 
+if wanted dropped_ball; then
+  mkdir ball
+  run dropped_ball ball
+  check "momentum" "momentum off by" 0 1e-11
+  check "deepest" "deepest" 0.05 0.1
+  check "spin" "spin" -6 -1
+  [ -s ball/dropped_ball.svg ] || fail "dropped_ball: dropped_ball.svg is missing or empty"
+fi
+
 if wanted outflow; then
   mkdir channel
   run outflow channel
