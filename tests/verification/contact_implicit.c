@@ -170,20 +170,19 @@ static slide_end slide_block(const slide *a) {
 static void slope_gates(FILE *table) {
   static const char *const name[3] = {"on a body", "on a plane", "on a wall"};
   const char *coulomb = "Coulomb's law; set tolerance";
-  for (int32_t support = ON_BODY; support <= ON_WALL; ++support)
+  for (int32_t kind = ON_BODY; kind <= ON_WALL; ++kind)
     for (int32_t k = 0; k < (verify_quick() ? 1 : 4); ++k) {
-      const slide a = {name[support], support, k % 2 ? 0.7 : 0.3, k < 2 ? 4.0 : 1.0};
+      const slide a = {name[kind], kind, k % 2 ? 0.7 : 0.3, k < 2 ? 4.0 : 1.0};
       const slide_end o = slide_block(&a);
       char what[96];
       fprintf(table, "%s,%g,%g,%.6f,%.6f,%.3e,%.2f\n", a.name, a.friction, a.cfl, o.way, o.exact, o.energy,
               o.iterations);
       snprintf(what, sizeof what, "%s, CFL %g, friction %g", a.name, a.cfl, a.friction);
       if (k % 2)
-        verify_gate_of(what, "creep in 0.5 s, m", fabs(o.way), 0.0, support == ON_BODY ? 1e-3 : 2.5e-3,
-                       coulomb);
+        verify_gate_of(what, "creep in 0.5 s, m", fabs(o.way), 0.0, kind == ON_BODY ? 1e-3 : 2.5e-3, coulomb);
       else
-        verify_gate_of(what, "way / exact", o.way / o.exact, support == ON_BODY ? 0.98 : 0.985,
-                       support == ON_BODY ? 1.02 : 1.015, coulomb);
+        verify_gate_of(what, "way / exact", o.way / o.exact, kind == ON_BODY ? 0.98 : 0.985,
+                       kind == ON_BODY ? 1.02 : 1.015, coulomb);
       verify_gate_of(what, "least dissipation of a step / energy", o.dissipation, -1e-12, 0.0,
                      "contact takes energy and never gives any");
     }
