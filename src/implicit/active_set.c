@@ -110,7 +110,11 @@ static mpm_status list_constraints(mpmi_balance *balance) {
     if (touch->ambiguous || !is_possible(balance, touch)) continue;
     mpmi_constraint *of = &newton->constraint[newton->constraint_count++];
     *of = (mpmi_constraint){.touch = t, .stiffness = -1.0};
-    for (int32_t i = 0; i < 2; ++i) place(balance, &contact->party[touch->party[i]], i, of);
+    for (int32_t i = 0; i < 2; ++i) {
+      const mpmi_party *party = &contact->party[touch->party[i]];
+      place(balance, party, i, of);
+      for (int32_t c = 0; c < 3; ++c) of->free[c] |= party->inverse_mass[c] > 0.0;
+    }
     if (!mpmi_detects_by_velocity(touch->rule) && touch->gap > 0.0 && !mpmi_is_tie(balance, of))
       of->allowed = touch->gap;
     guess(balance, of, predicted);
@@ -146,9 +150,13 @@ mpm_status mpmi_active_set_find(mpmi_balance *balance) {
 static double misses(const mpmi_balance *balance, const mpmi_constraint *of) {
   double move[3], along, across[3];
   mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
-  if (mpmi_is_tie(balance, of)) return sqrt(mpmi_inner(move, move));
+  if (mpmi_is_tie(balance, of)) {
+    mpmi_stoppable(of, move);
+    return sqrt(mpmi_inner(move, move));
+  }
   mpmi_split(move, mpmi_touch_of(balance, of)->normal, &along, across);
   const double apart = of->allowed + along;
+  mpmi_stoppable(of, across);
   return sqrt(apart * apart + (of->stuck ? mpmi_inner(across, across) : 0.0));
 }
 

@@ -54,6 +54,11 @@ static inline void mpmi_relative(const mpmi_balance *balance, const mpmi_constra
       if (of->row[i] >= 0) to[c] += (i ? 1.0 : -1.0) * u[(int64_t)of->row[i] * dim + c];
 }
 
+/* Takes out what friction and ties cannot stop, because nothing moves there by itself. */
+static inline void mpmi_stoppable(const mpmi_constraint *of, double *move) {
+  for (int32_t c = 0; c < 3; ++c) move[c] = of->free[c] ? move[c] : 0.0;
+}
+
 /* ---- the step ------------------------------------------------------------------------------------------ */
 /* Finds the touches that may close in the step, from the velocities of its start, and guesses which do. */
 mpm_status mpmi_active_set_find(mpmi_balance *balance);

@@ -64,6 +64,7 @@ typedef struct mpmi_constraint {
   int32_t turned, smooth;    /* friction has been turned round; there is none in this step */
   int32_t stalls, gives_way; /* iterations without coming closer; it stays open in this step */
   double missed;             /* by how much it was not closed in the iteration before */
+  int32_t free[3];           /* components in which a party moves by itself */
   double moves[3];           /* relative displacement by what is moved from outside */
   double allowed;            /* how far the parties may approach, >= 0 */
   double nodal_stiffness;

@@ -55,7 +55,9 @@ static response respond(const mpmi_balance *balance, const mpmi_constraint *of) 
   response to = {{0.0, 0.0, 0.0}, {{0.0}}};
   double move[3], along, slip[3], pushes, across[3];
   mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
+  if (mpmi_is_tie(balance, of)) mpmi_stoppable(of, move);
   mpmi_split(move, n, &along, slip);
+  if (of->stuck) mpmi_stoppable(of, slip);
   mpmi_split(of->force, n, &pushes, across);
   for (int32_t c = 0; c < 3; ++c) across[c] -= k * slip[c];
   pushes -= k * (of->allowed + along);

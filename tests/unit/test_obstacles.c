@@ -226,6 +226,37 @@ START_TEST(squeezed) {
 }
 END_TEST
 
+/* A plane moves along the only axis on which a fixed wall holds the nodes that it touches: that cannot be
+ * stopped, by ties as little as by friction, and is no reason to let go. */
+START_TEST(implicit_held) {
+  const double h = arena_spacing, lower[2] = {0.0, 0.0}, upper[2] = {0.5 * h, 4.0 * h};
+  method how = methods[1];
+  how.scheme = MPM_NEWMARK;
+  how.basis = MPM_LINEAR;
+  world w;
+  world_desc desc = world_with(&how, 2, 8, h);
+  world_open(&w, &desc);
+  world_fill(&w, w.set[0], lower, upper, 2);
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
+  mpm_contact_desc rule = rule_with(0.5);
+  rule.kind = _i ? MPM_CONTACT_TIED : MPM_CONTACT_UNILATERAL;
+  rule.friction_static = 100.0;
+  mpm_obstacle_desc d = obstacle_desc(MPM_SHAPE_PLANE);
+  d.contact = &rule;
+  d.motion = MPM_MOTION_PRESCRIBED;
+  d.position[1] = 0.02 * h;
+  d.velocity[0] = 0.2 * arena_speed;
+  d.velocity[1] = 0.1 * arena_speed;
+  mpm_obstacle *o = put_obstacle(&w, &d);
+  for (int32_t step = 0; step < 10; ++step) world_step(&w, arena_dt);
+  const mpm_contact_info info = touch_of(&w, o);
+  ck_assert_int_eq(info.ambiguous, 0);
+  ck_assert_double_gt(info.impulse[1], 0.0);
+  drop_obstacle(&w, o);
+  world_close(&w);
+}
+END_TEST
+
 /* Implicit steps at a corner of a slip wall and a friction wall: what particles gain along the slip wall is
  * what the other one gives, and weight. */
 START_TEST(implicit_corner) {
@@ -625,6 +656,7 @@ Suite *obstacles_suite(void) {
   tcase_add_loop_test(law, adhesion_and_offset, 1, 4);
   tcase_add_loop_test(same, walls_are_planes, 0, BROAD);
   tcase_add_loop_test(same, squeezed, 0, 2);
+  tcase_add_loop_test(same, implicit_held, 0, 2);
   tcase_add_loop_test(same, implicit_corner, 0, 4);
   tcase_add_loop_test(same, same_by_another_name, 1, 4);
   tcase_add_loop_test(same, through_the_seam, 2, 4);
