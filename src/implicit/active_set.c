@@ -204,7 +204,7 @@ static int32_t bound_friction(const mpmi_balance *balance, mpmi_constraint *of, 
   return of->stuck != stuck;
 }
 
-static int32_t update(const mpmi_balance *balance, mpmi_constraint *of) {
+static int32_t update_touch(const mpmi_balance *balance, mpmi_constraint *of) {
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
   const double hair = 1e-2 * MPMI_CONTACT_HOLDS_TO * balance->settings->grid->h_min;
   double move[3], along, slip[3], pushes, across[3];
@@ -260,7 +260,7 @@ int64_t mpmi_active_set_update(mpmi_balance *balance) {
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     mpmi_constraint *of = &newton->constraint[k];
     if (of->gives_way) continue;
-    if (!mpmi_is_tie(balance, of)) changed += update(balance, of);
+    if (!mpmi_is_tie(balance, of)) changed += update_touch(balance, of);
     look_after(balance, of);
   }
   return changed + give_way(balance);
