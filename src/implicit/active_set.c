@@ -33,18 +33,6 @@ static void place(const mpmi_balance *balance, const mpmi_party *party, int32_t 
   }
 }
 
-static int32_t entry_of(const mpmi_matrix *A, int32_t row, int32_t column) {
-  int64_t low = A->row_start[row], high = A->row_start[row + 1] - 1;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (A->column[middle] < column)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return (int32_t)low;
-}
-
 /* Guesses whether a touch closes and sticks, from the velocities of the start of the step. */
 static void guess(const mpmi_balance *balance, mpmi_constraint *of, const double *predicted) {
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
@@ -119,8 +107,8 @@ static mpm_status list_constraints(mpmi_balance *balance) {
       of->allowed = touch->gap;
     guess(balance, of, predicted);
     if (of->row[0] < 0 || of->row[1] < 0) continue;
-    of->coupling[0] = entry_of(&newton->matrix, of->row[0], of->row[1]);
-    of->coupling[1] = entry_of(&newton->matrix, of->row[1], of->row[0]);
+    of->coupling[0] = mpmi_matrix_entry(&newton->matrix, of->row[0], of->row[1]);
+    of->coupling[1] = mpmi_matrix_entry(&newton->matrix, of->row[1], of->row[0]);
   }
   return MPM_OK;
 }

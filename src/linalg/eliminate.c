@@ -15,18 +15,6 @@ typedef struct factor_job {
 } factor_job;
 
 /* ---- putting a front together -------------------------------------------------------------------------- */
-static const double *block_of(const mpmi_matrix *A, int64_t row, int64_t column) {
-  int64_t low = A->row_start[row], high = A->row_start[row + 1] - 1;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (A->column[middle] < column)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return A->value + low * A->block * A->block;
-}
-
 /* Adds the entries of the matrix that belong to one node of the front: those with nodes of a higher place
  * in the order. */
 static void add_node(const factor_job *job, const mpmi_front *front, int32_t at) {
@@ -41,7 +29,7 @@ static void add_node(const factor_job *job, const mpmi_front *front, int32_t at)
     const int64_t other = A->column[e];
     const int32_t other_count = mpmi_free_components(A, other, others);
     const double *row = A->value + e * block * block;
-    const double *column = f->symmetric ? NULL : block_of(A, other, node);
+    const double *column = f->symmetric ? NULL : A->value + mpmi_matrix_entry(A, other, node) * block * block;
     const double *scale = f->scale + f->start[at], *other_scale = f->scale + f->start[f->place[other]];
     for (int32_t k = 0; k < count; ++k) {
       const int64_t to = front->panel + (f->start[at] - front->first + k) * ld + f->local[e];

@@ -46,6 +46,19 @@ mpm_status mpmi_matrix_rounding(const mpmi_matrix *A, const double *b, const dou
 /* Inverts a block of n unknowns in place. Returns 0 if it has no inverse. */
 int32_t mpmi_invert_block(int32_t n, double a[3][3]);
 
+/* Returns the entry of a row that is in the pattern with this column. */
+static inline int64_t mpmi_matrix_entry(const mpmi_matrix *A, int64_t row, int64_t column) {
+  int64_t low = A->row_start[row], high = A->row_start[row + 1] - 1;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    if (A->column[middle] < column)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 static inline int64_t mpmi_matrix_unknowns(const mpmi_matrix *A) {
   return A->rows * A->block;
 }

@@ -1,0 +1,131 @@
+/* Steps in contact that are refused, cut, or fail, most of them implicit. */
+#include "boxes.h"
+
+static mpm_status keep_friction(void *user, const mpm_contact_batch *b, double *friction) {
+  (void)user, (void)b, (void)friction;
+  return MPM_OK;
+}
+
+/* What implicit steps do not offer, whichever call comes last. */
+START_TEST(implicit_bodies) {
+  world w;
+  open_boxes(&w, &(boxes){.dim = 2, .method = methods[1], .contact = contact_desc(0.0)});
+  mpm_stepper_desc implicit = stepper_desc();
+  implicit.scheme = MPM_NEWMARK;
+  mpm_contact_desc none = contact_desc(0.0), pulls = contact_desc(0.0);
+  none.kind = MPM_CONTACT_NONE;
+  pulls.adhesion = 1.0;
+  const char *text = "has adhesion, which MPM_NEWMARK does not offer";
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 2, 3, &pulls));
+  ck_refused(&w, mpm_stepper_configure(w.stepper, &implicit), MPM_E_UNSUPPORTED, text);
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 2, 3, NULL));
+  ck_ok(&w, mpm_stepper_set_friction(w.stepper, keep_friction, NULL));
+  ck_refused(&w, mpm_stepper_configure(w.stepper, &implicit), MPM_E_UNSUPPORTED, "no friction callback");
+  ck_ok(&w, mpm_stepper_set_friction(w.stepper, NULL, NULL));
+  ck_ok(&w, mpm_stepper_configure(w.stepper, &implicit));
+  ck_refused(&w, mpm_stepper_set_friction(w.stepper, keep_friction, NULL), MPM_E_UNSUPPORTED,
+             "no friction callback");
+  ck_refused(&w, mpm_stepper_set_contact(w.stepper, 2, 3, &pulls), MPM_E_UNSUPPORTED, text);
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 1, 3, &pulls)); /* there is no body 1 yet */
+  ck_refused(&w, mpm_stepper_set_body(w.stepper, w.set[1], 1), MPM_E_UNSUPPORTED, text);
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 0, 3, &pulls));
+  ck_ok(&w, mpm_stepper_remove(w.stepper, w.set[1]));
+  ck_refused(&w, mpm_stepper_add(w.stepper, w.set[1]), MPM_E_UNSUPPORTED, text);
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 0, 3, &none));
+  ck_ok(&w, mpm_stepper_add(w.stepper, w.set[1]));
+  ck_ok(&w, mpm_step(w.stepper, box_dt, NULL));
+  /* multigrid knows one body alone */
+  implicit.linear_solver = MPM_SOLVER_MULTIGRID_CG;
+  ck_ok(&w, mpm_stepper_configure(w.stepper, &implicit));
+  ck_refused(&w, mpm_stepper_set_body(w.stepper, w.set[1], 2), MPM_E_UNSUPPORTED, "is for one body");
+  implicit.linear_solver = MPM_SOLVER_AUTO;
+  ck_ok(&w, mpm_stepper_configure(w.stepper, &implicit));
+  ck_ok(&w, mpm_stepper_set_body(w.stepper, w.set[1], 2));
+  ck_ok(&w, mpm_step(w.stepper, box_dt, NULL));
+  implicit.linear_solver = MPM_SOLVER_MULTIGRID_CG;
+  ck_refused(&w, mpm_stepper_configure(w.stepper, &implicit), MPM_E_UNSUPPORTED, "is for one body");
+  world_close(&w);
+}
+END_TEST
+
+/* All solvers of a symmetric system, and of one that sliding makes unsymmetric, find the same step. */
+START_TEST(implicit_solvers) {
+  static const int32_t solver[] = {MPM_SOLVER_LDLT, MPM_SOLVER_CG, MPM_SOLVER_GMRES, MPM_SOLVER_AUTO};
+  for (int32_t slides = 0; slides < 2; ++slides) {
+    world w[4];
+    for (int32_t i = 2 * slides; i < 4; ++i) {
+      open_boxes(&w[i], &(boxes){.dim = _i, .method = methods[1], .contact = contact_desc(0.3 * slides)});
+      mpm_stepper_desc implicit = stepper_desc();
+      implicit.scheme = MPM_NEWMARK;
+      implicit.linear_solver = solver[i];
+      ck_ok(&w[i], mpm_stepper_configure(w[i].stepper, &implicit));
+      for (int32_t step = 0; step < 5; ++step) world_step(&w[i], 4.0 * box_dt);
+      ck_assert_double_gt(fabs(contact_of(&w[i], 2, 3).impulse[0]), 0.0);
+      if (i > 2 * slides) world_agree("solvers", &w[i], &w[2 * slides], "velocity", _i, 1e-7);
+    }
+    for (int32_t i = 2 * slides; i < 4; ++i) world_close(&w[i]);
+  }
+}
+END_TEST
+
+/* A step in which bodies slide by more than half a cell is cut, and mpm_advance gets through. */
+START_TEST(implicit_slip) {
+  world w;
+  open_boxes(&w, &(boxes){.dim = 2, .method = methods[1], .contact = contact_desc(0.0)});
+  mpm_stepper_desc implicit = stepper_desc();
+  implicit.scheme = MPM_NEWMARK;
+  ck_ok(&w, mpm_stepper_configure(w.stepper, &implicit));
+  const double v[2] = {0.1 * box_speed, 10.0 * box_speed};
+  ck_ok(&w, mpm_particles_set_all(w.set[0], "velocity", MPM_F64, 2, v));
+  const uint64_t was = world_hash(&w);
+  ck_refused(&w, mpm_step(w.stepper, 0.6 * spacing / v[1], &w.info), MPM_CUT_DT, "more than half a cell");
+  ck_assert_int_ge(w.info.node, 0);
+  ck_assert_uint_eq(world_hash(&w), was);
+  mpm_advance_desc advance;
+  ck_ok(&w, mpm_advance_desc_init(&advance, sizeof advance));
+  advance.t_end = advance.dt_first = 0.6 * spacing / v[1];
+  ck_ok(&w, mpm_advance(w.stepper, &advance, NULL));
+  world_close(&w);
+}
+END_TEST
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+/* Every allocation of steps in contact fails once; the state stays, and the next try succeeds. */
+START_TEST(memory_runs_out) {
+  world w, same;
+  const boxes of = {.dim = 2, .flags = THIRD, .method = methods[1], .contact = contact_desc(0.3)};
+  open_boxes(&same, &of);
+  open_boxes(&w, &of);
+  mpm_stepper_desc implicit = stepper_desc();
+  implicit.scheme = MPM_NEWMARK;
+  if (_i) ck_ok(&w, mpm_stepper_configure(w.stepper, &implicit));
+  if (_i) ck_ok(&same, mpm_stepper_configure(same.stepper, &implicit));
+  int64_t failures = 0;
+  for (int32_t step = 0; step < 6; ++step) {
+    world_step(&same, box_dt);
+    for (int64_t at = 1;; ++at) {
+      const uint64_t was = world_hash(&w);
+      w.memory.fail_at = w.memory.calls + at;
+      const mpm_status status = mpm_step(w.stepper, box_dt, &w.info);
+      w.memory.fail_at = 0;
+      if (!status) break;
+      ck_assert_int_eq(status, MPM_E_NOMEM);
+      ck_assert_uint_eq(world_hash(&w), was);
+      ++failures;
+    }
+  }
+  ck_assert_int_gt(failures, 10);
+  ck_assert_uint_eq(world_hash(&w), world_hash(&same));
+  world_close(&w);
+  world_close(&same);
+}
+END_TEST
+
+void add_contact_steps(Suite *suite) {
+  TCase *steps = tcase_create("steps");
+  tcase_add_test(steps, implicit_bodies);
+  tcase_add_loop_test(steps, implicit_solvers, 1, 4);
+  tcase_add_test(steps, implicit_slip);
+  tcase_add_loop_test(steps, memory_runs_out, 0, 2);
+  suite_add_tcase(suite, steps);
+}
