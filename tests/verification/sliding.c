@@ -17,9 +17,19 @@ static double mean_of(const verify_world *w, const char *field, const double *e)
   return sum;
 }
 
-static void scale_velocities(const verify_world *w, double by, const double *add) {
+static void momentum_of_body(const verify_world *w, double *p) {
+  const int64_t n = mpm_particles_count(w->set[0]);
+  double *m = verify_get(w, w->set[0], "mass", 1), *v = verify_get(w, w->set[0], "velocity", 2);
+  p[0] = p[1] = 0.0;
+  for (int64_t i = 0; i < n; ++i)
+    for (int32_t c = 0; c < 2; ++c) p[c] += m[i] * v[c * n + i];
+  free(m);
+  free(v);
+}
+
+static void scale_velocities(const verify_world *w, mpm_particles *set, double by, const double *add) {
   mpm_view view = {.struct_size = sizeof view};
-  verify_ok(w, mpm_particles_map(w->set[0], "velocity", MPM_READ | MPM_WRITE, &view));
+  verify_ok(w, mpm_particles_map(set, "velocity", MPM_READ | MPM_WRITE, &view));
   double *v = view.data;
   for (int64_t i = 0; i < view.count; ++i)
     for (int32_t c = 0; c < 2; ++c) {
@@ -34,7 +44,7 @@ typedef struct floor_frame {
 } floor_frame;
 
 static void open_grid(verify_world *w, verify_setup *setup, const slide *a) {
-  const double h = a->h, reach = a->turn != 0.0 ? ceil(1.2 / h) * h : 0.0;
+  const double h = a->h, reach = (a->turn != 0.0 ? ceil(1.2 / h) * h : 0.0) + ceil(a->slab / h) * h;
   *setup = verify_defaults(2, 1, h);
   setup->grid.cells[0] = (int64_t)ceil(2.6 / h);
   setup->grid.cells[1] = (int64_t)ceil((a->radius > 0.0 ? 1.2 : 0.8) / h + reach / h) + 8;
@@ -55,8 +65,22 @@ static void use(verify_world *w, mpm_stepper_desc *d, support *s, const slide *a
   verify_ok(w, mpm_stepper_configure(w->stepper, d));
 }
 
+/* Prescribed particles that reach four cells deep, below the slab. */
+static void lay_ground(verify_world *w, const slide *a, const double *lift) {
+  const double end = -4.0 * a->h, length = 2.2;
+  for (int32_t held = a->slab > 0.0 ? 0 : 1; held < 2; ++held) {
+    const uint8_t all[2] = {(uint8_t)held, (uint8_t)held};
+    mpm_particles *ground = verify_set(w, w->material[0]);
+    verify_fill_box(w, ground, (const double[]){end, held ? end - a->slab : -a->slab},
+                    (const double[]){length, held ? -a->slab : 0.0}, 2);
+    verify_place(w, ground, 0.0, lift);
+    verify_ok(w, mpm_particles_set_all(ground, "prescribed", MPM_U8, 2, all));
+    verify_ok(w, mpm_stepper_set_body(w->stepper, ground, 1));
+  }
+}
+
 slide_outcome slide_run(const slide *a) {
-  const double h = a->h, zero = -4.0 * h, two[2] = {0.0, 0.0};
+  const double h = a->h, two[2] = {0.0, 0.0};
   const floor_frame f = {{cos(a->turn), -sin(a->turn)}, {sin(a->turn), cos(a->turn)}};
   const double lift[2] = {a->shift * h * f.normal[0], a->shift * h * f.normal[1]};
   const double push[2] = {a->speed * f.down[0], a->speed * f.down[1]};
@@ -70,14 +94,7 @@ slide_outcome slide_run(const slide *a) {
   else
     verify_fill_box(&w, body, two, (const double[]){width, height}, 2);
   verify_place(&w, body, -a->turn, lift);
-  if (a->support == ON_BODY) {
-    const uint8_t all[2] = {1, 1};
-    mpm_particles *ground = verify_set(&w, w.material[0]);
-    verify_fill_box(&w, ground, (const double[]){zero, zero}, (const double[]){2.2, 0.0}, 2);
-    verify_place(&w, ground, 0.0, lift);
-    verify_ok(&w, mpm_particles_set_all(ground, "prescribed", MPM_U8, 2, all));
-    verify_ok(&w, mpm_stepper_set_body(w.stepper, ground, 1));
-  }
+  if (a->support == ON_BODY) lay_ground(&w, a, lift);
   support on = {.kind = a->support};
 
   /* A block that is let go on the slope settles sticking; what is to move is free to find its place. */
@@ -87,17 +104,19 @@ slide_outcome slide_run(const slide *a) {
   for (int32_t i = 0; i < (a->settled ? SETTLING : 0); ++i) {
     verify_ok(&w, mpm_stable_dt(w.stepper, &dt));
     verify_step(&w, 0.4 * dt);
-    scale_velocities(&w, i < SETTLING * 4 / 5 ? 0.99 : 0.95, two);
+    for (int32_t m = 0; m < w.sets; ++m)
+      scale_velocities(&w, w.set[m], i < SETTLING * 4 / 5 ? 0.99 : 0.95, two);
   }
   use(&w, &setup.stepper, &on, a, &f, 1, a->friction);
-  scale_velocities(&w, 1.0, push);
+  scale_velocities(&w, body, 1.0, push);
   verify_ok(&w, mpm_stepper_set_time(w.stepper, 0.0, 0));
 
   const double start = mean_of(&w, "position", f.down);
   slide_outcome out = {.stopped_at = -1.0};
-  double way_at_stop = 0.0;
+  double way_at_stop = 0.0, least = HUGE_VAL, most = -HUGE_VAL;
   mpm_step_info now = verify_info(&w);
-  const mpm_step_info first = now;
+  double first[2], last[2];
+  momentum_of_body(&w, first);
   while (now.t < a->end) {
     verify_ok(&w, mpm_stable_dt(w.stepper, &dt));
     now = verify_step(&w, fmin(0.4 * dt, a->end - now.t + 1e-12));
@@ -105,15 +124,19 @@ slide_outcome slide_run(const slide *a) {
       out.stopped_at = now.t;
       way_at_stop = mean_of(&w, "position", f.down) - start;
     }
+    if (now.t < a->end * 2.0 / 3.0) continue;
+    const double place = mean_of(&w, "position", f.down);
+    least = fmin(least, place), most = fmax(most, place);
   }
+  out.range = most - least;
   out.way = mean_of(&w, "position", f.down) - start;
   out.after = fabs(out.way - way_at_stop);
   if (out.stopped_at >= 0.0) out.way = way_at_stop;
   const mpm_contact_info info = support_info(&w, &on);
   const double weight = density * area * slide_gravity * now.t;
+  momentum_of_body(&w, last);
   for (int32_t c = 0; c < 2; ++c) {
-    const double gained =
-        now.momentum[c] - first.momentum[c] - density * area * setup.stepper.gravity[c] * now.t;
+    const double gained = last[c] - first[c] - density * area * setup.stepper.gravity[c] * now.t;
     out.balance = fmax(out.balance, fabs(info.impulse[c] - gained) / weight);
   }
   const double up = info.impulse[0] * f.normal[0] + info.impulse[1] * f.normal[1];

@@ -10,12 +10,14 @@ typedef struct slide {
   int32_t support, basis; /* support: ON_BODY is one of prescribed particles */
   int32_t settled;        /* 1: under damping, before it is let go */
   double h, radius;       /* radius: of a disc; 0: a block */
+  double slab;            /* thickness of elastic particles, of the block's law, on those of ON_BODY */
   double angle, friction, speed, end;
   double shift, turn; /* of the support: in cells, and against the grid; a wall has neither */
 } slide;
 
 typedef struct slide_outcome {
   double way, stopped_at, after; /* after: way from the stop to the end */
+  double range;                  /* of places in the last third of the time */
   double friction, weight;       /* mean forces over those of Coulomb and of gravity */
   double spin;                   /* angular velocity at the end, > 0 down the slope */
   double balance;                /* impulse less weight and change of momentum, over weight */

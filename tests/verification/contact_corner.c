@@ -1,0 +1,70 @@
+/* The corner of a square hits the face of another, both free: edge 0.6, E = 1000, nu = 0.3, density 1000, speed
+ * 0.1, gap 0.02. They touch at 0.2, and nothing pushes them sideways. */
+#include "verify.h"
+
+static void hit(int32_t cells, double shift, FILE *table) {
+  const double h = 1.0 / cells, half = 0.3, speed = 0.1, gap = 0.02, end = 3.0;
+  verify_setup setup = verify_defaults(2, 1, h);
+  for (int32_t k = 0; k < 2; ++k) {
+    setup.grid.cells[k] = k ? (int64_t)(2.4 * cells) : 2 * cells;
+    setup.grid.origin[k] = k ? -1.2 : -1.0;
+  }
+  verify_world w;
+  verify_open(&w, &setup);
+  mpm_contact_desc contact;
+  verify_ok(&w, mpm_contact_desc_init(&contact, sizeof contact));
+  verify_ok(&w, mpm_stepper_set_contact(w.stepper, MPM_BODY_ANY, MPM_BODY_ANY, &contact));
+  for (int32_t m = 0; m < 2; ++m) {
+    const double lower[2] = {-half, -half}, upper[2] = {half, half};
+    const double to[2] = {m ? 0.0 : shift * h, m ? -half : half * sqrt(2.0) + gap};
+    mpm_particles *square = verify_set(&w, verify_elastic(&w, "neo_hookean", 1000.0, 0.3, 1000.0));
+    verify_fill_box(&w, square, lower, upper, 2);
+    verify_place(&w, square, m ? 0.0 : 0.25 * PI, to);
+    verify_ok(&w,
+              mpm_particles_set_all(square, "velocity", MPM_F64, 2, (const double[]){0.0, m ? 0.0 : -speed}));
+    verify_ok(&w, mpm_stepper_set_body(w.stepper, square, m));
+  }
+  mpm_step_info now = verify_info(&w);
+  const double first = now.momentum[1], kinetic = now.kinetic_energy;
+  double touch = -1.0, momentum = 0.0, energy = 0.0, least = 0.0;
+  while (now.t < end) {
+    double dt;
+    verify_ok(&w, mpm_stable_dt(w.stepper, &dt));
+    now = verify_step(&w, fmin(0.4 * dt, end - now.t + 1e-9));
+    mpm_contact_info info = {.struct_size = sizeof info};
+    verify_ok(&w, mpm_stepper_contact_info(w.stepper, 0, 1, &info));
+    if (touch < 0.0 && info.touching) touch = now.t - now.dt;
+    momentum = fmax(momentum, hypot(now.momentum[0], now.momentum[1] - first) / fabs(first));
+    energy = fmax(energy, (now.kinetic_energy + now.strain_energy) / kinetic);
+    least = fmin(least, now.contact_dissipation / kinetic);
+  }
+  const int64_t n = mpm_particles_count(w.set[0]);
+  double *v = verify_get(&w, w.set[0], "velocity", 2), mean[2] = {0.0, 0.0};
+  for (int64_t i = 0; i < 2 * n; ++i) mean[i / n] += v[i] / (speed * (double)n);
+  free(v);
+  fprintf(table, "%d,%g,%.5f,%.5f,%.5f,%.5f\n", cells, shift, touch, mean[0], mean[1], energy);
+  char name[60];
+  snprintf(name, sizeof name, "h = 1/%d, at %g h", cells, shift);
+  verify_gate_of(name, "they touch (0.2)", touch, 0.2 - 0.1 * h / speed, 0.2 + 0.1 * h / speed,
+                 "kinematics; a tenth of h");
+  verify_gate_of(name, "speed sideways / speed", fabs(mean[0]), 0.0, 0.01, "symmetry; set tolerance");
+  verify_gate_of(name, "momentum / first", momentum, 0.0, 1e-11, "conservation");
+  verify_gate_of(name, "largest energy / first", energy, 0.0, 1.0005,
+                 "contact takes energy and never gives any");
+  verify_gate_of(name, "least dissipation of a step / energy", least, -1e-12, 0.0,
+                 "contact takes energy and never gives any");
+  verify_progress("%s", name);
+  verify_close(&w);
+}
+
+int main(int argc, char **argv) {
+  verify_begin("contact_corner", argc, argv);
+  FILE *table = verify_csv("contact_corner");
+  fprintf(table, "cells,shift,touch,sideways,speed,energy\n");
+  for (int32_t cells = 20; cells <= (verify_quick() ? 20 : 80); cells *= 2) {
+    hit(cells, 0.0, table);
+    hit(cells, 0.37, table);
+  }
+  fclose(table);
+  return verify_end();
+}
