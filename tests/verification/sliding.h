@@ -16,11 +16,12 @@ typedef struct slide {
 } slide;
 
 typedef struct slide_outcome {
-  double way, stopped_at, after; /* after: way from the stop to the end */
-  double range;                  /* of places in the last third of the time */
-  double friction, weight;       /* mean forces over those of Coulomb and of gravity */
-  double spin;                   /* angular velocity at the end, > 0 down the slope */
-  double balance;                /* impulse less weight and change of momentum, over weight */
+  double way, stopped_at;
+  double
+      range; /* of places in the last third of the time: of one that rests, how far it trembles or creeps */
+  double friction, weight; /* mean forces over those of Coulomb and of gravity */
+  double spin;             /* angular velocity at the end, > 0 down the slope */
+  double balance;          /* impulse less weight and change of momentum, over weight */
 } slide_outcome;
 
 extern const double slide_gravity;
