@@ -5,17 +5,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STEPS = 8 };
+enum { STEPS = 8, MOST_OBSTACLES = 10 };
 
 typedef struct scene {
   const char *name;
   int32_t dim, basis, transfer;
-  int32_t cells; /* of the body on each axis, with two particles on each axis in a cell */
+  int32_t cells;     /* of the body on each axis, with two particles on each axis in a cell */
+  int32_t obstacles; /* spheres that are far from it */
 } scene;
-static const scene scenes[] = {{"3-D quadratic FLIP", 3, MPM_BSPLINE2, MPM_FLIP, 12},
-                               {"3-D quadratic APIC_MLS", 3, MPM_BSPLINE2, MPM_APIC_MLS, 12},
-                               {"3-D linear FLIP", 3, MPM_LINEAR, MPM_FLIP, 12},
-                               {"2-D quadratic FLIP", 2, MPM_BSPLINE2, MPM_FLIP, 48}};
+static const scene scenes[] = {
+    {"3-D quadratic FLIP", 3, MPM_BSPLINE2, MPM_FLIP, 12, 0},
+    {"3-D quadratic APIC_MLS", 3, MPM_BSPLINE2, MPM_APIC_MLS, 12, 0},
+    {"3-D linear FLIP", 3, MPM_LINEAR, MPM_FLIP, 12, 0},
+    {"2-D quadratic FLIP", 2, MPM_BSPLINE2, MPM_FLIP, 48, 0},
+    {"3-D quadratic FLIP, far obstacles", 3, MPM_BSPLINE2, MPM_FLIP, 12, MOST_OBSTACLES}};
 
 typedef struct simulation {
   mpm_context *context;
@@ -23,6 +26,7 @@ typedef struct simulation {
   mpm_material *material;
   mpm_particles *body;
   mpm_stepper *stepper;
+  mpm_obstacle *obstacle[MOST_OBSTACLES];
 } simulation;
 
 /* It turns and strains, so that no term is zero. */
@@ -42,6 +46,24 @@ static mpm_status spin(mpm_particles *set, int32_t dim, double middle) {
   return status;
 }
 
+/* Beyond the blocks of the body. */
+static mpm_status add_obstacles(simulation *sim, const scene *in) {
+  mpm_contact_desc contact;
+  mpm_obstacle_desc d;
+  mpm_status status = mpm_contact_desc_init(&contact, sizeof contact);
+  if (!status) status = mpm_obstacle_desc_init(&d, sizeof d);
+  for (int32_t i = 0; i < in->obstacles && !status; ++i) {
+    d.contact = &contact;
+    d.shape = MPM_SHAPE_SPHERE;
+    d.size[0] = 1.0;
+    for (int32_t k = 0; k < in->dim; ++k) d.position[k] = 3.0 * in->cells;
+    d.position[i % in->dim] = 0.25 * in->cells * i;
+    status = mpm_obstacle_create(sim->context, &d, &sim->obstacle[i]);
+    if (!status) status = mpm_stepper_add_obstacle(sim->stepper, sim->obstacle[i]);
+  }
+  return status;
+}
+
 static mpm_status set_up(simulation *sim, const scene *in) {
   static const mpm_param elastic[] = {{"E", 1.0}, {"nu", 0.3}, {"density", 1.0}};
   static const int32_t per_cell[3] = {2, 2, 2};
@@ -58,7 +80,7 @@ static mpm_status set_up(simulation *sim, const scene *in) {
   g.basis = in->basis;
   for (int32_t k = 0; k < in->dim; ++k) {
     g.spacing[k] = 1.0;
-    g.cells[k] = 2 * in->cells;
+    g.cells[k] = (in->obstacles ? 4 : 2) * in->cells;
     lower[k] = 0.5 * in->cells;
     upper[k] = 1.5 * in->cells;
   }
@@ -71,17 +93,19 @@ static mpm_status set_up(simulation *sim, const scene *in) {
   if (!status) status = spin(sim->body, in->dim, in->cells);
   if (!status) status = mpm_stepper_create(sim->context, sim->grid, &s, &sim->stepper);
   if (!status) status = mpm_stepper_add(sim->stepper, sim->body);
+  if (!status) status = add_obstacles(sim, in);
   return status;
 }
 
 static int run(const scene *in) {
-  simulation sim = {NULL, NULL, NULL, NULL, NULL};
+  simulation sim = {0};
   mpm_step_info info = {.struct_size = sizeof info};
   mpm_status status = set_up(&sim, in);
   for (int32_t i = 0; i < STEPS && !status; ++i) status = mpm_step(sim.stepper, 0.02, &info);
   if (status) fprintf(stderr, "%s: %s\n", in->name, mpm_last_error(sim.context));
   if (!status) printf("%lld\n", (long long)(STEPS * mpm_particles_count(sim.body)));
   mpm_stepper_destroy(sim.stepper);
+  for (int32_t i = 0; i < in->obstacles; ++i) mpm_obstacle_destroy(sim.obstacle[i]);
   mpm_particles_destroy(sim.body);
   mpm_material_destroy(sim.material);
   mpm_grid_destroy(sim.grid);
