@@ -26,6 +26,10 @@ EXPLICIT = ["--particles", "40000", "--repeats", "3", "--threads", "1"]
 IMPLICIT = ["--implicit", "--repeats", "2", "--threads", "1"]
 
 
+class Lacks(Exception):
+    """The library does not have what the case calls."""
+
+
 def stop(text):
     sys.exit("bench: " + text)
 
@@ -41,9 +45,13 @@ def library_of(prefix):
 
 
 def run(bench, library, options):
-    """What the program prints, as lines of fields; None if it fails."""
+    """What the program prints, as lines of fields; None if it fails. An older library lacks functions of newer cases."""
     environment = dict(os.environ, LD_LIBRARY_PATH=os.path.dirname(library))
-    done = subprocess.run([bench] + options, env=environment, stdout=subprocess.PIPE, text=True, check=False)
+    done = subprocess.run([bench] + options, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          check=False)
+    if done.returncode == 127 and "undefined symbol" in done.stderr:
+        raise Lacks
+    sys.stderr.write(done.stderr)
     return None if done.returncode else [line.split("\t") for line in done.stdout.splitlines()]
 
 
@@ -59,10 +67,14 @@ def measure(bench, library, options, name):
 
 
 def compare(bench, libraries, options, name, rounds):
-    """Prints the line of a case; the ratio of the medians, None if a run fails."""
+    """Prints the line of a case; the ratio of the medians, None if a run fails, 0 if a library lacks the case."""
     runs = []
     for i in range(2 * rounds):
-        runs.append(measure(bench, libraries[i % 2], options, name))
+        try:
+            runs.append(measure(bench, libraries[i % 2], options, name))
+        except Lacks:
+            print(f"{name:32s} is not in {'AB'[i % 2]}", flush=True)
+            return 0
         if runs[-1] is None:
             print(f"{name:32s} fails with {'AB'[i % 2]}", flush=True)
             return None
@@ -98,9 +110,10 @@ def main():
         names = [line[0] for line in run(given.bench, libraries[1], options + ["--list"]) or []]
         chosen = [name for name in names if (name in QUICK if given.quick else name not in TOO_LONG)]
         whole = [compare(given.bench, libraries, options, name, given.rounds) for name in chosen]
-        if not whole or None in whole:
+        if not any(whole) or None in whole:
             failed = True
         else:
+            whole = [ratio for ratio in whole if ratio]
             mean = statistics.geometric_mean(whole)
             print(f"{'all ' + str(len(whole)) + ', geometric mean':57s}  {mean:6.3f}\n", flush=True)
     if failed:

@@ -52,6 +52,12 @@ static const bench_case cases[] = {
      BENCH_SECOND_ORDER},
     {"3-D FLIP, locking remedy", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40,
      BENCH_REMEDY},
+    {"3-D FLIP, ten far obstacles", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40,
+     BENCH_OBSTACLES},
+    {"3-D FLIP, corner in contact", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40,
+     BENCH_CORNER},
+    {"3-D FLIP, halves in contact", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40,
+     BENCH_HALVES},
     {"3-D quadratic TFLIP", 3, MPM_BSPLINE2, MPM_USL, MPM_TFLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D quadratic AFLIP", 3, MPM_BSPLINE2, MPM_USL, MPM_AFLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D quadratic XPIC(2)", 3, MPM_BSPLINE2, MPM_USL, MPM_XPIC, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
@@ -103,7 +109,7 @@ static mpm_status measure(const bench_scene *scene, const bench_case *of, const 
   if (status) return status;
   mpm_stepper_profile(scene->stepper, 1, &stage);
   const int64_t sorted = info.resorts, allocated = scene->allocations;
-  const double n = (double)mpm_particles_count(scene->body), steps = (double)of->steps;
+  const double n = (double)scene->particles, steps = (double)of->steps;
   for (int32_t k = 0; k < how->repeats; ++k) {
     const double from = seconds();
     for (int32_t i = 0; i < of->steps && !status; ++i) status = one_step(scene, of, &info);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const mpm_param parameters[] = {
     {"E", 1.0}, {"nu", 0.3}, {"density", 1.0}, {"yield_stress", 0.02}, {"hardening", 0.1}};
@@ -24,8 +25,26 @@ static void shuffle(int64_t n, int64_t *order, uint64_t *dice) {
   }
 }
 
-/* side^dim particles, 2^dim per cell, from `corner` on, one random place of the lattice after the other. */
-static mpm_status place(mpm_particles *set, int32_t dim, int64_t side, double corner) {
+/* A jittered lattice of side^dim particles, 2^dim per cell, from `corner` on; the first part[k] of them on each
+ * axis are those of another body. */
+typedef struct lattice {
+  int32_t dim;
+  int64_t side, part[3];
+  double corner;
+} lattice;
+
+static lattice lattice_of(const bench_case *of, int64_t side, double corner) {
+  const int32_t divided = of->extras == BENCH_CORNER || of->extras == BENCH_HALVES;
+  lattice l = {.dim = of->dim, .side = side, .part = {0, 0, 0}, .corner = corner};
+  for (int32_t k = 0; k < of->dim && divided; ++k)
+    l.part[k] = of->extras == BENCH_CORNER ? 20 : k ? side : side / 4 * 2;
+  return l;
+}
+
+/* The particles of the part, or all others, one random place of the lattice after the other. */
+static mpm_status place(mpm_particles *set, const lattice *l, int32_t part) {
+  const int32_t dim = l->dim;
+  const int64_t side = l->side;
   uint64_t dice = 88172645463325252u;
   int64_t n = 1;
   for (int32_t k = 0; k < dim; ++k) n *= side;
@@ -34,25 +53,33 @@ static mpm_status place(mpm_particles *set, int32_t dim, int64_t side, double co
   mpm_status status = MPM_E_NOMEM;
   if (x && volume && order) {
     shuffle(n, order, &dice);
+    int64_t count = 0;
     for (int64_t i = 0; i < n; ++i) {
-      for (int32_t k = 0; k < dim; ++k, order[i] /= side)
-        x[k * n + i] = corner + 0.5 * ((double)(order[i] % side) + 0.25 + 0.5 * uniform(&dice));
-      volume[i] = pow(0.5, dim);
+      double at[3];
+      int32_t in_part = 1;
+      for (int32_t k = 0; k < dim; ++k, order[i] /= side) {
+        at[k] = l->corner + 0.5 * ((double)(order[i] % side) + 0.25 + 0.5 * uniform(&dice));
+        in_part &= order[i] % side < l->part[k];
+      }
+      if (in_part != part) continue;
+      for (int32_t k = 0; k < dim; ++k) x[k * n + count] = at[k];
+      volume[count++] = pow(0.5, dim);
     }
     free(order); /* before the set grows: the peak of memory is to be the library's */
     order = NULL;
-    status = mpm_particles_add(set, n, x, NULL, volume, NULL, NULL, NULL);
+    for (int32_t k = 1; k < dim; ++k) memmove(x + k * count, x + k * n, (size_t)count * sizeof *x);
+    status = mpm_particles_add(set, count, x, NULL, volume, NULL, NULL, NULL);
   }
   free(x), free(volume), free(order);
   return status;
 }
 
 /* A velocity linear in place, in pieces. */
-static mpm_status set_velocities(mpm_particles *set, const bench_case *of, int64_t side, double corner) {
+static mpm_status set_velocities(mpm_particles *set, const bench_case *of, const lattice *l) {
   enum { PIECE = 4096 };
   static double x[3 * PIECE], v[3 * PIECE];
   static int64_t id[PIECE];
-  const double half = 0.25 * (double)side;
+  const double half = 0.25 * (double)l->side;
   const int64_t n = mpm_particles_count(set);
   mpm_status status = MPM_OK;
   for (int64_t begin = 0; begin < n && !status; begin += PIECE) {
@@ -61,7 +88,7 @@ static mpm_status set_velocities(mpm_particles *set, const bench_case *of, int64
     if ((status = mpm_particles_get(set, "position", MPM_F64, of->dim, count, id, x))) break;
     for (int64_t i = 0; i < count; ++i) {
       double at[3] = {0.0, 0.0, 0.0};
-      for (int32_t k = 0; k < of->dim; ++k) at[k] = (x[k * count + i] - corner) / half - 1.0;
+      for (int32_t k = 0; k < of->dim; ++k) at[k] = (x[k * count + i] - l->corner) / half - 1.0;
       const double rate[3] = {0.15 * at[2] - 0.85 * at[1], 0.7 * at[0] - 0.3 * at[2],
                               0.25 * at[0] + 0.15 * at[1]};
       for (int32_t k = 0; k < of->dim; ++k)
@@ -117,8 +144,42 @@ static mpm_status make_material(bench_scene *scene, const bench_case *of) {
   return mpm_material_create_custom(scene->context, &desc, &scene->material);
 }
 
-static mpm_status add_extras(bench_scene *scene, const bench_case *of) {
+static mpm_status add_set(bench_scene *scene, const bench_case *of, const lattice *l, int32_t part,
+                          mpm_particles **set) {
+  mpm_status status = mpm_particles_create(scene->context, scene->grid, scene->material, set);
+  if (!status) status = place(*set, l, part);
+  if (!status) status = set_velocities(*set, of, l);
+  if (!status) status = mpm_stepper_add(scene->stepper, *set);
+  if (!status && part) status = mpm_stepper_set_body(scene->stepper, *set, part);
+  scene->particles += mpm_particles_count(*set);
+  return status;
+}
+
+/* Beyond the body along each axis. */
+static mpm_status add_obstacles(bench_scene *scene, const bench_case *of, const lattice *l) {
+  mpm_contact_desc contact;
+  mpm_obstacle_desc d;
+  mpm_status status = mpm_contact_desc_init(&contact, sizeof contact);
+  if (!status) status = mpm_obstacle_desc_init(&d, sizeof d);
+  for (int32_t i = 0; i < BENCH_MOST_OBSTACLES && !status; ++i) {
+    d.contact = &contact;
+    d.shape = MPM_SHAPE_SPHERE;
+    d.size[0] = 2.0;
+    for (int32_t k = 0; k < of->dim; ++k)
+      d.position[k] = l->corner + (0.1 * i + 0.05) * 0.5 * (double)l->side;
+    d.position[i % of->dim] = i % 2 ? 4.0 : 2.0 * l->corner + 0.5 * (double)l->side - 4.0;
+    status = mpm_obstacle_create(scene->context, &d, &scene->obstacle[i]);
+    if (!status) status = mpm_stepper_add_obstacle(scene->stepper, scene->obstacle[i]);
+  }
+  return status;
+}
+
+static mpm_status add_extras(bench_scene *scene, const bench_case *of, const lattice *l) {
   mpm_status status = MPM_OK;
+  mpm_contact_desc contact;
+  if (of->extras == BENCH_OBSTACLES) status = add_obstacles(scene, of, l);
+  if (scene->part && !(status = mpm_contact_desc_init(&contact, sizeof contact)))
+    status = mpm_stepper_set_contact(scene->stepper, 0, 1, &contact);
   if (of->extras == BENCH_FORCE) status = mpm_stepper_set_force(scene->stepper, add_constant, NULL);
   for (int32_t face = 0; face < 2 * of->dim && of->extras == BENCH_WALLS && !status; ++face)
     status = mpm_stepper_set_wall(scene->stepper, face, MPM_WALL_SLIP, 0.0);
@@ -164,18 +225,19 @@ mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_opti
   s.transfer = of->transfer;
   s.position_order = of->extras == BENCH_SECOND_ORDER ? 2 : 1;
   s.locking_remedy = of->extras == BENCH_REMEDY;
+  const lattice l = lattice_of(of, side, corner);
   if ((status = mpm_grid_create(scene->context, &g, &scene->grid)) || (status = make_material(scene, of)) ||
-      (status = mpm_particles_create(scene->context, scene->grid, scene->material, &scene->body)) ||
-      (status = place(scene->body, of->dim, side, corner)) ||
-      (status = set_velocities(scene->body, of, side, corner)) ||
       (status = mpm_stepper_create(scene->context, scene->grid, &s, &scene->stepper)) ||
-      (status = mpm_stepper_add(scene->stepper, scene->body)))
+      (status = add_set(scene, of, &l, 0, &scene->body)) ||
+      (l.part[0] && (status = add_set(scene, of, &l, 1, &scene->part))))
     return status;
-  return add_extras(scene, of);
+  return add_extras(scene, of, &l);
 }
 
 void bench_close(bench_scene *scene) {
   mpm_stepper_destroy(scene->stepper);
+  for (int32_t i = 0; i < BENCH_MOST_OBSTACLES; ++i) mpm_obstacle_destroy(scene->obstacle[i]);
+  mpm_particles_destroy(scene->part);
   mpm_particles_destroy(scene->body);
   mpm_material_destroy(scene->material);
   mpm_grid_destroy(scene->grid);

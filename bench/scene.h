@@ -5,6 +5,7 @@
 
 #include <mpm/mpm.h>
 
+enum { BENCH_MOST_OBSTACLES = 10 };
 enum {
   BENCH_FREE,
   BENCH_WALLS,
@@ -12,7 +13,10 @@ enum {
   BENCH_HOST_LAW,
   BENCH_OPEN_KNOTS,
   BENCH_SECOND_ORDER, /* positions */
-  BENCH_REMEDY        /* against locking */
+  BENCH_REMEDY,       /* against locking */
+  BENCH_OBSTACLES,    /* ten, which nothing comes near */
+  BENCH_CORNER,       /* a corner of the body, ten cells wide, is another body in contact */
+  BENCH_HALVES        /* one half of the body is another body in contact */
 };
 
 typedef struct bench_case {
@@ -35,8 +39,10 @@ typedef struct bench_scene {
   mpm_context *context;
   mpm_grid *grid;
   mpm_material *material;
-  mpm_particles *body;
+  mpm_particles *body, *part; /* part: what is another body, or NULL */
   mpm_stepper *stepper;
+  mpm_obstacle *obstacle[BENCH_MOST_OBSTACLES];
+  int64_t particles;
   int64_t allocations; /* asked of the host so far */
 } bench_scene;
 
