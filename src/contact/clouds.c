@@ -209,24 +209,21 @@ static void visit_block(void *user, const mpmi_visit *visit) {
   if (!job->fill) add_counts(search->contact, &tile, grid);
 }
 
-void mpmi_cloud_place(const mpmi_layout *layout, const mpmi_cloud *cloud, const double *node,
-                      const mpmi_cloud_entry *entry, double *x) {
-  const mpm_particles *set = layout->member[entry->member].set;
-  const mpm_grid *grid = set->grid;
-  for (int32_t k = 0; k < grid->dim; ++k) {
-    double from = mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + entry->slot] - node[k];
-    if (grid->desc.periodic[k]) {
-      const double period = (double)grid->desc.cells[k] * grid->desc.spacing[k];
-      from -= period * rint(from / period);
-    }
-    x[k] = (cloud->mirrored >> k & 1 ? -from : from) * grid->inverse_spacing[k];
-  }
-}
-
 void mpmi_contact_position(const mpmi_blocks *b, int64_t slot, double *at) {
   int64_t index[3];
   mpmi_blocks_index(b, slot, index);
   for (int32_t k = 0; k < b->grid->dim; ++k) at[k] = mpmi_node_position(b->grid, k, index[k]);
+}
+
+mpmi_cloud_frame mpmi_cloud_frame_of(const mpmi_blocks *b, const mpmi_cloud *cloud) {
+  const mpm_grid *grid = b->grid;
+  mpmi_cloud_frame of = {.dim = grid->dim};
+  mpmi_contact_position(b, cloud->slot, of.node);
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    if (grid->desc.periodic[k]) of.period[k] = (double)grid->desc.cells[k] * grid->desc.spacing[k];
+    of.scale[k] = cloud->mirrored >> k & 1 ? -grid->inverse_spacing[k] : grid->inverse_spacing[k];
+  }
+  return of;
 }
 
 mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {

@@ -5,11 +5,12 @@
  *   clouds.c         the particles around these nodes
  *   gaps.c           normal, gap and area of each touch of two bodies
  *   surface_gaps.c   the same where a surface takes part
- *   half_width.c     how far a particle reaches in a direction
+ *   half_width       how far a particle reaches in a direction
  */
 #ifndef MPMI_CONTACT_FINDING_H
 #define MPMI_CONTACT_FINDING_H
 
+#include "contact/half_width.h"
 #include "layout/nodes.h"
 #include "layout/step.h"
 
@@ -43,17 +44,26 @@ static inline int32_t mpmi_is_of_surface(const mpmi_contact_nodes *contact, cons
  * wall would be thrown along the wall. */
 #define MPMI_NEARLY_HELD 1e-2
 
-/* Finds the place of a particle from the node of a cloud, in cells, as the master of the cloud's party sees
- * it. */
-void mpmi_cloud_place(const mpmi_layout *layout, const mpmi_cloud *cloud, const double *node,
-                      const mpmi_cloud_entry *entry, double *x);
-void mpmi_contact_position(const mpmi_blocks *b, int64_t slot, double *at);
+/* Where the particles of a cloud are seen from: its node, and the axes on which it is a mirror image. */
+typedef struct mpmi_cloud_frame {
+  int32_t dim;
+  double node[3], period[3],
+      scale[3]; /* period: 0 where an axis has none; scale: to cells, < 0 if mirrored */
+} mpmi_cloud_frame;
 
-/* Half the edge of the cube that a particle of a volume has been. */
-double mpmi_half_edge(int32_t dim, double volume);
-/* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F has
- * deformed; at most half a cell. n: as the particle itself sees it. */
-double mpmi_half_width(const mpm_particles *set, int64_t slot, double edge, const double *n);
+mpmi_cloud_frame mpmi_cloud_frame_of(const mpmi_blocks *b, const mpmi_cloud *cloud);
+
+/* Finds the place of a particle from the node of a cloud, in cells, as the master of the cloud's party sees
+ * it. position: of its set. */
+static inline void mpmi_cloud_place(const mpmi_cloud_frame *of, const double *position, int64_t ld,
+                                    int64_t slot, double *x) {
+  for (int32_t k = 0; k < of->dim; ++k) {
+    double from = position[k * ld + slot] - of->node[k];
+    if (of->period[k] > 0.0) from -= of->period[k] * rint(from / of->period[k]);
+    x[k] = from * of->scale[k];
+  }
+}
+void mpmi_contact_position(const mpmi_blocks *b, int64_t slot, double *at);
 
 /* Finds surfaces and sites of the step that is about to begin, and makes records for those that may meet. */
 mpm_status mpmi_contact_prepare(const mpmi_layout *layout, const mpmi_settings *settings,

@@ -37,24 +37,30 @@ static void collect(around *of, int32_t which) {
   const mpm_grid *grid = layout->blocks.grid;
   const mpmi_contact_nodes *contact = of->search->contact;
   const mpmi_party *party = of->party[which];
-  int64_t at = of->points.first[which];
+  int64_t at = of->points.first[which], ld = 0;
+  int32_t member = -1;
+  const double *position = NULL, *initial_volume = NULL;
   double last_volume = -1.0, r = 0.0, ball = 0.0;
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
-    const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
-    double node[3];
-    mpmi_contact_position(&layout->blocks, cloud->slot, node);
+    const mpmi_cloud *source = &contact->cloud[contact->cloud[i].source];
+    const mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, &contact->cloud[i]);
     for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
-      const mpm_particles *set = layout->member[entry->member].set;
-      const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[entry->slot];
+      if (entry->member != member) {
+        const mpm_particles *set = layout->member[member = entry->member].set;
+        position = mpmi_f64(set, MPMI_POSITION, 0);
+        initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0);
+        ld = set->ld;
+      }
+      const double volume = initial_volume[entry->slot];
       double x[3];
-      mpmi_cloud_place(layout, cloud, node, entry, x);
+      mpmi_cloud_place(&frame, position, ld, entry->slot, x);
       for (int32_t k = 0; k < grid->dim; ++k) of->x[k][at] = x[k];
       of->weight[at] = entry->volume;
       if (volume < last_volume || volume > last_volume) r = mpmi_half_edge(grid->dim, volume);
       last_volume = volume;
       of->half_edge[at] = r;
-      ball += of->weight[at] * r * r / 3.0;
+      ball += entry->volume * r * r / 3.0;
     }
   }
   for (int32_t k = 0; k < grid->dim; ++k)
@@ -74,18 +80,19 @@ static double extent(const around *of, int32_t which, const double *n, double li
   const mpm_grid *grid = layout->blocks.grid;
   const mpmi_contact_nodes *contact = of->search->contact;
   const mpmi_party *party = of->party[which];
-  const double half = 0.5 * grid->h_min, sign = which ? -1.0 : 1.0;
+  const double half = 0.5 * grid->h_min, sign = which ? -1.0 : 1.0, *along = of->along, *off = of->off;
   int64_t at = of->points.first[which];
+  int32_t member = -1;
+  mpmi_widths widths = {0};
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
     double seen[3] = {0.0, 0.0, 0.0};
     for (int32_t k = 0; k < grid->dim; ++k) seen[k] = cloud->mirrored >> k & 1 ? -n[k] : n[k];
     for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
-      const double along = sign * of->along[at];
-      if (along + half <= most || of->off[at] > limit) continue;
+      if (sign * along[at] + half <= most || off[at] > limit) continue;
       const mpmi_cloud_entry *entry = &contact->entry[e];
-      const double far =
-          along + mpmi_half_width(layout->member[entry->member].set, entry->slot, of->half_edge[at], seen);
+      if (entry->member != member) widths = mpmi_widths_of(layout->member[member = entry->member].set);
+      const double far = sign * along[at] + mpmi_half_width(&widths, entry->slot, of->half_edge[at], seen);
       most = far > most ? far : most;
     }
   }

@@ -37,6 +37,7 @@ static void clear_chunk(const surface_job *job, int32_t member, int64_t begin, i
   const mpmi_contact_nodes *contact = job->search->contact;
   const mpm_particles *set = job->search->step->layout->member[member].set;
   const mpm_grid *grid = set->grid;
+  const mpmi_widths widths = mpmi_widths_of(set);
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   double *clearance = contact->clearance + contact->clearance_first[member];
   mpmi_distances points = {.n = 0, .t = job->search->step->t};
@@ -61,7 +62,7 @@ static void clear_chunk(const surface_job *job, int32_t member, int64_t begin, i
     const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot[p]];
     if (volume < last->volume || volume > last->volume)
       *last = (half_edge_cache){volume, mpmi_half_edge(grid->dim, volume)};
-    clearance[slot[p]] = distance - mpmi_half_width(set, slot[p], last->edge, n);
+    clearance[slot[p]] = distance - mpmi_half_width(&widths, slot[p], last->edge, n);
   }
 }
 
@@ -112,13 +113,14 @@ static double gap_of(const mpmi_contact_search *search, const mpmi_party *party,
   double gap = (double)INFINITY;
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
-    double node[3], x[3];
-    mpmi_contact_position(&layout->blocks, cloud->slot, node);
+    const mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, cloud);
+    double x[3];
     for (int64_t e = source->first; e < source->first + source->count; ++e) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
       const double clearance = contact->clearance[contact->clearance_first[entry->member] + entry->slot];
       if (!(clearance < gap)) continue;
-      mpmi_cloud_place(layout, cloud, node, entry, x);
+      const mpm_particles *set = layout->member[entry->member].set;
+      mpmi_cloud_place(&frame, mpmi_f64(set, MPMI_POSITION, 0), set->ld, entry->slot, x);
       if (is_beside(layout->blocks.grid, x, n)) gap = clearance;
     }
   }
