@@ -44,26 +44,19 @@ static int draw(const char *path, const snapshot shot[SHOTS]) {
   for (int k = 0; k < SHOTS; ++k) {
     const snapshot *s = &shot[k];
     const svg_frame f = {20.0 + 310.0 * k, 44.0, 300.0, 270.0, 0.0, width, 0.0, 0.9 * width};
-    for (int64_t i = 0; i < n; ++i) { /* a particle is the deformed image of a square of half a cell */
-      value[i] = -(s->stress[i] + s->stress[n + i] + s->stress[2 * n + i]) / 3.0;
-      for (int c = 0; c < 2; ++c) {
-        a[c * n + i] = 0.25 * h * s->F[3 * c * n + i];
-        b[c * n + i] = 0.25 * h * s->F[(3 * c + 1) * n + i];
-      }
-      if (value[i] < 0.0) value[i] = 0.0;
-    }
+    for (int64_t i = 0; i < n; ++i)
+      value[i] = fmax(0.0, -(s->stress[i] + s->stress[n + i] + s->stress[2 * n + i]) / 3.0);
+    svg_edges(n, 0.5 * h, s->F, 0, a);
+    svg_edges(n, 0.5 * h, s->F, 1, b);
     char text[128];
     snprintf(text, sizeof text, "<tspan font-weight=\"bold\">t = %.2f s</tspan> &#160;%s", s->t, caption[k]);
     svg_text(out, f.left + 150.0, 30.0, "middle", "", text);
     svg_panel(out, &f);
     svg_tiles(out, &f, n, s->x, a, b, value, pressure_shown);
+    svg_disc(out, &f, s->centre[0], s->centre[1], radius);
     if (out)
-      fprintf(out,
-              "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" fill=\"#8c959f\" stroke=\"" SVG_INK "\"/>\n"
-              "<path d=\"M%.2f %.2fL%.2f %.2f\" stroke=\"" SVG_INK "\"/>\n",
-              svg_x(&f, s->centre[0]), svg_y(&f, s->centre[1]), radius * f.width / width,
-              svg_x(&f, s->centre[0]), svg_y(&f, s->centre[1]),
-              svg_x(&f, s->centre[0] + radius * cos(s->turn)),
+      fprintf(out, "<path d=\"M%.2f %.2fL%.2f %.2f\" stroke=\"" SVG_INK "\"/>\n", svg_x(&f, s->centre[0]),
+              svg_y(&f, s->centre[1]), svg_x(&f, s->centre[0] + radius * cos(s->turn)),
               svg_y(&f, s->centre[1] + radius * sin(s->turn)));
   }
   svg_colour_bar(out, 320.0, 358.0, 320.0, pressure_shown, "pressure / Pa (20 000 and more)");

@@ -151,6 +151,48 @@ static inline void svg_tiles(FILE *out, const svg_frame *f, int64_t n, const dou
   }
 }
 
+/* Half edges half[c * n + i] along an axis of squares of that width, deformed by F[9][n]. */
+static inline void svg_edges(int64_t n, double width, const double *F, int axis, double *half) {
+  for (int c = 0; c < 2; ++c)
+    for (int64_t i = 0; i < n; ++i) half[c * n + i] = 0.5 * width * F[(3 * c + axis) * n + i];
+}
+
+/* Particles of a lattice that bends little, as thick strokes: x[c * n + i] is a centre, half[c * n + i] half of
+ * the edge towards the next of its row, and width the other edge, in data coordinates. colour[i] is one of rgb;
+ * those below 0 are left out. Neighbours in a row that are of one colour share a stroke, which keeps the file
+ * small. */
+static inline void svg_rows(FILE *out, const svg_frame *f, int64_t n, const double *x, const double *half,
+                            double width, const int *colour, int colours, int (*rgb)[3]) {
+  enum { LONGEST = 12 };
+  if (!out) return;
+  const double scale = f->width / (f->x_max - f->x_min), overlap = 1.0 + 0.5 / (scale * width);
+  for (int k = 0; k < colours; ++k) {
+    int used = 0;
+    for (int64_t i = 0, last; i < n; i = last + 1) {
+      last = i;
+      if (colour[i] != k) continue;
+      while (last + 1 < n && last + 1 < i + LONGEST && colour[last + 1] == k &&
+             hypot(x[last + 1] - x[last], x[n + last + 1] - x[n + last]) < 3.0 * hypot(half[i], half[n + i]))
+        ++last;
+      /* the overlap hides the seams that antialiasing would leave between strokes */
+      if (!used++)
+        fprintf(out, "<path fill=\"none\" stroke=\"#%02x%02x%02x\" stroke-width=\"%.2f\" d=\"",
+                (unsigned)rgb[k][0], (unsigned)rgb[k][1], (unsigned)rgb[k][2], overlap * scale * width);
+      const double x0 = svg_x(f, x[i] - overlap * half[i]), y0 = svg_y(f, x[n + i] - overlap * half[n + i]);
+      fprintf(out, "M%.1f %.1fl%.1f %.1f", x0, y0, svg_x(f, x[last] + overlap * half[last]) - x0,
+              svg_y(f, x[n + last] + overlap * half[n + last]) - y0);
+    }
+    if (used) fputs("\"/>\n", out);
+  }
+}
+
+/* A rigid disc, of a radius in data coordinates. */
+static inline void svg_disc(FILE *out, const svg_frame *f, double x, double y, double radius) {
+  if (out)
+    fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" fill=\"#8c959f\" stroke=\"" SVG_INK "\"/>\n",
+            svg_x(f, x), svg_y(f, y), radius * f->width / (f->x_max - f->x_min));
+}
+
 /* An arrow of (dx, dy) pixels from a point of the data; none when it would be all head. */
 static inline void svg_arrow(FILE *out, const svg_frame *f, double x, double y, double dx, double dy,
                              const char *colour) {

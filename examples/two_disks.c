@@ -82,13 +82,9 @@ static int draw_disk(FILE *out, const svg_frame *f, const disk *d) {
   double *value = malloc(5 * (size_t)d->n * sizeof *value), x[2], v[2];
   if (!value) return -1;
   double *a = value + d->n, *b = a + 2 * d->n;
-  for (int64_t i = 0; i < d->n; ++i) {
-    value[i] = mises(d, i);
-    for (int c = 0; c < 2; ++c) {
-      a[c * d->n + i] = 0.25 * h * d->F[3 * c * d->n + i];
-      b[c * d->n + i] = 0.25 * h * d->F[(3 * c + 1) * d->n + i];
-    }
-  }
+  for (int64_t i = 0; i < d->n; ++i) value[i] = mises(d, i);
+  svg_edges(d->n, 0.5 * h, d->F, 0, a);
+  svg_edges(d->n, 0.5 * h, d->F, 1, b);
   svg_tiles(out, f, d->n, d->x, a, b, value, stress_shown);
   disk_mean(d, d->x, x);
   disk_mean(d, d->v, v);

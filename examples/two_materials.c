@@ -108,13 +108,13 @@ static int draw_bodies(FILE *out, int panel, double t, const body *bodies, doubl
     double *edge_a = value + n, *edge_b = edge_a + 2 * n, v[2] = {0.0, 0.0}, x[2] = {0.0, 0.0};
     for (int64_t i = 0; i < n; ++i) {
       value[i] = 1e-3 * sqrt(1.5 * deviator_squared(b, i, mean_stress(b, i)));
-      for (int c = 0; c < 2; ++c) { /* a particle is the deformed image of a square of half a cell */
-        edge_a[c * n + i] = 0.25 * h * b->F[3 * c * n + i];
-        edge_b[c * n + i] = 0.25 * h * b->F[(3 * c + 1) * n + i];
+      for (int c = 0; c < 2; ++c) {
         x[c] += b->x[c * n + i] / (double)n;
         v[c] += b->v[c * n + i] / (double)n;
       }
     }
+    svg_edges(n, 0.5 * h, b->F, 0, edge_a);
+    svg_edges(n, 0.5 * h, b->F, 1, edge_b);
     svg_tiles(out, &f, n, b->x, edge_a, edge_b, value, value_max);
     svg_arrow(out, &f, x[0], x[1], 6.0 * v[0], -6.0 * v[1], "#ff7b3d");
     free(value);

@@ -142,6 +142,18 @@ if wanted dropped_ball; then
   [ -s ball/dropped_ball.svg ] || fail "dropped_ball: dropped_ball.svg is missing or empty"
 fi
 
+if wanted stacked_blocks; then
+  mkdir blocks
+  run stacked_blocks blocks
+  check "floor" "floor within" 0 1e-4
+  check "lowest block" "moved by" -0.05 0.02
+  check "blocks on the floor" "and" 0.8 1.1
+  check "momentum" "momentum off by" 0 1e-11
+  check "energy" "energy gained" -1 1e-3
+  check "contact" "dissipation at least" 0 1
+  [ -s blocks/stacked_blocks.svg ] || fail "stacked_blocks: stacked_blocks.svg is missing or empty"
+fi
+
 if wanted outflow; then
   mkdir channel
   run outflow channel
