@@ -14,12 +14,15 @@ typedef struct body {
   int64_t n;
   double *x, *v, *F, *stress, *mass, *edge; /* edge: for drawing */
   int *colour;                              /* for svg_rows(); at first 0 */
+  double row[2]; /* direction of rows of particles; at first y, as fills make them */
 } body;
 
 /* 0, or -1 when there is no memory. The number of particles must not change from here on. */
 static inline int body_open(body *b, mpm_particles *set) {
   const int64_t n = b->n = mpm_particles_count(set);
   b->set = set;
+  b->row[0] = 0.0;
+  b->row[1] = 1.0;
   b->x = malloc((2 + 2 + 9 + 6 + 1 + 2) * (size_t)n * sizeof *b->x);
   b->colour = calloc((size_t)n, sizeof *b->colour);
   if (!b->x || !b->colour) return -1;
@@ -69,11 +72,15 @@ static inline double body_spin(const body *b) {
   return momentum / inertia;
 }
 
-/* Draws a body whose particles were squares of that width, in rows along y as fills make them. */
+/* Draws a body whose particles were squares of that width. */
 static inline void body_draw(FILE *out, const svg_frame *f, body *b, double width, int colours,
                              int (*rgb)[3]) {
-  svg_edges(b->n, width, b->F, 1, b->edge);
-  svg_rows(out, f, b->n, b->x, b->edge, width, b->colour, colours, rgb);
+  const int64_t n = b->n;
+  for (int c = 0; c < 2; ++c)
+    for (int64_t i = 0; i < n; ++i)
+      b->edge[c * n + i] =
+          0.5 * width * (b->F[3 * c * n + i] * b->row[0] + b->F[(3 * c + 1) * n + i] * b->row[1]);
+  svg_rows(out, f, n, b->x, b->edge, width, b->colour, colours, rgb);
 }
 
 #endif

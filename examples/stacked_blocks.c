@@ -2,9 +2,9 @@
  *
  *   stacked_blocks [directory]
  *
- * The tower settles under its weight in implicit quasi-static steps, then stands in explicit ones, and at 0.3 s
- * the disc, an obstacle that moves as it is told, sets out. Prints where the blocks are and what the floor
- * carries, and draws four moments (stacked_blocks.svg) into the directory (default: here). */
+ * The tower settles under its weight in implicit quasi-static steps, then stands in explicit ones, and at
+ * 0.3 s the disc, an obstacle that moves as it is told, sets out. Prints where the blocks are and what the
+ * floor carries, and draws four moments (stacked_blocks.svg) into the directory (default: here). */
 #include <mpm/mpm.h>
 
 #include <math.h>

@@ -157,15 +157,15 @@ static inline void svg_edges(int64_t n, double width, const double *F, int axis,
     for (int64_t i = 0; i < n; ++i) half[c * n + i] = 0.5 * width * F[(3 * c + axis) * n + i];
 }
 
-/* Particles of a lattice that bends little, as thick strokes: x[c * n + i] is a centre, half[c * n + i] half of
- * the edge towards the next of its row, and width the other edge, in data coordinates. colour[i] is one of rgb;
- * those below 0 are left out. Neighbours in a row that are of one colour share a stroke, which keeps the file
- * small. */
+/* Particles of a lattice that bends little, as thick strokes: x[c * n + i] is a centre, half[c * n + i] half
+ * of the edge towards the next of its row, and width the other edge, in data coordinates. colour[i] is one of
+ * rgb; those below 0 are left out. Neighbours in a row that are of one colour share a stroke, which keeps the
+ * file small. */
 static inline void svg_rows(FILE *out, const svg_frame *f, int64_t n, const double *x, const double *half,
                             double width, const int *colour, int colours, int (*rgb)[3]) {
   enum { LONGEST = 12 };
   if (!out) return;
-  const double scale = f->width / (f->x_max - f->x_min), overlap = 1.0 + 0.5 / (scale * width);
+  const double scale = f->width / (f->x_max - f->x_min), overlap = 1.0 + 0.8 / (scale * width);
   for (int k = 0; k < colours; ++k) {
     int used = 0;
     for (int64_t i = 0, last; i < n; i = last + 1) {

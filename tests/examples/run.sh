@@ -154,6 +154,17 @@ if wanted stacked_blocks; then
   [ -s blocks/stacked_blocks.svg ] || fail "stacked_blocks: stacked_blocks.svg is missing or empty"
 fi
 
+if wanted rolling_disc; then
+  mkdir slope
+  run rolling_disc slope 12
+  check "way" "result: way" 0.97 1.01
+  check "turn" "turn" 0.96 1.0
+  check "friction" "friction" 0.98 1.05
+  check "normal force" "normal force" 0.97 1.02
+  check "energy" "energy lost" 0 4
+  [ -s slope/rolling_disc.svg ] || fail "rolling_disc: rolling_disc.svg is missing or empty"
+fi
+
 if wanted outflow; then
   mkdir channel
   run outflow channel
