@@ -159,14 +159,15 @@ static inline void svg_edges(int64_t n, double width, const double *F, int axis,
 
 /* Particles of a lattice that bends little, as thick strokes: x[c * n + i] is a centre, half[c * n + i] half
  * of the edge towards the next of its row, and width the other edge, in data coordinates. colour[i] is one of
- * rgb; those below 0 are left out. Neighbours in a row that are of one colour share a stroke, which keeps the
- * file small. */
+ * rgb; those below 0 are left out. Neighbours in a row that are of one colour share a stroke, and coordinates
+ * are whole tenths of a pixel from the stroke before, which keeps the file small. */
 static inline void svg_rows(FILE *out, const svg_frame *f, int64_t n, const double *x, const double *half,
                             double width, const int *colour, int colours, int (*rgb)[3]) {
   enum { LONGEST = 12 };
   if (!out) return;
   const double scale = f->width / (f->x_max - f->x_min), overlap = 1.0 + 0.8 / (scale * width);
   for (int k = 0; k < colours; ++k) {
+    long pen[2] = {0, 0};
     int used = 0;
     for (int64_t i = 0, last; i < n; i = last + 1) {
       last = i;
@@ -176,11 +177,16 @@ static inline void svg_rows(FILE *out, const svg_frame *f, int64_t n, const doub
         ++last;
       /* the overlap hides the seams that antialiasing would leave between strokes */
       if (!used++)
-        fprintf(out, "<path fill=\"none\" stroke=\"#%02x%02x%02x\" stroke-width=\"%.2f\" d=\"",
-                (unsigned)rgb[k][0], (unsigned)rgb[k][1], (unsigned)rgb[k][2], overlap * scale * width);
-      const double x0 = svg_x(f, x[i] - overlap * half[i]), y0 = svg_y(f, x[n + i] - overlap * half[n + i]);
-      fprintf(out, "M%.1f %.1fl%.1f %.1f", x0, y0, svg_x(f, x[last] + overlap * half[last]) - x0,
-              svg_y(f, x[n + last] + overlap * half[n + last]) - y0);
+        fprintf(
+            out,
+            "<path transform=\"scale(.1)\" fill=\"none\" stroke=\"#%02x%02x%02x\" stroke-width=\"%.1f\" d=\"",
+            (unsigned)rgb[k][0], (unsigned)rgb[k][1], (unsigned)rgb[k][2], 10.0 * overlap * scale * width);
+      const long from[2] = {lround(10.0 * svg_x(f, x[i] - overlap * half[i])),
+                            lround(10.0 * svg_y(f, x[n + i] - overlap * half[n + i]))},
+                 to[2] = {lround(10.0 * svg_x(f, x[last] + overlap * half[last])),
+                          lround(10.0 * svg_y(f, x[n + last] + overlap * half[n + last]))};
+      fprintf(out, "m%ld %ldl%ld %ld", from[0] - pen[0], from[1] - pen[1], to[0] - from[0], to[1] - from[1]);
+      for (int c = 0; c < 2; ++c) pen[c] = to[c];
     }
     if (used) fputs("\"/>\n", out);
   }

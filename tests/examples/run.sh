@@ -165,6 +165,21 @@ if wanted rolling_disc; then
   [ -s slope/rolling_disc.svg ] || fail "rolling_disc: rolling_disc.svg is missing or empty"
 fi
 
+if wanted four_discs; then
+  mkdir discs
+  run four_discs discs 20
+  check "last disc" "last disc has" 0.94 0.97
+  check "last disc, implicit" "with implicit steps" 0.92 0.95
+  check "shares" "differ by" 0 0.03
+  check "momentum" "momentum off by" 0 1e-12
+  check "energy" "explicit energy at most" 0.98 1.0005
+  check "energy at the end" "at the end" 0.985 1.0
+  check "energy, implicit" "implicit energy at most" 0.98 1.025
+  check "energy at the end, implicit" "in the end" 0.94 0.98
+  check "stresses" "correlate to" 0.94 1
+  [ -s discs/four_discs.svg ] || fail "four_discs: four_discs.svg is missing or empty"
+fi
+
 if wanted outflow; then
   mkdir channel
   run outflow channel
