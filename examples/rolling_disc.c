@@ -50,17 +50,17 @@ static mpm_status fill_slope(mpm_particles *set, double h) {
   const double d = 0.5 * h;
   const int64_t along = (int64_t)((before + beyond) / d + 0.5), deep = (int64_t)(depth / d + 0.5),
                 n = along * deep;
-  double *x = malloc(3 * (size_t)n * sizeof *x), *volume = x + 2 * n;
+  double *x = malloc(3 * (size_t)n * sizeof *x); /* two coordinates, and the volume */
   uint8_t *held = malloc(2 * (size_t)n * sizeof *held);
   mpm_status status = MPM_E_NOMEM;
   for (int64_t i = 0; x && held && i < n; ++i) {
     const double s = ((double)(i / deep) + 0.5) * d - before, z = ((double)(i % deep) + 0.5) * d - depth;
     x[i] = s * cos(angle) + z * sin(angle);
     x[n + i] = z * cos(angle) - s * sin(angle);
-    volume[i] = d * d;
+    x[2 * n + i] = d * d;
     held[i] = held[n + i] = i % deep < HELD;
   }
-  if (x && held) status = mpm_particles_add(set, n, x, NULL, volume, NULL, NULL, NULL);
+  if (x && held) status = mpm_particles_add(set, n, x, NULL, x + 2 * n, NULL, NULL, NULL);
   if (!status) status = mpm_particles_set(set, "prescribed", MPM_U8, 2, n, NULL, held);
   free(x);
   free(held);
@@ -258,14 +258,13 @@ int main(int argc, char **argv) {
   free(x0);
   if (take_down(&w) || mpm_context_destroy(ctx)) goto failed;
   printf("\nwritten to %s: rolling_disc.svg\n", directory);
-  printf(
-      "result: way %.4f of the rigid one's, turn %.4f of the way, friction %.4f, normal force %.4f, energy "
-      "lost %.2f %%\n",
-      way / (0.5 * a * now.t * now.t), turn * radius / way,
-      -down(touch.impulse) / (mass * (share - a) * now.t),
-      off(touch.impulse) / (mass * g * cos(angle) * now.t),
-      100.0 * (energy + now.external_work_total - now.kinetic_energy - now.strain_energy) /
-          now.external_work_total);
+  const double pressed = off(touch.impulse) / (mass * g * cos(angle) * now.t),
+               held_back = -down(touch.impulse) / (mass * (share - a) * now.t),
+               lost = energy + now.external_work_total - now.kinetic_energy - now.strain_energy;
+  printf("result: way %.4f of the rigid one's, turn %.4f of the way, friction %.4f, normal force %.4f, "
+         "energy lost %.2f %%\n",
+         way / (0.5 * a * now.t * now.t), turn * radius / way, held_back, pressed,
+         100.0 * lost / now.external_work_total);
   return 0;
 
 failed:
