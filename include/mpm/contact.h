@@ -78,7 +78,7 @@ typedef struct mpm_contact_info {
   double area;          /**< of closed nodes, length^(dim - 1) */
   double pressure_max;  /**< largest normal traction of a node, stress */
   double gap;           /**< smallest gap that was measured, length; < 0: overlap; infinity if none was */
-  double dissipation;   /**< energy that contact took in the step: friction and inelastic closing */
+  double dissipation;   /**< friction and closing in the step; see contact_dissipation of mpm_step_info */
   double friction_work; /**< of it, by friction */
   double impulse[3];    /**< on the second body over all committed steps since the stepper was made or
                               mpm_stepper_set_time() was called, mass length/time */

@@ -64,13 +64,20 @@ static mpm_status begin_strain(mpmi_balance *balance, const double *u, const mpm
   return status;
 }
 
+/* Deforms the particles of a batch; returns 0 when that fails. */
+static int32_t deform(mpmi_batch *b) {
+  const mpmi_balance *balance = b->user;
+  mpmi_gradient_keep(b);
+  if (!mpmi_strain_deform(b)) return 0;
+  if (balance->settings->desc.locking_remedy) /* kept, because the remedy changes what the law sees */
+    memcpy(balance->newton->work[b->task].F_inc, b->law.F_inc, (size_t)(9 * b->law.ld) * sizeof(double));
+  return 1;
+}
+
 /* Computes the stress of a batch; then `add` puts its force or its stiffness on the nodes. */
 static void take(mpmi_batch *b, void (*add)(mpmi_balance *, mpmi_batch *)) {
   mpmi_balance *balance = b->user;
-  mpmi_gradient_keep(b);
-  if (!mpmi_strain_deform(b)) return;
-  if (balance->settings->desc.locking_remedy) /* kept, because the remedy changes what the law sees */
-    memcpy(balance->newton->work[b->task].F_inc, b->law.F_inc, (size_t)(9 * b->law.ld) * sizeof(double));
+  if (!deform(b)) return;
   mpmi_strain_law(b);
   if (!b->law_ran) return;
   add(balance, b);
@@ -83,19 +90,21 @@ static void take_forces(mpmi_batch *b) {
   take(b, mpmi_add_forces);
 }
 
+/* The stress is that of the particles: a law would not know how fast they deform at the start. */
+static void take_start_forces(mpmi_batch *b) {
+  if (!deform(b)) return;
+  mpmi_law_batch_recall(&b->law, b->set, b->begin, b->n);
+  mpmi_add_forces(b->user, b);
+}
+
 static void give_internal(void *user, const mpmi_visit *visit, double *tile) {
   mpmi_balance *balance = user;
   balance->newton->work[visit->task].tile = tile;
   mpmi_pass_block(&balance->newton->work[visit->task].batch, visit->block, visit->next);
 }
 
-mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
-  static const mpmi_pass pass = {.deforms = 1,
-                                 .bind = mpmi_strain_bind,
-                                 .enter = mpmi_strain_enter,
-                                 .aim = mpmi_strain_aim,
-                                 .take = take_forces};
-  mpm_status status = begin_strain(balance, u, &pass);
+static mpm_status sum_internal(mpmi_balance *balance, const double *u, const mpmi_pass *pass) {
+  mpm_status status = begin_strain(balance, u, pass);
   if (!status)
     status =
         mpmi_accumulate(balance->step, &(mpmi_accumulation){.to = &balance->newton->force,
@@ -106,6 +115,26 @@ mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
   if (!status) status = mpmi_step_failure(balance->step);
   if (!status) mpmi_unknowns_fold(balance, &balance->newton->force, balance->newton->vector[MPMI_INTERNAL]);
   return status;
+}
+
+mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
+  static const mpmi_pass pass = {.deforms = 1,
+                                 .bind = mpmi_strain_bind,
+                                 .enter = mpmi_strain_enter,
+                                 .aim = mpmi_strain_aim,
+                                 .take = take_forces};
+  return sum_internal(balance, u, &pass);
+}
+
+mpm_status mpmi_start_forces(mpmi_balance *balance) {
+  static const mpmi_pass pass = {.deforms = 1,
+                                 .bind = mpmi_strain_bind,
+                                 .enter = mpmi_strain_enter,
+                                 .aim = mpmi_strain_aim,
+                                 .take = take_start_forces};
+  double *u = balance->newton->vector[MPMI_U];
+  memset(u, 0, (size_t)(balance->newton->matrix.rows * balance->settings->grid->dim) * sizeof *u);
+  return sum_internal(balance, u, &pass);
 }
 
 /* ---- stiffness ---------------------------------------------------------------------------------------- */

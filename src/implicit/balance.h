@@ -187,6 +187,8 @@ mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows);
 mpm_status mpmi_external_forces(mpmi_balance *balance);
 /* Computes the stress of the displacements u, and the internal force that it makes. Fails as the law does. */
 mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u);
+/* Computes the internal force of the stress that the particles have at the start of the step. */
+mpm_status mpmi_start_forces(mpmi_balance *balance);
 /* Computes the stress of the displacements u, and the stiffness at them. Fails as the law does. */
 mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u);
 

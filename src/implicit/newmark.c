@@ -55,27 +55,30 @@ static mpm_status find_external(mpmi_balance *balance, double t, double *clock) 
   return status;
 }
 
-/* Puts the accelerations at the start of the step on the nodes: M a0 = f_ext - f_int, and 0 for held
- * components. */
+/* Computes the accelerations at the start of the step by row: M a0 = f_ext - f_int, and 0 for held components. */
 static mpm_status balance_start(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
-  double *u = newton->vector[MPMI_U], *external = newton->vector[MPMI_EXTERNAL];
-  const int64_t n = newton->matrix.rows * dim;
-  memset(u, 0, (size_t)n * sizeof *u);
-  mpm_status status = mpmi_internal_forces(balance, u);
+  double *external = newton->vector[MPMI_EXTERNAL];
+  const mpm_status status = mpmi_start_forces(balance);
   if (status) return status;
   mpmi_unknowns_fold(balance, &newton->external, external);
+  for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
+    const double mass = newton->mass[at / dim], force = external[at] - newton->vector[MPMI_INTERNAL][at];
+    newton->vector[MPMI_A0][at] = newton->matrix.held[at] || !(mass > 0.0) ? 0.0 : force / mass;
+  }
+  return MPM_OK;
+}
+
+/* Puts values by row on the projected nodes. */
+static void spread(mpmi_balance *balance, const double *value) {
+  const mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim;
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const mpmi_active_node *node = &newton->active[i];
     double *to = mpmi_velocity(&balance->nodes->projected, node->slot);
-    for (int32_t c = 0; c < dim; ++c) {
-      const int64_t at = (int64_t)node->row * dim + c;
-      const double mass = newton->mass[node->row], force = external[at] - newton->vector[MPMI_INTERNAL][at];
-      to[c] = newton->matrix.held[at] || !(mass > 0.0) ? 0.0 : node->sign[c] * (force / mass);
-    }
+    for (int32_t c = 0; c < dim; ++c) to[c] = node->sign[c] * value[(int64_t)node->row * dim + c];
   }
-  return MPM_OK;
 }
 
 static int32_t lacks_accelerations(const mpmi_balance *balance) {
@@ -87,15 +90,18 @@ static int32_t lacks_accelerations(const mpmi_balance *balance) {
 
 /* Finds the accelerations of sets that lack them, from those of the nodes. */
 static mpm_status find_accelerations(mpmi_balance *balance, double *clock) {
-  mpm_status status = balance_start(balance);
-  mpmi_lap(balance->step, MPMI_TIME_ASSEMBLY, clock);
-  if (!status) status = mpmi_g2p_accelerations(balance->step, balance->nodes, &balance->nodes->projected);
+  spread(balance, balance->newton->vector[MPMI_A0]);
+  const mpm_status status = mpmi_g2p_accelerations(balance->step, balance->nodes, &balance->nodes->projected);
   mpmi_lap(balance->step, MPMI_TIME_G2P, clock);
   return status;
 }
 
-/* Brings the accelerations at the start of the step into the second copies and onto the nodes. */
+/* Brings the accelerations at the start of the step into the second copies and onto the nodes. Where bodies
+ * touch they are those of the balance: what balances a force of contact acts at the node, and particles would
+ * carry it to others. */
 static mpm_status prepare_accelerations(mpmi_balance *balance, int32_t unknown, double *clock) {
+  const int32_t touches = balance->newton->constraint_count > 0;
+  mpm_status status = MPM_OK;
   for (int32_t m = 0; m < balance->layout->member_count; ++m) {
     const mpm_particles *set = balance->layout->member[m].set;
     if ((set->dirty & MPMI_DIRTY_ACCELERATION) || !set->ld) continue; /* or nothing was ever added */
@@ -103,8 +109,11 @@ static mpm_status prepare_accelerations(mpmi_balance *balance, int32_t unknown, 
       memcpy(mpmi_component_row(set, MPMI_ACCELERATION, 1, c),
              mpmi_component_row(set, MPMI_ACCELERATION, 0, c), (size_t)set->slots * sizeof(double));
   }
-  mpm_status status = unknown ? find_accelerations(balance, clock) : MPM_OK;
-  if (!status) status = project(balance, MPMI_PROJECT_ACCELERATION, clock);
+  if (unknown || touches) status = balance_start(balance);
+  mpmi_lap(balance->step, MPMI_TIME_ASSEMBLY, clock);
+  if (!status && unknown) status = find_accelerations(balance, clock);
+  if (status || touches) return status;
+  status = project(balance, MPMI_PROJECT_ACCELERATION, clock);
   if (!status) fold_means(balance, balance->newton->vector[MPMI_A0]);
   return status;
 }
@@ -114,10 +123,12 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   const double dt = balance->step->dt;
   mpmi_newton *newton = balance->newton;
   const int32_t unknown = lacks_accelerations(balance);
+  const int32_t at_start =
+      unknown || (mpmi_is_dynamic(balance->settings) && balance->nodes->contact.site_count > 0);
   mpm_status status = mpmi_prescribed_stage(balance->step);
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
   if (status || (status = find_nodes(balance, clock)) ||
-      (status = find_external(balance, unknown ? balance->step->t : balance->step->t + dt, clock)) ||
+      (status = find_external(balance, at_start ? balance->step->t : balance->step->t + dt, clock)) ||
       (status = mpmi_unknowns_find(balance)))
     return status;
   fold_means(balance, newton->vector[MPMI_V0]);
@@ -128,7 +139,7 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
          (size_t)(newton->matrix.rows * balance->settings->grid->dim) * sizeof(double));
   if (mpmi_is_dynamic(balance->settings) && (status = prepare_accelerations(balance, unknown, clock)))
     return status;
-  if (unknown && (status = find_external(balance, balance->step->t + dt, clock))) return status;
+  if (at_start && (status = find_external(balance, balance->step->t + dt, clock))) return status;
   mpmi_unknowns_fold(balance, &newton->external, newton->vector[MPMI_EXTERNAL]);
   return MPM_OK;
 }
@@ -172,22 +183,17 @@ static void set_nodes(mpmi_balance *balance) {
   }
 }
 
-/* Gives particles the accelerations without contact, as they carry them to the next step: with it the
- * trapezoid makes energy. They take the increments of the nodes then; by their own accelerations, which
- * are uneven where bodies touch, they would drift away from them. */
+/* In a step with contact particles take the increments of the nodes: by their own accelerations they would drift
+ * away from them. Here they are given the accelerations that they show, and go on with once nothing touches. */
 static mpm_status carry_accelerations(mpmi_balance *balance) {
-  const mpmi_newton *newton = balance->newton;
-  const int32_t dim = balance->settings->grid->dim;
+  mpmi_newton *newton = balance->newton;
+  double *mean = newton->vector[MPMI_TERMS];
   balance->step->whole_increments = newton->constraint_count > 0 && mpmi_is_dynamic(balance->settings);
   if (!balance->step->whole_increments) return MPM_OK;
-  for (int64_t i = 0; i < newton->active_count; ++i) {
-    const mpmi_active_node *node = &newton->active[i];
-    double *to = mpmi_velocity(&balance->nodes->projected, node->slot);
-    for (int32_t c = 0; c < dim; ++c) {
-      const int64_t at = (int64_t)node->row * dim + c;
-      to[c] = node->sign[c] * (mpmi_newmark_acceleration(balance, at) - contact_acceleration(balance, at));
-    }
-  }
+  const double less = 1.0 - mpmi_contact_share(balance->settings);
+  for (int64_t at = 0; at < newton->matrix.rows * balance->settings->grid->dim; ++at)
+    mean[at] = mpmi_newmark_acceleration(balance, at) - less * contact_acceleration(balance, at);
+  spread(balance, mean);
   return mpmi_g2p_all_accelerations(balance->step, balance->nodes, &balance->nodes->projected);
 }
 

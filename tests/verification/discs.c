@@ -98,7 +98,7 @@ disc_outcome disc_collide(const disc_hit *a, FILE *history) {
     if (now.t >= 3.6 - 1e-12) break;
     double dt;
     verify_ok(&w, mpm_stable_dt(w.stepper, &dt));
-    now = verify_step(&w, fmin(0.4 * dt, 3.6 - now.t));
+    now = verify_step(&w, fmin((a->cfl > 0.0 ? a->cfl : 0.4) * dt, 3.6 - now.t));
     info = support_info(&w, &other);
     const double force = hypot(info.force[0], info.force[1]);
     steady += (force - steady) * fmin(1.0, now.dt / 0.03);

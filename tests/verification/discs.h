@@ -15,6 +15,7 @@ double disc_spin(const verify_world *w, const mpm_particles *set, const double *
 
 typedef struct disc_hit {
   int against, cells, scheme, transfer, basis; /* against: ON_BODY is another disc */
+  double cfl;                                  /* of the stable step; 0: 0.4 */
   double shift[2], angle, offset, friction; /* shift: in cells; angle: of the flight, -90 degrees to a wall;
                                                   offset: of the lines of flight, in radii */
 } disc_hit;
