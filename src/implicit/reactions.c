@@ -18,14 +18,18 @@ static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *n
   return force;
 }
 
-/* Returns what a node has of the contact force on its row, by its share of the mass. Where the component is
- * held, the holder and contact each keep their own. */
-static double contact_on(const mpmi_balance *balance, const mpmi_active_node *node, int32_t c, double mass) {
+/* Returns the contact force on a row. Where the component is held, the holder and contact each keep their
+ * own. */
+static double contact_of(const mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
-  const int64_t at = (int64_t)node->row * balance->settings->grid->dim + c;
-  const double whole = newton->mass[node->row];
-  if (newton->matrix.held[at] || !(whole > 0.0)) return 0.0;
-  return node->sign[c] * mass / whole * newton->vector[MPMI_CONTACT][at];
+  const int64_t at = row * balance->settings->grid->dim + c;
+  return newton->matrix.held[at] || !(newton->mass[row] > 0.0) ? 0.0 : newton->vector[MPMI_CONTACT][at];
+}
+
+/* Returns what a node has of it, by its share of the mass. */
+static double contact_on(const mpmi_balance *balance, const mpmi_active_node *node, int32_t c, double mass) {
+  const double whole = balance->newton->mass[node->row];
+  return whole > 0.0 ? node->sign[c] * mass / whole * contact_of(balance, node->row, c) : 0.0;
 }
 
 /* Friction walls are surfaces, and nodes that they push have no other holder there. */
@@ -47,12 +51,13 @@ static void record_friction_walls(mpmi_balance *balance) {
 static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_constraints *constraints = &balance->layout->constraints;
-  double total = 0.0, along = 0.0;
+  double total = 0.0, along = 0.0, by_contact = 0.0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
     const mpmi_active_node *node = &newton->active[newton->members[m]];
     const double mass = *mpmi_mass(&balance->nodes->solved, node->slot);
-    const double impulse =
-        balance->step->dt * (reaction_on(balance, node, c) - contact_on(balance, node, c, mass));
+    const double contact = contact_on(balance, node, c, mass);
+    const double impulse = balance->step->dt * (reaction_on(balance, node, c) - contact);
+    by_contact += contact;
     balance->nodes->impulse[node->slot].given[c] = impulse;
     if (mass > 0.0) balance->nodes->impulse[node->slot].change[c] = impulse / mass;
     total += impulse;
@@ -65,8 +70,12 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
     balance->step->host_work += along * balance->nodes->held_value[master][c];
   else if (tie < 0) /* nothing holds it: this is what the iterations have left */
     balance->nodes->impulse[slot].given[c] = balance->nodes->impulse[slot].change[c] = 0.0;
-  else if (constraints->tie[tie].face[c] >= 0)
-    balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total;
+  else if (constraints->tie[tie].face[c] >= 0) {
+    /* a mirror image undoes a part of what contact gives its master: the wall has that */
+    const double undone = balance->step->dt * (by_contact - contact_of(balance, row, c));
+    balance->nodes->impulse[master].given[c] += undone;
+    balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total + undone;
+  }
 }
 
 mpm_status mpmi_record_reactions(mpmi_balance *balance) {
