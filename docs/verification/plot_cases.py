@@ -98,8 +98,10 @@ def contact_bars():
 def contact_implicit():
     figure, ax = axes(2)
     data, bars = read("contact_implicit"), read("contact_bars_table")
-    ax[0].plot(data["half_width"], data["width"], "o-", label="width of contact")
-    ax[0].plot(data["half_width"], data["pressure"], "s-", label="pressure, second cell")
+    for case, end, steps in (("cylinder", "-", ""), ("cylinder explicit", "", ", explicit")):
+        at = rows(data, case=case)
+        ax[0].plot(at["half_width"], at["width"], "C0o" + end, fillstyle="none" if steps else "full", label="width of contact" + steps)
+        ax[0].plot(at["half_width"], at["pressure"], "C1s" + end, fillstyle="none" if steps else "full", label="pressure, second cell" + steps)
     ax[0].axhline(1, color="k", linewidth=0.8)
     ax[0].set_xlabel("half the width by Hertz, cells")
     ax[0].set_ylabel("measured / Hertz")

@@ -182,6 +182,13 @@ void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, d
 /* Makes the pattern for the active nodes as numbered, with so many rows. */
 mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows);
 
+static inline double mpmi_heaviest_row(const mpmi_newton *newton) {
+  double most = 0.0;
+  for (int64_t row = 0; row < newton->matrix.rows; ++row)
+    most = newton->mass[row] > most ? newton->mass[row] : most;
+  return most;
+}
+
 /* ---- assembly.c -------------------------------------------------------------------------------------- */
 /* Computes the external forces; their fourth value tells the nodes that have stiffness. */
 mpm_status mpmi_external_forces(mpmi_balance *balance);

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* Touches that push less than this share of the hardest, and nodes with less than this share of the mass of the
+/* Touches that push less than this share of the hardest, and rows with less than this share of the mass of the
  * heaviest, may slide as they like: nodes at the rim of a body move far and mean little. */
 static const double pushes_at_all = 1e-3, weighs_at_all = 1e-2;
 
@@ -48,7 +48,7 @@ static largest largest_of(const mpmi_balance *balance) {
   for (int64_t k = 0; k < newton->constraint_count; ++k)
     of.force = fmax(of.force, mpmi_inner(newton->constraint[k].force,
                                          mpmi_touch_of(balance, &newton->constraint[k])->normal));
-  for (int64_t row = 0; row < newton->matrix.rows; ++row) of.mass = fmax(of.mass, newton->mass[row]);
+  of.mass = mpmi_heaviest_row(newton);
   return of;
 }
 

@@ -6,6 +6,9 @@
 
 #include <string.h>
 
+/* A row is light with less than this share of the mass of the heaviest. */
+static const double light_row = 1e-3;
+
 /* Computes means by row: sums mass and mass times value of its nodes, and divides. */
 static void fold_means(const mpmi_balance *balance, double *mean) {
   mpmi_newton *newton = balance->newton;
@@ -96,6 +99,45 @@ static mpm_status find_accelerations(mpmi_balance *balance, double *clock) {
   return status;
 }
 
+static int32_t body_of_row(const mpmi_balance *balance, int64_t row) {
+  const mpmi_newton *newton = balance->newton;
+  const mpmi_blocks *b = &balance->layout->blocks;
+  return b->body[newton->active[newton->members[newton->members_start[row]]].slot / b->nodes];
+}
+
+/* Returns the heaviest row beside one, of the same body and free in a component; -1 where all are light. */
+static int64_t heavy_neighbour(const mpmi_balance *balance, int64_t row, int32_t c, double light) {
+  const mpmi_newton *newton = balance->newton;
+  const mpmi_matrix *A = &newton->matrix;
+  double most = light;
+  int64_t found = -1;
+  for (int64_t e = A->row_start[row]; e < A->row_start[row + 1]; ++e) {
+    const int64_t other = A->column[e];
+    if (!(newton->mass[other] > most) || A->held[other * A->block + c] ||
+        body_of_row(balance, other) != body_of_row(balance, row))
+      continue;
+    most = newton->mass[other];
+    found = other;
+  }
+  return found;
+}
+
+/* Light rows, where f / m is rough, take the accelerations of the particles, and the rest of their force goes to
+ * a neighbour. */
+static void smooth_light_rows(mpmi_balance *balance, const double *of_particles) {
+  const mpmi_newton *newton = balance->newton;
+  const double light = light_row * mpmi_heaviest_row(newton);
+  const int32_t dim = balance->settings->grid->dim;
+  double *start = newton->vector[MPMI_A0];
+  for (int64_t row = 0; row < newton->matrix.rows; ++row)
+    for (int32_t c = 0; c < dim && !(newton->mass[row] > light); ++c) {
+      const int64_t at = row * dim + c, heavy = heavy_neighbour(balance, row, c, light);
+      if (heavy < 0 || newton->matrix.held[at]) continue;
+      start[heavy * dim + c] += newton->mass[row] * (start[at] - of_particles[at]) / newton->mass[heavy];
+      start[at] = of_particles[at];
+    }
+}
+
 /* Brings the accelerations at the start of the step into the second copies and onto the nodes. Where bodies
  * touch they are those of the balance: what balances a force of contact acts at the node, and particles would
  * carry it to others. */
@@ -112,10 +154,11 @@ static mpm_status prepare_accelerations(mpmi_balance *balance, int32_t unknown, 
   if (unknown || touches) status = balance_start(balance);
   mpmi_lap(balance->step, MPMI_TIME_ASSEMBLY, clock);
   if (!status && unknown) status = find_accelerations(balance, clock);
-  if (status || touches) return status;
-  status = project(balance, MPMI_PROJECT_ACCELERATION, clock);
-  if (!status) fold_means(balance, balance->newton->vector[MPMI_A0]);
-  return status;
+  if (!status) status = project(balance, MPMI_PROJECT_ACCELERATION, clock);
+  if (status) return status;
+  fold_means(balance, balance->newton->vector[touches ? MPMI_TERMS : MPMI_A0]);
+  if (touches) smooth_light_rows(balance, balance->newton->vector[MPMI_TERMS]);
+  return MPM_OK;
 }
 
 /* Projects all that the balance needs. */

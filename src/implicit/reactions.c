@@ -20,16 +20,10 @@ static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *n
 
 /* Returns the contact force on a row. Where the component is held, the holder and contact each keep their
  * own. */
-static double contact_of(const mpmi_balance *balance, int64_t row, int32_t c) {
+static double contact_on(const mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const int64_t at = row * balance->settings->grid->dim + c;
   return newton->matrix.held[at] || !(newton->mass[row] > 0.0) ? 0.0 : newton->vector[MPMI_CONTACT][at];
-}
-
-/* Returns what a node has of it, by its share of the mass. */
-static double contact_on(const mpmi_balance *balance, const mpmi_active_node *node, int32_t c, double mass) {
-  const double whole = balance->newton->mass[node->row];
-  return whole > 0.0 ? node->sign[c] * mass / whole * contact_of(balance, node->row, c) : 0.0;
 }
 
 /* Friction walls are surfaces, and nodes that they push have no other holder there. */
@@ -47,35 +41,31 @@ static void record_friction_walls(mpmi_balance *balance) {
   }
 }
 
-/* Records one component of one row, on the nodes that move with it. */
+/* Records one component of one row, on the nodes that move with it. Contact acts on the master. */
 static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_constraints *constraints = &balance->layout->constraints;
-  double total = 0.0, along = 0.0, by_contact = 0.0;
-  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
-    const mpmi_active_node *node = &newton->active[newton->members[m]];
-    const double mass = *mpmi_mass(&balance->nodes->solved, node->slot);
-    const double contact = contact_on(balance, node, c, mass);
-    const double impulse = balance->step->dt * (reaction_on(balance, node, c) - contact);
-    by_contact += contact;
-    balance->nodes->impulse[node->slot].given[c] = impulse;
-    if (mass > 0.0) balance->nodes->impulse[node->slot].change[c] = impulse / mass;
-    total += impulse;
-    along += node->sign[c] * impulse;
-  }
   const int64_t slot = newton->active[newton->members[newton->members_start[row]]].slot;
   const int32_t tie = constraints->tie_of[slot];
   const int64_t master = tie < 0 ? slot : constraints->tie[tie].master;
+  double total = 0.0, along = 0.0;
+  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
+    const mpmi_active_node *node = &newton->active[newton->members[m]];
+    const double mass = *mpmi_mass(&balance->nodes->solved, node->slot);
+    const double change = balance->step->dt * reaction_on(balance, node, c);
+    const double impulse =
+        change - (node->slot == master ? balance->step->dt * contact_on(balance, row, c) : 0.0);
+    balance->nodes->impulse[node->slot].given[c] = impulse;
+    if (mass > 0.0) balance->nodes->impulse[node->slot].change[c] = change / mass;
+    total += impulse;
+    along += node->sign[c] * impulse;
+  }
   if (mpmi_held_by(balance->nodes, master, c))
     balance->step->host_work += along * balance->nodes->held_value[master][c];
   else if (tie < 0) /* nothing holds it: this is what the iterations have left */
     balance->nodes->impulse[slot].given[c] = balance->nodes->impulse[slot].change[c] = 0.0;
-  else if (constraints->tie[tie].face[c] >= 0) {
-    /* a mirror image undoes a part of what contact gives its master: the wall has that */
-    const double undone = balance->step->dt * (by_contact - contact_of(balance, row, c));
-    balance->nodes->impulse[master].given[c] += undone;
-    balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total + undone;
-  }
+  else if (constraints->tie[tie].face[c] >= 0)
+    balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total;
 }
 
 mpm_status mpmi_record_reactions(mpmi_balance *balance) {

@@ -89,6 +89,42 @@ START_TEST(implicit_slip) {
 }
 END_TEST
 
+/* Two discs, which meet at a point, have no more energy while they touch than before: internal forces that
+ * balance contact do no work at other nodes. */
+START_TEST(implicit_discs) {
+  const double h = 0.1, speed = 0.02, fast[2] = {speed, 0.0}, centre[2][2] = {{1.0, 1.0}, {2.0, 1.0}};
+  const int32_t per_cell[2] = {2, 2};
+  method how = methods[1];
+  how.scheme = MPM_NEWMARK;
+  world w;
+  world_desc desc = world_with(&how, 2, 30, h);
+  desc.sets = 1;
+  desc.law.E = desc.law.density;
+  world_open(&w, &desc);
+  for (int32_t m = 0; m < 2; ++m) {
+    mpm_particles *disc = m ? world_add_set(&w, NULL) : w.set[0];
+    ck_ok(&w, mpm_particles_fill_ball(disc, centre[m], 0.5, per_cell, NULL, NULL));
+    if (!m) ck_ok(&w, mpm_particles_set_all(disc, "velocity", MPM_F64, 2, fast));
+    ck_ok(&w, mpm_stepper_set_body(w.stepper, disc, m));
+  }
+  mpm_contact_desc rule = contact_desc(0.0);
+  rule.kind = _i ? MPM_CONTACT_TIED : MPM_CONTACT_UNILATERAL;
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 0, 1, &rule));
+  mpm_step_info now = world_info(&w);
+  const double first = now.kinetic_energy;
+  double most = 0.0, least = first;
+  while (now.t < 3.0) {
+    now = world_step(&w, 0.4 * h);
+    most = fmax(most, now.kinetic_energy + now.strain_energy);
+    least = fmin(least, now.kinetic_energy);
+  }
+  show("discs %d: largest energy %.4f, least kinetic %.4f\n", (int)_i, most / first, least / first);
+  ck_between("they met", least / first, 0.3, 0.7);
+  ck_between("energy", most / first, 0.9, 1.0005);
+  world_close(&w);
+}
+END_TEST
+
 /* ---- memory -------------------------------------------------------------------------------------------- */
 /* Every allocation of steps in contact fails once; the state stays, and the next try succeeds. */
 START_TEST(memory_runs_out) {
@@ -126,6 +162,7 @@ void add_contact_steps(Suite *suite) {
   tcase_add_test(steps, implicit_bodies);
   tcase_add_loop_test(steps, implicit_solvers, 1, 4);
   tcase_add_test(steps, implicit_slip);
+  tcase_add_loop_test(steps, implicit_discs, 0, 2);
   tcase_add_loop_test(steps, memory_runs_out, 0, 2);
   suite_add_tcase(suite, steps);
 }

@@ -103,7 +103,7 @@ static void implicit(FILE *table) {
     const disc_outcome o = disc_collide(&a, NULL);
     char name[80];
     snprintf(name, sizeof name, "implicit at CFL %g, h = 1/%d", a.cfl, a.cells);
-    show(name, &a, &o, table);
+    show("implicit", &a, &o, table);
     keeps_laws(name, &o);
     if (k != 1)
       verify_gate_of(name, "rebound / speed (FEM 0.909)", o.rebound, 0.909 - (k < 2 ? 0.045 : 0.02), 0.919,
