@@ -9,7 +9,7 @@
  * isochromatics, which are lines of equal difference of the principal stresses in the plane.
  *
  * What to expect: discs that have let go ring, and explicit steps show it as noise, which longer implicit
- * steps do not resolve. Kinetic and strain energy together fall by 1 % with explicit steps and by 4 % with
+ * steps do not resolve. Kinetic and strain energy together fall by 1 % with explicit steps and by 3 % with
  * implicit ones. */
 #include <mpm/mpm.h>
 

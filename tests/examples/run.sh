@@ -169,7 +169,7 @@ if wanted four_discs; then
   mkdir discs
   run four_discs discs 20
   check "last disc" "last disc has" 0.94 0.97
-  check "last disc, implicit" "with implicit steps" 0.92 0.95
+  check "last disc, implicit" "with implicit steps" 0.93 0.96
   check "shares" "differ by" 0 0.03
   check "momentum" "momentum off by" 0 1e-12
   check "energy" "explicit energy at most" 0.98 1.0005
