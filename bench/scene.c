@@ -37,7 +37,7 @@ static lattice lattice_of(const bench_case *of, int64_t side, double corner) {
   const int32_t divided = of->extras == BENCH_CORNER || of->extras == BENCH_HALVES;
   lattice l = {.dim = of->dim, .side = side, .part = {0, 0, 0}, .corner = corner};
   for (int32_t k = 0; k < of->dim && divided; ++k)
-    l.part[k] = of->extras == BENCH_CORNER ? 20 : k ? side : side / 4 * 2;
+    l.part[k] = of->extras == BENCH_CORNER ? 18 : k ? side : side / 4 * 2;
   return l;
 }
 

@@ -15,8 +15,8 @@ enum {
   BENCH_SECOND_ORDER, /* positions */
   BENCH_REMEDY,       /* against locking */
   BENCH_OBSTACLES,    /* ten, which nothing comes near */
-  BENCH_CORNER,       /* a corner of the body, ten cells wide, is another body in contact */
-  BENCH_HALVES        /* one half of the body is another body in contact */
+  BENCH_CORNER, /* a corner of the body, nine cells wide, is another body in contact: 999 shared nodes */
+  BENCH_HALVES  /* one half of the body is another body in contact */
 };
 
 typedef struct bench_case {

@@ -178,7 +178,6 @@ static void visit_block(void *user, const mpmi_visit *visit) {
   const mpmi_step *step = search->step;
   const mpmi_layout *layout = step->layout;
   const mpm_grid *grid = layout->blocks.grid;
-  if (!search->contact->in_reach[visit->block]) return;
   mpmi_tile_use(grid, step->work->scratch[visit->task].tile, 8);
   const cloud_tile tile = load_tile(search, visit->block, step->work->scratch[visit->task].tile);
   if (!tile.any) return;
@@ -234,7 +233,7 @@ mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {
       MPMI_RESERVE_MORE(c, contact->in_reach, contact->reach_capacity, search->step->layout->blocks.count);
   if (status) return status;
   mark_near(search);
-  if ((status = mpmi_visit_colours(search->step, 0, visit_block, &job))) return status;
+  if ((status = mpmi_visit_marked(search->step, contact->in_reach, 1, 0, visit_block, &job))) return status;
   contact->entry_count = 0;
   for (int64_t i = 0; i < contact->cloud_count; ++i) {
     contact->cloud[i].first = contact->entry_count; /* images count none */
@@ -243,7 +242,7 @@ mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {
   }
   status = MPMI_RESERVE_MORE(c, contact->entry, contact->entry_capacity, contact->entry_count);
   job.fill = 1;
-  if (!status) status = mpmi_visit_colours(search->step, 0, visit_block, &job);
+  if (!status) status = mpmi_visit_marked(search->step, contact->in_reach, 1, 0, visit_block, &job);
   const int32_t unused = 3 - search->step->layout->blocks.grid->dim;
   for (int64_t i = 0; i < contact->cloud_count && unused; ++i)
     for (int32_t k = 0; k < 3; ++k)

@@ -3,6 +3,7 @@
  * once for each surface. */
 #include "contact/contact.h"
 #include "layout/tasks.h"
+#include "layout/visit.h"
 
 #include <math.h>
 
@@ -66,7 +67,10 @@ static void clear_chunk(const surface_job *job, int32_t member, int64_t begin, i
   }
 }
 
-static void clear_block(const surface_job *job, int64_t block, mpmi_failure *failure) {
+static void clear_block(void *user, const mpmi_visit *visit) {
+  const surface_job *job = user;
+  const int64_t block = visit->block;
+  mpmi_failure *failure = &job->search->step->work->report[visit->task].failure;
   const mpmi_layout *layout = job->search->step->layout;
   const mpmi_contact_nodes *contact = job->search->contact;
   const mpmi_surface *surface = &contact->surface[job->surface];
@@ -84,14 +88,6 @@ static void clear_block(const surface_job *job, int64_t block, mpmi_failure *fai
       if (!far) clear_chunk(job, m, s, upto, &last, failure);
     }
   }
-}
-
-static void clear_task(void *data, int64_t k) {
-  const surface_job *job = data;
-  const mpmi_step *step = job->search->step;
-  const mpmi_share share = mpmi_share_of(step->settings, step->layout->blocks.count, k);
-  for (int64_t block = share.begin; block < share.end; ++block)
-    if (job->search->contact->in_reach[block]) clear_block(job, block, &step->work->report[k].failure);
 }
 
 /* ---- gaps ---------------------------------------------------------------------------------------------- */
@@ -206,8 +202,8 @@ mpm_status mpmi_surface_gaps_find(mpmi_contact_search *search) {
   for (int32_t i = 0; i < contact->surface_count && !status; ++i) {
     surface_job job = {search, i};
     if (contact->by_surface[i] == contact->by_surface[i + 1]) continue;
-    status = mpmi_run_tasks(settings, contact->surface[i].shape == MPM_SHAPE_DISTANCE, settings->tasks,
-                            clear_task, &job);
+    status = mpmi_visit_marked(search->step, contact->in_reach, 0,
+                               contact->surface[i].shape == MPM_SHAPE_DISTANCE, clear_block, &job);
     if (!status) status = mpmi_step_failure(search->step);
     if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, gap_task, &job);
   }

@@ -41,6 +41,40 @@ mpm_status mpmi_visit_colours(const mpmi_step *step, int32_t calls_host, mpmi_vi
   return status;
 }
 
+typedef struct marked {
+  walk walk;
+  const uint8_t *mark;
+  int64_t count, tasks; /* count: of marked blocks */
+} marked;
+
+/* The k-th share of the marked blocks of the list, which may lie close together in it. */
+static void marked_task(void *data, int64_t k) {
+  const marked *m = data;
+  const mpmi_worklist *list = m->walk.list;
+  const int64_t begin = k * m->count / m->tasks, end = (k + 1) * m->count / m->tasks;
+  mpmi_visit visit = {(int32_t)k, -1, -1};
+  int64_t at = 0;
+  for (int64_t i = 0; i < list->count && at < end; ++i) {
+    if (!m->mark[list->block[i]] || at++ < begin) continue;
+    visit.next = list->block[i];
+    if (visit.block >= 0) m->walk.visit(m->walk.user, &visit);
+    visit.block = visit.next;
+  }
+  visit.next = -1;
+  if (visit.block >= 0) m->walk.visit(m->walk.user, &visit);
+}
+
+mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t by_colour,
+                             int32_t calls_host, mpmi_visit_fn visit, void *user) {
+  mpm_status status = MPM_OK;
+  for (int32_t c = by_colour; c <= (by_colour ? MPMI_COLOURS : 0) && !status; ++c) {
+    marked m = {{&step->layout->worklist[c], visit, user}, mark, 0, step->settings->tasks};
+    for (int64_t i = 0; i < m.walk.list->count; ++i) m.count += mark[m.walk.list->block[i]] != 0;
+    if (m.count) status = mpmi_run_tasks(step->settings, calls_host, m.tasks, marked_task, &m);
+  }
+  return status;
+}
+
 void mpmi_visit_in_turn(const mpmi_step *step, mpmi_visit_fn visit, void *user) {
   const walk w = {&step->layout->worklist[0], visit, user};
   walk_range(&w, 0, 0, w.list->count);
