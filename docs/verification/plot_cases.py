@@ -101,7 +101,8 @@ def contact_implicit():
     for case, end, steps in (("cylinder", "-", ""), ("cylinder explicit", "", ", explicit")):
         at = rows(data, case=case)
         ax[0].plot(at["half_width"], at["width"], "C0o" + end, fillstyle="none" if steps else "full", label="width of contact" + steps)
-        ax[0].plot(at["half_width"], at["pressure"], "C1s" + end, fillstyle="none" if steps else "full", label="pressure, second cell" + steps)
+        ax[0].plot(at["half_width"], at["traction"], "C1s" + end, fillstyle="none" if steps else "full", label="pressure in the middle" + steps)
+        ax[0].plot(at["half_width"], at["stress"], "C2^" + end, fillstyle="none" if steps else "full", label="stress in the second cell" + steps)
     ax[0].axhline(1, color="k", linewidth=0.8)
     ax[0].set_xlabel("half the width by Hertz, cells")
     ax[0].set_ylabel("measured / Hertz")

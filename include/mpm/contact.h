@@ -76,9 +76,10 @@ typedef struct mpm_contact_info {
   double torque[3];     /**< of the same about the origin; in 2-D in component 2 */
   double normal_force;  /**< sum of the nodes' normal forces, >= 0 without adhesion */
   double area;          /**< of closed nodes, length^(dim - 1) */
-  double pressure_max;  /**< largest normal traction of a node, stress */
-  double gap;           /**< smallest gap that was measured, length; < 0: overlap; infinity if none was */
-  double dissipation;   /**< friction and closing in the step; see contact_dissipation of mpm_step_info */
+  double pressure_max; /**< largest normal force over area of a node, stress: rows of nodes on both sides of a
+                              surface share them unevenly, and it may be twice what the surface has */
+  double gap;          /**< smallest gap that was measured, length; < 0: overlap; infinity if none was */
+  double dissipation;  /**< friction and closing in the step; see contact_dissipation of mpm_step_info */
   double friction_work; /**< of it, by friction */
   double impulse[3];    /**< on the second body over all committed steps since the stepper was made or
                               mpm_stepper_set_time() was called, mass length/time */
