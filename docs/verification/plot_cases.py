@@ -311,3 +311,20 @@ def transfers_square():
     loglog(ax, "h", "loss of angular momentum in one turn", 10)
     ax.legend()
     return figure
+
+
+@plot
+def tension():
+    figure, ax = axes(3, width=3.2, height=3.6)
+    data = read("tension")
+    names = list(dict.fromkeys(data["transfer"]))
+    for panel, stretch in zip(ax, (0.8, 1.05, 1.5)):
+        for k, scheme in enumerate(("USL", "USF", "MUSL")):
+            at = rows(data, stretch=stretch, scheme=scheme)
+            panel.plot([b / a for a, b in zip(at["first"], at["last"])], range(len(names)), "osD"[k], fillstyle="none", label=scheme)
+        panel.axvline(1, color="k", linewidth=0.8)
+        panel.set_xscale("log")
+        panel.set_yticks(range(len(names)), names if panel is ax[0] else [])
+        panel.set_xlabel(f"last / first, stretch {stretch:g}")
+    ax[0].legend()
+    return figure

@@ -1,0 +1,96 @@
+/* A block between two fixed walls, stretched or compressed along x and in equilibrium, with speeds of 1e-5 of that
+ * of sound: nothing should happen. E = 1000, nu = 0.3, density 1, 18 by 18 cells, periodic in y, four tenths of
+ * the stable step. What grows is a mode that the method makes. */
+#include "verify.h"
+
+enum { STEPS = 3000, MANY_STEPS = 100000, CELLS = 18 };
+
+typedef struct method {
+  const char *name;
+  int32_t transfer;
+  double flip;
+} method;
+
+/* Kinetic over strain energy at the end; 1 or more where a step failed. */
+static double shake(const method *how, int32_t scheme, double stretch, int32_t steps, double *first) {
+  const double h = 0.05, speed = 1e-3;
+  verify_setup setup = verify_defaults(2, CELLS, h);
+  setup.grid.periodic[1] = 1;
+  setup.stepper.scheme = scheme;
+  setup.stepper.transfer = how->transfer;
+  setup.stepper.flip = how->flip;
+  verify_world w;
+  verify_open(&w, &setup);
+  mpm_particles *block = verify_set(&w, verify_elastic(&w, "neo_hookean", 1000.0, 0.3, 1.0));
+  verify_fill_box(&w, block, (const double[]){0.0, 0.0}, (const double[]){CELLS * h, CELLS * h}, 2);
+  const double F[9] = {stretch, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  verify_ok(&w, mpm_particles_set_all(block, "deformation_gradient", MPM_F64, 9, F));
+  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MAX, MPM_WALL_FIXED, 0.0));
+  const int64_t n = 2 * mpm_particles_count(block);
+  double *v = verify_array(n);
+  uint64_t dice = 88172645463325252u;
+  for (int64_t i = 0; i < n; ++i) {
+    dice ^= dice << 13;
+    dice ^= dice >> 7;
+    dice ^= dice << 17;
+    v[i] = speed * ((double)(dice >> 11) * 0x1p-53 - 0.5);
+  }
+  verify_put(&w, block, "velocity", 2, v);
+  free(v);
+  mpm_step_info now = verify_info(&w);
+  const double strain = now.strain_energy;
+  mpm_status status = MPM_OK;
+  *first = now.kinetic_energy / strain;
+  for (int32_t k = 0; k < steps && !status; ++k) {
+    double dt;
+    verify_ok(&w, mpm_stable_dt(w.stepper, &dt));
+    status = mpm_step(w.stepper, 0.4 * dt, &now);
+  }
+  verify_close(&w);
+  return status ? 1.0 : now.kinetic_energy / strain;
+}
+
+int main(int argc, char **argv) {
+  verify_begin("tension", argc, argv);
+  FILE *table = verify_csv("tension");
+  fprintf(table, "stretch,transfer,scheme,first,last\n");
+  static const method methods[] = {{"FLIP", MPM_FLIP, 1.0},      {"APIC", MPM_APIC, 1.0},
+                                   {"FLIP .98", MPM_FLIP, 0.98}, {"APIC_MLS", MPM_APIC_MLS, 1.0},
+                                   {"TPIC", MPM_TPIC, 1.0},      {"TFLIP", MPM_TFLIP, 1.0},
+                                   {"AFLIP", MPM_AFLIP, 1.0},    {"XPIC(2)", MPM_XPIC, 1.0}};
+  static const int32_t scheme[3] = {MPM_USL, MPM_USF, MPM_MUSL};
+  static const char *const scheme_name[3] = {"USL", "USF", "MUSL"};
+  static const double stretch[3] = {0.8, 1.05, 1.5};
+  const int32_t transfers = verify_quick() ? 2 : (int32_t)(sizeof methods / sizeof *methods);
+  for (int32_t s = 0; s < 3; ++s)
+    for (int32_t k = 0; k < (verify_quick() ? 1 : 3); ++k) {
+      double most = 0.0;
+      for (int32_t m = 0; m < transfers; ++m) {
+        double first;
+        const double last =
+            shake(&methods[m], scheme[k], stretch[s], verify_quick() ? STEPS / 3 : STEPS, &first);
+        most = fmax(most, last / first);
+        fprintf(table, "%g,%s,%s,%.2e,%.2e\n", stretch[s], methods[m].name, scheme_name[k], first, last);
+      }
+      char what[100];
+      snprintf(what, sizeof what, "stretch %g, %s: largest kinetic energy, last / first", stretch[s],
+               scheme_name[k]);
+      if (k && stretch[s] > 1.0)
+        verify_expected_failure(what, most, 0.0, 1.0, "equilibrium",
+                                "these schemes make a mode that grows in tension");
+      else
+        verify_gate(what, most, 0.0, 1.0, "equilibrium");
+      verify_progress("stretch %g, %s", stretch[s], scheme_name[k]);
+    }
+  for (int32_t s = 0; s < (verify_quick() ? 0 : 3); ++s) {
+    char what[100];
+    double first;
+    const double last = shake(&methods[1], MPM_USL, stretch[s], MANY_STEPS, &first);
+    snprintf(what, sizeof what, "stretch %g, USL, APIC, 100 000 steps: kinetic energy, last / first",
+             stretch[s]);
+    verify_gate(what, last / first, 0.0, 1.0, "equilibrium");
+  }
+  fclose(table);
+  return verify_end();
+}
