@@ -13,7 +13,7 @@ double mpmi_half_edge(int32_t dim, double volume);
 typedef struct mpmi_widths {
   int32_t dim;
   int64_t ld;
-  const double *F, *size; /* size: NULL, or the half edges of boxes */
+  const double *F, *size; /* size: NULL, or the edges of boxes */
   double most;
 } mpmi_widths;
 

@@ -5,7 +5,7 @@
 #include <math.h>
 
 /* Touches that push less than this share of the hardest, and rows with less than this share of the mass of the
- * heaviest, may slide as they like: nodes at the rim of a body move far and mean little. */
+ * heaviest beside them, may slide as they like: nodes at the rim of a body move far and mean little. */
 static const double pushes_at_all = 1e-3, weighs_at_all = 1e-2;
 
 /* Tells a touch what was done to it. */
@@ -37,38 +37,26 @@ static void tell(mpmi_balance *balance, const mpmi_constraint *of) {
   }
 }
 
-/* The most that matters in a step. */
-typedef struct largest {
-  double force, mass;
-} largest;
-
-static largest largest_of(const mpmi_balance *balance) {
-  const mpmi_newton *newton = balance->newton;
-  largest of = {0.0, 0.0};
-  for (int64_t k = 0; k < newton->constraint_count; ++k)
-    of.force = fmax(of.force, mpmi_inner(newton->constraint[k].force,
-                                         mpmi_touch_of(balance, &newton->constraint[k])->normal));
-  of.mass = mpmi_heaviest_row(newton);
-  return of;
-}
-
 /* Normals and gaps are those of the start: where bodies slide far along curved surfaces they mislead. */
-static int32_t may_slide(const mpmi_balance *balance, const mpmi_constraint *of, const largest *most) {
+static int32_t may_slide(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
   const mpmi_contact_nodes *contact = &balance->nodes->contact;
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
   const mpmi_party *first = &contact->party[touch->party[0]];
-  int32_t light = mpmi_inner(of->force, touch->normal) <= pushes_at_all * most->force;
-  for (int32_t i = 0; i < 2; ++i)
-    light |= of->row[i] >= 0 && balance->newton->mass[of->row[i]] <= weighs_at_all * most->mass;
+  const double *mass = balance->newton->mass;
+  int32_t light = mpmi_inner(of->force, touch->normal) <= pushes_at_all * most_force;
+  for (int32_t i = 0; i < 2; ++i) {
+    const int64_t beside = of->row[i] < 0 ? -1 : mpmi_heaviest_beside(balance, of->row[i], -1);
+    light |= beside >= 0 && mass[of->row[i]] <= weighs_at_all * mass[beside];
+  }
   return light || !of->closed || mpmi_is_tie(balance, of) || touch->rule->normal == MPM_NORMAL_FIXED ||
          (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE);
 }
 
-static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint *of, const largest *all) {
+static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
   const double most = 0.5 * balance->settings->grid->h_min;
   double move[3], along, across[3];
-  if (may_slide(balance, of, all)) return MPM_OK;
+  if (may_slide(balance, of, most_force)) return MPM_OK;
   mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
   mpmi_split(move, touch->normal, &along, across);
   const double slipped = sqrt(mpmi_inner(across, across));
@@ -85,10 +73,13 @@ static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint 
 
 mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
-  const largest all = largest_of(balance);
   mpm_status status = MPM_OK;
+  double most = 0.0;
+  for (int64_t k = 0; k < newton->constraint_count; ++k)
+    most = fmax(most, mpmi_inner(newton->constraint[k].force,
+                                 mpmi_touch_of(balance, &newton->constraint[k])->normal));
   for (int64_t k = 0; k < newton->constraint_count && !status; ++k)
-    status = check_slip(balance, &newton->constraint[k], &all);
+    status = check_slip(balance, &newton->constraint[k], most);
   if (status) return status;
   for (int64_t k = 0; k < newton->constraint_count; ++k) tell(balance, &newton->constraint[k]);
   mpmi_bound bound = {.step = balance->step,

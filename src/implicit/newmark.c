@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* A row is light with less than this share of the mass of the heaviest. */
+/* A row is light with no more than this share of the mass of the heaviest beside it. */
 static const double light_row = 1e-3;
 
 /* Computes means by row: sums mass and mass times value of its nodes, and divides. */
@@ -99,43 +99,19 @@ static mpm_status find_accelerations(mpmi_balance *balance, double *clock) {
   return status;
 }
 
-static int32_t body_of_row(const mpmi_balance *balance, int64_t row) {
-  const mpmi_newton *newton = balance->newton;
-  const mpmi_blocks *b = &balance->layout->blocks;
-  return b->body[newton->active[newton->members[newton->members_start[row]]].slot / b->nodes];
-}
-
-/* Returns the heaviest row beside one, of the same body and free in a component; -1 where all are light. */
-static int64_t heavy_neighbour(const mpmi_balance *balance, int64_t row, int32_t c, double light) {
-  const mpmi_newton *newton = balance->newton;
-  const mpmi_matrix *A = &newton->matrix;
-  double most = light;
-  int64_t found = -1;
-  for (int64_t e = A->row_start[row]; e < A->row_start[row + 1]; ++e) {
-    const int64_t other = A->column[e];
-    if (!(newton->mass[other] > most) || A->held[other * A->block + c] ||
-        body_of_row(balance, other) != body_of_row(balance, row))
-      continue;
-    most = newton->mass[other];
-    found = other;
-  }
-  return found;
-}
-
 /* Light rows, where f / m is rough, take the accelerations of the particles, and the rest of their force goes to
  * a neighbour. */
 static void smooth_light_rows(mpmi_balance *balance, const double *of_particles) {
   const mpmi_newton *newton = balance->newton;
-  const double light = light_row * mpmi_heaviest_row(newton);
   const int32_t dim = balance->settings->grid->dim;
   double *start = newton->vector[MPMI_A0];
-  for (int64_t row = 0; row < newton->matrix.rows; ++row)
-    for (int32_t c = 0; c < dim && !(newton->mass[row] > light); ++c) {
-      const int64_t at = row * dim + c, heavy = heavy_neighbour(balance, row, c, light);
-      if (heavy < 0 || newton->matrix.held[at]) continue;
-      start[heavy * dim + c] += newton->mass[row] * (start[at] - of_particles[at]) / newton->mass[heavy];
-      start[at] = of_particles[at];
-    }
+  for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
+    if (newton->matrix.held[at]) continue;
+    const int64_t row = at / dim, heavy = mpmi_heaviest_beside(balance, row, (int32_t)(at % dim));
+    if (heavy < 0 || newton->mass[row] > light_row * newton->mass[heavy]) continue;
+    start[heavy * dim + at % dim] += newton->mass[row] * (start[at] - of_particles[at]) / newton->mass[heavy];
+    start[at] = of_particles[at];
+  }
 }
 
 /* Brings the accelerations at the start of the step into the second copies and onto the nodes. Where bodies
@@ -227,7 +203,8 @@ static void set_nodes(mpmi_balance *balance) {
 }
 
 /* In a step with contact particles take the increments of the nodes: by their own accelerations they would drift
- * away from them. Here they are given the accelerations that they show, and go on with once nothing touches. */
+ * away from them. Here they are given the accelerations that they show, with contact: the next step finds its
+ * own. */
 static mpm_status carry_accelerations(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   double *mean = newton->vector[MPMI_TERMS];

@@ -185,3 +185,26 @@ mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
   ++A->pattern_id;
   return MPM_OK;
 }
+
+static int32_t body_of_row(const mpmi_balance *balance, int64_t row) {
+  const mpmi_newton *newton = balance->newton;
+  const mpmi_blocks *b = &balance->layout->blocks;
+  return b->body[newton->active[newton->members[newton->members_start[row]]].slot / b->nodes];
+}
+
+int64_t mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c) {
+  const mpmi_newton *newton = balance->newton;
+  const mpmi_matrix *A = &newton->matrix;
+  const int32_t body = body_of_row(balance, row);
+  double most = 0.0;
+  int64_t found = -1;
+  for (int64_t e = A->row_start[row]; e < A->row_start[row + 1]; ++e) {
+    const int64_t other = A->column[e];
+    if (other == row || !(newton->mass[other] > most) || (c >= 0 && A->held[other * A->block + c]) ||
+        body_of_row(balance, other) != body)
+      continue;
+    most = newton->mass[other];
+    found = other;
+  }
+  return found;
+}

@@ -1,6 +1,7 @@
 /* What holds nodes in an implicit step: the residual of their balance is the force of the constraint. It is
  * recorded as the boundary stage does: to the host and to prescribed particles what acts on the components
  * that they hold, the rest of a tie to the wall that binds it. */
+#include "implicit/active_set.h"
 #include "implicit/balance.h"
 #include "boundary/bound.h"
 
@@ -41,31 +42,38 @@ static void record_friction_walls(mpmi_balance *balance) {
   }
 }
 
-/* Records one component of one row, on the nodes that move with it. Contact acts on the master. */
+/* Records one component of one row, on the nodes that move with it. Each has its share of contact by mass; of the
+ * force of contact in the balance, bodies get the share that is momentum. */
 static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_constraints *constraints = &balance->layout->constraints;
+  const double dt = balance->step->dt, contact = contact_on(balance, row, c),
+               beyond = 1.0 - mpmi_contact_share(balance->settings);
+  double total = 0.0, along = 0.0, on_nodes = 0.0;
+  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
+    const mpmi_active_node *node = &newton->active[newton->members[m]];
+    const double mass = *mpmi_mass(&balance->nodes->solved, node->slot), all = reaction_on(balance, node, c);
+    const double share = mass > 0.0 ? node->sign[c] * mass / newton->mass[row] * contact : 0.0;
+    const double impulse = dt * (all - share);
+    balance->nodes->impulse[node->slot].given[c] = impulse;
+    if (mass > 0.0) balance->nodes->impulse[node->slot].change[c] = dt * (all - beyond * share) / mass;
+    total += impulse;
+    along += node->sign[c] * impulse;
+    on_nodes += share;
+  }
   const int64_t slot = newton->active[newton->members[newton->members_start[row]]].slot;
   const int32_t tie = constraints->tie_of[slot];
   const int64_t master = tie < 0 ? slot : constraints->tie[tie].master;
-  double total = 0.0, along = 0.0;
-  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
-    const mpmi_active_node *node = &newton->active[newton->members[m]];
-    const double mass = *mpmi_mass(&balance->nodes->solved, node->slot);
-    const double change = balance->step->dt * reaction_on(balance, node, c);
-    const double impulse =
-        change - (node->slot == master ? balance->step->dt * contact_on(balance, row, c) : 0.0);
-    balance->nodes->impulse[node->slot].given[c] = impulse;
-    if (mass > 0.0) balance->nodes->impulse[node->slot].change[c] = change / mass;
-    total += impulse;
-    along += node->sign[c] * impulse;
-  }
   if (mpmi_held_by(balance->nodes, master, c))
     balance->step->host_work += along * balance->nodes->held_value[master][c];
   else if (tie < 0) /* nothing holds it: this is what the iterations have left */
     balance->nodes->impulse[slot].given[c] = balance->nodes->impulse[slot].change[c] = 0.0;
-  else if (constraints->tie[tie].face[c] >= 0)
-    balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total;
+  else if (constraints->tie[tie].face[c] >= 0) {
+    /* a mirror image undoes a part of what contact gives its master: the wall has that */
+    const double undone = dt * (on_nodes - contact);
+    balance->nodes->impulse[master].given[c] += undone;
+    balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total + undone;
+  }
 }
 
 mpm_status mpmi_record_reactions(mpmi_balance *balance) {

@@ -340,6 +340,39 @@ START_TEST(implicit_release) {
 }
 END_TEST
 
+/* What is taken away while it bears a weight pushes no more in the next step: it falls freely. */
+START_TEST(implicit_loss) {
+  const double h = arena_spacing, fall = 10.0, dt = 10.0 * arena_dt;
+  const double lower[2] = {3.0 * h, 3.0 * h}, upper[2] = {5.0 * h, 5.0 * h};
+  method how = methods[1];
+  how.scheme = MPM_NEWMARK;
+  world w;
+  world_desc desc = world_with(&how, 2, 8, h);
+  desc.stepper.gravity[1] = -fall;
+  world_open(&w, &desc);
+  world_fill(&w, w.set[0], lower, upper, 2);
+  mpm_contact_desc rule = rule_with(0.0);
+  rule.kind = _i ? MPM_CONTACT_TIED : MPM_CONTACT_UNILATERAL;
+  mpm_obstacle_desc d = obstacle_desc(MPM_SHAPE_PLANE);
+  d.contact = &rule;
+  d.position[1] = lower[1];
+  mpm_obstacle *o = put_obstacle(&w, &d);
+  double *mass = fetch(&w, w.set[0], "mass", 1);
+  const double total = sum_of(mpm_particles_count(w.set[0]), mass), weight = total * fall;
+  for (int32_t step = 0; step < 20 && !(step > 4 && touch_of(&w, o).force[1] > 0.5 * weight); ++step)
+    world_step(&w, dt);
+  ck_assert_double_gt(touch_of(&w, o).force[1], 0.5 * weight);
+  ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, o));
+  ck_ok(&w, mpm_obstacle_destroy(o));
+  for (int32_t step = 0; step < 3; ++step) {
+    const double before = world_info(&w).momentum[1], after = world_step(&w, dt).momentum[1];
+    ck_within("falls", after - before, -weight * dt, 1e-9 * weight * dt);
+  }
+  free(mass);
+  world_close(&w);
+}
+END_TEST
+
 /* The host's own shapes: a plane, or a ball, in axes of the body; with `slides` the surface moves. */
 typedef struct host_shape {
   int32_t ball, answer, spoils;
@@ -704,6 +737,7 @@ Suite *obstacles_suite(void) {
   tcase_add_loop_test(same, implicit_held, 0, 2);
   tcase_add_loop_test(same, implicit_corner, 0, 7); /* GIMP leaves nodes beside the wall without stiffness */
   tcase_add_loop_test(same, implicit_release, 1, 4);
+  tcase_add_loop_test(same, implicit_loss, 0, 2);
   tcase_add_loop_test(same, same_by_another_name, 1, 4);
   tcase_add_loop_test(same, through_the_seam, 2, 4);
   tcase_add_test(same, far_ends);
