@@ -25,8 +25,8 @@ static void shuffle(int64_t n, int64_t *order, uint64_t *dice) {
   }
 }
 
-/* A jittered lattice of side^dim particles, 2^dim per cell, from `corner` on; the first part[k] of them on each
- * axis are those of another body. */
+/* A jittered lattice of side^dim particles, 2^dim per cell, from `corner` on; the first part[k] of them on
+ * each axis are those of another body. */
 typedef struct lattice {
   int32_t dim;
   int64_t side, part[3];

@@ -118,10 +118,10 @@ typedef struct mpm_step_info {
    * (C is "velocity_gradient", D the second moments of the basis), whose angular momentum is part of
    * angular_momentum. It is not part of kinetic_energy. 0 with other transfers. */
   double affine_kinetic_energy;
-  /** Energy that contact of bodies, obstacles and MPM_WALL_FRICTION took in the step, from the velocities that
-   * the nodes would have without it: never negative. In explicit steps forces drive bodies that press on each
-   * other together in every step, and contact takes that again: its sum over steps has a part that goes with
-   * dt and is no loss. What is lost is `dissipation`. */
+  /** Energy that contact of bodies, obstacles and MPM_WALL_FRICTION took in the step, from the velocities
+   * that the nodes would have without it: never negative. In explicit steps forces drive bodies that press on
+   * each other together in every step, and contact takes that again: its sum over steps has a part that goes
+   * with dt and is no loss. What is lost is `dissipation`. */
   double contact_dissipation;
   int64_t contact_nodes; /**< nodes at which these gave each other an impulse */
   int32_t body;          /**< velocity field of `node`; 0 where there is none */

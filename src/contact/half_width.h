@@ -26,9 +26,9 @@ static inline mpmi_widths mpmi_widths_of(const mpm_particles *set) {
                        .most = 0.5 * grid->h_min};
 }
 
-/* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F has
- * deformed; at most half a cell. n: as the particle itself sees it. Of F, the components on axes of the grid come
- * first, by rows. */
+/* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F
+ * has deformed; at most half a cell. n: as the particle itself sees it. Of F, the components on axes of
+ * the grid come first, by rows. */
 static inline double mpmi_half_width(const mpmi_widths *of, int64_t slot, double edge, const double *n) {
   const int32_t dim = of->dim;
   double width = 0.0;

@@ -182,8 +182,8 @@ void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, d
 /* Makes the pattern for the active nodes as numbered, with so many rows. */
 mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows);
 
-/* Returns the heaviest row of the same body beside one, that shares a stencil with it; with a component c >= 0
- * only of rows that are free in it. -1: none. By the masses of the last projection. */
+/* Returns the heaviest row of the same body beside one, that shares a stencil with it; with a component c
+ * >= 0 only of rows that are free in it. -1: none. By the masses of the last projection. */
 int64_t mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c);
 
 /* ---- assembly.c -------------------------------------------------------------------------------------- */

@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-/* Touches that push less than this share of the hardest, and rows with less than this share of the mass of the
- * heaviest beside them, may slide as they like: nodes at the rim of a body move far and mean little. */
+/* Touches that push less than this share of the hardest, and rows with less than this share of the mass of
+ * the heaviest beside them, may slide as they like: nodes at the rim of a body move far and mean little. */
 static const double pushes_at_all = 1e-3, weighs_at_all = 1e-2;
 
 /* Tells a touch what was done to it. */

@@ -58,7 +58,8 @@ static mpm_status find_external(mpmi_balance *balance, double t, double *clock) 
   return status;
 }
 
-/* Computes the accelerations at the start of the step by row: M a0 = f_ext - f_int, and 0 for held components. */
+/* Computes the accelerations at the start of the step by row: M a0 = f_ext - f_int, and 0 for held
+ * components. */
 static mpm_status balance_start(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
@@ -99,8 +100,8 @@ static mpm_status find_accelerations(mpmi_balance *balance, double *clock) {
   return status;
 }
 
-/* Light rows, where f / m is rough, take the accelerations of the particles, and the rest of their force goes to
- * a neighbour. */
+/* Light rows, where f / m is rough, take the accelerations of the particles, and the rest of their force
+ * goes to a neighbour. */
 static void smooth_light_rows(mpmi_balance *balance, const double *of_particles) {
   const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
@@ -202,9 +203,9 @@ static void set_nodes(mpmi_balance *balance) {
   }
 }
 
-/* In a step with contact particles take the increments of the nodes: by their own accelerations they would drift
- * away from them. Here they are given the accelerations that they show, with contact: the next step finds its
- * own. */
+/* In a step with contact particles take the increments of the nodes: by their own accelerations they would
+ * drift away from them. Here they are given the accelerations that they show, with contact: the next step
+ * finds its own. */
 static mpm_status carry_accelerations(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   double *mean = newton->vector[MPMI_TERMS];

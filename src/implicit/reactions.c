@@ -42,8 +42,8 @@ static void record_friction_walls(mpmi_balance *balance) {
   }
 }
 
-/* Records one component of one row, on the nodes that move with it. Each has its share of contact by mass; of the
- * force of contact in the balance, bodies get the share that is momentum. */
+/* Records one component of one row, on the nodes that move with it. Each has its share of contact by mass;
+ * of the force of contact in the balance, bodies get the share that is momentum. */
 static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_constraints *constraints = &balance->layout->constraints;

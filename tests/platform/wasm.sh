@@ -46,7 +46,7 @@ for system in $SYSTEMS; do
       continue
     fi
     out=$here-wasm/wasi
-    "$MAKE" -j"$JOBS" BUILD="$out" CC="$clang --target=wasm32-wasi" AR="$(command -v llvm-ar llvm-ar-14 | head -n 1)" CFLAGS= all
+    "$MAKE" -j"$JOBS" BUILD="$out" CC="$clang --target=wasm32-wasi" AR="$(command -v llvm-ar || command -v llvm-ar-14)" CFLAGS= all
     "$clang" --target=wasm32-wasi -std=c11 -O1 -Iinclude tests/platform/smoke.c "$out/libmpm.a" -lm -o "$out/smoke.wasm"
     mkdir -p "$out/files"
     runner=$PWD/tests/platform/wasi.mjs

@@ -91,7 +91,7 @@ while IFS='|' read -r name compiler flags link runner platform; do
   folder=$(folder_of "$name")
   options=(BUILD="$folder" CC="$compiler" LDFLAGS="$link")
   if [ "$folder" = "$out/$name" ]; then options+=(CFLAGS="$flags" OPT="$level" KERNEL_OPT="$level" WERROR=); fi
-  case $name in wasi) options+=(AR="$(command -v llvm-ar llvm-ar-14 | head -n 1)") ;; emscripten) options+=(AR=emar) ;; esac
+  case $name in wasi) options+=(AR="$(command -v llvm-ar || command -v llvm-ar-14)") ;; emscripten) options+=(AR=emar) ;; esac
   "$MAKE" -j"$JOBS" "${options[@]}" "$folder/tests/hashes/hashes" > "$out/$name.log" 2>&1 || {
     tail -n 20 "$out/$name.log"
     printf '%-18s does not compile\n' "$platform"

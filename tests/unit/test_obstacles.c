@@ -257,9 +257,9 @@ START_TEST(implicit_held) {
 }
 END_TEST
 
-/* Implicit steps at a corner of a slip wall and a friction wall: what particles gain along the slip wall is
- * what the other one gives, and weight; at rest both walls bear the weight. Reactions of nodes add up to those
- * of the walls. */
+/* Implicit steps at a corner of a slip wall and a friction wall: what particles gain along the slip wall
+ * is what the other one gives, and weight; at rest both walls bear the weight. Reactions of nodes add up
+ * to those of the walls. */
 START_TEST(implicit_corner) {
   static const int32_t basis[] = {MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP};
   const int32_t rests = _i / 4;

@@ -1,5 +1,5 @@
-/* The corner of a square hits the face of another, both free: edge 0.6, E = 1000, nu = 0.3, density 1000, speed
- * 0.1, gap 0.02. They touch at 0.2, and nothing pushes them sideways. */
+/* The corner of a square hits the face of another, both free: edge 0.6, E = 1000, nu = 0.3, density 1000,
+ * speed 0.1, gap 0.02. They touch at 0.2, and nothing pushes them sideways. */
 #include "verify.h"
 
 static void hit(int32_t cells, double shift, FILE *table) {

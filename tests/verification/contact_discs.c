@@ -1,5 +1,5 @@
-/* Two elastic discs of two bodies collide: discs.h. They are refined, shifted and turned on the grid, hit each
- * other off centre with friction, and do the same in implicit steps. */
+/* Two elastic discs of two bodies collide: discs.h. They are refined, shifted and turned on the grid, hit
+ * each other off centre with friction, and do the same in implicit steps. */
 #include "discs.h"
 
 static void show(const char *name, const disc_hit *a, const disc_outcome *o, FILE *table) {

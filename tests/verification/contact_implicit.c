@@ -1,6 +1,7 @@
 /* Contact in implicit steps. A cylinder, radius 0.5, E = 1e5, nu = 0.3, is pressed between rigid planes by
- * quasi-static steps, and by explicit ones with damping: half of it, on a plane of symmetry, without friction
- * (Hertz, in plane strain). A block on a slope of 30 degrees comes to rest on it by quasi-static steps, and is let go in dynamic ones. */
+ * quasi-static steps, and by explicit ones with damping: half of it, on a plane of symmetry, without
+ * friction (Hertz, in plane strain). A block on a slope of 30 degrees comes to rest on it by quasi-static
+ * steps, and is let go in dynamic ones. */
 #include "support.h"
 
 static const double R = 0.5, E = 1e5, nu = 0.3;

@@ -1,7 +1,7 @@
-/* A stiff rod hits a soft half space at 100 m/s and bores into it, both elastic-plastic (j2), in plane strain; a
- * half of it beside a symmetry plane. Rod: 10 mm wide, 30 mm long, E = 200 GPa, nu = 0.3, density 7850, yield
- * stress 1 GPa; ground: E = 70 GPa, nu = 0.33, density 2700, yield stress 50 MPa. No particle of one body may lie
- * deeper than half a cell in the other. */
+/* A stiff rod hits a soft half space at 100 m/s and bores into it, both elastic-plastic (j2), in plane
+ * strain; a half of it beside a symmetry plane. Rod: 10 mm wide, 30 mm long, E = 200 GPa, nu = 0.3,
+ * density 7850, yield stress 1 GPa; ground: E = 70 GPa, nu = 0.33, density 2700, yield stress 50 MPa. No
+ * particle of one body may lie deeper than half a cell in the other. */
 #include "verify.h"
 
 enum { ROD, GROUND };
@@ -13,8 +13,8 @@ typedef struct cloud {
   double *X, *x, *F; /* [2][n], [2][n], [9][n] */
 } cloud;
 
-/* Of the undeformed body below the surface with outward normal N: the bottom and the side of the rod, the top of
- * the ground. */
+/* Of the undeformed body below the surface with outward normal N: the bottom and the side of the rod, the
+ * top of the ground. */
 static double below(int32_t set, int32_t surface, const double *X, double *N) {
   N[0] = set == ROD && surface ? 1.0 : 0.0;
   N[1] = N[0] > 0.0 ? 0.0 : set == ROD ? -1.0 : 1.0;
@@ -30,9 +30,9 @@ static void look(const verify_world *w, cloud *c) {
   }
 }
 
-/* How deep a point lies in a particle of the body, whose square of the given edge F has deformed: the least
- * distance to a surface of the deformed body; < 0 outside of the particle. A plane at depth D of the undeformed
- * body is D / |F^-T N| below the surface. */
+/* How deep a point lies in a particle of the body, whose square of the given edge F has deformed: the
+ * least distance to a surface of the deformed body; < 0 outside of the particle. A plane at depth D of the
+ * undeformed body is D / |F^-T N| below the surface. */
 static double depth_in(const cloud *c, int32_t set, int64_t i, double edge, const double *point) {
   const int64_t n = c->n;
   const double d[2] = {point[0] - c->x[i], point[1] - c->x[n + i]};

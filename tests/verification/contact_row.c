@@ -1,5 +1,5 @@
-/* Four elastic discs in a row, R = 0.5, E = density = 1, nu = 0.3; the first flies at 0.02 into the others, which
- * touch. The last takes most of the momentum. */
+/* Four elastic discs in a row, R = 0.5, E = density = 1, nu = 0.3; the first flies at 0.02 into the
+ * others, which touch. The last takes most of the momentum. */
 #include "discs.h"
 
 enum { DISCS = 4 };

@@ -1,6 +1,6 @@
-/* The block of sliding.h on an elastic slab of its own law, held below: the exact answers stay those of Coulomb,
- * whatever the slab does; when the block stops, block and slab spring back by millimetres. The spacing is
- * refined, and the slab lies at two places of its cell. */
+/* The block of sliding.h on an elastic slab of its own law, held below: the exact answers stay those of
+ * Coulomb, whatever the slab does; when the block stops, block and slab spring back by millimetres. The
+ * spacing is refined, and the slab lies at two places of its cell. */
 #include "sliding.h"
 
 static const double thickness = 0.2;

@@ -1,5 +1,5 @@
-/* Three elastic blocks on each other on a rigid floor: E = 1e6, nu = 0.3, density 1000, g = 10, 0.4 high, 0.6,
- * 0.5 and 0.4 wide, friction 0.3. They settle under damping and then rest for 20 000 steps. */
+/* Three elastic blocks on each other on a rigid floor: E = 1e6, nu = 0.3, density 1000, g = 10, 0.4 high,
+ * 0.6, 0.5 and 0.4 wide, friction 0.3. They settle under damping and then rest for 20 000 steps. */
 #include "support.h"
 
 enum { BLOCKS = 3 };

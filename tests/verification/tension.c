@@ -1,6 +1,6 @@
-/* A block between two fixed walls, stretched or compressed along x and in equilibrium, with speeds of 1e-5 of that
- * of sound: nothing should happen. E = 1000, nu = 0.3, density 1, 18 by 18 cells, periodic in y, four tenths of
- * the stable step. What grows is a mode that the method makes. */
+/* A block between two fixed walls, stretched or compressed along x and in equilibrium, with speeds of 1e-5
+ * of that of sound: nothing should happen. E = 1000, nu = 0.3, density 1, 18 by 18 cells, periodic in y,
+ * four tenths of the stable step. What grows is a mode that the method makes. */
 #include "verify.h"
 
 enum { STEPS = 3000, MANY_STEPS = 100000, CELLS = 18 };
