@@ -140,7 +140,7 @@ def contact_discs():
 def contact_block():
     figure, ax = axes(2)
     data = read("contact_block")
-    rows = list(zip(data["case"], data["basis"], data["shift"], data["way"], data["exact"]))
+    rows = list(zip(data["case"], data["name"], data["shift"], data["way"], data["exact"]))
     for basis in ("linear", "quadratic", "cubic"):
         slides = [(s, w / e) for case, b, s, w, e in rows if case == "slides" and b == basis]
         rests = [(s, 1000 * w) for case, b, s, w, e in rows if case == "rests" and b == basis]

@@ -8,7 +8,7 @@ def obstacle_slope():
     figure, ax = axes(2)
     blocks, discs = read("obstacle_slope_block"), read("obstacle_slope_disc")
     for basis in ("linear", "quadratic", "cubic"):
-        at = rows(blocks, case="slides", basis=f"plane ({basis})")
+        at = rows(blocks, case="slides", name=f"plane ({basis})")
         ax[0].plot(at["shift"], [float(w) / float(e) for w, e in zip(at["way"], at["exact"])], "o-", label=basis)
     ax[0].axhline(1, color="k", linewidth=0.8)
     ax[0].set_xlabel("place of the plane in its cell / h")

@@ -64,6 +64,13 @@ static mpm_status begin_strain(mpmi_balance *balance, const double *u, const mpm
   return status;
 }
 
+/* A pass that deforms the particles, for what it takes of them. */
+#define STRAIN_PASS(taken)                                                                                   \
+  {                                                                                                          \
+    .deforms = 1, .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .aim = mpmi_strain_aim,              \
+    .take = taken                                                                                            \
+  }
+
 /* Deforms the particles of a batch; returns 0 when that fails. */
 static int32_t deform(mpmi_batch *b) {
   const mpmi_balance *balance = b->user;
@@ -118,20 +125,12 @@ static mpm_status sum_internal(mpmi_balance *balance, const double *u, const mpm
 }
 
 mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
-  static const mpmi_pass pass = {.deforms = 1,
-                                 .bind = mpmi_strain_bind,
-                                 .enter = mpmi_strain_enter,
-                                 .aim = mpmi_strain_aim,
-                                 .take = take_forces};
+  static const mpmi_pass pass = STRAIN_PASS(take_forces);
   return sum_internal(balance, u, &pass);
 }
 
 mpm_status mpmi_start_forces(mpmi_balance *balance) {
-  static const mpmi_pass pass = {.deforms = 1,
-                                 .bind = mpmi_strain_bind,
-                                 .enter = mpmi_strain_enter,
-                                 .aim = mpmi_strain_aim,
-                                 .take = take_start_forces};
+  static const mpmi_pass pass = STRAIN_PASS(take_start_forces);
   double *u = balance->newton->vector[MPMI_U];
   memset(u, 0, (size_t)(balance->newton->matrix.rows * balance->settings->grid->dim) * sizeof *u);
   return sum_internal(balance, u, &pass);
@@ -175,11 +174,7 @@ static void add_at_seam(void *user, const mpmi_visit *visit) {
 }
 
 mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
-  static const mpmi_pass pass = {.deforms = 1,
-                                 .bind = mpmi_strain_bind,
-                                 .enter = mpmi_strain_enter,
-                                 .aim = mpmi_strain_aim,
-                                 .take = take_stiffness};
+  static const mpmi_pass pass = STRAIN_PASS(take_stiffness);
   mpmi_newton *newton = balance->newton;
   const int32_t tasks = balance->settings->tasks, remedy = balance->settings->desc.locking_remedy;
   mpm_status status = mpmi_run_tasks(balance->settings, 0, tasks, clear_matrix_task, balance);

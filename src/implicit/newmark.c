@@ -182,11 +182,12 @@ static double increment_in_contact(const mpmi_balance *balance, int64_t at) {
 }
 
 /* Sets what particles take from the nodes: [u / dt, m, a1 dt], or in contact the whole increment of the
- * velocity in place of the last. */
+ * velocity in place of the last: by their own accelerations particles would drift away from the nodes. */
 static void set_nodes(mpmi_balance *balance) {
   const double dt = balance->step->dt;
   const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
+  balance->step->whole_increments = newton->constraint_count > 0 && mpmi_is_dynamic(balance->settings);
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const mpmi_active_node *node = &newton->active[i];
     double *v = mpmi_velocity(&balance->nodes->solved, node->slot);
@@ -201,21 +202,6 @@ static void set_nodes(mpmi_balance *balance) {
                                                              : dt * mpmi_newmark_acceleration(balance, at));
     }
   }
-}
-
-/* In a step with contact particles take the increments of the nodes: by their own accelerations they would
- * drift away from them. Here they are given the accelerations that they show, with contact: the next step
- * finds its own. */
-static mpm_status carry_accelerations(mpmi_balance *balance) {
-  mpmi_newton *newton = balance->newton;
-  double *mean = newton->vector[MPMI_TERMS];
-  balance->step->whole_increments = newton->constraint_count > 0 && mpmi_is_dynamic(balance->settings);
-  if (!balance->step->whole_increments) return MPM_OK;
-  const double less = 1.0 - mpmi_contact_share(balance->settings);
-  for (int64_t at = 0; at < newton->matrix.rows * balance->settings->grid->dim; ++at)
-    mean[at] = mpmi_newmark_acceleration(balance, at) - less * contact_acceleration(balance, at);
-  spread(balance, mean);
-  return mpmi_g2p_all_accelerations(balance->step, balance->nodes, &balance->nodes->projected);
 }
 
 /* Lets the nodes show the velocity at the end of the step. */
@@ -264,7 +250,6 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   if (!status) status = solve(balance, &clock);
   if (status) return status;
   status = mpmi_active_set_finish(balance);
-  if (!status) status = carry_accelerations(balance);
   if (status) return status;
   set_nodes(balance);
   status = mpmi_record_reactions(balance);

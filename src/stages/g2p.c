@@ -63,10 +63,6 @@ static void take_accelerations(mpmi_batch *b) {
   if (b->set->dirty & MPMI_DIRTY_ACCELERATION) take_means(b, MPMI_ACCELERATION);
 }
 
-static void take_all_accelerations(mpmi_batch *b) {
-  take_means(b, MPMI_ACCELERATION);
-}
-
 static const mpmi_pass both = {
     .moves = 1, .deforms = 1, .bind = bind_both, .enter = enter_both, .aim = aim_both, .take = take_both};
 static const mpmi_pass motion = {
@@ -78,7 +74,6 @@ static const mpmi_pass strain = {.deforms = 1,
                                  .take = take_strain};
 static const mpmi_pass velocities = {.plain = 1, .take = take_velocities};
 static const mpmi_pass accelerations = {.plain = 1, .take = take_accelerations};
-static const mpmi_pass all_accelerations = {.plain = 1, .take = take_all_accelerations};
 
 /* Runs a pass; the locking remedy measures the dilation before one that deforms. */
 static mpm_status run(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from, const mpmi_pass *pass) {
@@ -105,8 +100,4 @@ mpm_status mpmi_g2p_velocities(mpmi_step *step, mpmi_nodes *nodes, const mpmi_no
 
 mpm_status mpmi_g2p_accelerations(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
   return run(step, nodes, from, &accelerations);
-}
-
-mpm_status mpmi_g2p_all_accelerations(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
-  return run(step, nodes, from, &all_accelerations);
 }

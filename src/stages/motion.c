@@ -103,18 +103,18 @@ static void look_outside(mpmi_batch *b) {
 }
 
 /* ---- a batch ------------------------------------------------------------------------------------------ */
-/* Turns gathered dt a1 into what Newmark's rule adds to velocities, and keeps a1; unless what was gathered is
- * that already. */
+/* Turns gathered dt a1 into what Newmark's rule adds to velocities, and keeps a1. Where whole increments were
+ * gathered, it keeps their mean over the step. */
 static void mean_accelerations(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
-  if (b->step->whole_increments) return;
+  const int32_t whole = b->step->whole_increments;
   const double dt = b->step->dt, gamma = settings->desc.newmark_gamma;
   for (int32_t k = 0; k < settings->grid->dim; ++k) {
     double *a = mpmi_component_row(b->set, MPMI_ACCELERATION, 1, k) + b->begin;
     double *dv = b->dv + k * b->law.ld;
     for (int64_t p = 0; p < b->n; ++p) {
       const double new = dv[p] / dt;
-      dv[p] = dt * (1.0 - gamma) * a[p] + gamma * dv[p];
+      dv[p] = whole ? dv[p] : dt * (1.0 - gamma) * a[p] + gamma * dv[p];
       a[p] = new;
     }
   }

@@ -55,7 +55,5 @@ mpm_status mpmi_g2p_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal 
  * of the sets that do not know them. */
 mpm_status mpmi_g2p_velocities(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
 mpm_status mpmi_g2p_accelerations(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
-/* Does the latter for all sets. */
-mpm_status mpmi_g2p_all_accelerations(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);
 
 #endif

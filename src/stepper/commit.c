@@ -57,7 +57,7 @@ static void swap_copies(const mpm_stepper *s, mpm_particles *set, int32_t left_t
   if (!set->mapped) set->lent = 0;
   if (left_tile) set->dirty |= MPMI_DIRTY_PLACE;
   set->dirty &= ~(uint32_t)(MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION);
-  /* with contact they are what particles show, and not what the next step begins with */
+  /* with contact they are means over the step, and the next step needs those at its start */
   if (!mpmi_is_implicit(&s->settings) || s->settings.desc.quasi_static || s->step.whole_increments)
     set->dirty |= MPMI_DIRTY_ACCELERATION;
 }

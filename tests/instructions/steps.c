@@ -80,7 +80,7 @@ static mpm_status set_up(simulation *sim, const scene *in) {
   g.basis = in->basis;
   for (int32_t k = 0; k < in->dim; ++k) {
     g.spacing[k] = 1.0;
-    g.cells[k] = (in->obstacles ? 4 : 2) * in->cells;
+    g.cells[k] = 4 * in->cells; /* obstacles are beyond the body's blocks */
     lower[k] = 0.5 * in->cells;
     upper[k] = 1.5 * in->cells;
   }

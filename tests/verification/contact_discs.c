@@ -10,10 +10,8 @@ static void show(const char *name, const disc_hit *a, const disc_outcome *o, FIL
 }
 
 static void keeps_laws(const char *name, const disc_outcome *o) {
-  verify_gate_of(name, "momentum / that of a disc", o->momentum, 0.0, 1e-11, "conservation");
-  verify_gate_of(name, "largest energy / first", o->energy, 0.0, 1.0005,
-                 "contact takes energy and never gives any");
-  verify_gate_of(name, "least dissipation of a step", o->dissipation, -1e-12, 0.0, "contact takes energy");
+  const verify_laws laws = {.momentum = o->momentum, .energy = o->energy, .dissipation = o->dissipation};
+  verify_laws_gates(name, &laws, 1e-11, 1.0005);
 }
 
 static void refine(FILE *history, FILE *table) {

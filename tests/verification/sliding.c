@@ -151,7 +151,7 @@ const char *slide_basis(int32_t basis) {
 }
 
 void slide_heading(FILE *table) {
-  fprintf(table, "case,basis,shift,way,exact,friction,weight,stopped,range\n");
+  fprintf(table, "case,name,cells,shift,way,exact,friction,weight,stopped,range\n");
 }
 
 void slide_gates(const slide_series *s, FILE *table) {
@@ -162,28 +162,30 @@ void slide_gates(const slide_series *s, FILE *table) {
     slide a = {.support = s->support,
                .basis = s->basis,
                .settled = 1,
-               .h = 0.05,
+               .h = s->h > 0.0 ? s->h : 0.05,
+               .slab = s->slab,
                .angle = PI / 6.0,
                .friction = 0.3,
-               .shift = s->support == ON_WALL ? 0.0 : places[k],
+               .shift = s->support == ON_WALL ? 0.0 : (s->place ? s->place : places)[k],
                .turn = s->turn,
                .end = 0.5};
     const double exact = 0.5 * slide_gravity * (sin(a.angle) - a.friction * cos(a.angle)) * 0.25;
     slide_outcome o = slide_run(&a);
-    fprintf(table, "slides,%s,%g,%.6f,%.6f,%.5f,%.5f,,\n", s->name, a.shift, o.way, exact, o.friction,
-            o.weight);
+    fprintf(table, "slides,%s,%g,%g,%.6f,%.6f,%.5f,%.5f,,\n", s->name, 1.0 / a.h, a.shift, o.way, exact,
+            o.friction, o.weight);
     low = fmin(low, o.way / exact);
     high = fmax(high, o.way / exact);
     weight = fmax(weight, fabs(o.weight - 1.0));
     balance = fmax(balance, o.balance);
     a.friction = 0.7;
     o = slide_run(&a);
-    fprintf(table, "rests,%s,%g,%.6f,0,%.5f,%.5f,,\n", s->name, a.shift, o.way, o.friction, o.weight);
+    fprintf(table, "rests,%s,%g,%g,%.6f,0,%.5f,%.5f,,\n", s->name, 1.0 / a.h, a.shift, o.way, o.friction,
+            o.weight);
     creep = fmax(creep, fabs(o.way));
     a.friction = 0.3, a.angle = 0.0, a.speed = 1.5, a.end = 1.5;
     o = slide_run(&a);
-    fprintf(table, "stops,%s,%g,%.6f,0.375,%.5f,%.5f,%.5f,%.6f\n", s->name, a.shift, o.way, o.friction,
-            o.weight, o.stopped_at, o.range);
+    fprintf(table, "stops,%s,%g,%g,%.6f,0.375,%.5f,%.5f,%.5f,%.6f\n", s->name, 1.0 / a.h, a.shift, o.way,
+            o.friction, o.weight, o.stopped_at, o.range);
     way[0] = fmin(way[0], o.way), way[1] = fmax(way[1], o.way);
     range = fmax(range, o.range);
     verify_progress("%s, at %g h", s->name, a.shift);

@@ -17,8 +17,7 @@ typedef struct slide {
 
 typedef struct slide_outcome {
   double way, stopped_at;
-  double
-      range; /* of places in the last third of the time: of one that rests, how far it trembles or creeps */
+  double range;            /* of places in the last third of the time: what rests trembles or creeps so far */
   double friction, weight; /* mean forces over those of Coulomb and of gravity */
   double spin;             /* angular velocity at the end, > 0 down the slope */
   double balance;          /* impulse less weight and change of momentum, over weight */
@@ -33,6 +32,8 @@ slide_outcome slide_run(const slide *a);
 typedef struct slide_series {
   const char *name;
   int32_t support, basis, places;
+  const double *place;                   /* of the support, in cells; NULL: six of ours */
+  double h, slab;                        /* h: 0 for 1/20 */
   double turn, sliding, creep, stopping; /* tolerances: of ways, over the exact; length; of the way again */
   double weight;        /* and of the mean force of the floor; 0: none, since a block trembles */
   const char *trembles; /* NULL, or why lower bounds of ways, and places of rest, are not kept to */

@@ -222,3 +222,26 @@ mpm_step_info verify_step(const verify_world *w, double dt) {
   verify_ok(w, mpm_step(w->stepper, dt, &info));
   return info;
 }
+
+verify_laws verify_laws_begin(const mpm_step_info *first) {
+  return (verify_laws){.first = *first};
+}
+
+void verify_laws_see(verify_laws *laws, const mpm_step_info *now) {
+  const double energy = laws->first.kinetic_energy + laws->first.strain_energy;
+  double change = 0.0, first = 0.0;
+  for (int32_t c = 0; c < 3; ++c) {
+    change += pow(now->momentum[c] - laws->first.momentum[c], 2);
+    first += pow(laws->first.momentum[c], 2);
+  }
+  laws->momentum = fmax(laws->momentum, sqrt(change / first));
+  laws->energy = fmax(laws->energy, (now->kinetic_energy + now->strain_energy) / energy);
+  laws->dissipation = fmin(laws->dissipation, now->contact_dissipation / energy);
+}
+
+void verify_laws_gates(const char *name, const verify_laws *laws, double rounding, double most_energy) {
+  const char *source = "contact takes energy and never gives any";
+  verify_gate_of(name, "largest change of momentum / first", laws->momentum, 0.0, rounding, "conservation");
+  verify_gate_of(name, "largest energy / first", laws->energy, 0.0, most_energy, source);
+  verify_gate_of(name, "least dissipation of a step / energy", laws->dissipation, -1e-12, 0.0, source);
+}

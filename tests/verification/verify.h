@@ -79,6 +79,17 @@ void verify_place(const verify_world *w, mpm_particles *set, double turn, const 
 mpm_step_info verify_advance(const verify_world *w, double cfl, double t); /* to time t by stable steps */
 mpm_step_info verify_step(const verify_world *w, double dt);
 
+/* What a collision must keep, from the info of its start and of each step. */
+typedef struct verify_laws {
+  mpm_step_info first;
+  double momentum, energy; /* largest change of momentum, largest energy; over the first */
+  double dissipation;      /* least of a step, over the first energy */
+} verify_laws;
+verify_laws verify_laws_begin(const mpm_step_info *first);
+void verify_laws_see(verify_laws *laws, const mpm_step_info *now);
+/* Gates: momentum changes by no more than rounding, energy stays below a bound, contact gives none. */
+void verify_laws_gates(const char *name, const verify_laws *laws, double rounding, double most_energy);
+
 /* Ends the program unless the call is MPM_OK. */
 #define verify_ok(world, call) verify_check((world)->context, (call), __FILE__, __LINE__)
 void verify_check(const mpm_context *context, mpm_status status, const char *file, int line);
