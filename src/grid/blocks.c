@@ -308,6 +308,15 @@ int64_t mpmi_blocks_near(const mpmi_blocks *b, int64_t block, const int32_t *at)
   return other == MPMI_NO_BLOCK ? -1 : (int64_t)other * b->nodes + place;
 }
 
+int64_t mpmi_blocks_beside(const mpmi_blocks *b, int64_t slot, const int32_t *offset) {
+  int32_t place = (int32_t)(slot % b->nodes), at[3];
+  for (int32_t k = b->grid->dim - 1; k >= 0; --k) {
+    at[k] = place % b->edge + offset[k];
+    place /= b->edge;
+  }
+  return mpmi_blocks_near(b, slot / b->nodes, at);
+}
+
 void mpmi_blocks_index(const mpmi_blocks *b, int64_t slot, int64_t *index) {
   const int64_t block = slot / b->nodes;
   int64_t place = slot % b->nodes;

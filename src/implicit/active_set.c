@@ -90,8 +90,8 @@ static mpm_status list_constraints(mpmi_balance *balance) {
   if (status) return status;
   const double coasts = mpmi_is_dynamic(balance->settings) ? balance->step->dt : 0.0;
   for (int64_t i = 0; i < newton->matrix.rows * dim; ++i)
-    predicted[i] =
-        newton->matrix.held[i] ? newton->vector[MPMI_TARGET][i] : coasts * newton->vector[MPMI_V0][i];
+    predicted[i] = mpmi_is_held(newton->matrix.held[i]) ? newton->vector[MPMI_TARGET][i]
+                                                        : coasts * newton->vector[MPMI_V0][i];
   for (int64_t t = 0; t < contact->touch_count; ++t) {
     mpmi_touch *touch = &contact->touch[t];
     touch->closed = touch->stuck = 0;

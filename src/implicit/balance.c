@@ -113,6 +113,13 @@ void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, newton->place, newton->place_capacity);
   MPMI_FREE_ARRAY(c, newton->members, newton->members_capacity);
   MPMI_FREE_ARRAY(c, newton->members_start, newton->members_start_capacity);
+  MPMI_FREE_ARRAY(c, newton->outer, newton->outer_capacity);
+  MPMI_FREE_ARRAY(c, newton->term, newton->term_capacity);
+  MPMI_FREE_ARRAY(c, newton->outer_of, newton->outer_of_capacity);
+  MPMI_FREE_ARRAY(c, newton->led_start, newton->led_start_capacity);
+  MPMI_FREE_ARRAY(c, newton->led, newton->led_capacity);
+  MPMI_FREE_ARRAY(c, newton->master, newton->master_capacity);
+  MPMI_FREE_ARRAY(c, newton->columns, newton->columns_capacity);
   MPMI_FREE_ARRAY(c, newton->diagonal, newton->diagonal_capacity);
   MPMI_FREE_ARRAY(c, newton->mass, newton->mass_capacity);
   MPMI_FREE_ARRAY(c, newton->vector_memory, newton->vector_capacity);

@@ -4,10 +4,12 @@
  *   newmark.c              one step: the state on nodes, the iterations, the new state of the particles
  *   newton.c               the iterations: residual, increment, line search, convergence
  *   unknowns.c             active nodes, their numbering, who holds them
+ *   extension.c            which of them move with others
  *   pattern.c              the pattern of the matrix
  *   assembly.c             forces and stiffness of all particles
  *   particle_stiffness.c   what one batch of particles adds to them
  *   locking_stiffness.c    what the remedy against volumetric locking adds to the stiffness
+ *   condense.c             rows that move with others leave the system
  *   active_set.c           contact: which touches of bodies are closed
  *   contact_stiffness.c    their forces, and what they add to the matrix
  *   contact_outcome.c      what contact did in the step
@@ -72,6 +74,16 @@ typedef struct mpmi_constraint {
   double force[3], start[3], target[3]; /* as it is, before the increment, after all of it */
 } mpmi_constraint;
 
+/* An outer row moves with inner ones; its terms end where those of the next one begin. */
+typedef struct mpmi_outer {
+  int32_t row, end;
+  int32_t in_contact; /* it may touch something, and moves by itself in this step */
+} mpmi_outer;
+typedef struct mpmi_outer_term {
+  int32_t row;
+  double share;
+} mpmi_outer_term;
+
 /* What one task assembles with; component arrays have the length of the longest batch. */
 typedef struct mpmi_newton_work {
   mpmi_batch batch;                      /* the particles at hand */
@@ -98,6 +110,14 @@ typedef struct mpmi_newton {
   int32_t *place; /* [active][offsets] entry of the matrix that couples a node with the one that far away */
   int64_t members_capacity, members_start_capacity;
   int64_t *members_start, *members; /* active nodes by row */
+  int64_t outer_count, outer_capacity, term_count, term_capacity;
+  mpmi_outer *outer;
+  mpmi_outer_term *term;
+  int64_t outer_of_capacity, led_start_capacity, led_capacity, master_capacity, columns_capacity;
+  int32_t *outer_of;        /* [rows] outer row, or -1 */
+  int64_t *led_start, *led; /* outer rows by the inner ones that they move with */
+  int64_t *master;          /* [rows] slot of the node behind a row */
+  int32_t *columns;         /* [tasks] those of a row that is being listed */
   int64_t diagonal_capacity;
   int64_t *diagonal; /* [rows] entry */
   int64_t mass_capacity;
@@ -152,14 +172,20 @@ static inline int32_t mpmi_cube_places(int32_t dim, int32_t width, int32_t edge,
   return count;
 }
 
-/* These values of matrix.held say who holds a component; one that nobody holds is an unknown. */
-enum { MPMI_ROW_FREE, MPMI_ROW_PRESCRIBED, MPMI_ROW_WALL };
+/* These values of matrix.held say who holds a component; one that nobody holds is an unknown, unless it moves
+ * with those of inner rows. */
+enum { MPMI_ROW_FREE, MPMI_ROW_PRESCRIBED, MPMI_ROW_WALL, MPMI_ROW_OUTER };
+static inline int32_t mpmi_is_held(uint8_t held) {
+  return held == MPMI_ROW_PRESCRIBED || held == MPMI_ROW_WALL;
+}
 /* Returns the acceleration that belongs to a displacement, by component of the vectors; on walls it is 0. */
 static inline double mpmi_newmark_acceleration(const mpmi_balance *balance, int64_t at) {
   const mpmi_newton *newton = balance->newton;
   const double beta = balance->settings->desc.newmark_beta, dt = balance->step->dt;
   const uint8_t held = newton->matrix.held[at];
-  if (held == MPMI_ROW_WALL || (held && balance->settings->desc.boundary_zero_acceleration)) return 0.0;
+  if (held == MPMI_ROW_WALL ||
+      (held == MPMI_ROW_PRESCRIBED && balance->settings->desc.boundary_zero_acceleration))
+    return 0.0;
   return (newton->vector[MPMI_U][at] - dt * newton->vector[MPMI_V0][at] -
           dt * dt * (0.5 - beta) * newton->vector[MPMI_A0][at]) /
          (beta * dt * dt);
@@ -175,6 +201,10 @@ mpm_status mpmi_balance_prepare(mpmi_balance *balance);
 /* Finds active nodes, rows and held components, from the masses and from the external forces, whose fourth
  * value is > 0 where a node has stiffness. */
 mpm_status mpmi_unknowns_find(mpmi_balance *balance);
+/* Returns the slot of the node that one moves with as its image or ghost: itself for most. */
+int64_t mpmi_master_of(const mpmi_balance *balance, int64_t slot);
+/* Returns who holds a component of a node that moves by itself. */
+uint8_t mpmi_holder_of(const mpmi_balance *balance, int64_t slot, int32_t c);
 /* Sums nodal forces over the nodes that move with each row. */
 void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, double *vector);
 

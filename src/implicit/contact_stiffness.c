@@ -80,7 +80,8 @@ static double row_stiffness(const mpmi_balance *balance, int32_t row, const doub
   const double *block = newton->matrix.value + newton->diagonal[row] * dim * dim;
   double sum = 0.0;
   for (int32_t c = 0; c < dim; ++c)
-    if (!newton->matrix.held[(int64_t)row * dim + c]) sum += n[c] * n[c] * fabs(block[c * dim + c]);
+    if (!mpmi_is_held(newton->matrix.held[(int64_t)row * dim + c]))
+      sum += n[c] * n[c] * fabs(block[c * dim + c]);
   return sum;
 }
 
@@ -127,7 +128,7 @@ void mpmi_active_set_load(const mpmi_balance *balance, double *rhs) {
     const response at = respond(balance, of);
     for (int32_t i = 0; i < 2; ++i)
       for (int32_t c = 0; c < dim && of->row[i] >= 0; ++c)
-        if (!newton->matrix.held[(int64_t)of->row[i] * dim + c])
+        if (!mpmi_is_held(newton->matrix.held[(int64_t)of->row[i] * dim + c]))
           rhs[(int64_t)of->row[i] * dim + c] += (i ? 1.0 : -1.0) * (at.force[c] - of->force[c]);
   }
 }

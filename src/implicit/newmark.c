@@ -1,5 +1,6 @@
 #include "implicit/newmark.h"
 #include "implicit/active_set.h"
+#include "implicit/extension.h"
 #include "boundary/boundary.h"
 #include "boundary/prescribed.h"
 #include "stages/stages.h"
@@ -69,7 +70,7 @@ static mpm_status balance_start(mpmi_balance *balance) {
   mpmi_unknowns_fold(balance, &newton->external, external);
   for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
     const double mass = newton->mass[at / dim], force = external[at] - newton->vector[MPMI_INTERNAL][at];
-    newton->vector[MPMI_A0][at] = newton->matrix.held[at] || !(mass > 0.0) ? 0.0 : force / mass;
+    newton->vector[MPMI_A0][at] = mpmi_is_held(newton->matrix.held[at]) || !(mass > 0.0) ? 0.0 : force / mass;
   }
   return MPM_OK;
 }
@@ -107,7 +108,7 @@ static void smooth_light_rows(mpmi_balance *balance, const double *of_particles)
   const int32_t dim = balance->settings->grid->dim;
   double *start = newton->vector[MPMI_A0];
   for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
-    if (newton->matrix.held[at]) continue;
+    if (mpmi_is_held(newton->matrix.held[at])) continue;
     const int64_t row = at / dim, heavy = mpmi_heaviest_beside(balance, row, (int32_t)(at % dim));
     if (heavy < 0 || newton->mass[row] > light_row * newton->mass[heavy]) continue;
     start[heavy * dim + at % dim] += newton->mass[row] * (start[at] - of_particles[at]) / newton->mass[heavy];
@@ -153,6 +154,7 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
     return status;
   fold_means(balance, newton->vector[MPMI_V0]);
   status = mpmi_active_set_find(balance);
+  if (!status) mpmi_condense_mark(balance);
   mpmi_lap(balance->step, MPMI_TIME_GRID, clock);
   if (status) return status;
   memset(newton->vector[MPMI_A0], 0,
@@ -168,7 +170,8 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
 static double contact_acceleration(const mpmi_balance *balance, int64_t at) {
   const mpmi_newton *newton = balance->newton;
   const double mass = newton->mass[at / balance->settings->grid->dim];
-  return newton->matrix.held[at] || !(mass > 0.0) ? 0.0 : newton->vector[MPMI_CONTACT][at] / mass;
+  return mpmi_is_held(newton->matrix.held[at]) || !(mass > 0.0) ? 0.0
+                                                                : newton->vector[MPMI_CONTACT][at] / mass;
 }
 
 /* Returns by how much the velocity of a row changes in a step with contact, whose impulse comes on top of
@@ -216,7 +219,7 @@ static void show_velocities(mpmi_balance *balance) {
     const double *dv = mpmi_increment(&balance->nodes->solved, node->slot);
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)node->row * dim + c;
-      if (newton->matrix.held[at]) continue; /* u / dt is what was prescribed */
+      if (mpmi_is_held(newton->matrix.held[at])) continue; /* u / dt is what was prescribed */
       const double start = newton->vector[MPMI_V0][at],
                    mean = dt * (1.0 - gamma) * newton->vector[MPMI_A0][at];
       v[c] = balance->step->whole_increments ? node->sign[c] * start + dv[c]

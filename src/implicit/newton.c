@@ -5,6 +5,7 @@
  * that are moved at once, with the rest at rest, turn cells inside out. Increments that do so all the same,
  * or that take the residual up, are halved. */
 #include "implicit/active_set.h"
+#include "implicit/extension.h"
 #include "context/reduce.h"
 
 #include <float.h>
@@ -62,6 +63,7 @@ static double find_forces(iteration *it) {
     residual[i] = internal[i] + Ma - external[i] - newton->vector[MPMI_CONTACT][i];
     term[i] = Ma * Ma;
   }
+  mpmi_condense_forces(balance, residual);
   return sqrt(reduced(it, MPMI_REDUCE_SUM));
 }
 
@@ -135,6 +137,7 @@ static mpm_status assemble(iteration *it) {
   if (status) return status;
   add_inertia(it);
   mpmi_active_set_stiffen(it->balance);
+  mpmi_condense_matrix(it->balance);
   return MPM_OK;
 }
 
@@ -146,7 +149,7 @@ static mpm_status find_rhs(iteration *it, int32_t *moves_held) {
   double *rhs = newton->vector[MPMI_RHS], *du = newton->vector[MPMI_DU];
   *moves_held = 0;
   for (int64_t i = 0; i < it->n; ++i) {
-    du[i] = held[i] ? newton->vector[MPMI_TARGET][i] - newton->vector[MPMI_U][i] : 0.0;
+    du[i] = mpmi_is_held(held[i]) ? newton->vector[MPMI_TARGET][i] - newton->vector[MPMI_U][i] : 0.0;
     *moves_held |= du[i] != 0.0;
   }
   memset(rhs, 0, (size_t)it->n * sizeof *rhs);
@@ -196,7 +199,9 @@ static mpm_status solve(iteration *it) {
     balance->step->failure.callback_status = report.callback_status;
     return status;
   }
-  for (int64_t i = 0; i < it->n; ++i) newton->vector[MPMI_DU][i] = newton->matrix.held[i] ? du_held[i] : x[i];
+  for (int64_t i = 0; i < it->n; ++i)
+    newton->vector[MPMI_DU][i] = mpmi_is_held(newton->matrix.held[i]) ? du_held[i] : x[i];
+  mpmi_condense_extend(balance, newton->vector[MPMI_DU]);
   return MPM_OK;
 }
 

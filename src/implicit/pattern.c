@@ -1,21 +1,11 @@
 /* The pattern of the matrix: which rows couple. Nodes couple when a stencil holds both, or with the locking
- * remedy a cell; what a row's images and ghosts couple with, the row couples with too. So do nodes of bodies
- * that may touch, at one index. */
-#include "implicit/balance.h"
+ * remedy a cell; what a row's images and ghosts couple with, the row couples with too, and an inner row with
+ * what the outer ones that move with it couple with. So do nodes of bodies that may touch, at one index. */
+#include "implicit/extension.h"
 #include "layout/tasks.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* Returns the slot of the node at an offset from the one in a slot, or -1. */
-static int64_t neighbour_slot(const mpmi_blocks *b, int64_t slot, const int32_t *offset) {
-  int32_t place = (int32_t)(slot % b->nodes), at[3];
-  for (int32_t k = b->grid->dim - 1; k >= 0; --k) {
-    at[k] = place % b->edge + offset[k];
-    place /= b->edge;
-  }
-  return mpmi_blocks_near(b, slot / b->nodes, at);
-}
 
 static void offset_of(const mpmi_balance *balance, int32_t index, int32_t *offset) {
   const int32_t span = mpmi_coupling_span(balance->settings), reach = 2 * span - 1;
@@ -39,6 +29,7 @@ static void group(mpmi_newton *newton, int64_t rows) {
 typedef struct pattern_job {
   mpmi_balance *balance;
   int64_t rows;
+  int64_t most; /* columns of a row before they are distinct, with MPMI_MAX_BODIES to spare */
 } pattern_job;
 
 /* Finds the rows of the nodes around each active node, for now in the place of the entries. */
@@ -51,7 +42,7 @@ static void neighbours_task(void *data, int64_t k) {
     int32_t offset[3];
     offset_of(balance, o, offset);
     for (int64_t i = share.begin; i < share.end; ++i) {
-      const int64_t slot = neighbour_slot(&balance->layout->blocks, newton->active[i].slot, offset);
+      const int64_t slot = mpmi_blocks_beside(&balance->layout->blocks, newton->active[i].slot, offset);
       const int32_t other = slot < 0 ? -1 : newton->active_of[slot];
       newton->place[i * newton->offsets + o] = other < 0 ? -1 : newton->active[other].row;
     }
@@ -62,9 +53,6 @@ static int by_value(const void *a, const void *b) {
   const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
   return (x > y) - (x < y);
 }
-
-/* The most columns of a row before they are distinct. */
-enum { MOST_OFFSETS = 343, MOST_COLUMNS = 2 * 8 * MOST_OFFSETS + MPMI_MAX_BODIES };
 
 static int32_t sort_distinct(int32_t count, int32_t *list) {
   int32_t kept = 0;
@@ -100,11 +88,9 @@ static int32_t add_partners(const mpmi_balance *balance, int64_t slot, int32_t *
   return count;
 }
 
-/* Lists the distinct columns of a row, ascending, and returns how many; a tie of many images gives them
- * member by member. */
-static int32_t columns_of(const mpmi_balance *balance, int64_t row, int32_t *out) {
+/* Adds what the nodes of a row couple with; a tie of many images gives it member by member. */
+static int32_t add_columns(const mpmi_balance *balance, int64_t row, int32_t *out, int32_t count) {
   const mpmi_newton *newton = balance->newton;
-  int32_t count = 0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
     const int32_t *rows = newton->place + newton->members[m] * newton->offsets;
     for (int32_t o = 0; o < newton->offsets; ++o)
@@ -116,10 +102,42 @@ static int32_t columns_of(const mpmi_balance *balance, int64_t row, int32_t *out
   return count;
 }
 
+/* Lists the distinct columns of a row, ascending, and returns how many. */
+static int32_t columns_of(const mpmi_balance *balance, int64_t row, int32_t *out) {
+  const mpmi_newton *newton = balance->newton;
+  int32_t count = add_columns(balance, row, out, 0);
+  for (int64_t i = newton->led_start[row]; i < newton->led_start[row + 1]; ++i)
+    count = add_columns(balance, newton->led[i], out, count);
+  const int32_t own = count;
+  for (int32_t i = 0; i < own && newton->outer_count; ++i) {
+    const int32_t outer = newton->outer_of[out[i]];
+    if (outer < 0) continue;
+    for (int64_t t = mpmi_first_term(newton, outer); t < newton->outer[outer].end; ++t)
+      out[count++] = newton->term[t].row;
+  }
+  return count > own ? sort_distinct(count, out) : count;
+}
+
+/* Returns a bound for the columns of any row while they are listed. */
+static int64_t most_columns(const mpmi_newton *newton, int64_t rows) {
+  int64_t most = 0, terms = 0;
+  for (int64_t i = 0; i < newton->outer_count; ++i)
+    if (newton->outer[i].end - mpmi_first_term(newton, i) > terms)
+      terms = newton->outer[i].end - mpmi_first_term(newton, i);
+  for (int64_t r = 0; r < rows; ++r) {
+    int64_t members = newton->members_start[r + 1] - newton->members_start[r];
+    for (int64_t i = newton->led_start[r]; i < newton->led_start[r + 1]; ++i)
+      members += newton->members_start[newton->led[i] + 1] - newton->members_start[newton->led[i]];
+    const int64_t columns = members * (newton->offsets + MPMI_MAX_BODIES);
+    if (columns > most) most = columns;
+  }
+  return most * (1 + terms);
+}
+
 static void count_task(void *data, int64_t k) {
   const pattern_job *job = data;
   mpmi_newton *newton = job->balance->newton;
-  int32_t columns[MOST_COLUMNS];
+  int32_t *columns = newton->columns + k * job->most;
   const mpmi_share share = mpmi_share_of(job->balance->settings, job->rows, k);
   for (int64_t r = share.begin; r < share.end; ++r)
     newton->diagonal[r] = columns_of(job->balance, r, columns);
@@ -129,23 +147,25 @@ static void fill_task(void *data, int64_t k) {
   const pattern_job *job = data;
   mpmi_newton *newton = job->balance->newton;
   mpmi_matrix *A = &newton->matrix;
-  int32_t columns[MOST_COLUMNS];
+  int32_t *columns = newton->columns + k * job->most;
   const mpmi_share share = mpmi_share_of(job->balance->settings, job->rows, k);
   for (int64_t r = share.begin; r < share.end; ++r) {
     const int32_t count = columns_of(job->balance, r, columns);
-    int32_t *to = A->column + A->row_start[r];
-    memcpy(to, columns, (size_t)count * sizeof *columns);
-    for (int64_t m = newton->members_start[r]; m < newton->members_start[r + 1]; ++m) {
-      int32_t *place = newton->place + newton->members[m] * newton->offsets;
-      for (int32_t o = 0; o < newton->offsets; ++o) {
-        if (place[o] < 0) continue;
-        const int32_t *at = bsearch(&place[o], to, (size_t)count, sizeof *to, by_value);
-        place[o] = (int32_t)(A->row_start[r] + (at - to));
-      }
-    }
-    const int32_t own = (int32_t)r;
-    const int32_t *at = bsearch(&own, to, (size_t)count, sizeof *to, by_value);
-    newton->diagonal[r] = A->row_start[r] + (at - to);
+    memcpy(A->column + A->row_start[r], columns, (size_t)count * sizeof *columns);
+    newton->diagonal[r] = mpmi_matrix_entry(A, r, r);
+  }
+}
+
+/* Replaces the rows around each active node by the entries that couple it with them. */
+static void entries_task(void *data, int64_t k) {
+  const pattern_job *job = data;
+  mpmi_newton *newton = job->balance->newton;
+  const mpmi_share share = mpmi_share_of(job->balance->settings, newton->active_count, k);
+  for (int64_t i = share.begin; i < share.end; ++i) {
+    int32_t *place = newton->place + i * newton->offsets;
+    for (int32_t o = 0; o < newton->offsets; ++o)
+      if (place[o] >= 0)
+        place[o] = (int32_t)mpmi_matrix_entry(&newton->matrix, newton->active[i].row, place[o]);
   }
 }
 
@@ -164,10 +184,12 @@ static int32_t couples_bodies(const mpmi_balance *balance) {
 mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
   mpmi_newton *newton = balance->newton;
   mpmi_matrix *A = &newton->matrix;
-  pattern_job job = {balance, rows};
-  mpm_status status;
   group(newton, rows);
   newton->couples_bodies = couples_bodies(balance);
+  pattern_job job = {balance, rows, most_columns(newton, rows)};
+  mpm_status status = MPMI_RESERVE_MORE(balance->settings->context, newton->columns, newton->columns_capacity,
+                                        job.most * balance->settings->tasks);
+  if (status) return status;
   if ((status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, neighbours_task, &job)) ||
       (status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job)))
     return status;
@@ -180,7 +202,8 @@ mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
   if ((status = mpmi_matrix_reserve(A, rows, entries, balance->settings->grid->dim))) return status;
   A->row_start[0] = 0;
   for (int64_t r = 0; r < rows; ++r) A->row_start[r + 1] = A->row_start[r] + newton->diagonal[r];
-  if ((status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, fill_task, &job)))
+  if ((status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, fill_task, &job)) ||
+      (status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, entries_task, &job)))
     return status;
   ++A->pattern_id;
   return MPM_OK;
@@ -198,13 +221,15 @@ int64_t mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c
   const int32_t body = body_of_row(balance, row);
   double most = 0.0;
   int64_t found = -1;
-  for (int64_t e = A->row_start[row]; e < A->row_start[row + 1]; ++e) {
-    const int64_t other = A->column[e];
-    if (other == row || !(newton->mass[other] > most) || (c >= 0 && A->held[other * A->block + c]) ||
-        body_of_row(balance, other) != body)
-      continue;
-    most = newton->mass[other];
-    found = other;
-  }
+  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m)
+    for (int32_t o = 0; o < newton->offsets; ++o) {
+      const int32_t entry = newton->place[newton->members[m] * newton->offsets + o];
+      const int64_t other = entry < 0 ? row : A->column[entry];
+      if (other == row || !(newton->mass[other] > most) ||
+          (c >= 0 && mpmi_is_held(A->held[other * A->block + c])) || body_of_row(balance, other) != body)
+        continue;
+      most = newton->mass[other];
+      found = other;
+    }
   return found;
 }

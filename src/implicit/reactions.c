@@ -24,7 +24,9 @@ static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *n
 static double contact_on(const mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const int64_t at = row * balance->settings->grid->dim + c;
-  return newton->matrix.held[at] || !(newton->mass[row] > 0.0) ? 0.0 : newton->vector[MPMI_CONTACT][at];
+  return mpmi_is_held(newton->matrix.held[at]) || !(newton->mass[row] > 0.0)
+             ? 0.0
+             : newton->vector[MPMI_CONTACT][at];
 }
 
 /* Friction walls are surfaces, and nodes that they push have no other holder there. */

@@ -1,6 +1,6 @@
 /* Unknowns of an implicit step: nodes that are active, the rows that they move with, who holds them. All of
  * it is frozen during the step. */
-#include "implicit/balance.h"
+#include "implicit/extension.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,7 +27,7 @@ static int32_t is_active(const mpmi_balance *balance, const cuts *cut, int64_t s
          (mpmi_is_dynamic(balance->settings) && *mpmi_mass(&balance->nodes->solved, slot) > cut->mass);
 }
 
-static int64_t master_of(const mpmi_balance *balance, int64_t slot) {
+int64_t mpmi_master_of(const mpmi_balance *balance, int64_t slot) {
   const int32_t tie = balance->layout->constraints.tie_of[slot];
   return tie < 0 ? slot : balance->layout->constraints.tie[tie].master;
 }
@@ -46,7 +46,7 @@ static mpm_status check_carried(mpmi_balance *balance) {
   for (int64_t i = 0; i < slots; ++i)
     for (int32_t c = 0; c < dim && newton->active_of[i] < 0; ++c) {
       const double force = mpmi_momentum(&newton->external, i)[c];
-      const int64_t master = master_of(balance, i);
+      const int64_t master = mpmi_master_of(balance, i);
       const int32_t tie = balance->layout->constraints.tie_of[i];
       const int32_t held = mpmi_held_by(balance->nodes, master, c) ||
                            (tie >= 0 && balance->layout->constraints.tie[tie].zero[c]);
@@ -70,15 +70,16 @@ static void mark(mpmi_balance *balance, int64_t *active, int64_t *rows) {
   const cuts cut = find_cuts(balance);
   for (int64_t i = 0; i < slots; ++i) newton->active_of[i] = -1;
   for (int64_t i = 0; i < slots; ++i)
-    if (is_active(balance, &cut, i)) newton->active_of[i] = newton->active_of[master_of(balance, i)] = 0;
+    if (is_active(balance, &cut, i)) newton->active_of[i] = newton->active_of[mpmi_master_of(balance, i)] = 0;
   /* images of what is active are too: a cell may be seen from either side of a seam */
   for (int64_t i = 0; i < slots; ++i)
-    if (newton->active_of[i] < 0 && newton->active_of[master_of(balance, i)] >= 0) newton->active_of[i] = 0;
+    if (newton->active_of[i] < 0 && newton->active_of[mpmi_master_of(balance, i)] >= 0)
+      newton->active_of[i] = 0;
   *active = *rows = 0;
   for (int64_t i = 0; i < slots; ++i) {
     if (newton->active_of[i] < 0) continue;
     ++*active;
-    *rows += master_of(balance, i) == i;
+    *rows += mpmi_master_of(balance, i) == i;
   }
 }
 
@@ -100,7 +101,7 @@ static void number(mpmi_balance *balance) {
     if (newton->active_of[i] < 0) continue;
     newton->active_of[i] = (int32_t)count;
     newton->active[count++] =
-        (mpmi_active_node){i, master_of(balance, i) == i ? (int32_t)rows++ : -1, 1, {1.0, 1.0, 1.0}};
+        (mpmi_active_node){i, mpmi_master_of(balance, i) == i ? (int32_t)rows++ : -1, 1, {1.0, 1.0, 1.0}};
   }
   newton->active_count = count;
   for (int64_t i = 0; i < c->tie_count; ++i) {
@@ -147,7 +148,7 @@ static void place_rows(mpmi_balance *balance) {
     A->period[k] = balance->settings->grid->desc.periodic[k] ? balance->settings->grid->desc.cells[k] : 0;
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const mpmi_active_node *node = &newton->active[i];
-    if (master_of(balance, node->slot) != node->slot) continue;
+    if (mpmi_master_of(balance, node->slot) != node->slot) continue;
     int64_t *index = A->index[node->row];
     index[0] = index[1] = index[2] = 0;
     mpmi_blocks_index(&balance->layout->blocks, node->slot, index);
@@ -158,6 +159,12 @@ static void place_rows(mpmi_balance *balance) {
   }
 }
 
+uint8_t mpmi_holder_of(const mpmi_balance *balance, int64_t slot, int32_t c) {
+  const int32_t tie = balance->layout->constraints.tie_of[slot];
+  if (mpmi_held_by(balance->nodes, slot, c)) return MPMI_ROW_PRESCRIBED;
+  return tie >= 0 && balance->layout->constraints.tie[tie].zero[c] ? MPMI_ROW_WALL : MPMI_ROW_FREE;
+}
+
 /* Finds the components that walls, the host or prescribed particles hold, and how far they move. */
 static void hold(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
@@ -166,17 +173,15 @@ static void hold(mpmi_balance *balance) {
   int32_t changed = 0;
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const int64_t slot = newton->active[i].slot;
-    if (master_of(balance, slot) != slot) continue;
-    const int32_t tie = balance->layout->constraints.tie_of[slot];
+    if (mpmi_master_of(balance, slot) != slot) continue;
     for (int32_t c = 0; c < dim; ++c) {
       const int64_t at = (int64_t)newton->active[i].row * dim + c;
-      const int32_t by_host = mpmi_held_by(balance->nodes, slot, c) != 0;
-      const int32_t on_wall = tie >= 0 && balance->layout->constraints.tie[tie].zero[c];
-      const uint8_t held = by_host ? MPMI_ROW_PRESCRIBED : on_wall ? MPMI_ROW_WALL : MPMI_ROW_FREE;
+      const uint8_t held = mpmi_holder_of(balance, slot, c);
+      if (A->held[at] == MPMI_ROW_OUTER && held == MPMI_ROW_FREE) continue; /* contact decides */
       changed |= held != A->held[at];
       A->held[at] = held;
       newton->vector[MPMI_TARGET][at] =
-          by_host ? balance->step->dt * balance->nodes->held_value[slot][c] : 0.0;
+          held == MPMI_ROW_PRESCRIBED ? balance->step->dt * balance->nodes->held_value[slot][c] : 0.0;
     }
   }
   A->pattern_id += changed;
@@ -200,17 +205,22 @@ mpm_status mpmi_unknowns_find(mpmi_balance *balance) {
     return mpmi_fail(balance->settings->context, MPM_E_UNSUPPORTED,
                      "%lld nodes are active, more than 2147483647: use an explicit scheme",
                      (long long)active);
-  if (same_as_before(balance, active)) {
-    for (int64_t i = 0; i < active; ++i) newton->active_of[newton->active[i].slot] = (int32_t)i;
-  } else {
-    newton->version = -1;
+  const int32_t changed = !same_as_before(balance, active);
+  int32_t extended;
+  newton->version = -1; /* unless all goes well */
+  if (changed) {
     if ((status = reserve(balance, active, rows))) return status;
     number(balance);
+  } else {
+    for (int64_t i = 0; i < active; ++i) newton->active_of[newton->active[i].slot] = (int32_t)i;
+  }
+  if ((status = mpmi_extension_find(balance, rows, &extended))) return status;
+  if (changed || extended) {
     if ((status = mpmi_make_pattern(balance, rows))) return status;
     place_rows(balance);
     memset(newton->matrix.held, 0, (size_t)(rows * balance->settings->grid->dim));
-    newton->version = balance->layout->version;
   }
+  newton->version = balance->layout->version;
   hold(balance);
   return MPM_OK;
 }
