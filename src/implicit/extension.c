@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* A row is outer with less than this share of the largest sum of V0 |grad w|^2 of the nodes around. */
-static const double outer_share = 1e-2;
+static const double outer_share = 5e-2;
 /* Inner rows are looked for so many nodes away; lines as good as the best but for this share count alike. */
 enum { MOST_STEPS = 3 };
 static const double alike = 1e-9;

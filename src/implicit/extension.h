@@ -13,6 +13,11 @@ static inline int64_t mpmi_first_term(const mpmi_newton *newton, int64_t outer) 
   return outer ? newton->outer[outer - 1].end : 0;
 }
 
+/* Returns 1 for rows that are outer, or move outer ones. */
+static inline int32_t mpmi_is_extended(const mpmi_newton *newton, int64_t row) {
+  return newton->outer_of[row] >= 0 || newton->led_start[row] < newton->led_start[row + 1];
+}
+
 /* ---- condense.c --------------------------------------------------------------------------------------- */
 /* Lets the outer rows that may touch something be unknowns of their own in this step, and marks the others in
  * matrix.held. */

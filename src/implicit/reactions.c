@@ -2,7 +2,7 @@
  * recorded as the boundary stage does: to the host and to prescribed particles what acts on the components
  * that they hold, the rest of a tie to the wall that binds it. */
 #include "implicit/active_set.h"
-#include "implicit/balance.h"
+#include "implicit/extension.h"
 #include "boundary/bound.h"
 
 #include <string.h>
@@ -29,6 +29,20 @@ static double contact_on(const mpmi_balance *balance, int64_t row, int32_t c) {
              : newton->vector[MPMI_CONTACT][at];
 }
 
+/* Returns the force by which outer and inner rows hold each other: what nothing else balances on the row. */
+static double extension_on(const mpmi_balance *balance, int64_t row, int32_t c) {
+  const mpmi_newton *newton = balance->newton;
+  double force = -contact_on(balance, row, c);
+  if (!mpmi_is_extended(newton, row) ||
+      mpmi_is_held(newton->matrix.held[row * balance->settings->grid->dim + c]))
+    return 0.0;
+  for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
+    const mpmi_active_node *node = &newton->active[newton->members[m]];
+    force += node->sign[c] * reaction_on(balance, node, c);
+  }
+  return force;
+}
+
 /* Friction walls are surfaces, and nodes that they push have no other holder there. */
 static void record_friction_walls(mpmi_balance *balance) {
   const mpmi_contact_nodes *contact = &balance->nodes->contact;
@@ -44,21 +58,24 @@ static void record_friction_walls(mpmi_balance *balance) {
   }
 }
 
-/* Records one component of one row, on the nodes that move with it. Each has its share of contact by mass;
- * of the force of contact in the balance, bodies get the share that is momentum. */
+/* Records one component of one row, on the nodes that move with it. Each has its share of contact and of the
+ * extension by mass; of the force of contact in the balance, bodies get the share that is momentum. */
 static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_constraints *constraints = &balance->layout->constraints;
   const double dt = balance->step->dt, contact = contact_on(balance, row, c),
-               beyond = 1.0 - mpmi_contact_share(balance->settings);
+               beyond = 1.0 - mpmi_contact_share(balance->settings),
+               given = contact + extension_on(balance, row, c);
   double total = 0.0, along = 0.0, on_nodes = 0.0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
     const mpmi_active_node *node = &newton->active[newton->members[m]];
     const double mass = *mpmi_mass(&balance->nodes->solved, node->slot), all = reaction_on(balance, node, c);
-    const double share = mass > 0.0 ? node->sign[c] * mass / newton->mass[row] * contact : 0.0;
+    const double part = mass > 0.0 ? node->sign[c] * mass / newton->mass[row] : 0.0, share = part * given;
     const double impulse = dt * (all - share);
     balance->nodes->impulse[node->slot].given[c] = impulse;
-    if (mass > 0.0) balance->nodes->impulse[node->slot].change[c] = dt * (all - beyond * share) / mass;
+    if (mass > 0.0)
+      balance->nodes->impulse[node->slot].change[c] =
+          dt * (all - part * (given - contact) - beyond * part * contact) / mass;
     total += impulse;
     along += node->sign[c] * impulse;
     on_nodes += share;
@@ -71,8 +88,8 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   else if (tie < 0) /* nothing holds it: this is what the iterations have left */
     balance->nodes->impulse[slot].given[c] = balance->nodes->impulse[slot].change[c] = 0.0;
   else if (constraints->tie[tie].face[c] >= 0) {
-    /* a mirror image undoes a part of what contact gives its master: the wall has that */
-    const double undone = dt * (on_nodes - contact);
+    /* a mirror image undoes a part of what its master is given: the wall has that */
+    const double undone = dt * (on_nodes - given);
     balance->nodes->impulse[master].given[c] += undone;
     balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total + undone;
   }
