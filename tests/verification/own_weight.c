@@ -1,0 +1,210 @@
+/* Two cantilevers under their own weight, neo-Hookean, plane strain, whose tips go down by about as much as
+ * half their length: many nodes at their rims are seen by single particles. In quasi-static steps, on all
+ * smooth bases, by several numbers of particles and of steps, and by slow motion: the way of the tip does not
+ * depend on the number of steps. Bars that stretch by two fifths of their length under their weight have a
+ * closed form. */
+#include "verify.h"
+
+typedef struct cantilever {
+  const char *name;
+  double E, nu, length, depth, g, tip[2]; /* tip: of the lower corner, by finite elements of order 4 */
+} cantilever;
+static const cantilever cantilevers[] = {{"thick", 8e5, 0.3, 3.5, 0.5, 0.9, {-0.21083, -0.87838}},
+                                         {"slender", 1.5e6, 0.25, 2.4, 0.25, 2.2, {-0.29426, -0.94597}}};
+
+typedef struct setting {
+  int32_t basis, cells, per_cell, steps;
+  double density; /* of slow motion; 0: quasi-static */
+} setting;
+
+typedef struct outcome {
+  double error, tail;
+} outcome;
+
+typedef struct load {
+  double g, per_mass; /* per_mass: so that the weight does not depend on the density */
+} load;
+
+static mpm_status weigh(void *user, const mpm_particle_batch *b, double *add) {
+  const load *is = user;
+  for (int64_t p = 0; p < b->n; ++p) add[b->ld + p] -= is->g * is->per_mass * fmin(b->t, 1.0);
+  return MPM_OK;
+}
+
+/* Displacement of the lower corner of the tip, from the nearest particle on by its deformation gradient. */
+static void tip_of(const verify_world *w, const double *X, const double *corner, double *u) {
+  const int64_t n = mpm_particles_count(w->set[0]);
+  double *x = verify_get(w, w->set[0], "position", 2),
+         *F = verify_get(w, w->set[0], "deformation_gradient", 9), nearest = HUGE_VAL;
+  for (int64_t p = 0; p < n; ++p) {
+    const double d[2] = {corner[0] - X[p], corner[1] - X[n + p]};
+    if (!(hypot(d[0], d[1]) < nearest)) continue;
+    nearest = hypot(d[0], d[1]);
+    for (int32_t k = 0; k < 2; ++k)
+      u[k] = x[k * n + p] + F[3 * k * n + p] * d[0] + F[(3 * k + 1) * n + p] * d[1] - corner[k];
+  }
+  free(x), free(F);
+}
+
+/* The largest residual of the last step two iterations after one below 1e-4. Bending and stretching come to
+ * rest one after the other, so that a single iteration tells nothing of the order. */
+static double tail_of(const verify_world *w) {
+  double r[64], worst = 0.0;
+  int32_t count;
+  verify_ok(w, mpm_stepper_residuals(w->stepper, 64, r, &count));
+  for (int32_t k = 0; k + 2 < count; ++k)
+    if (r[k] < 1e-4) worst = fmax(worst, r[k + 2]);
+  return worst;
+}
+
+static outcome bend(const cantilever *of, const setting *by, FILE *csv) {
+  const double h = of->depth / by->cells, below = (ceil(1.5 / h) + 4.0) * h;
+  const double density = by->density > 0.0 ? by->density : 1000.0, corner[2] = {of->length, below};
+  verify_setup setup = verify_defaults(2, 1, h);
+  setup.grid.basis = by->basis;
+  setup.grid.cells[0] = (int64_t)lround(of->length / h) + 6;
+  setup.grid.cells[1] = (int64_t)lround(below / h) + 10 + by->cells;
+  setup.stepper.scheme = MPM_NEWMARK;
+  setup.stepper.quasi_static = !(by->density > 0.0);
+  setup.stepper.newmark_gamma = 1.0;
+  setup.stepper.newmark_beta = 0.5625;
+  verify_world w;
+  verify_open(&w, &setup);
+  mpm_particles *body = verify_set(&w, verify_elastic(&w, "neo_hookean", of->E, of->nu, density));
+  verify_fill_box(&w, body, (const double[]){0.0, below}, (const double[]){of->length, below + of->depth},
+                  by->per_cell);
+  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  load weight = {of->g, 1000.0 / density};
+  verify_ok(&w, mpm_stepper_set_acceleration(w.stepper, weigh, &weight));
+  double *X = verify_get(&w, body, "position", 2), u[2] = {0.0, 0.0};
+  outcome out = {0.0, 0.0};
+  for (int32_t k = 1; k <= by->steps * (by->density > 0.0 ? 2 : 1); ++k) {
+    verify_step(&w, 1.0 / by->steps);
+    out.tail = fmax(out.tail, tail_of(&w));
+    tip_of(&w, X, corner, u);
+    fprintf(csv, "%s,%d,%d,%d,%g,%.4f,%.6f,%.6f\n", of->name, (int)by->basis, (int)by->per_cell,
+            (int)by->steps, by->density, (double)k / by->steps, u[0], u[1]);
+  }
+  out.error = hypot(u[0] - of->tip[0], u[1] - of->tip[1]) / hypot(of->tip[0], of->tip[1]);
+  free(X);
+  verify_close(&w);
+  return out;
+}
+
+/* A bar of length 1, nu = 0, E = 1000, that hangs from its upper end under its weight.
+ * In uniaxial strain the nominal stress of neo-Hookean bars is E (F - 1 / F) / 2 = density g (L - X). */
+static double hang(int32_t basis, int32_t per_cell, int32_t steps, double *stretch) {
+  enum { CELLS = 16 };
+  const double h = 1.0 / CELLS, E = 1000.0, density = 1.0, top = 24.0 * h;
+  verify_setup setup = verify_defaults(2, 1, h);
+  setup.grid.basis = basis;
+  setup.grid.cells[0] = 10;
+  setup.grid.cells[1] = 24;
+  setup.stepper.scheme = MPM_NEWMARK;
+  setup.stepper.quasi_static = 1;
+  verify_world w;
+  verify_open(&w, &setup);
+  mpm_particles *bar = verify_set(&w, verify_elastic(&w, "neo_hookean", E, 0.0, density));
+  verify_fill_box(&w, bar, (const double[]){3.0 * h, top - 1.0}, (const double[]){7.0 * h, top}, per_cell);
+  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MAX, MPM_WALL_FIXED, 0.0));
+  load weight = {0.7 * E / density, 1.0};
+  verify_ok(&w, mpm_stepper_set_acceleration(w.stepper, weigh, &weight));
+  double *X = verify_get(&w, bar, "position", 2);
+  for (int32_t k = 0; k < steps; ++k) verify_step(&w, 1.0 / steps);
+  const int64_t n = mpm_particles_count(bar);
+  double *x = verify_get(&w, bar, "position", 2), error = 0.0;
+  *stretch = 0.0;
+  for (int64_t p = 0; p < n; ++p) {
+    /* u = integral of F - 1 from the top, with F = s + sqrt(s s + 1) and s = density g (L - X) / E */
+    const double a = weight.g * density / E, s = a * (1.0 - (top - X[n + p])), t = a;
+    const double G_t = 0.5 * (t * t + t * sqrt(t * t + 1.0) + asinh(t)),
+                 G_s = 0.5 * (s * s + s * sqrt(s * s + 1.0) + asinh(s));
+    const double u = (G_t - G_s) / a - (top - X[n + p]);
+    error = fmax(error, fabs(X[n + p] - x[n + p] - u));
+    *stretch = fmax(*stretch, u);
+  }
+  free(X), free(x);
+  verify_close(&w);
+  return error / *stretch;
+}
+
+static void bars(void) {
+  static const struct {
+    const char *name;
+    int32_t basis, per_cell;
+  } list[] = {{"cubic bar, 2 x 2 per cell", MPM_BSPLINE3, 2},
+              {"cubic bar, 3 x 3 per cell", MPM_BSPLINE3, 3},
+              {"quadratic bar, 3 x 3 per cell", MPM_BSPLINE2, 3},
+              {"cpGIMP bar, 3 x 3 per cell", MPM_CPGIMP, 3}};
+  for (int32_t i = 0; i < (verify_quick() ? 1 : 4); ++i) {
+    double worst = 0.0, stretch = 0.0;
+    for (int32_t steps = 5; steps <= (verify_quick() ? 5 : 45); steps *= 3)
+      worst = fmax(worst, hang(list[i].basis, list[i].per_cell, steps, &stretch));
+    verify_gate_of(list[i].name, "way of the lower end / length", stretch, 0.4, 0.45, "the load is meant so");
+    verify_gate_of(list[i].name, "largest error / way of the end", worst, 0.0, 0.02,
+                   "closed form; set tolerance");
+  }
+}
+
+static const char *const fem = "own finite elements of order 4; set tolerance";
+
+/* One basis: all numbers of particles and steps. The linear one, which locks in bending and feels how particles
+ * cross cells, has cells of half the size. */
+static void statics(const cantilever *of, int32_t basis, const char *basis_name, FILE *csv) {
+  static const int32_t steps[] = {10, 40, 20, 80};
+  const int32_t linear = basis == MPM_LINEAR;
+  double worst = 0.0, spread = 0.0, tail = 0.0;
+  for (int32_t per_cell = linear ? 4 : 2; per_cell <= (verify_quick() && !linear ? 2 : 4); ++per_cell) {
+    double least = HUGE_VAL, most = 0.0;
+    for (int32_t k = 0; k < (verify_quick() ? 2 : 4); ++k) {
+      const setting by = {basis, linear ? 8 : 4, per_cell, steps[k], 0.0};
+      const outcome is = bend(of, &by, csv);
+      worst = fmax(worst, is.error);
+      tail = fmax(tail, is.tail);
+      if (k < 2) least = fmin(least, is.error), most = fmax(most, is.error);
+    }
+    spread = fmax(spread, most - least);
+  }
+  char name[80];
+  snprintf(name, sizeof name, "%s, %s", of->name, basis_name);
+  verify_gate_of(name, "largest error of the tip / its way", worst, 0.0, 0.03, fem);
+  verify_gate_of(name, "40 steps less 10 / way", spread, 0.0, 0.01, "no drift; set tolerance");
+  verify_gate_of(name, "residual two iterations after 1e-4", tail, 0.0, 1e-10, "quadratic convergence");
+}
+
+/* With so little mass that the motion is slow: 10 to 160 steps for the load, and as many to settle. */
+static void dynamics(const cantilever *of, int32_t per_cell, FILE *csv) {
+  double error[2];
+  for (int32_t k = 0; k < 2; ++k) {
+    const setting by = {MPM_BSPLINE2, 4, per_cell, k ? (verify_quick() ? 40 : 160) : 10, 1.0};
+    error[k] = bend(of, &by, csv).error;
+  }
+  char name[80];
+  snprintf(name, sizeof name, "%s, in motion, %d x %d per cell", of->name, (int)per_cell, (int)per_cell);
+  verify_gate_of(name, "error of the tip / its way", error[1], 0.0, 0.03, fem);
+  verify_gate_of(name, "160 steps less 10 / way", error[1] - error[0], -0.01, 0.01,
+                 "no drift; set tolerance");
+}
+
+int main(int argc, char **argv) {
+  verify_begin("own_weight", argc, argv);
+  FILE *csv = verify_csv("own_weight");
+  fprintf(csv, "beam,basis,per_cell,steps,density,t,x,y\n");
+  static const struct {
+    int32_t basis;
+    const char *name;
+  } list[] = {{MPM_BSPLINE2, "quadratic"},
+              {MPM_BSPLINE3, "cubic"},
+              {MPM_GIMP, "GIMP"},
+              {MPM_UGIMP, "uGIMP"},
+              {MPM_LINEAR, "linear with half the cells"}};
+  for (int32_t b = 0; b < 2; ++b) {
+    for (int32_t i = 0; i < (verify_quick() ? 3 : 5); ++i)
+      statics(&cantilevers[b], list[i].basis, list[i].name, csv);
+    for (int32_t per_cell = 2; per_cell <= (verify_quick() ? 2 : 3); ++per_cell)
+      dynamics(&cantilevers[b], per_cell, csv);
+  }
+  bars();
+  fclose(csv);
+  return verify_end();
+}
