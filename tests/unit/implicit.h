@@ -16,6 +16,7 @@ int64_t implicit_block(world *w, mpm_particles *set, double low, double high, co
 int32_t implicit_history(const world *w, double *residual);
 void implicit_quadratic(const char *name, const world *w, double C);
 
+TCase *implicit_extension_case(void);
 TCase *implicit_failures_case(void);
 
 #endif

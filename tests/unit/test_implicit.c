@@ -443,6 +443,7 @@ Suite *implicit_suite(void) {
   tcase_add_loop_test(on_threads, threads, 0, 18);
   suite_add_tcase(suite, tests);
   suite_add_tcase(suite, on_threads);
+  suite_add_tcase(suite, implicit_extension_case());
   suite_add_tcase(suite, implicit_failures_case());
   return suite;
 }
