@@ -1,8 +1,8 @@
 """Implicit steps: vibration, equilibrium, locking, limit loads, and explicit steps beside them."""
-from plot import axes, loglog, plot, read, slope
+from plot import axes, loglog, plot, read, slope, ticks
 from plot_cases import clouds, rows
 
-LINEAR, QUADRATIC, GIMP, CPGIMP = 1.0, 2.0, 16.0, 18.0
+LINEAR, QUADRATIC, CUBIC, GIMP, CPGIMP = 1.0, 2.0, 3.0, 16.0, 18.0
 
 
 @plot
@@ -104,6 +104,33 @@ def beam():
     ax.set_xlabel("load / 100 kN/m")
     ax.set_ylabel("displacement of the tip / m")
     ax.legend(fontsize=7)
+    return figure
+
+
+@plot
+def own_weight():
+    figure, ax = axes(2)
+    data = read("own_weight")
+    names = ((QUADRATIC, "quadratic"), (CUBIC, "cubic"), (GIMP, "GIMP"), (LINEAR, "linear, half the cells"))
+    for b, (beam, way) in enumerate((("thick", 0.87838), ("slender", 0.94597))):
+        for i, (basis, name) in enumerate(names):
+            per_cell = 4 if basis == LINEAR else 3
+            at = rows(data, beam=beam, basis=basis, per_cell=per_cell, steps=20, density=0)
+            ax[0].plot([0, *at["t"]], [0] + [-y for y in at["y"]], f"C{i}" + "-:"[b], label=f"{beam}, {name}")
+            steps, error = (10, 20, 40, 80), []
+            for n in steps:
+                at = rows(data, beam=beam, basis=basis, per_cell=per_cell, steps=n, density=0)
+                error.append(-at["y"][-1] / way - 1)
+            ax[1].plot(steps, [100 * e for e in error], f"C{i}" + ("o-" if b == 0 else "s:"))
+        ax[0].plot([1], [way], "k+", markersize=9, label="FEM" if b else None)
+    ax[0].set_xlabel("share of the weight")
+    ax[0].set_ylabel("way of the tip down")
+    ax[0].legend(fontsize=6)
+    ax[1].set_xscale("log")
+    ticks(ax[1], (10, 20, 40, 80))
+    ax[1].axhspan(-3, 3, color="k", alpha=0.08)
+    ax[1].set_xlabel("steps")
+    ax[1].set_ylabel("way over FEM - 1, %")
     return figure
 
 

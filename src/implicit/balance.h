@@ -13,6 +13,7 @@
  *   active_set.c           contact: which touches of bodies are closed
  *   contact_stiffness.c    their forces, and what they add to the matrix
  *   contact_outcome.c      what contact did in the step
+ *   trouble.c              what steps that fail tell
  *   reactions.c            what walls, the host and prescribed particles exert
  *   balance.c              memory
  *

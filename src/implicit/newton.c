@@ -6,6 +6,7 @@
  * or that take the residual up, are halved. */
 #include "implicit/active_set.h"
 #include "implicit/extension.h"
+#include "implicit/trouble.h"
 #include "context/reduce.h"
 
 #include <float.h>
@@ -195,9 +196,8 @@ static mpm_status solve(iteration *it) {
   balance->solver_used = report.solver;
   ++balance->iterations;
   if (status) {
-    balance->step->failure.node = report.node;
     balance->step->failure.callback_status = report.callback_status;
-    return status;
+    return mpmi_tell_unsolved(balance, status, report.node);
   }
   for (int64_t i = 0; i < it->n; ++i)
     newton->vector[MPMI_DU][i] = mpmi_is_held(newton->matrix.held[i]) ? du_held[i] : x[i];
@@ -249,15 +249,6 @@ static int32_t converged(iteration *it, double du, double energy) {
          energy <= d->newton_tolerance_energy * it->energy_first;
 }
 
-static mpm_status not_converged(const iteration *it) {
-  const mpmi_balance *balance = it->balance;
-  return mpmi_fail(
-      balance->settings->context, MPM_NOT_CONVERGED,
-      "Newton's method has a relative residual of %g after %d iterations in the step from t = %g "
-      "with dt = %g: use a smaller dt, or mpm_advance",
-      relative(it), (int)balance->iterations, balance->step->t, balance->step->dt);
-}
-
 /* Brings the set of closed touches up to date; returns 1 when it was so already and all of them are
  * closed. */
 static int32_t settle_contact(iteration *it) {
@@ -270,19 +261,20 @@ static int32_t settle_contact(iteration *it) {
 
 static mpm_status iterate(iteration *it) {
   mpmi_newton *newton = it->newton;
+  int32_t settled = 1;
   for (;;) {
     int32_t moves_held;
     double taken;
     mpm_status status;
     if (it->balance->iterations >= it->balance->settings->desc.newton_max_iterations)
-      return not_converged(it);
+      return mpmi_tell_not_converged(it->balance, !settled);
     if ((status = assemble(it)) || (status = find_rhs(it, &moves_held))) return status;
     if (!moves_held && it->norm <= noise(it) && mpmi_active_set_error(it->balance) <= 1.0) return MPM_OK;
     if ((status = solve(it))) return status;
     const double energy = fabs(dot_of(it, newton->vector[MPMI_DU], newton->vector[MPMI_RHS], 1));
     if (it->balance->iterations == 1) it->energy_first = energy;
     if ((status = line_search(it, moves_held, &taken))) return status;
-    const int32_t settled = settle_contact(it);
+    settled = settle_contact(it);
     note(it);
     if (taken == 1.0 && settled && converged(it, length_of(it, newton->vector[MPMI_DU]), energy))
       return MPM_OK;

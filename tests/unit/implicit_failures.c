@@ -36,14 +36,24 @@ static mpm_step_info fails(block *b, mpm_status wanted, const char *text) {
   return info;
 }
 
+/* The particle that is named is within a cell and a half of the node. */
+static void beside(const block *b, const mpm_step_info *info) {
+  ck_assert_int_eq(info->set, 0);
+  const int64_t along = 11, node[2] = {info->node / along - 1, info->node % along - 1}; /* from -1 to 9 */
+  for (int32_t c = 0; c < 2; ++c)
+    ck_within("particle beside the node", fetch1(&b->w, b->set, "position", 2, c, info->particle),
+              0.1 * (double)node[c], 0.15);
+}
+
 /* Nothing holds it: singular, and the node is named. With inertia it falls. */
 START_TEST(free_body) {
   block b;
   open_block(&b, 1);
   for (int32_t face = MPM_X_MIN; face <= MPM_Y_MIN; face += 2)
     ck_ok(&b.w, mpm_stepper_set_wall(b.w.stepper, face, MPM_WALL_NONE, 0.0));
-  const mpm_step_info info = fails(&b, MPM_SINGULAR, "node");
+  const mpm_step_info info = fails(&b, MPM_SINGULAR, "hold the body in every direction");
   ck_assert_int_ge(info.node, 0);
+  beside(&b, &info);
   ck_assert_double_eq(info.dt_suggested, 0.6 * b.dt);
   b.desc.stepper.quasi_static = 0;
   b.desc.stepper.gravity[1] = 5.0;
@@ -97,11 +107,33 @@ START_TEST(too_few_iterations) {
   b.desc.stepper.newton_max_iterations = 1;
   configure(&b);
   const mpm_step_info info = fails(&b, MPM_NOT_CONVERGED, "after 1 iterations");
+  ck_assert_msg(strstr(last_error_of(&b.w), "smaller dt"), "%s", last_error_of(&b.w));
+  beside(&b, &info);
   ck_assert_int_eq(info.newton_iterations, 1);
   ck_assert_double_gt(info.residual, 0.0);
   double r[IMPLICIT_HISTORY];
   ck_assert_int_eq(implicit_history(&b.w, r), 2);
   ck_assert_double_eq(r[1], info.residual);
+  b.desc.stepper.newton_max_iterations = 20;
+  configure(&b);
+  world_step(&b.w, b.dt);
+  world_close(&b.w);
+}
+END_TEST
+
+/* Near its end the iteration is told from one that goes nowhere. */
+START_TEST(one_iteration_less) {
+  block b;
+  open_block(&b, 1);
+  b.desc.stepper.gravity[1] = -120.0;
+  configure(&b);
+  const saved_state before = world_save(&b.w);
+  const mpm_step_info info = world_step(&b.w, b.dt);
+  world_load(&b.w, &before);
+  free(before.data);
+  b.desc.stepper.newton_max_iterations = info.newton_iterations - 1;
+  configure(&b);
+  fails(&b, MPM_NOT_CONVERGED, "it falls fast: raise newton_max_iterations");
   b.desc.stepper.newton_max_iterations = 20;
   configure(&b);
   world_step(&b.w, b.dt);
@@ -185,9 +217,13 @@ START_TEST(law_in_trouble) {
   t.nan = 1;
   ck_assert_int_eq(fails(&b, MPM_NONFINITE, "tangent is not finite").set, 1);
   t.nan = 0;
-  b.desc.stepper.newton_max_iterations = 200; /* that tangent is only about right */
+  b.desc.stepper.newton_max_iterations = 10; /* that tangent is only about right */
   configure(&b);
-  b.dt = 1e-3;
+  b.dt = 0.03;
+  ck_assert_int_eq(fails(&b, MPM_NOT_CONVERGED, "as with a tangent callback that is not the derivative").set,
+                   1);
+  b.desc.stepper.newton_max_iterations = 200;
+  configure(&b);
   world_step(&b.w, b.dt);
   world_close(&b.w);
 }
@@ -411,6 +447,7 @@ TCase *implicit_failures_case(void) {
   tcase_add_loop_test(tests, large_free_body, 0, 6);
   tcase_add_test(tests, free_rigid_body);
   tcase_add_test(tests, too_few_iterations);
+  tcase_add_test(tests, one_iteration_less);
   tcase_add_test(tests, inverted);
   tcase_add_test(tests, law_in_trouble);
   tcase_add_test(tests, force_in_trouble);

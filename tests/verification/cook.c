@@ -3,7 +3,7 @@
  * remedy against locking. Gate: the middle of the right side. */
 #include "verify.h"
 
-/* Along each axis; with 2 the thin corner has nodes that too few particles hold. */
+/* Along each axis. */
 enum { PER_CELL = 4 };
 
 typedef struct variant {
