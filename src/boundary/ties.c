@@ -3,6 +3,8 @@
 #include "boundary/bound.h"
 #include "layout/tasks.h"
 
+#include <float.h>
+
 /* ---- the walk ----------------------------------------------------------------------------------------- */
 /* Ties share no node, so that they are shared out among tasks; waking these costs as much as some of them. */
 enum { FEW_TIES = 128 };
@@ -60,7 +62,7 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
         if (both) gained[c] += signed_mass * mpmi_increment(bound->values, follower->slot)[c];
       }
     }
-    const double inverse = state->mass > bound->step->layout->mass_cut ? 1.0 / state->mass : 0.0;
+    const double inverse = state->mass > DBL_MIN ? 1.0 / state->mass : 0.0;
     for (int32_t c = 0; tie->count && c < bound->dim; ++c) {
       v[c] = momentum[c] * inverse;
       if (both) dv[c] = gained[c] * inverse;

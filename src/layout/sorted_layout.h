@@ -54,7 +54,7 @@ typedef struct mpmi_layout {
   int32_t cover_is_old; /* find it anew (layout/reached.c) before the next step */
   int64_t sorts;
   int64_t wide_domains; /* domains wider than a cell at the last sort (GIMP) */
-  double mass_cut;      /* a node that is not heavier is at rest */
+  double mass_cut;      /* a node that is not heavier takes no force */
   int32_t walls_changed;
 } mpmi_layout;
 

@@ -4,7 +4,7 @@
 #
 # Those of the baseline hold on every platform: tests/portable compares with the same list. Kernels for avx2 and avx512
 # are contracted to fused multiply-add as the compiler sees fit: their hashes hold for the compiler that they are noted
-# with. An update on a processor without a set writes "unknown" for the scenes whose baseline changed: they are not
+# with. An update on a processor without a set writes "unknown" there for the scenes that changed elsewhere: they are not
 # compared until an update on a processor that has the set.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -35,20 +35,21 @@ done | xargs -P "$JOBS" -L 1 sh -c '
   status=$?
   if [ $status = 3 ]; then echo "$2" > "$1/$2.missing"; elif [ $status != 0 ]; then exit 1; fi' "$program" "$folder"
 
-cp expected-baseline.txt "$folder/baseline.before"
-# forget OLD-BASELINE NEW-BASELINE SET: the lines of a set that cannot run here.
+# forget SET: its lines, for a processor that lacks it; what has changed on another set is unknown.
 forget() {
   awk '{ hash = $NF; scene = $0; sub(/ [^ ]*$/, "", scene) }
-       FILENAME == ARGV[1] { before[scene] = hash; next }
+       FILENAME == ARGV[1] { changed[$0]; next }
        FILENAME == ARGV[2] { noted[scene] = hash; next }
-       { print scene, before[scene] == hash && scene in noted ? noted[scene] : "unknown" }' "$1" "$3" "$2"
+       { print scene, scene in changed || !(scene in noted) ? "unknown" : noted[scene] }' \
+    "$folder/changed" "expected-$1.txt" "$folder/baseline.lines"
 }
 
 failed=0
+: > "$folder/changed"
 for set in baseline avx2 avx512; do
   expected=expected-$set.txt
   if [ -e "$folder/$set.missing" ] && [ "$mode" = update ]; then
-    forget "$folder/baseline.before" "$folder/baseline.lines" "$expected" > "$folder/$set.lines"
+    forget "$set" > "$folder/$set.lines"
     { head -n 1 "$expected"; cat "$folder/$set.lines"; } > "$folder/$set.new"
     mv "$folder/$set.new" "$expected"
     echo "$expected: $(grep -c ' unknown$' "$expected" || true) scenes unknown: this processor does not have the set"
@@ -64,6 +65,7 @@ for set in baseline avx2 avx512; do
       echo "update-hashes: $set: scenes fail" >&2
       exit 1
     fi
+    grep -v -x -F -f "$expected" "$folder/$set.lines" | sed 's/ [^ ]*$//' >> "$folder/changed" || true
     { echo "# compiler: $compiler; written by: make update-hashes"; cat "$folder/$set.lines"; } \
       > "$expected"
     echo "$expected: $(wc -l < "$folder/$set.lines") scenes"

@@ -5,5 +5,6 @@
 #include "world.h"
 
 TCase *schemes_options_case(void);
+TCase *schemes_flight_case(void);
 
 #endif

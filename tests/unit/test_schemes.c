@@ -188,5 +188,6 @@ Suite *schemes_suite(void) {
   tcase_add_test(tc, steps_in_turn);
   suite_add_tcase(suite, tc);
   suite_add_tcase(suite, schemes_options_case());
+  suite_add_tcase(suite, schemes_flight_case());
   return suite;
 }

@@ -1,0 +1,106 @@
+/* An unstressed block in uniform flight over nodes, on which its particles land to the last digit or nearly so,
+ * keeps its velocity and its shape, whatever its basis, scheme, transfer and surroundings. */
+#include "schemes.h"
+
+static const double offsets[] = {0.0,    1e-15, -1e-15, 1e-13, -1e-13, 1e-12,
+                                 -1e-12, 1e-11, -1e-11, 1e-9,  -1e-9};
+enum { OFFSETS = sizeof offsets / sizeof *offsets };
+enum { ALONE, SLIDING, AROUND, LED, SURROUNDINGS };
+
+static mpm_status keep_going(void *user, const mpm_node_batch *b, uint8_t *prescribed, double *velocity) {
+  const double *v = user;
+  for (int64_t i = 0; i < b->n; ++i)
+    for (int32_t k = 0; k < b->dim; ++k) {
+      prescribed[k * b->ld + i] = b->position[i] > 6.5;
+      velocity[k * b->ld + i] = v[k];
+    }
+  return MPM_OK;
+}
+
+/* Cells have the edge 1, and each step goes a quarter of it: two particles per cell land on nodes. */
+static void fly(int32_t dim, const basis_option *basis, int32_t scheme, const transfer_option *by,
+                int32_t among, double offset) {
+  char name[120];
+  world w;
+  world_desc d = world_default(dim, 12, 1.0);
+  use_basis(basis, &d.grid);
+  d.stepper.scheme = scheme;
+  d.stepper.transfer = by->transfer;
+  d.stepper.flip = by->flip;
+  d.stepper.pic_damping = by->pic_damping;
+  d.stepper.xpic_order = by->xpic_order;
+  d.grid.periodic[0] = among == AROUND;
+  d.law = (world_law){.model = "neo_hookean", .E = 1000.0, .nu = 0.3, .density = 1.0};
+  snprintf(name, sizeof name, "%s, scheme %d, %s, %g, among %d", basis->name, (int)scheme, by->name, offset,
+           (int)among);
+  mpm_particles *set = world_open(&w, &d);
+  const double dt = 1.0 / 64.0, speed = 0.25 / dt;
+  double v[3] = {speed, among == SLIDING ? 0.0 : 0.5 * speed, dim == 3 ? 0.25 * speed : 0.0};
+  const double from = among == AROUND ? 9.0 : 4.0, low[3] = {from, among == SLIDING ? 0.0 : 3.0, 3.0},
+               high[3] = {from + 2.0, among == SLIDING ? 2.0 : 5.0, 5.0};
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, v));
+  double *x = fetch(&w, set, "position", dim);
+  for (int64_t i = 0; i < dim * n; ++i) x[i] += offset;
+  put(&w, set, "position", dim, x);
+  if (among == SLIDING) ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_SLIP, 0.0));
+  if (among == LED) ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, keep_going, v));
+  enum { STEPS = 9 };
+  for (int32_t k = 0; k < STEPS; ++k) {
+    const mpm_status status = mpm_step(w.stepper, dt, NULL);
+    if (status) ck_abort_msg("%s, %d-D: %s", name, (int)dim, last_error_of(&w));
+  }
+  double *to = fetch(&w, set, "position", dim), *F = fetch(&w, set, "deformation_gradient", 9),
+         *u = fetch(&w, set, "velocity", dim);
+  const double length = 12.0, tolerance = scheme == MPM_NEWMARK ? 1e-8 : 1e-12;
+  for (int64_t i = 0; i < dim * n; ++i) {
+    double way = to[i] - x[i];
+    if (among == AROUND && i < n) way -= length * floor(way / length);
+    ck_within(name, way, STEPS * dt * v[i / n], tolerance);
+    ck_within(name, u[i], v[i / n], tolerance * speed);
+  }
+  for (int64_t i = 0; i < 9 * n; ++i) ck_within(name, F[i], i / n % 4 ? 0.0 : 1.0, tolerance);
+  free(x), free(to), free(F), free(u);
+  world_close(&w);
+}
+
+static int32_t has_affine_steps(const basis_option *basis) {
+  return basis->boundary == MPM_BOUNDARY_GHOST &&
+         (basis->basis == MPM_BSPLINE2 || basis->basis == MPM_BSPLINE3);
+}
+
+START_TEST(flight) {
+  const basis_option *basis = &basis_options[_i];
+  static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL, MPM_NEWMARK};
+  for (int32_t s = 0; s < 4; ++s)
+    for (int32_t t = 0; t < (schemes[s] == MPM_NEWMARK ? 1 : TRANSFERS); ++t) {
+      const transfer_option *by = &transfer_options[t];
+      if (by->transfer == MPM_APIC_MLS && !has_affine_steps(basis)) continue;
+      if (schemes[s] == MPM_NEWMARK && basis->basis == MPM_UGIMP) continue; /* it is GIMP there */
+      for (int32_t k = 0; k < OFFSETS; ++k)
+        for (int32_t dim = 1; dim <= (k < 2 && t < 1 ? 3 : 2); ++dim)
+          fly(dim, basis, schemes[s], by, ALONE, offsets[k]);
+    }
+}
+END_TEST
+
+START_TEST(flight_among) {
+  const basis_option *basis = &basis_options[_i];
+  static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL, MPM_NEWMARK};
+  for (int32_t among = SLIDING; among < SURROUNDINGS; ++among)
+    for (int32_t s = 0; s < 4; ++s)
+      for (int32_t k = 0; k < OFFSETS; ++k) {
+        /* below a wall there is no way out */
+        if (among == SLIDING && offsets[k] < 0.0) continue;
+        fly(2, basis, schemes[s], &transfer_options[0], among, offsets[k]);
+      }
+}
+END_TEST
+
+TCase *schemes_flight_case(void) {
+  TCase *tc = tcase_create("flight");
+  tcase_set_timeout(tc, 60.0);
+  tcase_add_loop_test(tc, flight, 0, BASES);
+  tcase_add_loop_test(tc, flight_among, 0, BASES);
+  return tc;
+}
