@@ -1,5 +1,5 @@
-/* Rows at the rim that few particles see: bodies that bend far go through, by any number of steps, and what the
- * extension adds to forces and to momentum is nothing. */
+/* Rows at the rim that few particles see: bodies that bend far go through, by any number of steps, and the
+ * extension adds nothing to forces and to momentum. */
 #include "implicit.h"
 
 static mpm_status weigh(void *user, const mpm_particle_batch *b, double *add) {
@@ -9,7 +9,7 @@ static mpm_status weigh(void *user, const mpm_particle_batch *b, double *add) {
   return MPM_OK;
 }
 
-/* A cantilever along x that bends down by its depth and more; it lies at a place of the grid that is not a node. */
+/* A cantilever along x that bends down by its depth and more; it lies at a place that is not a node. */
 typedef struct cantilever {
   world w;
   int64_t n;

@@ -1,4 +1,4 @@
-/* An unstressed block in uniform flight over nodes, on which its particles land to the last digit or nearly so,
+/* An unstressed block in uniform flight over nodes, on which its particles land to the last digit or nearly,
  * keeps its velocity and its shape, whatever its basis, scheme, transfer and surroundings. */
 #include "schemes.h"
 

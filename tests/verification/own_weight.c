@@ -148,8 +148,8 @@ static void bars(void) {
 
 static const char *const fem = "own finite elements of order 4; set tolerance";
 
-/* One basis: all numbers of particles and steps. The linear one, which locks in bending and feels how particles
- * cross cells, has cells of half the size. */
+/* One basis: all numbers of particles and steps. The linear one, which locks in bending and feels how
+ * particles cross cells, has cells of half the size. */
 static void statics(const cantilever *of, int32_t basis, const char *basis_name, FILE *csv) {
   static const int32_t steps[] = {10, 40, 20, 80};
   const int32_t linear = basis == MPM_LINEAR;
