@@ -179,6 +179,20 @@ enum { MPMI_ROW_FREE, MPMI_ROW_PRESCRIBED, MPMI_ROW_WALL, MPMI_ROW_OUTER };
 static inline int32_t mpmi_is_held(uint8_t held) {
   return held == MPMI_ROW_PRESCRIBED || held == MPMI_ROW_WALL;
 }
+
+/* Returns the slot of the node that one moves with as its image or ghost: itself for most. */
+static inline int64_t mpmi_master_of(const mpmi_balance *balance, int64_t slot) {
+  const int32_t tie = balance->layout->constraints.tie_of[slot];
+  return tie < 0 ? slot : balance->layout->constraints.tie[tie].master;
+}
+
+/* Returns who holds a component of a node that moves by itself. */
+static inline uint8_t mpmi_holder_of(const mpmi_balance *balance, int64_t slot, int32_t c) {
+  const int32_t tie = balance->layout->constraints.tie_of[slot];
+  if (mpmi_held_by(balance->nodes, slot, c)) return MPMI_ROW_PRESCRIBED;
+  return tie >= 0 && balance->layout->constraints.tie[tie].zero[c] ? MPMI_ROW_WALL : MPMI_ROW_FREE;
+}
+
 /* Returns the acceleration that belongs to a displacement, by component of the vectors; on walls it is 0. */
 static inline double mpmi_newmark_acceleration(const mpmi_balance *balance, int64_t at) {
   const mpmi_newton *newton = balance->newton;
@@ -202,10 +216,6 @@ mpm_status mpmi_balance_prepare(mpmi_balance *balance);
 /* Finds active nodes, rows and held components, from the masses and from the external forces, whose fourth
  * value is > 0 where a node has stiffness. */
 mpm_status mpmi_unknowns_find(mpmi_balance *balance);
-/* Returns the slot of the node that one moves with as its image or ghost: itself for most. */
-int64_t mpmi_master_of(const mpmi_balance *balance, int64_t slot);
-/* Returns who holds a component of a node that moves by itself. */
-uint8_t mpmi_holder_of(const mpmi_balance *balance, int64_t slot, int32_t c);
 /* Sums nodal forces over the nodes that move with each row. */
 void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, double *vector);
 

@@ -27,11 +27,6 @@ static int32_t is_active(const mpmi_balance *balance, const cuts *cut, int64_t s
          (mpmi_is_dynamic(balance->settings) && *mpmi_mass(&balance->nodes->solved, slot) > cut->mass);
 }
 
-int64_t mpmi_master_of(const mpmi_balance *balance, int64_t slot) {
-  const int32_t tie = balance->layout->constraints.tie_of[slot];
-  return tie < 0 ? slot : balance->layout->constraints.tie[tie].master;
-}
-
 /* Without inertia only stiffness or a held component can carry a force; a force on a node with neither has no
  * balance. Forces up to FORCE_ROUNDING of the largest are what rounding leaves of vanishing weights, and
  * count as none. */
@@ -157,12 +152,6 @@ static void place_rows(mpmi_balance *balance) {
       A->position[3 * node->row + k] =
           k < balance->settings->grid->dim ? mpmi_node_position(balance->settings->grid, k, index[k]) : 0.0;
   }
-}
-
-uint8_t mpmi_holder_of(const mpmi_balance *balance, int64_t slot, int32_t c) {
-  const int32_t tie = balance->layout->constraints.tie_of[slot];
-  if (mpmi_held_by(balance->nodes, slot, c)) return MPMI_ROW_PRESCRIBED;
-  return tie >= 0 && balance->layout->constraints.tie[tie].zero[c] ? MPMI_ROW_WALL : MPMI_ROW_FREE;
 }
 
 /* Finds the components that walls, the host or prescribed particles hold, and how far they move. */
