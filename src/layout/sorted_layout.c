@@ -143,7 +143,7 @@ static void find_largest_masses(mpmi_layout *layout) {
  * weighs (d^3 / 6)^3. Implicit steps do not divide: stiffness moves the lightest node. */
 static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
   const int32_t divides = settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings);
-  const double share = divides ? 1e-8 : 1e-40;
+  const double share = divides ? 1e-12 : 1e-40;
   layout->mass_cut = DBL_MIN; /* the inverse of a lighter one may not be finite */
   for (int32_t m = 0; m < layout->member_count; ++m)
     if (share * layout->member[m].set->mass_max > layout->mass_cut)
