@@ -9,8 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A row is outer with less than this share of the largest sum of V0 |grad w|^2 of the nodes around. */
-static const double outer_share = 5e-2;
+/* A row is outer with less than this share of the largest sum of V0 |grad w|^2 of the nodes around. On the
+ * linear basis a particle that enters a cell has its full gradient there at once. */
+static const double outer_share = 1e-2, outer_share_linear = 5e-2;
 /* Inner rows are looked for so many nodes away; lines as good as the best but for this share count alike. */
 enum { MOST_STEPS = 3 };
 static const double alike = 1e-9;
@@ -51,7 +52,9 @@ static void sum_stiffness(search *s, int64_t rows) {
 static int32_t is_weak(const search *s, int64_t row, double largest) {
   const mpmi_newton *newton = s->newton;
   const int32_t dim = s->balance->settings->grid->dim, reach = s->balance->settings->grid->width - 1;
-  if (s->stiffness[row] >= outer_share * largest) return 0;
+  const double share =
+      s->balance->settings->grid->family == MPMI_FAMILY_BSPLINE1 ? outer_share_linear : outer_share;
+  if (s->stiffness[row] >= share * largest) return 0;
   for (int32_t c = 0; c < dim; ++c)
     if (mpmi_holder_of(s->balance, s->slot[row], c) == MPMI_ROW_PRESCRIBED) return 0;
   double most = 0.0;
@@ -62,7 +65,7 @@ static int32_t is_weak(const search *s, int64_t row, double largest) {
       most = fmax(most, s->stiffness[newton->active[newton->active_of[slot]].row]);
     int32_t k = 0;
     while (k < dim && ++at[k] > reach) at[k++] = -reach;
-    if (k == dim) return s->stiffness[row] < outer_share * most;
+    if (k == dim) return s->stiffness[row] < share * most;
   }
 }
 

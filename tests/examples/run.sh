@@ -145,7 +145,7 @@ fi
 if wanted stacked_blocks; then
   mkdir blocks
   run stacked_blocks blocks
-  check "floor" "floor within" 0 1e-4
+  check "floor" "floor within" 0 1e-3
   check "lowest block" "moved by" -0.05 0.02
   check "blocks on the floor" "and" 0.8 1.1
   check "momentum" "momentum off by" 0 1e-11

@@ -159,6 +159,7 @@ END_TEST
 
 void add_contact_steps(Suite *suite) {
   TCase *steps = tcase_create("steps");
+  tcase_set_timeout(steps, 60.0);
   tcase_add_test(steps, implicit_bodies);
   tcase_add_loop_test(steps, implicit_solvers, 1, 4);
   tcase_add_test(steps, implicit_slip);
