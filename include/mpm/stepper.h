@@ -69,7 +69,12 @@ typedef struct mpm_stepper_desc {
   int32_t linear_solver;         /**< MPM_SOLVER_AUTO (default) to MPM_SOLVER_HOST */
   double linear_tolerance;       /**< ||K x - b|| / ||b||; 0 (default): the Newton iteration chooses it */
   int32_t linear_max_iterations; /**< most iterations of a linear solve; 0 (default): the solver chooses */
-  int32_t reserved;              /**< 0 */
+  /** 1: with MPM_MUSL particles move by the projected velocities, which strain them too: x += dt sum w v, with
+   * the v of the second projection. Bodies in sustained tension are stable then, whose particles otherwise move
+   * by more than they are strained by (theory, section 11.1). 0 (default): they move by the updated velocities,
+   * as Sulsky et al. 1995. MPM_E_UNSUPPORTED with other schemes, which have no such velocities after the
+   * update. Since 0.2.0, in the place of `reserved`. */
+  int32_t projected_positions;
 } mpm_stepper_desc;
 
 /**

@@ -110,7 +110,7 @@ uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t 
     for (int64_t p = 0; p < n; ++p) {
       if (!mpmi_is_prescribed(set, begin + p, c)) continue;
       const double u = mean[c * set->ld + begin + p], moved = move->v_new[c][p];
-      if (mpmi_is_dynamic(settings)) {
+      if (mpmi_is_dynamic(settings) && move->rule != MPMI_MOVE_PLACE) {
         /* an implicit step balances the nodes at its end: the gain is that of the new acceleration */
         const double gained = mpmi_is_implicit(settings)
                                   ? move->dt * (mpmi_f64(set, MPMI_ACCELERATION, 1) + c * set->ld)[begin + p]
@@ -119,7 +119,7 @@ uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t 
         part->work += mass[begin + p] * (u - move->v_old[c][p] - gained) * u;
       }
       move->v_new[c][p] = u;
-      move->x_new[c][p] = move->x_old[c][p] + move->dt * u;
+      move->x_new[c][p] = (mpmi_f64(set, MPMI_POSITION, 0) + c * set->ld)[begin + p] + move->dt * u;
       flags |= flags_of(move, c, move->x_new[c][p]);
     }
   return flags;

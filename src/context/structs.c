@@ -15,7 +15,7 @@
   X(mpm_grid_desc, smoothing, 112)                                                                           \
   X(mpm_material_batch, lookup, 144)                                                                         \
   X(mpm_material_desc, state_initial, 64)                                                                    \
-  X(mpm_stepper_desc, reserved, 152)                                                                         \
+  X(mpm_stepper_desc, projected_positions, 152)                                                              \
   X(mpm_step_info, angular_momentum, 192)                                                                    \
   X(mpm_step_info, reserved, 232)                                                                            \
   X(mpm_contact_desc, direction, 72)                                                                         \

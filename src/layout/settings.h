@@ -48,6 +48,10 @@ static inline int32_t mpmi_is_dynamic(const mpmi_settings *set) {
 static inline int32_t mpmi_deforms_first(const mpmi_settings *set) {
   return set->desc.scheme == MPM_USF || mpmi_is_implicit(set);
 }
+/* Returns 1 when particles move with their strain, after the velocities of MUSL have been projected again. */
+static inline int32_t mpmi_moves_last(const mpmi_settings *set) {
+  return set->desc.projected_positions;
+}
 static inline int32_t mpmi_is_affine(const mpmi_settings *set) {
   return set->transfer->carries != MPMI_CARRIES_NOTHING;
 }

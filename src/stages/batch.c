@@ -27,6 +27,7 @@ static void list_streams(mpmi_batch *b) {
     add_streams(streams, b->set, MPMI_VELOCITY, 1);
     add_streams(streams, b->set, MPMI_L, 1);
   }
+  if (b->pass->places) add_streams(streams, b->set, MPMI_POSITION, 1);
   if (b->pass->deforms) {
     add_streams(streams, b->set, MPMI_F, 0);
     add_streams(streams, b->set, MPMI_F, 1);
@@ -127,7 +128,7 @@ static void check_batch(mpmi_batch *b) {
   const mpm_particles *set = b->set;
   const int32_t dim = set->grid->dim;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
-  const int32_t moved = b->pass->moves, deformed = b->pass->deforms;
+  const int32_t moved = b->pass->moves || b->pass->places, deformed = b->pass->deforms;
   for (int64_t slot = b->begin; slot < b->begin + b->n; ++slot) {
     if (id[slot] < 0)
       restore_hole(b, slot);

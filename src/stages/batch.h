@@ -14,6 +14,7 @@ typedef struct mpmi_batch mpmi_batch;
 typedef struct mpmi_pass {
   int32_t moves;   /* velocity and position of the particles: gathers what the transfer takes for that */
   int32_t deforms; /* deformation gradient and stress */
+  int32_t places;  /* position, where the pass that moves has left it to one that deforms */
   int32_t plain;   /* gathers mean velocities whatever the transfer is */
   void (*bind)(mpmi_batch *b);  /* a set comes; or NULL */
   void (*enter)(mpmi_batch *b); /* a block comes; or NULL */

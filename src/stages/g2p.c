@@ -49,6 +49,11 @@ static void take_strain(mpmi_batch *b) {
   mpmi_batch_sums(b, first ? MPMI_SUMS_LAW : MPMI_SUMS_LAW | MPMI_SUMS_MOTION);
 }
 
+static void take_strain_and_place(mpmi_batch *b) {
+  mpmi_motion_take(b);
+  take_strain(b);
+}
+
 static void take_means(mpmi_batch *b, int32_t field) {
   for (int32_t k = 0; k < b->set->grid->dim; ++k)
     memcpy(mpmi_component_row(b->set, field, 1, k) + b->begin, b->v_bar + k * b->law.ld,
@@ -72,6 +77,12 @@ static const mpmi_pass strain = {.deforms = 1,
                                  .enter = mpmi_strain_enter,
                                  .aim = mpmi_strain_aim,
                                  .take = take_strain};
+static const mpmi_pass strain_and_place = {.deforms = 1,
+                                           .places = 1,
+                                           .bind = bind_both,
+                                           .enter = enter_both,
+                                           .aim = aim_both,
+                                           .take = take_strain_and_place};
 static const mpmi_pass velocities = {.plain = 1, .take = take_velocities};
 static const mpmi_pass accelerations = {.plain = 1, .take = take_accelerations};
 
@@ -91,7 +102,7 @@ mpm_status mpmi_g2p_move(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *f
 }
 
 mpm_status mpmi_g2p_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
-  return run(step, nodes, from, &strain);
+  return run(step, nodes, from, mpmi_moves_last(step->settings) ? &strain_and_place : &strain);
 }
 
 mpm_status mpmi_g2p_velocities(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {

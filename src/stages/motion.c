@@ -11,13 +11,17 @@ void mpmi_motion_bind(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpm_grid *grid = settings->grid;
   const int32_t blends = settings->transfer->takes == MPMI_TAKES_BLEND && mpmi_is_dynamic(settings);
-  const int32_t rule = blends                        ? MPMI_MOVE_BLEND
+  const int32_t places = b->pass->places;
+  const int32_t rule = places                        ? MPMI_MOVE_PLACE
+                       : blends                      ? MPMI_MOVE_BLEND
                        : mpmi_is_corrected(settings) ? MPMI_MOVE_CORRECT
                                                      : MPMI_MOVE_SET;
+  const int32_t lags = settings->desc.position_order == 2 && !mpmi_is_implicit(settings) && !places;
   b->move = (mpmi_move){.rule = rule,
+                        .stays = mpmi_moves_last(settings) && !places,
                         .dt = b->step->dt,
                         .flip = mpmi_flip_share(settings, b->step->velocity_dt),
-                        .lag = settings->desc.position_order == 2 && !mpmi_is_implicit(settings) ? 0.5 : 0.0,
+                        .lag = lags ? 0.5 : 0.0,
                         .ld = b->law.ld,
                         .v_bar = b->v_bar,
                         .dv = b->dv};
@@ -29,7 +33,7 @@ void mpmi_motion_bind(mpmi_batch *b) {
     b->move.period[k] = periodic ? length : 0.0;
     b->move.inverse_period[k] = periodic ? 1.0 / length : 0.0;
   }
-  if (!b->pass->moves || mpmi_is_implicit(settings)) return;
+  if (mpmi_is_implicit(settings)) return;
   b->gather.move = &b->move;
   b->gather.v = NULL;
 }
@@ -128,8 +132,9 @@ static void store_accelerations(mpmi_batch *b) {
 }
 
 void mpmi_motion_aim(mpmi_batch *b) {
+  const int32_t from = b->pass->places; /* the pass that moves has begun the new position */
   for (int32_t k = 0; k < b->set->grid->dim; ++k) {
-    b->move.x_old[k] = mpmi_component_row(b->set, MPMI_POSITION, 0, k) + b->begin;
+    b->move.x_old[k] = mpmi_component_row(b->set, MPMI_POSITION, from, k) + b->begin;
     b->move.v_old[k] = mpmi_component_row(b->set, MPMI_VELOCITY, 0, k) + b->begin;
     b->move.x_new[k] = mpmi_component_row(b->set, MPMI_POSITION, 1, k) + b->begin;
     b->move.v_new[k] = mpmi_component_row(b->set, MPMI_VELOCITY, 1, k) + b->begin;
@@ -162,8 +167,9 @@ void mpmi_motion_take(mpmi_batch *b) {
   }
   if (b->step->layout->member[b->m].prescribed)
     flags |= mpmi_prescribed_move(b->step, b->nodes, b->m, b->block, &b->move, b->begin, b->n);
+  b->flags |= flags & MPMI_NONFINITE;
+  if (b->set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(settings)) store_accelerations(b);
+  if (b->move.stays) return; /* they are not where they will be */
   if (flags & MPMI_LEFT_BOUNDS) look_astray(b);
   if (flags & MPMI_OUTSIDE) look_outside(b);
-  if (b->set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(settings)) store_accelerations(b);
-  b->flags |= flags & MPMI_NONFINITE;
 }

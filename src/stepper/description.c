@@ -68,6 +68,12 @@ static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "locking_remedy has no meaning in 1-D, where dilation is all there is: use "
                      "MPM_LOCKING_NONE");
+  if (d->projected_positions != 0 && d->projected_positions != 1)
+    return mpmi_fail(c, MPM_E_ARG, "projected_positions is %d: it must be 0 or 1",
+                     (int)d->projected_positions);
+  if (d->projected_positions && d->scheme != MPM_MUSL)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "projected_positions = 1 needs the second projection of scheme MPM_MUSL: use that, or 0");
   if (d->staggered && d->position_order == 2)
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "staggered steps are of second order with position_order = 1: use that");
@@ -127,7 +133,6 @@ mpm_status mpmi_description_read(mpm_context *c, const mpm_grid *grid, const mpm
   if (out->boundary_zero_acceleration != 0 && out->boundary_zero_acceleration != 1)
     return mpmi_fail(c, MPM_E_ARG, "boundary_zero_acceleration is %d: it must be 0 or 1",
                      (int)out->boundary_zero_acceleration);
-  if (out->reserved) return mpmi_fail(c, MPM_E_ARG, "reserved is %d: it must be 0", (int)out->reserved);
   if (out->reference_positions != 0 && out->reference_positions != 1)
     return mpmi_fail(c, MPM_E_ARG, "reference_positions is %d: it must be 0 or 1",
                      (int)out->reference_positions);

@@ -5,6 +5,8 @@
  *   XPIC            v = sum w v + correction                     stages/xpic.c
  *   position        x = x_p + dt sum w v                         Guilkey eq. 10, Steffen et al. 2008 eq. 10
  *   second order    x = x_p + dt sum w (v - dv / 2)              MPoint theory eq. 37, its misprint mended
+ *
+ * With projected positions this is done in two passes: the first leaves out dt sum w v, the second adds it.
  */
 #ifndef MPMI_MOVE_H
 #define MPMI_MOVE_H
@@ -16,12 +18,14 @@
 enum {
   MPMI_MOVE_SET,    /* v = v_bar */
   MPMI_MOVE_BLEND,  /* v = flip (v_old + dv) + (1 - flip) v_bar */
-  MPMI_MOVE_CORRECT /* v = v_bar + what v_new holds: XPIC */
+  MPMI_MOVE_CORRECT, /* v = v_bar + what v_new holds: XPIC */
+  MPMI_MOVE_PLACE    /* v stays what v_new holds */
 };
 
 /* New velocity and position of a batch. */
 typedef struct mpmi_move {
   int32_t rule;
+  int32_t stays; /* 1: v_bar does not change the position */
   double dt, flip;
   double lag; /* share of dv in the position: 1/2 for the second-order update, else 0 */
   int64_t ld;
@@ -59,6 +63,10 @@ MPMI_INLINE void mpmi_move_lanes(int32_t dim, const mpmi_move *job, int64_t s, c
   const double dt = job->dt, flip = job->flip, pic = 1.0 - flip, lag = job->lag;
   mpmi_lanes v[3], path[3];
   for (int32_t k = 0; k < dim; ++k) v[k] = path[k] = v_bar[k];
+  if (job->stays)
+    for (int32_t k = 0; k < dim; ++k) path[k] = (mpmi_lanes){0.0};
+  if (job->rule == MPMI_MOVE_PLACE)
+    for (int32_t k = 0; k < dim; ++k) v[k] = mpmi_lanes_load(job->v_new[k] + s);
   if (job->rule == MPMI_MOVE_BLEND)
     for (int32_t k = 0; k < dim; ++k)
       v[k] = flip * (mpmi_lanes_load(job->v_old[k] + s) + dv[k]) + pic * v_bar[k];

@@ -140,6 +140,7 @@ static mpm_stepper_desc draw_stepper(cloud *c) {
   d.quasi_static = (bits >> 4 & 7) == 7;
   d.staggered = (bits >> 7 & 3) == 3;
   d.boundary_zero_acceleration = bits >> 9 & 1;
+  d.projected_positions = bits >> 14 & 1;
   d.pic_damping = (bits >> 10 & 3) == 3 ? 10.0 : 0.0;
   d.flip = bits >> 12 & 1 ? fuzz_between(&c->in, 0.0, 1.0) : 1.0;
   d.gravity[c->g.dim - 1] = bits >> 13 & 1 ? -10.0 : 0.0;
@@ -153,6 +154,7 @@ static mpm_stepper_desc supported(cloud *c, mpm_stepper_desc d) {
   MUST(!mpm_stepper_desc_init(&usual, sizeof usual));
   for (int32_t i = 0; fuzz_status(c->context, mpm_stepper_create(c->context, c->grid, &d, &trial)); ++i) {
     MUST(i < 9);
+    if (i == 0) d.projected_positions = usual.projected_positions;
     if (i == 0) d.locking_remedy = usual.locking_remedy;
     if (i == 1) d.staggered = usual.staggered;
     if (i == 2) d.quasi_static = usual.quasi_static;

@@ -168,6 +168,7 @@ enum {
   CONTACT_PERIODIC,
   PLANES,
   OBSTACLES,
+  PROJECTED,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -211,6 +212,7 @@ static const option options[OPTIONS] = {
     [CONTACT_PERIODIC] = {"contact, periodic", 1, 1, 0},
     [PLANES] = {"friction walls, planes", 1, 1, 0},
     [OBSTACLES] = {"obstacles, saved and loaded", 1, 1, 0},
+    [PROJECTED] = {"projected positions", 1, 0, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -272,6 +274,7 @@ static void apply(scene *is, int32_t o) {
   is->zero_acceleration = o == ZERO_ACCELERATION;
   if (o == ORDER_2) is->position_order = 2;
   is->staggered = o == STAGGERED;
+  is->projected = o == PROJECTED;
   if (o == TWO_SETS || o == SAVED || o == EVERYTHING || is->with & WITH_BODIES) is->law[1] = LAW_J2;
   if (o == EVERYTHING && is->scheme != MPM_NEWMARK) is->with |= 7 * WITH_HOOK;
   apply_walls(is, o);
@@ -284,7 +287,7 @@ static void list_options(listing *l, int32_t dim) {
       const int32_t offered[SCHEMES] = {options[o].of_explicit, options[o].of_explicit,
                                         options[o].of_explicit, options[o].of_newmark,
                                         options[o].of_quasi_static};
-      if (!offered[s]) continue;
+      if (!offered[s] || (o == PROJECTED && schemes[s].scheme != MPM_MUSL)) continue;
       scene is = o == SPARE_SIZE  ? method(dim, s, 3, 1)
                  : o == MULTIGRID ? method(dim, s, 0, 0)
                  : o == GMRES     ? method(dim, s, 1, 0)

@@ -64,6 +64,7 @@ mpm_stepper_desc describe_stepper(const scene *is) {
   d.pic_damping = is->pic_damping;
   d.position_order = is->position_order;
   d.staggered = is->staggered;
+  d.projected_positions = is->projected;
   d.locking_remedy = is->remedy;
   d.reference_positions = is->reference;
   d.boundary_zero_acceleration = is->zero_acceleration;

@@ -67,12 +67,13 @@ const method methods[ALL_METHODS] = {
     {METHOD(BSPLINE2, NEWMARK, FLIP, 1.0, "quadratic Newmark")},
     {METHOD(LINEAR, NEWMARK, FLIP, 1.0, "linear Newmark, remedy"), .remedy = 1},
     {METHOD(CPGIMP, NEWMARK, FLIP, 1.0, "cpGIMP Newmark")},
+    {METHOD(BSPLINE2, MUSL, FLIP, 1.0, "quadratic FLIP MUSL, projected positions"), .projected = 1},
 };
 
 const method *const broad_methods[BROAD] = {
     &methods[18], &methods[1],  &methods[6],  &methods[7],  &methods[8],  &methods[9],  &methods[19],
     &methods[11], &methods[16], &methods[17], &methods[20], &methods[21], &methods[22], &methods[23],
-    &methods[24], &methods[25], &methods[26], &methods[27], &methods[28], &methods[29], &methods[30]};
+    &methods[24], &methods[25], &methods[26], &methods[27], &methods[31], &methods[28], &methods[29], &methods[30]};
 
 method method_of(const basis_option *b, const scheme_option *s, const transfer_option *t) {
   method how = {.basis = b->basis,
@@ -104,6 +105,7 @@ void method_use(const method *how, mpm_grid_desc *grid, mpm_stepper_desc *steppe
   stepper->flip = how->flip;
   stepper->pic_damping = how->pic_damping;
   stepper->staggered = how->staggered;
+  stepper->projected_positions = how->projected;
   stepper->locking_remedy = how->remedy && grid->dim > 1;
 }
 

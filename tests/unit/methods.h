@@ -40,7 +40,7 @@ typedef struct method {
   int32_t basis, scheme, transfer;
   double flip;
   char name[64];
-  int32_t boundary, xpic_order, position_order, staggered, remedy; /* no remedy in 1-D */
+  int32_t boundary, xpic_order, position_order, staggered, remedy, projected; /* no remedy in 1-D */
   double smoothing, pic_damping;
 } method;
 #define METHOD(b, s, t, flip_, name_)                                                                        \
@@ -48,10 +48,10 @@ typedef struct method {
 
 /* The first METHODS are FLIP, a blend, PIC and the affine transfers on two bases, by USL and MUSL in turn;
  * the rest have every further option at least once. */
-enum { METHODS = 18, ALL_METHODS = METHODS + 13 };
+enum { METHODS = 18, ALL_METHODS = METHODS + 14 };
 extern const method methods[ALL_METHODS];
 /* Bodies that move go through these: the first are plain, the others have the further options. */
-enum { PLAIN = 10, BROAD = PLAIN + 11 };
+enum { PLAIN = 10, BROAD = PLAIN + 12 };
 extern const method *const broad_methods[BROAD];
 
 /* Makes a method of one value of each kind. */

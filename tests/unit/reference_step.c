@@ -261,7 +261,8 @@ static void move(const sums *s, double dt, double dt_v, double *x_new) {
       const double a = interpolate(s, p, s->a, k), before = c->v[i];
       c->v[i] = kept ? kept[i] + dt_v * a : v_new + share * (before - v_old);
       c->a[i] = (c->v[i] - before) / dt_v;
-      x_new[i] = c->x[i] + dt * v_new - (d->position_order == 2 ? 0.5 * dt * dt * a : 0.0);
+      x_new[i] = c->x[i] + (d->projected_positions ? 0.0 : dt * v_new) -
+                 (d->position_order == 2 ? 0.5 * dt * dt * a : 0.0);
     }
     if (d->transfer == MPM_TPIC || d->transfer == MPM_TFLIP)
       gradient(s, p, s->v_new, matrix);
@@ -303,6 +304,8 @@ void reference_step(reference *r, reference_cloud *c, double dt) {
   if (d->scheme == MPM_MUSL) {
     project(&s, c->v, matrix, s.v);
     deform(&s, s.v, dt);
+    for (int64_t p = 0; p < c->n && d->projected_positions; ++p)
+      for (int32_t k = 0; k < s.dim; ++k) x_new[k * c->n + p] += dt * interpolate(&s, p, s.v, k);
   }
   memcpy(c->x, x_new, bytes);
   r->last_dt = dt;

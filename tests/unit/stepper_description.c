@@ -42,7 +42,7 @@ START_TEST(defaults) {
   ck_assert_int_eq(d.linear_solver, MPM_SOLVER_AUTO);
   ck_assert_double_eq(d.linear_tolerance, 0.0);
   ck_assert_int_eq(d.linear_max_iterations, 0);
-  ck_assert_int_eq(d.reserved, 0);
+  ck_assert_int_eq(d.projected_positions, 0);
 }
 END_TEST
 
@@ -74,7 +74,8 @@ static const struct {
     INT(quasi_static, 1, MPM_E_UNSUPPORTED, "use scheme MPM_NEWMARK"),
     INT(staggered, -1, MPM_E_ARG, "staggered is -1"),
     INT(boundary_zero_acceleration, 5, MPM_E_ARG, "boundary_zero_acceleration is 5"),
-    INT(reserved, 1, MPM_E_ARG, "reserved is 1"),
+    INT(projected_positions, 2, MPM_E_ARG, "projected_positions is 2"),
+    INT(projected_positions, 1, MPM_E_UNSUPPORTED, "MPM_MUSL: use that"),
     REAL(flip, -0.1, MPM_E_ARG, "flip is -0.1"),
     REAL(flip, 1.1, MPM_E_ARG, "flip is 1.1"),
     REAL(flip, NOT_A_NUMBER, MPM_E_ARG, "flip is nan"),

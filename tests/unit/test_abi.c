@@ -241,7 +241,7 @@ START_TEST(layout_of_stepper_desc) {
   AT(132, linear_solver);
   AT(136, linear_tolerance);
   AT(144, linear_max_iterations);
-  AT(148, reserved);
+  AT(148, projected_positions);
 }
 END_TEST
 #undef STRUCT

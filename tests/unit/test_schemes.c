@@ -4,12 +4,13 @@
 #include "reference.h"
 #include "schemes.h"
 
-enum { VARIANTS = 4, PARTICLES = 40, STEPS = 4 };
+enum { VARIANTS = 6, PARTICLES = 40, STEPS = 4 };
 static const struct {
-  int32_t position_order, staggered, locking;
+  int32_t position_order, staggered, locking, projected;
   const char *name;
 } variants[VARIANTS] = {
-    {1, 0, 0, ""}, {2, 0, 0, ", order 2"}, {1, 1, 0, ", staggered"}, {1, 0, 1, ", remedy"}};
+    {1, 0, 0, 0, ""},        {2, 0, 0, 0, ", order 2"},   {1, 1, 0, 0, ", staggered"},
+    {1, 0, 1, 0, ", remedy"}, {1, 0, 0, 1, ", projected"}, {2, 0, 0, 1, ", order 2, projected"}};
 
 typedef struct comparison {
   const basis_option *basis;
@@ -27,6 +28,7 @@ static world_desc describe(comparison *c, int64_t cells) {
   how.position_order = variants[c->variant].position_order;
   how.staggered = variants[c->variant].staggered;
   how.remedy = variants[c->variant].locking;
+  how.projected = variants[c->variant].projected;
   world_use(&d, &how);
   d.law.E = 1e3;
   for (int32_t k = 0; k < c->dim; ++k) d.grid.spacing[k] = spacing[k], d.grid.origin[k] = origin[k];
@@ -76,6 +78,7 @@ static void compare(comparison *c, int64_t cells, int64_t n, int32_t steps) {
   world_desc d = describe(c, cells);
   if (c->transfer->transfer == MPM_APIC_MLS && !fits_mls(c->basis)) return;
   if (variants[c->variant].locking && c->dim == 1) return;
+  if (variants[c->variant].projected && c->scheme->scheme != MPM_MUSL) return;
   world w;
   mpm_particles *set = world_open(&w, &d);
   dice random = {(uint64_t)(1000 * c->dim + c->variant)};
