@@ -319,12 +319,44 @@ def tension():
     data = read("tension")
     names = list(dict.fromkeys(data["transfer"]))
     for panel, stretch in zip(ax, (0.8, 1.05, 1.5)):
-        for k, scheme in enumerate(("USL", "USF", "MUSL")):
+        for k, scheme in enumerate(("USL", "USF", "MUSL", "MUSL projected")):
             at = rows(data, stretch=stretch, scheme=scheme)
-            panel.plot([b / a for a, b in zip(at["first"], at["last"])], range(len(names)), "osD"[k], fillstyle="none", label=scheme)
+            panel.plot([b / a for a, b in zip(at["first"], at["last"])], range(len(names)), "osDx"[k], fillstyle="none", label=scheme)
         panel.axvline(1, color="k", linewidth=0.8)
         panel.set_xscale("log")
         panel.set_yticks(range(len(names)), names if panel is ax[0] else [])
         panel.set_xlabel(f"last / first, stretch {stretch:g}")
     ax[0].legend()
+    return figure
+
+
+@plot
+def tension_growth():
+    figure, ax = axes()
+    data = read("tension_growth")
+    for k, (key, text) in enumerate((("estimate", "formula"), ("library", "library"))):
+        grow = [(x, y) for x, y in zip(data["linear"], data[key]) if x > 1e-3]
+        ax.plot([x for x, _ in grow], [y for _, y in grow], "xo"[k], fillstyle="none", label=text)
+    ends = [min(x for x in data["linear"] if x > 1e-3), max(data["linear"])]
+    ax.plot(ends, ends, "k-", linewidth=0.8)
+    loglog(ax, "growth per step, linear equations", "growth per step")
+    ax.legend()
+    return figure
+
+
+@plot
+def stable_share():
+    figure, ax = axes(4, width=2.6, height=3.6)
+    data = read("stable_share")
+    names = list(dict.fromkeys(data["basis"]))
+    bodies = list(dict.fromkeys(data["body"]))
+    for panel, scheme in zip(ax, ("USL", "USF", "MUSL", "MUSL projected")):
+        for k, body in enumerate(bodies):
+            least = [min(rows(data, basis=name, scheme=scheme, body=body)["share"]) for name in names]
+            panel.plot(least, [n + 0.14 * (k - 2) for n in range(len(names))], "osD^x"[k], fillstyle="none", markersize=4, label=body)
+        panel.set_xlim(0, 1.05)
+        panel.set_yticks(range(len(names)), names if panel is ax[0] else [])
+        panel.set_title(scheme, fontsize=9)
+        panel.set_xlabel("share")
+    ax[0].legend(fontsize=7)
     return figure

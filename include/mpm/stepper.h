@@ -69,10 +69,10 @@ typedef struct mpm_stepper_desc {
   int32_t linear_solver;         /**< MPM_SOLVER_AUTO (default) to MPM_SOLVER_HOST */
   double linear_tolerance;       /**< ||K x - b|| / ||b||; 0 (default): the Newton iteration chooses it */
   int32_t linear_max_iterations; /**< most iterations of a linear solve; 0 (default): the solver chooses */
-  /** 1: with MPM_MUSL particles move by the projected velocities, which strain them too: x += dt sum w v, with
-   * the v of the second projection. Bodies in sustained tension are stable then, whose particles otherwise move
-   * by more than they are strained by (theory, section 11.1). 0 (default): they move by the updated velocities,
-   * as Sulsky et al. 1995. MPM_E_UNSUPPORTED with other schemes, which have no such velocities after the
+  /** 1: with MPM_MUSL particles move by the projected velocities, which strain them too: x += dt sum w v,
+   * with the v of the second projection. Bodies in sustained tension are stable then, whose particles
+   * otherwise move by more than they are strained by (theory, section 11.1). 0 (default): they move by the
+   * updated velocities, as Sulsky et al. 1995. MPM_E_UNSUPPORTED with other schemes, which have no such velocities after the
    * update. Since 0.2.0, in the place of `reserved`. */
   int32_t projected_positions;
 } mpm_stepper_desc;
@@ -321,11 +321,15 @@ typedef struct mpm_advance_desc {
   uint32_t struct_size; /**< sizeof(mpm_advance_desc) of the caller */
   int32_t max_cuts;     /**< most cuts of one sub-step before the call gives up; 0 (default): 60 */
   double t_end;         /**< time to reach, not before the present one */
-  double cfl;           /**< explicit: share of mpm_stable_dt(), in (0, 1], default 0.5; implicit: ignored */
-  double dt_first;      /**< most that the first sub-step takes; 0 (default): the controller's dt */
-  double dt_min;        /**< size below which sub-steps are not cut; 0 (default): no bound */
-  double dt_max;        /**< size of the largest sub-step; 0 (default): no bound */
-  int64_t max_steps;    /**< most sub-steps of this call; 0 (default): no limit */
+  /** Explicit: share of mpm_stable_dt(), in (0, 1], or 0 (default since 0.2.0, was 0.5): two thirds of the
+   * largest share at which bodies were found to stay bounded, by basis and scheme. With MPM_USL that is 0.40
+   * on MPM_LINEAR and MPM_BSPLINE2, 0.60 on MPM_BSPLINE3, 0.27 with GIMP; with MPM_MUSL and MPM_USF 0.53,
+   * 0.67, 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF. Implicit: ignored. */
+  double cfl;
+  double dt_first;   /**< most that the first sub-step takes; 0 (default): the controller's dt */
+  double dt_min;     /**< size below which sub-steps are not cut; 0 (default): no bound */
+  double dt_max;     /**< size of the largest sub-step; 0 (default): no bound */
+  int64_t max_steps; /**< most sub-steps of this call; 0 (default): no limit */
 } mpm_advance_desc;
 
 /** Fills desc with the defaults; the host must set t_end. struct_size is sizeof(mpm_advance_desc) of the

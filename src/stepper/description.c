@@ -72,8 +72,9 @@ static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_
     return mpmi_fail(c, MPM_E_ARG, "projected_positions is %d: it must be 0 or 1",
                      (int)d->projected_positions);
   if (d->projected_positions && d->scheme != MPM_MUSL)
-    return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "projected_positions = 1 needs the second projection of scheme MPM_MUSL: use that, or 0");
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "projected_positions = 1 needs the second projection of scheme MPM_MUSL: use that, or 0");
   if (d->staggered && d->position_order == 2)
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "staggered steps are of second order with position_order = 1: use that");

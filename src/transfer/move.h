@@ -16,8 +16,8 @@
 
 /* How a particle's velocity follows from what was gathered. */
 enum {
-  MPMI_MOVE_SET,    /* v = v_bar */
-  MPMI_MOVE_BLEND,  /* v = flip (v_old + dv) + (1 - flip) v_bar */
+  MPMI_MOVE_SET,     /* v = v_bar */
+  MPMI_MOVE_BLEND,   /* v = flip (v_old + dv) + (1 - flip) v_bar */
   MPMI_MOVE_CORRECT, /* v = v_bar + what v_new holds: XPIC */
   MPMI_MOVE_PLACE    /* v stays what v_new holds */
 };

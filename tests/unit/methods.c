@@ -71,9 +71,10 @@ const method methods[ALL_METHODS] = {
 };
 
 const method *const broad_methods[BROAD] = {
-    &methods[18], &methods[1],  &methods[6],  &methods[7],  &methods[8],  &methods[9],  &methods[19],
-    &methods[11], &methods[16], &methods[17], &methods[20], &methods[21], &methods[22], &methods[23],
-    &methods[24], &methods[25], &methods[26], &methods[27], &methods[31], &methods[28], &methods[29], &methods[30]};
+    &methods[18], &methods[1],  &methods[6],  &methods[7],  &methods[8],  &methods[9],
+    &methods[19], &methods[11], &methods[16], &methods[17], &methods[20], &methods[21],
+    &methods[22], &methods[23], &methods[24], &methods[25], &methods[26], &methods[27],
+    &methods[31], &methods[28], &methods[29], &methods[30]};
 
 method method_of(const basis_option *b, const scheme_option *s, const transfer_option *t) {
   method how = {.basis = b->basis,

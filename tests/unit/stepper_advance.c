@@ -56,7 +56,7 @@ START_TEST(defaults) {
   ck_assert_int_eq(mpm_advance_desc_init(&d, sizeof d - 1), MPM_E_ARG);
   ck_ok(NULL, mpm_advance_desc_init(&d, sizeof d));
   ck_assert_uint_eq(d.struct_size, sizeof d);
-  ck_assert_double_eq(d.cfl, 0.5);
+  ck_assert_double_eq(d.cfl, 0.0);
   ck_assert(d.t_end == 0.0 && d.dt_first == 0.0 && d.dt_min == 0.0 && d.dt_max == 0.0);
   ck_assert_int_eq(d.max_steps, 0);
   ck_assert_int_eq(d.max_cuts, 0);
@@ -76,7 +76,7 @@ START_TEST(refused_values) {
   REFUSED(t_end, 1.5, "t_end is 1.5");
   REFUSED(t_end, NOT_A_NUMBER, "t_end is nan");
   REFUSED(t_end, INFINITE, "t_end is inf");
-  REFUSED(cfl, 0.0, "cfl is 0");
+  REFUSED(cfl, -0.1, "cfl is -0.1");
   REFUSED(cfl, 1.5, "cfl is 1.5");
   REFUSED(cfl, NOT_A_NUMBER, "cfl is nan");
   REFUSED(dt_first, -1.0, "dt_first is -1");
@@ -154,6 +154,33 @@ START_TEST(share_of_the_stable_step) {
   d.dt_max = 0.01 * stable;
   ck_ok(&r, mpm_advance(r.stepper, &d, &r.info));
   ck_assert_double_eq(r.info.dt, 0.01 * stable);
+}
+END_TEST
+
+/* Where the host leaves the share to the library, it is two thirds of what was found to be stable. */
+START_TEST(share_of_the_library) {
+  static const struct {
+    int32_t basis;
+    double usl, usf, musl;
+  } stable[] = {{MPM_LINEAR, 0.6, 0.8, 0.8}, {MPM_BSPLINE2, 0.6, 1.0, 1.0}, {MPM_BSPLINE3, 0.9, 1.0, 1.0},
+                {MPM_UGIMP, 0.4, 0.7, 0.7},  {MPM_GIMP, 0.4, 0.7, 0.7},     {MPM_CPGIMP, 0.4, 0.5, 0.7}};
+  for (size_t i = 0; i < 3 * sizeof stable / sizeof *stable; ++i) {
+    static const int32_t scheme[3] = {MPM_USL, MPM_USF, MPM_MUSL};
+    const double share[3] = {stable[i / 3].usl, stable[i / 3].usf, stable[i / 3].musl};
+    const method how = {.basis = stable[i / 3].basis, .scheme = scheme[i % 3], .flip = 1.0};
+    world_desc desc = world_with(&how, 2, 8, 0.25);
+    world w;
+    mpm_particles *set = world_open(&w, &desc);
+    double dt;
+    world_fill_cube(&w, set, 0.5, 1.25);
+    ck_ok(&w, mpm_stable_dt(w.stepper, &dt));
+    ck_ok(&w, mpm_advance_desc_init(&d, sizeof d));
+    d.t_end = 10.0 * dt;
+    d.max_steps = 1;
+    ck_ok(&w, mpm_advance(w.stepper, &d, &w.info));
+    ck_within("default share", w.info.dt / dt, share[i % 3] / 1.5, 1e-14);
+    world_close(&w);
+  }
 }
 END_TEST
 
@@ -323,6 +350,7 @@ TCase *stepper_advance_case(void) {
   tcase_add_test(tests, ends_exactly);
   tcase_add_test(tests, ends_exactly_whatever_rounds);
   tcase_add_test(tests, share_of_the_stable_step);
+  tcase_add_test(tests, share_of_the_library);
   tcase_add_test(tests, first_and_growth);
   tcase_add_test(tests, runs_out_of_steps);
   tcase_add_test(tests, cuts);

@@ -9,7 +9,7 @@ static const struct {
   int32_t position_order, staggered, locking, projected;
   const char *name;
 } variants[VARIANTS] = {
-    {1, 0, 0, 0, ""},        {2, 0, 0, 0, ", order 2"},   {1, 1, 0, 0, ", staggered"},
+    {1, 0, 0, 0, ""},         {2, 0, 0, 0, ", order 2"},   {1, 1, 0, 0, ", staggered"},
     {1, 0, 1, 0, ", remedy"}, {1, 0, 0, 1, ", projected"}, {2, 0, 0, 1, ", order 2, projected"}};
 
 typedef struct comparison {

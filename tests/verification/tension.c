@@ -57,6 +57,50 @@ static double shake(const method *how, const way *by, double stretch, int32_t st
   return status ? 1.0 : now.kinetic_energy / strain;
 }
 
+/* A square of 8 cells that spins freely by USL: what the centrifugal force stretches. */
+static void spin(const method *how, double omega) {
+  const double h = 0.05, half = 0.2, speed = sqrt(1e5 * 0.7 / (1.3 * 0.4 * 1000.0));
+  verify_setup setup = verify_defaults(2, 20, h);
+  setup.grid.origin[0] = setup.grid.origin[1] = -0.5;
+  setup.stepper.transfer = how->transfer;
+  verify_world w;
+  verify_open(&w, &setup);
+  mpm_particles *set = verify_set(&w, verify_elastic(&w, "neo_hookean", 1e5, 0.3, 1000.0));
+  verify_fill_box(&w, set, (const double[]){-half, -half}, (const double[]){half, half}, 2);
+  const int64_t n = mpm_particles_count(set);
+  const double L[9] = {0.0, -omega, 0.0, omega, 0.0, 0.0, 0.0, 0.0, 0.0};
+  double *x = verify_get(&w, set, "position", 2), *v = verify_array(2 * n);
+  for (int64_t i = 0; i < n; ++i) v[i] = -omega * x[n + i], v[n + i] = omega * x[i];
+  verify_put(&w, set, "velocity", 2, v);
+  verify_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, L));
+  free(x), free(v);
+  const mpm_step_info first = verify_info(&w);
+  mpm_step_info now = first;
+  mpm_status status = MPM_OK;
+  double most = 0.0;
+  for (int32_t k = 0; k < MANY_STEPS && !status; ++k) {
+    status = mpm_step(w.stepper, 0.4 * h / speed, &now);
+    most = fmax(most, now.kinetic_energy + now.strain_energy);
+  }
+  x = verify_get(&w, set, "position", 2);
+  double radius = 0.0;
+  for (int64_t i = 0; i < n; ++i) radius = fmax(radius, hypot(x[i], x[n + i]));
+  free(x);
+  verify_close(&w);
+  char what[120];
+  snprintf(what, sizeof what, "spinning square, %g turns in 100 000 steps, USL, %s",
+           round(omega / (2.0 * PI) * now.t), how->name);
+  verify_gate_of(what, "status", status, 0.0, 0.0, "it survives");
+  verify_gate_of(what, "largest energy / first", most / (first.kinetic_energy + first.strain_energy), 0.0,
+                 1.002, "energy is not made, but for the start without stress");
+  verify_gate_of(what, "change of angular momentum",
+                 fabs(now.angular_momentum[2] / first.angular_momentum[2] - 1.0), 0.0, 1e-8,
+                 "these transfers keep it");
+  verify_gate_of(what, "largest radius / that of the corners", radius / (sqrt(2.0) * (half - 0.25 * h)), 0.95,
+                 1.03, "it stays a body; set tolerance");
+  verify_progress("%s", what);
+}
+
 int main(int argc, char **argv) {
   verify_begin("tension", argc, argv);
   FILE *table = verify_csv("tension");
@@ -100,6 +144,10 @@ int main(int argc, char **argv) {
              projected ? "MUSL projected, FLIP" : "USL, APIC");
     verify_gate(what, last / first, 0.0, 1.0, "equilibrium");
     verify_progress("%s", what);
+  }
+  if (!verify_quick()) {
+    spin(&methods[1], 2.0);
+    spin(&methods[3], 2.0 * PI);
   }
   fclose(table);
   return verify_end();

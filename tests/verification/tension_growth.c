@@ -1,6 +1,7 @@
-/* How fast what MUSL and USF make in tension grows, against the equations of a step made linear (docs/theory.md,
- * 11.1). A stretched bar in a periodic box of 18 cells, in equilibrium but for speeds of 1e-9 of that of sound; the
- * same speeds go through the linear equations, which know nothing of the library. E = 1000, nu = 0.3, density 1. */
+/* How fast what MUSL and USF make in tension grows, against the equations of a step made linear
+ * (docs/theory.md, 11.1). A stretched bar in a periodic box of 18 cells, in equilibrium but for speeds of
+ * 1e-9 of that of sound; the same speeds go through the linear equations, which know nothing of the library.
+ * E = 1000, nu = 0.3, density 1. */
 #include "verify.h"
 
 enum { CELLS = 18, PER_CELL = 2, COUNT = CELLS * PER_CELL, LONGEST = 6000 };
@@ -27,8 +28,8 @@ static void spline(int32_t basis, double r, double *w) {
   }
 }
 
-/* The bar made linear: displacement, velocity and logarithm of the stretch of each particle beside those of the bar
- * at rest; weights of all nodes at all particles, whose neighbours are those of a ring. */
+/* The bar made linear: displacement, velocity and logarithm of the stretch of each particle beside those of
+ * the bar at rest; weights of all nodes at all particles, whose neighbours are those of a ring. */
 typedef struct bar {
   double w[COUNT][CELLS], g[COUNT][CELLS], c[COUNT][CELLS];
   double u[COUNT], v[COUNT], e[COUNT];
