@@ -72,8 +72,8 @@ typedef struct mpm_stepper_desc {
   /** 1: with MPM_MUSL particles move by the projected velocities, which strain them too: x += dt sum w v,
    * with the v of the second projection. Bodies in sustained tension are stable then, whose particles
    * otherwise move by more than they are strained by (theory, section 11.1). 0 (default): they move by the
-   * updated velocities, as Sulsky et al. 1995. MPM_E_UNSUPPORTED with other schemes, which have no such velocities after the
-   * update. Since 0.2.0, in the place of `reserved`. */
+   * updated velocities, as Sulsky et al. 1995. MPM_E_UNSUPPORTED with other schemes, which have no such
+   * velocities after the update. Since 0.2.0, in the place of `reserved`. */
   int32_t projected_positions;
 } mpm_stepper_desc;
 

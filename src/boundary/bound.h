@@ -80,6 +80,10 @@ mpm_status mpmi_ties_hold_walls(mpmi_bound *bound);
 /* Gives the followers their master's velocity, with their signs, and records impulses and reactions. */
 mpm_status mpmi_ties_unfold(mpmi_bound *bound);
 
+/* ---- light_nodes.c ----------------------------------------------------------------------------------- */
+/* Lets light nodes go with heavier ones beside them, which take their forces. */
+void mpmi_light_nodes_lead(mpmi_bound *bound);
+
 /* ---- held_nodes.c ------------------------------------------------------------------------------------ */
 /* Asks the host and the prescribed particles who holds what. */
 mpm_status mpmi_held_find(mpmi_bound *bound);

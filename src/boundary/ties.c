@@ -39,8 +39,9 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
     const mpmi_tie *tie = &constraints->tie[i];
     mpmi_tie_state *state = &bound->nodes->tie_state[i];
     double *v = mpmi_velocity(bound->values, tie->master), *dv = mpmi_increment(bound->values, tie->master);
-    const double mass = *mpmi_mass(bound->values, tie->master);
-    double momentum[3], gained[3];
+    const double mass = *mpmi_mass(bound->values, tie->master), cut = bound->step->layout->light_cut;
+    double momentum[3], gained[3], apart[3] = {0.0, 0.0, 0.0}; /* apart: what light nodes have gained, no part
+                                                                 * of their velocities */
     state->mass = mass;
     for (int32_t c = 0; c < bound->dim; ++c) {
       state->net[c] = mass;
@@ -49,6 +50,7 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
       state->recorded[c] = 0.0;
       momentum[c] = mass * v[c];
       gained[c] = both ? mass * dv[c] : 0.0;
+      if (!(mass > cut)) apart[c] = gained[c];
     }
     for (int64_t d = tie->first; d < tie->first + tie->count; ++d) {
       const mpmi_follower *follower = &constraints->follower[d];
@@ -59,11 +61,15 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
         const double signed_mass = follower->sign[c] * its_mass;
         state->net[c] += signed_mass;
         momentum[c] += signed_mass * of[c];
-        if (both) gained[c] += signed_mass * mpmi_increment(bound->values, follower->slot)[c];
+        if (!both) continue;
+        const double its_gain = signed_mass * mpmi_increment(bound->values, follower->slot)[c];
+        gained[c] += its_gain;
+        if (!(its_mass > cut)) apart[c] += its_gain;
       }
     }
     const double inverse = state->mass > DBL_MIN ? 1.0 / state->mass : 0.0;
     for (int32_t c = 0; tie->count && c < bound->dim; ++c) {
+      if (state->mass > cut) momentum[c] += apart[c];
       v[c] = momentum[c] * inverse;
       if (both) dv[c] = gained[c] * inverse;
     }

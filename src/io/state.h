@@ -59,6 +59,7 @@ typedef struct mpmi_state_set_numbers {
   double mass_max, reaction[3];
   double impulse_total[3]; /* from format 3 on */
   int64_t body;            /* the same; before it all sets were in body 0 */
+  double mass_min;         /* the same; before it no node went with others */
 } mpmi_state_set_numbers;
 
 typedef struct mpmi_state_field {

@@ -37,6 +37,8 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   mpm_context *c = settings->context;
   const int64_t slots = mpmi_slots(layout), ties = layout->constraints.tie_count,
                 contacts = layout->constraints.contact_count;
+  /* light ones are few, and more of them take room when they come */
+  const int64_t light = layout->light_cut > layout->mass_cut ? slots / 32 + 64 : 0;
   const int32_t remedy = settings->desc.locking_remedy != MPM_LOCKING_NONE;
   const int32_t corrected = mpmi_is_corrected(settings);
   const int32_t projects = settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected;
@@ -47,6 +49,7 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
       (status = projects ? mpmi_nodal_reserve(c, &nodes->projected, slots, 4) : MPM_OK) ||
       (status = corrected || remedy ? mpmi_nodal_reserve(c, &nodes->sums, slots, 4) : MPM_OK) ||
+      (status = MPMI_RESERVE_MORE(c, nodes->light, nodes->light_capacity, light)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->contact_state, nodes->contact_capacity, contacts)))
     return status;
@@ -63,6 +66,7 @@ void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
   mpmi_nodal_free(c, &nodes->projected);
   mpmi_nodal_free(c, &nodes->sums);
   mpmi_contact_nodes_free(&nodes->contact, c);
+  MPMI_FREE_ARRAY(c, nodes->light, nodes->light_capacity);
   MPMI_FREE_ARRAY(c, nodes->impulse, nodes->impulse_capacity);
   MPMI_FREE_ARRAY(c, nodes->held, nodes->held_capacity);
   MPMI_FREE_ARRAY(c, nodes->held_value, nodes->held_capacity);

@@ -74,6 +74,13 @@ typedef struct mpmi_prescription {
   int64_t sums_capacity, block_capacity, part_capacity;
 } mpmi_prescription;
 
+/* A node that is so light that it goes with others (boundary/light_nodes.c), and what these do: its velocity
+ * before the forces, its increment without and with its own force. */
+typedef struct mpmi_light_node {
+  int64_t slot;
+  double before[3], first_gain[3], gain[3];
+} mpmi_light_node;
+
 /* State of a tie from folding to unfolding. */
 typedef struct mpmi_tie_state {
   double mass;         /* of all its nodes */
@@ -102,6 +109,8 @@ typedef struct mpmi_nodes {
   int64_t held_capacity;
   double (*hook_impulse)[3]; /* there only where there are hooks */
   int64_t hook_capacity;
+  mpmi_light_node *light; /* in the order of slots */
+  int64_t light_count, light_capacity;
   mpmi_tie_state *tie_state; /* [ties] */
   int64_t tie_capacity;
   mpmi_contact_state *contact_state; /* [contacts] */

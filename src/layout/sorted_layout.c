@@ -1,4 +1,5 @@
 #include "layout/sorted_layout.h"
+#include "particles/values.h"
 
 #include <float.h>
 #include <math.h>
@@ -128,26 +129,24 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
   return MPM_OK;
 }
 
-static void find_largest_masses(mpmi_layout *layout) {
-  for (int32_t m = 0; m < layout->member_count; ++m) {
-    mpm_particles *set = layout->member[m].set;
-    const double *mass = mpmi_f64(set, MPMI_MASS, 0);
-    set->mass_max = 0.0;
-    for (int64_t p = 0; p < set->slots; ++p)
-      if (mass[p] > set->mass_max) set->mass_max = mass[p];
-  }
-}
-
 /* Finds the mass cut: a node that is lighter is not divided by its mass. With the linear basis a force
  * remains where mass vanishes; with smooth ones it vanishes too, and a node in the corner of a cubic stencil
- * weighs (d^3 / 6)^3. Implicit steps do not divide: stiffness moves the lightest node. */
+ * weighs (d^3 / 6)^3. Implicit steps do not divide: stiffness moves the lightest node.
+ *
+ * On the linear basis nodes that have no hundred-thousandth of the lightest particle go with others. */
 static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
   const int32_t divides = settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings);
   const double share = divides ? 1e-12 : 1e-40;
+  double lightest = INFINITY;
   layout->mass_cut = DBL_MIN; /* the inverse of a lighter one may not be finite */
-  for (int32_t m = 0; m < layout->member_count; ++m)
-    if (share * layout->member[m].set->mass_max > layout->mass_cut)
-      layout->mass_cut = share * layout->member[m].set->mass_max;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    const mpm_particles *set = layout->member[m].set;
+    if (!set->count) continue;
+    layout->mass_cut = fmax(layout->mass_cut, share * set->mass_max);
+    lightest = fmin(lightest, set->mass_min);
+  }
+  layout->light_cut =
+      divides && isfinite(lightest) ? fmax(layout->mass_cut, 1e-5 * lightest) : layout->mass_cut;
 }
 
 mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {
@@ -208,7 +207,7 @@ static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings) 
     mpmi_member *member = &layout->member[m];
     mpmi_sort_apply(member->set, &layout->blocks, &member->sorting, &member->now);
   }
-  find_largest_masses(layout);
+  for (int32_t m = 0; m < layout->member_count; ++m) mpmi_find_masses(layout->member[m].set);
   count_wide_domains(layout, settings);
   ++layout->sorts;
   return MPM_OK;

@@ -55,6 +55,7 @@ typedef struct mpmi_layout {
   int64_t sorts;
   int64_t wide_domains; /* domains wider than a cell at the last sort (GIMP) */
   double mass_cut;      /* a node that is not heavier takes no force */
+  double light_cut;     /* one that is not heavier goes with others: at least the mass cut */
   int32_t walls_changed;
 } mpmi_layout;
 

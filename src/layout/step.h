@@ -21,7 +21,8 @@ typedef struct mpmi_task_report {
   int32_t left_cover, left_tile; /* a particle left the cover of its block, its loose tile */
   int32_t removes;               /* one left through an open wall */
   int32_t holes_restored;        /* sums over the particles may not be finite */
-  int64_t active;                /* nodes with mass in its share */
+  int64_t active;                /* nodes in its share that are heavier than the cut */
+  int64_t light, first_light;    /* lighter ones with mass, and where their list begins */
   double contact_change;         /* largest change of a velocity by contact of bodies */
   double law_seconds, weights_seconds;
 } mpmi_task_report;

@@ -1,6 +1,8 @@
 /* Particle sets are made and freed here, and refuse changes while they are mapped or in a step. */
 #include "particles/builtin_fields.h"
 
+#include <math.h>
+
 mpm_status mpmi_between_steps(const mpm_particles *set) {
   if (!set->stepper || !set->owner->in_step(set->stepper)) return MPM_OK;
   return mpmi_fail(set->context, MPM_E_STATE, "a staged step is under way: end or abort it first");
@@ -45,6 +47,7 @@ mpm_status mpm_particles_create(mpm_context *context, mpm_grid *grid, mpm_materi
   set->context = context;
   set->grid = grid;
   set->material = material;
+  set->mass_min = INFINITY;
   mpmi_fields_builtin(set);
   grid->children++;
   material->users++;

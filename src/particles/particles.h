@@ -92,7 +92,9 @@ struct mpm_particles {
   int64_t next_id;
   uint32_t dirty;   /* MPMI_DIRTY_... */
   uint32_t suspect; /* bit per built-in field: bad values were written through a view; step refuses */
-  double mass_max;  /* largest particle mass seen since the last sort: scale of the nodal mass cut */
+  /* Largest and smallest particle mass seen since the last sort, 0 and infinity without any: scales of nodal
+   * masses. */
+  double mass_max, mass_min;
   int32_t field_count;
   mpmi_field field[MPMI_MAX_FIELDS];
   mpmi_view_record view[MPMI_MAX_VIEWS];

@@ -138,12 +138,14 @@ mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field) {
   return MPM_OK;
 }
 
-static double largest_mass(const mpm_particles *set) {
+void mpmi_find_masses(mpm_particles *set) {
   const double *mass = mpmi_f64(set, MPMI_MASS, 0);
-  double largest = 0.0;
-  for (int64_t s = 0; s < set->slots; ++s) /* holes have no mass */
-    if (mass[s] > largest) largest = mass[s];
-  return largest;
+  set->mass_max = 0.0;
+  set->mass_min = INFINITY;
+  for (int64_t s = 0; s < set->slots; ++s) { /* holes have no mass */
+    if (mass[s] > set->mass_max) set->mass_max = mass[s];
+    if (mass[s] > 0.0 && mass[s] < set->mass_min) set->mass_min = mass[s];
+  }
 }
 
 void mpmi_field_written(mpm_particles *set, int32_t field) {
@@ -152,7 +154,7 @@ void mpmi_field_written(mpm_particles *set, int32_t field) {
   if (field == MPMI_POSITION) set->dirty |= MPMI_DIRTY_PLACE;
   if (field == MPMI_F || field == MPMI_INITIAL_VOLUME || field == MPMI_DILATION_RATIO)
     set->dirty |= MPMI_DIRTY_STRESS;
-  if (field == MPMI_MASS) set->mass_max = largest_mass(set);
+  if (field == MPMI_MASS) mpmi_find_masses(set);
 }
 
 mpm_status mpmi_settle(mpm_particles *set, int32_t field) {

@@ -24,6 +24,8 @@ mpm_status mpmi_check_exists(const mpm_particles *set, int32_t field);
 mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field);
 /* Notes what must be computed anew after the host has written good values. */
 void mpmi_field_written(mpm_particles *set, int32_t field);
+/* Finds the largest and the smallest mass anew. */
+void mpmi_find_masses(mpm_particles *set);
 /* Brings a field that follows from others up to date before it is read. */
 mpm_status mpmi_settle(mpm_particles *set, int32_t field);
 

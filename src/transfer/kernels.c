@@ -38,7 +38,7 @@ PER_DIM(3)
 void KERNEL(add_box)(int32_t, const mpmi_box *);
 void KERNEL(fetch_box)(int32_t, const mpmi_box *);
 void KERNEL(load_box)(int32_t, int32_t, const mpmi_box *);
-int64_t KERNEL(update)(int32_t, double *, int64_t, double, double);
+mpmi_updated KERNEL(update)(int32_t, double *, int64_t, const double *, double);
 
 const mpmi_kernels KERNEL(kernels) = {
     .weights = {[MPMI_FAMILY_BSPLINE1] = BY_DIM(bspline1),

@@ -17,9 +17,7 @@
 #include "transfer/separation.h"
 #include "transfer/stiffness.h"
 #include "transfer/sums.h"
-
-/* Turns momenta and forces of `count` nodes into velocities and increments; returns how many have mass. */
-typedef int64_t (*mpmi_update_fn)(int32_t values, double *nodes, int64_t count, double cut, double dt);
+#include "transfer/update.h"
 
 typedef struct mpmi_kernels {
   mpmi_weights_fn weights[MPMI_FAMILIES][4];                          /* by family of the basis, dim */

@@ -2,8 +2,8 @@
  * keeps its velocity and its shape, whatever its basis, scheme, transfer and surroundings. */
 #include "schemes.h"
 
-/* Those further from a node give it so much mass that it takes its force. */
-static const double offsets[] = {0.0, 1e-15, -1e-15, 1e-14, -1e-14, 1e-13, -1e-13, 4e-13, -4e-13};
+static const double offsets[] = {0.0,    1e-15, -1e-15, 1e-13, -1e-13, 1e-12, -1e-12, 1e-11,
+                                 -1e-11, 1e-10, -1e-10, 1e-9,  -1e-9,  1e-7,  -1e-7};
 enum { OFFSETS = sizeof offsets / sizeof *offsets };
 enum { ALONE, SLIDING, AROUND, LED, SURROUNDINGS };
 

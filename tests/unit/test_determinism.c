@@ -100,8 +100,8 @@ static int32_t go_on(world *r, int32_t steps) {
   return 1;
 }
 
-/* The whole story of one run; at: receives the fields after COMPARED_AT steps, or NULL. shaken: from velocities
- * with other last digits. */
+/* The whole story of one run; at: receives the fields after COMPARED_AT steps, or NULL. shaken: from
+ * velocities with other last digits. */
 static uint64_t tell(const body_desc *options, int32_t shaken, sample *at) {
   world r;
   body_open(&r, options);

@@ -1,0 +1,167 @@
+/* Light nodes: those that have less than a share of the mass of a particle. On the linear basis the gradient
+ * of a node, and so its force, stays finite where a particle hardly touches it and its mass vanishes: force
+ * over mass would be as large as the mass is small. A light node goes with heavier ones, by linear
+ * extrapolation along lines of nodes, and gives them its force by the transposed rule (docs/theory.md, 7.1):
+ * a particle that hardly reaches into a cell strains and pulls as if it had stayed in the cell beside. */
+#include "boundary/bound.h"
+
+#include <float.h>
+
+/* The next two nodes on a line, for up to 12 lines. */
+enum { MOST_LEADERS = 24 };
+
+/* The nodes that a light one goes with. Their coefficients have the sum 1. */
+typedef struct leaders {
+  int32_t count;
+  int64_t slot[MOST_LEADERS];
+  double share[MOST_LEADERS];
+} leaders;
+
+static int32_t is_heavy(const mpmi_bound *bound, int64_t slot) {
+  return slot >= 0 && mpmi_moving_mass(bound, slot) > bound->step->layout->light_cut;
+}
+
+static int32_t is_light(const mpmi_bound *bound, int64_t slot) {
+  return !is_heavy(bound, slot) && mpmi_moving_mass(bound, slot) > DBL_MIN;
+}
+
+/* Returns the node that moves for the one in a slot: itself, or the master of an image; -1 where there is
+ * none or it is a mirror image. */
+static int64_t mover_of(const mpmi_bound *bound, int64_t slot) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
+  if (slot < 0 || mpmi_constraints_is_free(constraints, slot)) return slot;
+  const mpmi_tie *tie = &constraints->tie[constraints->tie_of[slot]];
+  for (int64_t i = tie->first; i < tie->first + tie->count; ++i)
+    for (int32_t c = 0; c < bound->dim && constraints->follower[i].slot == slot; ++c)
+      if (constraints->follower[i].sign[c] < 0.0) return -1;
+  return tie->master;
+}
+
+static int64_t beside(const mpmi_bound *bound, int64_t slot, const int32_t *by, int32_t steps) {
+  const int32_t offset[3] = {steps * by[0], steps * by[1], steps * by[2]};
+  return mover_of(bound, mpmi_blocks_beside(&bound->step->layout->blocks, slot, offset));
+}
+
+/* Finds the lines from a light node on which the next node is heavy: along axes, and where there are none
+ * across the edges of a cell, then through its corners. They count by the mass of that node. */
+static leaders leaders_of(const mpmi_bound *bound, int64_t slot) {
+  leaders found = {0, {0}, {0.0}};
+  for (int32_t away = 1; away <= bound->dim && !found.count; ++away) {
+    double sum = 0.0;
+    for (int32_t i = 0; i < 27; ++i) {
+      const int32_t by[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+      const int32_t axes = (by[0] != 0) + (by[1] != 0) + (by[2] != 0);
+      if (axes != away || (bound->dim < 2 && by[1]) || (bound->dim < 3 && by[2])) continue;
+      const int64_t near = beside(bound, slot, by, 1);
+      if (!is_heavy(bound, near)) continue;
+      const int64_t far = beside(bound, slot, by, 2);
+      const double mass = mpmi_moving_mass(bound, near);
+      const int32_t lone = !is_heavy(bound, far) || far == near;
+      sum += mass;
+      found.slot[found.count] = near;
+      found.share[found.count++] = lone ? mass : 2.0 * mass;
+      if (lone) continue;
+      found.slot[found.count] = far;
+      found.share[found.count++] = -mass;
+    }
+    for (int32_t k = 0; k < found.count; ++k) found.share[k] /= sum;
+  }
+  return found;
+}
+
+/* Gives momentum to the leaders of a node. */
+static void give(mpmi_bound *bound, const leaders *to, int32_t c, double momentum, int32_t gained) {
+  for (int32_t k = 0; k < to->count; ++k) {
+    const double by = to->share[k] * momentum / mpmi_moving_mass(bound, to->slot[k]);
+    mpmi_velocity(bound->values, to->slot[k])[c] += by;
+    if (gained) mpmi_increment(bound->values, to->slot[k])[c] += by;
+  }
+}
+
+static double velocity_of(const mpmi_nodal *nodes, const leaders *of, int32_t c) {
+  double sum = 0.0;
+  for (int32_t k = 0; k < of->count; ++k) sum += of->share[k] * mpmi_velocity(nodes, of->slot[k])[c];
+  return sum;
+}
+
+static double increment_of(const mpmi_nodal *nodes, const leaders *of, int32_t c) {
+  double sum = 0.0;
+  for (int32_t k = 0; k < of->count; ++k) sum += of->share[k] * mpmi_increment(nodes, of->slot[k])[c];
+  return sum;
+}
+
+/* Returns the light node that stands in the list by the one in a slot, or -1 where it stands there by itself
+ * or by another one: an image stands for its master where that has no particles of its own. */
+static int64_t listed_by(const mpmi_bound *bound, int64_t slot) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
+  if (mpmi_constraints_is_free(constraints, slot)) return slot;
+  const mpmi_tie *tie = &constraints->tie[constraints->tie_of[slot]];
+  int64_t first = tie->first;
+  if (*mpmi_mass(bound->values, tie->master) > DBL_MIN) return -1;
+  while (!(*mpmi_mass(bound->values, constraints->follower[first].slot) > DBL_MIN)) ++first;
+  return constraints->follower[first].slot == slot ? tie->master : -1;
+}
+
+/* What is done to a light node and those that it goes with. */
+typedef void (*light_fn)(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with);
+
+static void over_light_nodes(mpmi_bound *bound, light_fn fn) {
+  for (int64_t n = 0; n < bound->nodes->light_count; ++n) {
+    mpmi_light_node *node = &bound->nodes->light[n];
+    const int64_t slot = listed_by(bound, node->slot);
+    if (slot < 0 || !is_light(bound, slot)) continue;
+    const leaders with = leaders_of(bound, slot);
+    fn(bound, node, slot, &with);
+  }
+}
+
+/* A node that nobody leads moves by its own force, unless it is lighter than the mass cut. */
+static void look_first(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with) {
+  const int32_t moves = mpmi_moving_mass(bound, slot) > bound->step->layout->mass_cut;
+  double *v = mpmi_velocity(bound->values, slot), *dv = mpmi_increment(bound->values, slot);
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    node->first_gain[c] = increment_of(bound->values, with, c);
+    if (with->count) continue;
+    dv[c] = moves ? dv[c] : 0.0;
+    v[c] += dv[c];
+  }
+}
+
+static void give_force(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with) {
+  const double mass = mpmi_moving_mass(bound, slot);
+  const double *dv = mpmi_increment(bound->values, slot);
+  for (int32_t c = 0; c < bound->dim; ++c) give(bound, with, c, mass * (dv[c] - node->first_gain[c]), 1);
+}
+
+static void look_again(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with) {
+  (void)slot;
+  const int32_t both = mpmi_has_increments(bound->values);
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    node->gain[c] = both ? increment_of(bound->values, with, c) : 0.0;
+    node->before[c] = velocity_of(bound->values, with, c) - node->gain[c];
+  }
+}
+
+/* What the mass of a light node has more of momentum now, its leaders have less. */
+static void follow(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with) {
+  const double mass = mpmi_moving_mass(bound, slot);
+  const int32_t both = mpmi_has_increments(bound->values);
+  double *v = mpmi_velocity(bound->values, slot);
+  for (int32_t c = 0; c < bound->dim && with->count; ++c) {
+    give(bound, with, c, mass * (v[c] - node->before[c]), 0);
+    v[c] = node->before[c] + node->gain[c];
+    if (!both) continue;
+    give(bound, with, c, mass * (node->first_gain[c] - node->gain[c]), 1);
+    mpmi_increment(bound->values, slot)[c] = node->gain[c];
+  }
+}
+
+/* All are looked at before any is changed, so that their order has no part in it. */
+void mpmi_light_nodes_lead(mpmi_bound *bound) {
+  if (mpmi_has_increments(bound->values)) {
+    over_light_nodes(bound, look_first);
+    over_light_nodes(bound, give_force);
+  }
+  over_light_nodes(bound, look_again);
+  over_light_nodes(bound, follow);
+}
