@@ -137,7 +137,7 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
 static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
   const int32_t divides = settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings);
   const double share = divides ? 1e-12 : 1e-40;
-  double lightest = INFINITY;
+  double lightest = HUGE_VAL;
   layout->mass_cut = DBL_MIN; /* the inverse of a lighter one may not be finite */
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpm_particles *set = layout->member[m].set;
