@@ -61,6 +61,7 @@ double bar_error(const bar *how, int32_t cells, double amplitude, double dt, dou
   setup.grid.periodic[0] = how->ends == BAR_PERIODIC;
   if (how->smoothing > 0.0) setup.grid.smoothing = how->smoothing;
   if (how->scheme) setup.stepper.scheme = how->scheme;
+  setup.stepper.projected_positions = how->projected;
   setup.stepper.boundary_zero_acceleration = how->zero_acceleration;
   setup.stepper.staggered = setup.stepper.reference_positions = 1;
   verify_world w;

@@ -10,8 +10,9 @@ enum { BAR_PERIODIC, BAR_FIXED_WALLS, BAR_OVERWRITTEN_NODES }; /* the last: by t
 typedef struct bar {
   const char *name;
   int32_t basis, boundary_basis, ends, per_cell;
-  double smoothing;                  /* edge of the domains / h, of MPM_UGIMP */
-  int32_t scheme, zero_acceleration; /* of overwritten nodes: mpm_stepper_desc.boundary_zero_acceleration */
+  double smoothing; /* edge of the domains / h, of MPM_UGIMP */
+  int32_t scheme, projected;
+  int32_t zero_acceleration; /* of overwritten nodes: mpm_stepper_desc.boundary_zero_acceleration */
 } bar;
 
 static const double bar_E = 1e4, bar_speed = 100.0; /* density 1 */
