@@ -47,6 +47,7 @@ int main(void) {
   g.cells[1] = 48;
   g.spacing[0] = g.spacing[1] = h;
   s.scheme = MPM_MUSL;
+  s.projected_positions = 1; /* its upper side is stretched for long */
   s.transfer = MPM_FLIP;
   s.gravity[1] = -10.0;
   go.cfl = 0.4;
