@@ -269,6 +269,35 @@ START_TEST(precedence) {
 }
 END_TEST
 
+/* Positions that are moved after the velocities give prescribed particles no second impulse. */
+START_TEST(reaction_with_projected_positions) {
+  double reaction[2][2];
+  for (int32_t projected = 0; projected < 2; ++projected) {
+    const double lower[2] = {0.1, 0.3}, upper[2] = {1.1, 0.7}, down[2] = {0.0, -1.0};
+    method how = methods[1]; /* quadratic FLIP MUSL */
+    how.projected = projected;
+    world_desc desc = world_with(&how, 2, 12, 0.1);
+    world w;
+    mpm_particles *set = world_open(&w, &desc);
+    const int64_t count = world_fill(&w, set, lower, upper, 2);
+    ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, down));
+    double *x = fetch(&w, set, "position", 2);
+    uint8_t *flags = malloc((size_t)(2 * count));
+    for (int64_t p = 0; p < 2 * count; ++p) flags[p] = x[p % count] < 0.6;
+    ck_ok(&w, mpm_particles_set(set, "prescribed", MPM_U8, 2, count, NULL, flags));
+    ck_ok(&w, mpm_stepper_set_motion(w.stepper, set, to_corner, NULL));
+    world_step(&w, 1e-4);
+    ck_ok(&w, mpm_stepper_particles_reaction(w.stepper, set, reaction[projected]));
+    free(x), free(flags);
+    world_close(&w);
+  }
+  for (int32_t c = 0; c < 2; ++c) {
+    ck_assert_double_gt(fabs(reaction[0][c]), 1.0);
+    ck_within("reaction", reaction[1][c], reaction[0][c], 1e-9 * fabs(reaction[0][c]));
+  }
+}
+END_TEST
+
 static mpm_status slide_along(void *user, const mpm_particle_batch *b, double *add) {
   (void)user;
   for (int64_t p = 0; p < b->n; ++p) add[p] += 0.5;
@@ -424,6 +453,7 @@ Suite *prescribed_suite(void) {
   tcase_add_loop_test(tc, reactions_balance, 0, 4 * METHODS);
   tcase_add_loop_test(tc, two_sets_on_one_node, 0, METHODS);
   tcase_add_loop_test(tc, precedence, 0, 6 * METHODS);
+  tcase_add_test(tc, reaction_with_projected_positions);
   tcase_add_loop_test(tc, driven_along_a_wall, 0, 2 * METHODS);
   tcase_add_loop_test(tc, nothing_to_push, 0, METHODS);
   tcase_add_loop_test(tc, work_of_moving_itself, 0, 2 * METHODS);
