@@ -339,7 +339,7 @@ def tension_growth():
         ax.plot([x for x, _ in grow], [y for _, y in grow], "xo"[k], fillstyle="none", label=text)
     ends = [min(x for x in data["linear"] if x > 1e-3), max(data["linear"])]
     ax.plot(ends, ends, "k-", linewidth=0.8)
-    loglog(ax, "growth per step, linear equations", "growth per step")
+    loglog(ax, "growth per step, linear equations", "growth per step", 10)
     ax.legend()
     return figure
 
