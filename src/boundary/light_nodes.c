@@ -21,10 +21,6 @@ static int32_t is_heavy(const mpmi_bound *bound, int64_t slot) {
   return slot >= 0 && mpmi_moving_mass(bound, slot) > bound->step->layout->light_cut;
 }
 
-static int32_t is_light(const mpmi_bound *bound, int64_t slot) {
-  return !is_heavy(bound, slot) && mpmi_moving_mass(bound, slot) > DBL_MIN;
-}
-
 /* Returns the node that moves for the one in a slot: itself, or the master of an image; -1 where there is
  * none or it is a mirror image. */
 static int64_t mover_of(const mpmi_bound *bound, int64_t slot) {
@@ -78,15 +74,11 @@ static void give(mpmi_bound *bound, const leaders *to, int32_t c, double momentu
   }
 }
 
-static double velocity_of(const mpmi_nodal *nodes, const leaders *of, int32_t c) {
+/* Returns a component of what the leaders of a node have of a vector. */
+static double of_leaders(const leaders *of, double *(*vector)(const mpmi_nodal *, int64_t),
+                         const mpmi_nodal *nodes, int32_t c) {
   double sum = 0.0;
-  for (int32_t k = 0; k < of->count; ++k) sum += of->share[k] * mpmi_velocity(nodes, of->slot[k])[c];
-  return sum;
-}
-
-static double increment_of(const mpmi_nodal *nodes, const leaders *of, int32_t c) {
-  double sum = 0.0;
-  for (int32_t k = 0; k < of->count; ++k) sum += of->share[k] * mpmi_increment(nodes, of->slot[k])[c];
+  for (int32_t k = 0; k < of->count; ++k) sum += of->share[k] * vector(nodes, of->slot[k])[c];
   return sum;
 }
 
@@ -103,61 +95,58 @@ static int64_t listed_by(const mpmi_bound *bound, int64_t slot) {
 }
 
 /* What is done to a light node and those that it goes with. */
-typedef void (*light_fn)(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with);
+typedef void (*light_fn)(mpmi_bound *bound, mpmi_light_node *node, const leaders *with);
 
 static void over_light_nodes(mpmi_bound *bound, light_fn fn) {
   for (int64_t n = 0; n < bound->nodes->light_count; ++n) {
     mpmi_light_node *node = &bound->nodes->light[n];
-    const int64_t slot = listed_by(bound, node->slot);
-    if (slot < 0 || !is_light(bound, slot)) continue;
-    const leaders with = leaders_of(bound, slot);
-    fn(bound, node, slot, &with);
+    if (node->slot < 0) continue;
+    const leaders with = leaders_of(bound, node->slot);
+    fn(bound, node, &with);
   }
 }
 
-/* A node that nobody leads moves by its own force, unless it is lighter than the mass cut. */
-static void look_first(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with) {
-  const int32_t moves = mpmi_moving_mass(bound, slot) > bound->step->layout->mass_cut;
-  double *v = mpmi_velocity(bound->values, slot), *dv = mpmi_increment(bound->values, slot);
-  for (int32_t c = 0; c < bound->dim; ++c) {
-    node->first_gain[c] = increment_of(bound->values, with, c);
-    if (with->count) continue;
-    dv[c] = moves ? dv[c] : 0.0;
-    v[c] += dv[c];
-  }
+static void look_first(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
+  for (int32_t c = 0; c < bound->dim; ++c)
+    node->first_gain[c] = of_leaders(with, mpmi_increment, bound->values, c);
 }
 
-static void give_force(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with) {
-  const double mass = mpmi_moving_mass(bound, slot);
-  const double *dv = mpmi_increment(bound->values, slot);
+static void give_force(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
+  const double mass = mpmi_moving_mass(bound, node->slot);
+  const double *dv = mpmi_increment(bound->values, node->slot);
   for (int32_t c = 0; c < bound->dim; ++c) give(bound, with, c, mass * (dv[c] - node->first_gain[c]), 1);
 }
 
-static void look_again(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with) {
-  (void)slot;
+static void look_again(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
   const int32_t both = mpmi_has_increments(bound->values);
   for (int32_t c = 0; c < bound->dim; ++c) {
-    node->gain[c] = both ? increment_of(bound->values, with, c) : 0.0;
-    node->before[c] = velocity_of(bound->values, with, c) - node->gain[c];
+    node->gain[c] = both ? of_leaders(with, mpmi_increment, bound->values, c) : 0.0;
+    node->before[c] = of_leaders(with, mpmi_velocity, bound->values, c) - node->gain[c];
   }
 }
 
 /* What the mass of a light node has more of momentum now, its leaders have less. */
-static void follow(mpmi_bound *bound, mpmi_light_node *node, int64_t slot, const leaders *with) {
-  const double mass = mpmi_moving_mass(bound, slot);
+static void follow(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
+  const double mass = mpmi_moving_mass(bound, node->slot);
   const int32_t both = mpmi_has_increments(bound->values);
-  double *v = mpmi_velocity(bound->values, slot);
-  for (int32_t c = 0; c < bound->dim && with->count; ++c) {
+  double *v = mpmi_velocity(bound->values, node->slot);
+  for (int32_t c = 0; c < bound->dim; ++c) {
     give(bound, with, c, mass * (v[c] - node->before[c]), 0);
     v[c] = node->before[c] + node->gain[c];
     if (!both) continue;
     give(bound, with, c, mass * (node->first_gain[c] - node->gain[c]), 1);
-    mpmi_increment(bound->values, slot)[c] = node->gain[c];
+    mpmi_increment(bound->values, node->slot)[c] = node->gain[c];
   }
 }
 
-/* All are looked at before any is changed, so that their order has no part in it. */
+/* All are looked at before any is changed, so that their order has no part in it. Each has a heavy node within
+ * a step: some corner of a cell takes at least an eighth of a particle. */
 void mpmi_light_nodes_lead(mpmi_bound *bound) {
+  for (int64_t n = 0; n < bound->nodes->light_count; ++n) {
+    mpmi_light_node *node = &bound->nodes->light[n];
+    node->slot = listed_by(bound, node->slot);
+    if (node->slot >= 0 && is_heavy(bound, node->slot)) node->slot = -1;
+  }
   if (mpmi_has_increments(bound->values)) {
     over_light_nodes(bound, look_first);
     over_light_nodes(bound, give_force);

@@ -77,7 +77,7 @@ typedef struct mpmi_prescription {
 /* A node that is so light that it goes with others (boundary/light_nodes.c), and what these do: its velocity
  * before the forces, its increment without and with its own force. */
 typedef struct mpmi_light_node {
-  int64_t slot;
+  int64_t slot; /* its own; then that of the node to be led, or -1 */
   double before[3], first_gain[3], gain[3];
 } mpmi_light_node;
 
