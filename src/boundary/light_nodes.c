@@ -1,8 +1,8 @@
-/* Light nodes: those that have less than a share of the mass of a particle. On the linear basis the gradient
- * of a node, and so its force, stays finite where a particle hardly touches it and its mass vanishes: force
- * over mass would be as large as the mass is small. A light node goes with heavier ones, by linear
- * extrapolation along lines of nodes, and gives them its force by the transposed rule (docs/theory.md, 7.1):
- * a particle that hardly reaches into a cell strains and pulls as if it had stayed in the cell beside. */
+/* Light nodes: those that have hardly any mass beside a neighbour's. On the linear basis the gradient of a
+ * node, and so its force, stays finite where a particle hardly touches it and its mass vanishes: force over
+ * mass would be as large as the mass is small. A light node goes with heavier ones, by linear extrapolation
+ * along lines of nodes, and gives them its force by the transposed rule (docs/theory.md, 7.1): a particle
+ * that hardly reaches into a cell strains and pulls as if it had stayed in the cell beside. */
 #include "boundary/bound.h"
 
 #include <float.h>
@@ -16,10 +16,6 @@ typedef struct leaders {
   int64_t slot[MOST_LEADERS];
   double share[MOST_LEADERS];
 } leaders;
-
-static int32_t is_heavy(const mpmi_bound *bound, int64_t slot) {
-  return slot >= 0 && mpmi_moving_mass(bound, slot) > bound->step->layout->light_cut;
-}
 
 /* Returns the node that moves for the one in a slot: itself, or the master of an image; -1 where there is
  * none or it is a mirror image. */
@@ -35,24 +31,48 @@ static int64_t mover_of(const mpmi_bound *bound, int64_t slot) {
 
 static int64_t beside(const mpmi_bound *bound, int64_t slot, const int32_t *by, int32_t steps) {
   const int32_t offset[3] = {steps * by[0], steps * by[1], steps * by[2]};
-  return mover_of(bound, mpmi_blocks_beside(&bound->step->layout->blocks, slot, offset));
+  return mover_of(bound, mpmi_blocks_around(&bound->step->layout->blocks, slot, offset));
+}
+
+/* Sets one of the 27 directions in which nodes lie. Returns along how many axes it goes, or 0 where it leaves
+ * the space of the grid. */
+static int32_t direction_of(const mpmi_bound *bound, int32_t i, int32_t *by) {
+  by[0] = i % 3 - 1, by[1] = i / 3 % 3 - 1, by[2] = i / 9 - 1;
+  if ((bound->dim < 2 && by[1]) || (bound->dim < 3 && by[2])) return 0;
+  return (by[0] != 0) + (by[1] != 0) + (by[2] != 0);
+}
+
+static int32_t is_light(const mpmi_bound *bound, int64_t slot) {
+  const double mass = mpmi_moving_mass(bound, slot);
+  if (mass > bound->step->layout->light_cut) return 0;
+  for (int32_t i = 0; i < 27; ++i) {
+    int32_t by[3];
+    const int64_t near = direction_of(bound, i, by) ? beside(bound, slot, by, 1) : -1;
+    if (near >= 0 && mass <= MPMI_LIGHT_SHARE * mpmi_moving_mass(bound, near)) return 1;
+  }
+  return 0;
+}
+
+/* Returns 1 for a node that one of this mass may go with. */
+static int32_t leads(const mpmi_bound *bound, int64_t slot, double mass) {
+  return slot >= 0 && mass <= MPMI_LIGHT_SHARE * mpmi_moving_mass(bound, slot) && !is_light(bound, slot);
 }
 
 /* Finds the lines from a light node on which the next node is heavy: along axes, and where there are none
  * across the edges of a cell, then through its corners. They count by the mass of that node. */
 static leaders leaders_of(const mpmi_bound *bound, int64_t slot) {
+  const double light = mpmi_moving_mass(bound, slot);
   leaders found = {0, {0}, {0.0}};
   for (int32_t away = 1; away <= bound->dim && !found.count; ++away) {
     double sum = 0.0;
     for (int32_t i = 0; i < 27; ++i) {
-      const int32_t by[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-      const int32_t axes = (by[0] != 0) + (by[1] != 0) + (by[2] != 0);
-      if (axes != away || (bound->dim < 2 && by[1]) || (bound->dim < 3 && by[2])) continue;
+      int32_t by[3];
+      if (direction_of(bound, i, by) != away) continue;
       const int64_t near = beside(bound, slot, by, 1);
-      if (!is_heavy(bound, near)) continue;
+      if (!leads(bound, near, light)) continue;
       const int64_t far = beside(bound, slot, by, 2);
       const double mass = mpmi_moving_mass(bound, near);
-      const int32_t lone = !is_heavy(bound, far) || far == near;
+      const int32_t lone = far == near || !leads(bound, far, light);
       sum += mass;
       found.slot[found.count] = near;
       found.share[found.count++] = lone ? mass : 2.0 * mass;
@@ -139,14 +159,25 @@ static void follow(mpmi_bound *bound, mpmi_light_node *node, const leaders *with
   }
 }
 
-/* All are looked at before any is changed, so that their order has no part in it. Each has a heavy node within
- * a step: some corner of a cell takes at least an eighth of a particle. */
+/* A node that is not light after all, or that none leads, moves by its own force. */
+static void go_alone(const mpmi_bound *bound, int64_t slot) {
+  for (int32_t c = 0; c < bound->dim && mpmi_has_increments(bound->values); ++c)
+    mpmi_velocity(bound->values, slot)[c] += mpmi_increment(bound->values, slot)[c];
+}
+
+/* Resolves a slot of the list to the node to be led, or -1. */
+static int64_t to_be_led(const mpmi_bound *bound, int64_t listed) {
+  const int64_t slot = listed_by(bound, listed);
+  if (slot < 0 || mpmi_moving_mass(bound, slot) > bound->step->layout->light_cut) return -1;
+  if (is_light(bound, slot) && leaders_of(bound, slot).count) return slot;
+  go_alone(bound, slot);
+  return -1;
+}
+
+/* All are looked at before any is changed, so that their order has no part in it. */
 void mpmi_light_nodes_lead(mpmi_bound *bound) {
-  for (int64_t n = 0; n < bound->nodes->light_count; ++n) {
-    mpmi_light_node *node = &bound->nodes->light[n];
-    node->slot = listed_by(bound, node->slot);
-    if (node->slot >= 0 && is_heavy(bound, node->slot)) node->slot = -1;
-  }
+  for (int64_t n = 0; n < bound->nodes->light_count; ++n)
+    bound->nodes->light[n].slot = to_be_led(bound, bound->nodes->light[n].slot);
   if (mpmi_has_increments(bound->values)) {
     over_light_nodes(bound, look_first);
     over_light_nodes(bound, give_force);

@@ -317,6 +317,19 @@ int64_t mpmi_blocks_beside(const mpmi_blocks *b, int64_t slot, const int32_t *of
   return mpmi_blocks_near(b, slot / b->nodes, at);
 }
 
+int64_t mpmi_blocks_around(const mpmi_blocks *b, int64_t slot, const int32_t *offset) {
+  const int64_t near = mpmi_blocks_beside(b, slot, offset);
+  int64_t index[3], moved = 0;
+  if (near >= 0) return near;
+  mpmi_blocks_index(b, slot, index);
+  for (int32_t k = 0; k < b->grid->dim; ++k) {
+    const int64_t cells = b->grid->desc.cells[k], at = index[k] + offset[k];
+    index[k] = b->grid->desc.periodic[k] ? at - floor_div(at, cells) * cells : at;
+    moved |= index[k] - at;
+  }
+  return moved ? mpmi_blocks_node(b, b->body[slot / b->nodes], index) : -1;
+}
+
 void mpmi_blocks_index(const mpmi_blocks *b, int64_t slot, int64_t *index) {
   const int64_t block = slot / b->nodes;
   int64_t place = slot % b->nodes;

@@ -74,6 +74,9 @@ int64_t mpmi_blocks_node(const mpmi_blocks *blocks, int32_t body, const int64_t 
 int64_t mpmi_blocks_near(const mpmi_blocks *blocks, int64_t block, const int32_t *at);
 /* Returns the slot of the node at an offset, of at most a block, from the one in a slot, or -1. */
 int64_t mpmi_blocks_beside(const mpmi_blocks *blocks, int64_t slot, const int32_t *offset);
+/* The same for a node that stands for its periodic images: where it has no such neighbour, that of an image
+ * may be there. Returns its original then. */
+int64_t mpmi_blocks_around(const mpmi_blocks *blocks, int64_t slot, const int32_t *offset);
 /* Finds the index of the node in a slot. */
 void mpmi_blocks_index(const mpmi_blocks *blocks, int64_t slot, int64_t *index);
 

@@ -35,7 +35,7 @@ typedef struct line {
 static int64_t beside(const search *s, int64_t slot, const int32_t *direction, int32_t steps) {
   int32_t offset[3] = {0, 0, 0};
   for (int32_t k = 0; k < s->balance->settings->grid->dim; ++k) offset[k] = steps * direction[k];
-  return mpmi_blocks_beside(&s->balance->layout->blocks, slot, offset);
+  return mpmi_blocks_around(&s->balance->layout->blocks, slot, offset);
 }
 
 static void sum_stiffness(search *s, int64_t rows) {
@@ -60,7 +60,7 @@ static int32_t is_weak(const search *s, int64_t row, double largest) {
   double most = 0.0;
   int32_t at[3] = {-reach, dim > 1 ? -reach : 0, dim > 2 ? -reach : 0};
   for (;;) {
-    const int64_t slot = mpmi_blocks_beside(&s->balance->layout->blocks, s->slot[row], at);
+    const int64_t slot = mpmi_blocks_around(&s->balance->layout->blocks, s->slot[row], at);
     if (slot >= 0 && newton->active_of[slot] >= 0)
       most = fmax(most, s->stiffness[newton->active[newton->active_of[slot]].row]);
     int32_t k = 0;
@@ -89,17 +89,17 @@ static int32_t is_outer_node(const search *s, int64_t slot) {
 }
 
 /* Weighs two nodes for the extrapolation; 0 where the three are not on one line, as at open knots. */
-static int32_t find_shares(const search *s, int64_t row, const int64_t *slot, line *to) {
+static int32_t find_shares(const search *s, int64_t row, const int32_t *direction, int32_t steps, line *to) {
   const mpm_grid *grid = s->balance->settings->grid;
-  int64_t index[3][3] = {{0}};
+  int64_t index[3] = {0};
   double share = 0.0;
   int32_t found = 0;
-  mpmi_blocks_index(&s->balance->layout->blocks, s->slot[row], index[0]);
-  for (int32_t i = 0; i < 2; ++i) mpmi_blocks_index(&s->balance->layout->blocks, slot[i], index[i + 1]);
+  mpmi_blocks_index(&s->balance->layout->blocks, s->slot[row], index);
   for (int32_t k = 0; k < grid->dim; ++k) {
     double x[3];
-    for (int32_t i = 0; i < 3; ++i) x[i] = mpmi_node_position(grid, k, index[i][k]);
-    if (index[0][k] == index[1][k]) continue;
+    for (int32_t i = 0; i < 3; ++i)
+      x[i] = mpmi_node_position(grid, k, index[k] + (i ? steps + i - 1 : 0) * direction[k]);
+    if (!direction[k]) continue;
     const double here = (x[0] - x[1]) / (x[1] - x[2]);
     if (found && !(fabs(here - share) <= alike)) return 0;
     share = here;
@@ -120,7 +120,7 @@ static int32_t find_line(const search *s, int64_t row, const int32_t *direction,
   slot[1] = beside(s, s->slot[row], direction, steps + 1);
   for (int32_t i = 0; i < 2; ++i)
     if ((to->row[i] = inner_row(s, slot[i], row)) < 0) return 0;
-  if (to->row[0] == to->row[1] || !find_shares(s, row, slot, to)) return 0;
+  if (to->row[0] == to->row[1] || !find_shares(s, row, direction, steps, to)) return 0;
   to->quality = fmin(s->stiffness[to->row[0]], s->stiffness[to->row[1]]) / (double)(length * steps * steps);
   return 1;
 }

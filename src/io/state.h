@@ -59,7 +59,6 @@ typedef struct mpmi_state_set_numbers {
   double mass_max, reaction[3];
   double impulse_total[3]; /* from format 3 on */
   int64_t body;            /* the same; before it all sets were in body 0 */
-  double mass_min;         /* the same; before it no node went with others */
 } mpmi_state_set_numbers;
 
 typedef struct mpmi_state_field {
@@ -77,7 +76,7 @@ typedef struct mpmi_state_set {
 
 /* Writes the setup, or compares it (state_setup.c). `set` receives the fields of the state, and is NULL
  * when writing. */
-void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set);
+void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, uint32_t format, mpmi_state_set *set);
 
 /* Returns 1 when the next step will keep the present order of the slots (state_blocks.c). */
 int32_t mpmi_state_is_sorted(const mpm_stepper *s);

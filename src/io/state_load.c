@@ -93,7 +93,7 @@ static void read_numbers(loading *l) {
     if (a->status) return;
     if (of->slots < 0 || of->slots > MPMI_MAX_SLOTS || of->slots % MPMI_PAD || of->count < 0 ||
         of->count > of->slots || of->next_id < 0 || of->body < 0 || of->body >= MPMI_MAX_BODIES ||
-        of->dirty & ~flags || !is_magnitude(of->mass_max) || !(of->mass_min >= 0.0))
+        of->dirty & ~flags || !is_magnitude(of->mass_max))
       mpmi_archive_damaged(a, "the numbers of a set make no sense");
     else
       l->slots += of->slots;
@@ -134,7 +134,6 @@ static mpm_status read_set(loading *l, int32_t m) {
   fresh->count = from->numbers.count;
   fresh->next_id = from->numbers.next_id;
   fresh->mass_max = from->numbers.mass_max;
-  fresh->mass_min = from->numbers.mass_min;
   fresh->dirty = (uint32_t)from->numbers.dirty | (l->numbers.blocks < 0 ? (uint32_t)MPMI_DIRTY_PLACE : 0);
   if (a->status) return a->status;
   const int32_t sorted = l->numbers.blocks >= 0;
@@ -148,7 +147,7 @@ static mpm_status read_set(loading *l, int32_t m) {
 static mpm_status read_state(loading *l) {
   mpmi_archive *a = &l->archive;
   mpm_stepper *s = l->stepper;
-  mpmi_state_setup(a, s, l->set);
+  mpmi_state_setup(a, s, l->format, l->set);
   read_numbers(l);
   mpm_status status = a->status;
   if (!status && l->format > 2) status = mpmi_state_read_obstacles(a, s, l->obstacle);
@@ -181,7 +180,6 @@ static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
   set->next_id = fresh->next_id;
   set->dirty = fresh->dirty;
   set->mass_max = fresh->mass_max;
-  set->mass_min = fresh->mass_min;
   mpmi_particles_watch(set, set->slots);
   set->suspect = 0;
   mpmi_index_drop(set);

@@ -51,7 +51,6 @@ void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_num
 
 void mpmi_state_archive_set_numbers(mpmi_archive *a, uint32_t format, mpmi_state_set_numbers *n) {
   enum { NUMBERS_2 = offsetof(mpmi_state_set_numbers, impulse_total) };
-  if (format == 2) n->mass_min = 0.0;
   mpmi_archive_words(a, n, format == 2 ? NUMBERS_2 : (int64_t)sizeof *n);
 }
 
@@ -94,7 +93,6 @@ static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
                                      .next_id = set->next_id,
                                      .dirty = set->dirty,
                                      .mass_max = set->mass_max,
-                                     .mass_min = set->mass_min,
                                      .body = s->layout.member[m].body};
     memcpy(of_set.reaction, s->layout.member[m].reaction, sizeof of_set.reaction);
     memcpy(of_set.impulse_total, s->layout.member[m].impulse_total, sizeof of_set.impulse_total);
@@ -112,7 +110,7 @@ static void write_fields(mpmi_archive *a, const mpm_particles *set) {
 }
 
 void mpmi_state_write(mpmi_archive *a, const mpm_stepper *s) {
-  mpmi_state_setup(a, s, NULL);
+  mpmi_state_setup(a, s, MPMI_STATE_FORMAT, NULL);
   write_numbers(a, s);
   mpmi_state_write_obstacles(a, s);
   mpmi_state_write_contact(a, s);

@@ -41,6 +41,15 @@ static void setup_scheme(mpmi_archive *a, const mpm_stepper_desc *d) {
   mpmi_archive_same_int(a, "staggered", d->staggered);
 }
 
+/* Does the same with what a method may have from format 3 on. */
+static void setup_later(mpmi_archive *a, uint32_t format, const mpm_stepper_desc *d) {
+  if (format > 2)
+    mpmi_archive_same_int(a, "projected_positions", d->projected_positions);
+  else if (d->projected_positions && !a->status)
+    a->status = mpmi_fail(a->context, MPM_E_FORMAT,
+                          "the state is of an unlike setup: projected_positions is 0 there, 1 here");
+}
+
 static void setup_law(mpmi_archive *a, const mpm_material *material) {
   const mpmi_law *law = material->law;
   mpmi_archive_same_text(a, "law", law ? law->name : "custom");
@@ -120,7 +129,7 @@ static void read_fields(mpmi_archive *a, mpmi_state_set *to) {
 }
 _Static_assert(MPMI_MAX_FIELDS <= 64, "one bit for each field");
 
-void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set) {
+void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, uint32_t format, mpmi_state_set *set) {
   /* Library version and instruction set are for information only. */
   int64_t version = MPM_VERSION, isa = s->context->isa;
   mpmi_archive_words(a, &version, sizeof version);
@@ -137,4 +146,5 @@ void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, mpmi_state_set *set
       write_field_list(a, s->layout.member[m].set);
   }
   a->where[0] = '\0';
+  setup_later(a, format, &s->settings.desc);
 }

@@ -129,24 +129,17 @@ mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings)
   return MPM_OK;
 }
 
-/* Finds the mass cut: a node that is lighter is not divided by its mass. With the linear basis a force
- * remains where mass vanishes; with smooth ones it vanishes too, and a node in the corner of a cubic stencil
- * weighs (d^3 / 6)^3. Implicit steps do not divide: stiffness moves the lightest node.
- *
- * On the linear basis nodes that have no hundred-thousandth of the lightest particle go with others. */
+/* Finds the mass cut: a node that is lighter is not divided by its mass, and nothing holds it. The lightest
+ * that a particle can make is that in the corner of a 3-D cell, 2^-180 of it on the linear basis. There force
+ * over mass grows as mass vanishes, and steps that divide by it look among the nodes up to the light cut for
+ * those that must go with others. */
 static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
   const int32_t divides = settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings);
-  const double share = divides ? 1e-12 : 1e-40;
-  double lightest = HUGE_VAL;
-  layout->mass_cut = DBL_MIN; /* the inverse of a lighter one may not be finite */
-  for (int32_t m = 0; m < layout->member_count; ++m) {
-    const mpm_particles *set = layout->member[m].set;
-    if (!set->count) continue;
-    layout->mass_cut = fmax(layout->mass_cut, share * set->mass_max);
-    lightest = fmin(lightest, set->mass_min);
-  }
-  layout->light_cut =
-      divides && isfinite(lightest) ? fmax(layout->mass_cut, 1e-5 * lightest) : layout->mass_cut;
+  double heaviest = 0.0;
+  for (int32_t m = 0; m < layout->member_count; ++m)
+    if (layout->member[m].set->count) heaviest = fmax(heaviest, layout->member[m].set->mass_max);
+  layout->mass_cut = fmax(DBL_MIN, 1e-60 * heaviest); /* the inverse of a lighter one may not be finite */
+  layout->light_cut = divides ? fmax(layout->mass_cut, MPMI_LIGHT_SHARE * heaviest) : layout->mass_cut;
 }
 
 mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {

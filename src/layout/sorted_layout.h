@@ -39,6 +39,9 @@ typedef struct mpmi_worklist {
  * one list of all blocks with particles, and then one for each colour. */
 enum { MPMI_COLOURS = 8, MPMI_WORKLISTS = 1 + MPMI_COLOURS };
 
+/* A node that has this share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c). */
+#define MPMI_LIGHT_SHARE 1e-5
+
 typedef struct mpmi_layout {
   int32_t member_count, member_capacity;
   mpmi_member *member;
@@ -55,7 +58,7 @@ typedef struct mpmi_layout {
   int64_t sorts;
   int64_t wide_domains; /* domains wider than a cell at the last sort (GIMP) */
   double mass_cut;      /* a node that is not heavier takes no force */
-  double light_cut;     /* one that is not heavier goes with others: at least the mass cut */
+  double light_cut;     /* one that is not heavier may have to go with others: at least the mass cut */
   int32_t walls_changed;
 } mpmi_layout;
 

@@ -73,7 +73,6 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
     volume[i] = initial_volume[i];
     mass[i] = set->material->density * volume[i];
     if (mass[i] > set->mass_max) set->mass_max = mass[i];
-    if (mass[i] < set->mass_min) set->mass_min = mass[i];
   }
   for (int64_t s = slot; s < slot + n; ++s) mpmi_wrap_slot(set, s);
   if (!with_size) write_derived(set, MPMI_SIZE, slot, slot + n);

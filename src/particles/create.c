@@ -47,7 +47,6 @@ mpm_status mpm_particles_create(mpm_context *context, mpm_grid *grid, mpm_materi
   set->context = context;
   set->grid = grid;
   set->material = material;
-  set->mass_min = HUGE_VAL;
   mpmi_fields_builtin(set);
   grid->children++;
   material->users++;

@@ -94,7 +94,7 @@ struct mpm_particles {
   uint32_t suspect; /* bit per built-in field: bad values were written through a view; step refuses */
   /* Largest and smallest particle mass seen since the last sort, 0 and infinity without any: scales of nodal
    * masses. */
-  double mass_max, mass_min;
+  double mass_max;
   int32_t field_count;
   mpmi_field field[MPMI_MAX_FIELDS];
   mpmi_view_record view[MPMI_MAX_VIEWS];

@@ -141,10 +141,8 @@ mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field) {
 void mpmi_find_masses(mpm_particles *set) {
   const double *mass = mpmi_f64(set, MPMI_MASS, 0);
   set->mass_max = 0.0;
-  set->mass_min = HUGE_VAL;
   for (int64_t s = 0; s < set->slots; ++s) { /* holes have no mass */
     if (mass[s] > set->mass_max) set->mass_max = mass[s];
-    if (mass[s] > 0.0 && mass[s] < set->mass_min) set->mass_min = mass[s];
   }
 }
 

@@ -25,6 +25,13 @@ static void check_mismatch(const saved_state *saved, const world_desc *like, int
   world_close(&w);
 }
 
+static world_desc with_scheme(const world_desc *like, int32_t scheme, int32_t projected) {
+  world_desc d = *like;
+  d.stepper.scheme = scheme;
+  d.stepper.projected_positions = projected;
+  return d;
+}
+
 START_TEST(unlike_setups_are_named) {
   const io_setup setup = io_plain(2), space = io_plain(3);
   const world_desc good = io_desc(&setup);
@@ -47,6 +54,12 @@ START_TEST(unlike_setups_are_named) {
   UNLIKE(stepper.transfer, MPM_APIC, "transfer is 1 there, 2 here");
   UNLIKE(stepper.reference_positions, 1, "reference_positions is 0 there, 1 here");
 #undef UNLIKE
+  const world_desc musl = with_scheme(&good, MPM_MUSL, 0), projected = with_scheme(&good, MPM_MUSL, 1);
+  world_open(&a, &musl);
+  const saved_state by_musl = world_save(&a);
+  world_close(&a);
+  check_mismatch(&by_musl, &projected, SAME, "projected_positions is 0 there, 1 here");
+  free(by_musl.data);
   check_mismatch(&saved, &good, FEWER, "set 0: field \"temperature\" is there, but not here");
   check_mismatch(&saved, &good, WIDER, "set 0: number of components of colour is 3 there, 4 here");
   check_mismatch(&saved, &good, RETYPED, "set 0: type of temperature is 1 there, 2 here");
