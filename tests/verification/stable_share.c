@@ -13,20 +13,12 @@ typedef struct basis {
   int32_t basis;
   double smoothing;
 } basis;
-typedef struct scheme {
-  const char *name;
-  int32_t scheme, projected;
-} scheme;
 typedef struct transfer {
   const char *name;
   int32_t transfer;
 } transfer;
 enum { LATTICE, SLIVER, FULL, COMPRESSED, FLIGHT, BODIES };
 static const char *const body_name[BODIES] = {"lattice", "sliver", "full", "compressed", "flight"};
-
-static double speed_of_sound(void) {
-  return sqrt(E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / density);
-}
 
 static void fill(const verify_world *w, mpm_particles *set, int32_t body, int32_t cells, int32_t grid_cells) {
   const int32_t dim = w->dim, periodic = body >= FULL;
@@ -40,7 +32,7 @@ static void fill(const verify_world *w, mpm_particles *set, int32_t body, int32_
   }
   double *x = verify_array(dim * n), *v = verify_array(dim * n), *volume = verify_array(n),
          *size = verify_array(dim * n);
-  uint32_t dice = 12345;
+  verify_noise(dim * n, noise, v);
   for (int64_t p = 0; p < n; ++p) {
     int64_t rest = p;
     volume[p] = 1.0;
@@ -48,10 +40,8 @@ static void fill(const verify_world *w, mpm_particles *set, int32_t body, int32_
       const double at = ((double)(rest % count[k]) + 0.5) * spacing * (k == 0 ? stretch : 1.0);
       const double shift = body == SLIVER ? 0.5 * spacing + 0.02 * h : 0.0;
       rest /= count[k];
-      dice = dice * 1664525u + 1013904223u;
       x[k * n + p] = at + shift + (periodic ? 0.0 : 0.5 * (grid_cells - cells) * h);
-      v[k * n + p] =
-          noise * ((double)(dice >> 8) * 0x1p-24 - 0.5) + (body == FLIGHT ? 2.0 * speed_of_sound() : 0.0);
+      if (body == FLIGHT) v[k * n + p] += 2.0 * verify_speed_of_sound(E, nu, density);
       size[k * n + p] = spacing;
       volume[p] *= spacing;
     }
@@ -62,7 +52,7 @@ static void fill(const verify_world *w, mpm_particles *set, int32_t body, int32_
   free(x), free(v), free(volume), free(size);
 }
 
-static mpm_particles *open_body(verify_world *w, int32_t dim, const basis *b, const scheme *s,
+static mpm_particles *open_body(verify_world *w, int32_t dim, const basis *b, const verify_scheme *s,
                                 const transfer *t, int32_t body) {
   const int32_t cells = dim == 3 ? 5 : 8, grid_cells = body >= FULL ? (dim == 3 ? 6 : 12)
                                                        : dim == 3   ? 14
@@ -82,7 +72,7 @@ static mpm_particles *open_body(verify_world *w, int32_t dim, const basis *b, co
 
 /* Does the body stay bounded? At rest its energy must not grow 20-fold, in the compressed box its motion must
  * not take a twentieth of the strain energy. */
-static int stays(int32_t dim, const basis *b, const scheme *s, const transfer *t, int32_t body,
+static int stays(int32_t dim, const basis *b, const verify_scheme *s, const transfer *t, int32_t body,
                  double share) {
   verify_world w;
   open_body(&w, dim, b, s, t, body);
@@ -102,7 +92,7 @@ static int stays(int32_t dim, const basis *b, const scheme *s, const transfer *t
 }
 
 /* The largest share in steps of a tenth, at most 1: beyond it a wave passes more than a cell. */
-static double largest(int32_t dim, const basis *b, const scheme *s, const transfer *t, int32_t body) {
+static double largest(int32_t dim, const basis *b, const verify_scheme *s, const transfer *t, int32_t body) {
   int32_t k = 0;
   while (k < 10 && stays(dim, b, s, t, body, 0.1 * (k + 1))) ++k;
   return 0.1 * k;
@@ -114,7 +104,7 @@ static int32_t counts(const basis *b, int32_t body) {
 }
 
 /* What mpm_advance takes where the host leaves the choice to it. */
-static double default_share(const basis *b, const scheme *s) {
+static double default_share(const basis *b, const verify_scheme *s) {
   static const transfer flip = {"FLIP", MPM_FLIP};
   verify_world w;
   open_body(&w, 2, b, s, &flip, LATTICE);
@@ -138,31 +128,29 @@ int main(int argc, char **argv) {
                                 {"cubic", MPM_BSPLINE3, 0.5}, {"uGIMP .25", MPM_UGIMP, 0.25},
                                 {"uGIMP .5", MPM_UGIMP, 0.5}, {"GIMP", MPM_GIMP, 0.5},
                                 {"cpGIMP", MPM_CPGIMP, 0.5}};
-  static const scheme schemes[] = {
-      {"USL", MPM_USL, 0}, {"USF", MPM_USF, 0}, {"MUSL", MPM_MUSL, 0}, {"MUSL projected", MPM_MUSL, 1}};
   static const transfer transfers[] = {{"FLIP", MPM_FLIP},        {"APIC", MPM_APIC},   {"TPIC", MPM_TPIC},
                                        {"TFLIP", MPM_TFLIP},      {"AFLIP", MPM_AFLIP}, {"XPIC(2)", MPM_XPIC},
                                        {"APIC_MLS", MPM_APIC_MLS}};
   const int quick = verify_quick();
   for (size_t b = 0; b < sizeof bases / sizeof *bases; ++b)
-    for (size_t s = 0; s < (quick ? 1 : sizeof schemes / sizeof *schemes); ++s) {
+    for (size_t s = 0; s < (quick ? 1 : VERIFY_SCHEMES); ++s) {
       double least = 1.0;
-      const double taken = default_share(&bases[b], &schemes[s]);
+      const double taken = default_share(&bases[b], &verify_schemes[s]);
       for (size_t t = 0; t < (quick ? 1 : sizeof transfers / sizeof *transfers); ++t) {
         const int32_t fused = transfers[t].transfer == MPM_APIC_MLS;
         if (fused && bases[b].basis != MPM_BSPLINE2 && bases[b].basis != MPM_BSPLINE3) continue;
         for (int32_t dim = quick ? 2 : 1; dim <= (quick || t > 0 ? 2 : 3); ++dim)
           for (int32_t body = 0; body < (quick ? 1 : BODIES); ++body) {
-            const double share = largest(dim, &bases[b], &schemes[s], &transfers[t], body);
-            fprintf(table, "%s,%s,%s,%d,%s,%.1f\n", bases[b].name, schemes[s].name, transfers[t].name,
+            const double share = largest(dim, &bases[b], &verify_schemes[s], &transfers[t], body);
+            fprintf(table, "%s,%s,%s,%d,%s,%.1f\n", bases[b].name, verify_schemes[s].name, transfers[t].name,
                     (int)dim, body_name[body], share);
             if (counts(&bases[b], body)) least = fmin(least, share);
           }
       }
       char what[120];
-      snprintf(what, sizeof what, "%s, %s: largest stable share", bases[b].name, schemes[s].name);
+      snprintf(what, sizeof what, "%s, %s: largest stable share", bases[b].name, verify_schemes[s].name);
       verify_gate(what, least, 1.5 * taken - 1e-9, 1.0, "1.5 times what mpm_advance takes");
-      verify_progress("%s, %s", bases[b].name, schemes[s].name);
+      verify_progress("%s, %s", bases[b].name, verify_schemes[s].name);
     }
   fclose(table);
   return verify_end();

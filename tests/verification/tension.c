@@ -1,7 +1,7 @@
 /* A block between two fixed walls, stretched or compressed along x and in equilibrium, with speeds of 1e-5
  * of that of sound: nothing should happen. E = 1000, nu = 0.3, density 1, 18 by 18 cells, periodic in y,
  * four tenths of the stable step. What grows is a mode that the method makes. */
-#include "verify.h"
+#include "spinning_square.h"
 
 enum { STEPS = 3000, MANY_STEPS = 100000, CELLS = 18 };
 
@@ -11,13 +11,9 @@ typedef struct method {
   double flip;
 } method;
 
-typedef struct way {
-  int32_t scheme, projected;
-  const char *name;
-} way;
-
 /* Kinetic over strain energy at the end; 1 or more where a step failed. */
-static double shake(const method *how, const way *by, double stretch, int32_t steps, double *first) {
+static double shake(const method *how, const verify_scheme *by, double stretch, int32_t steps,
+                    double *first) {
   const double h = 0.05, speed = 1e-3;
   verify_setup setup = verify_defaults(2, CELLS, h);
   setup.grid.periodic[1] = 1;
@@ -35,13 +31,7 @@ static double shake(const method *how, const way *by, double stretch, int32_t st
   verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MAX, MPM_WALL_FIXED, 0.0));
   const int64_t n = 2 * mpm_particles_count(block);
   double *v = verify_array(n);
-  uint64_t dice = 88172645463325252u;
-  for (int64_t i = 0; i < n; ++i) {
-    dice ^= dice << 13;
-    dice ^= dice >> 7;
-    dice ^= dice << 17;
-    v[i] = speed * ((double)(dice >> 11) * 0x1p-53 - 0.5);
-  }
+  verify_noise(n, speed, v);
   verify_put(&w, block, "velocity", 2, v);
   free(v);
   mpm_step_info now = verify_info(&w);
@@ -59,30 +49,21 @@ static double shake(const method *how, const way *by, double stretch, int32_t st
 
 /* A square of 8 cells that spins freely by USL: what the centrifugal force stretches. */
 static void spin(const method *how, double omega) {
-  const double h = 0.05, half = 0.2, speed = sqrt(1e5 * 0.7 / (1.3 * 0.4 * 1000.0));
+  const double h = 0.05;
   verify_setup setup = verify_defaults(2, 20, h);
-  setup.grid.origin[0] = setup.grid.origin[1] = -0.5;
   setup.stepper.transfer = how->transfer;
   verify_world w;
-  verify_open(&w, &setup);
-  mpm_particles *set = verify_set(&w, verify_elastic(&w, "neo_hookean", 1e5, 0.3, 1000.0));
-  verify_fill_box(&w, set, (const double[]){-half, -half}, (const double[]){half, half}, 2);
-  const int64_t n = mpm_particles_count(set);
-  const double L[9] = {0.0, -omega, 0.0, omega, 0.0, 0.0, 0.0, 0.0, 0.0};
-  double *x = verify_get(&w, set, "position", 2), *v = verify_array(2 * n);
-  for (int64_t i = 0; i < n; ++i) v[i] = -omega * x[n + i], v[n + i] = omega * x[i];
-  verify_put(&w, set, "velocity", 2, v);
-  verify_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, L));
-  free(x), free(v);
+  mpm_particles *set = spinning_square(&w, &setup, omega);
   const mpm_step_info first = verify_info(&w);
   mpm_step_info now = first;
   mpm_status status = MPM_OK;
   double most = 0.0;
   for (int32_t k = 0; k < MANY_STEPS && !status; ++k) {
-    status = mpm_step(w.stepper, 0.4 * h / speed, &now);
+    status = mpm_step(w.stepper, 0.4 * h / spinning_square_speed(), &now);
     most = fmax(most, now.kinetic_energy + now.strain_energy);
   }
-  x = verify_get(&w, set, "position", 2);
+  const int64_t n = mpm_particles_count(set);
+  double *x = verify_get(&w, set, "position", 2);
   double radius = 0.0;
   for (int64_t i = 0; i < n; ++i) radius = fmax(radius, hypot(x[i], x[n + i]));
   free(x);
@@ -96,8 +77,9 @@ static void spin(const method *how, double omega) {
   verify_gate_of(what, "change of angular momentum",
                  fabs(now.angular_momentum[2] / first.angular_momentum[2] - 1.0), 0.0, 1e-8,
                  "these transfers keep it");
-  verify_gate_of(what, "largest radius / that of the corners", radius / (sqrt(2.0) * (half - 0.25 * h)), 0.95,
-                 1.03, "it stays a body; set tolerance");
+  verify_gate_of(what, "largest radius / that of the corners",
+                 radius / (sqrt(2.0) * (0.5 * spinning_square_side - 0.25 * h)), 0.95, 1.03,
+                 "it stays a body; set tolerance");
   verify_progress("%s", what);
 }
 
@@ -109,37 +91,37 @@ int main(int argc, char **argv) {
                                    {"FLIP .98", MPM_FLIP, 0.98}, {"APIC_MLS", MPM_APIC_MLS, 1.0},
                                    {"TPIC", MPM_TPIC, 1.0},      {"TFLIP", MPM_TFLIP, 1.0},
                                    {"AFLIP", MPM_AFLIP, 1.0},    {"XPIC(2)", MPM_XPIC, 1.0}};
-  static const way ways[] = {
-      {MPM_USL, 0, "USL"}, {MPM_USF, 0, "USF"}, {MPM_MUSL, 0, "MUSL"}, {MPM_MUSL, 1, "MUSL projected"}};
   static const double stretch[3] = {0.8, 1.05, 1.5};
   const int32_t transfers = verify_quick() ? 2 : (int32_t)(sizeof methods / sizeof *methods);
   for (int32_t s = 0; s < 3; ++s)
-    for (int32_t k = 0; k < 4; ++k) {
-      if (verify_quick() && k != 0 && k != 3) continue;
+    for (int32_t k = 0; k < VERIFY_SCHEMES; ++k) {
+      if (verify_quick() && k != VERIFY_USL && k != VERIFY_PROJECTED) continue;
       double most = 0.0;
       for (int32_t m = 0; m < transfers; ++m) {
         double first;
         const double last =
-            shake(&methods[m], &ways[k], stretch[s], verify_quick() ? STEPS / 3 : STEPS, &first);
+            shake(&methods[m], &verify_schemes[k], stretch[s], verify_quick() ? STEPS / 3 : STEPS, &first);
         most = fmax(most, last / first);
-        fprintf(table, "%g,%s,%s,%.2e,%.2e\n", stretch[s], methods[m].name, ways[k].name, first, last);
+        fprintf(table, "%g,%s,%s,%.2e,%.2e\n", stretch[s], methods[m].name, verify_schemes[k].name, first,
+                last);
       }
       char what[100];
       snprintf(what, sizeof what, "stretch %g, %s: largest kinetic energy, last / first", stretch[s],
-               ways[k].name);
-      if ((k == 1 || k == 2) && stretch[s] > 1.0)
+               verify_schemes[k].name);
+      if ((k == VERIFY_USF || k == VERIFY_MUSL) && stretch[s] > 1.0)
         verify_expected_failure(what, most, 0.0, 1.0, "equilibrium",
                                 "these schemes make a mode that grows in tension");
       else
         verify_gate(what, most, 0.0, 1.0, "equilibrium");
-      verify_progress("stretch %g, %s", stretch[s], ways[k].name);
+      verify_progress("stretch %g, %s", stretch[s], verify_schemes[k].name);
     }
   for (int32_t s = 0; s < (verify_quick() ? 0 : 6); ++s) {
     const int32_t projected = s >= 3; /* MUSL with FLIP, which damps nothing */
     char what[100];
     double first;
     const double last =
-        shake(&methods[projected ? 0 : 1], &ways[projected ? 3 : 0], stretch[s % 3], MANY_STEPS, &first);
+        shake(&methods[projected ? 0 : 1], &verify_schemes[projected ? VERIFY_PROJECTED : VERIFY_USL],
+              stretch[s % 3], MANY_STEPS, &first);
     snprintf(what, sizeof what, "stretch %g, %s, 100 000 steps: kinetic energy, last / first", stretch[s % 3],
              projected ? "MUSL projected, FLIP" : "USL, APIC");
     verify_gate(what, last / first, 0.0, 1.0, "equilibrium");

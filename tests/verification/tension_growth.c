@@ -182,15 +182,9 @@ int main(int argc, char **argv) {
                                  {MPM_BSPLINE2, MPM_MUSL, 1, 1.05, 0.4, 1.0, "quadratic MUSL projected"},
                                  {MPM_BSPLINE2, MPM_MUSL, 1, 1.5, 0.2, 1.0, "quadratic MUSL projected"},
                                  {MPM_BSPLINE3, MPM_MUSL, 1, 1.5, 0.2, 1.0, "cubic MUSL projected"}};
-  const double speed = sqrt(E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / density);
+  const double speed = verify_speed_of_sound(E, nu, density);
   double v[COUNT];
-  uint64_t dice = 88172645463325252u;
-  for (int32_t p = 0; p < COUNT; ++p) {
-    dice ^= dice << 13;
-    dice ^= dice >> 7;
-    dice ^= dice << 17;
-    v[p] = 1e-9 * speed * ((double)(dice >> 11) * 0x1p-53 - 0.5);
-  }
+  verify_noise(COUNT, 1e-9 * speed, v);
   static bar b;
   for (size_t k = 0; k < sizeof list / sizeof *list; ++k) {
     const setting *is = &list[k];

@@ -1,7 +1,7 @@
 /* Every transfer under every scheme on three bodies: two disks that collide, a square that spins once, a bar
  * that vibrates for ten periods. What is left of energy and angular momentum goes to transfers.csv, from
  * which docs/options.md says which options to use when. */
-#include "verify.h"
+#include "spinning_square.h"
 
 typedef struct method {
   const char *name;
@@ -9,7 +9,7 @@ typedef struct method {
   double flip, pic_damping;
 } method;
 
-enum { METHODS = 13, SCHEMES = 4 };
+enum { METHODS = 13 };
 enum { FLIP, FLIP_99, FLIP_95, PIC, APIC, APIC_MLS, TPIC, TFLIP, AFLIP, XPIC_1, XPIC_2, XPIC_3, XPIC_5 };
 static const method methods[METHODS] = {
     {"FLIP", MPM_FLIP, 2, 1.0, 0.0},       {"FLIP 0.99", MPM_FLIP, 2, 0.99, 0.0},
@@ -20,13 +20,6 @@ static const method methods[METHODS] = {
     {"XPIC(2)", MPM_XPIC, 2, 1.0, 0.0},    {"XPIC(3)", MPM_XPIC, 3, 1.0, 0.0},
     {"XPIC(5)", MPM_XPIC, 5, 1.0, 0.0},
 };
-enum { USL, USF, MUSL, MUSL_PROJECTED };
-typedef struct way {
-  int scheme, projected;
-  const char *name;
-} way;
-static const way schemes[SCHEMES] = {
-    {MPM_USL, 0, "USL"}, {MPM_USF, 0, "USF"}, {MPM_MUSL, 0, "MUSL"}, {MPM_MUSL, 1, "MUSL projected"}};
 
 typedef struct outcome {
   double energy;  /* at the end, over that of the start */
@@ -37,7 +30,7 @@ typedef struct outcome {
   int broke;      /* status of the step that failed, or 0 */
 } outcome;
 
-static verify_setup setup_of(int dim, int64_t cells, double h, const method *m, const way *by) {
+static verify_setup setup_of(int dim, int64_t cells, double h, const method *m, const verify_scheme *by) {
   verify_setup setup = verify_defaults(dim, cells, h);
   setup.stepper.scheme = by->scheme;
   setup.stepper.projected_positions = by->projected;
@@ -64,7 +57,7 @@ static outcome run(const verify_world *w, double dt, double t_end) {
   return out;
 }
 
-static outcome disks(const method *m, const way *by) {
+static outcome disks(const method *m, const verify_scheme *by) {
   const double h = 1.0 / 40.0;
   verify_setup setup = setup_of(2, 44, h, m, by);
   setup.grid.origin[0] = setup.grid.origin[1] = -2.0 * h;
@@ -91,27 +84,12 @@ static outcome disks(const method *m, const way *by) {
   return out;
 }
 
-static outcome square_of(const method *m, const way *by, double h) {
-  const double omega = 2.0 * PI, side = 0.4, speed = sqrt(1e5 * 0.7 / (1.3 * 0.4 * 1000.0));
+static outcome square_of(const method *m, const verify_scheme *by, double h) {
   verify_setup setup = setup_of(2, (int64_t)(1.0 / h + 0.5), h, m, by);
-  setup.grid.origin[0] = setup.grid.origin[1] = -0.5;
   verify_world w;
-  verify_open(&w, &setup);
-  mpm_particles *set = verify_set(&w, verify_elastic(&w, "neo_hookean", 1e5, 0.3, 1000.0));
-  const double half = 0.5 * side;
-  verify_fill_box(&w, set, (const double[]){-half, -half}, (const double[]){half, half}, 2);
+  mpm_particles *set = spinning_square(&w, &setup, 2.0 * PI);
+  outcome out = run(&w, 0.3 * h / spinning_square_speed(), 1.0);
   const int64_t n = mpm_particles_count(set);
-  double *x = verify_get(&w, set, "position", 2), *v = verify_array(2 * n);
-  for (int64_t i = 0; i < n; ++i) v[i] = -omega * x[n + i], v[n + i] = omega * x[i];
-  verify_put(&w, set, "velocity", 2, v);
-  if (m->transfer == MPM_APIC || m->transfer == MPM_APIC_MLS || m->transfer == MPM_AFLIP ||
-      m->transfer == MPM_TPIC || m->transfer == MPM_TFLIP) {
-    const double spin[9] = {0.0, -omega, 0.0, omega, 0.0, 0.0, 0.0, 0.0, 0.0};
-    verify_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, spin));
-  }
-  free(x);
-  free(v);
-  outcome out = run(&w, 0.3 * h / speed, 1.0);
   double *J = verify_get(&w, set, "volume", 1), *V0 = verify_get(&w, set, "initial_volume", 1);
   for (int64_t i = 0; i < n; ++i) out.quality = fmax(out.quality, fabs(J[i] / V0[i] - 1.0));
   free(J);
@@ -120,11 +98,11 @@ static outcome square_of(const method *m, const way *by, double h) {
   return out;
 }
 
-static outcome square(const method *m, const way *by) {
+static outcome square(const method *m, const verify_scheme *by) {
   return square_of(m, by, 0.05);
 }
 
-static outcome bar(const method *m, const way *by) {
+static outcome bar(const method *m, const verify_scheme *by) {
   const double L = 25.0, E = 100.0, h = L / 26.0, beta = 0.5 * PI / L, period = 10.0, zero = 0.0;
   verify_setup setup = setup_of(1, 30, h, m, by);
   verify_world w;
@@ -157,17 +135,19 @@ static outcome bar(const method *m, const way *by) {
   return out;
 }
 
-static outcome at[3][METHODS][SCHEMES];
+static outcome at[3][METHODS][VERIFY_SCHEMES];
 
 static void gates(void) {
   char what[96];
   if (!verify_quick())
     verify_gate("disks, FLIP: energy kept by MUSL projected less that by MUSL",
-                at[0][FLIP][MUSL_PROJECTED].energy - at[0][FLIP][MUSL].energy, -2e-3, 2e-3, "set tolerance");
+                at[0][FLIP][VERIFY_PROJECTED].energy - at[0][FLIP][VERIFY_MUSL].energy, -2e-3, 2e-3,
+                "set tolerance");
   verify_gate("bar, FLIP: energy kept by MUSL projected less that by MUSL",
-              at[2][FLIP][MUSL_PROJECTED].energy - at[2][FLIP][MUSL].energy, -1e-3, 1e-3, "set tolerance");
-  for (int s = 0; s < SCHEMES; ++s) {
-    const char *name = schemes[s].name;
+              at[2][FLIP][VERIFY_PROJECTED].energy - at[2][FLIP][VERIFY_MUSL].energy, -1e-3, 1e-3,
+              "set tolerance");
+  for (int s = 0; s < VERIFY_SCHEMES; ++s) {
+    const char *name = verify_schemes[s].name;
     for (int m = 0; m < METHODS; ++m)
       for (int c = 0; c < 3; ++c)
         if (at[c][m][s].broke) {
@@ -178,7 +158,7 @@ static void gates(void) {
     for (int k = 0; k < 2; ++k) {
       snprintf(what, sizeof what, "square, %s, %s: loss of angular momentum", methods[affine[k]].name, name);
       /* projected positions: a particle's way is not along its velocity (theory, section 11.1) */
-      verify_gate(what, fabs(at[1][affine[k]][s].angular - 1.0), 0.0, s == MUSL_PROJECTED ? 1e-4 : 1e-10,
+      verify_gate(what, fabs(at[1][affine[k]][s].angular - 1.0), 0.0, s == VERIFY_PROJECTED ? 1e-4 : 1e-10,
                   "set tolerance");
     }
     snprintf(what, sizeof what, "square, PIC, %s: loss of angular momentum", name);
@@ -210,7 +190,7 @@ static void refine_square(void) {
   for (int m = 0; m < 2; ++m) {
     for (int k = 0; k < levels; ++k) {
       h[k] = 0.05 / (1 << k);
-      loss[m][k] = fabs(square_of(&methods[which[m]], &schemes[MUSL], h[k]).angular - 1.0);
+      loss[m][k] = fabs(square_of(&methods[which[m]], &verify_schemes[VERIFY_MUSL], h[k]).angular - 1.0);
       fprintf(csv, "%s,%g,%.6e\n", methods[which[m]].name, h[k], loss[m][k]);
     }
     char what[96];
@@ -231,13 +211,13 @@ int main(int argc, char **argv) {
   verify_begin("transfers", argc, argv);
   FILE *csv = verify_csv("transfers");
   fprintf(csv, "case,transfer,scheme,energy_end,energy_most,angular_end,quality,status\n");
-  outcome (*const cases[3])(const method *, const way *) = {disks, square, bar};
+  outcome (*const cases[3])(const method *, const verify_scheme *) = {disks, square, bar};
   const char *const name[3] = {"disks", "square", "bar"};
   for (int c = verify_quick() ? 1 : 0; c < 3; ++c) {
     for (int m = 0; m < METHODS; ++m)
-      for (int s = 0; s < SCHEMES; ++s) {
-        const outcome o = at[c][m][s] = cases[c](&methods[m], &schemes[s]);
-        fprintf(csv, "%s,%s,%s,%.6f,%.6f,%.12f,%.6f,%d\n", name[c], methods[m].name, schemes[s].name,
+      for (int s = 0; s < VERIFY_SCHEMES; ++s) {
+        const outcome o = at[c][m][s] = cases[c](&methods[m], &verify_schemes[s]);
+        fprintf(csv, "%s,%s,%s,%.6f,%.6f,%.12f,%.6f,%d\n", name[c], methods[m].name, verify_schemes[s].name,
                 o.energy, o.most, o.angular, o.quality, o.broke);
       }
     verify_progress("%s done", name[c]);

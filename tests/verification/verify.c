@@ -86,6 +86,23 @@ double verify_slope(int32_t n, const double *h, const double *error) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
+const verify_scheme verify_schemes[VERIFY_SCHEMES] = {
+    {MPM_USL, 0, "USL"}, {MPM_USF, 0, "USF"}, {MPM_MUSL, 0, "MUSL"}, {MPM_MUSL, 1, "MUSL projected"}};
+
+double verify_speed_of_sound(double E, double nu, double density) {
+  return sqrt(E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / density);
+}
+
+void verify_noise(int64_t n, double range, double *values) {
+  uint64_t dice = 88172645463325252u;
+  for (int64_t i = 0; i < n; ++i) {
+    dice ^= dice << 13;
+    dice ^= dice >> 7;
+    dice ^= dice << 17;
+    values[i] = range * ((double)(dice >> 11) * 0x1p-53 - 0.5);
+  }
+}
+
 void verify_check(const mpm_context *context, mpm_status status, const char *file, int line) {
   if (!status) return;
   fprintf(stderr, "%s: %s:%d: %s: %s\n", state.name, file, line, mpm_status_name(status),

@@ -36,6 +36,18 @@ int verify_end(void); /* exit status */
 /* Order of convergence: slope of log error over log h, by least squares. */
 double verify_slope(int32_t n, const double *h, const double *error);
 
+/* The explicit schemes. */
+typedef struct verify_scheme {
+  int32_t scheme, projected; /* projected_positions */
+  const char *name;
+} verify_scheme;
+enum { VERIFY_USL, VERIFY_USF, VERIFY_MUSL, VERIFY_PROJECTED, VERIFY_SCHEMES };
+extern const verify_scheme verify_schemes[VERIFY_SCHEMES];
+
+double verify_speed_of_sound(double E, double nu, double density); /* of compression, without stress */
+/* n numbers between -range / 2 and range / 2, the same in every call. */
+void verify_noise(int64_t n, double range, double *values);
+
 typedef struct verify_setup {
   mpm_grid_desc grid;
   mpm_stepper_desc stepper;
