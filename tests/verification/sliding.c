@@ -208,9 +208,7 @@ void slide_gates(const slide_series *s, FILE *table) {
     char what[120];
     if (!(gates[i].high > 0.0)) continue;
     snprintf(what, sizeof what, "%s: %s", s->name, gates[i].what);
-    if (s->trembles && gates[i].trembles)
-      verify_expected_failure(what, gates[i].value, gates[i].low, gates[i].high, source, s->trembles);
-    else
-      verify_gate(what, gates[i].value, gates[i].low, gates[i].high, source);
+    verify_judge(what, gates[i].value, gates[i].low, gates[i].high, source,
+                 gates[i].trembles ? s->trembles : NULL);
   }
 }

@@ -19,10 +19,7 @@ mpm_particles *spinning_square(verify_world *w, verify_setup *setup, double omeg
   for (int64_t i = 0; i < n; ++i) v[i] = -omega * x[n + i], v[n + i] = omega * x[i];
   verify_put(w, set, "velocity", 2, v);
   free(x), free(v);
-  /* of the other transfers the particles have no such field */
-  if (setup->stepper.transfer != MPM_FLIP && setup->stepper.transfer != MPM_XPIC) {
-    const double L[9] = {0.0, -omega, 0.0, omega, 0.0, 0.0, 0.0, 0.0, 0.0};
-    verify_ok(w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, L));
-  }
+  const double L[9] = {0.0, -omega, 0.0, omega, 0.0, 0.0, 0.0, 0.0, 0.0};
+  verify_ok(w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, L));
   return set;
 }

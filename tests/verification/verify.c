@@ -73,6 +73,14 @@ void verify_expected_failure(const char *what, double value, double low, double 
   result(what, value, low, high, met ? "MET" : "expected", source, reason);
 }
 
+void verify_judge(const char *what, double value, double low, double high, const char *source,
+                  const char *reason) {
+  if (reason)
+    verify_expected_failure(what, value, low, high, source, reason);
+  else
+    verify_gate(what, value, low, high, source);
+}
+
 int verify_end(void) {
   return state.failed != 0;
 }

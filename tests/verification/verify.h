@@ -31,6 +31,9 @@ void verify_gate_of(const char *name, const char *what, double value, double low
  * is met. */
 void verify_expected_failure(const char *what, double value, double low, double high, const char *source,
                              const char *reason);
+/* The one or the other: the latter where a reason is given. */
+void verify_judge(const char *what, double value, double low, double high, const char *source,
+                  const char *reason);
 int verify_end(void); /* exit status */
 
 /* Order of convergence: slope of log error over log h, by least squares. */
