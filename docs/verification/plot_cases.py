@@ -345,6 +345,27 @@ def tension_growth():
 
 
 @plot
+def linear_square():
+    figure, ax = axes(4, width=2.6, height=3.6)
+    data = read("linear_square")
+    series = list(dict.fromkeys((s, t) for s, t in zip(data["series"], data["transfer"])))
+    for panel, scheme in zip(ax, ("USL", "USF", "MUSL", "MUSL projected")):
+        for k, share in enumerate((0.5, 0.3, 0.1, 0.02)):
+            at = rows(data, scheme=scheme, share=share)
+            whole = [(e, series.index((s, m)) + 0.14 * (k - 1.5)) for s, m, end, e in
+                     zip(at["series"], at["transfer"], at["status"], at["end"]) if end == "MPM_OK"]
+            panel.plot([e for e, _ in whole], [n for _, n in whole], "osDx"[k], fillstyle="none", label=f"share {share:g}")
+        panel.axvline(1, color="k", linewidth=0.8)
+        panel.set_yticks(range(len(series)), [f"{s}, {t}" for s, t in series] if panel is ax[0] else [])
+        panel.set_ylim(len(series) - 0.5, -0.5)
+        panel.set_xlim(0.65, 1.8)
+        panel.set_title(scheme, fontsize=9)
+        panel.set_xlabel("energy, last / first")
+    ax[0].legend(fontsize=7)
+    return figure
+
+
+@plot
 def stable_share():
     figure, ax = axes(4, width=2.6, height=3.6)
     data = read("stable_share")
