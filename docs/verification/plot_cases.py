@@ -358,7 +358,7 @@ def linear_square():
         panel.axvline(1, color="k", linewidth=0.8)
         panel.set_yticks(range(len(series)), [f"{s}, {t}" for s, t in series] if panel is ax[0] else [])
         panel.set_ylim(len(series) - 0.5, -0.5)
-        panel.set_xlim(0.65, 1.8)
+        panel.set_xlim(0.65, 2.7)
         panel.set_title(scheme, fontsize=9)
         panel.set_xlabel("energy, last / first")
     ax[0].legend(fontsize=7)
