@@ -12,7 +12,7 @@ enum { MOST_LEADERS = 24 };
 
 /* The nodes that a light one goes with. Their coefficients have the sum 1. */
 typedef struct leaders {
-  int32_t count;
+  int32_t count, lone; /* lone: no line has its second node */
   int64_t slot[MOST_LEADERS];
   double share[MOST_LEADERS];
 } leaders;
@@ -58,30 +58,38 @@ static int32_t leads(const mpmi_bound *bound, int64_t slot, double mass) {
   return slot >= 0 && mass <= MPMI_LIGHT_SHARE * mpmi_moving_mass(bound, slot) && !is_light(bound, slot);
 }
 
-/* Finds the lines from a light node on which the next node is heavy: along axes, and where there are none
- * across the edges of a cell, then through its corners. They count by the mass of that node. */
-static leaders leaders_of(const mpmi_bound *bound, int64_t slot) {
+/* Adds the lines along so many axes on which the next node is heavy, and with it, or not, the one behind it. */
+static void add_lines(const mpmi_bound *bound, int64_t slot, int32_t axes, leaders *found) {
   const double light = mpmi_moving_mass(bound, slot);
-  leaders found = {0, {0}, {0.0}};
-  for (int32_t away = 1; away <= bound->dim && !found.count; ++away) {
-    double sum = 0.0;
-    for (int32_t i = 0; i < 27; ++i) {
-      int32_t by[3];
-      if (direction_of(bound, i, by) != away) continue;
-      const int64_t near = beside(bound, slot, by, 1);
-      if (!leads(bound, near, light)) continue;
-      const int64_t far = beside(bound, slot, by, 2);
-      const double mass = mpmi_moving_mass(bound, near);
-      const int32_t lone = far == near || !leads(bound, far, light);
-      sum += mass;
-      found.slot[found.count] = near;
-      found.share[found.count++] = lone ? mass : 2.0 * mass;
-      if (lone) continue;
-      found.slot[found.count] = far;
-      found.share[found.count++] = -mass;
-    }
-    for (int32_t k = 0; k < found.count; ++k) found.share[k] /= sum;
+  double sum = 0.0;
+  for (int32_t i = 0; i < 27; ++i) {
+    int32_t by[3];
+    if (direction_of(bound, i, by) != axes) continue;
+    const int64_t near = beside(bound, slot, by, 1);
+    if (!leads(bound, near, light)) continue;
+    const int64_t far = beside(bound, slot, by, 2);
+    if (found->lone != (far == near || !leads(bound, far, light))) continue;
+    const double mass = mpmi_moving_mass(bound, near);
+    sum += mass;
+    found->slot[found->count] = near;
+    found->share[found->count++] = found->lone ? mass : 2.0 * mass;
+    if (found->lone) continue;
+    found->slot[found->count] = far;
+    found->share[found->count++] = -mass;
   }
+  for (int32_t k = 0; k < found->count; ++k) found->share[k] /= sum;
+}
+
+/* Finds the lines from a light node: along axes, and where there are none across the edges of a cell, then
+ * through its corners; without a second node only where no line has one. They count by the mass of the next
+ * node. */
+static leaders leaders_of(const mpmi_bound *bound, int64_t slot) {
+  leaders found = {0, 0, {0}, {0.0}};
+  for (found.lone = 0; found.lone < 2; ++found.lone)
+    for (int32_t axes = 1; axes <= bound->dim; ++axes) {
+      add_lines(bound, slot, axes, &found);
+      if (found.count) return found;
+    }
   return found;
 }
 
@@ -137,11 +145,13 @@ static void give_force(mpmi_bound *bound, mpmi_light_node *node, const leaders *
   for (int32_t c = 0; c < bound->dim; ++c) give(bound, with, c, mass * (dv[c] - node->first_gain[c]), 1);
 }
 
+/* Without a line for its velocity a node keeps its own. */
 static void look_again(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
   const int32_t both = mpmi_has_increments(bound->values);
+  const double *own = mpmi_velocity(bound->values, node->slot);
   for (int32_t c = 0; c < bound->dim; ++c) {
     node->gain[c] = both ? of_leaders(with, mpmi_increment, bound->values, c) : 0.0;
-    node->before[c] = of_leaders(with, mpmi_velocity, bound->values, c) - node->gain[c];
+    node->before[c] = with->lone ? own[c] : of_leaders(with, mpmi_velocity, bound->values, c) - node->gain[c];
   }
 }
 
