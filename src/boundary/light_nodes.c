@@ -58,7 +58,7 @@ static int32_t leads(const mpmi_bound *bound, int64_t slot, double mass) {
   return slot >= 0 && mass <= MPMI_LIGHT_SHARE * mpmi_moving_mass(bound, slot) && !is_light(bound, slot);
 }
 
-/* Adds the lines along so many axes on which the next node is heavy, and with it, or not, the one behind it. */
+/* Adds the lines along so many axes on which the next node is heavy, and with it, or not, the one behind. */
 static void add_lines(const mpmi_bound *bound, int64_t slot, int32_t axes, leaders *found) {
   const double light = mpmi_moving_mass(bound, slot);
   double sum = 0.0;

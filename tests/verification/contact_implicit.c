@@ -2,30 +2,11 @@
  * quasi-static steps, and by explicit ones with damping: half of it, on a plane of symmetry, without
  * friction (Hertz, in plane strain). A block on a slope of 30 degrees comes to rest on it by quasi-static
  * steps, and is let go in dynamic ones. */
-#include "support.h"
+#include "discs.h"
 
 static const double R = 0.5, E = 1e5, nu = 0.3;
 
 /* ---- the cylinder -------------------------------------------------------------------------------------- */
-/* Fills half a disc by shells: a lattice of its bounding square, drawn in along rays. */
-static void fill_shells(const verify_world *w, mpm_particles *set, double spacing) {
-  const int32_t n = (int32_t)floor(R / spacing + 0.5);
-  const int64_t count = 2LL * n * n;
-  double *x = verify_array(2 * count), *volume = verify_array(count);
-  int64_t at = 0;
-  for (int32_t i = 0; i < n; ++i)
-    for (int32_t j = -n; j < n; ++j, ++at) {
-      const double p[2] = {(i + 0.5) * spacing, (j + 0.5) * spacing};
-      const double share = fmax(p[0], fabs(p[1])) / hypot(p[0], p[1]);
-      x[at] = share * p[0];
-      x[count + at] = share * p[1] + R;
-      volume[at] = share * spacing * share * spacing;
-    }
-  verify_ok(w, mpm_particles_add(set, count, x, NULL, volume, NULL, NULL, NULL));
-  free(x);
-  free(volume);
-}
-
 typedef struct press {
   double force, width, /* force: of all of it; half the width, over Hertz */
       traction,        /* in the middle, of what planes give nodes, over Hertz */
@@ -102,8 +83,7 @@ static void open_press(pressing *on, int32_t cells, int32_t scheme, double deep)
   setup.stepper.quasi_static = scheme == MPM_NEWMARK;
   verify_open(&on->w, &setup);
   mpm_particles *body = verify_set(&on->w, verify_elastic(&on->w, "neo_hookean", E, nu, 1000.0));
-  fill_shells(&on->w, body, 0.5 * h);
-  verify_place(&on->w, body, 0.0, by);
+  disc_fill_shells(&on->w, body, R, R + by[1], 0.5 * h);
   verify_ok(&on->w, mpm_stepper_set_wall(on->w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
   mpm_contact_desc rule;
   mpm_obstacle_desc plane = verify_obstacle_defaults(&rule, MPM_SHAPE_PLANE, MPM_MOTION_PRESCRIBED, 0.0, 0.0);

@@ -28,6 +28,25 @@ void disc_fill(const verify_world *w, mpm_particles *set, const double *centre, 
   free(volume);
 }
 
+void disc_fill_shells(const verify_world *w, mpm_particles *set, double radius, double height,
+                      double spacing) {
+  const int32_t n = (int32_t)floor(radius / spacing + 0.5);
+  const int64_t count = 2LL * n * n;
+  double *x = verify_array(2 * count), *volume = verify_array(count);
+  int64_t at = 0;
+  for (int32_t i = 0; i < n; ++i)
+    for (int32_t j = -n; j < n; ++j, ++at) {
+      const double p[2] = {(i + 0.5) * spacing, (j + 0.5) * spacing};
+      const double share = fmax(p[0], fabs(p[1])) / hypot(p[0], p[1]);
+      x[at] = share * p[0];
+      x[count + at] = share * p[1] + height;
+      volume[at] = share * spacing * share * spacing;
+    }
+  verify_ok(w, mpm_particles_add(set, count, x, NULL, volume, NULL, NULL, NULL));
+  free(x);
+  free(volume);
+}
+
 double disc_spin(const verify_world *w, const mpm_particles *set, const double *e, double *velocity) {
   const int64_t n = mpm_particles_count(set);
   double *x = verify_get(w, set, "position", 2), *v = verify_get(w, set, "velocity", 2), centre[4] = {0.0};

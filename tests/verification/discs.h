@@ -10,6 +10,10 @@
 /* Fills a disc by its own lattice, so that it is symmetric wherever it lies on the grid. */
 void disc_fill(const verify_world *w, mpm_particles *set, const double *centre, double radius,
                const double *v, double spacing);
+/* Fills the half of a disc beyond x = 0, its centre at (0, height), by shells: a lattice of its bounding
+ * square, drawn in along rays, so that its outline is smooth. */
+void disc_fill_shells(const verify_world *w, mpm_particles *set, double radius, double height,
+                      double spacing);
 /* Angular velocity about the centre of mass, and along `e` the velocity of it. */
 double disc_spin(const verify_world *w, const mpm_particles *set, const double *e, double *velocity);
 
