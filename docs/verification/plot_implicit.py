@@ -170,6 +170,62 @@ def footing():
 
 
 @plot
+def clay():
+    figure, ax = axes(2)
+    data = read("clay")
+    for panel, site, most in zip(ax, ("footing", "embankment"), (0.06, 0.015)):
+        for i, name in enumerate(("linear, remedy", "quadratic", "cubic", "GIMP, remedy")):
+            at = rows(data, site=site, setting=name)
+            panel.plot([0] + [100 * s for s in at["settlement"]], [0] + at["load"], f"C{i}o-", markersize=2, label=name)
+        panel.axhline(1, color="k", linestyle="--", linewidth=0.8)
+        panel.set_xlim(0, 100 * most)
+        panel.set_ylim(0, 1.2)
+        panel.legend(fontsize=7)
+    ax[0].set_xlabel("100 settlement / B")
+    ax[0].set_ylabel(r"load / $(2 + \pi) c$")
+    ax[1].set_xlabel("100 settlement of the crest / height")
+    ax[1].set_ylabel("weight / that of slip circles")
+    return figure
+
+
+@plot
+def clay_cloud():
+    return clouds("clay_cloud", "setting", "plastic", "plastic strain / %", ("x", "y"), 5, width=3.4, height=2.2,
+                  label="{}")
+
+
+@plot
+def resting_disc():
+    figure, ax = axes(2)
+    data = read("resting_disc")
+    for i, name in enumerate(("quadratic", "linear, remedy", "cubic", "GIMP")):
+        at = rows(data, floor=1.0, setting=name, per_cell=3.0, steps=40.0)
+        ax[0].plot(at["share"], at["fall"], f"C{i}-", label=name)
+        for steps, form in ((10.0, "s"), (40.0, "-")):
+            at = rows(data, floor=1.0, setting=name, per_cell=3.0, steps=steps)
+            ax[1].plot(at["share"], [f / t for f, t in zip(at["fall"], at["theory"])], f"C{i}{form}", markersize=3,
+                       label=f"{name}, {steps:g} steps")
+    ax[0].plot(at["share"], at["theory"], "k--", linewidth=0.8, label="linear elasticity")
+    ax[0].set_ylabel("way of the top / R")
+    ax[1].axhline(1, color="k", linestyle="--", linewidth=0.8)
+    ax[1].set_ylim(0.8, 1.1)
+    ax[1].set_ylabel("the same over linear elasticity")
+    for panel in ax:
+        panel.set_xlabel("share of the weight")
+        panel.legend(fontsize=7)
+    return figure
+
+
+@plot
+def resting_disc_cloud():
+    figure = clouds("resting_disc_cloud", "floor", "pressure", "vertical pressure / E", ("x", "y"), 6, width=3.0, height=3.6)
+    for panel, title in zip(figure.axes, ("on a body", "on a plane", "on a friction wall")):
+        panel.set_title(title, fontsize=9)
+        panel.axhline(0, color="k", linewidth=0.8)
+    return figure
+
+
+@plot
 def explicit_against_implicit():
     figure, ax = axes(2)
     data = rows(read("explicit_against_implicit"), basis=CPGIMP)
