@@ -40,6 +40,7 @@ static const implicit_case cases[] = {
     {"2-D cubic 80^2, multigrid", 2, 80, MPM_BSPLINE3, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
     {"3-D uGIMP 16^3, multigrid", 3, 16, MPM_UGIMP, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
     {"3-D quadratic 16^3, multigrid", 3, 16, MPM_BSPLINE2, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
+    {"3-D cubic 16^3, multigrid", 3, 16, MPM_BSPLINE3, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
     {"3-D quadratic 16^3, 3^3", 3, 16, MPM_BSPLINE2, 3, MPM_SOLVER_MULTIGRID_CG, 0.02, 10.0, NULL},
     {"3-D quadratic 16^3, CG", 3, 16, MPM_BSPLINE2, 2, MPM_SOLVER_CG, 0.02, 10.0, NULL},
     {"2-D 80^2, kappa / mu 10^3", 2, 80, MPM_LINEAR, 2, MPM_SOLVER_MULTIGRID_CG, 0.02, 1e3, NULL},

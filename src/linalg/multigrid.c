@@ -38,9 +38,7 @@ static mpm_status analyse(mpmi_multigrid *g, const mpmi_matrix *A) {
     if ((status = mpmi_coarsen(&g->scratch, level, next, &level->next))) return status;
     if ((double)next->own.rows > WORTH * (double)level->A->rows && mpmi_matrix_unknowns(level->A) <= FACTORED)
       break;
-    if ((status = mpmi_level_memory_reserve(&g->scratch, mpmi_bytes(level->A->rows, 2 * sizeof(int32_t)))) ||
-        (status = mpmi_smoother_analyse(&level->smoother, level->A, (int32_t *)(void *)g->scratch.memory)))
-      return status;
+    if ((status = mpmi_smoother_analyse(&level->smoother, level->A))) return status;
   }
   const mpmi_matrix *last = g->level[g->levels - 1].A;
   const int64_t n = mpmi_matrix_unknowns(last);
@@ -89,7 +87,7 @@ typedef struct cycle_job {
   const mpmi_level *fine;
   const mpmi_level *coarse;
   mpmi_sweep_fn sweep;
-  int64_t first; /* the first place of a colour */
+  int64_t first; /* the first line of a colour */
   const double *r;
   double *z, by;
   int32_t factored; /* the coarse level is the coarsest */
@@ -107,15 +105,15 @@ static void sweep_task(void *data, int64_t k) {
              job->first + mpmi_range_begin(&job->ranges, k + 1));
 }
 
-/* Sweeps over one colour after the other, forwards or backwards. */
-static mpm_status sweep(cycle_job *job, mpmi_sweep_fn fn, int32_t backwards) {
-  const mpmi_smoother *s = &job->fine->smoother;
-  job->sweep = fn;
+/* Sweeps over one colour of lines after the other, forwards or backwards. */
+static mpm_status sweep(cycle_job *job, int32_t backwards) {
+  const mpmi_lines *lines = &job->fine->smoother.lines;
+  job->sweep = job->g->kernels->solve;
   mpm_status status = MPM_OK;
-  for (int32_t i = 0; i < s->colours && !status; ++i) {
-    const int32_t c = backwards ? s->colours - 1 - i : i;
-    job->first = s->colour_start[c];
-    status = run_level(job, s->colour_start[c + 1] - job->first, job->fine->A, sweep_task);
+  for (int32_t i = 0; i < lines->colours && !status; ++i) {
+    const int32_t c = backwards ? lines->colours - 1 - i : i;
+    job->first = lines->colour_start[c];
+    status = run_level(job, lines->colour_start[c + 1] - job->first, job->fine->A, sweep_task);
   }
   return status;
 }
@@ -124,20 +122,20 @@ static void load_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_smoother *s = &job->fine->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p)
-    for (int32_t c = 0; c < block; ++c)
-      s->rhs[p * lanes + c] =
-          (float)(job->by * s->scale[p * block + c] * job->r[(int64_t)s->order[p] * block + c]);
+  for (int64_t i = mpmi_range_begin(&job->ranges, k); i < mpmi_range_begin(&job->ranges, k + 1); ++i)
+    for (int32_t c = 0; c < block; ++c) {
+      s->rhs[i * lanes + c] = (float)(job->by * s->scale[i * block + c] * job->r[i * block + c]);
+      s->x[i * lanes + c] = 0.0F;
+    }
 }
 
 static void store_task(void *data, int64_t k) {
   const cycle_job *job = data;
   const mpmi_smoother *s = &job->fine->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p)
+  for (int64_t i = mpmi_range_begin(&job->ranges, k); i < mpmi_range_begin(&job->ranges, k + 1); ++i)
     for (int32_t c = 0; c < block; ++c)
-      job->z[(int64_t)s->order[p] * block + c] =
-          job->by * s->scale[p * block + c] * (double)s->x[p * lanes + c];
+      job->z[i * block + c] = job->by * s->scale[i * block + c] * (double)s->x[i * lanes + c];
 }
 
 /* Makes the right-hand side of the coarse level: P^T times what is left on the fine one. */
@@ -146,20 +144,21 @@ static void restrict_task(void *data, int64_t k) {
   const mpmi_coarsening *P = &job->fine->next;
   const mpmi_smoother *s = &job->fine->smoother, *to = &job->coarse->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p) {
-    const int64_t I = job->factored ? p : to->order[p];
+  for (int64_t I = mpmi_range_begin(&job->ranges, k); I < mpmi_range_begin(&job->ranges, k + 1); ++I) {
     double sum[3] = {0.0, 0.0, 0.0};
     for (int64_t e = P->child_start[I]; e < P->child_start[I + 1]; ++e) {
-      const int64_t i = P->child[e], q = s->place[i];
+      const int64_t i = P->child[e];
       const double weight = 1.0 / (double)(P->parent_start[i + 1] - P->parent_start[i]);
       for (int32_t c = 0; c < block; ++c)
-        sum[c] += weight * s->unscale[q * block + c] * (double)s->residual[q * lanes + c];
+        sum[c] += weight * s->unscale[i * block + c] * (double)s->residual[i * lanes + c];
     }
     for (int32_t c = 0; c < block; ++c) {
-      if (job->factored)
-        job->g->rhs[p * block + c] = job->coarse->A->held[p * block + c] ? 0.0 : sum[c];
-      else
-        to->rhs[p * lanes + c] = (float)(to->scale[p * block + c] * sum[c]);
+      if (job->factored) {
+        job->g->rhs[I * block + c] = job->coarse->A->held[I * block + c] ? 0.0 : sum[c];
+        continue;
+      }
+      to->rhs[I * lanes + c] = (float)(to->scale[I * block + c] * sum[c]);
+      to->x[I * lanes + c] = 0.0F;
     }
   }
 }
@@ -170,31 +169,29 @@ static void prolong_task(void *data, int64_t k) {
   const mpmi_coarsening *P = &job->fine->next;
   const mpmi_smoother *s = &job->fine->smoother, *from = &job->coarse->smoother;
   const int32_t block = s->block, lanes = MPMI_PADDED(block);
-  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p) {
-    const int64_t i = s->order[p], begin = P->parent_start[i], end = P->parent_start[i + 1];
+  for (int64_t i = mpmi_range_begin(&job->ranges, k); i < mpmi_range_begin(&job->ranges, k + 1); ++i) {
+    const int64_t begin = P->parent_start[i], end = P->parent_start[i + 1];
     double sum[3] = {0.0, 0.0, 0.0};
     for (int64_t e = begin; e < end; ++e) {
       const int64_t J = P->parent[e];
       for (int32_t c = 0; c < block; ++c)
         sum[c] += job->factored ? job->g->x[J * block + c]
-                                : from->scale[from->place[J] * (int64_t)block + c] *
-                                      (double)from->x[from->place[J] * (int64_t)lanes + c];
+                                : from->scale[J * block + c] * (double)from->x[J * lanes + c];
     }
     for (int32_t c = 0; c < block; ++c)
-      s->x[p * lanes + c] += (float)(s->unscale[p * block + c] * sum[c] / (double)(end - begin));
+      s->x[i * lanes + c] += (float)(s->unscale[i * block + c] * sum[c] / (double)(end - begin));
   }
 }
 
 static mpm_status cycle(cycle_job job, int32_t l) {
   mpmi_multigrid *g = job.g;
-  const mpmi_sweeps *kernels = g->kernels;
   job.fine = &g->level[l];
   job.coarse = &g->level[l + 1];
   job.factored = l + 2 == g->levels;
-  mpm_status status = sweep(&job, kernels->from_zero, 0);
+  mpm_status status = sweep(&job, 0);
   job.first = 0;
-  job.sweep = kernels->residual;
-  if (!status) status = run_level(&job, job.fine->A->rows, job.fine->A, sweep_task);
+  job.sweep = g->kernels->residual;
+  if (!status) status = run_level(&job, job.fine->smoother.lines.count, job.fine->A, sweep_task);
   if (!status) status = run_level(&job, job.coarse->A->rows, job.fine->A, restrict_task);
   if (status) return status;
   if (job.factored)
@@ -202,7 +199,7 @@ static mpm_status cycle(cycle_job job, int32_t l) {
   else if ((status = cycle(job, l + 1)))
     return status;
   if ((status = run_level(&job, job.fine->A->rows, job.fine->A, prolong_task))) return status;
-  return sweep(&job, kernels->full, 1);
+  return sweep(&job, 1);
 }
 
 mpm_status mpmi_multigrid_cycle(mpmi_multigrid *g, const double *r, double *z) {

@@ -6,8 +6,9 @@
  *   level.h       one level; level.c: memory and tasks
  *   coarsen.c     nodes of the next level, interpolation, the pattern of its matrix
  *   galerkin.c    the numbers of its matrix
- *   smoother.c    colours, and the copy of a matrix that is smoothed with
- *   sweep.c       block Gauss-Seidel, compiled once for each instruction set
+ *   lines.c       lines of unknowns that are solved for together, and their colours
+ *   smoother.c    the copy of a matrix that is smoothed with, and the factors of its lines
+ *   sweep.c       line Gauss-Seidel, compiled once for each instruction set
  *
  * P leaves held unknowns out. A coarse unknown is held where the fine one at its place is, or where all fine
  * ones that it would move are. Unknowns with a small diagonal stay in, because each level is scaled to a

@@ -1,5 +1,4 @@
-/* The smoother of a level orders its nodes by colour and keeps a scaled copy of its matrix, for the kernels
- * of sweep.c. */
+/* The smoother of a level keeps a scaled copy of its matrix by lines, and the factors of the lines. */
 #include <math.h>
 #include <string.h>
 
@@ -14,36 +13,18 @@ const mpmi_sweeps *mpmi_sweeps_of(int32_t isa) {
   return MPMI_TABLE_OF(isa, mpmi_sweeps);
 }
 
-/* Gives each node the first colour that none of its neighbours has. taken: [rows], by colour the last node
- * that saw it at a neighbour. */
-static int32_t colour_nodes(const mpmi_matrix *A, int32_t *colour, int32_t *taken) {
-  int32_t colours = 0;
-  memset(colour, 0xff, (size_t)A->rows * sizeof *colour);
-  memset(taken, 0xff, (size_t)A->rows * sizeof *taken);
-  for (int64_t i = 0; i < A->rows; ++i) {
-    for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e)
-      if (colour[A->column[e]] >= 0) taken[colour[A->column[e]]] = (int32_t)i;
-    int32_t c = 0;
-    while (c < colours && taken[c] == i) ++c;
-    colour[i] = c;
-    if (c == colours) ++colours;
-  }
-  return colours;
-}
+/* A pivot that is smaller than this, beside a diagonal of 1, is lost in rounding. */
+static const double no_pivot = 1e-7;
 
-static mpm_status reserve_lists(mpmi_smoother *s, const mpmi_matrix *A) {
-  const int64_t rows = A->rows, entries = A->row_start[rows] - rows, lanes = MPMI_PADDED(A->block);
-  const int64_t area = A->block * A->block;
+static mpm_status reserve_numbers(mpmi_smoother *s, const mpmi_matrix *A, int64_t values, int64_t factors) {
+  const int64_t rows = A->rows, lanes = MPMI_PADDED(A->block);
   mpmi_arena from = {NULL, 0};
   for (;;) {
-    s->colour_start = mpmi_arena_take(&from, s->colours + 1, sizeof *s->colour_start);
-    s->row_start = mpmi_arena_take(&from, rows + 1, sizeof *s->row_start);
-    s->middle = mpmi_arena_take(&from, rows, sizeof *s->middle);
-    s->order = mpmi_arena_take(&from, rows, sizeof *s->order);
-    s->place = mpmi_arena_take(&from, rows, sizeof *s->place);
-    s->column = mpmi_arena_take(&from, entries, sizeof *s->column);
-    s->value = mpmi_arena_take(&from, entries * area + 1, sizeof *s->value); /* lanes read one more */
-    s->inverse = mpmi_arena_take(&from, rows * area, sizeof *s->inverse);
+    s->value_start = mpmi_arena_take(&from, s->lines.count, sizeof *s->value_start);
+    s->factor_start = mpmi_arena_take(&from, s->lines.count, sizeof *s->factor_start);
+    s->value = mpmi_arena_take(&from, values + 1, sizeof *s->value); /* lanes read one more */
+    s->factor = mpmi_arena_take(&from, factors, sizeof *s->factor);
+    s->half = mpmi_arena_take(&from, s->lines.unknowns, sizeof *s->half);
     s->scale = mpmi_arena_take(&from, rows * A->block, sizeof *s->scale);
     s->unscale = mpmi_arena_take(&from, rows * A->block, sizeof *s->unscale);
     s->rhs = mpmi_arena_take(&from, rows * lanes, sizeof *s->rhs);
@@ -59,22 +40,40 @@ static mpm_status reserve_lists(mpmi_smoother *s, const mpmi_matrix *A) {
 
 void mpmi_smoother_free(mpmi_smoother *s, mpm_context *context) {
   mpmi_free(context, s->slab, (size_t)s->slab_capacity);
+  mpmi_free(context, s->lines_slab, (size_t)s->lines_capacity);
   memset(s, 0, sizeof *s);
 }
 
-/* Orders the places colour by colour, and within a colour in the order of the rows. */
-static void order_by_colour(mpmi_smoother *s, const int32_t *colour) {
-  memset(s->colour_start, 0, (size_t)(s->colours + 1) * sizeof *s->colour_start);
-  for (int64_t i = 0; i < s->rows; ++i) ++s->colour_start[colour[i] + 1];
-  for (int32_t c = 0; c < s->colours; ++c) s->colour_start[c + 1] += s->colour_start[c];
-  for (int64_t i = 0; i < s->rows; ++i) {
-    s->place[i] = (int32_t)s->colour_start[colour[i]]++;
-    s->order[s->place[i]] = (int32_t)i;
-  }
-  for (int32_t c = s->colours; c > 0; --c) s->colour_start[c] = s->colour_start[c - 1];
-  s->colour_start[0] = 0;
+static int64_t values_of(const mpmi_matrix *A, int64_t unknown) {
+  const int64_t row = unknown / A->block;
+  return A->block * (A->row_start[row + 1] - A->row_start[row]);
 }
 
+static int64_t factors_of(const mpmi_lines *l, int64_t line) {
+  return (2 * l->band[line] + 1) * (l->start[line + 1] - l->start[line]);
+}
+
+mpm_status mpmi_smoother_analyse(mpmi_smoother *s, const mpmi_matrix *A) {
+  s->rows = A->rows;
+  s->block = A->block;
+  mpm_status status = mpmi_lines_find(s, A);
+  if (status) return status;
+  const mpmi_lines *l = &s->lines;
+  int64_t values = 0, factors = 0;
+  for (int64_t q = 0; q < l->unknowns; ++q) values += values_of(A, l->unknown[q]);
+  for (int64_t line = 0; line < l->count; ++line) factors += factors_of(l, line);
+  if ((status = reserve_numbers(s, A, values, factors))) return status;
+  values = factors = 0;
+  for (int64_t line = 0; line < l->count; ++line) {
+    s->value_start[line] = values;
+    s->factor_start[line] = factors;
+    for (int64_t q = l->start[line]; q < l->start[line + 1]; ++q) values += values_of(A, l->unknown[q]);
+    factors += factors_of(l, line);
+  }
+  return MPM_OK;
+}
+
+/* ---- numbers ------------------------------------------------------------------------------------------- */
 typedef struct smoother_job {
   mpmi_smoother *s;
   const mpmi_matrix *A;
@@ -82,70 +81,18 @@ typedef struct smoother_job {
   mpmi_range_failures bad; /* rows with a bad diagonal */
 } smoother_job;
 
-static void columns_task(void *data, int64_t k) {
-  const smoother_job *job = data;
-  mpmi_smoother *s = job->s;
-  const mpmi_matrix *A = job->A;
-  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p) {
-    const int64_t i = s->order[p];
-    int64_t before = s->row_start[p], after = before;
-    for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e) after += s->place[A->column[e]] < p;
-    s->middle[p] = after;
-    for (int64_t e = A->row_start[i]; e < A->row_start[i + 1]; ++e) {
-      const int32_t place = s->place[A->column[e]];
-      if (place != p) s->column[place < p ? before++ : after++] = place;
-    }
-  }
-}
-
-mpm_status mpmi_smoother_analyse(mpmi_smoother *s, const mpmi_matrix *A, int32_t *scratch) {
-  s->rows = A->rows;
-  s->block = A->block;
-  s->colours = colour_nodes(A, scratch, scratch + A->rows);
-  mpm_status status = reserve_lists(s, A);
-  if (status) return status;
-  order_by_colour(s, scratch);
-  s->row_start[0] = 0;
-  for (int64_t p = 0; p < s->rows; ++p) {
-    const int64_t i = s->order[p];
-    s->row_start[p + 1] = s->row_start[p] + A->row_start[i + 1] - A->row_start[i] - 1;
-  }
-  smoother_job job = {.s = s, .A = A, .ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A))};
-  return mpmi_run_ranges(A->context, &job.ranges, columns_task, &job);
-}
-
-/* ---- numbers ------------------------------------------------------------------------------------------- */
-/* Scales and inverts the diagonal block of a row, and stores it by columns. */
-static void invert_diagonal(mpmi_smoother *s, const double *value, int64_t p) {
+static mpm_status scale_row(mpmi_smoother *s, const mpmi_matrix *A, int64_t i) {
   const int32_t block = s->block;
-  float *to = s->inverse + p * block * block;
-  double a[3][3];
-  for (int32_t r = 0; r < block; ++r)
-    for (int32_t c = 0; c < block; ++c) {
-      const double scale = s->scale[p * block + r] * s->scale[p * block + c];
-      a[r][c] = scale > 0.0 ? scale * value[r * block + c] : r == c ? 1.0 : 0.0;
-    }
-  const int32_t regular = mpmi_invert_block(block, a);
-  for (int32_t c = 0; c < block; ++c)
-    for (int32_t r = 0; r < block; ++r) to[c * block + r] = regular ? (float)a[r][c] : r == c ? 1.0F : 0.0F;
-}
-
-static mpm_status scale_row(mpmi_smoother *s, const mpmi_matrix *A, int64_t p) {
-  const int64_t i = s->order[p];
-  const int32_t block = s->block;
-  int64_t e = A->row_start[i];
-  while (A->column[e] != i) ++e;
-  const double *value = A->value + e * block * block;
+  const double *value = A->value + mpmi_matrix_entry(A, i, i) * block * block;
   for (int32_t c = 0; c < block; ++c) {
     const double diagonal = value[c * block + c];
     if (!isfinite(diagonal)) return MPM_NONFINITE;
     if (A->symmetric && !(diagonal > 0.0)) return MPM_SINGULAR;
     const double size = fabs(diagonal) > 0.0 ? sqrt(fabs(diagonal)) : 1.0;
     const int32_t held = A->held[i * block + c];
-    s->scale[p * block + c] = held ? 0.0 : 1.0 / size;
-    s->unscale[p * block + c] = held ? 0.0 : size;
+    s->scale[i * block + c] = held ? 0.0 : 1.0 / size;
+    s->unscale[i * block + c] = held ? 0.0 : size;
   }
-  invert_diagonal(s, value, p);
   return MPM_OK;
 }
 
@@ -153,38 +100,74 @@ static void scales_task(void *data, int64_t k) {
   smoother_job *job = data;
   const int64_t end = mpmi_range_begin(&job->ranges, k + 1);
   job->bad.status[k] = MPM_OK;
-  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < end && !job->bad.status[k]; ++p) {
-    job->bad.status[k] = scale_row(job->s, job->A, p);
-    job->bad.item[k] = job->s->order[p];
+  for (int64_t i = mpmi_range_begin(&job->ranges, k); i < end && !job->bad.status[k]; ++i) {
+    job->bad.status[k] = scale_row(job->s, job->A, i);
+    job->bad.item[k] = i;
   }
 }
 
-static void values_task(void *data, int64_t k) {
-  const smoother_job *job = data;
-  mpmi_smoother *s = job->s;
-  const mpmi_matrix *A = job->A;
+enum { WIDTH = 2 * MPMI_MOST_BAND + 1 };
+
+/* Writes the scaled row of an unknown without the entries of its line, and these apart: those of the places
+ * around, the diagonal in the middle. */
+static float *write_row(const mpmi_smoother *s, const mpmi_matrix *A, int64_t line, int64_t q, float *to,
+                        double *within) {
+  const mpmi_lines *l = &s->lines;
   const int32_t block = s->block;
-  for (int64_t p = mpmi_range_begin(&job->ranges, k); p < mpmi_range_begin(&job->ranges, k + 1); ++p) {
-    int64_t before = s->row_start[p], after = s->middle[p];
-    for (int64_t e = A->row_start[s->order[p]]; e < A->row_start[s->order[p] + 1]; ++e) {
-      const int64_t other = s->place[A->column[e]];
-      if (other == p) continue;
-      const double *from = A->value + e * block * block;
-      float *to = s->value + (other < p ? before++ : after++) * block * block;
-      for (int32_t c = 0; c < block; ++c)
-        for (int32_t r = 0; r < block; ++r)
-          to[c * block + r] =
-              (float)(s->scale[p * block + r] * from[r * block + c] * s->scale[other * block + c]);
+  const int64_t row = l->unknown[q] / block, component = l->unknown[q] % block;
+  memset(within, 0, WIDTH * sizeof *within);
+  for (int64_t e = A->row_start[row]; e < A->row_start[row + 1]; ++e)
+    for (int32_t c = 0; c < block; ++c) {
+      const int64_t other = (int64_t)A->column[e] * block + c, place = l->place[other];
+      const double value =
+          s->scale[l->unknown[q]] * A->value[(e * block + component) * block + c] * s->scale[other];
+      const int32_t on_line = place >= l->start[line] && place < l->start[line + 1];
+      if (on_line) within[MPMI_MOST_BAND + place - q] = value;
+      *to++ = on_line ? 0.0F : (float)value;
     }
+  return to;
+}
+
+/* Factors a line without pivoting, row by row; the last `band` rows of U are enough for the next one. */
+static void factor_line(const mpmi_smoother *s, const mpmi_matrix *A, int64_t line) {
+  const mpmi_lines *l = &s->lines;
+  const int32_t band = l->band[line], rows = band + 1;
+  float *value = s->value + s->value_start[line], *to = s->factor + s->factor_start[line];
+  double upper[MPMI_MOST_BAND + 1][MPMI_MOST_BAND + 1]; /* by row modulo `rows`: the pivot, then over it */
+  for (int64_t q = 0; q < l->start[line + 1] - l->start[line]; ++q) {
+    double row[WIDTH], *a = row + MPMI_MOST_BAND;
+    value = write_row(s, A, line, l->start[line] + q, value, row);
+    for (int32_t k = -band; k < 0; ++k) {
+      const double *u = upper[(q + k + rows) % rows];
+      const double by = q + k < 0 ? 0.0 : a[k] / u[0];
+      for (int32_t j = 1; j <= band && q + k >= 0; ++j) a[k + j] -= by * u[0] * u[j];
+      *to++ = (float)by;
+    }
+    if (!(fabs(a[0]) > no_pivot)) a[0] = 1.0;
+    double *u = upper[q % rows];
+    u[0] = a[0];
+    *to++ = (float)(1.0 / a[0]);
+    for (int32_t j = 1; j <= band; ++j) *to++ = (float)(u[j] = a[j] / a[0]);
   }
+}
+
+static void lines_task(void *data, int64_t k) {
+  const smoother_job *job = data;
+  for (int64_t line = mpmi_range_begin(&job->ranges, k); line < mpmi_range_begin(&job->ranges, k + 1); ++line)
+    factor_line(job->s, job->A, line);
 }
 
 mpm_status mpmi_smoother_numbers(mpmi_smoother *s, const mpmi_matrix *A, int64_t *row) {
-  smoother_job job = {.s = s, .A = A, .ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A))};
+  const int64_t unknowns = mpmi_matrix_unknowns(A);
+  smoother_job job = {.s = s, .A = A, .ranges = mpmi_ranges_of(A->rows, unknowns)};
   const size_t bytes = (size_t)(s->rows * MPMI_PADDED(s->block)) * sizeof *s->x;
   memset(s->rhs, 0, bytes);
   memset(s->x, 0, bytes);
+  memset(s->residual, 0, bytes);
+  s->row_start = A->row_start;
+  s->column = A->column;
   mpm_status status = mpmi_run_ranges(A->context, &job.ranges, scales_task, &job);
   if (!status) status = mpmi_first_failure(&job.bad, job.ranges.count, row);
-  return status ? status : mpmi_run_ranges(A->context, &job.ranges, values_task, &job);
+  job.ranges = mpmi_ranges_of(s->lines.count, unknowns);
+  return status ? status : mpmi_run_ranges(A->context, &job.ranges, lines_task, &job);
 }

@@ -20,6 +20,7 @@ typedef struct springs {
   int32_t clamped;   /* the plane of the first nodes along the first axis is held */
   int32_t rollers;   /* one component is held on nodes here and there */
   double mass;       /* on the diagonal */
+  double stiff;      /* more stiffness of springs along an axis, against motion along it */
   double convection; /* not symmetric unless 0 */
   double light;      /* one node in seven is scaled by this; 0: none */
 } springs;

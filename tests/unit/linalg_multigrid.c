@@ -75,6 +75,23 @@ START_TEST(sizes) {
 }
 END_TEST
 
+/* Rows of nodes tied along x to each other a thousand times as stiffly as to those beside. */
+START_TEST(stiff_along_lines) {
+  const springs of = {.dim = 2,
+                      .block = 2,
+                      .reach = 1 + _i % 2,
+                      .n = {80, 61},
+                      .mass = 1e-5,
+                      .clamped = !(_i / 2),
+                      .periodic = _i / 2,
+                      .stiff = 1e3};
+  springs_build(&A, context, &of);
+  solve_noise(MPM_SOLVER_MULTIGRID_CG, 1e-8, 1e-2);
+  show("reach %d: %d iterations\n", 1 + _i % 2, (int)report.iterations);
+  ck_assert_int_le(report.iterations, 40);
+}
+END_TEST
+
 /* e of a coarse level on the finer one, by the rule itself: the mean over the parents, 0 where held. */
 static double *interpolated(const mpmi_matrix *fine, const mpmi_matrix *coarse, const double *e) {
   double *x = calloc((size_t)mpmi_matrix_unknowns(fine), sizeof *x);
@@ -271,6 +288,7 @@ TCase *linalg_multigrid_case(void) {
   tcase_add_loop_test(tests, solves, 0, BODIES);
   tcase_add_loop_test(tests, solves_not_symmetric, 0, BODIES);
   tcase_add_loop_test(tests, slender, 0, 4);
+  tcase_add_loop_test(tests, stiff_along_lines, 0, 4);
   tcase_add_test(tests, sizes);
   tcase_add_loop_test(tests, galerkin, 0, BODIES);
   tcase_add_loop_test(tests, one_cycle, 0, BODIES);

@@ -61,6 +61,8 @@ static void spring(const springs *of, const mpmi_matrix *A, int64_t i, int64_t j
   const double stiffness = (1.0 + 0.5 * noise(low * 100003 + high)) / length;
   for (int32_t r = 0; r < 3; ++r)
     for (int32_t c = 0; c < 3; ++c) block[r][c] = stiffness * (e[r] * e[c] / length + (r == c ? 0.3 : 0.0));
+  for (int32_t c = 0; c < 3; ++c)
+    if (e[c] * e[c] == length) block[c][c] += of->stiff * stiffness;
   *flow = of->convection * e[0] / length;
 }
 
