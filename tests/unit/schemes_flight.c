@@ -61,7 +61,7 @@ static void fly(int32_t dim, const basis_option *basis, const stepping *how, con
                (const double[]){5.0, 11.0, 5.0}, 2);
   if (among != PUSHED) ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, v));
   double *x = fetch(&w, set, "position", dim);
-  for (int64_t i = 0; i < dim * n; ++i) x[i] += offset;
+  for (int64_t i = 0; i < dim * n; ++i) x[i] += among == PUSHED ? 0.25 + offset : offset;
   put(&w, set, "position", dim, x);
   if (among == SLIDING) ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_SLIP, 0.0));
   lead with = {v, among == PUSHED ? -1e3 : 6.5};
