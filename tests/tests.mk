@@ -52,8 +52,8 @@ check-unit: $(UNIT)
 	@printf '%s\n' $(SUITES) | $(TEST_ENVIRONMENT) xargs -P $(JOBS) -I{} sh -c \
 	  'out=$$(CK_RUN_SUITE={} MPM_SCRATCH="$$MPM_SCRATCH/{}" $(UNIT) 2>&1); status=$$?; echo "$$out"; exit $$status'
 
-# Every method that the library offers on 1, 2, 3, 4, 7 threads, by pool and executor, on the best instruction set, and
-# on one and seven threads on the others; `check` has a sample of it.
+# Every method that the library offers on 1, 2, 3, 4, 7 threads, by pool and executor in turn, on the best instruction
+# set, and on one and seven threads on the others; `check` has a sample of it.
 #: check-determinism     the same bits from every method, on 1 to 7 threads; nearly the same on each instruction set
 check-determinism: $(UNIT)
 	@printf '%s\n' 3-D 2-D 1-D hashes | xargs -P $(JOBS) -I{} sh -c \

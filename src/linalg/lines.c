@@ -15,7 +15,7 @@ typedef struct search {
   int32_t *unknown;       /* [unknowns] */
   int32_t *start;         /* [lines + 1] */
   int32_t *band, *colour; /* [lines] */
-  int32_t *taken;         /* [colours] the last line that saw a colour beside it */
+  int32_t *taken; /* [colours] the last line that saw a colour beside it; then [lines] in their order */
 } search;
 
 static int32_t is_free(const search *of, int64_t row) {
@@ -107,6 +107,7 @@ static int32_t colour_lines(search *of, int32_t first, int32_t first_colour) {
   return colours;
 }
 
+/* The search borrows the room of the numbers, which are made after it. */
 static mpm_status reserve_search(mpmi_smoother *s, search *of) {
   const mpmi_matrix *A = of->A;
   const int64_t rows = A->rows, all = rows * A->block;

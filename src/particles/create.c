@@ -1,8 +1,6 @@
 /* Particle sets are made and freed here, and refuse changes while they are mapped or in a step. */
 #include "particles/builtin_fields.h"
 
-#include <math.h>
-
 mpm_status mpmi_between_steps(const mpm_particles *set) {
   if (!set->stepper || !set->owner->in_step(set->stepper)) return MPM_OK;
   return mpmi_fail(set->context, MPM_E_STATE, "a staged step is under way: end or abort it first");

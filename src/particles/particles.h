@@ -92,8 +92,7 @@ struct mpm_particles {
   int64_t next_id;
   uint32_t dirty;   /* MPMI_DIRTY_... */
   uint32_t suspect; /* bit per built-in field: bad values were written through a view; step refuses */
-  /* Largest and smallest particle mass seen since the last sort, 0 and infinity without any: scales of nodal
-   * masses. */
+  /* Largest particle mass seen since the last sort, 0 without any: the scale of nodal masses. */
   double mass_max;
   int32_t field_count;
   mpmi_field field[MPMI_MAX_FIELDS];

@@ -6,8 +6,9 @@ static const double offsets[] = {0.0,    1e-15, -1e-15, 1e-13, -1e-13, 1e-12, -1
                                  -1e-11, 1e-10, -1e-10, 1e-9,  -1e-9,  1e-7,  -1e-7};
 enum { OFFSETS = sizeof offsets / sizeof *offsets };
 /* AROUND: over a periodic seam, on more cells than a block of nodes has. LED: a callback prescribes what the
- * block does. PUSHED: the same, for a block that was at rest. BESIDE: by a much lighter one at rest. */
-enum { ALONE, SLIDING, AROUND, LED, PUSHED, BESIDE, SURROUNDINGS };
+ * block does. PUSHED: the same, for a block that was at rest. BY_LIGHT, BY_HEAVY: beside one at rest with a
+ * millionth of the density, or a million times it. */
+enum { ALONE, SLIDING, AROUND, LED, PUSHED, BY_LIGHT, BY_HEAVY, SURROUNDINGS };
 typedef struct stepping {
   int32_t scheme, projected;
 } stepping;
@@ -45,20 +46,21 @@ static void fly(int32_t dim, const basis_option *basis, const stepping *how, con
   d.stepper.xpic_order = by->xpic_order;
   d.grid.periodic[0] = among == AROUND;
   d.law = (world_law){.model = "neo_hookean", .E = 1000.0, .nu = 0.3, .density = 1.0};
-  const world_law light = {.model = "neo_hookean", .E = 1e-3, .nu = 0.3, .density = 1e-6};
+  const double other = among == BY_LIGHT ? 1e-6 : 1e6;
+  const world_law law = {.model = "neo_hookean", .E = 1e3 * other, .nu = 0.3, .density = other};
   snprintf(name, sizeof name, "%s, scheme %d%s, %s, %g, among %d", basis->name, (int)how->scheme,
            how->projected ? " projected" : "", by->name, offset, (int)among);
   mpm_particles *set = world_open(&w, &d);
   const double dt = 1.0 / 64.0, speed = 0.25 / dt;
-  double v[3] = {speed, among == SLIDING || among == BESIDE ? 0.0 : 0.5 * speed,
+  double v[3] = {speed, among == SLIDING || among >= BY_LIGHT ? 0.0 : 0.5 * speed,
                  dim == 3 ? 0.25 * speed : 0.0};
   const double from = among == AROUND ? (double)cells - 3.0 : 4.0,
                low[3] = {from, among == SLIDING ? 0.0 : 3.0, 3.0},
                high[3] = {from + 2.0, among == SLIDING ? 2.0 : 5.0, 5.0};
   const int64_t n = world_fill(&w, set, low, high, 2);
-  if (among == BESIDE)
-    world_fill(&w, world_add_set(&w, &light), (const double[]){3.0, 9.0, 3.0},
-               (const double[]){5.0, 11.0, 5.0}, 2);
+  if (among >= BY_LIGHT)
+    world_fill(&w, world_add_set(&w, &law), (const double[]){3.0, 9.0, 3.0}, (const double[]){5.0, 11.0, 5.0},
+               2);
   if (among != PUSHED) ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, v));
   double *x = fetch(&w, set, "position", dim);
   for (int64_t i = 0; i < dim * n; ++i) x[i] += among == PUSHED ? 0.25 + offset : offset;
@@ -121,10 +123,34 @@ START_TEST(flight_among) {
 }
 END_TEST
 
+/* A lone particle that hardly reaches into a cell keeps its affine field: no line of nodes gives the far node
+ * a velocity. */
+START_TEST(alone_with_a_gradient) {
+  const int32_t dim = 1 + _i;
+  world w;
+  world_desc d = world_default(dim, 12, 1.0);
+  d.grid.basis = MPM_LINEAR;
+  d.stepper.transfer = MPM_TPIC;
+  mpm_particles *set = world_open(&w, &d);
+  const double x[3] = {5.0 + 1e-9, 4.3, 6.6}, v[3] = {1.0, 2.0, 3.0}, volume = 1.0;
+  double L[9] = {0.0};
+  for (int32_t k = 0; k < dim; ++k)
+    for (int32_t j = 0; j < dim; ++j) L[3 * k + j] = 0.1 * (k + 1) - 0.3 * j;
+  ck_ok(&w, mpm_particles_add(set, 1, x, v, &volume, NULL, NULL, NULL));
+  ck_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, L));
+  world_step(&w, 1e-6);
+  double *after = fetch(&w, set, "velocity_gradient", 9);
+  for (int32_t c = 0; c < 9; ++c) ck_within("L", after[c], L[c], 1e-4);
+  free(after);
+  world_close(&w);
+}
+END_TEST
+
 TCase *schemes_flight_case(void) {
   TCase *tc = tcase_create("flight");
   tcase_set_timeout(tc, 60.0);
   tcase_add_loop_test(tc, flight, 0, BASES);
   tcase_add_loop_test(tc, flight_among, 0, BASES);
+  tcase_add_loop_test(tc, alone_with_a_gradient, 0, 3);
   return tc;
 }

@@ -35,9 +35,7 @@ static outcome drift(const series *on, const method *how, const verify_scheme *b
   verify_setup setup = verify_defaults(2, 60, 1.0 / 40.0);
   setup.grid.basis = on->basis;
   setup.stepper.locking_remedy = on->remedy;
-  setup.stepper.scheme = by->scheme;
-  setup.stepper.projected_positions = by->projected;
-  setup.stepper.transfer = how->transfer;
+  verify_use(&setup, by, how->transfer);
   setup.stepper.xpic_order = how->xpic_order;
   verify_world w;
   verify_open(&w, &setup);

@@ -61,9 +61,7 @@ static mpm_particles *open_body(verify_world *w, int32_t dim, const basis *b, co
   setup.grid.basis = b->basis;
   setup.grid.smoothing = b->smoothing;
   for (int32_t k = 0; k < dim && body >= FULL; ++k) setup.grid.periodic[k] = 1;
-  setup.stepper.scheme = s->scheme;
-  setup.stepper.projected_positions = s->projected;
-  setup.stepper.transfer = t->transfer;
+  verify_use(&setup, s, t->transfer);
   verify_open(w, &setup);
   mpm_particles *set = verify_set(w, verify_elastic(w, "neo_hookean", E, nu, density));
   fill(w, set, body, cells, grid_cells);

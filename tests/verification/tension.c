@@ -17,9 +17,7 @@ static double shake(const method *how, const verify_scheme *by, double stretch, 
   const double h = 0.05, speed = 1e-3;
   verify_setup setup = verify_defaults(2, CELLS, h);
   setup.grid.periodic[1] = 1;
-  setup.stepper.scheme = by->scheme;
-  setup.stepper.projected_positions = by->projected;
-  setup.stepper.transfer = how->transfer;
+  verify_use(&setup, by, how->transfer);
   setup.stepper.flip = how->flip;
   verify_world w;
   verify_open(&w, &setup);
@@ -61,9 +59,7 @@ static void spin(const spinner *is) {
   const double h = 0.05, dt = 0.4 * h / spinning_square_speed();
   verify_setup setup = verify_defaults(2, 20, h);
   setup.grid.basis = is->basis;
-  setup.stepper.scheme = verify_schemes[is->scheme].scheme;
-  setup.stepper.projected_positions = verify_schemes[is->scheme].projected;
-  setup.stepper.transfer = is->transfer;
+  verify_use(&setup, &verify_schemes[is->scheme], is->transfer);
   verify_world w;
   mpm_particles *set = spinning_square(&w, &setup, is->omega);
   const mpm_step_info first = verify_info(&w);

@@ -32,9 +32,7 @@ typedef struct outcome {
 
 static verify_setup setup_of(int dim, int64_t cells, double h, const method *m, const verify_scheme *by) {
   verify_setup setup = verify_defaults(dim, cells, h);
-  setup.stepper.scheme = by->scheme;
-  setup.stepper.projected_positions = by->projected;
-  setup.stepper.transfer = m->transfer;
+  verify_use(&setup, by, m->transfer);
   setup.stepper.xpic_order = m->xpic_order;
   setup.stepper.flip = m->flip;
   setup.stepper.pic_damping = m->pic_damping;

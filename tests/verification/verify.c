@@ -128,6 +128,12 @@ verify_setup verify_defaults(int32_t dim, int64_t cells, double h) {
   return setup;
 }
 
+void verify_use(verify_setup *setup, const verify_scheme *scheme, int32_t transfer) {
+  setup->stepper.scheme = scheme->scheme;
+  setup->stepper.projected_positions = scheme->projected;
+  setup->stepper.transfer = transfer;
+}
+
 void verify_open(verify_world *w, const verify_setup *setup) {
   memset(w, 0, sizeof *w);
   w->dim = setup->grid.dim;

@@ -69,6 +69,7 @@ typedef struct verify_world {
 
 /* The library's defaults on a grid of `cells` cells of edge h along each axis, from the origin. */
 verify_setup verify_defaults(int32_t dim, int64_t cells, double h);
+void verify_use(verify_setup *setup, const verify_scheme *scheme, int32_t transfer);
 void verify_open(verify_world *w, const verify_setup *setup); /* on one thread */
 mpm_material *verify_material(verify_world *w, const char *model, const mpm_param *params, int32_t count);
 mpm_material *verify_elastic(verify_world *w, const char *model, double E, double nu, double density);
