@@ -50,17 +50,16 @@ MPMI_INLINE void make_row(row_job *r, int32_t block, int64_t row) {
   r->count = 0;
   for (int64_t c = P->child_start[row]; c < P->child_start[row + 1]; ++c) {
     const int64_t i = P->child[c];
-    add_child(r, block, i, 1.0 / (double)(P->parent_start[i + 1] - P->parent_start[i]));
+    add_child(r, block, i, mpmi_parent_weight(P, r->of->A, i));
   }
   memset(coarse->value + first * block * block, 0,
          (size_t)((end - first) * block * block) * sizeof *coarse->value);
   for (int64_t e = first; e < end; ++e) r->entry[coarse->column[e]] = (int32_t)(e - first);
   for (int32_t n = 0; n < r->count; ++n) {
     const int32_t j = r->node[n];
-    const int64_t begin = P->parent_start[j], past = P->parent_start[j + 1];
-    const double weight = 1.0 / (double)(past - begin), *from = r->sums + (int64_t)n * block * block;
+    const double weight = mpmi_parent_weight(P, r->of->A, j), *from = r->sums + (int64_t)n * block * block;
     r->place[j] = -1;
-    for (int64_t p = begin; p < past; ++p) {
+    for (int64_t p = P->parent_start[j]; p < P->parent_start[j + 1]; ++p) {
       double *to = coarse->value + (first + r->entry[P->parent[p]]) * block * block;
       for (int32_t v = 0; v < block * block; ++v) to[v] += weight * from[v];
     }
@@ -86,11 +85,11 @@ static void galerkin_task(void *data, int64_t k) {
   }
 }
 
-mpm_status mpmi_galerkin(mpmi_level_memory *w, const mpmi_level *fine, mpmi_level *coarse) {
-  galerkin_job job = {
-      .A = fine->A, .P = &fine->next, .coarse = &coarse->own, .tasks = mpmi_level_memory_tasks(w, fine->A)};
+mpm_status mpmi_galerkin(mpmi_level_memory *w, const mpmi_matrix *A, const mpmi_coarsening *P,
+                         mpmi_matrix *coarse) {
+  galerkin_job job = {.A = A, .P = P, .coarse = coarse, .tasks = mpmi_level_memory_tasks(w, A)};
   const int64_t area = job.A->block * job.A->block;
-  job.ints = job.A->rows + job.P->most_nodes + coarse->own.rows;
+  job.ints = job.A->rows + job.P->most_nodes + coarse->rows;
   const size_t sums = mpmi_bytes(job.tasks.count * job.P->most_nodes * area, sizeof *job.sums);
   mpm_status status =
       mpmi_level_memory_reserve(w, sums + mpmi_bytes(job.tasks.count * job.ints, sizeof *job.scratch));
@@ -98,5 +97,5 @@ mpm_status mpmi_galerkin(mpmi_level_memory *w, const mpmi_level *fine, mpmi_leve
   job.sums = (double *)(void *)w->memory;
   job.scratch = (int32_t *)(void *)(w->memory + sums);
   status = mpmi_run_ranges(w->context, &job.tasks, galerkin_task, &job);
-  return status ? status : mpmi_matrix_eliminate(&coarse->own);
+  return status ? status : mpmi_matrix_eliminate(coarse);
 }

@@ -1,8 +1,10 @@
 /* One V-cycle of geometric multigrid on the grid's nodes is a preconditioner. Each coarser level has the
  * nodes of every other grid line and the matrix P^T A P, where P interpolates linearly; so its stencil is
- * that of the finer level. The coarsest level is factored.
+ * that of the finer level. The coarsest level is factored. Wide stencils have a second hierarchy, of
+ * functions that change their sign from node to node.
  *
- *   multigrid.c   the levels, and the cycle over them
+ *   multigrid.c   the hierarchies, and the cycle over their levels
+ *   hierarchy.h   the levels from the matrix to the coarsest one
  *   level.h       one level; level.c: memory and tasks
  *   coarsen.c     nodes of the next level, interpolation, the pattern of its matrix
  *   galerkin.c    the numbers of its matrix
@@ -16,21 +18,15 @@
 #ifndef MPMI_MULTIGRID_H
 #define MPMI_MULTIGRID_H
 
-#include "linalg/factor.h"
-#include "linalg/level.h"
-
-enum { MPMI_MOST_LEVELS = 24 };
+#include "linalg/hierarchy.h"
 
 typedef struct mpmi_multigrid {
   mpm_context *context;
   const mpmi_sweeps *kernels;
   int64_t pattern_id; /* the pattern that the structure was made for */
-  int32_t analysed, levels;
-  mpmi_level level[MPMI_MOST_LEVELS];
-  double largest_scale; /* the largest scale of the first level */
-  mpmi_factor coarsest;
-  double *rhs, *x; /* right-hand side and solution of the coarsest level */
-  int64_t coarsest_capacity;
+  int32_t analysed;
+  mpmi_hierarchy smooth, alternating; /* `smooth` has the smoother of the first level */
+  double largest_scale;               /* the largest scale of the first level */
   mpmi_level_memory scratch;
 } mpmi_multigrid;
 

@@ -108,9 +108,8 @@ static mpm_status fall_back(mpmi_system *s, mpm_status status) {
 }
 
 /* Costs are in products of the matrix with a vector, measured on bodies of soft matter. Iterations of CG grow
- * with the number of nodes in a row, or with the step: inertia is its share of the diagonal. Cycles of
- * multigrid grow with the overlap of stencils, because nodes at the rim of a body then share few particles.
- */
+ * with the number of nodes in a row, or with the step: inertia is its share of the diagonal. Multigrid needs
+ * more cycles where stencils are wide, because functions that alternate from node to node are then soft. */
 typedef struct costs {
   double cg, multigrid, factor;
 } costs;
@@ -145,7 +144,7 @@ static costs costs_of(const mpmi_matrix *A, double inertia, int32_t several_fiel
   const double factor = 7.0 * separator * separator * separator * extent[0] / extent[1];
   costs c;
   c.cg = fmin(20.0 * extent[0], inertia > 0.0 ? 20.0 / sqrt(inertia) : (double)INFINITY);
-  c.multigrid = 20.0 + 70.0 * half_stencil * half_stencil;
+  c.multigrid = 75.0 + 12.0 * half_stencil * half_stencil;
   c.factor = factor / (20.0 * entries * (double)(A->block * A->block));
   if (several_fields) {
     c.cg *= cg_in_contact;

@@ -1,5 +1,5 @@
-/* An unstressed block in uniform flight over nodes, on which its particles land to the last digit or nearly,
- * keeps its velocity and its shape, whatever its basis, scheme, transfer and surroundings. */
+/* A block with next to no stress in uniform flight over nodes, on which its particles land to the last digit
+ * or nearly, keeps its velocity and its shape, whatever its basis, scheme, transfer and surroundings. */
 #include "schemes.h"
 
 static const double offsets[] = {0.0,    1e-15, -1e-15, 1e-13, -1e-13, 1e-12, -1e-12, 1e-11,
@@ -62,6 +62,9 @@ static void fly(int32_t dim, const basis_option *basis, const stepping *how, con
     world_fill(&w, world_add_set(&w, &law), (const double[]){3.0, 9.0, 3.0}, (const double[]){5.0, 11.0, 5.0},
                2);
   if (among != PUSHED) ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, v));
+  /* next to nothing, but not for what a node far out has of mass */
+  const double F0[9] = {1.0 + 0x1p-43, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  ck_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, F0));
   double *x = fetch(&w, set, "position", dim);
   for (int64_t i = 0; i < dim * n; ++i) x[i] += among == PUSHED ? 0.25 + offset : offset;
   put(&w, set, "position", dim, x);
