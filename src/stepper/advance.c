@@ -18,7 +18,7 @@ static double stable_share(const mpm_grid *grid, int32_t scheme) {
   const int32_t usl = scheme == MPM_USL;
   switch (grid->desc.basis) {
   case MPM_LINEAR:
-    return usl ? 0.6 : 0.8;
+    return usl ? 0.6 : 0.9;
   case MPM_BSPLINE2:
     return usl ? 0.6 : 1.0;
   case MPM_BSPLINE3:
