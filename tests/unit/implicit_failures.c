@@ -440,11 +440,18 @@ START_TEST(advance) {
 }
 END_TEST
 
+TCase *implicit_large_case(void) {
+  TCase *tests = tcase_create("large");
+  tcase_set_tags(tests, "long");
+  tcase_set_timeout(tests, 60.0);
+  tcase_add_loop_test(tests, large_free_body, 0, 6);
+  return tests;
+}
+
 TCase *implicit_failures_case(void) {
   TCase *tests = tcase_create("failures");
   tcase_set_timeout(tests, 60.0);
   tcase_add_test(tests, free_body);
-  tcase_add_loop_test(tests, large_free_body, 0, 6);
   tcase_add_test(tests, free_rigid_body);
   tcase_add_test(tests, too_few_iterations);
   tcase_add_test(tests, one_iteration_less);

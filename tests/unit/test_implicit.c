@@ -445,5 +445,6 @@ Suite *implicit_suite(void) {
   suite_add_tcase(suite, on_threads);
   suite_add_tcase(suite, implicit_extension_case());
   suite_add_tcase(suite, implicit_failures_case());
+  suite_add_tcase(suite, implicit_large_case());
   return suite;
 }
