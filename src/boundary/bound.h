@@ -61,6 +61,9 @@ static inline mpmi_component mpmi_component_of(const mpmi_bound *bound, int64_t 
 void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse, double change);
 /* Records how much more a free node now gives to particles, and returns it: the impulse. */
 double mpmi_record(mpmi_bound *bound, int64_t slot, int32_t c, mpmi_component before);
+/* Changes a component of v~ and dv of a free node with its tie by what no boundary gives, and returns what
+ * particles take of that, by mass. */
+double mpmi_shift_node(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment);
 /* Changes a component of a free node's velocity by an impulse that is no reaction of walls or prescribed
  * velocities: that of another body. */
 void mpmi_push_node(mpmi_bound *bound, int64_t slot, int32_t c, double by);

@@ -21,26 +21,10 @@ typedef struct hook_values {
   double shown[2][3 * MPMI_NODE_BATCH], velocity[3 * MPMI_NODE_BATCH], force[3 * MPMI_NODE_BATCH];
 } hook_values;
 
-static void shift_node(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment) {
-  mpmi_velocity(bound->values, slot)[c] += velocity;
-  mpmi_increment(bound->values, slot)[c] += increment;
-}
-
 /* Changes v~ and dv of a free node with its tie; what particles take of that is the hook's impulse. */
 static void shift(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment) {
-  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
-  const int32_t at = constraints->tie_of[slot];
-  const double given = bound->flip * increment + (1.0 - bound->flip) * velocity;
+  const double given = mpmi_shift_node(bound, slot, c, velocity, increment);
   bound->nodes->hook_impulse[slot][c] += mpmi_moving_mass(bound, slot) * given;
-  shift_node(bound, slot, c, velocity, increment);
-  if (at < 0) return;
-  mpmi_tie_state *state = &bound->nodes->tie_state[at];
-  state->before[c] += given;
-  state->increment[c] += increment;
-  for (int64_t d = 0; d < constraints->tie[at].count; ++d) {
-    const mpmi_follower *follower = &constraints->follower[constraints->tie[at].first + d];
-    shift_node(bound, follower->slot, c, follower->sign[c] * velocity, follower->sign[c] * increment);
-  }
 }
 
 static void show_node(const hook_job *job, const mpmi_node_list *list, int64_t i, hook_values *values) {

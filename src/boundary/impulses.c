@@ -35,6 +35,27 @@ double mpmi_press_node(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
   return record(bound, slot, c, before, 1);
 }
 
+static void change(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment) {
+  mpmi_velocity(bound->values, slot)[c] += velocity;
+  if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] += increment;
+}
+
+double mpmi_shift_node(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment) {
+  const mpmi_constraints *constraints = mpmi_constraints_of(bound);
+  const int32_t at = constraints->tie_of[slot];
+  const double given = bound->flip * increment + (1.0 - bound->flip) * velocity;
+  change(bound, slot, c, velocity, increment);
+  if (at < 0) return given;
+  mpmi_tie_state *state = &bound->nodes->tie_state[at];
+  state->before[c] += given;
+  state->increment[c] += increment;
+  for (int64_t d = 0; d < constraints->tie[at].count; ++d) {
+    const mpmi_follower *follower = &constraints->follower[constraints->tie[at].first + d];
+    change(bound, follower->slot, c, follower->sign[c] * velocity, follower->sign[c] * increment);
+  }
+  return given;
+}
+
 /* What walls take of it the other way round, through mirrored ghosts, is theirs. Of nodes that are not tied
  * the party remembers the change. */
 void mpmi_push_node(mpmi_bound *bound, int64_t slot, int32_t c, double by) {

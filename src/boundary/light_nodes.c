@@ -97,8 +97,7 @@ static leaders leaders_of(const mpmi_bound *bound, int64_t slot) {
 static void give(mpmi_bound *bound, const leaders *to, int32_t c, double momentum, int32_t gained) {
   for (int32_t k = 0; k < to->count; ++k) {
     const double by = to->share[k] * momentum / mpmi_moving_mass(bound, to->slot[k]);
-    mpmi_velocity(bound->values, to->slot[k])[c] += by;
-    if (gained) mpmi_increment(bound->values, to->slot[k])[c] += by;
+    mpmi_shift_node(bound, to->slot[k], c, by, gained ? by : 0.0);
   }
 }
 
@@ -155,17 +154,24 @@ static void look_again(mpmi_bound *bound, mpmi_light_node *node, const leaders *
   }
 }
 
+/* Sets v~ and dv of a light node, which had its own dv beside v until now. */
+static void set(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, double increment) {
+  double *v = mpmi_velocity(bound->values, slot);
+  const double own = mpmi_increment_of(bound, slot, c);
+  mpmi_shift_node(bound, slot, c, velocity - (v[c] + own), increment - own);
+  v[c] = velocity; /* to the last bit */
+  if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] = increment;
+}
+
 /* What the mass of a light node has more of momentum now, its leaders have less. */
 static void follow(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
   const double mass = mpmi_moving_mass(bound, node->slot);
   const int32_t both = mpmi_has_increments(bound->values);
-  double *v = mpmi_velocity(bound->values, node->slot);
   for (int32_t c = 0; c < bound->dim; ++c) {
-    give(bound, with, c, mass * (v[c] - node->before[c]), 0);
-    v[c] = node->before[c] + node->gain[c];
-    if (!both) continue;
-    give(bound, with, c, mass * (node->first_gain[c] - node->gain[c]), 1);
-    mpmi_increment(bound->values, node->slot)[c] = node->gain[c];
+    const double own = mpmi_velocity(bound->values, node->slot)[c];
+    give(bound, with, c, mass * (own - node->before[c]), 0);
+    set(bound, node->slot, c, node->before[c] + node->gain[c], node->gain[c]);
+    if (both) give(bound, with, c, mass * (node->first_gain[c] - node->gain[c]), 1);
   }
 }
 

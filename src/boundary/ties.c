@@ -41,7 +41,7 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
     double *v = mpmi_velocity(bound->values, tie->master), *dv = mpmi_increment(bound->values, tie->master);
     const double mass = *mpmi_mass(bound->values, tie->master), cut = bound->step->layout->light_cut;
     double momentum[3], gained[3], apart[3] = {0.0, 0.0, 0.0}; /* apart: what light nodes have gained, no part
-                                                                 * of their velocities */
+                                                                 * of their velocities yet */
     state->mass = mass;
     for (int32_t c = 0; c < bound->dim; ++c) {
       state->net[c] = mass;
@@ -50,11 +50,13 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
       state->recorded[c] = 0.0;
       momentum[c] = mass * v[c];
       gained[c] = both ? mass * dv[c] : 0.0;
-      if (!(mass > cut)) apart[c] = gained[c];
+      if (!both || mass > cut) continue;
+      apart[c] = gained[c];
+      state->before[c] += (1.0 - bound->flip) * dv[c];
     }
     for (int64_t d = tie->first; d < tie->first + tie->count; ++d) {
       const mpmi_follower *follower = &constraints->follower[d];
-      const double *of = mpmi_velocity(bound->values, follower->slot);
+      double *of = mpmi_velocity(bound->values, follower->slot);
       const double its_mass = *mpmi_mass(bound->values, follower->slot);
       state->mass += its_mass;
       for (int32_t c = 0; c < bound->dim; ++c) {
@@ -64,7 +66,9 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
         if (!both) continue;
         const double its_gain = signed_mass * mpmi_increment(bound->values, follower->slot)[c];
         gained[c] += its_gain;
-        if (!(its_mass > cut)) apart[c] += its_gain;
+        if (its_mass > cut) continue;
+        apart[c] += its_gain;
+        of[c] += mpmi_increment(bound->values, follower->slot)[c];
       }
     }
     const double inverse = state->mass > DBL_MIN ? 1.0 / state->mass : 0.0;

@@ -62,18 +62,33 @@ static void check_step(balance *b, const wall_setup *walls, double friction, con
   free(v0), free(x0), free(x1), free(of_nodes);
 }
 
-static void check_balance(const method *how, const wall_setup *walls, int32_t dim, int64_t cells) {
+/* Moves the particles of two layers of cells away from the nodes between: these have next to no mass then,
+ * but forces all the same on the linear basis. */
+static void thin_out(balance *b) {
+  double *x = fetch(&b->w, b->set, "position", b->w.dim);
+  for (int64_t p = 0; p < CLOUD; ++p) {
+    const double layer = floor(x[p] / 0.1);
+    if (layer == 1.0) x[p] = 0.1 * (layer + 1e-6);
+    if (layer == 2.0) x[p] = 0.1 * (layer + 1.0 - 1e-6);
+  }
+  put(&b->w, b->set, "position", b->w.dim, x);
+  free(x);
+}
+
+static void check_balance(const method *how, const wall_setup *walls, int32_t dim, int64_t cells,
+                          int32_t thin) {
   const double gravity[3] = {3.0, -10.0, 1.0}, friction = 0.3;
   balance b = {.dt = 2e-5};
   world_desc desc = world_with(how, dim, cells, 0.1);
   wall_describe(walls, &desc.grid);
   memcpy(desc.stepper.gravity, gravity, sizeof gravity);
-  snprintf(b.name, sizeof b.name, "%s, %d-D, walls %d, %d cells", how->name, (int)dim,
-           (int)(walls - wall_setups), (int)cells);
+  snprintf(b.name, sizeof b.name, "%s, %d-D, walls %d, %d cells%s", how->name, (int)dim,
+           (int)(walls - wall_setups), (int)cells, thin ? ", thin" : "");
   b.set = world_open(&b.w, &desc);
   dice d = {11};
   add_cloud(&b.w, b.set, &d, CLOUD, 0.1, 0.0, 0.1 * (double)cells, 1.0);
   if (carries_matrix(how->transfer)) add_affine(&b.w, b.set, &d, 3.0);
+  if (thin) thin_out(&b);
   wall_set(&b.w, walls, friction);
   b.mass = fetch(&b.w, b.set, "mass", 1);
   b.total = sum_of(CLOUD, b.mass);
@@ -87,7 +102,8 @@ static void check_balance(const method *how, const wall_setup *walls, int32_t di
 START_TEST(impulses_balance) {
   const method how = wall_method_of(_i);
   for (int32_t setup = 0; setup < WALL_SETUPS; ++setup)
-    for (int32_t dim = 1; dim <= 3; ++dim) check_balance(&how, &wall_setups[setup], dim, 6);
+    for (int32_t dim = 1; dim <= 3; ++dim)
+      for (int32_t thin = 0; thin < 2; ++thin) check_balance(&how, &wall_setups[setup], dim, 6, thin);
 }
 END_TEST
 
@@ -95,7 +111,7 @@ START_TEST(impulses_balance_on_tiny_grids) {
   const method how = wall_method_of(_i);
   for (int32_t setup = 0; setup < WALL_SETUPS; ++setup)
     for (int32_t dim = 1; dim <= 3; ++dim)
-      for (int64_t cells = 1; cells <= 3; ++cells) check_balance(&how, &wall_setups[setup], dim, cells);
+      for (int64_t cells = 1; cells <= 3; ++cells) check_balance(&how, &wall_setups[setup], dim, cells, 0);
 }
 END_TEST
 
