@@ -54,6 +54,21 @@ MPM_API mpm_status mpm_material_model_param(const char *model, int32_t index, co
                                             double *low, double *high);
 
 /**
+ * The number of state variables of a particle of a built-in law, or -1 where there is no such model. They
+ * are the components of the field "state". Any thread, any time.
+ */
+MPM_API int32_t mpm_material_state_count(const char *model);
+
+/**
+ * Describes the state variable with number index (from 0) of a built-in law: its name, such as
+ * "plastic_strain", its unit as a dimension and one line of text. Texts are static, and output pointers
+ * may be NULL. MPM_E_NOT_FOUND: there is no such model, or index is past the last variable. Any thread,
+ * any time.
+ */
+MPM_API mpm_status mpm_material_state_name(const char *model, int32_t index, const char **name,
+                                           const char **unit, const char **text);
+
+/**
  * Particles of one set that a law is asked about. Arrays are [components][ld], of which the first n items of
  * each component count. The memory belongs to the library and is valid during the call. Tensors are full: F,
  * F_inc and L have component 3 * row + column, stresses xx yy zz xy yz xz. Output arrays do not overlap input
@@ -146,6 +161,30 @@ MPM_API mpm_status mpm_material_desc_init(mpm_material_desc *desc, uint32_t stru
  * MPM_E_ARG: a value is bad, or stress is NULL. */
 MPM_API mpm_status mpm_material_create_custom(mpm_context *context, const mpm_material_desc *desc,
                                               mpm_material **out);
+
+/**
+ * Runs a material, built in or the host's, without a grid: what a step does to its particles, for n items
+ * of the caller. It is how parameters are fitted to tests of the laboratory.
+ *
+ * The caller fills batch: struct_size, state_count (that of the material), n, ld, t, dt, F (at the end of
+ * the step), F_inc, stress and state before the step, and the arrays for stress_new and state_new, all in
+ * the forms of mpm_material_batch. These may be NULL: id (items then have ids from 0; items with ids < 0
+ * are inert, and only their outputs are written), L (made of F_inc and dt), position (zeros), wave_speed,
+ * kinematic_viscosity and energy (not wanted), state and state_new of a law without state. lookup is not
+ * used: a law of the host gets NULL. Outputs may be the arrays of inputs: stress_new that of stress, say.
+ * With dt = 0 the answer is the state as it is, see mpm_stress_fn.
+ *
+ * tangent is NULL or [81][ld], and receives the tangent of the step in the general form of mpm_tangent_fn;
+ * dt must be > 0 then. Into *symmetric, unless it is NULL, goes 1 if it has major symmetry at every item.
+ *
+ * Bits are those of a 3-D step on the same instruction set. The calling thread does all the work, as for
+ * other calls of the context. MPM_E_ARG: an array is NULL, or a number is out of range. MPM_NONFINITE: a
+ * value that is given or that comes out is not finite. MPM_INVERTED: det F or det F_inc is not positive.
+ * MPM_CUT_DT and MPM_E_CALLBACK: as in a step. All name the item. After a failure items before that one
+ * may have been written.
+ */
+MPM_API mpm_status mpm_material_update(const mpm_material *material, const mpm_material_batch *batch,
+                                       double *tangent, int32_t *symmetric);
 
 /** Frees the material and calls release_user. NULL is fine. MPM_E_STATE while sets of it live. */
 MPM_API mpm_status mpm_material_destroy(mpm_material *material);

@@ -94,6 +94,20 @@ public:
     if (!given.state_initial.empty()) desc.state_initial = given.state_initial.data();
     c.context->check(mpm_material_create_custom(c.context->handle, &desc, &c.handle));
   }
+
+  /** Runs the law without a grid: see mpm_material_update(). struct_size is set here. */
+  void update(mpm_material_batch batch) const {
+    batch.struct_size = sizeof batch;
+    core().context->check(mpm_material_update(core().handle, &batch, nullptr, nullptr));
+  }
+  /** The same with the tangent of the step, [81][ld]. Returns whether it has major symmetry. */
+  bool update(mpm_material_batch batch, span<double> tangent) const {
+    batch.struct_size = sizeof batch;
+    detail::expect_size("tangent", tangent.size(), 81 * batch.ld);
+    int32_t symmetric = 0;
+    core().context->check(mpm_material_update(core().handle, &batch, tangent.data(), &symmetric));
+    return symmetric != 0;
+  }
 };
 
 /** The names of the built-in laws: see mpm_material_model_name(). */
@@ -118,6 +132,27 @@ inline std::vector<parameter> model_parameters(const std::string &model) {
     all.push_back(p);
   }
   if (all.empty()) throw error(MPM_E_NOT_FOUND, "no built-in law \"" + model + "\"");
+  return all;
+}
+
+/** What mpm_material_state_name() tells of a state variable of a built-in law. */
+struct state_variable {
+  std::string name; /**< name, such as "plastic_strain" */
+  std::string unit; /**< unit as a dimension, such as "stress" */
+  std::string text; /**< one line on its meaning */
+};
+
+/** The state variables of a built-in law, in the order of the field "state": see mpm_material_state_name().
+ * Throws error (MPM_E_NOT_FOUND) for an unknown model. */
+inline std::vector<state_variable> model_state(const std::string &model) {
+  const int32_t count = mpm_material_state_count(model.c_str());
+  if (count < 0) throw error(MPM_E_NOT_FOUND, "no built-in law \"" + model + "\"");
+  std::vector<state_variable> all;
+  for (int32_t i = 0; i < count; ++i) {
+    const char *name = "", *unit = "", *text = "";
+    mpm_material_state_name(model.c_str(), i, &name, &unit, &text);
+    all.push_back({name, unit, text});
+  }
   return all;
 }
 

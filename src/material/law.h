@@ -14,6 +14,10 @@ typedef struct mpmi_law_param {
   int32_t whole;           /* 1: whole numbers only */
 } mpmi_law_param;
 
+typedef struct mpmi_law_state {
+  const char *name, *unit, *text;
+} mpmi_law_state;
+
 /* Evaluates a law on batch->n particles, whole chunks of them; every array is 64-byte aligned. dim tells
  * which entries of the full tensors can be anything but those of the identity, so that 1-D and 2-D need not
  * pay for 3-D; stress_new has all six rows written for the components that exist in `dim` (xx yy zz; xy in
@@ -29,6 +33,7 @@ typedef struct mpmi_law {
   const mpmi_law_param *param; /* every law has a "density" */
   int32_t param_count;
   int32_t state_count;
+  const mpmi_law_state *state; /* [state_count] */
   const double *state_initial; /* [state_count], or NULL: zeros */
   int32_t stress_from_F; /* 1: hyperelastic, fluid, rigid; 0: hypoelastic, the host may set the stress */
   int32_t kinematics;    /* MPMI_F_... */

@@ -25,6 +25,9 @@
 /* Sets param and param_count to an array of parameters. */
 #define MPMI_PARAMS(array) .param = (array), .param_count = (int32_t)(sizeof(array) / sizeof *(array))
 
+/* Sets state and state_count to an array of state variables. */
+#define MPMI_STATES(array) .state = (array), .state_count = (int32_t)(sizeof(array) / sizeof *(array))
+
 /* Particles of a batch. */
 MPMI_INLINE int64_t mpmi_batch_items(const mpm_material_batch *batch) {
   return mpmi_whole_chunks(batch->n);

@@ -9,6 +9,8 @@ static const mpmi_law_param params[] = {
     [HARDENING] = {"hardening", "stress", "slope of the yield stress over the equivalent plastic strain", 0.0,
                    NOT_NEGATIVE}};
 
+static const mpmi_law_state states[] = {{"plastic_strain", "1", "equivalent plastic strain"}};
+
 typedef struct j2_constants {
   mpmi_elastic elastic;
   double yield_initial, hardening; /* yield stress = yield_initial + hardening * plastic strain */
@@ -88,7 +90,7 @@ MPMI_LAW_KERNELS(j2_constants, j2, j2_tangent)
 const mpmi_law KERNEL(law_j2) = {
     .name = "j2",
     MPMI_PARAMS(params),
-    .state_count = 1,
+    MPMI_STATES(states),
     .constants_size = sizeof(j2_constants),
     .prepare = prepare,
     .stress = stress_kernel,

@@ -48,6 +48,22 @@ mpm_status mpm_material_model_param(const char *model, int32_t index, const char
   return MPM_OK;
 }
 
+int32_t mpm_material_state_count(const char *model) {
+  const mpmi_law *law = model ? law_by_name(MPM_ISA_BASELINE, model) : NULL;
+  return law ? law->state_count : -1;
+}
+
+mpm_status mpm_material_state_name(const char *model, int32_t index, const char **name, const char **unit,
+                                   const char **text) {
+  if (!model || index < 0) return MPM_E_ARG;
+  const mpmi_law *law = law_by_name(MPM_ISA_BASELINE, model);
+  if (!law || index >= law->state_count) return MPM_E_NOT_FOUND;
+  if (name) *name = law->state[index].name;
+  if (unit) *unit = law->state[index].unit;
+  if (text) *text = law->state[index].text;
+  return MPM_OK;
+}
+
 /* ---- handles ----------------------------------------------------------------------------------------- */
 static mpm_status refuse_model(mpm_context *context, const char *model) {
   const char *names[MPMI_LAW_COUNT];

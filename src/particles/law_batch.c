@@ -111,10 +111,10 @@ static void look(mpmi_law_batch *b, int64_t p) {
     fault->cause = MPM_NONFINITE, fault->what = "the material's energy is infinite";
 }
 
-mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {
+mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_material *material, int32_t dim) {
   b->fault.cause = MPM_OK;
-  const mpm_status status = mpmi_material_evaluate(set->material, set->grid->dim, &b->batch);
-  if (status || set->material->law) return status;
+  const mpm_status status = mpmi_material_evaluate(material, dim, &b->batch);
+  if (status || material->law) return status;
   /* Whatever the host made of inert slots must not get into sums. */
   for (int64_t p = 0; p < b->batch.n; ++p) {
     if (b->batch.id[p] >= 0) {
@@ -122,8 +122,7 @@ mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_particles *set) {
       continue;
     }
     for (int32_t c = 0; c < 6; ++c) b->stress_new[c * b->ld + p] = 0.0;
-    for (int32_t c = 0; c < set->material->state_count; ++c)
-      b->state_new[c * b->ld + p] = b->state[c * b->ld + p];
+    for (int32_t c = 0; c < material->state_count; ++c) b->state_new[c * b->ld + p] = b->state[c * b->ld + p];
     b->wave_speed[p] = b->viscosity[p] = 0.0;
   }
   return b->fault.cause;

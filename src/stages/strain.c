@@ -140,7 +140,7 @@ void mpmi_strain_law(mpmi_batch *b) {
                        step->dt);
   const int32_t timed = step->profile->sampled && b->batches++ % TIMED_BATCHES == 0;
   const double started = timed ? mpmi_seconds() : 0.0;
-  const mpm_status status = mpmi_law_batch_run(&b->law, b->set);
+  const mpm_status status = mpmi_law_batch_run(&b->law, b->set->material, b->set->grid->dim);
   if (timed) b->report->law_seconds += (double)TIMED_BATCHES * (mpmi_seconds() - started);
   if (b->law.fault.cause) {
     const mpmi_law_fault *fault = &b->law.fault;

@@ -128,6 +128,26 @@ void grids_and_materials() {
   CHECK(j2.size() == 5 && j2[0].name == "E" && j2[0].unit == "stress" && std::isnan(j2[0].value_default));
   CHECK(j2[1].name == "nu" && j2[1].high <= 0.5 && j2[1].high > 0.49 && !j2[1].text.empty());
   CHECK(refused(MPM_E_NOT_FOUND, "j3", [] { mpm::model_parameters("j3"); }));
+  const auto state = mpm::model_state("j2");
+  CHECK(state.size() == 1 && state[0].name == "plastic_strain" && !state[0].unit.empty());
+  CHECK(mpm::model_state("neo_hookean").empty());
+  CHECK(refused(MPM_E_NOT_FOUND, "j3", [] { mpm::model_state("j3"); }));
+  const mpm::material rubber(context, "neo_hookean", {{"E", 1e5}, {"nu", 0.25}, {"density", 1.0}});
+  const double F[9] = {1, 0.5, 0, 0, 1, 0, 0, 0, 1};
+  double stress[6] = {};
+  std::vector<double> tangent(81);
+  mpm_material_batch batch{};
+  batch.n = batch.ld = 1;
+  batch.dt = 1.0;
+  batch.F = batch.F_inc = F;
+  batch.stress = batch.stress_new = stress;
+  rubber.update(batch);
+  CHECK(std::abs(stress[3] - 2e4) < 1e-9); /* mu times the shear */
+  CHECK(rubber.update(batch, tangent) && tangent[0] > 0.0);
+  tangent.pop_back();
+  CHECK(refused(MPM_E_ARG, "tangent has 80 values, must have 81", [&] { rubber.update(batch, tangent); }));
+  batch.state_count = 1;
+  CHECK(refused(MPM_E_ARG, "state_count", [&] { rubber.update(batch); }));
   mpm::law law;
   law.density = 1.0;
   CHECK(refused(MPM_E_ARG, "stress", [&] { mpm::material m(context, law); }));

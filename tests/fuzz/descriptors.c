@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "fuzz.h"
+#include "material/material.h"
 
 enum { I32, I64, F64 };
 typedef struct member {
@@ -129,6 +130,45 @@ static mpm_material *built_in(fuzz_input *in, mpm_context *context) {
   mpm_material *material = NULL;
   fuzz_status(context, mpm_material_create(context, model, param, count, &material));
   return material;
+}
+
+/* A step or two of particles without a grid, of any size and with anything missing. */
+static void drive(fuzz_input *in, mpm_context *context, const mpm_material *material) {
+  enum { MOST = 70, STATE = 64 };
+  static double F[9 * MOST], F_inc[9 * MOST], stress[6 * MOST], state[STATE * MOST], energy[MOST],
+      c[81 * MOST];
+  static int64_t id[MOST];
+  mpm_material_batch b = {.struct_size = fuzz_below(in, 16) ? sizeof b : (uint32_t)fuzz_below(in, sizeof b),
+                          .state_count = material ? material->state_count : 0,
+                          .n = fuzz_below(in, MOST + 1),
+                          .ld = MOST,
+                          .dt = fuzz_below(in, 4) ? 0.25 : fuzz_double(in),
+                          .F = F,
+                          .F_inc = F_inc,
+                          .stress = stress,
+                          .state = state,
+                          .stress_new = stress,
+                          .state_new = state,
+                          .energy = energy};
+  memset(state, 0, sizeof state);
+  for (int64_t i = 0; i < MOST; ++i) id[i] = i;
+  for (int32_t e = 0; e < 9; ++e)
+    for (int64_t i = 0; i < MOST; ++i) F[e * MOST + i] = F_inc[e * MOST + i] = e % 4 ? 0.0 : 1.0;
+  for (int32_t changes = fuzz_below(in, 9); changes > 0; --changes) {
+    double *const of[] = {F, F_inc, stress, state};
+    of[fuzz_below(in, 4)][fuzz_below(in, 6 * MOST)] +=
+        fuzz_below(in, 4) ? fuzz_between(in, -0.5, 0.5) : fuzz_double(in);
+  }
+  if (fuzz_below(in, 4) == 0) b.id = id, id[fuzz_below(in, MOST)] = fuzz_integer(in);
+  if (fuzz_below(in, 16) == 0) b.n = fuzz_integer(in), b.ld = b.n > MOST ? b.n - 1 : MOST;
+  if (fuzz_below(in, 16) == 0) b.stress = NULL;
+  if (fuzz_below(in, 16) == 0) b.state_count = fuzz_below(in, 4);
+  int32_t symmetric = 0;
+  for (int32_t step = 0; step < 2; ++step) {
+    const mpm_status status = mpm_material_update(material, &b, fuzz_below(in, 2) ? c : NULL, &symmetric);
+    fuzz_status(context, status);
+    for (int64_t i = 0; i < b.n && !status; ++i) MUST(isfinite(stress[i]) || (b.id && id[i] < 0));
+  }
 }
 
 static mpm_context *open_context(fuzz_input *in, fuzz_memory *memory) {
@@ -266,6 +306,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   w.material = fuzz_below(&in, 3) ? built_in(&in, w.context) : custom(&in, w.context, &l);
   if (w.material) {
     use_material(&in, &w);
+    drive(&in, w.context, w.material);
     MUST(!mpm_material_destroy(w.material));
   }
   fuzz_close(w.context, &memory);

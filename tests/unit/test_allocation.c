@@ -3,6 +3,7 @@
  * allocated. */
 #include "body.h"
 #include "context/context.h"
+#include "material/material.h"
 
 enum { STEPS = 15, SAVED_AT = 6 };
 
@@ -62,6 +63,21 @@ static mpm_status add_part(script *s) {
   const int64_t id = 100000;
   x[0] = s->r.dim == 2 ? 1.2 : 0.2;
   return mpm_particles_add(s->r.set[0], 1, x, v, &volume, NULL, &id, NULL);
+}
+static mpm_status law_part(script *s) {
+  double F[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, stress[6] = {0.0}, state[2] = {0.0}, c[81];
+  const mpm_material_batch batch = {.struct_size = sizeof batch,
+                                    .state_count = s->r.material[0]->state_count,
+                                    .n = 1,
+                                    .ld = 1,
+                                    .dt = 1.0,
+                                    .F = F,
+                                    .F_inc = F,
+                                    .stress = stress,
+                                    .state = state,
+                                    .stress_new = stress,
+                                    .state_new = state};
+  return mpm_material_update(s->r.material[0], &batch, c, NULL);
 }
 static mpm_status references_part(script *s) {
   mpm_stepper_desc d = body_stepper(&s->r);
@@ -124,6 +140,7 @@ static int64_t tell(const body_desc *o, int64_t fail_at, uint64_t *hash, int32_t
     if (i == SAVED_AT) play(&s, load_part);
     if (i == 8) play(&s, add_part);
     if (i == 9) play(&s, references_part);
+    if (i == 10) play(&s, law_part);
     if (i == 11) play(&s, write_part);
   }
   const int64_t calls = s.r.memory.calls;
