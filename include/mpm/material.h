@@ -27,11 +27,14 @@ extern "C" {
  * |                         | viscosity, tension                      | (J^-gamma - 1), dynamic viscosity;  |
  * |                         |                                         | tension 0 cuts off p < 0            |
  * | "rigid"                 | density                                 | no stress; moves as prescribed      |
+ * | "drucker_prager"        | E, nu, density, phi, psi, cohesion,     | elastic in the logarithmic strain;  |
+ * |                         | cone, tension_cutoff, hardening,        | yields at q = M p + k: sand, gravel |
+ * |                         | cohesion_residual, close_gaps           | and other soils; opens in tension   |
  *
  * params are count pairs of name and value in any order, which are copied; parameters that are not named take
  * their defaults. mpm_material_model_param() lists units, defaults and ranges. *out is NULL unless MPM_OK is
  * returned. MPM_E_NOT_FOUND: there is no such model or parameter. MPM_E_ARG: a value is out of range, a name
- * is given twice, or a parameter without default is missing.
+ * is given twice, values do not go together, or a parameter without default is missing.
  */
 MPM_API mpm_status mpm_material_create(mpm_context *context, const char *model, const mpm_param *params,
                                        int32_t count, mpm_material **out);

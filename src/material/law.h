@@ -39,6 +39,8 @@ typedef struct mpmi_law {
   int32_t kinematics;    /* MPMI_F_... */
   /* The kernels work with constants that `prepare` makes from the values of the parameters: a struct of
    * doubles, all of which must be finite. A law without constants has 0 and NULL here. */
+  const char *(*check)(
+      const double *value); /* what is wrong with the parameters together; NULL: nothing is */
   size_t constants_size;
   void (*prepare)(const double *value, void *constants);
   mpmi_law_fn stress;

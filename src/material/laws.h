@@ -12,7 +12,8 @@
   LAW(j2)                                                                                                    \
   LAW(neo_hookean_decoupled)                                                                                 \
   LAW(newtonian_fluid)                                                                                       \
-  LAW(rigid)
+  LAW(rigid)                                                                                                 \
+  LAW(drucker_prager)
 
 #define MPMI_LAW_PLACE(name)   MPMI_LAW_##name,
 #define MPMI_DECLARE_LAW(name) MPMI_DECLARE_TABLES(mpmi_law, mpmi_law_##name);

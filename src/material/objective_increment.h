@@ -13,6 +13,18 @@
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
 
+/* Returns ln V in the plane for V V = I + e, with det(V V) and half the trace of ln V. With the eigenvalues
+ * m + d and m - d of e, ln V = half_trace I + s (e - m I) with s = 1/(4 d) ln((1 + m + d) / (1 + m - d)). The
+ * tiny number keeps d from 0 without changing s. */
+MPMI_INLINE mpmi_sym mpmi_log_stretch_2d(mpmi_sym e, double square, double half_trace) {
+  double m = 0.5 * (e.xx + e.yy), h = 0.5 * (e.xx - e.yy);
+  double d = sqrt((h * h + e.xy * e.xy) + 1e-60);
+  double ratio_minus_1 = 2.0 * d * (1.0 + m + d) / square;
+  double slope = 0.25 * mpmi_lane_log1p(ratio_minus_1) / d;
+  mpmi_sym log_v = {half_trace + slope * h, half_trace - slope * h, 0.0, slope * e.xy, 0.0, 0.0};
+  return log_v;
+}
+
 /* Does what mpmi_log_increment() does, in 2-D. */
 MPMI_INLINE mpmi_sym mpmi_increment_2d(mpmi_mat g, mpmi_sym *stress) {
   /* V is symmetric when R turns by the angle whose cosine and sine are as along and across. Written as a
@@ -25,16 +37,9 @@ MPMI_INLINE mpmi_sym mpmi_increment_2d(mpmi_mat g, mpmi_sym *stress) {
   stress->yy += shift;
   stress->xy += turn * (along * half - across * shear);
 
-  /* e = V V - I has the eigenvalues m + d and m - d, and ln V = a I + s (e - m I) with a = 1/2 ln det V and
-   * s = 1/(4 d) ln((1 + m + d) / (1 + m - d)). The tiny number keeps d from 0 without changing s. */
-  mpmi_sym e = mpmi_left_cauchy_green_minus_1(2, g);
-  double m = 0.5 * (e.xx + e.yy), h = 0.5 * (e.xx - e.yy);
-  double d = sqrt((h * h + e.xy * e.xy) + 1e-60);
   double det_minus_1 = mpmi_det_minus_1(2, g), det = 1.0 + det_minus_1;
-  double ratio_minus_1 = 2.0 * d * (1.0 + m + d) / (det * det);
-  double slope = 0.25 * mpmi_lane_log1p(ratio_minus_1) / d, half_trace = 0.5 * mpmi_lane_log1p(det_minus_1);
-  mpmi_sym log_v = {half_trace + slope * h, half_trace - slope * h, 0.0, slope * e.xy, 0.0, 0.0};
-  return log_v;
+  return mpmi_log_stretch_2d(mpmi_left_cauchy_green_minus_1(2, g), det * det,
+                             0.5 * mpmi_lane_log1p(det_minus_1));
 }
 
 /* Returns R S R^T. */

@@ -9,7 +9,7 @@
 
 enum { FULL = 3, TANGENT_ROWS = 81 };
 
-/* ---- what the caller gave ------------------------------------------------------------------------------- */
+/* ---- what the caller gave ----------------------------------------------------------------------------- */
 typedef struct mpmi_given_row {
   const char *name;
   const void *data;
@@ -76,7 +76,7 @@ static mpm_status check_items(const mpm_material *material, const mpm_material_b
   return MPM_OK;
 }
 
-/* ---- a portion ------------------------------------------------------------------------------------------ */
+/* ---- a portion ---------------------------------------------------------------------------------------- */
 /* Items from `begin` on, as many as the buffers hold. */
 typedef struct mpmi_portion {
   const mpm_material *material;
@@ -181,7 +181,7 @@ static mpm_status run(mpmi_portion *p, double *tangent, int32_t *symmetric) {
   return MPM_OK;
 }
 
-/* ---- all of them ---------------------------------------------------------------------------------------- */
+/* ---- all of them -------------------------------------------------------------------------------------- */
 static size_t bytes_of_ids(int64_t ld) {
   return mpmi_bytes(ld, sizeof(int64_t));
 }

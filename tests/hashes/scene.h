@@ -5,7 +5,7 @@
 
 #include <mpm/mpm.h>
 
-/* Laws of a set; the last two are the host's. */
+/* Laws of a set. */
 enum {
   LAW_NONE,
   LAW_NEO_HOOKEAN,
@@ -17,6 +17,7 @@ enum {
   LAW_RIGID,
   LAW_HOST,         /* with a state variable and its energy; the library differences its tangent */
   LAW_HOST_TANGENT, /* with a tangent and without an energy */
+  LAW_SOIL,
   LAWS
 };
 

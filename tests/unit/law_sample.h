@@ -19,7 +19,7 @@ typedef struct {
   real m[3][3];
 } tensor;
 
-enum { ITEMS = 32, LD = 48 };
+enum { ITEMS = 32, LD = 48, STATES = 8 };
 
 static const double sample_unset = 7.25e77;
 static const int32_t sym_row[6] = {0, 1, 2, 0, 1, 0}, sym_column[6] = {0, 1, 2, 1, 2, 2};
@@ -147,8 +147,9 @@ static inline tensor random_stress(uint64_t *state, int32_t dim, real size) {
 
 /* ---- a batch ---- */
 typedef struct sample {
-  _Alignas(64) double F[9 * LD], F_inc[9 * LD], L[9 * LD], stress[6 * LD], state[LD];
-  double stress_new[6 * LD], state_new[LD], wave_speed[LD], viscosity[LD], energy[LD];
+  _Alignas(64) double F[9 * LD], F_inc[9 * LD], L[9 * LD], stress[6 * LD];
+  _Alignas(64) double state[STATES * LD], state_new[STATES * LD];
+  double stress_new[6 * LD], wave_speed[LD], viscosity[LD], energy[LD];
   int64_t id[LD];
   mpm_material_batch batch;
 } sample;
@@ -158,14 +159,17 @@ static inline int32_t stress_exists(int32_t dim, int c) {
 }
 
 static inline void sample_clear(sample *s, double dt) {
-  double *inputs[] = {s->F, s->F_inc, s->L}, *outputs[] = {s->state_new, s->wave_speed, s->energy};
+  double *inputs[] = {s->F, s->F_inc, s->L}, *outputs[] = {s->wave_speed, s->energy};
   for (int i = 0; i < LD; ++i) {
     for (int a = 0; a < 3; ++a)
       for (int c = 0; c < 9; ++c) inputs[a][c * LD + i] = i < ITEMS ? (c % 4 == 0 && a < 2) : (double)NAN;
     for (int c = 0; c < 6; ++c) s->stress[c * LD + i] = (double)NAN;
     for (int c = 0; c < 6; ++c) s->stress_new[c * LD + i] = sample_unset;
-    for (int a = 0; a < 3; ++a) outputs[a][i] = sample_unset;
-    s->state[i] = i < ITEMS ? 0.0 : (double)NAN;
+    for (int a = 0; a < 2; ++a) outputs[a][i] = sample_unset;
+    for (int c = 0; c < STATES; ++c) {
+      s->state_new[c * LD + i] = sample_unset;
+      s->state[c * LD + i] = i < ITEMS ? 0.0 : (double)NAN;
+    }
     s->viscosity[i] = 0.0;
     s->id[i] = i;
   }

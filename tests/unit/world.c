@@ -131,7 +131,10 @@ mpm_status law_create(mpm_context *context, const world_law *of, mpm_material **
                              {"mu", of->E / (2.0 * (1.0 + of->nu))},
                              {"kappa", of->E / (3.0 * (1.0 - 2.0 * of->nu))},
                              {"bulk_modulus", of->E},
-                             {"viscosity", 1e-2 * of->E}};
+                             {"viscosity", 1e-2 * of->E},
+                             {"phi", 25.0},
+                             {"psi", 5.0},
+                             {"cohesion", of->yield_stress}};
   mpm_param given[sizeof known / sizeof *known];
   int32_t count = 0;
   const char *name;

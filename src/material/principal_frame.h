@@ -1,0 +1,155 @@
+/* The frame of laws whose elasticity is linear in the logarithmic strain (Hencky) and whose stress is the
+ * state: the return of Simo (1992) in principal directions. With tau = J stress and F_inc of the step,
+ *
+ *   tau_old -> e = elastic strain of tau_old -> b = exp(2 e) -> b_trial = F_inc b F_inc^T -> 1/2 ln b_trial,
+ *
+ * from which the law returns to its yield surface. All of it is in terms of b - I and F_inc - I, so that
+ * small steps keep their digits. */
+#ifndef MPMI_PRINCIPAL_FRAME_H
+#define MPMI_PRINCIPAL_FRAME_H
+
+#include "material/elastic_constants.h"
+#include "material/objective_increment.h"
+
+typedef struct mpmi_hencky {
+  double bulk, mu, density_inverse;
+  double by_mean, by_deviator; /* 1 / (3 bulk), 1 / (2 mu): strain of a mean stress, of a deviator */
+  double p_wave;               /* bulk + 4/3 mu */
+} mpmi_hencky;
+
+/* For a law that has PARAMS_ELASTIC first. */
+static inline mpmi_hencky mpmi_hencky_of(const double *value) {
+  const double E = value[0], nu = value[1], density = value[2];
+  const double mu = E / (2.0 * (1.0 + nu)), bulk = E / (3.0 * (1.0 - 2.0 * nu));
+  mpmi_hencky c = {.bulk = bulk,
+                   .mu = mu,
+                   .density_inverse = 1.0 / density,
+                   .by_mean = 1.0 / (3.0 * bulk),
+                   .by_deviator = 1.0 / (2.0 * mu),
+                   .p_wave = bulk + mpmi_rounded(4.0 / 3.0 * mu)};
+  return c;
+}
+
+/* ---- functions of a symmetric tensor ------------------------------------------------------------------ */
+/* Returns exp(2 e) - I. */
+MPMI_INLINE mpmi_sym mpmi_exp_twice_3d(mpmi_sym e) {
+  mpmi_eigenvalue_nodes n = mpmi_eigenvalues(e);
+  mpmi_sym q = mpmi_quadratic(e, n);
+  double f1 = mpmi_lane_expm1(2.0 * n.l1);
+  double f12 = mpmi_lane_exp(2.0 * n.l2) * (mpmi_lane_expm1(2.0 * n.d12) / n.d12);
+  double f23 = mpmi_lane_exp(2.0 * n.l3) * (mpmi_lane_expm1(2.0 * n.d23) / n.d23);
+  return mpmi_interpolated(e, q, n.l1, f1, f12, (f12 - f23) / n.d13);
+}
+
+/* With the eigenvalues m + d and m - d of 2 e in the plane: exp(m) (cosh d I + sinh d / d (2 e - m I)). */
+MPMI_INLINE mpmi_sym mpmi_exp_twice_2d(mpmi_sym e) {
+  double m = e.xx + e.yy, h = e.xx - e.yy, shear = 2.0 * e.xy;
+  double d = sqrt((h * h + shear * shear) + 1e-60), of_m = mpmi_lane_expm1(m), of_d = mpmi_lane_expm1(d);
+  double exp_m = 1.0 + of_m, inverse = 1.0 / (1.0 + of_d);
+  double cosh_minus_1 = 0.5 * of_d * of_d * inverse, sinh = 0.5 * (of_d + of_d * inverse);
+  double mean = of_m + exp_m * cosh_minus_1, slope = exp_m * (sinh / d);
+  mpmi_sym b = {mean + slope * h, mean - slope * h, mpmi_lane_expm1(2.0 * e.zz), slope * shear, 0.0, 0.0};
+  return b;
+}
+
+MPMI_INLINE mpmi_sym mpmi_exp_twice(int dim, mpmi_sym e) {
+  if (dim == 3) return mpmi_exp_twice_3d(e);
+  if (dim == 2) return mpmi_exp_twice_2d(e);
+  mpmi_sym b = {
+      mpmi_lane_expm1(2.0 * e.xx), mpmi_lane_expm1(2.0 * e.yy), mpmi_lane_expm1(2.0 * e.zz), 0.0, 0.0, 0.0};
+  return b;
+}
+
+/* Returns 1/2 ln(I + b). */
+MPMI_INLINE mpmi_sym mpmi_half_log(int dim, mpmi_sym b) {
+  mpmi_sym e = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (dim == 3) {
+    mpmi_eigenvalue_nodes n = mpmi_eigenvalues(b);
+    return mpmi_log_stretch(b, mpmi_quadratic(b, n), n);
+  }
+  if (dim == 2) {
+    double square_minus_1 = (b.xx + b.yy) + (b.xx * b.yy - b.xy * b.xy);
+    e = mpmi_log_stretch_2d(b, 1.0 + square_minus_1, 0.25 * mpmi_lane_log1p(square_minus_1));
+    e.zz = 0.5 * mpmi_lane_log1p(b.zz);
+    return e;
+  }
+  e.xx = 0.5 * mpmi_lane_log1p(b.xx);
+  e.yy = 0.5 * mpmi_lane_log1p(b.yy);
+  e.zz = 0.5 * mpmi_lane_log1p(b.zz);
+  return e;
+}
+
+/* Returns F (I + b) F^T - I with F = I + g. */
+MPMI_INLINE mpmi_sym mpmi_pushed_forward(int dim, mpmi_mat g, mpmi_sym b) {
+  mpmi_sym e = mpmi_left_cauchy_green_minus_1(dim, g), c;
+  mpmi_mat f = {1.0 + g.xx, g.xy, g.xz, g.yx, 1.0 + g.yy, g.yz, g.zx, g.zy, 1.0 + g.zz};
+  if (dim == 3) {
+    c = mpmi_turned(f, b);
+    mpmi_sym sum = {e.xx + c.xx, e.yy + c.yy, e.zz + c.zz, e.xy + c.xy, e.yz + c.yz, e.xz + c.xz};
+    return sum;
+  }
+  c = b;
+  c.xx = f.xx * f.xx * b.xx + e.xx;
+  if (dim == 1) return c;
+  double x = f.xx * b.xx + f.xy * b.xy, y = f.xx * b.xy + f.xy * b.yy;
+  double z = f.yx * b.xx + f.yy * b.xy, w = f.yx * b.xy + f.yy * b.yy;
+  c.xx = (x * f.xx + y * f.xy) + e.xx;
+  c.yy = (z * f.yx + w * f.yy) + e.yy;
+  c.xy = (x * f.yx + y * f.yy) + e.xy;
+  return c;
+}
+
+/* ---- the trial state and outputs ----------------------------------------------------------------------- */
+/* Holds what the trial state needs. It is read before the loop, so that the compiler sees that no store
+ * changes it. */
+typedef struct mpmi_frame {
+  mpmi_hencky c;
+  const double *F, *L, *stress;
+  int64_t ld;
+  double dt;
+} mpmi_frame;
+
+MPMI_INLINE mpmi_frame mpmi_frame_of(const mpmi_hencky *c, const mpm_material_batch *batch) {
+  mpmi_frame in = {*c, batch->F, batch->L, batch->stress, batch->ld, batch->dt};
+  return in;
+}
+
+MPMI_INLINE double mpmi_frame_J(int dim, mpmi_frame in, int64_t i) {
+  return 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, in.F, in.ld, i));
+}
+
+/* Returns b_trial - I; J is det F at the end of the step. */
+MPMI_INLINE mpmi_sym mpmi_trial_b(int dim, mpmi_frame in, int64_t i, double J) {
+  mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, i, 0.0, in.dt);
+  double J_old = J / (1.0 + mpmi_det_minus_1(dim, g)), mean;
+  mpmi_sym d = mpmi_deviator(mpmi_load_sym(dim, in.stress, in.ld, i), &mean);
+  double volume = J_old * in.c.by_mean * mean, shape = J_old * in.c.by_deviator;
+  mpmi_sym e = {volume + shape * d.xx, volume + shape * d.yy, volume + shape * d.zz,
+                shape * d.xy,          shape * d.yz,          shape * d.xz};
+  return mpmi_pushed_forward(dim, g, mpmi_exp_twice(dim, e));
+}
+
+MPMI_INLINE mpmi_sym mpmi_trial_strain(int dim, mpmi_frame in, int64_t i, double J) {
+  return mpmi_half_log(dim, mpmi_trial_b(dim, in, i, J));
+}
+
+/* Computes the speed of the fastest elastic wave, whose stiffness is bulk + 4/3 mu less the smallest
+ * principal stress, which is at least -p - 2/3 q; and the energy of the elastic strain that belongs to
+ * the stress. */
+MPMI_INLINE void mpmi_frame_outputs(int dim, const mpmi_hencky *c, const mpm_material_batch *batch) {
+  const double p_wave = c->p_wave, density_inverse = c->density_inverse;
+  const double by_mean = 1.5 * c->by_mean, by_deviator = 0.5 * c->by_deviator;
+  const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
+  const double *deformation = batch->F, *stress = batch->stress_new;
+  double *wave_speed = batch->wave_speed, *energy = batch->energy;
+  MPMI_IVDEP
+  for (int64_t i = 0; i < n; ++i) {
+    double J = 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, deformation, ld, i)), mean;
+    double square = mpmi_square(mpmi_deviator(mpmi_load_sym(dim, stress, ld, i), &mean));
+    double pressed = J * (sqrt((2.0 / 3.0) * square) - mean);
+    wave_speed[i] = sqrt((p_wave + mpmi_max(pressed, 0.0)) * density_inverse);
+    energy[i] = J * J * (by_mean * mean * mean + by_deviator * square);
+  }
+}
+
+#endif

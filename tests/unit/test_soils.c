@@ -1,0 +1,454 @@
+/* Laws of soils: numbers of an independent program for paths without a grid, random states, tangents against
+ * differences of whole steps. */
+#include "simd/elementary.h"
+#include "tangent_sample.h"
+
+/* ---- a path of one particle ---------------------------------------------------------------------------- */
+typedef struct path {
+  mpm_material *material;
+  double F[9], stress[6], state[8], energy, wave, tangent[81];
+} path;
+
+static path path_of(const char *model, const mpm_param *params, int32_t count) {
+  path s = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  s.material = law_material(MPM_ISA_BEST, model, params, count);
+  return s;
+}
+
+static void start(path *s, double mean) {
+  for (int k = 0; k < 9; ++k) s->F[k] = k % 4 == 0;
+  for (int k = 0; k < 6; ++k) s->stress[k] = k < 3 ? mean : 0.0;
+  memset(s->state, 0, sizeof s->state);
+}
+
+static void advance(path *s, const double *F_inc) {
+  double F[9] = {0};
+  for (int i = 0; i < 9; ++i)
+    for (int k = 0; k < 3; ++k) F[i] += F_inc[i / 3 * 3 + k] * s->F[3 * k + i % 3];
+  mpm_material_batch b = {.struct_size = sizeof b,
+                          .state_count = s->material->state_count,
+                          .n = 1,
+                          .ld = 1,
+                          .dt = 1.0,
+                          .F = F,
+                          .F_inc = F_inc,
+                          .stress = s->stress,
+                          .state = s->state,
+                          .stress_new = s->stress,
+                          .state_new = s->state,
+                          .wave_speed = &s->wave,
+                          .energy = &s->energy};
+  ck_ok(s->material->context, mpm_material_update(s->material, &b, s->tangent, NULL));
+  memcpy(s->F, F, sizeof F);
+}
+
+static void stretch(path *s, double x, double y, double z) {
+  advance(s, (const double[]){mpmi_exp(x), 0, 0, 0, mpmi_exp(y), 0, 0, 0, mpmi_exp(z)});
+}
+
+static void shear(path *s, double by, int32_t steps) {
+  for (int32_t i = 0; i < steps; ++i) advance(s, (const double[]){1, by / steps, 0, 0, 1, 0, 0, 0, 1});
+}
+
+static double jacobian_of(const path *s) {
+  return s->F[0] * (s->F[4] * s->F[8] - s->F[5] * s->F[7]) -
+         s->F[1] * (s->F[3] * s->F[8] - s->F[5] * s->F[6]) +
+         s->F[2] * (s->F[3] * s->F[7] - s->F[4] * s->F[6]);
+}
+
+/* Compresses along z, with the stress across held where it is: Newton for the strain across. */
+static void triaxial(path *s, double axial, int32_t steps) {
+  const double held = s->stress[0];
+  double across = 0.0;
+  for (int32_t i = 0; i < steps; ++i) {
+    path end = *s;
+    for (int32_t k = 0; k < 50; ++k) {
+      const double h = 1e-7;
+      path more = *s;
+      end = *s;
+      stretch(&end, across, across, axial / steps);
+      stretch(&more, across + h, across + h, axial / steps);
+      if (fabs(end.stress[0] - held) < 1e-9 * fabs(held)) break;
+      across -= (end.stress[0] - held) * h / (more.stress[0] - end.stress[0]);
+    }
+    ck_within("stress across", end.stress[0], held, 1e-8 * fabs(held));
+    *s = end;
+  }
+}
+
+static void ck_number(const char *what, double value, double wanted) {
+  ck_within(what, value, wanted, 1e-9 * fabs(wanted) + 1e-9);
+}
+
+/* ---- drucker_prager ------------------------------------------------------------------------------------ */
+enum { DP_PHI = 3, DP_PSI, DP_C, DP_CONE, DP_T, DP_H, DP_RES, DP_CLOSE, DP_PARAMS };
+typedef struct soil {
+  mpm_param value[DP_PARAMS];
+} soil;
+
+static soil sand(double phi, double psi, double cohesion, double cone) {
+  return (soil){{{"E", 20e6},
+                 {"nu", 0.3},
+                 {"density", 2e3},
+                 {"phi", phi},
+                 {"psi", psi},
+                 {"cohesion", cohesion},
+                 {"cone", cone},
+                 {"tension_cutoff", (double)INFINITY},
+                 {"hardening", 0.0},
+                 {"cohesion_residual", 0.0},
+                 {"close_gaps", 1.0}}};
+}
+static path open_soil(const soil *of) {
+  return path_of("drucker_prager", of->value, DP_PARAMS);
+}
+
+START_TEST(simple_shear) {
+  static const struct {
+    double psi, xx, yy, zz, xy, plastic;
+    int32_t steps;
+  } rows[] = {
+      {0.0, -98238.49957533, -101761.50042467, -100000.0, 70460.01698680, 0.0235744406302, 1},
+      {0.0, -99192.45018236, -100807.54981762, -100000.0, 70477.40588882, 0.0235763129787, 10},
+      {10.0, -206107.33420321, -213431.67449257, -209769.50434788, 146486.80578727, 0.0178664264042, 1},
+      {10.0, -207349.80258418, -212201.39628207, -209775.59943312, 146516.71864538, 0.0178674184592, 10}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+    const soil of = sand(30.0, rows[k].psi, 1e3, 0.0);
+    path s = open_soil(&of);
+    start(&s, -1e5);
+    shear(&s, 0.05, rows[k].steps);
+    ck_number("xx", s.stress[0], rows[k].xx);
+    ck_number("yy", s.stress[1], rows[k].yy);
+    ck_number("zz", s.stress[2], rows[k].zz);
+    ck_number("xy", s.stress[3], rows[k].xy);
+    ck_number("plastic strain", s.state[0], rows[k].plastic);
+    ck_assert(s.state[1] == 0.0);
+    law_material_free(s.material);
+  }
+  /* the rate equations, integrated by tiny steps */
+  static const double rate[2][4] = {{0.0, -99357.96, -100642.04, 70479.1080},
+                                    {10.0, -207549.48, -212004.06, 146520.6818}};
+  for (int32_t k = 0; k < 2; ++k) {
+    const soil of = sand(30.0, rate[k][0], 1e3, 0.0);
+    path s = open_soil(&of);
+    start(&s, -1e5);
+    shear(&s, 0.05, 1000);
+    ck_within("xx", s.stress[0], rate[k][1], 2e-5 * fabs(rate[k][1]));
+    ck_within("yy", s.stress[1], rate[k][2], 2e-5 * fabs(rate[k][2]));
+    ck_within("xy", s.stress[3], rate[k][3], 2e-5 * fabs(rate[k][3]));
+    law_material_free(s.material);
+  }
+}
+END_TEST
+
+/* Sand that is spread opens without stress, and bears again when its volume is back. */
+START_TEST(gaps_close) {
+  static const double by[] = {1.01, 1.01, 0.985, 0.99, 0.999};
+  static const double p[] = {0.0, 0.0, 0.0, 277513.09818, 329321.251911},
+                      at_once[] = {744907.0, 1278223.0, 1333040.0};
+  static const double gap[] = {0.02925099256, 0.05910198512, 0.01376107169, 0.0, 0.0};
+  for (int32_t close = 0; close < 2; ++close) {
+    soil of = sand(30.0, 0.0, 0.0, 0.0);
+    of.value[DP_CLOSE].value = close;
+    path s = open_soil(&of);
+    start(&s, -1e4);
+    for (int32_t k = 0; k < 5; ++k) {
+      stretch(&s, mpmi_ln(by[k]), mpmi_ln(by[k]), mpmi_ln(by[k]));
+      ck_assert(s.stress[0] == s.stress[1] && fabs(s.stress[3]) < 1e-9);
+      if (close) {
+        ck_within("pressure", -s.stress[0], p[k], 1e-10 * 3e5);
+        ck_within("gap", s.state[1], gap[k], 1e-11);
+      } else if (k >= 2) {
+        ck_within("pressure", -s.stress[0], at_once[k - 2], 0.5);
+        ck_assert(s.state[1] == 0.0);
+      }
+    }
+    const double bulk = 20e6 / 1.2, J = jacobian_of(&s);
+    if (close) ck_within("pressure", -s.stress[0], -bulk * (mpmi_ln(J) - 1e4 / bulk) / J, 1e-10 * 3e5);
+    law_material_free(s.material);
+  }
+}
+END_TEST
+
+START_TEST(softening_and_cut_off) {
+  soil of = sand(30.0, 0.0, 1e4, 0.0);
+  of.value[DP_H].value = -2e5;
+  of.value[DP_RES].value = 2e3;
+  path s = open_soil(&of);
+  start(&s, -1e5);
+  shear(&s, 0.05, 50);
+  ck_within("xy", s.stress[3], 75713.91930, 1e-5);
+  ck_within("xx", s.stress[0], -99212.92903, 1e-5);
+  ck_within("plastic strain", s.state[0], 0.023183426, 1e-9);
+  law_material_free(s.material);
+
+  of = sand(30.0, 10.0, 5e3, 0.0);
+  of.value[DP_T].value = 2e3;
+  s = open_soil(&of);
+  start(&s, 0.0);
+  stretch(&s, 0.001, 0.001, 0.001);
+  for (int k = 0; k < 3; ++k) ck_number("tau", s.stress[k] * jacobian_of(&s), 2000.0);
+  ck_within("gap", s.state[1], 0.00288, 1e-12);
+  start(&s, 0.0);
+  stretch(&s, 0.003, 0.0, -0.0028);
+  static const double tau[] = {2783.18740678, -11284.795519627, -24414.912917606};
+  for (int k = 0; k < 3; ++k) ck_number("tau", s.stress[k] * jacobian_of(&s), tau[k]);
+  ck_within("plastic strain", s.state[0], 0.002328409, 1e-9);
+  law_material_free(s.material);
+}
+END_TEST
+
+static void ck_refuses(mpm_context *context, int32_t which, double value, const char *text) {
+  soil of = sand(30.0, 10.0, 1e3, 0.0);
+  mpm_material *m;
+  of.value[which].value = value;
+  ck_refused(context, mpm_material_create(context, "drucker_prager", of.value, DP_PARAMS, &m), MPM_E_ARG,
+             text);
+  ck_assert_ptr_null(m);
+}
+
+START_TEST(parameters_go_together) {
+  mpm_context *context = context_with(1, MPM_ISA_BEST, NULL);
+  ck_refuses(context, DP_PSI, 31.0, "psi must not be larger than phi");
+  ck_refuses(context, DP_RES, 1001.0, "cohesion_residual must not be larger");
+  ck_refuses(context, DP_H, -1e8, "hardening is so negative");
+  ck_refuses(context, DP_CONE, 1.5, "cone = 1.5");
+  ck_refuses(context, DP_PHI, 90.0, "phi = 90");
+  ck_refuses(context, DP_T, -1.0, "tension_cutoff");
+  ck_ok(context, mpm_context_destroy(context));
+}
+END_TEST
+
+/* In triaxial compression the first cone is Mohr-Coulomb, the others are weaker. */
+START_TEST(cones) {
+  static const double strength[] = {-317267.098469, -230338.949965, -225066.315623};
+  for (int32_t cone = 0; cone < 3; ++cone) {
+    const soil of = sand(30.0, 5.0, 5e3, cone);
+    path s = open_soil(&of);
+    start(&s, -1e5);
+    triaxial(&s, -0.05, 20);
+    ck_within("axial stress", s.stress[2], strength[cone], 1e-6 * 3e5);
+    law_material_free(s.material);
+  }
+}
+END_TEST
+
+static int sym_of(int i, int j) {
+  return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
+}
+
+/* ---- random states ------------------------------------------------------------------------------------- */
+enum { RANDOM = 100000, TESTED = 3000 };
+
+static double wide(uint64_t *seed, double low, double high) {
+  return low + (high - low) * (double)(0.5L + 0.5L * uniform(seed));
+}
+
+static soil random_soil(uint64_t *seed) {
+  const double phi = wide(seed, 0.0, 45.0);
+  soil of = sand(phi, wide(seed, 0.0, phi), wide(seed, 0.0, 2e4), floor(wide(seed, 0.0, 2.999)));
+  const double pick = wide(seed, 0.0, 3.0);
+  of.value[1].value = wide(seed, 0.1, 0.45);
+  if (pick > 1.0) of.value[DP_T].value = wide(seed, 0.0, 2e4);
+  if (pick > 2.0) of.value[DP_H].value = wide(seed, -2e5, 2e5);
+  of.value[DP_RES].value = 0.3 * of.value[DP_C].value;
+  return of;
+}
+
+/* A step of a random size from a random stress inside or outside of the yield surface. */
+static void random_step(uint64_t *seed, path *s, double *F_inc) {
+  const real size = uniform(seed) > 0 ? 0.02L : 1e-3L;
+  const tensor g = random_tensor(seed, 3, size), t = random_stress(seed, 3, 5e4L);
+  const double p = wide(seed, -3e4, 2e5);
+  start(s, 0.0);
+  for (int c = 0; c < 6; ++c) s->stress[c] = (double)t.m[sym_row[c]][sym_column[c]] - (c < 3 ? p : 0.0);
+  s->state[0] = wide(seed, 0.0, 0.05);
+  s->state[1] = wide(seed, -0.01, 0.01);
+  if (s->state[1] < 0.0) s->state[1] = 0.0;
+  for (int c = 0; c < 9; ++c) F_inc[c] = (double)((c % 4 == 0) + g.m[c / 3][c % 3]);
+}
+
+typedef struct invariants {
+  double p, q;
+} invariants;
+static invariants invariants_of(const path *s) {
+  const double J = jacobian_of(s), p = -J * (s->stress[0] + s->stress[1] + s->stress[2]) / 3.0;
+  double square = 0.0;
+  for (int c = 0; c < 6; ++c) square += (c < 3 ? 1.0 : 2.0) * pow(J * s->stress[c] + (c < 3 ? p : 0.0), 2.0);
+  return (invariants){p, sqrt(1.5 * square)};
+}
+
+/* The yield surface is met, nothing bears more tension than it may, and state grows as it must. */
+START_TEST(random_states_yield) {
+  static const double pi = 3.14159265358979323846;
+  uint64_t seed = 17;
+  int32_t seen[3] = {0, 0, 0};
+  for (int32_t round = 0; round < RANDOM / 500; ++round) {
+    const soil of = random_soil(&seed);
+    const double s30 = sin(of.value[DP_PHI].value * pi / 180), cone = of.value[DP_CONE].value;
+    const double c30 = cos(of.value[DP_PHI].value * pi / 180), t30 = s30 / c30,
+                 r30 = sqrt(9 + 12 * t30 * t30);
+    const double M = cone > 1.5 ? 3 * sqrt(3.0) * t30 / r30 : 6 * s30 / (3 + (cone > 0.5 ? s30 : -s30));
+    const double kappa = cone > 1.5 ? 3 * sqrt(3.0) / r30 : 6 * c30 / (3 + (cone > 0.5 ? s30 : -s30));
+    path s = open_soil(&of);
+    for (int32_t k = 0; k < 500; ++k) {
+      double F_inc[9];
+      random_step(&seed, &s, F_inc);
+      const double plastic = s.state[0], H = of.value[DP_H].value;
+      advance(&s, F_inc);
+      const invariants now = invariants_of(&s);
+      const double cohesion = fmax(of.value[DP_C].value + H * s.state[0], of.value[DP_RES].value);
+      const double before = fmax(of.value[DP_C].value + H * plastic, of.value[DP_RES].value);
+      const double scale = 1e-11 * (fabs(now.p) + now.q + 1e5);
+      const int32_t open = s.state[1] > 0.0;
+      ck_holds(now.q - M * now.p <= kappa * fmax(cohesion, open ? before : 0.0) + scale);
+      ck_holds(now.p >= -of.value[DP_T].value - scale);
+      ck_holds(s.state[0] >= plastic && s.state[1] >= 0.0 && s.energy >= 0.0 && s.wave > 0.0);
+      if (s.state[0] > plastic && !open)
+        ck_within("yield", now.q - M * now.p, kappa * cohesion, scale + 1e-6 * (double)(now.q < 1e-6));
+      ++seen[open ? 2 : s.state[0] > plastic];
+    }
+    law_material_free(s.material);
+  }
+  for (int k = 0; k < 3; ++k) ck_assert_int_gt(seen[k], RANDOM / 50);
+}
+END_TEST
+
+/* A frame that turns with the end of the step turns the stress and nothing else. */
+START_TEST(frames) {
+  uint64_t seed = 19;
+  for (int32_t k = 0; k < 500; ++k) {
+    const soil of = random_soil(&seed);
+    path s = open_soil(&of), turned;
+    double F_inc[9], other[9] = {0};
+    const tensor q = random_rotation(&seed, 3);
+    random_step(&seed, &s, F_inc);
+    turned = s;
+    for (int c = 0; c < 9; ++c)
+      for (int i = 0; i < 3; ++i) other[c] += (double)q.m[c / 3][i] * F_inc[3 * i + c % 3];
+    advance(&s, F_inc);
+    advance(&turned, other);
+    tensor t = {{{0}}};
+    for (int c = 0; c < 9; ++c) t.m[c / 3][c % 3] = s.stress[sym_of(c / 3, c % 3)];
+    t = multiply(q, multiply(t, transpose(q)));
+    for (int c = 0; c < 6; ++c)
+      ck_within("turned", turned.stress[c], (double)t.m[sym_row[c]][sym_column[c]], 1e-7);
+    for (int c = 0; c < 2; ++c) ck_within("state", turned.state[c], s.state[c], 1e-13);
+    law_material_free(s.material);
+  }
+}
+END_TEST
+
+/* Plane and uniaxial strain are what space makes of them, on every instruction set. */
+START_TEST(dimensions) {
+  const int32_t dim = loop_dim(_i);
+  const soil of = sand(30.0, 10.0, 2e3, 2.0);
+  mpm_material *m = law_material(loop_isa(_i), "drucker_prager", of.value, DP_PARAMS);
+  if (!m || dim == 3) {
+    if (m) law_material_free(m);
+    return;
+  }
+  static tangent_batch flat, full;
+  uint64_t seed = 20;
+  for (int32_t round = 0; round < 50; ++round) {
+    sample_clear(&flat.s, 0.5);
+    sample_clear(&full.s, 0.5);
+    for (int i = 0; i < ITEMS; ++i) {
+      const tensor g = random_tensor(&seed, dim, i % 2 ? 1e-2L : 1e-4L), f = combine(1, identity(), 1, g);
+      const tensor t = random_stress(&seed, dim, 3e4L);
+      sample *const both[2] = {&flat.s, &full.s};
+      for (int k = 0; k < 2; ++k) {
+        sample_set_increment(both[k], i, g, f);
+        sample_set_stress(both[k], k ? 3 : dim, i, t);
+        both[k]->state[LD + i] = i % 5 ? 0.0 : 1e-3;
+      }
+    }
+    tangent_run(&flat, m, dim);
+    tangent_run(&full, m, 3);
+    for (int i = 0; i < ITEMS; ++i) {
+      ck_holds(sample_error(&flat.s, dim, i, sample_stress(&full.s, 3, i)) <= 1e-7L);
+      for (int c = 0; c < 2; ++c)
+        ck_within("state", flat.s.state_new[c * LD + i], full.s.state_new[c * LD + i], 1e-14);
+      ck_within("wave", flat.s.wave_speed[i], full.s.wave_speed[i], 1e-11 * full.s.wave_speed[i]);
+      ck_within("energy", flat.s.energy[i], full.s.energy[i], 1e-7);
+      for (int row = 0; row < 81; ++row)
+        if (flat.c[row * LD + i] != sample_unset)
+          ck_within("tangent", flat.c[row * LD + i], full.c[row * LD + i], 1e-7 * 4e7);
+    }
+  }
+  law_material_free(m);
+}
+END_TEST
+
+/* c by differences of fourth order of the Kirchhoff stress over F_inc, and whether all of these steps end in
+ * one regime. */
+static double tangent_off(const path *from, const double *F_inc, int32_t *smooth) {
+  static const double at[4] = {-2.0, -1.0, 1.0, 2.0}, by[4] = {1.0, -8.0, 8.0, -1.0};
+  const double h = 1e-6, most = 4e7;
+  path end = *from;
+  advance(&end, F_inc);
+  const double J = jacobian_of(&end);
+  const int32_t yields = end.state[0] > from->state[0], open = end.state[1] > 0.0;
+  double worst = 0.0;
+  *smooth = 1;
+  for (int kl = 0; kl < 9; ++kl) {
+    const int k = kl / 3, l = kl % 3;
+    double slope[6] = {0.0};
+    for (int side = 0; side < 4; ++side) {
+      double G[9];
+      path other = *from;
+      memcpy(G, F_inc, sizeof G);
+      for (int c = 0; c < 3; ++c) G[3 * k + c] += at[side] * h * F_inc[3 * l + c];
+      advance(&other, G);
+      for (int c = 0; c < 6; ++c) slope[c] += by[side] / (12.0 * h) * jacobian_of(&other) * other.stress[c];
+      if ((other.state[0] > from->state[0]) != yields || (other.state[1] > 0.0) != open) *smooth = 0;
+    }
+    for (int ij = 0; ij < 9; ++ij) {
+      const int i = ij / 3, j = ij % 3;
+      double wanted = slope[sym_of(i, j)];
+      if (i == k) wanted -= J * end.stress[sym_of(j, l)];
+      if (j == k) wanted -= J * end.stress[sym_of(i, l)];
+      worst = fmax(worst, fabs(end.tangent[9 * ij + kl] - wanted) / most);
+    }
+  }
+  return worst;
+}
+
+START_TEST(random_tangents) {
+  uint64_t seed = 18;
+  int32_t compared = 0;
+  double worst = 0.0;
+  for (int32_t k = 0; k < TESTED; ++k) {
+    const soil of = random_soil(&seed);
+    path s = open_soil(&of);
+    double F_inc[9];
+    int32_t smooth;
+    random_step(&seed, &s, F_inc);
+    const double off = tangent_off(&s, F_inc, &smooth);
+    if (smooth) {
+      worst = fmax(worst, off);
+      ++compared;
+    }
+    law_material_free(s.material);
+  }
+  ck_assert_int_gt(compared, TESTED * 9 / 10);
+  ck_between("tangent", worst, 0.0, 1e-8);
+}
+END_TEST
+
+Suite *soils_suite(void) {
+  Suite *suite = suite_create("soils");
+  TCase *tc = tcase_create("drucker_prager");
+  tcase_set_timeout(tc, 60.0);
+  tcase_add_test(tc, simple_shear);
+  tcase_add_test(tc, gaps_close);
+  tcase_add_test(tc, softening_and_cut_off);
+  tcase_add_test(tc, parameters_go_together);
+  tcase_add_test(tc, cones);
+  tcase_add_test(tc, random_states_yield);
+  tcase_add_test(tc, random_tangents);
+  tcase_add_test(tc, frames);
+  tcase_add_loop_test(tc, dimensions, 0, LAW_LOOPS);
+  suite_add_tcase(suite, tc);
+  return suite;
+}
