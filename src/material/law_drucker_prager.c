@@ -157,7 +157,8 @@ MPMI_INLINE void drucker_prager(int dim, const drucker_constants *c, const mpm_m
 MPMI_INLINE void slopes(const drucker_constants *c, const drucker_return *r, const double *n, int p,
                         mpmi_principal *o) {
   const double bulk = c->elastic.bulk, mu = c->elastic.mu, inverse = r->cone ? 1.0 / r->stiffness : 0.0;
-  const double across = sqrt(6.0) * mu * bulk * inverse, cut = !r->elastic && !r->cone && r->keep < 1.0;
+  const double across = sqrt(6.0) * mu * bulk * inverse;
+  const int32_t cut = !r->elastic && !r->cone && r->keep < 1.0;
   double volume = r->elastic ? bulk : r->cone ? bulk - bulk * bulk * c->dilation * c->slope * inverse : 0.0;
   double shear = 2.0 * mu * r->keep;
   double along = r->cone ? 2.0 * mu * (1.0 - 3.0 * mu * inverse - r->keep) : cut ? -shear : 0.0;
