@@ -7,6 +7,8 @@
 
 static const mpm_param parameters[] = {
     {"E", 1.0}, {"nu", 0.3}, {"density", 1.0}, {"yield_stress", 0.02}, {"hardening", 0.1}};
+static const mpm_param of_soil[] = {
+    {"E", 1.0}, {"nu", 0.3}, {"density", 1.0}, {"phi", 20.0}, {"cohesion", 0.01}};
 static const double sound = 1.1602387022306428; /* of the law: sqrt((lambda + 2 mu) / density) */
 
 static double uniform(uint64_t *state) {
@@ -133,8 +135,10 @@ static mpm_status host_law(void *user, const mpm_material_batch *b) {
 
 static mpm_status make_material(bench_scene *scene, const bench_case *of) {
   static double constants[2] = {0.3 / (1.3 * 0.4), 1.0 / 2.6}; /* lambda, mu */
+  if (of->extras != BENCH_HOST_LAW && of->law[0] == 'd')
+    return mpm_material_create(scene->context, of->law, of_soil, 5, &scene->material);
   if (of->extras != BENCH_HOST_LAW)
-    return mpm_material_create(scene->context, of->law, parameters, of->law[0] == 'j' ? 5 : 3,
+    return mpm_material_create(scene->context, of->law, parameters, bench_yields(of) ? 5 : 3,
                                &scene->material);
   mpm_material_desc desc;
   mpm_material_desc_init(&desc, sizeof desc);
@@ -280,13 +284,17 @@ double bench_flops(const bench_case *of) {
   return scatter + gather + 2.0 * 22.0 * d + d * (d + 4.0) + 2.0 * d * d * d + 14.0 + 30.0 * d + 40.0;
 }
 
+int32_t bench_yields(const bench_case *of) {
+  return of->law[0] == 'j' || of->law[0] == 'd';
+}
+
 /* P2G reads x, v, m, V, stress (and C); G2P reads x, v, F, m, V0 and writes x, v, F, V, stress (and C); MUSL
  * and USF, XPIC and the remedy read and write some of it again. */
 double bench_bytes(const bench_case *of) {
   const int32_t d = of->dim, F = d == 1 ? 1 : d == 2 ? 5 : 9, stress = d == 1 ? 3 : d == 2 ? 4 : 6;
   int32_t values = (2 * d + 2 + stress) + (2 * d + F + 2) + (2 * d + F + 1 + stress);
   if (is_affine(of)) values += 2 * d * d;
-  if (of->law[0] == 'j') values += stress + 2;
+  if (bench_yields(of)) values += stress + (of->law[0] == 'j' ? 2 : 4);
   if (of->scheme != MPM_USL) values += 2 * d + 1 + d;
   if (of->transfer == MPM_XPIC) values += 3 * (2 * d);
   if (of->extras == BENCH_REMEDY) values += d + 3;

@@ -55,5 +55,7 @@ double bench_flops(const bench_case *of);
 /* Nodes in the stencil of a particle. */
 double bench_nodes(const bench_case *of);
 double bench_bytes(const bench_case *of);
+/* Returns 1 for a plastic law. */
+int32_t bench_yields(const bench_case *of);
 
 #endif

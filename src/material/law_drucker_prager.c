@@ -38,6 +38,7 @@ typedef struct drucker_constants {
   double cutoff;            /* largest mean tension that is borne, DBL_MAX without a limit */
   double apex, apex_beyond; /* mean tension at the apex: apex * k + apex_beyond */
   double perfect;           /* 3 mu + bulk M M_psi */
+  double hard;              /* kappa * hardening */
   double closes;
 } drucker_constants;
 
@@ -65,6 +66,7 @@ static void prepare(const double *value, void *constants) {
   c->apex = c->slope > 0.0 ? 1.0 / c->slope : 0.0;
   c->apex_beyond = c->slope > 0.0 ? 0.0 : DBL_MAX;
   c->perfect = mpmi_rounded(3.0 * c->elastic.mu) + mpmi_rounded(c->elastic.bulk * c->slope * c->dilation);
+  c->hard = c->strength * c->hardening;
   c->closes = value[CLOSE];
 }
 
@@ -73,7 +75,7 @@ static const char *check(const double *value) {
   prepare(value, &c);
   if (value[PSI] > value[PHI]) return "psi must not be larger than phi";
   if (value[RESIDUAL] > value[COHESION]) return "cohesion_residual must not be larger than cohesion";
-  if (!(c.perfect + c.strength * c.hardening > 0.0))
+  if (!(c.perfect + c.hard > 0.0))
     return "hardening is so negative that stress falls faster than a particle unloads: it must be above -(3 "
            "mu + "
            "K M M_psi) / kappa";
@@ -83,8 +85,9 @@ static const char *check(const double *value) {
 /* What the law makes of a trial state: mean pressure p, and the share of the deviator that it keeps. */
 typedef struct drucker_return {
   double p, q, keep, plastic, gap;
-  double stiffness;      /* A on the cone */
-  int32_t elastic, cone; /* neither: the cut-off, with all of the deviator or what the cone leaves of it */
+  double over;      /* > 0: beyond the yield surface */
+  double fit;       /* < 0: the cone would end beyond the cut-off; what is there holds */
+  double stiffness; /* A on the cone */
 } drucker_return;
 
 MPMI_INLINE drucker_return come_back(const drucker_constants *c, double volume, double q, double plastic,
@@ -92,25 +95,26 @@ MPMI_INLINE drucker_return come_back(const drucker_constants *c, double volume, 
   const double bulk = c->elastic.bulk, mu3 = 3.0 * c->elastic.mu, closes = c->closes;
   double all = volume + closes * gap, p = -bulk * all;
   double soft = c->cohesion + c->hardening * plastic;
-  double k = c->strength * mpmi_max(soft, c->residual), over = q - c->slope * p - k;
+  double k = c->strength * mpmi_max(soft, c->residual);
   double tension = mpmi_min(c->cutoff, c->apex * k + c->apex_beyond);
-  /* the cone, with the cohesion that the step leaves */
-  double hard = soft > c->residual || c->hardening > 0.0 ? c->strength * c->hardening : 0.0;
-  double step = over / (c->perfect + hard);
-  int32_t ends = soft + c->hardening * step < c->residual;
-  double rest = (q - c->slope * p - c->strength * c->residual) / c->perfect;
-  step = ends ? rest : step;
-  double q_cone = q - mu3 * step, p_cone = p + bulk * c->dilation * step;
-  double q_cut = mpmi_min(q, mpmi_max(k - c->slope * tension, 0.0));
   drucker_return r;
-  r.stiffness = c->perfect + (ends ? 0.0 : hard);
-  r.elastic = over <= 0.0 && p >= -tension;
-  r.cone = over > 0.0 && q_cone >= 0.0 && p_cone >= -tension;
-  r.p = r.elastic ? p : r.cone ? p_cone : -tension;
-  r.q = r.elastic ? q : r.cone ? q_cone : q_cut;
+  r.over = q - c->slope * p - k;
+  /* the cone, with the cohesion that the step leaves */
+  double hard = soft > c->residual ? c->hard : mpmi_max(c->hard, 0.0), step = r.over / (c->perfect + hard);
+  double rest = (q - c->slope * p - c->strength * c->residual) / c->perfect;
+  double left = soft + c->hardening * step - c->residual;
+  step = left < 0.0 ? rest : step;
+  r.stiffness = left < 0.0 ? c->perfect : c->perfect + hard;
+  double q_cone = r.over > 0.0 ? q - mu3 * step : q;
+  double p_cone = r.over > 0.0 ? p + bulk * c->dilation * step : p;
+  double q_cut = mpmi_min(q, mpmi_max(k - c->slope * tension, 0.0));
+  r.fit = mpmi_min(q_cone, p_cone + tension);
+  double flow = r.over > 0.0 ? step : 0.0, opened = closes * mpmi_max(all - tension / bulk, 0.0);
+  r.p = r.fit < 0.0 ? -tension : p_cone;
+  r.q = r.fit < 0.0 ? q_cut : q_cone;
   r.keep = q > 0.0 ? r.q / (q > 0.0 ? q : 1.0) : 1.0;
-  r.plastic = plastic + (r.elastic ? 0.0 : r.cone ? step : (q - q_cut) / mu3);
-  r.gap = r.elastic || r.cone ? 0.0 : closes * mpmi_max(all - tension / bulk, 0.0);
+  r.plastic = plastic + (r.fit < 0.0 ? (q - q_cut) / mu3 : flow);
+  r.gap = r.fit < 0.0 ? opened : 0.0;
   return r;
 }
 
@@ -156,12 +160,12 @@ MPMI_INLINE void drucker_prager(int dim, const drucker_constants *c, const mpm_m
 /* a_AB = bulk d_p + shear Dev + n (...): the derivative of come_back() for the trial strains of the axes. */
 MPMI_INLINE void slopes(const drucker_constants *c, const drucker_return *r, const double *n, int p,
                         mpmi_principal *o) {
-  const double bulk = c->elastic.bulk, mu = c->elastic.mu, inverse = r->cone ? 1.0 / r->stiffness : 0.0;
+  const int32_t cone = r->over > 0.0 && !(r->fit < 0.0), elastic = !cone && !(r->fit < 0.0);
+  const double bulk = c->elastic.bulk, mu = c->elastic.mu, inverse = cone ? 1.0 / r->stiffness : 0.0;
   const double across = sqrt(6.0) * mu * bulk * inverse;
-  const int32_t cut = !r->elastic && !r->cone && r->keep < 1.0;
-  double volume = r->elastic ? bulk : r->cone ? bulk - bulk * bulk * c->dilation * c->slope * inverse : 0.0;
-  double shear = 2.0 * mu * r->keep;
-  double along = r->cone ? 2.0 * mu * (1.0 - 3.0 * mu * inverse - r->keep) : cut ? -shear : 0.0;
+  double volume = elastic ? bulk : cone ? bulk - bulk * bulk * c->dilation * c->slope * inverse : 0.0;
+  double shear = 2.0 * mu * r->keep, cut = r->keep < 1.0 ? -shear : 0.0;
+  double along = cone ? 2.0 * mu * (1.0 - 3.0 * mu * inverse - r->keep) : elastic ? 0.0 : cut;
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b)
       o->slope[a][b][p] = volume + shear * ((a == b) - 1.0 / 3.0) + along * n[a] * n[b] -

@@ -94,7 +94,7 @@ static void make_material(world *w, int32_t m) {
   static const mpm_param decoupled[] = {{"mu", 1.2e5}, {"kappa", 2.4e5}, {"density", 1e3}};
   static const mpm_param fluid[] = {
       {"density", 1e3}, {"bulk_modulus", 3e5}, {"gamma", 7.0}, {"tension", 1.0}, {"viscosity", 60.0}};
-  static const mpm_param soil[] = {{"E", 3e5},   {"nu", 0.3},       {"density", 1e3},   {"phi", 30.0},
+  static const mpm_param soil[] = {{"E", 3e5},   {"nu", 0.3},       {"density", 1e3},  {"phi", 30.0},
                                    {"psi", 5.0}, {"cohesion", 8e3}, {"hardening", 5e4}};
   mpm_material **out = &w->material[m];
   switch (w->is->law[m]) {

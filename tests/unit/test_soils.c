@@ -194,6 +194,36 @@ START_TEST(softening_and_cut_off) {
   static const double tau[] = {2783.18740678, -11284.795519627, -24414.912917606};
   for (int k = 0; k < 3; ++k) ck_number("tau", s.stress[k] * jacobian_of(&s), tau[k]);
   ck_within("plastic strain", s.state[0], 0.002328409, 1e-9);
+  start(&s, 0.0); /* at the corner of cone and cut-off */
+  stretch(&s, 0.004, 0.001, -0.001);
+  static const double corner[] = {6889.49461714, 1388.81317286, -2278.30779};
+  for (int k = 0; k < 3; ++k) ck_within("tau", s.stress[k] * jacobian_of(&s), corner[k], 1e-8 * 7e3);
+  ck_within("plastic strain", s.state[0], 0.0025596, 1e-8);
+  ck_within("gap", s.state[1], 0.00388, 1e-12);
+  law_material_free(s.material);
+}
+END_TEST
+
+/* Compressed alike on all axes, and nearly so, soil is elastic: its energy and tangent are known. */
+START_TEST(all_axes_alike) {
+  const soil of = sand(30.0, 10.0, 1e3, 0.0);
+  const double mu = 20e6 / 2.6, bulk = 20e6 / 1.2;
+  path s = open_soil(&of);
+  for (int k = 0; k < 3; ++k) {
+    const double e = -0.01, d = k * 1e-10;
+    start(&s, 0.0);
+    stretch(&s, e + d, e, e);
+    const double p = -(3.0 * e + d) * bulk;
+    ck_number("energy", s.energy, 0.5 * p * p / bulk);
+    ck_within("xxxx", s.tangent[0], bulk + 4.0 / 3.0 * mu + 2.0 * p, 1e-8 * bulk);
+    ck_within("xxyy", s.tangent[4], bulk - 2.0 / 3.0 * mu, 1e-8 * bulk);
+    ck_within("xyxy", s.tangent[9 + 1], mu + p, 1e-8 * bulk);
+    ck_within("yzyz", s.tangent[9 * 5 + 5], mu + p, 1e-8 * bulk);
+    ck_number("wave", s.wave, sqrt((bulk + 4.0 / 3.0 * mu + p) / 2e3));
+  }
+  start(&s, 0.0);
+  shear(&s, 1e-5, 1);
+  ck_within("energy", s.energy, 0.5 * mu * 1e-10, 1e-6 * mu * 1e-10);
   law_material_free(s.material);
 }
 END_TEST
@@ -443,6 +473,7 @@ Suite *soils_suite(void) {
   tcase_add_test(tc, simple_shear);
   tcase_add_test(tc, gaps_close);
   tcase_add_test(tc, softening_and_cut_off);
+  tcase_add_test(tc, all_axes_alike);
   tcase_add_test(tc, parameters_go_together);
   tcase_add_test(tc, cones);
   tcase_add_test(tc, random_states_yield);

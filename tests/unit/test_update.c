@@ -166,7 +166,7 @@ typedef struct answer {
   mpm_status status, in_callback;
   double wave_speed;
   const mpm_material *self;
-  int64_t calls;
+  int64_t calls, spoilt; /* the id that gets an infinite stress */
 } answer;
 
 static mpm_status law_of_host(void *user, const mpm_material_batch *b) {
@@ -181,6 +181,7 @@ static mpm_status law_of_host(void *user, const mpm_material_batch *b) {
       b->stress_new[c * b->ld + i] = b->stress[c * b->ld + i] + b->position[c % 3 * b->ld + i] + b->t;
     b->state_new[i] = b->state[i] + (double)b->id[i];
     b->wave_speed[i] = b->id[i] == 399 ? a->wave_speed : 2.0;
+    if (b->id[i] == a->spoilt) b->stress_new[5 * b->ld + i] = (double)INFINITY;
   }
   return a->status;
 }
@@ -210,7 +211,8 @@ START_TEST(laws_of_the_host) {
   a.status = 3, refuses(m, &d, NULL, MPM_CUT_DT, "the law returned 3");
   a.status = -3, refuses(m, &d, NULL, MPM_E_CALLBACK, "the law returned -3");
   a.status = 0, a.wave_speed = -1.0, refuses(m, &d, NULL, MPM_E_CALLBACK, "wave speed is negative at id 399");
-  a.wave_speed = (double)NAN, refuses(m, &d, NULL, MPM_NONFINITE, "item 299, id 399");
+  a.wave_speed = 2.0, a.spoilt = 377, refuses(m, &d, NULL, MPM_NONFINITE, "item 277, id 377");
+  a.spoilt = 0, a.wave_speed = (double)NAN, refuses(m, &d, NULL, MPM_NONFINITE, "item 299, id 399");
   ck_ok(context, mpm_material_destroy(m));
   ck_ok(context, mpm_context_destroy(context));
 }
