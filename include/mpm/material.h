@@ -72,10 +72,10 @@ MPM_API mpm_status mpm_material_state_name(const char *model, int32_t index, con
                                            const char **unit, const char **text);
 
 /**
- * Particles of one set that a law is asked about. Arrays are [components][ld], of which the first n items of
- * each component count. The memory belongs to the library and is valid during the call. Tensors are full: F,
- * F_inc and L have component 3 * row + column, stresses xx yy zz xy yz xz. Output arrays do not overlap input
- * arrays.
+ * Particles that a law is asked about. Arrays are [components][ld], of which the first n items of each
+ * component count. Tensors are full: F, F_inc and L have component 3 * row + column, stresses xx yy zz xy yz
+ * xz. In callbacks the memory belongs to the library and is valid during the call, and output arrays do not
+ * overlap input arrays.
  */
 typedef struct mpm_material_batch {
   uint32_t struct_size;        /**< sizeof(mpm_material_batch) of the library; see mpm.h */
@@ -172,19 +172,22 @@ MPM_API mpm_status mpm_material_create_custom(mpm_context *context, const mpm_ma
  * The caller fills batch: struct_size, state_count (that of the material), n, ld, t, dt, F (at the end of
  * the step), F_inc, stress and state before the step, and the arrays for stress_new and state_new, all in
  * the forms of mpm_material_batch. These may be NULL: id (items then have ids from 0; items with ids < 0
- * are inert, and only their outputs are written), L (made of F_inc and dt), position (zeros), wave_speed,
- * kinematic_viscosity and energy (not wanted), state and state_new of a law without state. lookup is not
- * used: a law of the host gets NULL. Outputs may be the arrays of inputs: stress_new that of stress, say.
- * With dt = 0 the answer is the state as it is, see mpm_stress_fn.
+ * are inert, and what their outputs hold is not said), L (made of F_inc and dt; what is given must be
+ * (F_inc - I) / dt), position ([3][ld]; zeros), wave_speed, kinematic_viscosity and energy (not wanted),
+ * state and state_new of a law without state. lookup is not used: a law of the host gets NULL. Outputs may
+ * be the arrays of inputs: stress_new that of stress, say. With dt = 0 the answer is the state as it is, see
+ * mpm_stress_fn, whatever F_inc and L are.
  *
  * tangent is NULL or [81][ld], and receives the tangent of the step in the general form of mpm_tangent_fn;
- * dt must be > 0 then. Into *symmetric, unless it is NULL, goes 1 if it has major symmetry at every item.
+ * dt must be > 0 then. Into *symmetric goes 1 if it has major symmetry at every item, else 0; it may be
+ * NULL, and is left alone without a tangent.
  *
  * Bits are those of a 3-D step on the same instruction set. The calling thread does all the work, as for
- * other calls of the context. MPM_E_ARG: an array is NULL, or a number is out of range. MPM_NONFINITE: a
- * value that is given or that comes out is not finite. MPM_INVERTED: det F or det F_inc is not positive.
- * MPM_CUT_DT and MPM_E_CALLBACK: as in a step. All name the item. After a failure items before that one
- * may have been written.
+ * other calls of the context. MPM_E_ARG: an array is NULL, a number is out of range, or L and F_inc
+ * disagree. MPM_NONFINITE: a value that is given or that comes out is not finite. MPM_INVERTED: det F or
+ * det F_inc is not positive. MPM_CUT_DT and MPM_E_CALLBACK: as in a step. What is wrong with an item names
+ * it, what a law returned the items that it was asked about. After a failure items before these may have
+ * been written.
  */
 MPM_API mpm_status mpm_material_update(const mpm_material *material, const mpm_material_batch *batch,
                                        double *tangent, int32_t *symmetric);

@@ -93,7 +93,7 @@ typedef struct drucker_return {
 MPMI_INLINE drucker_return come_back(const drucker_constants *c, double volume, double q, double plastic,
                                      double gap) {
   const double bulk = c->elastic.bulk, mu3 = 3.0 * c->elastic.mu, closes = c->closes;
-  double all = volume + closes * gap, p = -bulk * all;
+  double all = volume + closes * mpmi_max(gap, 0.0), p = -bulk * all;
   double soft = c->cohesion + c->hardening * plastic;
   double k = c->strength * mpmi_max(soft, c->residual);
   double tension = mpmi_min(c->cutoff, c->apex * k + c->apex_beyond);
@@ -107,12 +107,14 @@ MPMI_INLINE drucker_return come_back(const drucker_constants *c, double volume, 
   r.stiffness = left < 0.0 ? c->perfect : c->perfect + hard;
   double q_cone = r.over > 0.0 ? q - mu3 * step : q;
   double p_cone = r.over > 0.0 ? p + bulk * c->dilation * step : p;
-  double q_cut = mpmi_min(q, mpmi_max(k - c->slope * tension, 0.0));
-  r.fit = mpmi_min(q_cone, p_cone + tension);
+  /* at the apex there is no room for a deviator, to rounding */
+  double room = k - c->slope * tension, q_cut = room > 1e-12 * k ? mpmi_min(q, room) : 0.0;
+  r.fit = mpmi_min(q_cone + 1e-12 * q, p_cone + tension); /* q_cone = 0 is rounded where phi and k are 0 */
   double flow = r.over > 0.0 ? step : 0.0, opened = closes * mpmi_max(all - tension / bulk, 0.0);
   r.p = r.fit < 0.0 ? -tension : p_cone;
-  r.q = r.fit < 0.0 ? q_cut : q_cone;
-  r.keep = q > 0.0 ? r.q / (q > 0.0 ? q : 1.0) : 1.0;
+  r.q = r.fit < 0.0 ? q_cut : mpmi_max(q_cone, 0.0);
+  double of_none = r.fit < 0.0 ? (room > 1e-12 * k ? 1.0 : 0.0) : 1.0;
+  r.keep = q > 0.0 ? r.q / (q > 0.0 ? q : 1.0) : of_none;
   r.plastic = plastic + (r.fit < 0.0 ? (q - q_cut) / mu3 : flow);
   r.gap = r.fit < 0.0 ? opened : 0.0;
   return r;

@@ -118,13 +118,13 @@ static mpm_status read_params(mpm_context *context, const mpmi_law *law, const m
 /* Parameters may be fine one by one and still overflow together, such as 1e300 / 1e-300. */
 static mpm_status prepare_constants(mpm_context *context, const mpmi_law *law, const double *value,
                                     double *constants) {
-  const char *wrong = law->check ? law->check(value) : NULL;
-  if (wrong) return mpmi_fail(context, MPM_E_ARG, "%s: %s", law->name, wrong);
   if (law->prepare) law->prepare(value, constants);
   for (size_t i = 0; i < law->constants_size / sizeof *constants; ++i)
     if (!isfinite(constants[i]))
       return mpmi_fail(context, MPM_E_ARG,
                        "%s: the parameters together are beyond the range of double precision", law->name);
+  const char *wrong = law->check ? law->check(value) : NULL;
+  if (wrong) return mpmi_fail(context, MPM_E_ARG, "%s: %s", law->name, wrong);
   return MPM_OK;
 }
 

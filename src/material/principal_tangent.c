@@ -1,11 +1,13 @@
 #include "material/principal_tangent.h"
 
-/* g_AB, or its limit where the two are too close for the quotient. */
+/* g_AB, or its limit where the two are too close for the quotient, as strains of this size go: the limit
+ * takes the axes for alike in all that the law sees, which a small strain as such does not make them. */
 MPMI_INLINE double mixed(const mpmi_principal *o, int p, int one, int two) {
-  double apart = o->b[one][p] - o->b[two][p], sum = 2.0 + o->b[one][p] + o->b[two][p];
+  double apart = o->b[one][p] - o->b[two][p];
+  double size = fabs(o->b[0][p]) + fabs(o->b[1][p]) + fabs(o->b[2][p]);
   double t = o->tau[one][p] * (1.0 + o->b[two][p]) - o->tau[two][p] * (1.0 + o->b[one][p]);
   double limit = 0.5 * (o->slope[one][one][p] - o->slope[one][two][p]) - o->tau[one][p];
-  int near = fabs(apart) < 1e-7 * sum;
+  int near = fabs(apart) < 1e-7 * size + 1e-300;
   return near ? limit : t / (near ? 1.0 : apart);
 }
 

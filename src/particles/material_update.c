@@ -63,6 +63,15 @@ static int32_t finite_item(const double *a, int32_t rows, int64_t ld, int64_t i)
   return sum == 0.0;
 }
 
+/* L says the same as F_inc: some laws look at one, some at the other. */
+static int32_t fits_step(const mpm_material_batch *b, int64_t i) {
+  for (int32_t e = 0; e < 9 && b->L; ++e) {
+    const double of_L = (e % 4 ? 0.0 : 1.0) + b->dt * b->L[e * b->ld + i], F_inc = b->F_inc[e * b->ld + i];
+    if (!(fabs(of_L - F_inc) <= 1e-9 * (1.0 + fabs(F_inc)))) return 0;
+  }
+  return 1;
+}
+
 static mpm_status check_items(const mpm_material *material, const mpm_material_batch *b) {
   for (int64_t i = 0; i < b->n; ++i) {
     if (id_of(b, i) < 0) continue;
@@ -72,6 +81,8 @@ static mpm_status check_items(const mpm_material *material, const mpm_material_b
       return refuse(material, b, i, MPM_NONFINITE, "a value that is not finite is given");
     if (!(determinant(b->F, b->ld, i) > 0.0) || !(determinant(b->F_inc, b->ld, i) > 0.0))
       return refuse(material, b, i, MPM_INVERTED, "det F or det F_inc is not positive");
+    if (b->dt > 0.0 && !fits_step(b, i))
+      return refuse(material, b, i, MPM_E_ARG, "L is not (F_inc - I) / dt");
   }
   return MPM_OK;
 }
@@ -106,6 +117,7 @@ static void make_inert(mpmi_portion *p, int64_t i) {
     b->L[e * b->ld + i] = 0.0;
   }
   for (int32_t c = 0; c < 6; ++c) b->stress[c * b->ld + i] = 0.0;
+  for (int32_t k = 0; k < FULL; ++k) b->position[k * b->ld + i] = 0.0;
   for (int32_t c = 0; c < p->material->state_count; ++c)
     b->state[c * b->ld + i] = p->material->state_initial ? p->material->state_initial[c] : 0.0;
 }
@@ -125,15 +137,24 @@ static void load(mpmi_portion *p) {
   take(b->F_inc, b->ld, given->F_inc, p, 9);
   take(b->stress, b->ld, given->stress, p, 6);
   if (p->material->state_count) take(b->state, b->ld, given->state, p, p->material->state_count);
-  if (given->L) take(b->L, b->ld, given->L, p, 9);
+  memset(b->position, 0, (size_t)(FULL * b->ld) * sizeof(double));
   if (given->position) take(b->position, b->ld, given->position, p, FULL);
+  if (given->L && given->dt > 0.0) take(b->L, b->ld, given->L, p, 9);
   for (int32_t e = 0; e < 9 && !given->L && given->dt > 0.0; ++e)
     for (int64_t i = 0; i < p->n; ++i)
       b->L[e * b->ld + i] = (b->F_inc[e * b->ld + i] - (e % 4 ? 0.0 : 1.0)) / given->dt;
+  for (int32_t e = 0; e < 9 && given->dt == 0.0; ++e)
+    for (int64_t i = 0; i < p->n; ++i) b->F_inc[e * b->ld + i] = e % 4 ? 0.0 : 1.0;
   for (int64_t i = 0; i < b->batch.n; ++i) {
     p->id[i] = i < p->n ? id_of(given, p->begin + i) : -1;
     if (p->id[i] < 0) make_inert(p, i);
   }
+}
+
+/* A law of the host need not know its energy. */
+static int32_t has_energy(const mpmi_portion *p, int64_t i) {
+  const double energy = p->law.energy[i];
+  return isfinite(energy) || (isnan(energy) && !p->material->law);
 }
 
 static mpm_status find_fault(const mpmi_portion *p) {
@@ -145,7 +166,18 @@ static mpm_status find_fault(const mpmi_portion *p) {
         !finite_item(b->state_new, p->material->state_count, b->ld, i))
       return refuse(p->material, p->given, p->begin + i, MPM_NONFINITE,
                     "the material's stress, state or wave speed is not finite");
+    if (!has_energy(p, i))
+      return refuse(p->material, p->given, p->begin + i, MPM_NONFINITE,
+                    "the material's energy is not finite");
   }
+  return MPM_OK;
+}
+
+static mpm_status find_fault_of_tangent(const mpmi_portion *p) {
+  for (int64_t i = 0; i < p->n; ++i)
+    if (p->id[i] >= 0 && !finite_item(p->tangent, TANGENT_ROWS, p->law.ld, i))
+      return refuse(p->material, p->given, p->begin + i, MPM_NONFINITE,
+                    "the material's tangent is not finite");
   return MPM_OK;
 }
 
@@ -155,10 +187,14 @@ static mpm_status refuse_law(const mpmi_portion *p, mpm_status status) {
   if (fault->cause)
     return mpmi_fail(context, fault->cause, "mpm_material_update: %s at id %lld", fault->what,
                      (long long)fault->particle);
+  const long long first = (long long)p->begin, last = (long long)(p->begin + p->n - 1);
   if (status > 0)
-    return mpmi_fail(context, MPM_CUT_DT,
-                     "mpm_material_update: the law returned %d and asks for a smaller dt", status);
-  return mpmi_fail(context, MPM_E_CALLBACK, "mpm_material_update: the law returned %d", status);
+    return mpmi_fail(
+        context, MPM_CUT_DT,
+        "mpm_material_update: the law returned %d for items %lld to %lld and asks for a smaller dt", status,
+        first, last);
+  return mpmi_fail(context, MPM_E_CALLBACK, "mpm_material_update: the law returned %d for items %lld to %lld",
+                   status, first, last);
 }
 
 static mpm_status run(mpmi_portion *p, double *tangent, int32_t *symmetric) {
@@ -170,6 +206,7 @@ static mpm_status run(mpmi_portion *p, double *tangent, int32_t *symmetric) {
     status =
         mpmi_material_tangent(p->material, FULL, &p->law.batch, p->tangent_scratch, p->tangent, symmetric);
     if (status) return refuse_law(p, status);
+    if ((status = find_fault_of_tangent(p))) return status;
     give(p->tangent, p->law.ld, tangent, p, TANGENT_ROWS);
   }
   const mpm_material_batch *to = p->given;

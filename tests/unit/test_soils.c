@@ -267,6 +267,89 @@ static int sym_of(int i, int j) {
   return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
 }
 
+/* Without friction there is no apex: what is left without cohesion is a fluid that keeps its pressure, on
+ * every instruction set. */
+START_TEST(without_friction) {
+  for (int32_t isa = MPM_ISA_BASELINE; isa <= MPM_ISA_NEON; ++isa)
+    for (int32_t which = 0; which < 3; ++which) {
+      soil of = sand(0.0, 0.0, which == 1 ? 1e3 : 0.0, 0.0);
+      uint64_t seed = 21;
+      if (which == 1) of.value[DP_H].value = -2e5;
+      if (which == 2) of.value[DP_T].value = 0.0;
+      path s = {.F = {0}};
+      s.material = law_material(isa, "drucker_prager", of.value, DP_PARAMS);
+      for (int32_t k = 0; s.material && k < 300; ++k) {
+        const tensor g = random_tensor(&seed, 3, 1e-2L);
+        double F_inc[9];
+        for (int c = 0; c < 9; ++c) F_inc[c] = (double)((c % 4 == 0) + g.m[c / 3][c % 3]);
+        start(&s, -1e6);
+        s.state[0] = 1.0; /* soft by now */
+        advance(&s, F_inc);
+        const double J = jacobian_of(&s), p = 1e6 - 20e6 / 1.2 * mpmi_ln(J);
+        ck_between("pressure", p, 1e5, 2e6);
+        for (int c = 0; c < 6; ++c) ck_within("stress", J * s.stress[c], c < 3 ? -p : 0.0, 1e-8 * p);
+      }
+      if (s.material) law_material_free(s.material);
+    }
+}
+END_TEST
+
+/* An open particle has no stiffness, also where it has opened alike on all axes; a stress beyond what a
+ * strain can be is found, and a gap below 0 is none. */
+START_TEST(ends_of_the_range) {
+  const soil of = sand(30.0, 0.0, 0.0, 0.0);
+  path s = open_soil(&of);
+  for (int k = 0; k < 9; ++k) {
+    const double open = 0.001 * (k + 1);
+    start(&s, 0.0);
+    advance(&s, (const double[]){1 + open, 0, 0, 0, 1 + open, 0, 0, 0, 1 + open});
+    ck_assert(s.state[1] > 0.0);
+    for (int c = 0; c < 81; ++c) ck_within("tangent", s.tangent[c], 0.0, 1e-6);
+  }
+  start(&s, -1e5);
+  s.state[1] = -0.01;
+  stretch(&s, 0.0, 0.0, 0.0);
+  ck_within("pressure", s.stress[0], -1e5, 1e-6);
+  for (int k = 0; k < 2; ++k) {
+    double F[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, stress[6] = {0}, state[2] = {0};
+    for (int c = 0; c < 3; ++c) stress[c] = k ? -40.0 * 20e6 : 40.0 * 20e6;
+    const mpm_material_batch b = {.struct_size = sizeof b,
+                                  .state_count = 2,
+                                  .n = 1,
+                                  .ld = 1,
+                                  .dt = 1.0,
+                                  .F = F,
+                                  .F_inc = F,
+                                  .stress = stress,
+                                  .state = state,
+                                  .stress_new = stress,
+                                  .state_new = state};
+    ck_refused(s.material->context, mpm_material_update(s.material, &b, NULL, NULL), MPM_NONFINITE, "item 0");
+  }
+  law_material_free(s.material);
+}
+END_TEST
+
+/* Tangents at strains as small as 1e-8, where the axes are not alike for all that. */
+START_TEST(small_strains) {
+  soil of = sand(30.0, 0.0, 0.0, 0.0);
+  of.value[0].value = 1e9;
+  const double mu = 1e9 / 2.6;
+  path s = open_soil(&of);
+  start(&s, 0.0);
+  stretch(&s, 2e-8, -0.7e-8, -4.3e-8);
+  ck_assert(s.state[0] > 0.0 && s.state[1] == 0.0);
+  /* the return keeps the share r of the deviator: shear across the axes has r mu - (tau_A + tau_B) / 2 */
+  const double mean = (2e-8 - 0.7e-8 - 4.3e-8) / 3.0,
+               kept = (s.stress[0] - s.stress[2]) / (2.0 * mu * 6.3e-8);
+  ck_assert(mean < 0.0);
+  ck_within("xyxy", s.tangent[9 + 1], kept * mu, 1e-5 * mu);
+  ck_within("yzyz", s.tangent[9 * 5 + 5], kept * mu, 1e-5 * mu);
+  ck_within("xzxz", s.tangent[9 * 2 + 2], kept * mu, 1e-5 * mu);
+  law_material_free(s.material);
+}
+END_TEST
+
 /* ---- random states ------------------------------------------------------------------------------------- */
 enum { RANDOM = 100000, TESTED = 3000 };
 
@@ -474,6 +557,9 @@ Suite *soils_suite(void) {
   tcase_add_test(tc, gaps_close);
   tcase_add_test(tc, softening_and_cut_off);
   tcase_add_test(tc, all_axes_alike);
+  tcase_add_test(tc, without_friction);
+  tcase_add_test(tc, ends_of_the_range);
+  tcase_add_test(tc, small_strains);
   tcase_add_test(tc, parameters_go_together);
   tcase_add_test(tc, cones);
   tcase_add_test(tc, random_states_yield);

@@ -156,9 +156,54 @@ START_TEST(refusals) {
   fill(&d, 70, 1), d.batch.L = d.L, d.L[3] = (double)NAN, refuses(m, &d, NULL, MPM_NONFINITE, "item 3");
   fill(&d, 70, 1), d.batch.id = d.id, d.F_inc[68] = -1.0;
   refuses(m, &d, NULL, MPM_INVERTED, "item 68, id 168");
+  fill(&d, 70, 1), d.batch.L = d.L, d.L[4] *= 1.001, refuses(m, &d, NULL, MPM_E_ARG, "L is not");
   fill(&d, 70, 1), d.stress[69] = 1e300,
                    refuses(m, &d, NULL, MPM_NONFINITE, "wave speed is not finite at item 69");
   law_material_free(m);
+  m = law_material(MPM_ISA_BEST, "linear_elastic", metal, 3);
+  fill(&d, 70, 0), d.stress[68] = 1e160,
+                   refuses(m, &d, NULL, MPM_NONFINITE, "energy is not finite at item 68");
+  law_material_free(m);
+}
+END_TEST
+
+static mpm_status tangent_of_host(void *user, const mpm_material_batch *b, double *tangent,
+                                  int32_t *symmetric) {
+  const double *bad = user;
+  for (int64_t i = 0; i < 81 * b->ld; ++i) tangent[i] = 1.0;
+  tangent[80 * b->ld + b->n - 1] = *bad;
+  *symmetric = 1;
+  return MPM_OK;
+}
+
+static mpm_status law_at_rest(void *user, const mpm_material_batch *b) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i) {
+    for (int c = 0; c < 6; ++c) b->stress_new[c * b->ld + i] = 0.0;
+    b->wave_speed[i] = 1.0;
+  }
+  return MPM_OK;
+}
+
+START_TEST(tangents_of_the_host) {
+  static driven d;
+  double last = 1.0;
+  int32_t symmetric = 0;
+  mpm_context *context = context_with(1, MPM_ISA_BEST, NULL);
+  mpm_material_desc desc;
+  mpm_material *m;
+  ck_ok(context, mpm_material_desc_init(&desc, sizeof desc));
+  desc.density = 1.0, desc.stress = law_at_rest, desc.tangent = tangent_of_host, desc.user = &last;
+  desc.tangent_form = MPM_TANGENT_GENERAL;
+  ck_ok(context, mpm_material_create_custom(context, &desc, &m));
+  fill(&d, 3, 0);
+  ck_ok(context, mpm_material_update(m, &d.batch, d.c, &symmetric));
+  ck_assert(symmetric == 1 && d.c[80 * SPACE + 2] == 1.0);
+  last = (double)NAN;
+  refuses(m, &d, d.c, MPM_NONFINITE, "the material's tangent is not finite at item 2");
+  ck_ok(context, mpm_material_update(m, &d.batch, NULL, NULL));
+  ck_ok(context, mpm_material_destroy(m));
+  ck_ok(context, mpm_context_destroy(context));
 }
 END_TEST
 
@@ -166,6 +211,7 @@ typedef struct answer {
   mpm_status status, in_callback;
   double wave_speed;
   const mpm_material *self;
+  int32_t at_rest;       /* F_inc is I, L is 0 */
   int64_t calls, spoilt; /* the id that gets an infinite stress */
 } answer;
 
@@ -177,6 +223,8 @@ static mpm_status law_of_host(void *user, const mpm_material_batch *b) {
   a->in_callback = mpm_material_update(a->self, b, NULL, NULL);
   if (mpm_batch_field(b->lookup, "mass", &data, &stride) != MPM_E_ARG) return -7;
   for (int64_t i = 0; i < b->n; ++i) {
+    for (int c = 0; c < 9 && a->at_rest; ++c)
+      if (b->F_inc[c * b->ld + i] != (c % 4 == 0) || b->L[c * b->ld + i] != 0.0) return -8;
     for (int c = 0; c < 6; ++c)
       b->stress_new[c * b->ld + i] = b->stress[c * b->ld + i] + b->position[c % 3 * b->ld + i] + b->t;
     b->state_new[i] = b->state[i] + (double)b->id[i];
@@ -208,7 +256,15 @@ START_TEST(laws_of_the_host) {
                 d.stress[c * SPACE + i] + d.position[c % 3 * SPACE + i] + d.batch.t);
     ck_assert(d.state_new[i] == d.state[i] + (double)d.id[i] && d.wave[i] == 2.0 && isnan(d.energy[i]));
   }
-  a.status = 3, refuses(m, &d, NULL, MPM_CUT_DT, "the law returned 3");
+  d.batch.position = NULL; /* zeros, also where memory was used before */
+  ck_ok(context, mpm_material_update(m, &d.batch, NULL, NULL));
+  for (int64_t i = 0; i < MOST; ++i) ck_assert(d.stress_new[i] == d.stress[i] + d.batch.t);
+  d.batch.dt = 0.0;
+  a.at_rest = 1;
+  ck_ok(context, mpm_material_update(m, &d.batch, NULL, NULL));
+  d.batch.dt = 0.5;
+  a.at_rest = 0;
+  a.status = 3, refuses(m, &d, NULL, MPM_CUT_DT, "the law returned 3 for items 0 to 255");
   a.status = -3, refuses(m, &d, NULL, MPM_E_CALLBACK, "the law returned -3");
   a.status = 0, a.wave_speed = -1.0, refuses(m, &d, NULL, MPM_E_CALLBACK, "wave speed is negative at id 399");
   a.wave_speed = 2.0, a.spoilt = 377, refuses(m, &d, NULL, MPM_NONFINITE, "item 277, id 377");
@@ -253,6 +309,7 @@ Suite *update_suite(void) {
   tcase_add_test(tc, what_may_be_left_out);
   tcase_add_test(tc, refusals);
   tcase_add_test(tc, laws_of_the_host);
+  tcase_add_test(tc, tangents_of_the_host);
   tcase_add_test(tc, names_of_states);
   suite_add_tcase(suite, tc);
   return suite;
