@@ -13,7 +13,8 @@
   LAW(neo_hookean_decoupled)                                                                                 \
   LAW(newtonian_fluid)                                                                                       \
   LAW(rigid)                                                                                                 \
-  LAW(drucker_prager)
+  LAW(drucker_prager)                                                                                        \
+  LAW(mohr_coulomb)
 
 #define MPMI_LAW_PLACE(name)   MPMI_LAW_##name,
 #define MPMI_DECLARE_LAW(name) MPMI_DECLARE_TABLES(mpmi_law, mpmi_law_##name);

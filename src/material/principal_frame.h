@@ -129,13 +129,16 @@ MPMI_INLINE mpmi_sym mpmi_trial_b(int dim, mpmi_frame in, int64_t i, double J) {
   return mpmi_pushed_forward(dim, g, mpmi_exp_twice(dim, e));
 }
 
-/* Not a number where a host's stress has left the range of elastic strains that b - I can hold: a stretch of
- * 1e-5 or of 1e4. */
+/* > 0 where b - I can hold the elastic strain: stretches of 1e-5 to 1e4. A host's stress can leave that. */
+MPMI_INLINE double mpmi_elastic_range(mpmi_sym b) {
+  double least = mpmi_min(mpmi_min(b.xx, b.yy), b.zz), most = mpmi_max(mpmi_max(b.xx, b.yy), b.zz);
+  return mpmi_min(1e8 - most, least - (1e-10 - 1.0));
+}
+
+/* Not a number outside of that range. */
 MPMI_INLINE mpmi_sym mpmi_trial_strain(int dim, mpmi_frame in, int64_t i, double J) {
   mpmi_sym b = mpmi_trial_b(dim, in, i, J), e = mpmi_half_log(dim, b);
-  double least = mpmi_min(mpmi_min(b.xx, b.yy), b.zz), most = mpmi_max(mpmi_max(b.xx, b.yy), b.zz);
-  double held = mpmi_min(1e8 - most, least - (1e-10 - 1.0));
-  e.xx = held > 0.0 ? e.xx : (double)NAN;
+  e.xx = mpmi_elastic_range(b) > 0.0 ? e.xx : (double)NAN;
   return e;
 }
 

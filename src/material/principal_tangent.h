@@ -7,6 +7,7 @@
 #ifndef MPMI_PRINCIPAL_TANGENT_H
 #define MPMI_PRINCIPAL_TANGENT_H
 
+#include "material/principal_axes.h"
 #include "material/principal_frame.h"
 #include "simd/chunk.h"
 
@@ -16,49 +17,39 @@ typedef struct mpmi_principal {
   double vector[3][3][MPMI_CHUNK];      /* n_A by A, then component */
   double tau[3][MPMI_CHUNK];            /* set by the law */
   double slope[3][3][MPMI_CHUNK];       /* a_AB, set by the law */
+  double J_inverse[MPMI_CHUNK];
 } mpmi_principal;
 
-/* Turns two axes so that b has no shear between them: Jacobi's rotation. */
-MPMI_INLINE void mpmi_turn_axes(mpmi_principal *o, double (*shear)[MPMI_CHUNK], int p, int one, int two) {
-  const int third = 3 - one - two;
-  double *of_third_one = shear[two], *of_third_two = shear[one]; /* shear[A] is that of the other two axes */
-  double between = shear[third][p], apart = o->b[two][p] - o->b[one][p];
-  double t = 2.0 * between / (fabs(apart) + sqrt(apart * apart + 4.0 * between * between + 1e-300));
-  t = apart < 0.0 ? -t : t;
-  double c = 1.0 / sqrt(1.0 + t * t), s = t * c;
-  o->b[one][p] -= t * between;
-  o->b[two][p] += t * between;
-  shear[third][p] = 0.0;
-  double x = of_third_one[p], y = of_third_two[p];
-  of_third_one[p] = c * x - s * y;
-  of_third_two[p] = s * x + c * y;
-  for (int k = 0; k < 3; ++k) {
-    double u = o->vector[one][k][p], v = o->vector[two][k][p];
-    o->vector[one][k][p] = c * u - s * v;
-    o->vector[two][k][p] = s * u + c * v;
+/* Finds principal values and vectors of b_trial of a chunk, and the trial strain. */
+MPMI_INLINE void mpmi_principal_load(int dim, mpmi_principal *o, mpmi_frame in, int64_t begin) {
+  MPMI_IVDEP
+  for (int p = 0; p < MPMI_CHUNK; ++p) {
+    double J = mpmi_frame_J(dim, in, begin + p);
+    mpmi_sym b = mpmi_trial_b(dim, in, begin + p, J);
+    mpmi_axes axes = mpmi_principal_axes(dim, b);
+    double held = mpmi_elastic_range(b);
+    for (int k = 0; k < 3; ++k) {
+      o->b[k][p] = axes.value[k];
+      o->strain[k][p] = 0.5 * mpmi_lane_log1p(axes.value[k]);
+      for (int i = 0; i < 3; ++i) o->vector[k][i][p] = axes.vector[k][i];
+    }
+    o->strain[0][p] = held > 0.0 ? o->strain[0][p] : (double)NAN;
+    o->J_inverse[p] = 1.0 / J;
   }
 }
 
-/* Finds principal values and vectors of b_trial of a chunk, by rounds of rotations, and the trial strain. */
-MPMI_INLINE void mpmi_principal_load(int dim, mpmi_principal *o, mpmi_frame in, int64_t begin) {
-  enum { ROUNDS = 6 }; /* the shear is squared with each: 1e-16 is reached in 5 */
-  _Alignas(64) double shear[3][MPMI_CHUNK];
-  memset(o->vector, 0, sizeof o->vector);
+/* Writes the stress of a chunk, once the law has set tau; stress points at the first particle in row 0. */
+MPMI_INLINE void mpmi_principal_stress(int dim, const mpmi_principal *o, double *stress, int64_t ld) {
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
-    mpmi_sym b = mpmi_trial_b(dim, in, begin + p, mpmi_frame_J(dim, in, begin + p));
-    o->b[0][p] = b.xx, o->b[1][p] = b.yy, o->b[2][p] = b.zz;
-    shear[0][p] = b.yz, shear[1][p] = b.xz, shear[2][p] = b.xy;
-    for (int k = 0; k < 3; ++k) o->vector[k][k][p] = 1.0;
-  }
-  for (int round = 0; round < (dim == 3 ? ROUNDS : dim == 2); ++round)
-    for (int pair = dim == 3 ? 0 : 2; pair < 3; ++pair) {
-      MPMI_IVDEP
-      for (int p = 0; p < MPMI_CHUNK; ++p) mpmi_turn_axes(o, shear, p, pair == 0, pair == 2 ? 1 : 2);
+    mpmi_sym s = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    for (int k = 0; k < 3; ++k) {
+      double x = o->vector[k][0][p], y = o->vector[k][1][p], z = o->vector[k][2][p];
+      double t = o->tau[k][p] * o->J_inverse[p];
+      s.xx += t * x * x, s.yy += t * y * y, s.zz += t * z * z;
+      s.xy += t * x * y, s.yz += t * y * z, s.xz += t * x * z;
     }
-  for (int k = 0; k < 3; ++k) {
-    MPMI_IVDEP
-    for (int p = 0; p < MPMI_CHUNK; ++p) o->strain[k][p] = 0.5 * mpmi_lane_log1p(o->b[k][p]);
+    mpmi_store_sym(dim, stress, ld, p, s);
   }
 }
 

@@ -1,0 +1,54 @@
+/* One particle on a path without a grid, by mpm_material_update(), and what holds for every law whose stress is the
+ * state. */
+#ifndef MPM_TEST_LAW_PATH_H
+#define MPM_TEST_LAW_PATH_H
+
+#include "tangent_sample.h"
+
+typedef struct path {
+  mpm_material *material;
+  double F[9], stress[6], state[8], energy, wave, tangent[81];
+} path;
+typedef struct invariants {
+  double p, q;
+} invariants;
+
+path path_of(const char *model, const mpm_param *params, int32_t count);
+
+/* Begins with F = I, a mean stress, and states of 0. */
+void start(path *s, double mean);
+
+/* A step by F_inc; by principal stretches, as their logarithms; in simple shear. */
+void advance(path *s, const double *F_inc);
+void stretch(path *s, double x, double y, double z);
+void shear(path *s, double by, int32_t steps);
+
+/* Compresses along z, with the stress across held where it is. */
+void triaxial(path *s, double axial, int32_t steps);
+
+double jacobian_of(const path *s);
+/* Of the Kirchhoff stress. */
+invariants invariants_of(const path *s);
+
+/* Within 1e-9. */
+void ck_number(const char *what, double value, double wanted);
+
+/* A random number between two. */
+double wide(uint64_t *seed, double low, double high);
+
+/* A step of a random size; returns F_inc. */
+void random_increment(uint64_t *seed, double *F_inc);
+
+/* The largest difference of the tangent of a step from differences of fourth order of the Kirchhoff stress, and
+ * whether all of these steps end in one regime. */
+typedef int32_t (*regime_fn)(const path *from, const path *to);
+double tangent_off(const path *from, const double *F_inc, regime_fn regime_of, int32_t *smooth);
+
+/* A frame that turns with the end of the step turns the stress and nothing else. */
+void ck_frame(const path *from, const double *F_inc, uint64_t *seed);
+
+/* Plane and uniaxial strain are what space makes of them: steps from random stresses of a size, some of them with
+ * a state. */
+void ck_dimension(const mpm_material *m, int32_t dim, real stress, const double *state, uint64_t *seed);
+
+#endif
