@@ -39,6 +39,8 @@ static const bench_case cases[] = {
     {"3-D FLIP, J2", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "j2", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D FLIP, Drucker-Prager", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "drucker_prager", 0.3, 0.125, 40,
      BENCH_FREE},
+    {"3-D FLIP, Mohr-Coulomb", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "mohr_coulomb", 0.3, 0.125, 40,
+     BENCH_FREE},
     {"1-D quadratic FLIP", 1, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D cubic FLIP", 3, MPM_BSPLINE3, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D cubic APIC_MLS", 3, MPM_BSPLINE3, MPM_USL, MPM_APIC_MLS, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},

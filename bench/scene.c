@@ -135,7 +135,7 @@ static mpm_status host_law(void *user, const mpm_material_batch *b) {
 
 static mpm_status make_material(bench_scene *scene, const bench_case *of) {
   static double constants[2] = {0.3 / (1.3 * 0.4), 1.0 / 2.6}; /* lambda, mu */
-  if (of->extras != BENCH_HOST_LAW && of->law[0] == 'd')
+  if (of->extras != BENCH_HOST_LAW && (of->law[0] == 'd' || of->law[0] == 'm'))
     return mpm_material_create(scene->context, of->law, of_soil, 5, &scene->material);
   if (of->extras != BENCH_HOST_LAW)
     return mpm_material_create(scene->context, of->law, parameters, bench_yields(of) ? 5 : 3,
@@ -285,7 +285,7 @@ double bench_flops(const bench_case *of) {
 }
 
 int32_t bench_yields(const bench_case *of) {
-  return of->law[0] == 'j' || of->law[0] == 'd';
+  return of->law[0] == 'j' || of->law[0] == 'd' || of->law[0] == 'm';
 }
 
 /* P2G reads x, v, m, V, stress (and C); G2P reads x, v, F, m, V0 and writes x, v, F, V, stress (and C); MUSL

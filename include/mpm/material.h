@@ -30,6 +30,8 @@ extern "C" {
  * | "drucker_prager"        | E, nu, density, phi, psi, cohesion,     | elastic in the logarithmic strain;  |
  * |                         | cone, tension_cutoff, hardening,        | yields at q = M p + k: sand, gravel |
  * |                         | cohesion_residual, close_gaps           | and other soils; opens in tension   |
+ * | "mohr_coulomb"          | those of drucker_prager without cone    | the same by the planes of           |
+ * |                         |                                         | Mohr-Coulomb; phi = 0 is Tresca     |
  *
  * params are count pairs of name and value in any order, which are copied; parameters that are not named take
  * their defaults. mpm_material_model_param() lists units, defaults and ranges. *out is NULL unless MPM_OK is

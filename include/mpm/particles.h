@@ -37,7 +37,8 @@
  *   MPM_AFLIP) or the gradient of the updated nodal velocities (MPM_TPIC, MPM_TFLIP); 0 in new particles.
  *   With MPM_FLIP and MPM_XPIC it is kept only once the host has set or mapped it, and then is the L that
  *   deformed the particle in the last step.
- * - stress: Cauchy stress; writable where the law is hypoelastic (linear_elastic, j2), else computed from F.
+ * - stress: Cauchy stress; writable where it is part of the law's state (linear_elastic, j2, drucker_prager,
+ *   mohr_coulomb, a law of the host), else computed from F.
  * - state: state variables of the law.
  * - reference_position: exists while a stepper with reference_positions holds the set, and starts as the
  *   unwrapped position at mpm_stepper_add().

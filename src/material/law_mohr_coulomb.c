@@ -199,14 +199,18 @@ MPMI_INLINE mohr_tip tip_of(const mohr_constants *c, mohr_state trial, double me
   double firm = stiffness > 0.0 ? 1.0 : 0.0;
   double open = (mean - c->apex * mpmi_max(trial.soft, c->residual)) / (firm * stiffness + (1.0 - firm));
   double hardens = firm * (trial.soft + trial.hard * open < c->residual ? 0.0 : 1.0);
+  /* an apex that hardens stops at the cut-off */
+  double rises = mpmi_max(trial.hard, 0.0) * c->apex, rising = rises > 0.0 ? 1.0 : 0.0;
+  double room = rising * (c->cutoff - c->apex * trial.soft) / (rises + (1.0 - rising));
+  double most = either(rising, room, DBL_MAX), free = open < most ? 1.0 : 0.0;
   double to_residual = c->by_volume * (mean - c->apex * c->residual) / bulk;
   double vanished = c->bond * mpmi_max(trial.s[0], -trial.s[2]) / (2.0 * c->elastic.mu);
   mohr_tip r;
-  r.flow = mpmi_max(either(dilates, either(hardens, open, to_residual), vanished), 0.0);
+  r.flow = mpmi_max(either(dilates, either(hardens, mpmi_min(open, most), to_residual), vanished), 0.0);
   double soft = mpmi_max(c->cohesion + c->hardening * (plastic + dilates * r.flow), c->residual);
   r.tension = mpmi_min(c->cutoff, c->apex * soft + c->apex_beyond);
-  r.slope =
-      dilates * hardens * (r.flow > 0.0 ? trial.hard * c->apex / (firm * stiffness + (1.0 - firm)) : 0.0);
+  r.slope = dilates * hardens * free *
+            (r.flow > 0.0 ? trial.hard * c->apex / (firm * stiffness + (1.0 - firm)) : 0.0);
   return r;
 }
 

@@ -118,6 +118,9 @@ static void make_material(world *w, int32_t m) {
   case LAW_SOIL:
     must(w, mpm_material_create(w->context, "drucker_prager", soil, 7, out));
     break;
+  case LAW_MOHR_COULOMB:
+    must(w, mpm_material_create(w->context, "mohr_coulomb", soil, 7, out));
+    break;
   case LAW_RIGID:
     must(w, mpm_material_create(w->context, "rigid", fluid, 1, out));
     break;

@@ -18,6 +18,7 @@ enum {
   LAW_HOST,         /* with a state variable and its energy; the library differences its tangent */
   LAW_HOST_TANGENT, /* with a tangent and without an energy */
   LAW_SOIL,
+  LAW_MOHR_COULOMB,
   LAWS
 };
 

@@ -29,11 +29,15 @@ const transfer_option transfer_options[TRANSFERS] = {{MPM_FLIP, 2, 1.0, 0.0, "FL
                                                      {MPM_XPIC, 3, 1.0, 0.0, "XPIC(3)"},
                                                      {MPM_XPIC, 5, 1.0, 0.0, "XPIC(5)"}};
 
-const law_option law_options[LAWS] = {
-    {"neo_hookean", "neo-Hookean"},         {"linear_elastic", "linear elastic"},
-    {"neo_hookean_decoupled", "decoupled"}, {"j2", "J2"},
-    {"newtonian_fluid", "fluid"},           {"rigid", "rigid"},
-    {"drucker_prager", "Drucker-Prager"},   {NULL, "host law"}};
+const law_option law_options[LAWS] = {{"neo_hookean", "neo-Hookean"},
+                                      {"linear_elastic", "linear elastic"},
+                                      {"neo_hookean_decoupled", "decoupled"},
+                                      {"j2", "J2"},
+                                      {"newtonian_fluid", "fluid"},
+                                      {"rigid", "rigid"},
+                                      {"drucker_prager", "Drucker-Prager"},
+                                      {"mohr_coulomb", "Mohr-Coulomb"},
+                                      {NULL, "host law"}};
 
 #define BOTH_SCHEMES(b, t, f, name)                                                                          \
   {METHOD(b, USL, t, f, name " USL")}, {                                                                     \

@@ -157,7 +157,7 @@ START_TEST(sagging_block) {
 END_TEST
 
 /* Every law, with and without the remedy: the iteration knows the derivative of what the law does. */
-enum { IMPLICIT_LAWS = 6 };
+enum { IMPLICIT_LAWS = 7 };
 START_TEST(every_law) {
   static const mpm_param clay[] = {{"E", 1e5},    {"nu", 0.3},  {"density", 1e3},
                                    {"phi", 20.0}, {"psi", 5.0}, {"cohesion", 900.0}};
@@ -169,7 +169,8 @@ START_TEST(every_law) {
       {.model = "j2", .E = 1e5, .nu = 0.3, .density = 1e3, .yield_stress = 900.0, .hardening = 1e4},
       {.model = "newtonian_fluid", .params = fluid, .param_count = 3},
       {.model = "neo_hookean_decoupled", .params = decoupled, .param_count = 3},
-      {.model = "drucker_prager", .params = clay, .param_count = 6}};
+      {.model = "drucker_prager", .params = clay, .param_count = 6},
+      {.model = "mohr_coulomb", .params = clay, .param_count = 6}};
   _Static_assert(sizeof laws / sizeof *laws == IMPLICIT_LAWS, "all are run");
   const int32_t remedy = _i / IMPLICIT_LAWS % 2, dim = 2 + _i / IMPLICIT_LAWS / 2 % 2;
   const basis_option *basis = implicit_basis(_i / IMPLICIT_LAWS / 4);

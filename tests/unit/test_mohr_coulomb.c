@@ -117,6 +117,26 @@ START_TEST(cohesion_changes) {
 }
 END_TEST
 
+/* An apex that hardens moves up to the cut-off, and no further; nor does the plastic strain. */
+START_TEST(apex_meets_the_cut_off) {
+  rock of = with(0.3, 30.0, 5.0, 5e3);
+  of.value[H].value = 3e5;
+  of.value[T].value = 9e3;
+  path s = open_rock(&of);
+  start(&s, 0.0);
+  stretch(&s, 0.002, 0.0015, 0.001);
+  for (int c = 0; c < 3; ++c) ck_number("tau", jacobian_of(&s) * s.stress[c], 9e3);
+  ck_within("plastic strain", s.state[0], (9e3 / sqrt(3.0) - 5e3) / 3e5, 1e-12);
+  ck_within("gap", s.state[1], 0.0045 - 9e3 * 1.2 / 20e6, 1e-12);
+  for (int c = 0; c < 81; ++c) {
+    const int i = c / 27, j = c / 9 % 3, k = c / 3 % 3, l = c % 3;
+    const double wanted = -9e3 * ((i == k && j == l) + (i == l && j == k));
+    ck_within("tangent", s.tangent[c], wanted, 1e-4);
+  }
+  law_material_free(s.material);
+}
+END_TEST
+
 /* What has opened closes before it bears, and opens the plastic strain once only. */
 START_TEST(gaps_close) {
   const rock of = with(0.3, 30.0, 5.0, 1e3);
@@ -365,6 +385,7 @@ Suite *mohr_coulomb_suite(void) {
   tcase_add_test(tc, triaxial_strength);
   tcase_add_test(tc, oedometer);
   tcase_add_test(tc, cohesion_changes);
+  tcase_add_test(tc, apex_meets_the_cut_off);
   tcase_add_test(tc, gaps_close);
   tcase_add_test(tc, cut_off);
   tcase_add_test(tc, parameters_go_together);
