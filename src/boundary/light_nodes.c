@@ -109,8 +109,9 @@ static double of_leaders(const leaders *of, double *(*vector)(const mpmi_nodal *
   return sum;
 }
 
-/* Returns the light node that stands in the list by the one in a slot, or -1 where it stands there by itself
- * or by another one: an image stands for its master where that has no particles of its own. */
+/* The list holds slots of nodes with mass. Returns the node that moves for one of them: itself if it is free,
+ * its master if that has no mass and this image is the first that has; else -1, because another entry of the
+ * list stands for the master. */
 static int64_t listed_by(const mpmi_bound *bound, int64_t slot) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   if (mpmi_constraints_is_free(constraints, slot)) return slot;
@@ -159,11 +160,11 @@ static void set(mpmi_bound *bound, int64_t slot, int32_t c, double velocity, dou
   double *v = mpmi_velocity(bound->values, slot);
   const double own = mpmi_increment_of(bound, slot, c);
   mpmi_shift_node(bound, slot, c, velocity - (v[c] + own), increment - own);
-  v[c] = velocity; /* to the last bit */
+  v[c] = velocity; /* without the rounding of the shift */
   if (mpmi_has_increments(bound->values)) mpmi_increment(bound->values, slot)[c] = increment;
 }
 
-/* What the mass of a light node has more of momentum now, its leaders have less. */
+/* Lets a light node move with its leaders. The momentum that its mass gains by that is taken from them. */
 static void follow(mpmi_bound *bound, mpmi_light_node *node, const leaders *with) {
   const double mass = mpmi_moving_mass(bound, node->slot);
   const int32_t both = mpmi_has_increments(bound->values);
@@ -190,7 +191,7 @@ static int64_t to_be_led(const mpmi_bound *bound, int64_t listed) {
   return -1;
 }
 
-/* All are looked at before any is changed, so that their order has no part in it. */
+/* All light nodes are looked at before any of them is changed: no result depends on their order. */
 void mpmi_light_nodes_lead(mpmi_bound *bound) {
   for (int64_t n = 0; n < bound->nodes->light_count; ++n)
     bound->nodes->light[n].slot = to_be_led(bound, bound->nodes->light[n].slot);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { PIECES = 64, CHUNK = 256 };
+enum { PIECES = 64, PORTION = 256 };
 
 typedef struct hash_job {
   const mpm_particles *set;
@@ -69,7 +69,7 @@ static void load_defaults(const mpm_particles *set, int32_t f, int32_t c, int64_
 static void add_field(const hash_job *job, int32_t f, int64_t begin, int64_t n, uint64_t *total) {
   const mpm_particles *set = job->set;
   const mpmi_field *field = &set->field[f];
-  uint64_t h[CHUNK], word[CHUNK], absent[CHUNK], differs[CHUNK];
+  uint64_t h[PORTION], word[PORTION], absent[PORTION], differs[PORTION];
   for (int64_t i = 0; i < n; ++i) h[i] = job->field_seed[f];
   for (int64_t i = 0; i < n; ++i) differs[i] = always_counts(f) ? 1 : 0;
   for (int32_t c = 0; c < field->components; ++c) {
@@ -87,12 +87,12 @@ static void add_field(const hash_job *job, int32_t f, int64_t begin, int64_t n, 
 static void hash_piece(void *data, int64_t k) {
   hash_job *job = data;
   const mpm_particles *set = job->set;
-  const int64_t chunks = (set->slots + CHUNK - 1) / CHUNK;
+  const int64_t portions = (set->slots + PORTION - 1) / PORTION;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   uint64_t sum = 0;
-  for (int64_t chunk = chunks * k / PIECES; chunk < chunks * (k + 1) / PIECES; ++chunk) {
-    const int64_t begin = chunk * CHUNK, n = set->slots - begin < CHUNK ? set->slots - begin : CHUNK;
-    uint64_t total[CHUNK] = {0};
+  for (int64_t portion = portions * k / PIECES; portion < portions * (k + 1) / PIECES; ++portion) {
+    const int64_t begin = portion * PORTION, n = set->slots - begin < PORTION ? set->slots - begin : PORTION;
+    uint64_t total[PORTION] = {0};
     for (int32_t f = 0; f < set->field_count; ++f)
       if (f != MPMI_ID && set->field[f].present) add_field(job, f, begin, n, total);
     for (int64_t i = 0; i < n; ++i)

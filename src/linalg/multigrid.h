@@ -25,7 +25,7 @@ typedef struct mpmi_multigrid {
   const mpmi_sweeps *kernels;
   int64_t pattern_id; /* the pattern that the structure was made for */
   int32_t analysed;
-  mpmi_hierarchy smooth, alternating; /* `smooth` has the smoother of the first level */
+  mpmi_hierarchy smooth, alternating; /* the first level is smoothed by `smooth` alone */
   double largest_scale;               /* the largest scale of the first level */
   mpmi_level_memory scratch;
 } mpmi_multigrid;

@@ -44,8 +44,10 @@ typedef struct mpmi_smoother {
 /* A sweep takes the lines [begin, end). */
 typedef void (*mpmi_sweep_fn)(const mpmi_smoother *s, int64_t begin, int64_t end);
 typedef struct mpmi_sweeps {
-  mpmi_sweep_fn solve;    /* solves for x from rhs and all that is not on the line; leaves that difference */
-  mpmi_sweep_fn residual; /* makes the residual of it: the same difference now, less that then */
+  /* Solves for x on each line, from rhs less what is off the line; `residual` keeps this difference. */
+  mpmi_sweep_fn solve;
+  /* Makes the residual: that difference with the present x, less the one that was kept. */
+  mpmi_sweep_fn residual;
 } mpmi_sweeps;
 const mpmi_sweeps *mpmi_sweeps_of(int32_t isa);
 

@@ -37,10 +37,11 @@ typedef struct mpmi_law {
   const double *state_initial; /* [state_count], or NULL: zeros */
   int32_t stress_from_F; /* 1: hyperelastic, fluid, rigid; 0: hypoelastic, the host may set the stress */
   int32_t kinematics;    /* MPMI_F_... */
+  /* Says what is wrong with the parameters together, or returns NULL where nothing is. NULL: there is no such
+   * check. */
+  const char *(*check)(const double *value);
   /* The kernels work with constants that `prepare` makes from the values of the parameters: a struct of
    * doubles, all of which must be finite. A law without constants has 0 and NULL here. */
-  const char *(*check)(
-      const double *value); /* what is wrong with the parameters together; NULL: nothing is */
   size_t constants_size;
   void (*prepare)(const double *value, void *constants);
   mpmi_law_fn stress;

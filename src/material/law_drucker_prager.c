@@ -33,7 +33,7 @@ static const mpmi_law_state states[] = {
 typedef struct drucker_constants {
   mpmi_hencky elastic;
   double slope, dilation; /* M, M_psi */
-  double strength;        /* kappa: k by cohesion */
+  double strength;        /* kappa, k over the cohesion */
   double cohesion, hardening, residual;
   double cutoff;            /* largest mean tension that is borne, DBL_MAX without a limit */
   double apex, apex_beyond; /* mean tension at the apex: apex * k + apex_beyond */
@@ -86,8 +86,8 @@ static const char *check(const double *value) {
 typedef struct drucker_return {
   double p, q, keep, plastic, gap;
   double over;      /* > 0: beyond the yield surface */
-  double fit;       /* < 0: the cone would end beyond the cut-off; what is there holds */
-  double stiffness; /* A on the cone */
+  double fit;       /* < 0: a return to the cone would end beyond the cut-off, which decides in its place */
+  double stiffness; /* A of a return to the cone */
 } drucker_return;
 
 MPMI_INLINE drucker_return come_back(const drucker_constants *c, double volume, double q, double plastic,
@@ -99,7 +99,7 @@ MPMI_INLINE drucker_return come_back(const drucker_constants *c, double volume, 
   double tension = mpmi_min(c->cutoff, c->apex * k + c->apex_beyond);
   drucker_return r;
   r.over = q - c->slope * p - k;
-  /* the cone, with the cohesion that the step leaves */
+  /* a return to the cone: its cohesion is that at the end of the step */
   double hard = soft > c->residual ? c->hard : mpmi_max(c->hard, 0.0), step = r.over / (c->perfect + hard);
   double rest = (q - c->slope * p - c->strength * c->residual) / c->perfect;
   double left = soft + c->hardening * step - c->residual;

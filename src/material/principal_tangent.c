@@ -1,7 +1,8 @@
 #include "material/principal_tangent.h"
 
-/* g_AB, or its limit where the two are too close for the quotient, as strains of this size go: the limit
- * takes the axes for alike in all that the law sees, which a small strain as such does not make them. */
+/* Returns g_AB, or its limit for equal principal values where they are so close that the quotient loses its
+ * digits. What counts as close goes with the size of the strain: at small strains all values are close, and
+ * the law still tells them from each other. */
 MPMI_INLINE double mixed(const mpmi_principal *o, int p, int one, int two) {
   double apart = o->b[one][p] - o->b[two][p];
   double size = fabs(o->b[0][p]) + fabs(o->b[1][p]) + fabs(o->b[2][p]);

@@ -3,7 +3,7 @@
 
 #include "particles/values.h"
 
-enum { CHUNK = 256 };
+enum { PORTION = 256 };
 
 /* A selection says which particles a call is about, and how its buffer is laid out: by ids[n], or all by
  * ascending id. With `uniform` it is all slots in library order, with one value for all. */
@@ -13,11 +13,11 @@ typedef struct selection {
   int32_t uniform;
 } selection;
 
-/* Lists the slots of the items [begin, begin + CHUNK) of a selection whose ids are known to exist. Returns
+/* Lists the slots of the items [begin, begin + PORTION) of a selection whose ids are known to exist. Returns
  * how many there are. */
 static int64_t slots_of(const mpm_particles *set, const selection *of, int64_t begin, int64_t *slot) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
-  int64_t end = of->n - begin < CHUNK ? of->n : begin + CHUNK, found = 0;
+  int64_t end = of->n - begin < PORTION ? of->n : begin + PORTION, found = 0;
   for (int64_t i = begin; i < end; ++i) {
     if (of->uniform && id[i] < 0) continue;
     slot[found++] = of->uniform ? i : of->ids ? mpmi_index_find(set, of->ids[i]) : set->index[i].slot;
@@ -57,7 +57,7 @@ static void copy_element(void *to, const void *from, size_t size) {
     memcpy(to, from, sizeof(double));
 }
 
-/* Copies one component of a chunk to out[], from the storage of the field or from its default. */
+/* Copies one component of a portion to out[], from the storage of the field or from its default. */
 static void copy_out(const mpm_particles *set, int32_t field, int32_t c, int64_t n, const int64_t *slot,
                      char *out) {
   const mpmi_field *at = &set->field[field];
@@ -89,8 +89,8 @@ mpm_status mpm_particles_get(const mpm_particles *particles, const char *field, 
     status = mpmi_fail(particles->context, MPM_E_ARG, "out is NULL");
   /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
   if (!status) status = mpmi_settle((mpm_particles *)particles, f);
-  int64_t slot[CHUNK];
-  for (int64_t begin = 0; begin < n && !status; begin += CHUNK) {
+  int64_t slot[PORTION];
+  for (int64_t begin = 0; begin < n && !status; begin += PORTION) {
     int64_t found = slots_of(particles, &of, begin, slot);
     for (int32_t c = 0; c < components; ++c)
       copy_out(particles, f, c, found, slot, (char *)out + (size_t)(c * n + begin) * mpmi_type_size(type));
@@ -127,8 +127,8 @@ static mpm_status check_given(const mpm_particles *set, int32_t field, const sel
 static void copy_in(mpm_particles *set, int32_t field, const selection *of, const source *from) {
   const mpmi_field *at = &set->field[field];
   size_t size = mpmi_type_size(at->type);
-  int64_t slot[CHUNK];
-  for (int64_t begin = 0; begin < of->n; begin += CHUNK) {
+  int64_t slot[PORTION];
+  for (int64_t begin = 0; begin < of->n; begin += PORTION) {
     int64_t found = slots_of(set, of, begin, slot);
     for (int64_t i = 0; i < found; ++i) {
       const char *item = from->values + (size_t)((begin + i) * from->item_stride) * size;

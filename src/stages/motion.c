@@ -169,7 +169,7 @@ void mpmi_motion_take(mpmi_batch *b) {
     flags |= mpmi_prescribed_move(b->step, b->nodes, b->m, b->block, &b->move, b->begin, b->n);
   b->flags |= flags & MPMI_NONFINITE;
   if (b->set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(settings)) store_accelerations(b);
-  if (b->move.stays) return; /* they are not where they will be */
+  if (b->move.stays) return; /* another pass moves them, and looks at their places then */
   if (flags & MPMI_LEFT_BOUNDS) look_astray(b);
   if (flags & MPMI_OUTSIDE) look_outside(b);
 }

@@ -60,7 +60,7 @@ static void update_task(void *data, int64_t k) {
   const mpmi_share share = mpmi_share_of(step->settings, mpmi_slots(step->layout), k);
   const int64_t count = share.end - share.begin;
   update_runs runs = {job, {0, 0}, NULL};
-  if (count) take_runs(job, k, update_run, &runs); /* perhaps there are no nodes at all */
+  if (count) take_runs(job, k, update_run, &runs); /* without nodes there are no runs */
   step->work->report[k].active = runs.found.active;
   step->work->report[k].light = runs.found.light;
   if (!count) return;
