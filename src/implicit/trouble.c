@@ -64,7 +64,7 @@ static int32_t falls(const mpmi_newton *newton, double by) {
 /* Returns what helps: of steps that fail so, what got them through when it was tried. */
 static const char *advice(const mpmi_balance *balance, int32_t touches_change) {
   const mpmi_newton *newton = balance->newton;
-  if (touches_change) return "bodies go on to part and touch again: use a smaller dt, or less friction";
+  if (touches_change) return "bodies go on to part and touch again: use mpm_advance, or less friction";
   if (falls(newton, soon)) return "it falls fast: raise newton_max_iterations";
   if (falls(newton, hardly) && mpmi_has_host_law(balance->layout))
     return "it falls slowly, as with a tangent callback that is not the derivative of the stress";
