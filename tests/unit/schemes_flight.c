@@ -6,8 +6,7 @@ static const double offsets[] = {0.0,    1e-15, -1e-15, 1e-13, -1e-13, 1e-12, -1
                                  -1e-11, 1e-10, -1e-10, 1e-9,  -1e-9,  1e-7,  -1e-7};
 enum { OFFSETS = sizeof offsets / sizeof *offsets };
 /* AROUND: over a periodic seam, on more cells than a block of nodes has. LED: a callback prescribes what the
- * block does. PUSHED: the same, for a block that was at rest. HASTENED: a hook adds a force that goes with the
- * mass. BY_LIGHT, BY_HEAVY: beside one at rest with a millionth of the density, or a million times it. */
+ * block does. PUSHED: the same, for a block that was at rest. HASTENED: gravity and a hook accelerate all of it. BY_LIGHT, BY_HEAVY: beside one at rest with a millionth of the density, or a million times it. */
 enum { ALONE, SLIDING, AROUND, LED, PUSHED, HASTENED, BY_LIGHT, BY_HEAVY, SURROUNDINGS };
 typedef struct stepping {
   int32_t scheme, projected;
@@ -58,8 +57,9 @@ static void fly(int32_t dim, const basis_option *basis, const stepping *how, con
   const world_law law = {.model = "neo_hookean", .E = 1e3 * other, .nu = 0.3, .density = other};
   snprintf(name, sizeof name, "%s, scheme %d%s, %s, %g, among %d", basis->name, (int)how->scheme,
            how->projected ? " projected" : "", by->name, offset, (int)among);
+  const double dt = 1.0 / 64.0, speed = 0.25 / dt, a = among == HASTENED ? speed / dt : 0.0;
+  d.stepper.gravity[0] = 0.5 * a;
   mpm_particles *set = world_open(&w, &d);
-  const double dt = 1.0 / 64.0, speed = 0.25 / dt;
   double v[3] = {speed, among == SLIDING || among >= BY_LIGHT ? 0.0 : 0.5 * speed,
                  dim == 3 ? 0.25 * speed : 0.0};
   const double from = among == AROUND ? (double)cells - 3.0 : 4.0,
@@ -80,8 +80,8 @@ static void fly(int32_t dim, const basis_option *basis, const stepping *how, con
   lead with = {v, among == PUSHED ? -1e3 : 6.5};
   if (among == LED || among == PUSHED) ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, keep_going, &with));
   const int32_t steps = among == HASTENED ? 4 : 9;
-  double a = among == HASTENED ? speed / dt : 0.0;
-  if (among == HASTENED) ck_ok(&w, mpm_stepper_set_node_hook(w.stepper, MPM_AFTER_P2G, hasten, &a));
+  double half = 0.5 * a;
+  if (among == HASTENED) ck_ok(&w, mpm_stepper_set_node_hook(w.stepper, MPM_AFTER_P2G, hasten, &half));
   for (int32_t k = 0; k < steps; ++k) {
     const mpm_status status = mpm_step(w.stepper, dt, NULL);
     if (status) ck_abort_msg("%s, %d-D: %s", name, (int)dim, last_error_of(&w));
