@@ -36,7 +36,8 @@ typedef struct mpmi_law {
   const mpmi_law_state *state; /* [state_count] */
   const double *state_initial; /* [state_count], or NULL: zeros */
   int32_t stress_from_F; /* 1: hyperelastic, fluid, rigid; 0: hypoelastic, the host may set the stress */
-  int32_t kinematics;    /* MPMI_F_... */
+  int32_t mean_from_F; /* 1, with stress_from_F = 0: the host may set the deviator, the mean follows from F */
+  int32_t kinematics;  /* MPMI_F_... */
   /* Says what is wrong with the parameters together, or returns NULL where nothing is. NULL: there is no such
    * check. */
   const char *(*check)(const double *value);

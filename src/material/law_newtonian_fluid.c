@@ -2,43 +2,34 @@
  *   stress = -p I + 2 eta dev(ln V) / dt, p = K/gamma (J^-gamma - 1), F_inc = V R of the step,
  *   energy per initial volume W with dW/dJ = -p and W(1) = 0.
  * Without tension everything but the viscous stress is that of min(J, 1). */
-#include <math.h>
-
 #include "material/objective_tangent.h"
+#include "material/tait.h"
 
 enum { DENSITY, BULK, GAMMA, VISCOSITY, TENSION };
 static const mpmi_law_param params[] = {
     [DENSITY] = PARAM_DENSITY,
-    [BULK] = {"bulk_modulus", "stress", "bulk modulus at the initial volume", MUST_BE_GIVEN, POSITIVE},
-    [GAMMA] = {"gamma", "1", "exponent of the volume: pressure = bulk_modulus / gamma (J^-gamma - 1)", 7.0,
-               AT_LEAST_ONE},
+    [BULK] = PARAM_BULK,
+    [GAMMA] = PARAM_GAMMA,
     [VISCOSITY] = {"viscosity", "stress*time", "dynamic viscosity", 0.0, NOT_NEGATIVE},
-    [TENSION] = {"tension", "1", "1: pressure may be negative; 0: it is cut off at 0", 1.0, ZERO_OR_ONE}};
+    [TENSION] = PARAM_TENSION};
 
 typedef struct fluid_constants {
-  double bulk, bulk_by_gamma;
-  double gamma_minus_1; /* never 0 */
-  double viscosity, density_inverse;
-  double largest_J_minus_1; /* above it there is no pressure: 0 without tension */
+  mpmi_tait volume;
+  double bulk, viscosity, density_inverse;
 } fluid_constants;
 
 static void prepare(const double *value, void *constants) {
   fluid_constants *c = constants;
-  const double gamma_minus_1 = value[GAMMA] - 1.0;
+  c->volume = mpmi_tait_of(value[BULK], value[GAMMA], value[TENSION]);
   c->bulk = value[BULK];
-  c->bulk_by_gamma = value[BULK] / value[GAMMA];
-  /* (J^(1 - gamma) - 1) / (gamma - 1) is -ln J to the last digit for one so small */
-  c->gamma_minus_1 = gamma_minus_1 > 0.0 ? gamma_minus_1 : 1e-100;
   c->viscosity = value[VISCOSITY];
   c->density_inverse = 1.0 / value[DENSITY];
-  c->largest_J_minus_1 = value[TENSION] > 0.0 ? DBL_MAX : 0.0;
 }
 
 MPMI_INLINE void compression(int dim, const fluid_constants *c, const mpm_material_batch *batch) {
-  const double bulk_by_gamma = c->bulk_by_gamma, exponent = c->gamma_minus_1;
-  const double exponent_inverse = 1.0 / exponent, most = c->largest_J_minus_1;
-  const double density_inverse = c->density_inverse, viscosity = c->viscosity;
-  const double c_squared = c->bulk * density_inverse, nu = viscosity * density_inverse;
+  const mpmi_tait volume = c->volume;
+  const double density_inverse = c->density_inverse, nu = c->viscosity * density_inverse;
+  const double c_squared = c->bulk * density_inverse;
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const double *deformation = batch->F;
   double *stress = batch->stress_new, *wave_speed = batch->wave_speed, *energy = batch->energy;
@@ -46,14 +37,11 @@ MPMI_INLINE void compression(int dim, const fluid_constants *c, const mpm_materi
   MPMI_IVDEP
   for (int64_t i = 0; i < n; ++i) {
     double j_minus_1 = mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, deformation, ld, i));
-    double h = mpmi_min(most, j_minus_1);
-    /* J^(1 - gamma) - 1, of which p and W are made without a difference of large numbers */
-    double power = mpmi_lane_expm1(-exponent * mpmi_lane_log1p(h));
-    double mean = bulk_by_gamma * (h - power) / (1.0 + h);
-    mpmi_sym s = {mean, mean, mean, 0.0, 0.0, 0.0};
+    mpmi_tait_state at = mpmi_tait_at(&volume, j_minus_1);
+    mpmi_sym s = {at.mean, at.mean, at.mean, 0.0, 0.0, 0.0};
     mpmi_store_sym(dim, stress, ld, i, s);
-    energy[i] = bulk_by_gamma * (power * exponent_inverse + h);
-    wave_speed[i] = sqrt(c_squared * (1.0 + power));
+    energy[i] = at.energy;
+    wave_speed[i] = sqrt(c_squared * at.stiffening);
     kinematic_viscosity[i] = nu * (1.0 + j_minus_1);
   }
 }
@@ -86,20 +74,18 @@ MPMI_INLINE void newtonian_fluid(int dim, const fluid_constants *c, const mpm_ma
   if (c->viscosity > 0.0) add_shear(dim, c, batch);
 }
 
-/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). Where the pressure is about to be
- * cut off, the tangent is that of compression: a fluid at rest is stiff. */
+/* With t = -J p: c_ijkl = J dt/dJ d_ij d_kl - t (d_ik d_jl + d_il d_jk). */
 MPMI_INLINE void compression_tangent(int dim, const fluid_constants *c, const mpm_material_batch *batch,
                                      double *tangent) {
-  const double bulk_by_gamma = c->bulk_by_gamma, exponent = c->gamma_minus_1;
-  const double most = c->largest_J_minus_1;
+  const mpmi_tait volume = c->volume;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     _Alignas(64) double volumetric[MPMI_CHUNK], shear[MPMI_CHUNK];
     MPMI_IVDEP
     for (int p = 0; p < MPMI_CHUNK; ++p) {
       double h = mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, batch->F, batch->ld, i + p));
-      double power = mpmi_lane_expm1(-exponent * mpmi_lane_log1p(h)); /* J^(1 - gamma) - 1 */
-      volumetric[p] = h > most ? 0.0 : bulk_by_gamma * ((1.0 + h) + exponent * (1.0 + power));
-      shear[p] = h > most ? 0.0 : bulk_by_gamma * (power - h);
+      mpmi_tait_slope slope = mpmi_tait_slope_at(&volume, h);
+      volumetric[p] = slope.volumetric;
+      shear[p] = slope.pressure;
     }
     KERNEL(isotropic_rows)(dim, volumetric, shear, tangent + i, batch->ld);
   }

@@ -257,6 +257,10 @@ int32_t mpmi_material_stress_from_F(const mpm_material *material) {
   return material->law ? material->law->stress_from_F : 0;
 }
 
+int32_t mpmi_material_mean_from_F(const mpm_material *material) {
+  return material->law ? material->law->mean_from_F : 0;
+}
+
 int32_t mpmi_material_kinematics(const mpm_material *material) {
   return material->law ? material->law->kinematics : MPMI_F_DEFORMS;
 }

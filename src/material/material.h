@@ -24,6 +24,8 @@ struct mpm_material {
 mpm_status mpmi_material_evaluate(const mpm_material *material, int32_t dim, const mpm_material_batch *batch);
 /* 1 when stress follows from F, and from the step where the law is viscous. */
 int32_t mpmi_material_stress_from_F(const mpm_material *material);
+/* 1 when the mean stress follows from F and the deviator is the state. */
+int32_t mpmi_material_mean_from_F(const mpm_material *material);
 int32_t mpmi_material_kinematics(const mpm_material *material);
 
 /* Tangent of a material on a batch whose law has just run (outputs in place): c_ijkl of mpm_tangent_fn: with

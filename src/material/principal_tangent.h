@@ -20,19 +20,23 @@ typedef struct mpmi_principal {
   double J_inverse[MPMI_CHUNK];
 } mpmi_principal;
 
+MPMI_INLINE void mpmi_principal_set(int dim, mpmi_principal *o, int p, mpmi_sym b) {
+  mpmi_axes axes = mpmi_principal_axes(dim, b);
+  for (int k = 0; k < 3; ++k) {
+    o->b[k][p] = axes.value[k];
+    for (int i = 0; i < 3; ++i) o->vector[k][i][p] = axes.vector[k][i];
+  }
+}
+
 /* Finds principal values and vectors of b_trial of a chunk, and the trial strain. */
 MPMI_INLINE void mpmi_principal_load(int dim, mpmi_principal *o, mpmi_frame in, int64_t begin) {
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     double J = mpmi_frame_J(dim, in, begin + p);
     mpmi_sym b = mpmi_trial_b(dim, in, begin + p, J);
-    mpmi_axes axes = mpmi_principal_axes(dim, b);
     double held = mpmi_elastic_range(b);
-    for (int k = 0; k < 3; ++k) {
-      o->b[k][p] = axes.value[k];
-      o->strain[k][p] = 0.5 * mpmi_lane_log1p(axes.value[k]);
-      for (int i = 0; i < 3; ++i) o->vector[k][i][p] = axes.vector[k][i];
-    }
+    mpmi_principal_set(dim, o, p, b);
+    for (int k = 0; k < 3; ++k) o->strain[k][p] = 0.5 * mpmi_lane_log1p(o->b[k][p]);
     o->strain[0][p] = held > 0.0 ? o->strain[0][p] : (double)NAN;
     o->J_inverse[p] = 1.0 / J;
   }
@@ -50,6 +54,37 @@ MPMI_INLINE void mpmi_principal_stress(int dim, const mpmi_principal *o, double 
       s.xy += t * x * y, s.yz += t * y * z, s.xz += t * x * z;
     }
     mpmi_store_sym(dim, stress, ld, p, s);
+  }
+}
+
+/* What a law that returns radially sees of a particle: the trial strain as volume and deviator. */
+typedef struct mpmi_radial {
+  double volume, size; /* size: |d| */
+  double d[3], n[3];   /* n = d / |d|, or 0 */
+} mpmi_radial;
+
+MPMI_INLINE mpmi_radial mpmi_radial_of(const mpmi_principal *o, int p) {
+  mpmi_radial r;
+  double square = 0.0;
+  r.volume = o->strain[0][p] + o->strain[1][p] + o->strain[2][p];
+  MPMI_UNROLL for (int a = 0; a < 3; ++a) {
+    r.d[a] = o->strain[a][p] - (1.0 / 3.0) * r.volume;
+    square += r.d[a] * r.d[a];
+  }
+  r.size = sqrt(square);
+  double inverse = square > 0.0 ? 1.0 / r.size : 0.0;
+  MPMI_UNROLL for (int a = 0; a < 3; ++a) r.n[a] = inverse * r.d[a];
+  return r;
+}
+
+/* tau = mean I + shear d, a_AB = bulk + shear Dev + along n n + across n 1. */
+MPMI_INLINE void mpmi_radial_set(mpmi_principal *o, int p, const mpmi_radial *r, double mean, double bulk,
+                                 double shear, double along, double across) {
+  for (int a = 0; a < 3; ++a) {
+    o->tau[a][p] = mean + shear * r->d[a];
+    for (int b = 0; b < 3; ++b)
+      o->slope[a][b][p] =
+          bulk + shear * ((a == b) - 1.0 / 3.0) + (along * r->n[a] * r->n[b] + across * r->n[a]);
   }
 }
 

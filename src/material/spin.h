@@ -77,12 +77,6 @@ MPMI_INLINE mpmi_sym mpmi_commuting_product(mpmi_sym a, mpmi_sym b) {
   return p;
 }
 
-/* Returns f a + c I. */
-MPMI_INLINE mpmi_sym mpmi_shifted(double f, mpmi_sym a, double c) {
-  mpmi_sym s = {c + f * a.xx, c + f * a.yy, c + f * a.zz, f * a.xy, f * a.yz, f * a.xz};
-  return s;
-}
-
 /* Returns a step of Horner's rule for polynomials of h: h p + c I. */
 MPMI_INLINE mpmi_sym mpmi_horner(mpmi_sym p, mpmi_sym h, double c) {
   return mpmi_shifted(1.0, mpmi_commuting_product(h, p), c);

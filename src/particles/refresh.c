@@ -27,7 +27,8 @@ mpm_status mpmi_particles_refresh(mpm_particles *set) {
   mpmi_law_batch_bind(&b, set->material, memory);
   mpm_status status = MPM_OK;
   const double t = set->stepper ? set->owner->time(set->stepper) : 0.0;
-  const int32_t keeps_stress = set->material->law && !mpmi_material_stress_from_F(set->material);
+  const int32_t keeps_stress = set->material->law && !mpmi_material_stress_from_F(set->material) &&
+                               !mpmi_material_mean_from_F(set->material);
   for (int64_t s = 0; s < set->slots && !keeps_stress && !status; s += b.ld) {
     const int64_t n = set->slots - s < b.ld ? set->slots - s : b.ld;
     mpmi_law_batch_load(&b, set, s, n, t, 0.0);

@@ -152,6 +152,7 @@ void mpmi_field_written(mpm_particles *set, int32_t field) {
   if (field == MPMI_POSITION) set->dirty |= MPMI_DIRTY_PLACE;
   if (field == MPMI_F || field == MPMI_INITIAL_VOLUME || field == MPMI_DILATION_RATIO)
     set->dirty |= MPMI_DIRTY_STRESS;
+  if (field == MPMI_STRESS && mpmi_material_mean_from_F(set->material)) set->dirty |= MPMI_DIRTY_STRESS;
   if (field == MPMI_MASS) mpmi_find_masses(set);
 }
 

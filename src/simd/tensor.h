@@ -73,6 +73,12 @@ MPMI_INLINE void mpmi_store_sym(int dim, double *a, int64_t ld, int64_t i, mpmi_
   }
 }
 
+/* Returns f a + c I. */
+MPMI_INLINE mpmi_sym mpmi_shifted(double f, mpmi_sym a, double c) {
+  mpmi_sym s = {c + f * a.xx, c + f * a.yy, c + f * a.zz, f * a.xy, f * a.yz, f * a.xz};
+  return s;
+}
+
 /* det(I + H) - 1 within the plane in 2-D, without losing the digits of a small H: expanded along the first
  * row, with the ones of the diagonal taken out by hand. */
 MPMI_INLINE double mpmi_det_minus_1(int dim, mpmi_mat h) {

@@ -22,7 +22,7 @@ void advance(path *s, const double *F_inc) {
                           .state_count = s->material->state_count,
                           .n = 1,
                           .ld = 1,
-                          .dt = 1.0,
+                          .dt = s->dt > 0.0 ? s->dt : 1.0,
                           .F = F,
                           .F_inc = F_inc,
                           .stress = s->stress,

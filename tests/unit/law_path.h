@@ -8,6 +8,7 @@
 typedef struct path {
   mpm_material *material;
   double F[9], stress[6], state[8], energy, wave, tangent[81];
+  double dt; /* 0: 1 */
 } path;
 typedef struct invariants {
   double p, q;
