@@ -131,6 +131,9 @@ mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field) {
   const mpmi_field *at = &set->field[field];
   if (field == MPMI_STRESS && mpmi_material_kinematics(set->material) == MPMI_F_STAYS)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED, "a rigid material has no stress: it cannot be set");
+  if (field == MPMI_STRESS && !at->writable && set->material->state_count)
+    return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
+                     "the stress of this law follows from deformation_gradient and state: set those");
   if (field == MPMI_STRESS && !at->writable)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
                      "the stress of this law follows from deformation_gradient: set that");
@@ -153,6 +156,7 @@ void mpmi_field_written(mpm_particles *set, int32_t field) {
   if (field == MPMI_F || field == MPMI_INITIAL_VOLUME || field == MPMI_DILATION_RATIO)
     set->dirty |= MPMI_DIRTY_STRESS;
   if (field == MPMI_STRESS && mpmi_material_mean_from_F(set->material)) set->dirty |= MPMI_DIRTY_STRESS;
+  if (field == MPMI_STATE && mpmi_material_stress_from_F(set->material)) set->dirty |= MPMI_DIRTY_STRESS;
   if (field == MPMI_MASS) mpmi_find_masses(set);
 }
 

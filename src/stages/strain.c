@@ -11,15 +11,15 @@
 enum { TIMED_BATCHES = 16 };
 
 static int32_t looks_at_F_alone(const mpm_material *material) {
-  return material->law && mpmi_material_stress_from_F(material) &&
+  return material->law && mpmi_material_stress_from_F(material) && !material->state_count &&
          mpmi_material_kinematics(material) == MPMI_F_DEFORMS;
 }
 
 /* In 3-D the stored components of F and stress are those of a batch. Laws that look at F alone then need no
  * copy of them. */
 static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles *set) {
-  return set->grid->dim == 3 && looks_at_F_alone(set->material) && !set->material->state_count &&
-         !settings->desc.locking_remedy && !mpmi_is_implicit(settings);
+  return set->grid->dim == 3 && looks_at_F_alone(set->material) && !settings->desc.locking_remedy &&
+         !mpmi_is_implicit(settings);
 }
 
 /* An MLS transfer that gathers increments finds C, which is the velocity gradient as well. */
