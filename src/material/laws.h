@@ -16,7 +16,8 @@
   LAW(drucker_prager)                                                                                        \
   LAW(mohr_coulomb)                                                                                          \
   LAW(herschel_bulkley)                                                                                      \
-  LAW(snow)
+  LAW(snow)                                                                                                  \
+  LAW(mu_i)
 
 #define MPMI_LAW_PLACE(name)   MPMI_LAW_##name,
 #define MPMI_DECLARE_LAW(name) MPMI_DECLARE_TABLES(mpmi_law, mpmi_law_##name);
