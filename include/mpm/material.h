@@ -32,6 +32,14 @@ extern "C" {
  * |                         | cohesion_residual, close_gaps           | and other soils; opens in tension   |
  * | "mohr_coulomb"          | those of drucker_prager without cone    | the same by the planes of           |
  * |                         |                                         | Mohr-Coulomb; phi = 0 is Tresca     |
+ * | "herschel_bulkley"      | density, bulk_modulus, gamma,           | p of newtonian_fluid; elastic in    |
+ * |                         | shear_modulus, yield_shear,             | shear up to yield_shear, then flow: |
+ * |                         | consistency, n, tension                 | + consistency (shear rate)^n        |
+ * | "snow"                  | E, nu, density, hardening,              | Stomakhin et al. 2013: elastic      |
+ * |                         | critical_compression, critical_stretch, | stretches within bounds, hardens by |
+ * |                         | hardening_max                           | compaction                          |
+ * | "mu_i"                  | E, nu, density, mu_s, mu_2, I_0,        | Jop et al. 2006: grains that flow   |
+ * |                         | grain_diameter, grain_density           | with friction mu(I); no tension     |
  *
  * params are count pairs of name and value in any order, which are copied; parameters that are not named take
  * their defaults. mpm_material_model_param() lists units, defaults and ranges. *out is NULL unless MPM_OK is

@@ -38,7 +38,8 @@
  *   With MPM_FLIP and MPM_XPIC it is kept only once the host has set or mapped it, and then is the L that
  *   deformed the particle in the last step.
  * - stress: Cauchy stress; writable where it is part of the law's state (linear_elastic, j2, drucker_prager,
- *   mohr_coulomb, a law of the host), else computed from F.
+ *   mohr_coulomb, mu_i, a law of the host; of herschel_bulkley the deviator), else computed from F, for snow from
+ *   F and state.
  * - state: state variables of the law.
  * - reference_position: exists while a stepper with reference_positions holds the set, and starts as the
  *   unwrapped position at mpm_stepper_add().
@@ -54,7 +55,8 @@
  *
  * Fields are independent of each other, with one exception: once deformation_gradient, dilation_ratio or
  * initial_volume is set, volume, and the stress of laws that compute it from F, are brought up to date before
- * anything reads them (get, map, callbacks, mpm_stable_dt(), mpm_step()).
+ * anything reads them (get, map, callbacks, mpm_stable_dt(), mpm_step()). So is the stress of snow once state
+ * is set, and the mean of that of herschel_bulkley once stress is.
  *
  * Everything that changes a set returns MPM_E_STATE while a view of it is out or a staged step is under way.
  */

@@ -119,7 +119,7 @@ static mpm_material *built_in(fuzz_input *in, mpm_context *context) {
   double low, high, usual;
   while (count < 12 &&
          !mpm_material_model_param(model, count, &param[count].name, NULL, NULL, &usual, &low, &high)) {
-    param[count].value = !isnan(usual) ? usual : low < 0.0 ? 0.3 : 1e3;
+    param[count].value = !isnan(usual) ? usual : low < 0.0 ? 0.3 : 1e3 + count; /* mu_2 above mu_s */
     if (fuzz_below(in, 4) == 0) param[count].value = fuzz_double(in);
     if (fuzz_below(in, 16) == 0) param[count].value = fuzz_below(in, 2) ? low : high;
     ++count;

@@ -40,8 +40,9 @@ static const struct {
                           {MPM_XPIC, 3, 1.0, 0.0, "XPIC(3)"},      {MPM_XPIC, 5, 1.0, 0.0, "XPIC(5)"}};
 
 static const char *const laws[LAWS] = {
-    "",      "neo-Hookean", "linear elastic",        "J2",   "decoupled",   "fluid", "viscous fluid",
-    "rigid", "host law",    "host law with tangent", "soil", "Mohr-Coulomb"};
+    "",      "neo-Hookean", "linear elastic",        "J2",   "decoupled",    "fluid", "viscous fluid",
+    "rigid", "host law",    "host law with tangent", "soil", "Mohr-Coulomb", "mud",   "snow",
+    "grains"};
 
 typedef struct listing {
   scene *item;
@@ -110,7 +111,8 @@ static void list_laws(listing *l, int32_t dim) {
   for (int32_t s = 0; s < SCHEMES; ++s)
     for (int32_t law = LAW_NEO_HOOKEAN; law < LAWS; ++law) {
       scene is = in_turn(dim, s, law);
-      if (is.quasi_static && (law == LAW_FLUID || law == LAW_VISCOUS_FLUID))
+      if (is.quasi_static &&
+          (law == LAW_FLUID || law == LAW_VISCOUS_FLUID || law == LAW_MUD || law == LAW_GRAINS))
         continue;                     /* nothing holds its shape */
       is.law[law == LAW_RIGID] = law; /* beside another */
       if (law == LAW_RIGID) let_out(&is);

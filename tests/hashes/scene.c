@@ -96,6 +96,11 @@ static void make_material(world *w, int32_t m) {
       {"density", 1e3}, {"bulk_modulus", 3e5}, {"gamma", 7.0}, {"tension", 1.0}, {"viscosity", 60.0}};
   static const mpm_param soil[] = {{"E", 3e5},   {"nu", 0.3},       {"density", 1e3},  {"phi", 30.0},
                                    {"psi", 5.0}, {"cohesion", 8e3}, {"hardening", 5e4}};
+  static const mpm_param mud[] = {{"density", 1e3},     {"bulk_modulus", 3e5},  {"shear_modulus", 1e5},
+                                  {"yield_shear", 3e3}, {"consistency", 100.0}, {"n", 0.6}};
+  static const mpm_param grains[] = {
+      {"E", 3e5},    {"nu", 0.3},  {"density", 1e3},         {"mu_s", 0.4},
+      {"mu_2", 0.7}, {"I_0", 0.3}, {"grain_diameter", 0.01}, {"grain_density", 2.5e3}};
   mpm_material **out = &w->material[m];
   switch (w->is->law[m]) {
   case LAW_NEO_HOOKEAN:
@@ -120,6 +125,15 @@ static void make_material(world *w, int32_t m) {
     break;
   case LAW_MOHR_COULOMB:
     must(w, mpm_material_create(w->context, "mohr_coulomb", soil, 7, out));
+    break;
+  case LAW_MUD:
+    must(w, mpm_material_create(w->context, "herschel_bulkley", mud, 6, out));
+    break;
+  case LAW_SNOW:
+    must(w, mpm_material_create(w->context, "snow", solid, 3, out));
+    break;
+  case LAW_GRAINS:
+    must(w, mpm_material_create(w->context, "mu_i", grains, 8, out));
     break;
   case LAW_RIGID:
     must(w, mpm_material_create(w->context, "rigid", fluid, 1, out));

@@ -19,6 +19,9 @@ enum {
   LAW_HOST_TANGENT, /* with a tangent and without an energy */
   LAW_SOIL,
   LAW_MOHR_COULOMB,
+  LAW_MUD,
+  LAW_SNOW,
+  LAW_GRAINS,
   LAWS
 };
 

@@ -3,10 +3,6 @@
 const int32_t choice_first[CHOICES] = {1, 0, 0, 0, 1, 0, 0, 0, 0};
 const int32_t choice_end[CHOICES] = {4, BASES, SCHEMES, TRANSFERS, 3, 2, 2, LAWS, 2};
 
-static int32_t is_fluid(int32_t law) {
-  return law_options[law].model && !strcmp(law_options[law].model, "newtonian_fluid");
-}
-
 static int32_t is_mls(int32_t transfer) {
   return transfer_options[transfer].transfer == MPM_APIC_MLS;
 }
@@ -15,7 +11,9 @@ const char *refusal_of(const combination *c) {
   const int32_t *is = c->choice;
   if (is_mls(is[CHOOSE_TRANSFER]) && !fits_mls(&basis_options[is[CHOOSE_BASIS]])) return "MPM_APIC_MLS";
   if (is[CHOOSE_STAGGERED] && is[CHOOSE_ORDER] == 2) return "staggered";
-  if (basis_options[is[CHOOSE_BASIS]].basis == MPM_CPGIMP && is_fluid(is[CHOOSE_LAW])) return "MPM_CPGIMP";
+  if (basis_options[is[CHOOSE_BASIS]].basis == MPM_CPGIMP &&
+      keeps_volume_alone(law_options[is[CHOOSE_LAW]].model))
+    return "MPM_CPGIMP";
   if (is[CHOOSE_REMEDY] && is[CHOOSE_DIM] == 1) return "locking_remedy";
   return NULL;
 }

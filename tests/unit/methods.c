@@ -1,6 +1,7 @@
 #include "methods.h"
 
 #include <stdio.h>
+#include <string.h>
 
 const basis_option basis_options[BASES] = {{MPM_LINEAR, MPM_BOUNDARY_GHOST, 0.5, "linear"},
                                            {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, 0.5, "quadratic"},
@@ -37,6 +38,9 @@ const law_option law_options[LAWS] = {{"neo_hookean", "neo-Hookean"},
                                       {"rigid", "rigid"},
                                       {"drucker_prager", "Drucker-Prager"},
                                       {"mohr_coulomb", "Mohr-Coulomb"},
+                                      {"herschel_bulkley", "Herschel-Bulkley"},
+                                      {"snow", "snow"},
+                                      {"mu_i", "mu(I)"},
                                       {NULL, "host law"}};
 
 #define BOTH_SCHEMES(b, t, f, name)                                                                          \
@@ -122,6 +126,10 @@ int32_t is_affine(const method *how) {
 
 int32_t fits_mls(const basis_option *b) {
   return (b->basis == MPM_BSPLINE2 || b->basis == MPM_BSPLINE3) && b->boundary == MPM_BOUNDARY_GHOST;
+}
+
+int32_t keeps_volume_alone(const char *model) {
+  return model && (!strcmp(model, "newtonian_fluid") || !strcmp(model, "herschel_bulkley"));
 }
 
 int32_t is_gimp(int32_t basis) {

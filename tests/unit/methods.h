@@ -32,7 +32,7 @@ typedef struct law_option {
   const char *model; /* NULL: the host's */
   const char *name;
 } law_option;
-enum { LAWS = 9 };
+enum { LAWS = 12 };
 extern const law_option law_options[LAWS];
 
 /* A value that is 0 stands for the default of the library, except flip and pic_damping. */
@@ -65,5 +65,7 @@ int32_t is_affine(const method *how);
 /* Can the basis have MPM_APIC_MLS? */
 int32_t fits_mls(const basis_option *basis);
 int32_t is_gimp(int32_t basis);
+/* Has the law an F that dilates only? */
+int32_t keeps_volume_alone(const char *model);
 
 #endif

@@ -132,7 +132,7 @@ typedef struct patch {
 /* F and L of the patch. Along a periodic axis velocities repeat themselves: L has no such column. */
 static patch make_patch(const body *b, double dt) {
   patch q;
-  const int32_t fluid = has_law(b, "newtonian_fluid");
+  const int32_t fluid = keeps_volume_alone(model_of(b));
   for (int32_t c = 0; c < 9; ++c) {
     q.L[c] = b->periodic && c % 3 == 0 ? 0.0 : of_dim(b->dim, L_patch, c, 0.0);
     q.F[c] = of_dim(b->dim, F_patch, c, 1.0);
@@ -156,7 +156,8 @@ static void set_patch(const body *b, const patch *q) {
   put(&b->w, b->set, "velocity", b->dim, v);
   if (carries_matrix(transfer_options[b->c->choice[CHOOSE_TRANSFER]].transfer))
     ck_ok(&b->w, mpm_particles_set_all(b->set, "velocity_gradient", MPM_F64, 9, q->L));
-  if (has_law(b, "linear_elastic") || has_law(b, "j2")) {
+  if (has_law(b, "linear_elastic") || has_law(b, "j2") || has_law(b, "herschel_bulkley") ||
+      has_law(b, "mu_i")) {
     double stress[6];
     for (int32_t c = 0; c < 6; ++c)
       stress[c] = b->dim == 3 || c < 3 || (b->dim == 2 && c == 3) ? stress_patch[c] : 0.0;
@@ -220,7 +221,7 @@ static void check_deformation(const body *b, const patch *q, double depth, const
   for (int64_t p = 0; p < n; ++p) {
     if (!is_inside(b, x0, p, depth)) continue;
     ck_within(b->name, V[p] / V0[p], q->J_new, 1e-13);
-    for (int32_t c = 0; c < 9 && !has_law(b, "newtonian_fluid"); ++c)
+    for (int32_t c = 0; c < 9 && !keeps_volume_alone(model_of(b)); ++c)
       ck_within(b->name, F[c * n + p], q->F_new[c], 1e-13);
   }
   free(F), free(V), free(V0);

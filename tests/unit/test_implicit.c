@@ -157,12 +157,19 @@ START_TEST(sagging_block) {
 END_TEST
 
 /* Every law, with and without the remedy: the iteration knows the derivative of what the law does. */
-enum { IMPLICIT_LAWS = 7 };
+enum { IMPLICIT_LAWS = 10 };
 START_TEST(every_law) {
   static const mpm_param clay[] = {{"E", 1e5},    {"nu", 0.3},  {"density", 1e3},
                                    {"phi", 20.0}, {"psi", 5.0}, {"cohesion", 900.0}};
   static const mpm_param decoupled[] = {{"mu", 4e4}, {"kappa", 4e5}, {"density", 1e3}};
   static const mpm_param fluid[] = {{"bulk_modulus", 1e5}, {"viscosity", 300.0}, {"density", 1e3}};
+  static const mpm_param mud[] = {{"bulk_modulus", 1e5},  {"shear_modulus", 4e4}, {"density", 1e3},
+                                  {"yield_shear", 500.0}, {"consistency", 300.0}, {"n", 0.7}};
+  static const mpm_param snow[] = {
+      {"E", 1e5}, {"nu", 0.3}, {"density", 1e3}, {"critical_compression", 0.015}};
+  static const mpm_param grains[] = {
+      {"E", 1e5},    {"nu", 0.3},  {"density", 1e3},         {"mu_s", 0.4},
+      {"mu_2", 0.7}, {"I_0", 0.3}, {"grain_diameter", 0.01}, {"grain_density", 2.5e3}};
   static const world_law laws[] = {
       {.model = "neo_hookean", .E = 1e5, .nu = 0.3, .density = 1e3},
       {.model = "linear_elastic", .E = 1e5, .nu = 0.3, .density = 1e3},
@@ -170,7 +177,10 @@ START_TEST(every_law) {
       {.model = "newtonian_fluid", .params = fluid, .param_count = 3},
       {.model = "neo_hookean_decoupled", .params = decoupled, .param_count = 3},
       {.model = "drucker_prager", .params = clay, .param_count = 6},
-      {.model = "mohr_coulomb", .params = clay, .param_count = 6}};
+      {.model = "mohr_coulomb", .params = clay, .param_count = 6},
+      {.model = "herschel_bulkley", .params = mud, .param_count = 6},
+      {.model = "snow", .params = snow, .param_count = 4},
+      {.model = "mu_i", .params = grains, .param_count = 8}};
   _Static_assert(sizeof laws / sizeof *laws == IMPLICIT_LAWS, "all are run");
   const int32_t remedy = _i / IMPLICIT_LAWS % 2, dim = 2 + _i / IMPLICIT_LAWS / 2 % 2;
   const basis_option *basis = implicit_basis(_i / IMPLICIT_LAWS / 4);

@@ -34,10 +34,17 @@ typedef struct law_kind {
   int32_t states, keeps_stress;
 } law_kind;
 static law_kind kind_of(const char *model) {
-  static const law_kind kinds[] = {
-      {"neo_hookean", 0, 0},     {"linear_elastic", 0, 1}, {"j2", 1, 1},
-      {"newtonian_fluid", 0, 0}, {"rigid", 0, 0},          {"neo_hookean_decoupled", 0, 0},
-      {"drucker_prager", 2, 1},  {"mohr_coulomb", 2, 1}};
+  static const law_kind kinds[] = {{"neo_hookean", 0, 0},
+                                   {"linear_elastic", 0, 1},
+                                   {"j2", 1, 1},
+                                   {"newtonian_fluid", 0, 0},
+                                   {"rigid", 0, 0},
+                                   {"neo_hookean_decoupled", 0, 0},
+                                   {"drucker_prager", 2, 1},
+                                   {"mohr_coulomb", 2, 1},
+                                   {"mu_i", 2, 1},
+                                   {"herschel_bulkley", 0, 1},
+                                   {"snow", 6, 0}};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
     if (!strcmp(kinds[k].model, model)) return kinds[k];
   ck_abort_msg("%s: no such kind", model);
@@ -58,6 +65,7 @@ START_TEST(registry_describes_every_law) {
       ck_assert(isnan(value) || (value >= low && value <= high));
       ck_assert_int_lt(k, MOST_PARAMS);
       params[k] = (mpm_param){name, isnan(value) ? 0.25 : value};
+      if (!strcmp(name, "mu_2")) params[k].value = 0.5; /* above mu_s */
     }
     ck_assert_int_ge(k, 1);
     ck_assert_int_eq(mpm_material_model_param(model, k, NULL, NULL, NULL, NULL, NULL, NULL), MPM_E_NOT_FOUND);
@@ -69,6 +77,7 @@ START_TEST(registry_describes_every_law) {
     ck_assert_double_eq(material->density, 0.25);
     ck_assert_int_eq(material->state_count, kind_of(model).states);
     ck_assert_int_eq(mpmi_material_stress_from_F(material), !kind_of(model).keeps_stress);
+    ck_assert_int_eq(mpmi_material_mean_from_F(material), !strcmp(model, "herschel_bulkley"));
     ck_ok(context, mpm_material_destroy(material));
   }
   ck_assert_int_eq(mpm_material_model_param("neo_hookean", -1, NULL, NULL, NULL, NULL, NULL, NULL),
@@ -229,13 +238,26 @@ static int32_t all_params(const char *model, mpm_param *params) {
                                      {"cone", 2.0},
                                      {"tension_cutoff", 3e3},
                                      {"cohesion_residual", 1e2},
-                                     {"close_gaps", 1.0}};
+                                     {"close_gaps", 1.0},
+                                     {"shear_modulus", 1e6},
+                                     {"yield_shear", 1e3},
+                                     {"consistency", 30.0},
+                                     {"n", 0.7},
+                                     {"critical_compression", 0.025},
+                                     {"critical_stretch", 0.0075},
+                                     {"hardening_max", 20.0},
+                                     {"mu_s", 0.2},
+                                     {"mu_2", 0.8},
+                                     {"I_0", 0.3},
+                                     {"grain_diameter", 0.01},
+                                     {"grain_density", 2.5e3}};
   const char *name;
   int32_t k = 0;
   for (; !mpm_material_model_param(model, k, &name, NULL, NULL, NULL, NULL, NULL); ++k) {
     size_t i = 0;
     while (strcmp(values[i].name, name)) ck_assert_uint_lt(++i, sizeof values / sizeof values[0]);
     params[k] = values[i];
+    if (!strcmp(model, "snow") && !strcmp(name, "hardening")) params[k].value = 10.0; /* has no unit */
   }
   return k;
 }

@@ -134,7 +134,15 @@ mpm_status law_create(mpm_context *context, const world_law *of, mpm_material **
                              {"viscosity", 1e-2 * of->E},
                              {"phi", 25.0},
                              {"psi", 5.0},
-                             {"cohesion", of->yield_stress}};
+                             {"cohesion", of->yield_stress},
+                             {"shear_modulus", of->E / (2.0 * (1.0 + of->nu))},
+                             {"yield_shear", of->yield_stress},
+                             {"consistency", 1e-2 * of->E},
+                             {"mu_s", 0.4},
+                             {"mu_2", 0.7},
+                             {"I_0", 0.3},
+                             {"grain_diameter", 0.01},
+                             {"grain_density", 2.5e3}};
   mpm_param given[sizeof known / sizeof *known];
   int32_t count = 0;
   const char *name;
