@@ -117,6 +117,51 @@ START_TEST(cohesion_changes) {
 }
 END_TEST
 
+/* What opens at the apex is plastic, whatever the angle: rounding leaves no room for a deviator there. */
+START_TEST(apex_of_all_angles) {
+  static const double degree = 3.14159265358979323846 / 180.0;
+  for (int k = 1; k < 60; ++k) {
+    const double phi = 1.03 * k, psi = 0.4 * phi;
+    const rock of = with(0.3, phi, psi, 300.0);
+    path s = open_rock(&of);
+    start(&s, 0.0);
+    stretch(&s, 0.01, 0.009, 0.008);
+    const double tip = 300.0 * mpmi_cos(phi * degree) / mpmi_sin(phi * degree),
+                 open = 0.027 - tip * 1.2 / 20e6;
+    for (int c = 0; c < 3; ++c) ck_within("tau", jacobian_of(&s) * s.stress[c], tip, 1e-6);
+    ck_within("gap", s.state[1], open, 1e-12);
+    ck_number("plastic strain", s.state[0], open * mpmi_cos(phi * degree) / mpmi_sin(psi * degree));
+    law_material_free(s.material);
+  }
+}
+END_TEST
+
+/* Without friction there is no apex: what is left without cohesion is a fluid that keeps its pressure, on every
+ * instruction set. */
+START_TEST(without_friction) {
+  for (int32_t isa = MPM_ISA_BASELINE; isa <= MPM_ISA_NEON; ++isa)
+    for (int32_t which = 0; which < 3; ++which) {
+      rock of = with(0.3, 0.0, 0.0, which == 1 ? 1e3 : 0.0);
+      uint64_t seed = 32;
+      if (which == 1) of.value[H].value = -2e5;
+      if (which == 2) of.value[T].value = 0.0;
+      path s = {.F = {0}};
+      s.material = law_material(isa, "mohr_coulomb", of.value, PARAMS);
+      for (int32_t k = 0; s.material && k < 300; ++k) {
+        const tensor g = random_tensor(&seed, 3, 1e-2L);
+        double F_inc[9];
+        for (int c = 0; c < 9; ++c) F_inc[c] = (double)((c % 4 == 0) + g.m[c / 3][c % 3]);
+        start(&s, -1e6);
+        s.state[0] = 1.0; /* soft by now */
+        advance(&s, F_inc);
+        const double J = jacobian_of(&s), p = 1e6 - 20e6 / 1.2 * mpmi_ln(J);
+        for (int c = 0; c < 6; ++c) ck_within("stress", J * s.stress[c], c < 3 ? -p : 0.0, 1e-8 * p);
+      }
+      if (s.material) law_material_free(s.material);
+    }
+}
+END_TEST
+
 /* An apex that hardens moves up to the cut-off, and no further; nor does the plastic strain. */
 START_TEST(apex_meets_the_cut_off) {
   rock of = with(0.3, 30.0, 5.0, 5e3);
@@ -385,6 +430,8 @@ Suite *mohr_coulomb_suite(void) {
   tcase_add_test(tc, triaxial_strength);
   tcase_add_test(tc, oedometer);
   tcase_add_test(tc, cohesion_changes);
+  tcase_add_test(tc, without_friction);
+  tcase_add_test(tc, apex_of_all_angles);
   tcase_add_test(tc, apex_meets_the_cut_off);
   tcase_add_test(tc, gaps_close);
   tcase_add_test(tc, cut_off);
