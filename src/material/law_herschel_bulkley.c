@@ -84,7 +84,7 @@ MPMI_INLINE flow_share flow_of(int32_t linear, const flow_constants *c, double a
   const double n = c->exponent;
   double log_kappa = c->log_consistency + (n - 1.0) * mpmi_lane_log(mpmi_max(over, 1e-300)) - n * log_a;
   double u = mpmi_min(0.0, -log_kappa / n);
-  for (int k = 0; k < 3; ++k) {
+  MPMI_UNROLL for (int k = 0; k < 3; ++k) {
     const flow_point at = point_of(n, log_kappa, u);
     double H = u + at.log_sum, slope = at.light + n * at.heavy;
     double bend = (1.0 - n) * (1.0 - n) * at.light * at.heavy;
@@ -168,10 +168,10 @@ MPMI_INLINE void herschel_bulkley(int dim, const flow_constants *c, const mpm_ma
   add_pressure(dim, c, batch);
 }
 
-MPMI_INLINE void flow_chunk(int dim, const flow_constants *c, const mpm_material_batch *batch, int64_t begin,
-                            mpmi_principal *o) {
-  const int32_t linear = is_linear(c);
+MPMI_INLINE void flow_chunk(int dim, int32_t linear, const flow_constants *c, const mpm_material_batch *batch,
+                            int64_t begin, mpmi_principal *o) {
   const double mu = c->elastic.mu, a = mpmi_max(mu * batch->dt, 1e-300), log_a = mpmi_lane_log(a);
+  MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     const mpmi_radial trial = mpmi_radial_of(o, p);
     const flow_return r = come_back(linear, c, a, log_a, sqrt(2.0) * mu * trial.size);
@@ -188,7 +188,10 @@ MPMI_INLINE void herschel_bulkley_tangent(int dim, const flow_constants *c, cons
   const mpmi_frame in = mpmi_frame_of(&c->elastic, batch);
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     mpmi_principal_load(dim, &o, in, i);
-    flow_chunk(dim, c, batch, i, &o);
+    if (is_linear(c))
+      flow_chunk(dim, 1, c, batch, i, &o);
+    else
+      flow_chunk(dim, 0, c, batch, i, &o);
     KERNEL(principal_rows)(dim, &o, tangent + i, batch->ld);
   }
 }

@@ -104,6 +104,7 @@ MPMI_INLINE void mu_i(int dim, const grains_constants *c, const mpm_material_bat
 MPMI_INLINE void grains_chunk(const grains_constants *c, double dt, const double *plastic, const double *gap,
                               mpmi_principal *o) {
   const double mu2 = 2.0 * c->elastic.mu, bulk = c->elastic.bulk;
+  MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     const mpmi_radial trial = mpmi_radial_of(o, p);
     const grains_return r = come_back(c, dt, trial.volume, mu2 * sqrt(0.5) * trial.size, plastic[p], gap[p]);

@@ -145,6 +145,7 @@ MPMI_INLINE void snow_tangent(int dim, const snow_constants *c, const mpm_materi
   mpmi_principal o;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
     load_trial(dim, &o, batch, i);
+    MPMI_IVDEP
     for (int p = 0; p < MPMI_CHUNK; ++p) {
       const snow_point r = point_of(c, &o, p);
       set_stress(c, &r, p, &o);

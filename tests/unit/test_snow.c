@@ -166,6 +166,54 @@ START_TEST(state_of_the_host) {
 }
 END_TEST
 
+/* All nodes move as v = A (x - 0.4). */
+static mpm_status lead_nodes(void *user, const mpm_node_batch *b, uint8_t *prescribed, double *velocity) {
+  const double *A = user;
+  for (int32_t k = 0; k < b->dim; ++k)
+    for (int64_t i = 0; i < b->n; ++i) {
+      double v = 0.0;
+      for (int32_t c = 0; c < b->dim; ++c) v += A[3 * k + c] * (b->position[c * b->ld + i] - 0.4);
+      prescribed[k * b->ld + i] = 1;
+      velocity[k * b->ld + i] = v;
+    }
+  return MPM_OK;
+}
+
+/* Steps of a grid are those of the law without one. */
+START_TEST(steps_of_a_grid) {
+  const int32_t dim = 1 + _i;
+  const snow of = usual();
+  double A[9] = {-6.0, 2.0, 1.0, 3.0, -2.0, 1.0, -1.0, 2.0, 1.5}, F_inc[9];
+  const double dt = 1e-3;
+  for (int c = 0; c < 9; ++c) {
+    if (c / 3 >= dim || c % 3 >= dim) A[c] = 0.0;
+    F_inc[c] = (c % 4 == 0) + dt * A[c];
+  }
+  world w;
+  world_desc d = world_default(dim, 8, 0.1);
+  d.law = (world_law){.model = "snow", .params = of.value, .param_count = PARAMS};
+  mpm_particles *set = world_open(&w, &d);
+  const int64_t n = world_fill_cube(&w, set, 0.2, 0.6);
+  ck_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, lead_nodes, A));
+  path s = open_snow(&of);
+  start(&s, 0.0);
+  for (int k = 0; k < 8; ++k) {
+    world_step(&w, dt);
+    advance(&s, F_inc);
+  }
+  double *stress = fetch(&w, set, "stress", 6), *state = fetch(&w, set, "state", 6);
+  ck_holds(fabs(s.state[0]) > 0.01);
+  for (int64_t i = 0; i < n; ++i)
+    for (int c = 0; c < 6; ++c) {
+      ck_within("stress", stress[c * n + i], s.stress[c], 1e-9 * 1e5);
+      ck_within("state", state[c * n + i], s.state[c], 1e-12);
+    }
+  free(stress), free(state);
+  law_material_free(s.material);
+  world_close(&w);
+}
+END_TEST
+
 /* ---- random states ------------------------------------------------------------------------------------- */
 enum { RANDOM = 100000, TESTED = 3000 };
 
@@ -332,6 +380,7 @@ Suite *snow_suite(void) {
   tcase_add_test(tc, ends_of_the_range);
   tcase_add_test(tc, parameters_are_refused);
   tcase_add_loop_test(tc, state_of_the_host, 0, 3);
+  tcase_add_loop_test(tc, steps_of_a_grid, 0, 3);
   tcase_add_test(tc, random_states);
   tcase_add_test(tc, random_tangents);
   tcase_add_test(tc, frames);
