@@ -207,7 +207,8 @@ static mpm_status solve(iteration *it) {
 
 /* Returns 1 for statuses of a trial that a shorter increment may mend. */
 static int32_t may_shrink(const mpmi_balance *balance, mpm_status status) {
-  return !balance->step->failure.callback_status && (status == MPM_INVERTED || status == MPM_NONFINITE);
+  return !balance->step->failure.callback_status &&
+         (status == MPM_INVERTED || status == MPM_NONFINITE || status == MPM_CUT_DT);
 }
 
 /* Takes as much of the increment as keeps det F positive and the residual in bounds. */

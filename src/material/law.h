@@ -18,6 +18,15 @@ typedef struct mpmi_law_state {
   const char *name, *unit, *text;
 } mpmi_law_state;
 
+/* Why a law gives a particle up: it writes MPMI_REFUSED(k) in the place of the particle's wave speed, for the k-th
+ * of the refusals that its description lists, and the step or the call ends with that cause and sentence. What
+ * it writes of the particle beside that is of no interest. */
+typedef struct mpmi_law_refusal {
+  mpm_status cause; /* MPM_CUT_DT where a shorter step may do */
+  const char *what;
+} mpmi_law_refusal;
+#define MPMI_REFUSED(k) (-1.0 - (double)(k))
+
 /* Evaluates a law on batch->n particles, whole chunks of them; every array is 64-byte aligned. dim tells
  * which entries of the full tensors can be anything but those of the identity, so that 1-D and 2-D need not
  * pay for 3-D; stress_new has all six rows written for the components that exist in `dim` (xx yy zz; xy in
@@ -33,8 +42,10 @@ typedef struct mpmi_law {
   const mpmi_law_param *param; /* every law has a "density" */
   int32_t param_count;
   int32_t state_count;
-  const mpmi_law_state *state; /* [state_count] */
-  const double *state_initial; /* [state_count], or NULL: zeros */
+  const mpmi_law_state *state;                       /* [state_count] */
+  void (*start)(const double *value, double *state); /* of a new particle; NULL: zeros */
+  const mpmi_law_refusal *refusal;                   /* [refusal_count] */
+  int32_t refusal_count;
   int32_t stress_from_F; /* 1: hyperelastic, fluid, rigid; 0: hypoelastic, the host may set the stress */
   int32_t mean_from_F; /* 1, with stress_from_F = 0: the host may set the deviator, the mean follows from F */
   int32_t kinematics;  /* MPMI_F_... */

@@ -28,6 +28,9 @@
 /* Sets state and state_count to an array of state variables. */
 #define MPMI_STATES(array) .state = (array), .state_count = (int32_t)(sizeof(array) / sizeof *(array))
 
+/* Sets refusal and refusal_count to an array of refusals. */
+#define MPMI_REFUSALS(array) .refusal = (array), .refusal_count = (int32_t)(sizeof(array) / sizeof *(array))
+
 /* Particles of a batch. */
 MPMI_INLINE int64_t mpmi_batch_items(const mpm_material_batch *batch) {
   return mpmi_whole_chunks(batch->n);

@@ -147,7 +147,11 @@ static mpm_status set_law(mpm_material *material, const mpmi_law *law, const mpm
   material->value = value;
   material->constants = constants;
   material->state_count = law->state_count;
-  material->state_initial = law->state_initial;
+  if (law->start) {
+    double *initial = constants + law->constants_size / sizeof *constants;
+    law->start(value, initial);
+    material->state_initial = initial;
+  }
   for (int32_t k = 0; k < law->param_count; ++k)
     if (!strcmp(law->param[k].name, "density")) material->density = value[k];
   return MPM_OK;
@@ -165,7 +169,8 @@ mpm_status mpm_material_create(mpm_context *context, const char *model, const mp
   if (count > 0 && !params)
     return mpmi_fail(context, MPM_E_ARG, "%s: params is NULL, but count is %d", model, count);
 
-  mpm_material *material = make(context, mpmi_bytes(law->param_count, sizeof(double)) + law->constants_size);
+  const int64_t kept = law->param_count + (law->start ? law->state_count : 0);
+  mpm_material *material = make(context, mpmi_bytes(kept, sizeof(double)) + law->constants_size);
   if (!material) return MPM_E_NOMEM;
   const mpm_status status = set_law(material, law, params, count);
   if (status) {

@@ -17,7 +17,7 @@ struct mpm_material {
   const double *state_initial; /* [state_count], or NULL: zeros */
   mpm_material_desc custom;    /* the host's callbacks */
   size_t size;                 /* of the whole allocation, `memory` included */
-  double memory[];             /* values, then constants; or the host's initial state */
+  double memory[];             /* values, constants, initial state; or the host's initial state */
 };
 
 /* Runs a material's law, built in or the host's, on a batch. Callback statuses pass through unchanged. */

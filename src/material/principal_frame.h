@@ -1,10 +1,11 @@
-/* The frame of laws whose elasticity is linear in the logarithmic strain (Hencky) and whose stress is the
- * state: the return of Simo (1992) in principal directions. With tau = J stress and F_inc of the step,
+/* The frame of isotropic laws whose elasticity is one in the logarithmic strain and whose stress is the state:
+ * the return of Simo (1992) in principal directions. With tau = J stress and F_inc of the step,
  *
  *   tau_old -> e = elastic strain of tau_old -> b = exp(2 e) -> b_trial = F_inc b F_inc^T -> 1/2 ln b_trial,
  *
  * from which the law returns to its yield surface. All of it is in terms of b - I and F_inc - I, so that
- * small steps keep their digits. */
+ * small steps keep their digits. Most laws are linear in e (Hencky); one that is not finds e of
+ * mpmi_old_state() by itself, and goes on with mpmi_trial_from(). */
 #ifndef MPMI_PRINCIPAL_FRAME_H
 #define MPMI_PRINCIPAL_FRAME_H
 
@@ -102,31 +103,64 @@ MPMI_INLINE mpmi_sym mpmi_pushed_forward(int dim, mpmi_mat g, mpmi_sym b) {
 /* ---- the trial state and outputs ----------------------------------------------------------------------- */
 /* Holds what the trial state needs. It is read before the loop, so that the compiler sees that no store
  * changes it. */
-typedef struct mpmi_frame {
-  mpmi_hencky c;
+typedef struct mpmi_trial {
   const double *F, *L, *stress;
   int64_t ld;
   double dt;
+} mpmi_trial;
+
+MPMI_INLINE mpmi_trial mpmi_trial_of(const mpm_material_batch *batch) {
+  mpmi_trial in = {batch->F, batch->L, batch->stress, batch->ld, batch->dt};
+  return in;
+}
+
+MPMI_INLINE double mpmi_trial_J(int dim, mpmi_trial in, int64_t i) {
+  return 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, in.F, in.ld, i));
+}
+
+/* A particle before the step, and F_inc - I of the step. */
+typedef struct mpmi_old {
+  mpmi_mat g;
+  double J, mean; /* mean and deviator are those of the stress itself */
+  mpmi_sym deviator;
+} mpmi_old;
+
+/* J is det F at the end of the step. */
+MPMI_INLINE mpmi_old mpmi_old_state(int dim, mpmi_trial in, int64_t i, double J) {
+  mpmi_old old;
+  old.g = mpmi_load_mat(dim, in.L, in.ld, i, 0.0, in.dt);
+  old.J = J / (1.0 + mpmi_det_minus_1(dim, old.g));
+  old.deviator = mpmi_deviator(mpmi_load_sym(dim, in.stress, in.ld, i), &old.mean);
+  return old;
+}
+
+/* Returns b_trial - I where the elastic strain before the step was volume * I + shape * deviator. */
+MPMI_INLINE mpmi_sym mpmi_trial_from(int dim, mpmi_old old, double volume, double shape) {
+  mpmi_sym d = old.deviator;
+  mpmi_sym e = {volume + shape * d.xx, volume + shape * d.yy, volume + shape * d.zz,
+                shape * d.xy,          shape * d.yz,          shape * d.xz};
+  return mpmi_pushed_forward(dim, old.g, mpmi_exp_twice(dim, e));
+}
+
+/* The frame of a law that is linear in e. */
+typedef struct mpmi_frame {
+  mpmi_hencky c;
+  mpmi_trial in;
 } mpmi_frame;
 
 MPMI_INLINE mpmi_frame mpmi_frame_of(const mpmi_hencky *c, const mpm_material_batch *batch) {
-  mpmi_frame in = {*c, batch->F, batch->L, batch->stress, batch->ld, batch->dt};
+  mpmi_frame in = {*c, mpmi_trial_of(batch)};
   return in;
 }
 
 MPMI_INLINE double mpmi_frame_J(int dim, mpmi_frame in, int64_t i) {
-  return 1.0 + mpmi_J_minus_1(dim, mpmi_load_F_minus_1(dim, in.F, in.ld, i));
+  return mpmi_trial_J(dim, in.in, i);
 }
 
 /* Returns b_trial - I; J is det F at the end of the step. */
 MPMI_INLINE mpmi_sym mpmi_trial_b(int dim, mpmi_frame in, int64_t i, double J) {
-  mpmi_mat g = mpmi_load_mat(dim, in.L, in.ld, i, 0.0, in.dt);
-  double J_old = J / (1.0 + mpmi_det_minus_1(dim, g)), mean;
-  mpmi_sym d = mpmi_deviator(mpmi_load_sym(dim, in.stress, in.ld, i), &mean);
-  double volume = J_old * in.c.by_mean * mean, shape = J_old * in.c.by_deviator;
-  mpmi_sym e = {volume + shape * d.xx, volume + shape * d.yy, volume + shape * d.zz,
-                shape * d.xy,          shape * d.yz,          shape * d.xz};
-  return mpmi_pushed_forward(dim, g, mpmi_exp_twice(dim, e));
+  mpmi_old old = mpmi_old_state(dim, in.in, i, J);
+  return mpmi_trial_from(dim, old, old.J * in.c.by_mean * old.mean, old.J * in.c.by_deviator);
 }
 
 /* > 0 where b - I can hold the elastic strain: stretches of 1e-5 to 1e4. A host's stress can leave that. */
@@ -135,11 +169,15 @@ MPMI_INLINE double mpmi_elastic_range(mpmi_sym b) {
   return mpmi_min(1e8 - most, least - (1e-10 - 1.0));
 }
 
-/* Not a number outside of that range. */
-MPMI_INLINE mpmi_sym mpmi_trial_strain(int dim, mpmi_frame in, int64_t i, double J) {
-  mpmi_sym b = mpmi_trial_b(dim, in, i, J), e = mpmi_half_log(dim, b);
+/* The strain of b - I; not a number outside of that range. */
+MPMI_INLINE mpmi_sym mpmi_strain_of_b(int dim, mpmi_sym b) {
+  mpmi_sym e = mpmi_half_log(dim, b);
   e.xx = mpmi_elastic_range(b) > 0.0 ? e.xx : (double)NAN;
   return e;
+}
+
+MPMI_INLINE mpmi_sym mpmi_trial_strain(int dim, mpmi_frame in, int64_t i, double J) {
+  return mpmi_strain_of_b(dim, mpmi_trial_b(dim, in, i, J));
 }
 
 /* Computes the speed of the fastest elastic wave, whose stiffness is bulk + 4/3 mu less the smallest

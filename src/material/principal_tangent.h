@@ -20,6 +20,7 @@ typedef struct mpmi_principal {
   double J_inverse[MPMI_CHUNK];
 } mpmi_principal;
 
+/* Finds principal values and vectors of b - I of particle p of a chunk. */
 MPMI_INLINE void mpmi_principal_set(int dim, mpmi_principal *o, int p, mpmi_sym b) {
   mpmi_axes axes = mpmi_principal_axes(dim, b);
   for (int k = 0; k < 3; ++k) {
@@ -28,17 +29,21 @@ MPMI_INLINE void mpmi_principal_set(int dim, mpmi_principal *o, int p, mpmi_sym 
   }
 }
 
-/* Finds principal values and vectors of b_trial of a chunk, and the trial strain. */
+/* The same for b_trial, and the trial strain. */
+MPMI_INLINE void mpmi_principal_find(int dim, mpmi_principal *o, int p, mpmi_sym b, double J) {
+  double held = mpmi_elastic_range(b);
+  mpmi_principal_set(dim, o, p, b);
+  for (int k = 0; k < 3; ++k) o->strain[k][p] = 0.5 * mpmi_lane_log1p(o->b[k][p]);
+  o->strain[0][p] = held > 0.0 ? o->strain[0][p] : (double)NAN;
+  o->J_inverse[p] = 1.0 / J;
+}
+
+/* Does so for a chunk of a law that is linear in the strain. */
 MPMI_INLINE void mpmi_principal_load(int dim, mpmi_principal *o, mpmi_frame in, int64_t begin) {
   MPMI_IVDEP
   for (int p = 0; p < MPMI_CHUNK; ++p) {
     double J = mpmi_frame_J(dim, in, begin + p);
-    mpmi_sym b = mpmi_trial_b(dim, in, begin + p, J);
-    double held = mpmi_elastic_range(b);
-    mpmi_principal_set(dim, o, p, b);
-    for (int k = 0; k < 3; ++k) o->strain[k][p] = 0.5 * mpmi_lane_log1p(o->b[k][p]);
-    o->strain[0][p] = held > 0.0 ? o->strain[0][p] : (double)NAN;
-    o->J_inverse[p] = 1.0 / J;
+    mpmi_principal_find(dim, o, p, mpmi_trial_b(dim, in, begin + p, J), J);
   }
 }
 

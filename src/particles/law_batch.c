@@ -111,10 +111,25 @@ static void look(mpmi_law_batch *b, int64_t p) {
     fault->cause = MPM_NONFINITE, fault->what = "the material's energy is infinite";
 }
 
+/* A built-in law refuses particles by what it gives for their wave speed; inert slots are none of its concern. */
+static mpm_status find_refused(mpmi_law_batch *b, const mpmi_law *law) {
+  for (int64_t p = 0; law->refusal_count && p < b->batch.n; ++p) {
+    if (!(b->wave_speed[p] < 0.0)) continue;
+    if (b->batch.id[p] < 0) {
+      b->wave_speed[p] = 0.0;
+    } else if (!b->fault.cause) {
+      const mpmi_law_refusal *refusal = &law->refusal[(int32_t)(-1.0 - b->wave_speed[p])];
+      b->fault = (mpmi_law_fault){refusal->cause, b->batch.id[p], refusal->what};
+    }
+  }
+  return b->fault.cause;
+}
+
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_material *material, int32_t dim) {
   b->fault.cause = MPM_OK;
   const mpm_status status = mpmi_material_evaluate(material, dim, &b->batch);
-  if (status || material->law) return status;
+  if (status) return status;
+  if (material->law) return find_refused(b, material->law);
   /* Whatever the host made of inert slots must not get into sums. */
   for (int64_t p = 0; p < b->batch.n; ++p) {
     if (b->batch.id[p] >= 0) {

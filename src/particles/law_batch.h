@@ -17,7 +17,7 @@ typedef struct mpmi_lookup {
   int64_t begin;
 } mpmi_lookup;
 
-/* What the host's law gave and must not give; cause MPM_OK: nothing. */
+/* What the host's law gave and must not give, or why a built-in one refuses; cause MPM_OK: nothing. */
 typedef struct mpmi_law_fault {
   mpm_status cause;
   int64_t particle; /* id */
@@ -45,8 +45,9 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
                          double dt);
 /* Loads F from storage, to evaluate the state as it is. */
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
-/* Runs the law. What a law of the host gives is checked, and the status says what is wrong with it. After
- * this the new stress and state may be stored in copy `copy` of a set's fields. */
+/* Runs the law, and looks at what one of the host's gave and whom a built-in one refuses; a fault's cause is
+ * returned as the status.
+ * Afterwards the new stress and state may be stored in copy `copy` of a set's fields. */
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_material *material, int32_t dim);
 void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,
                           int64_t n);
