@@ -15,6 +15,7 @@
   LAW(rigid)                                                                                                 \
   LAW(drucker_prager)                                                                                        \
   LAW(mohr_coulomb)                                                                                          \
+  LAW(cam_clay)                                                                                              \
   LAW(herschel_bulkley)                                                                                      \
   LAW(snow)                                                                                                  \
   LAW(mu_i)

@@ -19,6 +19,9 @@ path path_of(const char *model, const mpm_param *params, int32_t count);
 /* Begins with F = I, a mean stress, and states of 0. */
 void start(path *s, double mean);
 
+/* A step by F_inc that may be refused, and then leaves the path as it is. */
+mpm_status attempt(path *s, const double *F_inc);
+
 /* A step by F_inc; by principal stretches, as their logarithms; in simple shear. */
 void advance(path *s, const double *F_inc);
 void stretch(path *s, double x, double y, double z);
@@ -41,7 +44,7 @@ double wide(uint64_t *seed, double low, double high);
 void random_increment(uint64_t *seed, double *F_inc);
 
 /* The largest difference of the tangent of a step from differences of fourth order of the Kirchhoff stress, and
- * whether all of these steps end in one regime. */
+ * whether all of these steps are made and end in one regime. */
 typedef int32_t (*regime_fn)(const path *from, const path *to);
 double tangent_off(const path *from, const double *F_inc, regime_fn regime_of, int32_t *smooth);
 
@@ -51,5 +54,8 @@ void ck_frame(const path *from, const double *F_inc, uint64_t *seed);
 /* Plane and uniaxial strain are what space makes of them: steps from random stresses of a size, some of them with
  * a state. */
 void ck_dimension(const mpm_material *m, int32_t dim, real stress, const double *state, uint64_t *seed);
+/* With a mean stress beside the random one. */
+void ck_dimension_at(const mpm_material *m, int32_t dim, real mean, real stress, const double *state,
+                     uint64_t *seed);
 
 #endif
