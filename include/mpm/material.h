@@ -40,6 +40,8 @@ extern "C" {
  * |                         | hardening_max                           | compaction                          |
  * | "mu_i"                  | E, nu, density, mu_s, mu_2, I_0,        | Jop et al. 2006: grains that flow   |
  * |                         | grain_diameter, grain_density           | with friction mu(I); no tension     |
+ * | "cam_clay"              | density, kappa, lambda, M, mu0, alpha,  | modified Cam-clay in the logarithmic|
+ * |                         | p_ref, pc0, p_min                       | strain; needs an initial stress     |
  *
  * params are count pairs of name and value in any order, which are copied; parameters that are not named take
  * their defaults. mpm_material_model_param() lists units, defaults and ranges. *out is NULL unless MPM_OK is

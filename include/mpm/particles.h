@@ -38,8 +38,8 @@
  *   With MPM_FLIP and MPM_XPIC it is kept only once the host has set or mapped it, and then is the L that
  *   deformed the particle in the last step.
  * - stress: Cauchy stress; writable where it is part of the law's state (linear_elastic, j2, drucker_prager,
- *   mohr_coulomb, mu_i, a law of the host; of herschel_bulkley the deviator), else computed from F, for snow from
- *   F and state.
+ *   mohr_coulomb, cam_clay, mu_i, a law of the host; of herschel_bulkley the deviator), else computed from F,
+ *   for snow from F and state.
  * - state: state variables of the law.
  * - reference_position: exists while a stepper with reference_positions holds the set, and starts as the
  *   unwrapped position at mpm_stepper_add().

@@ -179,7 +179,9 @@ MPMI_INLINE clay_change solve(const clay_system *y, double v, double e, double f
   double by_v = (y->ee * v - y->ve * e) * y->inverse, by_e = (y->vv * e - y->ev * v) * y->inverse;
   double of_v = (y->ee * y->along - y->ve * y->across) * y->inverse;
   double of_e = (y->vv * y->across - y->ev * y->along) * y->inverse;
-  double flow = (y->f_v * by_v + y->f_e * by_e - f) / (y->f_v * of_v + y->f_e * of_e);
+  double over =
+      y->f_v * of_v + y->f_e * of_e; /* 0 in the middle of the yield surface, where nothing yields */
+  double flow = (y->f_v * by_v + y->f_e * by_e - f) / (over == 0.0 ? 1.0 : over);
   clay_change d = {by_v - of_v * flow, by_e - of_e * flow, flow};
   return d;
 }

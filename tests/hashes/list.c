@@ -40,9 +40,9 @@ static const struct {
                           {MPM_XPIC, 3, 1.0, 0.0, "XPIC(3)"},      {MPM_XPIC, 5, 1.0, 0.0, "XPIC(5)"}};
 
 static const char *const laws[LAWS] = {
-    "",      "neo-Hookean", "linear elastic",        "J2",   "decoupled",    "fluid", "viscous fluid",
-    "rigid", "host law",    "host law with tangent", "soil", "Mohr-Coulomb", "mud",   "snow",
-    "grains"};
+    "",       "neo-Hookean", "linear elastic",        "J2",   "decoupled",    "fluid", "viscous fluid",
+    "rigid",  "host law",    "host law with tangent", "soil", "Mohr-Coulomb", "mud",   "snow",
+    "grains", "clay"};
 
 typedef struct listing {
   scene *item;

@@ -101,6 +101,8 @@ static void make_material(world *w, int32_t m) {
   static const mpm_param grains[] = {
       {"E", 3e5},    {"nu", 0.3},  {"density", 1e3},         {"mu_s", 0.4},
       {"mu_2", 0.7}, {"I_0", 0.3}, {"grain_diameter", 0.01}, {"grain_density", 2.5e3}};
+  static const mpm_param clay[] = {{"density", 1e3}, {"kappa", 0.02}, {"lambda", 0.12}, {"M", 1.05},
+                                   {"mu0", 1e5},     {"p_ref", 4e3},  {"pc0", 6e3}};
   mpm_material **out = &w->material[m];
   switch (w->is->law[m]) {
   case LAW_NEO_HOOKEAN:
@@ -134,6 +136,9 @@ static void make_material(world *w, int32_t m) {
     break;
   case LAW_GRAINS:
     must(w, mpm_material_create(w->context, "mu_i", grains, 8, out));
+    break;
+  case LAW_CLAY:
+    must(w, mpm_material_create(w->context, "cam_clay", clay, 7, out));
     break;
   case LAW_RIGID:
     must(w, mpm_material_create(w->context, "rigid", fluid, 1, out));
@@ -207,6 +212,8 @@ static void set_fields(world *w, int32_t m) {
   if (!value || !flags) exit(1);
   for (int64_t i = 0; i < 3 * n; ++i) value[i] = 40.0 * noise((uint64_t)(900 + i));
   must(w, mpm_particles_set(w->set[m], "heat", MPM_F64, 1, n, NULL, value));
+  static const double pressure[6] = {-4e3, -4e3, -4e3, 0.0, 0.0, 0.0};
+  if (w->is->law[m] == LAW_CLAY) must(w, mpm_particles_set_all(w->set[m], "stress", MPM_F64, 6, pressure));
   if (with & WITH_APPLIED_FORCE)
     must(w, mpm_particles_set(w->set[m], "applied_force", MPM_F64, dim, n, NULL, value));
   if (with & WITH_KEPT) {

@@ -22,6 +22,7 @@ enum {
   LAW_MUD,
   LAW_SNOW,
   LAW_GRAINS,
+  LAW_CLAY,
   LAWS
 };
 

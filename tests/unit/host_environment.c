@@ -51,6 +51,9 @@ static void live(world_desc *d, double low, double high, int32_t steps, double c
   mpm_particles *set = world_open(&w, d);
   world_fill_cube(&w, set, low, high);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, w.dim, velocity));
+  const double p = d->law.yield_stress, stress[6] = {-p, -p, -p, 0.0, 0.0, 0.0};
+  if (d->law.model && !strcmp(d->law.model, "cam_clay"))
+    ck_ok(&w, mpm_particles_set_all(set, "stress", MPM_F64, 6, stress));
   for (int32_t i = 0; i < steps; ++i) world_step(&w, courant * fmin(world_stable_dt(&w), 0.01));
   world_hash(&w);
   ck_ok(&w, mpm_write_particles(set, scratch_path("host.vtp", path, sizeof path), 0, NULL));

@@ -41,6 +41,7 @@ const law_option law_options[LAWS] = {{"neo_hookean", "neo-Hookean"},
                                       {"herschel_bulkley", "Herschel-Bulkley"},
                                       {"snow", "snow"},
                                       {"mu_i", "mu(I)"},
+                                      {"cam_clay", "Cam-clay"},
                                       {NULL, "host law"}};
 
 #define BOTH_SCHEMES(b, t, f, name)                                                                          \

@@ -32,7 +32,7 @@ typedef struct law_option {
   const char *model; /* NULL: the host's */
   const char *name;
 } law_option;
-enum { LAWS = 12 };
+enum { LAWS = 13 };
 extern const law_option law_options[LAWS];
 
 /* A value that is 0 stands for the default of the library, except flip and pic_damping. */

@@ -156,11 +156,13 @@ static void set_patch(const body *b, const patch *q) {
   put(&b->w, b->set, "velocity", b->dim, v);
   if (carries_matrix(transfer_options[b->c->choice[CHOOSE_TRANSFER]].transfer))
     ck_ok(&b->w, mpm_particles_set_all(b->set, "velocity_gradient", MPM_F64, 9, q->L));
+  const int32_t clay = has_law(b, "cam_clay");
   if (has_law(b, "linear_elastic") || has_law(b, "j2") || has_law(b, "herschel_bulkley") ||
-      has_law(b, "mu_i")) {
+      has_law(b, "mu_i") || clay) {
     double stress[6];
     for (int32_t c = 0; c < 6; ++c)
       stress[c] = b->dim == 3 || c < 3 || (b->dim == 2 && c == 3) ? stress_patch[c] : 0.0;
+    for (int32_t c = 0; c < 3; ++c) stress[c] -= clay ? 0.01 * E : 0.0;
     ck_ok(&b->w, mpm_particles_set_all(b->set, "stress", MPM_F64, 6, stress));
   }
   free(x), free(v);
@@ -293,7 +295,8 @@ static const combination *chosen(int32_t k) {
 
 START_TEST(combination_works) {
   for (int32_t k = _i * AT_ONCE; k < (_i + 1) * AT_ONCE && k < list_sample(); ++k) {
-    check_translation(chosen(k));
+    /* without a pressure there is no clay, and under one it does not keep its shape */
+    if (strcmp(law_options[chosen(k)->choice[CHOOSE_LAW]].name, "Cam-clay")) check_translation(chosen(k));
     check_patch(chosen(k));
   }
 }

@@ -142,13 +142,20 @@ mpm_status law_create(mpm_context *context, const world_law *of, mpm_material **
                              {"mu_2", 0.7},
                              {"I_0", 0.3},
                              {"grain_diameter", 0.01},
-                             {"grain_density", 2.5e3}};
+                             {"grain_density", 2.5e3},
+                             {"lambda", 0.12},
+                             {"M", 1.05},
+                             {"mu0", of->E},
+                             {"p_ref", of->yield_stress},
+                             {"pc0", 2.0 * of->yield_stress}};
   mpm_param given[sizeof known / sizeof *known];
   int32_t count = 0;
   const char *name;
   for (int32_t i = 0; !mpm_material_model_param(of->model, i, &name, NULL, NULL, NULL, NULL, NULL); ++i)
     for (size_t k = 0; k < sizeof known / sizeof *known; ++k)
       if (!strcmp(known[k].name, name)) given[count++] = known[k];
+  for (int32_t i = 0; i < count; ++i) /* there it is a slope */
+    if (!strcmp(of->model, "cam_clay") && !strcmp(given[i].name, "kappa")) given[i].value = 0.02;
   return mpm_material_create(context, of->model, given, count, out);
 }
 
