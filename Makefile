@@ -78,8 +78,10 @@ $(BUILD)/examples/petsc_solver: LIBS += $(PETSC_LIBS)
 .SUFFIXES:
 
 # ---- library ---------------------------------------------------------------------------------------------
-#: all                   the static and the shared library, in $(BUILD): what `make` alone does
-all: $(STATIC_LIB) $(SHARED_LIB)
+include umat/umat.mk
+
+#: all                   the libraries, static and shared, in $(BUILD): what `make` alone does
+all: $(STATIC_LIB) $(SHARED_LIB) $(UMAT_ARCHIVES) $(UMAT_SHARED_LIB)
 
 #: help                  this list
 help:
@@ -140,15 +142,15 @@ PC_LIBDIR = $(call escaped,$(if $(is_movable),$${prefix}/$(call inside_prefix,$(
 PC_INCLUDEDIR = $(call escaped,$(if $(is_movable),$${prefix}/$(call inside_prefix,$(INCLUDEDIR)),$(INCLUDEDIR)))
 POINTER_BYTES = $(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)
 SUBSTITUTE = sed $(foreach name,PC_PREFIX PC_LIBDIR PC_INCLUDEDIR VERSION SHARED SONAME IMPORT_LIB INCLUDEDIR_FROM_CMAKEDIR \
-  BINDIR_FROM_CMAKEDIR POINTER_BYTES LIBS,-e 's|@$(name)@|$($(name))|')
+  BINDIR_FROM_CMAKEDIR POINTER_BYTES LIBS UMAT_SHARED UMAT_SONAME,-e 's|@$(name)@|$($(name))|')
 # Where files are installed, for the shell.
 to = "$(DESTDIR)$($(1))$(2)"
 
 #: install               headers, libraries, pkg-config and CMake files, under PREFIX (/usr/local), in DESTDIR
 install: all
 	install -d $(call to,INCLUDEDIR,/mpm) $(call to,PKGCONFIGDIR) $(call to,CMAKEDIR)
-	install -m 644 $(HEADERS) $(call to,INCLUDEDIR,/mpm)
-	install -m 644 $(STATIC_LIB) $(IMPORT_LIB:%=$(BUILD)/%) $(call to,LIBDIR)
+	install -m 644 $(HEADERS) $(UMAT_INSTALLED_HEADERS) $(call to,INCLUDEDIR,/mpm)
+	install -m 644 $(STATIC_LIB) $(UMAT_ARCHIVES) $(IMPORT_LIB:%=$(BUILD)/%) $(call to,LIBDIR)
 ifneq (,$(IMPORT_LIB))
 	install -d $(call to,BINDIR)
 	install -m 755 $(SHARED_LIB) $(call to,BINDIR)
@@ -156,15 +158,20 @@ else ifneq (,$(SHARED))
 	install -m 755 $(SHARED_LIB) $(call to,LIBDIR)
 	for name in $(SHARED_LINKS); do ln -sf $(SHARED) $(call to,LIBDIR)/$$name || exit 1; done
 endif
-	for name in mpm mpm-static; do $(SUBSTITUTE) pkgconfig/$$name.pc.in > $(call to,PKGCONFIGDIR)/$$name.pc || exit 1; done
+ifneq (,$(UMAT_SHARED_LIB))
+	install -m 755 $(UMAT_SHARED_LIB) $(call to,LIBDIR)
+	for name in $(UMAT_LINKS); do ln -sf $(UMAT_SHARED) $(call to,LIBDIR)/$$name || exit 1; done
+endif
+	for name in mpm mpm-static $(UMAT_PC); do $(SUBSTITUTE) pkgconfig/$$name.pc.in > $(call to,PKGCONFIGDIR)/$$name.pc || exit 1; done
 	$(SUBSTITUTE) cmake/mpmConfig.cmake.in > $(call to,CMAKEDIR)/mpmConfig.cmake
 	$(SUBSTITUTE) cmake/mpmConfigVersion.cmake.in > $(call to,CMAKEDIR)/mpmConfigVersion.cmake
 	chmod 644 $(call to,PKGCONFIGDIR)/mpm*.pc $(call to,CMAKEDIR)/*.cmake
 
 #: uninstall             takes them away again
 uninstall:
-	cd $(call to,INCLUDEDIR) && rm -f $(HEADERS:include/%=%)
-	cd $(call to,LIBDIR) && rm -f libmpm.a $(SHARED) $(SHARED_LINKS) $(IMPORT_LIB) pkgconfig/mpm.pc pkgconfig/mpm-static.pc
+	cd $(call to,INCLUDEDIR) && rm -f $(HEADERS:include/%=%) $(UMAT_INSTALLED_HEADERS:umat/include/%=%)
+	cd $(call to,LIBDIR) && rm -f libmpm.a $(SHARED) $(SHARED_LINKS) $(IMPORT_LIB) $(notdir $(UMAT_ARCHIVES)) \
+	  $(if $(UMAT_SHARED_LIB),$(UMAT_SHARED) $(UMAT_LINKS)) $(addprefix pkgconfig/,$(addsuffix .pc,mpm mpm-static $(UMAT_PC)))
 	rm -f $(if $(IMPORT_LIB),$(call to,BINDIR,/$(SHARED))) $(call to,CMAKEDIR)/mpmConfig.cmake $(call to,CMAKEDIR)/mpmConfigVersion.cmake
 	rmdir $(call to,INCLUDEDIR,/mpm) $(call to,CMAKEDIR) 2>/dev/null || :
 
@@ -226,7 +233,7 @@ docs:
 	@echo "$(BUILD)/docs/html/index.html"
 
 # ---- upkeep ----------------------------------------------------------------------------------------------
-FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
+FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/mpm/*.hpp umat/*/*.[ch] src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
   tests/*/*.[ch] tests/*/*.cpp)
 #: format                clang-format on all sources
 format:

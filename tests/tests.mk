@@ -2,7 +2,7 @@
 
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
 .PHONY: check-builds check-windows check-wasm check-valgrind
-.PHONY: check-amalgamation check-cmake mutate-slack
+.PHONY: check-amalgamation check-cmake check-umat mutate-slack
 .PHONY: mutate mutate-check check-hashes update-hashes
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-portable check-abi update-abi
 .PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
@@ -131,6 +131,12 @@ check-cmake: all
 	@mkdir -p $(BUILD)/tests/scratch
 	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash tests/api/cmake.sh full
 
+#: check-umat            libmpm-umat: Fortran subroutines beside the laws built in, under the address sanitizer too, the
+#:                       installation, the example; needs gfortran
+check-umat: all
+	@mkdir -p $(BUILD)/tests/scratch
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) bash tests/umat/run.sh
+
 #: check-examples        every example, with the numbers that it prints
 check-examples: examples
 	@mkdir -p $(BUILD)/tests/scratch
@@ -139,7 +145,7 @@ check-examples: examples
 
 # With `make -j check-setup check` the tools come before the first file that needs them.
 ifneq (,$(filter check-setup,$(MAKECMDGOALS)))
-$(UNIT_OBJECTS) $(UNIT) check-unit check-api check-examples mutate-check: | check-setup
+$(UNIT_OBJECTS) $(UNIT) check-unit check-api check-umat check-examples mutate-check: | check-setup
 endif
 
 #: check-setup           installs what `check` needs, on Debian: Check, pkg-config, a C++ compiler, Python

@@ -98,6 +98,11 @@ MPM_API mpm_status mpm_context_destroy(mpm_context *context);
  * other. May be called in callbacks, too, on the thread of the call. */
 MPM_API const char *mpm_last_error(const mpm_context *context);
 
+/** Makes text the sentence of mpm_last_error() and returns status: for libraries that stand on this one and
+ * refuse a call of their own on a context, as mpm_umat.h does. text is copied, and cut after some 1000 bytes.
+ * MPM_E_ARG: status is MPM_OK, or text is NULL; the sentence then says that. */
+MPM_API mpm_status mpm_set_last_error(mpm_context *context, mpm_status status, const char *text);
+
 #ifdef __cplusplus
 }
 #endif

@@ -65,6 +65,12 @@ public:
     return use;
   }
 
+  /** Makes text the sentence of a failure with status < 0, and throws it: see mpm_set_last_error(). */
+  [[noreturn]] void refuse(mpm_status status, const std::string &text) const {
+    const mpm_status refused = mpm_set_last_error(core().handle, status, text.c_str());
+    throw error(refused, mpm_last_error(core().handle));
+  }
+
 private:
   static void bind(context_desc &desc, detail::context_core &c) {
     c.log = std::move(desc.on_log);

@@ -94,6 +94,13 @@ public:
     if (!given.state_initial.empty()) desc.state_initial = given.state_initial.data();
     c.context->check(mpm_material_create_custom(c.context->handle, &desc, &c.handle));
   }
+  /** Makes a material by a function of C that stands on this library, make(context, &out), such as one of
+   * mpm_umat.h. */
+  material(const context &made_with, const std::function<mpm_status(mpm_context *, mpm_material **)> &make)
+      : wrapper(made_with.shared()) {
+    detail::material_core &c = core();
+    c.context->check(make(c.context->handle, &c.handle));
+  }
 
   /** Runs the law without a grid: see mpm_material_update(). struct_size is set here. */
   void update(mpm_material_batch batch) const {

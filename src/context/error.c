@@ -43,6 +43,14 @@ const char *mpm_last_error(const mpm_context *context) {
          "what the status means";
 }
 
+mpm_status mpm_set_last_error(mpm_context *context, mpm_status status, const char *text) {
+  MPMI_ENTER_CONTEXT(context);
+  if (status == MPM_OK)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_set_last_error: status is MPM_OK, which has no sentence");
+  if (!text) return mpmi_fail(context, MPM_E_ARG, "mpm_set_last_error: text is NULL");
+  return mpmi_fail(context, status, "%s", text);
+}
+
 enum { NAME_MAX_COMPARED = 63, NAMES_LISTED = 3 };
 
 static size_t compared_length(const char *name) {

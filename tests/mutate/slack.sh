@@ -7,7 +7,7 @@ export MUTATE_FAULTS=tests/mutate/slack.txt MPM_ISA=baseline
 copy=$BUILD/slack
 rm -rf "$copy/tests" "$copy/src"
 mkdir -p "$copy/scratch"
-cp -a Makefile platform.mk include src tests "$copy"
+cp -a Makefile platform.mk include src umat tests "$copy"
 cd "$copy"
 
 program() {

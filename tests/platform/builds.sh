@@ -62,7 +62,7 @@ spaces() {
   local tree="$out/spaces/the sources" prefix="$out/spaces/my prefix" moved="$out/spaces/moved away"
   rm -rf "$out/spaces"
   mkdir -p "$tree" "$out/spaces/files"
-  cp -r Makefile platform.mk src include pkgconfig cmake tests examples bench "$tree"
+  cp -r Makefile platform.mk src umat include pkgconfig cmake tests examples bench "$tree"
   (cd "$tree" && "$MAKE" -j"$JOBS" ISAS=baseline CPPFLAGS=-DMPM_BASELINE_ONLY KERNEL_OPT=-O0 OPT=-O0 CFLAGS= \
     PREFIX="$prefix" install)
   mv "$prefix" "$moved"

@@ -43,6 +43,7 @@ static void try_all(int32_t kind) {
       mpm_series_open(w.context, path, (mpm_series **)&made),
       mpm_series_append(series, 0.0, "a"),
       mpm_series_close(series),
+      mpm_set_last_error(w.context, MPM_E_IO, "of the callback"),
       mpm_context_destroy(w.context),
       mpm_grid_destroy(w.grid),
       mpm_material_destroy(w.material[0]),

@@ -397,6 +397,28 @@ START_TEST(last_error) {
 }
 END_TEST
 
+/* Of a library that stands on this one. */
+START_TEST(last_error_from_outside) {
+  mpm_context_desc desc = context_desc();
+  mpm_context *context = make(&desc);
+  ck_assert_int_eq(mpm_set_last_error(context, MPM_E_UNSUPPORTED, "no 100 % of that"), MPM_E_UNSUPPORTED);
+  ck_assert_str_eq(mpm_last_error(context), "no 100 % of that");
+  ck_assert_int_eq(mpm_set_last_error(context, MPM_CUT_DT, mpm_last_error(context)), MPM_CUT_DT);
+  ck_assert_str_eq(mpm_last_error(context), "no 100 % of that");
+  ck_assert_int_eq(mpm_set_last_error(context, MPM_OK, "fine"), MPM_E_ARG);
+  ck_assert_ptr_nonnull(strstr(mpm_last_error(context), "MPM_OK"));
+  ck_assert_int_eq(mpm_set_last_error(context, MPM_E_IO, NULL), MPM_E_ARG);
+  ck_assert_ptr_nonnull(strstr(mpm_last_error(context), "NULL"));
+  ck_assert_int_eq(mpm_set_last_error(NULL, MPM_E_IO, "text"), MPM_E_ARG);
+  char text[2000];
+  memset(text, 'x', sizeof text);
+  text[sizeof text - 1] = '\0';
+  ck_assert_int_eq(mpm_set_last_error(context, MPM_E_IO, text), MPM_E_IO);
+  ck_assert_uint_eq(strlen(mpm_last_error(context)), sizeof context->text[0] - 1);
+  ck_ok(context, mpm_context_destroy(context));
+}
+END_TEST
+
 START_TEST(log_reaches_the_host) {
   host h;
   mpm_context_desc desc = host_desc(&h);
@@ -460,6 +482,7 @@ Suite *context_suite(void) {
   suite_add_tcase(suite, memory);
   TCase *texts = tcase_create("texts");
   tcase_add_test(texts, last_error);
+  tcase_add_test(texts, last_error_from_outside);
   tcase_add_test(texts, log_reaches_the_host);
   tcase_add_test(texts, nearest_names);
   suite_add_tcase(suite, texts);

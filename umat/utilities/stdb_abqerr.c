@@ -1,0 +1,11 @@
+/* CALL STDB_ABQERR(LOP, STRING, INTV, REALV, CHARV) */
+#include "report.h"
+
+void stdb_abqerr_(const int *lop, const char *string, const int *intv, const double *realv, const char *charv,
+                  size_t string_length, size_t charv_length);
+
+void stdb_abqerr_(const int *lop, const char *string, const int *intv, const double *realv, const char *charv,
+                  size_t string_length, size_t charv_length) {
+  (void)charv_length;
+  mpmu_report(*lop, string, string_length, intv, realv, charv);
+}
