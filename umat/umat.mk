@@ -31,7 +31,7 @@ endif
 $(BUILD)/obj/umat/%.o: umat/%.c Makefile platform.mk umat/umat.mk
 	@mkdir -p $(@D)
 	$(call SAY,CC)
-	$(Q)$(CC) $(LIBRARY) -Iumat/include $(OPT) -ffp-contract=off -c $< -o $@
+	$(Q)$(CC) $(LIBRARY) -Iumat/include $(KERNEL_OPT) -ffp-contract=off -c $< -o $@
 
 $(UMAT_STATIC): $(UMAT_OBJECTS)
 $(UMAT_UTILITIES): $(UTILITY_OBJECTS)

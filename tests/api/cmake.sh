@@ -49,8 +49,8 @@ version=$(sed -n 's/^VERSION := //p' Makefile)
 configure "$scratch/own" . -DCMAKE_BUILD_TYPE=Debug -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_INSTALL_LIBDIR=lib \
   -DCMAKE_INSTALL_PREFIX="$scratch/by-cmake"
 sed -n 's/.*"command": "\(.*\)".*/\1/p' "$scratch/own/compile_commands.json" \
-  | sed -E "s|.*-DMPMI_ISA=([a-z0-9_]+) .* -c [^ ]*/src/(.*)\.c$|\2.\1.o|; s|.* -c [^ ]*/src/(.*)\.c$|\1.o|" | sort > "$scratch/cmake-objects"
-"$MAKE" -s BUILD="$BUILD" CC="$CC" --eval 'show-objects:; @printf "%s\n" $(OBJECTS:$(BUILD)/obj/src/%=%)' show-objects \
+  | sed -E "s|.* -c $PWD/(umat/.*)\.c$|\1.o|; s|.*-DMPMI_ISA=([a-z0-9_]+) .* -c [^ ]*/src/(.*)\.c$|\2.\1.o|; s|.* -c [^ ]*/src/(.*)\.c$|\1.o|" | sort > "$scratch/cmake-objects"
+"$MAKE" -s BUILD="$BUILD" CC="$CC" --eval 'show-objects:; @printf "%s\n" $(OBJECTS:$(BUILD)/obj/src/%=%) $(patsubst $(BUILD)/obj/%,%,$(UMAT_OBJECTS) $(UTILITY_OBJECTS))' show-objects \
   | sort > "$scratch/make-objects"
 if ! diff "$scratch/make-objects" "$scratch/cmake-objects"; then
   echo "cmake.sh: '<' is compiled by the Makefile alone, '>' by CMakeLists.txt alone" >&2

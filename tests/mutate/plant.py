@@ -14,7 +14,7 @@ import re
 import sys
 
 FAULTS = pathlib.Path(os.environ.get("MUTATE_FAULTS", "tests/mutate/faults.txt"))
-SOURCES = ("src/**/*.[ch]", "include/mpm/*.h", "include/mpm/*.hpp")
+SOURCES = ("src/**/*.[ch]", "include/mpm/*.h", "include/mpm/*.hpp", "umat/src/*.[ch]", "umat/utilities/*.[ch]")
 
 TOKEN = re.compile(r"""
     (?P<space>\s+ | \\\n | //[^\n]* | /\*.*?\*/)

@@ -195,6 +195,7 @@ START_TEST(total_strain) {
     for (int k = 0; k < 9; ++k) sum[k] += e[k];
     for (int k = 0; k < 6; ++k) ck_near(p.state[3 + k], (k < 3 ? 1.0 : 2.0) * sum[of_library[k]], 1e-14);
     ck_assert_int_eq(last.kinc, n + 1);
+    for (int k = 0; k < 36; ++k) ck_near(last.ddsdde[k], 0.0, 0.0); /* whatever it wrote the last time */
     ck_near(p.state[9], n + 1.0, 0.0);
     ck_near(p.state[2], 30.0 * (n + 1), 0.0);
   }
@@ -203,28 +204,28 @@ START_TEST(total_strain) {
 }
 END_TEST
 
-/* Increments of any size, and the digits of tiny ones. */
+/* Increments of any size, and the digits of tiny ones, which L has and F_inc has not. */
 START_TEST(logarithm) {
   static const double sizes[] = {1e-14, 1e-9, 1e-4, 0.03, 0.3, 1.2, 3.0};
   mpm_context *context = context_of(1);
   mpm_material *material = recorded(context, 0);
   uint64_t seed = 11;
   for (int i = 0; i < 70; ++i) {
-    const double size = sizes[i % 7], a = uniform(&seed, -size, size), b = uniform(&seed, -size, size),
-                 c = size;
-    point p = point_of(material, 4);
-    double q[9], r[9], e[9], log_v[9], F_inc[9];
-    const int turn = i / 7 % 2;
+    const double size = sizes[i % 7], a = uniform(&seed, -size, size), b = uniform(&seed, -size, size);
+    const int turns = i / 7 % 2;
+    double q[9], r[9], L[9], log_v[9], F_inc[9], stress[6] = {0.0}, state[4] = {0.0};
     rotation(uniform(&seed, -1, 1), uniform(&seed, -1, 1), 1.0, uniform(&seed, -3, 3), q);
-    rotation(uniform(&seed, -1, 1), uniform(&seed, -1, 1), 1.0, turn ? uniform(&seed, -3, 3) : 0.0, r);
-    stretched(q, expm1(a), expm1(b), expm1(c), e);
-    stretched(q, a, b, c, log_v);
-    for (int k = 0; k < 9; k += 4) e[k] += 1.0;
-    multiply(e, r, F_inc);
-    step(context, &p, F_inc);
-    /* I + G is rounded to 1e-16 before the UMAT is asked */
-    ck_umat_sym(last.dstran, log_v, 2.0, 3e-15 * (1.0 + size) * exp(size));
-    ck_columns(last.drot, r, 3e-15);
+    rotation(uniform(&seed, -1, 1), uniform(&seed, -1, 1), 1.0, turns ? uniform(&seed, -3, 3) : 0.0, r);
+    stretched(q, expm1(a), expm1(b), expm1(size), L);
+    stretched(q, a, b, size, log_v);
+    for (int k = 0; k < 9; ++k) F_inc[k] = L[k] + (k % 4 ? 0.0 : 1.0);
+    multiply(F_inc, r, F_inc);
+    mpm_material_batch batch = {.struct_size = sizeof batch, .state_count = 4, .n = 1, .ld = 1, .dt = 1.0};
+    batch.F = batch.F_inc = F_inc, batch.L = turns ? NULL : L;
+    batch.stress = batch.stress_new = stress, batch.state = batch.state_new = state;
+    ck_ok(context, mpm_material_update(material, &batch, NULL, NULL));
+    ck_umat_sym(last.dstran, log_v, 2.0, 4e-15 * (turns ? 1.0 + size : size) * exp(2.0 * size));
+    ck_columns(last.drot, r, 3e-15 * exp(2.0 * size));
   }
   ck_ok(context, mpm_material_destroy(material));
   ck_ok(context, mpm_context_destroy(context));

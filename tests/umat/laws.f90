@@ -224,7 +224,7 @@ subroutine umat_moody(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde
   case (1)
     pnewdt = 0.5d0
   case (2)
-    stress(5) = nan
+    stress(4) = nan
   case (3)
     statev(1) = nan
   case (4)

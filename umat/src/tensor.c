@@ -4,12 +4,17 @@
 
 static const mpmu_sym unit = {1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
 
-/* Higham's iteration, X' = (X + X^-T) / 2, from F without its change of volume. It converges quadratically: once
- * a change is below 1e-8, the next one would be lost in rounding. */
+/* The larger one; b where a is not a number. */
+static double larger(double a, double b) {
+  return a > b ? a : b;
+}
+
+/* Higham's iteration, X' = (X + X^-T) / 2, from F, without its change of volume where that is large. It converges
+ * quadratically: once a change is below 1e-8, the next one would be lost in rounding. */
 mpmu_polar mpmu_polar_of(const mpmu_mat *F) {
   enum { MOST = 60 };
   mpmu_polar of = {.R = *F};
-  const double scale = 1.0 / cbrt(mpmu_determinant(F));
+  const double J = mpmu_determinant(F), scale = J > 0.5 && J < 2.0 ? 1.0 : 1.0 / cbrt(J);
   for (int k = 0; k < 9; ++k) of.R.m[k / 3][k % 3] *= scale;
   double change = 1.0;
   for (int step = 0; step < MOST && !(change < 1e-8); ++step) {
@@ -19,7 +24,7 @@ mpmu_polar mpmu_polar_of(const mpmu_mat *F) {
     for (int k = 0; k < 9; ++k) {
       const double half = 0.5 * (by * c.m[k / 3][k % 3] - X.m[k / 3][k % 3]);
       of.R.m[k / 3][k % 3] += half;
-      change = fmax(change, fabs(half));
+      change = larger(fabs(half), change);
     }
   }
   const mpmu_mat back = mpmu_transposed(&of.R), v = mpmu_product(F, &back);
@@ -41,7 +46,8 @@ static mpmu_sym inverse(mpmu_sym a) {
 }
 
 static double largest(mpmu_sym a) {
-  return fmax(fmax(fmax(fabs(a.xx), fabs(a.yy)), fmax(fabs(a.zz), fabs(a.xy))), fmax(fabs(a.yz), fabs(a.xz)));
+  return larger(larger(larger(fabs(a.xx), fabs(a.yy)), larger(fabs(a.zz), fabs(a.xy))),
+                larger(fabs(a.yz), fabs(a.xz)));
 }
 
 /* With V V = I + e, ln V = 2 artanh Z for Z = (V - I)(V + I)^-1 = e (V + I)^-2: e comes from G without a
