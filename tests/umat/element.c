@@ -175,7 +175,8 @@ START_TEST(many_items) {
 }
 END_TEST
 
-/* STRAN is the sum of the increments, each turned by the rotations that came after it, and in the right places. */
+/* STRAN is the sum of the increments, each turned by the rotations that came after it, and in the right
+ * places. */
 START_TEST(total_strain) {
   mpm_context *context = context_of(1);
   mpm_material *material = recorded(context, 1);
@@ -232,7 +233,7 @@ START_TEST(logarithm) {
 }
 END_TEST
 
-/* ---- laws beside those built in ------------------------------------------------------------------------- */
+/* ---- laws beside those built in ---------------------------------------------------------------------- */
 static mpm_material *j2_of(mpm_context *context, int32_t differenced) {
   static double props[4];
   props[0] = E, props[1] = nu, props[2] = yield, props[3] = hardening;
@@ -279,8 +280,8 @@ START_TEST(j2_paths) {
 }
 END_TEST
 
-/* DDSDDE gives the tangent of the rates: in small increments it is that of the differences, with stresses that
- * are not small beside the moduli. */
+/* DDSDDE gives the tangent of the rates: in small increments it is that of the differences, with stresses
+ * that are not small beside the moduli. */
 static void ck_tangent(mpm_context *context, const mpm_material *material, const mpm_material *differenced,
                        int32_t states, uint64_t seed, double pressure, double off) {
   for (int trial = 0; trial < 20; ++trial) {
@@ -316,7 +317,8 @@ START_TEST(tangents) {
 }
 END_TEST
 
-/* With "kirchhoff" the volume's term is that of the UMAT, and the tangent of a symmetric DDSDDE is symmetric. */
+/* With "kirchhoff" the volume's term is that of the UMAT, and the tangent of a symmetric DDSDDE is
+ * symmetric. */
 START_TEST(tangent_of_kirchhoff) {
   mpm_context *context = context_of(1);
   const double props[2] = {E, nu};
@@ -358,7 +360,8 @@ START_TEST(tangent_of_kirchhoff) {
 }
 END_TEST
 
-/* A tensor among the states, which the UMAT turns with DROT by ROTSIG: what an observer sees who turns is the same. */
+/* A tensor among the states, which the UMAT turns with DROT by ROTSIG: what an observer sees who turns is the
+ * same. */
 START_TEST(tensor_states_turn) {
   mpm_context *context = context_of(1);
   const double props[4] = {E, nu, yield, 20e9};
@@ -399,9 +402,9 @@ START_TEST(tensor_states_turn) {
 }
 END_TEST
 
-/* The library's law is elastic in the whole logarithmic strain and yields in Kirchhoff stress, the UMAT in rates of
- * the Cauchy stress. As long as the axes stay, and only then, the UMAT does to its stress exactly what the library
- * does to J times its own. */
+/* The library's law is elastic in the whole logarithmic strain and yields in Kirchhoff stress, the UMAT in
+ * rates of the Cauchy stress. As long as the axes stay, and only then, the UMAT does to its stress exactly
+ * what the library does to J times its own. */
 START_TEST(drucker_prager_on_fixed_axes) {
   mpm_context *context = context_of(1);
   const double phi = 30.0, psi = 10.0, c = 5e3, radians = acos(-1.0) / 180.0;
@@ -445,7 +448,7 @@ START_TEST(drucker_prager_on_fixed_axes) {
 }
 END_TEST
 
-/* ---- utility routines ------------------------------------------------------------------------------------ */
+/* ---- utility routines -------------------------------------------------------------------------------- */
 void rotsig_(const double *, const double *, double *, const int *, const int *, const int *);
 void sprinc_(const double *, double *, const int *, const int *, const int *);
 void sprind_(const double *, double *, double *, const int *, const int *, const int *);

@@ -3,7 +3,7 @@
 
 static const double E = 1e7, nu = 0.3, density = 1000.0;
 
-/* ---- descriptions ---------------------------------------------------------------------------------------- */
+/* ---- descriptions ------------------------------------------------------------------------------------ */
 static void ck_refused(mpm_context *context, mpm_umat_fn fn, const mpm_umat_desc *d, mpm_status status,
                        const char *text) {
   mpm_material *material = (mpm_material *)(void *)&material;
@@ -158,7 +158,7 @@ START_TEST(arrays_are_copied) {
 }
 END_TEST
 
-/* ---- steps ----------------------------------------------------------------------------------------------- */
+/* ---- steps ------------------------------------------------------------------------------------------- */
 typedef struct heard {
   int64_t particle;
   int count;

@@ -47,7 +47,8 @@ int main() {
   try {
     context.refuse(MPM_E_UNSUPPORTED, "not today");
   } catch (const mpm::error &e) {
-    refused += e.status() == MPM_E_UNSUPPORTED && std::string(e.what()).find("not today") != std::string::npos;
+    refused +=
+        e.status() == MPM_E_UNSUPPORTED && std::string(e.what()).find("not today") != std::string::npos;
   }
   std::printf("result: stress %10.2f, %d refusals\n", elastic, refused);
   return refused == 3 ? 0 : 3;

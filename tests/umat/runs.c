@@ -178,7 +178,7 @@ START_TEST(implicit_steps) {
 }
 END_TEST
 
-/* ---- threads --------------------------------------------------------------------------------------------- */
+/* ---- threads ----------------------------------------------------------------------------------------- */
 int calls_of_common(int reset);
 
 /* Two materials of one UMAT in a stepper. Returns the state of it all. */
@@ -279,8 +279,8 @@ START_TEST(saved_states) {
 }
 END_TEST
 
-/* Soil so stiff that its elastic strains, 1e-5, are nothing beside 1: the library's law in Kirchhoff stress and the
- * UMAT in rates of the Cauchy stress part only by these and by the change of volume. */
+/* Soil so stiff that its elastic strains, 1e-5, are nothing beside 1: the library's law in Kirchhoff stress
+ * and the UMAT in rates of the Cauchy stress part only by these and by the change of volume. */
 START_TEST(soil_under_its_weight) {
   static run r[2];
   mpm_stepper_desc desc = explicit_desc();

@@ -1,4 +1,5 @@
-/* What a step costs with a UMAT in Fortran beside the same law built in: 3-D, quadratic splines, FLIP, one thread.
+/* What a step costs with a UMAT in Fortran beside the same law built in: 3-D, quadratic splines, FLIP, one
+ * thread.
  *
  *   speed [most]
  *

@@ -3,7 +3,7 @@
 
 static const double E = 70e9, nu = 0.3, density = 2700.0, yield = 300e6, hardening = 1e9;
 
-/* ---- what the subroutine is given ----------------------------------------------------------------------- */
+/* ---- what the subroutine is given -------------------------------------------------------------------- */
 enum { BLOCKS = 8 };
 static struct {
   int calls, nblock[BLOCKS];
@@ -124,7 +124,8 @@ START_TEST(arguments) {
 }
 END_TEST
 
-/* A small shear after a stretch: R lags behind the rotation of the step by half of what the lengths make of it. */
+/* A small shear after a stretch: R lags behind the rotation of the step by half of what the lengths make of
+ * it. */
 START_TEST(relative_spin) {
   mpm_context *context = context_of(1);
   const double props[1] = {7.0}, a = 1.5, by = 1e-6;
@@ -141,7 +142,8 @@ START_TEST(relative_spin) {
     F_inc[4 * i] = 1.0;
     F_inc[3 * i + j] = by;
     step(context, &p, F_inc);
-    /* W_ij = by/2. Of R U = I + ... : W - dR R^T = (U dU - dU U)/... = by/2 (1 - 2/(1 + a)) with U = diag(a, 1) */
+    /* W_ij = by/2. Of R U = I + ... : W - dR R^T = (U dU - dU U)/... = by/2 (1 - 2/(1 + a)) with U = diag(a,
+     * 1) */
     const double wanted = 0.5 * by - by / (1.0 + a);
     for (int c = 0; c < 3; ++c) ck_near(last.spin[c], c == axis ? wanted : 0.0, 1e-11);
   }
@@ -177,7 +179,7 @@ START_TEST(blocks) {
 }
 END_TEST
 
-/* ---- laws beside others ------------------------------------------------------------------------------------ */
+/* ---- laws beside others ------------------------------------------------------------------------------ */
 static mpm_material *j2_of(mpm_context *context) {
   const double props[4] = {E, nu, yield, hardening};
   mpm_umat_desc d = umat_desc(density, 4, props, 1);
@@ -255,8 +257,8 @@ START_TEST(j2_in_the_plane) {
 }
 END_TEST
 
-/* Axes of stretch that are fixed in the material, under rotations of any size: both frames turn alike, and the VUMAT
- * is the j2 that is built in. */
+/* Axes of stretch that are fixed in the material, under rotations of any size: both frames turn alike, and
+ * the VUMAT is the j2 that is built in. */
 START_TEST(j2_built_in) {
   mpm_context *context = context_of(1);
   const mpm_param params[] = {

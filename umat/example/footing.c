@@ -1,5 +1,6 @@
 /* A rigid footing is pressed into clay whose law is a UMAT in Fortran (soil.f90): once of the same strength
- * everywhere, where Prandtl's load is (2 + pi) c, and once growing with depth, which the UMAT knows from COORDS.
+ * everywhere, where Prandtl's load is (2 + pi) c, and once growing with depth, which the UMAT knows from
+ * COORDS.
  * Plane strain, half of the strip, smooth, quasi-static steps with the UMAT's DDSDDE.
  *
  *   footing [directory]

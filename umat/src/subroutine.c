@@ -10,8 +10,9 @@
 #include <string.h>
 
 /* ---- the way in and out ------------------------------------------------------------------------------- */
-/* SAVE and COMMON belong to the process, and subroutines share COMMON: one lock for each material would not do.
- * XIT has no argument that could say whose it is: the thread must know. Both hold nothing between calls. */
+/* SAVE and COMMON belong to the process, and subroutines share COMMON: one lock for each material would
+ * not do. XIT has no argument that could say whose it is: the thread must know. Both hold nothing between
+ * calls. */
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
 typedef struct inside {
   jmp_buf out;
@@ -151,7 +152,7 @@ static mpm_status check_arrays(mpm_context *context, const mpm_umat_desc *d) {
   return MPM_OK;
 }
 
-/* ---- materials ------------------------------------------------------------------------------------------ */
+/* ---- materials --------------------------------------------------------------------------------------- */
 mpm_status mpmu_law_make(mpm_context *context, const char *name, const mpm_umat_desc *desc, mpmu_law **out) {
   if (mpmu_is_inside())
     return mpmu_refuse(context, MPM_E_STATE, "%s: the call is made by a subroutine", name);

@@ -9,8 +9,8 @@ static double larger(double a, double b) {
   return a > b ? a : b;
 }
 
-/* Higham's iteration, X' = (X + X^-T) / 2, from F, without its change of volume where that is large. It converges
- * quadratically: once a change is below 1e-8, the next one would be lost in rounding. */
+/* Higham's iteration, X' = (X + X^-T) / 2, from F, without its change of volume where that is large. It
+ * converges quadratically: once a change is below 1e-8, the next one would be lost in rounding. */
 mpmu_polar mpmu_polar_of(const mpmu_mat *F) {
   enum { MOST = 60 };
   mpmu_polar of = {.R = *F};

@@ -43,7 +43,7 @@ static void write_columns(const mpmu_mat *a, double *columns) {
   for (int k = 0; k < 9; ++k) columns[k] = a->m[k % 3][k / 3];
 }
 
-/* ---- before the call ------------------------------------------------------------------------------------ */
+/* ---- before the call --------------------------------------------------------------------------------- */
 static void load_states(const mpmu_law *law, const mpm_material_batch *b, int64_t i, const mpmu_mat *R,
                         point *p) {
   const double *state = b->state + i;
@@ -71,7 +71,7 @@ static void load(const mpmu_law *law, const mpm_material_batch *b, int64_t i, po
   p->at = i;
 }
 
-/* ---- the call ------------------------------------------------------------------------------------------- */
+/* ---- the call ---------------------------------------------------------------------------------------- */
 /* The UMAT may write to what it is given: all arguments are copies. */
 static void call_umat(const mpmu_law *law, double time, double dtime, int64_t id, point *p) {
   double sse = 0.0, spd = 0.0, scd = 0.0, rpl = 0.0, drpldt = 0.0, ddsddt[MPMU_SYM] = {0.0};
@@ -115,7 +115,7 @@ static void load_piece(mpmu_law *law, const mpm_material_batch *b, int64_t *i, p
     if (b->id[*i] >= 0) load(law, b, *i, &w->point[w->n++]);
 }
 
-/* ---- after the call ------------------------------------------------------------------------------------- */
+/* ---- after the call ---------------------------------------------------------------------------------- */
 static double largest_modulus(const double *ddsdde) {
   double most = ddsdde[0];
   for (int k = 1; k < MPMU_SYM; ++k)
@@ -123,7 +123,8 @@ static double largest_modulus(const double *ddsdde) {
   return most;
 }
 
-/* The bound of the step is the host's word: it must not depend on what was called before a state was saved. */
+/* The bound of the step is the host's word: it must not depend on what was called before a state was
+ * saved. */
 static void watch_modulus(const piece *w, const point *p) {
   mpmu_law *law = w->law;
   const double modulus = largest_modulus(p->ddsdde);
@@ -164,7 +165,7 @@ static mpm_status stress(void *user, const mpm_material_batch *b) {
   return MPM_OK;
 }
 
-/* ---- the tangent ------------------------------------------------------------------------------------------ */
+/* ---- the tangent ------------------------------------------------------------------------------------- */
 /* c_ijkl = J [DDSDDE_ijkl + s_ij d_kl - 1/2 (d_ik s_lj + d_il s_kj + d_jk s_il + d_jl s_ik)]: DDSDDE is the
  * derivative of the Jaumann rate of the Cauchy stress s; of that of J s, over J, it has s_ij d_kl already. */
 static void store_tangent(const piece *w, const point *p, double *tangent) {
@@ -207,7 +208,7 @@ static mpm_status tangent(void *user, const mpm_material_batch *b, double *out, 
   return MPM_OK;
 }
 
-/* ---- materials ------------------------------------------------------------------------------------------- */
+/* ---- materials --------------------------------------------------------------------------------------- */
 /* The modulus of a particle without stress, in its initial state, by a call without strain. */
 static mpm_status ask_modulus(mpm_context *context, mpmu_law *law, const double *initial) {
   static const mpmu_mat unit = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};

@@ -1,5 +1,5 @@
-/* A VUMAT as a material. It sees what an observer sees who turns with the R of F = R U: the stress R^T s R, and
- * R^T (ln V) R with the R of the end of the step, F_inc = V R_inc. */
+/* A VUMAT as a material. It sees what an observer sees who turns with the R of F = R U: the stress R^T s R,
+ * and R^T (ln V) R with the R of the end of the step, F_inc = V R_inc. */
 #include <math.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@ typedef struct block {
   int64_t at[BLOCK]; /* in the batch */
 } block;
 
-/* ---- before the call ------------------------------------------------------------------------------------ */
+/* ---- before the call --------------------------------------------------------------------------------- */
 /* 11 22 33 12 23 31 21 32 13 */
 static void store_gradient(double *rows, int n, int k, const mpmu_mat *F) {
   static const int row[GRADIENT] = {0, 1, 2, 0, 1, 2, 1, 2, 0},
@@ -81,7 +81,7 @@ static void load_block(const mpmu_law *law, const mpm_material_batch *b, int64_t
   }
 }
 
-/* ---- the call ------------------------------------------------------------------------------------------- */
+/* ---- the call ---------------------------------------------------------------------------------------- */
 /* The new values start as the old ones: some subroutines write only what changes. */
 static void preset(block *w) {
   for (int k = 0; k < w->n; ++k) {
@@ -115,7 +115,7 @@ static mpm_status run_block(block *w) {
   return mpmu_enter(&w->call);
 }
 
-/* ---- after the call ------------------------------------------------------------------------------------- */
+/* ---- after the call ---------------------------------------------------------------------------------- */
 static void store_block(const block *w) {
   const mpm_material_batch *b = w->batch;
   const mpmu_law *law = w->law;
@@ -141,7 +141,7 @@ static mpm_status stress(void *user, const mpm_material_batch *b) {
   return MPM_OK;
 }
 
-/* ---- materials ------------------------------------------------------------------------------------------- */
+/* ---- materials --------------------------------------------------------------------------------------- */
 /* Six particles without stress, in their initial state, are strained along and across the axes. */
 static mpm_status ask_modulus(mpm_context *context, mpmu_law *law, const double *initial) {
   static const mpmu_mat unit = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};

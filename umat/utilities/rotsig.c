@@ -1,4 +1,5 @@
-/* CALL ROTSIG(S, R, SPRIME, LSTR, NDI, NSHR): SPRIME = R S R^T, of stresses (LSTR = 1) or strains (LSTR = 2). */
+/* CALL ROTSIG(S, R, SPRIME, LSTR, NDI, NSHR): SPRIME = R S R^T, of stresses (LSTR = 1) or strains (LSTR =
+ * 2). */
 #include "voigt.h"
 
 void rotsig_(const double *s, const double *r, double *sprime, const int *lstr, const int *ndi,

@@ -1,5 +1,5 @@
-/* Tensors as the utility routines of Abaqus take them: ndi direct components, then nshr shears in the order 12 13
- * 23, which are engineering strains where lstr is 2. */
+/* Tensors as the utility routines of Abaqus take them: ndi direct components, then nshr shears in the order
+ * 12 13 23, which are engineering strains where lstr is 2. */
 #ifndef MPMU_VOIGT_H
 #define MPMU_VOIGT_H
 

@@ -1,5 +1,5 @@
-/* CALL XIT: ends the call of the subroutine and with it the step, not the process. Elsewhere, where nobody waits for
- * it, it ends the process with failure, as it says. */
+/* CALL XIT: ends the call of the subroutine and with it the step, not the process. Elsewhere, where nobody
+ * waits for it, it ends the process with failure, as it says. */
 #include <mpm/mpm_umat.h>
 #include <stdlib.h>
 

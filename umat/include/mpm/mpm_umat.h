@@ -109,13 +109,13 @@ typedef struct mpm_umat_desc {
 } mpm_umat_desc;
 
 /** Fills desc with the defaults; the host must set density, and props as the subroutine needs them.
- * struct_size is sizeof(mpm_umat_desc) of the caller; no byte beyond is written. MPM_E_ARG: it is smaller than
- * the first released struct. Any thread, any time. */
+ * struct_size is sizeof(mpm_umat_desc) of the caller; no byte beyond is written. MPM_E_ARG: it is smaller
+ * than the first released struct. Any thread, any time. */
 MPM_UMAT_API mpm_status mpm_umat_desc_init(mpm_umat_desc *desc, uint32_t struct_size);
 
 /**
- * Makes a material of a UMAT, which stays loaded while the material lives. desc is copied. *out is NULL unless
- * MPM_OK is returned; the material ends with mpm_material_destroy().
+ * Makes a material of a UMAT, which stays loaded while the material lives. desc is copied. *out is NULL
+ * unless MPM_OK is returned; the material ends with mpm_material_destroy().
  *
  * With F_inc = V R the UMAT gets R stress R^T, DSTRAN = ln V and DROT = R; it is always called in three
  * dimensions, NTENS = 6. PNEWDT < 1 asks for a smaller step (MPM_CUT_DT). A stress or a state variable that
@@ -130,11 +130,11 @@ MPM_UMAT_API mpm_status mpm_umat_material(mpm_context *context, mpm_umat_fn fn, 
                                           mpm_material **out);
 
 /**
- * Makes a material of a VUMAT in double precision, likewise. With F = R U at both ends of the step, stress and
- * strain increment are those seen by an observer who turns with R: R^T stress R, and R^T (ln V) R with the R
- * of the end and F_inc = V R_inc. Particles come in blocks of up to 32. Without wave_modulus the VUMAT is
- * asked for the stress of small strains at stepTime = totalTime = 0, as Abaqus does. kirchhoff and stran are
- * refused (MPM_E_UNSUPPORTED).
+ * Makes a material of a VUMAT in double precision, likewise. With F = R U at both ends of the step, stress
+ * and strain increment are those seen by an observer who turns with R: R^T stress R, and R^T (ln V) R with
+ * the R of the end and F_inc = V R_inc. Particles come in blocks of up to 32. Without wave_modulus the VUMAT
+ * is asked for the stress of small strains at stepTime = totalTime = 0, as Abaqus does. kirchhoff and stran
+ * are refused (MPM_E_UNSUPPORTED).
  */
 MPM_UMAT_API mpm_status mpm_vumat_material(mpm_context *context, mpm_vumat_fn fn, const mpm_umat_desc *desc,
                                            mpm_material **out);
