@@ -179,6 +179,50 @@ START_TEST(blocks) {
 }
 END_TEST
 
+/* Six springs, of which one is the stiffest. */
+static int stiffest;
+static void springs(const int *nblock, const int *ndir, const int *nshr, const int *nstatev,
+                    const int *nfieldv, const int *nprops, const int *lanneal, const double *step_time,
+                    const double *total_time, const double *dt, const char *cmname, const double *coord_mp,
+                    const double *char_length, const double *props, const double *rho,
+                    const double *strain_inc, const double *rel_spin_inc, const double *temp_old,
+                    const double *stretch_old, const double *defgrad_old, const double *field_old,
+                    const double *stress_old, const double *state_old, const double *ener_intern_old,
+                    const double *ener_inelas_old, const double *temp_new, const double *stretch_new,
+                    const double *defgrad_new, const double *field_new, double *stress_new, double *state_new,
+                    double *ener_intern_new, double *ener_inelas_new, size_t cmname_length) {
+  (void)ndir, (void)nshr, (void)nstatev, (void)nfieldv, (void)nprops, (void)lanneal, (void)dt, (void)cmname;
+  (void)coord_mp, (void)char_length, (void)props, (void)rho, (void)rel_spin_inc, (void)temp_old;
+  (void)stretch_old, (void)defgrad_old, (void)field_old, (void)state_old, (void)ener_intern_old;
+  (void)ener_inelas_old, (void)temp_new, (void)stretch_new, (void)defgrad_new, (void)field_new;
+  (void)state_new, (void)ener_intern_new, (void)ener_inelas_new, (void)cmname_length;
+  ck_assert(*step_time == 0.0 && *total_time == 0.0 && *nblock == 6);
+  for (int c = 0; c < 6; ++c)
+    for (int k = 0; k < *nblock; ++k)
+      stress_new[c * *nblock + k] = stress_old[c * *nblock + k] + (c == stiffest ? 5e9 : 1e9) *
+                                                                      (c < 3 ? 1.0 : 2.0) *
+                                                                      strain_inc[c * *nblock + k];
+}
+
+START_TEST(largest_modulus) {
+  mpm_context *context = context_of(1);
+  const double props[1] = {7.0};
+  mpm_umat_desc d = umat_desc(density, 1, props, 1);
+  for (stiffest = 0; stiffest < 6; ++stiffest) {
+    mpm_material *material;
+    ck_ok(context, mpm_vumat_material(context, springs, &d, &material));
+    double F[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, stress[6] = {0.0}, state[2] = {0.0}, wave_speed;
+    mpm_material_batch b = {.struct_size = sizeof b, .state_count = 2, .n = 1, .ld = 1};
+    b.F = b.F_inc = F, b.stress = b.stress_new = stress, b.state = b.state_new = state;
+    b.wave_speed = &wave_speed;
+    ck_ok(context, mpm_material_update(material, &b, NULL, NULL));
+    ck_near(wave_speed, sqrt(5e9 / density), 1e-9 * wave_speed);
+    ck_ok(context, mpm_material_destroy(material));
+  }
+  ck_ok(context, mpm_context_destroy(context));
+}
+END_TEST
+
 /* ---- laws beside others ------------------------------------------------------------------------------ */
 static mpm_material *j2_of(mpm_context *context) {
   const double props[4] = {E, nu, yield, hardening};
@@ -413,6 +457,7 @@ TCase *vumat_case(void) {
   tcase_add_test(tcase, arguments);
   tcase_add_test(tcase, relative_spin);
   tcase_add_test(tcase, blocks);
+  tcase_add_test(tcase, largest_modulus);
   tcase_add_test(tcase, j2_in_the_plane);
   tcase_add_test(tcase, j2_built_in);
   tcase_add_test(tcase, neo_hookean);
