@@ -32,7 +32,7 @@ static void dead_umat(double *stress, double *statev, double *ddsdde, double *ss
 START_TEST(descriptions) {
   mpm_context *context = context_of(1);
   double props[5] = {E, nu, 0.0, 0.0, 0.0};
-  const double state[1] = {NAN};
+  const double state[1] = {(double)NAN};
   const mpm_umat_desc good = umat_desc(density, 2, props, 1);
   mpm_umat_desc d = good;
   ck_assert(good.serial == 1 && !good.kirchhoff && !good.stran && !good.differenced && !good.statev_initial &&
@@ -42,7 +42,7 @@ START_TEST(descriptions) {
   d.field = value;                                                                                           \
   ck_refused(context, umat_elastic_, &d, status, text)
   REFUSED(density, 0.0, MPM_E_ARG, "density = 0 must");
-  REFUSED(density, NAN, MPM_E_ARG, "density = nan");
+  REFUSED(density, (double)NAN, MPM_E_ARG, "density = nan");
   REFUSED(nstatv, -1, MPM_E_ARG, "nstatv = -1 must be 0 to 63");
   REFUSED(nstatv, 64, MPM_E_ARG, "nstatv = 64 must be 0 to 63");
   REFUSED(nprops, -2, MPM_E_ARG, "nprops = -2");
@@ -54,9 +54,9 @@ START_TEST(descriptions) {
   REFUSED(differenced, 2, MPM_E_ARG, "differenced = 2");
   REFUSED(statev_initial, state, MPM_E_ARG, "statev_initial[0] = nan");
   REFUSED(wave_modulus, -1.0, MPM_E_ARG, "wave_modulus = -1 must");
-  REFUSED(wave_modulus, INFINITY, MPM_E_ARG, "wave_modulus = inf");
+  REFUSED(wave_modulus, (double)INFINITY, MPM_E_ARG, "wave_modulus = inf");
   REFUSED(celent, -0.5, MPM_E_ARG, "celent = -0.5");
-  REFUSED(temperature, INFINITY, MPM_E_ARG, "temperature = inf");
+  REFUSED(temperature, (double)INFINITY, MPM_E_ARG, "temperature = inf");
   REFUSED(struct_size, 16, MPM_E_ARG, "struct_size is 16");
   REFUSED(struct_size, 1 << 20, MPM_E_ARG, "struct_size is 1048576");
   char name[90];
@@ -79,7 +79,7 @@ START_TEST(descriptions) {
   ck_refused(context, umat_elastic_, NULL, MPM_E_ARG, "mpm_umat_desc is NULL");
   ck_assert_int_eq(mpm_umat_material(context, umat_elastic_, &good, NULL), MPM_E_ARG);
   ck_assert_int_eq(mpm_umat_material(NULL, umat_elastic_, &good, &material), MPM_E_ARG);
-  props[1] = INFINITY;
+  props[1] = (double)INFINITY;
   ck_refused(context, umat_elastic_, &good, MPM_E_ARG, "props[1] = inf");
   /* the modulus of a UMAT that gives none, that has an infinite one, that asks for less, that leaves */
   props[1] = nu;
@@ -136,7 +136,7 @@ START_TEST(arrays_are_copied) {
   mpm_particles *set;
   mpm_grid_desc g;
   ck_ok(context, mpm_umat_material(context, umat_elastic_, d, &material));
-  props[0] = NAN, state[0] = NAN;
+  props[0] = (double)NAN, state[0] = (double)NAN;
   free(props), free(state), free(name), free(d);
   point p = point_of(material, 2);
   step(context, &p, (const double[9]){1.01, 0, 0, 0, 1, 0, 0, 0, 1});
