@@ -182,6 +182,50 @@ MPM_API mpm_status mpm_particles_set(mpm_particles *particles, const char *field
 MPM_API mpm_status mpm_particles_set_all(mpm_particles *particles, const char *field, int32_t type,
                                          int32_t components, const void *value);
 
+/**
+ * Gives all particles the stress of ground at rest below a level surface: along `axis` the pressure of the
+ * weight above, surcharge + density * |gravity| * depth with the material's density, and K0 times that across
+ * it; no shear. Each layer is a set, whose surface is its top and whose surcharge the weight of what lies on
+ * it.
+ *
+ * - gravity: acceleration along the axis, length/time^2, with its sign, as in mpm_stepper_desc: with a
+ *   negative one the ground lies below the surface in the sense of falling coordinates. Not 0.
+ * - surface: coordinate of the surface on the axis, a length. No particle may lie above it.
+ * - K0: horizontal over vertical stress, >= 0: nu / (1 - nu) is what an elastic column has that was never
+ *   strained across, 1 - sin(phi) what sand has. One that a law cannot bear is no error: its first step
+ *   returns the stress to the yield surface.
+ * - surcharge: pressure on the surface, a stress >= 0. It must also be applied, or the ground heaves.
+ *
+ * Positions, velocities, masses, state variables and present volumes stay. Where stress is the state of the
+ * law, deformation_gradient becomes I and initial_volume the present volume. Where stress follows from
+ * deformation_gradient, that becomes the diagonal one that has the stress, up to rounding, and initial_volume
+ * the present volume over its determinant; in 1-D, where nothing is stored across, the stress across is then
+ * that of the law, whatever K0 is. dilation_ratio becomes 1, and with MPM_CPGIMP the field "size" what keeps
+ * the domains as they are.
+ *
+ * The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the axis is periodic, a particle
+ * lies above the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law
+ * is "rigid"; it is a fluid and K0 is not 1; or, of the host's laws, one that asked with dt = 0 does not
+ * answer with the stress that it has. Since 0.2.0.
+ */
+MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t axis, double gravity,
+                                               double surface, double K0, double surcharge);
+
+/**
+ * Makes the present state the one from which all deformation counts: deformation_gradient becomes I,
+ * initial_volume the present volume, dilation_ratio 1, and reference_position, where there is one, the present
+ * (unwrapped) position. With MPM_CPGIMP edges in "size" become the present ones. Mass, velocity, Cauchy stress
+ * and state variables stay.
+ *
+ * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb) find J = 1 from then
+ * on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ by the
+ * factor J from before; a stress on the yield surface may lie off it by as much, and the next step returns it.
+ *
+ * The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law follows from deformation_gradient,
+ * which must stay. Since 0.2.0.
+ */
+MPM_API mpm_status mpm_particles_reset_reference(mpm_particles *particles);
+
 #ifdef __cplusplus
 }
 #endif

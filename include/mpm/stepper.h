@@ -75,6 +75,18 @@ typedef struct mpm_stepper_desc {
    * updated velocities, as Sulsky et al. 1995. MPM_E_UNSUPPORTED with other schemes, which have no such
    * velocities after the update. Since 0.2.0, in the place of `reserved`. */
   int32_t projected_positions;
+  /** Local damping alpha of Cundall 1987, in [0, 1); default 0. In explicit steps each component of a node's
+   * whole unbalanced force f, ties to images and the hook MPM_AFTER_FORCES counted in, becomes
+   * f - alpha |f| sign(v), where v is the projected velocity. Bodies come to rest under dead loads, and
+   * reactions are those of the material: what walls or prescribed velocities hold is not damped, and contact
+   * acts after it. It also slows free fall and rigid motion, to (1 - alpha) g. MPM_E_UNSUPPORTED with
+   * MPM_NEWMARK. Since 0.2.0. */
+  double local_damping;
+  /** Damping in proportion to mass, a >= 0 in 1/time; default 0: the force -a m v on nodes, for a share of
+   * a / (2 omega) of critical damping. In explicit steps v is the mean of the velocities before and after, by
+   * which the stable dt stays as it is; with MPM_NEWMARK it is that at the end of the step. It acts where
+   * local_damping does. MPM_E_UNSUPPORTED with quasi_static. Since 0.2.0. */
+  double mass_damping;
 } mpm_stepper_desc;
 
 /**
@@ -131,6 +143,11 @@ typedef struct mpm_step_info {
   int64_t contact_nodes; /**< nodes at which these gave each other an impulse */
   int32_t body;          /**< velocity field of `node`; 0 where there is none */
   int32_t reserved;      /**< 0 */
+  /** Energy that local_damping and mass_damping took in the step: a part of `dissipation`. It is their force
+   * times the mean of the nodes' velocities before and after, so that it is negative at nodes that turn. */
+  double damping_dissipation;
+  /** Sum of damping_dissipation over all committed steps since the stepper was made or its time was set. */
+  double damping_dissipation_total;
 } mpm_step_info;
 
 /**

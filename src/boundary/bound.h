@@ -87,6 +87,12 @@ mpm_status mpmi_ties_unfold(mpmi_bound *bound);
 /* Lets light nodes go with heavier ones beside them, which take their forces. */
 void mpmi_light_nodes_lead(mpmi_bound *bound);
 
+/* ---- damping.c --------------------------------------------------------------------------------------- */
+/* Changes the increments of what nothing holds by local and mass damping; does nothing without them. */
+mpm_status mpmi_damp(mpmi_bound *bound);
+/* Sums up the energy that this took, once all velocities of the main projection are known. */
+mpm_status mpmi_damping_sum(mpmi_bound *bound);
+
 /* ---- held_nodes.c ------------------------------------------------------------------------------------ */
 /* Asks the host and the prescribed particles who holds what. */
 mpm_status mpmi_held_find(mpmi_bound *bound);

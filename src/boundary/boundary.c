@@ -27,7 +27,7 @@ static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
   if ((status = mpmi_hooks_begin(bound)) || (status = mpmi_hooks_run(bound, MPM_AFTER_P2G)) ||
       (status = mpmi_hooks_run(bound, MPM_AFTER_FORCES)) ||
       (status = mpmi_asks_host(bound->step->settings, projection) ? mpmi_held_find(bound) : MPM_OK) ||
-      (status = mpmi_held_set(bound)))
+      (status = mpmi_damp(bound)) || (status = mpmi_held_set(bound)))
     return status;
   if ((status = mpmi_ties_hold_walls(bound))) return status;
   if ((status = act_in_contact(bound, 0))) return status;
@@ -45,6 +45,7 @@ static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
 static mpm_status act_on_velocities(mpmi_bound *bound, const mpmi_projection *projection) {
   mpm_status status = MPM_OK;
   if (mpmi_asks_host(bound->step->settings, projection)) status = mpmi_held_find(bound);
+  if (!status && projection->forces) status = mpmi_damp(bound);
   if (!status && projection->held) status = mpmi_held_set(bound);
   if (!status) status = mpmi_ties_hold_walls(bound);
   if (!status && projection->contact != MPMI_CONTACT_NONE)
@@ -77,5 +78,6 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
   if (status) return status;
   if (!projection->main) return MPM_OK;
   if (nodes->prescription.any && (status = mpmi_prescribed_share(&bound))) return status;
+  if ((status = mpmi_damping_sum(&bound))) return status;
   return mpmi_hooks_end(&bound);
 }

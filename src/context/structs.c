@@ -16,8 +16,9 @@
   X(mpm_material_batch, lookup, 144)                                                                         \
   X(mpm_material_desc, state_initial, 64)                                                                    \
   X(mpm_stepper_desc, projected_positions, 152)                                                              \
+  X(mpm_stepper_desc, mass_damping, 168)                                                                     \
   X(mpm_step_info, angular_momentum, 192)                                                                    \
-  X(mpm_step_info, reserved, 232)                                                                            \
+  X(mpm_step_info, damping_dissipation_total, 248)                                                           \
   X(mpm_contact_desc, direction, 72)                                                                         \
   X(mpm_contact_info, impulse, 160)                                                                          \
   X(mpm_contact_batch, pressure, 96)                                                                         \

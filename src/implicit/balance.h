@@ -206,6 +206,28 @@ static inline double mpmi_newmark_acceleration(const mpmi_balance *balance, int6
          (beta * dt * dt);
 }
 
+/* Returns the velocity at the end of the step that belongs to a displacement. */
+static inline double mpmi_newmark_velocity(const mpmi_balance *balance, int64_t at) {
+  const mpmi_newton *newton = balance->newton;
+  const double gamma = balance->settings->desc.newmark_gamma;
+  return newton->vector[MPMI_V0][at] + balance->step->dt * ((1.0 - gamma) * newton->vector[MPMI_A0][at] +
+                                                            gamma * mpmi_newmark_acceleration(balance, at));
+}
+
+/* Returns what damping adds to the acceleration of a component in the balance, for a velocity: nothing where
+ * it is held, so that reactions are those of the material. */
+static inline double mpmi_damping_acceleration(const mpmi_balance *balance, int64_t at, double velocity) {
+  const int32_t held = mpmi_is_held(balance->newton->matrix.held[at]);
+  return held ? 0.0 : balance->settings->desc.mass_damping * velocity;
+}
+
+/* Returns the inertia per mass at the end of the step, damping with it. */
+static inline double mpmi_newmark_inertia(const mpmi_balance *balance, int64_t at) {
+  const double acceleration = mpmi_newmark_acceleration(balance, at);
+  if (!(balance->settings->desc.mass_damping > 0.0)) return acceleration;
+  return acceleration + mpmi_damping_acceleration(balance, at, mpmi_newmark_velocity(balance, at));
+}
+
 /* Makes and frees the memory of implicit steps, which stays with the stepper. */
 mpm_status mpmi_newton_create(const mpmi_settings *settings, mpmi_newton **out);
 void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings); /* NULL is fine */

@@ -3,6 +3,7 @@
 #include "implicit/extension.h"
 #include "boundary/boundary.h"
 #include "boundary/prescribed.h"
+#include "context/reduce.h"
 #include "stages/stages.h"
 
 #include <string.h>
@@ -59,7 +60,7 @@ static mpm_status find_external(mpmi_balance *balance, double t, double *clock) 
   return status;
 }
 
-/* Computes the accelerations at the start of the step by row: M a0 = f_ext - f_int, and 0 for held
+/* Computes the accelerations at the start of the step by row: M a0 = f_ext - f_int - a M v0, and 0 for held
  * components. */
 static mpm_status balance_start(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
@@ -70,7 +71,10 @@ static mpm_status balance_start(mpmi_balance *balance) {
   mpmi_unknowns_fold(balance, &newton->external, external);
   for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
     const double mass = newton->mass[at / dim], force = external[at] - newton->vector[MPMI_INTERNAL][at];
-    newton->vector[MPMI_A0][at] = mpmi_is_held(newton->matrix.held[at]) || !(mass > 0.0) ? 0.0 : force / mass;
+    newton->vector[MPMI_A0][at] =
+        mpmi_is_held(newton->matrix.held[at]) || !(mass > 0.0)
+            ? 0.0
+            : force / mass - balance->settings->desc.mass_damping * newton->vector[MPMI_V0][at];
   }
   return MPM_OK;
 }
@@ -207,6 +211,21 @@ static void set_nodes(mpmi_balance *balance) {
   }
 }
 
+/* Sums up the work of damping: its mean force over the step times the way of each row. */
+static void sum_damping(mpmi_balance *balance) {
+  const mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim;
+  double *term = newton->vector[MPMI_TERMS];
+  if (!(balance->settings->desc.mass_damping > 0.0)) return;
+  for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
+    const double mean = 0.5 * (newton->vector[MPMI_V0][at] + mpmi_newmark_velocity(balance, at));
+    term[at] =
+        newton->mass[at / dim] * mpmi_damping_acceleration(balance, at, mean) * newton->vector[MPMI_U][at];
+  }
+  balance->step->info.damping_dissipation =
+      mpmi_reduce(MPMI_REDUCE_SUM, 0.0, term, 1, NULL, newton->matrix.rows * dim);
+}
+
 /* Lets the nodes show the velocity at the end of the step. */
 static void show_velocities(mpmi_balance *balance) {
   const double dt = balance->step->dt;
@@ -255,6 +274,7 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   status = mpmi_active_set_finish(balance);
   if (status) return status;
   set_nodes(balance);
+  sum_damping(balance);
   status = mpmi_record_reactions(balance);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);
   if (!status) status = mpmi_g2p_move(balance->step, balance->nodes, &balance->nodes->solved);

@@ -60,7 +60,7 @@ static double find_forces(iteration *it) {
   double *residual = newton->vector[MPMI_RESIDUAL], *term = newton->vector[MPMI_TERMS];
   const int32_t dim = balance->settings->grid->dim, dynamic = mpmi_is_dynamic(balance->settings);
   for (int64_t i = 0; i < it->n; ++i) {
-    const double Ma = dynamic ? newton->mass[i / dim] * mpmi_newmark_acceleration(balance, i) : 0.0;
+    const double Ma = dynamic ? newton->mass[i / dim] * mpmi_newmark_inertia(balance, i) : 0.0;
     residual[i] = internal[i] + Ma - external[i] - newton->vector[MPMI_CONTACT][i];
     term[i] = Ma * Ma;
   }
@@ -119,7 +119,9 @@ static void add_inertia(iteration *it) {
   double *term = newton->vector[MPMI_TERMS], *size = newton->vector[MPMI_DIAGONAL];
   const int32_t dim = balance->settings->grid->dim;
   const double beta = balance->settings->desc.newmark_beta, dt = balance->step->dt;
-  const double by_mass = mpmi_is_dynamic(balance->settings) ? 1.0 / (beta * dt * dt) : 0.0;
+  const double damping = balance->settings->desc.mass_damping * balance->settings->desc.newmark_gamma;
+  const double by_mass =
+      mpmi_is_dynamic(balance->settings) ? 1.0 / (beta * dt * dt) + damping / (beta * dt) : 0.0;
   for (int64_t i = 0; i < it->n; ++i) {
     double *diagonal = A->value + (newton->diagonal[i / dim] * dim + i % dim) * dim + i % dim;
     term[i] = fabs(*diagonal);

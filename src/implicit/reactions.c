@@ -14,8 +14,8 @@ static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *n
   double force =
       mpmi_momentum(&newton->force, node->slot)[c] - mpmi_momentum(&newton->external, node->slot)[c];
   if (mpmi_is_dynamic(balance->settings))
-    force += *mpmi_mass(&balance->nodes->solved, node->slot) * node->sign[c] *
-             mpmi_newmark_acceleration(balance, at);
+    force +=
+        *mpmi_mass(&balance->nodes->solved, node->slot) * node->sign[c] * mpmi_newmark_inertia(balance, at);
   return force;
 }
 

@@ -52,7 +52,7 @@ typedef struct mpmi_state_numbers {
 } mpmi_state_numbers;
 _Static_assert(offsetof(mpmi_state_numbers, last) == 11 * 8 + 18 * 8 + 12 * 8, "part of the format");
 _Static_assert(offsetof(mpm_step_info, external_work_total) == 192, "part of the format");
-_Static_assert(sizeof(mpmi_totals) == 19 * 8, "part of the format");
+_Static_assert(sizeof(mpmi_totals) == 20 * 8, "part of the format");
 
 typedef struct mpmi_state_set_numbers {
   int64_t count, slots, next_id, dirty;

@@ -39,13 +39,15 @@ void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_num
     SUMS_3 = offsetof(mpmi_state_numbers, last),
     HALVES = offsetof(mpm_step_info, step),
     INFO_2 = offsetof(mpm_step_info, external_work_total),
-    INFO_3 = offsetof(mpm_step_info, body)
+    INFO_3 = offsetof(mpm_step_info, body),
+    LATER = offsetof(mpm_step_info, damping_dissipation)
   };
   const int64_t info = format == 2 ? INFO_2 : INFO_3;
   mpmi_archive_words(a, n, format == 2 ? SUMS_2 : SUMS_3);
   mpmi_archive_halves(a, &n->last, HALVES);
   mpmi_archive_words(a, &n->last.step, info - HALVES);
-  if (format > 2) mpmi_archive_halves(a, &n->last.body, sizeof n->last - INFO_3);
+  if (format > 2) mpmi_archive_halves(a, &n->last.body, LATER - INFO_3);
+  if (format > 2) mpmi_archive_words(a, &n->last.damping_dissipation, sizeof n->last - LATER);
   if (format > 2) mpmi_archive_words(a, &n->totals, sizeof n->totals);
 }
 

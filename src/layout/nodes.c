@@ -28,7 +28,8 @@ static mpm_status reserve_held(mpm_context *c, mpmi_nodes *nodes, int64_t slots)
 
 /* A whole step of a fused transfer needs no forces apart from the momentum. */
 static int32_t values_of_step(const mpmi_settings *settings, int32_t staged) {
-  const int32_t fused = settings->transfer->fused && !staged && !mpmi_has_hooks(settings);
+  const int32_t fused =
+      settings->transfer->fused && !staged && !mpmi_has_hooks(settings) && !mpmi_is_damped(settings);
   return fused && settings->desc.position_order == 1 ? 4 : 8;
 }
 
@@ -58,6 +59,9 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   if (mpmi_has_hooks(settings) &&
       (status = MPMI_RESERVE_MORE(c, nodes->hook_impulse, nodes->hook_capacity, slots)))
     return status;
+  if (mpmi_is_damped(settings) && !mpmi_is_implicit(settings) &&
+      (status = MPMI_RESERVE_MORE(c, nodes->damping_impulse, nodes->damping_capacity, slots)))
+    return status;
   return nodes->has_holders ? reserve_held(c, nodes, slots) : MPM_OK;
 }
 
@@ -71,6 +75,7 @@ void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
   MPMI_FREE_ARRAY(c, nodes->held, nodes->held_capacity);
   MPMI_FREE_ARRAY(c, nodes->held_value, nodes->held_capacity);
   MPMI_FREE_ARRAY(c, nodes->hook_impulse, nodes->hook_capacity);
+  MPMI_FREE_ARRAY(c, nodes->damping_impulse, nodes->damping_capacity);
   MPMI_FREE_ARRAY(c, nodes->contact_state, nodes->contact_capacity);
   MPMI_FREE_ARRAY(c, nodes->tie_state, nodes->tie_capacity);
   mpmi_prescription *p = &nodes->prescription;

@@ -109,6 +109,8 @@ typedef struct mpmi_nodes {
   int64_t held_capacity;
   double (*hook_impulse)[3]; /* there only where there are hooks */
   int64_t hook_capacity;
+  double (*damping_impulse)[3]; /* there only where nodes are damped */
+  int64_t damping_capacity;
   mpmi_light_node *light; /* in the order of slots */
   int64_t light_count, light_capacity;
   mpmi_tie_state *tie_state; /* [ties] */

@@ -66,6 +66,10 @@ static inline double mpmi_flip_share(const mpmi_settings *set, double dt) {
   const double kept = 1.0 - set->desc.pic_damping * dt;
   return kept > 0.0 ? set->desc.flip * kept : 0.0;
 }
+/* Returns 1 when explicit steps damp the nodes. */
+static inline int32_t mpmi_is_damped(const mpmi_settings *set) {
+  return set->desc.local_damping > 0.0 || set->desc.mass_damping > 0.0;
+}
 static inline int32_t mpmi_has_hooks(const mpmi_settings *set) {
   return set->hook[0] || set->hook[1] || set->hook[2];
 }

@@ -37,6 +37,14 @@ typedef void (*mpmi_law_fn)(const void *constants, int32_t dim, const mpm_materi
 typedef void (*mpmi_tangent_fn)(const void *constants, int32_t dim, const mpm_material_batch *batch,
                                 double *tangent);
 
+/* How a law has a stress at rest that is set from outside (particles/geostatic.c). Where the law bears the
+ * mean stress by det F alone, what shear it has without moving is the stress that was set. */
+enum {
+  MPMI_REST_BY_KIND,  /* the stress itself is set; or, where it follows from F, the F that has it is */
+  MPMI_REST_PRESSURE, /* the det F is set that has the mean stress */
+  MPMI_REST_NONE      /* it has no stress, or takes more than F and the stress to have one */
+};
+
 typedef struct mpmi_law {
   const char *name;
   const mpmi_law_param *param; /* every law has a "density" */
@@ -49,6 +57,7 @@ typedef struct mpmi_law {
   int32_t stress_from_F; /* 1: hyperelastic, fluid, rigid; 0: hypoelastic, the host may set the stress */
   int32_t mean_from_F; /* 1, with stress_from_F = 0: the host may set the deviator, the mean follows from F */
   int32_t kinematics;  /* MPMI_F_... */
+  int32_t rest;        /* MPMI_REST_... */
   /* Says what is wrong with the parameters together, or returns NULL where nothing is. NULL: there is no such
    * check. */
   const char *(*check)(const double *value);

@@ -134,6 +134,7 @@ const mpmi_law KERNEL(law_newtonian_fluid) = {
     MPMI_PARAMS(params),
     .stress_from_F = 1,
     .kinematics = MPMI_F_DILATES,
+    .rest = MPMI_REST_PRESSURE,
     .constants_size = sizeof(fluid_constants),
     .prepare = prepare,
     .stress = stress_kernel,

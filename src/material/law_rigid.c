@@ -32,6 +32,7 @@ const mpmi_law KERNEL(law_rigid) = {
     MPMI_PARAMS(params),
     .stress_from_F = 1,
     .kinematics = MPMI_F_STAYS,
+    .rest = MPMI_REST_NONE,
     .stress = stress_kernel,
     .tangent = tangent_kernel,
     .is_symmetric = mpmi_symmetric,

@@ -65,6 +65,7 @@ static void swap_copies(const mpm_stepper *s, mpm_particles *set, int32_t left_t
 static void add_to_totals(mpm_stepper *s, double work) {
   mpmi_totals *totals = &s->history.totals;
   totals->external_work += work;
+  totals->damping_dissipation += s->step.info.damping_dissipation;
   for (int32_t face = 0; face < 6; ++face)
     for (int32_t c = 0; c < 3; ++c) totals->impulse_by_face[face][c] += s->step.impulse_by_face[face][c];
   for (int32_t m = 0; m < s->layout.member_count; ++m) {

@@ -68,6 +68,13 @@ static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "locking_remedy has no meaning in 1-D, where dilation is all there is: use "
                      "MPM_LOCKING_NONE");
+  if (!(d->local_damping >= 0.0 && d->local_damping < 1.0))
+    return mpmi_fail(c, MPM_E_ARG, "local_damping is %g: it must lie in [0, 1)", d->local_damping);
+  if (!(d->mass_damping >= 0.0 && d->mass_damping <= DBL_MAX))
+    return mpmi_fail(c, MPM_E_ARG, "mass_damping is %g: it must be finite and >= 0", d->mass_damping);
+  if (d->mass_damping > 0.0 && d->quasi_static)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "quasi_static = 1 has no inertia that mass_damping could act on: use mass_damping = 0");
   if (d->projected_positions != 0 && d->projected_positions != 1)
     return mpmi_fail(c, MPM_E_ARG, "projected_positions is %d: it must be 0 or 1",
                      (int)d->projected_positions);
@@ -113,6 +120,11 @@ static mpm_status known_implicit(mpm_context *c, const mpm_stepper_desc *d) {
         c, MPM_E_UNSUPPORTED,
         "scheme MPM_NEWMARK has its own update of particles: use transfer MPM_FLIP with flip = 1 "
         "and pic_damping = 0; newmark_gamma above 1/2 damps");
+  if (d->local_damping > 0.0)
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "scheme MPM_NEWMARK has no local_damping, whose force jumps where a velocity changes its "
+        "sign: use mass_damping, or quasi_static = 1 to find equilibrium");
   if (d->staggered)
     return mpmi_fail(c, MPM_E_UNSUPPORTED, "scheme MPM_NEWMARK has velocities at t_n: use staggered = 0");
   return MPM_OK;

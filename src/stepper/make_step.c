@@ -42,6 +42,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
   s->step.info.residual = 0.0;
   s->step.info.contact_nodes = 0;
   s->step.info.contact_dissipation = 0.0;
+  s->step.info.damping_dissipation = 0.0;
   mpmi_failure_clear(&s->step.failure);
   mpmi_reports_clear(&s->work, s->settings.tasks);
 }
@@ -93,6 +94,7 @@ static mpm_status give_up(mpm_stepper *s, mpm_status status) {
   info->body = failure->body;
   info->contact_nodes = 0;
   info->contact_dissipation = 0.0;
+  info->damping_dissipation = 0.0;
   info->external_work = info->dissipation = 0.0;
   drop(s);
   return status;

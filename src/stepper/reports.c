@@ -27,6 +27,7 @@ void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_in
   info->resorts = s->layout.sorts;
   info->t = s->history.t;
   info->external_work_total = s->history.totals.external_work;
+  info->damping_dissipation_total = s->history.totals.damping_dissipation;
   info->kinetic_energy = sums->kinetic;
   info->affine_kinetic_energy = sums->affine;
   info->strain_energy = sums->strain;

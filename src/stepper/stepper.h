@@ -16,7 +16,7 @@
 /* Sums over all committed steps since the stepper was made or its time was set; those of a set's prescribed
  * particles are the member's. */
 typedef struct mpmi_totals {
-  double impulse_by_face[6][3], external_work;
+  double impulse_by_face[6][3], external_work, damping_dissipation;
 } mpmi_totals;
 
 /* What one step leaves to the next, and to reports: the state beside that of the particles. */

@@ -1,0 +1,126 @@
+/* The present state of particles becomes the one that their deformation starts from. */
+#include "particles/reference.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "particles/law_batch.h"
+#include "particles/values.h"
+
+/* ---- for all who set a reference ----------------------------------------------------------------------- */
+void mpmi_reference_begin(mpm_particles *set) {
+  for (int32_t c = 0; c < set->field[MPMI_F].components; ++c) {
+    const double value = mpmi_unstored_value(MPMI_F, mpmi_tensor_map(set->grid->dim)[c]);
+    for (int64_t s = 0; s < set->slots; ++s) mpmi_f64(set, MPMI_F, 1)[c * set->ld + s] = value;
+  }
+}
+
+/* Refuses what the law of the host made of the stress that it was shown. */
+static mpm_status compare(const mpm_particles *set, const mpmi_law_batch *b) {
+  const int32_t rows = mpmi_stress_components(set->grid->dim);
+  for (int64_t p = 0; p < b->batch.n; ++p) {
+    double largest = 0.0, unlike = 0.0;
+    for (int32_t c = 0; c < rows && b->batch.id[p] >= 0; ++c) {
+      const double given = b->stress[c * b->ld + p], kept = b->stress_new[c * b->ld + p];
+      largest = fmax(largest, fabs(given));
+      unlike += fabs(kept - given);
+    }
+    if (!(unlike <= 1e-9 * largest))
+      return mpmi_fail(
+          set->context, MPM_E_UNSUPPORTED,
+          "asked with F = I and dt = 0, the law of the host does not answer with the stress that "
+          "the particle with id %lld is given: its stress is not its state; set what it follows "
+          "from",
+          (long long)b->batch.id[p]);
+  }
+  return MPM_OK;
+}
+
+static mpm_status ask_host(mpm_particles *set, mpmi_law_batch *b, int64_t begin, int64_t n) {
+  mpmi_law_batch_load(b, set, begin, n, set->stepper ? set->owner->time(set->stepper) : 0.0, 0.0);
+  for (int32_t c = 0; c < mpmi_stress_components(set->grid->dim); ++c)
+    memcpy(b->stress + c * b->ld, mpmi_f64(set, MPMI_STRESS, 1) + c * set->ld + begin,
+           (size_t)n * sizeof(double));
+  const mpm_status status = mpmi_law_batch_run(b, set->material, set->grid->dim);
+  if (b->fault.cause)
+    return mpmi_fail(set->context, b->fault.cause, "%s at particle %lld, when asked with F = I",
+                     b->fault.what, (long long)b->fault.particle);
+  if (status)
+    return mpmi_fail(set->context, MPM_E_CALLBACK, "the material returned %d when asked with F = I",
+                     (int)status);
+  return compare(set, b);
+}
+
+mpm_status mpmi_reference_fits_host(mpm_particles *set) {
+  if (set->material->law || !set->slots) return MPM_OK;
+  const size_t bytes = mpmi_law_batch_bytes(set->material);
+  void *memory = mpmi_alloc(set->context, bytes);
+  if (!memory) return MPM_E_NOMEM;
+  mpmi_law_batch b;
+  mpmi_law_batch_bind(&b, set->material, memory);
+  mpm_status status = MPM_OK;
+  for (int64_t s = 0; s < set->slots && !status; s += b.ld)
+    status = ask_host(set, &b, s, set->slots - s < b.ld ? set->slots - s : b.ld);
+  mpmi_free(set->context, memory, bytes);
+  return status;
+}
+
+/* Where F stretches domains, their edges are divided by as much as it stretches them more. */
+static void keep_domains(mpm_particles *set) {
+  if (set->grid->domains != MPMI_DOMAINS_STRETCHED) return;
+  for (int32_t k = 0; k < set->grid->dim; ++k) {
+    const int32_t stored = mpmi_stored_component(set, MPMI_F, 4 * k);
+    double *size = mpmi_f64(set, MPMI_SIZE, 0) + k * set->ld;
+    const double *before = mpmi_f64(set, MPMI_F, 0) + stored * set->ld;
+    const double *after = mpmi_f64(set, MPMI_F, 1) + stored * set->ld;
+    for (int64_t s = 0; s < set->slots; ++s) size[s] *= fabs(before[s] / after[s]);
+  }
+}
+
+void mpmi_reference_take(mpm_particles *set) {
+  const size_t row = (size_t)set->slots * sizeof(double);
+  double *initial = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0);
+  if (!set->slots) return;
+  keep_domains(set);
+  memcpy(initial, mpmi_f64(set, MPMI_VOLUME, 0), row);
+  for (int32_t c = 0; c < set->field[MPMI_F].components; ++c) {
+    const double *F = mpmi_f64(set, MPMI_F, 1) + c * set->ld;
+    const int32_t entry = mpmi_tensor_map(set->grid->dim)[c];
+    for (int64_t s = 0; s < set->slots && entry % 4 == 0; ++s) initial[s] /= F[s]; /* F is diagonal */
+    memcpy(mpmi_f64(set, MPMI_F, 0) + c * set->ld, F, row);
+  }
+  for (int64_t s = 0; s < set->slots && set->field[MPMI_DILATION_RATIO].present; ++s)
+    mpmi_f64(set, MPMI_DILATION_RATIO, 0)[s] = 1.0;
+  mpmi_field_written(set, MPMI_F);
+}
+
+/* ---- the call ------------------------------------------------------------------------------------------ */
+static mpm_status can_reset(const mpm_particles *set) {
+  const mpmi_law *law = set->material->law;
+  if (!law || (!law->stress_from_F && law->rest == MPMI_REST_BY_KIND)) return MPM_OK;
+  return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
+                   "what %s does follows from deformation_gradient, which must stay as it is: to begin "
+                   "displacements anew, set reference_position",
+                   law->name);
+}
+
+mpm_status mpm_particles_reset_reference(mpm_particles *particles) {
+  MPMI_ENTER(particles, MPMI_PARTICLES);
+  mpm_status status = mpmi_particles_changeable(particles);
+  if (!status) status = can_reset(particles);
+  if (!status) status = mpmi_particles_check_suspects(particles);
+  if (!status) status = mpmi_particles_refresh(particles);
+  if (status || !particles->slots) return status;
+  mpmi_reference_begin(particles);
+  for (int32_t c = 0; c < mpmi_stress_components(particles->grid->dim); ++c)
+    memcpy(mpmi_f64(particles, MPMI_STRESS, 1) + c * particles->ld,
+           mpmi_f64(particles, MPMI_STRESS, 0) + c * particles->ld,
+           (size_t)particles->slots * sizeof(double));
+  if ((status = mpmi_reference_fits_host(particles))) return status;
+  mpmi_reference_take(particles);
+  for (int32_t k = 0; k < particles->grid->dim && particles->field[MPMI_REFERENCE].present; ++k)
+    for (int64_t s = 0; s < particles->slots; ++s)
+      mpmi_f64(particles, MPMI_REFERENCE, 0)[k * particles->ld + s] =
+          mpmi_absent_value(particles, MPMI_REFERENCE, k, s);
+  return MPM_OK;
+}
