@@ -190,6 +190,14 @@ public:
   template <class T> void set_all(const std::string &field, std::initializer_list<T> value) {
     set_all<std::initializer_list<T>>(field, value);
   }
+  /** Gives all particles the stress of ground at rest: see mpm_particles_set_geostatic(). */
+  void set_geostatic(int32_t axis, double gravity, double surface, double K0, double surcharge = 0.0) {
+    check(mpm_particles_set_geostatic(core().handle, axis, gravity, surface, K0, surcharge));
+  }
+  /** Lets deformation and displacements count from here: see mpm_particles_reset_reference(). */
+  void reset_reference() {
+    check(mpm_particles_reset_reference(core().handle));
+  }
   /** Lends a field in library order: see mpm_particles_map(). map<const double>() is for reading,
    * map<double>() for reading and writing. */
   template <class T> view<T> map(const std::string &field) {

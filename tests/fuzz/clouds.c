@@ -142,6 +142,8 @@ static mpm_stepper_desc draw_stepper(cloud *c) {
   d.boundary_zero_acceleration = bits >> 9 & 1;
   d.projected_positions = bits >> 14 & 1;
   d.pic_damping = (bits >> 10 & 3) == 3 ? 10.0 : 0.0;
+  d.local_damping = (bits >> 15 & 3) == 3 && d.scheme != MPM_NEWMARK ? 0.7 : 0.0;
+  d.mass_damping = (bits >> 17 & 3) == 3 && !d.quasi_static ? 20.0 : 0.0;
   d.flip = bits >> 12 & 1 ? fuzz_between(&c->in, 0.0, 1.0) : 1.0;
   d.gravity[c->g.dim - 1] = bits >> 13 & 1 ? -10.0 : 0.0;
   return d;

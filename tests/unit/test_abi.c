@@ -217,7 +217,7 @@ END_TEST
 
 #define STRUCT mpm_stepper_desc
 START_TEST(layout_of_stepper_desc) {
-  SIZE(152);
+  SIZE(168);
   AT(0, struct_size);
   AT(4, scheme);
   AT(8, transfer);
@@ -242,13 +242,15 @@ START_TEST(layout_of_stepper_desc) {
   AT(136, linear_tolerance);
   AT(144, linear_max_iterations);
   AT(148, projected_positions);
+  AT(152, local_damping);
+  AT(160, mass_damping);
 }
 END_TEST
 #undef STRUCT
 
 #define STRUCT mpm_step_info
 START_TEST(layout_of_step_info) {
-  SIZE(232);
+  SIZE(248);
   AT(0, struct_size);
   AT(4, cause);
   AT(8, callback_status);
@@ -278,6 +280,8 @@ START_TEST(layout_of_step_info) {
   AT(216, contact_nodes);
   AT(224, body);
   AT(228, reserved);
+  AT(232, damping_dissipation);
+  AT(240, damping_dissipation_total);
 }
 END_TEST
 #undef STRUCT
