@@ -91,6 +91,8 @@ void copies(world &w) {
     w.set.set_all("stress", {1.0, 1.0, 1.0, 0.0, 0.0, 0.0});
   }));
   CHECK(refused(MPM_E_NOT_FOUND, "7777", [&] { w.set.get("mass", {7777}); }));
+  CHECK(refused(MPM_E_ARG, "K0", [&] { w.set.set_geostatic(1, -10.0, 100.0, -1.0); }));
+  CHECK(refused(MPM_E_UNSUPPORTED, "neo_hookean", [&] { w.set.reset_reference(); }));
   CHECK(w.set.get("velocity") == v);
 }
 

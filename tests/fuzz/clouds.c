@@ -142,8 +142,8 @@ static mpm_stepper_desc draw_stepper(cloud *c) {
   d.boundary_zero_acceleration = bits >> 9 & 1;
   d.projected_positions = bits >> 14 & 1;
   d.pic_damping = (bits >> 10 & 3) == 3 ? 10.0 : 0.0;
-  d.local_damping = (bits >> 15 & 3) == 3 && d.scheme != MPM_NEWMARK ? 0.7 : 0.0;
-  d.mass_damping = (bits >> 17 & 3) == 3 && !d.quasi_static ? 20.0 : 0.0;
+  if (bits >> 15 & 1) d.local_damping = d.scheme == MPM_NEWMARK ? 0.0 : 0.7;
+  if (bits >> 15 & 1) d.mass_damping = d.quasi_static ? 0.0 : 20.0;
   d.flip = bits >> 12 & 1 ? fuzz_between(&c->in, 0.0, 1.0) : 1.0;
   d.gravity[c->g.dim - 1] = bits >> 13 & 1 ? -10.0 : 0.0;
   return d;
@@ -533,8 +533,12 @@ static void set_fields(cloud *c) {
                                        "reference_position"};
   fuzz_status(c->context,
               mpm_particles_set_all(set, vector[fuzz_below(&c->in, 5)], MPM_F64, c->g.dim, value));
-  if (fuzz_below(&c->in, 4) == 1)
-    fuzz_status(c->context, mpm_particles_set_all(set, "prescribed", MPM_U8, c->g.dim, axes));
+  const int32_t further = fuzz_below(&c->in, 4), axis = fuzz_below(&c->in, 3);
+  if (further == 1) fuzz_status(c->context, mpm_particles_set_all(set, "prescribed", MPM_U8, c->g.dim, axes));
+  if (further == 2)
+    fuzz_status(c->context, mpm_particles_set_geostatic(set, axis, value[0], value[0] < 0.0 ? 1e3 : -1e3,
+                                                        fuzz_between(&c->in, 0.0, 2.0), 0.0));
+  if (further == 3) fuzz_status(c->context, mpm_particles_reset_reference(set));
 }
 
 static void write_files(cloud *c) {
