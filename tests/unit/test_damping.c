@@ -129,22 +129,25 @@ START_TEST(slow_fall) {
 }
 END_TEST
 
-/* A block that slides along a slip wall is slowed by damping and not by the wall. */
+/* What walls give to a body that moves along and off them, through mirrored ghosts as well, is the same in a step
+ * with damping and in one without: that is no reaction of walls. */
 START_TEST(no_reaction_of_walls) {
   const method *how = broad_methods[_i];
-  world w;
-  mpm_particles *set = open_block(&w, how, 0.0, 3.0, 0.0);
-  const double low[] = {0.5, 0.0}, high[] = {1.5, 0.5}, v[] = {0.5, 0.0};
-  world_fill(&w, set, low, high, 2);
-  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
-  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_SLIP, 0.0));
-  for (int32_t k = 0; k < 3; ++k) {
-    double force[2];
-    world_step(&w, 0.01);
-    ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_Y_MIN, force));
-    ck_within(how->name, force[0], 0.0, 1e-11 * mass_of(&w, set));
+  double force[2][4], mass = 0.0;
+  for (int32_t damped = 0; damped < 2; ++damped) {
+    world w;
+    mpm_particles *set = open_block(&w, how, 0.0, damped ? 3.0 : 0.0, 0.0);
+    const double low[] = {0.5, 0.0}, high[] = {1.5, 0.5}, v[] = {0.5, 0.3};
+    world_fill(&w, set, low, high, 2);
+    ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, _i % 2 ? MPM_WALL_FIXED : MPM_WALL_SLIP, 0.0));
+    world_step(&w, 1e-3);
+    ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_Y_MIN, force[damped]));
+    mass = mass_of(&w, set);
+    world_close(&w);
   }
-  world_close(&w);
+  if (how->scheme == MPM_USF || how->scheme == MPM_NEWMARK) return; /* they have the stress of the step */
+  for (int32_t c = 0; c < 2; ++c) ck_within(how->name, force[1][c], force[0][c], 1e-9 * mass);
 }
 END_TEST
 
