@@ -1,6 +1,7 @@
 /* mpm_stepper_desc: defaults, and what is refused at creation and by mpm_stepper_configure(). */
 #include <stddef.h>
 
+#include "context/structs.h"
 #include "stepper_parts.h"
 
 static world r;
@@ -17,7 +18,7 @@ START_TEST(defaults) {
   mpm_stepper_desc d;
   memset(&d, 0x5a, sizeof d);
   ck_assert_int_eq(mpm_stepper_desc_init(NULL, sizeof d), MPM_E_ARG);
-  ck_assert_int_eq(mpm_stepper_desc_init(&d, sizeof d - 1), MPM_E_ARG);
+  ck_assert_int_eq(mpm_stepper_desc_init(&d, mpmi_first_size("mpm_stepper_desc") - 1), MPM_E_ARG);
   ck_ok(NULL, mpm_stepper_desc_init(&d, sizeof d));
   ck_assert_uint_eq(d.struct_size, sizeof d);
   ck_assert_int_eq(d.scheme, MPM_USL);
@@ -127,7 +128,7 @@ START_TEST(refused_arguments) {
   ck_assert_int_eq(mpm_stepper_configure(NULL, &d), MPM_E_ARG);
   d.struct_size = 0;
   ck_refused(&r, mpm_stepper_create(r.context, r.grid, &d, &stepper), MPM_E_ARG, "struct_size is 0");
-  d.struct_size = sizeof d - 8;
+  d.struct_size = mpmi_first_size("mpm_stepper_desc") - 8;
   ck_refused(&r, mpm_stepper_configure(r.stepper, &d), MPM_E_ARG, "struct_size is");
 }
 END_TEST
