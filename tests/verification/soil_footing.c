@@ -1,0 +1,125 @@
+/* A flexible strip of width B = 1 on weightless ground of friction and cohesion that dilates by its angle of
+ * friction (associated), in plane strain and quasi-static steps: the load at collapse beside the exact one of
+ * Prandtl and Reissner, q = c N_c + q_0 N_q, with N_q = exp(pi tan phi) tan^2(45 + phi / 2) and
+ * N_c = (N_q - 1) / tan phi. By law, basis, cells, and with the remedy against locking. Half of it. */
+#include "verify.h"
+
+enum { PER_CELL = 2, STEPS = 40 };
+
+typedef struct variant {
+  int32_t mohr, phi, surcharge; /* surcharge: N_q, by a load beside the strip, without cohesion; else N_c */
+  int32_t basis, remedy, per_B;
+  const char *reason; /* why it misses the gate */
+} variant;
+
+typedef struct strip {
+  double load, beside, height, row; /* load: at t = 1, beyond that beside the strip */
+} strip;
+
+/* A load on two rows of particles, extended to the surface as on a straight line. */
+static mpm_status lie(void *user, const mpm_particle_batch *b, double *add) {
+  const strip *is = user;
+  for (int64_t p = 0; p < b->n; ++p) {
+    const double deep = is->height - b->reference_position[b->ld + p];
+    const double q = is->beside + (b->reference_position[p] < 0.5 ? is->load * b->t : 0.0);
+    if (deep < 2.0 * is->row) add[b->ld + p] -= (deep < is->row ? 1.5 : -0.5) * q * is->row;
+  }
+  return MPM_OK;
+}
+
+static void draw(const verify_world *w, const char *name, FILE *cloud) {
+  const int64_t n = mpm_particles_count(w->set[0]);
+  double *x = verify_get(w, w->set[0], "position", 2), *state = verify_get(w, w->set[0], "state", 2);
+  for (int64_t i = 0; i < n; ++i)
+    fprintf(cloud, "\"%s\",%.3f,%.3f,%.3f\n", name, x[i], x[n + i], 100.0 * state[i]);
+  free(x), free(state);
+}
+
+/* The last load for which there is equilibrium, over the exact limit. */
+static double collapse(const variant *v, const char *name, FILE *csv, FILE *cloud) {
+  const double h = 1.0 / v->per_B, wide = v->phi > 20 ? 6.0 : 4.0, deep = v->phi > 20 ? 3.0 : 2.0;
+  const double angle = v->phi * PI / 180.0, N_q = exp(PI * tan(angle)) * pow(tan(PI / 4.0 + 0.5 * angle), 2);
+  verify_setup setup = verify_defaults(2, 1, h);
+  setup.grid.basis = v->basis;
+  setup.grid.cells[0] = (int64_t)wide * v->per_B;
+  setup.grid.cells[1] = (int64_t)deep * v->per_B + 3;
+  setup.stepper.scheme = MPM_NEWMARK;
+  setup.stepper.quasi_static = 1;
+  setup.stepper.locking_remedy = v->remedy;
+  setup.stepper.reference_positions = 1;
+  verify_world w;
+  verify_open(&w, &setup);
+  const double exact = v->surcharge ? N_q : (N_q - 1.0) / tan(angle);
+  const mpm_param params[] = {{"E", 100.0 * v->phi}, {"nu", 0.3},     {"density", 1.0},
+                              {"phi", v->phi},       {"psi", v->phi}, {"cohesion", v->surcharge ? 0.0 : 1.0},
+                              {"cone", 2.0}};
+  mpm_particles *ground = verify_set(
+      &w, verify_material(&w, v->mohr ? "mohr_coulomb" : "drucker_prager", params, v->mohr ? 6 : 7));
+  verify_fill_box(&w, ground, (const double[]){0.0, 0.0}, (const double[]){wide, deep}, PER_CELL);
+  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
+  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MAX, MPM_WALL_SLIP, 0.0));
+  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
+  strip load = {v->surcharge ? exact - 1.0 : exact, v->surcharge ? 1.0 : 0.0, deep, h / PER_CELL};
+  verify_ok(&w, mpm_stepper_set_force(w.stepper, lie, &load));
+  const int64_t n = mpm_particles_count(ground);
+  double *X = verify_get(&w, ground, "position", 2), *stress = verify_array(6 * n);
+  int64_t middle = 0; /* of the strip */
+  for (int64_t p = 0; p < n; ++p) {
+    if (X[n + p] - X[p] > X[n + middle] - X[middle]) middle = p;
+    stress[p] = stress[n + p] = stress[2 * n + p] = -load.beside;
+  }
+  verify_put(&w, ground, "stress", 6, stress);
+  double dt = 1.0 / STEPS, carried = 0.0;
+  while (dt > 0.1 / STEPS && carried < 1.5) {
+    mpm_step_info info = {.struct_size = sizeof info};
+    if (mpm_step(w.stepper, dt, &info)) {
+      dt *= 0.5;
+      continue;
+    }
+    double *x = verify_get(&w, ground, "position", 2);
+    carried = (load.beside + load.load * info.t) / exact;
+    fprintf(csv, "\"%s\",%d,%.5f,%.6f,%d\n", name, (int)v->per_B, carried, X[n + middle] - x[n + middle],
+            (int)info.newton_iterations);
+    free(x);
+  }
+  if (cloud) draw(&w, name, cloud);
+  free(X), free(stress);
+  verify_close(&w);
+  return carried;
+}
+
+int main(int argc, char **argv) {
+  verify_begin("soil_footing", argc, argv);
+  static const char *const locks = "volumetric locking of plastic flow; it goes with h";
+  static const char *const unpaired =
+      "the remedy averages the dilation that the law sees and not the pressure that forces have of it: where "
+      "shear makes pressure, as in soils, the two are no pair, and Newton's method finds no equilibrium";
+  static const variant list[] = {
+      {1, 20, 0, MPM_BSPLINE2, 0, 6, NULL},    {0, 20, 1, MPM_BSPLINE2, 0, 6, NULL},
+      {1, 20, 0, MPM_BSPLINE2, 0, 8, NULL},    {1, 20, 0, MPM_BSPLINE2, 0, 16, NULL},
+      {0, 20, 0, MPM_BSPLINE2, 0, 8, NULL},    {1, 30, 0, MPM_BSPLINE2, 0, 4, NULL},
+      {1, 30, 0, MPM_BSPLINE2, 0, 8, NULL},    {0, 30, 0, MPM_BSPLINE2, 0, 8, NULL},
+      {1, 20, 1, MPM_BSPLINE2, 0, 8, NULL},    {0, 20, 1, MPM_BSPLINE2, 0, 8, NULL},
+      {1, 30, 1, MPM_BSPLINE2, 0, 8, NULL},    {0, 30, 1, MPM_BSPLINE2, 0, 8, NULL},
+      {1, 20, 0, MPM_LINEAR, 0, 8, locks},     {1, 20, 0, MPM_LINEAR, 0, 16, NULL},
+      {1, 20, 0, MPM_LINEAR, 1, 8, unpaired},  {1, 20, 0, MPM_LINEAR, 1, 16, unpaired},
+      {1, 20, 0, MPM_BSPLINE2, 1, 8, unpaired}};
+  FILE *csv = verify_csv("soil_footing"), *cloud = verify_csv("soil_footing_cloud");
+  fprintf(csv, "variant,cells,load,settlement,iterations\n");
+  fprintf(cloud, "variant,x,y,plastic\n");
+  const int32_t count = verify_quick() ? 2 : (int32_t)(sizeof list / sizeof *list);
+  for (int32_t i = 0; i < count; ++i) {
+    const variant *v = &list[i];
+    char name[80], what[120];
+    snprintf(name, sizeof name, "N_%s, phi = %d, %s, %s%s", v->surcharge ? "q" : "c", (int)v->phi,
+             v->mohr ? "mohr_coulomb" : "drucker_prager", v->basis == MPM_LINEAR ? "linear" : "quadratic",
+             v->remedy ? ", remedy" : "");
+    snprintf(what, sizeof what, "%s, h = B/%d: load at collapse / exact", name, (int)v->per_B);
+    const int32_t drawn = v->mohr && !v->surcharge && v->basis == MPM_BSPLINE2 && !v->remedy && v->per_B == 8;
+    const double is = collapse(v, name, csv, drawn ? cloud : NULL);
+    verify_progress("%s, h = B/%d", name, (int)v->per_B);
+    verify_judge(what, is, 0.97, 1.10, "Prandtl, Reissner; set tolerance", v->reason);
+  }
+  fclose(csv), fclose(cloud);
+  return verify_end();
+}
