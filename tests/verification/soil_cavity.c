@@ -98,12 +98,12 @@ static double pressure(const verify_world *w, const cavity *is, const mpm_step_i
   return power / (0.5 * PI * (is->largest - 1.0) * mean);
 }
 
-/* Radial stress beside the exact one, and the plastic strain. */
+/* Radial stress beside the exact one. */
 static void draw(const verify_world *w, const cavity *is, FILE *field) {
   const int64_t n = mpm_particles_count(w->set[0]);
   double *x = verify_get(w, w->set[0], "position", 2), *s = verify_get(w, w->set[0], "stress", 6);
   const double plastic = sqrt(G * is->shift); /* radius of the plastic zone */
-  for (int64_t i = 0; i < n; i += 7) {
+  for (int64_t i = 0; i < n; ++i) {
     const double r = hypot(x[i], x[n + i]), c = x[i] / r, z = x[n + i] / r;
     const double radial = s[i] * c * c + s[n + i] * z * z + 2.0 * s[3 * n + i] * c * z;
     const double exact = r < plastic ? 2.0 * log(r / plastic) - 1.0 : -pow(plastic / r, 2);
