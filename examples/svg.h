@@ -151,6 +151,36 @@ static inline void svg_tiles(FILE *out, const svg_frame *f, int64_t n, const dou
   }
 }
 
+/* Squares about x[c * n + i] of an edge in data coordinates, coloured by value / value_max. Each is a short
+ * stroke with square ends, whole tenths of a pixel from the one before, which keeps the file small. */
+static inline void svg_squares(FILE *out, const svg_frame *f, int64_t n, const double *x, double edge,
+                               const double *value, double value_max) {
+  enum { COLOURS = 48 };
+  if (!out) return;
+  const double scale = 10.0 * f->width / (f->x_max - f->x_min);
+  for (int k = 0; k < COLOURS; ++k) {
+    long pen[2] = {0, 0};
+    int rgb[3], used = 0;
+    svg_colour((k + 0.5) / COLOURS, rgb);
+    for (int64_t i = 0; i < n; ++i) {
+      const double at = COLOURS * value[i] / value_max;
+      const int colour = at >= COLOURS ? COLOURS - 1 : at > 0.0 ? (int)at : 0;
+      if (colour != k) continue;
+      /* half a pixel more hides the seams that antialiasing would leave */
+      if (!used++)
+        fprintf(out,
+                "<path transform=\"scale(.1)\" fill=\"none\" stroke-linecap=\"square\" "
+                "stroke=\"#%02x%02x%02x\" stroke-width=\"%.1f\" d=\"",
+                (unsigned)rgb[0], (unsigned)rgb[1], (unsigned)rgb[2], edge * scale + 5.0);
+      const long to[2] = {lround(10.0 * svg_x(f, x[i])), lround(10.0 * svg_y(f, x[n + i]))};
+      fprintf(out, "m%ld %ldh1", to[0] - pen[0], to[1] - pen[1]);
+      pen[0] = to[0] + 1;
+      pen[1] = to[1];
+    }
+    if (used) fputs("\"/>\n", out);
+  }
+}
+
 /* Half edges half[c * n + i] along an axis of squares of that width, deformed by F[9][n]. */
 static inline void svg_edges(int64_t n, double width, const double *F, int axis, double *half) {
   for (int c = 0; c < 2; ++c)

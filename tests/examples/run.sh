@@ -193,6 +193,37 @@ if wanted outflow; then
   done
 fi
 
+if wanted sand_column; then
+  mkdir column
+  run sand_column column 8
+  check "run-out" "result: run-out" 1.0 1.2
+  check "run-out beside experiments" "the radius," 0.7 1.3
+  check "height" "height" 0.7 0.8
+  check "volume" "volume" 1.0 1.15
+  for file in sand_column.svg sand_column.vtp; do
+    [ -s "column/$file" ] || fail "sand_column: $file is missing or empty"
+  done
+fi
+
+if wanted hourglass; then
+  mkdir sand
+  run hourglass sand 4
+  check "all sand passes" "result: passed" 0.97 1
+  check "time" "at t =" 2.0 2.7
+  check "steady rate" "later" 0.8 1.1
+  [ -s sand/hourglass.svg ] || fail "hourglass: hourglass.svg is missing or empty"
+fi
+
+if wanted slope_failure; then
+  mkdir failure
+  run slope_failure failure 16
+  check "gravity at failure" "fails at" 0.8 0.95
+  check "crest" "crest sinks by" 4.5 5.5
+  check "toe" "toe goes" 8 10.5
+  check "strain of the bands" "plastic strain" 6.5 9.5
+  [ -s failure/slope_failure.svg ] || fail "slope_failure: slope_failure.svg is missing or empty"
+fi
+
 if wanted cantilever; then
   run cantilever
   check "deviation from FEM" "deviation" -4 4
