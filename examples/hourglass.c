@@ -1,16 +1,16 @@
-/* Sand runs through the neck of an hourglass: two boxes, fixed obstacles with friction, make its funnel. In plane
- * strain.
+/* Sand runs through the neck of an hourglass: two boxes, fixed obstacles with friction, make its funnel. In
+ * plane strain.
  *
  *   hourglass [directory [cells in the neck]]
  *
  * Prints the share of the sand that has passed the neck against time. Other than with water the rate hardly
- * depends on how much is still above: the last line compares that from 20 to 50 % with that from 50 to 80 %, and
- * gives the former over density sqrt(g) D^(3/2), with D the width of the neck. Writes a film strip
+ * depends on how much is still above: the last line compares that from 20 to 50 % with that from 50 to
+ * 80 %, and gives the former over density sqrt(g) D^(3/2), with D the width of the neck. Writes a film strip
  * (hourglass.svg) into the directory (default: here), coloured by where the sand was at first.
  *
- * What to expect: 8 cells in the neck, the default, take half a minute, 4 take seconds. The coefficient is 0.43,
- * 0.85, 0.95 and 1.09 with 4, 8, 10 and 16 cells, as if the neck were two cells narrower: next to an obstacle sand
- * moves with what the nodes there may do. */
+ * What to expect: 8 cells in the neck, the default, take half a minute, 4 take seconds. The coefficient is
+ * 0.43, 0.85, 0.95 and 1.09 with 4, 8, 10 and 16 cells, as if the neck were two cells narrower: next to an
+ * obstacle sand moves with what the nodes there may do. */
 #include <mpm/mpm.h>
 
 #include <inttypes.h>

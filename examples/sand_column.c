@@ -1,14 +1,17 @@
-/* A round column of dry sand, as high as its radius, is let go on a rough floor and spreads, in three dimensions.
+/* A round column of dry sand, as high as its radius, is let go on a rough floor and spreads, in three
+ * dimensions.
  *
  *   sand_column [directory [cells in the radius]]
  *
- * A quarter of it, between two symmetry planes. Prints run-out, height and volume against time, and at the end
- * the run-out beside the experiments of Lube et al. 2004, who found (r - r_0) / r_0 = 1.24 h_0 / r_0 for low
- * columns of any sand. Writes into the directory (default: here) a film strip of the section (sand_column.svg),
- * coloured by where particles were at first, and the deposit for ParaView (sand_column.vtp).
+ * A quarter of it, between two symmetry planes. Prints run-out, height and volume against time, and at the
+ * end the run-out beside the experiments of Lube et al. 2004, who found (r - r_0) / r_0 = 1.24 h_0 / r_0
+ * for low columns of any sand. Writes into the directory (default: here) a film strip of the section
+ * (sand_column.svg), coloured by where particles were at first, and the deposit for ParaView
+ * (sand_column.vtp).
  *
- * What to expect: 25 cells in the radius, the default, are 98 000 particles and take minutes; 8 take seconds. The
- * run-out is 1.10 and 1.32 of the radius with 8 and 25 cells, 0.89 and 1.06 of that of the experiments. */
+ * What to expect: 25 cells in the radius, the default, are 98 000 particles and take minutes; 8 take
+ * seconds. The run-out is 1.10 and 1.32 of the radius with 8 and 25 cells, 0.89 and 1.06 of that of the
+ * experiments. */
 #include <mpm/mpm.h>
 
 #include <inttypes.h>

@@ -1,18 +1,19 @@
-/* An embankment of cohesive soil fails as its weight grows, as in a centrifuge: shear bands form, soften, and a
- * block slides out. In plane strain.
+/* An embankment of cohesive soil fails as its weight grows, as in a centrifuge: shear bands form, soften,
+ * and a block slides out. In plane strain.
  *
  *   slope_failure [directory [cells in the height]]
  *
- * `mohr_coulomb` with a cohesion that falls from 10 to 2 kPa with plastic strain. Prints the share of gravity,
- * the way of the crest and the largest plastic strain against time, and in the end the share of gravity at which
- * the crest has sunk twice as far as it would elastically, beside Taylor's stability number for a slope of 45
- * degrees with a friction of 20 degrees (height times weight = 16.1 cohesions). Writes a film strip
- * (slope_failure.svg), coloured by plastic strain, into the directory (default: here).
+ * `mohr_coulomb` with a cohesion that falls from 10 to 2 kPa with plastic strain. Prints the share of
+ * gravity, the way of the crest and the largest plastic strain against time, and in the end the share of
+ * gravity at which the crest has sunk twice as far as it would elastically, beside Taylor's stability
+ * number for a slope of 45 degrees with a friction of 20 degrees (height times weight = 16.1 cohesions).
+ * Writes a film strip (slope_failure.svg), coloured by plastic strain, into the directory (default: here).
  *
- * What to expect: 32 cells in the height, the default, take half a minute; 16 take seconds. With 16, 24, 32 and 40
- * cells it fails at 0.89, 0.85, 0.82 and 0.81 of gravity (Taylor: 0.82). Soil that softens has no width of its bands:
- * they are as thin as cells let them be, and strain in them grows as cells get smaller (8.1, 12.1, 14.4 and 16.4 in the
- * end). How far the block slides depends less on it (9.1, 8.9, 10.1 and 9.7 m). */
+ * What to expect: 32 cells in the height, the default, take half a minute; 16 take seconds. With 16, 24, 32
+ * and 40 cells it fails at 0.89, 0.85, 0.82 and 0.81 of gravity (Taylor: 0.82). Soil that softens has no
+ * width of its bands: they are as thin as cells let them be, and strain in them grows as cells get smaller
+ * (8.1, 12.1, 14.4 and 16.4 in the end). How far the block slides depends less on it (9.1, 8.9, 10.1 and
+ * 9.7 m). */
 #include <mpm/mpm.h>
 
 #include <inttypes.h>

@@ -1,8 +1,8 @@
-/* A cylindrical cavity of radius 1 expands to a radius a in undrained clay (Tresca: `mohr_coulomb` with phi = 0,
- * G = 100 c_u, nearly incompressible), in plane strain and quasi-static steps. A pressure of
- * c_u (1 + ln (G / c_u (1 - 1 / a^2))) does it, which comes near the limit c_u (1 + ln 100) = 5.605 c_u. A quarter;
- * nodes in the cavity move as the clay there would, and their work gives the pressure. The outer face bears what
- * elastic clay beyond it would give it. */
+/* A cylindrical cavity of radius 1 expands to a radius a in undrained clay (Tresca: `mohr_coulomb` with phi
+ * = 0, G = 100 c_u, nearly incompressible), in plane strain and quasi-static steps. A pressure of c_u (1 +
+ * ln (G / c_u (1 - 1 / a^2))) does it, which comes near the limit c_u (1 + ln 100) = 5.605 c_u. A quarter;
+ * nodes in the cavity move as the clay there would, and their work gives the pressure. The outer face bears
+ * what elastic clay beyond it would give it. */
 #include "verify.h"
 
 static const double G = 100.0, nu = 0.49; /* c_u = 1 */
@@ -35,7 +35,7 @@ static mpm_status widen(void *user, const mpm_node_batch *b, uint8_t *prescribed
   return MPM_OK;
 }
 
-/* The pressure of elastic clay beyond the outer face, on two rings extended to the face as on a straight line. */
+/* The pressure of elastic clay beyond the outer face, on two rings, as on a straight line to the face. */
 static mpm_status hold(void *user, const mpm_particle_batch *b, double *add) {
   const cavity *is = user;
   const double a = radius(is, b->t), rr = is->face * is->face + a * a - 1.0, p = G * (a * a - 1.0) / rr;

@@ -1,6 +1,7 @@
-/* A column of dry sand as high as it is wide, in plane strain, collapses beside a smooth wall on a rough floor
- * (phi = 30 degrees, psi = 0, no cohesion): how far it runs, by the cone of `drucker_prager`, by what becomes
- * of gaps, by cells and by damping, and with `mohr_coulomb`; beside the experiments of Lube et al. 2005. */
+/* A column of dry sand as high as it is wide, in plane strain, collapses beside a smooth wall on a rough
+ * floor (phi = 30 degrees, psi = 0, no cohesion): how far it runs, by the cone of `drucker_prager`, by what
+ * becomes of gaps, by cells and by damping, and with `mohr_coulomb`; beside the experiments of Lube et al.
+ * 2005. */
 #include "verify.h"
 
 static const double wide = 0.2, high = 0.2, E = 1e6, nu = 0.3, density = 2000.0, phi = 30.0, g = 9.81;

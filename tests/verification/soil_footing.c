@@ -1,7 +1,7 @@
-/* A flexible strip of width B = 1 on weightless ground of friction and cohesion that dilates by its angle of
- * friction (associated), in plane strain and quasi-static steps: the load at collapse beside the exact one of
- * Prandtl and Reissner, q = c N_c + q_0 N_q, with N_q = exp(pi tan phi) tan^2(45 + phi / 2) and
- * N_c = (N_q - 1) / tan phi. By law, basis, cells, and with the remedy against locking. Half of it. */
+/* A flexible strip of width B = 1 on weightless ground of friction and cohesion that dilates by its angle
+ * of friction (associated), in plane strain and quasi-static steps: the load at collapse beside the exact
+ * one of Prandtl and Reissner, q = c N_c + q_0 N_q, with N_q = exp(pi tan phi) tan^2(45 + phi / 2) and N_c
+ * = (N_q - 1) / tan phi. By law, basis, cells, and with the remedy against locking. Half of it. */
 #include "verify.h"
 
 enum { PER_CELL = 2, STEPS = 40 };

@@ -1,6 +1,7 @@
-/* Earth pressure at rest and in Rankine's limit states: a block of ground without cohesion, under its weight and
- * a load on top, between smooth walls, one of which moves away or against it, in quasi-static steps. The ratio
- * of pressures is K_a = tan^2(45 - phi / 2), K_p = 1 / K_a, and K_a at rest where nu / (1 - nu) is less. */
+/* Earth pressure at rest and in Rankine's limit states: a block of ground without cohesion, under its
+ * weight and a load on top, between smooth walls, one of which moves away or against it, in quasi-static
+ * steps. The ratio of pressures is K_a = tan^2(45 - phi / 2), K_p = 1 / K_a, and K_a at rest where nu / (1
+ * - nu) is less. */
 #include "verify.h"
 
 enum { CELLS = 4, PER_CELL = 2, STEPS = 20 };

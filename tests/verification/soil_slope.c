@@ -1,9 +1,9 @@
 /* An infinite slope of ground without cohesion: a layer of depth 1 on a rough base, a strip of it between
- * periodic faces, in which gravity leans over slowly to an angle beta and stays. It stands where tan beta is less
- * than a limit and flows where it is more. The limit is tan phi of ground that dilates by its angle of friction
- * (associated); in shear without dilation the most that mohr_coulomb bears is sin phi (Davis 1968), and
- * drucker_prager M / sqrt 3. With the limit in the place of tan phi the layer gains speed along the slope by
- * g (sin beta - cos beta tan phi) / (1 + tan^2 psi), because it rises as it dilates. */
+ * periodic faces, in which gravity leans over slowly to an angle beta and stays. It stands where tan beta
+ * is less than a limit and flows where it is more. The limit is tan phi of ground that dilates by its angle
+ * of friction (associated); in shear without dilation the most that mohr_coulomb bears is sin phi (Davis
+ * 1968), and drucker_prager M / sqrt 3. With the limit in the place of tan phi the layer gains speed along
+ * the slope by g (sin beta - cos beta tan phi) / (1 + tan^2 psi), because it rises as it dilates. */
 #include "verify.h"
 
 enum { ROWS = 10, COLUMNS = 3 };
