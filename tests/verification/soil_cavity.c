@@ -66,8 +66,8 @@ static void fill(const verify_world *w, mpm_particles *clay, cavity *is) {
       x[n + i] = R * sin(angle);
       volume[i] = 0.25 * PI * (R1 * R1 - R0 * R0) / (double)n;
     }
-    is->last[X] = is->last[Y], is->in_ring[X] = is->in_ring[Y];
-    is->last[Y] = mpm_particles_count(clay), is->in_ring[Y] = n;
+    is->last[0] = is->last[1], is->in_ring[0] = is->in_ring[1];
+    is->last[1] = mpm_particles_count(clay), is->in_ring[1] = n;
     is->face = R1;
     verify_ok(w, mpm_particles_add(clay, n, x, NULL, volume, NULL, NULL, NULL));
     free(x), free(volume);
