@@ -3,6 +3,7 @@
  * Prandtl's load of (2 + pi) c. An embankment: height 1, sides 1 : 1, half of it, on a rigid base, under its
  * weight; no more than what slip circles allow. By several bases, numbers of particles, and steps. */
 #include "loading.h"
+#include "soil.h"
 
 static const double c = 1.0, E = 500.0, nu = 0.3;
 
@@ -35,13 +36,13 @@ typedef struct pressure {
   double q, wide, height, row;
 } pressure;
 
-/* The load of a strip on two rows of particles, extended to the surface as on a straight line. */
+/* The load of a strip. */
 static mpm_status lie(void *user, const mpm_particle_batch *b, double *add) {
   const pressure *is = user;
   for (int64_t p = 0; p < b->n; ++p) {
     const double deep = is->height - b->reference_position[b->ld + p];
-    if (b->reference_position[p] < is->wide && deep < 2.0 * is->row)
-      add[b->ld + p] -= (deep < is->row ? 1.5 : -0.5) * is->q * is->row * b->t;
+    if (b->reference_position[p] < is->wide)
+      add[b->ld + p] -= soil_row_share(deep, is->row) * is->q * is->row * b->t;
   }
   return MPM_OK;
 }

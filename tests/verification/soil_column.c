@@ -2,7 +2,7 @@
  * floor (phi = 30 degrees, psi = 0, no cohesion): how far it runs, by the cone of `drucker_prager`, by what
  * becomes of gaps, by cells and by damping, and with `mohr_coulomb`; beside the experiments of Lube et al.
  * 2005. */
-#include "verify.h"
+#include "soil.h"
 
 static const double wide = 0.2, high = 0.2, E = 1e6, nu = 0.3, density = 2000.0, phi = 30.0, g = 9.81;
 static const double experiment = 1.2; /* run-out over the width, of columns as high as wide */
@@ -39,27 +39,7 @@ static outcome look(const verify_world *w) {
   return out;
 }
 
-/* Stresses of a column at rest that has grown without moving sideways. */
-static void settle(const verify_world *w) {
-  const int64_t n = mpm_particles_count(w->set[0]);
-  double *x = verify_get(w, w->set[0], "position", 2), *stress = verify_array(6 * n);
-  for (int64_t i = 0; i < n; ++i) {
-    stress[n + i] = -density * g * (high - x[n + i]);
-    stress[i] = stress[2 * n + i] = nu / (1.0 - nu) * stress[n + i];
-  }
-  verify_put(w, w->set[0], "stress", 6, stress);
-  free(x), free(stress);
-}
-
-static void draw(const verify_world *w, const char *name, double t, FILE *cloud) {
-  const int64_t n = mpm_particles_count(w->set[0]);
-  double *x = verify_get(w, w->set[0], "position", 2), *state = verify_get(w, w->set[0], "state", 2);
-  for (int64_t i = 0; i < n; ++i)
-    fprintf(cloud, "\"%s\",%.1f,%.4f,%.4f,%.3f\n", name, t, x[i] / wide, x[n + i] / wide, state[i]);
-  free(x), free(state);
-}
-
-static outcome collapse(const variant *v, FILE *csv, FILE *cloud, FILE *film) {
+static outcome collapse(const variant *v, FILE *csv, FILE *film) {
   verify_setup setup = verify_defaults(2, 0, wide / v->cells);
   setup.grid.cells[0] = 9 * v->cells / 2;
   setup.grid.cells[1] = 13 * v->cells / 10 + 4;
@@ -76,7 +56,7 @@ static outcome collapse(const variant *v, FILE *csv, FILE *cloud, FILE *film) {
   verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
   verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MAX, MPM_WALL_SLIP, 0.0));
   verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
-  settle(&w);
+  soil_settle(&w, &(soil_rest){0.0, density * g, high, nu / (1.0 - nu)});
   outcome out = look(&w);
   enum { SAMPLES = 25 };
   for (int32_t k = 0; k <= SAMPLES; ++k) {
@@ -84,9 +64,12 @@ static outcome collapse(const variant *v, FILE *csv, FILE *cloud, FILE *film) {
     if (k > 0) verify_advance(&w, 0.4, t * sqrt(high / g));
     out = look(&w);
     fprintf(csv, "\"%s\",%.2f,%.5f,%.5f,%.5f\n", v->name, t, out.run_out, out.height, out.volume);
-    if (film && (k == 5 || k == 10 || k == 15 || k == SAMPLES)) draw(&w, v->name, t, film);
+    if (film && (k == 5 || k == 10 || k == 15 || k == SAMPLES)) {
+      char label[16];
+      snprintf(label, sizeof label, "%.1f", t);
+      soil_cloud(&w, label, wide, 1.0, film);
+    }
   }
-  draw(&w, v->name, 5.0, cloud);
   verify_close(&w);
   return out;
 }
@@ -102,15 +85,13 @@ int main(int argc, char **argv) {
       {"cone 2, h = L/20", 0, 2, 1, 20, 5.0, 1.524, 0.821, 1.028, NULL},
       {"cone 2, no damping, h = L/20", 0, 2, 1, 20, 0.0, 1.670, 0.817, 1.058, moves},
       {"Mohr-Coulomb, h = L/20", 1, 0, 1, 20, 5.0, 0.0, 0.0, 0.0, NULL}};
-  FILE *csv = verify_csv("soil_column"), *cloud = verify_csv("soil_column_cloud"),
-       *film = verify_csv("soil_column_film");
+  FILE *csv = verify_csv("soil_column"), *film = verify_csv("soil_column_film");
   fprintf(csv, "variant,t,run_out,height,volume\n");
-  fprintf(cloud, "variant,t,x,y,plastic\n");
-  fprintf(film, "variant,t,x,y,plastic\n");
+  fprintf(film, "t,x,y,plastic\n");
   const char *source = "an independent implementation, with a margin of 5 %";
   for (int32_t i = 0; i < (verify_quick() ? 3 : 6); ++i) {
     const variant *v = &list[i];
-    const outcome is = collapse(v, csv, cloud, i == 3 ? film : NULL);
+    const outcome is = collapse(v, csv, i == 3 ? film : NULL);
     if (v->run_out > 0.0) {
       verify_gate_of(v->name, "run-out / L", is.run_out, 0.95 * v->run_out, 1.05 * v->run_out, source);
       verify_gate_of(v->name, "height at the wall / L", is.height, 0.95 * v->height, 1.05 * v->height,
@@ -122,6 +103,6 @@ int main(int argc, char **argv) {
     snprintf(what, sizeof what, "%s: run-out / that of experiments", v->name);
     verify_judge(what, is.run_out / experiment, 0.7, 1.3, "Lube et al. 2005; set tolerance", v->beyond);
   }
-  fclose(csv), fclose(cloud), fclose(film);
+  fclose(csv), fclose(film);
   return verify_end();
 }

@@ -2,7 +2,7 @@
  * of friction (associated), in plane strain and quasi-static steps: the load at collapse beside the exact
  * one of Prandtl and Reissner, q = c N_c + q_0 N_q, with N_q = exp(pi tan phi) tan^2(45 + phi / 2) and N_c
  * = (N_q - 1) / tan phi. By law, basis, cells, and with the remedy against locking. Half of it. */
-#include "verify.h"
+#include "soil.h"
 
 enum { PER_CELL = 2, STEPS = 40 };
 
@@ -16,23 +16,14 @@ typedef struct strip {
   double load, beside, height, row; /* load: at t = 1, beyond that beside the strip */
 } strip;
 
-/* A load on two rows of particles, extended to the surface as on a straight line. */
 static mpm_status lie(void *user, const mpm_particle_batch *b, double *add) {
   const strip *is = user;
   for (int64_t p = 0; p < b->n; ++p) {
     const double deep = is->height - b->reference_position[b->ld + p];
     const double q = is->beside + (b->reference_position[p] < 0.5 ? is->load * b->t : 0.0);
-    if (deep < 2.0 * is->row) add[b->ld + p] -= (deep < is->row ? 1.5 : -0.5) * q * is->row;
+    add[b->ld + p] -= soil_row_share(deep, is->row) * q * is->row;
   }
   return MPM_OK;
-}
-
-static void draw(const verify_world *w, const char *name, FILE *cloud) {
-  const int64_t n = mpm_particles_count(w->set[0]);
-  double *x = verify_get(w, w->set[0], "position", 2), *state = verify_get(w, w->set[0], "state", 2);
-  for (int64_t i = 0; i < n; ++i)
-    fprintf(cloud, "\"%s\",%.3f,%.3f,%.3f\n", name, x[i], x[n + i], 100.0 * state[i]);
-  free(x), free(state);
 }
 
 /* The last load for which there is equilibrium, over the exact limit. */
@@ -62,13 +53,11 @@ static double collapse(const variant *v, const char *name, FILE *csv, FILE *clou
   strip load = {v->surcharge ? exact - 1.0 : exact, v->surcharge ? 1.0 : 0.0, deep, h / PER_CELL};
   verify_ok(&w, mpm_stepper_set_force(w.stepper, lie, &load));
   const int64_t n = mpm_particles_count(ground);
-  double *X = verify_get(&w, ground, "position", 2), *stress = verify_array(6 * n);
+  double *X = verify_get(&w, ground, "position", 2);
   int64_t middle = 0; /* of the strip */
-  for (int64_t p = 0; p < n; ++p) {
+  for (int64_t p = 0; p < n; ++p)
     if (X[n + p] - X[p] > X[n + middle] - X[middle]) middle = p;
-    stress[p] = stress[n + p] = stress[2 * n + p] = -load.beside;
-  }
-  verify_put(&w, ground, "stress", 6, stress);
+  soil_settle(&w, &(soil_rest){load.beside, 0.0, deep, 1.0});
   double dt = 1.0 / STEPS, carried = 0.0;
   while (dt > 0.1 / STEPS && carried < 1.5) {
     mpm_step_info info = {.struct_size = sizeof info};
@@ -82,8 +71,12 @@ static double collapse(const variant *v, const char *name, FILE *csv, FILE *clou
             (int)info.newton_iterations);
     free(x);
   }
-  if (cloud) draw(&w, name, cloud);
-  free(X), free(stress);
+  if (cloud) {
+    char label[96];
+    snprintf(label, sizeof label, "\"%s\"", name);
+    soil_cloud(&w, label, 1.0, 100.0, cloud);
+  }
+  free(X);
   verify_close(&w);
   return carried;
 }

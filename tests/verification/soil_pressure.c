@@ -2,7 +2,7 @@
  * weight and a load on top, between smooth walls, one of which moves away or against it, in quasi-static
  * steps. The ratio of pressures is K_a = tan^2(45 - phi / 2), K_p = 1 / K_a, and K_a at rest where nu / (1
  * - nu) is less. */
-#include "verify.h"
+#include "soil.h"
 
 enum { CELLS = 4, PER_CELL = 2, STEPS = 20 };
 static const double side = 1.0, load = 1.0, weight = 1.0,
@@ -25,13 +25,13 @@ static double share(const ground *g, double t) {
   return g->from + (1.0 - g->from) * t;
 }
 
-/* A load on two rows of particles, extended to the surface as on a straight line, and the weight. */
+/* The load on top, and the weight. */
 static mpm_status weigh(void *user, const mpm_particle_batch *b, double *add) {
   const ground *g = user;
   for (int64_t p = 0; p < b->n; ++p) {
     const double deep = side - b->reference_position[b->ld + p], now = share(g, b->t);
     add[b->ld + p] -= now * weight * b->mass[p];
-    if (deep < 2.0 * g->row) add[b->ld + p] -= now * (deep < g->row ? 1.5 : -0.5) * load * g->row;
+    add[b->ld + p] -= now * soil_row_share(deep, g->row) * load * g->row;
   }
   return MPM_OK;
 }
@@ -72,11 +72,8 @@ static void press(const variant *v, FILE *csv) {
   verify_ok(&w, mpm_stepper_set_force(w.stepper, weigh, &g));
   verify_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, push, &g));
   const int64_t n = mpm_particles_count(set);
-  double *x = verify_get(&w, set, "position", 2), *stress = verify_array(6 * n), force[2];
-  for (int64_t p = 0; p < n; ++p)
-    stress[p] = stress[n + p] = stress[2 * n + p] = -g.from * (load + weight * (side - x[n + p]));
-  verify_put(&w, set, "stress", 6, stress);
-  free(x), free(stress);
+  double force[2];
+  soil_settle(&w, &(soil_rest){g.from * load, g.from * weight, side, 1.0});
   char name[80];
   snprintf(name, sizeof name, "phi = %d, %s, %s", (int)v->phi, law, names[v->state]);
   double ratio = 0.0;

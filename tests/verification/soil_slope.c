@@ -4,7 +4,7 @@
  * of friction (associated); in shear without dilation the most that mohr_coulomb bears is sin phi (Davis
  * 1968), and drucker_prager M / sqrt 3. With the limit in the place of tan phi the layer gains speed along
  * the slope by g (sin beta - cos beta tan phi) / (1 + tan^2 psi), because it rises as it dilates. */
-#include "verify.h"
+#include "soil.h"
 
 enum { ROWS = 10, COLUMNS = 3 };
 static const double E = 200.0, nu = 0.3, lean = 2.0, wait = 4.0; /* weight, depth and gravity are 1 */
@@ -56,14 +56,7 @@ static moment run(const variant *v, const char *name, double angle, FILE *csv) {
   verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
   slope s = {angle};
   verify_ok(&w, mpm_stepper_set_acceleration(w.stepper, pull, &s));
-  const int64_t n = mpm_particles_count(set);
-  double *x = verify_get(&w, set, "position", 2), *stress = verify_array(6 * n);
-  for (int64_t i = 0; i < n; ++i) {
-    stress[n + i] = -cos(angle) * (1.0 - x[n + i]);
-    stress[i] = stress[2 * n + i] = nu / (1.0 - nu) * stress[n + i];
-  }
-  verify_put(&w, set, "stress", 6, stress);
-  free(x), free(stress);
+  soil_settle(&w, &(soil_rest){0.0, cos(angle), 1.0, nu / (1.0 - nu)});
   moment before = {0.0, 0.0}, now = before;
   enum { SAMPLES = 24 };
   for (int32_t k = 1; k <= SAMPLES; ++k) {
