@@ -366,7 +366,7 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
   const int64_t ld = batch->ld;
   const mpmi_trial in = mpmi_trial_of(batch);
   double *stress = batch->stress_new, *state = batch->state_new, *wave_speed = batch->wave_speed;
-  mpmi_sym d[MPMI_CHUNK];
+  _Alignas(64) double d[6][MPMI_CHUNK];
   clay_inverse old;
   clay o;
   for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {
@@ -375,8 +375,9 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
     for (int p = 0; p < MPMI_CHUNK; ++p) {
       double J = mpmi_trial_J(dim, in, i + p), mean;
       mpmi_sym e = mpmi_strain_of_b(dim, trial_b(dim, c, in, i + p, J, old.X[p]));
-      d[p] = mpmi_deviator(e, &mean);
-      set_trial(c, &o, p, 3.0 * mean, mpmi_square(d[p]), batch->state[ld + i + p]);
+      e = mpmi_deviator(e, &mean);
+      d[0][p] = e.xx, d[1][p] = e.yy, d[2][p] = e.zz, d[3][p] = e.xy, d[4][p] = e.yz, d[5][p] = e.xz;
+      set_trial(c, &o, p, 3.0 * mean, mpmi_square(e), batch->state[ld + i + p]);
     }
     come_back(c, &o);
     MPMI_IVDEP
@@ -384,12 +385,12 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
       const clay_stress t = stress_of(c, o.v[p], o.e[p]);
       double inverse = 1.0 / mpmi_trial_J(dim, in, i + p), pressure = inverse * t.p;
       double shape = inverse * shape_of(c, &o, p, t.shear);
-      mpmi_sym s = {shape * d[p].xx - pressure,
-                    shape * d[p].yy - pressure,
-                    shape * d[p].zz - pressure,
-                    shape * d[p].xy,
-                    shape * d[p].yz,
-                    shape * d[p].xz};
+      mpmi_sym s = {shape * d[0][p] - pressure,
+                    shape * d[1][p] - pressure,
+                    shape * d[2][p] - pressure,
+                    shape * d[3][p],
+                    shape * d[4][p],
+                    shape * d[5][p]};
       mpmi_store_sym(dim, stress, ld, i + p, s);
       state[i + p] = o.pc_new[p];
       state[ld + i + p] = o.gap[p];
