@@ -203,6 +203,7 @@ const mpmi_law KERNEL(law_herschel_bulkley) = {
     MPMI_PARAMS(params),
     .mean_from_F = 1,
     .kinematics = MPMI_F_DILATES,
+    .rest = MPMI_REST_PRESSURE,
     .constants_size = sizeof(flow_constants),
     .prepare = prepare,
     .stress = stress_kernel,

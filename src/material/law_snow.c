@@ -162,6 +162,7 @@ const mpmi_law KERNEL(law_snow) = {
     MPMI_PARAMS(params),
     MPMI_STATES(states),
     .stress_from_F = 1,
+    .rest = MPMI_REST_NONE,
     .constants_size = sizeof(snow_constants),
     .prepare = prepare,
     .stress = stress_kernel,

@@ -40,8 +40,8 @@ static int32_t rest_of(const mpm_particles *set) {
 static mpm_status check_law(const mpm_particles *set, const ground *g) {
   const mpmi_law *law = set->material->law;
   if (rest_of(set) == MPMI_REST_NONE)
-    return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
-                     "%s has no stress of a given weight: leave the set as it is", law->name);
+    return mpmi_fail(set->context, MPM_E_UNSUPPORTED, "%s has no stress of a given weight: %s", law->name,
+                     law->state_count ? "set its deformation_gradient and state" : "leave the set as it is");
   if (rest_of(set) == MPMI_REST_PRESSURE && law->stress_from_F && g->K0 != 1.0)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
                      "K0 is %g: %s at rest bears the same pressure along all axes, so use K0 = 1", g->K0,
