@@ -64,7 +64,9 @@ static inline int film_draw(const film *f, const film_view *v, const char *path)
                              v->y_min,
                              v->y_max};
     char text[64];
-    snprintf(text, sizeof text, "<tspan font-weight=\"bold\">t = %.2f s</tspan>", f->t[k]);
+    const int is_short = f->t[f->count - 1] < 0.1;
+    snprintf(text, sizeof text, "<tspan font-weight=\"bold\">t = %.*f %s</tspan>", is_short ? 0 : 2,
+             f->t[k] * (is_short ? 1e3 : 1.0), is_short ? "ms" : "s");
     svg_text(out, frame.left + 0.5 * v->panel, frame.top - 10.0, "middle", "", text);
     svg_panel(out, &frame);
     svg_squares(out, &frame, f->n, f->x[k], f->edge, f->value[k], v->value_max);

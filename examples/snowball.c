@@ -47,7 +47,7 @@ static void draw_wall(FILE *out, const svg_frame *f, const void *user) {
 
 int main(int argc, char **argv) {
   const char *directory = argc > 1 ? argv[1] : ".";
-  const double h = 2.0 * radius / (argc > 2 ? atoi(argv[2]) : 48), t_end = 0.06;
+  const double h = 2.0 * radius / (argc > 2 ? atoi(argv[2]) : 48), t_end = 0.02;
   if (!(h > 0.0) || h > radius) {
     fprintf(stderr, "snowball: cells must be a number above 2\n");
     return 1;
@@ -108,7 +108,7 @@ int main(int argc, char **argv) {
                           .y_max = high,
                           .columns = 3,
                           .panel = 280.0,
-                          .value_max = 0.2,
+                          .value_max = 0.4,
                           .title = "compacted for good",
                           .scenery = draw_wall};
   if (film_draw(&strip, &view, path)) {

@@ -142,6 +142,14 @@ if wanted dropped_ball; then
   [ -s ball/dropped_ball.svg ] || fail "dropped_ball: dropped_ball.svg is missing or empty"
 fi
 
+if wanted snowball; then
+  mkdir snow
+  run snowball snow 24
+  check "compaction" "result:" 70 95
+  check "momentum" "momentum" -0.2 0
+  [ -s snow/snowball.svg ] || fail "snowball: snowball.svg is missing or empty"
+fi
+
 if wanted stacked_blocks; then
   mkdir blocks
   run stacked_blocks blocks

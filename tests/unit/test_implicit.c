@@ -195,7 +195,7 @@ START_TEST(every_law) {
   d.stepper.locking_remedy = remedy;
   mpm_particles *set = world_open(&w, &d);
   implicit_block(&w, set, 0.0, 0.3, NULL);
-  if (d.law.params == mud)
+  if (d.law.params == soft)
     ck_ok(&w, mpm_particles_set_all(set, "stress", MPM_F64, 6, (const double[]){-1e3, -1e3, -1e3, 0, 0, 0}));
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, 2 * (dim - 1), MPM_WALL_FIXED, 0.0));
   ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));

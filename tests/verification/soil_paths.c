@@ -109,13 +109,13 @@ static void mud(verify_world *w, FILE *csv) {
   double worst = 0.0;
   for (size_t k = 0; k < 3; ++k)
     for (size_t r = 0; r < sizeof rates / sizeof *rates; ++r) {
-      const mpm_param of[] = {{"density", 1e3},      {"bulk_modulus", 1e7}, {"shear_modulus", 1e5},
+      const mpm_param of[] = {{"density", 1e3},      {"bulk_modulus", 1e9}, {"shear_modulus", 1e7},
                               {"yield_shear", 50.0}, {"consistency", 20.0}, {"n", powers[k]}};
       path p = path_of(w, "mud", "herschel_bulkley", of, 6, 0.0);
-      const double exact = 50.0 + 20.0 * pow(rates[r], powers[k]), step = exact / 1e5;
+      const double exact = 50.0 + 20.0 * pow(rates[r], powers[k]), step = 0.2 * exact / 1e7;
       p.dt = step / rates[r];
       const double F_inc[9] = {1, step, 0, 0, 1, 0, 0, 0, 1};
-      for (int32_t i = 0; i < 60; ++i) update(w, &p, F_inc);
+      for (int32_t i = 0; i < 100; ++i) update(w, &p, F_inc);
       worst = fmax(worst, fabs(p.stress[3] / exact - 1.0));
       fprintf(csv, "%g,%g,%.6f,%.6f\n", powers[k], rates[r], p.stress[3], exact);
       verify_ok(w, mpm_material_destroy(p.law));
