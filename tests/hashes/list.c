@@ -176,6 +176,7 @@ enum {
   PLANES,
   OBSTACLES,
   PROJECTED,
+  DAMPED,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -220,6 +221,7 @@ static const option options[OPTIONS] = {
     [PLANES] = {"friction walls, planes", 1, 1, 0},
     [OBSTACLES] = {"obstacles, saved and loaded", 1, 1, 0},
     [PROJECTED] = {"projected positions", 1, 0, 0},
+    [DAMPED] = {"nodes damped, slip walls", 1, 1, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -229,6 +231,7 @@ static void apply_walls(scene *is, int32_t o) {
                                  [OPEN] = MPM_WALL_OPEN};
   if (o >= FIXED && o <= OPEN) all_walls(is, kind[o]);
   if (o == PLANES) all_walls(is, MPM_WALL_FRICTION);
+  if (o == DAMPED) all_walls(is, MPM_WALL_SLIP);
   is->periodic[0] = o == PERIODIC_X || o == PERIODIC || o == EVERYTHING;
   is->periodic[1] = is->periodic[2] = o == PERIODIC;
   if (o == CONTACT_PERIODIC) is->periodic[0] = is->periodic[1] = is->periodic[2] = 1;
@@ -282,6 +285,7 @@ static void apply(scene *is, int32_t o) {
   if (o == ORDER_2) is->position_order = 2;
   is->staggered = o == STAGGERED;
   is->projected = o == PROJECTED;
+  is->damped = o == DAMPED;
   if (o == TWO_SETS || o == SAVED || o == EVERYTHING || is->with & WITH_BODIES) is->law[1] = LAW_J2;
   if (o == EVERYTHING && is->scheme != MPM_NEWMARK) is->with |= 7 * WITH_HOOK;
   apply_walls(is, o);

@@ -65,6 +65,8 @@ mpm_stepper_desc describe_stepper(const scene *is) {
   d.position_order = is->position_order;
   d.staggered = is->staggered;
   d.projected_positions = is->projected;
+  d.mass_damping = is->damped ? 20.0 : 0.0;
+  d.local_damping = is->damped && is->scheme != MPM_NEWMARK ? 0.1 : 0.0;
   d.locking_remedy = is->remedy;
   d.reference_positions = is->reference;
   d.boundary_zero_acceleration = is->zero_acceleration;

@@ -57,7 +57,7 @@ typedef struct scene {
   int32_t dim, basis, boundary, scheme, quasi_static, transfer, xpic_order;
   double smoothing, flip, pic_damping;
   int32_t law[2]; /* of the sets; LAW_NONE for no second one */
-  int32_t position_order, staggered, remedy, reference, zero_acceleration, projected;
+  int32_t position_order, staggered, remedy, reference, zero_acceleration, projected, damped;
   int32_t wall[6];
   int32_t periodic[3];
   int32_t large; /* enough rows for several levels of multigrid */
