@@ -1,12 +1,14 @@
-/* Steady flows of materials that yield, in a strip that is periodic along x. A channel of half-width
- * H = 0.5 between walls that hold, driven from rest by a pressure gradient G, of Bingham and Herschel-Bulkley fluids: with the
- * plug w = yield / G,
+/* Steady flows of materials that yield, in a strip that is periodic along x. A channel of half-width H = 0.5
+ * between walls that hold, driven from rest by a pressure gradient G, of Bingham and Herschel-Bulkley fluids:
+ * with the plug w = yield / G,
  *
  *   u(y) = n / (n + 1) (G / k)^(1/n) ((H - w)^(1 + 1/n) - (|y| - w)^(1 + 1/n)),  |y| > w.
  *
  * Grains that run down a slope of angle theta, by mu_i: mu(I) = tan theta is met by one I, and (Bagnold)
  *
- *   u(y) = 2/3 I / d sqrt(phi g cos theta) (H^1.5 - (H - y)^1.5),  phi: share of the volume that is grains. */
+ *   u(y) = 2/3 I / d sqrt(phi g cos theta) (H^1.5 - (H - y)^1.5)
+ *
+ * with the share phi of the volume that is grains. */
 #include "verify.h"
 
 enum { WIDE = 4, PER_CELL = 2 };
@@ -44,7 +46,7 @@ static mpm_particles *open_strip(verify_world *w, int32_t cells, double height, 
   return set;
 }
 
-/* ---- the channel ---------------------------------------------------------------------------------------- */
+/* ---- the channel -------------------------------------------------------------------------------------- */
 typedef struct channel {
   const char *name;
   double yield, k, n, gradient;
@@ -96,7 +98,7 @@ static void run_channel(const channel *is, int32_t cells, double until, FILE *cs
   verify_close(&w);
 }
 
-/* ---- the slope ------------------------------------------------------------------------------------------ */
+/* ---- the slope ---------------------------------------------------------------------------------------- */
 static const double g = 9.81, mu_s = 0.3819, mu_2 = 0.6435, I_0 = 0.279, grain = 0.01, grain_density = 2500.0;
 static const double share = 0.6, depth = 0.4;
 typedef struct slope {
