@@ -2,8 +2,8 @@
  *
  *   snowball [directory [cells]]
  *
- * prints how much of the ball is compacted and how much of its momentum the wall has taken, and draws a film strip
- * (snowball.svg) into the directory (default: here). cells: those across the ball (default 48). */
+ * prints how much of the ball is compacted and how much of its momentum the wall has taken, and draws a
+ * film strip (snowball.svg) into the directory (default: here). cells: those across the ball (default 48). */
 #include <mpm/mpm.h>
 
 #include <math.h>

@@ -213,16 +213,17 @@ MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t
 
 /**
  * Makes the present state the one from which all deformation counts: deformation_gradient becomes I,
- * initial_volume the present volume, dilation_ratio 1, and reference_position, where there is one, the present
- * (unwrapped) position. With MPM_CPGIMP edges in "size" become the present ones. Mass, velocity, Cauchy stress
- * and state variables stay.
+ * initial_volume the present volume, dilation_ratio 1, and reference_position, where there is one, the
+ * present (unwrapped) position. With MPM_CPGIMP edges in "size" become the present ones. Mass, velocity,
+ * Cauchy stress and state variables stay.
  *
- * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb) find J = 1 from then
- * on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ by the
- * factor J from before; a stress on the yield surface may lie off it by as much, and the next step returns it.
+ * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb) find J = 1 from
+ * then on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ
+ * by the factor J from before; a stress on the yield surface may lie off it by as much, and the next step
+ * returns it.
  *
- * The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law follows from deformation_gradient,
- * which must stay. Since 0.2.0.
+ * The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law follows from
+ * deformation_gradient, which must stay. Since 0.2.0.
  */
 MPM_API mpm_status mpm_particles_reset_reference(mpm_particles *particles);
 

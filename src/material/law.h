@@ -18,9 +18,9 @@ typedef struct mpmi_law_state {
   const char *name, *unit, *text;
 } mpmi_law_state;
 
-/* Why a law gives a particle up: it writes MPMI_REFUSED(k) in the place of the particle's wave speed, for the k-th
- * of the refusals that its description lists, and the step or the call ends with that cause and sentence. What
- * it writes of the particle beside that is of no interest. */
+/* Why a law gives a particle up: it writes MPMI_REFUSED(k) in the place of the particle's wave speed, for
+ * the k-th of the refusals that its description lists, and the step or the call ends with that cause and
+ * sentence. What it writes of the particle beside that is of no interest. */
 typedef struct mpmi_law_refusal {
   mpm_status cause; /* MPM_CUT_DT where a shorter step may do */
   const char *what;

@@ -1,13 +1,15 @@
-/* Modified Cam-clay at finite strain in the principal frame, in Kirchhoff stresses, with the elasticity of Borja
- * and Tamagnini (1998). With p = -tr(tau) / 3, q = sqrt(3/2) |dev tau|, the elastic compression v = -tr(e), the
- * elastic shear strain e_s = sqrt(2/3) |dev e| and X = p_ref exp(v / kappa):
+/* Modified Cam-clay at finite strain in the principal frame, in Kirchhoff stresses, with the elasticity of
+ * Borja and Tamagnini (1998). With p = -tr(tau) / 3, q = sqrt(3/2) |dev tau|, the elastic compression v =
+ * -tr(e), the elastic shear strain e_s = sqrt(2/3) |dev e| and X = p_ref exp(v / kappa):
  *
- *   energy  kappa X + 3/2 (mu0 + alpha X) e_s^2,  p = X (1 + 3 alpha e_s^2 / (2 kappa)),  q = 3 (mu0 + alpha X) e_s,
- *   yield   q^2 / M^2 + p (p - pc) = 0, which is the potential too,  pc = pc_old exp((v_trial - v) / (lambda - kappa)).
+ *   energy  kappa X + 3/2 (mu0 + alpha X) e_s^2,
+ *   p = X (1 + 3 alpha e_s^2 / (2 kappa)),  q = 3 (mu0 + alpha X) e_s,
+ *   yield   q^2 / M^2 + p (p - pc) = 0, which is the potential too,
+ *   pc = pc_old exp((v_trial - v) / (lambda - kappa)).
  *
- * The return is Newton's method for v, e_s and the multiplier; where that fails and alpha = 0, an equation for v alone
- * that has a bracket. v does not fall below the value where X = p_min: what the material opens beyond that is the gap,
- * and must close before pressure rises again. */
+ * The return is Newton's method for v, e_s and the multiplier; where that fails and alpha = 0, an equation
+ * for v alone that has a bracket. v does not fall below the value where X = p_min: what the material opens
+ * beyond that is the gap, and must close before pressure rises again. */
 #include "material/principal_tangent.h"
 
 enum { DENSITY, KAPPA, LAMBDA, SLOPE, MU, ALPHA, P_REF, PC_START, P_MIN };
@@ -88,7 +90,7 @@ static void start(const double *value, double *state) {
   state[GAP] = 0.0;
 }
 
-/* ---- elasticity ----------------------------------------------------------------------------------------- */
+/* ---- elasticity ---------------------------------------------------------------------------------------- */
 /* The stress of elastic strains, and its derivatives: dp / dv, dp / de_s = dq / dv, dq / de_s. */
 typedef struct clay_stress {
   double p, q, bulk, mixed, shear;
@@ -101,8 +103,8 @@ MPMI_INLINE clay_stress stress_of(const clay_constants *c, double v, double e_s)
   return s;
 }
 
-/* p and q of a chunk, X, and whether the elasticity bears them (1): as far as 3 alpha e_s^2 / (2 kappa) <= 1 each
- * stress has one strain, whose X is the largest solution. */
+/* p and q of a chunk, X, and whether the elasticity bears them (1): as far as 3 alpha e_s^2 / (2 kappa) <=
+ * 1 each stress has one strain, whose X is the largest solution. */
 typedef struct clay_inverse {
   _Alignas(64) double p[MPMI_CHUNK], q[MPMI_CHUNK], X[MPMI_CHUNK], bears[MPMI_CHUNK];
 } clay_inverse;
@@ -122,7 +124,7 @@ MPMI_INLINE void invert(const clay_constants *c, clay_inverse *o) {
   }
 }
 
-/* ---- the return of a chunk ------------------------------------------------------------------------------ */
+/* ---- the return of a chunk ----------------------------------------------------------------------------- */
 typedef struct clay {
   _Alignas(64) double v_trial[MPMI_CHUNK], e_trial[MPMI_CHUNK]; /* elastic strains; v where the gap is full */
   double pc[MPMI_CHUNK];                                        /* before the step */
@@ -236,9 +238,9 @@ MPMI_INLINE void judge(const clay_constants *c, clay *o) {
   }
 }
 
-/* ---- the return of one particle for alpha = 0 ----------------------------------------------------------- */
-/* With d = v - v_critical, where 2 p = pc, in units of the pressure there: q = q_trial / (1 + 6 mu0 flow / M^2) and
- * flow = (d_trial - d) / (2 p - pc) make of the yield surface one equation for d,
+/* ---- the return of one particle for alpha = 0 ---------------------------------------------------------- */
+/* With d = v - v_critical, where 2 p = pc, in units of the pressure there: q = q_trial / (1 + 6 mu0 flow /
+ * M^2) and flow = (d_trial - d) / (2 p - pc) make of the yield surface one equation for d,
  *   F = (q_trial (2 p - pc))^2 / M^2 - p (pc - p) (2 p - pc + 6 mu0 / M^2 (d_trial - d))^2 = 0,
  * with F > 0 at d_trial, F < 0 at 0. */
 typedef struct clay_bracket {
@@ -311,13 +313,13 @@ MPMI_INLINE void come_back(const clay_constants *c, clay *o) {
   judge(c, o);
 }
 
-/* ---- the law -------------------------------------------------------------------------------------------- */
+/* ---- the law ------------------------------------------------------------------------------------------- */
 MPMI_INLINE double pc_of(const clay_constants *c, double state) {
   return state > 0.0 ? state : c->pc;
 }
 
-/* Finds p and q before the step and the state. Where one is missing, the particle will be refused: then p_ref is
- * harmless. */
+/* Finds p and q before the step and the state. Where one is missing, the particle will be refused: then
+ * p_ref is harmless. */
 MPMI_INLINE void load(int dim, const clay_constants *c, mpmi_trial in, const double *state, int64_t begin,
                       clay *o, clay_inverse *old) {
   MPMI_IVDEP
@@ -403,8 +405,8 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
   }
 }
 
-/* Computes wave speed and energy from stress and state, and refuses those that have none. The stiffness of the fastest
- * wave is at most that of compression and shear, what couples them, and the largest pressure. */
+/* Computes wave speed and energy from stress and state, and refuses those that have none. The stiffness of
+ * the fastest wave is at most that of compression and shear, what couples them, and the largest pressure. */
 MPMI_INLINE void clay_outputs(int dim, const clay_constants *c, const mpm_material_batch *batch) {
   const int64_t ld = batch->ld;
   const double *deformation = batch->F, *stress = batch->stress_new, *state = batch->state_new;
@@ -448,7 +450,7 @@ MPMI_INLINE void cam_clay(int dim, const clay_constants *constants, const mpm_ma
   clay_outputs(dim, &c, batch);
 }
 
-/* ---- the tangent ---------------------------------------------------------------------------------------- */
+/* ---- the tangent --------------------------------------------------------------------------------------- */
 /* Sets a_AB from the derivatives of p and q by the trial's v and e_s; n: the unit deviator of its strain. */
 MPMI_INLINE void slopes(const clay_constants *c, const clay *o, const double *n, int p, mpmi_principal *to) {
   const clay_system y = system_of(c, o, p);

@@ -1,10 +1,11 @@
-/* Herschel-Bulkley fluid, of which Bingham's is n = 1: elastic in shear up to an exact yield stress, beyond which
- * it flows, in Kirchhoff stresses t = J stress:
+/* Herschel-Bulkley fluid, of which Bingham's is n = 1: elastic in shear up to an exact yield stress, beyond
+ * which it flows, in Kirchhoff stresses t = J stress:
  *
  *   t = -J p I + 2 G dev(e), |dev t| / sqrt(2) = yield_shear + consistency (shear rate of the flow)^n.
  *
- * The deviator of the stress is the state, and the elastic strain follows from it (principal_frame.h); the pressure is
- * that of the volume alone (tait.h). The return is implicit in time, so that no viscosity bounds the step. */
+ * The deviator of the stress is the state, and the elastic strain follows from it (principal_frame.h); the
+ * pressure is that of the volume alone (tait.h). The return is implicit in time, so that no viscosity
+ * bounds the step. */
 #include "material/principal_tangent.h"
 #include "material/tait.h"
 #include "simd/elementary.h"
@@ -51,15 +52,15 @@ MPMI_INLINE int32_t is_linear(const flow_constants *c) {
   return c->exponent == 1.0 || c->consistency == 0.0;
 }
 
-/* What flow a step has for a shear stress that is `over` the yield stress in the trial: the share of it that relaxes,
- * y, and the slope of the shear stress that is left over that of the trial. With a = G dt and the shear rate x of the
- * flow, a x + consistency x^n = over, so that y = a x / over solves y + kappa y^n = 1 with kappa = consistency over^(n-1)
- * / a^n.
+/* What flow a step has for a shear stress that is `over` the yield stress in the trial: the share of it that
+ * relaxes, y, and the slope of the shear stress that is left over that of the trial. With a = G dt and the
+ * shear rate x of the flow, a x + consistency x^n = over, so that y = a x / over solves y + kappa y^n = 1
+ * with kappa = consistency over^(n-1) / a^n.
  *
- * In u = ln y this is H(u) = u + ln(1 + kappa exp((n - 1) u)) = 0, where H is convex, grows with a slope between 1 and n,
- * and is at most ln 2 at the start u = min(0, -ln(kappa) / n) above the root. Three steps of Halley's method from there
- * leave y off by 3e-16 for all n from 0.1 to 2 and all kappa from 1e-300 to 1e300. 2 H'^2 > H H'' everywhere on the way:
- * nothing is divided by 0. */
+ * In u = ln y this is H(u) = u + ln(1 + kappa exp((n - 1) u)) = 0, where H is convex, grows with a slope
+ * between 1 and n, and is at most ln 2 at the start u = min(0, -ln(kappa) / n) above the root. Three steps
+ * of Halley's method from there leave y off by 3e-16 for all n from 0.1 to 2 and all kappa from 1e-300 to
+ * 1e300. 2 H'^2 > H H'' everywhere on the way: nothing is divided by 0. */
 typedef struct flow_share {
   double relaxes, slope;
 } flow_share;
@@ -94,8 +95,8 @@ MPMI_INLINE flow_share flow_of(int32_t linear, const flow_constants *c, double a
   return (flow_share){mpmi_lane_exp(u), n * root.heavy / (root.light + n * root.heavy)};
 }
 
-/* What becomes of a trial deviator with the shear stress `trial`: the share of it that is kept, and the slope of the
- * shear stress over the trial. */
+/* What becomes of a trial deviator with the shear stress `trial`: the share of it that is kept, and the
+ * slope of the shear stress over the trial. */
 typedef struct flow_return {
   double keep, slope;
 } flow_return;

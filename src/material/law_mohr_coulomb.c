@@ -3,9 +3,9 @@
  *
  *   f_ij = (1 + sin phi) t_i - (1 - sin phi) t_j - 2 c cos phi,  (i, j) = (1, 3), (2, 3), (1, 2),
  *
- * potentials have psi in the place of phi, and c = cohesion + hardening * (2 cos phi times all multipliers). A
- * return ends on the plane (1, 3), on the edge t1 = t2 or t2 = t3, or at the apex; each is a linear equation. The
- * apex, cut-off and gaps are those of law_drucker_prager.c. */
+ * potentials have psi in the place of phi, and c = cohesion + hardening * (2 cos phi times all
+ * multipliers). A return ends on the plane (1, 3), on the edge t1 = t2 or t2 = t3, or at the apex; each is
+ * a linear equation. The apex, cut-off and gaps are those of law_drucker_prager.c. */
 #include "material/principal_tangent.h"
 #include "simd/elementary.h"
 

@@ -1,10 +1,11 @@
-/* Dense granular flow by the mu(I) law (Jop, Forterre, Pouliquen 2006) in the principal frame, in Kirchhoff stresses:
- * the shear stress t = q / sqrt(3) of grains that flow is mu(I) p, with
+/* Dense granular flow by the mu(I) law (Jop, Forterre, Pouliquen 2006) in the principal frame, in Kirchhoff
+ * stresses: the shear stress t = q / sqrt(3) of grains that flow is mu(I) p, with
  *
- *   mu(I) = mu_s + (mu_2 - mu_s) / (1 + I_0 / I),   I = (shear rate of the flow) grain_diameter sqrt(grain_density / p).
+ *   mu(I) = mu_s + (mu_2 - mu_s) / (1 + I_0 / I),
+ *   I = (shear rate of the flow) grain_diameter sqrt(grain_density / p).
  *
- * A step ends there by a quadratic equation (Dunatunga and Kamrin 2015). The volume is elastic: there is no dilatancy and
- * no tension. What has opened is a gap, as in law_drucker_prager.c. */
+ * A step ends there by a quadratic equation (Dunatunga and Kamrin 2015). The volume is elastic: there is
+ * no dilatancy and no tension. What has opened is a gap, as in law_drucker_prager.c. */
 #include "material/principal_tangent.h"
 
 enum { MU_S = 3, MU_2, I_0, DIAMETER, GRAIN_DENSITY };
@@ -41,17 +42,17 @@ static const char *check(const double *value) {
   return value[MU_2] > value[MU_S] ? NULL : "mu_2 must be larger than mu_s";
 }
 
-/* What the law makes of a trial with a volume and the shear stress t: pressure, the share of the deviator that is kept,
- * and the slopes of the shear stress over that of the trial and over p. */
+/* What the law makes of a trial with a volume and the shear stress t: pressure, the share of the deviator
+ * that is kept, and the slopes of the shear stress over that of the trial and over p. */
 typedef struct grains_return {
   double p, keep, by_shear, by_pressure;
   double plastic, gap;
   double bears; /* 1: the grains touch */
 } grains_return;
 
-/* With s0 = mu_s p, s2 = mu_2 p and a = G dt (shear rate at I_0), the shear stress r solves r^2 - B r + H = 0, B = s2 + t +
- * a, H = s2 t + s0 a. The root of B^2 - 4 H = (s2 - t)^2 + a (a + 2 (s2 - s0) + 2 (t - s0)) is taken where t > s0: no term
- * is below 0. */
+/* With s0 = mu_s p, s2 = mu_2 p and a = G dt (shear rate at I_0), the shear stress r solves r^2 - B r + H
+ * = 0, B = s2 + t + a, H = s2 t + s0 a. The root of B^2 - 4 H = (s2 - t)^2 + a (a + 2 (s2 - s0) + 2 (t -
+ * s0)) is taken where t > s0: no term is below 0. */
 MPMI_INLINE grains_return come_back(const grains_constants *c, double dt, double volume, double t,
                                     double plastic, double gap) {
   const double bulk = c->elastic.bulk, mu = c->elastic.mu;
@@ -99,8 +100,8 @@ MPMI_INLINE void mu_i(int dim, const grains_constants *c, const mpm_material_bat
   mpmi_frame_outputs(dim, &c->elastic, batch);
 }
 
-/* With t = sqrt(2) mu |d| and p = -bulk tr e: the deviator's share along itself changes by by_shear, and by -by_pressure
- * bulk with the volume. */
+/* With t = sqrt(2) mu |d| and p = -bulk tr e: the deviator's share along itself changes by by_shear, and
+ * by -by_pressure bulk with the volume. */
 MPMI_INLINE void grains_chunk(const grains_constants *c, double dt, const double *plastic, const double *gap,
                               mpmi_principal *o) {
   const double mu2 = 2.0 * c->elastic.mu, bulk = c->elastic.bulk;

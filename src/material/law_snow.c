@@ -1,5 +1,6 @@
-/* Snow of Stomakhin et al. (2013): the elastic stretches stay within bounds, what is beyond them is plastic, and
- * compaction hardens. With the principal stretches S_A of the elastic part, J_E their product and J_P = J / J_E,
+/* Snow of Stomakhin et al. (2013): the elastic stretches stay within bounds, what is beyond them is plastic,
+ * and compaction hardens. With the principal stretches S_A of the elastic part, J_E their product and J_P = J
+ * / J_E,
  *
  *   t_A = h (2 mu (S_A - 1) S_A + lambda (J_E - 1) J_E),   h = min(exp(hardening (1 - J_P)), hardening_max),
  *   W = h (mu sum (S_A - 1)^2 + lambda/2 (J_E - 1)^2).
@@ -76,8 +77,8 @@ MPMI_INLINE void set_stress(const snow_constants *c, const snow_point *r, int p,
     o->tau[a][p] = r->h * (2.0 * c->mu * r->stretch[a] * (1.0 + r->stretch[a]) + volumetric);
 }
 
-/* Writes stress, energy and the speed of the fastest elastic wave, h (2 mu S^2 + lambda J_E^2) / density for the
- * largest S; leaves b - I after the return in o->tau. */
+/* Writes stress, energy and the speed of the fastest elastic wave, h (2 mu S^2 + lambda J_E^2) / density
+ * for the largest S; leaves b - I after the return in o->tau. */
 MPMI_INLINE void snow_chunk(int dim, const snow_constants *c, const mpm_material_batch *batch, int64_t begin,
                             mpmi_principal *o) {
   double *wave_speed = batch->wave_speed + begin, *energy = batch->energy + begin;
@@ -127,8 +128,8 @@ MPMI_INLINE void snow(int dim, const snow_constants *constants, const mpm_materi
   if (batch->dt == 0.0) mpmi_keep_rows(STATE_ROWS, batch->state, batch->state_new, batch);
 }
 
-/* a_AB = t_A (h'/h) + h (2 mu (2 S_A - 1) S_A d_AB + lambda (2 J_E - 1) J_E) f_B, where f_B is 1 for a stretch within the
- * bounds, else 0, and h'/h = -hardening J_P (1 - f_B), 0 at the largest h. */
+/* a_AB = t_A (h'/h) + h (2 mu (2 S_A - 1) S_A d_AB + lambda (2 J_E - 1) J_E) f_B, where f_B is 1 for a
+ * stretch within the bounds, else 0, and h'/h = -hardening J_P (1 - f_B), 0 at the largest h. */
 MPMI_INLINE void set_slopes(const snow_constants *c, const snow_point *r, int p, mpmi_principal *o) {
   double J_E = 1.0 + r->J_E_minus_1, volumetric = c->lambda * (1.0 + 2.0 * r->J_E_minus_1) * J_E;
   double softens = r->grows * c->hardening * r->J_P;

@@ -1,7 +1,7 @@
 /* Principal values and vectors of symmetric tensors, without iterations or branches: the value that stands
- * furthest off the others is well conditioned, and so is its vector; the other two follow by one rotation in the
- * plane across it (the deflation of Scherzinger and Dohrmann 2008). Values and vectors are good to rounding, also
- * where two or all values are close, which those of Cardano's formula alone are not. */
+ * furthest off the others is well conditioned, and so is its vector; the other two follow by one rotation
+ * in the plane across it (the deflation of Scherzinger and Dohrmann 2008). Values and vectors are good to
+ * rounding, also where two or all values are close, which those of Cardano's formula alone are not. */
 #ifndef MPMI_PRINCIPAL_AXES_H
 #define MPMI_PRINCIPAL_AXES_H
 
@@ -11,7 +11,8 @@ typedef struct mpmi_axes {
   double value[3], vector[3][3]; /* vector[A]: of value[A], by component */
 } mpmi_axes;
 
-/* Jacobi's rotation: s and c turn the axes u, v so that the tensor with the diagonal uu, vv has no shear uv. */
+/* Jacobi's rotation: s and c turn the axes u, v so that the tensor with the diagonal uu, vv has no shear
+ * uv. */
 typedef struct mpmi_rotation {
   double t, s, c;
 } mpmi_rotation;
@@ -30,8 +31,8 @@ MPMI_INLINE double mpmi_form(mpmi_sym s, const double *u, const double *v) {
   return u[0] * x + u[1] * y + u[2] * (s.xz * v[0] + s.yz * v[1] + s.zz * v[2]);
 }
 
-/* The unit vector of the eigenvalue l1, which stands off by d12 or more: the largest column of the adjugate of
- * s - l1 I. */
+/* The unit vector of the eigenvalue l1, which stands off by d12 or more: the largest column of the
+ * adjugate of s - l1 I. */
 MPMI_INLINE void mpmi_vector_of(mpmi_sym s, double l1, double d12, double *n) {
   double scale = 1.0 / d12, xx = scale * (s.xx - l1), yy = scale * (s.yy - l1), zz = scale * (s.zz - l1);
   double xy = scale * s.xy, yz = scale * s.yz, xz = scale * s.xz;

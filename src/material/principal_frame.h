@@ -1,5 +1,5 @@
-/* The frame of isotropic laws whose elasticity is one in the logarithmic strain and whose stress is the state:
- * the return of Simo (1992) in principal directions. With tau = J stress and F_inc of the step,
+/* The frame of isotropic laws whose elasticity is one in the logarithmic strain and whose stress is the
+ * state: the return of Simo (1992) in principal directions. With tau = J stress and F_inc of the step,
  *
  *   tau_old -> e = elastic strain of tau_old -> b = exp(2 e) -> b_trial = F_inc b F_inc^T -> 1/2 ln b_trial,
  *

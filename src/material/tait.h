@@ -52,8 +52,8 @@ MPMI_INLINE mpmi_tait_state mpmi_tait_at(const mpmi_tait *c, double j_minus_1) {
   return s;
 }
 
-/* With t = -J p of the tangent: dt / d(ln J), and -t. Where the pressure is about to be cut off they are those of
- * compression: a fluid at rest is stiff. */
+/* With t = -J p of the tangent: dt / d(ln J), and -t. Where the pressure is about to be cut off they are
+ * those of compression: a fluid at rest is stiff. */
 typedef struct mpmi_tait_slope {
   double volumetric, pressure;
 } mpmi_tait_slope;

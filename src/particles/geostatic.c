@@ -71,7 +71,7 @@ static mpm_status find_stress(mpm_particles *set, const ground *g) {
   return MPM_OK;
 }
 
-/* ---- F from the stress ---------------------------------------------------------------------------------- */
+/* ---- F from the stress --------------------------------------------------------------------------------- */
 enum { FULL = 3, TANGENT_ROWS = 81, MOST_ITERATIONS = 60 };
 
 /* The largest change of a logarithmic strain in one iteration. */

@@ -111,7 +111,8 @@ static void look(mpmi_law_batch *b, int64_t p) {
     fault->cause = MPM_NONFINITE, fault->what = "the material's energy is infinite";
 }
 
-/* A built-in law refuses particles by what it gives for their wave speed; inert slots are none of its concern. */
+/* A built-in law refuses particles by what it gives for their wave speed; inert slots are none of its
+ * concern. */
 static mpm_status find_refused(mpmi_law_batch *b, const mpmi_law *law) {
   for (int64_t p = 0; law->refusal_count && p < b->batch.n; ++p) {
     if (!(b->wave_speed[p] < 0.0)) continue;

@@ -107,8 +107,8 @@ static void let_out(scene *is) {
   is->wall[MPM_Y_MAX] = is->wall[MPM_Z_MAX] = MPM_WALL_OPEN;
 }
 
-/* Loads that are balanced without motion need a body that neither flows, tears nor stands under a pressure of its
- * own. */
+/* Loads that are balanced without motion need a body that neither flows, tears nor stands under a pressure
+ * of its own. */
 static int32_t keeps_shape(int32_t law) {
   return law != LAW_FLUID && law != LAW_VISCOUS_FLUID && law != LAW_MUD && law != LAW_GRAINS &&
          law != LAW_SNOW && law != LAW_CLAY;

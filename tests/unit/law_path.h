@@ -1,5 +1,5 @@
-/* One particle on a path without a grid, by mpm_material_update(), and what holds for every law whose stress is the
- * state. */
+/* One particle on a path without a grid, by mpm_material_update(), and what holds for every law whose
+ * stress is the state. */
 #ifndef MPM_TEST_LAW_PATH_H
 #define MPM_TEST_LAW_PATH_H
 
@@ -43,16 +43,16 @@ double wide(uint64_t *seed, double low, double high);
 /* A step of a random size; returns F_inc. */
 void random_increment(uint64_t *seed, double *F_inc);
 
-/* The largest difference of the tangent of a step from differences of fourth order of the Kirchhoff stress, and
- * whether all of these steps are made and end in one regime. */
+/* The largest difference of the tangent of a step from differences of fourth order of the Kirchhoff
+ * stress, and whether all of these steps are made and end in one regime. */
 typedef int32_t (*regime_fn)(const path *from, const path *to);
 double tangent_off(const path *from, const double *F_inc, regime_fn regime_of, int32_t *smooth);
 
 /* A frame that turns with the end of the step turns the stress and nothing else. */
 void ck_frame(const path *from, const double *F_inc, uint64_t *seed);
 
-/* Plane and uniaxial strain are what space makes of them: steps from random stresses of a size, some of them with
- * a state. */
+/* Plane and uniaxial strain are what space makes of them: steps from random stresses of a size, some of
+ * them with a state. */
 void ck_dimension(const mpm_material *m, int32_t dim, real stress, const double *state, uint64_t *seed);
 /* With a mean stress beside the random one. */
 void ck_dimension_at(const mpm_material *m, int32_t dim, real mean, real stress, const double *state,

@@ -5,8 +5,10 @@
 static const double offsets[] = {0.0,    1e-15, -1e-15, 1e-13, -1e-13, 1e-12, -1e-12, 1e-11,
                                  -1e-11, 1e-10, -1e-10, 1e-9,  -1e-9,  1e-7,  -1e-7};
 enum { OFFSETS = sizeof offsets / sizeof *offsets };
-/* AROUND: over a periodic seam, on more cells than a block of nodes has. LED: a callback prescribes what the
- * block does. PUSHED: the same, for a block that was at rest. HASTENED: gravity and a hook accelerate all of it. BY_LIGHT, BY_HEAVY: beside one at rest with a millionth of the density, or a million times it. */
+/* AROUND: over a periodic seam, on more cells than a block of nodes has. LED: a callback prescribes what
+ * the block does. PUSHED: the same, for a block that was at rest. HASTENED: gravity and a hook accelerate
+ * all of it. BY_LIGHT, BY_HEAVY: beside one at rest with a millionth of the density, or a million times
+ * it. */
 enum { ALONE, SLIDING, AROUND, LED, PUSHED, HASTENED, BY_LIGHT, BY_HEAVY, SURROUNDINGS };
 typedef struct stepping {
   int32_t scheme, projected;

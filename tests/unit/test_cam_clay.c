@@ -1,5 +1,5 @@
-/* cam_clay: numbers of an independent program, closed forms, random states against the equations that define a return,
- * what is refused. */
+/* cam_clay: numbers of an independent program, closed forms, random states against the equations that
+ * define a return, what is refused. */
 #include "law_path.h"
 #include "simd/elementary.h"
 #include "simd/tensor.h"
@@ -32,7 +32,7 @@ static path begun(const mud *of) {
   return s;
 }
 
-/* ---- numbers and closed forms --------------------------------------------------------------------------- */
+/* ---- numbers and closed forms -------------------------------------------------------------------------- */
 /* On the normal compression line ln p falls by 1/lambda with ln J. */
 START_TEST(isotropic_compression) {
   const mud of = with(4e6, 0.0, 2e5);
@@ -93,7 +93,8 @@ START_TEST(oedometer) {
 }
 END_TEST
 
-/* At the strain where it yields a step that is a little shorter leaves pc, one that is a little longer does not. */
+/* At the strain where it yields a step that is a little shorter leaves pc, one that is a little longer
+ * does not. */
 START_TEST(yields_where_it_should) {
   const mud of = with(4e6, 0.0, 1.2e5);
   const double at = 0.00292037356;
@@ -130,7 +131,7 @@ START_TEST(drained_critical_state) {
 }
 END_TEST
 
-/* ---- elasticity ----------------------------------------------------------------------------------------- */
+/* ---- elasticity ---------------------------------------------------------------------------------------- */
 /* A closed path of strain inside of the yield surface gives stress and energy back. */
 START_TEST(elastic_cycles) {
   static const double legs[4][2] = {{0.002, 0.001}, {-0.004, 0.002}, {-0.001, -0.004}, {0.003, 0.001}};
@@ -171,7 +172,7 @@ START_TEST(energy_is_work) {
 }
 END_TEST
 
-/* ---- tension -------------------------------------------------------------------------------------------- */
+/* ---- tension ------------------------------------------------------------------------------------------- */
 /* The pressure does not fall below p_min; what has opened closes before it rises. */
 START_TEST(opens_and_closes) {
   mud of = with(4e6, 0.0, 2e5);
@@ -198,7 +199,7 @@ START_TEST(opens_and_closes) {
 }
 END_TEST
 
-/* ---- what is refused ------------------------------------------------------------------------------------ */
+/* ---- what is refused ----------------------------------------------------------------------------------- */
 START_TEST(parameters_are_checked) {
   static const struct {
     int which;
@@ -252,7 +253,8 @@ START_TEST(stress_and_pc_must_be_given) {
 }
 END_TEST
 
-/* With alpha the elasticity bears shear up to where its energy is convex: q = sqrt(3/2 alpha kappa) p for mu0 = 0. */
+/* With alpha the elasticity bears shear up to where its energy is convex: q = sqrt(3/2 alpha kappa) p for
+ * mu0 = 0. */
 START_TEST(shear_out_of_reach) {
   static const double same[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const mud of = with(0.0, 50.0, 1e7);
@@ -270,7 +272,7 @@ START_TEST(shear_out_of_reach) {
 }
 END_TEST
 
-/* ---- random states against the equations ---------------------------------------------------------------- */
+/* ---- random states against the equations --------------------------------------------------------------- */
 enum { TESTED = 3000 };
 
 /* coupled: alpha is large enough for the whole of the yield surface near the critical state. */
@@ -357,7 +359,8 @@ static int32_t regime_of(const path *from, const path *to) {
   return to->state[PC] > from->state[PC] ? WET : to->state[PC] < from->state[PC] ? DRY : ELASTIC;
 }
 
-/* The return by its equations: the gap, yield, normality with one multiplier >= 0, hardening, and dissipation. */
+/* The return by its equations: the gap, yield, normality with one multiplier >= 0, hardening, and
+ * dissipation. */
 static void ck_return(const mud *of, const path *from, const path *to, const double *F_inc) {
   const real kappa = of->value[KAPPA].value, harden = 1 / (of->value[LAMBDA].value - kappa),
              pc = to->state[PC];
@@ -489,8 +492,9 @@ START_TEST(dimensions) {
 }
 END_TEST
 
-/* ---- in steps ------------------------------------------------------------------------------------------- */
-/* A body that is not under stress is refused before the first step, and so is one without pc; then it is stepped. */
+/* ---- in steps ------------------------------------------------------------------------------------------ */
+/* A body that is not under stress is refused before the first step, and so is one without pc; then it is
+ * stepped. */
 START_TEST(steps) {
   static const mpm_param loose[] = {{"density", 2e3}, {"kappa", 0.02}, {"lambda", 0.12},
                                     {"M", 1.05},      {"mu0", 1e5},    {"p_ref", 1e4}};

@@ -78,8 +78,8 @@ START_TEST(peaks_of_a_spring) {
 }
 END_TEST
 
-/* Free decay by a / 2 to either side of the middle of each step: the ratio is that of the rule, and all energy
- * goes to the damping. */
+/* Free decay by a / 2 to either side of the middle of each step: the ratio is that of the rule, and all
+ * energy goes to the damping. */
 START_TEST(decay_by_mass) {
   const method *how = broad_methods[_i];
   const double rate = 3.0, dt = 0.01, v = 0.5, factor = (1.0 - 0.5 * rate * dt) / (1.0 + 0.5 * rate * dt);
@@ -103,8 +103,8 @@ START_TEST(decay_by_mass) {
 }
 END_TEST
 
-/* Free fall with (1 - alpha) g, once there is a direction to be damped against, and with both kinds of damping
- * by the rule; with positions of second order the balance of energy closes to rounding. */
+/* Free fall with (1 - alpha) g, once there is a direction to be damped against, and with both kinds of
+ * damping by the rule; with positions of second order the balance of energy closes to rounding. */
 START_TEST(slow_fall) {
   const method *how = broad_methods[_i / 2];
   const double alpha = 0.3, g = 10.0, dt = 0.002, rate = _i % 2 ? 20.0 : 0.0;
@@ -129,8 +129,8 @@ START_TEST(slow_fall) {
 }
 END_TEST
 
-/* What walls give to a body that moves along and off them, through mirrored ghosts as well, is the same in a step
- * with damping and in one without: that is no reaction of walls. */
+/* What walls give to a body that moves along and off them, through mirrored ghosts as well, is the same in
+ * a step with damping and in one without: that is no reaction of walls. */
 START_TEST(no_reaction_of_walls) {
   const method *how = broad_methods[_i];
   double force[2][4], mass = 0.0;
@@ -242,8 +242,8 @@ START_TEST(balance_of_a_bar) {
 }
 END_TEST
 
-/* A bar hung up swings to rest, where its end is as long as its weight makes it, and where the reaction is its
- * weight. */
+/* A bar hung up swings to rest, where its end is as long as its weight makes it, and where the reaction is
+ * its weight. */
 START_TEST(comes_to_rest) {
   const method *how = &methods[_i];
   const double g = 10.0, high = 1.0, low = 0.0;

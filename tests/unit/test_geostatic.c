@@ -27,8 +27,8 @@ static int32_t follows_F(int32_t law) {
   return law >= 4;
 }
 
-/* Opens a column of ground, `cells` cells high and two wide, on a grid of edge h with slip walls all round; the
- * vertical axis is the last. */
+/* Opens a column of ground, `cells` cells high and two wide, on a grid of edge h with slip walls all
+ * round; the vertical axis is the last. */
 static mpm_particles *open_column(world *w, const world_desc *of, int64_t cells, double h, int32_t per_axis) {
   world_desc desc = *of;
   const int32_t up = desc.grid.dim - 1;
@@ -132,7 +132,8 @@ static double fastest(const world *w, const mpm_particles *set) {
   return most;
 }
 
-/* One second of explicit steps: |v| < 1e-3 sqrt(g H) h / H, and the stress within 0.5 % of that of the floor. */
+/* One second of explicit steps: |v| < 1e-3 sqrt(g H) h / H, and the stress within 0.5 % of that of the
+ * floor. */
 START_TEST(column_in_explicit_steps) {
   const int32_t law = _i % LAWS_AT_REST, scheme = _i / LAWS_AT_REST;
   const double h = 0.5, height = 5.0, K0 = law == FLUID ? 1.0 : 0.3 / 0.7;
@@ -230,8 +231,8 @@ static double moved(const world *w, const mpm_particles *set) {
 }
 
 /* A slope of sand with phi = 30: the stress of level ground is a guess, from which local damping finds
- * equilibrium where the slope has 20 degrees. After it, with damping off, velocities 0 and a new reference, it
- * stands. With 40 degrees there is no equilibrium. */
+ * equilibrium where the slope has 20 degrees. After it, with damping off, velocities 0 and a new
+ * reference, it stands. With 40 degrees there is no equilibrium. */
 START_TEST(slope) {
   const double h = 0.5, height = HIGH;
   double tangent = tan(_i ? PI / 4.5 : PI / 9.0);
@@ -274,8 +275,8 @@ START_TEST(slope) {
 END_TEST
 
 /* ---- a new reference ----------------------------------------------------------------------------------- */
-/* Ground that has moved goes on from a new reference as it was: the same accelerations, and displacements from
- * there. Laws of stress rates see no difference at all. */
+/* Ground that has moved goes on from a new reference as it was: the same accelerations, and displacements
+ * from there. Laws of stress rates see no difference at all. */
 START_TEST(reset) {
   world w, other;
   world_desc desc = ground(2, &laws[0], 0.5);

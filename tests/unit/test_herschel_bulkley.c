@@ -1,4 +1,5 @@
-/* herschel_bulkley: numbers of an independent program, closed forms, random states, and what the host may set. */
+/* herschel_bulkley: numbers of an independent program, closed forms, random states, and what the host may
+ * set. */
 #include "law_path.h"
 #include "simd/elementary.h"
 
@@ -21,7 +22,8 @@ static path open_mud(const mud *of) {
   return path_of("herschel_bulkley", of->value, PARAMS);
 }
 
-/* Pure shear at a rate: the strain of each step is along the axes of the stress, as in the algorithm for one number. */
+/* Pure shear at a rate: the strain of each step is along the axes of the stress, as in the algorithm for
+ * one number. */
 static void flow(path *s, double rate, double time, int32_t steps) {
   s->dt = time / steps;
   for (int32_t k = 0; k < steps; ++k) stretch(s, 0.5 * rate * s->dt, -0.5 * rate * s->dt, 0.0);
@@ -207,7 +209,8 @@ static void random_step(uint64_t *seed, path *s, double *F_inc) {
   for (int c = 0; c < 6; ++c) s->stress[c] = (double)t.m[sym_row[c]][sym_column[c]];
 }
 
-/* The trial is that of the same fluid which does not yield; the flow's shear rate x is what the stress has lost. */
+/* The trial is that of the same fluid which does not yield; the flow's shear rate x is what the stress has
+ * lost. */
 START_TEST(random_states_yield) {
   uint64_t seed = 41;
   int32_t seen[2] = {0, 0};
@@ -254,7 +257,8 @@ START_TEST(random_states_yield) {
 }
 END_TEST
 
-/* 0 below yield, 2 above, 1 where differences would come near the kink; and 4 where pressure is cut off, 8 near that. */
+/* 0 below yield, 2 above, 1 where differences would come near the kink; and 4 where pressure is cut off, 8
+ * near that. */
 static int32_t regime_of(const path *from, const path *to) {
   const double *value = from->material->value, J = jacobian_of(to), t = shear_stress(to);
   const double reach = 1e-4 * value[SHEAR] + 1e-4 * value[YIELD];

@@ -81,7 +81,8 @@ START_TEST(triaxial_strength) {
 }
 END_TEST
 
-/* A soil without cohesion that is compressed along one axis ends at Rankine's coefficient of active pressure. */
+/* A soil without cohesion that is compressed along one axis ends at Rankine's coefficient of active
+ * pressure. */
 START_TEST(oedometer) {
   const rock of = with(0.2, 30.0, 0.0, 0.0);
   path s = open_rock(&of);
@@ -93,7 +94,8 @@ START_TEST(oedometer) {
 }
 END_TEST
 
-/* Hardening and softening in plane flow follow the cohesion, and stop at the residual; the apex moves with it. */
+/* Hardening and softening in plane flow follow the cohesion, and stop at the residual; the apex moves with
+ * it. */
 START_TEST(cohesion_changes) {
   static const double slope[4] = {2e5, -1e5, -1e6, 3e5};
   for (int k = 0; k < 4; ++k) {
@@ -136,8 +138,8 @@ START_TEST(apex_of_all_angles) {
 }
 END_TEST
 
-/* Without friction there is no apex: what is left without cohesion is a fluid that keeps its pressure, on every
- * instruction set. */
+/* Without friction there is no apex: what is left without cohesion is a fluid that keeps its pressure, on
+ * every instruction set. */
 START_TEST(without_friction) {
   for (int32_t isa = MPM_ISA_BASELINE; isa <= MPM_ISA_NEON; ++isa)
     for (int32_t which = 0; which < 3; ++which) {
@@ -393,7 +395,8 @@ START_TEST(dimensions) {
 }
 END_TEST
 
-/* All angles of friction and dilation on every instruction set, with principal values that are equal or nearly so. */
+/* All angles of friction and dilation on every instruction set, with principal values that are equal or
+ * nearly so. */
 START_TEST(axes_alike) {
   static const double apart[] = {0.0, 1e-15, 1e-12, 1e-9, 1e-6};
   for (int32_t isa = MPM_ISA_BASELINE; isa <= MPM_ISA_NEON; ++isa) {

@@ -1,4 +1,5 @@
-/* snow: numbers of an independent program, whole steps again in extended precision, and what the host may set. */
+/* snow: numbers of an independent program, whole steps again in extended precision, and what the host may
+ * set. */
 #include "law_path.h"
 #include "simd/elementary.h"
 #include "simd/tensor.h"
@@ -234,7 +235,8 @@ static void random_step(uint64_t *seed, path *s, double *F_inc) {
   for (int c = 0; c < 9; ++c) s->F[c] += (double)F.m[c / 3][c % 3];
 }
 
-/* The step in extended precision. Returns how many stretches were cut off below, above; 16 more for the largest h. */
+/* The step in extended precision. Returns how many stretches were cut off below, above; 16 more for the
+ * largest h. */
 static int32_t reference(const path *from, const double *F_inc, tensor *be, tensor *tau) {
   const double *value = from->material->value;
   const real mu = value[0] / (2 * (1 + (real)value[1])),
@@ -331,7 +333,8 @@ START_TEST(random_tangents) {
 }
 END_TEST
 
-/* A frame that turns with the end of the step turns stress and state; one that turned before it changes nothing. */
+/* A frame that turns with the end of the step turns stress and state; one that turned before it changes
+ * nothing. */
 START_TEST(frames) {
   uint64_t seed = 53;
   for (int32_t k = 0; k < 500; ++k) {

@@ -1,4 +1,5 @@
-/* What the cases of soils share: stresses at rest, loads on a surface, pictures. In plane strain, with axis y up. */
+/* What the cases of soils share: stresses at rest, loads on a surface, pictures. In plane strain, with
+ * axis y up. */
 #ifndef SOIL_H
 #define SOIL_H
 
@@ -11,8 +12,8 @@ typedef struct soil_rest {
 } soil_rest;
 void soil_settle(const verify_world *w, const soil_rest *rest);
 
-/* A load on a surface is put on the two rows of particles below it, as on a straight line that is extended to the
- * surface: the share of a particle at a depth, where rows are `row` apart; 0 below these two. */
+/* A load on a surface is put on the two rows of particles below it, as on a straight line that is extended
+ * to the surface: the share of a particle at a depth, where rows are `row` apart; 0 below these two. */
 double soil_row_share(double depth, double row);
 
 /* Lines of label, position over length, and plastic strain times scale, for each particle of set 0. */

@@ -1,5 +1,5 @@
-/* Laws of soils, mud and snow on paths without a grid, by mpm_material_update(): stresses of the critical state, of an
- * integration of the rate equations, of closed forms, and of another program. */
+/* Laws of soils, mud and snow on paths without a grid, by mpm_material_update(): stresses of the critical
+ * state, of an integration of the rate equations, of closed forms, and of another program. */
 #include <string.h>
 
 #include "verify.h"
@@ -64,7 +64,7 @@ static void gate(const char *name, const char *what, double value, double exact,
   verify_gate_of(name, what, value / exact - 1.0, -within, within, source);
 }
 
-/* ---- clay ----------------------------------------------------------------------------------------------- */
+/* ---- clay ---------------------------------------------------------------------------------------------- */
 static const double kappa = 0.02, lambda = 0.12, M = 1.05;
 
 static path clay_of(verify_world *w, const char *name, double pc) {
@@ -102,7 +102,7 @@ static void oedometer(verify_world *w, int32_t steps, FILE *csv) {
   verify_ok(w, mpm_material_destroy(p.law));
 }
 
-/* ---- mud ------------------------------------------------------------------------------------------------ */
+/* ---- mud ----------------------------------------------------------------------------------------------- */
 /* In steady shear the stress is yield + k rate^n, with no stress less than the yield at any rate. */
 static void mud(verify_world *w, FILE *csv) {
   static const double powers[] = {0.5, 1.0, 1.5}, rates[] = {1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0};
@@ -124,7 +124,7 @@ static void mud(verify_world *w, FILE *csv) {
               "the law in steady shear");
 }
 
-/* ---- snow ----------------------------------------------------------------------------------------------- */
+/* ---- snow ---------------------------------------------------------------------------------------------- */
 static void snow(verify_world *w, FILE *csv) {
   const mpm_param of[] = {{"E", 1.4e5}, {"nu", 0.2}, {"density", 400.0}};
   path p = path_of(w, "snow", "snow", of, 3, 0.0);
