@@ -398,6 +398,8 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
       state[ld + i + p] = o.gap[p];
       double bears = o.e[p] * o.e[p] * c->couples, end = bears > 1.0 ? MPMI_REFUSED(TOO_SHEARED) : 0.0;
       end = o.left[p] > 0.0 ? MPMI_REFUSED(NOT_RETURNED) : end;
+      /* by strains far beyond kappa squares of stresses leave the range of doubles */
+      end = t.p + t.q + o.pc_new[p] <= 1e150 ? end : MPMI_REFUSED(NOT_RETURNED);
       wave_speed[i + p] = old.bears[p] > 0.0 ? end : MPMI_REFUSED(UNBEARABLE);
     }
     for (int p = 0; p < MPMI_CHUNK; ++p)

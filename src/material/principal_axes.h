@@ -31,8 +31,8 @@ MPMI_INLINE double mpmi_form(mpmi_sym s, const double *u, const double *v) {
   return u[0] * x + u[1] * y + u[2] * (s.xz * v[0] + s.yz * v[1] + s.zz * v[2]);
 }
 
-/* The unit vector of the eigenvalue l1, which stands off by d12 or more: the largest column of the
- * adjugate of s - l1 I. */
+/* The unit vector of the eigenvalue l1, which stands off by d12 or more: the largest column of the adjugate
+ * of s - l1 I. Where nothing is left of that, all values are equal, and any vector will do. */
 MPMI_INLINE void mpmi_vector_of(mpmi_sym s, double l1, double d12, double *n) {
   double scale = 1.0 / d12, xx = scale * (s.xx - l1), yy = scale * (s.yy - l1), zz = scale * (s.zz - l1);
   double xy = scale * s.xy, yz = scale * s.yz, xz = scale * s.xz;
@@ -43,8 +43,8 @@ MPMI_INLINE void mpmi_vector_of(mpmi_sym s, double l1, double d12, double *n) {
   x = b > a ? of_xy : x, y = b > a ? of_yy : y, z = b > a ? of_yz : z;
   a = mpmi_max(a, b);
   x = c > a ? of_xz : x, y = c > a ? of_yz : y, z = c > a ? of_zz : z;
-  double inverse = 1.0 / sqrt(x * x + y * y + z * z);
-  n[0] = inverse * x, n[1] = inverse * y, n[2] = inverse * z;
+  double square = x * x + y * y + z * z, inverse = 1.0 / sqrt(square > 0.0 ? square : 1.0);
+  n[0] = square > 0.0 ? inverse * x : 1.0, n[1] = inverse * y, n[2] = inverse * z;
 }
 
 /* Two unit vectors across a third, without a branch (Duff et al. 2017). */

@@ -272,6 +272,24 @@ START_TEST(shear_out_of_reach) {
 }
 END_TEST
 
+/* A strain so far beyond kappa that stresses, or their squares, are no numbers asks for a smaller step. */
+START_TEST(strain_out_of_range) {
+  const mud of = with(4e6, 0.0, 1e8);
+  path s = begun(&of);
+  const path before = s;
+  for (int k = 1; k <= 35; ++k) {
+    const double by = mpmi_exp(-0.3 * k), F_inc[9] = {by, 0, 0, 0, by, 0, 0, 0, by};
+    if (k > 30 || attempt(&s, F_inc))
+      ck_refused(s.material->context, attempt(&s, F_inc), MPM_CUT_DT,
+                 "not come back to its yield surface at id 0");
+    else
+      s = before;
+    ck_assert_mem_eq(&before, &s, sizeof s);
+  }
+  law_material_free(s.material);
+}
+END_TEST
+
 /* ---- random states against the equations --------------------------------------------------------------- */
 enum { TESTED = 3000 };
 
@@ -558,6 +576,7 @@ Suite *cam_clay_suite(void) {
   tcase_add_test(tc, parameters_are_checked);
   tcase_add_test(tc, stress_and_pc_must_be_given);
   tcase_add_test(tc, shear_out_of_reach);
+  tcase_add_test(tc, strain_out_of_range);
   tcase_add_test(tc, random_states);
   tcase_add_test(tc, random_tangents);
   tcase_add_test(tc, frames);
