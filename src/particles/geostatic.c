@@ -91,6 +91,11 @@ static double wanted(const search *s, int64_t p, int32_t axis) {
   return mpmi_f64(s->set, MPMI_STRESS, 1)[axis * s->set->ld + s->begin + p];
 }
 
+/* As fmax(), but what is not a number is the largest. */
+static double larger(double a, double b) {
+  return isnan(a) || b <= a ? a : b;
+}
+
 /* Finds how Cauchy stresses follow logarithmic strains on the axes: with tau = J sigma and the tangent c,
  * d tau_a / d strain_b = c_aabb + 2 tau_a d_ab. Returns the largest entry. */
 static double find_stiffness(const search *s, int64_t p, double stiffness[FULL][FULL]) {
@@ -101,7 +106,7 @@ static double find_stiffness(const search *s, int64_t p, double stiffness[FULL][
     for (int32_t b = 0; b < FULL; ++b) {
       const double sigma = s->law.stress_new[a * ld + p];
       stiffness[a][b] = s->tangent[(36 * a + 4 * b) * ld + p] / J - sigma + (a == b ? 2.0 * sigma : 0.0);
-      largest = fmax(largest, fabs(stiffness[a][b]));
+      largest = larger(largest, fabs(stiffness[a][b]));
     }
   return largest;
 }
@@ -130,9 +135,9 @@ static void improve(search *s, int64_t p) {
     largest = fmax(largest, fabs(wanted(s, p, a)));
   }
   const double mean = (lacks[0] + lacks[1] + lacks[2]) / 3.0;
-  for (int32_t a = 0; a < (dim == 1 ? 1 : FULL); ++a) error = fmax(error, fabs(pressure ? mean : lacks[a]));
-  for (int32_t c = FULL; c < 6; ++c) error = fmax(error, fabs(s->law.stress_new[c * s->law.ld + p]));
-  s->found[p] = error <= 1e-13 * largest + 8.0 * DBL_EPSILON * stiffest;
+  for (int32_t a = 0; a < (dim == 1 ? 1 : FULL); ++a) error = larger(error, fabs(pressure ? mean : lacks[a]));
+  for (int32_t c = FULL; c < 6; ++c) error = larger(error, fabs(s->law.stress_new[c * s->law.ld + p]));
+  s->found[p] = isfinite(stiffest) && error <= 1e-13 * largest + 8.0 * DBL_EPSILON * stiffest;
   if (s->found[p]) return;
   if (pressure) {
     const int32_t moved = dim == 1 ? 1 : FULL;

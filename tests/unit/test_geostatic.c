@@ -433,8 +433,11 @@ START_TEST(refusals) {
                  mpm_particles_set_geostatic(set, bad[i].axis, bad[i].gravity, bad[i].surface, bad[i].K0,
                                              bad[i].surcharge),
                  MPM_E_ARG, bad[i].text);
-    if (follows_F(law))
+    if (follows_F(law)) {
+      ck_refused(&w, mpm_particles_set_geostatic(set, 1, -1e300, 5.0, 1.0, 0.0), MPM_E_ARG,
+                 "no stretch along the axes gives");
       ck_refused(&w, mpm_particles_reset_reference(set), MPM_E_UNSUPPORTED, "set reference_position");
+    }
     ck_ok(&w, mpm_particles_map(set, "mass", MPM_READ, &view));
     ck_refused(&w, mpm_particles_set_geostatic(set, 1, -g, 5.0, 1.0, 0.0), MPM_E_STATE, "");
     ck_refused(&w, mpm_particles_reset_reference(set), MPM_E_STATE, "");
