@@ -200,13 +200,15 @@ MPM_API mpm_status mpm_particles_set_all(mpm_particles *particles, const char *f
  * law, deformation_gradient becomes I and initial_volume the present volume. Where stress follows from
  * deformation_gradient, that becomes the diagonal one that has the stress, up to rounding, and initial_volume
  * the present volume over its determinant; in 1-D, where nothing is stored across, the stress across is then
- * that of the law, whatever K0 is. dilation_ratio becomes 1, and with MPM_CPGIMP the field "size" what keeps
+ * that of the law, whatever K0 is. herschel_bulkley gets the mean of the stress so, and its deviator as it is
+ * given. dilation_ratio becomes 1, and with MPM_CPGIMP the field "size" what keeps
  * the domains as they are.
  *
  * The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the axis is periodic, a particle
  * lies above the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law
- * is "rigid"; it is a fluid and K0 is not 1; or, of the host's laws, one that asked with dt = 0 does not
- * answer with the stress that it has. Since 0.2.0.
+ * is "rigid", or "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1;
+ * or, of the host's laws, one that asked with dt = 0 does not answer with the stress that it has.
+ * MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
  */
 MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t axis, double gravity,
                                                double surface, double K0, double surcharge);
@@ -217,13 +219,14 @@ MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t
  * present (unwrapped) position. With MPM_CPGIMP edges in "size" become the present ones. Mass, velocity,
  * Cauchy stress and state variables stay.
  *
- * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb) find J = 1 from
- * then on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ
- * by the factor J from before; a stress on the yield surface may lie off it by as much, and the next step
- * returns it.
+ * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay)
+ * find J = 1 from then on: elastic strain, energy per initial volume and cohesion count by the present volume,
+ * which differ by the factor J from before; a stress on the yield surface may lie off it by as much, and the
+ * next step returns it.
  *
- * The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law follows from
- * deformation_gradient, which must stay. Since 0.2.0.
+ * The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from
+ * deformation_gradient, which must stay; or a law of the host, asked with dt = 0, does not answer with the
+ * stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
  */
 MPM_API mpm_status mpm_particles_reset_reference(mpm_particles *particles);
 
