@@ -220,13 +220,14 @@ MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t
  * Cauchy stress and state variables stay.
  *
  * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay)
- * find J = 1 from then on: elastic strain, energy per initial volume and cohesion count by the present volume,
- * which differ by the factor J from before; a stress on the yield surface may lie off it by as much, and the
- * next step returns it.
+ * find J = 1 from then on: elastic strain, energy per initial volume and cohesion count by the present
+ * volume, which differ by the factor J from before; a stress on the yield surface may lie off it by as much,
+ * and the next step returns it.
  *
  * The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from
  * deformation_gradient, which must stay; or a law of the host, asked with dt = 0, does not answer with the
- * stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+ * stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since
+ * 0.2.0.
  */
 MPM_API mpm_status mpm_particles_reset_reference(mpm_particles *particles);
 
