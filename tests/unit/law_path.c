@@ -142,12 +142,8 @@ void ck_frame(const path *from, const double *F_inc, uint64_t *seed) {
     ck_within("state", turned.state[c], s.state[c], 1e-13 * (1.0 + fabs(s.state[c])));
 }
 
-void ck_dimension(const mpm_material *m, int32_t dim, real stress, const double *state, uint64_t *seed) {
-  ck_dimension_at(m, dim, 0.0L, stress, state, seed);
-}
-
-void ck_dimension_at(const mpm_material *m, int32_t dim, real mean, real stress, const double *state,
-                     uint64_t *seed) {
+static void ck_dimension(const mpm_material *m, int32_t dim, real mean, real stress, const double *state,
+                         uint64_t *seed) {
   static tangent_batch flat, full;
   sample_clear(&flat.s, 0.5);
   sample_clear(&full.s, 0.5);
@@ -173,6 +169,24 @@ void ck_dimension_at(const mpm_material *m, int32_t dim, real mean, real stress,
     for (int row = 0; row < 81; ++row)
       if (flat.c[row * LD + i] != sample_unset)
         ck_within("tangent", flat.c[row * LD + i], full.c[row * LD + i], 1e-7 * 4e7);
+  }
+}
+
+void ck_dimensions(int32_t loop, const char *model, const mpm_param *params, int32_t count, real mean,
+                   real stress, const double *state, uint64_t seed) {
+  const int32_t dim = loop_dim(loop);
+  mpm_material *m = law_material(loop_isa(loop), model, params, count);
+  if (!m) return;
+  for (int32_t round = 0; dim < 3 && round < 50; ++round) ck_dimension(m, dim, mean, stress, state, &seed);
+  law_material_free(m);
+}
+
+void ck_frames(sample_fn draw, uint64_t seed) {
+  for (int32_t k = 0; k < 500; ++k) {
+    double F_inc[9];
+    const path s = draw(&seed, F_inc);
+    ck_frame(&s, F_inc, &seed);
+    law_material_free(s.material);
   }
 }
 

@@ -51,11 +51,14 @@ double tangent_off(const path *from, const double *F_inc, regime_fn regime_of, i
 /* A frame that turns with the end of the step turns the stress and nothing else. */
 void ck_frame(const path *from, const double *F_inc, uint64_t *seed);
 
-/* Plane and uniaxial strain are what space makes of them: steps from random stresses of a size, some of
- * them with a state. */
-void ck_dimension(const mpm_material *m, int32_t dim, real stress, const double *state, uint64_t *seed);
-/* With a mean stress beside the random one. */
-void ck_dimension_at(const mpm_material *m, int32_t dim, real mean, real stress, const double *state,
-                     uint64_t *seed);
+/* Plane and uniaxial strain are what space makes of them: 50 steps from random stresses of a size about a mean,
+ * some of them with a state. loop: one of LAW_LOOPS, an instruction set and a dimension. */
+void ck_dimensions(int32_t loop, const char *model, const mpm_param *params, int32_t count, real mean,
+                   real stress, const double *state, uint64_t seed);
+
+/* Draws a random law and a random state of it, and F_inc of a step from there. */
+typedef path (*sample_fn)(uint64_t *seed, double *F_inc);
+/* 500 of them turn as ck_frame() asks. */
+void ck_frames(sample_fn draw, uint64_t seed);
 
 #endif

@@ -295,28 +295,22 @@ START_TEST(random_tangents) {
 }
 END_TEST
 
+static path draw(uint64_t *seed, double *F_inc) {
+  const mud of = random_mud(seed, 5.0);
+  path s = open_mud(&of);
+  random_step(seed, &s, F_inc);
+  return s;
+}
+
 START_TEST(frames) {
-  uint64_t seed = 43;
-  for (int32_t k = 0; k < 500; ++k) {
-    const mud of = random_mud(&seed, 5.0);
-    path s = open_mud(&of);
-    double F_inc[9];
-    random_step(&seed, &s, F_inc);
-    ck_frame(&s, F_inc, &seed);
-    law_material_free(s.material);
-  }
+  ck_frames(draw, 43);
 }
 END_TEST
 
 START_TEST(dimensions) {
-  const int32_t dim = loop_dim(_i);
   for (int32_t linear = 0; linear < 2; ++linear) {
     const mud of = with(1e7, 1e4, 3e3, linear ? 1.0 : 0.6);
-    mpm_material *m = law_material(loop_isa(_i), "herschel_bulkley", of.value, PARAMS);
-    uint64_t seed = 44;
-    if (m && dim < 3)
-      for (int32_t round = 0; round < 50; ++round) ck_dimension(m, dim, 3e4L, NULL, &seed);
-    if (m) law_material_free(m);
+    ck_dimensions(_i, "herschel_bulkley", of.value, PARAMS, 0.0L, 3e4L, NULL, 44);
   }
 }
 END_TEST

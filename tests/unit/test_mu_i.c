@@ -226,28 +226,22 @@ START_TEST(random_tangents) {
 }
 END_TEST
 
+static path draw(uint64_t *seed, double *F_inc) {
+  const beads of = random_beads(seed);
+  path s = open_beads(&of);
+  random_step(seed, &s, F_inc);
+  return s;
+}
+
 START_TEST(frames) {
-  uint64_t seed = 63;
-  for (int32_t k = 0; k < 500; ++k) {
-    const beads of = random_beads(&seed);
-    path s = open_beads(&of);
-    double F_inc[9];
-    random_step(&seed, &s, F_inc);
-    ck_frame(&s, F_inc, &seed);
-    law_material_free(s.material);
-  }
+  ck_frames(draw, 63);
 }
 END_TEST
 
 START_TEST(dimensions) {
   static const double gap[2] = {0.0, 1e-3};
-  const int32_t dim = loop_dim(_i);
   const beads of = with(20e6, 0.3, 0.3819, 0.6435, 0.279);
-  mpm_material *m = law_material(loop_isa(_i), "mu_i", of.value, PARAMS);
-  uint64_t seed = 64;
-  if (m && dim < 3)
-    for (int32_t round = 0; round < 50; ++round) ck_dimension(m, dim, 3e4L, gap, &seed);
-  if (m) law_material_free(m);
+  ck_dimensions(_i, "mu_i", of.value, PARAMS, 0.0L, 3e4L, gap, 64);
 }
 END_TEST
 

@@ -363,13 +363,8 @@ END_TEST
 
 START_TEST(dimensions) {
   static const double be[6] = {0.004, -0.03, 0.01, 0.0, 0.0, 0.0};
-  const int32_t dim = loop_dim(_i);
   const snow of = usual();
-  mpm_material *m = law_material(loop_isa(_i), "snow", of.value, PARAMS);
-  uint64_t seed = 54;
-  if (m && dim < 3)
-    for (int32_t round = 0; round < 50; ++round) ck_dimension(m, dim, 0.0L, be, &seed);
-  if (m) law_material_free(m);
+  ck_dimensions(_i, "snow", of.value, PARAMS, 0.0L, 0.0L, be, 54);
 }
 END_TEST
 

@@ -331,28 +331,22 @@ START_TEST(random_states_yield) {
 }
 END_TEST
 
+static path draw(uint64_t *seed, double *F_inc) {
+  const soil of = random_soil(seed);
+  path s = open_soil(&of);
+  random_step(seed, &s, F_inc);
+  return s;
+}
+
 START_TEST(frames) {
-  uint64_t seed = 19;
-  for (int32_t k = 0; k < 500; ++k) {
-    const soil of = random_soil(&seed);
-    path s = open_soil(&of);
-    double F_inc[9];
-    random_step(&seed, &s, F_inc);
-    ck_frame(&s, F_inc, &seed);
-    law_material_free(s.material);
-  }
+  ck_frames(draw, 19);
 }
 END_TEST
 
 START_TEST(dimensions) {
   static const double gap[2] = {0.0, 1e-3};
-  const int32_t dim = loop_dim(_i);
   const soil of = sand(30.0, 10.0, 2e3, 2.0);
-  mpm_material *m = law_material(loop_isa(_i), "drucker_prager", of.value, DP_PARAMS);
-  uint64_t seed = 20;
-  if (m && dim < 3)
-    for (int32_t round = 0; round < 50; ++round) ck_dimension(m, dim, 3e4L, gap, &seed);
-  if (m) law_material_free(m);
+  ck_dimensions(_i, "drucker_prager", of.value, DP_PARAMS, 0.0L, 3e4L, gap, 20);
 }
 END_TEST
 
