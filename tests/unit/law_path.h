@@ -51,8 +51,8 @@ double tangent_off(const path *from, const double *F_inc, regime_fn regime_of, i
 /* A frame that turns with the end of the step turns the stress and nothing else. */
 void ck_frame(const path *from, const double *F_inc, uint64_t *seed);
 
-/* Plane and uniaxial strain are what space makes of them: 50 steps from random stresses of a size about a mean,
- * some of them with a state. loop: one of LAW_LOOPS, an instruction set and a dimension. */
+/* Plane and uniaxial strain are what space makes of them: 50 steps from random stresses of a size about a
+ * mean, some of them with a state. loop: one of LAW_LOOPS, an instruction set and a dimension. */
 void ck_dimensions(int32_t loop, const char *model, const mpm_param *params, int32_t count, real mean,
                    real stress, const double *state, uint64_t seed);
 
