@@ -86,7 +86,7 @@ all: $(STATIC_LIB) $(SHARED_LIB) $(UMAT_ARCHIVES) $(UMAT_SHARED_LIB)
 #: help                  this list
 help:
 	@awk '/^# ---- / { gsub(/^# -+ | -+$$/, ""); heading = $$0 } \
-	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk
+	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk
 	@printf '\n%s\n' 'V=1 shows the commands, -jN sets how many run at once, BUILD=folder builds there, CC and CFLAGS are yours.'
 
 $(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk src/kernels.txt
@@ -127,6 +127,7 @@ $(AMALGAMATION)/mpm.c: tools/amalgamate.py $(wildcard src/*/*.[ch]) $(HEADERS) M
 CMAKEDIR = $(LIBDIR)/cmake/mpm
 PKGCONFIGDIR = $(LIBDIR)/pkgconfig
 BINDIR ?= $(PREFIX)/bin
+DATADIR ?= $(PREFIX)/share/libmpm
 space := $(subst ,, )
 whole = $(subst $(space),|,$(1))
 spaced = $(subst |,$(space),$(1))
@@ -146,7 +147,7 @@ SUBSTITUTE = sed $(foreach name,PC_PREFIX PC_LIBDIR PC_INCLUDEDIR VERSION SHARED
 # Where files are installed, for the shell.
 to = "$(DESTDIR)$($(1))$(2)"
 
-#: install               headers, libraries, pkg-config and CMake files, under PREFIX (/usr/local), in DESTDIR
+#: install               headers, libraries, pkg-config and CMake files, api.json, under PREFIX (/usr/local), in DESTDIR
 install: all
 	install -d $(call to,INCLUDEDIR,/mpm) $(call to,PKGCONFIGDIR) $(call to,CMAKEDIR)
 	install -m 644 $(HEADERS) $(UMAT_INSTALLED_HEADERS) $(call to,INCLUDEDIR,/mpm)
@@ -166,6 +167,8 @@ endif
 	$(SUBSTITUTE) cmake/mpmConfig.cmake.in > $(call to,CMAKEDIR)/mpmConfig.cmake
 	$(SUBSTITUTE) cmake/mpmConfigVersion.cmake.in > $(call to,CMAKEDIR)/mpmConfigVersion.cmake
 	chmod 644 $(call to,PKGCONFIGDIR)/mpm*.pc $(call to,CMAKEDIR)/*.cmake
+	install -d $(call to,DATADIR)
+	install -m 644 bindings/api.json $(call to,DATADIR)
 
 #: uninstall             takes them away again
 uninstall:
@@ -173,7 +176,8 @@ uninstall:
 	cd $(call to,LIBDIR) && rm -f libmpm.a $(SHARED) $(SHARED_LINKS) $(IMPORT_LIB) $(notdir $(UMAT_ARCHIVES)) \
 	  $(if $(UMAT_SHARED_LIB),$(UMAT_SHARED) $(UMAT_LINKS)) $(addprefix pkgconfig/,$(addsuffix .pc,mpm mpm-static $(UMAT_PC)))
 	rm -f $(if $(IMPORT_LIB),$(call to,BINDIR,/$(SHARED))) $(call to,CMAKEDIR)/mpmConfig.cmake $(call to,CMAKEDIR)/mpmConfigVersion.cmake
-	rmdir $(call to,INCLUDEDIR,/mpm) $(call to,CMAKEDIR) 2>/dev/null || :
+	rm -f $(call to,DATADIR,/api.json)
+	rmdir $(call to,INCLUDEDIR,/mpm) $(call to,CMAKEDIR) $(call to,DATADIR) 2>/dev/null || :
 
 # ---- examples and benchmarks -----------------------------------------------------------------------------
 $(BUILD)/examples/%: examples/%.c $(STATIC_LIB) Makefile
@@ -224,6 +228,7 @@ bench-quick: $(BENCH)
 	$(if $(AGAINST),@$(call against,--quick),$(BENCH) --quick)
 
 include tests/tests.mk
+include bindings/bindings.mk
 
 # ---- reference -------------------------------------------------------------------------------------------
 #: docs                  HTML from the headers, in $(BUILD)/docs/html; a declaration without a comment is an error

@@ -24,27 +24,27 @@ extern "C" {
 #endif
 
 /** How two bodies meet: mpm_contact_desc.kind. */
-enum {
+enum mpm_contact_value {
   MPM_CONTACT_UNILATERAL = 0, /**< they push each other and never pull, with Coulomb friction (default) */
   MPM_CONTACT_NONE = 1,       /**< they pass through each other */
   MPM_CONTACT_TIED = 2        /**< neither slip nor separation at nodes that both have */
 };
 /** How the normal at a node is found: mpm_contact_desc.normal. */
-enum {
+enum mpm_normal_value {
   MPM_NORMAL_LOGISTIC = 0,     /**< of the plane that separates the particles best: logistic regression */
   MPM_NORMAL_DISCRIMINANT = 1, /**< of Fisher's linear discriminant: one pass, for smooth surfaces */
   MPM_NORMAL_GRADIENT = 2,     /**< of the mean gradient of volume: for comparison with other codes */
   MPM_NORMAL_FIXED = 3         /**< mpm_contact_desc.direction */
 };
 /** How it is found that bodies touch: mpm_contact_desc.detection. */
-enum {
+enum mpm_detection_value {
   MPM_DETECT_DEFAULT = 0, /**< MPM_DETECT_GAP, but MPM_DETECT_VELOCITY with MPM_NORMAL_GRADIENT, whose
                                directions are too far off to measure a gap along them */
   MPM_DETECT_GAP = 1,     /**< by the gap between their particles */
   MPM_DETECT_VELOCITY = 2 /**< by velocity alone: wherever they share a node and approach each other */
 };
 /** In place of a body: all of them. */
-enum {
+enum mpm_body_value {
   MPM_BODY_ANY = -1 /**< any body that has no closer rule; all of them in reports */
 };
 

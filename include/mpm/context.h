@@ -6,7 +6,6 @@
 #define MPM_CONTEXT_H
 
 #include <mpm/types.h>
-#include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -27,7 +27,7 @@ extern "C" {
 typedef struct mpm_obstacle mpm_obstacle;
 
 /** Shapes: mpm_obstacle_desc.shape. Lengths are mpm_obstacle_desc.size; axes are those of the body. */
-enum {
+enum mpm_shape_value {
   MPM_SHAPE_PLANE = 1,    /**< a half-space; outward normal: axis y, in 1-D x. No size */
   MPM_SHAPE_SPHERE = 2,   /**< size[0]: radius; in 2-D a disc. Not in 1-D */
   MPM_SHAPE_CYLINDER = 3, /**< around axis z; size[0]: radius, size[1]: half length. 3-D only */
@@ -36,7 +36,7 @@ enum {
   MPM_SHAPE_DISTANCE = 64 /**< what mpm_obstacle_desc.distance says */
 };
 /** How an obstacle moves: mpm_obstacle_desc.motion. */
-enum {
+enum mpm_motion_value {
   MPM_MOTION_FIXED = 0,      /**< not at all (default) */
   MPM_MOTION_PRESCRIBED = 1, /**< by its velocities, which the host may change from step to step */
   MPM_MOTION_FREE = 2        /**< as a rigid body under contact, gravity and the host's load */

@@ -6,7 +6,12 @@
 #ifndef MPM_TYPES_H
 #define MPM_TYPES_H
 
+/* Parsers that know the types of these two already, as cffi's and LuaJIT's do, are given the declarations by
+ * cc -E -P -DMPM_NO_INCLUDES -DMPM_API= -Iinclude include/mpm/mpm.h */
+#ifndef MPM_NO_INCLUDES
+#include <stddef.h>
 #include <stdint.h>
+#endif
 
 /** Version of these headers as 0xMMmmpp (major, minor, patch), to be compared with mpm_version(). */
 #define MPM_VERSION 0x000100
@@ -51,7 +56,7 @@ typedef struct mpm_operator mpm_operator;
 typedef int32_t mpm_status;
 
 /** Status values. After a positive one the state is as it was before the call. A smaller dt may cure 1..5. */
-enum {
+enum mpm_status_value {
   MPM_OK = 0,             /**< the call did what it was asked to */
   MPM_CUT_DT = 1,         /**< a callback, a law or contact asked for a smaller step */
   MPM_INVERTED = 2,       /**< det F <= 0 at a particle */
@@ -72,7 +77,7 @@ enum {
 };
 
 /** Basis functions of the grid. Here h is the edge of a cell. */
-enum {
+enum mpm_basis_value {
   MPM_LINEAR = 1, /**< piecewise linear functions, 2h wide: Steffen et al. 2008, eqs 17-18 */
   /** Quadratic B-splines, 3h wide: Steffen et al. 2008, eq. 21; MPoint theory, eqs 24-27. */
   MPM_BSPLINE2 = 2,
@@ -83,7 +88,7 @@ enum {
 };
 
 /** What B-splines do at the faces of the grid: Steffen et al. 2008, section 3.2. */
-enum {
+enum mpm_boundary_basis_value {
   MPM_BOUNDARY_GHOST = 0, /**< splines are the same everywhere, with nodes outside the faces */
   /** Knots are repeated degree + 1 times at the faces, where one function alone is then 1. There are no nodes
    * outside: the cells + degree nodes of an axis stand at the Greville points. Periodic axes keep plain
@@ -92,7 +97,7 @@ enum {
 };
 
 /** Time integration scheme. */
-enum {
+enum mpm_scheme_value {
   /** Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10. */
   MPM_USL = 1,
   /** Explicit, with stresses updated first, by the strain from the velocities at the start of the step:
@@ -105,7 +110,7 @@ enum {
 };
 
 /** Transfer of velocity between particles and grid. */
-enum {
+enum mpm_transfer_value {
   MPM_FLIP = 1,  /**< FLIP, PIC, and their blend by the field flip: MPoint theory, eqs 34-36 */
   MPM_APIC = 2,  /**< affine, with the inertia of each axis and particle, for any basis: Jiang et al. 2015 */
   MPM_TPIC = 3,  /**< projects the velocity gradient too (MPoint theory, eq. 29); PIC update (eq. 35) */
@@ -118,36 +123,37 @@ enum {
 };
 
 /** Instruction set of the kernels. Results of two sets agree to round-off, those of one set to the bit. */
-enum {
+enum mpm_isa_value {
   MPM_ISA_BEST = 0,     /**< the best one that both the processor and the library have */
   MPM_ISA_BASELINE = 1, /**< the one that the library was compiled for */
   MPM_ISA_AVX2 = 2,     /**< AVX2 with FMA, on x86-64 */
   MPM_ISA_AVX512 = 3,   /**< AVX-512 (F, DQ, VL), on x86-64 */
   MPM_ISA_NEON = 4,     /**< NEON with FMA, on aarch64 */
-  MPM_ISA_PORTABLE = 1  /**< the baseline by its promise: the same bits on every platform (mpm.h, Results) */
+  /** the baseline by its promise: the same bits on every platform (mpm.h, Results) */
+  MPM_ISA_PORTABLE = MPM_ISA_BASELINE
 };
 
 /** Level of a log text. */
-enum {
+enum mpm_log_value {
   MPM_LOG_WARNING = 1, /**< the host should look at it */
   MPM_LOG_INFO = 2,    /**< a rare event: a choice made at creation, or growth of storage */
   MPM_LOG_DEBUG = 3    /**< a text in every step */
 };
 
 /** Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient. */
-enum {
+enum mpm_locking_value {
   MPM_LOCKING_NONE = 0,        /**< there is no remedy */
   MPM_LOCKING_CELL_AVERAGE = 1 /**< the law sees the dilation averaged over the cell, weighted by volume */
 };
 
 /** Form of a law's tangent. The value is the number of components. See mpm_tangent_fn. */
-enum {
+enum mpm_tangent_value {
   MPM_TANGENT_MINOR_SYMMETRIC = 36, /**< 6 x 6 components, in Voigt's notation */
   MPM_TANGENT_GENERAL = 81          /**< 9 x 9 components */
 };
 
 /** Faces of the grid. */
-enum {
+enum mpm_face_value {
   MPM_X_MIN = 0, /**< lower face across x */
   MPM_X_MAX = 1, /**< upper face across x */
   MPM_Y_MIN = 2, /**< lower face across y */
@@ -157,7 +163,7 @@ enum {
 };
 
 /** What a face of the grid does. */
-enum {
+enum mpm_wall_value {
   MPM_WALL_NONE = 0,  /**< default: a step in which a particle would leave fails with MPM_OFF_GRID */
   MPM_WALL_OPEN = 1,  /**< a particle that leaves is removed */
   MPM_WALL_FIXED = 2, /**< velocities at the face are zero: it pushes and pulls */
@@ -170,27 +176,27 @@ enum {
 };
 
 /** Where in an explicit step a node hook runs. */
-enum {
+enum mpm_stage_value {
   MPM_AFTER_P2G = 1,     /**< mass and velocity are projected, forces are not yet known */
   MPM_AFTER_FORCES = 2,  /**< internal and external forces are complete */
   MPM_AFTER_VELOCITY = 3 /**< velocity is updated, and walls and prescribed velocities have acted on it */
 };
 
 /** Access to mapped memory. The values may be combined with |. */
-enum {
+enum mpm_access_value {
   MPM_READ = 1, /**< the host reads */
   MPM_WRITE = 2 /**< the host writes */
 };
 
 /** Type of a field's elements. */
-enum {
+enum mpm_type_value {
   MPM_F64 = 1, /**< double */
   MPM_I64 = 2, /**< int64_t */
   MPM_U8 = 3   /**< uint8_t */
 };
 
 /** Linear solver of an implicit step. */
-enum {
+enum mpm_solver_value {
   MPM_SOLVER_AUTO = 0,         /**< the library chooses by size, stencil, symmetry and inertia */
   MPM_SOLVER_CG = 1,           /**< conjugate gradients, for symmetric positive definite systems */
   MPM_SOLVER_MULTIGRID_CG = 2, /**< conjugate gradients with geometric multigrid, for the same systems */

@@ -37,4 +37,15 @@ for path in include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/
   compile clang++ c++17 cpp "$header"
   count=$((count + 1))
 done
+# What parsers are given that know the integer types: declarations and nothing else.
+gcc -E -P -std=c99 -DMPM_NO_INCLUDES -DMPM_API= -Iinclude include/mpm/mpm.h > "$scratch/declarations.h"
+if grep -nE '__|^#' "$scratch/declarations.h"; then
+  echo "headers.sh: mpm.h with MPM_NO_INCLUDES is more than plain declarations" >&2
+  exit 1
+fi
+for python in python3 /usr/bin/python3; do
+  "$python" -c 'import cffi' 2> /dev/null || continue
+  "$python" -c 'import cffi, sys; cffi.FFI().cdef(open(sys.argv[1]).read())' "$scratch/declarations.h"
+  break
+done
 echo "headers.sh: $count headers"

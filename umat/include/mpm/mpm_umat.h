@@ -28,7 +28,7 @@ extern "C" {
 
 /** What mpm_step_info.callback_status is after a subroutine has called XIT, XPLB_EXIT or STDB_ABQERR with
  * LOP = -3. */
-enum { MPM_UMAT_EXIT = -1001 };
+enum mpm_umat_value { MPM_UMAT_EXIT = -1001 };
 
 /**
  * The type of a UMAT as Fortran compilers see it: all arguments by reference, then the length of CMNAME. A
