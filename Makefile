@@ -239,7 +239,7 @@ docs:
 
 # ---- upkeep ----------------------------------------------------------------------------------------------
 FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/mpm/*.hpp umat/*/*.[ch] src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
-  tests/*/*.[ch] tests/*/*.cpp)
+  tests/*/*.[ch] tests/*/*.cpp bindings/*.c bindings/*/*.c bindings/*/*/*.c)
 #: format                clang-format on all sources
 format:
 	clang-format -i $(FORMATTED)
