@@ -49,12 +49,12 @@ int main(void) {
   int failed = 1;
   if (mpm_grid_create(context, &box, &grid) ||
       mpm_material_create(context, "neo_hookean", jelly, 3, &material) ||
-      !(left = disk(context, grid, material, 0.2, 0.1)) ||
-      !(right = disk(context, grid, material, 0.8, -0.1)) ||
+      !(left = disk(context, grid, material, 0.2, 0.5)) ||
+      !(right = disk(context, grid, material, 0.8, -0.5)) ||
       mpm_stepper_create(context, grid, &options, &stepper) || mpm_stepper_add(stepper, left) ||
       mpm_stepper_add(stepper, right) || mpm_stepper_set_force(stepper, pull, NULL))
     goto end;
-  for (int step = 0; step < 200; ++step)
+  for (int step = 0; step < 400; ++step)
     if (mpm_step(stepper, 2e-3, NULL)) goto end;
 
   mpm_step_info info = {.struct_size = sizeof info};
