@@ -1,0 +1,141 @@
+"""Arrays of numpy over the library's memory, and numbers of Python as the library wants them."""
+import ctypes
+import numpy as np
+
+from . import _api, _view
+from ._library import lib
+
+TYPES = {_api.F64: np.dtype(np.float64), _api.I64: np.dtype(np.int64), _api.U8: np.dtype(np.uint8)}
+_FORMATS = {_api.F64: "d", _api.I64: "q", _api.U8: "B"}
+_RELEASE = ctypes.cast(lib.mpm_view_release, ctypes.c_void_p).value
+
+
+def doubles(values, *shape):
+    """A contiguous array of doubles of a shape; one number stands for all of a vector."""
+    array = np.ascontiguousarray(values, np.float64)
+    if array.ndim == 0 and len(shape) == 1:
+        array = np.full(shape, float(array))
+    if array.shape != shape:
+        raise ValueError(f"an array of shape {array.shape} where {shape} is wanted")
+    return array
+
+
+def columns(values, components, n, dtype):
+    """(n, components) numbers, or tensors (n, 3, 3), in the library's order [components][n]."""
+    array = np.asarray(values, dtype)
+    if array.ndim == 3:
+        array = array.reshape(len(array), -1)
+    if components == 1 and array.ndim == 1:
+        array = array[:, None]
+    if array.shape != (n, components):
+        raise ValueError(f"values of shape {np.shape(values)} where {(n, components)} is wanted")
+    return np.ascontiguousarray(array.T)
+
+
+def rows(array, tensor=False):
+    """What the library has as [components][n] as (n, components): (n,) for one, (n, 3, 3) for a tensor."""
+    if len(array) == 1 and not tensor:
+        return array[0]
+    if tensor and len(array) == 9:
+        return array.reshape(3, 3, -1).transpose(2, 0, 1)
+    return array.T
+
+
+def address(array):
+    """The address of an array's memory, or None for None."""
+    return None if array is None else array.ctypes.data
+
+
+def lend(view, owner, ended):
+    """An array over a view that the library has just filled; the view ends with the last array that shows it."""
+    dtype = TYPES[view.type]
+    lease = _view.Lease(view.data or 0, _FORMATS[view.type], dtype.itemsize, view.count, view.components,
+                        view.item_stride, view.component_stride, bool(view.access & _api.WRITE), _RELEASE,
+                        ctypes.addressof(view), (owner, view), ended)
+    return np.asarray(memoryview(lease))
+
+
+class Batch:
+    """Items that a callback is shown: arrays (n, components) over memory that is the library's for the time of the call.
+    Who wants to keep an array copies it."""
+
+    #: components of the fields that are arrays, as a function of the batch; tensors are 3 x 3
+    _arrays = {}
+    _integers = ("id", "index", "component")
+
+    #: those that the callback fills
+    _written = ()
+
+    def __init__(self, pointer, kinds=tuple):
+        self._struct = pointer.contents
+        self._spans = []
+        self._kinds = kinds
+
+    def __getattr__(self, name):
+        at = getattr(self._struct, name)
+        components = type(self)._arrays.get(name)
+        if components is None:
+            return at
+        array = None
+        if at:
+            writable = name in self._written
+            if components is tensor:
+                array = self._raw(at, 9, writable=writable).reshape(3, 3, -1)[:, :, :self._struct.n].transpose(2, 0, 1)
+            else:
+                array = self._show(at, components(self._struct), np.int64 if name in self._integers else np.float64, writable)
+        self.__dict__[name] = array
+        return array
+
+    def _raw(self, at, components, dtype=np.float64, writable=False):
+        """What lies at an address as [components][ld], inert slots included."""
+        dtype = np.dtype(dtype)
+        span = _view.span(at, dtype.itemsize * components * self._struct.ld, writable)
+        self._spans.append(span)
+        return np.frombuffer(span, dtype).reshape(components, self._struct.ld)
+
+    def _show(self, at, components, dtype=np.float64, writable=False):
+        """The same as (n, components), or (n,) for one."""
+        array = self._raw(at, components, dtype, writable)[:, :self._struct.n]
+        return array[0] if components == 1 else array.T
+
+    def field(self, name):
+        """A field of the set, built in or the host's own, aligned with the batch and with its stored components."""
+        kinds = {kinds[name] for kinds in self._kinds() if name in kinds}
+        if len(kinds) != 1:
+            raise LookupError(f"no set here has a field '{name}'" if not kinds else
+                              f"sets of this law have fields '{name}' of different types")
+        kind, components = kinds.pop()
+        data, stride = ctypes.c_void_p(), ctypes.c_int64()
+        status = lib.mpm_batch_field(self._struct.lookup, name.encode(), ctypes.byref(data), ctypes.byref(stride))
+        if status:
+            raise LookupError(f"the set does not have '{name}' now ({_api.Status(status).name})")
+        dtype, n = TYPES[kind], self._struct.n
+        span = _view.span(data.value, dtype.itemsize * ((components - 1) * stride.value + n), False)
+        self._spans.append(span)
+        array = np.lib.stride_tricks.as_strided(np.frombuffer(span, dtype), (n, components),
+                                                (dtype.itemsize, stride.value * dtype.itemsize), writeable=False)
+        return array[:, 0] if components == 1 else array
+
+    def _end(self):
+        """Ends the loan. Arrays that live on would show memory that is gone: that is an error of the callback."""
+        self.__dict__ = {"_struct": None, "_spans": self._spans}
+        spans, self._spans = self._spans, []
+        for span in spans:
+            try:
+                span.release()
+            except BufferError:
+                raise RuntimeError("a callback has kept an array of its batch, whose memory ends with the call; keep a "
+                                   "copy()") from None
+
+
+def tensor(_):
+    """The components of a full tensor."""
+    return 9
+
+
+def scalar(_):
+    return 1
+
+
+def vector(struct):
+    return struct.dim

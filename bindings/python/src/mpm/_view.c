@@ -1,0 +1,151 @@
+/* Memory of the library as buffers of Python: leases, which give a view back to the library when the last array over it has
+ * died, and spans, which live for the time of a callback. The functions and addresses come from ctypes, so that the module
+ * is linked to nothing but Python. */
+#define Py_LIMITED_API 0x030b0000
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+#include <stdint.h>
+
+typedef int32_t (*release_fn)(void *view);
+
+typedef struct lease {
+  PyObject_HEAD void *data;
+  Py_ssize_t shape[2], strides[2], item_size, exports;
+  char format[2];
+  int dimensions, writable, lent;
+  release_fn release;
+  void *view;      /* the struct that the library has filled, kept alive by owner */
+  PyObject *owner; /* what must outlive the lease */
+  PyObject *ended; /* called with the status of the release */
+} lease;
+
+/* Gives the view back to the library, and tells what it said. The error that may be under way stays. */
+static void give_back(lease *self) {
+  PyObject *type, *value, *trace, *said;
+  int32_t status;
+  if (!self->lent) return;
+  self->lent = 0;
+  status = self->release(self->view);
+  PyErr_Fetch(&type, &value, &trace);
+  said = PyObject_CallFunction(self->ended, "i", (int)status);
+  if (!said) PyErr_WriteUnraisable(self->ended);
+  Py_XDECREF(said);
+  PyErr_Restore(type, value, trace);
+}
+
+static PyObject *lease_new(PyTypeObject *type, PyObject *args, PyObject *keywords) {
+  static char *names[] = {
+      "data",     "format",  "item_size", "count", "components", "item_stride", "component_stride",
+      "writable", "release", "view",      "owner", "ended",      NULL};
+  unsigned long long data, release, view;
+  Py_ssize_t item_size, count, components, item_stride, component_stride;
+  const char *format;
+  int writable;
+  PyObject *owner, *ended;
+  lease *self;
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "KsnnnnnpKKOO", names, &data, &format, &item_size, &count,
+                                   &components, &item_stride, &component_stride, &writable, &release, &view,
+                                   &owner, &ended))
+    return NULL;
+  self = (lease *)((allocfunc)PyType_GetSlot(type, Py_tp_alloc))(type, 0);
+  if (!self) return NULL;
+  self->data = (void *)(uintptr_t)data;
+  self->format[0] = format[0];
+  self->item_size = item_size;
+  self->dimensions = components > 1 ? 2 : 1;
+  self->shape[0] = count;
+  self->shape[1] = components;
+  self->strides[0] = item_stride * item_size;
+  self->strides[1] = component_stride * item_size;
+  self->writable = writable;
+  self->lent = 1;
+  self->release = (release_fn)(uintptr_t)release;
+  self->view = (void *)(uintptr_t)view;
+  Py_INCREF(owner);
+  self->owner = owner;
+  Py_INCREF(ended);
+  self->ended = ended;
+  return (PyObject *)self;
+}
+
+static void lease_free(PyObject *object) {
+  lease *self = (lease *)object;
+  PyTypeObject *type = Py_TYPE(object);
+  give_back(self);
+  Py_XDECREF(self->owner);
+  Py_XDECREF(self->ended);
+  ((freefunc)PyType_GetSlot(type, Py_tp_free))(object);
+  Py_DECREF(type);
+}
+
+static int lease_get(PyObject *object, Py_buffer *buffer, int flags) {
+  lease *self = (lease *)object;
+  buffer->obj = NULL;
+  if (!self->lent) {
+    PyErr_SetString(PyExc_BufferError, "the view has been given back to the library");
+    return -1;
+  }
+  if ((flags & PyBUF_WRITABLE) && !self->writable) {
+    PyErr_SetString(PyExc_BufferError, "the view is for reading");
+    return -1;
+  }
+  if ((flags & PyBUF_STRIDES) != PyBUF_STRIDES) {
+    PyErr_SetString(PyExc_BufferError, "the view has strides");
+    return -1;
+  }
+  Py_INCREF(object);
+  buffer->obj = object;
+  buffer->buf = self->data;
+  buffer->len = self->shape[0] * (self->dimensions > 1 ? self->shape[1] : 1) * self->item_size;
+  buffer->itemsize = self->item_size;
+  buffer->readonly = !self->writable;
+  buffer->ndim = self->dimensions;
+  buffer->format = (flags & PyBUF_FORMAT) ? self->format : NULL;
+  buffer->shape = self->shape;
+  buffer->strides = self->strides;
+  buffer->suboffsets = NULL;
+  buffer->internal = NULL;
+  ++self->exports;
+  return 0;
+}
+
+static void lease_release(PyObject *object, Py_buffer *buffer) {
+  lease *self = (lease *)object;
+  (void)buffer;
+  if (--self->exports == 0) give_back(self);
+}
+
+static PyType_Slot lease_slots[] = {
+    {Py_tp_doc, "A view of the library's memory, given back when its last buffer dies."},
+    {Py_tp_new, lease_new},
+    {Py_tp_dealloc, lease_free},
+    {Py_bf_getbuffer, lease_get},
+    {Py_bf_releasebuffer, lease_release},
+    {0, NULL}};
+static PyType_Spec lease_spec = {"mpm._view.Lease", sizeof(lease), 0, Py_TPFLAGS_DEFAULT, lease_slots};
+
+/* Shows memory for the time of a callback: who made the span calls release() on it, which fails while arrays live. */
+static PyObject *span(PyObject *module, PyObject *args) {
+  unsigned long long data;
+  Py_ssize_t bytes;
+  int writable;
+  (void)module;
+  if (!PyArg_ParseTuple(args, "Knp", &data, &bytes, &writable)) return NULL;
+  return PyMemoryView_FromMemory((char *)(uintptr_t)data, bytes, writable ? PyBUF_WRITE : PyBUF_READ);
+}
+
+static PyMethodDef methods[] = {
+    {"span", span, METH_VARARGS, "span(address, bytes, writable): a memoryview over memory of a callback"},
+    {NULL, NULL, 0, NULL}};
+static int fill_module(PyObject *module) {
+  PyObject *type = PyType_FromSpec(&lease_spec);
+  int failed = !type || PyModule_AddObjectRef(module, "Lease", type);
+  Py_XDECREF(type);
+  return failed ? -1 : 0;
+}
+static PyModuleDef_Slot slots[] = {{Py_mod_exec, (void *)fill_module}, {0, NULL}};
+static struct PyModuleDef definition = {
+    PyModuleDef_HEAD_INIT, "_view", "Memory of libmpm as buffers.", 0, methods, slots, NULL, NULL, NULL};
+PyMODINIT_FUNC PyInit__view(void) {
+  return PyModuleDef_Init(&definition);
+}

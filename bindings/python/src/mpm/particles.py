@@ -1,0 +1,200 @@
+"""Sets of particles: filled, changed, read by id, or seen where they lie."""
+import ctypes
+import warnings
+
+import numpy as np
+
+from . import _api
+from ._arrays import TYPES, address, columns, doubles, lend, rows
+from ._handles import Handle
+from ._library import documented, lib
+
+_TENSORS = ("deformation_gradient", "velocity_gradient")
+_STORED = {"deformation_gradient": (1, 5, 9), "velocity_gradient": (1, 4, 9), "stress": (3, 4, 6)}
+_NAMES = {np.dtype(np.float64): _api.F64, np.dtype(np.int64): _api.I64, np.dtype(np.uint8): _api.U8,
+          np.dtype(bool): _api.U8}
+
+
+class Particles(Handle):
+    """A set of particles of one material on one grid.
+
+    set["velocity"] is a copy by ascending id, (n, components), or (n, 3, 3) for a tensor; set["velocity"] = values sets it,
+    for all particles to one value where the values have no item axis. view() shows the library's own memory.
+    """
+
+    _destroy = staticmethod(lib.mpm_particles_destroy)
+
+    def __init__(self, context, grid, material):
+        self._own(context, context._make(lib.mpm_particles_create, context, grid, material), context, grid, material)
+        self.grid, self.material, self.dim = grid, material, grid.dim
+        self._look()
+        material._sets.add(self)
+
+    def _look(self):
+        """Learns which fields there are: their types, and the components of copies and of what is stored."""
+        self._fields, self._kinds = {}, {}
+        name = ctypes.c_char_p()
+        kind, components, writable = (ctypes.c_int32() for _ in range(3))
+        index = 0
+        while lib.mpm_particles_field_info(self, index, ctypes.addressof(name), ctypes.addressof(kind),
+                                           ctypes.addressof(components), ctypes.addressof(writable)) == 0:
+            text = name.value.decode()
+            self._fields[text] = (kind.value, components.value, bool(writable.value))
+            stored = _STORED[text][self.dim - 1] if text in _STORED else components.value
+            self._kinds[text] = (kind.value, stored)
+            index += 1
+
+    @property
+    def fields(self):
+        """The fields by name: (dtype, components of copies, whether they may be written)."""
+        return {name: (TYPES[kind], components, writable) for name, (kind, components, writable) in self._fields.items()}
+
+    def __len__(self):
+        return lib.mpm_particles_count(self)
+
+    def __bool__(self):
+        return True
+
+    @documented("mpm_particles_add")
+    def add(self, position, volume, velocity=None, size=None, ids=None):
+        """Adds particles at position (n, dim), with volume (n,) or one for all. Returns the range of ids, where the library
+        gives them."""
+        position = np.atleast_2d(np.asarray(position, np.float64))
+        n = len(position)
+        shape = lambda values: None if values is None else columns(np.broadcast_to(values, (n, self.dim)), self.dim, n, np.float64)
+        position, velocity, size = shape(position), shape(velocity), shape(size)
+        volume = np.ascontiguousarray(np.broadcast_to(np.asarray(volume, np.float64), (n,)))
+        ids = None if ids is None else np.ascontiguousarray(ids, np.int64)
+        if ids is not None and ids.shape != (n,):
+            raise ValueError(f"{ids.shape} ids for {n} particles")
+        first = ctypes.c_int64()
+        self._context._check(lib.mpm_particles_add(self, n, address(position), address(velocity), address(volume),
+                                                   address(size), address(ids), ctypes.addressof(first)))
+        return range(first.value, first.value + n) if ids is None else ids
+
+    def _fill(self, function, *arguments):
+        first, count = ctypes.c_int64(), ctypes.c_int64()
+        self._context._check(function(self, *arguments, ctypes.addressof(first), ctypes.addressof(count)))
+        return self
+
+    def _per_cell(self, per_cell):
+        return np.ascontiguousarray(np.broadcast_to(np.asarray(per_cell, np.int32), (self.dim,)))
+
+    @documented("mpm_particles_fill_box")
+    def fill_box(self, lower, upper, per_cell=2):
+        """Fills a box with per_cell particles along each axis of a cell; returns the set."""
+        lower, upper, per_cell = doubles(lower, self.dim), doubles(upper, self.dim), self._per_cell(per_cell)
+        return self._fill(lib.mpm_particles_fill_box, address(lower), address(upper), address(per_cell))
+
+    @documented("mpm_particles_fill_ball")
+    def fill_ball(self, centre, radius, per_cell=2):
+        """Fills a ball; returns the set."""
+        centre, per_cell = doubles(centre, self.dim), self._per_cell(per_cell)
+        return self._fill(lib.mpm_particles_fill_ball, address(centre), radius, address(per_cell))
+
+    @documented("mpm_particles_fill")
+    def fill(self, lower, upper, inside, per_cell=2):
+        """Fills what of a box the function inside(x) accepts: x is (n, dim), the answer (n,) of bool; returns the set."""
+        lower, upper, per_cell = doubles(lower, self.dim), doubles(upper, self.dim), self._per_cell(per_cell)
+
+        def ask(_, dim, n, ld, position, answer):
+            points = np.ctypeslib.as_array((ctypes.c_double * (dim * ld)).from_address(position))
+            told = np.asarray(inside(points.reshape(dim, ld)[:, :n].T.copy()), bool)
+            if told.shape != (n,):
+                raise ValueError(f"inside() gave {told.shape} answers for {n} points")
+            ctypes.memmove(answer, np.ascontiguousarray(told, np.uint8).ctypes.data, n)
+
+        callback = _api.inside_fn(self._context._guard(ask))
+        return self._fill(lib.mpm_particles_fill, address(lower), address(upper), address(per_cell), callback, None)
+
+    @documented("mpm_particles_remove")
+    def remove(self, ids):
+        """Removes particles by id."""
+        ids = np.ascontiguousarray(np.atleast_1d(ids), np.int64)
+        self._context._check(lib.mpm_particles_remove(self, len(ids), address(ids)))
+
+    @property
+    def ids(self):
+        """The ids of all particles, ascending."""
+        return self["id"]
+
+    def _field(self, name):
+        if name not in self._fields:
+            self._look()
+        if name not in self._fields:  # let the library say it, with the nearest names
+            self._context._check(lib.mpm_particles_get(self, name.encode(), _api.F64, 1, 0, None, None))
+            raise KeyError(name)
+        return self._fields[name]
+
+    @documented("mpm_particles_get")
+    def get(self, field, ids=None):
+        """Copies a field, of all particles by ascending id or of those with the given ids."""
+        kind, components, _ = self._field(field)
+        ids = None if ids is None else np.ascontiguousarray(np.atleast_1d(ids), np.int64)
+        n = len(self) if ids is None else len(ids)
+        out = np.empty((components, n), TYPES[kind])
+        self._context._check(lib.mpm_particles_get(self, field.encode(), kind, components, n, address(ids), address(out)))
+        return rows(out, tensor=field in _TENSORS)
+
+    @documented("mpm_particles_set")
+    def set(self, field, values, ids=None):
+        """Sets a field of all particles by ascending id, or of those with the given ids; one value stands for all."""
+        kind, components, _ = self._field(field)
+        dtype, values = TYPES[kind], np.asarray(values)
+        ids = None if ids is None else np.ascontiguousarray(np.atleast_1d(ids), np.int64)
+        alone = values.ndim == 0 or (values.ndim == 1 and components > 1) or (values.ndim == 2 and field in _TENSORS)
+        if alone:
+            value = np.ascontiguousarray(np.broadcast_to(values.ravel() if values.ndim == 2 else values, (components,)), dtype)
+            if ids is None:
+                self._context._check(lib.mpm_particles_set_all(self, field.encode(), kind, components, address(value)))
+                return
+            values = np.broadcast_to(value, (len(ids), components))
+        n = len(self) if ids is None else len(ids)
+        array = columns(values, components, n, dtype)
+        self._context._check(lib.mpm_particles_set(self, field.encode(), kind, components, n, address(ids), address(array)))
+
+    def __getitem__(self, field):
+        return self.get(field)
+
+    def __setitem__(self, field, values):
+        self.set(field, values)
+
+    @documented("mpm_particles_add_field")
+    def add_field(self, field, components=1, dtype=np.float64):
+        """Adds a field of the host's own, of float64, int64, uint8 or bool."""
+        kind = _NAMES.get(np.dtype(dtype))
+        if kind is None:
+            raise TypeError(f"fields are of float64, int64 or uint8, not of {np.dtype(dtype)}")
+        self._context._check(lib.mpm_particles_add_field(self, field.encode(), kind, components))
+        self._look()
+
+    @documented("mpm_particles_map")
+    def view(self, field, write=False):
+        """Shows a field where it lies: (slots, components) in library order with the stored components, inert slots
+        (id < 0) among them. Steps are refused until the last array over the view has died; values that are written and bad
+        are reported by a RuntimeWarning then, and by the next step."""
+        view = _api.view(struct_size=ctypes.sizeof(_api.view))
+        access = _api.READ | (_api.WRITE if write else 0)
+        self._context._check(lib.mpm_particles_map(self, field.encode(), access, ctypes.byref(view)))
+        return lend(view, self, self._given_back)
+
+    def _given_back(self, status):
+        if status:
+            text = lib.mpm_last_error(self._context._address).decode()
+            warnings.warn(f"MPM_{_api.Status(status).name}: {text}", RuntimeWarning, stacklevel=2)
+
+    @documented("mpm_particles_set_geostatic")
+    def set_geostatic(self, axis, gravity, surface, K0, surcharge=0.0):
+        """Gives all particles the stress of ground at rest below a level surface."""
+        self._context._check(lib.mpm_particles_set_geostatic(self, axis, gravity, surface, K0, surcharge))
+
+    @documented("mpm_particles_reset_reference")
+    def reset_reference(self):
+        """Makes the present state the one from which deformation counts."""
+        self._context._check(lib.mpm_particles_reset_reference(self))
+
+    @documented("mpm_write_particles")
+    def write(self, path, *fields):
+        """Writes the set for ParaView (.vtp), with the named fields or all in use."""
+        names = (ctypes.c_char_p * max(len(fields), 1))(*(f.encode() for f in fields))
+        self._context._check(lib.mpm_write_particles(self, str(path).encode(), len(fields), ctypes.addressof(names)))

@@ -1,0 +1,478 @@
+"""The time loop: steps, walls, forces and other callbacks, contact, saved states."""
+import ctypes
+import threading
+
+import numpy as np
+
+from . import _api
+from ._arrays import Batch, address, lend, scalar, vector
+from ._handles import Handle, descriptor
+from ._library import documented, error_of, lib
+from .obstacle import contact_desc
+
+_VECTORS = ("momentum", "angular_momentum", "force", "torque", "impulse")
+
+
+class ParticleBatch(Batch):
+    """Particles for which a vector is wanted: n, dim, t, dt, id (n,) (< 0: an inert slot), position and velocity (n, dim),
+    reference_position or None, mass, volume; particles, the set; field(name). Arrays end with the call."""
+
+    _arrays = {"id": scalar, "position": vector, "reference_position": vector, "velocity": vector, "mass": scalar,
+               "volume": scalar}
+    particles = None
+
+
+class NodeBatch(Batch):
+    """Active nodes: n, dim, t, dt, body, index and position (n, dim), mass (n,). Arrays end with the call."""
+
+    _arrays = {"index": vector, "position": vector, "mass": scalar}
+
+
+class ContactBatch(Batch):
+    """Nodes at which two bodies touch: body_a, body_b, n, dim, t, dt, position, normal and slip (n, dim), gap, area and
+    pressure (n,). Arrays end with the call."""
+
+    _arrays = {"position": vector, "normal": vector, "slip": vector, "gap": scalar, "area": scalar, "pressure": scalar}
+
+
+class StepInfo:
+    """What a step did, or the state as it is: the fields of mpm_step_info as attributes; vectors are arrays."""
+
+    def __init__(self, struct):
+        self._struct = struct
+
+    def __getattr__(self, name):
+        value = getattr(self._struct, name)
+        return np.array(value) if name in _VECTORS else value
+
+    def __dir__(self):
+        return [name for name, *_ in self._struct._fields_ if name not in ("struct_size", "reserved")]
+
+    def __repr__(self):
+        return f"<StepInfo step={self.step} t={self.t:g} kinetic_energy={self.kinetic_energy:g} strain_energy={self.strain_energy:g}>"
+
+
+class System:
+    """The linear system of an implicit step, for the time of a solve: matrix (indptr, indices, data), symmetric,
+    positive_definite, block, node (rows,), component (rows,), position (rows, dim), apply(x)."""
+
+    def __init__(self, operator, dim):
+        self._operator = operator
+        info = _api.operator_info(struct_size=ctypes.sizeof(_api.operator_info))
+        _refuse(lib.mpm_operator_get_info(operator, ctypes.byref(info)))
+        self.rows, self.block, self.pattern_id = info.rows, info.block, info.pattern_id
+        self.symmetric, self.positive_definite = bool(info.symmetric), bool(info.positive_definite)
+        copy = lambda at, kind, n: np.array((kind * n).from_address(at)) if n else np.empty(0)
+        self.node = copy(info.node, ctypes.c_int64, info.rows)
+        self.component = copy(info.component, ctypes.c_int32, info.rows)
+        self.position = copy(info.position, ctypes.c_double, dim * info.ld).reshape(dim, info.ld)[:, :info.rows].T
+
+    def apply(self, x):
+        """The matrix times a vector."""
+        x, y = np.ascontiguousarray(x, np.float64), np.empty(self.rows)
+        _refuse(lib.mpm_operator_apply(self._operator, address(x), address(y)))
+        return y
+
+    @property
+    def matrix(self):
+        """The matrix by compressed rows, as copies (indptr, indices, data): what scipy.sparse.csr_matrix takes in the order
+        (data, indices, indptr)."""
+        start, column, value = (ctypes.c_void_p() for _ in range(3))
+        _refuse(lib.mpm_operator_csr(self._operator, *(ctypes.addressof(x) for x in (start, column, value))))
+        indptr = np.array((ctypes.c_int64 * (self.rows + 1)).from_address(start.value))
+        count = int(indptr[-1])
+        return (indptr, np.array((ctypes.c_int32 * count).from_address(column.value)),
+                np.array((ctypes.c_double * count).from_address(value.value)))
+
+
+def _refuse(status):
+    if status:
+        raise error_of(status, lib.mpm_status_text(status).decode())
+
+
+class Stepper(Handle):
+    """A time loop over sets of particles on a grid. The options are the fields of mpm_stepper_desc: scheme, transfer, flip,
+    gravity, locking_remedy and so on."""
+
+    _destroy = staticmethod(lib.mpm_stepper_destroy)
+
+    def __init__(self, context, grid, *sets, **options):
+        self._options = descriptor(_api.stepper_desc, lib.mpm_stepper_desc_init, options, "Stepper")
+        made = context._make(lib.mpm_stepper_create, context, grid, ctypes.byref(self._options))
+        self._callbacks, self._held = {}, {}
+        self._own(context, made, context, grid)
+        self.grid, self.dim, self._sets, self._obstacles = grid, grid.dim, [], []
+        self._main = threading.main_thread()
+        self.set_progress(None)
+        self.add(*sets)
+
+    # ---- what takes part ----
+
+    @property
+    def sets(self):
+        """The sets of particles, in order of adding."""
+        return tuple(self._sets)
+
+    @property
+    def obstacles(self):
+        """The obstacles, in order of adding."""
+        return tuple(self._obstacles)
+
+    def add(self, *things):
+        """Adds sets of particles and obstacles; returns the stepper."""
+        for one in things:
+            obstacle = hasattr(one, "set_pose")
+            self._context._check((lib.mpm_stepper_add_obstacle if obstacle else lib.mpm_stepper_add)(self, one))
+            (self._obstacles if obstacle else self._sets).append(one)
+        return self
+
+    def remove(self, thing):
+        """Takes a set or an obstacle out."""
+        obstacle = hasattr(thing, "set_pose")
+        self._context._check((lib.mpm_stepper_remove_obstacle if obstacle else lib.mpm_stepper_remove)(self, thing))
+        (self._obstacles if obstacle else self._sets).remove(thing)
+
+    @documented("mpm_stepper_configure")
+    def configure(self, **options):
+        """Changes options between steps; those that are not named stay."""
+        from ._handles import fill
+        desc = _api.stepper_desc.from_buffer_copy(self._options)
+        fill(desc, options, "Stepper")
+        self._context._check(lib.mpm_stepper_configure(self, ctypes.byref(desc)))
+        self._options = desc
+
+    def option(self, name):
+        """The present value of an option."""
+        value = getattr(self._options, name)
+        return tuple(value) if isinstance(value, ctypes.Array) else value
+
+    @documented("mpm_stepper_set_wall")
+    def wall(self, face, kind, friction=0.0):
+        """Sets what a face of the grid does; returns the stepper."""
+        self._context._check(lib.mpm_stepper_set_wall(self, face, kind, friction))
+        return self
+
+    @documented("mpm_stepper_set_body")
+    def set_body(self, particles, body):
+        """Puts a set into a body, which has a velocity field of its own."""
+        self._context._check(lib.mpm_stepper_set_body(self, particles, body))
+
+    def body(self, particles):
+        """The body of a set."""
+        out = ctypes.c_int32()
+        self._context._check(lib.mpm_stepper_body(self, particles, ctypes.addressof(out)))
+        return out.value
+
+    @documented("mpm_stepper_set_contact")
+    def set_contact(self, body_a=_api.BODY_ANY, body_b=_api.BODY_ANY, **options):
+        """Sets how two bodies meet, by the fields of mpm_contact_desc: friction, friction_static, kind, normal ..."""
+        desc = contact_desc(options)
+        self._context._check(lib.mpm_stepper_set_contact(self, body_a, body_b, ctypes.byref(desc)))
+
+    @documented("mpm_stepper_contact_info")
+    def contact_info(self, body_a, body_b):
+        """What two bodies did to each other in the last step."""
+        info = _api.contact_info(struct_size=ctypes.sizeof(_api.contact_info))
+        self._context._check(lib.mpm_stepper_contact_info(self, body_a, body_b, ctypes.byref(info)))
+        return info
+
+    # ---- callbacks ----
+
+    def _kinds_of(self, batch):
+        for one in self._sets:
+            if one._address.value == batch.contents.particles:
+                return one
+        return None
+
+    def _particle_callback(self, fn):
+        if fn is None:
+            return _api.particle_fn()
+        if hasattr(fn, "address"):
+            return ctypes.cast(fn.address, _api.particle_fn)
+
+        def call(_, batch, add):
+            one = self._kinds_of(batch)
+            shown = ParticleBatch(batch, lambda: [one._kinds] if one else [])
+            shown.particles = one
+            try:
+                return fn(shown, shown._show(add, self.dim, writable=True).reshape(shown.n, self.dim))
+            finally:
+                shown._end()
+
+        return _api.particle_fn(self._context._guard(call))
+
+    def _set(self, key, setter, made, *before):
+        """Sets a callback, and keeps it alive as long as the library may call it."""
+        self._context._check(setter(self, *before, made, None))
+        self._callbacks[key] = made
+
+    @documented("mpm_stepper_set_force")
+    def set_force(self, fn):
+        """fn(batch, add) adds forces on the particles of a ParticleBatch to add (n, dim). It may return 1 to ask for a
+        smaller dt. A function of mpm.numba runs without Python in the way; None takes it away."""
+        self._set("force", lib.mpm_stepper_set_force, self._particle_callback(fn))
+
+    @documented("mpm_stepper_set_acceleration")
+    def set_acceleration(self, fn):
+        """fn(batch, add) adds accelerations of the particles of a ParticleBatch to add (n, dim)."""
+        self._set("acceleration", lib.mpm_stepper_set_acceleration, self._particle_callback(fn))
+
+    @documented("mpm_stepper_set_motion")
+    def set_motion(self, particles, fn):
+        """fn(batch, add) adds the mean velocities of the coming step for the prescribed particles of a set."""
+        made = self._particle_callback(fn)
+        self._context._check(lib.mpm_stepper_set_motion(self, particles, made, None))
+        self._held[id(particles)] = (particles, made)
+
+    @documented("mpm_stepper_set_velocity_bc")
+    def set_velocity_bc(self, fn):
+        """fn(batch, prescribed, velocity) prescribes velocities of the nodes of a NodeBatch: it sets prescribed (n, dim) to
+        1 and velocity (n, dim)."""
+        if fn is None or hasattr(fn, "address"):
+            made = ctypes.cast(fn.address, _api.velocity_fn) if fn else _api.velocity_fn()
+        else:
+
+            def call(_, batch, prescribed, velocity):
+                shown = NodeBatch(batch)
+                try:
+                    shape = (shown.n, self.dim)
+                    return fn(shown, shown._show(prescribed, self.dim, np.uint8, True).reshape(shape),
+                              shown._show(velocity, self.dim, writable=True).reshape(shape))
+                finally:
+                    shown._end()
+
+            made = _api.velocity_fn(self._context._guard(call))
+        self._set("velocity_bc", lib.mpm_stepper_set_velocity_bc, made)
+
+    @documented("mpm_stepper_set_node_hook")
+    def set_node_hook(self, stage, fn):
+        """fn(batch, velocity, force) reads and changes velocity and force (n, dim) of the nodes at a stage: AFTER_P2G,
+        AFTER_FORCES or AFTER_VELOCITY."""
+        if fn is None or hasattr(fn, "address"):
+            made = ctypes.cast(fn.address, _api.node_fn) if fn else _api.node_fn()
+        else:
+
+            def call(_, batch, velocity, force):
+                shown = NodeBatch(batch)
+                try:
+                    return fn(shown, *(shown._show(x, self.dim, writable=True).reshape(shown.n, self.dim)
+                                       for x in (velocity, force)))
+                finally:
+                    shown._end()
+
+            made = _api.node_fn(self._context._guard(call))
+        self._set(("hook", int(stage)), lib.mpm_stepper_set_node_hook, made, stage)
+
+    @documented("mpm_stepper_set_friction")
+    def set_friction(self, fn):
+        """fn(batch, friction) changes the coefficients of friction (n,) at the nodes of a ContactBatch."""
+        if fn is None or hasattr(fn, "address"):
+            made = ctypes.cast(fn.address, _api.friction_fn) if fn else _api.friction_fn()
+        else:
+
+            def call(_, batch, friction):
+                shown = ContactBatch(batch)
+                try:
+                    return fn(shown, shown._show(friction, 1, writable=True))
+                finally:
+                    shown._end()
+
+            made = _api.friction_fn(self._context._guard(call))
+        self._set("friction", lib.mpm_stepper_set_friction, made)
+
+    @documented("mpm_stepper_set_linear_solver")
+    def set_linear_solver(self, fn):
+        """fn(system, rhs, guess, tolerance) solves an implicit step's System: it returns the solution, or (solution,
+        iterations), or None if it has none. For linear_solver = SOLVER_HOST."""
+        if fn is None:
+            made = _api.solve_fn()
+        else:
+
+            def call(_, operator, rhs, solution, tolerance, iterations):
+                system = System(operator, self.dim)
+                vector_at = lambda at: np.ctypeslib.as_array((ctypes.c_double * system.rows).from_address(at))
+                said = fn(system, vector_at(rhs).copy(), vector_at(solution).copy(), tolerance)
+                if said is None:
+                    return 1
+                answer, count = said if isinstance(said, tuple) else (said, 1)
+                vector_at(solution)[:] = answer
+                ctypes.c_int64.from_address(iterations).value = int(count)
+                return 0
+
+            made = _api.solve_fn(self._context._guard(call))
+        self._set("solver", lib.mpm_stepper_set_linear_solver, made)
+
+    @documented("mpm_stepper_set_progress")
+    def set_progress(self, fn):
+        """fn(info) watches steps; True ends the call. Without one Python still looks for signals in every step, so that
+        Ctrl-C ends a long call with the state of the last committed step."""
+
+        def call(_, info):
+            if fn is not None:
+                struct = _api.step_info.from_buffer_copy(info.contents)
+                return 1 if fn(StepInfo(struct)) else 0
+            return 0
+
+        self._set("progress", lib.mpm_stepper_set_progress, _api.progress_fn(self._context._guard(call)))
+
+    # ---- steps ----
+
+    def _info(self):
+        return _api.step_info(struct_size=ctypes.sizeof(_api.step_info))
+
+    def _ended(self, status, info):
+        try:
+            self._context._check(status)
+        except Exception as error:
+            if hasattr(error, "info"):
+                error.info = StepInfo(info)
+            raise
+        return StepInfo(info)
+
+    @documented("mpm_step")
+    def step(self, dt):
+        """Makes one step; returns its StepInfo. A StepError has left the state as it was."""
+        info = self._info()
+        return self._ended(lib.mpm_step(self, dt, ctypes.byref(info)), info)
+
+    @documented("mpm_advance")
+    def advance(self, t_end, **options):
+        """Steps to a time; the options are the fields of mpm_advance_desc: cfl, dt_max, max_steps ... Returns the StepInfo
+        of the last step."""
+        desc = descriptor(_api.advance_desc, lib.mpm_advance_desc_init, dict(options, t_end=t_end), "advance")
+        info = self._info()
+        return self._ended(lib.mpm_advance(self, ctypes.byref(desc), ctypes.byref(info)), info)
+
+    @property
+    def info(self):
+        """The StepInfo of the state as it is."""
+        info = self._info()
+        self._context._check(lib.mpm_stepper_info(self, ctypes.byref(info)))
+        return StepInfo(info)
+
+    @property
+    def t(self):
+        """The time of the state."""
+        return self.info.t
+
+    @documented("mpm_stable_dt")
+    def stable_dt(self):
+        """The stable dt at CFL number 1."""
+        dt = ctypes.c_double()
+        self._context._check(lib.mpm_stable_dt(self, ctypes.addressof(dt)))
+        return dt.value
+
+    @documented("mpm_stepper_set_time")
+    def set_time(self, t, step=0):
+        """Sets time and number of steps; sums over steps start anew."""
+        self._context._check(lib.mpm_stepper_set_time(self, t, step))
+
+    @documented("mpm_step_begin")
+    def begin(self, dt):
+        """Makes the first part of a step in parts; grid() and end() follow, or abort()."""
+        self._context._check(lib.mpm_step_begin(self, dt))
+
+    @documented("mpm_step_grid")
+    def update_grid(self):
+        """Makes the second part: nodal velocities, walls, prescribed velocities."""
+        self._context._check(lib.mpm_step_grid(self))
+
+    @documented("mpm_step_end")
+    def end(self):
+        """Makes the last part, and commits; returns the StepInfo."""
+        info = self._info()
+        return self._ended(lib.mpm_step_end(self, ctypes.byref(info)), info)
+
+    @documented("mpm_step_abort")
+    def abort(self):
+        """Drops the step that was begun."""
+        self._context._check(lib.mpm_step_abort(self))
+
+    @documented("mpm_grid_map")
+    def nodes(self, field, body=0, write=False):
+        """Shows a field of the active nodes, (nodes, components). Steps are refused until the last array has died."""
+        view = _api.view(struct_size=ctypes.sizeof(_api.view))
+        access = _api.READ | (_api.WRITE if write else 0)
+        self._context._check(lib.mpm_grid_map(self, body, field.encode(), access, ctypes.byref(view)))
+        return lend(view, self, self._sets[0]._given_back)
+
+    # ---- reports ----
+
+    def _vector(self, function, *arguments):
+        out = np.empty(self.dim)
+        self._context._check(function(self, *arguments, address(out)))
+        return out
+
+    @documented("mpm_stepper_wall_reaction")
+    def wall_reaction(self, face):
+        """Force of a wall on the material in the last step."""
+        return self._vector(lib.mpm_stepper_wall_reaction, face)
+
+    @documented("mpm_stepper_wall_impulse")
+    def wall_impulse(self, face):
+        """Impulse of a wall on the material over all steps."""
+        return self._vector(lib.mpm_stepper_wall_impulse, face)
+
+    @documented("mpm_stepper_particles_reaction")
+    def particles_reaction(self, particles):
+        """Force of a set's prescribed particles on the material in the last step."""
+        return self._vector(lib.mpm_stepper_particles_reaction, particles)
+
+    @documented("mpm_stepper_particles_impulse")
+    def particles_impulse(self, particles):
+        """Impulse of a set's prescribed particles on the material over all steps."""
+        return self._vector(lib.mpm_stepper_particles_impulse, particles)
+
+    @documented("mpm_stepper_residuals")
+    def residuals(self):
+        """The history of the last implicit step's residual."""
+        count = ctypes.c_int32()
+        self._context._check(lib.mpm_stepper_residuals(self, 0, None, ctypes.addressof(count)))
+        out = np.empty(count.value)
+        self._context._check(lib.mpm_stepper_residuals(self, len(out), address(out), ctypes.addressof(count)))
+        return out
+
+    @documented("mpm_stepper_profile")
+    def profile(self, reset=False):
+        """Seconds spent in steps, by stage: a dict."""
+        out = _api.profile(struct_size=ctypes.sizeof(_api.profile))
+        self._context._check(lib.mpm_stepper_profile(self, bool(reset), ctypes.byref(out)))
+        return {name: getattr(out, name) for name, *_ in out._fields_ if name not in ("struct_size", "reserved")}
+
+    # ---- states and files ----
+
+    @documented("mpm_state_save")
+    def save(self, path=None):
+        """Saves the state into a file, or as bytes that are returned."""
+        if path is not None:
+            self._context._check(lib.mpm_state_save_file(self, str(path).encode()))
+            return None
+        count = ctypes.c_int64()
+        self._context._check(lib.mpm_state_size(self, ctypes.addressof(count)))
+        buffer = ctypes.create_string_buffer(count.value)
+        self._context._check(lib.mpm_state_save(self, buffer, count.value))
+        return buffer.raw
+
+    @documented("mpm_state_load")
+    def load(self, state):
+        """Replaces the state by one from a file, by its path, or by one that save() has returned as bytes."""
+        if isinstance(state, (bytes, bytearray, memoryview)):
+            state = bytes(state)
+            self._context._check(lib.mpm_state_load(self, state, len(state)))
+        else:
+            self._context._check(lib.mpm_state_load_file(self, str(state).encode()))
+        for one in self._sets:
+            one._look()
+
+    @property
+    def hash(self):
+        """The hash of the state."""
+        out = ctypes.c_uint64()
+        self._context._check(lib.mpm_state_hash(self, ctypes.addressof(out)))
+        return out.value
+
+    @documented("mpm_write_body_grid")
+    def write_grid(self, path, *fields, body=0):
+        """Writes nodal fields of the last step for ParaView (.vti, or .vtr with open knots)."""
+        names = (ctypes.c_char_p * max(len(fields), 1))(*(f.encode() for f in fields))
+        self._context._check(lib.mpm_write_body_grid(self, body, str(path).encode(), len(fields), ctypes.addressof(names)))
