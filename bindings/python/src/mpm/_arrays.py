@@ -1,5 +1,7 @@
 """Arrays of numpy over the library's memory, and numbers of Python as the library wants them."""
 import ctypes
+import traceback
+
 import numpy as np
 
 from . import _api, _view
@@ -12,12 +14,12 @@ _RELEASE = ctypes.cast(lib.mpm_view_release, ctypes.c_void_p).value
 
 def doubles(values, *shape):
     """A contiguous array of doubles of a shape; one number stands for all of a vector."""
-    array = np.ascontiguousarray(values, np.float64)
+    array = np.asarray(values, np.float64)
     if array.ndim == 0 and len(shape) == 1:
         array = np.full(shape, float(array))
     if array.shape != shape:
         raise ValueError(f"an array of shape {array.shape} where {shape} is wanted")
-    return array
+    return np.ascontiguousarray(array)
 
 
 def columns(values, components, n, dtype):
@@ -49,9 +51,9 @@ def address(array):
 def lend(view, owner, ended):
     """An array over a view that the library has just filled; the view ends with the last array that shows it."""
     dtype = TYPES[view.type]
-    lease = _view.Lease(view.data or 0, _FORMATS[view.type], dtype.itemsize, view.count, view.components,
-                        view.item_stride, view.component_stride, bool(view.access & _api.WRITE), _RELEASE,
-                        ctypes.addressof(view), (owner, view), ended)
+    columns_there = view.components if view.components > 1 else 0
+    lease = _view.Lease(view.data or 0, _FORMATS[view.type], dtype.itemsize, view.count, columns_there, view.item_stride,
+                        view.component_stride, view.access & _api.WRITE, _RELEASE, ctypes.addressof(view), (owner, view), ended)
     return np.asarray(memoryview(lease))
 
 
@@ -68,7 +70,7 @@ class Batch:
 
     def __init__(self, pointer, kinds=tuple):
         self._struct = pointer.contents
-        self._spans = []
+        self._leases = []
         self._kinds = kinds
 
     def __getattr__(self, name):
@@ -88,10 +90,13 @@ class Batch:
 
     def _raw(self, at, components, dtype=np.float64, writable=False):
         """What lies at an address as [components][ld], inert slots included."""
-        dtype = np.dtype(dtype)
-        span = _view.span(at, dtype.itemsize * components * self._struct.ld, writable)
-        self._spans.append(span)
-        return np.frombuffer(span, dtype).reshape(components, self._struct.ld)
+        dtype, ld = np.dtype(dtype), self._struct.ld
+        return self._lend(at, dtype, components, ld, ld, 1, writable)
+
+    def _lend(self, at, dtype, *shape):
+        lease = _view.Lease(at, dtype.char if dtype.char != "l" else "q", dtype.itemsize, *shape)
+        self._leases.append(lease)
+        return np.asarray(memoryview(lease))
 
     def _show(self, at, components, dtype=np.float64, writable=False):
         """The same as (n, components), or (n,) for one."""
@@ -110,22 +115,30 @@ class Batch:
         if status:
             raise LookupError(f"the set does not have '{name}' now ({_api.Status(status).name})")
         dtype, n = TYPES[kind], self._struct.n
-        span = _view.span(data.value, dtype.itemsize * ((components - 1) * stride.value + n), False)
-        self._spans.append(span)
-        array = np.lib.stride_tricks.as_strided(np.frombuffer(span, dtype), (n, components),
-                                                (dtype.itemsize, stride.value * dtype.itemsize), writeable=False)
-        return array[:, 0] if components == 1 else array
+        array = self._lend(data.value, dtype, components, n, stride.value, 1, False)
+        return array[0] if components == 1 else array.T
 
-    def _end(self):
-        """Ends the loan. Arrays that live on would show memory that is gone: that is an error of the callback."""
-        self.__dict__ = {"_struct": None, "_spans": self._spans}
-        spans, self._spans = self._spans, []
-        for span in spans:
-            try:
-                span.release()
-            except BufferError:
-                raise RuntimeError("a callback has kept an array of its batch, whose memory ends with the call; keep a "
-                                   "copy()") from None
+    def _run(self, fn, *outputs):
+        """Calls fn with the batch and with arrays of its outputs, (address, dtype, shape): (n, ...) over [...][ld]. Then the
+        loan ends: an array that lives on would show memory that is gone, which is an error of fn. What fn raises has no
+        variables in its frames, because they may be such arrays."""
+        arrays = []
+        for at, dtype, *shape in outputs:
+            array = self._raw(at, int(np.prod(shape)), dtype, True).reshape(*shape, -1)[..., :self._struct.n]
+            arrays.append(np.moveaxis(array, -1, 0))
+        array = None
+        try:
+            said = fn(self, *arrays)
+        except BaseException as raised:
+            traceback.clear_frames(raised.__traceback__)
+            raise
+        finally:
+            arrays.clear()
+            leases = self._leases
+            self.__dict__ = {"_struct": None, "_leases": []}
+        if any(lease.exports for lease in leases):
+            raise RuntimeError("a callback has kept an array of its batch, whose memory ends with the call; keep a copy()")
+        return said
 
 
 def tensor(_):

@@ -1,10 +1,12 @@
-/* Memory of the library as buffers of Python: leases, which give a view back to the library when the last array over it has
- * died, and spans, which live for the time of a callback. The functions and addresses come from ctypes, so that the module
- * is linked to nothing but Python. */
+/* Memory of the library as buffers of Python. A lease gives a view back to the library when the last array over it has died;
+ * of memory that is lent for the time of a callback it tells how many arrays still show it. Functions and addresses come
+ * from ctypes, so that the module is linked to nothing but Python. */
 #define Py_LIMITED_API 0x030b0000
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
+#include <stddef.h>
 #include <stdint.h>
+#include <structmember.h>
 
 typedef int32_t (*release_fn)(void *view);
 
@@ -23,7 +25,7 @@ typedef struct lease {
 static void give_back(lease *self) {
   PyObject *type, *value, *trace, *said;
   int32_t status;
-  if (!self->lent) return;
+  if (!self->lent || !self->release) return;
   self->lent = 0;
   status = self->release(self->view);
   PyErr_Fetch(&type, &value, &trace);
@@ -33,37 +35,40 @@ static void give_back(lease *self) {
   PyErr_Restore(type, value, trace);
 }
 
+/* The arguments are the address, format and size of an item, rows and columns (0: there is one axis) with their distances
+ * in items, and whether it may be written; of a view also the function that gives it back, its address, what must outlive
+ * it, and who is told the status. */
 static PyObject *lease_new(PyTypeObject *type, PyObject *args, PyObject *keywords) {
-  static char *names[] = {
-      "data",     "format",  "item_size", "count", "components", "item_stride", "component_stride",
-      "writable", "release", "view",      "owner", "ended",      NULL};
-  unsigned long long data, release, view;
-  Py_ssize_t item_size, count, components, item_stride, component_stride;
+  unsigned long long data, release = 0, view = 0;
+  Py_ssize_t item_size, rows, columns, row_stride, column_stride;
   const char *format;
   int writable;
-  PyObject *owner, *ended;
+  PyObject *owner = NULL, *ended = NULL;
   lease *self;
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "KsnnnnnpKKOO", names, &data, &format, &item_size, &count,
-                                   &components, &item_stride, &component_stride, &writable, &release, &view,
-                                   &owner, &ended))
+  if (keywords && PyDict_Size(keywords)) {
+    PyErr_SetString(PyExc_TypeError, "a lease takes no keywords");
+    return NULL;
+  }
+  if (!PyArg_ParseTuple(args, "Ksnnnnnp|KKOO", &data, &format, &item_size, &rows, &columns, &row_stride,
+                        &column_stride, &writable, &release, &view, &owner, &ended))
     return NULL;
   self = (lease *)((allocfunc)PyType_GetSlot(type, Py_tp_alloc))(type, 0);
   if (!self) return NULL;
   self->data = (void *)(uintptr_t)data;
   self->format[0] = format[0];
   self->item_size = item_size;
-  self->dimensions = components > 1 ? 2 : 1;
-  self->shape[0] = count;
-  self->shape[1] = components;
-  self->strides[0] = item_stride * item_size;
-  self->strides[1] = component_stride * item_size;
+  self->dimensions = columns > 0 ? 2 : 1;
+  self->shape[0] = rows;
+  self->shape[1] = columns;
+  self->strides[0] = row_stride * item_size;
+  self->strides[1] = column_stride * item_size;
   self->writable = writable;
   self->lent = 1;
   self->release = (release_fn)(uintptr_t)release;
   self->view = (void *)(uintptr_t)view;
-  Py_INCREF(owner);
+  Py_XINCREF(owner);
   self->owner = owner;
-  Py_INCREF(ended);
+  Py_XINCREF(ended);
   self->ended = ended;
   return (PyObject *)self;
 }
@@ -115,28 +120,19 @@ static void lease_release(PyObject *object, Py_buffer *buffer) {
   if (--self->exports == 0) give_back(self);
 }
 
+static PyMemberDef members[] = {
+    {"exports", T_PYSSIZET, offsetof(lease, exports), READONLY, "how many buffers show the memory"},
+    {NULL, 0, 0, 0, NULL}};
 static PyType_Slot lease_slots[] = {
-    {Py_tp_doc, "A view of the library's memory, given back when its last buffer dies."},
+    {Py_tp_doc, "Memory of the library, given back when its last buffer dies."},
     {Py_tp_new, lease_new},
+    {Py_tp_members, members},
     {Py_tp_dealloc, lease_free},
     {Py_bf_getbuffer, lease_get},
     {Py_bf_releasebuffer, lease_release},
     {0, NULL}};
 static PyType_Spec lease_spec = {"mpm._view.Lease", sizeof(lease), 0, Py_TPFLAGS_DEFAULT, lease_slots};
 
-/* Shows memory for the time of a callback: who made the span calls release() on it, which fails while arrays live. */
-static PyObject *span(PyObject *module, PyObject *args) {
-  unsigned long long data;
-  Py_ssize_t bytes;
-  int writable;
-  (void)module;
-  if (!PyArg_ParseTuple(args, "Knp", &data, &bytes, &writable)) return NULL;
-  return PyMemoryView_FromMemory((char *)(uintptr_t)data, bytes, writable ? PyBUF_WRITE : PyBUF_READ);
-}
-
-static PyMethodDef methods[] = {
-    {"span", span, METH_VARARGS, "span(address, bytes, writable): a memoryview over memory of a callback"},
-    {NULL, NULL, 0, NULL}};
 static int fill_module(PyObject *module) {
   PyObject *type = PyType_FromSpec(&lease_spec);
   int failed = !type || PyModule_AddObjectRef(module, "Lease", type);
@@ -145,7 +141,7 @@ static int fill_module(PyObject *module) {
 }
 static PyModuleDef_Slot slots[] = {{Py_mod_exec, (void *)fill_module}, {0, NULL}};
 static struct PyModuleDef definition = {
-    PyModuleDef_HEAD_INIT, "_view", "Memory of libmpm as buffers.", 0, methods, slots, NULL, NULL, NULL};
+    PyModuleDef_HEAD_INIT, "_view", "Memory of libmpm as buffers.", 0, NULL, slots, NULL, NULL, NULL};
 PyMODINIT_FUNC PyInit__view(void) {
   return PyModuleDef_Init(&definition);
 }

@@ -154,11 +154,7 @@ def _stress_callback(context, stress, kinds):
         return ctypes.cast(stress.address, _api.stress_fn)
 
     def call(_, batch):
-        shown = MaterialBatch(batch, kinds())
-        try:
-            return stress(shown)
-        finally:
-            shown._end()
+        return MaterialBatch(batch, kinds())._run(stress)
 
     return _api.stress_fn(context._guard(call))
 
@@ -168,14 +164,7 @@ def _tangent_callback(context, tangent, kinds, shape):
         return ctypes.cast(tangent.address, _api.tangent_fn)
 
     def call(_, batch, c, symmetric):
-        shown = MaterialBatch(batch, kinds())
-        try:
-            array = shown._raw(c, int(np.prod(shape)), writable=True).reshape(*shape, -1)[..., :shown.n]
-            answer = tangent(shown, np.moveaxis(array, -1, 0))
-            del array
-            ctypes.c_int32.from_address(symmetric).value = bool(answer)
-        finally:
-            shown._end()
+        answer = MaterialBatch(batch, kinds())._run(tangent, (c, np.float64, *shape))
+        ctypes.c_int32.from_address(symmetric).value = bool(answer)
 
     return _api.tangent_fn(context._guard(call))
-

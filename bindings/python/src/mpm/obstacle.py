@@ -50,11 +50,7 @@ class Obstacle(Handle):
             return ctypes.cast(distance.address, _api.distance_fn)
 
         def call(_, batch):
-            shown = DistanceBatch(batch)
-            try:
-                return distance(shown)
-            finally:
-                shown._end()
+            return DistanceBatch(batch)._run(distance)
 
         return _api.distance_fn(context._guard(call))
 

@@ -194,10 +194,7 @@ class Stepper(Handle):
             one = self._kinds_of(batch)
             shown = ParticleBatch(batch, lambda: [one._kinds] if one else [])
             shown.particles = one
-            try:
-                return fn(shown, shown._show(add, self.dim, writable=True).reshape(shown.n, self.dim))
-            finally:
-                shown._end()
+            return shown._run(fn, (add, np.float64, self.dim))
 
         return _api.particle_fn(self._context._guard(call))
 
@@ -233,13 +230,7 @@ class Stepper(Handle):
         else:
 
             def call(_, batch, prescribed, velocity):
-                shown = NodeBatch(batch)
-                try:
-                    shape = (shown.n, self.dim)
-                    return fn(shown, shown._show(prescribed, self.dim, np.uint8, True).reshape(shape),
-                              shown._show(velocity, self.dim, writable=True).reshape(shape))
-                finally:
-                    shown._end()
+                return NodeBatch(batch)._run(fn, (prescribed, np.uint8, self.dim), (velocity, np.float64, self.dim))
 
             made = _api.velocity_fn(self._context._guard(call))
         self._set("velocity_bc", lib.mpm_stepper_set_velocity_bc, made)
@@ -253,12 +244,7 @@ class Stepper(Handle):
         else:
 
             def call(_, batch, velocity, force):
-                shown = NodeBatch(batch)
-                try:
-                    return fn(shown, *(shown._show(x, self.dim, writable=True).reshape(shown.n, self.dim)
-                                       for x in (velocity, force)))
-                finally:
-                    shown._end()
+                return NodeBatch(batch)._run(fn, (velocity, np.float64, self.dim), (force, np.float64, self.dim))
 
             made = _api.node_fn(self._context._guard(call))
         self._set(("hook", int(stage)), lib.mpm_stepper_set_node_hook, made, stage)
@@ -271,11 +257,7 @@ class Stepper(Handle):
         else:
 
             def call(_, batch, friction):
-                shown = ContactBatch(batch)
-                try:
-                    return fn(shown, shown._show(friction, 1, writable=True))
-                finally:
-                    shown._end()
+                return ContactBatch(batch)._run(fn, (friction, np.float64))
 
             made = _api.friction_fn(self._context._guard(call))
         self._set("friction", lib.mpm_stepper_set_friction, made)

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# The package is built without a network, gives the bits of the C program, and passes its tests.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+CC=${CC:-cc} BUILD=${BUILD:-$PWD/build} scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/python
+python=
+for candidate in "${PYTHON:-python3}" /usr/bin/python3; do
+  if "$candidate" -c 'import sys, numpy, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then
+    python=$candidate
+    break
+  fi
+done
+if [ -z "$python" ]; then
+  echo "python: skipped: there is no Python 3.11 with numpy and venv"
+  exit 0
+fi
+rm -rf "$scratch"
+mkdir -p "$scratch"
+"$CC" -std=c11 -Wall -Wextra -Werror -Iinclude bindings/example.c "$BUILD/libmpm.a" -lm -lpthread -o "$scratch/example"
+"$python" -m venv --system-site-packages "$scratch/env"
+CC=$CC CFLAGS="-O2 -Wall -Wextra -Werror" MPM_LIBRARY=$BUILD/libmpm.so.0 \
+  "$scratch/env/bin/pip" install -q --no-index --no-deps --disable-pip-version-check ./bindings/python
+unset MPM_LIBRARY
+cmp <("$scratch/example") <("$scratch/env/bin/python" bindings/python/example.py)
+cd bindings/python/tests
+PYTHONDONTWRITEBYTECODE=1 MPLCONFIGDIR=$scratch "$scratch/env/bin/python" -W error::ResourceWarning -m unittest -q

@@ -1,0 +1,326 @@
+"""Functions of Python that the library calls: what they see, what they give, what they raise."""
+import unittest
+
+import mpm
+import numpy as np
+from scenes import block
+
+try:
+    import mpm.numba as compiled
+except ImportError:
+    compiled = None
+
+
+class Trouble(Exception):
+    pass
+
+
+class Callbacks(unittest.TestCase):
+    def test_force(self):
+        one, stepper = block()
+        seen = []
+
+        def force(batch, add):
+            seen.append((batch.particles, batch.position.shape, batch.dt, (batch.id >= 0).sum()))
+            add[:, 0] += 3.0 * batch.mass
+
+        stepper.set_force(force)
+        stepper.step(1e-3)
+        self.assertIs(seen[0][0], one)
+        self.assertEqual(sum(s[3] for s in seen), len(one))
+        np.testing.assert_allclose(one["velocity"][:, 0], 3e-3, rtol=1e-9)
+        stepper.set_force(None)
+        stepper.step(1e-3)
+        np.testing.assert_allclose(stepper.info.momentum[0], 3e-3 * one["mass"].sum(), rtol=1e-9)
+
+    def test_exceptions_arrive(self):
+        one, stepper = block()
+        before = stepper.hash
+
+        def force(batch, add):
+            raise Trouble("here")
+
+        stepper.set_force(force)
+        with self.assertRaisesRegex(Trouble, "here"):
+            stepper.step(1e-3)
+        self.assertEqual(stepper.hash, before)
+        with self.assertRaises(Trouble):
+            stepper.advance(0.1)
+        stepper.set_force(None)
+        stepper.step(1e-3)
+
+    def test_interrupts_arrive(self):
+        _, stepper = block()
+
+        def watch(info):
+            if info.step == 3:
+                raise KeyboardInterrupt
+
+        stepper.set_progress(watch)
+        with self.assertRaises(KeyboardInterrupt):
+            stepper.advance(10.0)
+        self.assertEqual(stepper.info.step, 2)  # the third was not committed
+
+    def test_progress_cancels(self):
+        _, stepper = block()
+        stepper.set_progress(lambda info: info.step == 3)
+        with self.assertRaises(mpm.StepError) as caught:
+            stepper.advance(10.0)
+        self.assertEqual(caught.exception.status, mpm.CANCELLED)
+        self.assertEqual(caught.exception.info.step, 2)
+        self.assertFalse(caught.exception.smaller_dt_may_do)
+
+    def test_a_smaller_dt_is_asked_for(self):
+        _, stepper = block()
+        stepper.set_force(lambda batch, add: 1 if batch.dt > 1e-4 else 0)
+        with self.assertRaises(mpm.StepError) as caught:
+            stepper.step(1e-3)
+        self.assertEqual(caught.exception.status, mpm.CUT_DT)
+        self.assertTrue(caught.exception.smaller_dt_may_do)
+        self.assertLessEqual(stepper.advance(1e-3).dt, 1e-4)
+
+    def test_kept_arrays_are_an_error(self):
+        _, stepper = block()
+        kept = []
+        stepper.set_force(lambda batch, add: kept.append(batch.position))
+        with self.assertRaisesRegex(RuntimeError, "kept an array"):
+            stepper.step(1e-3)
+        stepper.set_force(lambda batch, add: kept.append(batch.position.copy()))
+        stepper.step(1e-3)
+
+    def test_fields_in_batches(self):
+        one, stepper = block()
+        one.add_field("charge")
+        one["charge"] = np.arange(len(one)) * 1.0
+        total = []
+
+        def force(batch, add):
+            live = batch.id >= 0
+            total.append(batch.field("charge")[live].sum())
+            self.assertEqual(batch.field("stress").shape, (batch.n, 4))
+            with self.assertRaises(LookupError):
+                batch.field("chargee")
+
+        stepper.set_force(force)
+        stepper.step(1e-3)
+        self.assertEqual(sum(total), one["charge"].sum())
+
+    def test_nodes(self):
+        one, stepper = block()
+
+        def hold(batch, prescribed, velocity):
+            low = batch.position[:, 1] < 0.3
+            prescribed[low, :] = 1
+            velocity[low, 0] = 0.5
+
+        stepper.set_velocity_bc(hold)
+        stepper.step(1e-3)
+        low = one["position"][:, 1] < 0.26
+        np.testing.assert_allclose(one["velocity"][low, 0], 0.5, rtol=1e-9)
+        stepper.set_velocity_bc(None)
+        one["velocity"] = 0.0
+        stepper.set_node_hook(mpm.AFTER_FORCES, lambda batch, velocity, force: force.__setitem__(
+            (slice(None), 1), force[:, 1] + 2.0 * batch.mass))
+        stepper.step(1e-3)
+        np.testing.assert_allclose(stepper.info.momentum[1], 2e-3 * one["mass"].sum(), rtol=1e-9)
+
+    def test_motion(self):
+        one, stepper = block()
+        one.set("prescribed", [1, 1], ids=one.ids[one["position"][:, 0] < 0.4])
+        stepper.set_motion(one, lambda batch, add: add.__setitem__((slice(None), 1), 0.25))
+        stepper.step(1e-3)
+        moved = one["velocity"][one["prescribed"][:, 0] == 1]
+        self.assertGreater(len(moved), 10)
+        np.testing.assert_allclose(moved, np.tile([0, 0.25], (len(moved), 1)), rtol=1e-12)
+        self.assertGreater(stepper.particles_impulse(one)[1], 0.0)
+
+
+def neo_hookean(E=1e4, nu=0.3, density=1e3):
+    """Steffen et al. 2008, eq. 46, as a function for numpy."""
+    mu, lam = E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu))
+
+    def stress(batch):
+        F = batch.F
+        J = np.linalg.det(F)
+        b = F @ F.transpose(0, 2, 1)
+        s = (mu * (b - np.eye(3)) + lam * np.log(J)[:, None, None] * np.eye(3)) / J[:, None, None]
+        for to, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))):
+            batch.stress_new[:, to] = s[:, i, j]
+        batch.wave_speed[:] = np.sqrt((lam + 2 * mu) / density)
+
+    return stress
+
+
+class Laws(unittest.TestCase):
+    def compare(self, scheme, law, steps, dt, **options):
+        sets = []
+        for law_of in (None, law):
+            one, stepper = block(dim=2, cells=8, law_of=law_of, scheme=scheme, **options)
+            x = one["position"]
+            one["velocity"] = np.column_stack([0.3 * (x[:, 1] - 0.5), -0.2 * (x[:, 0] - 0.5)])
+            for _ in range(steps):
+                stepper.step(dt)
+            sets.append(one)
+        np.testing.assert_allclose(sets[1]["position"], sets[0]["position"], rtol=1e-9)
+        np.testing.assert_allclose(sets[1]["stress"], sets[0]["stress"], rtol=1e-6, atol=1e-5)
+
+    def test_explicit(self):
+        self.compare(mpm.MUSL, lambda context: context.law(neo_hookean(), 1e3), 50, 2e-3)
+
+    def test_implicit_with_differences(self):
+        self.compare(mpm.NEWMARK, lambda context: context.law(neo_hookean(), 1e3), 3, 2e-2)
+
+    def test_tangent(self):
+        asked = []
+
+        def tangent(batch, c):
+            asked.append(c.shape)
+            mu, lam, eye = 1e4 / 2.6, 3e3 / (1.3 * 0.4), np.eye(3)
+            ln_J = np.log(np.linalg.det(batch.F))
+            twice = (mu - lam * ln_J)[:, None, None, None, None]
+            c[...] = lam * np.einsum("ij,kl->ijkl", eye, eye) + twice * (
+                np.einsum("ik,jl->ijkl", eye, eye) + np.einsum("il,jk->ijkl", eye, eye))
+            return True
+
+        self.compare(mpm.NEWMARK, lambda context: context.law(neo_hookean(), 1e3, tangent=tangent), 3, 2e-2)
+        self.assertEqual(asked[0][1:], (3, 3, 3, 3))
+
+    def test_state_variables(self):
+        def stress(batch):
+            self.assertEqual(batch.state.shape, (batch.n, 2))
+            batch.state_new[...] = batch.state
+            batch.state_new[:, 0] += batch.dt
+            batch.stress_new[...] = 0.0
+            batch.wave_speed[...] = 1.0
+
+        one, stepper = block(law_of=lambda context: context.law(stress, 1e3, state_initial=[1.0, 5.0]))
+        stepper.step(1e-3)
+        np.testing.assert_array_equal(one["state"], np.tile([1.001, 5.0], (len(one), 1)))
+
+    def test_exceptions_of_laws(self):
+        def stress(batch):
+            raise Trouble("in a law")
+
+        one, stepper = block(law_of=lambda context: context.law(stress, 1e3))
+        with self.assertRaisesRegex(Trouble, "in a law"):
+            stepper.step(1e-3)
+
+    def test_driver(self):
+        context = mpm.Context()
+        law = context.law(neo_hookean(), 1e3)
+        built_in = context.material("neo_hookean", E=1e4, nu=0.3, density=1e3)
+        F = np.eye(3) + 0.1 * np.random.default_rng(2).normal(size=(20, 3, 3))
+        answers = [m.update(F, F, tangent=True) for m in (law, built_in)]
+        np.testing.assert_allclose(answers[0].stress, answers[1].stress, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(answers[0].tangent, answers[1].tangent, rtol=1e-4, atol=1.0)
+        self.assertTrue(answers[1].symmetric)
+
+
+@unittest.skipIf(compiled is None, "there is no numba")
+class Compiled(unittest.TestCase):
+    def test_force(self):
+        def pull(batch, add):
+            for i in range(batch.n):
+                add[i, 1] += batch.mass[i] * (-0.05 * batch.position[i, 0])
+
+        hashes = []
+        for fn in (pull, compiled.particles(pull)):
+            one, stepper = block(context=mpm.Context(isa=mpm.ISA_PORTABLE))
+            stepper.set_force(fn)
+            for _ in range(5):
+                stepper.step(1e-3)
+            hashes.append(stepper.hash)
+        self.assertEqual(*hashes)
+
+    def test_law(self):
+        mu, lam = 1e4 / 2.6, 3e3 / (1.3 * 0.4)
+
+        def law(batch):
+            for i in range(batch.n):
+                F = batch.F[i]
+                J = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
+                J *= F[2, 2]
+                at = 0
+                for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)):
+                    s = 0.0
+                    for k in range(3):
+                        s += F[a, k] * F[b, k]
+                    if a == b:
+                        s = mu * (s - 1.0) + lam * np.log(J)
+                    else:
+                        s = mu * s
+                    batch.stress_new[i, at] = s / J
+                    at += 1
+                batch.wave_speed[i] = np.sqrt((lam + 2 * mu) / 1e3)
+
+        Laws.compare(self, mpm.MUSL, lambda context: context.law(compiled.stress(law), 1e3), 50, 2e-3)
+
+    def test_exception_ends_the_step(self):
+        @compiled.particles
+        def bad(batch, add):
+            raise ValueError("lost")
+
+        _, stepper = block()
+        stepper.set_force(bad)
+        with self.assertRaises(mpm.Error) as caught:
+            stepper.step(1e-3)
+        self.assertEqual(caught.exception.status, mpm.E_CALLBACK)
+
+    def test_nodes(self):
+        @compiled.velocity_bc
+        def hold(batch, prescribed, velocity):
+            for i in range(batch.n):
+                if batch.position[i, 1] < 0.3:
+                    prescribed[i, 0] = 1
+                    velocity[i, 0] = 0.5
+
+        @compiled.node_hook
+        def lift(batch, velocity, force):
+            for i in range(batch.n):
+                force[i, 1] += 2.0 * batch.mass[i]
+
+        one, stepper = block()
+        stepper.set_velocity_bc(hold)
+        stepper.set_node_hook(mpm.AFTER_FORCES, lift)
+        stepper.step(1e-3)
+        np.testing.assert_allclose(one["velocity"][one["position"][:, 1] < 0.26, 0], 0.5, rtol=1e-9)
+        np.testing.assert_allclose(stepper.info.momentum[1], 2e-3 * one["mass"].sum(), rtol=1e-9)
+
+
+class Solver(unittest.TestCase):
+    def test_dense(self):
+        seen = []
+
+        def solve(system, rhs, guess, tolerance):
+            indptr, indices, data = system.matrix
+            dense = np.zeros((system.rows, system.rows))
+            for row in range(system.rows):
+                dense[row, indices[indptr[row]:indptr[row + 1]]] = data[indptr[row]:indptr[row + 1]]
+            np.testing.assert_allclose(system.apply(rhs), dense @ rhs, rtol=1e-9, atol=1e-9)
+            seen.append(system.position.shape)
+            return np.linalg.solve(dense, rhs)
+
+        positions = []
+        for solver in (mpm.SOLVER_HOST, mpm.SOLVER_LDLT):
+            one, stepper = block(cells=6, scheme=mpm.NEWMARK, linear_solver=solver, gravity=(0, -10))
+            stepper.wall(mpm.Y_MIN, mpm.WALL_FIXED)
+            if solver == mpm.SOLVER_HOST:
+                stepper.set_linear_solver(solve)
+            stepper.step(1e-2)
+            positions.append(one["position"])
+        np.testing.assert_allclose(positions[0], positions[1], rtol=1e-10)
+        self.assertEqual(seen[0][1], 2)
+        self.assertGreater(len(stepper.residuals()), 0)
+
+    def test_exceptions(self):
+        def solve(system, rhs, guess, tolerance):
+            raise Trouble("no solver")
+
+        _, stepper = block(cells=6, scheme=mpm.NEWMARK, linear_solver=mpm.SOLVER_HOST, gravity=(0, -10))
+        stepper.set_linear_solver(solve)
+        with self.assertRaisesRegex(Trouble, "no solver"):
+            stepper.step(1e-2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,213 @@
+"""Lifetimes, contact, obstacles, saved states, files, pictures."""
+import gc
+import os
+import resource
+import tempfile
+import unittest
+
+import mpm
+import numpy as np
+from scenes import block
+
+
+class Lifetimes(unittest.TestCase):
+    def test_any_order_of_ends(self):
+        for order in ((0, 1, 2, 3, 4), (4, 3, 2, 1, 0), (2, 4, 0, 3, 1), (1, 0, 4, 2, 3)):
+            context = mpm.Context()
+            grid = context.grid(dim=2, cells=8, spacing=0.125)
+            material = context.material("neo_hookean", E=1e4, nu=0.3, density=1e3)
+            one = context.particles(grid, material).fill_box(0.25, 0.75)
+            things = [context, grid, material, one, context.stepper(grid, one)]
+            del context, grid, material, one
+            estate = things[0]._estate
+            for index in order:
+                things[index] = None
+            self.assertEqual(estate.waiting, [])
+
+    def test_circles_are_collected(self):
+        one, stepper = block()
+        estate = one.context._estate
+        stepper.set_force(lambda batch, add, held=stepper: None)
+        one.circle, stepper.circle = stepper, one
+        del one, stepper
+        gc.collect()
+        self.assertEqual(estate.waiting, [])
+
+    def test_close(self):
+        one, stepper = block()
+        with self.assertRaises(mpm.Error) as caught:
+            one.close()
+        self.assertEqual(caught.exception.status, mpm.E_STATE)
+        stepper.step(1e-3)
+        stepper.close()
+        one.close()
+        with self.assertRaisesRegex(Exception, "this Particles is closed"):
+            len(one)
+
+    def test_soak(self):
+        def force(batch, add):
+            add += batch.velocity
+
+        def round_of_work():
+            one, stepper = block(cells=8)
+            stepper.set_force(force)
+            for _ in range(5):
+                stepper.step(1e-3)
+                one.view("position").sum()
+                one["velocity"]
+            stepper.load(stepper.save())
+
+        def resident():
+            with open("/proc/self/statm", encoding="ascii") as file:
+                return int(file.read().split()[1]) * resource.getpagesize()
+
+        for _ in range(30):
+            round_of_work()
+        gc.collect()
+        before = resident()
+        for _ in range(150):
+            round_of_work()
+        gc.collect()
+        self.assertLess(resident() - before, 3 << 20)
+
+    def test_log(self):
+        told = []
+        context = mpm.Context(log=lambda level, text: told.append((level, text)))
+        block(context=context)[1].step(1e-3)
+        self.assertTrue(all(isinstance(level, mpm._api.Log) for level, _ in told))
+
+    def test_contexts_say_why(self):
+        with self.assertRaisesRegex(mpm.Error, "E_ARG.*concurrency"):
+            mpm.Context(concurrency=-3)
+
+
+class Contact(unittest.TestCase):
+    def test_bodies(self):
+        context = mpm.Context()
+        grid = context.grid(dim=2, cells=20, spacing=0.05)
+        material = context.material("neo_hookean", E=1e4, nu=0.3, density=1e3)
+        left = context.particles(grid, material).fill_box((0.1, 0.3), (0.45, 0.7))
+        right = context.particles(grid, material).fill_box((0.5, 0.3), (0.85, 0.7))
+        left["velocity"] = (0.5, 0.0)
+        stepper = context.stepper(grid, left, right)
+        stepper.set_body(right, 1)
+        stepper.set_contact(0, 1, friction=0.2)
+        asked = []
+        stepper.set_friction(lambda batch, friction: asked.append((batch.gap.copy(), friction.copy())))
+        while not stepper.info.t or not stepper.contact_info(0, 1).touching:
+            stepper.step(1e-3)
+        self.assertEqual(stepper.body(right), 1)
+        self.assertGreater(stepper.contact_info(0, 1).force[0], 0.0)
+        self.assertTrue((asked[-1][1] == 0.2).all())
+        with self.assertRaises(mpm.Error):
+            stepper.contact_info(0, 5000)
+
+    def test_obstacles(self):
+        one, stepper = block(gravity=(0, -10))
+        floor = one.context.obstacle(mpm.SHAPE_PLANE, position=(0, 0.2), contact={"friction": 0.5})
+        ball = one.context.obstacle(mpm.SHAPE_SPHERE, size=0.05, position=(0.5, 0.85), motion=mpm.MOTION_FREE, mass=2.0,
+                                    inertia=np.diag([0, 0, 1e-3]))
+        stepper.add(floor, ball)
+        ball.set_load(force=(0, -20, 0))
+        for _ in range(200):
+            stepper.step(1e-3)
+        self.assertGreater(floor.contact_info().impulse[1], 0.0)
+        self.assertLess(ball.position[1], 0.85)
+        self.assertAlmostEqual(np.linalg.norm(ball.orientation), 1.0)
+        self.assertEqual(stepper.obstacles, (floor, ball))
+        stepper.remove(ball)
+        with self.assertRaises(mpm.Error):
+            ball.set_pose(orientation=(0, 0, 0, 0))
+
+    def test_distances_and_motion(self):
+        one, stepper = block()
+
+        def slab(batch):
+            batch.distance[:] = batch.position[:, 1]
+            batch.normal[...] = (0.0, 1.0)
+
+        lift = one.context.obstacle(mpm.SHAPE_DISTANCE, distance=slab, position=(0.5, 0.2), motion=mpm.MOTION_PRESCRIBED)
+        lift.set_motion(lambda t, dt: ((0.0, 0.5, 0.0), None))
+        stepper.add(lift)
+        for _ in range(200):
+            stepper.step(1e-3)
+        self.assertAlmostEqual(lift.position[1], 0.3, places=9)
+        self.assertGreater(one["velocity"][:, 1].mean(), 0.1)
+
+
+class States(unittest.TestCase):
+    def test_restart(self):
+        one, stepper = block(gravity=(0, -10))
+        one["velocity"] = (0.1, 0.2)
+        stepper.step(1e-3)
+        state = stepper.save()
+        with tempfile.TemporaryDirectory() as folder:
+            stepper.save(f"{folder}/state")
+            stepper.step(1e-3)
+            ahead = stepper.hash
+            for saved in (state, f"{folder}/state"):
+                stepper.load(saved)
+                stepper.step(1e-3)
+                self.assertEqual(stepper.hash, ahead)
+            with self.assertRaisesRegex(mpm.Error, "E_FORMAT"):
+                stepper.load(state[:100])
+            with self.assertRaisesRegex(mpm.Error, "E_IO"):
+                stepper.save(f"{folder}/none/state")
+
+    def test_files(self):
+        one, stepper = block()
+        stepper.step(1e-3)
+        with tempfile.TemporaryDirectory() as folder:
+            one.write(f"{folder}/a.vtp", "velocity", "stress")
+            stepper.write_grid(f"{folder}/a.vti")
+            series = one.context.series(f"{folder}/a.pvd")
+            series.append(0.001, "a.vtp")
+            series.close()
+            with open(f"{folder}/a.pvd", encoding="utf-8") as file:
+                self.assertIn("a.vtp", file.read())
+            self.assertGreater(os.path.getsize(f"{folder}/a.vti"), 1000)
+
+    def test_reports(self):
+        one, stepper = block(gravity=(0, -10), pic_damping=10.0)
+        stepper.wall(mpm.Y_MIN, mpm.WALL_SLIP)
+        info = stepper.advance(0.01, cfl=0.3)
+        self.assertAlmostEqual(info.t, 0.01)
+        self.assertAlmostEqual(info.momentum[1], -0.1 * one["mass"].sum(), places=6)
+        self.assertGreater(stepper.stable_dt(), 0.0)
+        self.assertGreater(stepper.profile()["total"], 0.0)
+        self.assertEqual(stepper.wall_impulse(mpm.Y_MIN).shape, (2,))
+        stepper.configure(gravity=(0, 0))
+        self.assertEqual(stepper.option("gravity"), (0, 0, 0))
+        self.assertEqual(stepper.option("pic_damping"), 10.0)
+        stepper.set_time(5.0, 7)
+        self.assertEqual((stepper.t, stepper.info.step), (5.0, 7))
+        one.set_geostatic(1, -10.0, 0.8, 0.5)
+        self.assertLess(one["stress"][:, 1].max(), 0.0)
+
+    def test_models(self):
+        models = mpm.models()
+        self.assertIsNone(models["neo_hookean"]["E"]["default"])
+        self.assertEqual(models["j2"][None][0][0], "plastic_strain")
+
+
+class Pictures(unittest.TestCase):
+    def test_all_dimensions(self):
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("there is no matplotlib")
+        matplotlib.use("Agg")
+        import mpm.plot
+        for dim in (1, 2, 3):
+            one, stepper = block(dim=dim, cells=6)
+            stepper.step(1e-3)
+            for by in ("speed", "pressure", "mises", "mass", np.arange(len(one))):
+                axes = mpm.plot.draw(one, by=by)
+            with tempfile.TemporaryDirectory() as folder:
+                axes.figure.savefig(f"{folder}/a.png")
+                self.assertGreater(os.path.getsize(f"{folder}/a.png"), 3000)
+            matplotlib.pyplot.close("all")
+
+
+if __name__ == "__main__":
+    unittest.main()
