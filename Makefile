@@ -86,7 +86,7 @@ all: $(STATIC_LIB) $(SHARED_LIB) $(UMAT_ARCHIVES) $(UMAT_SHARED_LIB)
 #: help                  this list
 help:
 	@awk '/^# ---- / { gsub(/^# -+ | -+$$/, ""); heading = $$0 } \
-	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk
+	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk packaging/packaging.mk
 	@printf '\n%s\n' 'V=1 shows the commands, -jN sets how many run at once, BUILD=folder builds there, CC and CFLAGS are yours.'
 
 $(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk src/kernels.txt
@@ -229,6 +229,7 @@ bench-quick: $(BENCH)
 
 include tests/tests.mk
 include bindings/bindings.mk
+include packaging/packaging.mk
 
 # ---- reference -------------------------------------------------------------------------------------------
 #: docs                  HTML from the headers, in $(BUILD)/docs/html; a declaration without a comment is an error

@@ -163,11 +163,13 @@ check-asan:
 	  BUILD=$(BUILD)-asan CPPFLAGS="$(CPPFLAGS) -DMPM_DEBUG" \
 	  CFLAGS="-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 
+# For checks of what is the same with every instruction set: threads, and what files and descriptors say.
+ONE_SET = ISAS=baseline CPPFLAGS="$(CPPFLAGS) -DMPM_BASELINE_ONLY"
 # The fork of each test would hide threads from the sanitizer.
 TSAN_SUITES ?= context executor threads rollback restart linalg
 #: check-tsan            the suites with threads under the thread sanitizer
 check-tsan:
-	+CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" \
+	+CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" $(ONE_SET) \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"
 
 # Valgrind has no traps of the processor, knows nothing of slack, and takes twenty times as long.
@@ -189,7 +191,7 @@ FUZZ_FLAGS = -g -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=add
 FUZZ_CC ?= clang
 #: fuzz-programs         the fuzz targets, by clang, in $(BUILD)-fuzz
 fuzz-programs:
-	@$(MAKE) CC=$(FUZZ_CC) BUILD=$(FUZZ) OPT=-O1 KERNEL_OPT="-O1 -Wno-pass-failed" CFLAGS="$(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp" \
+	@$(MAKE) CC=$(FUZZ_CC) BUILD=$(FUZZ) $(ONE_SET) OPT=-O1 KERNEL_OPT="-O1 -Wno-pass-failed" CFLAGS="$(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp" \
 	  $(FUZZ_TARGETS:%=$(FUZZ)/fuzz/%)
 $(BUILD)/fuzz/%: tests/fuzz/%.c tests/fuzz/fuzz.h $(STATIC_LIB) Makefile tests/tests.mk
 	@mkdir -p $(@D)

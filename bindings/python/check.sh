@@ -24,3 +24,8 @@ unset MPM_LIBRARY
 cmp <("$scratch/example") <("$scratch/env/bin/python" bindings/python/example.py)
 cd bindings/python/tests
 PYTHONDONTWRITEBYTECODE=1 MPLCONFIGDIR=$scratch "$scratch/env/bin/python" -W error::ResourceWarning -m unittest -q
+cd ..
+if "$scratch/env/bin/python" -c 'import matplotlib' 2> /dev/null; then
+  MPLCONFIGDIR=$scratch "$scratch/env/bin/python" tests/run_notebook.py introduction.ipynb > "$scratch/notebook.txt"
+fi
+echo "python: the C program's bits; tests passed"

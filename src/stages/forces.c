@@ -2,15 +2,32 @@
  * added in the scatter; everything else is collected here. */
 #include "stages/stages.h"
 #include "layout/particle_batch.h"
+#include "simd/chunk.h"
+#include "simd/lanes.h"
 
 #include <string.h>
 
-static void check_finite(int32_t m, const mpm_particle_batch *batch, const double *force,
-                         mpmi_failure *failure) {
-  double bad = 0.0;
-  for (int32_t k = 0; k < batch->dim; ++k)
-    for (int64_t p = 0; p < batch->n; ++p) bad += force[k * batch->ld + p] - force[k * batch->ld + p];
-  if (bad == 0.0) return;
+/* Adds the applied force, where there is one, on one axis and takes it off inert slots; gives a number that is 0 if all
+ * are finite. Slots come in whole chunks; two sums, so that an addition need not wait for the one before. */
+_Static_assert(MPMI_CHUNK % (2 * MPMI_LANES) == 0, "a chunk is whole pairs of registers");
+static double complete(double *force, const double *applied, const int64_t *id, int64_t n) {
+  mpmi_lanes bad[2] = {{0.0}};
+  for (int64_t p = 0; p < n; p += 2 * MPMI_LANES)
+    for (int32_t half = 0; half < 2; ++half) {
+      const int64_t at = p + half * MPMI_LANES;
+      mpmi_lanes f = mpmi_lanes_load(force + at);
+      mpmi_mask number;
+      memcpy(&number, id + at, sizeof number);
+      if (applied) f += mpmi_lanes_load(applied + at);
+      f = mpmi_lanes_where(number >= 0, f);
+      mpmi_lanes_store(force + at, f);
+      bad[half] += f - f;
+    }
+  return mpmi_lanes_sum(bad[0] + bad[1]);
+}
+
+static void name_bad_forces(int32_t m, const mpm_particle_batch *batch, const double *force,
+                            mpmi_failure *failure) {
   for (int32_t k = 0; k < batch->dim; ++k)
     for (int64_t p = 0; p < batch->n; ++p)
       if (force[k * batch->ld + p] - force[k * batch->ld + p] != 0.0)
@@ -39,13 +56,10 @@ static void forces_of_batch(void *user, int32_t m, const mpm_particle_batch *bat
     return;
   const double *applied =
       set->field[MPMI_APPLIED_FORCE].present ? mpmi_f64(set, MPMI_APPLIED_FORCE, 0) + begin : NULL;
+  double bad = 0.0;
   for (int32_t k = 0; k < batch->dim; ++k)
-    for (int64_t p = 0; p < n; ++p) {
-      const int64_t at = k * ld + p;
-      if (applied) force[at] += applied[at];
-      if (batch->id[p] < 0) force[at] = 0.0;
-    }
-  check_finite(m, batch, force, failure);
+    bad += complete(force + k * ld, applied ? applied + k * ld : NULL, batch->id, n);
+  if (bad != 0.0) name_bad_forces(m, batch, force, failure);
 }
 
 mpm_status mpmi_forces_stage(mpmi_step *step, double t) {

@@ -21,6 +21,6 @@ from .particles import Particles
 from .stepper import Stepper, StepInfo
 
 globals().update({name: getattr(_api, name) for name in _api.CONSTANTS})
-__version__ = "0.2.0"
+__version__ = "0.2.0.dev0"
 __all__ = ["Context", "Error", "Grid", "Law", "Material", "Obstacle", "Particles", "Series", "StepError", "StepInfo", "Stepper",
            "models", "version", *_api.CONSTANTS]

@@ -1,0 +1,11 @@
+# Packages of distributions, included by the Makefile at the top of the sources, from where all paths start.
+
+.PHONY: man deb
+
+#: man                   manual pages from bindings/api.json, in $(BUILD)/man
+man:
+	@python3 tools/man.py $(VERSION) $(BUILD)/man
+
+#: deb                   Debian's packages by dpkg-buildpackage, from what git has, in $(BUILD)/deb; lintian must be content
+deb:
+	@bash packaging/deb.sh $(abspath $(BUILD))/deb
