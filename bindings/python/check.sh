@@ -26,6 +26,9 @@ cd bindings/python/tests
 PYTHONDONTWRITEBYTECODE=1 MPLCONFIGDIR=$scratch "$scratch/env/bin/python" -W error::ResourceWarning -m unittest -q
 cd ..
 if "$scratch/env/bin/python" -c 'import matplotlib' 2> /dev/null; then
-  MPLCONFIGDIR=$scratch "$scratch/env/bin/python" tests/run_notebook.py introduction.ipynb > "$scratch/notebook.txt"
+  export MPLCONFIGDIR=$scratch MPLBACKEND=agg
+  "$scratch/env/bin/python" tests/run_notebook.py introduction.ipynb > "$scratch/notebook.txt"
+  awk '/^```python$/ {inside = 1; next} /^```/ {inside = 0} inside' README.md > "$scratch/ball.py"
+  (cd "$scratch" && env/bin/python ball.py > ball.txt && [ -s ball.png ])
 fi
 echo "python: the C program's bits; tests passed"

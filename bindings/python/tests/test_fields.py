@@ -112,6 +112,13 @@ class Views(unittest.TestCase):
         gc.collect()
         np.testing.assert_array_equal(x, before)
 
+    def test_an_empty_set(self):
+        context = mpm.Context()
+        grid = context.grid(dim=2, cells=4, spacing=0.25)
+        one = context.particles(grid, context.material("neo_hookean", E=1, nu=0.3, density=1))
+        self.assertEqual(one["velocity"].shape, (0, 2))
+        self.assertEqual(one.view("velocity").shape, (0, 2))
+
     def test_bad_values_are_told(self):
         one, stepper = block()
         v = one.view("velocity", write=True)
