@@ -171,6 +171,27 @@ MPM_API mpm_status mpm_particles_map(mpm_particles *particles, const char *field
 MPM_API mpm_status mpm_particles_get(const mpm_particles *particles, const char *field, int32_t type,
                                      int32_t components, int64_t n, const int64_t *ids, void *out);
 
+/**
+ * Copies count named fields of all particles into floats for renderers: particles one after the other,
+ * without inert slots, of each the components of the first field, then those of the second, and so on.
+ * Components are those of mpm_particles_get(), with full tensors and dim components per vector, and out has n
+ * times the sum of them.
+ *
+ * - order: MPM_BY_ID, or MPM_LIBRARY_ORDER, which is faster: it reads memory from front to back and needs no
+ *   index of the ids. In it a particle may have another place after each step; the field "id" tells them
+ *   apart.
+ * - n: mpm_particles_count(), to guard the host's buffer.
+ *
+ * Values are rounded to the nearest float. Those that no float can hold become infinities with their sign
+ * (from about 3.4e38 on), those below the smallest float (1.4e-45) become 0. Integers are exact up to 2^24 =
+ * 16777216.
+ *
+ * MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: count is < 1, a field is named twice, or order or n is
+ * none of these. Else as mpm_particles_get(); views may be out. Since 0.2.0.
+ */
+MPM_API mpm_status mpm_particles_get_f32(const mpm_particles *particles, int32_t count,
+                                         const char *const *fields, int32_t order, int64_t n, float *out);
+
 /** Copies values into a field, laid out as in mpm_particles_get(): all or none. Errors are those of
  * mpm_particles_get(), and MPM_E_ARG: a value is not finite or gives det F <= 0, a position is outside the
  * grid, or the field is not writable. */

@@ -11,6 +11,8 @@
 #include <mpm/particles.h>
 #include <mpm/view.hpp>
 
+#include <algorithm>
+
 namespace mpm {
 
 /** The ids of particles that a call has made: first to first + count - 1. */
@@ -167,6 +169,17 @@ public:
   template <class T = double> std::vector<T> get(const std::string &field, span<const int64_t> ids) const {
     return copy<T>(field, static_cast<int64_t>(ids.size()), detail::not_null(ids));
   }
+  /** Copies fields of all particles, one particle after the other, as floats: see mpm_particles_get_f32(). */
+  std::vector<float> get_f32(const std::vector<std::string> &names, int32_t order = MPM_BY_ID) const {
+    std::vector<float> values(static_cast<std::size_t>(std::max(floats_of(names), int64_t{0})));
+    copy_f32(names, order, values);
+    return values;
+  }
+  /** Copies them into a buffer of the host, which has the size of what the other overload gives. */
+  void get_f32(const std::vector<std::string> &names, span<float> out, int32_t order = MPM_BY_ID) const {
+    if (const int64_t floats = floats_of(names); floats >= 0) detail::expect_size("out", out.size(), floats);
+    copy_f32(names, order, out);
+  }
   /** Copies values, [components][count()] by ascending id, into a field: see mpm_particles_set(). */
   template <class C> void set(const std::string &field, const C &values) {
     write<detail::element<const C>>(field, count(), nullptr, values);
@@ -219,14 +232,30 @@ private:
   void expect_axes(const char *what, std::size_t size) const {
     detail::expect_size(what, size, core().grid->dim);
   }
-  /* 0 for an unknown field, which the library then names */
-  int32_t components_of(const std::string &field) const {
+  /* What is given for an unknown field, which the library then names. */
+  int32_t components_of(const std::string &field, int32_t unknown = 0) const {
     const char *name = "";
     int32_t components = 0;
     for (int32_t i = 0; !mpm_particles_field_info(core().handle, i, &name, nullptr, &components, nullptr);
          ++i)
       if (field == name) return components;
-    return 0;
+    return unknown;
+  }
+  /* -1 if one of the fields is unknown */
+  int64_t floats_of(const std::vector<std::string> &names) const {
+    int64_t floats = 0;
+    for (const std::string &name : names) {
+      const int32_t components = components_of(name, -1);
+      if (components < 0) return -1;
+      floats += components * count();
+    }
+    return floats;
+  }
+  void copy_f32(const std::vector<std::string> &names, int32_t order, span<float> out) const {
+    float none{};
+    check(mpm_particles_get_f32(core().handle, static_cast<int32_t>(names.size()),
+                                detail::c_names(names).data(), order, count(),
+                                out.empty() ? &none : out.data()));
   }
   template <class T> std::vector<T> copy(const std::string &field, int64_t n, const int64_t *ids) const {
     const int32_t components = components_of(field);

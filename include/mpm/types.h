@@ -195,6 +195,12 @@ enum mpm_type_value {
   MPM_U8 = 3   /**< uint8_t */
 };
 
+/** Order of the particles in mpm_particles_get_f32(). */
+enum {
+  MPM_BY_ID = 1,        /**< by ascending id */
+  MPM_LIBRARY_ORDER = 2 /**< as they lie in memory, without inert slots; changes when they are sorted anew */
+};
+
 /** Linear solver of an implicit step. */
 enum mpm_solver_value {
   MPM_SOLVER_AUTO = 0,         /**< the library chooses by size, stencil, symmetry and inertia */

@@ -50,15 +50,19 @@ static mpm_status list(mpm_particles *set) {
   return MPM_OK;
 }
 
+mpm_status mpmi_refuse_ids(const mpm_particles *set) {
+  return mpmi_fail(
+      set->context, MPM_E_STATE,
+      "the ids of the set are not those of its %lld particles: a view for reading was written to",
+      (long long)set->count);
+}
+
 static mpm_status check_index(mpm_particles *set) {
   const int64_t listed = set->index_capacity;
   set->index_capacity = set->count;
   if (listed <= set->count && is_sound(set, listed)) return MPM_OK;
   mpmi_index_drop(set);
-  return mpmi_fail(
-      set->context, MPM_E_STATE,
-      "the ids of the set are not those of its %lld particles: a view for reading was written to",
-      (long long)set->count);
+  return mpmi_refuse_ids(set);
 }
 
 mpm_status mpmi_index_build(mpm_particles *set) {

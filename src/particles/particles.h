@@ -140,6 +140,8 @@ int64_t mpmi_leading_dimension(int64_t slots);
 /* These find slots by id (lookup.c). */
 mpm_status mpmi_index_build(mpm_particles *set);   /* does nothing when it is there */
 int32_t mpmi_ids_ascend(const mpm_particles *set); /* 1: ids ascend with the slots */
+/* Refuses ids that are not as many as particles, or not unique: MPM_E_STATE. */
+mpm_status mpmi_refuse_ids(const mpm_particles *set);
 void mpmi_index_drop(mpm_particles *set);
 int64_t mpmi_index_find(const mpm_particles *set, int64_t id); /* slot, or -1; index must be built */
 

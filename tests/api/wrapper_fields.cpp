@@ -1,6 +1,7 @@
 // The C++ wrapper: particles, their fields as copies and views, files and saved states.
 #include "wrapper.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -76,6 +77,20 @@ void copies(world &w) {
   CHECK(w.set.get<uint8_t>("colour")[64] == 2);
   w.set.set("grain", {7}, std::vector<int64_t>{9});
   CHECK(w.set.get<int64_t>("grain")[7] == 9 && w.set.get<int64_t>("grain")[8] == 0);
+
+  const std::vector<float> packed = w.set.get_f32({"velocity", "colour"});
+  CHECK(packed.size() == 5 * 64 && packed[0] == 1.0f && packed[1] == -2.0f && packed[4] == 3.0f);
+  CHECK(packed[15] == 1.0f && packed[16] == -2.0f && packed[17] == 1.0f);
+  std::array<float, 64> ids{};
+  w.set.get_f32({"id"}, ids, MPM_LIBRARY_ORDER);
+  std::sort(ids.begin(), ids.end());
+  CHECK(ids[0] == 0.0f && ids[63] == 63.0f);
+  CHECK(w.set.get_f32({"state"}).empty());
+  CHECK(refused(MPM_E_ARG, "out has 64 values, must have 128", [&] { w.set.get_f32({"velocity"}, ids); }));
+  CHECK(refused(MPM_E_NOT_FOUND, "velocity", [&] { w.set.get_f32({"velocty"}); }));
+  CHECK(refused(MPM_E_NOT_FOUND, "velocity", [&] { w.set.get_f32({"id", "velocty"}, ids); }));
+  CHECK(refused(MPM_E_ARG, "order is 0", [&] { w.set.get_f32({"velocity"}, 0); }));
+  CHECK(refused(MPM_E_ARG, "count is 0", [&] { w.set.get_f32({}); }));
 
   CHECK(refused(MPM_E_NOT_FOUND, "velocity", [&] { w.set.get("velocty"); }));
   CHECK(refused(MPM_E_NOT_FOUND, "velocity", [&] { w.set.set("velocty", v); }));

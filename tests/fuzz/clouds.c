@@ -541,6 +541,26 @@ static void set_fields(cloud *c) {
   if (further == 3) fuzz_status(c->context, mpm_particles_reset_reference(set));
 }
 
+/* Fields as floats, into memory that holds no more than they need. */
+static void pack(cloud *c) {
+  static const char *const field[] = {"position", "velocity", "stress",     "state", "id",
+                                      "colour",   "size",     "prescribed", "image", "reference_position"};
+  const mpm_particles *set = draw_set(c);
+  const int32_t count = 1 + fuzz_below(&c->in, 3);
+  const int64_t n = mpm_particles_count(set);
+  const char *names[3];
+  size_t bytes = 0;
+  for (int32_t i = 0; i < count; ++i) {
+    names[i] = field[fuzz_below(&c->in, 10)];
+    const int32_t f = mpmi_find_field(set, names[i]);
+    if (f >= 0) bytes += (size_t)n * (size_t)set->field[f].full_components * sizeof(float);
+  }
+  float *out = malloc(bytes);
+  MUST(out || !bytes);
+  fuzz_status(c->context, mpm_particles_get_f32(set, count, names, fuzz_below(&c->in, 3), n, out));
+  free(out);
+}
+
 static void write_files(cloud *c) {
   char path[64];
   snprintf(path, sizeof path, "/tmp/mpm-fuzz-%ld", (long)getpid());
@@ -641,6 +661,9 @@ static void act(cloud *c) {
   case 20:
   case 21:
     draw_obstacle(c);
+    break;
+  case 22:
+    pack(c);
     break;
   default:
     step(c);

@@ -336,6 +336,10 @@ START_TEST(hosts_find_their_environment) {
   UNTOUCHED(s, mpm_state_hash(w.stepper, &hash));
   UNTOUCHED(s, mpm_stepper_info(w.stepper, &info));
   UNTOUCHED(s, mpm_write_particles(w.set[0], scratch_path("host.vtp", path, sizeof path), 0, NULL));
+  float *packed = malloc(2 * (size_t)mpm_particles_count(w.set[0]) * sizeof *packed);
+  UNTOUCHED(s, mpm_particles_get_f32(w.set[0], 1, (const char *const[]){"velocity"}, MPM_LIBRARY_ORDER,
+                                     mpm_particles_count(w.set[0]), packed));
+  free(packed);
   UNTOUCHED(s, mpm_particles_map(w.set[0], "velocity", MPM_READ | MPM_WRITE, &view));
   UNTOUCHED(s, mpm_view_release(&view));
   UNTOUCHED(s, mpm_step_begin(w.stepper, BODY_DT));

@@ -26,7 +26,7 @@ static void try_all(int32_t kind) {
   mpm_step_info info = {.struct_size = sizeof info};
   mpm_profile profile = {.struct_size = sizeof profile};
   mpm_contact_info contact = {.struct_size = sizeof contact};
-  const char *name;
+  const char *name, *mass = "mass";
   double value[64];
   unsigned char byte[8] = {0};
   int64_t bytes;
@@ -59,6 +59,7 @@ static void try_all(int32_t kind) {
       mpm_particles_map(set, "mass", MPM_READ, &view),
       mpm_particles_map(spare, "mass", MPM_READ, &view),
       mpm_particles_get(set, "mass", MPM_F64, 1, 1, &id, value),
+      mpm_particles_get_f32(spare, 1, &mass, MPM_BY_ID, mpm_particles_count(spare), (float *)value),
       mpm_particles_set(set, "velocity", MPM_F64, 2, 1, &id, x),
       mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, F),
       mpm_stepper_add(stepper, spare),

@@ -29,4 +29,6 @@ void sets_unchanged(const world *w, sets_counts was);
 /* Every slot must be a particle or inert, in whole groups. */
 void sets_check_slots(const world *w);
 
+TCase *copies_f32_case(void); /* of test_copies.c */
+
 #endif

@@ -380,5 +380,6 @@ Suite *copies_suite(void) {
   tcase_add_test(tests, what_follows_is_marked);
   tcase_add_test(tests, volume_and_stress_follow);
   suite_add_tcase(suite, tests);
+  suite_add_tcase(suite, copies_f32_case());
   return suite;
 }
