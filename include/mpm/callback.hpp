@@ -49,6 +49,9 @@ private:
   std::function<mpm_status(A...)> call_;
 };
 
+/** As mpm_write_fn: takes the next bytes of an output. */
+using write_callback = callback<span<const unsigned char>>;
+
 namespace detail {
 
 /** Exceptions that callbacks threw during a call, on any thread. Each has a number, which the library carries
@@ -90,6 +93,20 @@ mpm_status guarded(thrown &kept, const F &function, A &&...arguments) noexcept {
     return kept.keep();
   }
 }
+
+/** A function that takes an output, where C finds it during the call. */
+struct byte_taker {
+  const write_callback &function; /**< of the host */
+  thrown &exceptions;             /**< those of the context */
+
+  /** Is an mpm_write_fn. */
+  static mpm_status write(void *user, const void *data, int64_t bytes) {
+    const byte_taker &to = *static_cast<const byte_taker *>(user);
+    return guarded(to.exceptions, [&] {
+      return to.function({static_cast<const unsigned char *>(data), static_cast<std::size_t>(bytes)});
+    });
+  }
+};
 
 } // namespace detail
 

@@ -1,6 +1,6 @@
 /**
  * @file io.h
- * Saved states and output for ParaView and VTK.
+ * Saved states and output for ParaView and VTK, in files or through a callback.
  *
  * A state holds time, step and the controller's dt, the sets in order of mpm_stepper_add() with every field
  * (library order included, so that continuing is bitwise identical), the sums over steps, and a description
@@ -22,7 +22,7 @@
  * in the folder.
  *
  * Paths are UTF-8, also on Windows. In a build without files (MPM_NO_FILES) every call with a path gives
- * MPM_E_UNSUPPORTED.
+ * MPM_E_UNSUPPORTED. Calls that write to a callback (mpm_write_fn) work in every build.
  */
 #ifndef MPM_IO_H
 #define MPM_IO_H
@@ -32,6 +32,13 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/** Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets,
+ * browsers. All pieces have 65536 bytes, but for the last one, which has fewer or as many; data are lent for
+ * the time of the call. It runs on the calling thread. A return other than 0 ends the output with
+ * MPM_E_CALLBACK, and mpm_last_error() tells what was returned and after how many bytes;
+ * mpm_step_info.callback_status stays that of the last step. Since 0.2.0. */
+typedef mpm_status (*mpm_write_fn)(void *user, const void *data, int64_t bytes);
 
 /** Tells how many bytes mpm_state_save() needs now. */
 MPM_API mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes);
@@ -50,6 +57,12 @@ MPM_API mpm_status mpm_state_load(mpm_stepper *stepper, const void *buffer, int6
  * the old state or the new one. MPM_E_IO: the file could not be written. */
 MPM_API mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path);
 
+/** Gives the bytes of mpm_state_save() to a callback. They are made twice, because the first of them hold a
+ * checksum of all others; memory for one piece is enough. MPM_E_CALLBACK: the callback refused.
+ * MPM_E_STATE: as in mpm_state_save(); or what was written through a view for reading changed the state
+ * while it went out. Since 0.2.0. */
+MPM_API mpm_status mpm_state_save_to(const mpm_stepper *stepper, mpm_write_fn write, void *user);
+
 /** Replaces the state by one from a file. Errors are those of mpm_state_load(), and MPM_E_IO: the file could
  * not be read. */
 MPM_API mpm_status mpm_state_load_file(mpm_stepper *stepper, const char *path);
@@ -66,6 +79,12 @@ MPM_API mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash);
  * not be written. */
 MPM_API mpm_status mpm_write_particles(const mpm_particles *particles, const char *path, int32_t count,
                                        const char *const *fields);
+
+/** Gives the bytes of the file that mpm_write_particles() would write to a callback, with memory for one
+ * piece. Errors are the same, but for the path, and with MPM_E_CALLBACK, when the callback refused, in the
+ * place of MPM_E_IO. Since 0.2.0. */
+MPM_API mpm_status mpm_write_particles_to(const mpm_particles *particles, mpm_write_fn write, void *user,
+                                          int32_t count, const char *const *fields);
 
 /**
  * Writes nodal fields of the last step, or of a staged step while one is under way, over the box of the
@@ -90,6 +109,15 @@ MPM_API mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_
  * set of the stepper is in the body. */
 MPM_API mpm_status mpm_write_body_grid(mpm_stepper *stepper, int32_t body, const char *path, int32_t count,
                                        const char *const *fields);
+
+/** Gives the bytes of the file that mpm_write_body_grid() would write to a callback. They are those of a .vtr
+ * file if the grid has boundary_basis = MPM_BOUNDARY_OPEN_KNOT and an axis that is not periodic, else those
+ * of a .vti file; the second line names the kind, RectilinearGrid or ImageData. Zeros between bodies far
+ * apart are all given, however many they are. Memory follows the active nodes, and one piece is added. Errors
+ * are the same, but for the path, and with MPM_E_CALLBACK, when the callback refused, in the place of
+ * MPM_E_IO. Since 0.2.0. */
+MPM_API mpm_status mpm_write_grid_to(mpm_stepper *stepper, int32_t body, mpm_write_fn write, void *user,
+                                     int32_t count, const char *const *fields);
 
 /** A time series of output files (.pvd); its file is valid on disk after every append. */
 typedef struct mpm_series mpm_series;

@@ -224,6 +224,12 @@ public:
     check(mpm_write_particles(core().handle, path.c_str(), static_cast<int32_t>(names.size()),
                               detail::c_names(names).data()));
   }
+  /** Gives the bytes of that file to a function: see mpm_write_particles_to(). */
+  void write_to(const write_callback &write, const std::vector<std::string> &names = {}) const {
+    detail::byte_taker taker{write, core().context->exceptions};
+    check(mpm_write_particles_to(core().handle, write ? detail::byte_taker::write : nullptr, &taker,
+                                 static_cast<int32_t>(names.size()), detail::c_names(names).data()));
+  }
 
 private:
   void check(mpm_status status) const {

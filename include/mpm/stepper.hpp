@@ -224,6 +224,11 @@ public:
   void save_file(const std::string &path) const {
     check(mpm_state_save_file(core().handle, path.c_str()));
   }
+  /** Gives the bytes of the state to a function: see mpm_state_save_to(). */
+  void save_to(const write_callback &write) const {
+    detail::byte_taker taker{write, core().context->exceptions};
+    check(mpm_state_save_to(core().handle, write ? detail::byte_taker::write : nullptr, &taker));
+  }
   /** Replaces the state by one from a file: see mpm_state_load_file(). */
   void load_file(const std::string &path) {
     check(mpm_state_load_file(core().handle, path.c_str()));
@@ -244,6 +249,12 @@ public:
   void write_body_grid(int32_t body, const std::string &path, const std::vector<std::string> &names = {}) {
     check(mpm_write_body_grid(core().handle, body, path.c_str(), static_cast<int32_t>(names.size()),
                               detail::c_names(names).data()));
+  }
+  /** Gives the bytes of that file to a function: see mpm_write_grid_to(). */
+  void write_grid_to(int32_t body, const write_callback &write, const std::vector<std::string> &names = {}) {
+    detail::byte_taker taker{write, core().context->exceptions};
+    check(mpm_write_grid_to(core().handle, body, write ? detail::byte_taker::write : nullptr, &taker,
+                            static_cast<int32_t>(names.size()), detail::c_names(names).data()));
   }
 
 private:

@@ -76,9 +76,10 @@ const void *mpmi_archive_take(mpmi_archive *a, int64_t bytes) {
 
 /* Writes whole words. */
 static void put(mpmi_archive *a, const void *data, int64_t bytes) {
+  if (a->mode == MPMI_TO_OUTPUT && mpmi_output_failed(a->output)) return;
   if (a->mode != MPMI_MEASURE && bytes > 0) mpmi_checksum_add(&a->checksum, data, bytes);
   if (a->mode == MPMI_TO_MEMORY && bytes > 0) memcpy(a->to + a->at, data, (size_t)bytes);
-  if (a->mode == MPMI_TO_FILE && bytes > 0) mpmi_output_write(a->file, data, (size_t)bytes);
+  if (a->mode == MPMI_TO_OUTPUT && bytes > 0) mpmi_output_write(a->output, data, (size_t)bytes);
   a->at += bytes;
 }
 

@@ -3,7 +3,7 @@
 #ifndef MPMI_ARCHIVE_H
 #define MPMI_ARCHIVE_H
 
-#include "io/output_file.h"
+#include "io/output.h"
 
 typedef struct mpmi_checksum {
   uint64_t lane[4], words;
@@ -12,15 +12,15 @@ void mpmi_checksum_begin(mpmi_checksum *sum);
 void mpmi_checksum_add(mpmi_checksum *sum, const void *data, int64_t bytes); /* bytes: a multiple of 8 */
 uint64_t mpmi_checksum_end(const mpmi_checksum *sum);
 
-enum { MPMI_MEASURE, MPMI_TO_MEMORY, MPMI_TO_FILE, MPMI_FROM_MEMORY };
+enum { MPMI_MEASURE, MPMI_TO_CHECKSUM, MPMI_TO_MEMORY, MPMI_TO_OUTPUT, MPMI_FROM_MEMORY };
 
 typedef struct mpmi_archive {
   mpm_context *context;
   int32_t mode;
-  mpm_status status; /* the first failure, after which nothing more is done; file errors are kept by `file` */
-  int64_t at;        /* bytes written or read so far */
-  unsigned char *to; /* MPMI_TO_MEMORY */
-  mpmi_output *file; /* MPMI_TO_FILE; it keeps its own errors */
+  mpm_status status;         /* the first failure, after which nothing more is done */
+  int64_t at;                /* bytes written or read so far */
+  unsigned char *to;         /* MPMI_TO_MEMORY */
+  mpmi_output *output;       /* MPMI_TO_OUTPUT; it keeps its own errors */
   const unsigned char *from; /* MPMI_FROM_MEMORY */
   int64_t size;              /* how many bytes `from` has */
   mpmi_checksum checksum;    /* sum over what was written */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/output_file.h"
+#include "io/output.h"
 #include "platform/platform.h"
 
 struct mpm_series {

@@ -10,14 +10,14 @@ mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path) {
   mpm_status status = mpmi_check_path(context, path);
   if (!status) status = mpmi_state_settle(stepper);
   mpmi_output out;
-  if (!status) status = mpmi_output_open(&out, context, path);
+  if (!status) status = mpmi_output_open(&out, context, &(mpmi_target){.path = path});
   if (status) return status;
   /* The header has the checksum and so comes last; until then its place is empty. */
   mpmi_state_header header = {"", 0, 0, 0, 0};
   mpmi_output_write(&out, &header, sizeof header);
   mpmi_archive a;
-  mpmi_archive_begin(&a, context, MPMI_TO_FILE);
-  a.file = &out;
+  mpmi_archive_begin(&a, context, MPMI_TO_OUTPUT);
+  a.output = &out;
   mpmi_state_write(&a, stepper);
   header = mpmi_state_header_of(&a);
   mpmi_output_rewind(&out);

@@ -1,4 +1,5 @@
-/* Saving brings the sets up to date, then writes everything after the header, and last the header. */
+/* Saving brings the sets up to date, then writes everything after the header, and last the header, which has
+ * the checksum. A callback wants the header first: the checksum is then found before anything is written. */
 #include "io/byte_order.h"
 #include "io/state.h"
 
@@ -158,4 +159,32 @@ mpm_status mpm_state_save(const mpm_stepper *stepper, void *buffer, int64_t capa
   const mpmi_state_header header = mpmi_state_header_of(&a);
   memcpy(buffer, &header, sizeof header);
   return MPM_OK;
+}
+
+static mpmi_state_header foresee_header(const mpm_stepper *s) {
+  mpmi_archive a;
+  mpmi_archive_begin(&a, s->context, MPMI_TO_CHECKSUM);
+  mpmi_state_write(&a, s);
+  return mpmi_state_header_of(&a);
+}
+
+mpm_status mpm_state_save_to(const mpm_stepper *stepper, mpm_write_fn write, void *user) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  mpm_context *context = stepper->context;
+  mpm_status status = mpmi_check_write(context, write);
+  if (!status) status = mpmi_state_settle(stepper);
+  mpmi_output out;
+  if (!status) status = mpmi_output_open(&out, context, &(mpmi_target){.write = write, .user = user});
+  if (status) return status;
+  const mpmi_state_header header = foresee_header(stepper);
+  mpmi_output_write(&out, &header, sizeof header);
+  mpmi_archive a;
+  mpmi_archive_begin(&a, context, MPMI_TO_OUTPUT);
+  a.output = &out;
+  mpmi_state_write(&a, stepper);
+  status = mpmi_output_close(&out, 0);
+  if (!status && mpmi_state_header_of(&a).checksum != header.checksum)
+    status = mpmi_fail(context, MPM_E_STATE,
+                       "the state changed while it was saved: a view for reading was written to");
+  return status;
 }

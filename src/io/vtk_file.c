@@ -37,17 +37,17 @@ int32_t mpmi_vtk_fits(const mpmi_vtk_file *file) {
   return 1;
 }
 
-mpm_status mpmi_vtk_open(mpmi_vtk_file *file, const char *path, const char *kind) {
-  mpm_status status = mpmi_output_open(&file->out, file->context, path);
+mpm_status mpmi_vtk_open(mpmi_vtk_file *file, const mpmi_target *to, const char *kind) {
+  mpm_status status = mpmi_output_open(&file->out, file->context, to);
   if (status) return status;
   const uint16_t one = 1;
   uint8_t first_byte;
   memcpy(&first_byte, &one, 1);
   file->offset = 0;
-  fprintf(file->out.stream,
-          "<?xml version=\"1.0\"?>\n"
-          "<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\">\n",
-          kind, first_byte ? "LittleEndian" : "BigEndian");
+  mpmi_output_print(&file->out,
+                    "<?xml version=\"1.0\"?>\n"
+                    "<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\">\n",
+                    kind, first_byte ? "LittleEndian" : "BigEndian");
   return MPM_OK;
 }
 
@@ -55,16 +55,17 @@ void mpmi_vtk_tags(mpmi_vtk_file *file, int32_t begin, int32_t end) {
   static const char *const type_name[] = {"", "Float64", "Int64", "UInt8"};
   for (int32_t i = begin; i < end; ++i) {
     const mpmi_vtk_array *a = &file->list[i];
-    fprintf(file->out.stream,
-            "        <DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" "
-            "offset=\"%lld\"/>\n",
-            type_name[a->type], a->name, (int)a->components, (long long)file->offset);
+    mpmi_output_print(
+        &file->out,
+        "        <DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" "
+        "offset=\"%lld\"/>\n",
+        type_name[a->type], a->name, (int)a->components, (long long)file->offset);
     add_bytes(a, &file->offset);
   }
 }
 
 void mpmi_vtk_start_data(mpmi_vtk_file *file, const char *kind) {
-  fprintf(file->out.stream, "    </Piece>\n  </%s>\n  <AppendedData encoding=\"raw\">\n_", kind);
+  mpmi_output_print(&file->out, "    </Piece>\n  </%s>\n  <AppendedData encoding=\"raw\">\n_", kind);
 }
 
 void mpmi_vtk_start_array(mpmi_vtk_file *file, const mpmi_vtk_array *a) {
@@ -73,6 +74,6 @@ void mpmi_vtk_start_array(mpmi_vtk_file *file, const mpmi_vtk_array *a) {
 }
 
 mpm_status mpmi_vtk_close(mpmi_vtk_file *file) {
-  fputs("\n  </AppendedData>\n</VTKFile>\n", file->out.stream);
+  mpmi_output_print(&file->out, "\n  </AppendedData>\n</VTKFile>\n");
   return mpmi_output_close(&file->out, 0);
 }

@@ -3,7 +3,7 @@
 #ifndef MPMI_VTK_FILE_H
 #define MPMI_VTK_FILE_H
 
-#include "io/output_file.h"
+#include "io/output.h"
 #include "particles/particles.h"
 
 enum { MPMI_VTK_ARRAYS = MPMI_MAX_FIELDS + 3 };
@@ -34,8 +34,8 @@ mpm_status mpmi_vtk_add_named(mpmi_vtk_file *file, const char *name, int32_t fie
 /* Returns 1 when there is an offset for every byte of the arrays. */
 int32_t mpmi_vtk_fits(const mpmi_vtk_file *file);
 
-/* The calls come in this order. Between the first two the writer prints tags of its own to out.stream. */
-mpm_status mpmi_vtk_open(mpmi_vtk_file *file, const char *path, const char *kind);
+/* The calls come in this order. Between the first two the writer prints tags of its own. */
+mpm_status mpmi_vtk_open(mpmi_vtk_file *file, const mpmi_target *to, const char *kind);
 void mpmi_vtk_tags(mpmi_vtk_file *file, int32_t begin, int32_t end); /* tags of the arrays [begin, end) */
 void mpmi_vtk_start_data(mpmi_vtk_file *file, const char *kind);
 void mpmi_vtk_start_array(mpmi_vtk_file *file, const mpmi_vtk_array *array); /* its bytes follow */

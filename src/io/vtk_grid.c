@@ -120,7 +120,7 @@ static const char *kind_of(const image *w) {
 
 static void write_head(image *w) {
   const mpm_grid_desc *grid = &w->s->grid->desc;
-  FILE *stream = w->file.out.stream;
+  mpmi_output *out = &w->file.out;
   char extent[160], number[6][MPMI_REAL];
   int32_t used = 0;
   for (int32_t k = 0; k < 3; ++k) {
@@ -129,18 +129,18 @@ static void write_head(image *w) {
     mpmi_print_real(grid->origin[k], number[k]);
     mpmi_print_real(grid->spacing[k], number[3 + k]);
   }
-  fprintf(stream, "  <%s WholeExtent=\"%s\"", kind_of(w), extent);
+  mpmi_output_print(out, "  <%s WholeExtent=\"%s\"", kind_of(w), extent);
   if (!w->uneven)
-    fprintf(stream, " Origin=\"%s %s %s\" Spacing=\"%s %s %s\"", number[0], number[1], number[2], number[3],
-            number[4], number[5]);
-  fprintf(stream, ">\n    <Piece Extent=\"%s\">\n      <PointData>\n", extent);
+    mpmi_output_print(out, " Origin=\"%s %s %s\" Spacing=\"%s %s %s\"", number[0], number[1], number[2],
+                      number[3], number[4], number[5]);
+  mpmi_output_print(out, ">\n    <Piece Extent=\"%s\">\n      <PointData>\n", extent);
   const int32_t fields = w->file.count - (w->uneven ? 3 : 0);
   mpmi_vtk_tags(&w->file, 0, fields);
-  fputs("      </PointData>\n", stream);
+  mpmi_output_print(out, "      </PointData>\n");
   if (!w->uneven) return;
-  fputs("      <Coordinates>\n", stream);
+  mpmi_output_print(out, "      <Coordinates>\n");
   mpmi_vtk_tags(&w->file, fields, w->file.count);
-  fputs("      </Coordinates>\n", stream);
+  mpmi_output_print(out, "      </Coordinates>\n");
 }
 
 static void write_coordinates(image *w, int32_t axis) {
@@ -163,7 +163,7 @@ static void write_array(image *w, const mpmi_vtk_array *a) {
     write_coordinates(w, COORDINATES - a->field);
     return;
   }
-  for (int64_t i = 0, run; i < w->n; i += run) {
+  for (int64_t i = 0, run; i < w->n && !mpmi_output_failed(&w->file.out); i += run) {
     const int64_t begin = (int64_t)w->place[i];
     for (run = 1; run < most && i + run < w->n && (int64_t)w->place[i + run] == begin + run;) ++run;
     memset(buffer, 0, (size_t)(run * tuple)); /* axes that do not exist stay 0 */
@@ -177,7 +177,7 @@ static void write_array(image *w, const mpmi_vtk_array *a) {
 
 /* Readers choose by the suffix what they expect in a file. */
 static mpm_status check_suffix(const image *w, const char *path) {
-  const char *suffix = strrchr(path, '.');
+  const char *suffix = path ? strrchr(path, '.') : NULL;
   if (!suffix || strcmp(suffix, w->uneven ? ".vti" : ".vtr")) return MPM_OK;
   return mpmi_fail(w->s->context, MPM_E_ARG,
                    w->uneven
@@ -188,14 +188,13 @@ static mpm_status check_suffix(const image *w, const char *path) {
                    path);
 }
 
-static mpm_status write_body(mpm_stepper *stepper, int32_t body, const char *path, int32_t count,
+static mpm_status write_body(mpm_stepper *stepper, int32_t body, const mpmi_target *to, int32_t count,
                              const char *const *fields) {
   mpm_context *context = stepper->context;
   image w = {.s = stepper,
              .file = {.context = context},
              .uneven = stepper->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2};
-  mpm_status status = mpmi_check_path(context, path);
-  if (!status) status = check_suffix(&w, path);
+  mpm_status status = check_suffix(&w, to->path);
   if (!status) status = mpmi_nodes_ready(stepper);
   if (!status) status = mpmi_nodes_list(stepper, body, &w.first, &w.active);
   if (status) return status;
@@ -204,7 +203,7 @@ static mpm_status write_body(mpm_stepper *stepper, int32_t body, const char *pat
   if (!status) status = check_box(&w);
   if (!status) status = sort_nodes(&w);
   if (status) return status;
-  status = mpmi_vtk_open(&w.file, path, kind_of(&w));
+  status = mpmi_vtk_open(&w.file, to, kind_of(&w));
   if (!status) {
     write_head(&w);
     mpmi_vtk_start_data(&w.file, kind_of(&w));
@@ -215,13 +214,27 @@ static mpm_status write_body(mpm_stepper *stepper, int32_t body, const char *pat
   return status;
 }
 
+static mpm_status write_file(mpm_stepper *stepper, int32_t body, const char *path, int32_t count,
+                             const char *const *fields) {
+  const mpm_status status = mpmi_check_path(stepper->context, path);
+  return status ? status : write_body(stepper, body, &(mpmi_target){.path = path}, count, fields);
+}
+
 mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count, const char *const *fields) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
-  return write_body(stepper, 0, path, count, fields);
+  return write_file(stepper, 0, path, count, fields);
 }
 
 mpm_status mpm_write_body_grid(mpm_stepper *stepper, int32_t body, const char *path, int32_t count,
                                const char *const *fields) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
-  return write_body(stepper, body, path, count, fields);
+  return write_file(stepper, body, path, count, fields);
+}
+
+mpm_status mpm_write_grid_to(mpm_stepper *stepper, int32_t body, mpm_write_fn write, void *user,
+                             int32_t count, const char *const *fields) {
+  MPMI_ENTER(stepper, MPMI_STEPPER);
+  const mpm_status status = mpmi_check_write(stepper->context, write);
+  return status ? status
+                : write_body(stepper, body, &(mpmi_target){.write = write, .user = user}, count, fields);
 }

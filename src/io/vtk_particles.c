@@ -51,19 +51,19 @@ static mpm_status choose_arrays(writer *w, int32_t count, const char *const *fie
 }
 
 static void write_head(writer *w) {
-  FILE *stream = w->file.out.stream;
-  fprintf(stream,
-          "  <PolyData>\n"
-          "    <Piece NumberOfPoints=\"%lld\" NumberOfVerts=\"%lld\" NumberOfLines=\"0\" "
-          "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
-          "      <Points>\n",
-          (long long)w->set->count, (long long)w->set->count);
+  mpmi_output *out = &w->file.out;
+  mpmi_output_print(out,
+                    "  <PolyData>\n"
+                    "    <Piece NumberOfPoints=\"%lld\" NumberOfVerts=\"%lld\" NumberOfLines=\"0\" "
+                    "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
+                    "      <Points>\n",
+                    (long long)w->set->count, (long long)w->set->count);
   mpmi_vtk_tags(&w->file, 0, 1);
-  fputs("      </Points>\n      <Verts>\n", stream);
+  mpmi_output_print(out, "      </Points>\n      <Verts>\n");
   mpmi_vtk_tags(&w->file, 1, 3);
-  fputs("      </Verts>\n      <PointData>\n", stream);
+  mpmi_output_print(out, "      </Verts>\n      <PointData>\n");
   mpmi_vtk_tags(&w->file, 3, w->file.count);
-  fputs("      </PointData>\n", stream);
+  mpmi_output_print(out, "      </PointData>\n");
 }
 
 /* Gathers component c of the particles [begin, begin + n) by ascending id into every `stride`-th element
@@ -92,7 +92,7 @@ static void write_array(writer *w, const mpmi_vtk_array *a) {
   const int64_t chunk = BUFFER / a->components;
   double buffer[BUFFER];
   mpmi_vtk_start_array(&w->file, a);
-  for (int64_t begin = 0; begin < set->count; begin += chunk) {
+  for (int64_t begin = 0; begin < set->count && !mpmi_output_failed(&w->file.out); begin += chunk) {
     const int64_t n = set->count - begin < chunk ? set->count - begin : chunk;
     for (int32_t c = 0; c < a->components && a->field >= POINTS; ++c)
       gather(set, a->field == POINTS ? MPMI_POSITION : a->field, c, begin, n, a->components,
@@ -114,18 +114,29 @@ static mpm_status settle(const writer *w) {
   return status ? status : mpmi_index_build(set);
 }
 
-mpm_status mpm_write_particles(const mpm_particles *particles, const char *path, int32_t count,
-                               const char *const *fields) {
-  MPMI_ENTER(particles, MPMI_PARTICLES);
-  mpm_context *context = particles->context;
-  writer w = {.set = particles, .file = {.context = context}};
-  mpm_status status = mpmi_check_path(context, path);
-  if (!status) status = choose_arrays(&w, count, fields);
+static mpm_status write_set(const mpm_particles *set, const mpmi_target *to, int32_t count,
+                            const char *const *fields) {
+  writer w = {.set = set, .file = {.context = set->context}};
+  mpm_status status = choose_arrays(&w, count, fields);
   if (!status) status = settle(&w);
-  if (!status) status = mpmi_vtk_open(&w.file, path, "PolyData");
+  if (!status) status = mpmi_vtk_open(&w.file, to, "PolyData");
   if (status) return status;
   write_head(&w);
   mpmi_vtk_start_data(&w.file, "PolyData");
   for (int32_t i = 0; i < w.file.count; ++i) write_array(&w, &w.file.list[i]);
   return mpmi_vtk_close(&w.file);
+}
+
+mpm_status mpm_write_particles(const mpm_particles *particles, const char *path, int32_t count,
+                               const char *const *fields) {
+  MPMI_ENTER(particles, MPMI_PARTICLES);
+  const mpm_status status = mpmi_check_path(particles->context, path);
+  return status ? status : write_set(particles, &(mpmi_target){.path = path}, count, fields);
+}
+
+mpm_status mpm_write_particles_to(const mpm_particles *particles, mpm_write_fn write, void *user,
+                                  int32_t count, const char *const *fields) {
+  MPMI_ENTER(particles, MPMI_PARTICLES);
+  const mpm_status status = mpmi_check_write(particles->context, write);
+  return status ? status : write_set(particles, &(mpmi_target){.write = write, .user = user}, count, fields);
 }

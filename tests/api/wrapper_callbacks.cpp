@@ -295,6 +295,13 @@ void exceptions() {
   CHECK(refuses([&] { w.stepper.save(); }));
   armed = false;
   CHECK(set.get("stress")[0] > 0.0);
+
+  // So are functions that take an output.
+  const auto full = [](mpm::span<const unsigned char>) { throw own{44}; };
+  CHECK(refuses([&] { set.write_to(full); }));
+  CHECK(refuses([&] { w.stepper.save_to(full); }));
+  CHECK(w.stepper.step(1e-5));
+  CHECK(refuses([&] { w.stepper.write_grid_to(0, full); }));
 }
 
 void executor() {

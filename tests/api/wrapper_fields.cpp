@@ -182,6 +182,28 @@ void files(world &w, const std::string &scratch) {
   const std::string vti = text_of(scratch + "/wrapper.vti");
   CHECK(vti.find("\"velocity\"") != std::string::npos && vti.find("\"force\"") == std::string::npos);
 
+  std::string taken;
+  const auto take = [&](mpm::span<const unsigned char> bytes) { taken.append(bytes.begin(), bytes.end()); };
+  w.stepper.write_grid_to(0, take, {"velocity"});
+  CHECK(taken == vti);
+  taken.clear();
+  w.stepper.save_to(take);
+  const std::vector<unsigned char> saved = w.stepper.save();
+  CHECK(taken == std::string(saved.begin(), saved.end()));
+  taken.clear();
+  w.set.write_file(scratch + "/wrapper.vtp");
+  w.set.write_to(take);
+  CHECK(taken == text_of(scratch + "/wrapper.vtp"));
+  taken.clear();
+  w.set.write_to(take, {"grain"});
+  CHECK(taken.find("\"grain\"") != std::string::npos && taken.find("\"stress\"") == std::string::npos);
+  CHECK(refused(MPM_E_ARG, "write is NULL", [&] { w.set.write_to(nullptr); }));
+  CHECK(refused(MPM_E_ARG, "write is NULL", [&] { w.stepper.save_to(nullptr); }));
+  CHECK(refused(MPM_E_NOT_FOUND, "velocity", [&] { w.set.write_to(take, {"velocty"}); }));
+  CHECK(refused(MPM_E_NOT_FOUND, "body is 1", [&] { w.stepper.write_grid_to(1, take); }));
+  CHECK(refused(MPM_E_CALLBACK, "returned -5 after 0 bytes",
+                [&] { w.stepper.save_to([](mpm::span<const unsigned char>) { return mpm_status{-5}; }); }));
+
   mpm::series series(w.context, scratch + "/wrapper.pvd");
   w.set.write_file(scratch + "/wrapper.vtp", {"velocity", "grain"});
   series.append(0.5, "wrapper.vtp");

@@ -561,6 +561,26 @@ static void pack(cloud *c) {
   free(out);
 }
 
+/* A host that takes so many bytes of an output, and looks at all of them. */
+static mpm_status swallow(void *user, const void *data, int64_t bytes) {
+  static volatile unsigned char seen;
+  int64_t *left = user;
+  MUST(bytes > 0 && bytes <= 65536);
+  for (int64_t i = 0; i < bytes; ++i) seen = (unsigned char)(seen ^ ((const unsigned char *)data)[i]);
+  *left -= bytes;
+  return *left < 0;
+}
+
+static void write_streams(cloud *c) {
+  int64_t left = 4000 * (int64_t)fuzz_byte(&c->in);
+  const mpm_status status =
+      fuzz_status(c->context, mpm_write_grid_to(c->stepper, fuzz_below(&c->in, 2), swallow, &left, 0, NULL));
+  MUST((status == MPM_E_CALLBACK) == (left < 0));
+  left = 4000 * (int64_t)fuzz_byte(&c->in);
+  fuzz_status(c->context, mpm_write_particles_to(draw_set(c), swallow, &left, 0, NULL));
+  fuzz_status(c->context, mpm_state_save_to(c->stepper, swallow, &left));
+}
+
 static void write_files(cloud *c) {
   char path[64];
   snprintf(path, sizeof path, "/tmp/mpm-fuzz-%ld", (long)getpid());
@@ -664,6 +684,9 @@ static void act(cloud *c) {
     break;
   case 22:
     pack(c);
+    break;
+  case 23:
+    write_streams(c);
     break;
   default:
     step(c);

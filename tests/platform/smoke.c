@@ -135,6 +135,45 @@ static void check(const world *w, const char *what, int32_t holds) {
   if (!holds) fail(w, what, MPM_OK);
 }
 
+/* What a callback has taken. */
+typedef struct stream {
+  unsigned char data[1 << 18];
+  int64_t bytes;
+} stream;
+
+static mpm_status take(void *user, const void *data, int64_t bytes) {
+  stream *s = user;
+  if (bytes > (int64_t)sizeof s->data - s->bytes) return 1;
+  memcpy(s->data + s->bytes, data, (size_t)bytes);
+  s->bytes += bytes;
+  return MPM_OK;
+}
+
+/* Output without a file, which every build has. */
+static void stream_out(int32_t isa) {
+  static stream s;
+  static const char tail[] = "</VTKFile>\n";
+  world w;
+  expect(&w, "context", open_context(&w, isa, 1));
+  set_up(&w, &scenes[0]);
+  expect(&w, "step", mpm_step(w.stepper, scenes[0].dt, NULL));
+  const uint64_t saved = hash_of(&w);
+  expect(&w, "a state to a callback", mpm_state_save_to(w.stepper, take, &s));
+  expect(&w, "step", mpm_step(w.stepper, scenes[0].dt, NULL));
+  expect(&w, "loading", mpm_state_load(w.stepper, s.data, s.bytes));
+  check(&w, "the state that a callback took", hash_of(&w) == saved);
+  for (int32_t nodes = 0; nodes < 2; ++nodes) {
+    s.bytes = 0;
+    expect(&w, "a step", mpm_step(w.stepper, scenes[0].dt, NULL));
+    expect(&w, "a file to a callback",
+           nodes ? mpm_write_grid_to(w.stepper, 0, take, &s, 0, NULL)
+                 : mpm_write_particles_to(w.set, take, &s, 0, NULL));
+    check(&w, "its end",
+          s.bytes > 1000 && !memcmp(s.data + s.bytes - (sizeof tail - 1), tail, sizeof tail - 1));
+  }
+  take_down(&w);
+}
+
 /* Writes, overwrites and reads under names in ASCII and in other letters. Returns whether the build has
  * files. */
 static int32_t round_trip(int32_t isa, const char *folder) {
@@ -200,6 +239,7 @@ int main(int argc, char **argv) {
       return 1;
     }
   }
+  stream_out(isa);
   const int32_t files = round_trip(isa, argv[2]);
   fprintf(stderr, "%s threads, %s files\n", threads ? "with" : "without", files ? "with" : "without");
   return 0;

@@ -43,6 +43,12 @@ static mpm_status inside(void *user, int32_t dim, int64_t n, int64_t ld, const d
   return MPM_OK;
 }
 
+static mpm_status take_bytes(void *user, const void *data, int64_t bytes) {
+  (void)user, (void)data;
+  visit(FROM_WRITE);
+  return bytes > 0 ? MPM_OK : MPM_E_ARG;
+}
+
 static void take_log(void *user, int32_t level, const char *text) {
   (void)user, (void)level, (void)text;
   visit(FROM_LOG);
@@ -213,6 +219,10 @@ uint64_t every_callback_story(world *w) {
   ck_ok(w, mpm_state_save_file(w->stepper, scratch_path("host.state", path, sizeof path)));
   stretch(w, 7);
   ck_ok(w, mpm_write_particles(set, scratch_path("host.vtp", path, sizeof path), 0, NULL));
+  stretch(w, 8);
+  ck_ok(w, mpm_state_save_to(w->stepper, take_bytes, NULL));
+  stretch(w, 9);
+  ck_ok(w, mpm_write_particles_to(set, take_bytes, NULL, 0, NULL));
   stretch(w, 3);
   ck_ok(w, mpm_particles_fill(set, lower, upper, per_cell, inside, NULL, NULL, NULL));
   for (int32_t i = 0; i < 3; ++i) ck_ok(w, mpm_step(w->stepper, 1e-4, &info));
@@ -222,6 +232,7 @@ uint64_t every_callback_story(world *w) {
   go.dt_max = 1e-4;
   ck_ok(w, mpm_advance(w->stepper, &go, &info));
   ck_ok(w, mpm_write_grid(w->stepper, scratch_path("host.vti", path, sizeof path), 0, NULL));
+  ck_ok(w, mpm_write_grid_to(w->stepper, 0, take_bytes, NULL, 0, NULL));
   ck_ok(w, mpm_state_load_file(w->stepper, scratch_path("host.state", path, sizeof path)));
   ck_ok(w, mpm_step(w->stepper, 1e-4, &info));
   mpm_material *material;

@@ -11,6 +11,11 @@ static mpm_series *series;
 static char path[256];
 static int32_t armed, from_a_thread;
 
+static mpm_status take_none(void *user, const void *data, int64_t bytes) {
+  (void)user, (void)data, (void)bytes;
+  return MPM_OK;
+}
+
 /* Each of them would do something if it were accepted. */
 static void try_all(int32_t kind) {
   const int64_t id = 1;
@@ -103,6 +108,9 @@ static void try_all(int32_t kind) {
       mpm_write_particles(set, path, 0, NULL),
       mpm_write_grid(stepper, path, 0, NULL),
       mpm_write_body_grid(stepper, 0, path, 0, NULL),
+      mpm_state_save_to(stepper, take_none, NULL),
+      mpm_write_particles_to(set, take_none, NULL, 0, NULL),
+      mpm_write_grid_to(stepper, 0, take_none, NULL, 0, NULL),
   };
   for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i)
     if (refused[i] != MPM_E_STATE)

@@ -148,24 +148,11 @@ START_TEST(every_number) {
 }
 END_TEST
 
-/* A world of two particles in corners of a grid of so many cells, so that the last node is not active. */
-static void open_apart(world *w, int32_t dim, int64_t cells) {
-  const mpm_grid_desc grid = grid_desc(dim, cells, 1.0);
-  const world_desc d = io_bare_desc(&grid);
-  world_open(w, &d);
-  for (int32_t m = 0; m < 2; ++m) {
-    const double near = 3.3, far = (double)cells - 4.3;
-    const double x[] = {m ? far : near, m ? near : far, m ? far : near}, v[] = {1.0, 2.0, 3.0}, volume = 1.0;
-    ck_ok(w, mpm_particles_add(w->set[m], 1, x, v, &volume, NULL, NULL, NULL));
-  }
-  world_step(w, 1e-4);
-}
-
 /* 40000 x 40000 nodes, of which 18 are active: memory and time are theirs. */
 START_TEST(sparse_box) {
   static const char *const some[] = {"mass", "velocity"};
   world w;
-  open_apart(&w, 2, 40000);
+  io_open_apart(&w, 2, 40000);
   static image f;
   scratch_path("sparse.vti", f.path, sizeof f.path);
   int64_t before, peak;
@@ -199,11 +186,11 @@ START_TEST(box_beyond_a_file) {
   char path[640];
   scratch_path("beyond.vti", path, sizeof path);
   unlink(path);
-  open_apart(&w, 3, 2000000);
+  io_open_apart(&w, 3, 2000000);
   ck_refused(&w, mpm_write_grid(w.stepper, path, 1, some), MPM_E_ARG, "mpm_grid_map()");
   ck_assert_int_ne(access(path, F_OK), 0);
   world_close(&w);
-  open_apart(&w, 3, 900000); /* offsets could name it, but no file is as long */
+  io_open_apart(&w, 3, 900000); /* offsets could name it, but no file is as long */
   ck_refused(&w, mpm_write_grid(w.stepper, path, 1, some), MPM_E_IO, "beyond.vti");
   ck_assert_int_ne(access(path, F_OK), 0);
   world_close(&w);

@@ -75,6 +75,18 @@ void io_open(world *w, const io_setup *setup) {
   world_open(w, &d);
 }
 
+void io_open_apart(world *w, int32_t dim, int64_t cells) {
+  const mpm_grid_desc grid = grid_desc(dim, cells, 1.0);
+  const world_desc d = io_bare_desc(&grid);
+  world_open(w, &d);
+  for (int32_t m = 0; m < 2; ++m) {
+    const double near = 3.3, far = (double)cells - 4.3;
+    const double x[] = {m ? far : near, m ? near : far, m ? far : near}, v[] = {1.0, 2.0, 3.0}, volume = 1.0;
+    ck_ok(w, mpm_particles_add(w->set[m], 1, x, v, &volume, NULL, NULL, NULL));
+  }
+  world_step(w, 1e-4);
+}
+
 Suite *io_suite(void) {
   Suite *suite = suite_create("io");
   suite_add_tcase(suite, io_state_case());
@@ -85,5 +97,6 @@ Suite *io_suite(void) {
   suite_add_tcase(suite, io_replace_case());
   suite_add_tcase(suite, io_output_case());
   suite_add_tcase(suite, io_grid_case());
+  suite_add_tcase(suite, io_stream_case());
   return suite;
 }
