@@ -143,7 +143,7 @@ START_TEST(stress_is_up_to_date) {
 END_TEST
 
 START_TEST(what_floats_cannot_hold) {
-  const double most = FLT_MAX, step = ldexp(1.0, 103); /* half of what the largest float ends on */
+  const double most = (double)FLT_MAX, step = ldexp(1.0, 103); /* half of what the largest float ends on */
   const struct {
     double value;
     float wanted;
