@@ -105,7 +105,9 @@ typedef struct mpm_step_info {
    * (set, particle) of those that failed, so that reports repeat. */
   int32_t set;
   int64_t step;         /**< number of committed steps, counted on from mpm_stepper_set_time() */
-  int64_t active_nodes; /**< number of nodes with mass in the step */
+  /** Number of nodes with mass in the step; of one that failed before they were counted, that of the step
+   * before. */
+  int64_t active_nodes;
   int64_t removed;      /**< particles that left through MPM_WALL_OPEN since the stepper was made */
   int64_t resorts;      /**< how often particles were sorted anew since the stepper was made */
   int64_t particle;     /**< id of the particle that failed, or -1 */

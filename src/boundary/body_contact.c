@@ -390,8 +390,6 @@ static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_su
 void mpmi_body_contacts_sum(mpmi_bound *bound) {
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
   mpm_step_info *info = &bound->step->info;
-  info->contact_nodes = 0;
-  info->contact_dissipation = 0.0;
   for (int64_t m = 0; m < contact->meeting_count; ++m) {
     const mpmi_meeting *meeting = &contact->meeting[m];
     int32_t closed = 0;

@@ -3,8 +3,8 @@
 #include "layout/tile.h"
 #include "particles/law_batch.h"
 
-void mpmi_failure_clear(mpmi_failure *failure) {
-  *failure = (mpmi_failure){MPM_OK, 0, -1, -1, -1, "", 0};
+mpmi_failure mpmi_no_failure(void) {
+  return (mpmi_failure){.cause = MPM_OK, .set = -1, .particle = -1, .node = -1, .what = ""};
 }
 
 /* Keeps the failure with the smallest (set, particle); failures without a particle (nodes, callbacks) come
@@ -42,8 +42,8 @@ static mpm_status report(mpm_context *context, const mpmi_failure *f, double t, 
 }
 
 void mpmi_failures_clear(mpmi_step *step) {
-  mpmi_failure_clear(&step->failure);
-  for (int32_t k = 0; k < step->settings->tasks; ++k) mpmi_failure_clear(&step->work->report[k].failure);
+  step->failure = mpmi_no_failure();
+  for (int32_t k = 0; k < step->settings->tasks; ++k) step->work->report[k].failure = mpmi_no_failure();
 }
 
 mpm_status mpmi_step_failure(mpmi_step *step) {
@@ -118,10 +118,7 @@ mpm_status mpmi_workspace_prepare(mpmi_workspace *work, const mpmi_settings *set
 }
 
 void mpmi_reports_clear(mpmi_workspace *work, int32_t tasks) {
-  for (int32_t k = 0; k < tasks; ++k) {
-    work->report[k] = (mpmi_task_report){.left_tile = 0};
-    mpmi_failure_clear(&work->report[k].failure);
-  }
+  for (int32_t k = 0; k < tasks; ++k) work->report[k] = (mpmi_task_report){.failure = mpmi_no_failure()};
 }
 
 /* ---- profile ----------------------------------------------------------------------------------------- */

@@ -84,10 +84,10 @@ typedef struct mpmi_step {
   double impulse_by_face[6][3]; /* on the walls */
   double host_work;             /* of prescribed velocities, prescribed particles and hooks */
   int32_t whole_increments;     /* implicit: nodes give particles the whole change of their velocity */
-  mpm_step_info info;           /* what the step reports, as far as it is known */
+  mpm_step_info info;           /* what the step reports if it is made, as far as it is known */
 } mpmi_step;
 
-void mpmi_failure_clear(mpmi_failure *failure);
+mpmi_failure mpmi_no_failure(void);
 /* Replaces `first` by `other` if that comes before it. */
 void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other);
 /* Turns a callback's status into a cause: > 0 cuts dt, < 0 stops. */

@@ -102,7 +102,8 @@ mpm_status mpmi_node_update_stage(mpmi_step *step, const mpmi_projection *projec
   mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, update_task, &job);
   if (!status && projection->contact != MPMI_CONTACT_NONE) status = list_light_nodes(&job);
   if (status || !projection->main) return status;
-  step->info.active_nodes = 0;
-  for (int32_t k = 0; k < settings->tasks; ++k) step->info.active_nodes += step->work->report[k].active;
+  int64_t active = 0;
+  for (int32_t k = 0; k < settings->tasks; ++k) active += step->work->report[k].active;
+  step->info.active_nodes = active;
   return MPM_OK;
 }

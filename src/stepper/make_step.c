@@ -26,24 +26,20 @@ static mpm_status check_dt(mpm_stepper *s, double dt) {
 static void begin(mpm_stepper *s, double dt, int32_t staged) {
   const mpmi_history *history = &s->history;
   const int32_t mean = s->settings.desc.staggered && history->previous_dt > 0.0;
-  s->step = (mpmi_step){.phase = MPMI_RUNNING,
-                        .staged = staged,
-                        .settings = &s->settings,
-                        .layout = &s->layout,
-                        .work = &s->work,
-                        .profile = &s->profile,
-                        .pairs = &s->history.pairs,
-                        .t = history->t,
-                        .dt = dt,
-                        .velocity_dt = mean ? 0.5 * (history->previous_dt + dt) : dt,
-                        .info = history->last};
-  s->step.info.newton_iterations = s->step.info.linear_solver = 0;
-  s->step.info.linear_iterations = 0;
-  s->step.info.residual = 0.0;
-  s->step.info.contact_nodes = 0;
-  s->step.info.contact_dissipation = 0.0;
-  s->step.info.damping_dissipation = 0.0;
-  mpmi_failure_clear(&s->step.failure);
+  s->step = (mpmi_step){
+      .phase = MPMI_RUNNING,
+      .staged = staged,
+      .settings = &s->settings,
+      .layout = &s->layout,
+      .work = &s->work,
+      .profile = &s->profile,
+      .pairs = &s->history.pairs,
+      .t = history->t,
+      .dt = dt,
+      .velocity_dt = mean ? 0.5 * (history->previous_dt + dt) : dt,
+      .failure = mpmi_no_failure(),
+      /* the nodes are those of the step before until they are counted */
+      .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};
   mpmi_reports_clear(&s->work, s->settings.tasks);
 }
 
@@ -73,30 +69,31 @@ static mpm_status prepare(mpm_stepper *s) {
 }
 
 /* ---- the end ------------------------------------------------------------------------------------------ */
-/* Ends the step and keeps its info. */
-static void drop(mpm_stepper *s) {
-  s->history.last = s->step.info;
+/* Ends the step, of which this is what the host gets to know. */
+static void drop(mpm_stepper *s, mpm_step_info info) {
+  s->history.last = info;
   s->step = (mpmi_step){.phase = MPMI_IDLE};
 }
 
-/* Leaves particles as they were; the info says why. */
+/* Leaves particles as they were. The info says why and how far the step came; as it has not been made, it has
+ * no energies. */
 static mpm_status give_up(mpm_stepper *s, mpm_status status) {
   const mpmi_failure *failure = &s->step.failure;
-  mpm_step_info *info = &s->step.info;
+  const mpm_step_info *came = &s->step.info;
   mpmi_roll_back(s);
-  info->cause = status;
-  info->dt = s->step.dt;
-  info->dt_suggested = 0.6 * s->step.dt;
-  info->callback_status = failure->callback_status;
-  info->set = failure->set;
-  info->particle = failure->particle;
-  info->node = failure->node;
-  info->body = failure->body;
-  info->contact_nodes = 0;
-  info->contact_dissipation = 0.0;
-  info->damping_dissipation = 0.0;
-  info->external_work = info->dissipation = 0.0;
-  drop(s);
+  drop(s, (mpm_step_info){.cause = status,
+                          .callback_status = failure->callback_status,
+                          .set = failure->set,
+                          .particle = failure->particle,
+                          .node = failure->node,
+                          .body = failure->body,
+                          .dt = came->dt,
+                          .dt_suggested = 0.6 * came->dt,
+                          .active_nodes = came->active_nodes,
+                          .newton_iterations = came->newton_iterations,
+                          .linear_solver = came->linear_solver,
+                          .linear_iterations = came->linear_iterations,
+                          .residual = came->residual});
   return status;
 }
 
@@ -107,7 +104,6 @@ static mpm_status ask_progress(mpm_stepper *s) {
   mpm_step_info info;
   mpmi_fill_info(s, &s->step.info, &info);
   info.t = s->step.t + s->step.dt;
-  info.dt = s->step.dt;
   info.step = s->history.step + 1;
   const mpm_status status = mpmi_from_host(settings->progress(settings->progress_user, &info));
   if (!status) return MPM_OK;
@@ -117,23 +113,17 @@ static mpm_status ask_progress(mpm_stepper *s) {
 }
 
 static mpm_status finish(mpm_stepper *s) {
-  mpm_step_info *info = &s->step.info;
-  const double dt = s->step.dt, velocity_dt = s->step.velocity_dt;
+  const double velocity_dt = s->step.velocity_dt;
   mpm_status status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
   if (!status) status = ask_progress(s);
   if (status) return status;
   mpmi_commit(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
-  info->cause = MPM_OK;
-  info->dt = dt;
-  info->dt_suggested =
-      mpmi_is_implicit(&s->settings) ? mpmi_next_dt(s->step.info.newton_iterations, dt) : mpmi_stable_dt(s);
-  info->callback_status = 0;
-  info->set = -1;
-  info->particle = info->node = -1;
-  info->body = 0;
-  drop(s);
+  mpm_step_info info = s->step.info;
+  info.dt_suggested =
+      mpmi_is_implicit(&s->settings) ? mpmi_next_dt(info.newton_iterations, info.dt) : mpmi_stable_dt(s);
+  drop(s, info);
   s->nodes.shown = s->layout.version;
   s->nodes.shown_dt = velocity_dt;
   return MPM_OK;

@@ -157,6 +157,46 @@ static mpm_status refuse_progress(void *user, const mpm_step_info *info) {
   return *(mpm_status *)user;
 }
 
+static mpm_status note(void *user, const mpm_step_info *info) {
+  *(mpm_step_info *)user = *info;
+  return 0;
+}
+
+/* The info of a step has nothing of the step before, made or failed, but the count of nodes until it has its own. */
+START_TEST(info_of_its_own_step) {
+  world r;
+  mpm_status answer = 4;
+  mpm_step_info info = {.struct_size = sizeof info}, shown = {.cause = -1};
+  body_open(&r, &(body_desc){.dim = 2});
+  world_steps(&r, 2);
+  ck_assert_int_gt(r.info.active_nodes, 0);
+  ck_assert_double_gt(fabs(r.info.external_work), 0.0);
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, refuse, &answer));
+  ck_refused(&r, mpm_step(r.stepper, BODY_DT, &info), MPM_CUT_DT, "force callback returned 4");
+  ck_assert_int_eq(info.set, 0);
+  ck_assert_int_eq(info.active_nodes, r.info.active_nodes);
+  ck_assert_double_eq(info.external_work, 0.0);
+  ck_assert_double_eq(info.dissipation, 0.0);
+  ck_ok(&r, mpm_stepper_set_force(r.stepper, NULL, NULL));
+  ck_ok(&r, mpm_stepper_set_progress(r.stepper, note, &shown));
+  world_steps(&r, 1);
+  ck_assert_int_eq(shown.cause, MPM_OK);
+  ck_assert_int_eq(shown.callback_status, 0);
+  ck_assert_int_eq(shown.set, -1);
+  ck_assert_int_eq(shown.particle, -1);
+  ck_assert_int_eq(shown.node, -1);
+  ck_assert_double_eq(shown.dt, BODY_DT);
+  ck_assert_double_eq(shown.dt_suggested, 0.0);
+  ck_assert_int_eq(shown.active_nodes, r.info.active_nodes);
+  ck_ok(&r, mpm_stepper_set_progress(r.stepper, refuse_progress, &answer));
+  ck_refused(&r, mpm_step(r.stepper, BODY_DT, &info), MPM_CANCELLED, "progress callback returned 4");
+  ck_ok(&r, mpm_stepper_set_progress(r.stepper, NULL, NULL));
+  world_steps(&r, 1);
+  ck_assert_int_eq(info.active_nodes, r.info.active_nodes);
+  world_close(&r);
+}
+END_TEST
+
 START_TEST(failing_parts_abort) {
   world r;
   mpm_status answer = 4;
@@ -286,6 +326,7 @@ TCase *stepper_staged_case(void) {
   tcase_add_loop_test(tests, old_state_between_parts, MPM_USL, MPM_MUSL + 1);
   tcase_add_test(tests, nothing_else_meanwhile);
   tcase_add_loop_test(tests, abort_leaves_no_trace, 0, COMBINATIONS);
+  tcase_add_test(tests, info_of_its_own_step);
   tcase_add_test(tests, failing_parts_abort);
   tcase_add_loop_test(tests, forces_on_nodes, 0, COMBINATIONS);
   tcase_add_loop_test(tests, velocities_of_nodes, 0, COMBINATIONS);
