@@ -70,9 +70,8 @@ static void ask_batch(void *user, int32_t m, const mpm_particle_batch *batch, in
   const mpmi_member *member = &step->layout->member[m];
   double *mean = member->mean + begin;
   for (int32_t c = 0; c < batch->dim; ++c) memset(mean + c * batch->ld, 0, (size_t)batch->n * sizeof *mean);
-  if (mpmi_call_particle_fn(member->motion, member->motion_user, "the motion callback", m, batch, mean,
-                            failure))
-    return;
+  const mpmi_motion *motion = &step->settings->motion[m];
+  if (mpmi_call_particle_fn(motion->fn, motion->user, "the motion callback", m, batch, mean, failure)) return;
   for (int32_t c = 0; c < batch->dim; ++c)
     for (int64_t p = 0; p < batch->n; ++p)
       if (mpmi_is_prescribed(member->set, begin + p, c) && !isfinite(mean[c * batch->ld + p]))
@@ -82,7 +81,7 @@ static void ask_batch(void *user, int32_t m, const mpm_particle_batch *batch, in
 
 mpm_status mpmi_prescribed_stage(mpmi_step *step) {
   for (int32_t m = 0; m < step->layout->member_count; ++m) {
-    if (!step->layout->member[m].prescribed || !step->layout->member[m].motion) continue;
+    if (!step->layout->member[m].prescribed || !step->settings->motion[m].fn) continue;
     const mpm_status status = mpmi_particle_batches(step, m, step->t, 1, ask_batch, step);
     if (status) return status;
   }
@@ -126,16 +125,13 @@ uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t 
 }
 
 /* ---- reports ------------------------------------------------------------------------------------------ */
-void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes) {
+void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes, int32_t m, double impulse[3]) {
   const mpmi_layout *layout = step->layout;
-  for (int32_t m = 0; m < layout->member_count; ++m) {
-    mpmi_member *member = &layout->member[m];
-    for (int32_t c = 0; c < 3; ++c) member->reaction[c] = 0.0;
-    for (int64_t b = 0; b < layout->blocks.count && member->prescribed; ++b) {
-      if (!mpmi_block_is(nodes, b, MPMI_WITH_PRESCRIBED)) continue;
-      const mpmi_prescribed_part *part = mpmi_part_of(layout, nodes, b, m);
-      for (int32_t c = 0; c < step->settings->grid->dim; ++c) member->reaction[c] += part->impulse[c];
-      step->host_work += part->work;
-    }
+  for (int32_t c = 0; c < 3; ++c) impulse[c] = 0.0;
+  for (int64_t b = 0; b < layout->blocks.count && layout->member[m].prescribed; ++b) {
+    if (!mpmi_block_is(nodes, b, MPMI_WITH_PRESCRIBED)) continue;
+    const mpmi_prescribed_part *part = mpmi_part_of(layout, nodes, b, m);
+    for (int32_t c = 0; c < step->settings->grid->dim; ++c) impulse[c] += part->impulse[c];
+    step->host_work += part->work;
   }
 }

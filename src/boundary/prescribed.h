@@ -32,7 +32,7 @@ static inline int32_t mpmi_is_prescribed(const mpm_particles *set, int64_t slot,
 
 /* Returns the mean velocities of the step, [dim][ld of the set]. */
 static inline const double *mpmi_mean_velocity(const mpmi_member *member) {
-  return member->motion ? member->mean : mpmi_f64(member->set, MPMI_VELOCITY, 0);
+  return member->mean ? member->mean : mpmi_f64(member->set, MPMI_VELOCITY, 0);
 }
 
 static inline mpmi_prescribed_part *mpmi_part_of(const mpmi_layout *layout, const mpmi_nodes *nodes,
@@ -48,7 +48,8 @@ mpm_status mpmi_prescribed_stage(mpmi_step *step);
  * of mpmi_move. */
 uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t m, int64_t block,
                               const mpmi_move *move, int64_t begin, int64_t n);
-/* Reports the sets' reactions and the work of moving them. */
-void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes);
+/* Finds the impulse of a set's prescribed particles on the material, and adds the work of moving them to the
+ * step's. */
+void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes, int32_t m, double impulse[3]);
 
 #endif

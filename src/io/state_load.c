@@ -209,9 +209,10 @@ static void take_over(loading *l) {
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     exchange_storage(s->layout.member[m].set, &l->set[m].fresh);
     mpmi_member *member = &s->layout.member[m];
-    memcpy(member->reaction, l->set[m].numbers.reaction, sizeof member->reaction);
     member->body = (int32_t)l->set[m].numbers.body;
-    memcpy(member->impulse_total, l->set[m].numbers.impulse_total, sizeof member->impulse_total);
+    mpmi_reaction *reaction = &s->history.reaction[m];
+    memcpy(reaction->impulse, l->set[m].numbers.reaction, sizeof reaction->impulse);
+    memcpy(reaction->impulse_total, l->set[m].numbers.impulse_total, sizeof reaction->impulse_total);
   }
   if (n->blocks < 0) mpmi_blocks_clear(&s->layout.blocks);
   s->nodes.shown = -1;

@@ -97,8 +97,8 @@ static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
                                      .dirty = set->dirty,
                                      .mass_max = set->mass_max,
                                      .body = s->layout.member[m].body};
-    memcpy(of_set.reaction, s->layout.member[m].reaction, sizeof of_set.reaction);
-    memcpy(of_set.impulse_total, s->layout.member[m].impulse_total, sizeof of_set.impulse_total);
+    memcpy(of_set.reaction, s->history.reaction[m].impulse, sizeof of_set.reaction);
+    memcpy(of_set.impulse_total, s->history.reaction[m].impulse_total, sizeof of_set.impulse_total);
     mpmi_state_archive_set_numbers(a, MPMI_STATE_FORMAT, &of_set);
   }
 }

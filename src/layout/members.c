@@ -147,7 +147,7 @@ mpm_status mpmi_members_reserve(mpmi_layout *layout, const mpmi_settings *settin
     const int32_t forced = asks || set->field[MPMI_APPLIED_FORCE].present;
     mpm_status status;
     if ((status = reserve_rows(c, set, forced, dim, &member->force, &member->force_ld)) ||
-        (status = reserve_rows(c, set, member->prescribed && member->motion, dim, &member->mean,
+        (status = reserve_rows(c, set, member->prescribed && settings->motion[m].fn, dim, &member->mean,
                                &member->mean_ld)) ||
         (status = reserve_rows(c, set, mpmi_deforms_first(settings), 1, &member->wave_speed,
                                &member->wave_speed_ld)))

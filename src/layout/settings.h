@@ -11,6 +11,12 @@
 #include "obstacle/obstacle.h"
 #include "transfer/kernels.h"
 
+/* How the prescribed particles of a set move; fn NULL: they keep their velocity. */
+typedef struct mpmi_motion {
+  mpm_particle_fn fn;
+  void *user;
+} mpmi_motion;
+
 typedef struct mpmi_settings {
   mpm_context *context;
   const mpm_grid *grid;
@@ -23,6 +29,8 @@ typedef struct mpmi_settings {
   mpmi_wall wall[6];
   mpm_particle_fn acceleration, force;
   void *acceleration_user, *force_user;
+  mpmi_motion *motion; /* [sets] */
+  int64_t motion_capacity;
   mpm_velocity_fn velocity_bc;
   void *velocity_bc_user;
   mpm_node_fn hook[3]; /* by stage, from MPM_AFTER_P2G */

@@ -18,13 +18,9 @@ typedef struct mpmi_member {
   int64_t force_ld;
   double *wave_speed; /* [ld] where the law runs before the particles move, or NULL */
   int64_t wave_speed_ld;
-  mpm_particle_fn motion; /* of prescribed particles, or NULL: they keep their velocity */
-  void *motion_user;
   int32_t prescribed; /* 1: some of its particles are prescribed */
   double *mean;       /* [dim][ld] their mean velocities in a step where there is a motion, or NULL */
   int64_t mean_ld;
-  double reaction[3];      /* impulse of its prescribed particles on the material in the last step, */
-  double impulse_total[3]; /* and over all steps since it was added or the time was set */
 } mpmi_member;
 
 /* Blocks with particles, shared out among tasks: task k works on block[i] with bound[k] <= i < bound[k +

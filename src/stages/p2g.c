@@ -77,8 +77,10 @@ static void scatter_slots(const p2g_job *job, const mpmi_scatter *scatter, int64
 
 /* Tells whether the host has seen positions since the last step, through a view or in the batches of its
  * callbacks: then it may have written there, whatever it was asked not to do. */
-static int32_t were_shown(const mpmi_settings *settings, const mpmi_member *member) {
-  return member->set->lent || !member->set->material->law || member->motion || settings->force ||
+static int32_t were_shown(const mpmi_step *step, int32_t m) {
+  const mpm_particles *set = step->layout->member[m].set;
+  const mpmi_settings *settings = step->settings;
+  return set->lent || !set->material->law || settings->motion[m].fn || settings->force ||
          settings->acceleration;
 }
 
@@ -91,7 +93,7 @@ static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
     const int64_t end = layout->member[m].now.start[visit->block + 1];
     const mpmi_member *member = &layout->member[m];
     if (begin == end) continue;
-    if (were_shown(job->step->settings, member) && !mpmi_is_in_place(job->step, visit, m)) continue;
+    if (were_shown(job->step, m) && !mpmi_is_in_place(job->step, visit, m)) continue;
     scatter_of(job, member, &scatter);
     mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[visit->block], scatter.axis);
     scatter.tile = tile;

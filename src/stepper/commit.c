@@ -69,8 +69,8 @@ static void add_to_totals(mpm_stepper *s, double work) {
   for (int32_t face = 0; face < 6; ++face)
     for (int32_t c = 0; c < 3; ++c) totals->impulse_by_face[face][c] += s->step.impulse_by_face[face][c];
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
-    mpmi_member *member = &s->layout.member[m];
-    for (int32_t c = 0; c < 3; ++c) member->impulse_total[c] += member->reaction[c];
+    mpmi_reaction *reaction = &s->history.reaction[m];
+    for (int32_t c = 0; c < 3; ++c) reaction->impulse_total[c] += reaction->impulse[c];
   }
 }
 
@@ -103,7 +103,8 @@ void mpmi_commit(mpm_stepper *s) {
     removes |= s->work.report[k].removes;
     restored |= s->work.report[k].holes_restored;
   }
-  mpmi_prescribed_report(&s->step, &s->nodes);
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    mpmi_prescribed_report(&s->step, &s->nodes, m, s->history.reaction[m].impulse);
   commit_history(s);
   for (int32_t m = 0; m < s->layout.member_count; ++m) swap_copies(s, s->layout.member[m].set, left);
   if (old) s->layout.cover_is_old = 1;

@@ -12,7 +12,9 @@ static void free_parts(mpm_stepper *s) {
   MPMI_FREE_ARRAY(c, s->active, s->active_capacity);
   mpmi_contact_rules_free(&s->settings.contact, c);
   mpmi_obstacles_release(s);
+  MPMI_FREE_ARRAY(c, s->settings.motion, s->settings.motion_capacity);
   MPMI_FREE_ARRAY(c, s->history.pairs.record, s->history.pairs.capacity);
+  MPMI_FREE_ARRAY(c, s->history.reaction, s->history.reaction_capacity);
   mpmi_newton_free(s->newton, &s->settings);
   mpmi_workspace_free(&s->work, &s->settings);
   mpmi_nodes_free(&s->nodes, c);
@@ -58,6 +60,27 @@ mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_st
   return MPM_OK;
 }
 
+/* Takes a set in behind the others. On failure nothing has changed. */
+static mpm_status take_in(mpm_stepper *s, mpm_particles *set) {
+  const int32_t m = s->layout.member_count;
+  mpm_status status;
+  if ((status = MPMI_RESERVE_NEXT(s->context, s->settings.motion, s->settings.motion_capacity, m)) ||
+      (status = MPMI_RESERVE_NEXT(s->context, s->history.reaction, s->history.reaction_capacity, m)) ||
+      (status = mpmi_members_add(&s->layout, &s->settings, set)))
+    return status;
+  s->settings.motion[m] = (mpmi_motion){.fn = NULL};
+  s->history.reaction[m] = (mpmi_reaction){.impulse = {0.0}};
+  return MPM_OK;
+}
+
+static void take_out(mpm_stepper *s, int32_t m) {
+  mpmi_members_remove(&s->layout, &s->settings, m);
+  for (; m < s->layout.member_count; ++m) {
+    s->settings.motion[m] = s->settings.motion[m + 1];
+    s->history.reaction[m] = s->history.reaction[m + 1];
+  }
+}
+
 mpm_status mpm_stepper_destroy(mpm_stepper *s) {
   if (!s) return MPM_OK;
   MPMI_ENTER(s, MPMI_STEPPER);
@@ -67,7 +90,7 @@ mpm_status mpm_stepper_destroy(mpm_stepper *s) {
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them first",
                      (int)s->mapped);
   if ((status = mpmi_members_unmapped(&s->layout, &s->settings, "first"))) return status;
-  while (s->layout.member_count) mpmi_members_remove(&s->layout, &s->settings, s->layout.member_count - 1);
+  while (s->layout.member_count) take_out(s, s->layout.member_count - 1);
   --s->grid->children;
   --s->context->children;
   free_parts(s);
@@ -87,9 +110,7 @@ mpm_status mpm_stepper_add(mpm_stepper *s, mpm_particles *set) {
     return mpmi_fail(s->context, MPM_E_STATE, "the set already belongs to %s stepper",
                      set->stepper == s ? "this" : "another");
   if (set->mapped) return mpmi_fail(s->context, MPM_E_STATE, "the set is mapped: release its views first");
-  if ((status = mpmi_check_bodies(s, &s->settings.desc, 0)) ||
-      (status = mpmi_members_add(&s->layout, &s->settings, set)))
-    return status;
+  if ((status = mpmi_check_bodies(s, &s->settings.desc, 0)) || (status = take_in(s, set))) return status;
   set->stepper = s;
   set->owner = &mpmi_stepper_owns;
   s->nodes.shown = -1;
@@ -104,7 +125,7 @@ mpm_status mpm_stepper_remove(mpm_stepper *s, mpm_particles *set) {
   if (!status) status = mpmi_members_find(&s->layout, &s->settings, set, &m);
   if (status) return status;
   if (set->mapped) return mpmi_fail(s->context, MPM_E_STATE, "the set is mapped: release its views first");
-  mpmi_members_remove(&s->layout, &s->settings, m);
+  take_out(s, m);
   s->history.has_sums = 0;
   s->nodes.shown = -1;
   return MPM_OK;
@@ -168,6 +189,6 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   s->history.totals = (mpmi_totals){.external_work = 0.0};
   mpmi_pairs_forget(&s->history.pairs);
   for (int32_t m = 0; m < s->layout.member_count; ++m)
-    for (int32_t c = 0; c < 3; ++c) s->layout.member[m].impulse_total[c] = 0.0;
+    for (int32_t c = 0; c < 3; ++c) s->history.reaction[m].impulse_total[c] = 0.0;
   return MPM_OK;
 }

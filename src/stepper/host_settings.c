@@ -69,7 +69,6 @@ mpm_status mpm_stepper_set_motion(mpm_stepper *s, mpm_particles *particles, mpm_
   mpm_status status = mpmi_stepper_idle(s);
   if (!status) status = mpmi_members_find(&s->layout, &s->settings, particles, &m);
   if (status) return status;
-  s->layout.member[m].motion = mean_velocity;
-  s->layout.member[m].motion_user = user;
+  s->settings.motion[m] = (mpmi_motion){mean_velocity, user};
   return MPM_OK;
 }

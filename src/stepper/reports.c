@@ -116,7 +116,7 @@ mpm_status mpm_stepper_particles_reaction(const mpm_stepper *s, const mpm_partic
   if (status) return status;
   if (!s->history.has_reactions) return mpmi_fail(s->context, MPM_E_STATE, "no step has been made yet");
   for (int32_t c = 0; c < s->grid->dim; ++c)
-    force[c] = s->layout.member[m].reaction[c] / s->history.reaction_dt;
+    force[c] = s->history.reaction[m].impulse[c] / s->history.reaction_dt;
   return MPM_OK;
 }
 
@@ -136,7 +136,7 @@ mpm_status mpm_stepper_particles_impulse(const mpm_stepper *s, const mpm_particl
   if (!impulse) return mpmi_fail(s->context, MPM_E_ARG, "impulse is NULL");
   const mpm_status status = mpmi_members_find(&s->layout, &s->settings, prescribed, &m);
   if (status) return status;
-  for (int32_t c = 0; c < s->grid->dim; ++c) impulse[c] = s->layout.member[m].impulse_total[c];
+  for (int32_t c = 0; c < s->grid->dim; ++c) impulse[c] = s->history.reaction[m].impulse_total[c];
   return MPM_OK;
 }
 

@@ -13,8 +13,13 @@
 #include "layout/nodes.h"
 #include "layout/step.h"
 
-/* Sums over all committed steps since the stepper was made or its time was set; those of a set's prescribed
- * particles are the member's. */
+/* What the prescribed particles of a set did to the material: impulses in the last step, and in all steps
+ * since the set was added or the time was set. */
+typedef struct mpmi_reaction {
+  double impulse[3], impulse_total[3];
+} mpmi_reaction;
+
+/* Sums over all committed steps since the stepper was made or its time was set. */
 typedef struct mpmi_totals {
   double impulse_by_face[6][3], external_work, damping_dissipation;
 } mpmi_totals;
@@ -30,6 +35,8 @@ typedef struct mpmi_history {
   mpm_step_info last; /* info of the last step */
   int32_t has_reactions;
   double impulse_by_face[6][3], reaction_dt; /* on the walls in the last step */
+  mpmi_reaction *reaction;                   /* [sets] */
+  int64_t reaction_capacity;
   mpmi_totals totals;
   mpmi_pair_records pairs; /* of bodies that ever were near each other */
 } mpmi_history;

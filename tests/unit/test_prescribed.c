@@ -123,6 +123,26 @@ static mpm_status both_alike(void *user, const mpm_particle_batch *b, double *ad
   return 0;
 }
 
+/* The first set goes: the second keeps its motion and its impulses. The first comes back without any. */
+static void first_goes_and_comes_back(world *w, const char *name) {
+  double was[2], now[2], none[2];
+  ck_ok(w, mpm_stepper_particles_reaction(w->stepper, w->set[1], &was[0]));
+  ck_ok(w, mpm_stepper_particles_impulse(w->stepper, w->set[1], &was[1]));
+  ck_ok(w, mpm_stepper_remove(w->stepper, w->set[0]));
+  ck_ok(w, mpm_stepper_particles_reaction(w->stepper, w->set[1], &now[0]));
+  ck_ok(w, mpm_stepper_particles_impulse(w->stepper, w->set[1], &now[1]));
+  ck_assert_mem_eq(now, was, sizeof was);
+  ck_ok(w, mpm_stepper_add(w->stepper, w->set[0]));
+  ck_ok(w, mpm_stepper_particles_reaction(w->stepper, w->set[0], &none[0]));
+  ck_ok(w, mpm_stepper_particles_impulse(w->stepper, w->set[0], &none[1]));
+  ck_assert(none[0] == 0.0 && none[1] == 0.0);
+  const double kept = speeds[0];
+  speeds[0] = 0.9, speeds[1] = -0.4;
+  world_step(w, 1e-3);
+  ck_within(name, fetch1(w, w->set[0], "velocity", 1, 0, 0), kept, 1e-15);
+  ck_within(name, fetch1(w, w->set[1], "velocity", 1, 0, 0), speeds[1], 1e-15);
+}
+
 /* Two sets of one particle each within one cell of a third: nodes have the mean by mass; impulses are shared
  * by mass. */
 START_TEST(two_sets_on_one_node) {
@@ -182,6 +202,7 @@ START_TEST(two_sets_on_one_node) {
   ck_ok(&w, mpm_stepper_remove(w.stepper, third));
   ck_refused(&w, mpm_stepper_particles_reaction(w.stepper, third, force), MPM_E_NOT_FOUND,
              "not in this stepper");
+  first_goes_and_comes_back(&w, how->name);
   world_close(&w);
 }
 END_TEST
