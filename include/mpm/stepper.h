@@ -327,7 +327,8 @@ MPM_API mpm_status mpm_stable_dt(mpm_stepper *stepper, double *dt);
  * info may be NULL; it is filled on success and on failure.
  *
  * - MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED, MPM_SINGULAR: a smaller dt may do.
- * - MPM_OFF_GRID: a particle would leave through an MPM_WALL_NONE face.
+ * - MPM_OFF_GRID: a particle would leave through a face that does not let it. In implicit steps a smaller dt
+ *   may do here as well.
  * - MPM_CANCELLED: the progress callback ended the step.
  * - MPM_E_ARG: dt is not finite or not > 0.
  * - MPM_E_CALLBACK: a callback or the host's executor failed.
@@ -358,8 +359,10 @@ MPM_API mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct
 
 /**
  * Steps to t_end exactly. Statuses 1..5 cut dt to 0.6 of it and try again, and success lets it grow; the
- * controller's dt is part of the saved state. On failure the state is that of the last committed sub-step,
- * and the status is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives
+ * controller's dt is part of the saved state. In implicit steps MPM_OFF_GRID cuts as well, but no more than 20
+ * times before the time comes to where one of these steps would have ended: a body that moves out by itself
+ * does so in steps of any length. On failure the state is that of the last committed sub-step, and the status
+ * is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives
  * up, and mpm_last_error() says so and why the last try failed; the host may call again, with the dt of
  * before the cuts. info may be NULL; it is that of the last sub-step tried. The call returns
  * MPM_OK with t < t_end when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before

@@ -81,6 +81,12 @@ static int32_t is_placed(const mpm_particles *set, int64_t slot) {
   return placed;
 }
 
+/* What is said of a particle that would go through each face. */
+static const char *const off_grid[6] = {
+    "a particle would leave the grid through MPM_X_MIN", "a particle would leave the grid through MPM_X_MAX",
+    "a particle would leave the grid through MPM_Y_MIN", "a particle would leave the grid through MPM_Y_MAX",
+    "a particle would leave the grid through MPM_Z_MIN", "a particle would leave the grid through MPM_Z_MAX"};
+
 /* Wraps particles beyond a face, marks them for removal, or ends the step. */
 static void look_outside(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
@@ -88,19 +94,20 @@ static void look_outside(mpmi_batch *b) {
   const int64_t *id = mpmi_i64(b->set, MPMI_ID, 0);
   for (int64_t slot = b->begin; slot < b->begin + b->n; ++slot) {
     if (id[slot] < 0 || !is_placed(b->set, slot)) continue; /* the check of values reports it */
-    int32_t stays = 0, leaves = 0;
+    int32_t closed = -1, leaves = 0;                        /* closed: a face that does not let it through */
     for (int32_t k = 0; k < grid->dim; ++k) {
       double *x = mpmi_component_row(b->set, MPMI_POSITION, 1, k) + slot;
       if (*x >= grid->desc.origin[k] && *x <= grid->upper[k]) continue;
-      if (grid->desc.periodic[k])
-        stays |= !wrap(grid, k, x, mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot);
-      else if (mpmi_wall_kind_of(settings->wall[2 * k + (*x > grid->upper[k])].kind)->opens)
+      const int32_t face = 2 * k + (*x > grid->upper[k]);
+      if (!grid->desc.periodic[k] && mpmi_wall_kind_of(settings->wall[face].kind)->opens)
         leaves = 1;
-      else if (!is_on_wall(settings, k, x))
-        stays = 1;
+      else if (grid->desc.periodic[k]
+                   ? !wrap(grid, k, x, mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot)
+                   : !is_on_wall(settings, k, x))
+        closed = face;
     }
-    if (stays)
-      mpmi_batch_fail(b, MPM_OFF_GRID, slot, "a particle would leave the grid");
+    if (closed >= 0)
+      mpmi_batch_fail(b, MPM_OFF_GRID, slot, off_grid[closed]);
     else if (leaves)
       b->report->removes = 1;
   }

@@ -9,8 +9,9 @@ static const mpm_advance_desc defaults = {.struct_size = sizeof(mpm_advance_desc
 
 /* A step that failed is cut to 0.6, one that went well lets the next be twice as long: proven in practice. */
 static const double CUT = 0.6, GROW = 2.0;
-/* What max_cuts = 0 means: no cause that a smaller dt cures needs as many. */
-enum { MOST_CUTS = 60 };
+/* What max_cuts = 0 means: no cause that a smaller dt cures needs as many. And how often a particle may leave
+ * the grid before the time comes to where one of these steps would have ended. */
+enum { MOST_CUTS = 60, MOST_LEAVES = 20 };
 
 /* Largest shares of the stable dt at which bodies stay bounded, slivers and compression on the linear basis
  * aside, as measured: `make verify CASES=stable_share`. */
@@ -90,9 +91,25 @@ static void let_grow(mpm_stepper *s, double dt) {
   if (s->history.controller_dt > 1e6 * dt) s->history.controller_dt = 0.0;
 }
 
-/* Returns 1 where no smaller dt helps: the first matrix of a quasi-static step does not depend on it. */
-static int32_t no_cut_helps(const mpm_stepper *s, mpm_status status) {
-  return status == MPM_SINGULAR && s->settings.desc.quasi_static && s->history.last.newton_iterations <= 1;
+/* Steps in which particles would leave the grid. */
+typedef struct leaves {
+  int32_t count;
+  double end; /* the earliest at which one of them would have ended */
+} leaves;
+
+/* Returns 1 where a smaller dt may help. What leaves the grid in an implicit step may only have come to a
+ * balance far away, or through a touch that stayed open. What moves out by itself is out at the end of all
+ * these steps, and so the time does not come to the end of any. */
+static int32_t a_cut_may_help(const mpm_stepper *s, mpm_status status, double dt, leaves *left) {
+  if (status == MPM_OFF_GRID && mpmi_is_implicit(&s->settings)) {
+    const double end = s->history.t + dt;
+    if (s->history.t >= left->end) *left = (leaves){0, end};
+    left->end = fmin(left->end, end);
+    return left->count++ < MOST_LEAVES;
+  }
+  /* the first matrix of a quasi-static step does not depend on dt */
+  if (status == MPM_SINGULAR && s->settings.desc.quasi_static) return s->history.last.newton_iterations > 1;
+  return status >= MPM_CUT_DT && status <= MPM_SINGULAR;
 }
 
 /* The next call starts from the dt that was cut first. */
@@ -106,6 +123,7 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
   const int32_t most = d->max_cuts ? d->max_cuts : MOST_CUTS;
   int32_t cuts = 0;
   double first = 0.0;
+  leaves left = {0, -HUGE_VAL};
   if (d->dt_first > 0.0) s->history.controller_dt = d->dt_first;
   for (int64_t step = 0; s->history.t < d->t_end && (!d->max_steps || step < d->max_steps);) {
     double dt;
@@ -128,8 +146,8 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
     if (!cuts) first = dt;
     const double smaller = CUT * dt;
     /* cutting ends where numbers lose digits: the smallest would be cut to itself */
-    if (status < MPM_CUT_DT || status > MPM_SINGULAR || no_cut_helps(s, status) || smaller < d->dt_min ||
-        smaller < DBL_MIN || s->history.t + smaller == s->history.t)
+    if (!a_cut_may_help(s, status, dt, &left) || smaller < d->dt_min || smaller < DBL_MIN ||
+        s->history.t + smaller == s->history.t)
       return status;
     if (cuts == most) return give_up(s, status, cuts, first, dt);
     ++cuts;

@@ -411,7 +411,7 @@ START_TEST(off_the_grid) {
       ck_assert_int_eq(mpm_particles_count(b.set), n / 2);
       ck_assert_int_eq(world_step(&b.w, 0.2 * b.dt).removed, n / 2 + n / 4);
     } else {
-      ck_assert_int_ge(fails(&b, MPM_OFF_GRID, "leave the grid").particle, 0);
+      ck_assert_int_ge(fails(&b, MPM_OFF_GRID, "leave the grid through MPM_X_MAX at particle").particle, 0);
     }
     world_close(&b.w);
   }
@@ -440,6 +440,75 @@ START_TEST(advance) {
 }
 END_TEST
 
+/* Kicks the body out of the grid in every step that is longer than a limit. */
+typedef struct kick {
+  double limit;
+  int32_t tries;
+} kick;
+static mpm_status kick_in_long_steps(void *user, const mpm_particle_batch *batch, double *add) {
+  kick *is = user;
+  ++is->tries;
+  for (int64_t p = 0; p < batch->n; ++p) add[p] += batch->dt > is->limit ? 1e6 : 0.0;
+  return 0;
+}
+
+/* mpm_advance cuts where a particle leaves the grid in implicit steps, as often as it comes through. */
+START_TEST(advance_within_the_grid) {
+  block b;
+  kick is = {.limit = 0.01};
+  b.desc = implicit_default(2, 8, 0.1, implicit_basis(1));
+  b.desc.context.concurrency = 1;
+  b.dt = 0.02;
+  b.set = world_open(&b.w, &b.desc);
+  implicit_block(&b.w, b.set, 0.3, 0.5, NULL);
+  ck_ok(&b.w, mpm_stepper_set_acceleration(b.w.stepper, kick_in_long_steps, &is));
+  fails(&b, MPM_OFF_GRID, "leave the grid through MPM_X_MAX at particle");
+  mpm_advance_desc go = advance_desc(0.5);
+  mpm_step_info info = {.struct_size = sizeof info};
+  ck_ok(&b.w, mpm_advance(b.w.stepper, &go, &info));
+  ck_assert_double_eq(info.t, 0.5);
+  ck_assert_int_gt(info.step, 50);
+  /* the host bounds cuts as for any other cause */
+  go.t_end = 1.0;
+  go.dt_first = 0.02;
+  go.max_cuts = 1;
+  ck_refused(&b.w, mpm_advance(b.w.stepper, &go, &info), MPM_OFF_GRID, "gave up after 1 cuts");
+  ck_assert_double_eq(info.t, 0.5);
+  world_close(&b.w);
+}
+END_TEST
+
+/* What moves out by itself is cut as well, but not for ever; an explicit step is not. */
+START_TEST(advance_out_of_the_grid) {
+  for (int32_t explicit = 0; explicit < 2; ++explicit) {
+    block b;
+    kick is = {.limit = (double)INFINITY};
+    const double v[] = {3.0, 0.0};
+    b.desc = implicit_default(2, 8, 0.1, implicit_basis(1));
+    b.desc.context.concurrency = 1;
+    if (explicit) b.desc.stepper.scheme = MPM_MUSL;
+    b.set = world_open(&b.w, &b.desc);
+    implicit_block(&b.w, b.set, 0.4, 0.6, v);
+    ck_ok(&b.w, mpm_stepper_set_acceleration(b.w.stepper, kick_in_long_steps, &is));
+    const double before = 0.2 / 3.0; /* when the face is reached, but for half the distance of particles */
+    mpm_advance_desc go = advance_desc(0.2);
+    mpm_step_info info = {.struct_size = sizeof info};
+    ck_refused(&b.w, mpm_advance(b.w.stepper, &go, &info), MPM_OFF_GRID, "leave the grid through MPM_X_MAX");
+    ck_assert_int_eq(info.cause, MPM_OFF_GRID);
+    ck_assert_int_ge(info.particle, 0);
+    ck_assert_int_eq(info.set, 0);
+    ck_between("time before the face", info.t, 0.8 * before, before + 0.026 / 3.0);
+    const int64_t committed = info.step;
+    const int32_t failed = is.tries - (int32_t)committed;
+    if (explicit)
+      ck_assert_int_eq(failed, 1);
+    else
+      ck_between("steps that failed", failed, 15, 30);
+    world_close(&b.w);
+  }
+}
+END_TEST
+
 TCase *implicit_large_case(void) {
   TCase *tests = tcase_create("large");
   tcase_set_tags(tests, "long");
@@ -462,5 +531,7 @@ TCase *implicit_failures_case(void) {
   tcase_add_test(tests, refused);
   tcase_add_test(tests, off_the_grid);
   tcase_add_test(tests, advance);
+  tcase_add_test(tests, advance_within_the_grid);
+  tcase_add_test(tests, advance_out_of_the_grid);
   return tests;
 }
