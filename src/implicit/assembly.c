@@ -48,8 +48,8 @@ static void spread_task(void *data, int64_t k) {
   }
 }
 
-/* Gives the nodes the velocities of u, and lets all tasks begin a pass that deforms. */
-static mpm_status begin_strain(mpmi_balance *balance, const double *u, const mpmi_pass *pass) {
+/* Gives the nodes the velocities of u, and averages the dilation that they make. */
+static mpm_status begin_strain(mpmi_balance *balance, const double *u) {
   spread_job spread = {balance, u};
   mpmi_failures_clear(balance->step);
   mpm_status status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, spread_task, &spread);
@@ -58,10 +58,14 @@ static mpm_status begin_strain(mpmi_balance *balance, const double *u, const mpm
     mpmi_make_volumes(balance->layout, 0);
     status = mpmi_locking_stage(balance->step, balance->nodes, &balance->nodes->solved);
   }
+  return status;
+}
+
+/* Lets all tasks begin a pass. */
+static void begin_pass(mpmi_balance *balance, const mpmi_pass *pass) {
   for (int32_t k = 0; k < balance->settings->tasks; ++k)
     mpmi_pass_begin(&balance->newton->work[k].batch, balance->step, balance->nodes, &balance->nodes->solved,
                     pass, balance, k);
-  return status;
 }
 
 /* A pass that deforms the particles, for what it takes of them. */
@@ -81,15 +85,29 @@ static int32_t deform(mpmi_batch *b) {
   return 1;
 }
 
-/* Computes the stress of a batch; then `add` puts its force or its stiffness on the nodes. */
+/* Computes the stress of a batch; then `add` puts its force or its stiffness on the nodes, where it is not
+ * NULL. */
 static void take(mpmi_batch *b, void (*add)(mpmi_balance *, mpmi_batch *)) {
   mpmi_balance *balance = b->user;
   if (!deform(b)) return;
   mpmi_strain_law(b);
   if (!b->law_ran) return;
-  add(balance, b);
+  if (add) add(balance, b);
   mpmi_wave_speed_leave(b);
   mpmi_batch_sums(b, MPMI_SUMS_LAW);
+}
+
+static void take_stress(mpmi_batch *b) {
+  take(b, NULL);
+}
+
+/* Averages pressures over cells where laws want it, by the stress of the displacements that the nodes have. */
+static mpm_status find_pressures(mpmi_balance *balance) {
+  static const mpmi_pass pass = STRAIN_PASS(take_stress);
+  if (!mpmi_has_nodal_stress(balance->layout)) return MPM_OK;
+  const mpm_status status =
+      mpmi_pass_run(balance->step, balance->nodes, &balance->nodes->solved, &pass, balance);
+  return status ? status : mpmi_cell_pressure_stage(balance->step, balance->nodes, 1);
 }
 
 /* ---- internal forces ---------------------------------------------------------------------------------- */
@@ -97,11 +115,20 @@ static void take_forces(mpmi_batch *b) {
   take(b, mpmi_add_forces);
 }
 
+/* Puts forces of the stress that the particles have already on the nodes. */
+static void take_known_forces(mpmi_batch *b, int32_t copy) {
+  if (!deform(b)) return;
+  mpmi_law_batch_recall(&b->law, b->set, copy, b->begin, b->n);
+  mpmi_add_forces(b->user, b);
+}
+
 /* The stress is that of the particles: a law would not know how fast they deform at the start. */
 static void take_start_forces(mpmi_batch *b) {
-  if (!deform(b)) return;
-  mpmi_law_batch_recall(&b->law, b->set, b->begin, b->n);
-  mpmi_add_forces(b->user, b);
+  take_known_forces(b, 0);
+}
+
+static void take_new_forces(mpmi_batch *b) {
+  take_known_forces(b, 1);
 }
 
 static void give_internal(void *user, const mpmi_visit *visit, double *tile) {
@@ -110,30 +137,38 @@ static void give_internal(void *user, const mpmi_visit *visit, double *tile) {
   mpmi_pass_block(&balance->newton->work[visit->task].batch, visit->block, visit->next);
 }
 
-static mpm_status sum_internal(mpmi_balance *balance, const double *u, const mpmi_pass *pass) {
-  mpm_status status = begin_strain(balance, u, pass);
-  if (!status)
-    status =
-        mpmi_accumulate(balance->step, &(mpmi_accumulation){.to = &balance->newton->force,
-                                                            .give = give_internal,
-                                                            .user = balance,
-                                                            .calls_host = mpmi_has_host_law(balance->layout),
-                                                            .gathers = 1});
+static mpm_status sum_internal(mpmi_balance *balance, const mpmi_pass *pass) {
+  begin_pass(balance, pass);
+  mpm_status status =
+      mpmi_accumulate(balance->step, &(mpmi_accumulation){.to = &balance->newton->force,
+                                                          .give = give_internal,
+                                                          .user = balance,
+                                                          .calls_host = mpmi_has_host_law(balance->layout),
+                                                          .gathers = 1});
   if (!status) status = mpmi_step_failure(balance->step);
   if (!status) mpmi_unknowns_fold(balance, &balance->newton->force, balance->newton->vector[MPMI_INTERNAL]);
   return status;
 }
 
+/* Where pressures are averaged, forces need the stress of all particles of a cell: they get a pass of their
+ * own, which finds the deformation once more and leaves what the first one has summed up. */
 mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
-  static const mpmi_pass pass = STRAIN_PASS(take_forces);
-  return sum_internal(balance, u, &pass);
+  static const mpmi_pass at_once = STRAIN_PASS(take_forces);
+  static const mpmi_pass again = {
+      .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .aim = mpmi_strain_aim, .take = take_new_forces};
+  mpm_status status = begin_strain(balance, u);
+  if (!status) status = find_pressures(balance);
+  return status ? status : sum_internal(balance, mpmi_has_nodal_stress(balance->layout) ? &again : &at_once);
 }
 
 mpm_status mpmi_start_forces(mpmi_balance *balance) {
   static const mpmi_pass pass = STRAIN_PASS(take_start_forces);
   double *u = balance->newton->vector[MPMI_U];
   memset(u, 0, (size_t)(balance->newton->matrix.rows * balance->settings->grid->dim) * sizeof *u);
-  return sum_internal(balance, u, &pass);
+  mpm_status status = begin_strain(balance, u);
+  if (!status && mpmi_has_nodal_stress(balance->layout))
+    status = mpmi_cell_pressure_stage(balance->step, balance->nodes, 0);
+  return status ? status : sum_internal(balance, &pass);
 }
 
 /* ---- stiffness ---------------------------------------------------------------------------------------- */
@@ -180,7 +215,12 @@ mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
   mpm_status status = mpmi_run_tasks(balance->settings, 0, tasks, clear_matrix_task, balance);
   if (!status && remedy) status = mpmi_locking_stiffness_begin(balance);
   for (int32_t k = 0; k < tasks; ++k) newton->work[k].symmetric = 1;
-  if (!status) status = begin_strain(balance, u, &pass);
+  if (!status) status = begin_strain(balance, u);
+  if (!status && mpmi_has_nodal_stress(balance->layout)) {
+    status = find_pressures(balance);
+    if (!status) status = begin_strain(balance, u); /* the sums held pressures meanwhile */
+  }
+  begin_pass(balance, &pass);
   if (!status)
     status = mpmi_visit_colours(balance->step, mpmi_has_host_law(balance->layout), add_inner, balance);
   if (status) return status;

@@ -28,6 +28,8 @@ static void lay_out(const mpmi_balance *balance, mpmi_arena *from, mpmi_newton_w
   to->tangent = take_rows(from, 81, length);
   to->weight = take_rows(from, 1, length);
   to->h = take_rows(from, 9, length);
+  to->k = take_rows(from, 9, length);
+  to->q = take_rows(from, 1, length);
   to->inverse = take_rows(from, 9, length);
   to->tangent_scratch = mpmi_arena_take(from, (int64_t)tangent, 1);
   to->K = take_rows(from, row, row);

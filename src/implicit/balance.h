@@ -92,6 +92,7 @@ typedef struct mpmi_newton_work {
   double *F_inc, *nominal, *inverse, *h; /* [9] each */
   double *stiffness, *tangent;           /* [81] each */
   double *weight;                        /* [1] */
+  double *k, *q;                         /* [9], [1]: of the locking remedy with averaged pressure */
   void *tangent_scratch;
   double *K;            /* stiffness of one stencil */
   int32_t *tile_active; /* active node at each place of the tile, or -1 */
@@ -277,10 +278,19 @@ mpm_status mpmi_locking_stiffness_begin(mpmi_balance *balance);
  * for what couples the particles of a cell. */
 void mpmi_locking_stiffness_local(int32_t dim, const mpmi_law_batch *law, const double *weight,
                                   const double *volume, double *tangent, double *h);
+/* The same for particles whose pressure is averaged too, with k and q; their stress becomes that of the
+ * volume that the law sees. Arrays hold a batch, tensors by ld, but for nodal_stress. */
+typedef struct mpmi_paired_local {
+  int64_t ld, n, nodal_ld;
+  const double *volume, *initial_volume, *ratio, *nodal_stress;
+  double *stress, *tangent, *h, *k, *q;
+} mpmi_paired_local;
+void mpmi_paired_stiffness_local(int32_t dim, const mpmi_paired_local *of);
 /* Holds what a particle gives to its cell: weight h F_inc^-T, F_inc^-1 with the components 3 * row + column,
- * and its new volume. */
+ * and its new volume; where pressures are averaged weight k F_inc^-T and weight q. */
 typedef struct mpmi_locking_particle {
-  double h[9], inverse[9], volume;
+  double h[9], inverse[9], volume, k[9], q;
+  int32_t paired;
 } mpmi_locking_particle;
 /* Adds particle p of a chunk to the sums of the cell whose lower corner is at this place of the tile. */
 void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *work, const mpmi_weights *W,

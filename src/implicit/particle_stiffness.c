@@ -81,15 +81,18 @@ static void add_stencil(mpmi_balance *balance, mpmi_newton_work *work, int32_t f
 /* Adds one particle's share of what couples its cell. */
 static void add_to_cell(mpmi_balance *balance, const mpmi_newton_work *work, const mpm_particles *set,
                         const mpmi_weights *W, int64_t p, int32_t cell, int64_t slot, int64_t q, int64_t ld) {
-  const int32_t dim = balance->settings->grid->dim;
-  mpmi_locking_particle of = {.volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot]};
+  const int32_t dim = balance->settings->grid->dim, paired = mpmi_averages_pressure(balance->settings, set);
+  mpmi_locking_particle of = {.volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot], .paired = paired};
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t K = 0; K < dim; ++K) {
       of.inverse[3 * K + i] = work->inverse[(3 * K + i) * ld + q];
-      for (int32_t k = 0; k < dim; ++k)
-        of.h[3 * i + K] +=
-            work->weight[q] * work->h[(3 * i + k) * ld + q] * work->inverse[(3 * K + k) * ld + q];
+      for (int32_t k = 0; k < dim; ++k) {
+        const double by = work->inverse[(3 * K + k) * ld + q];
+        of.h[3 * i + K] += work->weight[q] * work->h[(3 * i + k) * ld + q] * by;
+        if (paired) of.k[3 * i + K] += work->weight[q] * work->k[(3 * i + k) * ld + q] * by;
+      }
     }
+  if (paired) of.q = work->weight[q] * work->q[q];
   mpmi_locking_stiffness_add(balance, work, W, p, cell, &of);
 }
 
@@ -120,12 +123,13 @@ static void add_stencils(mpmi_balance *balance, mpmi_newton_work *work, const mp
   if (first >= 0) add_stencil(balance, work, first);
 }
 
-/* Finds V0 of the tangent, less the dilation that the law saw beside that of the volume (`ratio`). */
+/* Finds V0 of the tangent; where the forces take the volume without the dilation that the law saw beside it
+ * (`ratio`), less that. */
 static void find_weights(const mpmi_balance *balance, const mpm_particles *set, int64_t begin, int64_t n,
                          double *weight) {
   const double *volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + begin;
   memcpy(weight, volume, (size_t)n * sizeof *weight);
-  if (!balance->settings->desc.locking_remedy) return;
+  if (!balance->settings->desc.locking_remedy || mpmi_averages_pressure(balance->settings, set)) return;
   const double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
   for (int64_t p = 0; p < n; ++p) weight[p] /= ratio[p];
 }
@@ -177,10 +181,42 @@ static int32_t is_rigid(const mpmi_batch *b) {
   return mpmi_material_kinematics(b->set->material) == MPMI_F_STAYS;
 }
 
+/* Exchanges the stress of a batch for that in the forces, where it is another one. */
+static void take_nodal_stress(mpmi_batch *b) {
+  const double *from = b->step->layout->member[b->m].nodal_stress;
+  for (int32_t c = 0; from && c < mpmi_stress_components(b->set->grid->dim); ++c)
+    memcpy(b->law.stress_new + c * b->law.ld, from + c * b->set->ld + b->begin, (size_t)b->n * sizeof *from);
+}
+
+/* Puts the share that the remedy's local part has into the tangent, and what couples a cell into h, k, q. */
+static void add_local_part(const mpmi_balance *balance, mpmi_newton_work *work, mpmi_batch *b) {
+  const double *volume = mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin;
+  const mpmi_member *member = &balance->layout->member[b->m];
+  const int32_t dim = balance->settings->grid->dim;
+  if (!member->nodal_stress) {
+    mpmi_locking_stiffness_local(dim, &b->law, work->weight, volume, work->tangent, work->h);
+    return;
+  }
+  mpmi_paired_stiffness_local(
+      dim, &(mpmi_paired_local){.ld = b->law.ld,
+                                .n = b->n,
+                                .volume = volume,
+                                .initial_volume = work->weight,
+                                .ratio = mpmi_f64(b->set, MPMI_DILATION_RATIO, 1) + b->begin,
+                                .nodal_stress = member->nodal_stress + b->begin,
+                                .nodal_ld = b->set->ld,
+                                .stress = b->law.stress_new,
+                                .tangent = work->tangent,
+                                .h = work->h,
+                                .k = work->k,
+                                .q = work->q});
+}
+
 void mpmi_add_forces(mpmi_balance *balance, mpmi_batch *b) {
   const mpm_grid *grid = balance->settings->grid;
   mpmi_newton_work *work = &balance->newton->work[b->task];
   if (is_rigid(b)) return;
+  take_nodal_stress(b);
   push_forward(balance, work, b, NULL);
   mpmi_force_scatter scatter =
       mpmi_force_scatter_of(balance->settings, &balance->layout->member[b->m], work->tile);
@@ -194,9 +230,7 @@ void mpmi_add_stiffness(mpmi_balance *balance, mpmi_batch *b) {
   mpmi_newton_work *work = &balance->newton->work[b->task];
   if (is_rigid(b) || !find_tangent(balance, work, b)) return;
   find_weights(balance, b->set, b->begin, b->n, work->weight);
-  if (balance->settings->desc.locking_remedy)
-    mpmi_locking_stiffness_local(balance->settings->grid->dim, &b->law, work->weight,
-                                 mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin, work->tangent, work->h);
+  if (balance->settings->desc.locking_remedy) add_local_part(balance, work, b);
   push_forward(balance, work, b, work->tangent);
   add_stencils(balance, work, b->set, b->gather.axis, b->begin, b->n, b->law.ld);
 }

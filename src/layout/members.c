@@ -81,6 +81,7 @@ void mpmi_members_remove(mpmi_layout *layout, const mpmi_settings *settings, int
   free_rows(c, &member->force, &member->force_ld, settings->grid->dim);
   free_rows(c, &member->mean, &member->mean_ld, settings->grid->dim);
   free_rows(c, &member->wave_speed, &member->wave_speed_ld, 1);
+  free_rows(c, &member->nodal_stress, &member->nodal_stress_ld, mpmi_stress_components(settings->grid->dim));
   drop_fields(member->set, NULL);
   member->set->stepper = NULL;
   member->set->dirty |= MPMI_DIRTY_PLACE;
@@ -150,7 +151,9 @@ mpm_status mpmi_members_reserve(mpmi_layout *layout, const mpmi_settings *settin
         (status = reserve_rows(c, set, member->prescribed && settings->motion[m].fn, dim, &member->mean,
                                &member->mean_ld)) ||
         (status = reserve_rows(c, set, mpmi_deforms_first(settings), 1, &member->wave_speed,
-                               &member->wave_speed_ld)))
+                               &member->wave_speed_ld)) ||
+        (status = reserve_rows(c, set, mpmi_averages_pressure(settings, set), mpmi_stress_components(dim),
+                               &member->nodal_stress, &member->nodal_stress_ld)))
       return status;
   }
   return MPM_OK;

@@ -18,6 +18,9 @@ typedef struct mpmi_member {
   int64_t force_ld;
   double *wave_speed; /* [ld] where the law runs before the particles move, or NULL */
   int64_t wave_speed_ld;
+  double *nodal_stress; /* [components][ld] the stress in the forces on nodes, where it is not that of the
+                           particles (stages/cell_pressure.c), or NULL */
+  int64_t nodal_stress_ld;
   int32_t prescribed; /* 1: some of its particles are prescribed */
   double *mean;       /* [dim][ld] their mean velocities in a step where there is a motion, or NULL */
   int64_t mean_ld;
@@ -57,6 +60,11 @@ typedef struct mpmi_layout {
   double light_cut;     /* one that is not heavier may have to go with others: at least the mass cut */
   int32_t walls_changed;
 } mpmi_layout;
+
+/* Returns 1 for a set whose pressure is averaged over cells, as its dilation is. */
+static inline int32_t mpmi_averages_pressure(const mpmi_settings *settings, const mpm_particles *set) {
+  return settings->desc.locking_remedy && mpmi_material_pressure_from_shear(set->material);
+}
 
 static inline int64_t mpmi_slots(const mpmi_layout *layout) {
   return layout->blocks.count * layout->blocks.nodes;

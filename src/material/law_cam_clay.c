@@ -512,6 +512,7 @@ const mpmi_law KERNEL(law_cam_clay) = {
     MPMI_STATES(states),
     .start = start,
     MPMI_REFUSALS(refusals),
+    .pressure_from_shear = 1,
     .check = check,
     .constants_size = sizeof(clay_constants),
     .prepare = prepare,

@@ -209,6 +209,7 @@ const mpmi_law KERNEL(law_drucker_prager) = {
     .name = "drucker_prager",
     MPMI_PARAMS(params),
     MPMI_STATES(states),
+    .pressure_from_shear = 1,
     .check = check,
     .constants_size = sizeof(drucker_constants),
     .prepare = prepare,

@@ -377,6 +377,7 @@ const mpmi_law KERNEL(law_mohr_coulomb) = {
     .name = "mohr_coulomb",
     MPMI_PARAMS(params),
     MPMI_STATES(states),
+    .pressure_from_shear = 1,
     .check = check,
     .constants_size = sizeof(mohr_constants),
     .prepare = prepare,

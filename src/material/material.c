@@ -269,3 +269,7 @@ int32_t mpmi_material_mean_from_F(const mpm_material *material) {
 int32_t mpmi_material_kinematics(const mpm_material *material) {
   return material->law ? material->law->kinematics : MPMI_F_DEFORMS;
 }
+
+int32_t mpmi_material_pressure_from_shear(const mpm_material *material) {
+  return material->law ? material->law->pressure_from_shear : 0;
+}

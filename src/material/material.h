@@ -27,6 +27,8 @@ int32_t mpmi_material_stress_from_F(const mpm_material *material);
 /* 1 when the mean stress follows from F and the deviator is the state. */
 int32_t mpmi_material_mean_from_F(const mpm_material *material);
 int32_t mpmi_material_kinematics(const mpm_material *material);
+/* 1 when shear makes pressure: the mean stress is no function of the dilation alone. */
+int32_t mpmi_material_pressure_from_shear(const mpm_material *material);
 
 /* Tangent of a material on a batch whose law has just run (outputs in place): c_ijkl of mpm_tangent_fn: with
  * tau = J sigma and dF = L F:  c_ijkl = d tau_ij / d L_kl - delta_ik tau_jl - delta_jk tau_il,

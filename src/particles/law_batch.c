@@ -153,8 +153,9 @@ void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t c
                     set->material->state_count, n);
 }
 
-void mpmi_law_batch_recall(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {
-  copy_batch_rows(b->stress_new, b->ld, mpmi_f64(set, MPMI_STRESS, 0) + begin, set->ld,
+void mpmi_law_batch_recall(mpmi_law_batch *b, const mpm_particles *set, int32_t copy, int64_t begin,
+                           int64_t n) {
+  copy_batch_rows(b->stress_new, b->ld, mpmi_f64(set, MPMI_STRESS, copy) + begin, set->ld,
                   mpmi_stress_components(set->grid->dim), n);
 }
 

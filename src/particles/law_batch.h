@@ -51,7 +51,8 @@ void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t 
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_material *material, int32_t dim);
 void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,
                           int64_t n);
-/* Takes the stress that the set has for the new one. */
-void mpmi_law_batch_recall(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
+/* Takes a copy of the stress that the set has for the new one. */
+void mpmi_law_batch_recall(mpmi_law_batch *b, const mpm_particles *set, int32_t copy, int64_t begin,
+                           int64_t n);
 
 #endif

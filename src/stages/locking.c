@@ -15,10 +15,14 @@
 
 #include <math.h>
 
-/* Sums over the particles in a cell, in the place of the four values of a node. */
+/* Sums over the particles in a cell, in the place of the four values of a node: volume times j, and volume.
+ * Those whose pressure is averaged as well are among `all`, and take the mean of their own kind: dilation and
+ * pressure then belong together, whatever else is in the cell. */
+typedef struct cell_mean {
+  double dilation, volume;
+} cell_mean;
 typedef struct cell_sums {
-  double dilation, volume; /* volume times j; volume */
-  double unused[2];
+  cell_mean all, paired;
 } cell_sums;
 _Static_assert(sizeof(cell_sums) == 4 * sizeof(double), "goes through tiles");
 
@@ -47,26 +51,25 @@ static void measure(mpmi_batch *b) {
       b->law.L, b->law.ld, b->step->dt, b->n, mpmi_f64(b->set, MPMI_DILATION_RATIO, 1) + b->begin);
 }
 
-typedef struct locking_job {
-  mpmi_step *step;
-  const mpmi_nodal *cells;
-} locking_job;
-
 /* Adds volume times j, and volume, of a chunk to the cells of its particles. */
-static void add_chunk(const mpm_particles *set, int64_t begin, int64_t n, const int32_t *place,
-                      cell_sums *tile) {
+static void add_chunk(const mpm_particles *set, int32_t paired, int64_t begin, int64_t n,
+                      const int32_t *place, cell_sums *tile) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
   const double *j = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
   const double *volume = mpmi_f64(set, MPMI_VOLUME, 0) + begin;
   for (int64_t p = 0; p < n; ++p) {
     if (id[p] < 0) continue;
-    tile[place[p]].dilation += volume[p] * j[p];
-    tile[place[p]].volume += volume[p];
+    cell_sums *cell = &tile[place[p]];
+    cell->all.dilation += volume[p] * j[p];
+    cell->all.volume += volume[p];
+    if (!paired) continue;
+    cell->paired.dilation += volume[p] * j[p];
+    cell->paired.volume += volume[p];
   }
 }
 
 static void add_block(void *user, const mpmi_visit *visit, double *tile) {
-  const locking_job *job = user;
+  const mpmi_cell_job *job = user;
   const mpmi_layout *layout = job->step->layout;
   const mpm_grid *grid = layout->blocks.grid;
   mpmi_axis axis[3];
@@ -76,45 +79,47 @@ static void add_block(void *user, const mpmi_visit *visit, double *tile) {
     const mpm_particles *set = layout->member[m].set;
     if (mpmi_material_kinematics(set->material) == MPMI_F_STAYS) continue; /* rigid: nothing to average */
     const mpmi_points points = mpmi_points_of(set, 0);
+    const int32_t paired = mpmi_averages_pressure(job->step->settings, set);
     const int64_t end = layout->member[m].now.start[visit->block + 1];
     for (int64_t at = layout->member[m].now.start[visit->block]; at < end; at += MPMI_CHUNK) {
       const int64_t n = end - at < MPMI_CHUNK ? end - at : MPMI_CHUNK;
       mpmi_cell_places(grid, axis, &points, at, n, place);
-      add_chunk(set, at, n, place, (cell_sums *)tile);
+      add_chunk(set, paired, at, n, place, (cell_sums *)tile);
     }
   }
 }
 
-/* Joins the two halves of cells at a periodic seam, which have been added up on both sides of it. Ghosts of
- * walls hold no cell. */
-static void join_images(void *data, int64_t k) {
-  const locking_job *job = data;
+void mpmi_cells_join(void *data, int64_t k) {
+  const mpmi_cell_job *job = data;
   const mpmi_constraints *c = &job->step->layout->constraints;
   const mpmi_share share = mpmi_share_of(job->step->settings, c->tie_count, k);
   for (int64_t i = share.begin; i < share.end; ++i) {
     double *master = mpmi_nodal_at(job->cells, c->tie[i].master);
     const int64_t first = c->tie[i].first, end = first + c->tie[i].count;
     for (int64_t d = first; d < end; ++d)
-      for (int32_t v = 0; v < 2; ++v) master[v] += mpmi_nodal_at(job->cells, c->follower[d].slot)[v];
+      for (int32_t v = 0; v < 4; ++v) master[v] += mpmi_nodal_at(job->cells, c->follower[d].slot)[v];
     for (int64_t d = first; d < end; ++d)
-      for (int32_t v = 0; v < 2; ++v) mpmi_nodal_at(job->cells, c->follower[d].slot)[v] = master[v];
+      for (int32_t v = 0; v < 4; ++v) mpmi_nodal_at(job->cells, c->follower[d].slot)[v] = master[v];
   }
 }
 
 mpm_status mpmi_locking_stage(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from) {
   static const mpmi_pass dilation = {.take = measure};
-  locking_job job = {step, &nodes->sums};
+  mpmi_cell_job job = {step, &nodes->sums, 0};
   const mpm_status status = mpmi_pass_run(step, nodes, from, &dilation, NULL);
   if (status) return status;
   return mpmi_accumulate(
-      step, &(mpmi_accumulation){.to = &nodes->sums, .give = add_block, .fold = join_images, .user = &job});
+      step,
+      &(mpmi_accumulation){.to = &nodes->sums, .give = add_block, .fold = mpmi_cells_join, .user = &job});
 }
 
 /* Finds the mean of the cell of each particle of a chunk; none for rigid ones and for holes. */
-static void find_means(const cell_sums *cells, const int32_t *place, const int64_t *id, int32_t rigid,
-                       int64_t n, double *mean) {
+static void find_means(const cell_sums *cells, const int32_t *place, const mpm_particles *set, int32_t paired,
+                       int64_t begin, int64_t n, double *mean) {
+  const int32_t rigid = mpmi_material_kinematics(set->material) == MPMI_F_STAYS;
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
   for (int64_t p = 0; p < n; ++p) {
-    const cell_sums *cell = &cells[place[p]];
+    const cell_mean *cell = paired ? &cells[place[p]].paired : &cells[place[p]].all;
     mean[p] = rigid || id[p] < 0 || !(cell->volume > 0.0) ? (double)NAN : cell->dilation / cell->volume;
   }
 }
@@ -123,14 +128,13 @@ void mpmi_locking_apply(const mpmi_settings *settings, const double *cells, cons
                         mpm_particles *set, mpmi_law_batch *b, int64_t begin, int64_t n, double dt) {
   const int32_t dim = settings->grid->dim;
   const mpmi_points points = mpmi_points_of(set, 0);
-  const int32_t rigid = mpmi_material_kinematics(set->material) == MPMI_F_STAYS;
+  const int32_t paired = mpmi_averages_pressure(settings, set);
   double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;
   for (int64_t p = 0; p < n; p += MPMI_CHUNK) {
     double mean[MPMI_CHUNK];
     int32_t place[MPMI_CHUNK];
     mpmi_cell_places(settings->grid, axis, &points, begin + p, MPMI_CHUNK, place);
-    find_means((const cell_sums *)cells, place, mpmi_i64(set, MPMI_ID, 0) + begin + p, rigid, MPMI_CHUNK,
-               mean);
+    find_means((const cell_sums *)cells, place, set, paired, begin + p, MPMI_CHUNK, mean);
     settings->dilation->exchange[dim](
         &(mpmi_exchange){.dt = dt,
                          .ld = b->ld,

@@ -45,7 +45,9 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   scatter->mass = mpmi_f64(set, MPMI_MASS, 0);
   scatter->volume = mpmi_f64(set, MPMI_VOLUME, 0);
   for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
-    scatter->stress[c] = mpmi_f64(set, MPMI_STRESS, job->stress_copy) + c * set->ld;
+    scatter->stress[c] =
+        (member->nodal_stress ? member->nodal_stress : mpmi_f64(set, MPMI_STRESS, job->stress_copy)) +
+        c * set->ld;
   for (int32_t k = 0; k < dim; ++k) {
     scatter->v[k] = mpmi_f64(set, projection->field, projection->copy) + k * set->ld;
     scatter->force[k] = member->force && forces ? member->force + k * set->ld : NULL;
@@ -75,15 +77,6 @@ static void scatter_slots(const p2g_job *job, const mpmi_scatter *scatter, int64
   }
 }
 
-/* Tells whether the host has seen positions since the last step, through a view or in the batches of its
- * callbacks: then it may have written there, whatever it was asked not to do. */
-static int32_t were_shown(const mpmi_step *step, int32_t m) {
-  const mpm_particles *set = step->layout->member[m].set;
-  const mpmi_settings *settings = step->settings;
-  return set->lent || !set->material->law || settings->motion[m].fn || settings->force ||
-         settings->acceleration;
-}
-
 static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
   const p2g_job *job = user;
   const mpmi_layout *layout = job->step->layout;
@@ -93,7 +86,7 @@ static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
     const int64_t end = layout->member[m].now.start[visit->block + 1];
     const mpmi_member *member = &layout->member[m];
     if (begin == end) continue;
-    if (were_shown(job->step, m) && !mpmi_is_in_place(job->step, visit, m)) continue;
+    if (mpmi_were_shown(job->step, m) && !mpmi_is_in_place(job->step, visit, m)) continue;
     scatter_of(job, member, &scatter);
     mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[visit->block], scatter.axis);
     scatter.tile = tile;
@@ -124,7 +117,10 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
                  /* the main projection comes after USF's strain: the stress is new then */
                  .stress_copy = projection->main && mpmi_deforms_first(step->settings)};
   choose_form(&job);
-  const mpm_status status =
-      mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
+  mpm_status status = projection->forces && mpmi_has_nodal_stress(step->layout)
+                          ? mpmi_cell_pressure_stage(step, nodes, job.stress_copy)
+                          : MPM_OK;
+  if (status) return status;
+  status = mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
   return status ? status : mpmi_step_failure(step);
 }

@@ -41,6 +41,13 @@ static int32_t is_astray(double x, const reach *of) {
   return mpmi_lanes_any(~are_near(zero + x, of), 1) != 0;
 }
 
+int32_t mpmi_were_shown(const mpmi_step *step, int32_t m) {
+  const mpm_particles *set = step->layout->member[m].set;
+  const mpmi_settings *settings = step->settings;
+  return set->lent || !set->material->law || settings->motion[m].fn || settings->force ||
+         settings->acceleration;
+}
+
 int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m) {
   const mpmi_layout *layout = step->layout;
   const mpm_particles *set = layout->member[m].set;

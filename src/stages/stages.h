@@ -12,6 +12,9 @@
 mpm_status mpmi_forces_stage(mpmi_step *step, double t);
 
 /* ---- places.c ---------------------------------------------------------------------------------------- */
+/* Tells whether the host has seen positions since the last step, through a view or in the batches of its
+ * callbacks: then it may have written there, whatever it was asked not to do. */
+int32_t mpmi_were_shown(const mpmi_step *step, int32_t m);
 /* Whether all particles of set m in a block are within its cover; if not, one is noted as the
  * failure of the task. Only a host that writes to what it was lent for reading can bring them elsewhere. */
 int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m);
@@ -43,6 +46,23 @@ void mpmi_locking_apply(const mpmi_settings *settings, const double *cells, cons
 /* Finds the place in the tile of the lower corner of the cells of n particles, at most a chunk. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
                       int64_t n, int32_t *place);
+
+/* Joins the two halves of cells at a periodic seam, which have been added up on both sides of it; data: a
+ * job. Ghosts of walls hold no cell. */
+typedef struct mpmi_cell_job {
+  mpmi_step *step;
+  const mpmi_nodal *cells;
+  int32_t copy; /* of stress and dilation ratio */
+} mpmi_cell_job;
+void mpmi_cells_join(void *data, int64_t k);
+
+/* ---- cell_pressure.c --------------------------------------------------------------------------------- */
+/* Whether a member has a stress for the forces on nodes beside that of its particles. */
+int32_t mpmi_has_nodal_stress(const mpmi_layout *layout);
+
+/* Averages pressures over cells: writes the members' nodal stress, by the volumes that particles have and a
+ * copy of their stress and dilation ratio. The nodes' sums are made anew. */
+mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy);
 
 /* ---- g2p.c ------------------------------------------------------------------------------------------- */
 /* Moves and deforms: velocity and position, deformation gradient and stress. That is all of USL. */
