@@ -177,6 +177,7 @@ enum {
   OBSTACLES,
   PROJECTED,
   DAMPED,
+  REMEDY_OF_SOIL,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -222,6 +223,7 @@ static const option options[OPTIONS] = {
     [OBSTACLES] = {"obstacles, saved and loaded", 1, 1, 0},
     [PROJECTED] = {"projected positions", 1, 0, 0},
     [DAMPED] = {"nodes damped, slip walls", 1, 1, 0},
+    [REMEDY_OF_SOIL] = {"locking remedy, soil and metal", 1, 1, 1},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -277,7 +279,7 @@ static void apply(scene *is, int32_t o) {
   is->with = with[o];
   is->story = story[o];
   is->solver = solver[o];
-  is->remedy = o == REMEDY;
+  is->remedy = o == REMEDY || o == REMEDY_OF_SOIL;
   is->reference = o == REFERENCE;
   is->large = o == MULTIGRID;
   if (is->large) is->steps = 2;
@@ -287,6 +289,7 @@ static void apply(scene *is, int32_t o) {
   is->projected = o == PROJECTED;
   is->damped = o == DAMPED;
   if (o == TWO_SETS || o == SAVED || o == EVERYTHING || is->with & WITH_BODIES) is->law[1] = LAW_J2;
+  if (o == REMEDY_OF_SOIL) is->law[0] = LAW_MOHR_COULOMB, is->law[1] = LAW_J2;
   if (o == EVERYTHING && is->scheme != MPM_NEWMARK) is->with |= 7 * WITH_HOOK;
   apply_walls(is, o);
   if (is->with & WITH_PRESCRIBED) let_out(is);

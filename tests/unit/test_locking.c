@@ -1,6 +1,7 @@
 /* The locking remedy with laws whose shear makes pressure: forces do the work of the stress on what the law
  * sees, their derivative is the matrix of implicit steps, and nothing else changes. */
 #include "implicit.h"
+#include "material/laws.h"
 
 static const double h = 0.1;
 
@@ -104,6 +105,38 @@ START_TEST(schemes_agree) {
     free(is);
   }
   free(wanted);
+}
+END_TEST
+
+/* Where all of a cell is strained alike, as but for the rim here, the remedy changes nothing: the forces of USF
+ * are those of the new stress. */
+START_TEST(uniform_strain_is_not_touched) {
+  double *v[2], change = 0.0;
+  int64_t n = 0;
+  for (int32_t remedy = 0; remedy < 2; ++remedy) {
+    world_desc d = described(2, &basis_options[_i], MPM_USF, sand);
+    d.stepper.locking_remedy = remedy;
+    world w;
+    mpm_particles *set = world_open(&w, &d);
+    n = 2 * world_fill_cube(&w, set, 2.0 * h, 5.0 * h);
+    double *x = fetch(&w, set, "position", 2);
+    v[remedy] = malloc((size_t)n * sizeof *x);
+    for (int64_t p = 0; p < n / 2; ++p) {
+      v[remedy][p] = -0.4 * x[p] + 0.9 * x[n / 2 + p];
+      v[remedy][n / 2 + p] = 0.2 * x[p] - 0.1 * x[n / 2 + p];
+    }
+    put(&w, set, "velocity", 2, v[remedy]);
+    free(x);
+    world_step(&w, 1e-3);
+    double *after = fetch(&w, set, "velocity", 2);
+    for (int64_t i = 0; i < n; ++i) change = fmax(change, fabs(after[i] - v[remedy][i]));
+    free(v[remedy]);
+    v[remedy] = after;
+    world_close(&w);
+  }
+  for (int64_t i = 0; i < n; ++i) ck_within(basis_options[_i].name, v[1][i], v[0][i], 0.1 * change);
+  ck_assert_double_gt(change, 1e-4);
+  free(v[0]), free(v[1]);
 }
 END_TEST
 
@@ -271,6 +304,18 @@ START_TEST(matrix_is_the_derivative) {
 END_TEST
 
 /* ---- as with every other law --------------------------------------------------------------------------- */
+START_TEST(laws_of_soils) {
+  int32_t found = 0;
+  for (int32_t i = 0; i < mpm_material_model_count(); ++i) {
+    const char *name = mpm_material_model_name(i);
+    const int32_t wanted =
+        !strcmp(name, "drucker_prager") || !strcmp(name, "mohr_coulomb") || !strcmp(name, "cam_clay");
+    ck_assert_int_eq(mpmi_law_of(MPM_ISA_BASELINE, i)->pressure_from_shear, wanted);
+    found += wanted;
+  }
+  ck_assert_int_eq(found, 3);
+}
+END_TEST
 static const int32_t all_schemes[] = {MPM_USL, MPM_MUSL, MPM_USF, MPM_NEWMARK};
 enum { ALL_SCHEMES = 4, LONG = 40 };
 
@@ -387,6 +432,8 @@ Suite *locking_suite(void) {
   tcase_set_timeout(tc, 120.0);
   tcase_add_loop_test(tc, forces_do_the_work_of_the_law, 0, 8 * WAYS * BASES);
   tcase_add_loop_test(tc, schemes_agree, 0, 2);
+  tcase_add_loop_test(tc, uniform_strain_is_not_touched, 0, BASES);
+  tcase_add_test(tc, laws_of_soils);
   tcase_add_loop_test(tc, yield_takes_energy, 0, 2 * BASES);
   tcase_add_loop_test(tc, soils_average_among_themselves, 0, 2);
   tcase_add_loop_test(tc, matrix_is_the_derivative, 0, 8 * IMPLICIT_BASES);
