@@ -39,3 +39,12 @@ def short(name):
 def words(name):
     """mpm_particle_batch -> ParticleBatch."""
     return "".join(part.capitalize() for part in short(name).split("_"))
+
+
+def first_sentence(text):
+    """The first sentence of a comment, without the lines that only doxygen reads."""
+    lines = [line for line in text.split("\n") if not line.startswith("@")]
+    text = " ".join(line for line in lines if line).strip()
+    found = re.match(r"(.*?[.:])(?= [A-Z]| - |$)", text)
+    sentence = (found[1] if found else text).rstrip(":")
+    return sentence if sentence.endswith(".") else sentence + "."
