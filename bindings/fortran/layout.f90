@@ -399,6 +399,7 @@ contains
 
   subroutine check_functions()
     type(c_funptr) :: all(103)
+    integer :: k
     all(1) = c_funloc(mpm_version)
     all(2) = c_funloc(mpm_status_name)
     all(3) = c_funloc(mpm_status_text)
@@ -502,10 +503,9 @@ contains
     all(101) = c_funloc(mpm_series_open)
     all(102) = c_funloc(mpm_series_append)
     all(103) = c_funloc(mpm_series_close)
-    do wrong = 1, size(all)
-      if (.not. c_associated(all(wrong))) error stop "a function is missing"
+    do k = 1, size(all)
+      if (.not. c_associated(all(k))) error stop "a function is missing"
     end do
-    wrong = 0
   end subroutine check_functions
 
 end program layout

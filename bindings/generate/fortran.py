@@ -210,11 +210,10 @@ def layout(api):
                              f"of({field['offset64']}, {field['offset32']}))", "    ")
         out += f"  end subroutine check_{name}\n\n"
     out += "  subroutine check_functions()\n"
-    out += f"    type(c_funptr) :: all({len(api['functions'])})\n"
+    out += f"    type(c_funptr) :: all({len(api['functions'])})\n    integer :: k\n"
     for k, function in enumerate(api["functions"]):
         out += f"    all({k + 1}) = c_funloc({function['name']})\n"
-    out += "    do wrong = 1, size(all)\n      if (.not. c_associated(all(wrong))) error stop \"a function is missing\"\n    end do\n"
-    out += "    wrong = 0\n"
+    out += "    do k = 1, size(all)\n      if (.not. c_associated(all(k))) error stop \"a function is missing\"\n    end do\n"
     return out + "  end subroutine check_functions\n\nend program layout\n"
 
 
