@@ -35,7 +35,7 @@
 //!
 //! ```compile_fail,E0502
 //! # use mpm::*;
-//! # fn step(stepper: &mut Stepper, set: SetKey) -> Result<(), Error> {
+//! # fn step(stepper: &mut Stepper, set: SetKey) -> Result<()> {
 //! let x = stepper.particles(set).map::<f64>("position")?;
 //! stepper.step(1e-3)?; // the stepper is borrowed by x
 //! println!("{}", x[(0, 0)]);
@@ -47,7 +47,7 @@
 //!
 //! ```no_run
 //! # use mpm::*;
-//! # fn step(stepper: &mut Stepper, set: SetKey) -> Result<(), Error> {
+//! # fn step(stepper: &mut Stepper, set: SetKey) -> Result<()> {
 //! let x = stepper.particles(set).map::<f64>("position")?;
 //! println!("{}", x[(0, 0)]);
 //! stepper.step(1e-3)?;
@@ -59,10 +59,25 @@
 //!
 //! ```compile_fail,E0502
 //! # use mpm::*;
-//! # fn mapped(set: &mut Particles) -> Result<(), Error> {
+//! # fn mapped(set: &mut Particles) -> Result<()> {
 //! let x = set.map::<f64>("position")?;
 //! let mut v = set.map_mut::<f64>("velocity")?;
 //! v[(0, 0)] = x[(0, 0)];
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! For reading there may be several:
+//!
+//! ```no_run
+//! # use mpm::*;
+//! # fn mapped(set: &mut Particles) -> Result<()> {
+//! let x = set.map::<f64>("position")?;
+//! let v = set.map::<f64>("velocity")?;
+//! println!("{} {}", v[(0, 0)], x[(0, 0)]);
+//! drop((x, v));
+//! let mut v = set.map_mut::<f64>("velocity")?;
+//! v[(0, 0)] = 1.0;
 //! # Ok(())
 //! # }
 //! ```
