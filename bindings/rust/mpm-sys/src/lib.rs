@@ -21,7 +21,7 @@ pub mod constants {
     /// Version of the headers that the crate was made from, to be compared with `mpm_version()`.
     pub const MPM_VERSION: u32 = 0x000100;
 
-    // mpm_status_value: Status values.
+    // Status values.
 
     /// the call did what it was asked to
     pub const MPM_OK: i32 = 0;
@@ -58,7 +58,7 @@ pub mod constants {
     /// the library itself is at fault
     pub const MPM_E_INTERNAL: i32 = -99;
 
-    // mpm_basis_value: Basis functions of the grid.
+    // Basis functions of the grid.
 
     /// piecewise linear functions, 2h wide: Steffen et al. 2008, eqs 17-18
     pub const MPM_LINEAR: i32 = 1;
@@ -73,7 +73,7 @@ pub mod constants {
     /// GIMP on domains of edges "size" * |F_ii|, at most a cell; depends on the axes
     pub const MPM_CPGIMP: i32 = 18;
 
-    // mpm_boundary_basis_value: What B-splines do at the faces of the grid: Steffen et al.
+    // What B-splines do at the faces of the grid.
 
     /// splines are the same everywhere, with nodes outside the faces
     pub const MPM_BOUNDARY_GHOST: i32 = 0;
@@ -81,7 +81,7 @@ pub mod constants {
     /// the cells + degree nodes of an axis stand at the Greville points. Periodic axes keep plain splines.
     pub const MPM_BOUNDARY_OPEN_KNOT: i32 = 1;
 
-    // mpm_scheme_value: Time integration scheme.
+    // Time integration scheme.
 
     /// Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10.
     pub const MPM_USL: i32 = 1;
@@ -93,7 +93,7 @@ pub mod constants {
     /// Implicit, by Newmark's rule: Guilkey & Weiss 2003, eqs 11-16, generalised to any beta and gamma.
     pub const MPM_NEWMARK: i32 = 16;
 
-    // mpm_transfer_value: Transfer of velocity between particles and grid.
+    // Transfer of velocity between particles and grid.
 
     /// FLIP, PIC, and their blend by the field flip: MPoint theory, eqs 34-36
     pub const MPM_FLIP: i32 = 1;
@@ -111,7 +111,7 @@ pub mod constants {
     /// ghosts or periodic axes: Hu et al. 2018.
     pub const MPM_APIC_MLS: i32 = 7;
 
-    // mpm_isa_value: Instruction set of the kernels.
+    // Instruction set of the kernels.
 
     /// the best one that both the processor and the library have
     pub const MPM_ISA_BEST: i32 = 0;
@@ -126,7 +126,7 @@ pub mod constants {
     /// the baseline by its promise: the same bits on every platform (mpm.h, Results)
     pub const MPM_ISA_PORTABLE: i32 = MPM_ISA_BASELINE;
 
-    // mpm_log_value: Level of a log text.
+    // Level of a log text.
 
     /// the host should look at it
     pub const MPM_LOG_WARNING: i32 = 1;
@@ -135,21 +135,21 @@ pub mod constants {
     /// a text in every step
     pub const MPM_LOG_DEBUG: i32 = 3;
 
-    // mpm_locking_value: Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient.
+    // Remedy against volumetric locking.
 
     /// there is no remedy
     pub const MPM_LOCKING_NONE: i32 = 0;
     /// the law sees the dilation averaged over the cell, weighted by volume
     pub const MPM_LOCKING_CELL_AVERAGE: i32 = 1;
 
-    // mpm_tangent_value: Form of a law's tangent.
+    // Form of a law's tangent.
 
     /// 6 x 6 components, in Voigt's notation
     pub const MPM_TANGENT_MINOR_SYMMETRIC: i32 = 36;
     /// 9 x 9 components
     pub const MPM_TANGENT_GENERAL: i32 = 81;
 
-    // mpm_face_value: Faces of the grid.
+    // Faces of the grid.
 
     /// lower face across x
     pub const MPM_X_MIN: i32 = 0;
@@ -164,7 +164,7 @@ pub mod constants {
     /// upper face across z
     pub const MPM_Z_MAX: i32 = 5;
 
-    // mpm_wall_value: What a face of the grid does.
+    // What a face of the grid does.
 
     /// default: a step in which a particle would leave fails with MPM_OFF_GRID
     pub const MPM_WALL_NONE: i32 = 0;
@@ -180,7 +180,7 @@ pub mod constants {
     /// about a cell and a half before its particles are there
     pub const MPM_WALL_FRICTION_NODES: i32 = 5;
 
-    // mpm_stage_value: Where in an explicit step a node hook runs.
+    // Where in an explicit step a node hook runs.
 
     /// mass and velocity are projected, forces are not yet known
     pub const MPM_AFTER_P2G: i32 = 1;
@@ -189,14 +189,14 @@ pub mod constants {
     /// velocity is updated, and walls and prescribed velocities have acted on it
     pub const MPM_AFTER_VELOCITY: i32 = 3;
 
-    // mpm_access_value: Access to mapped memory.
+    // Access to mapped memory.
 
     /// the host reads
     pub const MPM_READ: i32 = 1;
     /// the host writes
     pub const MPM_WRITE: i32 = 2;
 
-    // mpm_type_value: Type of a field's elements.
+    // Type of a field's elements.
 
     /// double
     pub const MPM_F64: i32 = 1;
@@ -205,7 +205,7 @@ pub mod constants {
     /// uint8_t
     pub const MPM_U8: i32 = 3;
 
-    // mpm_solver_value: Linear solver of an implicit step.
+    // Linear solver of an implicit step.
 
     /// the library chooses by size, stencil, symmetry and inertia
     pub const MPM_SOLVER_AUTO: i32 = 0;
@@ -220,7 +220,7 @@ pub mod constants {
     /// the callback of mpm_stepper_set_linear_solver()
     pub const MPM_SOLVER_HOST: i32 = 100;
 
-    // mpm_contact_value: How two bodies meet: mpm_contact_desc.kind.
+    // How two bodies meet: mpm_contact_desc.kind.
 
     /// they push each other and never pull, with Coulomb friction (default)
     pub const MPM_CONTACT_UNILATERAL: i32 = 0;
@@ -229,7 +229,7 @@ pub mod constants {
     /// neither slip nor separation at nodes that both have
     pub const MPM_CONTACT_TIED: i32 = 2;
 
-    // mpm_normal_value: How the normal at a node is found: mpm_contact_desc.normal.
+    // How the normal at a node is found: mpm_contact_desc.normal.
 
     /// of the plane that separates the particles best: logistic regression
     pub const MPM_NORMAL_LOGISTIC: i32 = 0;
@@ -240,7 +240,7 @@ pub mod constants {
     /// mpm_contact_desc.direction
     pub const MPM_NORMAL_FIXED: i32 = 3;
 
-    // mpm_detection_value: How it is found that bodies touch: mpm_contact_desc.detection.
+    // How it is found that bodies touch: mpm_contact_desc.detection.
 
     /// MPM_DETECT_GAP, but MPM_DETECT_VELOCITY with MPM_NORMAL_GRADIENT, whose directions are too far off to measure a
     /// gap along them
@@ -250,12 +250,12 @@ pub mod constants {
     /// by velocity alone: wherever they share a node and approach each other
     pub const MPM_DETECT_VELOCITY: i32 = 2;
 
-    // mpm_body_value: In place of a body: all of them.
+    // In place of a body: all of them.
 
     /// any body that has no closer rule; all of them in reports
     pub const MPM_BODY_ANY: i32 = -1;
 
-    // mpm_shape_value: Shapes: mpm_obstacle_desc.shape.
+    // Shapes: mpm_obstacle_desc.shape.
 
     /// a half-space; outward normal: axis y, in 1-D x. No size
     pub const MPM_SHAPE_PLANE: i32 = 1;
@@ -270,7 +270,7 @@ pub mod constants {
     /// what mpm_obstacle_desc.distance says
     pub const MPM_SHAPE_DISTANCE: i32 = 64;
 
-    // mpm_motion_value: How an obstacle moves: mpm_obstacle_desc.motion.
+    // How an obstacle moves: mpm_obstacle_desc.motion.
 
     /// not at all (default)
     pub const MPM_MOTION_FIXED: i32 = 0;

@@ -1,0 +1,341 @@
+// Functions of the host: how C calls them, and what they are shown.
+using System;
+using System.Runtime.InteropServices;
+using static Mpm.Constants;
+
+namespace Mpm {
+  // What they return is a status: MPM_OK, or MPM_CUT_DT to ask for a smaller step. An exception ends the call that ran the
+  // function, and comes out of it. What C marks (mt) runs on several threads at once, unless the context has SerialCallbacks.
+
+  /// <summary>(mt) Adds to add[i, c] of each particle.</summary>
+  public delegate int ParticleFunction(ref ParticleBatch batch, Columns add);
+  /// <summary>(mt) Prescribes nodal velocities: prescribed[i, c] = 1, and velocity[i, c].</summary>
+  public delegate int VelocityFunction(ref NodeBatch batch, ByteColumns prescribed, Columns velocity);
+  /// <summary>(mt) Changes nodal velocity and force.</summary>
+  public delegate int NodeFunction(ref NodeBatch batch, Columns velocity, Columns force);
+  /// <summary>(mt) Sets friction[i, 0] of nodes where bodies touch.</summary>
+  public delegate int FrictionFunction(ref ContactBatch batch, Columns friction);
+  /// <summary>Watches steps; a status above 0 ends the call with MPM_CANCELLED.</summary>
+  public delegate int ProgressFunction(ref StepInfo info);
+  /// <summary>(mt) Gives distances and normals of points.</summary>
+  public delegate int DistanceFunction(ref DistanceBatch batch);
+  /// <summary>Gives velocity[0, c] and angularVelocity[0, c] of the step, which are preset to the present ones.</summary>
+  public delegate int MotionFunction(double t, double dt, Columns velocity, Columns angularVelocity);
+  /// <summary>(mt) A law: writes batch.NewStress, NewState and WaveSpeed.</summary>
+  public delegate int StressFunction(ref MaterialBatch batch);
+  /// <summary>(mt) The tangent of a law; symmetric becomes 1 if it is.</summary>
+  public delegate int TangentFunction(ref MaterialBatch batch, Columns tangent, ref int symmetric);
+  /// <summary>Sets inside[i, 0] to 1 for points in the body.</summary>
+  public delegate int InsideFunction(Columns position, ByteColumns inside);
+  /// <summary>Solves the linear system of an implicit step.</summary>
+  public delegate int SolveFunction(LinearSystem system, ref long iterations);
+
+  /// <summary>An array of C: component c of item i is [i, c]. It is valid during the call that shows it.</summary>
+  public unsafe struct Columns {
+    readonly double* data;
+    readonly long ld;
+    readonly bool writable;
+    /// <summary>The number of items.</summary>
+    public readonly long Count;
+    /// <summary>The number of components.</summary>
+    public readonly int Components;
+
+    internal Columns(double* data, long ld, long count, int components, bool writable = true) {
+      this.data = data;
+      this.ld = ld;
+      this.writable = writable;
+      Count = data == null ? 0 : count;
+      Components = components;
+    }
+    double* At(long item, int component) {
+      if ((ulong)item >= (ulong)Count || (uint)component >= (uint)Components)
+        throw new IndexOutOfRangeException();
+      return data + component * ld + item;
+    }
+    public double this[long item, int component] {
+      get { return *At(item, component); }
+      set {
+        if (!writable) throw new InvalidOperationException("the array is for reading");
+        *At(item, component) = value;
+      }
+    }
+    /// <summary>Whether there is an array: some are optional.</summary>
+    public bool Exists { get { return data != null; } }
+  }
+
+  /// <summary>The same of bytes.</summary>
+  public unsafe struct ByteColumns {
+    readonly byte* data;
+    readonly long ld;
+    public readonly long Count;
+    public readonly int Components;
+
+    internal ByteColumns(byte* data, long ld, long count, int components) {
+      this.data = data;
+      this.ld = ld;
+      Count = count;
+      Components = components;
+    }
+    byte* At(long item, int component) {
+      if ((ulong)item >= (ulong)Count || (uint)component >= (uint)Components)
+        throw new IndexOutOfRangeException();
+      return data + component * ld + item;
+    }
+    public byte this[long item, int component] {
+      get { return *At(item, component); }
+      set { *At(item, component) = value; }
+    }
+  }
+
+  public unsafe partial struct ParticleBatch {
+    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
+    public Columns ReferencePosition { get { return new Columns(reference_position, ld, n, dim, false); } }
+    public Columns Velocity { get { return new Columns(velocity, ld, n, dim, false); } }
+    public Columns Mass { get { return new Columns(mass, ld, n, 1, false); } }
+    public Columns Volume { get { return new Columns(volume, ld, n, 1, false); } }
+  }
+
+  public unsafe partial struct NodeBatch {
+    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
+    public Columns Mass { get { return new Columns(mass, ld, n, 1, false); } }
+  }
+
+  public unsafe partial struct ContactBatch {
+    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
+    public Columns Normal { get { return new Columns(normal, ld, n, dim, false); } }
+    public Columns Gap { get { return new Columns(gap, ld, n, 1, false); } }
+    public Columns Area { get { return new Columns(area, ld, n, 1, false); } }
+    public Columns Slip { get { return new Columns(slip, ld, n, dim, false); } }
+    public Columns Pressure { get { return new Columns(pressure, ld, n, 1, false); } }
+  }
+
+  public unsafe partial struct DistanceBatch {
+    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
+    public Columns Distance { get { return new Columns(distance, ld, n, 1); } }
+    public Columns Normal { get { return new Columns(normal, ld, n, dim); } }
+    public Columns Velocity { get { return new Columns(velocity, ld, n, dim); } }
+  }
+
+  public unsafe partial struct MaterialBatch {
+    public Columns DeformationGradient { get { return new Columns(F, ld, n, 9, false); } }
+    public Columns Increment { get { return new Columns(F_inc, ld, n, 9, false); } }
+    public Columns VelocityGradient { get { return new Columns(L, ld, n, 9, false); } }
+    public Columns Stress { get { return new Columns(stress, ld, n, 6, false); } }
+    public Columns State { get { return new Columns(state, ld, n, state_count, false); } }
+    public Columns NewStress { get { return new Columns(stress_new, ld, n, 6); } }
+    public Columns NewState { get { return new Columns(state_new, ld, n, state_count); } }
+    public Columns WaveSpeed { get { return new Columns(wave_speed, ld, n, 1); } }
+    public Columns KinematicViscosity { get { return new Columns(kinematic_viscosity, ld, n, 1); } }
+    public Columns Energy { get { return new Columns(energy, ld, n, 1); } }
+  }
+
+  /// <summary>The linear system of an implicit step, valid during the call of the host's solver.</summary>
+  public unsafe struct LinearSystem {
+    readonly IntPtr matrix;
+    readonly double* rhs, solution;
+    /// <summary>The struct of C.</summary>
+    public readonly OperatorInfo Info;
+    /// <summary>The wanted ||matrix * solution - rhs|| / ||rhs||.</summary>
+    public readonly double Tolerance;
+
+    internal LinearSystem(IntPtr matrix, double* rhs, double* solution, double tolerance) {
+      this.matrix = matrix;
+      this.rhs = rhs;
+      this.solution = solution;
+      Tolerance = tolerance;
+      var info = OperatorInfo.Empty();
+      MpmException.Check(Native.mpm_operator_get_info(matrix, &info), IntPtr.Zero);
+      Info = info;
+    }
+    public long Rows { get { return Info.rows; } }
+    public Columns RightHandSide { get { return new Columns(rhs, Rows, Rows, 1, false); } }
+    public Columns Solution { get { return new Columns(solution, Rows, Rows, 1); } }
+    /// <summary>Computes y = matrix * x.</summary>
+    public void Apply(double[] x, double[] y) {
+      if (x.Length != Rows || y.Length != Rows) throw new ArgumentException("x and y have as many entries as the system");
+      fixed (double* from = x, to = y) MpmException.Check(Native.mpm_operator_apply(matrix, from, to), IntPtr.Zero);
+    }
+  }
+
+  /// <summary>Marks functions that C calls, for compilers that translate ahead of time: IL2CPP goes by the name.</summary>
+  [AttributeUsage(AttributeTargets.Method)]
+  internal sealed class MonoPInvokeCallbackAttribute : Attribute {
+    public MonoPInvokeCallbackAttribute(Type type) {}
+  }
+
+  /// <summary>A function of the host where C finds it.</summary>
+  internal sealed class Slot {
+    public readonly Core Core;
+    public readonly Delegate Function;
+    /// <summary>A second function with the same first argument.</summary>
+    public readonly Delegate Second;
+    GCHandle handle;
+
+    public Slot(Core core, Delegate function, Delegate second = null) {
+      Core = core;
+      Function = function;
+      Second = second;
+      handle = GCHandle.Alloc(this);
+    }
+    /// <summary>The first argument of the callback.</summary>
+    public IntPtr User { get { return GCHandle.ToIntPtr(handle); } }
+    public static Slot Of(IntPtr user) {
+      return (Slot)GCHandle.FromIntPtr(user).Target;
+    }
+    public void Free() {
+      if (handle.IsAllocated) handle.Free();
+    }
+  }
+
+  /// <summary>What C calls: each runs the host's function and keeps what it throws.</summary>
+  internal static unsafe class Trampolines {
+    public static readonly ParticleFn Particles = OnParticles;
+    public static readonly VelocityFn Velocity = OnVelocity;
+    public static readonly NodeFn Nodes = OnNodes;
+    public static readonly FrictionFn Friction = OnFriction;
+    public static readonly ProgressFn Progress = OnProgress;
+    public static readonly DistanceFn Distance = OnDistance;
+    public static readonly MotionFn Motion = OnMotion;
+    public static readonly StressFn Stress = OnStress;
+    public static readonly TangentFn Tangent36 = OnTangent36, Tangent81 = OnTangent81;
+    public static readonly InsideFn Inside = OnInside;
+    public static readonly SolveFn Solve = OnSolve;
+    public static readonly ContextDescLogFn Log = OnLog;
+
+    [MonoPInvokeCallback(typeof(ParticleFn))]
+    static int OnParticles(IntPtr user, ParticleBatch* batch, double* add) {
+      var slot = Slot.Of(user);
+      try {
+        return ((ParticleFunction)slot.Function)(ref *batch, new Columns(add, batch->ld, batch->n, batch->dim));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(VelocityFn))]
+    static int OnVelocity(IntPtr user, NodeBatch* batch, byte* prescribed, double* velocity) {
+      var slot = Slot.Of(user);
+      try {
+        return ((VelocityFunction)slot.Function)(ref *batch, new ByteColumns(prescribed, batch->ld, batch->n, batch->dim),
+          new Columns(velocity, batch->ld, batch->n, batch->dim));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(NodeFn))]
+    static int OnNodes(IntPtr user, NodeBatch* batch, double* velocity, double* force) {
+      var slot = Slot.Of(user);
+      try {
+        return ((NodeFunction)slot.Function)(ref *batch, new Columns(velocity, batch->ld, batch->n, batch->dim),
+          new Columns(force, batch->ld, batch->n, batch->dim));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(FrictionFn))]
+    static int OnFriction(IntPtr user, ContactBatch* batch, double* friction) {
+      var slot = Slot.Of(user);
+      try {
+        return ((FrictionFunction)slot.Function)(ref *batch, new Columns(friction, batch->ld, batch->n, 1));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(ProgressFn))]
+    static int OnProgress(IntPtr user, StepInfo* info) {
+      var slot = Slot.Of(user);
+      try {
+        return ((ProgressFunction)slot.Function)(ref *info);
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(DistanceFn))]
+    static int OnDistance(IntPtr user, DistanceBatch* batch) {
+      var slot = Slot.Of(user);
+      try {
+        return ((DistanceFunction)slot.Function)(ref *batch);
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(MotionFn))]
+    static int OnMotion(IntPtr user, double t, double dt, double* velocity, double* angular_velocity) {
+      var slot = Slot.Of(user);
+      try {
+        return ((MotionFunction)slot.Function)(t, dt, new Columns(velocity, 1, 1, 3), new Columns(angular_velocity, 1, 1, 3));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(StressFn))]
+    static int OnStress(IntPtr user, MaterialBatch* batch) {
+      var slot = Slot.Of(user);
+      try {
+        return ((StressFunction)slot.Function)(ref *batch);
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(TangentFn))]
+    static int OnTangent36(IntPtr user, MaterialBatch* batch, double* tangent, int* symmetric) {
+      return OnTangent(user, batch, tangent, symmetric, 36);
+    }
+
+    [MonoPInvokeCallback(typeof(TangentFn))]
+    static int OnTangent81(IntPtr user, MaterialBatch* batch, double* tangent, int* symmetric) {
+      return OnTangent(user, batch, tangent, symmetric, 81);
+    }
+
+    static int OnTangent(IntPtr user, MaterialBatch* batch, double* tangent, int* symmetric, int components) {
+      var slot = Slot.Of(user);
+      try {
+        return ((TangentFunction)slot.Second)(ref *batch, new Columns(tangent, batch->ld, batch->n, components), ref *symmetric);
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(InsideFn))]
+    static int OnInside(IntPtr user, int dim, long n, long ld, double* position, byte* inside) {
+      var slot = Slot.Of(user);
+      try {
+        return ((InsideFunction)slot.Function)(new Columns(position, ld, n, dim, false), new ByteColumns(inside, n, n, 1));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(SolveFn))]
+    static int OnSolve(IntPtr user, IntPtr matrix, double* rhs, double* solution, double tolerance, long* iterations) {
+      var slot = Slot.Of(user);
+      try {
+        return ((SolveFunction)slot.Function)(new LinearSystem(matrix, rhs, solution, tolerance), ref *iterations);
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(ContextDescLogFn))]
+    static void OnLog(IntPtr user, int level, byte* text) {
+      var slot = Slot.Of(user);
+      try {
+        ((Action<int, string>)slot.Function)(level, Text.Of((IntPtr)text));
+      } catch (Exception exception) {
+        slot.Core.Keep(exception);
+      }
+    }
+
+    /// <summary>The address of a trampoline, for a field of a struct.</summary>
+    public static IntPtr Address(Delegate trampoline) {
+      return Marshal.GetFunctionPointerForDelegate(trampoline);
+    }
+  }
+}

@@ -1,0 +1,379 @@
+// What the classes promise: exceptions, lifetimes, views, callbacks.
+using System;
+using System.Collections.Generic;
+using System.IO;
+using System.Runtime.CompilerServices;
+using System.Threading;
+using Mpm;
+using static Mpm.Constants;
+
+namespace Mpm {
+  static class Tests {
+    static int failures;
+
+    static void Is(object found, object should, string what) {
+      if (found.Equals(should)) return;
+      Console.Error.WriteLine("{0}: {1}, not {2}", what, found, should);
+      failures++;
+    }
+    static void Near(double found, double should, string what) {
+      if (Math.Abs(found - should) <= 1e-9 * Math.Max(1, Math.Abs(should))) return;
+      Is(found, should, what);
+    }
+    static T Throws<T>(Action run, string what) where T : Exception {
+      try {
+        run();
+      } catch (T exception) {
+        return exception;
+      }
+      Console.Error.WriteLine("{0}: nothing was thrown", what);
+      failures++;
+      return null;
+    }
+    static void Refuses(int status, string word, Action run) {
+      var exception = Throws<MpmException>(run, word);
+      if (exception == null) return;
+      Is(exception.Status, status, "status of: " + exception.Message);
+      Is(exception.Message.Contains(word), true, "'" + word + "' in: " + exception.Message);
+    }
+
+    static readonly Dictionary<string, double> jelly =
+      new Dictionary<string, double> { { "E", 1e4 }, { "nu", 0.3 }, { "density", 1e3 } };
+
+    sealed class Scene : IDisposable {
+      public readonly Context Context;
+      public readonly Grid Grid;
+      public readonly Material Material;
+      public readonly Particles Set;
+      public readonly Stepper Stepper;
+
+      public Scene(int threads = 1, Action<int, string> log = null, Func<Context, Material> law = null, int scheme = MPM_USL,
+          int solver = MPM_SOLVER_AUTO, bool serial = true) {
+        Context = new Context(threads, serialCallbacks: serial, log: log);
+        Grid = new Grid(Context, Mpm.Grid.Box(new long[] { 10, 10 }, new[] { 0.1, 0.1 }));
+        Material = law == null ? new Material(Context, "neo_hookean", jelly) : law(Context);
+        Set = new Particles(Context, Grid, Material);
+        Set.FillBox(new[] { 0.3, 0.3 }, new[] { 0.7, 0.7 }, new[] { 2, 2 });
+        var options = StepperDesc.Default();
+        options.scheme = scheme;
+        options.linear_solver = solver;
+        unsafe {
+          options.gravity[1] = -9.81;
+        }
+        Stepper = new Stepper(Context, Grid, options);
+        Stepper.Add(Set);
+      }
+      public void Dispose() {
+        // the order does not matter
+        Context.Dispose();
+        Material.Dispose();
+        Stepper.Dispose();
+        Grid.Dispose();
+        Set.Dispose();
+      }
+    }
+
+    static void Errors() {
+      using (var scene = new Scene()) {
+        Refuses(MPM_E_NOT_FOUND, "neo_hookean", () => new Material(scene.Context, "neo_hookian", jelly));
+        Refuses(MPM_E_NOT_FOUND, "velocity", () => scene.Set.Get<double>("velocty"));
+        Refuses(MPM_E_ARG, "-1", () => new Context(-1));
+        Throws<ArgumentException>(() => scene.Set.FillBox(new[] { 0.1 }, new[] { 0.9, 0.9 }, new[] { 2, 2 }), "lengths");
+        Throws<ArgumentException>(() => scene.Set.Get<float>("velocity"), "type");
+        scene.Stepper.Dispose();
+        Throws<ObjectDisposedException>(() => scene.Stepper.Step(1e-3), "disposed");
+        Refuses(MPM_E_ARG, "F64", () => scene.Set.Get<long>("velocity"));
+      }
+      Is(Array.IndexOf(Material.Models(), "drucker_prager") >= 0, true, "models");
+    }
+
+    static void Fields() {
+      using (var scene = new Scene()) {
+        var set = scene.Set;
+        Is(set.Count, 64L, "count");
+        set.Add(new[] { 0.1, 0.2, 0.1, 0.2 }, new[] { 1e-3, 1e-3 }, new[] { 1.0, 2, 3, 4 }, ids: new long[] { 900, 901 });
+        Is(string.Join(" ", set.Get<double>("velocity", new long[] { 901, 900 })), "2 1 4 3", "velocities by id");
+        set.AddField<byte>("colour", 3);
+        set.Set("colour", new byte[] { 1, 2, 3 }, new long[] { 900 });
+        Is(set.Get<byte>("colour", new long[] { 900 })[2], (byte)3, "own field");
+        Throws<ArgumentException>(() => set.Set("colour", new byte[] { 1 }, new long[] { 900 }), "length");
+        using (var x = set.Map("position")) using (var id = set.Map("id")) {
+          long at = 0;
+          while (id.Integer(at, 0) != 901) at++;
+          Near(x[at, 0], 0.2, "x");
+          Throws<InvalidOperationException>(() => x[at, 0] = 1, "writing into a view for reading");
+          Throws<InvalidOperationException>(() => x.Integer(at, 0), "integers of doubles");
+          Throws<IndexOutOfRangeException>(() => Is(x[x.Count, 0], 0, ""), "index");
+          Refuses(MPM_E_STATE, "view", () => scene.Stepper.Step(1e-3));
+        }
+        set.Remove(new long[] { 900, 901 });
+        var v = set.Map("velocity", MPM_READ | MPM_WRITE);
+        for (long i = 0; i < v.Count; i++) v[i, 0] = 2;
+        v.Dispose();
+        Throws<ObjectDisposedException>(() => v[0, 0] = 1, "a view that was given back");
+        Near(set.Get<double>("velocity")[63], 2, "what was written");
+        var bad = set.Map("position", MPM_READ | MPM_WRITE);
+        bad[0, 0] = double.NaN;
+        Refuses(MPM_E_ARG, "nan", bad.Dispose);
+        using (var lambda = new Scene())
+          Is(lambda.Set.Fill(new[] { 0.1, 0.1 }, new[] { 0.25, 0.25 }, new[] { 2, 2 }, (x, inside) => {
+            for (long i = 0; i < x.Count; i++) inside[i, 0] = (byte)(x[i, 0] < x[i, 1] ? 1 : 0);
+            return MPM_OK;
+          }), 3L, "a triangle");
+      }
+    }
+
+    sealed class Own : Exception {}
+
+    static void Callbacks() {
+      using (var scene = new Scene()) {
+        var stepper = scene.Stepper;
+        stepper.SetForce((ref ParticleBatch batch, Columns add) => { throw new Own(); });
+        ulong before = stepper.Hash();
+        Throws<Own>(() => stepper.Step(1e-3), "the exception of a force");
+        Is(stepper.Hash(), before, "the state after it");
+        Is(stepper.Info().cause, MPM_E_CALLBACK, "its cause");
+        stepper.SetForce((ref ParticleBatch batch, Columns add) => MPM_CUT_DT);
+        var cut = Throws<MpmException>(() => stepper.Step(1e-3), "a smaller step");
+        Is(cut.WantsSmallerStep, true, "a smaller step");
+        stepper.SetForce((ref ParticleBatch batch, Columns add) => {
+          batch.Mass.ToString();
+          var mass = batch.Mass;
+          mass[0, 0] = 1;
+          return MPM_OK;
+        });
+        Throws<InvalidOperationException>(() => stepper.Step(1e-3), "writing into an input");
+        stepper.SetForce((ref ParticleBatch batch, Columns add) => {
+          for (long i = 0; i < batch.n; i++) add[i, 0] += 3 * batch.Mass[i, 0];
+          return MPM_OK;
+        });
+        GC.Collect();
+        GC.WaitForPendingFinalizers();
+        stepper.Step(1e-2);
+        unsafe {
+          var info = stepper.Info();
+          Near(info.momentum[0], 160 * 3e-2, "momentum");
+        }
+        stepper.SetForce(null);
+        stepper.SetProgress((ref StepInfo info) => {
+          new Grid(scene.Context, GridDesc.Default());
+          return MPM_OK;
+        });
+        Refuses(MPM_E_STATE, "under way", () => stepper.Step(1e-3));
+        stepper.SetProgress((ref StepInfo info) => 1);
+        Refuses(MPM_CANCELLED, "", () => stepper.Step(1e-3));
+        stepper.SetProgress(null);
+        stepper.SetNodeHook(MPM_AFTER_FORCES, (ref NodeBatch batch, Columns velocity, Columns force) => {
+          for (long i = 0; i < batch.n; i++) force[i, 1] += 9.81 * batch.Mass[i, 0];
+          return MPM_OK;
+        });
+        Refuses(MPM_E_ARG, "stage", () => stepper.SetNodeHook(9, (ref NodeBatch batch, Columns velocity, Columns force) => 0));
+        stepper.SetVelocityBc((ref NodeBatch batch, ByteColumns prescribed, Columns velocity) => {
+          for (long i = 0; i < batch.n; i++) {
+            prescribed[i, 0] = 1;
+            velocity[i, 0] = 0.25;
+          }
+          return MPM_OK;
+        });
+        stepper.Step(1e-3);
+        using (var v = stepper.Map("velocity")) Near(v[0, 0], 0.25, "a prescribed velocity");
+        stepper.SetMotion(scene.Set, (ref ParticleBatch batch, Columns add) => MPM_OK);
+        stepper.Remove(scene.Set);
+        stepper.Add(scene.Set);
+        stepper.Step(1e-3);
+      }
+      var log = new List<string>();
+      using (new Scene(log: (level, text) => log.Add(text))) Is(log.Count > 0, true, "the log");
+      Throws<Own>(() => new Context(log: (level, text) => { throw new Own(); }), "the exception of a log");
+    }
+
+    static void Threads() {
+      using (var scene = new Scene(threads: 3, serial: false)) {
+        int calls = 0;
+        scene.Stepper.SetAcceleration((ref ParticleBatch batch, Columns add) => {
+          Interlocked.Increment(ref calls);
+          for (long i = 0; i < batch.n; i++) add[i, 0] += 1;
+          return MPM_OK;
+        });
+        scene.Stepper.Advance(0.05);
+        Is(calls > 0, true, "calls on threads of the pool");
+        var refused = 0;
+        var other = new Thread(() => {
+          for (int k = 0; k < 100; k++)
+            try {
+              scene.Stepper.Step(1e-4);
+            } catch (MpmException exception) {
+              if (exception.Status == MPM_E_STATE) Interlocked.Increment(ref refused);
+            }
+        });
+        other.Start();
+        for (int k = 0; k < 100; k++)
+          try {
+            scene.Stepper.Step(1e-4);
+          } catch (MpmException exception) {
+            if (exception.Status == MPM_E_STATE) Interlocked.Increment(ref refused);
+          }
+        other.Join();
+        Is(refused < 200, true, "two threads at once");
+      }
+    }
+
+    static void Laws() {
+      StressFunction spring = (ref MaterialBatch batch) => {
+        Columns F = batch.DeformationGradient, stress = batch.NewStress, speed = batch.WaveSpeed;
+        Columns old = batch.State, state = batch.NewState;
+        for (long i = 0; i < batch.n; i++) {
+          for (int c = 0; c < 6; c++) stress[i, c] = 0;
+          stress[i, 0] = 400 * (F[i, 0] - 1);
+          speed[i, 0] = 2;
+          state[i, 0] = old[i, 0] + batch.dt;
+        }
+        return MPM_OK;
+      };
+      using (var scene = new Scene(law: context => new Material(context, 100, spring, new[] { 5.0 }))) {
+        scene.Stepper.Step(1e-2);
+        Near(scene.Set.Get<double>("state")[0], 5.01, "the state of a law");
+      }
+      Scene direct = new Scene(scheme: MPM_NEWMARK), host = new Scene(scheme: MPM_NEWMARK, solver: MPM_SOLVER_HOST);
+      host.Stepper.SetLinearSolver((LinearSystem system, ref long iterations) => {
+        long n = system.Rows;
+        double[] x = new double[n], r = new double[n], p = new double[n], ap = new double[n];
+        double rr = 0;
+        for (long i = 0; i < n; i++) {
+          p[i] = r[i] = system.RightHandSide[i, 0];
+          rr += r[i] * r[i];
+        }
+        for (double goal = 1e-24 * rr; rr > goal && iterations < 2000; iterations++) {
+          system.Apply(p, ap);
+          double pap = 0, next = 0;
+          for (long i = 0; i < n; i++) pap += p[i] * ap[i];
+          for (long i = 0; i < n; i++) {
+            x[i] += rr / pap * p[i];
+            r[i] -= rr / pap * ap[i];
+            next += r[i] * r[i];
+          }
+          for (long i = 0; i < n; i++) p[i] = r[i] + next / rr * p[i];
+          rr = next;
+        }
+        var solution = system.Solution;
+        for (long i = 0; i < n; i++) solution[i, 0] = x[i];
+        return MPM_OK;
+      });
+      foreach (var scene in new[] { direct, host }) {
+        scene.Stepper.SetWall(MPM_Y_MIN, MPM_WALL_FIXED);
+        scene.Stepper.Step(0.02);
+      }
+      Is(host.Stepper.Info().linear_iterations > 0 && host.Stepper.Residuals().Length > 0, true, "the host has solved");
+      Is(Math.Abs(host.Stepper.Info().kinetic_energy / direct.Stepper.Info().kinetic_energy - 1) < 1e-7, true, "and rightly");
+      direct.Dispose();
+      host.Dispose();
+    }
+
+    static unsafe void Obstacles() {
+      using (var scene = new Scene()) {
+        var desc = ObstacleDesc.Default();
+        desc.shape = MPM_SHAPE_DISTANCE;
+        desc.motion = MPM_MOTION_PRESCRIBED;
+        desc.position[0] = 0.5;
+        desc.position[1] = 0.28;
+        var rule = ContactDesc.Default();
+        rule.friction = 0.3;
+        var floor = new Obstacle(scene.Context, desc, rule, (ref DistanceBatch batch) => {
+          Columns x = batch.Position, distance = batch.Distance, normal = batch.Normal;
+          for (long i = 0; i < batch.n; i++) {
+            distance[i, 0] = x[i, 1];
+            normal[i, 0] = 0;
+            normal[i, 1] = 1;
+          }
+          return MPM_OK;
+        });
+        scene.Stepper.Add(floor);
+        floor.SetMotion((t, dt, velocity, spin) => {
+          velocity[0, 1] = 0.1;
+          return MPM_OK;
+        });
+        scene.Stepper.Advance(0.2);
+        double[] position, orientation, speed, turn;
+        floor.GetPose(out position, out orientation, out speed, out turn);
+        Near(position[1], 0.3, "where the floor is");
+        var info = floor.ContactInfo();
+        Is(info.closed > 0 && info.impulse[1] > 0, true, "contact");
+        Refuses(MPM_E_UNSUPPORTED, "MPM_MOTION_FREE", () => floor.SetLoad(new double[3], new double[3]));
+        scene.Stepper.SetBody(scene.Set, 2);
+        scene.Stepper.SetContact(2, 3, rule);
+        scene.Stepper.SetContact(2, 3, null);
+        floor.Dispose();
+        scene.Stepper.Step(1e-3);
+      }
+    }
+
+    static void Files(string folder) {
+      using (var scene = new Scene()) {
+        scene.Stepper.Advance(0.01);
+        var state = scene.Stepper.Save();
+        ulong hash = scene.Stepper.Hash();
+        scene.Stepper.SaveFile(Path.Combine(folder, "state"));
+        scene.Stepper.Advance(0.02);
+        Is(scene.Stepper.Hash() == hash, false, "another hash");
+        scene.Stepper.Load(state);
+        Is(scene.Stepper.Hash(), hash, "the hash of the state");
+        scene.Stepper.LoadFile(Path.Combine(folder, "state"));
+        scene.Stepper.Begin(1e-3);
+        scene.Stepper.StepGrid();
+        scene.Stepper.Abort();
+        Is(scene.Stepper.Hash(), hash, "after a step that was dropped");
+        scene.Stepper.Begin(1e-3);
+        scene.Stepper.StepGrid();
+        scene.Stepper.End();
+        scene.Stepper.WriteGrid(Path.Combine(folder, "grid.vti"), 0, "mass");
+        scene.Set.Write(Path.Combine(folder, "\u00e4.vtp"), "velocity");
+        using (var series = new Series(scene.Context, Path.Combine(folder, "all.pvd"))) series.Append(0.01, "\u00e4.vtp");
+        Is(File.ReadAllText(Path.Combine(folder, "all.pvd")).Contains("\u00e4.vtp"), true, "a path in UTF-8");
+        Refuses(MPM_E_IO, "nowhere", () => scene.Set.Write("/nowhere/a.vtp"));
+      }
+    }
+
+    [MethodImpl(MethodImplOptions.NoInlining)]
+    static WeakReference Forgotten() {
+      var token = new object();
+      var scene = new Scene(log: (level, text) => token.ToString());
+      scene.Stepper.SetForce((ref ParticleBatch batch, Columns add) => MPM_OK);
+      scene.Stepper.Step(1e-3);
+      scene.Set.Map("position");
+      return new WeakReference(token);
+    }
+    [MethodImpl(MethodImplOptions.NoInlining)]
+    static WeakReference Disposed() {
+      var token = new object();
+      using (var scene = new Scene(log: (level, text) => token.ToString())) scene.Stepper.Step(1e-3);
+      return new WeakReference(token);
+    }
+    /// <summary>The token dies when C has let go of the context, whose log holds it.</summary>
+    static void Lifetimes() {
+      foreach (Func<WeakReference> make in new Func<WeakReference>[] { Forgotten, Disposed }) {
+        var tokens = new List<WeakReference>();
+        for (int k = 0; k < 60; k++) tokens.Add(make());
+        for (int k = 0; k < 10; k++) {
+          GC.Collect();
+          GC.WaitForPendingFinalizers();
+        }
+        // the collector is conservative, and may take old numbers on the stack for pointers
+        Is(tokens.FindAll(token => token.IsAlive).Count <= 3, true, "contexts are freed: " + make.Method.Name);
+      }
+    }
+
+    static int Main(string[] arguments) {
+      failures += Layout.Check();
+      Errors();
+      Fields();
+      Callbacks();
+      Threads();
+      Laws();
+      Obstacles();
+      Files(arguments[0]);
+      Lifetimes();
+      Console.WriteLine(failures == 0 ? "all is well" : failures + " failures");
+      return failures == 0 ? 0 : 1;
+    }
+  }
+}
