@@ -86,7 +86,7 @@ all: $(STATIC_LIB) $(SHARED_LIB) $(UMAT_ARCHIVES) $(UMAT_SHARED_LIB)
 #: help                  this list
 help:
 	@awk '/^# ---- / { gsub(/^# -+ | -+$$/, ""); heading = $$0 } \
-	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk packaging/packaging.mk
+	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk bindings/javascript/rules.mk packaging/packaging.mk
 	@printf '\n%s\n' 'V=1 shows the commands, -jN sets how many run at once, BUILD=folder builds there, CC and CFLAGS are yours.'
 
 $(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk src/kernels.txt

@@ -15,3 +15,5 @@ check-bindings: all
 	@for language in $(LANGUAGES); do \
 	  echo "bindings/$$language/check.sh"; \
 	  env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash bindings/$$language/check.sh || exit 1; done
+
+include bindings/javascript/rules.mk

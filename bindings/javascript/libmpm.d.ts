@@ -1,0 +1,1777 @@
+// Generated from the headers of libmpm by `make api`; not to be edited. Classes: libmpm.d.ts.in.
+// Options, reports and batches have the names that C has. Counts are numbers, ids and hashes BigInts. Whatever a call
+// is not able to do, it throws an MpmError with the library's sentence, and what a callback throws comes out of the
+// call that ran it. Arrays that are lent have no entries after the function to which they were lent has returned.
+
+export interface Constants {
+  /** the call did what it was asked to */
+  readonly MPM_OK: 0;
+  /** a callback, a law or contact asked for a smaller step */
+  readonly MPM_CUT_DT: 1;
+  /** det F <= 0 at a particle */
+  readonly MPM_INVERTED: 2;
+  /** a NaN or an infinity appeared */
+  readonly MPM_NONFINITE: 3;
+  /** the Newton iteration did not converge */
+  readonly MPM_NOT_CONVERGED: 4;
+  /** the linear system is singular, or indefinite beyond repair */
+  readonly MPM_SINGULAR: 5;
+  /** a particle would leave through a face that does not let it */
+  readonly MPM_OFF_GRID: 6;
+  /** the progress callback ended the call */
+  readonly MPM_CANCELLED: 7;
+  /** an argument is NULL, out of range or inconsistent */
+  readonly MPM_E_ARG: -1;
+  /** the allocator returned NULL */
+  readonly MPM_E_NOMEM: -2;
+  /** not allowed now: objects live, views are out, or a step is begun */
+  readonly MPM_E_STATE: -3;
+  /** a callback returned < 0, or the host's executor failed */
+  readonly MPM_E_CALLBACK: -4;
+  /** this version does not offer the combination or the extension */
+  readonly MPM_E_UNSUPPORTED: -5;
+  /** there is no such name, id or index; the text lists the nearest names */
+  readonly MPM_E_NOT_FOUND: -6;
+  /** a file could not be opened, read or written */
+  readonly MPM_E_IO: -7;
+  /** data are damaged, of another kind, or from an unlike setup */
+  readonly MPM_E_FORMAT: -8;
+  /** the library itself is at fault */
+  readonly MPM_E_INTERNAL: -99;
+  /** piecewise linear functions, 2h wide: Steffen et al. 2008, eqs 17-18 */
+  readonly MPM_LINEAR: 1;
+  /** Quadratic B-splines, 3h wide: Steffen et al. 2008, eq. 21; MPoint theory, eqs 24-27. */
+  readonly MPM_BSPLINE2: 2;
+  /** cubic B-splines, 4h wide: Steffen et al. 2008, eqs 22-23 */
+  readonly MPM_BSPLINE3: 3;
+  /** GIMP on domains of edges "size", at most a cell: Steffen et al. 2008, eqs 26-29 */
+  readonly MPM_GIMP: 16;
+  /** GIMP on domains that all have edges of smoothing * spacing */
+  readonly MPM_UGIMP: 17;
+  /** GIMP on domains of edges "size" * |F_ii|, at most a cell; depends on the axes */
+  readonly MPM_CPGIMP: 18;
+  /** splines are the same everywhere, with nodes outside the faces */
+  readonly MPM_BOUNDARY_GHOST: 0;
+  /**
+   * Knots are repeated degree + 1 times at the faces, where one function alone is then 1. There are no nodes
+   * outside: the cells + degree nodes of an axis stand at the Greville points. Periodic axes keep plain
+   * splines.
+   */
+  readonly MPM_BOUNDARY_OPEN_KNOT: 1;
+  /** Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10. */
+  readonly MPM_USL: 1;
+  /**
+   * Explicit, with stresses updated first, by the strain from the velocities at the start of the step:
+   * Guilkey, An Introduction to the MPM, eqs 2-10.
+   */
+  readonly MPM_USF: 2;
+  /** As MPM_USL, but velocities are projected a second time before stresses are updated. */
+  readonly MPM_MUSL: 3;
+  /** Implicit, by Newmark's rule: Guilkey & Weiss 2003, eqs 11-16, generalised to any beta and gamma. */
+  readonly MPM_NEWMARK: 16;
+  /** FLIP, PIC, and their blend by the field flip: MPoint theory, eqs 34-36 */
+  readonly MPM_FLIP: 1;
+  /** affine, with the inertia of each axis and particle, for any basis: Jiang et al. 2015 */
+  readonly MPM_APIC: 2;
+  /** projects the velocity gradient too (MPoint theory, eq. 29); PIC update (eq. 35) */
+  readonly MPM_TPIC: 3;
+  /** projects the velocity gradient too (MPoint theory, eq. 29); FLIP blend (eq. 36) */
+  readonly MPM_TFLIP: 4;
+  /** affine projection with the FLIP blend */
+  readonly MPM_AFLIP: 5;
+  /** XPIC(m), where m is xpic_order: Hammerquist & Nairn 2017 */
+  readonly MPM_XPIC: 6;
+  /**
+   * Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic
+   * B-splines with ghosts or periodic axes: Hu et al. 2018.
+   */
+  readonly MPM_APIC_MLS: 7;
+  /** the best one that both the processor and the library have */
+  readonly MPM_ISA_BEST: 0;
+  /** the one that the library was compiled for */
+  readonly MPM_ISA_BASELINE: 1;
+  /** AVX2 with FMA, on x86-64 */
+  readonly MPM_ISA_AVX2: 2;
+  /** AVX-512 (F, DQ, VL), on x86-64 */
+  readonly MPM_ISA_AVX512: 3;
+  /** NEON with FMA, on aarch64 */
+  readonly MPM_ISA_NEON: 4;
+  /** the baseline by its promise: the same bits on every platform (mpm.h, Results) */
+  readonly MPM_ISA_PORTABLE: 1;
+  /** the host should look at it */
+  readonly MPM_LOG_WARNING: 1;
+  /** a rare event: a choice made at creation, or growth of storage */
+  readonly MPM_LOG_INFO: 2;
+  /** a text in every step */
+  readonly MPM_LOG_DEBUG: 3;
+  /** there is no remedy */
+  readonly MPM_LOCKING_NONE: 0;
+  /** the law sees the dilation averaged over the cell, weighted by volume */
+  readonly MPM_LOCKING_CELL_AVERAGE: 1;
+  /** 6 x 6 components, in Voigt's notation */
+  readonly MPM_TANGENT_MINOR_SYMMETRIC: 36;
+  /** 9 x 9 components */
+  readonly MPM_TANGENT_GENERAL: 81;
+  /** lower face across x */
+  readonly MPM_X_MIN: 0;
+  /** upper face across x */
+  readonly MPM_X_MAX: 1;
+  /** lower face across y */
+  readonly MPM_Y_MIN: 2;
+  /** upper face across y */
+  readonly MPM_Y_MAX: 3;
+  /** lower face across z */
+  readonly MPM_Z_MIN: 4;
+  /** upper face across z */
+  readonly MPM_Z_MAX: 5;
+  /** default: a step in which a particle would leave fails with MPM_OFF_GRID */
+  readonly MPM_WALL_NONE: 0;
+  /** a particle that leaves is removed */
+  readonly MPM_WALL_OPEN: 1;
+  /** velocities at the face are zero: it pushes and pulls */
+  readonly MPM_WALL_FIXED: 2;
+  /** a symmetry plane: it pushes and pulls, without tangential force */
+  readonly MPM_WALL_SLIP: 3;
+  /** the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never pulls */
+  readonly MPM_WALL_FRICTION: 4;
+  /**
+   * contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0. Material
+   * feels it about a cell and a half before its particles are there
+   */
+  readonly MPM_WALL_FRICTION_NODES: 5;
+  /** mass and velocity are projected, forces are not yet known */
+  readonly MPM_AFTER_P2G: 1;
+  /** internal and external forces are complete */
+  readonly MPM_AFTER_FORCES: 2;
+  /** velocity is updated, and walls and prescribed velocities have acted on it */
+  readonly MPM_AFTER_VELOCITY: 3;
+  /** the host reads */
+  readonly MPM_READ: 1;
+  /** the host writes */
+  readonly MPM_WRITE: 2;
+  /** double */
+  readonly MPM_F64: 1;
+  /** int64_t */
+  readonly MPM_I64: 2;
+  /** uint8_t */
+  readonly MPM_U8: 3;
+  /** the library chooses by size, stencil, symmetry and inertia */
+  readonly MPM_SOLVER_AUTO: 0;
+  /** conjugate gradients, for symmetric positive definite systems */
+  readonly MPM_SOLVER_CG: 1;
+  /** conjugate gradients with geometric multigrid, for the same systems */
+  readonly MPM_SOLVER_MULTIGRID_CG: 2;
+  /** a direct solver, for symmetric systems that may be indefinite */
+  readonly MPM_SOLVER_LDLT: 3;
+  /** GMRES, for systems that are not symmetric */
+  readonly MPM_SOLVER_GMRES: 4;
+  /** the callback of mpm_stepper_set_linear_solver() */
+  readonly MPM_SOLVER_HOST: 100;
+  /** they push each other and never pull, with Coulomb friction (default) */
+  readonly MPM_CONTACT_UNILATERAL: 0;
+  /** they pass through each other */
+  readonly MPM_CONTACT_NONE: 1;
+  /** neither slip nor separation at nodes that both have */
+  readonly MPM_CONTACT_TIED: 2;
+  /** of the plane that separates the particles best: logistic regression */
+  readonly MPM_NORMAL_LOGISTIC: 0;
+  /** of Fisher's linear discriminant: one pass, for smooth surfaces */
+  readonly MPM_NORMAL_DISCRIMINANT: 1;
+  /** of the mean gradient of volume: for comparison with other codes */
+  readonly MPM_NORMAL_GRADIENT: 2;
+  /** mpm_contact_desc.direction */
+  readonly MPM_NORMAL_FIXED: 3;
+  /**
+   * MPM_DETECT_GAP, but MPM_DETECT_VELOCITY with MPM_NORMAL_GRADIENT, whose directions are too far off to
+   * measure a gap along them
+   */
+  readonly MPM_DETECT_DEFAULT: 0;
+  /** by the gap between their particles */
+  readonly MPM_DETECT_GAP: 1;
+  /** by velocity alone: wherever they share a node and approach each other */
+  readonly MPM_DETECT_VELOCITY: 2;
+  /** any body that has no closer rule; all of them in reports */
+  readonly MPM_BODY_ANY: -1;
+  /** a half-space; outward normal: axis y, in 1-D x. No size */
+  readonly MPM_SHAPE_PLANE: 1;
+  /** size[0]: radius; in 2-D a disc. Not in 1-D */
+  readonly MPM_SHAPE_SPHERE: 2;
+  /** around axis z; size[0]: radius, size[1]: half length. 3-D only */
+  readonly MPM_SHAPE_CYLINDER: 3;
+  /** around axis z; size[0]: radius, size[1]: half length without caps. 3-D only */
+  readonly MPM_SHAPE_CAPSULE: 4;
+  /** size: half edges; in 2-D a rectangle. Not in 1-D */
+  readonly MPM_SHAPE_BOX: 5;
+  /** what mpm_obstacle_desc.distance says */
+  readonly MPM_SHAPE_DISTANCE: 64;
+  /** not at all (default) */
+  readonly MPM_MOTION_FIXED: 0;
+  /** by its velocities, which the host may change from step to step */
+  readonly MPM_MOTION_PRESCRIBED: 1;
+  /** as a rigid body under contact, gravity and the host's load */
+  readonly MPM_MOTION_FREE: 2;
+}
+/** All constants of the library, under their names in C. */
+export const C: Constants;
+
+/** Services of the host. */
+export interface ContextDesc {
+  /**
+   * Number of threads, 0 to 1024. 1 (default): the calling thread only; N: a pool of N threads, the calling
+   * one included; 0: one per processor. The pool belongs to the context; its threads sleep when idle and
+   * never spin for longer than a few microseconds. Results do not depend on the number. A build without
+   * threads (MPM_NO_THREADS) takes 0 and 1, or any number with parallel_for, else MPM_E_UNSUPPORTED.
+   *
+   * A process that fork() makes between two calls has the context and its objects, but none of the pool's
+   * threads: there everything runs on the calling thread, with the same results, and destroying frees as
+   * ever.
+   */
+  concurrency?: number | boolean;
+  /**
+   * Instruction set of the kernels: MPM_ISA_BEST (default) or the one to be used, which creation refuses with
+   * MPM_E_UNSUPPORTED if processor or library lacks it. With MPM_ISA_BEST the environment variable MPM_ISA
+   * (portable or baseline, avx2, avx512, neon) decides where it is set; it is read once, at creation.
+   */
+  isa?: number | boolean;
+  /**
+   * 1: the library calls the host from the calling thread only, also where a callback is marked (mt). Default
+   * 0.
+   */
+  serial_callbacks?: number | boolean;
+  /** size of error_text in bytes; 0 exactly where error_text is NULL */
+  error_bytes?: bigint;
+}
+/** Box, cells and basis of a grid. Entries of axes beyond dim are ignored. */
+export interface GridDesc {
+  /** 1 (uniaxial strain), 2 (plane strain) or 3 (default) */
+  dim?: number | boolean;
+  /** MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2 */
+  basis?: number | boolean;
+  /** for B-splines: MPM_BOUNDARY_GHOST (default) or MPM_BOUNDARY_OPEN_KNOT */
+  boundary_basis?: number | boolean;
+  /** 1: the axis is periodic; default 0 */
+  periodic?: ArrayLike<number>;
+  /** cells along each axis, 1 to 6291456; memory follows the material */
+  cells?: ArrayLike<number>;
+  /** lower corner of the box, length; default 0 */
+  origin?: ArrayLike<number>;
+  /** edges of a cell, length, > 0; the upper corner is origin + cells * spacing */
+  spacing?: ArrayLike<number>;
+  /** for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5 */
+  smoothing?: number;
+}
+/** A law of the host. */
+export interface MaterialDesc {
+  /** number of state variables of a particle, 0 to 64; default 0 */
+  state_count?: number | boolean;
+  /** MPM_TANGENT_MINOR_SYMMETRIC (default) or MPM_TANGENT_GENERAL */
+  tangent_form?: number | boolean;
+  /** mass per initial volume, > 0; the host must set it */
+  density?: number;
+}
+/** Options of a stepper. */
+export interface StepperDesc {
+  /** MPM_USL (default), MPM_USF, MPM_MUSL or MPM_NEWMARK */
+  scheme?: number | boolean;
+  /** MPM_FLIP (default) to MPM_APIC_MLS. MPM_NEWMARK takes MPM_FLIP with flip = 1 only. */
+  transfer?: number | boolean;
+  /**
+   * Order m of MPM_XPIC, 1 (PIC) to 5; default 2. Each order above the first projects and gathers once more;
+   * these corrections obey fixed and slip walls and periodic axes.
+   */
+  xpic_order?: number | boolean;
+  /**
+   * Order of the update of positions; v is the updated nodal velocity and w a weight. 1 (default): x += dt
+   * sum w v (Steffen et al. 2008, eq. 10). 2: x += dt sum w v - dt^2 / 2 sum w a, which is exact under
+   * constant acceleration (MPoint theory, eq. 37, where the last term is misprinted); it is not for staggered
+   * steps, which have that order with 1. MPM_NEWMARK moves particles by the displacements that it solves for,
+   * whatever the order.
+   */
+  position_order?: number | boolean;
+  /**
+   * MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE. With the latter the sets of the
+   * stepper have the field "dilation_ratio".
+   */
+  locking_remedy?: number | boolean;
+  /** 1: keeps "reference_position" and shows it to callbacks; default 0 */
+  reference_positions?: number | boolean;
+  /**
+   * 1: MPM_NEWMARK drops the inertia, so that each step ends in equilibrium under the forces at its end.
+   * Velocities are then displacements over dt, and accelerations are zero. Default 0. MPM_E_UNSUPPORTED with
+   * other schemes.
+   */
+  quasi_static?: number | boolean;
+  /**
+   * 1: particle velocities are those at t_n - dt/2 (Steffen et al. 2008, eqs 11-15), and so is the kinetic
+   * energy; default 0. The host sets velocities of that time, because the library does not shift them. Forces
+   * change velocities over the mean of this dt and the one before, in the first step over its dt, so that dt
+   * may change. Positions and strain follow over dt. MPM_E_UNSUPPORTED with position_order = 2.
+   */
+  staggered?: number | boolean;
+  /**
+   * Acceleration of nodes whose velocity the host or a particle prescribes. 0 (default): the one that brings
+   * them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30), or with MPM_NEWMARK
+   * that of its rule; 1: zero. Nodes that walls hold have none in either case: a slip wall is a symmetry
+   * plane, on which the projected velocity is zero too.
+   */
+  boundary_zero_acceleration?: number | boolean;
+  /** Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, from 1 (default, FLIP) to 0 (PIC). */
+  flip?: number;
+  /**
+   * Rate beta >= 0, 1/time, of a blend that does not depend on dt (MPoint theory, eqs 58-59), for the
+   * transfers of flip: the step's share of FLIP is flip * max(0, 1 - beta dt). Default 0.
+   */
+  pic_damping?: number;
+  /** acceleration of all particles, length/time^2; default 0 */
+  gravity?: ArrayLike<number>;
+  /** Newmark's beta: default 1/4, as Guilkey & Weiss 2003, eqs 14-15 */
+  newmark_beta?: number;
+  /** Newmark's gamma: default 1/2, as there; larger values damp high frequencies */
+  newmark_gamma?: number;
+  /**
+   * Newton iterations end when the displacement increment is at most this share of the largest of the step,
+   * both measured by the diagonal of the stiffness, in which light nodes count little (Guilkey & Weiss 2003,
+   * eq. 13, eps_d), and the next two bounds hold as well. Default 1e-8.
+   */
+  newton_tolerance_displacement?: number;
+  /**
+   * They end when the increment times the residual is at most this share of the first of the step (eps_e in
+   * the same eq. 13), and the other two bounds hold. Default 1e-14.
+   */
+  newton_tolerance_energy?: number;
+  /**
+   * They end when the norm of the residual is at most this share of a scale that includes reactions, and the
+   * other two bounds hold. Default 1e-8.
+   */
+  newton_tolerance_residual?: number;
+  /** Norm of the residual, a force, up to which its bound holds whatever the scale. Default 0. */
+  newton_residual_floor?: number;
+  /** iterations after which a step is MPM_NOT_CONVERGED; default 20 */
+  newton_max_iterations?: number | boolean;
+  /** MPM_SOLVER_AUTO (default) to MPM_SOLVER_HOST */
+  linear_solver?: number | boolean;
+  /** ||K x - b|| / ||b||; 0 (default): the Newton iteration chooses it */
+  linear_tolerance?: number;
+  /** most iterations of a linear solve; 0 (default): the solver chooses */
+  linear_max_iterations?: number | boolean;
+  /**
+   * 1: with MPM_MUSL particles move by the projected velocities, which strain them too: x += dt sum w v, with
+   * the v of the second projection. Bodies in sustained tension are stable then, whose particles otherwise
+   * move by more than they are strained by (theory, section 11.1). 0 (default): they move by the updated
+   * velocities, as Sulsky et al. 1995. MPM_E_UNSUPPORTED with other schemes, which have no such velocities
+   * after the update. Since 0.2.0, in the place of `reserved`.
+   */
+  projected_positions?: number | boolean;
+  /**
+   * Local damping alpha of Cundall 1987, in [0, 1); default 0. In explicit steps each component of a node's
+   * whole unbalanced force f, ties to images and the hook MPM_AFTER_FORCES counted in, becomes f - alpha |f|
+   * sign(v), where v is the projected velocity. Bodies come to rest under dead loads, and reactions are those
+   * of the material: what walls or prescribed velocities hold is not damped, and contact acts after it. It
+   * also slows free fall and rigid motion, to (1 - alpha) g. MPM_E_UNSUPPORTED with MPM_NEWMARK. Since 0.2.0.
+   */
+  local_damping?: number;
+  /**
+   * Damping in proportion to mass, a >= 0 in 1/time; default 0: the force -a m v on nodes, for a share of a /
+   * (2 omega) of critical damping. In explicit steps v is the mean of the velocities before and after, by
+   * which the stable dt stays as it is; with MPM_NEWMARK it is that at the end of the step. It acts where
+   * local_damping does. MPM_E_UNSUPPORTED with quasi_static. Since 0.2.0.
+   */
+  mass_damping?: number;
+}
+/** How mpm_advance() chooses its sub-steps. */
+export interface AdvanceDesc {
+  /** most cuts of one sub-step before the call gives up; 0 (default): 60 */
+  max_cuts?: number | boolean;
+  /** time to reach, not before the present one */
+  t_end?: number;
+  /**
+   * Explicit: share of mpm_stable_dt(), in (0, 1], or 0 (default since 0.2.0, was 0.5): two thirds of the
+   * largest share at which bodies were found to stay bounded, by basis and scheme. With MPM_USL that is 0.40
+   * on MPM_LINEAR and MPM_BSPLINE2, 0.60 on MPM_BSPLINE3, 0.27 with GIMP; with MPM_MUSL and MPM_USF 0.60,
+   * 0.67, 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF. Implicit: ignored.
+   */
+  cfl?: number;
+  /** most that the first sub-step takes; 0 (default): the controller's dt */
+  dt_first?: number;
+  /** size below which sub-steps are not cut; 0 (default): no bound */
+  dt_min?: number;
+  /** size of the largest sub-step; 0 (default): no bound */
+  dt_max?: number;
+  /** most sub-steps of this call; 0 (default): no limit */
+  max_steps?: number;
+}
+/** How two bodies meet. */
+export interface ContactDesc {
+  /** an MPM_CONTACT_...; default MPM_CONTACT_UNILATERAL */
+  kind?: number | boolean;
+  /** an MPM_NORMAL_...; default MPM_NORMAL_LOGISTIC */
+  normal?: number | boolean;
+  /** an MPM_DETECT_...; default MPM_DETECT_DEFAULT */
+  detection?: number | boolean;
+  /** Coulomb's coefficient of sliding, >= 0; default 0 */
+  friction?: number;
+  /** that of sticking, >= friction; 0 (default): the same as friction */
+  friction_static?: number;
+  /**
+   * largest tensile traction while the gap is closed, stress, >= 0; default 0. Not with detection by
+   * velocity, which knows no gap
+   */
+  adhesion?: number;
+  /**
+   * distance that the surfaces keep, length; < 0: overlap is let be; default 0. Bodies see each other from
+   * about a cell on: more than that they do not keep
+   */
+  offset?: number;
+  /** MPM_NORMAL_FIXED: unit normal, from the first body to the second */
+  direction?: ArrayLike<number>;
+}
+/** An obstacle. */
+export interface ObstacleDesc {
+  /** an MPM_SHAPE_...; no default */
+  shape?: number | boolean;
+  /** an MPM_MOTION_...; default MPM_MOTION_FIXED */
+  motion?: number | boolean;
+  /** 1: the material is inside (drum, container); default 0 */
+  inside?: number | boolean;
+  /** see MPM_SHAPE_PLANE ..., length */
+  size?: ArrayLike<number>;
+  /** of the centre, which of a free one is that of mass */
+  position?: ArrayLike<number>;
+  /** unit quaternion w, x, y, z that turns axes of the body into those of space; default 1, 0, 0, 0 */
+  orientation?: ArrayLike<number>;
+  /** of the centre; default 0 */
+  velocity?: ArrayLike<number>;
+  /** in space, 1/time; in 2-D component 2; default 0 */
+  angular_velocity?: ArrayLike<number>;
+  /** of a free one, > 0; in 2-D per depth, in 1-D per area */
+  mass?: number;
+  /**
+   * of a free one: tensor about the centre in axes of the body, row by row, symmetric and positive definite;
+   * in 2-D component 8 alone; not in 1-D
+   */
+  inertia?: ArrayLike<number>;
+  /** of MPM_SHAPE_DISTANCE, in axes of the body from its centre: the obstacle and all */
+  lower?: ArrayLike<number>;
+  /** within two spacings of it lie in this box. Equal (default): it may be anywhere */
+  upper?: ArrayLike<number>;
+}
+/**
+ * A linear system. The arrays belong to the library and are valid until the solve callback returns. A row is
+ * one component of one node; nodes and components whose displacement is prescribed have none.
+ */
+export interface OperatorInfo {
+  /** number of rows of a node on which nothing is prescribed */
+  block: number;
+  /** 1 if the matrix is symmetric, else 0 */
+  symmetric: number;
+  /** 1 if the matrix is expected to be positive definite, which is not checked */
+  positive_definite: number;
+  /** number of rows and of columns */
+  rows: number;
+  /** number of stored entries */
+  nonzeros: number;
+  /** a number that stays the same as long as the sparsity does */
+  pattern_id: number;
+  /** distance from component c to c + 1 of position, in elements; >= rows */
+  ld: number;
+}
+/**
+ * What a step did, or the state as it is. Energies and momenta are the particles'; the angular momentum is
+ * about the origin and includes the part of the matrices that transfers carry ("velocity_gradient"). Entries
+ * of unused axes are 0. After a failed step the sums are those of the state that was kept. Units are the
+ * host's: energies force * length, momenta mass * length/time.
+ */
+export interface StepInfo {
+  /** status of the failure, MPM_OK if there was none */
+  cause: number;
+  /** what a callback returned when it was not 0, else 0 */
+  callback_status: number;
+  /** linear solves of the step; 0 for explicit schemes, and at rest */
+  newton_iterations: number;
+  /** MPM_SOLVER_* that was used; 0 for explicit schemes */
+  linear_solver: number;
+  /**
+   * Set of the first failure, numbered in order of mpm_stepper_add(), or -1. The first is the smallest (set,
+   * particle) of those that failed, so that reports repeat.
+   */
+  set: number;
+  /** number of committed steps, counted on from mpm_stepper_set_time() */
+  step: number;
+  /** number of nodes with mass in the step */
+  active_nodes: number;
+  /** particles that left through MPM_WALL_OPEN since the stepper was made */
+  removed: number;
+  /** how often particles were sorted anew since the stepper was made */
+  resorts: number;
+  /** id of the particle that failed, or -1 */
+  particle: bigint;
+  /**
+   * Node that failed, or -1: its lexicographic number over the grid with one ghost layer per side,
+   * ((ix+1)*(cells_y+3)+(iy+1))*(cells_z+3)+(iz+1) with unused axes left out.
+   */
+  node: number;
+  /** iterations of the linear solver, summed over the step */
+  linear_iterations: number;
+  /** time of the state */
+  t: number;
+  /** size of the step that was tried; 0 before the first */
+  dt: number;
+  /**
+   * After success the stable dt of the new state, or with MPM_NEWMARK 2 dt if there were at most 4 iterations
+   * and else dt. After a failure 0.6 dt.
+   */
+  dt_suggested: number;
+  /** last relative residual of the Newton iteration; 0 for explicit schemes */
+  residual: number;
+  /** sum m v.v / 2 */
+  kinetic_energy: number;
+  /** sum energy * initial_volume; NaN when a law has none */
+  strain_energy: number;
+  /**
+   * Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed
+   * nodal velocities and prescribed particles.
+   */
+  external_work: number;
+  /**
+   * (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain
+   * energy is.
+   */
+  dissipation: number;
+  /** sum m v */
+  momentum: number[];
+  /** sum m x cross v; in 2-D about z, in [2]; in 1-D 0 */
+  angular_momentum: number[];
+  /** Sum of external_work over all committed steps since the stepper was made or its time was set. */
+  external_work_total: number;
+  /**
+   * sum m tr(C D C^T) / 2: kinetic energy of the matrices that APIC, APIC_MLS, TPIC, TFLIP and AFLIP carry (C
+   * is "velocity_gradient", D the second moments of the basis), whose angular momentum is part of
+   * angular_momentum. It is not part of kinetic_energy. 0 with other transfers.
+   */
+  affine_kinetic_energy: number;
+  /**
+   * Energy that contact of bodies, obstacles and MPM_WALL_FRICTION took in the step, from the velocities that
+   * the nodes would have without it: never negative. In explicit steps forces drive bodies that press on each
+   * other together in every step, and contact takes that again: its sum over steps has a part that goes with
+   * dt and is no loss. What is lost is `dissipation`.
+   */
+  contact_dissipation: number;
+  /** nodes at which these gave each other an impulse */
+  contact_nodes: number;
+  /** velocity field of `node`; 0 where there is none */
+  body: number;
+  /**
+   * Energy that local_damping and mass_damping took in the step: a part of `dissipation`. It is their force
+   * times the mean of the nodes' velocities before and after, so that it is negative at nodes that turn.
+   */
+  damping_dissipation: number;
+  /** Sum of damping_dissipation over all committed steps since the stepper was made or its time was set. */
+  damping_dissipation_total: number;
+}
+/** Seconds of wall-clock time spent in steps since creation or the last reset, by stage. */
+export interface Profile {
+  /** sorting particles, activating nodes */
+  sort: number;
+  /** weights, particles to grid */
+  p2g: number;
+  /** nodal update, walls, prescribed velocities */
+  grid: number;
+  /** grid to particles */
+  g2p: number;
+  /** laws within g2p and assembly, from samples; their tangents are in assembly */
+  law: number;
+  /** residual and matrix */
+  assembly: number;
+  /** factorisation, set-up of preconditioners */
+  factor: number;
+  /** linear solves */
+  solve: number;
+  /** the host's callbacks */
+  callbacks: number;
+  /** whole steps */
+  total: number;
+  /** weights of the basis within p2g and g2p, from samples */
+  weights: number;
+}
+/** What two bodies did to each other in the last step, and since then. Forces are means over the step. */
+export interface ContactInfo {
+  /** 1: an impulse was given */
+  touching: number;
+  /** nodes at which both have mass */
+  nodes: number;
+  /** of these, with an impulse */
+  closed: number;
+  /** of these, without slip */
+  stuck: number;
+  /** nodes that were left out: there is no normal, or both bodies are held */
+  ambiguous: number;
+  /** on the second body, force */
+  force: number[];
+  /** of the same about the origin; in 2-D in component 2 */
+  torque: number[];
+  /** sum of the nodes' normal forces, >= 0 without adhesion */
+  normal_force: number;
+  /** of closed nodes, length^(dim - 1) */
+  area: number;
+  /**
+   * largest normal force over area of a node, stress: rows of nodes on both sides of a surface share them
+   * unevenly, and it may be twice what the surface has
+   */
+  pressure_max: number;
+  /** smallest gap that was measured, length; < 0: overlap; infinity if none was */
+  gap: number;
+  /** friction and closing in the step; see contact_dissipation of mpm_step_info */
+  dissipation: number;
+  /** of it, by friction */
+  friction_work: number;
+  /**
+   * on the second body over all committed steps since the stepper was made or mpm_stepper_set_time() was
+   * called, mass length/time
+   */
+  impulse: number[];
+}
+
+/** What a call says that was not done. After a positive status everything is as it was before. */
+export class MpmError extends Error {
+  /** One of the constants from MPM_CUT_DT to MPM_E_INTERNAL. */
+  readonly status: number;
+  /** Its name, such as "MPM_E_ARG". */
+  readonly code: string;
+  /** Whether a smaller dt may do: the status is 1 to 5. */
+  readonly retryable: boolean;
+  /** What the step did that failed, where the call was one of a step. */
+  readonly info?: StepInfo;
+  constructor(status: number, code: string, text: string);
+}
+
+/** What a callback returns: nothing or 0 to go on, a status > 0 to ask for a smaller dt (MPM_CUT_DT), one < 0 to stop. */
+export type Answer = number | void;
+/** A vector for each axis: arrays of x, y and z of all items. */
+export type Components = Float64Array[];
+
+/** What a batch knows beside its numbers. It is of use during the call of its callback alone. */
+export interface Lent {
+  /** Lends a field of the set that the batch belongs to, with its stored components; see mpm_batch_field(). The caller
+   * names components and type, because the library does not tell them here. Not for nodes, contacts and distances. */
+  field(name: string, components?: number): Float64Array[];
+  field(name: string, components: number, kind: 'i64'): BigInt64Array[];
+  field(name: string, components: number, kind: 'u8'): Uint8Array[];
+}
+/**
+ * Particles that a law is asked about. Arrays are [components][ld], of which the first n items of each
+ * component count. Tensors are full: F, F_inc and L have component 3 * row + column, stresses xx yy zz xy yz
+ * xz. In callbacks the memory belongs to the library and is valid during the call, and output arrays do not
+ * overlap input arrays.
+ */
+export interface MaterialBatch {
+  /** number of state variables of a particle */
+  readonly state_count: number;
+  /** number of particles, inert slots included */
+  readonly n: number;
+  /** distance from component c to c + 1, in elements; >= n */
+  readonly ld: number;
+  /** time at the end of the step */
+  readonly t: number;
+  /** size of the step; 0: the state as it is, see mpm_stress_fn */
+  readonly dt: number;
+  /** [ld] ids, < 0 for inert slots */
+  readonly id: BigInt64Array;
+  /** [9][ld] deformation gradient at the end of the step */
+  readonly F: Float64Array[];
+  /** [9][ld] deformation gradient of this step alone: F = F_inc F_old */
+  readonly F_inc: Float64Array[];
+  /** [9][ld] velocity gradient (F_inc - I) / dt, 1/time; 0 when dt is 0 */
+  readonly L: Float64Array[];
+  /** [6][ld] Cauchy stress before the step */
+  readonly stress: Float64Array[];
+  /** [state_count][ld] state variables before the step */
+  readonly state: Float64Array[];
+  /** [6][ld] out: Cauchy stress after the step */
+  readonly stress_new: Float64Array[];
+  /** [state_count][ld] out: state variables after the step */
+  readonly state_new: Float64Array[];
+  /** [ld] out: speed of the fastest elastic wave now, length/time */
+  readonly wave_speed: Float64Array;
+  /** [ld] out, preset 0: length^2/time, limits the explicit dt */
+  readonly kinematic_viscosity: Float64Array;
+  /** [ld] out, preset NaN (not known): strain energy per initial volume */
+  readonly energy: Float64Array;
+  /** [dim][ld] position at the start of the step */
+  position(dim: number): Float64Array[];
+}
+/**
+ * Particles of one set for which a force is wanted. Arrays are [components][ld], of which the first n items
+ * of each component count. The memory belongs to the library and is valid during the call.
+ */
+export interface ParticleBatch {
+  /** dimension of the grid */
+  readonly dim: number;
+  /** number of particles, inert slots included */
+  readonly n: number;
+  /** distance from component c to c + 1, in elements; >= n */
+  readonly ld: number;
+  /**
+   * Time for which the value is wanted: the start of the step. Forces of MPM_NEWMARK are wanted for its end,
+   * and for the start where accelerations are to be found.
+   */
+  readonly t: number;
+  /** size of the step */
+  readonly dt: number;
+  /** [ld] ids, < 0 for inert slots */
+  readonly id: BigInt64Array;
+  /** [dim][ld] at the start of the step, wrapped on periodic axes */
+  readonly position: Float64Array[];
+  /** [dim][ld], or NULL without reference_positions */
+  readonly reference_position: Float64Array[] | undefined;
+  /** [dim][ld] at the start of the step */
+  readonly velocity: Float64Array[];
+  /** [ld] */
+  readonly mass: Float64Array;
+  /** [ld] at the start of the step */
+  readonly volume: Float64Array;
+}
+/**
+ * Active nodes of the grid. Arrays are [components][ld], of which the first n items of each component count.
+ * The memory belongs to the library and is valid during the call.
+ */
+export interface NodeBatch {
+  /** dimension of the grid */
+  readonly dim: number;
+  /** velocity field of the nodes; see mpm_stepper_set_body() */
+  readonly body: number;
+  /** number of nodes */
+  readonly n: number;
+  /** distance from component c to c + 1, in elements; >= n */
+  readonly ld: number;
+  /** time for which the value is wanted */
+  readonly t: number;
+  /** size of the step */
+  readonly dt: number;
+  /**
+   * [dim][ld] index of the basis function, from -1 to cells + 1. Ghosts lie outside 0 to cells. Open knots
+   * have no ghosts, and other functions at these indices: go by position.
+   */
+  readonly index: BigInt64Array[];
+  /** [dim][ld] origin + index * spacing; with open knots the Greville points */
+  readonly position: Float64Array[];
+  /** [ld] */
+  readonly mass: Float64Array;
+}
+/** Nodes at which two bodies touch, for mpm_friction_fn. Arrays belong to the library. */
+export interface ContactBatch {
+  /** dimension of the grid */
+  readonly dim: number;
+  /** the first body, the lower number */
+  readonly body_a: number;
+  /** the second body */
+  readonly body_b: number;
+  /** number of nodes */
+  readonly n: number;
+  /** distance from component c to c + 1, in elements; >= n */
+  readonly ld: number;
+  /** time at the start of the step */
+  readonly t: number;
+  /** size of the step */
+  readonly dt: number;
+  /** [dim][ld] of the nodes */
+  readonly position: Float64Array[];
+  /** [dim][ld] unit normal, from the first body to the second */
+  readonly normal: Float64Array[];
+  /** [ld] length */
+  readonly gap: Float64Array;
+  /** [ld] length^(dim - 1) */
+  readonly area: Float64Array;
+  /** [dim][ld] tangential velocity of the second body relative to the first, before the impulse */
+  readonly slip: Float64Array[];
+  /** [ld] normal traction of the frictionless impulse, stress */
+  readonly pressure: Float64Array;
+}
+/**
+ * Points whose distance from an obstacle is asked for. All is in the axes of the body, from its centre; in
+ * space these are the same until it moves. Arrays belong to the library.
+ */
+export interface DistanceBatch {
+  /** dimension of the grid */
+  readonly dim: number;
+  /** number of points */
+  readonly n: number;
+  /** distance from component c to c + 1, in elements; >= n */
+  readonly ld: number;
+  /** time at the start of the step */
+  readonly t: number;
+  /** [dim][ld] */
+  readonly position: Float64Array[];
+  /**
+   * [ld] to be set: signed distance, > 0 outside. It must be right up to two spacings off the surface, and no
+   * larger than it is farther out
+   */
+  readonly distance: Float64Array;
+  /** [dim][ld] to be set: unit gradient of the distance */
+  readonly normal: Float64Array[];
+  /**
+   * [dim][ld] preset to 0: of the surface there, beside the rigid motion. NULL for points at which it is not
+   * asked for
+   */
+  readonly velocity: Float64Array[] | undefined;
+}
+
+/**
+ * add[c][i] += value for axis c and particle i.
+ *
+ * Gives a vector per particle (mt): the callback does add[c * ld + i] += value for c < dim, because several
+ * sources add to the same array. Returns 0, a value > 0 to ask for a smaller dt (MPM_CUT_DT), or a value < 0
+ * to stop (MPM_E_CALLBACK).
+ */
+export type ParticleFunction = (batch: ParticleBatch & Lent, add: Components) => Answer;
+/**
+ * prescribed[c][i] = 1 and velocity[c][i] = value for axis c and node i.
+ *
+ * Prescribes nodal velocities (mt). For the nodes and axes to hold, the callback sets prescribed[c * ld + i]
+ * = 1 (preset 0), and velocity[c * ld + i] to the mean velocity of the step, so that the displacement
+ * increment is dt * velocity in every scheme. Where several prescribe one node and axis, the first of these
+ * wins: this callback, prescribed particles (their mean weighted by mass), walls; the reaction counts for the
+ * winner. The callback is asked once per step, in the first projection of particles onto nodes; further
+ * projections keep to the answer. Returns as mpm_particle_fn does.
+ */
+export type VelocityFunction = (batch: NodeBatch, prescribed: Uint8Array[], velocity: Components) => Answer;
+/**
+ * Reads and changes the nodal velocity[dim][ld] and force[dim][ld] at a stage of an explicit step (mt). The
+ * hook is shown every node that moves by itself: periodic images and mirrored ghosts are counted in with the
+ * node that they follow, in mass, velocity and force, and what is written acts on all of them.
+ *
+ * - MPM_AFTER_P2G: velocity is the projected one and force is zero; what is written is added to the force.
+ * - MPM_AFTER_FORCES: velocity is the same; force is the whole of it, and may be replaced.
+ * - MPM_AFTER_VELOCITY: velocity is the updated one, under walls and prescribed velocities, which do not act
+ *   again; a change is an impulse of mass times change. force, reactions included, is for reading: what is
+ *   written there is ignored.
+ *
+ * A change of the projected velocity moves particles, and is given to them as far as the transfer takes nodal
+ * velocities: not with MPM_FLIP and flip = 1. Values that are left as they are change no bit; with
+ * MPM_APIC_MLS a hook keeps forces apart, as steps in parts do. Hooks run in the projection that has the
+ * forces: not in the second one of MPM_MUSL, and not in the first one of MPM_USF, which gives the strain, so
+ * that they act on the strain of later steps only. Their work, impulse times new nodal velocity, is part of
+ * external_work. MPM_NONFINITE names the node. Returns as mpm_particle_fn does.
+ */
+export type NodeFunction = (batch: NodeBatch, velocity: Components, force: Components) => Answer;
+/**
+ * Sets the coefficients of friction of nodes (mt): friction[ld], preset to that of the pair of bodies, may be
+ * changed to any finite value >= 0; it then also is that of sticking. It is asked once in a step, with
+ * MPM_USF twice: first with the forces of the old stress. Returns as mpm_particle_fn does.
+ */
+export type FrictionFunction = (batch: ContactBatch, friction: Float64Array) => Answer;
+/**
+ * Gives distances of points (mt). Returns as mpm_particle_fn does. A value that is not finite, or a normal
+ * whose length is not 1 to 1e-6, ends the step: MPM_NONFINITE, MPM_E_CALLBACK.
+ */
+export type DistanceFunction = (batch: DistanceBatch) => Answer;
+/**
+ * Watches steps. It is called on the calling thread at least once in each step before the step is committed,
+ * and after each Newton iteration, with what is known so far; info belongs to the library. Returns 0 to go
+ * on, a value > 0 to end the call with MPM_CANCELLED, or a value < 0 to end it with MPM_E_CALLBACK; the step
+ * is then not committed.
+ */
+export type ProgressFunction = (info: StepInfo) => Answer;
+/**
+ * Gives the mean velocity[3] and angular velocity[3] of the step from t over dt; both are preset to the
+ * present ones. It is called once per step, on the thread of the call. Returns as mpm_particle_fn does.
+ */
+export type MotionFunction = (t: number, dt: number, velocity: Float64Array, angular_velocity: Float64Array) => Answer;
+/**
+ * Tells which of n points are inside a body: the callback writes inside[i] = 1 or 0 for the point with the
+ * coordinates position[c * ld + i], c < dim. It runs on the calling thread. A return other than 0 ends the
+ * fill with MPM_E_CALLBACK; nothing is then added.
+ */
+export type InsideFunction = (position: Components, inside: Uint8Array) => Answer;
+/**
+ * A law (mt). It reads the state before the step and the deformation of the step, and writes stress_new,
+ * state_new and wave_speed of all n items, and kinematic_viscosity and energy where it has them. A wave speed
+ * or a viscosity below 0 stops the step or the call that asked (MPM_E_CALLBACK), and an infinite energy or
+ * any other value that is not finite is MPM_NONFINITE; both name the particle. The law may be called several
+ * times for one step, and nothing that it writes counts before the step is committed: it keeps no state of
+ * its own.
+ *
+ * With dt = 0, F_inc = I and L = 0 the library asks for stress, wave speed and energy of the state as it is:
+ * the law returns the stress that belongs to that state.
+ *
+ * Returns 0, a value > 0 to ask for a smaller dt (MPM_CUT_DT), or a value < 0 to stop (MPM_E_CALLBACK).
+ */
+export type StressFunction = (batch: MaterialBatch & Lent) => Answer;
+/**
+ * Returns whether c has major symmetry at every item.
+ *
+ * The tangent of a law (mt), for implicit steps. It is called after the law on the same batch, with the law's
+ * outputs in place, and writes tangent[component * ld + i], a stress, in the form that tangent_form names.
+ * With tau = J stress and the variation dF = L F, c is the derivative of the Lie derivative of tau: c_ijkl =
+ * d tau_ij / d L_kl - delta_ik tau_jl - delta_jk tau_il.
+ *
+ * - MPM_TANGENT_MINOR_SYMMETRIC has component 6 * row + column, where rows and columns are xx yy zz xy yz xz,
+ *   and columns are for engineering shear.
+ * - MPM_TANGENT_GENERAL has component 9 * (3 * i + j) + 3 * k + l.
+ *
+ * Into *symmetric the callback writes 1 if c has major symmetry (c_ijkl = c_klij) at every item, 0 otherwise.
+ * Returns as mpm_stress_fn does.
+ */
+export type TangentFunction = (batch: MaterialBatch & Lent, tangent: Components) => boolean | Answer;
+/**
+ * Vectors are copies; solution is read when the function returns. It returns the number of iterations, or
+ * false if the system was not solved.
+ *
+ * Solves matrix * solution = rhs. Runs on the calling thread. Both vectors have as many entries as
+ * mpm_operator_get_info() reports rows, and solution is preset to the best guess known. The host writes the
+ * solution, and into *iterations the number that linear_iterations is to count.
+ *
+ * - tolerance: the wanted ||matrix * solution - rhs|| / ||rhs||.
+ *
+ * Returns 0, a value > 0 if the system was not solved (MPM_CUT_DT), or a value < 0 to stop (MPM_E_CALLBACK).
+ */
+export type SolveFunction = (matrix: System, rhs: Float64Array, solution: Float64Array, tolerance: number) => number | boolean | void;
+
+/**
+ * A linear system. The caller sets struct_size. The arrays belong to the library and are valid until the
+ * solve callback returns. A row is one component of one node; nodes and components whose displacement is
+ * prescribed have none.
+ */
+export interface System extends OperatorInfo {
+  /** [rows] number of the node of each row, as in mpm_step_info.node */
+  readonly node: BigInt64Array;
+  /** [rows] axis of each row */
+  readonly component: Int32Array;
+  /** [dim][ld] position of the node of each row, for near-null spaces */
+  readonly position: Components;
+  /** Computes y = matrix * x. Both vectors have the rows of the system and do not overlap. */
+  apply(x: ArrayLike<number>): Float64Array;
+  /** A copy of the matrix by compressed rows, with both triangles: row r has the entries row_start[r] to row_start[r + 1] - 1. */
+  csr(): { row_start: BigInt64Array; column: Int32Array; value: Float64Array };
+}
+
+/** Services of the host. */
+export interface ContextOptions extends ContextDesc {
+  /**
+   * Takes a finished text without newline, with a level MPM_LOG_*. The text is valid during the call. Default
+   * NULL: the library is silent, since it never writes to the standard streams. Called on the calling thread
+   * only.
+   */
+  log?: (level: number, text: string) => void;
+}
+/** A law of the host. */
+export interface LawOptions extends MaterialDesc {
+  /** the law; the host must set it */
+  stress: StressFunction;
+  /** NULL (default): stresses are differenced, in the general form */
+  tangent?: TangentFunction;
+  /** State variables of a new particle, as many as there are. Default: zeros, state_count of them. */
+  state_initial?: ArrayLike<number>;
+}
+/** An obstacle. */
+export interface ObstacleOptions extends ObstacleDesc {
+  /**
+   * kind, friction, friction_static, adhesion and offset count: how it meets the material. Copied. NULL
+   * (default): those of mpm_contact_desc_init().
+   */
+  contact?: ContactDesc;
+  /** of MPM_SHAPE_DISTANCE */
+  distance?: DistanceFunction;
+}
+/** Items for Material.update(): arrays are [components][n]. */
+export interface Items {
+  n: number;
+  t?: number;
+  dt: number;
+  id?: ArrayLike<number | bigint>;
+  F: ArrayLike<number>;
+  F_inc: ArrayLike<number>;
+  L?: ArrayLike<number>;
+  stress: ArrayLike<number>;
+  state?: ArrayLike<number>;
+  position?: ArrayLike<number>;
+  /** Whether the tangent is wanted. */
+  tangent?: boolean;
+}
+export interface Updated {
+  stress_new: Float64Array;
+  state_new: Float64Array;
+  wave_speed: Float64Array;
+  kinematic_viscosity: Float64Array;
+  energy: Float64Array;
+  /** [81][n] in the general form, where it was wanted. */
+  tangent?: Float64Array;
+  symmetric?: boolean;
+}
+/** New particles: arrays are [dim][n], and volume has n entries. */
+export interface NewParticles {
+  position: ArrayLike<number>;
+  velocity?: ArrayLike<number>;
+  volume: ArrayLike<number>;
+  size?: ArrayLike<number>;
+  ids?: ArrayLike<number | bigint>;
+}
+export interface Filled {
+  first_id: bigint;
+  count: number;
+}
+export interface Field {
+  name: string;
+  /** MPM_F64, MPM_I64 or MPM_U8. */
+  type: number;
+  /** Components of copies: tensors are full. */
+  components: number;
+  writable: boolean;
+}
+export type FieldArray = Float64Array | BigInt64Array | Uint8Array;
+
+/** An object of the library. It is freed by dispose(), or when it is collected; what it needs stays until then. */
+interface Handle {
+  /** Frees the object, once nothing else needs it. It is of no use afterwards; a second call does nothing. */
+  dispose(): void;
+  readonly disposed: boolean;
+  [Symbol.dispose](): void;
+}
+
+/**
+ * A context holds the services of the host (memory, threads, log) and the text of the last error. Every other
+ * object is made with one. See context.h.
+ */
+export class Context implements Handle {
+  private constructor();
+  dispose(): void;
+  readonly disposed: boolean;
+  [Symbol.dispose](): void;
+  /**
+   * Tells how many bytes the context and its objects hold now, and the most that they ever held. Either
+   * output pointer may be NULL. Any thread, any time while the context lives, also in callbacks.
+   */
+  memory(): { bytes: number; peak_bytes: number };
+  /**
+   * Gives one or two sentences, with the offending names and values, on the last call on this context or its
+   * objects that did not return MPM_OK. Calls that succeed leave them as they are, so that a host may clean
+   * up and log first and ask then; "" while no call has failed. The text belongs to the library and is valid
+   * until the next call on the context. Where no context is at hand (NULL, or one that was destroyed), a
+   * sentence that says so: the calls that get no further than to a NULL handle, or to one of another kind,
+   * have no other. May be called in callbacks, too, on the thread of the call.
+   */
+  lastError(): string;
+  /**
+   * Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out
+   * is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers
+   * can name. MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and
+   * MPM_BSPLINE3.
+   */
+  grid(desc: GridDesc): Grid;
+  /**
+   * Makes a material from a built-in law. In the table stresses are Cauchy stresses, and J = det F.
+   *
+   * | model                   | parameters                              | law                                 |
+   * |-------------------------|-----------------------------------------|-------------------------------------|
+   * | "linear_elastic"        | E, nu, density                          | hypoelastic: with F_inc = V R,      |
+   * |                         |                                         | stress' = R stress R^T + C : ln V   |
+   * | "neo_hookean"           | E, nu, density                          | Steffen et al. 2008, eq. 46         |
+   * | "neo_hookean_decoupled" | mu, kappa, density                      | Guilkey & Weiss 2003, eq. 20        |
+   * | "j2"                    | E, nu, density, yield_stress, hardening | linear_elastic with von Mises yield |
+   * |                         |                                         | and linear isotropic hardening      |
+   * | "newtonian_fluid"       | density, bulk_modulus, gamma,           | p = bulk_modulus / gamma            |
+   * |                         | viscosity, tension                      | (J^-gamma - 1), dynamic viscosity;  |
+   * |                         |                                         | tension 0 cuts off p < 0            |
+   * | "rigid"                 | density                                 | no stress; moves as prescribed      |
+   * | "drucker_prager"        | E, nu, density, phi, psi, cohesion,     | elastic in the logarithmic strain;  |
+   * |                         | cone, tension_cutoff, hardening,        | yields at q = M p + k: sand, gravel |
+   * |                         | cohesion_residual, close_gaps           | and other soils; opens in tension   |
+   * | "mohr_coulomb"          | those of drucker_prager without cone    | the same by the planes of           |
+   * |                         |                                         | Mohr-Coulomb; phi = 0 is Tresca     |
+   * | "herschel_bulkley"      | density, bulk_modulus, gamma,           | p of newtonian_fluid; elastic in    |
+   * |                         | shear_modulus, yield_shear,             | shear up to yield_shear, then flow: |
+   * |                         | consistency, n, tension                 | + consistency (shear rate)^n        |
+   * | "snow"                  | E, nu, density, hardening,              | Stomakhin et al. 2013: elastic      |
+   * |                         | critical_compression, critical_stretch, | stretches within bounds, hardens by |
+   * |                         | hardening_max                           | compaction                          |
+   * | "mu_i"                  | E, nu, density, mu_s, mu_2, I_0,        | Jop et al. 2006: grains that flow   |
+   * |                         | grain_diameter, grain_density           | with friction mu(I); no tension     |
+   * | "cam_clay"              | density, kappa, lambda, M, mu0, alpha,  | modified Cam-clay in the logarithmic|
+   * |                         | p_ref, pc0, p_min                       | strain; needs an initial stress     |
+   *
+   * params are count pairs of name and value in any order, which are copied; parameters that are not named
+   * take their defaults. mpm_material_model_param() lists units, defaults and ranges. *out is NULL unless
+   * MPM_OK is returned. MPM_E_NOT_FOUND: there is no such model or parameter. MPM_E_ARG: a value is out of
+   * range, a name is given twice, values do not go together, or a parameter without default is missing.
+   */
+  material(model: string, params: Record<string, number>): Material;
+  /**
+   * Makes a material from a law of the host. desc is copied. *out is NULL unless MPM_OK is returned.
+   * MPM_E_ARG: a value is bad, or stress is NULL.
+   */
+  law(desc: LawOptions): Material;
+  /**
+   * Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned.
+   * MPM_E_ARG: grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid.
+   */
+  particles(grid: Grid, material: Material): Particles;
+  /**
+   * Makes an obstacle. The desc is copied. *out becomes NULL on failure. MPM_E_ARG: a value is bad.
+   * MPM_E_UNSUPPORTED: velocities of a fixed one, bounds of one that the material is inside of.
+   */
+  obstacle(desc: ObstacleOptions): Obstacle;
+  /**
+   * Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied and
+   * may be NULL for the defaults. The grid outlives the stepper. *out is NULL unless MPM_OK is returned.
+   * MPM_E_ARG: a value is bad, or the grid is of another context. MPM_E_UNSUPPORTED: the combination is not
+   * offered; the error text says what to use instead.
+   */
+  stepper(grid: Grid, desc?: StepperDesc): Stepper;
+}
+
+/** A background grid has a dimension, bounds, spacings, a basis and periodic axes. See grid.h. */
+export class Grid implements Handle {
+  private constructor();
+  dispose(): void;
+  readonly disposed: boolean;
+  [Symbol.dispose](): void;
+  readonly dim: number;
+}
+
+/** A material is one constitutive law with its parameters. Any number of sets share it. See material.h. */
+export class Material implements Handle {
+  private constructor();
+  dispose(): void;
+  readonly disposed: boolean;
+  [Symbol.dispose](): void;
+  /** State variables of a particle. */
+  readonly stateCount: number;
+  /**
+   * Outputs are new arrays.
+   *
+   * Runs a material, built in or the host's, without a grid: what a step does to its particles, for n items
+   * of the caller. It is how parameters are fitted to tests of the laboratory.
+   *
+   * The caller fills batch: struct_size, state_count (that of the material), n, ld, t, dt, F (at the end of
+   * the step), F_inc, stress and state before the step, and the arrays for stress_new and state_new, all in
+   * the forms of mpm_material_batch. These may be NULL: id (items then have ids from 0; items with ids < 0
+   * are inert, and what their outputs hold is not said), L (made of F_inc and dt; what is given must be
+   * (F_inc - I) / dt), position ([3][ld]; zeros), wave_speed, kinematic_viscosity and energy (not wanted),
+   * state and state_new of a law without state. lookup is not used: a law of the host gets NULL. Outputs may
+   * be the arrays of inputs: stress_new that of stress, say. With dt = 0 the answer is the state as it is,
+   * see mpm_stress_fn, whatever F_inc and L are.
+   *
+   * tangent is NULL or [81][ld], and receives the tangent of the step in the general form of mpm_tangent_fn;
+   * dt must be > 0 then. Into *symmetric goes 1 if it has major symmetry at every item, else 0; it may be
+   * NULL, and is left alone without a tangent.
+   *
+   * Bits are those of a 3-D step on the same instruction set. The calling thread does all the work, as for
+   * other calls of the context. MPM_E_ARG: an array is NULL, a number is out of range, or L and F_inc
+   * disagree. MPM_NONFINITE: a value that is given or that comes out is not finite. MPM_INVERTED: det F or
+   * det F_inc is not positive. MPM_CUT_DT and MPM_E_CALLBACK: as in a step. What is wrong with an item names
+   * it, what a law returned the items that it was asked about. After a failure items before these may have
+   * been written.
+   */
+  update(items: Items): Updated;
+}
+
+/** A set holds particles of one material on one grid. See particles.h. */
+export class Particles implements Handle {
+  private constructor();
+  dispose(): void;
+  readonly disposed: boolean;
+  [Symbol.dispose](): void;
+  readonly grid: Grid;
+  readonly material: Material;
+  /** The number of particles, inert slots not counted; 0 for NULL. */
+  readonly count: number;
+  /**
+   * Fills the box from lower[dim] to upper[dim] with particles at rest on a lattice aligned with the cells,
+   * with per_cell[dim] particles along each axis of a cell, wherever the centre is inside. Each has the
+   * volume and the size of one lattice cell, so that domains of GIMP fill the body. The ids of the new
+   * particles are *first_id to *first_id + *count - 1; both pointers may be NULL.
+   *
+   * What a shape has beyond the grid is left out, on periodic axes too, as symmetry planes want it: *count
+   * tells how many particles there are. That holds for all three fills. per_cell is 1 to 64, and a box has at
+   * most 2^32 lattice points, in the shape or not.
+   *
+   * MPM_E_ARG: a bound is not finite, lower >= upper on an axis, the box does not meet the grid, or a limit
+   * is exceeded.
+   */
+  fillBox(lower: ArrayLike<number>, upper: ArrayLike<number>, perCell: ArrayLike<number>): Filled;
+  /**
+   * Fills a ball (2-D: disc, 1-D: interval) around centre[dim] of a radius > 0, as mpm_particles_fill_box()
+   * fills a box. The centre lies in the grid.
+   */
+  fillBall(centre: ArrayLike<number>, radius: number, perCell: ArrayLike<number>): Filled;
+  /** Fills that part of a box which the callback accepts, as mpm_particles_fill_box() fills the whole. */
+  fill(lower: ArrayLike<number>, upper: ArrayLike<number>, perCell: ArrayLike<number>, inside: InsideFunction): Filled;
+  /**
+   * Returns the first id.
+   *
+   * Adds n particles with F = I, zero stress and the law's initial state: all or none. The arrays are copied;
+   * position, velocity and size are [dim][n] with ld = n.
+   *
+   * - position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are
+   *   counted.
+   * - velocity: length/time; NULL for zeros.
+   * - volume: [n] initial volume, of the undeformed material, > 0; mass = density * volume.
+   * - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume.
+   *   MPM_GIMP and MPM_CPGIMP use it; on other grids it is kept as given.
+   * - ids: [n] the host's own ids, >= 0 and unique in the set; NULL to number on from the largest so far. A
+   *   set holds fewer than 2^32 particles.
+   * - first_id: the first of the ids is written to it; may be NULL.
+   *
+   * MPM_E_ARG: a value is not finite, a position is outside the grid, a volume or size is <= 0, or an id is
+   * negative or in use.
+   */
+  add(particles: NewParticles): bigint;
+  /**
+   * Removes the n particles with the given ids: all or none. MPM_E_NOT_FOUND: an id is not in the set.
+   * MPM_E_ARG: an id is given twice.
+   */
+  remove(ids: ArrayLike<number | bigint>): void;
+  /** The fields of the set, those of the host included. */
+  fields(): Field[];
+  /**
+   * Adds a field of the host, zero in every particle. It travels with the particles, is saved with them, and
+   * reaches callbacks through mpm_batch_field(). The name has 1 to 47 characters of a-z, 0-9 and _; type is
+   * MPM_F64, MPM_I64 or MPM_U8; components are 1 to 64. A set has at most 64 fields, the 17 of the table
+   * included. MPM_E_ARG: the name is bad or taken, or a value is. MPM_E_STATE: there is no room for one more.
+   */
+  addField(name: string, type: number, components?: number): void;
+  /**
+   * The field goes to a function, as an array for each stored component, and is given back when that returns.
+   * The arrays have no entries then. The result is the function's.
+   *
+   * Lends a field in library order, with its stored components and with inert slots (id < 0); a map of "id"
+   * tells which is which. access is MPM_READ, MPM_WRITE or both. The caller sets the view's struct_size.
+   * Until mpm_view_release() steps return MPM_E_STATE. Of a set at most 64 views are out at once. A view
+   * without MPM_WRITE is for reading: see mpm_view_release() for what becomes of changes. MPM_E_NOT_FOUND:
+   * there is no such field. MPM_E_ARG: MPM_WRITE is asked for on a field that is not writable. MPM_E_STATE:
+   * 64 views are out.
+   */
+  map<T>(field: string, access: number, use: (components: Float64Array[], count: number) => T): T;
+  map<A extends FieldArray, T>(field: string, access: number, use: (components: A[], count: number) => T): T;
+  /**
+   * Returns a new array, a BigInt64Array for MPM_I64 and a Uint8Array for MPM_U8.
+   *
+   * Copies a field of n particles into out, [components][n] with ld = n; tensors are full. ids are [n], or
+   * NULL for all particles by ascending id, where n is mpm_particles_count(). type and components must match
+   * the full field, to guard the host's buffer. MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG:
+   * type, components or n do not match.
+   */
+  get(field: 'id' | 'image', ids?: ArrayLike<number | bigint>): BigInt64Array;
+  get(field: 'prescribed', ids?: ArrayLike<number | bigint>): Uint8Array;
+  get(field: string, ids?: ArrayLike<number | bigint>): Float64Array;
+  get<A extends FieldArray>(field: string, ids?: ArrayLike<number | bigint>): A;
+  /**
+   * Copies values into a field, laid out as in mpm_particles_get(): all or none. Errors are those of
+   * mpm_particles_get(), and MPM_E_ARG: a value is not finite or gives det F <= 0, a position is outside the
+   * grid, or the field is not writable.
+   */
+  set(field: string, values: ArrayLike<number | bigint>, ids?: ArrayLike<number | bigint>): void;
+  /**
+   * A field of one component also takes a number.
+   *
+   * Sets a field to one value[components] in every particle of the set. Errors are those of
+   * mpm_particles_set().
+   */
+  setAll(field: string, value: ArrayLike<number | bigint> | number | bigint): void;
+  /**
+   * Gives all particles the stress of ground at rest below a level surface: along `axis` the pressure of the
+   * weight above, surcharge + density * |gravity| * depth with the material's density, and K0 times that
+   * across it; no shear. Each layer is a set, whose surface is its top and whose surcharge the weight of what
+   * lies on it.
+   *
+   * - gravity: acceleration along the axis, length/time^2, with its sign, as in mpm_stepper_desc: with a
+   *   negative one the ground lies below the surface in the sense of falling coordinates. Not 0.
+   * - surface: coordinate of the surface on the axis, a length. No particle may lie above it.
+   * - K0: horizontal over vertical stress, >= 0: nu / (1 - nu) is what an elastic column has that was never
+   *   strained across, 1 - sin(phi) what sand has. One that a law cannot bear is no error: its first step
+   *   returns the stress to the yield surface.
+   * - surcharge: pressure on the surface, a stress >= 0. It must also be applied, or the ground heaves.
+   *
+   * Positions, velocities, masses, state variables and present volumes stay. Where stress is the state of the
+   * law, deformation_gradient becomes I and initial_volume the present volume. Where stress follows from
+   * deformation_gradient, that becomes the diagonal one that has the stress, up to rounding, and
+   * initial_volume the present volume over its determinant; in 1-D, where nothing is stored across, the
+   * stress across is then that of the law, whatever K0 is. herschel_bulkley gets the mean of the stress so,
+   * and its deviator as it is given. dilation_ratio becomes 1, and with MPM_CPGIMP the field "size" what
+   * keeps the domains as they are.
+   *
+   * The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the axis is periodic, a
+   * particle lies above the surface, or no deformation has the stress; the particle is named.
+   * MPM_E_UNSUPPORTED: the law is "rigid", or "snow", whose stress takes more than a deformation; it is
+   * "newtonian_fluid" and K0 is not 1; or, of the host's laws, one that asked with dt = 0 does not answer
+   * with the stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set.
+   * Since 0.2.0.
+   */
+  setGeostatic(axis: number, gravity: number, surface: number, K0: number, surcharge?: number): void;
+  /**
+   * Makes the present state the one from which all deformation counts: deformation_gradient becomes I,
+   * initial_volume the present volume, dilation_ratio 1, and reference_position, where there is one, the
+   * present (unwrapped) position. With MPM_CPGIMP edges in "size" become the present ones. Mass, velocity,
+   * Cauchy stress and state variables stay.
+   *
+   * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay)
+   * find J = 1 from then on: elastic strain, energy per initial volume and cohesion count by the present
+   * volume, which differ by the factor J from before; a stress on the yield surface may lie off it by as
+   * much, and the next step returns it.
+   *
+   * The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from
+   * deformation_gradient, which must stay; or a law of the host, asked with dt = 0, does not answer with the
+   * stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since
+   * 0.2.0.
+   */
+  resetReference(): void;
+  /**
+   * Fields of all particles as floats for renderers: particles one after the other, of each the components of
+   * all fields, with full tensors. Particles are in the order of their ids, or in that which `order` names.
+   */
+  toFloat32(fields?: string[], order?: number): Float32Array;
+  /** The bytes of a file of VTK (.vtp) with the fields, by default all in use. */
+  toVtp(fields?: string[]): Uint8Array;
+}
+
+/** A rigid body without particles. It belongs to a context, and may be in one stepper at a time. */
+export class Obstacle implements Handle {
+  private constructor();
+  dispose(): void;
+  readonly disposed: boolean;
+  [Symbol.dispose](): void;
+  /**
+   * Sets how an obstacle moves in each step, for MPM_MOTION_PRESCRIBED (MPM_E_UNSUPPORTED with others). NULL:
+   * it keeps its velocities. The host sets it again for an obstacle that it makes for a loaded state.
+   * MPM_E_STATE during a staged step.
+   */
+  setMotion(motion: MotionFunction | null): void;
+  /**
+   * Sets how an obstacle meets the material, as mpm_obstacle_desc.contact does. MPM_E_ARG: a value is bad;
+   * nothing is changed. MPM_E_STATE during a staged step.
+   */
+  setContact(contact: ContactDesc | null): void;
+  /**
+   * Puts an obstacle somewhere: position[3], orientation[4], velocity[3] and angular_velocity[3] as in
+   * mpm_obstacle_desc, each NULL to keep it. MPM_E_ARG: a value is bad; nothing is changed.
+   * MPM_E_UNSUPPORTED: a velocity other than 0 of a fixed one. MPM_E_STATE during a staged step.
+   */
+  setPose(pose: Partial<Record<'position' | 'orientation' | 'velocity' | 'angular_velocity', ArrayLike<number>>>): void;
+  /** Gives where an obstacle is and how it moves; each may be NULL. */
+  pose(): Record<'position' | 'orientation' | 'velocity' | 'angular_velocity', number[]>;
+  /**
+   * Sets the force[3] and the torque[3] about its centre that act on a free obstacle beside gravity and
+   * contact, until they are set anew; each NULL to keep it. MPM_E_UNSUPPORTED: it is not free. MPM_E_STATE
+   * during a staged step.
+   */
+  setLoad(load: { force?: ArrayLike<number>; torque?: ArrayLike<number> }): void;
+  /**
+   * By default of all bodies.
+   *
+   * Gives what a body and an obstacle did to each other in the last step; body MPM_BODY_ANY: all of them.
+   * force and impulse are on the material, -force is on the obstacle; torque is that on the obstacle, about
+   * its centre; nodes are those that could be constrained. MPM_E_STATE: it is in no stepper, or that has made
+   * no step yet.
+   */
+  contactInfo(body?: number): ContactInfo;
+}
+
+/** A stepper is one time loop with a grid, sets of particles, a scheme, walls and forces. See stepper.h. */
+export class Stepper implements Handle {
+  private constructor();
+  dispose(): void;
+  readonly disposed: boolean;
+  [Symbol.dispose](): void;
+  readonly grid: Grid;
+  /**
+   * Returns the stepper.
+   *
+   * Adds a set to the time loop. The host keeps owning it, and cannot destroy it while it is in. All sets of
+   * a body share one velocity field; this one comes into body 0. MPM_E_STATE: the set is in a stepper
+   * already. MPM_E_ARG: it is on another grid.
+   */
+  add(set: Particles): this;
+  /** Takes a set out of the time loop. MPM_E_NOT_FOUND: it is not in this stepper. */
+  remove(set: Particles): void;
+  /**
+   * Returns the stepper.
+   *
+   * Puts an obstacle into a stepper, with those that are there in the order of adding. MPM_E_STATE: it is in
+   * a stepper already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension
+   * of the grid, or it is free and the scheme is MPM_NEWMARK, which refuses the adhesion of an obstacle in
+   * the step. MPM_E_ARG: it is turned out of a 2-D or 1-D grid, or moves out of it.
+   */
+  addObstacle(obstacle: Obstacle): this;
+  /** Takes an obstacle out, and what it has reported. MPM_E_NOT_FOUND: it is not in this stepper. */
+  removeObstacle(obstacle: Obstacle): void;
+  /**
+   * Options that are left out take their defaults.
+   *
+   * Replaces the options between steps. Any field may change, the scheme too; desc is copied. Errors are
+   * those of mpm_stepper_create(), and MPM_E_STATE during a staged step.
+   */
+  configure(desc?: StepperDesc): void;
+  /**
+   * Sets the time and the number of steps counted. Sums over steps (mpm_stepper_wall_impulse(),
+   * mpm_stepper_particles_impulse(), external_work_total) start anew from 0. MPM_E_ARG: t is not finite, or
+   * step < 0.
+   */
+  setTime(t: number, step?: number): void;
+  /**
+   * Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES.
+   * friction is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is
+   * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that.
+   * MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED:
+   * MPM_WALL_FRICTION_NODES with MPM_NEWMARK.
+   */
+  setWall(face: number, kind: number, friction?: number): this;
+  /**
+   * Puts a set into a body: 0 <= body < 4096, at first 0. Between steps, also with particles in it. Sets of
+   * one body share one velocity field. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_ARG: there is
+   * no such body. MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by
+   * MPM_SOLVER_MULTIGRID_CG. MPM_E_STATE during a staged step, or while a view of nodal fields is out; there
+   * are no nodal fields then until the next step.
+   */
+  setBody(set: Particles, body: number): this;
+  /** Gives the body of a set. MPM_E_NOT_FOUND: it is not in this stepper. */
+  body(set: Particles): number;
+  /**
+   * Sets how two bodies meet; desc is copied. The order of the bodies matters for `direction` alone. With
+   * MPM_BODY_ANY for one body: how the other meets those that have no rule of their own with it; for both:
+   * how all meet that have no closer rule. Of the rules of two bodies each with MPM_BODY_ANY, that of the
+   * lower number counts. A later call replaces an earlier one for the same pair; NULL takes the rule back.
+   * Without any rule the defaults of mpm_contact_desc_init() hold. A saved state holds the rules. MPM_E_ARG:
+   * a value is bad. MPM_E_UNSUPPORTED: adhesion with detection by velocity; with MPM_NEWMARK, adhesion, or
+   * MPM_SOLVER_MULTIGRID_CG, of bodies that there are. MPM_E_STATE during a staged step.
+   */
+  setContact(bodyA: number, bodyB: number, contact: ContactDesc | null): this;
+  /**
+   * Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is
+   * called for every set. NULL takes it away.
+   */
+  setAcceleration(run: ParticleFunction | null): this;
+  /**
+   * Sets the callback that adds forces on particles, mass length/time^2 (f^app of MPoint theory, eq. 21). It
+   * is called for every set. NULL takes it away.
+   */
+  setForce(run: ParticleFunction | null): this;
+  /** Sets the callback that prescribes nodal velocities, length/time. NULL takes it away. */
+  setVelocityBc(run: VelocityFunction | null): this;
+  /**
+   * Sets the hook of a stage, one of MPM_AFTER_P2G to MPM_AFTER_VELOCITY. NULL takes it away. In a step in
+   * parts all hooks run in mpm_step_grid(), after what the host has written itself. MPM_E_ARG: there is no
+   * such stage. MPM_E_UNSUPPORTED with MPM_NEWMARK.
+   */
+  setNodeHook(stage: number, run: NodeFunction | null): this;
+  /**
+   * Moves the prescribed particles of a set (platens, pistons). mean_velocity (mt) is called at the start of
+   * a step for the particles of the set, unless none is prescribed, and adds the mean velocity u of the
+   * coming step to zeros; what it gives to other particles is ignored. NULL takes the callback away: the
+   * particles keep their velocity.
+   *
+   * On its prescribed axes a particle moves by dt u and ends with the velocity u, with every transfer; the
+   * nodes to which it gives mass move with u too, or with the mean of several by that mass. On other axes,
+   * and in deformation and stress, it is a particle like others. MPM_NONFINITE names the particle. The host
+   * sets the callback again after it has loaded a state. MPM_E_NOT_FOUND: the set is not in this stepper.
+   */
+  setMotion(set: Particles, run: ParticleFunction | null): this;
+  /**
+   * Sets the callback for coefficients of friction. NULL takes it away. The host sets it again after it has
+   * loaded a state into another stepper. MPM_E_UNSUPPORTED with MPM_NEWMARK.
+   */
+  setFriction(run: FrictionFunction | null): this;
+  /** Sets the progress callback, which runs on the calling thread. NULL takes it away. */
+  setProgress(run: ProgressFunction | null): this;
+  /** Sets the solver of MPM_SOLVER_HOST: see operator.h. NULL takes it away. */
+  setLinearSolver(run: SolveFunction | null): this;
+  /**
+   * Gives the stable dt of an explicit step from the present state, at CFL number 1 (MPoint theory, eqs
+   * 45-46): 1 / max over particles and axes of (|v_k| + c) / h_k, where c is the law's current wave speed,
+   * and at most h^2 / (2 dim nu) where a law reports a kinematic viscosity nu; h is the smallest spacing.
+   * Explicit steps want a share of it. It is infinite where nothing moves and no law has waves. Obstacles
+   * that move count by the speed of their fastest point. The call runs the laws. MPM_E_STATE: there are no
+   * particles, or a view is out.
+   */
+  stableDt(): number;
+  /**
+   * Makes one step of size dt > 0. After any status but MPM_OK particles and time are bit-identical to
+   * before. info may be NULL; it is filled on success and on failure.
+   *
+   * - MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED, MPM_SINGULAR: a smaller dt may do.
+   * - MPM_OFF_GRID: a particle would leave through an MPM_WALL_NONE face.
+   * - MPM_CANCELLED: the progress callback ended the step.
+   * - MPM_E_ARG: dt is not finite or not > 0.
+   * - MPM_E_CALLBACK: a callback or the host's executor failed.
+   * - MPM_E_STATE: a view is out, a staged step is under way, or a set has values to be repaired.
+   */
+  step(dt: number): StepInfo;
+  /**
+   * Steps to t_end exactly. Statuses 1..5 cut dt to 0.6 of it and try again, and success lets it grow; the
+   * controller's dt is part of the saved state. On failure the state is that of the last committed sub-step,
+   * and the status is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives
+   * up, and mpm_last_error() says so and why the last try failed; the host may call again, with the dt of
+   * before the cuts. info may be NULL; it is that of the last sub-step tried. The call returns MPM_OK with t
+   * < t_end when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the present
+   * time, or a value is bad.
+   */
+  advance(tEnd: number, options?: Omit<AdvanceDesc, 't_end'>): StepInfo;
+  /**
+   * Makes the first part of an explicit step in parts: particles to grid, and forces. With MPM_USF strain and
+   * stress of the step come before them, for which the callbacks of prescribed velocities are asked here.
+   * Until mpm_step_end() or mpm_step_abort() the host may map nodal fields between the parts, and change
+   * "velocity" and "force". Errors are those of mpm_step(), and MPM_E_UNSUPPORTED with MPM_NEWMARK. A part
+   * that fails with any status but MPM_E_STATE or MPM_E_ARG aborts the step.
+   */
+  stepBegin(dt: number): void;
+  /**
+   * Makes the second part: nodal velocities, walls, prescribed velocities. MPM_E_STATE unless it follows
+   * mpm_step_begin().
+   */
+  stepGrid(): void;
+  /**
+   * Makes the last part: grid to particles, stress, commit. info may be NULL. MPM_E_STATE unless it follows
+   * mpm_step_grid(). The three parts in a row give the same bits as mpm_step(), except with MPM_APIC_MLS,
+   * where a whole step fuses force and momentum: there they agree to rounding.
+   */
+  stepEnd(): StepInfo;
+  /**
+   * Drops the step that was begun; particles and time are as before it. MPM_E_STATE: none was begun, or a
+   * view of nodal fields is out.
+   */
+  stepAbort(): void;
+  /**
+   * Gives the info of the state as it is, also before the first step. What belongs to a step is that of the
+   * last one. MPM_E_STATE while a set is mapped for writing.
+   */
+  info(): StepInfo;
+  /**
+   * Copies the times into out, then sets them to zero if reset is not 0. They cost the steps one clock read
+   * per stage.
+   */
+  profile(reset?: boolean): Profile;
+  /**
+   * Gives the history of the last implicit step: ||residual|| / scale (the scale includes reactions) from
+   * before the first solve to the converged or failed end. *count tells how many values there are; the first
+   * capacity of them are copied into residual, which may be NULL when capacity is 0. The history is kept
+   * until the next step; *count is 0 after explicit ones.
+   */
+  residuals(): number[];
+  /**
+   * Gives what two bodies did in the last step; for body_a MPM_BODY_ANY the sum over all others, on body_b;
+   * the other way round what they suffered. Bodies that never were near each other have zeros, and an
+   * infinite gap. MPM_E_ARG: the bodies are the same or there is no such body. MPM_E_STATE before the first
+   * step.
+   */
+  contactInfo(bodyA: number, bodyB: number): ContactInfo;
+  /**
+   * Gives the force[dim] that the wall at a face exerts on the material: the mean over the last step, or with
+   * MPM_NEWMARK the one at its end, but for friction walls. MPM_E_ARG: there is no such face. MPM_E_STATE
+   * before the first step.
+   */
+  wallReaction(face: number): number[];
+  /**
+   * Gives the impulse[dim] of the wall at a face on the material, mass * length/time: the sum of
+   * mpm_stepper_wall_reaction() times the time over which it acted, over all committed steps since the
+   * stepper was made or mpm_stepper_set_time() was called; 0 before the first. A host that uses mpm_advance()
+   * measures forces by it: the difference of two calls over the time between them is the mean force. With
+   * MPM_NEWMARK a step adds dt times the force at its end, and with `staggered` the mean of two dt times its
+   * force. Steps that fail add nothing, and a saved state holds it. MPM_E_ARG: there is no such face.
+   */
+  wallImpulse(face: number): number[];
+  /**
+   * Gives the force[dim] that the prescribed particles of a set exert on the material, on the axes on which
+   * they are prescribed: the mean over the last step, or with MPM_NEWMARK the one at its end. It is what
+   * holds them, less their own inertia, weight and external forces; 0 for a set without such particles.
+   * MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_STATE before the first step.
+   */
+  particlesReaction(set: Particles): number[];
+  /**
+   * Gives the impulse[dim] of the prescribed particles of a set on the material, the sum of
+   * mpm_stepper_particles_reaction() in the same way. It is 0 when a set is added, and forgotten when it is
+   * removed. MPM_E_NOT_FOUND: the set is not in this stepper.
+   */
+  particlesImpulse(set: Particles): number[];
+  /**
+   * The field goes to a function as Particles.map() lends one; body is 0 by default.
+   *
+   * Lends a field of the active nodes: of a staged step while one is under way, of the last step otherwise.
+   * The view's struct_size is set by the caller. Until mpm_view_release() steps and their parts return
+   * MPM_E_STATE. Periodic images and mirrored ghosts are listed beside the nodes that they follow.
+   *
+   * | field                              | type | components | what it is                                    |
+   * |------------------------------------|------|------------|-----------------------------------------------|
+   * | "index"                            | I64  | dim        | as in mpm_node_batch                          |
+   * | "mass"                             | F64  | 1          | nodal mass                                    |
+   * | "position" "velocity"              | F64  | dim        | length, length/time                           |
+   * | "force" "acceleration"             | F64  | dim        | internal and external force; length/time^2    |
+   * | "reaction"                         | F64  | dim        | force of walls and prescribed velocities      |
+   * | "contact_force"                    | F64  | dim        | force of other bodies and of obstacles        |
+   * | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
+   * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
+   *
+   * - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
+   * - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
+   * - MPM_E_NOT_FOUND: there is no such field or body.
+   * - MPM_E_ARG: MPM_WRITE is asked for on a field other than "velocity" and "force".
+   * - MPM_E_UNSUPPORTED: "force" or "acceleration" after a whole step of MPM_APIC_MLS, which does not keep
+   *   them; a staged step and MPM_APIC do.
+   */
+  map<T>(field: string, access: number, use: (components: Float64Array[], count: number) => T, body?: number): T;
+  map<A extends FieldArray, T>(field: string, access: number, use: (components: A[], count: number) => T, body?: number): T;
+  /**
+   * Writes the state into the host's buffer of capacity bytes. MPM_E_ARG: the capacity is too small.
+   * MPM_E_STATE: a view is out for writing, or a staged step is under way.
+   */
+  save(): Uint8Array;
+  /**
+   * Replaces the state by one saved with mpm_state_save(), of so many bytes; the buffer is read during the
+   * call. MPM_E_FORMAT: the bytes are no state, or it is damaged, of a later format, or saved from an unlike
+   * setup; the error text names the first difference. MPM_E_STATE: a view is out, or a staged step is under
+   * way.
+   */
+  load(state: ArrayLike<number>): void;
+  /**
+   * Gives a hash of time, step, every field of every set and the pose of every obstacle. It does not depend
+   * on library order, on threads or on optional fields that are not in use: states that are equal by id have
+   * equal hashes.
+   */
+  hash(): bigint;
+  /**
+   * The bytes of a file of VTK (.vti, .vtr) with nodal fields, by default all that there are; body is 0 by
+   * default.
+   */
+  toVti(fields?: string[], body?: number): Uint8Array;
+}
+
+/** The functions of C as WebAssembly exports them: pointers are numbers, 64-bit integers BigInts. For what the classes
+ * lack; who calls them keeps their rules. */
+export interface Raw {
+  mpm_version(): number;
+  mpm_status_name(status: number): number;
+  mpm_status_text(status: number): number;
+  mpm_view_release(view: number): number;
+  mpm_context_desc_init(desc: number, struct_size: number): number;
+  mpm_context_create(desc: number, out: number): number;
+  mpm_context_memory(context: number, bytes: number, peak_bytes: number): number;
+  mpm_context_destroy(context: number): number;
+  mpm_last_error(context: number): number;
+  mpm_set_last_error(context: number, status: number, text: number): number;
+  mpm_grid_desc_init(desc: number, struct_size: number): number;
+  mpm_grid_create(context: number, desc: number, out: number): number;
+  mpm_grid_destroy(grid: number): number;
+  mpm_material_create(context: number, model: number, params: number, count: number, out: number): number;
+  mpm_material_model_count(): number;
+  mpm_material_model_name(index: number): number;
+  mpm_material_model_param(model: number, index: number, name: number, unit: number, text: number, value_default: number, low: number, high: number): number;
+  mpm_material_state_count(model: number): number;
+  mpm_material_state_name(model: number, index: number, name: number, unit: number, text: number): number;
+  mpm_batch_field(lookup: number, field: number, data: number, component_stride: number): number;
+  mpm_material_desc_init(desc: number, struct_size: number): number;
+  mpm_material_create_custom(context: number, desc: number, out: number): number;
+  mpm_material_update(material: number, batch: number, tangent: number, symmetric: number): number;
+  mpm_material_destroy(material: number): number;
+  mpm_particles_create(context: number, grid: number, material: number, out: number): number;
+  mpm_particles_destroy(particles: number): number;
+  mpm_particles_add(particles: number, n: bigint, position: number, velocity: number, volume: number, size: number, ids: number, first_id: number): number;
+  mpm_particles_fill_box(particles: number, lower: number, upper: number, per_cell: number, first_id: number, count: number): number;
+  mpm_particles_fill_ball(particles: number, centre: number, radius: number, per_cell: number, first_id: number, count: number): number;
+  mpm_particles_fill(particles: number, lower: number, upper: number, per_cell: number, inside: number, user: number, first_id: number, count: number): number;
+  mpm_particles_remove(particles: number, n: bigint, ids: number): number;
+  mpm_particles_count(particles: number): bigint;
+  mpm_particles_field_info(particles: number, index: number, field: number, type: number, components: number, writable: number): number;
+  mpm_particles_add_field(particles: number, field: number, type: number, components: number): number;
+  mpm_particles_map(particles: number, field: number, access: number, view: number): number;
+  mpm_particles_get(particles: number, field: number, type: number, components: number, n: bigint, ids: number, out: number): number;
+  mpm_particles_set(particles: number, field: number, type: number, components: number, n: bigint, ids: number, values: number): number;
+  mpm_particles_set_all(particles: number, field: number, type: number, components: number, value: number): number;
+  mpm_particles_set_geostatic(particles: number, axis: number, gravity: number, surface: number, K0: number, surcharge: number): number;
+  mpm_particles_reset_reference(particles: number): number;
+  mpm_operator_get_info(matrix: number, info: number): number;
+  mpm_operator_apply(matrix: number, x: number, y: number): number;
+  mpm_operator_csr(matrix: number, row_start: number, column: number, value: number): number;
+  mpm_stepper_desc_init(desc: number, struct_size: number): number;
+  mpm_stepper_create(context: number, grid: number, desc: number, out: number): number;
+  mpm_stepper_destroy(stepper: number): number;
+  mpm_stepper_add(stepper: number, particles: number): number;
+  mpm_stepper_remove(stepper: number, particles: number): number;
+  mpm_stepper_configure(stepper: number, desc: number): number;
+  mpm_stepper_set_time(stepper: number, t: number, step: bigint): number;
+  mpm_stepper_set_motion(stepper: number, particles: number, mean_velocity: number, user: number): number;
+  mpm_stepper_set_wall(stepper: number, face: number, kind: number, friction: number): number;
+  mpm_stepper_set_acceleration(stepper: number, fn: number, user: number): number;
+  mpm_stepper_set_force(stepper: number, fn: number, user: number): number;
+  mpm_stepper_set_velocity_bc(stepper: number, fn: number, user: number): number;
+  mpm_stepper_set_node_hook(stepper: number, stage: number, fn: number, user: number): number;
+  mpm_stepper_set_linear_solver(stepper: number, fn: number, user: number): number;
+  mpm_stepper_set_progress(stepper: number, fn: number, user: number): number;
+  mpm_stable_dt(stepper: number, dt: number): number;
+  mpm_step(stepper: number, dt: number, info: number): number;
+  mpm_advance_desc_init(desc: number, struct_size: number): number;
+  mpm_advance(stepper: number, desc: number, info: number): number;
+  mpm_stepper_profile(stepper: number, reset: number, out: number): number;
+  mpm_stepper_info(stepper: number, info: number): number;
+  mpm_stepper_residuals(stepper: number, capacity: number, residual: number, count: number): number;
+  mpm_step_begin(stepper: number, dt: number): number;
+  mpm_step_grid(stepper: number): number;
+  mpm_step_end(stepper: number, info: number): number;
+  mpm_step_abort(stepper: number): number;
+  mpm_grid_map(stepper: number, body: number, field: number, access: number, view: number): number;
+  mpm_stepper_wall_reaction(stepper: number, face: number, force: number): number;
+  mpm_stepper_particles_reaction(stepper: number, prescribed: number, force: number): number;
+  mpm_stepper_wall_impulse(stepper: number, face: number, impulse: number): number;
+  mpm_stepper_particles_impulse(stepper: number, prescribed: number, impulse: number): number;
+  mpm_stepper_set_body(stepper: number, particles: number, body: number): number;
+  mpm_stepper_body(stepper: number, particles: number, body: number): number;
+  mpm_contact_desc_init(desc: number, struct_size: number): number;
+  mpm_stepper_set_contact(stepper: number, body_a: number, body_b: number, desc: number): number;
+  mpm_stepper_set_friction(stepper: number, fn: number, user: number): number;
+  mpm_stepper_contact_info(stepper: number, body_a: number, body_b: number, info: number): number;
+  mpm_obstacle_desc_init(desc: number, struct_size: number): number;
+  mpm_obstacle_create(context: number, desc: number, out: number): number;
+  mpm_obstacle_destroy(obstacle: number): number;
+  mpm_stepper_add_obstacle(stepper: number, obstacle: number): number;
+  mpm_stepper_remove_obstacle(stepper: number, obstacle: number): number;
+  mpm_obstacle_set_motion(obstacle: number, fn: number, user: number): number;
+  mpm_obstacle_set_contact(obstacle: number, contact: number): number;
+  mpm_obstacle_set_pose(obstacle: number, position: number, orientation: number, velocity: number, angular_velocity: number): number;
+  mpm_obstacle_get_pose(obstacle: number, position: number, orientation: number, velocity: number, angular_velocity: number): number;
+  mpm_obstacle_set_load(obstacle: number, force: number, torque: number): number;
+  mpm_obstacle_contact_info(obstacle: number, body: number, info: number): number;
+  mpm_state_size(stepper: number, bytes: number): number;
+  mpm_state_save(stepper: number, buffer: number, capacity: bigint): number;
+  mpm_state_load(stepper: number, buffer: number, bytes: bigint): number;
+  mpm_state_save_file(stepper: number, path: number): number;
+  mpm_state_load_file(stepper: number, path: number): number;
+  mpm_state_hash(stepper: number, hash: number): number;
+  mpm_write_particles(particles: number, path: number, count: number, fields: number): number;
+  mpm_write_grid(stepper: number, path: number, count: number, fields: number): number;
+  mpm_write_body_grid(stepper: number, body: number, path: number, count: number, fields: number): number;
+  mpm_series_open(context: number, path: number, out: number): number;
+  mpm_series_append(series: number, t: number, file: number): number;
+  mpm_series_close(series: number): number;
+}
+
+/** One instance of the library, with a memory of its own. */
+export interface Mpm {
+  readonly C: Constants;
+  /** The version of the library, such as "0.2.0". */
+  readonly version: string;
+  /** The compiled module: load() takes it, in a worker too. */
+  readonly module: WebAssembly.Module;
+  readonly raw: Raw & { memory: WebAssembly.Memory; malloc(bytes: number): number; free(at: number): void };
+  /**
+   * Makes a context. desc is copied and may be NULL for the defaults. *out is NULL unless MPM_OK is returned.
+   * The host ends the context with mpm_context_destroy(). There is no context to ask why a call has failed:
+   * the sentence goes to error_text, and to log with MPM_LOG_WARNING, as far as desc sets them.
+   *
+   * - MPM_E_ARG: a value is bad, only one of alloc and release or of error_text and error_bytes is set, or
+   *   the variable MPM_ISA has an unknown value.
+   * - MPM_E_NOMEM: memory or threads are not to be had.
+   * - MPM_E_UNSUPPORTED: the instruction set is not available, the build has no threads, or desc sets a field
+   *   that this version of the library does not know.
+   */
+  context(desc?: ContextOptions): Context;
+  /** The names of the built-in laws. */
+  models(): string[];
+  /** The parameters of a built-in law: unit, text, default (NaN if it must be given) and range. */
+  parameters(model: string): { name: string; unit: string; text: string; value_default: number; low: number; high: number }[];
+  /** The state variables of a built-in law. */
+  stateVariables(model: string): { name: string; unit: string; text: string }[];
+}
+
+/** Makes an instance of the library, from a URL, a path, the bytes of a binary or a compiled module. By default from
+ * the binary beside this module: libmpm.simd.wasm where load.simd() says so, else libmpm.wasm. They give the same bits. */
+export function load(source?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module): Promise<Mpm>;
+export namespace load {
+  /** Whether vectors of WebAssembly are known here. */
+  function simd(): boolean;
+}

@@ -1,0 +1,43 @@
+# The package for JavaScript, in $(BUILD)/javascript: modules, declarations and two binaries, by clang and wasi-libc.
+# Included by bindings/bindings.mk.
+
+.PHONY: javascript live
+
+JAVASCRIPT := $(BUILD)/javascript
+JAVASCRIPT_PACKAGE := $(JAVASCRIPT)/libmpm
+WASM_CLANG ?= clang
+WASM_AR ?= $(shell command -v llvm-ar || command -v llvm-ar-14)
+# A stack of 1 MiB below all data, so that one which overflows is noticed; names of functions are left out.
+WASM_LINK := --target=wasm32-wasi -mexec-model=reactor -O2 -Wl,--export-table,--growable-table,--strip-all \
+  -Wl,--stack-first,-z,stack-size=1048576
+JAVASCRIPT_FILES := $(patsubst bindings/javascript/%,$(JAVASCRIPT_PACKAGE)/%,$(wildcard bindings/javascript/*.mjs) \
+  bindings/javascript/libmpm.d.ts bindings/javascript/README.md) \
+  $(addprefix $(JAVASCRIPT_PACKAGE)/,package.json LICENSE libmpm.wasm libmpm.simd.wasm)
+
+#: javascript            the package for node and browsers, in $(BUILD)/javascript/libmpm: needs clang, lld, llvm,
+#:                       wasi-libc and libclang-rt-dev-wasm32
+javascript: $(JAVASCRIPT_FILES)
+
+$(JAVASCRIPT_PACKAGE)/%: bindings/javascript/%
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
+$(JAVASCRIPT_PACKAGE)/LICENSE: LICENSE
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
+$(JAVASCRIPT_PACKAGE)/package.json: bindings/javascript/package.json.in Makefile
+	@mkdir -p $(@D)
+	$(Q)sed 's/@VERSION@/$(VERSION)/' $< > $@
+
+# The library for WebAssembly, by this Makefile with another compiler: kernels by -O2, which is as fast and smaller.
+define wasm_rule
+$(JAVASCRIPT)/$(1)/libmpm.a: $(PLAIN) $(KERNELS) $(wildcard src/*/*.h) $(HEADERS) src/kernels.txt Makefile platform.mk
+	+$$(Q)$$(MAKE) BUILD=$(JAVASCRIPT)/$(1) CC='$(WASM_CLANG) --target=wasm32-wasi' AR='$(WASM_AR)' CFLAGS='$(2)' \
+	  CPPFLAGS=-DMPM_NO_FILES LDFLAGS= OPT=-O2 KERNEL_OPT=-O2 $(JAVASCRIPT)/$(1)/libmpm.a
+
+$(JAVASCRIPT_PACKAGE)/libmpm$(3).wasm: $(JAVASCRIPT)/$(1)/libmpm.a bindings/javascript/exports.txt bindings/javascript/rules.mk
+	@mkdir -p $$(@D)
+	$$(call SAY,LINK)
+	$$(Q)$(WASM_CLANG) $(WASM_LINK) @bindings/javascript/exports.txt $$< -lm -o $$@
+endef
+$(eval $(call wasm_rule,scalar,,))
+$(eval $(call wasm_rule,simd,-msimd128,.simd))

@@ -1,0 +1,308 @@
+// Functions of the host: what they see, what they change, and what becomes of what they throw.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { C, MpmError } from 'libmpm';
+import { mpm, scene } from './library.mjs';
+
+test('forces, accelerations and gravity agree', () => {
+  const g = [0, -2];
+  const bits = [
+    (s) => s.stepper.setAcceleration((batch, [x, y]) => {
+      assert.equal(x.length, batch.n);
+      for (let i = 0; i < batch.n; i++) y[i] += g[1];
+    }),
+    (s) => s.stepper.setForce((batch, add) => {
+      const { mass } = batch;
+      for (let i = 0; i < batch.n; i++) add[1][i] += mass[i] * g[1];
+    }),
+  ].map((set) => {
+    const s = scene();
+    set(s);
+    for (let k = 0; k < 5; k++) s.stepper.step(1e-3);
+    return s.stepper.info().momentum[1];
+  });
+  const s = scene({ desc: { gravity: g } });
+  for (let k = 0; k < 5; k++) s.stepper.step(1e-3);
+  const wanted = s.stepper.info().momentum[1];
+  for (const one of bits) assert.ok(Math.abs(one / wanted - 1) < 1e-12);
+  const still = scene();
+  for (let k = 0; k < 5; k++) still.stepper.step(1e-3);
+  assert.ok(Math.abs(still.stepper.info().momentum[1] - wanted) > 1e-3 * Math.abs(wanted));
+});
+
+test('what a callback throws comes out, and nothing has changed', () => {
+  const { set, stepper } = scene();
+  const before = stepper.hash();
+  const mine = new RangeError('mine');
+  const throwing = () => { throw mine; };
+  const all = {
+    setForce: [throwing], setAcceleration: [throwing], setVelocityBc: [throwing], setProgress: [throwing],
+    setNodeHook: [C.MPM_AFTER_FORCES, throwing],
+  };
+  for (const [name, values] of Object.entries(all)) {
+    stepper[name](...values);
+    assert.throws(() => stepper.step(1e-3), (error) => error === mine, name);
+    assert.throws(() => stepper.advance(0.1), (error) => error === mine, name);
+    assert.equal(stepper.hash(), before);
+    stepper[name](...values.slice(0, -1), null);
+  }
+  set.setAll('prescribed', [1, 0]);
+  stepper.setMotion(set, throwing);
+  assert.throws(() => stepper.step(1e-3), (error) => error === mine);
+  stepper.setMotion(set, null);
+  stepper.step(1e-3);
+});
+
+test('of several exceptions that of the failure comes out', () => {
+  const { context, grid, material, set, stepper } = scene();
+  const other = context.particles(grid, material);
+  other.fillBox([0.7, 0.7], [0.8, 0.8], [2, 2]);
+  stepper.add(other);
+  const seen = [];
+  stepper.setForce((batch) => {
+    seen.push(batch.n);
+    throw new Error(`batch ${seen.length}`);
+  });
+  assert.throws(() => stepper.step(1e-3), /batch 1/);
+  assert.ok(set.count > 0);
+});
+
+test('answers are passed on', () => {
+  const { stepper } = scene();
+  stepper.setForce(() => C.MPM_CUT_DT);
+  assert.throws(() => stepper.step(1e-3), (error) => error instanceof MpmError && error.status === C.MPM_CUT_DT && error.retryable && error.info.callback_status === 1);
+  stepper.setForce(() => -7);
+  assert.throws(() => stepper.step(1e-3), (error) => error.status === C.MPM_E_CALLBACK && error.info.callback_status === -7);
+  stepper.setForce(null);
+  let steps = 0;
+  stepper.setProgress((info) => {
+    assert.equal(typeof info.t, 'number');
+    steps++;
+    return C.MPM_CANCELLED;
+  });
+  assert.throws(() => stepper.step(1e-3), (error) => error.status === C.MPM_CANCELLED && !error.retryable);
+  assert.equal(steps, 1);
+  stepper.setProgress(async () => {});
+  assert.throws(() => stepper.step(1e-3), /a promise|async/);
+  stepper.setProgress(() => 'go on');
+  assert.throws(() => stepper.step(1e-3), /returned go on/);
+  assert.throws(() => stepper.setProgress(7), /has to be a function/);
+});
+
+test('batches end with the call', () => {
+  const { set, stepper } = scene();
+  let batch, x;
+  set.addField('heat', C.MPM_F64);
+  set.setAll('heat', 3);
+  stepper.setForce((given) => {
+    batch = given;
+    [x] = given.position;
+    const [heat] = given.field('heat');
+    let ids = 0;
+    for (let i = 0; i < given.n; i++) if (given.id[i] >= 0n) {
+      ids++;
+      assert.equal(heat[i], 3);
+    }
+    assert.ok(ids > 0);
+    assert.equal(given.reference_position, undefined);
+    assert.throws(() => given.field('hat'), /./);
+    assert.throws(() => set.get('mass'), (error) => error.status === C.MPM_E_STATE);
+    assert.ok(x.length === given.n, 'arrays stay while the callback runs');
+  });
+  stepper.step(1e-3);
+  assert.equal(x.length, 0);
+  assert.throws(() => batch.n + batch.mass.length, /for the time of the callback/);
+});
+
+test('a callback that grows the memory by another context goes on', () => {
+  const { stepper } = scene();
+  const plain = scene();
+  let done = false;
+  stepper.setForce((batch, add) => {
+    if (!done) {
+      const context = mpm.context();
+      const grid = context.grid({ dim: 2, cells: [512, 512], spacing: [1, 1] });
+      const set = context.particles(grid, context.material('neo_hookean', { E: 1, nu: 0.2, density: 1 }));
+      set.fillBox([1, 1], [300, 300], [2, 2]);
+      for (const one of [set, grid, context]) one.dispose();
+      done = true;
+    }
+    assert.equal(batch.mass.length, batch.n);
+  });
+  for (let k = 0; k < 3; k++) {
+    stepper.step(1e-3);
+    plain.stepper.step(1e-3);
+  }
+  assert.equal(stepper.hash(), plain.stepper.hash());
+});
+
+test('prescribed velocities and hooks', () => {
+  const { stepper } = scene({ velocity: 0 });
+  stepper.setVelocityBc((batch, prescribed, velocity) => {
+    const [x] = batch.position;
+    for (let i = 0; i < batch.n; i++) if (x[i] > 0.5) {
+      prescribed[0][i] = 1;
+      velocity[0][i] = 0.25;
+    }
+  });
+  for (let k = 0; k < 3; k++) stepper.step(1e-3);
+  const [fastest, reaction] = stepper.map('velocity', C.MPM_READ, ([x]) => [Math.max(...x), x.length]);
+  assert.equal(fastest, 0.25);
+  assert.ok(reaction > 0);
+  stepper.setVelocityBc(null);
+  let hooked = 0;
+  stepper.setNodeHook(C.MPM_AFTER_VELOCITY, (batch, [vx, vy]) => {
+    hooked += batch.n;
+    vx.fill(0);
+    vy.fill(0.125);
+  });
+  stepper.step(1e-3);
+  assert.ok(hooked > 0);
+  assert.equal(stepper.map('velocity', C.MPM_READ, ([, y]) => Math.max(...y)), 0.125);
+});
+
+// A neo-Hookean law is replaced by one of the host, which is linear: sigma = K (J - 1) I.
+const stiff = {
+  density: 1e3,
+  state_initial: [1, 5],
+  stress(batch) {
+    const [xx, xy, , yx, yy, , , , zz] = batch.F;
+    const { stress_new: s, state, state_new, wave_speed, n } = batch;
+    for (let i = 0; i < n; i++) {
+      const p = 1e3 * ((xx[i] * yy[i] - xy[i] * yx[i]) * zz[i] - 1);
+      for (let c = 0; c < 6; c++) s[c][i] = c < 3 ? p : 0;
+      state_new[0][i] = state[0][i] + batch.dt;
+      state_new[1][i] = state[1][i];
+      wave_speed[i] = 1;
+    }
+  },
+};
+
+test('laws of the host', () => {
+  const { set, stepper, material } = scene({ law: stiff });
+  assert.equal(material.stateCount, 2);
+  for (let k = 0; k < 4; k++) stepper.step(1e-3);
+  const state = set.get('state');
+  assert.ok(Math.abs(state[0] - 1.004) < 1e-12 && state[set.count] === 5);
+  const mine = new Error('mine');
+  const failing = scene({ law: { ...stiff, stress(batch) { if (batch.dt > 0) throw mine; stiff.stress(batch); } } });
+  assert.throws(() => failing.stepper.step(1e-3), (error) => error === mine);
+  const position = scene({ law: { ...stiff, stress(batch) {
+    assert.equal(batch.position(2).length, 2);
+    stiff.stress(batch);
+  } } });
+  position.stepper.step(1e-3);
+  assert.throws(() => mpm.context().law({ density: 1 }), /stress/);
+});
+
+test('implicit steps by a tangent and a solver of the host', () => {
+  const K = 1e3;
+  const run = (extra, desc, solver) => {
+    const law = { ...stiff, state_initial: [1, 5], ...extra };
+    const { set, stepper } = scene({ law, velocity: 0, desc: { scheme: C.MPM_NEWMARK, gravity: [0, -1], ...desc } });
+    stepper.setWall(C.MPM_X_MIN, C.MPM_WALL_SLIP);
+    if (solver) stepper.setLinearSolver(solver);
+    const info = stepper.step(1e-2);
+    return { v: set.get('velocity'), info, residuals: stepper.residuals() };
+  };
+  const differenced = run({}, {});
+  let asked = 0;
+  const tangent = (batch, c) => {
+    asked++;
+    const [xx, xy, , yx, yy, , , , zz] = batch.F;
+    for (let i = 0; i < batch.n; i++) {
+      const J = (xx[i] * yy[i] - xy[i] * yx[i]) * zz[i];
+      const p = K * (J - 1);
+      // tau = J p I: d tau = J (p + K J) tr(L) I, less L tau + tau L^T
+      for (let a = 0; a < 6; a++) for (let b = 0; b < 6; b++) {
+        let value = a < 3 && b < 3 ? J * (p + K * J) : 0;
+        if (a === b) value -= J * p * (a < 3 ? 2 : 1);
+        c[6 * a + b][i] = value;
+      }
+    }
+    return true;
+  };
+  const given = run({ tangent }, {});
+  assert.ok(asked > 0);
+  assert.ok(given.residuals.length > 1);
+  given.v.forEach((v, i) => assert.ok(Math.abs(v - differenced.v[i]) < 1e-7, `${v} ${differenced.v[i]}`));
+
+  let solved = 0;
+  const solver = (matrix, rhs, solution, tolerance) => { // conjugate gradients
+    solved++;
+    assert.ok(matrix.rows === rhs.length && matrix.symmetric === 1 && matrix.position.length === 2);
+    const { row_start, column, value } = matrix.csr();
+    assert.equal(Number(row_start[matrix.rows]), value.length);
+    assert.equal(column.length, matrix.nonzeros);
+    const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
+    const r = rhs.map((b, i) => b - matrix.apply(solution)[i]);
+    const p = r.slice();
+    let rr = dot(r, r);
+    const goal = Math.max(tolerance, 1e-12) ** 2 * dot(rhs, rhs);
+    let k = 0;
+    for (; k < 1000 && rr > goal; k++) {
+      const Ap = matrix.apply(p);
+      const alpha = rr / dot(p, Ap);
+      for (let i = 0; i < p.length; i++) {
+        solution[i] += alpha * p[i];
+        r[i] -= alpha * Ap[i];
+      }
+      const next = dot(r, r);
+      for (let i = 0; i < p.length; i++) p[i] = r[i] + (next / rr) * p[i];
+      rr = next;
+    }
+    return k;
+  };
+  const hosted = run({ tangent }, { linear_solver: C.MPM_SOLVER_HOST }, solver);
+  assert.ok(solved > 0);
+  assert.equal(hosted.info.linear_solver, C.MPM_SOLVER_HOST);
+  assert.ok(hosted.info.linear_iterations > 0);
+  hosted.v.forEach((v, i) => assert.ok(Math.abs(v - given.v[i]) < 1e-7));
+  assert.throws(() => run({ tangent }, { linear_solver: C.MPM_SOLVER_HOST }, () => false), (error) => error.status === C.MPM_CUT_DT);
+  const mine = new Error('mine');
+  assert.throws(() => run({ tangent: () => { throw mine; } }, {}), (error) => error === mine);
+});
+
+test('obstacles and friction by functions', () => {
+  const { context, stepper } = scene();
+  const wall = context.obstacle({
+    shape: C.MPM_SHAPE_DISTANCE,
+    distance(batch) { // the half-space x > 0.65
+      const [x] = batch.position;
+      for (let i = 0; i < batch.n; i++) {
+        batch.distance[i] = 0.65 - x[i];
+        batch.normal[0][i] = -1;
+        batch.normal[1][i] = 0;
+      }
+    },
+  });
+  stepper.addObstacle(wall);
+  for (let k = 0; k < 80; k++) stepper.step(2e-3);
+  assert.ok(wall.contactInfo().impulse[0] < 0);
+  const mine = new Error('mine');
+  const other = scene();
+  const bad = other.context.obstacle({ shape: C.MPM_SHAPE_DISTANCE, distance() { throw mine; } });
+  assert.throws(() => other.stepper.addObstacle(bad).step(1e-3), (error) => error === mine);
+
+  const pair = scene({ velocity: 0 });
+  const top = pair.context.particles(pair.grid, pair.material);
+  top.fillBox([0.3, 0.6], [0.6, 0.7], [2, 2]);
+  top.setAll('velocity', [1, -1]);
+  let nodes = 0;
+  pair.stepper.add(top).setBody(top, 1).setFriction((batch, friction) => {
+    nodes += batch.n;
+    assert.equal(batch.normal.length, 2);
+    friction.fill(0.5);
+  });
+  for (let k = 0; k < 10; k++) pair.stepper.step(1e-3);
+  assert.ok(nodes > 0 && pair.stepper.contactInfo(0, 1).friction_work > 0);
+});
+
+test('the log', () => {
+  const lines = [];
+  assert.throws(() => mpm.context({ concurrency: 7, log: (level, text) => lines.push([level, text]) }), MpmError);
+  assert.equal(lines.length, 1);
+  assert.equal(lines[0][0], C.MPM_LOG_WARNING);
+  assert.match(lines[0][1], /thread/);
+  assert.throws(() => mpm.context({ concurrency: 7, log() { throw new Error('dropped'); } }), /thread/);
+});
