@@ -41,3 +41,18 @@ $(JAVASCRIPT_PACKAGE)/libmpm$(3).wasm: $(JAVASCRIPT)/$(1)/libmpm.a bindings/java
 endef
 $(eval $(call wasm_rule,scalar,,))
 $(eval $(call wasm_rule,simd,-msimd128,.simd))
+
+# The page, which any server of files can give: `python3 -m http.server -d $(BUILD)/live`.
+LIVE := $(BUILD)/live
+LIVE_FILES := $(patsubst docs/live/%,$(LIVE)/%,$(wildcard docs/live/*.mjs docs/live/*.html docs/live/*.css)) \
+  $(patsubst $(JAVASCRIPT_PACKAGE)/%,$(LIVE)/libmpm/%,$(JAVASCRIPT_FILES))
+#: live                  the page of docs/live with the package, in $(BUILD)/live, for any server of files
+live: $(LIVE_FILES)
+	@echo "python3 -m http.server -d $(LIVE) shows it at http://localhost:8000"
+
+$(LIVE)/libmpm/%: $(JAVASCRIPT_PACKAGE)/%
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
+$(LIVE)/%: docs/live/%
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
