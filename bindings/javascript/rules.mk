@@ -28,19 +28,31 @@ $(JAVASCRIPT_PACKAGE)/package.json: bindings/javascript/package.json.in Makefile
 	@mkdir -p $(@D)
 	$(Q)sed 's/@VERSION@/$(VERSION)/' $< > $@
 
-# The library for WebAssembly, by this Makefile with another compiler: kernels by -O2, which is as fast and smaller.
-define wasm_rule
-$(JAVASCRIPT)/$(1)/libmpm.a: $(PLAIN) $(KERNELS) $(wildcard src/*/*.h) $(HEADERS) src/kernels.txt Makefile platform.mk
-	+$$(Q)$$(MAKE) BUILD=$(JAVASCRIPT)/$(1) CC='$(WASM_CLANG) --target=wasm32-wasi' AR='$(WASM_AR)' CFLAGS='$(2)' \
-	  CPPFLAGS=-DMPM_NO_FILES LDFLAGS= OPT=-O2 KERNEL_OPT=-O2 $(JAVASCRIPT)/$(1)/libmpm.a
+# The library for WebAssembly, by this Makefile with another compiler: kernels by -O2, which is as fast and smaller. The
+# binary with vectors has its own kernels, and all else from the other one.
+WASM_SOURCES := $(PLAIN) $(KERNELS) $(wildcard src/*/*.h) $(HEADERS) src/kernels.txt Makefile platform.mk
+WASM_MAKE = +$(Q)$(MAKE) BUILD=$(@D) CC='$(WASM_CLANG) --target=wasm32-wasi' AR='$(WASM_AR)' CPPFLAGS=-DMPM_NO_FILES LDFLAGS= \
+  OPT=-O2 KERNEL_OPT=-O2
+WASM_KERNELS := $(KERNELS:%.c=$(JAVASCRIPT)/simd/obj/%.baseline.o)
 
-$(JAVASCRIPT_PACKAGE)/libmpm$(3).wasm: $(JAVASCRIPT)/$(1)/libmpm.a bindings/javascript/exports.txt bindings/javascript/rules.mk
+$(JAVASCRIPT)/scalar/libmpm.a: $(WASM_SOURCES)
+	$(WASM_MAKE) CFLAGS= $@
+$(JAVASCRIPT)/simd/kernels.made: $(WASM_SOURCES)
+	@mkdir -p $(@D)
+	$(WASM_MAKE) CFLAGS=-msimd128 $(WASM_KERNELS)
+	@touch $@
+$(JAVASCRIPT)/simd/libmpm.a: $(JAVASCRIPT)/scalar/libmpm.a $(JAVASCRIPT)/simd/kernels.made
+	$(Q)cp $< $@
+	$(Q)$(WASM_AR) r $@ $(WASM_KERNELS)
+
+define wasm_rule
+$(JAVASCRIPT_PACKAGE)/libmpm$(2).wasm: $(JAVASCRIPT)/$(1)/libmpm.a bindings/javascript/exports.txt bindings/javascript/rules.mk
 	@mkdir -p $$(@D)
 	$$(call SAY,LINK)
 	$$(Q)$(WASM_CLANG) $(WASM_LINK) @bindings/javascript/exports.txt $$< -lm -o $$@
 endef
-$(eval $(call wasm_rule,scalar,,))
-$(eval $(call wasm_rule,simd,-msimd128,.simd))
+$(eval $(call wasm_rule,scalar,))
+$(eval $(call wasm_rule,simd,.simd))
 
 # The page, which any server of files can give: `python3 -m http.server -d $(BUILD)/live`.
 LIVE := $(BUILD)/live

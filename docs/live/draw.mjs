@@ -109,7 +109,7 @@ export function painter(canvas, BOX) {
       gl.bufferData(gl.ARRAY_BUFFER, floats, gl.STREAM_DRAW);
       gl.useProgram(points.program);
       points.set('scale', ...scale);
-      points.set('size', Math.max(2, 0.72 * scene.h * width / WIDTH));
+      points.set('size', Math.max(2, 0.82 * scene.h * width / WIDTH));
       points.set('fast', ...colours.fast);
       attribute(points, 'place', moving, 2, 16, 0);
       attribute(points, 'velocity', moving, 2, 16, 8);

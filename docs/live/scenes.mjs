@@ -41,8 +41,8 @@ const SCENES = {
   },
   snow: {
     title: 'Snow',
-    pace: 0.3,
-    materials: [['snow', { E: 5e4, nu: 0.2, density: 400 }]],
+    pace: 0.25,
+    materials: [['snow', { E: 1.4e5, nu: 0.2, density: 400 }]],
     sets: [
       { ...ball(0.3, 0.55, 0.16), velocity: [6, 1], tint: 'white', layers: 3 },
       { ...box(1, 0, 1.3, 0.55), tint: 'white', layers: 0 },

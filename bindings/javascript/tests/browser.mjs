@@ -9,7 +9,7 @@ import { chromium } from 'playwright-core';
 import { load } from 'libmpm';
 
 const [live, expected, pictures] = process.argv.slice(2);
-const { STEPS, WANTED, CHROMIUM } = process.env;
+const { STEPS, WANTED, CHROMIUM, PICTURE = 'scene=stacking&n=1500&steps=100' } = process.env; // PICTURE: what page.png shows
 const { HEIGHT, NAMES, WIDTH, advance, build, recipeOf } = await import(new URL('scenes.mjs', pathToFileURL(`${live}/`)));
 const hashes = new Map(readFileSync(expected, 'utf8').trim().split('\n').map((line) => line.split(' ')));
 mkdirSync(pictures, { recursive: true });
@@ -156,8 +156,8 @@ try {
   await phone.screenshot({ path: `${pictures}/phone.png` });
   await page.setViewportSize({ width: 1000, height: 800 });
   await page.emulateMedia({ colorScheme: 'dark' });
-  await visit(page, '#scene=snow&n=6000&steps=260');
-  await until(page, 'snow', ({ message }) => message.startsWith('State'));
+  await visit(page, `#${PICTURE}`);
+  await until(page, 'the picture', ({ message }) => message.startsWith('State'));
   await page.waitForTimeout(300);
   await page.screenshot({ path: `${pictures}/page.png` });
   assert.deepEqual(errors, []);
