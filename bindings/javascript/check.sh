@@ -55,13 +55,14 @@ done
 # ---- what takes tools of the registry ----
 tools=$scratch/tools
 fetched() { # package
-  [ -e "$tools/node_modules/${1%@*}" ] || timeout 60 npm install --silent --prefix "$tools" --no-save "$TYPESCRIPT" "$PLAYWRIGHT" > /dev/null 2>&1 || :
+  [ -e "$tools/node_modules/${1%@*}" ] ||
+    timeout 60 npm install --silent --prefix "$tools" --no-save "$TYPESCRIPT" "$PLAYWRIGHT" > /dev/null 2>&1 || :
   [ -e "$tools/node_modules/${1%@*}" ]
 }
 mkdir -p "$tools"
 if fetched "$TYPESCRIPT"; then
-  node "$tools/node_modules/typescript/bin/tsc" --noEmit --strict --target es2022 --lib es2022,dom,esnext.disposable --module nodenext \
-    --moduleResolution nodenext types.ts
+  node "$tools/node_modules/typescript/bin/tsc" --noEmit --strict --target es2022 --lib es2022,dom \
+    --module nodenext --moduleResolution nodenext types.ts
   echo 'javascript: the declarations'
 else
   echo 'javascript: declarations are not checked: typescript cannot be had from the registry'

@@ -43,7 +43,11 @@ export class Handle {
   #open = true;
   /** `needs` are the handles without which the object cannot be. */
   constructor(machine, context, name, at, needs, functions = new Functions(machine)) {
-    const resource = new Resource(machine, at, needs.map((one) => Handle.#of(one)));
+    const resource = new Resource(
+      machine,
+      at,
+      needs.map((one) => Handle.#of(one)),
+    );
     resource.context = context;
     resource.used = functions.used;
     resource.destroy = DESTROY[name];
@@ -69,7 +73,8 @@ export class Handle {
     return this.#resource.machine;
   }
   get at() {
-    if (!this.#open) throw new MpmError(C.MPM_E_ARG, 'MPM_E_ARG', `this object of the class ${this.constructor.name} was disposed of`);
+    if (!this.#open)
+      throw new MpmError(C.MPM_E_ARG, 'MPM_E_ARG', `this object of the class ${this.constructor.name} was disposed of`);
     return this.#resource.at;
   }
   /** Whether dispose() has been called. */
@@ -138,7 +143,9 @@ const DESTROY = {
   // a step that was begun goes with the stepper
   stepper(machine, at) {
     const status = machine.raw.mpm_stepper_destroy(at);
-    return status === C.MPM_E_STATE && machine.raw.mpm_step_abort(at) === C.MPM_OK ? machine.raw.mpm_stepper_destroy(at) : status;
+    return status === C.MPM_E_STATE && machine.raw.mpm_step_abort(at) === C.MPM_OK
+      ? machine.raw.mpm_stepper_destroy(at)
+      : status;
   },
 };
 
@@ -160,7 +167,13 @@ export function mapped(handle, name, values, use) {
     let failed = true;
     try {
       const result = machine.lend(() => {
-        const { type, components, count, item_stride: stride, component_stride: apart } = machine.readStruct('mpm_view', view);
+        const {
+          type,
+          components,
+          count,
+          item_stride: stride,
+          component_stride: apart,
+        } = machine.readStruct('mpm_view', view);
         if (stride !== 1) throw new Error('the layout of the view is not known');
         const data = machine.read(view + structs.mpm_view.fields.data[0], 'pointer');
         return use(machine.components(TYPES[type], data, components, count, apart), count);

@@ -1,4 +1,5 @@
 // Generated from the headers of libmpm by `make api`; not to be edited. Classes: libmpm.d.ts.in.
+/// <reference lib="esnext.disposable" />
 // Options, reports and batches have the names that C has. Counts are numbers, ids and hashes BigInts. Whatever a call
 // is not able to do, it throws an MpmError with the library's sentence, and what a callback throws comes out of the
 // call that ran it. Arrays that are lent have no entries after the function to which they were lent has returned.

@@ -11,8 +11,10 @@ import { Stepper } from './stepper.mjs';
 export { constants as C, Context, Grid, Material, MpmError, Obstacle, Particles, Stepper };
 
 // A function that adds two vectors, (v128, v128) -> v128.
-const SIMD = new Uint8Array([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, 1, 7, 1, 0x60, 2, 0x7b, 0x7b, 1, 0x7b, 3, 2, 1, 0,
-  10, 11, 1, 9, 0, 0x20, 0, 0x20, 1, 0xfd, 0xf0, 1, 0x0b]);
+const SIMD = new Uint8Array([
+  0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, 1, 7, 1, 0x60, 2, 0x7b, 0x7b, 1, 0x7b, 3, 2, 1, 0, 10, 11, 1, 9, 0, 0x20, 0, 0x20, 1,
+  0xfd, 0xf0, 1, 0x0b,
+]);
 
 /** What the library finds of a system: a clock, and an environment without variables. Files do not exist here. */
 function system(module, memory) {
@@ -57,16 +59,25 @@ async function bytesOf(source) {
 /** Makes an instance of the library. `source` is a URL, a path, the bytes or a compiled module; without it the
  * binary of the package that suits the machine. */
 export async function load(source) {
-  const from = source ?? (load.simd() ? new URL('./libmpm.simd.wasm', import.meta.url) : new URL('./libmpm.wasm', import.meta.url));
-  const module = from instanceof WebAssembly.Module ? from
-    : await WebAssembly.compile(typeof from === 'string' || from instanceof URL ? await bytesOf(from) : from);
+  const from =
+    source ??
+    (load.simd() ? new URL('./libmpm.simd.wasm', import.meta.url) : new URL('./libmpm.wasm', import.meta.url));
+  const module =
+    from instanceof WebAssembly.Module
+      ? from
+      : await WebAssembly.compile(typeof from === 'string' || from instanceof URL ? await bytesOf(from) : from);
   let exports;
-  ({ exports } = await WebAssembly.instantiate(module, system(module, () => exports.memory)));
+  ({ exports } = await WebAssembly.instantiate(
+    module,
+    system(module, () => exports.memory),
+  ));
   if (!exports.mpm_version) throw new TypeError('this is not the library: it exports no mpm_version()');
   exports._initialize?.();
   const version = exports.mpm_version();
   if (version >> 8 !== VERSION >> 8) {
-    throw new Error(`the binary is of version 0x${version.toString(16)} of the library, the package of 0x${VERSION.toString(16)}`);
+    throw new Error(
+      `the binary is of version 0x${version.toString(16)} of the library, the package of 0x${VERSION.toString(16)}`,
+    );
   }
   return new Mpm(new Machine(exports), module);
 }
@@ -91,7 +102,9 @@ class Mpm {
   }
   models() {
     const { raw } = this;
-    return Array.from({ length: raw.mpm_material_model_count() }, (_, k) => this.#machine.text(raw.mpm_material_model_name(k)));
+    return Array.from({ length: raw.mpm_material_model_count() }, (_, k) =>
+      this.#machine.text(raw.mpm_material_model_name(k)),
+    );
   }
   /** Texts and numbers about a model, one object for each index at which there is something. */
   #described(name, model, texts, numbers) {
@@ -112,7 +125,12 @@ class Mpm {
     });
   }
   parameters(model) {
-    return this.#described('mpm_material_model_param', model, ['name', 'unit', 'text'], ['value_default', 'low', 'high']);
+    return this.#described(
+      'mpm_material_model_param',
+      model,
+      ['name', 'unit', 'text'],
+      ['value_default', 'low', 'high'],
+    );
   }
   stateVariables(model) {
     return this.#described('mpm_material_state_name', model, ['name', 'unit', 'text'], []);

@@ -40,13 +40,16 @@ function real(value, what) {
 /** The values of an array of a host as an array of the kind that the library reads. */
 function converted(values, kind, what) {
   if (values instanceof ARRAYS[kind]) return values;
-  if (values === null || typeof values !== 'object' || !(values.length >= 0)) throw new TypeError(`${what} has to be an array`);
+  if (values === null || typeof values !== 'object' || !(values.length >= 0))
+    throw new TypeError(`${what} has to be an array`);
   const out = new ARRAYS[kind](values.length);
   for (let i = 0; i < out.length; i++) {
     if (kind === 'f64') out[i] = real(values[i], `${what}[${i}]`);
-    else if (kind === 'i64') out[i] = typeof values[i] === 'bigint' ? values[i] : BigInt(integer(values[i], `${what}[${i}]`));
+    else if (kind === 'i64')
+      out[i] = typeof values[i] === 'bigint' ? values[i] : BigInt(integer(values[i], `${what}[${i}]`));
     else out[i] = integer(values[i], `${what}[${i}]`);
-    if (kind !== 'f64' && BigInt(out[i]) !== BigInt(values[i])) throw new RangeError(`${what}[${i}] is ${values[i]}, and does not fit`);
+    if (kind !== 'f64' && BigInt(out[i]) !== BigInt(values[i]))
+      throw new RangeError(`${what}[${i}] is ${values[i]}, and does not fit`);
   }
   return out;
 }
@@ -113,7 +116,8 @@ class Arguments {
     machine.write(at, 'u32', size);
     machine.raw[`${type}_init`]?.(at, size);
     for (const [name, value] of Object.entries(values)) {
-      const field = Object.hasOwn(fields, name) && !['struct_size', 'reserved'].includes(name) ? fields[name] : undefined;
+      const field =
+        Object.hasOwn(fields, name) && !['struct_size', 'reserved'].includes(name) ? fields[name] : undefined;
       if (!field || field[1] === 'pointer') throw new TypeError(`${type} has no option '${name}'`);
       if (value === undefined) continue;
       const [offset, kind, count] = field;
@@ -121,7 +125,8 @@ class Arguments {
         machine.write(at + offset, kind, value, name);
       } else {
         if (!(value?.length <= count)) throw new RangeError(`${name} has to be an array of up to ${count} numbers`);
-        for (let k = 0; k < value.length; k++) machine.write(at + offset + k * WIDTHS[kind], kind, value[k], `${name}[${k}]`);
+        for (let k = 0; k < value.length; k++)
+          machine.write(at + offset + k * WIDTHS[kind], kind, value[k], `${name}[${k}]`);
       }
     }
     return at;
@@ -164,19 +169,26 @@ export class Machine {
     else if (kind === 'i64') this.#data.setBigInt64(at, BigInt(integer(value, what)), true);
     else {
       const number = integer(value, what);
-      if (number !== (kind === 'i32' ? number | 0 : number >>> 0)) throw new RangeError(`${what} is ${number}, and does not fit`);
+      if (number !== (kind === 'i32' ? number | 0 : number >>> 0))
+        throw new RangeError(`${what} is ${number}, and does not fit`);
       this.#data.setInt32(at, number, true);
     }
   }
   read(at, kind) {
     const data = this.#data;
     switch (kind) {
-      case 'f64': return data.getFloat64(at, true);
-      case 'i64': return Number(data.getBigInt64(at, true));
-      case 'id': return data.getBigInt64(at, true);
-      case 'u64': return data.getBigUint64(at, true);
-      case 'i32': return data.getInt32(at, true);
-      default: return data.getUint32(at, true);
+      case 'f64':
+        return data.getFloat64(at, true);
+      case 'i64':
+        return Number(data.getBigInt64(at, true));
+      case 'id':
+        return data.getBigInt64(at, true);
+      case 'u64':
+        return data.getBigUint64(at, true);
+      case 'i32':
+        return data.getInt32(at, true);
+      default:
+        return data.getUint32(at, true);
     }
   }
   /** The numbers of a struct as an object. */
@@ -184,8 +196,10 @@ export class Machine {
     const out = {};
     for (const [name, [offset, kind, count]] of Object.entries(structs[type].fields)) {
       if (kind === 'pointer' || kind.endsWith('*') || name === 'struct_size' || name === 'reserved') continue;
-      out[name] = count === undefined ? this.read(at + offset, kind)
-        : Array.from({ length: count }, (_, k) => this.read(at + offset + k * WIDTHS[kind], kind));
+      out[name] =
+        count === undefined
+          ? this.read(at + offset, kind)
+          : Array.from({ length: count }, (_, k) => this.read(at + offset + k * WIDTHS[kind], kind));
     }
     return out;
   }
@@ -199,7 +213,8 @@ export class Machine {
     this.#lent++;
     try {
       const result = use();
-      if (typeof result?.then === 'function') throw new TypeError('arrays are lent to a function that ends before it returns: it cannot be async');
+      if (typeof result?.then === 'function')
+        throw new TypeError('arrays are lent to a function that ends before it returns: it cannot be async');
       return result;
     } finally {
       if (--this.#lent === 0) this.memory.grow(0); // a new buffer, which takes the old one's arrays away
@@ -241,7 +256,10 @@ export class Machine {
   }
   error(status, context) {
     const text = context ? this.text(this.raw.mpm_last_error(context)) : '';
-    return new MpmError(status, this.text(this.raw.mpm_status_name(status)), text || this.text(this.raw.mpm_status_text(status)));
+    return new MpmError(
+      status,
+      this.text(this.raw.mpm_status_name(status)),
+      text || this.text(this.raw.mpm_status_text(status)),
+    );
   }
 }
-

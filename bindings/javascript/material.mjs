@@ -51,7 +51,15 @@ export class Material extends Handle {
     if (!Number.isInteger(n) || n < 0) throw new TypeError('n has to be the number of items');
     return this.arguments((a) => {
       const to = a.struct('mpm_material_batch', { state_count: states, n, ld: n, t, dt });
-      const inputs = { id: ['i64', 1], F: ['f64', 9], F_inc: ['f64', 9], L: ['f64', 9], stress: ['f64', 6], state: ['f64', states], position: ['f64', 3] };
+      const inputs = {
+        id: ['i64', 1],
+        F: ['f64', 9],
+        F_inc: ['f64', 9],
+        L: ['f64', 9],
+        stress: ['f64', 6],
+        state: ['f64', states],
+        position: ['f64', 3],
+      };
       for (const [name, [kind, components]] of Object.entries(inputs)) {
         a.put(to, 'mpm_material_batch', name, a.optional(kind, batch[name], components * n, name));
       }

@@ -4,7 +4,8 @@ import { MpmError } from './machine.mjs';
 
 export function pieces(handle, name, values, fields) {
   const { machine } = handle;
-  if (!machine.raw[name]) throw new MpmError(C.MPM_E_UNSUPPORTED, 'MPM_E_UNSUPPORTED', `this version of the library has no ${name}()`);
+  if (!machine.raw[name])
+    throw new MpmError(C.MPM_E_UNSUPPORTED, 'MPM_E_UNSUPPORTED', `this version of the library has no ${name}()`);
   const parts = [];
   let bytes = 0;
   handle.arguments((a) => {

@@ -10,7 +10,11 @@ export class Particles extends Handle {
   constructor(context, grid, material) {
     const { machine } = context;
     const needs = [context, grid, material];
-    const values = [context.at, Handle.address(Grid, grid, machine, 'the grid'), Handle.address(Material, material, machine, 'the material')];
+    const values = [
+      context.at,
+      Handle.address(Grid, grid, machine, 'the grid'),
+      Handle.address(Material, material, machine, 'the material'),
+    ];
     super(machine, context.at, 'particles', made(machine, context.at, 'mpm_particles_create', values), needs);
     this.grid = grid;
     this.material = material;
@@ -28,19 +32,33 @@ export class Particles extends Handle {
   }
   fillBox(lower, upper, perCell) {
     const { dim } = this.grid;
-    return this.arguments((a) => this.#filled(a, 'mpm_particles_fill_box', [a.array('f64', lower, dim, 'lower'),
-      a.array('f64', upper, dim, 'upper'), a.array('i32', perCell, dim, 'perCell')]));
+    return this.arguments((a) =>
+      this.#filled(a, 'mpm_particles_fill_box', [
+        a.array('f64', lower, dim, 'lower'),
+        a.array('f64', upper, dim, 'upper'),
+        a.array('i32', perCell, dim, 'perCell'),
+      ]),
+    );
   }
   fillBall(centre, radius, perCell) {
     const { dim } = this.grid;
-    return this.arguments((a) => this.#filled(a, 'mpm_particles_fill_ball', [a.array('f64', centre, dim, 'centre'), radius,
-      a.array('i32', perCell, dim, 'perCell')]));
+    return this.arguments((a) =>
+      this.#filled(a, 'mpm_particles_fill_ball', [
+        a.array('f64', centre, dim, 'centre'),
+        radius,
+        a.array('i32', perCell, dim, 'perCell'),
+      ]),
+    );
   }
   fill(lower, upper, perCell, inside) {
     const { dim } = this.grid;
     return this.arguments((a) => {
       let range;
-      const box = [a.array('f64', lower, dim, 'lower'), a.array('f64', upper, dim, 'upper'), a.array('i32', perCell, dim, 'perCell')];
+      const box = [
+        a.array('f64', lower, dim, 'lower'),
+        a.array('f64', upper, dim, 'upper'),
+        a.array('i32', perCell, dim, 'perCell'),
+      ];
       if (typeof inside !== 'function') throw new TypeError('inside has to be a function');
       try {
         this.functions.set('inside', 'mpm_inside_fn', inside, (call, user) => {
@@ -58,14 +76,22 @@ export class Particles extends Handle {
       const n = volume?.length;
       if (n === undefined) throw new TypeError('volume has to be an array: it says how many particles there are');
       const first = a.room('i64');
-      this.call('mpm_particles_add', [BigInt(n), a.array('f64', position, dim * n, 'position'),
-        a.optional('f64', velocity, dim * n, 'velocity'), a.array('f64', volume, n, 'volume'),
-        a.optional('f64', size, dim * n, 'size'), a.optional('i64', ids, n, 'ids'), first]);
+      this.call('mpm_particles_add', [
+        BigInt(n),
+        a.array('f64', position, dim * n, 'position'),
+        a.optional('f64', velocity, dim * n, 'velocity'),
+        a.array('f64', volume, n, 'volume'),
+        a.optional('f64', size, dim * n, 'size'),
+        a.optional('i64', ids, n, 'ids'),
+        first,
+      ]);
       return this.machine.read(first, 'id');
     });
   }
   remove(ids) {
-    this.arguments((a) => this.call('mpm_particles_remove', [BigInt(ids.length), a.array('i64', ids, undefined, 'ids')]));
+    this.arguments((a) =>
+      this.call('mpm_particles_remove', [BigInt(ids.length), a.array('i64', ids, undefined, 'ids')]),
+    );
   }
 
   // ---- fields ----
@@ -75,8 +101,12 @@ export class Particles extends Handle {
     const status = machine.raw.mpm_particles_field_info(this.at, index, name, type, components, writable);
     if (status === C.MPM_E_NOT_FOUND) return null;
     if (status) throw machine.error(status, this.owner);
-    return { name: machine.text(machine.read(name, 'pointer')), type: machine.read(type, 'i32'), components: machine.read(components, 'i32'),
-      writable: machine.read(writable, 'i32') === 1 };
+    return {
+      name: machine.text(machine.read(name, 'pointer')),
+      type: machine.read(type, 'i32'),
+      components: machine.read(components, 'i32'),
+      writable: machine.read(writable, 'i32') === 1,
+    };
   }
   fields() {
     return this.arguments((a) => {
@@ -103,7 +133,14 @@ export class Particles extends Handle {
       const { type, components } = this.#look(field);
       const n = ids === undefined ? this.count : ids.length;
       const out = a.room(TYPES[type], components * n);
-      this.call('mpm_particles_get', [a.text(field), type, components, BigInt(n), a.optional('i64', ids, n, 'ids'), out]);
+      this.call('mpm_particles_get', [
+        a.text(field),
+        type,
+        components,
+        BigInt(n),
+        a.optional('i64', ids, n, 'ids'),
+        out,
+      ]);
       return machine.array(TYPES[type], out, components * n).slice();
     });
   }
@@ -111,15 +148,26 @@ export class Particles extends Handle {
     this.arguments((a) => {
       const { type, components } = this.#look(field);
       const n = ids === undefined ? this.count : ids.length;
-      this.call('mpm_particles_set', [a.text(field), type, components, BigInt(n), a.optional('i64', ids, n, 'ids'),
-        a.array(TYPES[type], values, components * n, field)]);
+      this.call('mpm_particles_set', [
+        a.text(field),
+        type,
+        components,
+        BigInt(n),
+        a.optional('i64', ids, n, 'ids'),
+        a.array(TYPES[type], values, components * n, field),
+      ]);
     });
   }
   setAll(field, value) {
     this.arguments((a) => {
       const { type, components } = this.#look(field);
       const one = typeof value === 'number' || typeof value === 'bigint' ? [value] : value;
-      this.call('mpm_particles_set_all', [a.text(field), type, components, a.array(TYPES[type], one, components, field)]);
+      this.call('mpm_particles_set_all', [
+        a.text(field),
+        type,
+        components,
+        a.array(TYPES[type], one, components, field),
+      ]);
     });
   }
   setGeostatic(axis, gravity, surface, K0, surcharge = 0) {

@@ -8,8 +8,13 @@ import { Particles } from './particles.mjs';
 export class Stepper extends Handle {
   constructor(context, grid, desc = {}) {
     const { machine } = context;
-    const at = machine.arguments((a) => made(machine, context.at, 'mpm_stepper_create',
-      [context.at, Handle.address(Grid, grid, machine, 'the grid'), a.struct('mpm_stepper_desc', desc)]));
+    const at = machine.arguments((a) =>
+      made(machine, context.at, 'mpm_stepper_create', [
+        context.at,
+        Handle.address(Grid, grid, machine, 'the grid'),
+        a.struct('mpm_stepper_desc', desc),
+      ]),
+    );
     super(machine, context.at, 'stepper', at, [context, grid]);
     this.grid = grid;
   }
@@ -58,7 +63,9 @@ export class Stepper extends Handle {
     return this.ask('mpm_stepper_body', [this.#set(set)], ['i32'])[0];
   }
   setContact(bodyA, bodyB, contact) {
-    this.arguments((a) => this.call('mpm_stepper_set_contact', [bodyA, bodyB, contact ? a.struct('mpm_contact_desc', contact) : 0]));
+    this.arguments((a) =>
+      this.call('mpm_stepper_set_contact', [bodyA, bodyB, contact ? a.struct('mpm_contact_desc', contact) : 0]),
+    );
     return this;
   }
 
@@ -169,7 +176,9 @@ export class Stepper extends Handle {
     });
   }
   load(state) {
-    this.arguments((a) => this.call('mpm_state_load', [a.array('u8', state, undefined, 'a state'), BigInt(state.length)]));
+    this.arguments((a) =>
+      this.call('mpm_state_load', [a.array('u8', state, undefined, 'a state'), BigInt(state.length)]),
+    );
   }
   hash() {
     return this.ask('mpm_state_hash', [], ['u64'])[0];

@@ -37,18 +37,44 @@ const PLAIN = `#version 300 es
 
 const colour = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 const palette = (entries) => Object.fromEntries(Object.entries(entries).map(([name, hex]) => [name, colour(hex)]));
-const DARK = palette({ ground: '#10151c', obstacle: '#8b949e', green: '#3fb865', red: '#e5645c', blue: '#2f81f7', ochre: '#d9a253', white: '#dce6f2',
-  fast: '#ffffff' });
-const LIGHT = palette({ ground: '#f6f8fa', obstacle: '#57606a', green: '#2a9550', red: '#cf4a42', blue: '#1f6feb', ochre: '#b07b2c', white: '#8ea6c4',
-  fast: '#9fd4ff' });
+const DARK = palette({
+  ground: '#10151c',
+  obstacle: '#8b949e',
+  green: '#3fb865',
+  red: '#e5645c',
+  blue: '#2f81f7',
+  ochre: '#d9a253',
+  white: '#dce6f2',
+  fast: '#ffffff',
+});
+const LIGHT = palette({
+  ground: '#f6f8fa',
+  obstacle: '#57606a',
+  green: '#2a9550',
+  red: '#cf4a42',
+  blue: '#1f6feb',
+  ochre: '#b07b2c',
+  white: '#8ea6c4',
+  fast: '#9fd4ff',
+});
 
 const CORNERS = 48; // of a disc
 /** The corners of an obstacle, as a fan. */
 function outline({ shape, size }, { position: [x, y], orientation: [w, , , z] }, box) {
   const angle = 2 * Math.atan2(z, w);
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  const corners = shape === box ? [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([i, j]) => [i * size[0], j * size[1]])
-    : Array.from({ length: CORNERS }, (_, k) => [size[0] * Math.cos(k * 2 * Math.PI / CORNERS), size[0] * Math.sin(k * 2 * Math.PI / CORNERS)]);
+  const corners =
+    shape === box
+      ? [
+          [-1, -1],
+          [1, -1],
+          [1, 1],
+          [-1, 1],
+        ].map(([i, j]) => [i * size[0], j * size[1]])
+      : Array.from({ length: CORNERS }, (_, k) => [
+          size[0] * Math.cos((k * 2 * Math.PI) / CORNERS),
+          size[0] * Math.sin((k * 2 * Math.PI) / CORNERS),
+        ]);
   return corners.flatMap(([i, j]) => [x + c * i - s * j, y + s * i + c * j]);
 }
 
@@ -67,7 +93,11 @@ export function painter(canvas, BOX) {
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
     const place = (name) => gl.getUniformLocation(program, name);
-    return { program, at: (name) => gl.getAttribLocation(program, name), set: (name, ...values) => gl[`uniform${values.length}f`](place(name), ...values) };
+    return {
+      program,
+      at: (name) => gl.getAttribLocation(program, name),
+      set: (name, ...values) => gl[`uniform${values.length}f`](place(name), ...values),
+    };
   }
   const points = programOf(PARTICLES, DISC);
   const shapes = programOf(POLYGON, PLAIN);
@@ -97,7 +127,9 @@ export function painter(canvas, BOX) {
       gl.bufferData(gl.ARRAY_BUFFER, all, gl.STATIC_DRAW);
     },
     draw({ floats, obstacles }, dark) {
-      const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((one) => Math.max(1, Math.round(one * devicePixelRatio)));
+      const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((one) =>
+        Math.max(1, Math.round(one * devicePixelRatio)),
+      );
       if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
       gl.viewport(0, 0, width, height);
       const colours = dark ? DARK : LIGHT;
@@ -109,7 +141,7 @@ export function painter(canvas, BOX) {
       gl.bufferData(gl.ARRAY_BUFFER, floats, gl.STREAM_DRAW);
       gl.useProgram(points.program);
       points.set('scale', ...scale);
-      points.set('size', Math.max(2, 0.82 * scene.h * width / WIDTH));
+      points.set('size', Math.max(2, (0.82 * scene.h * width) / WIDTH));
       points.set('fast', ...colours.fast);
       attribute(points, 'place', moving, 2, 16, 0);
       attribute(points, 'velocity', moving, 2, 16, 8);

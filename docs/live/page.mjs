@@ -19,20 +19,24 @@ worker.onmessage = ({ data: { id, answer, error } }) => {
   else failed(new Error(error));
 };
 worker.onerror = (event) => tell(`The simulation has ended: ${event.message ?? 'its worker could not be loaded'}`);
-const ask = (question, values = {}) => new Promise((done, failed) => {
-  waiting.set(++asked, { done, failed });
-  worker.postMessage({ id: asked, ask: question, ...values });
-});
+const ask = (question, values = {}) =>
+  new Promise((done, failed) => {
+    waiting.set(++asked, { done, failed });
+    worker.postMessage({ id: asked, ask: question, ...values });
+  });
 
 // ---- what is shown ----
 export const now = { name: NAMES[0], wanted: LIMITS.first, running: true, frame: null, opened: 0 };
 const seen = { frames: 0, rate: 0, since: performance.now(), at: 0 };
-const tell = (text) => { find('message').textContent = text; };
+const tell = (text) => {
+  find('message').textContent = text;
+};
 
 function write() {
   const { frame } = now;
   const state = now.running ? '' : ' · paused';
-  find('numbers').textContent = `t = ${frame.t.toFixed(3)} s · step ${frame.steps} · ${frame.count} particles · ` +
+  find('numbers').textContent =
+    `t = ${frame.t.toFixed(3)} s · step ${frame.steps} · ${frame.count} particles · ` +
     `${frame.rate.toFixed(1)} Mp/s · ${seen.rate.toFixed(0)} frames/s${state}`;
   find('pause').textContent = now.running ? 'Pause' : 'Run';
 }
@@ -67,8 +71,12 @@ async function open(name, wanted, link = {}) {
   const { hash } = await ask('hash');
   if (mine !== now.opened) return;
   if (!link.hash) tell(`State ${hash} after ${link.steps} steps.`);
-  else if (hash === link.hash) tell(`State ${hash} after ${link.steps} steps: the same bits as on the machine where the link was made.`);
-  else tell(`State ${hash} after ${link.steps} steps, but ${link.hash} where the link was made: another version of the library, perhaps.`);
+  else if (hash === link.hash)
+    tell(`State ${hash} after ${link.steps} steps: the same bits as on the machine where the link was made.`);
+  else
+    tell(
+      `State ${hash} after ${link.steps} steps, but ${link.hash} where the link was made: another version of the library, perhaps.`,
+    );
 }
 const begin = (...values) => {
   history.replaceState(null, '', location.pathname + location.search);
@@ -85,9 +93,16 @@ async function share() {
     link.set('hash', hash);
   }
   history.replaceState(null, '', `#${link}`);
-  const copied = await navigator.clipboard?.writeText(location.href).then(() => 'copied', () => null);
-  tell(`The link is in the address bar${copied ? ' and copied' : ''}. ` + (touched ? `State ${hash} has been in your hands: the link begins the scene anew.`
-    : `State ${hash} after ${steps} steps: whoever opens it sees the same bits, as does a program in C.`));
+  const copied = await navigator.clipboard?.writeText(location.href).then(
+    () => 'copied',
+    () => null,
+  );
+  tell(
+    `The link is in the address bar${copied ? ' and copied' : ''}. ` +
+      (touched
+        ? `State ${hash} has been in your hands: the link begins the scene anew.`
+        : `State ${hash} after ${steps} steps: whoever opens it sees the same bits, as does a program in C.`),
+  );
 }
 
 function readLink() {
@@ -98,8 +113,10 @@ function readLink() {
   };
   const hash = link.get('hash');
   return {
-    name: NAMES.includes(link.get('scene')) ? link.get('scene') : NAMES[0], wanted: number('n', LIMITS.least, LIMITS.most) ?? LIMITS.first,
-    steps: number('steps', 1, 1e7), hash: /^[0-9a-f]{16}$/.test(hash) ? hash : null,
+    name: NAMES.includes(link.get('scene')) ? link.get('scene') : NAMES[0],
+    wanted: number('n', LIMITS.least, LIMITS.most) ?? LIMITS.first,
+    steps: number('steps', 1, 1e7),
+    hash: /^[0-9a-f]{16}$/.test(hash) ? hash : null,
   };
 }
 const follow = () => {
@@ -110,13 +127,19 @@ const follow = () => {
 
 // ---- controls ----
 for (const name of NAMES) {
-  const button = Object.assign(document.createElement('button'), { type: 'button', value: name, textContent: titleOf(name) });
+  const button = Object.assign(document.createElement('button'), {
+    type: 'button',
+    value: name,
+    textContent: titleOf(name),
+  });
   button.onclick = () => begin(name, now.wanted);
   find('scenes').append(button);
 }
 Object.assign(find('wanted'), { min: Math.log(LIMITS.least), max: Math.log(LIMITS.most), step: 'any' });
 const slid = () => Math.round(Math.exp(find('wanted').value) / 100) * 100;
-find('wanted').oninput = () => { find('count').textContent = slid(); };
+find('wanted').oninput = () => {
+  find('count').textContent = slid();
+};
 find('wanted').onchange = () => begin(now.name, slid());
 find('again').onclick = () => begin(now.name, now.wanted);
 find('pause').onclick = () => run(!now.running);
@@ -132,14 +155,22 @@ let holding = false;
 function hand(event, on) {
   const { left, top, width, height } = canvas.getBoundingClientRect();
   holding = on;
-  ask('hand', { x: (event.clientX - left) / width * WIDTH, y: (1 - (event.clientY - top) / height) * HEIGHT, on }).catch((error) => tell(error.message));
+  ask('hand', {
+    x: ((event.clientX - left) / width) * WIDTH,
+    y: (1 - (event.clientY - top) / height) * HEIGHT,
+    on,
+  }).catch((error) => tell(error.message));
 }
 canvas.onpointerdown = (event) => {
   canvas.setPointerCapture(event.pointerId);
   hand(event, true);
 };
-canvas.onpointermove = (event) => { if (holding) hand(event, true); };
-canvas.onpointerup = canvas.onpointercancel = (event) => { if (holding) hand(event, false); };
+canvas.onpointermove = (event) => {
+  if (holding) hand(event, true);
+};
+canvas.onpointerup = canvas.onpointercancel = (event) => {
+  if (holding) hand(event, false);
+};
 
 // ---- frames ----
 let busy = false;
@@ -160,7 +191,7 @@ function tick(time) {
   draw();
   if (!busy) next();
   if (time - seen.since > 500) {
-    seen.rate = 1000 * (seen.frames - seen.at) / (time - seen.since);
+    seen.rate = (1000 * (seen.frames - seen.at)) / (time - seen.since);
     seen.since = time;
     seen.at = seen.frames;
     write();

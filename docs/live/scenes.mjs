@@ -7,8 +7,14 @@ const TWO = [2, 2];
 const GRAVITY = [0, -9.81];
 
 const area = ({ box, ball }) => (box ? (box[1][0] - box[0][0]) * (box[1][1] - box[0][1]) : Math.PI * ball[1] * ball[1]);
-const closed = (friction) => [C.MPM_X_MIN, C.MPM_X_MAX, C.MPM_Y_MIN, C.MPM_Y_MAX].map((face) => [face, C.MPM_WALL_FRICTION, friction]);
-const box = (x0, y0, x1, y1) => ({ box: [[x0, y0], [x1, y1]] });
+const closed = (friction) =>
+  [C.MPM_X_MIN, C.MPM_X_MAX, C.MPM_Y_MIN, C.MPM_Y_MAX].map((face) => [face, C.MPM_WALL_FRICTION, friction]);
+const box = (x0, y0, x1, y1) => ({
+  box: [
+    [x0, y0],
+    [x1, y1],
+  ],
+});
 const ball = (x, y, radius) => ({ ball: [[x, y], radius] });
 
 // Each says what there is but for the cells, which follow from the number of particles. `tint` is the colour of a set, and
@@ -71,8 +77,16 @@ const SCENES = {
     materials: [['newtonian_fluid', { density: 1000, bulk_modulus: 2e4, gamma: 7, viscosity: 0.5 }]],
     sets: [{ ...box(0, 0, 1.6, 0.42), tint: 'blue', layers: 5 }],
     walls: closed(0),
-    obstacles: [{ shape: C.MPM_SHAPE_BOX, motion: C.MPM_MOTION_PRESCRIBED, size: [0.22, 0.035], position: [0.8, 0.3, 0],
-      angular_velocity: [0, 0, 5], contact: { friction: 0.2 } }],
+    obstacles: [
+      {
+        shape: C.MPM_SHAPE_BOX,
+        motion: C.MPM_MOTION_PRESCRIBED,
+        size: [0.22, 0.035],
+        position: [0.8, 0.3, 0],
+        angular_velocity: [0, 0, 5],
+        contact: { friction: 0.2 },
+      },
+    ],
   },
 };
 export const NAMES = Object.keys(SCENES);
@@ -82,7 +96,7 @@ export const LIMITS = { least: 1000, most: 40000, first: 5000 };
 /** All that makes a scene, as numbers; `wanted` is about how many particles it shall have. */
 export function recipeOf(name, wanted) {
   const scene = SCENES[name];
-  const h = Math.sqrt(4 * scene.sets.reduce((sum, set) => sum + area(set), 0) / wanted);
+  const h = Math.sqrt((4 * scene.sets.reduce((sum, set) => sum + area(set), 0)) / wanted);
   return {
     ...scene,
     name,
@@ -113,7 +127,13 @@ export function build(mpm, recipe) {
   const obstacles = recipe.obstacles.map((desc) => context.obstacle(desc));
   for (const one of obstacles) stepper.addObstacle(one);
   const all = [stepper, ...obstacles, ...sets, ...materials, grid, context];
-  return { stepper, sets, obstacles, count: sets.reduce((sum, set) => sum + set.count, 0), dispose: () => all.forEach((one) => one.dispose()) };
+  return {
+    stepper,
+    sets,
+    obstacles,
+    count: sets.reduce((sum, set) => sum + set.count, 0),
+    dispose: () => all.forEach((one) => one.dispose()),
+  };
 }
 
 /** Makes steps of the library's choice. How they are shared out among calls changes no bit. */

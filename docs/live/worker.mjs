@@ -17,7 +17,7 @@ const pointer = { x: 0, y: 0 };
 function follow(seconds) {
   const dx = pointer.x - hand.x;
   const dy = pointer.y - hand.y;
-  const share = Math.min(1, HASTE * seconds / Math.hypot(dx, dy));
+  const share = Math.min(1, (HASTE * seconds) / Math.hypot(dx, dy));
   if (!(share > 0)) return;
   hand.x += share * dx;
   hand.y += share * dy;
@@ -63,7 +63,15 @@ function frame() {
   const rate = scene.spent ? (scene.count * scene.made) / scene.spent / 1e3 : 0; // million particles a second
   scene.spent *= 0.9;
   scene.made *= 0.9;
-  return { floats, obstacles: scene.obstacles.map((one) => one.pose()), t: scene.t, steps: scene.steps, count: scene.count, rate, touched: scene.touched };
+  return {
+    floats,
+    obstacles: scene.obstacles.map((one) => one.pose()),
+    t: scene.t,
+    steps: scene.steps,
+    count: scene.count,
+    rate,
+    touched: scene.touched,
+  };
 }
 
 /** The height of each particle in its set at the start, 0 to 1, by ascending id. */
@@ -89,8 +97,14 @@ const answers = {
     scene = { ...made, pace: recipe.pace, t: 0, steps: 0, spent: 0, made: 0, touched: false };
     const { sets, obstacles, grid } = recipe;
     return {
-      recipe: { name, h: grid.spacing[0], sets: sets.map(({ tint, layers }) => ({ tint, layers })), obstacles: obstacles.map(({ shape, size }) => ({ shape, size })) },
-      heights: heights(scene.sets), ...frame(),
+      recipe: {
+        name,
+        h: grid.spacing[0],
+        sets: sets.map(({ tint, layers }) => ({ tint, layers })),
+        obstacles: obstacles.map(({ shape, size }) => ({ shape, size })),
+      },
+      heights: heights(scene.sets),
+      ...frame(),
     };
   },
   frame({ running }) {

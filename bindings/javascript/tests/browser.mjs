@@ -10,12 +10,21 @@ import { load } from 'libmpm';
 
 const [live, expected, pictures] = process.argv.slice(2);
 const { STEPS, WANTED, CHROMIUM, PICTURE = 'scene=stacking&n=1500&steps=100' } = process.env; // PICTURE: what page.png shows
-const { HEIGHT, NAMES, WIDTH, advance, build, recipeOf } = await import(new URL('scenes.mjs', pathToFileURL(`${live}/`)));
-const hashes = new Map(readFileSync(expected, 'utf8').trim().split('\n').map((line) => line.split(' ')));
+const { HEIGHT, NAMES, WIDTH, advance, build, recipeOf } = await import(
+  new URL('scenes.mjs', pathToFileURL(`${live}/`))
+);
+const hashes = new Map(
+  readFileSync(expected, 'utf8')
+    .trim()
+    .split('\n')
+    .map((line) => line.split(' ')),
+);
 mkdirSync(pictures, { recursive: true });
 
 // the server that the documents name
-const server = spawn('python3', ['-u', '-m', 'http.server', '--bind', '127.0.0.1', '-d', live, '0'], { stdio: ['ignore', 'pipe', 'ignore'] });
+const server = spawn('python3', ['-u', '-m', 'http.server', '--bind', '127.0.0.1', '-d', live, '0'], {
+  stdio: ['ignore', 'pipe', 'ignore'],
+});
 const port = await new Promise((done, failed) => {
   let said = '';
   server.stdout.on('data', (text) => {
@@ -27,13 +36,18 @@ const port = await new Promise((done, failed) => {
 });
 const site = `http://127.0.0.1:${port}/`;
 
-const browser = await chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+const browser = await chromium.launch({
+  executablePath: CHROMIUM,
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+});
 const errors = [];
 async function fresh(viewport) {
   const page = await browser.newPage({ viewport, colorScheme: 'dark' });
   page.setDefaultTimeout(60000);
   page.on('pageerror', (error) => errors.push(error.message));
-  page.on('console', (line) => { if (line.type() === 'error') errors.push(line.text()); });
+  page.on('console', (line) => {
+    if (line.type() === 'error') errors.push(line.text());
+  });
   return page;
 }
 /** Opens a link, which may differ from the present one in its fragment alone. */
@@ -42,19 +56,27 @@ async function visit(page, link) {
   await page.goto(site + link);
   await page.evaluate(() => import('./page.mjs').then(() => null));
 }
-const state = (page) => page.evaluate(async () => {
-  const { now } = await import('./page.mjs');
-  const { floats, ...rest } = now.frame;
-  return { ...rest, running: now.running, floats: Array.from(floats), text: document.getElementById('numbers').textContent,
-    message: document.getElementById('message').textContent, hash: location.hash };
-});
+const state = (page) =>
+  page.evaluate(async () => {
+    const { now } = await import('./page.mjs');
+    const { floats, ...rest } = now.frame;
+    return {
+      ...rest,
+      running: now.running,
+      floats: Array.from(floats),
+      text: document.getElementById('numbers').textContent,
+      message: document.getElementById('message').textContent,
+      hash: location.hash,
+    };
+  });
 /** Waits until a function of the state holds. */
 async function until(page, what, holds) {
   const end = Date.now() + 60000;
   for (;;) {
     const is = await state(page);
     if (holds(is)) return is;
-    if (Date.now() > end) throw new Error(`${what}: not within a minute: ${JSON.stringify({ ...is, floats: is.floats.length })}`);
+    if (Date.now() > end)
+      throw new Error(`${what}: not within a minute: ${JSON.stringify({ ...is, floats: is.floats.length })}`);
     await page.waitForTimeout(50);
   }
 }
@@ -63,7 +85,10 @@ async function painted(page, name) {
   const png = await page.locator('#picture').screenshot({ path: `${pictures}/${name}.png` });
   return page.evaluate(async (data) => {
     const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
-    const context = Object.assign(document.createElement('canvas'), { width: image.width, height: image.height }).getContext('2d');
+    const context = Object.assign(document.createElement('canvas'), {
+      width: image.width,
+      height: image.height,
+    }).getContext('2d');
     context.drawImage(image, 0, 0);
     const pixels = new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer);
     const ground = pixels[40 * image.width + image.width - 40]; // near the upper right corner, where no scene begins
@@ -83,8 +108,11 @@ try {
     assert.equal(is.running, false);
     await page.waitForTimeout(200);
     const share = await painted(page, name);
-    const filled = is.count * recipeOf(name, Number(WANTED)).grid.spacing[0] ** 2 / 4 / (WIDTH * HEIGHT);
-    assert.ok(share > 0.5 * filled && share < 2.5 * filled, `${name}: ${share} of the picture is painted, ${filled} is filled`);
+    const filled = (is.count * recipeOf(name, Number(WANTED)).grid.spacing[0] ** 2) / 4 / (WIDTH * HEIGHT);
+    assert.ok(
+      share > 0.5 * filled && share < 2.5 * filled,
+      `${name}: ${share} of the picture is painted, ${filled} is filled`,
+    );
     await page.click('#pause');
     const later = await until(page, `${name} goes on`, ({ steps }) => steps > Number(STEPS) + 20);
     assert.ok(later.t > is.t && later.floats.every(Number.isFinite));
@@ -123,7 +151,7 @@ try {
   await visit(page, `#scene=jelly&n=${WANTED}&steps=1`);
   const { floats } = await until(page, 'one step', ({ message }) => message.startsWith('State'));
   const box = await page.locator('#picture').boundingBox();
-  const at = (x, y) => [box.x + x / WIDTH * box.width, box.y + (1 - y / HEIGHT) * box.height];
+  const at = (x, y) => [box.x + (x / WIDTH) * box.width, box.y + (1 - y / HEIGHT) * box.height];
   await page.mouse.move(...at(0.35, 0.5));
   await page.mouse.down();
   await page.mouse.move(...at(0.35, 0.95), { steps: 4 });
@@ -140,7 +168,11 @@ try {
   assert.ok(moved > 0.02, `the pointer has lifted the jelly by ${moved}`);
   assert.equal(dragged.floats.length, floats.length);
   await page.click('#share');
-  await until(page, 'share of what was dragged', ({ message, hash }) => /begins the scene anew/.test(message) && !/steps/.test(hash));
+  await until(
+    page,
+    'share of what was dragged',
+    ({ message, hash }) => /begins the scene anew/.test(message) && !/steps/.test(hash),
+  );
   console.log(`browser: the pointer has lifted the jelly by ${moved.toFixed(3)}`);
 
   // light, and a phone

@@ -7,14 +7,16 @@ import { mpm, scene } from './library.mjs';
 test('forces, accelerations and gravity agree', () => {
   const g = [0, -2];
   const bits = [
-    (s) => s.stepper.setAcceleration((batch, [x, y]) => {
-      assert.equal(x.length, batch.n);
-      for (let i = 0; i < batch.n; i++) y[i] += g[1];
-    }),
-    (s) => s.stepper.setForce((batch, add) => {
-      const { mass } = batch;
-      for (let i = 0; i < batch.n; i++) add[1][i] += mass[i] * g[1];
-    }),
+    (s) =>
+      s.stepper.setAcceleration((batch, [x, y]) => {
+        assert.equal(x.length, batch.n);
+        for (let i = 0; i < batch.n; i++) y[i] += g[1];
+      }),
+    (s) =>
+      s.stepper.setForce((batch, add) => {
+        const { mass } = batch;
+        for (let i = 0; i < batch.n; i++) add[1][i] += mass[i] * g[1];
+      }),
   ].map((set) => {
     const s = scene();
     set(s);
@@ -34,21 +36,37 @@ test('what a callback throws comes out, and nothing has changed', () => {
   const { set, stepper } = scene();
   const before = stepper.hash();
   const mine = new RangeError('mine');
-  const throwing = () => { throw mine; };
+  const throwing = () => {
+    throw mine;
+  };
   const all = {
-    setForce: [throwing], setAcceleration: [throwing], setVelocityBc: [throwing], setProgress: [throwing],
+    setForce: [throwing],
+    setAcceleration: [throwing],
+    setVelocityBc: [throwing],
+    setProgress: [throwing],
     setNodeHook: [C.MPM_AFTER_FORCES, throwing],
   };
   for (const [name, values] of Object.entries(all)) {
     stepper[name](...values);
-    assert.throws(() => stepper.step(1e-3), (error) => error === mine, name);
-    assert.throws(() => stepper.advance(0.1), (error) => error === mine, name);
+    assert.throws(
+      () => stepper.step(1e-3),
+      (error) => error === mine,
+      name,
+    );
+    assert.throws(
+      () => stepper.advance(0.1),
+      (error) => error === mine,
+      name,
+    );
     assert.equal(stepper.hash(), before);
     stepper[name](...values.slice(0, -1), null);
   }
   set.setAll('prescribed', [1, 0]);
   stepper.setMotion(set, throwing);
-  assert.throws(() => stepper.step(1e-3), (error) => error === mine);
+  assert.throws(
+    () => stepper.step(1e-3),
+    (error) => error === mine,
+  );
   stepper.setMotion(set, null);
   stepper.step(1e-3);
 });
@@ -70,9 +88,16 @@ test('of several exceptions that of the failure comes out', () => {
 test('answers are passed on', () => {
   const { stepper } = scene();
   stepper.setForce(() => C.MPM_CUT_DT);
-  assert.throws(() => stepper.step(1e-3), (error) => error instanceof MpmError && error.status === C.MPM_CUT_DT && error.retryable && error.info.callback_status === 1);
+  assert.throws(
+    () => stepper.step(1e-3),
+    (error) =>
+      error instanceof MpmError && error.status === C.MPM_CUT_DT && error.retryable && error.info.callback_status === 1,
+  );
   stepper.setForce(() => -7);
-  assert.throws(() => stepper.step(1e-3), (error) => error.status === C.MPM_E_CALLBACK && error.info.callback_status === -7);
+  assert.throws(
+    () => stepper.step(1e-3),
+    (error) => error.status === C.MPM_E_CALLBACK && error.info.callback_status === -7,
+  );
   stepper.setForce(null);
   let steps = 0;
   stepper.setProgress((info) => {
@@ -80,7 +105,10 @@ test('answers are passed on', () => {
     steps++;
     return C.MPM_CANCELLED;
   });
-  assert.throws(() => stepper.step(1e-3), (error) => error.status === C.MPM_CANCELLED && !error.retryable);
+  assert.throws(
+    () => stepper.step(1e-3),
+    (error) => error.status === C.MPM_CANCELLED && !error.retryable,
+  );
   assert.equal(steps, 1);
   stepper.setProgress(async () => {});
   assert.throws(() => stepper.step(1e-3), /a promise|async/);
@@ -99,14 +127,18 @@ test('batches end with the call', () => {
     [x] = given.position;
     const [heat] = given.field('heat');
     let ids = 0;
-    for (let i = 0; i < given.n; i++) if (given.id[i] >= 0n) {
-      ids++;
-      assert.equal(heat[i], 3);
-    }
+    for (let i = 0; i < given.n; i++)
+      if (given.id[i] >= 0n) {
+        ids++;
+        assert.equal(heat[i], 3);
+      }
     assert.ok(ids > 0);
     assert.equal(given.reference_position, undefined);
     assert.throws(() => given.field('hat'), /./);
-    assert.throws(() => set.get('mass'), (error) => error.status === C.MPM_E_STATE);
+    assert.throws(
+      () => set.get('mass'),
+      (error) => error.status === C.MPM_E_STATE,
+    );
     assert.ok(x.length === given.n, 'arrays stay while the callback runs');
   });
   stepper.step(1e-3);
@@ -140,10 +172,11 @@ test('prescribed velocities and hooks', () => {
   const { stepper } = scene({ velocity: 0 });
   stepper.setVelocityBc((batch, prescribed, velocity) => {
     const [x] = batch.position;
-    for (let i = 0; i < batch.n; i++) if (x[i] > 0.5) {
-      prescribed[0][i] = 1;
-      velocity[0][i] = 0.25;
-    }
+    for (let i = 0; i < batch.n; i++)
+      if (x[i] > 0.5) {
+        prescribed[0][i] = 1;
+        velocity[0][i] = 0.25;
+      }
   });
   for (let k = 0; k < 3; k++) stepper.step(1e-3);
   const [fastest, reaction] = stepper.map('velocity', C.MPM_READ, ([x]) => [Math.max(...x), x.length]);
@@ -158,7 +191,10 @@ test('prescribed velocities and hooks', () => {
   });
   stepper.step(1e-3);
   assert.ok(hooked > 0);
-  assert.equal(stepper.map('velocity', C.MPM_READ, ([, y]) => Math.max(...y)), 0.125);
+  assert.equal(
+    stepper.map('velocity', C.MPM_READ, ([, y]) => Math.max(...y)),
+    0.125,
+  );
 });
 
 // A neo-Hookean law is replaced by one of the host, which is linear: sigma = K (J - 1) I.
@@ -185,12 +221,28 @@ test('laws of the host', () => {
   const state = set.get('state');
   assert.ok(Math.abs(state[0] - 1.004) < 1e-12 && state[set.count] === 5);
   const mine = new Error('mine');
-  const failing = scene({ law: { ...stiff, stress(batch) { if (batch.dt > 0) throw mine; stiff.stress(batch); } } });
-  assert.throws(() => failing.stepper.step(1e-3), (error) => error === mine);
-  const position = scene({ law: { ...stiff, stress(batch) {
-    assert.equal(batch.position(2).length, 2);
-    stiff.stress(batch);
-  } } });
+  const failing = scene({
+    law: {
+      ...stiff,
+      stress(batch) {
+        if (batch.dt > 0) throw mine;
+        stiff.stress(batch);
+      },
+    },
+  });
+  assert.throws(
+    () => failing.stepper.step(1e-3),
+    (error) => error === mine,
+  );
+  const position = scene({
+    law: {
+      ...stiff,
+      stress(batch) {
+        assert.equal(batch.position(2).length, 2);
+        stiff.stress(batch);
+      },
+    },
+  });
   position.stepper.step(1e-3);
   assert.throws(() => mpm.context().law({ density: 1 }), /stress/);
 });
@@ -214,11 +266,12 @@ test('implicit steps by a tangent and a solver of the host', () => {
       const J = (xx[i] * yy[i] - xy[i] * yx[i]) * zz[i];
       const p = K * (J - 1);
       // tau = J p I: d tau = J (p + K J) tr(L) I, less L tau + tau L^T
-      for (let a = 0; a < 6; a++) for (let b = 0; b < 6; b++) {
-        let value = a < 3 && b < 3 ? J * (p + K * J) : 0;
-        if (a === b) value -= J * p * (a < 3 ? 2 : 1);
-        c[6 * a + b][i] = value;
-      }
+      for (let a = 0; a < 6; a++)
+        for (let b = 0; b < 6; b++) {
+          let value = a < 3 && b < 3 ? J * (p + K * J) : 0;
+          if (a === b) value -= J * p * (a < 3 ? 2 : 1);
+          c[6 * a + b][i] = value;
+        }
     }
     return true;
   };
@@ -228,7 +281,8 @@ test('implicit steps by a tangent and a solver of the host', () => {
   given.v.forEach((v, i) => assert.ok(Math.abs(v - differenced.v[i]) < 1e-7, `${v} ${differenced.v[i]}`));
 
   let solved = 0;
-  const solver = (matrix, rhs, solution, tolerance) => { // conjugate gradients
+  const solver = (matrix, rhs, solution, tolerance) => {
+    // conjugate gradients
     solved++;
     assert.ok(matrix.rows === rhs.length && matrix.symmetric === 1 && matrix.position.length === 2);
     const { row_start, column, value } = matrix.csr();
@@ -258,16 +312,31 @@ test('implicit steps by a tangent and a solver of the host', () => {
   assert.equal(hosted.info.linear_solver, C.MPM_SOLVER_HOST);
   assert.ok(hosted.info.linear_iterations > 0);
   hosted.v.forEach((v, i) => assert.ok(Math.abs(v - given.v[i]) < 1e-7));
-  assert.throws(() => run({ tangent }, { linear_solver: C.MPM_SOLVER_HOST }, () => false), (error) => error.status === C.MPM_CUT_DT);
+  assert.throws(
+    () => run({ tangent }, { linear_solver: C.MPM_SOLVER_HOST }, () => false),
+    (error) => error.status === C.MPM_CUT_DT,
+  );
   const mine = new Error('mine');
-  assert.throws(() => run({ tangent: () => { throw mine; } }, {}), (error) => error === mine);
+  assert.throws(
+    () =>
+      run(
+        {
+          tangent: () => {
+            throw mine;
+          },
+        },
+        {},
+      ),
+    (error) => error === mine,
+  );
 });
 
 test('obstacles and friction by functions', () => {
   const { context, stepper } = scene();
   const wall = context.obstacle({
     shape: C.MPM_SHAPE_DISTANCE,
-    distance(batch) { // the half-space x > 0.65
+    distance(batch) {
+      // the half-space x > 0.65
       const [x] = batch.position;
       for (let i = 0; i < batch.n; i++) {
         batch.distance[i] = 0.65 - x[i];
@@ -281,19 +350,30 @@ test('obstacles and friction by functions', () => {
   assert.ok(wall.contactInfo().impulse[0] < 0);
   const mine = new Error('mine');
   const other = scene();
-  const bad = other.context.obstacle({ shape: C.MPM_SHAPE_DISTANCE, distance() { throw mine; } });
-  assert.throws(() => other.stepper.addObstacle(bad).step(1e-3), (error) => error === mine);
+  const bad = other.context.obstacle({
+    shape: C.MPM_SHAPE_DISTANCE,
+    distance() {
+      throw mine;
+    },
+  });
+  assert.throws(
+    () => other.stepper.addObstacle(bad).step(1e-3),
+    (error) => error === mine,
+  );
 
   const pair = scene({ velocity: 0 });
   const top = pair.context.particles(pair.grid, pair.material);
   top.fillBox([0.3, 0.6], [0.6, 0.7], [2, 2]);
   top.setAll('velocity', [1, -1]);
   let nodes = 0;
-  pair.stepper.add(top).setBody(top, 1).setFriction((batch, friction) => {
-    nodes += batch.n;
-    assert.equal(batch.normal.length, 2);
-    friction.fill(0.5);
-  });
+  pair.stepper
+    .add(top)
+    .setBody(top, 1)
+    .setFriction((batch, friction) => {
+      nodes += batch.n;
+      assert.equal(batch.normal.length, 2);
+      friction.fill(0.5);
+    });
   for (let k = 0; k < 10; k++) pair.stepper.step(1e-3);
   assert.ok(nodes > 0 && pair.stepper.contactInfo(0, 1).friction_work > 0);
 });
@@ -304,5 +384,14 @@ test('the log', () => {
   assert.equal(lines.length, 1);
   assert.equal(lines[0][0], C.MPM_LOG_WARNING);
   assert.match(lines[0][1], /thread/);
-  assert.throws(() => mpm.context({ concurrency: 7, log() { throw new Error('dropped'); } }), /thread/);
+  assert.throws(
+    () =>
+      mpm.context({
+        concurrency: 7,
+        log() {
+          throw new Error('dropped');
+        },
+      }),
+    /thread/,
+  );
 });

@@ -1,10 +1,15 @@
 // Options, errors, lifetimes, fields, states.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { test } from 'node:test';
-import { C, MpmError, load } from 'libmpm';
+import * as library from 'libmpm';
 import { mpm, scene } from './library.mjs';
 
-const refused = (status, sentence) => (error) => error instanceof MpmError && error.status === C[status] && error.code === status && sentence.test(error.message);
+const { C, MpmError, load } = library;
+
+const refused = (status, sentence) => (error) =>
+  error instanceof MpmError && error.status === C[status] && error.code === status && sentence.test(error.message);
 
 test('errors have the sentence of the library', () => {
   const context = mpm.context();
@@ -133,7 +138,10 @@ test('fields as copies', () => {
   assert.equal(set.get('heat')[n - 1], 7);
   assert.throws(() => set.setAll('flag', [1, 256]), /does not fit/);
   assert.throws(() => set.get('hat'), refused('MPM_E_NOT_FOUND', /hat/));
-  assert.deepEqual(set.fields().find(({ name }) => name === 'flag'), { name: 'flag', type: C.MPM_U8, components: 2, writable: true });
+  assert.deepEqual(
+    set.fields().find(({ name }) => name === 'flag'),
+    { name: 'flag', type: C.MPM_U8, components: 2, writable: true },
+  );
   const first = set.add({ position: [0.5, 0.25], volume: [1e-3], ids: [1000] });
   assert.equal(first, 1000n);
   set.remove([1000]);
@@ -153,11 +161,20 @@ test('fills by a function, and floats for renderers', () => {
   const mass = set.get('mass');
   assert.equal(floats.length, 360);
   for (let i = 0; i < 120; i++) {
-    assert.deepEqual([...floats.subarray(3 * i, 3 * i + 3)], [Math.fround(x[i]), Math.fround(x[120 + i]), Math.fround(mass[i])]);
+    assert.deepEqual(
+      [...floats.subarray(3 * i, 3 * i + 3)],
+      [Math.fround(x[i]), Math.fround(x[120 + i]), Math.fround(mass[i])],
+    );
   }
   assert.throws(() => set.toFloat32(['position', 'position']), refused('MPM_E_ARG', /./));
   const error = new RangeError('mine');
-  assert.throws(() => set.fill([0, 0], [1, 1], [1, 1], () => { throw error; }), (thrown) => thrown === error);
+  assert.throws(
+    () =>
+      set.fill([0, 0], [1, 1], [1, 1], () => {
+        throw error;
+      }),
+    (thrown) => thrown === error,
+  );
   assert.equal(set.count, 120);
 });
 
@@ -181,7 +198,13 @@ test('what is lent is taken back, whatever the memory does', () => {
   assert.throws(() => set.map('mass', C.MPM_READ, async () => {}), /cannot be async/);
   assert.throws(() => set.map('volume', C.MPM_WRITE, () => {}), refused('MPM_E_ARG', /volume/));
   const mine = new Error('mine');
-  assert.throws(() => set.map('velocity', C.MPM_WRITE, () => { throw mine; }), (error) => error === mine);
+  assert.throws(
+    () =>
+      set.map('velocity', C.MPM_WRITE, () => {
+        throw mine;
+      }),
+    (error) => error === mine,
+  );
   set.setAll('velocity', [0, 0]); // no view is out
 });
 
@@ -222,12 +245,19 @@ test('steps: advance, parts, reports, nodal fields', () => {
   stepper.stepAbort();
   assert.equal(stepper.step(1e-3).step, info.step + 2);
   assert.ok(stepper.map('mass', C.MPM_READ, ([m]) => m.reduce((a, b) => a + b)) > 0);
-  assert.equal(stepper.map('index', C.MPM_READ, ([x]) => x.constructor), BigInt64Array);
+  assert.equal(
+    stepper.map('index', C.MPM_READ, ([x]) => x.constructor),
+    BigInt64Array,
+  );
   assert.equal(stepper.wallReaction(C.MPM_Y_MIN).length, grid.dim);
   assert.ok(stepper.profile(true).total > 0);
   assert.throws(() => stepper.map('mass', C.MPM_READ, () => {}, 3), refused('MPM_E_NOT_FOUND', /./));
   set.setAll('velocity', [500, 0]);
-  assert.throws(() => stepper.step(1e-2), (error) => error.status > 0 && error.info.cause === error.status && error.info.particle >= 0n && error.message.length > 0);
+  assert.throws(
+    () => stepper.step(1e-2),
+    (error) =>
+      error.status > 0 && error.info.cause === error.status && error.info.particle >= 0n && error.message.length > 0,
+  );
   assert.equal(stepper.info().step, info.step + 2);
 });
 
@@ -248,7 +278,12 @@ test('bodies, contact and obstacles', () => {
   stepper.step(1e-3);
   assert.throws(() => floor.pose(), /disposed/);
   assert.throws(() => stepper.setContact(0, 1, { frixion: 1 }), /frixion/);
-  const disc = context.obstacle({ shape: C.MPM_SHAPE_SPHERE, size: [0.1], position: [0.1, 0.1, 0], motion: C.MPM_MOTION_PRESCRIBED });
+  const disc = context.obstacle({
+    shape: C.MPM_SHAPE_SPHERE,
+    size: [0.1],
+    position: [0.1, 0.1, 0],
+    motion: C.MPM_MOTION_PRESCRIBED,
+  });
   stepper.addObstacle(disc);
   disc.setMotion((t, dt, velocity, angular) => {
     velocity[0] = 1;
@@ -281,7 +316,7 @@ test('a material by itself', () => {
   const e = 1e-6;
   const F = [1 + e, 0, 0, 0, 1, 0, 0, 0, 1];
   const out = material.update({ n: 1, dt: 1, F, F_inc: F, stress: new Float64Array(6), tangent: true });
-  const along = E * (1 - nu) / (1 + nu) / (1 - 2 * nu);
+  const along = (E * (1 - nu)) / (1 + nu) / (1 - 2 * nu);
   assert.ok(Math.abs(out.stress_new[0] / (along * e) - 1) < 1e-5);
   assert.ok(Math.abs(out.tangent[0] / along - 1) < 1e-5);
   assert.equal(out.symmetric, true);
@@ -292,4 +327,23 @@ test('a binary that is none is refused', async () => {
   await assert.rejects(load(new Uint8Array([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0])), /no mpm_version/);
   await assert.rejects(load(new Uint8Array(4)), WebAssembly.CompileError);
   await assert.rejects(load('no such file.wasm'), /ENOENT/);
+});
+
+test('classes have what is declared, and nothing else', () => {
+  const text = readFileSync(createRequire(import.meta.url).resolve('libmpm').replace(/mjs$/, 'd.ts'), 'utf8');
+  const shared = ['dispose', 'disposed'];
+  const classes = [...text.matchAll(/^export class (\w+) implements Handle \{\n(.*?)^\}/gms)];
+  assert.equal(classes.length, 6);
+  const { context, grid, material, set, stepper } = scene();
+  const objects = [context, grid, material, set, stepper, context.obstacle({ shape: C.MPM_SHAPE_PLANE })];
+  for (const [, name, body] of classes) {
+    const Class = library[name];
+    const one = objects.find((object) => object instanceof Class);
+    const declared = new Set([...body.matchAll(/^ {2}(?:readonly )?(\w+)[<(:]/gm)].map(([, member]) => member));
+    for (const member of declared) assert.ok(member === 'constructor' || member in one, `${name} has no ${member}`);
+    for (const member of Object.getOwnPropertyNames(Class.prototype)) {
+      assert.ok(member === 'constructor' || declared.has(member), `${name}.${member} is not declared`);
+    }
+    for (const member of shared) assert.ok(declared.has(member));
+  }
 });

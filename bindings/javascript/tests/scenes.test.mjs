@@ -7,7 +7,12 @@ import { load } from 'libmpm';
 
 const { LIVE, EXPECTED, STEPS, WANTED, LIBMPM_WASM } = process.env;
 const { NAMES, advance, build, recipeOf } = await import(new URL('scenes.mjs', pathToFileURL(`${LIVE}/`)));
-const expected = new Map(readFileSync(EXPECTED, 'utf8').trim().split('\n').map((line) => line.split(' ')));
+const expected = new Map(
+  readFileSync(EXPECTED, 'utf8')
+    .trim()
+    .split('\n')
+    .map((line) => line.split(' ')),
+);
 const mpm = await load(LIBMPM_WASM || undefined);
 
 test('every scene is compared', () => assert.deepEqual([...expected.keys()].sort(), [...NAMES].sort()));
@@ -23,7 +28,10 @@ for (const name of NAMES) {
     }
     assert.equal(scene.stepper.info().step, Number(STEPS));
     assert.equal(scene.stepper.hash().toString(16).padStart(16, '0'), expected.get(name));
-    assert.ok(scene.sets.some((set, k) => set.get('position').some((x, i) => Math.abs(x - start[k][i]) > 0.005)), 'nothing has moved');
+    assert.ok(
+      scene.sets.some((set, k) => set.get('position').some((x, i) => Math.abs(x - start[k][i]) > 0.005)),
+      'nothing has moved',
+    );
     scene.dispose();
   });
 }

@@ -27,7 +27,9 @@ export async function main(): Promise<bigint> {
   }
   stepper.setProgress(({ newton_iterations }) => (newton_iterations > 9 ? C.MPM_CANCELLED : undefined));
   const disc = context.obstacle({ shape: C.MPM_SHAPE_SPHERE, size: [1], contact: { friction: 0.3 } });
-  disc.setMotion((t, dt, velocity) => { velocity[0] = t + dt; });
+  disc.setMotion((t, dt, velocity) => {
+    velocity[0] = t + dt;
+  });
   const id: bigint = info.particle;
 
   // @ts-expect-error: there is no such option
