@@ -114,7 +114,7 @@ namespace Mpm {
     // Remedy against volumetric locking.
     /// <summary>there is no remedy.</summary>
     public const int MPM_LOCKING_NONE = 0;
-    /// <summary>the law sees the dilation averaged over the cell, weighted by volume.</summary>
+    /// <summary>The law sees the dilation averaged over the cell, weighted by volume.</summary>
     public const int MPM_LOCKING_CELL_AVERAGE = 1;
 
     // Form of a law's tangent.
@@ -173,6 +173,12 @@ namespace Mpm {
     public const int MPM_I64 = 2;
     /// <summary>uint8_t.</summary>
     public const int MPM_U8 = 3;
+
+    // Order of the particles in mpm_particles_get_f32().
+    /// <summary>by ascending id.</summary>
+    public const int MPM_BY_ID = 1;
+    /// <summary>as they lie in memory, without inert slots; changes when they are sorted anew.</summary>
+    public const int MPM_LIBRARY_ORDER = 2;
 
     // Linear solver of an implicit step.
     /// <summary>the library chooses by size, stencil, symmetry and inertia.</summary>
@@ -318,6 +324,11 @@ namespace Mpm {
   /// present ones.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int MotionFn(IntPtr user, double t, double dt, double* velocity, double* angular_velocity);
+
+  /// <summary>Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets,
+  /// browsers.</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int WriteFn(IntPtr user, IntPtr data, long bytes);
 
   /// <summary>A named number.</summary>
   [StructLayout(LayoutKind.Sequential)]
@@ -645,7 +656,8 @@ namespace Mpm {
     public int set;
     /// <summary>number of committed steps, counted on from mpm_stepper_set_time().</summary>
     public long step;
-    /// <summary>number of nodes with mass in the step.</summary>
+    /// <summary>Number of nodes with mass in the step; of one that failed before they were counted, that of the step
+    /// before.</summary>
     public long active_nodes;
     /// <summary>particles that left through MPM_WALL_OPEN since the stepper was made.</summary>
     public long removed;
@@ -1202,6 +1214,12 @@ namespace Mpm {
     public static extern int mpm_particles_get(IntPtr particles, byte* field, int type, int components, long n, long*
         ids, IntPtr @out);
 
+    /// <summary>Copies count named fields of all particles into floats for renderers: particles one after the other,
+    /// without inert slots, of each the components of the first field, then those of the second, and so on.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_get_f32(IntPtr particles, int count, byte** fields, int order, long n,
+        float* @out);
+
     /// <summary>Copies values into a field, laid out as in mpm_particles_get(): all or none.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_particles_set(IntPtr particles, byte* field, int type, int components, long n, long*
@@ -1478,6 +1496,10 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_state_save_file(IntPtr stepper, byte* path);
 
+    /// <summary>Gives the bytes of mpm_state_save() to a callback.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_state_save_to(IntPtr stepper, WriteFn write, IntPtr user);
+
     /// <summary>Replaces the state by one from a file.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_state_load_file(IntPtr stepper, byte* path);
@@ -1491,6 +1513,12 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_write_particles(IntPtr particles, byte* path, int count, byte** fields);
 
+    /// <summary>Gives the bytes of the file that mpm_write_particles() would write to a callback, with memory for one
+    /// piece.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_write_particles_to(IntPtr particles, WriteFn write, IntPtr user, int count, byte**
+        fields);
+
     /// <summary>Writes nodal fields of the last step, or of a staged step while one is under way, over the box of the
     /// active nodes: as VTK image data (.vti, appended raw), or with open knots, whose nodes are not evenly spaced at
     /// the faces, as a rectilinear grid (.vtr).</summary>
@@ -1500,6 +1528,11 @@ namespace Mpm {
     /// <summary>Does as mpm_write_grid() for the nodes of one body; that one writes those of body 0.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_write_body_grid(IntPtr stepper, int body, byte* path, int count, byte** fields);
+
+    /// <summary>Gives the bytes of the file that mpm_write_body_grid() would write to a callback.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_write_grid_to(IntPtr stepper, int body, WriteFn write, IntPtr user, int count, byte**
+        fields);
 
     /// <summary>Starts a series in a new file at path, where it replaces an old one. *out is NULL unless MPM_OK is
     /// returned.</summary>

@@ -117,7 +117,7 @@ module mpm
   !> Remedy against volumetric locking.
   !> there is no remedy.
   integer(c_int32_t), parameter :: MPM_LOCKING_NONE = 0_c_int32_t
-  !> the law sees the dilation averaged over the cell, weighted by volume.
+  !> The law sees the dilation averaged over the cell, weighted by volume.
   integer(c_int32_t), parameter :: MPM_LOCKING_CELL_AVERAGE = 1_c_int32_t
 
   !> Form of a law's tangent.
@@ -175,6 +175,12 @@ module mpm
   integer(c_int32_t), parameter :: MPM_I64 = 2_c_int32_t
   !> uint8_t.
   integer(c_int32_t), parameter :: MPM_U8 = 3_c_int32_t
+
+  !> Order of the particles in mpm_particles_get_f32().
+  !> by ascending id.
+  integer(c_int32_t), parameter :: MPM_BY_ID = 1_c_int32_t
+  !> as they lie in memory, without inert slots; changes when they are sorted anew.
+  integer(c_int32_t), parameter :: MPM_LIBRARY_ORDER = 2_c_int32_t
 
   !> Linear solver of an implicit step.
   !> the library chooses by size, stencil, symmetry and inertia.
@@ -507,7 +513,7 @@ module mpm
     integer(c_int32_t) :: set
     !> number of committed steps, counted on from mpm_stepper_set_time().
     integer(c_int64_t) :: step
-    !> number of nodes with mass in the step.
+    !> Number of nodes with mass in the step; of one that failed before they were counted, that of the step before.
     integer(c_int64_t) :: active_nodes
     !> particles that left through MPM_WALL_OPEN since the stepper was made.
     integer(c_int64_t) :: removed
@@ -982,6 +988,15 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_motion_fn
 
+    !> Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers.
+    function mpm_write_fn(user, data, bytes) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      type(*), intent(in) :: data(*)
+      integer(c_int64_t), value :: bytes
+      integer(c_int32_t) :: answer
+    end function mpm_write_fn
+
   end interface
 
   interface
@@ -1339,6 +1354,20 @@ module mpm
       type(*), intent(inout) :: out(*)
       integer(c_int32_t) :: answer
     end function mpm_particles_get
+
+    !> Copies count named fields of all particles into floats for renderers: particles one after the other, without
+    !! inert slots, of each the components of the first field, then those of the second, and so on.
+    function mpm_particles_get_f32(particles, count, fields, order, n, out) bind(c, name="mpm_particles_get_f32") &
+        result(answer)
+      import
+      type(c_ptr), value :: particles
+      integer(c_int32_t), value :: count
+      type(c_ptr), intent(in) :: fields(*)
+      integer(c_int32_t), value :: order
+      integer(c_int64_t), value :: n
+      real(c_float), intent(inout) :: out
+      integer(c_int32_t) :: answer
+    end function mpm_particles_get_f32
 
     !> Copies values into a field, laid out as in mpm_particles_get(): all or none.
     function mpm_particles_set(particles, field, type, components, n, ids, values) bind(c, name="mpm_particles_set") &
@@ -1906,6 +1935,15 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_state_save_file
 
+    !> Gives the bytes of mpm_state_save() to a callback.
+    function mpm_state_save_to(stepper, write, user) bind(c, name="mpm_state_save_to") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(c_funptr), value :: write
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: answer
+    end function mpm_state_save_to
+
     !> Replaces the state by one from a file.
     function mpm_state_load_file(stepper, path) bind(c, name="mpm_state_load_file") result(answer)
       import
@@ -1933,6 +1971,18 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_write_particles
 
+    !> Gives the bytes of the file that mpm_write_particles() would write to a callback, with memory for one piece.
+    function mpm_write_particles_to(particles, write, user, count, fields) bind(c, name="mpm_write_particles_to") &
+        result(answer)
+      import
+      type(c_ptr), value :: particles
+      type(c_funptr), value :: write
+      type(c_ptr), value :: user
+      integer(c_int32_t), value :: count
+      type(c_ptr), intent(in) :: fields(*)
+      integer(c_int32_t) :: answer
+    end function mpm_write_particles_to
+
     !> Writes nodal fields of the last step, or of a staged step while one is under way, over the box of the active
     !! nodes: as VTK image data (.vti, appended raw), or with open knots, whose nodes are not evenly spaced at the
     !! faces, as a rectilinear grid (.vtr).
@@ -1956,6 +2006,19 @@ module mpm
       type(c_ptr), intent(in), optional :: fields(*)
       integer(c_int32_t) :: answer
     end function mpm_write_body_grid
+
+    !> Gives the bytes of the file that mpm_write_body_grid() would write to a callback.
+    function mpm_write_grid_to(stepper, body, write, user, count, fields) bind(c, name="mpm_write_grid_to") &
+        result(answer)
+      import
+      type(c_ptr), value :: stepper
+      integer(c_int32_t), value :: body
+      type(c_funptr), value :: write
+      type(c_ptr), value :: user
+      integer(c_int32_t), value :: count
+      type(c_ptr), intent(in) :: fields(*)
+      integer(c_int32_t) :: answer
+    end function mpm_write_grid_to
 
     !> Starts a series in a new file at path, where it replaces an old one. *out is NULL unless MPM_OK is returned.
     function mpm_series_open(context, path, out) bind(c, name="mpm_series_open") result(answer)

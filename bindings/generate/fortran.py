@@ -9,7 +9,7 @@ from common import NOTE, constants, first_sentence, is_descriptor, wrapped
 
 WIDTH = 120
 KINDS = {"int32_t": "integer(c_int32_t)", "uint32_t": "integer(c_int32_t)", "mpm_status": "integer(c_int32_t)",
-         "int64_t": "integer(c_int64_t)", "uint64_t": "integer(c_int64_t)", "uint8_t": "integer(c_int8_t)",
+         "int64_t": "integer(c_int64_t)", "uint64_t": "integer(c_int64_t)", "uint8_t": "integer(c_int8_t)", "float": "real(c_float)",
          "size_t": "integer(c_size_t)", "double": "real(c_double)", "char": "character(kind=c_char)"}
 
 # Where C writes several values through a pointer that is not to constants; elsewhere it writes one.

@@ -13,9 +13,9 @@ from common import NOTE, constants, is_descriptor, words, wrapped
 HERE = os.path.dirname(os.path.abspath(__file__))
 TEMPLATE = f"{HERE}/../javascript/libmpm.d.ts.in"
 WIDTH = 110
-NUMBERS = {"uint8_t": "u8", "int32_t": "i32", "uint32_t": "u32", "int64_t": "i64", "uint64_t": "u64", "double": "f64",
+NUMBERS = {"uint8_t": "u8", "int32_t": "i32", "uint32_t": "u32", "int64_t": "i64", "uint64_t": "u64", "double": "f64", "float": "f32",
            "float": "f32", "mpm_status": "i32", "size_t": "u32"}
-ARRAYS = {"uint8_t": "Uint8Array", "int32_t": "Int32Array", "int64_t": "BigInt64Array", "double": "Float64Array"}
+ARRAYS = {"uint8_t": "Uint8Array", "int32_t": "Int32Array", "int64_t": "BigInt64Array", "double": "Float64Array", "float": "Float32Array"}
 # What holds the id of a particle, which is a BigInt as in arrays of ids; other 64-bit integers are counts.
 IDS = {("mpm_step_info", "particle")}
 REPORTS = ["mpm_step_info", "mpm_contact_info", "mpm_profile", "mpm_operator_info"]

@@ -7,7 +7,7 @@ from common import NOTE, constants, is_descriptor, wrapped
 
 WIDTH = 118
 TYPES = {"int32_t": "Int32", "uint32_t": "UInt32", "mpm_status": "Int32", "int64_t": "Int64", "uint64_t": "UInt64",
-         "uint8_t": "UInt8", "size_t": "Csize_t", "double": "Float64", "char": "UInt8", "void": "Cvoid"}
+         "uint8_t": "UInt8", "size_t": "Csize_t", "double": "Float64", "float": "Cfloat", "char": "UInt8", "void": "Cvoid"}
 RESERVED = {"end", "function", "struct", "module", "global", "local", "const", "let", "type", "in"}
 
 HEAD = '''"""

@@ -2,7 +2,7 @@
 from common import NOTE, first_sentence, is_descriptor, wrapped
 
 WIDTH = 118
-TYPES = {"int32_t": "i32", "uint32_t": "u32", "mpm_status": "mpm_status", "int64_t": "i64", "uint64_t": "u64", "uint8_t": "u8",
+TYPES = {"int32_t": "i32", "uint32_t": "u32", "mpm_status": "mpm_status", "int64_t": "i64", "uint64_t": "u64", "uint8_t": "u8", "float": "f32",
          "size_t": "usize", "double": "f64", "char": "c_char", "void": "c_void"}
 OUTPUTS = ("mpm_view", "mpm_operator_info", "mpm_step_info", "mpm_profile", "mpm_contact_info", "mpm_material_batch")
 

@@ -71,6 +71,8 @@ export const constants = Object.freeze({
   MPM_F64: 1,
   MPM_I64: 2,
   MPM_U8: 3,
+  MPM_BY_ID: 1,
+  MPM_LIBRARY_ORDER: 2,
   MPM_SOLVER_AUTO: 0,
   MPM_SOLVER_CG: 1,
   MPM_SOLVER_MULTIGRID_CG: 2,
@@ -451,4 +453,5 @@ export const callbacks = {
   mpm_friction_fn: [['i32', 'i32', 'i32'], 1],
   mpm_distance_fn: [['i32', 'i32'], 1],
   mpm_motion_fn: [['i32', 'f64', 'f64', 'i32', 'i32'], 1],
+  mpm_write_fn: [['i32', 'i32', 'i64'], 1],
 };

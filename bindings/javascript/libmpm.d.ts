@@ -107,7 +107,11 @@ export interface Constants {
   readonly MPM_LOG_DEBUG: 3;
   /** there is no remedy */
   readonly MPM_LOCKING_NONE: 0;
-  /** the law sees the dilation averaged over the cell, weighted by volume */
+  /**
+   * The law sees the dilation averaged over the cell, weighted by volume. Of sets whose law makes pressure by
+   * shear ("drucker_prager", "mohr_coulomb", "cam_clay") that is the mean of such sets alone, and forces have
+   * their pressure averaged over the cell, which does the same work (Hughes 1980).
+   */
   readonly MPM_LOCKING_CELL_AVERAGE: 1;
   /** 6 x 6 components, in Voigt's notation */
   readonly MPM_TANGENT_MINOR_SYMMETRIC: 36;
@@ -156,6 +160,10 @@ export interface Constants {
   readonly MPM_I64: 2;
   /** uint8_t */
   readonly MPM_U8: 3;
+  /** by ascending id */
+  readonly MPM_BY_ID: 1;
+  /** as they lie in memory, without inert slots; changes when they are sorted anew */
+  readonly MPM_LIBRARY_ORDER: 2;
   /** the library chooses by size, stencil, symmetry and inertia */
   readonly MPM_SOLVER_AUTO: 0;
   /** conjugate gradients, for symmetric positive definite systems */
@@ -498,7 +506,10 @@ export interface StepInfo {
   set: number;
   /** number of committed steps, counted on from mpm_stepper_set_time() */
   step: number;
-  /** number of nodes with mass in the step */
+  /**
+   * Number of nodes with mass in the step; of one that failed before they were counted, that of the step
+   * before.
+   */
   active_nodes: number;
   /** particles that left through MPM_WALL_OPEN since the stepper was made */
   removed: number;
@@ -1318,9 +1329,32 @@ export class Particles implements Handle {
   /**
    * Fields of all particles as floats for renderers: particles one after the other, of each the components of
    * all fields, with full tensors. Particles are in the order of their ids, or in that which `order` names.
+   *
+   * Copies count named fields of all particles into floats for renderers: particles one after the other,
+   * without inert slots, of each the components of the first field, then those of the second, and so on.
+   * Components are those of mpm_particles_get(), with full tensors and dim components per vector, and out has
+   * n times the sum of them.
+   *
+   * - order: MPM_BY_ID, or MPM_LIBRARY_ORDER, which is faster: it reads memory from front to back and needs
+   *   no index of the ids. In it a particle may have another place after each step; the field "id" tells them
+   *   apart.
+   * - n: mpm_particles_count(), to guard the host's buffer.
+   *
+   * Values are rounded to the nearest float. Those that no float can hold become infinities with their sign
+   * (from about 3.4e38 on), those below the smallest float (1.4e-45) become 0. Integers are exact up to 2^24
+   * = 16777216.
+   *
+   * MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: count is < 1, a field is named twice, or order or n
+   * is none of these. Else as mpm_particles_get(); views may be out. Since 0.2.0.
    */
   toFloat32(fields?: string[], order?: number): Float32Array;
-  /** The bytes of a file of VTK (.vtp) with the fields, by default all in use. */
+  /**
+   * The bytes of a file of VTK (.vtp) with the fields, by default all in use.
+   *
+   * Gives the bytes of the file that mpm_write_particles() would write to a callback, with memory for one
+   * piece. Errors are the same, but for the path, and with MPM_E_CALLBACK, when the callback refused, in the
+   * place of MPM_E_IO. Since 0.2.0.
+   */
   toVtp(fields?: string[]): Uint8Array;
 }
 
@@ -1488,7 +1522,8 @@ export class Stepper implements Handle {
    * before. info may be NULL; it is filled on success and on failure.
    *
    * - MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED, MPM_SINGULAR: a smaller dt may do.
-   * - MPM_OFF_GRID: a particle would leave through an MPM_WALL_NONE face.
+   * - MPM_OFF_GRID: a particle would leave through a face that does not let it. In implicit steps a smaller
+   *   dt may do here as well.
    * - MPM_CANCELLED: the progress callback ended the step.
    * - MPM_E_ARG: dt is not finite or not > 0.
    * - MPM_E_CALLBACK: a callback or the host's executor failed.
@@ -1497,12 +1532,14 @@ export class Stepper implements Handle {
   step(dt: number): StepInfo;
   /**
    * Steps to t_end exactly. Statuses 1..5 cut dt to 0.6 of it and try again, and success lets it grow; the
-   * controller's dt is part of the saved state. On failure the state is that of the last committed sub-step,
-   * and the status is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives
-   * up, and mpm_last_error() says so and why the last try failed; the host may call again, with the dt of
-   * before the cuts. info may be NULL; it is that of the last sub-step tried. The call returns MPM_OK with t
-   * < t_end when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the present
-   * time, or a value is bad.
+   * controller's dt is part of the saved state. In implicit steps MPM_OFF_GRID cuts as well, but no more than
+   * 20 times before the time comes to where one of these steps would have ended: a body that moves out by
+   * itself does so in steps of any length. On failure the state is that of the last committed sub-step, and
+   * the status is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives up,
+   * and mpm_last_error() says so and why the last try failed; the host may call again, with the dt of before
+   * the cuts. info may be NULL; it is that of the last sub-step tried. The call returns MPM_OK with t < t_end
+   * when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the present time, or a
+   * value is bad.
    */
   advance(tEnd: number, options?: Omit<AdvanceDesc, 't_end'>): StepInfo;
   /**
@@ -1629,6 +1666,13 @@ export class Stepper implements Handle {
   /**
    * The bytes of a file of VTK (.vti, .vtr) with nodal fields, by default all that there are; body is 0 by
    * default.
+   *
+   * Gives the bytes of the file that mpm_write_body_grid() would write to a callback. They are those of a
+   * .vtr file if the grid has boundary_basis = MPM_BOUNDARY_OPEN_KNOT and an axis that is not periodic, else
+   * those of a .vti file; the second line names the kind, RectilinearGrid or ImageData. Zeros between bodies
+   * far apart are all given, however many they are. Memory follows the active nodes, and one piece is added.
+   * Errors are the same, but for the path, and with MPM_E_CALLBACK, when the callback refused, in the place
+   * of MPM_E_IO. Since 0.2.0.
    */
   toVti(fields?: string[], body?: number): Uint8Array;
 }
@@ -1672,6 +1716,7 @@ export interface Raw {
   mpm_particles_add_field(particles: number, field: number, type: number, components: number): number;
   mpm_particles_map(particles: number, field: number, access: number, view: number): number;
   mpm_particles_get(particles: number, field: number, type: number, components: number, n: bigint, ids: number, out: number): number;
+  mpm_particles_get_f32(particles: number, count: number, fields: number, order: number, n: bigint, out: number): number;
   mpm_particles_set(particles: number, field: number, type: number, components: number, n: bigint, ids: number, values: number): number;
   mpm_particles_set_all(particles: number, field: number, type: number, components: number, value: number): number;
   mpm_particles_set_geostatic(particles: number, axis: number, gravity: number, surface: number, K0: number, surcharge: number): number;
@@ -1731,11 +1776,14 @@ export interface Raw {
   mpm_state_save(stepper: number, buffer: number, capacity: bigint): number;
   mpm_state_load(stepper: number, buffer: number, bytes: bigint): number;
   mpm_state_save_file(stepper: number, path: number): number;
+  mpm_state_save_to(stepper: number, write: number, user: number): number;
   mpm_state_load_file(stepper: number, path: number): number;
   mpm_state_hash(stepper: number, hash: number): number;
   mpm_write_particles(particles: number, path: number, count: number, fields: number): number;
+  mpm_write_particles_to(particles: number, write: number, user: number, count: number, fields: number): number;
   mpm_write_grid(stepper: number, path: number, count: number, fields: number): number;
   mpm_write_body_grid(stepper: number, body: number, path: number, count: number, fields: number): number;
+  mpm_write_grid_to(stepper: number, body: number, write: number, user: number, count: number, fields: number): number;
   mpm_series_open(context: number, path: number, out: number): number;
   mpm_series_append(series: number, t: number, file: number): number;
   mpm_series_close(series: number): number;

@@ -101,7 +101,7 @@ const MPM_LOG_DEBUG = Int32(3) # a text in every step
 
 # Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient.
 const MPM_LOCKING_NONE = Int32(0) # there is no remedy
-const MPM_LOCKING_CELL_AVERAGE = Int32(1) # the law sees the dilation averaged over the cell, weighted by volume
+const MPM_LOCKING_CELL_AVERAGE = Int32(1) # The law sees the dilation averaged over the cell, weighted by volume
 
 # Form of a law's tangent. The value is the number of components. See mpm_tangent_fn.
 const MPM_TANGENT_MINOR_SYMMETRIC = Int32(36) # 6 x 6 components, in Voigt's notation
@@ -136,6 +136,10 @@ const MPM_WRITE = Int32(2) # the host writes
 const MPM_F64 = Int32(1) # double
 const MPM_I64 = Int32(2) # int64_t
 const MPM_U8 = Int32(3) # uint8_t
+
+# Order of the particles in mpm_particles_get_f32().
+const MPM_BY_ID = Int32(1) # by ascending id
+const MPM_LIBRARY_ORDER = Int32(2) # as they lie in memory, without inert slots; changes when they are sorted anew
 
 # Linear solver of an implicit step.
 const MPM_SOLVER_AUTO = Int32(0) # the library chooses by size, stencil, symmetry and inertia
@@ -804,6 +808,16 @@ Ptr{Float64}))
 const mpm_motion_fn = Ptr{Cvoid}
 
 """
+Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers. All
+pieces have 65536 bytes, but for the last one, which has fewer or as many; data are lent for the time of the call. It
+runs on the calling thread. A return other than 0 ends the output with MPM_E_CALLBACK, and mpm_last_error() tells what
+was returned and after how many bytes; mpm_step_info.callback_status stays that of the last step. Since 0.2.0.
+
+f(user, data, bytes): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{Cvoid}, Int64))
+"""
+const mpm_write_fn = Ptr{Cvoid}
+
+"""
 The version of the library that runs, as 0xMMmmpp, to be compared with MPM_VERSION. May be called from any thread at
 any time.
 """
@@ -1207,6 +1221,26 @@ function mpm_particles_get(particles, field, type_, components, n, ids, out)
 end
 
 """
+Copies count named fields of all particles into floats for renderers: particles one after the other, without inert
+slots, of each the components of the first field, then those of the second, and so on. Components are those of
+mpm_particles_get(), with full tensors and dim components per vector, and out has n times the sum of them.
+
+- order: MPM_BY_ID, or MPM_LIBRARY_ORDER, which is faster: it reads memory from front to back and needs no index of
+  the ids. In it a particle may have another place after each step; the field \"id\" tells them apart.
+- n: mpm_particles_count(), to guard the host's buffer.
+
+Values are rounded to the nearest float. Those that no float can hold become infinities with their sign (from about
+3.4e38 on), those below the smallest float (1.4e-45) become 0. Integers are exact up to 2^24 = 16777216.
+
+MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: count is < 1, a field is named twice, or order or n is none of
+these. Else as mpm_particles_get(); views may be out. Since 0.2.0.
+"""
+function mpm_particles_get_f32(particles, count, fields, order, n, out)
+    return ccall((:mpm_particles_get_f32, libmpm), Int32, (Ptr{mpm_particles}, Int32, Ptr{Cstring}, Int32, Int64, Ptr{Cfloat}),
+        particles, count, fields, order, n, out)
+end
+
+"""
 Copies values into a field, laid out as in mpm_particles_get(): all or none. Errors are those of mpm_particles_get(),
 and MPM_E_ARG: a value is not finite or gives det F <= 0, a position is outside the grid, or the field is not
 writable.
@@ -1450,7 +1484,8 @@ Makes one step of size dt > 0. After any status but MPM_OK particles and time ar
 NULL; it is filled on success and on failure.
 
 - MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED, MPM_SINGULAR: a smaller dt may do.
-- MPM_OFF_GRID: a particle would leave through an MPM_WALL_NONE face.
+- MPM_OFF_GRID: a particle would leave through a face that does not let it. In implicit steps a smaller dt may do here
+  as well.
 - MPM_CANCELLED: the progress callback ended the step.
 - MPM_E_ARG: dt is not finite or not > 0.
 - MPM_E_CALLBACK: a callback or the host's executor failed.
@@ -1470,11 +1505,13 @@ end
 
 """
 Steps to t_end exactly. Statuses 1..5 cut dt to 0.6 of it and try again, and success lets it grow; the controller's dt
-is part of the saved state. On failure the state is that of the last committed sub-step, and the status is the cause.
-After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives up, and mpm_last_error() says so and why
-the last try failed; the host may call again, with the dt of before the cuts. info may be NULL; it is that of the last
-sub-step tried. The call returns MPM_OK with t < t_end when max_steps ran out. Errors are those of mpm_step();
-MPM_E_ARG: t_end is before the present time, or a value is bad.
+is part of the saved state. In implicit steps MPM_OFF_GRID cuts as well, but no more than 20 times before the time
+comes to where one of these steps would have ended: a body that moves out by itself does so in steps of any length. On
+failure the state is that of the last committed sub-step, and the status is the cause. After max_cuts cuts in a row
+(60: dt is 5e-14 of what it was) the call gives up, and mpm_last_error() says so and why the last try failed; the host
+may call again, with the dt of before the cuts. info may be NULL; it is that of the last sub-step tried. The call
+returns MPM_OK with t < t_end when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the
+present time, or a value is bad.
 """
 function mpm_advance(stepper, desc, info)
     return ccall((:mpm_advance, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_advance_desc}, Ptr{mpm_step_info}),
@@ -1804,6 +1841,16 @@ function mpm_state_save_file(stepper, path)
 end
 
 """
+Gives the bytes of mpm_state_save() to a callback. They are made twice, because the first of them hold a checksum of
+all others; memory for one piece is enough. MPM_E_CALLBACK: the callback refused. MPM_E_STATE: as in mpm_state_save();
+or what was written through a view for reading changed the state while it went out. Since 0.2.0.
+"""
+function mpm_state_save_to(stepper, write, user)
+    return ccall((:mpm_state_save_to, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{Cvoid}, Ptr{Cvoid}),
+        stepper, write, user)
+end
+
+"""
 Replaces the state by one from a file. Errors are those of mpm_state_load(), and MPM_E_IO: the file could not be read.
 """
 function mpm_state_load_file(stepper, path)
@@ -1827,6 +1874,16 @@ field. MPM_E_ARG: a field is named twice. MPM_E_IO: the file could not be writte
 function mpm_write_particles(particles, path, count, fields)
     return ccall((:mpm_write_particles, libmpm), Int32, (Ptr{mpm_particles}, Cstring, Int32, Ptr{Cstring}),
         particles, path, count, fields)
+end
+
+"""
+Gives the bytes of the file that mpm_write_particles() would write to a callback, with memory for one piece. Errors
+are the same, but for the path, and with MPM_E_CALLBACK, when the callback refused, in the place of MPM_E_IO. Since
+0.2.0.
+"""
+function mpm_write_particles_to(particles, write, user, count, fields)
+    return ccall((:mpm_write_particles_to, libmpm), Int32, (Ptr{mpm_particles}, Ptr{Cvoid}, Ptr{Cvoid}, Int32, Ptr{Cstring}),
+        particles, write, user, count, fields)
 end
 
 """
@@ -1856,6 +1913,18 @@ stepper is in the body.
 function mpm_write_body_grid(stepper, body, path, count, fields)
     return ccall((:mpm_write_body_grid, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Cstring, Int32, Ptr{Cstring}),
         stepper, body, path, count, fields)
+end
+
+"""
+Gives the bytes of the file that mpm_write_body_grid() would write to a callback. They are those of a .vtr file if the
+grid has boundary_basis = MPM_BOUNDARY_OPEN_KNOT and an axis that is not periodic, else those of a .vti file; the
+second line names the kind, RectilinearGrid or ImageData. Zeros between bodies far apart are all given, however many
+they are. Memory follows the active nodes, and one piece is added. Errors are the same, but for the path, and with
+MPM_E_CALLBACK, when the callback refused, in the place of MPM_E_IO. Since 0.2.0.
+"""
+function mpm_write_grid_to(stepper, body, write, user, count, fields)
+    return ccall((:mpm_write_grid_to, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Ptr{Cvoid}, Ptr{Cvoid}, Int32, Ptr{Cstring}),
+        stepper, body, write, user, count, fields)
 end
 
 """
@@ -1942,36 +2011,37 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE, MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL, MPM_X_MIN,
     MPM_X_MAX, MPM_Y_MIN, MPM_Y_MAX, MPM_Z_MIN, MPM_Z_MAX, MPM_WALL_NONE, MPM_WALL_OPEN, MPM_WALL_FIXED,
     MPM_WALL_SLIP, MPM_WALL_FRICTION, MPM_WALL_FRICTION_NODES, MPM_AFTER_P2G, MPM_AFTER_FORCES, MPM_AFTER_VELOCITY,
-    MPM_READ, MPM_WRITE, MPM_F64, MPM_I64, MPM_U8, MPM_SOLVER_AUTO, MPM_SOLVER_CG, MPM_SOLVER_MULTIGRID_CG,
-    MPM_SOLVER_LDLT, MPM_SOLVER_GMRES, MPM_SOLVER_HOST, MPM_CONTACT_UNILATERAL, MPM_CONTACT_NONE, MPM_CONTACT_TIED,
-    MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT, MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT,
-    MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY, MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER,
-    MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE, MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE,
-    mpm_context, mpm_grid, mpm_material, mpm_particles, mpm_stepper, mpm_operator, mpm_obstacle, mpm_series,
-    mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc, mpm_operator_info,
-    mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch, mpm_advance_desc, mpm_profile,
-    mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc, mpm_version,
-    mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create, mpm_context_memory,
-    mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy,
-    mpm_material_create, mpm_material_model_count, mpm_material_model_name, mpm_material_model_param,
-    mpm_material_state_count, mpm_material_state_name, mpm_batch_field, mpm_material_desc_init,
-    mpm_material_create_custom, mpm_material_update, mpm_material_destroy, mpm_particles_create,
-    mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball, mpm_particles_fill,
-    mpm_particles_remove, mpm_particles_count, mpm_particles_field_info, mpm_particles_add_field, mpm_particles_map,
-    mpm_particles_get, mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic,
-    mpm_particles_reset_reference, mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init,
-    mpm_stepper_create, mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure,
-    mpm_stepper_set_time, mpm_stepper_set_motion, mpm_stepper_set_wall, mpm_stepper_set_acceleration,
-    mpm_stepper_set_force, mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver,
-    mpm_stepper_set_progress, mpm_stable_dt, mpm_step, mpm_advance_desc_init, mpm_advance, mpm_stepper_profile,
-    mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin, mpm_step_grid, mpm_step_end, mpm_step_abort,
-    mpm_grid_map, mpm_stepper_wall_reaction, mpm_stepper_particles_reaction, mpm_stepper_wall_impulse,
-    mpm_stepper_particles_impulse, mpm_stepper_set_body, mpm_stepper_body, mpm_contact_desc_init,
-    mpm_stepper_set_contact, mpm_stepper_set_friction, mpm_stepper_contact_info, mpm_obstacle_desc_init,
-    mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle,
-    mpm_obstacle_set_motion, mpm_obstacle_set_contact, mpm_obstacle_set_pose, mpm_obstacle_get_pose,
-    mpm_obstacle_set_load, mpm_obstacle_contact_info, mpm_state_size, mpm_state_save, mpm_state_load,
-    mpm_state_save_file, mpm_state_load_file, mpm_state_hash, mpm_write_particles, mpm_write_grid,
-    mpm_write_body_grid, mpm_series_open, mpm_series_append, mpm_series_close
+    MPM_READ, MPM_WRITE, MPM_F64, MPM_I64, MPM_U8, MPM_BY_ID, MPM_LIBRARY_ORDER, MPM_SOLVER_AUTO, MPM_SOLVER_CG,
+    MPM_SOLVER_MULTIGRID_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES, MPM_SOLVER_HOST, MPM_CONTACT_UNILATERAL,
+    MPM_CONTACT_NONE, MPM_CONTACT_TIED, MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT,
+    MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT, MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY, MPM_SHAPE_PLANE,
+    MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER, MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE, MPM_MOTION_FIXED,
+    MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE, mpm_context, mpm_grid, mpm_material, mpm_particles, mpm_stepper,
+    mpm_operator, mpm_obstacle, mpm_series, mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch,
+    mpm_material_desc, mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch,
+    mpm_advance_desc, mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch,
+    mpm_obstacle_desc, mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_desc_init,
+    mpm_context_create, mpm_context_memory, mpm_context_destroy, mpm_last_error, mpm_set_last_error,
+    mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy, mpm_material_create, mpm_material_model_count,
+    mpm_material_model_name, mpm_material_model_param, mpm_material_state_count, mpm_material_state_name,
+    mpm_batch_field, mpm_material_desc_init, mpm_material_create_custom, mpm_material_update, mpm_material_destroy,
+    mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball,
+    mpm_particles_fill, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info, mpm_particles_add_field,
+    mpm_particles_map, mpm_particles_get, mpm_particles_get_f32, mpm_particles_set, mpm_particles_set_all,
+    mpm_particles_set_geostatic, mpm_particles_reset_reference, mpm_operator_get_info, mpm_operator_apply,
+    mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create, mpm_stepper_destroy, mpm_stepper_add,
+    mpm_stepper_remove, mpm_stepper_configure, mpm_stepper_set_time, mpm_stepper_set_motion, mpm_stepper_set_wall,
+    mpm_stepper_set_acceleration, mpm_stepper_set_force, mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook,
+    mpm_stepper_set_linear_solver, mpm_stepper_set_progress, mpm_stable_dt, mpm_step, mpm_advance_desc_init,
+    mpm_advance, mpm_stepper_profile, mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin, mpm_step_grid,
+    mpm_step_end, mpm_step_abort, mpm_grid_map, mpm_stepper_wall_reaction, mpm_stepper_particles_reaction,
+    mpm_stepper_wall_impulse, mpm_stepper_particles_impulse, mpm_stepper_set_body, mpm_stepper_body,
+    mpm_contact_desc_init, mpm_stepper_set_contact, mpm_stepper_set_friction, mpm_stepper_contact_info,
+    mpm_obstacle_desc_init, mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle,
+    mpm_stepper_remove_obstacle, mpm_obstacle_set_motion, mpm_obstacle_set_contact, mpm_obstacle_set_pose,
+    mpm_obstacle_get_pose, mpm_obstacle_set_load, mpm_obstacle_contact_info, mpm_state_size, mpm_state_save,
+    mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file, mpm_state_hash, mpm_write_particles,
+    mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid, mpm_write_grid_to, mpm_series_open,
+    mpm_series_append, mpm_series_close
 
 end

@@ -199,7 +199,7 @@ enum mpm_type_value {
 };
 
 /** Order of the particles in mpm_particles_get_f32(). */
-enum {
+enum mpm_order_value {
   MPM_BY_ID = 1,        /**< by ascending id */
   MPM_LIBRARY_ORDER = 2 /**< as they lie in memory, without inert slots; changes when they are sorted anew */
 };

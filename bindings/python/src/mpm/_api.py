@@ -142,7 +142,9 @@ class Locking(IntEnum):
 
     #: there is no remedy
     LOCKING_NONE = 0
-    #: the law sees the dilation averaged over the cell, weighted by volume
+    #: The law sees the dilation averaged over the cell, weighted by volume. Of sets whose law makes pressure by
+    #: shear ("drucker_prager", "mohr_coulomb", "cam_clay") that is the mean of such sets alone, and forces have
+    #: their pressure averaged over the cell, which does the same work (Hughes 1980).
     LOCKING_CELL_AVERAGE = 1
 
 
@@ -219,6 +221,15 @@ class FieldType(IntEnum):
     I64 = 2
     #: uint8_t
     U8 = 3
+
+
+class Order(IntEnum):
+    """Order of the particles in mpm_particles_get_f32()."""
+
+    #: by ascending id
+    BY_ID = 1
+    #: as they lie in memory, without inert slots; changes when they are sorted anew
+    LIBRARY_ORDER = 2
 
 
 class Solver(IntEnum):
@@ -378,6 +389,8 @@ WRITE = Access.WRITE
 F64 = FieldType.F64
 I64 = FieldType.I64
 U8 = FieldType.U8
+BY_ID = Order.BY_ID
+LIBRARY_ORDER = Order.LIBRARY_ORDER
 SOLVER_AUTO = Solver.SOLVER_AUTO
 SOLVER_CG = Solver.SOLVER_CG
 SOLVER_MULTIGRID_CG = Solver.SOLVER_MULTIGRID_CG
@@ -412,10 +425,10 @@ CONSTANTS = """
     BOUNDARY_OPEN_KNOT USL USF MUSL NEWMARK FLIP APIC TPIC TFLIP AFLIP XPIC APIC_MLS ISA_BEST ISA_BASELINE ISA_AVX2
     ISA_AVX512 ISA_NEON ISA_PORTABLE LOG_WARNING LOG_INFO LOG_DEBUG LOCKING_NONE LOCKING_CELL_AVERAGE
     TANGENT_MINOR_SYMMETRIC TANGENT_GENERAL X_MIN X_MAX Y_MIN Y_MAX Z_MIN Z_MAX WALL_NONE WALL_OPEN WALL_FIXED
-    WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES AFTER_P2G AFTER_FORCES AFTER_VELOCITY READ WRITE F64 I64 U8
-    SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST CONTACT_UNILATERAL CONTACT_NONE
-    CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT NORMAL_FIXED DETECT_DEFAULT DETECT_GAP
-    DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE
+    WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES AFTER_P2G AFTER_FORCES AFTER_VELOCITY READ WRITE F64 I64 U8 BY_ID
+    LIBRARY_ORDER SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST CONTACT_UNILATERAL
+    CONTACT_NONE CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT NORMAL_FIXED DETECT_DEFAULT
+    DETECT_GAP DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE
     MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE
 """.split()
 
@@ -437,6 +450,8 @@ inside_fn = CFUNCTYPE(c_int32, c_void_p, c_int32, c_int64, c_int64, c_void_p, c_
 solve_fn = CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p, c_void_p, c_double, c_void_p)
 
 motion_fn = CFUNCTYPE(c_int32, c_void_p, c_double, c_double, c_void_p, c_void_p)
+
+write_fn = CFUNCTYPE(c_int32, c_void_p, c_void_p, c_int64)
 
 class param(Structure):
     """A named number. The library reads the name during the call only. The struct is closed: it has no struct_size
@@ -896,6 +911,7 @@ FUNCTIONS = {
     "mpm_particles_add_field": (c_int32, [c_void_p, c_char_p, c_int32, c_int32]),
     "mpm_particles_map": (c_int32, [c_void_p, c_char_p, c_int32, POINTER(view)]),
     "mpm_particles_get": (c_int32, [c_void_p, c_char_p, c_int32, c_int32, c_int64, c_void_p, c_void_p]),
+    "mpm_particles_get_f32": (c_int32, [c_void_p, c_int32, c_void_p, c_int32, c_int64, c_void_p]),
     "mpm_particles_set": (c_int32, [c_void_p, c_char_p, c_int32, c_int32, c_int64, c_void_p, c_void_p]),
     "mpm_particles_set_all": (c_int32, [c_void_p, c_char_p, c_int32, c_int32, c_void_p]),
     "mpm_particles_set_geostatic": (c_int32, [c_void_p, c_int32, c_double, c_double, c_double, c_double]),
@@ -955,11 +971,14 @@ FUNCTIONS = {
     "mpm_state_save": (c_int32, [c_void_p, c_void_p, c_int64]),
     "mpm_state_load": (c_int32, [c_void_p, c_void_p, c_int64]),
     "mpm_state_save_file": (c_int32, [c_void_p, c_char_p]),
+    "mpm_state_save_to": (c_int32, [c_void_p, write_fn, c_void_p]),
     "mpm_state_load_file": (c_int32, [c_void_p, c_char_p]),
     "mpm_state_hash": (c_int32, [c_void_p, c_void_p]),
     "mpm_write_particles": (c_int32, [c_void_p, c_char_p, c_int32, c_void_p]),
+    "mpm_write_particles_to": (c_int32, [c_void_p, write_fn, c_void_p, c_int32, c_void_p]),
     "mpm_write_grid": (c_int32, [c_void_p, c_char_p, c_int32, c_void_p]),
     "mpm_write_body_grid": (c_int32, [c_void_p, c_int32, c_char_p, c_int32, c_void_p]),
+    "mpm_write_grid_to": (c_int32, [c_void_p, c_int32, write_fn, c_void_p, c_int32, c_void_p]),
     "mpm_series_open": (c_int32, [c_void_p, c_char_p, c_void_p]),
     "mpm_series_append": (c_int32, [c_void_p, c_double, c_char_p]),
     "mpm_series_close": (c_int32, [c_void_p]),
@@ -1219,6 +1238,22 @@ int64_t n, const int64_t *ids, void *out)
 Copies a field of n particles into out, [components][n] with ld = n; tensors are full. ids are [n], or NULL for all
 particles by ascending id, where n is mpm_particles_count(). type and components must match the full field, to guard
 the host's buffer. MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.""",
+    "mpm_particles_get_f32": """mpm_status mpm_particles_get_f32(const mpm_particles *particles, int32_t count, const char *const *fields, int32_t
+order, int64_t n, float *out)
+
+Copies count named fields of all particles into floats for renderers: particles one after the other, without inert
+slots, of each the components of the first field, then those of the second, and so on. Components are those of
+mpm_particles_get(), with full tensors and dim components per vector, and out has n times the sum of them.
+
+- order: MPM_BY_ID, or MPM_LIBRARY_ORDER, which is faster: it reads memory from front to back and needs no index of
+  the ids. In it a particle may have another place after each step; the field "id" tells them apart.
+- n: mpm_particles_count(), to guard the host's buffer.
+
+Values are rounded to the nearest float. Those that no float can hold become infinities with their sign (from about
+3.4e38 on), those below the smallest float (1.4e-45) become 0. Integers are exact up to 2^24 = 16777216.
+
+MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: count is < 1, a field is named twice, or order or n is none of
+these. Else as mpm_particles_get(); views may be out. Since 0.2.0.""",
     "mpm_particles_set": """mpm_status mpm_particles_set(mpm_particles *particles, const char *field, int32_t type, int32_t components, int64_t n,
 const int64_t *ids, const void *values)
 
@@ -1364,7 +1399,8 @@ Makes one step of size dt > 0. After any status but MPM_OK particles and time ar
 NULL; it is filled on success and on failure.
 
 - MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED, MPM_SINGULAR: a smaller dt may do.
-- MPM_OFF_GRID: a particle would leave through an MPM_WALL_NONE face.
+- MPM_OFF_GRID: a particle would leave through a face that does not let it. In implicit steps a smaller dt may do here
+  as well.
 - MPM_CANCELLED: the progress callback ended the step.
 - MPM_E_ARG: dt is not finite or not > 0.
 - MPM_E_CALLBACK: a callback or the host's executor failed.
@@ -1376,11 +1412,13 @@ beyond is written. MPM_E_ARG: it is smaller than the first released struct. Any 
     "mpm_advance": """mpm_status mpm_advance(mpm_stepper *stepper, const mpm_advance_desc *desc, mpm_step_info *info)
 
 Steps to t_end exactly. Statuses 1..5 cut dt to 0.6 of it and try again, and success lets it grow; the controller's dt
-is part of the saved state. On failure the state is that of the last committed sub-step, and the status is the cause.
-After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives up, and mpm_last_error() says so and why
-the last try failed; the host may call again, with the dt of before the cuts. info may be NULL; it is that of the last
-sub-step tried. The call returns MPM_OK with t < t_end when max_steps ran out. Errors are those of mpm_step();
-MPM_E_ARG: t_end is before the present time, or a value is bad.""",
+is part of the saved state. In implicit steps MPM_OFF_GRID cuts as well, but no more than 20 times before the time
+comes to where one of these steps would have ended: a body that moves out by itself does so in steps of any length. On
+failure the state is that of the last committed sub-step, and the status is the cause. After max_cuts cuts in a row
+(60: dt is 5e-14 of what it was) the call gives up, and mpm_last_error() says so and why the last try failed; the host
+may call again, with the dt of before the cuts. info may be NULL; it is that of the last sub-step tried. The call
+returns MPM_OK with t < t_end when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the
+present time, or a value is bad.""",
     "mpm_stepper_profile": """mpm_status mpm_stepper_profile(mpm_stepper *stepper, int32_t reset, mpm_profile *out)
 
 Copies the times into out, then sets them to zero if reset is not 0. They cost the steps one clock read per stage.""",
@@ -1554,6 +1592,11 @@ text names the first difference. MPM_E_STATE: a view is out, or a staged step is
 
 Writes the state into a file, as mpm_state_save() does into memory, and waits for the storage: path holds the old
 state or the new one. MPM_E_IO: the file could not be written.""",
+    "mpm_state_save_to": """mpm_status mpm_state_save_to(const mpm_stepper *stepper, mpm_write_fn write, void *user)
+
+Gives the bytes of mpm_state_save() to a callback. They are made twice, because the first of them hold a checksum of
+all others; memory for one piece is enough. MPM_E_CALLBACK: the callback refused. MPM_E_STATE: as in mpm_state_save();
+or what was written through a view for reading changed the state while it went out. Since 0.2.0.""",
     "mpm_state_load_file": """mpm_status mpm_state_load_file(mpm_stepper *stepper, const char *path)
 
 Replaces the state by one from a file. Errors are those of mpm_state_load(), and MPM_E_IO: the file could not be read.""",
@@ -1568,6 +1611,12 @@ Writes a set as VTK poly data (.vtp, appended raw): points in order of ascending
 data, with full tensors and, in 2-D and 3-D, with three components per vector. With count 0, when fields may be NULL,
 it writes every field in use but "position", which the points are. path is UTF-8. MPM_E_NOT_FOUND: there is no such
 field. MPM_E_ARG: a field is named twice. MPM_E_IO: the file could not be written.""",
+    "mpm_write_particles_to": """mpm_status mpm_write_particles_to(const mpm_particles *particles, mpm_write_fn write, void *user, int32_t count, const
+char *const *fields)
+
+Gives the bytes of the file that mpm_write_particles() would write to a callback, with memory for one piece. Errors
+are the same, but for the path, and with MPM_E_CALLBACK, when the callback refused, in the place of MPM_E_IO. Since
+0.2.0.""",
     "mpm_write_grid": """mpm_status mpm_write_grid(mpm_stepper *stepper, const char *path, int32_t count, const char *const *fields)
 
 Writes nodal fields of the last step, or of a staged step while one is under way, over the box of the active nodes: as
@@ -1588,6 +1637,14 @@ of zeros take no room on storage that knows holes.
 
 Does as mpm_write_grid() for the nodes of one body; that one writes those of body 0. MPM_E_NOT_FOUND: no set of the
 stepper is in the body.""",
+    "mpm_write_grid_to": """mpm_status mpm_write_grid_to(mpm_stepper *stepper, int32_t body, mpm_write_fn write, void *user, int32_t count, const
+char *const *fields)
+
+Gives the bytes of the file that mpm_write_body_grid() would write to a callback. They are those of a .vtr file if the
+grid has boundary_basis = MPM_BOUNDARY_OPEN_KNOT and an axis that is not periodic, else those of a .vti file; the
+second line names the kind, RectilinearGrid or ImageData. Zeros between bodies far apart are all given, however many
+they are. Memory follows the active nodes, and one piece is added. Errors are the same, but for the path, and with
+MPM_E_CALLBACK, when the callback refused, in the place of MPM_E_IO. Since 0.2.0.""",
     "mpm_series_open": """mpm_status mpm_series_open(mpm_context *context, const char *path, mpm_series **out)
 
 Starts a series in a new file at path, where it replaces an old one. *out is NULL unless MPM_OK is returned. MPM_E_IO:

@@ -139,7 +139,9 @@ pub mod constants {
 
     /// there is no remedy
     pub const MPM_LOCKING_NONE: i32 = 0;
-    /// the law sees the dilation averaged over the cell, weighted by volume
+    /// The law sees the dilation averaged over the cell, weighted by volume. Of sets whose law makes pressure by shear
+    /// ("drucker_prager", "mohr_coulomb", "cam_clay") that is the mean of such sets alone, and forces have their pressure
+    /// averaged over the cell, which does the same work (Hughes 1980).
     pub const MPM_LOCKING_CELL_AVERAGE: i32 = 1;
 
     // Form of a law's tangent.
@@ -204,6 +206,13 @@ pub mod constants {
     pub const MPM_I64: i32 = 2;
     /// uint8_t
     pub const MPM_U8: i32 = 3;
+
+    // Order of the particles in mpm_particles_get_f32().
+
+    /// by ascending id
+    pub const MPM_BY_ID: i32 = 1;
+    /// as they lie in memory, without inert slots; changes when they are sorted anew
+    pub const MPM_LIBRARY_ORDER: i32 = 2;
 
     // Linear solver of an implicit step.
 
@@ -515,6 +524,16 @@ pub type mpm_motion_fn = Option<unsafe extern "C" fn(
     dt: f64,
     velocity: *mut f64,
     angular_velocity: *mut f64,
+) -> mpm_status>;
+
+/// Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers. All
+/// pieces have 65536 bytes, but for the last one, which has fewer or as many; data are lent for the time of the call. It
+/// runs on the calling thread. A return other than 0 ends the output with MPM_E_CALLBACK, and mpm_last_error() tells what
+/// was returned and after how many bytes; mpm_step_info.callback_status stays that of the last step. Since 0.2.0.
+pub type mpm_write_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    data: *const c_void,
+    bytes: i64,
 ) -> mpm_status>;
 
 /// A named number. The library reads the name during the call only. The struct is closed: it has no struct_size and gets
@@ -916,7 +935,7 @@ pub struct mpm_step_info {
     pub set: i32,
     /// number of committed steps, counted on from mpm_stepper_set_time()
     pub step: i64,
-    /// number of nodes with mass in the step
+    /// Number of nodes with mass in the step; of one that failed before they were counted, that of the step before.
     pub active_nodes: i64,
     /// particles that left through MPM_WALL_OPEN since the stepper was made
     pub removed: i64,
@@ -1695,6 +1714,28 @@ extern "C" {
         out: *mut c_void,
     ) -> mpm_status;
 
+    /// Copies count named fields of all particles into floats for renderers: particles one after the other, without inert
+    /// slots, of each the components of the first field, then those of the second, and so on. Components are those of
+    /// mpm_particles_get(), with full tensors and dim components per vector, and out has n times the sum of them.
+    ///
+    /// - order: MPM_BY_ID, or MPM_LIBRARY_ORDER, which is faster: it reads memory from front to back and needs no index
+    ///   of the ids. In it a particle may have another place after each step; the field "id" tells them apart.
+    /// - n: mpm_particles_count(), to guard the host's buffer.
+    ///
+    /// Values are rounded to the nearest float. Those that no float can hold become infinities with their sign (from
+    /// about 3.4e38 on), those below the smallest float (1.4e-45) become 0. Integers are exact up to 2^24 = 16777216.
+    ///
+    /// MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: count is < 1, a field is named twice, or order or n is none of
+    /// these. Else as mpm_particles_get(); views may be out. Since 0.2.0.
+    pub fn mpm_particles_get_f32(
+        particles: *const mpm_particles,
+        count: i32,
+        fields: *const *const c_char,
+        order: i32,
+        n: i64,
+        out: *mut f32,
+    ) -> mpm_status;
+
     /// Copies values into a field, laid out as in mpm_particles_get(): all or none. Errors are those of
     /// mpm_particles_get(), and MPM_E_ARG: a value is not finite or gives det F <= 0, a position is outside the grid, or
     /// the field is not writable.
@@ -1915,7 +1956,8 @@ extern "C" {
     /// may be NULL; it is filled on success and on failure.
     ///
     /// - MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED, MPM_SINGULAR: a smaller dt may do.
-    /// - MPM_OFF_GRID: a particle would leave through an MPM_WALL_NONE face.
+    /// - MPM_OFF_GRID: a particle would leave through a face that does not let it. In implicit steps a smaller dt may do
+    ///   here as well.
     /// - MPM_CANCELLED: the progress callback ended the step.
     /// - MPM_E_ARG: dt is not finite or not > 0.
     /// - MPM_E_CALLBACK: a callback or the host's executor failed.
@@ -1927,11 +1969,13 @@ extern "C" {
     pub fn mpm_advance_desc_init(desc: *mut mpm_advance_desc, struct_size: u32) -> mpm_status;
 
     /// Steps to t_end exactly. Statuses 1..5 cut dt to 0.6 of it and try again, and success lets it grow; the
-    /// controller's dt is part of the saved state. On failure the state is that of the last committed sub-step, and the
-    /// status is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives up, and
-    /// mpm_last_error() says so and why the last try failed; the host may call again, with the dt of before the cuts.
-    /// info may be NULL; it is that of the last sub-step tried. The call returns MPM_OK with t < t_end when max_steps ran
-    /// out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the present time, or a value is bad.
+    /// controller's dt is part of the saved state. In implicit steps MPM_OFF_GRID cuts as well, but no more than 20 times
+    /// before the time comes to where one of these steps would have ended: a body that moves out by itself does so in
+    /// steps of any length. On failure the state is that of the last committed sub-step, and the status is the cause.
+    /// After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives up, and mpm_last_error() says so and
+    /// why the last try failed; the host may call again, with the dt of before the cuts. info may be NULL; it is that of
+    /// the last sub-step tried. The call returns MPM_OK with t < t_end when max_steps ran out. Errors are those of
+    /// mpm_step(); MPM_E_ARG: t_end is before the present time, or a value is bad.
     pub fn mpm_advance(
         stepper: *mut mpm_stepper,
         desc: *const mpm_advance_desc,
@@ -2209,6 +2253,15 @@ extern "C" {
     /// state or the new one. MPM_E_IO: the file could not be written.
     pub fn mpm_state_save_file(stepper: *const mpm_stepper, path: *const c_char) -> mpm_status;
 
+    /// Gives the bytes of mpm_state_save() to a callback. They are made twice, because the first of them hold a checksum
+    /// of all others; memory for one piece is enough. MPM_E_CALLBACK: the callback refused. MPM_E_STATE: as in
+    /// mpm_state_save(); or what was written through a view for reading changed the state while it went out. Since 0.2.0.
+    pub fn mpm_state_save_to(
+        stepper: *const mpm_stepper,
+        write: mpm_write_fn,
+        user: *mut c_void,
+    ) -> mpm_status;
+
     /// Replaces the state by one from a file. Errors are those of mpm_state_load(), and MPM_E_IO: the file could not be
     /// read.
     pub fn mpm_state_load_file(stepper: *mut mpm_stepper, path: *const c_char) -> mpm_status;
@@ -2224,6 +2277,17 @@ extern "C" {
     pub fn mpm_write_particles(
         particles: *const mpm_particles,
         path: *const c_char,
+        count: i32,
+        fields: *const *const c_char,
+    ) -> mpm_status;
+
+    /// Gives the bytes of the file that mpm_write_particles() would write to a callback, with memory for one piece.
+    /// Errors are the same, but for the path, and with MPM_E_CALLBACK, when the callback refused, in the place of
+    /// MPM_E_IO. Since 0.2.0.
+    pub fn mpm_write_particles_to(
+        particles: *const mpm_particles,
+        write: mpm_write_fn,
+        user: *mut c_void,
         count: i32,
         fields: *const *const c_char,
     ) -> mpm_status;
@@ -2254,6 +2318,20 @@ extern "C" {
         stepper: *mut mpm_stepper,
         body: i32,
         path: *const c_char,
+        count: i32,
+        fields: *const *const c_char,
+    ) -> mpm_status;
+
+    /// Gives the bytes of the file that mpm_write_body_grid() would write to a callback. They are those of a .vtr file if
+    /// the grid has boundary_basis = MPM_BOUNDARY_OPEN_KNOT and an axis that is not periodic, else those of a .vti file;
+    /// the second line names the kind, RectilinearGrid or ImageData. Zeros between bodies far apart are all given,
+    /// however many they are. Memory follows the active nodes, and one piece is added. Errors are the same, but for the
+    /// path, and with MPM_E_CALLBACK, when the callback refused, in the place of MPM_E_IO. Since 0.2.0.
+    pub fn mpm_write_grid_to(
+        stepper: *mut mpm_stepper,
+        body: i32,
+        write: mpm_write_fn,
+        user: *mut c_void,
         count: i32,
         fields: *const *const c_char,
     ) -> mpm_status;
