@@ -1,5 +1,6 @@
 """Lifetimes, contact, obstacles, saved states, files, pictures."""
 import gc
+import io
 import os
 import resource
 import tempfile
@@ -166,6 +167,31 @@ class States(unittest.TestCase):
             with open(f"{folder}/a.pvd", encoding="utf-8") as file:
                 self.assertIn("a.vtp", file.read())
             self.assertGreater(os.path.getsize(f"{folder}/a.vti"), 1000)
+
+    def test_open_files(self):
+        one, stepper = block()
+        stepper.step(1e-3)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, write in (("a.vtp", lambda to: one.write(to, "velocity")),
+                                ("a.vti", lambda to: stepper.write_grid(to, "mass")), ("state", stepper.save)):
+                write(f"{folder}/{name}")
+                memory = io.BytesIO()
+                write(memory)
+                with open(f"{folder}/{name}", "rb") as file:
+                    self.assertEqual(memory.getvalue(), file.read())
+        with self.assertRaises(io.UnsupportedOperation):
+            with open("/dev/null", "rb") as file:
+                stepper.save(file)
+
+    def test_floats(self):
+        one, _ = block()
+        one["velocity"] = np.arange(2.0 * len(one)).reshape(-1, 2)
+        packed = one.get_f32("position", "velocity", order=mpm.BY_ID)
+        np.testing.assert_array_equal(packed, np.hstack([one["position"], one["velocity"]]).astype(np.float32))
+        loose = one.get_f32("id", "mass")
+        self.assertEqual(sorted(loose[:, 0]), list(range(len(one))))
+        with self.assertRaises(mpm.Error):
+            one.get_f32("position", order=7)
 
     def test_reports(self):
         one, stepper = block(gravity=(0, -10), pic_damping=10.0)

@@ -143,6 +143,14 @@ class Context(Handle):
 
         return call
 
+    def _sink(self, file):
+        """A function for the library that hands bytes to file.write()."""
+
+        def take(_, data, count):
+            file.write(ctypes.string_at(data, count))
+
+        return _api.write_fn(self._guard(take))
+
     def _make(self, function, *arguments):
         """Calls a function whose last argument is the address of a new object."""
         out = ctypes.c_void_p()

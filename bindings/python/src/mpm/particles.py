@@ -136,6 +136,15 @@ class Particles(Handle):
         self._context._check(lib.mpm_particles_get(self, field.encode(), kind, components, n, address(ids), address(out)))
         return rows(out, tensor=field in _TENSORS)
 
+    @documented("mpm_particles_get_f32")
+    def get_f32(self, *fields, order=_api.LIBRARY_ORDER):
+        """Packs fields into floats, (n, components of all), without inert slots: what renderers want."""
+        width = sum(self._field(name)[1] for name in fields)
+        out = np.empty((len(self), width), np.float32)
+        names = (ctypes.c_char_p * max(len(fields), 1))(*(name.encode() for name in fields))
+        self._context._check(lib.mpm_particles_get_f32(self, len(fields), ctypes.addressof(names), order, len(out), address(out)))
+        return out
+
     @documented("mpm_particles_set")
     def set(self, field, values, ids=None):
         """Sets a field of all particles by ascending id, or of those with the given ids; one value stands for all."""
@@ -195,6 +204,11 @@ class Particles(Handle):
 
     @documented("mpm_write_particles")
     def write(self, path, *fields):
-        """Writes the set for ParaView (.vtp), with the named fields or all in use."""
+        """Writes the set for ParaView (.vtp), with the named fields or all in use. path may be a file that is open for
+        binary writing, or another object with write()."""
         names = (ctypes.c_char_p * max(len(fields), 1))(*(f.encode() for f in fields))
-        self._context._check(lib.mpm_write_particles(self, str(path).encode(), len(fields), ctypes.addressof(names)))
+        where = len(fields), ctypes.addressof(names)
+        if hasattr(path, "write"):
+            self._context._check(lib.mpm_write_particles_to(self, self._context._sink(path), None, *where))
+        else:
+            self._context._check(lib.mpm_write_particles(self, str(path).encode(), *where))

@@ -425,7 +425,11 @@ class Stepper(Handle):
 
     @documented("mpm_state_save")
     def save(self, path=None):
-        """Saves the state into a file, or as bytes that are returned."""
+        """Saves the state into a file by its path, into one that is open for binary writing, or as bytes that are
+        returned."""
+        if hasattr(path, "write"):
+            self._context._check(lib.mpm_state_save_to(self, self._context._sink(path), None))
+            return None
         if path is not None:
             self._context._check(lib.mpm_state_save_file(self, str(path).encode()))
             return None
@@ -455,6 +459,11 @@ class Stepper(Handle):
 
     @documented("mpm_write_body_grid")
     def write_grid(self, path, *fields, body=0):
-        """Writes nodal fields of the last step for ParaView (.vti, or .vtr with open knots)."""
+        """Writes nodal fields of the last step for ParaView (.vti, or .vtr with open knots). path may be a file that is
+        open for binary writing."""
         names = (ctypes.c_char_p * max(len(fields), 1))(*(f.encode() for f in fields))
-        self._context._check(lib.mpm_write_body_grid(self, body, str(path).encode(), len(fields), ctypes.addressof(names)))
+        where = len(fields), ctypes.addressof(names)
+        if hasattr(path, "write"):
+            self._context._check(lib.mpm_write_grid_to(self, body, self._context._sink(path), None, *where))
+        else:
+            self._context._check(lib.mpm_write_body_grid(self, body, str(path).encode(), *where))
