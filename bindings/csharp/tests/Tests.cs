@@ -218,6 +218,34 @@ namespace Mpm {
       }
     }
 
+    sealed class Least : Exception {
+      public readonly long Id;
+      public Least(long id) {
+        Id = id;
+      }
+    }
+
+    /// <summary>Of the exceptions of several threads that of the first particles comes out.</summary>
+    static void First() {
+      using (var context = new Context(4, serialCallbacks: false))
+      using (var grid = new Grid(context, Grid.Box(new long[] { 100, 100 }, new[] { 0.1, 0.1 })))
+      using (var material = new Material(context, "neo_hookean", jelly))
+      using (var set = new Particles(context, grid, material))
+      using (var stepper = new Stepper(context, grid, StepperDesc.Default())) {
+        set.FillBox(new[] { 1.0, 1.0 }, new[] { 9.0, 9.0 }, new[] { 2, 2 });
+        stepper.Add(set);
+        stepper.SetForce((ref ParticleBatch batch, Columns add) => {
+          long least = long.MaxValue;
+          unsafe {
+            for (long i = 0; i < batch.n; i++)
+              if (batch.id[i] >= 0) least = Math.Min(least, batch.id[i]);
+          }
+          throw new Least(least);
+        });
+        for (int k = 0; k < 10; k++) Is(Throws<Least>(() => stepper.Step(1e-3), "least").Id, 0L, "the first particle");
+      }
+    }
+
     static void Laws() {
       StressFunction spring = (ref MaterialBatch batch) => {
         Columns F = batch.DeformationGradient, stress = batch.NewStress, speed = batch.WaveSpeed;
@@ -368,6 +396,7 @@ namespace Mpm {
       Fields();
       Callbacks();
       Threads();
+      First();
       Laws();
       Obstacles();
       Files(arguments[0]);

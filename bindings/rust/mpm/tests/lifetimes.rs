@@ -1,7 +1,7 @@
 //! Whatever goes first, all is freed in the end; calls that meet are refused.
 mod scene;
 use mpm::constants::*;
-use mpm::{Context, ContextDesc, Material, Stepper, StepperDesc};
+use mpm::{Context, ContextDesc, Law, Material, Stepper, StepperDesc};
 use scene::*;
 use std::sync::{Arc, Mutex};
 
@@ -85,22 +85,40 @@ fn forgotten_views_and_steps_leak_and_harm_nothing() {
     assert_eq!(Arc::strong_count(&token), 1, "a step that was forgotten is dropped with its stepper");
 
     let (mut stepper, key) = falling(&watched(&token), StepperDesc::default()).unwrap();
+    let held = token.clone();
+    stepper
+        .set_force(move |_, _| {
+            drop(held.clone());
+            Ok(())
+        })
+        .unwrap();
     std::mem::forget(stepper.particles(key).map::<f64>("position").unwrap());
     assert_eq!(stepper.step(1e-3).unwrap_err().status(), MPM_E_STATE);
     drop(stepper);
-    assert_eq!(Arc::strong_count(&token), 2, "what C still has was freed");
+    assert_eq!(Arc::strong_count(&token), 3, "what C still has was freed");
 }
 
 #[test]
 fn sets_that_were_exchanged_harm_nothing() {
+    let token = Arc::new(());
+    let held = token.clone();
     let context = Context::new().unwrap();
-    let (mut stepper, key) = falling(&context, StepperDesc::default()).unwrap();
-    let jelly = Material::new(&context, "neo_hookean", &JELLY).unwrap();
-    let mut other = block(stepper.grid(), &jelly).unwrap();
+    let law = Law::new(1e3, move |batch, out| {
+        assert!(Arc::strong_count(&held) > 1);
+        for i in 0..batch.len() {
+            (0..6).for_each(|c| out.stress[(i, c)] = 0.0);
+            out.wave_speed[(i, 0)] = 1.0;
+        }
+        Ok(())
+    });
+    let grid = grid(&context).unwrap();
+    let mut other = block(&grid, &Material::new(&context, "neo_hookean", &JELLY).unwrap()).unwrap();
+    let mut stepper = Stepper::new(&grid, &StepperDesc::default()).unwrap();
+    let key = stepper.add(block(&grid, &Material::custom(&context, law).unwrap()).unwrap()).unwrap();
     std::mem::swap(stepper.particles_mut(key), &mut other);
-    drop(other);
+    drop(other); // C has it still, and calls the law
     stepper.step(1e-3).unwrap();
-    drop(stepper);
+    assert_eq!(Arc::strong_count(&token), 2, "the law went before its set");
 }
 
 #[test]
