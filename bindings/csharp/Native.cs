@@ -42,40 +42,42 @@ namespace Mpm {
     public const int MPM_E_INTERNAL = -99;
 
     // Basis functions of the grid.
-    /// <summary>piecewise linear functions, 2h wide.</summary>
+    /// <summary>piecewise linear functions, 2h wide: Steffen et al. 2008, eqs 17-18.</summary>
     public const int MPM_LINEAR = 1;
-    /// <summary>Quadratic B-splines, 3h wide.</summary>
+    /// <summary>Quadratic B-splines, 3h wide: Steffen et al. 2008, eq. 21; MPoint theory, eqs 24-27.</summary>
     public const int MPM_BSPLINE2 = 2;
-    /// <summary>cubic B-splines, 4h wide.</summary>
+    /// <summary>cubic B-splines, 4h wide: Steffen et al. 2008, eqs 22-23.</summary>
     public const int MPM_BSPLINE3 = 3;
-    /// <summary>GIMP on domains of edges "size", at most a cell.</summary>
+    /// <summary>GIMP on domains of edges "size", at most a cell: Steffen et al. 2008, eqs 26-29.</summary>
     public const int MPM_GIMP = 16;
     /// <summary>GIMP on domains that all have edges of smoothing * spacing.</summary>
     public const int MPM_UGIMP = 17;
     /// <summary>GIMP on domains of edges "size" * |F_ii|, at most a cell; depends on the axes.</summary>
     public const int MPM_CPGIMP = 18;
 
-    // What B-splines do at the faces of the grid.
+    // What B-splines do at the faces of the grid: Steffen et al. 2008, section 3.2.
     /// <summary>splines are the same everywhere, with nodes outside the faces.</summary>
     public const int MPM_BOUNDARY_GHOST = 0;
     /// <summary>Knots are repeated degree + 1 times at the faces, where one function alone is then 1.</summary>
     public const int MPM_BOUNDARY_OPEN_KNOT = 1;
 
     // Time integration scheme.
-    /// <summary>Explicit, with stresses updated last.</summary>
+    /// <summary>Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs
+    /// 1-10.</summary>
     public const int MPM_USL = 1;
-    /// <summary>Explicit, with stresses updated first, by the strain from the velocities at the start of the
-    /// step.</summary>
+    /// <summary>Explicit, with stresses updated first, by the strain from the velocities at the start of the step:
+    /// Guilkey, An Introduction to the MPM, eqs 2-10.</summary>
     public const int MPM_USF = 2;
     /// <summary>As MPM_USL, but velocities are projected a second time before stresses are updated.</summary>
     public const int MPM_MUSL = 3;
-    /// <summary>Implicit, by Newmark's rule.</summary>
+    /// <summary>Implicit, by Newmark's rule: Guilkey &amp; Weiss 2003, eqs 11-16, generalised to any beta and
+    /// gamma.</summary>
     public const int MPM_NEWMARK = 16;
 
     // Transfer of velocity between particles and grid.
-    /// <summary>FLIP, PIC, and their blend by the field flip.</summary>
+    /// <summary>FLIP, PIC, and their blend by the field flip: MPoint theory, eqs 34-36.</summary>
     public const int MPM_FLIP = 1;
-    /// <summary>affine, with the inertia of each axis and particle, for any basis.</summary>
+    /// <summary>affine, with the inertia of each axis and particle, for any basis: Jiang et al. 2015.</summary>
     public const int MPM_APIC = 2;
     /// <summary>projects the velocity gradient too (MPoint theory, eq. 29); PIC update (eq. 35).</summary>
     public const int MPM_TPIC = 3;
@@ -83,10 +85,10 @@ namespace Mpm {
     public const int MPM_TFLIP = 4;
     /// <summary>affine projection with the FLIP blend.</summary>
     public const int MPM_AFLIP = 5;
-    /// <summary>XPIC(m), where m is xpic_order.</summary>
+    /// <summary>XPIC(m), where m is xpic_order: Hammerquist &amp; Nairn 2017.</summary>
     public const int MPM_XPIC = 6;
     /// <summary>Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic
-    /// B-splines with ghosts or periodic axes.</summary>
+    /// B-splines with ghosts or periodic axes: Hu et al. 2018.</summary>
     public const int MPM_APIC_MLS = 7;
 
     // Instruction set of the kernels.
@@ -111,7 +113,7 @@ namespace Mpm {
     /// <summary>a text in every step.</summary>
     public const int MPM_LOG_DEBUG = 3;
 
-    // Remedy against volumetric locking.
+    // Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient.
     /// <summary>there is no remedy.</summary>
     public const int MPM_LOCKING_NONE = 0;
     /// <summary>The law sees the dilation averaged over the cell, weighted by volume.</summary>
@@ -149,7 +151,8 @@ namespace Mpm {
     /// <summary>the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never
     /// pulls.</summary>
     public const int MPM_WALL_FRICTION = 4;
-    /// <summary>contact of the nodes on the face with Coulomb friction.</summary>
+    /// <summary>contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in
+    /// 0.1.0.</summary>
     public const int MPM_WALL_FRICTION_NODES = 5;
 
     // Where in an explicit step a node hook runs.
@@ -374,10 +377,10 @@ namespace Mpm {
   public unsafe partial struct ContextDesc {
     /// <summary>sizeof(mpm_context_desc) of the caller.</summary>
     public uint struct_size;
-    /// <summary>Number of threads, 0 to 1024. 1 (default): the calling thread only; N: a pool of N threads, the
-    /// calling one included; 0: one per processor.</summary>
+    /// <summary>Number of threads, 0 to 1024.</summary>
     public int concurrency;
-    /// <summary>Instruction set of the kernels.</summary>
+    /// <summary>Instruction set of the kernels: MPM_ISA_BEST (default) or the one to be used, which creation refuses
+    /// with MPM_E_UNSUPPORTED if processor or library lacks it.</summary>
     public int isa;
     /// <summary>1: the library calls the host from the calling thread only, also where a callback is marked
     /// (mt).</summary>
@@ -421,7 +424,7 @@ namespace Mpm {
     public int dim;
     /// <summary>MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2.</summary>
     public int basis;
-    /// <summary>for B-splines.</summary>
+    /// <summary>for B-splines: MPM_BOUNDARY_GHOST (default) or MPM_BOUNDARY_OPEN_KNOT.</summary>
     public int boundary_basis;
     /// <summary>1: the axis is periodic; default 0.</summary>
     public fixed int periodic[3];
@@ -463,7 +466,7 @@ namespace Mpm {
     public long* id;
     /// <summary>[9][ld] deformation gradient at the end of the step.</summary>
     public double* F;
-    /// <summary>[9][ld] deformation gradient of this step alone.</summary>
+    /// <summary>[9][ld] deformation gradient of this step alone: F = F_inc F_old.</summary>
     public double* F_inc;
     /// <summary>[9][ld] velocity gradient (F_inc - I) / dt, 1/time; 0 when dt is 0.</summary>
     public double* L;
@@ -471,7 +474,7 @@ namespace Mpm {
     public double* stress;
     /// <summary>[state_count][ld] state variables before the step.</summary>
     public double* state;
-    /// <summary>[6][ld] out.</summary>
+    /// <summary>[6][ld] out: Cauchy stress after the step.</summary>
     public double* stress_new;
     /// <summary>[state_count][ld] out: state variables after the step.</summary>
     public double* state_new;
@@ -572,23 +575,19 @@ namespace Mpm {
     public int transfer;
     /// <summary>Order m of MPM_XPIC, 1 (PIC) to 5; default 2.</summary>
     public int xpic_order;
-    /// <summary>Order of the update of positions; v is the updated nodal velocity and w a weight. 1 (default): x +=
-    /// dt sum w v (Steffen et al. 2008, eq. 10). 2: x += dt sum w v - dt^2 / 2 sum w a, which is exact under constant
-    /// acceleration (MPoint theory, eq. 37, where the last term is misprinted); it is not for staggered steps, which
-    /// have that order with 1.</summary>
+    /// <summary>Order of the update of positions; v is the updated nodal velocity and w a weight.</summary>
     public int position_order;
     /// <summary>MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE.</summary>
     public int locking_remedy;
     /// <summary>1: keeps "reference_position" and shows it to callbacks; default 0.</summary>
     public int reference_positions;
-    /// <summary>1.</summary>
+    /// <summary>1: MPM_NEWMARK drops the inertia, so that each step ends in equilibrium under the forces at its
+    /// end.</summary>
     public int quasi_static;
     /// <summary>1: particle velocities are those at t_n - dt/2 (Steffen et al. 2008, eqs 11-15), and so is the
     /// kinetic energy; default 0.</summary>
     public int staggered;
-    /// <summary>Acceleration of nodes whose velocity the host or a particle prescribes. 0 (default): the one that
-    /// brings them from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30), or with MPM_NEWMARK
-    /// that of its rule; 1: zero.</summary>
+    /// <summary>Acceleration of nodes whose velocity the host or a particle prescribes.</summary>
     public int boundary_zero_acceleration;
     /// <summary>Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, from 1 (default, FLIP) to 0
     /// (PIC).</summary>

@@ -46,39 +46,40 @@ module mpm
   integer(c_int32_t), parameter :: MPM_E_INTERNAL = -99_c_int32_t
 
   !> Basis functions of the grid.
-  !> piecewise linear functions, 2h wide.
+  !> piecewise linear functions, 2h wide: Steffen et al. 2008, eqs 17-18.
   integer(c_int32_t), parameter :: MPM_LINEAR = 1_c_int32_t
-  !> Quadratic B-splines, 3h wide.
+  !> Quadratic B-splines, 3h wide: Steffen et al. 2008, eq. 21; MPoint theory, eqs 24-27.
   integer(c_int32_t), parameter :: MPM_BSPLINE2 = 2_c_int32_t
-  !> cubic B-splines, 4h wide.
+  !> cubic B-splines, 4h wide: Steffen et al. 2008, eqs 22-23.
   integer(c_int32_t), parameter :: MPM_BSPLINE3 = 3_c_int32_t
-  !> GIMP on domains of edges "size", at most a cell.
+  !> GIMP on domains of edges "size", at most a cell: Steffen et al. 2008, eqs 26-29.
   integer(c_int32_t), parameter :: MPM_GIMP = 16_c_int32_t
   !> GIMP on domains that all have edges of smoothing * spacing.
   integer(c_int32_t), parameter :: MPM_UGIMP = 17_c_int32_t
   !> GIMP on domains of edges "size" * |F_ii|, at most a cell; depends on the axes.
   integer(c_int32_t), parameter :: MPM_CPGIMP = 18_c_int32_t
 
-  !> What B-splines do at the faces of the grid.
+  !> What B-splines do at the faces of the grid: Steffen et al. 2008, section 3.2.
   !> splines are the same everywhere, with nodes outside the faces.
   integer(c_int32_t), parameter :: MPM_BOUNDARY_GHOST = 0_c_int32_t
   !> Knots are repeated degree + 1 times at the faces, where one function alone is then 1.
   integer(c_int32_t), parameter :: MPM_BOUNDARY_OPEN_KNOT = 1_c_int32_t
 
   !> Time integration scheme.
-  !> Explicit, with stresses updated last.
+  !> Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10.
   integer(c_int32_t), parameter :: MPM_USL = 1_c_int32_t
-  !> Explicit, with stresses updated first, by the strain from the velocities at the start of the step.
+  !> Explicit, with stresses updated first, by the strain from the velocities at the start of the step: Guilkey, An
+  !! Introduction to the MPM, eqs 2-10.
   integer(c_int32_t), parameter :: MPM_USF = 2_c_int32_t
   !> As MPM_USL, but velocities are projected a second time before stresses are updated.
   integer(c_int32_t), parameter :: MPM_MUSL = 3_c_int32_t
-  !> Implicit, by Newmark's rule.
+  !> Implicit, by Newmark's rule: Guilkey & Weiss 2003, eqs 11-16, generalised to any beta and gamma.
   integer(c_int32_t), parameter :: MPM_NEWMARK = 16_c_int32_t
 
   !> Transfer of velocity between particles and grid.
-  !> FLIP, PIC, and their blend by the field flip.
+  !> FLIP, PIC, and their blend by the field flip: MPoint theory, eqs 34-36.
   integer(c_int32_t), parameter :: MPM_FLIP = 1_c_int32_t
-  !> affine, with the inertia of each axis and particle, for any basis.
+  !> affine, with the inertia of each axis and particle, for any basis: Jiang et al. 2015.
   integer(c_int32_t), parameter :: MPM_APIC = 2_c_int32_t
   !> projects the velocity gradient too (MPoint theory, eq. 29); PIC update (eq. 35).
   integer(c_int32_t), parameter :: MPM_TPIC = 3_c_int32_t
@@ -86,10 +87,10 @@ module mpm
   integer(c_int32_t), parameter :: MPM_TFLIP = 4_c_int32_t
   !> affine projection with the FLIP blend.
   integer(c_int32_t), parameter :: MPM_AFLIP = 5_c_int32_t
-  !> XPIC(m), where m is xpic_order.
+  !> XPIC(m), where m is xpic_order: Hammerquist & Nairn 2017.
   integer(c_int32_t), parameter :: MPM_XPIC = 6_c_int32_t
   !> Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic B-splines with
-  !! ghosts or periodic axes.
+  !! ghosts or periodic axes: Hu et al. 2018.
   integer(c_int32_t), parameter :: MPM_APIC_MLS = 7_c_int32_t
 
   !> Instruction set of the kernels.
@@ -114,7 +115,7 @@ module mpm
   !> a text in every step.
   integer(c_int32_t), parameter :: MPM_LOG_DEBUG = 3_c_int32_t
 
-  !> Remedy against volumetric locking.
+  !> Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient.
   !> there is no remedy.
   integer(c_int32_t), parameter :: MPM_LOCKING_NONE = 0_c_int32_t
   !> The law sees the dilation averaged over the cell, weighted by volume.
@@ -151,7 +152,7 @@ module mpm
   integer(c_int32_t), parameter :: MPM_WALL_SLIP = 3_c_int32_t
   !> the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never pulls.
   integer(c_int32_t), parameter :: MPM_WALL_FRICTION = 4_c_int32_t
-  !> contact of the nodes on the face with Coulomb friction.
+  !> contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0.
   integer(c_int32_t), parameter :: MPM_WALL_FRICTION_NODES = 5_c_int32_t
 
   !> Where in an explicit step a node hook runs.
@@ -283,10 +284,10 @@ module mpm
   type, bind(c) :: mpm_context_desc
     !> sizeof(mpm_context_desc) of the caller.
     integer(c_int32_t) :: struct_size
-    !> Number of threads, 0 to 1024. 1 (default): the calling thread only; N: a pool of N threads, the calling one
-    !! included; 0: one per processor.
+    !> Number of threads, 0 to 1024.
     integer(c_int32_t) :: concurrency
-    !> Instruction set of the kernels.
+    !> Instruction set of the kernels: MPM_ISA_BEST (default) or the one to be used, which creation refuses with
+    !! MPM_E_UNSUPPORTED if processor or library lacks it.
     integer(c_int32_t) :: isa
     !> 1: the library calls the host from the calling thread only, also where a callback is marked (mt).
     integer(c_int32_t) :: serial_callbacks
@@ -320,7 +321,7 @@ module mpm
     integer(c_int32_t) :: dim
     !> MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2.
     integer(c_int32_t) :: basis
-    !> for B-splines.
+    !> for B-splines: MPM_BOUNDARY_GHOST (default) or MPM_BOUNDARY_OPEN_KNOT.
     integer(c_int32_t) :: boundary_basis
     !> 1: the axis is periodic; default 0.
     integer(c_int32_t) :: periodic(3)
@@ -354,7 +355,7 @@ module mpm
     type(c_ptr) :: id
     !> [9][ld] deformation gradient at the end of the step.
     type(c_ptr) :: F
-    !> [9][ld] deformation gradient of this step alone.
+    !> [9][ld] deformation gradient of this step alone: F = F_inc F_old.
     type(c_ptr) :: F_inc
     !> [9][ld] velocity gradient (F_inc - I) / dt, 1/time; 0 when dt is 0.
     type(c_ptr) :: L
@@ -362,7 +363,7 @@ module mpm
     type(c_ptr) :: stress
     !> [state_count][ld] state variables before the step.
     type(c_ptr) :: state
-    !> [6][ld] out.
+    !> [6][ld] out: Cauchy stress after the step.
     type(c_ptr) :: stress_new
     !> [state_count][ld] out: state variables after the step.
     type(c_ptr) :: state_new
@@ -438,23 +439,18 @@ module mpm
     integer(c_int32_t) :: transfer
     !> Order m of MPM_XPIC, 1 (PIC) to 5; default 2.
     integer(c_int32_t) :: xpic_order
-    !> Order of the update of positions; v is the updated nodal velocity and w a weight. 1 (default): x += dt sum w v
-    !! (Steffen et al. 2008, eq. 10). 2: x += dt sum w v - dt^2 / 2 sum w a, which is exact under constant acceleration
-    !! (MPoint theory, eq. 37, where the last term is misprinted); it is not for staggered steps, which have that order
-    !! with 1.
+    !> Order of the update of positions; v is the updated nodal velocity and w a weight.
     integer(c_int32_t) :: position_order
     !> MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE.
     integer(c_int32_t) :: locking_remedy
     !> 1: keeps "reference_position" and shows it to callbacks; default 0.
     integer(c_int32_t) :: reference_positions
-    !> 1.
+    !> 1: MPM_NEWMARK drops the inertia, so that each step ends in equilibrium under the forces at its end.
     integer(c_int32_t) :: quasi_static
     !> 1: particle velocities are those at t_n - dt/2 (Steffen et al. 2008, eqs 11-15), and so is the kinetic energy;
     !! default 0.
     integer(c_int32_t) :: staggered
-    !> Acceleration of nodes whose velocity the host or a particle prescribes. 0 (default): the one that brings them
-    !! from the projected to the prescribed velocity (Steffen et al. 2008, eq. 30), or with MPM_NEWMARK that of its
-    !! rule; 1: zero.
+    !> Acceleration of nodes whose velocity the host or a particle prescribes.
     integer(c_int32_t) :: boundary_zero_acceleration
     !> Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, from 1 (default, FLIP) to 0 (PIC).
     real(c_double) :: flip

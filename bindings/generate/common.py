@@ -45,6 +45,6 @@ def first_sentence(text):
     """The first sentence of a comment, without the lines that only doxygen reads."""
     lines = [line for line in text.split("\n") if not line.startswith("@")]
     text = " ".join(line for line in lines if line).strip()
-    found = re.match(r"(.*?[.:])(?= [A-Z]| - |$)", text)
-    sentence = (found[1] if found else text).rstrip(":")
-    return sentence if sentence.endswith(".") else sentence + "."
+    found = re.match(r"(.*?\.)(?= [A-Z]| \d+ \(default| - |$)", text)
+    sentence = found[1] if found else text
+    return sentence if sentence.endswith(".") else sentence.rstrip(":") + "."

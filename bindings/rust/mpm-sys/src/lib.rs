@@ -73,7 +73,7 @@ pub mod constants {
     /// GIMP on domains of edges "size" * |F_ii|, at most a cell; depends on the axes
     pub const MPM_CPGIMP: i32 = 18;
 
-    // What B-splines do at the faces of the grid.
+    // What B-splines do at the faces of the grid: Steffen et al. 2008, section 3.2.
 
     /// splines are the same everywhere, with nodes outside the faces
     pub const MPM_BOUNDARY_GHOST: i32 = 0;
@@ -135,7 +135,7 @@ pub mod constants {
     /// a text in every step
     pub const MPM_LOG_DEBUG: i32 = 3;
 
-    // Remedy against volumetric locking.
+    // Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient.
 
     /// there is no remedy
     pub const MPM_LOCKING_NONE: i32 = 0;
