@@ -23,7 +23,9 @@ for library in libmpm libmpm-umat; do nm -D --defined-only "$BUILD/$library.so";
 same functions "$scratch/functions" "$scratch/exported"
 
 grep -oE '`MPM_[A-Z0-9_]*` -?[0-9]+' "$ledger" | tr -d '`' | sort > "$scratch/constants"
-sed -nE 's/^ *(enum \{ )?(MPM_[A-Z0-9_]+) = (-?[0-9]+).*/\2 \3/p' $headers | sort > "$scratch/declared"
+# an alias has the value of what it names
+sed -nE 's/^ *(enum mpm_[a-z_]+ \{ )?(MPM_[A-Z0-9_]+) = (-?[A-Z0-9_]+).*/\2 \3/p' $headers |
+  awk '{ value[$1] = $2 in value ? value[$2] : $2; print $1, value[$1] }' | sort > "$scratch/declared"
 same constants "$scratch/constants" "$scratch/declared"
 
 sed -nE 's/^\| `(mpm_[a-z_]+)` \| ([0-9]+) \|.*/\1 \2/p' "$ledger" | awk '{ size[$1] = $2 } END { for (s in size) print s, size[s] }' |

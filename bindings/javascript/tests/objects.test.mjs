@@ -178,6 +178,20 @@ test('fills by a function, and floats for renderers', () => {
   assert.equal(set.count, 120);
 });
 
+test('files of VTK as bytes, where the library writes them', () => {
+  const { set, stepper } = scene();
+  stepper.step(1e-3);
+  if (!mpm.raw.mpm_write_particles_to) {
+    assert.throws(() => set.toVtp(), refused('MPM_E_UNSUPPORTED', /mpm_write_particles_to/));
+    return;
+  }
+  const text = new TextDecoder('latin1').decode(set.toVtp(['velocity']));
+  assert.match(text, /^<\?xml.*PolyData.*velocity/s);
+  assert.match(text, new RegExp(`NumberOfPoints="${set.count}"`));
+  assert.match(new TextDecoder('latin1').decode(stepper.toVti(['mass'])), /^<\?xml.*ImageData.*mass/s);
+  assert.throws(() => set.toVtp(['hat']), refused('MPM_E_NOT_FOUND', /hat/));
+});
+
 test('what is lent is taken back, whatever the memory does', () => {
   const { set } = scene();
   let kept;
@@ -330,7 +344,12 @@ test('a binary that is none is refused', async () => {
 });
 
 test('classes have what is declared, and nothing else', () => {
-  const text = readFileSync(createRequire(import.meta.url).resolve('libmpm').replace(/mjs$/, 'd.ts'), 'utf8');
+  const text = readFileSync(
+    createRequire(import.meta.url)
+      .resolve('libmpm')
+      .replace(/mjs$/, 'd.ts'),
+    'utf8',
+  );
   const shared = ['dispose', 'disposed'];
   const classes = [...text.matchAll(/^export class (\w+) implements Handle \{\n(.*?)^\}/gms)];
   assert.equal(classes.length, 6);
