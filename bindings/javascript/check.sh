@@ -37,6 +37,8 @@ for binary in libmpm.simd.wasm libmpm.wasm ''; do
   node example.mjs ${binary:+"$installed/$binary"} | diff "$scratch/expected" - ||
     { echo "javascript: the example has other results with ${binary:-no name of a binary}" >&2; exit 1; }
 done
+grep -q "$(sed -n 's/^hash //p' "$scratch/expected")" node_modules/libmpm/README.md ||
+  { echo 'javascript: README.md has another hash than the example' >&2; exit 1; }
 echo "javascript: the example: $(tail -n 1 "$scratch/expected"), with both binaries"
 
 # ---- the scenes of the page as a program in C ----
