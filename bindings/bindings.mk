@@ -1,6 +1,6 @@
 # The bindings of other languages, included by the Makefile at the top of the sources, from where all paths start.
 
-.PHONY: api check-bindings
+.PHONY: api check-bindings bindings-setup
 
 #: api                   bindings/api.json and what bindings of all languages take from it, from the headers, by clang
 api:
@@ -8,6 +8,14 @@ api:
 
 #: check-bindings        whether these are as the headers are, and each language's own tests: docs/bindings.md.
 #:                       LANGUAGES="python rust" selects
+#: bindings-setup        installs what check-bindings needs, on Debian
+BINDINGS_PACKAGES := clang lld llvm wasi-libc libclang-rt-dev-wasm32 gfortran cargo mono-mcs nodejs npm chromium python3-dev \
+  python3-venv python3-numpy python3-numba python3-matplotlib
+bindings-setup:
+	@sudo=; if [ "$$(id -u)" != 0 ]; then sudo=sudo; fi; \
+	$$sudo apt-get update -q && \
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $(BINDINGS_PACKAGES)
+
 LANGUAGES ?= $(sort $(patsubst bindings/%/check.sh,%,$(wildcard bindings/*/check.sh)))
 check-bindings: all
 	@mkdir -p $(BUILD)/tests/scratch
