@@ -306,37 +306,47 @@ static mpm_status look_at_matrix(void *user, const mpm_operator *matrix, const d
   return MPM_OK;
 }
 
-/* The forces of associated soils come from a potential: the matrix is symmetric, and the library knows it; it
- * is not with metal in the same cells. Newton's method is quadratic all the same. */
-START_TEST(matrix_is_the_derivative) {
-  const int32_t dim = 2 + _i % 2, mixed = _i / 2 % 2, seam = _i / 4 % 2;
-  const basis_option *basis = implicit_basis(_i / 8);
-  if (seam && basis->boundary) return;
+/* Opens a body of soil, `mixed` with metal in the same cells, whose particles all differ; `solve` solves. */
+static const char *open_implicit(world *w, int32_t variant, mpm_solve_fn solve, void *user,
+                                 double tolerance) {
+  static char name[80];
+  const int32_t dim = 2 + variant % 2, mixed = variant / 2 % 2, seam = variant / 4 % 2;
+  const basis_option *basis = implicit_basis(variant / 8);
+  if (seam && basis->boundary) return NULL;
   world_desc d = implicit_default(dim, dim == 3 ? 4 : 6, h, basis);
   d.law = (world_law){.model = "drucker_prager", .params = firm, .param_count = 6};
   d.stepper.locking_remedy = MPM_LOCKING_CELL_AVERAGE;
   d.stepper.linear_solver = MPM_SOLVER_HOST;
+  d.stepper.linear_tolerance = tolerance;
   d.grid.periodic[0] = seam;
   d.sets = 1 + mixed;
   d.other_law = (world_law){.model = "neo_hookean", .E = 1e5, .nu = 0.3, .density = 1e3};
-  world w;
-  matrix_seen seen;
-  world_open(&w, &d);
-  ck_ok(&w, mpm_stepper_set_linear_solver(w.stepper, look_at_matrix, &seen));
-  dice random = {(uint64_t)_i + 1};
+  world_open(w, &d);
+  ck_ok(w, mpm_stepper_set_linear_solver(w->stepper, solve, user));
+  dice random = {(uint64_t)variant + 1};
   for (int32_t m = 0; m <= mixed; ++m) {
     double low[3] = {seam ? 0.0 : h, h, h},
            high[3] = {(dim == 3 ? 4.0 : 6.0) * h - (seam ? 0.0 : h), 3.0 * h, 3.0 * h};
-    const int64_t n = world_fill(&w, w.set[m], low, high, 2);
+    const int64_t n = world_fill(w, w->set[m], low, high, 2);
     double *v = malloc((size_t)(dim * n) * sizeof *v);
     for (int64_t i = 0; i < dim * n; ++i) v[i] = throw_between(&random, -1.0, 1.0);
-    put(&w, w.set[m], "velocity", dim, v);
+    put(w, w->set[m], "velocity", dim, v);
     free(v);
-    if (m == 0) disturb(&w, w.set[m], &random, 1e4);
+    if (m == 0) disturb(w, w->set[m], &random, 1e4);
   }
-  char name[80];
   snprintf(name, sizeof name, "%s in %d-D%s%s", basis->name, (int)dim, mixed ? ", mixed" : "",
            seam ? ", periodic" : "");
+  return name;
+}
+
+/* The forces of associated soils come from a potential: the matrix is symmetric, and the library knows it; it
+ * is not with metal in the same cells. Newton's method is quadratic all the same. */
+START_TEST(matrix_is_the_derivative) {
+  const int32_t mixed = _i / 2 % 2;
+  world w;
+  matrix_seen seen;
+  const char *name = open_implicit(&w, _i, look_at_matrix, &seen, 0.0);
+  if (!name) return;
   for (int32_t k = 0; k < 2; ++k) {
     world_step(&w, 0.01);
     implicit_quadratic(name, &w, 100.0);
@@ -344,6 +354,67 @@ START_TEST(matrix_is_the_derivative) {
     if (!mixed) ck_within(name, seen.skew, 0.0, 1e-12 * seen.largest);
   }
   world_close(&w);
+}
+END_TEST
+
+/* What a solver sees that moves the nodes by `size` in a random direction: the residual before and after, and
+ * what the matrix makes of that direction. */
+enum { MOST_ROWS = 2000 };
+typedef struct probe {
+  int32_t calls;
+  int64_t rows;
+  double size, before[MOST_ROWS], after[MOST_ROWS], by_matrix[MOST_ROWS];
+} probe;
+
+static mpm_status move_a_little(void *user, const mpm_operator *matrix, const double *rhs, double *solution,
+                                double tolerance, int64_t *iterations) {
+  probe *p = user;
+  mpm_operator_info info = {.struct_size = sizeof info};
+  (void)tolerance;
+  ck_ok(NULL, mpm_operator_get_info(matrix, &info));
+  ck_assert_int_le(info.rows, MOST_ROWS);
+  memcpy(p->calls ? p->after : p->before, rhs, (size_t)info.rows * sizeof *rhs);
+  if (p->calls++) return -1;
+  dice random = {77};
+  double along = 0.0, direction[MOST_ROWS];
+  for (int64_t i = 0; i < info.rows; ++i) {
+    direction[i] = throw_between(&random, -1.0, 1.0);
+    along += direction[i] * rhs[i];
+  }
+  for (int64_t i = 0; i < info.rows; ++i) { /* downhill, so that the step is taken whole */
+    direction[i] *= along < 0.0 ? -1.0 : 1.0;
+    solution[i] = p->size * direction[i];
+  }
+  ck_ok(NULL, mpm_operator_apply(matrix, direction, p->by_matrix));
+  p->rows = info.rows;
+  *iterations = 1;
+  return MPM_OK;
+}
+
+/* The residual falls as the matrix says, by differences of steps of two sizes, without the term in size^2. */
+START_TEST(matrix_against_differences) {
+  probe *p = calloc(2, sizeof *p);
+  const char *name = NULL;
+  for (int32_t k = 0; k < 2; ++k) {
+    world w;
+    p[k].size = (k + 1) * 1e-6 * h;
+    name = open_implicit(&w, _i, move_a_little, &p[k], 1.0);
+    if (!name) break;
+    ck_refused(&w, mpm_step(w.stepper, 0.01, NULL), MPM_E_CALLBACK, "");
+    ck_assert_int_eq(p[k].calls, 2);
+    world_close(&w);
+  }
+  double worst = 0.0;
+  for (int64_t i = 0; name && i < p->rows; ++i) {
+    const double once = p[0].after[i] - p[0].before[i], twice = p[1].after[i] - p[1].before[i];
+    worst = fmax(worst, fabs((2.0 * once - 0.5 * twice) / p[0].size + p[0].by_matrix[i]));
+  }
+  if (name) {
+    const double size = largest(p->rows, p->by_matrix);
+    show("%s: %.1e of the largest\n", name, worst / size);
+    ck_within(name, worst, 0.0, 1e-8 * size);
+  }
+  free(p);
 }
 END_TEST
 
@@ -482,6 +553,7 @@ Suite *locking_suite(void) {
   tcase_add_loop_test(tc, yield_takes_energy, 0, 2 * BASES);
   tcase_add_loop_test(tc, soils_average_among_themselves, 0, 2);
   tcase_add_loop_test(tc, matrix_is_the_derivative, 0, 8 * IMPLICIT_BASES);
+  tcase_add_loop_test(tc, matrix_against_differences, 0, 8 * IMPLICIT_BASES);
   tcase_add_loop_test(tc, threads_give_the_same_bits, 0, ALL_SCHEMES);
   tcase_add_loop_test(tc, failed_steps_leave_no_trace, 0, ALL_SCHEMES);
   tcase_add_loop_test(tc, positions_that_a_view_has_spoilt, 0, ALL_SCHEMES);
