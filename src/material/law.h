@@ -58,7 +58,7 @@ typedef struct mpmi_law {
   int32_t mean_from_F; /* 1, with stress_from_F = 0: the host may set the deviator, the mean follows from F */
   int32_t kinematics;  /* MPMI_F_... */
   int32_t pressure_from_shear; /* 1: shear makes pressure, so that the locking remedy averages both */
-  int32_t rest;        /* MPMI_REST_... */
+  int32_t rest;                /* MPMI_REST_... */
   /* Says what is wrong with the parameters together, or returns NULL where nothing is. NULL: there is no such
    * check. */
   const char *(*check)(const double *value);
