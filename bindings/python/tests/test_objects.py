@@ -11,6 +11,22 @@ import numpy as np
 from scenes import block
 
 
+class Filling(unittest.TestCase):
+    def test_shape_of_ones_own(self):
+        context = mpm.Context()
+        grid = context.grid(dim=3, cells=20, spacing=0.05)
+        one = context.particles(grid, context.material("rigid", density=1e3))
+        told = []
+
+        def inside(x):
+            told.append(x[np.abs(x - 0.5).max(axis=1) < 0.2])
+            return np.abs(x - 0.5).max(axis=1) < 0.2
+
+        one.fill((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), inside)
+        self.assertEqual(len(one), 16 ** 3)
+        np.testing.assert_array_equal(one["position"], np.concatenate(told))
+
+
 class Lifetimes(unittest.TestCase):
     def test_any_order_of_ends(self):
         for order in ((0, 1, 2, 3, 4), (4, 3, 2, 1, 0), (2, 4, 0, 3, 1), (1, 0, 4, 2, 3)):

@@ -99,10 +99,10 @@ class Particles(Handle):
 
         def ask(_, dim, n, ld, position, answer):
             points = np.ctypeslib.as_array((ctypes.c_double * (dim * ld)).from_address(position))
-            told = np.asarray(inside(points.reshape(dim, ld)[:, :n].T.copy()), bool)
+            told = np.ascontiguousarray(inside(points.reshape(dim, ld)[:, :n].T.copy()), bool)
             if told.shape != (n,):
                 raise ValueError(f"inside() gave {told.shape} answers for {n} points")
-            ctypes.memmove(answer, np.ascontiguousarray(told, np.uint8).ctypes.data, n)
+            ctypes.memmove(answer, address(told), n)  # told is held until here
 
         callback = _api.inside_fn(self._context._guard(ask))
         return self._fill(lib.mpm_particles_fill, address(lower), address(upper), address(per_cell), callback, None)
