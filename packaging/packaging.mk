@@ -9,3 +9,8 @@ man:
 #: deb                   Debian's packages by dpkg-buildpackage, from what git has, in $(BUILD)/deb; lintian must be content
 deb:
 	@bash packaging/deb.sh $(abspath $(BUILD))/deb
+
+.PHONY: check-gallery
+#: check-gallery         every program of the gallery on few particles: docs/gallery.md. PYTHON: one that has the package mpm
+check-gallery: all
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL bash gallery/check.sh
