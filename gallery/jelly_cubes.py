@@ -7,7 +7,7 @@ import style
 side = 0.2
 
 run = style.Run()
-h = side / run.pick(7, 4)
+h = side / run.pick(10, 4)
 cells = np.rint(np.array([2.4, 2.4, 1.5]) / h).astype(int)
 grid = run.context.grid(dim=3, cells=cells, spacing=h, origin=(-cells[0] * h / 2, -cells[1] * h / 2, -3 * h))
 jelly = run.context.material("neo_hookean", E=3e4, nu=0.35, density=1000)
@@ -31,7 +31,7 @@ for number, (centre, yaw, tilt) in enumerate(places):
     tints.append(np.broadcast_to(style.rgb(style.BODIES[number]), (len(cube), 3)))
 stepper.set_contact(friction=0.4)
 
-view = style.View3(-60, 20, (0.0, 0.0, 0.42), 2.0, floor=0.0, grain=0.1)
+view = style.View3(-60, 20, (0.02, 0.0, 0.35), 1.95, floor=0.0, grain=0.1)
 tint = np.concatenate(tints)
 
 
