@@ -21,7 +21,7 @@ def rows(names):
 
 def main(out, *names):
     table = list(rows(names))
-    figure, axes = plt.subplots(figsize=(7, 4))
+    figure, axes = plt.subplots(figsize=(6.4, 3.2))
     for case in dict.fromkeys(row["case"] for row in table):
         for spread, line in (("3", "-"), ("3000", ":")):
             chosen = [r for r in table if r["case"] == case and r["spread"] == spread and r["threads"] == "1"]
@@ -32,10 +32,11 @@ def main(out, *names):
             axes.plot([int(r["particles"]) for r in chosen], [1e3 / float(r["median_Mps"]) for r in chosen],
                       line, marker="o", label=label)
     axes.set_xscale("log")
-    axes.set_ylim(bottom=0)
+    axes.margins(x=0.08)
+    axes.set_ylim(0, 1.12 * max(1e3 / float(r["median_Mps"]) for r in table if r["threads"] == "1"))
     axes.set_xlabel("particles")
     axes.set_ylabel("ns per particle and step, one thread")
-    axes.legend(loc="lower left")
+    axes.legend(loc="lower right")
     figure.tight_layout()
     figure.savefig(out, metadata={"Date": None})
 
