@@ -11,20 +11,25 @@ def rows(data, **wanted):
 
 
 def clouds(name, key, colour, text, form, size, width=3.2, height=3.2, label="{:g}"):
-    """Particles at each value of `key`, coloured by `colour`."""
+    """Particles at each value of `key`, coloured by `colour`; all panels have the same axes."""
     data = read(name)
     times = sorted(set(data[key]))
     x, y = form
     figure, ax = axes(len(times), width, height)
     ax = [ax] if len(times) == 1 else list(ax)
+    bounds = [(min(data[axis]), max(data[axis])) for axis in form]
+    room = 0.04 * max(high - low for low, high in bounds)
     top = sorted(data[colour])[int(0.99 * len(data[colour]))]
     for panel, t in zip(ax, times):
         at = rows(data, **{key: t})
         drawn = panel.scatter(at[x], at[y], c=at[colour], s=size, vmin=0, vmax=top, cmap="viridis", linewidths=0,
                               antialiased=False, rasterized=True)
-        panel.set_aspect("equal")
+        panel.set(aspect="equal", xlim=(bounds[0][0] - room, bounds[0][1] + room), ylim=(bounds[1][0] - room, bounds[1][1] + room))
         panel.set_title(label.format(t), fontsize=9)
-    figure.colorbar(drawn, ax=ax, label=text, shrink=0.8)
+    for panel in ax[1:]:
+        panel.tick_params(labelleft=False)
+    bar = figure.colorbar(drawn, ax=ax, label=text, shrink=0.8)
+    bar.formatter.set_useMathText(True)
     return figure
 
 
@@ -190,7 +195,7 @@ def cantilever():
 
 @plot
 def cantilever_cloud():
-    return clouds("cantilever_cloud", "t", "speed", "speed / (m/s)", ("x", "y"), 2, 3.0, 3.0, "t = {:g} s")
+    return clouds("cantilever_cloud", "t", "speed", "speed / (m/s)", ("x", "y"), 4, 2.9, 3.2, "t = {:g} s")
 
 
 @plot
@@ -278,7 +283,7 @@ def water_column():
 
 @plot
 def water_column_cloud():
-    return clouds("water_column_cloud", "T", "speed", "speed / (m/s)", ("x", "y"), 2, 3.4, 2.6, "T = {:g}")
+    return clouds("water_column_cloud", "T", "speed", "speed / (m/s)", ("x", "y"), 5, 3.8, 1.7, "T = {:g}")
 
 
 @plot

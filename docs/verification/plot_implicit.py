@@ -267,5 +267,5 @@ def billet():
 
 @plot
 def billet_particles():
-    return clouds("billet_particles", "compression", "mises", "von Mises stress / (dyn/cm$^2$)", ("x", "y"), 8, width=4.4,
-                  height=3.6, label="compression {:g}")
+    return clouds("billet_particles", "compression", "mises", "von Mises stress / (dyn/cm$^2$)", ("x", "y"), 8, width=3.6,
+                  height=2.4, label="compression {:g}")
