@@ -28,7 +28,7 @@ for kind in (".png", ".apng"):
         if kind == ".apng" and image.n_frames < 2:
             sys.exit(f"{made}{kind} does not move")
         tints = image.convert("RGB").getcolors(image.width * image.height)
-        if sum(count for count, tint in tints if min(tint) < 200) < 0.01 * image.width * image.height:
+        if sum(count for count, tint in tints if min(tint) < 240) < 0.01 * image.width * image.height:
             sys.exit(f"{made}{kind} is empty")
 END
 done
