@@ -11,8 +11,8 @@ run = style.Run()
 h = wide / run.pick(22, 8)
 cells = np.rint(np.array([long, wide, high]) / h).astype(int)
 grid = run.context.grid(dim=3, cells=cells, spacing=h)
-sound = 10 * np.sqrt(2 * 9.81 * 0.4)  # ten times the speed of the front: the density changes by a hundredth
-fluid = run.context.material("newtonian_fluid", density=1000, bulk_modulus=1000 * sound ** 2 / 7, viscosity=1e-3, tension=0)
+sound = 10 / np.sqrt(7) * np.sqrt(2 * 9.81 * 0.4)  # 3.8 times the speed of the front: the density changes by 7 %
+fluid = run.context.material("newtonian_fluid", density=1000, bulk_modulus=1000 * sound ** 2, viscosity=1e-3, tension=0)
 water = run.context.particles(grid, fluid).fill_box((0, 0, 0), (0.5, wide, 0.4))
 
 stepper = run.context.stepper(grid, water, transfer=mpm.APIC, gravity=(0, 0, -9.81))
