@@ -315,24 +315,20 @@ static void sweep_task(void *data, int64_t k) {
   job->bound->step->work->report[k].contact_change = most;
 }
 
-mpm_status mpmi_body_contacts_list(mpmi_bound *bound) {
-  mpmi_contact_nodes *contact = &bound->nodes->contact;
-  mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact};
-  if (!contact->site_count || contact->listed) return MPM_OK;
-  mpm_status status = mpmi_sites_measure(&search);
-  if (!status) status = mpmi_meetings_find(&search);
-  if (!status && contact->touch_count) status = mpmi_clouds_fill(&search);
-  if (!status && contact->touch_count) status = mpmi_surface_gaps_find(&search);
-  contact->listed = !status;
-  return status;
-}
-
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
   mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact};
+  mpm_status status = MPM_OK;
   mpmi_surfaces_predict(contact, bound->step->settings, bound->step->velocity_dt);
-  mpm_status status = mpmi_body_contacts_list(bound);
-  if (status || !contact->site_count || !contact->touch_count) return status;
+  if (!contact->site_count) return MPM_OK;
+  if (!contact->listed) {
+    status = mpmi_sites_measure(&search);
+    if (!status) status = mpmi_meetings_find(&search);
+    if (!status && contact->touch_count) status = mpmi_clouds_fill(&search);
+    if (!status && contact->touch_count) status = mpmi_surface_gaps_find(&search);
+    contact->listed = !status;
+  }
+  if (status || !contact->touch_count) return status;
   if ((status = mpmi_gaps_find(&search))) return status;
   for (int64_t p = 0; p < contact->party_count; ++p) weigh_party(bound, &contact->party[p], 0);
   return mpmi_ask_friction(bound);

@@ -116,9 +116,7 @@ mpm_status mpmi_prescribed_share(mpmi_bound *bound);
 static inline int32_t mpmi_bodies_touch(const mpmi_bound *bound) {
   return bound->nodes->contact.touch_count > 0;
 }
-/* Lists where bodies may touch, from the masses alone, if that has not been done in the step. */
-mpm_status mpmi_body_contacts_list(mpmi_bound *bound);
-/* Finds how they touch there, and asks the host for coefficients of friction. */
+/* Finds where bodies may touch, and asks the host for coefficients of friction. */
 mpm_status mpmi_body_contacts_find(mpmi_bound *bound);
 /* Lets bodies act on each other, or with keeps, in a projection without forces, keeps their contacts as they
  * were found. Rounds after the first go on from there. *most becomes the largest velocity that changed. */

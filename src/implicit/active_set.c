@@ -1,6 +1,5 @@
 /* Which touches may close in an implicit step, and which are closed, stick or slide. */
 #include "implicit/active_set.h"
-#include "implicit/extension.h"
 #include "boundary/bound.h"
 
 #include <math.h>
@@ -67,44 +66,6 @@ static int32_t is_possible(const mpmi_balance *balance, mpmi_touch *touch) {
          (tied || mpmi_detects_by_velocity(touch->rule) || touch->gap < (double)INFINITY);
 }
 
-/* Returns the outer row of a party, by its number among those, or -1. */
-static int32_t outer_of(const mpmi_balance *balance, const mpmi_party *party) {
-  const mpmi_newton *newton = balance->newton;
-  const int32_t active = party->surface < 0 ? newton->active_of[party->slot] : -1;
-  return active < 0 ? -1 : newton->outer_of[newton->active[active].row];
-}
-
-/* Returns 1 when a row has a touch of a pair of bodies in which no row is outer. */
-static int32_t has_inner_touch(const mpmi_balance *balance, int32_t row, int64_t record) {
-  mpmi_contact_nodes *contact = &balance->nodes->contact;
-  const int32_t cloud = contact->cloud_of[balance->newton->master[row]];
-  if (cloud < 0) return 0;
-  const int64_t party = contact->cloud[cloud].party;
-  const mpmi_meeting *meeting = &contact->meeting[contact->party[party].meeting];
-  for (int64_t t = meeting->first_touch; t < meeting->first_touch + meeting->touch_count; ++t) {
-    mpmi_touch *touch = &contact->touch[t];
-    if (touch->record != record || (touch->party[0] != party && touch->party[1] != party) ||
-        outer_of(balance, &contact->party[touch->party[0]]) >= 0 ||
-        outer_of(balance, &contact->party[touch->party[1]]) >= 0)
-      continue;
-    if (is_possible(balance, touch)) return 1;
-  }
-  return 0;
-}
-
-/* Returns 1 when an outer row takes part whose inner rows touch the same: it moves with these, and what it is
- * pressed by presses them. A touch at so weak a node would only send it about. */
-static int32_t is_of_inner_rows(const mpmi_balance *balance, const mpmi_touch *touch) {
-  const mpmi_newton *newton = balance->newton;
-  for (int32_t i = 0; i < 2; ++i) {
-    const int32_t outer = outer_of(balance, &balance->nodes->contact.party[touch->party[i]]);
-    if (outer < 0) continue;
-    for (int64_t t = mpmi_first_term(newton, outer); t < newton->outer[outer].end; ++t)
-      if (has_inner_touch(balance, newton->term[t].row, touch->record)) return 1;
-  }
-  return 0;
-}
-
 static mpm_status check_offered(const mpmi_balance *balance) {
   const mpmi_contact_nodes *contact = &balance->nodes->contact;
   for (int64_t i = 0; i < contact->touch_count; ++i)
@@ -134,7 +95,7 @@ static mpm_status list_constraints(mpmi_balance *balance) {
   for (int64_t t = 0; t < contact->touch_count; ++t) {
     mpmi_touch *touch = &contact->touch[t];
     touch->closed = touch->stuck = 0;
-    if (touch->ambiguous || !is_possible(balance, touch) || is_of_inner_rows(balance, touch)) continue;
+    if (touch->ambiguous || !is_possible(balance, touch)) continue;
     mpmi_constraint *of = &newton->constraint[newton->constraint_count++];
     *of = (mpmi_constraint){.touch = t, .stiffness = -1.0};
     for (int32_t i = 0; i < 2; ++i) {
@@ -152,18 +113,6 @@ static mpm_status list_constraints(mpmi_balance *balance) {
   return MPM_OK;
 }
 
-static mpmi_bound bound_of(const mpmi_balance *balance) {
-  return (mpmi_bound){.step = balance->step,
-                      .nodes = balance->nodes,
-                      .values = &balance->nodes->solved,
-                      .dim = balance->settings->grid->dim};
-}
-
-mpm_status mpmi_active_set_list(mpmi_balance *balance) {
-  mpmi_bound bound = bound_of(balance);
-  return mpmi_body_contacts_list(&bound);
-}
-
 mpm_status mpmi_active_set_find(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
@@ -177,7 +126,8 @@ mpm_status mpmi_active_set_find(mpmi_balance *balance) {
       mpmi_velocity(&balance->nodes->solved, node->slot)[c] =
           node->sign[c] * newton->vector[MPMI_V0][(int64_t)node->row * dim + c];
   }
-  mpmi_bound bound = bound_of(balance);
+  mpmi_bound bound = {
+      .step = balance->step, .nodes = balance->nodes, .values = &balance->nodes->solved, .dim = dim};
   const mpm_status status = mpmi_body_contacts_find(&bound);
   return status ? status : list_constraints(balance);
 }

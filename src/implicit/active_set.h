@@ -60,8 +60,6 @@ static inline void mpmi_stoppable(const mpmi_constraint *of, double *move) {
 }
 
 /* ---- the step ------------------------------------------------------------------------------------------ */
-/* Lists the nodes at which bodies may touch: the extension asks. */
-mpm_status mpmi_active_set_list(mpmi_balance *balance);
 /* Finds the touches that may close in the step, from the velocities of its start, and guesses which do. */
 mpm_status mpmi_active_set_find(mpmi_balance *balance);
 /* Adds the stiffness of closed touches to the matrix, and to the right-hand side what they still lack. */

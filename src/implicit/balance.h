@@ -115,12 +115,10 @@ typedef struct mpmi_newton {
   int64_t outer_count, outer_capacity, term_count, term_capacity;
   mpmi_outer *outer;
   mpmi_outer_term *term;
-  int64_t outer_of_capacity, led_start_capacity, led_capacity, master_capacity, meets_capacity,
-      columns_capacity;
+  int64_t outer_of_capacity, led_start_capacity, led_capacity, master_capacity, columns_capacity;
   int32_t *outer_of;        /* [rows] outer row, or -1 */
   int64_t *led_start, *led; /* outer rows by the inner ones that they move with */
   int64_t *master;          /* [rows] slot of the node behind a row */
-  uint8_t *meets;           /* [rows] 1: of a node at which bodies or a surface meet */
   int32_t *columns;         /* [tasks] those of a row that is being listed */
   int64_t diagonal_capacity;
   int64_t *diagonal; /* [rows] entry */

@@ -12,9 +12,6 @@
 /* A row is outer with less than this share of the largest sum of V0 |grad w|^2 of the nodes around. On the
  * linear basis a particle that enters a cell has its full gradient there at once. */
 static const double outer_share = 1e-2, outer_share_linear = 5e-2;
-/* One at which bodies meet is outer with less than this: contact moves weak nodes by cells, and friction there
- * does not come to rest. */
-static const double outer_share_in_contact = 1e-1;
 /* Inner rows are looked for so many nodes away; lines as good as the best but for this share count alike. */
 enum { MOST_STEPS = 3 };
 static const double alike = 1e-9;
@@ -51,28 +48,12 @@ static void sum_stiffness(search *s, int64_t rows) {
   }
 }
 
-/* Marks the rows of nodes at which bodies or a surface may touch. */
-static void find_meetings(search *s, int64_t rows) {
-  const mpmi_newton *newton = s->newton;
-  const mpmi_contact_nodes *contact = &s->balance->nodes->contact;
-  memset(newton->meets, 0, (size_t)rows);
-  for (int64_t p = 0; p < contact->party_count; ++p) {
-    const mpmi_party *party = &contact->party[p];
-    const int32_t active = party->surface < 0 && party->cloud_count ? newton->active_of[party->slot] : -1;
-    if (active >= 0) newton->meets[newton->active[active].row] = 1;
-  }
-}
-
-static double share_of(const search *s, int64_t row) {
-  if (s->balance->settings->grid->family == MPMI_FAMILY_BSPLINE1) return outer_share_linear;
-  return s->newton->meets[row] ? outer_share_in_contact : outer_share;
-}
-
 /* Returns 1 when a row has little stiffness beside those in reach of its node, and nothing prescribes it. */
 static int32_t is_weak(const search *s, int64_t row, double largest) {
   const mpmi_newton *newton = s->newton;
   const int32_t dim = s->balance->settings->grid->dim, reach = s->balance->settings->grid->width - 1;
-  const double share = share_of(s, row);
+  const double share =
+      s->balance->settings->grid->family == MPMI_FAMILY_BSPLINE1 ? outer_share_linear : outer_share;
   if (s->stiffness[row] >= share * largest) return 0;
   for (int32_t c = 0; c < dim; ++c)
     if (mpmi_holder_of(s->balance, s->slot[row], c) == MPMI_ROW_PRESCRIBED) return 0;
@@ -211,11 +192,9 @@ mpm_status mpmi_extension_find(mpmi_balance *balance, int64_t rows, int32_t *cha
               .terms_before = newton->term_count};
   mpm_status status = MPMI_RESERVE_MORE(c, newton->outer_of, newton->outer_of_capacity, rows + 1);
   if (!status) status = MPMI_RESERVE_MORE(c, newton->master, newton->master_capacity, rows + 1);
-  if (!status) status = MPMI_RESERVE_MORE(c, newton->meets, newton->meets_capacity, rows + 1);
   if (status) return status;
   s.slot = newton->master;
   sum_stiffness(&s, rows);
-  find_meetings(&s, rows);
   double largest = 0.0;
   for (int64_t r = 0; r < rows; ++r) largest = fmax(largest, s.stiffness[r]);
   for (int64_t r = 0; r < rows; ++r) newton->outer_of[r] = is_weak(&s, r, largest) ? 0 : -1;

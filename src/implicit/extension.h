@@ -19,7 +19,7 @@ static inline int32_t mpmi_is_extended(const mpmi_newton *newton, int64_t row) {
 }
 
 /* ---- condense.c --------------------------------------------------------------------------------------- */
-/* Lets the outer rows that have touches of their own be unknowns in this step, and marks the others in
+/* Lets the outer rows that may touch something be unknowns of their own in this step, and marks the others in
  * matrix.held. */
 void mpmi_condense_mark(mpmi_balance *balance);
 /* Adds the entries of outer rows in a vector of forces to their inner rows, and clears them. */

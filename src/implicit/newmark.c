@@ -154,7 +154,7 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
   if (status || (status = find_nodes(balance, clock)) ||
       (status = find_external(balance, at_start ? balance->step->t : balance->step->t + dt, clock)) ||
-      (status = mpmi_active_set_list(balance)) || (status = mpmi_unknowns_find(balance)))
+      (status = mpmi_unknowns_find(balance)))
     return status;
   fold_means(balance, newton->vector[MPMI_V0]);
   status = mpmi_active_set_find(balance);
