@@ -1,5 +1,5 @@
-/* Two elastic disks that collide under a force of the host: the scene that the example of every language makes, with the
- * same bits. It prints the number of particles, the time and the hash of the state. */
+/* Two elastic disks that collide under a force of the host: the scene that the example of every language
+ * makes, with the same bits. It prints the number of particles, the time and the hash of the state. */
 #include <inttypes.h>
 #include <mpm/mpm.h>
 #include <stdio.h>

@@ -104,13 +104,13 @@ typedef struct mpm_step_info {
   /** Set of the first failure, numbered in order of mpm_stepper_add(), or -1. The first is the smallest
    * (set, particle) of those that failed, so that reports repeat. */
   int32_t set;
-  int64_t step;         /**< number of committed steps, counted on from mpm_stepper_set_time() */
+  int64_t step; /**< number of committed steps, counted on from mpm_stepper_set_time() */
   /** Number of nodes with mass in the step; of one that failed before they were counted, that of the step
    * before. */
   int64_t active_nodes;
-  int64_t removed;      /**< particles that left through MPM_WALL_OPEN since the stepper was made */
-  int64_t resorts;      /**< how often particles were sorted anew since the stepper was made */
-  int64_t particle;     /**< id of the particle that failed, or -1 */
+  int64_t removed;  /**< particles that left through MPM_WALL_OPEN since the stepper was made */
+  int64_t resorts;  /**< how often particles were sorted anew since the stepper was made */
+  int64_t particle; /**< id of the particle that failed, or -1 */
   /** Node that failed, or -1: its lexicographic number over the grid with one ghost layer per side,
    * ((ix+1)*(cells_y+3)+(iy+1))*(cells_z+3)+(iz+1) with unused axes left out. */
   int64_t node;
@@ -359,14 +359,14 @@ MPM_API mpm_status mpm_advance_desc_init(mpm_advance_desc *desc, uint32_t struct
 
 /**
  * Steps to t_end exactly. Statuses 1..5 cut dt to 0.6 of it and try again, and success lets it grow; the
- * controller's dt is part of the saved state. In implicit steps MPM_OFF_GRID cuts as well, but no more than 20
- * times before the time comes to where one of these steps would have ended: a body that moves out by itself
- * does so in steps of any length. On failure the state is that of the last committed sub-step, and the status
- * is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives
- * up, and mpm_last_error() says so and why the last try failed; the host may call again, with the dt of
- * before the cuts. info may be NULL; it is that of the last sub-step tried. The call returns
- * MPM_OK with t < t_end when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before
- * the present time, or a value is bad.
+ * controller's dt is part of the saved state. In implicit steps MPM_OFF_GRID cuts as well, but no more than
+ * 20 times before the time comes to where one of these steps would have ended: a body that moves out by
+ * itself does so in steps of any length. On failure the state is that of the last committed sub-step, and
+ * the status is the cause. After max_cuts cuts in a row (60: dt is 5e-14 of what it was) the call gives up,
+ * and mpm_last_error() says so and why the last try failed; the host may call again, with the dt of before
+ * the cuts. info may be NULL; it is that of the last sub-step tried. The call returns MPM_OK with t < t_end
+ * when max_steps ran out. Errors are those of mpm_step(); MPM_E_ARG: t_end is before the present time, or a
+ * value is bad.
  */
 MPM_API mpm_status mpm_advance(mpm_stepper *stepper, const mpm_advance_desc *desc, mpm_step_info *info);
 

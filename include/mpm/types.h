@@ -143,9 +143,9 @@ enum mpm_log_value {
 /** Remedy against volumetric locking: MPoint theory, eqs 47-53, carried to the deformation gradient. */
 enum mpm_locking_value {
   MPM_LOCKING_NONE = 0, /**< there is no remedy */
-  /** The law sees the dilation averaged over the cell, weighted by volume. Of sets whose law makes pressure by
-   * shear ("drucker_prager", "mohr_coulomb", "cam_clay") that is the mean of such sets alone, and forces have
-   * their pressure averaged over the cell, which does the same work (Hughes 1980). */
+  /** The law sees the dilation averaged over the cell, weighted by volume. Of sets whose law makes pressure
+   * by shear ("drucker_prager", "mohr_coulomb", "cam_clay") that is the mean of such sets alone, and forces
+   * have their pressure averaged over the cell, which does the same work (Hughes 1980). */
   MPM_LOCKING_CELL_AVERAGE = 1
 };
 

@@ -101,7 +101,7 @@ static void take_stress(mpmi_batch *b) {
   take(b, NULL);
 }
 
-/* Averages pressures over cells where laws want it, by the stress of the displacements that the nodes have. */
+/* Averages pressures over cells where laws want it, by the stress of the nodes' displacements. */
 static mpm_status find_pressures(mpmi_balance *balance) {
   static const mpmi_pass pass = STRAIN_PASS(take_stress);
   if (!mpmi_has_nodal_stress(balance->layout)) return MPM_OK;

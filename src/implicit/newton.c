@@ -262,6 +262,13 @@ static int32_t settle_contact(iteration *it) {
   return !changed && mpmi_active_set_error(it->balance) <= 1.0;
 }
 
+/* Puts the counts so far into the info of the step. */
+static void tell(const mpmi_balance *balance) {
+  balance->step->info.newton_iterations = balance->iterations;
+  balance->step->info.linear_solver = balance->solver_used;
+  balance->step->info.linear_iterations = balance->linear_iterations;
+}
+
 static mpm_status iterate(iteration *it) {
   mpmi_newton *newton = it->newton;
   int32_t settled = 1;
@@ -279,6 +286,8 @@ static mpm_status iterate(iteration *it) {
     if ((status = line_search(it, moves_held, &taken))) return status;
     settled = settle_contact(it);
     note(it);
+    tell(it->balance);
+    if ((status = it->balance->step->ask_progress(it->balance->step->stepper))) return status;
     if (taken == 1.0 && settled && converged(it, length_of(it, newton->vector[MPMI_DU]), energy))
       return MPM_OK;
     it->du_largest = fmax(it->du_largest, taken * length_of(it, newton->vector[MPMI_DU]));
@@ -295,8 +304,6 @@ mpm_status mpmi_newton_solve(mpmi_balance *balance) {
   find_residual(&it);
   note(&it);
   status = iterate(&it);
-  balance->step->info.newton_iterations = balance->iterations;
-  balance->step->info.linear_solver = balance->solver_used;
-  balance->step->info.linear_iterations = balance->linear_iterations;
+  tell(balance);
   return status;
 }

@@ -85,6 +85,9 @@ typedef struct mpmi_step {
   double host_work;             /* of prescribed velocities, prescribed particles and hooks */
   int32_t whole_increments;     /* implicit: nodes give particles the whole change of their velocity */
   mpm_step_info info;           /* what the step reports if it is made, as far as it is known */
+  /* Shows the host the info and asks whether to go on; anything but MPM_OK ends the step. */
+  mpm_status (*ask_progress)(struct mpm_stepper *stepper);
+  struct mpm_stepper *stepper;
 } mpmi_step;
 
 mpmi_failure mpmi_no_failure(void);

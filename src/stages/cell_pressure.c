@@ -9,13 +9,10 @@
  *
  * where trace and deviator are those of the axes that the grid has. Where pressure follows from the dilation
  * alone, particles have that of their cell as it is, and keep it. */
-#include "layout/accumulate.h"
-#include "layout/tasks.h"
 #include "layout/tile.h"
 #include "simd/tensor.h"
 #include "stages/batch.h"
 #include "stages/stages.h"
-#include "transfer/basis.h"
 
 /* Sums over the particles in a cell, in the place of the four values of a node. */
 typedef struct cell_pressure {
@@ -49,65 +46,52 @@ static double mean_stress(const particle_rows *of, int64_t slot) {
   return of->ratio[slot] * trace / of->dim;
 }
 
-static void add_chunk(const particle_rows *of, int64_t begin, int64_t n, const int32_t *place,
-                      cell_pressure *tile) {
+static void add_chunk(const mpmi_cell_job *job, int32_t m, int64_t begin, int64_t n, const int32_t *place,
+                      double *tile) {
+  const particle_rows of = rows_of(job->step->layout->member[m].set, job->copy);
   for (int64_t p = 0; p < n; ++p) {
-    if (of->id[begin + p] < 0) continue;
-    tile[place[p]].stress += of->volume[begin + p] * mean_stress(of, begin + p);
-    tile[place[p]].volume += of->volume[begin + p];
+    if (of.id[begin + p] < 0) continue;
+    cell_pressure *cell = (cell_pressure *)tile + place[p];
+    cell->stress += of.volume[begin + p] * mean_stress(&of, begin + p);
+    cell->volume += of.volume[begin + p];
   }
 }
 
 /* Writes the stress in the forces of a chunk; inert slots have no volume, and keep their stress. */
-static void write_chunk(const particle_rows *of, int64_t begin, int64_t n, const int32_t *place,
-                        const cell_pressure *tile, double *out) {
+static void write_chunk(const mpmi_cell_job *job, int32_t m, int64_t begin, int64_t n, const int32_t *place,
+                        double *tile) {
+  const mpmi_member *member = &job->step->layout->member[m];
+  const particle_rows of = rows_of(member->set, job->copy);
   for (int64_t p = 0; p < n; ++p) {
     const int64_t slot = begin + p;
-    const cell_pressure *cell = &tile[place[p]];
-    const double own = mean_stress(of, slot);
-    const double shift = of->id[slot] < 0 || !(cell->volume > 0.0) ? 0.0 : cell->stress / cell->volume - own;
-    for (int32_t c = 0; c < of->components; ++c)
-      out[c * of->ld + slot] = of->ratio[slot] * of->stress[c * of->ld + slot] + (c < of->dim ? shift : 0.0);
+    const cell_pressure *cell = (cell_pressure *)tile + place[p];
+    const double own = mean_stress(&of, slot);
+    const double shift = of.id[slot] < 0 || !(cell->volume > 0.0) ? 0.0 : cell->stress / cell->volume - own;
+    for (int32_t c = 0; c < of.components; ++c)
+      member->nodal_stress[c * of.ld + slot] =
+          of.ratio[slot] * of.stress[c * of.ld + slot] + (c < of.dim ? shift : 0.0);
   }
 }
 
-/* Goes through the particles of a block whose pressure is averaged, chunk by chunk: adds them to the tile, or
- * reads it for them. */
-static void go_through(const mpmi_cell_job *job, const mpmi_visit *visit, int32_t adds, cell_pressure *tile) {
-  const int64_t block = visit->block;
-  const mpmi_layout *layout = job->step->layout;
-  const mpm_grid *grid = layout->blocks.grid;
-  mpmi_axis axis[3];
-  int32_t place[MPMI_CHUNK];
-  mpmi_block_axes(grid, layout->blocks.coord[block], axis);
-  for (int32_t m = 0; m < layout->member_count; ++m) {
-    const mpmi_member *member = &layout->member[m];
-    if (!member->nodal_stress) continue;
-    if (adds && mpmi_were_shown(job->step, m) && !mpmi_is_in_place(job->step, visit, m)) continue;
-    const mpmi_points points = mpmi_points_of(member->set, 0);
-    const particle_rows of = rows_of(member->set, job->copy);
-    const int64_t end = member->now.start[block + 1];
-    for (int64_t at = member->now.start[block]; at < end; at += MPMI_CHUNK) {
-      const int64_t n = end - at < MPMI_CHUNK ? end - at : MPMI_CHUNK;
-      mpmi_cell_places(grid, axis, &points, at, n, place);
-      if (adds)
-        add_chunk(&of, at, n, place, tile);
-      else
-        write_chunk(&of, at, n, place, tile, member->nodal_stress);
-    }
-  }
+static int32_t is_averaged(const mpmi_cell_job *job, const mpmi_visit *visit, int32_t m) {
+  (void)visit;
+  return job->step->layout->member[m].nodal_stress != NULL;
 }
 
-static void add_block(void *user, const mpmi_visit *visit, double *tile) {
-  go_through(user, visit, 1, (cell_pressure *)tile);
+/* Particles that are not where they were may lie outside the tile: then the set takes no part, and the step
+ * fails. */
+static int32_t is_averaged_in_place(const mpmi_cell_job *job, const mpmi_visit *visit, int32_t m) {
+  return is_averaged(job, visit, m) &&
+         (!mpmi_were_shown(job->step, m) || mpmi_is_in_place(job->step, visit, m));
 }
 
 static void write_block(void *user, const mpmi_visit *visit) {
+  static const mpmi_cell_work write = {is_averaged, write_chunk};
   const mpmi_cell_job *job = user;
   double *cells = job->step->work->scratch[visit->task].cells;
   mpmi_tile_load(job->step->settings->kernels, &job->step->layout->blocks, visit->block, job->cells, 4,
                  cells);
-  go_through(job, visit, 0, (cell_pressure *)cells);
+  mpmi_cells_visit(job, visit, &write, cells);
 }
 
 int32_t mpmi_has_nodal_stress(const mpmi_layout *layout) {
@@ -117,10 +101,9 @@ int32_t mpmi_has_nodal_stress(const mpmi_layout *layout) {
 }
 
 mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy) {
-  mpmi_cell_job job = {step, &nodes->sums, copy};
-  mpm_status status = mpmi_accumulate(
-      step,
-      &(mpmi_accumulation){.to = &nodes->sums, .give = add_block, .fold = mpmi_cells_join, .user = &job});
+  static const mpmi_cell_work add = {is_averaged_in_place, add_chunk};
+  mpmi_cell_job job = {.step = step, .cells = &nodes->sums, .sum = &add, .copy = copy};
+  mpm_status status = mpmi_cells_sum(&job);
   if (!status) status = mpmi_step_failure(step);
   return status ? status : mpmi_visit_blocks(step, 0, write_block, &job);
 }

@@ -7,9 +7,10 @@
 
 #include <string.h>
 
-/* Adds the applied force, where there is one, on one axis and takes it off inert slots; gives a number that is 0 if all
- * are finite. Slots come in whole chunks; two sums, so that an addition need not wait for the one before. */
 _Static_assert(MPMI_CHUNK % (2 * MPMI_LANES) == 0, "a chunk is whole pairs of registers");
+
+/* Adds the applied force, where there is one, on one axis and takes it off inert slots; gives a number that
+ * is 0 if all are finite. Slots come in whole chunks; two sums, so that none waits for the other. */
 static double complete(double *force, const double *applied, const int64_t *id, int64_t n) {
   mpmi_lanes bad[2] = {{0.0}};
   for (int64_t p = 0; p < n; p += 2 * MPMI_LANES)

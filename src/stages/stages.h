@@ -43,18 +43,29 @@ mpm_status mpmi_locking_stage(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nod
 void mpmi_locking_apply(const mpmi_settings *settings, const double *cells, const mpmi_axis *axis,
                         mpm_particles *set, mpmi_law_batch *b, int64_t begin, int64_t n, double dt);
 
-/* Finds the place in the tile of the lower corner of the cells of n particles, at most a chunk. */
+/* ---- cells.c ----------------------------------------------------------------------------------------- */
+/* Finds the place of each particle's cell in the tile, of whole chunks. */
 void mpmi_cell_places(const mpm_grid *grid, const mpmi_axis *axis, const mpmi_points *points, int64_t begin,
                       int64_t n, int32_t *place);
 
-/* Joins the two halves of cells at a periodic seam, which have been added up on both sides of it; data: a
- * job. Ghosts of walls hold no cell. */
 typedef struct mpmi_cell_job {
   mpmi_step *step;
-  const mpmi_nodal *cells;
-  int32_t copy; /* of stress and dilation ratio */
+  mpmi_nodal *cells;                /* the sums */
+  const struct mpmi_cell_work *sum; /* what is summed up */
+  int32_t copy;                     /* of stress and dilation ratio */
 } mpmi_cell_job;
-void mpmi_cells_join(void *data, int64_t k);
+/* What is done with particles and their cells in a tile. */
+typedef struct mpmi_cell_work {
+  int32_t (*takes)(const mpmi_cell_job *job, const mpmi_visit *visit,
+                   int32_t m); /* whether a set takes part */
+  void (*chunk)(const mpmi_cell_job *job, int32_t m, int64_t begin, int64_t n, const int32_t *place,
+                double *tile);
+} mpmi_cell_work;
+/* Goes through the particles of a block, chunk by chunk. */
+void mpmi_cells_visit(const mpmi_cell_job *job, const mpmi_visit *visit, const mpmi_cell_work *work,
+                      double *tile);
+/* Makes the sums of a job. */
+mpm_status mpmi_cells_sum(mpmi_cell_job *job);
 
 /* ---- cell_pressure.c --------------------------------------------------------------------------------- */
 /* Whether a member has a stress for the forces on nodes beside that of its particles. */

@@ -23,6 +23,21 @@ static mpm_status check_dt(mpm_stepper *s, double dt) {
   return MPM_OK;
 }
 
+/* Asks the host whether to go on, and shows it the info that the step is about to have. */
+static mpm_status ask_progress(mpm_stepper *s) {
+  const mpmi_settings *settings = &s->settings;
+  if (!settings->progress) return MPM_OK;
+  mpm_step_info info;
+  mpmi_fill_info(s, &s->step.info, &info);
+  info.t = s->step.t + s->step.dt;
+  info.step = s->history.step + 1;
+  const mpm_status status = mpmi_from_host(settings->progress(settings->progress_user, &info));
+  if (!status) return MPM_OK;
+  s->step.failure.callback_status = status;
+  return mpmi_fail(s->context, status > 0 ? MPM_CANCELLED : MPM_E_CALLBACK,
+                   "the progress callback returned %d in the step from t = %g", (int)status, s->step.t);
+}
+
 static void begin(mpm_stepper *s, double dt, int32_t staged) {
   const mpmi_history *history = &s->history;
   const int32_t mean = s->settings.desc.staggered && history->previous_dt > 0.0;
@@ -38,6 +53,8 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
       .dt = dt,
       .velocity_dt = mean ? 0.5 * (history->previous_dt + dt) : dt,
       .failure = mpmi_no_failure(),
+      .ask_progress = ask_progress,
+      .stepper = s,
       /* the nodes are those of the step before until they are counted */
       .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};
   mpmi_reports_clear(&s->work, s->settings.tasks);
@@ -95,21 +112,6 @@ static mpm_status give_up(mpm_stepper *s, mpm_status status) {
                           .linear_iterations = came->linear_iterations,
                           .residual = came->residual});
   return status;
-}
-
-/* Asks the host whether to go on, and shows it the info that the step is about to have. */
-static mpm_status ask_progress(mpm_stepper *s) {
-  const mpmi_settings *settings = &s->settings;
-  if (!settings->progress) return MPM_OK;
-  mpm_step_info info;
-  mpmi_fill_info(s, &s->step.info, &info);
-  info.t = s->step.t + s->step.dt;
-  info.step = s->history.step + 1;
-  const mpm_status status = mpmi_from_host(settings->progress(settings->progress_user, &info));
-  if (!status) return MPM_OK;
-  s->step.failure.callback_status = status;
-  return mpmi_fail(s->context, status > 0 ? MPM_CANCELLED : MPM_E_CALLBACK,
-                   "the progress callback returned %d in the step from t = %g", (int)status, s->step.t);
 }
 
 static mpm_status finish(mpm_stepper *s) {

@@ -517,6 +517,41 @@ TCase *implicit_large_case(void) {
   return tests;
 }
 
+typedef struct watcher {
+  int32_t calls, iterations, stop; /* the host refuses after this iteration */
+} watcher;
+
+static mpm_status watch(void *user, const mpm_step_info *info) {
+  watcher *w = user;
+  ++w->calls;
+  if (info->newton_iterations < w->iterations || info->residual < 0.0) return -1;
+  w->iterations = info->newton_iterations;
+  return info->newton_iterations == w->stop;
+}
+
+/* The host sees every iteration and the end, and ends the step at any of them. */
+START_TEST(watched) {
+  block b;
+  watcher w = {0};
+  mpm_step_info info = {.struct_size = sizeof info};
+  open_block(&b, 1);
+  b.desc.stepper.gravity[1] = -200.0;
+  configure(&b);
+  ck_ok(&b.w, mpm_stepper_set_progress(b.w.stepper, watch, &w));
+  for (w.stop = 1; w.stop <= 2; ++w.stop) {
+    w.iterations = 0;
+    info = fails(&b, MPM_CANCELLED, "the progress callback returned 1");
+    ck_assert_int_eq(info.newton_iterations, w.stop);
+    ck_assert_int_eq(info.callback_status, 1);
+  }
+  w = (watcher){0};
+  ck_ok(&b.w, mpm_step(b.w.stepper, b.dt, &info));
+  ck_assert_int_gt(info.newton_iterations, 2);
+  ck_assert_int_eq(w.calls, info.newton_iterations + 1);
+  world_close(&b.w);
+}
+END_TEST
+
 TCase *implicit_failures_case(void) {
   TCase *tests = tcase_create("failures");
   tcase_set_timeout(tests, 60.0);
@@ -530,6 +565,7 @@ TCase *implicit_failures_case(void) {
   tcase_add_test(tests, host_solver);
   tcase_add_test(tests, refused);
   tcase_add_test(tests, off_the_grid);
+  tcase_add_test(tests, watched);
   tcase_add_test(tests, advance);
   tcase_add_test(tests, advance_within_the_grid);
   tcase_add_test(tests, advance_out_of_the_grid);

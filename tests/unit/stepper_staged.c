@@ -162,7 +162,8 @@ static mpm_status note(void *user, const mpm_step_info *info) {
   return 0;
 }
 
-/* The info of a step has nothing of the step before, made or failed, but the count of nodes until it has its own. */
+/* The info of a step has nothing of the step before, made or failed, but the count of nodes until it has its
+ * own. */
 START_TEST(info_of_its_own_step) {
   world r;
   mpm_status answer = 4;

@@ -108,8 +108,8 @@ START_TEST(schemes_agree) {
 }
 END_TEST
 
-/* Where all of a cell is strained alike, as but for the rim here, the remedy changes nothing: the forces of USF
- * are those of the new stress. */
+/* Where all of a cell is strained alike, as but for the rim here, the remedy changes nothing: the forces of
+ * USF are those of the new stress. */
 START_TEST(uniform_strain_is_not_touched) {
   double *v[2], change = 0.0;
   int64_t n = 0;
