@@ -1,5 +1,7 @@
 """Functions of Python that the library calls: what they see, what they give, what they raise."""
+import gc
 import unittest
+import weakref
 
 import mpm
 import numpy as np
@@ -254,6 +256,24 @@ class Compiled(unittest.TestCase):
                 batch.wave_speed[i] = np.sqrt((lam + 2 * mu) / 1e3)
 
         Laws.compare(self, mpm.MUSL, lambda context: context.law(compiled.stress(law), 1e3), 50, 2e-3)
+
+    def test_compiled_code_stays(self):
+        def lift(batch, add):
+            for i in range(batch.n):
+                add[i, 1] += 2.0 * batch.mass[i]
+
+        fn = compiled.particles(lift)
+        gone = weakref.ref(fn)
+        one, stepper = block()
+        stepper.set_force(fn)
+        del fn
+        gc.collect()
+        self.assertIsNotNone(gone())
+        stepper.step(1e-3)
+        np.testing.assert_allclose(stepper.info.momentum[1], 2e-3 * one["mass"].sum(), rtol=1e-9)
+        stepper.set_force(None)
+        gc.collect()
+        self.assertIsNone(gone())
 
     def test_exception_ends_the_step(self):
         @compiled.particles

@@ -14,10 +14,11 @@ Constants have the names of the C library without MPM_. Every method's text ends
 from . import _api
 from ._handles import Context
 from ._library import Error, StepError, version
-from .grid import Grid, Series
+from .grid import Grid
 from .material import Law, Material, models
 from .obstacle import Obstacle
 from .particles import Particles
+from .series import Series
 from .stepper import Stepper, StepInfo
 
 globals().update({name: getattr(_api, name) for name in _api.CONSTANTS})

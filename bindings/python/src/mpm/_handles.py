@@ -143,6 +143,17 @@ class Context(Handle):
 
         return call
 
+    def _callback(self, kind, fn, call):
+        """A function of one of the library's types: of None none, fn itself where it is compiled (mpm.numba), else call,
+        which runs fn."""
+        if fn is None:
+            return kind()
+        if not hasattr(fn, "address"):
+            return kind(self._guard(call))
+        made = ctypes.cast(fn.address, kind)
+        made.compiled = fn  # whose code must not go before
+        return made
+
     def _sink(self, file):
         """A function for the library that hands bytes to file.write()."""
 
@@ -196,7 +207,7 @@ class Context(Handle):
 
     def series(self, path):
         """A time Series of output files (.pvd)."""
-        from .grid import Series
+        from .series import Series
         return Series(self, path)
 
 

@@ -1,9 +1,9 @@
-"""Grids, and series of output files."""
+"""Grids."""
 import ctypes
 
 from . import _api
 from ._handles import Handle, descriptor
-from ._library import documented, lib
+from ._library import lib
 
 
 class Grid(Handle):
@@ -21,17 +21,3 @@ class Grid(Handle):
         self.spacing = tuple(desc.spacing)[:desc.dim]
         self.origin = tuple(desc.origin)[:desc.dim]
         self.periodic = tuple(bool(p) for p in desc.periodic)[:desc.dim]
-
-
-class Series(Handle):
-    """A time series of output files (.pvd) for ParaView; its file is valid after every append."""
-
-    _destroy = staticmethod(lib.mpm_series_close)
-
-    def __init__(self, context, path):
-        self._own(context, context._make(lib.mpm_series_open, context, str(path).encode()), context)
-
-    @documented("mpm_series_append")
-    def append(self, t, file):
-        """Appends an output file at a time; its path is relative to the series' own file."""
-        self._context._check(lib.mpm_series_append(self, t, str(file).encode()))

@@ -136,10 +136,17 @@ class Law(Material):
                           dict(density=density, state_count=state_count, tangent_form=tangent_form), "Law")
         kinds = weakref.WeakMethod(self._kinds)
         shape = (3, 3, 3, 3) if tangent_form == _api.TANGENT_GENERAL else (6, 6)
-        self._callbacks = [_stress_callback(context, stress, kinds), _tangent_callback(context, tangent, kinds, shape)]
-        desc.stress = self._callbacks[0]
-        if tangent is not None:
-            desc.tangent = self._callbacks[1]
+
+        def find_stress(_, batch):
+            return MaterialBatch(batch, kinds())._run(stress)
+
+        def find_tangent(_, batch, c, symmetric):
+            answer = MaterialBatch(batch, kinds())._run(tangent, (c, np.float64, *shape))
+            ctypes.c_int32.from_address(symmetric).value = bool(answer)
+
+        self._callbacks = (context._callback(_api.stress_fn, stress, find_stress),
+                           context._callback(_api.tangent_fn, tangent, find_tangent))
+        desc.stress, desc.tangent = self._callbacks
         desc.state_initial = address(initial)
         made = context._make(lib.mpm_material_create_custom, context, ctypes.byref(desc))
         self._own(context, made, context)
@@ -147,24 +154,3 @@ class Law(Material):
 
     def _kinds(self):
         return [one._kinds for one in self._sets]
-
-
-def _stress_callback(context, stress, kinds):
-    if hasattr(stress, "address"):  # compiled
-        return ctypes.cast(stress.address, _api.stress_fn)
-
-    def call(_, batch):
-        return MaterialBatch(batch, kinds())._run(stress)
-
-    return _api.stress_fn(context._guard(call))
-
-
-def _tangent_callback(context, tangent, kinds, shape):
-    if hasattr(tangent, "address"):
-        return ctypes.cast(tangent.address, _api.tangent_fn)
-
-    def call(_, batch, c, symmetric):
-        answer = MaterialBatch(batch, kinds())._run(tangent, (c, np.float64, *shape))
-        ctypes.c_int32.from_address(symmetric).value = bool(answer)
-
-    return _api.tangent_fn(context._guard(call))

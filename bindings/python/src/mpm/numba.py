@@ -42,19 +42,14 @@ def _readers(struct):
     """Functions that read the fields of a batch at its address."""
     at = {name: getattr(struct, name).offset for name, *_ in struct._fields_}
 
-    def word(name):
-        offset = at[name]
-        return numba.njit(lambda batch: numba.carray(_words(batch + offset), 1)[0])
+    def reader(cast):
+        def read(name):
+            offset = at[name]
+            return numba.njit(lambda batch: numba.carray(cast(batch + offset), 1)[0])
 
-    def integer(name):
-        offset = at[name]
-        return numba.njit(lambda batch: numba.carray(_integers(batch + offset), 1)[0])
+        return read
 
-    def double(name):
-        offset = at[name]
-        return numba.njit(lambda batch: numba.carray(_doubles(batch + offset), 1)[0])
-
-    return word, integer, double
+    return reader(_words), reader(_integers), reader(_doubles)
 
 
 @numba.njit

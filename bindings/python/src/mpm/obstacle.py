@@ -38,21 +38,13 @@ class Obstacle(Handle):
         desc = descriptor(_api.obstacle_desc, lib.mpm_obstacle_desc_init, dict(options, shape=shape), "Obstacle")
         self._contact = contact_desc(contact or {})
         desc.contact = ctypes.pointer(self._contact)
-        self._motion, self._distance = None, None
-        if distance is not None:
-            self._distance = desc.distance = self._asked(context, distance)
-        self._own(context, context._make(lib.mpm_obstacle_create, context, ctypes.byref(desc)), context)
-        self._stepper = None
 
-    @staticmethod
-    def _asked(context, distance):
-        if hasattr(distance, "address"):
-            return ctypes.cast(distance.address, _api.distance_fn)
-
-        def call(_, batch):
+        def measure(_, batch):
             return DistanceBatch(batch)._run(distance)
 
-        return _api.distance_fn(context._guard(call))
+        self._motion = None
+        self._distance = desc.distance = context._callback(_api.distance_fn, distance, measure)
+        self._own(context, context._make(lib.mpm_obstacle_create, context, ctypes.byref(desc)), context)
 
     @documented("mpm_obstacle_set_motion")
     def set_motion(self, motion):
@@ -64,7 +56,7 @@ class Obstacle(Handle):
                 if values is not None:
                     (ctypes.c_double * 3).from_address(at)[:] = list(doubles(values, 3))
 
-        made = _api.motion_fn(self._context._guard(call)) if motion else _api.motion_fn()
+        made = self._context._callback(_api.motion_fn, motion, call)
         self._context._check(lib.mpm_obstacle_set_motion(self, made, None))
         self._motion = made
 

@@ -1,38 +1,17 @@
 """The time loop: steps, walls, forces and other callbacks, contact, saved states."""
 import ctypes
-import threading
 
 import numpy as np
 
 from . import _api
-from ._arrays import Batch, address, lend, scalar, vector
-from ._handles import Handle, descriptor
-from ._library import documented, error_of, lib
+from ._arrays import address, lend
+from ._handles import Handle, descriptor, fill
+from ._library import documented, lib
+from .batches import ContactBatch, NodeBatch, ParticleBatch
 from .obstacle import contact_desc
+from .system import System
 
 _VECTORS = ("momentum", "angular_momentum", "force", "torque", "impulse")
-
-
-class ParticleBatch(Batch):
-    """Particles for which a vector is wanted: n, dim, t, dt, id (n,) (< 0: an inert slot), position and velocity (n, dim),
-    reference_position or None, mass, volume; particles, the set; field(name). Arrays end with the call."""
-
-    _arrays = {"id": scalar, "position": vector, "reference_position": vector, "velocity": vector, "mass": scalar,
-               "volume": scalar}
-    particles = None
-
-
-class NodeBatch(Batch):
-    """Active nodes: n, dim, t, dt, body, index and position (n, dim), mass (n,). Arrays end with the call."""
-
-    _arrays = {"index": vector, "position": vector, "mass": scalar}
-
-
-class ContactBatch(Batch):
-    """Nodes at which two bodies touch: body_a, body_b, n, dim, t, dt, position, normal and slip (n, dim), gap, area and
-    pressure (n,). Arrays end with the call."""
-
-    _arrays = {"position": vector, "normal": vector, "slip": vector, "gap": scalar, "area": scalar, "pressure": scalar}
 
 
 class StepInfo:
@@ -52,44 +31,6 @@ class StepInfo:
         return f"<StepInfo step={self.step} t={self.t:g} kinetic_energy={self.kinetic_energy:g} strain_energy={self.strain_energy:g}>"
 
 
-class System:
-    """The linear system of an implicit step, for the time of a solve: matrix (indptr, indices, data), symmetric,
-    positive_definite, block, node (rows,), component (rows,), position (rows, dim), apply(x)."""
-
-    def __init__(self, operator, dim):
-        self._operator = operator
-        info = _api.operator_info(struct_size=ctypes.sizeof(_api.operator_info))
-        _refuse(lib.mpm_operator_get_info(operator, ctypes.byref(info)))
-        self.rows, self.block, self.pattern_id = info.rows, info.block, info.pattern_id
-        self.symmetric, self.positive_definite = bool(info.symmetric), bool(info.positive_definite)
-        copy = lambda at, kind, n: np.array((kind * n).from_address(at)) if n else np.empty(0)
-        self.node = copy(info.node, ctypes.c_int64, info.rows)
-        self.component = copy(info.component, ctypes.c_int32, info.rows)
-        self.position = copy(info.position, ctypes.c_double, dim * info.ld).reshape(dim, info.ld)[:, :info.rows].T
-
-    def apply(self, x):
-        """The matrix times a vector."""
-        x, y = np.ascontiguousarray(x, np.float64), np.empty(self.rows)
-        _refuse(lib.mpm_operator_apply(self._operator, address(x), address(y)))
-        return y
-
-    @property
-    def matrix(self):
-        """The matrix by compressed rows, as copies (indptr, indices, data): what scipy.sparse.csr_matrix takes in the order
-        (data, indices, indptr)."""
-        start, column, value = (ctypes.c_void_p() for _ in range(3))
-        _refuse(lib.mpm_operator_csr(self._operator, *(ctypes.addressof(x) for x in (start, column, value))))
-        indptr = np.array((ctypes.c_int64 * (self.rows + 1)).from_address(start.value))
-        count = int(indptr[-1])
-        return (indptr, np.array((ctypes.c_int32 * count).from_address(column.value)),
-                np.array((ctypes.c_double * count).from_address(value.value)))
-
-
-def _refuse(status):
-    if status:
-        raise error_of(status, lib.mpm_status_text(status).decode())
-
-
 class Stepper(Handle):
     """A time loop over sets of particles on a grid. The options are the fields of mpm_stepper_desc: scheme, transfer, flip,
     gravity, locking_remedy and so on."""
@@ -102,7 +43,6 @@ class Stepper(Handle):
         self._callbacks, self._held = {}, {}
         self._own(context, made, context, grid)
         self.grid, self.dim, self._sets, self._obstacles = grid, grid.dim, [], []
-        self._main = threading.main_thread()
         self.set_progress(None)
         self.add(*sets)
 
@@ -135,7 +75,6 @@ class Stepper(Handle):
     @documented("mpm_stepper_configure")
     def configure(self, **options):
         """Changes options between steps; those that are not named stay."""
-        from ._handles import fill
         desc = _api.stepper_desc.from_buffer_copy(self._options)
         fill(desc, options, "Stepper")
         self._context._check(lib.mpm_stepper_configure(self, ctypes.byref(desc)))
@@ -178,25 +117,15 @@ class Stepper(Handle):
 
     # ---- callbacks ----
 
-    def _kinds_of(self, batch):
-        for one in self._sets:
-            if one._address.value == batch.contents.particles:
-                return one
-        return None
-
     def _particle_callback(self, fn):
-        if fn is None:
-            return _api.particle_fn()
-        if hasattr(fn, "address"):
-            return ctypes.cast(fn.address, _api.particle_fn)
-
         def call(_, batch, add):
-            one = self._kinds_of(batch)
-            shown = ParticleBatch(batch, lambda: [one._kinds] if one else [])
+            at = batch.contents.particles
+            one = next(one for one in self._sets if one._address.value == at)
+            shown = ParticleBatch(batch, lambda: [one._kinds])
             shown.particles = one
             return shown._run(fn, (add, np.float64, self.dim))
 
-        return _api.particle_fn(self._context._guard(call))
+        return self._context._callback(_api.particle_fn, fn, call)
 
     def _set(self, key, setter, made, *before):
         """Sets a callback, and keeps it alive as long as the library may call it."""
@@ -225,64 +154,48 @@ class Stepper(Handle):
     def set_velocity_bc(self, fn):
         """fn(batch, prescribed, velocity) prescribes velocities of the nodes of a NodeBatch: it sets prescribed (n, dim) to
         1 and velocity (n, dim)."""
-        if fn is None or hasattr(fn, "address"):
-            made = ctypes.cast(fn.address, _api.velocity_fn) if fn else _api.velocity_fn()
-        else:
 
-            def call(_, batch, prescribed, velocity):
-                return NodeBatch(batch)._run(fn, (prescribed, np.uint8, self.dim), (velocity, np.float64, self.dim))
+        def call(_, batch, prescribed, velocity):
+            return NodeBatch(batch)._run(fn, (prescribed, np.uint8, self.dim), (velocity, np.float64, self.dim))
 
-            made = _api.velocity_fn(self._context._guard(call))
-        self._set("velocity_bc", lib.mpm_stepper_set_velocity_bc, made)
+        self._set("velocity_bc", lib.mpm_stepper_set_velocity_bc, self._context._callback(_api.velocity_fn, fn, call))
 
     @documented("mpm_stepper_set_node_hook")
     def set_node_hook(self, stage, fn):
         """fn(batch, velocity, force) reads and changes velocity and force (n, dim) of the nodes at a stage: AFTER_P2G,
         AFTER_FORCES or AFTER_VELOCITY."""
-        if fn is None or hasattr(fn, "address"):
-            made = ctypes.cast(fn.address, _api.node_fn) if fn else _api.node_fn()
-        else:
 
-            def call(_, batch, velocity, force):
-                return NodeBatch(batch)._run(fn, (velocity, np.float64, self.dim), (force, np.float64, self.dim))
+        def call(_, batch, velocity, force):
+            return NodeBatch(batch)._run(fn, (velocity, np.float64, self.dim), (force, np.float64, self.dim))
 
-            made = _api.node_fn(self._context._guard(call))
-        self._set(("hook", int(stage)), lib.mpm_stepper_set_node_hook, made, stage)
+        self._set(("hook", int(stage)), lib.mpm_stepper_set_node_hook, self._context._callback(_api.node_fn, fn, call), stage)
 
     @documented("mpm_stepper_set_friction")
     def set_friction(self, fn):
         """fn(batch, friction) changes the coefficients of friction (n,) at the nodes of a ContactBatch."""
-        if fn is None or hasattr(fn, "address"):
-            made = ctypes.cast(fn.address, _api.friction_fn) if fn else _api.friction_fn()
-        else:
 
-            def call(_, batch, friction):
-                return ContactBatch(batch)._run(fn, (friction, np.float64))
+        def call(_, batch, friction):
+            return ContactBatch(batch)._run(fn, (friction, np.float64))
 
-            made = _api.friction_fn(self._context._guard(call))
-        self._set("friction", lib.mpm_stepper_set_friction, made)
+        self._set("friction", lib.mpm_stepper_set_friction, self._context._callback(_api.friction_fn, fn, call))
 
     @documented("mpm_stepper_set_linear_solver")
     def set_linear_solver(self, fn):
         """fn(system, rhs, guess, tolerance) solves an implicit step's System: it returns the solution, or (solution,
         iterations), or None if it has none. For linear_solver = SOLVER_HOST."""
-        if fn is None:
-            made = _api.solve_fn()
-        else:
 
-            def call(_, operator, rhs, solution, tolerance, iterations):
-                system = System(operator, self.dim)
-                vector_at = lambda at: np.ctypeslib.as_array((ctypes.c_double * system.rows).from_address(at))
-                said = fn(system, vector_at(rhs).copy(), vector_at(solution).copy(), tolerance)
-                if said is None:
-                    return 1
-                answer, count = said if isinstance(said, tuple) else (said, 1)
-                vector_at(solution)[:] = answer
-                ctypes.c_int64.from_address(iterations).value = int(count)
-                return 0
+        def call(_, operator, rhs, solution, tolerance, iterations):
+            system = System(operator, self.dim)
+            vector_at = lambda at: np.ctypeslib.as_array((ctypes.c_double * system.rows).from_address(at))
+            said = fn(system, vector_at(rhs).copy(), vector_at(solution).copy(), tolerance)
+            if said is None:
+                return 1
+            answer, count = said if isinstance(said, tuple) else (said, 1)
+            vector_at(solution)[:] = answer
+            ctypes.c_int64.from_address(iterations).value = int(count)
+            return 0
 
-            made = _api.solve_fn(self._context._guard(call))
-        self._set("solver", lib.mpm_stepper_set_linear_solver, made)
+        self._set("solver", lib.mpm_stepper_set_linear_solver, self._context._callback(_api.solve_fn, fn, call))
 
     @documented("mpm_stepper_set_progress")
     def set_progress(self, fn):
