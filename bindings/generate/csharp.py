@@ -5,12 +5,11 @@ declaration of its own, as compilers lay several in one out wrongly.
 """
 import html
 
-from common import NOTE, first_sentence, is_descriptor, words, wrapped
+from common import NOTE, OUTPUTS, first_sentence, is_descriptor, words, wrapped
 
 WIDTH = 118
 TYPES = {"int32_t": "int", "uint32_t": "uint", "mpm_status": "int", "int64_t": "long", "uint64_t": "ulong", "uint8_t": "byte", "float": "float",
          "size_t": "UIntPtr", "double": "double", "char": "byte", "void": "void"}
-OUTPUTS = ("mpm_view", "mpm_operator_info", "mpm_step_info", "mpm_profile", "mpm_contact_info", "mpm_material_batch")
 KEYWORDS = {"params", "out", "in", "ref", "object", "string", "lock", "event", "fixed", "is", "as", "base", "operator"}
 
 HEAD = """using System;

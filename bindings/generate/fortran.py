@@ -5,7 +5,7 @@ Arguments that may be NULL are optional: an absent one is NULL (Fortran 2018).
 """
 import textwrap
 
-from common import NOTE, constants, first_sentence, is_descriptor, wrapped
+from common import NOTE, OUTPUTS, constants, first_sentence, is_descriptor, wrapped
 
 WIDTH = 120
 KINDS = {"int32_t": "integer(c_int32_t)", "uint32_t": "integer(c_int32_t)", "mpm_status": "integer(c_int32_t)",
@@ -155,7 +155,7 @@ def module(api):
     out += "  end interface\n\n"
     out += "  !> Readies a struct: a descriptor gets the library's defaults, an output its struct_size and zeros.\n"
     out += "  interface mpm_init\n"
-    ready = [s for s in api["structs"] if is_descriptor(s) or s["name"] in OUTPUTS or s["name"] == "mpm_material_batch"]
+    ready = [s for s in api["structs"] if is_descriptor(s) or s["name"] in OUTPUTS]
     for struct in ready:
         out += f"    module procedure init_{struct['name']}\n"
     out += "  end interface mpm_init\n\n"
@@ -172,9 +172,6 @@ def module(api):
                 out += f"    it%{field['name']} = {size if field['name'] == 'struct_size' else zero(field['type'])}\n"
         out += f"  end subroutine init_{name}\n\n"
     return out + "end module mpm\n"
-
-
-OUTPUTS = ("mpm_view", "mpm_operator_info", "mpm_step_info", "mpm_profile", "mpm_contact_info")
 
 
 def zero(kind):

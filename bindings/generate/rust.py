@@ -1,10 +1,9 @@
 """Rust: the crate mpm-sys, which is the interface of C as it is, and its test of layouts."""
-from common import NOTE, first_sentence, is_descriptor, wrapped
+from common import NOTE, OUTPUTS, first_sentence, is_descriptor, wrapped
 
 WIDTH = 118
 TYPES = {"int32_t": "i32", "uint32_t": "u32", "mpm_status": "mpm_status", "int64_t": "i64", "uint64_t": "u64", "uint8_t": "u8", "float": "f32",
          "size_t": "usize", "double": "f64", "char": "c_char", "void": "c_void"}
-OUTPUTS = ("mpm_view", "mpm_operator_info", "mpm_step_info", "mpm_profile", "mpm_contact_info", "mpm_material_batch")
 
 HEAD = """//! The interface of libmpm as C has it: functions, structs, constants and types of callbacks, by their names there. The
 //! crate `mpm` is the safe layer over it.

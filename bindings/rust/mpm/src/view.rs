@@ -2,7 +2,7 @@
 use crate::entry::{Core, Sent};
 use crate::{sys, Error, Result};
 use std::marker::PhantomData;
-use std::ops::{Index, IndexMut};
+use std::ops::{Deref, Index, IndexMut};
 use std::sync::Arc;
 
 mod sealed {
@@ -34,10 +34,10 @@ pub struct View<'a, T: Element> {
     what: PhantomData<&'a [T]>,
 }
 
-/// The same for reading and writing. What was written takes effect when the view goes; [`ViewMut::release`] tells whether
-/// it was good.
+/// The same for reading and writing: a [`View`] and more. What was written takes effect when the view goes;
+/// [`ViewMut::release`] tells whether it was good.
 pub struct ViewMut<'a, T: Element> {
-    lent: Lent,
+    shown: View<'a, T>,
     what: PhantomData<&'a mut [T]>,
 }
 
@@ -145,27 +145,7 @@ impl<T: Element> Index<(usize, usize)> for View<'_, T> {
 
 impl<'a, T: Element> ViewMut<'a, T> {
     pub(crate) fn of(lent: Lent) -> Self {
-        ViewMut { lent, what: PhantomData }
-    }
-    /// The number of items, inert slots included.
-    pub fn len(&self) -> usize {
-        self.lent.view.count as usize
-    }
-    /// Whether there are no items.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-    /// The number of stored components.
-    pub fn components(&self) -> usize {
-        self.lent.view.components as usize
-    }
-    /// A component of all items.
-    pub fn column(&self, component: usize) -> &[T] {
-        if self.is_empty() {
-            return &[];
-        }
-        // SAFETY: items are side by side, and the view alone has them.
-        unsafe { std::slice::from_raw_parts(self.lent.column(component), self.len()) }
+        ViewMut { shown: View::of(lent), what: PhantomData }
     }
     /// A component of all items, to be written.
     pub fn column_mut(&mut self, component: usize) -> &mut [T] {
@@ -173,19 +153,26 @@ impl<'a, T: Element> ViewMut<'a, T> {
             return &mut [];
         }
         // SAFETY: items are side by side, and the view alone has them.
-        unsafe { std::slice::from_raw_parts_mut(self.lent.column(component), self.len()) }
+        unsafe { std::slice::from_raw_parts_mut(self.shown.lent.column(component), self.len()) }
     }
     /// Gives the memory back; `MPM_E_ARG` if bad values were written, until whose repair the set does not step.
     pub fn release(self) -> Result<()> {
-        self.lent.release()
+        self.shown.release()
+    }
+}
+
+impl<'a, T: Element> Deref for ViewMut<'a, T> {
+    type Target = View<'a, T>;
+    fn deref(&self) -> &View<'a, T> {
+        &self.shown
     }
 }
 
 impl<T: Element> Index<(usize, usize)> for ViewMut<'_, T> {
     type Output = T;
     /// Of an item a component.
-    fn index(&self, (item, component): (usize, usize)) -> &T {
-        &self.column(component)[item]
+    fn index(&self, at: (usize, usize)) -> &T {
+        &self.shown[at]
     }
 }
 
