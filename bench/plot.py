@@ -16,21 +16,25 @@ import matplotlib.pyplot as plt
 def rows(names):
     for name in names:
         with open(name, newline="") as file:
-            yield from csv.DictReader(line for line in file if not line.startswith("#"))
+            for row in csv.DictReader(line for line in file if not line.startswith("#")):
+                yield {**row, "run": name}
 
 
 def main(out, *names):
     table = list(rows(names))
     figure, axes = plt.subplots(figsize=(6.4, 3.2))
+    colours = {}
     for case in dict.fromkeys(row["case"] for row in table):
         for spread, line in (("3", "-"), ("3000", ":")):
-            chosen = [r for r in table if r["case"] == case and r["spread"] == spread and r["threads"] == "1"]
-            chosen.sort(key=lambda r: int(r["particles"]))
-            if len(chosen) < 2:  # nothing to connect
-                continue
             label = case if spread == "3" else f"{case}, bounds 1000 times wider"
-            axes.plot([int(r["particles"]) for r in chosen], [1e3 / float(r["median_Mps"]) for r in chosen],
-                      line, marker="o", label=label)
+            for run in names:  # each has a line of its own: other runs are of other hours
+                chosen = [r for r in table if (r["case"], r["spread"], r["threads"], r["run"]) == (case, spread, "1", run)]
+                chosen.sort(key=lambda r: int(r["particles"]))
+                if len(chosen) < 2:  # nothing to connect
+                    continue
+                axes.plot([int(r["particles"]) for r in chosen], [1e3 / float(r["median_Mps"]) for r in chosen],
+                          line, marker="o", color=f"C{colours.setdefault(label, len(colours))}",
+                          label=label if label not in axes.get_legend_handles_labels()[1] else None)
     axes.set_xscale("log")
     axes.margins(x=0.08)
     axes.set_ylim(0, 1.12 * max(1e3 / float(r["median_Mps"]) for r in table if r["threads"] == "1"))

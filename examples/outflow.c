@@ -123,7 +123,9 @@ static int draw_channel(FILE *out, int panel, double t, const channel *c, double
   snprintf(text, sizeof text, "<tspan font-weight=\"bold\">t = %.2f s</tspan>", t);
   svg_text(out, f.left + 0.5 * f.width, f.top - 10.0, "middle", "", text);
   svg_panel(out, &f);
+  svg_clip(out, &f);
   svg_tiles(out, &f, n, c->x, a, b, value, value_max);
+  svg_end_clip(out);
   free(value);
   free(at);
   return 0;

@@ -96,6 +96,19 @@ static inline void svg_panel(FILE *out, const svg_frame *f) {
         f->left, f->top, f->width, f->height);
 }
 
+/* What is drawn until svg_end_clip() shows inside the frame only. */
+static inline void svg_clip(FILE *out, const svg_frame *f) {
+  if (out)
+    fprintf(out,
+            "<clipPath id=\"in%.0f-%.0f\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" "
+            "height=\"%.1f\"/></clipPath>\n"
+            "<g clip-path=\"url(#in%.0f-%.0f)\">\n",
+            f->left, f->top, f->left, f->top, f->width, f->height, f->left, f->top);
+}
+static inline void svg_end_clip(FILE *out) {
+  if (out) fputs("</g>\n", out);
+}
+
 static inline void svg_curve(FILE *out, const svg_frame *f, int n, const double *x, const double *y,
                              const char *colour) {
   if (!out) return;
