@@ -1,6 +1,6 @@
 # The bindings of other languages, included by the Makefile at the top of the sources, from where all paths start.
 
-.PHONY: api check-bindings bindings-setup
+.PHONY: api check-bindings bindings-setup check-newcomers
 
 #: api                   bindings/api.json and what bindings of all languages take from it, from the headers, by clang
 api:
@@ -23,5 +23,11 @@ check-bindings: all
 	@for language in $(LANGUAGES); do \
 	  echo "bindings/$$language/check.sh"; \
 	  env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) JOBS=$(JOBS) bash bindings/$$language/check.sh || exit 1; done
+
+#: check-newcomers       what the README of each language tells to type, in a root with nothing but Debian's base, as root by
+#:                       debootstrap, some minutes for each; NEWCOMERS="python rust" selects
+NEWCOMERS ?= csharp fortran javascript python rust
+check-newcomers:
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL bash bindings/newcomer.sh $(abspath $(BUILD))/newcomers $(NEWCOMERS)
 
 include bindings/javascript/rules.mk

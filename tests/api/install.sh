@@ -17,6 +17,7 @@ version=$("$PKG_CONFIG" --modversion mpm)
 grep -qx "version: $version" CITATION.cff
 [ "$(sed -n '/(unreleased)$/d; s/^## //p' CHANGELOG.md | head -n 1)" = "$version" ]
 grep -qx "set(PACKAGE_VERSION \"$version\")" "$prefix/lib/cmake/mpm/mpmConfigVersion.cmake"
+bash packaging/recipes/check.sh
 
 flags() { "$PKG_CONFIG" "$@"; }
 build() { # compiler, standard, source, program, libraries...
