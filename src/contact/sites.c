@@ -10,15 +10,11 @@
 static const double bound_within = 1.1;
 
 /* ---- surfaces ------------------------------------------------------------------------------------------ */
-static int32_t has_plane(const mpmi_settings *settings, int32_t face) {
-  return mpmi_wall_kind_of(settings->wall[face].kind)->rubs == MPMI_RUBS_PLANE;
-}
-
 static mpm_status make_surfaces(const mpmi_settings *settings, mpmi_contact_nodes *contact) {
   const mpm_grid *grid = settings->grid;
   const mpmi_obstacles *obstacles = &settings->obstacles;
   int64_t count = obstacles->count;
-  for (int32_t face = 0; face < 2 * grid->dim; ++face) count += has_plane(settings, face);
+  for (int32_t face = 0; face < 2 * grid->dim; ++face) count += mpmi_is_friction_plane(settings, face);
   const mpm_status status =
       MPMI_RESERVE_MORE(settings->context, contact->surface, contact->surface_capacity, count);
   if (status) return status;
@@ -27,7 +23,7 @@ static mpm_status make_surfaces(const mpmi_settings *settings, mpmi_contact_node
     mpmi_surface_of_obstacle(&contact->surface[i], grid, obstacles->obstacle[i]);
   int64_t at = obstacles->count;
   for (int32_t face = 0; face < 2 * grid->dim; ++face)
-    if (has_plane(settings, face))
+    if (mpmi_is_friction_plane(settings, face))
       mpmi_surface_of_wall(&contact->surface[at++], grid, face, &settings->wall[face]);
   return MPM_OK;
 }

@@ -78,6 +78,15 @@ static inline double mpmi_flip_share(const mpmi_settings *set, double dt) {
 static inline int32_t mpmi_is_damped(const mpmi_settings *set) {
   return set->desc.local_damping > 0.0 || set->desc.mass_damping > 0.0;
 }
+/* Returns 1 when the plane of a face is an obstacle with friction. */
+static inline int32_t mpmi_is_friction_plane(const mpmi_settings *set, int32_t face) {
+  return mpmi_wall_kind_of(set->wall[face].kind)->rubs == MPMI_RUBS_PLANE;
+}
+static inline int32_t mpmi_has_friction_planes(const mpmi_settings *set) {
+  for (int32_t face = 0; face < 2 * set->grid->dim; ++face)
+    if (mpmi_is_friction_plane(set, face)) return 1;
+  return 0;
+}
 static inline int32_t mpmi_has_hooks(const mpmi_settings *set) {
   return set->hook[0] || set->hook[1] || set->hook[2];
 }

@@ -3,6 +3,8 @@
 #include "layout/tile.h"
 #include "particles/law_batch.h"
 
+#include <string.h>
+
 mpmi_failure mpmi_no_failure(void) {
   return (mpmi_failure){.cause = MPM_OK, .set = -1, .particle = -1, .node = -1, .what = ""};
 }
@@ -68,6 +70,7 @@ void mpmi_workspace_free(mpmi_workspace *work, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, work->report, settings->tasks);
   MPMI_FREE_ARRAY(c, work->block_sums, work->block_sums_capacity);
   MPMI_FREE_ARRAY(c, work->block_work, work->block_work_capacity);
+  MPMI_FREE_ARRAY(c, work->block_stops, work->block_stops_capacity);
 }
 
 /* Rows of v, dv and C of a batch. */
@@ -99,6 +102,10 @@ mpm_status mpmi_workspace_prepare(mpmi_workspace *work, const mpmi_settings *set
   if ((status = MPMI_RESERVE_MORE(c, work->block_sums, work->block_sums_capacity, blocks)) ||
       (status = MPMI_RESERVE_MORE(c, work->block_work, work->block_work_capacity, blocks)))
     return status;
+  if (mpmi_has_friction_planes(settings)) {
+    if ((status = MPMI_RESERVE_MORE(c, work->block_stops, work->block_stops_capacity, blocks))) return status;
+    memset(work->block_stops, 0, (size_t)blocks * sizeof *work->block_stops);
+  }
   mpmi_arena counter = {NULL, 0};
   mpmi_scratch one;
   lay_out(&counter, settings, layout, &one);

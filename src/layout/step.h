@@ -37,15 +37,22 @@ typedef struct mpmi_scratch {
   int64_t blocks_seen; /* for sampling the weights */
 } mpmi_scratch;
 
+/* What friction walls did to particles that came through between nodes (motion.c). */
+typedef struct mpmi_stops {
+  double impulse[6]; /* by face, along its axis */
+  double energy;     /* kinetic energy that it took */
+} mpmi_stops;
+
 /* Memory of all tasks. Nothing in it but blocks_seen outlives a step. */
 typedef struct mpmi_workspace {
   mpmi_scratch *scratch;    /* [tasks] */
   mpmi_task_report *report; /* [tasks] */
   void *scratch_memory;
   size_t scratch_bytes;
-  mpmi_sums *block_sums; /* [blocks] energies, momenta and rates of the new state */
-  double *block_work;    /* [blocks] work of the host on nodes */
-  int64_t block_sums_capacity, block_work_capacity;
+  mpmi_sums *block_sums;   /* [blocks] energies, momenta and rates of the new state */
+  double *block_work;      /* [blocks] work of the host on nodes */
+  mpmi_stops *block_stops; /* [blocks], where there are friction walls */
+  int64_t block_sums_capacity, block_work_capacity, block_stops_capacity;
 } mpmi_workspace;
 
 /* Seconds by stage, in the order of mpm_profile. */

@@ -2,9 +2,11 @@
  * transfer/move.c (MPoint theory eqs 34 to 37). */
 #include "stages/batch.h"
 #include "boundary/prescribed.h"
+#include "context/reduce.h"
 #include "layout/reached.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 void mpmi_motion_bind(mpmi_batch *b) {
@@ -62,6 +64,43 @@ static int32_t is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
   return 1;
 }
 
+/* A particle further beyond a friction wall than this, in cells, comes from a step that was too large. */
+#define MOST_OVERLAP 0.5
+
+/* Contact acts on nodes, and a corner that is sharper than a cell may come through between them. The plane of a
+ * friction wall then stops the particle itself, without friction, and takes the momentum that it stops. */
+static int32_t stop_at_wall(mpmi_batch *b, int64_t slot, int32_t k, double *x) {
+  const mpmi_settings *settings = b->step->settings;
+  const mpm_grid *grid = settings->grid;
+  const int32_t above = *x > grid->upper[k];
+  const double face = above ? grid->upper[k] : grid->desc.origin[k];
+  if (!mpmi_is_friction_plane(settings, 2 * k + above)) return 0;
+  if (!(fabs(*x - face) <= MOST_OVERLAP * grid->desc.spacing[k])) return 0;
+  if (b->step->layout->member[b->m].prescribed && mpmi_is_prescribed(b->set, slot, k)) return 0;
+  *x = face;
+  double *v = mpmi_component_row(b->set, MPMI_VELOCITY, 1, k) + slot;
+  if (above ? *v <= 0.0 : *v >= 0.0) return 1;
+  mpmi_stops *stops = &b->step->work->block_stops[b->block];
+  const double momentum = mpmi_f64(b->set, MPMI_MASS, 0)[slot] * *v;
+  stops->impulse[2 * k + above] -= momentum;
+  stops->energy += 0.5 * momentum * *v;
+  *v = 0.0;
+  return 1;
+}
+
+void mpmi_stops_report(mpmi_step *step) {
+  enum { ROWS = sizeof(mpmi_stops) / sizeof(double), ENERGY = offsetof(mpmi_stops, energy) / sizeof(double) };
+  if (!mpmi_has_friction_planes(step->settings)) return;
+  const mpmi_worklist *blocks = &step->layout->worklist[0];
+  double sum[ROWS];
+  for (int32_t i = 0; i < ROWS; ++i)
+    sum[i] = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, (const double *)step->work->block_stops + i, ROWS,
+                         blocks->block, blocks->count);
+  for (int32_t face = 0; face < 2 * step->settings->grid->dim; ++face)
+    step->impulse_by_face[face][face / 2] += sum[face];
+  step->info.contact_dissipation += sum[ENERGY];
+}
+
 /* Moves a position by whole periods into the grid and counts them; 0 where that is beyond counting. */
 static int32_t wrap(const mpm_grid *grid, int32_t k, double *x, int64_t *image) {
   const double length = grid->upper[k] - grid->desc.origin[k];
@@ -103,7 +142,7 @@ static void look_outside(mpmi_batch *b) {
         leaves = 1;
       else if (grid->desc.periodic[k]
                    ? !wrap(grid, k, x, mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot)
-                   : !is_on_wall(settings, k, x))
+                   : !is_on_wall(settings, k, x) && !stop_at_wall(b, slot, k, x))
         closed = face;
     }
     if (closed >= 0)
@@ -175,8 +214,8 @@ void mpmi_motion_take(mpmi_batch *b) {
   if (b->step->layout->member[b->m].prescribed)
     flags |= mpmi_prescribed_move(b->step, b->nodes, b->m, b->block, &b->move, b->begin, b->n);
   b->flags |= flags & MPMI_NONFINITE;
+  /* with `stays` another pass moves them, and looks at their places then */
+  if (flags & MPMI_LEFT_BOUNDS && !b->move.stays) look_astray(b);
+  if (flags & MPMI_OUTSIDE && !b->move.stays) look_outside(b);
   if (b->set->field[MPMI_ACCELERATION].present && !mpmi_is_implicit(settings)) store_accelerations(b);
-  if (b->move.stays) return; /* another pass moves them, and looks at their places then */
-  if (flags & MPMI_LEFT_BOUNDS) look_astray(b);
-  if (flags & MPMI_OUTSIDE) look_outside(b);
 }

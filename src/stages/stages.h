@@ -75,6 +75,10 @@ int32_t mpmi_has_nodal_stress(const mpmi_layout *layout);
  * copy of their stress and dilation ratio. The nodes' sums are made anew. */
 mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy);
 
+/* ---- motion.c ---------------------------------------------------------------------------------------- */
+/* Counts what friction walls did to particles themselves in with the step's impulses and dissipation. */
+void mpmi_stops_report(mpmi_step *step);
+
 /* ---- g2p.c ------------------------------------------------------------------------------------------- */
 /* Moves and deforms: velocity and position, deformation gradient and stress. That is all of USL. */
 mpm_status mpmi_g2p_move_and_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);

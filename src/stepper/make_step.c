@@ -117,8 +117,9 @@ static mpm_status give_up(mpm_stepper *s, mpm_status status) {
 static mpm_status finish(mpm_stepper *s) {
   const double velocity_dt = s->step.velocity_dt;
   mpm_status status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
-  if (!status) status = ask_progress(s);
   if (status) return status;
+  mpmi_stops_report(&s->step);
+  if ((status = ask_progress(s))) return status;
   mpmi_commit(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);

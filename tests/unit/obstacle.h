@@ -68,5 +68,7 @@ static inline mpm_contact_info touch_of(const world *w, const mpm_obstacle *obst
 
 /* Adds the cases of obstacle_states.c. */
 void add_obstacle_states(Suite *suite);
+/* Adds those of obstacle_corners.c. */
+void add_obstacle_corners(Suite *suite);
 
 #endif

@@ -753,5 +753,6 @@ Suite *obstacles_suite(void) {
   suite_add_tcase(suite, same);
   suite_add_tcase(suite, motion);
   add_obstacle_states(suite);
+  add_obstacle_corners(suite);
   return suite;
 }

@@ -185,7 +185,8 @@ class Wall(IntEnum):
     WALL_FIXED = 2
     #: a symmetry plane: it pushes and pulls, without tangential force
     WALL_SLIP = 3
-    #: the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never pulls
+    #: the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never pulls. What
+    #: comes through between nodes, by less than half a cell, it stops particle by particle
     WALL_FRICTION = 4
     #: contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0. Material feels
     #: it about a cell and a half before its particles are there
