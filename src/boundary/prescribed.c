@@ -68,7 +68,7 @@ static void ask_batch(void *user, int32_t m, const mpm_particle_batch *batch, in
                       mpmi_failure *failure) {
   const mpmi_step *step = user;
   const mpmi_member *member = &step->layout->member[m];
-  double *mean = member->mean + begin;
+  double *mean = step->work->rows.of[m].mean + begin;
   for (int32_t c = 0; c < batch->dim; ++c) memset(mean + c * batch->ld, 0, (size_t)batch->n * sizeof *mean);
   const mpmi_motion *motion = &step->settings->motion[m];
   if (mpmi_call_particle_fn(motion->fn, motion->user, "the motion callback", m, batch, mean, failure)) return;
@@ -101,7 +101,7 @@ uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t 
   const mpmi_settings *settings = step->settings;
   const mpmi_member *member = &step->layout->member[m];
   const mpm_particles *set = member->set;
-  const double *mean = mpmi_mean_velocity(member), *mass = mpmi_f64(set, MPMI_MASS, 0);
+  const double *mean = mpmi_mean_velocity(step, m), *mass = mpmi_f64(set, MPMI_MASS, 0);
   mpmi_prescribed_part *part = mpmi_part_of(step->layout, nodes, block, m);
   uint32_t flags = 0;
   if (!mpmi_block_is(nodes, block, MPMI_WITH_PRESCRIBED)) return 0;

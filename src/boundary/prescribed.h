@@ -31,8 +31,9 @@ static inline int32_t mpmi_is_prescribed(const mpm_particles *set, int64_t slot,
 }
 
 /* Returns the mean velocities of the step, [dim][ld of the set]. */
-static inline const double *mpmi_mean_velocity(const mpmi_member *member) {
-  return member->mean ? member->mean : mpmi_f64(member->set, MPMI_VELOCITY, 0);
+static inline const double *mpmi_mean_velocity(const mpmi_step *step, int32_t m) {
+  const double *mean = step->work->rows.of[m].mean;
+  return mean ? mean : mpmi_f64(step->layout->member[m].set, MPMI_VELOCITY, 0);
 }
 
 static inline mpmi_prescribed_part *mpmi_part_of(const mpmi_layout *layout, const mpmi_nodes *nodes,

@@ -36,6 +36,7 @@ static void find_stencil(const mpm_grid *grid, const mpmi_weights *W, int64_t p,
 typedef struct visit {
   mpmi_bound *bound;
   const mpmi_member *member;
+  int32_t m; /* its number */
   mpmi_prescribed_sums *tile;
   mpmi_prescribed_part *part;
 } visit;
@@ -65,7 +66,7 @@ static void visit_particles(mpmi_bound *bound, int64_t block, double *tile, visi
   mpmi_axis axis[3];
   mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[block], axis);
   for (int32_t m = 0; m < layout->member_count; ++m) {
-    const visit v = {bound, &layout->member[m], (mpmi_prescribed_sums *)tile,
+    const visit v = {bound, &layout->member[m], m, (mpmi_prescribed_sums *)tile,
                      mpmi_part_of(layout, bound->nodes, block, m)};
     const int64_t *start = v.member->now.start;
     for (int64_t at = start[block]; at < start[block + 1] && v.member->prescribed; at += MPMI_CHUNK)
@@ -77,7 +78,7 @@ _Static_assert((int)MPMI_PAD % (int)MPMI_CHUNK == 0, "blocks have whole chunks")
 /* ---- the nodes that they hold -------------------------------------------------------------------------- */
 static void give_momentum(const visit *v, int64_t slot, const stencil *nodes) {
   const mpm_particles *set = v->member->set;
-  const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot], *mean = mpmi_mean_velocity(v->member);
+  const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot], *mean = mpmi_mean_velocity(v->bound->step, v->m);
   for (int32_t c = 0; c < v->bound->dim; ++c) {
     if (!mpmi_is_prescribed(set, slot, c)) continue;
     const double momentum = mass * mean[c * set->ld + slot];
@@ -220,11 +221,11 @@ static void ties_task(void *data, int64_t k) {
 static void take_share(const visit *v, int64_t slot, const stencil *nodes) {
   const mpm_particles *set = v->member->set;
   const mpmi_step *step = v->bound->step;
-  const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot];
+  const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot], *applied = step->work->rows.of[v->m].force;
   for (int32_t c = 0; c < v->bound->dim; ++c) {
     if (!mpmi_is_prescribed(set, slot, c)) continue;
     double force = mass * step->settings->desc.gravity[c], impulse = 0.0;
-    if (v->member->force) force += v->member->force[c * set->ld + slot];
+    if (applied) force += applied[c * set->ld + slot];
     for (int32_t n = 0; n < nodes->count; ++n) impulse += nodes->w[n] * v->tile[nodes->at[n]].momentum[c];
     v->part->impulse[c] += mass * impulse + step->velocity_dt * force;
   }

@@ -15,7 +15,7 @@ static void give_external(void *user, const mpmi_visit *visit, double *tile) {
   for (int32_t m = 0; m < balance->layout->member_count; ++m) {
     const int64_t *start = balance->layout->member[m].now.start + visit->block;
     if (start[0] == start[1]) continue;
-    mpmi_force_scatter scatter = mpmi_force_scatter_of(balance->settings, &balance->layout->member[m], tile);
+    mpmi_force_scatter scatter = mpmi_force_scatter_of(balance, m, tile);
     mpmi_block_axes(grid, balance->layout->blocks.coord[visit->block], scatter.axis);
     kernel(&scatter, start[0], start[1] - start[0]);
   }
@@ -104,7 +104,7 @@ static void take_stress(mpmi_batch *b) {
 /* Averages pressures over cells where laws want it, by the stress of the nodes' displacements. */
 static mpm_status find_pressures(mpmi_balance *balance) {
   static const mpmi_pass pass = STRAIN_PASS(take_stress);
-  if (!mpmi_has_nodal_stress(balance->layout)) return MPM_OK;
+  if (!mpmi_has_nodal_stress(balance->settings, balance->layout)) return MPM_OK;
   const mpm_status status =
       mpmi_pass_run(balance->step, balance->nodes, &balance->nodes->solved, &pass, balance);
   return status ? status : mpmi_cell_pressure_stage(balance->step, balance->nodes, 1);
@@ -158,7 +158,9 @@ mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
       .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .aim = mpmi_strain_aim, .take = take_new_forces};
   mpm_status status = begin_strain(balance, u);
   if (!status) status = find_pressures(balance);
-  return status ? status : sum_internal(balance, mpmi_has_nodal_stress(balance->layout) ? &again : &at_once);
+  return status ? status
+                : sum_internal(balance,
+                               mpmi_has_nodal_stress(balance->settings, balance->layout) ? &again : &at_once);
 }
 
 mpm_status mpmi_start_forces(mpmi_balance *balance) {
@@ -166,7 +168,7 @@ mpm_status mpmi_start_forces(mpmi_balance *balance) {
   double *u = balance->newton->vector[MPMI_U];
   memset(u, 0, (size_t)(balance->newton->matrix.rows * balance->settings->grid->dim) * sizeof *u);
   mpm_status status = begin_strain(balance, u);
-  if (!status && mpmi_has_nodal_stress(balance->layout))
+  if (!status && mpmi_has_nodal_stress(balance->settings, balance->layout))
     status = mpmi_cell_pressure_stage(balance->step, balance->nodes, 0);
   return status ? status : sum_internal(balance, &pass);
 }
@@ -216,7 +218,7 @@ mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
   if (!status && remedy) status = mpmi_locking_stiffness_begin(balance);
   for (int32_t k = 0; k < tasks; ++k) newton->work[k].symmetric = 1;
   if (!status) status = begin_strain(balance, u);
-  if (!status && mpmi_has_nodal_stress(balance->layout)) {
+  if (!status && mpmi_has_nodal_stress(balance->settings, balance->layout)) {
     status = find_pressures(balance);
     if (!status) status = begin_strain(balance, u); /* the sums held pressures meanwhile */
   }

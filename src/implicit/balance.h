@@ -262,8 +262,7 @@ mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u);
 
 /* ---- particle_stiffness.c ---------------------------------------------------------------------------- */
 /* Prepares the kernel that spreads a set's external forces, or with a nominal stress the internal ones. */
-mpmi_force_scatter mpmi_force_scatter_of(const mpmi_settings *settings, const mpmi_member *member,
-                                         double *tile);
+mpmi_force_scatter mpmi_force_scatter_of(const mpmi_balance *balance, int32_t m, double *tile);
 /* Finds the active node at each place of the tile of a block, or -1. */
 void mpmi_tile_of_unknowns(const mpmi_balance *balance, int64_t block, int32_t *to);
 /* Adds the internal forces of a batch to the tile of its task. */

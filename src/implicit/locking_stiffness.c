@@ -38,7 +38,7 @@ static int64_t own_values(const mpmi_balance *balance) {
  * volumes, sum V0 (q - pi_tau), and by node and axis sum h g, sum V (1 + j) g and sum k g. */
 static int64_t cell_values(const mpmi_balance *balance) {
   const int64_t paired = 2 + 3 * (int64_t)nodes_of(balance) * balance->settings->grid->dim;
-  return own_values(balance) + (mpmi_has_nodal_stress(balance->layout) ? paired : 0);
+  return own_values(balance) + (mpmi_has_nodal_stress(balance->settings, balance->layout) ? paired : 0);
 }
 
 mpm_status mpmi_locking_stiffness_begin(mpmi_balance *balance) {
@@ -196,7 +196,7 @@ static void add_paired_block(const double *sums, int32_t dim, int32_t a, int32_t
 static void add_cell(mpmi_balance *balance, int64_t cell) {
   mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim, span = mpmi_coupling_span(balance->settings),
-                nodes = nodes_of(balance), paired = mpmi_has_nodal_stress(balance->layout);
+                nodes = nodes_of(balance), paired = mpmi_has_nodal_stress(balance->settings, balance->layout);
   const double *sums = newton->cell + cell * cell_values(balance);
   const int32_t *node = newton->cell_node + cell * nodes;
   if (!(sums[0] > 0.0)) return;
@@ -218,9 +218,9 @@ static void add_cell(mpmi_balance *balance, int64_t cell) {
 }
 
 /* Tells whether some set that deforms has its own pressure in the forces. */
-static int32_t any_own_pressure(const mpmi_layout *layout) {
+static int32_t any_own_pressure(const mpmi_settings *settings, const mpmi_layout *layout) {
   for (int32_t m = 0; m < layout->member_count; ++m)
-    if (!layout->member[m].nodal_stress &&
+    if (!mpmi_averages_pressure(settings, layout->member[m].set) &&
         mpmi_material_kinematics(layout->member[m].set->material) != MPMI_F_STAYS)
       return 1;
   return 0;
@@ -228,5 +228,5 @@ static int32_t any_own_pressure(const mpmi_layout *layout) {
 
 void mpmi_locking_stiffness_end(mpmi_balance *balance) {
   for (int64_t cell = 0; cell < balance->newton->matrix.rows; ++cell) add_cell(balance, cell);
-  if (any_own_pressure(balance->layout)) balance->newton->matrix.symmetric = 0;
+  if (any_own_pressure(balance->settings, balance->layout)) balance->newton->matrix.symmetric = 0;
 }

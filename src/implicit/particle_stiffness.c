@@ -6,9 +6,10 @@
 
 #include <string.h>
 
-mpmi_force_scatter mpmi_force_scatter_of(const mpmi_settings *settings, const mpmi_member *member,
-                                         double *tile) {
-  const mpm_particles *set = member->set;
+mpmi_force_scatter mpmi_force_scatter_of(const mpmi_balance *balance, int32_t m, double *tile) {
+  const mpmi_settings *settings = balance->settings;
+  const mpm_particles *set = balance->layout->member[m].set;
+  const double *force = balance->step->work->rows.of[m].force;
   const mpm_grid *grid = settings->grid;
   mpmi_force_scatter job = {.weights = settings->kernels->weights[grid->family][grid->dim],
                             .points = mpmi_points_of(set, 0),
@@ -18,7 +19,7 @@ mpmi_force_scatter mpmi_force_scatter_of(const mpmi_settings *settings, const mp
                             .tile = tile};
   for (int32_t k = 0; k < grid->dim; ++k) {
     job.gravity[k] = settings->desc.gravity[k];
-    job.force[k] = member->force ? member->force + k * set->ld : NULL;
+    job.force[k] = force ? force + k * set->ld : NULL;
   }
   return job;
 }
@@ -183,7 +184,7 @@ static int32_t is_rigid(const mpmi_batch *b) {
 
 /* Exchanges the stress of a batch for that in the forces, where it is another one. */
 static void take_nodal_stress(mpmi_batch *b) {
-  const double *from = b->step->layout->member[b->m].nodal_stress;
+  const double *from = b->step->work->rows.of[b->m].nodal_stress;
   for (int32_t c = 0; from && c < mpmi_stress_components(b->set->grid->dim); ++c)
     memcpy(b->law.stress_new + c * b->law.ld, from + c * b->set->ld + b->begin, (size_t)b->n * sizeof *from);
 }
@@ -191,9 +192,9 @@ static void take_nodal_stress(mpmi_batch *b) {
 /* Puts the share that the remedy's local part has into the tangent, and what couples a cell into h, k, q. */
 static void add_local_part(const mpmi_balance *balance, mpmi_newton_work *work, mpmi_batch *b) {
   const double *volume = mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin;
-  const mpmi_member *member = &balance->layout->member[b->m];
+  const double *nodal_stress = b->step->work->rows.of[b->m].nodal_stress;
   const int32_t dim = balance->settings->grid->dim;
-  if (!member->nodal_stress) {
+  if (!nodal_stress) {
     mpmi_locking_stiffness_local(dim, &b->law, work->weight, volume, work->tangent, work->h);
     return;
   }
@@ -203,7 +204,7 @@ static void add_local_part(const mpmi_balance *balance, mpmi_newton_work *work, 
                                 .volume = volume,
                                 .initial_volume = work->weight,
                                 .ratio = mpmi_f64(b->set, MPMI_DILATION_RATIO, 1) + b->begin,
-                                .nodal_stress = member->nodal_stress + b->begin,
+                                .nodal_stress = nodal_stress + b->begin,
                                 .nodal_ld = b->set->ld,
                                 .stress = b->law.stress_new,
                                 .tangent = work->tangent,
@@ -218,8 +219,7 @@ void mpmi_add_forces(mpmi_balance *balance, mpmi_batch *b) {
   if (is_rigid(b)) return;
   take_nodal_stress(b);
   push_forward(balance, work, b, NULL);
-  mpmi_force_scatter scatter =
-      mpmi_force_scatter_of(balance->settings, &balance->layout->member[b->m], work->tile);
+  mpmi_force_scatter scatter = mpmi_force_scatter_of(balance, b->m, work->tile);
   memcpy(scatter.axis, b->gather.axis, sizeof scatter.axis);
   scatter.ld = b->law.ld;
   scatter.nominal = work->nominal;

@@ -66,22 +66,12 @@ mpm_status mpmi_members_add(mpmi_layout *layout, const mpmi_settings *settings, 
   return MPM_OK;
 }
 
-static void free_rows(mpm_context *c, double **rows, int64_t *ld, int32_t components) {
-  mpmi_free(c, *rows, mpmi_bytes(*ld * components, sizeof **rows));
-  *rows = NULL;
-  *ld = 0;
-}
-
 void mpmi_members_remove(mpmi_layout *layout, const mpmi_settings *settings, int32_t m) {
   mpm_context *c = settings->context;
   mpmi_member *member = &layout->member[m];
   mpmi_arrangement_free(&member->now);
   mpmi_arrangement_free(&member->next);
   mpmi_sorting_free(&member->sorting, c);
-  free_rows(c, &member->force, &member->force_ld, settings->grid->dim);
-  free_rows(c, &member->mean, &member->mean_ld, settings->grid->dim);
-  free_rows(c, &member->wave_speed, &member->wave_speed_ld, 1);
-  free_rows(c, &member->nodal_stress, &member->nodal_stress_ld, mpmi_stress_components(settings->grid->dim));
   drop_fields(member->set, NULL);
   member->set->stepper = NULL;
   member->set->dirty |= MPMI_DIRTY_PLACE;
@@ -119,41 +109,6 @@ mpm_status mpmi_members_refresh(mpmi_layout *layout, const mpmi_settings *settin
       return status;
     if (mpmi_is_affine(settings) && !set->field[MPMI_L].present &&
         (status = mpmi_field_make_present(set, MPMI_L)))
-      return status;
-  }
-  return MPM_OK;
-}
-
-/* Makes room for rows [components][ld of the set] where they are wanted, else frees them. */
-static mpm_status reserve_rows(mpm_context *c, const mpm_particles *set, int32_t wanted, int32_t components,
-                               double **rows, int64_t *ld) {
-  if (wanted ? !*rows || *ld != set->ld : *rows != NULL) {
-    double *memory = NULL;
-    if (wanted && !(memory = mpmi_alloc_zeroed(c, mpmi_bytes(set->ld * components, sizeof *memory))))
-      return MPM_E_NOMEM;
-    free_rows(c, rows, ld, components);
-    *rows = memory;
-    *ld = wanted ? set->ld : 0;
-  }
-  mpmi_slack_rows(*rows, (size_t)components, (size_t)*ld, (size_t)set->slots, sizeof **rows);
-  return MPM_OK;
-}
-
-mpm_status mpmi_members_reserve(mpmi_layout *layout, const mpmi_settings *settings) {
-  mpm_context *c = settings->context;
-  const int32_t dim = settings->grid->dim, asks = settings->acceleration || settings->force;
-  for (int32_t m = 0; m < layout->member_count; ++m) {
-    mpmi_member *member = &layout->member[m];
-    const mpm_particles *set = member->set;
-    const int32_t forced = asks || set->field[MPMI_APPLIED_FORCE].present;
-    mpm_status status;
-    if ((status = reserve_rows(c, set, forced, dim, &member->force, &member->force_ld)) ||
-        (status = reserve_rows(c, set, member->prescribed && settings->motion[m].fn, dim, &member->mean,
-                               &member->mean_ld)) ||
-        (status = reserve_rows(c, set, mpmi_deforms_first(settings), 1, &member->wave_speed,
-                               &member->wave_speed_ld)) ||
-        (status = reserve_rows(c, set, mpmi_averages_pressure(settings, set), mpmi_stress_components(dim),
-                               &member->nodal_stress, &member->nodal_stress_ld)))
       return status;
   }
   return MPM_OK;

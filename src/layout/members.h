@@ -22,7 +22,5 @@ mpm_status mpmi_members_unmapped(const mpmi_layout *layout, const mpmi_settings 
 
 /* Brings the sets' fields up to date for a step; MPM_E_STATE where the host holds or has spoilt them. */
 mpm_status mpmi_members_refresh(mpmi_layout *layout, const mpmi_settings *settings);
-/* Makes room for what a step finds out about the particles. */
-mpm_status mpmi_members_reserve(mpmi_layout *layout, const mpmi_settings *settings);
 
 #endif

@@ -14,16 +14,7 @@ typedef struct mpmi_member {
   int32_t body;               /* sets of one body share its nodes */
   mpmi_arrangement now, next; /* slots by block, of the last sort and of the one being made */
   mpmi_sorting sorting;
-  double *force; /* [dim][ld] external force beside gravity, or NULL */
-  int64_t force_ld;
-  double *wave_speed; /* [ld] where the law runs before the particles move, or NULL */
-  int64_t wave_speed_ld;
-  double *nodal_stress; /* [components][ld] the stress in the forces on nodes, where it is not that of the
-                           particles (stages/cell_pressure.c), or NULL */
-  int64_t nodal_stress_ld;
   int32_t prescribed; /* 1: some of its particles are prescribed */
-  double *mean;       /* [dim][ld] their mean velocities in a step where there is a motion, or NULL */
-  int64_t mean_ld;
 } mpmi_member;
 
 /* Blocks with particles, shared out among tasks: task k works on block[i] with bound[k] <= i < bound[k +

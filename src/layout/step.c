@@ -68,6 +68,7 @@ void mpmi_workspace_free(mpmi_workspace *work, const mpmi_settings *settings) {
   mpmi_free(c, work->scratch_memory, work->scratch_bytes);
   MPMI_FREE_ARRAY(c, work->scratch, settings->tasks);
   MPMI_FREE_ARRAY(c, work->report, settings->tasks);
+  mpmi_member_rows_free(&work->rows, settings);
   MPMI_FREE_ARRAY(c, work->block_sums, work->block_sums_capacity);
   MPMI_FREE_ARRAY(c, work->block_work, work->block_work_capacity);
   MPMI_FREE_ARRAY(c, work->block_stops, work->block_stops_capacity);

@@ -3,7 +3,7 @@
 #ifndef MPMI_STEP_H
 #define MPMI_STEP_H
 
-#include "layout/sorted_layout.h"
+#include "layout/member_rows.h"
 
 /* What ends a step early. Failures of tasks are collected, and the first decides so that reports repeat: that
  * of the smallest (set, particle), then of the smallest node. */
@@ -49,6 +49,7 @@ typedef struct mpmi_workspace {
   mpmi_task_report *report; /* [tasks] */
   void *scratch_memory;
   size_t scratch_bytes;
+  mpmi_step_rows rows;
   mpmi_sums *block_sums;   /* [blocks] energies, momenta and rates of the new state */
   double *block_work;      /* [blocks] work of the host on nodes */
   mpmi_stops *block_stops; /* [blocks], where there are friction walls */

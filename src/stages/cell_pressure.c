@@ -60,22 +60,22 @@ static void add_chunk(const mpmi_cell_job *job, int32_t m, int64_t begin, int64_
 /* Writes the stress in the forces of a chunk; inert slots have no volume, and keep their stress. */
 static void write_chunk(const mpmi_cell_job *job, int32_t m, int64_t begin, int64_t n, const int32_t *place,
                         double *tile) {
-  const mpmi_member *member = &job->step->layout->member[m];
-  const particle_rows of = rows_of(member->set, job->copy);
+  const particle_rows of = rows_of(job->step->layout->member[m].set, job->copy);
+  double *nodal_stress = job->step->work->rows.of[m].nodal_stress;
   for (int64_t p = 0; p < n; ++p) {
     const int64_t slot = begin + p;
     const cell_pressure *cell = (cell_pressure *)tile + place[p];
     const double own = mean_stress(&of, slot);
     const double shift = of.id[slot] < 0 || !(cell->volume > 0.0) ? 0.0 : cell->stress / cell->volume - own;
     for (int32_t c = 0; c < of.components; ++c)
-      member->nodal_stress[c * of.ld + slot] =
+      nodal_stress[c * of.ld + slot] =
           of.ratio[slot] * of.stress[c * of.ld + slot] + (c < of.dim ? shift : 0.0);
   }
 }
 
 static int32_t is_averaged(const mpmi_cell_job *job, const mpmi_visit *visit, int32_t m) {
   (void)visit;
-  return job->step->layout->member[m].nodal_stress != NULL;
+  return job->step->work->rows.of[m].nodal_stress != NULL;
 }
 
 /* Particles that are not where they were may lie outside the tile: then the set takes no part, and the step
@@ -94,9 +94,9 @@ static void write_block(void *user, const mpmi_visit *visit) {
   mpmi_cells_visit(job, visit, &write, cells);
 }
 
-int32_t mpmi_has_nodal_stress(const mpmi_layout *layout) {
+int32_t mpmi_has_nodal_stress(const mpmi_settings *settings, const mpmi_layout *layout) {
   for (int32_t m = 0; m < layout->member_count; ++m)
-    if (layout->member[m].nodal_stress) return 1;
+    if (mpmi_averages_pressure(settings, layout->member[m].set)) return 1;
   return 0;
 }
 

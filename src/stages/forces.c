@@ -43,7 +43,7 @@ static void forces_of_batch(void *user, int32_t m, const mpm_particle_batch *bat
   const mpmi_member *member = &step->layout->member[m];
   const mpm_particles *set = member->set;
   const int64_t n = batch->n, ld = batch->ld;
-  double *force = member->force + begin;
+  double *force = step->work->rows.of[m].force + begin;
   for (int32_t k = 0; k < batch->dim; ++k) memset(force + k * ld, 0, (size_t)n * sizeof *force);
   if (settings->acceleration) {
     if (mpmi_call_particle_fn(settings->acceleration, settings->acceleration_user,
@@ -66,7 +66,7 @@ static void forces_of_batch(void *user, int32_t m, const mpm_particle_batch *bat
 mpm_status mpmi_forces_stage(mpmi_step *step, double t) {
   const int32_t calls_host = step->settings->acceleration || step->settings->force;
   for (int32_t m = 0; m < step->layout->member_count; ++m) {
-    if (!step->layout->member[m].force) continue;
+    if (!step->work->rows.of[m].force) continue;
     const mpm_status status = mpmi_particle_batches(step, m, t, calls_host, forces_of_batch, step);
     if (status) return status;
   }

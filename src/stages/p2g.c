@@ -33,10 +33,11 @@ static void list_streams(const p2g_job *job, mpmi_scatter *scatter, int32_t dim)
   add_streams(streams, scatter->affine, 9);
 }
 
-static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatter *scatter) {
+static void scatter_of(const p2g_job *job, int32_t m, mpmi_scatter *scatter) {
   const mpmi_settings *settings = job->step->settings;
   const mpmi_projection *projection = job->projection;
-  const mpm_particles *set = member->set;
+  const mpm_particles *set = job->step->layout->member[m].set;
+  const mpmi_member_rows *rows = &job->step->work->rows.of[m];
   const int32_t dim = settings->grid->dim, forces = projection->forces;
   memset(scatter, 0, sizeof *scatter);
   scatter->weights = settings->kernels->weights[settings->grid->family][dim];
@@ -46,11 +47,11 @@ static void scatter_of(const p2g_job *job, const mpmi_member *member, mpmi_scatt
   scatter->volume = mpmi_f64(set, MPMI_VOLUME, 0);
   for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
     scatter->stress[c] =
-        (member->nodal_stress ? member->nodal_stress : mpmi_f64(set, MPMI_STRESS, job->stress_copy)) +
+        (rows->nodal_stress ? rows->nodal_stress : mpmi_f64(set, MPMI_STRESS, job->stress_copy)) +
         c * set->ld;
   for (int32_t k = 0; k < dim; ++k) {
     scatter->v[k] = mpmi_f64(set, projection->field, projection->copy) + k * set->ld;
-    scatter->force[k] = member->force && forces ? member->force + k * set->ld : NULL;
+    scatter->force[k] = rows->force && forces ? rows->force + k * set->ld : NULL;
     scatter->gravity[k] = forces ? settings->desc.gravity[k] : 0.0;
   }
   for (int32_t c = 0; job->affine && c < mpmi_gradient_components(dim); ++c)
@@ -84,10 +85,9 @@ static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const int64_t begin = layout->member[m].now.start[visit->block];
     const int64_t end = layout->member[m].now.start[visit->block + 1];
-    const mpmi_member *member = &layout->member[m];
     if (begin == end) continue;
     if (mpmi_were_shown(job->step, m) && !mpmi_is_in_place(job->step, visit, m)) continue;
-    scatter_of(job, member, &scatter);
+    scatter_of(job, m, &scatter);
     mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[visit->block], scatter.axis);
     scatter.tile = tile;
     scatter_slots(job, &scatter, visit->block, begin, end);
@@ -117,7 +117,7 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
                  /* the main projection comes after USF's strain: the stress is new then */
                  .stress_copy = projection->main && mpmi_deforms_first(step->settings)};
   choose_form(&job);
-  mpm_status status = projection->forces && mpmi_has_nodal_stress(step->layout)
+  mpm_status status = projection->forces && mpmi_has_nodal_stress(step->settings, step->layout)
                           ? mpmi_cell_pressure_stage(step, nodes, job.stress_copy)
                           : MPM_OK;
   if (status) return status;

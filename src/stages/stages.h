@@ -69,7 +69,7 @@ mpm_status mpmi_cells_sum(mpmi_cell_job *job);
 
 /* ---- cell_pressure.c --------------------------------------------------------------------------------- */
 /* Whether a member has a stress for the forces on nodes beside that of its particles. */
-int32_t mpmi_has_nodal_stress(const mpmi_layout *layout);
+int32_t mpmi_has_nodal_stress(const mpmi_settings *settings, const mpmi_layout *layout);
 
 /* Averages pressures over cells: writes the members' nodal stress, by the volumes that particles have and a
  * copy of their stress and dilation ratio. The nodes' sums are made anew. */

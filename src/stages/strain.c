@@ -158,18 +158,18 @@ void mpmi_strain_law(mpmi_batch *b) {
 }
 
 void mpmi_wave_speed_leave(const mpmi_batch *b) {
-  memcpy(b->step->layout->member[b->m].wave_speed + b->begin, b->law.wave_speed,
+  memcpy(b->step->work->rows.of[b->m].wave_speed + b->begin, b->law.wave_speed,
          (size_t)b->n * sizeof(double));
 }
 
 void mpmi_wave_speed_fetch(mpmi_batch *b) {
-  memcpy(b->law.wave_speed, b->step->layout->member[b->m].wave_speed + b->begin,
+  memcpy(b->law.wave_speed, b->step->work->rows.of[b->m].wave_speed + b->begin,
          (size_t)b->n * sizeof(double));
 }
 
 void mpmi_batch_sums(mpmi_batch *b, int32_t what) {
   const mpmi_settings *settings = b->step->settings;
-  const mpmi_member *member = &b->step->layout->member[b->m];
+  const double *force = b->step->work->rows.of[b->m].force;
   mpm_particles *set = b->set;
   const int32_t dim = settings->grid->dim;
   mpmi_sums_job *job = &b->sums_job;
@@ -180,7 +180,7 @@ void mpmi_batch_sums(mpmi_batch *b, int32_t what) {
     job->x[k] = mpmi_component_row(set, MPMI_POSITION, 1, k) + b->begin;
     job->v[k] = mpmi_component_row(set, MPMI_VELOCITY, 1, k) + b->begin;
     job->x_old[k] = mpmi_component_row(set, MPMI_POSITION, 0, k) + b->begin;
-    job->force[k] = member->force ? member->force + k * set->ld + b->begin : NULL;
+    job->force[k] = force ? force + k * set->ld + b->begin : NULL;
   }
   if (mpmi_is_affine(settings) && (what & MPMI_SUMS_MOTION)) {
     mpmi_sums_moments(settings, set, 1, b->begin, b->n, b->law.ld, b->C,
