@@ -18,7 +18,7 @@ if [ ! -e "$base/etc/debian_version" ]; then
   cp -R /etc/apt/. "$base/etc/apt/"
   printf '#!/bin/sh\nexec "$@"\n' > "$base/usr/bin/sudo" # minbase has none, and its user is root
   chmod +x "$base/usr/bin/sudo"
-  chroot "$base" apt-get update -q > "$folder/update.log"
+  chroot "$base" apt-get update -q > "$folder/update.log" 2>&1
 fi
 
 block() { # README, kind: the first block of that kind
@@ -33,7 +33,7 @@ for language in "$@"; do
   git archive HEAD | tar -x -C "$root/libmpm"
   {
     echo 'set -e; cd /libmpm; export DEBIAN_FRONTEND=noninteractive'
-    block "$readme" sh | sed 's/apt install -y\|apt-get install -y\|apt install/apt-get install -y -q --no-install-recommends/'
+    block "$readme" sh | sed 's/apt install -y\|apt-get install -y\|apt install/apt-get install -y -q/'
     if [ "$language" = python ]; then
       block "$readme" python > "$root/libmpm/ball.py"
       echo 'mpm-env/bin/python ball.py; mpm-env/bin/python bindings/python/example.py'
