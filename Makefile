@@ -5,6 +5,7 @@
 # with WERROR=-Werror.
 
 VERSION := 0.1.0
+.DEFAULT_GOAL := all
 
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib

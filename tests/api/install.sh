@@ -13,6 +13,8 @@ prefix=$scratch/prefix
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 version=$("$PKG_CONFIG" --modversion mpm)
 
+# `make` alone makes everything.
+"$MAKE" -pn 2> /dev/null | grep -x '.DEFAULT_GOAL := all' > /dev/null
 # One version everywhere.
 grep -qx "version: $version" CITATION.cff
 [ "$(sed -n '/(unreleased)$/d; s/^## //p' CHANGELOG.md | head -n 1)" = "$version" ]
