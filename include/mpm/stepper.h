@@ -92,7 +92,8 @@ typedef struct mpm_stepper_desc {
   /** For MPM_XPIC and MPM_FMPM: every so many steps are of the order xpic_order, those whose number
    * (mpm_step_info::step, counted from 1 or on from mpm_stepper_set_time()) is a multiple of this; all others
    * are those of MPM_FLIP, with flip and pic_damping. Steps that fail have no number, and a loaded state goes
-   * on with its own. 1, and 0 (default), which means 1: every step is of that order. Since 0.2.0. */
+   * on with its own. 1, and 0 (default), which means 1: every step is of that order. MPM_E_UNSUPPORTED: above 2
+   * with MPM_FMPM of an order above 1 and MPM_USF or MPM_MUSL, where waves grow. Since 0.2.0. */
   int32_t xpic_every;
   int32_t reserved; /**< 0 */
 } mpm_stepper_desc;

@@ -49,6 +49,12 @@ static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm
                      (int)transfer->most_order);
   if (d->xpic_every < 0)
     return mpmi_fail(c, MPM_E_ARG, "xpic_every is %d: it must be >= 0", (int)d->xpic_every);
+  if (transfer->takes == MPMI_TAKES_FULL && d->xpic_every > 2 && d->xpic_order > 1 &&
+      (d->scheme == MPM_USF || d->scheme == MPM_MUSL))
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "xpic_every is %d: with MPM_FMPM in schemes MPM_USF and MPM_MUSL waves grow where it is "
+                     "above 2: use 2, scheme MPM_USL, or transfer MPM_XPIC",
+                     (int)d->xpic_every);
   return MPM_OK;
 }
 

@@ -31,7 +31,7 @@ const transfer_option transfer_options[TRANSFERS] = {{MPM_FLIP, 2, 0, 1.0, 0.0, 
                                                      {MPM_XPIC, 5, 0, 1.0, 0.0, "XPIC(5)"},
                                                      {MPM_FMPM, 2, 0, 1.0, 0.0, "FMPM(2)"},
                                                      {MPM_FMPM, 4, 0, 1.0, 0.0, "FMPM(4)"},
-                                                     {MPM_FMPM, 3, 3, 0.9, 5.0, "FMPM(3) every third"},
+                                                     {MPM_FMPM, 3, 2, 0.9, 5.0, "FMPM(3) every other"},
                                                      {MPM_XPIC, 2, 2, 1.0, 0.0, "XPIC(2) every other"}};
 
 const law_option law_options[LAWS] = {{"neo_hookean", "neo-Hookean"},

@@ -333,7 +333,7 @@ static mpm_status refuse(void *user, const mpm_step_info *info) {
 }
 
 START_TEST(the_count_goes_on) {
-  world_desc d = described(2, &basis_options[1], MPM_MUSL, 3, 3);
+  world_desc d = described(2, &basis_options[1], MPM_USL, 3, 3);
   world w, loaded, failing;
   world *const of[3] = {&w, &loaded, &failing};
   int32_t refuses = 0;
@@ -396,6 +396,56 @@ START_TEST(orders_are_bounded) {
 }
 END_TEST
 
+/* Full steps far apart feed waves where the strain is that of projected velocities, unless the order is 1. */
+START_TEST(far_apart) {
+  static const int32_t schemes[3] = {MPM_USL, MPM_USF, MPM_MUSL};
+  for (int32_t s = 0; s < 3; ++s) {
+    world_desc d = described(2, &basis_options[1], schemes[s], 2, 2);
+    world w;
+    world_open(&w, &d);
+    mpm_stepper_desc desc = d.stepper;
+    desc.xpic_every = 3;
+    if (schemes[s] == MPM_USL)
+      ck_ok(&w, mpm_stepper_configure(w.stepper, &desc));
+    else
+      ck_refused(&w, mpm_stepper_configure(w.stepper, &desc), MPM_E_UNSUPPORTED, "use 2, scheme MPM_USL");
+    desc.xpic_order = 1;
+    ck_ok(&w, mpm_stepper_configure(w.stepper, &desc));
+    desc.transfer = MPM_XPIC;
+    desc.xpic_order = 5;
+    ck_ok(&w, mpm_stepper_configure(w.stepper, &desc));
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* What noise makes of the energy of a block at the largest steps that are taken by default: that of FLIP grows
+ * by 4 % at most, and nothing grows more. */
+START_TEST(noise_does_not_grow) {
+  static const struct {
+    int32_t scheme, order, every;
+    double share;
+  } way[] = {{MPM_USL, 4, 1, 0.40},  {MPM_USL, 32, 1, 0.40}, {MPM_USL, 8, 5, 0.40},   {MPM_USL, 4, 20, 0.40},
+             {MPM_USF, 32, 1, 0.67}, {MPM_USF, 8, 2, 0.67},  {MPM_MUSL, 32, 1, 0.67}, {MPM_MUSL, 8, 2, 0.67}};
+  world_desc d = described(2, &basis_options[1], way[_i].scheme, way[_i].order, way[_i].every);
+  d.grid.cells[0] = d.grid.cells[1] = 18;
+  world w;
+  mpm_particles *set = world_open(&w, &d);
+  const int64_t n = world_fill_cube(&w, set, 1.0, 3.5);
+  double *v = fetch(&w, set, "velocity", 2), most = 0.0;
+  for (int64_t i = 0; i < 2 * n; ++i) v[i] = 0.1 * noise_at((uint64_t)i);
+  put(&w, set, "velocity", 2, v);
+  const double start = world_info(&w).kinetic_energy;
+  for (int32_t k = 0; k < 600; ++k) {
+    world_step(&w, way[_i].share * world_stable_dt(&w));
+    most = fmax(most, w.info.kinetic_energy + w.info.strain_energy);
+  }
+  ck_between("energy / start", most / start, 0.0, 1.05);
+  free(v);
+  world_close(&w);
+}
+END_TEST
+
 Suite *fmpm_suite(void);
 Suite *fmpm_suite(void) {
   Suite *suite = suite_create("fmpm");
@@ -411,6 +461,8 @@ Suite *fmpm_suite(void) {
   tcase_add_loop_test(steps, every_so_many_steps, 0, 2);
   tcase_add_test(steps, the_count_goes_on);
   tcase_add_test(steps, orders_are_bounded);
+  tcase_add_test(steps, far_apart);
+  tcase_add_loop_test(steps, noise_does_not_grow, 0, 8);
   suite_add_tcase(suite, series);
   suite_add_tcase(suite, boundaries);
   suite_add_tcase(suite, steps);
