@@ -21,8 +21,7 @@ static void list_streams(mpmi_batch *b) {
   add_streams(streams, b->set, MPMI_POSITION, 0);
   add_streams(streams, b->set, MPMI_INITIAL_VOLUME, 0);
   if (b->pass->moves) {
-    if (b->step->takes == MPMI_TAKES_BLEND)
-      add_streams(streams, b->set, MPMI_VELOCITY, 0);
+    if (b->step->takes == MPMI_TAKES_BLEND) add_streams(streams, b->set, MPMI_VELOCITY, 0);
     add_streams(streams, b->set, MPMI_POSITION, 1);
     add_streams(streams, b->set, MPMI_VELOCITY, 1);
     add_streams(streams, b->set, MPMI_L, 1);
