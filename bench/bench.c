@@ -69,6 +69,7 @@ static const bench_case cases[] = {
     {"3-D quadratic TFLIP", 3, MPM_BSPLINE2, MPM_USL, MPM_TFLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D quadratic AFLIP", 3, MPM_BSPLINE2, MPM_USL, MPM_AFLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D quadratic XPIC(2)", 3, MPM_BSPLINE2, MPM_USL, MPM_XPIC, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
+    {"3-D quadratic FMPM(2)", 3, MPM_BSPLINE2, MPM_USL, MPM_FMPM, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
 };
 enum { CASES = sizeof cases / sizeof *cases, MOST_NUMBERS = 16, MOST_REPEATS = 99, WARM_UP = 45 };
 

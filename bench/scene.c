@@ -273,8 +273,12 @@ void bench_close(bench_scene *scene) {
   mpm_context_destroy(scene->context);
 }
 
+static int32_t has_orders(const bench_case *of) {
+  return of->transfer == MPM_XPIC || of->transfer == MPM_FMPM;
+}
+
 static int32_t is_affine(const bench_case *of) {
-  return of->transfer != MPM_FLIP && of->transfer != MPM_XPIC;
+  return of->transfer != MPM_FLIP && !has_orders(of);
 }
 
 static int32_t width_of(const bench_case *of) {
@@ -304,7 +308,7 @@ double bench_flops(const bench_case *of) {
     }
   }
   if (of->scheme != MPM_USL) scatter *= 1.5, gather *= 1.6; /* one more projection and one more gather */
-  if (of->transfer == MPM_XPIC) scatter *= 1.5, gather *= 2.2;
+  if (has_orders(of)) scatter *= 1.5, gather *= 2.2;
   if (of->extras == BENCH_REMEDY) gather *= 1.6;
   return scatter + gather + 2.0 * 22.0 * d + d * (d + 4.0) + 2.0 * d * d * d + 14.0 + 30.0 * d + 40.0;
 }
@@ -314,14 +318,14 @@ int32_t bench_yields(const bench_case *of) {
 }
 
 /* P2G reads x, v, m, V, stress (and C); G2P reads x, v, F, m, V0 and writes x, v, F, V, stress (and C); MUSL
- * and USF, XPIC and the remedy read and write some of it again. */
+ * and USF, XPIC, FMPM and the remedy read and write some of it again. */
 double bench_bytes(const bench_case *of) {
   const int32_t d = of->dim, F = d == 1 ? 1 : d == 2 ? 5 : 9, stress = d == 1 ? 3 : d == 2 ? 4 : 6;
   int32_t values = (2 * d + 2 + stress) + (2 * d + F + 2) + (2 * d + F + 1 + stress);
   if (is_affine(of)) values += 2 * d * d;
   if (plastic_law_of(of)) values += stress + 2 * plastic_law_of(of)->kept;
   if (of->scheme != MPM_USL) values += 2 * d + 1 + d;
-  if (of->transfer == MPM_XPIC) values += 3 * (2 * d);
+  if (has_orders(of)) values += 3 * (2 * d);
   if (of->extras == BENCH_REMEDY) values += d + 3;
   return 8.0 * values;
 }

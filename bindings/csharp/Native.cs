@@ -90,6 +90,9 @@ namespace Mpm {
     /// <summary>Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic
     /// B-splines with ghosts or periodic axes: Hu et al. 2018.</summary>
     public const int MPM_APIC_MLS = 7;
+    /// <summary>FMPM(k), where k is xpic_order: nodal velocities by the first k terms of a series for the inverse of
+    /// the full mass matrix: Nairn &amp; Hammerquist 2021.</summary>
+    public const int MPM_FMPM = 8;
 
     // Instruction set of the kernels.
     /// <summary>the best one that both the processor and the library have.</summary>
@@ -571,9 +574,9 @@ namespace Mpm {
     public uint struct_size;
     /// <summary>MPM_USL (default), MPM_USF, MPM_MUSL or MPM_NEWMARK.</summary>
     public int scheme;
-    /// <summary>MPM_FLIP (default) to MPM_APIC_MLS.</summary>
+    /// <summary>MPM_FLIP (default) to MPM_FMPM.</summary>
     public int transfer;
-    /// <summary>Order m of MPM_XPIC, 1 (PIC) to 5; default 2.</summary>
+    /// <summary>Order m of MPM_XPIC, 1 (PIC) to 5, or k of MPM_FMPM, 1 (PIC) to 32; default 2.</summary>
     public int xpic_order;
     /// <summary>Order of the update of positions; v is the updated nodal velocity and w a weight.</summary>
     public int position_order;
@@ -589,8 +592,8 @@ namespace Mpm {
     public int staggered;
     /// <summary>Acceleration of nodes whose velocity the host or a particle prescribes.</summary>
     public int boundary_zero_acceleration;
-    /// <summary>Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, from 1 (default, FLIP) to 0
-    /// (PIC).</summary>
+    /// <summary>Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, and between the steps that xpic_every
+    /// counts, from 1 (default, FLIP) to 0 (PIC).</summary>
     public double flip;
     /// <summary>Rate beta &gt;= 0, 1/time, of a blend that does not depend on dt (MPoint theory, eqs 58-59), for the
     /// transfers of flip: the step's share of FLIP is flip * max(0, 1 - beta dt).</summary>
@@ -629,6 +632,12 @@ namespace Mpm {
     /// <summary>Damping in proportion to mass, a &gt;= 0 in 1/time; default 0: the force -a m v on nodes, for a share
     /// of a / (2 omega) of critical damping.</summary>
     public double mass_damping;
+    /// <summary>For MPM_XPIC and MPM_FMPM: every so many steps are of the order xpic_order, those whose number
+    /// (mpm_step_info::step, counted from 1 or on from mpm_stepper_set_time()) is a multiple of this; all others are
+    /// those of MPM_FLIP, with flip and pic_damping.</summary>
+    public int xpic_every;
+    /// <summary>0.</summary>
+    public int reserved;
 
     /// <summary>The library's defaults.</summary>
     public static StepperDesc Default() {

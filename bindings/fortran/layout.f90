@@ -163,7 +163,7 @@ contains
 
   subroutine check_mpm_stepper_desc()
     type(mpm_stepper_desc), target :: it
-    call compare("mpm_stepper_desc", c_sizeof(it), of(168, 168))
+    call compare("mpm_stepper_desc", c_sizeof(it), of(176, 176))
     call compare("mpm_stepper_desc%struct_size", distance(c_loc(it), c_loc(it%struct_size)), of(0, 0))
     call compare("mpm_stepper_desc%scheme", distance(c_loc(it), c_loc(it%scheme)), of(4, 4))
     call compare("mpm_stepper_desc%transfer", distance(c_loc(it), c_loc(it%transfer)), of(8, 8))
@@ -199,6 +199,8 @@ contains
         148))
     call compare("mpm_stepper_desc%local_damping", distance(c_loc(it), c_loc(it%local_damping)), of(152, 152))
     call compare("mpm_stepper_desc%mass_damping", distance(c_loc(it), c_loc(it%mass_damping)), of(160, 160))
+    call compare("mpm_stepper_desc%xpic_every", distance(c_loc(it), c_loc(it%xpic_every)), of(168, 168))
+    call compare("mpm_stepper_desc%reserved", distance(c_loc(it), c_loc(it%reserved)), of(172, 172))
   end subroutine check_mpm_stepper_desc
 
   subroutine check_mpm_step_info()

@@ -92,6 +92,9 @@ module mpm
   !> Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic B-splines with
   !! ghosts or periodic axes: Hu et al. 2018.
   integer(c_int32_t), parameter :: MPM_APIC_MLS = 7_c_int32_t
+  !> FMPM(k), where k is xpic_order: nodal velocities by the first k terms of a series for the inverse of the full mass
+  !! matrix: Nairn & Hammerquist 2021.
+  integer(c_int32_t), parameter :: MPM_FMPM = 8_c_int32_t
 
   !> Instruction set of the kernels.
   !> the best one that both the processor and the library have.
@@ -435,9 +438,9 @@ module mpm
     integer(c_int32_t) :: struct_size
     !> MPM_USL (default), MPM_USF, MPM_MUSL or MPM_NEWMARK.
     integer(c_int32_t) :: scheme
-    !> MPM_FLIP (default) to MPM_APIC_MLS.
+    !> MPM_FLIP (default) to MPM_FMPM.
     integer(c_int32_t) :: transfer
-    !> Order m of MPM_XPIC, 1 (PIC) to 5; default 2.
+    !> Order m of MPM_XPIC, 1 (PIC) to 5, or k of MPM_FMPM, 1 (PIC) to 32; default 2.
     integer(c_int32_t) :: xpic_order
     !> Order of the update of positions; v is the updated nodal velocity and w a weight.
     integer(c_int32_t) :: position_order
@@ -452,7 +455,8 @@ module mpm
     integer(c_int32_t) :: staggered
     !> Acceleration of nodes whose velocity the host or a particle prescribes.
     integer(c_int32_t) :: boundary_zero_acceleration
-    !> Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, from 1 (default, FLIP) to 0 (PIC).
+    !> Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, and between the steps that xpic_every counts, from
+    !! 1 (default, FLIP) to 0 (PIC).
     real(c_double) :: flip
     !> Rate beta >= 0, 1/time, of a blend that does not depend on dt (MPoint theory, eqs 58-59), for the transfers of
     !! flip: the step's share of FLIP is flip * max(0, 1 - beta dt).
@@ -491,6 +495,12 @@ module mpm
     !> Damping in proportion to mass, a >= 0 in 1/time; default 0: the force -a m v on nodes, for a share of a / (2
     !! omega) of critical damping.
     real(c_double) :: mass_damping
+    !> For MPM_XPIC and MPM_FMPM: every so many steps are of the order xpic_order, those whose number
+    !! (mpm_step_info::step, counted from 1 or on from mpm_stepper_set_time()) is a multiple of this; all others are
+    !! those of MPM_FLIP, with flip and pic_damping.
+    integer(c_int32_t) :: xpic_every
+    !> 0.
+    integer(c_int32_t) :: reserved
   end type mpm_stepper_desc
 
   !> What a step did, or the state as it is.

@@ -38,6 +38,7 @@ export const constants = Object.freeze({
   MPM_AFLIP: 5,
   MPM_XPIC: 6,
   MPM_APIC_MLS: 7,
+  MPM_FMPM: 8,
   MPM_ISA_BEST: 0,
   MPM_ISA_BASELINE: 1,
   MPM_ISA_AVX2: 2,
@@ -213,7 +214,7 @@ export const structs = {
     },
   },
   mpm_stepper_desc: {
-    size: 168,
+    size: 176,
     fields: {
       struct_size: [0, 'u32'],
       scheme: [4, 'i32'],
@@ -241,6 +242,8 @@ export const structs = {
       projected_positions: [148, 'i32'],
       local_damping: [152, 'f64'],
       mass_damping: [160, 'f64'],
+      xpic_every: [168, 'i32'],
+      reserved: [172, 'i32'],
     },
   },
   mpm_step_info: {

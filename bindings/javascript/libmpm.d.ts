@@ -87,6 +87,11 @@ export interface Constants {
    * B-splines with ghosts or periodic axes: Hu et al. 2018.
    */
   readonly MPM_APIC_MLS: 7;
+  /**
+   * FMPM(k), where k is xpic_order: nodal velocities by the first k terms of a series for the inverse of the
+   * full mass matrix: Nairn & Hammerquist 2021. Since 0.2.0.
+   */
+  readonly MPM_FMPM: 8;
   /** the best one that both the processor and the library have */
   readonly MPM_ISA_BEST: 0;
   /** the one that the library was compiled for */
@@ -285,11 +290,12 @@ export interface MaterialDesc {
 export interface StepperDesc {
   /** MPM_USL (default), MPM_USF, MPM_MUSL or MPM_NEWMARK */
   scheme?: number | boolean;
-  /** MPM_FLIP (default) to MPM_APIC_MLS. MPM_NEWMARK takes MPM_FLIP with flip = 1 only. */
+  /** MPM_FLIP (default) to MPM_FMPM. MPM_NEWMARK takes MPM_FLIP with flip = 1 only. */
   transfer?: number | boolean;
   /**
-   * Order m of MPM_XPIC, 1 (PIC) to 5; default 2. Each order above the first projects and gathers once more;
-   * these corrections obey fixed and slip walls and periodic axes.
+   * Order m of MPM_XPIC, 1 (PIC) to 5, or k of MPM_FMPM, 1 (PIC) to 32; default 2. Each order above the first
+   * projects and gathers once more. These corrections obey fixed and slip walls and periodic axes, those of
+   * MPM_FMPM prescribed velocities as well; contact acts before them, with its whole impulse.
    */
   xpic_order?: number | boolean;
   /**
@@ -327,7 +333,10 @@ export interface StepperDesc {
    * plane, on which the projected velocity is zero too.
    */
   boundary_zero_acceleration?: number | boolean;
-  /** Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, from 1 (default, FLIP) to 0 (PIC). */
+  /**
+   * Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, and between the steps that xpic_every
+   * counts, from 1 (default, FLIP) to 0 (PIC).
+   */
   flip?: number;
   /**
    * Rate beta >= 0, 1/time, of a blend that does not depend on dt (MPoint theory, eqs 58-59), for the
@@ -389,6 +398,14 @@ export interface StepperDesc {
    * local_damping does. MPM_E_UNSUPPORTED with quasi_static. Since 0.2.0.
    */
   mass_damping?: number;
+  /**
+   * For MPM_XPIC and MPM_FMPM: every so many steps are of the order xpic_order, those whose number
+   * (mpm_step_info::step, counted from 1 or on from mpm_stepper_set_time()) is a multiple of this; all others
+   * are those of MPM_FLIP, with flip and pic_damping. Steps that fail have no number, and a loaded state goes
+   * on with its own. 1, and 0 (default), which means 1: every step is of that order. MPM_E_UNSUPPORTED: above
+   * 2 with MPM_FMPM of an order above 1 and MPM_USF or MPM_MUSL, where waves grow. Since 0.2.0.
+   */
+  xpic_every?: number | boolean;
 }
 /** How mpm_advance() chooses its sub-steps. */
 export interface AdvanceDesc {

@@ -85,6 +85,7 @@ const MPM_TFLIP = Int32(4) # projects the velocity gradient too (MPoint theory, 
 const MPM_AFLIP = Int32(5) # affine projection with the FLIP blend
 const MPM_XPIC = Int32(6) # XPIC(m), where m is xpic_order
 const MPM_APIC_MLS = Int32(7) # Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic B-splines with ghosts or periodic axes
+const MPM_FMPM = Int32(8) # FMPM(k), where k is xpic_order
 
 # Instruction set of the kernels. Results of two sets agree to round-off, those of one set to the bit.
 const MPM_ISA_BEST = Int32(0) # the best one that both the processor and the library have
@@ -392,6 +393,8 @@ mutable struct mpm_stepper_desc
     projected_positions::Int32
     local_damping::Float64
     mass_damping::Float64
+    xpic_every::Int32
+    reserved::Int32
     mpm_stepper_desc() = new()
 end
 Base.cconvert(::Type{Ptr{mpm_stepper_desc}}, it::mpm_stepper_desc) = it
@@ -2006,10 +2009,10 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     MPM_SINGULAR, MPM_OFF_GRID, MPM_CANCELLED, MPM_E_ARG, MPM_E_NOMEM, MPM_E_STATE, MPM_E_CALLBACK, MPM_E_UNSUPPORTED,
     MPM_E_NOT_FOUND, MPM_E_IO, MPM_E_FORMAT, MPM_E_INTERNAL, MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP,
     MPM_UGIMP, MPM_CPGIMP, MPM_BOUNDARY_GHOST, MPM_BOUNDARY_OPEN_KNOT, MPM_USL, MPM_USF, MPM_MUSL, MPM_NEWMARK,
-    MPM_FLIP, MPM_APIC, MPM_TPIC, MPM_TFLIP, MPM_AFLIP, MPM_XPIC, MPM_APIC_MLS, MPM_ISA_BEST, MPM_ISA_BASELINE,
-    MPM_ISA_AVX2, MPM_ISA_AVX512, MPM_ISA_NEON, MPM_ISA_PORTABLE, MPM_LOG_WARNING, MPM_LOG_INFO, MPM_LOG_DEBUG,
-    MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE, MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL, MPM_X_MIN,
-    MPM_X_MAX, MPM_Y_MIN, MPM_Y_MAX, MPM_Z_MIN, MPM_Z_MAX, MPM_WALL_NONE, MPM_WALL_OPEN, MPM_WALL_FIXED,
+    MPM_FLIP, MPM_APIC, MPM_TPIC, MPM_TFLIP, MPM_AFLIP, MPM_XPIC, MPM_APIC_MLS, MPM_FMPM, MPM_ISA_BEST,
+    MPM_ISA_BASELINE, MPM_ISA_AVX2, MPM_ISA_AVX512, MPM_ISA_NEON, MPM_ISA_PORTABLE, MPM_LOG_WARNING, MPM_LOG_INFO,
+    MPM_LOG_DEBUG, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE, MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL,
+    MPM_X_MIN, MPM_X_MAX, MPM_Y_MIN, MPM_Y_MAX, MPM_Z_MIN, MPM_Z_MAX, MPM_WALL_NONE, MPM_WALL_OPEN, MPM_WALL_FIXED,
     MPM_WALL_SLIP, MPM_WALL_FRICTION, MPM_WALL_FRICTION_NODES, MPM_AFTER_P2G, MPM_AFTER_FORCES, MPM_AFTER_VELOCITY,
     MPM_READ, MPM_WRITE, MPM_F64, MPM_I64, MPM_U8, MPM_BY_ID, MPM_LIBRARY_ORDER, MPM_SOLVER_AUTO, MPM_SOLVER_CG,
     MPM_SOLVER_MULTIGRID_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES, MPM_SOLVER_HOST, MPM_CONTACT_UNILATERAL,

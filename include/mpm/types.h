@@ -119,7 +119,10 @@ enum mpm_transfer_value {
   MPM_XPIC = 6,  /**< XPIC(m), where m is xpic_order: Hammerquist & Nairn 2017 */
   /** Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic
    * B-splines with ghosts or periodic axes: Hu et al. 2018. */
-  MPM_APIC_MLS = 7
+  MPM_APIC_MLS = 7,
+  /** FMPM(k), where k is xpic_order: nodal velocities by the first k terms of a series for the inverse of the
+   * full mass matrix: Nairn & Hammerquist 2021. Since 0.2.0. */
+  MPM_FMPM = 8
 };
 
 /** Instruction set of the kernels. Results of two sets agree to round-off, those of one set to the bit. */

@@ -37,7 +37,7 @@ static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
 
 /* Acts in projections other than the main one, which have no hooks. The projection of USF comes first and
  * asks who holds nodes; that of MUSL keeps these answers; the terms of XPIC obey walls and images only, which
- * are linear.
+ * are linear, and those of FMPM also what is held.
  *
  * Only a projection with forces can tell which contacts are closed. Without them a body that expands against
  * a wall seems to leave it, and USF would strain it less in the rebound than in the approach, which makes
@@ -67,7 +67,7 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
   mpmi_bound bound = {.step = step,
                       .nodes = nodes,
                       .values = mpmi_projected_nodes(nodes, projection),
-                      .flip = both ? mpmi_flip_share(settings, step->velocity_dt) : 0.0,
+                      .flip = both ? mpmi_flip_share(step) : 0.0,
                       .share = share,
                       .dim = settings->grid->dim,
                       .records = projection->recorded && nodes->has_impulses};
@@ -76,8 +76,9 @@ mpm_status mpmi_boundary_stage(mpmi_step *step, const mpmi_projection *projectio
   if (!status) status = projection->main ? act(&bound, projection) : act_on_velocities(&bound, projection);
   if (!status) status = mpmi_ties_unfold(&bound);
   if (status) return status;
+  const int32_t tells = bound.records && projection->held && share != 0.0; /* what holders gave counts */
+  if (tells && nodes->prescription.any && (status = mpmi_prescribed_share(&bound))) return status;
   if (!projection->main) return MPM_OK;
-  if (nodes->prescription.any && (status = mpmi_prescribed_share(&bound))) return status;
   if ((status = mpmi_damping_sum(&bound))) return status;
   return mpmi_hooks_end(&bound);
 }

@@ -25,7 +25,7 @@ static void set_block(mpmi_bound *bound, int64_t block) {
       prescribe(bound, slot, c, value);
       work += mpmi_record(bound, slot, c, before) * value;
     }
-  if (bound->records) bound->step->work->block_work[block] = work;
+  if (bound->records) bound->step->work->block_work[block] = bound->share * work;
 }
 
 static void set_task(void *data, int64_t k) {

@@ -16,7 +16,7 @@
   X(mpm_material_batch, lookup, 144)                                                                         \
   X(mpm_material_desc, state_initial, 64)                                                                    \
   X(mpm_stepper_desc, projected_positions, 152)                                                              \
-  X(mpm_stepper_desc, mass_damping, 168)                                                                     \
+  X(mpm_stepper_desc, reserved, 176)                                                                         \
   X(mpm_step_info, angular_momentum, 192)                                                                    \
   X(mpm_step_info, damping_dissipation_total, 248)                                                           \
   X(mpm_contact_desc, direction, 72)                                                                         \

@@ -33,7 +33,7 @@ static void setup_grid(mpmi_archive *a, const mpm_grid_desc *d) {
 static void setup_scheme(mpmi_archive *a, const mpm_stepper_desc *d) {
   mpmi_archive_same_int(a, "scheme", d->scheme);
   mpmi_archive_same_int(a, "transfer", d->transfer);
-  mpmi_archive_same_int(a, "xpic_order", d->transfer == MPM_XPIC ? d->xpic_order : 0);
+  mpmi_archive_same_int(a, "xpic_order", mpmi_transfer_of(d->transfer)->most_order ? d->xpic_order : 0);
   mpmi_archive_same_int(a, "position_order", d->position_order);
   mpmi_archive_same_int(a, "locking_remedy", d->locking_remedy);
   mpmi_archive_same_int(a, "reference_positions", d->reference_positions);

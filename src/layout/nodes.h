@@ -99,7 +99,7 @@ typedef struct mpmi_contact_state {
 typedef struct mpmi_nodes {
   mpmi_nodal solved;    /* the projection with forces, 4 or 8 values: what particles take from */
   mpmi_nodal projected; /* the other projections, 4 values */
-  mpmi_nodal sums;      /* 4 values: the corrections of XPIC, or the cell sums of the locking remedy */
+  mpmi_nodal sums; /* 4 values: the corrections of XPIC and FMPM, or the cell sums of the locking remedy */
   int32_t has_impulses; /* 1: impulses on nodes must be remembered; else `impulse` is not there */
   mpmi_impulse *impulse;
   int64_t impulse_capacity;

@@ -63,16 +63,14 @@ static inline int32_t mpmi_moves_last(const mpmi_settings *set) {
 static inline int32_t mpmi_is_affine(const mpmi_settings *set) {
   return set->transfer->carries != MPMI_CARRIES_NOTHING;
 }
-/* Returns 1 when the transfer projects corrections. XPIC of order 1 is PIC. */
+/* Returns 1 when there are steps that project corrections. Those of order 1 are PIC. */
 static inline int32_t mpmi_is_corrected(const mpmi_settings *set) {
-  return set->transfer->takes == MPMI_TAKES_CORRECTED && set->desc.xpic_order > 1;
+  return set->transfer->most_order > 0 && set->desc.xpic_order > 1;
 }
-/* Returns the share of FLIP in the blend of a step whose forces act over dt, 0 for the other transfers:
- * MPoint theory, eqs 58 and 59. */
-static inline double mpmi_flip_share(const mpmi_settings *set, double dt) {
-  if (set->transfer->takes != MPMI_TAKES_BLEND) return 0.0;
-  const double kept = 1.0 - set->desc.pic_damping * dt;
-  return kept > 0.0 ? set->desc.flip * kept : 0.0;
+/* Returns how new velocities follow from the nodes, MPMI_TAKES_..., in the step of this number. */
+static inline int32_t mpmi_takes_in_step(const mpmi_settings *set, int64_t number) {
+  const int32_t every = set->transfer->most_order > 0 ? set->desc.xpic_every : 0;
+  return every > 1 && number % every ? (int32_t)MPMI_TAKES_BLEND : set->transfer->takes;
 }
 /* Returns 1 when explicit steps damp the nodes. */
 static inline int32_t mpmi_is_damped(const mpmi_settings *set) {

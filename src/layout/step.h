@@ -80,6 +80,7 @@ enum { MPMI_IDLE, MPMI_RUNNING, MPMI_BEGUN, MPMI_SOLVED }; /* phases */
 
 typedef struct mpmi_step {
   int32_t phase;  /* MPMI_IDLE: there is no step, and nothing else here counts */
+  int32_t takes;  /* how new velocities follow from the nodes, MPMI_TAKES_... */
   int32_t staged; /* in parts, with the host in between: nodes keep force apart from momentum */
   const mpmi_settings *settings;
   const mpmi_layout *layout;
@@ -97,6 +98,17 @@ typedef struct mpmi_step {
   mpm_status (*ask_progress)(struct mpm_stepper *stepper);
   struct mpm_stepper *stepper;
 } mpmi_step;
+
+/* Returns the share of FLIP in a step that blends, 0 in others: MPoint theory, eqs 58 and 59. */
+static inline double mpmi_flip_share(const mpmi_step *step) {
+  if (step->takes != MPMI_TAKES_BLEND) return 0.0;
+  const double kept = 1.0 - step->settings->desc.pic_damping * step->velocity_dt;
+  return kept > 0.0 ? step->settings->desc.flip * kept : 0.0;
+}
+/* Returns 1 when the step projects corrections. */
+static inline int32_t mpmi_corrects(const mpmi_step *step) {
+  return step->takes != MPMI_TAKES_BLEND && mpmi_is_corrected(step->settings);
+}
 
 mpmi_failure mpmi_no_failure(void);
 /* Replaces `first` by `other` if that comes before it. */

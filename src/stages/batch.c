@@ -21,8 +21,7 @@ static void list_streams(mpmi_batch *b) {
   add_streams(streams, b->set, MPMI_POSITION, 0);
   add_streams(streams, b->set, MPMI_INITIAL_VOLUME, 0);
   if (b->pass->moves) {
-    if (b->step->settings->transfer->takes == MPMI_TAKES_BLEND)
-      add_streams(streams, b->set, MPMI_VELOCITY, 0);
+    if (b->step->takes == MPMI_TAKES_BLEND) add_streams(streams, b->set, MPMI_VELOCITY, 0);
     add_streams(streams, b->set, MPMI_POSITION, 1);
     add_streams(streams, b->set, MPMI_VELOCITY, 1);
     add_streams(streams, b->set, MPMI_L, 1);
@@ -73,7 +72,7 @@ static void choose_form(mpmi_batch *b) {
   const mpmi_transfer *transfer = settings->transfer;
   const int32_t moves = b->pass->moves;
   const int32_t increments =
-      moves && (transfer->takes == MPMI_TAKES_BLEND || settings->desc.position_order == 2);
+      moves && (b->step->takes == MPMI_TAKES_BLEND || settings->desc.position_order == 2);
   const int32_t matrix = moves && transfer->carries == MPMI_CARRIES_MATRIX;
   if (transfer->moments == MPMI_NEED_MLS && !increments && !b->pass->plain) {
     b->form = MPMI_GATHER_4_MLS;

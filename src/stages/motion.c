@@ -12,17 +12,17 @@
 void mpmi_motion_bind(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpm_grid *grid = settings->grid;
-  const int32_t blends = settings->transfer->takes == MPMI_TAKES_BLEND && mpmi_is_dynamic(settings);
+  const int32_t blends = b->step->takes == MPMI_TAKES_BLEND && mpmi_is_dynamic(settings);
   const int32_t places = b->pass->places;
-  const int32_t rule = places                        ? MPMI_MOVE_PLACE
-                       : blends                      ? MPMI_MOVE_BLEND
-                       : mpmi_is_corrected(settings) ? MPMI_MOVE_CORRECT
-                                                     : MPMI_MOVE_SET;
+  const int32_t rule = places                   ? MPMI_MOVE_PLACE
+                       : blends                 ? MPMI_MOVE_BLEND
+                       : mpmi_corrects(b->step) ? MPMI_MOVE_CORRECT
+                                                : MPMI_MOVE_SET;
   const int32_t lags = settings->desc.position_order == 2 && !mpmi_is_implicit(settings) && !places;
   b->move = (mpmi_move){.rule = rule,
                         .stays = mpmi_moves_last(settings) && !places,
                         .dt = b->step->dt,
-                        .flip = mpmi_flip_share(settings, b->step->velocity_dt),
+                        .flip = mpmi_flip_share(b->step),
                         .lag = lags ? 0.5 : 0.0,
                         .ld = b->law.ld,
                         .v_bar = b->v_bar,

@@ -39,14 +39,22 @@ static mpm_status known_scheme(mpm_context *c, int32_t scheme) {
 static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
   const mpmi_transfer *transfer = mpmi_transfer_of(d->transfer);
   if (!transfer)
-    return mpmi_fail(c, MPM_E_ARG, "transfer is %d: it must be an MPM_FLIP ... MPM_APIC_MLS",
-                     (int)d->transfer);
+    return mpmi_fail(c, MPM_E_ARG, "transfer is %d: it must be an MPM_FLIP ... MPM_FMPM", (int)d->transfer);
   if (transfer->fused && !(grid->moment > 0.0))
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "transfer MPM_APIC_MLS needs a quadratic or cubic B-spline with ghost or periodic "
                      "boundaries: use MPM_APIC with this grid");
-  if (transfer->takes == MPMI_TAKES_CORRECTED && (d->xpic_order < 1 || d->xpic_order > 5))
-    return mpmi_fail(c, MPM_E_ARG, "xpic_order is %d: it must be 1 ... 5", (int)d->xpic_order);
+  if (transfer->most_order && (d->xpic_order < 1 || d->xpic_order > transfer->most_order))
+    return mpmi_fail(c, MPM_E_ARG, "xpic_order is %d: it must be 1 ... %d", (int)d->xpic_order,
+                     (int)transfer->most_order);
+  if (d->xpic_every < 0)
+    return mpmi_fail(c, MPM_E_ARG, "xpic_every is %d: it must be >= 0", (int)d->xpic_every);
+  if (transfer->takes == MPMI_TAKES_FULL && d->xpic_every > 2 && d->xpic_order > 1 &&
+      (d->scheme == MPM_USF || d->scheme == MPM_MUSL))
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "xpic_every is %d: with MPM_FMPM in schemes MPM_USF and MPM_MUSL waves grow where it is "
+                     "above 2: use 2, scheme MPM_USL, or transfer MPM_XPIC",
+                     (int)d->xpic_every);
   return MPM_OK;
 }
 

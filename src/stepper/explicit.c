@@ -57,7 +57,7 @@ mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes) {
 mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
   const mpmi_settings *settings = step->settings;
   double clock = mpmi_seconds();
-  mpm_status status = mpmi_is_corrected(settings) ? mpmi_xpic_stage(step, nodes) : MPM_OK;
+  mpm_status status = mpmi_corrects(step) ? mpmi_xpic_stage(step, nodes) : MPM_OK;
   if (!status)
     status = settings->desc.scheme == MPM_USL ? mpmi_g2p_move_and_deform(step, nodes, &nodes->solved)
                                               : mpmi_g2p_move(step, nodes, &nodes->solved);

@@ -43,6 +43,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
   const int32_t mean = s->settings.desc.staggered && history->previous_dt > 0.0;
   s->step = (mpmi_step){
       .phase = MPMI_RUNNING,
+      .takes = mpmi_takes_in_step(&s->settings, history->step + 1),
       .staged = staged,
       .settings = &s->settings,
       .layout = &s->layout,

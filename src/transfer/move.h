@@ -2,7 +2,7 @@
  *
  *   FLIP/PIC blend  v = a (v_p + sum w dv) + (1 - a) sum w v     MPoint theory eq. 36
  *   affine, PIC     v = sum w v
- *   XPIC            v = sum w v + correction                     stages/xpic.c
+ *   XPIC, FMPM      v = sum w v + correction                     stages/xpic.c
  *   position        x = x_p + dt sum w v                         Guilkey eq. 10, Steffen et al. 2008 eq. 10
  *   second order    x = x_p + dt sum w (v - dv / 2)              MPoint theory eq. 37, its misprint mended
  *
@@ -18,7 +18,7 @@
 enum {
   MPMI_MOVE_SET,     /* v = v_bar */
   MPMI_MOVE_BLEND,   /* v = flip (v_old + dv) + (1 - flip) v_bar */
-  MPMI_MOVE_CORRECT, /* v = v_bar + what v_new holds: XPIC */
+  MPMI_MOVE_CORRECT, /* v = v_bar + what v_new holds: XPIC, FMPM */
   MPMI_MOVE_PLACE    /* v stays what v_new holds */
 };
 

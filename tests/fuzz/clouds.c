@@ -131,8 +131,9 @@ static mpm_stepper_desc draw_stepper(cloud *c) {
   mpm_stepper_desc d;
   MUST(!mpm_stepper_desc_init(&d, sizeof d));
   d.scheme = scheme[fuzz_below(&c->in, 4)];
-  d.transfer = 1 + fuzz_below(&c->in, 7);
+  d.transfer = 1 + fuzz_below(&c->in, 8);
   d.xpic_order = 1 + fuzz_below(&c->in, 5);
+  d.xpic_every = fuzz_below(&c->in, 3);
   const uint32_t bits = (uint32_t)fuzz_word(&c->in, 2);
   d.position_order = 1 + (int32_t)(bits & 1);
   d.locking_remedy = (bits >> 1 & 3) == 3;

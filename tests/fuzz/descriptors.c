@@ -21,7 +21,8 @@ static const member of_stepper[] = {MEMBER(mpm_stepper_desc, scheme, I32, 9),
                                     MEMBER(mpm_stepper_desc, newton_max_iterations, I32, 2),
                                     MEMBER(mpm_stepper_desc, linear_tolerance, F64, 1),
                                     MEMBER(mpm_stepper_desc, linear_max_iterations, I32, 2),
-                                    MEMBER(mpm_stepper_desc, local_damping, F64, 2)};
+                                    MEMBER(mpm_stepper_desc, local_damping, F64, 2),
+                                    MEMBER(mpm_stepper_desc, xpic_every, I32, 1)};
 static const member of_advance[] = {MEMBER(mpm_advance_desc, max_cuts, I32, 1),
                                     MEMBER(mpm_advance_desc, t_end, F64, 5)};
 static const member of_material[] = {MEMBER(mpm_material_desc, state_count, I32, 3),

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { IMPLICIT_STEPS = 5, QUASI_STATIC_STEPS = 3, SCHEMES = 5, BASES = 8, TRANSFERS = 12 };
+enum { IMPLICIT_STEPS = 5, QUASI_STATIC_STEPS = 3, SCHEMES = 5, BASES = 8, IN_TURN = 12, TRANSFERS = 14 };
 
 static const struct {
   int32_t basis, boundary;
@@ -29,15 +29,17 @@ static const struct {
                       {MPM_NEWMARK, 1, "quasi-static"}};
 
 static const struct {
-  int32_t transfer, xpic_order;
+  int32_t transfer, xpic_order, xpic_every;
   double flip, pic_damping;
   const char *name;
-} transfers[TRANSFERS] = {{MPM_FLIP, 2, 1.0, 0.0, "FLIP"},         {MPM_FLIP, 2, 0.9, 0.0, "FLIP 0.9"},
-                          {MPM_FLIP, 2, 0.95, 5.0, "FLIP damped"}, {MPM_APIC, 2, 1.0, 0.0, "APIC"},
-                          {MPM_APIC_MLS, 2, 1.0, 0.0, "APIC_MLS"}, {MPM_TPIC, 2, 1.0, 0.0, "TPIC"},
-                          {MPM_TFLIP, 2, 0.95, 0.0, "TFLIP"},      {MPM_AFLIP, 2, 0.9, 0.0, "AFLIP"},
-                          {MPM_XPIC, 1, 1.0, 0.0, "XPIC(1)"},      {MPM_XPIC, 2, 1.0, 0.0, "XPIC(2)"},
-                          {MPM_XPIC, 3, 1.0, 0.0, "XPIC(3)"},      {MPM_XPIC, 5, 1.0, 0.0, "XPIC(5)"}};
+} transfers[TRANSFERS] = {
+    {MPM_FLIP, 2, 0, 1.0, 0.0, "FLIP"},         {MPM_FLIP, 2, 0, 0.9, 0.0, "FLIP 0.9"},
+    {MPM_FLIP, 2, 0, 0.95, 5.0, "FLIP damped"}, {MPM_APIC, 2, 0, 1.0, 0.0, "APIC"},
+    {MPM_APIC_MLS, 2, 0, 1.0, 0.0, "APIC_MLS"}, {MPM_TPIC, 2, 0, 1.0, 0.0, "TPIC"},
+    {MPM_TFLIP, 2, 0, 0.95, 0.0, "TFLIP"},      {MPM_AFLIP, 2, 0, 0.9, 0.0, "AFLIP"},
+    {MPM_XPIC, 1, 0, 1.0, 0.0, "XPIC(1)"},      {MPM_XPIC, 2, 0, 1.0, 0.0, "XPIC(2)"},
+    {MPM_XPIC, 3, 0, 1.0, 0.0, "XPIC(3)"},      {MPM_XPIC, 5, 0, 1.0, 0.0, "XPIC(5)"},
+    {MPM_FMPM, 2, 0, 1.0, 0.0, "FMPM(2)"},      {MPM_FMPM, 4, 2, 0.95, 0.0, "FMPM(4) every other"}};
 
 static const char *const laws[LAWS] = {
     "",       "neo-Hookean", "linear elastic",        "J2",   "decoupled",    "fluid", "viscous fluid",
@@ -60,6 +62,7 @@ static scene method(int32_t dim, int32_t scheme, int32_t basis, int32_t transfer
   const int32_t t = implicit ? 0 : transfer;
   is.transfer = transfers[t].transfer;
   is.xpic_order = transfers[t].xpic_order;
+  is.xpic_every = transfers[t].xpic_every;
   is.flip = transfers[t].flip;
   is.pic_damping = transfers[t].pic_damping;
   is.steps = is.quasi_static ? QUASI_STATIC_STEPS : implicit ? IMPLICIT_STEPS : dim == 3 ? 10 : 15;
@@ -95,10 +98,11 @@ static void list_methods(listing *l, int32_t dim) {
       }
 }
 
-/* Basis and transfer for the n-th scene with a scheme; cpGIMP, which not every law goes with, is the last. */
+/* Basis and transfer for the n-th scene with a scheme, of the first IN_TURN; cpGIMP, which not every law goes
+ * with, is the last. */
 static scene in_turn(int32_t dim, int32_t scheme, int32_t n) {
-  _Static_assert(TRANSFERS % 5, "a stride of 5 reaches every transfer: with a multiple of 5 take another");
-  scene is = method(dim, scheme, n % (BASES - 1), 5 * n % TRANSFERS);
+  _Static_assert(IN_TURN % 5, "a stride of 5 reaches every transfer: with a multiple of 5 take another");
+  scene is = method(dim, scheme, n % (BASES - 1), 5 * n % IN_TURN);
   return is_offered(&is) ? is : method(dim, scheme, n % (BASES - 1), 3);
 }
 

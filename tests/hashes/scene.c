@@ -60,6 +60,7 @@ mpm_stepper_desc describe_stepper(const scene *is) {
   d.quasi_static = is->quasi_static;
   d.transfer = is->transfer;
   d.xpic_order = is->xpic_order;
+  d.xpic_every = is->xpic_every;
   d.flip = is->flip;
   d.pic_damping = is->pic_damping;
   d.position_order = is->position_order;

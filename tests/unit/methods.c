@@ -14,21 +14,25 @@ const basis_option basis_options[BASES] = {{MPM_LINEAR, MPM_BOUNDARY_GHOST, 0.5,
 
 const scheme_option scheme_options[SCHEMES] = {{MPM_USL, "USL"}, {MPM_MUSL, "MUSL"}, {MPM_USF, "USF"}};
 
-const transfer_option transfer_options[TRANSFERS] = {{MPM_FLIP, 2, 1.0, 0.0, "FLIP"},
-                                                     {MPM_FLIP, 2, 0.9, 0.0, "FLIP 0.9"},
-                                                     {MPM_FLIP, 2, 0.0, 0.0, "PIC"},
-                                                     {MPM_APIC, 2, 1.0, 0.0, "APIC"},
-                                                     {MPM_APIC_MLS, 2, 1.0, 0.0, "MLS"},
-                                                     {MPM_FLIP, 2, 0.95, 5.0, "FLIP damped"},
-                                                     {MPM_TPIC, 2, 1.0, 0.0, "TPIC"},
-                                                     {MPM_TFLIP, 2, 1.0, 0.0, "TFLIP"},
-                                                     {MPM_TFLIP, 2, 0.9, 5.0, "TFLIP 0.9 damped"},
-                                                     {MPM_AFLIP, 2, 1.0, 0.0, "AFLIP"},
-                                                     {MPM_AFLIP, 2, 0.9, 5.0, "AFLIP 0.9 damped"},
-                                                     {MPM_XPIC, 1, 1.0, 0.0, "XPIC(1)"},
-                                                     {MPM_XPIC, 2, 1.0, 0.0, "XPIC(2)"},
-                                                     {MPM_XPIC, 3, 1.0, 0.0, "XPIC(3)"},
-                                                     {MPM_XPIC, 5, 1.0, 0.0, "XPIC(5)"}};
+const transfer_option transfer_options[TRANSFERS] = {{MPM_FLIP, 2, 0, 1.0, 0.0, "FLIP"},
+                                                     {MPM_FLIP, 2, 0, 0.9, 0.0, "FLIP 0.9"},
+                                                     {MPM_FLIP, 2, 0, 0.0, 0.0, "PIC"},
+                                                     {MPM_APIC, 2, 0, 1.0, 0.0, "APIC"},
+                                                     {MPM_APIC_MLS, 2, 0, 1.0, 0.0, "MLS"},
+                                                     {MPM_FLIP, 2, 0, 0.95, 5.0, "FLIP damped"},
+                                                     {MPM_TPIC, 2, 0, 1.0, 0.0, "TPIC"},
+                                                     {MPM_TFLIP, 2, 0, 1.0, 0.0, "TFLIP"},
+                                                     {MPM_TFLIP, 2, 0, 0.9, 5.0, "TFLIP 0.9 damped"},
+                                                     {MPM_AFLIP, 2, 0, 1.0, 0.0, "AFLIP"},
+                                                     {MPM_AFLIP, 2, 0, 0.9, 5.0, "AFLIP 0.9 damped"},
+                                                     {MPM_XPIC, 1, 0, 1.0, 0.0, "XPIC(1)"},
+                                                     {MPM_XPIC, 2, 0, 1.0, 0.0, "XPIC(2)"},
+                                                     {MPM_XPIC, 3, 0, 1.0, 0.0, "XPIC(3)"},
+                                                     {MPM_XPIC, 5, 0, 1.0, 0.0, "XPIC(5)"},
+                                                     {MPM_FMPM, 2, 0, 1.0, 0.0, "FMPM(2)"},
+                                                     {MPM_FMPM, 4, 0, 1.0, 0.0, "FMPM(4)"},
+                                                     {MPM_FMPM, 3, 2, 0.9, 5.0, "FMPM(3) every other"},
+                                                     {MPM_XPIC, 2, 2, 1.0, 0.0, "XPIC(2) every other"}};
 
 const law_option law_options[LAWS] = {{"neo_hookean", "neo-Hookean"},
                                       {"linear_elastic", "linear elastic"},
@@ -75,13 +79,16 @@ const method methods[ALL_METHODS] = {
     {METHOD(LINEAR, NEWMARK, FLIP, 1.0, "linear Newmark, remedy"), .remedy = 1},
     {METHOD(CPGIMP, NEWMARK, FLIP, 1.0, "cpGIMP Newmark")},
     {METHOD(BSPLINE2, MUSL, FLIP, 1.0, "quadratic FLIP MUSL, projected positions"), .projected = 1},
+    {METHOD(BSPLINE2, USL, FMPM, 1.0, "quadratic FMPM(4) USL, order 2"), .xpic_order = 4,
+     .position_order = 2},
+    {METHOD(BSPLINE3, MUSL, FMPM, 0.95, "cubic FMPM(3) every other MUSL"), .xpic_order = 3, .xpic_every = 2},
 };
 
 const method *const broad_methods[BROAD] = {
     &methods[18], &methods[1],  &methods[6],  &methods[7],  &methods[8],  &methods[9],
     &methods[19], &methods[11], &methods[16], &methods[17], &methods[20], &methods[21],
     &methods[22], &methods[23], &methods[24], &methods[25], &methods[26], &methods[27],
-    &methods[31], &methods[28], &methods[29], &methods[30]};
+    &methods[31], &methods[28], &methods[29], &methods[30], &methods[32], &methods[33]};
 
 method method_of(const basis_option *b, const scheme_option *s, const transfer_option *t) {
   method how = {.basis = b->basis,
@@ -90,6 +97,7 @@ method method_of(const basis_option *b, const scheme_option *s, const transfer_o
                 .scheme = s->scheme,
                 .transfer = t->transfer,
                 .xpic_order = t->xpic_order,
+                .xpic_every = t->xpic_every,
                 .flip = t->flip,
                 .pic_damping = t->pic_damping};
   snprintf(how.name, sizeof how.name, "%s %s %s", b->name, s->name, t->name);
@@ -109,6 +117,7 @@ void method_use(const method *how, mpm_grid_desc *grid, mpm_stepper_desc *steppe
   if (how->scheme) stepper->scheme = how->scheme;
   if (how->transfer) stepper->transfer = how->transfer;
   if (how->xpic_order) stepper->xpic_order = how->xpic_order;
+  stepper->xpic_every = how->xpic_every;
   if (how->position_order) stepper->position_order = how->position_order;
   stepper->flip = how->flip;
   stepper->pic_damping = how->pic_damping;
@@ -117,8 +126,12 @@ void method_use(const method *how, mpm_grid_desc *grid, mpm_stepper_desc *steppe
   stepper->locking_remedy = how->remedy && grid->dim > 1;
 }
 
+int32_t has_orders(int32_t transfer) {
+  return transfer == MPM_XPIC || transfer == MPM_FMPM;
+}
+
 int32_t carries_matrix(int32_t transfer) {
-  return transfer != MPM_FLIP && transfer != MPM_XPIC;
+  return transfer != MPM_FLIP && !has_orders(transfer);
 }
 
 int32_t is_affine(const method *how) {

@@ -21,11 +21,11 @@ enum { SCHEMES = 3 };
 extern const scheme_option scheme_options[SCHEMES];
 
 typedef struct transfer_option {
-  int32_t transfer, xpic_order;
+  int32_t transfer, xpic_order, xpic_every;
   double flip, pic_damping;
   const char *name;
 } transfer_option;
-enum { TRANSFERS = 15 };
+enum { TRANSFERS = 19 };
 extern const transfer_option transfer_options[TRANSFERS];
 
 typedef struct law_option {
@@ -42,16 +42,17 @@ typedef struct method {
   char name[64];
   int32_t boundary, xpic_order, position_order, staggered, remedy, projected; /* no remedy in 1-D */
   double smoothing, pic_damping;
+  int32_t xpic_every;
 } method;
 #define METHOD(b, s, t, flip_, name_)                                                                        \
   .basis = MPM_##b, .scheme = MPM_##s, .transfer = MPM_##t, .flip = flip_, .name = name_
 
 /* The first METHODS are FLIP, a blend, PIC and the affine transfers on two bases, by USL and MUSL in turn;
  * the rest have every further option at least once. */
-enum { METHODS = 18, ALL_METHODS = METHODS + 14 };
+enum { METHODS = 18, ALL_METHODS = METHODS + 16 };
 extern const method methods[ALL_METHODS];
 /* Bodies that move go through these: the first are plain, the others have the further options. */
-enum { PLAIN = 10, BROAD = PLAIN + 12 };
+enum { PLAIN = 10, BROAD = PLAIN + 14 };
 extern const method *const broad_methods[BROAD];
 
 /* Makes a method of one value of each kind. */
@@ -59,6 +60,8 @@ method method_of(const basis_option *b, const scheme_option *s, const transfer_o
 void method_use(const method *how, mpm_grid_desc *grid, mpm_stepper_desc *stepper);
 void use_basis(const basis_option *b, mpm_grid_desc *grid);
 
+/* Has the transfer orders, xpic_order? */
+int32_t has_orders(int32_t transfer);
 /* Does the transfer carry a matrix per particle into its projection? */
 int32_t carries_matrix(int32_t transfer);
 int32_t is_affine(const method *how);

@@ -39,6 +39,7 @@ typedef struct reference {
   mpm_stepper_desc stepper;
   double E, nu;   /* neo-Hookean */
   double last_dt; /* 0: none yet */
+  int64_t steps;  /* that were made */
 } reference;
 void reference_step(reference *r, reference_cloud *cloud, double dt);
 void reference_stress(double E, double nu, const double *F, double *stress);

@@ -235,6 +235,25 @@ static double *filtered(const sums *s, const double *v, int32_t m) {
   return result;
 }
 
+/* Sum over the first terms of the series (I - S+ S)^l v, of nodal velocities. */
+static double (*full_velocities(const sums *s, int32_t terms))[3] {
+  const size_t bytes = (size_t)s->nodes * sizeof(double[3]);
+  double(*sum)[3] = calloc(1, bytes), (*term)[3] = malloc(bytes), (*again)[3] = malloc(bytes);
+  double *v = malloc((size_t)(s->c->n * s->dim) * sizeof *v);
+  memcpy(term, s->v_new, bytes);
+  for (int32_t l = 0; l < terms; ++l) {
+    for (int64_t i = 0; i < s->nodes; ++i)
+      for (int32_t k = 0; k < s->dim; ++k) sum[i][k] += term[i][k];
+    for (int64_t p = 0; p < s->c->n; ++p)
+      for (int32_t k = 0; k < s->dim; ++k) v[k * s->c->n + p] = interpolate(s, p, term, k);
+    project(s, v, 0, again);
+    for (int64_t i = 0; i < s->nodes; ++i)
+      for (int32_t k = 0; k < s->dim; ++k) term[i][k] -= again[i][k];
+  }
+  free(term), free(again), free(v);
+  return sum;
+}
+
 static void affine_matrix(const sums *s, int64_t p, double *C) {
   const touch *t = &s->at[p];
   for (int32_t c = 0; c < 9; ++c) {
@@ -249,9 +268,11 @@ static void affine_matrix(const sums *s, int64_t p, double *C) {
 static void move(const sums *s, double dt, double dt_v, double *x_new) {
   const mpm_stepper_desc *d = &s->r->stepper;
   reference_cloud *c = s->c;
-  double *kept = d->transfer == MPM_XPIC ? filtered(s, c->v, d->xpic_order) : NULL;
+  const int32_t between = d->xpic_every > 1 && (s->r->steps + 1) % d->xpic_every;
+  double *kept = d->transfer == MPM_XPIC && !between ? filtered(s, c->v, d->xpic_order) : NULL;
+  double(*full)[3] = d->transfer == MPM_FMPM && !between ? full_velocities(s, d->xpic_order) : NULL;
   double share = 0.0; /* of FLIP */
-  if (d->transfer == MPM_FLIP || d->transfer == MPM_TFLIP || d->transfer == MPM_AFLIP)
+  if (d->transfer == MPM_FLIP || d->transfer == MPM_TFLIP || d->transfer == MPM_AFLIP || between)
     share = d->flip * fmax(0.0, 1.0 - d->pic_damping * dt_v);
   for (int64_t p = 0; p < c->n; ++p) {
     double matrix[9];
@@ -259,7 +280,9 @@ static void move(const sums *s, double dt, double dt_v, double *x_new) {
       const int64_t i = k * c->n + p;
       const double v_new = interpolate(s, p, s->v_new, k), v_old = interpolate(s, p, s->v, k);
       const double a = interpolate(s, p, s->a, k), before = c->v[i];
-      c->v[i] = kept ? kept[i] + dt_v * a : v_new + share * (before - v_old);
+      c->v[i] = kept   ? kept[i] + dt_v * a
+                : full ? interpolate(s, p, full, k)
+                       : v_new + share * (before - v_old);
       c->a[i] = (c->v[i] - before) / dt_v;
       x_new[i] = c->x[i] + (d->projected_positions ? 0.0 : dt * v_new) -
                  (d->position_order == 2 ? 0.5 * dt * dt * a : 0.0);
@@ -270,7 +293,7 @@ static void move(const sums *s, double dt, double dt_v, double *x_new) {
       affine_matrix(s, p, matrix);
     for (int32_t i = 0; i < 9 && carries_matrix(d->transfer); ++i) c->C[i * c->n + p] = matrix[i];
   }
-  free(kept);
+  free(kept), free(full);
 }
 
 static void prepare(sums *s) {
@@ -309,5 +332,6 @@ void reference_step(reference *r, reference_cloud *c, double dt) {
   }
   memcpy(c->x, x_new, bytes);
   r->last_dt = dt;
+  ++r->steps;
   free(x_new), free(s.at), free(s.mass), free(s.v), free(s.a), free(s.v_new);
 }

@@ -53,6 +53,7 @@ static void fly(int32_t dim, const basis_option *basis, const stepping *how, con
   d.stepper.flip = by->flip;
   d.stepper.pic_damping = by->pic_damping;
   d.stepper.xpic_order = by->xpic_order;
+  d.stepper.xpic_every = by->xpic_every;
   d.grid.periodic[0] = among == AROUND;
   d.law = (world_law){.model = "neo_hookean", .E = 1000.0, .nu = 0.3, .density = 1.0};
   const double other = among == BY_LIGHT ? 1e-6 : 1e6;

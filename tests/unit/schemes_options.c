@@ -24,6 +24,7 @@ START_TEST(falls_are_exact) {
     for (int32_t transfer = 0; transfer < TRANSFERS; ++transfer) {
       world_desc d = described(2, basis, scheme_options[scheme].scheme, transfer_options[transfer].transfer);
       d.stepper.xpic_order = transfer_options[transfer].xpic_order;
+      d.stepper.xpic_every = transfer_options[transfer].xpic_every;
       d.stepper.staggered = staggered;
       d.stepper.position_order = staggered ? 1 : 2;
       memcpy(d.stepper.gravity, g, sizeof g);

@@ -46,6 +46,7 @@ START_TEST(constants) {
   VALUE(MPM_AFLIP, 5);
   VALUE(MPM_XPIC, 6);
   VALUE(MPM_APIC_MLS, 7);
+  VALUE(MPM_FMPM, 8);
   VALUE(MPM_ISA_BEST, 0);
   VALUE(MPM_ISA_BASELINE, 1);
   VALUE(MPM_ISA_AVX2, 2);
@@ -219,7 +220,7 @@ END_TEST
 
 #define STRUCT mpm_stepper_desc
 START_TEST(layout_of_stepper_desc) {
-  SIZE(168);
+  SIZE(176);
   AT(0, struct_size);
   AT(4, scheme);
   AT(8, transfer);
@@ -246,6 +247,8 @@ START_TEST(layout_of_stepper_desc) {
   AT(148, projected_positions);
   AT(152, local_damping);
   AT(160, mass_damping);
+  AT(168, xpic_every);
+  AT(172, reserved);
 }
 END_TEST
 #undef STRUCT

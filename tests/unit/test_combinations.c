@@ -180,7 +180,7 @@ static depths depths_of(const combination *c) {
   const transfer_option *transfer = &transfer_options[c->choice[CHOOSE_TRANSFER]];
   const int32_t scheme = scheme_options[c->choice[CHOOSE_SCHEME]].scheme;
   const double hop = 2.0 * reference_reach(basis);
-  const int32_t filters = transfer->transfer == MPM_XPIC ? transfer->xpic_order : 1;
+  const int32_t filters = has_orders(transfer->transfer) ? transfer->xpic_order : 1;
   /* USF: forces come from a stress that has already been through a hop, and through a cell with the remedy */
   const double forces = scheme == MPM_USF ? 2.0 * hop + c->choice[CHOOSE_REMEDY] : hop;
   depths d;
@@ -319,14 +319,14 @@ START_TEST(every_pair_is_listed) {
 END_TEST
 
 /* The inside of the patch is not empty where it should not be: in 1-D and 2-D for every combination, in 3-D
- * for all but the higher orders of XPIC. */
+ * for all but the higher orders of XPIC and FMPM. */
 START_TEST(patches_have_an_inside) {
   for (int32_t i = 0; i < listed; ++i) {
     const depths d = depths_of(&list[i]);
     const int32_t dim = list[i].choice[CHOOSE_DIM];
     const int32_t filters = transfer_options[list[i].choice[CHOOSE_TRANSFER]].xpic_order;
     const int32_t deep =
-        transfer_options[list[i].choice[CHOOSE_TRANSFER]].transfer == MPM_XPIC && filters > 1;
+        has_orders(transfer_options[list[i].choice[CHOOSE_TRANSFER]].transfer) && filters > 1;
     const double half = dim == 1 ? 870.0 : dim == 2 ? 40.0 : 10.0;
     if (dim < 3 || !deep) ck_assert_double_lt(d.motion, half);
     if (dim < 3 || !deep) ck_assert_double_lt(d.deformation, half);

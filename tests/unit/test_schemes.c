@@ -86,7 +86,7 @@ static void compare(comparison *c, int64_t cells, int64_t n, int32_t steps) {
   const double zero[3] = {0.0, 0.0, 0.0};
   ck_ok(&w, mpm_particles_set_all(set, "acceleration", MPM_F64, c->dim, zero)); /* from now on it is kept */
   reference_cloud cloud = reference_take(&w, set);
-  reference r = {d.grid, d.stepper, d.law.E, d.law.nu, 0.0};
+  reference r = {d.grid, d.stepper, d.law.E, d.law.nu, 0.0, 0};
   for (int32_t i = 0; i < steps; ++i) {
     const double dt = 1e-3 * (1.0 + 0.3 * (i % 3)); /* it changes: staggered velocities must notice */
     world_step(&w, dt);

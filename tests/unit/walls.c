@@ -4,10 +4,10 @@ method wall_method_of(int32_t i) {
   static const struct {
     int32_t scheme, transfer;
     double flip, damping;
-  } ways[WALL_WAYS] = {{MPM_USL, MPM_FLIP, 1.0, 0.0},    {MPM_MUSL, MPM_FLIP, 0.9, 0.0},
-                       {MPM_USF, MPM_FLIP, 1.0, 0.0},    {MPM_MUSL, MPM_APIC, 1.0, 0.0},
-                       {MPM_USL, MPM_TFLIP, 0.9, 5.0},   {MPM_USL, MPM_XPIC, 1.0, 0.0},
-                       {MPM_USF, MPM_APIC_MLS, 1.0, 0.0}};
+  } ways[WALL_WAYS] = {{MPM_USL, MPM_FLIP, 1.0, 0.0},     {MPM_MUSL, MPM_FLIP, 0.9, 0.0},
+                       {MPM_USF, MPM_FLIP, 1.0, 0.0},     {MPM_MUSL, MPM_APIC, 1.0, 0.0},
+                       {MPM_USL, MPM_TFLIP, 0.9, 5.0},    {MPM_USL, MPM_XPIC, 1.0, 0.0},
+                       {MPM_USF, MPM_APIC_MLS, 1.0, 0.0}, {MPM_MUSL, MPM_FMPM, 1.0, 0.0}};
   const int32_t way = i % WALL_WAYS;
   const basis_option *basis = &basis_options[i / WALL_WAYS];
   const scheme_option *scheme = NULL;

@@ -5,7 +5,7 @@
 
 #include "world.h"
 
-enum { WALL_WAYS = 7, WALL_METHODS = BASES * WALL_WAYS };
+enum { WALL_WAYS = 8, WALL_METHODS = BASES * WALL_WAYS };
 method wall_method_of(int32_t i);
 
 /* Kinds by face; the second axis may be periodic. Every kind alone first, in the order of the constants. */

@@ -9,8 +9,25 @@ typedef struct method {
   double flip, pic_damping;
 } method;
 
-enum { METHODS = 13 };
-enum { FLIP, FLIP_99, FLIP_95, PIC, APIC, APIC_MLS, TPIC, TFLIP, AFLIP, XPIC_1, XPIC_2, XPIC_3, XPIC_5 };
+enum { METHODS = 16 };
+enum {
+  FLIP,
+  FLIP_99,
+  FLIP_95,
+  PIC,
+  APIC,
+  APIC_MLS,
+  TPIC,
+  TFLIP,
+  AFLIP,
+  XPIC_1,
+  XPIC_2,
+  XPIC_3,
+  XPIC_5,
+  FMPM_2,
+  FMPM_4,
+  FMPM_8
+};
 static const method methods[METHODS] = {
     {"FLIP", MPM_FLIP, 2, 1.0, 0.0},       {"FLIP 0.99", MPM_FLIP, 2, 0.99, 0.0},
     {"FLIP 0.95", MPM_FLIP, 2, 0.95, 0.0}, {"PIC", MPM_FLIP, 2, 0.0, 0.0},
@@ -18,7 +35,8 @@ static const method methods[METHODS] = {
     {"TPIC", MPM_TPIC, 2, 1.0, 0.0},       {"TFLIP", MPM_TFLIP, 2, 1.0, 0.0},
     {"AFLIP", MPM_AFLIP, 2, 1.0, 0.0},     {"XPIC(1)", MPM_XPIC, 1, 1.0, 0.0},
     {"XPIC(2)", MPM_XPIC, 2, 1.0, 0.0},    {"XPIC(3)", MPM_XPIC, 3, 1.0, 0.0},
-    {"XPIC(5)", MPM_XPIC, 5, 1.0, 0.0},
+    {"XPIC(5)", MPM_XPIC, 5, 1.0, 0.0},    {"FMPM(2)", MPM_FMPM, 2, 1.0, 0.0},
+    {"FMPM(4)", MPM_FMPM, 4, 1.0, 0.0},    {"FMPM(8)", MPM_FMPM, 8, 1.0, 0.0},
 };
 
 typedef struct outcome {
@@ -163,8 +181,9 @@ static void gates(void) {
     verify_gate(what, 1.0 - at[1][PIC][s].angular, 0.3, 1.05, "set tolerance");
     snprintf(what, sizeof what, "bar, FLIP, %s: energy after ten periods", name);
     verify_gate(what, at[2][FLIP][s].energy, 0.98, 1.02, "set tolerance");
-    const int order[] = {XPIC_1, XPIC_2, XPIC_3, XPIC_5};
-    for (int k = 1; k < 4; ++k) {
+    const int order[] = {XPIC_1, XPIC_2, XPIC_3, XPIC_5, PIC, FMPM_2, FMPM_4, FMPM_8};
+    for (int k = 1; k < 8; ++k) {
+      if (order[k] == PIC) continue; /* FMPM(1) */
       snprintf(what, sizeof what, "bar, %s, %s: energy less that of %s", methods[order[k]].name, name,
                methods[order[k - 1]].name);
       verify_gate(what, at[2][order[k]][s].energy - at[2][order[k - 1]][s].energy, 0.0, 1.0,

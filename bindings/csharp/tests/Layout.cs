@@ -133,7 +133,7 @@ namespace Mpm {
     static void CheckStepperDesc() {
       var it = new StepperDesc();
       byte* at = (byte*)&it;
-      Compare("StepperDesc", sizeof(StepperDesc), 168, 168);
+      Compare("StepperDesc", sizeof(StepperDesc), 176, 176);
       Compare("StepperDesc.struct_size", (byte*)&it.struct_size - at, 0, 0);
       Compare("StepperDesc.scheme", (byte*)&it.scheme - at, 4, 4);
       Compare("StepperDesc.transfer", (byte*)&it.transfer - at, 8, 8);
@@ -160,6 +160,8 @@ namespace Mpm {
       Compare("StepperDesc.projected_positions", (byte*)&it.projected_positions - at, 148, 148);
       Compare("StepperDesc.local_damping", (byte*)&it.local_damping - at, 152, 152);
       Compare("StepperDesc.mass_damping", (byte*)&it.mass_damping - at, 160, 160);
+      Compare("StepperDesc.xpic_every", (byte*)&it.xpic_every - at, 168, 168);
+      Compare("StepperDesc.reserved", (byte*)&it.reserved - at, 172, 172);
     }
 
     static void CheckStepInfo() {

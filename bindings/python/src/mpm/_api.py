@@ -107,6 +107,9 @@ class Transfer(IntEnum):
     #: Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic B-splines
     #: with ghosts or periodic axes: Hu et al. 2018.
     APIC_MLS = 7
+    #: FMPM(k), where k is xpic_order: nodal velocities by the first k terms of a series for the inverse of the full
+    #: mass matrix: Nairn & Hammerquist 2021. Since 0.2.0.
+    FMPM = 8
 
 
 class Isa(IntEnum):
@@ -357,6 +360,7 @@ TFLIP = Transfer.TFLIP
 AFLIP = Transfer.AFLIP
 XPIC = Transfer.XPIC
 APIC_MLS = Transfer.APIC_MLS
+FMPM = Transfer.FMPM
 ISA_BEST = Isa.ISA_BEST
 ISA_BASELINE = Isa.ISA_BASELINE
 ISA_AVX2 = Isa.ISA_AVX2
@@ -423,8 +427,8 @@ MOTION_FREE = Motion.MOTION_FREE
 CONSTANTS = """
     OK CUT_DT INVERTED NONFINITE NOT_CONVERGED SINGULAR OFF_GRID CANCELLED E_ARG E_NOMEM E_STATE E_CALLBACK
     E_UNSUPPORTED E_NOT_FOUND E_IO E_FORMAT E_INTERNAL LINEAR BSPLINE2 BSPLINE3 GIMP UGIMP CPGIMP BOUNDARY_GHOST
-    BOUNDARY_OPEN_KNOT USL USF MUSL NEWMARK FLIP APIC TPIC TFLIP AFLIP XPIC APIC_MLS ISA_BEST ISA_BASELINE ISA_AVX2
-    ISA_AVX512 ISA_NEON ISA_PORTABLE LOG_WARNING LOG_INFO LOG_DEBUG LOCKING_NONE LOCKING_CELL_AVERAGE
+    BOUNDARY_OPEN_KNOT USL USF MUSL NEWMARK FLIP APIC TPIC TFLIP AFLIP XPIC APIC_MLS FMPM ISA_BEST ISA_BASELINE
+    ISA_AVX2 ISA_AVX512 ISA_NEON ISA_PORTABLE LOG_WARNING LOG_INFO LOG_DEBUG LOCKING_NONE LOCKING_CELL_AVERAGE
     TANGENT_MINOR_SYMMETRIC TANGENT_GENERAL X_MIN X_MAX Y_MIN Y_MAX Z_MIN Z_MAX WALL_NONE WALL_OPEN WALL_FIXED
     WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES AFTER_P2G AFTER_FORCES AFTER_VELOCITY READ WRITE F64 I64 U8 BY_ID
     LIBRARY_ORDER SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST CONTACT_UNILATERAL
@@ -598,6 +602,8 @@ class stepper_desc(Structure):
         ("projected_positions", c_int32),
         ("local_damping", c_double),
         ("mass_damping", c_double),
+        ("xpic_every", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -861,7 +867,7 @@ SIZES = {
     material_batch: (144, 96),
     material_desc: (64, 48),
     operator_info: (72, 64),
-    stepper_desc: (168, 168),
+    stepper_desc: (176, 176),
     step_info: (248, 248),
     particle_batch: (104, 72),
     node_batch: (72, 64),

@@ -110,6 +110,9 @@ pub mod constants {
     /// Affine by moving least squares, with constant inertia and one fused matrix, for quadratic and cubic B-splines with
     /// ghosts or periodic axes: Hu et al. 2018.
     pub const MPM_APIC_MLS: i32 = 7;
+    /// FMPM(k), where k is xpic_order: nodal velocities by the first k terms of a series for the inverse of the full mass
+    /// matrix: Nairn & Hammerquist 2021. Since 0.2.0.
+    pub const MPM_FMPM: i32 = 8;
 
     // Instruction set of the kernels.
 
@@ -823,10 +826,11 @@ pub struct mpm_stepper_desc {
     pub struct_size: u32,
     /// MPM_USL (default), MPM_USF, MPM_MUSL or MPM_NEWMARK
     pub scheme: i32,
-    /// MPM_FLIP (default) to MPM_APIC_MLS. MPM_NEWMARK takes MPM_FLIP with flip = 1 only.
+    /// MPM_FLIP (default) to MPM_FMPM. MPM_NEWMARK takes MPM_FLIP with flip = 1 only.
     pub transfer: i32,
-    /// Order m of MPM_XPIC, 1 (PIC) to 5; default 2. Each order above the first projects and gathers once more; these
-    /// corrections obey fixed and slip walls and periodic axes.
+    /// Order m of MPM_XPIC, 1 (PIC) to 5, or k of MPM_FMPM, 1 (PIC) to 32; default 2. Each order above the first projects
+    /// and gathers once more. These corrections obey fixed and slip walls and periodic axes, those of MPM_FMPM prescribed
+    /// velocities as well; contact acts before them, with its whole impulse.
     pub xpic_order: i32,
     /// Order of the update of positions; v is the updated nodal velocity and w a weight. 1 (default): x += dt sum w v
     /// (Steffen et al. 2008, eq. 10). 2: x += dt sum w v - dt^2 / 2 sum w a, which is exact under constant acceleration
@@ -851,7 +855,8 @@ pub struct mpm_stepper_desc {
     /// zero. Nodes that walls hold have none in either case: a slip wall is a symmetry plane, on which the projected
     /// velocity is zero too.
     pub boundary_zero_acceleration: i32,
-    /// Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, from 1 (default, FLIP) to 0 (PIC).
+    /// Share of FLIP per step for MPM_FLIP, MPM_TFLIP and MPM_AFLIP, and between the steps that xpic_every counts, from 1
+    /// (default, FLIP) to 0 (PIC).
     pub flip: f64,
     /// Rate beta >= 0, 1/time, of a blend that does not depend on dt (MPoint theory, eqs 58-59), for the transfers of
     /// flip: the step's share of FLIP is flip * max(0, 1 - beta dt). Default 0.
@@ -899,6 +904,14 @@ pub struct mpm_stepper_desc {
     /// stable dt stays as it is; with MPM_NEWMARK it is that at the end of the step. It acts where local_damping does.
     /// MPM_E_UNSUPPORTED with quasi_static. Since 0.2.0.
     pub mass_damping: f64,
+    /// For MPM_XPIC and MPM_FMPM: every so many steps are of the order xpic_order, those whose number
+    /// (mpm_step_info::step, counted from 1 or on from mpm_stepper_set_time()) is a multiple of this; all others are
+    /// those of MPM_FLIP, with flip and pic_damping. Steps that fail have no number, and a loaded state goes on with its
+    /// own. 1, and 0 (default), which means 1: every step is of that order. MPM_E_UNSUPPORTED: above 2 with MPM_FMPM of
+    /// an order above 1 and MPM_USF or MPM_MUSL, where waves grow. Since 0.2.0.
+    pub xpic_every: i32,
+    /// 0
+    pub reserved: i32,
 }
 
 impl Default for mpm_stepper_desc {

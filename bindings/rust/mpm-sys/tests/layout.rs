@@ -132,7 +132,7 @@ fn layout_of_mpm_operator_info() {
 
 #[test]
 fn layout_of_mpm_stepper_desc() {
-    assert_eq!(size_of::<mpm_stepper_desc>(), of(168, 168));
+    assert_eq!(size_of::<mpm_stepper_desc>(), of(176, 176));
     assert_eq!(offset!(mpm_stepper_desc, struct_size), of(0, 0));
     assert_eq!(offset!(mpm_stepper_desc, scheme), of(4, 4));
     assert_eq!(offset!(mpm_stepper_desc, transfer), of(8, 8));
@@ -159,6 +159,8 @@ fn layout_of_mpm_stepper_desc() {
     assert_eq!(offset!(mpm_stepper_desc, projected_positions), of(148, 148));
     assert_eq!(offset!(mpm_stepper_desc, local_damping), of(152, 152));
     assert_eq!(offset!(mpm_stepper_desc, mass_damping), of(160, 160));
+    assert_eq!(offset!(mpm_stepper_desc, xpic_every), of(168, 168));
+    assert_eq!(offset!(mpm_stepper_desc, reserved), of(172, 172));
 }
 
 #[test]
