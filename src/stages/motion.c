@@ -1,6 +1,7 @@
 /* Motion: velocity and position of particles from what a batch has gathered, by the kernels of
  * transfer/move.c (MPoint theory eqs 34 to 37). */
 #include "stages/batch.h"
+#include "stages/stages.h"
 #include "boundary/prescribed.h"
 #include "layout/reached.h"
 
@@ -52,7 +53,7 @@ void mpmi_motion_enter(mpmi_batch *b) {
 /* A particle no further beyond a wall than this, in cells, stands on it: the rest is rounding. */
 #define WALL_ROUNDING 1e-12
 
-static int32_t is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
+int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
   const mpm_grid *grid = settings->grid;
   const int32_t above = *x > grid->upper[k];
   const double face = above ? grid->upper[k] : grid->desc.origin[k];
@@ -103,7 +104,7 @@ static void look_outside(mpmi_batch *b) {
         leaves = 1;
       else if (grid->desc.periodic[k]
                    ? !wrap(grid, k, x, mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot)
-                   : !is_on_wall(settings, k, x))
+                   : !mpmi_is_on_wall(settings, k, x))
         closed = face;
     }
     if (closed >= 0)

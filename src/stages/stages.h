@@ -75,6 +75,19 @@ int32_t mpmi_has_nodal_stress(const mpmi_layout *layout);
  * copy of their stress and dilation ratio. The nodes' sums are made anew. */
 mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy);
 
+/* ---- surfaces.c -------------------------------------------------------------------------------------- */
+/* Finds the forces of all markers at the start of the step. */
+mpm_status mpmi_surfaces_load(mpmi_step *step);
+/* Finds the nodes around all markers, and adds their forces to the sums that particles have made there. */
+mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
+/* Moves all markers with the velocities of these nodes, and splits those that have become too long. */
+mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
+
+/* ---- motion.c ---------------------------------------------------------------------------------------- */
+/* Returns 1 when a position beyond a face on axis k is there by rounding alone and stands on a wall; then it is
+ * put on that. */
+int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x);
+
 /* ---- g2p.c ------------------------------------------------------------------------------------------- */
 /* Moves and deforms: velocity and position, deformation gradient and stress. That is all of USL. */
 mpm_status mpmi_g2p_move_and_deform(mpmi_step *step, mpmi_nodes *nodes, const mpmi_nodal *from);

@@ -12,6 +12,7 @@ static void free_parts(mpm_stepper *s) {
   MPMI_FREE_ARRAY(c, s->active, s->active_capacity);
   mpmi_contact_rules_free(&s->settings.contact, c);
   mpmi_obstacles_release(s);
+  mpmi_surfaces_release(s);
   MPMI_FREE_ARRAY(c, s->settings.motion, s->settings.motion_capacity);
   MPMI_FREE_ARRAY(c, s->history.pairs.record, s->history.pairs.capacity);
   MPMI_FREE_ARRAY(c, s->history.reaction, s->history.reaction_capacity);
@@ -147,6 +148,9 @@ static mpm_status without_explicit_parts(const mpm_stepper *s) {
           "scheme MPM_NEWMARK has no free obstacles, and obstacle %lld is one: take it out, or use "
           "an explicit scheme",
           (long long)i);
+  if (s->settings.surfaces.count)
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no surfaces: take them out, or use an explicit scheme");
   for (int32_t f = 0; f < 2 * s->grid->dim; ++f)
     if (mpmi_wall_kind_of(s->settings.wall[f].kind)->rubs == MPMI_RUBS_NODES)
       return mpmi_fail(
