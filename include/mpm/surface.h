@@ -36,7 +36,7 @@ typedef struct mpm_surface_desc {
   double pressure;    /**< force/area against the normal, on the present area: it follows the surface */
   double traction[3]; /**< force per present area, in a fixed direction */
   double dead_traction[3]; /**< force per area at the time when the marker was added: a dead load */
-  /** Length > 0: markers with a longer edge are split at the end of a step, so that a surface that stretches
+  /** Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that stretches
    * has no dents. Half a spacing is right. 0 (default): they are not. */
   double max_spacing;
 } mpm_surface_desc;
@@ -44,12 +44,12 @@ typedef struct mpm_surface_desc {
 /** Markers for which tractions are wanted. Arrays are [components][ld], belong to the library and are valid
  * during the call. */
 typedef struct mpm_marker_batch {
-  uint32_t struct_size;         /**< sizeof(mpm_marker_batch) of the library; see mpm.h */
-  int32_t dim;                  /**< dimension of the grid */
-  int64_t n;                    /**< number of markers */
-  int64_t ld;                   /**< distance from component c to c + 1, in elements; >= n */
-  double t;                     /**< time for which the value is wanted: the start of the step */
-  double dt;                    /**< size of the step */
+  uint32_t struct_size; /**< sizeof(mpm_marker_batch) of the library; see mpm.h */
+  int32_t dim;          /**< dimension of the grid */
+  int64_t n;            /**< number of markers */
+  int64_t ld;           /**< distance from component c to c + 1, in elements; >= n */
+  double t;  /**< time for which the value is wanted: the start of the step, or the end of an implicit one */
+  double dt; /**< size of the step */
   const int64_t *id;            /**< [ld] ids, ascending */
   const double *position;       /**< [dim][ld] */
   const double *area;           /**< [dim][ld] area vectors */
@@ -167,7 +167,9 @@ MPM_API mpm_status mpm_surface_set(mpm_surface *surface, const char *field, int3
  *
  * The text names marker and surface, the number of which counts the surfaces of the stepper from 0.
  * MPM_E_STATE: it is in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
- * MPM_E_UNSUPPORTED with MPM_NEWMARK.
+ *
+ * In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and
+ * traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
  */
 MPM_API mpm_status mpm_stepper_add_surface(mpm_stepper *stepper, mpm_surface *surface);
 

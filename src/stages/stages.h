@@ -76,10 +76,22 @@ int32_t mpmi_has_nodal_stress(const mpmi_layout *layout);
 mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy);
 
 /* ---- surfaces.c -------------------------------------------------------------------------------------- */
-/* Finds the forces of all markers at the start of the step. */
-mpm_status mpmi_surfaces_load(mpmi_step *step);
-/* Finds the nodes around all markers, and adds their forces to the sums that particles have made there. */
+/* Asks the host for tractions at time t, and finds the forces of all markers on their present areas. */
+mpm_status mpmi_surfaces_load(mpmi_step *step, double t);
+/* Finds the nodes around all markers from their masses, which are not folded. */
+mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses);
+/* Does the same, and adds the forces to the sums that particles have made there. */
 mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
+/* Stretches all markers with the velocities of these nodes, from what they were at the start of the step, and
+ * finds the forces on their new areas. */
+mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from);
+/* Finds the increment of the deformation gradient at a marker. */
+void mpmi_marker_deformation(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *from, int64_t marker,
+                             double F[3][3]);
+/* Finds all forces per present area in fixed directions on a marker. */
+void mpmi_marker_tractions(const mpm_surface *surface, int64_t marker, double *traction);
+/* Inverts a matrix whose unused axes are those of the identity; returns its determinant. */
+double mpmi_marker_invert(double M[3][3], double inverse[3][3]);
 /* Moves all markers with the velocities of these nodes, and splits those that have become too long. */
 mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
 

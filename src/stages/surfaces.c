@@ -35,7 +35,7 @@ static mpm_status fail_marker(mpmi_step *step, mpm_status cause, const mpm_surfa
 
 /* ---- loads --------------------------------------------------------------------------------------------- */
 /* Lays out what the callback sees; returns the rows that it adds to. */
-static double *lay_out(const mpmi_step *step, const mpm_surface *s, mpm_marker_batch *batch) {
+static double *lay_out(const mpmi_step *step, const mpm_surface *s, double t, mpm_marker_batch *batch) {
   const int32_t dim = s->grid->dim;
   const int64_t n = s->next.count;
   double *position = s->batch, *area = position + dim * n, *reference = area + dim * n;
@@ -58,7 +58,7 @@ static double *lay_out(const mpmi_step *step, const mpm_surface *s, mpm_marker_b
                               .dim = dim,
                               .n = n,
                               .ld = n,
-                              .t = step->t,
+                              .t = t,
                               .dt = step->dt,
                               .id = s->batch_id,
                               .position = position,
@@ -69,13 +69,12 @@ static double *lay_out(const mpmi_step *step, const mpm_surface *s, mpm_marker_b
   return add;
 }
 
-/* Asks the host for tractions; *add is NULL where there is no callback. */
-static mpm_status ask_tractions(mpmi_step *step, const mpm_surface *s, double **add) {
+static mpm_status ask_tractions(mpmi_step *step, mpm_surface *s, double t) {
   mpm_marker_batch batch;
-  *add = NULL;
+  s->asked = NULL;
   if (!s->traction || !s->next.count) return MPM_OK;
-  *add = lay_out(step, s, &batch);
-  const mpm_status returned = mpmi_from_host(s->traction(s->traction_user, &batch, *add));
+  s->asked = lay_out(step, s, t, &batch);
+  const mpm_status returned = mpmi_from_host(s->traction(s->traction_user, &batch, s->asked));
   if (!returned) return MPM_OK;
   const mpm_status cause = mpmi_callback_cause(returned);
   step->failure = (mpmi_failure){.cause = cause,
@@ -89,20 +88,24 @@ static mpm_status ask_tractions(mpmi_step *step, const mpm_surface *s, double **
                    (int)s->number, (int)returned, step->t, step->dt);
 }
 
+void mpmi_marker_tractions(const mpm_surface *s, int64_t i, double *traction) {
+  for (int32_t k = 0; k < s->grid->dim; ++k)
+    traction[k] =
+        s->desc.traction[k] + s->next.at[i].traction[k] + (s->asked ? s->asked[k * s->next.count + i] : 0.0);
+}
+
+/* Finds the forces of markers on their areas as they are. */
 static mpm_status load_surface(mpmi_step *step, mpm_surface *s) {
   const int32_t dim = s->grid->dim;
-  const int64_t n = s->next.count;
-  double *add;
-  const mpm_status status = ask_tractions(step, s, &add);
-  if (status) return status;
-  for (int64_t i = 0; i < n; ++i) {
+  for (int64_t i = 0; i < s->next.count; ++i) {
     mpmi_marker *m = &s->next.at[i];
-    double a[3];
+    double a[3], traction[3];
     mpmi_marker_area(m, dim, a);
+    mpmi_marker_tractions(s, i, traction);
     const double size = mpmi_marker_size(m, dim);
     for (int32_t k = 0; k < dim; ++k) {
-      const double traction = s->desc.traction[k] + m->traction[k] + (add ? add[k * n + i] : 0.0);
-      m->force[k] = traction * size + (s->desc.dead_traction[k] + m->dead_traction[k]) * m->reference_area -
+      m->force[k] = traction[k] * size +
+                    (s->desc.dead_traction[k] + m->dead_traction[k]) * m->reference_area -
                     (s->desc.pressure + m->pressure) * a[k];
       if (!isfinite(m->force[k]))
         return fail_marker(step, MPM_NONFINITE, s, m, "has a load that is not finite");
@@ -111,10 +114,13 @@ static mpm_status load_surface(mpmi_step *step, mpm_surface *s) {
   return MPM_OK;
 }
 
-mpm_status mpmi_surfaces_load(mpmi_step *step) {
+mpm_status mpmi_surfaces_load(mpmi_step *step, double t) {
   const mpmi_surfaces *list = &step->settings->surfaces;
   mpm_status status = MPM_OK;
-  for (int64_t i = 0; i < list->count && !status; ++i) status = load_surface(step, list->surface[i]);
+  for (int64_t i = 0; i < list->count && !status; ++i) {
+    status = ask_tractions(step, list->surface[i], t);
+    if (!status) status = load_surface(step, list->surface[i]);
+  }
   return status;
 }
 
@@ -233,8 +239,7 @@ static int32_t find_shares(const surface_job *job, stencil *of) {
   return whole;
 }
 
-/* Inverts a matrix whose unused axes are those of the identity; returns its determinant. */
-static double invert(double M[3][3], double inverse[3][3]) {
+double mpmi_marker_invert(double M[3][3], double inverse[3][3]) {
   double det = 0.0;
   for (int32_t i = 0; i < 3; ++i)
     for (int32_t j = 0; j < 3; ++j) {
@@ -273,7 +278,7 @@ static void make_linear(int32_t dim, stencil *of) {
       for (int32_t k = 0; k < dim; ++k) spread[c][k] += of->arm[n][c] * of->g[n][k];
     }
   }
-  if (!(invert(spread, A) > LEAST_SPREAD)) return;
+  if (!(mpmi_marker_invert(spread, A) > LEAST_SPREAD)) return;
   for (int32_t n = 0; n < of->count; ++n) {
     const double g[3] = {of->g[n][0], of->g[n][1], of->g[n][2]};
     for (int32_t k = 0; k < dim; ++k) {
@@ -355,73 +360,122 @@ static void give_node(const surface_job *job, int64_t slot, const double *force,
   }
 }
 
-static int32_t is_loaded(const mpmi_marker *m) {
-  return fabs(m->force[0]) + fabs(m->force[1]) + fabs(m->force[2]) > 0.0;
+static void give_surface(const surface_job *job) {
+  const mpm_surface *s = job->surface;
+  for (int64_t i = 0; i < s->next.count; ++i)
+    for (int64_t n = i * s->around.nodes; n < (i + 1) * s->around.nodes; ++n)
+      if (s->around.slot[n] >= 0) give_node(job, s->around.slot[n], s->next.at[i].force, s->around.weight[n]);
 }
 
-static mpm_status give_surface(const surface_job *job) {
+/* Refuses loads that no node would take. */
+static mpm_status check_carried(const surface_job *job) {
   const mpm_surface *s = job->surface;
   for (int64_t i = 0; i < s->next.count; ++i) {
     const mpmi_marker *m = &s->next.at[i];
-    int32_t given = 0;
-    for (int64_t n = i * s->around.nodes; n < (i + 1) * s->around.nodes && is_loaded(m); ++n) {
-      if (s->around.slot[n] < 0) continue;
-      give_node(job, s->around.slot[n], m->force, s->around.weight[n]);
-      given = 1;
-    }
-    if (!given && is_loaded(m))
-      return fail_marker(job->step, MPM_E_STATE, s, m, "has a load and no material around it");
+    int32_t carried = !(fabs(m->force[0]) + fabs(m->force[1]) + fabs(m->force[2]) > 0.0);
+    for (int64_t n = i * s->around.nodes; n < (i + 1) * s->around.nodes; ++n)
+      carried |= s->around.slot[n] >= 0;
+    if (!carried) return fail_marker(job->step, MPM_E_STATE, s, m, "has a load and no material around it");
   }
   return MPM_OK;
 }
 
-mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to) {
+mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses) {
   const mpmi_settings *settings = step->settings;
   mpm_status status = MPM_OK;
   for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
-    surface_job job = {step, settings->surfaces.surface[i], to};
-    if (!job.surface->next.count) continue;
-    status = mpmi_run_tasks(settings, 0, settings->tasks, find_nodes_task, &job);
-    if (!status) status = give_surface(&job);
+    surface_job job = {step, settings->surfaces.surface[i], masses};
+    if (job.surface->next.count) status = mpmi_run_tasks(settings, 0, settings->tasks, find_nodes_task, &job);
+    if (!status) status = check_carried(&job);
+  }
+  return status;
+}
+
+mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to) {
+  const mpmi_surfaces *list = &step->settings->surfaces;
+  const mpm_status status = mpmi_surfaces_find(step, to);
+  for (int64_t i = 0; i < list->count && !status; ++i) {
+    const surface_job job = {step, list->surface[i], to};
+    give_surface(&job);
   }
   return status;
 }
 
 /* ---- motion -------------------------------------------------------------------------------------------- */
-static void stretch(mpmi_marker *m, int32_t dim, double dt, double L[3][3]) {
-  for (int32_t e = 0; e < dim - 1; ++e) {
-    const double edge[3] = {m->edge[e][0], m->edge[e][1], m->edge[e][2]};
-    for (int32_t c = 0; c < dim; ++c)
-      for (int32_t k = 0; k < dim; ++k) m->edge[e][c] += dt * L[c][k] * edge[k];
+/* Finds the velocity of the nodes at a marker, and its gradient. */
+static void gather(const surface_job *job, int64_t marker, double *velocity, double L[3][3]) {
+  const mpmi_settings *settings = job->step->settings;
+  const mpmi_marker_nodes *around = &job->surface->around;
+  const int32_t dim = settings->grid->dim, lags = settings->desc.position_order == 2 &&
+                                                  !mpmi_is_implicit(settings) &&
+                                                  mpmi_has_increments(job->nodes);
+  memset(velocity, 0, 3 * sizeof *velocity);
+  memset(L, 0, 9 * sizeof(double));
+  for (int64_t n = marker * around->nodes; n < (marker + 1) * around->nodes; ++n) {
+    const int64_t slot = around->slot[n];
+    for (int32_t c = 0; c < dim && slot >= 0; ++c) {
+      double v = mpmi_velocity(job->nodes, slot)[c];
+      if (lags) v -= 0.5 * mpmi_increment(job->nodes, slot)[c];
+      velocity[c] += around->weight[n] * v;
+      for (int32_t k = 0; k < dim; ++k) L[c][k] += v * around->gradient[n * dim + k];
+    }
   }
+}
+
+/* Stretches the edges that the marker had at the start of the step. */
+static void stretch(const surface_job *job, int64_t marker, double L[3][3]) {
+  const mpmi_marker *from = &job->surface->now.at[marker];
+  mpmi_marker *to = &job->surface->next.at[marker];
+  const int32_t dim = job->surface->grid->dim;
+  memcpy(to->edge, from->edge, sizeof to->edge);
+  for (int32_t e = 0; e < dim - 1; ++e)
+    for (int32_t c = 0; c < dim; ++c)
+      for (int32_t k = 0; k < dim; ++k) to->edge[e][c] += job->step->dt * L[c][k] * from->edge[e][k];
+}
+
+static void stretch_task(void *data, int64_t task) {
+  const surface_job *job = data;
+  const mpmi_share share = mpmi_share_of(job->step->settings, job->surface->next.count, task);
+  for (int64_t i = share.begin; i < share.end; ++i) {
+    double velocity[3], L[3][3];
+    gather(job, i, velocity, L);
+    stretch(job, i, L);
+  }
+}
+
+void mpmi_marker_deformation(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *from, int64_t marker,
+                             double F[3][3]) {
+  const surface_job job = {step, surface, from};
+  double velocity[3];
+  gather(&job, marker, velocity, F);
+  for (int32_t i = 0; i < 3; ++i)
+    for (int32_t k = 0; k < 3; ++k) F[i][k] = (i == k ? 1.0 : 0.0) + step->dt * F[i][k];
+}
+
+mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from) {
+  const mpmi_settings *settings = step->settings;
+  mpm_status status = MPM_OK;
+  for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
+    surface_job job = {step, settings->surfaces.surface[i], from};
+    status = mpmi_run_tasks(settings, 0, settings->tasks, stretch_task, &job);
+    if (!status) status = load_surface(step, job.surface);
+  }
+  return status;
 }
 
 static void move_task(void *data, int64_t task) {
   const surface_job *job = data;
-  const mpmi_step *step = job->step;
-  const mpm_surface *s = job->surface;
-  const mpmi_marker_nodes *around = &s->around;
-  const int32_t dim = s->grid->dim, lags = step->settings->desc.position_order == 2;
-  const double lag = lags && mpmi_has_increments(job->nodes) ? 0.5 : 0.0;
-  const mpmi_share share = mpmi_share_of(step->settings, s->next.count, task);
+  const double dt = job->step->dt;
+  const mpmi_share share = mpmi_share_of(job->step->settings, job->surface->next.count, task);
   for (int64_t i = share.begin; i < share.end; ++i) {
-    mpmi_marker *m = &s->next.at[i];
-    double L[3][3] = {{0.0}};
-    for (int32_t c = 0; c < 3; ++c) m->velocity[c] = 0.0;
-    for (int64_t n = i * around->nodes; n < (i + 1) * around->nodes; ++n) {
-      const int64_t slot = around->slot[n];
-      for (int32_t c = 0; c < dim && slot >= 0; ++c) {
-        double v = mpmi_velocity(job->nodes, slot)[c];
-        if (lag > 0.0) v -= lag * mpmi_increment(job->nodes, slot)[c];
-        m->velocity[c] += around->weight[n] * v;
-        for (int32_t k = 0; k < dim; ++k) L[c][k] += v * around->gradient[n * dim + k];
-      }
+    mpmi_marker *m = &job->surface->next.at[i];
+    double L[3][3];
+    gather(job, i, m->velocity, L);
+    stretch(job, i, L);
+    for (int32_t c = 0; c < job->surface->grid->dim; ++c) {
+      m->position[c] += dt * m->velocity[c];
+      m->displacement[c] += dt * m->velocity[c];
     }
-    for (int32_t c = 0; c < dim; ++c) {
-      m->position[c] += step->dt * m->velocity[c];
-      m->displacement[c] += step->dt * m->velocity[c];
-    }
-    stretch(m, dim, step->dt, L);
   }
 }
 
@@ -464,7 +518,7 @@ static mpm_status move_surface(surface_job *job) {
   if (status) return status;
   s->next.count = stay;
   if (!(s->desc.max_spacing > 0.0)) return MPM_OK;
-  return mpmi_markers_split(settings->context, s->grid, &s->next, s->desc.max_spacing);
+  return mpmi_markers_split(settings->context, s->grid, &s->next, s->desc.max_spacing, 1);
 }
 
 mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from) {

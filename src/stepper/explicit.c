@@ -35,7 +35,7 @@ static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock
 mpm_status mpmi_explicit_begin(mpmi_step *step, mpmi_nodes *nodes) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_forces_stage(step, step->t);
-  if (!status) status = mpmi_surfaces_load(step);
+  if (!status) status = mpmi_surfaces_load(step, step->t);
   if (!status) status = mpmi_prescribed_stage(step);
   mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
   if (!status && step->settings->desc.scheme == MPM_USF) status = deform_first(step, nodes, &clock);

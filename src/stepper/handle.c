@@ -148,9 +148,6 @@ static mpm_status without_explicit_parts(const mpm_stepper *s) {
           "scheme MPM_NEWMARK has no free obstacles, and obstacle %lld is one: take it out, or use "
           "an explicit scheme",
           (long long)i);
-  if (s->settings.surfaces.count)
-    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                     "scheme MPM_NEWMARK has no surfaces: take them out, or use an explicit scheme");
   for (int32_t f = 0; f < 2 * s->grid->dim; ++f)
     if (mpmi_wall_kind_of(s->settings.wall[f].kind)->rubs == MPMI_RUBS_NODES)
       return mpmi_fail(

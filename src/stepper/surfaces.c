@@ -16,10 +16,6 @@ mpm_status mpm_stepper_add_surface(mpm_stepper *s, mpm_surface *surface) {
   if (surface->stepper)
     return mpmi_fail(c, MPM_E_STATE, "the surface already belongs to %s stepper",
                      surface->stepper == s ? "this" : "another");
-  if (mpmi_is_implicit(&s->settings))
-    return mpmi_fail(
-        c, MPM_E_UNSUPPORTED,
-        "scheme MPM_NEWMARK has no surfaces: use mpm_stepper_set_force(), or an explicit scheme");
   if ((status = MPMI_RESERVE_NEXT(c, list->surface, list->capacity, list->count))) return status;
   surface->number = (int32_t)list->count;
   surface->stepper = s;

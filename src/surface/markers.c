@@ -192,22 +192,24 @@ static void keep_inside(const mpm_grid *grid, mpmi_marker *m) {
   mpmi_grid_place(grid, m->position, 1, NULL, 0);
 }
 
-mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers *markers, double spacing) {
-  for (int64_t i = 0; i < markers->count && grid->dim > 1;) {
+mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers *markers, double spacing,
+                              int32_t once) {
+  const int64_t had = markers->count;
+  for (int64_t i = 0; i < (once ? had : markers->count) && grid->dim > 1;) {
     const double first = length_of(markers->at[i].edge[0]), second = length_of(markers->at[i].edge[1]);
-    if (!(first > spacing) && !(second > spacing)) {
-      ++i;
-      continue;
-    }
-    if (markers->count >= MOST_MARKERS)
+    const int32_t is_long = first > spacing || second > spacing;
+    if (is_long && markers->count >= MOST_MARKERS)
       return mpmi_fail(c, MPM_E_ARG, "a spacing of %g makes more than %d markers", spacing,
                        (int)MOST_MARKERS);
-    const mpm_status status = mpmi_markers_reserve(c, markers, 1);
-    if (status) return status;
-    mpmi_marker half;
-    halve(grid, &markers->at[i], second > first, &half);
-    keep_inside(grid, &markers->at[i]);
-    keep_inside(grid, mpmi_markers_append(markers, &half));
+    if (is_long) {
+      const mpm_status status = mpmi_markers_reserve(c, markers, 1);
+      if (status) return status;
+      mpmi_marker half;
+      halve(grid, &markers->at[i], second > first, &half);
+      keep_inside(grid, &markers->at[i]);
+      keep_inside(grid, mpmi_markers_append(markers, &half));
+    }
+    if (once || !is_long) ++i;
   }
   return MPM_OK;
 }
@@ -220,7 +222,7 @@ mpm_status mpm_surface_refine(mpm_surface *s, double spacing, int64_t *added) {
     status = mpmi_fail(c, MPM_E_ARG, "spacing is %g, must be positive and finite", spacing);
   const int64_t had = s->now.count;
   if (!status) status = mpmi_markers_copy(c, &s->now, &s->next);
-  if (!status) status = mpmi_markers_split(c, s->grid, &s->next, spacing);
+  if (!status) status = mpmi_markers_split(c, s->grid, &s->next, spacing, 0);
   if (status) return status;
   const mpmi_markers old = s->now;
   s->now = s->next;

@@ -51,6 +51,7 @@ struct mpm_surface {
   mpmi_markers now, next; /* next: at the end of the step under way */
   mpmi_marker_nodes around;
   double *batch; /* what the callback sees and gives */
+  double *asked; /* the tractions in it in the step under way, or NULL */
   int64_t *batch_id;
   int64_t batch_capacity, id_capacity;
 };
@@ -77,9 +78,10 @@ mpm_status mpmi_marker_place(const mpm_surface *surface, int64_t which, double *
 mpm_status mpmi_markers_reserve(mpm_context *c, mpmi_markers *markers, int64_t more);
 /* Adds a marker for which there is room: it gets the next id. */
 mpmi_marker *mpmi_markers_append(mpmi_markers *markers, const mpmi_marker *marker);
-/* Splits markers with edges longer than the spacing. On failure some are split and others are not: so work on
- * a copy. */
-mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers *markers, double spacing);
+/* Splits markers with edges longer than the spacing, once each or until none is longer. On failure some are
+ * split and others are not: so work on a copy. */
+mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers *markers, double spacing,
+                              int32_t once);
 /* Makes `to` a copy, in memory that it has or gets. */
 mpm_status mpmi_markers_copy(mpm_context *c, const mpmi_markers *from, mpmi_markers *to);
 void mpmi_markers_free(mpm_context *c, mpmi_markers *markers);
