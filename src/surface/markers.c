@@ -46,6 +46,11 @@ void mpmi_marker_set_area(mpmi_marker *m, int32_t dim, const double *area) {
   if (dim == 3) make_square(a, m->reference_area, m->edge);
 }
 
+mpm_status mpmi_surface_changeable(const mpm_surface *s) {
+  if (!s->stepper || !s->owner->in_step(s->stepper)) return MPM_OK;
+  return mpmi_fail(s->context, MPM_E_STATE, "a staged step is under way: end or abort it first");
+}
+
 /* ---- coming -------------------------------------------------------------------------------------------- */
 mpm_status mpmi_marker_place(const mpm_surface *s, int64_t which, double *position) {
   const int32_t k = mpmi_grid_place(s->grid, position, 1, NULL, 0);

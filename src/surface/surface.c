@@ -79,11 +79,6 @@ mpm_status mpm_surface_destroy(mpm_surface *s) {
   return MPM_OK;
 }
 
-mpm_status mpmi_surface_changeable(const mpm_surface *s) {
-  if (!s->stepper || !s->owner->in_step(s->stepper)) return MPM_OK;
-  return mpmi_fail(s->context, MPM_E_STATE, "a staged step is under way: end or abort it first");
-}
-
 mpm_status mpm_surface_configure(mpm_surface *s, const mpm_surface_desc *desc) {
   MPMI_ENTER(s, MPMI_SURFACE);
   mpm_surface_desc d;

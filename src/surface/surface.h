@@ -62,11 +62,9 @@ typedef struct mpmi_surfaces {
   mpm_surface **surface;
 } mpmi_surfaces;
 
-/* ---- surface.c --------------------------------------------------------------------------------------- */
+/* ---- markers.c --------------------------------------------------------------------------------------- */
 /* Returns MPM_E_STATE while a staged step is under way. */
 mpm_status mpmi_surface_changeable(const mpm_surface *surface);
-
-/* ---- markers.c --------------------------------------------------------------------------------------- */
 /* Finds the area vector of a marker, and its length. */
 void mpmi_marker_area(const mpmi_marker *marker, int32_t dim, double *area);
 double mpmi_marker_size(const mpmi_marker *marker, int32_t dim);
