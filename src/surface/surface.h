@@ -1,6 +1,6 @@
 /* Surfaces: markers that move with the material and load it.
  *
- *   surface.c  the handle: making, loads, options
+ *   handle.c   making, loads, options
  *   markers.c  markers come, go and are split
  *   shapes.c   markers along lines and on triangles
  *   fields.c   their fields, by name

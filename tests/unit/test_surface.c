@@ -232,6 +232,42 @@ START_TEST(buoyancy) {
 }
 END_TEST
 
+/* A node that hardly any particle reaches takes hardly any force: its acceleration is of the size of the
+ * others'. */
+START_TEST(light_nodes_take_little) {
+  world w;
+  const world_desc desc = world_default(2, CELLS, spacing);
+  world_open(&w, &desc);
+  const double edge = 1.5 * spacing - 0.02 * spacing,
+               volume = 0.25 * spacing * spacing; /* a hundredth of a cell */
+  for (int32_t i = 0; i < 8; ++i)
+    for (int32_t k = 0; k < 8; ++k) {
+      const double x[2] = {2.0 + 2.0 * spacing - edge - 0.5 * spacing * i, 1.0 + 0.5 * spacing * (k + 0.5)};
+      ck_ok(&w, mpm_particles_add(w.set[0], 1, x, NULL, &volume, NULL, NULL, NULL));
+    }
+  mpm_surface_desc d = load_desc();
+  d.pressure = 1000.0;
+  mpm_surface *s = put_surface(&w, &d);
+  const double at[2] = {2.0 + 2.0 * spacing - edge + 0.25 * spacing, 1.5}, area[2] = {0.1, 0.0};
+  ck_ok(&w, mpm_surface_add(s, 1, at, area, NULL));
+  int64_t n;
+  ck_ok(&w, mpm_step_begin(w.stepper, 1e-4));
+  double *f = fetch_nodes(&w, "force", &n), *m = fetch_nodes(&w, "mass", &n), most = 0.0, least = INFINITE;
+  for (int64_t i = 0; i < n; ++i) {
+    if (fabs(f[i]) > 0.0 && m[i] < least) least = m[i];
+    most = fmax(most, fabs(f[i]) / m[i]);
+  }
+  ck_within("total", sum_of(n, f), -100.0, 1e-11);
+  ck_assert(least < 1e-3 * 1e3 * spacing * spacing);
+  ck_between("largest acceleration", most, 0.0, 20.0 * 100.0 / (1e3 * spacing * spacing));
+  free(f);
+  free(m);
+  ck_ok(&w, mpm_step_abort(w.stepper));
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
 /* ---- motion -------------------------------------------------------------------------------------------- */
 /* Makes a step in which the nodes get this velocity in the end. */
 static mpm_step_info step_with(world *w, double dt, void (*field)(const double *x, double *v)) {
@@ -398,6 +434,28 @@ START_TEST(flight_across_a_seam) {
     drop_surface(&w, s);
     world_close(&w);
   }
+}
+END_TEST
+
+/* Markers of a body that falls fall as its particles do, of whatever order positions are. */
+START_TEST(falls_with_its_particles) {
+  const method *how = broad_methods[_i];
+  world w;
+  world_desc desc = world_with(how, 2, CELLS, spacing);
+  desc.stepper.gravity[1] = -9.81;
+  mpm_particles *set = open_block_with(&w, &desc);
+  mpm_surface *s = put_surface(&w, NULL);
+  add_circle(&w, s, 0.62, 0.1);
+  const double from = fetch1(&w, set, "position", 2, 1, 0), dt = 4e-3;
+  for (int32_t i = 0; i < 25; ++i) world_step(&w, dt);
+  const double way = fetch1(&w, set, "position", 2, 1, 0) - from;
+  const int64_t n = mpm_surface_count(s);
+  double *u = markers(s, "displacement", 2);
+  ck_assert(way < -0.04);
+  for (int64_t i = 0; i < n; ++i) ck_within(how->name, u[n + i], way, 1e-12);
+  free(u);
+  drop_surface(&w, s);
+  world_close(&w);
 }
 END_TEST
 
@@ -992,10 +1050,12 @@ Suite *surface_suite(void) {
   tcase_add_loop_test(loads, closed_under_pressure, 0, BROAD);
   tcase_add_loop_test(loads, tractions_keep_force_and_moment, 0, BROAD);
   tcase_add_loop_test(loads, buoyancy, 0, BROAD);
+  tcase_add_test(loads, light_nodes_take_little);
   tcase_add_loop_test(motion, power_of_pressure, 0, BROAD);
   tcase_add_loop_test(motion, linear_fields_are_exact, 0, BROAD);
   tcase_add_loop_test(motion, nanson_by_differences, 0, BROAD);
   tcase_add_loop_test(motion, flight_across_a_seam, 0, BROAD);
+  tcase_add_loop_test(motion, falls_with_its_particles, 0, BROAD);
   tcase_add_loop_test(motion, half_on_a_slip_wall, 0, BROAD);
   tcase_add_test(motion, ring_under_pressure);
   tcase_add_test(other, beyond_the_grid);
