@@ -331,6 +331,11 @@ namespace Mpm {
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int MotionFn(IntPtr user, double t, double dt, double* velocity, double* angular_velocity);
 
+  /// <summary>Gives tractions: the callback does add[c * ld + i] += force per present area of marker i, c &lt;
+  /// dim.</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int TractionFn(IntPtr user, MarkerBatch* batch, double* add);
+
   /// <summary>Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets,
   /// browsers.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
@@ -691,8 +696,8 @@ namespace Mpm {
     public double kinetic_energy;
     /// <summary>sum energy * initial_volume; NaN when a law has none.</summary>
     public double strain_energy;
-    /// <summary>Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks,
-    /// prescribed nodal velocities and prescribed particles.</summary>
+    /// <summary>Work during the step of gravity, acceleration and force callbacks, applied_force, surfaces, node
+    /// hooks, prescribed nodal velocities and prescribed particles.</summary>
     public double external_work;
     /// <summary>(kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain
     /// energy is.</summary>
@@ -1032,6 +1037,60 @@ namespace Mpm {
       MpmException.Check(Native.mpm_obstacle_desc_init(&it, (uint)sizeof(ObstacleDesc)), IntPtr.Zero);
       return it;
     }
+  }
+
+  /// <summary>Loads of all markers of a surface.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct SurfaceDesc {
+    /// <summary>sizeof(mpm_surface_desc) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>velocity field that it loads and moves with (mpm_stepper_set_body()); default 0.</summary>
+    public int body;
+    /// <summary>force/area against the normal, on the present area: it follows the surface.</summary>
+    public double pressure;
+    /// <summary>force per present area, in a fixed direction.</summary>
+    public fixed double traction[3];
+    /// <summary>force per area at the time when the marker was added: a dead load.</summary>
+    public fixed double dead_traction[3];
+    /// <summary>Length &gt; 0: markers with a longer edge are split in two at the end of a step, so that a surface
+    /// that stretches has no dents.</summary>
+    public double max_spacing;
+
+    /// <summary>The library's defaults.</summary>
+    public static SurfaceDesc Default() {
+      var it = new SurfaceDesc();
+      MpmException.Check(Native.mpm_surface_desc_init(&it, (uint)sizeof(SurfaceDesc)), IntPtr.Zero);
+      return it;
+    }
+  }
+
+  /// <summary>Markers for which tractions are wanted.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct MarkerBatch {
+    /// <summary>sizeof(mpm_marker_batch) of the library; see mpm.h.</summary>
+    public uint struct_size;
+    /// <summary>dimension of the grid.</summary>
+    public int dim;
+    /// <summary>number of markers.</summary>
+    public long n;
+    /// <summary>distance from component c to c + 1, in elements; &gt;= n.</summary>
+    public long ld;
+    /// <summary>time for which the value is wanted: the start of the step, or the end of an implicit one.</summary>
+    public double t;
+    /// <summary>size of the step.</summary>
+    public double dt;
+    /// <summary>[ld] ids, ascending.</summary>
+    public long* id;
+    /// <summary>[dim][ld].</summary>
+    public double* position;
+    /// <summary>[dim][ld] area vectors.</summary>
+    public double* area;
+    /// <summary>[ld] area when the marker was added.</summary>
+    public double* reference_area;
+    /// <summary>[dim][ld] since the marker was added.</summary>
+    public double* displacement;
+    /// <summary>[dim][ld] of the material there, in the last step.</summary>
+    public double* velocity;
   }
 
   /// <summary>The functions of C.</summary>
@@ -1486,6 +1545,89 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_obstacle_contact_info(IntPtr obstacle, int body, ContactInfo* info);
 
+    /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_surface_desc) of the caller; no byte beyond
+    /// is written.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_desc_init(SurfaceDesc* desc, uint struct_size);
+
+    /// <summary>Makes a surface without markers on a grid, which outlives it. desc is copied and may be NULL for the
+    /// defaults. *out is NULL unless MPM_OK is returned.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_create(IntPtr context, IntPtr grid, SurfaceDesc* desc, IntPtr* @out);
+
+    /// <summary>Frees a surface; NULL is let pass.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_destroy(IntPtr surface);
+
+    /// <summary>Replaces loads and options between steps.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_configure(IntPtr surface, SurfaceDesc* desc);
+
+    /// <summary>Sets the callback that adds tractions.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_set_traction(IntPtr surface, TractionFn fn, IntPtr user);
+
+    /// <summary>Adds n markers.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_add(IntPtr surface, long n, double* position, double* area, long* first_id);
+
+    /// <summary>Adds markers along the line through n points, position[2][n]; closed 1: back to the first.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_add_polyline(IntPtr surface, long n, double* position, int closed, double
+        spacing, long* first_id, long* count);
+
+    /// <summary>Adds markers on triangles: position[3][n] of their corners, and corner[3 * i], corner[3 * i + 1],
+    /// corner[3 * i + 2] the numbers of those of triangle i, counter-clockwise as seen from outside the
+    /// material.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_add_triangles(IntPtr surface, long n, double* position, long triangles, long*
+        corner, double spacing, long* first_id, long* count);
+
+    /// <summary>Removes the n markers with the given ids: all or none.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_remove(IntPtr surface, long n, long* ids);
+
+    /// <summary>Splits markers until no edge is longer than spacing &gt; 0: total area, its moment and the loads are
+    /// kept.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_refine(IntPtr surface, double spacing, long* added);
+
+    /// <summary>The number of markers; 0 for NULL.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern long mpm_surface_count(IntPtr surface);
+
+    /// <summary>Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by
+    /// ascending id, where n is mpm_surface_count(). type and components must match the field. | field             |
+    /// type | components | what it is                                              | set |
+    /// |-------------------|------|------------|---------------------------------------------------------|-----| |
+    /// "id"              | I64  | 1          |                                                         |     | |
+    /// "position"        | F64  | dim        | length                                                  | yes | |
+    /// "area"            | F64  | dim        | area vector, out of the material                        | yes | |
+    /// "reference_area"  | F64  | 1          | area when it was added or set                           |     | |
+    /// "displacement"    | F64  | dim        | since it was added, across periodic axes too            | yes | |
+    /// "velocity"        | F64  | dim        | of the material there, in the last step                 |     | |
+    /// "force"           | F64  | dim        | on the material, in the last step                       |     | |
+    /// "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes | |
+    /// "traction"        | F64  | dim        | likewise                                                | yes | |
+    /// "dead_traction"   | F64  | dim        | likewise                                                | yes |
+    /// MPM_E_NOT_FOUND: there is no such field or id.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_get(IntPtr surface, byte* field, int type, int components, long n, long* ids,
+        IntPtr @out);
+
+    /// <summary>Copies values into a field, laid out as in mpm_surface_get(): all or none.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_set(IntPtr surface, byte* field, int type, int components, long n, long* ids,
+        IntPtr values);
+
+    /// <summary>Puts a surface into a stepper.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_add_surface(IntPtr stepper, IntPtr surface);
+
+    /// <summary>Takes a surface out; it keeps its markers.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_remove_surface(IntPtr stepper, IntPtr surface);
+
     /// <summary>Tells how many bytes mpm_state_save() needs now.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_state_size(IntPtr stepper, long* bytes);
@@ -1512,7 +1654,8 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_state_load_file(IntPtr stepper, byte* path);
 
-    /// <summary>Gives a hash of time, step, every field of every set and the pose of every obstacle.</summary>
+    /// <summary>Gives a hash of time, step, every field of every set, the pose of every obstacle and every marker of
+    /// surfaces.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_state_hash(IntPtr stepper, ulong* hash);
 

@@ -545,8 +545,8 @@ module mpm
     real(c_double) :: kinetic_energy
     !> sum energy * initial_volume; NaN when a law has none.
     real(c_double) :: strain_energy
-    !> Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed nodal
-    !! velocities and prescribed particles.
+    !> Work during the step of gravity, acceleration and force callbacks, applied_force, surfaces, node hooks,
+    !! prescribed nodal velocities and prescribed particles.
     real(c_double) :: external_work
     !> (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain energy is.
     real(c_double) :: dissipation
@@ -832,6 +832,51 @@ module mpm
     real(c_double) :: upper(3)
   end type mpm_obstacle_desc
 
+  !> Loads of all markers of a surface.
+  type, bind(c) :: mpm_surface_desc
+    !> sizeof(mpm_surface_desc) of the caller.
+    integer(c_int32_t) :: struct_size
+    !> velocity field that it loads and moves with (mpm_stepper_set_body()); default 0.
+    integer(c_int32_t) :: body
+    !> force/area against the normal, on the present area: it follows the surface.
+    real(c_double) :: pressure
+    !> force per present area, in a fixed direction.
+    real(c_double) :: traction(3)
+    !> force per area at the time when the marker was added: a dead load.
+    real(c_double) :: dead_traction(3)
+    !> Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that stretches
+    !! has no dents.
+    real(c_double) :: max_spacing
+  end type mpm_surface_desc
+
+  !> Markers for which tractions are wanted.
+  type, bind(c) :: mpm_marker_batch
+    !> sizeof(mpm_marker_batch) of the library; see mpm.h.
+    integer(c_int32_t) :: struct_size
+    !> dimension of the grid.
+    integer(c_int32_t) :: dim
+    !> number of markers.
+    integer(c_int64_t) :: n
+    !> distance from component c to c + 1, in elements; >= n.
+    integer(c_int64_t) :: ld
+    !> time for which the value is wanted: the start of the step, or the end of an implicit one.
+    real(c_double) :: t
+    !> size of the step.
+    real(c_double) :: dt
+    !> [ld] ids, ascending.
+    type(c_ptr) :: id
+    !> [dim][ld].
+    type(c_ptr) :: position
+    !> [dim][ld] area vectors.
+    type(c_ptr) :: area
+    !> [ld] area when the marker was added.
+    type(c_ptr) :: reference_area
+    !> [dim][ld] since the marker was added.
+    type(c_ptr) :: displacement
+    !> [dim][ld] of the material there, in the last step.
+    type(c_ptr) :: velocity
+  end type mpm_marker_batch
+
   ! Callbacks of the host: c_funloc() of a procedure of such an interface is what arguments and fields take.
   abstract interface
     !> A task of the library, which the host's executor calls with the task_data that it was given and a number k.
@@ -993,6 +1038,15 @@ module mpm
       real(c_double), intent(inout) :: angular_velocity(*)
       integer(c_int32_t) :: answer
     end function mpm_motion_fn
+
+    !> Gives tractions: the callback does add[c * ld + i] += force per present area of marker i, c < dim.
+    function mpm_traction_fn(user, batch, add) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      type(mpm_marker_batch), intent(in) :: batch
+      real(c_double), intent(inout) :: add(*)
+      integer(c_int32_t) :: answer
+    end function mpm_traction_fn
 
     !> Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers.
     function mpm_write_fn(user, data, bytes) bind(c) result(answer)
@@ -1906,6 +1960,172 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_obstacle_contact_info
 
+    !> Fills desc with the defaults. struct_size is sizeof(mpm_surface_desc) of the caller; no byte beyond is written.
+    function mpm_surface_desc_init(desc, struct_size) bind(c, name="mpm_surface_desc_init") result(answer)
+      import
+      type(mpm_surface_desc), intent(inout) :: desc
+      integer(c_int32_t), value :: struct_size
+      integer(c_int32_t) :: answer
+    end function mpm_surface_desc_init
+
+    !> Makes a surface without markers on a grid, which outlives it. desc is copied and may be NULL for the defaults.
+    !! *out is NULL unless MPM_OK is returned.
+    function mpm_surface_create(context, grid, desc, out) bind(c, name="mpm_surface_create") result(answer)
+      import
+      type(c_ptr), value :: context
+      type(c_ptr), value :: grid
+      type(mpm_surface_desc), intent(in), optional :: desc
+      type(c_ptr), intent(out) :: out
+      integer(c_int32_t) :: answer
+    end function mpm_surface_create
+
+    !> Frees a surface; NULL is let pass.
+    function mpm_surface_destroy(surface) bind(c, name="mpm_surface_destroy") result(answer)
+      import
+      type(c_ptr), value :: surface
+      integer(c_int32_t) :: answer
+    end function mpm_surface_destroy
+
+    !> Replaces loads and options between steps.
+    function mpm_surface_configure(surface, desc) bind(c, name="mpm_surface_configure") result(answer)
+      import
+      type(c_ptr), value :: surface
+      type(mpm_surface_desc), intent(in) :: desc
+      integer(c_int32_t) :: answer
+    end function mpm_surface_configure
+
+    !> Sets the callback that adds tractions.
+    function mpm_surface_set_traction(surface, fn, user) bind(c, name="mpm_surface_set_traction") result(answer)
+      import
+      type(c_ptr), value :: surface
+      type(c_funptr), value :: fn
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: answer
+    end function mpm_surface_set_traction
+
+    !> Adds n markers.
+    function mpm_surface_add(surface, n, position, area, first_id) bind(c, name="mpm_surface_add") result(answer)
+      import
+      type(c_ptr), value :: surface
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: position(*)
+      real(c_double), intent(in), optional :: area(*)
+      integer(c_int64_t), intent(inout), optional :: first_id
+      integer(c_int32_t) :: answer
+    end function mpm_surface_add
+
+    !> Adds markers along the line through n points, position[2][n]; closed 1: back to the first.
+    function mpm_surface_add_polyline(surface, n, position, closed, spacing, first_id, count) bind(c, &
+        name="mpm_surface_add_polyline") result(answer)
+      import
+      type(c_ptr), value :: surface
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: position(*)
+      integer(c_int32_t), value :: closed
+      real(c_double), value :: spacing
+      integer(c_int64_t), intent(inout), optional :: first_id
+      integer(c_int64_t), intent(inout), optional :: count
+      integer(c_int32_t) :: answer
+    end function mpm_surface_add_polyline
+
+    !> Adds markers on triangles: position[3][n] of their corners, and corner[3 * i], corner[3 * i + 1], corner[3 * i +
+    !! 2] the numbers of those of triangle i, counter-clockwise as seen from outside the material.
+    function mpm_surface_add_triangles(surface, n, position, triangles, corner, spacing, first_id, count) bind(c, &
+        name="mpm_surface_add_triangles") result(answer)
+      import
+      type(c_ptr), value :: surface
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: position(*)
+      integer(c_int64_t), value :: triangles
+      integer(c_int64_t), intent(in) :: corner(*)
+      real(c_double), value :: spacing
+      integer(c_int64_t), intent(inout), optional :: first_id
+      integer(c_int64_t), intent(inout), optional :: count
+      integer(c_int32_t) :: answer
+    end function mpm_surface_add_triangles
+
+    !> Removes the n markers with the given ids: all or none.
+    function mpm_surface_remove(surface, n, ids) bind(c, name="mpm_surface_remove") result(answer)
+      import
+      type(c_ptr), value :: surface
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: ids(*)
+      integer(c_int32_t) :: answer
+    end function mpm_surface_remove
+
+    !> Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept.
+    function mpm_surface_refine(surface, spacing, added) bind(c, name="mpm_surface_refine") result(answer)
+      import
+      type(c_ptr), value :: surface
+      real(c_double), value :: spacing
+      integer(c_int64_t), intent(inout), optional :: added
+      integer(c_int32_t) :: answer
+    end function mpm_surface_refine
+
+    !> The number of markers; 0 for NULL.
+    function mpm_surface_count(surface) bind(c, name="mpm_surface_count") result(answer)
+      import
+      type(c_ptr), value :: surface
+      integer(c_int64_t) :: answer
+    end function mpm_surface_count
+
+    !> Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by ascending id,
+    !! where n is mpm_surface_count(). type and components must match the field. | field             | type | components
+    !! | what it is                                              | set |
+    !! |-------------------|------|------------|---------------------------------------------------------|-----| | "id"
+    !! | I64  | 1          |                                                         |     | | "position"        | F64
+    !! | dim        | length                                                  | yes | | "area"            | F64  | dim
+    !! | area vector, out of the material                        | yes | | "reference_area"  | F64  | 1          | area
+    !! when it was added or set                           |     | | "displacement"    | F64  | dim        | since it was
+    !! added, across periodic axes too            | yes | | "velocity"        | F64  | dim        | of the material
+    !! there, in the last step                 |     | | "force"           | F64  | dim        | on the material, in the
+    !! last step                       |     | | "pressure"        | F64  | 1          | of this marker, beside
+    !! mpm_surface_desc.pressure        | yes | | "traction"        | F64  | dim        | likewise
+    !! | yes | | "dead_traction"   | F64  | dim        | likewise                                                | yes |
+    !! MPM_E_NOT_FOUND: there is no such field or id.
+    function mpm_surface_get(surface, field, type, components, n, ids, out) bind(c, name="mpm_surface_get") &
+        result(answer)
+      import
+      type(c_ptr), value :: surface
+      character(kind=c_char), intent(in) :: field(*)
+      integer(c_int32_t), value :: type
+      integer(c_int32_t), value :: components
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in), optional :: ids(*)
+      type(*), intent(inout) :: out(*)
+      integer(c_int32_t) :: answer
+    end function mpm_surface_get
+
+    !> Copies values into a field, laid out as in mpm_surface_get(): all or none.
+    function mpm_surface_set(surface, field, type, components, n, ids, values) bind(c, name="mpm_surface_set") &
+        result(answer)
+      import
+      type(c_ptr), value :: surface
+      character(kind=c_char), intent(in) :: field(*)
+      integer(c_int32_t), value :: type
+      integer(c_int32_t), value :: components
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in), optional :: ids(*)
+      type(*), intent(in) :: values(*)
+      integer(c_int32_t) :: answer
+    end function mpm_surface_set
+
+    !> Puts a surface into a stepper.
+    function mpm_stepper_add_surface(stepper, surface) bind(c, name="mpm_stepper_add_surface") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: surface
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_add_surface
+
+    !> Takes a surface out; it keeps its markers.
+    function mpm_stepper_remove_surface(stepper, surface) bind(c, name="mpm_stepper_remove_surface") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: surface
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_remove_surface
+
     !> Tells how many bytes mpm_state_save() needs now.
     function mpm_state_size(stepper, bytes) bind(c, name="mpm_state_size") result(answer)
       import
@@ -1958,7 +2178,7 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_state_load_file
 
-    !> Gives a hash of time, step, every field of every set and the pose of every obstacle.
+    !> Gives a hash of time, step, every field of every set, the pose of every obstacle and every marker of surfaces.
     function mpm_state_hash(stepper, hash) bind(c, name="mpm_state_hash") result(answer)
       import
       type(c_ptr), value :: stepper
@@ -2069,11 +2289,13 @@ module mpm
     module procedure init_mpm_contact_desc
     module procedure init_mpm_contact_info
     module procedure init_mpm_obstacle_desc
+    module procedure init_mpm_surface_desc
   end interface mpm_init
 
   private :: init_mpm_view, init_mpm_context_desc, init_mpm_grid_desc, init_mpm_material_batch, &
       init_mpm_material_desc, init_mpm_operator_info, init_mpm_stepper_desc, init_mpm_step_info, &
-      init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, init_mpm_obstacle_desc
+      init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, init_mpm_obstacle_desc, &
+      init_mpm_surface_desc
 
 contains
 
@@ -2233,5 +2455,10 @@ contains
     type(mpm_obstacle_desc), intent(out) :: it
     if (mpm_obstacle_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
   end subroutine init_mpm_obstacle_desc
+
+  subroutine init_mpm_surface_desc(it)
+    type(mpm_surface_desc), intent(out) :: it
+    if (mpm_surface_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
+  end subroutine init_mpm_surface_desc
 
 end module mpm

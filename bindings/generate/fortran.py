@@ -20,7 +20,7 @@ ARRAYS = {
     "mpm_obstacle_get_pose": {"position", "orientation", "velocity", "angular_velocity"},
     "mpm_tangent_fn": {"tangent"}, "mpm_inside_fn": {"inside"}, "mpm_solve_fn": {"solution"}, "mpm_particle_fn": {"add"},
     "mpm_velocity_fn": {"prescribed", "velocity"}, "mpm_node_fn": {"velocity", "force"}, "mpm_friction_fn": {"friction"},
-    "mpm_motion_fn": {"velocity", "angular_velocity"},
+    "mpm_motion_fn": {"velocity", "angular_velocity"}, "mpm_traction_fn": {"add"},
 }
 # Structs of which a pointer means several.
 ARRAY_STRUCTS = {"mpm_param"}
@@ -36,7 +36,9 @@ NULLABLE = {
     "mpm_obstacle_set_pose": {"position", "orientation", "velocity", "angular_velocity"},
     "mpm_obstacle_get_pose": {"position", "orientation", "velocity", "angular_velocity"},
     "mpm_obstacle_set_load": {"force", "torque"}, "mpm_write_particles": {"fields"}, "mpm_write_grid": {"fields"},
-    "mpm_write_body_grid": {"fields"},
+    "mpm_write_body_grid": {"fields"}, "mpm_surface_create": {"desc"}, "mpm_surface_add": {"area", "first_id"},
+    "mpm_surface_add_polyline": {"first_id", "count"}, "mpm_surface_add_triangles": {"first_id", "count"},
+    "mpm_surface_refine": {"added"}, "mpm_surface_get": {"ids"}, "mpm_surface_set": {"ids"},
 }
 
 

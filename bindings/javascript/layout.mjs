@@ -436,6 +436,34 @@ export const structs = {
       upper: [264, 'f64', 3],
     },
   },
+  mpm_surface_desc: {
+    size: 72,
+    fields: {
+      struct_size: [0, 'u32'],
+      body: [4, 'i32'],
+      pressure: [8, 'f64'],
+      traction: [16, 'f64', 3],
+      dead_traction: [40, 'f64', 3],
+      max_spacing: [64, 'f64'],
+    },
+  },
+  mpm_marker_batch: {
+    size: 64,
+    fields: {
+      struct_size: [0, 'u32'],
+      dim: [4, 'i32'],
+      n: [8, 'i64'],
+      ld: [16, 'i64'],
+      t: [24, 'f64'],
+      dt: [32, 'f64'],
+      id: [40, 'i64*', 'ld'],
+      position: [44, 'f64*', 'dim', 'ld'],
+      area: [48, 'f64*', 'dim', 'ld'],
+      reference_area: [52, 'f64*', 'ld'],
+      displacement: [56, 'f64*', 'dim', 'ld'],
+      velocity: [60, 'f64*', 'dim', 'ld'],
+    },
+  },
 };
 
 // The parameters of callbacks as WebAssembly has them, and how many results there are.
@@ -456,5 +484,6 @@ export const callbacks = {
   mpm_friction_fn: [['i32', 'i32', 'i32'], 1],
   mpm_distance_fn: [['i32', 'i32'], 1],
   mpm_motion_fn: [['i32', 'f64', 'f64', 'i32', 'i32'], 1],
+  mpm_traction_fn: [['i32', 'i32', 'i32'], 1],
   mpm_write_fn: [['i32', 'i32', 'i64'], 1],
 };

@@ -485,6 +485,25 @@ export interface ObstacleDesc {
   upper?: ArrayLike<number>;
 }
 /**
+ * Loads of all markers of a surface. What markers carry by themselves ("pressure", "traction",
+ * "dead_traction") and what the callback gives comes on top.
+ */
+export interface SurfaceDesc {
+  /** velocity field that it loads and moves with (mpm_stepper_set_body()); default 0 */
+  body?: number | boolean;
+  /** force/area against the normal, on the present area: it follows the surface */
+  pressure?: number;
+  /** force per present area, in a fixed direction */
+  traction?: ArrayLike<number>;
+  /** force per area at the time when the marker was added: a dead load */
+  dead_traction?: ArrayLike<number>;
+  /**
+   * Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that
+   * stretches has no dents. Half a spacing is right. 0 (default): they are not.
+   */
+  max_spacing?: number;
+}
+/**
  * A linear system. The arrays belong to the library and are valid until the solve callback returns. A row is
  * one component of one node; nodes and components whose displacement is prescribed have none.
  */
@@ -560,8 +579,8 @@ export interface StepInfo {
   /** sum energy * initial_volume; NaN when a law has none */
   strain_energy: number;
   /**
-   * Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed
-   * nodal velocities and prescribed particles.
+   * Work during the step of gravity, acceleration and force callbacks, applied_force, surfaces, node hooks,
+   * prescribed nodal velocities and prescribed particles.
    */
   external_work: number;
   /**
@@ -845,6 +864,34 @@ export interface DistanceBatch {
    * asked for
    */
   readonly velocity: Float64Array[] | undefined;
+}
+/**
+ * Markers for which tractions are wanted. Arrays are [components][ld], belong to the library and are valid
+ * during the call.
+ */
+export interface MarkerBatch {
+  /** dimension of the grid */
+  readonly dim: number;
+  /** number of markers */
+  readonly n: number;
+  /** distance from component c to c + 1, in elements; >= n */
+  readonly ld: number;
+  /** time for which the value is wanted: the start of the step, or the end of an implicit one */
+  readonly t: number;
+  /** size of the step */
+  readonly dt: number;
+  /** [ld] ids, ascending */
+  readonly id: BigInt64Array;
+  /** [dim][ld] */
+  readonly position: Float64Array[];
+  /** [dim][ld] area vectors */
+  readonly area: Float64Array[];
+  /** [ld] area when the marker was added */
+  readonly reference_area: Float64Array;
+  /** [dim][ld] since the marker was added */
+  readonly displacement: Float64Array[];
+  /** [dim][ld] of the material there, in the last step */
+  readonly velocity: Float64Array[];
 }
 
 /**
@@ -1678,9 +1725,9 @@ export class Stepper implements Handle {
    */
   load(state: ArrayLike<number>): void;
   /**
-   * Gives a hash of time, step, every field of every set and the pose of every obstacle. It does not depend
-   * on library order, on threads or on optional fields that are not in use: states that are equal by id have
-   * equal hashes.
+   * Gives a hash of time, step, every field of every set, the pose of every obstacle and every marker of
+   * surfaces. It does not depend on library order, on threads or on optional fields that are not in use:
+   * states that are equal by id have equal hashes.
    */
   hash(): bigint;
   /**
@@ -1792,6 +1839,21 @@ export interface Raw {
   mpm_obstacle_get_pose(obstacle: number, position: number, orientation: number, velocity: number, angular_velocity: number): number;
   mpm_obstacle_set_load(obstacle: number, force: number, torque: number): number;
   mpm_obstacle_contact_info(obstacle: number, body: number, info: number): number;
+  mpm_surface_desc_init(desc: number, struct_size: number): number;
+  mpm_surface_create(context: number, grid: number, desc: number, out: number): number;
+  mpm_surface_destroy(surface: number): number;
+  mpm_surface_configure(surface: number, desc: number): number;
+  mpm_surface_set_traction(surface: number, fn: number, user: number): number;
+  mpm_surface_add(surface: number, n: bigint, position: number, area: number, first_id: number): number;
+  mpm_surface_add_polyline(surface: number, n: bigint, position: number, closed: number, spacing: number, first_id: number, count: number): number;
+  mpm_surface_add_triangles(surface: number, n: bigint, position: number, triangles: bigint, corner: number, spacing: number, first_id: number, count: number): number;
+  mpm_surface_remove(surface: number, n: bigint, ids: number): number;
+  mpm_surface_refine(surface: number, spacing: number, added: number): number;
+  mpm_surface_count(surface: number): bigint;
+  mpm_surface_get(surface: number, field: number, type: number, components: number, n: bigint, ids: number, out: number): number;
+  mpm_surface_set(surface: number, field: number, type: number, components: number, n: bigint, ids: number, values: number): number;
+  mpm_stepper_add_surface(stepper: number, surface: number): number;
+  mpm_stepper_remove_surface(stepper: number, surface: number): number;
   mpm_state_size(stepper: number, bytes: number): number;
   mpm_state_save(stepper: number, buffer: number, capacity: bigint): number;
   mpm_state_load(stepper: number, buffer: number, bytes: bigint): number;

@@ -219,6 +219,11 @@ A rigid body without particles. It belongs to a context, and may be in one stepp
 mutable struct mpm_obstacle end
 
 """
+Markers of a surface. It belongs to a grid, and may be in one stepper at a time.
+"""
+mutable struct mpm_surface end
+
+"""
 A time series of output files (.pvd); its file is valid on disk after every append.
 """
 mutable struct mpm_series end
@@ -625,6 +630,41 @@ end
 Base.cconvert(::Type{Ptr{mpm_obstacle_desc}}, it::mpm_obstacle_desc) = it
 Base.unsafe_convert(::Type{Ptr{mpm_obstacle_desc}}, it::mpm_obstacle_desc) = Ptr{mpm_obstacle_desc}(pointer_from_objref(it))
 
+"""
+Loads of all markers of a surface. What markers carry by themselves (\"pressure\", \"traction\", \"dead_traction\")
+and what the callback gives comes on top. Fill it with mpm_surface_desc_init().
+"""
+mutable struct mpm_surface_desc
+    struct_size::UInt32
+    body::Int32
+    pressure::Float64
+    traction::NTuple{3, Float64}
+    dead_traction::NTuple{3, Float64}
+    max_spacing::Float64
+    mpm_surface_desc() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_surface_desc}}, it::mpm_surface_desc) = it
+Base.unsafe_convert(::Type{Ptr{mpm_surface_desc}}, it::mpm_surface_desc) = Ptr{mpm_surface_desc}(pointer_from_objref(it))
+
+"""
+Markers for which tractions are wanted. Arrays are [components][ld], belong to the library and are valid during the
+call.
+"""
+struct mpm_marker_batch
+    struct_size::UInt32
+    dim::Int32
+    n::Int64
+    ld::Int64
+    t::Float64
+    dt::Float64
+    id::Ptr{Int64}
+    position::Ptr{Float64}
+    area::Ptr{Float64}
+    reference_area::Ptr{Float64}
+    displacement::Ptr{Float64}
+    velocity::Ptr{Float64}
+end
+
 # Callbacks: what @cfunction(f, result, (arguments,)) takes for each type of C.
 
 """
@@ -809,6 +849,15 @@ f(user, t, dt, velocity, angular_velocity): @cfunction(f, Int32, (Ptr{Cvoid}, Fl
 Ptr{Float64}))
 """
 const mpm_motion_fn = Ptr{Cvoid}
+
+"""
+Gives tractions: the callback does add[c * ld + i] += force per present area of marker i, c < dim. It runs on the
+thread of the call, once per step. Returns as mpm_particle_fn does. A value that is not finite ends the step:
+MPM_NONFINITE.
+
+f(user, batch, add): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_marker_batch}, Ptr{Float64}))
+"""
+const mpm_traction_fn = Ptr{Cvoid}
 
 """
 Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers. All
@@ -1812,6 +1861,169 @@ function mpm_obstacle_contact_info(obstacle, body, info)
 end
 
 """
+Fills desc with the defaults. struct_size is sizeof(mpm_surface_desc) of the caller; no byte beyond is written.
+MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
+"""
+function mpm_surface_desc_init(desc, struct_size)
+    return ccall((:mpm_surface_desc_init, libmpm), Int32, (Ptr{mpm_surface_desc}, UInt32), desc, struct_size)
+end
+
+"""
+Makes a surface without markers on a grid, which outlives it. desc is copied and may be NULL for the defaults. *out is
+NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another context.
+"""
+function mpm_surface_create(context, grid, desc, out)
+    return ccall((:mpm_surface_create, libmpm), Int32, (Ptr{mpm_context}, Ptr{mpm_grid}, Ptr{mpm_surface_desc}, Ptr{Ptr{mpm_surface}}),
+        context, grid, desc, out)
+end
+
+"""
+Frees a surface; NULL is let pass. MPM_E_STATE: a stepper holds it.
+"""
+function mpm_surface_destroy(surface)
+    return ccall((:mpm_surface_destroy, libmpm), Int32, (Ptr{mpm_surface},), surface)
+end
+
+"""
+Replaces loads and options between steps. Errors are those of mpm_surface_create(), and MPM_E_STATE during a staged
+step.
+"""
+function mpm_surface_configure(surface, desc)
+    return ccall((:mpm_surface_configure, libmpm), Int32, (Ptr{mpm_surface}, Ptr{mpm_surface_desc}), surface, desc)
+end
+
+"""
+Sets the callback that adds tractions. NULL takes it away. The host sets it again after it has loaded a state.
+MPM_E_STATE during a staged step.
+"""
+function mpm_surface_set_traction(surface, fn, user)
+    return ccall((:mpm_surface_set_traction, libmpm), Int32, (Ptr{mpm_surface}, Ptr{Cvoid}, Ptr{Cvoid}),
+        surface, fn, user)
+end
+
+"""
+Adds n markers.
+
+- position: [dim][n], in the grid; on periodic axes it is wrapped.
+- area: [dim][n] area vectors, out of the material; NULL for markers without area, which follow the material and carry
+  nothing.
+- first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
+
+In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite or a position is outside the
+grid; nothing is added. MPM_E_STATE during a staged step.
+"""
+function mpm_surface_add(surface, n, position, area, first_id)
+    return ccall((:mpm_surface_add, libmpm), Int32, (Ptr{mpm_surface}, Int64, Ptr{Float64}, Ptr{Float64}, Ptr{Int64}),
+        surface, n, position, area, first_id)
+end
+
+"""
+Adds markers along the line through n points, position[2][n]; closed 1: back to the first. The material lies on the
+left of the line, so that the outline of a body goes round counter-clockwise. Each edge is divided into equal parts no
+longer than spacing > 0, with a marker in the middle of each: half a spacing of the grid is right. *first_id and
+*count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid is not 2-D. Else as mpm_surface_add().
+"""
+function mpm_surface_add_polyline(surface, n, position, closed, spacing, first_id, count)
+    return ccall((:mpm_surface_add_polyline, libmpm), Int32, (Ptr{mpm_surface}, Int64, Ptr{Float64}, Int32, Float64, Ptr{Int64}, Ptr{Int64}),
+        surface, n, position, closed, spacing, first_id, count)
+end
+
+"""
+Adds markers on triangles: position[3][n] of their corners, and corner[3 * i], corner[3 * i + 1], corner[3 * i + 2]
+the numbers of those of triangle i, counter-clockwise as seen from outside the material. Each triangle is divided into
+k^2 equal ones with edges no longer than spacing, with a marker in the middle of each. MPM_E_UNSUPPORTED: the grid is
+not 3-D. MPM_E_ARG: there is no such corner. Else as mpm_surface_add_polyline().
+"""
+function mpm_surface_add_triangles(surface, n, position, triangles, corner, spacing, first_id, count)
+    return ccall((:mpm_surface_add_triangles, libmpm), Int32, (Ptr{mpm_surface}, Int64, Ptr{Float64}, Int64, Ptr{Int64}, Float64, Ptr{Int64}, Ptr{Int64}),
+        surface, n, position, triangles, corner, spacing, first_id, count)
+end
+
+"""
+Removes the n markers with the given ids: all or none. MPM_E_NOT_FOUND: an id is not in the surface. MPM_E_ARG: an id
+is given twice. MPM_E_STATE during a staged step.
+"""
+function mpm_surface_remove(surface, n, ids)
+    return ccall((:mpm_surface_remove, libmpm), Int32, (Ptr{mpm_surface}, Int64, Ptr{Int64}), surface, n, ids)
+end
+
+"""
+Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept. One half keeps
+the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad, or more
+than 2^28 markers would come of it. MPM_E_STATE during a staged step.
+"""
+function mpm_surface_refine(surface, spacing, added)
+    return ccall((:mpm_surface_refine, libmpm), Int32, (Ptr{mpm_surface}, Float64, Ptr{Int64}),
+        surface, spacing, added)
+end
+
+"""
+The number of markers; 0 for NULL.
+"""
+function mpm_surface_count(surface)
+    return ccall((:mpm_surface_count, libmpm), Int64, (Ptr{mpm_surface},), surface)
+end
+
+"""
+Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by ascending id, where n
+is mpm_surface_count(). type and components must match the field.
+
+| field             | type | components | what it is                                              | set |
+|-------------------|------|------------|---------------------------------------------------------|-----|
+| \"id\"              | I64  | 1          |                                                         |     |
+| \"position\"        | F64  | dim        | length                                                  | yes |
+| \"area\"            | F64  | dim        | area vector, out of the material                        | yes |
+| \"reference_area\"  | F64  | 1          | area when it was added or set                           |     |
+| \"displacement\"    | F64  | dim        | since it was added, across periodic axes too            | yes |
+| \"velocity\"        | F64  | dim        | of the material there, in the last step                 |     |
+| \"force\"           | F64  | dim        | on the material, in the last step                       |     |
+| \"pressure\"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
+| \"traction\"        | F64  | dim        | likewise                                                | yes |
+| \"dead_traction\"   | F64  | dim        | likewise                                                | yes |
+
+MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.
+"""
+function mpm_surface_get(surface, field, type_, components, n, ids, out)
+    return ccall((:mpm_surface_get, libmpm), Int32, (Ptr{mpm_surface}, Cstring, Int32, Int32, Int64, Ptr{Int64}, Ptr{Cvoid}),
+        surface, field, type_, components, n, ids, out)
+end
+
+"""
+Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting \"area\" makes it the reference.
+Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is outside the grid, or the
+field cannot be set. MPM_E_STATE during a staged step.
+"""
+function mpm_surface_set(surface, field, type_, components, n, ids, values)
+    return ccall((:mpm_surface_set, libmpm), Int32, (Ptr{mpm_surface}, Cstring, Int32, Int32, Int64, Ptr{Int64}, Ptr{Cvoid}),
+        surface, field, type_, components, n, ids, values)
+end
+
+"""
+Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with them;
+the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are removed. Steps end with
+
+- MPM_OFF_GRID: a marker would leave through a face that does not let it;
+- MPM_NONFINITE: its load or its new position is not finite;
+- MPM_E_STATE: a marker with a load has no material around it.
+
+The text names marker and surface, the number of which counts the surfaces of the stepper from 0. MPM_E_STATE: it is
+in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
+
+In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and traction
+make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+"""
+function mpm_stepper_add_surface(stepper, surface)
+    return ccall((:mpm_stepper_add_surface, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_surface}), stepper, surface)
+end
+
+"""
+Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper.
+"""
+function mpm_stepper_remove_surface(stepper, surface)
+    return ccall((:mpm_stepper_remove_surface, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_surface}), stepper, surface)
+end
+
+"""
 Tells how many bytes mpm_state_save() needs now.
 """
 function mpm_state_size(stepper, bytes)
@@ -1861,8 +2073,9 @@ function mpm_state_load_file(stepper, path)
 end
 
 """
-Gives a hash of time, step, every field of every set and the pose of every obstacle. It does not depend on library
-order, on threads or on optional fields that are not in use: states that are equal by id have equal hashes.
+Gives a hash of time, step, every field of every set, the pose of every obstacle and every marker of surfaces. It does
+not depend on library order, on threads or on optional fields that are not in use: states that are equal by id have
+equal hashes.
 """
 function mpm_state_hash(stepper, hash)
     return ccall((:mpm_state_hash, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{UInt64}), stepper, hash)
@@ -2004,6 +2217,12 @@ function ready(::Type{mpm_obstacle_desc})
     status == MPM_OK || error("mpm_obstacle_desc_init: libmpm is older than the module")
     return it
 end
+function ready(::Type{mpm_surface_desc})
+    it = zeroed(mpm_surface_desc)
+    status = mpm_surface_desc_init(it, UInt32(sizeof(mpm_surface_desc)))
+    status == MPM_OK || error("mpm_surface_desc_init: libmpm is older than the module")
+    return it
+end
 
 export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED,
     MPM_SINGULAR, MPM_OFF_GRID, MPM_CANCELLED, MPM_E_ARG, MPM_E_NOMEM, MPM_E_STATE, MPM_E_CALLBACK, MPM_E_UNSUPPORTED,
@@ -2020,29 +2239,33 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT, MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY, MPM_SHAPE_PLANE,
     MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER, MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE, MPM_MOTION_FIXED,
     MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE, mpm_context, mpm_grid, mpm_material, mpm_particles, mpm_stepper,
-    mpm_operator, mpm_obstacle, mpm_series, mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch,
-    mpm_material_desc, mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch,
-    mpm_advance_desc, mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch,
-    mpm_obstacle_desc, mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_desc_init,
-    mpm_context_create, mpm_context_memory, mpm_context_destroy, mpm_last_error, mpm_set_last_error,
-    mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy, mpm_material_create, mpm_material_model_count,
-    mpm_material_model_name, mpm_material_model_param, mpm_material_state_count, mpm_material_state_name,
-    mpm_batch_field, mpm_material_desc_init, mpm_material_create_custom, mpm_material_update, mpm_material_destroy,
-    mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball,
-    mpm_particles_fill, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info, mpm_particles_add_field,
-    mpm_particles_map, mpm_particles_get, mpm_particles_get_f32, mpm_particles_set, mpm_particles_set_all,
-    mpm_particles_set_geostatic, mpm_particles_reset_reference, mpm_operator_get_info, mpm_operator_apply,
-    mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create, mpm_stepper_destroy, mpm_stepper_add,
-    mpm_stepper_remove, mpm_stepper_configure, mpm_stepper_set_time, mpm_stepper_set_motion, mpm_stepper_set_wall,
-    mpm_stepper_set_acceleration, mpm_stepper_set_force, mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook,
-    mpm_stepper_set_linear_solver, mpm_stepper_set_progress, mpm_stable_dt, mpm_step, mpm_advance_desc_init,
-    mpm_advance, mpm_stepper_profile, mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin, mpm_step_grid,
-    mpm_step_end, mpm_step_abort, mpm_grid_map, mpm_stepper_wall_reaction, mpm_stepper_particles_reaction,
-    mpm_stepper_wall_impulse, mpm_stepper_particles_impulse, mpm_stepper_set_body, mpm_stepper_body,
-    mpm_contact_desc_init, mpm_stepper_set_contact, mpm_stepper_set_friction, mpm_stepper_contact_info,
-    mpm_obstacle_desc_init, mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle,
-    mpm_stepper_remove_obstacle, mpm_obstacle_set_motion, mpm_obstacle_set_contact, mpm_obstacle_set_pose,
-    mpm_obstacle_get_pose, mpm_obstacle_set_load, mpm_obstacle_contact_info, mpm_state_size, mpm_state_save,
+    mpm_operator, mpm_obstacle, mpm_surface, mpm_series, mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc,
+    mpm_material_batch, mpm_material_desc, mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch,
+    mpm_node_batch, mpm_advance_desc, mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch,
+    mpm_distance_batch, mpm_obstacle_desc, mpm_surface_desc, mpm_marker_batch, mpm_version, mpm_status_name,
+    mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create, mpm_context_memory,
+    mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy,
+    mpm_material_create, mpm_material_model_count, mpm_material_model_name, mpm_material_model_param,
+    mpm_material_state_count, mpm_material_state_name, mpm_batch_field, mpm_material_desc_init,
+    mpm_material_create_custom, mpm_material_update, mpm_material_destroy, mpm_particles_create,
+    mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball, mpm_particles_fill,
+    mpm_particles_remove, mpm_particles_count, mpm_particles_field_info, mpm_particles_add_field, mpm_particles_map,
+    mpm_particles_get, mpm_particles_get_f32, mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic,
+    mpm_particles_reset_reference, mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init,
+    mpm_stepper_create, mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure,
+    mpm_stepper_set_time, mpm_stepper_set_motion, mpm_stepper_set_wall, mpm_stepper_set_acceleration,
+    mpm_stepper_set_force, mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver,
+    mpm_stepper_set_progress, mpm_stable_dt, mpm_step, mpm_advance_desc_init, mpm_advance, mpm_stepper_profile,
+    mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin, mpm_step_grid, mpm_step_end, mpm_step_abort,
+    mpm_grid_map, mpm_stepper_wall_reaction, mpm_stepper_particles_reaction, mpm_stepper_wall_impulse,
+    mpm_stepper_particles_impulse, mpm_stepper_set_body, mpm_stepper_body, mpm_contact_desc_init,
+    mpm_stepper_set_contact, mpm_stepper_set_friction, mpm_stepper_contact_info, mpm_obstacle_desc_init,
+    mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle,
+    mpm_obstacle_set_motion, mpm_obstacle_set_contact, mpm_obstacle_set_pose, mpm_obstacle_get_pose,
+    mpm_obstacle_set_load, mpm_obstacle_contact_info, mpm_surface_desc_init, mpm_surface_create, mpm_surface_destroy,
+    mpm_surface_configure, mpm_surface_set_traction, mpm_surface_add, mpm_surface_add_polyline,
+    mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine, mpm_surface_count, mpm_surface_get,
+    mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface, mpm_state_size, mpm_state_save,
     mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file, mpm_state_hash, mpm_write_particles,
     mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid, mpm_write_grid_to, mpm_series_open,
     mpm_series_append, mpm_series_close

@@ -63,6 +63,24 @@ def thick_cylinder():
 
 
 @plot
+def surface_cylinder():
+    figure, ax = axes(2)
+    data = read("surface_cylinder")
+    for panel, radius in zip(ax, (1, 2)):
+        for i, name in enumerate(("linear 10 shifted", "quadratic 5 shifted", "quadratic 10 shifted")):
+            at = rows(data, variant=name)
+            points = sorted((a, u / e) for r, a, u, e in zip(at["r"], at["angle"], at["u"], at["u_exact"])
+                            if abs(r - radius) < 0.1)[::3]
+            panel.plot([a for a, _ in points], [u for _, u in points], f"C{i}-", label=name.replace(" shifted", " cells"))
+        panel.axhline(1, color="k", linewidth=0.8)
+        panel.set_ylim(0.97, 1.05)
+        panel.set_xlabel(f"angle at r = {radius}")
+        panel.set_ylabel("displacement over exact")
+        panel.legend()
+    return figure
+
+
+@plot
 def cook():
     figure, ax = axes()
     data = read("cook")

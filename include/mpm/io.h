@@ -67,9 +67,9 @@ MPM_API mpm_status mpm_state_save_to(const mpm_stepper *stepper, mpm_write_fn wr
  * not be read. */
 MPM_API mpm_status mpm_state_load_file(mpm_stepper *stepper, const char *path);
 
-/** Gives a hash of time, step, every field of every set and the pose of every obstacle. It does not depend on
- * library order, on threads or on optional fields that are not in use: states that are equal by id have equal
- * hashes. */
+/** Gives a hash of time, step, every field of every set, the pose of every obstacle and every marker of
+ * surfaces. It does not depend on library order, on threads or on optional fields that are not in use: states
+ * that are equal by id have equal hashes. */
 MPM_API mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash);
 
 /** Writes a set as VTK poly data (.vtp, appended raw): points in order of ascending id, and count named

@@ -106,5 +106,6 @@
 #include <mpm/operator.h>
 #include <mpm/particles.h>
 #include <mpm/stepper.h>
+#include <mpm/surface.h>
 
 #endif

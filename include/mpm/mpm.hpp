@@ -11,7 +11,7 @@
  *
  * @par Lifetimes
  * Wrappers move and do not copy. Each shares ownership of what it was made with: a grid keeps its context, a
- * set its grid and its material, a stepper its grid, its sets and its obstacles, a view what it looks into.
+ * set its grid and its material, a stepper its grid, its sets, its obstacles and surfaces, a view what it looks into.
  * Wrappers may be destroyed in any order; a C object is destroyed with the last that needs it. An object that
  * was handed to C code by handle() and is in use there outlives its wrapper and is then leaked, not freed
  * under the user.
@@ -36,6 +36,7 @@
 #include <mpm/obstacle.hpp>
 #include <mpm/particles.hpp>
 #include <mpm/stepper.hpp>
+#include <mpm/surface.hpp>
 #include <mpm/mpm.h>
 #include <mpm/types.hpp>
 #include <mpm/view.hpp>

@@ -132,8 +132,8 @@ typedef struct mpm_step_info {
   double residual;       /**< last relative residual of the Newton iteration; 0 for explicit schemes */
   double kinetic_energy; /**< sum m v.v / 2 */
   double strain_energy;  /**< sum energy * initial_volume; NaN when a law has none */
-  /** Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed
-   * nodal velocities and prescribed particles. */
+  /** Work during the step of gravity, acceleration and force callbacks, applied_force, surfaces, node hooks,
+   * prescribed nodal velocities and prescribed particles. */
   double external_work;
   /** (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain
    * energy is. */

@@ -11,8 +11,8 @@
 
 namespace mpm {
 
-/** A stepper: see stepper.h. It keeps its sets and obstacles alive until they are removed or it is
- * destroyed. */
+/** A stepper: see stepper.h. It keeps its sets, obstacles and surfaces alive until they are removed or it
+ * is destroyed. */
 class stepper : public wrapper<detail::stepper_core> {
 public:
   /** Makes a stepper: see mpm_stepper_create(). */
@@ -45,6 +45,18 @@ public:
     detail::stepper_core &c = core();
     check(mpm_stepper_remove_obstacle(c.handle, body.handle()));
     c.obstacles.erase(std::find(c.obstacles.begin(), c.obstacles.end(), body.shared()));
+  }
+  /** Puts a surface in: see mpm_stepper_add_surface(). */
+  void add(surface &markers) {
+    core().surfaces.reserve(core().surfaces.size() + 1);
+    check(mpm_stepper_add_surface(core().handle, markers.handle()));
+    core().surfaces.push_back(markers.shared());
+  }
+  /** Takes a surface out: see mpm_stepper_remove_surface(). */
+  void remove(surface &markers) {
+    detail::stepper_core &c = core();
+    check(mpm_stepper_remove_surface(c.handle, markers.handle()));
+    c.surfaces.erase(std::find(c.surfaces.begin(), c.surfaces.end(), markers.shared()));
   }
   /** Replaces the options: see mpm_stepper_configure(). */
   void configure(const mpm_stepper_desc &desc) {

@@ -7,6 +7,7 @@
 
 #include <mpm/linear_system.hpp>
 #include <mpm/obstacle.hpp>
+#include <mpm/surface.hpp>
 #include <mpm/particles.hpp>
 #include <mpm/stepper.h>
 
@@ -52,7 +53,7 @@ using progress_callback = callback<const mpm_step_info &>;
 
 namespace detail {
 
-/** The stepper of C with its grid, its sets, its obstacles and the host's functions. */
+/** The stepper of C with its grid, its sets, obstacles and surfaces, and the host's functions. */
 struct stepper_core {
   /** A function where C finds it, as its user pointer. */
   template <class F> struct slot {
@@ -69,6 +70,7 @@ struct stepper_core {
   std::shared_ptr<grid_core> grid;                           /**< outlives the stepper */
   std::vector<std::shared_ptr<particles_core>> sets;         /**< outlive the stepper, or are removed */
   std::vector<std::shared_ptr<obstacle_core>> obstacles;     /**< outlive the stepper, or are removed */
+  std::vector<std::shared_ptr<surface_core>> surfaces;       /**< outlive the stepper, or are removed */
   std::vector<motion> motions;                               /**< see stepper::set_motion() */
   std::unique_ptr<slot<particle_callback>> acceleration;     /**< see stepper::set_acceleration() */
   std::unique_ptr<slot<particle_callback>> force;            /**< see stepper::set_force() */

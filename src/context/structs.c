@@ -24,6 +24,8 @@
   X(mpm_contact_batch, pressure, 96)                                                                         \
   X(mpm_distance_batch, velocity, 64)                                                                        \
   X(mpm_obstacle_desc, upper, 296)                                                                           \
+  X(mpm_surface_desc, max_spacing, 72)                                                                       \
+  X(mpm_marker_batch, velocity, 88)                                                                          \
   X(mpm_particle_batch, lookup, 104)                                                                         \
   X(mpm_node_batch, mass, 72)                                                                                \
   X(mpm_advance_desc, max_steps, 56)                                                                         \

@@ -16,7 +16,7 @@
 #define MPMI_BLOCK_EDGE(dim) ((dim) == 1 ? 64 : (dim) == 2 ? 16 : 6)
 enum { MPMI_RING = 1 };
 
-enum { MPMI_MAX_NEIGHBOURS = 27, MPMI_NO_BLOCK = -1 };
+enum { MPMI_MAX_NEIGHBOURS = 27, MPMI_NO_BLOCK = -1, MPMI_MAX_BODIES = 4096 };
 
 /* A box of nodes in a block or in a tile: low <= place < high, by axis; empty where low >= high. */
 typedef struct mpmi_node_box {

@@ -146,8 +146,9 @@ static mpm_status sum_internal(mpmi_balance *balance, const mpmi_pass *pass) {
                                                           .calls_host = mpmi_has_host_law(balance->layout),
                                                           .gathers = 1});
   if (!status) status = mpmi_step_failure(balance->step);
-  if (!status) mpmi_unknowns_fold(balance, &balance->newton->force, balance->newton->vector[MPMI_INTERNAL]);
-  return status;
+  if (status) return status;
+  mpmi_unknowns_fold(balance, &balance->newton->force, balance->newton->vector[MPMI_INTERNAL]);
+  return mpmi_surface_loads_add(balance);
 }
 
 /* Where pressures are averaged, forces need the stress of all particles of a cell: they get a pass of their
@@ -232,5 +233,5 @@ mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
   newton->matrix.symmetric = 1;
   for (int32_t k = 0; k < tasks; ++k) newton->matrix.symmetric &= newton->work[k].symmetric;
   if (remedy) mpmi_locking_stiffness_end(balance);
-  return MPM_OK;
+  return mpmi_surface_loads_stiffen(balance);
 }

@@ -9,6 +9,7 @@
  *   assembly.c             forces and stiffness of all particles
  *   particle_stiffness.c   what one batch of particles adds to them
  *   locking_stiffness.c    what the remedy against volumetric locking adds to the stiffness
+ *   surface_loads.c        forces of surfaces, and the stiffness of those that follow them
  *   condense.c             rows that move with others leave the system
  *   active_set.c           contact: which touches of bodies are closed
  *   contact_stiffness.c    their forces, and what they add to the matrix
@@ -296,6 +297,14 @@ void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *w
                                 int64_t p, int32_t cell_place, const mpmi_locking_particle *of);
 /* Adds to the matrix what couples the particles of each cell. */
 void mpmi_locking_stiffness_end(mpmi_balance *balance);
+
+/* ---- surface_loads.c --------------------------------------------------------------------------------- */
+/* Finds the nodes around the markers of surfaces. */
+mpm_status mpmi_surface_loads_find(mpmi_balance *balance);
+/* Takes the forces of surfaces, on their areas by the nodes' displacements, off the internal forces. */
+mpm_status mpmi_surface_loads_add(mpmi_balance *balance);
+/* Adds to the matrix how these forces turn and grow with the areas. */
+mpm_status mpmi_surface_loads_stiffen(mpmi_balance *balance);
 
 /* ---- newton.c ---------------------------------------------------------------------------------------- */
 /* Finds the displacements of the step, in vector[MPMI_U]; forces and stress are then those of them. */

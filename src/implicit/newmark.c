@@ -54,6 +54,7 @@ static mpm_status find_nodes(mpmi_balance *balance, double *clock) {
 
 static mpm_status find_external(mpmi_balance *balance, double t, double *clock) {
   mpm_status status = mpmi_forces_stage(balance->step, t);
+  if (!status) status = mpmi_surfaces_load(balance->step, t);
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
   if (!status) status = mpmi_external_forces(balance);
   mpmi_lap(balance->step, MPMI_TIME_P2G, clock);
@@ -154,7 +155,7 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
   if (status || (status = find_nodes(balance, clock)) ||
       (status = find_external(balance, at_start ? balance->step->t : balance->step->t + dt, clock)) ||
-      (status = mpmi_unknowns_find(balance)))
+      (status = mpmi_unknowns_find(balance)) || (status = mpmi_surface_loads_find(balance)))
     return status;
   fold_means(balance, newton->vector[MPMI_V0]);
   status = mpmi_active_set_find(balance);
@@ -278,6 +279,7 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   status = mpmi_record_reactions(balance);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);
   if (!status) status = mpmi_g2p_move(balance->step, balance->nodes, &balance->nodes->solved);
+  if (!status) status = mpmi_surfaces_move(balance->step, &balance->nodes->solved);
   if (!status) show_velocities(balance);
   mpmi_lap(balance->step, MPMI_TIME_G2P, &clock);
   return status;

@@ -118,6 +118,17 @@ static uint64_t hash_pose(uint64_t h, const mpmi_pose *pose) {
   return h;
 }
 
+static uint64_t hash_markers(uint64_t h, const mpmi_markers *markers) {
+  h = absorb(h, (uint64_t)markers->count);
+  for (int64_t i = 0; i < markers->count; ++i) {
+    const mpmi_marker *m = &markers->at[i];
+    h = absorb(h, (uint64_t)m->id);
+    for (int32_t k = 0; k < 3; ++k)
+      h = absorb(absorb(absorb(h, bits(m->position[k])), bits(m->edge[0][k])), bits(m->edge[1][k]));
+  }
+  return h;
+}
+
 mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
   if (!hash) return mpmi_fail(stepper->context, MPM_E_ARG, "hash is NULL");
@@ -132,6 +143,8 @@ mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
   }
   const mpmi_obstacles *obstacles = &stepper->settings.obstacles;
   for (int64_t i = 0; i < obstacles->count; ++i) h = hash_pose(h, &obstacles->obstacle[i]->pose);
+  const mpmi_surfaces *surfaces = &stepper->settings.surfaces;
+  for (int64_t i = 0; i < surfaces->count; ++i) h = hash_markers(h, &surfaces->surface[i]->now);
   *hash = mpmi_avalanche(h);
   return MPM_OK;
 }

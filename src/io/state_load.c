@@ -14,6 +14,7 @@ typedef struct loading {
   mpmi_contact_rules rules;
   mpmi_pair_records pairs;
   mpmi_state_obstacle *obstacle; /* [obstacles] */
+  mpmi_markers *markers;         /* [surfaces] */
   int64_t slots;                 /* slots of all sets */
 } loading;
 
@@ -152,6 +153,11 @@ static mpm_status read_state(loading *l) {
   mpm_status status = a->status;
   if (!status && l->format > 2) status = mpmi_state_read_obstacles(a, s, l->obstacle);
   if (!status && l->format > 2) status = mpmi_state_read_contact(a, s, &l->rules, &l->pairs);
+  if (!status && l->format > 2) status = mpmi_state_read_surfaces(a, s, l->markers);
+  if (!status && l->format <= 2 && s->settings.surfaces.count)
+    status = mpmi_fail(s->context, MPM_E_FORMAT,
+                       "the state is of an unlike setup: number of surfaces is 0 there, %lld here",
+                       (long long)s->settings.surfaces.count);
   if (!status && l->format <= 2 && s->settings.obstacles.count)
     status = mpmi_fail(s->context, MPM_E_FORMAT,
                        "the state is of an unlike setup: number of obstacles is 0 there, %lld here",
@@ -237,6 +243,7 @@ static void take_over(loading *l) {
     s->settings.contact = l->rules;
     l->rules = rules;
     mpmi_state_take_obstacles(s, l->obstacle);
+    mpmi_state_take_surfaces(s, l->markers);
   }
   s->history.pairs = l->pairs;
   l->pairs = pairs;
@@ -257,8 +264,11 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   l.set = mpmi_alloc_zeroed(s->context, set_bytes);
   if (!l.set) return MPM_E_NOMEM;
   const int64_t obstacles = s->settings.obstacles.count;
+  const int64_t surfaces = s->settings.surfaces.count;
   l.obstacle = mpmi_alloc_zeroed(s->context, mpmi_bytes(obstacles, sizeof *l.obstacle));
-  if (!l.obstacle) {
+  if (l.obstacle) l.markers = mpmi_alloc_zeroed(s->context, mpmi_bytes(surfaces, sizeof *l.markers));
+  if (!l.markers) {
+    MPMI_FREE_ARRAY(s->context, l.obstacle, obstacles);
     mpmi_free(s->context, l.set, set_bytes);
     return MPM_E_NOMEM;
   }
@@ -273,6 +283,8 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   for (int32_t m = 0; m < s->layout.member_count; ++m)
     for (int32_t f = 0; f < l.set[m].fresh.field_count; ++f) mpmi_field_make_absent(&l.set[m].fresh, f);
   mpmi_contact_rules_free(&l.rules, s->context);
+  for (int64_t i = 0; i < surfaces; ++i) mpmi_markers_free(s->context, &l.markers[i]);
+  MPMI_FREE_ARRAY(s->context, l.markers, surfaces);
   MPMI_FREE_ARRAY(s->context, l.obstacle, obstacles);
   MPMI_FREE_ARRAY(s->context, l.pairs.record, l.pairs.capacity);
   mpmi_free(s->context, l.set, set_bytes);

@@ -117,6 +117,7 @@ void mpmi_state_write(mpmi_archive *a, const mpm_stepper *s) {
   write_numbers(a, s);
   mpmi_state_write_obstacles(a, s);
   mpmi_state_write_contact(a, s);
+  mpmi_state_write_surfaces(a, s);
   if (mpmi_state_is_sorted(s)) mpmi_state_write_blocks(a, s);
   for (int32_t m = 0; m < s->layout.member_count; ++m) write_fields(a, s->layout.member[m].set);
 }

@@ -2,9 +2,7 @@
 #ifndef MPMI_CONTACT_RULES_H
 #define MPMI_CONTACT_RULES_H
 
-#include "context/context.h"
-
-enum { MPMI_MAX_BODIES = 4096 };
+#include "grid/blocks.h"
 
 /* The lower body comes first, and direction is that from it; MPM_BODY_ANY, which is lower than all, stands
  * for any other. */

@@ -9,6 +9,7 @@
 #include "material/deformation.h"
 #include "material/dilation.h"
 #include "obstacle/obstacle.h"
+#include "surface/surface.h"
 #include "transfer/kernels.h"
 
 /* How the prescribed particles of a set move; fn NULL: they keep their velocity. */
@@ -39,6 +40,7 @@ typedef struct mpmi_settings {
   void *progress_user;
   mpmi_contact_rules contact; /* how bodies meet */
   mpmi_obstacles obstacles;
+  mpmi_surfaces surfaces;
   mpm_friction_fn friction;
   void *friction_user;
   mpm_solve_fn solver;

@@ -71,7 +71,7 @@ struct mpmi_view_record {
   mpm_status (*release)(mpmi_view_record *record, mpm_view *view);
 };
 
-/* A set, or an obstacle, asks these questions of the stepper that holds it. */
+/* A set, an obstacle or a surface asks these questions of the stepper that holds it. */
 typedef struct mpmi_owner {
   int32_t (*in_step)(const mpm_stepper *stepper); /* is a step under way, whole or staged? */
   double (*time)(const mpm_stepper *stepper);     /* the present time */

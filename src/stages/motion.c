@@ -1,6 +1,7 @@
 /* Motion: velocity and position of particles from what a batch has gathered, by the kernels of
  * transfer/move.c (MPoint theory eqs 34 to 37). */
 #include "stages/batch.h"
+#include "stages/stages.h"
 #include "boundary/prescribed.h"
 #include "context/reduce.h"
 #include "layout/reached.h"
@@ -51,33 +52,31 @@ void mpmi_motion_enter(mpmi_batch *b) {
 /* A particle may cross this many periods in one step: beyond them its position is rounding. */
 #define MOST_TURNS 2147483648.0
 
-/* A particle no further beyond a wall than this, in cells, stands on it: the rest is rounding. */
+/* What is no further beyond a wall than this, in cells, stands on it: the rest is rounding. */
 #define WALL_ROUNDING 1e-12
+/* What is further beyond a friction wall than this comes from a step that was too large. */
+#define MOST_OVERLAP 0.5
 
-static int32_t is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
+int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
   const mpm_grid *grid = settings->grid;
   const int32_t above = *x > grid->upper[k];
   const double face = above ? grid->upper[k] : grid->desc.origin[k];
+  const double most = mpmi_is_friction_plane(settings, 2 * k + above) ? MOST_OVERLAP : WALL_ROUNDING;
   if (!mpmi_is_solid(&settings->wall[2 * k + above])) return 0;
-  if (!(fabs(*x - face) <= WALL_ROUNDING * grid->desc.spacing[k])) return 0;
+  if (!(fabs(*x - face) <= most * grid->desc.spacing[k])) return 0;
   *x = face;
   return 1;
 }
-
-/* A particle further beyond a friction wall than this, in cells, comes from a step that was too large. */
-#define MOST_OVERLAP 0.5
 
 /* Contact acts on nodes, and a corner that is sharper than a cell may come through between them. The plane of a
  * friction wall then stops the particle itself, without friction, and takes the momentum that it stops. */
 static int32_t stop_at_wall(mpmi_batch *b, int64_t slot, int32_t k, double *x) {
   const mpmi_settings *settings = b->step->settings;
-  const mpm_grid *grid = settings->grid;
-  const int32_t above = *x > grid->upper[k];
-  const double face = above ? grid->upper[k] : grid->desc.origin[k];
-  if (!mpmi_is_friction_plane(settings, 2 * k + above)) return 0;
-  if (!(fabs(*x - face) <= MOST_OVERLAP * grid->desc.spacing[k])) return 0;
+  const int32_t above = *x > settings->grid->upper[k];
+  const double came = *x;
+  if (!mpmi_is_on_wall(settings, k, x)) return 0;
+  if (fabs(came - *x) <= WALL_ROUNDING * settings->grid->desc.spacing[k]) return 1;
   if (b->step->layout->member[b->m].prescribed && mpmi_is_prescribed(b->set, slot, k)) return 0;
-  *x = face;
   double *v = mpmi_component_row(b->set, MPMI_VELOCITY, 1, k) + slot;
   if (above ? *v <= 0.0 : *v >= 0.0) return 1;
   mpmi_stops *stops = &b->step->work->block_stops[b->block];
@@ -142,7 +141,7 @@ static void look_outside(mpmi_batch *b) {
         leaves = 1;
       else if (grid->desc.periodic[k]
                    ? !wrap(grid, k, x, mpmi_i64(b->set, MPMI_IMAGE, 1) + k * b->set->ld + slot)
-                   : !is_on_wall(settings, k, x) && !stop_at_wall(b, slot, k, x))
+                   : !stop_at_wall(b, slot, k, x))
         closed = face;
     }
     if (closed >= 0)

@@ -122,5 +122,6 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
                           : MPM_OK;
   if (status) return status;
   status = mpmi_accumulate(step, &(mpmi_accumulation){.to = job.to, .give = scatter_block, .user = &job});
-  return status ? status : mpmi_step_failure(step);
+  if (!status) status = mpmi_step_failure(step);
+  return status || !projection->forces ? status : mpmi_surfaces_give(step, job.to);
 }

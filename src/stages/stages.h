@@ -75,7 +75,30 @@ int32_t mpmi_has_nodal_stress(const mpmi_settings *settings, const mpmi_layout *
  * copy of their stress and dilation ratio. The nodes' sums are made anew. */
 mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy);
 
+/* ---- surfaces.c -------------------------------------------------------------------------------------- */
+/* Asks the host for tractions at time t, and finds the forces of all markers on their present areas. */
+mpm_status mpmi_surfaces_load(mpmi_step *step, double t);
+/* Finds the nodes around all markers from their masses, which are not folded. */
+mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses);
+/* Does the same, and adds the forces to the sums that particles have made there. */
+mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
+/* Stretches all markers with the velocities of these nodes, from what they were at the start of the step, and
+ * finds the forces on their new areas. */
+mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from);
+/* Finds the increment of the deformation gradient at a marker. */
+void mpmi_marker_deformation(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *from, int64_t marker,
+                             double F[3][3]);
+/* Finds all forces per present area in fixed directions on a marker. */
+void mpmi_marker_tractions(const mpm_surface *surface, int64_t marker, double *traction);
+/* Inverts a matrix whose unused axes are those of the identity; returns its determinant. */
+double mpmi_marker_invert(double M[3][3], double inverse[3][3]);
+/* Moves all markers with the velocities of these nodes, and splits those that have become too long. */
+mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
+
 /* ---- motion.c ---------------------------------------------------------------------------------------- */
+/* Returns 1 when a position beyond a face on axis k stands on a wall, and puts it there: by rounding, or where
+ * it came through between the nodes of a friction wall. */
+int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x);
 /* Counts what friction walls did to particles themselves in with the step's impulses and dissipation. */
 void mpmi_stops_report(mpmi_step *step);
 

@@ -90,6 +90,7 @@ static void commit_history(mpm_stepper *s) {
   add_to_totals(s, work);
   mpmi_pairs_commit(&history->pairs);
   mpmi_obstacles_commit(&s->settings.obstacles);
+  mpmi_surfaces_commit(&s->settings.surfaces);
   history->reaction_dt = step->velocity_dt;
   history->previous_dt = s->settings.desc.staggered ? step->dt : 0.0;
   history->has_reactions = 1;

@@ -35,6 +35,7 @@ static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock
 mpm_status mpmi_explicit_begin(mpmi_step *step, mpmi_nodes *nodes) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_forces_stage(step, step->t);
+  if (!status) status = mpmi_surfaces_load(step, step->t);
   if (!status) status = mpmi_prescribed_stage(step);
   mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
   if (!status && step->settings->desc.scheme == MPM_USF) status = deform_first(step, nodes, &clock);
@@ -66,6 +67,8 @@ mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
     status = project(step, nodes, MPMI_PROJECT_MOVED, &clock);
     if (!status) status = deform(step, nodes, &clock);
   }
+  if (!status)
+    status = mpmi_surfaces_move(step, mpmi_moves_last(settings) ? &nodes->projected : &nodes->solved);
   mpmi_move_samples(step, MPMI_TIME_G2P);
   return status;
 }

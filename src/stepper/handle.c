@@ -12,6 +12,7 @@ static void free_parts(mpm_stepper *s) {
   MPMI_FREE_ARRAY(c, s->active, s->active_capacity);
   mpmi_contact_rules_free(&s->settings.contact, c);
   mpmi_obstacles_release(s);
+  mpmi_surfaces_release(s);
   MPMI_FREE_ARRAY(c, s->settings.motion, s->settings.motion_capacity);
   MPMI_FREE_ARRAY(c, s->history.pairs.record, s->history.pairs.capacity);
   MPMI_FREE_ARRAY(c, s->history.reaction, s->history.reaction_capacity);

@@ -69,7 +69,7 @@ static inline mpm_status mpmi_stepper_idle(const mpm_stepper *s) {
   return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
 }
 
-/* What sets and obstacles ask of the stepper that has them (reports.c). */
+/* What sets, obstacles and surfaces ask of the stepper that has them (reports.c). */
 extern const mpmi_owner mpmi_stepper_owns;
 
 /* ---- description.c ----------------------------------------------------------------------------------- */
@@ -99,6 +99,14 @@ void mpmi_obstacles_release(mpm_stepper *s);
 mpm_status mpmi_obstacles_begin(mpmi_step *step, mpmi_contact_nodes *contact);
 mpm_status mpmi_obstacles_end(const mpmi_step *step, const mpmi_contact_nodes *contact);
 void mpmi_obstacles_commit(const mpmi_obstacles *list);
+
+/* ---- surfaces.c -------------------------------------------------------------------------------------- */
+/* Lets all surfaces go. */
+void mpmi_surfaces_release(mpm_stepper *s);
+/* Makes room for a step, and copies of the markers for it to work on; makes these the state, which cannot
+ * fail. */
+mpm_status mpmi_surfaces_prepare(const mpmi_settings *settings);
+void mpmi_surfaces_commit(const mpmi_surfaces *list);
 
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */

@@ -136,6 +136,14 @@ static mpm_status host_distance(void *user, const mpm_distance_batch *b) {
   return 0;
 }
 #endif
+#ifdef MPM_SURFACE_H /* not in 0.1.0 */
+static mpm_status host_traction(void *user, const mpm_marker_batch *b, double *add) {
+  EXPECT_AT_LEAST(b, velocity);
+  *(int64_t *)user += b->n;
+  for (int64_t i = 0; i < b->n; ++i) add[i] += 0.0 * b->area[i];
+  return 0;
+}
+#endif
 static mpm_status host_progress(void *user, const mpm_step_info *info) {
   EXPECT_AT_LEAST(info, angular_momentum);
   ++*(int64_t *)user;
@@ -296,6 +304,18 @@ int main(int argc, char **argv) {
   OK(mpm_obstacle_create(context, far, &obstacle));
   OK(mpm_stepper_add_obstacle(stepper, obstacle));
 #endif
+#ifdef MPM_SURFACE_H
+  mpm_surface_desc *idle = MAKE(mpm_surface_desc);
+  mpm_surface *surface;
+  const double inside[3] = {0.5, 0.5, 0.5};
+  int64_t markers = 0;
+  OK(mpm_surface_desc_init(idle, sizeof *idle));
+  APPEND(mpm_surface_desc, idle);
+  OK(mpm_surface_create(context, grid, idle, &surface));
+  OK(mpm_surface_set_traction(surface, host_traction, &markers));
+  OK(mpm_surface_add(surface, 1, inside, NULL, NULL));
+  OK(mpm_stepper_add_surface(stepper, surface));
+#endif
   mpm_advance_desc *until = MAKE(mpm_advance_desc);
   double dt;
   uint64_t hash;
@@ -319,6 +339,11 @@ int main(int argc, char **argv) {
   OK(mpm_grid_map(stepper, 0, "reaction", MPM_READ, view));
   show_view("reaction", view);
 
+#ifdef MPM_SURFACE_H
+  if (!markers) return 1;
+  OK(mpm_stepper_remove_surface(stepper, surface));
+  OK(mpm_surface_destroy(surface));
+#endif
 #ifdef MPM_OBSTACLE_H
   mpm_contact_info *touch = MAKE(mpm_contact_info);
   OK(mpm_obstacle_contact_info(obstacle, MPM_BODY_ANY, touch));

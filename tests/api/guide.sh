@@ -27,7 +27,7 @@ awk -v out="$scratch" '
 [ -s "$scratch/program.c" ] || { echo "docs/guide.md has no program"; exit 1; }
 {
   printf '#include <math.h>\n#include <mpm/mpm.h>\n#include <stdio.h>\n#include <stdlib.h>\n'
-  printf 'static mpm_context *ctx;\nstatic mpm_material *steel;\nstatic mpm_particles *block, *platen;\nstatic mpm_stepper *stepper;\n'
+  printf 'static mpm_context *ctx;\nstatic mpm_grid *grid;\nstatic mpm_material *steel;\nstatic mpm_particles *block, *platen;\nstatic mpm_stepper *stepper;\n'
   printf 'static mpm_step_info now;\nstatic double dt, speed;\n'
   cat "$scratch/pieces.c"
 } > "$scratch/all.c"

@@ -14,7 +14,7 @@ template <class T>
 constexpr bool moves_only = std::is_nothrow_move_constructible_v<T> &&std::is_nothrow_move_assignable_v<T> &&
                             !std::is_copy_constructible_v<T> && !std::is_copy_assignable_v<T>;
 static_assert(moves_only<mpm::context> && moves_only<mpm::grid> && moves_only<mpm::material> &&
-              moves_only<mpm::particles> && moves_only<mpm::obstacle> && moves_only<mpm::stepper> &&
+              moves_only<mpm::particles> && moves_only<mpm::obstacle> && moves_only<mpm::surface> && moves_only<mpm::stepper> &&
               moves_only<mpm::series> && moves_only<mpm::view<double>> && moves_only<mpm::staged_step>);
 
 /* Memory of the library goes through these, so that a leak is seen. */
@@ -187,6 +187,7 @@ int main(int argc, char **argv) {
     test_callbacks();
     test_steps();
     test_obstacles();
+    test_surfaces();
   } catch (const std::exception &e) {
     std::printf("wrapper.cpp:0:E: %s\n", e.what());
     return 1;

@@ -72,5 +72,6 @@ void test_fields(const std::string &scratch);
 void test_callbacks();
 void test_steps();
 void test_obstacles();
+void test_surfaces();
 
 #endif

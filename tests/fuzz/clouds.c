@@ -7,7 +7,7 @@
 #include "fuzz.h"
 #include "stepper/stepper.h"
 
-enum { SETS = 3, OBSTACLES = 3, MOST_ACTIONS = 24, MOST_PARTICLES = 200 };
+enum { SETS = 3, OBSTACLES = 3, SURFACES = 2, MOST_ACTIONS = 24, MOST_PARTICLES = 200 };
 
 typedef struct cloud {
   fuzz_input in;
@@ -20,6 +20,7 @@ typedef struct cloud {
   mpm_particles *set[SETS];
   mpm_stepper *stepper;
   mpm_obstacle *obstacle[OBSTACLES]; /* some NULL */
+  mpm_surface *surface[SURFACES];    /* the same */
   int64_t count, removed;            /* of all sets; through open walls */
   double mass, t;
   int32_t callback_status;
@@ -263,6 +264,76 @@ static void draw_obstacle(cloud *c) {
   if (!fuzz_status(c->context, mpm_stepper_add_obstacle(c->stepper, *o))) return;
   MUST(!mpm_obstacle_destroy(*o));
   *o = NULL;
+}
+
+static mpm_status drag(void *user, const mpm_marker_batch *b, double *add) {
+  const cloud *c = user;
+  for (int64_t i = 0; i < b->n * b->dim; ++i) add[i] -= 10.0 * b->velocity[i];
+  return c->callback_status;
+}
+
+/* Adds to a surface, changes it, or drops it. */
+static void change_surface(cloud *c, mpm_surface **s, const mpm_surface_desc *d) {
+  double x[3 * 4], a[3 * 4], *out;
+  const int64_t corner[6] = {0, 1, 2, 2, 1, 3}, id = fuzz_below(&c->in, 8);
+  for (int32_t k = 0; k < 12; ++k) {
+    x[k] = fuzz_between(&c->in, -0.1, 1.1);
+    a[k] = fuzz_between(&c->in, -0.2, 0.2);
+  }
+  double step = fuzz_between(&c->in, -0.01, 0.3);
+  if (step > 0.0 && step < 0.02) step = 0.02; /* not millions of markers */
+  switch (fuzz_below(&c->in, 8)) {
+  case 0:
+    fuzz_status(c->context, mpm_surface_add_polyline(*s, 4, x, fuzz_below(&c->in, 2), step, NULL, NULL));
+    break;
+  case 1:
+    fuzz_status(c->context, mpm_surface_add_triangles(*s, 4, x, 2, corner, step, NULL, NULL));
+    break;
+  case 2:
+    fuzz_status(c->context, mpm_surface_refine(*s, fuzz_between(&c->in, 0.02, 0.3), NULL));
+    break;
+  case 3:
+    fuzz_status(c->context, mpm_surface_remove(*s, 1, &id));
+    break;
+  case 4:
+    fuzz_status(c->context, mpm_surface_set(*s, "traction", MPM_F64, c->g.dim, 1, &id, a));
+    break;
+  case 5:
+    fuzz_status(c->context, mpm_surface_configure(*s, d));
+    break;
+  case 6:
+    if (fuzz_status(c->context, mpm_stepper_remove_surface(c->stepper, *s))) break;
+    MUST(!mpm_surface_destroy(*s));
+    *s = NULL;
+    return;
+  default:
+    fuzz_status(c->context, mpm_surface_add(*s, 4, x, a, NULL));
+  }
+  const int64_t n = mpm_surface_count(*s) * c->g.dim;
+  MUST((out = calloc((size_t)n + 1, sizeof *out)));
+  MUST(!mpm_surface_get(*s, "area", MPM_F64, c->g.dim, mpm_surface_count(*s), NULL, out));
+  for (int64_t i = 0; i < n; ++i) MUST(isfinite(out[i]));
+  free(out);
+}
+
+static void draw_surface(cloud *c) {
+  mpm_surface **s = &c->surface[fuzz_below(&c->in, SURFACES)];
+  mpm_surface_desc d;
+  MUST(!mpm_surface_desc_init(&d, sizeof d));
+  d.pressure = fuzz_between(&c->in, -50.0, 50.0);
+  d.traction[0] = fuzz_between(&c->in, -10.0, 10.0);
+  d.dead_traction[1] = fuzz_between(&c->in, -10.0, 10.0);
+  d.max_spacing = fuzz_below(&c->in, 2) ? fuzz_between(&c->in, -0.01, 0.3) : 0.0;
+  d.body = fuzz_below(&c->in, 4) ? 0 : fuzz_below(&c->in, 3) - 1;
+  if (*s) {
+    change_surface(c, s, &d);
+    return;
+  }
+  if (fuzz_status(c->context, mpm_surface_create(c->context, c->grid, &d, s))) return;
+  if (fuzz_below(&c->in, 2)) MUST(!mpm_surface_set_traction(*s, drag, c));
+  if (!fuzz_status(c->context, mpm_stepper_add_surface(c->stepper, *s))) return;
+  MUST(!mpm_surface_destroy(*s));
+  *s = NULL;
 }
 
 static void open_stepper(cloud *c) {
@@ -689,6 +760,10 @@ static void act(cloud *c) {
   case 23:
     write_streams(c);
     break;
+  case 24:
+  case 25:
+    draw_surface(c);
+    break;
   default:
     step(c);
   }
@@ -698,6 +773,7 @@ static void act(cloud *c) {
 static void close_cloud(cloud *c) {
   MUST(!mpm_stepper_destroy(c->stepper));
   for (int32_t i = 0; i < OBSTACLES; ++i) MUST(!mpm_obstacle_destroy(c->obstacle[i]));
+  for (int32_t i = 0; i < SURFACES; ++i) MUST(!mpm_surface_destroy(c->surface[i]));
   for (int32_t m = 0; m < c->sets; ++m) MUST(!mpm_particles_destroy(c->set[m]));
   for (int32_t m = 0; m < c->sets; ++m) MUST(!mpm_material_destroy(c->material[m]));
   MUST(!mpm_grid_destroy(c->grid));

@@ -182,6 +182,7 @@ enum {
   PROJECTED,
   DAMPED,
   REMEDY_OF_SOIL,
+  SURFACE,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -228,6 +229,7 @@ static const option options[OPTIONS] = {
     [PROJECTED] = {"projected positions", 1, 0, 0},
     [DAMPED] = {"nodes damped, slip walls", 1, 1, 0},
     [REMEDY_OF_SOIL] = {"locking remedy, soil and metal", 1, 1, 1},
+    [SURFACE] = {"surface, saved and loaded", 1, 1, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -266,12 +268,14 @@ static void apply(scene *is, int32_t o) {
       [CONTACT] = WITH_BODIES,
       [CONTACT_PERIODIC] = WITH_BODIES | WITH_FORCE,
       [OBSTACLES] = WITH_BODIES | WITH_OBSTACLES,
+      [SURFACE] = WITH_SURFACE,
   };
   static const int32_t story[OPTIONS] = {[STAGED_VELOCITY] = STORY_STAGED_VELOCITY,
                                          [STAGED_FORCE] = STORY_STAGED_FORCE,
                                          [SAVED] = STORY_SAVED,
                                          [CONTACT] = STORY_SAVED,
                                          [OBSTACLES] = STORY_SAVED,
+                                         [SURFACE] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};

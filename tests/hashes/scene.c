@@ -266,6 +266,29 @@ static void add_obstacles(world *w) {
   }
 }
 
+/* Markers on the upper end of the body along the last axis, where nodes without mass are near. */
+static void add_surface(world *w, int32_t empty) {
+  const scene *is = w->is;
+  const int32_t up = is->dim - 1;
+  int64_t first[3], count[3], cells[3];
+  mpm_surface_desc d;
+  extent(is, first, count, cells);
+  must(w, mpm_surface_desc_init(&d, sizeof d));
+  d.pressure = 2e4;
+  d.traction[0] = 1e3;
+  d.dead_traction[up] = -1e3;
+  d.max_spacing = 0.6 * spacing[0];
+  must(w, mpm_surface_create(w->context, w->grid, &d, &w->surface));
+  for (int32_t i = 0; i < 6 && !empty; ++i) {
+    double x[3], a[3] = {0.0, 0.0, 0.0};
+    for (int32_t c = 0; c < is->dim; ++c) x[c] = origin[c] + spacing[c] * ((double)first[c] + 0.5 + 0.15 * i);
+    x[up] = origin[up] + spacing[up] * ((double)(first[up] + count[up]) - 0.1);
+    a[up] = 0.5 * spacing[0];
+    must(w, mpm_surface_add(w->surface, 1, x, a, NULL));
+  }
+  must(w, mpm_stepper_add_surface(w->stepper, w->surface));
+}
+
 void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
   const mpm_grid_desc g = describe_grid(is);
   const mpm_stepper_desc s = describe_stepper(is);
@@ -298,6 +321,7 @@ void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
     must(w, mpm_stepper_set_contact(w->stepper, 0, 1, &contact));
   }
   if (is->with & WITH_OBSTACLES) add_obstacles(w);
+  if (is->with & WITH_SURFACE) add_surface(w, empty);
   for (int32_t face = 0; face < 2 * is->dim; ++face)
     if (!is->periodic[face / 2])
       must(w, mpm_stepper_set_wall(w->stepper, face, is->wall[face],
@@ -308,6 +332,7 @@ void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
 void close_world(world *w) {
   must(w, mpm_stepper_destroy(w->stepper));
   for (int32_t i = 0; i < 3; ++i) must(w, mpm_obstacle_destroy(w->obstacle[i]));
+  must(w, mpm_surface_destroy(w->surface));
   for (int32_t m = 0; m < 2; ++m) must(w, mpm_particles_destroy(w->set[m]));
   for (int32_t m = 0; m < 2; ++m) must(w, mpm_material_destroy(w->material[m]));
   must(w, mpm_grid_destroy(w->grid));

@@ -38,7 +38,8 @@ enum {
   WITH_KEPT = 512,        /* acceleration and velocity gradient are kept */
   WITH_SPARE_SIZE = 1024, /* GIMP: sizes as the library finds them */
   WITH_BODIES = 2048,     /* the sets stand side by side and rub against each other */
-  WITH_OBSTACLES = 4096   /* one of each motion: fixed, driven, free */
+  WITH_OBSTACLES = 4096,  /* one of each motion: fixed, driven, free */
+  WITH_SURFACE = 8192     /* markers at the upper end of the body, under loads of all kinds */
 };
 
 /* How it is stepped. */
@@ -72,6 +73,7 @@ typedef struct world {
   mpm_particles *set[2];
   mpm_stepper *stepper;
   mpm_obstacle *obstacle[3];
+  mpm_surface *surface;
   mpm_step_info info;
   double dt; /* of a middling step */
   uint64_t hash;

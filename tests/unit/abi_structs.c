@@ -176,7 +176,9 @@ START_TEST(table) {
                {"mpm_contact_info", 160, sizeof(mpm_contact_info)},
                {"mpm_contact_batch", 96, sizeof(mpm_contact_batch)},
                {"mpm_distance_batch", 64, sizeof(mpm_distance_batch)},
-               {"mpm_obstacle_desc", 296, sizeof(mpm_obstacle_desc)}};
+               {"mpm_obstacle_desc", 296, sizeof(mpm_obstacle_desc)},
+               {"mpm_surface_desc", 72, sizeof(mpm_surface_desc)},
+               {"mpm_marker_batch", 88, sizeof(mpm_marker_batch)}};
   const size_t count = sizeof known / sizeof *known;
   size_t found = 0;
   for (const mpmi_release *at = mpmi_releases; at->name; ++at) {
@@ -217,6 +219,7 @@ START_TEST(init_functions) {
     mpm_advance_desc advance;
     mpm_contact_desc contact;
     mpm_obstacle_desc obstacle;
+    mpm_surface_desc surface;
   } d;
 #define CHECK_INIT(name, at)                                                                                 \
   for (uint32_t bytes = 0; bytes < sizeof d; ++bytes) {                                                      \
@@ -235,6 +238,7 @@ START_TEST(init_functions) {
   CHECK_INIT(mpm_advance_desc, &d.advance);
   CHECK_INIT(mpm_contact_desc, &d.contact);
   CHECK_INIT(mpm_obstacle_desc, &d.obstacle);
+  CHECK_INIT(mpm_surface_desc, &d.surface);
 }
 END_TEST
 

@@ -13,7 +13,7 @@ static inline int64_t cut_words(uint8_t *state, int64_t at, int64_t words, int64
 }
 
 /* Takes out what format 2 does not have: projected positions, the energies of the affine part and of damping,
- * the sums over steps, bodies and obstacles. */
+ * the sums over steps, bodies, obstacles and surfaces. */
 static inline int64_t contents_of_format_2(const mpm_stepper *s, uint8_t *state, int64_t bytes) {
   enum {
     SUMS = offsetof(mpmi_state_numbers, sums) + offsetof(mpmi_sums, affine),
@@ -33,6 +33,7 @@ static inline int64_t contents_of_format_2(const mpm_stepper *s, uint8_t *state,
   mpmi_archive_begin(&contact, s->context, MPMI_MEASURE);
   mpmi_state_write_contact(&contact, s);
   mpmi_state_write_obstacles(&contact, s);
+  mpmi_state_write_surfaces(&contact, s);
   bytes = cut_words(state, at, contact.at / 8, bytes);
   const int64_t blocks = mpmi_state_is_sorted(s) ? mpmi_state_count_blocks(s) : 0;
   for (int64_t b = 0; b < blocks; ++b) bytes = cut_words(state, at += 3 * 8, 1, bytes);

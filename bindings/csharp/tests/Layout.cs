@@ -364,6 +364,36 @@ namespace Mpm {
       Compare("ObstacleDesc.upper", (byte*)it.upper - at, 272, 264);
     }
 
+    static void CheckSurfaceDesc() {
+      var it = new SurfaceDesc();
+      byte* at = (byte*)&it;
+      Compare("SurfaceDesc", sizeof(SurfaceDesc), 72, 72);
+      Compare("SurfaceDesc.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("SurfaceDesc.body", (byte*)&it.body - at, 4, 4);
+      Compare("SurfaceDesc.pressure", (byte*)&it.pressure - at, 8, 8);
+      Compare("SurfaceDesc.traction", (byte*)it.traction - at, 16, 16);
+      Compare("SurfaceDesc.dead_traction", (byte*)it.dead_traction - at, 40, 40);
+      Compare("SurfaceDesc.max_spacing", (byte*)&it.max_spacing - at, 64, 64);
+    }
+
+    static void CheckMarkerBatch() {
+      var it = new MarkerBatch();
+      byte* at = (byte*)&it;
+      Compare("MarkerBatch", sizeof(MarkerBatch), 88, 64);
+      Compare("MarkerBatch.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("MarkerBatch.dim", (byte*)&it.dim - at, 4, 4);
+      Compare("MarkerBatch.n", (byte*)&it.n - at, 8, 8);
+      Compare("MarkerBatch.ld", (byte*)&it.ld - at, 16, 16);
+      Compare("MarkerBatch.t", (byte*)&it.t - at, 24, 24);
+      Compare("MarkerBatch.dt", (byte*)&it.dt - at, 32, 32);
+      Compare("MarkerBatch.id", (byte*)&it.id - at, 40, 40);
+      Compare("MarkerBatch.position", (byte*)&it.position - at, 48, 44);
+      Compare("MarkerBatch.area", (byte*)&it.area - at, 56, 48);
+      Compare("MarkerBatch.reference_area", (byte*)&it.reference_area - at, 64, 52);
+      Compare("MarkerBatch.displacement", (byte*)&it.displacement - at, 72, 56);
+      Compare("MarkerBatch.velocity", (byte*)&it.velocity - at, 80, 60);
+    }
+
     public static int Check() {
       wrong = 0;
       CheckParam();
@@ -384,6 +414,8 @@ namespace Mpm {
       CheckContactBatch();
       CheckDistanceBatch();
       CheckObstacleDesc();
+      CheckSurfaceDesc();
+      CheckMarkerBatch();
       foreach (var method in typeof(Native).GetMethods())
         if (method.IsStatic) Marshal.Prelink(method);
       return wrong;

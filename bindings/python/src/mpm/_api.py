@@ -802,6 +802,40 @@ class distance_batch(Structure):
     ]
 
 
+class surface_desc(Structure):
+    """Loads of all markers of a surface. What markers carry by themselves ("pressure", "traction", "dead_traction")
+    and what the callback gives comes on top. Fill it with mpm_surface_desc_init()."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("body", c_int32),
+        ("pressure", c_double),
+        ("traction", c_double * 3),
+        ("dead_traction", c_double * 3),
+        ("max_spacing", c_double),
+    ]
+
+
+class marker_batch(Structure):
+    """Markers for which tractions are wanted. Arrays are [components][ld], belong to the library and are valid during
+    the call."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("dim", c_int32),
+        ("n", c_int64),
+        ("ld", c_int64),
+        ("t", c_double),
+        ("dt", c_double),
+        ("id", c_void_p),
+        ("position", c_void_p),
+        ("area", c_void_p),
+        ("reference_area", c_void_p),
+        ("displacement", c_void_p),
+        ("velocity", c_void_p),
+    ]
+
+
 stress_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(material_batch))
 
 tangent_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(material_batch), c_void_p, c_void_p)
@@ -817,6 +851,8 @@ progress_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(step_info))
 friction_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(contact_batch), c_void_p)
 
 distance_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(distance_batch))
+
+traction_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(marker_batch), c_void_p)
 
 class material_desc(Structure):
     """A law of the host. Fill the struct with mpm_material_desc_init()."""
@@ -878,6 +914,8 @@ SIZES = {
     contact_batch: (96, 72),
     distance_batch: (64, 48),
     obstacle_desc: (296, 288),
+    surface_desc: (72, 72),
+    marker_batch: (88, 64),
 }
 
 #: Result and arguments of every function.
@@ -974,6 +1012,21 @@ FUNCTIONS = {
     "mpm_obstacle_get_pose": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, c_void_p]),
     "mpm_obstacle_set_load": (c_int32, [c_void_p, c_void_p, c_void_p]),
     "mpm_obstacle_contact_info": (c_int32, [c_void_p, c_int32, POINTER(contact_info)]),
+    "mpm_surface_desc_init": (c_int32, [POINTER(surface_desc), c_uint32]),
+    "mpm_surface_create": (c_int32, [c_void_p, c_void_p, POINTER(surface_desc), c_void_p]),
+    "mpm_surface_destroy": (c_int32, [c_void_p]),
+    "mpm_surface_configure": (c_int32, [c_void_p, POINTER(surface_desc)]),
+    "mpm_surface_set_traction": (c_int32, [c_void_p, traction_fn, c_void_p]),
+    "mpm_surface_add": (c_int32, [c_void_p, c_int64, c_void_p, c_void_p, c_void_p]),
+    "mpm_surface_add_polyline": (c_int32, [c_void_p, c_int64, c_void_p, c_int32, c_double, c_void_p, c_void_p]),
+    "mpm_surface_add_triangles": (c_int32, [c_void_p, c_int64, c_void_p, c_int64, c_void_p, c_double, c_void_p, c_void_p]),
+    "mpm_surface_remove": (c_int32, [c_void_p, c_int64, c_void_p]),
+    "mpm_surface_refine": (c_int32, [c_void_p, c_double, c_void_p]),
+    "mpm_surface_count": (c_int64, [c_void_p]),
+    "mpm_surface_get": (c_int32, [c_void_p, c_char_p, c_int32, c_int32, c_int64, c_void_p, c_void_p]),
+    "mpm_surface_set": (c_int32, [c_void_p, c_char_p, c_int32, c_int32, c_int64, c_void_p, c_void_p]),
+    "mpm_stepper_add_surface": (c_int32, [c_void_p, c_void_p]),
+    "mpm_stepper_remove_surface": (c_int32, [c_void_p, c_void_p]),
     "mpm_state_size": (c_int32, [c_void_p, c_void_p]),
     "mpm_state_save": (c_int32, [c_void_p, c_void_p, c_int64]),
     "mpm_state_load": (c_int32, [c_void_p, c_void_p, c_int64]),
@@ -1583,6 +1636,106 @@ they are set anew; each NULL to keep it. MPM_E_UNSUPPORTED: it is not free. MPM_
 Gives what a body and an obstacle did to each other in the last step; body MPM_BODY_ANY: all of them. force and
 impulse are on the material, -force is on the obstacle; torque is that on the obstacle, about its centre; nodes are
 those that could be constrained. MPM_E_STATE: it is in no stepper, or that has made no step yet.""",
+    "mpm_surface_desc_init": """mpm_status mpm_surface_desc_init(mpm_surface_desc *desc, uint32_t struct_size)
+
+Fills desc with the defaults. struct_size is sizeof(mpm_surface_desc) of the caller; no byte beyond is written.
+MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.""",
+    "mpm_surface_create": """mpm_status mpm_surface_create(mpm_context *context, mpm_grid *grid, const mpm_surface_desc *desc, mpm_surface **out)
+
+Makes a surface without markers on a grid, which outlives it. desc is copied and may be NULL for the defaults. *out is
+NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another context.""",
+    "mpm_surface_destroy": """mpm_status mpm_surface_destroy(mpm_surface *surface)
+
+Frees a surface; NULL is let pass. MPM_E_STATE: a stepper holds it.""",
+    "mpm_surface_configure": """mpm_status mpm_surface_configure(mpm_surface *surface, const mpm_surface_desc *desc)
+
+Replaces loads and options between steps. Errors are those of mpm_surface_create(), and MPM_E_STATE during a staged
+step.""",
+    "mpm_surface_set_traction": """mpm_status mpm_surface_set_traction(mpm_surface *surface, mpm_traction_fn fn, void *user)
+
+Sets the callback that adds tractions. NULL takes it away. The host sets it again after it has loaded a state.
+MPM_E_STATE during a staged step.""",
+    "mpm_surface_add": """mpm_status mpm_surface_add(mpm_surface *surface, int64_t n, const double *position, const double *area, int64_t
+*first_id)
+
+Adds n markers.
+
+- position: [dim][n], in the grid; on periodic axes it is wrapped.
+- area: [dim][n] area vectors, out of the material; NULL for markers without area, which follow the material and carry
+  nothing.
+- first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
+
+In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite or a position is outside the
+grid; nothing is added. MPM_E_STATE during a staged step.""",
+    "mpm_surface_add_polyline": """mpm_status mpm_surface_add_polyline(mpm_surface *surface, int64_t n, const double *position, int32_t closed, double
+spacing, int64_t *first_id, int64_t *count)
+
+Adds markers along the line through n points, position[2][n]; closed 1: back to the first. The material lies on the
+left of the line, so that the outline of a body goes round counter-clockwise. Each edge is divided into equal parts no
+longer than spacing > 0, with a marker in the middle of each: half a spacing of the grid is right. *first_id and
+*count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid is not 2-D. Else as mpm_surface_add().""",
+    "mpm_surface_add_triangles": """mpm_status mpm_surface_add_triangles(mpm_surface *surface, int64_t n, const double *position, int64_t triangles, const
+int64_t *corner, double spacing, int64_t *first_id, int64_t *count)
+
+Adds markers on triangles: position[3][n] of their corners, and corner[3 * i], corner[3 * i + 1], corner[3 * i + 2]
+the numbers of those of triangle i, counter-clockwise as seen from outside the material. Each triangle is divided into
+k^2 equal ones with edges no longer than spacing, with a marker in the middle of each. MPM_E_UNSUPPORTED: the grid is
+not 3-D. MPM_E_ARG: there is no such corner. Else as mpm_surface_add_polyline().""",
+    "mpm_surface_remove": """mpm_status mpm_surface_remove(mpm_surface *surface, int64_t n, const int64_t *ids)
+
+Removes the n markers with the given ids: all or none. MPM_E_NOT_FOUND: an id is not in the surface. MPM_E_ARG: an id
+is given twice. MPM_E_STATE during a staged step.""",
+    "mpm_surface_refine": """mpm_status mpm_surface_refine(mpm_surface *surface, double spacing, int64_t *added)
+
+Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept. One half keeps
+the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad, or more
+than 2^28 markers would come of it. MPM_E_STATE during a staged step.""",
+    "mpm_surface_count": """int64_t mpm_surface_count(const mpm_surface *surface)
+
+The number of markers; 0 for NULL.""",
+    "mpm_surface_get": """mpm_status mpm_surface_get(const mpm_surface *surface, const char *field, int32_t type, int32_t components, int64_t n,
+const int64_t *ids, void *out)
+
+Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by ascending id, where n
+is mpm_surface_count(). type and components must match the field.
+
+| field             | type | components | what it is                                              | set |
+|-------------------|------|------------|---------------------------------------------------------|-----|
+| "id"              | I64  | 1          |                                                         |     |
+| "position"        | F64  | dim        | length                                                  | yes |
+| "area"            | F64  | dim        | area vector, out of the material                        | yes |
+| "reference_area"  | F64  | 1          | area when it was added or set                           |     |
+| "displacement"    | F64  | dim        | since it was added, across periodic axes too            | yes |
+| "velocity"        | F64  | dim        | of the material there, in the last step                 |     |
+| "force"           | F64  | dim        | on the material, in the last step                       |     |
+| "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
+| "traction"        | F64  | dim        | likewise                                                | yes |
+| "dead_traction"   | F64  | dim        | likewise                                                | yes |
+
+MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.""",
+    "mpm_surface_set": """mpm_status mpm_surface_set(mpm_surface *surface, const char *field, int32_t type, int32_t components, int64_t n, const
+int64_t *ids, const void *values)
+
+Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting "area" makes it the reference.
+Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is outside the grid, or the
+field cannot be set. MPM_E_STATE during a staged step.""",
+    "mpm_stepper_add_surface": """mpm_status mpm_stepper_add_surface(mpm_stepper *stepper, mpm_surface *surface)
+
+Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with them;
+the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are removed. Steps end with
+
+- MPM_OFF_GRID: a marker would leave through a face that does not let it;
+- MPM_NONFINITE: its load or its new position is not finite;
+- MPM_E_STATE: a marker with a load has no material around it.
+
+The text names marker and surface, the number of which counts the surfaces of the stepper from 0. MPM_E_STATE: it is
+in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
+
+In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and traction
+make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.""",
+    "mpm_stepper_remove_surface": """mpm_status mpm_stepper_remove_surface(mpm_stepper *stepper, mpm_surface *surface)
+
+Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper.""",
     "mpm_state_size": """mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes)
 
 Tells how many bytes mpm_state_save() needs now.""",
@@ -1609,8 +1762,9 @@ or what was written through a view for reading changed the state while it went o
 Replaces the state by one from a file. Errors are those of mpm_state_load(), and MPM_E_IO: the file could not be read.""",
     "mpm_state_hash": """mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash)
 
-Gives a hash of time, step, every field of every set and the pose of every obstacle. It does not depend on library
-order, on threads or on optional fields that are not in use: states that are equal by id have equal hashes.""",
+Gives a hash of time, step, every field of every set, the pose of every obstacle and every marker of surfaces. It does
+not depend on library order, on threads or on optional fields that are not in use: states that are equal by id have
+equal hashes.""",
     "mpm_write_particles": """mpm_status mpm_write_particles(const mpm_particles *particles, const char *path, int32_t count, const char *const
 *fields)
 

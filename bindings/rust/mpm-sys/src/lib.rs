@@ -343,6 +343,13 @@ pub struct mpm_obstacle {
     _neither_sent_nor_moved: PhantomData<(*mut u8, PhantomPinned)>,
 }
 
+/// Markers of a surface. It belongs to a grid, and may be in one stepper at a time.
+#[repr(C)]
+pub struct mpm_surface {
+    _opaque: [u8; 0],
+    _neither_sent_nor_moved: PhantomData<(*mut u8, PhantomPinned)>,
+}
+
 /// A time series of output files (.pvd); its file is valid on disk after every append.
 #[repr(C)]
 pub struct mpm_series {
@@ -528,6 +535,15 @@ pub type mpm_motion_fn = Option<unsafe extern "C" fn(
     dt: f64,
     velocity: *mut f64,
     angular_velocity: *mut f64,
+) -> mpm_status>;
+
+/// Gives tractions: the callback does add[c * ld + i] += force per present area of marker i, c < dim. It runs on the
+/// thread of the call, once per step. Returns as mpm_particle_fn does. A value that is not finite ends the step:
+/// MPM_NONFINITE.
+pub type mpm_traction_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    batch: *const mpm_marker_batch,
+    add: *mut f64,
 ) -> mpm_status>;
 
 /// Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers. All
@@ -975,8 +991,8 @@ pub struct mpm_step_info {
     pub kinetic_energy: f64,
     /// sum energy * initial_volume; NaN when a law has none
     pub strain_energy: f64,
-    /// Work during the step of gravity, acceleration and force callbacks, applied_force, node hooks, prescribed nodal
-    /// velocities and prescribed particles.
+    /// Work during the step of gravity, acceleration and force callbacks, applied_force, surfaces, node hooks, prescribed
+    /// nodal velocities and prescribed particles.
     pub external_work: f64,
     /// (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain energy is.
     pub dissipation: f64,
@@ -1363,6 +1379,70 @@ impl Default for mpm_obstacle_desc {
             out
         }
     }
+}
+
+/// Loads of all markers of a surface. What markers carry by themselves ("pressure", "traction", "dead_traction") and what
+/// the callback gives comes on top. Fill it with mpm_surface_desc_init().
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_surface_desc {
+    /// sizeof(mpm_surface_desc) of the caller
+    pub struct_size: u32,
+    /// velocity field that it loads and moves with (mpm_stepper_set_body()); default 0
+    pub body: i32,
+    /// force/area against the normal, on the present area: it follows the surface
+    pub pressure: f64,
+    /// force per present area, in a fixed direction
+    pub traction: [f64; 3],
+    /// force per area at the time when the marker was added: a dead load
+    pub dead_traction: [f64; 3],
+    /// Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that stretches has
+    /// no dents. Half a spacing is right. 0 (default): they are not.
+    pub max_spacing: f64,
+}
+
+impl Default for mpm_surface_desc {
+    /// The library's defaults: `mpm_surface_desc_init()`.
+    fn default() -> Self {
+        // SAFETY: zeros are a value of every field, and the library writes as many bytes as it is told.
+        unsafe {
+            let mut out: Self = std::mem::zeroed();
+            let status = mpm_surface_desc_init(&mut out, size_of::<Self>() as u32);
+            assert_eq!(status, MPM_OK, "mpm_surface_desc_init");
+            out
+        }
+    }
+}
+
+/// Markers for which tractions are wanted. Arrays are [components][ld], belong to the library and are valid during the
+/// call.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_marker_batch {
+    /// sizeof(mpm_marker_batch) of the library; see mpm.h
+    pub struct_size: u32,
+    /// dimension of the grid
+    pub dim: i32,
+    /// number of markers
+    pub n: i64,
+    /// distance from component c to c + 1, in elements; >= n
+    pub ld: i64,
+    /// time for which the value is wanted: the start of the step, or the end of an implicit one
+    pub t: f64,
+    /// size of the step
+    pub dt: f64,
+    /// [ld] ids, ascending
+    pub id: *const i64,
+    /// [dim][ld]
+    pub position: *const f64,
+    /// [dim][ld] area vectors
+    pub area: *const f64,
+    /// [ld] area when the marker was added
+    pub reference_area: *const f64,
+    /// [dim][ld] since the marker was added
+    pub displacement: *const f64,
+    /// [dim][ld] of the material there, in the last step
+    pub velocity: *const f64,
 }
 
 extern "C" {
@@ -2243,6 +2323,164 @@ extern "C" {
         info: *mut mpm_contact_info,
     ) -> mpm_status;
 
+    /// Fills desc with the defaults. struct_size is sizeof(mpm_surface_desc) of the caller; no byte beyond is written.
+    /// MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
+    pub fn mpm_surface_desc_init(desc: *mut mpm_surface_desc, struct_size: u32) -> mpm_status;
+
+    /// Makes a surface without markers on a grid, which outlives it. desc is copied and may be NULL for the defaults.
+    /// *out is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another context.
+    pub fn mpm_surface_create(
+        context: *mut mpm_context,
+        grid: *mut mpm_grid,
+        desc: *const mpm_surface_desc,
+        out: *mut *mut mpm_surface,
+    ) -> mpm_status;
+
+    /// Frees a surface; NULL is let pass. MPM_E_STATE: a stepper holds it.
+    pub fn mpm_surface_destroy(surface: *mut mpm_surface) -> mpm_status;
+
+    /// Replaces loads and options between steps. Errors are those of mpm_surface_create(), and MPM_E_STATE during a
+    /// staged step.
+    pub fn mpm_surface_configure(
+        surface: *mut mpm_surface,
+        desc: *const mpm_surface_desc,
+    ) -> mpm_status;
+
+    /// Sets the callback that adds tractions. NULL takes it away. The host sets it again after it has loaded a state.
+    /// MPM_E_STATE during a staged step.
+    pub fn mpm_surface_set_traction(
+        surface: *mut mpm_surface,
+        r#fn: mpm_traction_fn,
+        user: *mut c_void,
+    ) -> mpm_status;
+
+    /// Adds n markers.
+    ///
+    /// - position: [dim][n], in the grid; on periodic axes it is wrapped.
+    /// - area: [dim][n] area vectors, out of the material; NULL for markers without area, which follow the material and
+    ///   carry nothing.
+    /// - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
+    ///
+    /// In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite or a position is outside the
+    /// grid; nothing is added. MPM_E_STATE during a staged step.
+    pub fn mpm_surface_add(
+        surface: *mut mpm_surface,
+        n: i64,
+        position: *const f64,
+        area: *const f64,
+        first_id: *mut i64,
+    ) -> mpm_status;
+
+    /// Adds markers along the line through n points, position[2][n]; closed 1: back to the first. The material lies on
+    /// the left of the line, so that the outline of a body goes round counter-clockwise. Each edge is divided into equal
+    /// parts no longer than spacing > 0, with a marker in the middle of each: half a spacing of the grid is right.
+    /// *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid is not 2-D. Else as
+    /// mpm_surface_add().
+    pub fn mpm_surface_add_polyline(
+        surface: *mut mpm_surface,
+        n: i64,
+        position: *const f64,
+        closed: i32,
+        spacing: f64,
+        first_id: *mut i64,
+        count: *mut i64,
+    ) -> mpm_status;
+
+    /// Adds markers on triangles: position[3][n] of their corners, and corner[3 * i], corner[3 * i + 1], corner[3 * i +
+    /// 2] the numbers of those of triangle i, counter-clockwise as seen from outside the material. Each triangle is
+    /// divided into k^2 equal ones with edges no longer than spacing, with a marker in the middle of each.
+    /// MPM_E_UNSUPPORTED: the grid is not 3-D. MPM_E_ARG: there is no such corner. Else as mpm_surface_add_polyline().
+    pub fn mpm_surface_add_triangles(
+        surface: *mut mpm_surface,
+        n: i64,
+        position: *const f64,
+        triangles: i64,
+        corner: *const i64,
+        spacing: f64,
+        first_id: *mut i64,
+        count: *mut i64,
+    ) -> mpm_status;
+
+    /// Removes the n markers with the given ids: all or none. MPM_E_NOT_FOUND: an id is not in the surface. MPM_E_ARG: an
+    /// id is given twice. MPM_E_STATE during a staged step.
+    pub fn mpm_surface_remove(surface: *mut mpm_surface, n: i64, ids: *const i64) -> mpm_status;
+
+    /// Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept. One half
+    /// keeps the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG: spacing is bad,
+    /// or more than 2^28 markers would come of it. MPM_E_STATE during a staged step.
+    pub fn mpm_surface_refine(
+        surface: *mut mpm_surface,
+        spacing: f64,
+        added: *mut i64,
+    ) -> mpm_status;
+
+    /// The number of markers; 0 for NULL.
+    pub fn mpm_surface_count(surface: *const mpm_surface) -> i64;
+
+    /// Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by ascending id, where
+    /// n is mpm_surface_count(). type and components must match the field.
+    ///
+    /// | field             | type | components | what it is                                              | set |
+    /// |-------------------|------|------------|---------------------------------------------------------|-----|
+    /// | "id"              | I64  | 1          |                                                         |     |
+    /// | "position"        | F64  | dim        | length                                                  | yes |
+    /// | "area"            | F64  | dim        | area vector, out of the material                        | yes |
+    /// | "reference_area"  | F64  | 1          | area when it was added or set                           |     |
+    /// | "displacement"    | F64  | dim        | since it was added, across periodic axes too            | yes |
+    /// | "velocity"        | F64  | dim        | of the material there, in the last step                 |     |
+    /// | "force"           | F64  | dim        | on the material, in the last step                       |     |
+    /// | "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
+    /// | "traction"        | F64  | dim        | likewise                                                | yes |
+    /// | "dead_traction"   | F64  | dim        | likewise                                                | yes |
+    ///
+    /// MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.
+    pub fn mpm_surface_get(
+        surface: *const mpm_surface,
+        field: *const c_char,
+        r#type: i32,
+        components: i32,
+        n: i64,
+        ids: *const i64,
+        out: *mut c_void,
+    ) -> mpm_status;
+
+    /// Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting "area" makes it the reference.
+    /// Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is outside the grid, or
+    /// the field cannot be set. MPM_E_STATE during a staged step.
+    pub fn mpm_surface_set(
+        surface: *mut mpm_surface,
+        field: *const c_char,
+        r#type: i32,
+        components: i32,
+        n: i64,
+        ids: *const i64,
+        values: *const c_void,
+    ) -> mpm_status;
+
+    /// Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with
+    /// them; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are removed. Steps
+    /// end with
+    ///
+    /// - MPM_OFF_GRID: a marker would leave through a face that does not let it;
+    /// - MPM_NONFINITE: its load or its new position is not finite;
+    /// - MPM_E_STATE: a marker with a load has no material around it.
+    ///
+    /// The text names marker and surface, the number of which counts the surfaces of the stepper from 0. MPM_E_STATE: it
+    /// is in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
+    ///
+    /// In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and
+    /// traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+    pub fn mpm_stepper_add_surface(
+        stepper: *mut mpm_stepper,
+        surface: *mut mpm_surface,
+    ) -> mpm_status;
+
+    /// Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper.
+    pub fn mpm_stepper_remove_surface(
+        stepper: *mut mpm_stepper,
+        surface: *mut mpm_surface,
+    ) -> mpm_status;
+
     /// Tells how many bytes mpm_state_save() needs now.
     pub fn mpm_state_size(stepper: *const mpm_stepper, bytes: *mut i64) -> mpm_status;
 
@@ -2280,8 +2518,9 @@ extern "C" {
     /// read.
     pub fn mpm_state_load_file(stepper: *mut mpm_stepper, path: *const c_char) -> mpm_status;
 
-    /// Gives a hash of time, step, every field of every set and the pose of every obstacle. It does not depend on library
-    /// order, on threads or on optional fields that are not in use: states that are equal by id have equal hashes.
+    /// Gives a hash of time, step, every field of every set, the pose of every obstacle and every marker of surfaces. It
+    /// does not depend on library order, on threads or on optional fields that are not in use: states that are equal by
+    /// id have equal hashes.
     pub fn mpm_state_hash(stepper: *const mpm_stepper, hash: *mut u64) -> mpm_status;
 
     /// Writes a set as VTK poly data (.vtp, appended raw): points in order of ascending id, and count named fields as

@@ -354,6 +354,34 @@ fn layout_of_mpm_obstacle_desc() {
 }
 
 #[test]
+fn layout_of_mpm_surface_desc() {
+    assert_eq!(size_of::<mpm_surface_desc>(), of(72, 72));
+    assert_eq!(offset!(mpm_surface_desc, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_surface_desc, body), of(4, 4));
+    assert_eq!(offset!(mpm_surface_desc, pressure), of(8, 8));
+    assert_eq!(offset!(mpm_surface_desc, traction), of(16, 16));
+    assert_eq!(offset!(mpm_surface_desc, dead_traction), of(40, 40));
+    assert_eq!(offset!(mpm_surface_desc, max_spacing), of(64, 64));
+}
+
+#[test]
+fn layout_of_mpm_marker_batch() {
+    assert_eq!(size_of::<mpm_marker_batch>(), of(88, 64));
+    assert_eq!(offset!(mpm_marker_batch, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_marker_batch, dim), of(4, 4));
+    assert_eq!(offset!(mpm_marker_batch, n), of(8, 8));
+    assert_eq!(offset!(mpm_marker_batch, ld), of(16, 16));
+    assert_eq!(offset!(mpm_marker_batch, t), of(24, 24));
+    assert_eq!(offset!(mpm_marker_batch, dt), of(32, 32));
+    assert_eq!(offset!(mpm_marker_batch, id), of(40, 40));
+    assert_eq!(offset!(mpm_marker_batch, position), of(48, 44));
+    assert_eq!(offset!(mpm_marker_batch, area), of(56, 48));
+    assert_eq!(offset!(mpm_marker_batch, reference_area), of(64, 52));
+    assert_eq!(offset!(mpm_marker_batch, displacement), of(72, 56));
+    assert_eq!(offset!(mpm_marker_batch, velocity), of(80, 60));
+}
+
+#[test]
 fn functions_are_there() {
     let all = [
         mpm_version as *const (),
@@ -448,6 +476,21 @@ fn functions_are_there() {
         mpm_obstacle_get_pose as *const (),
         mpm_obstacle_set_load as *const (),
         mpm_obstacle_contact_info as *const (),
+        mpm_surface_desc_init as *const (),
+        mpm_surface_create as *const (),
+        mpm_surface_destroy as *const (),
+        mpm_surface_configure as *const (),
+        mpm_surface_set_traction as *const (),
+        mpm_surface_add as *const (),
+        mpm_surface_add_polyline as *const (),
+        mpm_surface_add_triangles as *const (),
+        mpm_surface_remove as *const (),
+        mpm_surface_refine as *const (),
+        mpm_surface_count as *const (),
+        mpm_surface_get as *const (),
+        mpm_surface_set as *const (),
+        mpm_stepper_add_surface as *const (),
+        mpm_stepper_remove_surface as *const (),
         mpm_state_size as *const (),
         mpm_state_save as *const (),
         mpm_state_load as *const (),

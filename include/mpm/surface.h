@@ -1,0 +1,183 @@
+/**
+ * @file surface.h
+ * Surfaces: markers without mass that move with the material and carry loads on its boundary.
+ *
+ * A marker is a small patch of a surface: a position and an area vector, the area times the normal that points
+ * out of the material. The material carries it along and stretches it. Pressure, tractions and the host's
+ * callback load it, and its force goes to the nodes around it, whole: what of it a node without mass would
+ * take goes to the others, so that force and moment are kept. Nothing depends on how many particles lie under
+ * a face, and the load acts on the face, not at the particles' centres behind it.
+ *
+ * Vectors have as many components as the grid has dimensions. Areas are per thickness in 2-D, and in 1-D
+ * numbers with a sign, which points out of the material. Forces and areas are counted likewise.
+ *
+ * @par Sources
+ * Area vectors: Nanson's relation, in Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.4. Weights next to
+ * nodes without mass: the reproducing kernels of Liu, Jun and Zhang, Int. J. Numer. Meth. Fluids 20, 1995.
+ * docs/theory.md has the equations.
+ */
+#ifndef MPM_SURFACE_H
+#define MPM_SURFACE_H
+
+#include <mpm/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Markers of a surface. It belongs to a grid, and may be in one stepper at a time. */
+typedef struct mpm_surface mpm_surface;
+
+/** Loads of all markers of a surface. What markers carry by themselves ("pressure", "traction",
+ * "dead_traction") and what the callback gives comes on top. Fill it with mpm_surface_desc_init(). */
+typedef struct mpm_surface_desc {
+  uint32_t struct_size; /**< sizeof(mpm_surface_desc) of the caller */
+  int32_t body;       /**< velocity field that it loads and moves with (mpm_stepper_set_body()); default 0 */
+  double pressure;    /**< force/area against the normal, on the present area: it follows the surface */
+  double traction[3]; /**< force per present area, in a fixed direction */
+  double dead_traction[3]; /**< force per area at the time when the marker was added: a dead load */
+  /** Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that stretches
+   * has no dents. Half a spacing is right. 0 (default): they are not. */
+  double max_spacing;
+} mpm_surface_desc;
+
+/** Markers for which tractions are wanted. Arrays are [components][ld], belong to the library and are valid
+ * during the call. */
+typedef struct mpm_marker_batch {
+  uint32_t struct_size; /**< sizeof(mpm_marker_batch) of the library; see mpm.h */
+  int32_t dim;          /**< dimension of the grid */
+  int64_t n;            /**< number of markers */
+  int64_t ld;           /**< distance from component c to c + 1, in elements; >= n */
+  double t;  /**< time for which the value is wanted: the start of the step, or the end of an implicit one */
+  double dt; /**< size of the step */
+  const int64_t *id;            /**< [ld] ids, ascending */
+  const double *position;       /**< [dim][ld] */
+  const double *area;           /**< [dim][ld] area vectors */
+  const double *reference_area; /**< [ld] area when the marker was added */
+  const double *displacement;   /**< [dim][ld] since the marker was added */
+  const double *velocity;       /**< [dim][ld] of the material there, in the last step */
+} mpm_marker_batch;
+
+/** Gives tractions: the callback does add[c * ld + i] += force per present area of marker i, c < dim. It runs
+ * on the thread of the call, once per step. Returns as mpm_particle_fn does. A value that is not finite ends
+ * the step: MPM_NONFINITE. */
+typedef mpm_status (*mpm_traction_fn)(void *user, const mpm_marker_batch *batch, double *add);
+
+/** Fills desc with the defaults. struct_size is sizeof(mpm_surface_desc) of the caller; no byte beyond is
+ * written. MPM_E_ARG: it is smaller than the first released struct. Any thread, any time. */
+MPM_API mpm_status mpm_surface_desc_init(mpm_surface_desc *desc, uint32_t struct_size);
+
+/** Makes a surface without markers on a grid, which outlives it. desc is copied and may be NULL for the
+ * defaults. *out is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another
+ * context. */
+MPM_API mpm_status mpm_surface_create(mpm_context *context, mpm_grid *grid, const mpm_surface_desc *desc,
+                                      mpm_surface **out);
+
+/** Frees a surface; NULL is let pass. MPM_E_STATE: a stepper holds it. */
+MPM_API mpm_status mpm_surface_destroy(mpm_surface *surface);
+
+/** Replaces loads and options between steps. Errors are those of mpm_surface_create(), and MPM_E_STATE during
+ * a staged step. */
+MPM_API mpm_status mpm_surface_configure(mpm_surface *surface, const mpm_surface_desc *desc);
+
+/** Sets the callback that adds tractions. NULL takes it away. The host sets it again after it has loaded a
+ * state. MPM_E_STATE during a staged step. */
+MPM_API mpm_status mpm_surface_set_traction(mpm_surface *surface, mpm_traction_fn fn, void *user);
+
+/**
+ * Adds n markers.
+ *
+ * - position: [dim][n], in the grid; on periodic axes it is wrapped.
+ * - area: [dim][n] area vectors, out of the material; NULL for markers without area, which follow the material
+ *   and carry nothing.
+ * - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
+ *
+ * In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite or a position is
+ * outside the grid; nothing is added. MPM_E_STATE during a staged step.
+ */
+MPM_API mpm_status mpm_surface_add(mpm_surface *surface, int64_t n, const double *position,
+                                   const double *area, int64_t *first_id);
+
+/** Adds markers along the line through n points, position[2][n]; closed 1: back to the first. The material
+ * lies on the left of the line, so that the outline of a body goes round counter-clockwise. Each edge is
+ * divided into equal parts no longer than spacing > 0, with a marker in the middle of each: half a spacing of
+ * the grid is right. *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid
+ * is not 2-D. Else as mpm_surface_add(). */
+MPM_API mpm_status mpm_surface_add_polyline(mpm_surface *surface, int64_t n, const double *position,
+                                            int32_t closed, double spacing, int64_t *first_id,
+                                            int64_t *count);
+
+/** Adds markers on triangles: position[3][n] of their corners, and corner[3 * i], corner[3 * i + 1], corner[3
+ * * i + 2] the numbers of those of triangle i, counter-clockwise as seen from outside the material. Each
+ * triangle is divided into k^2 equal ones with edges no longer than spacing, with a marker in the middle of
+ * each. MPM_E_UNSUPPORTED: the grid is not 3-D. MPM_E_ARG: there is no such corner. Else as
+ * mpm_surface_add_polyline(). */
+MPM_API mpm_status mpm_surface_add_triangles(mpm_surface *surface, int64_t n, const double *position,
+                                             int64_t triangles, const int64_t *corner, double spacing,
+                                             int64_t *first_id, int64_t *count);
+
+/** Removes the n markers with the given ids: all or none. MPM_E_NOT_FOUND: an id is not in the surface.
+ * MPM_E_ARG: an id is given twice. MPM_E_STATE during a staged step. */
+MPM_API mpm_status mpm_surface_remove(mpm_surface *surface, int64_t n, const int64_t *ids);
+
+/** Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept. One
+ * half keeps the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG:
+ * spacing is bad, or more than 2^28 markers would come of it. MPM_E_STATE during a staged step. */
+MPM_API mpm_status mpm_surface_refine(mpm_surface *surface, double spacing, int64_t *added);
+
+/** The number of markers; 0 for NULL. */
+MPM_API int64_t mpm_surface_count(const mpm_surface *surface);
+
+/**
+ * Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by ascending id,
+ * where n is mpm_surface_count(). type and components must match the field.
+ *
+ * | field             | type | components | what it is                                              | set |
+ * |-------------------|------|------------|---------------------------------------------------------|-----|
+ * | "id"              | I64  | 1          |                                                         |     |
+ * | "position"        | F64  | dim        | length                                                  | yes |
+ * | "area"            | F64  | dim        | area vector, out of the material                        | yes |
+ * | "reference_area"  | F64  | 1          | area when it was added or set                           |     |
+ * | "displacement"    | F64  | dim        | since it was added, across periodic axes too            | yes |
+ * | "velocity"        | F64  | dim        | of the material there, in the last step                 |     |
+ * | "force"           | F64  | dim        | on the material, in the last step                       |     |
+ * | "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
+ * | "traction"        | F64  | dim        | likewise                                                | yes |
+ * | "dead_traction"   | F64  | dim        | likewise                                                | yes |
+ *
+ * MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.
+ */
+MPM_API mpm_status mpm_surface_get(const mpm_surface *surface, const char *field, int32_t type,
+                                   int32_t components, int64_t n, const int64_t *ids, void *out);
+
+/** Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting "area" makes it the
+ * reference. Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is
+ * outside the grid, or the field cannot be set. MPM_E_STATE during a staged step. */
+MPM_API mpm_status mpm_surface_set(mpm_surface *surface, const char *field, int32_t type, int32_t components,
+                                   int64_t n, const int64_t *ids, const void *values);
+
+/**
+ * Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move
+ * with them; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are
+ * removed. Steps end with
+ *
+ * - MPM_OFF_GRID: a marker would leave through a face that does not let it;
+ * - MPM_NONFINITE: its load or its new position is not finite;
+ * - MPM_E_STATE: a marker with a load has no material around it.
+ *
+ * The text names marker and surface, the number of which counts the surfaces of the stepper from 0.
+ * MPM_E_STATE: it is in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
+ *
+ * In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and
+ * traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+ */
+MPM_API mpm_status mpm_stepper_add_surface(mpm_stepper *stepper, mpm_surface *surface);
+
+/** Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper. */
+MPM_API mpm_status mpm_stepper_remove_surface(mpm_stepper *stepper, mpm_surface *surface);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

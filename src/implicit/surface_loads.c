@@ -1,0 +1,106 @@
+/* Surfaces in implicit steps: forces t = (T |a| + D A0 - p a) at the end of the step, with weights of its start
+ * and areas of the displacements as they are. With g = F_inc^-T grad w an area vector changes by
+ *
+ *   da = (a (x) g_b - g_b (x) a) du_b,  dt = P da,  P = T (x) a / |a| - p 1
+ *
+ * which is not symmetric. Dead loads D have no stiffness. */
+#include "implicit/balance.h"
+#include "stages/stages.h"
+
+#include <string.h>
+
+mpm_status mpmi_surface_loads_find(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  const mpm_status status = mpmi_surfaces_find(balance->step, &balance->nodes->solved);
+  for (int64_t i = 0; i < list->count && !status; ++i) {
+    const mpmi_marker_nodes *around = &list->surface[i]->around;
+    for (int64_t n = 0; n < list->surface[i]->next.count * around->nodes; ++n)
+      if (around->slot[n] >= 0 && balance->newton->active_of[around->slot[n]] < 0)
+        return mpmi_fail(balance->settings->context, MPM_SINGULAR,
+                         "marker %lld of surface %lld loads rigid particles, and nothing carries its force: "
+                         "prescribe their motion, or set quasi_static = 0",
+                         (long long)list->surface[i]->next.at[n / around->nodes].id, (long long)i);
+  }
+  return status;
+}
+
+mpm_status mpmi_surface_loads_add(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  const mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim;
+  const mpm_status status = mpmi_surfaces_stretch(balance->step, &balance->nodes->solved);
+  for (int64_t i = 0; i < list->count && !status; ++i) {
+    const mpmi_marker_nodes *around = &list->surface[i]->around;
+    for (int64_t n = 0; n < list->surface[i]->next.count * around->nodes; ++n) {
+      if (around->slot[n] < 0) continue;
+      const mpmi_active_node *node = &newton->active[newton->active_of[around->slot[n]]];
+      const double *force = list->surface[i]->next.at[n / around->nodes].force;
+      for (int32_t c = 0; c < dim; ++c)
+        newton->vector[MPMI_INTERNAL][(int64_t)node->row * dim + c] -=
+            node->sign[c] * around->weight[n] * force[c];
+    }
+  }
+  return status;
+}
+
+/* Finds P of a marker and its area vector; returns 0 when its force follows nothing. */
+static int32_t response_of(const mpm_surface *s, int64_t i, double *area, double P[3][3]) {
+  const int32_t dim = s->grid->dim;
+  const mpmi_marker *m = &s->next.at[i];
+  const double pressure = s->desc.pressure + m->pressure, size = mpmi_marker_size(m, dim);
+  double traction[3] = {0.0, 0.0, 0.0}, most = pressure < 0.0 ? -pressure : pressure;
+  mpmi_marker_area(m, dim, area);
+  mpmi_marker_tractions(s, i, traction);
+  for (int32_t r = 0; r < 3; ++r)
+    for (int32_t c = 0; c < 3; ++c) {
+      const double of_traction = size > 0.0 ? traction[r] * area[c] / size : 0.0;
+      most += of_traction < 0.0 ? -of_traction : of_traction;
+      P[r][c] = of_traction - (r == c ? pressure : 0.0);
+    }
+  return most > 0.0;
+}
+
+/* Adds the block of one node's force by the displacement of another. */
+static void add_block(mpmi_balance *balance, int64_t slot_a, int64_t slot_b, double weight,
+                      const double *area, const double *g, double P[3][3]) {
+  mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim;
+  const mpmi_active_node *A = &newton->active[newton->active_of[slot_a]];
+  const mpmi_active_node *B = &newton->active[newton->active_of[slot_b]];
+  const int64_t entry = mpmi_matrix_entry(&newton->matrix, A->row, B->row);
+  if (entry < 0) return; /* without it the iteration takes longer */
+  for (int32_t i = 0; i < dim; ++i)
+    for (int32_t j = 0; j < dim; ++j) {
+      double sum = 0.0;
+      for (int32_t k = 0; k < dim; ++k) sum += P[i][k] * (area[k] * g[j] - g[k] * area[j]);
+      newton->matrix.value[(entry * dim + i) * dim + j] -= A->sign[i] * B->sign[j] * weight * sum;
+    }
+}
+
+static void stiffen_marker(mpmi_balance *balance, mpm_surface *s, int64_t i) {
+  const mpmi_marker_nodes *around = &s->around;
+  const int32_t dim = balance->settings->grid->dim;
+  const int64_t first = i * around->nodes, end = first + around->nodes;
+  double area[3], P[3][3], F[3][3], inverse[3][3];
+  if (!response_of(s, i, area, P)) return;
+  balance->newton->matrix.symmetric = 0;
+  mpmi_marker_deformation(balance->step, s, &balance->nodes->solved, i, F);
+  mpmi_marker_invert(F, inverse);
+  for (int64_t b = first; b < end; ++b) {
+    double g[3] = {0.0, 0.0, 0.0};
+    if (around->slot[b] < 0) continue;
+    for (int32_t k = 0; k < dim; ++k)
+      for (int32_t c = 0; c < dim; ++c) g[k] += inverse[c][k] * around->gradient[b * dim + c];
+    for (int64_t a = first; a < end; ++a)
+      if (around->slot[a] >= 0)
+        add_block(balance, around->slot[a], around->slot[b], around->weight[a], area, g, P);
+  }
+}
+
+mpm_status mpmi_surface_loads_stiffen(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  const mpm_status status = mpmi_surfaces_stretch(balance->step, &balance->nodes->solved);
+  for (int64_t s = 0; s < list->count && !status && balance->settings->grid->dim > 1; ++s)
+    for (int64_t i = 0; i < list->surface[s]->next.count; ++i) stiffen_marker(balance, list->surface[s], i);
+  return status;
+}

@@ -1,0 +1,89 @@
+/* Surfaces: markers that move with the material and load it.
+ *
+ *   handle.c   making, loads, options
+ *   markers.c  markers come, go and are split
+ *   shapes.c   markers along lines and on triangles
+ *   fields.c   their fields, by name
+ *
+ * A marker is a parallelogram with its centre at the marker: the vectors of its edges are what the material
+ * stretches, and the area vector is their product. That is Nanson's relation without a determinant. */
+#ifndef MPMI_SURFACE_MARKERS_H
+#define MPMI_SURFACE_MARKERS_H
+
+#include "grid/blocks.h"
+#include "particles/particles.h"
+
+/* All members have 8 bytes: saved states hold markers as they are. */
+typedef struct mpmi_marker {
+  int64_t id;
+  double position[3];
+  /* In 2-D edge[0] is the only one, with the material on its left; in 1-D edge[0][0] is the area. */
+  double edge[2][3];
+  double reference_area, displacement[3], velocity[3], force[3];
+  double pressure, traction[3], dead_traction[3]; /* its own, beside those of the surface */
+} mpmi_marker;
+
+/* Markers by ascending id. */
+typedef struct mpmi_markers {
+  int64_t count, capacity, next_id;
+  mpmi_marker *at;
+} mpmi_markers;
+
+/* The nodes of the markers in a step, `nodes` of them for each: slots, or -1 for those that take nothing;
+ * weights, with which forces go to nodes and velocities come back; and gradients, [dim] for each. */
+typedef struct mpmi_marker_nodes {
+  int64_t slot_capacity, weight_capacity;
+  int32_t nodes;
+  int64_t *slot;
+  double *weight, *gradient;
+} mpmi_marker_nodes;
+
+struct mpm_surface {
+  uint32_t magic;
+  int32_t number; /* in its stepper */
+  mpm_context *context;
+  mpm_grid *grid;
+  struct mpm_stepper *stepper; /* that has it, or NULL */
+  const mpmi_owner *owner;     /* what the stepper says of itself */
+  mpm_surface_desc desc;
+  mpm_traction_fn traction;
+  void *traction_user;
+  mpmi_markers now, next; /* next: at the end of the step under way */
+  mpmi_marker_nodes around;
+  double *batch; /* what the callback sees and gives */
+  double *asked; /* the tractions in it in the step under way, or NULL */
+  int64_t *batch_id;
+  int64_t batch_capacity, id_capacity;
+};
+
+/* Surfaces of a stepper, in the order of adding. */
+typedef struct mpmi_surfaces {
+  int64_t count, capacity;
+  mpm_surface **surface;
+} mpmi_surfaces;
+
+/* ---- markers.c --------------------------------------------------------------------------------------- */
+/* Returns MPM_E_STATE while a staged step is under way. */
+mpm_status mpmi_surface_changeable(const mpm_surface *surface);
+/* Finds the area vector of a marker, and its length. */
+void mpmi_marker_area(const mpmi_marker *marker, int32_t dim, double *area);
+double mpmi_marker_size(const mpmi_marker *marker, int32_t dim);
+/* Gives a marker the edges of a square (2-D: an edge) with this area vector, which becomes the reference. */
+void mpmi_marker_set_area(mpmi_marker *marker, int32_t dim, const double *area);
+/* Refuses a position outside the grid, and wraps one that is inside. `which` counts markers in the text. */
+mpm_status mpmi_marker_place(const mpm_surface *surface, int64_t which, double *position);
+/* Makes room for so many more markers. Those that are there stay, and on failure nothing has changed. */
+mpm_status mpmi_markers_reserve(mpm_context *c, mpmi_markers *markers, int64_t more);
+/* Adds a marker for which there is room: it gets the next id. */
+mpmi_marker *mpmi_markers_append(mpmi_markers *markers, const mpmi_marker *marker);
+/* Splits markers with edges longer than the spacing, once each or until none is longer. On failure some are
+ * split and others are not: so work on a copy. */
+mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers *markers, double spacing,
+                              int32_t once);
+/* Makes `to` a copy, in memory that it has or gets. */
+mpm_status mpmi_markers_copy(mpm_context *c, const mpmi_markers *from, mpmi_markers *to);
+void mpmi_markers_free(mpm_context *c, mpmi_markers *markers);
+/* Returns the place of the marker with an id, or -1. */
+int64_t mpmi_markers_find(const mpmi_markers *markers, int64_t id);
+
+#endif
