@@ -41,20 +41,31 @@ static double distance(const world *w, int32_t upwards) {
   return nearest;
 }
 
+/* Puts a marker without area on the tip of the corner; it comes through before the particles do. */
+static mpm_surface *mark_tip(const world *w, int32_t upwards) {
+  const double h = arena_spacing, tip[3] = {6.0 * h, 6.0 * h, upwards ? 11.7 * h : 0.3 * h};
+  mpm_surface *surface;
+  ck_ok(w, mpm_surface_create(w->context, w->grid, NULL, &surface));
+  ck_ok(w, mpm_surface_add(surface, 1, tip, NULL, NULL));
+  ck_ok(w, mpm_stepper_add_surface(w->stepper, surface));
+  return surface;
+}
+
 /* Between nodes of a cubic basis the corner comes through. */
 static int32_t comes_through(const method *how) {
   return how->basis == MPM_BSPLINE3;
 }
 
-/* A corner that falls on a wall stays inside; the wall reports all momentum that the body gains, what it
+/* A corner that falls on a wall stays inside, and so does a marker on its tip; the wall reports all momentum that the body gains, what it
  * stops of particles included, and energy is never made. */
 START_TEST(sharp) {
   const method *how = broad_methods[_i];
   const int32_t upwards = _i % 2;
   world w;
-  int32_t stopped = 0;
+  int32_t stopped = 0, marked = 0;
   double total[3] = {0.0, 0.0, 0.0};
   open_corner(&w, how, upwards, 1);
+  mpm_surface *tip = mark_tip(&w, upwards);
   const double energy = world_info(&w).kinetic_energy, scale = fall * mass_of(&w, w.set[0]);
   for (int32_t i = 0; i < STEPS; ++i) {
     const mpm_step_info before = world_info(&w), after = world_step(&w, fall_dt);
@@ -68,10 +79,16 @@ START_TEST(sharp) {
     const double nearest = distance(&w, upwards);
     ck_between(how->name, nearest, 0.0, INFINITE);
     stopped += nearest <= 0.0;
+    double at[3];
+    ck_ok(&w, mpm_surface_get(tip, "position", MPM_F64, 3, 1, NULL, at));
+    marked += !(upwards ? at[2] < 12.0 * arena_spacing : at[2] > 0.0);
   }
   ck_between(how->name, upwards ? -total[2] : total[2], 0.3 * scale, 2.0 * scale);
   show("%s: %d steps with a particle on the wall\n", how->name, (int)stopped);
   if (comes_through(how)) ck_assert_int_gt(stopped, 0);
+  if (comes_through(how)) ck_assert_int_gt(marked, 0);
+  ck_ok(&w, mpm_stepper_remove_surface(w.stepper, tip));
+  ck_ok(&w, mpm_surface_destroy(tip));
   world_close(&w);
 }
 END_TEST
