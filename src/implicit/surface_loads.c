@@ -1,5 +1,5 @@
-/* Surfaces in implicit steps: forces t = (T |a| + D A0 - p a) at the end of the step, with weights of its start
- * and areas of the displacements as they are. With g = F_inc^-T grad w an area vector changes by
+/* Surfaces in implicit steps: forces t = (T |a| + D A0 - p a) at the end of the step, with weights of its
+ * start and areas of the displacements as they are. With g = F_inc^-T grad w an area vector changes by
  *
  *   da = (a (x) g_b - g_b (x) a) du_b,  dt = P da,  P = T (x) a / |a| - p 1
  *

@@ -96,8 +96,8 @@ double mpmi_marker_invert(double M[3][3], double inverse[3][3]);
 mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
 
 /* ---- motion.c ---------------------------------------------------------------------------------------- */
-/* Returns 1 when a position beyond a face on axis k is there by rounding alone and stands on a wall; then it is
- * put on that. */
+/* Returns 1 when a position beyond a face on axis k is there by rounding alone and stands on a wall; then it
+ * is put on that. */
 int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x);
 
 /* ---- g2p.c ------------------------------------------------------------------------------------------- */
