@@ -11,10 +11,10 @@
  *
  * @par Lifetimes
  * Wrappers move and do not copy. Each shares ownership of what it was made with: a grid keeps its context, a
- * set its grid and its material, a stepper its grid, its sets, its obstacles and surfaces, a view what it looks into.
- * Wrappers may be destroyed in any order; a C object is destroyed with the last that needs it. An object that
- * was handed to C code by handle() and is in use there outlives its wrapper and is then leaked, not freed
- * under the user.
+ * set its grid and its material, a stepper its grid, its sets, its obstacles and surfaces, a view what it
+ * looks into. Wrappers may be destroyed in any order; a C object is destroyed with the last that needs it. An
+ * object that was handed to C code by handle() and is in use there outlives its wrapper and is then leaked,
+ * not freed under the user.
  *
  * @par Callbacks
  * A callback is any copyable function object, and is kept while it may be called. One that throws stops the

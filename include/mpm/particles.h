@@ -35,8 +35,8 @@
  * - deformation_gradient: det F > 0.
  * - velocity_gradient: the matrix that the transfer carries, 1/time: the affine one (MPM_APIC, MPM_APIC_MLS,
  *   MPM_AFLIP) or the gradient of the updated nodal velocities (MPM_TPIC, MPM_TFLIP); 0 in new particles.
- *   With MPM_FLIP, MPM_XPIC and MPM_FMPM it is kept only once the host has set or mapped it, and then is the L that
- *   deformed the particle in the last step.
+ *   With MPM_FLIP, MPM_XPIC and MPM_FMPM it is kept only once the host has set or mapped it, and then is the
+ *   L that deformed the particle in the last step.
  * - stress: Cauchy stress; writable where it is part of the law's state (linear_elastic, j2, drucker_prager,
  *   mohr_coulomb, cam_clay, mu_i, a law of the host; of herschel_bulkley the deviator), else computed from F,
  *   for snow from F and state.

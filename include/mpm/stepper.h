@@ -19,8 +19,8 @@ typedef struct mpm_stepper_desc {
   /** MPM_FLIP (default) to MPM_FMPM. MPM_NEWMARK takes MPM_FLIP with flip = 1 only. */
   int32_t transfer;
   /** Order m of MPM_XPIC, 1 (PIC) to 5, or k of MPM_FMPM, 1 (PIC) to 32; default 2. Each order above the
-   * first projects and gathers once more. These corrections obey fixed and slip walls and periodic axes, those
-   * of MPM_FMPM prescribed velocities as well; contact acts before them, with its whole impulse. */
+   * first projects and gathers once more. These corrections obey fixed and slip walls and periodic axes,
+   * those of MPM_FMPM prescribed velocities as well; contact acts before them, with its whole impulse. */
   int32_t xpic_order;
   /** Order of the update of positions; v is the updated nodal velocity and w a weight. 1 (default): x += dt
    * sum w v (Steffen et al. 2008, eq. 10). 2: x += dt sum w v - dt^2 / 2 sum w a, which is exact under
@@ -92,8 +92,8 @@ typedef struct mpm_stepper_desc {
   /** For MPM_XPIC and MPM_FMPM: every so many steps are of the order xpic_order, those whose number
    * (mpm_step_info::step, counted from 1 or on from mpm_stepper_set_time()) is a multiple of this; all others
    * are those of MPM_FLIP, with flip and pic_damping. Steps that fail have no number, and a loaded state goes
-   * on with its own. 1, and 0 (default), which means 1: every step is of that order. MPM_E_UNSUPPORTED: above 2
-   * with MPM_FMPM of an order above 1 and MPM_USF or MPM_MUSL, where waves grow. Since 0.2.0. */
+   * on with its own. 1, and 0 (default), which means 1: every step is of that order. MPM_E_UNSUPPORTED: above
+   * 2 with MPM_FMPM of an order above 1 and MPM_USF or MPM_MUSL, where waves grow. Since 0.2.0. */
   int32_t xpic_every;
   int32_t reserved; /**< 0 */
 } mpm_stepper_desc;

@@ -2,18 +2,18 @@
  * @file surface.h
  * Surfaces: markers without mass that move with the material and carry loads on its boundary.
  *
- * A marker is a small patch of a surface: a position and an area vector, the area times the normal that points
- * out of the material. The material carries it along and stretches it. Pressure, tractions and the host's
- * callback load it, and its force goes to the nodes around it, whole: what of it a node without mass would
- * take goes to the others, so that force and moment are kept. Nothing depends on how many particles lie under
- * a face, and the load acts on the face, not at the particles' centres behind it.
+ * A marker is a small patch of a surface: a position and an area vector, the area times the normal that
+ * points out of the material. The material carries it along and stretches it. Pressure, tractions and the
+ * host's callback load it, and its force goes to the nodes around it, whole: what of it a node without mass
+ * would take goes to the others, so that force and moment are kept. Nothing depends on how many particles lie
+ * under a face, and the load acts on the face, not at the particles' centres behind it.
  *
  * Vectors have as many components as the grid has dimensions. Areas are per thickness in 2-D, and in 1-D
  * numbers with a sign, which points out of the material. Forces and areas are counted likewise.
  *
  * @par Sources
- * Area vectors: Nanson's relation, in Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.4. Weights next to
- * nodes without mass: the reproducing kernels of Liu, Jun and Zhang, Int. J. Numer. Meth. Fluids 20, 1995.
+ * Area vectors: Nanson's relation, in Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.4. Weights next
+ * to nodes without mass: the reproducing kernels of Liu, Jun and Zhang, Int. J. Numer. Meth. Fluids 20, 1995.
  * docs/theory.md has the equations.
  */
 #ifndef MPM_SURFACE_H
@@ -36,8 +36,8 @@ typedef struct mpm_surface_desc {
   double pressure;    /**< force/area against the normal, on the present area: it follows the surface */
   double traction[3]; /**< force per present area, in a fixed direction */
   double dead_traction[3]; /**< force per area at the time when the marker was added: a dead load */
-  /** Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that stretches
-   * has no dents. Half a spacing is right. 0 (default): they are not. */
+  /** Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that
+   * stretches has no dents. Half a spacing is right. 0 (default): they are not. */
   double max_spacing;
 } mpm_surface_desc;
 
@@ -88,8 +88,8 @@ MPM_API mpm_status mpm_surface_set_traction(mpm_surface *surface, mpm_traction_f
  * Adds n markers.
  *
  * - position: [dim][n], in the grid; on periodic axes it is wrapped.
- * - area: [dim][n] area vectors, out of the material; NULL for markers without area, which follow the material
- *   and carry nothing.
+ * - area: [dim][n] area vectors, out of the material; NULL for markers without area, which follow the
+ *   material and carry nothing.
  * - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
  *
  * In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite or a position is
@@ -101,8 +101,8 @@ MPM_API mpm_status mpm_surface_add(mpm_surface *surface, int64_t n, const double
 /** Adds markers along the line through n points, position[2][n]; closed 1: back to the first. The material
  * lies on the left of the line, so that the outline of a body goes round counter-clockwise. Each edge is
  * divided into equal parts no longer than spacing > 0, with a marker in the middle of each: half a spacing of
- * the grid is right. *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the grid
- * is not 2-D. Else as mpm_surface_add(). */
+ * the grid is right. *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED: the
+ * grid is not 2-D. Else as mpm_surface_add(). */
 MPM_API mpm_status mpm_surface_add_polyline(mpm_surface *surface, int64_t n, const double *position,
                                             int32_t closed, double spacing, int64_t *first_id,
                                             int64_t *count);
@@ -120,8 +120,8 @@ MPM_API mpm_status mpm_surface_add_triangles(mpm_surface *surface, int64_t n, co
  * MPM_E_ARG: an id is given twice. MPM_E_STATE during a staged step. */
 MPM_API mpm_status mpm_surface_remove(mpm_surface *surface, int64_t n, const int64_t *ids);
 
-/** Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept. One
- * half keeps the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG:
+/** Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept.
+ * One half keeps the id, the other gets a new one. *added, which may be NULL, tells how many came. MPM_E_ARG:
  * spacing is bad, or more than 2^28 markers would come of it. MPM_E_STATE during a staged step. */
 MPM_API mpm_status mpm_surface_refine(mpm_surface *surface, double spacing, int64_t *added);
 
@@ -129,8 +129,8 @@ MPM_API mpm_status mpm_surface_refine(mpm_surface *surface, double spacing, int6
 MPM_API int64_t mpm_surface_count(const mpm_surface *surface);
 
 /**
- * Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by ascending id,
- * where n is mpm_surface_count(). type and components must match the field.
+ * Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by ascending
+ * id, where n is mpm_surface_count(). type and components must match the field.
  *
  * | field             | type | components | what it is                                              | set |
  * |-------------------|------|------------|---------------------------------------------------------|-----|
@@ -168,8 +168,8 @@ MPM_API mpm_status mpm_surface_set(mpm_surface *surface, const char *field, int3
  * The text names marker and surface, the number of which counts the surfaces of the stepper from 0.
  * MPM_E_STATE: it is in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
  *
- * In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and
- * traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+ * In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure
+ * and traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
  */
 MPM_API mpm_status mpm_stepper_add_surface(mpm_stepper *stepper, mpm_surface *surface);
 

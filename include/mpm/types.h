@@ -174,8 +174,8 @@ enum mpm_wall_value {
   MPM_WALL_OPEN = 1,  /**< a particle that leaves is removed */
   MPM_WALL_FIXED = 2, /**< velocities at the face are zero: it pushes and pulls */
   MPM_WALL_SLIP = 3,  /**< a symmetry plane: it pushes and pulls, without tangential force */
-  /** the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never pulls. What
-   * comes through between nodes, by less than half a cell, it stops particle by particle */
+  /** the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never pulls.
+   * What comes through between nodes, by less than half a cell, it stops particle by particle */
   MPM_WALL_FRICTION = 4,
   /** contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0. Material
    * feels it about a cell and a half before its particles are there */

@@ -1,5 +1,5 @@
-/* Surfaces in implicit steps: forces t = (T |a| + D A0 - p a) at the end of the step, with weights of its start
- * and areas of the displacements as they are. With g = F_inc^-T grad w an area vector changes by
+/* Surfaces in implicit steps: forces t = (T |a| + D A0 - p a) at the end of the step, with weights of its
+ * start and areas of the displacements as they are. With g = F_inc^-T grad w an area vector changes by
  *
  *   da = (a (x) g_b - g_b (x) a) du_b,  dt = P da,  P = T (x) a / |a| - p 1
  *
@@ -9,8 +9,8 @@
 
 #include <math.h>
 
-/* Leaves out the nodes of a marker that are no unknowns, and gives the others their weight. Returns the share of
- * the weight that they had. */
+/* Leaves out the nodes of a marker that are no unknowns, and gives the others their weight. Returns the share
+ * of the weight that they had. */
 static double leave_out(const mpmi_balance *balance, mpmi_marker_nodes *around, int64_t marker) {
   const int64_t first = marker * around->nodes, end = first + around->nodes;
   double all = 0.0, left = 0.0;
@@ -25,8 +25,8 @@ static double leave_out(const mpmi_balance *balance, mpmi_marker_nodes *around, 
   return left != 0.0 ? left / all : 0.0;
 }
 
-/* Nodes that particles reach by rounding alone are no unknowns, nor are those of rigid particles in quasi-static
- * steps; more than this share of a force is not lost by rounding. */
+/* Nodes that particles reach by rounding alone are no unknowns, nor are those of rigid particles in
+ * quasi-static steps; more than this share of a force is not lost by rounding. */
 static const double WEIGHT_ROUNDING = 1e-8;
 
 mpm_status mpmi_surface_loads_find(mpmi_balance *balance) {

@@ -10,8 +10,8 @@
  *
  *   contact   from format 3 on: how many rules there are and how many pairs of bodies, and these
  *
- *   surfaces  from format 3 on: how many there are; of each its body, which is compared, how many markers it has,
- *             the next id, and the markers
+ *   surfaces  from format 3 on: how many there are; of each its body, which is compared, how many markers it
+ *             has, the next id, and the markers
  *
  *   blocks    if the state is sorted: coordinates and, from format 3 on, body of the blocks with slots, by
  *             Morton key and body; then for each set the first slot in each of these blocks, and the number
@@ -105,8 +105,8 @@ void mpmi_state_write_obstacles(mpmi_archive *a, const mpm_stepper *s);
 mpm_status mpmi_state_read_obstacles(mpmi_archive *a, const mpm_stepper *s, mpmi_state_obstacle *saved);
 void mpmi_state_take_obstacles(const mpm_stepper *s, const mpmi_state_obstacle *saved);
 
-/* Surfaces (state_surfaces.c): markers are read into an array with one item for each surface, and taken over in
- * exchange for those that were there. The caller frees what the array has. */
+/* Surfaces (state_surfaces.c): markers are read into an array with one item for each surface, and taken over
+ * in exchange for those that were there. The caller frees what the array has. */
 _Static_assert(sizeof(mpmi_marker) == 27 * 8, "part of the format");
 void mpmi_state_write_surfaces(mpmi_archive *a, const mpm_stepper *s);
 mpm_status mpmi_state_read_surfaces(mpmi_archive *a, const mpm_stepper *s, mpmi_markers *saved);

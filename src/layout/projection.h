@@ -1,6 +1,6 @@
 /* Projections of particles onto nodes. Beside the one with the forces there are those of velocity alone:
- * before it for the strain of USF, after it for the strain of MUSL, and for the corrections of XPIC and FMPM; and
- * that of accelerations for implicit steps. */
+ * before it for the strain of USF, after it for the strain of MUSL, and for the corrections of XPIC and FMPM;
+ * and that of accelerations for implicit steps. */
 #ifndef MPMI_PROJECTION_H
 #define MPMI_PROJECTION_H
 

@@ -68,8 +68,8 @@ int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x) {
   return 1;
 }
 
-/* Contact acts on nodes, and a corner that is sharper than a cell may come through between them. The plane of a
- * friction wall then stops the particle itself, without friction, and takes the momentum that it stops. */
+/* Contact acts on nodes, and a corner that is sharper than a cell may come through between them. The plane of
+ * a friction wall then stops the particle itself, without friction, and takes the momentum that it stops. */
 static int32_t stop_at_wall(mpmi_batch *b, int64_t slot, int32_t k, double *x) {
   const mpmi_settings *settings = b->step->settings;
   const int32_t above = *x > settings->grid->upper[k];

@@ -96,8 +96,8 @@ double mpmi_marker_invert(double M[3][3], double inverse[3][3]);
 mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
 
 /* ---- motion.c ---------------------------------------------------------------------------------------- */
-/* Returns 1 when a position beyond a face on axis k stands on a wall, and puts it there: by rounding, or where
- * it came through between the nodes of a friction wall. */
+/* Returns 1 when a position beyond a face on axis k stands on a wall, and puts it there: by rounding, or
+ * where it came through between the nodes of a friction wall. */
 int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x);
 /* Counts what friction walls did to particles themselves in with the step's impulses and dissipation. */
 void mpmi_stops_report(mpmi_step *step);

@@ -1,5 +1,5 @@
-/* Surfaces in a step (docs/theory.md): their loads, the nodes around their markers, forces on nodes, and their
- * motion.
+/* Surfaces in a step (docs/theory.md): their loads, the nodes around their markers, forces on nodes, and
+ * their motion.
  *
  * A marker on a face has weights on nodes that hardly any particle reaches, or none: a force there would be
  * lost or would accelerate hardly any mass. Weights w_i become smaller in proportion to a small mass, and are
@@ -141,8 +141,8 @@ typedef struct surface_job {
   const mpmi_nodal *nodes;
 } surface_job;
 
-/* Returns the slot of a node of the surface's body by its index, or that of its original on a periodic axis, or
- * -1. */
+/* Returns the slot of a node of the surface's body by its index, or that of its original on a periodic axis,
+ * or -1. */
 static int64_t slot_of(const surface_job *job, const int64_t *index) {
   const mpmi_blocks *blocks = &job->step->layout->blocks;
   const mpm_grid *grid = blocks->grid;

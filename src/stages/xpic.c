@@ -1,17 +1,17 @@
 /* Corrections of nodal velocities by projecting them from the particles again and again. With S the
  * interpolation to particles and S+ the mass-weighted projection to nodes:
  *
- * XPIC(m) (Hammerquist & Nairn 2017): the new velocity is (I - (I - S S+)^m) v_p + dt S a. Expanded, its first
- * part is S v^ with
+ * XPIC(m) (Hammerquist & Nairn 2017): the new velocity is (I - (I - S S+)^m) v_p + dt S a. Expanded, its
+ * first part is S v^ with
  *
  *   v^ = m sum_r (-1)^(r+1) v_r,   v_1 = v_i,   v_r = (m - r + 1) / r S+ S v_r-1
  *
  * PIC has S v_i in its place (m = 1). What is gathered at the end of a step is S (v_i + dt a), so that S (v^
  * - v_i) remains: it is made here. The terms obey the boundary conditions that are linear: walls and images.
  *
- * FMPM(k) (Nairn & Hammerquist 2021): the new velocity is S v(k), where v(k) are the first k terms of a series
- * for the inverse of the full mass matrix on the updated momentum. S+ S is that matrix over the lumped one,
- * and so the series is the iteration
+ * FMPM(k) (Nairn & Hammerquist 2021): the new velocity is S v(k), where v(k) are the first k terms of a
+ * series for the inverse of the full mass matrix on the updated momentum. S+ S is that matrix over the lumped
+ * one, and so the series is the iteration
  *
  *   v(1) = v~,   v(r) = v(r-1) + v~ - S+ S v(r-1)
  *
@@ -108,8 +108,8 @@ static void next_velocity(void *data, int64_t k) {
 static const correction xpic = {first_term, next_term, MPMI_PROJECT_CORRECTION},
                         full = {first_velocity, next_velocity, MPMI_PROJECT_FULL};
 
-/* Each projection of FMPM has the whole momentum of the velocities before it. So what the boundary gives in the
- * last one, which is subtracted, is what v(k) lacks of it. */
+/* Each projection of FMPM has the whole momentum of the velocities before it. So what the boundary gives in
+ * the last one, which is subtracted, is what v(k) lacks of it. */
 static double boundary_share(const correction *by, const xpic_job *job, int32_t order, int32_t r) {
   if (by == &full) return r == order ? -1.0 : 0.0;
   return job->scale * share_of(order, r);

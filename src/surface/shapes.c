@@ -95,8 +95,8 @@ mpm_status mpm_surface_add_polyline(mpm_surface *s, int64_t n, const double *pos
 }
 
 /* ---- triangles ----------------------------------------------------------------------------------------- */
-/* A parallelogram in the place of a triangle between the edges u and v: of the same centre and area, and about
- * as far across in each direction. */
+/* A parallelogram in the place of a triangle between the edges u and v: of the same centre and area, and
+ * about as far across in each direction. */
 static void take_edges(mpmi_marker *m, const double *u, const double *v) {
   for (int32_t k = 0; k < 3; ++k) {
     m->edge[0][k] = 0.375 * (u[k] + v[k]);

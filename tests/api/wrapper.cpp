@@ -14,8 +14,9 @@ template <class T>
 constexpr bool moves_only = std::is_nothrow_move_constructible_v<T> &&std::is_nothrow_move_assignable_v<T> &&
                             !std::is_copy_constructible_v<T> && !std::is_copy_assignable_v<T>;
 static_assert(moves_only<mpm::context> && moves_only<mpm::grid> && moves_only<mpm::material> &&
-              moves_only<mpm::particles> && moves_only<mpm::obstacle> && moves_only<mpm::surface> && moves_only<mpm::stepper> &&
-              moves_only<mpm::series> && moves_only<mpm::view<double>> && moves_only<mpm::staged_step>);
+              moves_only<mpm::particles> && moves_only<mpm::obstacle> && moves_only<mpm::surface> &&
+              moves_only<mpm::stepper> && moves_only<mpm::series> && moves_only<mpm::view<double>> &&
+              moves_only<mpm::staged_step>);
 
 /* Memory of the library goes through these, so that a leak is seen. */
 mpm::context_desc counted(int64_t &blocks) {

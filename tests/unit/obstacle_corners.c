@@ -56,8 +56,8 @@ static int32_t comes_through(const method *how) {
   return how->basis == MPM_BSPLINE3;
 }
 
-/* A corner that falls on a wall stays inside, and so does a marker on its tip; the wall reports all momentum that the body gains, what it
- * stops of particles included, and energy is never made. */
+/* A corner that falls on a wall stays inside, and so does a marker on its tip; the wall reports all momentum
+ * that the body gains, what it stops of particles included, and energy is never made. */
 START_TEST(sharp) {
   const method *how = broad_methods[_i];
   const int32_t upwards = _i % 2;

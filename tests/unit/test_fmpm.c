@@ -419,8 +419,8 @@ START_TEST(far_apart) {
 }
 END_TEST
 
-/* What noise makes of the energy of a block at the largest steps that are taken by default: that of FLIP grows
- * by 4 % at most, and nothing grows more. */
+/* What noise makes of the energy of a block at the largest steps that are taken by default: that of FLIP
+ * grows by 4 % at most, and nothing grows more. */
 START_TEST(noise_does_not_grow) {
   static const struct {
     int32_t scheme, order, every;

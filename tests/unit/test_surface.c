@@ -103,7 +103,8 @@ static resultant resultant_of(int32_t dim, int64_t n, const double *x, const dou
   return sum;
 }
 
-/* What all surfaces give to the nodes, in a step that is then dropped. The block is at rest and has no stress. */
+/* What all surfaces give to the nodes, in a step that is then dropped. The block is at rest and has no
+ * stress. */
 static resultant on_nodes(world *w) {
   int64_t n;
   ck_ok(w, mpm_step_begin(w->stepper, 1e-4));
@@ -914,8 +915,8 @@ static void add_face(const world *w, mpm_surface *s) {
   }
 }
 
-/* The wall takes the whole load, dead or alive; and a load that turns takes few iterations, because its stiffness
- * is that of its force. */
+/* The wall takes the whole load, dead or alive; and a load that turns takes few iterations, because its
+ * stiffness is that of its force. */
 START_TEST(equilibrium_under_loads) {
   const int32_t dim = 1 + _i % 3, follows = _i / 3;
   world w;

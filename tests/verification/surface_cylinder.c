@@ -1,6 +1,6 @@
-/* A thick elastic cylinder (a = 1, b = 2, E = 1, nu = 0.3, plane strain) under an inner pressure of E / 1e5 that a
- * surface carries, wherever it lies on the grid: Lame's displacements, read by markers without area. The whole
- * ring floats freely; one step of Newmark's rule so long that inertia is 1e-5 of the stiffness. */
+/* A thick elastic cylinder (a = 1, b = 2, E = 1, nu = 0.3, plane strain) under an inner pressure of E / 1e5
+ * that a surface carries, wherever it lies on the grid: Lame's displacements, read by markers without area.
+ * The whole ring floats freely; one step of Newmark's rule so long that inertia is 1e-5 of the stiffness. */
 #include "verify.h"
 
 static const double a = 1.0, b = 2.0, E = 1.0, nu = 0.3, p = 1e-5;
