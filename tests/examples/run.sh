@@ -162,6 +162,14 @@ if wanted stacked_blocks; then
   [ -s blocks/stacked_blocks.svg ] || fail "stacked_blocks: stacked_blocks.svg is missing or empty"
 fi
 
+if wanted inflated_tube; then
+  mkdir tube
+  run inflated_tube tube
+  check "stretch of the inner face" "stretch" 2.2 2.3
+  check "pressure" "pressure within" 0 3.5
+  [ -s tube/inflated_tube.svg ] || fail "inflated_tube: inflated_tube.svg is missing or empty"
+fi
+
 if wanted rolling_disc; then
   mkdir slope
   run rolling_disc slope 12
