@@ -105,7 +105,7 @@ mpm_status mpmi_workspace_prepare(mpmi_workspace *work, const mpmi_settings *set
     return status;
   if (mpmi_has_friction_planes(settings)) {
     if ((status = MPMI_RESERVE_MORE(c, work->block_stops, work->block_stops_capacity, blocks))) return status;
-    memset(work->block_stops, 0, (size_t)blocks * sizeof *work->block_stops);
+    if (blocks > 0) memset(work->block_stops, 0, (size_t)blocks * sizeof *work->block_stops);
   }
   mpmi_arena counter = {NULL, 0};
   mpmi_scratch one;
