@@ -1251,6 +1251,12 @@ namespace Mpm {
     public static extern int mpm_particles_fill(IntPtr particles, double* lower, double* upper, int* per_cell,
         InsideFn inside, IntPtr user, long* first_id, long* count);
 
+    /// <summary>Fills what a mesh encloses, as mpm_particles_fill_box() fills a box: triangles in 3-D, edges in
+    /// 2-D.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_fill_mesh(IntPtr particles, long n, double* position, long elements, long*
+        corner, int* per_cell, long* first_id, long* count);
+
     /// <summary>Removes the n particles with the given ids: all or none.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_particles_remove(IntPtr particles, long n, long* ids);

@@ -190,6 +190,23 @@ namespace Mpm {
       });
       return count;
     }
+    /// <summary>Fills what a mesh encloses: position is [dim][n], corner [elements][dim] with numbers of points.</summary>
+    public long FillMesh(double[] position, long[] corner, int[] perCell) {
+      long count = 0;
+      int dim = Dim, points = position.Length / dim, elements = corner.Length / dim;
+      Axes(perCell.Length);
+      Fits("position", position.Length, points * dim);
+      Fits("corner", corner.Length, elements * dim);
+      Call(p => {
+        long n;
+        fixed (double* at = position) fixed (long* of = corner) fixed (int* per = perCell) {
+          int status = Native.mpm_particles_fill_mesh(p, points, at, elements, of, per, null, &n);
+          count = n;
+          return status;
+        }
+      });
+      return count;
+    }
     /// <summary>Fills that part of a box which a function accepts.</summary>
     public long Fill(double[] lower, double[] upper, int[] perCell, InsideFunction inside) {
       long count = 0;

@@ -1347,6 +1347,21 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_particles_fill
 
+    !> Fills what a mesh encloses, as mpm_particles_fill_box() fills a box: triangles in 3-D, edges in 2-D.
+    function mpm_particles_fill_mesh(particles, n, position, elements, corner, per_cell, first_id, count) bind(c, &
+        name="mpm_particles_fill_mesh") result(answer)
+      import
+      type(c_ptr), value :: particles
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: position(*)
+      integer(c_int64_t), value :: elements
+      integer(c_int64_t), intent(in) :: corner(*)
+      integer(c_int32_t), intent(in) :: per_cell(*)
+      integer(c_int64_t), intent(inout), optional :: first_id
+      integer(c_int64_t), intent(inout), optional :: count
+      integer(c_int32_t) :: answer
+    end function mpm_particles_fill_mesh
+
     !> Removes the n particles with the given ids: all or none.
     function mpm_particles_remove(particles, n, ids) bind(c, name="mpm_particles_remove") result(answer)
       import

@@ -30,6 +30,7 @@ NULLABLE = {
     "mpm_material_state_name": {"name", "unit", "text"}, "mpm_material_update": {"tangent", "symmetric"},
     "mpm_particles_add": {"velocity", "size", "ids", "first_id"}, "mpm_particles_fill_box": {"first_id", "count"},
     "mpm_particles_fill_ball": {"first_id", "count"}, "mpm_particles_fill": {"first_id", "count"},
+    "mpm_particles_fill_mesh": {"first_id", "count"},
     "mpm_particles_field_info": {"field", "type", "components", "writable"}, "mpm_particles_get": {"ids"},
     "mpm_particles_set": {"ids"}, "mpm_stepper_create": {"desc"}, "mpm_step": {"info"}, "mpm_advance": {"info"},
     "mpm_step_end": {"info"}, "mpm_stepper_residuals": {"residual"}, "mpm_stepper_set_contact": {"desc"},

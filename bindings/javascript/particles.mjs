@@ -50,6 +50,20 @@ export class Particles extends Handle {
       ]),
     );
   }
+  fillMesh(position, corner, perCell) {
+    const { dim } = this.grid;
+    return this.arguments((a) => {
+      const points = Math.floor(position.length / dim);
+      const elements = Math.floor(corner.length / dim);
+      return this.#filled(a, 'mpm_particles_fill_mesh', [
+        BigInt(points),
+        a.array('f64', position, points * dim, 'position'),
+        BigInt(elements),
+        a.array('i64', corner, elements * dim, 'corner'),
+        a.array('i32', perCell, dim, 'perCell'),
+      ]);
+    });
+  }
   fill(lower, upper, perCell, inside) {
     const { dim } = this.grid;
     return this.arguments((a) => {

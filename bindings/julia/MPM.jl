@@ -1187,8 +1187,8 @@ one lattice cell, so that domains of GIMP fill the body. The ids of the new part
 *count - 1; both pointers may be NULL.
 
 What a shape has beyond the grid is left out, on periodic axes too, as symmetry planes want it: *count tells how many
-particles there are. That holds for all three fills. per_cell is 1 to 64, and a box has at most 2^32 lattice points,
-in the shape or not.
+particles there are. That holds for all fills. per_cell is 1 to 64, and a box has at most 2^32 lattice points, in the
+shape or not.
 
 MPM_E_ARG: a bound is not finite, lower >= upper on an axis, the box does not meet the grid, or a limit is exceeded.
 """
@@ -1212,6 +1212,28 @@ Fills that part of a box which the callback accepts, as mpm_particles_fill_box()
 function mpm_particles_fill(particles, lower, upper, per_cell, inside, user, first_id, count)
     return ccall((:mpm_particles_fill, libmpm), Int32, (Ptr{mpm_particles}, Ptr{Float64}, Ptr{Float64}, Ptr{Int32}, Ptr{Cvoid}, Ptr{Cvoid}, Ptr{Int64}, Ptr{Int64}),
         particles, lower, upper, per_cell, inside, user, first_id, count)
+end
+
+"""
+Fills what a mesh encloses, as mpm_particles_fill_box() fills a box: triangles in 3-D, edges in 2-D.
+
+- position: [dim][n] of the points; n is 1 to 2^31 - 1.
+- corner: corner[dim * i + j] is the number of corner j of element i, of `elements`, 1 to 2^31 - 1. In 3-D the corners
+  go counter-clockwise as seen from outside, in 2-D the outline goes counter-clockwise round the body. A mesh that is
+  turned inside out encloses the same. Shells within that are turned the other way bound cavities.
+- Points with the same coordinates are one point, so that triangles as files hold them need no sorting out.
+
+A particle comes wherever the generalised winding number is above 1/2 or below -1/2 (Jacobson, Kavan & Sorkine-Hornung
+2013, Robust inside-outside segmentation using generalized winding numbers, ACM Trans. Graph. 32(4), 33). Bodies that
+overlap are filled once. Holes do no harm as long as they are small beside the body, but a mesh without any costs far
+less time. A lattice point on the mesh itself may be in or out. The mesh is read during the call only.
+
+MPM_E_ARG: a position is not finite, a corner does not exist, the mesh is flat or does not meet the grid, or a limit
+is exceeded. MPM_E_UNSUPPORTED: the grid is 1-D. Nothing is then added.
+"""
+function mpm_particles_fill_mesh(particles, n, position, elements, corner, per_cell, first_id, count)
+    return ccall((:mpm_particles_fill_mesh, libmpm), Int32, (Ptr{mpm_particles}, Int64, Ptr{Float64}, Int64, Ptr{Int64}, Ptr{Int32}, Ptr{Int64}, Ptr{Int64}),
+        particles, n, position, elements, corner, per_cell, first_id, count)
 end
 
 """
@@ -2249,25 +2271,25 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     mpm_material_state_count, mpm_material_state_name, mpm_batch_field, mpm_material_desc_init,
     mpm_material_create_custom, mpm_material_update, mpm_material_destroy, mpm_particles_create,
     mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball, mpm_particles_fill,
-    mpm_particles_remove, mpm_particles_count, mpm_particles_field_info, mpm_particles_add_field, mpm_particles_map,
-    mpm_particles_get, mpm_particles_get_f32, mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic,
-    mpm_particles_reset_reference, mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init,
-    mpm_stepper_create, mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure,
-    mpm_stepper_set_time, mpm_stepper_set_motion, mpm_stepper_set_wall, mpm_stepper_set_acceleration,
-    mpm_stepper_set_force, mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver,
-    mpm_stepper_set_progress, mpm_stable_dt, mpm_step, mpm_advance_desc_init, mpm_advance, mpm_stepper_profile,
-    mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin, mpm_step_grid, mpm_step_end, mpm_step_abort,
-    mpm_grid_map, mpm_stepper_wall_reaction, mpm_stepper_particles_reaction, mpm_stepper_wall_impulse,
-    mpm_stepper_particles_impulse, mpm_stepper_set_body, mpm_stepper_body, mpm_contact_desc_init,
-    mpm_stepper_set_contact, mpm_stepper_set_friction, mpm_stepper_contact_info, mpm_obstacle_desc_init,
-    mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle,
-    mpm_obstacle_set_motion, mpm_obstacle_set_contact, mpm_obstacle_set_pose, mpm_obstacle_get_pose,
-    mpm_obstacle_set_load, mpm_obstacle_contact_info, mpm_surface_desc_init, mpm_surface_create, mpm_surface_destroy,
-    mpm_surface_configure, mpm_surface_set_traction, mpm_surface_add, mpm_surface_add_polyline,
-    mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine, mpm_surface_count, mpm_surface_get,
-    mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface, mpm_state_size, mpm_state_save,
-    mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file, mpm_state_hash, mpm_write_particles,
-    mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid, mpm_write_grid_to, mpm_series_open,
-    mpm_series_append, mpm_series_close
+    mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
+    mpm_particles_add_field, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32, mpm_particles_set,
+    mpm_particles_set_all, mpm_particles_set_geostatic, mpm_particles_reset_reference, mpm_operator_get_info,
+    mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create, mpm_stepper_destroy,
+    mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure, mpm_stepper_set_time, mpm_stepper_set_motion,
+    mpm_stepper_set_wall, mpm_stepper_set_acceleration, mpm_stepper_set_force, mpm_stepper_set_velocity_bc,
+    mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver, mpm_stepper_set_progress, mpm_stable_dt, mpm_step,
+    mpm_advance_desc_init, mpm_advance, mpm_stepper_profile, mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin,
+    mpm_step_grid, mpm_step_end, mpm_step_abort, mpm_grid_map, mpm_stepper_wall_reaction,
+    mpm_stepper_particles_reaction, mpm_stepper_wall_impulse, mpm_stepper_particles_impulse, mpm_stepper_set_body,
+    mpm_stepper_body, mpm_contact_desc_init, mpm_stepper_set_contact, mpm_stepper_set_friction,
+    mpm_stepper_contact_info, mpm_obstacle_desc_init, mpm_obstacle_create, mpm_obstacle_destroy,
+    mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle, mpm_obstacle_set_motion, mpm_obstacle_set_contact,
+    mpm_obstacle_set_pose, mpm_obstacle_get_pose, mpm_obstacle_set_load, mpm_obstacle_contact_info,
+    mpm_surface_desc_init, mpm_surface_create, mpm_surface_destroy, mpm_surface_configure, mpm_surface_set_traction,
+    mpm_surface_add, mpm_surface_add_polyline, mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine,
+    mpm_surface_count, mpm_surface_get, mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface,
+    mpm_state_size, mpm_state_save, mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file,
+    mpm_state_hash, mpm_write_particles, mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid,
+    mpm_write_grid_to, mpm_series_open, mpm_series_append, mpm_series_close
 
 end

@@ -133,6 +133,19 @@ public:
                              &made.first, &made.count));
     return made;
   }
+  /** Fills what a mesh encloses: see mpm_particles_fill_mesh(). position is [dim][n], corner [elements][dim]. */
+  id_range fill_mesh(span<const double> position, span<const int64_t> corner, span<const int32_t> per_cell) {
+    const auto dim = static_cast<size_t>(core().grid->dim);
+    expect_axes("per_cell", per_cell.size());
+    const auto n = static_cast<int64_t>(position.size() / dim),
+               elements = static_cast<int64_t>(corner.size() / dim);
+    detail::expect_size("position", position.size(), n * core().grid->dim);
+    detail::expect_size("corner", corner.size(), elements * core().grid->dim);
+    id_range made{};
+    check(mpm_particles_fill_mesh(core().handle, n, detail::not_null(position), elements,
+                                  detail::not_null(corner), per_cell.data(), &made.first, &made.count));
+    return made;
+  }
   /** Removes particles by id: see mpm_particles_remove(). */
   void remove(span<const int64_t> ids) {
     check(mpm_particles_remove(core().handle, static_cast<int64_t>(ids.size()), detail::not_null(ids)));

@@ -13,4 +13,9 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
 /* Refuses n more particles when slots or numbers for ids would run out. */
 mpm_status mpmi_check_room(const mpm_particles *set, int64_t n, int32_t numbered);
 
+/* Fills that part of a box which a function accepts: mpm_particles_fill() within a call. */
+mpm_status mpmi_fill_part(mpm_particles *set, const double *lower, const double *upper,
+                          const int32_t *per_cell, mpm_inside_fn inside, void *user, int64_t *first_id,
+                          int64_t *count);
+
 #endif

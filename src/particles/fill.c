@@ -200,6 +200,15 @@ static mpm_status check_centre(const mpm_particles *set, const double *centre) {
   return MPM_OK;
 }
 
+mpm_status mpmi_fill_part(mpm_particles *set, const double *lower, const double *upper,
+                          const int32_t *per_cell, mpm_inside_fn inside, void *user, int64_t *first_id,
+                          int64_t *count) {
+  lattice on;
+  mpm_status status = check_box(set, lower, upper);
+  if (!status) status = lay_lattice(set, lower, upper, per_cell, &on);
+  return status ? status : fill(set, &on, inside, user, first_id, count);
+}
+
 mpm_status mpm_particles_fill(mpm_particles *particles, const double *lower, const double *upper,
                               const int32_t *per_cell, mpm_inside_fn inside, void *user, int64_t *first_id,
                               int64_t *count) {
@@ -212,10 +221,7 @@ mpm_status mpm_particles_fill(mpm_particles *particles, const double *lower, con
                      : !upper ? "upper"
                      : inside ? "per_cell"
                               : "inside");
-  lattice on;
-  status = check_box(particles, lower, upper);
-  if (!status) status = lay_lattice(particles, lower, upper, per_cell, &on);
-  return status ? status : fill(particles, &on, inside, user, first_id, count);
+  return mpmi_fill_part(particles, lower, upper, per_cell, inside, user, first_id, count);
 }
 
 static mpm_status inside_box(void *user, int32_t dim, int64_t n, int64_t ld, const double *position,

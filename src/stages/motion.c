@@ -89,8 +89,8 @@ static int32_t stop_at_wall(mpmi_batch *b, int64_t slot, int32_t k, double *x) {
 
 void mpmi_stops_report(mpmi_step *step) {
   enum { ROWS = sizeof(mpmi_stops) / sizeof(double), ENERGY = offsetof(mpmi_stops, energy) / sizeof(double) };
-  if (!mpmi_has_friction_planes(step->settings)) return;
   const mpmi_worklist *blocks = &step->layout->worklist[0];
+  if (!mpmi_has_friction_planes(step->settings) || !blocks->count) return;
   double sum[ROWS];
   for (int32_t i = 0; i < ROWS; ++i)
     sum[i] = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, (const double *)step->work->block_stops + i, ROWS,

@@ -43,6 +43,14 @@ void adding_and_removing() {
   const mpm::id_range half = filled.fill({1.0, 1.0}, {2.0, 2.0}, {1, 1},
                                          [&](const double *p) { return p[0] - p[1] > 1e-9 * slope; });
   CHECK(half.count == 6 && filled.count() == 64 + ball.count + 6);
+  mpm::particles enclosed(grid, rubber);
+  const mpm::id_range triangle =
+      enclosed.fill_mesh({1.0, 2.0, 1.0, 1.01, 1.0, 2.01}, std::vector<int64_t>{0, 1, 1, 2, 2, 0}, {2, 2});
+  CHECK(triangle.first == 0 && triangle.count > 24 && triangle.count < 40);
+  CHECK(refused(MPM_E_ARG, "corner has 3 values, must have 2", [&] {
+    enclosed.fill_mesh({1.0, 2.0, 1.0, 1.0, 1.0, 2.0}, std::vector<int64_t>{0, 1, 1}, {2, 2});
+  }));
+  CHECK(refused(MPM_E_ARG, "elements is 0", [&] { enclosed.fill_mesh({1.0, 2.0}, {}, {2, 2}); }));
   CHECK(refused(MPM_E_ARG, "upper has 3 values, must have 2", [&] {
     filled.fill_box({1.0, 1.0}, {2.0, 2.0, 2.0}, {2, 2});
   }));

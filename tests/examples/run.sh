@@ -162,6 +162,15 @@ if wanted stacked_blocks; then
   [ -s blocks/stacked_blocks.svg ] || fail "stacked_blocks: stacked_blocks.svg is missing or empty"
 fi
 
+if wanted stl_body; then
+  mkdir knot
+  run stl_body knot
+  check "volume" "volume within" 0 0.5
+  check "floor" "lowest" 0 0.02
+  check "rebound" "thrown back with" 0.2 1.5
+  [ -s knot/stl_body.svg ] || fail "stl_body: stl_body.svg is missing or empty"
+fi
+
 if wanted inflated_tube; then
   mkdir tube
   run inflated_tube tube

@@ -79,6 +79,7 @@ namespace Mpm {
         Refuses(MPM_E_NOT_FOUND, "velocity", () => scene.Set.Get<double>("velocty"));
         Refuses(MPM_E_ARG, "-1", () => new Context(-1));
         Throws<ArgumentException>(() => scene.Set.FillBox(new[] { 0.1 }, new[] { 0.9, 0.9 }, new[] { 2, 2 }), "lengths");
+        Throws<ArgumentException>(() => scene.Set.FillMesh(new[] { 0.1, 0.9, 0.1 }, new long[] { 0, 1 }, new[] { 2, 2 }), "points");
         Throws<ArgumentException>(() => scene.Set.Get<float>("velocity"), "type");
         scene.Stepper.Dispose();
         Throws<ObjectDisposedException>(() => scene.Stepper.Step(1e-3), "disposed");
@@ -120,6 +121,9 @@ namespace Mpm {
             for (long i = 0; i < x.Count; i++) inside[i, 0] = (byte)(x[i, 0] < x[i, 1] ? 1 : 0);
             return MPM_OK;
           }), 3L, "a triangle");
+        using (var meshed = new Scene())
+          Is(meshed.Set.FillMesh(new[] { 0.1, 0.26, 0.1, 0.1, 0.1, 0.26 }, new long[] { 0, 1, 1, 2, 2, 0 },
+            new[] { 4, 4 }) > 0, true, "what a mesh encloses");
       }
     }
 

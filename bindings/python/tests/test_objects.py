@@ -27,6 +27,24 @@ class Filling(unittest.TestCase):
         np.testing.assert_array_equal(one["position"], np.concatenate(told))
 
 
+    def test_meshes(self):
+        context = mpm.Context()
+        corners = np.array([[x, y, z] for x in (0.3, 0.7) for y in (0.3, 0.7) for z in (0.3, 0.7)])
+        faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+                 [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+        grid = context.grid(dim=3, cells=20, spacing=0.05)
+        law = context.material("rigid", density=1e3)
+        box = context.particles(grid, law).fill_box(corners[0], corners[7])
+        mesh = context.particles(grid, law).fill_mesh(corners, faces)
+        np.testing.assert_array_equal(mesh["position"], box["position"])
+        for bad in ((corners[:, :2], faces), (corners, np.array(faces)[:, :2]), (corners, np.array(faces) + 0.5)):
+            with self.assertRaises(ValueError):
+                mesh.fill_mesh(*bad)
+        with self.assertRaisesRegex(mpm.Error, "corner 8"):
+            mesh.fill_mesh(corners, [[0, 1, 8]])
+        self.assertEqual(len(mesh), len(box))
+
+
 class Lifetimes(unittest.TestCase):
     def test_any_order_of_ends(self):
         for order in ((0, 1, 2, 3, 4), (4, 3, 2, 1, 0), (2, 4, 0, 3, 1), (1, 0, 4, 2, 3)):

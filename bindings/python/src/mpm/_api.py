@@ -950,6 +950,7 @@ FUNCTIONS = {
     "mpm_particles_fill_box": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, c_void_p, c_void_p]),
     "mpm_particles_fill_ball": (c_int32, [c_void_p, c_void_p, c_double, c_void_p, c_void_p, c_void_p]),
     "mpm_particles_fill": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, inside_fn, c_void_p, c_void_p, c_void_p]),
+    "mpm_particles_fill_mesh": (c_int32, [c_void_p, c_int64, c_void_p, c_int64, c_void_p, c_void_p, c_void_p, c_void_p]),
     "mpm_particles_remove": (c_int32, [c_void_p, c_int64, c_void_p]),
     "mpm_particles_count": (c_int64, [c_void_p]),
     "mpm_particles_field_info": (c_int32, [c_void_p, c_int32, c_void_p, c_void_p, c_void_p, c_void_p]),
@@ -1253,8 +1254,8 @@ one lattice cell, so that domains of GIMP fill the body. The ids of the new part
 *count - 1; both pointers may be NULL.
 
 What a shape has beyond the grid is left out, on periodic axes too, as symmetry planes want it: *count tells how many
-particles there are. That holds for all three fills. per_cell is 1 to 64, and a box has at most 2^32 lattice points,
-in the shape or not.
+particles there are. That holds for all fills. per_cell is 1 to 64, and a box has at most 2^32 lattice points, in the
+shape or not.
 
 MPM_E_ARG: a bound is not finite, lower >= upper on an axis, the box does not meet the grid, or a limit is exceeded.""",
     "mpm_particles_fill_ball": """mpm_status mpm_particles_fill_ball(mpm_particles *particles, const double *centre, double radius, const int32_t
@@ -1266,6 +1267,24 @@ The centre lies in the grid.""",
 *per_cell, mpm_inside_fn inside, void *user, int64_t *first_id, int64_t *count)
 
 Fills that part of a box which the callback accepts, as mpm_particles_fill_box() fills the whole.""",
+    "mpm_particles_fill_mesh": """mpm_status mpm_particles_fill_mesh(mpm_particles *particles, int64_t n, const double *position, int64_t elements,
+const int64_t *corner, const int32_t *per_cell, int64_t *first_id, int64_t *count)
+
+Fills what a mesh encloses, as mpm_particles_fill_box() fills a box: triangles in 3-D, edges in 2-D.
+
+- position: [dim][n] of the points; n is 1 to 2^31 - 1.
+- corner: corner[dim * i + j] is the number of corner j of element i, of `elements`, 1 to 2^31 - 1. In 3-D the corners
+  go counter-clockwise as seen from outside, in 2-D the outline goes counter-clockwise round the body. A mesh that is
+  turned inside out encloses the same. Shells within that are turned the other way bound cavities.
+- Points with the same coordinates are one point, so that triangles as files hold them need no sorting out.
+
+A particle comes wherever the generalised winding number is above 1/2 or below -1/2 (Jacobson, Kavan & Sorkine-Hornung
+2013, Robust inside-outside segmentation using generalized winding numbers, ACM Trans. Graph. 32(4), 33). Bodies that
+overlap are filled once. Holes do no harm as long as they are small beside the body, but a mesh without any costs far
+less time. A lattice point on the mesh itself may be in or out. The mesh is read during the call only.
+
+MPM_E_ARG: a position is not finite, a corner does not exist, the mesh is flat or does not meet the grid, or a limit
+is exceeded. MPM_E_UNSUPPORTED: the grid is 1-D. Nothing is then added.""",
     "mpm_particles_remove": """mpm_status mpm_particles_remove(mpm_particles *particles, int64_t n, const int64_t *ids)
 
 Removes the n particles with the given ids: all or none. MPM_E_NOT_FOUND: an id is not in the set. MPM_E_ARG: an id is

@@ -92,6 +92,19 @@ class Particles(Handle):
         centre, per_cell = doubles(centre, self.dim), self._per_cell(per_cell)
         return self._fill(lib.mpm_particles_fill_ball, address(centre), radius, address(per_cell))
 
+    @documented("mpm_particles_fill_mesh")
+    def fill_mesh(self, position, corner, per_cell=2):
+        """Fills what a mesh encloses; position is (n, dim), corner (elements, dim) of numbers of points; returns the set."""
+        at = np.asarray(position, float)
+        elements = np.asarray(corner)
+        if at.ndim != 2 or at.shape[1] != self.dim:
+            raise ValueError(f"position is {at.shape}, must be (n, {self.dim})")
+        if elements.ndim != 2 or elements.shape[1] != self.dim or elements.dtype.kind not in "iu":
+            raise ValueError(f"corner is {elements.shape} of {elements.dtype}, must be integers (elements, {self.dim})")
+        at, elements = np.ascontiguousarray(at.T), np.ascontiguousarray(elements, np.int64)
+        per_cell = self._per_cell(per_cell)
+        return self._fill(lib.mpm_particles_fill_mesh, at.shape[1], address(at), len(elements), address(elements), address(per_cell))
+
     @documented("mpm_particles_fill")
     def fill(self, lower, upper, inside, per_cell=2):
         """Fills what of a box the function inside(x) accepts: x is (n, dim), the answer (n,) of bool; returns the set."""

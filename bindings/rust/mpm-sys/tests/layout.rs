@@ -414,6 +414,7 @@ fn functions_are_there() {
         mpm_particles_fill_box as *const (),
         mpm_particles_fill_ball as *const (),
         mpm_particles_fill as *const (),
+        mpm_particles_fill_mesh as *const (),
         mpm_particles_remove as *const (),
         mpm_particles_count as *const (),
         mpm_particles_field_info as *const (),

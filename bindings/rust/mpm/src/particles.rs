@@ -146,6 +146,31 @@ impl Particles {
         Ok(out)
     }
 
+    /// Fills what a mesh encloses: `position` is `[dim][n]`, `corner` `[elements][dim]` with numbers of points.
+    pub fn fill_mesh(&mut self, position: &[f64], corner: &[i64], per_cell: &[i32]) -> Result<Filled> {
+        self.axes(&[per_cell.len()])?;
+        let (n, elements) = (position.len() / self.dim(), corner.len() / self.dim());
+        fits("position", position.len(), n * self.dim())?;
+        fits("corner", corner.len(), elements * self.dim())?;
+        let mut out = Filled { first_id: 0, count: 0 };
+        let entry = self.context.enter()?;
+        // SAFETY: all lengths were checked, and the library sees that corners exist.
+        let status = unsafe {
+            sys::mpm_particles_fill_mesh(
+                self.handle,
+                n as i64,
+                position.as_ptr(),
+                elements as i64,
+                corner.as_ptr(),
+                per_cell.as_ptr(),
+                &mut out.first_id,
+                &mut out.count,
+            )
+        };
+        entry.done(status)?;
+        Ok(out)
+    }
+
     /// Fills that part of a box which a function accepts: it is shown positions, and sets `inside[i]` to 1 or 0.
     pub fn fill(
         &mut self,

@@ -12,6 +12,9 @@ fn fields_and_views() {
     let mut set = Particles::new(&grid, &jelly).unwrap();
     assert_eq!(set.fill_ball(&[0.5, 0.5], 0.2, &[2, 2]).unwrap(), Filled { first_id: 0, count: set.len() as i64 });
     assert_eq!(set.fill_ball(&[0.5], 0.2, &[2, 2]).unwrap_err().status(), MPM_E_ARG);
+    assert!(set.fill_mesh(&[0.2, 0.8, 0.2, 0.2, 0.2, 0.8], &[0, 1, 1, 2, 2, 0], &[2, 2]).unwrap().count > 0);
+    assert_eq!(set.fill_mesh(&[0.2, 0.8, 0.2], &[0, 1], &[2, 2]).unwrap_err().status(), MPM_E_ARG);
+    assert_eq!(set.fill_mesh(&[0.2, 0.8], &[0, 1], &[2, 2]).unwrap_err().status(), MPM_E_ARG);
     set.add(&[0.1, 0.2, 0.1, 0.2], &[1e-3; 2], Some(&[1.0, 2.0, 3.0, 4.0]), None, Some(&[900, 901])).unwrap();
     assert_eq!(set.get_of::<f64>("velocity", &[901, 900]).unwrap(), [2.0, 1.0, 4.0, 3.0]);
     assert_eq!(set.get::<f64>("deformation_gradient").unwrap().len(), 9 * set.len());
