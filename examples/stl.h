@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* position is [3][3 * triangles], corner [triangles][3]: each triangle has points of its own, as in the file. */
+/* position is [3][3 * triangles], corner [triangles][3]: each triangle has points of its
+ * own, as in the file. */
 typedef struct stl_mesh {
   int64_t triangles;
   double *position;

@@ -2,9 +2,9 @@
  *
  *   stl_body [directory [file.stl [cells]]]
  *
- * scales the body to .6 m, fills it with particles on a grid of 40 (or `cells`) cells for 1 m, prints volumes and
- * how the body falls, and draws three moments, seen from the front (stl_body.svg), into the directory (default:
- * here). Without a file it writes one, a knot (knot.stl). */
+ * scales the body to .6 m, fills it with particles on a grid of 40 (or `cells`) cells for 1 m, prints volumes
+ * and how the body falls, and draws three moments, seen from the front (stl_body.svg), into the directory
+ * (default: here). Without a file it writes one, a knot (knot.stl). */
 #include <mpm/mpm.h>
 
 #include <math.h>

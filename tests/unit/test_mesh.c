@@ -204,7 +204,7 @@ START_TEST(fans_for_patches) {
 }
 END_TEST
 
-/* As a box in six faces, in any order of corners, shared or not, at any scale: a mesh fills as the box does. */
+/* A box as a mesh, with corners of its own for each triangle, either way round and at any scale. */
 START_TEST(boxes) {
   const double lower[] = {0.6, 1.1, 0.7}, upper[] = {2.4, 2.9, 3.3};
   const int32_t per[] = {3, 2, 1};
@@ -293,7 +293,7 @@ START_TEST(volumes) {
 }
 END_TEST
 
-/* Each lattice point has the answer of the sum over all elements, also where it was taken from a neighbour. */
+/* Each lattice point has the answer of the sum, also where it was taken from a neighbour. */
 START_TEST(points) {
   const double centre[] = {2.03, 1.98, 2.01};
   int64_t wanted = 0;
@@ -427,7 +427,7 @@ START_TEST(every_failing_allocation) {
 }
 END_TEST
 
-/* Any triangles at all, flat ones, the same ones, on the lattice itself: an answer, and the same one again. */
+/* Any triangles at all, flat, equal, on the lattice itself: an answer, and the same one again. */
 START_TEST(any_triangles) {
   uint64_t seed = 11;
   for (int round = 0; round < 300; ++round) {
