@@ -1,11 +1,11 @@
-/* A thick rubber tube is inflated: one quarter of its section in plane strain, the rest by symmetry planes, in
- * quasi-static steps under a pressure that follows the inner face.
+/* A thick rubber tube is inflated: one quarter of its section in plane strain, the rest by symmetry planes,
+ * in quasi-static steps under a pressure that follows the inner face.
  *
  *   inflated_tube [directory]
  *
- * prints pressure and radius of the inner face beside the exact curve of incompressible rubber (Green & Zerna,
- * Theoretical Elasticity, 1954: p / mu = ln(a / b) + (a^2 - b^2) / (2 a^2 b^2), with the stretches a and b of
- * the inner and the outer face), and writes into the directory (default: here) a picture,
+ * prints pressure and radius of the inner face beside the exact curve of incompressible rubber (Green &
+ * Zerna, Theoretical Elasticity, 1954: p / mu = ln(a / b) + (a^2 - b^2) / (2 a^2 b^2), with the stretches a
+ * and b of the inner and the outer face), and writes into the directory (default: here) a picture,
  * inflated_tube.svg. */
 #include <mpm/mpm.h>
 

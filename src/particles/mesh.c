@@ -45,9 +45,9 @@ static mpm_status find_bounds(mpmi_mesh *mesh, int64_t points, const double *pos
                        mesh->lower[k], mesh->upper[k], (int)k);
     longest = fmax(longest, edge);
   }
-  int exponent;
-  frexp(longest, &exponent);
-  mesh->scale = ldexp(1.0, -(exponent > -1000 ? exponent : -1000));
+  mesh->scale = 1.0;
+  while (mesh->scale * longest > 1.0) mesh->scale *= 0.5;
+  while (mesh->scale * longest < 0.5 && mesh->scale < 0x1p1000) mesh->scale *= 2.0;
   for (int32_t k = 0; k < mesh->dim; ++k) {
     mesh->lower[k] *= mesh->scale;
     mesh->upper[k] *= mesh->scale;
