@@ -42,8 +42,8 @@ mpm_status mpmi_mesh_divide(mpmi_mesh *mesh);
 /* The generalised winding number of the mesh round x, which is scaled: 1 inside a closed mesh whose elements
  * look outwards and 0 outside, and between the two near a hole. */
 double mpmi_mesh_winding(const mpmi_mesh *mesh, const double *x);
-/* The part of it that the fan over the holes makes up: the mesh less that fan is closed, so that the rest is
- * a whole number. 0 for a mesh with many holes. */
+/* The part of it that the fan over the holes makes up: the mesh less that fan is closed, so that the rest
+ * is a whole number. 0 for a mesh with many holes. */
 double mpmi_mesh_holes(const mpmi_mesh *mesh, const double *x);
 /* Tells whether that whole number surely is the same at x and at y: no element and no part of the fan lies
  * between the two. The answer is no, too, where a mesh has too many holes to look at. */
