@@ -135,8 +135,8 @@ MPM_API mpm_status mpm_particles_fill(mpm_particles *particles, const double *lo
  *
  * - position: [dim][n] of the points; n is 1 to 2^31 - 1.
  * - corner: corner[dim * i + j] is the number of corner j of element i, of `elements`, 1 to 2^31 - 1. In 3-D
- *   the corners go counter-clockwise as seen from outside, in 2-D the outline goes counter-clockwise round the
- *   body. A mesh that is turned inside out encloses the same. Shells within that are turned the other way
+ *   the corners go counter-clockwise as seen from outside, in 2-D the outline goes counter-clockwise round
+ *   the body. A mesh that is turned inside out encloses the same. Shells within that are turned the other way
  *   bound cavities.
  * - Points with the same coordinates are one point, so that triangles as files hold them need no sorting out.
  *
@@ -146,8 +146,8 @@ MPM_API mpm_status mpm_particles_fill(mpm_particles *particles, const double *lo
  * the body, but a mesh without any costs far less time. A lattice point on the mesh itself may be in or out.
  * The mesh is read during the call only.
  *
- * MPM_E_ARG: a position is not finite, a corner does not exist, the mesh is flat or does not meet the grid, or
- * a limit is exceeded. MPM_E_UNSUPPORTED: the grid is 1-D. Nothing is then added.
+ * MPM_E_ARG: a position is not finite, a corner does not exist, the mesh is flat or does not meet the grid,
+ * or a limit is exceeded. MPM_E_UNSUPPORTED: the grid is 1-D. Nothing is then added.
  */
 MPM_API mpm_status mpm_particles_fill_mesh(mpm_particles *particles, int64_t n, const double *position,
                                            int64_t elements, const int64_t *corner, const int32_t *per_cell,

@@ -133,7 +133,8 @@ public:
                              &made.first, &made.count));
     return made;
   }
-  /** Fills what a mesh encloses: see mpm_particles_fill_mesh(). position is [dim][n], corner [elements][dim]. */
+  /** Fills what a mesh encloses: see mpm_particles_fill_mesh(). position is [dim][n], corner is
+   * [elements][dim]. */
   id_range fill_mesh(span<const double> position, span<const int64_t> corner, span<const int32_t> per_cell) {
     const auto dim = static_cast<size_t>(core().grid->dim);
     expect_axes("per_cell", per_cell.size());
