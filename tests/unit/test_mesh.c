@@ -114,7 +114,7 @@ static double direct(const shape *of, const double *x) {
     for (int32_t j = 0; j < of->dim; ++j) {
       long double length = 0.0L;
       for (int32_t k = 0; k < of->dim; ++k) {
-        d[j][k] = (long double)of->at[of->corner[of->dim * e + j]][k] - x[k];
+        d[j][k] = (long double)of->at[of->corner[of->dim * e + j]][k] - (long double)x[k];
         length += d[j][k] * d[j][k];
       }
       for (int32_t k = 0; k < of->dim; ++k) d[j][k] /= sqrtl(length);
@@ -188,7 +188,7 @@ START_TEST(fans_for_patches) {
   winding_is_the_sum("two", 1.0);
   for (int64_t e = 100; e < 160; ++e) /* a large hole */
     for (int j = 0; j < 3; ++j) s.corner[3 * e + j] = s.corner[3 * e];
-  winding_is_the_sum("with a hole", NAN);
+  winding_is_the_sum("with a hole", NOT_A_NUMBER);
   open_grid(2, 4, 1.0);
   start(&s, 2);
   double outline[600][2];
@@ -200,7 +200,7 @@ START_TEST(fans_for_patches) {
   add_polygon(&s, 600, (const double(*)[2])outline);
   winding_is_the_sum("outline", 1.0);
   s.elements -= 30;
-  winding_is_the_sum("open outline", NAN);
+  winding_is_the_sum("open outline", NOT_A_NUMBER);
 }
 END_TEST
 
@@ -383,7 +383,7 @@ START_TEST(bad_meshes) {
   REFUSED(4, x, 1, corner, per, MPM_E_ARG, "the mesh reaches from 0.5 to 0.5 on axis 2");
   REFUSED(4, x, 4, corner, ((int32_t[]){2, 0, 2}), MPM_E_ARG, "per_cell[1] is 0");
   memcpy(bad, x, sizeof bad);
-  bad[5] = NAN;
+  bad[5] = NOT_A_NUMBER;
   REFUSED(4, bad, 4, corner, per, MPM_E_ARG, "point 1: position[1] is nan");
   bad[5] = -HUGE_VAL;
   REFUSED(4, bad, 4, corner, per, MPM_E_ARG, "point 1: position[1] is -inf");
