@@ -14,7 +14,8 @@ for argument in "$@"; do
 done
 rm -rf "$BUILD/mutate"
 mkdir -p "$BUILD"/mutate/{whole/scratch,logs,trees}
-cp -a Makefile platform.mk include src umat tests "$BUILD/mutate/whole"
+cp -a --parents Makefile platform.mk {bindings/bindings,bindings/javascript/rules,packaging/packaging}.mk include src umat tests \
+  "$BUILD/mutate/whole"
 rm -rf "$BUILD/mutate/whole/tests/examples"
 
 # A fault that the compiler's warnings would catch is no fault: they are off. It must still compile.

@@ -7,7 +7,8 @@ export MUTATE_FAULTS=tests/mutate/slack.txt MPM_ISA=baseline
 copy=$BUILD/slack
 rm -rf "$copy/tests" "$copy/src"
 mkdir -p "$copy/scratch"
-cp -a Makefile platform.mk include src umat tests "$copy"
+cp -a --parents Makefile platform.mk {bindings/bindings,bindings/javascript/rules,packaging/packaging}.mk include src umat tests \
+  "$copy"
 cd "$copy"
 
 program() {
