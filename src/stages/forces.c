@@ -7,24 +7,22 @@
 
 #include <string.h>
 
-_Static_assert(MPMI_CHUNK % (2 * MPMI_LANES) == 0, "a chunk is whole pairs of registers");
+_Static_assert(MPMI_CHUNK % MPMI_LANES == 0, "a chunk is whole registers");
 
-/* Adds the applied force, where there is one, on one axis and takes it off inert slots; gives a number that
- * is 0 if all are finite. Slots come in whole chunks; two sums, so that none waits for the other. */
-static double complete(double *force, const double *applied, const int64_t *id, int64_t n) {
-  mpmi_lanes bad[2] = {{0.0}};
-  for (int64_t p = 0; p < n; p += 2 * MPMI_LANES)
-    for (int32_t half = 0; half < 2; ++half) {
-      const int64_t at = p + half * MPMI_LANES;
-      mpmi_lanes f = mpmi_lanes_load(force + at);
-      mpmi_mask number;
-      memcpy(&number, id + at, sizeof number);
-      if (applied) f += mpmi_lanes_load(applied + at);
-      f = mpmi_lanes_where(number >= 0, f);
-      mpmi_lanes_store(force + at, f);
-      bad[half] += f - f;
-    }
-  return mpmi_lanes_sum(bad[0] + bad[1]);
+/* Adds the applied force, where there is one, on one axis and takes it off inert slots; gives whether one is
+ * not finite. Slots come in whole chunks. */
+static int32_t complete(double *force, const double *applied, const int64_t *id, int64_t n) {
+  mpmi_mask bad = {0}; /* bits of what is not 0: a sum would wait for itself */
+  for (int64_t p = 0; p < n; p += MPMI_LANES) {
+    mpmi_lanes f = mpmi_lanes_load(force + p);
+    mpmi_mask number;
+    memcpy(&number, id + p, sizeof number);
+    if (applied) f += mpmi_lanes_load(applied + p);
+    f = mpmi_lanes_where(~(number >> 63), f); /* compilers for SSE2 would take a comparison apart */
+    mpmi_lanes_store(force + p, f);
+    bad |= (mpmi_mask)(f - f);
+  }
+  return mpmi_lanes_any(bad, 1) != 0;
 }
 
 static void name_bad_forces(int32_t m, const mpm_particle_batch *batch, const double *force,
@@ -57,10 +55,10 @@ static void forces_of_batch(void *user, int32_t m, const mpm_particle_batch *bat
     return;
   const double *applied =
       set->field[MPMI_APPLIED_FORCE].present ? mpmi_f64(set, MPMI_APPLIED_FORCE, 0) + begin : NULL;
-  double bad = 0.0;
+  int32_t bad = 0;
   for (int32_t k = 0; k < batch->dim; ++k)
-    bad += complete(force + k * ld, applied ? applied + k * ld : NULL, batch->id, n);
-  if (bad != 0.0) name_bad_forces(m, batch, force, failure);
+    bad |= complete(force + k * ld, applied ? applied + k * ld : NULL, batch->id, n);
+  if (bad) name_bad_forces(m, batch, force, failure);
 }
 
 mpm_status mpmi_forces_stage(mpmi_step *step, double t) {

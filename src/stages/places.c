@@ -21,24 +21,31 @@ static reach reach_of(const mpmi_blocks *blocks, int64_t block, int32_t k) {
                  .high = cover->high[k]};
 }
 
-static mpmi_mask are_near(mpmi_lanes x, const reach *of) {
-  if (!(of->period > 0.0)) return (x >= of->low) & (x <= of->high);
+/* How far x is beyond the reach: 0 within it, not a number where x is none. It is no mask, because compilers
+ * for SSE2 take masks of 64 bits apart. */
+MPMI_INLINE mpmi_lanes excess(int32_t periodic, mpmi_lanes x, const reach *of) {
+  const mpmi_lanes none = {0.0};
+  if (!periodic) return mpmi_lanes_max(of->low - x, none) + mpmi_lanes_max(x - of->high, none);
   mpmi_lanes away = x - of->centre;
   away -= of->period * mpmi_lanes_round(away * of->inverse_period);
-  return mpmi_lanes_abs(away) <= of->half;
+  return mpmi_lanes_max(mpmi_lanes_abs(away) - of->half, none);
+}
+
+MPMI_INLINE int32_t any_beyond(int32_t periodic, const double *x, const reach *of, int64_t n) {
+  mpmi_mask bits = {0}; /* of all that is not 0: a sum would wait for itself */
+  for (int64_t p = 0; p < n; p += MPMI_LANES) bits |= (mpmi_mask)excess(periodic, mpmi_lanes_load(x + p), of);
+  return mpmi_lanes_any(bits, 1) != 0;
 }
 
 /* Nothing but a host that writes through a view for reading can bring a particle there, where its stencil
  * would meet nodes that nobody looks after, or lie beyond the tile's memory. */
 static int32_t any_astray(const double *x, const reach *of, int64_t n) {
-  mpmi_mask near = ~(mpmi_mask){0};
-  for (int64_t p = 0; p < n; p += MPMI_LANES) near &= are_near(mpmi_lanes_load(x + p), of);
-  return mpmi_lanes_any(~near, 1) != 0;
+  return of->period > 0.0 ? any_beyond(1, x, of, n) : any_beyond(0, x, of, n);
 }
 
 static int32_t is_astray(double x, const reach *of) {
   const mpmi_lanes zero = {0.0};
-  return mpmi_lanes_any(~are_near(zero + x, of), 1) != 0;
+  return mpmi_lanes_any((mpmi_mask)excess(of->period > 0.0, zero + x, of), 1) != 0;
 }
 
 int32_t mpmi_were_shown(const mpmi_step *step, int32_t m) {
