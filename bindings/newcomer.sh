@@ -39,7 +39,8 @@ for language in "$@"; do
       echo 'mpm-env/bin/python ball.py; mpm-env/bin/python bindings/python/example.py'
     fi
   } > "$root/libmpm/typed.sh"
-  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root bash /libmpm/typed.sh > "$folder/$language.log" 2>&1 || {
+  # rustc and mono want /proc, which is mounted for these processes alone.
+  unshare --mount bash -c 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"' "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root bash /libmpm/typed.sh > "$folder/$language.log" 2>&1 || {
     tail -20 "$folder/$language.log" >&2
     echo "newcomer.sh: $language: failed" >&2
     exit 1
