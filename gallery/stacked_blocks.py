@@ -8,7 +8,7 @@ wide, tall, radius, speed = 0.32, 0.4, 0.15, 1.0
 
 run = style.Run()
 h = run.pick(0.04, 0.08)
-grid = run.context.grid(dim=2, cells=np.rint(np.array([2.4, 1.76]) / h).astype(int), spacing=h, origin=(-0.6, -4 * h))
+grid = run.context.grid(dim=2, cells=np.rint(np.array([3.6, 1.76]) / h).astype(int), spacing=h, origin=(-0.6, -4 * h))
 rubber = run.context.material("neo_hookean", E=1e6, nu=0.3, density=1000)
 blocks = [run.context.particles(grid, rubber).fill_box((0, k * tall), (wide, (k + 1) * tall)) for k in range(3)]
 floor = run.context.obstacle(mpm.SHAPE_PLANE, contact={"friction": 0.5})
