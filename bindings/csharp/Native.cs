@@ -61,6 +61,12 @@ namespace Mpm {
     /// <summary>Knots are repeated degree + 1 times at the faces, where one function alone is then 1.</summary>
     public const int MPM_BOUNDARY_OPEN_KNOT = 1;
 
+    // What lies across the plane of a 2-D grid.
+    /// <summary>a slab of unit thickness that keeps its thickness.</summary>
+    public const int MPM_PLANE_STRAIN = 0;
+    /// <summary>A body of revolution: axis 0 is the radius r &gt;= 0, axis 1 the axis z.</summary>
+    public const int MPM_AXISYMMETRIC = 1;
+
     // Time integration scheme.
     /// <summary>Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs
     /// 1-10.</summary>
@@ -428,7 +434,7 @@ namespace Mpm {
   public unsafe partial struct GridDesc {
     /// <summary>sizeof(mpm_grid_desc) of the caller.</summary>
     public uint struct_size;
-    /// <summary>1 (uniaxial strain), 2 (plane strain) or 3 (default).</summary>
+    /// <summary>1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default).</summary>
     public int dim;
     /// <summary>MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2.</summary>
     public int basis;
@@ -436,8 +442,8 @@ namespace Mpm {
     public int boundary_basis;
     /// <summary>1: the axis is periodic; default 0.</summary>
     public fixed int periodic[3];
-    /// <summary>0.</summary>
-    public int reserved;
+    /// <summary>for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC.</summary>
+    public int geometry;
     /// <summary>cells along each axis, 1 to 6291456; memory follows the material.</summary>
     public fixed long cells[3];
     /// <summary>lower corner of the box, length; default 0.</summary>

@@ -100,7 +100,7 @@ contains
     call compare("mpm_grid_desc%basis", distance(c_loc(it), c_loc(it%basis)), of(8, 8))
     call compare("mpm_grid_desc%boundary_basis", distance(c_loc(it), c_loc(it%boundary_basis)), of(12, 12))
     call compare("mpm_grid_desc%periodic", distance(c_loc(it), c_loc(it%periodic)), of(16, 16))
-    call compare("mpm_grid_desc%reserved", distance(c_loc(it), c_loc(it%reserved)), of(28, 28))
+    call compare("mpm_grid_desc%geometry", distance(c_loc(it), c_loc(it%geometry)), of(28, 28))
     call compare("mpm_grid_desc%cells", distance(c_loc(it), c_loc(it%cells)), of(32, 32))
     call compare("mpm_grid_desc%origin", distance(c_loc(it), c_loc(it%origin)), of(56, 56))
     call compare("mpm_grid_desc%spacing", distance(c_loc(it), c_loc(it%spacing)), of(80, 80))

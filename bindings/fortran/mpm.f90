@@ -65,6 +65,12 @@ module mpm
   !> Knots are repeated degree + 1 times at the faces, where one function alone is then 1.
   integer(c_int32_t), parameter :: MPM_BOUNDARY_OPEN_KNOT = 1_c_int32_t
 
+  !> What lies across the plane of a 2-D grid.
+  !> a slab of unit thickness that keeps its thickness.
+  integer(c_int32_t), parameter :: MPM_PLANE_STRAIN = 0_c_int32_t
+  !> A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z.
+  integer(c_int32_t), parameter :: MPM_AXISYMMETRIC = 1_c_int32_t
+
   !> Time integration scheme.
   !> Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10.
   integer(c_int32_t), parameter :: MPM_USL = 1_c_int32_t
@@ -320,7 +326,7 @@ module mpm
   type, bind(c) :: mpm_grid_desc
     !> sizeof(mpm_grid_desc) of the caller.
     integer(c_int32_t) :: struct_size
-    !> 1 (uniaxial strain), 2 (plane strain) or 3 (default).
+    !> 1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default).
     integer(c_int32_t) :: dim
     !> MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2.
     integer(c_int32_t) :: basis
@@ -328,8 +334,8 @@ module mpm
     integer(c_int32_t) :: boundary_basis
     !> 1: the axis is periodic; default 0.
     integer(c_int32_t) :: periodic(3)
-    !> 0.
-    integer(c_int32_t) :: reserved
+    !> for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC.
+    integer(c_int32_t) :: geometry
     !> cells along each axis, 1 to 6291456; memory follows the material.
     integer(c_int64_t) :: cells(3)
     !> lower corner of the box, length; default 0.

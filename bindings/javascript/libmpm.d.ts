@@ -59,6 +59,14 @@ export interface Constants {
    * splines.
    */
   readonly MPM_BOUNDARY_OPEN_KNOT: 1;
+  /** a slab of unit thickness that keeps its thickness */
+  readonly MPM_PLANE_STRAIN: 0;
+  /**
+   * A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. All that is extensive (volume,
+   * mass, force, energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is
+   * a slip wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
+   */
+  readonly MPM_AXISYMMETRIC: 1;
   /** Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10. */
   readonly MPM_USL: 1;
   /**
@@ -260,7 +268,7 @@ export interface ContextDesc {
 }
 /** Box, cells and basis of a grid. Entries of axes beyond dim are ignored. */
 export interface GridDesc {
-  /** 1 (uniaxial strain), 2 (plane strain) or 3 (default) */
+  /** 1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default) */
   dim?: number | boolean;
   /** MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2 */
   basis?: number | boolean;
@@ -268,6 +276,8 @@ export interface GridDesc {
   boundary_basis?: number | boolean;
   /** 1: the axis is periodic; default 0 */
   periodic?: ArrayLike<number>;
+  /** for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC. Since 0.2.0 */
+  geometry?: number | boolean;
   /** cells along each axis, 1 to 6291456; memory follows the material */
   cells?: ArrayLike<number>;
   /** lower corner of the box, length; default 0 */
@@ -1133,7 +1143,7 @@ export class Context implements Handle {
    * Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out
    * is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers
    * can name. MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and
-   * MPM_BSPLINE3.
+   * MPM_BSPLINE3; MPM_AXISYMMETRIC with a dim other than 2 or with a periodic first axis.
    */
   grid(desc: GridDesc): Grid;
   /**

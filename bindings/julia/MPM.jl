@@ -71,6 +71,10 @@ const MPM_CPGIMP = Int32(18) # GIMP on domains of edges "size" * |F_ii|, at most
 const MPM_BOUNDARY_GHOST = Int32(0) # splines are the same everywhere, with nodes outside the faces
 const MPM_BOUNDARY_OPEN_KNOT = Int32(1) # Knots are repeated degree + 1 times at the faces, where one function alone is then 1
 
+# What lies across the plane of a 2-D grid.
+const MPM_PLANE_STRAIN = Int32(0) # a slab of unit thickness that keeps its thickness
+const MPM_AXISYMMETRIC = Int32(1) # A body of revolution
+
 # Time integration scheme.
 const MPM_USL = Int32(1) # Explicit, with stresses updated last
 const MPM_USF = Int32(2) # Explicit, with stresses updated first, by the strain from the velocities at the start of the step
@@ -288,7 +292,7 @@ mutable struct mpm_grid_desc
     basis::Int32
     boundary_basis::Int32
     periodic::NTuple{3, Int32}
-    reserved::Int32
+    geometry::Int32
     cells::NTuple{3, Int64}
     origin::NTuple{3, Float64}
     spacing::NTuple{3, Float64}
@@ -981,7 +985,8 @@ end
 """
 Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is NULL unless
 MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can name.
-MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3.
+MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3; MPM_AXISYMMETRIC
+with a dim other than 2 or with a periodic first axis.
 """
 function mpm_grid_create(context, desc, out)
     return ccall((:mpm_grid_create, libmpm), Int32, (Ptr{mpm_context}, Ptr{mpm_grid_desc}, Ptr{Ptr{mpm_grid}}),
@@ -2249,47 +2254,48 @@ end
 export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED,
     MPM_SINGULAR, MPM_OFF_GRID, MPM_CANCELLED, MPM_E_ARG, MPM_E_NOMEM, MPM_E_STATE, MPM_E_CALLBACK, MPM_E_UNSUPPORTED,
     MPM_E_NOT_FOUND, MPM_E_IO, MPM_E_FORMAT, MPM_E_INTERNAL, MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP,
-    MPM_UGIMP, MPM_CPGIMP, MPM_BOUNDARY_GHOST, MPM_BOUNDARY_OPEN_KNOT, MPM_USL, MPM_USF, MPM_MUSL, MPM_NEWMARK,
-    MPM_FLIP, MPM_APIC, MPM_TPIC, MPM_TFLIP, MPM_AFLIP, MPM_XPIC, MPM_APIC_MLS, MPM_FMPM, MPM_ISA_BEST,
-    MPM_ISA_BASELINE, MPM_ISA_AVX2, MPM_ISA_AVX512, MPM_ISA_NEON, MPM_ISA_PORTABLE, MPM_LOG_WARNING, MPM_LOG_INFO,
-    MPM_LOG_DEBUG, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE, MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL,
-    MPM_X_MIN, MPM_X_MAX, MPM_Y_MIN, MPM_Y_MAX, MPM_Z_MIN, MPM_Z_MAX, MPM_WALL_NONE, MPM_WALL_OPEN, MPM_WALL_FIXED,
-    MPM_WALL_SLIP, MPM_WALL_FRICTION, MPM_WALL_FRICTION_NODES, MPM_AFTER_P2G, MPM_AFTER_FORCES, MPM_AFTER_VELOCITY,
-    MPM_READ, MPM_WRITE, MPM_F64, MPM_I64, MPM_U8, MPM_BY_ID, MPM_LIBRARY_ORDER, MPM_SOLVER_AUTO, MPM_SOLVER_CG,
-    MPM_SOLVER_MULTIGRID_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES, MPM_SOLVER_HOST, MPM_CONTACT_UNILATERAL,
-    MPM_CONTACT_NONE, MPM_CONTACT_TIED, MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT,
-    MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT, MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY, MPM_SHAPE_PLANE,
-    MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER, MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE, MPM_MOTION_FIXED,
-    MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE, mpm_context, mpm_grid, mpm_material, mpm_particles, mpm_stepper,
-    mpm_operator, mpm_obstacle, mpm_surface, mpm_series, mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc,
-    mpm_material_batch, mpm_material_desc, mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch,
-    mpm_node_batch, mpm_advance_desc, mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch,
-    mpm_distance_batch, mpm_obstacle_desc, mpm_surface_desc, mpm_marker_batch, mpm_version, mpm_status_name,
-    mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create, mpm_context_memory,
-    mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy,
-    mpm_material_create, mpm_material_model_count, mpm_material_model_name, mpm_material_model_param,
-    mpm_material_state_count, mpm_material_state_name, mpm_batch_field, mpm_material_desc_init,
-    mpm_material_create_custom, mpm_material_update, mpm_material_destroy, mpm_particles_create,
-    mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball, mpm_particles_fill,
-    mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
-    mpm_particles_add_field, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32, mpm_particles_set,
-    mpm_particles_set_all, mpm_particles_set_geostatic, mpm_particles_reset_reference, mpm_operator_get_info,
-    mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create, mpm_stepper_destroy,
-    mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure, mpm_stepper_set_time, mpm_stepper_set_motion,
-    mpm_stepper_set_wall, mpm_stepper_set_acceleration, mpm_stepper_set_force, mpm_stepper_set_velocity_bc,
-    mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver, mpm_stepper_set_progress, mpm_stable_dt, mpm_step,
-    mpm_advance_desc_init, mpm_advance, mpm_stepper_profile, mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin,
-    mpm_step_grid, mpm_step_end, mpm_step_abort, mpm_grid_map, mpm_stepper_wall_reaction,
-    mpm_stepper_particles_reaction, mpm_stepper_wall_impulse, mpm_stepper_particles_impulse, mpm_stepper_set_body,
-    mpm_stepper_body, mpm_contact_desc_init, mpm_stepper_set_contact, mpm_stepper_set_friction,
-    mpm_stepper_contact_info, mpm_obstacle_desc_init, mpm_obstacle_create, mpm_obstacle_destroy,
-    mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle, mpm_obstacle_set_motion, mpm_obstacle_set_contact,
-    mpm_obstacle_set_pose, mpm_obstacle_get_pose, mpm_obstacle_set_load, mpm_obstacle_contact_info,
-    mpm_surface_desc_init, mpm_surface_create, mpm_surface_destroy, mpm_surface_configure, mpm_surface_set_traction,
-    mpm_surface_add, mpm_surface_add_polyline, mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine,
-    mpm_surface_count, mpm_surface_get, mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface,
-    mpm_state_size, mpm_state_save, mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file,
-    mpm_state_hash, mpm_write_particles, mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid,
-    mpm_write_grid_to, mpm_series_open, mpm_series_append, mpm_series_close
+    MPM_UGIMP, MPM_CPGIMP, MPM_BOUNDARY_GHOST, MPM_BOUNDARY_OPEN_KNOT, MPM_PLANE_STRAIN, MPM_AXISYMMETRIC, MPM_USL,
+    MPM_USF, MPM_MUSL, MPM_NEWMARK, MPM_FLIP, MPM_APIC, MPM_TPIC, MPM_TFLIP, MPM_AFLIP, MPM_XPIC, MPM_APIC_MLS,
+    MPM_FMPM, MPM_ISA_BEST, MPM_ISA_BASELINE, MPM_ISA_AVX2, MPM_ISA_AVX512, MPM_ISA_NEON, MPM_ISA_PORTABLE,
+    MPM_LOG_WARNING, MPM_LOG_INFO, MPM_LOG_DEBUG, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE,
+    MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL, MPM_X_MIN, MPM_X_MAX, MPM_Y_MIN, MPM_Y_MAX, MPM_Z_MIN,
+    MPM_Z_MAX, MPM_WALL_NONE, MPM_WALL_OPEN, MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION,
+    MPM_WALL_FRICTION_NODES, MPM_AFTER_P2G, MPM_AFTER_FORCES, MPM_AFTER_VELOCITY, MPM_READ, MPM_WRITE, MPM_F64,
+    MPM_I64, MPM_U8, MPM_BY_ID, MPM_LIBRARY_ORDER, MPM_SOLVER_AUTO, MPM_SOLVER_CG, MPM_SOLVER_MULTIGRID_CG,
+    MPM_SOLVER_LDLT, MPM_SOLVER_GMRES, MPM_SOLVER_HOST, MPM_CONTACT_UNILATERAL, MPM_CONTACT_NONE, MPM_CONTACT_TIED,
+    MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT, MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT,
+    MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY, MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER,
+    MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE, MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE,
+    mpm_context, mpm_grid, mpm_material, mpm_particles, mpm_stepper, mpm_operator, mpm_obstacle, mpm_surface,
+    mpm_series, mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc,
+    mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch, mpm_advance_desc,
+    mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc,
+    mpm_surface_desc, mpm_marker_batch, mpm_version, mpm_status_name, mpm_status_text, mpm_view_release,
+    mpm_context_desc_init, mpm_context_create, mpm_context_memory, mpm_context_destroy, mpm_last_error,
+    mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy, mpm_material_create,
+    mpm_material_model_count, mpm_material_model_name, mpm_material_model_param, mpm_material_state_count,
+    mpm_material_state_name, mpm_batch_field, mpm_material_desc_init, mpm_material_create_custom, mpm_material_update,
+    mpm_material_destroy, mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box,
+    mpm_particles_fill_ball, mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count,
+    mpm_particles_field_info, mpm_particles_add_field, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32,
+    mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic, mpm_particles_reset_reference,
+    mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create,
+    mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure, mpm_stepper_set_time,
+    mpm_stepper_set_motion, mpm_stepper_set_wall, mpm_stepper_set_acceleration, mpm_stepper_set_force,
+    mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver, mpm_stepper_set_progress,
+    mpm_stable_dt, mpm_step, mpm_advance_desc_init, mpm_advance, mpm_stepper_profile, mpm_stepper_info,
+    mpm_stepper_residuals, mpm_step_begin, mpm_step_grid, mpm_step_end, mpm_step_abort, mpm_grid_map,
+    mpm_stepper_wall_reaction, mpm_stepper_particles_reaction, mpm_stepper_wall_impulse,
+    mpm_stepper_particles_impulse, mpm_stepper_set_body, mpm_stepper_body, mpm_contact_desc_init,
+    mpm_stepper_set_contact, mpm_stepper_set_friction, mpm_stepper_contact_info, mpm_obstacle_desc_init,
+    mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle,
+    mpm_obstacle_set_motion, mpm_obstacle_set_contact, mpm_obstacle_set_pose, mpm_obstacle_get_pose,
+    mpm_obstacle_set_load, mpm_obstacle_contact_info, mpm_surface_desc_init, mpm_surface_create, mpm_surface_destroy,
+    mpm_surface_configure, mpm_surface_set_traction, mpm_surface_add, mpm_surface_add_polyline,
+    mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine, mpm_surface_count, mpm_surface_get,
+    mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface, mpm_state_size, mpm_state_save,
+    mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file, mpm_state_hash, mpm_write_particles,
+    mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid, mpm_write_grid_to, mpm_series_open,
+    mpm_series_append, mpm_series_close
 
 end

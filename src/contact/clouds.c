@@ -124,7 +124,7 @@ typedef struct cloud_particles {
   const cloud_tile *tile;
   int64_t slot; /* of the first of them */
   int32_t member;
-  const double *volume;
+  const double *volume, *radius; /* radius: of rings, else NULL */
 } cloud_particles;
 
 /* One axis of a particle's stencil; an axis that the grid does not have is one node wide. */
@@ -137,7 +137,9 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
                          int64_t p) {
   const cloud_tile *tile = of->tile;
   const int32_t first = of->weights->node[p];
-  const double volume = of->volume[of->slot + p];
+  /* by their volume rings would turn normals away from the axis */
+  const double radius = of->radius ? of->radius[of->slot + p] : 1.0;
+  const double volume = of->volume[of->slot + p] / (radius > 0.0 ? radius : 1.0);
   stencil_axis axis[3];
   for (int32_t k = 0; k < 3; ++k) {
     const int32_t of_grid = k - (3 - grid->dim);
@@ -195,7 +197,12 @@ static void visit_block(void *user, const mpmi_visit *visit) {
       const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
       step->settings->kernels->weights[grid->family][grid->dim](axis, job->fill ? MPMI_NEED_GRADIENT : 0,
                                                                 &points, s, n, &W);
-      const cloud_particles of = {&W, &tile, s, m, mpmi_f64(member->set, MPMI_VOLUME, 0)};
+      const cloud_particles of = {.weights = &W,
+                                  .tile = &tile,
+                                  .slot = s,
+                                  .member = m,
+                                  .volume = mpmi_f64(member->set, MPMI_VOLUME, 0),
+                                  .radius = mpmi_is_axisymmetric(grid) ? points.x[0] : NULL};
       for (int64_t p = 0; p < n; ++p) {
         if (id[s + p] < 0 || !tile.meets[W.node[p]]) continue;
         if (job->fill)

@@ -39,7 +39,8 @@ static void collect(around *of, int32_t which) {
   const mpmi_party *party = of->party[which];
   int64_t at = of->points.first[which], ld = 0;
   int32_t member = -1;
-  const double *position = NULL, *initial_volume = NULL;
+  const mpm_particles *set = NULL;
+  const double *position = NULL;
   double last_volume = -1.0, r = 0.0, ball = 0.0;
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *source = &contact->cloud[contact->cloud[i].source];
@@ -47,12 +48,11 @@ static void collect(around *of, int32_t which) {
     for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
       if (entry->member != member) {
-        const mpm_particles *set = layout->member[member = entry->member].set;
+        set = layout->member[member = entry->member].set;
         position = mpmi_f64(set, MPMI_POSITION, 0);
-        initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0);
         ld = set->ld;
       }
-      const double volume = initial_volume[entry->slot];
+      const double volume = mpmi_initial_extent(set, entry->slot);
       double x[3];
       mpmi_cloud_place(&frame, position, ld, entry->slot, x);
       for (int32_t k = 0; k < grid->dim; ++k) of->x[k][at] = x[k];

@@ -60,7 +60,7 @@ static void clear_chunk(const surface_job *job, int32_t member, int64_t begin, i
     clearance[slot[p]] = distance;
     if (distance > near_enough * grid->h_min) continue;
     const double n[3] = {points.normal[0][p], points.normal[1][p], points.normal[2][p]};
-    const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot[p]];
+    const double volume = mpmi_initial_extent(set, slot[p]);
     if (volume < last->volume || volume > last->volume)
       *last = (half_edge_cache){volume, mpmi_half_edge(grid->dim, volume)};
     clearance[slot[p]] = distance - mpmi_half_width(&widths, slot[p], last->edge, n);

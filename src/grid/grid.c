@@ -98,6 +98,26 @@ static mpm_status check_node_numbers(mpm_context *context, const mpm_grid *grid)
   return MPM_OK;
 }
 
+static mpm_status check_geometry(mpm_context *context, const mpm_grid_desc *desc) {
+  if (desc->geometry != MPM_PLANE_STRAIN && desc->geometry != MPM_AXISYMMETRIC)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: geometry is %d, which is none of the constants",
+                     (int)desc->geometry);
+  if (desc->geometry == MPM_PLANE_STRAIN) return MPM_OK;
+  if (desc->dim != 2)
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "mpm_grid_desc: MPM_AXISYMMETRIC is for dim 2: use that, or geometry MPM_PLANE_STRAIN "
+                     "with dim %d",
+                     (int)desc->dim);
+  if (desc->periodic[0])
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "mpm_grid_desc: the radius of MPM_AXISYMMETRIC has no period: use periodic[0] = 0");
+  if (!(desc->origin[0] >= 0.0))
+    return mpmi_fail(context, MPM_E_ARG,
+                     "mpm_grid_desc: origin[0] is %g, must be >= 0: it is a radius of MPM_AXISYMMETRIC",
+                     desc->origin[0]);
+  return MPM_OK;
+}
+
 static mpm_status check_desc(mpm_context *context, const mpm_grid_desc *desc) {
   if (desc->dim < 1 || desc->dim > 3)
     return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: dim is %d, must be 1, 2 or 3", (int)desc->dim);
@@ -107,9 +127,7 @@ static mpm_status check_desc(mpm_context *context, const mpm_grid_desc *desc) {
   if (!(desc->smoothing > 0 && desc->smoothing <= 1))
     return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: smoothing is %g, must be in (0, 1]",
                      desc->smoothing);
-  if (desc->reserved)
-    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: reserved is %d, must be 0", (int)desc->reserved);
-  return MPM_OK;
+  return check_geometry(context, desc);
 }
 
 /* By family: width, below, centred, ghosts, and the second moment where it is constant. */

@@ -53,6 +53,17 @@ static inline int32_t mpmi_is_open(const mpm_grid *grid, int32_t axis) {
 static inline int32_t mpmi_has_domains(const mpm_grid *grid) {
   return grid->domains >= MPMI_DOMAINS_OWN;
 }
+static inline int32_t mpmi_is_axisymmetric(const mpm_grid *grid) {
+  return grid->desc.geometry == MPM_AXISYMMETRIC;
+}
+/* Returns the axes along which material stretches: rings stretch along the hoop as well. */
+static inline int32_t mpmi_strain_dim(const mpm_grid *grid) {
+  return mpmi_is_axisymmetric(grid) ? 3 : grid->dim;
+}
+/* Returns 1 for a face that is the axis of revolution. */
+static inline int32_t mpmi_is_axis_face(const mpm_grid *grid, int32_t face) {
+  return mpmi_is_axisymmetric(grid) && face == MPM_X_MIN && grid->desc.origin[0] == 0.0;
+}
 /* Returns the index of the node on a face: the one whose velocity is that of the material at the face, or
  * about whose plane the ghosts mirror. */
 int64_t mpmi_face_node(const mpm_grid *grid, int32_t face);

@@ -69,11 +69,10 @@ mpm_status mpmi_surface_loads_add(mpmi_balance *balance) {
 
 /* Finds P of a marker and its area vector; returns 0 when its force follows nothing. */
 static int32_t response_of(const mpm_surface *s, int64_t i, double *area, double P[3][3]) {
-  const int32_t dim = s->grid->dim;
   const mpmi_marker *m = &s->next.at[i];
-  const double pressure = s->desc.pressure + m->pressure, size = mpmi_marker_size(m, dim);
+  const double pressure = s->desc.pressure + m->pressure, size = mpmi_marker_size(m, s->grid);
   double traction[3] = {0.0, 0.0, 0.0}, most = pressure < 0.0 ? -pressure : pressure;
-  mpmi_marker_area(m, dim, area);
+  mpmi_marker_area(m, s->grid, area);
   mpmi_marker_tractions(s, i, traction);
   for (int32_t r = 0; r < 3; ++r)
     for (int32_t c = 0; c < 3; ++c) {

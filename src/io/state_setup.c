@@ -41,13 +41,18 @@ static void setup_scheme(mpmi_archive *a, const mpm_stepper_desc *d) {
   mpmi_archive_same_int(a, "staggered", d->staggered);
 }
 
-/* Does the same with what a method may have from format 3 on. */
-static void setup_later(mpmi_archive *a, uint32_t format, const mpm_stepper_desc *d) {
+/* Compares what setups may have from format 3 on; in older states it is 0. */
+static void later_int(mpmi_archive *a, uint32_t format, const char *what, int32_t here) {
   if (format > 2)
-    mpmi_archive_same_int(a, "projected_positions", d->projected_positions);
-  else if (d->projected_positions && !a->status)
+    mpmi_archive_same_int(a, what, here);
+  else if (here && !a->status)
     a->status = mpmi_fail(a->context, MPM_E_FORMAT,
-                          "the state is of an unlike setup: projected_positions is 0 there, 1 here");
+                          "the state is of an unlike setup: %s is 0 there, %d here", what, (int)here);
+}
+
+static void setup_later(mpmi_archive *a, uint32_t format, const mpm_stepper *s) {
+  later_int(a, format, "projected_positions", s->settings.desc.projected_positions);
+  later_int(a, format, "geometry", s->grid->desc.geometry);
 }
 
 static void setup_law(mpmi_archive *a, const mpm_material *material) {
@@ -146,5 +151,5 @@ void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, uint32_t format, mp
       write_field_list(a, s->layout.member[m].set);
   }
   a->where[0] = '\0';
-  setup_later(a, format, &s->settings.desc);
+  setup_later(a, format, s);
 }

@@ -94,7 +94,7 @@ mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
 double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int64_t slot) {
   const mpm_grid *grid = set->grid;
   if (field == MPMI_SIZE) {
-    double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot];
+    const double volume = mpmi_initial_extent(set, slot);
     return grid->dim == 1 ? volume : grid->dim == 2 ? sqrt(volume) : mpmi_cbrt(volume);
   }
   if (field == MPMI_REFERENCE) {

@@ -53,7 +53,8 @@ static mpm_status lay_lattice(mpm_particles *set, const double *lower, const dou
   if (points > most_points)
     return mpmi_fail(set->context, MPM_E_ARG, "the box holds %g lattice points, more than %g", points,
                      most_points);
-  if (!(on->volume > 0) || !isfinite(on->volume) || !isfinite(on->volume * set->material->density))
+  const double most = on->volume * (mpmi_is_axisymmetric(grid) ? fmax(grid->upper[0], 1.0) : 1.0);
+  if (!(on->volume > 0) || !isfinite(most) || !isfinite(most * set->material->density))
     return mpmi_fail(set->context, MPM_E_ARG,
                      "a lattice cell has volume %g: that or its mass is out of range", on->volume);
   on->points = (int64_t)points;
@@ -138,7 +139,9 @@ static mpm_status append_points(mpm_particles *set, const lattice *on, const sie
   if (!status) status = mpmi_append_begin(set, n, with_size, &slot);
   if (status) return status;
   write_points(set, on, through, slot);
-  for (int64_t s = slot; s < slot + n; ++s) mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[s] = on->volume;
+  for (int64_t s = slot; s < slot + n; ++s)
+    mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[s] =
+        on->volume * (mpmi_is_axisymmetric(on->grid) ? mpmi_f64(set, MPMI_POSITION, 0)[s] : 1.0);
   for (int32_t k = 0; k < on->grid->dim && with_size; ++k)
     for (int64_t s = slot; s < slot + n; ++s)
       mpmi_f64(set, MPMI_SIZE, 0)[k * set->ld + s] = on->grid->desc.spacing[k] / (double)on->per[k];

@@ -21,6 +21,9 @@ static mpm_status check_ground(const mpm_particles *set, const ground *g) {
   if (g->axis < 0 || g->axis >= dim)
     return mpmi_fail(c, MPM_E_ARG, "axis is %d: a %d-D grid has 0 ... %d", (int)g->axis, (int)dim,
                      (int)dim - 1);
+  if (mpmi_is_axisymmetric(set->grid) && g->axis == 0)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "axis is 0, which is the radius of an MPM_AXISYMMETRIC grid: weight acts along axis 1");
   if (set->grid->desc.periodic[g->axis])
     return mpmi_fail(c, MPM_E_ARG, "axis %d is periodic: there is no surface on it", (int)g->axis);
   if (!isfinite(g->gravity) || g->gravity == 0.0)

@@ -94,7 +94,7 @@ void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t 
     memcpy(b->F + map[c] * b->ld, F + c * set->ld, (size_t)n * sizeof(double));
   if (set->field[MPMI_DILATION_RATIO].present)
     mpmi_dilation_of(set->context->isa)
-        ->scale[dim](b->F, b->ld, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
+        ->scale[mpmi_strain_dim(set->grid)](b->F, b->ld, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
 }
 
 /* A negative speed or viscosity would not bound the step, and an infinite energy would spoil all sums. What

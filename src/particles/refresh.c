@@ -33,7 +33,7 @@ mpm_status mpmi_particles_refresh(mpm_particles *set) {
     const int64_t n = set->slots - s < b.ld ? set->slots - s : b.ld;
     mpmi_law_batch_load(&b, set, s, n, t, 0.0);
     mpmi_law_batch_load_F(&b, set, s, n);
-    status = mpmi_law_batch_run(&b, set->material, set->grid->dim);
+    status = mpmi_law_batch_run(&b, set->material, mpmi_strain_dim(set->grid));
     if (!status) mpmi_law_batch_store(&b, set, 1, s, n);
   }
   mpmi_free(set->context, memory, bytes);

@@ -63,6 +63,16 @@ static void bind_set(mpmi_batch *b, int32_t m) {
   }
   list_streams(b);
   if (b->pass->bind) b->pass->bind(b);
+  b->rings = mpmi_is_axisymmetric(grid) && !b->pass->plain;
+  if (b->rings) b->gather.v = b->v_bar;
+}
+
+/* Completes the gradient at rings: L_theta = v_r / r, which is the radial one where r vanishes. */
+static void find_hoop_rate(mpmi_batch *b) {
+  const double *radius = mpmi_component_row(b->set, MPMI_POSITION, 0, 0) + b->begin;
+  const double *radial = b->law.L;
+  double *hoop = b->law.L + 8 * b->law.ld;
+  for (int64_t p = 0; p < b->n; ++p) hoop[p] = radius[p] > 0.0 ? b->v_bar[p] / radius[p] : radial[p];
 }
 
 /* Chooses the form of the gather: increments are needed by blends and by second-order positions, C by
@@ -168,6 +178,7 @@ static void take_batch(mpmi_batch *b, int64_t begin, int64_t n) {
   if (b->pass->aim) b->pass->aim(b);
   b->taken =
       settings->kernels->gather[settings->grid->dim][settings->grid->width][b->form](&b->gather, begin, n);
+  if (b->rings) find_hoop_rate(b);
   b->pass->take(b);
   if (b->flags) check_batch(b);
 }

@@ -40,6 +40,7 @@ struct mpmi_batch {
   mpmi_deform deform;
   mpmi_sums_job sums_job;
   int32_t in_place; /* the law reads and writes the set's arrays, which are laid out as its batch would be */
+  int32_t rings;    /* the gradient has a hoop part, which is not gathered */
   double *v_bar, *dv, *C; /* rows of what is gathered, beside the gradient, which goes to the law */
   int32_t keeps;          /* the set keeps the gradient: MPMI_KEEPS_... */
   /* The block at hand: */

@@ -7,7 +7,7 @@
  *
  *   sigma' = r dev sigma + pi I,  pi = sum r V tr sigma / d / sum V over the cell,
  *
- * where trace and deviator are those of the axes that the grid has. Where pressure follows from the dilation
+ * where trace and deviator are those of the axes along which material stretches. Where pressure follows from the dilation
  * alone, particles have that of their cell as it is, and keep it. */
 #include "layout/tile.h"
 #include "simd/tensor.h"
@@ -30,7 +30,7 @@ typedef struct particle_rows {
 } particle_rows;
 
 static particle_rows rows_of(const mpm_particles *set, int32_t copy) {
-  return (particle_rows){.dim = set->grid->dim,
+  return (particle_rows){.dim = mpmi_strain_dim(set->grid),
                          .components = mpmi_stress_components(set->grid->dim),
                          .ld = set->ld,
                          .id = mpmi_i64(set, MPMI_ID, 0),
@@ -39,7 +39,7 @@ static particle_rows rows_of(const mpm_particles *set, int32_t copy) {
                          .volume = mpmi_f64(set, MPMI_VOLUME, 0)};
 }
 
-/* Returns the mean stress of a particle over the axes of the grid, by the volume that the law sees. */
+/* Returns the mean stress of a particle over these axes, by the volume that the law sees. */
 static double mean_stress(const particle_rows *of, int64_t slot) {
   double trace = 0.0;
   for (int32_t k = 0; k < of->dim; ++k) trace += of->stress[k * of->ld + slot];

@@ -4,7 +4,7 @@
  *   F_inc' = f F_inc,  f^d = (1 + j') / (1 + j),  j = det F_inc - 1,  j' = sum V j / sum V over the cell
  *
  * and F' = r^(1/d) F, where the ratio r grows by f^d in each step; in plane strain only the axes of the plane
- * are scaled. F, the volume and the positions are those without the remedy. */
+ * are scaled, and d is the axes along which material stretches. F, the volume and the positions are those without the remedy. */
 #include "stages/batch.h"
 #include "stages/stages.h"
 
@@ -24,7 +24,7 @@ _Static_assert(sizeof(cell_sums) == 4 * sizeof(double), "goes through tiles");
 /* Measures det F_inc - 1 of each particle of a batch, into the second copy of its dilation ratio. Where it is
  * not finite the step will fail at this particle, and not at its neighbours. */
 static void measure(mpmi_batch *b) {
-  b->step->settings->dilation->measure[b->set->grid->dim](
+  b->step->settings->dilation->measure[mpmi_strain_dim(b->set->grid)](
       b->law.L, b->law.ld, b->step->dt, b->n, mpmi_f64(b->set, MPMI_DILATION_RATIO, 1) + b->begin);
 }
 
@@ -73,7 +73,7 @@ static void find_means(const cell_sums *cells, const int32_t *place, const mpm_p
 
 void mpmi_locking_apply(const mpmi_settings *settings, const double *cells, const mpmi_axis *axis,
                         mpm_particles *set, mpmi_law_batch *b, int64_t begin, int64_t n, double dt) {
-  const int32_t dim = settings->grid->dim;
+  const int32_t dim = mpmi_strain_dim(settings->grid);
   const mpmi_points points = mpmi_points_of(set, 0);
   const int32_t paired = mpmi_averages_pressure(settings, set);
   double *ratio = mpmi_f64(set, MPMI_DILATION_RATIO, 1) + begin;

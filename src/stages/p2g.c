@@ -56,6 +56,7 @@ static void scatter_of(const p2g_job *job, int32_t m, mpmi_scatter *scatter) {
   }
   for (int32_t c = 0; job->affine && c < mpmi_gradient_components(dim); ++c)
     scatter->affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, projection->copy) + c * set->ld;
+  scatter->hoop = mpmi_is_axisymmetric(settings->grid);
   scatter->fused_dt = forces && !mpmi_has_increments(job->to) ? job->step->velocity_dt : 0.0;
   list_streams(job, scatter, dim);
 }

@@ -10,6 +10,9 @@
 /* Reading the clock costs as much as the law of a few particles: one batch in so many stands for all. */
 enum { TIMED_BATCHES = 16 };
 
+/* Rings have nine entries of F, of which four are no fields of the set. They begin from this. */
+static const double nothing[MPMI_BATCH_HOST];
+
 static int32_t looks_at_F_alone(const mpm_material *material) {
   return material->law && mpmi_material_stress_from_F(material) && !material->state_count &&
          mpmi_material_kinematics(material) == MPMI_F_DEFORMS;
@@ -76,7 +79,7 @@ void mpmi_strain_bind(mpmi_batch *b) {
     b->sums_job.gravity[k] = settings->desc.gravity[k];
     b->sums_job.inverse_spacing[k] = grid->inverse_spacing[k];
   }
-  if (b->pass->deforms && !mpmi_is_implicit(settings) && !finds_only_C(b) &&
+  if (b->pass->deforms && !mpmi_is_implicit(settings) && !finds_only_C(b) && !mpmi_is_axisymmetric(grid) &&
       mpmi_material_kinematics(b->set->material) == MPMI_F_DEFORMS)
     b->gather.deform = &b->deform;
   bind_gradient(b);
@@ -100,9 +103,15 @@ void mpmi_gradient_aim(mpmi_batch *b) {
 void mpmi_strain_aim(mpmi_batch *b) {
   const mpmi_step *step = b->step;
   mpm_particles *set = b->set;
+  const int32_t rings = mpmi_is_axisymmetric(set->grid);
+  for (int32_t e = 0; e < 9 && rings; ++e) {
+    b->deform.F_old[e] = nothing;
+    b->deform.F_new[e] = b->law.F + e * b->law.ld;
+  }
   for (int32_t c = 0; c < mpmi_tensor_components(set->grid->dim); ++c) {
-    b->deform.F_old[c] = mpmi_component_row(set, MPMI_F, 0, c) + b->begin;
-    b->deform.F_new[c] = mpmi_component_row(set, MPMI_F, 1, c) + b->begin;
+    const int32_t e = rings ? mpmi_tensor_map(2)[c] : c;
+    b->deform.F_old[e] = mpmi_component_row(set, MPMI_F, 0, c) + b->begin;
+    b->deform.F_new[e] = mpmi_component_row(set, MPMI_F, 1, c) + b->begin;
   }
   b->deform.initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin;
   b->deform.volume = mpmi_f64(set, MPMI_VOLUME, 0) + b->begin;
@@ -124,11 +133,19 @@ void mpmi_gradient_keep(mpmi_batch *b) {
            b->law.L + mpmi_gradient_map(dim)[c] * b->law.ld, (size_t)b->n * sizeof(double));
 }
 
+/* Volumes are made again from stored components, and must have the bits that come of that. */
+static uint32_t make_volumes_of_rings(const mpmi_batch *b) {
+  const double *F[9] = {NULL};
+  for (int32_t c = 0; c < mpmi_tensor_components(2); ++c) F[c] = b->deform.F_new[mpmi_tensor_map(2)[c]];
+  return b->step->settings->deformation->volume[2](F, b->deform.initial_volume, b->deform.volume, b->n);
+}
+
 int32_t mpmi_strain_deform(mpmi_batch *b) {
   const mpmi_deformation *by = b->step->settings->deformation;
   const int32_t kinematics = mpmi_material_kinematics(b->set->material);
-  const uint32_t flags =
-      b->gather.deform ? b->taken.deformed : by->deform[kinematics][b->set->grid->dim](&b->deform, b->n);
+  uint32_t flags = b->taken.deformed;
+  if (!b->gather.deform) flags = by->deform[kinematics][mpmi_strain_dim(b->set->grid)](&b->deform, b->n);
+  if (mpmi_is_axisymmetric(b->set->grid)) flags |= make_volumes_of_rings(b);
   b->flags |= flags;
   return !flags;
 }
@@ -140,7 +157,7 @@ void mpmi_strain_law(mpmi_batch *b) {
                        step->dt);
   const int32_t timed = step->profile->sampled && b->batches++ % TIMED_BATCHES == 0;
   const double started = timed ? mpmi_seconds() : 0.0;
-  const mpm_status status = mpmi_law_batch_run(&b->law, b->set->material, b->set->grid->dim);
+  const mpm_status status = mpmi_law_batch_run(&b->law, b->set->material, mpmi_strain_dim(b->set->grid));
   if (timed) b->report->law_seconds += (double)TIMED_BATCHES * (mpmi_seconds() - started);
   if (b->law.fault.cause) {
     const mpmi_law_fault *fault = &b->law.fault;

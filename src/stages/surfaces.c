@@ -43,7 +43,7 @@ static double *lay_out(const mpmi_step *step, const mpm_surface *s, double t, mp
   for (int64_t i = 0; i < n; ++i) {
     const mpmi_marker *m = &s->next.at[i];
     double a[3];
-    mpmi_marker_area(m, dim, a);
+    mpmi_marker_area(m, s->grid, a);
     s->batch_id[i] = m->id;
     reference[i] = m->reference_area;
     for (int32_t k = 0; k < dim; ++k) {
@@ -100,9 +100,9 @@ static mpm_status load_surface(mpmi_step *step, mpm_surface *s) {
   for (int64_t i = 0; i < s->next.count; ++i) {
     mpmi_marker *m = &s->next.at[i];
     double a[3], traction[3];
-    mpmi_marker_area(m, dim, a);
+    mpmi_marker_area(m, s->grid, a);
     mpmi_marker_tractions(s, i, traction);
-    const double size = mpmi_marker_size(m, dim);
+    const double size = mpmi_marker_size(m, s->grid);
     for (int32_t k = 0; k < dim; ++k) {
       m->force[k] = traction[k] * size +
                     (s->desc.dead_traction[k] + m->dead_traction[k]) * m->reference_area -
@@ -420,13 +420,15 @@ static void gather(const surface_job *job, int64_t marker, double *velocity, dou
       for (int32_t k = 0; k < dim; ++k) L[c][k] += v * around->gradient[n * dim + k];
     }
   }
+  const double radius = job->surface->now.at[marker].position[0];
+  if (mpmi_is_axisymmetric(settings->grid)) L[2][2] = radius > 0.0 ? velocity[0] / radius : L[0][0];
 }
 
 /* Stretches the edges that the marker had at the start of the step. */
 static void stretch(const surface_job *job, int64_t marker, double L[3][3]) {
   const mpmi_marker *from = &job->surface->now.at[marker];
   mpmi_marker *to = &job->surface->next.at[marker];
-  const int32_t dim = job->surface->grid->dim;
+  const int32_t dim = mpmi_strain_dim(job->surface->grid);
   memcpy(to->edge, from->edge, sizeof to->edge);
   for (int32_t e = 0; e < dim - 1; ++e)
     for (int32_t c = 0; c < dim; ++c)
@@ -513,6 +515,7 @@ static mpm_status move_surface(surface_job *job) {
     int32_t leaves;
     for (int32_t c = 0; c < s->grid->dim; ++c) step->host_work += m->force[c] * (step->dt * m->velocity[c]);
     status = look(step, s, m, &leaves);
+    mpmi_marker_set_radius(m, s->grid);
     if (!leaves) s->next.at[stay++] = *m;
   }
   if (status) return status;

@@ -138,12 +138,31 @@ static mpm_status known_implicit(mpm_context *c, const mpm_stepper_desc *d) {
   return MPM_OK;
 }
 
+/* Refuses what rings do not offer. */
+static mpm_status known_geometry(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
+  if (!mpmi_is_axisymmetric(grid)) return MPM_OK;
+  if (mpmi_transfer_of(d->transfer)->fused)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "transfer MPM_APIC_MLS has no hoop force, and the grid is MPM_AXISYMMETRIC: use "
+                     "MPM_APIC");
+  if (d->gravity[0] != 0.0)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "gravity[0] is %g, but the grid is MPM_AXISYMMETRIC: weight acts along the axis alone: "
+                     "use gravity[1], and a force callback for what acts along the radius",
+                     d->gravity[0]);
+  if (d->scheme == MPM_NEWMARK)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "scheme MPM_NEWMARK has no grid that is MPM_AXISYMMETRIC: use an explicit scheme");
+  return MPM_OK;
+}
+
 mpm_status mpmi_description_read(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *desc,
                                  mpm_stepper_desc *out) {
   *out = defaults;
   mpm_status status = desc ? mpmi_read_struct(c, "mpm_stepper_desc", desc, sizeof *out, out) : MPM_OK;
   if (status || (status = known_scheme(c, out->scheme)) || (status = known_transfer(c, grid, out)) ||
-      (status = known_options(c, grid, out)) || (status = known_implicit(c, out)))
+      (status = known_options(c, grid, out)) || (status = known_implicit(c, out)) ||
+      (status = known_geometry(c, grid, out)))
     return status;
   if (!(out->flip >= 0.0 && out->flip <= 1.0))
     return mpmi_fail(c, MPM_E_ARG, "flip is %g: it must lie in [0, 1]", out->flip);

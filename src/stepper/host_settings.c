@@ -20,6 +20,11 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
   if (s->grid->desc.periodic[face / 2] && kind != MPM_WALL_NONE)
     return mpmi_fail(s->context, MPM_E_ARG, "face %d belongs to a periodic axis and can have no wall",
                      (int)face);
+  if (mpmi_is_axis_face(s->grid, face) && kind != MPM_WALL_SLIP)
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "face %d is the axis of an MPM_AXISYMMETRIC grid, where nothing can cross: leave it "
+                     "MPM_WALL_SLIP, which it is from the start",
+                     (int)face);
   if (row->rubs && !(friction >= 0.0 && isfinite(friction)))
     return mpmi_fail(s->context, MPM_E_ARG, "friction is %g: it must be finite and >= 0", friction);
   if (row->rubs == MPMI_RUBS_NODES && mpmi_is_implicit(&s->settings))

@@ -25,6 +25,7 @@ void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_in
   info->step = s->history.step;
   info->removed = s->history.removed;
   info->resorts = s->layout.sorts;
+  const int32_t rings = mpmi_is_axisymmetric(s->grid);
   info->t = s->history.t;
   info->external_work_total = s->history.totals.external_work;
   info->damping_dissipation_total = s->history.totals.damping_dissipation;
@@ -32,8 +33,9 @@ void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_in
   info->affine_kinetic_energy = sums->affine;
   info->strain_energy = sums->strain;
   for (int32_t k = 0; k < 3; ++k) {
-    info->momentum[k] = sums->momentum[k];
-    info->angular_momentum[k] = sums->angular[k];
+    /* around the axis the momenta along radii sum to nothing */
+    info->momentum[k] = rings && k == 0 ? 0.0 : sums->momentum[k];
+    info->angular_momentum[k] = rings ? 0.0 : sums->angular[k];
   }
 }
 

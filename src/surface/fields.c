@@ -68,7 +68,7 @@ mpm_status mpm_surface_get(const mpm_surface *s, const char *name, int32_t type,
   for (int64_t i = 0; i < n && !status; ++i) {
     const mpmi_marker *m = &s->now.at[place_of(s, ids, i)];
     double area[3];
-    mpmi_marker_area(m, s->grid->dim, area);
+    mpmi_marker_area(m, s->grid, area);
     const char *from = f->at == AREA ? (const char *)area : (const char *)m + f->at;
     for (int32_t k = 0; k < components; ++k)
       memcpy((char *)out + (size_t)(k * n + i) * sizeof(double), from + (size_t)k * sizeof(double),
@@ -77,9 +77,10 @@ mpm_status mpm_surface_get(const mpm_surface *s, const char *name, int32_t type,
   return status;
 }
 
-/* Takes the value of one marker; with `marker` NULL it is only checked. */
+/* Takes the value of one marker; without `write` it is only checked. */
 static mpm_status take_value(const mpm_surface *s, const field *f, const double *values, int64_t n, int64_t i,
-                             int64_t id, mpmi_marker *marker) {
+                             int32_t write, mpmi_marker *marker) {
+  const int64_t id = marker->id;
   const int32_t count = f->vector ? s->grid->dim : 1;
   double v[3] = {0.0, 0.0, 0.0}, square = 0.0;
   for (int32_t k = 0; k < count; ++k) {
@@ -96,10 +97,16 @@ static mpm_status take_value(const mpm_surface *s, const field *f, const double 
     const mpm_status status = mpmi_marker_place(s, id, v);
     if (status) return status;
   }
-  if (marker && f->at == AREA)
-    mpmi_marker_set_area(marker, s->grid->dim, v);
-  else if (marker)
+  if (f->at == AREA) {
+    const mpm_status status = mpmi_marker_check_area(s, id, marker->position[0], v);
+    if (status) return status;
+  }
+  if (write && f->at == AREA) {
+    mpmi_marker_set_area(marker, s->grid, v);
+  } else if (write) {
     memcpy((char *)marker + f->at, v, (size_t)count * sizeof *v);
+    mpmi_marker_set_radius(marker, s->grid);
+  }
   return MPM_OK;
 }
 
@@ -114,7 +121,7 @@ mpm_status mpm_surface_set(mpm_surface *s, const char *name, int32_t type, int32
   for (int32_t write = 0; write < 2; ++write)
     for (int64_t i = 0; i < n && !status; ++i) {
       mpmi_marker *m = &s->now.at[place_of(s, ids, i)];
-      status = take_value(s, f, values, n, i, m->id, write ? m : NULL);
+      status = take_value(s, f, values, n, i, write, m);
     }
   return status;
 }

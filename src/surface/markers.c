@@ -5,7 +5,8 @@
 #include <string.h>
 
 /* ---- areas --------------------------------------------------------------------------------------------- */
-void mpmi_marker_area(const mpmi_marker *m, int32_t dim, double *area) {
+void mpmi_marker_area(const mpmi_marker *m, const mpm_grid *grid, double *area) {
+  const int32_t dim = mpmi_strain_dim(grid);
   const double *a = m->edge[0], *b = m->edge[1];
   area[0] = dim == 1 ? a[0] : dim == 2 ? a[1] : a[1] * b[2] - a[2] * b[1];
   area[1] = dim == 1 ? 0.0 : dim == 2 ? -a[0] : a[2] * b[0] - a[0] * b[2];
@@ -16,9 +17,9 @@ static double length_of(const double *v) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-double mpmi_marker_size(const mpmi_marker *m, int32_t dim) {
+double mpmi_marker_size(const mpmi_marker *m, const mpm_grid *grid) {
   double area[3];
-  mpmi_marker_area(m, dim, area);
+  mpmi_marker_area(m, grid, area);
   return length_of(area);
 }
 
@@ -36,7 +37,12 @@ static void make_square(const double *area, double size, double (*edge)[3]) {
     edge[1][c] = n[(c + 1) % 3] * edge[0][(c + 2) % 3] - n[(c + 2) % 3] * edge[0][(c + 1) % 3];
 }
 
-void mpmi_marker_set_area(mpmi_marker *m, int32_t dim, const double *area) {
+void mpmi_marker_set_radius(mpmi_marker *m, const mpm_grid *grid) {
+  if (mpmi_is_axisymmetric(grid)) m->edge[1][2] = m->position[0];
+}
+
+void mpmi_marker_set_area(mpmi_marker *m, const mpm_grid *grid, const double *area) {
+  const int32_t dim = grid->dim;
   double a[3] = {0.0, 0.0, 0.0};
   for (int32_t c = 0; c < dim; ++c) a[c] = area[c];
   memset(m->edge, 0, sizeof m->edge);
@@ -44,6 +50,17 @@ void mpmi_marker_set_area(mpmi_marker *m, int32_t dim, const double *area) {
   if (dim == 1) m->edge[0][0] = a[0];
   if (dim == 2) m->edge[0][0] = -a[1], m->edge[0][1] = a[0];
   if (dim == 3) make_square(a, m->reference_area, m->edge);
+  mpmi_marker_set_radius(m, grid);
+  for (int32_t c = 0; c < 2 && mpmi_is_axisymmetric(grid); ++c)
+    m->edge[0][c] = m->position[0] > 0.0 ? m->edge[0][c] / m->position[0] : 0.0;
+}
+
+mpm_status mpmi_marker_check_area(const mpm_surface *s, int64_t which, double radius, const double *area) {
+  if (!mpmi_is_axisymmetric(s->grid) || radius > 0.0 || !(fabs(area[0]) + fabs(area[1]) > 0.0)) return MPM_OK;
+  return mpmi_fail(s->context, MPM_E_ARG,
+                   "marker %lld: area is (%g, %g), but it lies on the axis, where a ring has none: place it at "
+                   "a radius > 0",
+                   (long long)which, area[0], area[1]);
 }
 
 mpm_status mpmi_surface_changeable(const mpm_surface *s) {
@@ -115,8 +132,9 @@ mpm_status mpm_surface_add(mpm_surface *s, int64_t n, const double *position, co
                            a[k]);
     }
     if (!status) status = mpmi_marker_place(s, i, m.position);
+    if (!status) status = mpmi_marker_check_area(s, i, m.position[0], a);
     if (status) break;
-    mpmi_marker_set_area(&m, dim, a);
+    mpmi_marker_set_area(&m, s->grid, a);
     if (!isfinite(m.reference_area))
       status = mpmi_fail(c, MPM_E_ARG, "marker %lld: the area is beyond the range of double precision",
                          (long long)i);
@@ -195,13 +213,19 @@ static void keep_inside(const mpm_grid *grid, mpmi_marker *m) {
     m->position[k] = m->position[k] < low ? low : m->position[k] > high ? high : m->position[k];
   }
   mpmi_grid_place(grid, m->position, 1, NULL, 0);
+  if (mpmi_is_axisymmetric(grid)) {
+    const double was = m->edge[1][2];
+    mpmi_marker_set_radius(m, grid);
+    m->reference_area *= was > 0.0 ? m->edge[1][2] / was : 1.0;
+  }
 }
 
 mpm_status mpmi_markers_split(mpm_context *c, const mpm_grid *grid, mpmi_markers *markers, double spacing,
                               int32_t once) {
   const int64_t had = markers->count;
   for (int64_t i = 0; i < (once ? had : markers->count) && grid->dim > 1;) {
-    const double first = length_of(markers->at[i].edge[0]), second = length_of(markers->at[i].edge[1]);
+    const double first = length_of(markers->at[i].edge[0]);
+    const double second = mpmi_is_axisymmetric(grid) ? 0.0 : length_of(markers->at[i].edge[1]);
     const int32_t is_long = first > spacing || second > spacing;
     if (is_long && markers->count >= MOST_MARKERS)
       return mpmi_fail(c, MPM_E_ARG, "a spacing of %g makes more than %d markers", spacing,

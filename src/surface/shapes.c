@@ -51,7 +51,8 @@ static mpm_status add_patch(mpm_surface *s, mpmi_marker *m) {
   mpm_status status = mpmi_marker_place(s, s->now.count, m->position);
   if (!status) status = mpmi_markers_reserve(s->context, &s->now, 1);
   if (status) return status;
-  m->reference_area = mpmi_marker_size(m, s->grid->dim);
+  mpmi_marker_set_radius(m, s->grid);
+  m->reference_area = mpmi_marker_size(m, s->grid);
   mpmi_markers_append(&s->now, m);
   return MPM_OK;
 }

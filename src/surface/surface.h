@@ -17,7 +17,8 @@
 typedef struct mpmi_marker {
   int64_t id;
   double position[3];
-  /* In 2-D edge[0] is the only one, with the material on its left; in 1-D edge[0][0] is the area. */
+  /* In 2-D edge[0] is the only one, with the material on its left; in 1-D edge[0][0] is the area. Of rings
+   * edge[1] is that of one radian: (0, 0, r). */
   double edge[2][3];
   double reference_area, displacement[3], velocity[3], force[3];
   double pressure, traction[3], dead_traction[3]; /* its own, beside those of the surface */
@@ -66,10 +67,15 @@ typedef struct mpmi_surfaces {
 /* Returns MPM_E_STATE while a staged step is under way. */
 mpm_status mpmi_surface_changeable(const mpm_surface *surface);
 /* Finds the area vector of a marker, and its length. */
-void mpmi_marker_area(const mpmi_marker *marker, int32_t dim, double *area);
-double mpmi_marker_size(const mpmi_marker *marker, int32_t dim);
+void mpmi_marker_area(const mpmi_marker *marker, const mpm_grid *grid, double *area);
+double mpmi_marker_size(const mpmi_marker *marker, const mpm_grid *grid);
 /* Gives a marker the edges of a square (2-D: an edge) with this area vector, which becomes the reference. */
-void mpmi_marker_set_area(mpmi_marker *marker, int32_t dim, const double *area);
+void mpmi_marker_set_area(mpmi_marker *marker, const mpm_grid *grid, const double *area);
+/* Refuses the area of a ring that has no radius. */
+mpm_status mpmi_marker_check_area(const mpm_surface *surface, int64_t which, double radius,
+                                  const double *area);
+/* Gives a marker of rings the radius at which it stands. */
+void mpmi_marker_set_radius(mpmi_marker *marker, const mpm_grid *grid);
 /* Refuses a position outside the grid, and wraps one that is inside. `which` counts markers in the text. */
 mpm_status mpmi_marker_place(const mpm_surface *surface, int64_t which, double *position);
 /* Makes room for so many more markers. Those that are there stay, and on failure nothing has changed. */

@@ -2,6 +2,7 @@
  *
  *   p_i += w_ip m_p (v_p + C_p (x_i - x_p))                    MPoint theory eq. 29; APIC: Jiang et al. 2017
  *   f_i += w_ip f_ext,p - V_p sigma_p grad w_ip                Steffen et al. 2008 eqs 4, 16
+ *   f_r,i -= w_ip V_p sigma_theta,p / r_p                      of rings: Nairn & Guilkey 2015
  *
  * Both are first-order forms  w a + sum_k column_k (w with axis k replaced by its second weight),  summed
  * hierarchically: axis by axis, row by row, node by node. Affine momentum alone is simpler: what a node
@@ -148,6 +149,15 @@ typedef struct mpmi_given {
   double force[3][MPMI_CHUNK], stress[3][3][MPMI_CHUNK];
 } mpmi_given;
 
+/* The hoop stress of a ring pulls it inwards: f_r -= V sigma_theta / r. */
+MPMI_INLINE void give_hoop_force(const mpmi_scatter *job, int64_t s, int64_t n, double *to) {
+  const double *volume = job->volume + s, *sigma = job->stress[2] + s, *radius = job->points.x[0] + s;
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
+    const double force = volume[p] * sigma[p] / radius[p];
+    to[p] -= radius[p] > 0.0 ? force : 0.0;
+  }
+}
+
 /* Computes -V sigma, of which the lower triangle is filled, and the external force. */
 MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s,
                             int64_t n, mpmi_given *to) {
@@ -166,6 +176,7 @@ MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_str
           -volume[p] * sigma[p];
     }
   }
+  if (dim == 2 && job->hoop) give_hoop_force(job, s, n, to->force[0]);
 }
 
 /* Computes momentum. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis;

@@ -166,7 +166,7 @@ START_TEST(layout_of_grid_desc) {
   AT(8, basis);
   AT(12, boundary_basis);
   AT(16, periodic);
-  AT(28, reserved);
+  AT(28, geometry);
   AT(32, cells);
   AT(56, origin);
   AT(80, spacing);

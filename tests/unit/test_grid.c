@@ -112,7 +112,7 @@ START_TEST(bad_values_are_named) {
   REFUSED(d.smoothing = 0.0, "smoothing is 0");
   REFUSED(d.smoothing = 1.5, "smoothing is 1.5");
   REFUSED(d.smoothing = NOT_A_NUMBER, "smoothing is nan");
-  REFUSED(d.reserved = 1, "reserved");
+  REFUSED(d.geometry = 3, "geometry is 3");
   REFUSED(d.cells[0] = d.cells[1] = d.cells[2] = 6 << 20, "63 bits");
   REFUSED(d.struct_size = 8, "struct_size");
 #undef REFUSED

@@ -65,7 +65,7 @@ namespace Mpm {
       Compare("GridDesc.basis", (byte*)&it.basis - at, 8, 8);
       Compare("GridDesc.boundary_basis", (byte*)&it.boundary_basis - at, 12, 12);
       Compare("GridDesc.periodic", (byte*)it.periodic - at, 16, 16);
-      Compare("GridDesc.reserved", (byte*)&it.reserved - at, 28, 28);
+      Compare("GridDesc.geometry", (byte*)&it.geometry - at, 28, 28);
       Compare("GridDesc.cells", (byte*)it.cells - at, 32, 32);
       Compare("GridDesc.origin", (byte*)it.origin - at, 56, 56);
       Compare("GridDesc.spacing", (byte*)it.spacing - at, 80, 80);

@@ -75,6 +75,17 @@ class BoundaryBasis(IntEnum):
     BOUNDARY_OPEN_KNOT = 1
 
 
+class Geometry(IntEnum):
+    """What lies across the plane of a 2-D grid."""
+
+    #: a slab of unit thickness that keeps its thickness
+    PLANE_STRAIN = 0
+    #: A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. All that is extensive (volume, mass,
+    #: force, energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is a slip
+    #: wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
+    AXISYMMETRIC = 1
+
+
 class Scheme(IntEnum):
     """Time integration scheme."""
 
@@ -349,6 +360,8 @@ UGIMP = Basis.UGIMP
 CPGIMP = Basis.CPGIMP
 BOUNDARY_GHOST = BoundaryBasis.BOUNDARY_GHOST
 BOUNDARY_OPEN_KNOT = BoundaryBasis.BOUNDARY_OPEN_KNOT
+PLANE_STRAIN = Geometry.PLANE_STRAIN
+AXISYMMETRIC = Geometry.AXISYMMETRIC
 USL = Scheme.USL
 USF = Scheme.USF
 MUSL = Scheme.MUSL
@@ -427,14 +440,14 @@ MOTION_FREE = Motion.MOTION_FREE
 CONSTANTS = """
     OK CUT_DT INVERTED NONFINITE NOT_CONVERGED SINGULAR OFF_GRID CANCELLED E_ARG E_NOMEM E_STATE E_CALLBACK
     E_UNSUPPORTED E_NOT_FOUND E_IO E_FORMAT E_INTERNAL LINEAR BSPLINE2 BSPLINE3 GIMP UGIMP CPGIMP BOUNDARY_GHOST
-    BOUNDARY_OPEN_KNOT USL USF MUSL NEWMARK FLIP APIC TPIC TFLIP AFLIP XPIC APIC_MLS FMPM ISA_BEST ISA_BASELINE
-    ISA_AVX2 ISA_AVX512 ISA_NEON ISA_PORTABLE LOG_WARNING LOG_INFO LOG_DEBUG LOCKING_NONE LOCKING_CELL_AVERAGE
-    TANGENT_MINOR_SYMMETRIC TANGENT_GENERAL X_MIN X_MAX Y_MIN Y_MAX Z_MIN Z_MAX WALL_NONE WALL_OPEN WALL_FIXED
-    WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES AFTER_P2G AFTER_FORCES AFTER_VELOCITY READ WRITE F64 I64 U8 BY_ID
-    LIBRARY_ORDER SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST CONTACT_UNILATERAL
-    CONTACT_NONE CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT NORMAL_FIXED DETECT_DEFAULT
-    DETECT_GAP DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE
-    MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE
+    BOUNDARY_OPEN_KNOT PLANE_STRAIN AXISYMMETRIC USL USF MUSL NEWMARK FLIP APIC TPIC TFLIP AFLIP XPIC APIC_MLS FMPM
+    ISA_BEST ISA_BASELINE ISA_AVX2 ISA_AVX512 ISA_NEON ISA_PORTABLE LOG_WARNING LOG_INFO LOG_DEBUG LOCKING_NONE
+    LOCKING_CELL_AVERAGE TANGENT_MINOR_SYMMETRIC TANGENT_GENERAL X_MIN X_MAX Y_MIN Y_MAX Z_MIN Z_MAX WALL_NONE
+    WALL_OPEN WALL_FIXED WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES AFTER_P2G AFTER_FORCES AFTER_VELOCITY READ WRITE
+    F64 I64 U8 BY_ID LIBRARY_ORDER SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST
+    CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT NORMAL_FIXED
+    DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER SHAPE_CAPSULE SHAPE_BOX
+    SHAPE_DISTANCE MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE
 """.split()
 
 
@@ -516,7 +529,7 @@ class grid_desc(Structure):
         ("basis", c_int32),
         ("boundary_basis", c_int32),
         ("periodic", c_int32 * 3),
-        ("reserved", c_int32),
+        ("geometry", c_int32),
         ("cells", c_int64 * 3),
         ("origin", c_double * 3),
         ("spacing", c_double * 3),
@@ -1115,7 +1128,8 @@ struct. Any thread, any time.""",
 
 Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is NULL unless
 MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can name.
-MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3.""",
+MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3; MPM_AXISYMMETRIC
+with a dim other than 2 or with a periodic first axis.""",
     "mpm_grid_destroy": """mpm_status mpm_grid_destroy(mpm_grid *grid)
 
 Frees the grid. NULL is fine. MPM_E_STATE while sets or steppers on it live.""",

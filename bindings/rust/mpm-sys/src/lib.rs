@@ -81,6 +81,15 @@ pub mod constants {
     /// the cells + degree nodes of an axis stand at the Greville points. Periodic axes keep plain splines.
     pub const MPM_BOUNDARY_OPEN_KNOT: i32 = 1;
 
+    // What lies across the plane of a 2-D grid.
+
+    /// a slab of unit thickness that keeps its thickness
+    pub const MPM_PLANE_STRAIN: i32 = 0;
+    /// A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. All that is extensive (volume, mass, force,
+    /// energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is a slip wall by
+    /// itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
+    pub const MPM_AXISYMMETRIC: i32 = 1;
+
     // Time integration scheme.
 
     /// Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10.
@@ -667,7 +676,7 @@ impl Default for mpm_context_desc {
 pub struct mpm_grid_desc {
     /// sizeof(mpm_grid_desc) of the caller
     pub struct_size: u32,
-    /// 1 (uniaxial strain), 2 (plane strain) or 3 (default)
+    /// 1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default)
     pub dim: i32,
     /// MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2
     pub basis: i32,
@@ -675,8 +684,8 @@ pub struct mpm_grid_desc {
     pub boundary_basis: i32,
     /// 1: the axis is periodic; default 0
     pub periodic: [i32; 3],
-    /// 0
-    pub reserved: i32,
+    /// for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC. Since 0.2.0
+    pub geometry: i32,
     /// cells along each axis, 1 to 6291456; memory follows the material
     pub cells: [i64; 3],
     /// lower corner of the box, length; default 0
@@ -1524,7 +1533,8 @@ extern "C" {
 
     /// Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is NULL
     /// unless MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can name.
-    /// MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3.
+    /// MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3;
+    /// MPM_AXISYMMETRIC with a dim other than 2 or with a periodic first axis.
     pub fn mpm_grid_create(
         context: *mut mpm_context,
         desc: *const mpm_grid_desc,

@@ -68,7 +68,7 @@ fn layout_of_mpm_grid_desc() {
     assert_eq!(offset!(mpm_grid_desc, basis), of(8, 8));
     assert_eq!(offset!(mpm_grid_desc, boundary_basis), of(12, 12));
     assert_eq!(offset!(mpm_grid_desc, periodic), of(16, 16));
-    assert_eq!(offset!(mpm_grid_desc, reserved), of(28, 28));
+    assert_eq!(offset!(mpm_grid_desc, geometry), of(28, 28));
     assert_eq!(offset!(mpm_grid_desc, cells), of(32, 32));
     assert_eq!(offset!(mpm_grid_desc, origin), of(56, 56));
     assert_eq!(offset!(mpm_grid_desc, spacing), of(80, 80));

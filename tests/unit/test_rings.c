@@ -1,0 +1,370 @@
+/* Bodies of revolution: their fills, gradient, forces, surfaces and refusals. */
+#include "combinations.h"
+#include "reference.h"
+#include "surfaces.h"
+
+/* The methods that go through these are all that rings offer. */
+static int32_t fits_rings(const method *how) {
+  return how->transfer != MPM_APIC_MLS;
+}
+
+/* Do particles deform by the velocities that nodes have at the end of the step? */
+static int32_t strains_by_nodes(const method *how) {
+  return fits_rings(how) && how->scheme == MPM_USL;
+}
+
+static world_desc rings_with(const method *how, int64_t cells, double h) {
+  world_desc d = world_with(how, 2, cells, h);
+  d.grid.geometry = MPM_AXISYMMETRIC;
+  return d;
+}
+
+static world_desc rings(int64_t cells, double h) {
+  world_desc d = world_default(2, cells, h);
+  d.grid.geometry = MPM_AXISYMMETRIC;
+  return d;
+}
+
+/* ---- volumes ------------------------------------------------------------------------------------------- */
+/* A fill has the mass of the body of revolution, per radian, to the last digits: r is linear in a cell. */
+START_TEST(fills_have_their_mass) {
+  for (int32_t per_axis = 1; per_axis <= 4; ++per_axis)
+    for (int32_t far = 0; far < 2; ++far) {
+      world w;
+      world_desc desc = rings(12, 0.25);
+      desc.grid.origin[0] = 3.0 * far;
+      mpm_particles *set = world_open(&w, &desc);
+      const double a = 3.0 * far + 0.5, low[] = {a, 1.0}, high[] = {a + 1.0, 2.5};
+      world_fill(&w, set, low, high, per_axis);
+      const double wanted = 1e3 * 0.5 * ((a + 1.0) * (a + 1.0) - a * a) * 1.5;
+      ck_within("mass", mass_of(&w, set), wanted, 1e-13 * wanted);
+      world_close(&w);
+    }
+}
+END_TEST
+
+/* ---- the gradient -------------------------------------------------------------------------------------- */
+static void grow(const double *x, double *v) {
+  for (int32_t k = 0; k < 3; ++k) v[k] = x[k];
+}
+
+/* In v = (r, z) a sphere stays a sphere: all stretches are alike, down to the axis. */
+START_TEST(stretches_of_a_sphere) {
+  const method *how = broad_methods[_i];
+  if (!strains_by_nodes(how)) return;
+  world w;
+  const world_desc desc = rings_with(how, 12, 0.25);
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {0.0, 1.0}, high[] = {1.6, 1.6};
+  const int64_t n = world_fill(&w, set, low, high, how->basis == MPM_LINEAR ? 2 : 5);
+  const double dt = 1e-3;
+  step_with(&w, dt, grow);
+  double *F = fetch(&w, set, "deformation_gradient", 9), *x = fetch(&w, set, "position", 2);
+  for (int64_t p = 0; p < n; ++p) {
+    if (x[n + p] < 1.15 || x[n + p] > 1.45 || x[p] > 1.3) continue; /* nodes beyond it are empty */
+    if (is_gimp(how->basis) && x[p] < 0.3) continue; /* a domain across the axis is no mirrored pair */
+    ck_within(how->name, F[8 * n + p], F[p], 2e-15);
+    ck_within(how->name, F[4 * n + p], F[p], 2e-15);
+    ck_within(how->name, F[p], 1.0 + dt, 2e-15);
+  }
+  free(F);
+  free(x);
+  world_close(&w);
+}
+END_TEST
+
+/* ---- forces -------------------------------------------------------------------------------------------- */
+static void wild(const double *x, double *v) {
+  for (int32_t k = 0; k < 2; ++k)
+    v[k] = 1e-3 * noise_at((uint64_t)(llround(x[0] * 64.0) * 1000 + llround(x[1] * 64.0) * 2 + k + 70));
+}
+
+static void set_noise(const world *w, mpm_particles *set, const char *field, int32_t components, int64_t n,
+                      double size) {
+  double *values = calloc((size_t)(6 * n), sizeof *values);
+  for (int64_t i = 0; i < components * n; ++i) values[i] = size * noise_at((uint64_t)i + 3);
+  put(w, set, field, 6, values);
+  free(values);
+}
+
+/* The forces of particles do the power of their stress: sum f v = - sum V sigma : L, for whatever stress and
+ * velocity of the nodes. */
+static void check_power(const world_desc *desc, const char *name) {
+  world w;
+  world_desc d = *desc;
+  d.law.model = "linear_elastic";
+  mpm_particles *set = world_open(&w, &d);
+  const double low[] = {0.7, 0.7}, high[] = {1.3, 1.4};
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  set_noise(&w, set, "stress", 4, n, 1e3);
+  double *stress = fetch(&w, set, "stress", 6), *volume = fetch(&w, set, "volume", 1);
+  int64_t nodes = 0, count = 0;
+  ck_ok(&w, mpm_step_begin(w.stepper, 1.0));
+  double *f = fetch_nodes(&w, "force", &nodes);
+  ck_ok(&w, mpm_step_abort(w.stepper));
+  step_with(&w, 1.0, wild);
+  double *at = fetch_nodes(&w, "position", &count), *F = fetch(&w, set, "deformation_gradient", 9);
+  ck_assert_int_eq(nodes, count);
+  double of_nodes = 0.0, of_particles = 0.0, scale = 0.0;
+  for (int64_t i = 0; i < nodes; ++i) {
+    const double x[2] = {at[i], at[nodes + i]};
+    double v[3];
+    wild(x, v);
+    for (int32_t k = 0; k < 2; ++k) of_nodes += f[k * nodes + i] * v[k];
+  }
+  for (int64_t p = 0; p < n; ++p) {
+    const double rate[4] = {F[p] - 1.0, F[4 * n + p] - 1.0, F[8 * n + p] - 1.0, F[n + p] + F[3 * n + p]};
+    for (int32_t c = 0; c < 4; ++c) {
+      of_particles += volume[p] * stress[c * n + p] * rate[c];
+      scale += fabs(volume[p] * stress[c * n + p] * rate[c]);
+    }
+  }
+  ck_within(name, of_nodes, -of_particles, 1e-11 * scale);
+  free(stress);
+  free(volume);
+  free(f);
+  free(at);
+  free(F);
+  world_close(&w);
+}
+
+START_TEST(forces_do_the_power_of_stresses) {
+  const method *how = broad_methods[_i];
+  if (!strains_by_nodes(how) || how->remedy) return;
+  const world_desc desc = rings_with(how, 8, 0.25);
+  check_power(&desc, how->name);
+}
+END_TEST
+
+/* Where the two stresses across the axis are equal, the body inside pulls at nothing. (Nodes that reach over
+ * the axis have an error of quadrature, of second order.) */
+START_TEST(uniform_stress_has_no_force) {
+  const method *how = broad_methods[_i];
+  if (!fits_rings(how) || !is_explicit(how) || how->scheme == MPM_USF || is_gimp(how->basis)) return;
+  for (int32_t per_axis = 1; per_axis <= 4; ++per_axis) {
+    world w;
+    world_desc desc = rings_with(how, 12, 0.25);
+    desc.law.model = "linear_elastic";
+    mpm_particles *set = world_open(&w, &desc);
+    const double low[] = {0.0, 0.5}, high[] = {2.5, 2.5};
+    const int64_t n = world_fill(&w, set, low, high, per_axis);
+    double *stress = calloc((size_t)(6 * n), sizeof *stress);
+    for (int64_t p = 0; p < n; ++p) stress[p] = stress[2 * n + p] = 1e3, stress[n + p] = 400.0;
+    put(&w, set, "stress", 6, stress);
+    int64_t nodes;
+    ck_ok(&w, mpm_step_begin(w.stepper, 1e-4));
+    double *f = fetch_nodes(&w, "force", &nodes), *x = fetch_nodes(&w, "position", &nodes), most = 0.0;
+    int32_t inside = 0;
+    for (int64_t i = 0; i < 2 * nodes; ++i) most = fmax(most, fabs(f[i]));
+    for (int64_t i = 0; i < nodes; ++i) {
+      if (x[i] < 0.9 || x[i] > 1.6 || x[nodes + i] < 1.3 || x[nodes + i] > 1.7) continue;
+      ck_within(how->name, f[i], 0.0, 1e-14 * most);
+      ck_within(how->name, f[nodes + i], 0.0, 1e-14 * most);
+      ++inside;
+    }
+    ck_assert_int_ge(inside, 3);
+    free(f);
+    free(x);
+    free(stress);
+    ck_ok(&w, mpm_step_abort(w.stepper));
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* ---- every combination --------------------------------------------------------------------------------- */
+typedef struct outcome {
+  uint64_t hash;
+  double mass;
+} outcome;
+
+static outcome run_combination(const combination *c, int32_t concurrency) {
+  static reference_law host_law = {1e5, 0.3, 10.0};
+  world w;
+  world_desc desc = describe_combination(c);
+  desc.grid.geometry = MPM_AXISYMMETRIC;
+  desc.grid.periodic[1] = desc.grid.periodic[0];
+  desc.grid.periodic[0] = 0;
+  desc.context.concurrency = concurrency;
+  desc.law = (world_law){.model = law_options[c->choice[CHOOSE_LAW]].model,
+                         .E = host_law.E,
+                         .nu = host_law.nu,
+                         .density = 1e3,
+                         .yield_stress = 1e3,
+                         .hardening = 1e4,
+                         .stress = reference_law_stress,
+                         .user = &host_law};
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {0.1, 0.4}, high[] = {1.3, 1.5};
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  double *v = malloc((size_t)(2 * n + 1) * sizeof *v);
+  for (int64_t i = 0; i < 2 * n; ++i) v[i] = 0.3 * noise_at((uint64_t)i);
+  put(&w, set, "velocity", 2, v);
+  free(v);
+  double *stress = calloc((size_t)(6 * n), sizeof *stress); /* clay has none without a pressure */
+  for (int64_t i = 0; i < 3 * n; ++i) stress[i] = -1e3;
+  if (desc.law.model && !strcmp(desc.law.model, "cam_clay")) put(&w, set, "stress", 6, stress);
+  free(stress);
+  const double dt = fmin(0.2 * world_stable_dt(&w), 1e-2), mass = mass_of(&w, set);
+  for (int32_t step = 0; step < 5; ++step) w.info = world_step(&w, dt);
+  ck_holds(w.info.momentum[0] == 0.0 && w.info.angular_momentum[2] == 0.0);
+  /* what comes back from a state goes on with the same bits */
+  const saved_state state = world_save(&w);
+  world_step(&w, dt);
+  const uint64_t hash = world_hash(&w);
+  world_load(&w, &state);
+  world_step(&w, dt);
+  ck_assert_uint_eq(world_hash(&w), hash);
+  free(state.data);
+  world_close(&w);
+  return (outcome){hash, mass};
+}
+
+static combination *list;
+static int32_t listed;
+
+START_TEST(combination_works) {
+  const combination *c = &list[_i];
+  char name[256];
+  if (c->choice[CHOOSE_DIM] != 2 || transfer_options[c->choice[CHOOSE_TRANSFER]].transfer == MPM_APIC_MLS)
+    return;
+  const outcome one = run_combination(c, 1), three = run_combination(c, 3);
+  if (one.hash != three.hash) ck_abort_msg("%s: the threads matter", name_of(c, name, sizeof name));
+  ck_holds(one.mass > 0.0);
+}
+END_TEST
+
+/* ---- surfaces ------------------------------------------------------------------------------------------ */
+/* Under a pressure p a closed ring is pushed outwards with p times its area in the plane, per radian, and not
+ * along the axis. Its radii stretch with it. */
+START_TEST(pressure_on_a_ring) {
+  const method *how = broad_methods[_i];
+  if (!fits_rings(how) || !is_explicit(how)) return;
+  world w;
+  const world_desc desc = rings_with(how, CELLS, spacing);
+  open_block_with(&w, &desc);
+  mpm_surface_desc d = load_desc();
+  d.pressure = -1000.0;
+  mpm_surface *s = put_surface(&w, &d);
+  add_circle(&w, s, 0.3, 0.1);
+  int64_t n;
+  ck_ok(&w, mpm_step_begin(w.stepper, 1e-4));
+  double *f = fetch_nodes(&w, "force", &n);
+  const double plane = area_of_circle(0.3);
+  ck_within(how->name, sum_of(n, f), 1000.0 * plane, 1e-11 * 1000.0);
+  ck_within(how->name, sum_of(n, f + n), 0.0, 1e-11 * 1000.0);
+  ck_ok(&w, mpm_step_abort(w.stepper));
+  free(f);
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
+START_TEST(areas_follow_the_ring) {
+  const double dt = 1e-3, grown = (1.0 + dt) * (1.0 + dt);
+  world w;
+  const world_desc desc = rings(CELLS, spacing);
+  open_block_with(&w, &desc);
+  mpm_surface *s = put_surface(&w, NULL);
+  add_circle(&w, s, 0.3, 0.1);
+  const double at[] = {1.5, 1.5}, area[] = {0.3, -0.2}, on_axis[] = {0.0, 1.5};
+  ck_ok(&w, mpm_surface_add(s, 1, at, area, NULL));
+  const int64_t n = mpm_surface_count(s);
+  double *before = markers(s, "area", 2);
+  ck_within("as given", before[n - 1], 0.3, 1e-15);
+  ck_within("as given", before[2 * n - 1], -0.2, 1e-15);
+  step_with(&w, dt, grow);
+  double *after = markers(s, "area", 2);
+  for (int64_t i = 0; i < 2 * n; ++i) ck_within("area", after[i], grown * before[i], 1e-13);
+  /* halves of a marker have the area of the whole */
+  int64_t added;
+  ck_ok(&w, mpm_surface_refine(s, 0.03, &added));
+  ck_assert_int_gt(added, n);
+  const int64_t all = mpm_surface_count(s);
+  double *halves = markers(s, "area", 2);
+  ck_within("sum", sum_of(all, halves), sum_of(n, after), 1e-13);
+  ck_within("sum", sum_of(all, halves + all), sum_of(n, after + n), 1e-13);
+  ck_refused(&w, mpm_surface_add(s, 1, on_axis, area, NULL), MPM_E_ARG, "lies on the axis");
+  free(before);
+  free(after);
+  free(halves);
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
+/* ---- refusals ------------------------------------------------------------------------------------------ */
+START_TEST(refusals) {
+  mpm_context *c = context_with(1, 0, NULL);
+  mpm_grid *grid;
+  mpm_stepper *s;
+  mpm_grid_desc d = grid_desc(3, 8, 0.25);
+  d.geometry = MPM_AXISYMMETRIC;
+  ck_refused(c, mpm_grid_create(c, &d, &grid), MPM_E_UNSUPPORTED, "is for dim 2");
+  d.dim = 2;
+  d.periodic[0] = 1;
+  ck_refused(c, mpm_grid_create(c, &d, &grid), MPM_E_UNSUPPORTED, "periodic[0] = 0");
+  d.periodic[0] = 0;
+  d.origin[0] = -0.25;
+  ck_refused(c, mpm_grid_create(c, &d, &grid), MPM_E_ARG, "origin[0] is -0.25");
+  d.origin[0] = 0.0;
+  ck_ok(c, mpm_grid_create(c, &d, &grid));
+  mpm_stepper_desc of = stepper_desc();
+  of.gravity[0] = 1.0;
+  ck_refused(c, mpm_stepper_create(c, grid, &of, &s), MPM_E_UNSUPPORTED, "gravity[0] is 1");
+  of.gravity[0] = 0.0;
+  of.transfer = MPM_APIC_MLS;
+  ck_refused(c, mpm_stepper_create(c, grid, &of, &s), MPM_E_UNSUPPORTED, "use MPM_APIC");
+  of.transfer = MPM_APIC;
+  ck_ok(c, mpm_stepper_create(c, grid, &of, &s));
+  ck_refused(c, mpm_stepper_set_wall(s, MPM_X_MIN, MPM_WALL_FIXED, 0.0), MPM_E_UNSUPPORTED, "is the axis");
+  ck_ok(c, mpm_stepper_set_wall(s, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
+  ck_ok(c, mpm_stepper_set_wall(s, MPM_X_MAX, MPM_WALL_FIXED, 0.0));
+  ck_ok(c, mpm_stepper_destroy(s));
+  ck_ok(c, mpm_grid_destroy(grid));
+  d.origin[0] = 1.0; /* of a tube, this face is no axis */
+  ck_ok(c, mpm_grid_create(c, &d, &grid));
+  ck_ok(c, mpm_stepper_create(c, grid, &of, &s));
+  ck_ok(c, mpm_stepper_set_wall(s, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
+  ck_ok(c, mpm_stepper_destroy(s));
+  ck_ok(c, mpm_grid_destroy(grid));
+  ck_ok(c, mpm_context_destroy(c));
+}
+END_TEST
+
+/* A state of slabs does not load into rings. */
+START_TEST(states_know_their_geometry) {
+  world slabs, w;
+  world_desc desc = world_default(2, 8, 0.25);
+  world_fill_cube(&slabs, world_open(&slabs, &desc), 0.7, 1.3);
+  const saved_state state = world_save(&slabs);
+  desc.grid.geometry = MPM_AXISYMMETRIC;
+  world_open(&w, &desc);
+  ck_refused(&w, mpm_state_load(w.stepper, state.data, state.bytes), MPM_E_FORMAT,
+             "geometry is 0 there, 1 here");
+  free(state.data);
+  world_close(&slabs);
+  world_close(&w);
+}
+END_TEST
+
+Suite *rings_suite(void);
+Suite *rings_suite(void) {
+  Suite *suite = suite_create("rings");
+  TCase *parts = tcase_create("parts");
+  if (!list) list = list_combinations(&listed);
+  tcase_add_test(parts, fills_have_their_mass);
+  tcase_add_loop_test(parts, stretches_of_a_sphere, 0, BROAD);
+  tcase_add_loop_test(parts, forces_do_the_power_of_stresses, 0, BROAD);
+  tcase_add_loop_test(parts, uniform_stress_has_no_force, 0, BROAD);
+  tcase_add_loop_test(parts, pressure_on_a_ring, 0, BROAD);
+  tcase_add_test(parts, areas_follow_the_ring);
+  tcase_add_test(parts, refusals);
+  tcase_add_test(parts, states_know_their_geometry);
+  suite_add_tcase(suite, parts);
+  TCase *all = tcase_create("combinations");
+  tcase_add_loop_test(all, combination_works, 0, listed);
+  tcase_set_timeout(all, 60);
+  suite_add_tcase(suite, all);
+  return suite;
+}
