@@ -708,9 +708,9 @@ namespace Mpm {
     /// <summary>(kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain
     /// energy is.</summary>
     public double dissipation;
-    /// <summary>sum m v.</summary>
+    /// <summary>sum m v; along the radius of MPM_AXISYMMETRIC 0.</summary>
     public fixed double momentum[3];
-    /// <summary>sum m x cross v; in 2-D about z, in [2]; in 1-D 0.</summary>
+    /// <summary>sum m x cross v; in 2-D about z, in [2]; in 1-D and MPM_AXISYMMETRIC 0.</summary>
     public fixed double angular_momentum[3];
     /// <summary>Sum of external_work over all committed steps since the stepper was made or its time was
     /// set.</summary>

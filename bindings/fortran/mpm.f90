@@ -556,9 +556,9 @@ module mpm
     real(c_double) :: external_work
     !> (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain energy is.
     real(c_double) :: dissipation
-    !> sum m v.
+    !> sum m v; along the radius of MPM_AXISYMMETRIC 0.
     real(c_double) :: momentum(3)
-    !> sum m x cross v; in 2-D about z, in [2]; in 1-D 0.
+    !> sum m x cross v; in 2-D about z, in [2]; in 1-D and MPM_AXISYMMETRIC 0.
     real(c_double) :: angular_momentum(3)
     !> Sum of external_work over all committed steps since the stepper was made or its time was set.
     real(c_double) :: external_work_total

@@ -598,9 +598,9 @@ export interface StepInfo {
    * energy is.
    */
   dissipation: number;
-  /** sum m v */
+  /** sum m v; along the radius of MPM_AXISYMMETRIC 0 */
   momentum: number[];
-  /** sum m x cross v; in 2-D about z, in [2]; in 1-D 0 */
+  /** sum m x cross v; in 2-D about z, in [2]; in 1-D and MPM_AXISYMMETRIC 0 */
   angular_momentum: number[];
   /** Sum of external_work over all committed steps since the stepper was made or its time was set. */
   external_work_total: number;

@@ -27,7 +27,8 @@
  * - velocity: length/time.
  * - acceleration: (v_new - v_old) / dt of the last step, once the host has set or mapped it; with staggered
  *   velocities over the mean of its dt and the one before.
- * - mass, initial_volume: > 0; a new particle has mass = density * initial_volume.
+ * - mass, initial_volume: > 0; a new particle has mass = density * initial_volume. Of MPM_AXISYMMETRIC the
+ *   volume is that of one radian, the area in the plane times the radius; fills take care of that.
  * - volume: det F * initial_volume (MPoint theory, eq. 40).
  * - size: full initial edge lengths of the particle's domain, for MPM_GIMP and MPM_CPGIMP; edges beyond a
  *   cell count as one cell. Until set or given it is that of a cube (2-D: square) of the initial volume.

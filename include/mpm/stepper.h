@@ -138,8 +138,8 @@ typedef struct mpm_step_info {
   /** (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain
    * energy is. */
   double dissipation;
-  double momentum[3];         /**< sum m v */
-  double angular_momentum[3]; /**< sum m x cross v; in 2-D about z, in [2]; in 1-D 0 */
+  double momentum[3];         /**< sum m v; along the radius of MPM_AXISYMMETRIC 0 */
+  double angular_momentum[3]; /**< sum m x cross v; in 2-D about z, in [2]; in 1-D and MPM_AXISYMMETRIC 0 */
   /** Sum of external_work over all committed steps since the stepper was made or its time was set. */
   double external_work_total;
   /** sum m tr(C D C^T) / 2: kinetic energy of the matrices that APIC, APIC_MLS, TPIC, TFLIP and AFLIP carry

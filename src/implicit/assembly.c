@@ -146,9 +146,10 @@ static mpm_status sum_internal(mpmi_balance *balance, const mpmi_pass *pass) {
                                                           .calls_host = mpmi_has_host_law(balance->layout),
                                                           .gathers = 1});
   if (!status) status = mpmi_step_failure(balance->step);
+  if (!status) status = mpmi_surface_loads_add(balance);
   if (status) return status;
   mpmi_unknowns_fold(balance, &balance->newton->force, balance->newton->vector[MPMI_INTERNAL]);
-  return mpmi_surface_loads_add(balance);
+  return MPM_OK;
 }
 
 /* Where pressures are averaged, forces need the stress of all particles of a cell: they get a pass of their

@@ -290,6 +290,7 @@ void mpmi_paired_stiffness_local(int32_t dim, const mpmi_paired_local *of);
  * and its new volume; where pressures are averaged weight k F_inc^-T and weight q. */
 typedef struct mpmi_locking_particle {
   double h[9], inverse[9], volume, k[9], q;
+  double hoop; /* of a ring 1 / r */
   int32_t paired;
 } mpmi_locking_particle;
 /* Adds particle p of a chunk to the sums of the cell whose lower corner is at this place of the tile. */

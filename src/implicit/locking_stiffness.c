@@ -138,7 +138,7 @@ void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *w
   if (of->paired) *paired++ += of->volume, *paired++ += of->q;
   for (int32_t a = 0; a < count; ++a) {
     int32_t rest = a, at[3];
-    double G[3];
+    double G[3], w = 1.0;
     for (int32_t k = dim - 1; k >= 0; --k) {
       at[k] = rest % grid->width;
       rest /= grid->width;
@@ -147,6 +147,7 @@ void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *w
       G[k] = W->g[k][at[k]][p];
       for (int32_t o = 0; o < dim; ++o)
         if (o != k) G[k] *= W->w[o][at[o]][p];
+      w *= W->w[k][at[k]][p];
     }
     const int32_t place = base + in_cell[a];
     newton->cell_node[cell * nodes + place] = work->tile_active[W->node[p] + newton->stencil.in_tile[a]];
@@ -161,6 +162,14 @@ void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *w
         paired_to[dim + i] += of->volume * of->inverse[3 * K + i] * G[K];
         paired_to[2 * dim + i] += of->k[3 * i + K] * G[K];
       }
+    if (!mpmi_is_axisymmetric(grid)) continue;
+    const double hoop = of->hoop * w; /* by u_r alone */
+    if (!of->paired) to[0] += of->h[8] * hoop;
+    to[dim] += of->volume * of->inverse[8] * hoop;
+    if (!of->paired) continue;
+    paired_to[0] += of->h[8] * hoop;
+    paired_to[dim] += of->volume * of->inverse[8] * hoop;
+    paired_to[2 * dim] += of->k[8] * hoop;
   }
 }
 

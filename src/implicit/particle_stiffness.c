@@ -15,6 +15,7 @@ mpmi_force_scatter mpmi_force_scatter_of(const mpmi_balance *balance, int32_t m,
                             .points = mpmi_points_of(set, 0),
                             .mass = mpmi_f64(set, MPMI_MASS, 0),
                             .initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0),
+                            .hoop = mpmi_is_axisymmetric(grid),
                             .deforms = mpmi_material_kinematics(set->material) != MPMI_F_STAYS,
                             .tile = tile};
   for (int32_t k = 0; k < grid->dim; ++k) {
@@ -79,11 +80,18 @@ static void add_stencil(mpmi_balance *balance, mpmi_newton_work *work, int32_t f
   memset(work->K, 0, (size_t)(row * row) * sizeof *work->K);
 }
 
+/* Returns 1 / r of a ring, and 0 in a plane. */
+static double hoop_of(const mpm_particles *set, int64_t slot) {
+  const double radius = mpmi_f64(set, MPMI_POSITION, 0)[slot];
+  return mpmi_is_axisymmetric(set->grid) && radius > 0.0 ? 1.0 / radius : 0.0;
+}
+
 /* Adds one particle's share of what couples its cell. */
 static void add_to_cell(mpmi_balance *balance, const mpmi_newton_work *work, const mpm_particles *set,
                         const mpmi_weights *W, int64_t p, int32_t cell, int64_t slot, int64_t q, int64_t ld) {
-  const int32_t dim = balance->settings->grid->dim, paired = mpmi_averages_pressure(balance->settings, set);
-  mpmi_locking_particle of = {.volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot], .paired = paired};
+  const int32_t dim = mpmi_strain_dim(set->grid), paired = mpmi_averages_pressure(balance->settings, set);
+  mpmi_locking_particle of = {
+      .volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot], .hoop = hoop_of(set, slot), .paired = paired};
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t K = 0; K < dim; ++K) {
       of.inverse[3 * K + i] = work->inverse[(3 * K + i) * ld + q];
@@ -118,7 +126,7 @@ static void add_stencils(mpmi_balance *balance, mpmi_newton_work *work, const mp
       if (first >= 0 && W.node[p] != first) add_stencil(balance, work, first);
       first = W.node[p];
       balance->settings->kernels->stiffness[grid->dim](grid->width, &W, p, work->stiffness + at + p, ld,
-                                                       work->K);
+                                                       hoop_of(set, begin + at + p), work->K);
     }
   }
   if (first >= 0) add_stencil(balance, work, first);
@@ -144,9 +152,9 @@ static int32_t is_finite(const double *value, int32_t dim, int64_t ld, int64_t n
   return 1;
 }
 
-static int32_t find_tangent(mpmi_balance *balance, mpmi_newton_work *work, mpmi_batch *b) {
+static int32_t find_tangent(mpmi_newton_work *work, mpmi_batch *b) {
   const mpm_particles *set = b->set;
-  const int32_t dim = balance->settings->grid->dim;
+  const int32_t dim = mpmi_strain_dim(set->grid);
   const int64_t ld = b->law.ld, *id = mpmi_i64(set, MPMI_ID, 0) + b->begin;
   const mpm_status status = mpmi_material_tangent(set->material, dim, &b->law.batch, work->tangent_scratch,
                                                   work->tangent, &work->symmetric);
@@ -175,7 +183,7 @@ static void push_forward(mpmi_balance *balance, mpmi_newton_work *work, const mp
                           .inverse = work->inverse,
                           .nominal = work->nominal,
                           .stiffness = work->stiffness};
-  balance->settings->kernels->push[balance->settings->grid->dim](&push, b->n);
+  balance->settings->kernels->push[mpmi_strain_dim(b->set->grid)](&push, b->n);
 }
 
 static int32_t is_rigid(const mpmi_batch *b) {
@@ -190,10 +198,10 @@ static void take_nodal_stress(mpmi_batch *b) {
 }
 
 /* Puts the share that the remedy's local part has into the tangent, and what couples a cell into h, k, q. */
-static void add_local_part(const mpmi_balance *balance, mpmi_newton_work *work, mpmi_batch *b) {
+static void add_local_part(mpmi_newton_work *work, mpmi_batch *b) {
   const double *volume = mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin;
   const double *nodal_stress = b->step->work->rows.of[b->m].nodal_stress;
-  const int32_t dim = balance->settings->grid->dim;
+  const int32_t dim = mpmi_strain_dim(b->set->grid);
   if (!nodal_stress) {
     mpmi_locking_stiffness_local(dim, &b->law, work->weight, volume, work->tangent, work->h);
     return;
@@ -228,9 +236,9 @@ void mpmi_add_forces(mpmi_balance *balance, mpmi_batch *b) {
 
 void mpmi_add_stiffness(mpmi_balance *balance, mpmi_batch *b) {
   mpmi_newton_work *work = &balance->newton->work[b->task];
-  if (is_rigid(b) || !find_tangent(balance, work, b)) return;
+  if (is_rigid(b) || !find_tangent(work, b)) return;
   find_weights(balance, b->set, b->begin, b->n, work->weight);
-  if (balance->settings->desc.locking_remedy) add_local_part(balance, work, b);
+  if (balance->settings->desc.locking_remedy) add_local_part(work, b);
   push_forward(balance, work, b, work->tangent);
   add_stencils(balance, work, b->set, b->gather.axis, b->begin, b->n, b->law.ld);
 }

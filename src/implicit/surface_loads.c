@@ -50,18 +50,15 @@ mpm_status mpmi_surface_loads_find(mpmi_balance *balance) {
 
 mpm_status mpmi_surface_loads_add(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
-  const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
   const mpm_status status = mpmi_surfaces_stretch(balance->step, &balance->nodes->solved);
   for (int64_t i = 0; i < list->count && !status; ++i) {
     const mpmi_marker_nodes *around = &list->surface[i]->around;
     for (int64_t n = 0; n < list->surface[i]->next.count * around->nodes; ++n) {
       if (around->slot[n] < 0) continue;
-      const mpmi_active_node *node = &newton->active[newton->active_of[around->slot[n]]];
       const double *force = list->surface[i]->next.at[n / around->nodes].force;
       for (int32_t c = 0; c < dim; ++c)
-        newton->vector[MPMI_INTERNAL][(int64_t)node->row * dim + c] -=
-            node->sign[c] * around->weight[n] * force[c];
+        mpmi_momentum(&balance->newton->force, around->slot[n])[c] -= around->weight[n] * force[c];
     }
   }
   return status;
@@ -83,9 +80,10 @@ static int32_t response_of(const mpm_surface *s, int64_t i, double *area, double
   return most > 0.0;
 }
 
-/* Adds the block of one node's force by the displacement of another. */
+/* Adds the block of one node's force by the displacement of another. hoop: by how much a radial one stretches
+ * the hoop of a ring, and with it the area. */
 static void add_block(mpmi_balance *balance, int64_t slot_a, int64_t slot_b, double weight,
-                      const double *area, const double *g, double P[3][3]) {
+                      const double *area, const double *g, double hoop, double P[3][3]) {
   mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
   const mpmi_active_node *A = &newton->active[newton->active_of[slot_a]];
@@ -95,7 +93,8 @@ static void add_block(mpmi_balance *balance, int64_t slot_a, int64_t slot_b, dou
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t j = 0; j < dim; ++j) {
       double sum = 0.0;
-      for (int32_t k = 0; k < dim; ++k) sum += P[i][k] * (area[k] * g[j] - g[k] * area[j]);
+      for (int32_t k = 0; k < dim; ++k)
+        sum += P[i][k] * (area[k] * (j == 0 ? g[j] + hoop : g[j]) - g[k] * area[j]);
       newton->matrix.value[(entry * dim + i) * dim + j] -= A->sign[i] * B->sign[j] * weight * sum;
     }
 }
@@ -109,14 +108,16 @@ static void stiffen_marker(mpmi_balance *balance, mpm_surface *s, int64_t i) {
   balance->newton->matrix.symmetric = 0;
   mpmi_marker_deformation(balance->step, s, &balance->nodes->solved, i, F);
   mpmi_marker_invert(F, inverse);
+  const double radius = mpmi_is_axisymmetric(s->grid) ? s->now.at[i].position[0] : 0.0;
   for (int64_t b = first; b < end; ++b) {
+    const double hoop = radius > 0.0 ? around->weight[b] / radius * inverse[2][2] : 0.0;
     double g[3] = {0.0, 0.0, 0.0};
     if (around->slot[b] < 0) continue;
     for (int32_t k = 0; k < dim; ++k)
       for (int32_t c = 0; c < dim; ++c) g[k] += inverse[c][k] * around->gradient[b * dim + c];
     for (int64_t a = first; a < end; ++a)
       if (around->slot[a] >= 0)
-        add_block(balance, around->slot[a], around->slot[b], around->weight[a], area, g, P);
+        add_block(balance, around->slot[a], around->slot[b], around->weight[a], area, g, hoop, P);
   }
 }
 

@@ -46,8 +46,8 @@ static void later_int(mpmi_archive *a, uint32_t format, const char *what, int32_
   if (format > 2)
     mpmi_archive_same_int(a, what, here);
   else if (here && !a->status)
-    a->status = mpmi_fail(a->context, MPM_E_FORMAT,
-                          "the state is of an unlike setup: %s is 0 there, %d here", what, (int)here);
+    a->status = mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %s is 0 there, %d here",
+                          what, (int)here);
 }
 
 static void setup_later(mpmi_archive *a, uint32_t format, const mpm_stepper *s) {

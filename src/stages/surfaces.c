@@ -20,7 +20,7 @@
 #include <string.h>
 
 /* A node with a smaller share of the mass around a marker takes less. */
-#define FULL_SHARE 0.05
+#define FULL_SHARE 0.02
 /* The least determinant of sum (x_i - x) grad u_i^T by which gradients are corrected: with less, nodes of too
  * few lines are left. */
 #define LEAST_SPREAD 0.25

@@ -150,9 +150,6 @@ static mpm_status known_geometry(mpm_context *c, const mpm_grid *grid, const mpm
                      "gravity[0] is %g, but the grid is MPM_AXISYMMETRIC: weight acts along the axis alone: "
                      "use gravity[1], and a force callback for what acts along the radius",
                      d->gravity[0]);
-  if (d->scheme == MPM_NEWMARK)
-    return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "scheme MPM_NEWMARK has no grid that is MPM_AXISYMMETRIC: use an explicit scheme");
   return MPM_OK;
 }
 

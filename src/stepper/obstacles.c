@@ -22,9 +22,10 @@ mpm_status mpm_stepper_add_obstacle(mpm_stepper *s, mpm_obstacle *obstacle) {
         "scheme MPM_NEWMARK has no free obstacles: use MPM_MOTION_FIXED or MPM_MOTION_PRESCRIBED, "
         "or an explicit scheme");
   if (mpmi_is_axisymmetric(s->grid) && obstacle->desc.motion == MPM_MOTION_FREE)
-    return mpmi_fail(c, MPM_E_UNSUPPORTED,
-                     "the grid is MPM_AXISYMMETRIC, where obstacles are rings or lie on the axis, and none is "
-                     "free: use MPM_MOTION_FIXED or MPM_MOTION_PRESCRIBED");
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "the grid is MPM_AXISYMMETRIC, where obstacles are rings or lie on the axis, and none is "
+        "free: use MPM_MOTION_FIXED or MPM_MOTION_PRESCRIBED");
   if ((status = mpmi_obstacle_fits(obstacle, &obstacle->pose, s->grid->dim)) ||
       (status = MPMI_RESERVE_NEXT(c, list->obstacle, list->capacity, list->count)))
     return status;

@@ -57,10 +57,11 @@ void mpmi_marker_set_area(mpmi_marker *m, const mpm_grid *grid, const double *ar
 
 mpm_status mpmi_marker_check_area(const mpm_surface *s, int64_t which, double radius, const double *area) {
   if (!mpmi_is_axisymmetric(s->grid) || radius > 0.0 || !(fabs(area[0]) + fabs(area[1]) > 0.0)) return MPM_OK;
-  return mpmi_fail(s->context, MPM_E_ARG,
-                   "marker %lld: area is (%g, %g), but it lies on the axis, where a ring has none: place it at "
-                   "a radius > 0",
-                   (long long)which, area[0], area[1]);
+  return mpmi_fail(
+      s->context, MPM_E_ARG,
+      "marker %lld: area is (%g, %g), but it lies on the axis, where a ring has none: place it at "
+      "a radius > 0",
+      (long long)which, area[0], area[1]);
 }
 
 mpm_status mpmi_surface_changeable(const mpm_surface *s) {

@@ -26,7 +26,8 @@ BASIS(open_bspline3)
   void KERNEL(force_scatter_##dim##_2)(const mpmi_force_scatter *, int64_t, int64_t);                        \
   void KERNEL(force_scatter_##dim##_3)(const mpmi_force_scatter *, int64_t, int64_t);                        \
   void KERNEL(force_scatter_##dim##_4)(const mpmi_force_scatter *, int64_t, int64_t);                        \
-  void KERNEL(stiffness_##dim)(int32_t, const mpmi_weights *, int64_t, const double *, int64_t, double *);   \
+  void KERNEL(stiffness_##dim)(int32_t, const mpmi_weights *, int64_t, const double *, int64_t, double,      \
+                               double *);                                                                    \
   int32_t KERNEL(discriminate_##dim)(mpmi_separation *);                                                     \
   int32_t KERNEL(fit_##dim)(mpmi_separation *);                                                              \
   void KERNEL(project_##dim)(const mpmi_separation *, const double *, const double *, double, double *,      \

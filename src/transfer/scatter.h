@@ -28,7 +28,7 @@ typedef struct mpmi_scatter {
   const double *affine[9]; /* row * 3 + column; for the affine forms */
   const double *force[3];  /* external force on the particle beside gravity, or NULL */
   double gravity[3];
-  int32_t hoop; /* particles are rings (2-D): x[0] is their radius */
+  int32_t hoop;    /* particles are rings (2-D): x[0] is their radius */
   double fused_dt; /* form 4 affine: time that the force acts on the momentum; 0: no force */
   double *tile;
   mpmi_streams streams;

@@ -5,7 +5,9 @@
  *   K_ab = sum V0 g_a,k (c_ikjl + delta_ij tau_kl) g_b,l     = sum G_a,K A_iKjL G_b,L
  *
  * The push-forward goes into what the gradients are multiplied by, so that the loops over nodes see G alone.
- */
+ *
+ * Rings have one gradient more: the displacement u_r of a node stretches the hoop by w_a u_r / r, so that G_a of
+ * the radial component has the entry w_a / r in place (theta, theta), and nothing else has one there. */
 #include "simd/tensor.h"
 #include "transfer/stiffness.h"
 
@@ -124,6 +126,8 @@ MPMI_INLINE void scatter_particle(int32_t dim, int32_t width, const mpmi_force_s
     if (!job->nominal) f[i] = job->mass[slot] * job->gravity[i] + (job->force[i] ? job->force[i][slot] : 0.0);
   }
   const double volume = job->nominal || !job->deforms ? 0.0 : job->initial_volume[slot];
+  const double radius = dim == 2 && job->hoop && job->nominal ? job->points.x[0][slot] : 0.0;
+  const double hoop = radius > 0.0 ? job->nominal[8 * job->ld + q] / radius : 0.0;
   for (int32_t a = 0; a < stencil_count(dim, width); ++a) {
     int32_t at[3], place = 0;
     double G[3], norm = 0.0;
@@ -139,6 +143,7 @@ MPMI_INLINE void scatter_particle(int32_t dim, int32_t width, const mpmi_force_s
       for (int32_t K = 0; K < dim; ++K) sum += P[i][K] * G[K];
       node[i] += sum;
     }
+    if (dim == 2 && job->hoop) node[0] += w * hoop;
     node[3] += volume * norm;
   }
 }
@@ -155,19 +160,40 @@ MPMI_INLINE void force_scatter(int32_t dim, int32_t width, const mpmi_force_scat
   }
 }
 
+enum { MOST_NODES = MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH) };
+
+/* Adds what the hoop of a ring of radius 1 / `by` has to do with the plane and with itself: the entries (theta,
+ * theta) of A G, and of G^T A beside the plane. */
+MPMI_INLINE void hoop_stiffness(int32_t nodes, int32_t count, const double *w, double (*G)[MOST_NODES],
+                                double by, const double *A, int64_t ld, double *K) {
+  for (int32_t j = 0; j < 2; ++j) {
+    double B[MOST_NODES],
+        other[MOST_NODES]; /* (theta, theta) by node b; node b's component j by (theta, theta) */
+    for (int32_t b = 0; b < nodes; ++b) {
+      B[b] = A[(72 + 3 * j) * ld] * G[0][b] + A[(72 + 3 * j + 1) * ld] * G[1][b];
+      other[b] = A[(27 * j + 8) * ld] * G[0][b] + A[(27 * j + 9 + 8) * ld] * G[1][b];
+      if (j == 0) B[b] += A[80 * ld] * by * w[b];
+    }
+    for (int32_t a = 0; a < count; ++a)
+      for (int32_t b = 0; b < count; ++b) {
+        K[(int64_t)a * 2 * nodes + j * nodes + b] += by * w[a] * B[b];
+        K[(int64_t)(j * nodes + a) * 2 * nodes + b] += by * w[b] * other[a];
+      }
+  }
+}
+
 /* K += G^T A G, rows and columns by component and node: first A G, then one outer product per component. */
 MPMI_INLINE void stiffness(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
-                           const double *stiffness, int64_t ld, double *K) {
-  enum { MOST = MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH) };
+                           const double *stiffness, int64_t ld, double hoop, double *K) {
   const int32_t count = stencil_count(dim, width), nodes = MPMI_STENCIL_NODES(dim, width), row = dim * nodes;
-  double G[3][MOST], AG[3][3 * MOST];
+  double G[3][MOST_NODES], AG[3][3 * MOST_NODES], w[MOST_NODES];
   for (int32_t a = count; a < nodes; ++a)
     for (int32_t k = 0; k < dim; ++k) G[k][a] = 0.0;
   for (int32_t a = 0; a < count; ++a) {
     int32_t at[3];
     double gradient[3];
     node_place(dim, width, a, at);
-    node_weight(dim, W, p, at, gradient);
+    w[a] = node_weight(dim, W, p, at, gradient);
     for (int32_t k = 0; k < dim; ++k) G[k][a] = gradient[k];
   }
   for (int32_t i = 0; i < dim; ++i) {
@@ -192,6 +218,7 @@ MPMI_INLINE void stiffness(int32_t dim, int32_t width, const mpmi_weights *W, in
       }
     }
   }
+  if (dim == 2 && hoop > 0.0) hoop_stiffness(nodes, count, w, G, hoop, stiffness, ld, K);
 }
 
 #define FORCE_SCATTER(dim, width)                                                                            \
@@ -208,15 +235,15 @@ MPMI_INLINE void stiffness(int32_t dim, int32_t width, const mpmi_weights *W, in
   FORCE_SCATTER(dim, 3)                                                                                      \
   FORCE_SCATTER(dim, 4)                                                                                      \
   void KERNEL(stiffness_##dim)(int32_t width, const mpmi_weights *W, int64_t p, const double *A, int64_t ld, \
-                               double *K);                                                                   \
+                               double hoop, double *K);                                                      \
   void KERNEL(stiffness_##dim)(int32_t width, const mpmi_weights *W, int64_t p, const double *A, int64_t ld, \
-                               double *K) {                                                                  \
+                               double hoop, double *K) {                                                     \
     if (width == 2)                                                                                          \
-      stiffness(dim, 2, W, p, A, ld, K);                                                                     \
+      stiffness(dim, 2, W, p, A, ld, hoop, K);                                                               \
     else if (width == 3)                                                                                     \
-      stiffness(dim, 3, W, p, A, ld, K);                                                                     \
+      stiffness(dim, 3, W, p, A, ld, hoop, K);                                                               \
     else                                                                                                     \
-      stiffness(dim, 4, W, p, A, ld, K);                                                                     \
+      stiffness(dim, 4, W, p, A, ld, hoop, K);                                                               \
   }
 STIFFNESS(1)
 STIFFNESS(2)

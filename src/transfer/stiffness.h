@@ -31,6 +31,7 @@ typedef struct mpmi_force_scatter {
   const double *nominal;
   const double *mass, *initial_volume, *force[3];
   double gravity[3];
+  int32_t hoop;    /* particles are rings: x[0] is their radius */
   int32_t deforms; /* 0: its particles have no stiffness */
   double *tile;
 } mpmi_force_scatter;
@@ -41,8 +42,8 @@ typedef void (*mpmi_force_scatter_fn)(const mpmi_force_scatter *job, int64_t beg
 #define MPMI_STENCIL_NODES(dim, width)                                                                       \
   ((((dim) > 2 ? (width) * (width) * (width) : (dim) > 1 ? (width) * (width) : (width)) + 3) / 4 * 4)
 /* Adds to K the stiffness of particle p of a chunk. W holds its weights and gradients; stiffness points at
- * its first component of mpmi_push. */
+ * its first component of mpmi_push. hoop: of rings 1 / r, else 0. */
 typedef void (*mpmi_stiffness_fn)(int32_t width, const mpmi_weights *W, int64_t p, const double *stiffness,
-                                  int64_t ld, double *K);
+                                  int64_t ld, double hoop, double *K);
 
 #endif

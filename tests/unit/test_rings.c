@@ -234,6 +234,86 @@ START_TEST(combination_works) {
 }
 END_TEST
 
+/* ---- implicit steps ------------------------------------------------------------------------------------ */
+static world_desc implicit_rings(const basis_option *basis, int32_t remedy, const char *model) {
+  const method how = method_of(basis, &(scheme_option){MPM_NEWMARK, "Newmark"}, &transfer_options[0]);
+  world_desc d = rings_with(&how, 12, 0.25);
+  d.stepper.flip = 1.0;
+  d.stepper.pic_damping = 0.0;
+  d.stepper.locking_remedy = remedy;
+  d.stepper.transfer = MPM_FLIP;
+  d.law =
+      (world_law){.model = model, .E = 1e5, .nu = 0.3, .density = 1e3, .yield_stress = 4e3, .hardening = 1e4};
+  return d;
+}
+
+/* A ring that stands on a floor is pressed together from outside by a tenth of its stiffness, or so that it yields: Newton's iteration
+ * has the tangent of its forces, and takes few steps. */
+START_TEST(tangents_of_rings) {
+  static const char *const models[] = {"neo_hookean", "j2", "linear_elastic"};
+  const basis_option *basis = &basis_options[_i / 6];
+  const int32_t remedy = _i / 3 % 2;
+  world w;
+  world_desc desc = implicit_rings(basis, remedy, models[_i % 3]);
+  desc.stepper.quasi_static = 1;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {0.75, 0.0}, high[] = {1.5, 1.0};
+  world_fill(&w, set, low, high, 2);
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FIXED, 0.0));
+  mpm_surface_desc d = load_desc();
+  d.pressure = _i % 3 == 1 ? 2e3 : 1e4;
+  mpm_surface *s = put_surface(&w, &d);
+  for (int32_t k = 0; k < 8; ++k) {
+    const double at[] = {1.5, 0.0625 + 0.125 * k}, area[] = {1.5 * 0.125, 0.0};
+    ck_ok(&w, mpm_surface_add(s, 1, at, area, NULL));
+  }
+  const mpm_step_info info = world_step(&w, 1.0);
+  show("%s, %s, remedy %d: %d iterations\n", basis->name, models[_i % 3], (int)remedy,
+       (int)info.newton_iterations);
+  ck_assert_int_le(info.newton_iterations, 6);
+  double reaction[3], *f = markers(s, "force", 2);
+  ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, MPM_Y_MIN, reaction));
+  ck_within("along the axis", reaction[1], -sum_of(8, f + 8), 1e-6 * 1e4);
+  free(f);
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
+static uint64_t implicit_hash(const basis_option *basis, int32_t remedy, const char *model,
+                              int32_t concurrency) {
+  world w;
+  world_desc desc = implicit_rings(basis, remedy, model);
+  desc.context.concurrency = concurrency;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {0.0, 0.5}, high[] = {1.0, 1.5};
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  double *v = malloc((size_t)(2 * n + 1) * sizeof *v), *x = fetch(&w, set, "position", 2);
+  for (int64_t i = 0; i < n; ++i) v[i] = x[i], v[n + i] = -0.5 * x[n + i];
+  put(&w, set, "velocity", 2, v);
+  free(v);
+  free(x);
+  for (int32_t k = 0; k < 3; ++k) world_step(&w, 2e-3);
+  const saved_state state = world_save(&w);
+  world_step(&w, 2e-3);
+  const uint64_t hash = world_hash(&w);
+  world_load(&w, &state);
+  world_step(&w, 2e-3);
+  ck_assert_uint_eq(world_hash(&w), hash);
+  free(state.data);
+  world_close(&w);
+  return hash;
+}
+
+START_TEST(implicit_threads) {
+  static const char *const models[] = {"neo_hookean", "j2", "newtonian_fluid"};
+  const basis_option *basis = &basis_options[_i / 2];
+  const char *model = models[_i % 3];
+  if (basis->basis == MPM_CPGIMP && keeps_volume_alone(model)) return;
+  ck_assert_uint_eq(implicit_hash(basis, _i % 2, model, 1), implicit_hash(basis, _i % 2, model, 3));
+}
+END_TEST
+
 /* ---- surfaces ------------------------------------------------------------------------------------------ */
 /* Under a pressure p a closed ring is pushed outwards with p times its area in the plane, per radian, and not
  * along the axis. Its radii stretch with it. */
@@ -277,18 +357,98 @@ START_TEST(areas_follow_the_ring) {
   double *after = markers(s, "area", 2);
   for (int64_t i = 0; i < 2 * n; ++i) ck_within("area", after[i], grown * before[i], 1e-13);
   /* halves of a marker have the area of the whole */
+  double *reference = markers(s, "reference_area", 1);
   int64_t added;
   ck_ok(&w, mpm_surface_refine(s, 0.03, &added));
   ck_assert_int_gt(added, n);
   const int64_t all = mpm_surface_count(s);
   double *halves = markers(s, "area", 2);
   ck_within("sum", sum_of(all, halves), sum_of(n, after), 1e-13);
+  double *halves_reference = markers(s, "reference_area", 1);
+  ck_within("reference", sum_of(all, halves_reference), sum_of(n, reference), 1e-13);
+  for (int64_t i = 0; i < all; ++i)
+    ck_within("reference", halves_reference[i], hypot(halves[i], halves[all + i]) / grown, 1e-13);
   ck_within("sum", sum_of(all, halves + all), sum_of(n, after + n), 1e-13);
   ck_refused(&w, mpm_surface_add(s, 1, on_axis, area, NULL), MPM_E_ARG, "lies on the axis");
   free(before);
   free(after);
   free(halves);
+  free(reference);
+  free(halves_reference);
   drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
+/* ---- contact ------------------------------------------------------------------------------------------- */
+/* A block falls onto a plane; returns after how many steps they touch. */
+static int32_t steps_to_contact(int32_t geometry, double origin) {
+  world w;
+  world_desc desc = world_default(2, 12, 0.25);
+  desc.grid.geometry = geometry;
+  desc.grid.origin[0] = origin;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {origin + 1.0, 1.0}, high[] = {origin + 1.75, 1.75}, v[] = {0.0, -1.0};
+  world_fill(&w, set, low, high, 2);
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
+  mpm_obstacle_desc d;
+  mpm_obstacle *floor;
+  ck_ok(&w, mpm_obstacle_desc_init(&d, sizeof d));
+  d.shape = MPM_SHAPE_PLANE;
+  d.position[0] = origin + 1.0;
+  d.position[1] = 0.93;
+  ck_ok(&w, mpm_obstacle_create(w.context, &d, &floor));
+  ck_ok(&w, mpm_stepper_add_obstacle(w.stepper, floor));
+  mpm_contact_info info = {.struct_size = sizeof info};
+  int32_t steps = 0;
+  while (!(info.normal_force > 0.0) && steps < 200) {
+    world_step(&w, 1e-3);
+    ck_ok(&w, mpm_obstacle_contact_info(floor, MPM_BODY_ANY, &info));
+    ++steps;
+  }
+  ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, floor));
+  ck_ok(&w, mpm_obstacle_destroy(floor));
+  world_close(&w);
+  return steps;
+}
+
+/* The half-width of a ring is that of its section, wherever the axis is. */
+START_TEST(rings_touch_as_slabs_do) {
+  const int32_t slab = steps_to_contact(MPM_PLANE_STRAIN, 0.0);
+  ck_assert_int_lt(slab, 200);
+  ck_assert_int_gt(slab, 50);
+  ck_assert_int_eq(steps_to_contact(MPM_AXISYMMETRIC, 0.0), slab);
+  ck_assert_int_eq(steps_to_contact(MPM_AXISYMMETRIC, 40.0), slab);
+}
+END_TEST
+
+/* Where two bodies meet face to face along the axis, nothing pushes them along the radius. */
+START_TEST(normals_do_not_lean) {
+  world w;
+  const world_desc desc = rings(12, 0.25);
+  mpm_particles *set[2] = {world_open(&w, &desc), world_add_set(&w, NULL)};
+  mpm_contact_desc d;
+  ck_ok(&w, mpm_contact_desc_init(&d, sizeof d));
+  d.normal = MPM_NORMAL_GRADIENT;
+  for (int32_t m = 0; m < 2; ++m) {
+    const double low[] = {0.0, 0.75 + 0.75 * m}, high[] = {1.0, 1.5 + 0.75 * m}, v[] = {0.0, m ? -1.0 : 1.0};
+    world_fill(&w, set[m], low, high, 2);
+    ck_ok(&w, mpm_particles_set_all(set[m], "velocity", MPM_F64, 2, v));
+    ck_ok(&w, mpm_stepper_set_body(w.stepper, set[m], m));
+  }
+  ck_ok(&w, mpm_stepper_set_contact(w.stepper, 0, 1, &d));
+  world_step(&w, 1e-3);
+  mpm_contact_info info = {.struct_size = sizeof info};
+  ck_ok(&w, mpm_stepper_contact_info(w.stepper, 0, 1, &info));
+  ck_holds(info.normal_force > 0.0);
+  for (int32_t m = 0; m < 2; ++m) {
+    const int64_t n = mpm_particles_count(set[m]);
+    double *v = fetch(&w, set[m], "velocity", 2), *x = fetch(&w, set[m], "position", 2);
+    for (int64_t p = 0; p < n; ++p)
+      if (x[p] < 0.25) ck_within("radial velocity", v[p], 0.0, 1e-12); /* the rim is round */
+    free(v);
+    free(x);
+  }
   world_close(&w);
 }
 END_TEST
@@ -359,9 +519,15 @@ Suite *rings_suite(void) {
   tcase_add_loop_test(parts, uniform_stress_has_no_force, 0, BROAD);
   tcase_add_loop_test(parts, pressure_on_a_ring, 0, BROAD);
   tcase_add_test(parts, areas_follow_the_ring);
+  tcase_add_test(parts, rings_touch_as_slabs_do);
+  tcase_add_test(parts, normals_do_not_lean);
   tcase_add_test(parts, refusals);
   tcase_add_test(parts, states_know_their_geometry);
   suite_add_tcase(suite, parts);
+  TCase *implicit = tcase_create("implicit");
+  tcase_add_loop_test(implicit, tangents_of_rings, 0, 6 * BASES);
+  tcase_add_loop_test(implicit, implicit_threads, 0, 2 * BASES);
+  suite_add_tcase(suite, implicit);
   TCase *all = tcase_create("combinations");
   tcase_add_loop_test(all, combination_works, 0, listed);
   tcase_set_timeout(all, 60);

@@ -1,8 +1,8 @@
 /* Taylor's bar: a copper cylinder, 32.4 x 3.2 mm, hits a rigid wall at 227 m/s; a quarter of it between
  * symmetry planes. The face is held to the wall both ways, without friction. E = 117 GPa, nu = 0.35, density
  * 8930, yield stress 400 MPa, hardening 100 MPa; 80 us. The reference is an axisymmetric finite element
- * solution with the same wall. The same bar goes as a body of revolution, with 648 particles at R = 8 h where the
- * quarter has some 24 000. */
+ * solution with the same wall. The same bar goes as a body of revolution, with 2592 particles at R = 8 h
+ * where the quarter has 33 000. */
 #include "verify.h"
 
 static const double length = 32.4e-3, radius = 3.2e-3;
@@ -50,7 +50,7 @@ static mpm_particles *open_bar(verify_world *w, int32_t per_radius, const method
   return bar;
 }
 
-/* Returns the radius of the cylinder that has the polar moment of the lowest layers, as many as are picked. */
+/* Returns the radius of the cylinder that has the polar moment of the particles that are picked. */
 static double foot_of(const verify_world *w, mpm_particles *bar, const uint8_t *picked) {
   const int64_t n = mpm_particles_count(bar);
   double *x = verify_get(w, bar, "position", w->dim), *m = verify_get(w, bar, "mass", 1), moment = 0.0,
@@ -137,7 +137,7 @@ int main(int argc, char **argv) {
       const outcome o = hit(per_radius, how, per_radius == 8 && k == 2 ? cloud : NULL);
       fprintf(table, "\"%s\",%d,%.5f,%.5f,%.4f\n", how->name, (int)per_radius, o.length, o.radius, o.strain);
       const double off = rings ? 0.3 : 0.4, off_radius = rings ? 0.25 : 0.35;
-      if (!rings || per_radius > 4) {
+      if (!rings || per_radius > 4 || !how->locking_remedy) {
         check(how->name, per_radius, "final length in mm", o.length, 21.6 - off, 21.6 + off, source);
         check(how->name, per_radius, "final radius in mm", o.radius, 7.2 - off_radius, 7.2 + off_radius,
               source);

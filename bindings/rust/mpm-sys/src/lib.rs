@@ -1005,9 +1005,9 @@ pub struct mpm_step_info {
     pub external_work: f64,
     /// (kinetic + strain) before the step + external_work - (kinetic + strain) after; NaN where the strain energy is.
     pub dissipation: f64,
-    /// sum m v
+    /// sum m v; along the radius of MPM_AXISYMMETRIC 0
     pub momentum: [f64; 3],
-    /// sum m x cross v; in 2-D about z, in [2]; in 1-D 0
+    /// sum m x cross v; in 2-D about z, in [2]; in 1-D and MPM_AXISYMMETRIC 0
     pub angular_momentum: [f64; 3],
     /// Sum of external_work over all committed steps since the stepper was made or its time was set.
     pub external_work_total: f64,
