@@ -357,7 +357,7 @@ START_TEST(areas_follow_the_ring) {
   double *after = markers(s, "area", 2);
   for (int64_t i = 0; i < 2 * n; ++i) ck_within("area", after[i], grown * before[i], 1e-13);
   /* halves of a marker have the area of the whole */
-  double *reference = markers(s, "reference_area", 1);
+  double *referred = markers(s, "reference_area", 1);
   int64_t added;
   ck_ok(&w, mpm_surface_refine(s, 0.03, &added));
   ck_assert_int_gt(added, n);
@@ -365,7 +365,7 @@ START_TEST(areas_follow_the_ring) {
   double *halves = markers(s, "area", 2);
   ck_within("sum", sum_of(all, halves), sum_of(n, after), 1e-13);
   double *halves_reference = markers(s, "reference_area", 1);
-  ck_within("reference", sum_of(all, halves_reference), sum_of(n, reference), 1e-13);
+  ck_within("reference", sum_of(all, halves_reference), sum_of(n, referred), 1e-13);
   for (int64_t i = 0; i < all; ++i)
     ck_within("reference", halves_reference[i], hypot(halves[i], halves[all + i]) / grown, 1e-13);
   ck_within("sum", sum_of(all, halves + all), sum_of(n, after + n), 1e-13);
@@ -373,7 +373,7 @@ START_TEST(areas_follow_the_ring) {
   free(before);
   free(after);
   free(halves);
-  free(reference);
+  free(referred);
   free(halves_reference);
   drop_surface(&w, s);
   world_close(&w);

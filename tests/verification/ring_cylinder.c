@@ -1,6 +1,6 @@
-/* The thick elastic cylinder of the case thick_cylinder as a body of revolution: a = 1, b = 2, E = 1, nu = 0.3, one
- * layer of cells high and without strain along the axis; quasi-static, with two particles per cell and the inner
- * pressure of E / 1e6 on one marker. On a grid whose nodes lie on the faces, and on one that is shifted by .37 h. */
+/* The thick elastic cylinder of the case thick_cylinder as a body of revolution: a = 1, b = 2, E = 1,
+ * nu = 0.3, without strain along the axis; quasi-static, with two particles per cell and the inner pressure
+ * of E / 1e6 on markers. On a grid whose nodes lie on the faces, and on one that is shifted by .37 h. */
 #include "verify.h"
 
 static const double a = 1.0, b = 2.0, E = 1.0, nu = 0.3, p = 1e-6;

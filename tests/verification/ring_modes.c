@@ -1,6 +1,6 @@
-/* Small radial vibrations of an elastic sphere and of a cylinder in plane strain, as bodies of revolution with
- * R = 20 h. The frequencies are exact: of the sphere tan x = x / (1 - k x^2 / 4) with k = 2 (1 - nu) /
- * (1 - 2 nu), of the cylinder x J0(x) / J1(x) = (1 - 2 nu) / (1 - nu), x = omega R / c_L. */
+/* Small radial vibrations of an elastic sphere, and of a cylinder in plane strain, as bodies of revolution
+ * with R = 20 h. The frequencies are exact: of the sphere tan x = x / (1 - k x^2 / 4) with
+ * k = 2 (1 - nu) / (1 - 2 nu), of the cylinder x J0(x) / J1(x) = (1 - 2 nu) / (1 - nu), x = omega R / c_L. */
 #include "verify.h"
 
 enum { CELLS = 20 };
