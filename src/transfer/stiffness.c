@@ -6,8 +6,8 @@
  *
  * The push-forward goes into what the gradients are multiplied by, so that the loops over nodes see G alone.
  *
- * Rings have one gradient more: the displacement u_r of a node stretches the hoop by w_a u_r / r, so that G_a of
- * the radial component has the entry w_a / r in place (theta, theta), and nothing else has one there. */
+ * Rings have one gradient more: the displacement u_r of a node stretches the hoop by w_a u_r / r, so that G_a
+ * of the radial component has the entry w_a / r in place (theta, theta), and nothing else has one there. */
 #include "simd/tensor.h"
 #include "transfer/stiffness.h"
 
@@ -162,8 +162,8 @@ MPMI_INLINE void force_scatter(int32_t dim, int32_t width, const mpmi_force_scat
 
 enum { MOST_NODES = MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH) };
 
-/* Adds what the hoop of a ring of radius 1 / `by` has to do with the plane and with itself: the entries (theta,
- * theta) of A G, and of G^T A beside the plane. */
+/* Adds what the hoop of a ring of radius 1 / `by` has to do with the plane and with itself: the entries
+ * (theta, theta) of A G, and of G^T A beside the plane. */
 MPMI_INLINE void hoop_stiffness(int32_t nodes, int32_t count, const double *w, double (*G)[MOST_NODES],
                                 double by, const double *A, int64_t ld, double *K) {
   for (int32_t j = 0; j < 2; ++j) {

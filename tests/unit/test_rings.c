@@ -247,8 +247,8 @@ static world_desc implicit_rings(const basis_option *basis, int32_t remedy, cons
   return d;
 }
 
-/* A ring that stands on a floor is pressed together from outside by a tenth of its stiffness, or so that it yields: Newton's iteration
- * has the tangent of its forces, and takes few steps. */
+/* A ring that stands on a floor is pressed together from outside by a tenth of its stiffness, or so that it
+ * yields: Newton's iteration has the tangent of its forces, and takes few steps. */
 START_TEST(tangents_of_rings) {
   static const char *const models[] = {"neo_hookean", "j2", "linear_elastic"};
   const basis_option *basis = &basis_options[_i / 6];
