@@ -62,9 +62,9 @@ export interface Constants {
   /** a slab of unit thickness that keeps its thickness */
   readonly MPM_PLANE_STRAIN: 0;
   /**
-   * A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. All that is extensive (volume,
-   * mass, force, energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is
-   * a slip wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
+   * A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. What is extensive (volume, mass,
+   * force, energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is a
+   * slip wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
    */
   readonly MPM_AXISYMMETRIC: 1;
   /** Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10. */

@@ -34,8 +34,8 @@ MPM_API mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size)
 
 /** Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is
  * NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can
- * name. MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3; MPM_AXISYMMETRIC with a dim other than 2 or
- * with a periodic first axis. */
+ * name. MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3;
+ * MPM_AXISYMMETRIC with a dim other than 2 or with a periodic first axis. */
 MPM_API mpm_status mpm_grid_create(mpm_context *context, const mpm_grid_desc *desc, mpm_grid **out);
 
 /** Frees the grid. NULL is fine. MPM_E_STATE while sets or steppers on it live. */

@@ -7,8 +7,8 @@
  *
  *   sigma' = r dev sigma + pi I,  pi = sum r V tr sigma / d / sum V over the cell,
  *
- * where trace and deviator are those of the axes along which material stretches. Where pressure follows from the dilation
- * alone, particles have that of their cell as it is, and keep it. */
+ * where trace and deviator are those of the axes along which material stretches. Where pressure follows from
+ * the dilation alone, particles have that of their cell as it is, and keep it. */
 #include "layout/tile.h"
 #include "simd/tensor.h"
 #include "stages/batch.h"

@@ -4,8 +4,8 @@
  *   F_inc' = f F_inc,  f^d = (1 + j') / (1 + j),  j = det F_inc - 1,  j' = sum V j / sum V over the cell
  *
  * and F' = r^(1/d) F, where the ratio r grows by f^d in each step; d is the number of axes along which
- * material stretches: in plane strain those of the plane alone are scaled. F, the volume and the positions are
- * those without the remedy. */
+ * material stretches: in plane strain those of the plane alone are scaled. F, volume and positions are those
+ * without the remedy. */
 #include "stages/batch.h"
 #include "stages/stages.h"
 

@@ -80,9 +80,9 @@ class Geometry(IntEnum):
 
     #: a slab of unit thickness that keeps its thickness
     PLANE_STRAIN = 0
-    #: A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. All that is extensive (volume, mass,
-    #: force, energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is a slip
-    #: wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
+    #: A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. What is extensive (volume, mass, force,
+    #: energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is a slip wall by
+    #: itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
     AXISYMMETRIC = 1
 
 
