@@ -99,9 +99,9 @@ enum mpm_boundary_basis_value {
 /** What lies across the plane of a 2-D grid. */
 enum mpm_geometry_value {
   MPM_PLANE_STRAIN = 0, /**< a slab of unit thickness that keeps its thickness */
-  /** A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. What is extensive (volume, mass,
-   * force, energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is a slip
-   * wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0. */
+  /** A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z. What is extensive (volume,
+   * mass, force, energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis
+   * r = 0 is a slip wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0. */
   MPM_AXISYMMETRIC = 1
 };
 
