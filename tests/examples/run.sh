@@ -230,6 +230,13 @@ if wanted sand_column; then
   done
 fi
 
+if wanted circular_footing; then
+  mkdir footing
+  run circular_footing footing 12
+  check "pressure over the exact one" "s_u," 1.0 1.15
+  [ -s footing/circular_footing.svg ] || fail "circular_footing: circular_footing.svg is missing or empty"
+fi
+
 if wanted hourglass; then
   mkdir sand
   run hourglass sand 4
