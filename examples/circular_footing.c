@@ -8,9 +8,9 @@
  * film strip of the section, coloured by plastic strain, into the directory (circular_footing.svg; default:
  * here).
  *
- * What to expect: 24 cells in the radius, the default, are 20 700 particles and take ten seconds; 12 take one.
- * The pressure at the end is 1.12 and 1.07 of the exact one with 12 and 24 cells: the cell beyond the edge bears
- * a part. */
+ * What to expect: 24 cells in the radius, the default, are 20 700 particles and take ten seconds; 12 take
+ * one. The pressure at the end is 1.12 and 1.07 of the exact one with 12 and 24 cells: the cell beyond the
+ * edge bears a part. */
 #include <mpm/mpm.h>
 
 #include <inttypes.h>
