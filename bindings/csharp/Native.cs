@@ -66,6 +66,9 @@ namespace Mpm {
     public const int MPM_PLANE_STRAIN = 0;
     /// <summary>A body of revolution: axis 0 is the radius r &gt;= 0, axis 1 the axis z.</summary>
     public const int MPM_AXISYMMETRIC = 1;
+    /// <summary>A sheet of unit thickness at the start, without a stress across it: F33, which the library finds,
+    /// makes it thinner and thicker.</summary>
+    public const int MPM_PLANE_STRESS = 2;
 
     // Time integration scheme.
     /// <summary>Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs
@@ -434,7 +437,7 @@ namespace Mpm {
   public unsafe partial struct GridDesc {
     /// <summary>sizeof(mpm_grid_desc) of the caller.</summary>
     public uint struct_size;
-    /// <summary>1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default).</summary>
+    /// <summary>1 (uniaxial strain), 2 (see geometry) or 3 (default).</summary>
     public int dim;
     /// <summary>MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2.</summary>
     public int basis;
@@ -442,7 +445,7 @@ namespace Mpm {
     public int boundary_basis;
     /// <summary>1: the axis is periodic; default 0.</summary>
     public fixed int periodic[3];
-    /// <summary>for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC.</summary>
+    /// <summary>for dim 2: an MPM_PLANE_STRAIN (default) ...</summary>
     public int geometry;
     /// <summary>cells along each axis, 1 to 6291456; memory follows the material.</summary>
     public fixed long cells[3];

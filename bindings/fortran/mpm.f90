@@ -70,6 +70,9 @@ module mpm
   integer(c_int32_t), parameter :: MPM_PLANE_STRAIN = 0_c_int32_t
   !> A body of revolution: axis 0 is the radius r >= 0, axis 1 the axis z.
   integer(c_int32_t), parameter :: MPM_AXISYMMETRIC = 1_c_int32_t
+  !> A sheet of unit thickness at the start, without a stress across it: F33, which the library finds, makes it thinner
+  !! and thicker.
+  integer(c_int32_t), parameter :: MPM_PLANE_STRESS = 2_c_int32_t
 
   !> Time integration scheme.
   !> Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10.
@@ -326,7 +329,7 @@ module mpm
   type, bind(c) :: mpm_grid_desc
     !> sizeof(mpm_grid_desc) of the caller.
     integer(c_int32_t) :: struct_size
-    !> 1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default).
+    !> 1 (uniaxial strain), 2 (see geometry) or 3 (default).
     integer(c_int32_t) :: dim
     !> MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2.
     integer(c_int32_t) :: basis
@@ -334,7 +337,7 @@ module mpm
     integer(c_int32_t) :: boundary_basis
     !> 1: the axis is periodic; default 0.
     integer(c_int32_t) :: periodic(3)
-    !> for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC.
+    !> for dim 2: an MPM_PLANE_STRAIN (default) ...
     integer(c_int32_t) :: geometry
     !> cells along each axis, 1 to 6291456; memory follows the material.
     integer(c_int64_t) :: cells(3)

@@ -29,6 +29,7 @@ export const constants = Object.freeze({
   MPM_BOUNDARY_OPEN_KNOT: 1,
   MPM_PLANE_STRAIN: 0,
   MPM_AXISYMMETRIC: 1,
+  MPM_PLANE_STRESS: 2,
   MPM_USL: 1,
   MPM_USF: 2,
   MPM_MUSL: 3,

@@ -67,6 +67,11 @@ export interface Constants {
    * slip wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
    */
   readonly MPM_AXISYMMETRIC: 1;
+  /**
+   * A sheet of unit thickness at the start, without a stress across it: F33, which the library finds, makes
+   * it thinner and thicker. Solids alone, without the locking remedy. Since 0.2.0.
+   */
+  readonly MPM_PLANE_STRESS: 2;
   /** Explicit, with stresses updated last: MPoint theory, eqs 28-44; Steffen et al. 2008, eqs 1-10. */
   readonly MPM_USL: 1;
   /**
@@ -268,7 +273,7 @@ export interface ContextDesc {
 }
 /** Box, cells and basis of a grid. Entries of axes beyond dim are ignored. */
 export interface GridDesc {
-  /** 1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default) */
+  /** 1 (uniaxial strain), 2 (see geometry) or 3 (default) */
   dim?: number | boolean;
   /** MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2 */
   basis?: number | boolean;
@@ -276,7 +281,7 @@ export interface GridDesc {
   boundary_basis?: number | boolean;
   /** 1: the axis is periodic; default 0 */
   periodic?: ArrayLike<number>;
-  /** for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC. Since 0.2.0 */
+  /** for dim 2: an MPM_PLANE_STRAIN (default) ... MPM_PLANE_STRESS. Since 0.2.0 */
   geometry?: number | boolean;
   /** cells along each axis, 1 to 6291456; memory follows the material */
   cells?: ArrayLike<number>;
@@ -1143,7 +1148,8 @@ export class Context implements Handle {
    * Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out
    * is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers
    * can name. MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and
-   * MPM_BSPLINE3; MPM_AXISYMMETRIC with a dim other than 2 or with a periodic first axis.
+   * MPM_BSPLINE3; MPM_AXISYMMETRIC and MPM_PLANE_STRESS with a dim other than 2, the former with a periodic
+   * first axis.
    */
   grid(desc: GridDesc): Grid;
   /**
@@ -1190,7 +1196,8 @@ export class Context implements Handle {
   law(desc: LawOptions): Material;
   /**
    * Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned.
-   * MPM_E_ARG: grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid.
+   * MPM_E_ARG: grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a
+   * fluid, snow or clay on an MPM_PLANE_STRESS grid.
    */
   particles(grid: Grid, material: Material): Particles;
   /**

@@ -74,6 +74,7 @@ const MPM_BOUNDARY_OPEN_KNOT = Int32(1) # Knots are repeated degree + 1 times at
 # What lies across the plane of a 2-D grid.
 const MPM_PLANE_STRAIN = Int32(0) # a slab of unit thickness that keeps its thickness
 const MPM_AXISYMMETRIC = Int32(1) # A body of revolution
+const MPM_PLANE_STRESS = Int32(2) # A sheet of unit thickness at the start, without a stress across it
 
 # Time integration scheme.
 const MPM_USL = Int32(1) # Explicit, with stresses updated last
@@ -986,7 +987,7 @@ end
 Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is NULL unless
 MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can name.
 MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3; MPM_AXISYMMETRIC
-with a dim other than 2 or with a periodic first axis.
+and MPM_PLANE_STRESS with a dim other than 2, the former with a periodic first axis.
 """
 function mpm_grid_create(context, desc, out)
     return ccall((:mpm_grid_create, libmpm), Int32, (Ptr{mpm_context}, Ptr{mpm_grid_desc}, Ptr{Ptr{mpm_grid}}),
@@ -1150,7 +1151,8 @@ end
 
 """
 Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned. MPM_E_ARG:
-grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid.
+grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow or clay on an
+MPM_PLANE_STRESS grid.
 """
 function mpm_particles_create(context, grid, material, out)
     return ccall((:mpm_particles_create, libmpm), Int32, (Ptr{mpm_context}, Ptr{mpm_grid}, Ptr{mpm_material}, Ptr{Ptr{mpm_particles}}),
@@ -2254,10 +2256,10 @@ end
 export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED,
     MPM_SINGULAR, MPM_OFF_GRID, MPM_CANCELLED, MPM_E_ARG, MPM_E_NOMEM, MPM_E_STATE, MPM_E_CALLBACK, MPM_E_UNSUPPORTED,
     MPM_E_NOT_FOUND, MPM_E_IO, MPM_E_FORMAT, MPM_E_INTERNAL, MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP,
-    MPM_UGIMP, MPM_CPGIMP, MPM_BOUNDARY_GHOST, MPM_BOUNDARY_OPEN_KNOT, MPM_PLANE_STRAIN, MPM_AXISYMMETRIC, MPM_USL,
-    MPM_USF, MPM_MUSL, MPM_NEWMARK, MPM_FLIP, MPM_APIC, MPM_TPIC, MPM_TFLIP, MPM_AFLIP, MPM_XPIC, MPM_APIC_MLS,
-    MPM_FMPM, MPM_ISA_BEST, MPM_ISA_BASELINE, MPM_ISA_AVX2, MPM_ISA_AVX512, MPM_ISA_NEON, MPM_ISA_PORTABLE,
-    MPM_LOG_WARNING, MPM_LOG_INFO, MPM_LOG_DEBUG, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE,
+    MPM_UGIMP, MPM_CPGIMP, MPM_BOUNDARY_GHOST, MPM_BOUNDARY_OPEN_KNOT, MPM_PLANE_STRAIN, MPM_AXISYMMETRIC,
+    MPM_PLANE_STRESS, MPM_USL, MPM_USF, MPM_MUSL, MPM_NEWMARK, MPM_FLIP, MPM_APIC, MPM_TPIC, MPM_TFLIP, MPM_AFLIP,
+    MPM_XPIC, MPM_APIC_MLS, MPM_FMPM, MPM_ISA_BEST, MPM_ISA_BASELINE, MPM_ISA_AVX2, MPM_ISA_AVX512, MPM_ISA_NEON,
+    MPM_ISA_PORTABLE, MPM_LOG_WARNING, MPM_LOG_INFO, MPM_LOG_DEBUG, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE,
     MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL, MPM_X_MIN, MPM_X_MAX, MPM_Y_MIN, MPM_Y_MAX, MPM_Z_MIN,
     MPM_Z_MAX, MPM_WALL_NONE, MPM_WALL_OPEN, MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION,
     MPM_WALL_FRICTION_NODES, MPM_AFTER_P2G, MPM_AFTER_FORCES, MPM_AFTER_VELOCITY, MPM_READ, MPM_WRITE, MPM_F64,

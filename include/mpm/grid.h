@@ -16,11 +16,11 @@ extern "C" {
  * ignored. */
 typedef struct mpm_grid_desc {
   uint32_t struct_size;   /**< sizeof(mpm_grid_desc) of the caller */
-  int32_t dim;            /**< 1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default) */
+  int32_t dim;            /**< 1 (uniaxial strain), 2 (see geometry) or 3 (default) */
   int32_t basis;          /**< MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2 */
   int32_t boundary_basis; /**< for B-splines: MPM_BOUNDARY_GHOST (default) or MPM_BOUNDARY_OPEN_KNOT */
   int32_t periodic[3];    /**< 1: the axis is periodic; default 0 */
-  int32_t geometry;       /**< for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC. Since 0.2.0 */
+  int32_t geometry;       /**< for dim 2: an MPM_PLANE_STRAIN (default) ... MPM_PLANE_STRESS. Since 0.2.0 */
   int64_t cells[3];       /**< cells along each axis, 1 to 6291456; memory follows the material */
   double origin[3];       /**< lower corner of the box, length; default 0 */
   double spacing[3];      /**< edges of a cell, length, > 0; the upper corner is origin + cells * spacing */
@@ -35,7 +35,7 @@ MPM_API mpm_status mpm_grid_desc_init(mpm_grid_desc *desc, uint32_t struct_size)
 /** Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is
  * NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can
  * name. MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3;
- * MPM_AXISYMMETRIC with a dim other than 2 or with a periodic first axis. */
+ * MPM_AXISYMMETRIC and MPM_PLANE_STRESS with a dim other than 2, the former with a periodic first axis. */
 MPM_API mpm_status mpm_grid_create(mpm_context *context, const mpm_grid_desc *desc, mpm_grid **out);
 
 /** Frees the grid. NULL is fine. MPM_E_STATE while sets or steppers on it live. */

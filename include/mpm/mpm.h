@@ -14,7 +14,8 @@
  *
  * @par Units
  * Any consistent set of units will do. 1-D is uniaxial strain per unit area, 2-D plane strain per unit
- * thickness, or a body of revolution per radian (MPM_AXISYMMETRIC).
+ * thickness, a body of revolution per radian (MPM_AXISYMMETRIC), or a sheet in plane stress per thickness at
+ * the start (MPM_PLANE_STRESS).
  *
  * @par Structs
  * All public structs but mpm_param begin with struct_size, and later releases only append fields. The default

@@ -99,15 +99,15 @@ static mpm_status check_node_numbers(mpm_context *context, const mpm_grid *grid)
 }
 
 static mpm_status check_geometry(mpm_context *context, const mpm_grid_desc *desc) {
-  if (desc->geometry != MPM_PLANE_STRAIN && desc->geometry != MPM_AXISYMMETRIC)
+  static const char *const name[] = {"MPM_PLANE_STRAIN", "MPM_AXISYMMETRIC", "MPM_PLANE_STRESS"};
+  if (desc->geometry < MPM_PLANE_STRAIN || desc->geometry > MPM_PLANE_STRESS)
     return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: geometry is %d, which is none of the constants",
                      (int)desc->geometry);
-  if (desc->geometry == MPM_PLANE_STRAIN) return MPM_OK;
-  if (desc->dim != 2)
+  if (desc->geometry != MPM_PLANE_STRAIN && desc->dim != 2)
     return mpmi_fail(context, MPM_E_UNSUPPORTED,
-                     "mpm_grid_desc: MPM_AXISYMMETRIC is for dim 2: use that, or geometry MPM_PLANE_STRAIN "
-                     "with dim %d",
-                     (int)desc->dim);
+                     "mpm_grid_desc: %s is for dim 2: use that, or geometry MPM_PLANE_STRAIN with dim %d",
+                     name[desc->geometry], (int)desc->dim);
+  if (desc->geometry != MPM_AXISYMMETRIC) return MPM_OK;
   if (desc->periodic[0])
     return mpmi_fail(context, MPM_E_UNSUPPORTED,
                      "mpm_grid_desc: the radius of MPM_AXISYMMETRIC has no period: use periodic[0] = 0");

@@ -56,6 +56,9 @@ static inline int32_t mpmi_has_domains(const mpm_grid *grid) {
 static inline int32_t mpmi_is_axisymmetric(const mpm_grid *grid) {
   return grid->desc.geometry == MPM_AXISYMMETRIC;
 }
+static inline int32_t mpmi_is_plane_stress(const mpm_grid *grid) {
+  return grid->desc.geometry == MPM_PLANE_STRESS;
+}
 /* Returns the axes along which material stretches: rings stretch along the hoop as well. */
 static inline int32_t mpmi_strain_dim(const mpm_grid *grid) {
   return mpmi_is_axisymmetric(grid) ? 3 : grid->dim;

@@ -154,7 +154,7 @@ static int32_t is_finite(const double *value, int32_t dim, int64_t ld, int64_t n
 
 static int32_t find_tangent(mpmi_newton_work *work, mpmi_batch *b) {
   const mpm_particles *set = b->set;
-  const int32_t dim = mpmi_strain_dim(set->grid);
+  const int32_t sheets = mpmi_is_plane_stress(set->grid), dim = sheets ? 3 : mpmi_strain_dim(set->grid);
   const int64_t ld = b->law.ld, *id = mpmi_i64(set, MPMI_ID, 0) + b->begin;
   const mpm_status status = mpmi_material_tangent(set->material, dim, &b->law.batch, work->tangent_scratch,
                                                   work->tangent, &work->symmetric);
@@ -165,6 +165,7 @@ static int32_t find_tangent(mpmi_newton_work *work, mpmi_batch *b) {
   }
   for (int64_t p = 0; p < b->n; ++p)
     for (int32_t e = 0; e < 81 && id[p] < 0; ++e) work->tangent[e * ld + p] = 0.0;
+  if (sheets) mpmi_condense_tangent(work->tangent, ld, b->n);
   int64_t bad;
   if (is_finite(work->tangent, dim, ld, b->n, &bad)) return 1;
   mpmi_batch_fail(b, MPM_NONFINITE, b->begin + bad, "the material's tangent is not finite");

@@ -508,6 +508,7 @@ MPMI_LAW_KERNELS(clay_constants, cam_clay, cam_clay_tangent)
 
 const mpmi_law KERNEL(law_cam_clay) = {
     .name = "cam_clay",
+    .no_sheets = 1,
     MPMI_PARAMS(params),
     MPMI_STATES(states),
     .start = start,

@@ -204,6 +204,7 @@ const mpmi_law KERNEL(law_herschel_bulkley) = {
     MPMI_PARAMS(params),
     .mean_from_F = 1,
     .kinematics = MPMI_F_DILATES,
+    .no_sheets = 1,
     .rest = MPMI_REST_PRESSURE,
     .constants_size = sizeof(flow_constants),
     .prepare = prepare,

@@ -129,6 +129,7 @@ MPMI_LAW_KERNELS(grains_constants, mu_i, mu_i_tangent)
 
 const mpmi_law KERNEL(law_mu_i) = {
     .name = "mu_i",
+    .no_sheets = 1,
     MPMI_PARAMS(params),
     MPMI_STATES(states),
     .check = check,

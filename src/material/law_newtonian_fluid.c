@@ -133,6 +133,7 @@ const mpmi_law KERNEL(law_newtonian_fluid) = {
     .name = "newtonian_fluid",
     MPMI_PARAMS(params),
     .stress_from_F = 1,
+    .no_sheets = 1,
     .kinematics = MPMI_F_DILATES,
     .rest = MPMI_REST_PRESSURE,
     .constants_size = sizeof(fluid_constants),

@@ -160,6 +160,7 @@ MPMI_LAW_KERNELS(snow_constants, snow, snow_tangent)
 
 const mpmi_law KERNEL(law_snow) = {
     .name = "snow",
+    .no_sheets = 1,
     MPMI_PARAMS(params),
     MPMI_STATES(states),
     .stress_from_F = 1,

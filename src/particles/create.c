@@ -29,6 +29,10 @@ static mpm_status check_parts(mpm_context *context, const mpm_grid *grid, const 
                      "%s keeps the volume of F only, of which MPM_CPGIMP cannot make particle domains: use "
                      "MPM_UGIMP or a B-spline basis",
                      material->law->name);
+  if (mpmi_is_plane_stress(grid) && material->law && material->law->no_sheets)
+    return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                     "%s is no solid sheet, and the grid is MPM_PLANE_STRESS: use MPM_PLANE_STRAIN",
+                     material->law->name);
   return MPM_OK;
 }
 

@@ -21,6 +21,10 @@ static mpm_status check_ground(const mpm_particles *set, const ground *g) {
   if (g->axis < 0 || g->axis >= dim)
     return mpmi_fail(c, MPM_E_ARG, "axis is %d: a %d-D grid has 0 ... %d", (int)g->axis, (int)dim,
                      (int)dim - 1);
+  if (mpmi_is_plane_stress(set->grid))
+    return mpmi_fail(c, MPM_E_UNSUPPORTED,
+                     "the grid is MPM_PLANE_STRESS, and ground bears a stress across the plane: use "
+                     "MPM_PLANE_STRAIN");
   if (mpmi_is_axisymmetric(set->grid) && g->axis == 0)
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "axis is 0, which is the radius of an MPM_AXISYMMETRIC grid: weight acts along axis 1");

@@ -41,7 +41,7 @@ static mpm_status ask_host(mpm_particles *set, mpmi_law_batch *b, int64_t begin,
   for (int32_t c = 0; c < mpmi_stress_components(set->grid->dim); ++c)
     memcpy(b->stress + c * b->ld, mpmi_f64(set, MPMI_STRESS, 1) + c * set->ld + begin,
            (size_t)n * sizeof(double));
-  const mpm_status status = mpmi_law_batch_run(b, set->material, mpmi_strain_dim(set->grid));
+  const mpm_status status = mpmi_law_batch_run_in(b, set);
   if (b->fault.cause)
     return mpmi_fail(set->context, b->fault.cause, "%s at particle %lld, when asked with F = I",
                      b->fault.what, (long long)b->fault.particle);

@@ -150,6 +150,14 @@ int32_t mpmi_strain_deform(mpmi_batch *b) {
   return !flags;
 }
 
+/* Takes F33 from the law, which has found it, and the volume that it makes. */
+static void take_thickness(mpmi_batch *b) {
+  const double *F[9] = {NULL};
+  memcpy(b->deform.F_new[4], b->law.F + 8 * b->law.ld, (size_t)b->n * sizeof(double));
+  for (int32_t c = 0; c < mpmi_tensor_components(2); ++c) F[c] = b->deform.F_new[c];
+  b->flags |= b->step->settings->deformation->volume[2](F, b->deform.initial_volume, b->deform.volume, b->n);
+}
+
 void mpmi_strain_law(mpmi_batch *b) {
   const mpmi_step *step = b->step;
   if (step->settings->desc.locking_remedy)
@@ -157,7 +165,7 @@ void mpmi_strain_law(mpmi_batch *b) {
                        step->dt);
   const int32_t timed = step->profile->sampled && b->batches++ % TIMED_BATCHES == 0;
   const double started = timed ? mpmi_seconds() : 0.0;
-  const mpm_status status = mpmi_law_batch_run(&b->law, b->set->material, mpmi_strain_dim(b->set->grid));
+  const mpm_status status = mpmi_law_batch_run_in(&b->law, b->set);
   if (timed) b->report->law_seconds += (double)TIMED_BATCHES * (mpmi_seconds() - started);
   if (b->law.fault.cause) {
     const mpmi_law_fault *fault = &b->law.fault;
@@ -170,6 +178,7 @@ void mpmi_strain_law(mpmi_batch *b) {
                                                            "the material callback", 0});
     return;
   }
+  if (mpmi_is_plane_stress(b->set->grid)) take_thickness(b);
   if (!b->in_place) mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);
   b->law_ran = 1;
 }

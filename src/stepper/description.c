@@ -138,8 +138,13 @@ static mpm_status known_implicit(mpm_context *c, const mpm_stepper_desc *d) {
   return MPM_OK;
 }
 
-/* Refuses what rings do not offer. */
+/* Refuses what rings and sheets do not offer. */
 static mpm_status known_geometry(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
+  if (mpmi_is_plane_stress(grid) && d->locking_remedy)
+    return mpmi_fail(
+        c, MPM_E_UNSUPPORTED,
+        "locking_remedy = 1 has no meaning where the grid is MPM_PLANE_STRESS: sheets do not lock: "
+        "use 0");
   if (!mpmi_is_axisymmetric(grid)) return MPM_OK;
   if (mpmi_transfer_of(d->transfer)->fused)
     return mpmi_fail(c, MPM_E_UNSUPPORTED,

@@ -100,7 +100,7 @@ static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failu
     const int64_t n = set->slots - begin < b.ld ? set->slots - begin : b.ld;
     mpmi_law_batch_load(&b, set, begin, n, s->history.t, 0.0);
     mpmi_law_batch_load_F(&b, set, begin, n);
-    const mpm_status answer = mpmi_law_batch_run(&b, set->material, mpmi_strain_dim(set->grid));
+    const mpm_status answer = mpmi_law_batch_run_in(&b, set);
     if (answer) {
       status = refused(s, m, answer, &b.fault, failure);
       break;

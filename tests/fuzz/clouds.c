@@ -88,8 +88,9 @@ static void open_grid(cloud *c) {
     c->g.spacing[k] = fuzz_between(&c->in, 0.25, 1.0);
     c->g.origin[k] = fuzz_between(&c->in, -2.0, 2.0);
   }
-  if (c->g.dim == 2) c->g.geometry = fuzz_below(&c->in, 3) == 1 ? MPM_AXISYMMETRIC : MPM_PLANE_STRAIN;
-  if (c->g.geometry) c->g.origin[0] = fmax(c->g.origin[0], 0.0); /* half of them begin at the axis */
+  if (c->g.dim == 2) c->g.geometry = fuzz_below(&c->in, 3);
+  if (c->g.geometry == MPM_AXISYMMETRIC)
+    c->g.origin[0] = fmax(c->g.origin[0], 0.0); /* half of them begin at the axis */
   if (!fuzz_status(c->context, mpm_grid_create(c->context, &c->g, &c->grid))) return;
   c->g.basis = c->g.basis == MPM_LINEAR ? MPM_LINEAR : MPM_BSPLINE2;
   c->g.boundary_basis = MPM_BOUNDARY_GHOST;

@@ -183,6 +183,8 @@ enum {
   DAMPED,
   REMEDY_OF_SOIL,
   SURFACE,
+  RINGS,
+  SHEETS,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -230,6 +232,8 @@ static const option options[OPTIONS] = {
     [DAMPED] = {"nodes damped, slip walls", 1, 1, 0},
     [REMEDY_OF_SOIL] = {"locking remedy, soil and metal", 1, 1, 1},
     [SURFACE] = {"surface, saved and loaded", 1, 1, 0},
+    [RINGS] = {"rings with a surface, saved and loaded", 1, 1, 1},
+    [SHEETS] = {"sheets with a surface, saved and loaded", 1, 1, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -269,6 +273,8 @@ static void apply(scene *is, int32_t o) {
       [CONTACT_PERIODIC] = WITH_BODIES | WITH_FORCE,
       [OBSTACLES] = WITH_BODIES | WITH_OBSTACLES,
       [SURFACE] = WITH_SURFACE,
+      [RINGS] = WITH_SURFACE,
+      [SHEETS] = WITH_SURFACE,
   };
   static const int32_t story[OPTIONS] = {[STAGED_VELOCITY] = STORY_STAGED_VELOCITY,
                                          [STAGED_FORCE] = STORY_STAGED_FORCE,
@@ -276,6 +282,8 @@ static void apply(scene *is, int32_t o) {
                                          [CONTACT] = STORY_SAVED,
                                          [OBSTACLES] = STORY_SAVED,
                                          [SURFACE] = STORY_SAVED,
+                                         [RINGS] = STORY_SAVED,
+                                         [SHEETS] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};
@@ -296,6 +304,8 @@ static void apply(scene *is, int32_t o) {
   is->staggered = o == STAGGERED;
   is->projected = o == PROJECTED;
   is->damped = o == DAMPED;
+  is->geometry = o == RINGS ? MPM_AXISYMMETRIC : o == SHEETS ? MPM_PLANE_STRESS : MPM_PLANE_STRAIN;
+  if (o == SHEETS) is->law[0] = LAW_J2;
   if (o == TWO_SETS || o == SAVED || o == EVERYTHING || is->with & WITH_BODIES) is->law[1] = LAW_J2;
   if (o == REMEDY_OF_SOIL) is->law[0] = LAW_MOHR_COULOMB, is->law[1] = LAW_J2;
   if (o == EVERYTHING && is->scheme != MPM_NEWMARK) is->with |= 7 * WITH_HOOK;

@@ -6,6 +6,12 @@
 #include <stdlib.h>
 
 static const double spacing[3] = {0.1, 0.11, 0.09}, origin[3] = {-0.3, 0.2, 0.1};
+
+/* Returns where the grid begins: with rings at the axis. */
+static double corner(const scene *is, int32_t axis) {
+  return is->geometry == MPM_AXISYMMETRIC && axis == 0 ? 0.0 : origin[axis];
+}
+
 static const double speed = 10.0, explicit_dt = 1.6e-3, implicit_dt = 4e-3; /* 0.16 and 0.4 cells */
 
 void must_be_ok(const world *w, mpm_status status, const char *call) {
@@ -41,12 +47,13 @@ static mpm_grid_desc describe_grid(const scene *is) {
   mpm_grid_desc d;
   mpm_grid_desc_init(&d, sizeof d);
   d.dim = is->dim;
+  d.geometry = is->geometry;
   d.basis = is->basis;
   d.boundary_basis = is->boundary;
   d.smoothing = is->smoothing;
   extent(is, first, count, d.cells);
   for (int32_t k = 0; k < is->dim; ++k) {
-    d.origin[k] = origin[k];
+    d.origin[k] = corner(is, k);
     d.spacing[k] = spacing[k];
     d.periodic[k] = is->periodic[k];
   }
@@ -73,7 +80,7 @@ mpm_stepper_desc describe_stepper(const scene *is) {
   d.boundary_zero_acceleration = is->zero_acceleration;
   d.linear_solver = is->solver;
   const double weight = is->quasi_static ? 0.2 : 1.0;
-  d.gravity[0] = 20.0 * weight;
+  d.gravity[0] = is->geometry == MPM_AXISYMMETRIC ? 0.0 : 20.0 * weight;
   d.gravity[1] = -30.0 * weight;
   d.gravity[2] = 10.0 * weight;
   return d;
@@ -159,7 +166,7 @@ static void place(const scene *is, const int64_t *at, const int64_t *first, int6
     const uint64_t seed = (uint64_t)(6 * id + 2 * k);
     const double cell =
         (double)first[k] + 0.5 * (double)at[k] + (is->quasi_static ? 0.13 : 0.25 + 0.1 * noise(seed));
-    x[k] = origin[k] + spacing[k] * cell;
+    x[k] = corner(is, k) + spacing[k] * cell;
     middle[k] = 0.1 * (double)at[k] - 0.3;
   }
   const double turn[3] = {0.1 * middle[2] - 0.2 * middle[1], 0.2 * middle[0], -0.1 * middle[0]};
@@ -251,7 +258,7 @@ static void add_obstacles(world *w) {
     if (is->scheme == MPM_NEWMARK && i == 2) d.motion = MPM_MOTION_PRESCRIBED;
     d.inside = is->dim == 1;
     for (int32_t c = 0; c < is->dim; ++c)
-      d.position[c] = origin[c] + spacing[c] * ((double)first[c] + 0.5 * (double)count[c]);
+      d.position[c] = corner(is, c) + spacing[c] * ((double)first[c] + 0.5 * (double)count[c]);
     d.position[end] += spacing[end] * (0.5 * (double)count[end] + (end ? 0.02 : 1.4));
     for (int32_t c = 0; c < 3; ++c) d.size[c] = spacing[end];
     if (d.shape == MPM_SHAPE_PLANE && is->dim > 1) d.orientation[0] = d.orientation[3] = sqrt(0.5);
@@ -281,8 +288,9 @@ static void add_surface(world *w, int32_t empty) {
   must(w, mpm_surface_create(w->context, w->grid, &d, &w->surface));
   for (int32_t i = 0; i < 6 && !empty; ++i) {
     double x[3], a[3] = {0.0, 0.0, 0.0};
-    for (int32_t c = 0; c < is->dim; ++c) x[c] = origin[c] + spacing[c] * ((double)first[c] + 0.5 + 0.15 * i);
-    x[up] = origin[up] + spacing[up] * ((double)(first[up] + count[up]) - 0.1);
+    for (int32_t c = 0; c < is->dim; ++c)
+      x[c] = corner(is, c) + spacing[c] * ((double)first[c] + 0.5 + 0.15 * i);
+    x[up] = corner(is, up) + spacing[up] * ((double)(first[up] + count[up]) - 0.1);
     a[up] = 0.5 * spacing[0];
     must(w, mpm_surface_add(w->surface, 1, x, a, NULL));
   }
@@ -323,7 +331,7 @@ void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
   if (is->with & WITH_OBSTACLES) add_obstacles(w);
   if (is->with & WITH_SURFACE) add_surface(w, empty);
   for (int32_t face = 0; face < 2 * is->dim; ++face)
-    if (!is->periodic[face / 2])
+    if (!is->periodic[face / 2] && !(face == MPM_X_MIN && is->geometry == MPM_AXISYMMETRIC))
       must(w, mpm_stepper_set_wall(w->stepper, face, is->wall[face],
                                    is->wall[face] >= MPM_WALL_FRICTION ? 0.3 : 0.0));
   set_callbacks(w);

@@ -84,6 +84,9 @@ class Geometry(IntEnum):
     #: energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is a slip wall by
     #: itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
     AXISYMMETRIC = 1
+    #: A sheet of unit thickness at the start, without a stress across it: F33, which the library finds, makes it
+    #: thinner and thicker. Solids alone, without the locking remedy. Since 0.2.0.
+    PLANE_STRESS = 2
 
 
 class Scheme(IntEnum):
@@ -362,6 +365,7 @@ BOUNDARY_GHOST = BoundaryBasis.BOUNDARY_GHOST
 BOUNDARY_OPEN_KNOT = BoundaryBasis.BOUNDARY_OPEN_KNOT
 PLANE_STRAIN = Geometry.PLANE_STRAIN
 AXISYMMETRIC = Geometry.AXISYMMETRIC
+PLANE_STRESS = Geometry.PLANE_STRESS
 USL = Scheme.USL
 USF = Scheme.USF
 MUSL = Scheme.MUSL
@@ -440,14 +444,14 @@ MOTION_FREE = Motion.MOTION_FREE
 CONSTANTS = """
     OK CUT_DT INVERTED NONFINITE NOT_CONVERGED SINGULAR OFF_GRID CANCELLED E_ARG E_NOMEM E_STATE E_CALLBACK
     E_UNSUPPORTED E_NOT_FOUND E_IO E_FORMAT E_INTERNAL LINEAR BSPLINE2 BSPLINE3 GIMP UGIMP CPGIMP BOUNDARY_GHOST
-    BOUNDARY_OPEN_KNOT PLANE_STRAIN AXISYMMETRIC USL USF MUSL NEWMARK FLIP APIC TPIC TFLIP AFLIP XPIC APIC_MLS FMPM
-    ISA_BEST ISA_BASELINE ISA_AVX2 ISA_AVX512 ISA_NEON ISA_PORTABLE LOG_WARNING LOG_INFO LOG_DEBUG LOCKING_NONE
-    LOCKING_CELL_AVERAGE TANGENT_MINOR_SYMMETRIC TANGENT_GENERAL X_MIN X_MAX Y_MIN Y_MAX Z_MIN Z_MAX WALL_NONE
-    WALL_OPEN WALL_FIXED WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES AFTER_P2G AFTER_FORCES AFTER_VELOCITY READ WRITE
-    F64 I64 U8 BY_ID LIBRARY_ORDER SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST
-    CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT NORMAL_FIXED
-    DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER SHAPE_CAPSULE SHAPE_BOX
-    SHAPE_DISTANCE MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE
+    BOUNDARY_OPEN_KNOT PLANE_STRAIN AXISYMMETRIC PLANE_STRESS USL USF MUSL NEWMARK FLIP APIC TPIC TFLIP AFLIP XPIC
+    APIC_MLS FMPM ISA_BEST ISA_BASELINE ISA_AVX2 ISA_AVX512 ISA_NEON ISA_PORTABLE LOG_WARNING LOG_INFO LOG_DEBUG
+    LOCKING_NONE LOCKING_CELL_AVERAGE TANGENT_MINOR_SYMMETRIC TANGENT_GENERAL X_MIN X_MAX Y_MIN Y_MAX Z_MIN Z_MAX
+    WALL_NONE WALL_OPEN WALL_FIXED WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES AFTER_P2G AFTER_FORCES AFTER_VELOCITY
+    READ WRITE F64 I64 U8 BY_ID LIBRARY_ORDER SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES
+    SOLVER_HOST CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT
+    NORMAL_FIXED DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER
+    SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE
 """.split()
 
 
@@ -1129,7 +1133,7 @@ struct. Any thread, any time.""",
 Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is NULL unless
 MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can name.
 MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3; MPM_AXISYMMETRIC
-with a dim other than 2 or with a periodic first axis.""",
+and MPM_PLANE_STRESS with a dim other than 2, the former with a periodic first axis.""",
     "mpm_grid_destroy": """mpm_status mpm_grid_destroy(mpm_grid *grid)
 
 Frees the grid. NULL is fine. MPM_E_STATE while sets or steppers on it live.""",
@@ -1238,7 +1242,8 @@ Frees the material and calls release_user. NULL is fine. MPM_E_STATE while sets 
     "mpm_particles_create": """mpm_status mpm_particles_create(mpm_context *context, mpm_grid *grid, mpm_material *material, mpm_particles **out)
 
 Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned. MPM_E_ARG:
-grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid.""",
+grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow or clay on an
+MPM_PLANE_STRESS grid.""",
     "mpm_particles_destroy": """mpm_status mpm_particles_destroy(mpm_particles *particles)
 
 Frees the set. NULL is fine. MPM_E_STATE while a stepper holds it or a view of it is out.""",

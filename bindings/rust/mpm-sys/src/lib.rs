@@ -89,6 +89,9 @@ pub mod constants {
     /// energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis r = 0 is a slip wall by
     /// itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0.
     pub const MPM_AXISYMMETRIC: i32 = 1;
+    /// A sheet of unit thickness at the start, without a stress across it: F33, which the library finds, makes it thinner
+    /// and thicker. Solids alone, without the locking remedy. Since 0.2.0.
+    pub const MPM_PLANE_STRESS: i32 = 2;
 
     // Time integration scheme.
 
@@ -676,7 +679,7 @@ impl Default for mpm_context_desc {
 pub struct mpm_grid_desc {
     /// sizeof(mpm_grid_desc) of the caller
     pub struct_size: u32,
-    /// 1 (uniaxial strain), 2 (plane strain or axisymmetric) or 3 (default)
+    /// 1 (uniaxial strain), 2 (see geometry) or 3 (default)
     pub dim: i32,
     /// MPM_LINEAR to MPM_CPGIMP; default MPM_BSPLINE2
     pub basis: i32,
@@ -684,7 +687,7 @@ pub struct mpm_grid_desc {
     pub boundary_basis: i32,
     /// 1: the axis is periodic; default 0
     pub periodic: [i32; 3],
-    /// for dim 2: MPM_PLANE_STRAIN (default) or MPM_AXISYMMETRIC. Since 0.2.0
+    /// for dim 2: an MPM_PLANE_STRAIN (default) ... MPM_PLANE_STRESS. Since 0.2.0
     pub geometry: i32,
     /// cells along each axis, 1 to 6291456; memory follows the material
     pub cells: [i64; 3],
@@ -1534,7 +1537,7 @@ extern "C" {
     /// Makes a grid. desc is copied. Any number of sets and steppers share the grid, which outlives them. *out is NULL
     /// unless MPM_OK is returned. MPM_E_ARG: a value is bad, or there are more nodes than 64-bit numbers can name.
     /// MPM_E_UNSUPPORTED: open knots are asked for with a basis other than MPM_BSPLINE2 and MPM_BSPLINE3;
-    /// MPM_AXISYMMETRIC with a dim other than 2 or with a periodic first axis.
+    /// MPM_AXISYMMETRIC and MPM_PLANE_STRESS with a dim other than 2, the former with a periodic first axis.
     pub fn mpm_grid_create(
         context: *mut mpm_context,
         desc: *const mpm_grid_desc,
@@ -1679,7 +1682,8 @@ extern "C" {
     pub fn mpm_material_destroy(material: *mut mpm_material) -> mpm_status;
 
     /// Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned. MPM_E_ARG:
-    /// grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid.
+    /// grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow or clay
+    /// on an MPM_PLANE_STRESS grid.
     pub fn mpm_particles_create(
         context: *mut mpm_context,
         grid: *mut mpm_grid,

@@ -1,0 +1,106 @@
+/* Plane stress: the law runs in 3-D, and F33, of which the grid knows nothing, is found so that the stress across
+ * the plane vanishes. Across the plane a law is as stiff as its wave speed says; from the second answer on the
+ * slope is that between the last two, and what lies on both sides of the root keeps it in between. */
+#include <math.h>
+
+#include "particles/law_batch.h"
+
+enum { MOST_CALLS = 25, THICKNESS = 8 };
+/* The stress that is left, over the stiffness. */
+static const double tolerance = 1e-12;
+/* A step thins or thickens a sheet by this factor at most. */
+static const double most_growth = 5.0;
+
+/* One particle on its way. */
+typedef struct sheet {
+  double start, low, high;    /* F33 at the start of the step; between these the root lies */
+  double last_F, last_stress; /* of the answer before */
+  double slope;
+  int32_t found;
+} sheet;
+
+/* Gives the law another F33: F, F_inc and L have it. */
+static void set_F33(mpmi_law_batch *b, int64_t p, double F33, double start) {
+  const int64_t at = THICKNESS * b->ld + p;
+  const double growth = F33 / start;
+  b->F[at] = F33;
+  b->F_inc[at] = growth;
+  b->L[at] = b->batch.dt > 0.0 ? (growth - 1.0) / b->batch.dt : 0.0;
+}
+
+/* Takes an answer and gives the law the next F33. The stress grows with F33. */
+static void improve(mpmi_law_batch *b, int64_t p, double stiffness, sheet *s) {
+  const double F33 = b->F[THICKNESS * b->ld + p], stress = b->stress_new[2 * b->ld + p];
+  s->found = !(fabs(stress) > tolerance * stiffness); /* NaN is reported with the other stresses */
+  if (s->found) return;
+  if (stress < 0.0)
+    s->low = F33;
+  else
+    s->high = F33;
+  const double slope = (stress - s->last_stress) / (F33 - s->last_F);
+  if (slope > 1e-3 * stiffness / F33 && slope < 1e3 * stiffness / F33) s->slope = slope;
+  s->last_F = F33;
+  s->last_stress = stress;
+  double next = F33 - stress / s->slope;
+  if (!(next > s->low && next < s->high)) next = sqrt(s->low * s->high);
+  set_F33(b, p, next, s->start);
+}
+
+/* Returns 1 when the law at hand says what the stress of another F33 would be. With dt = 0 that is a law whose
+ * stress follows from F; of others the stress is as it was given. */
+static int32_t can_answer(const mpmi_law_batch *b, const mpm_material *material) {
+  if (mpmi_material_kinematics(material) == MPMI_F_STAYS) return 0;
+  return b->batch.dt > 0.0 || (material->law && mpmi_material_stress_from_F(material));
+}
+
+static int64_t begin_sheets(mpmi_law_batch *b, sheet *sheets) {
+  int64_t left = 0;
+  for (int64_t p = 0; p < b->batch.n; ++p) {
+    const double F33 = b->F[THICKNESS * b->ld + p];
+    sheets[p] = (sheet){.start = F33,
+                        .low = F33 / most_growth,
+                        .high = F33 * most_growth,
+                        .found = b->batch.id[p] < 0 || !(F33 > 0.0)};
+    set_F33(b, p, F33, F33); /* of the batch before there is another */
+    left += !sheets[p].found;
+  }
+  return left;
+}
+
+mpm_status mpmi_law_batch_run_sheets(mpmi_law_batch *b, const mpm_material *material) {
+  sheet sheets[MPMI_BATCH_HOST];
+  int64_t left = can_answer(b, material) ? begin_sheets(b, sheets) : 0;
+  mpm_status status = mpmi_law_batch_run(b, material, 3);
+  for (int32_t calls = 1; left && !status; ++calls) {
+    left = 0;
+    for (int64_t p = 0; p < b->batch.n; ++p) {
+      const double stiffness = material->density * b->wave_speed[p] * b->wave_speed[p];
+      if (sheets[p].found) continue;
+      if (calls == 1) {
+        sheets[p].slope = stiffness / sheets[p].start;
+        sheets[p].last_F = sheets[p].last_stress = (double)NAN; /* there is no slope yet */
+      }
+      improve(b, p, stiffness, &sheets[p]);
+      if (!sheets[p].found && calls >= MOST_CALLS) {
+        b->fault = (mpmi_law_fault){MPM_CUT_DT, b->batch.id[p],
+                                    "no thickness leaves the plane without a stress across it"};
+        return MPM_CUT_DT;
+      }
+      left += !sheets[p].found;
+    }
+    if (left) status = mpmi_law_batch_run(b, material, 3);
+  }
+  return status;
+}
+
+void mpmi_condense_tangent(double *tangent, int64_t ld, int64_t n) {
+  for (int32_t i = 0; i < 2; ++i)
+    for (int32_t j = 0; j < 2; ++j)
+      for (int32_t k = 0; k < 2; ++k)
+        for (int32_t l = 0; l < 2; ++l)
+          for (int64_t p = 0; p < n; ++p) {
+            const double across = tangent[80 * ld + p];
+            const double by = tangent[(9 * (3 * i + j) + 8) * ld + p] * tangent[(72 + 3 * k + l) * ld + p];
+            if (across > 0.0 || across < 0.0) tangent[(9 * (3 * i + j) + 3 * k + l) * ld + p] -= by / across;
+          }
+}

@@ -1,0 +1,11 @@
+/* Combinations of options on 2-D grids of other geometries. */
+#ifndef GEOMETRY_H
+#define GEOMETRY_H
+
+#include "combinations.h"
+
+/* Steps a combination that is 2-D and not refused: one and three threads, and what comes back from a state, go on
+ * with the same bits. */
+void check_geometry(const combination *c, int32_t geometry);
+
+#endif
