@@ -144,11 +144,6 @@ mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_material *material, i
   return b->fault.cause;
 }
 
-mpm_status mpmi_law_batch_run_in(mpmi_law_batch *b, const mpm_particles *set) {
-  if (mpmi_is_plane_stress(set->grid)) return mpmi_law_batch_run_sheets(b, set->material);
-  return mpmi_law_batch_run(b, set->material, mpmi_strain_dim(set->grid));
-}
-
 void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,
                           int64_t n) {
   copy_batch_rows(mpmi_f64(set, MPMI_STRESS, copy) + begin, set->ld, b->stress_new, b->ld,

@@ -49,9 +49,6 @@ void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t 
  * returned as the status.
  * Afterwards the new stress and state may be stored in copy `copy` of a set's fields. */
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_material *material, int32_t dim);
-/* Runs it as the grid of a set wants it: in its dimensions, with a hoop, or so that the stress across the plane
- * vanishes; then F has another entry 33 than before. */
-mpm_status mpmi_law_batch_run_in(mpmi_law_batch *b, const mpm_particles *set);
 void mpmi_law_batch_store(const mpmi_law_batch *b, mpm_particles *set, int32_t copy, int64_t begin,
                           int64_t n);
 /* Takes a copy of the stress that the set has for the new one. */
@@ -59,8 +56,9 @@ void mpmi_law_batch_recall(mpmi_law_batch *b, const mpm_particles *set, int32_t 
                            int64_t n);
 
 /* ---- plane_stress.c ----------------------------------------------------------------------------------- */
-/* Runs the law on sheets, which find their F33; MPM_CUT_DT: there is none. */
-mpm_status mpmi_law_batch_run_sheets(mpmi_law_batch *b, const mpm_material *material);
+/* Runs the law as the grid of a set wants it: in its dimensions, with a hoop, or so that the stress across the
+ * plane vanishes. Then F has another entry 33 than before; MPM_CUT_DT: there is none. */
+mpm_status mpmi_law_batch_run_in(mpmi_law_batch *b, const mpm_particles *set);
 /* Takes out of a tangent [81][ld] what F33 does beside the plane: c_ijkl -= c_ij33 c_33kl / c_3333. */
 void mpmi_condense_tangent(double *tangent, int64_t ld, int64_t n);
 

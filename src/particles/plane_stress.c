@@ -1,6 +1,6 @@
-/* Plane stress: the law runs in 3-D, and F33, of which the grid knows nothing, is found so that the stress across
- * the plane vanishes. Across the plane a law is as stiff as its wave speed says; from the second answer on the
- * slope is that between the last two, and what lies on both sides of the root keeps it in between. */
+/* Plane stress: the law runs in 3-D, and F33, of which the grid knows nothing, is found so that the stress
+ * across the plane vanishes. Across the plane a law is as stiff as its wave speed says; from the second answer
+ * on the slope is that between the last two, and what lies on both sides of the root keeps it in between. */
 #include <math.h>
 
 #include "particles/law_batch.h"
@@ -46,8 +46,8 @@ static void improve(mpmi_law_batch *b, int64_t p, double stiffness, sheet *s) {
   set_F33(b, p, next, s->start);
 }
 
-/* Returns 1 when the law at hand says what the stress of another F33 would be. With dt = 0 that is a law whose
- * stress follows from F; of others the stress is as it was given. */
+/* Returns 1 when the law at hand says what the stress of another F33 would be. With dt = 0 that is a law
+ * whose stress follows from F; of others the stress is as it was given. */
 static int32_t can_answer(const mpmi_law_batch *b, const mpm_material *material) {
   if (mpmi_material_kinematics(material) == MPMI_F_STAYS) return 0;
   return b->batch.dt > 0.0 || (material->law && mpmi_material_stress_from_F(material));
@@ -67,7 +67,7 @@ static int64_t begin_sheets(mpmi_law_batch *b, sheet *sheets) {
   return left;
 }
 
-mpm_status mpmi_law_batch_run_sheets(mpmi_law_batch *b, const mpm_material *material) {
+static mpm_status run_sheets(mpmi_law_batch *b, const mpm_material *material) {
   sheet sheets[MPMI_BATCH_HOST];
   int64_t left = can_answer(b, material) ? begin_sheets(b, sheets) : 0;
   mpm_status status = mpmi_law_batch_run(b, material, 3);
@@ -91,6 +91,11 @@ mpm_status mpmi_law_batch_run_sheets(mpmi_law_batch *b, const mpm_material *mate
     if (left) status = mpmi_law_batch_run(b, material, 3);
   }
   return status;
+}
+
+mpm_status mpmi_law_batch_run_in(mpmi_law_batch *b, const mpm_particles *set) {
+  if (mpmi_is_plane_stress(set->grid)) return run_sheets(b, set->material);
+  return mpmi_law_batch_run(b, set->material, mpmi_strain_dim(set->grid));
 }
 
 void mpmi_condense_tangent(double *tangent, int64_t ld, int64_t n) {

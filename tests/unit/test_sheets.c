@@ -84,8 +84,8 @@ static void open_solid(world *w, const method *how, const char *model) {
   open_block_with(w, &desc);
 }
 
-/* Of every law the stress across the plane vanishes, step by step, along a path that yields and turns back; and
- * the state goes on with the same bits whatever threads there are. */
+/* Of every law the stress across the plane vanishes, step by step, along a path that yields and turns
+ * back. */
 START_TEST(no_stress_across) {
   static const double path[3][4] = {{1.0, 0.3, 0.0, -0.2}, {0.2, -0.8, 0.4, 0.5}, {-1.0, 0.0, 0.2, -0.4}};
   const char *model = solids[_i];
@@ -112,8 +112,8 @@ START_TEST(no_stress_across) {
 }
 END_TEST
 
-/* A sheet that cannot move along y is as stiff as E / (1 - nu^2), and yields in uniaxial tension at the yield stress
- * itself. */
+/* A sheet that cannot move along y is as stiff as E / (1 - nu^2), and yields in uniaxial tension at the yield
+ * stress itself. */
 START_TEST(stiffness_and_yield) {
   static const double wide[4] = {1e-3, 0.0, 0.0, 0.0};
   world w;
@@ -155,7 +155,7 @@ START_TEST(stiffness_and_yield) {
 }
 END_TEST
 
-/* ---- every combination, implicit steps ------------------------------------------------------------------ */
+/* ---- every combination, implicit steps ---------------------------------------------------------------- */
 static combination *list;
 static int32_t listed;
 
@@ -200,7 +200,7 @@ START_TEST(tangents_of_sheets) {
 }
 END_TEST
 
-/* ---- refusals ------------------------------------------------------------------------------------------- */
+/* ---- refusals ------------------------------------------------------------------------------------------ */
 START_TEST(refusals) {
   static const char *const fluids[] = {"newtonian_fluid", "herschel_bulkley", "mu_i", "snow", "cam_clay"};
   mpm_context *c = context_with(1, 0, NULL);
