@@ -1,6 +1,7 @@
 /* Plane stress: the law runs in 3-D, and F33, of which the grid knows nothing, is found so that the stress
- * across the plane vanishes. Across the plane a law is as stiff as its wave speed says; from the second answer
- * on the slope is that between the last two, and what lies on both sides of the root keeps it in between. */
+ * across the plane vanishes. Across the plane a law is as stiff as its wave speed says; from the second
+ * answer on the slope is that between the last two, and what lies on both sides of the root keeps it in
+ * between. */
 #include <math.h>
 
 #include "particles/law_batch.h"
