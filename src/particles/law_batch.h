@@ -56,8 +56,8 @@ void mpmi_law_batch_recall(mpmi_law_batch *b, const mpm_particles *set, int32_t 
                            int64_t n);
 
 /* ---- plane_stress.c ----------------------------------------------------------------------------------- */
-/* Runs the law as the grid of a set wants it: in its dimensions, with a hoop, or so that the stress across the
- * plane vanishes. Then F has another entry 33 than before; MPM_CUT_DT: there is none. */
+/* Runs the law as the grid of a set wants it: in its dimensions, with a hoop, or so that the stress across
+ * the plane vanishes. Then F has another entry 33 than before; MPM_CUT_DT: there is none. */
 mpm_status mpmi_law_batch_run_in(mpmi_law_batch *b, const mpm_particles *set);
 /* Takes out of a tangent [81][ld] what F33 does beside the plane: c_ijkl -= c_ij33 c_33kl / c_3333. */
 void mpmi_condense_tangent(double *tangent, int64_t ld, int64_t n);
