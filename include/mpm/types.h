@@ -103,8 +103,8 @@ enum mpm_geometry_value {
    * mass, force, energy) is that of one radian: of the whole ring it is 2 pi times as much. The axis
    * r = 0 is a slip wall by itself. Sulsky & Schreyer 1996, section 3; Nairn & Guilkey 2015. Since 0.2.0. */
   MPM_AXISYMMETRIC = 1,
-  /** A sheet of unit thickness at the start, without a stress across it: F33, which the library finds, makes it
-   * thinner and thicker. Solids alone, without the locking remedy. Since 0.2.0. */
+  /** A sheet of unit thickness at the start, without a stress across it: F33, which the library finds,
+   * makes it thinner and thicker. Solids alone, without the locking remedy. Since 0.2.0. */
   MPM_PLANE_STRESS = 2
 };
 
