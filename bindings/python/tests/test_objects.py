@@ -1,4 +1,4 @@
-"""Lifetimes, contact, obstacles, saved states, files, pictures."""
+"""Lifetimes, contact, obstacles, surfaces, saved states, files, pictures."""
 import gc
 import io
 import os
@@ -168,6 +168,158 @@ class Contact(unittest.TestCase):
             stepper.step(1e-3)
         self.assertAlmostEqual(lift.position[1], 0.3, places=9)
         self.assertGreater(one["velocity"][:, 1].mean(), 0.1)
+
+
+class Surfaces(unittest.TestCase):
+    def test_pressure_on_a_face(self):
+        for dim in (1, 2, 3):
+            one, stepper = block(dim=dim)
+            face = one.context.surface(stepper.grid, pressure=40.0)
+            low, high = 0.25, 0.75
+            if dim == 1:
+                self.assertEqual(face.add(high, 1.0), range(1))
+            elif dim == 2:
+                self.assertEqual(face.add_polyline([(high, low), (high, high)], 1 / 24), range(12))
+            else:
+                corners = [(high, low, low), (high, high, low), (high, high, high), (high, low, high)]
+                face.add_triangles(corners, [(0, 1, 2), (0, 2, 3)], 1 / 24)
+            area = 0.5 ** (dim - 1)
+            np.testing.assert_allclose(face["area"].reshape(-1, dim).sum(axis=0), [area] + [0.0] * (dim - 1), atol=1e-15)
+            stepper.add(face)
+            self.assertEqual((stepper.surfaces, stepper.obstacles), ((face,), ()))
+            force = np.array([-40.0 * area] + [0.0] * (dim - 1))
+            stepper.step(1e-4)
+            np.testing.assert_allclose(face["force"].reshape(-1, dim).sum(axis=0), force, rtol=1e-12, atol=1e-12)
+            np.testing.assert_allclose(stepper.info.momentum[:dim], 1e-4 * force, rtol=1e-9, atol=1e-14)
+            face.configure(pressure=0.0, dead_traction=[3.0] + [0.0] * (dim - 1))
+            self.assertEqual((face.option("pressure"), face.option("dead_traction")[0]), (0.0, 3.0))
+            stepper.step(1e-4)
+            np.testing.assert_allclose(face["force"].reshape(-1, dim).sum(axis=0), -3.0 * force / 40.0, rtol=1e-12, atol=1e-12)
+
+    def test_markers(self):
+        one, stepper = block()
+        face = one.context.surface(stepper.grid)
+        made = face.add_polyline([(0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75)], 0.125, closed=True)
+        self.assertEqual((made, len(face)), (range(16), 16))
+        self.assertEqual(face.add((0.5, 0.5)), range(16, 17))
+        self.assertEqual(face.add([(0.4, 0.5), (0.6, 0.5)], (0.0, 0.1)), range(17, 19))
+        np.testing.assert_array_equal(face.get("area", 18), [(0.0, 0.1)])
+        np.testing.assert_array_equal(face.ids, np.arange(19))
+        np.testing.assert_array_equal(face.get("position", [16, 18]), [(0.5, 0.5), (0.6, 0.5)])
+        self.assertEqual((face["area"].shape, face["reference_area"].shape, face["id"].dtype), ((19, 2), (19,), np.int64))
+        face.remove([16, 17, 18])
+        with self.assertRaisesRegex(mpm.Error, "E_NOT_FOUND.*16"):
+            face.remove(16)
+        face["pressure"] = 5.0
+        face.set("pressure", [1.0, 2.0], ids=[3, 1])
+        self.assertEqual(list(face["pressure"][:4]), [5.0, 2.0, 5.0, 1.0])
+        face["traction"] = (1.0, 2.0)
+        face.set("traction", [(3.0, 4.0)], ids=2)
+        np.testing.assert_array_equal(face["traction"][1:4], [(1, 2), (3, 4), (1, 2)])
+        whole = face["area"].copy()
+        self.assertEqual(face.refine(0.07), 16)
+        np.testing.assert_array_equal(face.get("area", range(16)), 0.5 * whole)
+        np.testing.assert_allclose(face["area"].sum(axis=0), 0.0, atol=1e-15)
+        with self.assertRaisesRegex(mpm.Error, "E_NOT_FOUND.*force"):
+            face["forse"]
+        for field, values in (("force", (0, 0)), ("id", 0), ("pressure", np.nan), ("position", (-1.0, 0.5))):
+            with self.assertRaisesRegex(mpm.Error, "E_ARG"):
+                face[field] = values
+        for values in (np.zeros((5, 2)), np.zeros((32, 3))):
+            with self.assertRaises(ValueError):
+                face["traction"] = values
+        with self.assertRaisesRegex(mpm.Error, "E_UNSUPPORTED"):
+            face.add_triangles(np.zeros((3, 3)), [(0, 1, 2)], 1.0)
+        with self.assertRaises(ValueError):
+            face.add_triangles(np.zeros((3, 3)), [(0.0, 1.0, 2.0)], 1.0)
+        with self.assertRaisesRegex(mpm.Error, "E_ARG.*pressure"):
+            one.context.surface(stepper.grid, pressure=np.inf)
+        with self.assertRaisesRegex(TypeError, "max_spacing"):
+            one.context.surface(stepper.grid, spacing=0.1)
+        with self.assertRaises(ValueError):
+            face.configure(traction=(1.0, 2.0, 3.0))
+
+    def test_tractions(self):
+        one, stepper = block()
+        face = one.context.surface(stepper.grid)
+        face.add_polyline([(0.75, 0.25), (0.75, 0.75)], 1 / 24)
+        stepper.add(face)
+        asked = []
+
+        def pull(batch, add):
+            asked.append((batch.n, batch.dim, batch.t, batch.dt, batch.id.copy(), batch.area.copy(), batch.position.shape,
+                          batch.displacement.shape, batch.velocity.shape, batch.reference_area.sum()))
+            add[:, 0] += 12.0
+
+        face.set_traction(pull)
+        stepper.step(1e-4)
+        np.testing.assert_allclose(face["force"].sum(axis=0), (6.0, 0.0), rtol=1e-12, atol=1e-15)
+        self.assertEqual(len(asked), 1)
+        self.assertEqual(asked[0][:4] + asked[0][6:9], (12, 2, 0.0, 1e-4, (12, 2), (12, 2), (12, 2)))
+        np.testing.assert_array_equal(asked[0][4], face.ids)
+        self.assertAlmostEqual(asked[0][5][:, 0].sum(), 0.5)
+        self.assertAlmostEqual(asked[0][9], 0.5)
+        before = stepper.hash
+
+        def refuse(batch, add):
+            add[:, 0] += 1.0
+            raise KeyError("no traction")
+
+        face.set_traction(refuse)
+        with self.assertRaisesRegex(KeyError, "no traction"):
+            stepper.step(1e-4)
+        self.assertEqual(stepper.hash, before)
+        kept = []
+        face.set_traction(lambda batch, add: kept.append(add))
+        with self.assertRaisesRegex(RuntimeError, "copy"):
+            stepper.step(1e-4)
+        face.set_traction(lambda batch, add: 1)
+        with self.assertRaises(mpm.StepError) as caught:
+            stepper.step(1e-4)
+        self.assertEqual(caught.exception.status, mpm.CUT_DT)
+        face.set_traction(None)
+        stepper.step(1e-4)
+
+    def test_coming_and_going(self):
+        one, stepper = block()
+        face = one.context.surface(stepper.grid, pressure=10.0)
+        face.add((0.75, 0.5), (0.5, 0.0))
+        stepper.add(face)
+        for call in (face.close, lambda: stepper.add(face)):
+            with self.assertRaisesRegex(mpm.Error, "E_STATE"):
+                call()
+        state = stepper.save()
+        stepper.step(1e-3)
+        ahead, moved = stepper.hash, face["displacement"]
+        stepper.load(state)
+        self.assertEqual(face["displacement"][0, 0], 0.0)
+        stepper.step(1e-3)
+        self.assertEqual(stepper.hash, ahead)
+        stepper.remove(face)
+        self.assertEqual(stepper.surfaces, ())
+        with self.assertRaisesRegex(mpm.Error, "E_NOT_FOUND"):
+            stepper.remove(face)
+        np.testing.assert_array_equal(face["displacement"], moved)
+        before = stepper.info.momentum
+        stepper.step(1e-3)
+        np.testing.assert_allclose(stepper.info.momentum, before, rtol=1e-9, atol=1e-18)
+        face.close()
+        with self.assertRaisesRegex(Exception, "this Surface is closed"):
+            len(face)
+
+    def test_any_order_of_ends(self):
+        for order in ((0, 1, 2, 3), (3, 2, 1, 0), (2, 0, 3, 1), (1, 3, 0, 2)):
+            one, stepper = block(cells=8)
+            estate = one.context._estate
+            face = one.context.surface(stepper.grid)
+            face.set_traction(lambda batch, add, held=(stepper, face): None)
+            stepper.add(face)
+            things = [one, stepper, face, stepper.grid]
+            del one, stepper, face
+            for index in order:
+                things[index] = None
+            gc.collect()
+            self.assertEqual(estate.waiting, [])
 
 
 class States(unittest.TestCase):

@@ -20,8 +20,9 @@ from .obstacle import Obstacle
 from .particles import Particles
 from .series import Series
 from .stepper import Stepper, StepInfo
+from .surface import Surface
 
 globals().update({name: getattr(_api, name) for name in _api.CONSTANTS})
 __version__ = "0.2.0.dev0"
 __all__ = ["Context", "Error", "Grid", "Law", "Material", "Obstacle", "Particles", "Series", "StepError", "StepInfo", "Stepper",
-           "models", "version", *_api.CONSTANTS]
+           "Surface", "models", "version", *_api.CONSTANTS]

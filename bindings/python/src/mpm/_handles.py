@@ -205,6 +205,11 @@ class Context(Handle):
         from .obstacle import Obstacle
         return Obstacle(self, shape, **options)
 
+    def surface(self, grid, **options):
+        """A Surface without markers; the options are the fields of mpm_surface_desc."""
+        from .surface import Surface
+        return Surface(self, grid, **options)
+
     def series(self, path):
         """A time Series of output files (.pvd)."""
         from .series import Series

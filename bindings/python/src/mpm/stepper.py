@@ -8,7 +8,8 @@ from ._arrays import address, lend
 from ._handles import Handle, descriptor, fill
 from ._library import documented, lib
 from .batches import ContactBatch, NodeBatch, ParticleBatch
-from .obstacle import contact_desc
+from .obstacle import Obstacle, contact_desc
+from .surface import Surface
 from .system import System
 
 _VECTORS = ("momentum", "angular_momentum", "force", "torque", "impulse")
@@ -43,6 +44,7 @@ class Stepper(Handle):
         self._callbacks, self._held = {}, {}
         self._own(context, made, context, grid)
         self.grid, self.dim, self._sets, self._obstacles = grid, grid.dim, [], []
+        self._surfaces = []
         self.set_progress(None)
         self.add(*sets)
 
@@ -58,19 +60,32 @@ class Stepper(Handle):
         """The obstacles, in order of adding."""
         return tuple(self._obstacles)
 
+    @property
+    def surfaces(self):
+        """The surfaces, in order of adding."""
+        return tuple(self._surfaces)
+
+    def _place(self, thing):
+        """What adds and removes things of a kind, and the list of those that are here."""
+        if isinstance(thing, Obstacle):
+            return lib.mpm_stepper_add_obstacle, lib.mpm_stepper_remove_obstacle, self._obstacles
+        if isinstance(thing, Surface):
+            return lib.mpm_stepper_add_surface, lib.mpm_stepper_remove_surface, self._surfaces
+        return lib.mpm_stepper_add, lib.mpm_stepper_remove, self._sets
+
     def add(self, *things):
-        """Adds sets of particles and obstacles; returns the stepper."""
+        """Adds sets of particles, obstacles and surfaces; returns the stepper."""
         for one in things:
-            obstacle = hasattr(one, "set_pose")
-            self._context._check((lib.mpm_stepper_add_obstacle if obstacle else lib.mpm_stepper_add)(self, one))
-            (self._obstacles if obstacle else self._sets).append(one)
+            add, _, there = self._place(one)
+            self._context._check(add(self, one))
+            there.append(one)
         return self
 
     def remove(self, thing):
-        """Takes a set or an obstacle out."""
-        obstacle = hasattr(thing, "set_pose")
-        self._context._check((lib.mpm_stepper_remove_obstacle if obstacle else lib.mpm_stepper_remove)(self, thing))
-        (self._obstacles if obstacle else self._sets).remove(thing)
+        """Takes a set, an obstacle or a surface out."""
+        _, remove, there = self._place(thing)
+        self._context._check(remove(self, thing))
+        there.remove(thing)
 
     @documented("mpm_stepper_configure")
     def configure(self, **options):
