@@ -241,6 +241,31 @@ batch!(
     }
 );
 
+batch!(
+    /// Markers for which tractions are wanted.
+    MarkerBatch, mpm_marker_batch, {
+        /// Ids, ascending.
+        id: i64, one;
+        /// A component of the position.
+        position: f64, axes;
+        /// A component of the area vectors, which point out of the material.
+        area: f64, axes;
+        /// Areas when the markers were added.
+        reference_area: f64, one;
+        /// A component of the displacement since the markers were added.
+        displacement: f64, axes;
+        /// A component of the velocity of the material there, in the last step.
+        velocity: f64, axes;
+    }
+);
+
+impl MarkerBatch<'_> {
+    /// The size of the step.
+    pub fn dt(&self) -> f64 {
+        self.0.dt
+    }
+}
+
 /// What is to be said of the points.
 pub struct Distances<'a> {
     /// Signed distance, above 0 outside: one component.

@@ -25,9 +25,9 @@
 //!
 //! # Who owns what
 //!
-//! Grids and materials are shared: a clone is another name for the same one. A [`Stepper`] owns the sets and obstacles that
-//! it was given, and gives them back by [`Stepper::remove`]. What an object was made with lives as long as it does, so the
-//! order in which values go does not matter.
+//! Grids and materials are shared: a clone is another name for the same one. A [`Stepper`] owns the sets, obstacles and
+//! surfaces that it was given, and gives them back by [`Stepper::remove`] and its like. What an object was made with lives as
+//! long as it does, so the order in which values go does not matter.
 //!
 //! # Views
 //!
@@ -116,9 +116,10 @@ mod particles;
 mod series;
 mod staged;
 mod stepper;
+mod surface;
 mod view;
 
-pub use batch::{Columns, ContactBatch, DistanceBatch, Distances, NodeBatch, ParticleBatch};
+pub use batch::{Columns, ContactBatch, DistanceBatch, Distances, MarkerBatch, NodeBatch, ParticleBatch};
 pub use callback::{Flow, Refusal};
 pub use context::{Context, ContextDesc};
 pub use error::Error;
@@ -130,7 +131,8 @@ pub use obstacle::{DistanceFn, Obstacle, ObstacleDesc, Pose};
 pub use particles::{FieldInfo, Filled, Particles};
 pub use series::Series;
 pub use staged::StagedStep;
-pub use stepper::{ObstacleKey, SetKey, Stepper};
+pub use stepper::{ObstacleKey, SetKey, Stepper, SurfaceKey};
+pub use surface::Surface;
 pub use view::{Element, View, ViewMut};
 
 /// Box, cells and basis of a grid.
@@ -139,6 +141,8 @@ pub type GridDesc = sys::mpm_grid_desc;
 pub type StepperDesc = sys::mpm_stepper_desc;
 /// How [`Stepper::advance_by`] chooses its sub-steps.
 pub type AdvanceDesc = sys::mpm_advance_desc;
+/// Loads and options of a surface.
+pub type SurfaceDesc = sys::mpm_surface_desc;
 /// How two bodies meet.
 pub type ContactDesc = sys::mpm_contact_desc;
 /// What a step did, or the state as it is.

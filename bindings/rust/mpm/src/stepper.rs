@@ -7,7 +7,7 @@ use crate::obstacle::sized;
 use crate::view::Lent;
 use crate::{
     sys, AdvanceDesc, Columns, ContactDesc, ContactInfo, Element, Error, Flow, Grid, LinearSystem, Obstacle, Particles,
-    Profile, Refusal, Result, StagedStep, StepInfo, StepperDesc, View,
+    Profile, Refusal, Result, StagedStep, StepInfo, StepperDesc, Surface, View,
 };
 use std::mem::size_of;
 use std::os::raw::c_void;
@@ -29,6 +29,10 @@ pub struct SetKey(u64);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ObstacleKey(u64);
 
+/// A surface of a stepper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SurfaceKey(u64);
+
 fn fresh() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Relaxed)
@@ -39,6 +43,7 @@ fn fresh() -> u64 {
 struct Kept {
     sets: Vec<(SetKey, Particles)>,
     obstacles: Vec<(ObstacleKey, Obstacle)>,
+    surfaces: Vec<(SurfaceKey, Surface)>,
     motions: Vec<(SetKey, Owned<ParticleFn>)>,
     acceleration: Option<Owned<ParticleFn>>,
     force: Option<Owned<ParticleFn>>,
@@ -170,6 +175,38 @@ impl Stepper {
     fn find_obstacle(&self, obstacle: ObstacleKey) -> Result<usize> {
         let found = self.kept.obstacles.iter().position(|one| one.0 == obstacle);
         found.ok_or_else(|| Error::new(sys::MPM_E_NOT_FOUND, "the obstacle is not in this stepper"))
+    }
+
+    /// Takes a surface over.
+    pub fn add_surface(&mut self, surface: Surface) -> Result<SurfaceKey> {
+        call!(self, mpm_stepper_add_surface(surface.as_ptr()))?;
+        let key = SurfaceKey(fresh());
+        self.kept.surfaces.push((key, surface));
+        Ok(key)
+    }
+
+    /// Gives a surface back, with its markers.
+    pub fn remove_surface(&mut self, surface: SurfaceKey) -> Result<Surface> {
+        let k = self.find_surface(surface)?;
+        call!(self, mpm_stepper_remove_surface(self.kept.surfaces[k].1.as_ptr()))?;
+        Ok(self.kept.surfaces.remove(k).1)
+    }
+
+    /// A surface. Panics where it is not in this stepper.
+    pub fn surface(&self, surface: SurfaceKey) -> &Surface {
+        let k = self.find_surface(surface).unwrap_or_else(|error| panic!("{error}"));
+        &self.kept.surfaces[k].1
+    }
+
+    /// A surface, to be changed. Panics where it is not in this stepper.
+    pub fn surface_mut(&mut self, surface: SurfaceKey) -> &mut Surface {
+        let k = self.find_surface(surface).unwrap_or_else(|error| panic!("{error}"));
+        &mut self.kept.surfaces[k].1
+    }
+
+    fn find_surface(&self, surface: SurfaceKey) -> Result<usize> {
+        let found = self.kept.surfaces.iter().position(|one| one.0 == surface);
+        found.ok_or_else(|| Error::new(sys::MPM_E_NOT_FOUND, "the surface is not in this stepper"))
     }
 
     /// Sets the time and the number of steps counted.

@@ -166,6 +166,39 @@ fn motions_of_prescribed_particles() {
 }
 
 #[test]
+fn tractions_of_surfaces() {
+    let (mut stepper, _) = serial();
+    let mut face = Surface::new(stepper.grid(), &SurfaceDesc::default()).unwrap();
+    face.add(&[0.7, 0.7, 0.4, 0.6], Some(&[0.2, 0.2, 0.0, 0.0])).unwrap();
+    let mut calls = 0;
+    face.set_traction(move |batch, add| {
+        calls += 1;
+        assert_eq!((batch.len(), batch.dim(), batch.t(), batch.dt()), (2, 2, (calls - 1) as f64 * 1e-3, 1e-3));
+        assert_eq!((batch.id(), batch.reference_area()), ([0, 1].as_slice(), [0.2, 0.2].as_slice()));
+        assert!(batch.area(0)[1] > 0.1 && batch.position(1)[1] > 0.5 && batch.displacement(0).len() == 2);
+        assert!(calls > 1 || batch.velocity(1) == [0.0, 0.0]);
+        add[(1, 0)] += 100.0;
+        Ok(())
+    })
+    .unwrap();
+    let face = stepper.add_surface(face).unwrap();
+    stepper.step(1e-3).unwrap();
+    let force = stepper.surface(face).get::<f64>("force").unwrap();
+    assert!(force[0] == 0.0 && (force[1] - 20.0).abs() < 1e-12, "{force:?}");
+    let before = stepper.hash().unwrap();
+    stepper.surface_mut(face).set_traction(|_, _| panic!("no traction today")).unwrap();
+    assert_eq!(panics(|| stepper.step(1e-3).unwrap()), "no traction today");
+    assert_eq!(stepper.hash().unwrap(), before);
+    stepper.surface_mut(face).set_traction(|_, _| Err(Refusal::stop("torn"))).unwrap();
+    let error = stepper.step(1e-3).unwrap_err();
+    assert!(error.status() == MPM_E_CALLBACK && error.source().unwrap().to_string() == "torn");
+    stepper.surface_mut(face).set_traction(|_, _| Err(Refusal::SmallerStep)).unwrap();
+    assert!(stepper.step(1e-3).unwrap_err().wants_smaller_step());
+    stepper.surface_mut(face).clear_traction().unwrap();
+    stepper.step(1e-3).unwrap();
+}
+
+#[test]
 fn progress_cancels() {
     let (mut stepper, _) = serial();
     let mut calls = 0;

@@ -1,7 +1,7 @@
 //! Whatever goes first, all is freed in the end; calls that meet are refused.
 mod scene;
 use mpm::constants::*;
-use mpm::{Context, ContextDesc, Law, Material, Stepper, StepperDesc};
+use mpm::{Context, ContextDesc, Law, Material, Stepper, StepperDesc, Surface, SurfaceDesc};
 use scene::*;
 use std::sync::{Arc, Mutex};
 
@@ -119,6 +119,41 @@ fn sets_that_were_exchanged_harm_nothing() {
     drop(other); // C has it still, and calls the law
     stepper.step(1e-3).unwrap();
     assert_eq!(Arc::strong_count(&token), 2, "the law went before its set");
+}
+
+#[test]
+fn surfaces_that_were_exchanged_harm_nothing() {
+    let token = Arc::new(());
+    let held = token.clone();
+    let context = Context::new().unwrap();
+    let (mut stepper, _) = falling(&context, StepperDesc::default()).unwrap();
+    let make = || {
+        let mut face = Surface::new(stepper.grid(), &SurfaceDesc::default()).unwrap();
+        face.add(&[0.7, 0.5], Some(&[0.4, 0.0])).unwrap();
+        face
+    };
+    let (mut face, mut other) = (make(), make());
+    face.set_traction(move |_, add| {
+        assert!(Arc::strong_count(&held) > 1);
+        add[(0, 0)] += 1.0;
+        Ok(())
+    })
+    .unwrap();
+    let key = stepper.add_surface(face).unwrap();
+    std::mem::swap(stepper.surface_mut(key), &mut other);
+    drop(other); // C has it still, and calls its function
+    stepper.step(1e-3).unwrap();
+    assert_eq!(Arc::strong_count(&token), 2, "the function went before its surface");
+
+    let token = Arc::new(());
+    let (mut stepper, _) = falling(&watched(&token), StepperDesc::default()).unwrap();
+    let face = Surface::new(stepper.grid(), &SurfaceDesc::default()).unwrap();
+    let spare = Surface::new(stepper.grid(), &SurfaceDesc::default()).unwrap();
+    stepper.add_surface(face).unwrap();
+    drop(stepper);
+    assert_eq!((spare.len(), Arc::strong_count(&token)), (0, 2));
+    drop(spare);
+    assert_eq!(Arc::strong_count(&token), 1);
 }
 
 #[test]

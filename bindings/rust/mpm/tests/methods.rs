@@ -1,4 +1,4 @@
-//! Fields, laws, solvers, obstacles, files.
+//! Fields, laws, solvers, obstacles, surfaces, files.
 mod scene;
 use mpm::constants::*;
 use mpm::*;
@@ -206,6 +206,91 @@ fn obstacles_and_contact() {
     let mut floor = stepper.remove_obstacle(floor).unwrap();
     floor.clear_motion().unwrap();
     assert_eq!(floor.set_load([0.0; 3], [0.0; 3]).unwrap_err().status(), MPM_E_UNSUPPORTED);
+}
+
+#[test]
+fn surfaces() {
+    let sum = |values: &[f64]| values.iter().sum::<f64>();
+    let context = Context::new().unwrap();
+    let (mut stepper, _) = falling(&context, StepperDesc::default()).unwrap();
+    stepper.configure(&StepperDesc::default()).unwrap();
+    let mut face = Surface::new(stepper.grid(), &SurfaceDesc { pressure: 40.0, ..Default::default() }).unwrap();
+    assert!(face.is_empty() && face.dim() == 2);
+    let made = face.add_polyline(&[0.7, 0.7, 0.3, 0.7], false, 0.051).unwrap();
+    assert_eq!((made, face.len()), (Filled { first_id: 0, count: 8 }, 8));
+    assert_eq!(face.add(&[0.5, 0.6, 0.5, 0.6], Some(&[0.0, 0.1, 0.2, 0.3])).unwrap(), 8);
+    assert_eq!(face.add(&[0.5, 0.5], None).unwrap(), 10);
+    assert_eq!(face.get::<i64>("id").unwrap(), (0..11).collect::<Vec<_>>());
+    assert_eq!(face.get_of::<f64>("area", &[9, 8, 10]).unwrap(), [0.1, 0.0, 0.0, 0.3, 0.2, 0.0]);
+    face.remove(&[8, 9, 10]).unwrap();
+    assert_eq!(face.remove(&[8]).unwrap_err().status(), MPM_E_NOT_FOUND);
+    face.set("pressure", &[2.0; 8]).unwrap();
+    face.set_of("pressure", &[3, 1], &[5.0, 7.0]).unwrap();
+    assert_eq!(face.get::<f64>("pressure").unwrap()[..4], [2.0, 7.0, 2.0, 5.0]);
+    face.set("pressure", &[0.0; 8]).unwrap();
+    assert_eq!(face.refine(0.026).unwrap(), 8);
+    assert!((sum(&face.get::<f64>("area").unwrap()[..16]) - 0.4).abs() < 1e-15);
+    for (error, status, text) in [
+        (face.add(&[0.5; 3], None).unwrap_err(), MPM_E_ARG, "position"),
+        (face.add(&[0.5; 2], Some(&[0.0; 4])).unwrap_err(), MPM_E_ARG, "area"),
+        (face.add(&[-0.5; 2], None).unwrap_err(), MPM_E_ARG, "in the grid"),
+        (face.add_triangles(&[0.5; 9], &[0, 1, 2], 0.1).unwrap_err(), MPM_E_UNSUPPORTED, ""),
+        (face.get::<f64>("forse").unwrap_err(), MPM_E_NOT_FOUND, "force"),
+        (face.get::<i64>("force").unwrap_err(), MPM_E_ARG, "force"),
+        (face.set("force", &[0.0; 32]).unwrap_err(), MPM_E_ARG, "force"),
+        (face.set("traction", &[0.0; 16]).unwrap_err(), MPM_E_ARG, "traction"),
+        (face.refine(-1.0).unwrap_err(), MPM_E_ARG, "spacing"),
+        (face.configure(&SurfaceDesc { pressure: f64::NAN, ..Default::default() }).unwrap_err(), MPM_E_ARG, "pressure"),
+    ] {
+        assert!(error.status() == status && error.to_string().contains(text), "{error}");
+    }
+
+    let face = stepper.add_surface(face).unwrap();
+    stepper.step(1e-4).unwrap();
+    let force = stepper.surface(face).get::<f64>("force").unwrap();
+    assert!((sum(&force[..16]) + 16.0).abs() < 1e-12 && sum(&force[16..]).abs() < 1e-12, "{force:?}");
+    assert!((stepper.info().unwrap().momentum[0] + 16e-4).abs() < 1e-12);
+    let dead = SurfaceDesc { dead_traction: [0.0, 30.0, 0.0], ..Default::default() };
+    stepper.surface_mut(face).configure(&dead).unwrap();
+    stepper.step(1e-4).unwrap();
+    let force = stepper.surface(face).get::<f64>("force").unwrap();
+    assert!(sum(&force[..16]).abs() < 1e-12 && (sum(&force[16..]) - 12.0).abs() < 1e-12, "{force:?}");
+
+    let mut face = stepper.remove_surface(face).unwrap();
+    assert!(face.len() == 16 && face.get::<f64>("displacement").unwrap()[0] < 0.0);
+    let before = stepper.info().unwrap().momentum;
+    stepper.step(1e-4).unwrap();
+    assert!((stepper.info().unwrap().momentum[1] - before[1]).abs() < 1e-12, "what was taken out pulls");
+    face.configure(&SurfaceDesc::default()).unwrap();
+    face.set_traction(|_, _| Ok(())).unwrap();
+    face.clear_traction().unwrap();
+    let key = stepper.add_surface(face).unwrap();
+    stepper.remove_surface(key).unwrap();
+    assert_eq!(stepper.remove_surface(key).err().unwrap().status(), MPM_E_NOT_FOUND);
+}
+
+#[test]
+fn surfaces_of_triangles() {
+    let context = Context::new().unwrap();
+    let desc = GridDesc { dim: 3, cells: [8; 3], spacing: [0.125; 3], ..Default::default() };
+    let grid = Grid::new(&context, &desc).unwrap();
+    let jelly = Material::new(&context, "neo_hookean", &JELLY).unwrap();
+    let mut set = Particles::new(&grid, &jelly).unwrap();
+    set.fill_box(&[0.25; 3], &[0.75; 3], &[2; 3]).unwrap();
+    let mut stepper = Stepper::new(&grid, &StepperDesc::default()).unwrap();
+    stepper.add(set).unwrap();
+    let mut top = Surface::new(&grid, &SurfaceDesc { pressure: 8.0, ..Default::default() }).unwrap();
+    let (low, high) = (0.25, 0.75);
+    let corners = [low, high, high, low, low, low, high, high, high, high, high, high];
+    let made = top.add_triangles(&corners, &[0, 1, 2, 0, 2, 3], 0.2).unwrap();
+    assert_eq!(made.count as usize, top.len());
+    assert_eq!(top.add_triangles(&corners, &[0, 1, 4], 0.2).unwrap_err().status(), MPM_E_ARG);
+    assert_eq!(top.add_triangles(&corners, &[0, 1], 0.2).unwrap_err().status(), MPM_E_ARG);
+    let top = stepper.add_surface(top).unwrap();
+    stepper.step(1e-4).unwrap();
+    let force = stepper.surface(top).get::<f64>("force").unwrap();
+    let total = force[2 * stepper.surface(top).len()..].iter().sum::<f64>();
+    assert!((total + 2.0).abs() < 1e-12, "{total}");
 }
 
 #[test]

@@ -1,0 +1,264 @@
+//! Surfaces: markers without mass that move with the material and carry loads on its boundary.
+use crate::callback::{alone, Owned};
+use crate::entry::{Core, Sent};
+use crate::error::c_text;
+use crate::particles::{fits, pointer};
+use crate::{sys, Columns, Element, Filled, Flow, Grid, MarkerBatch, Result, SurfaceDesc};
+use std::os::raw::c_void;
+use std::sync::Arc;
+
+type TractionFn = dyn FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Send;
+
+/// Markers that the material carries along, and that load it. A stepper takes it over, and lends it.
+///
+/// Vectors have as many components as the grid has dimensions. Area vectors, area times normal, point out of the material;
+/// they and forces are per thickness in 2-D, and of one radian on a grid that is `MPM_AXISYMMETRIC`.
+pub struct Surface {
+    pub(crate) context: Arc<Core>,
+    pub(crate) handle: *mut sys::mpm_surface,
+    grid: Grid,
+    traction: Option<Owned<TractionFn>>,
+}
+
+// SAFETY: the handle is used by an Entry only, and so is the function of the tractions.
+unsafe impl Send for Surface {}
+unsafe impl Sync for Surface {}
+
+impl Surface {
+    /// Makes a surface without markers.
+    pub fn new(grid: &Grid, desc: &SurfaceDesc) -> Result<Self> {
+        let (context, desc) = (grid.core.context.clone(), sized(desc));
+        let mut handle = std::ptr::null_mut();
+        let entry = context.enter()?;
+        // SAFETY: the descriptor is whole, and the surface keeps the grid.
+        let status = unsafe { sys::mpm_surface_create(context.handle, grid.as_ptr(), &desc, &mut handle) };
+        entry.done(status)?;
+        Ok(Surface { context, handle, grid: grid.clone(), traction: None })
+    }
+
+    /// Replaces loads and options between steps.
+    pub fn configure(&mut self, desc: &SurfaceDesc) -> Result<()> {
+        let desc = sized(desc);
+        let entry = self.context.enter()?;
+        // SAFETY: the descriptor is whole.
+        let status = unsafe { sys::mpm_surface_configure(self.handle, &desc) };
+        entry.done(status)
+    }
+
+    /// Sets what adds forces per present area of the markers: component `c` of marker `i` is `add[(i, c)]`. It runs once per
+    /// step.
+    pub fn set_traction(
+        &mut self,
+        traction: impl FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Send + 'static,
+    ) -> Result<()> {
+        let slot = Owned::<TractionFn>::new(&self.context.thrown, Box::new(traction));
+        let entry = self.context.enter()?;
+        // SAFETY: the old function goes only once the library has taken the new one.
+        let status = unsafe { sys::mpm_surface_set_traction(self.handle, Some(on_traction), slot.user()) };
+        entry.done(status)?;
+        self.traction = Some(slot);
+        Ok(())
+    }
+
+    /// Takes the function away.
+    pub fn clear_traction(&mut self) -> Result<()> {
+        let entry = self.context.enter()?;
+        // SAFETY: the handle lives.
+        let status = unsafe { sys::mpm_surface_set_traction(self.handle, None, std::ptr::null_mut()) };
+        entry.done(status)?;
+        self.traction = None;
+        Ok(())
+    }
+
+    /// Adds markers at `position`, which is `[dim][n]` as the area vectors are; without area they follow the material and
+    /// carry nothing. Gives the first id.
+    pub fn add(&mut self, position: &[f64], area: Option<&[f64]>) -> Result<i64> {
+        let n = position.len() / self.dim();
+        fits("position", position.len(), n * self.dim())?;
+        area.map_or(Ok(()), |area| fits("area", area.len(), position.len()))?;
+        let mut first = 0;
+        let entry = self.context.enter()?;
+        // SAFETY: all lengths were checked.
+        let status =
+            unsafe { sys::mpm_surface_add(self.handle, n as i64, position.as_ptr(), pointer(area), &mut first) };
+        entry.done(status)?;
+        Ok(first)
+    }
+
+    /// Adds markers along the line through points, `[2][n]`, with the material on its left; closed: back to the first.
+    pub fn add_polyline(&mut self, position: &[f64], closed: bool, spacing: f64) -> Result<Filled> {
+        let n = position.len() / 2;
+        fits("position", position.len(), n * 2)?;
+        let mut made = Filled { first_id: 0, count: 0 };
+        let entry = self.context.enter()?;
+        // SAFETY: the length was checked.
+        let status = unsafe {
+            sys::mpm_surface_add_polyline(
+                self.handle,
+                n as i64,
+                position.as_ptr(),
+                closed.into(),
+                spacing,
+                &mut made.first_id,
+                &mut made.count,
+            )
+        };
+        entry.done(status)?;
+        Ok(made)
+    }
+
+    /// Adds markers on triangles: points are `[3][n]`, corners `[triangles][3]` with numbers of points, counter-clockwise as
+    /// seen from outside.
+    pub fn add_triangles(&mut self, position: &[f64], corner: &[i64], spacing: f64) -> Result<Filled> {
+        let (n, triangles) = (position.len() / 3, corner.len() / 3);
+        fits("position", position.len(), n * 3)?;
+        fits("corner", corner.len(), triangles * 3)?;
+        let mut made = Filled { first_id: 0, count: 0 };
+        let entry = self.context.enter()?;
+        // SAFETY: all lengths were checked.
+        let status = unsafe {
+            sys::mpm_surface_add_triangles(
+                self.handle,
+                n as i64,
+                position.as_ptr(),
+                triangles as i64,
+                corner.as_ptr(),
+                spacing,
+                &mut made.first_id,
+                &mut made.count,
+            )
+        };
+        entry.done(status)?;
+        Ok(made)
+    }
+
+    /// Removes markers by id: all or none.
+    pub fn remove(&mut self, ids: &[i64]) -> Result<()> {
+        let entry = self.context.enter()?;
+        // SAFETY: the ids are as many as is said.
+        let status = unsafe { sys::mpm_surface_remove(self.handle, ids.len() as i64, ids.as_ptr()) };
+        entry.done(status)
+    }
+
+    /// Splits markers until no edge is longer than the spacing. Gives how many came.
+    pub fn refine(&mut self, spacing: f64) -> Result<i64> {
+        let mut added = 0;
+        let entry = self.context.enter()?;
+        // SAFETY: the handle lives.
+        let status = unsafe { sys::mpm_surface_refine(self.handle, spacing, &mut added) };
+        entry.done(status)?;
+        Ok(added)
+    }
+
+    /// The dimension of the grid.
+    pub fn dim(&self) -> usize {
+        self.grid.dim()
+    }
+
+    /// The number of markers. May be called in callbacks.
+    pub fn len(&self) -> usize {
+        // SAFETY: free to be called at any time while the surface lives.
+        unsafe { sys::mpm_surface_count(self.handle) as usize }
+    }
+
+    /// Whether there are no markers.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Copies a field of all markers by ascending id: `[components][n]`. `"id"` is of `i64`, all others are of `f64`.
+    pub fn get<T: Element>(&self, field: &str) -> Result<Vec<T>> {
+        self.copy(field, self.len(), None)
+    }
+
+    /// Copies a field of markers by id.
+    pub fn get_of<T: Element>(&self, field: &str, ids: &[i64]) -> Result<Vec<T>> {
+        self.copy(field, ids.len(), Some(ids))
+    }
+
+    fn copy<T: Element>(&self, field: &str, n: usize, ids: Option<&[i64]>) -> Result<Vec<T>> {
+        let (name, components) = (c_text(field)?, self.components(field));
+        let mut out = vec![T::default(); components * n];
+        let entry = self.context.enter()?;
+        // SAFETY: the library compares type, components and n with those of the field.
+        let status = unsafe {
+            sys::mpm_surface_get(
+                self.handle,
+                name.as_ptr(),
+                T::TYPE,
+                components as i32,
+                n as i64,
+                pointer(ids),
+                out.as_mut_ptr().cast(),
+            )
+        };
+        entry.done(status)?;
+        Ok(out)
+    }
+
+    /// Sets a field of all markers, laid out as in [`Surface::get`].
+    pub fn set<T: Element>(&mut self, field: &str, values: &[T]) -> Result<()> {
+        self.overwrite(field, self.len(), None, values)
+    }
+
+    /// Sets a field of markers by id.
+    pub fn set_of<T: Element>(&mut self, field: &str, ids: &[i64], values: &[T]) -> Result<()> {
+        self.overwrite(field, ids.len(), Some(ids), values)
+    }
+
+    fn overwrite<T: Element>(&mut self, field: &str, n: usize, ids: Option<&[i64]>, values: &[T]) -> Result<()> {
+        let (name, components) = (c_text(field)?, self.components(field));
+        fits(field, values.len(), components * n)?;
+        let entry = self.context.enter()?;
+        // SAFETY: the library compares type, components and n with those of the field.
+        let status = unsafe {
+            sys::mpm_surface_set(
+                self.handle,
+                name.as_ptr(),
+                T::TYPE,
+                components as i32,
+                n as i64,
+                pointer(ids),
+                values.as_ptr().cast(),
+            )
+        };
+        entry.done(status)
+    }
+
+    fn components(&self, field: &str) -> usize {
+        match field {
+            "id" | "reference_area" | "pressure" => 1,
+            _ => self.dim(),
+        }
+    }
+
+    /// The handle of C.
+    pub fn as_ptr(&self) -> *mut sys::mpm_surface {
+        self.handle
+    }
+}
+
+impl Drop for Surface {
+    fn drop(&mut self) {
+        let (handle, traction, grid) = (Sent(self.handle), self.traction.take(), self.grid.clone());
+        self.context.bury(move || {
+            // SAFETY: nobody else has the handle. While a stepper holds on to it, so it does to the function, and the grid
+            // refuses, too.
+            if unsafe { sys::mpm_surface_destroy(handle.get()) } != sys::MPM_OK {
+                std::mem::forget(traction);
+            }
+            drop(grid);
+        });
+    }
+}
+
+/// The descriptor with the size that the library is to read.
+fn sized(desc: &SurfaceDesc) -> SurfaceDesc {
+    SurfaceDesc { struct_size: std::mem::size_of::<SurfaceDesc>() as u32, ..*desc }
+}
+
+unsafe extern "C" fn on_traction(user: *mut c_void, batch: *const sys::mpm_marker_batch, add: *mut f64) -> i32 {
+    let slot = alone::<TractionFn>(user);
+    let (raw, function) = (&*batch, &mut slot.function);
+    slot.thrown.guard(|| function(&MarkerBatch(raw), &mut Columns::new(add, raw.ld, raw.n, raw.dim as usize)))
+}
