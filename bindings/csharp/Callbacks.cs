@@ -21,6 +21,8 @@ namespace Mpm {
   public delegate int DistanceFunction(ref DistanceBatch batch);
   /// <summary>Gives velocity[0, c] and angularVelocity[0, c] of the step, which are preset to the present ones.</summary>
   public delegate int MotionFunction(double t, double dt, Columns velocity, Columns angularVelocity);
+  /// <summary>Adds forces per present area to add[i, c] of each marker. It runs once per step.</summary>
+  public delegate int TractionFunction(ref MarkerBatch batch, Columns add);
   /// <summary>(mt) A law: writes batch.NewStress, NewState and WaveSpeed.</summary>
   public delegate int StressFunction(ref MaterialBatch batch);
   /// <summary>(mt) The tangent of a law; symmetric becomes 1 if it is.</summary>
@@ -116,6 +118,14 @@ namespace Mpm {
     public Columns Velocity { get { return new Columns(velocity, ld, n, dim); } }
   }
 
+  public unsafe partial struct MarkerBatch {
+    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
+    public Columns Area { get { return new Columns(area, ld, n, dim, false); } }
+    public Columns ReferenceArea { get { return new Columns(reference_area, ld, n, 1, false); } }
+    public Columns Displacement { get { return new Columns(displacement, ld, n, dim, false); } }
+    public Columns Velocity { get { return new Columns(velocity, ld, n, dim, false); } }
+  }
+
   public unsafe partial struct MaterialBatch {
     public Columns DeformationGradient { get { return new Columns(F, ld, n, 9, false); } }
     public Columns Increment { get { return new Columns(F_inc, ld, n, 9, false); } }
@@ -196,6 +206,7 @@ namespace Mpm {
     public static readonly ProgressFn Progress = OnProgress;
     public static readonly DistanceFn Distance = OnDistance;
     public static readonly MotionFn Motion = OnMotion;
+    public static readonly TractionFn Traction = OnTraction;
     public static readonly StressFn Stress = OnStress;
     public static readonly TangentFn Tangent36 = OnTangent36, Tangent81 = OnTangent81;
     public static readonly InsideFn Inside = OnInside;
@@ -269,6 +280,16 @@ namespace Mpm {
       var slot = Slot.Of(user);
       try {
         return ((MotionFunction)slot.Function)(t, dt, new Columns(velocity, 1, 1, 3), new Columns(angular_velocity, 1, 1, 3));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(TractionFn))]
+    static int OnTraction(IntPtr user, MarkerBatch* batch, double* add) {
+      var slot = Slot.Of(user);
+      try {
+        return ((TractionFunction)slot.Function)(ref *batch, new Columns(add, batch->ld, batch->n, batch->dim));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
       }

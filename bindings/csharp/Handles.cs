@@ -229,6 +229,19 @@ namespace Mpm {
       node.Core.Finish(status, steps ? pointer : IntPtr.Zero);
       GC.KeepAlive(this);
     }
+    /// <summary>Lends an array of double, long or byte to a call of C.</summary>
+    internal static void Pinned<T>(T[] values, Action<IntPtr> use) {
+      FieldView.TypeOf<T>();
+      var pin = GCHandle.Alloc(values, GCHandleType.Pinned);
+      try {
+        use(pin.AddrOfPinnedObject());
+      } finally {
+        pin.Free();
+      }
+    }
+    internal static void Fits(string what, long length, long should) {
+      if (length != should) throw new ArgumentException(string.Format("\"{0}\" has {1} values, not {2}", what, length, should));
+    }
     internal unsafe delegate int Maker(IntPtr* made);
 
     /// <summary>Makes an object of C by a call.</summary>

@@ -305,18 +305,6 @@ namespace Mpm {
         });
     }
 
-    static void Pinned<T>(T[] values, Action<IntPtr> use) {
-      FieldView.TypeOf<T>();
-      var pin = GCHandle.Alloc(values, GCHandleType.Pinned);
-      try {
-        use(pin.AddrOfPinnedObject());
-      } finally {
-        pin.Free();
-      }
-    }
-    static void Fits(string what, long length, long should) {
-      if (length != should) throw new ArgumentException(string.Format("\"{0}\" has {1} values, not {2}", what, length, should));
-    }
     void Axes(params int[] lengths) {
       foreach (int length in lengths) Fits("vector", length, Dim);
     }

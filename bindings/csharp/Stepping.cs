@@ -1,4 +1,4 @@
-// The time loop, obstacles, states and files.
+// The time loop, obstacles, surfaces, states and files.
 using System;
 using System.Runtime.InteropServices;
 using static Mpm.Constants;
@@ -84,6 +84,141 @@ namespace Mpm {
     }
   }
 
+  /// <summary>Markers that the material carries along, and that load it. Vectors have as many components as the grid has
+  /// dimensions. Area vectors, area times normal, point out of the material; they and forces are per thickness in 2-D, and of
+  /// one radian on a grid that is MPM_AXISYMMETRIC.</summary>
+  public sealed unsafe class Surface : Handle {
+    public int Dim { get; }
+
+    /// <summary>Makes a surface without markers.</summary>
+    public Surface(Context context, Grid grid, SurfaceDesc desc) : base(Create(context, grid, desc)) {
+      Dim = grid.Dim;
+    }
+    static Node Create(Context context, Grid grid, SurfaceDesc desc) {
+      desc.struct_size = (uint)sizeof(SurfaceDesc);
+      var node = new Node(context.node.Core, Native.mpm_surface_destroy, context.node, grid.node);
+      return Make(node, made => {
+        var loads = desc;
+        return Native.mpm_surface_create(context.Pointer, grid.Pointer, &loads, made);
+      });
+    }
+    /// <summary>Replaces loads and options between steps.</summary>
+    public void Configure(SurfaceDesc desc) {
+      desc.struct_size = (uint)sizeof(SurfaceDesc);
+      Call(p => {
+        var loads = desc;
+        return Native.mpm_surface_configure(p, &loads);
+      });
+    }
+    /// <summary>Sets what adds tractions in each step; null takes it away.</summary>
+    public void SetTraction(TractionFunction traction) {
+      var slot = traction == null ? null : new Slot(node.Core, traction);
+      Stepper.Install(this, "traction", slot, p => Native.mpm_surface_set_traction(p,
+        slot == null ? null : Trampolines.Traction, slot == null ? IntPtr.Zero : slot.User));
+    }
+
+    /// <summary>The number of markers. May be called in callbacks.</summary>
+    public long Count { get { return Native.mpm_surface_count(Pointer); } }
+
+    /// <summary>Adds markers at position, which is [dim][n] as the area vectors are; without area they follow the material
+    /// and carry nothing. Gives the first id.</summary>
+    public long Add(double[] position, double[] area = null) {
+      long first = 0;
+      int n = position.Length / Dim;
+      Fits("position", position.Length, n * Dim);
+      if (area != null) Fits("area", area.Length, position.Length);
+      Call(p => {
+        long id;
+        fixed (double* x = position, a = area) {
+          int status = Native.mpm_surface_add(p, n, x, a, &id);
+          first = id;
+          return status;
+        }
+      });
+      return first;
+    }
+    /// <summary>Adds markers along the line through points, [2][n], with the material on its left; closed: back to the first.
+    /// Gives the first id.</summary>
+    public long AddPolyline(double[] position, bool closed, double spacing, out long count) {
+      long first = 0, made = 0;
+      int n = position.Length / 2;
+      Fits("position", position.Length, n * 2);
+      Call(p => {
+        long id, number;
+        fixed (double* x = position) {
+          int status = Native.mpm_surface_add_polyline(p, n, x, closed ? 1 : 0, spacing, &id, &number);
+          first = id;
+          made = number;
+          return status;
+        }
+      });
+      count = made;
+      return first;
+    }
+    /// <summary>Adds markers on triangles: position is [3][n], corner [triangles][3] with numbers of points, counter-clockwise
+    /// as seen from outside. Gives the first id.</summary>
+    public long AddTriangles(double[] position, long[] corner, double spacing, out long count) {
+      long first = 0, made = 0;
+      int n = position.Length / 3, triangles = corner.Length / 3;
+      Fits("position", position.Length, n * 3);
+      Fits("corner", corner.Length, triangles * 3);
+      Call(p => {
+        long id, number;
+        fixed (double* x = position) fixed (long* of = corner) {
+          int status = Native.mpm_surface_add_triangles(p, n, x, triangles, of, spacing, &id, &number);
+          first = id;
+          made = number;
+          return status;
+        }
+      });
+      count = made;
+      return first;
+    }
+    /// <summary>Removes markers by id: all or none.</summary>
+    public void Remove(long[] ids) {
+      Call(p => {
+        fixed (long* first = ids) return Native.mpm_surface_remove(p, ids.Length, first);
+      });
+    }
+    /// <summary>Splits markers until no edge is longer than the spacing. Gives how many came.</summary>
+    public long Refine(double spacing) {
+      long added = 0;
+      Call(p => {
+        long n;
+        int status = Native.mpm_surface_refine(p, spacing, &n);
+        added = n;
+        return status;
+      });
+      return added;
+    }
+
+    int ComponentsOf(string field) {
+      return field == "id" || field == "reference_area" || field == "pressure" ? 1 : Dim;
+    }
+    /// <summary>Copies a field, of all markers by ascending id or of some: [components][n]. "id" is of long, all others are of
+    /// double.</summary>
+    public T[] Get<T>(string field, long[] ids = null) {
+      int components = ComponentsOf(field);
+      long n = ids != null ? ids.Length : Count;
+      var values = new T[components * n];
+      Pinned(values, at => Call(p => {
+        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids)
+          return Native.mpm_surface_get(p, name, FieldView.TypeOf<T>(), components, n, number, at);
+      }));
+      return values;
+    }
+    /// <summary>Sets a field, laid out as in Get.</summary>
+    public void Set<T>(string field, T[] values, long[] ids = null) {
+      int components = ComponentsOf(field);
+      long n = ids != null ? ids.Length : Count;
+      Fits(field, values.Length, components * n);
+      Pinned(values, at => Call(p => {
+        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids)
+          return Native.mpm_surface_set(p, name, FieldView.TypeOf<T>(), components, n, number, at);
+      }));
+    }
+  }
+
   /// <summary>A time loop with a grid, sets of particles, a scheme, walls and forces.</summary>
   public sealed unsafe class Stepper : Handle {
     public Stepper(Context context, Grid grid, StepperDesc desc) : base(Create(context, grid, desc)) {}
@@ -124,6 +259,15 @@ namespace Mpm {
     public void Remove(Obstacle obstacle) {
       Call(p => Native.mpm_stepper_remove_obstacle(p, obstacle.Pointer));
       node.LetGo(obstacle.node);
+    }
+    public void Add(Surface surface) {
+      Call(p => Native.mpm_stepper_add_surface(p, surface.Pointer));
+      node.Hold(surface.node);
+    }
+    /// <summary>Takes a surface out; it keeps its markers.</summary>
+    public void Remove(Surface surface) {
+      Call(p => Native.mpm_stepper_remove_surface(p, surface.Pointer));
+      node.LetGo(surface.node);
     }
     public void SetTime(double t, long step) {
       Call(p => Native.mpm_stepper_set_time(p, t, step));

@@ -339,6 +339,129 @@ namespace Mpm {
       }
     }
 
+    static double Sum(double[] values, long first, long count) {
+      double sum = 0;
+      for (long i = first; i < first + count; i++) sum += values[i];
+      return sum;
+    }
+
+    static unsafe void Surfaces() {
+      using (var scene = new Scene()) {
+        scene.Stepper.Configure(StepperDesc.Default());
+        var desc = SurfaceDesc.Default();
+        desc.pressure = 40;
+        var face = new Surface(scene.Context, scene.Grid, desc);
+        long count;
+        Is(face.AddPolyline(new[] { 0.7, 0.7, 0.3, 0.7 }, false, 0.051, out count), 0L, "the first marker");
+        Is(count == 8 && face.Count == 8, true, "markers on a line");
+        Is(face.Add(new[] { 0.5, 0.6, 0.5, 0.6 }, new[] { 0.0, 0.1, 0.2, 0.3 }), 8L, "ids of markers");
+        Is(face.Add(new[] { 0.5, 0.5 }), 10L, "a marker without area");
+        Is(string.Join(" ", face.Get<double>("area", new long[] { 9, 8, 10 })), "0.1 0 0 0.3 0.2 0", "areas by id");
+        Is(face.Get<long>("id")[10], 10L, "ids");
+        face.Remove(new long[] { 8, 9, 10 });
+        Refuses(MPM_E_NOT_FOUND, "8", () => face.Remove(new long[] { 8 }));
+        face.Set("pressure", new[] { 5.0, 7.0 }, new long[] { 3, 1 });
+        var pressures = face.Get<double>("pressure");
+        Is(pressures[1] == 7 && pressures[2] == 0 && pressures[3] == 5, true, "pressures by id");
+        face.Set("pressure", new double[8]);
+        Is(face.Refine(0.026), 8L, "markers that were split");
+        Near(Sum(face.Get<double>("area"), 0, 16), 0.4, "their area");
+        Throws<ArgumentException>(() => face.Add(new[] { 0.5 }), "position");
+        Throws<ArgumentException>(() => face.Add(new[] { 0.5, 0.5 }, new double[4]), "area");
+        Throws<ArgumentException>(() => face.Set("traction", new double[16]), "values");
+        Throws<ArgumentException>(() => face.Get<float>("force"), "type");
+        Refuses(MPM_E_ARG, "in the grid", () => face.Add(new[] { -0.5, 0.5 }));
+        Refuses(MPM_E_ARG, "force", () => face.Set("force", new double[32]));
+        Refuses(MPM_E_ARG, "F64", () => face.Get<long>("force"));
+        Refuses(MPM_E_NOT_FOUND, "force", () => face.Get<double>("forse"));
+        Refuses(MPM_E_ARG, "spacing", () => face.Refine(-1));
+        Refuses(MPM_E_UNSUPPORTED, "", () => face.AddTriangles(new double[9], new long[] { 0, 1, 2 }, 0.1, out count));
+        var bad = desc;
+        bad.pressure = double.NaN;
+        Refuses(MPM_E_ARG, "pressure", () => face.Configure(bad));
+        Refuses(MPM_E_ARG, "pressure", () => new Surface(scene.Context, scene.Grid, bad));
+
+        scene.Stepper.Add(face);
+        Refuses(MPM_E_STATE, "this stepper", () => scene.Stepper.Add(face));
+        scene.Stepper.Step(1e-4);
+        var force = face.Get<double>("force");
+        Near(Sum(force, 0, 16), -16, "the force of a pressure");
+        Near(Sum(force, 16, 16), 0, "the force along the face");
+        var info = scene.Stepper.Info();
+        Near(info.momentum[0], -16e-4, "its momentum");
+        desc = SurfaceDesc.Default();
+        desc.dead_traction[1] = 30;
+        face.Configure(desc);
+        scene.Stepper.Step(1e-4);
+        force = face.Get<double>("force");
+        Near(Sum(force, 0, 16), 0, "the force that is gone");
+        Near(Sum(force, 16, 16), 12, "the force of a dead load");
+        face.Configure(SurfaceDesc.Default());
+
+        int calls = 0;
+        face.SetTraction((ref MarkerBatch batch, Columns add) => {
+          calls++;
+          Near(Sum(new[] { batch.ReferenceArea[0, 0], batch.ReferenceArea[15, 0] }, 0, 2), 0.05, "areas in a batch");
+          Is(batch.n == 16 && batch.Position[0, 0] > 0.6 && batch.Area[0, 0] > 0.02 && batch.Velocity[0, 1] > 0
+            && batch.Displacement[0, 0] < 0 && batch.id[15] == 18, true, "a batch");
+          for (long i = 0; i < batch.n; i++) add[i, 0] += 10;
+          return MPM_OK;
+        });
+        GC.Collect();
+        GC.WaitForPendingFinalizers();
+        scene.Stepper.Step(1e-4);
+        Is(calls, 1, "calls in a step");
+        Is(Math.Abs(Sum(face.Get<double>("force"), 0, 16) - 4) < 1e-3, true, "the force of tractions");
+        ulong before = scene.Stepper.Hash();
+        face.SetTraction((ref MarkerBatch batch, Columns add) => { throw new Own(); });
+        Throws<Own>(() => scene.Stepper.Step(1e-4), "the exception of a traction");
+        Is(scene.Stepper.Hash(), before, "the state after it");
+        face.SetTraction((ref MarkerBatch batch, Columns add) => {
+          var area = batch.Area;
+          area[0, 0] = 1;
+          return MPM_OK;
+        });
+        Throws<InvalidOperationException>(() => scene.Stepper.Step(1e-4), "writing into an input");
+        face.SetTraction((ref MarkerBatch batch, Columns add) => MPM_CUT_DT);
+        Is(Throws<MpmException>(() => scene.Stepper.Step(1e-4), "a smaller step").WantsSmallerStep, true, "a smaller step");
+        face.SetTraction(null);
+        scene.Stepper.Step(1e-4);
+
+        scene.Stepper.Remove(face);
+        Refuses(MPM_E_NOT_FOUND, "surface", () => scene.Stepper.Remove(face));
+        Is(face.Count == 16 && face.Get<double>("displacement")[0] < 0, true, "markers of one that was taken out");
+        scene.Stepper.Add(face);
+        face.SetTraction((ref MarkerBatch batch, Columns add) => {
+          calls++;
+          return MPM_OK;
+        });
+        face.Dispose();
+        Throws<ObjectDisposedException>(() => face.Refine(0.1), "a surface that was disposed of");
+        scene.Stepper.Step(1e-4);
+        Is(calls, 2, "the stepper keeps a surface");
+      }
+      using (var context = new Context())
+      using (var grid = new Grid(context, Grid.Box(new long[] { 8, 8, 8 }, new[] { 0.125, 0.125, 0.125 })))
+      using (var material = new Material(context, "neo_hookean", jelly))
+      using (var set = new Particles(context, grid, material))
+      using (var stepper = new Stepper(context, grid, StepperDesc.Default())) {
+        set.FillBox(new[] { 0.25, 0.25, 0.25 }, new[] { 0.75, 0.75, 0.75 }, new[] { 2, 2, 2 });
+        stepper.Add(set);
+        var desc = SurfaceDesc.Default();
+        desc.pressure = 8;
+        var top = new Surface(context, grid, desc);
+        long count;
+        var corners = new[] { 0.25, 0.75, 0.75, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75, 0.75, 0.75, 0.75 };
+        top.AddTriangles(corners, new long[] { 0, 1, 2, 0, 2, 3 }, 0.2, out count);
+        Is(top.Count, count, "markers on triangles");
+        Refuses(MPM_E_ARG, "corner", () => top.AddTriangles(corners, new long[] { 0, 1, 4 }, 0.2, out count));
+        stepper.Add(top);
+        stepper.Step(1e-4);
+        Near(Sum(top.Get<double>("force"), 2 * top.Count, top.Count), -2, "the force on a top");
+        top.Dispose();
+      }
+    }
+
     static void Files(string folder) {
       using (var scene = new Scene()) {
         scene.Stepper.Advance(0.01);
@@ -403,6 +526,7 @@ namespace Mpm {
       First();
       Laws();
       Obstacles();
+      Surfaces();
       Files(arguments[0]);
       Lifetimes();
       Console.WriteLine(failures == 0 ? "all is well" : failures + " failures");
