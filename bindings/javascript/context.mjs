@@ -7,6 +7,7 @@ import { Material } from './material.mjs';
 import { Obstacle } from './obstacle.mjs';
 import { Particles } from './particles.mjs';
 import { Stepper } from './stepper.mjs';
+import { Surface } from './surface.mjs';
 
 const SENTENCE = 1024; // bytes for why a context was not made
 
@@ -51,6 +52,9 @@ export class Context extends Handle {
   }
   obstacle(desc) {
     return new Obstacle(this, desc);
+  }
+  surface(grid, desc) {
+    return new Surface(this, grid, desc);
   }
   stepper(grid, desc) {
     return new Stepper(this, grid, desc);

@@ -140,6 +140,7 @@ const DESTROY = {
   material: destroy('mpm_material_destroy'),
   particles: destroy('mpm_particles_destroy'),
   obstacle: destroy('mpm_obstacle_destroy'),
+  surface: destroy('mpm_surface_destroy'),
   // a step that was begun goes with the stepper
   stepper(machine, at) {
     const status = machine.raw.mpm_stepper_destroy(at);

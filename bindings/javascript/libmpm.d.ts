@@ -718,7 +718,8 @@ export type Components = Float64Array[];
 /** What a batch knows beside its numbers. It is of use during the call of its callback alone. */
 export interface Lent {
   /** Lends a field of the set that the batch belongs to, with its stored components; see mpm_batch_field(). The caller
-   * names components and type, because the library does not tell them here. Not for nodes, contacts and distances. */
+   * names components and type, because the library does not tell them here. Not for nodes, contacts,
+   * distances and markers. */
   field(name: string, components?: number): Float64Array[];
   field(name: string, components: number, kind: 'i64'): BigInt64Array[];
   field(name: string, components: number, kind: 'u8'): Uint8Array[];
@@ -959,6 +960,14 @@ export type FrictionFunction = (batch: ContactBatch, friction: Float64Array) => 
  */
 export type DistanceFunction = (batch: DistanceBatch) => Answer;
 /**
+ * add[c][i] += value for axis c and marker i.
+ *
+ * Gives tractions: the callback does add[c * ld + i] += force per present area of marker i, c < dim. It runs
+ * on the thread of the call, once per step. Returns as mpm_particle_fn does. A value that is not finite ends
+ * the step: MPM_NONFINITE.
+ */
+export type TractionFunction = (batch: MarkerBatch, add: Components) => Answer;
+/**
  * Watches steps. It is called on the calling thread at least once in each step before the step is committed,
  * and after each Newton iteration, with what is known so far; info belongs to the library. Returns 0 to go
  * on, a value > 0 to end the call with MPM_CANCELLED, or a value < 0 to end it with MPM_E_CALLBACK; the step
@@ -1099,6 +1108,11 @@ export interface NewParticles {
   size?: ArrayLike<number>;
   ids?: ArrayLike<number | bigint>;
 }
+/** New markers: arrays are [dim][n]. Without area they follow the material and carry nothing. */
+export interface NewMarkers {
+  position: ArrayLike<number>;
+  area?: ArrayLike<number>;
+}
 export interface Filled {
   first_id: bigint;
   count: number;
@@ -1205,6 +1219,12 @@ export class Context implements Handle {
    * MPM_E_UNSUPPORTED: velocities of a fixed one, bounds of one that the material is inside of.
    */
   obstacle(desc: ObstacleOptions): Obstacle;
+  /**
+   * Makes a surface without markers on a grid, which outlives it. desc is copied and may be NULL for the
+   * defaults. *out is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another
+   * context.
+   */
+  surface(grid: Grid, desc?: SurfaceDesc): Surface;
   /**
    * Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied and
    * may be NULL for the defaults. The grid outlives the stepper. *out is NULL unless MPM_OK is returned.
@@ -1505,6 +1525,101 @@ export class Obstacle implements Handle {
   contactInfo(body?: number): ContactInfo;
 }
 
+/** Markers of a surface. It belongs to a grid, and may be in one stepper at a time. */
+export class Surface implements Handle {
+  private constructor();
+  dispose(): void;
+  readonly disposed: boolean;
+  [Symbol.dispose](): void;
+  readonly grid: Grid;
+  /**
+   * Options that are left out take their defaults.
+   *
+   * Replaces loads and options between steps. Errors are those of mpm_surface_create(), and MPM_E_STATE
+   * during a staged step.
+   */
+  configure(desc?: SurfaceDesc): void;
+  /**
+   * Sets the callback that adds tractions. NULL takes it away. The host sets it again after it has loaded a
+   * state. MPM_E_STATE during a staged step.
+   */
+  setTraction(run: TractionFunction | null): void;
+  /** The number of markers; 0 for NULL. */
+  readonly count: number;
+  /**
+   * Returns the first id.
+   *
+   * Adds n markers.
+   *
+   * - position: [dim][n], in the grid; on periodic axes it is wrapped.
+   * - area: [dim][n] area vectors, out of the material; NULL for markers without area, which follow the
+   *   material and carry nothing.
+   * - first_id: ids go up by one from the largest so far; the first is written to it. May be NULL.
+   *
+   * In 3-D a marker counts as a square when it is split. MPM_E_ARG: a value is not finite or a position is
+   * outside the grid; nothing is added. MPM_E_STATE during a staged step.
+   */
+  add(markers: NewMarkers): bigint;
+  /**
+   * Adds markers along the line through n points, position[2][n]; closed 1: back to the first. The material
+   * lies on the left of the line, so that the outline of a body goes round counter-clockwise. Each edge is
+   * divided into equal parts no longer than spacing > 0, with a marker in the middle of each: half a spacing
+   * of the grid is right. *first_id and *count, which may be NULL, tell of the markers. MPM_E_UNSUPPORTED:
+   * the grid is not 2-D. Else as mpm_surface_add().
+   */
+  addPolyline(position: ArrayLike<number>, closed: boolean, spacing: number): Filled;
+  /**
+   * Adds markers on triangles: position[3][n] of their corners, and corner[3 * i], corner[3 * i + 1],
+   * corner[3 * i + 2] the numbers of those of triangle i, counter-clockwise as seen from outside the
+   * material. Each triangle is divided into k^2 equal ones with edges no longer than spacing, with a marker
+   * in the middle of each. MPM_E_UNSUPPORTED: the grid is not 3-D. MPM_E_ARG: there is no such corner. Else
+   * as mpm_surface_add_polyline().
+   */
+  addTriangles(position: ArrayLike<number>, corner: ArrayLike<number | bigint>, spacing: number): Filled;
+  /**
+   * Removes the n markers with the given ids: all or none. MPM_E_NOT_FOUND: an id is not in the surface.
+   * MPM_E_ARG: an id is given twice. MPM_E_STATE during a staged step.
+   */
+  remove(ids: ArrayLike<number | bigint>): void;
+  /**
+   * Returns how many markers came.
+   *
+   * Splits markers until no edge is longer than spacing > 0: total area, its moment and the loads are kept.
+   * One half keeps the id, the other gets a new one. *added, which may be NULL, tells how many came.
+   * MPM_E_ARG: spacing is bad, or more than 2^28 markers would come of it. MPM_E_STATE during a staged step.
+   */
+  refine(spacing: number): number;
+  /**
+   * Returns a new array.
+   *
+   * Copies a field of n markers into out, [components][n]. ids are [n], or NULL for all markers by ascending
+   * id, where n is mpm_surface_count(). type and components must match the field.
+   *
+   * | field             | type | components | what it is                                              | set |
+   * |-------------------|------|------------|---------------------------------------------------------|-----|
+   * | "id"              | I64  | 1          |                                                         |     |
+   * | "position"        | F64  | dim        | length                                                  | yes |
+   * | "area"            | F64  | dim        | area vector, out of the material                        | yes |
+   * | "reference_area"  | F64  | 1          | area when it was added or set                           |     |
+   * | "displacement"    | F64  | dim        | since it was added, across periodic axes too            | yes |
+   * | "velocity"        | F64  | dim        | of the material there, in the last step                 |     |
+   * | "force"           | F64  | dim        | on the material, in the last step                       |     |
+   * | "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
+   * | "traction"        | F64  | dim        | likewise                                                | yes |
+   * | "dead_traction"   | F64  | dim        | likewise                                                | yes |
+   *
+   * MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.
+   */
+  get(field: 'id', ids?: ArrayLike<number | bigint>): BigInt64Array;
+  get(field: string, ids?: ArrayLike<number | bigint>): Float64Array;
+  /**
+   * Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting "area" makes it the
+   * reference. Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is
+   * outside the grid, or the field cannot be set. MPM_E_STATE during a staged step.
+   */
+  set(field: string, values: ArrayLike<number>, ids?: ArrayLike<number | bigint>): void;
+}
+
 /** A stepper is one time loop with a grid, sets of particles, a scheme, walls and forces. See stepper.h. */
 export class Stepper implements Handle {
   private constructor();
@@ -1533,6 +1648,26 @@ export class Stepper implements Handle {
   addObstacle(obstacle: Obstacle): this;
   /** Takes an obstacle out, and what it has reported. MPM_E_NOT_FOUND: it is not in this stepper. */
   removeObstacle(obstacle: Obstacle): void;
+  /**
+   * Returns the stepper.
+   *
+   * Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move
+   * with them; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are
+   * removed. Steps end with
+   *
+   * - MPM_OFF_GRID: a marker would leave through a face that does not let it;
+   * - MPM_NONFINITE: its load or its new position is not finite;
+   * - MPM_E_STATE: a marker with a load has no material around it.
+   *
+   * The text names marker and surface, the number of which counts the surfaces of the stepper from 0.
+   * MPM_E_STATE: it is in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
+   *
+   * In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure
+   * and traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+   */
+  addSurface(surface: Surface): this;
+  /** Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper. */
+  removeSurface(surface: Surface): void;
   /**
    * Options that are left out take their defaults.
    *

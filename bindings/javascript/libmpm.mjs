@@ -7,8 +7,9 @@ import { Material } from './material.mjs';
 import { Obstacle } from './obstacle.mjs';
 import { Particles } from './particles.mjs';
 import { Stepper } from './stepper.mjs';
+import { Surface } from './surface.mjs';
 
-export { constants as C, Context, Grid, Material, MpmError, Obstacle, Particles, Stepper };
+export { constants as C, Context, Grid, Material, MpmError, Obstacle, Particles, Stepper, Surface };
 
 // A function that adds two vectors, (v128, v128) -> v128.
 const SIMD = new Uint8Array([

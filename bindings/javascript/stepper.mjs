@@ -4,6 +4,7 @@ import { Handle, made, mapped } from './handle.mjs';
 import { Obstacle } from './obstacle.mjs';
 import { pieces } from './output.mjs';
 import { Particles } from './particles.mjs';
+import { Surface } from './surface.mjs';
 
 export class Stepper extends Handle {
   constructor(context, grid, desc = {}) {
@@ -23,6 +24,9 @@ export class Stepper extends Handle {
   }
   #obstacle(obstacle) {
     return Handle.address(Obstacle, obstacle, this.machine, 'the obstacle');
+  }
+  #surface(surface) {
+    return Handle.address(Surface, surface, this.machine, 'the surface');
   }
 
   // ---- what is in it ----
@@ -44,6 +48,15 @@ export class Stepper extends Handle {
   removeObstacle(obstacle) {
     this.call('mpm_stepper_remove_obstacle', [this.#obstacle(obstacle)]);
     this.drop(obstacle);
+  }
+  addSurface(surface) {
+    this.call('mpm_stepper_add_surface', [this.#surface(surface)]);
+    this.keep(surface);
+    return this;
+  }
+  removeSurface(surface) {
+    this.call('mpm_stepper_remove_surface', [this.#surface(surface)]);
+    this.drop(surface);
   }
   configure(desc = {}) {
     this.arguments((a) => this.call('mpm_stepper_configure', [a.struct('mpm_stepper_desc', desc)]));

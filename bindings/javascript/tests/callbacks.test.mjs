@@ -331,6 +331,48 @@ test('implicit steps by a tangent and a solver of the host', () => {
   );
 });
 
+test('tractions of surfaces', () => {
+  const { context, grid, stepper } = scene({ velocity: 0 });
+  const face = context.surface(grid);
+  face.add({ position: [0.6, 0.6, 0.4, 0.5], area: [0.1, 0.2, 0, 0] });
+  let batches = 0;
+  let kept;
+  face.setTraction((batch, [x]) => {
+    batches++;
+    assert.deepEqual([batch.n, batch.dim, batch.t, batch.dt], [2, 2, 0, 1e-3]);
+    assert.deepEqual([[...batch.id], [...batch.reference_area]], [[0n, 1n], [0.1, 0.2]]);
+    assert.ok(batch.area[0][1] === 0.2 && batch.position[1][0] === 0.4 && batch.displacement[0][0] === 0);
+    assert.equal(batch.velocity.length, 2);
+    x[1] += 50;
+    kept = batch;
+  });
+  stepper.addSurface(face).step(1e-3);
+  assert.equal(batches, 1);
+  assert.throws(() => kept.n + kept.t + kept.position, /lent/);
+  const [first, second] = face.get('force');
+  assert.ok(first === 0 && Math.abs(second - 10) < 1e-12);
+  const before = stepper.hash();
+  const mine = new Error('mine');
+  face.setTraction(() => {
+    throw mine;
+  });
+  assert.throws(
+    () => stepper.step(1e-3),
+    (error) => error === mine,
+  );
+  assert.equal(stepper.hash(), before);
+  face.setTraction(() => C.MPM_CUT_DT);
+  assert.throws(
+    () => stepper.step(1e-3),
+    (error) => error.retryable,
+  );
+  assert.throws(() => face.setTraction(7), /has to be a function/);
+  face.setTraction(() => {});
+  face.dispose();
+  globalThis.gc?.();
+  stepper.step(1e-3);
+});
+
 test('obstacles and friction by functions', () => {
   const { context, stepper } = scene();
   const wall = context.obstacle({

@@ -312,6 +312,70 @@ test('bodies, contact and obstacles', () => {
   disc.dispose();
 });
 
+const sum = (values) => values.reduce((total, one) => total + one, 0);
+const near = (found, should) => assert.ok(Math.abs(found - should) < 1e-12, `${found}, not ${should}`);
+
+test('surfaces', () => {
+  const { context, grid, stepper } = scene({ velocity: 0 });
+  const face = context.surface(grid, { pressure: 40 });
+  assert.deepEqual(face.addPolyline([0.6, 0.6, 0.3, 0.6], false, 0.0301), { first_id: 0n, count: 10 });
+  assert.equal(face.add({ position: [0.4, 0.5, 0.4, 0.5], area: [0, 0.1, 0.2, 0.3] }), 10n);
+  assert.equal(face.add({ position: [0.5, 0.5] }), 12n);
+  assert.deepEqual([...face.get('area', [11, 10n, 12])], [0.1, 0, 0, 0.3, 0.2, 0]);
+  assert.equal(face.get('id')[12], 12n);
+  face.remove([10, 11n, 12]);
+  assert.throws(() => face.remove([10]), refused('MPM_E_NOT_FOUND', /10/));
+  face.set('pressure', [5, 7], [3, 1]);
+  assert.deepEqual([...face.get('pressure').slice(0, 4)], [0, 7, 0, 5]);
+  face.set('pressure', new Float64Array(10));
+  assert.equal(face.refine(0.0151), 10);
+  assert.equal(face.count, 20);
+  near(sum(face.get('area').slice(0, 20)), 0.3);
+  assert.throws(() => face.add({ position: [0.5] }), /position has 1 entries/);
+  assert.throws(() => face.add({}), /position has to be an array/);
+  assert.throws(() => face.add({ position: [0.5, 0.5], area: [1] }), /area has 1 entries/);
+  assert.throws(() => face.add({ position: [-1, 0.5] }), refused('MPM_E_ARG', /in the grid/));
+  assert.throws(() => face.get('forse'), refused('MPM_E_NOT_FOUND', /force/));
+  assert.throws(() => face.set('force', new Float64Array(40)), refused('MPM_E_ARG', /force/));
+  assert.throws(() => face.set('traction', new Float64Array(20)), /traction has 20 entries/);
+  assert.throws(() => face.refine(-1), refused('MPM_E_ARG', /spacing/));
+  assert.throws(() => face.addTriangles(new Float64Array(9), [0, 1, 2], 1), refused('MPM_E_UNSUPPORTED', /./));
+  assert.throws(() => face.configure({ pressure: NaN }), refused('MPM_E_ARG', /pressure/));
+  assert.throws(() => context.surface(grid, { spacing: 1 }), /no option 'spacing'/);
+  assert.throws(() => context.surface(face), /has to be of the class Grid/);
+
+  assert.equal(stepper.addSurface(face), stepper);
+  assert.throws(() => stepper.addSurface(face), refused('MPM_E_STATE', /this stepper/));
+  assert.throws(() => stepper.addSurface(grid), /has to be of the class Surface/);
+  const { momentum } = stepper.step(1e-4);
+  near(sum(face.get('force').slice(0, 20)), -12);
+  near(sum(face.get('force').slice(20)), 0);
+  near(momentum[0], -12e-4);
+  face.configure({ dead_traction: [0, 30] });
+  stepper.step(1e-4);
+  near(sum(face.get('force').slice(0, 20)), 0);
+  near(sum(face.get('force').slice(20)), 9);
+  stepper.removeSurface(face);
+  assert.throws(() => stepper.removeSurface(face), refused('MPM_E_NOT_FOUND', /surface/));
+  assert.ok(face.count === 20 && face.get('displacement')[0] < 0);
+  stepper.addSurface(face);
+  face.dispose();
+  stepper.step(1e-4);
+  assert.throws(() => face.count, /disposed/);
+});
+
+test('surfaces of triangles', () => {
+  const { context, grid, stepper } = scene({ dim: 3, velocity: 0 });
+  const top = context.surface(grid, { pressure: 8 });
+  const position = [0.3, 0.6, 0.6, 0.3, 0.3, 0.3, 0.6, 0.6, 0.6, 0.6, 0.6, 0.6];
+  const { count } = top.addTriangles(position, [0, 1, 2, 0, 2, 3], 0.1);
+  assert.equal(top.count, count);
+  assert.throws(() => top.addTriangles(position, [0, 1, 4], 0.1), refused('MPM_E_ARG', /corner/));
+  assert.throws(() => top.addPolyline([0, 1, 0, 1], true, 0.1), refused('MPM_E_UNSUPPORTED', /./));
+  stepper.addSurface(top).step(1e-4);
+  near(sum(top.get('force').slice(2 * count)), -0.72);
+});
+
 test('what the laws are', () => {
   assert.ok(mpm.models().includes('drucker_prager'));
   const E = mpm.parameters('neo_hookean').find(({ name }) => name === 'E');
@@ -352,9 +416,10 @@ test('classes have what is declared, and nothing else', () => {
   );
   const shared = ['dispose', 'disposed'];
   const classes = [...text.matchAll(/^export class (\w+) implements Handle \{\n(.*?)^\}/gms)];
-  assert.equal(classes.length, 6);
+  assert.equal(classes.length, 7);
   const { context, grid, material, set, stepper } = scene();
-  const objects = [context, grid, material, set, stepper, context.obstacle({ shape: C.MPM_SHAPE_PLANE })];
+  const objects = [context, grid, material, set, stepper, context.surface(grid)];
+  objects.push(context.obstacle({ shape: C.MPM_SHAPE_PLANE }));
   for (const [, name, body] of classes) {
     const Class = library[name];
     const one = objects.find((object) => object instanceof Class);

@@ -30,6 +30,13 @@ export async function main(): Promise<bigint> {
   disc.setMotion((t, dt, velocity) => {
     velocity[0] = t + dt;
   });
+  const face = context.surface(grid, { pressure: 1, dead_traction: [0, 1] });
+  const line = face.addPolyline([1, 1, 0, 1], false, 0.5);
+  face.setTraction((batch, [along]) => {
+    for (let i = 0; i < batch.n; i++) along[i] += batch.area[0][i] + batch.reference_area[i];
+  });
+  face.set('pressure', face.get('reference_area', face.get('id')), [line.first_id]);
+  stepper.addSurface(face).removeSurface(face);
   const id: bigint = info.particle;
 
   // @ts-expect-error: there is no such option
@@ -38,6 +45,8 @@ export async function main(): Promise<bigint> {
   const wrong: number = info.particle;
   // @ts-expect-error: a grid is no set
   stepper.add(grid);
+  // @ts-expect-error: tractions are no forces of particles
+  face.setTraction(pull);
   // @ts-expect-error: handles are made by the context
   new context.constructor();
   return id + stepper.hash() + BigInt(wrong);
