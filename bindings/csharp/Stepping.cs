@@ -86,7 +86,9 @@ namespace Mpm {
 
   /// <summary>Markers that the material carries along, and that load it. Vectors have as many components as the grid has
   /// dimensions. Area vectors, area times normal, point out of the material; they and forces are per thickness in 2-D, and of
-  /// one radian on a grid that is MPM_AXISYMMETRIC.</summary>
+  /// one radian on a grid that is MPM_AXISYMMETRIC. Pressures and tractions are forces per area. A bad value is MPM_E_ARG, a
+  /// field or an id that there is not MPM_E_NOT_FOUND, and what the dimension of the grid does not have MPM_E_UNSUPPORTED; then
+  /// nothing has changed.</summary>
   public sealed unsafe class Surface : Handle {
     public int Dim { get; }
 
@@ -102,7 +104,8 @@ namespace Mpm {
         return Native.mpm_surface_create(context.Pointer, grid.Pointer, &loads, made);
       });
     }
-    /// <summary>Replaces loads and options between steps.</summary>
+    /// <summary>Replaces loads and options between steps. Loads of all markers come on top of those that markers carry by
+    /// themselves.</summary>
     public void Configure(SurfaceDesc desc) {
       desc.struct_size = (uint)sizeof(SurfaceDesc);
       Call(p => {
@@ -110,7 +113,8 @@ namespace Mpm {
         return Native.mpm_surface_configure(p, &loads);
       });
     }
-    /// <summary>Sets what adds tractions in each step; null takes it away.</summary>
+    /// <summary>Sets what adds tractions in each step; null takes it away. An exception comes out of the step, and a value that
+    /// is not finite ends it with MPM_NONFINITE.</summary>
     public void SetTraction(TractionFunction traction) {
       var slot = traction == null ? null : new Slot(node.Core, traction);
       Stepper.Install(this, "traction", slot, p => Native.mpm_surface_set_traction(p,
@@ -138,7 +142,8 @@ namespace Mpm {
       return first;
     }
     /// <summary>Adds markers along the line through points, [2][n], with the material on its left; closed: back to the first.
-    /// Gives the first id.</summary>
+    /// Edges are divided into equal parts no longer than spacing; half a spacing of the grid is right. 2-D only. Gives the
+    /// first id.</summary>
     public long AddPolyline(double[] position, bool closed, double spacing, out long count) {
       long first = 0, made = 0;
       int n = position.Length / 2;
@@ -156,7 +161,8 @@ namespace Mpm {
       return first;
     }
     /// <summary>Adds markers on triangles: position is [3][n], corner [triangles][3] with numbers of points, counter-clockwise
-    /// as seen from outside. Gives the first id.</summary>
+    /// as seen from outside. Each is divided into equal ones with edges no longer than spacing. 3-D only. Gives the first
+    /// id.</summary>
     public long AddTriangles(double[] position, long[] corner, double spacing, out long count) {
       long first = 0, made = 0;
       int n = position.Length / 3, triangles = corner.Length / 3;
@@ -180,7 +186,8 @@ namespace Mpm {
         fixed (long* first = ids) return Native.mpm_surface_remove(p, ids.Length, first);
       });
     }
-    /// <summary>Splits markers until no edge is longer than the spacing. Gives how many came.</summary>
+    /// <summary>Splits markers until no edge is longer than the spacing; total area and loads are kept. Gives how many
+    /// came.</summary>
     public long Refine(double spacing) {
       long added = 0;
       Call(p => {
@@ -196,7 +203,8 @@ namespace Mpm {
       return field == "id" || field == "reference_area" || field == "pressure" ? 1 : Dim;
     }
     /// <summary>Copies a field, of all markers by ascending id or of some: [components][n]. "id" is of long, all others are of
-    /// double.</summary>
+    /// double: "reference_area" and "pressure" with one component; "position", "area", "displacement", "velocity", "force",
+    /// "traction" and "dead_traction" with one for each axis. Force and velocity are those of the last step.</summary>
     public T[] Get<T>(string field, long[] ids = null) {
       int components = ComponentsOf(field);
       long n = ids != null ? ids.Length : Count;
@@ -207,7 +215,8 @@ namespace Mpm {
       }));
       return values;
     }
-    /// <summary>Sets a field, laid out as in Get.</summary>
+    /// <summary>Sets a field, laid out as in Get: all or none. Ids, reference areas, velocities and forces cannot be set; areas
+    /// that are become those of reference.</summary>
     public void Set<T>(string field, T[] values, long[] ids = null) {
       int components = ComponentsOf(field);
       long n = ids != null ? ids.Length : Count;
@@ -260,6 +269,8 @@ namespace Mpm {
       Call(p => Native.mpm_stepper_remove_obstacle(p, obstacle.Pointer));
       node.LetGo(obstacle.node);
     }
+    /// <summary>Puts a surface in, which has to be on the same grid, and keeps it alive. Steps end with MPM_OFF_GRID where a
+    /// marker would leave the grid, and with MPM_E_STATE where one with a load has no material around it.</summary>
     public void Add(Surface surface) {
       Call(p => Native.mpm_stepper_add_surface(p, surface.Pointer));
       node.Hold(surface.node);

@@ -177,7 +177,9 @@ impl Stepper {
         found.ok_or_else(|| Error::new(sys::MPM_E_NOT_FOUND, "the obstacle is not in this stepper"))
     }
 
-    /// Takes a surface over.
+    /// Takes a surface over, which has to be on the same grid; [`Stepper::remove_surface`] gives it back. One that is
+    /// refused is lost. Steps end with `MPM_OFF_GRID` where a marker would leave the grid, and with `MPM_E_STATE` where
+    /// one with a load has no material around it.
     pub fn add_surface(&mut self, surface: Surface) -> Result<SurfaceKey> {
         call!(self, mpm_stepper_add_surface(surface.as_ptr()))?;
         let key = SurfaceKey(fresh());

@@ -12,7 +12,11 @@ type TractionFn = dyn FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + S
 /// Markers that the material carries along, and that load it. A stepper takes it over, and lends it.
 ///
 /// Vectors have as many components as the grid has dimensions. Area vectors, area times normal, point out of the material;
-/// they and forces are per thickness in 2-D, and of one radian on a grid that is `MPM_AXISYMMETRIC`.
+/// they and forces are per thickness in 2-D, and of one radian on a grid that is `MPM_AXISYMMETRIC`. Pressures and tractions
+/// are forces per area.
+///
+/// A bad value is `MPM_E_ARG`, a field or an id that there is not `MPM_E_NOT_FOUND`, and what the dimension of the grid does
+/// not have `MPM_E_UNSUPPORTED`; then nothing has changed.
 pub struct Surface {
     pub(crate) context: Arc<Core>,
     pub(crate) handle: *mut sys::mpm_surface,
@@ -36,7 +40,7 @@ impl Surface {
         Ok(Surface { context, handle, grid: grid.clone(), traction: None })
     }
 
-    /// Replaces loads and options between steps.
+    /// Replaces loads and options between steps. Loads of all markers come on top of those that markers carry by themselves.
     pub fn configure(&mut self, desc: &SurfaceDesc) -> Result<()> {
         let desc = sized(desc);
         let entry = self.context.enter()?;
@@ -46,7 +50,8 @@ impl Surface {
     }
 
     /// Sets what adds forces per present area of the markers: component `c` of marker `i` is `add[(i, c)]`. It runs once per
-    /// step.
+    /// step, on the thread of the call. A panic goes on in the caller of the step, and a value that is not finite ends the
+    /// step with `MPM_NONFINITE`.
     pub fn set_traction(
         &mut self,
         traction: impl FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Send + 'static,
@@ -86,6 +91,7 @@ impl Surface {
     }
 
     /// Adds markers along the line through points, `[2][n]`, with the material on its left; closed: back to the first.
+    /// Edges are divided into equal parts no longer than the spacing; half a spacing of the grid is right. 2-D only.
     pub fn add_polyline(&mut self, position: &[f64], closed: bool, spacing: f64) -> Result<Filled> {
         let n = position.len() / 2;
         fits("position", position.len(), n * 2)?;
@@ -108,7 +114,7 @@ impl Surface {
     }
 
     /// Adds markers on triangles: points are `[3][n]`, corners `[triangles][3]` with numbers of points, counter-clockwise as
-    /// seen from outside.
+    /// seen from outside. Each is divided into equal ones with edges no longer than the spacing. 3-D only.
     pub fn add_triangles(&mut self, position: &[f64], corner: &[i64], spacing: f64) -> Result<Filled> {
         let (n, triangles) = (position.len() / 3, corner.len() / 3);
         fits("position", position.len(), n * 3)?;
@@ -140,7 +146,7 @@ impl Surface {
         entry.done(status)
     }
 
-    /// Splits markers until no edge is longer than the spacing. Gives how many came.
+    /// Splits markers until no edge is longer than the spacing; total area and loads are kept. Gives how many came.
     pub fn refine(&mut self, spacing: f64) -> Result<i64> {
         let mut added = 0;
         let entry = self.context.enter()?;
@@ -166,7 +172,9 @@ impl Surface {
         self.len() == 0
     }
 
-    /// Copies a field of all markers by ascending id: `[components][n]`. `"id"` is of `i64`, all others are of `f64`.
+    /// Copies a field of all markers by ascending id: `[components][n]`. `"id"` is of `i64`, all others are of `f64`:
+    /// `"reference_area"` and `"pressure"` with one component; `"position"`, `"area"`, `"displacement"`, `"velocity"`,
+    /// `"force"`, `"traction"` and `"dead_traction"` with one for each axis. Force and velocity are those of the last step.
     pub fn get<T: Element>(&self, field: &str) -> Result<Vec<T>> {
         self.copy(field, self.len(), None)
     }
@@ -196,7 +204,8 @@ impl Surface {
         Ok(out)
     }
 
-    /// Sets a field of all markers, laid out as in [`Surface::get`].
+    /// Sets a field of all markers, laid out as in [`Surface::get`]: all or none. Ids, reference areas, velocities and forces
+    /// cannot be set; areas that are become those of reference.
     pub fn set<T: Element>(&mut self, field: &str, values: &[T]) -> Result<()> {
         self.overwrite(field, self.len(), None, values)
     }
