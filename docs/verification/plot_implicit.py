@@ -1,4 +1,6 @@
 """Implicit steps: vibration, equilibrium, locking, limit loads, and explicit steps beside them."""
+import math
+
 from plot import axes, loglog, plot, read, slope, ticks
 from plot_cases import clouds, rows
 
@@ -76,6 +78,28 @@ def surface_cylinder():
         panel.set_ylim(0.97, 1.05)
         panel.set_xlabel(f"angle at r = {radius}")
         panel.set_ylabel("displacement over exact")
+        panel.legend()
+    return figure
+
+
+@plot
+def ring_cylinder():
+    figure, ax = axes(2)
+    data = read("ring_cylinder")
+    at = rows(data, method="quadratic", cells=10.0, shift=0.37)
+    for i, key in enumerate(("radial", "hoop")):
+        ax[0].plot(at["r"], at[key + "_exact"], "k-", linewidth=1)
+        ax[0].plot(at["r"], at[key], f"C{i}o", markersize=4, label=f"{key} stress / p, h = a/10, nodes off the faces")
+    for i, (shift, name) in enumerate(((0.0, "on"), (0.37, "off"))):
+        sizes, errors = [5.0, 10.0, 20.0, 40.0], []
+        for n in sizes:
+            at = rows(data, method="quadratic", cells=n, shift=shift)
+            errors.append(math.sqrt(sum((s - e) ** 2 for s, e in zip(at["radial"], at["radial_exact"])) / len(at["r"])))
+        ax[1].loglog([1 / n for n in sizes], errors, f"C{i}o-", label=f"radial stress, nodes {name} the faces")
+    ax[0].set_xlabel("r / a")
+    ax[1].set_xlabel("h / a")
+    ax[1].set_ylabel("rms error / p")
+    for panel in ax:
         panel.legend()
     return figure
 
