@@ -185,7 +185,7 @@ check-valgrind: $(UNIT)
 
 # libFuzzer on saved states, descriptors and small clouds of particles; what is new stays in $(FUZZ)/fuzz/corpus.
 FUZZ = $(BUILD)-fuzz
-FUZZ_TARGETS ?= state descriptors clouds
+FUZZ_TARGETS ?= state descriptors clouds meshes
 FUZZ_SECONDS ?= 600
 FUZZ_FLAGS = -g -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
 FUZZ_CC ?= clang

@@ -73,9 +73,10 @@ typedef struct mpm_contact_info {
   int64_t stuck;        /**< of these, without slip */
   int64_t ambiguous;    /**< nodes that were left out: there is no normal, or both bodies are held */
   double force[3];      /**< on the second body, force */
-  double torque[3];     /**< of the same about the origin; in 2-D in component 2 */
+  double torque[3];     /**< of the same about the origin; in 2-D in component 2; of
+                               MPM_AXISYMMETRIC without meaning */
   double normal_force;  /**< sum of the nodes' normal forces, >= 0 without adhesion */
-  double area;          /**< of closed nodes, length^(dim - 1) */
+  double area;          /**< of closed nodes, length^(dim - 1); of MPM_AXISYMMETRIC times radius */
   double pressure_max; /**< largest normal force over area of a node, stress: rows of nodes on both sides of a
                               surface share them unevenly, and it may be twice what the surface has */
   double gap;          /**< smallest gap that was measured, length; < 0: overlap; infinity if none was */
@@ -98,7 +99,7 @@ typedef struct mpm_contact_batch {
   const double *position; /**< [dim][ld] of the nodes */
   const double *normal;   /**< [dim][ld] unit normal, from the first body to the second */
   const double *gap;      /**< [ld] length */
-  const double *area;     /**< [ld] length^(dim - 1) */
+  const double *area;     /**< [ld] length^(dim - 1); of MPM_AXISYMMETRIC times radius */
   const double *slip;     /**< [dim][ld] tangential velocity of the second body relative to the first, before
                                the impulse */
   const double *pressure; /**< [ld] normal traction of the frictionless impulse, stress */

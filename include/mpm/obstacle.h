@@ -105,8 +105,8 @@ MPM_API mpm_status mpm_obstacle_destroy(mpm_obstacle *obstacle);
 
 /** Puts an obstacle into a stepper, with those that are there in the order of adding. MPM_E_STATE: it is in a
  * stepper already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension of
- * the grid, or it is free and the scheme is MPM_NEWMARK, which refuses the adhesion of an obstacle in the
- * step. MPM_E_ARG: it is turned out of a 2-D or 1-D grid, or moves out of
+ * the grid; it is free, and the grid MPM_AXISYMMETRIC or the scheme MPM_NEWMARK, which refuses the adhesion
+ * of an obstacle in the step. MPM_E_ARG: it is turned out of a 2-D or 1-D grid, or moves out of
  * it. */
 MPM_API mpm_status mpm_stepper_add_obstacle(mpm_stepper *stepper, mpm_obstacle *obstacle);
 

@@ -31,9 +31,10 @@
  *   volume is that of one radian, the area in the plane times the radius; fills take care of that.
  * - volume: det F * initial_volume (MPoint theory, eq. 40).
  * - size: full initial edge lengths of the particle's domain, for MPM_GIMP and MPM_CPGIMP; edges beyond a
- *   cell count as one cell. Until set or given it is that of a cube (2-D: square) of the initial volume.
+ *   cell count as one cell. Until set or given it is that of a cube (2-D: square) of the initial volume, of
+ *   MPM_AXISYMMETRIC of the initial volume over the radius. There all sets have it, for contact.
  * - applied_force: a force on the particle that stays until changed (f^app of MPoint theory, eq. 21).
- * - deformation_gradient: det F > 0.
+ * - deformation_gradient: det F > 0. Of MPM_PLANE_STRESS F33 > 0 is only where the search for it begins.
  * - velocity_gradient: the matrix that the transfer carries, 1/time: the affine one (MPM_APIC, MPM_APIC_MLS,
  *   MPM_AFLIP) or the gradient of the updated nodal velocities (MPM_TPIC, MPM_TFLIP); 0 in new particles.
  *   With MPM_FLIP, MPM_XPIC and MPM_FMPM it is kept only once the host has set or mapped it, and then is the
@@ -48,7 +49,7 @@
  *   the particle's velocity there on the nodes that it touches: see mpm_stepper_set_motion().
  * - dilation_ratio: J'/J > 0, by which the volume that the law sees differs from that of
  *   deformation_gradient; exists while a stepper with locking_remedy holds the set, and starts as 1. The law
- *   sees (J'/J)^(1/dim) F, in 2-D in the plane only.
+ *   sees (J'/J)^(1/dim) F, in plane strain in the plane only; of MPM_AXISYMMETRIC the third root on all axes.
  * - image: periods crossed on each periodic axis; position + image * period is the unwrapped position.
  *
  * size, acceleration, velocity_gradient, applied_force and prescribed take memory only when used; until then
@@ -253,7 +254,8 @@ MPM_API mpm_status mpm_particles_set_all(mpm_particles *particles, const char *f
  * The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the axis is periodic, a particle
  * lies above the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law
  * is "rigid", or "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1;
- * or, of the host's laws, one that asked with dt = 0 does not answer with the stress that it has.
+ * or, of the host's laws, one that asked with dt = 0 does not answer with the stress that it has; the grid is
+ * MPM_PLANE_STRESS, or axis the radius of MPM_AXISYMMETRIC.
  * MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
  */
 MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t axis, double gravity,
@@ -262,7 +264,8 @@ MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t
 /**
  * Makes the present state the one from which all deformation counts: deformation_gradient becomes I,
  * initial_volume the present volume, dilation_ratio 1, and reference_position, where there is one, the
- * present (unwrapped) position. With MPM_CPGIMP edges in "size" become the present ones. Mass, velocity,
+ * present (unwrapped) position. With MPM_CPGIMP and of
+ * MPM_AXISYMMETRIC edges in "size" become the present ones. Of MPM_PLANE_STRESS F33 stays. Mass, velocity,
  * Cauchy stress and state variables stay.
  *
  * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay)

@@ -29,7 +29,7 @@ typedef struct mpm_stepper_desc {
    * whatever the order. */
   int32_t position_order;
   /** MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE. With the latter the sets of the
-   * stepper have the field "dilation_ratio". */
+   * stepper have the field "dilation_ratio". Not with MPM_PLANE_STRESS. */
   int32_t locking_remedy;
   int32_t reference_positions; /**< 1: keeps "reference_position" and shows it to callbacks; default 0 */
   /** 1: MPM_NEWMARK drops the inertia, so that each step ends in equilibrium under the forces at its end.
@@ -52,7 +52,8 @@ typedef struct mpm_stepper_desc {
   /** Rate beta >= 0, 1/time, of a blend that does not depend on dt (MPoint theory, eqs 58-59), for the
    * transfers of flip: the step's share of FLIP is flip * max(0, 1 - beta dt). Default 0. */
   double pic_damping;
-  double gravity[3];    /**< acceleration of all particles, length/time^2; default 0 */
+  double gravity[3];    /**< acceleration of all particles, length/time^2; default 0. Of
+                               MPM_AXISYMMETRIC along the axis alone */
   double newmark_beta;  /**< Newmark's beta: default 1/4, as Guilkey & Weiss 2003, eqs 14-15 */
   double newmark_gamma; /**< Newmark's gamma: default 1/2, as there; larger values damp high frequencies */
   /** Newton iterations end when the displacement increment is at most this share of the largest of the step,
@@ -250,7 +251,8 @@ typedef mpm_status (*mpm_progress_fn)(void *user, const mpm_step_info *info);
  * written. MPM_E_ARG: it is smaller than the first released struct. Any thread, any time. */
 MPM_API mpm_status mpm_stepper_desc_init(mpm_stepper_desc *desc, uint32_t struct_size);
 
-/** Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied and
+/** Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces (the
+ * axis of MPM_AXISYMMETRIC has MPM_WALL_SLIP). desc is copied and
  * may be NULL for the defaults. The grid outlives the stepper. *out is NULL unless MPM_OK is returned.
  * MPM_E_ARG: a value is bad, or the grid is of another context. MPM_E_UNSUPPORTED: the combination is not
  * offered; the error text says what to use instead. */
@@ -296,7 +298,8 @@ MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *p
  * friction is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is
  * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that.
  * MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED:
- * MPM_WALL_FRICTION_NODES with MPM_NEWMARK. */
+ * MPM_WALL_FRICTION_NODES with MPM_NEWMARK; on the axis of MPM_AXISYMMETRIC another kind than
+ * MPM_WALL_SLIP. */
 MPM_API mpm_status mpm_stepper_set_wall(mpm_stepper *stepper, int32_t face, int32_t kind, double friction);
 
 /** Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is

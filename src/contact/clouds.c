@@ -215,6 +215,22 @@ static void visit_block(void *user, const mpmi_visit *visit) {
   if (!job->fill) add_counts(search->contact, &tile, grid);
 }
 
+double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *contact,
+                         const mpmi_party *party) {
+  double sum = 0.0, weight = 0.0;
+  if (!mpmi_is_axisymmetric(layout->blocks.grid)) return 1.0;
+  for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
+    const mpmi_cloud *cloud = &contact->cloud[contact->cloud[i].source];
+    for (int64_t e = cloud->first; e < cloud->first + cloud->count; ++e) {
+      const mpmi_cloud_entry *entry = &contact->entry[e];
+      const double radius = mpmi_f64(layout->member[entry->member].set, MPMI_POSITION, 0)[entry->slot];
+      sum += entry->volume * radius;
+      weight += entry->volume;
+    }
+  }
+  return weight > 0.0 ? sum / weight : 0.0;
+}
+
 void mpmi_contact_position(const mpmi_blocks *b, int64_t slot, double *at) {
   int64_t index[3];
   mpmi_blocks_index(b, slot, index);

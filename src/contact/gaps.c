@@ -226,7 +226,9 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
   }
   mean_gradient(&of, 0, gradient);
   for (int32_t k = 0; k < 3; ++k) along += gradient[k] * touch->normal[k];
-  touch->area = 0.5 * fabs(along);
+  touch->area = 0.25 * fabs(along) *
+                (mpmi_party_radius(search->step->layout, contact, of.party[0]) +
+                 mpmi_party_radius(search->step->layout, contact, of.party[1]));
   if (touch->open || touch->rule->kind == MPM_CONTACT_TIED) return;
   touch->gap = gap_along(&of, touch->normal, 0) - touch->rule->offset;
   if (!mpmi_detects_by_velocity(touch->rule)) touch->open = !(touch->gap <= grid->h_min);

@@ -140,7 +140,8 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch) {
   for (int32_t k = 0; k < 3; ++k) touch->normal[k] = contact->party[touch->party[0]].normal[k];
   touch->friction = touch->rule->friction;
   touch->friction_static = fmax(touch->rule->friction, touch->rule->friction_static);
-  touch->area = area_of(contact, party, touch->normal);
+  touch->area =
+      area_of(contact, party, touch->normal) * mpmi_party_radius(search->step->layout, contact, party);
   touch->gap = gap_of(search, party, touch->normal);
   touch->open =
       touch->rule->kind == MPM_CONTACT_UNILATERAL && !(touch->gap <= search->step->settings->grid->h_min);

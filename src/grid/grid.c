@@ -115,6 +115,12 @@ static mpm_status check_geometry(mpm_context *context, const mpm_grid_desc *desc
     return mpmi_fail(context, MPM_E_ARG,
                      "mpm_grid_desc: origin[0] is %g, must be >= 0: it is a radius of MPM_AXISYMMETRIC",
                      desc->origin[0]);
+  if (desc->origin[0] > 0.0 && desc->origin[0] < 1e-6 * desc->spacing[0])
+    return mpmi_fail(
+        context, MPM_E_ARG,
+        "mpm_grid_desc: origin[0] is %g, which is nearly the axis of MPM_AXISYMMETRIC: use 0, or "
+        "a radius",
+        desc->origin[0]);
   return MPM_OK;
 }
 

@@ -94,7 +94,8 @@ mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
 double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int64_t slot) {
   const mpm_grid *grid = set->grid;
   if (field == MPMI_SIZE) {
-    const double volume = mpmi_initial_extent(set, slot);
+    const double radius = mpmi_is_axisymmetric(grid) ? mpmi_f64(set, MPMI_POSITION, 0)[slot] : 1.0;
+    const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot] / (radius > 0.0 ? radius : 1.0);
     return grid->dim == 1 ? volume : grid->dim == 2 ? sqrt(volume) : mpmi_cbrt(volume);
   }
   if (field == MPMI_REFERENCE) {

@@ -84,7 +84,6 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
     copy_batch_rows(b->state, b->ld, mpmi_f64(set, MPMI_STATE, 0) + begin, set->ld, material->state_count, n);
   if (!material->law)
     copy_batch_rows(b->position, b->ld, mpmi_f64(set, MPMI_POSITION, 0) + begin, set->ld, dim, n);
-  if (!material->law) preset_optional(b, n);
 }
 
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {
@@ -128,6 +127,7 @@ static mpm_status find_refused(mpmi_law_batch *b, const mpmi_law *law) {
 
 mpm_status mpmi_law_batch_run(mpmi_law_batch *b, const mpm_material *material, int32_t dim) {
   b->fault.cause = MPM_OK;
+  if (!material->law) preset_optional(b, b->batch.n);
   const mpm_status status = mpmi_material_evaluate(material, dim, &b->batch);
   if (status) return status;
   if (material->law) return find_refused(b, material->law);

@@ -115,18 +115,18 @@ size_t mpmi_type_size(int32_t type);
 int32_t mpmi_find_field(const mpm_particles *set, const char *name);
 
 /* Tensors store components by dimension: entry c of a compact tensor is entry map[c] of the full one. */
-/* Returns the volume that a particle had before it was deformed: in the plane, per thickness; of rings, whose
- * radius F stretches, the area that they had in the (r, z) plane. */
-static inline double mpmi_initial_extent(const mpm_particles *set, int64_t slot) {
-  const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot];
-  const double radius = mpmi_f64(set, MPMI_POSITION, 0)[slot];
-  if (!mpmi_is_axisymmetric(set->grid) || !(radius > 0.0)) return volume;
-  return volume * mpmi_f64(set, MPMI_F, 0)[4 * set->ld + slot] / radius;
-}
 int32_t mpmi_tensor_components(int32_t dim);   /* F: 1, 5, 9 */
 const int32_t *mpmi_tensor_map(int32_t dim);   /* F: {0}, {0 1 3 4 8}, {0..8} */
 int32_t mpmi_gradient_components(int32_t dim); /* L: 1, 4, 9 */
 const int32_t *mpmi_gradient_map(int32_t dim); /* L: {0}, {0 1 3 4}, {0..8} */
+
+/* Returns the volume that a particle had before it was deformed: in the plane, per thickness; of rings, which
+ * keep their size, the area that they had in the (r, z) plane. */
+static inline double mpmi_initial_extent(const mpm_particles *set, int64_t slot) {
+  const double *size = mpmi_f64(set, MPMI_SIZE, 0);
+  if (!mpmi_is_axisymmetric(set->grid)) return mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot];
+  return size[slot] * size[set->ld + slot];
+}
 
 /* These change the storage (fields.c). They do all or nothing: on failure the set is unchanged. */
 mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots); /* ld >= slots */

@@ -13,6 +13,10 @@ void mpmi_reference_begin(mpm_particles *set) {
     const double value = mpmi_unstored_value(MPMI_F, mpmi_tensor_map(set->grid->dim)[c]);
     for (int64_t s = 0; s < set->slots; ++s) mpmi_f64(set, MPMI_F, 1)[c * set->ld + s] = value;
   }
+  /* sheets stay as thin as they are, and the initial volume that of unit thickness */
+  if (mpmi_is_plane_stress(set->grid) && set->slots)
+    memcpy(mpmi_f64(set, MPMI_F, 1) + 4 * set->ld, mpmi_f64(set, MPMI_F, 0) + 4 * set->ld,
+           (size_t)set->slots * sizeof(double));
 }
 
 /* Refuses what the law of the host made of the stress that it was shown. */
@@ -65,9 +69,10 @@ mpm_status mpmi_reference_fits_host(mpm_particles *set) {
   return status;
 }
 
-/* Where F stretches domains, their edges are divided by as much as it stretches them more. */
+/* Where F stretches domains, or sections of rings, their edges are divided by as much as it stretches them
+ * more. */
 static void keep_domains(mpm_particles *set) {
-  if (set->grid->domains != MPMI_DOMAINS_STRETCHED) return;
+  if (set->grid->domains != MPMI_DOMAINS_STRETCHED && !mpmi_is_axisymmetric(set->grid)) return;
   for (int32_t k = 0; k < set->grid->dim; ++k) {
     const int32_t stored = mpmi_stored_component(set, MPMI_F, 4 * k);
     double *size = mpmi_f64(set, MPMI_SIZE, 0) + k * set->ld;

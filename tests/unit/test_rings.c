@@ -369,6 +369,76 @@ START_TEST(rings_touch_as_slabs_do) {
 }
 END_TEST
 
+/* A block hangs on a plane by adhesion; returns the largest force over the area of the face. */
+static double adhesion_of(int32_t geometry, double origin) {
+  world w;
+  world_desc desc = world_default(2, 12, 0.25);
+  desc.grid.geometry = geometry;
+  desc.grid.origin[0] = origin;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {origin, 1.0}, high[] = {origin + 1.0, 1.75}, v[] = {0.0, 0.02};
+  world_fill(&w, set, low, high, 2);
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
+  mpm_obstacle_desc d;
+  mpm_contact_desc sticky;
+  mpm_obstacle *floor;
+  ck_ok(&w, mpm_contact_desc_init(&sticky, sizeof sticky));
+  ck_ok(&w, mpm_obstacle_desc_init(&d, sizeof d));
+  sticky.adhesion = 50.0;
+  d.shape = MPM_SHAPE_PLANE;
+  d.contact = &sticky;
+  d.position[0] = origin + 1.0;
+  d.position[1] = 1.0;
+  ck_ok(&w, mpm_obstacle_create(w.context, &d, &floor));
+  ck_ok(&w, mpm_stepper_add_obstacle(w.stepper, floor));
+  double most = 0.0;
+  for (int32_t k = 0; k < 40; ++k) {
+    mpm_contact_info info = {.struct_size = sizeof info};
+    world_step(&w, 1e-3);
+    ck_ok(&w, mpm_obstacle_contact_info(floor, MPM_BODY_ANY, &info));
+    most = fmax(most, fabs(info.force[1]));
+  }
+  ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, floor));
+  ck_ok(&w, mpm_obstacle_destroy(floor));
+  world_close(&w);
+  return most / (geometry ? 0.5 * ((origin + 1.0) * (origin + 1.0) - origin * origin) : 1.0);
+}
+
+START_TEST(adhesion_goes_by_the_area) {
+  const double slab = adhesion_of(MPM_PLANE_STRAIN, 0.0);
+  show("adhesion %g, %g, %g\n", slab, adhesion_of(MPM_AXISYMMETRIC, 0.0),
+       adhesion_of(MPM_AXISYMMETRIC, 40.0));
+  ck_between("slab", slab, 30.0, 50.001);
+  ck_within("rings", adhesion_of(MPM_AXISYMMETRIC, 0.0), slab, 0.08 * slab);
+  ck_within("wide rings", adhesion_of(MPM_AXISYMMETRIC, 40.0), slab, 0.01 * slab);
+}
+END_TEST
+
+/* Rings keep their section as the field "size" while they move along the radius; begun anew, it is as F has
+ * stretched it. */
+START_TEST(sections_stay) {
+  world w;
+  world_desc desc = rings(12, 0.25);
+  desc.law.model = "linear_elastic";
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {0.5, 1.0}, high[] = {1.0, 1.5};
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  for (int32_t k = 0; k < 20; ++k) step_with(&w, 5e-3, grow);
+  double *size = fetch(&w, set, "size", 2), *F = fetch(&w, set, "deformation_gradient", 9);
+  for (int64_t i = 0; i < 2 * n; ++i) ck_within("as filled", size[i], 0.125, 1e-15);
+  ck_ok(&w, mpm_particles_reset_reference(set));
+  free(size);
+  size = fetch(&w, set, "size", 2);
+  for (int64_t p = 0; p < n; ++p) {
+    ck_within("begun anew", size[p], 0.125 * F[p], 1e-14);
+    ck_within("begun anew", size[n + p], 0.125 * F[4 * n + p], 1e-14);
+  }
+  free(size);
+  free(F);
+  world_close(&w);
+}
+END_TEST
+
 /* Where two bodies meet face to face along the axis, nothing pushes them along the radius. */
 START_TEST(normals_do_not_lean) {
   world w;
@@ -414,6 +484,8 @@ START_TEST(refusals) {
   d.periodic[0] = 0;
   d.origin[0] = -0.25;
   ck_refused(c, mpm_grid_create(c, &d, &grid), MPM_E_ARG, "origin[0] is -0.25");
+  d.origin[0] = 1e-17;
+  ck_refused(c, mpm_grid_create(c, &d, &grid), MPM_E_ARG, "is nearly the axis");
   d.origin[0] = 0.0;
   ck_ok(c, mpm_grid_create(c, &d, &grid));
   mpm_stepper_desc of = stepper_desc();
@@ -468,6 +540,8 @@ Suite *rings_suite(void) {
   tcase_add_test(parts, areas_follow_the_ring);
   tcase_add_test(parts, rings_touch_as_slabs_do);
   tcase_add_test(parts, normals_do_not_lean);
+  tcase_add_test(parts, adhesion_goes_by_the_area);
+  tcase_add_test(parts, sections_stay);
   tcase_add_test(parts, refusals);
   tcase_add_test(parts, states_know_their_geometry);
   suite_add_tcase(suite, parts);

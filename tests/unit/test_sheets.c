@@ -155,6 +155,91 @@ START_TEST(stiffness_and_yield) {
 }
 END_TEST
 
+/* ---- what hosts do ------------------------------------------------------------------------------------- */
+/* A linear law that says of itself what it is told to. */
+typedef struct frank_law {
+  double wave_speed;
+  int32_t boasts; /* of a viscosity and an energy, while F33 is that of the start */
+} frank_law;
+
+static mpm_status frank_stress(void *user, const mpm_material_batch *b) {
+  const frank_law *of = user;
+  for (int64_t p = 0; p < b->n; ++p) {
+    double trace = 0.0, e[3];
+    for (int32_t k = 0; k < 3; ++k) trace += e[k] = b->F[4 * k * b->ld + p] - 1.0;
+    for (int32_t c = 0; c < 6; ++c)
+      b->stress_new[c * b->ld + p] = c < 3 ? 4e5 * trace + 8e5 * e[c] : 4e5 * b->F[b->ld + p];
+    b->wave_speed[p] = of->wave_speed;
+    if (of->boasts && fabs(e[2]) <= 0.0) b->kinematic_viscosity[p] = 1e3, b->energy[p] = 1e12;
+  }
+  return MPM_OK;
+}
+
+/* The wave speed of a law may be anything; and of what it says only the last answer counts. */
+START_TEST(frank_laws) {
+  static const double speeds[] = {0.0, 1.0, 35.0, 1000.0};
+  static const double path[4] = {0.5, 0.0, 0.0, 0.1};
+  frank_law law = {speeds[_i % 4], _i / 4};
+  world w;
+  world_desc desc = sheets(&methods[0], NULL);
+  desc.law.stress = frank_stress;
+  desc.law.user = &law;
+  open_block_with(&w, &desc);
+  velocity_of = path;
+  for (int32_t k = 0; k < 5; ++k) step_with(&w, 1e-3, by_gradient);
+  const int64_t n = mpm_particles_count(w.set[0]);
+  double *stress = fetch(&w, w.set[0], "stress", 6);
+  for (int64_t p = 0; p < n; ++p) ck_within("across", stress[2 * n + p], 0.0, 1e-11 * 1e6);
+  free(stress);
+  const mpm_step_info info = world_step(&w, 1e-4);
+  ck_holds(!(info.strain_energy > 1e6));
+  if (law.boasts && law.wave_speed > 0.0) ck_holds(world_stable_dt(&w) > 1e-4);
+  world_close(&w);
+}
+END_TEST
+
+/* F of the host may be far from what F33 becomes, but not turned inside out; what begins anew stays as
+ * thin. */
+START_TEST(thickness_of_hosts) {
+  world w;
+  world_desc desc = sheets(&methods[0], "neo_hookean");
+  mpm_particles *set = world_open(&w, &desc);
+  const double x[2] = {1.1, 1.1}, volume = 0.01;
+  const double wide[9] = {4.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 1.0},
+               turned[9] = {-1.2, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0};
+  ck_ok(&w, mpm_particles_add(set, 1, x, NULL, &volume, NULL, NULL, NULL));
+  put(&w, set, "deformation_gradient", 9, wide);
+  double *stress = fetch(&w, set, "stress", 6), *F = fetch(&w, set, "deformation_gradient", 9);
+  ck_within("F33", F[8], 0.1206, 1e-4);
+  ck_within("across", stress[2], 0.0, 1e-11 * stiff);
+  free(F);
+  put(&w, set, "deformation_gradient", 9, turned);
+  ck_refused(&w, mpm_particles_get(set, "stress", MPM_F64, 6, 1, NULL, stress), MPM_E_ARG,
+             "has no thickness");
+  free(stress);
+  world_close(&w);
+  static const double path[4] = {1.0, 0.0, 0.0, 1.0};
+  open_solid(&w, &methods[0], "j2");
+  velocity_of = path;
+  for (int32_t k = 0; k < 10; ++k) step_with(&w, 5e-3, by_gradient);
+  const int64_t n = mpm_particles_count(w.set[0]);
+  F = fetch(&w, w.set[0], "deformation_gradient", 9);
+  double *before = fetch(&w, w.set[0], "volume", 1);
+  ck_ok(&w, mpm_particles_reset_reference(w.set[0]));
+  double *after = fetch(&w, w.set[0], "deformation_gradient", 9),
+         *initial = fetch(&w, w.set[0], "initial_volume", 1);
+  for (int64_t p = 0; p < n; ++p) {
+    ck_within("as thin", after[8 * n + p], F[8 * n + p], 0.0);
+    ck_within("of unit thickness", initial[p] * F[8 * n + p], before[p], 1e-15);
+  }
+  free(F);
+  free(before);
+  free(after);
+  free(initial);
+  world_close(&w);
+}
+END_TEST
+
 /* ---- every combination, implicit steps ---------------------------------------------------------------- */
 static combination *list;
 static int32_t listed;
@@ -236,6 +321,8 @@ Suite *sheets_suite(void) {
   tcase_add_loop_test(parts, no_stress_across, 0, SOLIDS);
   tcase_add_test(parts, stiffness_and_yield);
   tcase_add_loop_test(parts, tangents_of_sheets, 0, SOLIDS);
+  tcase_add_loop_test(parts, frank_laws, 0, 8);
+  tcase_add_test(parts, thickness_of_hosts);
   tcase_add_test(parts, refusals);
   suite_add_tcase(suite, parts);
   TCase *all = tcase_create("combinations");
