@@ -919,11 +919,11 @@ namespace Mpm {
     public long ambiguous;
     /// <summary>on the second body, force.</summary>
     public fixed double force[3];
-    /// <summary>of the same about the origin; in 2-D in component 2.</summary>
+    /// <summary>of the same about the origin; in 2-D in component 2; of MPM_AXISYMMETRIC without meaning.</summary>
     public fixed double torque[3];
     /// <summary>sum of the nodes' normal forces, &gt;= 0 without adhesion.</summary>
     public double normal_force;
-    /// <summary>of closed nodes, length^(dim - 1).</summary>
+    /// <summary>of closed nodes, length^(dim - 1); of MPM_AXISYMMETRIC times radius.</summary>
     public double area;
     /// <summary>largest normal force over area of a node, stress: rows of nodes on both sides of a surface share them
     /// unevenly, and it may be twice what the surface has.</summary>
@@ -971,7 +971,7 @@ namespace Mpm {
     public double* normal;
     /// <summary>[ld] length.</summary>
     public double* gap;
-    /// <summary>[ld] length^(dim - 1).</summary>
+    /// <summary>[ld] length^(dim - 1); of MPM_AXISYMMETRIC times radius.</summary>
     public double* area;
     /// <summary>[dim][ld] tangential velocity of the second body relative to the first, before the impulse.</summary>
     public double* slip;
@@ -1343,8 +1343,8 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_stepper_desc_init(StepperDesc* desc, uint struct_size);
 
-    /// <summary>Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied
-    /// and may be NULL for the defaults.</summary>
+    /// <summary>Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces (the axis of
+    /// MPM_AXISYMMETRIC has MPM_WALL_SLIP). desc is copied and may be NULL for the defaults.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_stepper_create(IntPtr context, IntPtr grid, StepperDesc* desc, IntPtr* @out);
 

@@ -730,11 +730,11 @@ module mpm
     integer(c_int64_t) :: ambiguous
     !> on the second body, force.
     real(c_double) :: force(3)
-    !> of the same about the origin; in 2-D in component 2.
+    !> of the same about the origin; in 2-D in component 2; of MPM_AXISYMMETRIC without meaning.
     real(c_double) :: torque(3)
     !> sum of the nodes' normal forces, >= 0 without adhesion.
     real(c_double) :: normal_force
-    !> of closed nodes, length^(dim - 1).
+    !> of closed nodes, length^(dim - 1); of MPM_AXISYMMETRIC times radius.
     real(c_double) :: area
     !> largest normal force over area of a node, stress: rows of nodes on both sides of a surface share them unevenly,
     !! and it may be twice what the surface has.
@@ -774,7 +774,7 @@ module mpm
     type(c_ptr) :: normal
     !> [ld] length.
     type(c_ptr) :: gap
-    !> [ld] length^(dim - 1).
+    !> [ld] length^(dim - 1); of MPM_AXISYMMETRIC times radius.
     type(c_ptr) :: area
     !> [dim][ld] tangential velocity of the second body relative to the first, before the impulse.
     type(c_ptr) :: slip
@@ -1539,8 +1539,8 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_stepper_desc_init
 
-    !> Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied and may be
-    !! NULL for the defaults.
+    !> Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces (the axis of MPM_AXISYMMETRIC
+    !! has MPM_WALL_SLIP). desc is copied and may be NULL for the defaults.
     function mpm_stepper_create(context, grid, desc, out) bind(c, name="mpm_stepper_create") result(answer)
       import
       type(c_ptr), value :: context

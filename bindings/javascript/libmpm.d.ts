@@ -323,7 +323,7 @@ export interface StepperDesc {
   position_order?: number | boolean;
   /**
    * MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE. With the latter the sets of the
-   * stepper have the field "dilation_ratio".
+   * stepper have the field "dilation_ratio". Not with MPM_PLANE_STRESS.
    */
   locking_remedy?: number | boolean;
   /** 1: keeps "reference_position" and shows it to callbacks; default 0 */
@@ -358,7 +358,7 @@ export interface StepperDesc {
    * transfers of flip: the step's share of FLIP is flip * max(0, 1 - beta dt). Default 0.
    */
   pic_damping?: number;
-  /** acceleration of all particles, length/time^2; default 0 */
+  /** acceleration of all particles, length/time^2; default 0. Of MPM_AXISYMMETRIC along the axis alone */
   gravity?: ArrayLike<number>;
   /** Newmark's beta: default 1/4, as Guilkey & Weiss 2003, eqs 14-15 */
   newmark_beta?: number;
@@ -673,11 +673,11 @@ export interface ContactInfo {
   ambiguous: number;
   /** on the second body, force */
   force: number[];
-  /** of the same about the origin; in 2-D in component 2 */
+  /** of the same about the origin; in 2-D in component 2; of MPM_AXISYMMETRIC without meaning */
   torque: number[];
   /** sum of the nodes' normal forces, >= 0 without adhesion */
   normal_force: number;
-  /** of closed nodes, length^(dim - 1) */
+  /** of closed nodes, length^(dim - 1); of MPM_AXISYMMETRIC times radius */
   area: number;
   /**
    * largest normal force over area of a node, stress: rows of nodes on both sides of a surface share them
@@ -846,7 +846,7 @@ export interface ContactBatch {
   readonly normal: Float64Array[];
   /** [ld] length */
   readonly gap: Float64Array;
-  /** [ld] length^(dim - 1) */
+  /** [ld] length^(dim - 1); of MPM_AXISYMMETRIC times radius */
   readonly area: Float64Array;
   /** [dim][ld] tangential velocity of the second body relative to the first, before the impulse */
   readonly slip: Float64Array[];
@@ -1226,10 +1226,10 @@ export class Context implements Handle {
    */
   surface(grid: Grid, desc?: SurfaceDesc): Surface;
   /**
-   * Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied and
-   * may be NULL for the defaults. The grid outlives the stepper. *out is NULL unless MPM_OK is returned.
-   * MPM_E_ARG: a value is bad, or the grid is of another context. MPM_E_UNSUPPORTED: the combination is not
-   * offered; the error text says what to use instead.
+   * Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces (the axis of
+   * MPM_AXISYMMETRIC has MPM_WALL_SLIP). desc is copied and may be NULL for the defaults. The grid outlives
+   * the stepper. *out is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another
+   * context. MPM_E_UNSUPPORTED: the combination is not offered; the error text says what to use instead.
    */
   stepper(grid: Grid, desc?: StepperDesc): Stepper;
 }
@@ -1430,15 +1430,15 @@ export class Particles implements Handle {
    * particle lies above the surface, or no deformation has the stress; the particle is named.
    * MPM_E_UNSUPPORTED: the law is "rigid", or "snow", whose stress takes more than a deformation; it is
    * "newtonian_fluid" and K0 is not 1; or, of the host's laws, one that asked with dt = 0 does not answer
-   * with the stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set.
-   * Since 0.2.0.
+   * with the stress that it has; the grid is MPM_PLANE_STRESS, or axis the radius of MPM_AXISYMMETRIC.
+   * MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
    */
   setGeostatic(axis: number, gravity: number, surface: number, K0: number, surcharge?: number): void;
   /**
    * Makes the present state the one from which all deformation counts: deformation_gradient becomes I,
    * initial_volume the present volume, dilation_ratio 1, and reference_position, where there is one, the
-   * present (unwrapped) position. With MPM_CPGIMP edges in "size" become the present ones. Mass, velocity,
-   * Cauchy stress and state variables stay.
+   * present (unwrapped) position. With MPM_CPGIMP and of MPM_AXISYMMETRIC edges in "size" become the present
+   * ones. Of MPM_PLANE_STRESS F33 stays. Mass, velocity, Cauchy stress and state variables stay.
    *
    * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay)
    * find J = 1 from then on: elastic strain, energy per initial volume and cohesion count by the present
@@ -1642,8 +1642,9 @@ export class Stepper implements Handle {
    *
    * Puts an obstacle into a stepper, with those that are there in the order of adding. MPM_E_STATE: it is in
    * a stepper already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension
-   * of the grid, or it is free and the scheme is MPM_NEWMARK, which refuses the adhesion of an obstacle in
-   * the step. MPM_E_ARG: it is turned out of a 2-D or 1-D grid, or moves out of it.
+   * of the grid; it is free, and the grid MPM_AXISYMMETRIC or the scheme MPM_NEWMARK, which refuses the
+   * adhesion of an obstacle in the step. MPM_E_ARG: it is turned out of a 2-D or 1-D grid, or moves out of
+   * it.
    */
   addObstacle(obstacle: Obstacle): this;
   /** Takes an obstacle out, and what it has reported. MPM_E_NOT_FOUND: it is not in this stepper. */
@@ -1686,7 +1687,8 @@ export class Stepper implements Handle {
    * friction is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is
    * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that.
    * MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED:
-   * MPM_WALL_FRICTION_NODES with MPM_NEWMARK.
+   * MPM_WALL_FRICTION_NODES with MPM_NEWMARK; on the axis of MPM_AXISYMMETRIC another kind than
+   * MPM_WALL_SLIP.
    */
   setWall(face: number, kind: number, friction?: number): this;
   /**

@@ -1362,8 +1362,9 @@ MPM_CPGIMP the field \"size\" what keeps the domains as they are.
 The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the axis is periodic, a particle lies above
 the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law is \"rigid\", or
 \"snow\", whose stress takes more than a deformation; it is \"newtonian_fluid\" and K0 is not 1; or, of the host's
-laws, one that asked with dt = 0 does not answer with the stress that it has. MPM_E_CALLBACK: that law failed.
-MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+laws, one that asked with dt = 0 does not answer with the stress that it has; the grid is MPM_PLANE_STRESS, or axis
+the radius of MPM_AXISYMMETRIC. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since
+0.2.0.
 """
 function mpm_particles_set_geostatic(particles, axis, gravity, surface, K0, surcharge)
     return ccall((:mpm_particles_set_geostatic, libmpm), Int32, (Ptr{mpm_particles}, Int32, Float64, Float64, Float64, Float64),
@@ -1373,7 +1374,8 @@ end
 """
 Makes the present state the one from which all deformation counts: deformation_gradient becomes I, initial_volume the
 present volume, dilation_ratio 1, and reference_position, where there is one, the present (unwrapped) position. With
-MPM_CPGIMP edges in \"size\" become the present ones. Mass, velocity, Cauchy stress and state variables stay.
+MPM_CPGIMP and of MPM_AXISYMMETRIC edges in \"size\" become the present ones. Of MPM_PLANE_STRESS F33 stays. Mass,
+velocity, Cauchy stress and state variables stay.
 
 Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay) find J = 1
 from then on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ by the
@@ -1421,10 +1423,10 @@ function mpm_stepper_desc_init(desc, struct_size)
 end
 
 """
-Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied and may be NULL for
-the defaults. The grid outlives the stepper. *out is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the
-grid is of another context. MPM_E_UNSUPPORTED: the combination is not offered; the error text says what to use
-instead.
+Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces (the axis of MPM_AXISYMMETRIC has
+MPM_WALL_SLIP). desc is copied and may be NULL for the defaults. The grid outlives the stepper. *out is NULL unless
+MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another context. MPM_E_UNSUPPORTED: the combination
+is not offered; the error text says what to use instead.
 """
 function mpm_stepper_create(context, grid, desc, out)
     return ccall((:mpm_stepper_create, libmpm), Int32, (Ptr{mpm_context}, Ptr{mpm_grid}, Ptr{mpm_stepper_desc}, Ptr{Ptr{mpm_stepper}}),
@@ -1490,7 +1492,8 @@ end
 Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES. friction is
 the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is unilateral: its normal
 impulse only pushes, and its tangential impulse is at most friction times that. MPM_E_ARG: the grid does not have the
-face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK.
+face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK; on the
+axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.
 """
 function mpm_stepper_set_wall(stepper, face, kind, friction)
     return ccall((:mpm_stepper_set_wall, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Int32, Float64),
@@ -1818,9 +1821,9 @@ end
 
 """
 Puts an obstacle into a stepper, with those that are there in the order of adding. MPM_E_STATE: it is in a stepper
-already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension of the grid, or it is
-free and the scheme is MPM_NEWMARK, which refuses the adhesion of an obstacle in the step. MPM_E_ARG: it is turned out
-of a 2-D or 1-D grid, or moves out of it.
+already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension of the grid; it is free,
+and the grid MPM_AXISYMMETRIC or the scheme MPM_NEWMARK, which refuses the adhesion of an obstacle in the step.
+MPM_E_ARG: it is turned out of a 2-D or 1-D grid, or moves out of it.
 """
 function mpm_stepper_add_obstacle(stepper, obstacle)
     return ccall((:mpm_stepper_add_obstacle, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_obstacle}), stepper, obstacle)

@@ -1387,13 +1387,14 @@ MPM_CPGIMP the field "size" what keeps the domains as they are.
 The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the axis is periodic, a particle lies above
 the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law is "rigid", or
 "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1; or, of the host's laws,
-one that asked with dt = 0 does not answer with the stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE:
-as for all that changes a set. Since 0.2.0.""",
+one that asked with dt = 0 does not answer with the stress that it has; the grid is MPM_PLANE_STRESS, or axis the
+radius of MPM_AXISYMMETRIC. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.""",
     "mpm_particles_reset_reference": """mpm_status mpm_particles_reset_reference(mpm_particles *particles)
 
 Makes the present state the one from which all deformation counts: deformation_gradient becomes I, initial_volume the
 present volume, dilation_ratio 1, and reference_position, where there is one, the present (unwrapped) position. With
-MPM_CPGIMP edges in "size" become the present ones. Mass, velocity, Cauchy stress and state variables stay.
+MPM_CPGIMP and of MPM_AXISYMMETRIC edges in "size" become the present ones. Of MPM_PLANE_STRESS F33 stays. Mass,
+velocity, Cauchy stress and state variables stay.
 
 Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay) find J = 1
 from then on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ by the
@@ -1421,10 +1422,10 @@ Fills desc with the defaults. struct_size is sizeof(mpm_stepper_desc) of the cal
 MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.""",
     "mpm_stepper_create": """mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_stepper_desc *desc, mpm_stepper **out)
 
-Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied and may be NULL for
-the defaults. The grid outlives the stepper. *out is NULL unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the
-grid is of another context. MPM_E_UNSUPPORTED: the combination is not offered; the error text says what to use
-instead.""",
+Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces (the axis of MPM_AXISYMMETRIC has
+MPM_WALL_SLIP). desc is copied and may be NULL for the defaults. The grid outlives the stepper. *out is NULL unless
+MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another context. MPM_E_UNSUPPORTED: the combination
+is not offered; the error text says what to use instead.""",
     "mpm_stepper_destroy": """mpm_status mpm_stepper_destroy(mpm_stepper *stepper)
 
 Frees the stepper. Its sets live on and are free for another. NULL is fine. MPM_E_STATE while a view of its nodal
@@ -1461,7 +1462,8 @@ state. MPM_E_NOT_FOUND: the set is not in this stepper.""",
 Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES. friction is
 the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is unilateral: its normal
 impulse only pushes, and its tangential impulse is at most friction times that. MPM_E_ARG: the grid does not have the
-face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK.""",
+face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK; on the
+axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.""",
     "mpm_stepper_set_acceleration": """mpm_status mpm_stepper_set_acceleration(mpm_stepper *stepper, mpm_particle_fn fn, void *user)
 
 Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is called for
@@ -1641,9 +1643,9 @@ Frees an obstacle; NULL is let pass. MPM_E_STATE: a stepper holds it.""",
     "mpm_stepper_add_obstacle": """mpm_status mpm_stepper_add_obstacle(mpm_stepper *stepper, mpm_obstacle *obstacle)
 
 Puts an obstacle into a stepper, with those that are there in the order of adding. MPM_E_STATE: it is in a stepper
-already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension of the grid, or it is
-free and the scheme is MPM_NEWMARK, which refuses the adhesion of an obstacle in the step. MPM_E_ARG: it is turned out
-of a 2-D or 1-D grid, or moves out of it.""",
+already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension of the grid; it is free,
+and the grid MPM_AXISYMMETRIC or the scheme MPM_NEWMARK, which refuses the adhesion of an obstacle in the step.
+MPM_E_ARG: it is turned out of a 2-D or 1-D grid, or moves out of it.""",
     "mpm_stepper_remove_obstacle": """mpm_status mpm_stepper_remove_obstacle(mpm_stepper *stepper, mpm_obstacle *obstacle)
 
 Takes an obstacle out, and what it has reported. MPM_E_NOT_FOUND: it is not in this stepper.""",

@@ -866,7 +866,7 @@ pub struct mpm_stepper_desc {
     /// with 1. MPM_NEWMARK moves particles by the displacements that it solves for, whatever the order.
     pub position_order: i32,
     /// MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE. With the latter the sets of the stepper
-    /// have the field "dilation_ratio".
+    /// have the field "dilation_ratio". Not with MPM_PLANE_STRESS.
     pub locking_remedy: i32,
     /// 1: keeps "reference_position" and shows it to callbacks; default 0
     pub reference_positions: i32,
@@ -889,7 +889,7 @@ pub struct mpm_stepper_desc {
     /// Rate beta >= 0, 1/time, of a blend that does not depend on dt (MPoint theory, eqs 58-59), for the transfers of
     /// flip: the step's share of FLIP is flip * max(0, 1 - beta dt). Default 0.
     pub pic_damping: f64,
-    /// acceleration of all particles, length/time^2; default 0
+    /// acceleration of all particles, length/time^2; default 0. Of MPM_AXISYMMETRIC along the axis alone
     pub gravity: [f64; 3],
     /// Newmark's beta: default 1/4, as Guilkey & Weiss 2003, eqs 14-15
     pub newmark_beta: f64,
@@ -1250,11 +1250,11 @@ pub struct mpm_contact_info {
     pub ambiguous: i64,
     /// on the second body, force
     pub force: [f64; 3],
-    /// of the same about the origin; in 2-D in component 2
+    /// of the same about the origin; in 2-D in component 2; of MPM_AXISYMMETRIC without meaning
     pub torque: [f64; 3],
     /// sum of the nodes' normal forces, >= 0 without adhesion
     pub normal_force: f64,
-    /// of closed nodes, length^(dim - 1)
+    /// of closed nodes, length^(dim - 1); of MPM_AXISYMMETRIC times radius
     pub area: f64,
     /// largest normal force over area of a node, stress: rows of nodes on both sides of a surface share them unevenly,
     /// and it may be twice what the surface has
@@ -1306,7 +1306,7 @@ pub struct mpm_contact_batch {
     pub normal: *const f64,
     /// [ld] length
     pub gap: *const f64,
-    /// [ld] length^(dim - 1)
+    /// [ld] length^(dim - 1); of MPM_AXISYMMETRIC times radius
     pub area: *const f64,
     /// [dim][ld] tangential velocity of the second body relative to the first, before the impulse
     pub slip: *const f64,
@@ -1915,8 +1915,9 @@ extern "C" {
     /// The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the axis is periodic, a particle lies
     /// above the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law is "rigid",
     /// or "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1; or, of the host's
-    /// laws, one that asked with dt = 0 does not answer with the stress that it has. MPM_E_CALLBACK: that law failed.
-    /// MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+    /// laws, one that asked with dt = 0 does not answer with the stress that it has; the grid is MPM_PLANE_STRESS, or
+    /// axis the radius of MPM_AXISYMMETRIC. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set.
+    /// Since 0.2.0.
     pub fn mpm_particles_set_geostatic(
         particles: *mut mpm_particles,
         axis: i32,
@@ -1928,8 +1929,8 @@ extern "C" {
 
     /// Makes the present state the one from which all deformation counts: deformation_gradient becomes I, initial_volume
     /// the present volume, dilation_ratio 1, and reference_position, where there is one, the present (unwrapped)
-    /// position. With MPM_CPGIMP edges in "size" become the present ones. Mass, velocity, Cauchy stress and state
-    /// variables stay.
+    /// position. With MPM_CPGIMP and of MPM_AXISYMMETRIC edges in "size" become the present ones. Of MPM_PLANE_STRESS F33
+    /// stays. Mass, velocity, Cauchy stress and state variables stay.
     ///
     /// Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay) find J =
     /// 1 from then on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ
@@ -1969,10 +1970,10 @@ extern "C" {
     /// MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
     pub fn mpm_stepper_desc_init(desc: *mut mpm_stepper_desc, struct_size: u32) -> mpm_status;
 
-    /// Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces. desc is copied and may be NULL
-    /// for the defaults. The grid outlives the stepper. *out is NULL unless MPM_OK is returned. MPM_E_ARG: a value is
-    /// bad, or the grid is of another context. MPM_E_UNSUPPORTED: the combination is not offered; the error text says
-    /// what to use instead.
+    /// Makes a stepper at t = 0 and step 0, without sets, with MPM_WALL_NONE on all faces (the axis of MPM_AXISYMMETRIC
+    /// has MPM_WALL_SLIP). desc is copied and may be NULL for the defaults. The grid outlives the stepper. *out is NULL
+    /// unless MPM_OK is returned. MPM_E_ARG: a value is bad, or the grid is of another context. MPM_E_UNSUPPORTED: the
+    /// combination is not offered; the error text says what to use instead.
     pub fn mpm_stepper_create(
         context: *mut mpm_context,
         grid: *mut mpm_grid,
@@ -2025,7 +2026,7 @@ extern "C" {
     /// is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is unilateral: its
     /// normal impulse only pushes, and its tangential impulse is at most friction times that. MPM_E_ARG: the grid does
     /// not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with
-    /// MPM_NEWMARK.
+    /// MPM_NEWMARK; on the axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.
     pub fn mpm_stepper_set_wall(
         stepper: *mut mpm_stepper,
         face: i32,
@@ -2297,9 +2298,9 @@ extern "C" {
     pub fn mpm_obstacle_destroy(obstacle: *mut mpm_obstacle) -> mpm_status;
 
     /// Puts an obstacle into a stepper, with those that are there in the order of adding. MPM_E_STATE: it is in a stepper
-    /// already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension of the grid, or it
-    /// is free and the scheme is MPM_NEWMARK, which refuses the adhesion of an obstacle in the step. MPM_E_ARG: it is
-    /// turned out of a 2-D or 1-D grid, or moves out of it.
+    /// already, or a step is under way. MPM_E_UNSUPPORTED: the shape does not exist in the dimension of the grid; it is
+    /// free, and the grid MPM_AXISYMMETRIC or the scheme MPM_NEWMARK, which refuses the adhesion of an obstacle in the
+    /// step. MPM_E_ARG: it is turned out of a 2-D or 1-D grid, or moves out of it.
     pub fn mpm_stepper_add_obstacle(
         stepper: *mut mpm_stepper,
         obstacle: *mut mpm_obstacle,
