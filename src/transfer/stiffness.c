@@ -160,15 +160,16 @@ MPMI_INLINE void force_scatter(int32_t dim, int32_t width, const mpmi_force_scat
   }
 }
 
-enum { MOST_NODES = MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH) };
+#define MOST_STENCIL_NODES MPMI_STENCIL_NODES(3, MPMI_MAX_WIDTH)
 
 /* Adds what the hoop of a ring of radius 1 / `by` has to do with the plane and with itself: the entries
  * (theta, theta) of A G, and of G^T A beside the plane. */
-MPMI_INLINE void hoop_stiffness(int32_t nodes, int32_t count, const double *w, double (*G)[MOST_NODES],
-                                double by, const double *A, int64_t ld, double *K) {
+MPMI_INLINE void hoop_stiffness(int32_t nodes, int32_t count, const double *w,
+                                double (*G)[MOST_STENCIL_NODES], double by, const double *A, int64_t ld,
+                                double *K) {
   for (int32_t j = 0; j < 2; ++j) {
-    double B[MOST_NODES],
-        other[MOST_NODES]; /* (theta, theta) by node b; node b's component j by (theta, theta) */
+    double B[MOST_STENCIL_NODES],
+        other[MOST_STENCIL_NODES]; /* (theta, theta) by node b; node b's component j by (theta, theta) */
     for (int32_t b = 0; b < nodes; ++b) {
       B[b] = A[(72 + 3 * j) * ld] * G[0][b] + A[(72 + 3 * j + 1) * ld] * G[1][b];
       other[b] = A[(27 * j + 8) * ld] * G[0][b] + A[(27 * j + 9 + 8) * ld] * G[1][b];
@@ -186,7 +187,7 @@ MPMI_INLINE void hoop_stiffness(int32_t nodes, int32_t count, const double *w, d
 MPMI_INLINE void stiffness(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
                            const double *stiffness, int64_t ld, double hoop, double *K) {
   const int32_t count = stencil_count(dim, width), nodes = MPMI_STENCIL_NODES(dim, width), row = dim * nodes;
-  double G[3][MOST_NODES], AG[3][3 * MOST_NODES], w[MOST_NODES];
+  double G[3][MOST_STENCIL_NODES], AG[3][3 * MOST_STENCIL_NODES], w[MOST_STENCIL_NODES];
   for (int32_t a = count; a < nodes; ++a)
     for (int32_t k = 0; k < dim; ++k) G[k][a] = 0.0;
   for (int32_t a = 0; a < count; ++a) {
