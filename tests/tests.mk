@@ -44,13 +44,16 @@ measure-structure: $(STATIC_LIB)
 	@$(STRUCTURE) --measure
 
 # Suites run side by side, each in a process and a scratch folder of its own; what one prints stays together.
-#: check-unit            the unit tests, by Check; SUITES="a b" selects
+#: check-unit            the unit tests, by Check; SUITES="a b:c" selects suites, and of b the case c
 SUITES ?= $(shell sed -n 's/^SUITE(\(.*\))$$/\1/p' tests/unit/suites.h)
 JOBS ?= $(shell nproc)
 check-unit: $(UNIT)
 	@mkdir -p $(SUITES:%=$(BUILD)/tests/scratch/%)
 	@printf '%s\n' $(SUITES) | $(TEST_ENVIRONMENT) xargs -P $(JOBS) -I{} sh -c \
-	  'out=$$(CK_RUN_SUITE={} MPM_SCRATCH="$$MPM_SCRATCH/{}" $(UNIT) 2>&1); status=$$?; echo "$$out"; exit $$status'
+	  'suite={}; case $$suite in *:*) export CK_RUN_CASE=$${suite#*:} ;; esac; \
+   out=$$(CK_RUN_SUITE=$${suite%:*} MPM_SCRATCH="$$MPM_SCRATCH/{}" $(UNIT) 2>&1); status=$$?; echo "$$out"; \
+   case $$out in *"Checks: 0,"*) echo "check-unit: there is no suite or case $$suite" >&2; status=1 ;; esac; \
+   exit $$status'
 
 # Every method that the library offers on 1, 2, 3, 4, 7 threads, by pool and executor in turn, on the best instruction
 # set, and on one and seven threads on the others; `check` has a sample of it.
