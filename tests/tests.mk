@@ -196,7 +196,7 @@ FUZZ_CC ?= clang
 fuzz-programs:
 	@$(MAKE) CC=$(FUZZ_CC) BUILD=$(FUZZ) $(ONE_SET) OPT=-O1 KERNEL_OPT="-O1 -Wno-pass-failed" CFLAGS="$(FUZZ_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp" \
 	  $(FUZZ_TARGETS:%=$(FUZZ)/fuzz/%)
-$(BUILD)/fuzz/%: tests/fuzz/%.c tests/fuzz/fuzz.h $(STATIC_LIB) Makefile tests/tests.mk
+$(BUILD)/fuzz/%: tests/fuzz/%.c $(wildcard tests/fuzz/*.h) $(STATIC_LIB) Makefile tests/tests.mk
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(COMMON) -O1 -MF $@.d -fsanitize=fuzzer $< $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@

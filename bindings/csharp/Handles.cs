@@ -242,6 +242,28 @@ namespace Mpm {
     internal static void Fits(string what, long length, long should) {
       if (length != should) throw new ArgumentException(string.Format("\"{0}\" has {1} values, not {2}", what, length, should));
     }
+    /// <summary>mpm_X_get and mpm_X_set of handles whose items have fields.</summary>
+    internal unsafe delegate int FieldCall(IntPtr handle, byte* field, int type, int components, long n, long* ids,
+        IntPtr values);
+    internal unsafe void Exchange<T>(FieldCall call, string field, T[] values, int components, long n, long[] ids) {
+      Pinned(values, at => Call(p => {
+        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids)
+          return call(p, name, FieldView.TypeOf<T>(), components, n, number, at);
+      }));
+    }
+    /// <summary>Copies a field, of all `count` items or of those with the given ids.</summary>
+    internal T[] Copied<T>(FieldCall call, string field, int components, long count, long[] ids) {
+      long n = ids != null ? ids.Length : count;
+      var values = new T[components * n];
+      Exchange(call, field, values, components, n, ids);
+      return values;
+    }
+    /// <summary>Sets a field in the same way.</summary>
+    internal void Overwritten<T>(FieldCall call, string field, T[] values, int components, long count, long[] ids) {
+      long n = ids != null ? ids.Length : count;
+      Fits(field, values.Length, components * n);
+      Exchange(call, field, values, components, n, ids);
+    }
     internal unsafe delegate int Maker(IntPtr* made);
 
     /// <summary>Makes an object of C by a call.</summary>

@@ -258,24 +258,11 @@ namespace Mpm {
     }
     /// <summary>Copies a field, of all particles by ascending id or of some: [components][n], tensors in full.</summary>
     public T[] Get<T>(string field, long[] ids = null) {
-      int components = ComponentsOf(field);
-      long n = ids != null ? ids.Length : Count;
-      var values = new T[components * n];
-      Pinned(values, at => Call(p => {
-        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids)
-          return Native.mpm_particles_get(p, name, FieldView.TypeOf<T>(), components, n, number, at);
-      }));
-      return values;
+      return Copied<T>(Native.mpm_particles_get, field, ComponentsOf(field), Count, ids);
     }
     /// <summary>Sets a field, laid out as in Get.</summary>
     public void Set<T>(string field, T[] values, long[] ids = null) {
-      int components = ComponentsOf(field);
-      long n = ids != null ? ids.Length : Count;
-      Fits(field, values.Length, components * n);
-      Pinned(values, at => Call(p => {
-        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids)
-          return Native.mpm_particles_set(p, name, FieldView.TypeOf<T>(), components, n, number, at);
-      }));
+      Overwritten(Native.mpm_particles_set, field, values, ComponentsOf(field), Count, ids);
     }
     /// <summary>Sets a field to one value in every particle.</summary>
     public void SetAll<T>(string field, params T[] value) {

@@ -206,25 +206,12 @@ namespace Mpm {
     /// double: "reference_area" and "pressure" with one component; "position", "area", "displacement", "velocity", "force",
     /// "traction" and "dead_traction" with one for each axis. Force and velocity are those of the last step.</summary>
     public T[] Get<T>(string field, long[] ids = null) {
-      int components = ComponentsOf(field);
-      long n = ids != null ? ids.Length : Count;
-      var values = new T[components * n];
-      Pinned(values, at => Call(p => {
-        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids)
-          return Native.mpm_surface_get(p, name, FieldView.TypeOf<T>(), components, n, number, at);
-      }));
-      return values;
+      return Copied<T>(Native.mpm_surface_get, field, ComponentsOf(field), Count, ids);
     }
     /// <summary>Sets a field, laid out as in Get: all or none. Ids, reference areas, velocities and forces cannot be set; areas
     /// that are become those of reference.</summary>
     public void Set<T>(string field, T[] values, long[] ids = null) {
-      int components = ComponentsOf(field);
-      long n = ids != null ? ids.Length : Count;
-      Fits(field, values.Length, components * n);
-      Pinned(values, at => Call(p => {
-        fixed (byte* name = Text.Bytes(field)) fixed (long* number = ids)
-          return Native.mpm_surface_set(p, name, FieldView.TypeOf<T>(), components, n, number, at);
-      }));
+      Overwritten(Native.mpm_surface_set, field, values, ComponentsOf(field), Count, ids);
     }
   }
 

@@ -159,6 +159,28 @@ export function made(machine, context, name, values) {
   });
 }
 
+/** Copies a field of all items, or of those with the given ids; `of` is its type and components. */
+export function copied(handle, name, of, field, ids) {
+  const { machine } = handle;
+  return machine.arguments((a) => {
+    const n = ids === undefined ? handle.count : ids.length;
+    const out = a.room(TYPES[of.type], of.components * n);
+    const given = a.optional('i64', ids, n, 'ids');
+    handle.call(name, [a.text(field), of.type, of.components, BigInt(n), given, out]);
+    return machine.array(TYPES[of.type], out, of.components * n).slice();
+  });
+}
+
+/** Sets a field in the same way. */
+export function overwritten(handle, name, of, field, values, ids) {
+  handle.machine.arguments((a) => {
+    const n = ids === undefined ? handle.count : ids.length;
+    const given = a.optional('i64', ids, n, 'ids');
+    const array = a.array(TYPES[of.type], values, of.components * n, field);
+    handle.call(name, [a.text(field), of.type, of.components, BigInt(n), given, array]);
+  });
+}
+
 /** Calls `use` with arrays of a view that `name` fills, and gives the view back. */
 export function mapped(handle, name, values, use) {
   const { machine } = handle;

@@ -1,7 +1,7 @@
 // Sets of particles.
 import { constants as C } from './layout.mjs';
 import { Grid } from './grid.mjs';
-import { Handle, made, mapped } from './handle.mjs';
+import { Handle, copied, made, mapped, overwritten } from './handle.mjs';
 import { MpmError, TYPES } from './machine.mjs';
 import { Material } from './material.mjs';
 import { pieces } from './output.mjs';
@@ -142,35 +142,10 @@ export class Particles extends Handle {
     return this.arguments((a) => mapped(this, 'mpm_particles_map', [a.text(field), access], use));
   }
   get(field, ids) {
-    const { machine } = this;
-    return this.arguments((a) => {
-      const { type, components } = this.#look(field);
-      const n = ids === undefined ? this.count : ids.length;
-      const out = a.room(TYPES[type], components * n);
-      this.call('mpm_particles_get', [
-        a.text(field),
-        type,
-        components,
-        BigInt(n),
-        a.optional('i64', ids, n, 'ids'),
-        out,
-      ]);
-      return machine.array(TYPES[type], out, components * n).slice();
-    });
+    return copied(this, 'mpm_particles_get', this.#look(field), field, ids);
   }
   set(field, values, ids) {
-    this.arguments((a) => {
-      const { type, components } = this.#look(field);
-      const n = ids === undefined ? this.count : ids.length;
-      this.call('mpm_particles_set', [
-        a.text(field),
-        type,
-        components,
-        BigInt(n),
-        a.optional('i64', ids, n, 'ids'),
-        a.array(TYPES[type], values, components * n, field),
-      ]);
-    });
+    overwritten(this, 'mpm_particles_set', this.#look(field), field, values, ids);
   }
   setAll(field, value) {
     this.arguments((a) => {

@@ -1,8 +1,7 @@
 // Surfaces: markers without mass that move with the material and carry loads on its boundary.
 import { constants as C } from './layout.mjs';
 import { Grid } from './grid.mjs';
-import { Handle, made } from './handle.mjs';
-import { TYPES } from './machine.mjs';
+import { Handle, copied, made, overwritten } from './handle.mjs';
 
 const SCALARS = ['id', 'reference_area', 'pressure'];
 
@@ -88,33 +87,9 @@ export class Surface extends Handle {
     };
   }
   get(field, ids) {
-    return this.arguments((a) => {
-      const { type, components } = this.#look(field);
-      const n = ids === undefined ? this.count : ids.length;
-      const out = a.room(TYPES[type], components * n);
-      this.call('mpm_surface_get', [
-        a.text(field),
-        type,
-        components,
-        BigInt(n),
-        a.optional('i64', ids, n, 'ids'),
-        out,
-      ]);
-      return this.machine.array(TYPES[type], out, components * n).slice();
-    });
+    return copied(this, 'mpm_surface_get', this.#look(field), field, ids);
   }
   set(field, values, ids) {
-    this.arguments((a) => {
-      const { type, components } = this.#look(field);
-      const n = ids === undefined ? this.count : ids.length;
-      this.call('mpm_surface_set', [
-        a.text(field),
-        type,
-        components,
-        BigInt(n),
-        a.optional('i64', ids, n, 'ids'),
-        a.array(TYPES[type], values, components * n, field),
-      ]);
-    });
+    overwritten(this, 'mpm_surface_set', this.#look(field), field, values, ids);
   }
 }

@@ -137,9 +137,9 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
                          int64_t p) {
   const cloud_tile *tile = of->tile;
   const int32_t first = of->weights->node[p];
+  double volume = of->volume[of->slot + p];
   /* by their volume rings would turn normals away from the axis */
-  const double radius = of->radius ? of->radius[of->slot + p] : 1.0;
-  const double volume = of->volume[of->slot + p] / (radius > 0.0 ? radius : 1.0);
+  if (of->radius && of->radius[of->slot + p] > 0.0) volume /= of->radius[of->slot + p];
   stencil_axis axis[3];
   for (int32_t k = 0; k < 3; ++k) {
     const int32_t of_grid = k - (3 - grid->dim);

@@ -111,6 +111,27 @@ void mpmi_paired_stiffness_local(int32_t dim, const mpmi_paired_local *of) {
   for (int64_t p = 0; p < of->n; ++p) add_paired(dim, of, p);
 }
 
+/* What a cell sums up for one of its nodes, by axis: of particles with their own pressure h g and
+ * V (1 + j) g; of paired ones, beside those, k g. */
+typedef struct node_sums {
+  double *own, *paired; /* paired: NULL for a particle that is not */
+} node_sums;
+
+/* Adds what the gradient g of a node, which its component i makes, has to do with an entry of h and k, and
+ * with one of the inverse. */
+static void add_gradient(const mpmi_locking_particle *of, int32_t dim, const node_sums *to, int32_t i,
+                         int32_t entry, int32_t inverse, double g) {
+  const double dilation = of->volume * of->inverse[inverse] * g;
+  to->own[dim + i] += dilation;
+  if (!to->paired) {
+    to->own[i] += of->h[entry] * g;
+    return;
+  }
+  to->paired[i] += of->h[entry] * g;
+  to->paired[dim + i] += dilation;
+  to->paired[2 * dim + i] += of->k[entry] * g;
+}
+
 void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *work, const mpmi_weights *W,
                                 int64_t p, int32_t cell_place, const mpmi_locking_particle *of) {
   mpmi_newton *newton = balance->newton;
@@ -151,25 +172,12 @@ void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *w
     }
     const int32_t place = base + in_cell[a];
     newton->cell_node[cell * nodes + place] = work->tile_active[W->node[p] + newton->stencil.in_tile[a]];
-    double *to = sums + (int64_t)2 * place * dim;
-    double *paired_to = of->paired ? paired + (int64_t)3 * place * dim : NULL;
+    const node_sums to = {sums + (int64_t)2 * place * dim,
+                          of->paired ? paired + (int64_t)3 * place * dim : NULL};
     for (int32_t i = 0; i < dim; ++i)
-      for (int32_t K = 0; K < dim; ++K) {
-        if (!of->paired) to[i] += of->h[3 * i + K] * G[K];
-        to[dim + i] += of->volume * of->inverse[3 * K + i] * G[K];
-        if (!of->paired) continue;
-        paired_to[i] += of->h[3 * i + K] * G[K];
-        paired_to[dim + i] += of->volume * of->inverse[3 * K + i] * G[K];
-        paired_to[2 * dim + i] += of->k[3 * i + K] * G[K];
-      }
-    if (!mpmi_is_axisymmetric(grid)) continue;
-    const double hoop = of->hoop * w; /* by u_r alone */
-    if (!of->paired) to[0] += of->h[8] * hoop;
-    to[dim] += of->volume * of->inverse[8] * hoop;
-    if (!of->paired) continue;
-    paired_to[0] += of->h[8] * hoop;
-    paired_to[dim] += of->volume * of->inverse[8] * hoop;
-    paired_to[2 * dim] += of->k[8] * hoop;
+      for (int32_t K = 0; K < dim; ++K) add_gradient(of, dim, &to, i, 3 * i + K, 3 * K + i, G[K]);
+    /* the hoop of a ring is stretched by u_r alone */
+    if (mpmi_is_axisymmetric(grid)) add_gradient(of, dim, &to, 0, 8, 8, of->hoop * w);
   }
 }
 

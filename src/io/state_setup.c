@@ -81,7 +81,7 @@ static void write_field_list(mpmi_archive *a, const mpm_particles *set) {
 }
 
 static int32_t may_be_absent(const mpm_grid *grid, int32_t field) {
-  if (field == MPMI_SIZE) return !mpmi_has_domains(grid);
+  if (field == MPMI_SIZE) return !mpmi_has_sizes(grid);
   return field == MPMI_ACCELERATION || field == MPMI_DILATION_RATIO || field == MPMI_L ||
          field == MPMI_REFERENCE || field == MPMI_PRESCRIBED || field == MPMI_APPLIED_FORCE;
 }
@@ -113,9 +113,11 @@ static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
     a->status =
         mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %s%s is %lld there, %d here",
                   a->where, what, (long long)there, (int)here);
-  } else if (saved.present < 0 || saved.present > 1 || *found & UINT64_C(1) << f ||
-             (!may_be_absent(to->fresh.grid, f) && saved.present != field->present)) {
+  } else if (saved.present < 0 || saved.present > 1 || *found & UINT64_C(1) << f) {
     mpmi_archive_damaged(a, "its list of fields makes no sense");
+  } else if (!may_be_absent(to->fresh.grid, f) && saved.present != field->present) {
+    a->status =
+        refuse_field(a, saved.name, saved.present ? "is there, but not here" : "is here, but not there");
   }
   *found |= UINT64_C(1) << f;
   field->present = (int32_t)saved.present;

@@ -508,13 +508,13 @@ MPMI_LAW_KERNELS(clay_constants, cam_clay, cam_clay_tangent)
 
 const mpmi_law KERNEL(law_cam_clay) = {
     .name = "cam_clay",
-    .no_sheets = 1,
     MPMI_PARAMS(params),
     MPMI_STATES(states),
     .start = start,
     MPMI_REFUSALS(refusals),
     .pressure_from_shear = 1,
     .check = check,
+    .no_sheets = 1,
     .constants_size = sizeof(clay_constants),
     .prepare = prepare,
     .stress = stress_kernel,

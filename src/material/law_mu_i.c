@@ -129,10 +129,10 @@ MPMI_LAW_KERNELS(grains_constants, mu_i, mu_i_tangent)
 
 const mpmi_law KERNEL(law_mu_i) = {
     .name = "mu_i",
-    .no_sheets = 1,
     MPMI_PARAMS(params),
     MPMI_STATES(states),
     .check = check,
+    .no_sheets = 1,
     .constants_size = sizeof(grains_constants),
     .prepare = prepare,
     .stress = stress_kernel,

@@ -160,11 +160,11 @@ MPMI_LAW_KERNELS(snow_constants, snow, snow_tangent)
 
 const mpmi_law KERNEL(law_snow) = {
     .name = "snow",
-    .no_sheets = 1,
     MPMI_PARAMS(params),
     MPMI_STATES(states),
     .stress_from_F = 1,
     .rest = MPMI_REST_NONE,
+    .no_sheets = 1,
     .constants_size = sizeof(snow_constants),
     .prepare = prepare,
     .stress = stress_kernel,

@@ -88,7 +88,7 @@ void mpmi_fields_builtin(mpm_particles *set) {
     field->present = from->present;
   }
   set->field[MPMI_STRESS].writable = !mpmi_material_stress_from_F(set->material);
-  set->field[MPMI_SIZE].present = mpmi_has_domains(set->grid) || mpmi_is_axisymmetric(set->grid);
+  set->field[MPMI_SIZE].present = mpmi_has_sizes(set->grid);
   set->field[MPMI_STATE].present = state_count > 0;
   set->field[MPMI_IMAGE].present = periodic[0] || periodic[1] || periodic[2];
   set->field_count = MPMI_BUILTIN_FIELDS;

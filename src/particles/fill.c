@@ -53,7 +53,8 @@ static mpm_status lay_lattice(mpm_particles *set, const double *lower, const dou
   if (points > most_points)
     return mpmi_fail(set->context, MPM_E_ARG, "the box holds %g lattice points, more than %g", points,
                      most_points);
-  const double most = on->volume * (mpmi_is_axisymmetric(grid) ? fmax(grid->upper[0], 1.0) : 1.0);
+  /* of rings, at the largest radius */
+  const double most = on->volume * (mpmi_is_axisymmetric(grid) ? grid->upper[0] : 1.0);
   if (!(on->volume > 0) || !isfinite(most) || !isfinite(most * set->material->density))
     return mpmi_fail(set->context, MPM_E_ARG,
                      "a lattice cell has volume %g: that or its mass is out of range", on->volume);

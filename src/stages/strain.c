@@ -133,11 +133,13 @@ void mpmi_gradient_keep(mpmi_batch *b) {
            b->law.L + mpmi_gradient_map(dim)[c] * b->law.ld, (size_t)b->n * sizeof(double));
 }
 
-/* Volumes are made again from stored components, and must have the bits that come of that. */
-static uint32_t make_volumes_of_rings(const mpmi_batch *b) {
+/* Makes the volumes of a batch of stored components of F, as they are made again later: with those bits. */
+static uint32_t make_volumes(const mpmi_batch *b) {
   const double *F[9] = {NULL};
-  for (int32_t c = 0; c < mpmi_tensor_components(2); ++c) F[c] = b->deform.F_new[mpmi_tensor_map(2)[c]];
-  return b->step->settings->deformation->volume[2](F, b->deform.initial_volume, b->deform.volume, b->n);
+  const int32_t dim = b->set->grid->dim;
+  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
+    F[c] = mpmi_component_row(b->set, MPMI_F, 1, c) + b->begin;
+  return b->step->settings->deformation->volume[dim](F, b->deform.initial_volume, b->deform.volume, b->n);
 }
 
 int32_t mpmi_strain_deform(mpmi_batch *b) {
@@ -145,17 +147,15 @@ int32_t mpmi_strain_deform(mpmi_batch *b) {
   const int32_t kinematics = mpmi_material_kinematics(b->set->material);
   uint32_t flags = b->taken.deformed;
   if (!b->gather.deform) flags = by->deform[kinematics][mpmi_strain_dim(b->set->grid)](&b->deform, b->n);
-  if (mpmi_is_axisymmetric(b->set->grid)) flags |= make_volumes_of_rings(b);
+  if (mpmi_is_axisymmetric(b->set->grid)) flags |= make_volumes(b);
   b->flags |= flags;
   return !flags;
 }
 
 /* Takes F33 from the law, which has found it, and the volume that it makes. */
 static void take_thickness(mpmi_batch *b) {
-  const double *F[9] = {NULL};
   memcpy(b->deform.F_new[4], b->law.F + 8 * b->law.ld, (size_t)b->n * sizeof(double));
-  for (int32_t c = 0; c < mpmi_tensor_components(2); ++c) F[c] = b->deform.F_new[c];
-  b->flags |= b->step->settings->deformation->volume[2](F, b->deform.initial_volume, b->deform.volume, b->n);
+  b->flags |= make_volumes(b);
 }
 
 void mpmi_strain_law(mpmi_batch *b) {

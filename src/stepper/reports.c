@@ -19,13 +19,13 @@ const mpmi_owner mpmi_stepper_owns = {in_step, present_time};
 
 /* ---- info --------------------------------------------------------------------------------------------- */
 void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_info *info) {
+  const int32_t rings = mpmi_is_axisymmetric(s->grid);
   const mpmi_sums *sums = &s->history.sums;
   *info = *last;
   info->struct_size = sizeof *info;
   info->step = s->history.step;
   info->removed = s->history.removed;
   info->resorts = s->layout.sorts;
-  const int32_t rings = mpmi_is_axisymmetric(s->grid);
   info->t = s->history.t;
   info->external_work_total = s->history.totals.external_work;
   info->damping_dissipation_total = s->history.totals.damping_dissipation;

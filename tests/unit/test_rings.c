@@ -1,6 +1,6 @@
 /* Bodies of revolution: their fills, gradient, forces, surfaces and refusals. */
 #include "geometry.h"
-#include "reference.h"
+#include "old_format.h"
 #include "surfaces.h"
 
 /* The methods that go through these are all that rings offer. */
@@ -79,11 +79,10 @@ static void wild(const double *x, double *v) {
     v[k] = 1e-3 * noise_at((uint64_t)(llround(x[0] * 64.0) * 1000 + llround(x[1] * 64.0) * 2 + k + 70));
 }
 
-static void set_noise(const world *w, mpm_particles *set, const char *field, int32_t components, int64_t n,
-                      double size) {
+static void set_wild_stress(const world *w, mpm_particles *set, int64_t n) {
   double *values = calloc((size_t)(6 * n), sizeof *values);
-  for (int64_t i = 0; i < components * n; ++i) values[i] = size * noise_at((uint64_t)i + 3);
-  put(w, set, field, 6, values);
+  for (int64_t i = 0; i < 4 * n; ++i) values[i] = 1e3 * noise_at((uint64_t)i + 3);
+  put(w, set, "stress", 6, values);
   free(values);
 }
 
@@ -96,7 +95,7 @@ static void check_power(const world_desc *desc, const char *name) {
   mpm_particles *set = world_open(&w, &d);
   const double low[] = {0.7, 0.7}, high[] = {1.3, 1.4};
   const int64_t n = world_fill(&w, set, low, high, 2);
-  set_noise(&w, set, "stress", 4, n, 1e3);
+  set_wild_stress(&w, set, n);
   double *stress = fetch(&w, set, "stress", 6), *volume = fetch(&w, set, "volume", 1);
   int64_t nodes = 0, count = 0;
   ck_ok(&w, mpm_step_begin(w.stepper, 1.0));
@@ -328,34 +327,56 @@ START_TEST(areas_follow_the_ring) {
 END_TEST
 
 /* ---- contact ------------------------------------------------------------------------------------------- */
-/* A block falls onto a plane; returns after how many steps they touch. */
-static int32_t steps_to_contact(int32_t geometry, double origin) {
-  world w;
+/* A block of 0.75 by 0.75 whose lower face is at y = 1 moves along y above, or on, a plane. */
+typedef struct floor_case {
+  int32_t geometry;
+  double origin, speed, level, adhesion;
+} floor_case;
+
+static mpm_obstacle *open_on_floor(world *w, const floor_case *of) {
   world_desc desc = world_default(2, 12, 0.25);
-  desc.grid.geometry = geometry;
-  desc.grid.origin[0] = origin;
-  mpm_particles *set = world_open(&w, &desc);
-  const double low[] = {origin + 1.0, 1.0}, high[] = {origin + 1.75, 1.75}, v[] = {0.0, -1.0};
-  world_fill(&w, set, low, high, 2);
-  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
+  desc.grid.geometry = of->geometry;
+  desc.grid.origin[0] = of->origin;
+  mpm_particles *set = world_open(w, &desc);
+  const double low[] = {of->origin, 1.0}, high[] = {of->origin + 0.75, 1.75}, v[] = {0.0, of->speed};
+  world_fill(w, set, low, high, 2);
+  ck_ok(w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
   mpm_obstacle_desc d;
+  mpm_contact_desc contact;
   mpm_obstacle *floor;
-  ck_ok(&w, mpm_obstacle_desc_init(&d, sizeof d));
+  ck_ok(w, mpm_contact_desc_init(&contact, sizeof contact));
+  ck_ok(w, mpm_obstacle_desc_init(&d, sizeof d));
+  contact.adhesion = of->adhesion;
+  d.contact = &contact;
   d.shape = MPM_SHAPE_PLANE;
-  d.position[0] = origin + 1.0;
-  d.position[1] = 0.93;
-  ck_ok(&w, mpm_obstacle_create(w.context, &d, &floor));
-  ck_ok(&w, mpm_stepper_add_obstacle(w.stepper, floor));
+  d.position[0] = of->origin + 1.0;
+  d.position[1] = of->level;
+  ck_ok(w, mpm_obstacle_create(w->context, &d, &floor));
+  ck_ok(w, mpm_stepper_add_obstacle(w->stepper, floor));
+  return floor;
+}
+
+static mpm_contact_info step_on_floor(world *w, mpm_obstacle *floor) {
   mpm_contact_info info = {.struct_size = sizeof info};
-  int32_t steps = 0;
-  while (!(info.normal_force > 0.0) && steps < 200) {
-    world_step(&w, 1e-3);
-    ck_ok(&w, mpm_obstacle_contact_info(floor, MPM_BODY_ANY, &info));
-    ++steps;
-  }
-  ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, floor));
-  ck_ok(&w, mpm_obstacle_destroy(floor));
-  world_close(&w);
+  world_step(w, 1e-3);
+  ck_ok(w, mpm_obstacle_contact_info(floor, MPM_BODY_ANY, &info));
+  return info;
+}
+
+static void close_on_floor(world *w, mpm_obstacle *floor) {
+  ck_ok(w, mpm_stepper_remove_obstacle(w->stepper, floor));
+  ck_ok(w, mpm_obstacle_destroy(floor));
+  world_close(w);
+}
+
+/* Returns after how many steps a falling block touches the floor. */
+static int32_t steps_to_contact(int32_t geometry, double origin) {
+  const floor_case of = {geometry, origin, -1.0, 0.93, 0.0};
+  world w;
+  mpm_obstacle *floor = open_on_floor(&w, &of);
+  int32_t steps = 1;
+  while (!(step_on_floor(&w, floor).normal_force > 0.0) && steps < 200) ++steps;
+  close_on_floor(&w, floor);
   return steps;
 }
 
@@ -369,39 +390,16 @@ START_TEST(rings_touch_as_slabs_do) {
 }
 END_TEST
 
-/* A block hangs on a plane by adhesion; returns the largest force over the area of the face. */
+/* Returns the largest force over the area of the face of a block that is pulled off the floor. */
 static double adhesion_of(int32_t geometry, double origin) {
+  const floor_case of = {geometry, origin, 0.02, 1.0, 50.0};
   world w;
-  world_desc desc = world_default(2, 12, 0.25);
-  desc.grid.geometry = geometry;
-  desc.grid.origin[0] = origin;
-  mpm_particles *set = world_open(&w, &desc);
-  const double low[] = {origin, 1.0}, high[] = {origin + 1.0, 1.75}, v[] = {0.0, 0.02};
-  world_fill(&w, set, low, high, 2);
-  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
-  mpm_obstacle_desc d;
-  mpm_contact_desc sticky;
-  mpm_obstacle *floor;
-  ck_ok(&w, mpm_contact_desc_init(&sticky, sizeof sticky));
-  ck_ok(&w, mpm_obstacle_desc_init(&d, sizeof d));
-  sticky.adhesion = 50.0;
-  d.shape = MPM_SHAPE_PLANE;
-  d.contact = &sticky;
-  d.position[0] = origin + 1.0;
-  d.position[1] = 1.0;
-  ck_ok(&w, mpm_obstacle_create(w.context, &d, &floor));
-  ck_ok(&w, mpm_stepper_add_obstacle(w.stepper, floor));
+  mpm_obstacle *floor = open_on_floor(&w, &of);
   double most = 0.0;
-  for (int32_t k = 0; k < 40; ++k) {
-    mpm_contact_info info = {.struct_size = sizeof info};
-    world_step(&w, 1e-3);
-    ck_ok(&w, mpm_obstacle_contact_info(floor, MPM_BODY_ANY, &info));
-    most = fmax(most, fabs(info.force[1]));
-  }
-  ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, floor));
-  ck_ok(&w, mpm_obstacle_destroy(floor));
-  world_close(&w);
-  return most / (geometry ? 0.5 * ((origin + 1.0) * (origin + 1.0) - origin * origin) : 1.0);
+  for (int32_t k = 0; k < 40; ++k) most = fmax(most, fabs(step_on_floor(&w, floor).force[1]));
+  close_on_floor(&w, floor);
+  const double end = origin + 0.75, slab = 0.75, ring = 0.5 * (end * end - origin * origin);
+  return most / (geometry == MPM_AXISYMMETRIC ? ring : slab);
 }
 
 START_TEST(adhesion_goes_by_the_area) {
@@ -511,18 +509,49 @@ START_TEST(refusals) {
 }
 END_TEST
 
-/* A state of slabs does not load into rings. */
+/* A state loads into its own geometry alone. */
 START_TEST(states_know_their_geometry) {
-  world slabs, w;
-  world_desc desc = world_default(2, 8, 0.25);
-  world_fill_cube(&slabs, world_open(&slabs, &desc), 0.7, 1.3);
-  const saved_state state = world_save(&slabs);
-  desc.grid.geometry = MPM_AXISYMMETRIC;
-  world_open(&w, &desc);
+  static const struct {
+    int32_t from, to;
+    const char *why;
+  } unlike[] = {{MPM_PLANE_STRAIN, MPM_PLANE_STRESS, "geometry is 0 there, 2 here"},
+                {MPM_AXISYMMETRIC, MPM_PLANE_STRAIN, "geometry is 1 there, 0 here"},
+                {MPM_PLANE_STRAIN, MPM_AXISYMMETRIC, "\"size\" is here, but not there"}};
+  for (int32_t k = 0; k < 3; ++k) {
+    world a, b;
+    world_desc desc = world_default(2, 8, 0.25);
+    desc.grid.geometry = unlike[k].from;
+    world_fill_cube(&a, world_open(&a, &desc), 0.7, 1.3);
+    const saved_state state = world_save(&a);
+    desc.grid.geometry = unlike[k].to;
+    world_open(&b, &desc);
+    ck_refused(&b, mpm_state_load(b.stepper, state.data, state.bytes), MPM_E_FORMAT, unlike[k].why);
+    free(state.data);
+    world_close(&a);
+    world_close(&b);
+  }
+}
+END_TEST
+
+/* A state in which rings lack their sections is damaged. */
+START_TEST(states_have_sections) {
+  world w;
+  const world_desc desc = rings(8, 0.25);
+  world_fill_cube(&w, world_open(&w, &desc), 0.7, 1.3);
+  const saved_state state = world_save(&w);
+  int32_t changed = 0;
+  for (int64_t at = 0; at + (int64_t)sizeof(mpmi_state_field) <= state.bytes; at += 8) {
+    mpmi_state_field field;
+    memcpy(&field, state.data + at, sizeof field);
+    if (memcmp(field.name, "size", 5)) continue;
+    memset(state.data + at + offsetof(mpmi_state_field, present), 0, sizeof field.present);
+    ++changed;
+  }
+  ck_assert_int_eq(changed, 1);
+  seal_state(state.data, MPMI_STATE_FORMAT, state.bytes);
   ck_refused(&w, mpm_state_load(w.stepper, state.data, state.bytes), MPM_E_FORMAT,
-             "geometry is 0 there, 1 here");
+             "\"size\" is here, but not there");
   free(state.data);
-  world_close(&slabs);
   world_close(&w);
 }
 END_TEST
@@ -544,6 +573,7 @@ Suite *rings_suite(void) {
   tcase_add_test(parts, sections_stay);
   tcase_add_test(parts, refusals);
   tcase_add_test(parts, states_know_their_geometry);
+  tcase_add_test(parts, states_have_sections);
   suite_add_tcase(suite, parts);
   TCase *implicit = tcase_create("implicit");
   tcase_add_loop_test(implicit, tangents_of_rings, 0, 6 * BASES);

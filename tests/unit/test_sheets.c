@@ -73,7 +73,8 @@ static const char *const solids[] = {
     "neo_hookean", "neo_hookean_decoupled", "linear_elastic", "j2", "drucker_prager", "mohr_coulomb", NULL};
 enum { SOLIDS = sizeof solids / sizeof *solids };
 
-static void open_solid(world *w, const method *how, const char *model) {
+/* Describes sheets of a law that yields, if it can, at some 1e4. */
+static world_desc solid(const method *how, const char *model) {
   static const mpm_param soil[] = {
       {"E", 1e6}, {"nu", 0.3}, {"density", 1e3}, {"phi", 30.0}, {"cohesion", 1e4}};
   world_desc desc = sheets(how, model);
@@ -81,6 +82,11 @@ static void open_solid(world *w, const method *how, const char *model) {
     desc.law.params = soil;
     desc.law.param_count = 5;
   }
+  return desc;
+}
+
+static void open_solid(world *w, const method *how, const char *model) {
+  const world_desc desc = solid(how, model);
   open_block_with(w, &desc);
 }
 
@@ -255,14 +261,8 @@ START_TEST(tangents_of_sheets) {
   const method how = {METHOD(BSPLINE2, NEWMARK, FLIP, 1.0, "Newmark")};
   const char *model = solids[_i];
   world w;
-  world_desc desc = sheets(&how, model);
-  static const mpm_param soil[] = {
-      {"E", 1e6}, {"nu", 0.3}, {"density", 1e3}, {"phi", 30.0}, {"cohesion", 2e4}};
+  world_desc desc = solid(&how, model);
   desc.stepper.quasi_static = 1;
-  if (model && (!strcmp(model, "drucker_prager") || !strcmp(model, "mohr_coulomb"))) {
-    desc.law.params = soil;
-    desc.law.param_count = 5;
-  }
   mpm_particles *set = world_open(&w, &desc);
   const double low[] = {0.0, 1.0}, high[] = {1.0, 2.0};
   const int64_t n = world_fill(&w, set, low, high, 2);

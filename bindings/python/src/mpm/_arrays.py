@@ -43,6 +43,14 @@ def rows(array, tensor=False):
     return array.T
 
 
+def chosen(ids, count):
+    """Ids for C and how many they are; of all `count` items where ids is None."""
+    if ids is None:
+        return None, count
+    ids = np.ascontiguousarray(np.atleast_1d(ids), np.int64)
+    return ids, len(ids)
+
+
 def address(array):
     """The address of an array's memory, or None for None."""
     return None if array is None else array.ctypes.data

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from . import _api
-from ._arrays import TYPES, address, columns, doubles, lend, rows
+from ._arrays import TYPES, address, chosen, columns, doubles, lend, rows
 from ._handles import Handle
 from ._library import documented, lib
 
@@ -143,8 +143,7 @@ class Particles(Handle):
     def get(self, field, ids=None):
         """Copies a field, of all particles by ascending id or of those with the given ids."""
         kind, components, _ = self._field(field)
-        ids = None if ids is None else np.ascontiguousarray(np.atleast_1d(ids), np.int64)
-        n = len(self) if ids is None else len(ids)
+        ids, n = chosen(ids, len(self))
         out = np.empty((components, n), TYPES[kind])
         self._context._check(lib.mpm_particles_get(self, field.encode(), kind, components, n, address(ids), address(out)))
         return rows(out, tensor=field in _TENSORS)
@@ -163,15 +162,14 @@ class Particles(Handle):
         """Sets a field of all particles by ascending id, or of those with the given ids; one value stands for all."""
         kind, components, _ = self._field(field)
         dtype, values = TYPES[kind], np.asarray(values)
-        ids = None if ids is None else np.ascontiguousarray(np.atleast_1d(ids), np.int64)
+        ids, n = chosen(ids, len(self))
         alone = values.ndim == 0 or (values.ndim == 1 and components > 1) or (values.ndim == 2 and field in _TENSORS)
         if alone:
             value = np.ascontiguousarray(np.broadcast_to(values.ravel() if values.ndim == 2 else values, (components,)), dtype)
             if ids is None:
                 self._context._check(lib.mpm_particles_set_all(self, field.encode(), kind, components, address(value)))
                 return
-            values = np.broadcast_to(value, (len(ids), components))
-        n = len(self) if ids is None else len(ids)
+            values = np.broadcast_to(value, (n, components))
         array = columns(values, components, n, dtype)
         self._context._check(lib.mpm_particles_set(self, field.encode(), kind, components, n, address(ids), address(array)))
 

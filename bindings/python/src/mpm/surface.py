@@ -4,7 +4,7 @@ import ctypes
 import numpy as np
 
 from . import _api
-from ._arrays import TYPES, Batch, address, columns, doubles, rows, scalar, vector
+from ._arrays import TYPES, Batch, address, chosen, columns, doubles, rows, scalar, vector
 from ._handles import Handle, descriptor, fill
 from ._library import documented, lib
 
@@ -144,8 +144,7 @@ class Surface(Handle):
     def get(self, field, ids=None):
         """Copies a field, of all markers by ascending id or of those with the given ids."""
         kind, components = self._field(field)
-        ids = None if ids is None else np.ascontiguousarray(np.atleast_1d(ids), np.int64)
-        n = len(self) if ids is None else len(ids)
+        ids, n = chosen(ids, len(self))
         out = np.empty((components, n), TYPES[kind])
         self._context._check(lib.mpm_surface_get(self, field.encode(), kind, components, n, address(ids), address(out)))
         return rows(out)
@@ -155,8 +154,7 @@ class Surface(Handle):
         """Sets a field of all markers by ascending id, or of those with the given ids; one value stands for all."""
         kind, components = self._field(field)
         dtype, values = TYPES[kind], np.asarray(values)
-        ids = None if ids is None else np.ascontiguousarray(np.atleast_1d(ids), np.int64)
-        n = len(self) if ids is None else len(ids)
+        ids, n = chosen(ids, len(self))
         if values.ndim == 0 or (values.ndim == 1 and components > 1):
             values = np.broadcast_to(values, (n, components))
         array = columns(values, components, n, dtype)

@@ -102,6 +102,7 @@
 pub use mpm_sys as sys;
 pub use mpm_sys::constants;
 
+mod arrays;
 mod batch;
 mod callback;
 mod context;

@@ -76,8 +76,8 @@ impl<'a> LinearSystem<'a> {
     }
     /// Computes `y = matrix * x`.
     pub fn apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        crate::particles::fits("x", x.len(), self.rows())?;
-        crate::particles::fits("y", y.len(), self.rows())?;
+        crate::arrays::fits("x", x.len(), self.rows())?;
+        crate::arrays::fits("y", y.len(), self.rows())?;
         // SAFETY: both have the rows of the system and do not overlap.
         check(unsafe { sys::mpm_operator_apply(self.matrix, x.as_ptr(), y.as_mut_ptr()) })
     }

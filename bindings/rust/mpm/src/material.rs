@@ -3,7 +3,7 @@ use crate::callback::Owned;
 use crate::entry::{Core, Sent};
 use crate::error::{c_text, c_texts, text_of};
 use crate::law::{on_stress, on_tangent, LawSlots};
-use crate::particles::{fits, pointer};
+use crate::arrays::{fits, pointer};
 use crate::{sys, Context, Error, Law, Result};
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
 //! Sets of particles.
+use crate::arrays::{fits, pointer, Field};
 use crate::entry::{Core, Sent};
 use crate::error::{c_text, c_texts, text_of};
 use crate::view::Lent;
@@ -291,23 +292,8 @@ impl Particles {
     }
 
     fn copy<T: Element>(&self, field: &str, n: usize, ids: Option<&[i64]>) -> Result<Vec<T>> {
-        let (name, components) = (c_text(field)?, self.components(field)?);
-        let mut out = vec![T::default(); components * n];
-        let entry = self.context.enter()?;
-        // SAFETY: the library compares type, components and n with those of the field.
-        let status = unsafe {
-            sys::mpm_particles_get(
-                self.handle,
-                name.as_ptr(),
-                T::TYPE,
-                components as i32,
-                n as i64,
-                pointer(ids),
-                out.as_mut_ptr().cast(),
-            )
-        };
-        entry.done(status)?;
-        Ok(out)
+        let of = Field { name: field, components: self.components(field)?, n, ids };
+        of.copied(&self.context, sys::mpm_particles_get, self.handle)
     }
 
     /// Sets a field of all particles, laid out as in [`Particles::get`].
@@ -321,22 +307,8 @@ impl Particles {
     }
 
     fn overwrite<T: Element>(&mut self, field: &str, n: usize, ids: Option<&[i64]>, values: &[T]) -> Result<()> {
-        let (name, components) = (c_text(field)?, self.components(field)?);
-        fits(field, values.len(), components * n)?;
-        let entry = self.context.enter()?;
-        // SAFETY: the library compares type, components and n with those of the field.
-        let status = unsafe {
-            sys::mpm_particles_set(
-                self.handle,
-                name.as_ptr(),
-                T::TYPE,
-                components as i32,
-                n as i64,
-                pointer(ids),
-                values.as_ptr().cast(),
-            )
-        };
-        entry.done(status)
+        let of = Field { name: field, components: self.components(field)?, n, ids };
+        of.overwritten(&self.context, sys::mpm_particles_set, self.handle, values)
     }
 
     /// Sets a field to one value in every particle.
@@ -403,17 +375,4 @@ impl Drop for Particles {
             drop(keep);
         });
     }
-}
-
-/// A pointer to an optional array; NULL for none.
-pub(crate) fn pointer<T>(values: Option<&[T]>) -> *const T {
-    values.map_or(std::ptr::null(), <[T]>::as_ptr)
-}
-
-/// Sees that an array has the length that C will read.
-pub(crate) fn fits(what: &str, length: usize, should: usize) -> Result<()> {
-    if length == should {
-        return Ok(());
-    }
-    Err(Error::argument(format!("\"{what}\" has {length} values, not {should}")))
 }

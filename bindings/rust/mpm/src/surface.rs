@@ -1,8 +1,7 @@
 //! Surfaces: markers without mass that move with the material and carry loads on its boundary.
+use crate::arrays::{fits, pointer, Field};
 use crate::callback::{alone, Owned};
 use crate::entry::{Core, Sent};
-use crate::error::c_text;
-use crate::particles::{fits, pointer};
 use crate::{sys, Columns, Element, Filled, Flow, Grid, MarkerBatch, Result, SurfaceDesc};
 use std::os::raw::c_void;
 use std::sync::Arc;
@@ -185,23 +184,8 @@ impl Surface {
     }
 
     fn copy<T: Element>(&self, field: &str, n: usize, ids: Option<&[i64]>) -> Result<Vec<T>> {
-        let (name, components) = (c_text(field)?, self.components(field));
-        let mut out = vec![T::default(); components * n];
-        let entry = self.context.enter()?;
-        // SAFETY: the library compares type, components and n with those of the field.
-        let status = unsafe {
-            sys::mpm_surface_get(
-                self.handle,
-                name.as_ptr(),
-                T::TYPE,
-                components as i32,
-                n as i64,
-                pointer(ids),
-                out.as_mut_ptr().cast(),
-            )
-        };
-        entry.done(status)?;
-        Ok(out)
+        let of = Field { name: field, components: self.components(field), n, ids };
+        of.copied(&self.context, sys::mpm_surface_get, self.handle)
     }
 
     /// Sets a field of all markers, laid out as in [`Surface::get`]: all or none. Ids, reference areas, velocities and forces
@@ -216,22 +200,8 @@ impl Surface {
     }
 
     fn overwrite<T: Element>(&mut self, field: &str, n: usize, ids: Option<&[i64]>, values: &[T]) -> Result<()> {
-        let (name, components) = (c_text(field)?, self.components(field));
-        fits(field, values.len(), components * n)?;
-        let entry = self.context.enter()?;
-        // SAFETY: the library compares type, components and n with those of the field.
-        let status = unsafe {
-            sys::mpm_surface_set(
-                self.handle,
-                name.as_ptr(),
-                T::TYPE,
-                components as i32,
-                n as i64,
-                pointer(ids),
-                values.as_ptr().cast(),
-            )
-        };
-        entry.done(status)
+        let of = Field { name: field, components: self.components(field), n, ids };
+        of.overwritten(&self.context, sys::mpm_surface_set, self.handle, values)
     }
 
     fn components(&self, field: &str) -> usize {
