@@ -264,9 +264,8 @@ MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t
 /**
  * Makes the present state the one from which all deformation counts: deformation_gradient becomes I,
  * initial_volume the present volume, dilation_ratio 1, and reference_position, where there is one, the
- * present (unwrapped) position. With MPM_CPGIMP and of
- * MPM_AXISYMMETRIC edges in "size" become the present ones. Of MPM_PLANE_STRESS F33 stays. Mass, velocity,
- * Cauchy stress and state variables stay.
+ * present (unwrapped) position. With MPM_CPGIMP and of MPM_AXISYMMETRIC edges in "size" become the present
+ * ones. Of MPM_PLANE_STRESS F33 stays. Mass, velocity, Cauchy stress and state variables stay.
  *
  * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay)
  * find J = 1 from then on: elastic strain, energy per initial volume and cohesion count by the present
