@@ -94,7 +94,7 @@ contains
 
   subroutine check_mpm_grid_desc()
     type(mpm_grid_desc), target :: it
-    call compare("mpm_grid_desc", c_sizeof(it), of(112, 112))
+    call compare("mpm_grid_desc", c_sizeof(it), of(120, 120))
     call compare("mpm_grid_desc%struct_size", distance(c_loc(it), c_loc(it%struct_size)), of(0, 0))
     call compare("mpm_grid_desc%dim", distance(c_loc(it), c_loc(it%dim)), of(4, 4))
     call compare("mpm_grid_desc%basis", distance(c_loc(it), c_loc(it%basis)), of(8, 8))
@@ -105,6 +105,8 @@ contains
     call compare("mpm_grid_desc%origin", distance(c_loc(it), c_loc(it%origin)), of(56, 56))
     call compare("mpm_grid_desc%spacing", distance(c_loc(it), c_loc(it%spacing)), of(80, 80))
     call compare("mpm_grid_desc%smoothing", distance(c_loc(it), c_loc(it%smoothing)), of(104, 104))
+    call compare("mpm_grid_desc%total_lagrangian", distance(c_loc(it), c_loc(it%total_lagrangian)), of(112, 112))
+    call compare("mpm_grid_desc%reserved", distance(c_loc(it), c_loc(it%reserved)), of(116, 116))
   end subroutine check_mpm_grid_desc
 
   subroutine check_mpm_material_batch()

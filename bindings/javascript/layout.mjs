@@ -147,7 +147,7 @@ export const structs = {
     },
   },
   mpm_grid_desc: {
-    size: 112,
+    size: 120,
     fields: {
       struct_size: [0, 'u32'],
       dim: [4, 'i32'],
@@ -159,6 +159,8 @@ export const structs = {
       origin: [56, 'f64', 3],
       spacing: [80, 'f64', 3],
       smoothing: [104, 'f64'],
+      total_lagrangian: [112, 'i32'],
+      reserved: [116, 'i32'],
     },
   },
   mpm_material_batch: {

@@ -291,6 +291,12 @@ export interface GridDesc {
   spacing?: ArrayLike<number>;
   /** for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5 */
   smoothing?: number;
+  /**
+   * 1: a total Lagrangian grid, whose cells hold the material as it was before it deformed: weights follow
+   * from "reference_position" and stay what they are, and "position" may leave the box (de Vaucorbeil, Nguyen
+   * & Hutchinson 2020). 0 (default): weights follow from "position". Since 0.2.0
+   */
+  total_lagrangian?: number | boolean;
 }
 /** A law of the host. */
 export interface MaterialDesc {

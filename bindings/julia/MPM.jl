@@ -298,6 +298,8 @@ mutable struct mpm_grid_desc
     origin::NTuple{3, Float64}
     spacing::NTuple{3, Float64}
     smoothing::Float64
+    total_lagrangian::Int32
+    reserved::Int32
     mpm_grid_desc() = new()
 end
 Base.cconvert(::Type{Ptr{mpm_grid_desc}}, it::mpm_grid_desc) = it

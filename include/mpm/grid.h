@@ -25,6 +25,15 @@ typedef struct mpm_grid_desc {
   double origin[3];       /**< lower corner of the box, length; default 0 */
   double spacing[3];      /**< edges of a cell, length, > 0; the upper corner is origin + cells * spacing */
   double smoothing;       /**< for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5 */
+  /** 1: a total Lagrangian grid (de Vaucorbeil, Nguyen & Hutchinson 2020). Its cells hold the material as it
+   * was before it deformed: weights follow from "reference_position" and stay what they are. Nothing is
+   * sorted anew, particles do not cross cells, and material that is drawn out does not come apart. "position"
+   * may leave the box. Walls, prescribed velocities, node hooks and nodal fields are those of nodes at their
+   * places in the box; obstacles and friction walls meet particles where they are now. For solids of one
+   * body: fluids and contact between bodies are refused. 0 (default): weights follow from "position". Since
+   * 0.2.0 */
+  int32_t total_lagrangian;
+  int32_t reserved; /**< 0 */
 } mpm_grid_desc;
 
 /** Fills desc with the defaults; cells and spacing are 0, and the host must set them. struct_size is

@@ -23,7 +23,7 @@
  * Views show the stored components; copies and callbacks have the full ones. Where "write" says law, the host
  * may write the field if the law computes it from rates.
  *
- * - position: a length, inside the grid.
+ * - position: a length, inside the grid; with total_lagrangian = 1 anywhere, and not wrapped.
  * - velocity: length/time.
  * - acceleration: (v_new - v_old) / dt of the last step, once the host has set or mapped it; with staggered
  *   velocities over the mean of its dt and the one before.
@@ -38,19 +38,22 @@
  * - velocity_gradient: the matrix that the transfer carries, 1/time: the affine one (MPM_APIC, MPM_APIC_MLS,
  *   MPM_AFLIP) or the gradient of the updated nodal velocities (MPM_TPIC, MPM_TFLIP); 0 in new particles.
  *   With MPM_FLIP, MPM_XPIC and MPM_FMPM it is kept only once the host has set or mapped it, and then is the
- *   L that deformed the particle in the last step.
+ *   L that deformed the particle in the last step. With total_lagrangian = 1 the matrix and L are those over
+ *   reference positions: L is dF/dt.
  * - stress: Cauchy stress; writable where it is part of the law's state (linear_elastic, j2, drucker_prager,
  *   mohr_coulomb, cam_clay, mu_i, a law of the host; of herschel_bulkley the deviator), else computed from F,
  *   for snow from F and state.
  * - state: state variables of the law.
  * - reference_position: exists while a stepper with reference_positions holds the set, and starts as the
- *   unwrapped position at mpm_stepper_add().
+ *   unwrapped position at mpm_stepper_add(). With total_lagrangian = 1 all sets have it, from the time when
+ *   particles are added: it says where they are in the grid, and must lie inside.
  * - prescribed: 0 or 1 (default 0; 1 on all axes in new particles of the law "rigid"). 1 on an axis imposes
  *   the particle's velocity there on the nodes that it touches: see mpm_stepper_set_motion().
  * - dilation_ratio: J'/J > 0, by which the volume that the law sees differs from that of
  *   deformation_gradient; exists while a stepper with locking_remedy holds the set, and starts as 1. The law
  *   sees (J'/J)^(1/dim) F, in plane strain in the plane only; of MPM_AXISYMMETRIC the third root on all axes.
- * - image: periods crossed on each periodic axis; position + image * period is the unwrapped position.
+ * - image: periods crossed on each periodic axis; position + image * period is the unwrapped position. Not
+ *   with total_lagrangian = 1.
  *
  * size, acceleration, velocity_gradient, applied_force and prescribed take memory only when used; until then
  * all of these but size read as zeros.
@@ -73,7 +76,7 @@ extern "C" {
 
 /** Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned.
  * MPM_E_ARG: grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP
- * grid; a fluid, snow or clay on an MPM_PLANE_STRESS grid. */
+ * grid; a fluid, snow or clay on an MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1. */
 MPM_API mpm_status mpm_particles_create(mpm_context *context, mpm_grid *grid, mpm_material *material,
                                         mpm_particles **out);
 
@@ -255,7 +258,8 @@ MPM_API mpm_status mpm_particles_set_all(mpm_particles *particles, const char *f
  * lies above the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law
  * is "rigid", or "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1;
  * or, of the host's laws, one that asked with dt = 0 does not answer with the stress that it has; the grid is
- * MPM_PLANE_STRESS, or axis the radius of MPM_AXISYMMETRIC.
+ * MPM_PLANE_STRESS, or axis the radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from
+ * deformation_gradient.
  * MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
  */
 MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t axis, double gravity,
@@ -265,14 +269,17 @@ MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t
  * Makes the present state the one from which all deformation counts: deformation_gradient becomes I,
  * initial_volume the present volume, dilation_ratio 1, and reference_position, where there is one, the
  * present (unwrapped) position. With MPM_CPGIMP and of MPM_AXISYMMETRIC edges in "size" become the present
- * ones. Of MPM_PLANE_STRESS F33 stays. Mass, velocity, Cauchy stress and state variables stay.
+ * ones. Of MPM_PLANE_STRESS F33 stays. Mass, velocity, Cauchy stress and state variables stay. With
+ * total_lagrangian = 1 particles are then in the grid where they are now, and velocity_gradient is over these
+ * positions.
  *
  * Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay)
  * find J = 1 from then on: elastic strain, energy per initial volume and cohesion count by the present
  * volume, which differ by the factor J from before; a stress on the yield surface may lie off it by as much,
  * and the next step returns it.
  *
- * The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from
+ * The set is unchanged on failure. MPM_E_ARG: total_lagrangian = 1 and a particle is outside the box.
+ * MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from
  * deformation_gradient, which must stay; or a law of the host, asked with dt = 0, does not answer with the
  * stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since
  * 0.2.0.

@@ -11,7 +11,8 @@
  * Vectors have as many components as the grid has dimensions. Areas are per thickness in 2-D (of sheets that
  * at the start), and in 1-D numbers with a sign, which points out of the material. Forces and areas are
  * counted likewise. On a grid that is MPM_AXISYMMETRIC markers are rings, and areas and forces those of one
- * radian: length times radius. On the axis they have none.
+ * radian: length times radius. On the axis they have none. With total_lagrangian = 1 a marker keeps to the
+ * material where it was added, by position and area before that deformed: add it before the body moves.
  *
  * @par Sources
  * Area vectors: Nanson's relation, in Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.4. Weights next

@@ -1,6 +1,7 @@
 /* The host's coefficients of friction. It sees touches in batches of one pair of bodies, which do not depend
  * on how tasks share them. */
 #include "boundary/bound.h"
+#include "contact/contact.h"
 #include "layout/tasks.h"
 
 #include <math.h>
@@ -17,15 +18,14 @@ static void show_touch(const mpmi_bound *bound, const mpmi_touch *touch, touch_l
   const mpmi_blocks *b = &bound->step->layout->blocks;
   const mpmi_party *party = bound->nodes->contact.party;
   const int64_t slot[2] = {party[touch->party[0]].slot, party[touch->party[1]].slot}, at = list->n;
-  double u[3] = {0.0, 0.0, 0.0}, approach = 0.0, compliance = 0.0;
-  int64_t index[3];
-  mpmi_blocks_index(b, slot[0], index);
+  double u[3] = {0.0, 0.0, 0.0}, place[3], approach = 0.0, compliance = 0.0;
+  mpmi_contact_position(b, &bound->nodes->contact, slot[0], place);
   for (int32_t k = 0; k < bound->dim; ++k) {
     u[k] = mpmi_velocity(bound->values, slot[1])[k] - mpmi_velocity(bound->values, slot[0])[k];
     approach += u[k] * touch->normal[k];
     for (int32_t i = 0; i < 2; ++i)
       compliance += party[touch->party[i]].inverse_mass[k] * touch->normal[k] * touch->normal[k];
-    list->position[k * RANGE + at] = mpmi_node_position(b->grid, k, index[k]);
+    list->position[k * RANGE + at] = place[k];
     list->normal[k * RANGE + at] = touch->normal[k];
   }
   for (int32_t k = 0; k < bound->dim; ++k) list->slip[k * RANGE + at] = u[k] - approach * touch->normal[k];

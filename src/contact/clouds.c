@@ -125,6 +125,7 @@ typedef struct cloud_particles {
   int64_t slot; /* of the first of them */
   int32_t member;
   const double *volume, *radius; /* radius: of rings, else NULL */
+  const mpm_particles *set;
 } cloud_particles;
 
 /* One axis of a particle's stencil; an axis that the grid does not have is one node wide. */
@@ -132,6 +133,19 @@ typedef struct stencil_axis {
   int32_t width;
   double w[MPMI_MAX_WIDTH], g[MPMI_MAX_WIDTH];
 } stencil_axis;
+
+/* Turns a vector sum w G over reference positions, that of the last axes, into that over the present ones: by
+ * F^-T. */
+static void pull_back(const cloud_particles *of, const mpm_grid *grid, int64_t p, double *gradient) {
+  const int32_t dim = grid->dim, first = 3 - dim;
+  double inverse[3][3];
+  mpmi_inverse_at(of->set, of->slot + p, inverse);
+  const double G[3] = {gradient[0], gradient[1], gradient[2]};
+  for (int32_t j = 0; j < dim; ++j) {
+    gradient[first + j] = 0.0;
+    for (int32_t k = 0; k < dim; ++k) gradient[first + j] += G[first + k] * inverse[k][j];
+  }
+}
 
 static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of, const mpm_grid *grid,
                          int64_t p) {
@@ -160,9 +174,10 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
         mpmi_cloud *to = &contact->cloud[cloud[k]];
         contact->entry[to->first + to->count++] = (mpmi_cloud_entry){
             .slot = (uint32_t)(of->slot + p), .member = of->member, .volume = volume * w * axis[2].w[k]};
-        to->gradient[0] += g0 * axis[2].w[k]; /* the last axes are those of the grid */
-        to->gradient[1] += g1 * axis[2].w[k];
-        to->gradient[2] += volume * w * axis[2].g[k];
+        /* the last axes are those of the grid */
+        double gradient[3] = {g0 * axis[2].w[k], g1 * axis[2].w[k], volume * w * axis[2].g[k]};
+        if (mpmi_is_total_lagrangian(grid)) pull_back(of, grid, p, gradient);
+        for (int32_t c = 0; c < 3; ++c) to->gradient[c] += gradient[c];
       }
     }
 }
@@ -202,7 +217,10 @@ static void visit_block(void *user, const mpmi_visit *visit) {
                                   .slot = s,
                                   .member = m,
                                   .volume = mpmi_f64(member->set, MPMI_VOLUME, 0),
-                                  .radius = mpmi_is_axisymmetric(grid) ? points.x[0] : NULL};
+                                  .radius = mpmi_is_axisymmetric(grid)
+                                                ? mpmi_f64(member->set, MPMI_POSITION, 0)
+                                                : NULL,
+                                  .set = member->set};
       for (int64_t p = 0; p < n; ++p) {
         if (id[s + p] < 0 || !tile.meets[W.node[p]]) continue;
         if (job->fill)
@@ -231,16 +249,25 @@ double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *co
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-void mpmi_contact_position(const mpmi_blocks *b, int64_t slot, double *at) {
+static void find_place(const mpmi_blocks *b, int64_t slot, double *at) {
   int64_t index[3];
   mpmi_blocks_index(b, slot, index);
   for (int32_t k = 0; k < b->grid->dim; ++k) at[k] = mpmi_node_position(b->grid, k, index[k]);
 }
 
+void mpmi_contact_position(const mpmi_blocks *b, const mpmi_contact_nodes *contact, int64_t slot,
+                           double *at) {
+  if (!mpmi_is_total_lagrangian(b->grid)) {
+    find_place(b, slot, at);
+    return;
+  }
+  for (int32_t k = 0; k < b->grid->dim; ++k) at[k] = contact->place[slot][k];
+}
+
 mpmi_cloud_frame mpmi_cloud_frame_of(const mpmi_blocks *b, const mpmi_cloud *cloud) {
   const mpm_grid *grid = b->grid;
   mpmi_cloud_frame of = {.dim = grid->dim};
-  mpmi_contact_position(b, cloud->slot, of.node);
+  find_place(b, cloud->slot, of.node);
   for (int32_t k = 0; k < grid->dim; ++k) {
     if (grid->desc.periodic[k]) of.period[k] = (double)grid->desc.cells[k] * grid->desc.spacing[k];
     of.scale[k] = cloud->mirrored >> k & 1 ? -grid->inverse_spacing[k] : grid->inverse_spacing[k];

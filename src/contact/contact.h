@@ -66,7 +66,8 @@ static inline void mpmi_cloud_place(const mpmi_cloud_frame *of, const double *po
 /* Returns the mean radius of a party's rings at the node, by which areas are those of one radian; else 1. */
 double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *contact,
                          const mpmi_party *party);
-void mpmi_contact_position(const mpmi_blocks *b, int64_t slot, double *at);
+/* Finds where a node is: where it stands in the grid, or on a total Lagrangian one where it has come to. */
+void mpmi_contact_position(const mpmi_blocks *b, const mpmi_contact_nodes *contact, int64_t slot, double *at);
 
 /* Finds surfaces and sites of the step that is about to begin, and makes records for those that may meet. */
 mpm_status mpmi_contact_prepare(const mpmi_layout *layout, const mpmi_settings *settings,

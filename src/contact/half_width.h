@@ -26,6 +26,9 @@ static inline mpmi_widths mpmi_widths_of(const mpm_particles *set) {
                        .most = 0.5 * grid->h_min};
 }
 
+/* Inverts F of a particle, the components on axes of the grid alone. */
+void mpmi_inverse_at(const mpm_particles *set, int64_t slot, double inverse[3][3]);
+
 /* Half-width of a particle along a unit vector: that of a ball, or with a field "size" of a box, that F
  * has deformed; at most half a cell. n: as the particle itself sees it. Of F, the components on axes of
  * the grid come first, by rows. */

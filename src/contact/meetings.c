@@ -24,7 +24,7 @@ static mpmi_party party_of_surface(const mpmi_contact_search *search, int64_t ne
   const mpmi_surface *surface = &search->contact->surface[of->surface];
   mpmi_party party = {.slot = -1, .body = mpmi_code_of(surface), .surface = of->surface};
   double x[3] = {0.0, 0.0, 0.0};
-  mpmi_contact_position(b, (int64_t)of->block * b->nodes + n, x);
+  mpmi_contact_position(b, search->contact, (int64_t)of->block * b->nodes + n, x);
   mpmi_surface_arm(surface, x, party.arm);
   for (int32_t k = 0; k < 3; ++k) {
     party.normal[k] = near_value(search, near, MPMI_NEAR_NORMAL + k, n);

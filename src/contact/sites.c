@@ -65,8 +65,10 @@ static double widest_spacing(const mpm_grid *grid) {
   return h;
 }
 
+/* Nodes of a total Lagrangian grid may be anywhere. */
 int32_t mpmi_block_is_far(const mpmi_blocks *b, int64_t block, int64_t margin, const mpmi_surface *surface,
                           double beyond) {
+  if (mpmi_is_total_lagrangian(b->grid)) return 0;
   const ball of = ball_of_block(b, block, margin);
   return mpmi_surface_is_far(surface, of.centre, of.radius, beyond);
 }
@@ -87,7 +89,8 @@ static void find_active(const mpmi_blocks *b, mpmi_contact_nodes *contact, doubl
     surface->active = 0;
     if (!b->count || surface->rule.kind == MPM_CONTACT_NONE) continue;
     const ball all = ball_around(b->grid, first, last);
-    surface->active = !mpmi_surface_is_far(surface, all.centre, all.radius, beyond);
+    surface->active =
+        mpmi_is_total_lagrangian(b->grid) || !mpmi_surface_is_far(surface, all.centre, all.radius, beyond);
   }
 }
 
@@ -177,6 +180,30 @@ static double spacing_along(const mpm_grid *grid, const double *n) {
   return sqrt(squared);
 }
 
+/* Finds how far apart nodes are along a normal around node i of a block: on a total Lagrangian grid by the
+ * places of those beside it that move with mass. */
+static double distance_of_nodes(const mpmi_contact_search *search, int64_t block, int32_t i,
+                                const double *n) {
+  const mpmi_blocks *b = &search->step->layout->blocks;
+  const int64_t slot = block * b->nodes + i;
+  double squared = 0.0;
+  if (!mpmi_is_total_lagrangian(b->grid)) return spacing_along(b->grid, n);
+  for (int32_t k = 0; k < b->grid->dim; ++k) {
+    double most = n[k] * b->grid->desc.spacing[k];
+    for (int32_t side = -1; side <= 1; side += 2) {
+      const int32_t offset[3] = {k == 0 ? side : 0, k == 1 ? side : 0, k == 2 ? side : 0};
+      const int64_t beside = mpmi_blocks_around(b, slot, offset);
+      double along = 0.0;
+      if (beside < 0 || !(*mpmi_mass(search->values, beside) > search->step->layout->mass_cut)) continue;
+      for (int32_t c = 0; c < b->grid->dim; ++c)
+        along += n[c] * (search->contact->place[beside][c] - search->contact->place[slot][c]);
+      most = fmax(fabs(most), fabs(along));
+    }
+    squared += most * most;
+  }
+  return sqrt(squared);
+}
+
 static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_failure *failure) {
   const mpmi_blocks *b = &search->step->layout->blocks;
   const mpmi_contact_nodes *contact = search->contact;
@@ -186,9 +213,9 @@ static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_
   mpmi_distance_fault fault;
   int64_t index[3];
   for (int32_t i = 0; i < b->nodes; ++i) {
-    mpmi_blocks_index(b, (int64_t)near->block * b->nodes + i, index);
-    for (int32_t k = 0; k < b->grid->dim; ++k)
-      points.position[k][i] = mpmi_node_position(b->grid, k, index[k]);
+    double x[3];
+    mpmi_contact_position(b, contact, (int64_t)near->block * b->nodes + i, x);
+    for (int32_t k = 0; k < b->grid->dim; ++k) points.position[k][i] = x[k];
   }
   if (mpmi_surface_distances(&contact->surface[near->surface], &points, &fault)) {
     mpmi_blocks_index(b, (int64_t)near->block * b->nodes + (fault.point < 0 ? 0 : fault.point), index);
@@ -202,7 +229,7 @@ static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_
   }
   for (int32_t i = 0; i < b->nodes; ++i) {
     const double n[3] = {points.normal[0][i], points.normal[1][i], points.normal[2][i]};
-    const int32_t binds = points.distance[i] <= bound_within * spacing_along(b->grid, n);
+    const int32_t binds = points.distance[i] <= bound_within * distance_of_nodes(search, near->block, i, n);
     value[MPMI_NEAR_DISTANCE * b->nodes + i] = binds ? points.distance[i] : (double)INFINITY;
     for (int32_t k = 0; k < 3; ++k) {
       value[(MPMI_NEAR_NORMAL + k) * b->nodes + i] = n[k];

@@ -91,6 +91,21 @@ static void clear_block(void *user, const mpmi_visit *visit) {
 }
 
 /* ---- gaps ---------------------------------------------------------------------------------------------- */
+/* Finds the direction in which what lies along n now lay before the material deformed, as a cloud that is a
+ * mirror image sees it: that of F^-1 n. */
+static void pull_direction(const mpm_particles *set, int64_t slot, int32_t mirrored, const double *n,
+                           double *direction) {
+  double inverse[3][3], sign[3], squared = 0.0;
+  mpmi_inverse_at(set, slot, inverse);
+  for (int32_t k = 0; k < 3; ++k) sign[k] = mirrored >> k & 1 ? -1.0 : 1.0;
+  for (int32_t i = 0; i < 3; ++i) {
+    direction[i] = 0.0;
+    for (int32_t k = 0; k < 3; ++k) direction[i] += sign[i] * inverse[i][k] * sign[k] * n[k];
+    squared += direction[i] * direction[i];
+  }
+  for (int32_t i = 0; i < 3; ++i) direction[i] /= sqrt(squared);
+}
+
 /* Returns 1 when a particle, at x in cells, is off the line through its node along n by no more than the
  * reach. */
 static int32_t is_beside(const mpm_grid *grid, const double *x, const double *n) {
@@ -116,8 +131,10 @@ static double gap_of(const mpmi_contact_search *search, const mpmi_party *party,
       const double clearance = contact->clearance[contact->clearance_first[entry->member] + entry->slot];
       if (!(clearance < gap)) continue;
       const mpm_particles *set = layout->member[entry->member].set;
-      mpmi_cloud_place(&frame, mpmi_f64(set, MPMI_POSITION, 0), set->ld, entry->slot, x);
-      if (is_beside(layout->blocks.grid, x, n)) gap = clearance;
+      mpmi_cloud_place(&frame, mpmi_places(set, 0), set->ld, entry->slot, x);
+      double along[3] = {n[0], n[1], n[2]};
+      if (mpmi_is_total_lagrangian(set->grid)) pull_direction(set, entry->slot, cloud->mirrored, n, along);
+      if (is_beside(layout->blocks.grid, x, along)) gap = clearance;
     }
   }
   return gap;

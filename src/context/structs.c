@@ -13,6 +13,7 @@
   X(mpm_context_desc, log_user, 72)                                                                          \
   X(mpm_context_desc, error_bytes, 88)                                                                       \
   X(mpm_grid_desc, smoothing, 112)                                                                           \
+  X(mpm_grid_desc, reserved, 120)                                                                            \
   X(mpm_material_batch, lookup, 144)                                                                         \
   X(mpm_material_desc, state_initial, 64)                                                                    \
   X(mpm_stepper_desc, projected_positions, 152)                                                              \

@@ -133,6 +133,9 @@ static mpm_status check_desc(mpm_context *context, const mpm_grid_desc *desc) {
   if (!(desc->smoothing > 0 && desc->smoothing <= 1))
     return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: smoothing is %g, must be in (0, 1]",
                      desc->smoothing);
+  if (desc->total_lagrangian != 0 && desc->total_lagrangian != 1)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_grid_desc: total_lagrangian is %d, must be 0 or 1",
+                     (int)desc->total_lagrangian);
   return check_geometry(context, desc);
 }
 

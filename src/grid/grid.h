@@ -59,6 +59,10 @@ static inline int32_t mpmi_is_axisymmetric(const mpm_grid *grid) {
 static inline int32_t mpmi_is_plane_stress(const mpm_grid *grid) {
   return grid->desc.geometry == MPM_PLANE_STRESS;
 }
+/* Returns 1 when the grid holds the material as it was before it deformed, by its reference positions. */
+static inline int32_t mpmi_is_total_lagrangian(const mpm_grid *grid) {
+  return grid->desc.total_lagrangian != 0;
+}
 /* Returns 1 when every set has the field "size": for its domains, or for the sections of its rings. */
 static inline int32_t mpmi_has_sizes(const mpm_grid *grid) {
   return mpmi_has_domains(grid) || mpmi_is_axisymmetric(grid);

@@ -80,7 +80,9 @@ static int32_t deform(mpmi_batch *b) {
   const mpmi_balance *balance = b->user;
   mpmi_gradient_keep(b);
   if (!mpmi_strain_deform(b)) return 0;
-  if (balance->settings->desc.locking_remedy) /* kept, because the remedy changes what the law sees */
+  if (mpmi_is_total_lagrangian(b->set->grid))
+    mpmi_keep_whole_F(balance, b);
+  else if (balance->settings->desc.locking_remedy) /* kept, because the remedy changes what the law sees */
     memcpy(balance->newton->work[b->task].F_inc, b->law.F_inc, (size_t)(9 * b->law.ld) * sizeof(double));
   return 1;
 }

@@ -266,6 +266,9 @@ mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u);
 mpmi_force_scatter mpmi_force_scatter_of(const mpmi_balance *balance, int32_t m, double *tile);
 /* Finds the active node at each place of the tile of a block, or -1. */
 void mpmi_tile_of_unknowns(const mpmi_balance *balance, int64_t block, int32_t *to);
+/* Keeps the new F of a batch as the increment by which gradients are pushed forward: those of a total
+ * Lagrangian grid are over reference positions. */
+void mpmi_keep_whole_F(const mpmi_balance *balance, const mpmi_batch *b);
 /* Adds the internal forces of a batch to the tile of its task. */
 void mpmi_add_forces(mpmi_balance *balance, mpmi_batch *b);
 /* Adds the stiffness of a batch to the matrix. */

@@ -268,6 +268,7 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_balance_prepare(balance);
   if (!status && !balance->layout->blocks.count) return MPM_OK; /* no particles */
+  if (!status) status = mpmi_node_places_stage(balance->step, balance->nodes);
   if (!status) status = particles_to_grid(balance, &clock);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);
   if (!status) status = solve(balance, &clock);

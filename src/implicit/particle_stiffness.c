@@ -82,7 +82,7 @@ static void add_stencil(mpmi_balance *balance, mpmi_newton_work *work, int32_t f
 
 /* Returns 1 / r of a ring, and 0 in a plane. */
 static double hoop_of(const mpm_particles *set, int64_t slot) {
-  const double radius = mpmi_f64(set, MPMI_POSITION, 0)[slot];
+  const double radius = mpmi_places(set, 0)[slot];
   return mpmi_is_axisymmetric(set->grid) && radius > 0.0 ? 1.0 / radius : 0.0;
 }
 
@@ -172,11 +172,21 @@ static int32_t find_tangent(mpmi_newton_work *work, mpmi_batch *b) {
   return 0;
 }
 
+void mpmi_keep_whole_F(const mpmi_balance *balance, const mpmi_batch *b) {
+  double *to = balance->newton->work[b->task].F_inc;
+  const int32_t dim = b->set->grid->dim;
+  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
+    memcpy(to + mpmi_tensor_map(dim)[c] * b->law.ld, mpmi_component_row(b->set, MPMI_F, 1, c) + b->begin,
+           (size_t)b->n * sizeof *to);
+}
+
 /* Turns stress and tangent (or with NULL stress alone) into what the nodes' gradients are multiplied by. */
 static void push_forward(mpmi_balance *balance, mpmi_newton_work *work, const mpmi_batch *b,
                          const double *tangent) {
+  const int32_t kept =
+      balance->settings->desc.locking_remedy || mpmi_is_total_lagrangian(balance->settings->grid);
   const mpmi_push push = {.ld = b->law.ld,
-                          .F_inc = balance->settings->desc.locking_remedy ? work->F_inc : b->law.F_inc,
+                          .F_inc = kept ? work->F_inc : b->law.F_inc,
                           .stress = b->law.stress_new,
                           .volume = mpmi_f64(b->set, MPMI_VOLUME, 0) + b->begin,
                           .weight = work->weight,

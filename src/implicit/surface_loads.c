@@ -1,7 +1,9 @@
 /* Surfaces in implicit steps: forces t = (T |a| + D A0 - p a) at the end of the step, with weights of its
- * start and areas of the displacements as they are. With g = F_inc^-T grad w an area vector changes by
+ * start and areas of the displacements as they are. The area vector of the edges e_k, which were E_k where the
+ * weights are made, changes with the displacement u_b of a node by
  *
- *   da = (a (x) g_b - g_b (x) a) du_b,  dt = P da,  P = T (x) a / |a| - p 1
+ *   de_k = (E_k . grad w_b) du_b,  da = de_0 x e_1 + e_0 x de_1 (2-D: de_0 turned),  dt = P da,
+ *   P = T (x) a / |a| - p 1
  *
  * which is not symmetric. Dead loads D have no stiffness. */
 #include "implicit/balance.h"
@@ -80,10 +82,29 @@ static int32_t response_of(const mpm_surface *s, int64_t i, double *area, double
   return most > 0.0;
 }
 
-/* Adds the block of one node's force by the displacement of another. hoop: by how much a radial one stretches
- * the hoop of a ring, and with it the area. */
+static void add_product(const double *a, const double *b, double *to) {
+  for (int32_t i = 0; i < 3; ++i) to[i] += a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+/* Finds by how much the area vector changes with component j of a node's displacement: stretch[k] is E_k .
+ * grad w, hoop what a radial displacement makes of E_1 along the hoop of a ring. */
+static void area_change(const mpm_grid *grid, const mpmi_marker *marker, int32_t j, const double *stretch,
+                        double hoop, double *change) {
+  double d[2][3] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+  for (int32_t k = 0; k < 2; ++k) d[k][j] = stretch[k];
+  if (j == 0) d[1][2] += hoop;
+  change[0] = change[1] = change[2] = 0.0;
+  if (mpmi_strain_dim(grid) == 2) {
+    change[0] = d[0][1], change[1] = -d[0][0];
+    return;
+  }
+  add_product(d[0], marker->edge[1], change);
+  add_product(marker->edge[0], d[1], change);
+}
+
+/* Adds the block of one node's force by the displacement of another; change: of the area, by component. */
 static void add_block(mpmi_balance *balance, int64_t slot_a, int64_t slot_b, double weight,
-                      const double *area, const double *g, double hoop, double P[3][3]) {
+                      double change[3][3], double P[3][3]) {
   mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
   const mpmi_active_node *A = &newton->active[newton->active_of[slot_a]];
@@ -93,31 +114,32 @@ static void add_block(mpmi_balance *balance, int64_t slot_a, int64_t slot_b, dou
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t j = 0; j < dim; ++j) {
       double sum = 0.0;
-      for (int32_t k = 0; k < dim; ++k)
-        sum += P[i][k] * (area[k] * (j == 0 ? g[j] + hoop : g[j]) - g[k] * area[j]);
+      for (int32_t k = 0; k < dim; ++k) sum += P[i][k] * change[j][k];
       newton->matrix.value[(entry * dim + i) * dim + j] -= A->sign[i] * B->sign[j] * weight * sum;
     }
 }
 
-static void stiffen_marker(mpmi_balance *balance, mpm_surface *s, int64_t i) {
+static void stiffen_marker(mpmi_balance *balance, const mpm_surface *s, int64_t i) {
+  const mpm_grid *grid = s->grid;
   const mpmi_marker_nodes *around = &s->around;
-  const int32_t dim = balance->settings->grid->dim;
+  const mpmi_marker *start = &s->now.at[i];
+  const int32_t dim = grid->dim;
   const int64_t first = i * around->nodes, end = first + around->nodes;
-  double area[3], P[3][3], F[3][3], inverse[3][3];
+  const double(*material)[3] = mpmi_is_total_lagrangian(grid) ? start->reference_edge : start->edge;
+  double area[3], P[3][3];
   if (!response_of(s, i, area, P)) return;
   balance->newton->matrix.symmetric = 0;
-  mpmi_marker_deformation(balance->step, s, &balance->nodes->solved, i, F);
-  mpmi_marker_invert(F, inverse);
-  const double radius = mpmi_is_axisymmetric(s->grid) ? s->now.at[i].position[0] : 0.0;
+  const double radius = mpmi_is_axisymmetric(grid) ? mpmi_marker_place_of(start, grid)[0] : 0.0;
   for (int64_t b = first; b < end; ++b) {
-    const double hoop = radius > 0.0 ? around->weight[b] / radius * inverse[2][2] : 0.0;
-    double g[3] = {0.0, 0.0, 0.0};
+    const double hoop = radius > 0.0 ? around->weight[b] / radius * material[1][2] : 0.0;
+    double stretch[2] = {0.0, 0.0}, change[3][3];
     if (around->slot[b] < 0) continue;
-    for (int32_t k = 0; k < dim; ++k)
-      for (int32_t c = 0; c < dim; ++c) g[k] += inverse[c][k] * around->gradient[b * dim + c];
+    for (int32_t k = 0; k < 2; ++k)
+      for (int32_t c = 0; c < dim; ++c) stretch[k] += material[k][c] * around->gradient[b * dim + c];
+    for (int32_t j = 0; j < dim; ++j) area_change(grid, &s->next.at[i], j, stretch, hoop, change[j]);
     for (int64_t a = first; a < end; ++a)
       if (around->slot[a] >= 0)
-        add_block(balance, around->slot[a], around->slot[b], around->weight[a], area, g, hoop, P);
+        add_block(balance, around->slot[a], around->slot[b], around->weight[a], change, P);
   }
 }
 

@@ -22,7 +22,7 @@ static void find_particle(mpmi_balance *balance, const double *node) {
       double square = 0.0;
       if (id[slot] < 0) continue;
       for (int32_t k = 0; k < grid->dim; ++k) {
-        double away = mpmi_component_row(set, MPMI_POSITION, 0, k)[slot] - node[k];
+        double away = mpmi_places(set, 0)[k * set->ld + slot] - node[k];
         const double period = grid->upper[k] - grid->desc.origin[k];
         if (grid->desc.periodic[k]) away -= period * floor(away / period + 0.5);
         square += away * away;

@@ -107,7 +107,7 @@ void mpmi_state_take_obstacles(const mpm_stepper *s, const mpmi_state_obstacle *
 
 /* Surfaces (state_surfaces.c): markers are read into an array with one item for each surface, and taken over
  * in exchange for those that were there. The caller frees what the array has. */
-_Static_assert(sizeof(mpmi_marker) == 27 * 8, "part of the format");
+_Static_assert(sizeof(mpmi_marker) == 36 * 8, "part of the format");
 void mpmi_state_write_surfaces(mpmi_archive *a, const mpm_stepper *s);
 mpm_status mpmi_state_read_surfaces(mpmi_archive *a, const mpm_stepper *s, mpmi_markers *saved);
 void mpmi_state_take_surfaces(const mpm_stepper *s, mpmi_markers *saved);

@@ -61,7 +61,7 @@ static void check_prescribed(mpmi_archive *a, const mpm_particles *fresh) {
 static void check_inside(mpmi_archive *a, const mpm_particles *fresh) {
   int64_t outside = 0;
   for (int32_t k = 0; k < fresh->grid->dim; ++k) {
-    const double *x = mpmi_f64(fresh, MPMI_POSITION, 0) + k * fresh->ld;
+    const double *x = mpmi_places(fresh, 0) + k * fresh->ld;
     const double low = fresh->grid->desc.origin[k], high = fresh->grid->upper[k];
     for (int64_t s = 0; s < fresh->slots; ++s) outside += !(x[s] >= low && x[s] <= high);
   }
@@ -94,7 +94,7 @@ static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_
     mpmi_block_axes(grid, blocks->coord[b], axis);
     for (int64_t s = start[b]; s < start[b + 1]; s += MPMI_CHUNK)
       for (int32_t k = 0; k < grid->dim; ++k) {
-        const mpmi_points points = {.x = {mpmi_f64(fresh, MPMI_POSITION, 0) + k * fresh->ld}};
+        const mpmi_points points = {.x = {mpmi_places(fresh, 0) + k * fresh->ld}};
         weights(&axis[k], 0, &points, s, MPMI_CHUNK, &W);
         for (int32_t p = 0; p < MPMI_CHUNK; ++p) astray += W.node[p] < 0 || W.node[p] > last;
       }

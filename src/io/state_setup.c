@@ -53,6 +53,7 @@ static void later_int(mpmi_archive *a, uint32_t format, const char *what, int32_
 static void setup_later(mpmi_archive *a, uint32_t format, const mpm_stepper *s) {
   later_int(a, format, "projected_positions", s->settings.desc.projected_positions);
   later_int(a, format, "geometry", s->grid->desc.geometry);
+  later_int(a, format, "total_lagrangian", s->grid->desc.total_lagrangian);
 }
 
 static void setup_law(mpmi_archive *a, const mpm_material *material) {
@@ -82,8 +83,9 @@ static void write_field_list(mpmi_archive *a, const mpm_particles *set) {
 
 static int32_t may_be_absent(const mpm_grid *grid, int32_t field) {
   if (field == MPMI_SIZE) return !mpmi_has_sizes(grid);
+  if (field == MPMI_REFERENCE) return !mpmi_is_total_lagrangian(grid);
   return field == MPMI_ACCELERATION || field == MPMI_DILATION_RATIO || field == MPMI_L ||
-         field == MPMI_REFERENCE || field == MPMI_PRESCRIBED || field == MPMI_APPLIED_FORCE;
+         field == MPMI_PRESCRIBED || field == MPMI_APPLIED_FORCE;
 }
 
 static mpm_status refuse_field(mpmi_archive *a, const char *name, const char *what) {

@@ -19,14 +19,16 @@ void mpmi_state_write_surfaces(mpmi_archive *a, const mpm_stepper *s) {
 
 /* Returns 1 where a step could work with a marker. */
 static int32_t is_sound(const mpm_grid *grid, const mpmi_marker *m) {
+  const double *place = mpmi_marker_place_of(m, grid);
   double sum = m->reference_area + m->pressure, x[3];
   for (int32_t k = 0; k < 3; ++k) {
-    x[k] = m->position[k];
+    x[k] = place[k];
+    sum += m->position[k] + m->reference[k] + m->reference_edge[0][k] + m->reference_edge[1][k];
     sum += m->edge[0][k] + m->edge[1][k] + m->displacement[k] + m->velocity[k] + m->force[k];
     sum += m->traction[k] + m->dead_traction[k];
   }
   int32_t sound = isfinite(sum) && m->reference_area >= 0.0 && mpmi_grid_place(grid, x, 1, NULL, 0) < 0;
-  for (int32_t k = 0; k < grid->dim; ++k) sound &= !(x[k] < m->position[k] || x[k] > m->position[k]);
+  for (int32_t k = 0; k < grid->dim; ++k) sound &= !(x[k] < place[k] || x[k] > place[k]);
   return sound;
 }
 

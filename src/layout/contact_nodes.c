@@ -20,6 +20,7 @@ void mpmi_contact_nodes_free(mpmi_contact_nodes *contact, mpm_context *c) {
   MPMI_FREE_ARRAY(c, contact->clearance, contact->clearance_capacity);
   MPMI_FREE_ARRAY(c, contact->clearance_first, contact->first_capacity);
   MPMI_FREE_ARRAY(c, contact->work, contact->work_capacity);
+  MPMI_FREE_ARRAY(c, contact->place, contact->place_capacity);
 }
 
 int64_t mpmi_pair_find(const mpmi_pair_records *records, int32_t a, int32_t b) {

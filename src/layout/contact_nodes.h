@@ -138,6 +138,8 @@ typedef struct mpmi_contact_nodes {
   double *clearance;        /* of the surface that is looked at: [slots of all sets] */
   int64_t *clearance_first; /* [sets] */
   int64_t clearance_capacity, first_capacity;
+  double (*place)[3]; /* [slots] where nodes of a total Lagrangian grid are now, or NULL: where they stand */
+  int64_t place_capacity;
   double *work; /* [tasks][work_each] memory to find normals in */
   int64_t work_capacity, work_each;
   int32_t listed; /* meetings and clouds are those of the step */

@@ -10,13 +10,15 @@ static mpm_status make_fields(mpm_particles *set, const mpm_stepper_desc *d) {
   if (d->reference_positions) status = mpmi_field_make_present(set, MPMI_REFERENCE);
   if (!status && d->scheme == MPM_NEWMARK) status = mpmi_field_make_present(set, MPMI_ACCELERATION);
   if (!status && d->locking_remedy) status = mpmi_field_make_present(set, MPMI_DILATION_RATIO);
-  if (status && !set->stepper) mpmi_field_make_absent(set, MPMI_REFERENCE);
+  if (status && !set->stepper && !mpmi_is_total_lagrangian(set->grid))
+    mpmi_field_make_absent(set, MPMI_REFERENCE);
   return status;
 }
 
 /* Drops the fields that d does not ask for, all of them when it is NULL. */
 static void drop_fields(mpm_particles *set, const mpm_stepper_desc *d) {
-  if (!d || !d->reference_positions) mpmi_field_make_absent(set, MPMI_REFERENCE);
+  if ((!d || !d->reference_positions) && !mpmi_is_total_lagrangian(set->grid))
+    mpmi_field_make_absent(set, MPMI_REFERENCE);
   if ((d && d->locking_remedy) || !set->field[MPMI_DILATION_RATIO].present) return;
   mpmi_field_make_absent(set, MPMI_DILATION_RATIO);
   mpmi_field_written(set, MPMI_F); /* the law sees F as it is again */

@@ -42,7 +42,9 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   const int64_t light = layout->light_cut > layout->mass_cut ? slots / 32 + 64 : 0;
   const int32_t remedy = settings->desc.locking_remedy != MPM_LOCKING_NONE;
   const int32_t corrected = mpmi_is_corrected(settings);
-  const int32_t projects = settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected;
+  const int32_t places = mpmi_places_nodes(settings, nodes);
+  const int32_t projects =
+      settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected || places;
   mpm_status status;
   nodes->has_holders = settings->velocity_bc || nodes->prescription.any;
   nodes->has_impulses = nodes->has_holders || ties || contacts || nodes->contact.at_walls;
@@ -50,6 +52,8 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
       (status = projects ? mpmi_nodal_reserve(c, &nodes->projected, slots, 4) : MPM_OK) ||
       (status = corrected || remedy ? mpmi_nodal_reserve(c, &nodes->sums, slots, 4) : MPM_OK) ||
+      (status = places ? MPMI_RESERVE_MORE(c, nodes->contact.place, nodes->contact.place_capacity, slots)
+                       : MPM_OK) ||
       (status = MPMI_RESERVE_MORE(c, nodes->light, nodes->light_capacity, light)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->contact_state, nodes->contact_capacity, contacts)))

@@ -130,6 +130,11 @@ static inline double mpmi_mass_moving(const mpmi_layout *layout, const mpmi_node
   return tie < 0 ? *mpmi_mass(values, slot) : nodes->tie_state[tie].mass;
 }
 
+/* Returns 1 where obstacles want to know where the nodes of a total Lagrangian grid have come to. */
+static inline int32_t mpmi_places_nodes(const mpmi_settings *settings, const mpmi_nodes *nodes) {
+  return mpmi_is_total_lagrangian(settings->grid) && nodes->contact.surface_count > 0;
+}
+
 static inline int32_t mpmi_held_by(const mpmi_nodes *nodes, int64_t slot, int32_t c) {
   return nodes->has_holders ? nodes->held[slot][c] : 0;
 }

@@ -1,6 +1,6 @@
 /* Projections of particles onto nodes. Beside the one with the forces there are those of velocity alone:
  * before it for the strain of USF, after it for the strain of MUSL, and for the corrections of XPIC and FMPM;
- * and that of accelerations for implicit steps. */
+ * that of accelerations for implicit steps; and that of displacements on total Lagrangian grids. */
 #ifndef MPMI_PROJECTION_H
 #define MPMI_PROJECTION_H
 
@@ -31,6 +31,7 @@ enum {
   MPMI_PROJECT_CORRECTION,   /* momentum without its affine part, from the second copy of the velocities */
   MPMI_PROJECT_FULL,         /* the same for FMPM, where velocities stay as they are prescribed */
   MPMI_PROJECT_ACCELERATION, /* mass times acceleration, from the second copy */
+  MPMI_PROJECT_DISPLACEMENT, /* mass times displacement, which lies in the second copy of the velocities */
   MPMI_PROJECTIONS
 };
 extern const mpmi_projection mpmi_projections[MPMI_PROJECTIONS];

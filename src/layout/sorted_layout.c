@@ -148,10 +148,10 @@ mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy) {
   int32_t stored = 0;
   if (!set->ld) return points; /* nothing was ever added */
   for (int32_t k = 0; k < grid->dim; ++k) {
-    points.x[k] = mpmi_f64(set, MPMI_POSITION, copy) + k * set->ld;
+    points.x[k] = mpmi_places(set, copy) + k * set->ld;
     if (mpmi_has_domains(grid)) points.size[k] = mpmi_f64(set, MPMI_SIZE, 0) + k * set->ld;
     while (mpmi_tensor_map(grid->dim)[stored] != 4 * k) ++stored;
-    if (grid->domains == MPMI_DOMAINS_STRETCHED)
+    if (grid->domains == MPMI_DOMAINS_STRETCHED && !mpmi_is_total_lagrangian(grid))
       points.stretch[k] = mpmi_f64(set, MPMI_F, copy) + stored * set->ld;
   }
   return points;

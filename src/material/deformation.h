@@ -20,6 +20,7 @@ enum { MPMI_F_DEFORMS, MPMI_F_DILATES, MPMI_F_STAYS, MPMI_F_KINDS };
 typedef struct mpmi_deform {
   double dt;
   int64_t ld;
+  int32_t total;          /* L is over reference positions: F_new = F_old + dt L; there is no F_inc then */
   const double *L;        /* [9][ld] */
   double *F, *F_inc;      /* [9][ld] out, full; either may be NULL where F deforms, F_inc always */
   const double *F_old[9]; /* the components that are stored */
@@ -29,10 +30,14 @@ typedef struct mpmi_deform {
 } mpmi_deform;
 
 /* Return MPMI_NOT_POSITIVE and MPMI_NONFINITE where a volume is no volume. The second makes volumes again
- * from stored components of F, with the same bits. */
+ * from stored components of F, with the same bits. Of a gradient over reference positions the third makes L,
+ * in place, by stored components of F. The fourth turns wave speed c and kinematic viscosity into those with
+ * which disturbances cross reference positions, or faster ones: c |F^-1| in a norm that bounds stretches. */
 typedef uint32_t (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
 typedef uint32_t (*mpmi_volume_fn)(const double *const *F, const double *initial_volume, double *volume,
                                    int64_t n);
+typedef void (*mpmi_spatial_fn)(const double *const *F, int64_t ld, double *L, int64_t n);
+typedef void (*mpmi_speeds_fn)(const double *const *F, double *wave_speed, double *viscosity, int64_t n);
 
 /* What is known of volumes that were made: bad is 0 where all are finite, smallest the smallest det F. */
 typedef struct mpmi_deformed {
@@ -81,7 +86,10 @@ MPMI_INLINE void mpmi_deform_lanes(int32_t dim, const mpmi_deform *job, int64_t 
   for (int32_t r = 0; r < dim; ++r)
     for (int32_t c = 0; c < dim; ++c) {
       mpmi_lanes rate = {0.0};
-      for (int32_t k = 0; k < dim; ++k) rate += L[r][k] * old[k][c];
+      if (job->total)
+        rate = L[r][c];
+      else
+        for (int32_t k = 0; k < dim; ++k) rate += L[r][k] * old[k][c];
       F[mpmi_stored_entry(dim, r, c)] = old[r][c] + dt * rate;
     }
   if (dim == 2) F[4] = mpmi_lanes_load(job->F_old[4] + s); /* plane strain keeps its zz */
@@ -107,6 +115,8 @@ MPMI_INLINE uint32_t mpmi_deform_flags(const mpmi_deformed *t) {
 typedef struct mpmi_deformation {
   mpmi_deform_fn deform[MPMI_F_KINDS][4]; /* by kinematics, dim */
   mpmi_volume_fn volume[4];               /* by dim */
+  mpmi_spatial_fn spatial[4];
+  mpmi_speeds_fn speeds[4];
 } mpmi_deformation;
 
 MPMI_DECLARE_TABLES(mpmi_deformation, mpmi_deformation);

@@ -138,7 +138,7 @@ static void copy_in(mpm_particles *set, int32_t field, const selection *of, cons
           copy_element((char *)at->data[0] + (size_t)(stored * set->ld + slot[i]) * size,
                        item + (size_t)(c * from->component_stride) * size, size);
       }
-      if (field == MPMI_POSITION) mpmi_wrap_slot(set, slot[i]);
+      if (field == mpmi_place_field(set->grid)) mpmi_wrap_slot(set, field, slot[i]);
     }
   }
 }

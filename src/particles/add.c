@@ -74,7 +74,7 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
     mass[i] = set->material->density * volume[i];
     if (mass[i] > set->mass_max) set->mass_max = mass[i];
   }
-  for (int64_t s = slot; s < slot + n; ++s) mpmi_wrap_slot(set, s);
+  for (int64_t s = slot; s < slot + n; ++s) mpmi_wrap_slot(set, MPMI_POSITION, s);
   if (!with_size) write_derived(set, MPMI_SIZE, slot, slot + n);
   write_derived(set, MPMI_REFERENCE, slot, slot + n);
   write_derived(set, MPMI_DILATION_RATIO, slot, slot + n);
@@ -97,7 +97,7 @@ static mpm_status check_arrays(const mpm_particles *set, const arrays *from) {
   const struct {
     int32_t field;
     const double *value;
-  } given[] = {{MPMI_POSITION, from->position},
+  } given[] = {{mpmi_place_field(set->grid), from->position},
                {MPMI_VELOCITY, from->velocity},
                {MPMI_VOLUME, from->volume},
                {MPMI_SIZE, from->size}};

@@ -90,7 +90,10 @@ void mpmi_fields_builtin(mpm_particles *set) {
   set->field[MPMI_STRESS].writable = !mpmi_material_stress_from_F(set->material);
   set->field[MPMI_SIZE].present = mpmi_has_sizes(set->grid);
   set->field[MPMI_STATE].present = state_count > 0;
-  set->field[MPMI_IMAGE].present = periodic[0] || periodic[1] || periodic[2];
+  /* positions of total Lagrangian grids are not wrapped: their reference stays where it is */
+  set->field[MPMI_REFERENCE].present = mpmi_is_total_lagrangian(set->grid);
+  set->field[MPMI_IMAGE].present =
+      (periodic[0] || periodic[1] || periodic[2]) && !mpmi_is_total_lagrangian(set->grid);
   set->field_count = MPMI_BUILTIN_FIELDS;
 }
 

@@ -22,8 +22,8 @@ mpm_status mpmi_require_field(const mpm_particles *set, const char *name, int32_
 
 /* Refuses in the middle of a staged step: MPM_E_STATE. */
 mpm_status mpmi_between_steps(const mpm_particles *set);
-/* Wraps the position in a slot on periodic axes and counts the images. */
-void mpmi_wrap_slot(mpm_particles *set, int64_t slot);
+/* Wraps what a field of positions has in a slot on periodic axes, and counts images where they are kept. */
+void mpmi_wrap_slot(mpm_particles *set, int32_t field, int64_t slot);
 /* Rewrites the inert slots of one field after the host had write access to all of it. */
 void mpmi_restore_holes(mpm_particles *set, int32_t field);
 

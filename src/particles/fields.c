@@ -94,7 +94,7 @@ mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
 double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int64_t slot) {
   const mpm_grid *grid = set->grid;
   if (field == MPMI_SIZE) {
-    const double radius = mpmi_is_axisymmetric(grid) ? mpmi_f64(set, MPMI_POSITION, 0)[slot] : 1.0;
+    const double radius = mpmi_is_axisymmetric(grid) ? mpmi_places(set, 0)[slot] : 1.0;
     const double volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot] / (radius > 0.0 ? radius : 1.0);
     return grid->dim == 1 ? volume : grid->dim == 2 ? sqrt(volume) : mpmi_cbrt(volume);
   }
@@ -115,6 +115,8 @@ static double hole_value(const mpm_particles *set, int32_t field, int32_t c, con
     return 1.0;
   case MPMI_POSITION:
     return position[c];
+  case MPMI_REFERENCE:
+    return mpmi_is_total_lagrangian(set->grid) ? position[c] : 0.0;
   case MPMI_F:
     return mpmi_unstored_value(field, mpmi_tensor_map(set->grid->dim)[c]);
   case MPMI_STATE:
@@ -146,12 +148,12 @@ void mpmi_fill_holes(mpm_particles *set, int32_t copy, int64_t begin, int64_t en
 
 void mpmi_make_hole(mpm_particles *set, int64_t slot) {
   for (int32_t f = 0; f < set->field_count; ++f)
-    if (f != MPMI_POSITION) write_holes(set, f, 0, slot, slot + 1, NULL);
+    if (f != MPMI_POSITION && f != mpmi_place_field(set->grid)) write_holes(set, f, 0, slot, slot + 1, NULL);
 }
 
-void mpmi_wrap_slot(mpm_particles *set, int64_t slot) {
+void mpmi_wrap_slot(mpm_particles *set, int32_t field, int64_t slot) {
   int64_t *image = set->field[MPMI_IMAGE].present ? mpmi_i64(set, MPMI_IMAGE, 0) + slot : NULL;
-  mpmi_grid_place(set->grid, mpmi_f64(set, MPMI_POSITION, 0) + slot, set->ld, image, set->ld);
+  mpmi_grid_place(set->grid, mpmi_f64(set, field, 0) + slot, set->ld, image, set->ld);
 }
 
 void mpmi_restore_holes(mpm_particles *set, int32_t field) {

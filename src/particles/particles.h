@@ -110,6 +110,15 @@ static inline double *mpmi_f64(const mpm_particles *set, int32_t field, int32_t 
 static inline int64_t *mpmi_i64(const mpm_particles *set, int32_t field, int32_t copy) {
   return (int64_t *)set->field[field].data[copy];
 }
+/* Returns the field that says where in the grid particles are: what weights are made of. */
+static inline int32_t mpmi_place_field(const mpm_grid *grid) {
+  return mpmi_is_total_lagrangian(grid) ? (int32_t)MPMI_REFERENCE : (int32_t)MPMI_POSITION;
+}
+/* Returns these places, of which those of a total Lagrangian grid have one copy. */
+static inline double *mpmi_places(const mpm_particles *set, int32_t copy) {
+  return mpmi_is_total_lagrangian(set->grid) ? mpmi_f64(set, MPMI_REFERENCE, 0)
+                                             : mpmi_f64(set, MPMI_POSITION, copy);
+}
 size_t mpmi_type_size(int32_t type);
 /* Returns the index of a field by name, or -1. */
 int32_t mpmi_find_field(const mpm_particles *set, const char *name);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "material/deformation.h"
+#include "particles/builtin_fields.h"
 #include "particles/law_batch.h"
 #include "particles/values.h"
 
@@ -99,6 +101,48 @@ void mpmi_reference_take(mpm_particles *set) {
   mpmi_field_written(set, MPMI_F);
 }
 
+/* ---- total Lagrangian grids ---------------------------------------------------------------------------- */
+/* Refuses positions that have no place in the grid. */
+static mpm_status check_places(const mpm_particles *set) {
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  mpm_status status = MPM_OK;
+  for (int64_t s = 0; s < set->slots && !status && mpmi_is_total_lagrangian(set->grid); ++s)
+    if (id[s] >= 0)
+      status = mpmi_check_value(set, MPMI_REFERENCE, mpmi_f64(set, MPMI_POSITION, 0) + s, set->ld,
+                                (mpmi_who){"id", id[s]});
+  return status;
+}
+
+/* Turns the matrices of transfers, which are over reference positions, into those over the present ones. */
+static void turn_gradients(mpm_particles *set) {
+  const int32_t dim = set->grid->dim, rows = mpmi_gradient_components(dim);
+  double *L = mpmi_f64(set, MPMI_L, 0), buffer[9 * MPMI_CHUNK];
+  for (int64_t s = 0; s < set->slots && set->field[MPMI_L].present; s += MPMI_CHUNK) {
+    const double *F[9] = {NULL};
+    for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld + s;
+    for (int32_t c = 0; c < rows; ++c)
+      memcpy(buffer + mpmi_gradient_map(dim)[c] * MPMI_CHUNK, L + c * set->ld + s, MPMI_CHUNK * sizeof *L);
+    mpmi_deformation_of(set->context->isa)->spatial[dim](F, MPMI_CHUNK, buffer, MPMI_CHUNK);
+    for (int32_t c = 0; c < rows; ++c)
+      memcpy(L + c * set->ld + s, buffer + mpmi_gradient_map(dim)[c] * MPMI_CHUNK, MPMI_CHUNK * sizeof *L);
+  }
+}
+
+/* Begins displacements anew. On a total Lagrangian grid particles are then where they were not before. */
+static void take_places(mpm_particles *set) {
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  for (int32_t k = 0; k < set->grid->dim && set->field[MPMI_REFERENCE].present; ++k)
+    for (int64_t s = 0; s < set->slots; ++s)
+      mpmi_f64(set, MPMI_REFERENCE, 0)[k * set->ld + s] = mpmi_absent_value(set, MPMI_REFERENCE, k, s);
+  if (!mpmi_is_total_lagrangian(set->grid)) return;
+  for (int64_t s = 0; s < set->slots; ++s) {
+    if (id[s] >= 0) mpmi_wrap_slot(set, MPMI_REFERENCE, s);
+    for (int32_t k = 0; k < set->grid->dim; ++k)
+      mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + s] = mpmi_f64(set, MPMI_REFERENCE, 0)[k * set->ld + s];
+  }
+  set->dirty |= MPMI_DIRTY_PLACE;
+}
+
 /* ---- the call ------------------------------------------------------------------------------------------ */
 static mpm_status can_reset(const mpm_particles *set) {
   const mpmi_law *law = set->material->law;
@@ -115,6 +159,7 @@ mpm_status mpm_particles_reset_reference(mpm_particles *particles) {
   if (!status) status = can_reset(particles);
   if (!status) status = mpmi_particles_check_suspects(particles);
   if (!status) status = mpmi_particles_refresh(particles);
+  if (!status) status = check_places(particles);
   if (status || !particles->slots) return status;
   mpmi_reference_begin(particles);
   for (int32_t c = 0; c < mpmi_stress_components(particles->grid->dim); ++c)
@@ -122,10 +167,8 @@ mpm_status mpm_particles_reset_reference(mpm_particles *particles) {
            mpmi_f64(particles, MPMI_STRESS, 0) + c * particles->ld,
            (size_t)particles->slots * sizeof(double));
   if ((status = mpmi_reference_fits_host(particles))) return status;
+  if (mpmi_is_total_lagrangian(particles->grid)) turn_gradients(particles);
   mpmi_reference_take(particles);
-  for (int32_t k = 0; k < particles->grid->dim && particles->field[MPMI_REFERENCE].present; ++k)
-    for (int64_t s = 0; s < particles->slots; ++s)
-      mpmi_f64(particles, MPMI_REFERENCE, 0)[k * particles->ld + s] =
-          mpmi_absent_value(particles, MPMI_REFERENCE, k, s);
+  take_places(particles);
   return MPM_OK;
 }

@@ -39,7 +39,7 @@ mpm_status mpmi_sort_blocks(mpm_particles *set, int32_t body, mpmi_blocks *block
   uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
-  const double *x = mpmi_f64(set, MPMI_POSITION, 0);
+  const double *x = mpmi_places(set, 0);
   int32_t last[3] = {0, 0, 0}, coord[3] = {0, 0, 0}, block = MPMI_NO_BLOCK;
   for (int64_t s = 0; s < set->slots; ++s) {
     of_slot[s] = NONE;

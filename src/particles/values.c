@@ -49,7 +49,7 @@ static mpm_status check_determinant(const mpm_particles *set, const double *valu
 
 mpm_status mpmi_check_value(const mpm_particles *set, int32_t field, const double *value, int64_t stride,
                             mpmi_who who) {
-  if (field == MPMI_POSITION) return check_place(set, field, value, stride, who);
+  if (field == mpmi_place_field(set->grid)) return check_place(set, field, value, stride, who);
   int32_t positive = field == MPMI_VOLUME || field == MPMI_INITIAL_VOLUME || field == MPMI_SIZE ||
                      field == MPMI_DILATION_RATIO;
   for (int32_t c = 0; c < set->field[field].full_components; ++c) {
@@ -101,7 +101,7 @@ mpm_status mpmi_check_stored(mpm_particles *set, int32_t field) {
       stride = 1;
     }
     if ((status = mpmi_check_value(set, field, value, stride, who))) return status;
-    if (field == MPMI_POSITION) mpmi_wrap_slot(set, s);
+    if (field == mpmi_place_field(set->grid)) mpmi_wrap_slot(set, field, s);
   }
   return MPM_OK;
 }
@@ -152,7 +152,7 @@ void mpmi_find_masses(mpm_particles *set) {
 void mpmi_field_written(mpm_particles *set, int32_t field) {
   set->dirty |= MPMI_DIRTY_SUMS;
   if (field == MPMI_ACCELERATION) set->dirty &= ~(uint32_t)MPMI_DIRTY_ACCELERATION;
-  if (field == MPMI_POSITION) set->dirty |= MPMI_DIRTY_PLACE;
+  if (field == mpmi_place_field(set->grid)) set->dirty |= MPMI_DIRTY_PLACE;
   if (field == MPMI_F || field == MPMI_INITIAL_VOLUME || field == MPMI_DILATION_RATIO)
     set->dirty |= MPMI_DIRTY_STRESS;
   if (field == MPMI_STRESS && mpmi_material_mean_from_F(set->material)) set->dirty |= MPMI_DIRTY_STRESS;

@@ -132,7 +132,7 @@ mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_
                                .release = release_field};
   take_print(particles, record);
   particles->mapped++;
-  if (f == MPMI_POSITION) particles->lent = 1;
+  if (f == mpmi_place_field(particles->grid)) particles->lent = 1;
   mpmi_view_fill(view, at->type, at->components, access, particles->slots, particles->ld, at->data[0],
                  record);
   return MPM_OK;

@@ -18,10 +18,11 @@ static void add_streams(mpmi_streams *streams, const mpm_particles *set, int32_t
 static void list_streams(mpmi_batch *b) {
   mpmi_streams *streams = &b->gather.streams;
   streams->count = 0;
-  add_streams(streams, b->set, MPMI_POSITION, 0);
+  add_streams(streams, b->set, mpmi_place_field(b->set->grid), 0);
   add_streams(streams, b->set, MPMI_INITIAL_VOLUME, 0);
   if (b->pass->moves) {
     if (b->step->takes == MPMI_TAKES_BLEND) add_streams(streams, b->set, MPMI_VELOCITY, 0);
+    if (mpmi_is_total_lagrangian(b->set->grid)) add_streams(streams, b->set, MPMI_POSITION, 0);
     add_streams(streams, b->set, MPMI_POSITION, 1);
     add_streams(streams, b->set, MPMI_VELOCITY, 1);
     add_streams(streams, b->set, MPMI_L, 1);
@@ -69,7 +70,7 @@ static void bind_set(mpmi_batch *b, int32_t m) {
 
 /* Completes the gradient at rings: L_theta = v_r / r, which is the radial one where r vanishes. */
 static void find_hoop_rate(mpmi_batch *b) {
-  const double *radius = mpmi_component_row(b->set, MPMI_POSITION, 0, 0) + b->begin;
+  const double *radius = mpmi_places(b->set, 0) + b->begin;
   const double *radial = b->law.L;
   double *hoop = b->law.L + 8 * b->law.ld;
   for (int64_t p = 0; p < b->n; ++p) hoop[p] = radius[p] > 0.0 ? b->v_bar[p] / radius[p] : radial[p];

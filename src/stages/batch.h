@@ -95,6 +95,9 @@ void mpmi_strain_aim(mpmi_batch *b);
 enum { MPMI_KEEPS_NOTHING, MPMI_KEEPS_COPY, MPMI_KEEPS_DIRECTLY };
 void mpmi_gradient_aim(mpmi_batch *b);
 void mpmi_gradient_keep(mpmi_batch *b);
+/* Makes the law's gradient, which a total Lagrangian grid gives over reference positions, that over the
+ * present ones. */
+void mpmi_gradient_present(mpmi_batch *b);
 /* Completes deformation gradient and volume; returns 0 where they are no state that a law can be asked
  * about. */
 int32_t mpmi_strain_deform(mpmi_batch *b);

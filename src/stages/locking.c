@@ -25,6 +25,7 @@ _Static_assert(sizeof(cell_sums) == 4 * sizeof(double), "goes through tiles");
 /* Measures det F_inc - 1 of each particle of a batch, into the second copy of its dilation ratio. Where it is
  * not finite the step will fail at this particle, and not at its neighbours. */
 static void measure(mpmi_batch *b) {
+  if (mpmi_is_total_lagrangian(b->set->grid)) mpmi_gradient_present(b);
   b->step->settings->dilation->measure[mpmi_strain_dim(b->set->grid)](
       b->law.L, b->law.ld, b->step->dt, b->n, mpmi_f64(b->set, MPMI_DILATION_RATIO, 1) + b->begin);
 }

@@ -15,6 +15,7 @@ void mpmi_motion_bind(mpmi_batch *b) {
   const mpm_grid *grid = settings->grid;
   const int32_t blends = b->step->takes == MPMI_TAKES_BLEND && mpmi_is_dynamic(settings);
   const int32_t places = b->pass->places;
+  const int32_t free = mpmi_is_total_lagrangian(grid); /* the reference positions are what stays inside */
   const int32_t rule = places                   ? MPMI_MOVE_PLACE
                        : blends                 ? MPMI_MOVE_BLEND
                        : mpmi_corrects(b->step) ? MPMI_MOVE_CORRECT
@@ -30,9 +31,9 @@ void mpmi_motion_bind(mpmi_batch *b) {
                         .dv = b->dv};
   for (int32_t k = 0; k < grid->dim; ++k) {
     const double length = grid->upper[k] - grid->desc.origin[k];
-    const int32_t periodic = grid->desc.periodic[k] != 0;
-    b->move.low[k] = grid->desc.origin[k];
-    b->move.high[k] = grid->upper[k];
+    const int32_t periodic = grid->desc.periodic[k] != 0 && !free;
+    b->move.low[k] = free ? -(double)INFINITY : grid->desc.origin[k];
+    b->move.high[k] = free ? (double)INFINITY : grid->upper[k];
     b->move.period[k] = periodic ? length : 0.0;
     b->move.inverse_period[k] = periodic ? 1.0 / length : 0.0;
   }
@@ -46,6 +47,8 @@ void mpmi_motion_enter(mpmi_batch *b) {
   const mpmi_cover *cover = &b->step->layout->blocks.cover[b->block];
   memcpy(b->move.centre, cover->centre, sizeof b->move.centre);
   memcpy(b->move.half, cover->half, sizeof b->move.half);
+  for (int32_t k = 0; k < 3 && mpmi_is_total_lagrangian(b->step->settings->grid); ++k)
+    b->move.half[k] = (double)INFINITY;
 }
 
 /* ---- beyond the faces of the grid --------------------------------------------------------------------- */

@@ -63,7 +63,7 @@ int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m) {
   if (!n) return 1; /* an empty set has no rows */
   for (int32_t k = 0; k < set->grid->dim; ++k) {
     const reach of = reach_of(&layout->blocks, visit->block, k);
-    const double *x = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + begin;
+    const double *x = mpmi_places(set, 0) + k * set->ld + begin;
     if (!any_astray(x, &of, n)) continue;
     int64_t p = 0;
     while (p < n - 1 && !is_astray(x[p], &of)) ++p;

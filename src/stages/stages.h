@@ -29,6 +29,10 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
 /* Turns momenta into velocities and forces into increments, on every node as if it were free. */
 mpm_status mpmi_node_update_stage(mpmi_step *step, const mpmi_projection *projection, mpmi_nodes *nodes);
 
+/* ---- node_places.c ----------------------------------------------------------------------------------- */
+/* Finds where the nodes of a total Lagrangian grid have come to, where obstacles want to know that. */
+mpm_status mpmi_node_places_stage(mpmi_step *step, mpmi_nodes *nodes);
+
 /* ---- xpic.c ------------------------------------------------------------------------------------------ */
 /* Leaves the corrections in the second copy of the particles' velocities. */
 mpm_status mpmi_xpic_stage(mpmi_step *step, mpmi_nodes *nodes);
@@ -85,13 +89,8 @@ mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
 /* Stretches all markers with the velocities of these nodes, from what they were at the start of the step, and
  * finds the forces on their new areas. */
 mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from);
-/* Finds the increment of the deformation gradient at a marker. */
-void mpmi_marker_deformation(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *from, int64_t marker,
-                             double F[3][3]);
 /* Finds all forces per present area in fixed directions on a marker. */
 void mpmi_marker_tractions(const mpm_surface *surface, int64_t marker, double *traction);
-/* Inverts a matrix whose unused axes are those of the identity; returns its determinant. */
-double mpmi_marker_invert(double M[3][3], double inverse[3][3]);
 /* Moves all markers with the velocities of these nodes, and splits those that have become too long. */
 mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
 

@@ -25,6 +25,17 @@ static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles
          !mpmi_is_implicit(settings);
 }
 
+/* A total Lagrangian grid makes the gradient over reference positions that over the present ones once it is
+ * known, unless nothing but F is asked for. */
+static int32_t deforms_at_once(const mpmi_batch *b) {
+  const mpmi_settings *settings = b->step->settings;
+  const mpm_material *material = b->set->material;
+  if (!b->pass->deforms || mpmi_is_implicit(settings) || mpmi_is_axisymmetric(settings->grid)) return 0;
+  if (mpmi_is_total_lagrangian(settings->grid))
+    return looks_at_F_alone(material) && !settings->desc.locking_remedy;
+  return mpmi_material_kinematics(material) == MPMI_F_DEFORMS;
+}
+
 /* An MLS transfer that gathers increments finds C, which is the velocity gradient as well. */
 static int32_t finds_only_C(const mpmi_batch *b) {
   return b->step->settings->transfer->moments == MPMI_NEED_MLS && b->form == MPMI_GATHER_8_AFFINE;
@@ -59,6 +70,7 @@ void mpmi_strain_bind(mpmi_batch *b) {
   if (b->in_place) b->law.batch.ld = b->set->ld;
   b->deform =
       (mpmi_deform){.dt = b->step->dt,
+                    .total = mpmi_is_total_lagrangian(grid) && deforms_at_once(b),
                     .ld = b->law.ld,
                     .L = b->law.L,
                     .F = b->in_place ? NULL : b->law.F,
@@ -79,9 +91,7 @@ void mpmi_strain_bind(mpmi_batch *b) {
     b->sums_job.gravity[k] = settings->desc.gravity[k];
     b->sums_job.inverse_spacing[k] = grid->inverse_spacing[k];
   }
-  if (b->pass->deforms && !mpmi_is_implicit(settings) && !finds_only_C(b) && !mpmi_is_axisymmetric(grid) &&
-      mpmi_material_kinematics(b->set->material) == MPMI_F_DEFORMS)
-    b->gather.deform = &b->deform;
+  if (deforms_at_once(b) && !finds_only_C(b)) b->gather.deform = &b->deform;
   bind_gradient(b);
 }
 
@@ -133,6 +143,16 @@ void mpmi_gradient_keep(mpmi_batch *b) {
            b->law.L + mpmi_gradient_map(dim)[c] * b->law.ld, (size_t)b->n * sizeof(double));
 }
 
+void mpmi_gradient_present(mpmi_batch *b) {
+  const mpm_grid *grid = b->set->grid;
+  const double *F[9];
+  for (int32_t e = 0; e < 9; ++e) F[e] = nothing;
+  for (int32_t c = 0; c < mpmi_tensor_components(grid->dim); ++c)
+    F[mpmi_is_axisymmetric(grid) ? mpmi_tensor_map(2)[c] : c] =
+        mpmi_component_row(b->set, MPMI_F, 0, c) + b->begin;
+  b->step->settings->deformation->spatial[mpmi_strain_dim(grid)](F, b->law.ld, b->law.L, b->n);
+}
+
 /* Makes the volumes of a batch of stored components of F, as they are made again later: with those bits. */
 static uint32_t make_volumes(const mpmi_batch *b) {
   const double *F[9] = {NULL};
@@ -146,6 +166,7 @@ int32_t mpmi_strain_deform(mpmi_batch *b) {
   const mpmi_deformation *by = b->step->settings->deformation;
   const int32_t kinematics = mpmi_material_kinematics(b->set->material);
   uint32_t flags = b->taken.deformed;
+  if (mpmi_is_total_lagrangian(b->set->grid) && !b->deform.total) mpmi_gradient_present(b);
   if (!b->gather.deform) flags = by->deform[kinematics][mpmi_strain_dim(b->set->grid)](&b->deform, b->n);
   if (mpmi_is_axisymmetric(b->set->grid)) flags |= make_volumes(b);
   b->flags |= flags;
@@ -156,6 +177,15 @@ int32_t mpmi_strain_deform(mpmi_batch *b) {
 static void take_thickness(mpmi_batch *b) {
   memcpy(b->deform.F_new[4], b->law.F + 8 * b->law.ld, (size_t)b->n * sizeof(double));
   b->flags |= make_volumes(b);
+}
+
+/* Waves are as fast over reference positions as F_new has it. */
+static void take_reference_speeds(mpmi_batch *b) {
+  const double *F[9] = {NULL};
+  const int32_t dim = b->set->grid->dim;
+  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
+    F[c] = mpmi_component_row(b->set, MPMI_F, 1, c) + b->begin;
+  b->step->settings->deformation->speeds[dim](F, b->law.wave_speed, b->law.viscosity, b->n);
 }
 
 void mpmi_strain_law(mpmi_batch *b) {
@@ -179,6 +209,7 @@ void mpmi_strain_law(mpmi_batch *b) {
     return;
   }
   if (mpmi_is_plane_stress(b->set->grid)) take_thickness(b);
+  if (mpmi_is_total_lagrangian(b->set->grid)) take_reference_speeds(b);
   if (!b->in_place) mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);
   b->law_ran = 1;
 }
@@ -214,6 +245,8 @@ void mpmi_batch_sums(mpmi_batch *b, int32_t what) {
     for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
       job->affine[mpmi_gradient_map(dim)[c]] = mpmi_component_row(set, MPMI_L, 1, c) + b->begin;
   }
+  for (int32_t c = 0; mpmi_is_total_lagrangian(set->grid) && c < mpmi_tensor_components(dim); ++c)
+    job->F[c] = mpmi_component_row(set, MPMI_F, 1, c) + b->begin;
   b->flags |= settings->kernels->sums[dim](job, b->n, b->sums);
 }
 

@@ -239,7 +239,7 @@ static int32_t find_shares(const surface_job *job, stencil *of) {
   return whole;
 }
 
-double mpmi_marker_invert(double M[3][3], double inverse[3][3]) {
+static double invert(double M[3][3], double inverse[3][3]) {
   double det = 0.0;
   for (int32_t i = 0; i < 3; ++i)
     for (int32_t j = 0; j < 3; ++j) {
@@ -278,7 +278,7 @@ static void make_linear(int32_t dim, stencil *of) {
       for (int32_t k = 0; k < dim; ++k) spread[c][k] += of->arm[n][c] * of->g[n][k];
     }
   }
-  if (!(mpmi_marker_invert(spread, A) > LEAST_SPREAD)) return;
+  if (!(invert(spread, A) > LEAST_SPREAD)) return;
   for (int32_t n = 0; n < of->count; ++n) {
     const double g[3] = {of->g[n][0], of->g[n][1], of->g[n][2]};
     for (int32_t k = 0; k < dim; ++k) {
@@ -318,10 +318,11 @@ static void find_nodes_task(void *data, int64_t task) {
     const int64_t begin = chunk * MPMI_CHUNK,
                   n = markers->count - begin < MPMI_CHUNK ? markers->count - begin : MPMI_CHUNK;
     for (int64_t p = 0; p < MPMI_CHUNK; ++p)
-      for (int32_t k = 0; k < grid->dim; ++k) x[k][p] = markers->at[begin + (p < n ? p : n - 1)].position[k];
+      for (int32_t k = 0; k < grid->dim; ++k) 
+        x[k][p] = mpmi_marker_place_of(&markers->at[begin + (p < n ? p : n - 1)], grid)[k];
     weights(axis, MPMI_NEED_GRADIENT | MPMI_NO_PLACE, &points, 0, MPMI_CHUNK, &W);
     for (int64_t p = 0; p < n; ++p) {
-      list_nodes(job, &W, p, markers->at[begin + p].position, &near);
+      list_nodes(job, &W, p, mpmi_marker_place_of(&markers->at[begin + p], grid), &near);
       if (!find_shares(job, &near) && normalise(grid->dim, &near) > 0.0) make_linear(grid->dim, &near);
       keep_nodes(job, begin + p, &near);
     }
@@ -420,19 +421,22 @@ static void gather(const surface_job *job, int64_t marker, double *velocity, dou
       for (int32_t k = 0; k < dim; ++k) L[c][k] += v * around->gradient[n * dim + k];
     }
   }
-  const double radius = job->surface->now.at[marker].position[0];
+  const double radius = mpmi_marker_place_of(&job->surface->now.at[marker], settings->grid)[0];
   if (mpmi_is_axisymmetric(settings->grid)) L[2][2] = radius > 0.0 ? velocity[0] / radius : L[0][0];
 }
 
-/* Stretches the edges that the marker had at the start of the step. */
+/* Stretches the edges that the marker had at the start of the step, by a gradient of velocities over the
+ * positions of that time; or over reference positions, which stretches what the edges were there. */
 static void stretch(const surface_job *job, int64_t marker, double L[3][3]) {
   const mpmi_marker *from = &job->surface->now.at[marker];
   mpmi_marker *to = &job->surface->next.at[marker];
   const int32_t dim = mpmi_strain_dim(job->surface->grid);
+  const double(*material)[3] =
+      mpmi_is_total_lagrangian(job->surface->grid) ? from->reference_edge : from->edge;
   memcpy(to->edge, from->edge, sizeof to->edge);
   for (int32_t e = 0; e < dim - 1; ++e)
     for (int32_t c = 0; c < dim; ++c)
-      for (int32_t k = 0; k < dim; ++k) to->edge[e][c] += job->step->dt * L[c][k] * from->edge[e][k];
+      for (int32_t k = 0; k < dim; ++k) to->edge[e][c] += job->step->dt * L[c][k] * material[e][k];
 }
 
 static void stretch_task(void *data, int64_t task) {
@@ -443,15 +447,6 @@ static void stretch_task(void *data, int64_t task) {
     gather(job, i, velocity, L);
     stretch(job, i, L);
   }
-}
-
-void mpmi_marker_deformation(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *from, int64_t marker,
-                             double F[3][3]) {
-  const surface_job job = {step, surface, from};
-  double velocity[3];
-  gather(&job, marker, velocity, F);
-  for (int32_t i = 0; i < 3; ++i)
-    for (int32_t k = 0; k < 3; ++k) F[i][k] = (i == k ? 1.0 : 0.0) + step->dt * F[i][k];
 }
 
 mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from) {
@@ -493,14 +488,15 @@ static mpm_status look(mpmi_step *step, const mpm_surface *s, mpmi_marker *m, in
     double *x = &m->position[k];
     if (!isfinite(*x) || !isfinite(m->edge[0][k] + m->edge[1][k]))
       return fail_marker(step, MPM_NONFINITE, s, m, "has a position or an edge that is not finite");
-    if (grid->desc.periodic[k] || (*x >= grid->desc.origin[k] && *x <= grid->upper[k])) continue;
+    if (mpmi_is_total_lagrangian(grid) || grid->desc.periodic[k] || (*x >= grid->desc.origin[k] && *x <= grid->upper[k])) continue;
     const int32_t face = 2 * k + (*x > grid->upper[k]);
     if (mpmi_wall_kind_of(step->settings->wall[face].kind)->opens)
       *leaves = 1;
     else if (!mpmi_is_on_wall(step->settings, k, x))
       return fail_marker(step, MPM_OFF_GRID, s, m, through[face]);
   }
-  if (*leaves || mpmi_grid_place(grid, m->position, 1, NULL, 0) < 0) return MPM_OK;
+  if (*leaves || mpmi_is_total_lagrangian(grid) || mpmi_grid_place(grid, m->position, 1, NULL, 0) < 0)
+    return MPM_OK;
   return fail_marker(step, MPM_NONFINITE, s, m, "crosses too many periods");
 }
 

@@ -38,6 +38,7 @@ mpm_status mpmi_explicit_begin(mpmi_step *step, mpmi_nodes *nodes) {
   if (!status) status = mpmi_surfaces_load(step, step->t);
   if (!status) status = mpmi_prescribed_stage(step);
   mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
+  if (!status) status = mpmi_node_places_stage(step, nodes);
   if (!status && step->settings->desc.scheme == MPM_USF) status = deform_first(step, nodes, &clock);
   if (!status) status = mpmi_p2g_stage(step, &mpmi_projections[MPMI_PROJECT_FORCES], nodes);
   mpmi_lap(step, MPMI_TIME_P2G, &clock);

@@ -101,11 +101,17 @@ static mpm_status take_value(const mpm_surface *s, const field *f, const double 
     const mpm_status status = mpmi_marker_check_area(s, id, marker->position[0], v);
     if (status) return status;
   }
+  if ((f->at == AREA || strcmp(f->name, "position") == 0) && mpmi_is_total_lagrangian(s->grid))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "%s of a marker follows from where it was added, on a grid with total_lagrangian = 1: "
+                     "remove it and add another",
+                     f->name);
   if (write && f->at == AREA) {
     mpmi_marker_set_area(marker, s->grid, v);
   } else if (write) {
     memcpy((char *)marker + f->at, v, (size_t)count * sizeof *v);
     mpmi_marker_set_radius(marker, s->grid);
+    if (strcmp(f->name, "position") == 0) mpmi_marker_set_reference(marker);
   }
   return MPM_OK;
 }

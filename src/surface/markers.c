@@ -41,6 +41,11 @@ void mpmi_marker_set_radius(mpmi_marker *m, const mpm_grid *grid) {
   if (mpmi_is_axisymmetric(grid)) m->edge[1][2] = m->position[0];
 }
 
+void mpmi_marker_set_reference(mpmi_marker *m) {
+  memcpy(m->reference, m->position, sizeof m->reference);
+  memcpy(m->reference_edge, m->edge, sizeof m->reference_edge);
+}
+
 void mpmi_marker_set_area(mpmi_marker *m, const mpm_grid *grid, const double *area) {
   const int32_t dim = grid->dim;
   double a[3] = {0.0, 0.0, 0.0};
@@ -53,6 +58,7 @@ void mpmi_marker_set_area(mpmi_marker *m, const mpm_grid *grid, const double *ar
   mpmi_marker_set_radius(m, grid);
   for (int32_t c = 0; c < 2 && mpmi_is_axisymmetric(grid); ++c)
     m->edge[0][c] = m->position[0] > 0.0 ? m->edge[0][c] / m->position[0] : 0.0;
+  mpmi_marker_set_reference(m);
 }
 
 mpm_status mpmi_marker_check_area(const mpm_surface *s, int64_t which, double radius, const double *area) {
@@ -197,23 +203,27 @@ static void halve(const mpm_grid *grid, mpmi_marker *m, int32_t e, mpmi_marker *
   m->reference_area *= 0.5;
   for (int32_t k = 0; k < 3; ++k) {
     m->edge[e][k] *= 0.5;
+    m->reference_edge[e][k] *= 0.5;
     m->force[k] *= 0.5;
   }
   *half = *m;
   for (int32_t k = 0; k < grid->dim; ++k) {
     m->position[k] -= 0.5 * m->edge[e][k];
     half->position[k] += 0.5 * m->edge[e][k];
+    m->reference[k] -= 0.5 * m->reference_edge[e][k];
+    half->reference[k] += 0.5 * m->reference_edge[e][k];
   }
 }
 
 /* Brings the half of a split marker, whose edge ended beyond a face, back onto it. */
 static void keep_inside(const mpm_grid *grid, mpmi_marker *m) {
+  double *x = mpmi_is_total_lagrangian(grid) ? m->reference : m->position;
   for (int32_t k = 0; k < grid->dim; ++k) {
     const double low = grid->desc.origin[k], high = grid->upper[k];
     if (grid->desc.periodic[k]) continue;
-    m->position[k] = m->position[k] < low ? low : m->position[k] > high ? high : m->position[k];
+    x[k] = x[k] < low ? low : x[k] > high ? high : x[k];
   }
-  mpmi_grid_place(grid, m->position, 1, NULL, 0);
+  mpmi_grid_place(grid, x, 1, NULL, 0);
   if (mpmi_is_axisymmetric(grid)) {
     const double was = m->edge[1][2];
     mpmi_marker_set_radius(m, grid);

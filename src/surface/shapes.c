@@ -53,6 +53,7 @@ static mpm_status add_patch(mpm_surface *s, mpmi_marker *m) {
   if (status) return status;
   mpmi_marker_set_radius(m, s->grid);
   m->reference_area = mpmi_marker_size(m, s->grid);
+  mpmi_marker_set_reference(m);
   mpmi_markers_append(&s->now, m);
   return MPM_OK;
 }

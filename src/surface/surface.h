@@ -21,6 +21,7 @@ typedef struct mpmi_marker {
    * edge[1] is that of one radian: (0, 0, r). */
   double edge[2][3];
   double reference_area, displacement[3], velocity[3], force[3];
+  double reference[3], reference_edge[2][3]; /* position and edges when it was added or set */
   double pressure, traction[3], dead_traction[3]; /* its own, beside those of the surface */
 } mpmi_marker;
 
@@ -63,6 +64,11 @@ typedef struct mpmi_surfaces {
   mpm_surface **surface;
 } mpmi_surfaces;
 
+/* Returns where in the grid a marker is: what its weights are made of. */
+static inline const double *mpmi_marker_place_of(const mpmi_marker *marker, const mpm_grid *grid) {
+  return mpmi_is_total_lagrangian(grid) ? marker->reference : marker->position;
+}
+
 /* ---- markers.c --------------------------------------------------------------------------------------- */
 /* Returns MPM_E_STATE while a staged step is under way. */
 mpm_status mpmi_surface_changeable(const mpm_surface *surface);
@@ -76,6 +82,8 @@ mpm_status mpmi_marker_check_area(const mpm_surface *surface, int64_t which, dou
                                   const double *area);
 /* Gives a marker of rings the radius at which it stands. */
 void mpmi_marker_set_radius(mpmi_marker *marker, const mpm_grid *grid);
+/* Makes position and edges as they are the reference. */
+void mpmi_marker_set_reference(mpmi_marker *marker);
 /* Refuses a position outside the grid, and wraps one that is inside. `which` counts markers in the text. */
 mpm_status mpmi_marker_place(const mpm_surface *surface, int64_t which, double *position);
 /* Makes room for so many more markers. Those that are there stay, and on failure nothing has changed. */

@@ -3,10 +3,12 @@
  *   p_i += w_ip m_p (v_p + C_p (x_i - x_p))                    MPoint theory eq. 29; APIC: Jiang et al. 2017
  *   f_i += w_ip f_ext,p - V_p sigma_p grad w_ip                Steffen et al. 2008 eqs 4, 16
  *   f_r,i -= w_ip V_p sigma_theta,p / r_p                      of rings: Nairn & Guilkey 2015
+ *   sigma F^-T in the place of sigma                           total Lagrangian: de Vaucorbeil et al. 2020
  *
  * Both are first-order forms  w a + sum_k column_k (w with axis k replaced by its second weight),  summed
  * hierarchically: axis by axis, row by row, node by node. Affine momentum alone is simpler: what a node
  * receives is w_ip times a linear function of its place. The MLS form puts the force into that function. */
+#include "material/pull_back.h"
 #include "simd/pack.h"
 #include "simd/tensor.h"
 #include "transfer/scatter.h"
@@ -158,6 +160,36 @@ MPMI_INLINE void give_hoop_force(const mpmi_scatter *job, int64_t s, int64_t n, 
   }
 }
 
+/* The same where radius and weights are those of the reference positions: f_r -= V sigma_theta / (F_theta
+ * R). */
+MPMI_INLINE void give_nominal_hoop_force(const mpmi_scatter *job, int64_t s, int64_t n, double *to) {
+  const double *volume = job->volume + s, *sigma = job->stress[2] + s, *radius = job->points.x[0] + s;
+  const double *stretch = job->F[4] + s;
+  MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
+    const double force = volume[p] * sigma[p] / (stretch[p] * radius[p]);
+    to[p] -= radius[p] > 0.0 ? force : 0.0;
+  }
+}
+
+/* Computes -V sigma F^-T. */
+MPMI_INLINE void give_nominal(int32_t dim, const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s,
+                              int64_t n, mpmi_given *to) {
+  for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES) {
+    mpmi_lanes inverse[3][3];
+    const mpmi_lanes volume = mpmi_lanes_load(job->volume + s + q);
+    mpmi_inverse_load(dim, job->F, s + q, inverse);
+    for (int32_t r = 0; r < dim; ++r) {
+      mpmi_lanes force[3];
+      for (int32_t j = 0; j < dim; ++j) force[j] = -volume * mpmi_lanes_load(stress->at[j][r] + s + q);
+      for (int32_t k = 0; k < dim; ++k) {
+        mpmi_lanes sum = {0.0};
+        for (int32_t j = 0; j < dim; ++j) sum += force[j] * inverse[k][j];
+        mpmi_lanes_store(to->stress[k][r] + q, sum);
+      }
+    }
+  }
+}
+
 /* Computes -V sigma, of which the lower triangle is filled, and the external force. */
 MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s,
                             int64_t n, mpmi_given *to) {
@@ -170,13 +202,16 @@ MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_str
     } else {
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->force[r][p] = mass[p] * g;
     }
-    for (int32_t k = 0; k <= r; ++k) {
+    for (int32_t k = 0; k <= r && !job->F[0]; ++k) {
       const double *sigma = stress->at[k][r] + s;
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->stress[k][r][p] =
           -volume[p] * sigma[p];
     }
   }
-  if (dim == 2 && job->hoop) give_hoop_force(job, s, n, to->force[0]);
+  if (dim == 2 && job->hoop && job->F[0])
+    give_nominal_hoop_force(job, s, n, to->force[0]);
+  else if (dim == 2 && job->hoop)
+    give_hoop_force(job, s, n, to->force[0]);
 }
 
 /* Computes momentum. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis;
@@ -203,6 +238,13 @@ MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const m
       const double scale = fused ? -job->fused_dt * MPMI_MLS_INVERSE(width) / h : 0.0;
       if (!linear) {
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->affine[k][r][p] = mass[p] * C[p];
+      } else if (job->F[0] && fused) {
+        const double *nominal = to->stress[k][r];
+        MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
+          double growth = mass[p] * C[p] * h - scale * nominal[p];
+          to->affine[k][r][p] = growth;
+          to->momentum[r][p] += W->first[k][p] * growth;
+        }
       } else {
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
           double growth = mass[p] * C[p] * h + scale * volume[p] * sigma[p];
@@ -214,9 +256,10 @@ MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const m
   }
 }
 
-/* Packs what was given in the order of a node's values. Components that the grid does not have are zero. */
-MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, const mpmi_given *given,
-                      mpmi_first_order *of) {
+/* Packs what was given in the order of a node's values. Components that the grid does not have are zero. Of a
+ * symmetric stress the lower triangle is there. */
+MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, int32_t symmetric,
+                      const mpmi_given *given, mpmi_first_order *of) {
   const int32_t eight = form >= MPMI_SCATTER_8, affine = is_affine(form);
   const double *a[8] = {zero, zero, zero, mass, zero, zero, zero, zero};
   for (int32_t r = 0; r < dim; ++r) a[r] = given->momentum[r], a[4 + r] = given->force[r];
@@ -227,7 +270,7 @@ MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, 
   for (int32_t k = 0; (eight || affine) && k < dim; ++k) {
     const double *c[8] = {zero, zero, zero, zero, zero, zero, zero, zero};
     for (int32_t r = 0; r < dim; ++r)
-      c[r] = given->affine[k][r], c[4 + r] = r < k ? given->stress[r][k] : given->stress[k][r];
+      c[r] = given->affine[k][r], c[4 + r] = r < k && symmetric ? given->stress[r][k] : given->stress[k][r];
     if (eight && affine)
       mpmi_pack8(n, c, of->column[k]);
     else
@@ -245,9 +288,10 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
   for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
     const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
     job->weights(job->axis, job->need, &job->points, s, n, &W);
+    if (job->F[0]) give_nominal(dim, job, &stress, s, n, &given);
     give_momentum(dim, width, form, job, &stress, s, n, &W, &given);
     if (form >= MPMI_SCATTER_8) give_force(dim, job, &stress, s, n, &given);
-    pack(dim, form, job->mass + s, n, &given, &of);
+    pack(dim, form, job->mass + s, n, !job->F[0], &given, &of);
     for (int64_t p = 0; p < n; ++p) {
       double *stencil = job->tile + values * W.node[p];
       MPMI_SETTLE(stencil);

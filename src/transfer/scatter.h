@@ -26,6 +26,7 @@ typedef struct mpmi_scatter {
   const double *v[3], *mass, *volume;
   const double *stress[6]; /* by (xx yy zz xy yz xz) */
   const double *affine[9]; /* row * 3 + column; for the affine forms */
+  const double *F[9];      /* of total Lagrangian grids, stored components; or NULL */
   const double *force[3];  /* external force on the particle beside gravity, or NULL */
   double gravity[3];
   int32_t hoop;    /* particles are rings (2-D): x[0] is their radius */

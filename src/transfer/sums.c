@@ -1,4 +1,5 @@
 /* Energies, momenta and the stable rate of a batch, and a look at what the law returned. */
+#include "material/deformation.h"
 #include "simd/chunk.h"
 #include "simd/rounding.h"
 #include "transfer/sums.h"
@@ -15,6 +16,16 @@ MPMI_INLINE mpmi_lanes second_moment(const mpmi_sums_job *job, int32_t axis, int
   return zero + job->constant_moment[axis];
 }
 
+/* Returns component a, b of C D F^T. */
+MPMI_INLINE mpmi_lanes present_moment(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t a,
+                                      int32_t b) {
+  mpmi_lanes sum = {0.0};
+  for (int32_t k = 0; k < dim; ++k)
+    sum += mpmi_lanes_load(job->affine[3 * a + k] + s) * second_moment(job, k, s) *
+           mpmi_lanes_load(job->F[mpmi_stored_entry(dim, b, k)] + s);
+  return sum;
+}
+
 /* Adds component r of the angular momentum, m (x x v + sum_k D_k e_k x C e_k), with a, b the two other
  * axes. */
 MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t r, mpmi_lanes m,
@@ -22,9 +33,17 @@ MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, i
   const int32_t a = (r + 1) % 3, b = (r + 2) % 3;
   if (a >= dim || b >= dim) return;
   t->angular[r] += m * (x[a] * v[b] - x[b] * v[a]);
-  if (!job->affine[0]) return;
+  if (!job->affine[0] || job->F[0]) return;
   t->angular[r] += m * (second_moment(job, a, s) * mpmi_lanes_load(job->affine[3 * b + a] + s) -
                         second_moment(job, b, s) * mpmi_lanes_load(job->affine[3 * a + b] + s));
+}
+
+/* Adds what the matrices have of it where they are over reference positions, m sum_k D_k F e_k x C e_k. */
+MPMI_INLINE void add_reference_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t r,
+                                       mpmi_lanes m, mpmi_tally *t) {
+  const int32_t a = (r + 1) % 3, b = (r + 2) % 3;
+  if (a >= dim || b >= dim || !job->affine[0] || !job->F[0]) return;
+  t->angular[r] += m * (present_moment(dim, job, s, b, a) - present_moment(dim, job, s, a, b));
 }
 
 /* Adds twice the energy of the affine part, m sum_k D_k |C e_k|^2. */
@@ -72,10 +91,12 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpm
     const mpmi_lanes p = m * v[k];
     t->momentum[k] += p;
     t->kinetic += p * v[k];
-    t->rate = mpmi_lanes_max(t->rate, (mpmi_lanes_abs(v[k]) + c) * job->inverse_spacing[k]);
+    const mpmi_lanes speed = job->F[0] ? c : mpmi_lanes_abs(v[k]) + c;
+    t->rate = mpmi_lanes_max(t->rate, speed * job->inverse_spacing[k]);
     add_work(job, s, k, m, x[k], t);
   }
   for (int32_t r = 0; r < 3; ++r) add_angular(dim, job, s, r, m, x, v, t);
+  for (int32_t r = 0; r < 3; ++r) add_reference_angular(dim, job, s, r, m, t);
   add_affine(dim, job, s, m, t);
 }
 

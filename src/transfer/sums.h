@@ -24,6 +24,8 @@ typedef struct mpmi_sums_job {
   double inverse_spacing[3], viscous_factor; /* 2 dim / h_min^2 */
   const double *moment[3];   /* sum w (x_i - x)^2 of each particle along each axis, or NULL: */
   double constant_moment[3]; /* where it is the same for all particles */
+  const double *F[9]; /* stored components where C is over reference positions, of a total Lagrangian grid, in
+                         which nothing travels but waves; or NULL */
   const double *checked[2];  /* [checked_rows][ld] further values that must be finite */
   int32_t checked_rows[2];
 } mpmi_sums_job;

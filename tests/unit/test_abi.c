@@ -160,7 +160,7 @@ END_TEST
 
 #define STRUCT mpm_grid_desc
 START_TEST(layout_of_grid_desc) {
-  SIZE(112);
+  SIZE(120);
   AT(0, struct_size);
   AT(4, dim);
   AT(8, basis);
@@ -171,6 +171,8 @@ START_TEST(layout_of_grid_desc) {
   AT(56, origin);
   AT(80, spacing);
   AT(104, smoothing);
+  AT(112, total_lagrangian);
+  AT(116, reserved);
 }
 END_TEST
 #undef STRUCT

@@ -176,7 +176,7 @@ static combination *list;
 static int32_t listed;
 
 START_TEST(combination_works) {
-  check_geometry(&list[_i], MPM_AXISYMMETRIC);
+  check_geometry(&list[_i], MPM_AXISYMMETRIC, 0);
 }
 END_TEST
 

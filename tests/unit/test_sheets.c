@@ -254,7 +254,7 @@ static combination *list;
 static int32_t listed;
 
 START_TEST(combination_works) {
-  check_geometry(&list[_i], MPM_PLANE_STRESS);
+  check_geometry(&list[_i], MPM_PLANE_STRESS, 0);
 }
 END_TEST
 

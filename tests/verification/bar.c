@@ -58,6 +58,7 @@ double bar_error(const bar *how, int32_t cells, double amplitude, double dt, dou
   setup.grid.origin[0] = -(double)margin / cells;
   setup.grid.basis = how->basis;
   setup.grid.boundary_basis = how->boundary_basis;
+  setup.grid.total_lagrangian = how->total;
   setup.grid.periodic[0] = how->ends == BAR_PERIODIC;
   if (how->smoothing > 0.0) setup.grid.smoothing = how->smoothing;
   if (how->scheme) setup.stepper.scheme = how->scheme;

@@ -13,6 +13,7 @@ typedef struct bar {
   double smoothing; /* edge of the domains / h, of MPM_UGIMP */
   int32_t scheme, projected;
   int32_t zero_acceleration; /* of overwritten nodes: mpm_stepper_desc.boundary_zero_acceleration */
+  int32_t total;             /* mpm_grid_desc.total_lagrangian */
 } bar;
 
 static const double bar_E = 1e4, bar_speed = 100.0; /* density 1 */

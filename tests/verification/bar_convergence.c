@@ -1,8 +1,8 @@
 /* Steffen et al. 2008, fig. 10: error of the manufactured bar against the number of cells, by basis. */
 #include "bar.h"
 
-enum { SIZES = 7, METHODS = 7 };
-enum { LINEAR, QUADRATIC, QUADRATIC_6, CUBIC, UGIMP, CPGIMP, MUSL };
+enum { SIZES = 7, METHODS = 10 };
+enum { LINEAR, QUADRATIC, QUADRATIC_6, CUBIC, UGIMP, CPGIMP, MUSL, TOTAL_LINEAR, TOTAL, TOTAL_CUBIC };
 
 static double h[SIZES], error[METHODS][SIZES]; /* by number of cells: 8, 16, ... */
 
@@ -32,6 +32,15 @@ static void fine_gates(void) {
   verify_gate("order, cpGIMP, 64 to 512 cells", verify_slope(4, &h[3], &error[CPGIMP][3]), 1.7, 2.4, figure);
   verify_gate("plateau, quadratic: error at 512 over 128 cells", error[QUADRATIC][6] / error[QUADRATIC][4],
               0.4, HUGE_VAL, figure);
+  const char *exact = "second order; a total Lagrangian grid has no noise of crossing and no plateau";
+  const double *total[] = {error[TOTAL_LINEAR], error[TOTAL], error[TOTAL_CUBIC]};
+  const char *names[] = {"linear", "quadratic", "cubic"};
+  for (int32_t i = 0; i < 3; ++i) {
+    char name[80];
+    snprintf(name, sizeof name, "total Lagrangian, %s", names[i]);
+    verify_gate_of(name, "order, 16 to 512 cells", verify_slope(6, &h[1], &total[i][1]), 1.9, 2.4, exact);
+    verify_gate_of(name, "order, 256 to 512 cells", log2(total[i][5] / total[i][6]), 1.9, 2.4, exact);
+  }
   verify_gate("plateau is lower with 6 per cell: 512 cells", error[QUADRATIC_6][6] / error[QUADRATIC][6], 0.0,
               0.5, figure);
 }
@@ -46,6 +55,9 @@ int main(int argc, char **argv) {
       {.name = "uGIMP", .basis = MPM_UGIMP, .smoothing = 0.25, .per_cell = 4},
       {.name = "cpGIMP", .basis = MPM_CPGIMP, .per_cell = 4},
       {.name = "quadratic, MUSL", .basis = MPM_BSPLINE2, .scheme = MPM_MUSL, .per_cell = 4},
+      {.name = "linear, total Lagrangian", .basis = MPM_LINEAR, .per_cell = 4, .total = 1},
+      {.name = "quadratic, total Lagrangian", .basis = MPM_BSPLINE2, .per_cell = 4, .total = 1},
+      {.name = "cubic, total Lagrangian", .basis = MPM_BSPLINE3, .per_cell = 4, .total = 1},
   };
   const int32_t sizes = verify_quick() ? 4 : SIZES;
   FILE *csv = verify_csv("bar_convergence");

@@ -3,7 +3,7 @@
 #include "verify.h"
 
 enum { PERIODIC, SYMMETRY_WALLS, OVERWRITTEN_NODES };
-enum { SIZES = 3, METHODS = 4, PER_CELL = 4 };
+enum { SIZES = 3, METHODS = 6, PER_CELL = 4 };
 
 static const double A = 0.05, E = 1e4, nu = 0.3, C = 100.0, t_end = 0.01; /* density 1 */
 
@@ -57,13 +57,14 @@ static void start(const verify_world *w, mpm_particles *set, double dt) {
 }
 
 /* Largest error of a particle's position. */
-static double run(int32_t basis, int32_t faces, int32_t cells) {
+static double run(int32_t basis, int32_t faces, int32_t total, int32_t cells) {
   const double lower[3] = {0.0, 0.0, 0.0}, upper[3] = {1.0, 1.0, 1.0};
   const int32_t per_cell[3] = {PER_CELL, PER_CELL, PER_CELL}, margin = faces == OVERWRITTEN_NODES ? 4 : 0;
   const int32_t steps = (int32_t)ceil(t_end * C * cells / 0.4 - 1e-9);
   const double dt = t_end / steps;
   verify_setup setup = verify_defaults(3, cells + 2 * margin, 1.0 / cells);
   setup.grid.basis = basis;
+  setup.grid.total_lagrangian = total;
   setup.stepper.staggered = setup.stepper.reference_positions = 1;
   for (int32_t k = 0; k < 3; ++k) {
     setup.grid.periodic[k] = faces == PERIODIC;
@@ -100,12 +101,14 @@ int main(int argc, char **argv) {
   verify_begin("cube_convergence", argc, argv);
   static const struct {
     const char *name;
-    int32_t basis, faces;
+    int32_t basis, faces, total;
     double low, high;
-  } methods[METHODS] = {{"quadratic, periodic", MPM_BSPLINE2, PERIODIC, 1.7, 2.4},
-                        {"cpGIMP, periodic", MPM_CPGIMP, PERIODIC, 1.7, 2.4},
-                        {"quadratic, slip walls", MPM_BSPLINE2, SYMMETRY_WALLS, 1.7, 2.4},
-                        {"quadratic, ghosts overwritten", MPM_BSPLINE2, OVERWRITTEN_NODES, 0.7, 1.4}};
+  } methods[METHODS] = {{"quadratic, periodic", MPM_BSPLINE2, PERIODIC, 0, 1.7, 2.4},
+                        {"cpGIMP, periodic", MPM_CPGIMP, PERIODIC, 0, 1.7, 2.4},
+                        {"quadratic, slip walls", MPM_BSPLINE2, SYMMETRY_WALLS, 0, 1.7, 2.4},
+                        {"quadratic, ghosts overwritten", MPM_BSPLINE2, OVERWRITTEN_NODES, 0, 0.7, 1.4},
+                        {"quadratic, periodic, total Lagrangian", MPM_BSPLINE2, PERIODIC, 1, 1.8, 2.4},
+                        {"linear, slip walls, total Lagrangian", MPM_LINEAR, SYMMETRY_WALLS, 1, 1.8, 2.4}};
   const int32_t sizes = verify_quick() ? 2 : SIZES, coarsest = verify_quick() ? 4 : 8;
   double h[SIZES], error[METHODS][SIZES];
   char what[80];
@@ -117,7 +120,7 @@ int main(int argc, char **argv) {
     h[k] = 1.0 / cells;
     fprintf(csv, "\n%d", (int)cells);
     for (int32_t i = 0; i < METHODS; ++i) {
-      error[i][k] = run(methods[i].basis, methods[i].faces, cells);
+      error[i][k] = run(methods[i].basis, methods[i].faces, methods[i].total, cells);
       fprintf(csv, ",%.6g", error[i][k]);
       verify_progress("%d^3 cells: %s: %.3g", (int)cells, methods[i].name, error[i][k]);
     }

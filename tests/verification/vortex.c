@@ -1,9 +1,9 @@
 /* The generalised vortex (Kamojjala et al. 2015): a ring 0.75 < R < 1.25 whose shells turn by A sin(pi t)
- * h(R), under the body force that the neo-Hookean law asks for. E = density = 1000, nu = 0.3, A = 0.1.
- * Uintah's MMS.cc has the same body force. */
+ * h(R), under the body force that the neo-Hookean law asks for. E = density = 1000, nu = 0.3, A = 0.1; on
+ * total Lagrangian grids A = 1, at which shells shear by up to 6. Uintah's MMS.cc has the same body force. */
 #include "verify.h"
 
-static const double A = 0.1, mu = 1000.0 / 2.6, density = 1000.0;
+static const double mu = 1000.0 / 2.6, density = 1000.0;
 
 static double shape(double R) {
   const double s = 4.0 * (R - 1.0);
@@ -11,7 +11,7 @@ static double shape(double R) {
 }
 
 static mpm_status body_force(void *user, const mpm_particle_batch *b, double *add) {
-  (void)user;
+  const double A = *(const double *)user;
   const double g = A * sin(PI * b->t), g1 = A * PI * cos(PI * b->t), g2 = -PI * PI * g;
   for (int64_t i = 0; i < b->n; ++i) {
     if (b->id[i] < 0) continue;
@@ -38,14 +38,34 @@ static mpm_status in_ring(void *user, int32_t dim, int64_t n, int64_t ld, const 
   return MPM_OK;
 }
 
-/* Root of the mean square of the error of displacement at t = 0.5 and 1. */
-static void turn(int per_unit, int transfer, double error[2], FILE *cloud) {
+/* Advances to a time; returns what ends a step for good. */
+static mpm_status advance(verify_world *w, double t_end) {
+  mpm_step_info now = verify_info(w);
+  mpm_status status = MPM_OK;
+  while (now.t < t_end && !status) {
+    double dt;
+    status = mpm_stable_dt(w->stepper, &dt);
+    if (!status) status = mpm_step(w->stepper, fmin(0.4 * dt, t_end - now.t), &now);
+  }
+  return status;
+}
+
+typedef struct vortex {
+  const char *name;
+  int transfer, scheme, total;
+  double A;
+} vortex;
+
+/* Root of the mean square of the error of displacement at t = 0.5 and 1; infinite if a step failed. */
+static void turn(const vortex *is, int per_unit, double error[2], FILE *cloud) {
+  double A = is->A;
   const double h = 1.0 / per_unit;
   const int across = (int)(2.5 * per_unit) + 6;
   verify_setup setup = verify_defaults(2, across + across % 2, h);
   setup.grid.origin[0] = setup.grid.origin[1] = -0.5 * h * (double)setup.grid.cells[0];
-  setup.stepper.scheme = MPM_MUSL;
-  setup.stepper.transfer = transfer;
+  setup.grid.total_lagrangian = is->total;
+  setup.stepper.scheme = is->scheme;
+  setup.stepper.transfer = is->transfer;
   setup.stepper.reference_positions = 1;
   verify_world w;
   verify_open(&w, &setup);
@@ -61,10 +81,13 @@ static void turn(int per_unit, int transfer, double error[2], FILE *cloud) {
   }
   verify_put(&w, ring, "velocity", 2, v);
   free(v);
-  verify_ok(&w, mpm_stepper_set_acceleration(w.stepper, body_force, NULL));
+  verify_ok(&w, mpm_stepper_set_acceleration(w.stepper, body_force, &A));
   for (int k = 0; k < 2; ++k) {
     const double t = 0.5 * (k + 1);
-    verify_advance(&w, 0.4, t);
+    if (advance(&w, t)) {
+      error[k] = error[1] = HUGE_VAL;
+      break;
+    }
     double *x = verify_get(&w, ring, "position", 2), sum = 0.0;
     for (int64_t i = 0; i < n; ++i) {
       const double angle = A * sin(PI * t) * shape(hypot(X[i], X[n + i]));
@@ -80,22 +103,53 @@ static void turn(int per_unit, int transfer, double error[2], FILE *cloud) {
   verify_close(&w);
 }
 
+/* Total Lagrangian grids carry the vortex at A = 1, under which others tear the ring. */
+static void strong_vortex(FILE *csv) {
+  static const vortex of[] = {{"FLIP", MPM_FLIP, MPM_USL, 1, 1.0},
+                              {"APIC", MPM_APIC, MPM_MUSL, 1, 1.0},
+                              {"updated, FLIP", MPM_FLIP, MPM_MUSL, 0, 1.0}};
+  enum { METHODS = sizeof of / sizeof *of };
+  const char *source = "exact solution; second order, set tolerance";
+  const int levels = verify_quick() ? 2 : 4;
+  double h[4], at_end[METHODS][4];
+  for (int i = 0; i < METHODS; ++i)
+    for (int k = 0; k < levels; ++k) {
+      double error[2];
+      h[k] = 0.1 / (1 << k);
+      turn(&of[i], 10 << k, error, NULL);
+      at_end[i][k] = error[1];
+      fprintf(csv, "\"A = 1, %s\",%g,%.5e,%.5e\n", of[i].name, h[k], error[0], error[1]);
+      verify_progress("A = 1, %s, h = %g: %g, %g", of[i].name, h[k], error[0], error[1]);
+    }
+  for (int i = 0; i < 2; ++i) {
+    char name[80];
+    snprintf(name, sizeof name, "A = 1, total Lagrangian, %s", of[i].name);
+    verify_gate_of(name, "order at t = 1", verify_slope(levels, h, at_end[i]), 1.3, 3.0, source);
+    if (!verify_quick())
+      verify_gate_of(name, "h = 0.0125: displacement at t = 1, L2", at_end[i][3], 0.0, 0.01, source);
+  }
+  verify_gate("A = 1, updated: it is lost, or off by more than a cell", at_end[2][levels - 1] / h[levels - 1],
+              1.0, HUGE_VAL, "why total Lagrangian grids are there");
+}
+
 int main(int argc, char **argv) {
   verify_begin("vortex", argc, argv);
   FILE *csv = verify_csv("vortex"), *cloud = verify_csv("vortex_cloud");
   fprintf(csv, "transfer,h,error_0.5,error_1\n");
   fprintf(cloud, "t,x,y,error\n");
+  static const vortex weak[] = {{"FLIP", MPM_FLIP, MPM_MUSL, 0, 0.1}, {"APIC", MPM_APIC, MPM_MUSL, 0, 0.1}};
   const int levels = verify_quick() ? 2 : 4;
   double h[4], error[4][2], at_end[4];
   for (int k = 0; k < levels; ++k) {
     h[k] = 0.1 / (1 << k);
-    turn(10 << k, MPM_FLIP, error[k], k == 0 ? cloud : NULL);
+    turn(&weak[0], 10 << k, error[k], k == 0 ? cloud : NULL);
     at_end[k] = error[k][1];
     fprintf(csv, "FLIP,%g,%.5e,%.5e\n", h[k], error[k][0], error[k][1]);
   }
   double affine[2];
-  turn(20, MPM_APIC, affine, NULL);
+  turn(&weak[1], 20, affine, NULL);
   fprintf(csv, "APIC,0.05,%.5e,%.5e\n", affine[0], affine[1]);
+  strong_vortex(csv);
   fclose(csv);
   fclose(cloud);
   const char *source = "Kamojjala et al. 2015; set tolerance";

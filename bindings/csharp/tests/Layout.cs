@@ -59,7 +59,7 @@ namespace Mpm {
     static void CheckGridDesc() {
       var it = new GridDesc();
       byte* at = (byte*)&it;
-      Compare("GridDesc", sizeof(GridDesc), 112, 112);
+      Compare("GridDesc", sizeof(GridDesc), 120, 120);
       Compare("GridDesc.struct_size", (byte*)&it.struct_size - at, 0, 0);
       Compare("GridDesc.dim", (byte*)&it.dim - at, 4, 4);
       Compare("GridDesc.basis", (byte*)&it.basis - at, 8, 8);
@@ -70,6 +70,8 @@ namespace Mpm {
       Compare("GridDesc.origin", (byte*)it.origin - at, 56, 56);
       Compare("GridDesc.spacing", (byte*)it.spacing - at, 80, 80);
       Compare("GridDesc.smoothing", (byte*)&it.smoothing - at, 104, 104);
+      Compare("GridDesc.total_lagrangian", (byte*)&it.total_lagrangian - at, 112, 112);
+      Compare("GridDesc.reserved", (byte*)&it.reserved - at, 116, 116);
     }
 
     static void CheckMaterialBatch() {

@@ -538,6 +538,8 @@ class grid_desc(Structure):
         ("origin", c_double * 3),
         ("spacing", c_double * 3),
         ("smoothing", c_double),
+        ("total_lagrangian", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -916,7 +918,7 @@ SIZES = {
     param: (16, 16),
     view: (56, 48),
     context_desc: (88, 56),
-    grid_desc: (112, 112),
+    grid_desc: (120, 120),
     material_batch: (144, 96),
     material_desc: (64, 48),
     operator_info: (72, 64),

@@ -697,6 +697,12 @@ pub struct mpm_grid_desc {
     pub spacing: [f64; 3],
     /// for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5
     pub smoothing: f64,
+    /// 1: a total Lagrangian grid, whose cells hold the material as it was before it deformed: weights follow from
+    /// "reference_position" and stay what they are, and "position" may leave the box (de Vaucorbeil, Nguyen & Hutchinson
+    /// 2020). 0 (default): weights follow from "position". Since 0.2.0
+    pub total_lagrangian: i32,
+    /// 0
+    pub reserved: i32,
 }
 
 impl Default for mpm_grid_desc {

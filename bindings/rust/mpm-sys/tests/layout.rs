@@ -62,7 +62,7 @@ fn layout_of_mpm_context_desc() {
 
 #[test]
 fn layout_of_mpm_grid_desc() {
-    assert_eq!(size_of::<mpm_grid_desc>(), of(112, 112));
+    assert_eq!(size_of::<mpm_grid_desc>(), of(120, 120));
     assert_eq!(offset!(mpm_grid_desc, struct_size), of(0, 0));
     assert_eq!(offset!(mpm_grid_desc, dim), of(4, 4));
     assert_eq!(offset!(mpm_grid_desc, basis), of(8, 8));
@@ -73,6 +73,8 @@ fn layout_of_mpm_grid_desc() {
     assert_eq!(offset!(mpm_grid_desc, origin), of(56, 56));
     assert_eq!(offset!(mpm_grid_desc, spacing), of(80, 80));
     assert_eq!(offset!(mpm_grid_desc, smoothing), of(104, 104));
+    assert_eq!(offset!(mpm_grid_desc, total_lagrangian), of(112, 112));
+    assert_eq!(offset!(mpm_grid_desc, reserved), of(116, 116));
 }
 
 #[test]
