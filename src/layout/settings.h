@@ -8,6 +8,7 @@
 #include "layout/transfers.h"
 #include "material/deformation.h"
 #include "material/dilation.h"
+#include "material/pull_back.h"
 #include "obstacle/obstacle.h"
 #include "surface/surface.h"
 #include "transfer/kernels.h"
@@ -24,6 +25,7 @@ typedef struct mpmi_settings {
   const mpmi_kernels *kernels;         /* of transfer/ */
   const mpmi_deformation *deformation; /* kernels of material/deformation.c */
   const mpmi_dilation *dilation;       /* kernels of material/dilation.c */
+  const mpmi_pull_back *pull_back;     /* kernels of material/pull_back.c */
   int32_t tasks;                       /* how many work at a time; no result depends on it */
   mpm_stepper_desc desc;
   const mpmi_transfer *transfer; /* the row of desc.transfer */

@@ -1,7 +1,7 @@
 /* New deformation gradient and volume of particles, from the velocity gradient. */
 #include <string.h>
 
-#include "material/pull_back.h"
+#include "material/deformation.h"
 #include "simd/chunk.h"
 #include "simd/tensor.h"
 #include "simd/vector_math.h"
@@ -118,44 +118,6 @@ MPMI_INLINE uint32_t stay(int32_t dim, const mpmi_deform *job, int64_t n) {
   return volume_of(dim, job, n);
 }
 
-MPMI_INLINE void spatial(int32_t dim, const double *const *F, int64_t ld, double *L, int64_t n) {
-  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
-    mpmi_lanes inverse[3][3];
-    mpmi_inverse_load(dim, F, s, inverse);
-    for (int32_t r = 0; r < dim; ++r) {
-      double *row = L + 3 * r * ld + s;
-      mpmi_lanes of[3];
-      for (int32_t k = 0; k < dim; ++k) of[k] = mpmi_lanes_load(row + k * ld);
-      for (int32_t c = 0; c < dim; ++c) {
-        mpmi_lanes sum = {0.0};
-        for (int32_t k = 0; k < dim; ++k) sum += of[k] * inverse[k][c];
-        mpmi_lanes_store(row + c * ld, sum);
-      }
-    }
-  }
-}
-
-/* The largest row of |F^-1 F^-T| bounds the square of the largest stretch of F^-1. */
-MPMI_INLINE void speeds(int32_t dim, const double *const *F, double *wave_speed, double *viscosity,
-                        int64_t n) {
-  for (int64_t s = 0; s < mpmi_whole_chunks(n); s += MPMI_LANES) {
-    mpmi_lanes inverse[3][3], most = {0.0}, root;
-    mpmi_inverse_load(dim, F, s, inverse);
-    for (int32_t r = 0; r < dim; ++r) {
-      mpmi_lanes row = {0.0};
-      for (int32_t c = 0; c < dim; ++c) {
-        mpmi_lanes entry = {0.0};
-        for (int32_t k = 0; k < dim; ++k) entry += inverse[r][k] * inverse[c][k];
-        row += mpmi_lanes_abs(entry);
-      }
-      most = mpmi_lanes_max(most, row);
-    }
-    for (int32_t i = 0; i < MPMI_LANES; ++i) root[i] = __builtin_sqrt(most[i]);
-    mpmi_lanes_store(wave_speed + s, mpmi_lanes_load(wave_speed + s) * root);
-    mpmi_lanes_store(viscosity + s, mpmi_lanes_load(viscosity + s) * most);
-  }
-}
-
 #define BY_DIM(dim)                                                                                          \
   static uint32_t deform_##dim(const mpmi_deform *job, int64_t n) {                                          \
     return deform(dim, job, n);                                                                              \
@@ -169,12 +131,6 @@ MPMI_INLINE void speeds(int32_t dim, const double *const *F, double *wave_speed,
   static uint32_t volume_##dim(const double *const *F, const double *initial_volume, double *out,            \
                                int64_t n) {                                                                  \
     return volume(dim, F, initial_volume, out, n);                                                           \
-  }                                                                                                          \
-  static void spatial_##dim(const double *const *F, int64_t ld, double *L, int64_t n) {                      \
-    spatial(dim, F, ld, L, n);                                                                               \
-  }                                                                                                          \
-  static void speeds_##dim(const double *const *F, double *wave_speed, double *viscosity, int64_t n) {       \
-    speeds(dim, F, wave_speed, viscosity, n);                                                                \
   }
 BY_DIM(1)
 BY_DIM(2)
@@ -185,6 +141,4 @@ const mpmi_deformation KERNEL(deformation) = {
                [MPMI_F_DILATES] = {NULL, dilate_1, dilate_2, dilate_3},
                [MPMI_F_STAYS] = {NULL, stay_1, stay_2, stay_3}},
     .volume = {NULL, volume_1, volume_2, volume_3},
-    .spatial = {NULL, spatial_1, spatial_2, spatial_3},
-    .speeds = {NULL, speeds_1, speeds_2, speeds_3},
 };

@@ -30,14 +30,10 @@ typedef struct mpmi_deform {
 } mpmi_deform;
 
 /* Return MPMI_NOT_POSITIVE and MPMI_NONFINITE where a volume is no volume. The second makes volumes again
- * from stored components of F, with the same bits. Of a gradient over reference positions the third makes L,
- * in place, by stored components of F. The fourth turns wave speed c and kinematic viscosity into those with
- * which disturbances cross reference positions, or faster ones: c |F^-1| in a norm that bounds stretches. */
+ * from stored components of F, with the same bits. */
 typedef uint32_t (*mpmi_deform_fn)(const mpmi_deform *job, int64_t n);
 typedef uint32_t (*mpmi_volume_fn)(const double *const *F, const double *initial_volume, double *volume,
                                    int64_t n);
-typedef void (*mpmi_spatial_fn)(const double *const *F, int64_t ld, double *L, int64_t n);
-typedef void (*mpmi_speeds_fn)(const double *const *F, double *wave_speed, double *viscosity, int64_t n);
 
 /* What is known of volumes that were made: bad is 0 where all are finite, smallest the smallest det F. */
 typedef struct mpmi_deformed {
@@ -115,8 +111,6 @@ MPMI_INLINE uint32_t mpmi_deform_flags(const mpmi_deformed *t) {
 typedef struct mpmi_deformation {
   mpmi_deform_fn deform[MPMI_F_KINDS][4]; /* by kinematics, dim */
   mpmi_volume_fn volume[4];               /* by dim */
-  mpmi_spatial_fn spatial[4];
-  mpmi_speeds_fn speeds[4];
 } mpmi_deformation;
 
 MPMI_DECLARE_TABLES(mpmi_deformation, mpmi_deformation);

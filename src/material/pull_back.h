@@ -1,4 +1,5 @@
-/* Between the material as it is and as it was before it deformed, for as many particles as a register holds.
+/* Between the material as it is and as it was before it deformed: kernels, and what they do for as many
+ * particles as a register holds.
  * Weights of a total Lagrangian grid have gradients G over reference positions; over the present ones they
  * are F^-T G (de Vaucorbeil, Nguyen & Hutchinson 2020, eqs 8 to 14):
  *
@@ -36,6 +37,23 @@ MPMI_INLINE void mpmi_inverse_load(int32_t dim, const double *const *F, int64_t 
     for (int32_t c = 0; c < dim; ++c)
       stored[mpmi_stored_entry(dim, r, c)] = mpmi_lanes_load(F[mpmi_stored_entry(dim, r, c)] + s);
   mpmi_inverse_lanes(dim, stored, inverse);
+}
+
+/* By stored components of F, each at the first particle: the first makes L of a gradient over reference
+ * positions, in place. The second turns wave speed c and kinematic viscosity into those with which disturbances
+ * cross reference positions, or faster ones: c |F^-1| in a norm that bounds stretches. */
+typedef void (*mpmi_spatial_fn)(const double *const *F, int64_t ld, double *L, int64_t n);
+typedef void (*mpmi_speeds_fn)(const double *const *F, double *wave_speed, double *viscosity, int64_t n);
+
+typedef struct mpmi_pull_back {
+  mpmi_spatial_fn spatial[4]; /* by dim */
+  mpmi_speeds_fn speeds[4];
+} mpmi_pull_back;
+
+MPMI_DECLARE_TABLES(mpmi_pull_back, mpmi_pull_back);
+
+static inline const mpmi_pull_back *mpmi_pull_back_of(int32_t isa) {
+  return MPMI_TABLE_OF(isa, mpmi_pull_back);
 }
 
 #endif

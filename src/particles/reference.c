@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "material/deformation.h"
+#include "material/pull_back.h"
 #include "particles/builtin_fields.h"
 #include "particles/law_batch.h"
 #include "particles/values.h"
@@ -122,7 +122,7 @@ static void turn_gradients(mpm_particles *set) {
     for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld + s;
     for (int32_t c = 0; c < rows; ++c)
       memcpy(buffer + mpmi_gradient_map(dim)[c] * MPMI_CHUNK, L + c * set->ld + s, MPMI_CHUNK * sizeof *L);
-    mpmi_deformation_of(set->context->isa)->spatial[dim](F, MPMI_CHUNK, buffer, MPMI_CHUNK);
+    mpmi_pull_back_of(set->context->isa)->spatial[dim](F, MPMI_CHUNK, buffer, MPMI_CHUNK);
     for (int32_t c = 0; c < rows; ++c)
       memcpy(L + c * set->ld + s, buffer + mpmi_gradient_map(dim)[c] * MPMI_CHUNK, MPMI_CHUNK * sizeof *L);
   }

@@ -76,6 +76,19 @@ static void find_hoop_rate(mpmi_batch *b) {
   for (int64_t p = 0; p < b->n; ++p) hoop[p] = radius[p] > 0.0 ? b->v_bar[p] / radius[p] : radial[p];
 }
 
+/* Rings have nine entries of F, of which four are no fields of the set. */
+static const double no_entry[MPMI_BATCH_HOST];
+
+void mpmi_gradient_present(mpmi_batch *b) {
+  const mpm_grid *grid = b->set->grid;
+  const double *F[9];
+  for (int32_t e = 0; e < 9; ++e) F[e] = no_entry;
+  for (int32_t c = 0; c < mpmi_tensor_components(grid->dim); ++c)
+    F[mpmi_is_axisymmetric(grid) ? mpmi_tensor_map(2)[c] : c] =
+        mpmi_component_row(b->set, MPMI_F, 0, c) + b->begin;
+  b->step->settings->pull_back->spatial[mpmi_strain_dim(grid)](F, b->law.ld, b->law.L, b->n);
+}
+
 /* Chooses the form of the gather: increments are needed by blends and by second-order positions, C by
  * transfers that carry it. */
 static void choose_form(mpmi_batch *b) {

@@ -73,6 +73,10 @@ int32_t mpmi_has_host_law(const mpmi_layout *layout);
 /* Takes note of the failure of the particle in a slot. */
 void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what);
 
+/* Makes the law's gradient, which a total Lagrangian grid gives over reference positions, that over the
+ * present ones. */
+void mpmi_gradient_present(mpmi_batch *b);
+
 /* ---- motion.c ---------------------------------------------------------------------------------------- */
 /* These prepare motion for a set and for a block. */
 void mpmi_motion_bind(mpmi_batch *b);
@@ -95,9 +99,6 @@ void mpmi_strain_aim(mpmi_batch *b);
 enum { MPMI_KEEPS_NOTHING, MPMI_KEEPS_COPY, MPMI_KEEPS_DIRECTLY };
 void mpmi_gradient_aim(mpmi_batch *b);
 void mpmi_gradient_keep(mpmi_batch *b);
-/* Makes the law's gradient, which a total Lagrangian grid gives over reference positions, that over the
- * present ones. */
-void mpmi_gradient_present(mpmi_batch *b);
 /* Completes deformation gradient and volume; returns 0 where they are no state that a law can be asked
  * about. */
 int32_t mpmi_strain_deform(mpmi_batch *b);

@@ -143,16 +143,6 @@ void mpmi_gradient_keep(mpmi_batch *b) {
            b->law.L + mpmi_gradient_map(dim)[c] * b->law.ld, (size_t)b->n * sizeof(double));
 }
 
-void mpmi_gradient_present(mpmi_batch *b) {
-  const mpm_grid *grid = b->set->grid;
-  const double *F[9];
-  for (int32_t e = 0; e < 9; ++e) F[e] = nothing;
-  for (int32_t c = 0; c < mpmi_tensor_components(grid->dim); ++c)
-    F[mpmi_is_axisymmetric(grid) ? mpmi_tensor_map(2)[c] : c] =
-        mpmi_component_row(b->set, MPMI_F, 0, c) + b->begin;
-  b->step->settings->deformation->spatial[mpmi_strain_dim(grid)](F, b->law.ld, b->law.L, b->n);
-}
-
 /* Makes the volumes of a batch of stored components of F, as they are made again later: with those bits. */
 static uint32_t make_volumes(const mpmi_batch *b) {
   const double *F[9] = {NULL};
@@ -185,7 +175,7 @@ static void take_reference_speeds(mpmi_batch *b) {
   const int32_t dim = b->set->grid->dim;
   for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
     F[c] = mpmi_component_row(b->set, MPMI_F, 1, c) + b->begin;
-  b->step->settings->deformation->speeds[dim](F, b->law.wave_speed, b->law.viscosity, b->n);
+  b->step->settings->pull_back->speeds[dim](F, b->law.wave_speed, b->law.viscosity, b->n);
 }
 
 void mpmi_strain_law(mpmi_batch *b) {

@@ -42,6 +42,7 @@ mpm_status mpm_stepper_create(mpm_context *context, mpm_grid *grid, const mpm_st
                                 .grid = grid,
                                 .kernels = mpmi_kernels_of(context->isa),
                                 .deformation = mpmi_deformation_of(context->isa),
+                                .pull_back = mpmi_pull_back_of(context->isa),
                                 .dilation = mpmi_dilation_of(context->isa),
                                 .tasks = context->concurrency,
                                 .desc = d,

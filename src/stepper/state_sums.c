@@ -111,7 +111,7 @@ static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failu
       const double *F[9] = {NULL};
       for (int32_t c = 0; c < mpmi_tensor_components(s->grid->dim); ++c)
         F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld + begin;
-      s->settings.deformation->speeds[s->grid->dim](F, b.wave_speed, b.viscosity, n);
+      s->settings.pull_back->speeds[s->grid->dim](F, b.wave_speed, b.viscosity, n);
     }
     mpmi_sums_job job;
     bind_particles(s, set, &b, begin, n, (double *)(void *)(memory + batch), &job);

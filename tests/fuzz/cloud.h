@@ -89,6 +89,7 @@ static void open_grid(cloud *c) {
   if (c->g.dim == 2) c->g.geometry = fuzz_below(&c->in, 3);
   if (c->g.geometry == MPM_AXISYMMETRIC)
     c->g.origin[0] = fmax(c->g.origin[0], 0.0); /* half of them begin at the axis */
+  c->g.total_lagrangian = fuzz_below(&c->in, 4) == 0;
   if (!fuzz_status(c->context, mpm_grid_create(c->context, &c->g, &c->grid))) return;
   c->g.basis = c->g.basis == MPM_LINEAR ? MPM_LINEAR : MPM_BSPLINE2;
   c->g.boundary_basis = MPM_BOUNDARY_GHOST;

@@ -18,6 +18,7 @@ static mpm_grid *open_grid(fuzz_input *in, mpm_context *context, int32_t *dim) {
   MUST(!mpm_grid_desc_init(&d, sizeof d));
   d.dim = *dim = 2 + fuzz_below(in, 2);
   d.geometry = d.dim == 2 ? fuzz_below(in, 3) : MPM_PLANE_STRAIN;
+  d.total_lagrangian = fuzz_below(in, 4) == 0;
   for (int32_t k = 0; k < d.dim; ++k) {
     d.cells[k] = 1 + fuzz_below(in, 6);
     d.spacing[k] = 0.25 * (1 + fuzz_below(in, 4));

@@ -185,6 +185,8 @@ enum {
   SURFACE,
   RINGS,
   SHEETS,
+  TOTAL,
+  TOTAL_SETS,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -234,6 +236,8 @@ static const option options[OPTIONS] = {
     [SURFACE] = {"surface, saved and loaded", 1, 1, 0},
     [RINGS] = {"rings with a surface, saved and loaded", 1, 1, 1},
     [SHEETS] = {"sheets with a surface, saved and loaded", 1, 1, 0},
+    [TOTAL] = {"total Lagrangian, surface and obstacles, saved and loaded", 1, 1, 0},
+    [TOTAL_SETS] = {"total Lagrangian, two sets, locking remedy, all callbacks", 1, 1, 0},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -275,6 +279,8 @@ static void apply(scene *is, int32_t o) {
       [SURFACE] = WITH_SURFACE,
       [RINGS] = WITH_SURFACE,
       [SHEETS] = WITH_SURFACE,
+      [TOTAL] = WITH_SURFACE | WITH_OBSTACLES,
+      [TOTAL_SETS] = WITH_FORCE | WITH_ACCELERATION | WITH_VELOCITY | WITH_PRESCRIBED | WITH_MOTION | WITH_KEPT,
   };
   static const int32_t story[OPTIONS] = {[STAGED_VELOCITY] = STORY_STAGED_VELOCITY,
                                          [STAGED_FORCE] = STORY_STAGED_FORCE,
@@ -284,6 +290,7 @@ static void apply(scene *is, int32_t o) {
                                          [SURFACE] = STORY_SAVED,
                                          [RINGS] = STORY_SAVED,
                                          [SHEETS] = STORY_SAVED,
+                                         [TOTAL] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};
@@ -295,7 +302,8 @@ static void apply(scene *is, int32_t o) {
   is->with = with[o];
   is->story = story[o];
   is->solver = solver[o];
-  is->remedy = o == REMEDY || o == REMEDY_OF_SOIL;
+  is->remedy = o == REMEDY || o == REMEDY_OF_SOIL || (o == TOTAL_SETS && is->dim > 1);
+  is->total = o == TOTAL || o == TOTAL_SETS;
   is->reference = o == REFERENCE;
   is->large = o == MULTIGRID;
   if (is->large) is->steps = 2;
@@ -306,7 +314,7 @@ static void apply(scene *is, int32_t o) {
   is->damped = o == DAMPED;
   is->geometry = o == RINGS ? MPM_AXISYMMETRIC : o == SHEETS ? MPM_PLANE_STRESS : MPM_PLANE_STRAIN;
   if (o == SHEETS) is->law[0] = LAW_J2;
-  if (o == TWO_SETS || o == SAVED || o == EVERYTHING || is->with & WITH_BODIES) is->law[1] = LAW_J2;
+  if (o == TWO_SETS || o == SAVED || o == EVERYTHING || o == TOTAL_SETS || is->with & WITH_BODIES) is->law[1] = LAW_J2;
   if (o == REMEDY_OF_SOIL) is->law[0] = LAW_MOHR_COULOMB, is->law[1] = LAW_J2;
   if (o == EVERYTHING && is->scheme != MPM_NEWMARK) is->with |= 7 * WITH_HOOK;
   apply_walls(is, o);

@@ -48,6 +48,7 @@ static mpm_grid_desc describe_grid(const scene *is) {
   mpm_grid_desc_init(&d, sizeof d);
   d.dim = is->dim;
   d.geometry = is->geometry;
+  d.total_lagrangian = is->total;
   d.basis = is->basis;
   d.boundary_basis = is->boundary;
   d.smoothing = is->smoothing;
