@@ -360,7 +360,7 @@ static void add_work(mpmi_bound *bound, const mpmi_party *party, double sign, co
 static void add_torque(const mpmi_bound *bound, const mpmi_party *first, const mpmi_party *second,
                        const double *impulse, mpmi_pair_sums *sums) {
   double x[3] = {0.0, 0.0, 0.0}, about[3];
-  if (first->surface < 0) 
+  if (first->surface < 0)
     mpmi_contact_position(&bound->step->layout->blocks, &bound->nodes->contact, second->slot, x);
   for (int32_t k = 0; k < 3 && first->surface >= 0; ++k) x[k] = -first->arm[k];
   mpmi_cross(x, impulse, about);

@@ -212,15 +212,14 @@ static void visit_block(void *user, const mpmi_visit *visit) {
       const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
       step->settings->kernels->weights[grid->family][grid->dim](axis, job->fill ? MPMI_NEED_GRADIENT : 0,
                                                                 &points, s, n, &W);
-      const cloud_particles of = {.weights = &W,
-                                  .tile = &tile,
-                                  .slot = s,
-                                  .member = m,
-                                  .volume = mpmi_f64(member->set, MPMI_VOLUME, 0),
-                                  .radius = mpmi_is_axisymmetric(grid)
-                                                ? mpmi_f64(member->set, MPMI_POSITION, 0)
-                                                : NULL,
-                                  .set = member->set};
+      const cloud_particles of = {
+          .weights = &W,
+          .tile = &tile,
+          .slot = s,
+          .member = m,
+          .volume = mpmi_f64(member->set, MPMI_VOLUME, 0),
+          .radius = mpmi_is_axisymmetric(grid) ? mpmi_f64(member->set, MPMI_POSITION, 0) : NULL,
+          .set = member->set};
       for (int64_t p = 0; p < n; ++p) {
         if (id[s + p] < 0 || !tile.meets[W.node[p]]) continue;
         if (job->fill)

@@ -1,6 +1,6 @@
 /* Surfaces in implicit steps: forces t = (T |a| + D A0 - p a) at the end of the step, with weights of its
- * start and areas of the displacements as they are. The area vector of the edges e_k, which were E_k where the
- * weights are made, changes with the displacement u_b of a node by
+ * start and areas of the displacements as they are. The area vector of the edges e_k, which were E_k where
+ * the weights are made, changes with the displacement u_b of a node by
  *
  *   de_k = (E_k . grad w_b) du_b,  da = de_0 x e_1 + e_0 x de_1 (2-D: de_0 turned),  dt = P da,
  *   P = T (x) a / |a| - p 1

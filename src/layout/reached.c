@@ -71,8 +71,7 @@ static void narrow(const mpmi_layout *layout, int64_t block, int32_t k, mpmi_cov
     const mpm_particles *set = layout->member[m].set;
     const int64_t *start = layout->member[m].now.start;
     if (start[block + 1] > start[block])
-      widen(mpmi_places(set, 0) + k * set->ld + start[block], start[block + 1] - start[block],
-            &low, &high);
+      widen(mpmi_places(set, 0) + k * set->ld + start[block], start[block + 1] - start[block], &low, &high);
   }
   low = low - drift > tile_low ? low - drift : tile_low;
   high = high + drift < tile_high ? high + drift : tile_high;

@@ -40,8 +40,8 @@ MPMI_INLINE void mpmi_inverse_load(int32_t dim, const double *const *F, int64_t 
 }
 
 /* By stored components of F, each at the first particle: the first makes L of a gradient over reference
- * positions, in place. The second turns wave speed c and kinematic viscosity into those with which disturbances
- * cross reference positions, or faster ones: c |F^-1| in a norm that bounds stretches. */
+ * positions, in place. The second turns wave speed c and kinematic viscosity into those with which
+ * disturbances cross reference positions, or faster ones: c |F^-1| in a norm that bounds stretches. */
 typedef void (*mpmi_spatial_fn)(const double *const *F, int64_t ld, double *L, int64_t n);
 typedef void (*mpmi_speeds_fn)(const double *const *F, double *wave_speed, double *viscosity, int64_t n);
 

@@ -30,10 +30,11 @@ static mpm_status check_parts(mpm_context *context, const mpm_grid *grid, const 
                      "MPM_UGIMP or a B-spline basis",
                      material->law->name);
   if (mpmi_is_total_lagrangian(grid) && mpmi_material_kinematics(material) == MPMI_F_DILATES)
-    return mpmi_fail(context, MPM_E_UNSUPPORTED,
-                     "%s keeps the volume of F only, and forces on a grid with total_lagrangian = 1 need all of "
-                     "it: use total_lagrangian = 0, which lets it flow",
-                     material->law->name);
+    return mpmi_fail(
+        context, MPM_E_UNSUPPORTED,
+        "%s keeps the volume of F only, and forces on a grid with total_lagrangian = 1 need all of "
+        "it: use total_lagrangian = 0, which lets it flow",
+        material->law->name);
   if (mpmi_is_plane_stress(grid) && material->law && material->law->no_sheets)
     return mpmi_fail(context, MPM_E_UNSUPPORTED,
                      "%s is no solid sheet, and the grid is MPM_PLANE_STRESS: use MPM_PLANE_STRAIN",

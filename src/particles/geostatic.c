@@ -47,11 +47,12 @@ static int32_t rest_of(const mpm_particles *set) {
 static mpm_status check_law(const mpm_particles *set, const ground *g) {
   const mpmi_law *law = set->material->law;
   if (mpmi_is_total_lagrangian(set->grid) && law && law->stress_from_F)
-    return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
-                     "the stress of %s follows from deformation_gradient, which a grid with total_lagrangian = 1 "
-                     "wants to be that of its positions: use total_lagrangian = 0, or a law whose stress is its "
-                     "state",
-                     law->name);
+    return mpmi_fail(
+        set->context, MPM_E_UNSUPPORTED,
+        "the stress of %s follows from deformation_gradient, which a grid with total_lagrangian = 1 "
+        "wants to be that of its positions: use total_lagrangian = 0, or a law whose stress is its "
+        "state",
+        law->name);
   if (rest_of(set) == MPMI_REST_NONE)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED, "%s has no stress of a given weight: %s", law->name,
                      law->state_count ? "set its deformation_gradient and state" : "leave the set as it is");

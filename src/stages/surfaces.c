@@ -318,7 +318,7 @@ static void find_nodes_task(void *data, int64_t task) {
     const int64_t begin = chunk * MPMI_CHUNK,
                   n = markers->count - begin < MPMI_CHUNK ? markers->count - begin : MPMI_CHUNK;
     for (int64_t p = 0; p < MPMI_CHUNK; ++p)
-      for (int32_t k = 0; k < grid->dim; ++k) 
+      for (int32_t k = 0; k < grid->dim; ++k)
         x[k][p] = mpmi_marker_place_of(&markers->at[begin + (p < n ? p : n - 1)], grid)[k];
     weights(axis, MPMI_NEED_GRADIENT | MPMI_NO_PLACE, &points, 0, MPMI_CHUNK, &W);
     for (int64_t p = 0; p < n; ++p) {
@@ -488,7 +488,9 @@ static mpm_status look(mpmi_step *step, const mpm_surface *s, mpmi_marker *m, in
     double *x = &m->position[k];
     if (!isfinite(*x) || !isfinite(m->edge[0][k] + m->edge[1][k]))
       return fail_marker(step, MPM_NONFINITE, s, m, "has a position or an edge that is not finite");
-    if (mpmi_is_total_lagrangian(grid) || grid->desc.periodic[k] || (*x >= grid->desc.origin[k] && *x <= grid->upper[k])) continue;
+    if (mpmi_is_total_lagrangian(grid) || grid->desc.periodic[k] ||
+        (*x >= grid->desc.origin[k] && *x <= grid->upper[k]))
+      continue;
     const int32_t face = 2 * k + (*x > grid->upper[k]);
     if (mpmi_wall_kind_of(step->settings->wall[face].kind)->opens)
       *leaves = 1;

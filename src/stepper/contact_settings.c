@@ -54,10 +54,11 @@ mpm_status mpm_stepper_set_body(mpm_stepper *s, mpm_particles *particles, int32_
   const int32_t was = member->body;
   if (body == was) return MPM_OK;
   if (mpmi_is_total_lagrangian(s->grid))
-    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                     "body is %d, and bodies meet in space, where the nodes of a grid with total_lagrangian = 1 "
-                     "are not: use total_lagrangian = 0, or an obstacle in the place of one body",
-                     (int)body);
+    return mpmi_fail(
+        s->context, MPM_E_UNSUPPORTED,
+        "body is %d, and bodies meet in space, where the nodes of a grid with total_lagrangian = 1 "
+        "are not: use total_lagrangian = 0, or an obstacle in the place of one body",
+        (int)body);
   if (s->mapped)
     return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them first",
                      (int)s->mapped);

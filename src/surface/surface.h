@@ -21,7 +21,7 @@ typedef struct mpmi_marker {
    * edge[1] is that of one radian: (0, 0, r). */
   double edge[2][3];
   double reference_area, displacement[3], velocity[3], force[3];
-  double reference[3], reference_edge[2][3]; /* position and edges when it was added or set */
+  double reference[3], reference_edge[2][3];      /* position and edges when it was added or set */
   double pressure, traction[3], dead_traction[3]; /* its own, beside those of the surface */
 } mpmi_marker;
 

@@ -26,7 +26,7 @@ typedef struct mpmi_sums_job {
   double constant_moment[3]; /* where it is the same for all particles */
   const double *F[9]; /* stored components where C is over reference positions, of a total Lagrangian grid, in
                          which nothing travels but waves; or NULL */
-  const double *checked[2];  /* [checked_rows][ld] further values that must be finite */
+  const double *checked[2]; /* [checked_rows][ld] further values that must be finite */
   int32_t checked_rows[2];
 } mpmi_sums_job;
 typedef uint32_t (*mpmi_sums_fn)(const mpmi_sums_job *job, int64_t n, mpmi_sums *sums); /* adds to sums */

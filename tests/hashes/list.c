@@ -280,7 +280,8 @@ static void apply(scene *is, int32_t o) {
       [RINGS] = WITH_SURFACE,
       [SHEETS] = WITH_SURFACE,
       [TOTAL] = WITH_SURFACE | WITH_OBSTACLES,
-      [TOTAL_SETS] = WITH_FORCE | WITH_ACCELERATION | WITH_VELOCITY | WITH_PRESCRIBED | WITH_MOTION | WITH_KEPT,
+      [TOTAL_SETS] =
+          WITH_FORCE | WITH_ACCELERATION | WITH_VELOCITY | WITH_PRESCRIBED | WITH_MOTION | WITH_KEPT,
   };
   static const int32_t story[OPTIONS] = {[STAGED_VELOCITY] = STORY_STAGED_VELOCITY,
                                          [STAGED_FORCE] = STORY_STAGED_FORCE,
@@ -314,7 +315,8 @@ static void apply(scene *is, int32_t o) {
   is->damped = o == DAMPED;
   is->geometry = o == RINGS ? MPM_AXISYMMETRIC : o == SHEETS ? MPM_PLANE_STRESS : MPM_PLANE_STRAIN;
   if (o == SHEETS) is->law[0] = LAW_J2;
-  if (o == TWO_SETS || o == SAVED || o == EVERYTHING || o == TOTAL_SETS || is->with & WITH_BODIES) is->law[1] = LAW_J2;
+  if (o == TWO_SETS || o == SAVED || o == EVERYTHING || o == TOTAL_SETS || is->with & WITH_BODIES)
+    is->law[1] = LAW_J2;
   if (o == REMEDY_OF_SOIL) is->law[0] = LAW_MOHR_COULOMB, is->law[1] = LAW_J2;
   if (o == EVERYTHING && is->scheme != MPM_NEWMARK) is->with |= 7 * WITH_HOOK;
   apply_walls(is, o);

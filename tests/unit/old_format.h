@@ -12,8 +12,8 @@ static inline int64_t cut_words(uint8_t *state, int64_t at, int64_t words, int64
   return bytes - 8 * words;
 }
 
-/* Takes out what format 2 does not have: projected positions, the geometry, the kind of grid, the energies of the affine
- * part and of damping, the sums over steps, bodies, obstacles and surfaces. */
+/* Takes out what format 2 does not have: projected positions, the geometry, the kind of grid, the energies of
+ * the affine part and of damping, the sums over steps, bodies, obstacles and surfaces. */
 static inline int64_t contents_of_format_2(const mpm_stepper *s, uint8_t *state, int64_t bytes) {
   enum {
     SUMS = offsetof(mpmi_state_numbers, sums) + offsetof(mpmi_sums, affine),

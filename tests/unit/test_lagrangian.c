@@ -27,7 +27,8 @@ static void grow(const double *x, double *v) {
 
 static int32_t is_inside(int32_t dim, int64_t n, const double *X, int64_t p) {
   int32_t inside = 1;
-  for (int32_t k = 0; k < dim; ++k) inside &= fabs(X[k * n + p] - 1.5) < 0.3; /* nodes farther out are empty */
+  for (int32_t k = 0; k < dim; ++k)
+    inside &= fabs(X[k * n + p] - 1.5) < 0.3; /* nodes farther out are empty */
   return inside;
 }
 
@@ -331,8 +332,8 @@ START_TEST(areas_follow_F) {
 }
 END_TEST
 
-/* A closed surface under pressure has no force, whatever the body has come to; and saved and loaded markers go
- * on with the same bits. */
+/* A closed surface under pressure has no force, whatever the body has come to; and saved and loaded markers
+ * go on with the same bits. */
 START_TEST(pressure_on_what_has_moved) {
   const int32_t dim = 2 + _i % 2;
   const method *how = broad_methods[_i / 2];
@@ -371,8 +372,8 @@ END_TEST
 START_TEST(obstacles_meet_what_has_moved) {
   const int32_t dim = 1 + _i % 3, implicit = _i >= 3;
   world w;
-  world_desc desc = implicit ? implicit_total(&basis_options[0], dim, 0, "neo_hookean")
-                             : total_with(broad_methods[0], dim);
+  world_desc desc =
+      implicit ? implicit_total(&basis_options[0], dim, 0, "neo_hookean") : total_with(broad_methods[0], dim);
   desc.stepper.flip = 1.0;
   mpm_particles *set = open_block_with(&w, &desc);
   const int64_t n = mpm_particles_count(set);

@@ -1,7 +1,7 @@
-/* A bar is drawn to four times its length: half of a sheet 4 by 1 in plane strain, E = 1000, nu = 0.3, density
- * 1, whose end nodes are pulled with the velocities of a uniform stretch. It thins freely and has one F, that of
- * uniaxial tension of the neo-Hookean law. On a total Lagrangian grid it keeps
- * it; on others particles part, and the bar breaks where there is no crack. */
+/* A bar is drawn to four times its length: half of a sheet 4 by 1 in plane strain, E = 1000, nu = 0.3,
+ * density 1, whose end nodes are pulled with the velocities of a uniform stretch. It thins freely and has one
+ * F, that of uniaxial tension of the neo-Hookean law. On a total Lagrangian grid it keeps it; on others
+ * particles part, and the bar breaks where there is no crack. */
 #include "verify.h"
 
 static const double E = 1000.0, nu = 0.3, length = 2.0, height = 0.5, last = 4.0, h = 0.125;
@@ -115,8 +115,7 @@ static outcome draw(const method *how, FILE *table) {
     if (fabs(off) > fabs(out.across)) out.across = off;
   }
   out.gap = gap_of(n, x, X);
-  for (int64_t i = 0; i < n; ++i)
-    fprintf(table, "%s,%.6f,%.6f,%.6f\n", how->name, x[i], x[n + i], F[i]);
+  for (int64_t i = 0; i < n; ++i) fprintf(table, "%s,%.6f,%.6f,%.6f\n", how->name, x[i], x[n + i], F[i]);
   verify_progress("%s: stretch %.3f, force %.2e, F22 %.2e, gap %.3f", how->name, out.stretch, out.force,
                   out.across, out.gap);
   free(X), free(v), free(F), free(x);

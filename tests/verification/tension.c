@@ -140,7 +140,8 @@ int main(int argc, char **argv) {
       double most = 0.0, first;
       const int32_t many = !verify_quick() && (k == VERIFY_USF || k == VERIFY_MUSL);
       for (int32_t m = 0; m < 2; ++m) {
-        const double at_end = shake(&total[m], &verify_schemes[k], stretch[s], many ? MANY_STEPS : STEPS, &first);
+        const double at_end =
+            shake(&total[m], &verify_schemes[k], stretch[s], many ? MANY_STEPS : STEPS, &first);
         most = fmax(most, at_end / first);
         fprintf(table, "%g,\"%s, total\",%s,%.2e,%.2e\n", stretch[s], total[m].name, verify_schemes[k].name,
                 first, at_end);
