@@ -20,3 +20,8 @@ ${CXX:-g++} -std=c++17 -Wall -Wextra -Wpedantic -Werror -Iinclude "$scratch/bloc
 "$scratch/block_cpp" > "$scratch/out"
 cat "$scratch/out"
 [ "$(grep -Ec '^t = 0\.[1-5] s: kinetic [0-9.]+ J$' "$scratch/out")" = 5 ]
+
+# The two commands that open the live page stand under the moving picture, before the first heading.
+first=$(sed '/^## /,$d' README.md)
+grep -q '^!\[.*\](docs/gallery/snowball\.apng)$' <<< "$first"
+[ "$(sed -n '/snowball\.apng/,$p' <<< "$first" | sed -n '/^```sh$/,/^```$/p' | grep -c 'make live$\|^python3 -m http\.server -d build/live ')" = 2 ]
