@@ -33,7 +33,8 @@ def compile_extension(folder):
     """Compiles mpm/_view.c into a folder; returns the path."""
     out = f"{folder}/_view.abi3.so"
     compiler = shlex.split(os.environ.get("CC") or "cc")
-    flags = shlex.split(os.environ.get("CFLAGS", "-O2"))
+    flags = [one for name, default in (("CFLAGS", "-O2"), ("CPPFLAGS", ""), ("LDFLAGS", ""))
+             for one in shlex.split(os.environ.get(name, default))]
     link = ["-undefined", "dynamic_lookup"] if sys.platform == "darwin" else []
     subprocess.run(compiler + flags + ["-fPIC", "-shared"] + link
                    + ["-I" + sysconfig.get_path("include"), f"{HERE}/src/mpm/_view.c", "-o", out], check=True)
