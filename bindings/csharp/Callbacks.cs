@@ -165,6 +165,20 @@ namespace Mpm {
       if (x.Length != Rows || y.Length != Rows) throw new ArgumentException("x and y have as many entries as the system");
       fixed (double* from = x, to = y) MpmException.Check(Native.mpm_operator_apply(matrix, from, to), IntPtr.Zero);
     }
+    /// <summary>Copies the matrix by compressed rows: row r has the entries start[r] to start[r + 1] - 1 of column, in ascending
+    /// order, and of value.</summary>
+    public void Csr(out long[] start, out int[] column, out double[] value) {
+      long* starts;
+      int* columns;
+      double* values;
+      MpmException.Check(Native.mpm_operator_csr(matrix, &starts, &columns, &values), IntPtr.Zero);
+      start = new long[Rows + 1];
+      Marshal.Copy((IntPtr)starts, start, 0, start.Length);
+      column = new int[Info.nonzeros];
+      Marshal.Copy((IntPtr)columns, column, 0, column.Length);
+      value = new double[Info.nonzeros];
+      Marshal.Copy((IntPtr)values, value, 0, value.Length);
+    }
   }
 
   /// <summary>Marks functions that C calls, for compilers that translate ahead of time: IL2CPP goes by the name.</summary>
@@ -211,6 +225,7 @@ namespace Mpm {
     public static readonly TangentFn Tangent36 = OnTangent36, Tangent81 = OnTangent81;
     public static readonly InsideFn Inside = OnInside;
     public static readonly SolveFn Solve = OnSolve;
+    public static readonly WriteFn Write = OnWrite;
     public static readonly ContextDescLogFn Log = OnLog;
 
     [MonoPInvokeCallback(typeof(ParticleFn))]
@@ -339,6 +354,19 @@ namespace Mpm {
       var slot = Slot.Of(user);
       try {
         return ((SolveFunction)slot.Function)(new LinearSystem(matrix, rhs, solution, tolerance), ref *iterations);
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(WriteFn))]
+    static int OnWrite(IntPtr user, IntPtr data, long bytes) {
+      var slot = Slot.Of(user);
+      try {
+        var piece = new byte[bytes];
+        Marshal.Copy(data, piece, 0, piece.Length);
+        ((Action<byte[]>)slot.Function)(piece);
+        return MPM_OK;
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
       }

@@ -1,6 +1,7 @@
 // What all objects share: one call at a time on a context, lifetimes, exceptions of callbacks, texts.
 using System;
 using System.Collections.Generic;
+using System.IO;
 using System.Runtime.ExceptionServices;
 using System.Runtime.InteropServices;
 using System.Text;
@@ -12,6 +13,8 @@ namespace Mpm {
   public class MpmException : Exception {
     /// <summary>One of the status constants: below 0 if the call was refused or failed, above 0 if it was not done.</summary>
     public int Status { get; }
+    /// <summary>The name of the status.</summary>
+    public string Name { get { return Text.Of((IntPtr)Native.mpm_status_name(Status)); } }
     /// <summary>Whether a smaller step may cure it.</summary>
     public bool WantsSmallerStep { get { return Status >= 1 && Status <= 5; } }
 
@@ -263,6 +266,16 @@ namespace Mpm {
       long n = ids != null ? ids.Length : count;
       Fits(field, values.Length, components * n);
       Exchange(call, field, values, components, n, ids);
+    }
+    /// <summary>Gives a stream the bytes of a call of C that takes a function for them.</summary>
+    internal void Streamed(Stream stream, Func<IntPtr, IntPtr, int> call) {
+      if (stream == null) throw new ArgumentNullException("stream");
+      var slot = new Slot(node.Core, new Action<byte[]>(piece => stream.Write(piece, 0, piece.Length)));
+      try {
+        Call(p => call(p, slot.User));
+      } finally {
+        slot.Free();
+      }
     }
     internal unsafe delegate int Maker(IntPtr* made);
 

@@ -1,6 +1,7 @@
-// Contexts, grids, materials and sets of particles.
+// Contexts, grids and sets of particles.
 using System;
 using System.Collections.Generic;
+using System.IO;
 using System.Runtime.InteropServices;
 using static Mpm.Constants;
 
@@ -75,58 +76,6 @@ namespace Mpm {
         desc.spacing[k] = spacing[k];
       }
       return desc;
-    }
-  }
-
-  /// <summary>A constitutive law with its parameters.</summary>
-  public sealed unsafe class Material : Handle {
-    /// <summary>A law that is built in, with parameters by name.</summary>
-    public Material(Context context, string model, IDictionary<string, double> parameters)
-        : base(Create(context, model, parameters)) {}
-    /// <summary>A law of the host, with the state of a new particle; form is MPM_TANGENT_MINOR_SYMMETRIC or
-    /// MPM_TANGENT_GENERAL.</summary>
-    public Material(Context context, double density, StressFunction stress, double[] state = null, TangentFunction tangent = null,
-        int form = MPM_TANGENT_MINOR_SYMMETRIC)
-        : base(Create(context, density, stress, state ?? new double[0], tangent, form)) {}
-
-    static Node Create(Context context, string model, IDictionary<string, double> parameters) {
-      var node = new Node(context.node.Core, Native.mpm_material_destroy, context.node);
-      var keys = new List<string>(parameters.Keys);
-      using (var names = new Names(keys.ToArray())) {
-        var list = new Param[keys.Count];
-        for (int k = 0; k < list.Length; k++) list[k] = new Param { name = names.Pointers[k], value = parameters[keys[k]] };
-        return Make(node, made => {
-          fixed (byte* name = Text.Bytes(model)) fixed (Param* first = list)
-            return Native.mpm_material_create(context.Pointer, name, first, list.Length, made);
-        });
-      }
-    }
-    static Node Create(Context context, double density, StressFunction stress, double[] state, TangentFunction tangent, int form) {
-      if (stress == null) throw new ArgumentNullException("stress");
-      var node = new Node(context.node.Core, Native.mpm_material_destroy, context.node);
-      var slot = new Slot(node.Core, stress, tangent);
-      node.Put("law", slot);
-      var desc = MaterialDesc.Default();
-      desc.density = density;
-      desc.state_count = state.Length;
-      desc.stress = Trampolines.Address(Trampolines.Stress);
-      desc.tangent_form = form;
-      if (tangent != null)
-        desc.tangent = Trampolines.Address(form == MPM_TANGENT_GENERAL ? Trampolines.Tangent81 : Trampolines.Tangent36);
-      desc.user = slot.User;
-      return Make(node, made => {
-        var law = desc;
-        fixed (double* initial = state) {
-          law.state_initial = initial;
-          return Native.mpm_material_create_custom(context.Pointer, &law, made);
-        }
-      });
-    }
-    /// <summary>The names of the laws that are built in.</summary>
-    public static string[] Models() {
-      var names = new string[Native.mpm_material_model_count()];
-      for (int k = 0; k < names.Length; k++) names[k] = Text.Of(Native.mpm_material_model_name(k));
-      return names;
     }
   }
 
@@ -260,6 +209,20 @@ namespace Mpm {
     public T[] Get<T>(string field, long[] ids = null) {
       return Copied<T>(Native.mpm_particles_get, field, ComponentsOf(field), Count, ids);
     }
+    /// <summary>Copies fields of all particles as floats for renderers, one particle after the other and without inert slots:
+    /// [particle][component]. order is MPM_BY_ID, or MPM_LIBRARY_ORDER, which is faster.</summary>
+    public float[] GetF32(int order, params string[] fields) {
+      int width = 0;
+      foreach (string field in fields) width += ComponentsOf(field);
+      long n = Count;
+      var values = new float[n * width];
+      using (var names = new Names(fields))
+        Call(p => {
+          fixed (IntPtr* first = names.Pointers) fixed (float* to = values)
+            return Native.mpm_particles_get_f32(p, fields.Length, (byte**)first, order, n, to);
+        });
+      return values;
+    }
     /// <summary>Sets a field, laid out as in Get.</summary>
     public void Set<T>(string field, T[] values, long[] ids = null) {
       Overwritten(Native.mpm_particles_set, field, values, ComponentsOf(field), Count, ids);
@@ -289,6 +252,14 @@ namespace Mpm {
         Call(p => {
           fixed (byte* file = Text.Bytes(path)) fixed (IntPtr* first = names.Pointers)
             return Native.mpm_write_particles(p, file, fields.Length, (byte**)first);
+        });
+    }
+    /// <summary>Gives a stream the bytes of that file. What the stream throws comes out.</summary>
+    public void WriteTo(Stream stream, params string[] fields) {
+      using (var names = new Names(fields))
+        Streamed(stream, (p, user) => {
+          fixed (IntPtr* first = names.Pointers)
+            return Native.mpm_write_particles_to(p, Trampolines.Write, user, fields.Length, (byte**)first);
         });
     }
 

@@ -1,5 +1,6 @@
 // The time loop, obstacles, surfaces, states and files.
 using System;
+using System.IO;
 using System.Runtime.InteropServices;
 using static Mpm.Constants;
 
@@ -276,6 +277,17 @@ namespace Mpm {
     public void SetBody(Particles set, int body) {
       Call(p => Native.mpm_stepper_set_body(p, set.Pointer, body));
     }
+    /// <summary>The body that a set is in.</summary>
+    public int BodyOf(Particles set) {
+      int body = 0;
+      Call(p => {
+        int found;
+        int status = Native.mpm_stepper_body(p, set.Pointer, &found);
+        body = found;
+        return status;
+      });
+      return body;
+    }
     /// <summary>Sets how two bodies meet; null takes the rule back.</summary>
     public void SetContact(int bodyA, int bodyB, ContactDesc? contact) {
       Call(p => {
@@ -460,6 +472,10 @@ namespace Mpm {
       });
       return state;
     }
+    /// <summary>Gives a stream the bytes of Save(), without holding them all. What the stream throws comes out.</summary>
+    public void SaveTo(Stream stream) {
+      Streamed(stream, (p, user) => Native.mpm_state_save_to(p, Trampolines.Write, user));
+    }
     public void Load(byte[] state) {
       Call(p => {
         fixed (byte* first = state) return Native.mpm_state_load(p, (IntPtr)first, state.Length);
@@ -492,6 +508,14 @@ namespace Mpm {
         Call(p => {
           fixed (byte* file = Text.Bytes(path)) fixed (IntPtr* first = names.Pointers)
             return Native.mpm_write_body_grid(p, body, file, fields.Length, (byte**)first);
+        });
+    }
+    /// <summary>Gives a stream the bytes of that file.</summary>
+    public void WriteGridTo(Stream stream, int body = 0, params string[] fields) {
+      using (var names = new Names(fields))
+        Streamed(stream, (p, user) => {
+          fixed (IntPtr* first = names.Pointers)
+            return Native.mpm_write_grid_to(p, body, Trampolines.Write, user, fields.Length, (byte**)first);
         });
     }
   }

@@ -15,10 +15,10 @@ export LD_LIBRARY_PATH=$BUILD${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} MONO_PATH=$sc
 compile() {
   mcs -nologo -unsafe -langversion:7 -warn:4 -warnaserror+ "$@"
 }
-compile -target:library $here/{Native,Handles,Callbacks,Objects,Stepping}.cs -out:"$scratch/Mpm.dll"
+compile -target:library $here/{Native,Handles,Callbacks,Materials,Objects,Stepping}.cs -out:"$scratch/Mpm.dll"
 compile -reference:"$scratch/Mpm.dll" $here/Example.cs -out:"$scratch/example.exe"
 # the tests see what is internal
-compile $here/{Native,Handles,Callbacks,Objects,Stepping}.cs $here/tests/*.cs -out:"$scratch/tests.exe"
+compile $here/{Native,Handles,Callbacks,Materials,Objects,Stepping}.cs $here/tests/*.cs -out:"$scratch/tests.exe"
 export MONO_CRASH_NOFILE=1
 (cd "$scratch" && mono tests.exe .)
 "$CC" -std=c11 -Wall -Wextra -Werror -Iinclude bindings/example.c -L"$BUILD" -lmpm -Wl,-rpath,"$BUILD" -o "$scratch/in_c"

@@ -12,7 +12,7 @@ namespace Mpm {
     static int failures;
 
     static void Is(object found, object should, string what) {
-      if (found.Equals(should)) return;
+      if (Equals(found, should)) return;
       Console.Error.WriteLine("{0}: {1}, not {2}", what, found, should);
       failures++;
     }
@@ -34,6 +34,7 @@ namespace Mpm {
       var exception = Throws<MpmException>(run, word);
       if (exception == null) return;
       Is(exception.Status, status, "status of: " + exception.Message);
+      Is(exception.Name.StartsWith("MPM_"), true, "its name: " + exception.Name);
       Is(exception.Message.Contains(word), true, "'" + word + "' in: " + exception.Message);
     }
 
@@ -271,6 +272,20 @@ namespace Mpm {
         long n = system.Rows;
         double[] x = new double[n], r = new double[n], p = new double[n], ap = new double[n];
         double rr = 0;
+        long[] start;
+        int[] column;
+        double[] value;
+        system.Csr(out start, out column, out value);
+        for (long i = 0; i < n; i++) p[i] = 1 + i % 7;
+        system.Apply(p, ap);
+        for (long i = 0; i < n; i++) {
+          double sum = 0, scale = 0;
+          for (long k = start[i]; k < start[i + 1]; k++) {
+            sum += value[k] * p[column[k]];
+            scale += Math.Abs(value[k] * p[column[k]]);
+          }
+          Is(Math.Abs(sum - ap[i]) <= 1e-12 * scale, true, "a row of the matrix");
+        }
         for (long i = 0; i < n; i++) {
           p[i] = r[i] = system.RightHandSide[i, 0];
           rr += r[i] * r[i];
@@ -299,6 +314,45 @@ namespace Mpm {
       Is(Math.Abs(host.Stepper.Info().kinetic_energy / direct.Stepper.Info().kinetic_energy - 1) < 1e-7, true, "and rightly");
       direct.Dispose();
       host.Dispose();
+    }
+
+    /// <summary>A law without a grid: small shear, and a stretch whose energy is known.</summary>
+    static unsafe void Updates() {
+      var density = Array.Find(Material.Parameters("neo_hookean"), each => each.Name == "density");
+      Is(double.IsNaN(density.Default) && density.Unit.Contains("mass") && density.Low >= 0, true, "a parameter");
+      Is(Material.StateVariables("j2")[0], "plastic_strain", "a state variable");
+      Refuses(MPM_E_NOT_FOUND, "sponge", () => Material.Parameters("sponge"));
+      double[] F = new double[18], one = new double[18];
+      for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++) F[8 * k + i] = one[8 * k + i] = 1;
+      F[2] = one[2] = 1e-3; // F_xy of the first item
+      using (var context = new Context())
+      using (var law = new Material(context, "neo_hookean", jelly)) {
+        Is(law.StateCount, 0, "state variables");
+        var after = law.Update(0.1, 0.1, F, one, new double[12], tangent: true);
+        Is(Math.Abs(after.Stress[6] / (1e4 / 2.6 * 1e-3) - 1) < 1e-2 && after.Stress[7] == 0, true, "the stress of a shear");
+        Is(after.WaveSpeed[0] > 3 && after.Energy[0] > 0 && after.Symmetric && Math.Abs(after.Tangent[1] / (1e4 * 0.7 / (1.3 * 0.4)) - 1) < 1e-9, true, "a tangent");
+        Is(law.Update(0.1, 0.1, F, one, new double[12]).Tangent, (object)null, "no tangent");
+        Throws<ArgumentException>(() => law.Update(0.1, 0.1, F, one, new double[11]), "stress");
+        Throws<ArgumentException>(() => law.Update(0.1, 0.1, F, one, new double[12], new double[1]), "state");
+        F[0] = F[1] = -1;
+        Refuses(MPM_INVERTED, "", () => law.Update(0.1, 0.1, F, one, new double[12]));
+      }
+      StressFunction old = (ref MaterialBatch batch) => {
+        Columns state = batch.State, next = batch.NewState, stress = batch.NewStress, speed = batch.WaveSpeed;
+        for (long i = 0; i < batch.n; i++) {
+          next[i, 0] = state[i, 0] + batch.dt;
+          stress[i, 0] = batch.position[2 * batch.ld + i];
+          speed[i, 0] = 1;
+        }
+        return MPM_OK;
+      };
+      using (var context = new Context())
+      using (var law = new Material(context, 100, old, new[] { 5.0 })) {
+        F[0] = F[1] = 1;
+        var after = law.Update(1, 0.25, F, one, new double[12], new[] { 3.0, 4 }, position: new[] { 0, 0, 0, 0, 7.0, 8 });
+        Is(string.Join(" ", after.State) + " " + after.Stress[1], "3.25 4.25 8", "a law of the host");
+      }
     }
 
     static unsafe void Obstacles() {
@@ -332,6 +386,7 @@ namespace Mpm {
         Is(info.closed > 0 && info.impulse[1] > 0, true, "contact");
         Refuses(MPM_E_UNSUPPORTED, "MPM_MOTION_FREE", () => floor.SetLoad(new double[3], new double[3]));
         scene.Stepper.SetBody(scene.Set, 2);
+        Is(scene.Stepper.BodyOf(scene.Set), 2, "the body of a set");
         scene.Stepper.SetContact(2, 3, rule);
         scene.Stepper.SetContact(2, 3, null);
         floor.Dispose();
@@ -488,6 +543,49 @@ namespace Mpm {
       }
     }
 
+    /// <summary>A stream that is full after 100 bytes.</summary>
+    sealed class Full : MemoryStream {
+      public override void Write(byte[] bytes, int offset, int count) {
+        if (Length + count > 100) throw new Own();
+        base.Write(bytes, offset, count);
+      }
+    }
+    static bool Same(byte[] found, byte[] should) {
+      return found.Length == should.Length && Array.FindIndex(found, 0, found.Length, b => b != 0) >= 0
+        && Convert.ToBase64String(found) == Convert.ToBase64String(should);
+    }
+    static void Output(string folder) {
+      using (var scene = new Scene()) {
+        scene.Stepper.Advance(0.01);
+        var set = scene.Set;
+        double[] v = set.Get<double>("velocity"), m = set.Get<double>("mass");
+        var floats = set.GetF32(MPM_BY_ID, "velocity", "mass");
+        long n = set.Count;
+        Is(floats.Length, (int)(3 * n), "the number of floats");
+        for (long i = 0; i < n; i++)
+          Is(floats[3 * i] == (float)v[i] && floats[3 * i + 1] == (float)v[n + i] && floats[3 * i + 2] == (float)m[i], true, "floats");
+        var ids = set.GetF32(MPM_LIBRARY_ORDER, "id");
+        Array.Sort(ids);
+        for (long i = 0; i < n; i++) Is(ids[i], (float)i, "ids in library order");
+        Refuses(MPM_E_NOT_FOUND, "velocity", () => set.GetF32(MPM_BY_ID, "velocty"));
+        Refuses(MPM_E_ARG, "", () => set.GetF32(7, "mass"));
+
+        MemoryStream state = new MemoryStream(), vtp = new MemoryStream(), vti = new MemoryStream();
+        scene.Stepper.SaveTo(state);
+        Is(Same(state.ToArray(), scene.Stepper.Save()), true, "a state in a stream");
+        set.WriteTo(vtp, "velocity");
+        set.Write(Path.Combine(folder, "file.vtp"), "velocity");
+        Is(Same(vtp.ToArray(), File.ReadAllBytes(Path.Combine(folder, "file.vtp"))), true, "particles in a stream");
+        scene.Stepper.WriteGridTo(vti, 0, "mass");
+        scene.Stepper.WriteGrid(Path.Combine(folder, "file.vti"), 0, "mass");
+        Is(Same(vti.ToArray(), File.ReadAllBytes(Path.Combine(folder, "file.vti"))), true, "nodes in a stream");
+        Throws<Own>(() => scene.Stepper.SaveTo(new Full()), "a full stream");
+        Throws<ArgumentNullException>(() => set.WriteTo(null), "no stream");
+        Is(Same(state.ToArray(), scene.Stepper.Save()), true, "the state after that");
+        Refuses(MPM_E_NOT_FOUND, "mas", () => scene.Stepper.WriteGridTo(vti, 0, "mas"));
+      }
+    }
+
     [MethodImpl(MethodImplOptions.NoInlining)]
     static WeakReference Forgotten() {
       var token = new object();
@@ -525,9 +623,11 @@ namespace Mpm {
       Threads();
       First();
       Laws();
+      Updates();
       Obstacles();
       Surfaces();
       Files(arguments[0]);
+      Output(arguments[0]);
       Lifetimes();
       Console.WriteLine(failures == 0 ? "all is well" : failures + " failures");
       return failures == 0 ? 0 : 1;

@@ -113,6 +113,7 @@ mod law;
 mod linear;
 mod material;
 mod obstacle;
+mod output;
 mod particles;
 mod series;
 mod staged;

@@ -340,6 +340,66 @@ fn states_and_files() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// Takes so many bytes, then none.
+struct Full(Vec<u8>, usize);
+impl std::io::Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if self.0.len() + bytes.len() > self.1 {
+            return Err(std::io::Error::new(std::io::ErrorKind::Other, "the disk of the test is full"));
+        }
+        self.0.extend(bytes);
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn floats_and_writers() {
+    let folder = std::env::temp_dir().join(format!("mpm-rust-to-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_string();
+    let context = Context::new().unwrap();
+    let (mut stepper, key) = falling(&context, StepperDesc::default()).unwrap();
+    stepper.advance(0.01).unwrap();
+
+    let set = stepper.particles(key);
+    let (n, v, m) = (set.len(), set.get::<f64>("velocity").unwrap(), set.get::<f64>("mass").unwrap());
+    let by_id = set.get_f32(&["velocity", "mass"], MPM_BY_ID).unwrap();
+    assert_eq!(by_id.len(), 3 * n);
+    for (i, one) in by_id.chunks(3).enumerate() {
+        assert_eq!(one, [v[i] as f32, v[n + i] as f32, m[i] as f32]);
+    }
+    let mut ids = set.get_f32(&["id"], MPM_LIBRARY_ORDER).unwrap();
+    ids.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    assert!(ids.iter().enumerate().all(|(i, &id)| id == i as f32), "no inert slots, each particle once");
+    assert_eq!(set.get_f32(&["velocty"], MPM_BY_ID).unwrap_err().status(), MPM_E_NOT_FOUND);
+    assert_eq!(set.get_f32(&["mass"], 7).unwrap_err().status(), MPM_E_ARG);
+
+    let (mut state, mut vtp, mut vti) = (Vec::new(), Vec::new(), Vec::new());
+    stepper.save_to(&mut state).unwrap();
+    assert_eq!(state, stepper.save().unwrap());
+    stepper.particles(key).write_to(&mut vtp, &["velocity"]).unwrap();
+    stepper.particles(key).write(&path("a.vtp"), &["velocity"]).unwrap();
+    assert_eq!(vtp, std::fs::read(path("a.vtp")).unwrap());
+    stepper.write_grid_to(0, &mut vti, &["mass"]).unwrap();
+    stepper.write_grid(0, &path("a.vti"), &["mass"]).unwrap();
+    assert_eq!(vti, std::fs::read(path("a.vti")).unwrap());
+    let mut file = std::io::BufWriter::with_capacity(1 << 20, std::fs::File::create(path("state")).unwrap());
+    stepper.save_to(&mut file).unwrap();
+    assert_eq!(std::fs::read(path("state")).unwrap(), state, "the writer is flushed");
+    drop(file);
+
+    let refused = stepper.save_to(Full(Vec::new(), 100)).unwrap_err();
+    assert_eq!(refused.status(), MPM_E_CALLBACK);
+    let source = std::error::Error::source(&refused).unwrap().to_string();
+    assert!(source.contains("of the test is full"), "{source}");
+    assert_eq!(stepper.save().unwrap(), state, "nothing has changed");
+    assert_eq!(stepper.write_grid_to(0, &mut vti, &["mas"]).unwrap_err().status(), MPM_E_NOT_FOUND);
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 #[test]
 fn models() {
     let models = Material::models();
