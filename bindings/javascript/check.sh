@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The package for JavaScript: builds it, installs its tarball into a scratch project, and there runs the example and the
-# tests with both binaries. With chromium the live page as well, with tsc the declarations: tools of the npm registry,
-# which are left out where they cannot be had. BROWSER=no leaves the page out.
+# tests with both binaries; checks the declarations by tsc, and the live page in chromium by playwright-core. These two are
+# packages of the npm registry: without the registry they are left out. BROWSER=no leaves the page out.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 export LC_ALL=C CC=${CC:-cc} BUILD=${BUILD:-$PWD/build} MAKE=${MAKE:-make} JOBS=${JOBS:-$(nproc)}
@@ -9,11 +9,12 @@ scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/javascript
 PLAYWRIGHT=playwright-core@1.65.1 TYPESCRIPT=typescript@5.9.3
 
 skip() {
-  echo "javascript: skipped: there is no $1"
-  exit 0
+  echo "javascript: not checked: there is no $1"
+  exit 77
 }
 for tool in node npm wasm-ld python3 "${WASM_CLANG:-clang}"; do command -v "$tool" > /dev/null || skip "$tool"; done
 command -v llvm-ar > /dev/null || command -v llvm-ar-14 > /dev/null || skip llvm-ar
+[ "${BROWSER:-yes}" = no ] || command -v "${CHROMIUM:-chromium}" > /dev/null || skip "chromium (BROWSER=no does without)"
 [ -e /usr/lib/wasm32-wasi/libc.a ] || skip wasi-libc
 printf 'int main(void) { return 0; }' | "${WASM_CLANG:-clang}" --target=wasm32-wasi -x c - -o /dev/null 2> /dev/null ||
   skip 'runtime of clang for WebAssembly (libclang-rt-dev-wasm32)'
@@ -56,26 +57,26 @@ done
 
 # ---- what takes tools of the registry ----
 tools=$scratch/tools
-fetched() { # package
-  [ -e "$tools/node_modules/${1%@*}" ] ||
-    timeout 60 npm install --silent --prefix "$tools" --no-save "$TYPESCRIPT" "$PLAYWRIGHT" > /dev/null 2>&1 || :
-  [ -e "$tools/node_modules/${1%@*}" ]
+have_registry() { npm ping --silent --fetch-retries=0 --fetch-timeout=20000 > /dev/null 2>&1; }
+fetched() {
+  [ -e "$tools/node_modules/typescript" ] && [ -e "$tools/node_modules/playwright-core" ] && return
+  have_registry || return
+  timeout 120 npm install --silent --prefix "$tools" --no-save "$TYPESCRIPT" "$PLAYWRIGHT" > "$scratch/log" 2>&1 ||
+    { cat "$scratch/log" >&2; echo "javascript: the registry has no $TYPESCRIPT or $PLAYWRIGHT" >&2; exit 1; }
 }
 mkdir -p "$tools"
-if fetched "$TYPESCRIPT"; then
-  node "$tools/node_modules/typescript/bin/tsc" --noEmit --strict --target es2022 --lib es2022,dom \
-    --module nodenext --moduleResolution nodenext types.ts
-  echo 'javascript: the declarations'
-else
-  echo 'javascript: declarations are not checked: typescript cannot be had from the registry'
+if ! fetched; then
+  echo 'javascript: declarations and the live page are NOT CHECKED: the npm registry cannot be reached'
+  exit 0
 fi
-CHROMIUM=$(command -v "${CHROMIUM:-chromium}" || :)
-export CHROMIUM
-if [ "${BROWSER:-yes}" = no ] || [ -z "$CHROMIUM" ]; then
-  echo 'javascript: the live page is not checked: there is no chromium, or it is not wanted'
-elif fetched "$PLAYWRIGHT"; then
+node "$tools/node_modules/typescript/bin/tsc" --noEmit --strict --target es2022 --lib es2022,dom \
+  --module nodenext --moduleResolution nodenext types.ts
+echo 'javascript: the declarations'
+if [ "${BROWSER:-yes}" = no ]; then
+  echo 'javascript: the live page is not checked: BROWSER=no'
+else
+  CHROMIUM=$(command -v "${CHROMIUM:-chromium}")
+  export CHROMIUM
   ln -sfn "$tools/node_modules/playwright-core" node_modules/playwright-core
   node browser.mjs "$live" "$EXPECTED" "$scratch/pictures" | sed 's/^/javascript: /'
-else
-  echo 'javascript: the live page is not checked: playwright-core cannot be had from the registry'
 fi

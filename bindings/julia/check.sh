@@ -5,7 +5,7 @@ here=bindings/julia
 scratch=$MPM_SCRATCH/julia
 python3 $here/structure.py
 if ! command -v julia > /dev/null; then
-  echo "julia: skipped but for that: there is no julia"
+  echo "julia: not run: Debian has no julia"
   exit 0
 fi
 rm -rf "$scratch"
