@@ -1,6 +1,6 @@
 # The bindings of other languages, included by the Makefile at the top of the sources, from where all paths start.
 
-.PHONY: api check-bindings bindings-setup check-newcomers
+.PHONY: api check-bindings bindings-setup measure-bindings check-newcomers
 
 #: api                   bindings/api.json and what bindings of all languages take from it, from the headers, by clang
 api:
@@ -29,6 +29,12 @@ check-bindings: all
 	if [ -n "$$missing" ]; then \
 	  echo "check-bindings: for want of tools not, or not wholly, checked:$$missing" >&2; \
 	  [ "$(SKIP_MISSING)" = 1 ] || { echo 'check-bindings: make bindings-setup installs them on Debian; SKIP_MISSING=1 does without, LANGUAGES selects' >&2; exit 1; }; fi
+
+#: measure-bindings      what calls and callbacks cost in each language: docs/bindings.md; COSTS="c rust" selects
+COSTS ?= c fortran rust csharp javascript python
+measure-bindings: all
+	@mkdir -p $(BUILD)/tests/scratch
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) bash bindings/costs/run.sh $(COSTS)
 
 #: check-newcomers       what the README of each language tells to type, in a root with nothing but Debian's base, as root by
 #:                       debootstrap, some minutes for each; NEWCOMERS="python rust" selects

@@ -63,6 +63,12 @@ namespace Mpm {
     }
     /// <summary>Whether there is an array: some are optional.</summary>
     public bool Exists { get { return data != null; } }
+    /// <summary>The address of a component of the first item, for loops that want no checks; those of its other items follow.
+    /// </summary>
+    public double* Pointer(int component) {
+      if (!writable) throw new InvalidOperationException("the array is for reading; the batch has its pointer");
+      return At(0, component);
+    }
   }
 
   /// <summary>The same of bytes.</summary>

@@ -16,6 +16,7 @@ compile() {
   mcs -nologo -unsafe -langversion:7 -warn:4 -warnaserror+ "$@"
 }
 compile -target:library $here/{Native,Handles,Callbacks,Materials,Objects,Stepping}.cs -out:"$scratch/Mpm.dll"
+compile -reference:"$scratch/Mpm.dll" bindings/costs/Costs.cs -out:"$scratch/costs.exe"
 compile -reference:"$scratch/Mpm.dll" $here/Example.cs -out:"$scratch/example.exe"
 # the tests see what is internal
 compile $here/{Native,Handles,Callbacks,Materials,Objects,Stepping}.cs $here/tests/*.cs -out:"$scratch/tests.exe"

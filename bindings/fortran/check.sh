@@ -19,6 +19,7 @@ done
 for program in layout host example; do
   compile $here/$program.f90 "$scratch/mpm.o" "$scratch/mpm_texts.o" -L"$BUILD" -lmpm -Wl,-rpath,"$BUILD" -o "$scratch/$program"
 done
+compile -c bindings/costs/costs.f90 -o "$scratch/costs.o"
 "$scratch/layout"
 "$scratch/host" "$scratch/set.vtp"
 "$CC" -std=c11 -Wall -Wextra -Werror -Iinclude bindings/example.c -L"$BUILD" -lmpm -Wl,-rpath,"$BUILD" -o "$scratch/in_c"

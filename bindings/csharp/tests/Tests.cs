@@ -149,7 +149,16 @@ namespace Mpm {
         });
         Throws<InvalidOperationException>(() => stepper.Step(1e-3), "writing into an input");
         stepper.SetForce((ref ParticleBatch batch, Columns add) => {
-          for (long i = 0; i < batch.n; i++) add[i, 0] += 3 * batch.Mass[i, 0];
+          unsafe {
+            return batch.Mass.Pointer(0) == null ? 1 : MPM_OK;
+          }
+        });
+        Throws<InvalidOperationException>(() => stepper.Step(1e-3), "the address of an input");
+        stepper.SetForce((ref ParticleBatch batch, Columns add) => {
+          unsafe {
+            var along = add.Pointer(0);
+            for (long i = 0; i < batch.n; i++) along[i] += 3 * batch.Mass[i, 0];
+          }
           return MPM_OK;
         });
         GC.Collect();
