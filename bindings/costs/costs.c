@@ -1,4 +1,5 @@
-/* What calls and callbacks cost from C: the scene of bindings/python/costs.py. Each kind makes five steps in a row, by turns. */
+/* What calls and callbacks cost from C: the scene of bindings/python/costs.py. Each kind makes five steps in
+ * a row, by turns. */
 #define _POSIX_C_SOURCE 199309L
 #include <math.h>
 #include <mpm/mpm.h>
