@@ -5,6 +5,8 @@
 
 JAVASCRIPT := $(BUILD)/javascript
 JAVASCRIPT_PACKAGE := $(JAVASCRIPT)/libmpm
+# Between releases the coming one, as packages of other languages have it: docs/developing.md, 5.
+PACKAGE_VERSION = $(or $(shell sed -n 's/^## \(.*\) (unreleased)$$/\1-dev/p' CHANGELOG.md),$(VERSION))
 WASM_CLANG ?= clang
 WASM_AR ?= $(shell command -v llvm-ar || command -v llvm-ar-14)
 # A stack of 1 MiB below all data, so that one which overflows is noticed; names of functions are left out.
@@ -24,9 +26,9 @@ $(JAVASCRIPT_PACKAGE)/%: bindings/javascript/%
 $(JAVASCRIPT_PACKAGE)/LICENSE: LICENSE
 	@mkdir -p $(@D)
 	$(Q)cp $< $@
-$(JAVASCRIPT_PACKAGE)/package.json: bindings/javascript/package.json.in Makefile
+$(JAVASCRIPT_PACKAGE)/package.json: bindings/javascript/package.json.in CHANGELOG.md Makefile
 	@mkdir -p $(@D)
-	$(Q)sed 's/@VERSION@/$(VERSION)/' $< > $@
+	$(Q)sed 's/@VERSION@/$(PACKAGE_VERSION)/' $< > $@
 
 # The library for WebAssembly, by this Makefile with another compiler: kernels by -O2, which is as fast and smaller. The
 # binary with vectors has its own kernels, and all else from the other one.

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# What Debian's packages say of the libraries, without Debian's tools: descriptions keep within 80 columns, as lintian wants
-# them, and each symbols file lists what its library exports.
+# What packages say of the libraries, without the tools that make them: all have one version; descriptions of Debian's keep
+# within 80 columns, as lintian wants them, and each symbols file lists what its library exports.
 set -euo pipefail
-BUILD=${BUILD:-build}
+BUILD=${BUILD:-build} MAKE=${MAKE:-make}
 scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/packages
 debian=packaging/debian
 mkdir -p "$scratch"
@@ -10,6 +10,21 @@ fail() {
   echo "packages.sh: $1" >&2
   exit 1
 }
+
+# Between releases the coming version, marked as each tool marks it; docs/developing.md, 5.
+version=$(sed -n '/^## /{s/^## \([0-9.]*\).*/\1/p;q}' CHANGELOG.md)
+if grep -qx "## $version (unreleased)" CHANGELOG.md; then tilde='~dev' point=.dev0 dash=-dev; else tilde='' point='' dash=''; fi
+has() { # file, line that it must have
+  grep -qxF "$2" "$1" || fail "$1 has not the version of CHANGELOG.md: $2"
+}
+[ "$(sed "s/).*/)/;q" $debian/changelog)" = "libmpm ($version$tilde)" ] || fail "$debian/changelog has not the version of CHANGELOG.md"
+has bindings/python/pyproject.toml "version = \"$version$point\""
+has bindings/python/src/mpm/__init__.py "__version__ = \"$version$point\""
+has bindings/rust/mpm/Cargo.toml "version = \"$version$dash\""
+has bindings/rust/mpm-sys/Cargo.toml "version = \"$version$dash\""
+package=$scratch/npm/javascript/libmpm/package.json
+"$MAKE" -s BUILD="$scratch/npm" "$package"
+has "$package" "  \"version\": \"$version$dash\","
 
 # A description begins at its field, and its other lines begin with a space.
 awk '/^[^ ]/ { inside = /^Description:/ } inside { print FNR ": " $0 }' $debian/control > "$scratch/descriptions"
