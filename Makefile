@@ -169,7 +169,7 @@ endif
 	$(SUBSTITUTE) cmake/mpmConfigVersion.cmake.in > $(call to,CMAKEDIR)/mpmConfigVersion.cmake
 	chmod 644 $(call to,PKGCONFIGDIR)/mpm*.pc $(call to,CMAKEDIR)/*.cmake
 	install -d $(call to,DATADIR)
-	install -m 644 bindings/api.json $(call to,DATADIR)
+	install -m 644 bindings/api.json $(if $(UMAT_INSTALLED_HEADERS),bindings/umat.json) $(call to,DATADIR)
 
 #: uninstall             takes them away again
 uninstall:
@@ -177,7 +177,7 @@ uninstall:
 	cd $(call to,LIBDIR) && rm -f libmpm.a $(SHARED) $(SHARED_LINKS) $(IMPORT_LIB) $(notdir $(UMAT_ARCHIVES)) \
 	  $(if $(UMAT_SHARED_LIB),$(UMAT_SHARED) $(UMAT_LINKS)) $(addprefix pkgconfig/,$(addsuffix .pc,mpm mpm-static $(UMAT_PC)))
 	rm -f $(if $(IMPORT_LIB),$(call to,BINDIR,/$(SHARED))) $(call to,CMAKEDIR)/mpmConfig.cmake $(call to,CMAKEDIR)/mpmConfigVersion.cmake
-	rm -f $(call to,DATADIR,/api.json)
+	rm -f $(call to,DATADIR,/api.json) $(call to,DATADIR,/umat.json)
 	rmdir $(call to,INCLUDEDIR,/mpm) $(call to,CMAKEDIR) $(call to,DATADIR) 2>/dev/null || :
 
 # ---- examples and benchmarks -----------------------------------------------------------------------------

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Describes the public interface in JSON, from the headers as clang parses them.
 
-    tools/api.py [--clang clang] [include] > api.json
+    tools/api.py [--clang clang] [--umat umat/include] [include] > api.json
+
+With --umat it describes mpm_umat.h, the header of libmpm-umat, in the place of libmpm's.
 
 The description holds what bindings need: functions, structs with the offsets of their fields, constants by group, types
 of callbacks, handles, and every comment. Offsets are those for pointers of 8 and of 4 bytes, where an 8-byte number lies
@@ -16,17 +18,18 @@ import sys
 
 HEADERS = ["types", "context", "grid", "material", "particles", "stepper", "operator", "contact", "obstacle", "surface",
            "io"]
-SIZES = {"int8_t": 1, "uint8_t": 1, "char": 1, "int32_t": 4, "uint32_t": 4, "int64_t": 8, "uint64_t": 8, "double": 8,
+SIZES = {"int8_t": 1, "uint8_t": 1, "char": 1, "int": 4, "int32_t": 4, "uint32_t": 4, "int64_t": 8, "uint64_t": 8, "double": 8,
          "float": 4, "mpm_status": 4}
 TARGETS = {8: "x86_64-linux-gnu", 4: "wasm32-unknown-unknown"}
 
 
-def source():
-    return "".join(f"#include <mpm/{name}.h>\n" for name in HEADERS)
+def source(arguments):
+    return "".join(f"#include <mpm/{name}.h>\n" for name in (["mpm_umat"] if arguments.umat else HEADERS))
 
 
-def clang(arguments, text, include):
-    command = [arguments.clang, "-std=c11", "-ffreestanding", "-I", include, "-x", "c", "-"]
+def clang(arguments, text):
+    folders = [one for folder in (arguments.include, arguments.umat) if folder for one in ("-I", folder)]
+    command = [arguments.clang, "-std=c11", "-ffreestanding", *folders, "-x", "c", "-"]
     return lambda *more: subprocess.run(command + list(more), input=text, capture_output=True, text=True, check=False)
 
 
@@ -138,12 +141,16 @@ class Reader:
             name = top.get("name", "")
             if top["kind"] != "TypedefDecl":
                 continue
-            if "(*)" in top["type"]["qualType"]:
+            if self.is_function(top["type"]["qualType"]):
                 self.known["callback"].add(name)
             elif name in complete:
                 self.known["struct"].add(name)
             elif top["type"]["qualType"].startswith("struct "):
                 self.known["handle"].add(name)
+
+    def is_function(self, kind):
+        """A type of function, a pointer to one, or a pointer to a type that has a name of its own."""
+        return "(" in kind or kind.rstrip("* ") in self.known["callback"]
 
     def note(self, node, file):
         if "id" in node:
@@ -183,10 +190,16 @@ class Reader:
         return out
 
     def callback(self, name, doc, header, text):
-        """A type of function from the text of its typedef or field."""
-        found = re.match(r"(?:typedef\s+)?(.*?)\(\*\s*\w+\)\s*\((.*)\)\s*$", re.sub(r"\s+", " ", text))
-        return {"name": name, "header": header, "doc": doc, "result": type_of(found[1], self.known),
-                "arguments": arguments_of(found[2], self.known)}
+        """A type of function, or a pointer to one, from the text of its typedef or field."""
+        text = re.sub(r"\s+", " ", text)
+        other = re.match(r"typedef (\w+) \*\w+$", text)
+        if other:
+            return {"name": name, "header": header, "doc": doc, "pointer_to": other[1], "result": type_of("void", self.known),
+                    "arguments": []}
+        found = re.match(r"(?:typedef\s+)?(.*?)(?:\(\*\s*\w+\)|\b\w+)\s*\((?!\*)(.*)\)\s*$", text)
+        out = {"name": name, "header": header, "doc": doc, "result": type_of(found[1], self.known),
+               "arguments": arguments_of(found[2], self.known)}
+        return out if "(*" in text else {**out, "function": True}
 
     def callbacks_and_structs(self):
         callbacks, structs = [], []
@@ -231,19 +244,23 @@ class Reader:
 
 def describe(arguments):
     texts = Texts()
-    run = clang(arguments, source(), arguments.include)
+    run = clang(arguments, source(arguments))
     parsed = run("--target=" + TARGETS[8], "-fsyntax-only", "-Xclang", "-ast-dump=json", "-fparse-all-comments")
     if parsed.returncode:
         raise SystemExit(parsed.stderr)
     reader = Reader(json.loads(parsed.stdout), texts)
     version = int(re.search(r"#define MPM_VERSION (\w+)", texts.of(f"{arguments.include}/mpm/types.h"))[1], 16)
     files = []
-    for name in HEADERS + ["mpm"]:
-        text = texts.of(f"{arguments.include}/mpm/{name}.h")
+    for name in ["mpm_umat"] if arguments.umat else HEADERS + ["mpm"]:
+        text = texts.of(f"{arguments.umat or arguments.include}/mpm/{name}.h")
         files.append({"name": f"{name}.h", "doc": plain(re.match(r"/\*\*.*?\*/", text, re.S)[0])})
     callbacks, structs = reader.callbacks_and_structs()
-    api = {"library": "libmpm", "version": version, "files": files, "handles": reader.handles(),
-           "constants": reader.constants(), "callbacks": callbacks, "structs": structs, "functions": reader.functions()}
+    api = {"library": "libmpm-umat" if arguments.umat else "libmpm", "version": version, "files": files,
+           "handles": reader.handles(), "constants": reader.constants(), "callbacks": callbacks, "structs": structs,
+           "functions": reader.functions()}
+    names = {one["name"] for one in files}
+    for kind in ("handles", "constants", "callbacks", "structs", "functions"):
+        api[kind] = [one for one in api[kind] if one["header"] in names]
     confirm(arguments, api)
     return api
 
@@ -257,14 +274,14 @@ def confirm(arguments, api):
             if bad:
                 raise SystemExit(f"api.py: no comment or name: {one['name']} {bad[0]['name']}")
     for pointer, target in TARGETS.items():
-        text = source() + "#include <stddef.h>\n"
+        text = source(arguments) + "#include <stddef.h>\n"
         for struct in api["structs"]:
             name, bits = struct["name"], 8 * pointer
             text += f'_Static_assert(sizeof({name}) == {struct[f"size{bits}"]}, "{name}");\n'
             for field in struct["fields"]:
                 offset = field[f"offset{bits}"]
                 text += f'_Static_assert(offsetof({name}, {field["name"]}) == {offset}, "{name}.{field["name"]}");\n'
-        checked = clang(arguments, text, arguments.include)("--target=" + target, "-fsyntax-only")
+        checked = clang(arguments, text)("--target=" + target, "-fsyntax-only")
         if checked.returncode:
             raise SystemExit(f"api.py: {target} lays structs out otherwise:\n{checked.stderr}")
 
@@ -272,6 +289,7 @@ def confirm(arguments, api):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--clang", default=os.environ.get("API_CLANG", "clang"))
+    parser.add_argument("--umat", metavar="FOLDER")
     parser.add_argument("include", nargs="?", default="include")
     json.dump(describe(parser.parse_args()), sys.stdout, indent=1, ensure_ascii=False)
     print()

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes manual pages from bindings/api.json: mpm(7), one page a header in section 3, and a link to it for each function.
+"""Writes manual pages from bindings/api.json and umat.json: mpm(7), one page a header in section 3, and a link to it for
+each function.
 
     tools/man.py VERSION FOLDER
 """
@@ -41,8 +42,10 @@ def paragraphs(text):
 
 
 def declared(one, kind=""):
+    if "pointer_to" in one:
+        return f"{kind}{one['pointer_to']} *{one['name']};"
     arguments = ", ".join(f"{a['type']['c']} {a['name']}".replace("* ", "*") for a in one["arguments"]) or "void"
-    name = f"(*{one['name']})" if kind else one["name"]
+    name = f"(*{one['name']})" if kind and not one.get("function") else one["name"]
     return f"{kind}{one['result']['c']} {name}({arguments});".replace("* ", "*")
 
 
@@ -59,12 +62,16 @@ def fields(struct):
     return "\n".join(out) + "\n.RE"
 
 
+def page_name(header):
+    stem = header["name"][:-2]
+    return stem if stem.startswith("mpm_") else f"mpm_{stem}"
+
+
 def page(api, header, version):
     mine = lambda kind: [one for one in api[kind] if one["header"] == header["name"]]
-    stem = header["name"][:-2]
     text = re.sub(r"^@file \S+\n", "", header["doc"])
     first = text.split(":")[0].split(".")[0].split("\n")[0]
-    out = [head(f"mpm_{stem}", 3, version, first[0].lower() + first[1:]),
+    out = [head(page_name(header), 3, version, first[0].lower() + first[1:]),
            f".SH SYNOPSIS\n.nf\n.B #include <mpm/{header['name']}>\n.PP"]
     out += [".B " + escaped(declared(one)) for one in mine("functions")]
     out += [".fi\n.SH DESCRIPTION", paragraphs(text)]
@@ -91,10 +98,10 @@ def page(api, header, version):
     return "\n".join(out)
 
 
-def overview(api, version):
+def overview(api, companion, version):
     mpm = next(one for one in api["files"] if one["name"] == "mpm.h")
     text = re.sub(r"^@file \S+\n", "", mpm["doc"])
-    others = ",\n".join(f".BR mpm_{one['name'][:-2]} (3)" for one in api["files"] if one is not mpm)
+    others = ",\n".join(f".BR {page_name(one)} (3)" for one in api["files"] + companion["files"] if one is not mpm)
     compile_line = "cc host.c $(pkg-config --cflags --libs mpm)"
     return (head("mpm", 7, version, "the Material Point Method as a library")
             + f".SH SYNOPSIS\n.nf\n.B #include <mpm/mpm.h>\n.PP\n.B {escaped(compile_line)}\n.fi\n.SH DESCRIPTION\n"
@@ -103,15 +110,18 @@ def overview(api, version):
 
 def main():
     version, folder = sys.argv[1:]
-    with open(f"{TOP}/bindings/api.json", encoding="utf-8") as file:
-        api = json.load(file)
+    descriptions = []
+    for name in ("api", "umat"):
+        with open(f"{TOP}/bindings/{name}.json", encoding="utf-8") as file:
+            descriptions.append(json.load(file))
     os.makedirs(folder, exist_ok=True)
-    pages = {"mpm.7": overview(api, version)}
-    for header in api["files"]:
-        if header["name"] != "mpm.h":
-            pages[f"mpm_{header['name'][:-2]}.3"] = page(api, header, version)
-    for one in api["functions"]:
-        pages.setdefault(f"{one['name']}.3", f".so man3/mpm_{one['header'][:-2]}.3\n")
+    pages = {"mpm.7": overview(*descriptions, version)}
+    for api in descriptions:
+        for header in api["files"]:
+            if header["name"] != "mpm.h":
+                pages[f"{page_name(header)}.3"] = page(api, header, version)
+        for one in api["functions"]:
+            pages.setdefault(f"{one['name']}.3", f".so man3/{page_name({'name': one['header']})}.3\n")
     for name, text in pages.items():
         with open(f"{folder}/{name}", "w", encoding="utf-8") as file:
             file.write(text)

@@ -4,7 +4,7 @@
     bindings/generate/generate.py [--check] [language ...]
 
 Every module beside this one has `files(api)`: the text of each generated file by its path under bindings/. With clang,
-bindings/api.json is made anew first; without, it is taken as it is.
+bindings/api.json is made anew first, and umat.json, which is the same of libmpm-umat; without, they are taken as they are.
 """
 import argparse
 import importlib
@@ -21,14 +21,14 @@ LANGUAGES = sorted(name[:-3] for name in os.listdir(HERE)
                    if name.endswith(".py") and name not in ("generate.py", "common.py"))
 
 
-def description():
-    """The text of api.json as the headers have it now."""
+def description(name, *arguments):
+    """The text of a description as the headers have it now."""
     tool = os.environ.get("API_CLANG", "clang")
     if not shutil.which(tool):
-        print("generate.py: there is no clang; bindings/api.json is taken as it is", file=sys.stderr)
-        with open(f"{BINDINGS}/api.json", encoding="utf-8") as file:
+        print(f"generate.py: there is no clang; bindings/{name} is taken as it is", file=sys.stderr)
+        with open(f"{BINDINGS}/{name}", encoding="utf-8") as file:
             return file.read()
-    made = subprocess.run([sys.executable, f"{TOP}/tools/api.py", f"{TOP}/include"], capture_output=True, text=True, check=False)
+    made = subprocess.run([sys.executable, f"{TOP}/tools/api.py", *arguments, f"{TOP}/include"], capture_output=True, text=True, check=False)
     if made.returncode:
         raise SystemExit(made.stderr.strip())
     return made.stdout
@@ -40,8 +40,8 @@ def main():
     parser.add_argument("languages", nargs="*", help=", ".join(LANGUAGES))
     arguments = parser.parse_args()
     sys.path.insert(0, HERE)
-    text = description()
-    files = {"api.json": text}
+    text = description("api.json")
+    files = {"api.json": text, "umat.json": description("umat.json", "--umat", f"{TOP}/umat/include")}
     for language in arguments.languages or LANGUAGES:
         files.update(importlib.import_module(language).files(json.loads(text)))
     stale = []

@@ -45,3 +45,14 @@ symbols() { # library, package
 }
 symbols libmpm libmpm0
 symbols libmpm-umat libmpm-umat0
+
+# Each of these functions has a manual page, which may be a link to that of its header.
+"$MAKE" -s BUILD="$scratch/man" man
+for function in $(sed -n 's/^ \(mpm_[a-z_0-9]*\)@.*/\1/p' $debian/*.symbols); do
+  page=$scratch/man/man/$function.3
+  [ -e "$page" ] || fail "no manual page of $function"
+  target=$(sed -n 's/^\.so man3\///p' "$page")
+  [ -z "$target" ] || page=$scratch/man/man/$target
+  grep -q "^\.B .*[ *]$function(" "$page" || fail "$page does not have $function"
+done
+echo "packages.sh: $(find "$scratch/man/man" -name '*.3' -type f | wc -l) manual pages"

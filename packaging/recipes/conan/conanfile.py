@@ -32,7 +32,7 @@ class LibmpmConan(ConanFile):
 
     def export_sources(self):
         for pattern in ("CMakeLists.txt", "Makefile", "LICENSE", "src/*", "include/*", "umat/*", "cmake/*", "pkgconfig/*",
-                        "bindings/api.json", "bindings/example.c"):
+                        "bindings/*.json", "bindings/example.c"):
             copy(self, pattern, ROOT, self.export_sources_folder)
 
     def validate(self):

@@ -26,9 +26,10 @@
 extern "C" {
 #endif
 
-/** What mpm_step_info.callback_status is after a subroutine has called XIT, XPLB_EXIT or STDB_ABQERR with
- * LOP = -3. */
-enum mpm_umat_value { MPM_UMAT_EXIT = -1001 };
+/** What mpm_step_info.callback_status is after a subroutine has left its call. */
+enum mpm_umat_value {
+  MPM_UMAT_EXIT = -1001 /**< it has called XIT, XPLB_EXIT or STDB_ABQERR with LOP = -3 */
+};
 
 /**
  * The type of a UMAT as Fortran compilers see it: all arguments by reference, then the length of CMNAME. A
