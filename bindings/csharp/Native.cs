@@ -455,9 +455,7 @@ namespace Mpm {
     public fixed double spacing[3];
     /// <summary>for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5.</summary>
     public double smoothing;
-    /// <summary>1: a total Lagrangian grid, whose cells hold the material as it was before it deformed: weights
-    /// follow from "reference_position" and stay what they are, and "position" may leave the box (de Vaucorbeil,
-    /// Nguyen &amp; Hutchinson 2020).</summary>
+    /// <summary>1: a total Lagrangian grid (de Vaucorbeil, Nguyen &amp; Hutchinson 2020).</summary>
     public int total_lagrangian;
     /// <summary>0.</summary>
     public int reserved;

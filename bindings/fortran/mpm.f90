@@ -347,9 +347,7 @@ module mpm
     real(c_double) :: spacing(3)
     !> for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5.
     real(c_double) :: smoothing
-    !> 1: a total Lagrangian grid, whose cells hold the material as it was before it deformed: weights follow from
-    !! "reference_position" and stay what they are, and "position" may leave the box (de Vaucorbeil, Nguyen & Hutchinson
-    !! 2020).
+    !> 1: a total Lagrangian grid (de Vaucorbeil, Nguyen & Hutchinson 2020).
     integer(c_int32_t) :: total_lagrangian
     !> 0.
     integer(c_int32_t) :: reserved

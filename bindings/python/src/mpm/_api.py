@@ -1245,7 +1245,7 @@ Frees the material and calls release_user. NULL is fine. MPM_E_STATE while sets 
 
 Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned. MPM_E_ARG:
 grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow or clay on an
-MPM_PLANE_STRESS grid.""",
+MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.""",
     "mpm_particles_destroy": """mpm_status mpm_particles_destroy(mpm_particles *particles)
 
 Frees the set. NULL is fine. MPM_E_STATE while a stepper holds it or a view of it is out.""",
@@ -1390,21 +1390,24 @@ The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the ax
 the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law is "rigid", or
 "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1; or, of the host's laws,
 one that asked with dt = 0 does not answer with the stress that it has; the grid is MPM_PLANE_STRESS, or axis the
-radius of MPM_AXISYMMETRIC. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.""",
+radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from deformation_gradient. MPM_E_CALLBACK:
+that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.""",
     "mpm_particles_reset_reference": """mpm_status mpm_particles_reset_reference(mpm_particles *particles)
 
 Makes the present state the one from which all deformation counts: deformation_gradient becomes I, initial_volume the
 present volume, dilation_ratio 1, and reference_position, where there is one, the present (unwrapped) position. With
 MPM_CPGIMP and of MPM_AXISYMMETRIC edges in "size" become the present ones. Of MPM_PLANE_STRESS F33 stays. Mass,
-velocity, Cauchy stress and state variables stay.
+velocity, Cauchy stress and state variables stay. With total_lagrangian = 1 particles are then in the grid where they
+are now, and velocity_gradient is over these positions.
 
 Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay) find J = 1
 from then on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ by the
 factor J from before; a stress on the yield surface may lie off it by as much, and the next step returns it.
 
-The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from
-deformation_gradient, which must stay; or a law of the host, asked with dt = 0, does not answer with the stress that
-it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.""",
+The set is unchanged on failure. MPM_E_ARG: total_lagrangian = 1 and a particle is outside the box. MPM_E_UNSUPPORTED:
+the stress of the law, or its mean, follows from deformation_gradient, which must stay; or a law of the host, asked
+with dt = 0, does not answer with the stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all
+that changes a set. Since 0.2.0.""",
     "mpm_operator_get_info": """mpm_status mpm_operator_get_info(const mpm_operator *matrix, mpm_operator_info *info)
 
 Describes the system. This call and the two below may be made from within the solve callback only, one at a time; at

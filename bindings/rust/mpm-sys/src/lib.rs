@@ -697,9 +697,12 @@ pub struct mpm_grid_desc {
     pub spacing: [f64; 3],
     /// for MPM_UGIMP: edge of a particle's domain / spacing, in (0, 1]; default 0.5
     pub smoothing: f64,
-    /// 1: a total Lagrangian grid, whose cells hold the material as it was before it deformed: weights follow from
-    /// "reference_position" and stay what they are, and "position" may leave the box (de Vaucorbeil, Nguyen & Hutchinson
-    /// 2020). 0 (default): weights follow from "position". Since 0.2.0
+    /// 1: a total Lagrangian grid (de Vaucorbeil, Nguyen & Hutchinson 2020). Its cells hold the material as it was before
+    /// it deformed: weights follow from "reference_position" and stay what they are. Nothing is sorted anew, particles do
+    /// not cross cells, and material that is drawn out does not come apart. "position" may leave the box. Walls,
+    /// prescribed velocities, node hooks and nodal fields are those of nodes at their places in the box; obstacles and
+    /// friction walls meet particles where they are now. For solids of one body: fluids and contact between bodies are
+    /// refused. 0 (default): weights follow from "position". Since 0.2.0
     pub total_lagrangian: i32,
     /// 0
     pub reserved: i32,
@@ -1689,7 +1692,7 @@ extern "C" {
 
     /// Makes an empty set on a grid, of one material; both outlive it. *out is NULL unless MPM_OK is returned. MPM_E_ARG:
     /// grid or material are of another context. MPM_E_UNSUPPORTED: a fluid on an MPM_CPGIMP grid; a fluid, snow or clay
-    /// on an MPM_PLANE_STRESS grid.
+    /// on an MPM_PLANE_STRESS grid; a fluid where total_lagrangian = 1.
     pub fn mpm_particles_create(
         context: *mut mpm_context,
         grid: *mut mpm_grid,
@@ -1922,8 +1925,8 @@ extern "C" {
     /// above the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law is "rigid",
     /// or "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1; or, of the host's
     /// laws, one that asked with dt = 0 does not answer with the stress that it has; the grid is MPM_PLANE_STRESS, or
-    /// axis the radius of MPM_AXISYMMETRIC. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set.
-    /// Since 0.2.0.
+    /// axis the radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from deformation_gradient.
+    /// MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
     pub fn mpm_particles_set_geostatic(
         particles: *mut mpm_particles,
         axis: i32,
@@ -1936,16 +1939,18 @@ extern "C" {
     /// Makes the present state the one from which all deformation counts: deformation_gradient becomes I, initial_volume
     /// the present volume, dilation_ratio 1, and reference_position, where there is one, the present (unwrapped)
     /// position. With MPM_CPGIMP and of MPM_AXISYMMETRIC edges in "size" become the present ones. Of MPM_PLANE_STRESS F33
-    /// stays. Mass, velocity, Cauchy stress and state variables stay.
+    /// stays. Mass, velocity, Cauchy stress and state variables stay. With total_lagrangian = 1 particles are then in the
+    /// grid where they are now, and velocity_gradient is over these positions.
     ///
     /// Laws that store Cauchy stress and work with tau = J stress (drucker_prager, mohr_coulomb, mu_i, cam_clay) find J =
     /// 1 from then on: elastic strain, energy per initial volume and cohesion count by the present volume, which differ
     /// by the factor J from before; a stress on the yield surface may lie off it by as much, and the next step returns
     /// it.
     ///
-    /// The set is unchanged on failure. MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from
-    /// deformation_gradient, which must stay; or a law of the host, asked with dt = 0, does not answer with the stress
-    /// that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+    /// The set is unchanged on failure. MPM_E_ARG: total_lagrangian = 1 and a particle is outside the box.
+    /// MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from deformation_gradient, which must stay; or a
+    /// law of the host, asked with dt = 0, does not answer with the stress that it has. MPM_E_CALLBACK: that law failed.
+    /// MPM_E_STATE: as for all that changes a set. Since 0.2.0.
     pub fn mpm_particles_reset_reference(particles: *mut mpm_particles) -> mpm_status;
 
     /// Describes the system. This call and the two below may be made from within the solve callback only, one at a time;
