@@ -3,7 +3,7 @@ import math
 
 from plot import axes, ticks, loglog, plot, read, slope
 
-MARKERS = "osD^v<>ph"
+MARKERS = "osD^v<>ph*"
 
 
 def series(ax, data, key):
@@ -11,7 +11,7 @@ def series(ax, data, key):
     x = data.pop(key)
     for i, ((name, values), marker) in enumerate(zip(data.items(), MARKERS)):
         ax.plot(x, [v if math.isfinite(v) else math.nan for v in values], marker + "-", label=name,
-                markerfacecolor="none", markersize=9 - 0.6 * i) # open, so that equal curves show
+                markerfacecolor="none", markersize=max(4, 9 - 0.6 * i)) # open, so that equal curves show
 
 
 def convergence(name, reference, order, label="largest error of position"):

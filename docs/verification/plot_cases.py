@@ -1,6 +1,8 @@
 """Waves, collisions, solids, fluids, and the transfers compared."""
 import math
 
+import matplotlib.pyplot as plt
+
 from plot import axes, loglog, plot, read, slope
 
 
@@ -202,8 +204,11 @@ def cantilever_cloud():
 def vortex():
     figure, ax = axes()
     data = rows(read("vortex"), transfer="FLIP")
-    ax.plot(data["h"], data["error_0.5"], "o-", label="t = 0.5")
-    ax.plot(data["h"], data["error_1"], "s-", label="t = 1")
+    ax.plot(data["h"], data["error_0.5"], "o-", label="A = 0.1, t = 0.5")
+    ax.plot(data["h"], data["error_1"], "s-", label="A = 0.1, t = 1")
+    for name, marker in (("FLIP", "^-"), ("APIC", "v-")):
+        strong = rows(read("vortex"), transfer=f"A = 1, {name}")
+        ax.plot(strong["h"], strong["error_1"], marker, label=f"A = 1, t = 1, total Lagrangian, {name}")
     slope(ax, (0.1, 0.025), 7e-3, 2)
     loglog(ax, "h", "error of displacement, L2", 10)
     ax.legend()
@@ -213,6 +218,22 @@ def vortex():
 @plot
 def vortex_cloud():
     return clouds("vortex_cloud", "t", "error", "error of displacement", ("x", "y"), 2, label="t = {:g}, h = 0.1")
+
+
+@plot
+def drawn_bar():
+    names = ("total; quadratic; quasi-static", "updated; quadratic; quasi-static", "updated; quadratic; USL FLIP")
+    figure, ax = plt.subplots(3, 1, figsize=(7.2, 3.4), layout="constrained", sharex=True, sharey=True)
+    data = read("drawn_bar_particles")
+    for panel, name in zip(ax, names):
+        at = rows(data, method=name)
+        drawn = panel.scatter(at["x"], at["y"], c=at["F11"], s=4, cmap="viridis", vmin=1, vmax=4, linewidths=0,
+                              antialiased=False, rasterized=True)
+        panel.set_title(name.replace("; ", ", "), fontsize=8, loc="left")
+        panel.set_aspect("equal")
+        panel.set_ylim(0, 0.7)
+    figure.colorbar(drawn, ax=ax, label="$F_{11}$")
+    return figure
 
 
 @plot

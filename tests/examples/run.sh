@@ -179,6 +179,17 @@ if wanted inflated_tube; then
   [ -s tube/inflated_tube.svg ] || fail "inflated_tube: inflated_tube.svg is missing or empty"
 fi
 
+if wanted rubber_strap; then
+  mkdir strap
+  run rubber_strap strap
+  check "length" "drawn to" 3 3
+  check "force" "force" 1750 1785
+  check "largest stretch" "largest stretch" 5.4 5.8
+  [ -s strap/rubber_strap.svg ] || fail "rubber_strap: rubber_strap.svg is missing or empty"
+  run rubber_strap strap 0
+  check "length where weights follow from present positions" "drawn to" 1.5 2.5
+fi
+
 if wanted rolling_disc; then
   mkdir slope
   run rolling_disc slope 12

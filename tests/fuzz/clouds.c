@@ -42,7 +42,8 @@ static uint64_t hash_of(cloud *c) {
 
 static void inside_grid(cloud *c, const mpm_particles *set) {
   const int64_t n = mpm_particles_count(set);
-  double *x = get(c, set, "position", MPM_F64, c->g.dim);
+  const char *where = c->g.total_lagrangian ? "reference_position" : "position";
+  double *x = get(c, set, where, MPM_F64, c->g.dim);
   for (int64_t i = 0; i < n * c->g.dim; ++i) {
     const int64_t k = i / n;
     MUST(x[i] >= c->g.origin[k] && x[i] <= c->g.origin[k] + (double)c->g.cells[k] * c->g.spacing[k]);
