@@ -79,15 +79,14 @@ MPMI_INLINE void mpmi_deform_lanes(int32_t dim, const mpmi_deform *job, int64_t 
   for (int32_t r = 0; r < dim; ++r)
     for (int32_t c = 0; c < dim; ++c)
       old[r][c] = mpmi_lanes_load(job->F_old[mpmi_stored_entry(dim, r, c)] + s);
-  for (int32_t r = 0; r < dim; ++r)
+  for (int32_t r = 0; r < dim && !job->total; ++r)
     for (int32_t c = 0; c < dim; ++c) {
       mpmi_lanes rate = {0.0};
-      if (job->total)
-        rate = L[r][c];
-      else
-        for (int32_t k = 0; k < dim; ++k) rate += L[r][k] * old[k][c];
+      for (int32_t k = 0; k < dim; ++k) rate += L[r][k] * old[k][c];
       F[mpmi_stored_entry(dim, r, c)] = old[r][c] + dt * rate;
     }
+  for (int32_t r = 0; r < dim && job->total; ++r)
+    for (int32_t c = 0; c < dim; ++c) F[mpmi_stored_entry(dim, r, c)] = old[r][c] + dt * L[r][c];
   if (dim == 2) F[4] = mpmi_lanes_load(job->F_old[4] + s); /* plane strain keeps its zz */
   for (int32_t c = 0; c < mpmi_stored_entries(dim); ++c) mpmi_lanes_store(job->F_new[c] + s, F[c]);
   if (job->F) {

@@ -81,6 +81,7 @@ void mpmi_strain_bind(mpmi_batch *b) {
                       .kinematic_viscosity = b->law.viscosity,
                       .energy = b->law.energy,
                       .viscous_factor = 2.0 * grid->dim / (grid->h_min * grid->h_min),
+                      .carried = mpmi_is_total_lagrangian(grid) ? 0.0 : 1.0,
                       .checked = {b->law.stress_new, b->law.state_new},
                       .checked_rows = {mpmi_stress_components(grid->dim), b->set->material->state_count}};
   for (int32_t k = 0; k < grid->dim; ++k) {

@@ -47,7 +47,8 @@ static void bind_particles(const mpm_stepper *s, const mpm_particles *set, const
                          .wave_speed = b->wave_speed,
                          .kinematic_viscosity = b->viscosity,
                          .energy = b->energy,
-                         .viscous_factor = 2.0 * grid->dim / (grid->h_min * grid->h_min)};
+                         .viscous_factor = 2.0 * grid->dim / (grid->h_min * grid->h_min),
+                         .carried = mpmi_is_total_lagrangian(grid) ? 0.0 : 1.0};
   for (int32_t k = 0; k < grid->dim; ++k) {
     job->x[k] = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld + begin;
     job->v[k] = mpmi_f64(set, MPMI_VELOCITY, 0) + k * set->ld + begin;

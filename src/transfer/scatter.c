@@ -191,8 +191,8 @@ MPMI_INLINE void give_nominal(int32_t dim, const mpmi_scatter *job, const mpmi_s
 }
 
 /* Computes -V sigma, of which the lower triangle is filled, and the external force. */
-MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s,
-                            int64_t n, mpmi_given *to) {
+MPMI_INLINE void give_force(int32_t dim, int32_t total, const mpmi_scatter *job,
+                            const mpmi_stress_rows *stress, int64_t s, int64_t n, mpmi_given *to) {
   const double *volume = job->volume + s, *mass = job->mass + s;
   for (int32_t r = 0; r < dim; ++r) {
     const double g = job->gravity[r];
@@ -202,13 +202,13 @@ MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_str
     } else {
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->force[r][p] = mass[p] * g;
     }
-    for (int32_t k = 0; k <= r && !job->F[0]; ++k) {
+    for (int32_t k = 0; k <= r && !total; ++k) {
       const double *sigma = stress->at[k][r] + s;
       MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->stress[k][r][p] =
           -volume[p] * sigma[p];
     }
   }
-  if (dim == 2 && job->hoop && job->F[0])
+  if (dim == 2 && job->hoop && total)
     give_nominal_hoop_force(job, s, n, to->force[0]);
   else if (dim == 2 && job->hoop)
     give_hoop_force(job, s, n, to->force[0]);
@@ -217,9 +217,9 @@ MPMI_INLINE void give_force(int32_t dim, const mpmi_scatter *job, const mpmi_str
 /* Computes momentum. Affine with 4 values: m (v + C d) at the first node and m C h per node of each axis;
  * there the fused force adds dt f_ext to m v and -dt V sigma D^-1 to m C. Other affine forms: the columns of
  * m C. */
-MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job,
-                               const mpmi_stress_rows *stress, int64_t s, int64_t n, const mpmi_weights *W,
-                               mpmi_given *to) {
+MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, int32_t total,
+                               const mpmi_scatter *job, const mpmi_stress_rows *stress, int64_t s, int64_t n,
+                               const mpmi_weights *W, mpmi_given *to) {
   const int32_t linear = form == MPMI_SCATTER_4_AFFINE, affine = is_affine(form);
   const int32_t fused = linear && job->fused_dt != 0.0;
   const double *mass = job->mass + s, *volume = job->volume + s;
@@ -238,7 +238,7 @@ MPMI_INLINE void give_momentum(int32_t dim, int32_t width, int32_t form, const m
       const double scale = fused ? -job->fused_dt * MPMI_MLS_INVERSE(width) / h : 0.0;
       if (!linear) {
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) to->affine[k][r][p] = mass[p] * C[p];
-      } else if (job->F[0] && fused) {
+      } else if (total && fused) {
         const double *nominal = to->stress[k][r];
         MPMI_IVDEP for (int64_t p = 0; p < mpmi_whole_chunks(n); ++p) {
           double growth = mass[p] * C[p] * h - scale * nominal[p];
@@ -278,20 +278,30 @@ MPMI_INLINE void pack(int32_t dim, int32_t form, const double *mass, int64_t n, 
   }
 }
 
+/* Computes what the particles of a chunk give, with gradients over reference positions where `total`. */
+MPMI_INLINE void give(int32_t dim, int32_t width, int32_t form, int32_t total, const mpmi_scatter *job,
+                      const mpmi_stress_rows *stress, int64_t s, int64_t n, const mpmi_weights *W,
+                      mpmi_first_order *of) {
+  mpmi_given given;
+  if (total) give_nominal(dim, job, stress, s, n, &given);
+  give_momentum(dim, width, form, total, job, stress, s, n, W, &given);
+  if (form >= MPMI_SCATTER_8) give_force(dim, total, job, stress, s, n, &given);
+  pack(dim, form, job->mass + s, n, !total, &given, of);
+}
+
 MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_scatter *job, int64_t begin,
                          int64_t end) {
   const int64_t values = form >= MPMI_SCATTER_8 ? 8 : 4;
   const mpmi_stress_rows stress = stress_rows(dim, job);
   mpmi_weights W;
-  mpmi_given given;
   mpmi_first_order of;
   for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
     const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
     job->weights(job->axis, job->need, &job->points, s, n, &W);
-    if (job->F[0]) give_nominal(dim, job, &stress, s, n, &given);
-    give_momentum(dim, width, form, job, &stress, s, n, &W, &given);
-    if (form >= MPMI_SCATTER_8) give_force(dim, job, &stress, s, n, &given);
-    pack(dim, form, job->mass + s, n, !job->F[0], &given, &of);
+    if (job->F[0])
+      give(dim, width, form, 1, job, &stress, s, n, &W, &of);
+    else
+      give(dim, width, form, 0, job, &stress, s, n, &W, &of);
     for (int64_t p = 0; p < n; ++p) {
       double *stencil = job->tile + values * W.node[p];
       MPMI_SETTLE(stencil);

@@ -42,7 +42,7 @@ MPMI_INLINE void add_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, i
 MPMI_INLINE void add_reference_angular(int32_t dim, const mpmi_sums_job *job, int64_t s, int32_t r,
                                        mpmi_lanes m, mpmi_tally *t) {
   const int32_t a = (r + 1) % 3, b = (r + 2) % 3;
-  if (a >= dim || b >= dim || !job->affine[0] || !job->F[0]) return;
+  if (a >= dim || b >= dim || !job->affine[0]) return;
   t->angular[r] += m * (present_moment(dim, job, s, b, a) - present_moment(dim, job, s, a, b));
 }
 
@@ -91,12 +91,11 @@ MPMI_INLINE void add_group(int32_t dim, const mpmi_sums_job *job, int64_t s, mpm
     const mpmi_lanes p = m * v[k];
     t->momentum[k] += p;
     t->kinetic += p * v[k];
-    const mpmi_lanes speed = job->F[0] ? c : mpmi_lanes_abs(v[k]) + c;
-    t->rate = mpmi_lanes_max(t->rate, speed * job->inverse_spacing[k]);
+    t->rate = mpmi_lanes_max(t->rate, (job->carried * mpmi_lanes_abs(v[k]) + c) * job->inverse_spacing[k]);
     add_work(job, s, k, m, x[k], t);
   }
   for (int32_t r = 0; r < 3; ++r) add_angular(dim, job, s, r, m, x, v, t);
-  for (int32_t r = 0; r < 3; ++r) add_reference_angular(dim, job, s, r, m, t);
+  for (int32_t r = 0; r < 3 && job->F[0]; ++r) add_reference_angular(dim, job, s, r, m, t);
   add_affine(dim, job, s, m, t);
 }
 

@@ -24,6 +24,7 @@ typedef struct mpmi_sums_job {
   double inverse_spacing[3], viscous_factor; /* 2 dim / h_min^2 */
   const double *moment[3];   /* sum w (x_i - x)^2 of each particle along each axis, or NULL: */
   double constant_moment[3]; /* where it is the same for all particles */
+  double carried;            /* share of the velocity in the stable rate: 1, or 0 where F is */
   const double *F[9]; /* stored components where C is over reference positions, of a total Lagrangian grid, in
                          which nothing travels but waves; or NULL */
   const double *checked[2]; /* [checked_rows][ld] further values that must be finite */

@@ -15,7 +15,8 @@ typedef struct member {
 
 static const member of_context[] = {MEMBER(mpm_context_desc, concurrency, I32, 3)};
 static const member of_grid[] = {MEMBER(mpm_grid_desc, dim, I32, 7), MEMBER(mpm_grid_desc, cells, I64, 3),
-                                 MEMBER(mpm_grid_desc, origin, F64, 7)};
+                                 MEMBER(mpm_grid_desc, origin, F64, 7),
+                                 MEMBER(mpm_grid_desc, total_lagrangian, I32, 2)};
 static const member of_stepper[] = {MEMBER(mpm_stepper_desc, scheme, I32, 9),
                                     MEMBER(mpm_stepper_desc, flip, F64, 11),
                                     MEMBER(mpm_stepper_desc, newton_max_iterations, I32, 2),
@@ -280,7 +281,7 @@ static void use_material(fuzz_input *in, world *w) {
   mpm_grid_desc *made = MAKE(in, w->g, of_grid);
   const mpm_status status = fuzz_status(w->context, mpm_grid_create(w->context, made, &w->grid));
   MUST((status == MPM_OK) == (w->grid != NULL));
-  if (!status) memcpy(&w->g, made, sizeof w->g);
+  if (!status) memcpy(&w->g, made, made->struct_size < sizeof w->g ? made->struct_size : sizeof w->g);
   free(made);
   if (!w->grid) MUST(!mpm_grid_create(w->context, &w->g, &w->grid));
   if (!fuzz_status(w->context, mpm_particles_create(w->context, w->grid, w->material, &w->set))) {
