@@ -25,7 +25,7 @@ static void weigh_party(const mpmi_bound *bound, mpmi_party *party, int32_t keep
     const int32_t held = c >= bound->dim || mpmi_held_by(bound->nodes, party->slot, c) ||
                          (tie >= 0 && constraints->tie[tie].zero[c]);
     party->inverse_mass[c] = held || !(mass > bound->step->layout->mass_cut) ? 0.0 : 1.0 / mass;
-    if (!keeps) party->given[c] = 0.0;
+    if (!keeps) party->given[c] = party->pressed[c] = 0.0;
   }
 }
 
@@ -75,6 +75,7 @@ static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
       if (!(by < 0.0 || by > 0.0)) continue;
       if (e->surface && e->surface->face >= 0) {
         mpmi_press_node(bound, e->party[i]->slot, c, by); /* a reaction of walls */
+        if (!keeps) e->party[i]->pressed[c] += by;
       } else {
         mpmi_push_node(bound, e->party[i]->slot, c, by);
         if (!keeps) e->party[i]->given[c] += by;

@@ -62,6 +62,7 @@ typedef struct mpmi_party {
   int64_t first_cloud, cloud_count;
   double inverse_mass[3]; /* of all that moves with it; 0 where the component is held */
   double given[3];        /* by how much contact has changed what particles take per mass */
+  double pressed[3];      /* and friction walls */
 } mpmi_party;
 
 /* What happened between two bodies at a node. The normal is that from the first to the second party. */

@@ -15,7 +15,8 @@
  *
  *   v(1) = v~,   v(r) = v(r-1) + v~ - S+ S v(r-1)
  *
- * What walls, images and prescribed velocities hold in v~ they hold in S+ S v too, and thus in each v(r).
+ * What walls, images and prescribed velocities hold in v~ they hold in S+ S v too, and thus in each v(r). What
+ * contact gave is left out of v~ here.
  * Particles have gathered S v~, and S (v(k) - v~) is made here.
  */
 #include "stages/stages.h"
@@ -115,12 +116,33 @@ static double boundary_share(const correction *by, const xpic_job *job, int32_t 
   return job->scale * share_of(order, r);
 }
 
+/* What contact and friction walls gave to nodes is no part of the series, and particles take it as it is: the
+ * full mass matrix would make more of an impulse on a few nodes than stops a body there. */
+static void add_contact(const mpmi_step *step, mpmi_nodes *nodes, double times) {
+  const mpmi_constraints *constraints = &step->layout->constraints;
+  const int32_t dim = step->settings->grid->dim;
+  for (int64_t i = 0; i < nodes->contact.party_count; ++i) {
+    const mpmi_party *party = &nodes->contact.party[i];
+    if (party->surface >= 0) continue;
+    const int32_t t = constraints->tie_of[party->slot];
+    const mpmi_tie *tie = t < 0 ? NULL : &constraints->tie[t];
+    for (int32_t c = 0; c < dim; ++c) {
+      const double gave = times * (party->given[c] + party->pressed[c]);
+      mpmi_velocity(&nodes->solved, party->slot)[c] += gave;
+      for (int64_t d = tie ? tie->first : 0; tie && d < tie->first + tie->count; ++d)
+        mpmi_velocity(&nodes->solved, constraints->follower[d].slot)[c] +=
+            constraints->follower[d].sign[c] * gave;
+    }
+  }
+}
+
 mpm_status mpmi_xpic_stage(mpmi_step *step, mpmi_nodes *nodes) {
   const mpmi_settings *settings = step->settings;
   const correction *by = step->takes == MPMI_TAKES_FULL ? &full : &xpic;
   const mpmi_projection *projection = &mpmi_projections[by->projection];
   const int32_t m = settings->desc.xpic_order;
   xpic_job job = {step, nodes, 1.0, m - 1.0};
+  if (by == &full) add_contact(step, nodes, -1.0);
   mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, by->begin, &job);
   for (int32_t r = 2; r <= m && !status; ++r) {
     job = (xpic_job){step, nodes, (m - r + 1.0) / r, r % 2 ? m : -m};
@@ -130,5 +152,6 @@ mpm_status mpmi_xpic_stage(mpmi_step *step, mpmi_nodes *nodes) {
     if (!status) status = mpmi_boundary_stage(step, projection, nodes, boundary_share(by, &job, m, r));
     if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, by->next, &job);
   }
+  if (by == &full) add_contact(step, nodes, 1.0);
   return status ? status : mpmi_g2p_velocities(step, nodes, &nodes->sums);
 }

@@ -296,6 +296,115 @@ START_TEST(contact_gives_its_impulse) {
 }
 END_TEST
 
+/* A block comes down askew on an obstacle, fixed, driven towards it, or free: the block gains what the obstacle
+ * is said to have given, a free obstacle the opposite, and contact with what does not drive makes no energy. */
+START_TEST(obstacles_give_their_impulse) {
+  const int32_t motion = MPM_MOTION_FIXED + _i % 3, scheme = scheme_options[_i / 3].scheme;
+  const double dt = 2e-4, v[] = {0.6, -1.0}, low[] = {0.75, 0.75}, high[] = {1.5, 1.5};
+  const world_desc d = described(2, &basis_options[1], scheme, 8, 0);
+  world w;
+  mpm_particles *set = world_open(&w, &d);
+  world_fill(&w, set, low, high, 2);
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
+  mpm_obstacle_desc of;
+  mpm_contact_desc rule;
+  mpm_obstacle *obstacle;
+  ck_ok(&w, mpm_contact_desc_init(&rule, sizeof rule));
+  ck_ok(&w, mpm_obstacle_desc_init(&of, sizeof of));
+  rule.friction = 0.3;
+  of.contact = &rule;
+  of.shape = MPM_SHAPE_SPHERE;
+  of.motion = motion;
+  of.size[0] = 0.5;
+  of.position[0] = 1.0;
+  of.position[1] = 0.749 - 0.5;
+  of.mass = 400.0;
+  of.inertia[0] = of.inertia[4] = of.inertia[8] = 40.0;
+  if (motion == MPM_MOTION_PRESCRIBED) of.velocity[1] = 0.5;
+  ck_ok(&w, mpm_obstacle_create(w.context, &of, &obstacle));
+  ck_ok(&w, mpm_stepper_add_obstacle(w.stepper, obstacle));
+  const double mass = mass_of(&w, set);
+  mpm_contact_info told = {.struct_size = sizeof told};
+  double before[2], after[2], start[2], carried = 0.0, most = 0.0;
+  const mpm_step_info first = world_info(&w);
+  momentum_of(&w, set, start);
+  for (int32_t k = 0; k < 60; ++k) {
+    const double was[2] = {told.impulse[0], told.impulse[1]};
+    momentum_of(&w, set, before);
+    const mpm_step_info now = world_step(&w, dt);
+    momentum_of(&w, set, after);
+    ck_ok(&w, mpm_obstacle_contact_info(obstacle, MPM_BODY_ANY, &told));
+    for (int32_t c = 0; c < 2; ++c)
+      ck_within("gain", after[c] - before[c], told.impulse[c] - was[c], 1e-12 * mass);
+    carried = fmax(carried, told.impulse[1] - was[1]);
+    most = fmax(most, now.kinetic_energy + now.strain_energy);
+  }
+  ck_assert_double_gt(carried, 1e-3 * mass);
+  ck_holds(after[0] < start[0]); /* it rubs */
+  if (motion == MPM_MOTION_FREE) {
+    double velocity[3];
+    ck_ok(&w, mpm_obstacle_get_pose(obstacle, NULL, NULL, velocity, NULL));
+    for (int32_t c = 0; c < 2; ++c)
+      ck_within("obstacle", 400.0 * velocity[c], start[c] - after[c], 1e-10 * mass);
+  }
+  show("motion %d: energy %g of the first, carried %g\n", (int)motion, most / first.kinetic_energy,
+       carried / mass);
+  if (motion != MPM_MOTION_PRESCRIBED) ck_holds(most <= 1.0001 * first.kinetic_energy);
+  ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, obstacle));
+  ck_ok(&w, mpm_obstacle_destroy(obstacle));
+  world_close(&w);
+}
+END_TEST
+
+/* A block comes down on a friction wall, or on the plane of an obstacle where that wall is; returns the energy
+ * at the end, over the first. */
+static double land(int32_t scheme, int32_t on_wall) {
+  const double v[] = {0.6, -1.0}, low[] = {0.75, 0.0}, high[] = {1.5, 0.75};
+  const world_desc d = described(2, &basis_options[1], scheme, 8, 0);
+  world w;
+  mpm_particles *set = world_open(&w, &d);
+  world_fill(&w, set, low, high, 2);
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
+  mpm_obstacle_desc of;
+  mpm_contact_desc rule;
+  mpm_obstacle *plane;
+  ck_ok(&w, mpm_contact_desc_init(&rule, sizeof rule));
+  ck_ok(&w, mpm_obstacle_desc_init(&of, sizeof of));
+  rule.friction = 0.3;
+  of.contact = &rule;
+  of.shape = MPM_SHAPE_PLANE;
+  ck_ok(&w, mpm_obstacle_create(w.context, &of, &plane));
+  if (on_wall)
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.3));
+  else
+    ck_ok(&w, mpm_stepper_add_obstacle(w.stepper, plane));
+  const mpm_step_info first = world_info(&w);
+  double start[2], end[2], impulse[3];
+  momentum_of(&w, set, start);
+  for (int32_t k = 0; k < 400; ++k) {
+    const mpm_step_info now = world_step(&w, 5e-4);
+    ck_holds(now.kinetic_energy + now.strain_energy <= 1.0001 * first.kinetic_energy);
+  }
+  momentum_of(&w, set, end);
+  ck_ok(&w, mpm_stepper_wall_impulse(w.stepper, MPM_Y_MIN, impulse));
+  for (int32_t c = 0; c < 2 && on_wall; ++c)
+    ck_within("impulse", end[c] - start[c], impulse[c], 1e-11 * mass_of(&w, set));
+  ck_holds(end[1] > 0.0 && end[0] < start[0]);
+  if (!on_wall) ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, plane));
+  ck_ok(&w, mpm_obstacle_destroy(plane));
+  const double share = (w.info.kinetic_energy + w.info.strain_energy) / first.kinetic_energy;
+  world_close(&w);
+  return share;
+}
+
+/* A friction wall is the plane of an obstacle with FMPM, too, and makes no energy. */
+START_TEST(friction_walls_are_planes) {
+  const double on_wall = land(scheme_options[_i].scheme, 1), on_plane = land(scheme_options[_i].scheme, 0);
+  show("energy left %.12f on the wall, %.12f on the plane\n", on_wall, on_plane);
+  ck_within("energy", on_wall, on_plane, 1e-9);
+}
+END_TEST
+
 /* ---- which steps have it ------------------------------------------------------------------------------ */
 /* The steps of a number that xpic_every divides are those of the order, the others those of FLIP. */
 START_TEST(every_so_many_steps) {
@@ -458,6 +567,8 @@ Suite *fmpm_suite(void) {
   tcase_add_loop_test(boundaries, held_nodes_stay_held, 0, 3 * BASES);
   tcase_add_loop_test(boundaries, prescribed_particles_report, 0, SCHEMES * BASES);
   tcase_add_loop_test(boundaries, contact_gives_its_impulse, 0, 4 * SCHEMES);
+  tcase_add_loop_test(boundaries, obstacles_give_their_impulse, 0, 3 * SCHEMES);
+  tcase_add_loop_test(boundaries, friction_walls_are_planes, 0, SCHEMES);
   tcase_add_loop_test(steps, every_so_many_steps, 0, 2);
   tcase_add_test(steps, the_count_goes_on);
   tcase_add_test(steps, orders_are_bounded);
