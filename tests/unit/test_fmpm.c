@@ -296,8 +296,9 @@ START_TEST(contact_gives_its_impulse) {
 }
 END_TEST
 
-/* A block comes down askew on an obstacle, fixed, driven towards it, or free: the block gains what the obstacle
- * is said to have given, a free obstacle the opposite, and contact with what does not drive makes no energy. */
+/* A block comes down askew on an obstacle, fixed, driven towards it, or free: the block gains what the
+ * obstacle is said to have given, a free obstacle the opposite, and contact with what does not drive makes no
+ * energy. */
 START_TEST(obstacles_give_their_impulse) {
   const int32_t motion = MPM_MOTION_FIXED + _i % 3, scheme = scheme_options[_i / 3].scheme;
   const double dt = 2e-4, v[] = {0.6, -1.0}, low[] = {0.75, 0.75}, high[] = {1.5, 1.5};
@@ -356,8 +357,8 @@ START_TEST(obstacles_give_their_impulse) {
 }
 END_TEST
 
-/* A block comes down on a friction wall, or on the plane of an obstacle where that wall is; returns the energy
- * at the end, over the first. */
+/* A block comes down on a friction wall, or on the plane of an obstacle where that wall is; returns the
+ * energy at the end, over the first. */
 static double land(int32_t scheme, int32_t on_wall) {
   const double v[] = {0.6, -1.0}, low[] = {0.75, 0.0}, high[] = {1.5, 0.75};
   const world_desc d = described(2, &basis_options[1], scheme, 8, 0);
