@@ -1,12 +1,12 @@
-/* A rubber strap with a hole, a sheet in plane stress, is drawn to three times its length: one quarter of it,
- * the rest by symmetry planes, in quasi-static steps on a total Lagrangian grid, whose cells hold the strap as
- * it was.
+/* A rubber strap with a hole, a sheet in plane stress, is drawn to three times its length: one quarter of
+ * it, the rest by symmetry planes, in quasi-static steps on a total Lagrangian grid, whose cells hold the
+ * strap as it was.
  *
  *   rubber_strap [directory] [0]
  *
  * prints the force, how wide the hole is, and the largest stretch, and writes into the directory (default:
- * here) a picture, rubber_strap.svg. With 0 the grid is that of present positions, on which the strap does not
- * come so far. */
+ * here) a picture, rubber_strap.svg. With 0 the grid is that of present positions, on which the strap does
+ * not come so far. */
 #include <mpm/mpm.h>
 
 #include <math.h>

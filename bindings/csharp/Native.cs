@@ -152,9 +152,10 @@ namespace Mpm {
     public const int MPM_Z_MAX = 5;
 
     // What a face of the grid does.
-    /// <summary>default: a step in which a particle would leave fails with MPM_OFF_GRID.</summary>
+    /// <summary>default: a step in which a particle would leave fails with MPM_OFF_GRID; none with total_lagrangian =
+    /// 1, where "position" may leave the box.</summary>
     public const int MPM_WALL_NONE = 0;
-    /// <summary>a particle that leaves is removed.</summary>
+    /// <summary>a particle that leaves is removed; refused with total_lagrangian = 1.</summary>
     public const int MPM_WALL_OPEN = 1;
     /// <summary>velocities at the face are zero: it pushes and pulls.</summary>
     public const int MPM_WALL_FIXED = 2;
@@ -766,9 +767,9 @@ namespace Mpm {
     public double dt;
     /// <summary>[ld] ids, &lt; 0 for inert slots.</summary>
     public long* id;
-    /// <summary>[dim][ld] at the start of the step, wrapped on periodic axes.</summary>
+    /// <summary>[dim][ld] at the start of the step, wrapped on periodic axes unless total_lagrangian = 1.</summary>
     public double* position;
-    /// <summary>[dim][ld], or NULL without reference_positions.</summary>
+    /// <summary>[dim][ld], or NULL without reference_positions; never NULL with total_lagrangian = 1.</summary>
     public double* reference_position;
     /// <summary>[dim][ld] at the start of the step.</summary>
     public double* velocity;

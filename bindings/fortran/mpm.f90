@@ -154,9 +154,10 @@ module mpm
   integer(c_int32_t), parameter :: MPM_Z_MAX = 5_c_int32_t
 
   !> What a face of the grid does.
-  !> default: a step in which a particle would leave fails with MPM_OFF_GRID.
+  !> default: a step in which a particle would leave fails with MPM_OFF_GRID; none with total_lagrangian = 1, where
+  !! "position" may leave the box.
   integer(c_int32_t), parameter :: MPM_WALL_NONE = 0_c_int32_t
-  !> a particle that leaves is removed.
+  !> a particle that leaves is removed; refused with total_lagrangian = 1.
   integer(c_int32_t), parameter :: MPM_WALL_OPEN = 1_c_int32_t
   !> velocities at the face are zero: it pushes and pulls.
   integer(c_int32_t), parameter :: MPM_WALL_FIXED = 2_c_int32_t
@@ -603,9 +604,9 @@ module mpm
     real(c_double) :: dt
     !> [ld] ids, < 0 for inert slots.
     type(c_ptr) :: id
-    !> [dim][ld] at the start of the step, wrapped on periodic axes.
+    !> [dim][ld] at the start of the step, wrapped on periodic axes unless total_lagrangian = 1.
     type(c_ptr) :: position
-    !> [dim][ld], or NULL without reference_positions.
+    !> [dim][ld], or NULL without reference_positions; never NULL with total_lagrangian = 1.
     type(c_ptr) :: reference_position
     !> [dim][ld] at the start of the step.
     type(c_ptr) :: velocity

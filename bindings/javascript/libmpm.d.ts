@@ -147,9 +147,12 @@ export interface Constants {
   readonly MPM_Z_MIN: 4;
   /** upper face across z */
   readonly MPM_Z_MAX: 5;
-  /** default: a step in which a particle would leave fails with MPM_OFF_GRID */
+  /**
+   * default: a step in which a particle would leave fails with MPM_OFF_GRID; none with total_lagrangian = 1,
+   * where "position" may leave the box
+   */
   readonly MPM_WALL_NONE: 0;
-  /** a particle that leaves is removed */
+  /** a particle that leaves is removed; refused with total_lagrangian = 1 */
   readonly MPM_WALL_OPEN: 1;
   /** velocities at the face are zero: it pushes and pulls */
   readonly MPM_WALL_FIXED: 2;
@@ -162,7 +165,8 @@ export interface Constants {
   readonly MPM_WALL_FRICTION: 4;
   /**
    * contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0. Material
-   * feels it about a cell and a half before its particles are there
+   * feels it about a cell and a half before its particles are there; with total_lagrangian = 1 it is that of
+   * the material that was there
    */
   readonly MPM_WALL_FRICTION_NODES: 5;
   /** mass and velocity are projected, forces are not yet known */
@@ -296,9 +300,9 @@ export interface GridDesc {
    * was before it deformed: weights follow from "reference_position" and stay what they are. Nothing is
    * sorted anew, particles do not cross cells, and material that is drawn out does not come apart. "position"
    * may leave the box. Walls, prescribed velocities, node hooks and nodal fields are those of nodes at their
-   * places in the box; obstacles and friction walls meet particles where they are now. For solids of one
-   * body: fluids and contact between bodies are refused. 0 (default): weights follow from "position". Since
-   * 0.2.0
+   * places in the box, and so is MPM_WALL_FRICTION_NODES; obstacles and MPM_WALL_FRICTION meet particles
+   * where they are now. For solids of one body: fluids, contact between bodies and MPM_WALL_OPEN are refused.
+   * 0 (default): weights follow from "position". Since 0.2.0
    */
   total_lagrangian?: number | boolean;
 }
@@ -336,7 +340,10 @@ export interface StepperDesc {
    * stepper have the field "dilation_ratio". Not with MPM_PLANE_STRESS.
    */
   locking_remedy?: number | boolean;
-  /** 1: keeps "reference_position" and shows it to callbacks; default 0 */
+  /**
+   * 1: keeps "reference_position" and shows it to callbacks; default 0. With total_lagrangian = 1 that is so
+   * anyway
+   */
   reference_positions?: number | boolean;
   /**
    * 1: MPM_NEWMARK drops the inertia, so that each step ends in equilibrium under the forces at its end.
@@ -796,9 +803,9 @@ export interface ParticleBatch {
   readonly dt: number;
   /** [ld] ids, < 0 for inert slots */
   readonly id: BigInt64Array;
-  /** [dim][ld] at the start of the step, wrapped on periodic axes */
+  /** [dim][ld] at the start of the step, wrapped on periodic axes unless total_lagrangian = 1 */
   readonly position: Float64Array[];
-  /** [dim][ld], or NULL without reference_positions */
+  /** [dim][ld], or NULL without reference_positions; never NULL with total_lagrangian = 1 */
   readonly reference_position: Float64Array[] | undefined;
   /** [dim][ld] at the start of the step */
   readonly velocity: Float64Array[];
@@ -1349,7 +1356,8 @@ export class Particles implements Handle {
    * position, velocity and size are [dim][n] with ld = n.
    *
    * - position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are
-   *   counted.
+   *   counted. With total_lagrangian = 1 the wrapped place is that in the grid, "reference_position" and
+   *   "position" alike.
    * - velocity: length/time; NULL for zeros.
    * - volume: [n] initial volume, of the undeformed material, > 0; mass = density * volume.
    * - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume.
@@ -1441,8 +1449,8 @@ export class Particles implements Handle {
    * MPM_E_UNSUPPORTED: the law is "rigid", or "snow", whose stress takes more than a deformation; it is
    * "newtonian_fluid" and K0 is not 1; or, of the host's laws, one that asked with dt = 0 does not answer
    * with the stress that it has; the grid is MPM_PLANE_STRESS, or axis the radius of MPM_AXISYMMETRIC;
-   * total_lagrangian = 1 and the stress follows from deformation_gradient. MPM_E_CALLBACK: that law failed.
-   * MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+   * total_lagrangian = 1 and the stress follows from deformation_gradient, or the ground has already
+   * deformed. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
    */
   setGeostatic(axis: number, gravity: number, surface: number, K0: number, surcharge?: number): void;
   /**
@@ -1461,7 +1469,8 @@ export class Particles implements Handle {
    * The set is unchanged on failure. MPM_E_ARG: total_lagrangian = 1 and a particle is outside the box.
    * MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from deformation_gradient, which must
    * stay; or a law of the host, asked with dt = 0, does not answer with the stress that it has.
-   * MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+   * MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set, and with total_lagrangian =
+   * 1 while a surface of its stepper has markers, whose places count from the old reference. Since 0.2.0.
    */
   resetReference(): void;
   /**
@@ -1628,7 +1637,9 @@ export class Surface implements Handle {
   /**
    * Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting "area" makes it the
    * reference. Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is
-   * outside the grid, or the field cannot be set. MPM_E_STATE during a staged step.
+   * outside the grid, or the field cannot be set. MPM_E_STATE during a staged step. MPM_E_UNSUPPORTED:
+   * "position" or "area" with total_lagrangian = 1, whose weights keep to the markers that were added: add
+   * others.
    */
   set(field: string, values: ArrayLike<number>, ids?: ArrayLike<number | bigint>): void;
 }
@@ -1700,16 +1711,17 @@ export class Stepper implements Handle {
    * friction is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is
    * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that.
    * MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED:
-   * MPM_WALL_FRICTION_NODES with MPM_NEWMARK; on the axis of MPM_AXISYMMETRIC another kind than
-   * MPM_WALL_SLIP.
+   * MPM_WALL_FRICTION_NODES with MPM_NEWMARK; MPM_WALL_OPEN with total_lagrangian = 1; on the axis of
+   * MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.
    */
   setWall(face: number, kind: number, friction?: number): this;
   /**
    * Puts a set into a body: 0 <= body < 4096, at first 0. Between steps, also with particles in it. Sets of
    * one body share one velocity field. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_ARG: there is
    * no such body. MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by
-   * MPM_SOLVER_MULTIGRID_CG. MPM_E_STATE during a staged step, or while a view of nodal fields is out; there
-   * are no nodal fields then until the next step.
+   * MPM_SOLVER_MULTIGRID_CG; with total_lagrangian = 1 another body than 0, because bodies touch at nodes
+   * that both have. MPM_E_STATE during a staged step, or while a view of nodal fields is out; there are no
+   * nodal fields then until the next step.
    */
   setBody(set: Particles, body: number): this;
   /** Gives the body of a set. MPM_E_NOT_FOUND: it is not in this stepper. */

@@ -123,7 +123,7 @@ const MPM_Z_MAX = Int32(5) # upper face across z
 
 # What a face of the grid does.
 const MPM_WALL_NONE = Int32(0) # default
-const MPM_WALL_OPEN = Int32(1) # a particle that leaves is removed
+const MPM_WALL_OPEN = Int32(1) # a particle that leaves is removed; refused with total_lagrangian = 1
 const MPM_WALL_FIXED = Int32(2) # velocities at the face are zero
 const MPM_WALL_SLIP = Int32(3) # a symmetry plane
 const MPM_WALL_FRICTION = Int32(4) # the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h)
@@ -1172,7 +1172,8 @@ end
 Adds n particles with F = I, zero stress and the law's initial state: all or none. The arrays are copied; position,
 velocity and size are [dim][n] with ld = n.
 
-- position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are counted.
+- position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are counted. With
+  total_lagrangian = 1 the wrapped place is that in the grid, \"reference_position\" and \"position\" alike.
 - velocity: length/time; NULL for zeros.
 - volume: [n] initial volume, of the undeformed material, > 0; mass = density * volume.
 - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume. MPM_GIMP and
@@ -1365,8 +1366,8 @@ The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the ax
 the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law is \"rigid\", or
 \"snow\", whose stress takes more than a deformation; it is \"newtonian_fluid\" and K0 is not 1; or, of the host's
 laws, one that asked with dt = 0 does not answer with the stress that it has; the grid is MPM_PLANE_STRESS, or axis
-the radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from deformation_gradient. MPM_E_CALLBACK:
-that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+the radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from deformation_gradient, or the ground
+has already deformed. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
 """
 function mpm_particles_set_geostatic(particles, axis, gravity, surface, K0, surcharge)
     return ccall((:mpm_particles_set_geostatic, libmpm), Int32, (Ptr{mpm_particles}, Int32, Float64, Float64, Float64, Float64),
@@ -1387,7 +1388,8 @@ factor J from before; a stress on the yield surface may lie off it by as much, a
 The set is unchanged on failure. MPM_E_ARG: total_lagrangian = 1 and a particle is outside the box. MPM_E_UNSUPPORTED:
 the stress of the law, or its mean, follows from deformation_gradient, which must stay; or a law of the host, asked
 with dt = 0, does not answer with the stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all
-that changes a set. Since 0.2.0.
+that changes a set, and with total_lagrangian = 1 while a surface of its stepper has markers, whose places count from
+the old reference. Since 0.2.0.
 """
 function mpm_particles_reset_reference(particles)
     return ccall((:mpm_particles_reset_reference, libmpm), Int32, (Ptr{mpm_particles},), particles)
@@ -1496,8 +1498,8 @@ end
 Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES. friction is
 the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is unilateral: its normal
 impulse only pushes, and its tangential impulse is at most friction times that. MPM_E_ARG: the grid does not have the
-face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK; on the
-axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.
+face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK;
+MPM_WALL_OPEN with total_lagrangian = 1; on the axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.
 """
 function mpm_stepper_set_wall(stepper, face, kind, friction)
     return ccall((:mpm_stepper_set_wall, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Int32, Float64),
@@ -1742,8 +1744,9 @@ end
 """
 Puts a set into a body: 0 <= body < 4096, at first 0. Between steps, also with particles in it. Sets of one body share
 one velocity field. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_ARG: there is no such body.
-MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by MPM_SOLVER_MULTIGRID_CG. MPM_E_STATE
-during a staged step, or while a view of nodal fields is out; there are no nodal fields then until the next step.
+MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by MPM_SOLVER_MULTIGRID_CG; with
+total_lagrangian = 1 another body than 0, because bodies touch at nodes that both have. MPM_E_STATE during a staged
+step, or while a view of nodal fields is out; there are no nodal fields then until the next step.
 """
 function mpm_stepper_set_body(stepper, particles, body)
     return ccall((:mpm_stepper_set_body, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_particles}, Int32),
@@ -2027,7 +2030,8 @@ end
 """
 Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting \"area\" makes it the reference.
 Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is outside the grid, or the
-field cannot be set. MPM_E_STATE during a staged step.
+field cannot be set. MPM_E_STATE during a staged step. MPM_E_UNSUPPORTED: \"position\" or \"area\" with
+total_lagrangian = 1, whose weights keep to the markers that were added: add others.
 """
 function mpm_surface_set(surface, field, type_, components, n, ids, values)
     return ccall((:mpm_surface_set, libmpm), Int32, (Ptr{mpm_surface}, Cstring, Int32, Int32, Int64, Ptr{Int64}, Ptr{Cvoid}),

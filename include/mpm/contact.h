@@ -113,8 +113,9 @@ typedef mpm_status (*mpm_friction_fn)(void *user, const mpm_contact_batch *batch
 /** Puts a set into a body: 0 <= body < 4096, at first 0. Between steps, also with particles in it. Sets of
  * one body share one velocity field. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_ARG: there is no
  * such body. MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by
- * MPM_SOLVER_MULTIGRID_CG. MPM_E_STATE during a staged step, or while a view of nodal fields is out; there
- * are no nodal fields then until the next step. */
+ * MPM_SOLVER_MULTIGRID_CG; with total_lagrangian = 1 another body than 0, because bodies touch at nodes that
+ * both have. MPM_E_STATE during a staged step, or while a view of nodal fields is out; there are no nodal
+ * fields then until the next step. */
 MPM_API mpm_status mpm_stepper_set_body(mpm_stepper *stepper, mpm_particles *particles, int32_t body);
 
 /** Gives the body of a set. MPM_E_NOT_FOUND: it is not in this stepper. */

@@ -29,8 +29,9 @@ typedef struct mpm_grid_desc {
    * was before it deformed: weights follow from "reference_position" and stay what they are. Nothing is
    * sorted anew, particles do not cross cells, and material that is drawn out does not come apart. "position"
    * may leave the box. Walls, prescribed velocities, node hooks and nodal fields are those of nodes at their
-   * places in the box; obstacles and friction walls meet particles where they are now. For solids of one
-   * body: fluids and contact between bodies are refused. 0 (default): weights follow from "position". Since
+   * places in the box, and so is MPM_WALL_FRICTION_NODES; obstacles and MPM_WALL_FRICTION meet particles
+   * where they are now. For solids of one body: fluids, contact between bodies and MPM_WALL_OPEN are refused.
+   * 0 (default): weights follow from "position". Since
    * 0.2.0 */
   int32_t total_lagrangian;
   int32_t reserved; /**< 0 */

@@ -88,7 +88,8 @@ MPM_API mpm_status mpm_particles_destroy(mpm_particles *particles);
  * position, velocity and size are [dim][n] with ld = n.
  *
  * - position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are
- *   counted.
+ *   counted. With total_lagrangian = 1 the wrapped place is that in the grid, "reference_position" and
+ *   "position" alike.
  * - velocity: length/time; NULL for zeros.
  * - volume: [n] initial volume, of the undeformed material, > 0; mass = density * volume.
  * - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume.
@@ -259,7 +260,7 @@ MPM_API mpm_status mpm_particles_set_all(mpm_particles *particles, const char *f
  * is "rigid", or "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1;
  * or, of the host's laws, one that asked with dt = 0 does not answer with the stress that it has; the grid is
  * MPM_PLANE_STRESS, or axis the radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from
- * deformation_gradient.
+ * deformation_gradient, or the ground has already deformed.
  * MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
  */
 MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t axis, double gravity,
@@ -281,8 +282,9 @@ MPM_API mpm_status mpm_particles_set_geostatic(mpm_particles *particles, int32_t
  * The set is unchanged on failure. MPM_E_ARG: total_lagrangian = 1 and a particle is outside the box.
  * MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from
  * deformation_gradient, which must stay; or a law of the host, asked with dt = 0, does not answer with the
- * stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since
- * 0.2.0.
+ * stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set, and with
+ * total_lagrangian = 1 while a surface of its stepper has markers, whose places count from the old reference.
+ * Since 0.2.0.
  */
 MPM_API mpm_status mpm_particles_reset_reference(mpm_particles *particles);
 

@@ -31,7 +31,8 @@ typedef struct mpm_stepper_desc {
   /** MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE. With the latter the sets of the
    * stepper have the field "dilation_ratio". Not with MPM_PLANE_STRESS. */
   int32_t locking_remedy;
-  int32_t reference_positions; /**< 1: keeps "reference_position" and shows it to callbacks; default 0 */
+  int32_t reference_positions; /**< 1: keeps "reference_position" and shows it to callbacks; default 0.
+                                    With total_lagrangian = 1 that is so anyway */
   /** 1: MPM_NEWMARK drops the inertia, so that each step ends in equilibrium under the forces at its end.
    * Velocities are then displacements over dt, and accelerations are zero. Default 0. MPM_E_UNSUPPORTED with
    * other schemes. */
@@ -174,10 +175,12 @@ typedef struct mpm_particle_batch {
   /** Time for which the value is wanted: the start of the step. Forces of MPM_NEWMARK are wanted for its end,
    * and for the start where accelerations are to be found. */
   double t;
-  double dt;                        /**< size of the step */
-  const int64_t *id;                /**< [ld] ids, < 0 for inert slots */
-  const double *position;           /**< [dim][ld] at the start of the step, wrapped on periodic axes */
-  const double *reference_position; /**< [dim][ld], or NULL without reference_positions */
+  double dt;         /**< size of the step */
+  const int64_t *id; /**< [ld] ids, < 0 for inert slots */
+  /** [dim][ld] at the start of the step, wrapped on periodic axes unless total_lagrangian = 1 */
+  const double *position;
+  const double *reference_position; /**< [dim][ld], or NULL without reference_positions; never NULL with
+                                         total_lagrangian = 1 */
   const double *velocity;           /**< [dim][ld] at the start of the step */
   const double *mass;               /**< [ld] */
   const double *volume;             /**< [ld] at the start of the step */
@@ -298,8 +301,8 @@ MPM_API mpm_status mpm_stepper_set_motion(mpm_stepper *stepper, mpm_particles *p
  * friction is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is
  * unilateral: its normal impulse only pushes, and its tangential impulse is at most friction times that.
  * MPM_E_ARG: the grid does not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED:
- * MPM_WALL_FRICTION_NODES with MPM_NEWMARK; on the axis of MPM_AXISYMMETRIC another kind than
- * MPM_WALL_SLIP. */
+ * MPM_WALL_FRICTION_NODES with MPM_NEWMARK; MPM_WALL_OPEN with total_lagrangian = 1; on the axis of
+ * MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP. */
 MPM_API mpm_status mpm_stepper_set_wall(mpm_stepper *stepper, int32_t face, int32_t kind, double friction);
 
 /** Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is

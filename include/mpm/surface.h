@@ -155,7 +155,9 @@ MPM_API mpm_status mpm_surface_get(const mpm_surface *surface, const char *field
 
 /** Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting "area" makes it the
  * reference. Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is
- * outside the grid, or the field cannot be set. MPM_E_STATE during a staged step. */
+ * outside the grid, or the field cannot be set. MPM_E_STATE during a staged step.
+ * MPM_E_UNSUPPORTED: "position" or "area" with total_lagrangian = 1, whose weights keep to the markers that
+ * were added: add others. */
 MPM_API mpm_status mpm_surface_set(mpm_surface *surface, const char *field, int32_t type, int32_t components,
                                    int64_t n, const int64_t *ids, const void *values);
 

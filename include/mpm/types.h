@@ -182,15 +182,17 @@ enum mpm_face_value {
 
 /** What a face of the grid does. */
 enum mpm_wall_value {
-  MPM_WALL_NONE = 0,  /**< default: a step in which a particle would leave fails with MPM_OFF_GRID */
-  MPM_WALL_OPEN = 1,  /**< a particle that leaves is removed */
+  MPM_WALL_NONE = 0,  /**< default: a step in which a particle would leave fails with MPM_OFF_GRID; none with
+                           total_lagrangian = 1, where "position" may leave the box */
+  MPM_WALL_OPEN = 1,  /**< a particle that leaves is removed; refused with total_lagrangian = 1 */
   MPM_WALL_FIXED = 2, /**< velocities at the face are zero: it pushes and pulls */
   MPM_WALL_SLIP = 3,  /**< a symmetry plane: it pushes and pulls, without tangential force */
   /** the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h): it pushes, never pulls.
    * What comes through between nodes, by less than half a cell, it stops particle by particle */
   MPM_WALL_FRICTION = 4,
   /** contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0. Material
-   * feels it about a cell and a half before its particles are there */
+   * feels it about a cell and a half before its particles are there; with total_lagrangian = 1 it is that of
+   * the material that was there */
   MPM_WALL_FRICTION_NODES = 5
 };
 

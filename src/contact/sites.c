@@ -8,6 +8,9 @@
 /* Nodes no farther from a surface than this many spacings along its normal are bound to it: at least one row
  * outside that is more than a tenth of a cell away, without which a body at rest chatters. */
 static const double bound_within = 1.1;
+/* On a total Lagrangian grid these rows are of the same material for ever, and more of them would be stiff:
+ * the row at the surface or the next one outside is enough, by the distance of rows as they are. */
+static const double bound_within_total = 0.6;
 
 /* ---- surfaces ------------------------------------------------------------------------------------------ */
 static mpm_status make_surfaces(const mpmi_settings *settings, mpmi_contact_nodes *contact) {
@@ -189,7 +192,7 @@ static double distance_of_nodes(const mpmi_contact_search *search, int64_t block
   double squared = 0.0;
   if (!mpmi_is_total_lagrangian(b->grid)) return spacing_along(b->grid, n);
   for (int32_t k = 0; k < b->grid->dim; ++k) {
-    double most = n[k] * b->grid->desc.spacing[k];
+    double most = 0.0;
     for (int32_t side = -1; side <= 1; side += 2) {
       const int32_t offset[3] = {k == 0 ? side : 0, k == 1 ? side : 0, k == 2 ? side : 0};
       const int64_t beside = mpmi_blocks_around(b, slot, offset);
@@ -197,11 +200,11 @@ static double distance_of_nodes(const mpmi_contact_search *search, int64_t block
       if (beside < 0 || !(*mpmi_mass(search->values, beside) > search->step->layout->mass_cut)) continue;
       for (int32_t c = 0; c < b->grid->dim; ++c)
         along += n[c] * (search->contact->place[beside][c] - search->contact->place[slot][c]);
-      most = fmax(fabs(most), fabs(along));
+      most = fmax(most, fabs(along));
     }
     squared += most * most;
   }
-  return sqrt(squared);
+  return squared > 0.0 ? sqrt(squared) : spacing_along(b->grid, n);
 }
 
 static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_failure *failure) {
@@ -209,6 +212,7 @@ static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_
   const mpmi_contact_nodes *contact = search->contact;
   const mpmi_near *near = &contact->near_surface[which];
   double *value = contact->near_value + which * MPMI_NEAR_ROWS * b->nodes;
+  const double within = mpmi_is_total_lagrangian(b->grid) ? bound_within_total : bound_within;
   mpmi_distances points = {.n = b->nodes, .t = search->step->t, .moves = 1};
   mpmi_distance_fault fault;
   int64_t index[3];
@@ -229,7 +233,7 @@ static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_
   }
   for (int32_t i = 0; i < b->nodes; ++i) {
     const double n[3] = {points.normal[0][i], points.normal[1][i], points.normal[2][i]};
-    const int32_t binds = points.distance[i] <= bound_within * distance_of_nodes(search, near->block, i, n);
+    const int32_t binds = points.distance[i] <= within * distance_of_nodes(search, near->block, i, n);
     value[MPMI_NEAR_DISTANCE * b->nodes + i] = binds ? points.distance[i] : (double)INFINITY;
     for (int32_t k = 0; k < 3; ++k) {
       value[(MPMI_NEAR_NORMAL + k) * b->nodes + i] = n[k];

@@ -11,7 +11,8 @@ typedef struct mpmi_projection {
   int32_t forces;   /* with forces, into the nodes that are solved for; else into those that are projected */
   int32_t copy;     /* of the particles' field */
   int32_t field;    /* that is projected: velocity or acceleration */
-  int32_t plain;    /* 1: without the affine part of the velocities */
+  int32_t matrix;   /* the field with its affine part: MPMI_L where the transfer carries one, or another */
+  int32_t plain;    /* 1: without the affine part */
   int32_t recorded; /* impulses of the boundary stage count as reactions */
   int32_t held;     /* prescribed velocities are set */
   int32_t contact;  /* MPMI_CONTACT_...: what friction walls do in it */
@@ -31,7 +32,7 @@ enum {
   MPMI_PROJECT_CORRECTION,   /* momentum without its affine part, from the second copy of the velocities */
   MPMI_PROJECT_FULL,         /* the same for FMPM, where velocities stay as they are prescribed */
   MPMI_PROJECT_ACCELERATION, /* mass times acceleration, from the second copy */
-  MPMI_PROJECT_DISPLACEMENT, /* mass times displacement, which lies in the second copy of the velocities */
+  MPMI_PROJECT_DISPLACEMENT, /* mass times displacement, which lies in the second copies of velocity and F */
   MPMI_PROJECTIONS
 };
 extern const mpmi_projection mpmi_projections[MPMI_PROJECTIONS];

@@ -75,8 +75,8 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
     if (mass[i] > set->mass_max) set->mass_max = mass[i];
   }
   for (int64_t s = slot; s < slot + n; ++s) mpmi_wrap_slot(set, MPMI_POSITION, s);
+  write_derived(set, MPMI_REFERENCE, slot, slot + n); /* the size of rings needs it */
   if (!with_size) write_derived(set, MPMI_SIZE, slot, slot + n);
-  write_derived(set, MPMI_REFERENCE, slot, slot + n);
   write_derived(set, MPMI_DILATION_RATIO, slot, slot + n);
   for (int32_t c = 0; c < set->grid->dim && is_rigid(set); ++c)
     memset((uint8_t *)set->field[MPMI_PRESCRIBED].data[0] + c * set->ld + slot, 1, (size_t)n);

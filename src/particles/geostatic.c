@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "particles/builtin_fields.h"
 #include "particles/law_batch.h"
 #include "particles/reference.h"
 #include "particles/values.h"
@@ -44,6 +45,17 @@ static int32_t rest_of(const mpm_particles *set) {
   return set->material->law ? set->material->law->rest : MPMI_REST_BY_KIND;
 }
 
+static int32_t is_deformed(const mpm_particles *set) {
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  int32_t is = 0;
+  for (int32_t c = 0; c < set->field[MPMI_F].components; ++c) {
+    const double unit = mpmi_unstored_value(MPMI_F, mpmi_tensor_map(set->grid->dim)[c]);
+    const double *F = mpmi_f64(set, MPMI_F, 0) + c * set->ld;
+    for (int64_t s = 0; s < set->slots; ++s) is |= id[s] >= 0 && (F[s] < unit || F[s] > unit);
+  }
+  return is;
+}
+
 static mpm_status check_law(const mpm_particles *set, const ground *g) {
   const mpmi_law *law = set->material->law;
   if (mpmi_is_total_lagrangian(set->grid) && law && law->stress_from_F)
@@ -53,6 +65,10 @@ static mpm_status check_law(const mpm_particles *set, const ground *g) {
         "wants to be that of its positions: use total_lagrangian = 0, or a law whose stress is its "
         "state",
         law->name);
+  if (mpmi_is_total_lagrangian(set->grid) && is_deformed(set))
+    return mpmi_fail(
+        set->context, MPM_E_UNSUPPORTED,
+        "the set has deformed, and total_lagrangian is 1: call mpm_particles_reset_reference first");
   if (rest_of(set) == MPMI_REST_NONE)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED, "%s has no stress of a given weight: %s", law->name,
                      law->state_count ? "set its deformation_gradient and state" : "leave the set as it is");

@@ -73,8 +73,9 @@ struct mpmi_view_record {
 
 /* A set, an obstacle or a surface asks these questions of the stepper that holds it. */
 typedef struct mpmi_owner {
-  int32_t (*in_step)(const mpm_stepper *stepper); /* is a step under way, whole or staged? */
-  double (*time)(const mpm_stepper *stepper);     /* the present time */
+  int32_t (*in_step)(const mpm_stepper *stepper);     /* is a step under way, whole or staged? */
+  double (*time)(const mpm_stepper *stepper);         /* the present time */
+  int32_t (*has_markers)(const mpm_stepper *stepper); /* has it surfaces with markers? */
 } mpmi_owner;
 
 struct mpm_particles {

@@ -102,10 +102,14 @@ void mpmi_reference_take(mpm_particles *set) {
 }
 
 /* ---- total Lagrangian grids ---------------------------------------------------------------------------- */
-/* Refuses positions that have no place in the grid. */
+/* Refuses positions that have no place in the grid, and surfaces, which would stay where the body was. */
 static mpm_status check_places(const mpm_particles *set) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   mpm_status status = MPM_OK;
+  if (mpmi_is_total_lagrangian(set->grid) && set->stepper && set->owner->has_markers(set->stepper))
+    return mpmi_fail(set->context, MPM_E_STATE,
+                     "the stepper has surfaces, whose markers keep to the reference as it was, and "
+                     "total_lagrangian is 1: take them out, and put new markers in after");
   for (int64_t s = 0; s < set->slots && !status && mpmi_is_total_lagrangian(set->grid); ++s)
     if (id[s] >= 0)
       status = mpmi_check_value(set, MPMI_REFERENCE, mpmi_f64(set, MPMI_POSITION, 0) + s, set->ld,

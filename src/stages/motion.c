@@ -31,7 +31,7 @@ void mpmi_motion_bind(mpmi_batch *b) {
                         .dv = b->dv};
   for (int32_t k = 0; k < grid->dim; ++k) {
     const double length = grid->upper[k] - grid->desc.origin[k];
-    const int32_t periodic = grid->desc.periodic[k] != 0 && !free;
+    const int32_t periodic = grid->desc.periodic[k] != 0;
     b->move.low[k] = free ? -(double)INFINITY : grid->desc.origin[k];
     b->move.high[k] = free ? (double)INFINITY : grid->upper[k];
     b->move.period[k] = periodic ? length : 0.0;

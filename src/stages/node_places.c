@@ -1,6 +1,10 @@
 /* Where the nodes of a total Lagrangian grid are now: obstacles and friction walls meet bodies in space. A
- * node moves with the mean displacement of the particles around, x_i = X_i + sum w m (x_p - X_p) / m_i, which
- * is projected as their velocity is, images and walls with it. */
+ * node is where the particles around it have come to, each with its F:
+ *
+ *   x_i = sum w m (x_p + F_p (X_i - X_p)) / m_i
+ *
+ * What that is beyond X_i is projected as affine velocities are, images and walls with it. What a node gives
+ * to particles by an affine transfer has that arm, so that obstacles are given the opposite torque. */
 #include "stages/stages.h"
 #include "boundary/boundary.h"
 #include "layout/tasks.h"
@@ -10,14 +14,23 @@ typedef struct places_job {
   mpmi_nodes *nodes;
 } places_job;
 
-/* The second copy of the velocities is free until particles move. */
-static void find_displacements(const mpmi_step *step) {
-  for (int32_t m = 0; m < step->layout->member_count; ++m) {
-    const mpm_particles *set = step->layout->member[m].set;
-    for (int32_t k = 0; k < set->grid->dim && set->slots; ++k) {
+/* Writes x - X and F - I where velocity and F have their second copies, which are free until particles
+ * move. */
+static void find_displacements(void *data, int64_t task) {
+  const places_job *job = data;
+  for (int32_t m = 0; m < job->step->layout->member_count; ++m) {
+    const mpm_particles *set = job->step->layout->member[m].set;
+    const int32_t dim = set->grid->dim;
+    const mpmi_share share = mpmi_share_of(job->step->settings, set->slots, task);
+    for (int32_t k = 0; k < dim && set->slots; ++k) {
       const double *x = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld, *X = mpmi_places(set, 0) + k * set->ld;
       double *u = mpmi_f64(set, MPMI_VELOCITY, 1) + k * set->ld;
-      for (int64_t s = 0; s < set->slots; ++s) u[s] = x[s] - X[s];
+      for (int64_t s = share.begin; s < share.end; ++s) u[s] = x[s] - X[s];
+    }
+    for (int32_t c = 0; c < mpmi_gradient_components(dim) && set->slots; ++c) {
+      const double *F = mpmi_f64(set, MPMI_F, 0) + c * set->ld, unit = c % (dim + 1) ? 0.0 : 1.0;
+      double *H = mpmi_f64(set, MPMI_F, 1) + c * set->ld;
+      for (int64_t s = share.begin; s < share.end; ++s) H[s] = F[s] - unit;
     }
   }
 }
@@ -39,8 +52,8 @@ mpm_status mpmi_node_places_stage(mpmi_step *step, mpmi_nodes *nodes) {
   const mpmi_projection *projection = &mpmi_projections[MPMI_PROJECT_DISPLACEMENT];
   places_job job = {step, nodes};
   if (!mpmi_places_nodes(step->settings, nodes) || !step->layout->blocks.count) return MPM_OK;
-  find_displacements(step);
-  mpm_status status = mpmi_p2g_stage(step, projection, nodes);
+  mpm_status status = mpmi_run_tasks(step->settings, 0, step->settings->tasks, find_displacements, &job);
+  if (!status) status = mpmi_p2g_stage(step, projection, nodes);
   if (!status) status = mpmi_node_update_stage(step, projection, nodes);
   if (!status) status = mpmi_boundary_stage(step, projection, nodes, 0.0);
   return status ? status : mpmi_run_tasks(step->settings, 0, step->settings->tasks, place_nodes, &job);

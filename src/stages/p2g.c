@@ -56,7 +56,8 @@ static void scatter_of(const p2g_job *job, int32_t m, mpmi_scatter *scatter) {
     scatter->gravity[k] = forces ? settings->desc.gravity[k] : 0.0;
   }
   for (int32_t c = 0; job->affine && c < mpmi_gradient_components(dim); ++c)
-    scatter->affine[mpmi_gradient_map(dim)[c]] = mpmi_f64(set, MPMI_L, projection->copy) + c * set->ld;
+    scatter->affine[mpmi_gradient_map(dim)[c]] =
+        mpmi_f64(set, projection->matrix, projection->copy) + c * set->ld;
   for (int32_t c = 0; forces && mpmi_is_total_lagrangian(settings->grid) && c < mpmi_tensor_components(dim);
        ++c)
     scatter->F[c] = mpmi_f64(set, MPMI_F, job->stress_copy) + c * set->ld;
@@ -118,7 +119,8 @@ mpm_status mpmi_p2g_stage(mpmi_step *step, const mpmi_projection *projection, mp
   p2g_job job = {.step = step,
                  .projection = projection,
                  .to = mpmi_projected_nodes(nodes, projection),
-                 .affine = mpmi_is_affine(step->settings) && !projection->plain,
+                 .affine =
+                     (mpmi_is_affine(step->settings) || projection->matrix != MPMI_L) && !projection->plain,
                  /* the main projection comes after USF's strain: the stress is new then */
                  .stress_copy = projection->main && mpmi_deforms_first(step->settings)};
   choose_form(&job);

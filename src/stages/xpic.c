@@ -15,8 +15,8 @@
  *
  *   v(1) = v~,   v(r) = v(r-1) + v~ - S+ S v(r-1)
  *
- * What walls, images and prescribed velocities hold in v~ they hold in S+ S v too, and thus in each v(r). What
- * contact gave is left out of v~ here.
+ * What walls, images and prescribed velocities hold in v~ they hold in S+ S v too, and thus in each v(r).
+ * What contact gave is left out of v~ here.
  * Particles have gathered S v~, and S (v(k) - v~) is made here.
  */
 #include "stages/stages.h"

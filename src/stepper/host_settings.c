@@ -20,6 +20,10 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
   if (s->grid->desc.periodic[face / 2] && kind != MPM_WALL_NONE)
     return mpmi_fail(s->context, MPM_E_ARG, "face %d belongs to a periodic axis and can have no wall",
                      (int)face);
+  if (row->opens && kind != MPM_WALL_NONE && mpmi_is_total_lagrangian(s->grid))
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "kind is MPM_WALL_OPEN, and nothing leaves a grid with total_lagrangian = 1: use "
+                     "MPM_WALL_NONE, and mpm_particles_remove");
   if (mpmi_is_axis_face(s->grid, face) && kind != MPM_WALL_SLIP)
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "face %d is the axis of an MPM_AXISYMMETRIC grid, where nothing can cross: leave it "

@@ -15,7 +15,14 @@ static double present_time(const mpm_stepper *s) {
   return s->history.t;
 }
 
-const mpmi_owner mpmi_stepper_owns = {in_step, present_time};
+static int32_t has_markers(const mpm_stepper *s) {
+  int64_t markers = 0;
+  for (int64_t i = 0; i < s->settings.surfaces.count; ++i)
+    markers += s->settings.surfaces.surface[i]->now.count;
+  return markers > 0;
+}
+
+const mpmi_owner mpmi_stepper_owns = {in_step, present_time, has_markers};
 
 /* ---- info --------------------------------------------------------------------------------------------- */
 void mpmi_fill_info(const mpm_stepper *s, const mpm_step_info *last, mpm_step_info *info) {

@@ -226,6 +226,7 @@ static void keep_inside(const mpm_grid *grid, mpmi_marker *m) {
   mpmi_grid_place(grid, x, 1, NULL, 0);
   if (mpmi_is_axisymmetric(grid)) {
     const double was = m->edge[1][2];
+    m->reference_edge[1][2] = m->reference[0];
     mpmi_marker_set_radius(m, grid);
     m->reference_area *= was > 0.0 ? m->edge[1][2] / was : 1.0;
   }

@@ -106,9 +106,9 @@ static scene in_turn(int32_t dim, int32_t scheme, int32_t n) {
   return is_offered(&is) ? is : method(dim, scheme, n % (BASES - 1), 3);
 }
 
-/* Prescribed particles do not heed walls. */
+/* Prescribed particles do not heed walls, and the nodes of total Lagrangian grids need none to pass. */
 static void let_out(scene *is) {
-  is->wall[MPM_Y_MAX] = is->wall[MPM_Z_MAX] = MPM_WALL_OPEN;
+  if (!is->total) is->wall[MPM_Y_MAX] = is->wall[MPM_Z_MAX] = MPM_WALL_OPEN;
 }
 
 /* Loads that are balanced without motion need a body that neither flows, tears nor stands under a pressure

@@ -194,9 +194,10 @@ class Face(IntEnum):
 class Wall(IntEnum):
     """What a face of the grid does."""
 
-    #: default: a step in which a particle would leave fails with MPM_OFF_GRID
+    #: default: a step in which a particle would leave fails with MPM_OFF_GRID; none with total_lagrangian = 1,
+    #: where "position" may leave the box
     WALL_NONE = 0
-    #: a particle that leaves is removed
+    #: a particle that leaves is removed; refused with total_lagrangian = 1
     WALL_OPEN = 1
     #: velocities at the face are zero: it pushes and pulls
     WALL_FIXED = 2
@@ -206,7 +207,8 @@ class Wall(IntEnum):
     #: comes through between nodes, by less than half a cell, it stops particle by particle
     WALL_FRICTION = 4
     #: contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0. Material feels
-    #: it about a cell and a half before its particles are there
+    #: it about a cell and a half before its particles are there; with total_lagrangian = 1 it is that of the
+    #: material that was there
     WALL_FRICTION_NODES = 5
 
 
@@ -1255,7 +1257,8 @@ const double *volume, const double *size, const int64_t *ids, int64_t *first_id)
 Adds n particles with F = I, zero stress and the law's initial state: all or none. The arrays are copied; position,
 velocity and size are [dim][n] with ld = n.
 
-- position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are counted.
+- position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are counted. With
+  total_lagrangian = 1 the wrapped place is that in the grid, "reference_position" and "position" alike.
 - velocity: length/time; NULL for zeros.
 - volume: [n] initial volume, of the undeformed material, > 0; mass = density * volume.
 - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume. MPM_GIMP and
@@ -1390,8 +1393,8 @@ The set is unchanged on failure. MPM_E_ARG: a value is bad or not finite, the ax
 the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law is "rigid", or
 "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1; or, of the host's laws,
 one that asked with dt = 0 does not answer with the stress that it has; the grid is MPM_PLANE_STRESS, or axis the
-radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from deformation_gradient. MPM_E_CALLBACK:
-that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.""",
+radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from deformation_gradient, or the ground has
+already deformed. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.""",
     "mpm_particles_reset_reference": """mpm_status mpm_particles_reset_reference(mpm_particles *particles)
 
 Makes the present state the one from which all deformation counts: deformation_gradient becomes I, initial_volume the
@@ -1407,7 +1410,8 @@ factor J from before; a stress on the yield surface may lie off it by as much, a
 The set is unchanged on failure. MPM_E_ARG: total_lagrangian = 1 and a particle is outside the box. MPM_E_UNSUPPORTED:
 the stress of the law, or its mean, follows from deformation_gradient, which must stay; or a law of the host, asked
 with dt = 0, does not answer with the stress that it has. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all
-that changes a set. Since 0.2.0.""",
+that changes a set, and with total_lagrangian = 1 while a surface of its stepper has markers, whose places count from
+the old reference. Since 0.2.0.""",
     "mpm_operator_get_info": """mpm_status mpm_operator_get_info(const mpm_operator *matrix, mpm_operator_info *info)
 
 Describes the system. This call and the two below may be made from within the solve callback only, one at a time; at
@@ -1467,8 +1471,8 @@ state. MPM_E_NOT_FOUND: the set is not in this stepper.""",
 Sets what a face (MPM_X_MIN to MPM_Z_MAX) does: kind is one of MPM_WALL_NONE to MPM_WALL_FRICTION_NODES. friction is
 the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is unilateral: its normal
 impulse only pushes, and its tangential impulse is at most friction times that. MPM_E_ARG: the grid does not have the
-face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK; on the
-axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.""",
+face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with MPM_NEWMARK;
+MPM_WALL_OPEN with total_lagrangian = 1; on the axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.""",
     "mpm_stepper_set_acceleration": """mpm_status mpm_stepper_set_acceleration(mpm_stepper *stepper, mpm_particle_fn fn, void *user)
 
 Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is called for
@@ -1606,8 +1610,9 @@ MPM_E_NOT_FOUND: the set is not in this stepper.""",
 
 Puts a set into a body: 0 <= body < 4096, at first 0. Between steps, also with particles in it. Sets of one body share
 one velocity field. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_ARG: there is no such body.
-MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by MPM_SOLVER_MULTIGRID_CG. MPM_E_STATE
-during a staged step, or while a view of nodal fields is out; there are no nodal fields then until the next step.""",
+MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by MPM_SOLVER_MULTIGRID_CG; with
+total_lagrangian = 1 another body than 0, because bodies touch at nodes that both have. MPM_E_STATE during a staged
+step, or while a view of nodal fields is out; there are no nodal fields then until the next step.""",
     "mpm_stepper_body": """mpm_status mpm_stepper_body(const mpm_stepper *stepper, const mpm_particles *particles, int32_t *body)
 
 Gives the body of a set. MPM_E_NOT_FOUND: it is not in this stepper.""",
@@ -1763,7 +1768,8 @@ int64_t *ids, const void *values)
 
 Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting "area" makes it the reference.
 Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is outside the grid, or the
-field cannot be set. MPM_E_STATE during a staged step.""",
+field cannot be set. MPM_E_STATE during a staged step. MPM_E_UNSUPPORTED: "position" or "area" with total_lagrangian =
+1, whose weights keep to the markers that were added: add others.""",
     "mpm_stepper_add_surface": """mpm_status mpm_stepper_add_surface(mpm_stepper *stepper, mpm_surface *surface)
 
 Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with them;

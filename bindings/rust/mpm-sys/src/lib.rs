@@ -183,9 +183,10 @@ pub mod constants {
 
     // What a face of the grid does.
 
-    /// default: a step in which a particle would leave fails with MPM_OFF_GRID
+    /// default: a step in which a particle would leave fails with MPM_OFF_GRID; none with total_lagrangian = 1, where
+    /// "position" may leave the box
     pub const MPM_WALL_NONE: i32 = 0;
-    /// a particle that leaves is removed
+    /// a particle that leaves is removed; refused with total_lagrangian = 1
     pub const MPM_WALL_OPEN: i32 = 1;
     /// velocities at the face are zero: it pushes and pulls
     pub const MPM_WALL_FIXED: i32 = 2;
@@ -195,7 +196,8 @@ pub mod constants {
     /// through between nodes, by less than half a cell, it stops particle by particle
     pub const MPM_WALL_FRICTION: i32 = 4;
     /// contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0. Material feels it
-    /// about a cell and a half before its particles are there
+    /// about a cell and a half before its particles are there; with total_lagrangian = 1 it is that of the material that
+    /// was there
     pub const MPM_WALL_FRICTION_NODES: i32 = 5;
 
     // Where in an explicit step a node hook runs.
@@ -700,9 +702,10 @@ pub struct mpm_grid_desc {
     /// 1: a total Lagrangian grid (de Vaucorbeil, Nguyen & Hutchinson 2020). Its cells hold the material as it was before
     /// it deformed: weights follow from "reference_position" and stay what they are. Nothing is sorted anew, particles do
     /// not cross cells, and material that is drawn out does not come apart. "position" may leave the box. Walls,
-    /// prescribed velocities, node hooks and nodal fields are those of nodes at their places in the box; obstacles and
-    /// friction walls meet particles where they are now. For solids of one body: fluids and contact between bodies are
-    /// refused. 0 (default): weights follow from "position". Since 0.2.0
+    /// prescribed velocities, node hooks and nodal fields are those of nodes at their places in the box, and so is
+    /// MPM_WALL_FRICTION_NODES; obstacles and MPM_WALL_FRICTION meet particles where they are now. For solids of one
+    /// body: fluids, contact between bodies and MPM_WALL_OPEN are refused. 0 (default): weights follow from "position".
+    /// Since 0.2.0
     pub total_lagrangian: i32,
     /// 0
     pub reserved: i32,
@@ -877,7 +880,7 @@ pub struct mpm_stepper_desc {
     /// MPM_LOCKING_NONE (default) or, in 2-D and 3-D, MPM_LOCKING_CELL_AVERAGE. With the latter the sets of the stepper
     /// have the field "dilation_ratio". Not with MPM_PLANE_STRESS.
     pub locking_remedy: i32,
-    /// 1: keeps "reference_position" and shows it to callbacks; default 0
+    /// 1: keeps "reference_position" and shows it to callbacks; default 0. With total_lagrangian = 1 that is so anyway
     pub reference_positions: i32,
     /// 1: MPM_NEWMARK drops the inertia, so that each step ends in equilibrium under the forces at its end. Velocities
     /// are then displacements over dt, and accelerations are zero. Default 0. MPM_E_UNSUPPORTED with other schemes.
@@ -1075,9 +1078,9 @@ pub struct mpm_particle_batch {
     pub dt: f64,
     /// [ld] ids, < 0 for inert slots
     pub id: *const i64,
-    /// [dim][ld] at the start of the step, wrapped on periodic axes
+    /// [dim][ld] at the start of the step, wrapped on periodic axes unless total_lagrangian = 1
     pub position: *const f64,
-    /// [dim][ld], or NULL without reference_positions
+    /// [dim][ld], or NULL without reference_positions; never NULL with total_lagrangian = 1
     pub reference_position: *const f64,
     /// [dim][ld] at the start of the step
     pub velocity: *const f64,
@@ -1706,7 +1709,8 @@ extern "C" {
     /// Adds n particles with F = I, zero stress and the law's initial state: all or none. The arrays are copied;
     /// position, velocity and size are [dim][n] with ld = n.
     ///
-    /// - position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are counted.
+    /// - position: a length, inside the grid; on a periodic axis one outside is wrapped, and its images are counted. With
+    ///   total_lagrangian = 1 the wrapped place is that in the grid, "reference_position" and "position" alike.
     /// - velocity: length/time; NULL for zeros.
     /// - volume: [n] initial volume, of the undeformed material, > 0; mass = density * volume.
     /// - size: full initial edge lengths of the domain, > 0; NULL for a cube (2-D: square) of that volume. MPM_GIMP and
@@ -1925,8 +1929,9 @@ extern "C" {
     /// above the surface, or no deformation has the stress; the particle is named. MPM_E_UNSUPPORTED: the law is "rigid",
     /// or "snow", whose stress takes more than a deformation; it is "newtonian_fluid" and K0 is not 1; or, of the host's
     /// laws, one that asked with dt = 0 does not answer with the stress that it has; the grid is MPM_PLANE_STRESS, or
-    /// axis the radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from deformation_gradient.
-    /// MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+    /// axis the radius of MPM_AXISYMMETRIC; total_lagrangian = 1 and the stress follows from deformation_gradient, or the
+    /// ground has already deformed. MPM_E_CALLBACK: that law failed. MPM_E_STATE: as for all that changes a set. Since
+    /// 0.2.0.
     pub fn mpm_particles_set_geostatic(
         particles: *mut mpm_particles,
         axis: i32,
@@ -1950,7 +1955,8 @@ extern "C" {
     /// The set is unchanged on failure. MPM_E_ARG: total_lagrangian = 1 and a particle is outside the box.
     /// MPM_E_UNSUPPORTED: the stress of the law, or its mean, follows from deformation_gradient, which must stay; or a
     /// law of the host, asked with dt = 0, does not answer with the stress that it has. MPM_E_CALLBACK: that law failed.
-    /// MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+    /// MPM_E_STATE: as for all that changes a set, and with total_lagrangian = 1 while a surface of its stepper has
+    /// markers, whose places count from the old reference. Since 0.2.0.
     pub fn mpm_particles_reset_reference(particles: *mut mpm_particles) -> mpm_status;
 
     /// Describes the system. This call and the two below may be made from within the solve callback only, one at a time;
@@ -2037,7 +2043,8 @@ extern "C" {
     /// is the Coulomb coefficient, >= 0, of the last two, and is not used otherwise. Such a wall is unilateral: its
     /// normal impulse only pushes, and its tangential impulse is at most friction times that. MPM_E_ARG: the grid does
     /// not have the face, the face is periodic, or a value is bad. MPM_E_UNSUPPORTED: MPM_WALL_FRICTION_NODES with
-    /// MPM_NEWMARK; on the axis of MPM_AXISYMMETRIC another kind than MPM_WALL_SLIP.
+    /// MPM_NEWMARK; MPM_WALL_OPEN with total_lagrangian = 1; on the axis of MPM_AXISYMMETRIC another kind than
+    /// MPM_WALL_SLIP.
     pub fn mpm_stepper_set_wall(
         stepper: *mut mpm_stepper,
         face: i32,
@@ -2242,8 +2249,9 @@ extern "C" {
 
     /// Puts a set into a body: 0 <= body < 4096, at first 0. Between steps, also with particles in it. Sets of one body
     /// share one velocity field. MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_ARG: there is no such body.
-    /// MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by MPM_SOLVER_MULTIGRID_CG. MPM_E_STATE
-    /// during a staged step, or while a view of nodal fields is out; there are no nodal fields then until the next step.
+    /// MPM_E_UNSUPPORTED: with MPM_NEWMARK, bodies that touch with adhesion, or by MPM_SOLVER_MULTIGRID_CG; with
+    /// total_lagrangian = 1 another body than 0, because bodies touch at nodes that both have. MPM_E_STATE during a
+    /// staged step, or while a view of nodal fields is out; there are no nodal fields then until the next step.
     pub fn mpm_stepper_set_body(
         stepper: *mut mpm_stepper,
         particles: *mut mpm_particles,
@@ -2499,7 +2507,8 @@ extern "C" {
 
     /// Copies values into a field, laid out as in mpm_surface_get(): all or none. Setting "area" makes it the reference.
     /// Errors are those of mpm_surface_get(), and MPM_E_ARG: a value is not finite, a position is outside the grid, or
-    /// the field cannot be set. MPM_E_STATE during a staged step.
+    /// the field cannot be set. MPM_E_STATE during a staged step. MPM_E_UNSUPPORTED: "position" or "area" with
+    /// total_lagrangian = 1, whose weights keep to the markers that were added: add others.
     pub fn mpm_surface_set(
         surface: *mut mpm_surface,
         field: *const c_char,
