@@ -561,6 +561,9 @@ START_TEST(stretched_bodies_rest) {
   double lowest = 10.0;
   for (int64_t p = 0; p < n; ++p) lowest = fmin(lowest, x[n + p]);
   ck_within("face", lowest - 0.5 * stretch * spacing, 0.0, 0.05 * spacing);
+  mpm_contact_info info = {.struct_size = sizeof info};
+  ck_ok(&w, mpm_obstacle_contact_info(floor, MPM_BODY_ANY, &info));
+  ck_assert_int_eq((int)info.nodes, 5); /* one row: two would make it stiff */
   free(x);
   ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, floor));
   ck_ok(&w, mpm_obstacle_destroy(floor));
