@@ -107,10 +107,11 @@ int main(int argc, char **argv) {
   verify_begin("tension", argc, argv);
   FILE *table = verify_csv("tension");
   fprintf(table, "stretch,transfer,scheme,first,last\n");
-  static const method methods[] = {
-      {"FLIP", MPM_FLIP, 1.0, 0},         {"APIC", MPM_APIC, 1.0, 0},    {"FLIP .98", MPM_FLIP, 0.98, 0},
-      {"APIC_MLS", MPM_APIC_MLS, 1.0, 0}, {"TPIC", MPM_TPIC, 1.0, 0},    {"TFLIP", MPM_TFLIP, 1.0, 0},
-      {"AFLIP", MPM_AFLIP, 1.0, 0},       {"XPIC(2)", MPM_XPIC, 1.0, 2}, {"FMPM(8)", MPM_FMPM, 1.0, 8}};
+  static const method methods[] = {{"FLIP", MPM_FLIP, 1.0, 0, 0},      {"APIC", MPM_APIC, 1.0, 0, 0},
+                                   {"FLIP .98", MPM_FLIP, 0.98, 0, 0}, {"APIC_MLS", MPM_APIC_MLS, 1.0, 0, 0},
+                                   {"TPIC", MPM_TPIC, 1.0, 0, 0},      {"TFLIP", MPM_TFLIP, 1.0, 0, 0},
+                                   {"AFLIP", MPM_AFLIP, 1.0, 0, 0},    {"XPIC(2)", MPM_XPIC, 1.0, 2, 0},
+                                   {"FMPM(8)", MPM_FMPM, 1.0, 8, 0}};
   static const double stretch[3] = {0.8, 1.05, 1.5};
   const int32_t transfers = verify_quick() ? 2 : (int32_t)(sizeof methods / sizeof *methods);
   for (int32_t s = 0; s < 3; ++s)
