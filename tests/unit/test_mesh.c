@@ -235,6 +235,27 @@ START_TEST(boxes) {
 }
 END_TEST
 
+/* Zeros of both signs are one coordinate, and a mesh may be far larger than the grid. */
+START_TEST(zeros_and_giants) {
+  const double lower[] = {0.0, 0.0, 0.0}, upper[] = {2.0, 2.0, 2.0}, low[] = {-1e300, -1e300, -1e300},
+               high[] = {1e300, 1e300, 1e300};
+  mpmi_mesh mesh;
+  open_grid(3, 4, 1.0);
+  start(&s, 3);
+  add_box(&s, lower, upper);
+  lay_out(&s, 1.0);
+  for (int64_t i = 0; i < 3 * s.points; ++i)
+    if (s.position[i] == 0.0) s.position[i] = i % 2 ? 0.0 : -0.0;
+  ck_ok(&w, mpmi_mesh_open(w.context, s.dim, s.points, s.position, s.elements, s.corner, &mesh));
+  ck_assert_int_eq(mesh.points, 8);
+  ck_assert_int_eq(mesh.patch[0].sides, 0);
+  mpmi_mesh_close(&mesh);
+  start(&s, 3);
+  add_box(&s, low, high);
+  ck_assert_int_eq(filled(&s, 2), 512);
+}
+END_TEST
+
 /* Overlaps are filled once, cavities stay empty, and what reaches beyond the grid is left out. */
 START_TEST(shells) {
   const double a[] = {0.55, 0.55, 0.55}, b[] = {2.55, 2.55, 2.55}, c[] = {1.55, 1.55, 1.55},
@@ -467,6 +488,7 @@ Suite *mesh_suite(void) {
   tcase_add_checked_fixture(tests, no_world, close_world);
   tcase_add_test(tests, fans_for_patches);
   tcase_add_test(tests, boxes);
+  tcase_add_test(tests, zeros_and_giants);
   tcase_add_test(tests, shells);
   tcase_add_test(tests, volumes);
   tcase_add_test(tests, points);
