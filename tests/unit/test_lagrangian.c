@@ -838,6 +838,7 @@ Suite *lagrangian_suite(void) {
   tcase_add_test(parts, stable_step);
   tcase_add_test(parts, refusals);
   tcase_add_test(parts, states_know_their_grid);
+  tcase_set_timeout(parts, 60);
   suite_add_tcase(suite, parts);
   TCase *implicit = tcase_create("implicit");
   tcase_add_loop_test(implicit, tangents, 0, IMPLICIT_CASES * BASES);
