@@ -59,13 +59,7 @@ static uint64_t hash_of(const combination *c, int32_t geometry, int32_t total_la
   const double dt = fmin(0.2 * world_stable_dt(&w), 1e-2);
   for (int32_t step = 0; step < 5; ++step) w.info = world_step(&w, dt);
   if (geometry == MPM_AXISYMMETRIC) ck_holds(w.info.momentum[0] == 0.0 && w.info.angular_momentum[2] == 0.0);
-  const saved_state state = world_save(&w);
-  world_step(&w, dt);
-  const uint64_t hash = world_hash(&w);
-  world_load(&w, &state);
-  world_step(&w, dt);
-  ck_assert_uint_eq(world_hash(&w), hash);
-  free(state.data);
+  const uint64_t hash = world_step_again(&w, dt);
   world_close(&w);
   return hash;
 }

@@ -1,5 +1,6 @@
 /* FMPM: the series against the inverse of the full mass matrix, what boundaries make of it, and which steps
  * have it. Whole steps stand beside the reference in `schemes`, walls in `walls`. */
+#include "obstacle.h"
 #include "body.h"
 #include "reference.h"
 
@@ -307,14 +308,9 @@ START_TEST(obstacles_give_their_impulse) {
   mpm_particles *set = world_open(&w, &d);
   world_fill(&w, set, low, high, 2);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
-  mpm_obstacle_desc of;
-  mpm_contact_desc rule;
-  mpm_obstacle *obstacle;
-  ck_ok(&w, mpm_contact_desc_init(&rule, sizeof rule));
-  ck_ok(&w, mpm_obstacle_desc_init(&of, sizeof of));
-  rule.friction = 0.3;
+  mpm_obstacle_desc of = obstacle_desc(MPM_SHAPE_SPHERE);
+  const mpm_contact_desc rule = rule_with(0.3);
   of.contact = &rule;
-  of.shape = MPM_SHAPE_SPHERE;
   of.motion = motion;
   of.size[0] = 0.5;
   of.position[0] = 1.0;
@@ -322,10 +318,9 @@ START_TEST(obstacles_give_their_impulse) {
   of.mass = 400.0;
   of.inertia[0] = of.inertia[4] = of.inertia[8] = 40.0;
   if (motion == MPM_MOTION_PRESCRIBED) of.velocity[1] = 0.5;
-  ck_ok(&w, mpm_obstacle_create(w.context, &of, &obstacle));
-  ck_ok(&w, mpm_stepper_add_obstacle(w.stepper, obstacle));
+  mpm_obstacle *obstacle = put_obstacle(&w, &of);
   const double mass = mass_of(&w, set);
-  mpm_contact_info told = {.struct_size = sizeof told};
+  mpm_contact_info told = {0};
   double before[2], after[2], start[2], carried = 0.0, most = 0.0;
   const mpm_step_info first = world_info(&w);
   momentum_of(&w, set, start);
@@ -334,7 +329,7 @@ START_TEST(obstacles_give_their_impulse) {
     momentum_of(&w, set, before);
     const mpm_step_info now = world_step(&w, dt);
     momentum_of(&w, set, after);
-    ck_ok(&w, mpm_obstacle_contact_info(obstacle, MPM_BODY_ANY, &told));
+    told = touch_of(&w, obstacle);
     for (int32_t c = 0; c < 2; ++c)
       ck_within("gain", after[c] - before[c], told.impulse[c] - was[c], 1e-12 * mass);
     carried = fmax(carried, told.impulse[1] - was[1]);
@@ -351,8 +346,7 @@ START_TEST(obstacles_give_their_impulse) {
   show("motion %d: energy %g of the first, carried %g\n", (int)motion, most / first.kinetic_energy,
        carried / mass);
   if (motion != MPM_MOTION_PRESCRIBED) ck_holds(most <= 1.0001 * first.kinetic_energy);
-  ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, obstacle));
-  ck_ok(&w, mpm_obstacle_destroy(obstacle));
+  drop_obstacle(&w, obstacle);
   world_close(&w);
 }
 END_TEST
@@ -366,19 +360,12 @@ static double land(int32_t scheme, int32_t on_wall) {
   mpm_particles *set = world_open(&w, &d);
   world_fill(&w, set, low, high, 2);
   ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
-  mpm_obstacle_desc of;
-  mpm_contact_desc rule;
-  mpm_obstacle *plane;
-  ck_ok(&w, mpm_contact_desc_init(&rule, sizeof rule));
-  ck_ok(&w, mpm_obstacle_desc_init(&of, sizeof of));
-  rule.friction = 0.3;
+  mpm_obstacle_desc of = obstacle_desc(MPM_SHAPE_PLANE);
+  const mpm_contact_desc rule = rule_with(0.3);
   of.contact = &rule;
-  of.shape = MPM_SHAPE_PLANE;
-  ck_ok(&w, mpm_obstacle_create(w.context, &of, &plane));
-  if (on_wall)
-    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.3));
-  else
-    ck_ok(&w, mpm_stepper_add_obstacle(w.stepper, plane));
+  of.position[1] = 0.0;
+  mpm_obstacle *plane = on_wall ? NULL : put_obstacle(&w, &of);
+  if (on_wall) ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_FRICTION, 0.3));
   const mpm_step_info first = world_info(&w);
   double start[2], end[2], impulse[3];
   momentum_of(&w, set, start);
@@ -391,8 +378,7 @@ static double land(int32_t scheme, int32_t on_wall) {
   for (int32_t c = 0; c < 2 && on_wall; ++c)
     ck_within("impulse", end[c] - start[c], impulse[c], 1e-11 * mass_of(&w, set));
   ck_holds(end[1] > 0.0 && end[0] < start[0]);
-  if (!on_wall) ck_ok(&w, mpm_stepper_remove_obstacle(w.stepper, plane));
-  ck_ok(&w, mpm_obstacle_destroy(plane));
+  if (plane) drop_obstacle(&w, plane);
   const double share = (w.info.kinetic_energy + w.info.strain_energy) / first.kinetic_energy;
   world_close(&w);
   return share;

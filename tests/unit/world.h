@@ -242,6 +242,8 @@ typedef struct saved_state {
 saved_state world_save(const world *w); /* data to be freed */
 void world_load(world *w, const saved_state *state);
 void world_copy(const world *from, world *to); /* saves the one into the other */
+/* Takes a step, and once more from the state before it, with the same bits; returns their hash. */
+uint64_t world_step_again(world *w, double dt);
 
 /* ---- what is random and the same in every run ---- */
 uint64_t mixed(uint64_t seed);
