@@ -8,6 +8,7 @@
  * which is not symmetric. Dead loads D have no stiffness. */
 #include "implicit/balance.h"
 #include "stages/stages.h"
+#include "simd/vector3.h"
 
 #include <math.h>
 
@@ -82,10 +83,6 @@ static int32_t response_of(const mpm_surface *s, int64_t i, double *area, double
   return most > 0.0;
 }
 
-static void add_product(const double *a, const double *b, double *to) {
-  for (int32_t i = 0; i < 3; ++i) to[i] += a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
 /* Finds by how much the area vector changes with component j of a node's displacement: stretch[k] is E_k .
  * grad w, hoop what a radial displacement makes of E_1 along the hoop of a ring. */
 static void area_change(const mpm_grid *grid, const mpmi_marker *marker, int32_t j, const double *stretch,
@@ -93,13 +90,14 @@ static void area_change(const mpm_grid *grid, const mpmi_marker *marker, int32_t
   double d[2][3] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
   for (int32_t k = 0; k < 2; ++k) d[k][j] = stretch[k];
   if (j == 0) d[1][2] += hoop;
-  change[0] = change[1] = change[2] = 0.0;
   if (mpmi_strain_dim(grid) == 2) {
-    change[0] = d[0][1], change[1] = -d[0][0];
+    change[0] = d[0][1], change[1] = -d[0][0], change[2] = 0.0;
     return;
   }
-  add_product(d[0], marker->edge[1], change);
-  add_product(marker->edge[0], d[1], change);
+  double first[3];
+  mpmi_cross(d[0], marker->edge[1], first);
+  mpmi_cross(marker->edge[0], d[1], change);
+  for (int32_t c = 0; c < 3; ++c) change[c] += first[c];
 }
 
 /* Adds the block of one node's force by the displacement of another; change: of the area, by component. */

@@ -15,6 +15,7 @@
 #include "layout/particle_batch.h"
 #include "layout/tasks.h"
 #include "layout/tile.h"
+#include "simd/vector3.h"
 
 #include <math.h>
 #include <string.h>
@@ -239,19 +240,6 @@ static int32_t find_shares(const surface_job *job, stencil *of) {
   return whole;
 }
 
-static double invert(double M[3][3], double inverse[3][3]) {
-  double det = 0.0;
-  for (int32_t i = 0; i < 3; ++i)
-    for (int32_t j = 0; j < 3; ++j) {
-      const int32_t a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
-      inverse[i][j] = M[a][c] * M[b][d] - M[a][d] * M[b][c];
-    }
-  for (int32_t i = 0; i < 3; ++i) det += M[0][i] * inverse[i][0];
-  for (int32_t i = 0; i < 3; ++i)
-    for (int32_t j = 0; j < 3; ++j) inverse[i][j] /= det;
-  return det;
-}
-
 /* Makes of the weights that are left, and their gradients, what sums to one. Returns their sum before. */
 static double normalise(int32_t dim, stencil *of) {
   double sum = 0.0, slope[3] = {0.0, 0.0, 0.0};
@@ -278,7 +266,7 @@ static void make_linear(int32_t dim, stencil *of) {
       for (int32_t k = 0; k < dim; ++k) spread[c][k] += of->arm[n][c] * of->g[n][k];
     }
   }
-  if (!(invert(spread, A) > LEAST_SPREAD)) return;
+  if (!(mpmi_invert3(spread, A) > LEAST_SPREAD)) return;
   for (int32_t n = 0; n < of->count; ++n) {
     const double g[3] = {of->g[n][0], of->g[n][1], of->g[n][2]};
     for (int32_t k = 0; k < dim; ++k) {
