@@ -29,6 +29,7 @@ struct mpm_context {
   uint32_t magic;
   int32_t children;                  /* number of live objects made with this context */
   int32_t isa;                       /* the instruction set in use: never MPM_ISA_BEST */
+  int32_t works_by_halves;           /* registers of eight doubles take two steps: transfer/scatter.h */
   int32_t concurrency;               /* how many tasks may run at once, >= 1 */
   mpm_context_desc host;             /* the services; alloc and release are always set */
   mpmi_pool *pool;                   /* own threads; NULL when concurrency is 1 or the host has an executor */

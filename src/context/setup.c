@@ -136,6 +136,7 @@ static mpm_status make(mpm_context *first, const mpm_context_desc *desc, mpm_con
   if (!status) status = resolve(first, host);
   if (status) return status;
   first->isa = host->isa;
+  first->works_by_halves = host->isa == MPM_ISA_AVX512 && mpmi_works_by_halves();
   first->concurrency = host->concurrency;
   mpm_context *context = mpmi_alloc(first, sizeof *context);
   if (!context) return MPM_E_NOMEM;

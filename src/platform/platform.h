@@ -38,6 +38,9 @@
 void *mpmi_system_alloc(size_t bytes, size_t alignment);
 void mpmi_system_release(void *memory, size_t bytes, size_t alignment);
 int32_t mpmi_processors(void);  /* at least 1; 1 where there are no threads */
+/* 1 for processors that work on registers of 512 bits, if they have any, in two steps of 256, as Zen 4 does
+ * (processor.c). */
+int32_t mpmi_works_by_halves(void);
 int64_t mpmi_nanoseconds(void); /* of a clock that only goes forward, where the system has one */
 /* Differs between a process and those that it forks. */
 int64_t mpmi_process(void);

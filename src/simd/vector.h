@@ -127,36 +127,41 @@ MPMI_INLINE mpmi_lanes mpmi_of_halves(mpmi_v4 low, mpmi_v4 high) {
 }
 
 /* A node of eight of which the lower half counts alone is worked with in half of the register: `four` is
- * always that half of `eight`, which costs nothing. */
-enum { MPMI_HALF = MPMI_LOW };
+ * always that half of `eight`, which costs nothing. Parts that begin with HALVES are two halves in registers
+ * of their own, `four` and `high`, and have no `eight`. */
+enum { MPMI_HALF = MPMI_LOW, MPMI_HALVES_HIGH = 6, MPMI_HALVES_BOTH = 7 };
 typedef struct mpmi_node {
-  mpmi_v4 four;
+  mpmi_v4 four, high;
   mpmi_lanes eight;
 } mpmi_node;
 /* Weights that differ between the halves: momentum takes moments of the basis where force takes gradients. */
 typedef mpmi_lanes mpmi_pair;
 
 MPMI_INLINE mpmi_node mpmi_node_of4(mpmi_v4 four) {
-  return (mpmi_node){four, {0.0}};
+  return (mpmi_node){four, {0.0}, {0.0}};
+}
+MPMI_INLINE mpmi_node mpmi_node_of_halves(mpmi_v4 low, mpmi_v4 high) {
+  return (mpmi_node){low, high, {0.0}};
 }
 MPMI_INLINE mpmi_node mpmi_node_of8(mpmi_lanes eight) {
-  return (mpmi_node){mpmi_low_half(eight), eight};
+  return (mpmi_node){mpmi_low_half(eight), {0.0}, eight};
 }
 MPMI_INLINE mpmi_node mpmi_node_zero(void) {
-  return (mpmi_node){mpmi_zero4(), {0.0}};
+  return (mpmi_node){{0.0}, {0.0}, {0.0}};
 }
 MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
+  if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(mpmi_load4(a), mpmi_load4(a + 4));
   return part == MPMI_LOW ? mpmi_node_of4(mpmi_load4(a)) : mpmi_node_of8(mpmi_lanes_load(a));
 }
 /* Loads the upper half alone; the lower half is zero. */
-MPMI_INLINE mpmi_node mpmi_node_load_high(const double *a) {
+MPMI_INLINE mpmi_node mpmi_node_load_high(int32_t part, const double *a) {
+  if (part == MPMI_HALVES_HIGH) return mpmi_node_of_halves(mpmi_zero4(), mpmi_load4(a));
   return mpmi_node_of8(mpmi_of_halves(mpmi_zero4(), mpmi_load4(a)));
 }
 MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {
-  if (part == MPMI_LOW)
-    mpmi_store4(a, v.four);
-  else
-    mpmi_lanes_store(a, v.eight);
+  if (part == MPMI_LOW || part == MPMI_HALVES_BOTH) mpmi_store4(a, v.four);
+  if (part == MPMI_HALVES_BOTH) mpmi_store4(a + 4, v.high);
+  if (part == MPMI_HIGH || part == MPMI_BOTH) mpmi_lanes_store(a, v.eight);
 }
 MPMI_INLINE mpmi_v4 mpmi_node_low(int32_t part, mpmi_node a) {
   (void)part;
@@ -166,9 +171,12 @@ MPMI_INLINE mpmi_v4 mpmi_node_high(mpmi_node a) {
   return mpmi_high_half(a.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_scale(int32_t part, double s, mpmi_node a) {
+  if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(s * a.four, s * a.high);
+  if (part == MPMI_HALVES_HIGH) return mpmi_node_of_halves(a.four, s * a.high);
   return part == MPMI_LOW ? mpmi_node_of4(s * a.four) : mpmi_node_of8(s * a.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_fma(int32_t part, mpmi_node a, double s, mpmi_node b) {
+  if (part == MPMI_HALVES_BOTH) return mpmi_node_of_halves(a.four + s * b.four, a.high + s * b.high);
   return part == MPMI_LOW ? mpmi_node_of4(a.four + s * b.four) : mpmi_node_of8(a.eight + s * b.eight);
 }
 MPMI_INLINE mpmi_node mpmi_node_sum(int32_t part, mpmi_node a, mpmi_node b) {
@@ -181,12 +189,12 @@ MPMI_INLINE mpmi_pair mpmi_pair_of(double low, double high) {
   return (mpmi_pair){low, low, low, low, high, high, high, high};
 }
 MPMI_INLINE mpmi_node mpmi_node_fma_pair(int32_t part, mpmi_node a, mpmi_pair s, mpmi_node b) {
-  (void)part;
+  if (part == MPMI_HALVES_HIGH) return mpmi_node_of_halves(a.four, a.high + s[4] * b.high);
   return mpmi_node_of8(a.eight + s * b.eight);
 }
 
 #else
-enum { MPMI_HALF = MPMI_LOW };
+enum { MPMI_HALF = MPMI_LOW, MPMI_HALVES_HIGH = MPMI_HIGH, MPMI_HALVES_BOTH = MPMI_BOTH };
 typedef struct mpmi_node {
   mpmi_v4 low, high;
 } mpmi_node;
@@ -201,7 +209,8 @@ MPMI_INLINE mpmi_node mpmi_node_load(int32_t part, const double *a) {
   return (mpmi_node){part & MPMI_LOW ? mpmi_load4(a) : mpmi_zero4(),
                      part & MPMI_HIGH ? mpmi_load4(a + 4) : mpmi_zero4()};
 }
-MPMI_INLINE mpmi_node mpmi_node_load_high(const double *a) {
+MPMI_INLINE mpmi_node mpmi_node_load_high(int32_t part, const double *a) {
+  (void)part;
   return (mpmi_node){mpmi_zero4(), mpmi_load4(a)};
 }
 MPMI_INLINE void mpmi_node_store(int32_t part, double *a, mpmi_node v) {

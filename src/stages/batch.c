@@ -18,6 +18,7 @@ static void add_streams(mpmi_streams *streams, const mpm_particles *set, int32_t
 static void list_streams(mpmi_batch *b) {
   mpmi_streams *streams = &b->gather.streams;
   streams->count = 0;
+  streams->end = INT64_MAX; /* one block after the other */
   add_streams(streams, b->set, mpmi_place_field(b->set->grid), 0);
   add_streams(streams, b->set, MPMI_INITIAL_VOLUME, 0);
   if (b->pass->moves) {

@@ -96,6 +96,8 @@ static void scatter_block(void *user, const mpmi_visit *visit, double *tile) {
     scatter_of(job, m, &scatter);
     mpmi_block_axes(layout->blocks.grid, layout->blocks.coord[visit->block], scatter.axis);
     scatter.tile = tile;
+    scatter.streams.end = end;
+    scatter.streams.follow = visit->next < 0 ? end : layout->member[m].now.start[visit->next];
     scatter_slots(job, &scatter, visit->block, begin, end);
     mpmi_sample_weights(job->step, visit->task, scatter.axis, job->need, &scatter.points, begin, end);
   }
@@ -105,7 +107,8 @@ static void choose_form(p2g_job *job) {
   const mpmi_settings *settings = job->step->settings;
   const int32_t moments = settings->transfer->moments;
   if (mpmi_has_increments(job->to)) {
-    job->form = job->affine ? MPMI_SCATTER_8_AFFINE : MPMI_SCATTER_8;
+    const int32_t plain = settings->context->works_by_halves ? MPMI_SCATTER_8_HALVES : MPMI_SCATTER_8;
+    job->form = job->affine ? MPMI_SCATTER_8_AFFINE : plain;
     job->need = moments == MPMI_NEED_MLS ? moments : MPMI_NEED_GRADIENT | (job->affine ? moments : 0);
   } else if (job->affine && settings->grid->family >= MPMI_FAMILY_OPEN_BSPLINE2) {
     job->form = MPMI_SCATTER_4_UNEVEN;

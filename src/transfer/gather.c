@@ -171,8 +171,9 @@ MPMI_INLINE mpmi_taken gather(int32_t dim, int32_t width, int32_t form, const mp
     job->weights(job->axis, job->need, &job->points, begin + s, n, &W);
     if (has_hole(job->initial_volume + begin + s, n))
       mask_holes(width, form, job->initial_volume + begin + s, n, &W);
+    const int64_t ahead = mpmi_ahead(&job->streams, begin + s);
     for (int64_t p = 0; p < n; ++p) {
-      mpmi_prefetch(&job->streams, begin + s + MPMI_CHUNK, p);
+      mpmi_prefetch(&job->streams, ahead, p);
       gather_particle(dim, width, form, &W, p, job->tile, &out);
     }
     for (int64_t q = 0; q < mpmi_whole_chunks(n); q += MPMI_LANES)

@@ -1,7 +1,14 @@
 /* Every specialisation of scatter and gather that exists; define SCATTER or GATHER before including.
  * name = kernel, dim, width, form. */
 #ifdef SCATTER
+#if MPMI_WIDTH == 8
+#define SCATTER_HALVES(dim, width)                                                                           \
+  SCATTER(dim, width, MPMI_SCATTER_8_HALVES, scatter_##dim##_##width##_8_halves)
+#else
+#define SCATTER_HALVES(dim, width)
+#endif
 #define SCATTER_FORMS(dim, width)                                                                            \
+  SCATTER_HALVES(dim, width)                                                                                 \
   SCATTER(dim, width, MPMI_SCATTER_4, scatter_##dim##_##width##_4)                                           \
   SCATTER(dim, width, MPMI_SCATTER_4_AFFINE, scatter_##dim##_##width##_4_affine)                             \
   SCATTER(dim, width, MPMI_SCATTER_4_UNEVEN, scatter_##dim##_##width##_4_uneven)                             \
@@ -17,6 +24,7 @@ SCATTER_FORMS(3, 2)
 SCATTER_FORMS(3, 3)
 SCATTER_FORMS(3, 4)
 #undef SCATTER_FORMS
+#undef SCATTER_HALVES
 #undef SCATTER
 #endif
 #ifdef GATHER

@@ -87,19 +87,33 @@ MPMI_INLINE mpmi_node add_second(int32_t values, int32_t part, mpmi_node a, int3
   return mpmi_node_fma_pair(part, a, second(affine, W, axis, k, p), column);
 }
 
+MPMI_INLINE int32_t is_affine(int32_t form) {
+  return form == MPMI_SCATTER_4_AFFINE || form == MPMI_SCATTER_4_UNEVEN || form == MPMI_SCATTER_8_AFFINE;
+}
+
+/* The values that nodes have in a form, and the part that the columns give to. */
+MPMI_INLINE int32_t all_of(int32_t form) {
+  return form < MPMI_SCATTER_8 ? MPMI_LOW : form == MPMI_SCATTER_8_HALVES ? MPMI_HALVES_BOTH : MPMI_BOTH;
+}
+MPMI_INLINE int32_t part_of(int32_t form) {
+  return form < MPMI_SCATTER_8           ? MPMI_LOW
+         : form == MPMI_SCATTER_8_AFFINE ? MPMI_BOTH
+         : form == MPMI_SCATTER_8_HALVES ? MPMI_HALVES_HIGH
+                                         : MPMI_HIGH;
+}
+
 /* Scatters mass, momentum and force, or with 4 values mass and affine momentum. Without an affine part the
  * columns have nothing to give to momentum. */
-MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t values, int32_t affine,
-                                     const mpmi_weights *W, int64_t p, const mpmi_first_order *of,
-                                     double *MPMI_APART stencil) {
+MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t form, const mpmi_weights *W,
+                                     int64_t p, const mpmi_first_order *of, double *MPMI_APART stencil) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
-  const int32_t all = values == 8 ? MPMI_BOTH : MPMI_LOW;
-  const int32_t part = values == 4 ? MPMI_LOW : affine ? MPMI_BOTH : MPMI_HIGH; /* of the columns */
+  const int32_t values = form < MPMI_SCATTER_8 ? 4 : 8, affine = is_affine(form);
+  const int32_t all = all_of(form), part = part_of(form);
   const mpmi_node a = mpmi_node_load(all, of->a + values * p);
   mpmi_node column[3];
   for (int32_t k = 0; k < dim; ++k)
-    column[k] = part == MPMI_HIGH ? mpmi_node_load_high(of->column[k] + 4 * p)
-                                  : mpmi_node_load(part, of->column[k] + values * p);
+    column[k] = values == 8 && !affine ? mpmi_node_load_high(part, of->column[k] + 4 * p)
+                                       : mpmi_node_load(part, of->column[k] + values * p);
   /* sums over the axes before the last: node += w_k value + s_k slope */
   mpmi_node plane = a, plane_1 = column[0], plane_2 = column[last], value = a, slope = column[last];
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
@@ -125,10 +139,6 @@ MPMI_INLINE void scatter_first_order(int32_t dim, int32_t width, int32_t values,
       }
     }
   }
-}
-
-MPMI_INLINE int32_t is_affine(int32_t form) {
-  return form == MPMI_SCATTER_4_AFFINE || form == MPMI_SCATTER_4_UNEVEN || form == MPMI_SCATTER_8_AFFINE;
 }
 
 _Alignas(64) static const double zero[MPMI_CHUNK] = {0.0};
@@ -302,18 +312,17 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
       give(dim, width, form, 1, job, &stress, s, n, &W, &of);
     else
       give(dim, width, form, 0, job, &stress, s, n, &W, &of);
+    const int64_t ahead = mpmi_ahead(&job->streams, s);
     for (int64_t p = 0; p < n; ++p) {
       double *stencil = job->tile + values * W.node[p];
       MPMI_SETTLE(stencil);
-      mpmi_prefetch(&job->streams, s + MPMI_CHUNK, p);
+      mpmi_prefetch(&job->streams, ahead, p);
       if (form == MPMI_SCATTER_4)
         scatter_plain(dim, width, &W, p, &of, stencil);
       else if (form == MPMI_SCATTER_4_AFFINE)
         scatter_linear(dim, width, &W, p, &of, stencil);
-      else if (form == MPMI_SCATTER_4_UNEVEN)
-        scatter_first_order(dim, width, 4, 1, &W, p, &of, stencil);
       else
-        scatter_first_order(dim, width, 8, form == MPMI_SCATTER_8_AFFINE, &W, p, &of, stencil);
+        scatter_first_order(dim, width, form, &W, p, &of, stencil);
     }
   }
 }

@@ -7,13 +7,16 @@
 
 /* Forms of the scatter. With 4 values nodes receive momentum and mass, and the fused MLS force may be part of
  * the momentum; with 8 values they receive the force as well. AFFINE adds the affine part of the velocity;
- * UNEVEN does so for nodes that are not a spacing apart. */
+ * UNEVEN does so for nodes that are not a spacing apart. HALVES takes the eight values of a node as two
+ * registers of four, for processors that work on halves of longer ones in turn; it gives the same bits, and
+ * is there where registers hold eight values. */
 enum {
   MPMI_SCATTER_4,
   MPMI_SCATTER_4_AFFINE,
   MPMI_SCATTER_4_UNEVEN,
   MPMI_SCATTER_8,
   MPMI_SCATTER_8_AFFINE,
+  MPMI_SCATTER_8_HALVES,
   MPMI_SCATTER_FORMS
 };
 
