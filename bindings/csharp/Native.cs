@@ -262,6 +262,12 @@ namespace Mpm {
     public const int MPM_MOTION_PRESCRIBED = 1;
     /// <summary>as a rigid body under contact, gravity and the host's load.</summary>
     public const int MPM_MOTION_FREE = 2;
+
+    // What a batch of mpm_adaption_fn is about.
+    /// <summary>particles that are to be split.</summary>
+    public const int MPM_ADAPT_SPLIT = 0;
+    /// <summary>pairs that are to become one particle.</summary>
+    public const int MPM_ADAPT_MERGE = 1;
   }
 
   /// <summary>A task of the library, which the host's executor calls with the task_data that it was given and a
@@ -345,6 +351,11 @@ namespace Mpm {
   /// dim.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int TractionFn(IntPtr user, MarkerBatch* batch, double* add);
+
+  /// <summary>Says which of them are left as they are: accept[i], [ld], is 1, and the callback writes 0 to keep the
+  /// i-th from it.</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int AdaptionFn(IntPtr user, AdaptionBatch* batch, byte* accept);
 
   /// <summary>Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets,
   /// browsers.</summary>
@@ -1107,6 +1118,93 @@ namespace Mpm {
     public double* velocity;
   }
 
+  /// <summary>Particles that are to be split, or pairs that are to be merged.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct AdaptionBatch {
+    /// <summary>sizeof(mpm_adaption_batch) of the library; see mpm.h.</summary>
+    public uint struct_size;
+    /// <summary>MPM_ADAPT_SPLIT or MPM_ADAPT_MERGE.</summary>
+    public int what;
+    /// <summary>how many.</summary>
+    public long n;
+    /// <summary>distance from component c to c + 1 of position, in elements; &gt;= n.</summary>
+    public long ld;
+    /// <summary>dimension of the grid.</summary>
+    public int dim;
+    /// <summary>0.</summary>
+    public int reserved;
+    /// <summary>[ld] ids, ascending; of pairs that of the particle that stays.</summary>
+    public long* id;
+    /// <summary>[ld] ids of the particles that go; NULL where particles are split.</summary>
+    public long* other;
+    /// <summary>[dim][ld] of the particle, or of the one that stays.</summary>
+    public double* position;
+  }
+
+  /// <summary>How a set adapts.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct AdaptionDesc {
+    /// <summary>sizeof(mpm_adaption_desc) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>steps from one adaption to the next; default 10; 0: by mpm_stepper_adapt() alone.</summary>
+    public int every;
+    /// <summary>Edges of domains that are longer than this are halved.</summary>
+    public double split_edge;
+    /// <summary>No edge becomes shorter than this by splitting.</summary>
+    public double least_edge;
+    /// <summary>In a cell that has particles, but fewer of the set than this, they are split along their longest
+    /// edges until there are so many.</summary>
+    public int min_per_cell;
+    /// <summary>In a cell with more particles of the set, the nearest pairs that are alike are merged until there are
+    /// so many.</summary>
+    public int max_per_cell;
+    /// <summary>Pairs lie no further apart than this.</summary>
+    public double merge_distance;
+    /// <summary>Pairs are alike when their deformation gradients differ by at most this share of the larger one, in
+    /// the norm of Frobenius, their stresses by this share of density c^2, and their velocities by this share of c,
+    /// the wave speed of the law; with laws of the host, stresses by this share of the larger one, and velocities are
+    /// not looked at.</summary>
+    public double merge_tolerance;
+    /// <summary>Nothing is split beyond this number of particles in the set.</summary>
+    public long most_particles;
+    /// <summary>NULL (default): all are accepted.</summary>
+    public IntPtr accept;
+    /// <summary>is passed to accept.</summary>
+    public IntPtr user;
+
+    /// <summary>The library's defaults.</summary>
+    public static AdaptionDesc Default() {
+      var it = new AdaptionDesc();
+      MpmException.Check(Native.mpm_adaption_desc_init(&it, (uint)sizeof(AdaptionDesc)), IntPtr.Zero);
+      return it;
+    }
+  }
+
+  /// <summary>What adaption has done to a set, in all steps since it was first described for it or the time was
+  /// set.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct AdaptionInfo {
+    /// <summary>sizeof(mpm_adaption_info) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>0.</summary>
+    public int reserved;
+    /// <summary>particles that were split.</summary>
+    public long splits;
+    /// <summary>particles that came by it.</summary>
+    public long added;
+    /// <summary>pairs that became one.</summary>
+    public long merges;
+    /// <summary>kinetic energy before, less that after: &gt;= 0 of merges; splits with a matrix &lt; 0.</summary>
+    public double kinetic_loss;
+    /// <summary>the same of the matrices: what they give to velocities, and what is lost.</summary>
+    public double affine_loss;
+    /// <summary>the same of the strain energy, in merges; laws of the host are not counted.</summary>
+    public double strain_loss;
+    /// <summary>Angular momentum before, less that after: of merges without a matrix. 0 of
+    /// MPM_AXISYMMETRIC.</summary>
+    public fixed double angular_momentum_loss[3];
+  }
+
   /// <summary>The functions of C.</summary>
   public static unsafe class Native {
 #if MPM_STATIC // the library is part of the program, as Unity has it on iOS and WebGL
@@ -1288,6 +1386,11 @@ namespace Mpm {
     /// <summary>Adds a field of the host, zero in every particle.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_particles_add_field(IntPtr particles, byte* field, int type, int components);
+
+    /// <summary>Says of a field of the host that its values are amounts, as mass is, and not densities: particles
+    /// that are split share them, and merged ones have the sum.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_set_extensive(IntPtr particles, byte* field, int extensive);
 
     /// <summary>Lends a field in library order, with its stored components and with inert slots (id &lt; 0); a map of
     /// "id" tells which is which. access is MPM_READ, MPM_WRITE or both.</summary>
@@ -1647,6 +1750,23 @@ namespace Mpm {
     /// <summary>Takes a surface out; it keeps its markers.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_stepper_remove_surface(IntPtr stepper, IntPtr surface);
+
+    /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond
+    /// is written.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_adaption_desc_init(AdaptionDesc* desc, uint struct_size);
+
+    /// <summary>Describes how a set of the stepper adapts, for the steps that follow; NULL: no longer.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_set_adaption(IntPtr stepper, IntPtr particles, AdaptionDesc* desc);
+
+    /// <summary>Adapts all sets that are described, now and whatever `every` is.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_adapt(IntPtr stepper);
+
+    /// <summary>Tells what adaption has done to a set.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_adaption_info(IntPtr stepper, IntPtr particles, AdaptionInfo* info);
 
     /// <summary>Tells how many bytes mpm_state_save() needs now.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

@@ -263,6 +263,12 @@ module mpm
   !> as a rigid body under contact, gravity and the host's load.
   integer(c_int32_t), parameter :: MPM_MOTION_FREE = 2_c_int32_t
 
+  !> What a batch of mpm_adaption_fn is about.
+  !> particles that are to be split.
+  integer(c_int32_t), parameter :: MPM_ADAPT_SPLIT = 0_c_int32_t
+  !> pairs that are to become one particle.
+  integer(c_int32_t), parameter :: MPM_ADAPT_MERGE = 1_c_int32_t
+
   !> A named number.
   type, bind(c) :: mpm_param
     !> one of the names that mpm_material_model_param() lists.
@@ -891,6 +897,79 @@ module mpm
     type(c_ptr) :: velocity
   end type mpm_marker_batch
 
+  !> Particles that are to be split, or pairs that are to be merged.
+  type, bind(c) :: mpm_adaption_batch
+    !> sizeof(mpm_adaption_batch) of the library; see mpm.h.
+    integer(c_int32_t) :: struct_size
+    !> MPM_ADAPT_SPLIT or MPM_ADAPT_MERGE.
+    integer(c_int32_t) :: what
+    !> how many.
+    integer(c_int64_t) :: n
+    !> distance from component c to c + 1 of position, in elements; >= n.
+    integer(c_int64_t) :: ld
+    !> dimension of the grid.
+    integer(c_int32_t) :: dim
+    !> 0.
+    integer(c_int32_t) :: reserved
+    !> [ld] ids, ascending; of pairs that of the particle that stays.
+    type(c_ptr) :: id
+    !> [ld] ids of the particles that go; NULL where particles are split.
+    type(c_ptr) :: other
+    !> [dim][ld] of the particle, or of the one that stays.
+    type(c_ptr) :: position
+  end type mpm_adaption_batch
+
+  !> How a set adapts.
+  type, bind(c) :: mpm_adaption_desc
+    !> sizeof(mpm_adaption_desc) of the caller.
+    integer(c_int32_t) :: struct_size
+    !> steps from one adaption to the next; default 10; 0: by mpm_stepper_adapt() alone.
+    integer(c_int32_t) :: every
+    !> Edges of domains that are longer than this are halved.
+    real(c_double) :: split_edge
+    !> No edge becomes shorter than this by splitting.
+    real(c_double) :: least_edge
+    !> In a cell that has particles, but fewer of the set than this, they are split along their longest edges until
+    !! there are so many.
+    integer(c_int32_t) :: min_per_cell
+    !> In a cell with more particles of the set, the nearest pairs that are alike are merged until there are so many.
+    integer(c_int32_t) :: max_per_cell
+    !> Pairs lie no further apart than this.
+    real(c_double) :: merge_distance
+    !> Pairs are alike when their deformation gradients differ by at most this share of the larger one, in the norm of
+    !! Frobenius, their stresses by this share of density c^2, and their velocities by this share of c, the wave speed
+    !! of the law; with laws of the host, stresses by this share of the larger one, and velocities are not looked at.
+    real(c_double) :: merge_tolerance
+    !> Nothing is split beyond this number of particles in the set.
+    integer(c_int64_t) :: most_particles
+    !> NULL (default): all are accepted.
+    type(c_funptr) :: accept
+    !> is passed to accept.
+    type(c_ptr) :: user
+  end type mpm_adaption_desc
+
+  !> What adaption has done to a set, in all steps since it was first described for it or the time was set.
+  type, bind(c) :: mpm_adaption_info
+    !> sizeof(mpm_adaption_info) of the caller.
+    integer(c_int32_t) :: struct_size
+    !> 0.
+    integer(c_int32_t) :: reserved
+    !> particles that were split.
+    integer(c_int64_t) :: splits
+    !> particles that came by it.
+    integer(c_int64_t) :: added
+    !> pairs that became one.
+    integer(c_int64_t) :: merges
+    !> kinetic energy before, less that after: >= 0 of merges; splits with a matrix < 0.
+    real(c_double) :: kinetic_loss
+    !> the same of the matrices: what they give to velocities, and what is lost.
+    real(c_double) :: affine_loss
+    !> the same of the strain energy, in merges; laws of the host are not counted.
+    real(c_double) :: strain_loss
+    !> Angular momentum before, less that after: of merges without a matrix. 0 of MPM_AXISYMMETRIC.
+    real(c_double) :: angular_momentum_loss(3)
+  end type mpm_adaption_info
+
   ! Callbacks of the host: c_funloc() of a procedure of such an interface is what arguments and fields take.
   abstract interface
     !> A task of the library, which the host's executor calls with the task_data that it was given and a number k.
@@ -1061,6 +1140,16 @@ module mpm
       real(c_double), intent(inout) :: add(*)
       integer(c_int32_t) :: answer
     end function mpm_traction_fn
+
+    !> Says which of them are left as they are: accept[i], [ld], is 1, and the callback writes 0 to keep the i-th from
+    !! it.
+    function mpm_adaption_fn(user, batch, accept) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      type(mpm_adaption_batch), intent(in) :: batch
+      integer(c_int8_t), intent(inout) :: accept
+      integer(c_int32_t) :: answer
+    end function mpm_adaption_fn
 
     !> Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers.
     function mpm_write_fn(user, data, bytes) bind(c) result(answer)
@@ -1416,6 +1505,17 @@ module mpm
       integer(c_int32_t), value :: components
       integer(c_int32_t) :: answer
     end function mpm_particles_add_field
+
+    !> Says of a field of the host that its values are amounts, as mass is, and not densities: particles that are split
+    !! share them, and merged ones have the sum.
+    function mpm_particles_set_extensive(particles, field, extensive) bind(c, name="mpm_particles_set_extensive") &
+        result(answer)
+      import
+      type(c_ptr), value :: particles
+      character(kind=c_char), intent(in) :: field(*)
+      integer(c_int32_t), value :: extensive
+      integer(c_int32_t) :: answer
+    end function mpm_particles_set_extensive
 
     !> Lends a field in library order, with its stored components and with inert slots (id < 0); a map of "id" tells
     !! which is which. access is MPM_READ, MPM_WRITE or both.
@@ -2155,6 +2255,41 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_stepper_remove_surface
 
+    !> Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond is written.
+    function mpm_adaption_desc_init(desc, struct_size) bind(c, name="mpm_adaption_desc_init") result(answer)
+      import
+      type(mpm_adaption_desc), intent(inout) :: desc
+      integer(c_int32_t), value :: struct_size
+      integer(c_int32_t) :: answer
+    end function mpm_adaption_desc_init
+
+    !> Describes how a set of the stepper adapts, for the steps that follow; NULL: no longer.
+    function mpm_stepper_set_adaption(stepper, particles, desc) bind(c, name="mpm_stepper_set_adaption") &
+        result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: particles
+      type(mpm_adaption_desc), intent(in) :: desc
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_set_adaption
+
+    !> Adapts all sets that are described, now and whatever `every` is.
+    function mpm_stepper_adapt(stepper) bind(c, name="mpm_stepper_adapt") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_adapt
+
+    !> Tells what adaption has done to a set.
+    function mpm_stepper_adaption_info(stepper, particles, info) bind(c, name="mpm_stepper_adaption_info") &
+        result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: particles
+      type(mpm_adaption_info), intent(inout) :: info
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_adaption_info
+
     !> Tells how many bytes mpm_state_save() needs now.
     function mpm_state_size(stepper, bytes) bind(c, name="mpm_state_size") result(answer)
       import
@@ -2319,12 +2454,13 @@ module mpm
     module procedure init_mpm_contact_info
     module procedure init_mpm_obstacle_desc
     module procedure init_mpm_surface_desc
+    module procedure init_mpm_adaption_desc
   end interface mpm_init
 
   private :: init_mpm_view, init_mpm_context_desc, init_mpm_grid_desc, init_mpm_material_batch, &
       init_mpm_material_desc, init_mpm_operator_info, init_mpm_stepper_desc, init_mpm_step_info, &
       init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, init_mpm_obstacle_desc, &
-      init_mpm_surface_desc
+      init_mpm_surface_desc, init_mpm_adaption_desc
 
 contains
 
@@ -2489,5 +2625,10 @@ contains
     type(mpm_surface_desc), intent(out) :: it
     if (mpm_surface_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
   end subroutine init_mpm_surface_desc
+
+  subroutine init_mpm_adaption_desc(it)
+    type(mpm_adaption_desc), intent(out) :: it
+    if (mpm_adaption_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
+  end subroutine init_mpm_adaption_desc
 
 end module mpm

@@ -103,6 +103,8 @@ export const constants = Object.freeze({
   MPM_MOTION_FIXED: 0,
   MPM_MOTION_PRESCRIBED: 1,
   MPM_MOTION_FREE: 2,
+  MPM_ADAPT_SPLIT: 0,
+  MPM_ADAPT_MERGE: 1,
 });
 
 // A field is [offset, kind], with the length of an array in the struct, or with the extents of one that it points to.
@@ -469,6 +471,50 @@ export const structs = {
       velocity: [60, 'f64*', 'dim', 'ld'],
     },
   },
+  mpm_adaption_batch: {
+    size: 48,
+    fields: {
+      struct_size: [0, 'u32'],
+      what: [4, 'i32'],
+      n: [8, 'i64'],
+      ld: [16, 'i64'],
+      dim: [24, 'i32'],
+      reserved: [28, 'i32'],
+      id: [32, 'i64*', 'ld'],
+      other: [36, 'i64*', 'ld'],
+      position: [40, 'f64*', 'dim', 'ld'],
+    },
+  },
+  mpm_adaption_desc: {
+    size: 64,
+    fields: {
+      struct_size: [0, 'u32'],
+      every: [4, 'i32'],
+      split_edge: [8, 'f64'],
+      least_edge: [16, 'f64'],
+      min_per_cell: [24, 'i32'],
+      max_per_cell: [28, 'i32'],
+      merge_distance: [32, 'f64'],
+      merge_tolerance: [40, 'f64'],
+      most_particles: [48, 'i64'],
+      accept: [56, 'pointer'],
+      user: [60, 'pointer'],
+    },
+  },
+  mpm_adaption_info: {
+    size: 80,
+    fields: {
+      struct_size: [0, 'u32'],
+      reserved: [4, 'i32'],
+      splits: [8, 'i64'],
+      added: [16, 'i64'],
+      merges: [24, 'i64'],
+      kinetic_loss: [32, 'f64'],
+      affine_loss: [40, 'f64'],
+      strain_loss: [48, 'f64'],
+      angular_momentum_loss: [56, 'f64', 3],
+    },
+  },
 };
 
 // The parameters of callbacks as WebAssembly has them, and how many results there are.
@@ -490,5 +536,6 @@ export const callbacks = {
   mpm_distance_fn: [['i32', 'i32'], 1],
   mpm_motion_fn: [['i32', 'f64', 'f64', 'i32', 'i32'], 1],
   mpm_traction_fn: [['i32', 'i32', 'i32'], 1],
+  mpm_adaption_fn: [['i32', 'i32', 'i32'], 1],
   mpm_write_fn: [['i32', 'i32', 'i64'], 1],
 };

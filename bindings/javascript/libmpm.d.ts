@@ -244,6 +244,10 @@ export interface Constants {
   readonly MPM_MOTION_PRESCRIBED: 1;
   /** as a rigid body under contact, gravity and the host's load */
   readonly MPM_MOTION_FREE: 2;
+  /** particles that are to be split */
+  readonly MPM_ADAPT_SPLIT: 0;
+  /** pairs that are to become one particle */
+  readonly MPM_ADAPT_MERGE: 1;
 }
 /** All constants of the library, under their names in C. */
 export const C: Constants;
@@ -534,6 +538,43 @@ export interface SurfaceDesc {
    * stretches has no dents. Half a spacing is right. 0 (default): they are not.
    */
   max_spacing?: number;
+}
+/**
+ * How a set adapts. Fill it with mpm_adaption_desc_init(), after which nothing is split and nothing merged.
+ * Lengths are counted in cells: an edge (a, b, c) has the length |(a/h_x, b/h_y, c/h_z)|.
+ */
+export interface AdaptionDesc {
+  /** steps from one adaption to the next; default 10; 0: by mpm_stepper_adapt() alone */
+  every?: number | boolean;
+  /**
+   * Edges of domains that are longer than this are halved. 0 (default): none are. With quadratic splines, two
+   * particles per cell and axis and a transfer that carries a matrix, 0.52 keeps material together however
+   * far it is drawn.
+   */
+  split_edge?: number;
+  /** No edge becomes shorter than this by splitting. Default 0.125. */
+  least_edge?: number;
+  /**
+   * In a cell that has particles, but fewer of the set than this, they are split along their longest edges
+   * until there are so many. 0 (default): not. For fluids, whose deformation gradient has no shape.
+   */
+  min_per_cell?: number | boolean;
+  /**
+   * In a cell with more particles of the set, the nearest pairs that are alike are merged until there are so
+   * many. 0 (default): none are. At least twice min_per_cell.
+   */
+  max_per_cell?: number | boolean;
+  /** Pairs lie no further apart than this. Default 0.25. */
+  merge_distance?: number;
+  /**
+   * Pairs are alike when their deformation gradients differ by at most this share of the larger one, in the
+   * norm of Frobenius, their stresses by this share of density c^2, and their velocities by this share of c,
+   * the wave speed of the law; with laws of the host, stresses by this share of the larger one, and
+   * velocities are not looked at. Default 0.02.
+   */
+  merge_tolerance?: number;
+  /** Nothing is split beyond this number of particles in the set. 0 (default): there is no such bound. */
+  most_particles?: number;
 }
 /**
  * A linear system. The arrays belong to the library and are valid until the solve callback returns. A row is
@@ -925,6 +966,26 @@ export interface MarkerBatch {
   readonly displacement: Float64Array[];
   /** [dim][ld] of the material there, in the last step */
   readonly velocity: Float64Array[];
+}
+/**
+ * Particles that are to be split, or pairs that are to be merged. Arrays belong to the library and are valid
+ * during the call.
+ */
+export interface AdaptionBatch {
+  /** MPM_ADAPT_SPLIT or MPM_ADAPT_MERGE */
+  readonly what: number;
+  /** how many */
+  readonly n: number;
+  /** distance from component c to c + 1 of position, in elements; >= n */
+  readonly ld: number;
+  /** dimension of the grid */
+  readonly dim: number;
+  /** [ld] ids, ascending; of pairs that of the particle that stays */
+  readonly id: BigInt64Array;
+  /** [ld] ids of the particles that go; NULL where particles are split */
+  readonly other: BigInt64Array | undefined;
+  /** [dim][ld] of the particle, or of the one that stays */
+  readonly position: Float64Array[];
 }
 
 /**
@@ -1982,6 +2043,7 @@ export interface Raw {
   mpm_particles_count(particles: number): bigint;
   mpm_particles_field_info(particles: number, index: number, field: number, type: number, components: number, writable: number): number;
   mpm_particles_add_field(particles: number, field: number, type: number, components: number): number;
+  mpm_particles_set_extensive(particles: number, field: number, extensive: number): number;
   mpm_particles_map(particles: number, field: number, access: number, view: number): number;
   mpm_particles_get(particles: number, field: number, type: number, components: number, n: bigint, ids: number, out: number): number;
   mpm_particles_get_f32(particles: number, count: number, fields: number, order: number, n: bigint, out: number): number;
@@ -2055,6 +2117,10 @@ export interface Raw {
   mpm_surface_set(surface: number, field: number, type: number, components: number, n: bigint, ids: number, values: number): number;
   mpm_stepper_add_surface(stepper: number, surface: number): number;
   mpm_stepper_remove_surface(stepper: number, surface: number): number;
+  mpm_adaption_desc_init(desc: number, struct_size: number): number;
+  mpm_stepper_set_adaption(stepper: number, particles: number, desc: number): number;
+  mpm_stepper_adapt(stepper: number): number;
+  mpm_stepper_adaption_info(stepper: number, particles: number, info: number): number;
   mpm_state_size(stepper: number, bytes: number): number;
   mpm_state_save(stepper: number, buffer: number, capacity: bigint): number;
   mpm_state_load(stepper: number, buffer: number, bytes: bigint): number;

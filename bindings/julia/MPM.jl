@@ -187,6 +187,10 @@ const MPM_MOTION_FIXED = Int32(0) # not at all (default)
 const MPM_MOTION_PRESCRIBED = Int32(1) # by its velocities, which the host may change from step to step
 const MPM_MOTION_FREE = Int32(2) # as a rigid body under contact, gravity and the host's load
 
+# What a batch of mpm_adaption_fn is about.
+const MPM_ADAPT_SPLIT = Int32(0) # particles that are to be split
+const MPM_ADAPT_MERGE = Int32(1) # pairs that are to become one particle
+
 """
 A context holds the services of the host (memory, threads, log) and the text of the last error. Every other object is
 made with one. See context.h.
@@ -672,6 +676,61 @@ struct mpm_marker_batch
     velocity::Ptr{Float64}
 end
 
+"""
+Particles that are to be split, or pairs that are to be merged. Arrays belong to the library and are valid during the
+call.
+"""
+struct mpm_adaption_batch
+    struct_size::UInt32
+    what::Int32
+    n::Int64
+    ld::Int64
+    dim::Int32
+    reserved::Int32
+    id::Ptr{Int64}
+    other::Ptr{Int64}
+    position::Ptr{Float64}
+end
+
+"""
+How a set adapts. Fill it with mpm_adaption_desc_init(), after which nothing is split and nothing merged. Lengths are
+counted in cells: an edge (a, b, c) has the length |(a/h_x, b/h_y, c/h_z)|.
+"""
+mutable struct mpm_adaption_desc
+    struct_size::UInt32
+    every::Int32
+    split_edge::Float64
+    least_edge::Float64
+    min_per_cell::Int32
+    max_per_cell::Int32
+    merge_distance::Float64
+    merge_tolerance::Float64
+    most_particles::Int64
+    accept::Ptr{Cvoid}
+    user::Ptr{Cvoid}
+    mpm_adaption_desc() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_adaption_desc}}, it::mpm_adaption_desc) = it
+Base.unsafe_convert(::Type{Ptr{mpm_adaption_desc}}, it::mpm_adaption_desc) = Ptr{mpm_adaption_desc}(pointer_from_objref(it))
+
+"""
+What adaption has done to a set, in all steps since it was first described for it or the time was set.
+"""
+mutable struct mpm_adaption_info
+    struct_size::UInt32
+    reserved::Int32
+    splits::Int64
+    added::Int64
+    merges::Int64
+    kinetic_loss::Float64
+    affine_loss::Float64
+    strain_loss::Float64
+    angular_momentum_loss::NTuple{3, Float64}
+    mpm_adaption_info() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_adaption_info}}, it::mpm_adaption_info) = it
+Base.unsafe_convert(::Type{Ptr{mpm_adaption_info}}, it::mpm_adaption_info) = Ptr{mpm_adaption_info}(pointer_from_objref(it))
+
 # Callbacks: what @cfunction(f, result, (arguments,)) takes for each type of C.
 
 """
@@ -865,6 +924,14 @@ MPM_NONFINITE.
 f(user, batch, add): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_marker_batch}, Ptr{Float64}))
 """
 const mpm_traction_fn = Ptr{Cvoid}
+
+"""
+Says which of them are left as they are: accept[i], [ld], is 1, and the callback writes 0 to keep the i-th from it. It
+runs on the thread of the call. Returns as mpm_particle_fn does.
+
+f(user, batch, accept): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_adaption_batch}, Ptr{UInt8}))
+"""
+const mpm_adaption_fn = Ptr{Cvoid}
 
 """
 Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers. All
@@ -1280,6 +1347,18 @@ or taken, or a value is. MPM_E_STATE: there is no room for one more.
 function mpm_particles_add_field(particles, field, type_, components)
     return ccall((:mpm_particles_add_field, libmpm), Int32, (Ptr{mpm_particles}, Cstring, Int32, Int32),
         particles, field, type_, components)
+end
+
+"""
+Says of a field of the host that its values are amounts, as mass is, and not densities: particles that are split share
+them, and merged ones have the sum. Of other fields they have the same value, and merged ones the mean by initial
+volume. The field is of type MPM_F64; values of other types are those of the heavier particle. extensive is 0 (as
+added) or 1. MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: the field is not the host's, or of another type.
+MPM_E_STATE: as for all that changes a set.
+"""
+function mpm_particles_set_extensive(particles, field, extensive)
+    return ccall((:mpm_particles_set_extensive, libmpm), Int32, (Ptr{mpm_particles}, Cstring, Int32),
+        particles, field, extensive)
 end
 
 """
@@ -2064,6 +2143,43 @@ function mpm_stepper_remove_surface(stepper, surface)
 end
 
 """
+Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond is written.
+MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
+"""
+function mpm_adaption_desc_init(desc, struct_size)
+    return ccall((:mpm_adaption_desc_init, libmpm), Int32, (Ptr{mpm_adaption_desc}, UInt32), desc, struct_size)
+end
+
+"""
+Describes how a set of the stepper adapts, for the steps that follow; NULL: no longer. The set then keeps the field
+\"size\". Not part of a saved state: the host sets it again. MPM_E_NOT_FOUND: the set is not in the stepper.
+MPM_E_ARG: a value is bad or particles is NULL; an edge could be split that would be shorter than least_edge
+(split_edge < 2 least_edge), or max_per_cell < 2 min_per_cell. MPM_E_UNSUPPORTED: total_lagrangian = 1, where material
+does not come apart, or the law is \"rigid\". MPM_E_STATE: a step is under way, or a view of the set is out.
+"""
+function mpm_stepper_set_adaption(stepper, particles, desc)
+    return ccall((:mpm_stepper_set_adaption, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_particles}, Ptr{mpm_adaption_desc}),
+        stepper, particles, desc)
+end
+
+"""
+Adapts all sets that are described, now and whatever `every` is. Sets are unchanged on failure. MPM_E_CALLBACK,
+MPM_CUT_DT: accept returned an error. MPM_E_STATE: a step is under way, a view of a set is out, or a value that was
+written through one is bad.
+"""
+function mpm_stepper_adapt(stepper)
+    return ccall((:mpm_stepper_adapt, libmpm), Int32, (Ptr{mpm_stepper},), stepper)
+end
+
+"""
+Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper.
+"""
+function mpm_stepper_adaption_info(stepper, particles, info)
+    return ccall((:mpm_stepper_adaption_info, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_particles}, Ptr{mpm_adaption_info}),
+        stepper, particles, info)
+end
+
+"""
 Tells how many bytes mpm_state_save() needs now.
 """
 function mpm_state_size(stepper, bytes)
@@ -2263,6 +2379,12 @@ function ready(::Type{mpm_surface_desc})
     status == MPM_OK || error("mpm_surface_desc_init: libmpm is older than the module")
     return it
 end
+function ready(::Type{mpm_adaption_desc})
+    it = zeroed(mpm_adaption_desc)
+    status = mpm_adaption_desc_init(it, UInt32(sizeof(mpm_adaption_desc)))
+    status == MPM_OK || error("mpm_adaption_desc_init: libmpm is older than the module")
+    return it
+end
 
 export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED,
     MPM_SINGULAR, MPM_OFF_GRID, MPM_CANCELLED, MPM_E_ARG, MPM_E_NOMEM, MPM_E_STATE, MPM_E_CALLBACK, MPM_E_UNSUPPORTED,
@@ -2279,18 +2401,19 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT, MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT,
     MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY, MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER,
     MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE, MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE,
-    mpm_context, mpm_grid, mpm_material, mpm_particles, mpm_stepper, mpm_operator, mpm_obstacle, mpm_surface,
-    mpm_series, mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc,
-    mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch, mpm_advance_desc,
-    mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc,
-    mpm_surface_desc, mpm_marker_batch, mpm_version, mpm_status_name, mpm_status_text, mpm_view_release,
-    mpm_context_desc_init, mpm_context_create, mpm_context_memory, mpm_context_destroy, mpm_last_error,
-    mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy, mpm_material_create,
-    mpm_material_model_count, mpm_material_model_name, mpm_material_model_param, mpm_material_state_count,
-    mpm_material_state_name, mpm_batch_field, mpm_material_desc_init, mpm_material_create_custom, mpm_material_update,
-    mpm_material_destroy, mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box,
-    mpm_particles_fill_ball, mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count,
-    mpm_particles_field_info, mpm_particles_add_field, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32,
+    MPM_ADAPT_SPLIT, MPM_ADAPT_MERGE, mpm_context, mpm_grid, mpm_material, mpm_particles, mpm_stepper, mpm_operator,
+    mpm_obstacle, mpm_surface, mpm_series, mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch,
+    mpm_material_desc, mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch,
+    mpm_advance_desc, mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch,
+    mpm_obstacle_desc, mpm_surface_desc, mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info,
+    mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create,
+    mpm_context_memory, mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create,
+    mpm_grid_destroy, mpm_material_create, mpm_material_model_count, mpm_material_model_name,
+    mpm_material_model_param, mpm_material_state_count, mpm_material_state_name, mpm_batch_field,
+    mpm_material_desc_init, mpm_material_create_custom, mpm_material_update, mpm_material_destroy,
+    mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball,
+    mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
+    mpm_particles_add_field, mpm_particles_set_extensive, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32,
     mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic, mpm_particles_reset_reference,
     mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create,
     mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure, mpm_stepper_set_time,
@@ -2306,7 +2429,8 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     mpm_obstacle_set_load, mpm_obstacle_contact_info, mpm_surface_desc_init, mpm_surface_create, mpm_surface_destroy,
     mpm_surface_configure, mpm_surface_set_traction, mpm_surface_add, mpm_surface_add_polyline,
     mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine, mpm_surface_count, mpm_surface_get,
-    mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface, mpm_state_size, mpm_state_save,
+    mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface, mpm_adaption_desc_init,
+    mpm_stepper_set_adaption, mpm_stepper_adapt, mpm_stepper_adaption_info, mpm_state_size, mpm_state_save,
     mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file, mpm_state_hash, mpm_write_particles,
     mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid, mpm_write_grid_to, mpm_series_open,
     mpm_series_append, mpm_series_close

@@ -237,6 +237,22 @@ def drawn_bar():
 
 
 @plot
+def adaption():
+    names = ("APIC_MLS; not split", "APIC_MLS; h = 1/8", "APIC_MLS; h = 1/16", "FLIP; h = 1/8")
+    figure, ax = plt.subplots(4, 1, figsize=(7.2, 4.2), layout="constrained", sharex=True, sharey=True)
+    data = read("adaption_bar")
+    for panel, name in zip(ax, names):
+        at = rows(data, method=name)
+        drawn = panel.scatter(at["x"], at["y"], c=at["F11"], s=3, cmap="viridis", vmin=1, vmax=4, linewidths=0,
+                              antialiased=False, rasterized=True)
+        panel.set_title(name.replace("; ", ", "), fontsize=8, loc="left")
+        panel.set_aspect("equal")
+        panel.set_ylim(0, 0.7)
+    figure.colorbar(drawn, ax=ax, label="$F_{11}$")
+    return figure
+
+
+@plot
 def taylor_bar():
     figure, ax = axes(1, 4.0, 5.6)
     data = read("taylor_bar_cloud")

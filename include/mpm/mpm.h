@@ -98,6 +98,7 @@
 
 #include <mpm/types.h>
 
+#include <mpm/adaption.h>
 #include <mpm/contact.h>
 #include <mpm/context.h>
 #include <mpm/grid.h>

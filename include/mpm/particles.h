@@ -181,6 +181,14 @@ MPM_API mpm_status mpm_particles_field_info(const mpm_particles *particles, int3
 MPM_API mpm_status mpm_particles_add_field(mpm_particles *particles, const char *field, int32_t type,
                                            int32_t components);
 
+/** Says of a field of the host that its values are amounts, as mass is, and not densities: particles that are
+ * split share them, and merged ones have the sum. Of other fields they have the same value, and merged ones
+ * the mean by initial volume. The field is of type MPM_F64; values of other types are those of the heavier
+ * particle. extensive is 0 (as added) or 1. MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: the field is
+ * not the host's, or of another type. MPM_E_STATE: as for all that changes a set. */
+MPM_API mpm_status mpm_particles_set_extensive(mpm_particles *particles, const char *field,
+                                               int32_t extensive);
+
 /**
  * Lends a field in library order, with its stored components and with inert slots (id < 0); a map of "id"
  * tells which is which. access is MPM_READ, MPM_WRITE or both. The caller sets the view's struct_size. Until

@@ -175,6 +175,11 @@ public:
     check(mpm_particles_add_field(core().handle, field.c_str(), detail::type_of<T>(), components));
   }
 
+  /** Says that values of a field of the host are amounts: see mpm_particles_set_extensive(). */
+  void set_extensive(const std::string &field, bool extensive = true) {
+    check(mpm_particles_set_extensive(core().handle, field.c_str(), extensive));
+  }
+
   /** Copies a field of all particles by ascending id, [components][count()]: see mpm_particles_get(). */
   template <class T = double> std::vector<T> get(const std::string &field) const {
     return copy<T>(field, count(), nullptr);

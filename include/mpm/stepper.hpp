@@ -33,6 +33,7 @@ public:
     check(mpm_stepper_remove(c.handle, set.handle()));
     c.sets.erase(std::find(c.sets.begin(), c.sets.end(), set.shared()));
     forget_motion(set.handle());
+    forget_adaption(set.handle());
   }
   /** Puts an obstacle in: see mpm_stepper_add_obstacle(). */
   void add(obstacle &body) {
@@ -101,6 +102,33 @@ public:
     check(mpm_stepper_set_motion(c.handle, set.handle(), rule ? c.on_particles : nullptr, rule.get()));
     forget_motion(set.handle());
     if (rule) c.motions.push_back({set.handle(), std::move(rule)});
+  }
+  /** Sets how a set adapts, and what is asked before it does (nullptr: nothing is), whatever the description
+   * has there. See mpm_stepper_set_adaption(). */
+  void set_adaption(particles &set, mpm_adaption_desc desc, adaption_callback accept = nullptr) {
+    detail::stepper_core &c = core();
+    c.adaptions.reserve(c.adaptions.size() + 1);
+    auto rule = c.keep(std::move(accept));
+    desc.accept = rule ? c.on_adaption : nullptr;
+    desc.user = rule.get();
+    check(mpm_stepper_set_adaption(c.handle, set.handle(), &desc));
+    forget_adaption(set.handle());
+    if (rule) c.adaptions.push_back({set.handle(), std::move(rule)});
+  }
+  /** Lets a set adapt no longer. */
+  void reset_adaption(particles &set) {
+    check(mpm_stepper_set_adaption(core().handle, set.handle(), nullptr));
+    forget_adaption(set.handle());
+  }
+  /** Adapts all sets that are described, now: see mpm_stepper_adapt(). */
+  void adapt() {
+    core().result(mpm_stepper_adapt(core().handle)).or_throw();
+  }
+  /** What adaption has done to a set: see mpm_stepper_adaption_info(). */
+  mpm::adaption_info adaption(const particles &set) const {
+    mpm::adaption_info info;
+    check(mpm_stepper_adaption_info(core().handle, set.handle(), &info));
+    return info;
   }
   /** Sets the acceleration of particles; nullptr: none. See mpm_stepper_set_acceleration(). */
   void set_acceleration(particle_callback function) {
@@ -279,6 +307,11 @@ private:
     auto fresh = core().keep(std::move(function));
     check(set(core().handle, fresh ? trampoline : nullptr, fresh.get()));
     place = std::move(fresh);
+  }
+  void forget_adaption(const mpm_particles *set) {
+    auto &all = core().adaptions;
+    all.erase(std::remove_if(all.begin(), all.end(), [set](const auto &a) { return a.set == set; }),
+              all.end());
   }
   void forget_motion(const mpm_particles *set) {
     auto &all = core().motions;

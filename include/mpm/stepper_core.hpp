@@ -5,6 +5,7 @@
 #ifndef MPM_STEPPER_CORE_HPP
 #define MPM_STEPPER_CORE_HPP
 
+#include <mpm/adaption.hpp>
 #include <mpm/linear_system.hpp>
 #include <mpm/obstacle.hpp>
 #include <mpm/surface.hpp>
@@ -66,12 +67,19 @@ struct stepper_core {
     std::unique_ptr<slot<particle_callback>> rule; /**< its mean velocity */
   };
 
+  /** The host's word on how a set adapts. */
+  struct adaption {
+    const mpm_particles *set;                      /**< the set that adapts */
+    std::unique_ptr<slot<adaption_callback>> rule; /**< what it accepts */
+  };
+
   std::shared_ptr<context_core> context;                     /**< outlives the stepper */
   std::shared_ptr<grid_core> grid;                           /**< outlives the stepper */
   std::vector<std::shared_ptr<particles_core>> sets;         /**< outlive the stepper, or are removed */
   std::vector<std::shared_ptr<obstacle_core>> obstacles;     /**< outlive the stepper, or are removed */
   std::vector<std::shared_ptr<surface_core>> surfaces;       /**< outlive the stepper, or are removed */
   std::vector<motion> motions;                               /**< see stepper::set_motion() */
+  std::vector<adaption> adaptions;                           /**< see stepper::set_adaption() */
   std::unique_ptr<slot<particle_callback>> acceleration;     /**< see stepper::set_acceleration() */
   std::unique_ptr<slot<particle_callback>> force;            /**< see stepper::set_force() */
   std::unique_ptr<slot<velocity_callback>> velocity;         /**< see stepper::set_velocity_bc() */
@@ -126,6 +134,10 @@ struct stepper_core {
   /** The mpm_friction_fn that calls the host's function. */
   static mpm_status on_contact(void *user, const mpm_contact_batch *batch, double *value) {
     return call<friction_callback>(user, *batch, value);
+  }
+  /** The mpm_adaption_fn that calls the host's function. */
+  static mpm_status on_adaption(void *user, const mpm_adaption_batch *batch, uint8_t *accept) {
+    return call<adaption_callback>(user, *batch, accept);
   }
   /** The mpm_progress_fn that calls the host's function. */
   static mpm_status on_progress(void *user, const mpm_step_info *info) {

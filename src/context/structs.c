@@ -27,6 +27,9 @@
   X(mpm_obstacle_desc, upper, 296)                                                                           \
   X(mpm_surface_desc, max_spacing, 72)                                                                       \
   X(mpm_marker_batch, velocity, 88)                                                                          \
+  X(mpm_adaption_desc, user, 72)                                                                             \
+  X(mpm_adaption_info, angular_momentum_loss, 80)                                                            \
+  X(mpm_adaption_batch, position, 56)                                                                        \
   X(mpm_particle_batch, lookup, 104)                                                                         \
   X(mpm_node_batch, mass, 72)                                                                                \
   X(mpm_advance_desc, max_steps, 56)                                                                         \

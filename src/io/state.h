@@ -60,8 +60,9 @@ _Static_assert(sizeof(mpmi_totals) == 20 * 8, "part of the format");
 typedef struct mpmi_state_set_numbers {
   int64_t count, slots, next_id, dirty;
   double mass_max, reaction[3];
-  double impulse_total[3]; /* from format 3 on */
-  int64_t body;            /* the same; before it all sets were in body 0 */
+  double impulse_total[3];     /* from format 3 on */
+  int64_t body;                /* the same; before it all sets were in body 0 */
+  mpmi_adaption_sums adaption; /* the same */
 } mpmi_state_set_numbers;
 
 typedef struct mpmi_state_field {

@@ -216,6 +216,7 @@ static void take_over(loading *l) {
     exchange_storage(s->layout.member[m].set, &l->set[m].fresh);
     mpmi_member *member = &s->layout.member[m];
     member->body = (int32_t)l->set[m].numbers.body;
+    s->adaption[m].sums = l->set[m].numbers.adaption;
     mpmi_reaction *reaction = &s->history.reaction[m];
     memcpy(reaction->impulse, l->set[m].numbers.reaction, sizeof reaction->impulse);
     memcpy(reaction->impulse_total, l->set[m].numbers.impulse_total, sizeof reaction->impulse_total);

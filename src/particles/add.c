@@ -25,12 +25,18 @@ static int64_t free_tail(const mpm_particles *set) {
   return tail;
 }
 
-static mpm_status grow(mpm_particles *set, int64_t slots) {
+/* Makes room for slots, and for some more; `both` keeps what the second copies have. */
+static mpm_status grow(mpm_particles *set, int64_t slots, int32_t both) {
   if (slots <= set->ld) return MPM_OK;
   int64_t wanted = slots + slots / 40; /* the padding of sorted blocks takes a per cent or two */
   int64_t geometric = set->ld + set->ld / 2;
   if (wanted < geometric) wanted = geometric;
-  return mpmi_particles_reserve(set, wanted > MPMI_MAX_SLOTS ? MPMI_MAX_SLOTS : wanted);
+  if (wanted > MPMI_MAX_SLOTS) wanted = MPMI_MAX_SLOTS;
+  return both ? mpmi_particles_reserve_in_step(set, wanted) : mpmi_particles_reserve(set, wanted);
+}
+
+mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t in_step) {
+  return grow(set, (set->slots + n + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD, in_step);
 }
 
 /* Particles whose F stays have no stress: they act only by being prescribed, and they are unless the host
@@ -42,7 +48,7 @@ static int32_t is_rigid(const mpm_particles *set) {
 mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, int64_t *slot) {
   int64_t first = set->slots - free_tail(set);
   int64_t slots = (first + n + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD;
-  mpm_status status = grow(set, slots);
+  mpm_status status = grow(set, slots, 0);
   if (!status && with_size) status = mpmi_field_make_present(set, MPMI_SIZE);
   if (!status && is_rigid(set)) status = mpmi_field_make_present(set, MPMI_PRESCRIBED);
   if (status) return status;

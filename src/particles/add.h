@@ -4,6 +4,9 @@
 
 #include "particles/builtin_fields.h"
 
+/* Makes room for n more particles. in_step: a step is under way, whose results are kept. */
+mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t in_step);
+
 /* Does everything that may fail, for n particles that there is room for; on failure the set is unchanged.
  * On success the slots [*slot, *slot + n) hold inert defaults in every field. The caller then writes
  * position (in reach of a wrap), velocity and initial_volume, and size when with_size is 1. */

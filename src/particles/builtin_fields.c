@@ -86,6 +86,8 @@ void mpmi_fields_builtin(mpm_particles *set) {
     field->writable = from->writable;
     field->two_copies = from->two_copies;
     field->present = from->present;
+    field->extensive =
+        f == MPMI_MASS || f == MPMI_VOLUME || f == MPMI_INITIAL_VOLUME || f == MPMI_APPLIED_FORCE;
   }
   set->field[MPMI_STRESS].writable = !mpmi_material_stress_from_F(set->material);
   set->field[MPMI_SIZE].present = mpmi_has_sizes(set->grid);

@@ -59,7 +59,7 @@ void mpmi_particles_watch(const mpm_particles *set, int64_t slots) {
   for (int32_t f = 0; f < set->field_count; ++f) watch_field(&set->field[f], set->ld, slots);
 }
 
-static mpm_status reserve_copies(mpm_particles *set, int64_t slots) {
+static mpm_status reserve_copies(mpm_particles *set, int64_t slots, int32_t copies) {
   if (slots <= set->ld) return MPM_OK;
   if (slots > MPMI_MAX_SLOTS)
     return mpmi_fail(set->context, MPM_E_ARG, "a set has room for %lld slots: %lld are too many",
@@ -76,8 +76,8 @@ static mpm_status reserve_copies(mpm_particles *set, int64_t slots) {
   for (int32_t f = 0; f < set->field_count; ++f) {
     mpmi_field *field = &set->field[f];
     if (!field->present) continue;
-    /* The second copy is scratch between steps, so only the first is moved. */
-    move_rows(field, field->data[0], set->ld, fresh[f][0], ld, set->slots);
+    for (int32_t k = 0; k < copies && k < 1 + field->two_copies; ++k)
+      move_rows(field, field->data[k], set->ld, fresh[f][k], ld, set->slots);
     free_copies(set, field, field->data, set->ld);
     memcpy(field->data, fresh[f], sizeof field->data);
   }
@@ -85,10 +85,19 @@ static mpm_status reserve_copies(mpm_particles *set, int64_t slots) {
   return MPM_OK;
 }
 
-mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
-  const mpm_status status = reserve_copies(set, slots);
+/* The second copy is scratch between steps, and holds the results of one under way. */
+static mpm_status reserve(mpm_particles *set, int64_t slots, int32_t copies) {
+  const mpm_status status = reserve_copies(set, slots, copies);
   if (!status) mpmi_particles_watch(set, slots > set->slots ? slots : set->slots);
   return status;
+}
+
+mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots) {
+  return reserve(set, slots, 1);
+}
+
+mpm_status mpmi_particles_reserve_in_step(mpm_particles *set, int64_t slots) {
+  return reserve(set, slots, COPIES);
 }
 
 double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int64_t slot) {

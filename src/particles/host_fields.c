@@ -30,6 +30,22 @@ static mpm_status check_name(const mpm_particles *set, const char *name) {
   return MPM_OK;
 }
 
+mpm_status mpm_particles_set_extensive(mpm_particles *particles, const char *field, int32_t extensive) {
+  MPMI_ENTER(particles, MPMI_PARTICLES);
+  int32_t f = -1;
+  mpm_status status = mpmi_particles_changeable(particles);
+  if (!status) status = mpmi_require_field(particles, field, &f);
+  if (status) return status;
+  if (extensive < 0 || extensive > 1)
+    return mpmi_fail(particles->context, MPM_E_ARG, "extensive is %d, must be 0 or 1", (int)extensive);
+  if (f < MPMI_BUILTIN_FIELDS || particles->field[f].type != MPM_F64)
+    return mpmi_fail(particles->context, MPM_E_ARG,
+                     "%s is %s: only fields of the host of type MPM_F64 can be extensive", field,
+                     f < MPMI_BUILTIN_FIELDS ? "a field of the library" : "of another type");
+  particles->field[f].extensive = extensive;
+  return MPM_OK;
+}
+
 mpm_status mpm_particles_add_field(mpm_particles *particles, const char *field, int32_t type,
                                    int32_t components) {
   MPMI_ENTER(particles, MPMI_PARTICLES);

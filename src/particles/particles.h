@@ -45,6 +45,7 @@ typedef struct mpmi_field {
   int32_t writable;        /* the host may write it */
   int32_t two_copies;      /* a step writes it: data[1] exists whenever data[0] does */
   int32_t present;         /* takes part in sorting and saving; optional fields start absent */
+  int32_t extensive;       /* an amount: parts of a particle share it, and amounts of a pair add */
   void *data[2];           /* [components][ld] */
 } mpmi_field;
 
@@ -140,6 +141,8 @@ static inline double mpmi_initial_extent(const mpm_particles *set, int64_t slot)
 
 /* These change the storage (fields.c). They do all or nothing: on failure the set is unchanged. */
 mpm_status mpmi_particles_reserve(mpm_particles *set, int64_t slots); /* ld >= slots */
+/* The same while the second copies hold what a step has found. */
+mpm_status mpmi_particles_reserve_in_step(mpm_particles *set, int64_t slots);
 /* Slots from `slots` on are slack in all fields (context/slack.h). */
 void mpmi_particles_watch(const mpm_particles *set, int64_t slots);
 mpm_status mpmi_field_make_present(mpm_particles *set, int32_t field); /* with default values */

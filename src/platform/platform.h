@@ -37,7 +37,7 @@
  * bytes and alignment. */
 void *mpmi_system_alloc(size_t bytes, size_t alignment);
 void mpmi_system_release(void *memory, size_t bytes, size_t alignment);
-int32_t mpmi_processors(void);  /* at least 1; 1 where there are no threads */
+int32_t mpmi_processors(void); /* at least 1; 1 where there are no threads */
 /* 1 for processors that work on registers of 512 bits, if they have any, in two steps of 256, as Zen 4 does
  * (processor.c). */
 int32_t mpmi_works_by_halves(void);

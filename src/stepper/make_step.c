@@ -121,7 +121,7 @@ static mpm_status finish(mpm_stepper *s) {
   mpm_status status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
   if (status) return status;
   mpmi_stops_report(&s->step);
-  if ((status = ask_progress(s))) return status;
+  if ((status = ask_progress(s)) || (status = mpmi_adaption_prepare(s))) return status;
   mpmi_commit(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
@@ -129,6 +129,7 @@ static mpm_status finish(mpm_stepper *s) {
   info.dt_suggested =
       mpmi_is_implicit(&s->settings) ? mpmi_next_dt(info.newton_iterations, info.dt) : mpmi_stable_dt(s);
   drop(s, info);
+  mpmi_adaption_carry_out(s); /* sums are those of the step until somebody asks for those of the state */
   s->nodes.shown = s->layout.version;
   s->nodes.shown_dt = velocity_dt;
   return MPM_OK;

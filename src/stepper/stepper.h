@@ -9,6 +9,7 @@
 #ifndef MPMI_STEPPER_H
 #define MPMI_STEPPER_H
 
+#include "adaption/adaption.h"
 #include "contact/contact.h"
 #include "layout/nodes.h"
 #include "layout/step.h"
@@ -53,6 +54,8 @@ struct mpm_stepper {
   mpmi_nodes nodes;
   mpmi_workspace work;
   struct mpmi_newton *newton; /* memory of implicit steps, or NULL */
+  mpmi_adaption *adaption;    /* [sets] */
+  int64_t adaption_capacity;
   mpmi_profile profile;
   mpmi_step step; /* the one under way, if any */
   mpmi_history history;
@@ -137,6 +140,12 @@ mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes);
 /* Brings nodes back to particles. USL: everything from the updated nodal velocity. MUSL: L from the velocity
  * that the new particles give the nodes. USF has its strain already. */
 mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes);
+
+/* ---- adaption.c -------------------------------------------------------------------------------------- */
+/* Finds what sets are split and merged at the end of the step under way, and makes room for it. */
+mpm_status mpmi_adaption_prepare(mpm_stepper *s);
+/* Does it to the present state; cannot fail. */
+void mpmi_adaption_carry_out(mpm_stepper *s);
 
 /* ---- commit.c ---------------------------------------------------------------------------------------- */
 /* Commits the step; cannot fail. Adds the host's work to the balance. */

@@ -316,6 +316,14 @@ int main(int argc, char **argv) {
   OK(mpm_surface_add(surface, 1, inside, NULL, NULL));
   OK(mpm_stepper_add_surface(stepper, surface));
 #endif
+#ifdef MPM_ADAPTION_H
+  mpm_adaption_desc *patient = MAKE(mpm_adaption_desc);
+  OK(mpm_adaption_desc_init(patient, sizeof *patient));
+  patient->every = 1;
+  patient->split_edge = 100.0; /* nothing is that long */
+  APPEND(mpm_adaption_desc, patient);
+  OK(mpm_stepper_set_adaption(stepper, set[0], patient));
+#endif
   mpm_advance_desc *until = MAKE(mpm_advance_desc);
   double dt;
   uint64_t hash;
@@ -339,6 +347,11 @@ int main(int argc, char **argv) {
   OK(mpm_grid_map(stepper, 0, "reaction", MPM_READ, view));
   show_view("reaction", view);
 
+#ifdef MPM_ADAPTION_H
+  mpm_adaption_info *adapted = MAKE(mpm_adaption_info);
+  OK(mpm_stepper_adaption_info(stepper, set[0], adapted));
+  if (adapted->splits || adapted->merges) return 1;
+#endif
 #ifdef MPM_SURFACE_H
   if (!markers) return 1;
   OK(mpm_stepper_remove_surface(stepper, surface));

@@ -189,6 +189,7 @@ int main(int argc, char **argv) {
     test_steps();
     test_obstacles();
     test_surfaces();
+    test_adaption();
   } catch (const std::exception &e) {
     std::printf("wrapper.cpp:0:E: %s\n", e.what());
     return 1;

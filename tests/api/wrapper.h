@@ -73,5 +73,6 @@ void test_callbacks();
 void test_steps();
 void test_obstacles();
 void test_surfaces();
+void test_adaption();
 
 #endif

@@ -19,7 +19,7 @@ typedef struct cloud {
   mpm_stepper *stepper;
   mpm_obstacle *obstacle[OBSTACLES]; /* some NULL */
   mpm_surface *surface[SURFACES];    /* the same */
-  int64_t count, removed;            /* of all sets; through open walls */
+  int64_t count, removed, came;      /* of all sets; through open walls; by adaption */
   double mass, t;
   int32_t callback_status;
 } cloud;

@@ -13,6 +13,14 @@ static int64_t count_all(const cloud *c) {
   return n;
 }
 
+/* Particles that came by splitting, less those that merging took. */
+static int64_t came_all(const cloud *c) {
+  int64_t n = 0;
+  for (int32_t m = 0; m < c->stepper->layout.member_count; ++m)
+    n += c->stepper->adaption[m].sums.added - c->stepper->adaption[m].sums.merges;
+  return n;
+}
+
 /* A field of all particles; to be freed. */
 static void *get(cloud *c, const mpm_particles *set, const char *field, int32_t type, int32_t components) {
   const int64_t n = mpm_particles_count(set), fail_at = fuzz_no_failure(&c->memory);
@@ -66,16 +74,18 @@ static void look_anew(cloud *c) {
   c->t = c->stepper->history.t;
   c->removed = c->stepper->history.removed;
   c->count = count_all(c);
+  c->came = came_all(c);
   c->mass = mass_all(c);
 }
 
 /* After one or several steps: particles are lost through open walls only, and are counted. */
 static void check_steps(cloud *c, const mpm_step_info *info) {
   const int64_t lost = info->removed - c->removed, count = count_all(c);
-  MUST(lost >= 0 && count == c->count - lost);
+  MUST(lost >= 0 && count == c->count - lost + came_all(c) - c->came);
   const double mass = mass_all(c);
-  MUST(lost ? mass <= c->mass : fabs(mass - c->mass) <= 1e-12 * (c->mass + 1.0));
+  MUST(lost ? mass <= c->mass * (1.0 + 1e-12) : fabs(mass - c->mass) <= 1e-12 * (c->mass + 1.0));
   c->count = count;
+  c->came = came_all(c);
   c->mass = mass;
   c->removed = info->removed;
   c->t = info->t;
@@ -326,6 +336,35 @@ static void leave_and_return(cloud *c) {
   look_anew(c);
 }
 
+static mpm_status choose(void *user, const mpm_adaption_batch *batch, uint8_t *accept) {
+  const cloud *c = user;
+  for (int64_t i = 0; i < batch->n; ++i) accept[i] = batch->id[i] % 3 != 0;
+  return c->callback_status;
+}
+
+static void draw_adaption(cloud *c) {
+  mpm_particles *set = draw_set(c);
+  mpm_adaption_desc d;
+  mpm_adaption_info info = {.struct_size = sizeof info};
+  MUST(!mpm_adaption_desc_init(&d, sizeof d));
+  d.every = fuzz_below(&c->in, 4);
+  d.split_edge = fuzz_between(&c->in, 0.0, 2.0);
+  d.least_edge = fuzz_between(&c->in, 0.0, 0.5);
+  d.min_per_cell = fuzz_below(&c->in, 4);
+  d.max_per_cell = fuzz_below(&c->in, 8);
+  d.merge_distance = fuzz_between(&c->in, 0.0, 2.0);
+  d.merge_tolerance = fuzz_between(&c->in, -0.1, 2.0);
+  d.most_particles = MOST_PARTICLES;
+  if (fuzz_below(&c->in, 4) == 0) d.accept = choose, d.user = c;
+  fuzz_status(c->context, mpm_stepper_set_adaption(c->stepper, set, fuzz_below(&c->in, 8) ? &d : NULL));
+  if (fuzz_below(&c->in, 2)) fuzz_status(c->context, mpm_stepper_adapt(c->stepper));
+  fuzz_status(c->context, mpm_stepper_adaption_info(c->stepper, set, &info));
+  MUST(isfinite(info.kinetic_loss) && isfinite(info.affine_loss) && isfinite(info.strain_loss));
+  const double mass = mass_all(c);
+  MUST(fabs(mass - c->mass) <= 1e-12 * (c->mass + 1.0));
+  look_anew(c);
+}
+
 static void look(cloud *c) {
   static const char *const field[] = {"mass",  "force",         "reaction",       "acceleration", "velocity",
                                       "index", "contact_force", "contact_normal", "contact_area"};
@@ -417,6 +456,9 @@ static void act(cloud *c) {
   case 24:
   case 25:
     draw_surface(c);
+    break;
+  case 26:
+    draw_adaption(c);
     break;
   default:
     step(c);

@@ -187,6 +187,7 @@ enum {
   SHEETS,
   TOTAL,
   TOTAL_SETS,
+  ADAPTION,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -238,6 +239,7 @@ static const option options[OPTIONS] = {
     [SHEETS] = {"sheets with a surface, saved and loaded", 1, 1, 0},
     [TOTAL] = {"total Lagrangian, surface and obstacles, saved and loaded", 1, 1, 0},
     [TOTAL_SETS] = {"total Lagrangian, two sets, locking remedy, all callbacks", 1, 1, 0},
+    [ADAPTION] = {"splitting and merging, saved and loaded", 1, 1, 1},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -280,6 +282,7 @@ static void apply(scene *is, int32_t o) {
       [RINGS] = WITH_SURFACE,
       [SHEETS] = WITH_SURFACE,
       [TOTAL] = WITH_SURFACE | WITH_OBSTACLES,
+      [ADAPTION] = WITH_ADAPTION | WITH_APPLIED_FORCE,
       [TOTAL_SETS] =
           WITH_FORCE | WITH_ACCELERATION | WITH_VELOCITY | WITH_PRESCRIBED | WITH_MOTION | WITH_KEPT,
   };
@@ -292,6 +295,7 @@ static void apply(scene *is, int32_t o) {
                                          [RINGS] = STORY_SAVED,
                                          [SHEETS] = STORY_SAVED,
                                          [TOTAL] = STORY_SAVED,
+                                         [ADAPTION] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};

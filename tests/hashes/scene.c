@@ -298,6 +298,19 @@ static void add_surface(world *w, int32_t empty) {
   must(w, mpm_stepper_add_surface(w->stepper, w->surface));
 }
 
+static void add_adaption(world *w) {
+  mpm_adaption_desc d;
+  must(w, mpm_adaption_desc_init(&d, sizeof d));
+  d.every = 2;
+  d.split_edge = 0.45;
+  d.min_per_cell = 2;
+  d.max_per_cell = 5;
+  d.merge_distance = 0.6;
+  d.merge_tolerance = 0.5;
+  must(w, mpm_particles_set_extensive(w->set[0], "heat", 1));
+  must(w, mpm_stepper_set_adaption(w->stepper, w->set[0], &d));
+}
+
 void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
   const mpm_grid_desc g = describe_grid(is);
   const mpm_stepper_desc s = describe_stepper(is);
@@ -331,6 +344,7 @@ void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
   }
   if (is->with & WITH_OBSTACLES) add_obstacles(w);
   if (is->with & WITH_SURFACE) add_surface(w, empty);
+  if (is->with & WITH_ADAPTION) add_adaption(w);
   for (int32_t face = 0; face < 2 * is->dim; ++face)
     if (!is->periodic[face / 2] && !(face == MPM_X_MIN && is->geometry == MPM_AXISYMMETRIC))
       must(w, mpm_stepper_set_wall(w->stepper, face, is->wall[face],

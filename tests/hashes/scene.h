@@ -39,7 +39,8 @@ enum {
   WITH_SPARE_SIZE = 1024, /* GIMP: sizes as the library finds them */
   WITH_BODIES = 2048,     /* the sets stand side by side and rub against each other */
   WITH_OBSTACLES = 4096,  /* one of each motion: fixed, driven, free */
-  WITH_SURFACE = 8192     /* markers at the upper end of the body, under loads of all kinds */
+  WITH_SURFACE = 8192,    /* markers at the upper end of the body, under loads of all kinds */
+  WITH_ADAPTION = 16384   /* the first set is split and merged every other step */
 };
 
 /* How it is stepped. */

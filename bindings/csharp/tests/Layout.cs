@@ -396,6 +396,53 @@ namespace Mpm {
       Compare("MarkerBatch.velocity", (byte*)&it.velocity - at, 80, 60);
     }
 
+    static void CheckAdaptionBatch() {
+      var it = new AdaptionBatch();
+      byte* at = (byte*)&it;
+      Compare("AdaptionBatch", sizeof(AdaptionBatch), 56, 48);
+      Compare("AdaptionBatch.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("AdaptionBatch.what", (byte*)&it.what - at, 4, 4);
+      Compare("AdaptionBatch.n", (byte*)&it.n - at, 8, 8);
+      Compare("AdaptionBatch.ld", (byte*)&it.ld - at, 16, 16);
+      Compare("AdaptionBatch.dim", (byte*)&it.dim - at, 24, 24);
+      Compare("AdaptionBatch.reserved", (byte*)&it.reserved - at, 28, 28);
+      Compare("AdaptionBatch.id", (byte*)&it.id - at, 32, 32);
+      Compare("AdaptionBatch.other", (byte*)&it.other - at, 40, 36);
+      Compare("AdaptionBatch.position", (byte*)&it.position - at, 48, 40);
+    }
+
+    static void CheckAdaptionDesc() {
+      var it = new AdaptionDesc();
+      byte* at = (byte*)&it;
+      Compare("AdaptionDesc", sizeof(AdaptionDesc), 72, 64);
+      Compare("AdaptionDesc.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("AdaptionDesc.every", (byte*)&it.every - at, 4, 4);
+      Compare("AdaptionDesc.split_edge", (byte*)&it.split_edge - at, 8, 8);
+      Compare("AdaptionDesc.least_edge", (byte*)&it.least_edge - at, 16, 16);
+      Compare("AdaptionDesc.min_per_cell", (byte*)&it.min_per_cell - at, 24, 24);
+      Compare("AdaptionDesc.max_per_cell", (byte*)&it.max_per_cell - at, 28, 28);
+      Compare("AdaptionDesc.merge_distance", (byte*)&it.merge_distance - at, 32, 32);
+      Compare("AdaptionDesc.merge_tolerance", (byte*)&it.merge_tolerance - at, 40, 40);
+      Compare("AdaptionDesc.most_particles", (byte*)&it.most_particles - at, 48, 48);
+      Compare("AdaptionDesc.accept", (byte*)&it.accept - at, 56, 56);
+      Compare("AdaptionDesc.user", (byte*)&it.user - at, 64, 60);
+    }
+
+    static void CheckAdaptionInfo() {
+      var it = new AdaptionInfo();
+      byte* at = (byte*)&it;
+      Compare("AdaptionInfo", sizeof(AdaptionInfo), 80, 80);
+      Compare("AdaptionInfo.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("AdaptionInfo.reserved", (byte*)&it.reserved - at, 4, 4);
+      Compare("AdaptionInfo.splits", (byte*)&it.splits - at, 8, 8);
+      Compare("AdaptionInfo.added", (byte*)&it.added - at, 16, 16);
+      Compare("AdaptionInfo.merges", (byte*)&it.merges - at, 24, 24);
+      Compare("AdaptionInfo.kinetic_loss", (byte*)&it.kinetic_loss - at, 32, 32);
+      Compare("AdaptionInfo.affine_loss", (byte*)&it.affine_loss - at, 40, 40);
+      Compare("AdaptionInfo.strain_loss", (byte*)&it.strain_loss - at, 48, 48);
+      Compare("AdaptionInfo.angular_momentum_loss", (byte*)it.angular_momentum_loss - at, 56, 56);
+    }
+
     public static int Check() {
       wrong = 0;
       CheckParam();
@@ -418,6 +465,9 @@ namespace Mpm {
       CheckObstacleDesc();
       CheckSurfaceDesc();
       CheckMarkerBatch();
+      CheckAdaptionBatch();
+      CheckAdaptionDesc();
+      CheckAdaptionInfo();
       foreach (var method in typeof(Native).GetMethods())
         if (method.IsStatic) Marshal.Prelink(method);
       return wrong;

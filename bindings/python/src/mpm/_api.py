@@ -340,6 +340,15 @@ class Motion(IntEnum):
     MOTION_FREE = 2
 
 
+class Adapt(IntEnum):
+    """What a batch of mpm_adaption_fn is about."""
+
+    #: particles that are to be split
+    ADAPT_SPLIT = 0
+    #: pairs that are to become one particle
+    ADAPT_MERGE = 1
+
+
 OK = Status.OK
 CUT_DT = Status.CUT_DT
 INVERTED = Status.INVERTED
@@ -441,6 +450,8 @@ SHAPE_DISTANCE = Shape.SHAPE_DISTANCE
 MOTION_FIXED = Motion.MOTION_FIXED
 MOTION_PRESCRIBED = Motion.MOTION_PRESCRIBED
 MOTION_FREE = Motion.MOTION_FREE
+ADAPT_SPLIT = Adapt.ADAPT_SPLIT
+ADAPT_MERGE = Adapt.ADAPT_MERGE
 
 #: Names of all constants.
 CONSTANTS = """
@@ -453,7 +464,7 @@ CONSTANTS = """
     READ WRITE F64 I64 U8 BY_ID LIBRARY_ORDER SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES
     SOLVER_HOST CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT
     NORMAL_FIXED DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER
-    SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE
+    SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE ADAPT_SPLIT ADAPT_MERGE
 """.split()
 
 
@@ -857,6 +868,39 @@ class marker_batch(Structure):
     ]
 
 
+class adaption_batch(Structure):
+    """Particles that are to be split, or pairs that are to be merged. Arrays belong to the library and are valid
+    during the call."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("what", c_int32),
+        ("n", c_int64),
+        ("ld", c_int64),
+        ("dim", c_int32),
+        ("reserved", c_int32),
+        ("id", c_void_p),
+        ("other", c_void_p),
+        ("position", c_void_p),
+    ]
+
+
+class adaption_info(Structure):
+    """What adaption has done to a set, in all steps since it was first described for it or the time was set."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_int32),
+        ("splits", c_int64),
+        ("added", c_int64),
+        ("merges", c_int64),
+        ("kinetic_loss", c_double),
+        ("affine_loss", c_double),
+        ("strain_loss", c_double),
+        ("angular_momentum_loss", c_double * 3),
+    ]
+
+
 stress_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(material_batch))
 
 tangent_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(material_batch), c_void_p, c_void_p)
@@ -874,6 +918,8 @@ friction_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(contact_batch), c_void_p)
 distance_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(distance_batch))
 
 traction_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(marker_batch), c_void_p)
+
+adaption_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(adaption_batch), c_void_p)
 
 class material_desc(Structure):
     """A law of the host. Fill the struct with mpm_material_desc_init()."""
@@ -915,6 +961,25 @@ class obstacle_desc(Structure):
     ]
 
 
+class adaption_desc(Structure):
+    """How a set adapts. Fill it with mpm_adaption_desc_init(), after which nothing is split and nothing merged.
+    Lengths are counted in cells: an edge (a, b, c) has the length |(a/h_x, b/h_y, c/h_z)|."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("every", c_int32),
+        ("split_edge", c_double),
+        ("least_edge", c_double),
+        ("min_per_cell", c_int32),
+        ("max_per_cell", c_int32),
+        ("merge_distance", c_double),
+        ("merge_tolerance", c_double),
+        ("most_particles", c_int64),
+        ("accept", adaption_fn),
+        ("user", c_void_p),
+    ]
+
+
 #: Sizes of the structs for pointers of 8 and of 4 bytes.
 SIZES = {
     param: (16, 16),
@@ -937,6 +1002,9 @@ SIZES = {
     obstacle_desc: (296, 288),
     surface_desc: (72, 72),
     marker_batch: (88, 64),
+    adaption_batch: (56, 48),
+    adaption_desc: (72, 64),
+    adaption_info: (80, 80),
 }
 
 #: Result and arguments of every function.
@@ -976,6 +1044,7 @@ FUNCTIONS = {
     "mpm_particles_count": (c_int64, [c_void_p]),
     "mpm_particles_field_info": (c_int32, [c_void_p, c_int32, c_void_p, c_void_p, c_void_p, c_void_p]),
     "mpm_particles_add_field": (c_int32, [c_void_p, c_char_p, c_int32, c_int32]),
+    "mpm_particles_set_extensive": (c_int32, [c_void_p, c_char_p, c_int32]),
     "mpm_particles_map": (c_int32, [c_void_p, c_char_p, c_int32, POINTER(view)]),
     "mpm_particles_get": (c_int32, [c_void_p, c_char_p, c_int32, c_int32, c_int64, c_void_p, c_void_p]),
     "mpm_particles_get_f32": (c_int32, [c_void_p, c_int32, c_void_p, c_int32, c_int64, c_void_p]),
@@ -1049,6 +1118,10 @@ FUNCTIONS = {
     "mpm_surface_set": (c_int32, [c_void_p, c_char_p, c_int32, c_int32, c_int64, c_void_p, c_void_p]),
     "mpm_stepper_add_surface": (c_int32, [c_void_p, c_void_p]),
     "mpm_stepper_remove_surface": (c_int32, [c_void_p, c_void_p]),
+    "mpm_adaption_desc_init": (c_int32, [POINTER(adaption_desc), c_uint32]),
+    "mpm_stepper_set_adaption": (c_int32, [c_void_p, c_void_p, POINTER(adaption_desc)]),
+    "mpm_stepper_adapt": (c_int32, [c_void_p]),
+    "mpm_stepper_adaption_info": (c_int32, [c_void_p, c_void_p, POINTER(adaption_info)]),
     "mpm_state_size": (c_int32, [c_void_p, c_void_p]),
     "mpm_state_save": (c_int32, [c_void_p, c_void_p, c_int64]),
     "mpm_state_load": (c_int32, [c_void_p, c_void_p, c_int64]),
@@ -1328,6 +1401,13 @@ Adds a field of the host, zero in every particle. It travels with the particles,
 callbacks through mpm_batch_field(). The name has 1 to 47 characters of a-z, 0-9 and _; type is MPM_F64, MPM_I64 or
 MPM_U8; components are 1 to 64. A set has at most 64 fields, the 17 of the table included. MPM_E_ARG: the name is bad
 or taken, or a value is. MPM_E_STATE: there is no room for one more.""",
+    "mpm_particles_set_extensive": """mpm_status mpm_particles_set_extensive(mpm_particles *particles, const char *field, int32_t extensive)
+
+Says of a field of the host that its values are amounts, as mass is, and not densities: particles that are split share
+them, and merged ones have the sum. Of other fields they have the same value, and merged ones the mean by initial
+volume. The field is of type MPM_F64; values of other types are those of the heavier particle. extensive is 0 (as
+added) or 1. MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: the field is not the host's, or of another type.
+MPM_E_STATE: as for all that changes a set.""",
     "mpm_particles_map": """mpm_status mpm_particles_map(mpm_particles *particles, const char *field, int32_t access, mpm_view *view)
 
 Lends a field in library order, with its stored components and with inert slots (id < 0); a map of "id" tells which is
@@ -1787,6 +1867,26 @@ make the stiffness unsymmetric, so that the solvers for symmetric matrices are n
     "mpm_stepper_remove_surface": """mpm_status mpm_stepper_remove_surface(mpm_stepper *stepper, mpm_surface *surface)
 
 Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper.""",
+    "mpm_adaption_desc_init": """mpm_status mpm_adaption_desc_init(mpm_adaption_desc *desc, uint32_t struct_size)
+
+Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond is written.
+MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.""",
+    "mpm_stepper_set_adaption": """mpm_status mpm_stepper_set_adaption(mpm_stepper *stepper, mpm_particles *particles, const mpm_adaption_desc *desc)
+
+Describes how a set of the stepper adapts, for the steps that follow; NULL: no longer. The set then keeps the field
+"size". Not part of a saved state: the host sets it again. MPM_E_NOT_FOUND: the set is not in the stepper. MPM_E_ARG:
+a value is bad or particles is NULL; an edge could be split that would be shorter than least_edge (split_edge < 2
+least_edge), or max_per_cell < 2 min_per_cell. MPM_E_UNSUPPORTED: total_lagrangian = 1, where material does not come
+apart, or the law is "rigid". MPM_E_STATE: a step is under way, or a view of the set is out.""",
+    "mpm_stepper_adapt": """mpm_status mpm_stepper_adapt(mpm_stepper *stepper)
+
+Adapts all sets that are described, now and whatever `every` is. Sets are unchanged on failure. MPM_E_CALLBACK,
+MPM_CUT_DT: accept returned an error. MPM_E_STATE: a step is under way, a view of a set is out, or a value that was
+written through one is bad.""",
+    "mpm_stepper_adaption_info": """mpm_status mpm_stepper_adaption_info(const mpm_stepper *stepper, const mpm_particles *particles, mpm_adaption_info
+*info)
+
+Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper.""",
     "mpm_state_size": """mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes)
 
 Tells how many bytes mpm_state_save() needs now.""",

@@ -71,7 +71,7 @@ class Batch:
 
     #: components of the fields that are arrays, as a function of the batch; tensors are 3 x 3
     _arrays = {}
-    _integers = ("id", "index", "component")
+    _integers = ("id", "index", "component", "other")
 
     #: those that the callback fills
     _written = ()

@@ -17,6 +17,13 @@ class NodeBatch(Batch):
     _arrays = {"index": vector, "position": vector, "mass": scalar}
 
 
+class AdaptionBatch(Batch):
+    """Particles that are to be split, or pairs that are to be merged: what (ADAPT_SPLIT or ADAPT_MERGE), n, dim, id (n,),
+    other (n,) or None, the particles that go; position (n, dim). Arrays end with the call."""
+
+    _arrays = {"id": scalar, "other": scalar, "position": vector}
+
+
 class ContactBatch(Batch):
     """Nodes at which two bodies touch: body_a, body_b, n, dim, t, dt, position, normal and slip (n, dim), gap, area and
     pressure (n,). Arrays end with the call."""

@@ -188,6 +188,11 @@ class Particles(Handle):
         self._context._check(lib.mpm_particles_add_field(self, field.encode(), kind, components))
         self._look()
 
+    @documented("mpm_particles_set_extensive")
+    def set_extensive(self, field, extensive=True):
+        """Says that values of a field of the host are amounts, which parts of a particle share."""
+        self._context._check(lib.mpm_particles_set_extensive(self, field.encode(), extensive))
+
     @documented("mpm_particles_map")
     def view(self, field, write=False):
         """Shows a field where it lies: (slots, components) in library order with the stored components, inert slots

@@ -7,7 +7,7 @@ from . import _api
 from ._arrays import address, lend
 from ._handles import Handle, descriptor, fill
 from ._library import documented, lib
-from .batches import ContactBatch, NodeBatch, ParticleBatch
+from .batches import AdaptionBatch, ContactBatch, NodeBatch, ParticleBatch
 from .obstacle import Obstacle, contact_desc
 from .surface import Surface
 from .system import System
@@ -41,7 +41,7 @@ class Stepper(Handle):
     def __init__(self, context, grid, *sets, **options):
         self._options = descriptor(_api.stepper_desc, lib.mpm_stepper_desc_init, options, "Stepper")
         made = context._make(lib.mpm_stepper_create, context, grid, ctypes.byref(self._options))
-        self._callbacks, self._held = {}, {}
+        self._callbacks, self._held, self._adapting = {}, {}, {}
         self._own(context, made, context, grid)
         self.grid, self.dim, self._sets, self._obstacles = grid, grid.dim, [], []
         self._surfaces = []
@@ -128,6 +128,35 @@ class Stepper(Handle):
         """What two bodies did to each other in the last step."""
         info = _api.contact_info(struct_size=ctypes.sizeof(_api.contact_info))
         self._context._check(lib.mpm_stepper_contact_info(self, body_a, body_b, ctypes.byref(info)))
+        return info
+
+    # ---- adaption ----
+
+    @documented("mpm_stepper_set_adaption")
+    def set_adaption(self, particles, accept=None, **options):
+        """Describes how a set adapts, by the fields of mpm_adaption_desc: split_edge, min_per_cell, max_per_cell, every ...;
+        without any it adapts no longer. accept(batch, accept) writes 0 for what an AdaptionBatch is to leave as it is."""
+
+        def call(_, batch, accept_):
+            return AdaptionBatch(batch)._run(accept, (accept_, np.uint8))
+
+        made = self._context._callback(_api.adaption_fn, accept, call)
+        desc = descriptor(_api.adaption_desc, lib.mpm_adaption_desc_init, options, "adaption")
+        if accept is not None:
+            desc.accept = made
+        self._context._check(lib.mpm_stepper_set_adaption(self, particles, ctypes.byref(desc) if options else None))
+        self._adapting[id(particles)] = (particles, made)
+
+    @documented("mpm_stepper_adapt")
+    def adapt(self):
+        """Adapts all sets that are described, now."""
+        self._context._check(lib.mpm_stepper_adapt(self))
+
+    @documented("mpm_stepper_adaption_info")
+    def adaption_info(self, particles):
+        """What adaption has done to a set."""
+        info = _api.adaption_info(struct_size=ctypes.sizeof(_api.adaption_info))
+        self._context._check(lib.mpm_stepper_adaption_info(self, particles, ctypes.byref(info)))
         return info
 
     # ---- callbacks ----

@@ -305,6 +305,13 @@ pub mod constants {
     pub const MPM_MOTION_PRESCRIBED: i32 = 1;
     /// as a rigid body under contact, gravity and the host's load
     pub const MPM_MOTION_FREE: i32 = 2;
+
+    // What a batch of mpm_adaption_fn is about.
+
+    /// particles that are to be split
+    pub const MPM_ADAPT_SPLIT: i32 = 0;
+    /// pairs that are to become one particle
+    pub const MPM_ADAPT_MERGE: i32 = 1;
 }
 
 /// A context holds the services of the host (memory, threads, log) and the text of the last error. Every other object is
@@ -558,6 +565,14 @@ pub type mpm_traction_fn = Option<unsafe extern "C" fn(
     user: *mut c_void,
     batch: *const mpm_marker_batch,
     add: *mut f64,
+) -> mpm_status>;
+
+/// Says which of them are left as they are: accept[i], [ld], is 1, and the callback writes 0 to keep the i-th from it. It
+/// runs on the thread of the call. Returns as mpm_particle_fn does.
+pub type mpm_adaption_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    batch: *const mpm_adaption_batch,
+    accept: *mut u8,
 ) -> mpm_status>;
 
 /// Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers. All
@@ -1469,6 +1484,104 @@ pub struct mpm_marker_batch {
     pub velocity: *const f64,
 }
 
+/// Particles that are to be split, or pairs that are to be merged. Arrays belong to the library and are valid during the
+/// call.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_adaption_batch {
+    /// sizeof(mpm_adaption_batch) of the library; see mpm.h
+    pub struct_size: u32,
+    /// MPM_ADAPT_SPLIT or MPM_ADAPT_MERGE
+    pub what: i32,
+    /// how many
+    pub n: i64,
+    /// distance from component c to c + 1 of position, in elements; >= n
+    pub ld: i64,
+    /// dimension of the grid
+    pub dim: i32,
+    /// 0
+    pub reserved: i32,
+    /// [ld] ids, ascending; of pairs that of the particle that stays
+    pub id: *const i64,
+    /// [ld] ids of the particles that go; NULL where particles are split
+    pub other: *const i64,
+    /// [dim][ld] of the particle, or of the one that stays
+    pub position: *const f64,
+}
+
+/// How a set adapts. Fill it with mpm_adaption_desc_init(), after which nothing is split and nothing merged. Lengths are
+/// counted in cells: an edge (a, b, c) has the length |(a/h_x, b/h_y, c/h_z)|.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_adaption_desc {
+    /// sizeof(mpm_adaption_desc) of the caller
+    pub struct_size: u32,
+    /// steps from one adaption to the next; default 10; 0: by mpm_stepper_adapt() alone
+    pub every: i32,
+    /// Edges of domains that are longer than this are halved. 0 (default): none are. With quadratic splines, two
+    /// particles per cell and axis and a transfer that carries a matrix, 0.52 keeps material together however far it is
+    /// drawn.
+    pub split_edge: f64,
+    /// No edge becomes shorter than this by splitting. Default 0.125.
+    pub least_edge: f64,
+    /// In a cell that has particles, but fewer of the set than this, they are split along their longest edges until there
+    /// are so many. 0 (default): not. For fluids, whose deformation gradient has no shape.
+    pub min_per_cell: i32,
+    /// In a cell with more particles of the set, the nearest pairs that are alike are merged until there are so many. 0
+    /// (default): none are. At least twice min_per_cell.
+    pub max_per_cell: i32,
+    /// Pairs lie no further apart than this. Default 0.25.
+    pub merge_distance: f64,
+    /// Pairs are alike when their deformation gradients differ by at most this share of the larger one, in the norm of
+    /// Frobenius, their stresses by this share of density c^2, and their velocities by this share of c, the wave speed of
+    /// the law; with laws of the host, stresses by this share of the larger one, and velocities are not looked at.
+    /// Default 0.02.
+    pub merge_tolerance: f64,
+    /// Nothing is split beyond this number of particles in the set. 0 (default): there is no such bound.
+    pub most_particles: i64,
+    /// NULL (default): all are accepted
+    pub accept: mpm_adaption_fn,
+    /// is passed to accept
+    pub user: *mut c_void,
+}
+
+impl Default for mpm_adaption_desc {
+    /// The library's defaults: `mpm_adaption_desc_init()`.
+    fn default() -> Self {
+        // SAFETY: zeros are a value of every field, and the library writes as many bytes as it is told.
+        unsafe {
+            let mut out: Self = std::mem::zeroed();
+            let status = mpm_adaption_desc_init(&mut out, size_of::<Self>() as u32);
+            assert_eq!(status, MPM_OK, "mpm_adaption_desc_init");
+            out
+        }
+    }
+}
+
+/// What adaption has done to a set, in all steps since it was first described for it or the time was set.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_adaption_info {
+    /// sizeof(mpm_adaption_info) of the caller
+    pub struct_size: u32,
+    /// 0
+    pub reserved: i32,
+    /// particles that were split
+    pub splits: i64,
+    /// particles that came by it
+    pub added: i64,
+    /// pairs that became one
+    pub merges: i64,
+    /// kinetic energy before, less that after: >= 0 of merges; splits with a matrix < 0
+    pub kinetic_loss: f64,
+    /// the same of the matrices: what they give to velocities, and what is lost
+    pub affine_loss: f64,
+    /// the same of the strain energy, in merges; laws of the host are not counted
+    pub strain_loss: f64,
+    /// Angular momentum before, less that after: of merges without a matrix. 0 of MPM_AXISYMMETRIC.
+    pub angular_momentum_loss: [f64; 3],
+}
+
 extern "C" {
     /// The version of the library that runs, as 0xMMmmpp, to be compared with MPM_VERSION. May be called from any thread
     /// at any time.
@@ -1834,6 +1947,17 @@ extern "C" {
         field: *const c_char,
         r#type: i32,
         components: i32,
+    ) -> mpm_status;
+
+    /// Says of a field of the host that its values are amounts, as mass is, and not densities: particles that are split
+    /// share them, and merged ones have the sum. Of other fields they have the same value, and merged ones the mean by
+    /// initial volume. The field is of type MPM_F64; values of other types are those of the heavier particle. extensive
+    /// is 0 (as added) or 1. MPM_E_NOT_FOUND: there is no such field. MPM_E_ARG: the field is not the host's, or of
+    /// another type. MPM_E_STATE: as for all that changes a set.
+    pub fn mpm_particles_set_extensive(
+        particles: *mut mpm_particles,
+        field: *const c_char,
+        extensive: i32,
     ) -> mpm_status;
 
     /// Lends a field in library order, with its stored components and with inert slots (id < 0); a map of "id" tells
@@ -2541,6 +2665,34 @@ extern "C" {
     pub fn mpm_stepper_remove_surface(
         stepper: *mut mpm_stepper,
         surface: *mut mpm_surface,
+    ) -> mpm_status;
+
+    /// Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond is written.
+    /// MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
+    pub fn mpm_adaption_desc_init(desc: *mut mpm_adaption_desc, struct_size: u32) -> mpm_status;
+
+    /// Describes how a set of the stepper adapts, for the steps that follow; NULL: no longer. The set then keeps the
+    /// field "size". Not part of a saved state: the host sets it again. MPM_E_NOT_FOUND: the set is not in the stepper.
+    /// MPM_E_ARG: a value is bad or particles is NULL; an edge could be split that would be shorter than least_edge
+    /// (split_edge < 2 least_edge), or max_per_cell < 2 min_per_cell. MPM_E_UNSUPPORTED: total_lagrangian = 1, where
+    /// material does not come apart, or the law is "rigid". MPM_E_STATE: a step is under way, or a view of the set is
+    /// out.
+    pub fn mpm_stepper_set_adaption(
+        stepper: *mut mpm_stepper,
+        particles: *mut mpm_particles,
+        desc: *const mpm_adaption_desc,
+    ) -> mpm_status;
+
+    /// Adapts all sets that are described, now and whatever `every` is. Sets are unchanged on failure. MPM_E_CALLBACK,
+    /// MPM_CUT_DT: accept returned an error. MPM_E_STATE: a step is under way, a view of a set is out, or a value that
+    /// was written through one is bad.
+    pub fn mpm_stepper_adapt(stepper: *mut mpm_stepper) -> mpm_status;
+
+    /// Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper.
+    pub fn mpm_stepper_adaption_info(
+        stepper: *const mpm_stepper,
+        particles: *const mpm_particles,
+        info: *mut mpm_adaption_info,
     ) -> mpm_status;
 
     /// Tells how many bytes mpm_state_save() needs now.

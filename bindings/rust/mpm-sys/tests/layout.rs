@@ -384,6 +384,50 @@ fn layout_of_mpm_marker_batch() {
 }
 
 #[test]
+fn layout_of_mpm_adaption_batch() {
+    assert_eq!(size_of::<mpm_adaption_batch>(), of(56, 48));
+    assert_eq!(offset!(mpm_adaption_batch, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_adaption_batch, what), of(4, 4));
+    assert_eq!(offset!(mpm_adaption_batch, n), of(8, 8));
+    assert_eq!(offset!(mpm_adaption_batch, ld), of(16, 16));
+    assert_eq!(offset!(mpm_adaption_batch, dim), of(24, 24));
+    assert_eq!(offset!(mpm_adaption_batch, reserved), of(28, 28));
+    assert_eq!(offset!(mpm_adaption_batch, id), of(32, 32));
+    assert_eq!(offset!(mpm_adaption_batch, other), of(40, 36));
+    assert_eq!(offset!(mpm_adaption_batch, position), of(48, 40));
+}
+
+#[test]
+fn layout_of_mpm_adaption_desc() {
+    assert_eq!(size_of::<mpm_adaption_desc>(), of(72, 64));
+    assert_eq!(offset!(mpm_adaption_desc, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_adaption_desc, every), of(4, 4));
+    assert_eq!(offset!(mpm_adaption_desc, split_edge), of(8, 8));
+    assert_eq!(offset!(mpm_adaption_desc, least_edge), of(16, 16));
+    assert_eq!(offset!(mpm_adaption_desc, min_per_cell), of(24, 24));
+    assert_eq!(offset!(mpm_adaption_desc, max_per_cell), of(28, 28));
+    assert_eq!(offset!(mpm_adaption_desc, merge_distance), of(32, 32));
+    assert_eq!(offset!(mpm_adaption_desc, merge_tolerance), of(40, 40));
+    assert_eq!(offset!(mpm_adaption_desc, most_particles), of(48, 48));
+    assert_eq!(offset!(mpm_adaption_desc, accept), of(56, 56));
+    assert_eq!(offset!(mpm_adaption_desc, user), of(64, 60));
+}
+
+#[test]
+fn layout_of_mpm_adaption_info() {
+    assert_eq!(size_of::<mpm_adaption_info>(), of(80, 80));
+    assert_eq!(offset!(mpm_adaption_info, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_adaption_info, reserved), of(4, 4));
+    assert_eq!(offset!(mpm_adaption_info, splits), of(8, 8));
+    assert_eq!(offset!(mpm_adaption_info, added), of(16, 16));
+    assert_eq!(offset!(mpm_adaption_info, merges), of(24, 24));
+    assert_eq!(offset!(mpm_adaption_info, kinetic_loss), of(32, 32));
+    assert_eq!(offset!(mpm_adaption_info, affine_loss), of(40, 40));
+    assert_eq!(offset!(mpm_adaption_info, strain_loss), of(48, 48));
+    assert_eq!(offset!(mpm_adaption_info, angular_momentum_loss), of(56, 56));
+}
+
+#[test]
 fn functions_are_there() {
     let all = [
         mpm_version as *const (),
@@ -421,6 +465,7 @@ fn functions_are_there() {
         mpm_particles_count as *const (),
         mpm_particles_field_info as *const (),
         mpm_particles_add_field as *const (),
+        mpm_particles_set_extensive as *const (),
         mpm_particles_map as *const (),
         mpm_particles_get as *const (),
         mpm_particles_get_f32 as *const (),
@@ -494,6 +539,10 @@ fn functions_are_there() {
         mpm_surface_set as *const (),
         mpm_stepper_add_surface as *const (),
         mpm_stepper_remove_surface as *const (),
+        mpm_adaption_desc_init as *const (),
+        mpm_stepper_set_adaption as *const (),
+        mpm_stepper_adapt as *const (),
+        mpm_stepper_adaption_info as *const (),
         mpm_state_size as *const (),
         mpm_state_save as *const (),
         mpm_state_load as *const (),

@@ -1,0 +1,80 @@
+/* The host may keep particles from being split or merged. Room for what then comes is made before anything is
+ * changed. */
+#include "adaption/adaption.h"
+#include "particles/add.h"
+
+/* What the host sees of a list: a batch at a time. */
+enum { BATCH = 256 };
+typedef struct asked {
+  int64_t id[BATCH], other[BATCH];
+  double position[3 * BATCH];
+  uint8_t accept[BATCH];
+} asked;
+
+static void show(const mpmi_adaption *a, const mpm_particles *set, int32_t copy, int32_t what, int64_t begin,
+                 int64_t n, asked *to) {
+  for (int64_t i = 0; i < n; ++i) {
+    const mpmi_pair *pair = &a->pair[begin + i];
+    const mpmi_split *split = &a->split[begin + i];
+    const int64_t slot = what == MPM_ADAPT_SPLIT ? split->slot : pair->stays;
+    to->id[i] = what == MPM_ADAPT_SPLIT ? split->id : pair->id;
+    to->other[i] = what == MPM_ADAPT_SPLIT ? -1 : pair->other;
+    to->accept[i] = 1;
+    for (int32_t k = 0; k < set->grid->dim; ++k)
+      to->position[k * BATCH + i] = mpmi_row_of(set, MPMI_POSITION, copy, k)[slot];
+  }
+}
+
+/* Moves what is accepted of a batch behind the `kept` ones of its list. */
+static int64_t thin_out(mpmi_adaption *a, const mpm_particles *set, int32_t what, int64_t begin, int64_t n,
+                        const uint8_t *accept, int64_t kept) {
+  const int64_t rows = mpmi_merged_rows(set);
+  for (int64_t i = 0; i < n; ++i) {
+    if (!accept[i]) continue;
+    if (what == MPM_ADAPT_SPLIT) {
+      a->split[kept] = a->split[begin + i];
+    } else {
+      a->pair[kept] = a->pair[begin + i];
+      memmove(a->merged + kept * rows, a->merged + (begin + i) * rows, (size_t)rows * sizeof(double));
+    }
+    ++kept;
+  }
+  return kept;
+}
+
+static mpm_status ask(mpmi_adaption *a, const mpm_particles *set, int32_t copy, int32_t what,
+                      int64_t *count) {
+  asked of;
+  int64_t kept = 0;
+  for (int64_t begin = 0; begin < *count; begin += BATCH) {
+    const int64_t n = *count - begin < BATCH ? *count - begin : BATCH;
+    show(a, set, copy, what, begin, n, &of);
+    const mpm_adaption_batch batch = {.struct_size = sizeof batch,
+                                      .what = what,
+                                      .n = n,
+                                      .ld = BATCH,
+                                      .dim = set->grid->dim,
+                                      .id = of.id,
+                                      .other = what == MPM_ADAPT_MERGE ? of.other : NULL,
+                                      .position = of.position};
+    const mpm_status status = mpmi_from_host(a->desc.accept(a->desc.user, &batch, of.accept));
+    if (status)
+      return mpmi_fail(set->context, mpmi_callback_cause(status), "the adaption callback returned %d",
+                       (int)status);
+    kept = thin_out(a, set, what, begin, n, of.accept, kept);
+  }
+  *count = kept;
+  return MPM_OK;
+}
+
+mpm_status mpmi_adaption_ask(mpmi_adaption *a, const mpm_particles *set, int32_t copy) {
+  if (!a->desc.accept) return MPM_OK;
+  const mpm_status status = ask(a, set, copy, MPM_ADAPT_SPLIT, &a->splits);
+  return status ? status : ask(a, set, copy, MPM_ADAPT_MERGE, &a->pairs);
+}
+
+mpm_status mpmi_adaption_reserve(const mpmi_adaption *a, mpm_particles *set, int32_t copy) {
+  int64_t added = 0;
+  for (int64_t i = 0; i < a->splits; ++i) added += mpmi_parts_of(a->split[i].edges) - 1;
+  return added ? mpmi_append_reserve(set, added, copy) : MPM_OK;
+}

@@ -1,0 +1,106 @@
+/* Splitting and merging of particles. First everything is found and computed that may fail, from the state
+ * that a step has made or from the present one; then it is done to the present state, which cannot fail. */
+#ifndef MPMI_ADAPTION_H
+#define MPMI_ADAPTION_H
+
+#include "layout/step.h"
+#include "particles/builtin_fields.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A particle that is split: bit k of `edges` for its edge k. */
+typedef struct mpmi_split {
+  int64_t id, slot;
+  int32_t edges;
+} mpmi_split;
+
+/* Returns how many particles come of one whose edges are halved. */
+static inline int32_t mpmi_parts_of(int32_t edges) {
+  return 1 << ((edges & 1) + (edges >> 1 & 1) + (edges >> 2 & 1));
+}
+
+/* A pair that is merged: the slots of the particle that stays and of the one that goes. */
+typedef struct mpmi_pair {
+  int64_t id, other;
+  int64_t stays, goes;
+  double strain_loss;
+} mpmi_pair;
+
+/* What it has done: see mpm_adaption_info. */
+typedef struct mpmi_adaption_sums {
+  int64_t splits, added, merges;
+  double kinetic, affine, strain, angular[3];
+} mpmi_adaption_sums;
+
+/* How a set adapts, and what is about to be done to it. */
+typedef struct mpmi_adaption {
+  int32_t on;
+  mpm_adaption_desc desc;
+  mpmi_adaption_sums sums; /* since it was first described, or the time was set */
+  mpmi_split *split;
+  int64_t splits, split_capacity;
+  mpmi_pair *pair;
+  int64_t pairs, pair_capacity;
+  double *merged; /* [pairs][mpmi_merged_rows()] F, stress and state of the particles that pairs become */
+  int64_t merged_capacity;
+  uint64_t *key; /* memory for sorting: two of each particle */
+  uint32_t *order;
+  int64_t key_capacity, order_capacity;
+  uint8_t *taken; /* by slot: the particle is split or merged */
+  int64_t taken_capacity;
+} mpmi_adaption;
+
+/* Returns the row of a component in the state that `copy` 1 has of a step, or that copy 0 has. */
+static inline const double *mpmi_row_of(const mpm_particles *set, int32_t field, int32_t copy, int32_t c) {
+  return mpmi_f64(set, field, set->field[field].two_copies ? copy : 0) + c * set->ld;
+}
+
+/* Edge a of a particle's domain, in lengths. */
+static inline void mpmi_domain_edge(const mpm_particles *set, int32_t copy, int64_t slot, int32_t a,
+                                    double *edge) {
+  const int32_t dim = set->grid->dim;
+  const double length = mpmi_row_of(set, MPMI_SIZE, copy, a)[slot];
+  for (int32_t k = 0; k < dim; ++k)
+    edge[k] = length * mpmi_row_of(set, MPMI_F, copy, mpmi_stored_entry(dim, k, a))[slot];
+}
+/* Its length in cells. */
+double mpmi_edge_in_cells(const mpm_grid *grid, const double *edge);
+
+void mpmi_adaption_free(mpmi_adaption *a, mpm_context *context);
+
+/* Finds what is to be done: fills in the lists, in the order of ids (choose.c). */
+mpm_status mpmi_adaption_choose(mpmi_adaption *a, const mpm_particles *set, int32_t copy);
+/* Computes what pairs become, and drops pairs that are not alike by the law or that it refuses (merge.c). */
+mpm_status mpmi_adaption_merge_states(mpmi_adaption *a, const mpm_particles *set, int32_t copy, double t);
+/* Asks the host, whose answers thin out the lists (accept.c). */
+mpm_status mpmi_adaption_ask(mpmi_adaption *a, const mpm_particles *set, int32_t copy);
+/* Makes room for the particles that come, in both copies. */
+mpm_status mpmi_adaption_reserve(const mpmi_adaption *a, mpm_particles *set, int32_t copy);
+
+/* Do it to the present state (split.c, merge.c). */
+void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set);
+void mpmi_adaption_merge(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set);
+
+/* ---- momenta.c ---------------------------------------------------------------------------------------- */
+/* A particle's motion, with the matrix that the transfer carries and the second moments of the basis
+ * there. */
+typedef struct mpmi_motion_of {
+  double mass, x[3], v[3], C[3][3], D[3];
+} mpmi_motion_of;
+/* Reads the motion of a slot; C and D are 0 where the transfer carries no matrix. */
+mpmi_motion_of mpmi_motion_in(const mpmi_settings *settings, const mpm_particles *set, int64_t slot);
+void mpmi_second_moments(const mpmi_settings *settings, const mpm_particles *set, int64_t slot, double *D);
+void mpmi_write_motion(const mpmi_settings *settings, mpm_particles *set, int64_t slot,
+                       const mpmi_motion_of *motion);
+/* Adds a particle's energies and its angular momentum about a centre, times sign, to what is lost. */
+void mpmi_count_motion(const mpm_grid *grid, const mpmi_motion_of *motion, const double *centre, double sign,
+                       mpmi_adaption_sums *sums);
+
+/* Doubles of a merged particle: F, stress, state. */
+static inline int64_t mpmi_merged_rows(const mpm_particles *set) {
+  return mpmi_tensor_components(set->grid->dim) + mpmi_stress_components(set->grid->dim) +
+         set->material->state_count;
+}
+
+#endif
