@@ -8,6 +8,12 @@ path path_of(const char *model, const mpm_param *params, int32_t count) {
   return s;
 }
 
+void path_like(path *s, const path *other) {
+  mpm_material *material = s->material;
+  *s = *other;
+  s->material = material;
+}
+
 void start(path *s, double mean) {
   for (int k = 0; k < 9; ++k) s->F[k] = k % 4 == 0;
   for (int k = 0; k < 6; ++k) s->stress[k] = k < 3 ? mean : 0.0;
@@ -91,6 +97,19 @@ invariants invariants_of(const path *s) {
   double square = 0.0;
   for (int c = 0; c < 6; ++c) square += (c < 3 ? 1.0 : 2.0) * pow(J * s->stress[c] + (c < 3 ? p : 0.0), 2.0);
   return (invariants){p, sqrt(1.5 * square)};
+}
+
+double dissipated(const path *end, const path *trial, double shear, double bulk, double *digits) {
+  const double J = jacobian_of(end);
+  const invariants now = invariants_of(end), tried = invariants_of(trial);
+  double work = 0.0;
+  for (int c = 0; c < 6; ++c) {
+    const double p = c < 3 ? now.p : 0.0, p_trial = c < 3 ? tried.p : 0.0, s = J * end->stress[c] + p;
+    work += (c < 3 ? 1.0 : 2.0) * s * (J * trial->stress[c] + p_trial - s) / (2.0 * shear);
+  }
+  const double size = fabs(now.p) + now.q + fabs(tried.p) + tried.q;
+  *digits = 1e-14 * size * (1.0 + size / shear); /* of strains, and of the stress */
+  return work + now.p * ((tried.p - now.p) / bulk + end->state[1]);
 }
 
 double tangent_off(const path *from, const double *F_inc, regime_fn regime_of, int32_t *smooth) {

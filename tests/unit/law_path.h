@@ -16,6 +16,9 @@ typedef struct invariants {
 
 path path_of(const char *model, const mpm_param *params, int32_t count);
 
+/* Takes all but the material from another path. */
+void path_like(path *s, const path *other);
+
 /* Begins with F = I, a mean stress, and states of 0. */
 void start(path *s, double mean);
 
@@ -33,6 +36,12 @@ void triaxial(path *s, double axial, int32_t steps);
 double jacobian_of(const path *s);
 /* Of the Kirchhoff stress. */
 invariants invariants_of(const path *s);
+
+/* What plastic flow dissipates in a step of a law of Hencky's elasticity, by volume of the start: the stress
+ * of the end on what it has taken of the elastic strain. trial: the same step of a law that does not yield.
+ * What has opened as a gap, state 1, gives its tension back when it closes, as a spring does: it is no part
+ * of it. digits: what rounding may make of it. */
+double dissipated(const path *end, const path *trial, double shear, double bulk, double *digits);
 
 /* Within 1e-9. */
 void ck_number(const char *what, double value, double wanted);

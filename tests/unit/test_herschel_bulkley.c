@@ -213,7 +213,7 @@ static void random_step(uint64_t *seed, path *s, double *F_inc) {
  * lost. */
 START_TEST(random_states_yield) {
   uint64_t seed = 41;
-  int32_t seen[2] = {0, 0};
+  int32_t seen[2] = {0, 0}, took = 0;
   for (int32_t round = 0; round < RANDOM / 250; ++round) {
     const mud of = random_mud(&seed, 8.0);
     mud solid = of;
@@ -221,7 +221,7 @@ START_TEST(random_states_yield) {
     path s = open_mud(&of), trial = open_mud(&solid);
     const double G = of.value[SHEAR].value, yield = of.value[YIELD].value, k = of.value[K].value;
     for (int32_t i = 0; i < 250; ++i) {
-      double F_inc[9];
+      double F_inc[9], digits;
       s.dt = trial.dt = power_of_ten(&seed, -8.0, 2.0);
       random_step(&seed, &s, F_inc);
       memcpy(trial.stress, s.stress, sizeof s.stress);
@@ -229,6 +229,9 @@ START_TEST(random_states_yield) {
       advance(&s, F_inc);
       advance(&trial, F_inc);
       const invariants now = invariants_of(&s), before = invariants_of(&trial);
+      const double lost = dissipated(&s, &trial, G, of.value[1].value, &digits);
+      ck_holds(lost >= -digits);
+      took += lost > digits;
       const double t = now.q / sqrt(3.0), from = before.q / sqrt(3.0);
       const double scale = 1e-12 * (from + fabs(now.p) + 1.0);
       ck_within("pressure", now.p, before.p, scale);
@@ -254,6 +257,7 @@ START_TEST(random_states_yield) {
     law_material_free(trial.material);
   }
   for (int k = 0; k < 2; ++k) ck_assert_int_gt(seen[k], RANDOM / 10);
+  ck_assert_int_gt(took, RANDOM / 4);
 }
 END_TEST
 

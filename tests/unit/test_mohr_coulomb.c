@@ -310,19 +310,27 @@ static int32_t regime_of(const path *from, const path *to) {
   return edge_12 ? EDGE_12 : edge_23 ? EDGE_23 : PLANE;
 }
 
+/* The trial is that of a rock which bears everything. */
 START_TEST(random_states_yield) {
   static const double degree = 3.14159265358979323846 / 180.0;
   uint64_t seed = 27;
-  int32_t seen[REGIMES] = {0};
+  int32_t seen[REGIMES] = {0}, took = 0;
   for (int32_t round = 0; round < RANDOM / 500; ++round) {
     const rock of = random_rock(&seed);
     const double sine = sin(of.value[PHI].value * degree), cosine = cos(of.value[PHI].value * degree);
-    path s = open_rock(&of);
+    rock firm = with(of.value[1].value, 0.0, 0.0, 1e100);
+    path s = open_rock(&of), trial = open_rock(&firm);
+    const double E = of.value[0].value, nu = of.value[1].value;
     for (int32_t k = 0; k < 500; ++k) {
-      double F_inc[9], t[3];
+      double F_inc[9], t[3], digits;
       random_step(&seed, &s, F_inc);
       const path from = s;
+      path_like(&trial, &s);
       advance(&s, F_inc);
+      advance(&trial, F_inc);
+      const double lost = dissipated(&s, &trial, E / (2 + 2 * nu), E / (3 - 6 * nu), &digits);
+      ck_holds(lost >= -digits);
+      took += lost > digits;
       sorted(&s, t);
       const double slope = of.value[H].value,
                    before = fmax(of.value[C].value + slope * from.state[0], of.value[RES].value);
@@ -339,8 +347,10 @@ START_TEST(random_states_yield) {
       ++seen[regime];
     }
     law_material_free(s.material);
+    law_material_free(trial.material);
   }
   for (int k = 0; k < REGIMES; ++k) ck_assert_int_gt(seen[k], RANDOM / 200);
+  ck_assert_int_gt(took, RANDOM / 2);
 }
 END_TEST
 

@@ -152,23 +152,24 @@ static void random_step(uint64_t *seed, path *s, double *F_inc) {
 /* The trial is that of grains whose friction is never overcome. */
 START_TEST(random_states_yield) {
   uint64_t seed = 61;
-  int32_t seen[3] = {0, 0, 0};
+  int32_t seen[3] = {0, 0, 0}, took = 0;
   for (int32_t round = 0; round < RANDOM / 500; ++round) {
     const beads of = random_beads(&seed);
     beads locked = of;
     locked.value[MU_S].value = 1e100, locked.value[MU_2].value = 2e100;
     path s = open_beads(&of), trial = open_beads(&locked);
-    const double G = of.value[0].value / (2.0 * (1.0 + of.value[1].value));
+    const double E = of.value[0].value, nu = of.value[1].value, G = E / (2 + 2 * nu);
     for (int32_t k = 0; k < 500; ++k) {
-      double F_inc[9];
+      double F_inc[9], digits;
       random_step(&seed, &s, F_inc);
-      mpm_material *keep = trial.material;
-      trial = s;
-      trial.material = keep;
+      path_like(&trial, &s);
       const double plastic = s.state[0];
       advance(&s, F_inc);
       advance(&trial, F_inc);
       const invariants now = invariants_of(&s);
+      const double lost = dissipated(&s, &trial, G, E / (3 - 6 * nu), &digits);
+      ck_holds(lost >= -digits);
+      took += lost > digits;
       const double t = now.q / sqrt(3.0), from = shear_stress(&trial), scale = 1e-11 * (now.p + from + 1e5);
       ck_holds(s.state[0] >= plastic && s.state[1] >= 0.0 && s.energy >= 0.0 && s.wave > 0.0);
       ck_within("gap", s.state[1], trial.state[1], 1e-14);
@@ -193,6 +194,7 @@ START_TEST(random_states_yield) {
     law_material_free(trial.material);
   }
   for (int k = 0; k < 3; ++k) ck_assert_int_gt(seen[k], RANDOM / 50);
+  ck_assert_int_gt(took, RANDOM / 4);
 }
 END_TEST
 

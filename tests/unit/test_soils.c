@@ -295,11 +295,12 @@ static void random_step(uint64_t *seed, path *s, double *F_inc) {
   if (s->state[1] < 0.0) s->state[1] = 0.0;
 }
 
-/* The yield surface is met, nothing bears more tension than it may, and state grows as it must. */
+/* The yield surface is met, nothing bears more tension than it may, state grows as it must, and flow takes
+ * energy. The trial is that of a soil which bears everything. */
 START_TEST(random_states_yield) {
   static const double pi = 3.14159265358979323846;
   uint64_t seed = 17;
-  int32_t seen[3] = {0, 0, 0};
+  int32_t seen[3] = {0, 0, 0}, took = 0;
   for (int32_t round = 0; round < RANDOM / 500; ++round) {
     const soil of = random_soil(&seed);
     const double s30 = sin(of.value[DP_PHI].value * pi / 180), cone = of.value[DP_CONE].value;
@@ -307,13 +308,21 @@ START_TEST(random_states_yield) {
                  r30 = sqrt(9 + 12 * t30 * t30);
     const double M = cone > 1.5 ? 3 * sqrt(3.0) * t30 / r30 : 6 * s30 / (3 + (cone > 0.5 ? s30 : -s30));
     const double kappa = cone > 1.5 ? 3 * sqrt(3.0) / r30 : 6 * c30 / (3 + (cone > 0.5 ? s30 : -s30));
-    path s = open_soil(&of);
+    soil firm = sand(0.0, 0.0, 1e100, 0.0);
+    firm.value[1] = of.value[1];
+    path s = open_soil(&of), trial = open_soil(&firm);
+    const double E = of.value[0].value, nu = of.value[1].value;
     for (int32_t k = 0; k < 500; ++k) {
-      double F_inc[9];
+      double F_inc[9], digits;
       random_step(&seed, &s, F_inc);
+      path_like(&trial, &s);
       const double plastic = s.state[0], H = of.value[DP_H].value;
       advance(&s, F_inc);
+      advance(&trial, F_inc);
       const invariants now = invariants_of(&s);
+      const double lost = dissipated(&s, &trial, E / (2 + 2 * nu), E / (3 - 6 * nu), &digits);
+      ck_holds(lost >= -digits);
+      took += lost > digits;
       const double cohesion = fmax(of.value[DP_C].value + H * s.state[0], of.value[DP_RES].value);
       const double before = fmax(of.value[DP_C].value + H * plastic, of.value[DP_RES].value);
       const double scale = 1e-11 * (fabs(now.p) + now.q + 1e5);
@@ -326,8 +335,10 @@ START_TEST(random_states_yield) {
       ++seen[open ? 2 : s.state[0] > plastic];
     }
     law_material_free(s.material);
+    law_material_free(trial.material);
   }
   for (int k = 0; k < 3; ++k) ck_assert_int_gt(seen[k], RANDOM / 50);
+  ck_assert_int_gt(took, RANDOM / 2);
 }
 END_TEST
 
