@@ -5,11 +5,13 @@
 
 static const double h = 0.1;
 
-/* Elastic up to a large stress, or sand that yields and dilates. */
+/* Elastic up to a large stress, or sand that yields and dilates, or clay. */
 static const mpm_param firm[] = {{"E", 1e5},    {"nu", 0.3},   {"density", 1e3},
                                  {"phi", 30.0}, {"psi", 30.0}, {"cohesion", 1e6}};
 static const mpm_param sand[] = {{"E", 1e5},    {"nu", 0.3},   {"density", 1e3},
                                  {"phi", 30.0}, {"psi", 30.0}, {"cohesion", 300.0}};
+static const mpm_param loam[] = {{"density", 1e3}, {"kappa", 0.05}, {"lambda", 0.2}, {"M", 1.0},
+                                 {"mu0", 1e5},     {"p_ref", 1e4},  {"pc0", 1.2e4}};
 
 static world_desc described(int32_t dim, const basis_option *basis, int32_t scheme, const mpm_param *soil) {
   world_desc d = world_default(dim, 8, h);
@@ -306,15 +308,27 @@ static mpm_status look_at_matrix(void *user, const mpm_operator *matrix, const d
   return MPM_OK;
 }
 
-/* Opens a body of soil, `mixed` with metal in the same cells, whose particles all differ; `solve` solves. */
-static const char *open_implicit(world *w, int32_t variant, mpm_solve_fn solve, void *user,
-                                 double tolerance) {
-  static char name[80];
+/* Soils that bear everything, and that yield in the first step. */
+static const struct {
+  world_law law;
+  const char *name;
+  double speed; /* of the particles, at most */
+} soils[] = {{{.model = "drucker_prager", .params = firm, .param_count = 6}, "elastic", 1.0},
+             {{.model = "drucker_prager", .params = sand, .param_count = 6}, "drucker_prager", 1.0},
+             {{.model = "mohr_coulomb", .params = sand, .param_count = 6}, "mohr_coulomb", 1.0},
+             {{.model = "cam_clay", .params = loam, .param_count = 7}, "cam_clay", 0.2}};
+enum { SOILS = sizeof soils / sizeof *soils, VARIANTS = 8 * IMPLICIT_BASES };
+
+/* Opens a body of soil, `mixed` with metal in the same cells, whose particles all differ as the dice fall;
+ * `solve` solves. */
+static const char *open_implicit(world *w, int32_t soil, int32_t variant, uint64_t seed, mpm_solve_fn solve,
+                                 void *user, double tolerance) {
+  static char name[120];
   const int32_t dim = 2 + variant % 2, mixed = variant / 2 % 2, seam = variant / 4 % 2;
   const basis_option *basis = implicit_basis(variant / 8);
   if (seam && basis->boundary) return NULL;
   world_desc d = implicit_default(dim, dim == 3 ? 4 : 6, h, basis);
-  d.law = (world_law){.model = "drucker_prager", .params = firm, .param_count = 6};
+  d.law = soils[soil].law;
   d.stepper.locking_remedy = MPM_LOCKING_CELL_AVERAGE;
   d.stepper.linear_solver = MPM_SOLVER_HOST;
   d.stepper.linear_tolerance = tolerance;
@@ -323,19 +337,19 @@ static const char *open_implicit(world *w, int32_t variant, mpm_solve_fn solve, 
   d.other_law = (world_law){.model = "neo_hookean", .E = 1e5, .nu = 0.3, .density = 1e3};
   world_open(w, &d);
   ck_ok(w, mpm_stepper_set_linear_solver(w->stepper, solve, user));
-  dice random = {(uint64_t)variant + 1};
+  dice random = {seed};
   for (int32_t m = 0; m <= mixed; ++m) {
     double low[3] = {seam ? 0.0 : h, h, h},
            high[3] = {(dim == 3 ? 4.0 : 6.0) * h - (seam ? 0.0 : h), 3.0 * h, 3.0 * h};
     const int64_t n = world_fill(w, w->set[m], low, high, 2);
     double *v = malloc((size_t)(dim * n) * sizeof *v);
-    for (int64_t i = 0; i < dim * n; ++i) v[i] = throw_between(&random, -1.0, 1.0);
+    for (int64_t i = 0; i < dim * n; ++i) v[i] = soils[soil].speed * throw_between(&random, -1.0, 1.0);
     put(w, w->set[m], "velocity", dim, v);
     free(v);
     if (m == 0) disturb(w, w->set[m], &random, 1e4);
   }
-  snprintf(name, sizeof name, "%s in %d-D%s%s", basis->name, (int)dim, mixed ? ", mixed" : "",
-           seam ? ", periodic" : "");
+  snprintf(name, sizeof name, "%s, %s in %d-D%s%s", soils[soil].name, basis->name, (int)dim,
+           mixed ? ", mixed" : "", seam ? ", periodic" : "");
   return name;
 }
 
@@ -345,7 +359,7 @@ START_TEST(matrix_is_the_derivative) {
   const int32_t mixed = _i / 2 % 2;
   world w;
   matrix_seen seen;
-  const char *name = open_implicit(&w, _i, look_at_matrix, &seen, 0.0);
+  const char *name = open_implicit(&w, 0, _i, (uint64_t)_i + 1, look_at_matrix, &seen, 0.0);
   if (!name) return;
   for (int32_t k = 0; k < 2; ++k) {
     world_step(&w, 0.01);
@@ -353,6 +367,25 @@ START_TEST(matrix_is_the_derivative) {
     ck_assert_int_eq(seen.symmetric, !mixed);
     if (!mixed) ck_within(name, seen.skew, 0.0, 1e-12 * seen.largest);
   }
+  world_close(&w);
+}
+END_TEST
+
+/* What the next test is about: of each soil a good part yields, and of the firm one nothing does. */
+START_TEST(soils_yield) {
+  const int32_t soil = _i / 2;
+  world w;
+  matrix_seen seen;
+  const char *name = open_implicit(&w, soil, _i % 2, 1, look_at_matrix, &seen, 0.0);
+  const int64_t n = mpm_particles_count(w.set[0]);
+  double *before = fetch(&w, w.set[0], "state", 2);
+  world_step(&w, 0.01);
+  double *after = fetch(&w, w.set[0], "state", 2);
+  int64_t yielded = 0;
+  for (int64_t i = 0; i < n; ++i) yielded += after[i] != before[i];
+  show("%s: %d of %d particles yield\n", name, (int)yielded, (int)n);
+  ck_between(name, (double)yielded, soil ? 0.3 * (double)n : 0.0, soil ? (double)n : 0.0);
+  free(before), free(after);
   world_close(&w);
 }
 END_TEST
@@ -391,26 +424,53 @@ static mpm_status move_a_little(void *user, const mpm_operator *matrix, const do
   return MPM_OK;
 }
 
-/* The residual falls as the matrix says, by differences of steps of two sizes, without the term in size^2. */
-START_TEST(matrix_against_differences) {
-  probe *p = calloc(2, sizeof *p);
+/* Residuals of a state, and beside it by one, two and three steps of one size. Returns NULL for variants that
+ * there are not. */
+enum { SIZES = 3 };
+static const char *residuals_beside(int32_t soil, int32_t variant, uint64_t seed, probe *p) {
   const char *name = NULL;
-  for (int32_t k = 0; k < 2; ++k) {
+  for (int32_t k = 0; k < SIZES; ++k) {
     world w;
-    p[k].size = (k + 1) * 1e-6 * h;
-    name = open_implicit(&w, _i, move_a_little, &p[k], 1.0);
-    if (!name) break;
+    p[k] = (probe){.size = (k + 1) * 1e-6 * h};
+    name = open_implicit(&w, soil, variant, seed, move_a_little, &p[k], 1.0);
+    if (!name) return NULL;
     ck_refused(&w, mpm_step(w.stepper, 0.01, NULL), MPM_E_CALLBACK, "");
     ck_assert_int_eq(p[k].calls, 2);
     world_close(&w);
   }
+  return name;
+}
+
+/* The third difference of the residual, which is nothing where that is smooth, and is not where a particle
+ * comes to a kink of its yield surface: the matrix has no part in it. */
+static double kink_of(const probe *p) {
   double worst = 0.0;
+  for (int64_t i = 0; i < p->rows; ++i)
+    worst = fmax(worst, fabs(p[2].after[i] - 3.0 * p[1].after[i] + 3.0 * p[0].after[i] - p[0].before[i]));
+  return worst / p->size;
+}
+
+/* The residual falls as the matrix says, by differences of steps of two sizes, without the term in size^2.
+ * States that have a kink between these are thrown again. */
+START_TEST(matrix_against_differences) {
+  const int32_t soil = _i / VARIANTS, variant = _i % VARIANTS;
+  probe *p = malloc(SIZES * sizeof *p);
+  const char *name = NULL;
+  double size = 0.0, worst = 0.0;
+  for (int32_t again = 0;; ++again) {
+    name = residuals_beside(soil, variant, (uint64_t)(variant + 1 + 1000 * again), p);
+    if (!name) break;
+    size = largest(p->rows, p->by_matrix);
+    const double kink = kink_of(p);
+    show("%s: third difference %.1e of the largest\n", name, kink / size);
+    if (kink <= 1e-8 * size) break;
+    ck_assert_int_lt(again, soil ? 5 : 0);
+  }
   for (int64_t i = 0; name && i < p->rows; ++i) {
     const double once = p[0].after[i] - p[0].before[i], twice = p[1].after[i] - p[1].before[i];
     worst = fmax(worst, fabs((2.0 * once - 0.5 * twice) / p[0].size + p[0].by_matrix[i]));
   }
   if (name) {
-    const double size = largest(p->rows, p->by_matrix);
     show("%s: %.1e of the largest\n", name, worst / size);
     ck_within(name, worst, 0.0, 1e-8 * size);
   }
@@ -552,8 +612,9 @@ Suite *locking_suite(void) {
   tcase_add_loop_test(tc, shaken_sand, 0, 6); /* linear, quadratic */
   tcase_add_loop_test(tc, yield_takes_energy, 0, 2 * BASES);
   tcase_add_loop_test(tc, soils_average_among_themselves, 0, 2);
-  tcase_add_loop_test(tc, matrix_is_the_derivative, 0, 8 * IMPLICIT_BASES);
-  tcase_add_loop_test(tc, matrix_against_differences, 0, 8 * IMPLICIT_BASES);
+  tcase_add_loop_test(tc, matrix_is_the_derivative, 0, VARIANTS);
+  tcase_add_loop_test(tc, soils_yield, 0, 2 * SOILS);
+  tcase_add_loop_test(tc, matrix_against_differences, 0, SOILS * VARIANTS);
   tcase_add_loop_test(tc, threads_give_the_same_bits, 0, ALL_SCHEMES);
   tcase_add_loop_test(tc, failed_steps_leave_no_trace, 0, ALL_SCHEMES);
   tcase_add_loop_test(tc, positions_that_a_view_has_spoilt, 0, ALL_SCHEMES);
