@@ -5,8 +5,8 @@ from plot_cases import rows
 
 @plot
 def soil_paths():
-    figure, ax = axes(2)
-    clay, mud = read("soil_paths_clay"), read("soil_paths_mud")
+    figure, ax = axes(3)
+    clay, mud, snow = read("soil_paths_clay"), read("soil_paths_mud"), read("soil_paths_snow")
     for i, name in enumerate(dict.fromkeys(clay["path"])):
         at = rows(clay, path=name)
         ax[0].plot(at["p"], at["q"], f"C{i}-", label=name)
@@ -24,6 +24,17 @@ def soil_paths():
     ax[1].set_xlabel("rate of shear / (1/s)")
     ax[1].set_ylabel("shear stress / Pa")
     ax[1].legend()
+    for parts, form in ((100, "-"), (1, "o")):
+        at = rows(snow, parts=float(parts))
+        for i, stress in enumerate(("xx", "yy", "xy")):
+            ax[2].plot(at["leg"], [1e-3 * s for s in at[stress]], f"C{i}{form}", label=stress if parts > 1 else None)
+    for leg, text in enumerate(("pressed", "sheared", "stretched")):
+        ax[2].annotate(text, (leg + 0.5, 0.97), xycoords=("data", "axes fraction"), ha="center", va="top", fontsize=8)
+    ax[2].set_xticks([0, 1, 2, 3])
+    ax[2].set_ylim(-7, 5)
+    ax[2].set_xlabel("leg of the path of snow")
+    ax[2].set_ylabel("stress / kPa")
+    ax[2].legend(loc="lower left")
     return figure
 
 
