@@ -434,7 +434,7 @@ START_TEST(drucker_prager_on_fixed_axes) {
       double J = q.F[0] * (q.F[4] * q.F[8] - q.F[5] * q.F[7]) - q.F[1] * (q.F[3] * q.F[8] - q.F[5] * q.F[6]) +
                  q.F[2] * (q.F[3] * q.F[7] - q.F[4] * q.F[6]);
       for (int k = 0; k < 6; ++k) most = fmax(most, fabs(p.stress[k]));
-      for (int k = 0; k < 6; ++k) ck_near(p.stress[k], J * q.stress[k], 3e-11 * most);
+      for (int k = 0; k < 6; ++k) ck_near(p.stress[k], J * q.stress[k], 1e-12 * most);
       ck_near(p.state[0], q.state[0], 1e-12);
       yields += p.state[0] > before;
       apex += fabs(p.stress[0] - p.stress[1]) < 1e-6 && p.stress[0] > 0.0;
