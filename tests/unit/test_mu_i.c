@@ -202,6 +202,8 @@ static int32_t regime_of(const path *from, const path *to) {
   return (to->state[0] > from->state[0]) + 2 * (to->state[1] > 0.0);
 }
 
+/* Differences change the pressure by a share of it that is not small where grains are about to open: there
+ * they are no measure. */
 START_TEST(random_tangents) {
   uint64_t seed = 62;
   int32_t compared[4] = {0};
@@ -215,7 +217,8 @@ START_TEST(random_tangents) {
     end = s;
     advance(&end, F_inc);
     const double off = tangent_off(&s, F_inc, regime_of, &smooth) / 4e7;
-    if (smooth) {
+    const int32_t opens_soon = end.state[1] == 0.0 && invariants_of(&end).p < 1e-4 * of.value[0].value;
+    if (smooth && !opens_soon) {
       worst = fmax(worst, off);
       ++compared[regime_of(&s, &end)];
     }
