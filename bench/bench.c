@@ -45,6 +45,7 @@ static const bench_case cases[] = {
      BENCH_FREE},
     {"3-D FLIP, snow", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "snow", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D FLIP, mu(I)", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "mu_i", 0.3, 0.125, 40, BENCH_FREE},
+    {"3-D FLIP, Cam-clay", 3, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "cam_clay", 0.3, 0.125, 40, BENCH_FREE},
     {"1-D quadratic FLIP", 1, MPM_BSPLINE2, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D cubic FLIP", 3, MPM_BSPLINE3, MPM_USL, MPM_FLIP, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},
     {"3-D cubic APIC_MLS", 3, MPM_BSPLINE3, MPM_USL, MPM_APIC_MLS, "neo_hookean", 0.3, 0.125, 40, BENCH_FREE},

@@ -19,15 +19,29 @@ static const mpm_param of_snow[] = {{"E", 1.0}, {"nu", 0.3}, {"density", 1.0}};
 static const mpm_param of_grains[] = {
     {"E", 1.0},    {"nu", 0.3},  {"density", 1.0},         {"mu_s", 0.4},
     {"mu_2", 0.7}, {"I_0", 0.3}, {"grain_diameter", 0.01}, {"grain_density", 2.0}};
-/* Laws that yield; kept: how many values of state a step reads. */
+/* At this pressure the bulk modulus is that of the others. */
+#define CLAY_PRESSURE 0.016666666666666666
+static const mpm_param of_clay[] = {{"kappa", 0.02},
+                                    {"lambda", 0.2},
+                                    {"M", 1.0},
+                                    {"mu0", 0.38461538461538464},
+                                    {"density", 1.0},
+                                    {"p_ref", CLAY_PRESSURE},
+                                    {"pc0", 1.2 * CLAY_PRESSURE}};
+/* Laws that yield; kept: how many values of state a step reads; pressure: what they start with. */
 typedef struct plastic_law {
   const char *law;
   const mpm_param *params;
   int32_t count, kept;
+  double pressure;
 } plastic_law;
-static const plastic_law plastic_laws[] = {
-    {"j2", parameters, 5, 1},           {"drucker_prager", of_soil, 5, 2}, {"mohr_coulomb", of_soil, 5, 2},
-    {"herschel_bulkley", of_mud, 6, 0}, {"snow", of_snow, 3, 6},           {"mu_i", of_grains, 8, 2}};
+static const plastic_law plastic_laws[] = {{"j2", parameters, 5, 1, 0.0},
+                                           {"drucker_prager", of_soil, 5, 2, 0.0},
+                                           {"mohr_coulomb", of_soil, 5, 2, 0.0},
+                                           {"herschel_bulkley", of_mud, 6, 0, 0.0},
+                                           {"snow", of_snow, 3, 6, 0.0},
+                                           {"mu_i", of_grains, 8, 2, 0.0},
+                                           {"cam_clay", of_clay, 7, 2, CLAY_PRESSURE}};
 
 static const plastic_law *plastic_law_of(const bench_case *of) {
   for (size_t k = 0; k < sizeof plastic_laws / sizeof *plastic_laws; ++k)
@@ -178,6 +192,9 @@ static mpm_status add_set(bench_scene *scene, const bench_case *of, const lattic
   mpm_status status = mpm_particles_create(scene->context, scene->grid, scene->material, set);
   if (!status) status = place(*set, l, part);
   if (!status) status = set_velocities(*set, of, l);
+  const plastic_law *plastic = plastic_law_of(of);
+  const double p = plastic ? plastic->pressure : 0.0, stress[6] = {-p, -p, -p, 0.0, 0.0, 0.0};
+  if (!status && p > 0.0) status = mpm_particles_set_all(*set, "stress", MPM_F64, 6, stress);
   if (!status) status = mpm_stepper_add(scene->stepper, *set);
   if (!status && part) status = mpm_stepper_set_body(scene->stepper, *set, part);
   scene->particles += mpm_particles_count(*set);
