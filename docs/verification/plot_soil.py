@@ -33,22 +33,33 @@ def soil_column_film():
 
 @plot
 def soil_footing():
-    figure, ax = axes(2)
+    figure, ax = axes(3)
     data = read("soil_footing")
+    variants = list(dict.fromkeys(data["variant"]))
     for panel, factor in zip(ax, "cq"):
-        names = [n for n in dict.fromkeys(data["variant"]) if n.startswith(f"N_{factor}") and "remedy" not in n]
+        names = [n for n in variants if n.startswith(f"N_{factor}") and ("quadratic" in n or "20" in n) and "remedy" not in n]
         for i, name in enumerate(names):
             for cells, line in ((6, "-."), (8, "--"), (16, "-")):
                 at = rows(data, variant=name, cells=float(cells))
                 if at["load"]:
                     panel.plot([100 * s for s in at["settlement"]], at["load"], f"C{i}{line}",
                                label=f"{name[5:]}, B/{cells}".replace("phi", "φ"))
+    names = [n for n in variants if n.startswith("N_q, phi = 30") and "quadratic" not in n and "steps" not in n]
+    for name in names:
+        at, i = rows(data, variant=name, cells=8.0), 2 * ("GIMP" in name) + ("drucker" in name)
+        remedy = ", remedy" in name
+        if at["load"]:
+            ax[2].plot([100 * s for s in at["settlement"]], at["load"], f"C{i}{'-' if remedy else '--'}",
+                       label=f"{name[5:]}, B/8".replace("phi", "φ"))
+    for panel, factor in zip(ax, "cqq"):
         panel.axhline(1, color="k", linestyle=":", linewidth=0.8)
+        panel.axvline(2, color="k", linestyle=":", linewidth=0.8)
         panel.set_xlim(0, 8)
         panel.set_ylim(0, 1.3)
         panel.set_xlabel("100 settlement / B")
         panel.set_ylabel(f"load / that of exact $N_{factor}$")
         panel.legend(fontsize=6)
+    ax[2].set_ylim(0.8, 1.2)
     return figure
 
 
