@@ -148,7 +148,7 @@ def contact_block():
     figure, ax = axes(2)
     data = read("contact_block")
     rows = list(zip(data["case"], data["name"], data["shift"], data["way"], data["exact"]))
-    for basis in ("linear", "quadratic", "cubic"):
+    for basis in ("linear", "GIMP", "quadratic", "cubic"):
         slides = [(s, w / e) for case, b, s, w, e in rows if case == "slides" and b == basis]
         rests = [(s, 1000 * w) for case, b, s, w, e in rows if case == "rests" and b == basis]
         ax[0].plot(*zip(*slides), "o-", label=basis)
@@ -156,6 +156,7 @@ def contact_block():
     ax[0].axhline(1, color="k", linewidth=0.8)
     ax[0].set_ylabel("way / exact, friction 0.3")
     ax[1].set_ylabel("creep in 0.5 s / mm, friction 0.7")
+    ax[1].set_yscale("log")
     for a in ax:
         a.set_xlabel("place of the floor in its cell / h")
         a.legend()

@@ -1,6 +1,8 @@
-/* Clouds: the particles that have weight at the nodes of a meeting. They are found in two passes through the
- * blocks around these nodes, one that counts and one that writes, both colour by colour, so that each cloud
- * has one order. */
+/* Clouds: the particles around the nodes of a meeting. They are found in two passes through the blocks around
+ * these nodes, one that counts and one that writes, both colour by colour, so that each cloud has one order.
+ *
+ * A cloud reaches as far as a spline, whatever the basis is: planes between clouds that end where the linear
+ * basis or GIMP does are tilted. */
 #include "contact/contact.h"
 #include "layout/reached.h"
 #include "layout/tile.h"
@@ -9,17 +11,31 @@
 #include <math.h>
 #include <string.h>
 
+/* The basis by which particles belong to clouds: the grid's own, or the cubic spline in the place of the
+ * linear basis and of GIMP, which are too narrow. */
+typedef struct cloud_basis {
+  int32_t family, width; /* of stencils */
+  int32_t spread, below; /* nodes that stencils of one anchor may have, and how many of them lie below it */
+} cloud_basis;
+
+static cloud_basis cloud_basis_of(const mpm_grid *grid) {
+  if (grid->family == MPMI_FAMILY_BSPLINE1) return (cloud_basis){MPMI_FAMILY_BSPLINE3, 4, 4, 1};
+  if (grid->family == MPMI_FAMILY_GIMP) return (cloud_basis){MPMI_FAMILY_BSPLINE3, 4, 5, 2};
+  return (cloud_basis){grid->family, grid->width, grid->width, grid->below};
+}
+
 typedef struct cloud_job {
   mpmi_contact_search *search;
+  cloud_basis basis;
   int32_t fill;
 } cloud_job;
 
 /* ---- which blocks have particles near these nodes ------------------------------------------------------ */
-static void mark_near(const mpmi_contact_search *search) {
+static void mark_near(const mpmi_contact_search *search, const cloud_basis *basis) {
   const mpmi_blocks *b = &search->step->layout->blocks;
   mpmi_contact_nodes *contact = search->contact;
-  const int32_t dim = b->grid->dim, edge = b->edge, low = MPMI_RING + b->grid->below,
-                high = MPMI_RING + b->grid->width - 1 - b->grid->below;
+  const int32_t dim = b->grid->dim, edge = b->edge, low = MPMI_RING + basis->below,
+                high = MPMI_RING + basis->spread - 1 - basis->below;
   memset(contact->in_reach, 0, (size_t)b->count);
   for (int64_t i = 0; i < contact->cloud_count; ++i) {
     const int64_t block = contact->cloud[i].slot / b->nodes;
@@ -46,7 +62,7 @@ static void mark_near(const mpmi_contact_search *search) {
 typedef struct cloud_tile {
   int32_t *cloud, *count; /* count: particles by first node of their stencils */
   uint8_t *meets;
-  int32_t any, edge[3]; /* edge: 1 on axes that the grid does not have, which come first */
+  int32_t nodes, any, edge[3]; /* edge: 1 on axes that the grid does not have, which come first */
 } cloud_tile;
 
 static void load_neighbour(const mpmi_contact_nodes *contact, const mpmi_blocks *b, int64_t block, int32_t n,
@@ -99,28 +115,43 @@ static int64_t count_at(const cloud_tile *tile, int32_t width, int32_t node) {
   return count;
 }
 
-static cloud_tile load_tile(const mpmi_contact_search *search, int64_t block, double *memory) {
+/* The memory is that of eight values per node of the grid's own tile: it holds the wider one, too. */
+static cloud_tile load_tile(const cloud_job *job, int64_t block, double *memory) {
+  const mpmi_contact_search *search = job->search;
   const mpmi_blocks *b = &search->step->layout->blocks;
   const mpm_grid *grid = b->grid;
-  const int32_t nodes = mpmi_tile_nodes(grid), edge = MPMI_TILE_EDGE(grid->dim, grid->width);
-  cloud_tile tile = {(int32_t *)(void *)memory, NULL, NULL, 0, {1, 1, 1}};
+  const int32_t width = job->basis.width;
+  cloud_tile tile = {(int32_t *)(void *)memory, NULL, NULL, 1, 0, {1, 1, 1}};
+  for (int32_t k = 3 - grid->dim; k < 3; ++k)
+    tile.nodes *= tile.edge[k] = MPMI_TILE_EDGE(grid->dim, job->basis.spread);
+  const int32_t nodes = tile.nodes;
   tile.count = tile.cloud + nodes;
   tile.meets = (uint8_t *)(tile.count + nodes);
-  for (int32_t k = 3 - grid->dim; k < 3; ++k) tile.edge[k] = edge;
   for (int32_t i = 0; i < nodes; ++i) tile.cloud[i] = -1;
-  const mpmi_spans spans = mpmi_spans_of(b, block);
+  const mpmi_spans spans = mpmi_spans_of_stencil(b, block, job->basis.spread, job->basis.below);
   for (int32_t n = 0; n < b->neighbours; ++n) load_neighbour(search->contact, b, block, n, &spans, &tile);
   if (!tile.any) return tile;
   memset(tile.meets, 0, (size_t)nodes);
   for (int32_t i = 0; i < nodes; ++i)
-    if (tile.cloud[i] >= 0) mark_first_nodes(&tile, grid->width, i);
+    if (tile.cloud[i] >= 0) mark_first_nodes(&tile, width, i);
   return tile;
+}
+
+/* Kernels number nodes as in a tile for their width: turns that into places in the tile of `spread`. */
+static void spread_nodes(const cloud_basis *basis, int32_t dim, int64_t n, int32_t *node) {
+  const int32_t from = MPMI_TILE_EDGE(dim, basis->width), to = MPMI_TILE_EDGE(dim, basis->spread);
+  for (int64_t p = 0; p < n && from != to; ++p) {
+    int32_t rest = node[p], place = 0;
+    for (int32_t k = 0, edge = 1; k < dim; ++k, edge *= to, rest /= from) place += rest % from * edge;
+    node[p] = place;
+  }
 }
 
 /* ---- particles ----------------------------------------------------------------------------------------- */
 /* A chunk of a set's particles. */
 typedef struct cloud_particles {
-  const mpmi_weights *weights;
+  const mpmi_weights *weights, *own; /* own: those of the grid */
+  int32_t width;                     /* of the former */
   const cloud_tile *tile;
   int64_t slot; /* of the first of them */
   int32_t member;
@@ -131,8 +162,20 @@ typedef struct cloud_particles {
 /* One axis of a particle's stencil; an axis that the grid does not have is one node wide. */
 typedef struct stencil_axis {
   int32_t width;
-  double w[MPMI_MAX_WIDTH], g[MPMI_MAX_WIDTH];
+  double w[MPMI_MAX_WIDTH], own[MPMI_MAX_WIDTH], g[MPMI_MAX_WIDTH]; /* own, g: by the grid's basis */
 } stencil_axis;
+
+static stencil_axis stencil_of(const cloud_particles *of, const mpm_grid *grid, int32_t k, int64_t p) {
+  if (k < 0) return (stencil_axis){1, {1.0}, {1.0}, {0.0}};
+  stencil_axis axis = {.width = of->width};
+  for (int32_t a = 0; a < of->width; ++a) axis.w[a] = of->weights->w[k][a][p];
+  const int32_t skipped = (int32_t)rint(of->own->first[k][p] - of->weights->first[k][p]);
+  for (int32_t a = 0; a < grid->width; ++a) {
+    axis.own[skipped + a] = of->own->w[k][a][p];
+    axis.g[skipped + a] = of->own->g[k][a][p];
+  }
+  return axis;
+}
 
 /* Turns a vector sum w G over reference positions, that of the last axes, into that over the present ones: by
  * F^-T. */
@@ -155,19 +198,11 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
   /* by their volume rings would turn normals away from the axis */
   if (of->radius && of->radius[of->slot + p] > 0.0) volume /= of->radius[of->slot + p];
   stencil_axis axis[3];
-  for (int32_t k = 0; k < 3; ++k) {
-    const int32_t of_grid = k - (3 - grid->dim);
-    axis[k].width = of_grid < 0 ? 1 : grid->width;
-    axis[k].w[0] = 1.0, axis[k].g[0] = 0.0;
-    for (int32_t a = 0; a < grid->width && of_grid >= 0; ++a) {
-      axis[k].w[a] = of->weights->w[of_grid][a][p];
-      axis[k].g[a] = of->weights->g[of_grid][a][p];
-    }
-  }
+  for (int32_t k = 0; k < 3; ++k) axis[k] = stencil_of(of, grid, k - (3 - grid->dim), p);
   for (int32_t i = 0; i < axis[0].width; ++i)
     for (int32_t j = 0; j < axis[1].width; ++j) {
-      const double w = axis[0].w[i] * axis[1].w[j], g0 = volume * axis[0].g[i] * axis[1].w[j];
-      const double g1 = volume * axis[0].w[i] * axis[1].g[j];
+      const double w = axis[0].w[i] * axis[1].w[j], own = axis[0].own[i] * axis[1].own[j];
+      const double g0 = volume * axis[0].g[i] * axis[1].own[j], g1 = volume * axis[0].own[i] * axis[1].g[j];
       const int32_t *cloud = tile->cloud + first + (i * tile->edge[1] + j) * tile->edge[2];
       for (int32_t k = 0; k < axis[2].width; ++k) {
         if (cloud[k] < 0 || !(w * axis[2].w[k] > 0.0)) continue;
@@ -175,7 +210,7 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
         contact->entry[to->first + to->count++] = (mpmi_cloud_entry){
             .slot = (uint32_t)(of->slot + p), .member = of->member, .volume = volume * w * axis[2].w[k]};
         /* the last axes are those of the grid */
-        double gradient[3] = {g0 * axis[2].w[k], g1 * axis[2].w[k], volume * w * axis[2].g[k]};
+        double gradient[3] = {g0 * axis[2].own[k], g1 * axis[2].own[k], volume * own * axis[2].g[k]};
         if (mpmi_is_total_lagrangian(grid)) pull_back(of, grid, p, gradient);
         for (int32_t c = 0; c < 3; ++c) to->gradient[c] += gradient[c];
       }
@@ -184,9 +219,9 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
 
 /* Adds the counts of the tile to those of the clouds, which may be too large: a particle at the edge of its
  * stencil has no weight there. */
-static void add_counts(mpmi_contact_nodes *contact, const cloud_tile *tile, const mpm_grid *grid) {
-  for (int32_t i = 0; i < mpmi_tile_nodes(grid); ++i)
-    if (tile->cloud[i] >= 0) contact->cloud[tile->cloud[i]].count += count_at(tile, grid->width, i);
+static void add_counts(mpmi_contact_nodes *contact, const cloud_tile *tile, int32_t width) {
+  for (int32_t i = 0; i < tile->nodes; ++i)
+    if (tile->cloud[i] >= 0) contact->cloud[tile->cloud[i]].count += count_at(tile, width, i);
 }
 
 static void visit_block(void *user, const mpmi_visit *visit) {
@@ -196,12 +231,19 @@ static void visit_block(void *user, const mpmi_visit *visit) {
   const mpmi_layout *layout = step->layout;
   const mpm_grid *grid = layout->blocks.grid;
   mpmi_tile_use(grid, step->work->scratch[visit->task].tile, 8);
-  const cloud_tile tile = load_tile(search, visit->block, step->work->scratch[visit->task].tile);
+  const cloud_tile tile = load_tile(job, visit->block, step->work->scratch[visit->task].tile);
   if (!tile.any) return;
-  mpmi_axis axis[3];
-  mpmi_weights W;
-  mpmi_block_axes(grid, layout->blocks.coord[visit->block], axis);
-  memset(tile.count, 0, (size_t)mpmi_tile_nodes(grid) * sizeof *tile.count);
+  const int32_t is_own = job->basis.family == grid->family;
+  const mpmi_weights_fn find_own = step->settings->kernels->weights[grid->family][grid->dim];
+  const mpmi_weights_fn find = step->settings->kernels->weights[job->basis.family][grid->dim];
+  mpmi_axis axis[3], own_axis[3];
+  mpmi_weights W, own;
+  mpmi_block_axes(grid, layout->blocks.coord[visit->block], own_axis);
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    axis[k] = own_axis[k];
+    axis[k].tile_base -= job->basis.below - grid->below; /* the corner of the wider tile */
+  }
+  memset(tile.count, 0, (size_t)tile.nodes * sizeof *tile.count);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpmi_member *member = &layout->member[m];
     const int64_t begin = member->now.start[visit->block], end = member->now.start[visit->block + 1];
@@ -210,10 +252,14 @@ static void visit_block(void *user, const mpmi_visit *visit) {
     const int64_t *id = mpmi_i64(member->set, MPMI_ID, 0);
     for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
       const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
-      step->settings->kernels->weights[grid->family][grid->dim](axis, job->fill ? MPMI_NEED_GRADIENT : 0,
-                                                                &points, s, n, &W);
+      const int32_t need = job->fill ? MPMI_NEED_GRADIENT : 0;
+      find(axis, is_own ? need : 0, &points, s, n, &W);
+      spread_nodes(&job->basis, grid->dim, n, W.node);
+      if (need && !is_own) find_own(own_axis, need, &points, s, n, &own);
       const cloud_particles of = {
           .weights = &W,
+          .own = is_own ? &W : &own,
+          .width = job->basis.width,
           .tile = &tile,
           .slot = s,
           .member = m,
@@ -229,7 +275,7 @@ static void visit_block(void *user, const mpmi_visit *visit) {
       }
     }
   }
-  if (!job->fill) add_counts(search->contact, &tile, grid);
+  if (!job->fill) add_counts(search->contact, &tile, job->basis.width);
 }
 
 double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *contact,
@@ -277,11 +323,11 @@ mpmi_cloud_frame mpmi_cloud_frame_of(const mpmi_blocks *b, const mpmi_cloud *clo
 mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {
   mpm_context *c = search->step->settings->context;
   mpmi_contact_nodes *contact = search->contact;
-  cloud_job job = {search, 0};
+  cloud_job job = {search, cloud_basis_of(search->step->layout->blocks.grid), 0};
   mpm_status status =
       MPMI_RESERVE_MORE(c, contact->in_reach, contact->reach_capacity, search->step->layout->blocks.count);
   if (status) return status;
-  mark_near(search);
+  mark_near(search, &job.basis);
   if ((status = mpmi_visit_marked(search->step, contact->in_reach, 1, 0, visit_block, &job))) return status;
   contact->entry_count = 0;
   for (int64_t i = 0; i < contact->cloud_count; ++i) {

@@ -207,12 +207,70 @@ static int64_t list_images(mpmi_cloud *cloud, int64_t source, int32_t axes, int3
   return images;
 }
 
+/* Returns 1 when a wall holds that node of a body which lies on the plane of a face next to `index`. */
+static int32_t holds_across(const mpmi_contact_search *search, int32_t body, const int64_t *index,
+                            int32_t face) {
+  const mpmi_blocks *b = &search->step->layout->blocks;
+  const mpmi_constraints *constraints = &search->step->layout->constraints;
+  int64_t at[3] = {index[0], index[1], index[2]};
+  at[face / 2] = mpmi_face_node(b->grid, face);
+  const int64_t slot = mpmi_blocks_node(b, body, at);
+  const int32_t tie = slot < 0 ? -1 : constraints->tie_of[slot];
+  return tie >= 0 && constraints->tie[tie].zero[face / 2] != 0;
+}
+
+/* Finds the image, behind walls that hold, of a node a cell off them. Each digit of `set`, to base 3, says of
+ * an axis whether the image lies there, behind the lower wall or behind the upper one. Returns its slot, or
+ * -1; mirrored: bits of the axes. */
+static int64_t image_beyond(const mpmi_contact_search *search, int64_t slot, int32_t set, int32_t *mirrored) {
+  const mpmi_blocks *b = &search->step->layout->blocks;
+  const mpm_grid *grid = b->grid;
+  const int32_t body = b->body[slot / b->nodes];
+  int64_t index[3], at[3];
+  mpmi_blocks_index(b, slot, index);
+  for (int32_t k = 0; k < 3; ++k) at[k] = index[k];
+  *mirrored = 0;
+  for (int32_t k = 0; set; ++k, set /= 3) {
+    if (!(set % 3)) continue;
+    if (k >= grid->dim || grid->desc.periodic[k]) return -1;
+    const int32_t upper = set % 3 - 1, face = 2 * k + upper;
+    const int64_t plane = mpmi_face_node(grid, face);
+    if (index[k] != plane + (upper ? -1 : 1) || !holds_across(search, body, index, face)) return -1;
+    at[k] = 2 * plane - index[k];
+    *mirrored |= 1 << k;
+  }
+  return mpmi_blocks_node(b, body, at);
+}
+
+/* Lists a cloud and its images, and returns how many there are. The linear basis has no ghosts, but its
+ * clouds reach beyond walls that hold as those of smooth bases do. */
+static int64_t list_node(const mpmi_contact_search *search, const mpmi_cloud *node, int64_t first,
+                         int32_t own, int32_t fill) {
+  const mpm_grid *grid = search->step->layout->blocks.grid;
+  const int32_t sets = grid->family == MPMI_FAMILY_BSPLINE1 ? 27 : 1;
+  int64_t count = 0;
+  for (int32_t set = 0; set < sets; ++set) {
+    int32_t mirrored = 0;
+    const int64_t slot = set ? image_beyond(search, node->slot, set, &mirrored) : node->slot;
+    if (slot < 0) continue;
+    mpmi_cloud *cloud = fill ? &search->contact->cloud[first + count] : NULL;
+    if (fill) {
+      *cloud = *node;
+      cloud->slot = slot;
+      cloud->source = first + count;
+      cloud->mirrored ^= mirrored;
+      if (set) cloud->follower = -1;
+    }
+    count += 1 + list_images(cloud, first + count, own, fill);
+  }
+  return count;
+}
+
 /* Lists the clouds of a party from `first` on, and returns how many there are. */
 static int64_t list_party(const mpmi_contact_search *search, int64_t p, int64_t first, int32_t fill) {
   const mpmi_layout *layout = search->step->layout;
   const mpmi_constraints *constraints = &layout->constraints;
-  mpmi_contact_nodes *contact = search->contact;
-  const int64_t master = contact->party[p].slot;
+  const int64_t master = search->contact->party[p].slot;
   const int32_t tie = constraints->tie_of[master];
   const int64_t followers = tie < 0 ? 0 : constraints->tie[tie].count;
   const int32_t axes = tie < 0 ? 0 : own_images(&layout->blocks, &constraints->tie[tie]);
@@ -220,14 +278,11 @@ static int64_t list_party(const mpmi_contact_search *search, int64_t p, int64_t 
   for (int64_t i = -1; i < followers; ++i) {
     const int64_t follower = i < 0 ? -1 : constraints->tie[tie].first + i;
     const int64_t slot = i < 0 ? master : constraints->follower[follower].slot;
-    mpmi_cloud *cloud = fill ? &contact->cloud[first + count] : NULL;
-    if (fill)
-      *cloud = (mpmi_cloud){.slot = slot,
-                            .party = p,
-                            .source = first + count,
-                            .follower = follower,
-                            .mirrored = i < 0 ? 0 : mirrored_axes(&layout->blocks, master, slot)};
-    count += 1 + list_images(cloud, first + count, axes, fill);
+    const mpmi_cloud node = {.slot = slot,
+                             .party = p,
+                             .follower = follower,
+                             .mirrored = i < 0 ? 0 : mirrored_axes(&layout->blocks, master, slot)};
+    count += list_node(search, &node, first + count, axes, fill);
   }
   return count;
 }

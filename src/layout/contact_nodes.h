@@ -1,8 +1,8 @@
 /* Nodes at which bodies meet each other or a surface, as contact finds them in a step. Nodes of several
  * bodies at one index are a meeting, and so is a node close to an obstacle or a friction wall; each of its
  * bodies is a party, with the nodes that are tied together as one, and so is each surface; each two of its
- * parties that may act on each other are a touch. The particles that have weight at a node of a party are a
- * cloud.
+ * parties that may act on each other are a touch. The particles around a node of a party are a cloud: those
+ * that have weight there, and with GIMP and the linear basis those that a cubic spline would give weight.
  *
  * All lists have one order, which follows from blocks, nodes, bodies and slots. */
 #ifndef MPMI_CONTACT_NODES_H
@@ -34,21 +34,22 @@ typedef struct mpmi_near {
   int32_t surface, block; /* block: one at the site */
 } mpmi_near;
 
-/* A particle with weight at a node. */
+/* A particle around a node. */
 typedef struct mpmi_cloud_entry {
   uint32_t slot;
   int32_t member;
-  double volume; /* w V at the start of the step */
+  double volume; /* w V at the start of the step, with the weight that makes it part of the cloud */
 } mpmi_cloud_entry;
 
-/* The particles with weight at one node of a party: its master, or one that follows it. A node on the
- * plane of a wall is its own mirror image, and has the cloud of its particles twice. */
+/* The particles around one node of a party: its master, one that follows it, or with the linear basis an
+ * image behind a wall. A node on the plane of a wall is its own mirror image, and has the cloud of its
+ * particles twice. */
 typedef struct mpmi_cloud {
   int64_t slot;
   int64_t party;
   int64_t source;       /* the cloud that has its particles: itself, or that of which it is the image */
   int64_t first, count; /* of the entries */
-  int64_t follower;     /* of the constraints, or -1 for the master */
+  int64_t follower;     /* of the constraints; -1: the master, or its image */
   int32_t mirrored;     /* bits: axes on which it is the master's mirror image */
   double gradient[3];   /* sum of V grad w: the surface integral of w n */
 } mpmi_cloud;

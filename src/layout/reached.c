@@ -12,10 +12,14 @@ static mpmi_span cut(mpmi_span of, int32_t low, int32_t high) {
 }
 
 mpmi_spans mpmi_spans_of(const mpmi_blocks *b, int64_t block) {
+  return mpmi_spans_of_stencil(b, block, b->grid->width, b->grid->below);
+}
+
+mpmi_spans mpmi_spans_of_stencil(const mpmi_blocks *b, int64_t block, int32_t width, int32_t below) {
   const mpm_grid *grid = b->grid;
   const mpmi_node_box *box = &b->cover[block].nodes;
-  const int32_t edge = b->edge, low = MPMI_RING + grid->below,
-                high = MPMI_RING + grid->width - 1 - grid->below;
+  const int32_t edge = b->edge, low = MPMI_RING + below, high = MPMI_RING + width - 1 - below,
+                wider = width - grid->width;
   mpmi_spans spans;
   for (int32_t k = 0; k < 3; ++k) {
     const int32_t axis = k - (3 - grid->dim); /* the last axes are those of the grid */
@@ -23,9 +27,9 @@ mpmi_spans mpmi_spans_of(const mpmi_blocks *b, int64_t block) {
       spans.at[k][0] = (mpmi_span){0, 0, 1};
       continue;
     }
-    spans.at[k][0] = cut((mpmi_span){0, edge - low, low}, box->low[axis], box->high[axis]);
-    spans.at[k][1] = cut((mpmi_span){low, 0, edge}, box->low[axis], box->high[axis]);
-    spans.at[k][2] = cut((mpmi_span){low + edge, 0, high}, box->low[axis], box->high[axis]);
+    spans.at[k][0] = cut((mpmi_span){0, edge - low, low}, box->low[axis], box->high[axis] + wider);
+    spans.at[k][1] = cut((mpmi_span){low, 0, edge}, box->low[axis], box->high[axis] + wider);
+    spans.at[k][2] = cut((mpmi_span){low + edge, 0, high}, box->low[axis], box->high[axis] + wider);
   }
   return spans;
 }

@@ -17,6 +17,8 @@ typedef struct mpmi_spans {
   mpmi_span at[3][3];
 } mpmi_spans;
 mpmi_spans mpmi_spans_of(const mpmi_blocks *b, int64_t block);
+/* The same for wider stencils about the same anchors, in a tile of their width. */
+mpmi_spans mpmi_spans_of_stencil(const mpmi_blocks *b, int64_t block, int32_t width, int32_t below);
 
 /* Finds where the particles of each block are and which nodes they meet. A particle may drift so far, in
  * cells, before that is found anew. */

@@ -35,8 +35,9 @@ typedef struct slide_series {
   const double *place;                   /* of the support, in cells; NULL: six of ours */
   double h, slab;                        /* h: 0 for 1/20 */
   double turn, sliding, creep, stopping; /* tolerances: of ways, over the exact; length; of the way again */
-  double weight;        /* and of the mean force of the floor; 0: none, since a block trembles */
-  const char *trembles; /* NULL, or why lower bounds of ways, and places of rest, are not kept to */
+  double weight;      /* and of the mean force of the floor; 0: none, since a block trembles */
+  const char *creeps; /* NULL, or why it creeps on the slope */
+  const char *hops;   /* NULL, or why the mean force of the floor is not the weight */
 } slide_series;
 
 void slide_gates(const slide_series *s, FILE *table);
