@@ -159,22 +159,32 @@ typedef struct cloud_particles {
   const mpm_particles *set;
 } cloud_particles;
 
-/* One axis of a particle's stencil; an axis that the grid does not have is one node wide. */
+/* One axis of a particle's stencil; an axis that the grid does not have is one node wide. own, g: by the
+ * grid's basis; own is w where that finds the clouds. */
 typedef struct stencil_axis {
   int32_t width;
-  double w[MPMI_MAX_WIDTH], own[MPMI_MAX_WIDTH], g[MPMI_MAX_WIDTH]; /* own, g: by the grid's basis */
+  double w[MPMI_MAX_WIDTH], g[MPMI_MAX_WIDTH], other[MPMI_MAX_WIDTH];
+  const double *own;
 } stencil_axis;
 
-static stencil_axis stencil_of(const cloud_particles *of, const mpm_grid *grid, int32_t k, int64_t p) {
-  if (k < 0) return (stencil_axis){1, {1.0}, {1.0}, {0.0}};
-  stencil_axis axis = {.width = of->width};
-  for (int32_t a = 0; a < of->width; ++a) axis.w[a] = of->weights->w[k][a][p];
+static void find_stencil(const cloud_particles *of, const mpm_grid *grid, int32_t k, int64_t p,
+                         stencil_axis *axis) {
+  axis->width = k < 0 ? 1 : of->width;
+  axis->w[0] = 1.0, axis->g[0] = 0.0;
+  axis->own = axis->w;
+  for (int32_t a = 0; a < of->width && k >= 0; ++a) axis->w[a] = of->weights->w[k][a][p];
+  if (of->own == of->weights) {
+    for (int32_t a = 0; a < of->width && k >= 0; ++a) axis->g[a] = of->own->g[k][a][p];
+    return;
+  }
+  if (k < 0) return;
+  axis->own = axis->other;
+  for (int32_t a = 0; a < MPMI_MAX_WIDTH; ++a) axis->other[a] = axis->g[a] = 0.0;
   const int32_t skipped = (int32_t)rint(of->own->first[k][p] - of->weights->first[k][p]);
   for (int32_t a = 0; a < grid->width; ++a) {
-    axis.own[skipped + a] = of->own->w[k][a][p];
-    axis.g[skipped + a] = of->own->g[k][a][p];
+    axis->other[skipped + a] = of->own->w[k][a][p];
+    axis->g[skipped + a] = of->own->g[k][a][p];
   }
-  return axis;
 }
 
 /* Turns a vector sum w G over reference positions, that of the last axes, into that over the present ones: by
@@ -198,7 +208,7 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
   /* by their volume rings would turn normals away from the axis */
   if (of->radius && of->radius[of->slot + p] > 0.0) volume /= of->radius[of->slot + p];
   stencil_axis axis[3];
-  for (int32_t k = 0; k < 3; ++k) axis[k] = stencil_of(of, grid, k - (3 - grid->dim), p);
+  for (int32_t k = 0; k < 3; ++k) find_stencil(of, grid, k - (3 - grid->dim), p, &axis[k]);
   for (int32_t i = 0; i < axis[0].width; ++i)
     for (int32_t j = 0; j < axis[1].width; ++j) {
       const double w = axis[0].w[i] * axis[1].w[j], own = axis[0].own[i] * axis[1].own[j];
