@@ -65,10 +65,32 @@ double disc_spin(const verify_world *w, const mpm_particles *set, const double *
   return angular / inertia;
 }
 
+double disc_outlines_meet(int cells, double angle) {
+  const double spacing = 0.5 / cells, e[2] = {fabs(cos(angle)), fabs(sin(angle))};
+  const int32_t n = (int32_t)ceil(disc_radius / spacing);
+  double most = 0.0;
+  for (int32_t i = 0; i < n; ++i)
+    for (int32_t j = 0; j < n; ++j)
+      if (hypot(i + 0.5, j + 0.5) * spacing <= disc_radius)
+        most = fmax(most, spacing * ((i + 1) * e[0] + (j + 1) * e[1]));
+  return (distance - most) / disc_speed;
+}
+
+/* Prescribed particles four cells deep below the plane y = shift[1] h. */
+static void lay_rigid_body(verify_world *w, const disc_hit *a, double h) {
+  static const uint8_t all[2] = {1, 1};
+  const double low[2] = {-12.0 * ceil(0.04 / h) * h, -4.0 * h}, high[2] = {-low[0], 0.0};
+  mpm_particles *body = verify_set(w, w->material[0]);
+  verify_fill_box(w, body, low, high, 2);
+  verify_place(w, body, 0.0, (const double[]){a->shift[0] * h, a->shift[1] * h});
+  verify_ok(w, mpm_particles_set_all(body, "prescribed", MPM_U8, 2, all));
+  verify_ok(w, mpm_stepper_set_body(w->stepper, body, 1));
+}
+
 disc_outcome disc_collide(const disc_hit *a, FILE *history) {
   const double h = 1.0 / a->cells, e[2] = {cos(a->angle), sin(a->angle)}, side[2] = {-e[1], e[0]};
   const double R = disc_radius, speed = disc_speed, mass = 1000.0 * PI * R * R;
-  const int discs = a->against == ON_BODY ? 2 : 1;
+  const int discs = a->against == ON_BODY && !a->rigid ? 2 : 1;
   verify_setup setup = verify_defaults(2, (int64_t)ceil(1.5 / h), h);
   setup.grid.basis = a->basis;
   setup.grid.origin[0] = setup.grid.origin[1] = -ceil(0.75 / h) * h;
@@ -88,6 +110,7 @@ disc_outcome disc_collide(const disc_hit *a, FILE *history) {
     disc_fill(&w, disc, centre, R, v, 0.5 * h);
     verify_ok(&w, mpm_stepper_set_body(w.stepper, disc, i));
   }
+  if (a->rigid) lay_rigid_body(&w, a, h);
   support other = {.kind = a->against};
   support_lay(&w, &other, a->friction, a->angle + 0.5 * PI,
               (const double[]){a->shift[0] * h, a->shift[1] * h});

@@ -18,7 +18,8 @@ void disc_fill_shells(const verify_world *w, mpm_particles *set, double radius, 
 double disc_spin(const verify_world *w, const mpm_particles *set, const double *e, double *velocity);
 
 typedef struct disc_hit {
-  int against, cells, scheme, transfer, basis; /* against: ON_BODY is another disc */
+  int against, cells, scheme, transfer, basis; /* against: ON_BODY is another disc, */
+  int rigid;                                   /* or with 1 one of prescribed particles with a plane face */
   double cfl;                                  /* of the stable step; 0: 0.4 */
   double shift[2], angle, offset, friction; /* shift: in cells; angle: of the flight, -90 degrees to a wall;
                                                   offset: of the lines of flight, in radii */
@@ -34,6 +35,9 @@ typedef struct disc_outcome {
 
 extern const double disc_radius, disc_speed;
 extern const char *const disc_reference; /* where gates are from */
+
+/* When the outlines of two lattices meet: those of the cells of their particles. */
+double disc_outlines_meet(int cells, double angle);
 
 /* Runs to t = 3.6. history may be NULL. */
 disc_outcome disc_collide(const disc_hit *a, FILE *history);
