@@ -14,7 +14,7 @@ def obstacle_slope():
     ax[0].set_xlabel("place of the plane in its cell / h")
     ax[0].set_ylabel("way of the block / exact, friction 0.3")
     ax[0].legend()
-    for k, support in enumerate(("plane", "turned plane", "friction wall")):
+    for k, support in enumerate(("plane", "turned plane", "friction wall", "rigid body")):
         for case, value, mark in (("rolls", "way", "o-"), ("slides", "spin", "s--")):
             at = rows(discs, case=case, support=support)
             exact = at["exact" if value == "way" else "exact_spin"]
