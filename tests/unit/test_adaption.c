@@ -222,7 +222,9 @@ START_TEST(there_and_back) {
   world w;
   const world_desc desc = described(how, dim);
   mpm_particles *set = world_open(&w, &desc);
-  const double x[] = {1.1, 1.13, 1.11}, v[] = {0.3, -0.2, 0.1}, size[] = {0.2, 0.05, 0.04};
+  const double x[] = {1.1, 1.13, 1.11}, v[] = {0.3, -0.2, 0.1};
+  double size[] = {0.04, 0.05, 0.06};
+  size[_i % dim] = 0.2;
   const double volume = size[0] * (dim > 1 ? size[1] : 1.0) * (dim > 2 ? size[2] : 1.0);
   ck_ok(&w, mpm_particles_add(set, 1, x, v, &volume, size, NULL, NULL));
   dice d = {9};
@@ -513,7 +515,7 @@ START_TEST(limits) {
   world_fill_cube(&w, set, 0.5, 1.0);
   const int64_t n = mpm_particles_count(set);
   mpm_adaption_desc adapt = split_all();
-  adapt.most_particles = n + 7; /* two splits in four, and not a third */
+  adapt.most_particles = n + 6; /* two splits in four, and not a third */
   ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &adapt));
   ck_ok(&w, mpm_stepper_adapt(w.stepper));
   ck_assert_int_eq(mpm_particles_count(set), n + 6);
@@ -524,6 +526,10 @@ START_TEST(limits) {
   ck_ok(&w, mpm_stepper_adapt(w.stepper));
   ck_assert_int_eq(mpm_particles_count(set), n + 6);
   adapt.split_edge = 0.0;
+  adapt.min_per_cell = 9; /* cells have four particles, whose halves would be too short */
+  ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &adapt));
+  ck_ok(&w, mpm_stepper_adapt(w.stepper));
+  ck_assert_int_eq(mpm_particles_count(set), n + 6);
   adapt.least_edge = 0.2;
   adapt.min_per_cell =
       6; /* cells have four particles: two of them are halved along x, those with whole edges */
@@ -603,6 +609,44 @@ START_TEST(open_wall) {
 }
 END_TEST
 
+/* Nor are they merged, with what stays behind or with each other. */
+START_TEST(open_wall_and_pairs) {
+  world w;
+  const world_desc desc = described(&methods[0], 2);
+  mpm_particles *set = world_open(&w, &desc);
+  ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MAX, MPM_WALL_OPEN, 0.0));
+  const double low[] = {1.5, 0.5}, high[] = {2.0, 1.0}, v[] = {4.0, 0.0};
+  world_fill(&w, set, low, high, 2);
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, v));
+  mpm_adaption_desc adapt = merge_all();
+  adapt.every = 1;
+  ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &adapt));
+  w.info = world_step(&w, 0.02);
+  ck_assert_int_eq(w.info.removed, 4);
+  ck_assert_int_eq(told(&w, set).merges, 6); /* of two particles one, of four two, in two rows of cells */
+  ck_assert_int_eq(mpm_particles_count(set), 6);
+  world_close(&w);
+}
+END_TEST
+
+/* Of two neighbours that are equally near the one with the lower id is taken. */
+START_TEST(ties) {
+  world w;
+  const world_desc desc = described(&methods[0], 2);
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill_cube(&w, set, 0.5, 0.75);
+  ck_assert_int_eq(mpm_particles_count(set), 4);
+  mpm_adaption_desc adapt = merge_all();
+  adapt.max_per_cell = 3;
+  ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &adapt));
+  ck_ok(&w, mpm_stepper_adapt(w.stepper));
+  int64_t *id = fetch_ids(&w, set);
+  ck_holds(mpm_particles_count(set) == 3 && id[0] == 0 && id[1] == 2 && id[2] == 3);
+  free(id);
+  world_close(&w);
+}
+END_TEST
+
 START_TEST(refusals) {
   world w;
   world_desc desc = described(&methods[0], 2);
@@ -677,6 +721,8 @@ Suite *adaption_suite(void) {
   tcase_add_test(parts, faces);
   tcase_add_test(parts, rings);
   tcase_add_test(parts, open_wall);
+  tcase_add_test(parts, open_wall_and_pairs);
+  tcase_add_test(parts, ties);
   tcase_add_test(parts, refusals);
   suite_add_tcase(suite, parts);
   TCase *all = tcase_create("combinations");
