@@ -35,6 +35,38 @@ class Callbacks(unittest.TestCase):
         stepper.step(1e-3)
         np.testing.assert_allclose(stepper.info.momentum[0], 3e-3 * one["mass"].sum(), rtol=1e-9)
 
+    def test_adaption(self):
+        one, stepper = block()
+        one.add_field("heat")
+        one.set_extensive("heat")
+        one["heat"] = np.ones(len(one))
+        count, seen = len(one), []
+
+        def choose(batch, accept):
+            seen.append((batch.what, batch.position.shape, batch.other, batch.id.copy()))
+            accept[:] = batch.id == 0
+
+        stepper.set_adaption(one, choose, split_edge=1e-3, least_edge=1e-4)
+        stepper.adapt()
+        parts = 2**one["position"].shape[1]
+        self.assertEqual(len(one), count + parts - 1)
+        self.assertEqual(sum(len(s[3]) for s in seen), count)
+        self.assertEqual(seen[0][0], mpm.ADAPT_SPLIT)
+        self.assertIsNone(seen[0][2])
+        info = stepper.adaption_info(one)
+        self.assertEqual((info.splits, info.added, info.merges), (1, parts - 1, 0))
+        self.assertEqual(one["heat"][0], 1.0 / parts)
+
+        def fail(batch, accept):
+            raise Trouble("adaption")
+
+        stepper.set_adaption(one, fail, split_edge=1e-3, least_edge=1e-4, every=1)
+        with self.assertRaises(Trouble):
+            stepper.step(1e-4)
+        stepper.set_adaption(one)
+        stepper.step(1e-4)
+        self.assertEqual(len(one), count + parts - 1)
+
     def test_exceptions_arrive(self):
         one, stepper = block()
         before = stepper.hash
