@@ -4,15 +4,15 @@
  *
  *   M D C = sum_k m_k ((v_k - v) (x) (x_k - x) + C_k D_k),  D the second moment of the basis at the mean.
  *
- * F is the mean by initial volume, which turns with the body as F does, and a share of the identity more
- * where the volumes must add; stress is the mean by volume and state that by initial volume, but where
- * stress follows from F the law is asked. */
+ * F is the mean by initial volume, which turns with the body as F does, scaled so that the volumes add; stress
+ * is the mean by volume and state that by initial volume, but where stress follows from F the law is asked. */
 #include <math.h>
 
 #include "adaption/adaption.h"
 #include "material/dilation.h"
 #include "particles/add.h"
 #include "particles/law_batch.h"
+#include "simd/elementary.h"
 
 /* ---- what a pair becomes ------------------------------------------------------------------------------ */
 enum { LANES = 3 }; /* of a pair in a batch: both particles, and the one that they become */
@@ -20,7 +20,7 @@ enum { LANES = 3 }; /* of a pair in a batch: both particles, and the one that th
 typedef struct asking {
   mpmi_adaption *a;
   const mpm_particles *set;
-  int32_t copy, has_law;
+  int32_t copy;
   mpmi_law_batch law;
   int64_t *id;                  /* [law.ld] */
   double *ratio;                /* [law.ld] of dilations */
@@ -40,7 +40,7 @@ static void scale(const mpm_particles *set, double volume, double initial_volume
   const int32_t dilates = mpmi_material_kinematics(set->material) == MPMI_F_DILATES;
   const int32_t whole = dim == 3 || mpmi_is_axisymmetric(set->grid) || (dilates && dim == 2);
   const double more = volume / (initial_volume * det(dim, F));
-  const double by = dim == 1 ? more : whole ? cbrt(more) : sqrt(more);
+  const double by = dim == 1 ? more : whole ? mpmi_cbrt(more) : sqrt(more);
   for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
     if (whole || dim == 1 || c < 4) F[c] *= by;
 }
