@@ -4,8 +4,9 @@
  *
  *   M D C = sum_k m_k ((v_k - v) (x) (x_k - x) + C_k D_k),  D the second moment of the basis at the mean.
  *
- * F is the mean by initial volume, which turns with the body as F does, scaled so that the volumes add; stress
- * is the mean by volume and state that by initial volume, but where stress follows from F the law is asked. */
+ * F is the mean by initial volume, which turns with the body as F does, scaled so that the volumes add;
+ * stress is the mean by volume and state that by initial volume, but where stress follows from F the law
+ * is asked. */
 #include <math.h>
 
 #include "adaption/adaption.h"
