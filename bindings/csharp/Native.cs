@@ -1155,8 +1155,8 @@ namespace Mpm {
     /// <summary>In a cell that has particles, but fewer of the set than this, they are split along their longest
     /// edges until there are so many.</summary>
     public int min_per_cell;
-    /// <summary>In a cell with more particles of the set, the nearest pairs that are alike are merged until there are
-    /// so many.</summary>
+    /// <summary>In a cell with more particles of the set pairs are merged until there are so many: in the order of
+    /// ids, each particle with the nearest that is alike.</summary>
     public int max_per_cell;
     /// <summary>Pairs lie no further apart than this.</summary>
     public double merge_distance;

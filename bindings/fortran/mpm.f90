@@ -932,7 +932,8 @@ module mpm
     !> In a cell that has particles, but fewer of the set than this, they are split along their longest edges until
     !! there are so many.
     integer(c_int32_t) :: min_per_cell
-    !> In a cell with more particles of the set, the nearest pairs that are alike are merged until there are so many.
+    !> In a cell with more particles of the set pairs are merged until there are so many: in the order of ids, each
+    !! particle with the nearest that is alike.
     integer(c_int32_t) :: max_per_cell
     !> Pairs lie no further apart than this.
     real(c_double) :: merge_distance

@@ -560,8 +560,8 @@ export interface AdaptionDesc {
    */
   min_per_cell?: number | boolean;
   /**
-   * In a cell with more particles of the set, the nearest pairs that are alike are merged until there are so
-   * many. 0 (default): none are. At least twice min_per_cell.
+   * In a cell with more particles of the set pairs are merged until there are so many: in the order of ids,
+   * each particle with the nearest that is alike. 0 (default): none are. At least twice min_per_cell.
    */
   max_per_cell?: number | boolean;
   /** Pairs lie no further apart than this. Default 0.25. */

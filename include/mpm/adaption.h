@@ -10,7 +10,9 @@
  * the matrix, and what the particles' distances then have of its momentum is taken out of it. A pair that
  * is merged becomes one particle in the middle of its mass. Mass, volume and momentum are kept to
  * rounding, and the angular momentum too, of pairs only with transfers that carry a matrix. What is lost
- * of it, and of energy, mpm_adaption_info tells.
+ * of it, and of energy, mpm_adaption_info tells. Prescribed particles keep
+ * their velocities on prescribed axes, and what momentum a matrix has there is lost. The volume of merged
+ * sheets (MPM_PLANE_STRESS) is that of the thickness that the law finds.
  *
  * Sets adapt at the end of steps: the step has been made with the particles as they were, and either both
  * are done or neither. The info of that step has the energies before, mpm_stepper_info() those after it.
@@ -68,8 +70,8 @@ typedef struct mpm_adaption_desc {
   /** In a cell that has particles, but fewer of the set than this, they are split along their longest edges
    * until there are so many. 0 (default): not. For fluids, whose deformation gradient has no shape. */
   int32_t min_per_cell;
-  /** In a cell with more particles of the set, the nearest pairs that are alike are merged until there are so
-   * many. 0 (default): none are. At least twice min_per_cell. */
+  /** In a cell with more particles of the set pairs are merged until there are so many: in the order of ids,
+   * each particle with the nearest that is alike. 0 (default): none are. At least twice min_per_cell. */
   int32_t max_per_cell;
   /** Pairs lie no further apart than this. Default 0.25. */
   double merge_distance;

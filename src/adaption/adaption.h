@@ -24,6 +24,7 @@ static inline int32_t mpmi_parts_of(int32_t edges) {
 typedef struct mpmi_pair {
   int64_t id, other;
   int64_t stays, goes;
+  int32_t bad; /* there is no mean of their deformations */
   double strain_loss;
 } mpmi_pair;
 
@@ -47,7 +48,7 @@ typedef struct mpmi_adaption {
   uint64_t *key; /* memory for sorting: two of each particle */
   uint32_t *order;
   int64_t key_capacity, order_capacity;
-  uint8_t *taken; /* by slot: the particle is split or merged */
+  uint8_t *taken; /* by slot: into how many parts the particle is split; 1: it is merged */
   int64_t taken_capacity;
 } mpmi_adaption;
 
@@ -66,6 +67,12 @@ static inline void mpmi_domain_edge(const mpm_particles *set, int32_t copy, int6
 }
 /* Its length in cells. */
 double mpmi_edge_in_cells(const mpm_grid *grid, const double *edge);
+
+/* Returns 1 where the velocity of a particle is prescribed on an axis: it stays what it is. */
+static inline int32_t mpmi_keeps_velocity(const mpm_particles *set, int64_t slot, int32_t axis) {
+  const mpmi_field *field = &set->field[MPMI_PRESCRIBED];
+  return field->present && axis < set->grid->dim && ((const uint8_t *)field->data[0])[axis * set->ld + slot];
+}
 
 void mpmi_adaption_free(mpmi_adaption *a, mpm_context *context);
 

@@ -105,7 +105,7 @@ static int64_t take_split(choice *c, int64_t slot, int32_t edges) {
   c->status = MPMI_RESERVE_NEXT(c->set->context, a->split, a->split_capacity, a->splits);
   if (c->status) return 0;
   a->split[a->splits++] = (mpmi_split){mpmi_i64(c->set, MPMI_ID, 0)[slot], slot, edges};
-  a->taken[slot] = 1;
+  a->taken[slot] = (uint8_t)mpmi_parts_of(edges);
   return mpmi_parts_of(edges) - 1;
 }
 
@@ -132,6 +132,8 @@ static void split_long(choice *c, const uint32_t *slot, int64_t n) {
 
 static void split_few(choice *c, const uint32_t *slot, int64_t n) {
   int64_t count = n;
+  for (int64_t i = 0; i < n; ++i)
+    if (c->a->taken[slot[i]] > 1) count += c->a->taken[slot[i]] - 1;
   for (int64_t i = 0; i < n && count < c->a->desc.min_per_cell; ++i)
     count += take_split(c, slot[i], edges_of(c, slot[i], 1));
 }
@@ -180,8 +182,12 @@ static int32_t deform_alike(const choice *c, int64_t s, int64_t t) {
     norm[1] += F[t] * F[t];
   }
   const double larger = norm[0] > norm[1] ? norm[0] : norm[1];
-  return sqrt(unlike) <= c->a->desc.merge_tolerance * sqrt(larger) && same_words(c, MPMI_PRESCRIBED, s, t) &&
-         same_words(c, MPMI_IMAGE, s, t);
+  int32_t alike = sqrt(unlike) <= c->a->desc.merge_tolerance * sqrt(larger);
+  for (int32_t k = 0; k < c->set->grid->dim; ++k) {
+    const double *v = mpmi_row_of(c->set, MPMI_VELOCITY, c->copy, k);
+    alike &= !mpmi_keeps_velocity(c->set, s, k) || !(v[s] < v[t] || v[s] > v[t]);
+  }
+  return alike && same_words(c, MPMI_PRESCRIBED, s, t) && same_words(c, MPMI_IMAGE, s, t);
 }
 
 /* The heavier one stays, of two equal ones that with the lower id, which is s. */
@@ -192,7 +198,7 @@ static void take_pair(choice *c, int64_t s, int64_t t) {
   const int64_t stays = mass[t] > mass[s] ? t : s, goes = stays == s ? t : s;
   if (!c->status) c->status = MPMI_RESERVE_NEXT(c->set->context, a->pair, a->pair_capacity, a->pairs);
   if (c->status) return;
-  a->pair[a->pairs++] = (mpmi_pair){id[stays], id[goes], stays, goes, 0.0};
+  a->pair[a->pairs++] = (mpmi_pair){.id = id[stays], .other = id[goes], .stays = stays, .goes = goes};
   a->taken[s] = a->taken[t] = 1;
 }
 

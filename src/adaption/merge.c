@@ -35,15 +35,18 @@ static double det(int32_t dim, const double *F) {
          F[2] * (F[3] * F[7] - F[4] * F[6]);
 }
 
-/* Makes the volumes add: by the axes of the plane in plane strain and in sheets, by all three else. */
-static void scale(const mpm_particles *set, double volume, double initial_volume, double *F) {
+/* Makes the volumes add: by the axes of the plane in plane strain and in sheets, by all three else. Returns 0
+ * where the mean is no deformation. */
+static int32_t scale(const mpm_particles *set, double volume, double initial_volume, double *F) {
   const int32_t dim = set->grid->dim;
   const int32_t dilates = mpmi_material_kinematics(set->material) == MPMI_F_DILATES;
   const int32_t whole = dim == 3 || mpmi_is_axisymmetric(set->grid) || (dilates && dim == 2);
-  const double more = volume / (initial_volume * det(dim, F));
+  const double J = det(dim, F), more = volume / (initial_volume * J);
+  if (!(J > 0.0 && isfinite(more))) return 0;
   const double by = dim == 1 ? more : whole ? mpmi_cbrt(more) : sqrt(more);
   for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
     if (whole || dim == 1 || c < 4) F[c] *= by;
+  return 1;
 }
 
 /* Returns the mean of a row by two weights. */
@@ -51,9 +54,9 @@ static double mean(const double *row, const mpmi_pair *pair, const double *weigh
   return (weight[0] * row[pair->stays] + weight[1] * row[pair->goes]) / (weight[0] + weight[1]);
 }
 
-static double *mean_state(asking *of, int64_t i) {
+static const double *mean_state(asking *of, int64_t i) {
   const mpm_particles *set = of->set;
-  const mpmi_pair *pair = &of->a->pair[i];
+  mpmi_pair *pair = &of->a->pair[i];
   double *F = of->a->merged + i * mpmi_merged_rows(set);
   const int32_t entries = mpmi_tensor_components(set->grid->dim);
   const int32_t rows = mpmi_stress_components(set->grid->dim);
@@ -63,7 +66,7 @@ static double *mean_state(asking *of, int64_t i) {
     of->initial[k] = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[slot[k]];
   }
   for (int32_t c = 0; c < entries; ++c) F[c] = mean(mpmi_row_of(set, MPMI_F, of->copy, c), pair, of->initial);
-  scale(set, of->volume[0] + of->volume[1], of->initial[0] + of->initial[1], F);
+  pair->bad = !scale(set, of->volume[0] + of->volume[1], of->initial[0] + of->initial[1], F);
   for (int32_t c = 0; c < rows; ++c)
     F[entries + c] = mean(mpmi_row_of(set, MPMI_STRESS, of->copy, c), pair, of->volume);
   for (int32_t c = 0; c < set->material->state_count; ++c)
@@ -101,7 +104,7 @@ static void load_pair(asking *of, int64_t lane, int64_t i) {
   const double *merged = mean_state(of, i);
   load_lane(of, lane, pair->stays, NULL);
   load_lane(of, lane + 1, pair->goes, NULL);
-  load_lane(of, lane + 2, pair->stays, merged);
+  load_lane(of, lane + 2, pair->stays, pair->bad ? NULL : merged);
   const double ratio[2] = {of->ratio[lane], of->ratio[lane + 1]};
   of->ratio[lane + 2] =
       (of->volume[0] * ratio[0] + of->volume[1] * ratio[1]) / (of->volume[0] + of->volume[1]);
@@ -145,7 +148,7 @@ static int32_t take_lane(asking *of, int64_t lane, int64_t i) {
   mpmi_pair *pair = &of->a->pair[i];
   const int32_t dim = set->grid->dim, entries = mpmi_tensor_components(dim);
   double *merged = of->a->merged + i * mpmi_merged_rows(set), loss = 0.0;
-  if (!behave_alike(of, pair, fmin(b->wave_speed[lane], b->wave_speed[lane + 1]))) return 0;
+  if (pair->bad || !behave_alike(of, pair, fmin(b->wave_speed[lane], b->wave_speed[lane + 1]))) return 0;
   if (mpmi_material_stress_from_F(set->material) || mpmi_material_mean_from_F(set->material))
     for (int32_t c = 0; c < mpmi_stress_components(dim); ++c)
       merged[entries + c] = b->stress_new[c * b->ld + lane + 2];
@@ -163,13 +166,17 @@ static int32_t take_lane(asking *of, int64_t lane, int64_t i) {
 static int64_t ask_law(asking *of, int64_t begin, int64_t n, int64_t kept) {
   const int64_t rows = mpmi_merged_rows(of->set);
   mpmi_law_batch *b = &of->law;
+  for (int64_t p = 0; p < b->ld; ++p) of->id[p] = -1; /* lanes of others are of no interest */
   for (int64_t i = 0; i < n; ++i) load_pair(of, LANES * i, begin + i);
   b->batch.n = (LANES * n + MPMI_CHUNK - 1) / MPMI_CHUNK * MPMI_CHUNK; /* laws take whole chunks */
   b->batch.id = of->id;
   if (of->set->field[MPMI_DILATION_RATIO].present)
     mpmi_dilation_of(of->set->context->isa)
         ->scale[mpmi_strain_dim(of->set->grid)](b->F, b->ld, of->ratio, b->batch.n);
-  if (mpmi_law_batch_run_in(b, of->set)) return kept;
+  if (mpmi_law_batch_run_in(b, of->set)) {
+    for (int64_t i = 0; i < n && n > 1; ++i) kept = ask_law(of, begin + i, 1, kept); /* without the refused */
+    return kept;
+  }
   for (int64_t i = 0; i < n; ++i) {
     if (!take_lane(of, LANES * i, begin + i)) continue;
     of->a->pair[kept] = of->a->pair[begin + i];
@@ -182,8 +189,8 @@ static int64_t ask_nobody(asking *of) {
   const int64_t rows = mpmi_merged_rows(of->set);
   int64_t kept = 0;
   for (int64_t i = 0; i < of->a->pairs; ++i) {
-    if (!behave_alike(of, &of->a->pair[i], -1.0)) continue;
     mean_state(of, i);
+    if (of->a->pair[i].bad || !behave_alike(of, &of->a->pair[i], -1.0)) continue;
     of->a->pair[kept] = of->a->pair[i];
     memmove(of->a->merged + kept++ * rows, of->a->merged + i * rows, (size_t)rows * sizeof(double));
   }
@@ -271,7 +278,9 @@ static void join_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_pa
   double sum[3][3] = {{0.0}};
   for (int32_t k = 0; k < 3; ++k) {
     one.x[k] = (of[0].mass * of[0].x[k] + of[1].mass * of[1].x[k]) / one.mass;
-    one.v[k] = (of[0].mass * of[0].v[k] + of[1].mass * of[1].v[k]) / one.mass;
+    one.v[k] = mpmi_keeps_velocity(set, pair->stays, k)
+                   ? of[0].v[k]
+                   : (of[0].mass * of[0].v[k] + of[1].mass * of[1].v[k]) / one.mass;
   }
   for (int32_t k = 0; k < set->grid->dim; ++k)
     mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + pair->stays] = one.x[k];
@@ -283,7 +292,9 @@ static void join_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_pa
   if (mpmi_is_affine(settings)) mpmi_second_moments(settings, set, pair->stays, one.D);
   for (int32_t r = 0; r < 3; ++r)
     for (int32_t k = 0; k < 3; ++k)
-      one.C[r][k] = one.D[k] > least ? sum[r][k] / (one.mass * one.D[k]) : of[0].C[r][k];
+      one.C[r][k] = one.D[k] > least && !mpmi_keeps_velocity(set, pair->stays, r)
+                        ? sum[r][k] / (one.mass * one.D[k])
+                        : of[0].C[r][k];
   mpmi_write_motion(settings, set, pair->stays, &one);
   for (int32_t i = 0; i < 2; ++i) mpmi_count_motion(set->grid, &of[i], one.x, 1.0, &a->sums);
   mpmi_count_motion(set->grid, &one, one.x, -1.0, &a->sums);

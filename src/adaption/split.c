@@ -5,6 +5,8 @@
  * distances d_c. Then sum_c m_c d_c x v_c is the angular momentum that the matrix gives to the distances,
  * with S = sum_c (m_c / m) d_c (x) (d_c - d), and the rest is left to the matrices: C_c D' = C (D - S),
  * where D is the second moment of the basis at the particle and D' the mean of those where its parts are. */
+#include <math.h>
+
 #include "adaption/adaption.h"
 #include "particles/add.h"
 
@@ -41,7 +43,9 @@ static void find_parts(const mpm_particles *set, const mpmi_split *split, int64_
   const double radius = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[split->slot] / (section > 0.0 ? section : 1.0);
   for (int32_t i = 0; i < p->count; ++i) {
     p->slot[i] = i ? first_new + i - 1 : split->slot;
-    p->share[i] = (section > 0.0 ? 1.0 + p->reference[i][0] / radius : 1.0) / p->count;
+    double more = section > 0.0 ? p->reference[i][0] / radius : 0.0;
+    if (fabs(more) > 0.5) more = more > 0.0 ? 0.5 : -0.5; /* the host's sizes need not fit its volumes */
+    p->share[i] = (1.0 + more) / p->count;
   }
 }
 
@@ -104,7 +108,7 @@ static void set_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_par
     mpmi_motion_of part = *whole;
     part.mass = p->share[i] * whole->mass;
     for (int32_t r = 0; r < 3; ++r)
-      for (int32_t k = 0; k < 3; ++k) {
+      for (int32_t k = 0; k < 3 && !mpmi_keeps_velocity(set, p->slot[i], r); ++k) {
         part.v[r] += whole->C[r][k] * (p->away[i][k] - mean[k]);
         if (D[k] > least) part.C[r][k] = rest[r][k] / D[k];
       }
@@ -137,7 +141,6 @@ void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_pa
     next += p.count - 1;
   }
   set->count += added;
-  set->dirty |= MPMI_DIRTY_ORDER;
   a->sums.splits += a->splits;
   a->sums.added += added;
 }

@@ -279,6 +279,8 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   l.archive.size = bytes - (int64_t)sizeof header;
   status = read_state(&l);
   if (!status) status = check_bodies(&l);
+  for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
+    if (s->adaption[m].on) status = mpmi_field_make_present(&l.set[m].fresh, MPMI_SIZE);
   if (!status && l.numbers.blocks >= 0) status = mpmi_layout_adopt(&s->layout, &s->settings);
   if (!status) take_over(&l);
   for (int32_t m = 0; m < s->layout.member_count; ++m)

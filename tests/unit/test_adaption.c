@@ -1,6 +1,6 @@
 /* Splitting and merging of particles: what is kept, what is reported, and that nothing else matters. */
 #include "combinations.h"
-#include "world.h"
+#include "reference.h"
 
 static mpm_adaption_desc adaption_desc(void) {
   mpm_adaption_desc desc;
@@ -647,6 +647,124 @@ START_TEST(ties) {
 }
 END_TEST
 
+/* Prescribed particles keep their velocities; pairs of unlike ones stay apart. */
+START_TEST(prescribed_stay) {
+  const method *how = &methods[_i];
+  world w;
+  const world_desc desc = described(how, 2);
+  mpm_particles *set = world_open(&w, &desc);
+  const int64_t n = world_fill_cube(&w, set, 0.5, 1.0);
+  const uint8_t axes[] = {0, 1};
+  const double held[] = {0.0, 0.25};
+  dice d = {3};
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, 2, held));
+  if (carries_matrix(how->transfer)) add_affine(&w, set, &d, 2.0);
+  ck_ok(&w, mpm_particles_set_all(set, "prescribed", MPM_U8, 2, axes));
+  const mpm_adaption_desc apart = split_all(), together = merge_all();
+  ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &apart));
+  ck_ok(&w, mpm_stepper_adapt(w.stepper));
+  ck_assert_int_eq(mpm_particles_count(set), 4 * n);
+  double *v = fetch(&w, set, "velocity", 2);
+  for (int64_t p = 0; p < 4 * n; ++p) {
+    ck_holds(v[4 * n + p] == 0.25);
+    v[4 * n + p] = p % 2 ? 0.25 : 0.5;
+  }
+  put(&w, set, "velocity", 2, v);
+  ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &together));
+  ck_ok(&w, mpm_stepper_adapt(w.stepper));
+  free(v);
+  const int64_t left = mpm_particles_count(set);
+  ck_holds(left < 4 * n);
+  v = fetch(&w, set, "velocity", 2);
+  for (int64_t p = 0; p < left; ++p) ck_holds(v[left + p] == 0.25 || v[left + p] == 0.5);
+  free(v);
+  world_close(&w);
+}
+END_TEST
+
+/* Two particles that are turned against each other have no mean. */
+START_TEST(no_mean) {
+  for (int32_t hosts = 0; hosts < 2; ++hosts) {
+    static reference_law host_law = {1e5, 0.3, 15.0};
+    world w;
+    world_desc desc = described(&methods[0], 2);
+    if (hosts) desc.law = (world_law){.density = 1e3, .stress = reference_law_stress, .user = &host_law};
+    mpm_particles *set = world_open(&w, &desc);
+    const double x[] = {1.05, 1.1, 1.1, 1.1}, volume[] = {1e-3, 1e-3};
+    const double F[] = {1.0,  -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+                        -1.0, 0.0,  0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0};
+    ck_ok(&w, mpm_particles_add(set, 2, x, NULL, volume, NULL, NULL, NULL));
+    put(&w, set, "deformation_gradient", 9, F);
+    const mpm_adaption_desc all = merge_all();
+    ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &all));
+    ck_ok(&w, mpm_stepper_adapt(w.stepper));
+    ck_assert_int_eq(mpm_particles_count(set), 2);
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* A state from before sets adapted has no sizes; they are found. */
+START_TEST(state_without_sizes) {
+  world a, b;
+  const world_desc desc = described(&methods[0], 2);
+  mpm_particles *set = world_open(&a, &desc), *other = world_open(&b, &desc);
+  world_fill_cube(&a, set, 0.5, 1.0);
+  world_fill_cube(&b, other, 0.5, 1.0);
+  const mpm_adaption_desc all = split_all();
+  ck_ok(&b, mpm_stepper_set_adaption(b.stepper, other, &all));
+  world_copy(&a, &b);
+  ck_ok(&b, mpm_stepper_adapt(b.stepper));
+  ck_assert_int_eq(mpm_particles_count(other), 4 * mpm_particles_count(set));
+  world_close(&a);
+  world_close(&b);
+}
+END_TEST
+
+/* Nodal fields are those of the step, also when sums of the state were asked for. */
+START_TEST(nodal_fields_stay) {
+  world w;
+  mpm_particles *set = open_busy(&w, 2, &methods[0], NULL);
+  mpm_adaption_desc desc = split_all();
+  desc.every = 1;
+  ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &desc));
+  world_step(&w, 1e-3);
+  ck_holds(told(&w, set).splits > 0);
+  world_stable_dt(&w);
+  world_info(&w);
+  int64_t n;
+  double *mass = fetch_nodes(&w, "mass", &n);
+  ck_within("mass", sum_of(n, mass), mass_of(&w, set), 1e-9);
+  free(mass);
+  world_close(&w);
+}
+END_TEST
+
+/* Sizes that do not fit the volume make no negative masses; parts that are ordered already count in a
+ * cell. */
+START_TEST(odd_sizes) {
+  for (int32_t round = 0; round < 2; ++round) {
+    world w;
+    world_desc desc = described(&methods[0], 2);
+    desc.grid.geometry = round ? MPM_AXISYMMETRIC : MPM_PLANE_STRAIN;
+    mpm_particles *set = world_open(&w, &desc);
+    const double x[] = {1.05, 1.15, 1.1, 1.1}, volume[] = {1e-3, 1e-3}, size[] = {0.25, 0.1, 0.1, 0.1};
+    ck_ok(&w, mpm_particles_add(set, 2, x, NULL, volume, size, NULL, NULL));
+    mpm_adaption_desc adapt = adaption_desc();
+    adapt.split_edge = 0.6;
+    adapt.min_per_cell = 3;
+    ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &adapt));
+    ck_ok(&w, mpm_stepper_adapt(w.stepper));
+    ck_assert_int_eq(mpm_particles_count(set), 3);
+    double *m = fetch(&w, set, "mass", 1);
+    for (int64_t p = 0; p < 3; ++p) ck_holds(m[p] > 0.0);
+    ck_within("mass", sum_of(3, m), 2.0, 1e-12);
+    free(m);
+    world_close(&w);
+  }
+}
+END_TEST
+
 START_TEST(refusals) {
   world w;
   world_desc desc = described(&methods[0], 2);
@@ -723,6 +841,11 @@ Suite *adaption_suite(void) {
   tcase_add_test(parts, open_wall);
   tcase_add_test(parts, open_wall_and_pairs);
   tcase_add_test(parts, ties);
+  tcase_add_loop_test(parts, prescribed_stay, 0, METHODS);
+  tcase_add_test(parts, no_mean);
+  tcase_add_test(parts, state_without_sizes);
+  tcase_add_test(parts, nodal_fields_stay);
+  tcase_add_test(parts, odd_sizes);
   tcase_add_test(parts, refusals);
   suite_add_tcase(suite, parts);
   TCase *all = tcase_create("combinations");

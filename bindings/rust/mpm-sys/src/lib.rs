@@ -1527,8 +1527,8 @@ pub struct mpm_adaption_desc {
     /// In a cell that has particles, but fewer of the set than this, they are split along their longest edges until there
     /// are so many. 0 (default): not. For fluids, whose deformation gradient has no shape.
     pub min_per_cell: i32,
-    /// In a cell with more particles of the set, the nearest pairs that are alike are merged until there are so many. 0
-    /// (default): none are. At least twice min_per_cell.
+    /// In a cell with more particles of the set pairs are merged until there are so many: in the order of ids, each
+    /// particle with the nearest that is alike. 0 (default): none are. At least twice min_per_cell.
     pub max_per_cell: i32,
     /// Pairs lie no further apart than this. Default 0.25.
     pub merge_distance: f64,
