@@ -14,8 +14,8 @@ typedef struct asked {
 static void show(const mpmi_adaption *a, const mpm_particles *set, int32_t copy, int32_t what, int64_t begin,
                  int64_t n, asked *to) {
   for (int64_t i = 0; i < n; ++i) {
-    const mpmi_pair *pair = &a->pair[begin + i];
-    const mpmi_split *split = &a->split[begin + i];
+    const mpmi_merging *pair = &a->pair[begin + i];
+    const mpmi_splitting *split = &a->split[begin + i];
     const int64_t slot = what == MPM_ADAPT_SPLIT ? split->slot : pair->stays;
     to->id[i] = what == MPM_ADAPT_SPLIT ? split->id : pair->id;
     to->other[i] = what == MPM_ADAPT_SPLIT ? -1 : pair->other;

@@ -10,10 +10,10 @@
 #include <string.h>
 
 /* A particle that is split: bit k of `edges` for its edge k. */
-typedef struct mpmi_split {
+typedef struct mpmi_splitting {
   int64_t id, slot;
   int32_t edges;
-} mpmi_split;
+} mpmi_splitting;
 
 /* Returns how many particles come of one whose edges are halved. */
 static inline int32_t mpmi_parts_of(int32_t edges) {
@@ -21,12 +21,12 @@ static inline int32_t mpmi_parts_of(int32_t edges) {
 }
 
 /* A pair that is merged: the slots of the particle that stays and of the one that goes. */
-typedef struct mpmi_pair {
+typedef struct mpmi_merging {
   int64_t id, other;
   int64_t stays, goes;
   int32_t bad; /* there is no mean of their deformations */
   double strain_loss;
-} mpmi_pair;
+} mpmi_merging;
 
 /* What it has done: see mpm_adaption_info. */
 typedef struct mpmi_adaption_sums {
@@ -39,9 +39,9 @@ typedef struct mpmi_adaption {
   int32_t on;
   mpm_adaption_desc desc;
   mpmi_adaption_sums sums; /* since it was first described, or the time was set */
-  mpmi_split *split;
+  mpmi_splitting *split;
   int64_t splits, split_capacity;
-  mpmi_pair *pair;
+  mpmi_merging *pair;
   int64_t pairs, pair_capacity;
   double *merged; /* [pairs][mpmi_merged_rows()] F, stress and state of the particles that pairs become */
   int64_t merged_capacity;

@@ -104,7 +104,7 @@ static int64_t take_split(choice *c, int64_t slot, int32_t edges) {
   if (!edges || a->taken[slot] || !has_room(c, slot, edges) || c->status) return 0;
   c->status = MPMI_RESERVE_NEXT(c->set->context, a->split, a->split_capacity, a->splits);
   if (c->status) return 0;
-  a->split[a->splits++] = (mpmi_split){mpmi_i64(c->set, MPMI_ID, 0)[slot], slot, edges};
+  a->split[a->splits++] = (mpmi_splitting){mpmi_i64(c->set, MPMI_ID, 0)[slot], slot, edges};
   a->taken[slot] = (uint8_t)mpmi_parts_of(edges);
   return mpmi_parts_of(edges) - 1;
 }
@@ -198,7 +198,7 @@ static void take_pair(choice *c, int64_t s, int64_t t) {
   const int64_t stays = mass[t] > mass[s] ? t : s, goes = stays == s ? t : s;
   if (!c->status) c->status = MPMI_RESERVE_NEXT(c->set->context, a->pair, a->pair_capacity, a->pairs);
   if (c->status) return;
-  a->pair[a->pairs++] = (mpmi_pair){.id = id[stays], .other = id[goes], .stays = stays, .goes = goes};
+  a->pair[a->pairs++] = (mpmi_merging){.id = id[stays], .other = id[goes], .stays = stays, .goes = goes};
   a->taken[s] = a->taken[t] = 1;
 }
 
@@ -223,12 +223,12 @@ static void pair_up(choice *c, const uint32_t *slot, int64_t n) {
 
 /* ---- both --------------------------------------------------------------------------------------------- */
 static int compare_splits(const void *a, const void *b) {
-  const int64_t x = ((const mpmi_split *)a)->id, y = ((const mpmi_split *)b)->id;
+  const int64_t x = ((const mpmi_splitting *)a)->id, y = ((const mpmi_splitting *)b)->id;
   return x < y ? -1 : x > y;
 }
 
 static int compare_pairs(const void *a, const void *b) {
-  const int64_t x = ((const mpmi_pair *)a)->id, y = ((const mpmi_pair *)b)->id;
+  const int64_t x = ((const mpmi_merging *)a)->id, y = ((const mpmi_merging *)b)->id;
   return x < y ? -1 : x > y;
 }
 

@@ -50,13 +50,13 @@ static int32_t scale(const mpm_particles *set, double volume, double initial_vol
 }
 
 /* Returns the mean of a row by two weights. */
-static double mean(const double *row, const mpmi_pair *pair, const double *weight) {
+static double mean(const double *row, const mpmi_merging *pair, const double *weight) {
   return (weight[0] * row[pair->stays] + weight[1] * row[pair->goes]) / (weight[0] + weight[1]);
 }
 
 static const double *mean_state(asking *of, int64_t i) {
   const mpm_particles *set = of->set;
-  mpmi_pair *pair = &of->a->pair[i];
+  mpmi_merging *pair = &of->a->pair[i];
   double *F = of->a->merged + i * mpmi_merged_rows(set);
   const int32_t entries = mpmi_tensor_components(set->grid->dim);
   const int32_t rows = mpmi_stress_components(set->grid->dim);
@@ -100,7 +100,7 @@ static void load_lane(asking *of, int64_t lane, int64_t slot, const double *merg
 }
 
 static void load_pair(asking *of, int64_t lane, int64_t i) {
-  const mpmi_pair *pair = &of->a->pair[i];
+  const mpmi_merging *pair = &of->a->pair[i];
   const double *merged = mean_state(of, i);
   load_lane(of, lane, pair->stays, NULL);
   load_lane(of, lane + 1, pair->goes, NULL);
@@ -110,7 +110,7 @@ static void load_pair(asking *of, int64_t lane, int64_t i) {
       (of->volume[0] * ratio[0] + of->volume[1] * ratio[1]) / (of->volume[0] + of->volume[1]);
 }
 
-static double way_of(const asking *of, const mpmi_pair *pair, int32_t field, int32_t components) {
+static double way_of(const asking *of, const mpmi_merging *pair, int32_t field, int32_t components) {
   double square = 0.0;
   for (int32_t c = 0; c < components; ++c) {
     const double *row = mpmi_row_of(of->set, field, of->copy, c), apart = row[pair->goes] - row[pair->stays];
@@ -129,7 +129,7 @@ static double norm_of(const asking *of, int64_t slot, int32_t field, int32_t com
 }
 
 /* Returns 1 where the law finds the pair alike, whose particles have waves of this speed; < 0: unknown. */
-static int32_t behave_alike(const asking *of, const mpmi_pair *pair, double speed) {
+static int32_t behave_alike(const asking *of, const mpmi_merging *pair, double speed) {
   const int32_t dim = of->set->grid->dim, rows = mpmi_stress_components(dim);
   const double tolerance = of->a->desc.merge_tolerance;
   const double unlike = way_of(of, pair, MPMI_STRESS, rows), apart = way_of(of, pair, MPMI_VELOCITY, dim);
@@ -145,7 +145,7 @@ static int32_t behave_alike(const asking *of, const mpmi_pair *pair, double spee
 static int32_t take_lane(asking *of, int64_t lane, int64_t i) {
   const mpm_particles *set = of->set;
   const mpmi_law_batch *b = &of->law;
-  mpmi_pair *pair = &of->a->pair[i];
+  mpmi_merging *pair = &of->a->pair[i];
   const int32_t dim = set->grid->dim, entries = mpmi_tensor_components(dim);
   double *merged = of->a->merged + i * mpmi_merged_rows(set), loss = 0.0;
   if (pair->bad || !behave_alike(of, pair, fmin(b->wave_speed[lane], b->wave_speed[lane + 1]))) return 0;
@@ -228,7 +228,7 @@ mpm_status mpmi_adaption_merge_states(mpmi_adaption *a, const mpm_particles *set
 
 /* ---- doing it ----------------------------------------------------------------------------------------- */
 /* Of two domains the one that both fill is longer along the axis on which they are apart. */
-static void join_domains(mpm_particles *set, const mpmi_pair *pair) {
+static void join_domains(mpm_particles *set, const mpmi_merging *pair) {
   const int32_t dim = set->grid->dim;
   const double extent[2] = {mpmi_initial_extent(set, pair->stays), mpmi_initial_extent(set, pair->goes)};
   double *size = mpmi_f64(set, MPMI_SIZE, 0), way[3], edge[3], most = -1.0, across = 1.0;
@@ -252,7 +252,7 @@ static void join_domains(mpm_particles *set, const mpmi_pair *pair) {
 
 /* Sums amounts, takes the means of what else is of type F64, and leaves the rest as the heavier one has
  * it. */
-static void join_fields(mpm_particles *set, const mpmi_pair *pair, const double *initial) {
+static void join_fields(mpm_particles *set, const mpmi_merging *pair, const double *initial) {
   static const int32_t by_mass[] = {MPMI_ACCELERATION, MPMI_REFERENCE};
   const double mass[2] = {mpmi_f64(set, MPMI_MASS, 0)[pair->stays], mpmi_f64(set, MPMI_MASS, 0)[pair->goes]};
   for (int32_t f = 0; f < 2; ++f)
@@ -272,7 +272,7 @@ static void join_fields(mpm_particles *set, const mpmi_pair *pair, const double 
 }
 
 static void join_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set,
-                         const mpmi_pair *pair, const mpmi_motion_of *of) {
+                         const mpmi_merging *pair, const mpmi_motion_of *of) {
   const double least = 1e-12 * set->grid->h_min * set->grid->h_min;
   mpmi_motion_of one = {.mass = of[0].mass + of[1].mass};
   double sum[3][3] = {{0.0}};
@@ -312,7 +312,7 @@ static void write_state(mpm_particles *set, int64_t slot, const double *merged) 
 
 void mpmi_adaption_merge(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set) {
   for (int64_t i = 0; i < a->pairs; ++i) {
-    const mpmi_pair *pair = &a->pair[i];
+    const mpmi_merging *pair = &a->pair[i];
     const mpmi_motion_of of[2] = {mpmi_motion_in(settings, set, pair->stays),
                                   mpmi_motion_in(settings, set, pair->goes)};
     const double *V0 = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), *V = mpmi_f64(set, MPMI_VOLUME, 0);

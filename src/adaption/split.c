@@ -19,7 +19,7 @@ typedef struct parts {
   double away[MOST_PARTS][3], reference[MOST_PARTS][3];
 } parts;
 
-static void find_parts(const mpm_particles *set, const mpmi_split *split, int64_t first_new, parts *p) {
+static void find_parts(const mpm_particles *set, const mpmi_splitting *split, int64_t first_new, parts *p) {
   const int32_t dim = set->grid->dim;
   const double *size = mpmi_f64(set, MPMI_SIZE, 0) + split->slot;
   *p = (parts){.count = 1};
@@ -66,7 +66,7 @@ static void give_fields(mpm_particles *set, int64_t from, int64_t to, double sha
   }
 }
 
-static void place(mpm_particles *set, const mpmi_split *split, const parts *p, int32_t i) {
+static void place(mpm_particles *set, const mpmi_splitting *split, const parts *p, int32_t i) {
   const int64_t slot = p->slot[i];
   for (int32_t k = 0; k < set->grid->dim; ++k) {
     mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + slot] += p->away[i][k];
@@ -129,7 +129,7 @@ void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_pa
   }
   if (!added || mpmi_append_begin(set, added, 0, &next)) return;
   for (int64_t i = 0; i < a->splits; ++i) {
-    const mpmi_split *split = &a->split[i];
+    const mpmi_splitting *split = &a->split[i];
     const mpmi_motion_of whole = mpmi_motion_in(settings, set, split->slot);
     find_parts(set, split, next, &p);
     for (int32_t k = p.count - 1; k >= 0; --k) give_fields(set, split->slot, p.slot[k], p.share[k]);
