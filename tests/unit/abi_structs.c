@@ -178,7 +178,10 @@ START_TEST(table) {
                {"mpm_distance_batch", 64, sizeof(mpm_distance_batch)},
                {"mpm_obstacle_desc", 296, sizeof(mpm_obstacle_desc)},
                {"mpm_surface_desc", 72, sizeof(mpm_surface_desc)},
-               {"mpm_marker_batch", 88, sizeof(mpm_marker_batch)}};
+               {"mpm_marker_batch", 88, sizeof(mpm_marker_batch)},
+               {"mpm_adaption_desc", 72, sizeof(mpm_adaption_desc)},
+               {"mpm_adaption_info", 80, sizeof(mpm_adaption_info)},
+               {"mpm_adaption_batch", 56, sizeof(mpm_adaption_batch)}};
   const size_t count = sizeof known / sizeof *known;
   size_t found = 0;
   for (const mpmi_release *at = mpmi_releases; at->name; ++at) {
@@ -220,6 +223,7 @@ START_TEST(init_functions) {
     mpm_contact_desc contact;
     mpm_obstacle_desc obstacle;
     mpm_surface_desc surface;
+    mpm_adaption_desc adaption;
   } d;
 #define CHECK_INIT(name, at)                                                                                 \
   for (uint32_t bytes = 0; bytes < sizeof d; ++bytes) {                                                      \
@@ -239,6 +243,7 @@ START_TEST(init_functions) {
   CHECK_INIT(mpm_contact_desc, &d.contact);
   CHECK_INIT(mpm_obstacle_desc, &d.obstacle);
   CHECK_INIT(mpm_surface_desc, &d.surface);
+  CHECK_INIT(mpm_adaption_desc, &d.adaption);
 }
 END_TEST
 

@@ -285,7 +285,9 @@ START_TEST(state_is_kept) {
   if (!strcmp(model, "cam_clay")) put(&w, set, "stress", 6, stress);
   world_step(&w, 1e-7);
   double *before = fetch(&w, set, "stress", 6);
-  const double V = sum_of(n, fetch(&w, set, "volume", 1));
+  double *volumes = fetch(&w, set, "volume", 1);
+  const double V = sum_of(n, volumes);
+  free(volumes);
   const mpm_adaption_desc all = merge_all();
   ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &all));
   ck_ok(&w, mpm_stepper_adapt(w.stepper));
