@@ -2172,7 +2172,8 @@ function mpm_stepper_adapt(stepper)
 end
 
 """
-Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper.
+Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper. MPM_E_ARG: particles or info is
+NULL.
 """
 function mpm_stepper_adaption_info(stepper, particles, info)
     return ccall((:mpm_stepper_adaption_info, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_particles}, Ptr{mpm_adaption_info}),

@@ -221,36 +221,30 @@ def vortex_cloud():
     return clouds("vortex_cloud", "t", "error", "error of displacement", ("x", "y"), 2, label="t = {:g}, h = 0.1")
 
 
-@plot
-def drawn_bar():
-    names = ("total; quadratic; quasi-static", "updated; quadratic; quasi-static", "updated; quadratic; USL FLIP")
-    figure, ax = plt.subplots(3, 1, figsize=(7.2, 3.4), layout="constrained", sharex=True, sharey=True)
-    data = read("drawn_bar_particles")
+def drawn(table, names, height, size):
+    """Clouds of a bar that was drawn out, one below the other, coloured by the stretch."""
+    figure, ax = plt.subplots(len(names), 1, figsize=(7.2, height), layout="constrained", sharex=True, sharey=True)
+    data = read(table)
     for panel, name in zip(ax, names):
         at = rows(data, method=name)
-        drawn = panel.scatter(at["x"], at["y"], c=at["F11"], s=4, cmap="viridis", vmin=1, vmax=4, linewidths=0,
+        cloud = panel.scatter(at["x"], at["y"], c=at["F11"], s=size, cmap="viridis", vmin=1, vmax=4, linewidths=0,
                               antialiased=False, rasterized=True)
         panel.set_title(name.replace("; ", ", "), fontsize=8, loc="left")
         panel.set_aspect("equal")
         panel.set_ylim(0, 0.7)
-    figure.colorbar(drawn, ax=ax, label="$F_{11}$")
+    figure.colorbar(cloud, ax=ax, label="$F_{11}$")
     return figure
+
+
+@plot
+def drawn_bar():
+    return drawn("drawn_bar_particles", ("total; quadratic; quasi-static", "updated; quadratic; quasi-static",
+                                         "updated; quadratic; USL FLIP"), 3.4, 4)
 
 
 @plot
 def adaption():
-    names = ("APIC_MLS; not split", "APIC_MLS; h = 1/8", "APIC_MLS; h = 1/16", "FLIP; h = 1/8")
-    figure, ax = plt.subplots(4, 1, figsize=(7.2, 4.2), layout="constrained", sharex=True, sharey=True)
-    data = read("adaption_bar")
-    for panel, name in zip(ax, names):
-        at = rows(data, method=name)
-        drawn = panel.scatter(at["x"], at["y"], c=at["F11"], s=3, cmap="viridis", vmin=1, vmax=4, linewidths=0,
-                              antialiased=False, rasterized=True)
-        panel.set_title(name.replace("; ", ", "), fontsize=8, loc="left")
-        panel.set_aspect("equal")
-        panel.set_ylim(0, 0.7)
-    figure.colorbar(drawn, ax=ax, label="$F_{11}$")
-    return figure
+    return drawn("adaption_bar", ("APIC_MLS; not split", "APIC_MLS; h = 1/8", "APIC_MLS; h = 1/16", "FLIP; h = 1/8"), 4.2, 3)
 
 
 @plot

@@ -119,7 +119,8 @@ MPM_API mpm_status mpm_stepper_set_adaption(mpm_stepper *stepper, mpm_particles 
  * out, or a value that was written through one is bad. */
 MPM_API mpm_status mpm_stepper_adapt(mpm_stepper *stepper);
 
-/** Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper. */
+/** Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper. MPM_E_ARG: particles or
+ * info is NULL. */
 MPM_API mpm_status mpm_stepper_adaption_info(const mpm_stepper *stepper, const mpm_particles *particles,
                                              mpm_adaption_info *info);
 

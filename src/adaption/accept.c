@@ -1,7 +1,5 @@
-/* The host may keep particles from being split or merged. Room for what then comes is made before anything is
- * changed. */
+/* The host may keep particles from being split or merged. */
 #include "adaption/adaption.h"
-#include "particles/add.h"
 
 /* What the host sees of a list: a batch at a time. */
 enum { BATCH = 256 };
@@ -28,16 +26,12 @@ static void show(const mpmi_adaption *a, const mpm_particles *set, int32_t copy,
 /* Moves what is accepted of a batch behind the `kept` ones of its list. */
 static int64_t thin_out(mpmi_adaption *a, const mpm_particles *set, int32_t what, int64_t begin, int64_t n,
                         const uint8_t *accept, int64_t kept) {
-  const int64_t rows = mpmi_merged_rows(set);
   for (int64_t i = 0; i < n; ++i) {
     if (!accept[i]) continue;
-    if (what == MPM_ADAPT_SPLIT) {
-      a->split[kept] = a->split[begin + i];
-    } else {
-      a->pair[kept] = a->pair[begin + i];
-      memmove(a->merged + kept * rows, a->merged + (begin + i) * rows, (size_t)rows * sizeof(double));
-    }
-    ++kept;
+    if (what == MPM_ADAPT_SPLIT)
+      a->split[kept++] = a->split[begin + i];
+    else
+      mpmi_keep_merging(a, set, begin + i, kept++);
   }
   return kept;
 }
@@ -71,10 +65,4 @@ mpm_status mpmi_adaption_ask(mpmi_adaption *a, const mpm_particles *set, int32_t
   if (!a->desc.accept) return MPM_OK;
   const mpm_status status = ask(a, set, copy, MPM_ADAPT_SPLIT, &a->splits);
   return status ? status : ask(a, set, copy, MPM_ADAPT_MERGE, &a->pairs);
-}
-
-mpm_status mpmi_adaption_reserve(const mpmi_adaption *a, mpm_particles *set, int32_t copy) {
-  int64_t added = 0;
-  for (int64_t i = 0; i < a->splits; ++i) added += mpmi_parts_of(a->split[i].edges) - 1;
-  return added ? mpmi_append_reserve(set, added, copy) : MPM_OK;
 }

@@ -82,7 +82,9 @@ mpm_status mpmi_adaption_choose(mpmi_adaption *a, const mpm_particles *set, int3
 mpm_status mpmi_adaption_merge_states(mpmi_adaption *a, const mpm_particles *set, int32_t copy, double t);
 /* Asks the host, whose answers thin out the lists (accept.c). */
 mpm_status mpmi_adaption_ask(mpmi_adaption *a, const mpm_particles *set, int32_t copy);
-/* Makes room for the particles that come, in both copies. */
+/* Moves the i-th pair, with what it becomes, to another place in the list, before it. */
+void mpmi_keep_merging(mpmi_adaption *a, const mpm_particles *set, int64_t i, int64_t at);
+/* Makes room for the particles that come, in both copies where `copy` is 1 (split.c). */
 mpm_status mpmi_adaption_reserve(const mpmi_adaption *a, mpm_particles *set, int32_t copy);
 
 /* Do it to the present state (split.c, merge.c). */

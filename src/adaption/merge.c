@@ -28,11 +28,11 @@ typedef struct asking {
   double volume[2], initial[2]; /* of the pair at hand */
 } asking;
 
-static double det(int32_t dim, const double *F) {
-  if (dim == 1) return F[0];
-  if (dim == 2) return (F[0] * F[3] - F[1] * F[2]) * F[4];
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-         F[2] * (F[3] * F[7] - F[4] * F[6]);
+/* Returns det F of stored components. */
+static double determinant_of(int32_t dim, const double *F) {
+  double full[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c) full[mpmi_tensor_map(dim)[c]] = F[c];
+  return 1.0 + mpmi_J_minus_1(3, mpmi_load_F_minus_1(3, full, 1, 0));
 }
 
 /* Makes the volumes add: by the axes of the plane in plane strain and in sheets, by all three else. Returns 0
@@ -41,7 +41,7 @@ static int32_t scale(const mpm_particles *set, double volume, double initial_vol
   const int32_t dim = set->grid->dim;
   const int32_t dilates = mpmi_material_kinematics(set->material) == MPMI_F_DILATES;
   const int32_t whole = dim == 3 || mpmi_is_axisymmetric(set->grid) || (dilates && dim == 2);
-  const double J = det(dim, F), more = volume / (initial_volume * J);
+  const double J = determinant_of(dim, F), more = volume / (initial_volume * J);
   if (!(J > 0.0 && isfinite(more))) return 0;
   const double by = dim == 1 ? more : whole ? mpmi_cbrt(more) : sqrt(more);
   for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
@@ -110,19 +110,12 @@ static void load_pair(asking *of, int64_t lane, int64_t i) {
       (of->volume[0] * ratio[0] + of->volume[1] * ratio[1]) / (of->volume[0] + of->volume[1]);
 }
 
-static double way_of(const asking *of, const mpmi_merging *pair, int32_t field, int32_t components) {
+/* Returns the norm of what a field has in a slot, less what it has in another; -1: that is nothing. */
+static double norm_of(const asking *of, int32_t field, int32_t components, int64_t slot, int64_t less) {
   double square = 0.0;
   for (int32_t c = 0; c < components; ++c) {
-    const double *row = mpmi_row_of(of->set, field, of->copy, c), apart = row[pair->goes] - row[pair->stays];
-    square += apart * apart;
-  }
-  return sqrt(square);
-}
-
-static double norm_of(const asking *of, int64_t slot, int32_t field, int32_t components) {
-  double square = 0.0;
-  for (int32_t c = 0; c < components; ++c) {
-    const double value = mpmi_row_of(of->set, field, of->copy, c)[slot];
+    const double *row = mpmi_row_of(of->set, field, of->copy, c);
+    const double value = row[slot] - (less < 0 ? 0.0 : row[less]);
     square += value * value;
   }
   return sqrt(square);
@@ -132,13 +125,14 @@ static double norm_of(const asking *of, int64_t slot, int32_t field, int32_t com
 static int32_t behave_alike(const asking *of, const mpmi_merging *pair, double speed) {
   const int32_t dim = of->set->grid->dim, rows = mpmi_stress_components(dim);
   const double tolerance = of->a->desc.merge_tolerance;
-  const double unlike = way_of(of, pair, MPMI_STRESS, rows), apart = way_of(of, pair, MPMI_VELOCITY, dim);
+  const double unlike = norm_of(of, MPMI_STRESS, rows, pair->stays, pair->goes);
   if (speed < 0.0)
-    return unlike <= tolerance * fmax(norm_of(of, pair->stays, MPMI_STRESS, rows),
-                                      norm_of(of, pair->goes, MPMI_STRESS, rows));
+    return unlike <= tolerance * fmax(norm_of(of, MPMI_STRESS, rows, pair->stays, -1),
+                                      norm_of(of, MPMI_STRESS, rows, pair->goes, -1));
   const double density =
       mpmi_f64(of->set, MPMI_MASS, 0)[pair->stays] / mpmi_f64(of->set, MPMI_VOLUME, 0)[pair->stays];
-  return unlike <= tolerance * density * speed * speed && apart <= tolerance * speed;
+  return unlike <= tolerance * density * speed * speed &&
+         norm_of(of, MPMI_VELOCITY, dim, pair->stays, pair->goes) <= tolerance * speed;
 }
 
 /* Takes what the law makes of the pair in a lane; returns 0 where they are not alike. */
@@ -161,10 +155,9 @@ static int32_t take_lane(asking *of, int64_t lane, int64_t i) {
   return isfinite(b->wave_speed[lane + 2]) != 0;
 }
 
-/* Keeps the pairs that are alike of n from the `begin`-th on, behind the `kept` ones; none where the law
- * refuses. */
+/* Keeps the pairs that are alike of n from the `begin`-th on, behind the `kept` ones, without those that the
+ * law refuses. */
 static int64_t ask_law(asking *of, int64_t begin, int64_t n, int64_t kept) {
-  const int64_t rows = mpmi_merged_rows(of->set);
   mpmi_law_batch *b = &of->law;
   for (int64_t p = 0; p < b->ld; ++p) of->id[p] = -1; /* lanes of others are of no interest */
   for (int64_t i = 0; i < n; ++i) load_pair(of, LANES * i, begin + i);
@@ -174,25 +167,20 @@ static int64_t ask_law(asking *of, int64_t begin, int64_t n, int64_t kept) {
     mpmi_dilation_of(of->set->context->isa)
         ->scale[mpmi_strain_dim(of->set->grid)](b->F, b->ld, of->ratio, b->batch.n);
   if (mpmi_law_batch_run_in(b, of->set)) {
-    for (int64_t i = 0; i < n && n > 1; ++i) kept = ask_law(of, begin + i, 1, kept); /* without the refused */
+    for (int64_t i = 0; i < n && n > 1; ++i) kept = ask_law(of, begin + i, 1, kept); /* to find the refused */
     return kept;
   }
-  for (int64_t i = 0; i < n; ++i) {
-    if (!take_lane(of, LANES * i, begin + i)) continue;
-    of->a->pair[kept] = of->a->pair[begin + i];
-    memmove(of->a->merged + kept++ * rows, of->a->merged + (begin + i) * rows, (size_t)rows * sizeof(double));
-  }
+  for (int64_t i = 0; i < n; ++i)
+    if (take_lane(of, LANES * i, begin + i)) mpmi_keep_merging(of->a, of->set, begin + i, kept++);
   return kept;
 }
 
 static int64_t ask_nobody(asking *of) {
-  const int64_t rows = mpmi_merged_rows(of->set);
   int64_t kept = 0;
   for (int64_t i = 0; i < of->a->pairs; ++i) {
+    const mpmi_merging *pair = &of->a->pair[i];
     mean_state(of, i);
-    if (of->a->pair[i].bad || !behave_alike(of, &of->a->pair[i], -1.0)) continue;
-    of->a->pair[kept] = of->a->pair[i];
-    memmove(of->a->merged + kept++ * rows, of->a->merged + i * rows, (size_t)rows * sizeof(double));
+    if (!pair->bad && behave_alike(of, pair, -1.0)) mpmi_keep_merging(of->a, of->set, i, kept++);
   }
   return kept;
 }
@@ -216,7 +204,7 @@ mpm_status mpmi_adaption_merge_states(mpmi_adaption *a, const mpm_particles *set
   mpmi_law_batch_bind(&of.law, set->material, memory);
   of.ratio = (double *)(void *)(memory + law_bytes);
   of.id = (int64_t *)(void *)(of.ratio + lanes);
-  for (int64_t p = 0; p < lanes; ++p) of.ratio[p] = 1.0, of.id[p] = -1;
+  for (int64_t p = 0; p < lanes; ++p) of.ratio[p] = 1.0;
   of.law.batch.t = t;
   int64_t kept = 0;
   for (int64_t i = 0; i < a->pairs; i += each)
@@ -224,6 +212,12 @@ mpm_status mpmi_adaption_merge_states(mpmi_adaption *a, const mpm_particles *set
   a->pairs = kept;
   mpmi_free(context, memory, bytes);
   return MPM_OK;
+}
+
+void mpmi_keep_merging(mpmi_adaption *a, const mpm_particles *set, int64_t i, int64_t at) {
+  const int64_t rows = mpmi_merged_rows(set);
+  a->pair[at] = a->pair[i];
+  memmove(a->merged + at * rows, a->merged + i * rows, (size_t)rows * sizeof(double));
 }
 
 /* ---- doing it ----------------------------------------------------------------------------------------- */

@@ -93,13 +93,12 @@ static void share_matrix(const mpmi_motion_of *whole, const parts *p, const doub
 static void set_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set,
                         const mpmi_motion_of *whole, const parts *p) {
   const double least = 1e-12 * set->grid->h_min * set->grid->h_min;
-  double mean[3] = {0.0}, D[3] = {0.0}, rest[3][3];
+  double here[MOST_PARTS][3] = {{0.0}}, mean[3] = {0.0}, D[3] = {0.0}, rest[3][3];
   for (int32_t i = 0; i < p->count; ++i) {
-    double here[3] = {0.0};
-    if (mpmi_is_affine(settings)) mpmi_second_moments(settings, set, p->slot[i], here);
+    if (mpmi_is_affine(settings)) mpmi_second_moments(settings, set, p->slot[i], here[i]);
     for (int32_t k = 0; k < 3; ++k) {
       mean[k] += p->share[i] * p->away[i][k];
-      D[k] += p->share[i] * here[k];
+      D[k] += p->share[i] * here[i][k];
     }
   }
   share_matrix(whole, p, mean, rest);
@@ -113,20 +112,30 @@ static void set_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_par
         if (D[k] > least) part.C[r][k] = rest[r][k] / D[k];
       }
     mpmi_write_motion(settings, set, p->slot[i], &part);
-    if (mpmi_is_affine(settings)) mpmi_second_moments(settings, set, p->slot[i], part.D);
-    for (int32_t k = 0; k < 3; ++k) part.x[k] = whole->x[k] + p->away[i][k];
+    for (int32_t k = 0; k < 3; ++k) {
+      part.D[k] = here[i][k];
+      part.x[k] = whole->x[k] + p->away[i][k];
+    }
     mpmi_count_motion(set->grid, &part, whole->x, -1.0, &a->sums);
   }
 }
 
+static int64_t count_added(const mpmi_adaption *a) {
+  int64_t added = 0;
+  for (int64_t i = 0; i < a->splits; ++i) added += mpmi_parts_of(a->split[i].edges) - 1;
+  return added;
+}
+
+mpm_status mpmi_adaption_reserve(const mpmi_adaption *a, mpm_particles *set, int32_t copy) {
+  const int64_t added = count_added(a);
+  return added ? mpmi_append_reserve(set, added, copy) : MPM_OK;
+}
+
 /* The free slots are known to be there: room has been made. */
 void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set) {
-  int64_t added = 0, next;
+  const int64_t added = count_added(a);
+  int64_t next;
   parts p;
-  for (int64_t i = 0; i < a->splits; ++i) {
-    find_parts(set, &a->split[i], 0, &p);
-    added += p.count - 1;
-  }
   if (!added || mpmi_append_begin(set, added, 0, &next)) return;
   for (int64_t i = 0; i < a->splits; ++i) {
     const mpmi_splitting *split = &a->split[i];

@@ -49,7 +49,7 @@ static mpm_status check_desc(mpm_context *c, const mpm_adaption_desc *d) {
   return MPM_OK;
 }
 
-static mpm_status check_set(const mpm_particles *set) {
+static mpm_status check_set(mpm_particles *set) {
   if (mpmi_is_total_lagrangian(set->grid))
     return mpmi_fail(
         set->context, MPM_E_UNSUPPORTED,
@@ -58,7 +58,7 @@ static mpm_status check_set(const mpm_particles *set) {
   if (mpmi_material_kinematics(set->material) == MPMI_F_STAYS)
     return mpmi_fail(set->context, MPM_E_UNSUPPORTED,
                      "a rigid set does not adapt: fill it as densely as the grid needs");
-  return mpmi_particles_changeable((mpm_particles *)(uintptr_t)set);
+  return mpmi_particles_changeable(set);
 }
 
 mpm_status mpm_stepper_set_adaption(mpm_stepper *s, mpm_particles *particles, const mpm_adaption_desc *desc) {

@@ -121,7 +121,7 @@ static mpm_status finish(mpm_stepper *s) {
   mpm_status status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
   if (status) return status;
   mpmi_stops_report(&s->step);
-  if ((status = ask_progress(s)) || (status = mpmi_adaption_prepare(s))) return status;
+  if ((status = mpmi_adaption_prepare(s)) || (status = ask_progress(s))) return status;
   mpmi_commit(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);

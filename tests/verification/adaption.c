@@ -1,53 +1,11 @@
 /* Splitting and merging: a bar drawn to four times its length holds together, a disc that spins and is
  * split and merged all the time keeps its momenta, and a bar that vibrates keeps its energy when all of it
  * is split. */
-#include "verify.h"
+#include "drawn.h"
 
-static const double E = 1000.0, nu = 0.3;
+static const double E = DRAWN_E, nu = DRAWN_NU;
 
 /* ---- a bar is drawn ----------------------------------------------------------------------------------- */
-/* Half of a sheet 4 by 1 in plane strain whose end is pulled with the velocity of a uniform stretch, as in
- * drawn_bar. */
-static const double length = 2.0, height = 0.5, last = 4.0;
-
-typedef struct pull {
-  double rate, h;
-} pull;
-
-static mpm_status hold_nodes(void *user, const mpm_node_batch *batch, uint8_t *prescribed, double *velocity) {
-  const pull *by = user;
-  const double stretch = 1.0 + by->rate * batch->t;
-  for (int64_t i = 0; i < batch->n; ++i)
-    if (batch->position[i] > (length - 1.01 * by->h) * stretch)
-      prescribed[i] = 1, velocity[i] = by->rate / stretch * batch->position[i];
-  return MPM_OK;
-}
-
-/* The stretch across at which the stress across vanishes, and the force of half the bar. */
-static double thinning(double stretch, double *force) {
-  const double mu = E / (2.0 * (1.0 + nu)), lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-  double low = 0.01, high = 1.0;
-  for (int32_t k = 0; k < 200; ++k) {
-    const double l = 0.5 * (low + high), stress = lambda * log(l * stretch) + mu * (l * l - 1.0);
-    *(stress > 0.0 ? &high : &low) = l;
-  }
-  *force = height / stretch * (lambda * log(low * stretch) + mu * (stretch * stretch - 1.0));
-  return low;
-}
-
-static double force_of(const verify_world *w) {
-  mpm_view at = {.struct_size = sizeof at}, f = {.struct_size = sizeof f};
-  double sum = 0.0;
-  verify_ok(w, mpm_grid_map(w->stepper, 0, "position", MPM_READ, &at));
-  verify_ok(w, mpm_grid_map(w->stepper, 0, "reaction", MPM_READ, &f));
-  for (int64_t i = 0; i < at.count; ++i)
-    if (((const double *)at.data)[i * at.item_stride] > 0.5 * length)
-      sum += ((const double *)f.data)[i * f.item_stride];
-  verify_ok(w, mpm_view_release(&at));
-  verify_ok(w, mpm_view_release(&f));
-  return sum;
-}
-
 /* Cells without particles in the row at the symmetry plane, between the first and the last with some. */
 static int64_t holes(const verify_world *w, mpm_particles *set, double h) {
   const int64_t n = mpm_particles_count(set);
@@ -69,23 +27,15 @@ typedef struct drawn {
 } drawn;
 
 static drawn draw(const char *name, int32_t transfer, double split_edge, double h, FILE *table) {
-  verify_setup setup = verify_defaults(2, (int64_t)lround(4.5 * length / h) + 2, h);
+  verify_setup setup = verify_defaults(2, (int64_t)lround(4.5 * DRAWN_LENGTH / h) + 2, h);
   setup.grid.cells[1] = (int64_t)lround(1.0 / h);
   setup.stepper.transfer = transfer;
+  const double rate = 0.02 * verify_speed_of_sound(E, nu, 1.0) / DRAWN_LENGTH,
+               t_end = (DRAWN_LAST - 1.0) / rate;
+  drawn_pull by = {rate, h, 0};
   verify_world w;
-  verify_open(&w, &setup);
-  mpm_particles *set = verify_set(&w, verify_elastic(&w, "neo_hookean", E, nu, 1.0));
-  verify_fill_box(&w, set, (const double[]){0.0, 0.0}, (const double[]){length, height}, 2);
-  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
-  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_SLIP, 0.0));
+  mpm_particles *set = drawn_open(&w, &setup, &by, 0);
   const int64_t n = mpm_particles_count(set);
-  const double rate = 0.02 * verify_speed_of_sound(E, nu, 1.0) / length, t_end = (last - 1.0) / rate;
-  pull by = {rate, h};
-  double *x = verify_get(&w, set, "position", 2), *v = verify_array(2 * n);
-  for (int64_t i = 0; i < n; ++i) v[i] = rate * x[i];
-  verify_put(&w, set, "velocity", 2, v);
-  free(x), free(v);
-  verify_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, hold_nodes, &by));
   mpm_adaption_desc adapt;
   verify_ok(&w, mpm_adaption_desc_init(&adapt, sizeof adapt));
   adapt.split_edge = split_edge;
@@ -99,7 +49,8 @@ static drawn draw(const char *name, int32_t transfer, double split_edge, double 
   }
   const double stretch = 1.0 + rate * now.t;
   double exact;
-  const double across = thinning(stretch, &exact), force = status ? HUGE_VAL : force_of(&w) / exact - 1.0;
+  const double across = drawn_thinning(stretch, &exact),
+               force = status ? HUGE_VAL : drawn_force(&w) / exact - 1.0;
   drawn out = {stretch, force, 0.0, holes(&w, set, h), mpm_particles_count(set)};
   double *F = verify_get(&w, set, "deformation_gradient", 9), *at = verify_get(&w, set, "position", 2);
   for (int64_t i = 0; i < out.count; ++i) {
@@ -222,7 +173,7 @@ int main(int argc, char **argv) {
   for (int32_t fine = 0; fine < (verify_quick() ? 1 : 2); ++fine) {
     const char *name = fine ? "APIC_MLS; h = 1/16" : "APIC_MLS; h = 1/8";
     const drawn o = draw(name, MPM_APIC_MLS, 0.52, fine ? 0.0625 : 0.125, table);
-    verify_gate_of(name, "stretch", o.stretch, last * (1.0 - 1e-9), last * (1.0 + 1e-9), there);
+    verify_gate_of(name, "stretch", o.stretch, DRAWN_LAST * (1.0 - 1e-9), DRAWN_LAST * (1.0 + 1e-9), there);
     verify_gate_of(name, "empty cells", (double)o.empty, 0.0, 0.0, whole);
     verify_gate_of(name, "force / exact - 1", fabs(o.force), 0.0, 0.002, exact);
     verify_gate_of(name, "F22 / exact - 1, largest", o.across, 0.0, 0.01, exact);

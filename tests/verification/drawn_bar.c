@@ -2,59 +2,14 @@
  * density 1, whose end nodes are pulled with the velocities of a uniform stretch. It thins freely and has one
  * F, that of uniaxial tension of the neo-Hookean law. On a total Lagrangian grid it keeps it; on others
  * particles part, and the bar breaks where there is no crack. */
-#include "verify.h"
+#include "drawn.h"
 
-static const double E = 1000.0, nu = 0.3, length = 2.0, height = 0.5, last = 4.0, h = 0.125;
+static const double h = 0.125, length = DRAWN_LENGTH, last = DRAWN_LAST;
 
 typedef struct method {
   const char *name;
   int32_t total, basis, scheme, transfer, steps;
 } method;
-
-/* The pull: d/dt of the stretch, and whether nodes stand where the material was. */
-typedef struct pull {
-  double rate;
-  int32_t total;
-} pull;
-
-/* Nodes that have a weight at the end move as the uniform stretch has it. */
-static mpm_status hold_nodes(void *user, const mpm_node_batch *batch, uint8_t *prescribed, double *velocity) {
-  const pull *by = user;
-  const double stretch = by->total ? 1.0 : 1.0 + by->rate * batch->t;
-  for (int64_t i = 0; i < batch->n; ++i)
-    if (batch->position[i] > (length - 1.01 * h) * stretch)
-      prescribed[i] = 1, velocity[i] = by->rate / stretch * batch->position[i];
-  return MPM_OK;
-}
-
-/* Sums up the force that holds the nodes of the end. */
-static double force_of(const verify_world *w) {
-  mpm_view at = {.struct_size = sizeof at}, f = {.struct_size = sizeof f};
-  double sum = 0.0;
-  verify_ok(w, mpm_grid_map(w->stepper, 0, "position", MPM_READ, &at));
-  verify_ok(w, mpm_grid_map(w->stepper, 0, "reaction", MPM_READ, &f));
-  for (int64_t i = 0; i < at.count; ++i)
-    if (((const double *)at.data)[i * at.item_stride] > 0.5 * length)
-      sum += ((const double *)f.data)[i * f.item_stride];
-  verify_ok(w, mpm_view_release(&at));
-  verify_ok(w, mpm_view_release(&f));
-  return sum;
-}
-
-/* Finds the stretch across at which the stress across vanishes; *force: per thickness, of half the bar. */
-static double thinning(double stretch, double *force) {
-  const double mu = E / (2.0 * (1.0 + nu)), lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-  double low = 0.01, high = 1.0;
-  for (int32_t k = 0; k < 200; ++k) {
-    const double l = 0.5 * (low + high);
-    if (lambda * log(l * stretch) + mu * (l * l - 1.0) > 0.0)
-      high = l;
-    else
-      low = l;
-  }
-  *force = height / stretch * (lambda * log(low * stretch) + mu * (stretch * stretch - 1.0));
-  return low;
-}
 
 typedef struct outcome {
   double stretch, force, across, gap; /* force and F22 over the exact ones - 1; largest gap over the mean */
@@ -83,20 +38,13 @@ static outcome draw(const method *how, FILE *table) {
   setup.stepper.transfer = how->transfer;
   setup.stepper.reference_positions = 1;
   setup.stepper.quasi_static = implicit;
-  verify_world w;
-  verify_open(&w, &setup);
-  mpm_particles *set = verify_set(&w, verify_elastic(&w, "neo_hookean", E, nu, 1.0));
-  verify_fill_box(&w, set, (const double[]){0.0, 0.0}, (const double[]){length, height}, 2);
-  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_SLIP, 0.0));
-  verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, MPM_WALL_SLIP, 0.0));
-  const int64_t n = mpm_particles_count(set);
-  double *X = verify_get(&w, set, "position", 2), *v = verify_array(2 * n);
-  const double speed = implicit ? 1.0 : 0.02 * verify_speed_of_sound(E, nu, 1.0);
+  const double speed = implicit ? 1.0 : 0.02 * verify_speed_of_sound(DRAWN_E, DRAWN_NU, 1.0);
   const double rate = speed / length;
-  pull by = {rate, how->total};
-  for (int64_t i = 0; i < n; ++i) v[i] = implicit ? 0.0 : rate * X[i];
-  verify_put(&w, set, "velocity", 2, v);
-  verify_ok(&w, mpm_stepper_set_velocity_bc(w.stepper, hold_nodes, &by));
+  drawn_pull by = {rate, h, how->total};
+  verify_world w;
+  mpm_particles *set = drawn_open(&w, &setup, &by, implicit);
+  const int64_t n = mpm_particles_count(set);
+  double *X = verify_get(&w, set, "position", 2);
   const double t_end = (last - 1.0) / rate;
   mpm_step_info now = verify_info(&w);
   mpm_status status = MPM_OK;
@@ -107,8 +55,8 @@ static outcome draw(const method *how, FILE *table) {
   }
   outcome out = {.stretch = 1.0 + rate * now.t};
   double exact;
-  const double across = thinning(out.stretch, &exact);
-  out.force = status ? HUGE_VAL : force_of(&w) / exact - 1.0;
+  const double across = drawn_thinning(out.stretch, &exact);
+  out.force = status ? HUGE_VAL : drawn_force(&w) / exact - 1.0;
   double *F = verify_get(&w, set, "deformation_gradient", 9), *x = verify_get(&w, set, "position", 2);
   for (int64_t i = 0; i < n; ++i) {
     const double off = F[4 * n + i] / across - 1.0;
@@ -118,7 +66,7 @@ static outcome draw(const method *how, FILE *table) {
   for (int64_t i = 0; i < n; ++i) fprintf(table, "%s,%.6f,%.6f,%.6f\n", how->name, x[i], x[n + i], F[i]);
   verify_progress("%s: stretch %.3f, force %.2e, F22 %.2e, gap %.3f", how->name, out.stretch, out.force,
                   out.across, out.gap);
-  free(X), free(v), free(F), free(x);
+  free(X), free(F), free(x);
   verify_close(&w);
   return out;
 }

@@ -1886,7 +1886,8 @@ written through one is bad.""",
     "mpm_stepper_adaption_info": """mpm_status mpm_stepper_adaption_info(const mpm_stepper *stepper, const mpm_particles *particles, mpm_adaption_info
 *info)
 
-Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper.""",
+Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper. MPM_E_ARG: particles or info is
+NULL.""",
     "mpm_state_size": """mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes)
 
 Tells how many bytes mpm_state_save() needs now.""",

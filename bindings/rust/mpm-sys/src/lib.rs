@@ -2688,7 +2688,8 @@ extern "C" {
     /// was written through one is bad.
     pub fn mpm_stepper_adapt(stepper: *mut mpm_stepper) -> mpm_status;
 
-    /// Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper.
+    /// Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper. MPM_E_ARG: particles or info is
+    /// NULL.
     pub fn mpm_stepper_adaption_info(
         stepper: *const mpm_stepper,
         particles: *const mpm_particles,
