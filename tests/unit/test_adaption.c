@@ -398,8 +398,13 @@ START_TEST(prescribed_stay) {
   const int64_t left = mpm_particles_count(set);
   ck_holds(left < 4 * n);
   v = fetch(&w, set, "velocity", 2);
-  for (int64_t p = 0; p < left; ++p) ck_holds(v[left + p] == 0.25 || v[left + p] == 0.5);
-  free(v);
+  double *m = fetch(&w, set, "mass", 1), slow = 0.0;
+  for (int64_t p = 0; p < left; ++p) {
+    ck_holds(v[left + p] == 0.25 || v[left + p] == 0.5);
+    if (v[left + p] == 0.25) slow += m[p];
+  }
+  ck_within("mass of the slow", slow, 0.5 * mass_of(&w, set), 1e-9); /* half of them, and still */
+  free(v), free(m);
   world_close(&w);
 }
 END_TEST
