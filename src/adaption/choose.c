@@ -57,8 +57,8 @@ static int32_t is_inside(const choice *c, int64_t slot) {
   return inside;
 }
 
-/* Lists the particles by id, or by cell and then by id: order[i] is the slot of the i-th. Returns how many
- * there are. */
+/* Lists the particles, by cell and in a cell by id where that is asked for: order[i] is the slot of the i-th.
+ * Returns how many there are. */
 static int64_t list(choice *c, int32_t by_cell) {
   mpmi_adaption *a = c->a;
   const int64_t slots = c->set->slots, *id = mpmi_i64(c->set, MPMI_ID, 0);
@@ -70,7 +70,7 @@ static int64_t list(choice *c, int32_t by_cell) {
       first[n] = (uint32_t)s;
       key[n++] = (uint64_t)id[s];
     }
-  for (int32_t round = 0; round < 1 + by_cell; ++round) {
+  for (int32_t round = 0; round < 2 * by_cell; ++round) {
     for (int64_t i = 0; i < n && round; ++i) key[i] = cell_of(c, first[i]);
     mpmi_radix_sort(n, key, order, spare, scratch);
     for (int64_t i = 0; i < n; ++i) scratch[i] = first[order[i]];
