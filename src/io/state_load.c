@@ -94,7 +94,8 @@ static void read_numbers(loading *l) {
     if (a->status) return;
     if (of->slots < 0 || of->slots > MPMI_MAX_SLOTS || of->slots % MPMI_PAD || of->count < 0 ||
         of->count > of->slots || of->next_id < 0 || of->body < 0 || of->body >= MPMI_MAX_BODIES ||
-        of->dirty & ~flags || !is_magnitude(of->mass_max))
+        of->dirty & ~flags || !is_magnitude(of->mass_max) || !is_count(of->adaption.splits) ||
+        !is_count(of->adaption.added) || !is_count(of->adaption.merges))
       mpmi_archive_damaged(a, "the numbers of a set make no sense");
     else
       l->slots += of->slots;
