@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Touches no wider than this, in spacings, are closed at first where nothing else tells. */
-static const double close_by = 0.05;
+static const double close_by = 0.25;
 /* Those that slide by more than this, in spacings, go on sliding at first. */
 static const double slides_by = 1e-3;
 /* One that has changed so often stays closed where it has no way to go, or has no friction in this step:
@@ -152,7 +152,8 @@ double mpmi_active_set_error(const mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
   double most = 0.0;
   for (int64_t k = 0; k < newton->constraint_count; ++k)
-    if (newton->constraint[k].closed) most = fmax(most, misses(balance, &newton->constraint[k]));
+    if (newton->constraint[k].closed && !newton->constraint[k].light)
+      most = fmax(most, misses(balance, &newton->constraint[k]));
   return most / (MPMI_CONTACT_HOLDS_TO * balance->settings->grid->h_min);
 }
 
@@ -248,7 +249,9 @@ int64_t mpmi_active_set_update(mpmi_balance *balance) {
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     mpmi_constraint *of = &newton->constraint[k];
     if (of->gives_way) continue;
-    if (!mpmi_is_tie(balance, of)) changed += update_touch(balance, of);
+    const int32_t changes = mpmi_is_tie(balance, of) ? 0 : update_touch(balance, of);
+    if (of->light) continue;
+    changed += changes;
     look_after(balance, of);
   }
   return changed + give_way(balance);

@@ -72,7 +72,8 @@ typedef struct mpmi_constraint {
   double moves[3];           /* relative displacement by what is moved from outside */
   double allowed;            /* how far the parties may approach, >= 0 */
   double nodal_stiffness;
-  double stiffness;                     /* of the augmented Lagrangian; < 0: not known yet */
+  int32_t light;    /* hardly anything is there that resists: what it misses is rounding */
+  double stiffness; /* of the augmented Lagrangian; < 0: not known yet */
   double force[3], start[3], target[3]; /* as it is, before the increment, after all of it */
 } mpmi_constraint;
 

@@ -6,6 +6,9 @@
 
 /* The stiffness of a closed touch, in those of its nodes. */
 static const double stiffening = 1e3;
+/* Touches whose nodes have less than this share of the largest stiffness of nodes that touch: the edge of a
+ * domain on a row of nodes gives them a weight by rounding. */
+static const double light_share = 1e-12;
 
 void mpmi_active_set_fold(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
@@ -100,13 +103,23 @@ static void add_block(mpmi_matrix *A, int64_t entry, double sign, const double (
     for (int32_t c = 0; c < A->block; ++c) block[r * A->block + c] += sign * stiffness[r][c];
 }
 
+/* Stiffnesses stay as they are at the first matrix of a step. */
+static void set_stiffnesses(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  double most = 0.0;
+  for (int64_t k = 0; k < newton->constraint_count; ++k) {
+    mpmi_constraint *of = &newton->constraint[k];
+    of->nodal_stiffness = stiffness_of(balance, of);
+    of->stiffness = stiffening * of->nodal_stiffness;
+    most = fmax(most, of->nodal_stiffness);
+  }
+  for (int64_t k = 0; k < newton->constraint_count; ++k)
+    newton->constraint[k].light = newton->constraint[k].nodal_stiffness <= light_share * most;
+}
+
 void mpmi_active_set_stiffen(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
-  for (int64_t k = 0; k < newton->constraint_count; ++k)
-    if (newton->constraint[k].stiffness < 0.0) {
-      newton->constraint[k].nodal_stiffness = stiffness_of(balance, &newton->constraint[k]);
-      newton->constraint[k].stiffness = stiffening * newton->constraint[k].nodal_stiffness;
-    }
+  if (newton->constraint_count && newton->constraint[0].stiffness < 0.0) set_stiffnesses(balance);
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     const mpmi_constraint *of = &newton->constraint[k];
     if (!of->closed) continue;
