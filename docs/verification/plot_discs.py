@@ -37,9 +37,8 @@ def fringes(data, key):
     return np.vstack((half[::-1], half))
 
 
-@plot
-def four_discs_fringes():
-    data = read("four_discs_fringes")
+def fringe_pictures(file):
+    data = read(file)
     gray = plt.get_cmap("gray").copy()
     gray.set_bad("#c4d2e4")
     figure, ax = plt.subplots(3, 2, figsize=(9.6, 4.2), layout="constrained")
@@ -53,10 +52,20 @@ def four_discs_fringes():
 
 
 @plot
+def four_discs_fringes():
+    return fringe_pictures("four_discs_fringes")
+
+
+@plot
+def four_discs_apart():
+    return fringe_pictures("four_discs_apart")
+
+
+@plot
 def four_discs():
     figure, ax = axes(2)
     data = read("four_discs")
-    for scheme, cells, line in (("MUSL", 50, "-"), ("Newmark", 50, "."), ("MUSL", 80, "--")):
+    for scheme, cells, line in (("MUSL", 50, "-"), ("Newmark", 50, "."), ("MUSL", 80, "--"), ("bodies by MUSL", 50, ":")):
         at = rows(data, scheme=scheme, cells=float(cells))
         style = {"linewidth": 0.8, "markersize": 3}
         for k in range(4):

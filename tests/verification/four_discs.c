@@ -1,7 +1,8 @@
 /* Four discs in a row, edge to edge, of which a striker hits the first (Guilkey & Weiss 2003, 5.2), by
  * explicit and by implicit steps. cm, us, g: moduli are in 100 GPa. The printed moduli are not those of
  * Plexiglas, but fit the printed wave speed. Stress is plane, as in the paper. The striker is rigid, the last
- * disc free. No contact algorithm: all share one velocity field. */
+ * disc free. All share one velocity field, as in the paper; then discs and striker are bodies of their own,
+ * which can part. */
 #include "verify.h"
 
 #include <string.h>
@@ -14,11 +15,18 @@ static const double due[FRAMES] = {1.9, 4.8, 6.7}; /* of the implicit pictures, 
 
 typedef struct chain {
   verify_world w;
-  mpm_particles *discs, *striker;
+  mpm_particles *disc[DISCS], *striker;
   int cells;
-  int64_t n, end[DISCS], centre[DISCS][4]; /* particles; ids: past each disc, round the centre of each */
+  int64_t n, each, centre[DISCS][4]; /* particles: of all, of a disc; round the centre of each */
   double *x0, *mass;
 } chain;
+
+typedef struct method {
+  const char *name;
+  int32_t scheme, apart; /* apart: discs and striker are bodies of their own */
+  int cells;
+  double cfl;
+} method;
 
 typedef struct outcome {
   double first[DISCS], half[DISCS]; /* transits until a centre has 0.1 %, a half of the striker's speed */
@@ -40,7 +48,20 @@ static double wave_speed(void) {
   return sqrt(E / ((1.0 - nu * nu) * density));
 }
 
-static void build(chain *c, int32_t scheme, int cells) {
+/* All discs one after the other, as [components][n]. */
+static double *fetch(const chain *c, const char *field, int32_t components) {
+  double *all = verify_array(components * c->n);
+  for (int k = 0; k < DISCS; ++k) {
+    double *one = verify_get(&c->w, c->disc[k], field, components);
+    for (int32_t a = 0; a < components; ++a)
+      memcpy(all + a * c->n + k * c->each, one + a * c->each, (size_t)c->each * sizeof *one);
+    free(one);
+  }
+  return all;
+}
+
+static void build(chain *c, const method *how) {
+  const int cells = how->cells;
   const double h = 1.0 / cells;
   verify_setup setup = verify_defaults(2, cells + 6, h);
   setup.grid.cells[0] += 3 * cells;
@@ -48,24 +69,28 @@ static void build(chain *c, int32_t scheme, int cells) {
   setup.grid.origin[1] = -0.5 - 3.0 * h;
   setup.grid.basis = MPM_LINEAR;
   setup.grid.geometry = MPM_PLANE_STRESS;
-  setup.stepper.scheme = scheme;
+  setup.stepper.scheme = how->scheme;
   setup.stepper.boundary_zero_acceleration = 1; /* the striker's velocity is steady */
   verify_open(&c->w, &setup);
   const mpm_param glass[] = {{"mu", mu}, {"kappa", kappa}, {"density", density}},
                   steel[] = {{"density", density}};
-  c->discs = verify_set(&c->w, verify_material(&c->w, "neo_hookean_decoupled", glass, 3));
-  c->striker = verify_set(&c->w, verify_material(&c->w, "rigid", steel, 1));
+  mpm_material *plate = verify_material(&c->w, "neo_hookean_decoupled", glass, 3);
   const int32_t two[2] = {2, 2};
   for (int k = 0; k < DISCS; ++k) {
-    verify_ok(&c->w, mpm_particles_fill_ball(c->discs, (const double[]){k + 0.5, 0.0}, 0.5, two, NULL, NULL));
-    c->end[k] = mpm_particles_count(c->discs);
+    c->disc[k] = verify_set(&c->w, plate);
+    verify_ok(&c->w,
+              mpm_particles_fill_ball(c->disc[k], (const double[]){k + 0.5, 0.0}, 0.5, two, NULL, NULL));
+    if (how->apart) verify_ok(&c->w, mpm_stepper_set_body(c->w.stepper, c->disc[k], k));
   }
+  c->striker = verify_set(&c->w, verify_material(&c->w, "rigid", steel, 1));
+  if (how->apart) verify_ok(&c->w, mpm_stepper_set_body(c->w.stepper, c->striker, DISCS));
   verify_fill_box(&c->w, c->striker, (const double[]){-2.0 * h, -0.5}, (const double[]){0.0, 0.5}, 2);
   verify_ok(&c->w, mpm_stepper_set_motion(c->w.stepper, c->striker, strike, NULL));
   c->cells = cells;
-  c->n = mpm_particles_count(c->discs);
-  c->x0 = verify_get(&c->w, c->discs, "position", 2);
-  c->mass = verify_get(&c->w, c->discs, "mass", 1);
+  c->each = mpm_particles_count(c->disc[0]);
+  c->n = DISCS * c->each;
+  c->x0 = fetch(c, "position", 2);
+  c->mass = fetch(c, "mass", 1);
   for (int k = 0; k < DISCS; ++k)
     for (int64_t i = 0, found = 0; i < c->n; ++i)
       if (hypot(c->x0[i] - k - 0.5, c->x0[c->n + i]) < 0.5 * h) c->centre[k][found++] = i;
@@ -74,8 +99,8 @@ static void build(chain *c, int32_t scheme, int cells) {
 /* Means of the cells; the largest is that of a particle. */
 static double *principal_difference(const chain *c) {
   const int64_t n = c->n, m = c->cells;
-  double *s = verify_get(&c->w, c->discs, "stress", 6), *sum = verify_array(DISCS * m * m),
-         *count = verify_array(DISCS * m * m), most = 0.0;
+  double *s = fetch(c, "stress", 6), *sum = verify_array(DISCS * m * m), *count = verify_array(DISCS * m * m),
+         most = 0.0;
   for (int64_t i = 0; i < n; ++i) {
     const int64_t at = (int64_t)(c->x0[i] * (double)m) * m + (int64_t)((c->x0[n + i] + 0.5) * (double)m);
     const double difference = hypot(s[i] - s[n + i], 2.0 * s[3 * n + i]);
@@ -91,10 +116,10 @@ static double *principal_difference(const chain *c) {
 
 /* Of each disc: velocity of the centre over the striker's, and momentum. */
 static void observe(const chain *c, double *centre, double *momentum) {
-  double *v = verify_get(&c->w, c->discs, "velocity", 2);
+  double *v = fetch(c, "velocity", 2);
   for (int64_t k = 0, i = 0; k < DISCS; ++k) {
     centre[k] = momentum[k] = 0.0;
-    for (; i < c->end[k]; ++i) momentum[k] += c->mass[i] * v[i];
+    for (; i < (k + 1) * c->each; ++i) momentum[k] += c->mass[i] * v[i];
     for (int j = 0; j < 4; ++j) centre[k] += 0.25 * v[c->centre[k][j]] / speed;
   }
   free(v);
@@ -105,10 +130,10 @@ static void arrive(double *when, double level, double t, double dt, double v_old
   if (*when == HUGE_VAL && v >= level) *when = t - dt * (v - level) / (v - v_old);
 }
 
-static outcome run(const char *name, int32_t scheme, int cells, double cfl, FILE *history) {
-  const double transit = 1.0 / wave_speed(), dt = cfl * transit / cells;
+static outcome run(const method *how, FILE *history) {
+  const double transit = 1.0 / wave_speed(), dt = how->cfl * transit / how->cells;
   chain c;
-  build(&c, scheme, cells);
+  build(&c, how);
   outcome is;
   for (int k = 0; k < DISCS; ++k) is.first[k] = is.half[k] = HUGE_VAL;
   double v_old[DISCS] = {0.0}, v[DISCS], p[DISCS], force_old = 0.0, impulse = 0.0, work = 0.0, worst = 0.0;
@@ -120,7 +145,7 @@ static outcome run(const char *name, int32_t scheme, int cells, double cfl, FILE
       now = verify_step(&c.w, fmin(dt, due[frame] * transit - now.t));
       double force[2];
       verify_ok(&c.w, mpm_stepper_particles_reaction(c.w.stepper, c.striker, force));
-      impulse += now.dt * (scheme == MPM_NEWMARK ? 0.5 * (force_old + force[0]) : force[0]);
+      impulse += now.dt * (how->scheme == MPM_NEWMARK ? 0.5 * (force_old + force[0]) : force[0]);
       force_old = force[0];
       work += now.external_work;
       worst = fmax(worst, fabs(now.kinetic_energy - rigid + now.strain_energy - work));
@@ -132,7 +157,7 @@ static outcome run(const char *name, int32_t scheme, int cells, double cfl, FILE
       }
       if (!history || now.t < sample * transit / SAMPLES - 1e-9) continue;
       ++sample;
-      fprintf(history, "%s,%d,%.4f", name, cells, now.t / transit);
+      fprintf(history, "%s,%d,%.4f", how->name, how->cells, now.t / transit);
       for (int k = 0; k < DISCS; ++k) fprintf(history, ",%.5f", v[k]);
       for (int k = 0; k < DISCS; ++k) fprintf(history, ",%.5f", p[k] / (speed * density * PI / 4.0));
       fprintf(history, "\n");
@@ -142,12 +167,17 @@ static outcome run(const char *name, int32_t scheme, int cells, double cfl, FILE
   }
   double all = 0.0;
   for (int k = 0; k < DISCS; ++k) all += p[k];
+  if (how->apart) {
+    mpm_contact_info pair = {.struct_size = sizeof pair};
+    verify_ok(&c.w, mpm_stepper_contact_info(c.w.stepper, DISCS, 0, &pair));
+    impulse = pair.impulse[0];
+  }
   is.impulse = impulse / all - 1.0;
   is.energy = worst / work;
   free(c.x0);
   free(c.mass);
   verify_close(&c.w);
-  verify_progress("%s, %d cells, %d steps", name, cells, (int)now.step);
+  verify_progress("%s, %d cells, %d steps", how->name, how->cells, (int)now.step);
   return is;
 }
 
@@ -191,8 +221,8 @@ static double difference(const double *a, const double *b) {
 }
 
 /* The half above the axis of symmetry. */
-static void write_picture(const outcome *explicit, const outcome *implicit, int64_t cells) {
-  FILE *csv = verify_csv("four_discs_fringes");
+static void write_picture(const char *file, const outcome *explicit, const outcome *implicit, int64_t cells) {
+  FILE *csv = verify_csv(file);
   const outcome *const both[2] = {explicit, implicit};
   fprintf(csv, "x,y");
   for (int k = 0; k < 2 * FRAMES; ++k)
@@ -207,23 +237,44 @@ static void write_picture(const outcome *explicit, const outcome *implicit, int6
   fclose(csv);
 }
 
-static void gates_of_one(const char *name, const outcome *is, int cells, double lead) {
-  const double c = wave_speed();
+static void gates_of_one(const method *how, const outcome *is) {
   char what[90];
-  verify_gate(SAY("%s: speed of the first motion, disc 1 to 4, cm/us", name),
-              (DISCS - 1) * c / (is->first[DISCS - 1] - is->first[0]), 1.0 - lead, 1.0 + lead,
-              "Guilkey & Weiss 2003, 5.2: 1 cm/us; set tolerance");
-  verify_gate(SAY("%s: first motion of disc 4 over distance / speed", name),
-              is->first[DISCS - 1] / (DISCS - 0.5), 1.0 - lead, 1.0 + lead,
-              "speed by the moduli; set tolerance");
-  verify_gate(SAY("%s: impulse of the striker over momentum, less 1", name), is->impulse, -1e-10, 1e-10,
+  verify_gate(SAY("%s: impulse of the striker over momentum, less 1", how->name), is->impulse, -1e-10, 1e-10,
               "conservation; set tolerance");
-  verify_gate(SAY("%s: energy less work of the striker, most, over work", name), is->energy, 0.0, 0.02,
+  verify_gate(SAY("%s: energy less work of the striker, most, over work", how->name), is->energy, 0.0, 0.02,
               "conservation; set tolerance");
   double worst = 0.0;
-  for (int f = 0; f < FRAMES; ++f) worst = fmax(worst, asymmetry(is->difference[f], cells));
-  verify_gate(SAY("%s: stress, difference of the halves over the largest", name), worst, 0.0, 1e-9,
+  for (int f = 0; f < FRAMES; ++f) worst = fmax(worst, asymmetry(is->difference[f], how->cells));
+  verify_gate(SAY("%s: stress, difference of the halves over the largest", how->name), worst, 0.0, 1e-9,
               "symmetry");
+}
+
+static void gates_of_arrival(const method *how, const outcome *is) {
+  const double c = wave_speed(), lead = verify_quick() ? 0.12 : 0.05;
+  char what[90];
+  verify_gate(SAY("%s: speed of the first motion, disc 1 to 4, cm/us", how->name),
+              (DISCS - 1) * c / (is->first[DISCS - 1] - is->first[0]), 1.0 - lead, 1.0 + lead,
+              "Guilkey & Weiss 2003, 5.2: 1 cm/us; set tolerance");
+  verify_gate(SAY("%s: first motion of disc 4 over distance / speed", how->name),
+              is->first[DISCS - 1] / (DISCS - 0.5), 1.0 - lead, 1.0 + lead,
+              "speed by the moduli; set tolerance");
+}
+
+/* Explicit and implicit steps against each other. */
+static void gates_of_both(const char *of, const outcome *explicit, const outcome *implicit, int cells) {
+  const double alike = verify_quick() ? 0.85 : 0.95;
+  char what[90];
+  for (int f = 0; f < FRAMES; ++f) {
+    const double *e = explicit->difference[f], *i = implicit->difference[f];
+    const char *agree = "Guilkey & Weiss 2003, 5.2: good agreement; set tolerance";
+    verify_gate(SAY("%st = %.1f: momentum of a disc, Newmark less MUSL, over all", of, due[f]),
+                difference(explicit->momentum[f], implicit->momentum[f]), 0.0, 0.01, agree);
+    verify_gate(SAY("%st = %.1f: correlation of the fringes, Newmark and MUSL", of, due[f]),
+                correlation(e, i, cells), alike, 1.0, agree);
+    verify_gate(SAY("%st = %.1f: noise of the stress, Newmark over MUSL", of, due[f]),
+                noise(i, cells) / noise(e, cells), 0.0, 1.0,
+                "Guilkey & Weiss 2003, 5.2: less noise with implicit steps");
+  }
 }
 
 static void release(const outcome *is) {
@@ -233,44 +284,49 @@ static void release(const outcome *is) {
 int main(int argc, char **argv) {
   verify_begin("four_discs", argc, argv);
   const int cells = verify_quick() ? 20 : 50, fine = cells * 8 / 5;
-  const double lead = verify_quick() ? 0.12 : 0.05, alike = verify_quick() ? 0.85 : 0.95;
+  const method musl = {"MUSL", MPM_MUSL, 0, cells, 0.5}, newmark = {"Newmark", MPM_NEWMARK, 0, cells, 0.5},
+               on_fine = {"MUSL", MPM_MUSL, 0, fine, 0.5},
+               musl_apart = {"bodies by MUSL", MPM_MUSL, 1, cells, 0.5},
+               newmark_apart = {"bodies by Newmark", MPM_NEWMARK, 1, cells, 0.5};
   char what[90];
   FILE *history = verify_csv("four_discs");
   fprintf(history, "scheme,cells,t,v1,v2,v3,v4,p1,p2,p3,p4\n");
-  const outcome explicit = run("MUSL", MPM_MUSL, cells, 0.5, history),
-                implicit = run("Newmark", MPM_NEWMARK, cells, 0.5, history),
-                finer = run("MUSL", MPM_MUSL, fine, 0.5, history);
+  const outcome explicit = run(&musl, history), implicit = run(&newmark, history),
+                finer = run(&on_fine, history), explicit_apart = run(&musl_apart, history),
+                implicit_apart = run(&newmark_apart, history);
   fclose(history);
-  write_picture(&explicit, &implicit, cells);
-  gates_of_one("MUSL", &explicit, cells, lead);
-  gates_of_one("Newmark", &implicit, cells, lead);
-  for (int f = 0; f < FRAMES; ++f) {
-    const double *e = explicit.difference[f], *i = implicit.difference[f];
-    const char *agree = "Guilkey & Weiss 2003, 5.2: good agreement; set tolerance";
-    verify_gate(SAY("t = %.1f: momentum of a disc, Newmark less MUSL, over all", due[f]),
-                difference(explicit.momentum[f], implicit.momentum[f]), 0.0, 0.01, agree);
-    verify_gate(SAY("t = %.1f: correlation of the fringes, Newmark and MUSL", due[f]),
-                correlation(e, i, cells), alike, 1.0, agree);
-    verify_gate(SAY("t = %.1f: noise of the stress, Newmark over MUSL", due[f]),
-                noise(i, cells) / noise(e, cells), 0.0, 1.0,
-                "Guilkey & Weiss 2003, 5.2: less noise with implicit steps");
-  }
+  write_picture("four_discs_fringes", &explicit, &implicit, cells);
+  write_picture("four_discs_apart", &explicit_apart, &implicit_apart, cells);
+  gates_of_arrival(&musl, &explicit);
+  gates_of_one(&musl, &explicit);
+  gates_of_arrival(&newmark, &implicit);
+  gates_of_one(&newmark, &implicit);
+  gates_of_both("", &explicit, &implicit, cells);
   verify_gate(SAY("half of the speed at disc 4, h = 1/%d over h = 1/%d", fine, cells),
               finer.half[DISCS - 1] / explicit.half[DISCS - 1], 1.0, 7.7 / 6.7,
               "Guilkey & Weiss 2003, fig. 4: later on finer cells, 7.7 over 6.7");
   verify_gate(SAY("lead of the first motion at disc 4, h = 1/%d over h = 1/%d", fine, cells),
               (DISCS - 0.5 - finer.first[DISCS - 1]) / (DISCS - 0.5 - explicit.first[DISCS - 1]), 0.0, 0.8,
               "the lead is of the cells: it falls with h");
+  gates_of_one(&musl_apart, &explicit_apart);
+  gates_of_one(&newmark_apart, &implicit_apart);
+  gates_of_both("bodies, ", &explicit_apart, &implicit_apart, cells);
+  verify_gate("half of the speed at disc 4, bodies over one field",
+              explicit_apart.half[DISCS - 1] / explicit.half[DISCS - 1], 1.0, 9.2 / 6.7,
+              "Guilkey & Weiss 2003, fig. 4: the discs of the experiment are later, 9.2 over 6.7");
   if (!verify_quick()) {
-    const outcome leaps = run("Newmark, 4 x dt", MPM_NEWMARK, cells, 2.0, NULL);
+    const method long_steps = {"Newmark, 4 x dt", MPM_NEWMARK, 0, cells, 2.0};
+    const outcome leaps = run(&long_steps, NULL);
     for (int f = 0; f < FRAMES; ++f)
       verify_gate(SAY("t = %.1f: correlation of the fringes, Newmark with 4 x dt", due[f]),
-                  correlation(implicit.difference[f], leaps.difference[f], cells), alike, 1.0,
+                  correlation(implicit.difference[f], leaps.difference[f], cells), 0.95, 1.0,
                   "Guilkey & Weiss 2003, 5.2: practically indiscernible; set tolerance");
     release(&leaps);
   }
   release(&explicit);
   release(&implicit);
   release(&finer);
+  release(&explicit_apart);
+  release(&implicit_apart);
   return verify_end();
 }
