@@ -69,9 +69,9 @@ def main(directory):
     cut.set(aspect="equal", xlim=(-50, 50), ylim=(0, 50), xlabel="mm", ylabel="mm")
     figure.colorbar(shown, ax=cut, label="von Mises stress / kPa", extend="max", shrink=0.8)
     depth = [row["depth_mm"] for row in rows]
-    for key, line, label in (("force_N", "o-", "computed"), ("hertz_larger_N", "--", "Hertz, sphere a cell larger"),
-                             ("hertz_N", ":", "Hertz")):
-        curve.plot(depth, [row[key] for row in rows], line, label=label, markersize=4)
+    for key, line, label in (("steel_N", "C0-", "steel"), ("steel_hertz_N", "C0:", "Hertz"), ("rubber_N", "C1-", "rubber"),
+                             ("rubber_hertz_N", "C1:", "Hertz, both soft")):
+        curve.plot(depth, [row[key] for row in rows], line, label=label)
     curve.set(xlabel="depth / mm", ylabel="force on the quarter / N", ylim=(0, None))
     curve.legend()
     figure.savefig(pathlib.Path(__file__).with_name("indenter.png"), dpi=110, metadata={"Software": None})

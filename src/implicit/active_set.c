@@ -5,8 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Touches no wider than this, in spacings, are closed at first where nothing else tells. */
-static const double close_by = 0.25;
+/* Touches no wider than this, in spacings, are closed at first where nothing else tells, and wider ones where
+ * these leave a body unheld. */
+static const double close_by = 0.05, still_close_by = 0.25;
 /* Those that slide by more than this, in spacings, go on sliding at first. */
 static const double slides_by = 1e-3;
 /* One that has changed so often stays closed where it has no way to go, or has no friction in this step:
@@ -130,6 +131,18 @@ mpm_status mpmi_active_set_find(mpmi_balance *balance) {
       .step = balance->step, .nodes = balance->nodes, .values = &balance->nodes->solved, .dim = dim};
   const mpm_status status = mpmi_body_contacts_find(&bound);
   return status ? status : list_constraints(balance);
+}
+
+int64_t mpmi_active_set_hold(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  int64_t closed = 0;
+  for (int64_t k = 0; k < newton->constraint_count; ++k) {
+    mpmi_constraint *of = &newton->constraint[k];
+    if (of->closed || of->changes || of->allowed > still_close_by * balance->settings->grid->h_min) continue;
+    of->closed = 1;
+    ++closed;
+  }
+  return closed;
 }
 
 /* ---- the set ------------------------------------------------------------------------------------------- */

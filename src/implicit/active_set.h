@@ -62,6 +62,9 @@ static inline void mpmi_stoppable(const mpmi_constraint *of, double *move) {
 /* ---- the step ------------------------------------------------------------------------------------------ */
 /* Finds the touches that may close in the step, from the velocities of its start, and guesses which do. */
 mpm_status mpmi_active_set_find(mpmi_balance *balance);
+/* Closes what is open yet within a part of a cell, so that it may hold a body that nothing else holds;
+ * returns how many touches. */
+int64_t mpmi_active_set_hold(mpmi_balance *balance);
 /* Adds the stiffness of closed touches to the matrix, and to the right-hand side what they still lack. */
 void mpmi_active_set_stiffen(mpmi_balance *balance);
 void mpmi_active_set_load(const mpmi_balance *balance, double *rhs);

@@ -1,12 +1,13 @@
 /* What contact did in an implicit step, as the sweeps of explicit steps tell it. */
 #include "implicit/active_set.h"
+#include "implicit/trouble.h"
 #include "boundary/bound.h"
 
 #include <math.h>
 
 /* Touches that push less than this share of the hardest, and rows with less than this share of the mass of
  * the heaviest beside them, may slide as they like: nodes at the rim of a body move far and mean little. */
-static const double pushes_at_all = 1e-3, weighs_at_all = 1e-2;
+static const double pushes_at_all = 1e-2, weighs_at_all = 5e-2;
 
 /* Tells a touch what was done to it. */
 static void tell(mpmi_balance *balance, const mpmi_constraint *of) {
@@ -67,8 +68,9 @@ static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint 
   return mpmi_fail(
       balance->settings->context, MPM_CUT_DT,
       "bodies in contact slide by %g at node %lld in the step from t = %g with dt = %g, more than "
-      "half a cell: use a smaller dt, or mpm_advance",
-      slipped, (long long)balance->step->failure.node, balance->step->t, balance->step->dt);
+      "half a cell: %s",
+      slipped, (long long)balance->step->failure.node, balance->step->t, balance->step->dt,
+      mpmi_smaller_steps(balance));
 }
 
 mpm_status mpmi_active_set_finish(mpmi_balance *balance) {

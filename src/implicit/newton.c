@@ -280,9 +280,11 @@ static mpm_status iterate(iteration *it) {
       return mpmi_tell_not_converged(it->balance, !settled);
     if ((status = assemble(it)) || (status = find_rhs(it, &moves_held))) return status;
     if (!moves_held && it->norm <= noise(it) && mpmi_active_set_error(it->balance) <= 1.0) return MPM_OK;
-    if ((status = solve(it))) return status;
+    status = solve(it);
+    if (status == MPM_SINGULAR && it->balance->iterations == 1 && mpmi_active_set_hold(it->balance)) continue;
+    if (status) return status;
     const double energy = fabs(dot_of(it, newton->vector[MPMI_DU], newton->vector[MPMI_RHS], 1));
-    if (it->balance->iterations == 1) it->energy_first = energy;
+    if (!(it->energy_first > 0.0)) it->energy_first = energy;
     if ((status = line_search(it, moves_held, &taken))) return status;
     settled = settle_contact(it);
     note(it);

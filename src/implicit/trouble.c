@@ -54,6 +54,10 @@ static int64_t worst_row(const mpmi_newton *newton, double *share) {
   return worst;
 }
 
+const char *mpmi_smaller_steps(const mpmi_balance *balance) {
+  return balance->step->is_cut ? "smaller steps were tried" : "use a smaller dt, or mpm_advance";
+}
+
 static int32_t falls(const mpmi_newton *newton, double by) {
   int32_t all = newton->history_count > LAST;
   for (int32_t k = newton->history_count - LAST; k < newton->history_count && all; ++k)
@@ -64,11 +68,13 @@ static int32_t falls(const mpmi_newton *newton, double by) {
 /* Returns what helps: of steps that fail so, what got them through when it was tried. */
 static const char *advice(const mpmi_balance *balance, int32_t touches_change) {
   const mpmi_newton *newton = balance->newton;
-  if (touches_change) return "bodies go on to part and touch again: use mpm_advance, or less friction";
+  if (touches_change)
+    return balance->step->is_cut ? "bodies go on to part and touch again: use less friction"
+                                 : "bodies go on to part and touch again: use mpm_advance, or less friction";
   if (falls(newton, soon)) return "it falls fast: raise newton_max_iterations";
   if (falls(newton, hardly) && mpmi_has_host_law(balance->layout))
     return "it falls slowly, as with a tangent callback that is not the derivative of the stress";
-  return "use a smaller dt, or mpm_advance";
+  return mpmi_smaller_steps(balance);
 }
 
 mpm_status mpmi_tell_not_converged(mpmi_balance *balance, int32_t touches_change) {
@@ -99,9 +105,11 @@ mpm_status mpmi_tell_unsolved(mpmi_balance *balance, mpm_status status, int64_t 
       break;
     }
   if (status != MPM_SINGULAR || failure->particle < 0) return status;
-  return mpmi_fail(
-      balance->settings->context, status, "%s, beside particle %lld of set %d%s",
-      mpm_last_error(balance->settings->context), (long long)failure->particle, (int)failure->set,
-      mpmi_is_dynamic(balance->settings) ? ""
-                                         : ": hold the body in every direction, or set quasi_static = 0");
+  return mpmi_fail(balance->settings->context, status, "%s, beside particle %lld of set %d%s",
+                   mpm_last_error(balance->settings->context), (long long)failure->particle,
+                   (int)failure->set,
+                   mpmi_is_dynamic(balance->settings)
+                       ? ""
+                       : ": hold the body in every direction, see whether it has torn, or set "
+                         "quasi_static = 0");
 }

@@ -135,7 +135,7 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
       s->history.t = d->t_end;
       return MPM_OK;
     }
-    status = mpmi_make_step(s, dt);
+    status = mpmi_make_step(s, dt, 1);
     if (!status) {
       if (last) s->history.t = d->t_end;
       let_grow(s, dt);

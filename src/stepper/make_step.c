@@ -151,10 +151,11 @@ static mpm_status run_implicit(mpm_stepper *s) {
   return mpmi_newmark_step(&balance);
 }
 
-mpm_status mpmi_make_step(mpm_stepper *s, double dt) {
+mpm_status mpmi_make_step(mpm_stepper *s, double dt, int32_t is_cut) {
   mpm_status status = check_dt(s, dt);
   if (status) return status;
   begin(s, dt, 0);
+  s->step.is_cut = is_cut;
   status = prepare(s);
   if (!status) status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
   if (!status) status = finish(s);
@@ -166,7 +167,7 @@ mpm_status mpmi_make_step(mpm_stepper *s, double dt) {
 mpm_status mpm_step(mpm_stepper *s, double dt, mpm_step_info *info) {
   MPMI_ENTER(s, MPMI_STEPPER);
   const mpm_status status = mpmi_check_info(s, info);
-  return status ? status : mpmi_give_info(s, mpmi_make_step(s, dt), info);
+  return status ? status : mpmi_give_info(s, mpmi_make_step(s, dt, 0), info);
 }
 
 /* ---- steps in parts ----------------------------------------------------------------------------------- */

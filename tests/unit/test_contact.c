@@ -49,7 +49,9 @@ START_TEST(momentum_and_energy) {
       if ((dim == 1 && (how->remedy || flags & THIRD)) || (flags == (ROUND | THIRD) && how->staggered))
         continue;
       world w;
-      open_boxes(&w, &(boxes){.dim = dim, .flags = flags, .method = *how, .contact = contact_desc(0.3)});
+      /* sliding in 3-D makes an unsymmetric system, which takes long for three bodies */
+      const double friction = how->scheme == MPM_NEWMARK && flags & THIRD && dim == 3 ? 0.0 : 0.3;
+      open_boxes(&w, &(boxes){.dim = dim, .flags = flags, .method = *how, .contact = contact_desc(friction)});
       follow_impulses(&w, how->name);
       world_close(&w);
     }
