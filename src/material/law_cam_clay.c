@@ -378,7 +378,7 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
       double J = mpmi_trial_J(dim, in, i + p), mean;
       mpmi_sym e = mpmi_strain_of_b(dim, trial_b(dim, c, in, i + p, J, old.X[p]));
       e = mpmi_deviator(e, &mean);
-      d[0][p] = e.xx, d[1][p] = e.yy, d[2][p] = e.zz, d[3][p] = e.xy, d[4][p] = e.yz, d[5][p] = e.xz;
+      mpmi_store_sym(dim, d[0], MPMI_CHUNK, p, e);
       set_trial(c, &o, p, 3.0 * mean, mpmi_square(e), batch->state[ld + i + p]);
     }
     come_back(c, &o);
@@ -387,13 +387,8 @@ MPMI_INLINE void clay_step(int dim, const clay_constants *c, const mpm_material_
       const clay_stress t = stress_of(c, o.v[p], o.e[p]);
       double inverse = 1.0 / mpmi_trial_J(dim, in, i + p), pressure = inverse * t.p;
       double shape = inverse * shape_of(c, &o, p, t.shear);
-      mpmi_sym s = {shape * d[0][p] - pressure,
-                    shape * d[1][p] - pressure,
-                    shape * d[2][p] - pressure,
-                    shape * d[3][p],
-                    shape * d[4][p],
-                    shape * d[5][p]};
-      mpmi_store_sym(dim, stress, ld, i + p, s);
+      mpmi_sym s = mpmi_load_sym(dim, d[0], MPMI_CHUNK, p);
+      mpmi_store_sym(dim, stress, ld, i + p, mpmi_shifted(shape, s, -pressure));
       state[i + p] = o.pc_new[p];
       state[ld + i + p] = o.gap[p];
       double bears = o.e[p] * o.e[p] * c->couples, end = bears > 1.0 ? MPMI_REFUSED(TOO_SHEARED) : 0.0;
@@ -442,9 +437,7 @@ MPMI_INLINE void clay_outputs(int dim, const clay_constants *c, const mpm_materi
 
 MPMI_INLINE void cam_clay(int dim, const clay_constants *constants, const mpm_material_batch *batch) {
   const clay_constants c = *constants;
-  if (batch->dt == 0.0) {
-    mpmi_keep_rows(mpmi_stress_components(dim), batch->stress, batch->stress_new, batch);
-    mpmi_keep_rows(2, batch->state, batch->state_new, batch);
+  if (mpmi_keeps_state(dim, 2, batch)) {
     for (int64_t i = 0; i < mpmi_batch_items(batch); ++i) batch->wave_speed[i] = 0.0;
   } else {
     clay_step(dim, &c, batch);

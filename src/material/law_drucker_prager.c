@@ -136,26 +136,14 @@ MPMI_INLINE void drucker_step(int dim, const drucker_constants *constants, const
     mpmi_sym e = mpmi_trial_strain(dim, in, i, J), d = mpmi_deviator(e, &mean);
     double q = mu2 * sqrt(1.5 * mpmi_square(d));
     drucker_return r = come_back(&c, trace_of(e), q, old[i], old[ld + i]);
-    double shape = mu2 * r.keep * inverse, pressure = r.p * inverse;
-    mpmi_sym s = {shape * d.xx - pressure,
-                  shape * d.yy - pressure,
-                  shape * d.zz - pressure,
-                  shape * d.xy,
-                  shape * d.yz,
-                  shape * d.xz};
-    mpmi_store_sym(dim, stress, ld, i, s);
+    mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(mu2 * r.keep * inverse, d, -r.p * inverse));
     state[i] = r.plastic;
     state[ld + i] = r.gap;
   }
 }
 
 MPMI_INLINE void drucker_prager(int dim, const drucker_constants *c, const mpm_material_batch *batch) {
-  if (batch->dt == 0.0) {
-    mpmi_keep_rows(mpmi_stress_components(dim), batch->stress, batch->stress_new, batch);
-    mpmi_keep_rows(2, batch->state, batch->state_new, batch);
-  } else {
-    drucker_step(dim, c, batch);
-  }
+  if (!mpmi_keeps_state(dim, 2, batch)) drucker_step(dim, c, batch);
   mpmi_frame_outputs(dim, &c->elastic, batch);
 }
 

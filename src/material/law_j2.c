@@ -32,10 +32,7 @@ MPMI_INLINE void j2(int dim, const j2_constants *c, const mpm_material_batch *ba
   const mpmi_increments in = mpmi_increments_of(&c->elastic, batch);
   const double *plastic_old = batch->state;
   double *stress = batch->stress_new, *plastic_new = batch->state_new;
-  if (batch->dt == 0.0) {
-    mpmi_keep_rows(mpmi_stress_components(dim), batch->stress, stress, batch);
-    mpmi_keep_rows(1, plastic_old, plastic_new, batch);
-  } else {
+  if (!mpmi_keeps_state(dim, 1, batch)) {
     MPMI_IVDEP
     for (int64_t i = 0; i < n; ++i) {
       double mean, plastic = plastic_old[i];
@@ -44,9 +41,7 @@ MPMI_INLINE void j2(int dim, const j2_constants *c, const mpm_material_batch *ba
       double increment = mpmi_max(mises - yield, 0.0) * return_inverse;
       /* Where there is an increment, mises > yield > 0: the maximum is mises, and never 0. */
       double keep = 1.0 - mu3 * increment / mpmi_max(mises, yield);
-      mpmi_sym s = {mean + keep * d.xx, mean + keep * d.yy, mean + keep * d.zz,
-                    keep * d.xy,        keep * d.yz,        keep * d.xz};
-      mpmi_store_sym(dim, stress, ld, i, s);
+      mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(keep, d, mean));
       plastic_new[i] = plastic + increment;
     }
   }

@@ -7,9 +7,7 @@ MPMI_INLINE void linear_elastic(int dim, const mpmi_elastic *c, const mpm_materi
   const int64_t n = mpmi_batch_items(batch), ld = batch->ld;
   const mpmi_increments in = mpmi_increments_of(c, batch);
   double *stress = batch->stress_new;
-  if (batch->dt == 0.0) {
-    mpmi_keep_rows(mpmi_stress_components(dim), batch->stress, stress, batch);
-  } else {
+  if (!mpmi_keeps_state(dim, 0, batch)) {
     MPMI_IVDEP
     for (int64_t i = 0; i < n; ++i) mpmi_store_sym(dim, stress, ld, i, mpmi_trial_stress(dim, in, i));
   }

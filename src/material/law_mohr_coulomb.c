@@ -304,10 +304,7 @@ MPMI_INLINE void mohr_chunk(const mohr_constants *c, const double *plastic, cons
 MPMI_INLINE void mohr_coulomb(int dim, const mohr_constants *constants, const mpm_material_batch *batch) {
   const mohr_constants c = *constants;
   const int64_t ld = batch->ld;
-  if (batch->dt == 0.0) {
-    mpmi_keep_rows(mpmi_stress_components(dim), batch->stress, batch->stress_new, batch);
-    mpmi_keep_rows(2, batch->state, batch->state_new, batch);
-  } else {
+  if (!mpmi_keeps_state(dim, 2, batch)) {
     const mpmi_frame in = mpmi_frame_of(&c.elastic, batch);
     mpmi_principal o;
     for (int64_t i = 0; i < mpmi_batch_items(batch); i += MPMI_CHUNK) {

@@ -91,12 +91,7 @@ MPMI_INLINE void grains_step(int dim, const grains_constants *constants, const m
 }
 
 MPMI_INLINE void mu_i(int dim, const grains_constants *c, const mpm_material_batch *batch) {
-  if (batch->dt == 0.0) {
-    mpmi_keep_rows(mpmi_stress_components(dim), batch->stress, batch->stress_new, batch);
-    mpmi_keep_rows(2, batch->state, batch->state_new, batch);
-  } else {
-    grains_step(dim, c, batch);
-  }
+  if (!mpmi_keeps_state(dim, 2, batch)) grains_step(dim, c, batch);
   mpmi_frame_outputs(dim, &c->elastic, batch);
 }
 

@@ -25,13 +25,7 @@ MPMI_INLINE void neo_hookean(int dim, const mpmi_elastic *c, const mpm_material_
     double log_j = mpmi_lane_log1p(j_minus_1);
 
     double mu_j = mu * j_inverse, pressure = lambda * log_j * j_inverse;
-    mpmi_sym s = {pressure + mu_j * e.xx,
-                  pressure + mu_j * e.yy,
-                  pressure + mu_j * e.zz,
-                  mu_j * e.xy,
-                  mu_j * e.yz,
-                  mu_j * e.xz};
-    mpmi_store_sym(dim, stress, ld, i, s);
+    mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(mu_j, e, pressure));
     energy[i] = 0.5 * lambda * log_j * log_j + mu * (0.5 * (e.xx + e.yy + e.zz) - log_j);
 
     /* The acoustic tensor (J c_ijkl n_j n_l + tau_jl n_j n_l delta_ik) / density has the eigenvalues

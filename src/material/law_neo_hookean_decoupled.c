@@ -54,13 +54,7 @@ MPMI_INLINE void neo_hookean_decoupled(int dim, const decoupled_constants *c,
 
     double mu_j = mu_bar * j_inverse;
     double isotropic = kappa * log_j * j_inverse - (1.0 / 3.0) * mu_j * trace;
-    mpmi_sym s = {isotropic + mu_j * e.xx,
-                  isotropic + mu_j * e.yy,
-                  isotropic + mu_j * e.zz,
-                  mu_j * e.xy,
-                  mu_j * e.yz,
-                  mu_j * e.xz};
-    mpmi_store_sym(dim, stress, ld, i, s);
+    mpmi_store_sym(dim, stress, ld, i, mpmi_shifted(mu_j, e, isotropic));
     energy[i] = 0.5 * kappa * log_j * log_j + 0.5 * (mu_bar * trace + 3.0 * mu * shape_minus_1);
 
     double stiffness = stiffest(kappa - kappa * log_j, mu_bar * (1.0 + (1.0 / 3.0) * trace),

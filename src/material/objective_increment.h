@@ -142,4 +142,12 @@ MPMI_INLINE void mpmi_keep_rows(int64_t rows, const double *from, double *to,
     memcpy(to + c * batch->ld, from + c * batch->ld, (size_t)batch->n * sizeof *to);
 }
 
+/* Does so for the stress and the state variables where dt = 0, and returns 1 there. */
+MPMI_INLINE int mpmi_keeps_state(int dim, int64_t states, const mpm_material_batch *batch) {
+  if (batch->dt != 0.0) return 0;
+  mpmi_keep_rows(mpmi_stress_components(dim), batch->stress, batch->stress_new, batch);
+  mpmi_keep_rows(states, batch->state, batch->state_new, batch);
+  return 1;
+}
+
 #endif

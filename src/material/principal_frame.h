@@ -136,9 +136,7 @@ MPMI_INLINE mpmi_old mpmi_old_state(int dim, mpmi_trial in, int64_t i, double J)
 
 /* Returns b_trial - I where the elastic strain before the step was volume * I + shape * deviator. */
 MPMI_INLINE mpmi_sym mpmi_trial_from(int dim, mpmi_old old, double volume, double shape) {
-  mpmi_sym d = old.deviator;
-  mpmi_sym e = {volume + shape * d.xx, volume + shape * d.yy, volume + shape * d.zz,
-                shape * d.xy,          shape * d.yz,          shape * d.xz};
+  mpmi_sym e = mpmi_shifted(shape, old.deviator, volume);
   return mpmi_pushed_forward(dim, old.g, mpmi_exp_twice(dim, e));
 }
 
