@@ -49,18 +49,12 @@ static void take_answers(mpmi_bound *bound, const touch_list *list, mpmi_failure
       touch->friction = value;
       continue;
     }
-    const mpmi_blocks *b = &bound->step->layout->blocks;
     const mpmi_party *party = &contact->party[touch->party[0]];
-    int64_t index[3];
-    mpmi_blocks_index(b, party->slot, index);
-    mpmi_failure_take(failure,
-                      &(mpmi_failure){.cause = value < 0.0 ? MPM_E_CALLBACK : MPM_NONFINITE,
-                                      .set = -1,
-                                      .particle = -1,
-                                      .node = mpmi_node_number(b->grid, index),
-                                      .body = party->body,
-                                      .what = value < 0.0 ? "the friction of the callback is negative"
-                                                          : "the friction of the callback not finite"});
+    mpmi_failure found = mpmi_node_failure(
+        value < 0.0 ? MPM_E_CALLBACK : MPM_NONFINITE, &bound->step->layout->blocks, party->slot,
+        value < 0.0 ? "the friction of the callback is negative" : "the friction of the callback not finite");
+    found.body = party->body;
+    mpmi_failure_take(failure, found);
   }
 }
 
@@ -97,12 +91,7 @@ static void ask_pair(mpmi_bound *bound, int64_t begin, int64_t end, int64_t reco
   const mpm_status status =
       mpmi_from_host(settings->friction(settings->friction_user, &batch, list.friction));
   if (status)
-    mpmi_failure_take(failure, &(mpmi_failure){.cause = mpmi_callback_cause(status),
-                                               .callback_status = status,
-                                               .set = -1,
-                                               .particle = -1,
-                                               .node = -1,
-                                               .what = "the friction callback"});
+    mpmi_failure_take(failure, mpmi_callback_failure(status, -1, "the friction callback"));
   else
     take_answers(bound, &list, failure);
 }

@@ -79,7 +79,7 @@ static void call_hook(const hook_job *job, int64_t block, mpmi_node_list *list, 
   const mpm_status status =
       mpmi_from_host(settings->hook[h](settings->hook_user[h], &list->batch, values.velocity, values.force));
   if (status) {
-    mpmi_failure_take(failure, &(mpmi_failure){mpmi_callback_cause(status), status, -1, -1, -1, what[h], 0});
+    mpmi_failure_take(failure, mpmi_callback_failure(status, -1, what[h]));
     return;
   }
   for (int64_t i = 0; i < list->n; ++i)

@@ -32,9 +32,6 @@ int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *
 
 void mpmi_bad_node(const mpmi_bound *bound, const mpmi_node_list *list, int64_t i, const char *what,
                    mpmi_failure *failure) {
-  int64_t index[3];
   const mpmi_blocks *b = &bound->step->layout->blocks;
-  mpmi_blocks_index(b, list->slot[i], index);
-  mpmi_failure_take(failure, &(mpmi_failure){MPM_NONFINITE, 0, -1, -1, mpmi_node_number(b->grid, index), what,
-                                             b->body[list->slot[i] / b->nodes]});
+  mpmi_failure_take(failure, mpmi_node_failure(MPM_NONFINITE, b, list->slot[i], what));
 }

@@ -75,8 +75,8 @@ static void ask_batch(void *user, int32_t m, const mpm_particle_batch *batch, in
   for (int32_t c = 0; c < batch->dim; ++c)
     for (int64_t p = 0; p < batch->n; ++p)
       if (mpmi_is_prescribed(member->set, begin + p, c) && !isfinite(mean[c * batch->ld + p]))
-        mpmi_failure_take(failure, &(mpmi_failure){MPM_NONFINITE, 0, m, batch->id[p], -1,
-                                                   "prescribed velocity not finite", 0});
+        mpmi_failure_take(
+            failure, mpmi_particle_failure(MPM_NONFINITE, m, batch->id[p], "prescribed velocity not finite"));
 }
 
 mpm_status mpmi_prescribed_stage(mpmi_step *step) {

@@ -157,14 +157,9 @@ static void hold_slots(mpmi_bound *bound, int64_t begin, int64_t end, mpmi_failu
       const mpmi_prescribed_sums *sums = sums_at(bound->nodes, slot);
       if (bound->nodes->held[slot][c] || !(sums->mass[c] > bound->step->layout->mass_cut)) continue;
       const double value = sums->momentum[c] / sums->mass[c];
-      if (!isfinite(value)) {
-        int64_t index[3];
-        mpmi_blocks_index(blocks, slot, index);
-        mpmi_failure_take(failure,
-                          &(mpmi_failure){MPM_NONFINITE, 0, -1, -1, mpmi_node_number(blocks->grid, index),
-                                          "velocity by prescribed particles not finite",
-                                          blocks->body[slot / blocks->nodes]});
-      }
+      if (!isfinite(value))
+        mpmi_failure_take(failure, mpmi_node_failure(MPM_NONFINITE, blocks, slot,
+                                                     "velocity by prescribed particles not finite"));
       bound->nodes->held[slot][c] = MPMI_HELD_BY_PARTICLES;
       bound->nodes->held_value[slot][c] = value;
     }

@@ -12,8 +12,7 @@ static void ask_host(mpmi_bound *bound, int64_t block, mpmi_node_list *list, mpm
   const mpm_status status =
       mpmi_from_host(settings->velocity_bc(settings->velocity_bc_user, &list->batch, prescribed, velocity));
   if (status) {
-    mpmi_failure_take(failure, &(mpmi_failure){mpmi_callback_cause(status), status, -1, -1, -1,
-                                               "the velocity callback", 0});
+    mpmi_failure_take(failure, mpmi_callback_failure(status, -1, "the velocity callback"));
     return;
   }
   for (int64_t i = 0; i < list->n; ++i)

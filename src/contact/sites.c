@@ -215,20 +215,16 @@ static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_
   const double within = mpmi_is_total_lagrangian(b->grid) ? bound_within_total : bound_within;
   mpmi_distances points = {.n = b->nodes, .t = search->step->t, .moves = 1};
   mpmi_distance_fault fault;
-  int64_t index[3];
   for (int32_t i = 0; i < b->nodes; ++i) {
     double x[3];
     mpmi_contact_position(b, contact, (int64_t)near->block * b->nodes + i, x);
     for (int32_t k = 0; k < b->grid->dim; ++k) points.position[k][i] = x[k];
   }
   if (mpmi_surface_distances(&contact->surface[near->surface], &points, &fault)) {
-    mpmi_blocks_index(b, (int64_t)near->block * b->nodes + (fault.point < 0 ? 0 : fault.point), index);
-    mpmi_failure_take(failure, &(mpmi_failure){.cause = fault.cause,
-                                               .callback_status = fault.returned,
-                                               .set = -1,
-                                               .particle = -1,
-                                               .node = mpmi_node_number(b->grid, index),
-                                               .what = fault.what});
+    const int64_t slot = (int64_t)near->block * b->nodes + (fault.point < 0 ? 0 : fault.point);
+    mpmi_failure found = mpmi_node_failure(fault.cause, b, slot, fault.what);
+    found.callback_status = fault.returned;
+    mpmi_failure_take(failure, found);
     return;
   }
   for (int32_t i = 0; i < b->nodes; ++i) {

@@ -24,12 +24,9 @@ static void note_fault(const surface_job *job, int32_t member, const mpmi_distan
                        const int64_t *slot, mpmi_failure *failure) {
   const mpm_particles *set = job->search->step->layout->member[member].set;
   const int64_t particle = fault->point < 0 ? -1 : mpmi_i64(set, MPMI_ID, 0)[slot[fault->point]];
-  mpmi_failure_take(failure, &(mpmi_failure){.cause = fault->cause,
-                                             .callback_status = fault->returned,
-                                             .set = member,
-                                             .particle = particle,
-                                             .node = -1,
-                                             .what = fault->what});
+  mpmi_failure found = mpmi_particle_failure(fault->cause, member, particle, fault->what);
+  found.callback_status = fault->returned;
+  mpmi_failure_take(failure, found);
 }
 
 /* Inert slots are no particles of clouds. */

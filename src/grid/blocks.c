@@ -338,3 +338,9 @@ void mpmi_blocks_index(const mpmi_blocks *b, int64_t slot, int64_t *index) {
     place /= b->edge;
   }
 }
+
+int64_t mpmi_blocks_number(const mpmi_blocks *b, int64_t slot) {
+  int64_t index[3];
+  mpmi_blocks_index(b, slot, index);
+  return mpmi_node_number(b->grid, index);
+}

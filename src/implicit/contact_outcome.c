@@ -62,9 +62,8 @@ static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint 
   mpmi_split(move, touch->normal, &along, across);
   const double slipped = sqrt(mpmi_inner(across, across));
   if (slipped <= most) return MPM_OK;
-  int64_t index[3] = {0, 0, 0};
-  mpmi_blocks_index(&balance->layout->blocks, balance->nodes->contact.party[touch->party[1]].slot, index);
-  balance->step->failure.node = mpmi_node_number(balance->settings->grid, index);
+  balance->step->failure.node =
+      mpmi_blocks_number(&balance->layout->blocks, balance->nodes->contact.party[touch->party[1]].slot);
   return mpmi_fail(
       balance->settings->context, MPM_CUT_DT,
       "bodies in contact slide by %g at node %lld in the step from t = %g with dt = %g, more than "

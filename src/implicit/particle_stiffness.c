@@ -159,8 +159,7 @@ static int32_t find_tangent(mpmi_newton_work *work, mpmi_batch *b) {
   const mpm_status status = mpmi_material_tangent(set->material, dim, &b->law.batch, work->tangent_scratch,
                                                   work->tangent, &work->symmetric);
   if (status) {
-    mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
-                                                           "the tangent callback", 0});
+    mpmi_failure_take(&b->report->failure, mpmi_callback_failure(status, b->m, "the tangent callback"));
     return 0;
   }
   for (int64_t p = 0; p < b->n; ++p)

@@ -46,9 +46,7 @@ static mpm_status check_carried(mpmi_balance *balance) {
       const int32_t held = mpmi_held_by(balance->nodes, master, c) ||
                            (tie >= 0 && balance->layout->constraints.tie[tie].zero[c]);
       if (held || fabs(force) <= FORCE_ROUNDING * most) continue;
-      int64_t index[3] = {0, 0, 0};
-      mpmi_blocks_index(&balance->layout->blocks, i, index);
-      balance->step->failure.node = mpmi_node_number(balance->settings->grid, index);
+      balance->step->failure.node = mpmi_blocks_number(&balance->layout->blocks, i);
       return mpmi_fail(
           balance->settings->context, MPM_SINGULAR,
           "nothing carries the force %g on the rigid particles around node %lld, axis %d: prescribe "

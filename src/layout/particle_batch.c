@@ -50,7 +50,6 @@ mpm_status mpmi_particle_batches(mpmi_step *step, int32_t m, double t, int32_t c
 mpm_status mpmi_call_particle_fn(mpm_particle_fn fn, void *user, const char *what, int32_t m,
                                  const mpm_particle_batch *batch, double *add, mpmi_failure *failure) {
   const mpm_status status = mpmi_from_host(fn(user, batch, add));
-  if (status)
-    mpmi_failure_take(failure, &(mpmi_failure){mpmi_callback_cause(status), status, m, -1, -1, what, 0});
+  if (status) mpmi_failure_take(failure, mpmi_callback_failure(status, m, what));
   return status;
 }

@@ -11,20 +11,39 @@ mpmi_failure mpmi_no_failure(void) {
 
 /* Keeps the failure with the smallest (set, particle); failures without a particle (nodes, callbacks) come
  * first in their set. */
-void mpmi_failure_take(mpmi_failure *first, const mpmi_failure *other) {
-  if (!other->cause) return;
+void mpmi_failure_take(mpmi_failure *first, mpmi_failure other) {
+  if (!other.cause) return;
   int32_t before = !first->cause;
-  if (!before && other->set != first->set)
-    before = other->set < first->set;
-  else if (!before && other->particle != first->particle)
-    before = other->particle < first->particle;
+  if (!before && other.set != first->set)
+    before = other.set < first->set;
+  else if (!before && other.particle != first->particle)
+    before = other.particle < first->particle;
   else if (!before)
-    before = other->node < first->node || (other->node == first->node && other->body < first->body);
-  if (before) *first = *other;
+    before = other.node < first->node || (other.node == first->node && other.body < first->body);
+  if (before) *first = other;
 }
 
 mpm_status mpmi_callback_cause(mpm_status status) {
   return status > 0 ? MPM_CUT_DT : MPM_E_CALLBACK;
+}
+
+mpmi_failure mpmi_particle_failure(mpm_status cause, int32_t m, int64_t id, const char *what) {
+  return (mpmi_failure){.cause = cause, .set = m, .particle = id, .node = -1, .what = what};
+}
+
+mpmi_failure mpmi_node_failure(mpm_status cause, const mpmi_blocks *blocks, int64_t slot, const char *what) {
+  return (mpmi_failure){.cause = cause,
+                        .set = -1,
+                        .particle = -1,
+                        .node = mpmi_blocks_number(blocks, slot),
+                        .what = what,
+                        .body = blocks->body[slot / blocks->nodes]};
+}
+
+mpmi_failure mpmi_callback_failure(mpm_status returned, int32_t m, const char *what) {
+  mpmi_failure failure = mpmi_particle_failure(mpmi_callback_cause(returned), m, -1, what);
+  failure.callback_status = returned;
+  return failure;
 }
 
 /* Returns the status of a step from t over dt that fails so, with its sentence. */
@@ -50,7 +69,7 @@ void mpmi_failures_clear(mpmi_step *step) {
 
 mpm_status mpmi_step_failure(mpmi_step *step) {
   for (int32_t k = 0; k < step->settings->tasks; ++k)
-    mpmi_failure_take(&step->failure, &step->work->report[k].failure);
+    mpmi_failure_take(&step->failure, step->work->report[k].failure);
   return report(step->settings->context, &step->failure, step->t, step->dt);
 }
 

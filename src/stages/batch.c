@@ -114,7 +114,7 @@ static void choose_form(mpmi_batch *b) {
 /* ---- what has gone wrong ------------------------------------------------------------------------------ */
 void mpmi_batch_fail(mpmi_batch *b, mpm_status cause, int64_t slot, const char *what) {
   mpmi_failure_take(&b->report->failure,
-                    &(mpmi_failure){cause, 0, b->m, mpmi_i64(b->set, MPMI_ID, 0)[slot], -1, what, 0});
+                    mpmi_particle_failure(cause, b->m, mpmi_i64(b->set, MPMI_ID, 0)[slot], what));
 }
 
 static int32_t finite_row(const mpm_particles *set, int32_t field, int32_t components, int64_t slot) {

@@ -30,8 +30,8 @@ static void name_bad_forces(int32_t m, const mpm_particle_batch *batch, const do
   for (int32_t k = 0; k < batch->dim; ++k)
     for (int64_t p = 0; p < batch->n; ++p)
       if (force[k * batch->ld + p] - force[k * batch->ld + p] != 0.0)
-        mpmi_failure_take(
-            failure, &(mpmi_failure){MPM_NONFINITE, 0, m, batch->id[p], -1, "external force not finite", 0});
+        mpmi_failure_take(failure,
+                          mpmi_particle_failure(MPM_NONFINITE, m, batch->id[p], "external force not finite"));
 }
 
 static void forces_of_batch(void *user, int32_t m, const mpm_particle_batch *batch, int64_t begin,

@@ -68,8 +68,8 @@ int32_t mpmi_is_in_place(mpmi_step *step, const mpmi_visit *visit, int32_t m) {
     int64_t p = 0;
     while (p < n - 1 && !is_astray(x[p], &of)) ++p;
     mpmi_failure_take(&step->work->report[visit->task].failure,
-                      &(mpmi_failure){MPM_E_STATE, 0, m, mpmi_i64(set, MPMI_ID, 0)[begin + p], -1,
-                                      "a position that was written through a view for reading", 0});
+                      mpmi_particle_failure(MPM_E_STATE, m, mpmi_i64(set, MPMI_ID, 0)[begin + p],
+                                            "a position that was written through a view for reading"));
     return 0;
   }
   return 1;

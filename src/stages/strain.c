@@ -191,12 +191,11 @@ void mpmi_strain_law(mpmi_batch *b) {
   if (b->law.fault.cause) {
     const mpmi_law_fault *fault = &b->law.fault;
     mpmi_failure_take(&b->report->failure,
-                      &(mpmi_failure){fault->cause, 0, b->m, fault->particle, -1, fault->what, 0});
+                      mpmi_particle_failure(fault->cause, b->m, fault->particle, fault->what));
     return;
   }
   if (status) {
-    mpmi_failure_take(&b->report->failure, &(mpmi_failure){mpmi_callback_cause(status), status, b->m, -1, -1,
-                                                           "the material callback", 0});
+    mpmi_failure_take(&b->report->failure, mpmi_callback_failure(status, b->m, "the material callback"));
     return;
   }
   if (mpmi_is_plane_stress(b->set->grid)) take_thickness(b);

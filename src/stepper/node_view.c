@@ -191,10 +191,9 @@ static mpm_status write_back(mpm_stepper *s, int32_t field, const int64_t *slot,
                              const double *value) {
   for (int64_t i = 0; i < count * s->grid->dim; ++i) {
     if (isfinite(value[i])) continue;
-    int64_t index[3];
-    mpmi_blocks_index(&s->layout.blocks, slot[i % count], index);
     return mpmi_fail(s->context, MPM_E_ARG, "nodal \"%s\" is %g at node %lld: nothing was written",
-                     mpmi_node_fields[field].name, value[i], (long long)mpmi_node_number(s->grid, index));
+                     mpmi_node_fields[field].name, value[i],
+                     (long long)mpmi_blocks_number(&s->layout.blocks, slot[i % count]));
   }
   for (int64_t i = 0; i < count; ++i)
     for (int32_t c = 0; c < s->grid->dim; ++c) {

@@ -70,12 +70,8 @@ void mpmi_obstacles_release(mpm_stepper *s) {
 /* ---- motion -------------------------------------------------------------------------------------------- */
 static mpm_status fail_motion(mpmi_step *step, mpm_status cause, mpm_status returned, const char *what,
                               int64_t number) {
-  step->failure = (mpmi_failure){.cause = cause,
-                                 .callback_status = returned,
-                                 .set = -1,
-                                 .particle = -1,
-                                 .node = -1,
-                                 .what = "the motion callback of an obstacle"};
+  step->failure = mpmi_particle_failure(cause, -1, -1, "the motion callback of an obstacle");
+  step->failure.callback_status = returned;
   if (returned)
     return mpmi_fail(step->settings->context, cause,
                      "the motion callback of obstacle %lld returned %d in the step from t = %g with dt = %g",

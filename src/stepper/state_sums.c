@@ -65,7 +65,7 @@ static void bind_particles(const mpm_stepper *s, const mpm_particles *set, const
 static mpm_status refused(mpm_stepper *s, int32_t m, mpm_status status, const mpmi_law_fault *fault,
                           mpmi_failure *failure) {
   if (failure && fault->cause)
-    *failure = (mpmi_failure){fault->cause, 0, m, fault->particle, -1, fault->what, 0};
+    *failure = mpmi_particle_failure(fault->cause, m, fault->particle, fault->what);
   if (fault->cause)
     return mpmi_fail(s->context, fault->cause, "%s at particle %lld of set %d, as it is", fault->what,
                      (long long)fault->particle, (int)m);
@@ -83,7 +83,7 @@ static mpm_status not_finite(mpm_stepper *s, int32_t m, const mpmi_law_batch *b,
          (b->batch.id[p] < 0 || (isfinite(b->wave_speed[p]) && isfinite(b->viscosity[p]))))
     ++p;
   if (failure)
-    *failure = (mpmi_failure){MPM_NONFINITE, 0, m, b->batch.id[p], -1, "the wave speed is not finite", 0};
+    *failure = mpmi_particle_failure(MPM_NONFINITE, m, b->batch.id[p], "the wave speed is not finite");
   return mpmi_fail(s->context, MPM_NONFINITE,
                    "the material gives wave speed %g and kinematic viscosity %g at particle %lld of set %d",
                    b->wave_speed[p], b->viscosity[p], (long long)b->batch.id[p], (int)m);
