@@ -6,7 +6,6 @@
 #include "layout/step.h"
 #include "particles/builtin_fields.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* A particle that is split: bit k of `edges` for its edge k. */

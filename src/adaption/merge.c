@@ -11,7 +11,6 @@
 
 #include "adaption/adaption.h"
 #include "material/dilation.h"
-#include "particles/add.h"
 #include "particles/law_batch.h"
 #include "simd/elementary.h"
 

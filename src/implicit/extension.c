@@ -6,7 +6,6 @@
 #include "implicit/extension.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A row is outer with less than this share of the largest sum of V0 |grad w|^2 of the nodes around. On the

@@ -26,7 +26,6 @@
 #define MPMI_STATE_H
 
 #include "io/archive.h"
-#include "particles/builtin_fields.h"
 #include "stepper/stepper.h"
 
 #include <stddef.h>

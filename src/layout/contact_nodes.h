@@ -8,7 +8,6 @@
 #ifndef MPMI_CONTACT_NODES_H
 #define MPMI_CONTACT_NODES_H
 
-#include "grid/constraints.h"
 #include "layout/contact_rules.h"
 #include "obstacle/obstacle.h"
 

@@ -5,7 +5,6 @@
 #include "linalg/multigrid.h"
 #include "linalg/operator.h"
 #include "linalg/solver.h"
-#include "linalg/vectors.h"
 
 struct mpmi_solver {
   mpm_context *context;

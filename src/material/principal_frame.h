@@ -9,7 +9,6 @@
 #ifndef MPMI_PRINCIPAL_FRAME_H
 #define MPMI_PRINCIPAL_FRAME_H
 
-#include "material/elastic_constants.h"
 #include "material/objective_increment.h"
 
 typedef struct mpmi_hencky {

@@ -7,7 +7,6 @@
 #include "particles/builtin_fields.h"
 #include "particles/law_batch.h"
 #include "particles/reference.h"
-#include "particles/values.h"
 #include "simd/elementary.h"
 
 typedef struct ground {

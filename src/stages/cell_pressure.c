@@ -11,7 +11,6 @@
  * the dilation alone, particles have that of their cell as it is, and keep it. */
 #include "layout/tile.h"
 #include "simd/tensor.h"
-#include "stages/batch.h"
 #include "stages/stages.h"
 
 /* Sums over the particles in a cell, in the place of the four values of a node. */

@@ -2,7 +2,6 @@
 #include "stages/stages.h"
 #include "simd/rounding.h"
 
-#include <math.h>
 
 /* Where the particles of a block may be along an axis; on periodic ones their image that is near counts. */
 typedef struct reach {
