@@ -10,24 +10,13 @@ mpm_status mpm_contact_desc_init(mpm_contact_desc *desc, uint32_t struct_size) {
                           struct_size);
 }
 
-static mpm_status check_magnitude(mpm_context *c, const char *name, double value) {
-  if (value >= 0.0 && isfinite(value)) return MPM_OK;
-  return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and >= 0", name, value);
-}
-
-mpm_status mpmi_check_choice(mpm_context *c, const char *name, int32_t value, const char *range,
-                             int32_t last) {
-  if (value >= 0 && value <= last) return MPM_OK;
-  return mpmi_fail(c, MPM_E_ARG, "%s is %d: it must be an %s", name, (int)value, range);
-}
-
 mpm_status mpmi_contact_desc_check_values(mpm_context *c, const mpm_contact_desc *d) {
   mpm_status status;
   if ((status = mpmi_check_choice(c, "kind", d->kind, "MPM_CONTACT_UNILATERAL ... MPM_CONTACT_TIED",
                                   MPM_CONTACT_TIED)) ||
-      (status = check_magnitude(c, "friction", d->friction)) ||
-      (status = check_magnitude(c, "friction_static", d->friction_static)) ||
-      (status = check_magnitude(c, "adhesion", d->adhesion)))
+      (status = mpmi_check_magnitude(c, "friction", d->friction)) ||
+      (status = mpmi_check_magnitude(c, "friction_static", d->friction_static)) ||
+      (status = mpmi_check_magnitude(c, "adhesion", d->adhesion)))
     return status;
   if (d->friction_static > 0.0 && d->friction_static < d->friction)
     return mpmi_fail(c, MPM_E_ARG, "friction_static is %g, less than friction %g", d->friction_static,

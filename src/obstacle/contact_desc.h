@@ -2,13 +2,10 @@
 #ifndef MPMI_CONTACT_DESC_H
 #define MPMI_CONTACT_DESC_H
 
-#include "context/context.h"
+#include "context/checks.h"
 
 extern const mpm_contact_desc mpmi_contact_defaults;
 
-/* Checks that a value of an enumeration is 0 ... last; range names them. */
-mpm_status mpmi_check_choice(mpm_context *context, const char *name, int32_t value, const char *range,
-                             int32_t last);
 /* Checks what counts for any contact: kind, friction, adhesion, offset. */
 mpm_status mpmi_contact_desc_check_values(mpm_context *context, const mpm_contact_desc *desc);
 

@@ -14,19 +14,12 @@ mpm_status mpm_obstacle_desc_init(mpm_obstacle_desc *desc, uint32_t struct_size)
 }
 
 /* ---- checks of values ---------------------------------------------------------------------------------- */
-static mpm_status check_vector(mpm_context *c, const char *name, const double *v, int32_t count) {
-  for (int32_t k = 0; k < count; ++k)
-    if (!isfinite(v[k]))
-      return mpmi_fail(c, MPM_E_ARG, "%s[%d] is %g: it must be finite", name, (int)k, v[k]);
-  return MPM_OK;
-}
-
 static double length_of(const double *q) {
   return sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
 static mpm_status check_orientation(mpm_context *c, const double *q) {
-  const mpm_status status = check_vector(c, "orientation", q, 4);
+  const mpm_status status = mpmi_check_vector(c, "orientation", q, 4);
   if (status) return status;
   if (fabs(length_of(q) - 1.0) <= 1e-6) return MPM_OK;
   return mpmi_fail(c, MPM_E_ARG, "orientation has length %g: it must be a unit quaternion", length_of(q));
@@ -44,10 +37,10 @@ static int32_t is_zero(const double *v) {
 /* Checks a pose; of a NULL member there is nothing to check. */
 static mpm_status check_pose(mpm_context *c, int32_t motion, const double *position,
                              const double *orientation, const double *velocity, const double *spin) {
-  mpm_status status = position ? check_vector(c, "position", position, 3) : MPM_OK;
+  mpm_status status = position ? mpmi_check_vector(c, "position", position, 3) : MPM_OK;
   if (!status && orientation) status = check_orientation(c, orientation);
-  if (!status && velocity) status = check_vector(c, "velocity", velocity, 3);
-  if (!status && spin) status = check_vector(c, "angular_velocity", spin, 3);
+  if (!status && velocity) status = mpmi_check_vector(c, "velocity", velocity, 3);
+  if (!status && spin) status = mpmi_check_vector(c, "angular_velocity", spin, 3);
   if (status || motion != MPM_MOTION_FIXED) return status;
   if ((velocity && !is_zero(velocity)) || (spin && !is_zero(spin)))
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
@@ -78,8 +71,8 @@ static mpm_status check_shape(mpm_context *c, const mpm_obstacle_desc *d) {
     return mpmi_fail(c, MPM_E_ARG,
                      "shape is %d: it must be an MPM_SHAPE_PLANE ... MPM_SHAPE_BOX or MPM_SHAPE_DISTANCE",
                      (int)d->shape);
-  if (d->inside != 0 && d->inside != 1)
-    return mpmi_fail(c, MPM_E_ARG, "inside is %d: it must be 0 or 1", (int)d->inside);
+  const mpm_status status = mpmi_check_switch(c, "inside", d->inside);
+  if (status) return status;
   /* the third size of a box is not used in 2-D: it may be 0 here, and is checked again with the grid */
   for (int32_t k = 0; k < sizes_of(d->shape); ++k)
     if (!(d->size[k] > 0.0 || (k == 2 && d->size[k] >= 0.0)) || !isfinite(d->size[k]))
@@ -130,7 +123,7 @@ static mpm_status check_mass(mpm_context *c, const mpm_obstacle_desc *d) {
   if (d->motion != MPM_MOTION_FREE) return MPM_OK;
   if (!(d->mass > 0.0) || !isfinite(d->mass) || !isfinite(1.0 / d->mass))
     return mpmi_fail(c, MPM_E_ARG, "mass of a free obstacle is %g: it must be positive", d->mass);
-  return check_vector(c, "inertia", d->inertia, 9);
+  return mpmi_check_vector(c, "inertia", d->inertia, 9);
 }
 
 int32_t mpmi_pose_is_sound(const mpmi_pose *pose) {
@@ -285,8 +278,8 @@ mpm_status mpm_obstacle_set_load(mpm_obstacle *o, const double *force, const dou
     status =
         mpmi_fail(o->context, MPM_E_UNSUPPORTED,
                   "the motion of the obstacle is %d: only MPM_MOTION_FREE takes a load", (int)o->desc.motion);
-  if (!status && force) status = check_vector(o->context, "force", force, 3);
-  if (!status && torque) status = check_vector(o->context, "torque", torque, 3);
+  if (!status && force) status = mpmi_check_vector(o->context, "force", force, 3);
+  if (!status && torque) status = mpmi_check_vector(o->context, "torque", torque, 3);
   if (status) return status;
   if (force) memcpy(o->force, force, sizeof o->force);
   if (torque) memcpy(o->torque, torque, sizeof o->torque);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "context/checks.h"
 #include "particles/builtin_fields.h"
 #include "particles/law_batch.h"
 #include "particles/reference.h"
@@ -33,11 +34,8 @@ static mpm_status check_ground(const mpm_particles *set, const ground *g) {
   if (!isfinite(g->gravity) || g->gravity == 0.0)
     return mpmi_fail(c, MPM_E_ARG, "gravity is %g: it must be finite and not 0", g->gravity);
   if (!isfinite(g->surface)) return mpmi_fail(c, MPM_E_ARG, "surface is %g: it must be finite", g->surface);
-  if (!(g->K0 >= 0.0 && isfinite(g->K0)))
-    return mpmi_fail(c, MPM_E_ARG, "K0 is %g: it must be finite and >= 0", g->K0);
-  if (!(g->surcharge >= 0.0 && isfinite(g->surcharge)))
-    return mpmi_fail(c, MPM_E_ARG, "surcharge is %g: it must be finite and >= 0", g->surcharge);
-  return MPM_OK;
+  const mpm_status status = mpmi_check_magnitude(c, "K0", g->K0);
+  return status ? status : mpmi_check_magnitude(c, "surcharge", g->surcharge);
 }
 
 static int32_t rest_of(const mpm_particles *set) {

@@ -19,21 +19,19 @@ mpm_status mpm_adaption_desc_init(mpm_adaption_desc *desc, uint32_t struct_size)
 }
 
 /* ---- descriptions ------------------------------------------------------------------------------------- */
-static mpm_status check_length(mpm_context *c, const char *name, double value, int32_t may_vanish) {
-  if (isfinite(value) && (value > 0.0 || (may_vanish && value == 0.0))) return MPM_OK;
-  return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and %s 0", name, value,
-                   may_vanish ? ">=" : ">");
+static mpm_status check_positive(mpm_context *c, const char *name, double value) {
+  if (value > 0.0 && isfinite(value)) return MPM_OK;
+  return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and > 0", name, value);
 }
 
 static mpm_status check_desc(mpm_context *c, const mpm_adaption_desc *d) {
   mpm_status status;
-  if (d->every < 0) return mpmi_fail(c, MPM_E_ARG, "every is %d: it must be >= 0", (int)d->every);
-  if (d->most_particles < 0)
-    return mpmi_fail(c, MPM_E_ARG, "most_particles is %lld: it must be >= 0", (long long)d->most_particles);
-  if ((status = check_length(c, "split_edge", d->split_edge, 1)) ||
-      (status = check_length(c, "least_edge", d->least_edge, 0)) ||
-      (status = check_length(c, "merge_distance", d->merge_distance, 0)) ||
-      (status = check_length(c, "merge_tolerance", d->merge_tolerance, 1)))
+  if ((status = mpmi_check_count(c, "every", d->every)) ||
+      (status = mpmi_check_count(c, "most_particles", d->most_particles)) ||
+      (status = mpmi_check_magnitude(c, "split_edge", d->split_edge)) ||
+      (status = check_positive(c, "least_edge", d->least_edge)) ||
+      (status = check_positive(c, "merge_distance", d->merge_distance)) ||
+      (status = mpmi_check_magnitude(c, "merge_tolerance", d->merge_tolerance)))
     return status;
   if (d->split_edge > 0.0 && d->split_edge < 2.0 * d->least_edge)
     return mpmi_fail(c, MPM_E_ARG,

@@ -46,19 +46,15 @@ static mpm_status check(mpm_stepper *s, const mpm_advance_desc *d) {
                      d->t_end, s->history.t);
   if (!(d->cfl >= 0.0 && d->cfl <= 1.0))
     return mpmi_fail(c, MPM_E_ARG, "cfl is %g: it must lie in [0, 1]", d->cfl);
-  const struct {
-    const char *name;
-    double value;
-  } bound[] = {{"dt_first", d->dt_first}, {"dt_min", d->dt_min}, {"dt_max", d->dt_max}};
-  for (int32_t i = 0; i < 3; ++i)
-    if (!isfinite(bound[i].value) || bound[i].value < 0.0)
-      return mpmi_fail(c, MPM_E_ARG, "%s is %g: it must be finite and >= 0", bound[i].name, bound[i].value);
+  mpm_status status;
+  if ((status = mpmi_check_magnitude(c, "dt_first", d->dt_first)) ||
+      (status = mpmi_check_magnitude(c, "dt_min", d->dt_min)) ||
+      (status = mpmi_check_magnitude(c, "dt_max", d->dt_max)))
+    return status;
   if (d->dt_max > 0.0 && d->dt_min > d->dt_max)
     return mpmi_fail(c, MPM_E_ARG, "dt_min is %g, more than dt_max = %g", d->dt_min, d->dt_max);
-  if (d->max_cuts < 0) return mpmi_fail(c, MPM_E_ARG, "max_cuts is %d: it must be >= 0", (int)d->max_cuts);
-  if (d->max_steps < 0)
-    return mpmi_fail(c, MPM_E_ARG, "max_steps is %lld: it must be >= 0", (long long)d->max_steps);
-  return MPM_OK;
+  status = mpmi_check_count(c, "max_cuts", d->max_cuts);
+  return status ? status : mpmi_check_count(c, "max_steps", d->max_steps);
 }
 
 /* Chooses the sub-step that the bounds allow, cut so that no sliver remains before t_end. */

@@ -4,7 +4,6 @@
 #include "layout/transfers.h"
 
 #include <float.h>
-#include <math.h>
 
 static const mpm_stepper_desc defaults = {.struct_size = sizeof(mpm_stepper_desc),
                                           .scheme = MPM_USL,
@@ -47,8 +46,8 @@ static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm
   if (transfer->most_order && (d->xpic_order < 1 || d->xpic_order > transfer->most_order))
     return mpmi_fail(c, MPM_E_ARG, "xpic_order is %d: it must be 1 ... %d", (int)d->xpic_order,
                      (int)transfer->most_order);
-  if (d->xpic_every < 0)
-    return mpmi_fail(c, MPM_E_ARG, "xpic_every is %d: it must be >= 0", (int)d->xpic_every);
+  const mpm_status status = mpmi_check_count(c, "xpic_every", d->xpic_every);
+  if (status) return status;
   if (transfer->takes == MPMI_TAKES_FULL && d->xpic_every > 2 && d->xpic_order > 1 &&
       (d->scheme == MPM_USF || d->scheme == MPM_MUSL))
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
@@ -60,32 +59,27 @@ static mpm_status known_transfer(mpm_context *c, const mpm_grid *grid, const mpm
 
 /* Checks the options beside scheme, transfer and forces. */
 static mpm_status known_options(mpm_context *c, const mpm_grid *grid, const mpm_stepper_desc *d) {
-  if (d->quasi_static != 0 && d->quasi_static != 1)
-    return mpmi_fail(c, MPM_E_ARG, "quasi_static is %d: it must be 0 or 1", (int)d->quasi_static);
+  mpm_status status;
+  if ((status = mpmi_check_switch(c, "quasi_static", d->quasi_static)) ||
+      (status = mpmi_check_magnitude(c, "pic_damping", d->pic_damping)) ||
+      (status = mpmi_check_switch(c, "staggered", d->staggered)) ||
+      (status = mpmi_check_switch(c, "locking_remedy", d->locking_remedy)) ||
+      (status = mpmi_check_magnitude(c, "mass_damping", d->mass_damping)) ||
+      (status = mpmi_check_switch(c, "projected_positions", d->projected_positions)))
+    return status;
   if (d->quasi_static && d->scheme != MPM_NEWMARK)
     return mpmi_fail(c, MPM_E_UNSUPPORTED, "quasi_static = 1 needs implicit steps: use scheme MPM_NEWMARK");
-  if (!isfinite(d->pic_damping) || d->pic_damping < 0.0)
-    return mpmi_fail(c, MPM_E_ARG, "pic_damping is %g: it must be finite and >= 0", d->pic_damping);
   if (d->position_order != 1 && d->position_order != 2)
     return mpmi_fail(c, MPM_E_ARG, "position_order is %d: it must be 1 or 2", (int)d->position_order);
-  if (d->staggered != 0 && d->staggered != 1)
-    return mpmi_fail(c, MPM_E_ARG, "staggered is %d: it must be 0 or 1", (int)d->staggered);
-  if (d->locking_remedy != MPM_LOCKING_NONE && d->locking_remedy != MPM_LOCKING_CELL_AVERAGE)
-    return mpmi_fail(c, MPM_E_ARG, "locking_remedy is %d: it must be 0 or 1", (int)d->locking_remedy);
   if (d->locking_remedy && grid->dim == 1)
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "locking_remedy has no meaning in 1-D, where dilation is all there is: use "
                      "MPM_LOCKING_NONE");
   if (!(d->local_damping >= 0.0 && d->local_damping < 1.0))
     return mpmi_fail(c, MPM_E_ARG, "local_damping is %g: it must lie in [0, 1)", d->local_damping);
-  if (!(d->mass_damping >= 0.0 && d->mass_damping <= DBL_MAX))
-    return mpmi_fail(c, MPM_E_ARG, "mass_damping is %g: it must be finite and >= 0", d->mass_damping);
   if (d->mass_damping > 0.0 && d->quasi_static)
     return mpmi_fail(c, MPM_E_UNSUPPORTED,
                      "quasi_static = 1 has no inertia that mass_damping could act on: use mass_damping = 0");
-  if (d->projected_positions != 0 && d->projected_positions != 1)
-    return mpmi_fail(c, MPM_E_ARG, "projected_positions is %d: it must be 0 or 1",
-                     (int)d->projected_positions);
   if (d->projected_positions && d->scheme != MPM_MUSL)
     return mpmi_fail(
         c, MPM_E_UNSUPPORTED,
@@ -115,9 +109,8 @@ static mpm_status known_implicit(mpm_context *c, const mpm_stepper_desc *d) {
   if (d->newton_max_iterations < 1 || d->newton_max_iterations > 10000)
     return mpmi_fail(c, MPM_E_ARG, "newton_max_iterations is %d: it must be 1 ... 10000",
                      (int)d->newton_max_iterations);
-  if (d->linear_max_iterations < 0)
-    return mpmi_fail(c, MPM_E_ARG, "linear_max_iterations is %d: it must be >= 0",
-                     (int)d->linear_max_iterations);
+  const mpm_status status = mpmi_check_count(c, "linear_max_iterations", d->linear_max_iterations);
+  if (status) return status;
   if ((d->linear_solver < MPM_SOLVER_AUTO || d->linear_solver > MPM_SOLVER_GMRES) &&
       d->linear_solver != MPM_SOLVER_HOST)
     return mpmi_fail(c, MPM_E_ARG, "linear_solver is %d: it must be an MPM_SOLVER_AUTO ... MPM_SOLVER_HOST",
@@ -168,15 +161,10 @@ mpm_status mpmi_description_read(mpm_context *c, const mpm_grid *grid, const mpm
     return status;
   if (!(out->flip >= 0.0 && out->flip <= 1.0))
     return mpmi_fail(c, MPM_E_ARG, "flip is %g: it must lie in [0, 1]", out->flip);
-  for (int32_t k = 0; k < grid->dim; ++k)
-    if (!isfinite(out->gravity[k]))
-      return mpmi_fail(c, MPM_E_ARG, "gravity[%d] is %g: it must be finite", (int)k, out->gravity[k]);
+  if ((status = mpmi_check_vector(c, "gravity", out->gravity, grid->dim)) ||
+      (status = mpmi_check_switch(c, "boundary_zero_acceleration", out->boundary_zero_acceleration)) ||
+      (status = mpmi_check_switch(c, "reference_positions", out->reference_positions)))
+    return status;
   for (int32_t k = grid->dim; k < 3; ++k) out->gravity[k] = 0.0;
-  if (out->boundary_zero_acceleration != 0 && out->boundary_zero_acceleration != 1)
-    return mpmi_fail(c, MPM_E_ARG, "boundary_zero_acceleration is %d: it must be 0 or 1",
-                     (int)out->boundary_zero_acceleration);
-  if (out->reference_positions != 0 && out->reference_positions != 1)
-    return mpmi_fail(c, MPM_E_ARG, "reference_positions is %d: it must be 0 or 1",
-                     (int)out->reference_positions);
   return MPM_OK;
 }

@@ -192,7 +192,7 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   if (!isfinite(t)) return mpmi_fail(s->context, MPM_E_ARG, "t is %g: it must be finite", t);
   if (step == INT64_MAX)
     return mpmi_fail(s->context, MPM_E_ARG, "step is %lld: there is none after it", (long long)step);
-  if (step < 0) return mpmi_fail(s->context, MPM_E_ARG, "step is %lld: it must be >= 0", (long long)step);
+  if ((status = mpmi_check_count(s->context, "step", step))) return status;
   s->history.t = t;
   s->history.step = step;
   s->history.totals = (mpmi_totals){.external_work = 0.0};

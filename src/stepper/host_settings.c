@@ -2,21 +2,15 @@
 #include "layout/members.h"
 #include "stepper/stepper.h"
 
-#include <math.h>
-
 mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, double friction) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_status status = mpmi_stepper_idle(s);
+  if (!status) status = mpmi_check_face(s, face);
   if (status) return status;
-  if (face < 0 || face >= 2 * s->grid->dim)
-    return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
-                     (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
   const mpmi_wall_kind *row = mpmi_wall_kind_of(kind);
   if (!row)
     return mpmi_fail(s->context, MPM_E_ARG,
-                     "kind is %d: it must be an MPM_WALL_NONE ... "
-                     "MPM_WALL_FRICTION_NODES",
-                     (int)kind);
+                     "kind is %d: it must be an MPM_WALL_NONE ... MPM_WALL_FRICTION_NODES", (int)kind);
   if (s->grid->desc.periodic[face / 2] && kind != MPM_WALL_NONE)
     return mpmi_fail(s->context, MPM_E_ARG, "face %d belongs to a periodic axis and can have no wall",
                      (int)face);
@@ -29,8 +23,7 @@ mpm_status mpm_stepper_set_wall(mpm_stepper *s, int32_t face, int32_t kind, doub
                      "face %d is the axis of an MPM_AXISYMMETRIC grid, where nothing can cross: leave it "
                      "MPM_WALL_SLIP, which it is from the start",
                      (int)face);
-  if (row->rubs && !(friction >= 0.0 && isfinite(friction)))
-    return mpmi_fail(s->context, MPM_E_ARG, "friction is %g: it must be finite and >= 0", friction);
+  if (row->rubs && (status = mpmi_check_magnitude(s->context, "friction", friction))) return status;
   if (row->rubs == MPMI_RUBS_NODES && mpmi_is_implicit(&s->settings))
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no walls of the kind MPM_WALL_FRICTION_NODES: use "

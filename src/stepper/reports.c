@@ -98,17 +98,11 @@ mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
 }
 
 /* ---- reactions ---------------------------------------------------------------------------------------- */
-static mpm_status check_face(const mpm_stepper *s, int32_t face) {
-  if (face >= 0 && face < 2 * s->grid->dim) return MPM_OK;
-  return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
-                   (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
-}
-
 mpm_status mpm_stepper_wall_reaction(const mpm_stepper *s, int32_t face, double *force) {
   MPMI_ENTER(s, MPMI_STEPPER);
   const mpmi_history *history = &s->history;
   if (!force) return mpmi_fail(s->context, MPM_E_ARG, "force is NULL");
-  const mpm_status status = check_face(s, face);
+  const mpm_status status = mpmi_check_face(s, face);
   if (status) return status;
   if (!history->has_reactions) return mpmi_fail(s->context, MPM_E_STATE, "no step has been made yet");
   for (int32_t k = 0; k < s->grid->dim; ++k)
@@ -132,7 +126,7 @@ mpm_status mpm_stepper_particles_reaction(const mpm_stepper *s, const mpm_partic
 mpm_status mpm_stepper_wall_impulse(const mpm_stepper *s, int32_t face, double *impulse) {
   MPMI_ENTER(s, MPMI_STEPPER);
   if (!impulse) return mpmi_fail(s->context, MPM_E_ARG, "impulse is NULL");
-  const mpm_status status = check_face(s, face);
+  const mpm_status status = mpmi_check_face(s, face);
   if (status) return status;
   for (int32_t c = 0; c < s->grid->dim; ++c) impulse[c] = s->history.totals.impulse_by_face[face][c];
   return MPM_OK;
@@ -153,7 +147,8 @@ mpm_status mpm_stepper_particles_impulse(const mpm_stepper *s, const mpm_particl
 mpm_status mpm_stepper_residuals(const mpm_stepper *s, int32_t capacity, double *residual, int32_t *count) {
   MPMI_ENTER(s, MPMI_STEPPER);
   if (!count) return mpmi_fail(s->context, MPM_E_ARG, "count is NULL");
-  if (capacity < 0) return mpmi_fail(s->context, MPM_E_ARG, "capacity is %d: it must be >= 0", (int)capacity);
+  const mpm_status status = mpmi_check_count(s->context, "capacity", capacity);
+  if (status) return status;
   if (capacity && !residual) return mpmi_fail(s->context, MPM_E_ARG, "residual is NULL");
   const int32_t known = s->newton && mpmi_is_implicit(&s->settings) ? s->newton->history_count : 0;
   for (int32_t i = 0; i < known && i < capacity; ++i) residual[i] = s->newton->history[i];

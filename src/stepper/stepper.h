@@ -2,8 +2,10 @@
  *
  *   layout/     what the host has set; the sorted layout; the nodes of a velocity field; the step under way;
  *               sums over particles on nodes
+ *   contact/    where bodies and surfaces meet
  *   boundary/   the conditions on nodal velocities
  *   stages/     particles to nodes, the nodes' own part, nodes to particles
+ *   adaption/   splitting and merging of particles
  *   implicit/   Newton's method for the displacements of the nodes
  *   stepper/    the handle; steps as sequences of stages; commit, roll-back and reports */
 #ifndef MPMI_STEPPER_H
@@ -11,6 +13,7 @@
 
 #include "adaption/adaption.h"
 #include "contact/contact.h"
+#include "context/checks.h"
 #include "layout/nodes.h"
 #include "layout/step.h"
 
@@ -70,6 +73,11 @@ struct mpm_stepper {
 static inline mpm_status mpmi_stepper_idle(const mpm_stepper *s) {
   if (s->step.phase == MPMI_IDLE) return MPM_OK;
   return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it first");
+}
+static inline mpm_status mpmi_check_face(const mpm_stepper *s, int32_t face) {
+  if (face >= 0 && face < 2 * s->grid->dim) return MPM_OK;
+  return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
+                   (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
 }
 
 /* What sets, obstacles and surfaces ask of the stepper that has them (reports.c). */
