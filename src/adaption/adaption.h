@@ -23,7 +23,7 @@ static inline int32_t mpmi_parts_of(int32_t edges) {
 typedef struct mpmi_merging {
   int64_t id, other;
   int64_t stays, goes;
-  int32_t bad; /* there is no mean of their deformations */
+  int32_t bad; /* 1: their deformations have no mean */
   double strain_loss;
 } mpmi_merging;
 
@@ -64,7 +64,7 @@ static inline void mpmi_domain_edge(const mpm_particles *set, int32_t copy, int6
   for (int32_t k = 0; k < dim; ++k)
     edge[k] = length * mpmi_row_of(set, MPMI_F, copy, mpmi_stored_entry(dim, k, a))[slot];
 }
-/* Its length in cells. */
+/* Returns the length of an edge in cells. */
 double mpmi_edge_in_cells(const mpm_grid *grid, const double *edge);
 
 /* Returns 1 where the velocity of a particle is prescribed on an axis: it stays what it is. */

@@ -24,7 +24,7 @@ typedef struct asking {
   mpmi_law_batch law;
   int64_t *id;                  /* [law.ld] */
   double *ratio;                /* [law.ld] of dilations */
-  double volume[2], initial[2]; /* of the pair at hand */
+  double volume[2], initial[2]; /* of the pair that is looked at */
 } asking;
 
 /* Returns det F of stored components. */
@@ -109,7 +109,7 @@ static void load_pair(asking *of, int64_t lane, int64_t i) {
       (of->volume[0] * ratio[0] + of->volume[1] * ratio[1]) / (of->volume[0] + of->volume[1]);
 }
 
-/* Returns the norm of what a field has in a slot, less what it has in another; -1: that is nothing. */
+/* Returns the norm of a field's value in a slot, or of its difference from that in the slot `less` >= 0. */
 static double norm_of(const asking *of, int32_t field, int32_t components, int64_t slot, int64_t less) {
   double square = 0.0;
   for (int32_t c = 0; c < components; ++c) {
@@ -120,7 +120,8 @@ static double norm_of(const asking *of, int32_t field, int32_t components, int64
   return sqrt(square);
 }
 
-/* Returns 1 where the law finds the pair alike, whose particles have waves of this speed; < 0: unknown. */
+/* Returns 1 where stress and velocity of a pair are alike. Differences are compared with this wave speed and
+ * the pressure that belongs to it; where it is unknown, < 0, those of stresses with the stresses. */
 static int32_t behave_alike(const asking *of, const mpmi_merging *pair, double speed) {
   const int32_t dim = of->set->grid->dim, rows = mpmi_stress_components(dim);
   const double tolerance = of->a->desc.merge_tolerance;
@@ -158,7 +159,7 @@ static int32_t take_lane(asking *of, int64_t lane, int64_t i) {
  * law refuses. */
 static int64_t ask_law(asking *of, int64_t begin, int64_t n, int64_t kept) {
   mpmi_law_batch *b = &of->law;
-  for (int64_t p = 0; p < b->ld; ++p) of->id[p] = -1; /* lanes of others are of no interest */
+  for (int64_t p = 0; p < b->ld; ++p) of->id[p] = -1; /* holes, but for the lanes of these pairs */
   for (int64_t i = 0; i < n; ++i) load_pair(of, LANES * i, begin + i);
   b->batch.n = (LANES * n + MPMI_CHUNK - 1) / MPMI_CHUNK * MPMI_CHUNK; /* laws take whole chunks */
   b->batch.id = of->id;
@@ -166,7 +167,8 @@ static int64_t ask_law(asking *of, int64_t begin, int64_t n, int64_t kept) {
     mpmi_dilation_of(of->set->context->isa)
         ->scale[mpmi_strain_dim(of->set->grid)](b->F, b->ld, of->ratio, b->batch.n);
   if (mpmi_law_batch_run_in(b, of->set)) {
-    for (int64_t i = 0; i < n && n > 1; ++i) kept = ask_law(of, begin + i, 1, kept); /* to find the refused */
+    for (int64_t i = 0; i < n && n > 1; ++i)
+      kept = ask_law(of, begin + i, 1, kept); /* one of them is refused */
     return kept;
   }
   for (int64_t i = 0; i < n; ++i)
@@ -220,7 +222,7 @@ void mpmi_keep_merging(mpmi_adaption *a, const mpm_particles *set, int64_t i, in
 }
 
 /* ---- doing it ----------------------------------------------------------------------------------------- */
-/* Of two domains the one that both fill is longer along the axis on which they are apart. */
+/* Makes one domain of two: it is longer along the edge that points most from one particle to the other. */
 static void join_domains(mpm_particles *set, const mpmi_merging *pair) {
   const int32_t dim = set->grid->dim;
   const double extent[2] = {mpmi_initial_extent(set, pair->stays), mpmi_initial_extent(set, pair->goes)};

@@ -5,7 +5,6 @@
  * other. */
 #include "boundary/bound.h"
 #include "contact/contact.h"
-#include "layout/tasks.h"
 #include "simd/vector3.h"
 
 #include <math.h>

@@ -6,6 +6,7 @@
 
 #include "layout/nodes.h"
 #include "layout/step.h"
+#include "layout/tasks.h"
 
 /* A velocity field on its way through the boundary stage. */
 typedef struct mpmi_bound {
@@ -24,6 +25,11 @@ enum { MPMI_HELD_BY_HOST = 1, MPMI_HELD_BY_PARTICLES = 2 };
 
 static inline const mpmi_constraints *mpmi_constraints_of(const mpmi_bound *bound) {
   return &bound->step->layout->constraints;
+}
+
+/* Runs a task on what is bound, which calls no host. */
+static inline mpm_status mpmi_run_bound(mpmi_bound *bound, mpm_task_fn task) {
+  return mpmi_run_tasks(bound->step->settings, 0, bound->step->settings->tasks, task, bound);
 }
 
 static inline double mpmi_increment_of(const mpmi_bound *bound, int64_t slot, int32_t c) {

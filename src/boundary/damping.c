@@ -9,7 +9,6 @@
  * it would only spoil the reaction. */
 #include "boundary/bound.h"
 #include "context/reduce.h"
-#include "layout/tasks.h"
 
 #include <math.h>
 
@@ -61,19 +60,14 @@ static void sum_task(void *data, int64_t k) {
   }
 }
 
-static mpm_status run(mpmi_bound *bound, mpm_task_fn task) {
-  const mpmi_settings *settings = bound->step->settings;
-  return mpmi_run_tasks(settings, 0, settings->tasks, task, bound);
-}
-
 mpm_status mpmi_damp(mpmi_bound *bound) {
-  return mpmi_is_damped(bound->step->settings) ? run(bound, damp_task) : MPM_OK;
+  return mpmi_is_damped(bound->step->settings) ? mpmi_run_bound(bound, damp_task) : MPM_OK;
 }
 
 mpm_status mpmi_damping_sum(mpmi_bound *bound) {
   mpmi_step *step = bound->step;
   if (!mpmi_is_damped(step->settings)) return MPM_OK;
-  const mpm_status status = run(bound, sum_task);
+  const mpm_status status = mpmi_run_bound(bound, sum_task);
   if (!status)
     step->info.damping_dissipation =
         mpmi_reduce(MPMI_REDUCE_SUM, 0.0, step->work->block_work, 1, NULL, step->layout->blocks.count);

@@ -2,7 +2,6 @@
  * on how tasks share them. */
 #include "boundary/bound.h"
 #include "contact/contact.h"
-#include "layout/tasks.h"
 
 #include <math.h>
 

@@ -6,7 +6,6 @@
  * and changes both. Each is laid on every node of the tie, as if the host had written there: so it is no
  * reaction of the constraint. */
 #include "boundary/bound.h"
-#include "layout/tasks.h"
 
 #include <math.h>
 #include <string.h>
@@ -124,18 +123,13 @@ static void forget_task(void *data, int64_t k) {
                    mpmi_slots(bound->step->layout), 3, k);
 }
 
-static mpm_status run_all(mpmi_bound *bound, mpm_task_fn task) {
-  const mpmi_settings *settings = bound->step->settings;
-  return mpmi_run_tasks(settings, 0, settings->tasks, task, bound);
-}
-
 mpm_status mpmi_hooks_begin(mpmi_bound *bound) {
-  return mpmi_has_hooks(bound->step->settings) ? run_all(bound, forget_task) : MPM_OK;
+  return mpmi_has_hooks(bound->step->settings) ? mpmi_run_bound(bound, forget_task) : MPM_OK;
 }
 
 mpm_status mpmi_hooks_end(mpmi_bound *bound) {
   if (!mpmi_has_hooks(bound->step->settings)) return MPM_OK;
-  const mpm_status status = run_all(bound, work_task);
+  const mpm_status status = mpmi_run_bound(bound, work_task);
   if (!status) mpmi_add_block_work(bound->step);
   return status;
 }

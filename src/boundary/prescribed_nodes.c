@@ -4,7 +4,6 @@
 #include "boundary/prescribed.h"
 #include "layout/accumulate.h"
 #include "layout/tile.h"
-#include "layout/tasks.h"
 
 #include <math.h>
 #include <string.h>

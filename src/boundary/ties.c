@@ -1,7 +1,6 @@
 /* Nodes that are tied together (grid/constraints.h) move as one: folded into their masters while host, walls
  * and contacts act, and unfolded afterwards. */
 #include "boundary/bound.h"
-#include "layout/tasks.h"
 
 #include <float.h>
 

@@ -1,6 +1,5 @@
 /* The host's callback that prescribes velocities of nodes. */
 #include "boundary/bound.h"
-#include "layout/tasks.h"
 
 #include <math.h>
 

@@ -156,7 +156,7 @@ static int64_t visit_pairs(const mpmi_contact_search *search, int32_t fill) {
         mpmi_touch touch;
         if (!find_pair(search, i, j, &touch)) continue;
         if (fill) contact->touch[touches] = touch;
-        contact->party[i].cloud_count = contact->party[j].cloud_count = 1; /* it needs them */
+        contact->party[i].cloud_count = contact->party[j].cloud_count = 1; /* the touch needs their clouds */
         const int32_t surface = contact->party[i].surface;
         meeting->coupled |= surface >= 0 && mpmi_is_free(&contact->surface[surface]);
         ++touches;

@@ -7,6 +7,7 @@
 #include "simd/vector3.h"
 
 #include <math.h>
+#include <string.h>
 
 static void apply(double (*A)[3], const double *v, double *out) {
   for (int32_t i = 0; i < 3; ++i) out[i] = mpmi_inner(A[i], v);
@@ -28,12 +29,9 @@ static void inverse_of(const double *inertia, int32_t dim, double out[3][3]) {
     for (int32_t j = 0; j < 3; ++j) out[i][j] = 0.0;
   if (dim == 2) out[2][2] = 1.0 / inertia[8];
   if (dim < 3) return;
-  double column[3][3];
-  for (int32_t k = 0; k < 3; ++k)
-    mpmi_cross(inertia + 3 * ((k + 1) % 3), inertia + 3 * ((k + 2) % 3), column[k]);
-  const double determinant = mpmi_inner(inertia, column[0]);
-  for (int32_t i = 0; i < 3; ++i)
-    for (int32_t j = 0; j < 3; ++j) out[i][j] = column[j][i] / determinant;
+  double rows[3][3];
+  memcpy(rows, inertia, sizeof rows);
+  (void)mpmi_invert3(rows, out);
 }
 
 /* Turns a tensor from axes of the body into space. */

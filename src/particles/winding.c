@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "particles/mesh.h"
+#include "simd/vector3.h"
 
 enum { DEEPEST = 64, MOST_IN_HOLES = 256 };
 static const double pi = 3.14159265358979323846;
@@ -23,13 +24,10 @@ static double angle_of(double y, double x) {
   return copysign(angle, y);
 }
 
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double volume_of(const double *a, const double *b, const double *c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
+  double across[3];
+  mpmi_cross(b, c, across);
+  return mpmi_inner(a, across);
 }
 
 static void from_point(int32_t dim, const double *x, const double *p, double *out) {
@@ -55,8 +53,9 @@ static double share_of(int32_t dim, const double *x, const double *const *corner
   }
   const double volume = volume_of(a, b, c);
   if (volume == 0.0) return 0.0;
-  const double A = sqrt(dot(a, a)), B = sqrt(dot(b, b)), C = sqrt(dot(c, c));
-  return angle_of(volume, A * B * C + dot(a, b) * C + dot(b, c) * A + dot(c, a) * B) / (2.0 * pi);
+  const double A = sqrt(mpmi_inner(a, a)), B = sqrt(mpmi_inner(b, b)), C = sqrt(mpmi_inner(c, c));
+  return angle_of(volume, A * B * C + mpmi_inner(a, b) * C + mpmi_inner(b, c) * A + mpmi_inner(c, a) * B) /
+         (2.0 * pi);
 }
 
 static void element_of(const mpmi_mesh *mesh, int32_t element, const double **corner) {

@@ -18,7 +18,7 @@ static int32_t complete(double *force, const double *applied, const int64_t *id,
     mpmi_mask number;
     memcpy(&number, id + p, sizeof number);
     if (applied) f += mpmi_lanes_load(applied + p);
-    f = mpmi_lanes_where(~(number >> 63), f); /* compilers for SSE2 would take a comparison apart */
+    f = mpmi_lanes_where(~(number >> 63), f); /* compilers for SSE2 would split a comparison */
     mpmi_lanes_store(force + p, f);
     bad |= (mpmi_mask)(f - f);
   }

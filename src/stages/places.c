@@ -2,7 +2,6 @@
 #include "stages/stages.h"
 #include "simd/rounding.h"
 
-
 /* Where the particles of a block may be along an axis; on periodic ones their image that is near counts. */
 typedef struct reach {
   double centre, half, period, inverse_period, low, high;
@@ -20,8 +19,8 @@ static reach reach_of(const mpmi_blocks *blocks, int64_t block, int32_t k) {
                  .high = cover->high[k]};
 }
 
-/* How far x is beyond the reach: 0 within it, not a number where x is none. It is no mask, because compilers
- * for SSE2 take masks of 64 bits apart. */
+/* Returns how far x is beyond the reach: 0 within it, and NaN where x is NaN. A mask would be slower, because
+ * compilers for SSE2 split masks of 64 bits. */
 MPMI_INLINE mpmi_lanes excess(int32_t periodic, mpmi_lanes x, const reach *of) {
   const mpmi_lanes none = {0.0};
   if (!periodic) return mpmi_lanes_max(of->low - x, none) + mpmi_lanes_max(x - of->high, none);
@@ -31,7 +30,7 @@ MPMI_INLINE mpmi_lanes excess(int32_t periodic, mpmi_lanes x, const reach *of) {
 }
 
 MPMI_INLINE int32_t any_beyond(int32_t periodic, const double *x, const reach *of, int64_t n) {
-  mpmi_mask bits = {0}; /* of all that is not 0: a sum would wait for itself */
+  mpmi_mask bits = {0}; /* bits can be gathered faster than a sum, in which each term waits for the last */
   for (int64_t p = 0; p < n; p += MPMI_LANES) bits |= (mpmi_mask)excess(periodic, mpmi_lanes_load(x + p), of);
   return mpmi_lanes_any(bits, 1) != 0;
 }
