@@ -183,13 +183,11 @@ static mpm_status list_touches(const mpmi_contact_search *search) {
   for (int64_t i = 0; i <= surfaces; ++i) first[i] = 0;
   for (int64_t i = 0; i < contact->touch_count; ++i)
     if (mpmi_is_of_surface(contact, &contact->touch[i]))
-      ++first[contact->party[contact->touch[i].party[0]].surface + 1];
+      ++first[contact->party[contact->touch[i].party[0]].surface];
   for (int64_t i = 0; i < surfaces; ++i) first[i + 1] += first[i];
-  for (int64_t i = 0; i < contact->touch_count; ++i)
+  for (int64_t i = contact->touch_count - 1; i >= 0; --i)
     if (mpmi_is_of_surface(contact, &contact->touch[i]))
-      list[first[contact->party[contact->touch[i].party[0]].surface]++] = i;
-  for (int64_t i = surfaces; i > 0; --i) first[i] = first[i - 1];
-  first[0] = 0;
+      list[--first[contact->party[contact->touch[i].party[0]].surface]] = i;
   return MPM_OK;
 }
 

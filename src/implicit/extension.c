@@ -171,13 +171,11 @@ static mpm_status list_led(const mpmi_balance *balance, int64_t rows) {
   if (!status) status = MPMI_RESERVE_MORE(c, newton->led, newton->led_capacity, newton->term_count + 1);
   if (status) return status;
   memset(newton->led_start, 0, (size_t)(rows + 1) * sizeof *newton->led_start);
-  for (int64_t t = 0; t < newton->term_count; ++t) ++newton->led_start[newton->term[t].row + 1];
+  for (int64_t t = 0; t < newton->term_count; ++t) ++newton->led_start[newton->term[t].row];
   for (int64_t r = 0; r < rows; ++r) newton->led_start[r + 1] += newton->led_start[r];
-  for (int64_t i = 0; i < newton->outer_count; ++i)
+  for (int64_t i = newton->outer_count - 1; i >= 0; --i)
     for (int64_t t = mpmi_first_term(newton, i); t < newton->outer[i].end; ++t)
-      newton->led[newton->led_start[newton->term[t].row]++] = newton->outer[i].row;
-  for (int64_t r = rows; r > 0; --r) newton->led_start[r] = newton->led_start[r - 1];
-  newton->led_start[0] = 0;
+      newton->led[--newton->led_start[newton->term[t].row]] = newton->outer[i].row;
   return MPM_OK;
 }
 

@@ -18,12 +18,10 @@ static void offset_of(const mpmi_balance *balance, int32_t index, int32_t *offse
 /* Lists active nodes by row, each row's in the order of their slots. */
 static void group(mpmi_newton *newton, int64_t rows) {
   memset(newton->members_start, 0, (size_t)(rows + 1) * sizeof *newton->members_start);
-  for (int64_t i = 0; i < newton->active_count; ++i) ++newton->members_start[newton->active[i].row + 1];
+  for (int64_t i = 0; i < newton->active_count; ++i) ++newton->members_start[newton->active[i].row];
   for (int64_t r = 0; r < rows; ++r) newton->members_start[r + 1] += newton->members_start[r];
-  for (int64_t i = 0; i < newton->active_count; ++i)
-    newton->members[newton->members_start[newton->active[i].row]++] = i;
-  for (int64_t r = rows; r > 0; --r) newton->members_start[r] = newton->members_start[r - 1];
-  newton->members_start[0] = 0;
+  for (int64_t i = newton->active_count - 1; i >= 0; --i)
+    newton->members[--newton->members_start[newton->active[i].row]] = i;
 }
 
 typedef struct pattern_job {

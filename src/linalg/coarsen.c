@@ -76,13 +76,11 @@ static void find_parents(const mpmi_matrix *A, node_list *n, mpmi_coarsening *to
 static void find_children(int64_t rows, int64_t coarse, mpmi_coarsening *to) {
   int64_t *start = to->child_start;
   memset(start, 0, (size_t)(coarse + 1) * sizeof *start);
-  for (int64_t e = 0; e < to->parent_start[rows]; ++e) ++start[to->parent[e] + 1];
+  for (int64_t e = 0; e < to->parent_start[rows]; ++e) ++start[to->parent[e]];
   for (int64_t I = 0; I < coarse; ++I) start[I + 1] += start[I];
-  for (int64_t i = 0; i < rows; ++i)
+  for (int64_t i = rows - 1; i >= 0; --i)
     for (int64_t e = to->parent_start[i]; e < to->parent_start[i + 1]; ++e)
-      to->child[start[to->parent[e]]++] = (int32_t)i;
-  for (int64_t I = coarse; I > 0; --I) start[I] = start[I - 1];
-  start[0] = 0;
+      to->child[--start[to->parent[e]]] = (int32_t)i;
 }
 
 /* ---- pattern ------------------------------------------------------------------------------------------- */

@@ -152,11 +152,9 @@ static void order_lines(mpmi_lines *l, const search *of) {
   int64_t place = 0, count = 0;
   memset(l->place, 0xff, (size_t)(of->A->rows * of->A->block) * sizeof *l->place);
   memset(l->colour_start, 0, (size_t)(l->colours + 1) * sizeof *l->colour_start);
-  for (int32_t line = 0; line < of->lines; ++line) ++l->colour_start[of->colour[line] + 1];
+  for (int32_t line = 0; line < of->lines; ++line) ++l->colour_start[of->colour[line]];
   for (int32_t c = 0; c < l->colours; ++c) l->colour_start[c + 1] += l->colour_start[c];
-  for (int32_t line = 0; line < of->lines; ++line) of->taken[l->colour_start[of->colour[line]]++] = line;
-  for (int32_t c = l->colours; c > 0; --c) l->colour_start[c] = l->colour_start[c - 1];
-  l->colour_start[0] = 0;
+  for (int32_t line = of->lines - 1; line >= 0; --line) of->taken[--l->colour_start[of->colour[line]]] = line;
   for (; count < l->count; ++count) {
     const int32_t line = of->taken[count];
     l->start[count] = place;
