@@ -112,6 +112,12 @@ static inline double *mpmi_f64(const mpm_particles *set, int32_t field, int32_t 
 static inline int64_t *mpmi_i64(const mpm_particles *set, int32_t field, int32_t copy) {
   return (int64_t *)set->field[field].data[copy];
 }
+/* Points at the rows of a field of type MPM_F64, from a slot on. */
+static inline void mpmi_point_at(const mpm_particles *set, int32_t field, int32_t copy, int64_t slot,
+                                 const double **row) {
+  for (int32_t c = 0; c < set->field[field].components; ++c)
+    row[c] = mpmi_f64(set, field, copy) + c * set->ld + slot;
+}
 /* Returns the field that says where in the grid particles are: what weights are made of. */
 static inline int32_t mpmi_place_field(const mpm_grid *grid) {
   return mpmi_is_total_lagrangian(grid) ? (int32_t)MPMI_REFERENCE : (int32_t)MPMI_POSITION;

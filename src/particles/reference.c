@@ -123,8 +123,7 @@ static void turn_gradients(mpm_particles *set) {
   double *L = mpmi_f64(set, MPMI_L, 0), buffer[9 * MPMI_CHUNK];
   for (int64_t s = 0; s < set->slots && set->field[MPMI_L].present; s += MPMI_CHUNK) {
     const double *F[9] = {NULL};
-    for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
-      F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld + s;
+    mpmi_point_at(set, MPMI_F, 0, s, F);
     for (int32_t c = 0; c < rows; ++c)
       memcpy(buffer + mpmi_gradient_map(dim)[c] * MPMI_CHUNK, L + c * set->ld + s, MPMI_CHUNK * sizeof *L);
     mpmi_pull_back_of(set->context->isa)->spatial[dim](F, MPMI_CHUNK, buffer, MPMI_CHUNK);

@@ -7,8 +7,7 @@
 void mpmi_particles_make_volumes(mpm_particles *set, int32_t copy) {
   const double *F[9];
   if (!set->slots) return;
-  for (int32_t c = 0; c < set->field[MPMI_F].components; ++c)
-    F[c] = mpmi_f64(set, MPMI_F, copy) + c * set->ld;
+  mpmi_point_at(set, MPMI_F, copy, 0, F);
   mpmi_deformation_of(set->context->isa)
       ->volume[set->grid->dim](F, mpmi_f64(set, MPMI_INITIAL_VOLUME, 0), mpmi_f64(set, MPMI_VOLUME, 0),
                                set->slots);

@@ -58,9 +58,8 @@ static void scatter_of(const p2g_job *job, int32_t m, mpmi_scatter *scatter) {
   for (int32_t c = 0; job->affine && c < mpmi_gradient_components(dim); ++c)
     scatter->affine[mpmi_gradient_map(dim)[c]] =
         mpmi_f64(set, projection->matrix, projection->copy) + c * set->ld;
-  for (int32_t c = 0; forces && mpmi_is_total_lagrangian(settings->grid) && c < mpmi_tensor_components(dim);
-       ++c)
-    scatter->F[c] = mpmi_f64(set, MPMI_F, job->stress_copy) + c * set->ld;
+  if (forces && mpmi_is_total_lagrangian(settings->grid))
+    mpmi_point_at(set, MPMI_F, job->stress_copy, 0, scatter->F);
   scatter->hoop = mpmi_is_axisymmetric(settings->grid);
   scatter->fused_dt = forces && !mpmi_has_increments(job->to) ? job->step->velocity_dt : 0.0;
   list_streams(job, scatter, dim);

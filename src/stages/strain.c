@@ -147,10 +147,9 @@ void mpmi_gradient_keep(mpmi_batch *b) {
 /* Makes the volumes of a batch of stored components of F, as they are made again later: with those bits. */
 static uint32_t make_volumes(const mpmi_batch *b) {
   const double *F[9] = {NULL};
-  const int32_t dim = b->set->grid->dim;
-  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
-    F[c] = mpmi_component_row(b->set, MPMI_F, 1, c) + b->begin;
-  return b->step->settings->deformation->volume[dim](F, b->deform.initial_volume, b->deform.volume, b->n);
+  mpmi_point_at(b->set, MPMI_F, 1, b->begin, F);
+  return b->step->settings->deformation->volume[b->set->grid->dim](F, b->deform.initial_volume,
+                                                                   b->deform.volume, b->n);
 }
 
 int32_t mpmi_strain_deform(mpmi_batch *b) {
@@ -173,10 +172,8 @@ static void take_thickness(mpmi_batch *b) {
 /* Waves are as fast over reference positions as F_new has it. */
 static void take_reference_speeds(mpmi_batch *b) {
   const double *F[9] = {NULL};
-  const int32_t dim = b->set->grid->dim;
-  for (int32_t c = 0; c < mpmi_tensor_components(dim); ++c)
-    F[c] = mpmi_component_row(b->set, MPMI_F, 1, c) + b->begin;
-  b->step->settings->pull_back->speeds[dim](F, b->law.wave_speed, b->law.viscosity, b->n);
+  mpmi_point_at(b->set, MPMI_F, 1, b->begin, F);
+  b->step->settings->pull_back->speeds[b->set->grid->dim](F, b->law.wave_speed, b->law.viscosity, b->n);
 }
 
 void mpmi_strain_law(mpmi_batch *b) {
@@ -223,20 +220,17 @@ void mpmi_batch_sums(mpmi_batch *b, int32_t what) {
   job->what = what;
   job->mass = mpmi_f64(set, MPMI_MASS, 0) + b->begin;
   job->initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin;
-  for (int32_t k = 0; k < dim; ++k) {
-    job->x[k] = mpmi_component_row(set, MPMI_POSITION, 1, k) + b->begin;
-    job->v[k] = mpmi_component_row(set, MPMI_VELOCITY, 1, k) + b->begin;
-    job->x_old[k] = mpmi_component_row(set, MPMI_POSITION, 0, k) + b->begin;
-    job->force[k] = force ? force + k * set->ld + b->begin : NULL;
-  }
+  mpmi_point_at(set, MPMI_POSITION, 1, b->begin, job->x);
+  mpmi_point_at(set, MPMI_VELOCITY, 1, b->begin, job->v);
+  mpmi_point_at(set, MPMI_POSITION, 0, b->begin, job->x_old);
+  for (int32_t k = 0; k < dim; ++k) job->force[k] = force ? force + k * set->ld + b->begin : NULL;
   if (mpmi_is_affine(settings) && (what & MPMI_SUMS_MOTION)) {
     mpmi_sums_moments(settings, set, 1, b->begin, b->n, b->law.ld, b->C,
                       job); /* C is stored, its buffer free */
     for (int32_t c = 0; c < mpmi_gradient_components(dim); ++c)
       job->affine[mpmi_gradient_map(dim)[c]] = mpmi_component_row(set, MPMI_L, 1, c) + b->begin;
   }
-  for (int32_t c = 0; mpmi_is_total_lagrangian(set->grid) && c < mpmi_tensor_components(dim); ++c)
-    job->F[c] = mpmi_component_row(set, MPMI_F, 1, c) + b->begin;
+  if (mpmi_is_total_lagrangian(set->grid)) mpmi_point_at(set, MPMI_F, 1, b->begin, job->F);
   b->flags |= settings->kernels->sums[dim](job, b->n, b->sums);
 }
 

@@ -54,8 +54,7 @@ static void bind_particles(const mpm_stepper *s, const mpm_particles *set, const
     job->v[k] = mpmi_f64(set, MPMI_VELOCITY, 0) + k * set->ld + begin;
     job->inverse_spacing[k] = grid->inverse_spacing[k];
   }
-  for (int32_t c = 0; mpmi_is_total_lagrangian(grid) && c < mpmi_tensor_components(grid->dim); ++c)
-    job->F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld + begin;
+  if (mpmi_is_total_lagrangian(grid)) mpmi_point_at(set, MPMI_F, 0, begin, job->F);
   if (!mpmi_is_affine(&s->settings) || !set->field[MPMI_L].present) return;
   mpmi_sums_moments(&s->settings, set, 0, begin, n, b->ld, moments, job);
   for (int32_t c = 0; c < mpmi_gradient_components(grid->dim); ++c)
@@ -110,8 +109,7 @@ static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failu
     }
     if (mpmi_is_total_lagrangian(set->grid)) {
       const double *F[9] = {NULL};
-      for (int32_t c = 0; c < mpmi_tensor_components(s->grid->dim); ++c)
-        F[c] = mpmi_f64(set, MPMI_F, 0) + c * set->ld + begin;
+      mpmi_point_at(set, MPMI_F, 0, begin, F);
       s->settings.pull_back->speeds[s->grid->dim](F, b.wave_speed, b.viscosity, n);
     }
     mpmi_sums_job job;
