@@ -2,7 +2,6 @@
  * move with, by the same shares. */
 #include "implicit/extension.h"
 
-
 void mpmi_condense_mark(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   mpmi_matrix *A = &newton->matrix;

@@ -4,7 +4,6 @@
 #ifndef MPMI_TAIT_H
 #define MPMI_TAIT_H
 
-
 #include "material/law_file.h"
 #include "simd/vector_math.h"
 
