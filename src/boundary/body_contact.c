@@ -32,7 +32,7 @@ static void weigh_party(const mpmi_bound *bound, mpmi_party *party, int32_t keep
  * that for a unit impulse, by component; that of a free obstacle comes on top and couples components. */
 typedef struct encounter {
   mpmi_party *party[2];
-  mpmi_surface *surface, *free; /* the first party, or NULL */
+  mpmi_rigid_surface *surface, *free; /* the first party, or NULL */
   double velocity[3], compliance[3], of_surface[3];
 } encounter;
 
@@ -319,7 +319,7 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound) {
   mpmi_contact_nodes *contact = &bound->nodes->contact;
   mpmi_contact_search search = {bound->step, bound->nodes, bound->values, contact};
   mpm_status status = MPM_OK;
-  mpmi_surfaces_predict(contact, bound->step->settings, bound->step->velocity_dt);
+  mpmi_rigid_surfaces_predict(contact, bound->step->settings, bound->step->velocity_dt);
   if (!contact->site_count) return MPM_OK;
   if (!contact->listed) {
     status = mpmi_sites_measure(&search);
@@ -370,7 +370,7 @@ static void add_torque(const mpmi_bound *bound, const mpmi_party *first, const m
 static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_sums *sums) {
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
   const mpmi_party *pair[2] = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]};
-  const mpmi_surface *surface = pair[0]->surface < 0 ? NULL : &contact->surface[pair[0]->surface];
+  const mpmi_rigid_surface *surface = pair[0]->surface < 0 ? NULL : &contact->surface[pair[0]->surface];
   double impulse[3];
   for (int32_t c = 0; c < 3; ++c) {
     const int32_t moves = pair[0]->inverse_mass[c] > 0.0 || pair[1]->inverse_mass[c] > 0.0 ||

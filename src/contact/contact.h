@@ -73,10 +73,11 @@ void mpmi_contact_position(const mpmi_blocks *b, const mpmi_contact_nodes *conta
 mpm_status mpmi_contact_prepare(const mpmi_layout *layout, const mpmi_settings *settings,
                                 mpmi_contact_nodes *contact, mpmi_pair_records *records);
 /* Returns 1 when all of a block, so many nodes wider, is farther than `beyond` from a surface. */
-int32_t mpmi_block_is_far(const mpmi_blocks *b, int64_t block, int64_t margin, const mpmi_surface *surface,
-                          double beyond);
+int32_t mpmi_block_is_far(const mpmi_blocks *b, int64_t block, int64_t margin,
+                          const mpmi_rigid_surface *surface, double beyond);
 /* Sets free surfaces to their velocities without contact. */
-void mpmi_surfaces_predict(mpmi_contact_nodes *contact, const mpmi_settings *settings, double velocity_dt);
+void mpmi_rigid_surfaces_predict(mpmi_contact_nodes *contact, const mpmi_settings *settings,
+                                 double velocity_dt);
 /* Returns 1 when the host is asked for distances. */
 int32_t mpmi_asks_distances(const mpmi_contact_nodes *contact);
 /* Finds distances and normals of the surfaces that are near sites, at their nodes. */

@@ -21,7 +21,7 @@ static double near_value(const mpmi_contact_search *search, int64_t near, int32_
 static mpmi_party party_of_surface(const mpmi_contact_search *search, int64_t near, int32_t n) {
   const mpmi_blocks *b = &search->step->layout->blocks;
   const mpmi_near *of = &search->contact->near_surface[near];
-  const mpmi_surface *surface = &search->contact->surface[of->surface];
+  const mpmi_rigid_surface *surface = &search->contact->surface[of->surface];
   mpmi_party party = {.slot = -1, .body = mpmi_code_of(surface), .surface = of->surface};
   double x[3] = {0.0, 0.0, 0.0};
   mpmi_contact_position(b, search->contact, (int64_t)of->block * b->nodes + n, x);

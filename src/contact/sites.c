@@ -31,7 +31,8 @@ static mpm_status make_surfaces(const mpmi_settings *settings, mpmi_contact_node
   return MPM_OK;
 }
 
-void mpmi_surfaces_predict(mpmi_contact_nodes *contact, const mpmi_settings *settings, double velocity_dt) {
+void mpmi_rigid_surfaces_predict(mpmi_contact_nodes *contact, const mpmi_settings *settings,
+                                 double velocity_dt) {
   for (int64_t i = 0; i < contact->surface_count; ++i)
     if (mpmi_is_free(&contact->surface[i]))
       mpmi_rigid_predict(&contact->surface[i], settings->desc.gravity, velocity_dt);
@@ -69,8 +70,8 @@ static double widest_spacing(const mpm_grid *grid) {
 }
 
 /* Nodes of a total Lagrangian grid may be anywhere. */
-int32_t mpmi_block_is_far(const mpmi_blocks *b, int64_t block, int64_t margin, const mpmi_surface *surface,
-                          double beyond) {
+int32_t mpmi_block_is_far(const mpmi_blocks *b, int64_t block, int64_t margin,
+                          const mpmi_rigid_surface *surface, double beyond) {
   if (mpmi_is_total_lagrangian(b->grid)) return 0;
   const ball of = ball_of_block(b, block, margin);
   return mpmi_surface_is_far(surface, of.centre, of.radius, beyond);
@@ -88,7 +89,7 @@ static void find_active(const mpmi_blocks *b, mpmi_contact_nodes *contact, doubl
       }
     }
   for (int64_t i = 0; i < contact->surface_count; ++i) {
-    mpmi_surface *surface = &contact->surface[i];
+    mpmi_rigid_surface *surface = &contact->surface[i];
     surface->active = 0;
     if (!b->count || surface->rule.kind == MPM_CONTACT_NONE) continue;
     const ball all = ball_around(b->grid, first, last);

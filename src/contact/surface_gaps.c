@@ -70,7 +70,7 @@ static void clear_block(void *user, const mpmi_visit *visit) {
   mpmi_failure *failure = &job->search->step->work->report[visit->task].failure;
   const mpmi_layout *layout = job->search->step->layout;
   const mpmi_contact_nodes *contact = job->search->contact;
-  const mpmi_surface *surface = &contact->surface[job->surface];
+  const mpmi_rigid_surface *surface = &contact->surface[job->surface];
   const mpm_grid *grid = layout->blocks.grid;
   half_edge_cache last = {-1.0, 0.0};
   /* stencils and drift take particles less than three spacings out of their block's nodes */

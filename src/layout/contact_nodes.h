@@ -117,7 +117,7 @@ typedef struct mpmi_contact_nodes {
   int64_t surface_count, site_count, near_count;
   int32_t at_walls; /* a friction wall is near some site */
   int64_t surface_capacity, site_capacity, near_capacity, value_capacity;
-  mpmi_surface *surface; /* obstacles, then friction walls by face */
+  mpmi_rigid_surface *surface; /* obstacles, then friction walls by face */
   mpmi_site *site;
   mpmi_near *near_surface;
   double *near_value; /* [near][MPMI_NEAR_ROWS][nodes of a block] */

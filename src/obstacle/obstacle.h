@@ -47,7 +47,7 @@ int32_t mpmi_pose_is_sound(const mpmi_pose *pose);
 
 /* The surface of an obstacle or of a friction wall in the step under way. Velocities are those of the step;
  * those of a free one change as contact pushes it. */
-typedef struct mpmi_surface {
+typedef struct mpmi_rigid_surface {
   const mpm_grid *grid;
   const mpm_obstacle *obstacle; /* NULL: a wall */
   int32_t shape, face;          /* face: of the wall, or -1 */
@@ -58,7 +58,7 @@ typedef struct mpmi_surface {
   double inverse_mass, inverse_inertia[3][3]; /* in space; 0 unless it is free */
   mpm_contact_desc rule;
   int32_t active; /* 0: far from all material, or without contact */
-} mpmi_surface;
+} mpmi_rigid_surface;
 
 /* In records of what two bodies do to each other, surfaces have numbers below that of any body. */
 static inline int32_t mpmi_code_of_face(int32_t face) {
@@ -67,23 +67,26 @@ static inline int32_t mpmi_code_of_face(int32_t face) {
 static inline int32_t mpmi_code_of_obstacle(int64_t number) {
   return -8 - (int32_t)number;
 }
-static inline int32_t mpmi_code_of(const mpmi_surface *surface) {
+static inline int32_t mpmi_code_of(const mpmi_rigid_surface *surface) {
   return surface->obstacle ? mpmi_code_of_obstacle(surface->obstacle->number)
                            : mpmi_code_of_face(surface->face);
 }
-static inline int32_t mpmi_is_free(const mpmi_surface *surface) {
+static inline int32_t mpmi_is_free(const mpmi_rigid_surface *surface) {
   return surface->obstacle && surface->obstacle->desc.motion == MPM_MOTION_FREE;
 }
 
-void mpmi_surface_of_obstacle(mpmi_surface *surface, const mpm_grid *grid, const mpm_obstacle *obstacle);
-void mpmi_surface_of_wall(mpmi_surface *surface, const mpm_grid *grid, int32_t face, const mpmi_wall *wall);
+void mpmi_surface_of_obstacle(mpmi_rigid_surface *surface, const mpm_grid *grid,
+                              const mpm_obstacle *obstacle);
+void mpmi_surface_of_wall(mpmi_rigid_surface *surface, const mpm_grid *grid, int32_t face,
+                          const mpmi_wall *wall);
 /* Finds the vector from the centre to a point; on periodic axes that to the nearest image. */
-void mpmi_surface_arm(const mpmi_surface *surface, const double *x, double *arm);
+void mpmi_surface_arm(const mpmi_rigid_surface *surface, const double *x, double *arm);
 /* Returns 1 when all points of a ball are farther than `beyond` from the surface, as far as that is known
  * without asking the host. */
-int32_t mpmi_surface_is_far(const mpmi_surface *surface, const double *centre, double radius, double beyond);
+int32_t mpmi_surface_is_far(const mpmi_rigid_surface *surface, const double *centre, double radius,
+                            double beyond);
 /* The rigid velocity at the end of an arm. */
-void mpmi_surface_velocity(const mpmi_surface *surface, const double *arm, double *velocity);
+void mpmi_surface_velocity(const mpmi_rigid_surface *surface, const double *arm, double *velocity);
 
 /* Points in space, and what a surface is there: rows of `ld`. */
 enum { MPMI_DISTANCE_POINTS = 256 };
@@ -102,7 +105,7 @@ typedef struct mpmi_distance_fault {
   const char *what;
 } mpmi_distance_fault;
 /* Finds distances and normals of points; MPM_OK, or the cause of a fault. */
-mpm_status mpmi_surface_distances(const mpmi_surface *surface, mpmi_distances *points,
+mpm_status mpmi_surface_distances(const mpmi_rigid_surface *surface, mpmi_distances *points,
                                   mpmi_distance_fault *fault);
 
 /* ---- shapes.c ---------------------------------------------------------------------------------------- */
@@ -113,13 +116,13 @@ double mpmi_shape_distance(int32_t shape, int32_t dim, const double *size, const
 /* axis[k] becomes axis k of the body in space. */
 void mpmi_pose_axes(const double *orientation, double axis[3][3]);
 /* Sets masses of a free surface, and its velocities to those without contact. */
-void mpmi_rigid_predict(mpmi_surface *surface, const double *gravity, double dt);
+void mpmi_rigid_predict(mpmi_rigid_surface *surface, const double *gravity, double dt);
 /* Returns the change of velocity along a vector at the end of an arm, times its length squared, for a unit
  * impulse along it. */
-double mpmi_rigid_compliance(const mpmi_surface *surface, const double *arm, const double *along);
+double mpmi_rigid_compliance(const mpmi_rigid_surface *surface, const double *arm, const double *along);
 /* Gives an impulse to a free surface, at the end of an arm. */
-void mpmi_rigid_push(mpmi_surface *surface, const double *arm, const double *impulse);
+void mpmi_rigid_push(mpmi_rigid_surface *surface, const double *arm, const double *impulse);
 /* Writes the pose after the step, to which the surface's velocities lead. */
-void mpmi_rigid_move(const mpmi_surface *surface, double dt, mpmi_pose *next);
+void mpmi_rigid_move(const mpmi_rigid_surface *surface, double dt, mpmi_pose *next);
 
 #endif

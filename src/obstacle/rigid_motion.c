@@ -65,7 +65,7 @@ static void angular_momentum(const mpm_obstacle *obstacle, int32_t dim, const do
 }
 
 /* ---- a step -------------------------------------------------------------------------------------------- */
-void mpmi_rigid_predict(mpmi_surface *s, const double *gravity, double dt) {
+void mpmi_rigid_predict(mpmi_rigid_surface *s, const double *gravity, double dt) {
   const mpm_obstacle *obstacle = s->obstacle;
   const int32_t dim = s->grid->dim;
   double more[3];
@@ -80,18 +80,18 @@ void mpmi_rigid_predict(mpmi_surface *s, const double *gravity, double dt) {
 }
 
 /* What a torque changes the spin by. */
-static void spin_of(const mpmi_surface *s, const double *torque, double *out) {
+static void spin_of(const mpmi_rigid_surface *s, const double *torque, double *out) {
   for (int32_t i = 0; i < 3; ++i) out[i] = mpmi_inner(s->inverse_inertia[i], torque);
 }
 
-double mpmi_rigid_compliance(const mpmi_surface *s, const double *arm, const double *along) {
+double mpmi_rigid_compliance(const mpmi_rigid_surface *s, const double *arm, const double *along) {
   double about[3], turned[3];
   mpmi_cross(arm, along, about);
   spin_of(s, about, turned);
   return s->inverse_mass * mpmi_inner(along, along) + mpmi_inner(about, turned);
 }
 
-void mpmi_rigid_push(mpmi_surface *s, const double *arm, const double *impulse) {
+void mpmi_rigid_push(mpmi_rigid_surface *s, const double *arm, const double *impulse) {
   double about[3], turned[3];
   mpmi_cross(arm, impulse, about);
   spin_of(s, about, turned);
@@ -115,7 +115,7 @@ static void turn(double *q, const double *spin, double dt) {
   for (int32_t k = 0; k < 4; ++k) q[k] = turned[k] / length;
 }
 
-void mpmi_rigid_move(const mpmi_surface *s, double dt, mpmi_pose *next) {
+void mpmi_rigid_move(const mpmi_rigid_surface *s, double dt, mpmi_pose *next) {
   const mpm_obstacle *obstacle = s->obstacle;
   const int32_t dim = s->grid->dim;
   *next = obstacle->pose;

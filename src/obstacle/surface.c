@@ -3,14 +3,14 @@
 
 #include <math.h>
 
-void mpmi_surface_of_obstacle(mpmi_surface *s, const mpm_grid *grid, const mpm_obstacle *obstacle) {
+void mpmi_surface_of_obstacle(mpmi_rigid_surface *s, const mpm_grid *grid, const mpm_obstacle *obstacle) {
   const mpm_obstacle_desc *d = &obstacle->desc;
-  *s = (mpmi_surface){.grid = grid,
-                      .obstacle = obstacle,
-                      .shape = d->shape,
-                      .face = -1,
-                      .inside = d->inside ? -1.0 : 1.0,
-                      .rule = obstacle->rule};
+  *s = (mpmi_rigid_surface){.grid = grid,
+                            .obstacle = obstacle,
+                            .shape = d->shape,
+                            .face = -1,
+                            .inside = d->inside ? -1.0 : 1.0,
+                            .rule = obstacle->rule};
   for (int32_t k = 0; k < 3; ++k) {
     s->size[k] = d->size[k];
     s->centre[k] = obstacle->pose.centre[k];
@@ -23,9 +23,9 @@ void mpmi_surface_of_obstacle(mpmi_surface *s, const mpm_grid *grid, const mpm_o
 }
 
 /* A wall is the fixed plane of its face, whose normal is into the grid. */
-void mpmi_surface_of_wall(mpmi_surface *s, const mpm_grid *grid, int32_t face, const mpmi_wall *wall) {
+void mpmi_surface_of_wall(mpmi_rigid_surface *s, const mpm_grid *grid, int32_t face, const mpmi_wall *wall) {
   const int32_t axis = face / 2, normal = grid->dim == 1 ? 0 : 1;
-  *s = (mpmi_surface){.grid = grid, .shape = MPM_SHAPE_PLANE, .face = face, .inside = 1.0};
+  *s = (mpmi_rigid_surface){.grid = grid, .shape = MPM_SHAPE_PLANE, .face = face, .inside = 1.0};
   s->rule.kind = MPM_CONTACT_UNILATERAL;
   s->rule.friction = wall->friction;
   s->centre[axis] = face % 2 ? grid->upper[axis] : grid->desc.origin[axis];
@@ -33,7 +33,7 @@ void mpmi_surface_of_wall(mpmi_surface *s, const mpm_grid *grid, int32_t face, c
     s->axis[(normal + k) % 3][(axis + k) % 3] = face % 2 ? -1.0 : 1.0; /* only that of the normal counts */
 }
 
-void mpmi_surface_arm(const mpmi_surface *s, const double *x, double *arm) {
+void mpmi_surface_arm(const mpmi_rigid_surface *s, const double *x, double *arm) {
   const mpm_grid *grid = s->grid;
   for (int32_t k = 0; k < 3; ++k) {
     arm[k] = k < grid->dim ? x[k] - s->centre[k] : 0.0;
@@ -43,16 +43,16 @@ void mpmi_surface_arm(const mpmi_surface *s, const double *x, double *arm) {
   }
 }
 
-static void into_body(const mpmi_surface *s, const double *arm, double *x) {
+static void into_body(const mpmi_rigid_surface *s, const double *arm, double *x) {
   for (int32_t k = 0; k < 3; ++k)
     x[k] = s->axis[k][0] * arm[0] + s->axis[k][1] * arm[1] + s->axis[k][2] * arm[2];
 }
 
-static void into_space(const mpmi_surface *s, const double *x, double *out) {
+static void into_space(const mpmi_rigid_surface *s, const double *x, double *out) {
   for (int32_t k = 0; k < 3; ++k) out[k] = s->axis[0][k] * x[0] + s->axis[1][k] * x[1] + s->axis[2][k] * x[2];
 }
 
-int32_t mpmi_surface_is_far(const mpmi_surface *s, const double *centre, double radius, double beyond) {
+int32_t mpmi_surface_is_far(const mpmi_rigid_surface *s, const double *centre, double radius, double beyond) {
   double arm[3], x[3], unused[3];
   const int32_t dim = s->grid->dim;
   mpmi_surface_arm(s, centre, arm);
@@ -77,7 +77,7 @@ int32_t mpmi_surface_is_far(const mpmi_surface *s, const double *centre, double 
          mpmi_shape_distance(MPM_SHAPE_BOX, dim, half, from, unused) > radius + fmax(0.0, s->rule.offset);
 }
 
-void mpmi_surface_velocity(const mpmi_surface *s, const double *arm, double *velocity) {
+void mpmi_surface_velocity(const mpmi_rigid_surface *s, const double *arm, double *velocity) {
   for (int32_t k = 0; k < 3; ++k)
     velocity[k] =
         s->velocity[k] + s->spin[(k + 1) % 3] * arm[(k + 2) % 3] - s->spin[(k + 2) % 3] * arm[(k + 1) % 3];
@@ -125,7 +125,7 @@ static mpm_status check_answer(double distance, const double *n, const double *v
   return fabs(squared - 1.0) <= 2e-6 ? MPM_OK : MPM_E_CALLBACK;
 }
 
-static mpm_status ask_host(const mpmi_surface *s, mpmi_distances *points, mpmi_distance_fault *fault) {
+static mpm_status ask_host(const mpmi_rigid_surface *s, mpmi_distances *points, mpmi_distance_fault *fault) {
   const mpm_obstacle_desc *d = &s->obstacle->desc;
   const int32_t dim = s->grid->dim;
   double x[3][MPMI_DISTANCE_POINTS];
@@ -167,7 +167,7 @@ static mpm_status ask_host(const mpmi_surface *s, mpmi_distances *points, mpmi_d
   return MPM_OK;
 }
 
-static void ask_shape(const mpmi_surface *s, mpmi_distances *points) {
+static void ask_shape(const mpmi_rigid_surface *s, mpmi_distances *points) {
   for (int64_t i = 0; i < points->n; ++i) {
     double arm[3], x[3], n[3], in_space[3];
     const double at[3] = {points->position[0][i], points->position[1][i], points->position[2][i]};
@@ -179,7 +179,8 @@ static void ask_shape(const mpmi_surface *s, mpmi_distances *points) {
   }
 }
 
-mpm_status mpmi_surface_distances(const mpmi_surface *s, mpmi_distances *points, mpmi_distance_fault *fault) {
+mpm_status mpmi_surface_distances(const mpmi_rigid_surface *s, mpmi_distances *points,
+                                  mpmi_distance_fault *fault) {
   mpm_status status = MPM_OK;
   if (s->shape == MPM_SHAPE_DISTANCE)
     status = ask_host(s, points, fault);

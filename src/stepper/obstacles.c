@@ -82,7 +82,7 @@ static mpm_status fail_motion(mpmi_step *step, mpm_status cause, mpm_status retu
 }
 
 /* Asks the host how an obstacle moves in the step. */
-static mpm_status ask_motion(mpmi_step *step, mpmi_surface *surface) {
+static mpm_status ask_motion(mpmi_step *step, mpmi_rigid_surface *surface) {
   const mpm_obstacle *obstacle = surface->obstacle;
   mpmi_pose pose = obstacle->pose;
   const mpm_status returned =
@@ -98,7 +98,7 @@ static mpm_status ask_motion(mpmi_step *step, mpmi_surface *surface) {
 
 mpm_status mpmi_obstacles_begin(mpmi_step *step, mpmi_contact_nodes *contact) {
   mpm_status status = MPM_OK;
-  mpmi_surfaces_predict(contact, step->settings, step->velocity_dt);
+  mpmi_rigid_surfaces_predict(contact, step->settings, step->velocity_dt);
   for (int64_t i = 0; i < contact->surface_count && !status; ++i) {
     const mpm_obstacle *obstacle = contact->surface[i].obstacle;
     if (obstacle && obstacle->motion) status = ask_motion(step, &contact->surface[i]);
