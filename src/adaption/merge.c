@@ -11,6 +11,7 @@
 
 #include "adaption/adaption.h"
 #include "material/dilation.h"
+#include "particles/add.h"
 #include "particles/law_batch.h"
 #include "simd/elementary.h"
 
@@ -109,7 +110,7 @@ static void load_pair(asking *of, int64_t lane, int64_t i) {
       (of->volume[0] * ratio[0] + of->volume[1] * ratio[1]) / (of->volume[0] + of->volume[1]);
 }
 
-/* Returns the norm of a field's value in a slot, or of its difference from that in the slot `less` >= 0. */
+/* Returns the norm of what a field has in a slot, less what it has in another; -1: that is nothing. */
 static double norm_of(const asking *of, int32_t field, int32_t components, int64_t slot, int64_t less) {
   double square = 0.0;
   for (int32_t c = 0; c < components; ++c) {

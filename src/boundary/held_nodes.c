@@ -1,5 +1,6 @@
 /* Components of nodes that the host or prescribed particles hold. */
 #include "boundary/bound.h"
+#include "layout/tasks.h"
 
 /* Sets a component that the host prescribes; its increment is that of eq. 30, or 0 by option. */
 static void prescribe(mpmi_bound *bound, int64_t slot, int32_t c, double value) {

@@ -77,8 +77,14 @@ static mpm_status ask_tractions(mpmi_step *step, mpm_surface *s, double t) {
   s->asked = lay_out(step, s, t, &batch);
   const mpm_status returned = mpmi_from_host(s->traction(s->traction_user, &batch, s->asked));
   if (!returned) return MPM_OK;
-  step->failure = mpmi_callback_failure(returned, -1, "the traction callback of a surface");
-  return mpmi_fail(step->settings->context, step->failure.cause,
+  const mpm_status cause = mpmi_callback_cause(returned);
+  step->failure = (mpmi_failure){.cause = cause,
+                                 .callback_status = returned,
+                                 .set = -1,
+                                 .particle = -1,
+                                 .node = -1,
+                                 .what = "the traction callback of a surface"};
+  return mpmi_fail(step->settings->context, cause,
                    "the traction callback of surface %d returned %d in the step from t = %g with dt = %g",
                    (int)s->number, (int)returned, step->t, step->dt);
 }

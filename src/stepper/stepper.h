@@ -11,9 +11,9 @@
 #ifndef MPMI_STEPPER_H
 #define MPMI_STEPPER_H
 
+#include "context/checks.h"
 #include "adaption/adaption.h"
 #include "contact/contact.h"
-#include "context/checks.h"
 #include "layout/nodes.h"
 #include "layout/step.h"
 
