@@ -225,6 +225,7 @@ static void measure_near(const mpmi_contact_search *search, int64_t which, mpmi_
     const int64_t slot = (int64_t)near->block * b->nodes + (fault.point < 0 ? 0 : fault.point);
     mpmi_failure found = mpmi_node_failure(fault.cause, b, slot, fault.what);
     found.callback_status = fault.returned;
+    found.body = 0; /* all bodies of the site have the node */
     mpmi_failure_take(failure, found);
     return;
   }
