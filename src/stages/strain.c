@@ -220,10 +220,12 @@ void mpmi_batch_sums(mpmi_batch *b, int32_t what) {
   job->what = what;
   job->mass = mpmi_f64(set, MPMI_MASS, 0) + b->begin;
   job->initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + b->begin;
-  mpmi_point_at(set, MPMI_POSITION, 1, b->begin, job->x);
-  mpmi_point_at(set, MPMI_VELOCITY, 1, b->begin, job->v);
-  mpmi_point_at(set, MPMI_POSITION, 0, b->begin, job->x_old);
-  for (int32_t k = 0; k < dim; ++k) job->force[k] = force ? force + k * set->ld + b->begin : NULL;
+  for (int32_t k = 0; k < dim; ++k) {
+    job->x[k] = mpmi_component_row(set, MPMI_POSITION, 1, k) + b->begin;
+    job->v[k] = mpmi_component_row(set, MPMI_VELOCITY, 1, k) + b->begin;
+    job->x_old[k] = mpmi_component_row(set, MPMI_POSITION, 0, k) + b->begin;
+    job->force[k] = force ? force + k * set->ld + b->begin : NULL;
+  }
   if (mpmi_is_affine(settings) && (what & MPMI_SUMS_MOTION)) {
     mpmi_sums_moments(settings, set, 1, b->begin, b->n, b->law.ld, b->C,
                       job); /* C is stored, its buffer free */
