@@ -114,8 +114,8 @@ static inline int32_t mpmi_corrects(const mpmi_step *step) {
 mpmi_failure mpmi_no_failure(void);
 /* Replaces `first` by `other` if that comes before it. */
 void mpmi_failure_take(mpmi_failure *first, mpmi_failure other);
-/* Return what went wrong at a particle of set m, at the node of a slot, and in a callback of the host: with m,
- * or -1, the set that it was called for. */
+/* Return what went wrong at a particle of set m, at the node of a slot, and in a callback of the host; it was
+ * called for set m, or with -1 for none. */
 mpmi_failure mpmi_particle_failure(mpm_status cause, int32_t m, int64_t id, const char *what);
 mpmi_failure mpmi_node_failure(mpm_status cause, const mpmi_blocks *blocks, int64_t slot, const char *what);
 mpmi_failure mpmi_callback_failure(mpm_status returned, int32_t m, const char *what);
