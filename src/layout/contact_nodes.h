@@ -97,6 +97,7 @@ typedef struct mpmi_pair_record {
   int32_t a, b; /* a < b; a may be the code of a surface */
   mpmi_pair_sums last, now;
   double impulse_total[3]; /* of all committed steps */
+  int32_t told;            /* the host knows that they overlap */
 } mpmi_pair_record;
 
 /* Pairs of bodies that ever were near each other, ordered by (a, b). */

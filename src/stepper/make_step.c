@@ -123,6 +123,7 @@ static mpm_status finish(mpm_stepper *s) {
   mpmi_stops_report(&s->step);
   if ((status = mpmi_adaption_prepare(s)) || (status = ask_progress(s))) return status;
   mpmi_commit(s);
+  mpmi_contact_warn(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
   mpm_step_info info = s->step.info;

@@ -62,6 +62,7 @@ struct mpm_stepper {
   mpmi_profile profile;
   mpmi_step step; /* the one under way, if any */
   mpmi_history history;
+  int64_t told_version, told_large; /* of the layout, when large particles were counted; how many there were */
   mpmi_view_record view[MPMI_NODE_VIEWS];
   void *view_memory[MPMI_NODE_VIEWS];
   size_t view_bytes[MPMI_NODE_VIEWS];
@@ -160,6 +161,10 @@ void mpmi_adaption_carry_out(mpm_stepper *s);
 void mpmi_commit(mpm_stepper *s);
 /* Makes the volumes again, which alone were overwritten. */
 void mpmi_roll_back(mpm_stepper *s);
+
+/* ---- contact_warnings.c ------------------------------------------------------------------------------ */
+/* Logs what is new since the last step. */
+void mpmi_contact_warn(mpm_stepper *s);
 
 /* ---- make_step.c ------------------------------------------------------------------------------------- */
 /* Makes a whole step, which is mpm_advance()'s own where `is_cut` is 1. On failure the particles are as

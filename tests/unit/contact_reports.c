@@ -219,6 +219,56 @@ START_TEST(refusals) {
 }
 END_TEST
 
+/* ---- what is logged ------------------------------------------------------------------------------------- */
+typedef struct heard {
+  int32_t overlaps, large;
+  char text[200];
+} heard;
+
+static void hear(void *user, int32_t level, const char *text) {
+  heard *to = user;
+  const int32_t overlap = strstr(text, "overlap") != NULL, large = strstr(text, "larger than half") != NULL;
+  to->overlaps += overlap && level == MPM_LOG_WARNING;
+  to->large += large && level == MPM_LOG_INFO;
+  if (overlap || large) snprintf(to->text, sizeof to->text, "%s", text);
+}
+
+/* Bodies that overlap by more than half a cell are told once, and again when they have parted meanwhile;
+ * particles with more than half of a cell's edge are counted. An overlap of less is noise. */
+START_TEST(overlaps_are_told) {
+  static const double overlap[3] = {0.75, 0.3, 0.75};
+  const double h = 0.25, lower[2] = {3.0 * h, 3.0 * h}, upper[2] = {6.0 * h, 6.0 * h};
+  heard told = {.overlaps = 0};
+  world w;
+  world_desc desc = world_with(&methods[1], 2, 14, h);
+  desc.context.log = hear;
+  desc.context.log_user = &told;
+  desc.sets = 1;
+  world_open(&w, &desc);
+  double shift[2] = {0.0};
+  for (int32_t m = 0; m < 2; ++m) {
+    mpm_particles *set = m ? world_add_set(&w, NULL) : w.set[0];
+    world_fill(&w, set, lower, upper, _i < 2 ? 2 : 1);
+    ck_ok(&w, mpm_stepper_set_body(w.stepper, set, m));
+  }
+  shift[0] = (3.0 - overlap[_i]) * h;
+  const int64_t n = mpm_particles_count(w.set[1]);
+  double *x = fetch(&w, w.set[1], "position", 2);
+  for (int32_t step = 0; step < 8; ++step) {
+    /* in the fourth and fifth step they are apart */
+    const double by = step == 0 ? shift[0] : step == 3 ? 4.0 * h : step == 5 ? -4.0 * h : 0.0;
+    for (int64_t p = 0; p < n; ++p) x[p] += by;
+    put(&w, w.set[1], "position", 2, x);
+    world_step(&w, 1e-4);
+  }
+  free(x);
+  ck_assert_int_eq(told.overlaps, _i == 1 ? 0 : 2);
+  ck_assert_int_eq(told.large > 0, _i == 2);
+  if (_i == 2) ck_assert_msg(strstr(told.text, "overlap") || strstr(told.text, "18 of 18"), "%s", told.text);
+  world_close(&w);
+}
+END_TEST
+
 void add_contact_reports(Suite *suite) {
   TCase *reports = tcase_create("reports");
   tcase_add_loop_test(reports, nodal_fields, 1, 4);
@@ -226,5 +276,6 @@ void add_contact_reports(Suite *suite) {
   tcase_add_test(reports, sums_start_anew);
   tcase_add_test(reports, closest_rule);
   tcase_add_test(reports, refusals);
+  tcase_add_loop_test(reports, overlaps_are_told, 0, 3);
   suite_add_tcase(suite, reports);
 }

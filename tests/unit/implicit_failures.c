@@ -114,6 +114,11 @@ START_TEST(too_few_iterations) {
   double r[IMPLICIT_HISTORY];
   ck_assert_int_eq(implicit_history(&b.w, r), 2);
   ck_assert_double_eq(r[1], info.residual);
+  /* mpm_advance() does not advise to take it */
+  mpm_advance_desc go = advance_desc(b.dt);
+  go.max_cuts = 1;
+  go.dt_first = b.dt;
+  ck_refused(&b.w, mpm_advance(b.w.stepper, &go, NULL), MPM_NOT_CONVERGED, "smaller steps were tried");
   b.desc.stepper.newton_max_iterations = 20;
   configure(&b);
   world_step(&b.w, b.dt);
