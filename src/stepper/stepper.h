@@ -62,7 +62,7 @@ struct mpm_stepper {
   mpmi_profile profile;
   mpmi_step step; /* the one under way, if any */
   mpmi_history history;
-  int64_t told_version, told_large; /* of the layout, when large particles were counted; how many there were */
+  int64_t told_version, told_large; /* layout in which large particles were counted; how many there were */
   mpmi_view_record view[MPMI_NODE_VIEWS];
   void *view_memory[MPMI_NODE_VIEWS];
   size_t view_bytes[MPMI_NODE_VIEWS];
