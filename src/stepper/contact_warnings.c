@@ -1,5 +1,5 @@
-/* What the host is told of contact when it changes: bodies that overlap, and particles too large to tell where
- * a surface is. */
+/* What the host is told of contact when it changes: bodies that overlap, and particles too large to tell
+ * where a surface is. */
 #include "stepper/stepper.h"
 
 /* Overlaps deeper than this, in spacings, are told, and particles that fill more of a cell than one with this

@@ -135,7 +135,9 @@ START_TEST(one_iteration_less) {
   configure(&b);
   fails(&b, MPM_NOT_CONVERGED, "it falls fast: raise newton_max_iterations");
   /* mpm_advance() does not advise to take it, and a load that does not go with dt stays */
-  mpm_advance_desc go = advance_desc(b.dt);
+  mpm_advance_desc go = advance_desc(2.0 * b.dt);
+  go.max_cuts = 1;
+  go.dt_first = b.dt;
   b.desc.stepper.newton_max_iterations = 1;
   configure(&b);
   ck_refused(&b.w, mpm_advance(b.w.stepper, &go, NULL), MPM_NOT_CONVERGED, "smaller steps were tried");

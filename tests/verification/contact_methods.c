@@ -28,7 +28,7 @@ typedef struct scene {
   body bodies[MOST_BODIES];
 } scene;
 
-/* Those of the other cases, by their letters there; discs that meet fly at 45 degrees or are turned from it. */
+/* Those of the other cases; discs that meet fly at 45 degrees or are turned from it. */
 static const scene scenes[] = {
     {.name = "bars of one kind",
      .dim = 1,
