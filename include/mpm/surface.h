@@ -1,6 +1,7 @@
 /**
  * @file surface.h
- * Surfaces: markers without mass that move with the material and carry loads on its boundary.
+ * Surfaces: markers without mass that carry loads on the boundary of the material and move with it, or that
+ * prescribe how it moves, wherever the grid lies.
  *
  * A marker is a small patch of a surface: a position and an area vector, the area times the normal that
  * points out of the material. The material carries it along and stretches it. Pressure, tractions and the
@@ -14,8 +15,23 @@
  * radian: length times radius. On the axis they have none. With total_lagrangian = 1 a marker keeps to the
  * material where it was added, by position and area before that deformed: add it before the body moves.
  *
+ * A surface may also prescribe the velocity of the material, or the component of it along the area vectors:
+ * mpm_surface_desc.prescribes. Its markers then move as they prescribe, whatever the material does, and keep
+ * their area vectors: with MPM_PRESCRIBES_NORMAL material slides along the surface, past its markers.
+ * It pushes and pulls. Markers with no material around them do nothing.
+ *
+ * - Implicit steps: springs between marker and material, of the stiffness beta A with beta = penalty modulus /
+ *   h, A the area of the marker and h the least spacing. They are part of the balance, and stay stretched from
+ *   step to step: field "gap". Under a traction t the material is off by t / beta. With inertia a spring acts
+ *   wholly at the end of the step, as contact does.
+ * - Explicit steps: nodes with mass around markers get the mean of what these prescribe, weighted by area and
+ *   shape function, as around prescribed particles. So the surface is smeared over the nodes of a marker; the
+ *   stable step stays as it is. What the host, prescribed particles, walls and surfaces that were added before
+ *   prescribe of a node comes first: the rest is the surface's. Smooth faces that meet at an edge are best
+ *   surfaces of their own.
+ *
  * @par Sources
- * Area vectors: Nanson's relation, in Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.4. Weights next
+ * Penalty: Chandra, Singer, Teschemacher, Wuechner & Larese, Acta Geotech. 16, 2021. Area vectors: Nanson's relation, in Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.4. Weights next
  * to nodes without mass: the reproducing kernels of Liu, Jun and Zhang, Int. J. Numer. Meth. Fluids 20, 1995.
  * docs/theory.md has the equations.
  */
@@ -31,8 +47,8 @@ extern "C" {
 /** Markers of a surface. It belongs to a grid, and may be in one stepper at a time. */
 typedef struct mpm_surface mpm_surface;
 
-/** Loads of all markers of a surface. What markers carry by themselves ("pressure", "traction",
- * "dead_traction") and what the callback gives comes on top. Fill it with mpm_surface_desc_init(). */
+/** Loads of all markers of a surface, and what it prescribes. What markers carry by themselves ("pressure",
+ * "traction", "dead_traction", "prescribed_velocity") and what the callbacks give comes on top. Fill it with mpm_surface_desc_init(). */
 typedef struct mpm_surface_desc {
   uint32_t struct_size; /**< sizeof(mpm_surface_desc) of the caller */
   int32_t body;       /**< velocity field that it loads and moves with (mpm_stepper_set_body()); default 0 */
@@ -42,6 +58,15 @@ typedef struct mpm_surface_desc {
   /** Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that
    * stretches has no dents. Half a spacing is right. 0 (default): they are not. */
   double max_spacing;
+  /** MPM_PRESCRIBES_...: what of the motion of the material the markers prescribe. Markers without area
+   * prescribe nothing. Default MPM_PRESCRIBES_NOTHING. */
+  int32_t prescribes;
+  int32_t reserved;   /**< 0 */
+  double velocity[3]; /**< length/time: how the markers of a surface that prescribes move */
+  double penalty;     /**< implicit steps: stiffness of the springs in modulus / spacing, > 0; default 100 */
+  /** Implicit steps, force/area >= 0: the modulus of the springs. 0 (default): in each step the largest of
+   * density times wave speed squared among the particles of the body, which is lambda + 2 mu. */
+  double modulus;
 } mpm_surface_desc;
 
 /** Markers for which tractions are wanted. Arrays are [components][ld], belong to the library and are valid
@@ -66,6 +91,11 @@ typedef struct mpm_marker_batch {
  * the step: MPM_NONFINITE. */
 typedef mpm_status (*mpm_traction_fn)(void *user, const mpm_marker_batch *batch, double *add);
 
+/** Gives velocities: the callback does add[c * ld + i] += mean velocity of marker i over the step that begins
+ * at batch->t, c < dim. It runs on the thread of the call, once per step, for surfaces that prescribe. Returns
+ * as mpm_particle_fn does. A value that is not finite ends the step: MPM_NONFINITE. */
+typedef mpm_status (*mpm_marker_velocity_fn)(void *user, const mpm_marker_batch *batch, double *add);
+
 /** Fills desc with the defaults. struct_size is sizeof(mpm_surface_desc) of the caller; no byte beyond is
  * written. MPM_E_ARG: it is smaller than the first released struct. Any thread, any time. */
 MPM_API mpm_status mpm_surface_desc_init(mpm_surface_desc *desc, uint32_t struct_size);
@@ -86,6 +116,10 @@ MPM_API mpm_status mpm_surface_configure(mpm_surface *surface, const mpm_surface
 /** Sets the callback that adds tractions. NULL takes it away. The host sets it again after it has loaded a
  * state. MPM_E_STATE during a staged step. */
 MPM_API mpm_status mpm_surface_set_traction(mpm_surface *surface, mpm_traction_fn fn, void *user);
+
+/** Sets the callback that adds to the velocities with which a surface that prescribes moves. NULL takes it
+ * away. The host sets it again after it has loaded a state. MPM_E_STATE during a staged step. */
+MPM_API mpm_status mpm_surface_set_velocity(mpm_surface *surface, mpm_marker_velocity_fn fn, void *user);
 
 /**
  * Adds n markers.
@@ -147,6 +181,9 @@ MPM_API int64_t mpm_surface_count(const mpm_surface *surface);
  * | "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
  * | "traction"        | F64  | dim        | likewise                                                | yes |
  * | "dead_traction"   | F64  | dim        | likewise                                                | yes |
+ * | "prescribed_velocity" | F64 | dim     | of this marker, beside mpm_surface_desc.velocity        | yes |
+ * | "reaction"        | F64  | dim        | force of what is prescribed on the material, last step  |     |
+ * | "gap"             | F64  | dim        | implicit steps: way of the material off what it should  |     |
  *
  * MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.
  */
@@ -163,23 +200,37 @@ MPM_API mpm_status mpm_surface_set(mpm_surface *surface, const char *field, int3
 
 /**
  * Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move
- * with them; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are
+ * with them, or as they prescribe; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are
  * removed. Steps end with
  *
  * - MPM_OFF_GRID: a marker would leave through a face that does not let it;
- * - MPM_NONFINITE: its load or its new position is not finite;
+ * - MPM_NONFINITE: its load, what it prescribes or its new position is not finite;
  * - MPM_E_STATE: a marker with a load has no material around it.
  *
  * The text names marker and surface, the number of which counts the surfaces of the stepper from 0.
  * MPM_E_STATE: it is in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
  *
  * In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure
- * and traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+ * and traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered;
+ * what is prescribed, and loads of markers that prescribe, keep it symmetric.
  */
 MPM_API mpm_status mpm_stepper_add_surface(mpm_stepper *stepper, mpm_surface *surface);
 
 /** Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper. */
 MPM_API mpm_status mpm_stepper_remove_surface(mpm_stepper *stepper, mpm_surface *surface);
+
+/** Gives the force[dim] by which what a surface prescribes acts on the material: the mean over the last step,
+ * the sum of "reaction" over the markers; 0 for a surface that prescribes nothing. Loads are no part of it.
+ * MPM_E_NOT_FOUND: it is not in this stepper. MPM_E_STATE before the first step. */
+MPM_API mpm_status mpm_stepper_surface_reaction(const mpm_stepper *stepper, const mpm_surface *surface,
+                                                double *force);
+
+/** Gives the impulse[dim] of it on the material, mass * length/time: the sum of
+ * mpm_stepper_surface_reaction() times the time over which it acted, over all committed steps since the
+ * surface was added or mpm_stepper_set_time() was called. A saved state holds it. MPM_E_NOT_FOUND: the surface
+ * is not in this stepper. */
+MPM_API mpm_status mpm_stepper_surface_impulse(const mpm_stepper *stepper, const mpm_surface *surface,
+                                               double *impulse);
 
 #ifdef __cplusplus
 }

@@ -196,6 +196,13 @@ enum mpm_wall_value {
   MPM_WALL_FRICTION_NODES = 5
 };
 
+/** What a surface prescribes of the motion of the material at its markers. See mpm_surface_desc. */
+enum mpm_prescribes_value {
+  MPM_PRESCRIBES_NOTHING = 0,  /**< default: the material carries the markers along */
+  MPM_PRESCRIBES_VELOCITY = 1, /**< all components: the material sticks to the surface */
+  MPM_PRESCRIBES_NORMAL = 2    /**< that along the area vector: the material slides without friction */
+};
+
 /** Where in an explicit step a node hook runs. */
 enum mpm_stage_value {
   MPM_AFTER_P2G = 1,     /**< mass and velocity are projected, forces are not yet known */

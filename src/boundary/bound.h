@@ -21,7 +21,7 @@ typedef struct mpmi_bound {
 } mpmi_bound;
 
 /* Who holds a component of a node, in held[][]. */
-enum { MPMI_HELD_BY_HOST = 1, MPMI_HELD_BY_PARTICLES = 2 };
+enum { MPMI_HELD_BY_HOST = 1, MPMI_HELD_BY_PARTICLES = 2, MPMI_HELD_BY_SURFACES = 3 };
 
 static inline const mpmi_constraints *mpmi_constraints_of(const mpmi_bound *bound) {
   return &bound->step->layout->constraints;

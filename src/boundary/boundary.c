@@ -1,6 +1,7 @@
 /* The boundary stage: in which order conditions act on the nodes of a projection. */
 #include "boundary/boundary.h"
 #include "boundary/bound.h"
+#include "boundary/surface_holds.h"
 
 /* Contacts between bodies and with friction walls share nodes where bodies meet on a wall: there they act in
  * turn until what is left is this share of the first round. */
@@ -30,7 +31,9 @@ static mpm_status act(mpmi_bound *bound, const mpmi_projection *projection) {
       (status = mpmi_damp(bound)) || (status = mpmi_held_set(bound)))
     return status;
   if ((status = mpmi_ties_hold_walls(bound))) return status;
+  mpmi_surface_holds_slide(bound);
   if ((status = act_in_contact(bound, 0))) return status;
+  mpmi_surface_holds_slide(bound); /* they have the last word where contact pushes off them */
   if (projection->main) mpmi_body_contacts_sum(bound);
   return mpmi_hooks_run(bound, MPM_AFTER_VELOCITY);
 }
@@ -48,8 +51,10 @@ static mpm_status act_on_velocities(mpmi_bound *bound, const mpmi_projection *pr
   if (!status && projection->forces) status = mpmi_damp(bound);
   if (!status && projection->held) status = mpmi_held_set(bound);
   if (!status) status = mpmi_ties_hold_walls(bound);
+  if (!status && projection->held) mpmi_surface_holds_slide(bound);
   if (!status && projection->contact != MPMI_CONTACT_NONE)
     status = act_in_contact(bound, projection->contact == MPMI_CONTACT_KEEPS);
+  if (!status && projection->held) mpmi_surface_holds_slide(bound);
   return status;
 }
 

@@ -1,5 +1,6 @@
-/* Components of nodes that the host or prescribed particles hold. */
+/* Components of nodes that the host, prescribed particles or surfaces hold. */
 #include "boundary/bound.h"
+#include "boundary/surface_holds.h"
 #include "layout/tasks.h"
 
 /* Sets a component that the host prescribes; its increment is that of eq. 30, or 0 by option. */
@@ -43,6 +44,7 @@ mpm_status mpmi_held_set(mpmi_bound *bound) {
 }
 
 mpm_status mpmi_held_find(mpmi_bound *bound) {
-  const mpm_status status = bound->step->settings->velocity_bc ? mpmi_ask_velocities(bound) : MPM_OK;
-  return status || !bound->nodes->prescription.any ? status : mpmi_prescribed_hold(bound);
+  mpm_status status = bound->step->settings->velocity_bc ? mpmi_ask_velocities(bound) : MPM_OK;
+  if (!status && bound->nodes->prescription.any) status = mpmi_prescribed_hold(bound);
+  return status || !mpmi_surfaces_hold(bound->step->settings) ? status : mpmi_surface_holds_find(bound);
 }

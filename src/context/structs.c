@@ -25,7 +25,7 @@
   X(mpm_contact_batch, pressure, 96)                                                                         \
   X(mpm_distance_batch, velocity, 64)                                                                        \
   X(mpm_obstacle_desc, upper, 296)                                                                           \
-  X(mpm_surface_desc, max_spacing, 72)                                                                       \
+  X(mpm_surface_desc, modulus, 120)                                                                          \
   X(mpm_marker_batch, velocity, 88)                                                                          \
   X(mpm_adaption_desc, user, 72)                                                                             \
   X(mpm_adaption_info, angular_momentum_loss, 80)                                                            \

@@ -1,5 +1,5 @@
 /* Forces and stiffness of the particles on the nodes, for implicit steps. */
-#include "implicit/balance.h"
+#include "implicit/surface_springs.h"
 #include "layout/accumulate.h"
 #include "layout/tile.h"
 #include "layout/tasks.h"
@@ -162,9 +162,10 @@ mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
       .bind = mpmi_strain_bind, .enter = mpmi_strain_enter, .aim = mpmi_strain_aim, .take = take_new_forces};
   mpm_status status = begin_strain(balance, u);
   if (!status) status = find_pressures(balance);
-  return status ? status
-                : sum_internal(balance,
-                               mpmi_has_nodal_stress(balance->settings, balance->layout) ? &again : &at_once);
+  if (!status)
+    status =
+        sum_internal(balance, mpmi_has_nodal_stress(balance->settings, balance->layout) ? &again : &at_once);
+  return status ? status : mpmi_springs_pull(balance);
 }
 
 mpm_status mpmi_start_forces(mpmi_balance *balance) {

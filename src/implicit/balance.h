@@ -10,6 +10,7 @@
  *   particle_stiffness.c   what one batch of particles adds to them
  *   locking_stiffness.c    what the remedy against volumetric locking adds to the stiffness
  *   surface_loads.c        forces of surfaces, and the stiffness of those that follow them
+ *   surface_springs.c      forces and stiffness of surfaces that prescribe velocities
  *   condense.c             rows that move with others leave the system
  *   active_set.c           contact: which touches of bodies are closed
  *   contact_stiffness.c    their forces, and what they add to the matrix
@@ -42,7 +43,8 @@ enum {
   MPMI_EXTERNAL, /* external force, at its end */
   MPMI_INTERNAL, /* internal force of the displacements as they are */
   MPMI_CONTACT,  /* force of contact, as it is */
-  MPMI_RESIDUAL, /* internal + inertia - external - contact */
+  MPMI_SPRINGS,  /* force of surfaces that prescribe, as it is */
+  MPMI_RESIDUAL, /* internal + inertia - external - contact - springs */
   MPMI_RHS,      /* right-hand side of the linear system */
   MPMI_DIAGONAL, /* sizes of the diagonal entries of the matrix */
   MPMI_DU,       /* increment of the displacement */
@@ -142,6 +144,7 @@ typedef struct mpmi_newton {
   mpmi_newton_work *work; /* [tasks] */
   int64_t constraint_count, constraint_capacity;
   mpmi_constraint *constraint;
+  int32_t has_springs; /* surfaces prescribe how some of the material moves */
   int32_t history_capacity, history_count;
   double *history;
 } mpmi_newton;

@@ -1,6 +1,7 @@
 #include "implicit/newmark.h"
 #include "implicit/active_set.h"
 #include "implicit/extension.h"
+#include "implicit/surface_springs.h"
 #include "boundary/boundary.h"
 #include "boundary/prescribed.h"
 #include "context/reduce.h"
@@ -121,11 +122,17 @@ static void smooth_light_rows(mpmi_balance *balance, const double *of_particles)
   }
 }
 
+/* Returns 1 where forces act that act wholly at the end of the step: those of contact and of surfaces that
+ * prescribe. */
+static int32_t pushes_at_end(const mpmi_balance *balance) {
+  return balance->newton->constraint_count > 0 || balance->newton->has_springs;
+}
+
 /* Brings the accelerations at the start of the step into the second copies and onto the nodes. Where bodies
- * touch they are those of the balance: what balances a force of contact acts at the node, and particles would
- * carry it to others. */
+ * touch, or surfaces prescribe, they are those of the balance: what balances a force of contact acts at the
+ * node, and particles would carry it to others. */
 static mpm_status prepare_accelerations(mpmi_balance *balance, int32_t unknown, double *clock) {
-  const int32_t touches = balance->newton->constraint_count > 0;
+  const int32_t touches = pushes_at_end(balance);
   mpm_status status = MPM_OK;
   for (int32_t m = 0; m < balance->layout->member_count; ++m) {
     const mpm_particles *set = balance->layout->member[m].set;
@@ -150,8 +157,10 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   mpmi_newton *newton = balance->newton;
   const int32_t unknown = lacks_accelerations(balance);
   const int32_t at_start =
-      unknown || (mpmi_is_dynamic(balance->settings) && balance->nodes->contact.site_count > 0);
+      unknown || (mpmi_is_dynamic(balance->settings) && (balance->nodes->contact.site_count > 0 ||
+                                                         mpmi_surfaces_prescribe(&balance->settings->surfaces)));
   mpm_status status = mpmi_prescribed_stage(balance->step);
+  if (!status) status = mpmi_surfaces_aim(balance->step);
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
   if (status || (status = find_nodes(balance, clock)) ||
       (status = find_external(balance, at_start ? balance->step->t : balance->step->t + dt, clock)) ||
@@ -171,12 +180,13 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   return MPM_OK;
 }
 
-/* Returns what contact adds to the acceleration of a row in the balance. */
+/* Returns what contact and springs add to the acceleration of a row in the balance. */
 static double contact_acceleration(const mpmi_balance *balance, int64_t at) {
   const mpmi_newton *newton = balance->newton;
   const double mass = newton->mass[at / balance->settings->grid->dim];
-  return mpmi_is_held(newton->matrix.held[at]) || !(mass > 0.0) ? 0.0
-                                                                : newton->vector[MPMI_CONTACT][at] / mass;
+  return mpmi_is_held(newton->matrix.held[at]) || !(mass > 0.0)
+             ? 0.0
+             : (newton->vector[MPMI_CONTACT][at] + newton->vector[MPMI_SPRINGS][at]) / mass;
 }
 
 /* Returns by how much the velocity of a row changes in a step with contact, whose impulse comes on top of
@@ -195,7 +205,7 @@ static void set_nodes(mpmi_balance *balance) {
   const double dt = balance->step->dt;
   const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
-  balance->step->whole_increments = newton->constraint_count > 0 && mpmi_is_dynamic(balance->settings);
+  balance->step->whole_increments = pushes_at_end(balance) && mpmi_is_dynamic(balance->settings);
   for (int64_t i = 0; i < newton->active_count; ++i) {
     const mpmi_active_node *node = &newton->active[i];
     double *v = mpmi_velocity(&balance->nodes->solved, node->slot);
@@ -275,6 +285,7 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   if (status) return status;
   status = mpmi_active_set_finish(balance);
   if (status) return status;
+  mpmi_springs_finish(balance);
   set_nodes(balance);
   sum_damping(balance);
   status = mpmi_record_reactions(balance);

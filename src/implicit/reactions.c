@@ -19,14 +19,15 @@ static double reaction_on(const mpmi_balance *balance, const mpmi_active_node *n
   return force;
 }
 
-/* Returns the contact force on a row. Where the component is held, the holder and contact each keep their
- * own. */
+/* Returns the force of contact and of springs on a row. Where the component is held, the holder and contact
+ * each keep their own, and springs what they give as momentum. */
 static double contact_on(const mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const int64_t at = row * balance->settings->grid->dim + c;
-  return mpmi_is_held(newton->matrix.held[at]) || !(newton->mass[row] > 0.0)
-             ? 0.0
-             : newton->vector[MPMI_CONTACT][at];
+  if (!(newton->mass[row] > 0.0)) return 0.0;
+  if (mpmi_is_held(newton->matrix.held[at]))
+    return mpmi_contact_share(balance->settings) * newton->vector[MPMI_SPRINGS][at];
+  return newton->vector[MPMI_CONTACT][at] + newton->vector[MPMI_SPRINGS][at];
 }
 
 /* Returns the force by which outer and inner rows hold each other: what nothing else balances on the row. */

@@ -6,7 +6,7 @@
  *   P = T (x) a / |a| - p 1
  *
  * which is not symmetric. Dead loads D have no stiffness. */
-#include "implicit/balance.h"
+#include "implicit/surface_springs.h"
 #include "stages/stages.h"
 #include "simd/vector3.h"
 
@@ -48,6 +48,7 @@ mpm_status mpmi_surface_loads_find(mpmi_balance *balance) {
                          (long long)m->id, (long long)i);
     }
   }
+  if (!status) mpmi_springs_find(balance);
   return status;
 }
 
@@ -145,6 +146,8 @@ mpm_status mpmi_surface_loads_stiffen(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
   const mpm_status status = mpmi_surfaces_stretch(balance->step, &balance->nodes->solved);
   for (int64_t s = 0; s < list->count && !status && balance->settings->grid->dim > 1; ++s)
-    for (int64_t i = 0; i < list->surface[s]->next.count; ++i) stiffen_marker(balance, list->surface[s], i);
+    for (int64_t i = 0; i < list->surface[s]->next.count && !mpmi_surface_prescribes(list->surface[s]); ++i)
+      stiffen_marker(balance, list->surface[s], i);
+  if (!status) mpmi_springs_stiffen(balance);
   return status;
 }

@@ -118,13 +118,16 @@ static uint64_t hash_pose(uint64_t h, const mpmi_pose *pose) {
   return h;
 }
 
-static uint64_t hash_markers(uint64_t h, const mpmi_markers *markers) {
+/* Springs of surfaces that prescribe are a part of the state that others do not have. */
+static uint64_t hash_markers(uint64_t h, const mpmi_markers *markers, int32_t prescribes) {
   h = absorb(h, (uint64_t)markers->count);
   for (int64_t i = 0; i < markers->count; ++i) {
     const mpmi_marker *m = &markers->at[i];
     h = absorb(h, (uint64_t)m->id);
     for (int32_t k = 0; k < 3; ++k)
       h = absorb(absorb(absorb(h, bits(m->position[k])), bits(m->edge[0][k])), bits(m->edge[1][k]));
+    for (int32_t k = 0; k < 3 && prescribes; ++k)
+      h = absorb(absorb(h, bits(m->gap[k])), bits(m->prescribed_velocity[k]));
   }
   return h;
 }
@@ -144,7 +147,10 @@ mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
   const mpmi_obstacles *obstacles = &stepper->settings.obstacles;
   for (int64_t i = 0; i < obstacles->count; ++i) h = hash_pose(h, &obstacles->obstacle[i]->pose);
   const mpmi_surfaces *surfaces = &stepper->settings.surfaces;
-  for (int64_t i = 0; i < surfaces->count; ++i) h = hash_markers(h, &surfaces->surface[i]->now);
+  for (int64_t i = 0; i < surfaces->count; ++i) {
+    const mpm_surface *surface = surfaces->surface[i];
+    h = hash_markers(h, &surface->now, mpmi_surface_prescribes(surface));
+  }
   *hash = mpmi_avalanche(h);
   return MPM_OK;
 }

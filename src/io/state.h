@@ -11,7 +11,7 @@
  *   contact   from format 3 on: how many rules there are and how many pairs of bodies, and these
  *
  *   surfaces  from format 3 on: how many there are; of each its body, which is compared, how many markers it
- *             has, the next id, and the markers
+ *             has, the next id, its impulses, and the markers
  *
  *   blocks    if the state is sorted: coordinates and, from format 3 on, body of the blocks with slots, by
  *             Morton key and body; then for each set the first slot in each of these blocks, and the number
@@ -107,10 +107,14 @@ void mpmi_state_take_obstacles(const mpm_stepper *s, const mpmi_state_obstacle *
 
 /* Surfaces (state_surfaces.c): markers are read into an array with one item for each surface, and taken over
  * in exchange for those that were there. The caller frees what the array has. */
-_Static_assert(sizeof(mpmi_marker) == 36 * 8, "part of the format");
+_Static_assert(sizeof(mpmi_marker) == 45 * 8, "part of the format");
+typedef struct mpmi_state_surface {
+  mpmi_markers markers;
+  mpmi_surface_impulses impulses;
+} mpmi_state_surface;
 void mpmi_state_write_surfaces(mpmi_archive *a, const mpm_stepper *s);
-mpm_status mpmi_state_read_surfaces(mpmi_archive *a, const mpm_stepper *s, mpmi_markers *saved);
-void mpmi_state_take_surfaces(const mpm_stepper *s, mpmi_markers *saved);
+mpm_status mpmi_state_read_surfaces(mpmi_archive *a, const mpm_stepper *s, mpmi_state_surface *saved);
+void mpmi_state_take_surfaces(const mpm_stepper *s, mpmi_state_surface *saved);
 
 /* Refuses values with which a step could not work safely (state_check.c). blocks: those of the state, or
  * NULL when it is not sorted; start: where the set's slots lie in them. */

@@ -14,7 +14,7 @@ typedef struct loading {
   mpmi_contact_rules rules;
   mpmi_pair_records pairs;
   mpmi_state_obstacle *obstacle; /* [obstacles] */
-  mpmi_markers *markers;         /* [surfaces] */
+  mpmi_state_surface *surface;         /* [surfaces] */
   int64_t slots;                 /* slots of all sets */
 } loading;
 
@@ -154,7 +154,7 @@ static mpm_status read_state(loading *l) {
   mpm_status status = a->status;
   if (!status && l->format > 2) status = mpmi_state_read_obstacles(a, s, l->obstacle);
   if (!status && l->format > 2) status = mpmi_state_read_contact(a, s, &l->rules, &l->pairs);
-  if (!status && l->format > 2) status = mpmi_state_read_surfaces(a, s, l->markers);
+  if (!status && l->format > 2) status = mpmi_state_read_surfaces(a, s, l->surface);
   if (!status && l->format <= 2 && s->settings.surfaces.count)
     status = mpmi_fail(s->context, MPM_E_FORMAT,
                        "the state is of an unlike setup: number of surfaces is 0 there, %lld here",
@@ -245,7 +245,7 @@ static void take_over(loading *l) {
     s->settings.contact = l->rules;
     l->rules = rules;
     mpmi_state_take_obstacles(s, l->obstacle);
-    mpmi_state_take_surfaces(s, l->markers);
+    mpmi_state_take_surfaces(s, l->surface);
   }
   s->history.pairs = l->pairs;
   l->pairs = pairs;
@@ -268,8 +268,8 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   const int64_t obstacles = s->settings.obstacles.count;
   const int64_t surfaces = s->settings.surfaces.count;
   l.obstacle = mpmi_alloc_zeroed(s->context, mpmi_bytes(obstacles, sizeof *l.obstacle));
-  if (l.obstacle) l.markers = mpmi_alloc_zeroed(s->context, mpmi_bytes(surfaces, sizeof *l.markers));
-  if (!l.markers) {
+  if (l.obstacle) l.surface = mpmi_alloc_zeroed(s->context, mpmi_bytes(surfaces, sizeof *l.surface));
+  if (!l.surface) {
     MPMI_FREE_ARRAY(s->context, l.obstacle, obstacles);
     mpmi_free(s->context, l.set, set_bytes);
     return MPM_E_NOMEM;
@@ -287,8 +287,8 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   for (int32_t m = 0; m < s->layout.member_count; ++m)
     for (int32_t f = 0; f < l.set[m].fresh.field_count; ++f) mpmi_field_make_absent(&l.set[m].fresh, f);
   mpmi_contact_rules_free(&l.rules, s->context);
-  for (int64_t i = 0; i < surfaces; ++i) mpmi_markers_free(s->context, &l.markers[i]);
-  MPMI_FREE_ARRAY(s->context, l.markers, surfaces);
+  for (int64_t i = 0; i < surfaces; ++i) mpmi_markers_free(s->context, &l.surface[i].markers);
+  MPMI_FREE_ARRAY(s->context, l.surface, surfaces);
   MPMI_FREE_ARRAY(s->context, l.obstacle, obstacles);
   MPMI_FREE_ARRAY(s->context, l.pairs.record, l.pairs.capacity);
   mpmi_free(s->context, l.set, set_bytes);

@@ -1,4 +1,4 @@
-/* A state holds the markers of surfaces with what they carry. Loads of whole surfaces are settings of the
+/* A state holds the markers of surfaces with what they carry, and the impulses of what surfaces prescribe. Loads of whole surfaces are settings of the
  * host. */
 #include "io/state.h"
 
@@ -13,6 +13,7 @@ void mpmi_state_write_surfaces(mpmi_archive *a, const mpm_stepper *s) {
     mpmi_archive_same_int(a, "body", surface->desc.body);
     int64_t numbers[2] = {surface->now.count, surface->now.next_id};
     mpmi_archive_words(a, numbers, sizeof numbers);
+    mpmi_archive_words(a, &surface->impulses, sizeof surface->impulses);
     mpmi_archive_words(a, surface->now.at, surface->now.count * (int64_t)sizeof(mpmi_marker));
   }
 }
@@ -26,17 +27,23 @@ static int32_t is_sound(const mpm_grid *grid, const mpmi_marker *m) {
     sum += m->position[k] + m->reference[k] + m->reference_edge[0][k] + m->reference_edge[1][k];
     sum += m->edge[0][k] + m->edge[1][k] + m->displacement[k] + m->velocity[k] + m->force[k];
     sum += m->traction[k] + m->dead_traction[k];
+    sum += m->prescribed_velocity[k] + m->reaction[k] + m->gap[k];
   }
   int32_t sound = isfinite(sum) && m->reference_area >= 0.0 && mpmi_grid_place(grid, x, 1, NULL, 0) < 0;
   for (int32_t k = 0; k < grid->dim; ++k) sound &= !(x[k] < place[k] || x[k] > place[k]);
   return sound;
 }
 
-static mpm_status read_surface(mpmi_archive *a, const mpm_surface *surface, mpmi_markers *to) {
+static mpm_status read_surface(mpmi_archive *a, const mpm_surface *surface, mpmi_state_surface *saved) {
+  mpmi_markers *to = &saved->markers;
   int64_t numbers[2] = {0, 0};
+  double sum = 0.0;
   mpmi_archive_same_int(a, "body", surface->desc.body);
   mpmi_archive_words(a, numbers, sizeof numbers);
+  mpmi_archive_words(a, &saved->impulses, sizeof saved->impulses);
   if (a->status) return a->status;
+  for (int32_t k = 0; k < 3; ++k) sum += saved->impulses.last[k] + saved->impulses.total[k];
+  if (!isfinite(sum)) return mpmi_archive_damaged(a, "the impulses make no sense");
   const int64_t room = (a->size - a->at) / (int64_t)sizeof(mpmi_marker);
   if (numbers[0] < 0 || numbers[0] > room || numbers[1] < numbers[0] || numbers[1] > INT64_MAX / 2)
     return mpmi_archive_damaged(a, "the number of markers makes no sense");
@@ -52,7 +59,7 @@ static mpm_status read_surface(mpmi_archive *a, const mpm_surface *surface, mpmi
   return a->status;
 }
 
-mpm_status mpmi_state_read_surfaces(mpmi_archive *a, const mpm_stepper *s, mpmi_markers *saved) {
+mpm_status mpmi_state_read_surfaces(mpmi_archive *a, const mpm_stepper *s, mpmi_state_surface *saved) {
   const mpmi_surfaces *list = &s->settings.surfaces;
   mpm_status status = MPM_OK;
   mpmi_archive_same_int(a, "number of surfaces", list->count);
@@ -65,10 +72,12 @@ mpm_status mpmi_state_read_surfaces(mpmi_archive *a, const mpm_stepper *s, mpmi_
   return status;
 }
 
-void mpmi_state_take_surfaces(const mpm_stepper *s, mpmi_markers *saved) {
+void mpmi_state_take_surfaces(const mpm_stepper *s, mpmi_state_surface *saved) {
   for (int64_t i = 0; i < s->settings.surfaces.count; ++i) {
-    const mpmi_markers old = s->settings.surfaces.surface[i]->now;
-    s->settings.surfaces.surface[i]->now = saved[i];
-    saved[i] = old;
+    mpm_surface *surface = s->settings.surfaces.surface[i];
+    const mpmi_markers old = surface->now;
+    surface->now = saved[i].markers;
+    surface->impulses = saved[i].impulses;
+    saved[i].markers = old;
   }
 }

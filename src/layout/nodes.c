@@ -46,7 +46,8 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   const int32_t projects =
       settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected || places;
   mpm_status status;
-  nodes->has_holders = settings->velocity_bc || nodes->prescription.any;
+  const int32_t surfaces = !mpmi_is_implicit(settings) && mpmi_surfaces_prescribe(&settings->surfaces);
+  nodes->has_holders = settings->velocity_bc || nodes->prescription.any || surfaces;
   nodes->has_impulses = nodes->has_holders || ties || contacts || nodes->contact.at_walls;
   nodes->contact.listed = 0;
   if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||
@@ -54,6 +55,9 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
       (status = corrected || remedy ? mpmi_nodal_reserve(c, &nodes->sums, slots, 4) : MPM_OK) ||
       (status = places ? MPMI_RESERVE_MORE(c, nodes->contact.place, nodes->contact.place_capacity, slots)
                        : MPM_OK) ||
+      (status = surfaces ? MPMI_RESERVE_MORE(c, nodes->surface_sites.last,
+                                             nodes->surface_sites.last_capacity, slots)
+                         : MPM_OK) ||
       (status = MPMI_RESERVE_MORE(c, nodes->light, nodes->light_capacity, light)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->contact_state, nodes->contact_capacity, contacts)))
@@ -82,6 +86,8 @@ void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
   MPMI_FREE_ARRAY(c, nodes->damping_impulse, nodes->damping_capacity);
   MPMI_FREE_ARRAY(c, nodes->contact_state, nodes->contact_capacity);
   MPMI_FREE_ARRAY(c, nodes->tie_state, nodes->tie_capacity);
+  MPMI_FREE_ARRAY(c, nodes->surface_sites.site, nodes->surface_sites.capacity);
+  MPMI_FREE_ARRAY(c, nodes->surface_sites.last, nodes->surface_sites.last_capacity);
   mpmi_prescription *p = &nodes->prescription;
   MPMI_FREE_ARRAY(c, p->sums, p->sums_capacity);
   MPMI_FREE_ARRAY(c, p->part, p->part_capacity);

@@ -81,6 +81,21 @@ typedef struct mpmi_light_node {
   double before[3], first_gain[3], gain[3];
 } mpmi_light_node;
 
+/* A node that moves, where a surface prescribes something (boundary/surface_holds.c). The vector is the sum of
+ * velocities, or of normals, then the direction in which the surface sets the velocity to a value. */
+typedef struct mpmi_surface_site {
+  int64_t slot;
+  int32_t surface, before; /* before: the site of another surface at the same node, or -1 */
+  int32_t slides;          /* 1: there is such a direction */
+  int32_t holds[3];        /* 1: it holds this component */
+  double weight, value, vector[3], impulse[3];
+} mpmi_surface_site;
+typedef struct mpmi_surface_sites {
+  int64_t count, capacity, last_capacity;
+  mpmi_surface_site *site;
+  int32_t *last; /* [slots] the last site at a node, or -1 */
+} mpmi_surface_sites;
+
 /* State of a tie from folding to unfolding. */
 typedef struct mpmi_tie_state {
   double mass;         /* of all its nodes */
@@ -118,6 +133,7 @@ typedef struct mpmi_nodes {
   mpmi_contact_state *contact_state; /* [contacts] */
   int64_t contact_capacity;
   mpmi_prescription prescription;
+  mpmi_surface_sites surface_sites;
   mpmi_contact_nodes contact; /* nodes where bodies meet */
   double shown_dt;            /* time over which forces changed the velocities that views show */
   int64_t shown;              /* version of the layout that views show, or -1: nothing */

@@ -80,6 +80,8 @@ int32_t mpmi_has_nodal_stress(const mpmi_settings *settings, const mpmi_layout *
 mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy);
 
 /* ---- surfaces.c -------------------------------------------------------------------------------------- */
+/* Finds what the markers of surfaces that prescribe ask for in the step. */
+mpm_status mpmi_surfaces_aim(mpmi_step *step);
 /* Asks the host for tractions at time t, and finds the forces of all markers on their present areas. */
 mpm_status mpmi_surfaces_load(mpmi_step *step, double t);
 /* Finds the nodes around all markers from their masses, which are not folded. */

@@ -70,12 +70,9 @@ static double *lay_out(const mpmi_step *step, const mpm_surface *s, double t, mp
   return add;
 }
 
-static mpm_status ask_tractions(mpmi_step *step, mpm_surface *s, double t) {
-  mpm_marker_batch batch;
-  s->asked = NULL;
-  if (!s->traction || !s->next.count) return MPM_OK;
-  s->asked = lay_out(step, s, t, &batch);
-  const mpm_status returned = mpmi_from_host(s->traction(s->traction_user, &batch, s->asked));
+/* Ends the step when a callback of a surface has not returned MPM_OK. */
+static mpm_status end_callback(mpmi_step *step, const mpm_surface *s, mpm_status returned, const char *which,
+                               const char *what) {
   if (!returned) return MPM_OK;
   const mpm_status cause = mpmi_callback_cause(returned);
   step->failure = (mpmi_failure){.cause = cause,
@@ -83,10 +80,57 @@ static mpm_status ask_tractions(mpmi_step *step, mpm_surface *s, double t) {
                                  .set = -1,
                                  .particle = -1,
                                  .node = -1,
-                                 .what = "the traction callback of a surface"};
+                                 .what = what};
   return mpmi_fail(step->settings->context, cause,
-                   "the traction callback of surface %d returned %d in the step from t = %g with dt = %g",
+                   "the %s callback of surface %d returned %d in the step from t = %g with dt = %g", which,
                    (int)s->number, (int)returned, step->t, step->dt);
+}
+
+static mpm_status ask_tractions(mpmi_step *step, mpm_surface *s, double t) {
+  mpm_marker_batch batch;
+  s->asked = NULL;
+  if (!s->traction || !s->next.count) return MPM_OK;
+  s->asked = lay_out(step, s, t, &batch);
+  const mpm_status returned = mpmi_from_host(s->traction(s->traction_user, &batch, s->asked));
+  return end_callback(step, s, returned, "traction", "the traction callback of a surface");
+}
+
+/* Finds what one surface prescribes: velocities, and the normals of its markers. */
+static mpm_status aim_surface(mpmi_step *step, mpm_surface *s) {
+  const int64_t n = s->next.count;
+  const double *asked = NULL;
+  if (s->velocity && n) {
+    mpm_marker_batch batch;
+    double *add = lay_out(step, s, step->t, &batch);
+    const mpm_status returned = mpmi_from_host(s->velocity(s->velocity_user, &batch, add));
+    const mpm_status status =
+        end_callback(step, s, returned, "velocity", "the velocity callback of a surface");
+    if (status) return status;
+    asked = add;
+  }
+  for (int64_t i = 0; i < n; ++i) {
+    const mpmi_marker *m = &s->next.at[i];
+    mpmi_marker_aim *aim = &s->aim[i];
+    double area[3];
+    const double size = mpmi_marker_size(m, s->grid);
+    mpmi_marker_area(m, s->grid, area);
+    *aim = (mpmi_marker_aim){.stiffness = -1.0};
+    for (int32_t k = 0; k < s->grid->dim; ++k) {
+      aim->normal[k] = size > 0.0 ? area[k] / size : 0.0;
+      aim->velocity[k] = s->desc.velocity[k] + m->prescribed_velocity[k] + (asked ? asked[k * n + i] : 0.0);
+      if (!isfinite(aim->velocity[k]))
+        return fail_marker(step, MPM_NONFINITE, s, m, "prescribes a velocity that is not finite");
+    }
+  }
+  return MPM_OK;
+}
+
+mpm_status mpmi_surfaces_aim(mpmi_step *step) {
+  const mpmi_surfaces *list = &step->settings->surfaces;
+  mpm_status status = MPM_OK;
+  for (int64_t i = 0; i < list->count && !status; ++i)
+    if (mpmi_surface_prescribes(list->surface[i])) status = aim_surface(step, list->surface[i]);
+  return status;
 }
 
 void mpmi_marker_tractions(const mpm_surface *s, int64_t i, double *traction) {
@@ -430,7 +474,7 @@ static void stretch(const surface_job *job, int64_t marker, double L[3][3]) {
 static void stretch_task(void *data, int64_t task) {
   const surface_job *job = data;
   const mpmi_share share = mpmi_share_of(job->step->settings, job->surface->next.count, task);
-  for (int64_t i = share.begin; i < share.end; ++i) {
+  for (int64_t i = share.begin; i < share.end && !mpmi_surface_prescribes(job->surface); ++i) {
     double velocity[3], L[3][3];
     gather(job, i, velocity, L);
     stretch(job, i, L);
@@ -448,18 +492,25 @@ mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from) {
   return status;
 }
 
+/* What prescribes moves as it prescribes, and keeps its edges; the rest goes with the material. */
 static void move_task(void *data, int64_t task) {
   const surface_job *job = data;
   const double dt = job->step->dt;
+  const int32_t prescribes = mpmi_surface_prescribes(job->surface);
   const mpmi_share share = mpmi_share_of(job->step->settings, job->surface->next.count, task);
   for (int64_t i = share.begin; i < share.end; ++i) {
     mpmi_marker *m = &job->surface->next.at[i];
     double L[3][3];
     gather(job, i, m->velocity, L);
-    stretch(job, i, L);
+    if (!prescribes) {
+      stretch(job, i, L);
+      memset(m->reaction, 0, sizeof m->reaction);
+      memset(m->gap, 0, sizeof m->gap);
+    }
+    const double *by = prescribes ? job->surface->aim[i].velocity : m->velocity;
     for (int32_t c = 0; c < job->surface->grid->dim; ++c) {
-      m->position[c] += dt * m->velocity[c];
-      m->displacement[c] += dt * m->velocity[c];
+      m->position[c] += dt * by[c];
+      m->displacement[c] += dt * by[c];
     }
   }
 }

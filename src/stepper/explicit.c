@@ -3,6 +3,7 @@
 #include "stepper/stepper.h"
 #include "boundary/boundary.h"
 #include "boundary/prescribed.h"
+#include "boundary/surface_holds.h"
 #include "stages/stages.h"
 
 /* Makes a projection beside the one with the forces of the step, up to its boundary conditions. */
@@ -35,6 +36,7 @@ static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock
 mpm_status mpmi_explicit_begin(mpmi_step *step, mpmi_nodes *nodes) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_forces_stage(step, step->t);
+  if (!status) status = mpmi_surfaces_aim(step);
   if (!status) status = mpmi_surfaces_load(step, step->t);
   if (!status) status = mpmi_prescribed_stage(step);
   mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
@@ -68,6 +70,7 @@ mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
     status = project(step, nodes, MPMI_PROJECT_MOVED, &clock);
     if (!status) status = deform(step, nodes, &clock);
   }
+  if (!status) mpmi_surface_holds_report(step, nodes);
   if (!status)
     status = mpmi_surfaces_move(step, mpmi_moves_last(settings) ? &nodes->projected : &nodes->solved);
   mpmi_move_samples(step, MPMI_TIME_G2P);

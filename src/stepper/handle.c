@@ -197,6 +197,7 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   s->history.step = step;
   s->history.totals = (mpmi_totals){.external_work = 0.0};
   mpmi_pairs_forget(&s->history.pairs);
+  mpmi_surfaces_forget(&s->settings.surfaces);
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     for (int32_t c = 0; c < 3; ++c) s->history.reaction[m].impulse_total[c] = 0.0;
     s->adaption[m].sums = (mpmi_adaption_sums){.splits = 0};

@@ -119,6 +119,8 @@ void mpmi_surfaces_release(mpm_stepper *s);
  * fail. */
 mpm_status mpmi_surfaces_prepare(const mpmi_settings *settings);
 void mpmi_surfaces_commit(const mpmi_surfaces *list);
+/* Forgets sums over steps. */
+void mpmi_surfaces_forget(const mpmi_surfaces *list);
 
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */

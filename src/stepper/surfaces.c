@@ -1,4 +1,4 @@
-/* The surfaces of a stepper: coming and going, and what a step begins and ends with. */
+/* The surfaces of a stepper: coming and going, what a step begins and ends with, reports. */
 #include "stepper/stepper.h"
 #include "transfer/weights.h"
 
@@ -20,6 +20,7 @@ mpm_status mpm_stepper_add_surface(mpm_stepper *s, mpm_surface *surface) {
   surface->number = (int32_t)list->count;
   surface->stepper = s;
   surface->owner = &mpmi_stepper_owns;
+  surface->impulses = (mpmi_surface_impulses){{0.0}, {0.0}};
   list->surface[list->count++] = surface;
   return MPM_OK;
 }
@@ -63,8 +64,11 @@ static mpm_status reserve(mpm_surface *s) {
   for (int32_t k = 0; k < dim; ++k) nodes *= s->grid->width;
   mpm_status status = MPMI_RESERVE_MORE(c, around->slot, around->slot_capacity, n * nodes);
   if (!status) status = MPMI_RESERVE_MORE(c, around->weight, around->weight_capacity, n * nodes * (1 + dim));
-  if (!status && s->traction) status = MPMI_RESERVE_MORE(c, s->batch_id, s->id_capacity, n);
-  if (!status && s->traction) status = MPMI_RESERVE_MORE(c, s->batch, s->batch_capacity, (5 * dim + 1) * n);
+  const int32_t prescribes = mpmi_surface_prescribes(s), asks = s->traction || (s->velocity && prescribes);
+  if (!status && asks) status = MPMI_RESERVE_MORE(c, s->batch_id, s->id_capacity, n);
+  if (!status && asks) status = MPMI_RESERVE_MORE(c, s->batch, s->batch_capacity, (5 * dim + 1) * n);
+  if (!status && prescribes) status = MPMI_RESERVE_MORE(c, s->aim, s->aim_capacity, n);
+  if (!status && prescribes) status = MPMI_RESERVE_MORE(c, s->site, s->site_capacity, n * nodes);
   around->nodes = (int32_t)nodes;
   around->gradient = around->weight + n * nodes;
   return status;
@@ -76,6 +80,7 @@ mpm_status mpmi_surfaces_prepare(const mpmi_settings *settings) {
     mpm_surface *surface = settings->surfaces.surface[i];
     status = mpmi_markers_copy(settings->context, &surface->now, &surface->next);
     if (!status && surface->next.count) status = reserve(surface);
+    surface->impulse[0] = surface->impulse[1] = surface->impulse[2] = 0.0;
   }
   return status;
 }
@@ -86,5 +91,42 @@ void mpmi_surfaces_commit(const mpmi_surfaces *list) {
     const mpmi_markers old = surface->now;
     surface->now = surface->next;
     surface->next = old;
+    for (int32_t c = 0; c < 3; ++c) {
+      surface->impulses.last[c] = surface->impulse[c];
+      surface->impulses.total[c] += surface->impulse[c];
+    }
   }
+}
+
+/* ---- reports ------------------------------------------------------------------------------------------- */
+void mpmi_surfaces_forget(const mpmi_surfaces *list) {
+  for (int64_t i = 0; i < list->count; ++i)
+    for (int32_t c = 0; c < 3; ++c) list->surface[i]->impulses.total[c] = 0.0;
+}
+
+static mpm_status check_member(const mpm_stepper *s, const mpm_surface *surface, const double *out,
+                               const char *name) {
+  mpm_context *c = s->context;
+  if (!out) return mpmi_fail(c, MPM_E_ARG, "%s is NULL", name);
+  if (!surface || surface->magic != (uint32_t)MPMI_SURFACE || surface->context != c)
+    return mpmi_fail(c, MPM_E_ARG, "surface is NULL, destroyed or of another context");
+  if (surface->stepper == s) return MPM_OK;
+  return mpmi_fail(c, MPM_E_NOT_FOUND, "the surface is not in this stepper");
+}
+
+mpm_status mpm_stepper_surface_reaction(const mpm_stepper *s, const mpm_surface *surface, double *force) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  const mpm_status status = check_member(s, surface, force, "force");
+  if (status) return status;
+  if (!s->history.has_reactions) return mpmi_fail(s->context, MPM_E_STATE, "no step has been made yet");
+  for (int32_t c = 0; c < s->grid->dim; ++c) force[c] = surface->impulses.last[c] / s->history.reaction_dt;
+  return MPM_OK;
+}
+
+mpm_status mpm_stepper_surface_impulse(const mpm_stepper *s, const mpm_surface *surface, double *impulse) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  const mpm_status status = check_member(s, surface, impulse, "impulse");
+  if (status) return status;
+  for (int32_t c = 0; c < s->grid->dim; ++c) impulse[c] = surface->impulses.total[c];
+  return MPM_OK;
 }

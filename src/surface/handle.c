@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-static const mpm_surface_desc defaults = {.struct_size = sizeof(mpm_surface_desc)};
+static const mpm_surface_desc defaults = {.struct_size = sizeof(mpm_surface_desc), .penalty = 100.0};
 
 mpm_status mpm_surface_desc_init(mpm_surface_desc *desc, uint32_t struct_size) {
   return mpmi_init_struct("mpm_surface_desc", &defaults, sizeof defaults, desc, struct_size);
@@ -15,6 +15,17 @@ static mpm_status check_vector(mpm_context *c, const char *name, const double *v
     if (!isfinite(v[k]))
       return mpmi_fail(c, MPM_E_ARG, "mpm_surface_desc: %s[%d] is %g, must be finite", name, (int)k, v[k]);
   return MPM_OK;
+}
+
+static mpm_status check_prescription(mpm_context *c, const mpm_surface_desc *desc) {
+  if (desc->prescribes < MPM_PRESCRIBES_NOTHING || desc->prescribes > MPM_PRESCRIBES_NORMAL)
+    return mpmi_fail(c, MPM_E_ARG, "mpm_surface_desc: prescribes is %d, must be %d ... %d",
+                     (int)desc->prescribes, (int)MPM_PRESCRIBES_NOTHING, (int)MPM_PRESCRIBES_NORMAL);
+  if (!(desc->penalty > 0.0) || !isfinite(desc->penalty))
+    return mpmi_fail(c, MPM_E_ARG, "mpm_surface_desc: penalty is %g, must be finite and > 0", desc->penalty);
+  if (!(desc->modulus >= 0.0) || !isfinite(desc->modulus))
+    return mpmi_fail(c, MPM_E_ARG, "mpm_surface_desc: modulus is %g, must be finite and >= 0", desc->modulus);
+  return check_vector(c, "velocity", desc->velocity);
 }
 
 static mpm_status read_desc(mpm_context *c, const mpm_grid *grid, const mpm_surface_desc *desc,
@@ -32,9 +43,11 @@ static mpm_status read_desc(mpm_context *c, const mpm_grid *grid, const mpm_surf
     return mpmi_fail(c, MPM_E_ARG, "mpm_surface_desc: max_spacing is %g, must be finite and >= 0",
                      out->max_spacing);
   if ((status = check_vector(c, "traction", out->traction)) ||
-      (status = check_vector(c, "dead_traction", out->dead_traction)))
+      (status = check_vector(c, "dead_traction", out->dead_traction)) ||
+      (status = check_prescription(c, out)))
     return status;
-  for (int32_t k = grid->dim; k < 3; ++k) out->traction[k] = out->dead_traction[k] = 0.0;
+  for (int32_t k = grid->dim; k < 3; ++k)
+    out->traction[k] = out->dead_traction[k] = out->velocity[k] = 0.0;
   return MPM_OK;
 }
 
@@ -73,6 +86,8 @@ mpm_status mpm_surface_destroy(mpm_surface *s) {
   mpmi_markers_free(c, &s->next);
   MPMI_FREE_ARRAY(c, s->around.slot, s->around.slot_capacity);
   MPMI_FREE_ARRAY(c, s->around.weight, s->around.weight_capacity);
+  MPMI_FREE_ARRAY(c, s->aim, s->aim_capacity);
+  MPMI_FREE_ARRAY(c, s->site, s->site_capacity);
   MPMI_FREE_ARRAY(c, s->batch, s->batch_capacity);
   MPMI_FREE_ARRAY(c, s->batch_id, s->id_capacity);
   mpmi_free(c, s, sizeof *s);
@@ -95,6 +110,15 @@ mpm_status mpm_surface_set_traction(mpm_surface *s, mpm_traction_fn fn, void *us
   if (status) return status;
   s->traction = fn;
   s->traction_user = user;
+  return MPM_OK;
+}
+
+mpm_status mpm_surface_set_velocity(mpm_surface *s, mpm_marker_velocity_fn fn, void *user) {
+  MPMI_ENTER(s, MPMI_SURFACE);
+  const mpm_status status = mpmi_surface_changeable(s);
+  if (status) return status;
+  s->velocity = fn;
+  s->velocity_user = user;
   return MPM_OK;
 }
 

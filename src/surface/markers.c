@@ -205,6 +205,7 @@ static void halve(const mpm_grid *grid, mpmi_marker *m, int32_t e, mpmi_marker *
     m->edge[e][k] *= 0.5;
     m->reference_edge[e][k] *= 0.5;
     m->force[k] *= 0.5;
+    m->reaction[k] *= 0.5;
   }
   *half = *m;
   for (int32_t k = 0; k < grid->dim; ++k) {

@@ -1,4 +1,4 @@
-/* Surfaces: markers that move with the material and load it.
+/* Surfaces: markers that move with the material and load it, or prescribe how it moves.
  *
  *   handle.c   making, loads, options
  *   markers.c  markers come, go and are split
@@ -23,6 +23,9 @@ typedef struct mpmi_marker {
   double reference_area, displacement[3], velocity[3], force[3];
   double reference[3], reference_edge[2][3];      /* position and edges when it was added or set */
   double pressure, traction[3], dead_traction[3]; /* its own, beside those of the surface */
+  /* Of a surface that prescribes: its own velocity, beside that of the surface; the force of what is
+   * prescribed, in the last step; by how much the spring of implicit steps is stretched. */
+  double prescribed_velocity[3], reaction[3], gap[3];
 } mpmi_marker;
 
 /* Markers by ascending id. */
@@ -40,6 +43,17 @@ typedef struct mpmi_marker_nodes {
   double *weight, *gradient;
 } mpmi_marker_nodes;
 
+/* What a marker prescribes in a step: its velocity, the normal along which alone it counts where the material
+ * may slide, and the stiffness of its spring in implicit steps. */
+typedef struct mpmi_marker_aim {
+  double velocity[3], normal[3], stiffness;
+} mpmi_marker_aim;
+
+/* The impulses of what a surface prescribes, on the material: in the last step, and since it was added. */
+typedef struct mpmi_surface_impulses {
+  double last[3], total[3];
+} mpmi_surface_impulses;
+
 struct mpm_surface {
   uint32_t magic;
   int32_t number; /* in its stepper */
@@ -50,8 +64,15 @@ struct mpm_surface {
   mpm_surface_desc desc;
   mpm_traction_fn traction;
   void *traction_user;
+  mpm_marker_velocity_fn velocity;
+  void *velocity_user;
   mpmi_markers now, next; /* next: at the end of the step under way */
   mpmi_marker_nodes around;
+  mpmi_surface_impulses impulses;
+  double impulse[3];    /* in the step under way */
+  mpmi_marker_aim *aim; /* [markers], in the step under way; there only where the surface prescribes */
+  int32_t *site;        /* of explicit steps, for each of the nodes around: see boundary/surface_holds.c */
+  int64_t aim_capacity, site_capacity;
   double *batch; /* what the callback sees and gives */
   double *asked; /* the tractions in it in the step under way, or NULL */
   int64_t *batch_id;
@@ -63,6 +84,16 @@ typedef struct mpmi_surfaces {
   int64_t count, capacity;
   mpm_surface **surface;
 } mpmi_surfaces;
+
+static inline int32_t mpmi_surface_prescribes(const mpm_surface *surface) {
+  return surface->desc.prescribes != MPM_PRESCRIBES_NOTHING;
+}
+/* Returns 1 when some surface with markers prescribes how the material moves. */
+static inline int32_t mpmi_surfaces_prescribe(const mpmi_surfaces *list) {
+  for (int64_t i = 0; i < list->count; ++i)
+    if (mpmi_surface_prescribes(list->surface[i]) && list->surface[i]->now.count) return 1;
+  return 0;
+}
 
 /* Returns where in the grid a marker is: what its weights are made of. */
 static inline const double *mpmi_marker_place_of(const mpmi_marker *marker, const mpm_grid *grid) {

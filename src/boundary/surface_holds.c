@@ -1,0 +1,209 @@
+/* Surfaces that prescribe velocities, in explicit steps: the nodes that they hold, what they hold there, and
+ * their impulses. A node that several surfaces reach has a site for each. */
+#include "boundary/surface_holds.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A node takes nothing from markers whose weight there is no more than this, or rounding: at the edge of a
+ * stencil it would be held as firmly as the others. */
+static const double least_weight = 1e-6;
+/* The least part of a unit normal that is left beside what holds the node already. */
+static const double least_left = 0.1;
+
+/* ---- sites --------------------------------------------------------------------------------------------- */
+/* Returns the site of a surface at a node that moves; *status tells of memory that ran out. */
+static int32_t site_at(mpmi_bound *bound, int32_t surface, int64_t slot, mpm_status *status) {
+  mpmi_surface_sites *sites = &bound->nodes->surface_sites;
+  const int32_t last = sites->last[slot];
+  if (last >= 0 && sites->site[last].surface == surface) return last;
+  *status = MPMI_RESERVE_NEXT(bound->step->settings->context, sites->site, sites->capacity, sites->count);
+  if (*status) return -1;
+  sites->site[sites->count] = (mpmi_surface_site){.slot = slot, .surface = surface, .before = last};
+  return sites->last[slot] = (int32_t)sites->count++;
+}
+
+/* Returns the node that moves for the one in a slot, with the signs by which the latter follows. */
+static int64_t mover_of(const mpmi_bound *bound, int64_t slot, double *sign) {
+  const mpmi_constraints *ties = mpmi_constraints_of(bound);
+  const int32_t at = ties->tie_of[slot];
+  sign[0] = sign[1] = sign[2] = 1.0;
+  if (at < 0) return slot;
+  const mpmi_tie *tie = &ties->tie[at];
+  for (int64_t i = tie->first; i < tie->first + tie->count; ++i)
+    if (ties->follower[i].slot == slot) memcpy(sign, ties->follower[i].sign, 3 * sizeof *sign);
+  return tie->master;
+}
+
+/* Adds to the sums of a site what a marker prescribes there. */
+static void add_marker(mpmi_surface_site *site, const mpmi_marker_aim *aim, int32_t normal_only, double share,
+                       const double *sign) {
+  double along = 0.0;
+  for (int32_t c = 0; c < 3; ++c) along += aim->normal[c] * aim->velocity[c];
+  site->weight += share;
+  site->value += share * along;
+  for (int32_t c = 0; c < 3; ++c)
+    site->vector[c] += share * sign[c] * (normal_only ? aim->normal[c] : aim->velocity[c]);
+}
+
+static mpm_status find_sites(mpmi_bound *bound, int32_t number) {
+  mpm_surface *s = bound->step->settings->surfaces.surface[number];
+  const int32_t normal_only = s->desc.prescribes == MPM_PRESCRIBES_NORMAL;
+  mpm_status status = MPM_OK;
+  for (int64_t k = 0; k < s->next.count; ++k) {
+    const double area = mpmi_marker_size(&s->next.at[k], s->grid);
+    for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
+      double sign[3];
+      s->site[n] = -1;
+      if (s->around.slot[n] < 0 || !(s->around.weight[n] > least_weight) || !(area > 0.0)) continue;
+      const int64_t slot = mover_of(bound, s->around.slot[n], sign);
+      if (!mpmi_moves(bound, slot)) continue;
+      s->site[n] = site_at(bound, number, slot, &status);
+      if (status) return status;
+      add_marker(&bound->nodes->surface_sites.site[s->site[n]], &s->aim[k], normal_only,
+                 s->around.weight[n] * area, sign);
+    }
+  }
+  return MPM_OK;
+}
+
+static int32_t is_normal_only(const mpmi_bound *bound, const mpmi_surface_site *site) {
+  return bound->step->settings->surfaces.surface[site->surface]->desc.prescribes == MPM_PRESCRIBES_NORMAL;
+}
+
+/* Holds all components that nothing holds yet. */
+static void hold_velocity(mpmi_bound *bound, mpmi_surface_site *site) {
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    if (bound->nodes->held[site->slot][c]) continue;
+    bound->nodes->held[site->slot][c] = MPMI_HELD_BY_SURFACES;
+    bound->nodes->held_value[site->slot][c] = site->vector[c] / site->weight;
+    site->holds[c] = 1;
+  }
+}
+
+/* Takes one direction, in which something else sets the velocity, out of what a site prescribes. */
+static void take_out(mpmi_surface_site *site, const double *direction, double value) {
+  double part = 0.0;
+  for (int32_t c = 0; c < 3; ++c) part += site->vector[c] * direction[c];
+  for (int32_t c = 0; c < 3; ++c) site->vector[c] -= part * direction[c];
+  site->value -= part * value;
+}
+
+/* Makes a unit vector of the normal of a site; returns 0 where hardly any of it is left. */
+static int32_t make_unit(mpmi_surface_site *site, double least) {
+  double square = 0.0;
+  for (int32_t c = 0; c < 3; ++c) square += site->vector[c] * site->vector[c];
+  const double length = sqrt(square);
+  if (!(length > least)) return 0;
+  for (int32_t c = 0; c < 3; ++c) site->vector[c] /= length;
+  site->value /= length;
+  return 1;
+}
+
+/* Finds the direction in which a site sets the velocity. */
+static void find_direction(mpmi_bound *bound, mpmi_surface_site *site) {
+  const mpmi_constraints *ties = mpmi_constraints_of(bound);
+  const int32_t tie = ties->tie_of[site->slot];
+  if (!make_unit(site, least_left * site->weight)) return;
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    double axis[3] = {0.0, 0.0, 0.0};
+    axis[c] = 1.0;
+    if (bound->nodes->held[site->slot][c])
+      take_out(site, axis, bound->nodes->held_value[site->slot][c]);
+    else if (tie >= 0 && ties->tie[tie].zero[c])
+      take_out(site, axis, 0.0);
+  }
+  for (int32_t at = site->before; at >= 0; at = bound->nodes->surface_sites.site[at].before) {
+    const mpmi_surface_site *other = &bound->nodes->surface_sites.site[at];
+    if (other->slides) take_out(site, other->vector, other->value);
+  }
+  site->slides = make_unit(site, least_left);
+}
+
+mpm_status mpmi_surface_holds_find(mpmi_bound *bound) {
+  const mpmi_surfaces *list = &bound->step->settings->surfaces;
+  mpmi_surface_sites *sites = &bound->nodes->surface_sites;
+  mpm_status status = MPM_OK;
+  for (int64_t i = 0; i < mpmi_slots(bound->step->layout); ++i) sites->last[i] = -1;
+  sites->count = 0;
+  for (int32_t i = 0; i < list->count && !status; ++i)
+    if (mpmi_surface_prescribes(list->surface[i])) status = find_sites(bound, i);
+  if (status) return status;
+  for (int64_t i = 0; i < sites->count; ++i)
+    if (!is_normal_only(bound, &sites->site[i])) hold_velocity(bound, &sites->site[i]);
+  for (int64_t i = 0; i < sites->count; ++i)
+    if (is_normal_only(bound, &sites->site[i])) find_direction(bound, &sites->site[i]);
+  return MPM_OK;
+}
+
+/* ---- sliding ------------------------------------------------------------------------------------------- */
+/* Sets the velocity of a node along a direction; its increment is that of eq. 30, or 0 by option. */
+static void slide(mpmi_bound *bound, mpmi_surface_site *site) {
+  const double *along = site->vector;
+  double *v = mpmi_velocity(bound->values, site->slot), has = 0.0, gained = 0.0;
+  double *dv = mpmi_has_increments(bound->values) ? mpmi_increment(bound->values, site->slot) : NULL;
+  mpmi_component before[3];
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    before[c] = mpmi_component_of(bound, site->slot, c);
+    has += along[c] * v[c];
+    gained += dv ? along[c] * dv[c] : 0.0;
+  }
+  const double more = site->value - has,
+               more_gained = bound->step->settings->desc.boundary_zero_acceleration ? -gained : more;
+  for (int32_t c = 0; c < bound->dim; ++c) {
+    v[c] += along[c] * more;
+    if (dv) dv[c] += along[c] * more_gained;
+    const double impulse = mpmi_record(bound, site->slot, c, before[c]);
+    if (!bound->records) continue;
+    site->impulse[c] += bound->share * impulse;
+    bound->step->host_work += bound->share * impulse * v[c];
+  }
+}
+
+void mpmi_surface_holds_slide(mpmi_bound *bound) {
+  mpmi_surface_sites *sites = &bound->nodes->surface_sites;
+  if (!mpmi_surfaces_hold(bound->step->settings)) return;
+  for (int64_t i = 0; i < sites->count; ++i)
+    if (sites->site[i].slides) slide(bound, &sites->site[i]);
+}
+
+/* ---- reports ------------------------------------------------------------------------------------------- */
+/* Finds the impulse of a site that holds components: that on all nodes of its tie. */
+static void sum_impulse(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_surface_site *site) {
+  const mpmi_constraints *ties = &step->layout->constraints;
+  const int32_t at = ties->tie_of[site->slot];
+  for (int32_t c = 0; c < step->settings->grid->dim; ++c) {
+    if (!site->holds[c]) continue;
+    site->impulse[c] = nodes->impulse[site->slot].given[c];
+    for (int64_t i = 0; at >= 0 && i < ties->tie[at].count; ++i)
+      site->impulse[c] += nodes->impulse[ties->follower[ties->tie[at].first + i].slot].given[c];
+  }
+}
+
+/* Shares the impulses of its sites out among the markers of a surface. */
+static void tell_surface(const mpmi_step *step, const mpmi_nodes *nodes, mpm_surface *s) {
+  for (int64_t k = 0; k < s->next.count; ++k) {
+    mpmi_marker *m = &s->next.at[k];
+    const double area = mpmi_marker_size(m, s->grid);
+    memset(m->reaction, 0, sizeof m->reaction);
+    memset(m->gap, 0, sizeof m->gap);
+    for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
+      if (s->site[n] < 0) continue;
+      const mpmi_surface_site *site = &nodes->surface_sites.site[s->site[n]];
+      const double share = s->around.weight[n] * area / site->weight;
+      for (int32_t c = 0; c < s->grid->dim; ++c) {
+        s->impulse[c] += share * site->impulse[c];
+        m->reaction[c] += share * site->impulse[c] / step->velocity_dt;
+      }
+    }
+  }
+}
+
+void mpmi_surface_holds_report(mpmi_step *step, const mpmi_nodes *nodes) {
+  const mpmi_surfaces *list = &step->settings->surfaces;
+  const mpmi_surface_sites *sites = &nodes->surface_sites;
+  if (!mpmi_surfaces_hold(step->settings)) return;
+  for (int64_t i = 0; i < sites->count; ++i) sum_impulse(step, nodes, &sites->site[i]);
+  for (int64_t i = 0; i < list->count; ++i)
+    if (mpmi_surface_prescribes(list->surface[i])) tell_surface(step, nodes, list->surface[i]);
+}

@@ -1,0 +1,164 @@
+/* Surfaces that prescribe velocities, in implicit steps (docs/theory.md, 18.7): springs between markers and
+ * material, of the stiffness k = beta A, beta = penalty modulus / h, and the stretch
+ *
+ *   d = d0 + sum w_i u_i - dt g
+ *
+ * with the stretch d0 at the start of the step; or its part along the marker's normal n alone. The force on
+ * the material is -k d, its stiffness k w_a w_b 1, or k w_a w_b n (x) n. As contact it acts wholly at the end
+ * of the step: the accelerations at its start have nothing of it. */
+#include "implicit/active_set.h"
+#include "implicit/surface_springs.h"
+
+#include <math.h>
+#include <string.h>
+
+static int32_t reaches_material(const mpmi_marker_nodes *around, int64_t marker) {
+  int32_t reaches = 0;
+  for (int64_t n = marker * around->nodes; n < (marker + 1) * around->nodes; ++n)
+    reaches |= around->slot[n] >= 0;
+  return reaches;
+}
+
+void mpmi_springs_find(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  balance->newton->has_springs = 0;
+  for (int64_t i = 0; i < list->count; ++i) {
+    mpm_surface *s = list->surface[i];
+    for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k) {
+      const int32_t springs =
+          mpmi_marker_size(&s->next.at[k], s->grid) > 0.0 && reaches_material(&s->around, k);
+      balance->newton->has_springs |= springs;
+      if (!springs) s->aim[k].stiffness = 0.0;
+    }
+  }
+}
+
+/* ---- stiffness ----------------------------------------------------------------------------------------- */
+/* Returns the largest density times wave speed squared of the particles of a body, as the law has just given
+ * them. */
+static double largest_modulus(const mpmi_balance *balance, int32_t body) {
+  double most = 0.0;
+  for (int32_t m = 0; m < balance->layout->member_count; ++m) {
+    const mpm_particles *set = balance->layout->member[m].set;
+    const double *mass = mpmi_f64(set, MPMI_MASS, 0), *volume = mpmi_f64(set, MPMI_VOLUME, 0);
+    const double *speed = balance->step->work->rows.of[m].wave_speed;
+    const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+    if (balance->layout->member[m].body != body) continue;
+    for (int64_t p = 0; p < set->slots; ++p)
+      if (id[p] >= 0) most = fmax(most, mass[p] / volume[p] * speed[p] * speed[p]);
+  }
+  return most;
+}
+
+/* Gives the springs of a surface that have none yet their stiffness. */
+static mpm_status stiffen_surface(mpmi_balance *balance, mpm_surface *s) {
+  double modulus = s->desc.modulus;
+  for (int64_t k = 0; k < s->next.count; ++k) {
+    if (!(s->aim[k].stiffness < 0.0)) continue;
+    if (!(modulus > 0.0)) modulus = largest_modulus(balance, s->desc.body);
+    if (!(modulus > 0.0))
+      return mpmi_fail(balance->settings->context, MPM_SINGULAR,
+                       "surface %d prescribes how body %d moves, whose particles have no wave speed from which "
+                       "its stiffness follows: set mpm_surface_desc.modulus",
+                       (int)s->number, (int)s->desc.body);
+    s->aim[k].stiffness =
+        s->desc.penalty * modulus / s->grid->h_min * mpmi_marker_size(&s->next.at[k], s->grid);
+  }
+  return MPM_OK;
+}
+
+/* ---- forces -------------------------------------------------------------------------------------------- */
+/* Finds the displacement of the material at a marker, and what its spring is stretched by. */
+static void find_stretch(const mpmi_balance *balance, const mpm_surface *s, int64_t k, double *moved,
+                         double *stretch) {
+  const mpmi_marker_nodes *around = &s->around;
+  const mpmi_marker_aim *aim = &s->aim[k];
+  const double dt = balance->step->dt;
+  const int32_t dim = s->grid->dim;
+  double along = 0.0;
+  for (int32_t c = 0; c < 3; ++c) moved[c] = stretch[c] = 0.0;
+  for (int64_t n = k * around->nodes; n < (k + 1) * around->nodes; ++n)
+    for (int32_t c = 0; c < dim && around->slot[n] >= 0; ++c)
+      moved[c] += around->weight[n] * dt * mpmi_velocity(&balance->nodes->solved, around->slot[n])[c];
+  for (int32_t c = 0; c < dim; ++c) {
+    stretch[c] = s->now.at[k].gap[c] + moved[c] - dt * aim->velocity[c];
+    along += aim->normal[c] * stretch[c];
+  }
+  for (int32_t c = 0; c < dim && s->desc.prescribes == MPM_PRESCRIBES_NORMAL; ++c)
+    stretch[c] = along * aim->normal[c];
+}
+
+mpm_status mpmi_springs_pull(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  mpmi_newton *newton = balance->newton;
+  const int32_t dim = balance->settings->grid->dim;
+  double *to = newton->vector[MPMI_SPRINGS];
+  mpm_status status = MPM_OK;
+  memset(to, 0, (size_t)(newton->matrix.rows * dim) * sizeof *to);
+  for (int64_t i = 0; i < list->count && newton->has_springs && !status; ++i) {
+    mpm_surface *s = list->surface[i];
+    if (!mpmi_surface_prescribes(s)) continue;
+    status = stiffen_surface(balance, s);
+    for (int64_t k = 0; k < s->next.count && !status; ++k) {
+      double moved[3], stretch[3];
+      if (!(s->aim[k].stiffness > 0.0)) continue;
+      find_stretch(balance, s, k, moved, stretch);
+      for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
+        if (s->around.slot[n] < 0) continue;
+        const mpmi_active_node *node = &newton->active[newton->active_of[s->around.slot[n]]];
+        for (int32_t c = 0; c < dim; ++c)
+          to[(int64_t)node->row * dim + c] -=
+              node->sign[c] * s->around.weight[n] * s->aim[k].stiffness * stretch[c];
+      }
+    }
+  }
+  return status;
+}
+
+/* Adds the block of two nodes of a spring. */
+static void add_block(mpmi_newton *newton, const mpm_surface *s, int64_t k, int64_t a, int64_t b) {
+  const mpmi_active_node *A = &newton->active[newton->active_of[s->around.slot[a]]];
+  const mpmi_active_node *B = &newton->active[newton->active_of[s->around.slot[b]]];
+  const mpmi_marker_aim *aim = &s->aim[k];
+  const int32_t dim = s->grid->dim, whole = s->desc.prescribes == MPM_PRESCRIBES_VELOCITY;
+  const double by = aim->stiffness * s->around.weight[a] * s->around.weight[b];
+  const int64_t entry = mpmi_matrix_entry(&newton->matrix, A->row, B->row);
+  if (entry < 0) return; /* without it the iteration takes longer */
+  for (int32_t i = 0; i < dim; ++i)
+    for (int32_t j = 0; j < dim; ++j) {
+      const double part = whole ? (i == j ? 1.0 : 0.0) : aim->normal[i] * aim->normal[j];
+      newton->matrix.value[(entry * dim + i) * dim + j] += A->sign[i] * B->sign[j] * by * part;
+    }
+}
+
+void mpmi_springs_stiffen(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  for (int64_t i = 0; i < list->count && balance->newton->has_springs; ++i) {
+    const mpm_surface *s = list->surface[i];
+    const int32_t nodes = s->around.nodes;
+    for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k)
+      for (int64_t a = k * nodes; a < (k + 1) * nodes && s->aim[k].stiffness > 0.0; ++a)
+        for (int64_t b = k * nodes; b < (k + 1) * nodes && s->around.slot[a] >= 0; ++b)
+          if (s->around.slot[b] >= 0) add_block(balance->newton, s, k, a, b);
+  }
+}
+
+/* ---- the end of the step ------------------------------------------------------------------------------- */
+void mpmi_springs_finish(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  const double share = mpmi_contact_share(balance->settings), dt = balance->step->dt;
+  for (int64_t i = 0; i < list->count; ++i) {
+    mpm_surface *s = list->surface[i];
+    for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k) {
+      mpmi_marker *m = &s->next.at[k];
+      double moved[3], stretch[3] = {0.0, 0.0, 0.0};
+      if (s->aim[k].stiffness > 0.0) find_stretch(balance, s, k, moved, stretch);
+      for (int32_t c = 0; c < 3; ++c) {
+        m->gap[c] = stretch[c];
+        m->reaction[c] = -share * s->aim[k].stiffness * stretch[c];
+        s->impulse[c] += dt * m->reaction[c];
+        if (s->aim[k].stiffness > 0.0) balance->step->host_work += m->reaction[c] * moved[c];
+      }
+    }
+  }
+}
