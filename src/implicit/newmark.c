@@ -157,8 +157,9 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   mpmi_newton *newton = balance->newton;
   const int32_t unknown = lacks_accelerations(balance);
   const int32_t at_start =
-      unknown || (mpmi_is_dynamic(balance->settings) && (balance->nodes->contact.site_count > 0 ||
-                                                         mpmi_surfaces_prescribe(&balance->settings->surfaces)));
+      unknown ||
+      (mpmi_is_dynamic(balance->settings) &&
+       (balance->nodes->contact.site_count > 0 || mpmi_surfaces_prescribe(&balance->settings->surfaces)));
   mpm_status status = mpmi_prescribed_stage(balance->step);
   if (!status) status = mpmi_surfaces_aim(balance->step);
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);

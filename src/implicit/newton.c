@@ -61,8 +61,8 @@ static double find_forces(iteration *it) {
   const int32_t dim = balance->settings->grid->dim, dynamic = mpmi_is_dynamic(balance->settings);
   for (int64_t i = 0; i < it->n; ++i) {
     const double Ma = dynamic ? newton->mass[i / dim] * mpmi_newmark_inertia(balance, i) : 0.0;
-    residual[i] = internal[i] + Ma - external[i] - newton->vector[MPMI_CONTACT][i] -
-                  newton->vector[MPMI_SPRINGS][i];
+    residual[i] =
+        internal[i] + Ma - external[i] - newton->vector[MPMI_CONTACT][i] - newton->vector[MPMI_SPRINGS][i];
     term[i] = Ma * Ma;
   }
   mpmi_condense_forces(balance, residual);

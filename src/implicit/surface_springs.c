@@ -57,10 +57,11 @@ static mpm_status stiffen_surface(mpmi_balance *balance, mpm_surface *s) {
     if (!(s->aim[k].stiffness < 0.0)) continue;
     if (!(modulus > 0.0)) modulus = largest_modulus(balance, s->desc.body);
     if (!(modulus > 0.0))
-      return mpmi_fail(balance->settings->context, MPM_SINGULAR,
-                       "surface %d prescribes how body %d moves, whose particles have no wave speed from which "
-                       "its stiffness follows: set mpm_surface_desc.modulus",
-                       (int)s->number, (int)s->desc.body);
+      return mpmi_fail(
+          balance->settings->context, MPM_SINGULAR,
+          "surface %d prescribes how body %d moves, whose particles have no wave speed from which "
+          "its stiffness follows: set mpm_surface_desc.modulus",
+          (int)s->number, (int)s->desc.body);
     s->aim[k].stiffness =
         s->desc.penalty * modulus / s->grid->h_min * mpmi_marker_size(&s->next.at[k], s->grid);
   }
@@ -144,6 +145,25 @@ void mpmi_springs_stiffen(mpmi_balance *balance) {
 }
 
 /* ---- the end of the step ------------------------------------------------------------------------------- */
+/* A mirrored ghost turns a force round on its way to the node that moves: what is lost of it the wall has. */
+static void tell_walls(mpmi_balance *balance, const mpm_surface *s, int64_t k, const double *force) {
+  const mpmi_constraints *constraints = &balance->layout->constraints;
+  const mpmi_newton *newton = balance->newton;
+  const double share = mpmi_contact_share(balance->settings);
+  for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
+    if (s->around.slot[n] < 0 || constraints->tie_of[s->around.slot[n]] < 0) continue;
+    const mpmi_tie *tie = &constraints->tie[constraints->tie_of[s->around.slot[n]]];
+    const mpmi_active_node *node = &newton->active[newton->active_of[s->around.slot[n]]];
+    for (int32_t c = 0; c < s->grid->dim; ++c) {
+      if (tie->face[c] < 0 || mpmi_held_by(balance->nodes, tie->master, c)) continue;
+      const double given =
+          s->around.weight[n] * force[c] *
+          (mpmi_is_held(newton->matrix.held[(int64_t)node->row * s->grid->dim + c]) ? share : 1.0);
+      balance->step->impulse_by_face[tie->face[c]][c] -= balance->step->dt * (1.0 - node->sign[c]) * given;
+    }
+  }
+}
+
 void mpmi_springs_finish(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
   const double share = mpmi_contact_share(balance->settings), dt = balance->step->dt;
@@ -151,14 +171,16 @@ void mpmi_springs_finish(mpmi_balance *balance) {
     mpm_surface *s = list->surface[i];
     for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k) {
       mpmi_marker *m = &s->next.at[k];
-      double moved[3], stretch[3] = {0.0, 0.0, 0.0};
+      double moved[3] = {0.0, 0.0, 0.0}, stretch[3] = {0.0, 0.0, 0.0}, force[3];
       if (s->aim[k].stiffness > 0.0) find_stretch(balance, s, k, moved, stretch);
       for (int32_t c = 0; c < 3; ++c) {
         m->gap[c] = stretch[c];
-        m->reaction[c] = -share * s->aim[k].stiffness * stretch[c];
+        force[c] = -s->aim[k].stiffness * stretch[c];
+        m->reaction[c] = share * force[c];
         s->impulse[c] += dt * m->reaction[c];
-        if (s->aim[k].stiffness > 0.0) balance->step->host_work += m->reaction[c] * moved[c];
+        balance->step->host_work += m->reaction[c] * moved[c];
       }
+      if (s->aim[k].stiffness > 0.0) tell_walls(balance, s, k, force);
     }
   }
 }

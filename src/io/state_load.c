@@ -14,7 +14,7 @@ typedef struct loading {
   mpmi_contact_rules rules;
   mpmi_pair_records pairs;
   mpmi_state_obstacle *obstacle; /* [obstacles] */
-  mpmi_state_surface *surface;         /* [surfaces] */
+  mpmi_state_surface *surface;   /* [surfaces] */
   int64_t slots;                 /* slots of all sets */
 } loading;
 

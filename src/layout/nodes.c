@@ -55,8 +55,8 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
       (status = corrected || remedy ? mpmi_nodal_reserve(c, &nodes->sums, slots, 4) : MPM_OK) ||
       (status = places ? MPMI_RESERVE_MORE(c, nodes->contact.place, nodes->contact.place_capacity, slots)
                        : MPM_OK) ||
-      (status = surfaces ? MPMI_RESERVE_MORE(c, nodes->surface_sites.last,
-                                             nodes->surface_sites.last_capacity, slots)
+      (status = surfaces ? MPMI_RESERVE_MORE(c, nodes->surface_sites.last, nodes->surface_sites.last_capacity,
+                                             slots)
                          : MPM_OK) ||
       (status = MPMI_RESERVE_MORE(c, nodes->light, nodes->light_capacity, light)) ||
       (status = MPMI_RESERVE_MORE(c, nodes->tie_state, nodes->tie_capacity, ties)) ||

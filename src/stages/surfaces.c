@@ -75,12 +75,8 @@ static mpm_status end_callback(mpmi_step *step, const mpm_surface *s, mpm_status
                                const char *what) {
   if (!returned) return MPM_OK;
   const mpm_status cause = mpmi_callback_cause(returned);
-  step->failure = (mpmi_failure){.cause = cause,
-                                 .callback_status = returned,
-                                 .set = -1,
-                                 .particle = -1,
-                                 .node = -1,
-                                 .what = what};
+  step->failure = (mpmi_failure){
+      .cause = cause, .callback_status = returned, .set = -1, .particle = -1, .node = -1, .what = what};
   return mpmi_fail(step->settings->context, cause,
                    "the %s callback of surface %d returned %d in the step from t = %g with dt = %g", which,
                    (int)s->number, (int)returned, step->t, step->dt);

@@ -177,7 +177,7 @@ START_TEST(table) {
                {"mpm_contact_batch", 96, sizeof(mpm_contact_batch)},
                {"mpm_distance_batch", 64, sizeof(mpm_distance_batch)},
                {"mpm_obstacle_desc", 296, sizeof(mpm_obstacle_desc)},
-               {"mpm_surface_desc", 72, sizeof(mpm_surface_desc)},
+               {"mpm_surface_desc", 120, sizeof(mpm_surface_desc)},
                {"mpm_marker_batch", 88, sizeof(mpm_marker_batch)},
                {"mpm_adaption_desc", 72, sizeof(mpm_adaption_desc)},
                {"mpm_adaption_info", 80, sizeof(mpm_adaption_info)},
