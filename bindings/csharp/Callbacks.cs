@@ -23,6 +23,7 @@ namespace Mpm {
   public delegate int MotionFunction(double t, double dt, Columns velocity, Columns angularVelocity);
   /// <summary>Adds forces per present area to add[i, c] of each marker. It runs once per step.</summary>
   public delegate int TractionFunction(ref MarkerBatch batch, Columns add);
+  public delegate int MarkerVelocityFunction(ref MarkerBatch batch, Columns add);
   /// <summary>(mt) A law: writes batch.NewStress, NewState and WaveSpeed.</summary>
   public delegate int StressFunction(ref MaterialBatch batch);
   /// <summary>(mt) The tangent of a law; symmetric becomes 1 if it is.</summary>
@@ -227,6 +228,7 @@ namespace Mpm {
     public static readonly DistanceFn Distance = OnDistance;
     public static readonly MotionFn Motion = OnMotion;
     public static readonly TractionFn Traction = OnTraction;
+    public static readonly MarkerVelocityFn MarkerVelocity = OnMarkerVelocity;
     public static readonly StressFn Stress = OnStress;
     public static readonly TangentFn Tangent36 = OnTangent36, Tangent81 = OnTangent81;
     public static readonly InsideFn Inside = OnInside;
@@ -311,6 +313,15 @@ namespace Mpm {
       var slot = Slot.Of(user);
       try {
         return ((TractionFunction)slot.Function)(ref *batch, new Columns(add, batch->ld, batch->n, batch->dim));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+    [MonoPInvokeCallback(typeof(MarkerVelocityFn))]
+    static int OnMarkerVelocity(IntPtr user, MarkerBatch* batch, double* add) {
+      var slot = Slot.Of(user);
+      try {
+        return ((MarkerVelocityFunction)slot.Function)(ref *batch, new Columns(add, batch->ld, batch->n, batch->dim));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
       }

@@ -168,6 +168,14 @@ namespace Mpm {
     /// 0.1.0.</summary>
     public const int MPM_WALL_FRICTION_NODES = 5;
 
+    // What a surface prescribes of the motion of the material at its markers.
+    /// <summary>default: the material carries the markers along.</summary>
+    public const int MPM_PRESCRIBES_NOTHING = 0;
+    /// <summary>all components: the material sticks to the surface.</summary>
+    public const int MPM_PRESCRIBES_VELOCITY = 1;
+    /// <summary>that along the area vector: the material slides without friction.</summary>
+    public const int MPM_PRESCRIBES_NORMAL = 2;
+
     // Where in an explicit step a node hook runs.
     /// <summary>mass and velocity are projected, forces are not yet known.</summary>
     public const int MPM_AFTER_P2G = 1;
@@ -351,6 +359,11 @@ namespace Mpm {
   /// dim.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int TractionFn(IntPtr user, MarkerBatch* batch, double* add);
+
+  /// <summary>Gives velocities: the callback does add[c * ld + i] += mean velocity of marker i over the step that
+  /// begins at batch-&gt;t, c &lt; dim.</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int MarkerVelocityFn(IntPtr user, MarkerBatch* batch, double* add);
 
   /// <summary>Says which of them are left as they are: accept[i], [ld], is 1, and the callback writes 0 to keep the
   /// i-th from it.</summary>
@@ -1064,7 +1077,7 @@ namespace Mpm {
     }
   }
 
-  /// <summary>Loads of all markers of a surface.</summary>
+  /// <summary>Loads of all markers of a surface, and what it prescribes.</summary>
   [StructLayout(LayoutKind.Sequential)]
   public unsafe partial struct SurfaceDesc {
     /// <summary>sizeof(mpm_surface_desc) of the caller.</summary>
@@ -1080,6 +1093,16 @@ namespace Mpm {
     /// <summary>Length &gt; 0: markers with a longer edge are split in two at the end of a step, so that a surface
     /// that stretches has no dents.</summary>
     public double max_spacing;
+    /// <summary>MPM_PRESCRIBES_...: what of the motion of the material the markers prescribe.</summary>
+    public int prescribes;
+    /// <summary>0.</summary>
+    public int reserved;
+    /// <summary>length/time: how the markers of a surface that prescribes move.</summary>
+    public fixed double velocity[3];
+    /// <summary>implicit steps: stiffness of the springs in modulus / spacing, &gt; 0; default 100.</summary>
+    public double penalty;
+    /// <summary>Implicit steps, force/area &gt;= 0: the modulus of the springs.</summary>
+    public double modulus;
 
     /// <summary>The library's defaults.</summary>
     public static SurfaceDesc Default() {
@@ -1690,6 +1713,10 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_surface_set_traction(IntPtr surface, TractionFn fn, IntPtr user);
 
+    /// <summary>Sets the callback that adds to the velocities with which a surface that prescribes moves.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_set_velocity(IntPtr surface, MarkerVelocityFn fn, IntPtr user);
+
     /// <summary>Adds n markers.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_surface_add(IntPtr surface, long n, double* position, double* area, long* first_id);
@@ -1732,7 +1759,10 @@ namespace Mpm {
     /// "force"           | F64  | dim        | on the material, in the last step                       |     | |
     /// "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes | |
     /// "traction"        | F64  | dim        | likewise                                                | yes | |
-    /// "dead_traction"   | F64  | dim        | likewise                                                | yes |
+    /// "dead_traction"   | F64  | dim        | likewise                                                | yes | |
+    /// "prescribed_velocity" | F64 | dim     | of this marker, beside mpm_surface_desc.velocity        | yes | |
+    /// "reaction"        | F64  | dim        | force of what is prescribed on the material, last step  |     | |
+    /// "gap"             | F64  | dim        | implicit steps: way of the material off what it should  |     |
     /// MPM_E_NOT_FOUND: there is no such field or id.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_surface_get(IntPtr surface, byte* field, int type, int components, long n, long* ids,
@@ -1750,6 +1780,17 @@ namespace Mpm {
     /// <summary>Takes a surface out; it keeps its markers.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_stepper_remove_surface(IntPtr stepper, IntPtr surface);
+
+    /// <summary>Gives the force[dim] by which what a surface prescribes acts on the material: the mean over the last
+    /// step, the sum of "reaction" over the markers; 0 for a surface that prescribes nothing.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_surface_reaction(IntPtr stepper, IntPtr surface, double* force);
+
+    /// <summary>Gives the impulse[dim] of it on the material, mass * length/time: the sum of
+    /// mpm_stepper_surface_reaction() times the time over which it acted, over all committed steps since the surface
+    /// was added or mpm_stepper_set_time() was called.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_surface_impulse(IntPtr stepper, IntPtr surface, double* impulse);
 
     /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond
     /// is written.</summary>

@@ -122,6 +122,14 @@ namespace Mpm {
         slot == null ? null : Trampolines.Traction, slot == null ? IntPtr.Zero : slot.User));
     }
 
+    /// <summary>Sets what adds velocities of the markers in each step, where the surface prescribes; null takes it away. An
+    /// exception comes out of the step, and a value that is not finite ends it with MPM_NONFINITE.</summary>
+    public void SetVelocity(MarkerVelocityFunction velocity) {
+      var slot = velocity == null ? null : new Slot(node.Core, velocity);
+      Stepper.Install(this, "velocity", slot, p => Native.mpm_surface_set_velocity(p,
+        slot == null ? null : Trampolines.MarkerVelocity, slot == null ? IntPtr.Zero : slot.User));
+    }
+
     /// <summary>The number of markers. May be called in callbacks.</summary>
     public long Count { get { return Native.mpm_surface_count(Pointer); } }
 
@@ -205,7 +213,8 @@ namespace Mpm {
     }
     /// <summary>Copies a field, of all markers by ascending id or of some: [components][n]. "id" is of long, all others are of
     /// double: "reference_area" and "pressure" with one component; "position", "area", "displacement", "velocity", "force",
-    /// "traction" and "dead_traction" with one for each axis. Force and velocity are those of the last step.</summary>
+    /// "traction", "dead_traction", "prescribed_velocity", "reaction" and "gap" with one for each axis. Force, reaction and
+    /// velocity are those of the last step.</summary>
     public T[] Get<T>(string field, long[] ids = null) {
       return Copied<T>(Native.mpm_surface_get, field, ComponentsOf(field), Count, ids);
     }
@@ -451,6 +460,12 @@ namespace Mpm {
     }
     public double[] ParticlesImpulse(Particles set) {
       return Vector((p, out3) => Native.mpm_stepper_particles_impulse(p, set.Pointer, out3));
+    }
+    public double[] SurfaceReaction(Surface surface) {
+      return Vector((p, out3) => Native.mpm_stepper_surface_reaction(p, surface.Pointer, out3));
+    }
+    public double[] SurfaceImpulse(Surface surface) {
+      return Vector((p, out3) => Native.mpm_stepper_surface_impulse(p, surface.Pointer, out3));
     }
     delegate int ToVector(IntPtr pointer, double* vector);
     double[] Vector(ToVector call) {

@@ -168,6 +168,14 @@ module mpm
   !> contact of the nodes on the face with Coulomb friction: MPM_WALL_FRICTION as it was in 0.1.0.
   integer(c_int32_t), parameter :: MPM_WALL_FRICTION_NODES = 5_c_int32_t
 
+  !> What a surface prescribes of the motion of the material at its markers.
+  !> default: the material carries the markers along.
+  integer(c_int32_t), parameter :: MPM_PRESCRIBES_NOTHING = 0_c_int32_t
+  !> all components: the material sticks to the surface.
+  integer(c_int32_t), parameter :: MPM_PRESCRIBES_VELOCITY = 1_c_int32_t
+  !> that along the area vector: the material slides without friction.
+  integer(c_int32_t), parameter :: MPM_PRESCRIBES_NORMAL = 2_c_int32_t
+
   !> Where in an explicit step a node hook runs.
   !> mass and velocity are projected, forces are not yet known.
   integer(c_int32_t), parameter :: MPM_AFTER_P2G = 1_c_int32_t
@@ -852,7 +860,7 @@ module mpm
     real(c_double) :: upper(3)
   end type mpm_obstacle_desc
 
-  !> Loads of all markers of a surface.
+  !> Loads of all markers of a surface, and what it prescribes.
   type, bind(c) :: mpm_surface_desc
     !> sizeof(mpm_surface_desc) of the caller.
     integer(c_int32_t) :: struct_size
@@ -867,6 +875,16 @@ module mpm
     !> Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that stretches
     !! has no dents.
     real(c_double) :: max_spacing
+    !> MPM_PRESCRIBES_...: what of the motion of the material the markers prescribe.
+    integer(c_int32_t) :: prescribes
+    !> 0.
+    integer(c_int32_t) :: reserved
+    !> length/time: how the markers of a surface that prescribes move.
+    real(c_double) :: velocity(3)
+    !> implicit steps: stiffness of the springs in modulus / spacing, > 0; default 100.
+    real(c_double) :: penalty
+    !> Implicit steps, force/area >= 0: the modulus of the springs.
+    real(c_double) :: modulus
   end type mpm_surface_desc
 
   !> Markers for which tractions are wanted.
@@ -1141,6 +1159,16 @@ module mpm
       real(c_double), intent(inout) :: add(*)
       integer(c_int32_t) :: answer
     end function mpm_traction_fn
+
+    !> Gives velocities: the callback does add[c * ld + i] += mean velocity of marker i over the step that begins at
+    !! batch->t, c < dim.
+    function mpm_marker_velocity_fn(user, batch, add) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      type(mpm_marker_batch), intent(in) :: batch
+      real(c_double), intent(inout) :: add(*)
+      integer(c_int32_t) :: answer
+    end function mpm_marker_velocity_fn
 
     !> Says which of them are left as they are: accept[i], [ld], is 1, and the callback writes 0 to keep the i-th from
     !! it.
@@ -2133,6 +2161,15 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_surface_set_traction
 
+    !> Sets the callback that adds to the velocities with which a surface that prescribes moves.
+    function mpm_surface_set_velocity(surface, fn, user) bind(c, name="mpm_surface_set_velocity") result(answer)
+      import
+      type(c_ptr), value :: surface
+      type(c_funptr), value :: fn
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: answer
+    end function mpm_surface_set_velocity
+
     !> Adds n markers.
     function mpm_surface_add(surface, n, position, area, first_id) bind(c, name="mpm_surface_add") result(answer)
       import
@@ -2212,7 +2249,10 @@ module mpm
     !! last step                       |     | | "pressure"        | F64  | 1          | of this marker, beside
     !! mpm_surface_desc.pressure        | yes | | "traction"        | F64  | dim        | likewise
     !! | yes | | "dead_traction"   | F64  | dim        | likewise                                                | yes |
-    !! MPM_E_NOT_FOUND: there is no such field or id.
+    !! | "prescribed_velocity" | F64 | dim     | of this marker, beside mpm_surface_desc.velocity        | yes | |
+    !! "reaction"        | F64  | dim        | force of what is prescribed on the material, last step  |     | | "gap"
+    !! | F64  | dim        | implicit steps: way of the material off what it should  |     | MPM_E_NOT_FOUND: there is
+    !! no such field or id.
     function mpm_surface_get(surface, field, type, components, n, ids, out) bind(c, name="mpm_surface_get") &
         result(answer)
       import
@@ -2255,6 +2295,29 @@ module mpm
       type(c_ptr), value :: surface
       integer(c_int32_t) :: answer
     end function mpm_stepper_remove_surface
+
+    !> Gives the force[dim] by which what a surface prescribes acts on the material: the mean over the last step, the
+    !! sum of "reaction" over the markers; 0 for a surface that prescribes nothing.
+    function mpm_stepper_surface_reaction(stepper, surface, force) bind(c, name="mpm_stepper_surface_reaction") &
+        result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: surface
+      real(c_double), intent(inout) :: force(*)
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_surface_reaction
+
+    !> Gives the impulse[dim] of it on the material, mass * length/time: the sum of mpm_stepper_surface_reaction() times
+    !! the time over which it acted, over all committed steps since the surface was added or mpm_stepper_set_time() was
+    !! called.
+    function mpm_stepper_surface_impulse(stepper, surface, impulse) bind(c, name="mpm_stepper_surface_impulse") &
+        result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: surface
+      real(c_double), intent(inout) :: impulse(*)
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_surface_impulse
 
     !> Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond is written.
     function mpm_adaption_desc_init(desc, struct_size) bind(c, name="mpm_adaption_desc_init") result(answer)

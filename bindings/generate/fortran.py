@@ -17,10 +17,12 @@ ARRAYS = {
     "mpm_material_update": {"tangent"}, "mpm_operator_apply": {"y"}, "mpm_stepper_residuals": {"residual"},
     "mpm_stepper_wall_reaction": {"force"}, "mpm_stepper_particles_reaction": {"force"},
     "mpm_stepper_wall_impulse": {"impulse"}, "mpm_stepper_particles_impulse": {"impulse"},
+    "mpm_stepper_surface_reaction": {"force"}, "mpm_stepper_surface_impulse": {"impulse"},
     "mpm_obstacle_get_pose": {"position", "orientation", "velocity", "angular_velocity"},
     "mpm_tangent_fn": {"tangent"}, "mpm_inside_fn": {"inside"}, "mpm_solve_fn": {"solution"}, "mpm_particle_fn": {"add"},
     "mpm_velocity_fn": {"prescribed", "velocity"}, "mpm_node_fn": {"velocity", "force"}, "mpm_friction_fn": {"friction"},
     "mpm_motion_fn": {"velocity", "angular_velocity"}, "mpm_traction_fn": {"add"},
+    "mpm_marker_velocity_fn": {"add"},
 }
 # Structs of which a pointer means several.
 ARRAY_STRUCTS = {"mpm_param"}

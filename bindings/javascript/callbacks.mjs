@@ -152,6 +152,7 @@ const ADAPTERS = {
   ),
   mpm_distance_fn: withBatch('mpm_distance_batch', (m, run, batch) => run(batch)),
   mpm_traction_fn: withBatch('mpm_marker_batch', (m, run, batch, add) => run(batch, batch.beside('f64', add))),
+  mpm_marker_velocity_fn: withBatch('mpm_marker_batch', (m, run, batch, add) => run(batch, batch.beside('f64', add))),
   mpm_stress_fn: withBatch('mpm_material_batch', (m, run, batch) => run(batch)),
   mpm_tangent_fn: withBatch('mpm_material_batch', (m, run, batch, tangent, symmetric) => {
     const result = run.tangent(batch, batch.beside('f64', tangent, run.tangent.components));

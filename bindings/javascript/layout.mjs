@@ -67,6 +67,9 @@ export const constants = Object.freeze({
   MPM_WALL_SLIP: 3,
   MPM_WALL_FRICTION: 4,
   MPM_WALL_FRICTION_NODES: 5,
+  MPM_PRESCRIBES_NOTHING: 0,
+  MPM_PRESCRIBES_VELOCITY: 1,
+  MPM_PRESCRIBES_NORMAL: 2,
   MPM_AFTER_P2G: 1,
   MPM_AFTER_FORCES: 2,
   MPM_AFTER_VELOCITY: 3,
@@ -444,7 +447,7 @@ export const structs = {
     },
   },
   mpm_surface_desc: {
-    size: 72,
+    size: 120,
     fields: {
       struct_size: [0, 'u32'],
       body: [4, 'i32'],
@@ -452,6 +455,11 @@ export const structs = {
       traction: [16, 'f64', 3],
       dead_traction: [40, 'f64', 3],
       max_spacing: [64, 'f64'],
+      prescribes: [72, 'i32'],
+      reserved: [76, 'i32'],
+      velocity: [80, 'f64', 3],
+      penalty: [104, 'f64'],
+      modulus: [112, 'f64'],
     },
   },
   mpm_marker_batch: {
@@ -536,6 +544,7 @@ export const callbacks = {
   mpm_distance_fn: [['i32', 'i32'], 1],
   mpm_motion_fn: [['i32', 'f64', 'f64', 'i32', 'i32'], 1],
   mpm_traction_fn: [['i32', 'i32', 'i32'], 1],
+  mpm_marker_velocity_fn: [['i32', 'i32', 'i32'], 1],
   mpm_adaption_fn: [['i32', 'i32', 'i32'], 1],
   mpm_write_fn: [['i32', 'i32', 'i64'], 1],
 };

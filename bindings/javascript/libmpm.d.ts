@@ -169,6 +169,12 @@ export interface Constants {
    * the material that was there
    */
   readonly MPM_WALL_FRICTION_NODES: 5;
+  /** default: the material carries the markers along */
+  readonly MPM_PRESCRIBES_NOTHING: 0;
+  /** all components: the material sticks to the surface */
+  readonly MPM_PRESCRIBES_VELOCITY: 1;
+  /** that along the area vector: the material slides without friction */
+  readonly MPM_PRESCRIBES_NORMAL: 2;
   /** mass and velocity are projected, forces are not yet known */
   readonly MPM_AFTER_P2G: 1;
   /** internal and external forces are complete */
@@ -521,8 +527,8 @@ export interface ObstacleDesc {
   upper?: ArrayLike<number>;
 }
 /**
- * Loads of all markers of a surface. What markers carry by themselves ("pressure", "traction",
- * "dead_traction") and what the callback gives comes on top.
+ * Loads of all markers of a surface, and what it prescribes. What markers carry by themselves ("pressure",
+ * "traction", "dead_traction", "prescribed_velocity") and what the callbacks give comes on top.
  */
 export interface SurfaceDesc {
   /** velocity field that it loads and moves with (mpm_stepper_set_body()); default 0 */
@@ -538,6 +544,20 @@ export interface SurfaceDesc {
    * stretches has no dents. Half a spacing is right. 0 (default): they are not.
    */
   max_spacing?: number;
+  /**
+   * MPM_PRESCRIBES_...: what of the motion of the material the markers prescribe. Markers without area
+   * prescribe nothing. Default MPM_PRESCRIBES_NOTHING.
+   */
+  prescribes?: number | boolean;
+  /** length/time: how the markers of a surface that prescribes move */
+  velocity?: ArrayLike<number>;
+  /** implicit steps: stiffness of the springs in modulus / spacing, > 0; default 100 */
+  penalty?: number;
+  /**
+   * Implicit steps, force/area >= 0: the modulus of the springs. 0 (default): in each step the largest of
+   * density times wave speed squared among the particles of the body, which is lambda + 2 mu.
+   */
+  modulus?: number;
 }
 /**
  * How a set adapts. Fill it with mpm_adaption_desc_init(), after which nothing is split and nothing merged.
@@ -1045,6 +1065,14 @@ export type DistanceFunction = (batch: DistanceBatch) => Answer;
  * the step: MPM_NONFINITE.
  */
 export type TractionFunction = (batch: MarkerBatch, add: Components) => Answer;
+/**
+ * add[c][i] += value for axis c and marker i.
+ *
+ * Gives velocities: the callback does add[c * ld + i] += mean velocity of marker i over the step that begins
+ * at batch->t, c < dim. It runs on the thread of the call, once per step, for surfaces that prescribe.
+ * Returns as mpm_particle_fn does. A value that is not finite ends the step: MPM_NONFINITE.
+ */
+export type MarkerVelocityFunction = (batch: MarkerBatch, add: Components) => Answer;
 /**
  * Watches steps. It is called on the calling thread at least once in each step before the step is committed,
  * and after each Newton iteration, with what is known so far; info belongs to the library. Returns 0 to go
@@ -1627,6 +1655,11 @@ export class Surface implements Handle {
    * state. MPM_E_STATE during a staged step.
    */
   setTraction(run: TractionFunction | null): void;
+  /**
+   * Sets the callback that adds to the velocities with which a surface that prescribes moves. NULL takes it
+   * away. The host sets it again after it has loaded a state. MPM_E_STATE during a staged step.
+   */
+  setVelocity(run: MarkerVelocityFunction | null): void;
   /** The number of markers; 0 for NULL. */
   readonly count: number;
   /**
@@ -1690,6 +1723,9 @@ export class Surface implements Handle {
    * | "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
    * | "traction"        | F64  | dim        | likewise                                                | yes |
    * | "dead_traction"   | F64  | dim        | likewise                                                | yes |
+   * | "prescribed_velocity" | F64 | dim     | of this marker, beside mpm_surface_desc.velocity        | yes |
+   * | "reaction"        | F64  | dim        | force of what is prescribed on the material, last step  |     |
+   * | "gap"             | F64  | dim        | implicit steps: way of the material off what it should  |     |
    *
    * MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.
    */
@@ -1738,18 +1774,19 @@ export class Stepper implements Handle {
    * Returns the stepper.
    *
    * Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move
-   * with them; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are
-   * removed. Steps end with
+   * with them, or as they prescribe; the work is part of mpm_step_info.external_work. Markers that go through
+   * MPM_WALL_OPEN are removed. Steps end with
    *
    * - MPM_OFF_GRID: a marker would leave through a face that does not let it;
-   * - MPM_NONFINITE: its load or its new position is not finite;
+   * - MPM_NONFINITE: its load, what it prescribes or its new position is not finite;
    * - MPM_E_STATE: a marker with a load has no material around it.
    *
    * The text names marker and surface, the number of which counts the surfaces of the stepper from 0.
    * MPM_E_STATE: it is in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
    *
    * In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure
-   * and traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+   * and traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered;
+   * what is prescribed, and loads of markers that prescribe, keep it symmetric.
    */
   addSurface(surface: Surface): this;
   /** Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper. */
@@ -1947,6 +1984,19 @@ export class Stepper implements Handle {
    */
   particlesImpulse(set: Particles): number[];
   /**
+   * Gives the force[dim] by which what a surface prescribes acts on the material: the mean over the last
+   * step, the sum of "reaction" over the markers; 0 for a surface that prescribes nothing. Loads are no part
+   * of it. MPM_E_NOT_FOUND: it is not in this stepper. MPM_E_STATE before the first step.
+   */
+  surfaceReaction(surface: Surface): number[];
+  /**
+   * Gives the impulse[dim] of it on the material, mass * length/time: the sum of
+   * mpm_stepper_surface_reaction() times the time over which it acted, over all committed steps since the
+   * surface was added or mpm_stepper_set_time() was called. A saved state holds it. MPM_E_NOT_FOUND: the
+   * surface is not in this stepper.
+   */
+  surfaceImpulse(surface: Surface): number[];
+  /**
    * The field goes to a function as Particles.map() lends one; body is 0 by default.
    *
    * Lends a field of the active nodes: of a staged step while one is under way, of the last step otherwise.
@@ -2107,6 +2157,7 @@ export interface Raw {
   mpm_surface_destroy(surface: number): number;
   mpm_surface_configure(surface: number, desc: number): number;
   mpm_surface_set_traction(surface: number, fn: number, user: number): number;
+  mpm_surface_set_velocity(surface: number, fn: number, user: number): number;
   mpm_surface_add(surface: number, n: bigint, position: number, area: number, first_id: number): number;
   mpm_surface_add_polyline(surface: number, n: bigint, position: number, closed: number, spacing: number, first_id: number, count: number): number;
   mpm_surface_add_triangles(surface: number, n: bigint, position: number, triangles: bigint, corner: number, spacing: number, first_id: number, count: number): number;
@@ -2117,6 +2168,8 @@ export interface Raw {
   mpm_surface_set(surface: number, field: number, type: number, components: number, n: bigint, ids: number, values: number): number;
   mpm_stepper_add_surface(stepper: number, surface: number): number;
   mpm_stepper_remove_surface(stepper: number, surface: number): number;
+  mpm_stepper_surface_reaction(stepper: number, surface: number, force: number): number;
+  mpm_stepper_surface_impulse(stepper: number, surface: number, impulse: number): number;
   mpm_adaption_desc_init(desc: number, struct_size: number): number;
   mpm_stepper_set_adaption(stepper: number, particles: number, desc: number): number;
   mpm_stepper_adapt(stepper: number): number;

@@ -175,6 +175,12 @@ export class Stepper extends Handle {
   particlesImpulse(set) {
     return this.askVector('mpm_stepper_particles_impulse', [this.#set(set)], this.grid.dim);
   }
+  surfaceReaction(surface) {
+    return this.askVector('mpm_stepper_surface_reaction', [this.#surface(surface)], this.grid.dim);
+  }
+  surfaceImpulse(surface) {
+    return this.askVector('mpm_stepper_surface_impulse', [this.#surface(surface)], this.grid.dim);
+  }
   map(field, access, use, body = 0) {
     return this.arguments((a) => mapped(this, 'mpm_grid_map', [body, a.text(field), access], use));
   }

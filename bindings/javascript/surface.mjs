@@ -1,4 +1,4 @@
-// Surfaces: markers without mass that move with the material and carry loads on its boundary.
+// Surfaces: markers without mass that carry loads on the boundary of the material, or prescribe how it moves.
 import { constants as C } from './layout.mjs';
 import { Grid } from './grid.mjs';
 import { Handle, copied, made, overwritten } from './handle.mjs';
@@ -24,6 +24,11 @@ export class Surface extends Handle {
   setTraction(run) {
     this.functions.set('traction', 'mpm_traction_fn', run, (call, user) =>
       this.call('mpm_surface_set_traction', [call, user]),
+    );
+  }
+  setVelocity(run) {
+    this.functions.set('velocity', 'mpm_marker_velocity_fn', run, (call, user) =>
+      this.call('mpm_surface_set_velocity', [call, user]),
     );
   }
 

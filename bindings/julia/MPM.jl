@@ -129,6 +129,11 @@ const MPM_WALL_SLIP = Int32(3) # a symmetry plane
 const MPM_WALL_FRICTION = Int32(4) # the plane of the face as a fixed obstacle with Coulomb friction (obstacle.h)
 const MPM_WALL_FRICTION_NODES = Int32(5) # contact of the nodes on the face with Coulomb friction
 
+# What a surface prescribes of the motion of the material at its markers. See mpm_surface_desc.
+const MPM_PRESCRIBES_NOTHING = Int32(0) # default
+const MPM_PRESCRIBES_VELOCITY = Int32(1) # all components
+const MPM_PRESCRIBES_NORMAL = Int32(2) # that along the area vector
+
 # Where in an explicit step a node hook runs.
 const MPM_AFTER_P2G = Int32(1) # mass and velocity are projected, forces are not yet known
 const MPM_AFTER_FORCES = Int32(2) # internal and external forces are complete
@@ -642,8 +647,9 @@ Base.cconvert(::Type{Ptr{mpm_obstacle_desc}}, it::mpm_obstacle_desc) = it
 Base.unsafe_convert(::Type{Ptr{mpm_obstacle_desc}}, it::mpm_obstacle_desc) = Ptr{mpm_obstacle_desc}(pointer_from_objref(it))
 
 """
-Loads of all markers of a surface. What markers carry by themselves (\"pressure\", \"traction\", \"dead_traction\")
-and what the callback gives comes on top. Fill it with mpm_surface_desc_init().
+Loads of all markers of a surface, and what it prescribes. What markers carry by themselves (\"pressure\",
+\"traction\", \"dead_traction\", \"prescribed_velocity\") and what the callbacks give comes on top. Fill it with
+mpm_surface_desc_init().
 """
 mutable struct mpm_surface_desc
     struct_size::UInt32
@@ -652,6 +658,11 @@ mutable struct mpm_surface_desc
     traction::NTuple{3, Float64}
     dead_traction::NTuple{3, Float64}
     max_spacing::Float64
+    prescribes::Int32
+    reserved::Int32
+    velocity::NTuple{3, Float64}
+    penalty::Float64
+    modulus::Float64
     mpm_surface_desc() = new()
 end
 Base.cconvert(::Type{Ptr{mpm_surface_desc}}, it::mpm_surface_desc) = it
@@ -924,6 +935,15 @@ MPM_NONFINITE.
 f(user, batch, add): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_marker_batch}, Ptr{Float64}))
 """
 const mpm_traction_fn = Ptr{Cvoid}
+
+"""
+Gives velocities: the callback does add[c * ld + i] += mean velocity of marker i over the step that begins at
+batch->t, c < dim. It runs on the thread of the call, once per step, for surfaces that prescribe. Returns as
+mpm_particle_fn does. A value that is not finite ends the step: MPM_NONFINITE.
+
+f(user, batch, add): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_marker_batch}, Ptr{Float64}))
+"""
+const mpm_marker_velocity_fn = Ptr{Cvoid}
 
 """
 Says which of them are left as they are: accept[i], [ld], is 1, and the callback writes 0 to keep the i-th from it. It
@@ -2020,6 +2040,15 @@ function mpm_surface_set_traction(surface, fn, user)
 end
 
 """
+Sets the callback that adds to the velocities with which a surface that prescribes moves. NULL takes it away. The host
+sets it again after it has loaded a state. MPM_E_STATE during a staged step.
+"""
+function mpm_surface_set_velocity(surface, fn, user)
+    return ccall((:mpm_surface_set_velocity, libmpm), Int32, (Ptr{mpm_surface}, Ptr{Cvoid}, Ptr{Cvoid}),
+        surface, fn, user)
+end
+
+"""
 Adds n markers.
 
 - position: [dim][n], in the grid; on periodic axes it is wrapped.
@@ -2098,6 +2127,9 @@ is mpm_surface_count(). type and components must match the field.
 | \"pressure\"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
 | \"traction\"        | F64  | dim        | likewise                                                | yes |
 | \"dead_traction\"   | F64  | dim        | likewise                                                | yes |
+| \"prescribed_velocity\" | F64 | dim     | of this marker, beside mpm_surface_desc.velocity        | yes |
+| \"reaction\"        | F64  | dim        | force of what is prescribed on the material, last step  |     |
+| \"gap\"             | F64  | dim        | implicit steps: way of the material off what it should  |     |
 
 MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.
 """
@@ -2118,18 +2150,20 @@ function mpm_surface_set(surface, field, type_, components, n, ids, values)
 end
 
 """
-Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with them;
-the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are removed. Steps end with
+Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with them, or
+as they prescribe; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are removed.
+Steps end with
 
 - MPM_OFF_GRID: a marker would leave through a face that does not let it;
-- MPM_NONFINITE: its load or its new position is not finite;
+- MPM_NONFINITE: its load, what it prescribes or its new position is not finite;
 - MPM_E_STATE: a marker with a load has no material around it.
 
 The text names marker and surface, the number of which counts the surfaces of the stepper from 0. MPM_E_STATE: it is
 in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
 
 In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and traction
-make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered; what is prescribed, and
+loads of markers that prescribe, keep it symmetric.
 """
 function mpm_stepper_add_surface(stepper, surface)
     return ccall((:mpm_stepper_add_surface, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_surface}), stepper, surface)
@@ -2140,6 +2174,26 @@ Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this st
 """
 function mpm_stepper_remove_surface(stepper, surface)
     return ccall((:mpm_stepper_remove_surface, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_surface}), stepper, surface)
+end
+
+"""
+Gives the force[dim] by which what a surface prescribes acts on the material: the mean over the last step, the sum of
+\"reaction\" over the markers; 0 for a surface that prescribes nothing. Loads are no part of it. MPM_E_NOT_FOUND: it
+is not in this stepper. MPM_E_STATE before the first step.
+"""
+function mpm_stepper_surface_reaction(stepper, surface, force)
+    return ccall((:mpm_stepper_surface_reaction, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_surface}, Ptr{Float64}),
+        stepper, surface, force)
+end
+
+"""
+Gives the impulse[dim] of it on the material, mass * length/time: the sum of mpm_stepper_surface_reaction() times the
+time over which it acted, over all committed steps since the surface was added or mpm_stepper_set_time() was called. A
+saved state holds it. MPM_E_NOT_FOUND: the surface is not in this stepper.
+"""
+function mpm_stepper_surface_impulse(stepper, surface, impulse)
+    return ccall((:mpm_stepper_surface_impulse, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_surface}, Ptr{Float64}),
+        stepper, surface, impulse)
 end
 
 """
@@ -2396,24 +2450,25 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     MPM_ISA_PORTABLE, MPM_LOG_WARNING, MPM_LOG_INFO, MPM_LOG_DEBUG, MPM_LOCKING_NONE, MPM_LOCKING_CELL_AVERAGE,
     MPM_TANGENT_MINOR_SYMMETRIC, MPM_TANGENT_GENERAL, MPM_X_MIN, MPM_X_MAX, MPM_Y_MIN, MPM_Y_MAX, MPM_Z_MIN,
     MPM_Z_MAX, MPM_WALL_NONE, MPM_WALL_OPEN, MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION,
-    MPM_WALL_FRICTION_NODES, MPM_AFTER_P2G, MPM_AFTER_FORCES, MPM_AFTER_VELOCITY, MPM_READ, MPM_WRITE, MPM_F64,
-    MPM_I64, MPM_U8, MPM_BY_ID, MPM_LIBRARY_ORDER, MPM_SOLVER_AUTO, MPM_SOLVER_CG, MPM_SOLVER_MULTIGRID_CG,
-    MPM_SOLVER_LDLT, MPM_SOLVER_GMRES, MPM_SOLVER_HOST, MPM_CONTACT_UNILATERAL, MPM_CONTACT_NONE, MPM_CONTACT_TIED,
-    MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT, MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT,
-    MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY, MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER,
-    MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE, MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE,
-    MPM_ADAPT_SPLIT, MPM_ADAPT_MERGE, mpm_context, mpm_grid, mpm_material, mpm_particles, mpm_stepper, mpm_operator,
-    mpm_obstacle, mpm_surface, mpm_series, mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch,
-    mpm_material_desc, mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch,
-    mpm_advance_desc, mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch,
-    mpm_obstacle_desc, mpm_surface_desc, mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info,
-    mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create,
-    mpm_context_memory, mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create,
-    mpm_grid_destroy, mpm_material_create, mpm_material_model_count, mpm_material_model_name,
-    mpm_material_model_param, mpm_material_state_count, mpm_material_state_name, mpm_batch_field,
-    mpm_material_desc_init, mpm_material_create_custom, mpm_material_update, mpm_material_destroy,
-    mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball,
-    mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
+    MPM_WALL_FRICTION_NODES, MPM_PRESCRIBES_NOTHING, MPM_PRESCRIBES_VELOCITY, MPM_PRESCRIBES_NORMAL, MPM_AFTER_P2G,
+    MPM_AFTER_FORCES, MPM_AFTER_VELOCITY, MPM_READ, MPM_WRITE, MPM_F64, MPM_I64, MPM_U8, MPM_BY_ID, MPM_LIBRARY_ORDER,
+    MPM_SOLVER_AUTO, MPM_SOLVER_CG, MPM_SOLVER_MULTIGRID_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES, MPM_SOLVER_HOST,
+    MPM_CONTACT_UNILATERAL, MPM_CONTACT_NONE, MPM_CONTACT_TIED, MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT,
+    MPM_NORMAL_GRADIENT, MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT, MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY,
+    MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER, MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE,
+    MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE, MPM_ADAPT_SPLIT, MPM_ADAPT_MERGE, mpm_context, mpm_grid,
+    mpm_material, mpm_particles, mpm_stepper, mpm_operator, mpm_obstacle, mpm_surface, mpm_series, mpm_param,
+    mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc, mpm_operator_info,
+    mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch, mpm_advance_desc, mpm_profile,
+    mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc, mpm_surface_desc,
+    mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info, mpm_version, mpm_status_name,
+    mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create, mpm_context_memory,
+    mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy,
+    mpm_material_create, mpm_material_model_count, mpm_material_model_name, mpm_material_model_param,
+    mpm_material_state_count, mpm_material_state_name, mpm_batch_field, mpm_material_desc_init,
+    mpm_material_create_custom, mpm_material_update, mpm_material_destroy, mpm_particles_create,
+    mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball, mpm_particles_fill,
+    mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
     mpm_particles_add_field, mpm_particles_set_extensive, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32,
     mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic, mpm_particles_reset_reference,
     mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create,
@@ -2428,12 +2483,12 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle,
     mpm_obstacle_set_motion, mpm_obstacle_set_contact, mpm_obstacle_set_pose, mpm_obstacle_get_pose,
     mpm_obstacle_set_load, mpm_obstacle_contact_info, mpm_surface_desc_init, mpm_surface_create, mpm_surface_destroy,
-    mpm_surface_configure, mpm_surface_set_traction, mpm_surface_add, mpm_surface_add_polyline,
-    mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine, mpm_surface_count, mpm_surface_get,
-    mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface, mpm_adaption_desc_init,
-    mpm_stepper_set_adaption, mpm_stepper_adapt, mpm_stepper_adaption_info, mpm_state_size, mpm_state_save,
-    mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file, mpm_state_hash, mpm_write_particles,
-    mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid, mpm_write_grid_to, mpm_series_open,
-    mpm_series_append, mpm_series_close
+    mpm_surface_configure, mpm_surface_set_traction, mpm_surface_set_velocity, mpm_surface_add,
+    mpm_surface_add_polyline, mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine, mpm_surface_count,
+    mpm_surface_get, mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface,
+    mpm_stepper_surface_reaction, mpm_stepper_surface_impulse, mpm_adaption_desc_init, mpm_stepper_set_adaption,
+    mpm_stepper_adapt, mpm_stepper_adaption_info, mpm_state_size, mpm_state_save, mpm_state_load, mpm_state_save_file,
+    mpm_state_save_to, mpm_state_load_file, mpm_state_hash, mpm_write_particles, mpm_write_particles_to,
+    mpm_write_grid, mpm_write_body_grid, mpm_write_grid_to, mpm_series_open, mpm_series_append, mpm_series_close
 
 end

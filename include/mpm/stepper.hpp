@@ -229,6 +229,18 @@ public:
     check(mpm_stepper_particles_reaction(core().handle, set.handle(), force.data()));
     return force;
   }
+  /** The force of what a surface prescribes on the material: see mpm_stepper_surface_reaction(). */
+  std::array<double, 3> surface_reaction(const surface &markers) const {
+    std::array<double, 3> force{};
+    check(mpm_stepper_surface_reaction(core().handle, markers.handle(), force.data()));
+    return force;
+  }
+  /** The impulse of it over all steps: see mpm_stepper_surface_impulse(). */
+  std::array<double, 3> surface_impulse(const surface &markers) const {
+    std::array<double, 3> impulse{};
+    check(mpm_stepper_surface_impulse(core().handle, markers.handle(), impulse.data()));
+    return impulse;
+  }
   /** What two bodies did to each other in the last step: see mpm_stepper_contact_info(). */
   mpm::contact_info contact(int32_t body_a, int32_t body_b) const {
     mpm::contact_info info;

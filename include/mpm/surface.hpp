@@ -13,6 +13,9 @@ namespace mpm {
 /** As mpm_traction_fn: takes the batch, and adds forces per area to add[dim][ld]. */
 using traction_callback = callback<const mpm_marker_batch &, double *>;
 
+/** As mpm_marker_velocity_fn: takes the batch, and adds velocities to add[dim][ld]. */
+using marker_velocity_callback = callback<const mpm_marker_batch &, double *>;
+
 /** mpm_surface_desc with its defaults. */
 struct surface_desc : mpm_surface_desc {
   surface_desc() : mpm_surface_desc() {
@@ -23,11 +26,12 @@ struct surface_desc : mpm_surface_desc {
 
 namespace detail {
 
-/** The surface of C with its context, its grid and the host's function. */
+/** The surface of C with its context, its grid and the host's functions. */
 struct surface_core {
   std::shared_ptr<context_core> context; /**< outlives the surface */
   std::shared_ptr<grid_core> grid;       /**< outlives the surface */
   traction_callback traction;            /**< see surface::set_traction() */
+  marker_velocity_callback velocity;     /**< see surface::set_velocity() */
   mpm_surface *handle = nullptr;         /**< what mpm_surface_create() gave */
 
   explicit surface_core(std::shared_ptr<grid_core> on) : context(on->context), grid(std::move(on)) {}
@@ -41,6 +45,11 @@ struct surface_core {
   static mpm_status on_traction(void *user, const mpm_marker_batch *batch, double *add) {
     auto &self = *static_cast<surface_core *>(user);
     return guarded(self.context->exceptions, self.traction, *batch, add);
+  }
+  /** The mpm_marker_velocity_fn that calls the host's function; user is a surface_core. */
+  static mpm_status on_velocity(void *user, const mpm_marker_batch *batch, double *add) {
+    auto &self = *static_cast<surface_core *>(user);
+    return guarded(self.context->exceptions, self.velocity, *batch, add);
   }
 };
 
@@ -64,6 +73,13 @@ public:
     detail::surface_core &c = core();
     check(mpm_surface_set_traction(c.handle, tractions ? c.on_traction : nullptr, &c));
     c.traction = std::move(tractions);
+  }
+  /** Sets the function that adds to the velocities of a surface that prescribes; nullptr takes it away. See
+   * mpm_surface_set_velocity(). */
+  void set_velocity(marker_velocity_callback velocities) {
+    detail::surface_core &c = core();
+    check(mpm_surface_set_velocity(c.handle, velocities ? c.on_velocity : nullptr, &c));
+    c.velocity = std::move(velocities);
   }
 
   /** Adds markers at position[dim][n] with area vectors, or without: see mpm_surface_add(). Returns the first

@@ -54,6 +54,29 @@ void functions() {
   CHECK(w.stepper.step(1e-4));
 }
 
+void prescribes() {
+  world w;
+  mpm::surface_desc desc;
+  CHECK(desc.prescribes == MPM_PRESCRIBES_NOTHING && desc.penalty == 100.0);
+  desc.prescribes = MPM_PRESCRIBES_VELOCITY;
+  mpm::surface s(w.grid, desc);
+  s.add({1.5, 1.5}, {0.25, 0.0});
+  w.stepper.add(s);
+  CHECK(refused(MPM_E_STATE, "no step", [&] { static_cast<void>(w.stepper.surface_reaction(s)); }));
+  s.set_velocity([&](const mpm_marker_batch &b, double *add) {
+    for (int64_t i = 0; i < b.n; ++i) add[i] += 2.0;
+  });
+  CHECK(w.stepper.step(1e-4));
+  const auto force = w.stepper.surface_reaction(s), impulse = w.stepper.surface_impulse(s);
+  CHECK(force[0] != 0.0 && force[2] == 0.0 &&
+        std::fabs(impulse[0] - 1e-4 * force[0]) < 1e-12 * std::fabs(force[0]));
+  CHECK(s.get("reaction")[0] == force[0] && std::fabs(s.get("displacement")[0] - 2e-4) < 1e-15);
+  s.set_velocity([](const mpm_marker_batch &, double *) { throw std::string("no"); });
+  CHECK(thrown_by<std::string>([&] { static_cast<void>(w.stepper.step(1e-4)); }) == "no");
+  s.set_velocity(nullptr);
+  CHECK(w.stepper.step(1e-4));
+}
+
 /* Whatever is destroyed first, the rest lives on. */
 void lives() {
   auto w = std::make_unique<world>();
@@ -73,5 +96,6 @@ void lives() {
 void test_surfaces() {
   loads_and_fields();
   functions();
+  prescribes();
   lives();
 }

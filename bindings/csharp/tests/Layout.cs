@@ -369,13 +369,18 @@ namespace Mpm {
     static void CheckSurfaceDesc() {
       var it = new SurfaceDesc();
       byte* at = (byte*)&it;
-      Compare("SurfaceDesc", sizeof(SurfaceDesc), 72, 72);
+      Compare("SurfaceDesc", sizeof(SurfaceDesc), 120, 120);
       Compare("SurfaceDesc.struct_size", (byte*)&it.struct_size - at, 0, 0);
       Compare("SurfaceDesc.body", (byte*)&it.body - at, 4, 4);
       Compare("SurfaceDesc.pressure", (byte*)&it.pressure - at, 8, 8);
       Compare("SurfaceDesc.traction", (byte*)it.traction - at, 16, 16);
       Compare("SurfaceDesc.dead_traction", (byte*)it.dead_traction - at, 40, 40);
       Compare("SurfaceDesc.max_spacing", (byte*)&it.max_spacing - at, 64, 64);
+      Compare("SurfaceDesc.prescribes", (byte*)&it.prescribes - at, 72, 72);
+      Compare("SurfaceDesc.reserved", (byte*)&it.reserved - at, 76, 76);
+      Compare("SurfaceDesc.velocity", (byte*)it.velocity - at, 80, 80);
+      Compare("SurfaceDesc.penalty", (byte*)&it.penalty - at, 104, 104);
+      Compare("SurfaceDesc.modulus", (byte*)&it.modulus - at, 112, 112);
     }
 
     static void CheckMarkerBatch() {

@@ -212,6 +212,17 @@ class Wall(IntEnum):
     WALL_FRICTION_NODES = 5
 
 
+class Prescribes(IntEnum):
+    """What a surface prescribes of the motion of the material at its markers. See mpm_surface_desc."""
+
+    #: default: the material carries the markers along
+    PRESCRIBES_NOTHING = 0
+    #: all components: the material sticks to the surface
+    PRESCRIBES_VELOCITY = 1
+    #: that along the area vector: the material slides without friction
+    PRESCRIBES_NORMAL = 2
+
+
 class Stage(IntEnum):
     """Where in an explicit step a node hook runs."""
 
@@ -414,6 +425,9 @@ WALL_FIXED = Wall.WALL_FIXED
 WALL_SLIP = Wall.WALL_SLIP
 WALL_FRICTION = Wall.WALL_FRICTION
 WALL_FRICTION_NODES = Wall.WALL_FRICTION_NODES
+PRESCRIBES_NOTHING = Prescribes.PRESCRIBES_NOTHING
+PRESCRIBES_VELOCITY = Prescribes.PRESCRIBES_VELOCITY
+PRESCRIBES_NORMAL = Prescribes.PRESCRIBES_NORMAL
 AFTER_P2G = Stage.AFTER_P2G
 AFTER_FORCES = Stage.AFTER_FORCES
 AFTER_VELOCITY = Stage.AFTER_VELOCITY
@@ -460,11 +474,12 @@ CONSTANTS = """
     BOUNDARY_OPEN_KNOT PLANE_STRAIN AXISYMMETRIC PLANE_STRESS USL USF MUSL NEWMARK FLIP APIC TPIC TFLIP AFLIP XPIC
     APIC_MLS FMPM ISA_BEST ISA_BASELINE ISA_AVX2 ISA_AVX512 ISA_NEON ISA_PORTABLE LOG_WARNING LOG_INFO LOG_DEBUG
     LOCKING_NONE LOCKING_CELL_AVERAGE TANGENT_MINOR_SYMMETRIC TANGENT_GENERAL X_MIN X_MAX Y_MIN Y_MAX Z_MIN Z_MAX
-    WALL_NONE WALL_OPEN WALL_FIXED WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES AFTER_P2G AFTER_FORCES AFTER_VELOCITY
-    READ WRITE F64 I64 U8 BY_ID LIBRARY_ORDER SOLVER_AUTO SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES
-    SOLVER_HOST CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT
-    NORMAL_FIXED DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER
-    SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE ADAPT_SPLIT ADAPT_MERGE
+    WALL_NONE WALL_OPEN WALL_FIXED WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES PRESCRIBES_NOTHING PRESCRIBES_VELOCITY
+    PRESCRIBES_NORMAL AFTER_P2G AFTER_FORCES AFTER_VELOCITY READ WRITE F64 I64 U8 BY_ID LIBRARY_ORDER SOLVER_AUTO
+    SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED
+    NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT NORMAL_FIXED DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY
+    BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE MOTION_FIXED
+    MOTION_PRESCRIBED MOTION_FREE ADAPT_SPLIT ADAPT_MERGE
 """.split()
 
 
@@ -835,8 +850,9 @@ class distance_batch(Structure):
 
 
 class surface_desc(Structure):
-    """Loads of all markers of a surface. What markers carry by themselves ("pressure", "traction", "dead_traction")
-    and what the callback gives comes on top. Fill it with mpm_surface_desc_init()."""
+    """Loads of all markers of a surface, and what it prescribes. What markers carry by themselves ("pressure",
+    "traction", "dead_traction", "prescribed_velocity") and what the callbacks give comes on top. Fill it with
+    mpm_surface_desc_init()."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -845,6 +861,11 @@ class surface_desc(Structure):
         ("traction", c_double * 3),
         ("dead_traction", c_double * 3),
         ("max_spacing", c_double),
+        ("prescribes", c_int32),
+        ("reserved", c_int32),
+        ("velocity", c_double * 3),
+        ("penalty", c_double),
+        ("modulus", c_double),
     ]
 
 
@@ -918,6 +939,8 @@ friction_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(contact_batch), c_void_p)
 distance_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(distance_batch))
 
 traction_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(marker_batch), c_void_p)
+
+marker_velocity_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(marker_batch), c_void_p)
 
 adaption_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(adaption_batch), c_void_p)
 
@@ -1000,7 +1023,7 @@ SIZES = {
     contact_batch: (96, 72),
     distance_batch: (64, 48),
     obstacle_desc: (296, 288),
-    surface_desc: (72, 72),
+    surface_desc: (120, 120),
     marker_batch: (88, 64),
     adaption_batch: (56, 48),
     adaption_desc: (72, 64),
@@ -1108,6 +1131,7 @@ FUNCTIONS = {
     "mpm_surface_destroy": (c_int32, [c_void_p]),
     "mpm_surface_configure": (c_int32, [c_void_p, POINTER(surface_desc)]),
     "mpm_surface_set_traction": (c_int32, [c_void_p, traction_fn, c_void_p]),
+    "mpm_surface_set_velocity": (c_int32, [c_void_p, marker_velocity_fn, c_void_p]),
     "mpm_surface_add": (c_int32, [c_void_p, c_int64, c_void_p, c_void_p, c_void_p]),
     "mpm_surface_add_polyline": (c_int32, [c_void_p, c_int64, c_void_p, c_int32, c_double, c_void_p, c_void_p]),
     "mpm_surface_add_triangles": (c_int32, [c_void_p, c_int64, c_void_p, c_int64, c_void_p, c_double, c_void_p, c_void_p]),
@@ -1118,6 +1142,8 @@ FUNCTIONS = {
     "mpm_surface_set": (c_int32, [c_void_p, c_char_p, c_int32, c_int32, c_int64, c_void_p, c_void_p]),
     "mpm_stepper_add_surface": (c_int32, [c_void_p, c_void_p]),
     "mpm_stepper_remove_surface": (c_int32, [c_void_p, c_void_p]),
+    "mpm_stepper_surface_reaction": (c_int32, [c_void_p, c_void_p, c_void_p]),
+    "mpm_stepper_surface_impulse": (c_int32, [c_void_p, c_void_p, c_void_p]),
     "mpm_adaption_desc_init": (c_int32, [POINTER(adaption_desc), c_uint32]),
     "mpm_stepper_set_adaption": (c_int32, [c_void_p, c_void_p, POINTER(adaption_desc)]),
     "mpm_stepper_adapt": (c_int32, [c_void_p]),
@@ -1785,6 +1811,10 @@ step.""",
 
 Sets the callback that adds tractions. NULL takes it away. The host sets it again after it has loaded a state.
 MPM_E_STATE during a staged step.""",
+    "mpm_surface_set_velocity": """mpm_status mpm_surface_set_velocity(mpm_surface *surface, mpm_marker_velocity_fn fn, void *user)
+
+Sets the callback that adds to the velocities with which a surface that prescribes moves. NULL takes it away. The host
+sets it again after it has loaded a state. MPM_E_STATE during a staged step.""",
     "mpm_surface_add": """mpm_status mpm_surface_add(mpm_surface *surface, int64_t n, const double *position, const double *area, int64_t
 *first_id)
 
@@ -1841,6 +1871,9 @@ is mpm_surface_count(). type and components must match the field.
 | "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
 | "traction"        | F64  | dim        | likewise                                                | yes |
 | "dead_traction"   | F64  | dim        | likewise                                                | yes |
+| "prescribed_velocity" | F64 | dim     | of this marker, beside mpm_surface_desc.velocity        | yes |
+| "reaction"        | F64  | dim        | force of what is prescribed on the material, last step  |     |
+| "gap"             | F64  | dim        | implicit steps: way of the material off what it should  |     |
 
 MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.""",
     "mpm_surface_set": """mpm_status mpm_surface_set(mpm_surface *surface, const char *field, int32_t type, int32_t components, int64_t n, const
@@ -1852,21 +1885,33 @@ field cannot be set. MPM_E_STATE during a staged step. MPM_E_UNSUPPORTED: "posit
 1, whose weights keep to the markers that were added: add others.""",
     "mpm_stepper_add_surface": """mpm_status mpm_stepper_add_surface(mpm_stepper *stepper, mpm_surface *surface)
 
-Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with them;
-the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are removed. Steps end with
+Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with them, or
+as they prescribe; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are removed.
+Steps end with
 
 - MPM_OFF_GRID: a marker would leave through a face that does not let it;
-- MPM_NONFINITE: its load or its new position is not finite;
+- MPM_NONFINITE: its load, what it prescribes or its new position is not finite;
 - MPM_E_STATE: a marker with a load has no material around it.
 
 The text names marker and surface, the number of which counts the surfaces of the stepper from 0. MPM_E_STATE: it is
 in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
 
 In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and traction
-make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.""",
+make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered; what is prescribed, and
+loads of markers that prescribe, keep it symmetric.""",
     "mpm_stepper_remove_surface": """mpm_status mpm_stepper_remove_surface(mpm_stepper *stepper, mpm_surface *surface)
 
 Takes a surface out; it keeps its markers. MPM_E_NOT_FOUND: it is not in this stepper.""",
+    "mpm_stepper_surface_reaction": """mpm_status mpm_stepper_surface_reaction(const mpm_stepper *stepper, const mpm_surface *surface, double *force)
+
+Gives the force[dim] by which what a surface prescribes acts on the material: the mean over the last step, the sum of
+"reaction" over the markers; 0 for a surface that prescribes nothing. Loads are no part of it. MPM_E_NOT_FOUND: it is
+not in this stepper. MPM_E_STATE before the first step.""",
+    "mpm_stepper_surface_impulse": """mpm_status mpm_stepper_surface_impulse(const mpm_stepper *stepper, const mpm_surface *surface, double *impulse)
+
+Gives the impulse[dim] of it on the material, mass * length/time: the sum of mpm_stepper_surface_reaction() times the
+time over which it acted, over all committed steps since the surface was added or mpm_stepper_set_time() was called. A
+saved state holds it. MPM_E_NOT_FOUND: the surface is not in this stepper.""",
     "mpm_adaption_desc_init": """mpm_status mpm_adaption_desc_init(mpm_adaption_desc *desc, uint32_t struct_size)
 
 Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond is written.

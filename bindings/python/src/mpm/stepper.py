@@ -362,6 +362,16 @@ class Stepper(Handle):
         """Impulse of a set's prescribed particles on the material over all steps."""
         return self._vector(lib.mpm_stepper_particles_impulse, particles)
 
+    @documented("mpm_stepper_surface_reaction")
+    def surface_reaction(self, surface):
+        """Force of what a surface prescribes on the material in the last step."""
+        return self._vector(lib.mpm_stepper_surface_reaction, surface)
+
+    @documented("mpm_stepper_surface_impulse")
+    def surface_impulse(self, surface):
+        """Impulse of what a surface prescribes on the material over all steps."""
+        return self._vector(lib.mpm_stepper_surface_impulse, surface)
+
     @documented("mpm_stepper_residuals")
     def residuals(self):
         """The history of the last implicit step's residual."""

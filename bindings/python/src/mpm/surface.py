@@ -1,4 +1,4 @@
-"""Surfaces: markers without mass that move with the material and carry loads on its boundary."""
+"""Surfaces: markers without mass that carry loads on the boundary of the material, or prescribe how it moves."""
 import ctypes
 
 import numpy as np
@@ -9,11 +9,11 @@ from ._handles import Handle, descriptor, fill
 from ._library import documented, lib
 
 _SCALARS = ("id", "reference_area", "pressure")
-_VECTORS = ("traction", "dead_traction")
+_VECTORS = ("traction", "dead_traction", "velocity")
 
 
 class MarkerBatch(Batch):
-    """Markers for which tractions are wanted: n, dim, t, dt, id (n,), position, area (out of the material), displacement and
+    """Markers for which tractions or velocities are wanted: n, dim, t, dt, id (n,), position, area (out of the material), displacement and
     velocity (n, dim), reference_area (n,). Arrays end with the call."""
 
     _arrays = {"id": scalar, "position": vector, "area": vector, "reference_area": scalar, "displacement": vector,
@@ -23,7 +23,9 @@ class MarkerBatch(Batch):
 class Surface(Handle):
     """Markers that the material carries along, and that load it. The options are the fields of mpm_surface_desc, which load
     all markers: pressure (force/area against the normal), traction (force per present area) and dead_traction (force per
-    area at the time of adding), both (dim,); body, max_spacing (length).
+    area at the time of adding), both (dim,); body, max_spacing (length). With prescribes = PRESCRIBES_VELOCITY or
+    PRESCRIBES_NORMAL markers move with velocity (dim,), and the material there does, or along the area vectors alone; penalty
+    and modulus (force/area) are those of the springs of implicit steps.
 
     surface["force"] is a copy by ascending id, (n, dim), or (n,) for what has one component; surface["pressure"] = values
     sets it, for all markers to one value where the values have no item axis. Area vectors, area times normal, point out of
@@ -34,7 +36,7 @@ class Surface(Handle):
     _destroy = staticmethod(lib.mpm_surface_destroy)
 
     def __init__(self, context, grid, **options):
-        self.grid, self.dim, self._traction = grid, grid.dim, None
+        self.grid, self.dim, self._traction, self._velocity = grid, grid.dim, None, None
         self._options = descriptor(_api.surface_desc, lib.mpm_surface_desc_init, self._along(options), "Surface")
         self._own(context, context._make(lib.mpm_surface_create, context, grid, ctypes.byref(self._options)), context, grid)
 
@@ -68,6 +70,18 @@ class Surface(Handle):
         made = self._context._callback(_api.traction_fn, fn, call)
         self._context._check(lib.mpm_surface_set_traction(self, made, None))
         self._traction = made
+
+    @documented("mpm_surface_set_velocity")
+    def set_velocity(self, fn):
+        """fn(batch, add) adds velocities of the markers of a MarkerBatch to add (n, dim), where the surface prescribes. It
+        may return 1 to ask for a smaller dt; what it raises comes out of the step. None takes it away."""
+
+        def call(_, batch, add):
+            return MarkerBatch(batch)._run(fn, (add, np.float64, self.dim))
+
+        made = self._context._callback(_api.marker_velocity_fn, fn, call)
+        self._context._check(lib.mpm_surface_set_velocity(self, made, None))
+        self._velocity = made
 
     # ---- markers ----
 

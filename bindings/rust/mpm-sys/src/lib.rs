@@ -200,6 +200,15 @@ pub mod constants {
     /// was there
     pub const MPM_WALL_FRICTION_NODES: i32 = 5;
 
+    // What a surface prescribes of the motion of the material at its markers.
+
+    /// default: the material carries the markers along
+    pub const MPM_PRESCRIBES_NOTHING: i32 = 0;
+    /// all components: the material sticks to the surface
+    pub const MPM_PRESCRIBES_VELOCITY: i32 = 1;
+    /// that along the area vector: the material slides without friction
+    pub const MPM_PRESCRIBES_NORMAL: i32 = 2;
+
     // Where in an explicit step a node hook runs.
 
     /// mass and velocity are projected, forces are not yet known
@@ -562,6 +571,15 @@ pub type mpm_motion_fn = Option<unsafe extern "C" fn(
 /// thread of the call, once per step. Returns as mpm_particle_fn does. A value that is not finite ends the step:
 /// MPM_NONFINITE.
 pub type mpm_traction_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    batch: *const mpm_marker_batch,
+    add: *mut f64,
+) -> mpm_status>;
+
+/// Gives velocities: the callback does add[c * ld + i] += mean velocity of marker i over the step that begins at
+/// batch->t, c < dim. It runs on the thread of the call, once per step, for surfaces that prescribe. Returns as
+/// mpm_particle_fn does. A value that is not finite ends the step: MPM_NONFINITE.
+pub type mpm_marker_velocity_fn = Option<unsafe extern "C" fn(
     user: *mut c_void,
     batch: *const mpm_marker_batch,
     add: *mut f64,
@@ -1420,8 +1438,9 @@ impl Default for mpm_obstacle_desc {
     }
 }
 
-/// Loads of all markers of a surface. What markers carry by themselves ("pressure", "traction", "dead_traction") and what
-/// the callback gives comes on top. Fill it with mpm_surface_desc_init().
+/// Loads of all markers of a surface, and what it prescribes. What markers carry by themselves ("pressure", "traction",
+/// "dead_traction", "prescribed_velocity") and what the callbacks give comes on top. Fill it with
+/// mpm_surface_desc_init().
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct mpm_surface_desc {
@@ -1438,6 +1457,18 @@ pub struct mpm_surface_desc {
     /// Length > 0: markers with a longer edge are split in two at the end of a step, so that a surface that stretches has
     /// no dents. Half a spacing is right. 0 (default): they are not.
     pub max_spacing: f64,
+    /// MPM_PRESCRIBES_...: what of the motion of the material the markers prescribe. Markers without area prescribe
+    /// nothing. Default MPM_PRESCRIBES_NOTHING.
+    pub prescribes: i32,
+    /// 0
+    pub reserved: i32,
+    /// length/time: how the markers of a surface that prescribes move
+    pub velocity: [f64; 3],
+    /// implicit steps: stiffness of the springs in modulus / spacing, > 0; default 100
+    pub penalty: f64,
+    /// Implicit steps, force/area >= 0: the modulus of the springs. 0 (default): in each step the largest of density
+    /// times wave speed squared among the particles of the body, which is lambda + 2 mu.
+    pub modulus: f64,
 }
 
 impl Default for mpm_surface_desc {
@@ -2539,6 +2570,14 @@ extern "C" {
         user: *mut c_void,
     ) -> mpm_status;
 
+    /// Sets the callback that adds to the velocities with which a surface that prescribes moves. NULL takes it away. The
+    /// host sets it again after it has loaded a state. MPM_E_STATE during a staged step.
+    pub fn mpm_surface_set_velocity(
+        surface: *mut mpm_surface,
+        r#fn: mpm_marker_velocity_fn,
+        user: *mut c_void,
+    ) -> mpm_status;
+
     /// Adds n markers.
     ///
     /// - position: [dim][n], in the grid; on periodic axes it is wrapped.
@@ -2617,6 +2656,9 @@ extern "C" {
     /// | "pressure"        | F64  | 1          | of this marker, beside mpm_surface_desc.pressure        | yes |
     /// | "traction"        | F64  | dim        | likewise                                                | yes |
     /// | "dead_traction"   | F64  | dim        | likewise                                                | yes |
+    /// | "prescribed_velocity" | F64 | dim     | of this marker, beside mpm_surface_desc.velocity        | yes |
+    /// | "reaction"        | F64  | dim        | force of what is prescribed on the material, last step  |     |
+    /// | "gap"             | F64  | dim        | implicit steps: way of the material off what it should  |     |
     ///
     /// MPM_E_NOT_FOUND: there is no such field or id. MPM_E_ARG: type, components or n do not match.
     pub fn mpm_surface_get(
@@ -2644,18 +2686,19 @@ extern "C" {
     ) -> mpm_status;
 
     /// Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move with
-    /// them; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are removed. Steps
-    /// end with
+    /// them, or as they prescribe; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN
+    /// are removed. Steps end with
     ///
     /// - MPM_OFF_GRID: a marker would leave through a face that does not let it;
-    /// - MPM_NONFINITE: its load or its new position is not finite;
+    /// - MPM_NONFINITE: its load, what it prescribes or its new position is not finite;
     /// - MPM_E_STATE: a marker with a load has no material around it.
     ///
     /// The text names marker and surface, the number of which counts the surfaces of the stepper from 0. MPM_E_STATE: it
     /// is in a stepper already, or a step is under way. MPM_E_ARG: it is on another grid.
     ///
     /// In implicit steps forces are those at the end of the step, on the areas that surfaces then have. Pressure and
-    /// traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered.
+    /// traction make the stiffness unsymmetric, so that the solvers for symmetric matrices are not offered; what is
+    /// prescribed, and loads of markers that prescribe, keep it symmetric.
     pub fn mpm_stepper_add_surface(
         stepper: *mut mpm_stepper,
         surface: *mut mpm_surface,
@@ -2665,6 +2708,24 @@ extern "C" {
     pub fn mpm_stepper_remove_surface(
         stepper: *mut mpm_stepper,
         surface: *mut mpm_surface,
+    ) -> mpm_status;
+
+    /// Gives the force[dim] by which what a surface prescribes acts on the material: the mean over the last step, the sum
+    /// of "reaction" over the markers; 0 for a surface that prescribes nothing. Loads are no part of it. MPM_E_NOT_FOUND:
+    /// it is not in this stepper. MPM_E_STATE before the first step.
+    pub fn mpm_stepper_surface_reaction(
+        stepper: *const mpm_stepper,
+        surface: *const mpm_surface,
+        force: *mut f64,
+    ) -> mpm_status;
+
+    /// Gives the impulse[dim] of it on the material, mass * length/time: the sum of mpm_stepper_surface_reaction() times
+    /// the time over which it acted, over all committed steps since the surface was added or mpm_stepper_set_time() was
+    /// called. A saved state holds it. MPM_E_NOT_FOUND: the surface is not in this stepper.
+    pub fn mpm_stepper_surface_impulse(
+        stepper: *const mpm_stepper,
+        surface: *const mpm_surface,
+        impulse: *mut f64,
     ) -> mpm_status;
 
     /// Fills desc with the defaults. struct_size is sizeof(mpm_adaption_desc) of the caller; no byte beyond is written.

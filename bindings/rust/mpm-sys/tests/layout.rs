@@ -357,13 +357,18 @@ fn layout_of_mpm_obstacle_desc() {
 
 #[test]
 fn layout_of_mpm_surface_desc() {
-    assert_eq!(size_of::<mpm_surface_desc>(), of(72, 72));
+    assert_eq!(size_of::<mpm_surface_desc>(), of(120, 120));
     assert_eq!(offset!(mpm_surface_desc, struct_size), of(0, 0));
     assert_eq!(offset!(mpm_surface_desc, body), of(4, 4));
     assert_eq!(offset!(mpm_surface_desc, pressure), of(8, 8));
     assert_eq!(offset!(mpm_surface_desc, traction), of(16, 16));
     assert_eq!(offset!(mpm_surface_desc, dead_traction), of(40, 40));
     assert_eq!(offset!(mpm_surface_desc, max_spacing), of(64, 64));
+    assert_eq!(offset!(mpm_surface_desc, prescribes), of(72, 72));
+    assert_eq!(offset!(mpm_surface_desc, reserved), of(76, 76));
+    assert_eq!(offset!(mpm_surface_desc, velocity), of(80, 80));
+    assert_eq!(offset!(mpm_surface_desc, penalty), of(104, 104));
+    assert_eq!(offset!(mpm_surface_desc, modulus), of(112, 112));
 }
 
 #[test]
@@ -529,6 +534,7 @@ fn functions_are_there() {
         mpm_surface_destroy as *const (),
         mpm_surface_configure as *const (),
         mpm_surface_set_traction as *const (),
+        mpm_surface_set_velocity as *const (),
         mpm_surface_add as *const (),
         mpm_surface_add_polyline as *const (),
         mpm_surface_add_triangles as *const (),
@@ -539,6 +545,8 @@ fn functions_are_there() {
         mpm_surface_set as *const (),
         mpm_stepper_add_surface as *const (),
         mpm_stepper_remove_surface as *const (),
+        mpm_stepper_surface_reaction as *const (),
+        mpm_stepper_surface_impulse as *const (),
         mpm_adaption_desc_init as *const (),
         mpm_stepper_set_adaption as *const (),
         mpm_stepper_adapt as *const (),

@@ -400,6 +400,20 @@ impl Stepper {
         Ok(out)
     }
 
+    /// The force of what a surface prescribes on the material in the last step.
+    pub fn surface_reaction(&self, surface: SurfaceKey) -> Result<[f64; 3]> {
+        let (k, mut out) = (self.find_surface(surface)?, [0.0; 3]);
+        call!(self, mpm_stepper_surface_reaction(self.kept.surfaces[k].1.as_ptr(), out.as_mut_ptr()))?;
+        Ok(out)
+    }
+
+    /// The impulse of what a surface prescribes over all steps.
+    pub fn surface_impulse(&self, surface: SurfaceKey) -> Result<[f64; 3]> {
+        let (k, mut out) = (self.find_surface(surface)?, [0.0; 3]);
+        call!(self, mpm_stepper_surface_impulse(self.kept.surfaces[k].1.as_ptr(), out.as_mut_ptr()))?;
+        Ok(out)
+    }
+
     /// The force of a set's prescribed particles on the material in the last step.
     pub fn particles_reaction(&self, set: SetKey) -> Result<[f64; 3]> {
         let (k, mut out) = (self.find(set)?, [0.0; 3]);

@@ -6,7 +6,8 @@ use crate::{sys, Columns, Element, Filled, Flow, Grid, MarkerBatch, Result, Surf
 use std::os::raw::c_void;
 use std::sync::Arc;
 
-type TractionFn = dyn FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Send;
+/// Adds to rows of the markers: tractions, or velocities.
+type MarkerFn = dyn FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Send;
 
 /// Markers that the material carries along, and that load it. A stepper takes it over, and lends it.
 ///
@@ -20,10 +21,11 @@ pub struct Surface {
     pub(crate) context: Arc<Core>,
     pub(crate) handle: *mut sys::mpm_surface,
     grid: Grid,
-    traction: Option<Owned<TractionFn>>,
+    traction: Option<Owned<MarkerFn>>,
+    velocity: Option<Owned<MarkerFn>>,
 }
 
-// SAFETY: the handle is used by an Entry only, and so is the function of the tractions.
+// SAFETY: the handle is used by an Entry only, and so are its functions.
 unsafe impl Send for Surface {}
 unsafe impl Sync for Surface {}
 
@@ -36,7 +38,7 @@ impl Surface {
         // SAFETY: the descriptor is whole, and the surface keeps the grid.
         let status = unsafe { sys::mpm_surface_create(context.handle, grid.as_ptr(), &desc, &mut handle) };
         entry.done(status)?;
-        Ok(Surface { context, handle, grid: grid.clone(), traction: None })
+        Ok(Surface { context, handle, grid: grid.clone(), traction: None, velocity: None })
     }
 
     /// Replaces loads and options between steps. Loads of all markers come on top of those that markers carry by themselves.
@@ -55,10 +57,10 @@ impl Surface {
         &mut self,
         traction: impl FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Send + 'static,
     ) -> Result<()> {
-        let slot = Owned::<TractionFn>::new(&self.context.thrown, Box::new(traction));
+        let slot = Owned::<MarkerFn>::new(&self.context.thrown, Box::new(traction));
         let entry = self.context.enter()?;
         // SAFETY: the old function goes only once the library has taken the new one.
-        let status = unsafe { sys::mpm_surface_set_traction(self.handle, Some(on_traction), slot.user()) };
+        let status = unsafe { sys::mpm_surface_set_traction(self.handle, Some(on_markers), slot.user()) };
         entry.done(status)?;
         self.traction = Some(slot);
         Ok(())
@@ -71,6 +73,31 @@ impl Surface {
         let status = unsafe { sys::mpm_surface_set_traction(self.handle, None, std::ptr::null_mut()) };
         entry.done(status)?;
         self.traction = None;
+        Ok(())
+    }
+
+    /// Sets what adds velocities of the markers, where the surface prescribes: component `c` of marker `i` is
+    /// `add[(i, c)]`. It runs as that of tractions does.
+    pub fn set_velocity(
+        &mut self,
+        velocity: impl FnMut(&MarkerBatch<'_>, &mut Columns<'_, f64>) -> Flow + Send + 'static,
+    ) -> Result<()> {
+        let slot = Owned::<MarkerFn>::new(&self.context.thrown, Box::new(velocity));
+        let entry = self.context.enter()?;
+        // SAFETY: the old function goes only once the library has taken the new one.
+        let status = unsafe { sys::mpm_surface_set_velocity(self.handle, Some(on_markers), slot.user()) };
+        entry.done(status)?;
+        self.velocity = Some(slot);
+        Ok(())
+    }
+
+    /// Takes the function away.
+    pub fn clear_velocity(&mut self) -> Result<()> {
+        let entry = self.context.enter()?;
+        // SAFETY: the handle lives.
+        let status = unsafe { sys::mpm_surface_set_velocity(self.handle, None, std::ptr::null_mut()) };
+        entry.done(status)?;
+        self.velocity = None;
         Ok(())
     }
 
@@ -173,7 +200,8 @@ impl Surface {
 
     /// Copies a field of all markers by ascending id: `[components][n]`. `"id"` is of `i64`, all others are of `f64`:
     /// `"reference_area"` and `"pressure"` with one component; `"position"`, `"area"`, `"displacement"`, `"velocity"`,
-    /// `"force"`, `"traction"` and `"dead_traction"` with one for each axis. Force and velocity are those of the last step.
+    /// `"force"`, `"traction"`, `"dead_traction"`, `"prescribed_velocity"`, `"reaction"` and `"gap"` with one for each axis.
+    /// Force, reaction and velocity are those of the last step.
     pub fn get<T: Element>(&self, field: &str) -> Result<Vec<T>> {
         self.copy(field, self.len(), None)
     }
@@ -219,12 +247,13 @@ impl Surface {
 
 impl Drop for Surface {
     fn drop(&mut self) {
-        let (handle, traction, grid) = (Sent(self.handle), self.traction.take(), self.grid.clone());
+        let (handle, grid) = (Sent(self.handle), self.grid.clone());
+        let functions = (self.traction.take(), self.velocity.take());
         self.context.bury(move || {
-            // SAFETY: nobody else has the handle. While a stepper holds on to it, so it does to the function, and the grid
+            // SAFETY: nobody else has the handle. While a stepper holds on to it, so it does to the functions, and the grid
             // refuses, too.
             if unsafe { sys::mpm_surface_destroy(handle.get()) } != sys::MPM_OK {
-                std::mem::forget(traction);
+                std::mem::forget(functions);
             }
             drop(grid);
         });
@@ -236,8 +265,8 @@ fn sized(desc: &SurfaceDesc) -> SurfaceDesc {
     SurfaceDesc { struct_size: std::mem::size_of::<SurfaceDesc>() as u32, ..*desc }
 }
 
-unsafe extern "C" fn on_traction(user: *mut c_void, batch: *const sys::mpm_marker_batch, add: *mut f64) -> i32 {
-    let slot = alone::<TractionFn>(user);
+unsafe extern "C" fn on_markers(user: *mut c_void, batch: *const sys::mpm_marker_batch, add: *mut f64) -> i32 {
+    let slot = alone::<MarkerFn>(user);
     let (raw, function) = (&*batch, &mut slot.function);
     slot.thrown.guard(|| function(&MarkerBatch(raw), &mut Columns::new(add, raw.ld, raw.n, raw.dim as usize)))
 }
