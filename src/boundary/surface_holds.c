@@ -1,82 +1,19 @@
-/* Surfaces that prescribe velocities, in explicit steps: the nodes that they hold, what they hold there, and
- * their impulses. A node that several surfaces reach has a site for each. */
+/* Surfaces that prescribe velocities, in explicit steps: what they hold at their sites, and their impulses. */
 #include "boundary/surface_holds.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A node takes nothing from markers whose weight there is no more than this, or rounding: at the edge of a
- * stencil it would be held as firmly as the others. */
-static const double least_weight = 1e-6;
 /* The least part of a unit normal that is left beside what holds the node already. */
 static const double least_left = 0.1;
 
-/* ---- sites --------------------------------------------------------------------------------------------- */
-/* Returns the site of a surface at a node that moves; *status tells of memory that ran out. */
-static int32_t site_at(mpmi_bound *bound, int32_t surface, int64_t slot, mpm_status *status) {
-  mpmi_surface_sites *sites = &bound->nodes->surface_sites;
-  const int32_t last = sites->last[slot];
-  if (last >= 0 && sites->site[last].surface == surface) return last;
-  *status = MPMI_RESERVE_NEXT(bound->step->settings->context, sites->site, sites->capacity, sites->count);
-  if (*status) return -1;
-  sites->site[sites->count] = (mpmi_surface_site){.slot = slot, .surface = surface, .before = last};
-  return sites->last[slot] = (int32_t)sites->count++;
-}
-
-/* Returns the node that moves for the one in a slot, with the signs by which the latter follows. */
-static int64_t mover_of(const mpmi_bound *bound, int64_t slot, double *sign) {
-  const mpmi_constraints *ties = mpmi_constraints_of(bound);
-  const int32_t at = ties->tie_of[slot];
-  sign[0] = sign[1] = sign[2] = 1.0;
-  if (at < 0) return slot;
-  const mpmi_tie *tie = &ties->tie[at];
-  for (int64_t i = tie->first; i < tie->first + tie->count; ++i)
-    if (ties->follower[i].slot == slot) memcpy(sign, ties->follower[i].sign, 3 * sizeof *sign);
-  return tie->master;
-}
-
-/* Adds to the sums of a site what a marker prescribes there. */
-static void add_marker(mpmi_surface_site *site, const mpmi_marker_aim *aim, int32_t normal_only, double share,
-                       const double *sign) {
-  double along = 0.0;
-  for (int32_t c = 0; c < 3; ++c) along += aim->normal[c] * aim->velocity[c];
-  site->weight += share;
-  site->value += share * along;
-  for (int32_t c = 0; c < 3; ++c)
-    site->vector[c] += share * sign[c] * (normal_only ? aim->normal[c] : aim->velocity[c]);
-}
-
-static mpm_status find_sites(mpmi_bound *bound, int32_t number) {
-  mpm_surface *s = bound->step->settings->surfaces.surface[number];
-  const int32_t normal_only = s->desc.prescribes == MPM_PRESCRIBES_NORMAL;
-  mpm_status status = MPM_OK;
-  for (int64_t k = 0; k < s->next.count; ++k) {
-    const double area = mpmi_marker_size(&s->next.at[k], s->grid);
-    for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
-      double sign[3];
-      s->site[n] = -1;
-      if (s->around.slot[n] < 0 || !(s->around.weight[n] > least_weight) || !(area > 0.0)) continue;
-      const int64_t slot = mover_of(bound, s->around.slot[n], sign);
-      if (!mpmi_moves(bound, slot)) continue;
-      s->site[n] = site_at(bound, number, slot, &status);
-      if (status) return status;
-      add_marker(&bound->nodes->surface_sites.site[s->site[n]], &s->aim[k], normal_only,
-                 s->around.weight[n] * area, sign);
-    }
-  }
-  return MPM_OK;
-}
-
-static int32_t is_normal_only(const mpmi_bound *bound, const mpmi_surface_site *site) {
-  return bound->step->settings->surfaces.surface[site->surface]->desc.prescribes == MPM_PRESCRIBES_NORMAL;
-}
-
+/* ---- what sites hold ------------------------------------------------------------------------------------ */
 /* Holds all components that nothing holds yet. */
 static void hold_velocity(mpmi_bound *bound, mpmi_surface_site *site) {
   for (int32_t c = 0; c < bound->dim; ++c) {
     if (bound->nodes->held[site->slot][c]) continue;
     bound->nodes->held[site->slot][c] = MPMI_HELD_BY_SURFACES;
-    bound->nodes->held_value[site->slot][c] = site->vector[c] / site->weight;
+    bound->nodes->held_value[site->slot][c] = site->vector[c];
     site->holds[c] = 1;
   }
 }
@@ -104,7 +41,7 @@ static int32_t make_unit(mpmi_surface_site *site, double least) {
 static void find_direction(mpmi_bound *bound, mpmi_surface_site *site) {
   const mpmi_constraints *ties = mpmi_constraints_of(bound);
   const int32_t tie = ties->tie_of[site->slot];
-  if (!make_unit(site, least_left * site->weight)) return;
+  if (!make_unit(site, least_left)) return;
   for (int32_t c = 0; c < bound->dim; ++c) {
     double axis[3] = {0.0, 0.0, 0.0};
     axis[c] = 1.0;
@@ -121,18 +58,15 @@ static void find_direction(mpmi_bound *bound, mpmi_surface_site *site) {
 }
 
 mpm_status mpmi_surface_holds_find(mpmi_bound *bound) {
-  const mpmi_surfaces *list = &bound->step->settings->surfaces;
   mpmi_surface_sites *sites = &bound->nodes->surface_sites;
-  mpm_status status = MPM_OK;
-  for (int64_t i = 0; i < mpmi_slots(bound->step->layout); ++i) sites->last[i] = -1;
-  sites->count = 0;
-  for (int32_t i = 0; i < list->count && !status; ++i)
-    if (mpmi_surface_prescribes(list->surface[i])) status = find_sites(bound, i);
+  const mpm_status status = mpmi_surface_sites_find(bound);
   if (status) return status;
   for (int64_t i = 0; i < sites->count; ++i)
-    if (!is_normal_only(bound, &sites->site[i])) hold_velocity(bound, &sites->site[i]);
+    if (!mpmi_site_slides(bound, &sites->site[i]) && !mpmi_site_is_far(&sites->site[i]))
+      hold_velocity(bound, &sites->site[i]);
   for (int64_t i = 0; i < sites->count; ++i)
-    if (is_normal_only(bound, &sites->site[i])) find_direction(bound, &sites->site[i]);
+    if (mpmi_site_slides(bound, &sites->site[i]) && !mpmi_site_is_far(&sites->site[i]))
+      find_direction(bound, &sites->site[i]);
   return MPM_OK;
 }
 
@@ -190,7 +124,7 @@ static void tell_surface(const mpmi_step *step, const mpmi_nodes *nodes, mpm_sur
     for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
       if (s->site[n] < 0) continue;
       const mpmi_surface_site *site = &nodes->surface_sites.site[s->site[n]];
-      const double share = s->around.weight[n] * area / site->weight;
+      const double share = s->around.plain[n] * area / site->weight;
       for (int32_t c = 0; c < s->grid->dim; ++c) {
         s->impulse[c] += share * site->impulse[c];
         m->reaction[c] += share * site->impulse[c] / step->velocity_dt;

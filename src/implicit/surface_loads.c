@@ -7,6 +7,7 @@
  *
  * which is not symmetric. Dead loads D have no stiffness. */
 #include "implicit/surface_springs.h"
+#include "boundary/surface_holds.h"
 #include "stages/stages.h"
 #include "simd/vector3.h"
 
@@ -34,7 +35,9 @@ static const double WEIGHT_ROUNDING = 1e-8;
 
 mpm_status mpmi_surface_loads_find(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
-  const mpm_status status = mpmi_surfaces_find(balance->step, &balance->nodes->solved);
+  mpm_status status = mpmi_surfaces_find(balance->step, &balance->nodes->solved);
+  if (!status && mpmi_surfaces_prescribe(list))
+    status = mpmi_surface_normals_smooth(balance->step, balance->nodes);
   for (int64_t i = 0; i < list->count && !status; ++i) {
     mpm_surface *s = list->surface[i];
     for (int64_t k = 0; k < s->next.count; ++k) {

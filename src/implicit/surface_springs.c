@@ -1,4 +1,4 @@
-/* Surfaces that prescribe velocities, in implicit steps (docs/theory.md, 18.7): springs between markers and
+/* Surfaces that prescribe velocities, in implicit steps (docs/theory.md, 18.6): springs between markers and
  * material, of the stiffness k = beta A, beta = penalty modulus / h, and the stretch
  *
  *   d = d0 + sum w_i u_i - dt g
@@ -164,6 +164,21 @@ static void tell_walls(mpmi_balance *balance, const mpm_surface *s, int64_t k, c
   }
 }
 
+/* A marker along which material has slid meets other material, which has not stretched its spring: that of the
+ * way of one cell is all that stays. What is stretched by normals that are not quite right stays small so. */
+static void forget(const mpmi_balance *balance, const mpm_surface *s, int64_t k, const double *moved,
+                   double *gap) {
+  const mpmi_marker_aim *aim = &s->aim[k];
+  double along = 0.0, square = 0.0;
+  for (int32_t c = 0; c < 3; ++c) along += aim->normal[c] * (moved[c] - balance->step->dt * aim->velocity[c]);
+  for (int32_t c = 0; c < 3; ++c) {
+    const double slid = moved[c] - balance->step->dt * aim->velocity[c] - along * aim->normal[c];
+    square += slid * slid;
+  }
+  const double kept = 1.0 - sqrt(square) / s->grid->h_min;
+  for (int32_t c = 0; c < 3; ++c) gap[c] *= kept > 0.0 ? kept : 0.0;
+}
+
 void mpmi_springs_finish(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
   const double share = mpmi_contact_share(balance->settings), dt = balance->step->dt;
@@ -181,6 +196,7 @@ void mpmi_springs_finish(mpmi_balance *balance) {
         balance->step->host_work += m->reaction[c] * moved[c];
       }
       if (s->aim[k].stiffness > 0.0) tell_walls(balance, s, k, force);
+      if (s->desc.prescribes == MPM_PRESCRIBES_NORMAL) forget(balance, s, k, moved, m->gap);
     }
   }
 }

@@ -46,8 +46,9 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
   const int32_t projects =
       settings->desc.scheme == MPM_MUSL || mpmi_deforms_first(settings) || corrected || places;
   mpm_status status;
-  const int32_t surfaces = !mpmi_is_implicit(settings) && mpmi_surfaces_prescribe(&settings->surfaces);
-  nodes->has_holders = settings->velocity_bc || nodes->prescription.any || surfaces;
+  const int32_t surfaces = mpmi_surfaces_prescribe(&settings->surfaces);
+  nodes->has_holders =
+      settings->velocity_bc || nodes->prescription.any || (surfaces && !mpmi_is_implicit(settings));
   nodes->has_impulses = nodes->has_holders || ties || contacts || nodes->contact.at_walls;
   nodes->contact.listed = 0;
   if ((status = mpmi_nodal_reserve(c, &nodes->solved, slots, values_of_step(settings, staged))) ||

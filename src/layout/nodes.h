@@ -81,14 +81,17 @@ typedef struct mpmi_light_node {
   double before[3], first_gain[3], gain[3];
 } mpmi_light_node;
 
-/* A node that moves, where a surface prescribes something (boundary/surface_holds.c). The vector is the sum of
- * velocities, or of normals, then the direction in which the surface sets the velocity to a value. */
+/* A node that moves, where a surface prescribes something (boundary/surface_sites.c). The vector is the velocity
+ * that it asks for, or the direction in which it sets the velocity to a value. */
 typedef struct mpmi_surface_site {
   int64_t slot;
   int32_t surface, before; /* before: the site of another surface at the same node, or -1 */
   int32_t slides;          /* 1: there is such a direction */
   int32_t holds[3];        /* 1: it holds this component */
-  double weight, value, vector[3], impulse[3];
+  double weight, largest, value, vector[3], normal[3], impulse[3]; /* largest: of the shape functions */
+  /* Sums over markers with their arms from the node: arms, products of arms, and arms times the vector, and
+   * the value; then of the last how these change along the surface. */
+  double first[3], second[3][3], slope[4][3];
 } mpmi_surface_site;
 typedef struct mpmi_surface_sites {
   int64_t count, capacity, last_capacity;

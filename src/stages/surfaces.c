@@ -317,6 +317,13 @@ static void make_linear(int32_t dim, stencil *of) {
   }
 }
 
+/* Keeps the shape functions before they are changed. */
+static void keep_plain(const surface_job *job, int64_t marker, const stencil *from) {
+  const mpmi_marker_nodes *around = &job->surface->around;
+  for (int32_t n = 0; n < from->count && around->plain; ++n)
+    around->plain[marker * around->nodes + n] = from->w[n];
+}
+
 static void keep_nodes(const surface_job *job, int64_t marker, const stencil *from) {
   const mpmi_marker_nodes *around = &job->surface->around;
   const int32_t dim = job->step->settings->grid->dim;
@@ -351,6 +358,7 @@ static void find_nodes_task(void *data, int64_t task) {
     weights(axis, MPMI_NEED_GRADIENT | MPMI_NO_PLACE, &points, 0, MPMI_CHUNK, &W);
     for (int64_t p = 0; p < n; ++p) {
       list_nodes(job, &W, p, mpmi_marker_place_of(&markers->at[begin + p], grid), &near);
+      keep_plain(job, begin + p, &near);
       if (!find_shares(job, &near) && normalise(grid->dim, &near) > 0.0) make_linear(grid->dim, &near);
       keep_nodes(job, begin + p, &near);
     }

@@ -63,14 +63,17 @@ static mpm_status reserve(mpm_surface *s) {
   int64_t nodes = 1;
   for (int32_t k = 0; k < dim; ++k) nodes *= s->grid->width;
   mpm_status status = MPMI_RESERVE_MORE(c, around->slot, around->slot_capacity, n * nodes);
-  if (!status) status = MPMI_RESERVE_MORE(c, around->weight, around->weight_capacity, n * nodes * (1 + dim));
-  const int32_t prescribes = mpmi_surface_prescribes(s), asks = s->traction || (s->velocity && prescribes);
+  const int32_t prescribes = mpmi_surface_prescribes(s);
+  const int64_t each = nodes * (1 + dim + prescribes);
+  if (!status) status = MPMI_RESERVE_MORE(c, around->weight, around->weight_capacity, n * each);
+  const int32_t asks = s->traction || (s->velocity && prescribes);
   if (!status && asks) status = MPMI_RESERVE_MORE(c, s->batch_id, s->id_capacity, n);
   if (!status && asks) status = MPMI_RESERVE_MORE(c, s->batch, s->batch_capacity, (5 * dim + 1) * n);
   if (!status && prescribes) status = MPMI_RESERVE_MORE(c, s->aim, s->aim_capacity, n);
   if (!status && prescribes) status = MPMI_RESERVE_MORE(c, s->site, s->site_capacity, n * nodes);
   around->nodes = (int32_t)nodes;
   around->gradient = around->weight + n * nodes;
+  around->plain = prescribes ? around->gradient + n * nodes * dim : NULL;
   return status;
 }
 

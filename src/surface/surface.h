@@ -35,12 +35,13 @@ typedef struct mpmi_markers {
 } mpmi_markers;
 
 /* The nodes of the markers in a step, `nodes` of them for each: slots, or -1 for those that take nothing;
- * weights, with which forces go to nodes and velocities come back; and gradients, [dim] for each. */
+ * weights, with which forces go to nodes and velocities come back; and gradients, [dim] for each. Where the
+ * surface prescribes also the shape functions as they are. */
 typedef struct mpmi_marker_nodes {
   int64_t slot_capacity, weight_capacity;
   int32_t nodes;
   int64_t *slot;
-  double *weight, *gradient;
+  double *weight, *gradient, *plain;
 } mpmi_marker_nodes;
 
 /* What a marker prescribes in a step: its velocity, the normal along which alone it counts where the material
@@ -71,7 +72,7 @@ struct mpm_surface {
   mpmi_surface_impulses impulses;
   double impulse[3];    /* in the step under way */
   mpmi_marker_aim *aim; /* [markers], in the step under way; there only where the surface prescribes */
-  int32_t *site;        /* of explicit steps, for each of the nodes around: see boundary/surface_holds.c */
+  int32_t *site;        /* for each of the nodes around, or -1: see boundary/surface_holds.c */
   int64_t aim_capacity, site_capacity;
   double *batch; /* what the callback sees and gives */
   double *asked; /* the tractions in it in the step under way, or NULL */

@@ -285,7 +285,7 @@ static void change_surface(cloud *c, mpm_surface **s, const mpm_surface_desc *d)
   }
   double step = fuzz_between(&c->in, -0.01, 0.3);
   if (step > 0.0 && step < 0.02) step = 0.02; /* not millions of markers */
-  switch (fuzz_below(&c->in, 8)) {
+  switch (fuzz_below(&c->in, 9)) {
   case 0:
     fuzz_status(c->context, mpm_surface_add_polyline(*s, 4, x, fuzz_below(&c->in, 2), step, NULL, NULL));
     break;
@@ -309,6 +309,11 @@ static void change_surface(cloud *c, mpm_surface **s, const mpm_surface_desc *d)
     MUST(!mpm_surface_destroy(*s));
     *s = NULL;
     return;
+  case 7:
+    fuzz_status(c->context, mpm_surface_set(*s, "prescribed_velocity", MPM_F64, c->g.dim, 1, &id, a));
+    if (!fuzz_status(c->context, mpm_stepper_surface_reaction(c->stepper, *s, x)))
+      for (int32_t k = 0; k < c->g.dim; ++k) MUST(isfinite(x[k]));
+    break;
   default:
     fuzz_status(c->context, mpm_surface_add(*s, 4, x, a, NULL));
   }
@@ -328,12 +333,18 @@ static void draw_surface(cloud *c) {
   d.dead_traction[1] = fuzz_between(&c->in, -10.0, 10.0);
   d.max_spacing = fuzz_below(&c->in, 2) ? fuzz_between(&c->in, -0.01, 0.3) : 0.0;
   d.body = fuzz_below(&c->in, 4) ? 0 : fuzz_below(&c->in, 3) - 1;
+  d.prescribes = fuzz_below(&c->in, 5) - 1; /* one that there is not, and nothing twice as often */
+  d.prescribes = d.prescribes > 2 ? 0 : d.prescribes;
+  for (int32_t k = 0; k < 3; ++k) d.velocity[k] = fuzz_between(&c->in, -1.0, 1.0);
+  if (fuzz_below(&c->in, 2)) d.penalty = fuzz_between(&c->in, -1.0, 1e4);
+  if (fuzz_below(&c->in, 2)) d.modulus = fuzz_between(&c->in, -1.0, 1e3);
   if (*s) {
     change_surface(c, s, &d);
     return;
   }
   if (fuzz_status(c->context, mpm_surface_create(c->context, c->grid, &d, s))) return;
   if (fuzz_below(&c->in, 2)) MUST(!mpm_surface_set_traction(*s, drag, c));
+  if (fuzz_below(&c->in, 2)) MUST(!mpm_surface_set_velocity(*s, drag, c));
   if (!fuzz_status(c->context, mpm_stepper_add_surface(c->stepper, *s))) return;
   MUST(!mpm_surface_destroy(*s));
   *s = NULL;

@@ -286,6 +286,11 @@ static void add_surface(world *w, int32_t empty) {
   d.traction[0] = 1e3;
   d.dead_traction[up] = -1e3;
   d.max_spacing = 0.6 * spacing[0];
+  if (is->with & (WITH_HOLDING | WITH_SLIDING)) {
+    d.prescribes = is->with & WITH_HOLDING ? MPM_PRESCRIBES_VELOCITY : MPM_PRESCRIBES_NORMAL;
+    d.velocity[0] = 0.5;
+    d.velocity[up] = -1.0;
+  }
   must(w, mpm_surface_create(w->context, w->grid, &d, &w->surface));
   for (int32_t i = 0; i < 6 && !empty; ++i) {
     double x[3], a[3] = {0.0, 0.0, 0.0};
@@ -293,6 +298,7 @@ static void add_surface(world *w, int32_t empty) {
       x[c] = corner(is, c) + spacing[c] * ((double)first[c] + 0.5 + 0.15 * i);
     x[up] = corner(is, up) + spacing[up] * ((double)(first[up] + count[up]) - 0.1);
     a[up] = 0.5 * spacing[0];
+    if (is->dim > 1 && is->with & WITH_SLIDING) a[0] = 0.1 * (i - 2) * spacing[0];
     must(w, mpm_surface_add(w->surface, 1, x, a, NULL));
   }
   must(w, mpm_stepper_add_surface(w->stepper, w->surface));

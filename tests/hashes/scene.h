@@ -40,7 +40,9 @@ enum {
   WITH_BODIES = 2048,     /* the sets stand side by side and rub against each other */
   WITH_OBSTACLES = 4096,  /* one of each motion: fixed, driven, free */
   WITH_SURFACE = 8192,    /* markers at the upper end of the body, under loads of all kinds */
-  WITH_ADAPTION = 16384   /* the first set is split and merged every other step */
+  WITH_ADAPTION = 16384,  /* the first set is split and merged every other step */
+  WITH_HOLDING = 32768,   /* the surface prescribes how the material moves, */
+  WITH_SLIDING = 65536    /* or the normal component alone, along normals that differ */
 };
 
 /* How it is stepped. */

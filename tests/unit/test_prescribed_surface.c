@@ -143,6 +143,55 @@ START_TEST(slides_along) {
 }
 END_TEST
 
+/* A body that turns in a round surface is not stopped: the normals of nodes point to the middle, wherever they
+ * lie beside the surface. */
+START_TEST(slides_round) {
+  const int32_t dim = 2 + _i;
+  world w;
+  world_desc desc = world_default(dim, 24, 0.125);
+  desc.stepper.transfer = MPM_APIC;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {0.75, 0.75, 0.75}, high[] = {2.25, 2.25, 2.25}, radius = 0.6;
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  double *x = fetch(&w, set, "position", dim), *v = calloc((size_t)(dim * n), sizeof *v);
+  for (int64_t i = 0; i < n; ++i) v[i] = 1.5 - x[n + i], v[n + i] = x[i] - 1.5;
+  put(&w, set, "velocity", dim, v);
+  const double L[9] = {0.0, -1.0, 0.0, 1.0};
+  ck_ok(&w, mpm_particles_set_all(set, "velocity_gradient", MPM_F64, 9, L));
+  const mpm_surface_desc d = prescribing(1);
+  mpm_surface *s = put_surface(&w, &d);
+  enum { AROUND = 64, UP = 32 };
+  for (int32_t i = 0; i < AROUND; ++i)
+    for (int32_t k = 0; k < (dim == 2 ? 1 : UP); ++k) {
+      const double a = 2.0 * PI * (i + 0.5) / AROUND, b = dim == 2 ? 0.0 : PI * ((k + 0.5) / UP - 0.5);
+      const double r[3] = {cos(a) * cos(b), sin(a) * cos(b), sin(b)};
+      const double size = 0.06 * (dim == 2 ? 1.0 : 0.1 * cos(b));
+      double at[3], area[3];
+      for (int32_t c = 0; c < 3; ++c) at[c] = 1.5 + radius * r[c], area[c] = size * r[c];
+      ck_ok(&w, mpm_surface_add(s, 1, at, area, NULL));
+    }
+  ck_ok(&w, mpm_step_begin(w.stepper, 1e-4));
+  ck_ok(&w, mpm_step_grid(w.stepper));
+  int64_t count;
+  double *u = fetch_nodes(&w, "velocity", &count), *at = fetch_nodes(&w, "position", &count), most = 0.0,
+         *pull = fetch_nodes(&w, "reaction", &count);
+  int64_t held = 0;
+  for (int64_t i = 0; i < count; ++i) {
+    const double arm[2] = {at[i] - 1.5, at[count + i] - 1.5}, r = sqrt(arm[0] * arm[0] + arm[1] * arm[1]);
+    const double off = r > 0.0 ? (u[i] * arm[0] + u[count + i] * arm[1]) / r : 0.0;
+    held += pull[i] != 0.0 || pull[count + i] != 0.0;
+    if (pull[i] != 0.0 || pull[count + i] != 0.0) most = fmax(most, fabs(off) / radius);
+  }
+  show("%d-D: %lld nodes slide, off by %g of the speed\n", (int)dim, (long long)held, most);
+  ck_assert(held > 60);
+  ck_between("off the circle", most, 0.0, 4e-3);
+  free(x), free(v), free(u), free(at), free(pull);
+  ck_ok(&w, mpm_step_abort(w.stepper));
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
 /* Two faces that meet hold a node whole, each by what is left of its normal; beside them a wall and the host
  * come first. */
 START_TEST(faces_that_meet) {
@@ -440,7 +489,9 @@ START_TEST(states_hold_what_is_prescribed) {
   mpm_surface *s = story_world(&a, how, 1, 0), *t = story_world(&b, how, 1, 0);
   const double own[2] = {0.25, -0.5};
   const int64_t three = 3;
+  const uint64_t before = world_hash(&a);
   ck_ok(&a, mpm_surface_set(s, "prescribed_velocity", MPM_F64, 2, 1, &three, own));
+  ck_holds(world_hash(&a) != before);
   for (int32_t i = 0; i < 4; ++i) world_step(&a, 1e-3);
   saved_state state = world_save(&a);
   world_load(&b, &state);
@@ -516,6 +567,7 @@ Suite *prescribed_surface_suite(void) {
   tcase_set_timeout(kept, 60);
   suite_add_tcase(suite, kept);
   tcase_add_loop_test(nodes, slides_along, 0, BROAD);
+  tcase_add_loop_test(nodes, slides_round, 0, 2);
   tcase_add_test(nodes, faces_that_meet);
   tcase_add_test(nodes, others_come_first);
   tcase_add_loop_test(nodes, half_on_a_wall, 0, BROAD);
