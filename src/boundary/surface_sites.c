@@ -175,21 +175,43 @@ mpm_status mpmi_surface_sites_find(mpmi_bound *bound) {
 }
 
 /* ---- smooth normals ------------------------------------------------------------------------------------ */
-/* Finds the normal of a marker from those of the nodes around it, each moved along the surface to the marker. */
+/* A marker ahead of the material, or at a corner of it, where the nodes that are left do not read a linear field,
+ * or read it from afar: by so many spacings, and with weights so large. */
+static const double off_place = 0.01, far_off = 3.0;
+static int32_t reads_linear(const mpmi_bound *bound, const mpm_surface *s, int64_t k) {
+  const double plain[3] = {1.0, 1.0, 1.0}, *x = mpmi_marker_place_of(&s->next.at[k], s->grid);
+  double off[3] = {0.0, 0.0, 0.0}, arm[3], size = 0.0;
+  for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
+    if (s->around.slot[n] < 0) continue;
+    arm_to(bound, s->around.slot[n], x, plain, arm);
+    size += fabs(s->around.weight[n]);
+    for (int32_t c = 0; c < 3; ++c) off[c] += s->around.weight[n] * arm[c];
+  }
+  return sqrt(mpmi_inner(off, off)) <= off_place * s->grid->h_min && size <= far_off;
+}
+
+/* Finds the normal of a marker from those of the nodes around it, each moved along the surface to the marker, and
+ * its curvature from their slopes. */
 static void smooth_normal(const mpmi_bound *bound, mpm_surface *s, int64_t k) {
-  double sum[3] = {0.0, 0.0, 0.0}, sign[3], arm[3], weight = 0.0;
+  double sum[3] = {0.0, 0.0, 0.0}, sign[3], arm[3], weight = 0.0, slope[3][3] = {{0.0}};
   for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
     if (s->site[n] < 0) continue;
     const mpmi_surface_site *site = &bound->nodes->surface_sites.site[s->site[n]];
     mpmi_mover_of(bound, s->around.slot[n], sign);
     arm_to(bound, s->around.slot[n], mpmi_marker_place_of(&s->next.at[k], s->grid), sign, arm);
     weight += s->around.plain[n];
-    for (int32_t c = 0; c < 3; ++c)
+    for (int32_t c = 0; c < 3; ++c) {
       sum[c] += s->around.plain[n] * sign[c] * (site->vector[c] + mpmi_inner(site->slope[c], arm));
+      for (int32_t e = 0; e < 3; ++e)
+        slope[c][e] += s->around.plain[n] * sign[c] * sign[e] * site->slope[c][e];
+    }
   }
   const double length = sqrt(mpmi_inner(sum, sum));
   if (!(length > least_left * weight)) return;
-  for (int32_t c = 0; c < 3; ++c) s->aim[k].normal[c] = sum[c] / length;
+  for (int32_t c = 0; c < 3; ++c) {
+    s->aim[k].normal[c] = sum[c] / length;
+    for (int32_t e = 0; e < 3; ++e) s->aim[k].curvature[c][e] = 0.5 * (slope[c][e] + slope[e][c]) / weight;
+  }
 }
 
 mpm_status mpmi_surface_normals_smooth(mpmi_step *step, mpmi_nodes *nodes) {
@@ -197,9 +219,12 @@ mpm_status mpmi_surface_normals_smooth(mpmi_step *step, mpmi_nodes *nodes) {
   mpmi_bound bound = {
       .step = step, .nodes = nodes, .values = &nodes->solved, .dim = step->settings->grid->dim};
   const mpm_status status = mpmi_surface_sites_find(&bound);
-  for (int64_t i = 0; i < list->count && !status; ++i)
-    for (int64_t k = 0; k < list->surface[i]->next.count; ++k)
-      if (list->surface[i]->desc.prescribes == MPM_PRESCRIBES_NORMAL)
-        smooth_normal(&bound, list->surface[i], k);
+  for (int64_t i = 0; i < list->count && !status; ++i) {
+    mpm_surface *s = list->surface[i];
+    for (int64_t k = 0; k < s->next.count && s->desc.prescribes == MPM_PRESCRIBES_NORMAL; ++k) {
+      smooth_normal(&bound, s, k);
+      if (!reads_linear(&bound, s, k)) s->aim[k].stiffness = 0.0;
+    }
+  }
   return status;
 }

@@ -3,9 +3,13 @@
  *
  *   d = d0 + sum w_i u_i - dt g
  *
- * with the stretch d0 at the start of the step; or its part along the marker's normal n alone. The force on
- * the material is -k d, its stiffness k w_a w_b 1, or k w_a w_b n (x) n. As contact it acts wholly at the end
- * of the step: the accelerations at its start have nothing of it. */
+ * with the stretch d0 at the start of the step, and the force -k d, whose stiffness is k w_a w_b 1. Where the
+ * material slides, with the normal n of the marker and its change H along the surface, they are
+ *
+ *   d = n . d0 + n . m + m . H m / 2,   m = sum w_i u_i - dt g,   -k d n',   k w_a w_b (n' (x) n' + d H),
+ *   n' = n + H m
+ *
+ * As contact it acts wholly at the end of the step: the accelerations at its start have nothing of it. */
 #include "implicit/active_set.h"
 #include "implicit/surface_springs.h"
 
@@ -25,8 +29,8 @@ void mpmi_springs_find(mpmi_balance *balance) {
   for (int64_t i = 0; i < list->count; ++i) {
     mpm_surface *s = list->surface[i];
     for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k) {
-      const int32_t springs =
-          mpmi_marker_size(&s->next.at[k], s->grid) > 0.0 && reaches_material(&s->around, k);
+      const int32_t springs = s->aim[k].stiffness < 0.0 && mpmi_marker_size(&s->next.at[k], s->grid) > 0.0 &&
+                              reaches_material(&s->around, k);
       balance->newton->has_springs |= springs;
       if (!springs) s->aim[k].stiffness = 0.0;
     }
@@ -69,24 +73,33 @@ static mpm_status stiffen_surface(mpmi_balance *balance, mpm_surface *s) {
 }
 
 /* ---- forces -------------------------------------------------------------------------------------------- */
-/* Finds the displacement of the material at a marker, and what its spring is stretched by. */
-static void find_stretch(const mpmi_balance *balance, const mpm_surface *s, int64_t k, double *moved,
-                         double *stretch) {
+/* A spring as it is: the displacement of the material at the marker, the same relative to the marker, what it is
+ * stretched by, and where material slides the length of that and the normal. */
+typedef struct spring {
+  double moved[3], past[3], stretch[3], length, normal[3];
+} spring;
+
+static void find_stretch(const mpmi_balance *balance, const mpm_surface *s, int64_t k, spring *to) {
   const mpmi_marker_nodes *around = &s->around;
   const mpmi_marker_aim *aim = &s->aim[k];
   const double dt = balance->step->dt;
   const int32_t dim = s->grid->dim;
-  double along = 0.0;
-  for (int32_t c = 0; c < 3; ++c) moved[c] = stretch[c] = 0.0;
+  *to = (spring){.length = 0.0};
   for (int64_t n = k * around->nodes; n < (k + 1) * around->nodes; ++n)
     for (int32_t c = 0; c < dim && around->slot[n] >= 0; ++c)
-      moved[c] += around->weight[n] * dt * mpmi_velocity(&balance->nodes->solved, around->slot[n])[c];
+      to->moved[c] += around->weight[n] * dt * mpmi_velocity(&balance->nodes->solved, around->slot[n])[c];
   for (int32_t c = 0; c < dim; ++c) {
-    stretch[c] = s->now.at[k].gap[c] + moved[c] - dt * aim->velocity[c];
-    along += aim->normal[c] * stretch[c];
+    to->past[c] = to->moved[c] - dt * aim->velocity[c];
+    to->stretch[c] = s->now.at[k].gap[c] + to->past[c];
+    to->length += aim->normal[c] * to->stretch[c];
   }
-  for (int32_t c = 0; c < dim && s->desc.prescribes == MPM_PRESCRIBES_NORMAL; ++c)
-    stretch[c] = along * aim->normal[c];
+  if (s->desc.prescribes != MPM_PRESCRIBES_NORMAL) return;
+  for (int32_t c = 0; c < dim; ++c) {
+    const double turned = mpmi_inner(aim->curvature[c], to->past);
+    to->length += 0.5 * turned * to->past[c];
+    to->normal[c] = aim->normal[c] + turned;
+  }
+  for (int32_t c = 0; c < dim; ++c) to->stretch[c] = to->length * to->normal[c];
 }
 
 mpm_status mpmi_springs_pull(mpmi_balance *balance) {
@@ -101,15 +114,15 @@ mpm_status mpmi_springs_pull(mpmi_balance *balance) {
     if (!mpmi_surface_prescribes(s)) continue;
     status = stiffen_surface(balance, s);
     for (int64_t k = 0; k < s->next.count && !status; ++k) {
-      double moved[3], stretch[3];
+      spring is;
       if (!(s->aim[k].stiffness > 0.0)) continue;
-      find_stretch(balance, s, k, moved, stretch);
+      find_stretch(balance, s, k, &is);
       for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
         if (s->around.slot[n] < 0) continue;
         const mpmi_active_node *node = &newton->active[newton->active_of[s->around.slot[n]]];
         for (int32_t c = 0; c < dim; ++c)
           to[(int64_t)node->row * dim + c] -=
-              node->sign[c] * s->around.weight[n] * s->aim[k].stiffness * stretch[c];
+              node->sign[c] * s->around.weight[n] * s->aim[k].stiffness * is.stretch[c];
       }
     }
   }
@@ -117,7 +130,8 @@ mpm_status mpmi_springs_pull(mpmi_balance *balance) {
 }
 
 /* Adds the block of two nodes of a spring. */
-static void add_block(mpmi_newton *newton, const mpm_surface *s, int64_t k, int64_t a, int64_t b) {
+static void add_block(mpmi_newton *newton, const mpm_surface *s, int64_t k, const spring *is, int64_t a,
+                      int64_t b) {
   const mpmi_active_node *A = &newton->active[newton->active_of[s->around.slot[a]]];
   const mpmi_active_node *B = &newton->active[newton->active_of[s->around.slot[b]]];
   const mpmi_marker_aim *aim = &s->aim[k];
@@ -127,20 +141,27 @@ static void add_block(mpmi_newton *newton, const mpm_surface *s, int64_t k, int6
   if (entry < 0) return; /* without it the iteration takes longer */
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t j = 0; j < dim; ++j) {
-      const double part = whole ? (i == j ? 1.0 : 0.0) : aim->normal[i] * aim->normal[j];
+      const double part =
+          whole ? (i == j ? 1.0 : 0.0) : is->normal[i] * is->normal[j] + is->length * aim->curvature[i][j];
       newton->matrix.value[(entry * dim + i) * dim + j] += A->sign[i] * B->sign[j] * by * part;
     }
+}
+
+static void stiffen_marker_spring(mpmi_balance *balance, const mpm_surface *s, int64_t k) {
+  const int64_t first = k * s->around.nodes, end = first + s->around.nodes;
+  spring is;
+  find_stretch(balance, s, k, &is);
+  for (int64_t a = first; a < end; ++a)
+    for (int64_t b = first; b < end && s->around.slot[a] >= 0; ++b)
+      if (s->around.slot[b] >= 0) add_block(balance->newton, s, k, &is, a, b);
 }
 
 void mpmi_springs_stiffen(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
   for (int64_t i = 0; i < list->count && balance->newton->has_springs; ++i) {
     const mpm_surface *s = list->surface[i];
-    const int32_t nodes = s->around.nodes;
     for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k)
-      for (int64_t a = k * nodes; a < (k + 1) * nodes && s->aim[k].stiffness > 0.0; ++a)
-        for (int64_t b = k * nodes; b < (k + 1) * nodes && s->around.slot[a] >= 0; ++b)
-          if (s->around.slot[b] >= 0) add_block(balance->newton, s, k, a, b);
+      if (s->aim[k].stiffness > 0.0) stiffen_marker_spring(balance, s, k);
   }
 }
 
@@ -166,17 +187,14 @@ static void tell_walls(mpmi_balance *balance, const mpm_surface *s, int64_t k, c
 
 /* A marker along which material has slid meets other material, which has not stretched its spring: that of the
  * way of one cell is all that stays. What is stretched by normals that are not quite right stays small so. */
-static void forget(const mpmi_balance *balance, const mpm_surface *s, int64_t k, const double *moved,
-                   double *gap) {
-  const mpmi_marker_aim *aim = &s->aim[k];
-  double along = 0.0, square = 0.0;
-  for (int32_t c = 0; c < 3; ++c) along += aim->normal[c] * (moved[c] - balance->step->dt * aim->velocity[c]);
-  for (int32_t c = 0; c < 3; ++c) {
-    const double slid = moved[c] - balance->step->dt * aim->velocity[c] - along * aim->normal[c];
-    square += slid * slid;
-  }
+static double kept_of(const mpm_surface *s, const spring *is) {
+  const double along = mpmi_inner(is->normal, is->past);
+  double square = 0.0;
+  if (s->desc.prescribes != MPM_PRESCRIBES_NORMAL) return 1.0;
+  for (int32_t c = 0; c < 3; ++c)
+    square += (is->past[c] - along * is->normal[c]) * (is->past[c] - along * is->normal[c]);
   const double kept = 1.0 - sqrt(square) / s->grid->h_min;
-  for (int32_t c = 0; c < 3; ++c) gap[c] *= kept > 0.0 ? kept : 0.0;
+  return kept > 0.0 ? kept : 0.0;
 }
 
 void mpmi_springs_finish(mpmi_balance *balance) {
@@ -185,18 +203,20 @@ void mpmi_springs_finish(mpmi_balance *balance) {
   for (int64_t i = 0; i < list->count; ++i) {
     mpm_surface *s = list->surface[i];
     for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k) {
+      const double stiffness = s->aim[k].stiffness;
       mpmi_marker *m = &s->next.at[k];
-      double moved[3] = {0.0, 0.0, 0.0}, stretch[3] = {0.0, 0.0, 0.0}, force[3];
-      if (s->aim[k].stiffness > 0.0) find_stretch(balance, s, k, moved, stretch);
+      spring is = {.length = 0.0};
+      double force[3];
+      if (stiffness > 0.0) find_stretch(balance, s, k, &is);
+      const double kept = kept_of(s, &is);
       for (int32_t c = 0; c < 3; ++c) {
-        m->gap[c] = stretch[c];
-        force[c] = -s->aim[k].stiffness * stretch[c];
+        m->gap[c] = kept * is.stretch[c];
+        force[c] = -stiffness * is.stretch[c];
         m->reaction[c] = share * force[c];
         s->impulse[c] += dt * m->reaction[c];
-        balance->step->host_work += m->reaction[c] * moved[c];
+        balance->step->host_work += m->reaction[c] * is.moved[c];
       }
-      if (s->aim[k].stiffness > 0.0) tell_walls(balance, s, k, force);
-      if (s->desc.prescribes == MPM_PRESCRIBES_NORMAL) forget(balance, s, k, moved, m->gap);
+      if (stiffness > 0.0) tell_walls(balance, s, k, force);
     }
   }
 }
