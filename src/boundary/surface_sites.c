@@ -8,7 +8,7 @@
  *   q = q_ + C y,   C = sum s q r^T - q_ r_^T,   S y = -r_ in the plane of the surface,   S = sum s r r^T - r_ r_^T
  *
  * Without it the normals of a curved surface would turn a little from node to node, and strain what slides. */
-#include "boundary/surface_holds.h"
+#include "boundary/surface_sites.h"
 #include "simd/vector3.h"
 
 #include <math.h>
@@ -32,7 +32,8 @@ static int32_t site_at(mpmi_bound *bound, int32_t surface, int64_t slot, mpm_sta
   return sites->last[slot] = (int32_t)sites->count++;
 }
 
-int64_t mpmi_mover_of(const mpmi_bound *bound, int64_t slot, double *sign) {
+/* Returns the node that moves for the one in a slot, with the signs by which the latter follows. */
+static int64_t original_of(const mpmi_bound *bound, int64_t slot, double *sign) {
   const mpmi_constraints *ties = mpmi_constraints_of(bound);
   const int32_t at = ties->tie_of[slot];
   sign[0] = sign[1] = sign[2] = 1.0;
@@ -87,7 +88,7 @@ static mpm_status find_sites(mpmi_bound *bound, int32_t number) {
       double sign[3], arm[3];
       s->site[n] = -1;
       if (s->around.slot[n] < 0 || !(s->around.plain[n] > weight_rounding) || !(area > 0.0)) continue;
-      const int64_t slot = mpmi_mover_of(bound, s->around.slot[n], sign);
+      const int64_t slot = original_of(bound, s->around.slot[n], sign);
       if (!mpmi_moves(bound, slot)) continue;
       s->site[n] = site_at(bound, number, slot, &status);
       if (status) return status;
@@ -197,7 +198,7 @@ static void smooth_normal(const mpmi_bound *bound, mpm_surface *s, int64_t k) {
   for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
     if (s->site[n] < 0) continue;
     const mpmi_surface_site *site = &bound->nodes->surface_sites.site[s->site[n]];
-    mpmi_mover_of(bound, s->around.slot[n], sign);
+    original_of(bound, s->around.slot[n], sign);
     arm_to(bound, s->around.slot[n], mpmi_marker_place_of(&s->next.at[k], s->grid), sign, arm);
     weight += s->around.plain[n];
     for (int32_t c = 0; c < 3; ++c) {

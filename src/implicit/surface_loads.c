@@ -7,7 +7,7 @@
  *
  * which is not symmetric. Dead loads D have no stiffness. */
 #include "implicit/surface_springs.h"
-#include "boundary/surface_holds.h"
+#include "boundary/surface_sites.h"
 #include "stages/stages.h"
 #include "simd/vector3.h"
 

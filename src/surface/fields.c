@@ -12,19 +12,20 @@ typedef struct field {
   int32_t type, vector, writable, at; /* at: bytes from the beginning of a marker */
 } field;
 
-static const field fields[] = {{"id", MPM_I64, 0, 0, offsetof(mpmi_marker, id)},
-                               {"position", MPM_F64, 1, 1, offsetof(mpmi_marker, position)},
-                               {"area", MPM_F64, 1, 1, AREA},
-                               {"reference_area", MPM_F64, 0, 0, offsetof(mpmi_marker, reference_area)},
-                               {"displacement", MPM_F64, 1, 1, offsetof(mpmi_marker, displacement)},
-                               {"velocity", MPM_F64, 1, 0, offsetof(mpmi_marker, velocity)},
-                               {"force", MPM_F64, 1, 0, offsetof(mpmi_marker, force)},
-                               {"pressure", MPM_F64, 0, 1, offsetof(mpmi_marker, pressure)},
-                               {"traction", MPM_F64, 1, 1, offsetof(mpmi_marker, traction)},
-                               {"dead_traction", MPM_F64, 1, 1, offsetof(mpmi_marker, dead_traction)},
-                               {"prescribed_velocity", MPM_F64, 1, 1, offsetof(mpmi_marker, prescribed_velocity)},
-                               {"reaction", MPM_F64, 1, 0, offsetof(mpmi_marker, reaction)},
-                               {"gap", MPM_F64, 1, 0, offsetof(mpmi_marker, gap)}};
+static const field fields[] = {
+    {"id", MPM_I64, 0, 0, offsetof(mpmi_marker, id)},
+    {"position", MPM_F64, 1, 1, offsetof(mpmi_marker, position)},
+    {"area", MPM_F64, 1, 1, AREA},
+    {"reference_area", MPM_F64, 0, 0, offsetof(mpmi_marker, reference_area)},
+    {"displacement", MPM_F64, 1, 1, offsetof(mpmi_marker, displacement)},
+    {"velocity", MPM_F64, 1, 0, offsetof(mpmi_marker, velocity)},
+    {"force", MPM_F64, 1, 0, offsetof(mpmi_marker, force)},
+    {"pressure", MPM_F64, 0, 1, offsetof(mpmi_marker, pressure)},
+    {"traction", MPM_F64, 1, 1, offsetof(mpmi_marker, traction)},
+    {"dead_traction", MPM_F64, 1, 1, offsetof(mpmi_marker, dead_traction)},
+    {"prescribed_velocity", MPM_F64, 1, 1, offsetof(mpmi_marker, prescribed_velocity)},
+    {"reaction", MPM_F64, 1, 0, offsetof(mpmi_marker, reaction)},
+    {"gap", MPM_F64, 1, 0, offsetof(mpmi_marker, gap)}};
 enum { FIELDS = sizeof fields / sizeof *fields };
 
 static mpm_status find_field(mpm_context *c, const char *name, const field **out) {

@@ -46,8 +46,7 @@ static mpm_status read_desc(mpm_context *c, const mpm_grid *grid, const mpm_surf
       (status = check_vector(c, "dead_traction", out->dead_traction)) ||
       (status = check_prescription(c, out)))
     return status;
-  for (int32_t k = grid->dim; k < 3; ++k)
-    out->traction[k] = out->dead_traction[k] = out->velocity[k] = 0.0;
+  for (int32_t k = grid->dim; k < 3; ++k) out->traction[k] = out->dead_traction[k] = out->velocity[k] = 0.0;
   return MPM_OK;
 }
 

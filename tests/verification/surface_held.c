@@ -245,7 +245,7 @@ static slide_result slides(int32_t implicit, int32_t basis, double place, const 
   return is;
 }
 
-/* ---- a bar that swings ---------------------------------------------------------------------------------- */
+/* ---- a bar that swings --------------------------------------------------------------------------------- */
 /* A bar of n cells in its first mode, held at one end by one marker in the midst of a cell: the period over
  * the exact one, 4 L / c; and the least and largest energy over the first, in ten periods. */
 typedef struct swing {
