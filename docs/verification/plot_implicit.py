@@ -83,6 +83,35 @@ def surface_cylinder():
 
 
 @plot
+def surface_held():
+    figure, ax = axes(3)
+    data = read("surface_held")
+    for i, name in enumerate(("5 shifted", "20 shifted")):
+        at = rows(data, variant=name)
+        ax[0].plot(at["r"], [1e6 * u for u in at["u"]], f"C{i}.", markersize=3, label=f"h = a/{name.split()[0]}")
+    exact = sorted(zip(at["r"], at["u_exact"]))
+    ax[0].plot([r for r, _ in exact], [1e6 * u for _, u in exact], "k-", linewidth=0.8, label="exact")
+    ax[0].set_xlabel("r / a")
+    ax[0].set_ylabel("radial displacement / 1e-6 a")
+    data = read("surface_held_slope")
+    for i, name in enumerate(("explicit", "implicit")):
+        at = rows(data, variant=f"{name}, place 1")
+        ax[1].semilogy(at["t"], at["largest_off"], f"C{i}-", label=name)
+    ax[1].axhline(1e-3, color="k", linewidth=0.8)
+    ax[1].set_xlabel("t / s")
+    ax[1].set_ylabel("distance from the line / h")
+    data = read("surface_held_bar")
+    for i, name in enumerate(("explicit", "implicit")):
+        at = rows(data, variant=f"bar, {name}, h = L/20")
+        ax[2].plot(at["t"], at["energy"], f"C{i}-", label=f"{name}, 20 cells")
+    ax[2].set_xlabel("t / period")
+    ax[2].set_ylabel("energy over the first")
+    for panel in ax:
+        panel.legend()
+    return figure
+
+
+@plot
 def ring_cylinder():
     figure, ax = axes(2)
     data = read("ring_cylinder")

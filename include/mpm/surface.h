@@ -20,19 +20,21 @@
  * their area vectors: with MPM_PRESCRIBES_NORMAL material slides along the surface, past its markers.
  * It pushes and pulls. Markers with no material around them do nothing.
  *
- * - Implicit steps: springs between marker and material, of the stiffness beta A with beta = penalty modulus /
- *   h, A the area of the marker and h the least spacing. They are part of the balance, and stay stretched from
- *   step to step: field "gap". Under a traction t the material is off by t / beta. With inertia a spring acts
- *   wholly at the end of the step, as contact does.
+ * - Implicit steps: springs between marker and material, of the stiffness beta A with beta = penalty times
+ *   modulus over h, A the area of the marker and h the least spacing. They are part of the balance, and stay
+ *   stretched from step to step: field "gap". Under a traction t the material is off by t / beta. With
+ *   inertia a spring acts wholly at the end of the step, as contact does.
  * - Explicit steps: nodes with mass around markers get the mean of what these prescribe, weighted by area and
- *   shape function, as around prescribed particles. So the surface is smeared over the nodes of a marker; the
- *   stable step stays as it is. What the host, prescribed particles, walls and surfaces that were added before
- *   prescribe of a node comes first: the rest is the surface's. Smooth faces that meet at an edge are best
- *   surfaces of their own.
+ *   shape function and moved along the surface to the node. So the surface is smeared over the nodes of a
+ *   marker; the stable step stays as it is. What the host, prescribed particles, walls, surfaces that
+ *   prescribe all components and those that were added before prescribe of a node comes first.
+ *
+ * Normals are smoothed over a cell and a half: smooth faces that meet at an edge are surfaces of their own.
  *
  * @par Sources
- * Penalty: Chandra, Singer, Teschemacher, Wuechner & Larese, Acta Geotech. 16, 2021. Area vectors: Nanson's relation, in Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.4. Weights next
- * to nodes without mass: the reproducing kernels of Liu, Jun and Zhang, Int. J. Numer. Meth. Fluids 20, 1995.
+ * Penalty: Chandra, Singer, Teschemacher, Wuechner & Larese, Acta Geotech. 16, 2021. Area vectors: Nanson's
+ * relation, in Holzapfel, Nonlinear Solid Mechanics, 2000, section 2.4. Weights next to nodes without mass:
+ * the reproducing kernels of Liu, Jun and Zhang, Int. J. Numer. Meth. Fluids 20, 1995.
  * docs/theory.md has the equations.
  */
 #ifndef MPM_SURFACE_H
@@ -48,7 +50,8 @@ extern "C" {
 typedef struct mpm_surface mpm_surface;
 
 /** Loads of all markers of a surface, and what it prescribes. What markers carry by themselves ("pressure",
- * "traction", "dead_traction", "prescribed_velocity") and what the callbacks give comes on top. Fill it with mpm_surface_desc_init(). */
+ * "traction", "dead_traction", "prescribed_velocity") and what the callbacks give comes on top. Fill it
+ * with mpm_surface_desc_init(). */
 typedef struct mpm_surface_desc {
   uint32_t struct_size; /**< sizeof(mpm_surface_desc) of the caller */
   int32_t body;       /**< velocity field that it loads and moves with (mpm_stepper_set_body()); default 0 */
@@ -91,9 +94,9 @@ typedef struct mpm_marker_batch {
  * the step: MPM_NONFINITE. */
 typedef mpm_status (*mpm_traction_fn)(void *user, const mpm_marker_batch *batch, double *add);
 
-/** Gives velocities: the callback does add[c * ld + i] += mean velocity of marker i over the step that begins
- * at batch->t, c < dim. It runs on the thread of the call, once per step, for surfaces that prescribe. Returns
- * as mpm_particle_fn does. A value that is not finite ends the step: MPM_NONFINITE. */
+/** Gives velocities: the callback does add[c * ld + i] += mean velocity of marker i over the step that
+ * begins at batch->t, c < dim. It runs on the thread of the call, once per step, for surfaces that
+ * prescribe. Returns as mpm_particle_fn does. A value that is not finite ends the step: MPM_NONFINITE. */
 typedef mpm_status (*mpm_marker_velocity_fn)(void *user, const mpm_marker_batch *batch, double *add);
 
 /** Fills desc with the defaults. struct_size is sizeof(mpm_surface_desc) of the caller; no byte beyond is
@@ -200,8 +203,8 @@ MPM_API mpm_status mpm_surface_set(mpm_surface *surface, const char *field, int3
 
 /**
  * Puts a surface into a stepper. In each step its markers load the nodes of mpm_surface_desc.body and move
- * with them, or as they prescribe; the work is part of mpm_step_info.external_work. Markers that go through MPM_WALL_OPEN are
- * removed. Steps end with
+ * with them, or as they prescribe; the work is part of mpm_step_info.external_work. Markers that go through
+ * MPM_WALL_OPEN are removed. Steps end with
  *
  * - MPM_OFF_GRID: a marker would leave through a face that does not let it;
  * - MPM_NONFINITE: its load, what it prescribes or its new position is not finite;
@@ -227,8 +230,8 @@ MPM_API mpm_status mpm_stepper_surface_reaction(const mpm_stepper *stepper, cons
 
 /** Gives the impulse[dim] of it on the material, mass * length/time: the sum of
  * mpm_stepper_surface_reaction() times the time over which it acted, over all committed steps since the
- * surface was added or mpm_stepper_set_time() was called. A saved state holds it. MPM_E_NOT_FOUND: the surface
- * is not in this stepper. */
+ * surface was added or mpm_stepper_set_time() was called. A saved state holds it. MPM_E_NOT_FOUND: the
+ * surface is not in this stepper. */
 MPM_API mpm_status mpm_stepper_surface_impulse(const mpm_stepper *stepper, const mpm_surface *surface,
                                                double *impulse);
 

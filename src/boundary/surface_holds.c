@@ -1,4 +1,5 @@
-/* Surfaces that prescribe velocities, in explicit steps: what they hold at their sites, and their impulses. */
+/* Surfaces that prescribe velocities, in explicit steps: what they hold at their sites, and their impulses.
+ * */
 #include "boundary/surface_holds.h"
 
 #include <math.h>
@@ -7,7 +8,8 @@
 /* The least part of a unit normal that is left beside what holds the node already. */
 static const double least_left = 0.1;
 
-/* ---- what sites hold ------------------------------------------------------------------------------------ */
+/* ---- what sites hold ------------------------------------------------------------------------------------
+ * */
 /* Holds all components that nothing holds yet. */
 static void hold_velocity(mpmi_bound *bound, mpmi_surface_site *site) {
   for (int32_t c = 0; c < bound->dim; ++c) {

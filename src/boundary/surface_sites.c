@@ -1,13 +1,15 @@
-/* The sites of surfaces that prescribe: nodes that move, with what the markers around ask of them. A node that
- * several surfaces reach has a site for each.
+/* The sites of surfaces that prescribe: nodes that move, with what the markers around ask of them. A node
+ * that several surfaces reach has a site for each.
  *
  * The mean over the markers k around a node is what the surface asks for at their centre, and with a basis of
  * products that lies to one side of the node's foot on a surface that is not along the grid. So means are
  * moved along the surface by their slope: with weights s_k, sum s_k = 1, and arms r_k from the node,
  *
- *   q = q_ + C y,   C = sum s q r^T - q_ r_^T,   S y = -r_ in the plane of the surface,   S = sum s r r^T - r_ r_^T
+ * q = q_ + C y,   C = sum s q r^T - q_ r_^T,   S y = -r_ in the plane of the surface,   S = sum s r r^T -
+ * r_ r_^T
  *
- * Without it the normals of a curved surface would turn a little from node to node, and strain what slides. */
+ * Without it the normals of a curved surface would turn a little from node to node, and strain what slides.
+ * */
 #include "boundary/surface_sites.h"
 #include "simd/vector3.h"
 
@@ -176,8 +178,8 @@ mpm_status mpmi_surface_sites_find(mpmi_bound *bound) {
 }
 
 /* ---- smooth normals ------------------------------------------------------------------------------------ */
-/* A marker ahead of the material, or at a corner of it, where the nodes that are left do not read a linear field,
- * or read it from afar: by so many spacings, and with weights so large. */
+/* A marker ahead of the material, or at a corner of it, where the nodes that are left do not read a linear
+ * field, or read it from afar: by so many spacings, and with weights so large. */
 static const double off_place = 0.01, far_off = 3.0;
 static int32_t reads_linear(const mpmi_bound *bound, const mpm_surface *s, int64_t k) {
   const double plain[3] = {1.0, 1.0, 1.0}, *x = mpmi_marker_place_of(&s->next.at[k], s->grid);
@@ -191,8 +193,8 @@ static int32_t reads_linear(const mpmi_bound *bound, const mpm_surface *s, int64
   return sqrt(mpmi_inner(off, off)) <= off_place * s->grid->h_min && size <= far_off;
 }
 
-/* Finds the normal of a marker from those of the nodes around it, each moved along the surface to the marker, and
- * its curvature from their slopes. */
+/* Finds the normal of a marker from those of the nodes around it, each moved along the surface to the
+ * marker, and its curvature from their slopes. */
 static void smooth_normal(const mpmi_bound *bound, mpm_surface *s, int64_t k) {
   double sum[3] = {0.0, 0.0, 0.0}, sign[3], arm[3], weight = 0.0, slope[3][3] = {{0.0}};
   for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {

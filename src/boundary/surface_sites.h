@@ -18,9 +18,9 @@ static inline int32_t mpmi_site_is_far(const mpmi_surface_site *site) {
 
 /* Finds the sites of all surfaces, and what these ask for there. */
 mpm_status mpmi_surface_sites_find(mpmi_bound *bound);
-/* For implicit steps: makes the normals of markers along which material slides those of the nodes around, since
- * between edges that meet at a small angle nothing could slide, finds their curvature, and takes the stiffness
- * of those that do not read the motion of the material exactly. Masses are folded. */
+/* For implicit steps: makes the normals of markers along which material slides those of the nodes around,
+ * since between edges that meet at a small angle nothing could slide, finds their curvature, and takes the
+ * stiffness of those that do not read the motion of the material exactly. Masses are folded. */
 mpm_status mpmi_surface_normals_smooth(mpmi_step *step, mpmi_nodes *nodes);
 
 #endif

@@ -73,8 +73,8 @@ static mpm_status stiffen_surface(mpmi_balance *balance, mpm_surface *s) {
 }
 
 /* ---- forces -------------------------------------------------------------------------------------------- */
-/* A spring as it is: the displacement of the material at the marker, the same relative to the marker, what it is
- * stretched by, and where material slides the length of that and the normal. */
+/* A spring as it is: the displacement of the material at the marker, the same relative to the marker, what
+ * it is stretched by, and where material slides the length of that and the normal. */
 typedef struct spring {
   double moved[3], past[3], stretch[3], length, normal[3];
 } spring;
@@ -185,8 +185,9 @@ static void tell_walls(mpmi_balance *balance, const mpm_surface *s, int64_t k, c
   }
 }
 
-/* A marker along which material has slid meets other material, which has not stretched its spring: that of the
- * way of one cell is all that stays. What is stretched by normals that are not quite right stays small so. */
+/* A marker along which material has slid meets other material, which has not stretched its spring: that of
+ * the way of one cell is all that stays. What is stretched by normals that are not quite right stays small
+ * so. */
 static double kept_of(const mpm_surface *s, const spring *is) {
   const double along = mpmi_inner(is->normal, is->past);
   double square = 0.0;

@@ -1,5 +1,5 @@
-/* A state holds the markers of surfaces with what they carry, and the impulses of what surfaces prescribe. Loads of whole surfaces are settings of the
- * host. */
+/* A state holds the markers of surfaces with what they carry, and the impulses of what surfaces prescribe.
+ * Loads of whole surfaces are settings of the host. */
 #include "io/state.h"
 
 #include <math.h>

@@ -81,8 +81,8 @@ typedef struct mpmi_light_node {
   double before[3], first_gain[3], gain[3];
 } mpmi_light_node;
 
-/* A node that moves, where a surface prescribes something (boundary/surface_sites.c). The vector is the velocity
- * that it asks for, or the direction in which it sets the velocity to a value. */
+/* A node that moves, where a surface prescribes something (boundary/surface_sites.c). The vector is the
+ * velocity that it asks for, or the direction in which it sets the velocity to a value. */
 typedef struct mpmi_surface_site {
   int64_t slot;
   int32_t surface, before; /* before: the site of another surface at the same node, or -1 */

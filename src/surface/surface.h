@@ -44,8 +44,9 @@ typedef struct mpmi_marker_nodes {
   double *weight, *gradient, *plain;
 } mpmi_marker_nodes;
 
-/* What a marker prescribes in a step: its velocity, the normal along which alone it counts where the material
- * may slide; and of its spring in implicit steps the stiffness, and how the normal changes along the surface. */
+/* What a marker prescribes in a step: its velocity, the normal along which alone it counts where the
+ * material may slide; and of its spring in implicit steps the stiffness, and how the normal changes along
+ * the surface. */
 typedef struct mpmi_marker_aim {
   double velocity[3], normal[3], stiffness, curvature[3][3];
 } mpmi_marker_aim;

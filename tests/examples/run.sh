@@ -179,6 +179,15 @@ if wanted inflated_tube; then
   [ -s tube/inflated_tube.svg ] || fail "inflated_tube: inflated_tube.svg is missing or empty"
 fi
 
+if wanted swinging_saddle; then
+  mkdir saddle
+  run swinging_saddle saddle
+  check "angle" "angle within" 0 0.05
+  check "energy" "pendulum," 0 5
+  check "mean force" "mean force" 1450 1600
+  [ -s saddle/swinging_saddle.svg ] || fail "swinging_saddle: swinging_saddle.svg is missing or empty"
+fi
+
 if wanted rubber_strap; then
   mkdir strap
   run rubber_strap strap

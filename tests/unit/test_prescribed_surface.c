@@ -2,8 +2,8 @@
 #include "prescribed_surfaces.h"
 
 /* ---- what all methods keep ----------------------------------------------------------------------------- */
-/* The impulse of the surface is the momentum that the block gains, beside that of gravity, and its work is the
- * impulse times the velocity where that is the same everywhere. */
+/* The impulse of the surface is the momentum that the block gains, beside that of gravity, and its work is
+ * the impulse times the velocity where that is the same everywhere. */
 START_TEST(impulse_is_momentum) {
   const method *how = broad_methods[_i];
   for (int32_t dim = 1; dim <= 3; ++dim)
@@ -78,7 +78,8 @@ START_TEST(rigid_motion) {
 }
 END_TEST
 
-/* Work is the impulse times the velocity where it is the same everywhere, and none where the surface rests. */
+/* Work is the impulse times the velocity where it is the same everywhere, and none where the surface rests.
+ * */
 START_TEST(work_of_a_surface) {
   const method *how = broad_methods[_i];
   for (int32_t moves = 0; moves < 2; ++moves)
@@ -143,8 +144,8 @@ START_TEST(slides_along) {
 }
 END_TEST
 
-/* A body that turns in a round surface is not stopped: the normals of nodes point to the middle, wherever they
- * lie beside the surface. */
+/* A body that turns in a round surface is not stopped: the normals of nodes point to the middle, wherever
+ * they lie beside the surface. */
 START_TEST(slides_round) {
   const int32_t dim = 2 + _i;
   world w;
