@@ -45,6 +45,57 @@ START_TEST(impulse_is_momentum) {
 }
 END_TEST
 
+/* So it is on grids of every kind: rings along their axis, sheets, total Lagrangian ones; in steps with friction
+ * walls and with several bodies, too. */
+enum { RING, SHEET, TOTAL_LAGRANGIAN, FRICTION_WALLS, BODIES, KINDS };
+START_TEST(impulse_on_every_grid) {
+  const int32_t kind = _i % KINDS, implicit = _i / KINDS % 2, normal_only = _i / KINDS / 2;
+  method how = {METHOD(BSPLINE2, NEWMARK, FLIP, 1.0, "Newmark")};
+  if (!implicit) how.scheme = MPM_USL;
+  world w;
+  world_desc desc = world_with(&how, 2, CELLS, spacing);
+  if (kind == RING) desc.grid.geometry = MPM_AXISYMMETRIC;
+  if (kind == SHEET) desc.grid.geometry = MPM_PLANE_STRESS;
+  desc.grid.total_lagrangian = kind == TOTAL_LAGRANGIAN;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {0.9, kind == FRICTION_WALLS ? 0.0 : 0.9}, high[] = {2.1, 2.1};
+  world_fill(&w, set, low, high, 2);
+  if (kind == FRICTION_WALLS) world_walls(&w, MPM_WALL_FRICTION, 0.3);
+  if (kind == BODIES) {
+    mpm_particles *other = world_add_set(&w, NULL);
+    const double from[] = {0.9, 2.1}, to[] = {2.1, 2.6}, down[] = {0.0, -2.0};
+    world_fill(&w, other, from, to, 2);
+    ck_ok(&w, mpm_particles_set_all(other, "velocity", MPM_F64, 2, down));
+    ck_ok(&w, mpm_stepper_set_body(w.stepper, other, 1));
+  }
+  mpm_surface_desc d = prescribing(normal_only);
+  d.velocity[0] = 0.2, d.velocity[1] = -0.4;
+  mpm_surface *s = put_surface(&w, &d);
+  for (int32_t k = 0; k < 10; ++k) { /* a line across the block */
+    const double x[2] = {0.96 + 0.12 * k, 1.3 + 0.03 * k}, a[2] = {0.03, -0.12};
+    ck_ok(&w, mpm_surface_add(s, 1, x, a, NULL));
+  }
+  const double dt = 2e-4;
+  for (int32_t step = 0; step < 5; ++step) {
+    const mpm_step_info before = world_info(&w), after = world_step(&w, dt);
+    const double *r = reaction_of(&w, s);
+    double walls[2] = {0.0, 0.0};
+    for (int32_t face = 0; face < 4 && kind == FRICTION_WALLS; ++face) {
+      double force[2];
+      ck_ok(&w, mpm_stepper_wall_reaction(w.stepper, face, force));
+      for (int32_t k = 0; k < 2; ++k) walls[k] += force[k];
+    }
+    for (int32_t k = kind == RING; k < 2; ++k)
+      ck_within("momentum", after.momentum[k] - before.momentum[k], dt * (r[k] + walls[k]),
+                1e-9 * dt * (fabs(r[0]) + fabs(r[1]) + fabs(walls[1])));
+    ck_holds(fabs(r[1]) > 1.0);
+    ck_holds(isfinite(after.external_work));
+  }
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
 /* A block that moves as a closed surface around it says feels nothing and stays rigid; markers move as they
  * prescribe. */
 START_TEST(rigid_motion) {
@@ -563,6 +614,7 @@ Suite *prescribed_surface_suite(void) {
   Suite *suite = suite_create("prescribed_surface");
   TCase *kept = tcase_create("kept"), *nodes = tcase_create("nodes"), *other = tcase_create("other");
   tcase_add_loop_test(kept, impulse_is_momentum, 0, BROAD);
+  tcase_add_loop_test(kept, impulse_on_every_grid, 0, 4 * KINDS);
   tcase_add_loop_test(kept, rigid_motion, 0, BROAD);
   tcase_add_loop_test(kept, work_of_a_surface, 0, BROAD);
   tcase_set_timeout(kept, 60);

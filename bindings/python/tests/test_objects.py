@@ -280,6 +280,31 @@ class Surfaces(unittest.TestCase):
         face.set_traction(None)
         stepper.step(1e-4)
 
+    def test_what_is_prescribed(self):
+        one, stepper = block()
+        face = one.context.surface(stepper.grid, prescribes=mpm.PRESCRIBES_VELOCITY, velocity=(0.5, 0.0))
+        face.add_polyline([(0.75, 0.25), (0.75, 0.75)], 1 / 24)
+        stepper.add(face)
+        face["prescribed_velocity"] = (0.25, 0.0)
+        face.set_velocity(lambda batch, add: add.__setitem__((slice(None), 1), batch.t + 2.0))
+        before = stepper.info.momentum
+        stepper.step(1e-4)
+        np.testing.assert_allclose(face["displacement"], np.tile((0.75e-4, 2e-4), (12, 1)), rtol=1e-12)
+        force = stepper.surface_reaction(face)
+        self.assertGreater(force[1], 0.0)
+        np.testing.assert_allclose(face["reaction"].sum(axis=0), force, rtol=1e-9)
+        np.testing.assert_allclose(stepper.surface_impulse(face), 1e-4 * force, rtol=1e-12)
+        np.testing.assert_allclose(np.subtract(stepper.info.momentum, before)[:2], 1e-4 * force, rtol=1e-9)
+
+        def refuse(batch, add):
+            raise KeyError("no velocity")
+
+        face.set_velocity(refuse)
+        with self.assertRaisesRegex(KeyError, "no velocity"):
+            stepper.step(1e-4)
+        face.set_velocity(None)
+        stepper.step(1e-4)
+
     def test_coming_and_going(self):
         one, stepper = block()
         face = one.context.surface(stepper.grid, pressure=10.0)
