@@ -288,7 +288,7 @@ static void add_surface(world *w, int32_t empty) {
   d.max_spacing = 0.6 * spacing[0];
   if (is->with & (WITH_HOLDING | WITH_SLIDING)) {
     d.prescribes = is->with & WITH_HOLDING ? MPM_PRESCRIBES_VELOCITY : MPM_PRESCRIBES_NORMAL;
-    d.velocity[0] = is->quasi_static ? 0.5 : 0.9 * speed;
+    d.velocity[0] = is->quasi_static ? 0.5 : (is->dim > 1 ? 0.9 : 0.5) * speed;
     d.velocity[up] += is->dim > 1 ? -0.5 : 0.0;
   }
   must(w, mpm_surface_create(w->context, w->grid, &d, &w->surface));
