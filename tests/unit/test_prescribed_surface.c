@@ -45,8 +45,8 @@ START_TEST(impulse_is_momentum) {
 }
 END_TEST
 
-/* So it is on grids of every kind: rings along their axis, sheets, total Lagrangian ones; in steps with friction
- * walls and with several bodies, too. */
+/* So it is on grids of every kind: rings along their axis, sheets, total Lagrangian ones; in steps with
+ * friction walls and with several bodies, too. */
 enum { RING, SHEET, TOTAL_LAGRANGIAN, FRICTION_WALLS, BODIES, KINDS };
 START_TEST(impulse_on_every_grid) {
   const int32_t kind = _i % KINDS, implicit = _i / KINDS % 2, normal_only = _i / KINDS / 2;
