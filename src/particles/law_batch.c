@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "material/dilation.h"
+#include "particles/thermal.h"
 
-enum { FIXED_ROWS = 9 + 9 + 9 + 6 + 6 + 1 + 1 + 1 + 3 };
+enum { FIXED_ROWS = 9 + 9 + 9 + 6 + 6 + 1 + 1 + 1 + 1 + 3 };
 
 int64_t mpmi_law_batch_length(const mpm_material *material) {
   return material->law ? MPMI_BATCH_OWN : MPMI_BATCH_HOST;
@@ -37,6 +38,7 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
   b->wave_speed = at, at += ld;
   b->viscosity = at, at += ld;
   b->energy = at, at += ld;
+  b->growth = at, at += ld;
   b->position = at, at += 3 * ld;
   b->state = at, at += material->state_count * ld;
   b->state_new = at;
@@ -45,6 +47,7 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
     for (int64_t p = 0; p < ld; ++p) b->F[e * ld + p] = b->F_inc[e * ld + p] = 1.0;
   memset(b->wave_speed, 0, (size_t)ld * sizeof(double));
   preset_optional(b, ld);
+  for (int64_t q = 0; q < ld; ++q) b->growth[q] = 1.0;
   b->batch = (mpm_material_batch){.struct_size = sizeof b->batch,
                                   .state_count = material->state_count,
                                   .ld = ld,
@@ -94,6 +97,7 @@ void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t 
   if (set->field[MPMI_DILATION_RATIO].present)
     mpmi_dilation_of(set->context->isa)
         ->scale[mpmi_strain_dim(set->grid)](b->F, b->ld, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
+  if (mpmi_expands(set)) mpmi_expand_state(b, set, begin, n);
 }
 
 /* A negative speed or viscosity would not bound the step, and an infinite energy would spoil all sums. What

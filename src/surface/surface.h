@@ -40,6 +40,11 @@ typedef struct mpmi_marker_nodes {
   double *weight, *gradient;
 } mpmi_marker_nodes;
 
+/* Heat through a surface, per area of its markers: flux + film (ambient - T). */
+typedef struct mpmi_surface_heat {
+  double flux, film, ambient;
+} mpmi_surface_heat;
+
 struct mpm_surface {
   uint32_t magic;
   int32_t number; /* in its stepper */
@@ -50,6 +55,7 @@ struct mpm_surface {
   mpm_surface_desc desc;
   mpm_traction_fn traction;
   void *traction_user;
+  mpmi_surface_heat heat;
   mpmi_markers now, next; /* next: at the end of the step under way */
   mpmi_marker_nodes around;
   double *batch; /* what the callback sees and gives */
