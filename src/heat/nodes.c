@@ -13,11 +13,14 @@ mpm_status mpmi_heat_tie(const mpmi_heat_job *job) {
   for (int32_t face = 0; face < 2 * grid->dim; ++face)
     if (rules->wall[face].kind == MPM_HEAT_WALL_TEMPERATURE) wall[face].kind = MPM_WALL_SLIP;
   heat->version = -1;
-  const mpm_status status = mpmi_constraints_build(&heat->ties, &job->step->layout->blocks, wall);
+  mpm_status status = mpmi_constraints_build(&heat->ties, &job->step->layout->blocks, wall);
+  if (!status)
+    status =
+        MPMI_RESERVE_MORE(job->step->settings->context, heat->met, heat->tie_capacity, heat->ties.tie_count);
   if (status) return status;
   heat->version = job->step->layout->version;
   heat->walls = rules->walls;
-  return MPMI_RESERVE_MORE(job->step->settings->context, heat->met, heat->tie_capacity, heat->ties.tie_count);
+  return MPM_OK;
 }
 
 int32_t mpmi_heat_face(const mpmi_heat_job *job, const mpmi_tie *tie) {

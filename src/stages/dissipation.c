@@ -2,7 +2,8 @@
  *
  *   (V sigma + V' sigma') : e / 2 - V0 (W' - W),  e = sym 2 (F_inc - I) (F_inc + I)^-1
  *
- * with volumes and increments as the law sees them. The increment e is that of Hencky's strain up to terms of
+ * with volumes and increments as the law sees them. Of laws whose energy w per present volume follows from the
+ * Cauchy stress alone what is stored is V dw, because V w itself changes with the volume at a given stress. The increment e is that of Hencky's strain up to terms of
  * third order, so that elastic cycles leave nothing. */
 #include "layout/tasks.h"
 #include "particles/thermal.h"
@@ -98,6 +99,7 @@ void mpmi_dissipation_find(mpmi_batch *b) {
                *energy = row_of(b->step, b->m, MPMI_ROW_ENERGY) + b->begin,
                *growth = row_of(b->step, b->m, MPMI_ROW_GROWTH) + b->begin;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + b->begin;
+  const int32_t by_stress = set->material->law->energy_of_stress;
   double *dissipated = row_of(b->step, b->m, MPMI_ROW_DISSIPATED) + b->begin;
   for (int64_t p = 0; p < b->n; ++p) {
     double strain[6], work = 0.0;
@@ -107,7 +109,10 @@ void mpmi_dissipation_find(mpmi_batch *b) {
       work += 0.5 * strain[c] *
               (growth[p] * mpmi_f64(set, MPMI_STRESS, 0)[c * set->ld + b->begin + p] +
                grown * law->stress_new[c * law->ld + p]);
-    dissipated[p] = id[p] < 0 ? 0.0 : initial[p] * (work - (law->energy[p] - energy[p]));
+    const double stored = by_stress
+                              ? 0.5 * (growth[p] + grown) * (law->energy[p] / grown - energy[p] / growth[p])
+                              : law->energy[p] - energy[p];
+    dissipated[p] = id[p] < 0 ? 0.0 : initial[p] * (work - stored);
     if (!isfinite(dissipated[p]))
       mpmi_batch_fail(b, MPM_NONFINITE, b->begin + p, "dissipated work not finite");
   }
