@@ -27,7 +27,7 @@
 #ifndef MPM_HEAT_H
 #define MPM_HEAT_H
 
-#include <mpm/particles.h>
+#include <mpm/stepper.h>
 #include <mpm/surface.h>
 #include <mpm/types.h>
 
@@ -82,11 +82,11 @@ typedef struct mpm_heat_info {
   double sources;       /**< of the callbacks */
   double surfaces;      /**< through surfaces, into the material */
   double dissipated;    /**< dissipated work that became heat */
-  double gained_total;
-  double walls_total[6];
-  double sources_total;
-  double surfaces_total;
-  double dissipated_total;
+  double gained_total;     /**< the same in all steps, and so with those below */
+  double walls_total[6];   /**< through the faces */
+  double sources_total;    /**< of the callbacks */
+  double surfaces_total;   /**< through surfaces */
+  double dissipated_total; /**< dissipated work */
 } mpm_heat_info;
 
 /** Fills desc with the defaults. struct_size is sizeof(mpm_heat_desc) of the caller; no byte beyond is

@@ -6,6 +6,7 @@
 #define MPM_SURFACE_HPP
 
 #include <mpm/particles.hpp>
+#include <mpm/heat.h>
 #include <mpm/surface.h>
 
 namespace mpm {
@@ -64,6 +65,11 @@ public:
     detail::surface_core &c = core();
     check(mpm_surface_set_traction(c.handle, tractions ? c.on_traction : nullptr, &c));
     c.traction = std::move(tractions);
+  }
+
+  /** Heats what lies below: see mpm_surface_set_heat(). */
+  void set_heat(double flux, double film = 0.0, double ambient = 0.0) {
+    check(mpm_surface_set_heat(core().handle, flux, film, ambient));
   }
 
   /** Adds markers at position[dim][n] with area vectors, or without: see mpm_surface_add(). Returns the first

@@ -1,6 +1,5 @@
 #include "particles/thermal.h"
 #include "particles/builtin_fields.h"
-#include "simd/elementary.h"
 
 #include <string.h>
 
@@ -73,41 +72,5 @@ void mpmi_thermal_start(mpm_particles *set, int64_t begin, int64_t end) {
   for (int64_t slot = begin; slot < end && of->temperature; ++slot) {
     mpmi_f64(set, of->temperature, 0)[slot] = of->reference;
     if (of->stress_temperature) mpmi_f64(set, of->stress_temperature, 0)[slot] = of->reference;
-  }
-}
-
-/* ---- expansion ----------------------------------------------------------------------------------------- */
-void mpmi_expand_lane(mpmi_law_batch *b, const mpm_particles *set, int64_t p, double T) {
-  const double strain = set->thermal.expansion * (T - set->thermal.reference), shrink = mpmi_exp(-strain);
-  for (int32_t e = 0; e < 9; ++e) {
-    double *F = b->F + e * b->ld + p;
-    /* along axes that a 1-D grid does not have there is no entry of its own */
-    *F = set->grid->dim == 1 && e % 4 == 0 && e > 0 ? shrink : *F * shrink;
-  }
-  b->growth[p] = mpmi_exp(3.0 * strain);
-}
-
-void mpmi_expand_state(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {
-  const double *T = mpmi_stress_temperature(set, 0) + begin;
-  for (int64_t p = 0; p < n; ++p) mpmi_expand_lane(b, set, p, T[p]);
-}
-
-void mpmi_expand_step(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double dt,
-                      int32_t has_increments) {
-  const double *before = mpmi_stress_temperature(set, 0) + begin,
-               *now = mpmi_stress_temperature(set, 1) + begin;
-  const int32_t dim = mpmi_strain_dim(set->grid);
-  for (int64_t p = 0; p < n; ++p) {
-    const double change = mpmi_expm1(-set->thermal.expansion * (now[p] - before[p]));
-    mpmi_expand_lane(b, set, p, now[p]);
-    for (int32_t e = 0; e < 9; ++e) {
-      /* axes that the grid does not have keep what the batch before left there */
-      const int32_t own = e / 3 < dim && e % 3 < dim;
-      const double unit = e % 4 ? 0.0 : 1.0, L = own ? b->L[e * b->ld + p] : 0.0;
-      b->L[e * b->ld + p] = L + change * L + unit * change / dt;
-      if (!has_increments) continue;
-      const double F_inc = own ? b->F_inc[e * b->ld + p] : unit;
-      b->F_inc[e * b->ld + p] = F_inc + change * F_inc;
-    }
   }
 }

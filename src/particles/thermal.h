@@ -1,9 +1,8 @@
-/* Temperatures of a set whose heat is described, and what expansion makes of the deformation that its law
- * sees: F / exp(a (T - T0)) in the place of F. */
+/* Temperatures of a set whose heat is described. */
 #ifndef MPMI_THERMAL_H
 #define MPMI_THERMAL_H
 
-#include "particles/law_batch.h"
+#include "particles/particles.h"
 
 /* Gives a set the fields of temperature, or finds those that the host has added: all or nothing. */
 mpm_status mpmi_thermal_make(mpm_particles *set, double expansion, double reference);
@@ -19,14 +18,5 @@ static inline int32_t mpmi_expands(const mpm_particles *set) {
 static inline const double *mpmi_stress_temperature(const mpm_particles *set, int32_t copy) {
   return copy && set->thermal.next ? set->thermal.next : mpmi_f64(set, set->thermal.stress_temperature, 0);
 }
-
-/* Lets lane p of a batch see the deformation without what expands to temperature T. */
-void mpmi_expand_lane(mpmi_law_batch *b, const mpm_particles *set, int64_t p, double T);
-/* Does that to the slots from `begin` on, as they are. */
-void mpmi_expand_state(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
-/* Does it in a step, to the new temperatures, and takes what expands in it out of L and, where they are made,
- * the increments of F. */
-void mpmi_expand_step(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double dt,
-                      int32_t has_increments);
 
 #endif

@@ -27,7 +27,8 @@ static inline int64_t contents_of_format_2(const mpm_stepper *s, uint8_t *state,
   int64_t at = (int64_t)sizeof(mpmi_state_header) + setup.at + SUMS;
   bytes = cut_words(state, (int64_t)sizeof(mpmi_state_header) + setup.at, 3, bytes);
   bytes = cut_words(state, at, 1, bytes);
-  bytes = cut_words(state, at += INFO, 7 + (int64_t)((sizeof(mpmi_totals) + sizeof(mpmi_heat_history)) / 8), bytes);
+  bytes = cut_words(state, at += INFO, 7 + (int64_t)((sizeof(mpmi_totals) + sizeof(mpmi_heat_history)) / 8),
+                    bytes);
   for (int32_t m = 0; m < s->layout.member_count; ++m) bytes = cut_words(state, at += SET, NEW, bytes);
   mpmi_archive contact;
   mpmi_archive_begin(&contact, s->context, MPMI_MEASURE);
