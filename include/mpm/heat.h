@@ -2,27 +2,27 @@
  * @file heat.h
  * Heat: temperature is a field of particles, which the grid conducts.
  *
- * A set that is described here has the fields "temperature" and, if it expands, "stress_temperature". They are
- * fields of type MPM_F64 with one component like those that mpm_particles_add_field() adds: the host reads and
- * writes them, they travel with the particles and are saved with them. A set that had such fields of the
- * host's before keeps their values. "stress_temperature" is the temperature at which the law was last asked for
- * the stress.
+ * A set that is described here has the fields "temperature" and, if it expands, "stress_temperature". They
+ * are fields of type MPM_F64 with one component like those that mpm_particles_add_field() adds: the host
+ * reads and writes them, they travel with the particles and are saved with them. A set that had such fields
+ * of the host's before keeps their values. "stress_temperature" is the temperature at which the law was
+ * last asked for the stress.
  *
- * Each step begins with the heat: temperatures go to the nodes by capacity, the nodes conduct, and particles
- * take the increments of the nodes' temperatures and not these themselves, so that nothing is smoothed by
- * the transfer. The law then sees the new temperature. Sets of one body share their nodes and conduct into
- * each other; heat does not cross between bodies, nor into sets that are not described. A rigid motion carries
- * temperatures as they are, splitting keeps them, and merged particles have the mean by mass, so that heat is
- * kept to rounding.
+ * Each step begins with the heat: temperatures go to the nodes by capacity, the nodes conduct, and
+ * particles take the increments of the nodes' temperatures and not these themselves, so that nothing is
+ * smoothed by the transfer. The law then sees the new temperature. Sets of one body share their nodes and
+ * conduct into each other; heat does not cross between bodies, nor into sets that are not described. A
+ * rigid motion carries temperatures as they are, splitting keeps them, and merged particles have the mean
+ * by mass, so that heat is kept to rounding.
  *
  * Units are the host's: temperatures may count from any zero. Amounts are those of the grid: of a plane grid
  * per thickness, of MPM_AXISYMMETRIC per radian. Particles that leave through an open wall take their heat
  * with them.
  *
  * @par Sources
- * Conduction on the grid: Tao, Zhang, Zhang & Wang, Int. J. Numer. Meth. Engng 108 (2016); the increment in the
- * place of the value: docs/theory.md. Thermal expansion splits the deformation gradient: Stojanovic, Djuric &
- * Vujosevic 1964.
+ * Increments in the place of values: Brackbill & Ruppel, J. Comput. Phys. 65 (1986), for velocities; for
+ * temperatures, and what faces do: docs/theory.md. Expansion splits the deformation gradient: Stojanovic,
+ * Djuric & Vujosevic, Arch. Mech. Stos. 16 (1964).
  */
 #ifndef MPM_HEAT_H
 #define MPM_HEAT_H
@@ -37,8 +37,8 @@ extern "C" {
 
 /** How the nodes conduct. */
 enum mpm_conduction_value {
-  /** By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused with
-   * MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. */
+  /** By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused
+   * with MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. */
   MPM_CONDUCTION_EXPLICIT = 0,
   /** By those at its end (backward Euler), found by conjugate gradients: any step will do. */
   MPM_CONDUCTION_IMPLICIT = 1
@@ -74,14 +74,14 @@ typedef struct mpm_heat_desc {
  * set: gained = sum of walls + sources + surfaces + dissipated, to rounding, and with implicit conduction to
  * the tolerance. All are energies. */
 typedef struct mpm_heat_info {
-  uint32_t struct_size; /**< sizeof(mpm_heat_info) of the caller */
-  int32_t iterations;   /**< of the last step's conjugate gradients */
-  double heat;          /**< sum of mass specific_heat temperature now, of all sets that are described */
-  double gained;        /**< what particles took up in the last step */
-  double walls[6];      /**< through the faces, from MPM_X_MIN, into the material */
-  double sources;       /**< of the callbacks */
-  double surfaces;      /**< through surfaces, into the material */
-  double dissipated;    /**< dissipated work that became heat */
+  uint32_t struct_size;    /**< sizeof(mpm_heat_info) of the caller */
+  int32_t iterations;      /**< of the last step's conjugate gradients */
+  double heat;             /**< sum of mass specific_heat temperature now, of all sets that are described */
+  double gained;           /**< what particles took up in the last step */
+  double walls[6];         /**< through the faces, from MPM_X_MIN, into the material */
+  double sources;          /**< of the callbacks */
+  double surfaces;         /**< through surfaces, into the material */
+  double dissipated;       /**< dissipated work that became heat */
   double gained_total;     /**< the same in all steps, and so with those below */
   double walls_total[6];   /**< through the faces */
   double sources_total;    /**< of the callbacks */
@@ -93,13 +93,13 @@ typedef struct mpm_heat_info {
  * written. MPM_E_ARG: it is smaller than the first released struct. Any thread, any time. */
 MPM_API mpm_status mpm_heat_desc_init(mpm_heat_desc *desc, uint32_t struct_size);
 
-/** Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more, and its
- * fields stay as fields of the host. Not part of a saved state, but the fields are: the host describes before
- * it loads. MPM_E_NOT_FOUND: the set is not in the stepper. MPM_E_ARG: particles is NULL, a value is bad, or
- * the set has a field "temperature" or "stress_temperature" of another type or with more components.
- * MPM_E_UNSUPPORTED: expansion is not 0 on MPM_PLANE_STRESS or with the law "rigid"; dissipated_share is not 0
- * with "rigid" or a law of the host. MPM_E_STATE: a step is under way, a view of the set is out, or the set
- * has no room for another field. */
+/** Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more, and
+ * its fields stay as fields of the host. Not part of a saved state, but the fields are: the host describes
+ * before it loads. MPM_E_NOT_FOUND: the set is not in the stepper. MPM_E_ARG: particles is NULL, a value is
+ * bad, or the set has a field "temperature" or "stress_temperature" of another type or with more
+ * components. MPM_E_UNSUPPORTED: expansion is not 0 on MPM_PLANE_STRESS or with the law "rigid";
+ * dissipated_share is not 0 with "rigid" or a law of the host. MPM_E_STATE: a step is under way, a view of
+ * the set is out, or the set has no room for another field. */
 MPM_API mpm_status mpm_stepper_set_heat(mpm_stepper *stepper, mpm_particles *particles,
                                         const mpm_heat_desc *desc);
 
@@ -108,18 +108,18 @@ MPM_API mpm_status mpm_stepper_set_heat(mpm_stepper *stepper, mpm_particles *par
  * MPM_E_ARG: a value is bad. MPM_E_STATE: a step is under way. */
 MPM_API mpm_status mpm_stepper_set_conduction(mpm_stepper *stepper, int32_t conduction, double tolerance);
 
-/** Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is not
- * read of insulated ones, which all faces are from the start. Call it again where the temperature changes:
- * that change, at first from what the material there has, reaches the particles in the next step; material
- * that comes to the face later is heated by conduction alone. Not part of a saved state.
+/** Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is
+ * not read of insulated ones, which all faces are from the start. Call it again where the temperature
+ * changes: that change, at first from what the material there has, reaches the particles in the next step;
+ * material that comes to the face later is heated by conduction alone. Not part of a saved state.
  * MPM_E_ARG: a value is bad, or the axis is periodic. MPM_E_UNSUPPORTED: the face is the axis of
  * MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a step is under way. */
 MPM_API mpm_status mpm_stepper_set_heat_wall(mpm_stepper *stepper, int32_t face, int32_t kind,
                                              double temperature);
 
-/** Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the material),
- * power/area into the material; film is >= 0. All 0 (as made): no heat. Not part of a saved state. MPM_E_ARG: a
- * value is bad. MPM_E_STATE: a step is under way. */
+/** Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the
+ * material), power/area into the material; film is >= 0. All 0 (as made): no heat. Not part of a saved
+ * state. MPM_E_ARG: a value is bad. MPM_E_STATE: a step is under way. */
 MPM_API mpm_status mpm_surface_set_heat(mpm_surface *surface, double flux, double film, double ambient);
 
 /** Tells where heat came from. MPM_E_ARG: info is NULL. MPM_E_STATE: a step is under way, or no set was ever

@@ -131,8 +131,8 @@ public:
     check(mpm_stepper_adaption_info(core().handle, set.handle(), &info));
     return info;
   }
-  /** Describes the heat of a set, and what heats it (nullptr: nothing), whatever the description has there. See
-   * mpm_stepper_set_heat(). */
+  /** Describes the heat of a set, and what heats it (nullptr: nothing), whatever the description has there.
+   * See mpm_stepper_set_heat(). */
   void set_heat(particles &set, mpm_heat_desc desc, heat_callback source = nullptr) {
     detail::stepper_core &c = core();
     c.heats.reserve(c.heats.size() + 1);

@@ -50,7 +50,8 @@ typedef struct mpmi_heat {
   int64_t tile_capacity, tile_size;
   mpmi_heat_part *part; /* [blocks] */
   int64_t part_capacity;
-  /* With implicit conduction: slots of the nodes that are free, vectors of these, temperatures of all nodes. */
+  /* With implicit conduction: slots of the nodes that are free, vectors of these, temperatures of all
+   * nodes. */
   int64_t *row;
   double *vector, *start;
   int64_t rows, row_capacity, vector_capacity, start_capacity;

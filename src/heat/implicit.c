@@ -1,6 +1,6 @@
-/* Backward Euler: (C + dt K) dT = dt (Q - K T) for the increments of the free nodes, by conjugate gradients that
- * are scaled with the diagonal. K is never stored: particles conduct once for each iteration, so that nodes
- * that come and go cost nothing. */
+/* Backward Euler: (C + dt K) dT = dt (Q - K T) for the increments of the free nodes, by conjugate gradients
+ * that are scaled with the diagonal. K is never stored: particles conduct once for each iteration, so that
+ * nodes that come and go cost nothing. */
 #include "heat/heat.h"
 #include "linalg/vectors.h"
 

@@ -43,7 +43,7 @@ static double base_of(const mpmi_heat_job *job, const mpmi_tie *tie, const mpmi_
   return 2.0 * sum / odd;
 }
 
-/* ---- faces that begin to prescribe ---------------------------------------------------------------------- */
+/* ---- faces that begin to prescribe ---------- */
 /* Finds the mean temperature around a node and where it is along an axis. Returns 0 where there is none. */
 static int32_t find_mean(const mpmi_heat *heat, int64_t slot, int32_t axis, double *T, double *x) {
   if (slot < 0 || !(mpmi_heat_node(heat, slot)[MPMI_HEAT_CAPACITY] > 0.0)) return 0;

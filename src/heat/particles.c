@@ -170,8 +170,8 @@ mpm_status mpmi_heat_places(const mpmi_heat_job *job) {
 }
 
 /* ---- conduction ---------------------------------------------------------------------------------------- */
-/* Finds A so that heat flows along -k A grad T: of a total Lagrangian grid, which has gradients over reference
- * positions, F^-1 F^-T. Returns 0 where it is the identity. */
+/* Finds A so that heat flows along -k A grad T: of a total Lagrangian grid, which has gradients over
+ * reference positions, F^-1 F^-T. Returns 0 where it is the identity. */
 static int32_t find_metric(const mpm_particles *set, int64_t slot, double A[3][3]) {
   double F[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, inverse[3][3];
   const int32_t dim = set->grid->dim, *map = mpmi_tensor_map(dim);

@@ -4,9 +4,9 @@
 
 #include "layout/sorted_layout.h"
 
-/* Rows of heat: the temperature at the end of the step, before what the material dissipates in it; that work;
- * what the law's energy and its growth of volume were before; and in the same place, until they are known, the
- * power of the host's sources. */
+/* Rows of heat: the temperature at the end of the step, before what the material dissipates in it; that
+ * work; what the law's energy and its growth of volume were before; and in the same place, until they are
+ * known, the power of the host's sources. */
 enum {
   MPMI_ROW_TEMPERATURE,
   MPMI_ROW_DISSIPATED,

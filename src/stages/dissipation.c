@@ -2,9 +2,10 @@
  *
  *   (V sigma + V' sigma') : e / 2 - V0 (W' - W),  e = sym 2 (F_inc - I) (F_inc + I)^-1
  *
- * with volumes and increments as the law sees them. Of laws whose energy w per present volume follows from the
- * Cauchy stress alone what is stored is V dw, because V w itself changes with the volume at a given stress. The increment e is that of Hencky's strain up to terms of
- * third order, so that elastic cycles leave nothing. */
+ * with volumes and increments as the law sees them. Of laws whose energy w per present volume follows from
+ * the Cauchy stress alone what is stored is V dw, because V w itself changes with the volume at a given
+ * stress. The increment e is that of Hencky's strain up to terms of third order, so that elastic cycles
+ * leave nothing. */
 #include "layout/tasks.h"
 #include "particles/thermal.h"
 #include "simd/vector3.h"

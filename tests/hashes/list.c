@@ -188,6 +188,8 @@ enum {
   TOTAL,
   TOTAL_SETS,
   ADAPTION,
+  HEAT,
+  HEAT_IMPLICIT,
   OPTIONS
 };
 static const option options[OPTIONS] = {
@@ -240,6 +242,8 @@ static const option options[OPTIONS] = {
     [TOTAL] = {"total Lagrangian, surface and obstacles, saved and loaded", 1, 1, 0},
     [TOTAL_SETS] = {"total Lagrangian, two sets, locking remedy, all callbacks", 1, 1, 0},
     [ADAPTION] = {"splitting and merging, saved and loaded", 1, 1, 1},
+    [HEAT] = {"heat, surface, expansion and dissipation, saved and loaded", 1, 1, 1},
+    [HEAT_IMPLICIT] = {"heat by implicit conduction, surface, saved and loaded", 1, 1, 1},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -283,6 +287,8 @@ static void apply(scene *is, int32_t o) {
       [SHEETS] = WITH_SURFACE,
       [TOTAL] = WITH_SURFACE | WITH_OBSTACLES,
       [ADAPTION] = WITH_ADAPTION | WITH_APPLIED_FORCE,
+      [HEAT] = WITH_HEAT | WITH_SURFACE,
+      [HEAT_IMPLICIT] = WITH_HEAT | WITH_IMPLICIT_HEAT | WITH_SURFACE,
       [TOTAL_SETS] =
           WITH_FORCE | WITH_ACCELERATION | WITH_VELOCITY | WITH_PRESCRIBED | WITH_MOTION | WITH_KEPT,
   };
@@ -296,6 +302,8 @@ static void apply(scene *is, int32_t o) {
                                          [SHEETS] = STORY_SAVED,
                                          [TOTAL] = STORY_SAVED,
                                          [ADAPTION] = STORY_SAVED,
+                                         [HEAT] = STORY_SAVED,
+                                         [HEAT_IMPLICIT] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};

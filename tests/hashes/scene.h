@@ -40,7 +40,9 @@ enum {
   WITH_BODIES = 2048,     /* the sets stand side by side and rub against each other */
   WITH_OBSTACLES = 4096,  /* one of each motion: fixed, driven, free */
   WITH_SURFACE = 8192,    /* markers at the upper end of the body, under loads of all kinds */
-  WITH_ADAPTION = 16384   /* the first set is split and merged every other step */
+  WITH_ADAPTION = 16384,  /* the first set is split and merged every other step */
+  WITH_HEAT = 32768,      /* all sets have heat, faces and the surface give some */
+  WITH_IMPLICIT_HEAT = 65536
 };
 
 /* How it is stepped. */

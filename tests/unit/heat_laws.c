@@ -48,8 +48,9 @@ START_TEST(free_expansion) {
 }
 END_TEST
 
-/* Held in place it has the pressure 3 K a (T - T0), -600 MPa of steel by 100 K: in every dimension and scheme,
- * by steps of the temperature that the host sets. Of neo-Hookean material the law at F / exp says how much. */
+/* Held in place it has the pressure 3 K a (T - T0), -600 MPa of steel by 100 K: in every dimension and
+ * scheme, by steps of the temperature that the host sets. Of neo-Hookean material the law at F / exp says
+ * how much. */
 START_TEST(held_expansion) {
   const char *const models[] = {"linear_elastic", "j2", "neo_hookean"};
   const char *model = models[_i % 3];

@@ -194,7 +194,8 @@ static void equip_faces(const world *w) {
     ck_ok(w, mpm_stepper_set_heat_wall(w->stepper, MPM_Y_MIN, MPM_HEAT_WALL_TEMPERATURE, 350.0));
 }
 
-/* The balance of a cloud closes in every method, and the sum of mass, capacity and temperature is the heat. */
+/* The balance of a cloud closes in every method, and the sum of mass, capacity and temperature is the heat.
+ * */
 START_TEST(balance_closes) {
   const method *how = broad_methods[_i % BROAD];
   const int32_t dim = 1 + _i / BROAD % 3, implicit = _i / BROAD / 3;
@@ -326,7 +327,8 @@ START_TEST(bodies_and_sets) {
 END_TEST
 
 /* ---- surfaces ------------------------------------------------------------------------------------------ */
-/* A flux gives its power times the area; a film cools a body that conducts well by the rule of one unknown. */
+/* A flux gives its power times the area; a film cools a body that conducts well by the rule of one unknown.
+ * */
 START_TEST(flux_and_film) {
   for (int32_t implicit = 0; implicit < 2; ++implicit) {
     world w;
