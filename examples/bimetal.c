@@ -1,6 +1,6 @@
 /* A strip of two metals, clamped at one end, is heated through its faces and bends: a film brings heat from
- * the air, the strip conducts it, and the metals expand by different amounts. Quasi-static steps with implicit
- * conduction on a total Lagrangian grid.
+ * the air, the strip conducts it, and the metals expand by different amounts. Quasi-static steps with
+ * implicit conduction on a total Lagrangian grid.
  *
  *   bimetal [directory]
  *
@@ -29,7 +29,8 @@ static double mean_temperature(mpm_particles *set, int64_t n, double *T) {
   return sum / (double)n;
 }
 
-/* Where the end of a strip stands, over where it was: by the line through the last two columns of particles. */
+/* Where the end of a strip stands, over where it was: by the line through the last two columns of
+ * particles. */
 static double deflection(const body *b, const double *first) {
   double most = 0.0, second = 0.0, up[2] = {0.0, 0.0};
   for (int64_t i = 0; i < b->n; ++i) most = fmax(most, first[i]);

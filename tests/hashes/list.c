@@ -242,8 +242,8 @@ static const option options[OPTIONS] = {
     [TOTAL] = {"total Lagrangian, surface and obstacles, saved and loaded", 1, 1, 0},
     [TOTAL_SETS] = {"total Lagrangian, two sets, locking remedy, all callbacks", 1, 1, 0},
     [ADAPTION] = {"splitting and merging, saved and loaded", 1, 1, 1},
-    [HEAT] = {"heat, surface, expansion and dissipation, saved and loaded", 1, 1, 1},
-    [HEAT_IMPLICIT] = {"heat by implicit conduction, surface, saved and loaded", 1, 1, 1},
+    [HEAT] = {"heat, expansion, dissipation, saved and loaded", 1, 1, 1},
+    [HEAT_IMPLICIT] = {"heat, implicit conduction, saved and loaded", 1, 1, 1},
 };
 
 static void apply_walls(scene *is, int32_t o) {
