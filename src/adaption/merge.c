@@ -168,7 +168,10 @@ static int32_t take_lane(asking *of, int64_t lane, int64_t i) {
  * law refuses. */
 static int64_t ask_law(asking *of, int64_t begin, int64_t n, int64_t kept) {
   mpmi_law_batch *b = &of->law;
-  for (int64_t p = 0; p < b->ld; ++p) of->id[p] = -1; /* lanes of others are of no interest */
+  for (int64_t p = 0; p < b->ld; ++p) {
+    of->id[p] = -1; /* lanes of others are of no interest */
+    b->growth[p] = 1.0;
+  }
   for (int64_t i = 0; i < n; ++i) load_pair(of, LANES * i, begin + i);
   b->batch.n = (LANES * n + MPMI_CHUNK - 1) / MPMI_CHUNK * MPMI_CHUNK; /* laws take whole chunks */
   b->batch.id = of->id;

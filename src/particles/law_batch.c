@@ -48,7 +48,6 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
     for (int64_t p = 0; p < ld; ++p) b->F[e * ld + p] = b->F_inc[e * ld + p] = 1.0;
   memset(b->wave_speed, 0, (size_t)ld * sizeof(double));
   preset_optional(b, ld);
-  for (int64_t q = 0; q < ld; ++q) b->growth[q] = 1.0;
   b->batch = (mpm_material_batch){.struct_size = sizeof b->batch,
                                   .state_count = material->state_count,
                                   .ld = ld,

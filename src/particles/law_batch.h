@@ -28,7 +28,7 @@ typedef struct mpmi_law_batch {
   int64_t ld;
   double *F, *F_inc, *L, *stress, *state, *stress_new, *state_new, *wave_speed, *viscosity, *energy, *growth,
       *position;
-  /* growth: by how much its temperature has let the volume of a particle grow; 1 where it does not expand */
+  /* growth: by how much temperature has let the volume grow, of sets that expand */
   mpm_material_batch batch;
   mpmi_lookup lookup;
   mpmi_law_fault fault; /* of the last run */

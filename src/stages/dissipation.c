@@ -20,13 +20,13 @@ static double *row_of(const mpmi_step *step, int32_t m, int32_t row) {
 }
 
 /* Returns by how much the law sees the volume of a particle grown. */
-static double growth_of(const mpmi_law_batch *b, int64_t p) {
+static double growth_of(const mpmi_law_batch *b, const mpm_particles *set, int64_t p) {
   const double *F = b->F + p;
   const int64_t ld = b->ld;
   const double det = F[0] * (F[4 * ld] * F[8 * ld] - F[5 * ld] * F[7 * ld]) -
                      F[ld] * (F[3 * ld] * F[8 * ld] - F[5 * ld] * F[6 * ld]) +
                      F[2 * ld] * (F[3 * ld] * F[7 * ld] - F[4 * ld] * F[6 * ld]);
-  return det * b->growth[p];
+  return mpmi_expands(set) ? det * b->growth[p] : det;
 }
 
 /* ---- before the step ----------------------------------------------------------------------------------- */
@@ -49,7 +49,7 @@ static void energies_of_batch(const energy_job *job, mpmi_law_batch *b, int64_t 
   }
   for (int64_t p = 0; p < n; ++p) {
     energy[p] = b->energy[p];
-    growth[p] = growth_of(b, p);
+    growth[p] = growth_of(b, set, p);
   }
 }
 
@@ -104,7 +104,7 @@ void mpmi_dissipation_find(mpmi_batch *b) {
   double *dissipated = row_of(b->step, b->m, MPMI_ROW_DISSIPATED) + b->begin;
   for (int64_t p = 0; p < b->n; ++p) {
     double strain[6], work = 0.0;
-    const double grown = growth_of(law, p);
+    const double grown = growth_of(law, set, p);
     find_strain(law, p, b->step->dt, strain);
     for (int32_t c = 0; c < mpmi_stress_components(set->grid->dim); ++c)
       work += 0.5 * strain[c] *
