@@ -21,11 +21,11 @@ void test_heat() {
   CHECK(refused(MPM_E_ARG, "kind is 7", [&] { w.stepper.set_heat_wall(MPM_X_MIN, 7); }));
   CHECK(w.set.get("temperature")[0] == 20.0);
   const double before = w.stepper.heat().heat;
-  w.stepper.step(1e-6);
+  w.stepper.step(1e-6).or_throw();
   const mpm::heat_info info = w.stepper.heat();
   CHECK(asked == w.set.count() && info.sources > 0.0 && info.heat > before);
   w.stepper.set_heat(w.set, desc, [](const mpm_particle_batch &, double *) { throw std::string("hot"); });
-  CHECK(thrown_by<std::string>([&] { w.stepper.step(1e-6); }) == "hot");
+  CHECK(thrown_by<std::string>([&] { w.stepper.step(1e-6).or_throw(); }) == "hot");
   w.stepper.reset_heat(w.set);
-  w.stepper.step(1e-6);
+  w.stepper.step(1e-6).or_throw();
 }
