@@ -596,6 +596,7 @@ START_TEST(comes_and_goes) {
   d.reference_temperature = 12.0;
   ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &d));
   ck_assert(fetch1(&w, set, "temperature", 1, 0, 0) == 12.0);
+  ck_refused(&w, mpm_particles_set_extensive(set, "temperature", 1), MPM_E_ARG, "is the temperature");
   const int64_t more = world_fill_cube(&w, set, 1.0, 1.25);
   ck_assert(fetch1(&w, set, "temperature", 1, 0, more - 1) == 12.0);
   world_step(&w, 1e-5);
