@@ -20,26 +20,26 @@ typedef struct heat_stencil {
   double w[MOST_NODES], g[MOST_NODES][3];
 } heat_stencil;
 
-static void list_nodes(const mpm_grid *grid, const mpmi_weights *W, int64_t p, heat_stencil *to) {
+/* Each axis makes a row of nodes of every node, from the last one on. slopes: with gradients. */
+static void list_nodes(const mpm_grid *grid, const mpmi_weights *W, int64_t p, int32_t slopes,
+                       heat_stencil *to) {
   const int32_t dim = grid->dim, width = grid->width, edge = MPMI_TILE_EDGE(dim, width);
+  int64_t stride = dim == 3 ? (int64_t)NODE * edge * edge : dim == 2 ? (int64_t)NODE * edge : NODE;
   to->count = 1;
-  to->at[0] = W->node[p];
+  to->at[0] = NODE * (int64_t)W->node[p];
   to->w[0] = 1.0;
   for (int32_t k = 0; k < dim; ++k) to->g[0][k] = 1.0;
-  /* each axis makes a row of nodes of every node, from the last one on */
-  for (int32_t axis = 0; axis < dim; ++axis) {
-    int64_t stride = 1;
-    for (int32_t k = axis + 1; k < dim; ++k) stride *= edge;
+  for (int32_t axis = 0; axis < dim; ++axis, stride /= edge) {
     for (int32_t n = to->count - 1; n >= 0; --n)
       for (int32_t i = width - 1; i >= 0; --i) {
         const int32_t at = n * width + i;
         to->at[at] = to->at[n] + i * stride;
-        for (int32_t k = 0; k < dim; ++k) to->g[at][k] = to->g[n][k] * (k == axis ? W->g : W->w)[axis][i][p];
+        for (int32_t k = 0; k < dim && slopes; ++k)
+          to->g[at][k] = to->g[n][k] * (k == axis ? W->g : W->w)[axis][i][p];
         to->w[at] = to->w[n] * W->w[axis][i][p];
       }
     to->count *= width;
   }
-  for (int32_t n = 0; n < to->count; ++n) to->at[n] *= NODE;
 }
 
 /* ---- particles ----------------------------------------------------------------------------------------- */
@@ -65,8 +65,8 @@ static const double *power_row(const mpmi_heat_job *job, int32_t m) {
   return rows->heat + MPMI_ROW_POWER * rows->heat_ld;
 }
 
-static void visit_set(const mpmi_heat_job *job, const mpmi_visit *visit, int32_t m, int32_t need, heat_fn fn,
-                      const double *gather, double *give) {
+static void visit_set(const mpmi_heat_job *job, const mpmi_visit *visit, int32_t m, int32_t slopes,
+                      heat_fn fn, const double *gather, double *give) {
   const mpmi_settings *settings = job->step->settings;
   const mpmi_layout *layout = job->step->layout;
   const mpm_grid *grid = settings->grid;
@@ -81,11 +81,11 @@ static void visit_set(const mpmi_heat_job *job, const mpmi_visit *visit, int32_t
   mpmi_block_axes(grid, layout->blocks.coord[visit->block], axis);
   for (int64_t at = layout->member[m].now.start[visit->block]; at < end; at += MPMI_CHUNK) {
     const int64_t n = end - at < MPMI_CHUNK ? end - at : MPMI_CHUNK;
-    weights(axis, need, &points, at, n, &W);
+    weights(axis, slopes ? MPMI_NEED_GRADIENT : 0, &points, at, n, &W);
     for (int64_t p = 0; p < n; ++p) {
       if (id[at + p] < 0) continue;
       particle.slot = at + p;
-      list_nodes(grid, &W, p, &particle.near);
+      list_nodes(grid, &W, p, slopes, &particle.near);
       fn(job, visit, &particle, gather, give);
     }
   }
@@ -97,10 +97,10 @@ static int32_t takes_part(const mpmi_heat_job *job, const mpmi_visit *visit, int
          (!mpmi_were_shown(job->step, m) || mpmi_is_in_place(job->step, visit, m));
 }
 
-static void visit_block(const mpmi_heat_job *job, const mpmi_visit *visit, heat_fn fn, const double *gather,
-                        double *give) {
+static void visit_block(const mpmi_heat_job *job, const mpmi_visit *visit, int32_t slopes, heat_fn fn,
+                        const double *gather, double *give) {
   for (int32_t m = 0; m < job->step->layout->member_count; ++m)
-    if (takes_part(job, visit, m)) visit_set(job, visit, m, MPMI_NEED_GRADIENT, fn, gather, give);
+    if (takes_part(job, visit, m)) visit_set(job, visit, m, slopes, fn, gather, give);
 }
 
 static double *load_tile(const mpmi_heat_job *job, const mpmi_visit *visit, const mpmi_nodal *from) {
@@ -135,7 +135,7 @@ static void project_particle(const mpmi_heat_job *job, const mpmi_visit *visit, 
 }
 
 static void project_block(void *user, const mpmi_visit *visit, double *tile) {
-  visit_block(user, visit, project_particle, NULL, tile);
+  visit_block(user, visit, 0, project_particle, NULL, tile);
 }
 
 mpm_status mpmi_heat_project(const mpmi_heat_job *job) {
@@ -160,7 +160,7 @@ static void place_particle(const mpmi_heat_job *job, const mpmi_visit *visit, co
 }
 
 static void place_block(void *user, const mpmi_visit *visit, double *tile) {
-  visit_block(user, visit, place_particle, NULL, tile);
+  visit_block(user, visit, 0, place_particle, NULL, tile);
 }
 
 mpm_status mpmi_heat_places(const mpmi_heat_job *job) {
@@ -216,7 +216,7 @@ static void conduct_particle(const mpmi_heat_job *job, const mpmi_visit *visit, 
 
 static void conduct_block(void *user, const mpmi_visit *visit, double *tile) {
   const mpmi_heat_job *job = user;
-  visit_block(job, visit, conduct_particle, load_tile(job, visit, &job->heat->nodes), tile);
+  visit_block(job, visit, 1, conduct_particle, load_tile(job, visit, &job->heat->nodes), tile);
 }
 
 mpm_status mpmi_heat_conduct(const mpmi_heat_job *job) {
@@ -246,7 +246,7 @@ static void gather_particle(const mpmi_heat_job *job, const mpmi_visit *visit, c
 
 static void gather_block(void *user, const mpmi_visit *visit) {
   const mpmi_heat_job *job = user;
-  visit_block(job, visit, gather_particle, load_tile(job, visit, &job->heat->flow), NULL);
+  visit_block(job, visit, 0, gather_particle, load_tile(job, visit, &job->heat->flow), NULL);
 }
 
 mpm_status mpmi_heat_gather(const mpmi_heat_job *job) {
