@@ -17,7 +17,7 @@ import subprocess
 import sys
 
 HEADERS = ["types", "context", "grid", "material", "particles", "stepper", "operator", "contact", "obstacle", "surface",
-           "adaption", "io"]
+           "adaption", "heat", "io"]
 SIZES = {"int8_t": 1, "uint8_t": 1, "char": 1, "int": 4, "int32_t": 4, "uint32_t": 4, "int64_t": 8, "uint64_t": 8, "double": 8,
          "float": 4, "mpm_status": 4}
 TARGETS = {8: "x86_64-linux-gnu", 4: "wasm32-unknown-unknown"}

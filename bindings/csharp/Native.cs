@@ -276,6 +276,18 @@ namespace Mpm {
     public const int MPM_ADAPT_SPLIT = 0;
     /// <summary>pairs that are to become one particle.</summary>
     public const int MPM_ADAPT_MERGE = 1;
+
+    // How the nodes conduct.
+    /// <summary>By the temperatures at the start of the step.</summary>
+    public const int MPM_CONDUCTION_EXPLICIT = 0;
+    /// <summary>By those at its end (backward Euler), found by conjugate gradients: any step will do.</summary>
+    public const int MPM_CONDUCTION_IMPLICIT = 1;
+
+    // What a face of the grid does to heat.
+    /// <summary>lets none through.</summary>
+    public const int MPM_HEAT_WALL_INSULATED = 0;
+    /// <summary>material at it has a prescribed temperature.</summary>
+    public const int MPM_HEAT_WALL_TEMPERATURE = 1;
   }
 
   /// <summary>A task of the library, which the host's executor calls with the task_data that it was given and a
@@ -369,6 +381,10 @@ namespace Mpm {
   /// i-th from it.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int AdaptionFn(IntPtr user, AdaptionBatch* batch, byte* accept);
+
+  /// <summary>Heat sources: writes power[i], [ld], power per present volume.</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int HeatFn(IntPtr user, ParticleBatch* batch, double* power);
 
   /// <summary>Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets,
   /// browsers.</summary>
@@ -1228,6 +1244,69 @@ namespace Mpm {
     public fixed double angular_momentum_loss[3];
   }
 
+  /// <summary>The heat of a set.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct HeatDesc {
+    /// <summary>sizeof(mpm_heat_desc) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>0.</summary>
+    public int reserved;
+    /// <summary>energy / (mass temperature), &gt; 0.</summary>
+    public double specific_heat;
+    /// <summary>power / (length temperature), &gt;= 0.</summary>
+    public double conductivity;
+    /// <summary>linear, 1/temperature.</summary>
+    public double expansion;
+    /// <summary>T0, at which F = I is free of stress.</summary>
+    public double reference_temperature;
+    /// <summary>Share of the work that the material dissipates which becomes heat, 0 to 1.</summary>
+    public double dissipated_share;
+    /// <summary>NULL (default): there is none.</summary>
+    public IntPtr source;
+    /// <summary>is passed to source.</summary>
+    public IntPtr user;
+
+    /// <summary>The library's defaults.</summary>
+    public static HeatDesc Default() {
+      var it = new HeatDesc();
+      MpmException.Check(Native.mpm_heat_desc_init(&it, (uint)sizeof(HeatDesc)), IntPtr.Zero);
+      return it;
+    }
+  }
+
+  /// <summary>Where heat came from, in the last step and in all steps since the first set was described or the time
+  /// was set: gained = sum of walls + sources + surfaces + dissipated, to rounding, and with implicit conduction to
+  /// the tolerance.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct HeatInfo {
+    /// <summary>sizeof(mpm_heat_info) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>of the last step's conjugate gradients.</summary>
+    public int iterations;
+    /// <summary>sum of mass specific_heat temperature now, of all sets that are described.</summary>
+    public double heat;
+    /// <summary>what particles took up in the last step.</summary>
+    public double gained;
+    /// <summary>through the faces, from MPM_X_MIN, into the material.</summary>
+    public fixed double walls[6];
+    /// <summary>of the callbacks.</summary>
+    public double sources;
+    /// <summary>through surfaces, into the material.</summary>
+    public double surfaces;
+    /// <summary>dissipated work that became heat.</summary>
+    public double dissipated;
+    /// <summary>the same in all steps, and so with those below.</summary>
+    public double gained_total;
+    /// <summary>through the faces.</summary>
+    public fixed double walls_total[6];
+    /// <summary>of the callbacks.</summary>
+    public double sources_total;
+    /// <summary>through surfaces.</summary>
+    public double surfaces_total;
+    /// <summary>dissipated work.</summary>
+    public double dissipated_total;
+  }
+
   /// <summary>The functions of C.</summary>
   public static unsafe class Native {
 #if MPM_STATIC // the library is part of the program, as Unity has it on iOS and WebGL
@@ -1808,6 +1887,36 @@ namespace Mpm {
     /// <summary>Tells what adaption has done to a set.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_stepper_adaption_info(IntPtr stepper, IntPtr particles, AdaptionInfo* info);
+
+    /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_heat_desc) of the caller; no byte beyond is
+    /// written.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_heat_desc_init(HeatDesc* desc, uint struct_size);
+
+    /// <summary>Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more,
+    /// and its fields stay as fields of the host.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_set_heat(IntPtr stepper, IntPtr particles, HeatDesc* desc);
+
+    /// <summary>Chooses how the nodes conduct, from MPM_CONDUCTION_EXPLICIT (as made) on. tolerance: of the residual
+    /// of conjugate gradients, relative to the right-hand side; &gt; 0 and &lt; 1; not read with explicit
+    /// conduction.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_set_conduction(IntPtr stepper, int conduction, double tolerance);
+
+    /// <summary>Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature
+    /// is not read of insulated ones, which all faces are from the start.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_set_heat_wall(IntPtr stepper, int face, int kind, double temperature);
+
+    /// <summary>Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the
+    /// material), power/area into the material; film is &gt;= 0.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_surface_set_heat(IntPtr surface, double flux, double film, double ambient);
+
+    /// <summary>Tells where heat came from.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_heat_info(IntPtr stepper, HeatInfo* info);
 
     /// <summary>Tells how many bytes mpm_state_save() needs now.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

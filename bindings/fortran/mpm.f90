@@ -277,6 +277,18 @@ module mpm
   !> pairs that are to become one particle.
   integer(c_int32_t), parameter :: MPM_ADAPT_MERGE = 1_c_int32_t
 
+  !> How the nodes conduct.
+  !> By the temperatures at the start of the step.
+  integer(c_int32_t), parameter :: MPM_CONDUCTION_EXPLICIT = 0_c_int32_t
+  !> By those at its end (backward Euler), found by conjugate gradients: any step will do.
+  integer(c_int32_t), parameter :: MPM_CONDUCTION_IMPLICIT = 1_c_int32_t
+
+  !> What a face of the grid does to heat.
+  !> lets none through.
+  integer(c_int32_t), parameter :: MPM_HEAT_WALL_INSULATED = 0_c_int32_t
+  !> material at it has a prescribed temperature.
+  integer(c_int32_t), parameter :: MPM_HEAT_WALL_TEMPERATURE = 1_c_int32_t
+
   !> A named number.
   type, bind(c) :: mpm_param
     !> one of the names that mpm_material_model_param() lists.
@@ -989,6 +1001,60 @@ module mpm
     real(c_double) :: angular_momentum_loss(3)
   end type mpm_adaption_info
 
+  !> The heat of a set.
+  type, bind(c) :: mpm_heat_desc
+    !> sizeof(mpm_heat_desc) of the caller.
+    integer(c_int32_t) :: struct_size
+    !> 0.
+    integer(c_int32_t) :: reserved
+    !> energy / (mass temperature), > 0.
+    real(c_double) :: specific_heat
+    !> power / (length temperature), >= 0.
+    real(c_double) :: conductivity
+    !> linear, 1/temperature.
+    real(c_double) :: expansion
+    !> T0, at which F = I is free of stress.
+    real(c_double) :: reference_temperature
+    !> Share of the work that the material dissipates which becomes heat, 0 to 1.
+    real(c_double) :: dissipated_share
+    !> NULL (default): there is none.
+    type(c_funptr) :: source
+    !> is passed to source.
+    type(c_ptr) :: user
+  end type mpm_heat_desc
+
+  !> Where heat came from, in the last step and in all steps since the first set was described or the time was set:
+  !! gained = sum of walls + sources + surfaces + dissipated, to rounding, and with implicit conduction to the
+  !! tolerance.
+  type, bind(c) :: mpm_heat_info
+    !> sizeof(mpm_heat_info) of the caller.
+    integer(c_int32_t) :: struct_size
+    !> of the last step's conjugate gradients.
+    integer(c_int32_t) :: iterations
+    !> sum of mass specific_heat temperature now, of all sets that are described.
+    real(c_double) :: heat
+    !> what particles took up in the last step.
+    real(c_double) :: gained
+    !> through the faces, from MPM_X_MIN, into the material.
+    real(c_double) :: walls(6)
+    !> of the callbacks.
+    real(c_double) :: sources
+    !> through surfaces, into the material.
+    real(c_double) :: surfaces
+    !> dissipated work that became heat.
+    real(c_double) :: dissipated
+    !> the same in all steps, and so with those below.
+    real(c_double) :: gained_total
+    !> through the faces.
+    real(c_double) :: walls_total(6)
+    !> of the callbacks.
+    real(c_double) :: sources_total
+    !> through surfaces.
+    real(c_double) :: surfaces_total
+    !> dissipated work.
+    real(c_double) :: dissipated_total
+  end type mpm_heat_info
+
   ! Callbacks of the host: c_funloc() of a procedure of such an interface is what arguments and fields take.
   abstract interface
     !> A task of the library, which the host's executor calls with the task_data that it was given and a number k.
@@ -1179,6 +1245,15 @@ module mpm
       integer(c_int8_t), intent(inout) :: accept
       integer(c_int32_t) :: answer
     end function mpm_adaption_fn
+
+    !> Heat sources: writes power[i], [ld], power per present volume.
+    function mpm_heat_fn(user, batch, power) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      type(mpm_particle_batch), intent(in) :: batch
+      real(c_double), intent(inout) :: power
+      integer(c_int32_t) :: answer
+    end function mpm_heat_fn
 
     !> Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers.
     function mpm_write_fn(user, data, bytes) bind(c) result(answer)
@@ -2354,6 +2429,66 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_stepper_adaption_info
 
+    !> Fills desc with the defaults. struct_size is sizeof(mpm_heat_desc) of the caller; no byte beyond is written.
+    function mpm_heat_desc_init(desc, struct_size) bind(c, name="mpm_heat_desc_init") result(answer)
+      import
+      type(mpm_heat_desc), intent(inout) :: desc
+      integer(c_int32_t), value :: struct_size
+      integer(c_int32_t) :: answer
+    end function mpm_heat_desc_init
+
+    !> Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more, and its fields
+    !! stay as fields of the host.
+    function mpm_stepper_set_heat(stepper, particles, desc) bind(c, name="mpm_stepper_set_heat") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: particles
+      type(mpm_heat_desc), intent(in) :: desc
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_set_heat
+
+    !> Chooses how the nodes conduct, from MPM_CONDUCTION_EXPLICIT (as made) on. tolerance: of the residual of conjugate
+    !! gradients, relative to the right-hand side; > 0 and < 1; not read with explicit conduction.
+    function mpm_stepper_set_conduction(stepper, conduction, tolerance) bind(c, name="mpm_stepper_set_conduction") &
+        result(answer)
+      import
+      type(c_ptr), value :: stepper
+      integer(c_int32_t), value :: conduction
+      real(c_double), value :: tolerance
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_set_conduction
+
+    !> Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is not read
+    !! of insulated ones, which all faces are from the start.
+    function mpm_stepper_set_heat_wall(stepper, face, kind, temperature) bind(c, name="mpm_stepper_set_heat_wall") &
+        result(answer)
+      import
+      type(c_ptr), value :: stepper
+      integer(c_int32_t), value :: face
+      integer(c_int32_t), value :: kind
+      real(c_double), value :: temperature
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_set_heat_wall
+
+    !> Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the material),
+    !! power/area into the material; film is >= 0.
+    function mpm_surface_set_heat(surface, flux, film, ambient) bind(c, name="mpm_surface_set_heat") result(answer)
+      import
+      type(c_ptr), value :: surface
+      real(c_double), value :: flux
+      real(c_double), value :: film
+      real(c_double), value :: ambient
+      integer(c_int32_t) :: answer
+    end function mpm_surface_set_heat
+
+    !> Tells where heat came from.
+    function mpm_stepper_heat_info(stepper, info) bind(c, name="mpm_stepper_heat_info") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(mpm_heat_info), intent(inout) :: info
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_heat_info
+
     !> Tells how many bytes mpm_state_save() needs now.
     function mpm_state_size(stepper, bytes) bind(c, name="mpm_state_size") result(answer)
       import
@@ -2519,12 +2654,13 @@ module mpm
     module procedure init_mpm_obstacle_desc
     module procedure init_mpm_surface_desc
     module procedure init_mpm_adaption_desc
+    module procedure init_mpm_heat_desc
   end interface mpm_init
 
   private :: init_mpm_view, init_mpm_context_desc, init_mpm_grid_desc, init_mpm_material_batch, &
       init_mpm_material_desc, init_mpm_operator_info, init_mpm_stepper_desc, init_mpm_step_info, &
       init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, init_mpm_obstacle_desc, &
-      init_mpm_surface_desc, init_mpm_adaption_desc
+      init_mpm_surface_desc, init_mpm_adaption_desc, init_mpm_heat_desc
 
 contains
 
@@ -2694,5 +2830,10 @@ contains
     type(mpm_adaption_desc), intent(out) :: it
     if (mpm_adaption_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
   end subroutine init_mpm_adaption_desc
+
+  subroutine init_mpm_heat_desc(it)
+    type(mpm_heat_desc), intent(out) :: it
+    if (mpm_heat_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
+  end subroutine init_mpm_heat_desc
 
 end module mpm

@@ -108,6 +108,10 @@ export const constants = Object.freeze({
   MPM_MOTION_FREE: 2,
   MPM_ADAPT_SPLIT: 0,
   MPM_ADAPT_MERGE: 1,
+  MPM_CONDUCTION_EXPLICIT: 0,
+  MPM_CONDUCTION_IMPLICIT: 1,
+  MPM_HEAT_WALL_INSULATED: 0,
+  MPM_HEAT_WALL_TEMPERATURE: 1,
 });
 
 // A field is [offset, kind], with the length of an array in the struct, or with the extents of one that it points to.
@@ -523,6 +527,38 @@ export const structs = {
       angular_momentum_loss: [56, 'f64', 3],
     },
   },
+  mpm_heat_desc: {
+    size: 56,
+    fields: {
+      struct_size: [0, 'u32'],
+      reserved: [4, 'i32'],
+      specific_heat: [8, 'f64'],
+      conductivity: [16, 'f64'],
+      expansion: [24, 'f64'],
+      reference_temperature: [32, 'f64'],
+      dissipated_share: [40, 'f64'],
+      source: [48, 'pointer'],
+      user: [52, 'pointer'],
+    },
+  },
+  mpm_heat_info: {
+    size: 176,
+    fields: {
+      struct_size: [0, 'u32'],
+      iterations: [4, 'i32'],
+      heat: [8, 'f64'],
+      gained: [16, 'f64'],
+      walls: [24, 'f64', 6],
+      sources: [72, 'f64'],
+      surfaces: [80, 'f64'],
+      dissipated: [88, 'f64'],
+      gained_total: [96, 'f64'],
+      walls_total: [104, 'f64', 6],
+      sources_total: [152, 'f64'],
+      surfaces_total: [160, 'f64'],
+      dissipated_total: [168, 'f64'],
+    },
+  },
 };
 
 // The parameters of callbacks as WebAssembly has them, and how many results there are.
@@ -546,5 +582,6 @@ export const callbacks = {
   mpm_traction_fn: [['i32', 'i32', 'i32'], 1],
   mpm_marker_velocity_fn: [['i32', 'i32', 'i32'], 1],
   mpm_adaption_fn: [['i32', 'i32', 'i32'], 1],
+  mpm_heat_fn: [['i32', 'i32', 'i32'], 1],
   mpm_write_fn: [['i32', 'i32', 'i64'], 1],
 };

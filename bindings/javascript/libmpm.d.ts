@@ -254,6 +254,17 @@ export interface Constants {
   readonly MPM_ADAPT_SPLIT: 0;
   /** pairs that are to become one particle */
   readonly MPM_ADAPT_MERGE: 1;
+  /**
+   * By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused
+   * with MPM_CUT_DT, and mpm_stable_dt() takes the bound into account.
+   */
+  readonly MPM_CONDUCTION_EXPLICIT: 0;
+  /** By those at its end (backward Euler), found by conjugate gradients: any step will do. */
+  readonly MPM_CONDUCTION_IMPLICIT: 1;
+  /** lets none through */
+  readonly MPM_HEAT_WALL_INSULATED: 0;
+  /** material at it has a prescribed temperature */
+  readonly MPM_HEAT_WALL_TEMPERATURE: 1;
 }
 /** All constants of the library, under their names in C. */
 export const C: Constants;
@@ -595,6 +606,22 @@ export interface AdaptionDesc {
   merge_tolerance?: number;
   /** Nothing is split beyond this number of particles in the set. 0 (default): there is no such bound. */
   most_particles?: number;
+}
+/** The heat of a set. */
+export interface HeatDesc {
+  /** energy / (mass temperature), > 0. Must be given. */
+  specific_heat?: number;
+  /** power / (length temperature), >= 0. Default 0: no heat is conducted. */
+  conductivity?: number;
+  /** linear, 1/temperature. Default 0. The law sees F / exp(expansion (T - T0)). */
+  expansion?: number;
+  /** T0, at which F = I is free of stress. Default 0. Particles that are added have this temperature. */
+  reference_temperature?: number;
+  /**
+   * Share of the work that the material dissipates which becomes heat, 0 to 1. Default 0. It is the work of
+   * the stress less the change of strain energy; it heats the particle itself, at the end of the step.
+   */
+  dissipated_share?: number;
 }
 /**
  * A linear system. The arrays belong to the library and are valid until the solve callback returns. A row is
@@ -2013,6 +2040,7 @@ export class Stepper implements Handle {
    * | "contact_force"                    | F64  | dim        | force of other bodies and of obstacles        |
    * | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
    * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
+   * | "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
    *
    * - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
    * - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -2174,6 +2202,12 @@ export interface Raw {
   mpm_stepper_set_adaption(stepper: number, particles: number, desc: number): number;
   mpm_stepper_adapt(stepper: number): number;
   mpm_stepper_adaption_info(stepper: number, particles: number, info: number): number;
+  mpm_heat_desc_init(desc: number, struct_size: number): number;
+  mpm_stepper_set_heat(stepper: number, particles: number, desc: number): number;
+  mpm_stepper_set_conduction(stepper: number, conduction: number, tolerance: number): number;
+  mpm_stepper_set_heat_wall(stepper: number, face: number, kind: number, temperature: number): number;
+  mpm_surface_set_heat(surface: number, flux: number, film: number, ambient: number): number;
+  mpm_stepper_heat_info(stepper: number, info: number): number;
   mpm_state_size(stepper: number, bytes: number): number;
   mpm_state_save(stepper: number, buffer: number, capacity: bigint): number;
   mpm_state_load(stepper: number, buffer: number, bytes: bigint): number;

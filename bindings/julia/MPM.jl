@@ -196,6 +196,14 @@ const MPM_MOTION_FREE = Int32(2) # as a rigid body under contact, gravity and th
 const MPM_ADAPT_SPLIT = Int32(0) # particles that are to be split
 const MPM_ADAPT_MERGE = Int32(1) # pairs that are to become one particle
 
+# How the nodes conduct.
+const MPM_CONDUCTION_EXPLICIT = Int32(0) # By the temperatures at the start of the step
+const MPM_CONDUCTION_IMPLICIT = Int32(1) # By those at its end (backward Euler), found by conjugate gradients
+
+# What a face of the grid does to heat.
+const MPM_HEAT_WALL_INSULATED = Int32(0) # lets none through
+const MPM_HEAT_WALL_TEMPERATURE = Int32(1) # material at it has a prescribed temperature
+
 """
 A context holds the services of the host (memory, threads, log) and the text of the last error. Every other object is
 made with one. See context.h.
@@ -742,6 +750,48 @@ end
 Base.cconvert(::Type{Ptr{mpm_adaption_info}}, it::mpm_adaption_info) = it
 Base.unsafe_convert(::Type{Ptr{mpm_adaption_info}}, it::mpm_adaption_info) = Ptr{mpm_adaption_info}(pointer_from_objref(it))
 
+"""
+The heat of a set. Fill it with mpm_heat_desc_init().
+"""
+mutable struct mpm_heat_desc
+    struct_size::UInt32
+    reserved::Int32
+    specific_heat::Float64
+    conductivity::Float64
+    expansion::Float64
+    reference_temperature::Float64
+    dissipated_share::Float64
+    source::Ptr{Cvoid}
+    user::Ptr{Cvoid}
+    mpm_heat_desc() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_heat_desc}}, it::mpm_heat_desc) = it
+Base.unsafe_convert(::Type{Ptr{mpm_heat_desc}}, it::mpm_heat_desc) = Ptr{mpm_heat_desc}(pointer_from_objref(it))
+
+"""
+Where heat came from, in the last step and in all steps since the first set was described or the time was set: gained
+= sum of walls + sources + surfaces + dissipated, to rounding, and with implicit conduction to the tolerance. All are
+energies.
+"""
+mutable struct mpm_heat_info
+    struct_size::UInt32
+    iterations::Int32
+    heat::Float64
+    gained::Float64
+    walls::NTuple{6, Float64}
+    sources::Float64
+    surfaces::Float64
+    dissipated::Float64
+    gained_total::Float64
+    walls_total::NTuple{6, Float64}
+    sources_total::Float64
+    surfaces_total::Float64
+    dissipated_total::Float64
+    mpm_heat_info() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_heat_info}}, it::mpm_heat_info) = it
+Base.unsafe_convert(::Type{Ptr{mpm_heat_info}}, it::mpm_heat_info) = Ptr{mpm_heat_info}(pointer_from_objref(it))
+
 # Callbacks: what @cfunction(f, result, (arguments,)) takes for each type of C.
 
 """
@@ -952,6 +1002,14 @@ runs on the thread of the call. Returns as mpm_particle_fn does.
 f(user, batch, accept): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_adaption_batch}, Ptr{UInt8}))
 """
 const mpm_adaption_fn = Ptr{Cvoid}
+
+"""
+Heat sources: writes power[i], [ld], power per present volume. It runs as mpm_particle_fn does, on all threads, and
+returns as that does.
+
+f(user, batch, power): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_particle_batch}, Ptr{Float64}))
+"""
+const mpm_heat_fn = Ptr{Cvoid}
 
 """
 Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers. All
@@ -1784,6 +1842,7 @@ and mirrored ghosts are listed beside the nodes that they follow.
 | \"contact_force\"                    | F64  | dim        | force of other bodies and of obstacles        |
 | \"contact_normal\"                   | F64  | dim        | unit, away from the body, where it meets them |
 | \"contact_gap\" \"contact_area\"       | F64  | 1          | length, infinite where it meets nothing       |
+| \"temperature\"                      | F64  | 1          | at the end of the step, where sets have heat  |
 
 - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
 - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -2235,6 +2294,67 @@ function mpm_stepper_adaption_info(stepper, particles, info)
 end
 
 """
+Fills desc with the defaults. struct_size is sizeof(mpm_heat_desc) of the caller; no byte beyond is written.
+MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
+"""
+function mpm_heat_desc_init(desc, struct_size)
+    return ccall((:mpm_heat_desc_init, libmpm), Int32, (Ptr{mpm_heat_desc}, UInt32), desc, struct_size)
+end
+
+"""
+Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more, and its fields stay
+as fields of the host. Not part of a saved state, but the fields are: the host describes before it loads.
+MPM_E_NOT_FOUND: the set is not in the stepper. MPM_E_ARG: particles is NULL, a value is bad, or the set has a field
+\"temperature\" or \"stress_temperature\" of another type or with more components. MPM_E_UNSUPPORTED: expansion is not
+0 on MPM_PLANE_STRESS or with the law \"rigid\"; dissipated_share is not 0 with \"rigid\" or a law of the host.
+MPM_E_STATE: a step is under way, a view of the set is out, or the set has no room for another field.
+"""
+function mpm_stepper_set_heat(stepper, particles, desc)
+    return ccall((:mpm_stepper_set_heat, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_particles}, Ptr{mpm_heat_desc}),
+        stepper, particles, desc)
+end
+
+"""
+Chooses how the nodes conduct, from MPM_CONDUCTION_EXPLICIT (as made) on. tolerance: of the residual of conjugate
+gradients, relative to the right-hand side; > 0 and < 1; not read with explicit conduction. MPM_E_ARG: a value is bad.
+MPM_E_STATE: a step is under way.
+"""
+function mpm_stepper_set_conduction(stepper, conduction, tolerance)
+    return ccall((:mpm_stepper_set_conduction, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Float64),
+        stepper, conduction, tolerance)
+end
+
+"""
+Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is not read of
+insulated ones, which all faces are from the start. Call it again where the temperature changes: that change, at first
+from what the material there has, reaches the particles in the next step; material that comes to the face later is
+heated by conduction alone. Not part of a saved state. MPM_E_ARG: a value is bad, or the axis is periodic.
+MPM_E_UNSUPPORTED: the face is the axis of MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a step is under
+way.
+"""
+function mpm_stepper_set_heat_wall(stepper, face, kind, temperature)
+    return ccall((:mpm_stepper_set_heat_wall, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Int32, Float64),
+        stepper, face, kind, temperature)
+end
+
+"""
+Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the material),
+power/area into the material; film is >= 0. All 0 (as made): no heat. Not part of a saved state. MPM_E_ARG: a value is
+bad. MPM_E_STATE: a step is under way.
+"""
+function mpm_surface_set_heat(surface, flux, film, ambient)
+    return ccall((:mpm_surface_set_heat, libmpm), Int32, (Ptr{mpm_surface}, Float64, Float64, Float64),
+        surface, flux, film, ambient)
+end
+
+"""
+Tells where heat came from. MPM_E_ARG: info is NULL. MPM_E_STATE: a step is under way, or no set was ever described.
+"""
+function mpm_stepper_heat_info(stepper, info)
+    return ccall((:mpm_stepper_heat_info, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_heat_info}), stepper, info)
+end
+
+"""
 Tells how many bytes mpm_state_save() needs now.
 """
 function mpm_state_size(stepper, bytes)
@@ -2440,6 +2560,12 @@ function ready(::Type{mpm_adaption_desc})
     status == MPM_OK || error("mpm_adaption_desc_init: libmpm is older than the module")
     return it
 end
+function ready(::Type{mpm_heat_desc})
+    it = zeroed(mpm_heat_desc)
+    status = mpm_heat_desc_init(it, UInt32(sizeof(mpm_heat_desc)))
+    status == MPM_OK || error("mpm_heat_desc_init: libmpm is older than the module")
+    return it
+end
 
 export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NONFINITE, MPM_NOT_CONVERGED,
     MPM_SINGULAR, MPM_OFF_GRID, MPM_CANCELLED, MPM_E_ARG, MPM_E_NOMEM, MPM_E_STATE, MPM_E_CALLBACK, MPM_E_UNSUPPORTED,
@@ -2456,19 +2582,20 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     MPM_CONTACT_UNILATERAL, MPM_CONTACT_NONE, MPM_CONTACT_TIED, MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT,
     MPM_NORMAL_GRADIENT, MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT, MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY,
     MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER, MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE,
-    MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE, MPM_ADAPT_SPLIT, MPM_ADAPT_MERGE, mpm_context, mpm_grid,
-    mpm_material, mpm_particles, mpm_stepper, mpm_operator, mpm_obstacle, mpm_surface, mpm_series, mpm_param,
-    mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc, mpm_operator_info,
+    MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE, MPM_ADAPT_SPLIT, MPM_ADAPT_MERGE,
+    MPM_CONDUCTION_EXPLICIT, MPM_CONDUCTION_IMPLICIT, MPM_HEAT_WALL_INSULATED, MPM_HEAT_WALL_TEMPERATURE, mpm_context,
+    mpm_grid, mpm_material, mpm_particles, mpm_stepper, mpm_operator, mpm_obstacle, mpm_surface, mpm_series,
+    mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc, mpm_operator_info,
     mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch, mpm_advance_desc, mpm_profile,
     mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc, mpm_surface_desc,
-    mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info, mpm_version, mpm_status_name,
-    mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create, mpm_context_memory,
-    mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy,
-    mpm_material_create, mpm_material_model_count, mpm_material_model_name, mpm_material_model_param,
-    mpm_material_state_count, mpm_material_state_name, mpm_batch_field, mpm_material_desc_init,
-    mpm_material_create_custom, mpm_material_update, mpm_material_destroy, mpm_particles_create,
-    mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball, mpm_particles_fill,
-    mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
+    mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info, mpm_heat_desc, mpm_heat_info,
+    mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create,
+    mpm_context_memory, mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create,
+    mpm_grid_destroy, mpm_material_create, mpm_material_model_count, mpm_material_model_name,
+    mpm_material_model_param, mpm_material_state_count, mpm_material_state_name, mpm_batch_field,
+    mpm_material_desc_init, mpm_material_create_custom, mpm_material_update, mpm_material_destroy,
+    mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball,
+    mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
     mpm_particles_add_field, mpm_particles_set_extensive, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32,
     mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic, mpm_particles_reset_reference,
     mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create,
@@ -2487,8 +2614,10 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     mpm_surface_add_polyline, mpm_surface_add_triangles, mpm_surface_remove, mpm_surface_refine, mpm_surface_count,
     mpm_surface_get, mpm_surface_set, mpm_stepper_add_surface, mpm_stepper_remove_surface,
     mpm_stepper_surface_reaction, mpm_stepper_surface_impulse, mpm_adaption_desc_init, mpm_stepper_set_adaption,
-    mpm_stepper_adapt, mpm_stepper_adaption_info, mpm_state_size, mpm_state_save, mpm_state_load, mpm_state_save_file,
-    mpm_state_save_to, mpm_state_load_file, mpm_state_hash, mpm_write_particles, mpm_write_particles_to,
-    mpm_write_grid, mpm_write_body_grid, mpm_write_grid_to, mpm_series_open, mpm_series_append, mpm_series_close
+    mpm_stepper_adapt, mpm_stepper_adaption_info, mpm_heat_desc_init, mpm_stepper_set_heat,
+    mpm_stepper_set_conduction, mpm_stepper_set_heat_wall, mpm_surface_set_heat, mpm_stepper_heat_info,
+    mpm_state_size, mpm_state_save, mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file,
+    mpm_state_hash, mpm_write_particles, mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid,
+    mpm_write_grid_to, mpm_series_open, mpm_series_append, mpm_series_close
 
 end

@@ -248,6 +248,30 @@ def adaption():
 
 
 @plot
+def heat():
+    figure, ax = axes(3)
+    data, fine, strip = read("heat_bar"), read("heat_refinement"), read("heat_strip")
+    for sudden, name in ((0, "sine"), (1, "sudden ends")):
+        at = rows(data, sudden=sudden)
+        ax[0].plot(at["x"], at["exact"], "k-", linewidth=1)
+        ax[0].plot(at["x"], at["T"], f"C{sudden}.", markersize=4, label=name)
+    ax[0].set_xlabel("x")
+    ax[0].set_ylabel("temperature")
+    ax[0].legend()
+    for way, name in enumerate(("linear", "quadratic", "cubic", "quadratic, implicit")):
+        at = rows(fine, way=way)
+        ax[1].plot(at["cells"], at["sine"], f"C{way}o-", markersize=3, label=name)
+        ax[1].plot([1.25 * n for n in at["cells"]], at["sudden"], f"C{way}s:", markersize=3)
+    loglog(ax[1], "cells", "error: sine (solid), sudden ends (dotted)")
+    ax[1].legend()
+    cloud = ax[2].scatter(strip["x"], strip["y"], c=strip["stress"], s=2, cmap="coolwarm", linewidths=0, rasterized=True)
+    ax[2].set_xlabel("x")
+    ax[2].set_ylabel("y")
+    figure.colorbar(cloud, ax=ax[2], label="stress along x")
+    return figure
+
+
+@plot
 def taylor_bar():
     figure, ax = axes(1, 4.0, 5.6)
     data = read("taylor_bar_cloud")

@@ -102,6 +102,7 @@
 #include <mpm/contact.h>
 #include <mpm/context.h>
 #include <mpm/grid.h>
+#include <mpm/heat.h>
 #include <mpm/io.h>
 #include <mpm/material.h>
 #include <mpm/obstacle.h>

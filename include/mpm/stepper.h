@@ -453,6 +453,7 @@ MPM_API mpm_status mpm_step_abort(mpm_stepper *stepper);
  * | "contact_force"                    | F64  | dim        | force of other bodies and of obstacles        |
  * | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
  * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
+ * | "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
  *
  * - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
  * - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.

@@ -34,6 +34,7 @@ public:
     c.sets.erase(std::find(c.sets.begin(), c.sets.end(), set.shared()));
     forget_motion(set.handle());
     forget_adaption(set.handle());
+    forget_heat(set.handle());
   }
   /** Puts an obstacle in: see mpm_stepper_add_obstacle(). */
   void add(obstacle &body) {
@@ -128,6 +129,37 @@ public:
   mpm::adaption_info adaption(const particles &set) const {
     mpm::adaption_info info;
     check(mpm_stepper_adaption_info(core().handle, set.handle(), &info));
+    return info;
+  }
+  /** Describes the heat of a set, and what heats it (nullptr: nothing), whatever the description has there.
+   * See mpm_stepper_set_heat(). */
+  void set_heat(particles &set, mpm_heat_desc desc, heat_callback source = nullptr) {
+    detail::stepper_core &c = core();
+    c.heats.reserve(c.heats.size() + 1);
+    auto rule = c.keep(std::move(source));
+    desc.source = rule ? c.on_heat : nullptr;
+    desc.user = rule.get();
+    check(mpm_stepper_set_heat(c.handle, set.handle(), &desc));
+    forget_heat(set.handle());
+    if (rule) c.heats.push_back({set.handle(), std::move(rule)});
+  }
+  /** The set has no heat any more. */
+  void reset_heat(particles &set) {
+    check(mpm_stepper_set_heat(core().handle, set.handle(), nullptr));
+    forget_heat(set.handle());
+  }
+  /** Chooses how nodes conduct: see mpm_stepper_set_conduction(). */
+  void set_conduction(int32_t conduction, double tolerance = 1e-9) {
+    check(mpm_stepper_set_conduction(core().handle, conduction, tolerance));
+  }
+  /** Says what a face does to heat: see mpm_stepper_set_heat_wall(). */
+  void set_heat_wall(int32_t face, int32_t kind, double temperature = 0.0) {
+    check(mpm_stepper_set_heat_wall(core().handle, face, kind, temperature));
+  }
+  /** Where heat came from: see mpm_stepper_heat_info(). */
+  mpm::heat_info heat() const {
+    mpm::heat_info info;
+    check(mpm_stepper_heat_info(core().handle, &info));
     return info;
   }
   /** Sets the acceleration of particles; nullptr: none. See mpm_stepper_set_acceleration(). */
@@ -323,6 +355,11 @@ private:
   void forget_adaption(const mpm_particles *set) {
     auto &all = core().adaptions;
     all.erase(std::remove_if(all.begin(), all.end(), [set](const auto &a) { return a.set == set; }),
+              all.end());
+  }
+  void forget_heat(const mpm_particles *set) {
+    auto &all = core().heats;
+    all.erase(std::remove_if(all.begin(), all.end(), [set](const auto &h) { return h.set == set; }),
               all.end());
   }
   void forget_motion(const mpm_particles *set) {

@@ -6,6 +6,7 @@
 #define MPM_STEPPER_CORE_HPP
 
 #include <mpm/adaption.hpp>
+#include <mpm/heat.hpp>
 #include <mpm/linear_system.hpp>
 #include <mpm/obstacle.hpp>
 #include <mpm/surface.hpp>
@@ -73,6 +74,12 @@ struct stepper_core {
     std::unique_ptr<slot<adaption_callback>> rule; /**< what it accepts */
   };
 
+  /** The host's word on what heats a set. */
+  struct heat {
+    const mpm_particles *set;                  /**< the set that is heated */
+    std::unique_ptr<slot<heat_callback>> rule; /**< its sources */
+  };
+
   std::shared_ptr<context_core> context;                     /**< outlives the stepper */
   std::shared_ptr<grid_core> grid;                           /**< outlives the stepper */
   std::vector<std::shared_ptr<particles_core>> sets;         /**< outlive the stepper, or are removed */
@@ -80,6 +87,7 @@ struct stepper_core {
   std::vector<std::shared_ptr<surface_core>> surfaces;       /**< outlive the stepper, or are removed */
   std::vector<motion> motions;                               /**< see stepper::set_motion() */
   std::vector<adaption> adaptions;                           /**< see stepper::set_adaption() */
+  std::vector<heat> heats;                                   /**< see stepper::set_heat() */
   std::unique_ptr<slot<particle_callback>> acceleration;     /**< see stepper::set_acceleration() */
   std::unique_ptr<slot<particle_callback>> force;            /**< see stepper::set_force() */
   std::unique_ptr<slot<velocity_callback>> velocity;         /**< see stepper::set_velocity_bc() */
@@ -138,6 +146,10 @@ struct stepper_core {
   /** The mpm_adaption_fn that calls the host's function. */
   static mpm_status on_adaption(void *user, const mpm_adaption_batch *batch, uint8_t *accept) {
     return call<adaption_callback>(user, *batch, accept);
+  }
+  /** The mpm_heat_fn that calls the host's function. */
+  static mpm_status on_heat(void *user, const mpm_particle_batch *batch, double *power) {
+    return call<heat_callback>(user, *batch, power);
   }
   /** The mpm_progress_fn that calls the host's function. */
   static mpm_status on_progress(void *user, const mpm_step_info *info) {

@@ -6,6 +6,7 @@
 #define MPM_SURFACE_HPP
 
 #include <mpm/particles.hpp>
+#include <mpm/heat.h>
 #include <mpm/surface.h>
 
 namespace mpm {
@@ -80,6 +81,11 @@ public:
     detail::surface_core &c = core();
     check(mpm_surface_set_velocity(c.handle, velocities ? c.on_velocity : nullptr, &c));
     c.velocity = std::move(velocities);
+  }
+
+  /** Heats what lies below: see mpm_surface_set_heat(). */
+  void set_heat(double flux, double film = 0.0, double ambient = 0.0) {
+    check(mpm_surface_set_heat(core().handle, flux, film, ambient));
   }
 
   /** Adds markers at position[dim][n] with area vectors, or without: see mpm_surface_add(). Returns the first

@@ -12,6 +12,7 @@
 #include "adaption/adaption.h"
 #include "material/dilation.h"
 #include "particles/add.h"
+#include "particles/thermal.h"
 #include "particles/law_batch.h"
 #include "simd/elementary.h"
 
@@ -110,6 +111,14 @@ static void load_pair(asking *of, int64_t lane, int64_t i) {
       (of->volume[0] * ratio[0] + of->volume[1] * ratio[1]) / (of->volume[0] + of->volume[1]);
 }
 
+static void expand_pair(asking *of, int64_t lane, const mpmi_merging *pair) {
+  const double *T = mpmi_stress_temperature(of->set, of->copy), *mass = mpmi_f64(of->set, MPMI_MASS, 0);
+  const double of_pair[2] = {mass[pair->stays], mass[pair->goes]};
+  mpmi_expand_lane(&of->law, of->set, lane, T[pair->stays]);
+  mpmi_expand_lane(&of->law, of->set, lane + 1, T[pair->goes]);
+  mpmi_expand_lane(&of->law, of->set, lane + 2, mean(T, pair, of_pair));
+}
+
 /* Returns the norm of what a field has in a slot, less what it has in another; -1: that is nothing. */
 static double norm_of(const asking *of, int32_t field, int32_t components, int64_t slot, int64_t less) {
   double square = 0.0;
@@ -160,13 +169,18 @@ static int32_t take_lane(asking *of, int64_t lane, int64_t i) {
  * law refuses. */
 static int64_t ask_law(asking *of, int64_t begin, int64_t n, int64_t kept) {
   mpmi_law_batch *b = &of->law;
-  for (int64_t p = 0; p < b->ld; ++p) of->id[p] = -1; /* holes, but for the lanes of these pairs */
+  for (int64_t p = 0; p < b->ld; ++p) {
+    of->id[p] = -1; /* holes, but for the lanes of these pairs */
+    b->growth[p] = 1.0;
+  }
   for (int64_t i = 0; i < n; ++i) load_pair(of, LANES * i, begin + i);
   b->batch.n = (LANES * n + MPMI_CHUNK - 1) / MPMI_CHUNK * MPMI_CHUNK; /* laws take whole chunks */
   b->batch.id = of->id;
   if (of->set->field[MPMI_DILATION_RATIO].present)
     mpmi_dilation_of(of->set->context->isa)
         ->scale[mpmi_strain_dim(of->set->grid)](b->F, b->ld, of->ratio, b->batch.n);
+  for (int64_t i = 0; i < n && mpmi_expands(of->set); ++i)
+    expand_pair(of, LANES * i, &of->a->pair[begin + i]);
   if (mpmi_law_batch_run_in(b, of->set)) {
     for (int64_t i = 0; i < n && n > 1; ++i)
       kept = ask_law(of, begin + i, 1, kept); /* one of them is refused */
@@ -246,6 +260,11 @@ static void join_domains(mpm_particles *set, const mpmi_merging *pair) {
   size[along * set->ld + pair->stays] = (extent[0] + extent[1]) / across;
 }
 
+/* Heat is kept by the mean by mass. */
+static int32_t is_temperature(const mpm_particles *set, int32_t field) {
+  return field > 0 && (field == set->thermal.temperature || field == set->thermal.stress_temperature);
+}
+
 /* Sums amounts, takes the means of what else is of type F64, and leaves the rest as the heavier one has
  * it. */
 static void join_fields(mpm_particles *set, const mpmi_merging *pair, const double *initial) {
@@ -262,7 +281,8 @@ static void join_fields(mpm_particles *set, const mpmi_merging *pair, const doub
     if (!field->extensive && f < MPMI_BUILTIN_FIELDS && f != MPMI_L) continue;
     for (int32_t c = 0; c < field->components; ++c) {
       double *row = mpmi_f64(set, f, 0) + c * set->ld;
-      row[pair->stays] = field->extensive ? row[pair->stays] + row[pair->goes] : mean(row, pair, initial);
+      row[pair->stays] = field->extensive ? row[pair->stays] + row[pair->goes]
+                                          : mean(row, pair, is_temperature(set, f) ? mass : initial);
     }
   }
 }

@@ -30,6 +30,8 @@
   X(mpm_adaption_desc, user, 72)                                                                             \
   X(mpm_adaption_info, angular_momentum_loss, 80)                                                            \
   X(mpm_adaption_batch, position, 56)                                                                        \
+  X(mpm_heat_desc, user, 64)                                                                                 \
+  X(mpm_heat_info, dissipated_total, 176)                                                                    \
   X(mpm_particle_batch, lookup, 104)                                                                         \
   X(mpm_node_batch, mass, 72)                                                                                \
   X(mpm_advance_desc, max_steps, 56)                                                                         \

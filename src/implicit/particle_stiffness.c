@@ -154,7 +154,8 @@ static int32_t is_finite(const double *value, int32_t dim, int64_t ld, int64_t n
 
 static int32_t find_tangent(mpmi_newton_work *work, mpmi_batch *b) {
   const mpm_particles *set = b->set;
-  const int32_t sheets = mpmi_is_plane_stress(set->grid), dim = sheets ? 3 : mpmi_strain_dim(set->grid);
+  const int32_t sheets = mpmi_is_plane_stress(set->grid),
+                dim = sheets || set->thermal.expansion != 0.0 ? 3 : mpmi_strain_dim(set->grid);
   const int64_t ld = b->law.ld, *id = mpmi_i64(set, MPMI_ID, 0) + b->begin;
   const mpm_status status = mpmi_material_tangent(set->material, dim, &b->law.batch, work->tangent_scratch,
                                                   work->tangent, &work->symmetric);

@@ -50,11 +50,13 @@ typedef struct mpmi_state_numbers {
   double impulse_by_face[6][3];
   mpmi_sums sums;
   mpm_step_info last;
-  mpmi_totals totals; /* from format 3 on */
+  mpmi_totals totals;     /* from format 3 on */
+  mpmi_heat_history heat; /* the same */
 } mpmi_state_numbers;
 _Static_assert(offsetof(mpmi_state_numbers, last) == 11 * 8 + 18 * 8 + 12 * 8, "part of the format");
 _Static_assert(offsetof(mpm_step_info, external_work_total) == 192, "part of the format");
 _Static_assert(sizeof(mpmi_totals) == 20 * 8, "part of the format");
+_Static_assert(sizeof(mpmi_heat_history) == 33 * 8, "part of the format");
 
 typedef struct mpmi_state_set_numbers {
   int64_t count, slots, next_id, dirty;

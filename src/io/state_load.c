@@ -77,6 +77,14 @@ static int32_t is_count(int64_t n) {
   return n >= 0 && n <= INT64_MAX / 2;
 }
 
+/* A step counts from what faces prescribed in the one before. */
+static int32_t heat_makes_sense(const mpmi_heat_history *heat) {
+  int32_t sense = is_count(heat->iterations);
+  for (int32_t face = 0; face < 6; ++face)
+    sense &= isfinite(heat->prescribed[face]) && (heat->acted[face] == 0.0 || heat->acted[face] == 1.0);
+  return sense;
+}
+
 static void read_numbers(loading *l) {
   mpmi_archive *a = &l->archive;
   mpmi_state_numbers *n = &l->numbers;
@@ -84,7 +92,7 @@ static void read_numbers(loading *l) {
   if (a->status) return;
   if (!isfinite(n->t) || !is_count(n->step) || !is_count(n->resorts) || !is_count(n->removed) ||
       n->blocks < -1 || !is_magnitude(n->previous_dt) || !is_magnitude(n->controller_dt) ||
-      !is_magnitude(n->mass_cut))
+      !is_magnitude(n->mass_cut) || !heat_makes_sense(&n->heat))
     mpmi_archive_damaged(a, "its numbers make no sense");
   const int64_t unsorted = MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE,
                 flags = MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION | (n->blocks < 0 ? unsorted : 0);
@@ -239,6 +247,7 @@ static void take_over(loading *l) {
   memcpy(s->history.impulse_by_face, n->impulse_by_face, sizeof n->impulse_by_face);
   s->history.last = n->last;
   s->history.totals = n->totals;
+  s->history.heat = n->heat;
   const mpmi_contact_rules rules = s->settings.contact;
   const mpmi_pair_records pairs = s->history.pairs;
   if (l->format > 2) {

@@ -50,6 +50,7 @@ void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_num
   if (format > 2) mpmi_archive_halves(a, &n->last.body, LATER - INFO_3);
   if (format > 2) mpmi_archive_words(a, &n->last.damping_dissipation, sizeof n->last - LATER);
   if (format > 2) mpmi_archive_words(a, &n->totals, sizeof n->totals);
+  if (format > 2) mpmi_archive_words(a, &n->heat, sizeof n->heat);
 }
 
 void mpmi_state_archive_set_numbers(mpmi_archive *a, uint32_t format, mpmi_state_set_numbers *n) {
@@ -86,7 +87,8 @@ static void write_numbers(mpmi_archive *a, const mpm_stepper *s) {
                           .blocks = mpmi_state_is_sorted(s) ? mpmi_state_count_blocks(s) : -1,
                           .sums = s->history.sums,
                           .last = s->history.last,
-                          .totals = s->history.totals};
+                          .totals = s->history.totals,
+                          .heat = s->history.heat};
   memcpy(n.impulse_by_face, s->history.impulse_by_face, sizeof n.impulse_by_face);
   mpmi_state_archive_numbers(a, MPMI_STATE_FORMAT, &n);
   for (int32_t m = 0; m < s->layout.member_count; ++m) {

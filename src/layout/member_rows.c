@@ -16,6 +16,7 @@ static void free_member(const mpmi_settings *settings, mpmi_member_rows *of) {
   free_rows(c, &of->mean, &of->mean_ld, dim);
   free_rows(c, &of->wave_speed, &of->wave_speed_ld, 1);
   free_rows(c, &of->nodal_stress, &of->nodal_stress_ld, mpmi_stress_components(dim));
+  free_rows(c, &of->heat, &of->heat_ld, MPMI_HEAT_ROWS);
 }
 
 void mpmi_member_rows_free(mpmi_step_rows *rows, const mpmi_settings *settings) {
@@ -66,7 +67,8 @@ mpm_status mpmi_member_rows_prepare(mpmi_step_rows *rows, const mpmi_settings *s
         (status =
              reserve_rows(c, set, mpmi_deforms_first(settings), 1, &of->wave_speed, &of->wave_speed_ld)) ||
         (status = reserve_rows(c, set, mpmi_averages_pressure(settings, set), mpmi_stress_components(dim),
-                               &of->nodal_stress, &of->nodal_stress_ld)))
+                               &of->nodal_stress, &of->nodal_stress_ld)) ||
+        (status = reserve_rows(c, set, settings->heat.set[m].on, MPMI_HEAT_ROWS, &of->heat, &of->heat_ld)))
       return status;
   }
   return status;

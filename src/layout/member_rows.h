@@ -4,6 +4,18 @@
 
 #include "layout/sorted_layout.h"
 
+/* Rows of heat: the temperature at the end of the step, before what the material dissipates in it; that
+ * work; what the law's energy and its growth of volume were before; and in the same place, until they are
+ * known, the power of the host's sources. */
+enum {
+  MPMI_ROW_TEMPERATURE,
+  MPMI_ROW_DISSIPATED,
+  MPMI_ROW_ENERGY,
+  MPMI_ROW_GROWTH,
+  MPMI_HEAT_ROWS,
+  MPMI_ROW_POWER = MPMI_ROW_ENERGY
+};
+
 /* Rows [components][ld of the set] for one set. NULL: the step does not need them. */
 typedef struct mpmi_member_rows {
   double *force;        /* [dim] external force beside gravity */
@@ -11,7 +23,8 @@ typedef struct mpmi_member_rows {
   double *wave_speed;   /* [1] where the law runs before the particles move */
   double *nodal_stress; /* the stress in the forces on nodes, where it is not that of the particles
                            (stages/cell_pressure.c) */
-  int64_t force_ld, mean_ld, wave_speed_ld, nodal_stress_ld;
+  double *heat;         /* [MPMI_HEAT_ROWS] where the set has heat: MPMI_ROW_... */
+  int64_t force_ld, mean_ld, wave_speed_ld, nodal_stress_ld, heat_ld;
 } mpmi_member_rows;
 
 typedef struct mpmi_step_rows {

@@ -5,6 +5,7 @@
 
 #include "grid/constraints.h"
 #include "layout/contact_rules.h"
+#include "layout/heat_rules.h"
 #include "layout/transfers.h"
 #include "material/deformation.h"
 #include "material/dilation.h"
@@ -40,6 +41,7 @@ typedef struct mpmi_settings {
   void *hook_user[3];
   mpm_progress_fn progress;
   void *progress_user;
+  mpmi_heat_rules heat;
   mpmi_contact_rules contact; /* how bodies meet */
   mpmi_obstacles obstacles;
   mpmi_surfaces surfaces;
@@ -75,6 +77,10 @@ static inline int32_t mpmi_is_corrected(const mpmi_settings *set) {
 static inline int32_t mpmi_takes_in_step(const mpmi_settings *set, int64_t number) {
   const int32_t every = set->transfer->most_order > 0 ? set->desc.xpic_every : 0;
   return every > 1 && number % every ? (int32_t)MPMI_TAKES_BLEND : set->transfer->takes;
+}
+/* Returns 1 when the work that a set dissipates becomes heat. */
+static inline int32_t mpmi_dissipates(const mpmi_settings *set, int32_t m) {
+  return set->heat.set[m].on && set->heat.set[m].desc.dissipated_share > 0.0;
 }
 /* Returns 1 when explicit steps damp the nodes. */
 static inline int32_t mpmi_is_damped(const mpmi_settings *set) {

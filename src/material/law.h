@@ -59,7 +59,10 @@ typedef struct mpmi_law {
   int32_t kinematics;  /* MPMI_F_... */
   int32_t pressure_from_shear; /* 1: shear makes pressure, so that the locking remedy averages both */
   int32_t rest;                /* MPMI_REST_... */
-  int32_t no_sheets;           /* 1: it is none that a sheet in plane stress can have */
+  /* 1: per present volume its strain energy follows from the Cauchy stress alone, which makes it no
+   * function of the deformation where the volume changes (stages/dissipation.c) */
+  int32_t energy_of_stress;
+  int32_t no_sheets; /* 1: it is none that a sheet in plane stress can have */
   /* Says what is wrong with the parameters together, or returns NULL where nothing is. NULL: there is no such
    * check. */
   const char *(*check)(const double *value);

@@ -86,6 +86,7 @@ const mpmi_law KERNEL(law_j2) = {
     .name = "j2",
     MPMI_PARAMS(params),
     MPMI_STATES(states),
+    .energy_of_stress = 1,
     .constants_size = sizeof(j2_constants),
     .prepare = prepare,
     .stress = stress_kernel,

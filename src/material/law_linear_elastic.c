@@ -29,6 +29,7 @@ MPMI_LAW_KERNELS(mpmi_elastic, linear_elastic, linear_elastic_tangent)
 const mpmi_law KERNEL(law_linear_elastic) = {
     .name = "linear_elastic",
     MPMI_PARAMS(params),
+    .energy_of_stress = 1,
     .constants_size = sizeof(mpmi_elastic),
     .prepare = mpmi_elastic_prepare,
     .stress = stress_kernel,

@@ -4,6 +4,7 @@
 
 #include "context/radix.h"
 #include "particles/add.h"
+#include "particles/thermal.h"
 #include "particles/values.h"
 
 /* ---- new particles at the end of a set ----------------------------------------------------------------- */
@@ -84,6 +85,7 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
   write_derived(set, MPMI_REFERENCE, slot, slot + n); /* the size of rings needs it */
   if (!with_size) write_derived(set, MPMI_SIZE, slot, slot + n);
   write_derived(set, MPMI_DILATION_RATIO, slot, slot + n);
+  mpmi_thermal_start(set, slot, slot + n);
   for (int32_t c = 0; c < set->grid->dim && is_rigid(set); ++c)
     memset((uint8_t *)set->field[MPMI_PRESCRIBED].data[0] + c * set->ld + slot, 1, (size_t)n);
   set->next_id = next_id;

@@ -9,6 +9,7 @@
 #include "particles/law_batch.h"
 #include "particles/reference.h"
 #include "simd/elementary.h"
+#include "particles/thermal.h"
 
 typedef struct ground {
   int32_t axis;
@@ -55,6 +56,11 @@ static int32_t is_deformed(const mpm_particles *set) {
 
 static mpm_status check_law(const mpm_particles *set, const ground *g) {
   const mpmi_law *law = set->material->law;
+  if (mpmi_expands(set))
+    return mpmi_fail(
+        set->context, MPM_E_UNSUPPORTED,
+        "the set expands with its temperature: give it the stress before mpm_stepper_set_heat gives it "
+        "an expansion");
   if (mpmi_is_total_lagrangian(set->grid) && law && law->stress_from_F)
     return mpmi_fail(
         set->context, MPM_E_UNSUPPORTED,

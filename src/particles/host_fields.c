@@ -42,6 +42,10 @@ mpm_status mpm_particles_set_extensive(mpm_particles *particles, const char *fie
     return mpmi_fail(particles->context, MPM_E_ARG,
                      "%s is %s: only fields of the host of type MPM_F64 can be extensive", field,
                      f < MPMI_BUILTIN_FIELDS ? "a field of the library" : "of another type");
+  const mpmi_thermal *thermal = &particles->thermal;
+  if (extensive && (f == thermal->temperature || f == thermal->stress_temperature))
+    return mpmi_fail(particles->context, MPM_E_ARG, "%s is the temperature of the set, which is no amount",
+                     field);
   particles->field[f].extensive = extensive;
   return MPM_OK;
 }

@@ -4,8 +4,10 @@
 #include <string.h>
 
 #include "material/dilation.h"
+#include "particles/thermal.h"
+#include "simd/elementary.h"
 
-enum { FIXED_ROWS = 9 + 9 + 9 + 6 + 6 + 1 + 1 + 1 + 3 };
+enum { FIXED_ROWS = 9 + 9 + 9 + 6 + 6 + 1 + 1 + 1 + 1 + 3 };
 
 int64_t mpmi_law_batch_length(const mpm_material *material) {
   return material->law ? MPMI_BATCH_OWN : MPMI_BATCH_HOST;
@@ -37,6 +39,7 @@ void mpmi_law_batch_bind(mpmi_law_batch *b, const mpm_material *material, void *
   b->wave_speed = at, at += ld;
   b->viscosity = at, at += ld;
   b->energy = at, at += ld;
+  b->growth = at, at += ld;
   b->position = at, at += 3 * ld;
   b->state = at, at += material->state_count * ld;
   b->state_new = at;
@@ -86,6 +89,42 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
     copy_batch_rows(b->position, b->ld, mpmi_f64(set, MPMI_POSITION, 0) + begin, set->ld, dim, n);
 }
 
+/* Expansion: the law sees F / exp(a (T - T0)) in the place of F. */
+void mpmi_expand_lane(mpmi_law_batch *b, const mpm_particles *set, int64_t p, double T) {
+  const double strain = set->thermal.expansion * (T - set->thermal.reference), shrink = mpmi_exp(-strain);
+  for (int32_t e = 0; e < 9; ++e) {
+    double *F = b->F + e * b->ld + p;
+    /* along axes that a 1-D grid does not have there is no entry of its own */
+    *F = set->grid->dim == 1 && e % 4 == 0 && e > 0 ? shrink : *F * shrink;
+  }
+  b->growth[p] = mpmi_exp(3.0 * strain);
+}
+
+void mpmi_expand_state(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {
+  const double *T = mpmi_stress_temperature(set, 0) + begin;
+  for (int64_t p = 0; p < n; ++p) mpmi_expand_lane(b, set, p, T[p]);
+}
+
+void mpmi_expand_step(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double dt,
+                      int32_t has_increments) {
+  const double *before = mpmi_stress_temperature(set, 0) + begin,
+               *now = mpmi_stress_temperature(set, 1) + begin;
+  const int32_t dim = mpmi_strain_dim(set->grid);
+  for (int64_t p = 0; p < n; ++p) {
+    const double change = mpmi_expm1(-set->thermal.expansion * (now[p] - before[p]));
+    mpmi_expand_lane(b, set, p, now[p]);
+    for (int32_t e = 0; e < 9; ++e) {
+      /* axes that the grid does not have keep what the batch before left there */
+      const int32_t own = e / 3 < dim && e % 3 < dim;
+      const double unit = e % 4 ? 0.0 : 1.0, L = own ? b->L[e * b->ld + p] : 0.0;
+      b->L[e * b->ld + p] = L + change * L + unit * change / dt;
+      if (!has_increments) continue;
+      const double F_inc = own ? b->F_inc[e * b->ld + p] : unit;
+      b->F_inc[e * b->ld + p] = F_inc + change * F_inc;
+    }
+  }
+}
+
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n) {
   const int32_t dim = set->grid->dim, *map = mpmi_tensor_map(dim);
   const double *F = mpmi_f64(set, MPMI_F, 0) + begin;
@@ -94,6 +133,7 @@ void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t 
   if (set->field[MPMI_DILATION_RATIO].present)
     mpmi_dilation_of(set->context->isa)
         ->scale[mpmi_strain_dim(set->grid)](b->F, b->ld, mpmi_f64(set, MPMI_DILATION_RATIO, 0) + begin, n);
+  if (mpmi_expands(set)) mpmi_expand_state(b, set, begin, n);
 }
 
 /* A negative speed or viscosity would not bound the step, and an infinite energy would spoil all sums. What

@@ -26,8 +26,9 @@ typedef struct mpmi_law_fault {
 
 typedef struct mpmi_law_batch {
   int64_t ld;
-  double *F, *F_inc, *L, *stress, *state, *stress_new, *state_new, *wave_speed, *viscosity, *energy,
+  double *F, *F_inc, *L, *stress, *state, *stress_new, *state_new, *wave_speed, *viscosity, *energy, *growth,
       *position;
+  /* growth: by how much temperature has let the volume grow, of sets that expand */
   mpm_material_batch batch;
   mpmi_lookup lookup;
   mpmi_law_fault fault; /* of the last run */
@@ -45,6 +46,15 @@ void mpmi_law_batch_load(mpmi_law_batch *b, const mpm_particles *set, int64_t be
                          double dt);
 /* Loads F from storage, to evaluate the state as it is. */
 void mpmi_law_batch_load_F(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
+/* Lets lane p of a batch see the deformation without what expands to temperature T. */
+void mpmi_expand_lane(mpmi_law_batch *b, const mpm_particles *set, int64_t p, double T);
+/* Does that to the slots from `begin` on, as they are. */
+void mpmi_expand_state(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n);
+/* Does it in a step, to the new temperatures, and takes what expands in it out of L and, where they are made,
+ * the increments of F. */
+void mpmi_expand_step(mpmi_law_batch *b, const mpm_particles *set, int64_t begin, int64_t n, double dt,
+                      int32_t has_increments);
+
 /* Runs the law, and looks at what one of the host's gave and whom a built-in one refuses; a fault's cause is
  * returned as the status.
  * Afterwards the new stress and state may be stored in copy `copy` of a set's fields. */

@@ -79,6 +79,13 @@ typedef struct mpmi_owner {
   int32_t (*has_markers)(const mpm_stepper *stepper); /* has it surfaces with markers? */
 } mpmi_owner;
 
+/* Temperatures (particles/thermal.h). The fields are among those of the host, 0: there is none. */
+typedef struct mpmi_thermal {
+  int32_t temperature, stress_temperature;
+  double expansion, reference;
+  const double *next; /* [slots] temperatures at the end of the step under way, or NULL */
+} mpmi_thermal;
+
 struct mpm_particles {
   uint32_t magic;
   int32_t mapped; /* live views */
@@ -96,6 +103,7 @@ struct mpm_particles {
   uint32_t suspect; /* bit per built-in field: bad values were written through a view; step refuses */
   /* Largest particle mass seen since the last sort, 0 without any: the scale of nodal masses. */
   double mass_max;
+  mpmi_thermal thermal;
   int32_t field_count;
   mpmi_field field[MPMI_MAX_FIELDS];
   mpmi_view_record view[MPMI_MAX_VIEWS];

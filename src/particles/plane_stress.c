@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "particles/law_batch.h"
+#include "particles/thermal.h"
 
 enum { MOST_CALLS = 25, MOST_CALLS_AT_REST = 100, THICKNESS = 8 };
 /* The stress that is left, over the stiffness. */
@@ -109,7 +110,11 @@ static mpm_status run_sheets(mpmi_law_batch *b, const mpm_material *material) {
 
 mpm_status mpmi_law_batch_run_in(mpmi_law_batch *b, const mpm_particles *set) {
   if (mpmi_is_plane_stress(set->grid)) return run_sheets(b, set->material);
-  return mpmi_law_batch_run(b, set->material, mpmi_strain_dim(set->grid));
+  if (!mpmi_expands(set)) return mpmi_law_batch_run(b, set->material, mpmi_strain_dim(set->grid));
+  /* what expands does so along all axes, and its energy is that of the volume to which it has grown */
+  const mpm_status status = mpmi_law_batch_run(b, set->material, 3);
+  for (int64_t p = 0; p < b->batch.n; ++p) b->energy[p] *= b->growth[p];
+  return status;
 }
 
 void mpmi_condense_tangent(double *tangent, int64_t ld, int64_t n) {

@@ -1,5 +1,6 @@
 /* The present state of particles becomes the one that their deformation starts from. */
 #include "particles/reference.h"
+#include "particles/thermal.h"
 
 #include <math.h>
 #include <string.h>
@@ -47,6 +48,9 @@ static mpm_status ask_host(mpm_particles *set, mpmi_law_batch *b, int64_t begin,
   for (int32_t c = 0; c < mpmi_stress_components(set->grid->dim); ++c)
     memcpy(b->stress + c * b->ld, mpmi_f64(set, MPMI_STRESS, 1) + c * set->ld + begin,
            (size_t)n * sizeof(double));
+  for (int32_t e = 0; e < 9 && mpmi_expands(set); e += 4)
+    for (int64_t p = 0; p < n; ++p) b->F[e * b->ld + p] = 1.0;
+  if (mpmi_expands(set)) mpmi_expand_state(b, set, begin, n);
   const mpm_status status = mpmi_law_batch_run_in(b, set);
   if (b->fault.cause)
     return mpmi_fail(set->context, b->fault.cause, "%s at particle %lld, when asked with F = I",

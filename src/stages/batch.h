@@ -105,6 +105,11 @@ int32_t mpmi_strain_deform(mpmi_batch *b);
 /* Runs the law there; b->law_ran tells whether it has answered. */
 void mpmi_strain_law(mpmi_batch *b);
 
+/* ---- dissipation.c ----------------------------------------------------------------------------------- */
+/* Finds what the particles of a batch dissipate, whose law has just run. */
+void mpmi_dissipation_find(mpmi_batch *b);
+
+/* ---- strain.c, continued ------------------------------------------------------------------------------- */
 /* Where the law runs before the particles move, the sums over the motion want its wave speed: these leave it
  * in the member's row meanwhile, and fetch it from there. */
 void mpmi_wave_speed_leave(const mpmi_batch *b);

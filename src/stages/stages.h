@@ -84,7 +84,9 @@ mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t 
 mpm_status mpmi_surfaces_aim(mpmi_step *step);
 /* Asks the host for tractions at time t, and finds the forces of all markers on their present areas. */
 mpm_status mpmi_surfaces_load(mpmi_step *step, double t);
-/* Finds the nodes around all markers from their masses, which are not folded. */
+/* Finds the nodes around the markers of a surface from their masses, which are not folded. */
+mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *masses);
+/* Does that for all surfaces, and refuses loads that no node would take. */
 mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses);
 /* Does the same, and adds the forces to the sums that particles have made there. */
 mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
@@ -102,6 +104,10 @@ mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
 int32_t mpmi_is_on_wall(const mpmi_settings *settings, int32_t k, double *x);
 /* Counts what friction walls did to particles themselves in with the step's impulses and dissipation. */
 void mpmi_stops_report(mpmi_step *step);
+
+/* ---- dissipation.c ----------------------------------------------------------------------------------- */
+/* Asks the laws of sets whose dissipation becomes heat for their energy as they are. */
+mpm_status mpmi_dissipation_prepare(mpmi_step *step);
 
 /* ---- g2p.c ------------------------------------------------------------------------------------------- */
 /* Moves and deforms: velocity and position, deformation gradient and stress. That is all of USL. */

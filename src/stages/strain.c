@@ -3,6 +3,7 @@
  * over particles, by those of transfer/sums.c. */
 #include "stages/batch.h"
 #include "layout/tile.h"
+#include "particles/thermal.h"
 #include "stages/stages.h"
 
 #include <string.h>
@@ -18,10 +19,15 @@ static int32_t looks_at_F_alone(const mpm_material *material) {
          mpmi_material_kinematics(material) == MPMI_F_DEFORMS;
 }
 
+/* Expansion and dissipation look at more. */
+static int32_t needs_F_alone(const mpmi_settings *settings, const mpm_particles *set, int32_t m) {
+  return looks_at_F_alone(set->material) && !mpmi_dissipates(settings, m) && !mpmi_expands(set);
+}
+
 /* In 3-D the stored components of F and stress are those of a batch. Laws that look at F alone then need no
  * copy of them. */
-static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles *set) {
-  return set->grid->dim == 3 && looks_at_F_alone(set->material) && !settings->desc.locking_remedy &&
+static int32_t works_in_place(const mpmi_settings *settings, const mpm_particles *set, int32_t m) {
+  return set->grid->dim == 3 && needs_F_alone(settings, set, m) && !settings->desc.locking_remedy &&
          !mpmi_is_implicit(settings);
 }
 
@@ -32,7 +38,7 @@ static int32_t deforms_at_once(const mpmi_batch *b) {
   const mpm_material *material = b->set->material;
   if (!b->pass->deforms || mpmi_is_implicit(settings) || mpmi_is_axisymmetric(settings->grid)) return 0;
   if (mpmi_is_total_lagrangian(settings->grid))
-    return looks_at_F_alone(material) && !settings->desc.locking_remedy;
+    return needs_F_alone(settings, b->set, b->m) && !settings->desc.locking_remedy;
   return mpmi_material_kinematics(material) == MPMI_F_DEFORMS;
 }
 
@@ -50,7 +56,7 @@ static int32_t is_matrix(int32_t form) {
 static int32_t reads_gradient(const mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   if (b->pass->moves && !b->pass->deforms) return finds_only_C(b);
-  return !b->gather.deform || !looks_at_F_alone(b->set->material) || settings->desc.locking_remedy;
+  return !b->gather.deform || !needs_F_alone(settings, b->set, b->m) || settings->desc.locking_remedy;
 }
 
 static void bind_gradient(mpmi_batch *b) {
@@ -66,7 +72,7 @@ static void bind_gradient(mpmi_batch *b) {
 void mpmi_strain_bind(mpmi_batch *b) {
   const mpmi_settings *settings = b->step->settings;
   const mpm_grid *grid = settings->grid;
-  b->in_place = works_in_place(settings, b->set);
+  b->in_place = works_in_place(settings, b->set, b->m);
   if (b->in_place) b->law.batch.ld = b->set->ld;
   b->deform =
       (mpmi_deform){.dt = b->step->dt,
@@ -181,6 +187,8 @@ void mpmi_strain_law(mpmi_batch *b) {
   if (step->settings->desc.locking_remedy)
     mpmi_locking_apply(step->settings, b->scratch->cells, b->gather.axis, b->set, &b->law, b->begin, b->n,
                        step->dt);
+  if (mpmi_expands(b->set))
+    mpmi_expand_step(&b->law, b->set, b->begin, b->n, step->dt, b->deform.F_inc != NULL);
   const int32_t timed = step->profile->sampled && b->batches++ % TIMED_BATCHES == 0;
   const double started = timed ? mpmi_seconds() : 0.0;
   const mpm_status status = mpmi_law_batch_run_in(&b->law, b->set);
@@ -195,6 +203,7 @@ void mpmi_strain_law(mpmi_batch *b) {
     mpmi_failure_take(&b->report->failure, mpmi_callback_failure(status, b->m, "the material callback"));
     return;
   }
+  if (mpmi_dissipates(step->settings, b->m)) mpmi_dissipation_find(b);
   if (mpmi_is_plane_stress(b->set->grid)) take_thickness(b);
   if (mpmi_is_total_lagrangian(b->set->grid)) take_reference_speeds(b);
   if (!b->in_place) mpmi_law_batch_store(&b->law, b->set, 1, b->begin, b->n);

@@ -417,12 +417,18 @@ static mpm_status check_carried(const surface_job *job) {
   return MPM_OK;
 }
 
+mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *masses) {
+  surface_job job = {step, surface, masses};
+  if (!surface->next.count) return MPM_OK;
+  return mpmi_run_tasks(step->settings, 0, step->settings->tasks, find_nodes_task, &job);
+}
+
 mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses) {
   const mpmi_settings *settings = step->settings;
   mpm_status status = MPM_OK;
   for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
-    surface_job job = {step, settings->surfaces.surface[i], masses};
-    if (job.surface->next.count) status = mpmi_run_tasks(settings, 0, settings->tasks, find_nodes_task, &job);
+    const surface_job job = {step, settings->surfaces.surface[i], masses};
+    status = mpmi_surface_find(step, job.surface, masses);
     if (!status) status = check_carried(&job);
   }
   return status;

@@ -107,6 +107,7 @@ void mpmi_commit(mpm_stepper *s) {
   for (int32_t m = 0; m < s->layout.member_count; ++m)
     mpmi_prescribed_report(&s->step, &s->nodes, m, s->history.reaction[m].impulse);
   commit_history(s);
+  mpmi_heat_commit(&s->step, s->heat, &s->history.heat);
   for (int32_t m = 0; m < s->layout.member_count; ++m) swap_copies(s, s->layout.member[m].set, left);
   if (old) s->layout.cover_is_old = 1;
   if (restored) s->history.has_sums = 0;
@@ -114,5 +115,6 @@ void mpmi_commit(mpm_stepper *s) {
 }
 
 void mpmi_roll_back(mpm_stepper *s) {
+  mpmi_heat_forget(&s->layout);
   mpmi_make_volumes(&s->layout, 0);
 }

@@ -17,6 +17,8 @@ static void free_parts(mpm_stepper *s) {
   MPMI_FREE_ARRAY(c, s->history.pairs.record, s->history.pairs.capacity);
   MPMI_FREE_ARRAY(c, s->history.reaction, s->history.reaction_capacity);
   MPMI_FREE_ARRAY(c, s->adaption, s->adaption_capacity);
+  MPMI_FREE_ARRAY(c, s->settings.heat.set, s->settings.heat.capacity);
+  mpmi_heat_free(s->heat, &s->settings);
   mpmi_newton_free(s->newton, &s->settings);
   mpmi_workspace_free(&s->work, &s->settings);
   mpmi_nodes_free(&s->nodes, c);
@@ -72,21 +74,25 @@ static mpm_status take_in(mpm_stepper *s, mpm_particles *set) {
   if ((status = MPMI_RESERVE_NEXT(s->context, s->settings.motion, s->settings.motion_capacity, m)) ||
       (status = MPMI_RESERVE_NEXT(s->context, s->history.reaction, s->history.reaction_capacity, m)) ||
       (status = MPMI_RESERVE_NEXT(s->context, s->adaption, s->adaption_capacity, m)) ||
+      (status = MPMI_RESERVE_NEXT(s->context, s->settings.heat.set, s->settings.heat.capacity, m)) ||
       (status = mpmi_members_add(&s->layout, &s->settings, set)))
     return status;
   s->settings.motion[m] = (mpmi_motion){.fn = NULL};
   s->history.reaction[m] = (mpmi_reaction){.impulse = {0.0}};
   s->adaption[m] = (mpmi_adaption){.on = 0};
+  s->settings.heat.set[m] = (mpmi_heat_rule){.on = 0};
   return MPM_OK;
 }
 
 static void take_out(mpm_stepper *s, int32_t m) {
+  mpmi_heat_take_off(s, m);
   mpmi_members_remove(&s->layout, &s->settings, m);
   mpmi_adaption_free(&s->adaption[m], s->context);
   for (; m < s->layout.member_count; ++m) {
     s->settings.motion[m] = s->settings.motion[m + 1];
     s->history.reaction[m] = s->history.reaction[m + 1];
     s->adaption[m] = s->adaption[m + 1];
+    s->settings.heat.set[m] = s->settings.heat.set[m + 1];
   }
 }
 
@@ -198,6 +204,7 @@ mpm_status mpm_stepper_set_time(mpm_stepper *s, double t, int64_t step) {
   s->history.totals = (mpmi_totals){.external_work = 0.0};
   mpmi_pairs_forget(&s->history.pairs);
   mpmi_surfaces_forget(&s->settings.surfaces);
+  s->history.heat.total = (mpmi_heat_sums){.gained = 0.0};
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     for (int32_t c = 0; c < 3; ++c) s->history.reaction[m].impulse_total[c] = 0.0;
     s->adaption[m].sums = (mpmi_adaption_sums){.splits = 0};

@@ -78,6 +78,7 @@ static mpm_status prepare(mpm_stepper *s) {
       (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
       (status = mpmi_member_rows_prepare(&s->work.rows, settings, &s->layout)) ||
       (status = mpmi_surfaces_prepare(settings)) ||
+      (status = mpmi_heat_stage(&s->step, s->heat, &s->history.heat)) ||
       (status = mpmi_obstacles_begin(&s->step, &s->nodes.contact)))
     return status;
   mpmi_pairs_begin(&s->history.pairs);

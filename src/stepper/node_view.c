@@ -16,6 +16,7 @@ const mpmi_node_field mpmi_node_fields[MPMI_NODE_FIELDS] = {
     [MPMI_NODE_CONTACT_NORMAL] = {"contact_normal", MPM_F64, 0},
     [MPMI_NODE_CONTACT_GAP] = {"contact_gap", MPM_F64, 1},
     [MPMI_NODE_CONTACT_AREA] = {"contact_area", MPM_F64, 1},
+    [MPMI_NODE_TEMPERATURE] = {"temperature", MPM_F64, 1},
 };
 
 static int32_t components_of(const mpm_stepper *s, int32_t field) {
@@ -79,6 +80,8 @@ static double value_of(const mpm_stepper *s, int32_t field, int64_t slot, int32_
     return impulse / dt;
   case MPMI_NODE_CONTACT_FORCE:
     return mass * contact / dt;
+  case MPMI_NODE_TEMPERATURE:
+    return mpmi_heat_node(s->heat, slot)[MPMI_HEAT_TEMPERATURE];
   default:
     return cloud                            ? meeting_value(s, field, cloud, c)
            : field == MPMI_NODE_CONTACT_GAP ? (double)INFINITY
@@ -176,12 +179,18 @@ mpm_status mpmi_nodes_ready(const mpm_stepper *s) {
 }
 
 int32_t mpmi_node_keeps(const mpm_stepper *s, int32_t field) {
+  if (field == MPMI_NODE_TEMPERATURE)
+    return s->settings.heat.any && s->heat->version == s->layout.version &&
+           s->heat->nodes.capacity >= 4 * mpmi_slots(&s->layout);
   return mpmi_has_increments(&s->nodes.solved) ||
          (field != MPMI_NODE_FORCE && field != MPMI_NODE_ACCELERATION);
 }
 
 mpm_status mpmi_node_check_kept(const mpm_stepper *s, int32_t field) {
   if (mpmi_node_keeps(s, field)) return MPM_OK;
+  if (field == MPMI_NODE_TEMPERATURE)
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "no set had heat in the step: describe one by mpm_stepper_set_heat, and make a step");
   return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                    "a whole step of MPM_APIC_MLS does not keep \"%s\" apart: use a staged step, or MPM_APIC",
                    mpmi_node_fields[field].name);

@@ -12,10 +12,11 @@ enum {
   MPMI_NODE_FORCE,
   MPMI_NODE_ACCELERATION,
   MPMI_NODE_REACTION,
-  MPMI_NODE_CONTACT_FORCE, /* from here on: of bodies that meet */
+  MPMI_NODE_CONTACT_FORCE, /* from here to area: of bodies that meet */
   MPMI_NODE_CONTACT_NORMAL,
   MPMI_NODE_CONTACT_GAP,
   MPMI_NODE_CONTACT_AREA,
+  MPMI_NODE_TEMPERATURE,
   MPMI_NODE_FIELDS
 };
 typedef struct mpmi_node_field {

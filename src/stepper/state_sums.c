@@ -29,6 +29,8 @@ double mpmi_stable_dt(const mpm_stepper *s) {
   const mpmi_sums *sums = &s->history.sums;
   const mpmi_obstacles *obstacles = &s->settings.obstacles;
   double rate = sums->rate > sums->viscous_rate ? sums->rate : sums->viscous_rate;
+  const double of_heat = mpmi_heat_rate(&s->settings, &s->layout);
+  rate = of_heat > rate ? of_heat : rate;
   for (int64_t i = 0; i < obstacles->count; ++i) {
     const double of_obstacle = mpmi_obstacle_rate(obstacles->obstacle[i]);
     rate = of_obstacle > rate ? of_obstacle : rate;

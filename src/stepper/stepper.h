@@ -14,6 +14,7 @@
 #include "context/checks.h"
 #include "adaption/adaption.h"
 #include "contact/contact.h"
+#include "heat/heat.h"
 #include "layout/nodes.h"
 #include "layout/step.h"
 
@@ -43,6 +44,7 @@ typedef struct mpmi_history {
   int64_t reaction_capacity;
   mpmi_totals totals;
   mpmi_pair_records pairs; /* of bodies that ever were near each other */
+  mpmi_heat_history heat;
 } mpmi_history;
 
 enum { MPMI_NODE_VIEWS = 8 };
@@ -57,6 +59,7 @@ struct mpm_stepper {
   mpmi_nodes nodes;
   mpmi_workspace work;
   struct mpmi_newton *newton; /* memory of implicit steps, or NULL */
+  mpmi_heat *heat;            /* memory of heat, or NULL: no set was ever described */
   mpmi_adaption *adaption;    /* [sets] */
   int64_t adaption_capacity;
   mpmi_profile profile;
@@ -151,6 +154,10 @@ mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes);
 /* Brings nodes back to particles. USL: everything from the updated nodal velocity. MUSL: L from the velocity
  * that the new particles give the nodes. USF has its strain already. */
 mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes);
+
+/* ---- heat.c ------------------------------------------------------------------------------------------ */
+/* The heat of a set is no longer described. */
+void mpmi_heat_take_off(mpm_stepper *s, int32_t m);
 
 /* ---- adaption.c -------------------------------------------------------------------------------------- */
 /* Finds what sets are split and merged at the end of the step under way, and makes room for it. */

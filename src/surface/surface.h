@@ -55,6 +55,10 @@ typedef struct mpmi_marker_aim {
 typedef struct mpmi_surface_impulses {
   double last[3], total[3];
 } mpmi_surface_impulses;
+/* Heat through a surface, per area of its markers: flux + film (ambient - T). */
+typedef struct mpmi_surface_heat {
+  double flux, film, ambient;
+} mpmi_surface_heat;
 
 struct mpm_surface {
   uint32_t magic;
@@ -68,6 +72,7 @@ struct mpm_surface {
   void *traction_user;
   mpm_marker_velocity_fn velocity;
   void *velocity_user;
+  mpmi_surface_heat heat;
   mpmi_markers now, next; /* next: at the end of the step under way */
   mpmi_marker_nodes around;
   mpmi_surface_impulses impulses;

@@ -324,6 +324,13 @@ int main(int argc, char **argv) {
   APPEND(mpm_adaption_desc, patient);
   OK(mpm_stepper_set_adaption(stepper, set[0], patient));
 #endif
+#ifdef MPM_HEAT_H
+  mpm_heat_desc *warm = MAKE(mpm_heat_desc);
+  OK(mpm_heat_desc_init(warm, sizeof *warm));
+  warm->specific_heat = 1.0; /* nothing is conducted, and the state keeps its fields */
+  APPEND(mpm_heat_desc, warm);
+  OK(mpm_stepper_set_heat(stepper, set[0], warm));
+#endif
   mpm_advance_desc *until = MAKE(mpm_advance_desc);
   double dt;
   uint64_t hash;
@@ -351,6 +358,11 @@ int main(int argc, char **argv) {
   mpm_adaption_info *adapted = MAKE(mpm_adaption_info);
   OK(mpm_stepper_adaption_info(stepper, set[0], adapted));
   if (adapted->splits || adapted->merges) return 1;
+#endif
+#ifdef MPM_HEAT_H
+  mpm_heat_info *heated = MAKE(mpm_heat_info);
+  OK(mpm_stepper_heat_info(stepper, heated));
+  if (heated->gained < 0.0 || heated->gained > 0.0) return 1;
 #endif
 #ifdef MPM_SURFACE_H
   if (!markers) return 1;

@@ -190,6 +190,7 @@ int main(int argc, char **argv) {
     test_obstacles();
     test_surfaces();
     test_adaption();
+    test_heat();
   } catch (const std::exception &e) {
     std::printf("wrapper.cpp:0:E: %s\n", e.what());
     return 1;

@@ -74,5 +74,6 @@ void test_steps();
 void test_obstacles();
 void test_surfaces();
 void test_adaption();
+void test_heat();
 
 #endif

@@ -199,6 +199,14 @@ if wanted rubber_strap; then
   check "length where weights follow from present positions" "drawn to" 1.5 2.5
 fi
 
+if wanted bimetal; then
+  mkdir bimetal
+  run bimetal bimetal
+  check "deflection over Timoshenko's" "of Timoshenko's" 0.97 1.06
+  check "balance" "missing in the balance" 0 1e-9
+  [ -s bimetal/bimetal.svg ] || fail "bimetal: bimetal.svg is missing or empty"
+fi
+
 if wanted rolling_disc; then
   mkdir slope
   run rolling_disc slope 12

@@ -250,7 +250,7 @@ static void write_view(cloud *c) {
                                       "initial_volume"};
   mpm_view v = {.struct_size = sizeof v};
   mpm_particles *set = draw_set(c);
-  const char *name = field[fuzz_below(&c->in, 9)];
+  const char *name = field[fuzz_below(&c->in, 10)];
   if (fuzz_status(c->context, mpm_particles_map(set, name, MPM_READ | MPM_WRITE, &v))) return;
   const double factor = fuzz_between(&c->in, 0.8, 1.2);
   for (int64_t i = 0; i < v.count; ++i)
@@ -365,9 +365,43 @@ static void draw_adaption(cloud *c) {
   look_anew(c);
 }
 
+static mpm_status warm(void *user, const mpm_particle_batch *batch, double *power) {
+  const cloud *c = user;
+  for (int64_t i = 0; i < batch->n; ++i) power[i] = 10.0 * (double)(batch->id[i] % 5);
+  return c->callback_status;
+}
+
+static void draw_heat(cloud *c) {
+  mpm_particles *set = draw_set(c);
+  mpm_heat_desc d;
+  mpm_heat_info info = {.struct_size = sizeof info};
+  MUST(!mpm_heat_desc_init(&d, sizeof d));
+  d.specific_heat = fuzz_between(&c->in, -0.1, 10.0);
+  d.conductivity = fuzz_between(&c->in, -0.1, 100.0);
+  d.expansion = fuzz_below(&c->in, 2) ? 0.0 : fuzz_between(&c->in, -1e-3, 1e-3);
+  d.reference_temperature = fuzz_between(&c->in, -10.0, 300.0);
+  d.dissipated_share = fuzz_below(&c->in, 2) ? 0.0 : fuzz_between(&c->in, -0.1, 1.1);
+  if (fuzz_below(&c->in, 4) == 0) d.source = warm, d.user = c;
+  fuzz_status(c->context, mpm_stepper_set_heat(c->stepper, set, fuzz_below(&c->in, 8) ? &d : NULL));
+  fuzz_status(c->context,
+              mpm_stepper_set_conduction(c->stepper, fuzz_below(&c->in, 3), fuzz_between(&c->in, -0.1, 1.1)));
+  fuzz_status(c->context,
+              mpm_stepper_set_heat_wall(c->stepper, fuzz_below(&c->in, 7) - 1, fuzz_below(&c->in, 3),
+                                        fuzz_between(&c->in, -100.0, 500.0)));
+  for (int32_t i = 0; i < SURFACES; ++i)
+    if (c->surface[i])
+      fuzz_status(c->context,
+                  mpm_surface_set_heat(c->surface[i], fuzz_between(&c->in, -10.0, 10.0),
+                                       fuzz_between(&c->in, -0.1, 10.0), fuzz_between(&c->in, 0.0, 300.0)));
+  if (!fuzz_status(c->context, mpm_stepper_heat_info(c->stepper, &info)))
+    MUST(isfinite(info.heat) && isfinite(info.gained_total));
+  look_anew(c);
+}
+
 static void look(cloud *c) {
-  static const char *const field[] = {"mass",  "force",         "reaction",       "acceleration", "velocity",
-                                      "index", "contact_force", "contact_normal", "contact_area"};
+  static const char *const field[] = {"mass",         "force",      "reaction",      "acceleration",
+                                      "velocity",     "index",      "contact_force", "contact_normal",
+                                      "contact_area", "temperature"};
   mpm_view v = {.struct_size = sizeof v};
   mpm_contact_info contact = {.struct_size = sizeof contact};
   double force[3];
@@ -459,6 +493,9 @@ static void act(cloud *c) {
     break;
   case 26:
     draw_adaption(c);
+    break;
+  case 27:
+    draw_heat(c);
     break;
   default:
     step(c);

@@ -188,6 +188,8 @@ enum {
   TOTAL,
   TOTAL_SETS,
   ADAPTION,
+  HEAT,
+  HEAT_IMPLICIT,
   HOLDING,
   SLIDING,
   OPTIONS
@@ -244,6 +246,8 @@ static const option options[OPTIONS] = {
     [ADAPTION] = {"splitting and merging, saved and loaded", 1, 1, 1},
     [HOLDING] = {"surface that holds, saved and loaded", 1, 1, 1},
     [SLIDING] = {"surface to slide along, saved and loaded", 1, 1, 0},
+    [HEAT] = {"heat, expansion, dissipation, saved and loaded", 1, 1, 1},
+    [HEAT_IMPLICIT] = {"heat, implicit conduction, saved and loaded", 1, 1, 1},
 };
 
 static void apply_walls(scene *is, int32_t o) {
@@ -289,6 +293,8 @@ static void apply(scene *is, int32_t o) {
       [ADAPTION] = WITH_ADAPTION | WITH_APPLIED_FORCE,
       [HOLDING] = WITH_SURFACE | WITH_HOLDING,
       [SLIDING] = WITH_SURFACE | WITH_SLIDING,
+      [HEAT] = WITH_HEAT | WITH_SURFACE,
+      [HEAT_IMPLICIT] = WITH_HEAT | WITH_IMPLICIT_HEAT | WITH_SURFACE,
       [TOTAL_SETS] =
           WITH_FORCE | WITH_ACCELERATION | WITH_VELOCITY | WITH_PRESCRIBED | WITH_MOTION | WITH_KEPT,
   };
@@ -304,6 +310,8 @@ static void apply(scene *is, int32_t o) {
                                          [ADAPTION] = STORY_SAVED,
                                          [HOLDING] = STORY_SAVED,
                                          [SLIDING] = STORY_SAVED,
+                                         [HEAT] = STORY_SAVED,
+                                         [HEAT_IMPLICIT] = STORY_SAVED,
                                          [ADVANCE] = STORY_ADVANCE,
                                          [FAILING] = STORY_FAILING,
                                          [CHANGED] = STORY_CHANGED};

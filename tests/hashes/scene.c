@@ -317,6 +317,30 @@ static void add_adaption(world *w) {
   must(w, mpm_stepper_set_adaption(w->stepper, w->set[0], &d));
 }
 
+/* Where the law and the geometry have no expansion, there is none. */
+static void add_heat(world *w, const scene *is) {
+  const int32_t implicit = (is->with & WITH_IMPLICIT_HEAT) != 0;
+  mpm_heat_desc d;
+  must(w, mpm_heat_desc_init(&d, sizeof d));
+  d.specific_heat = 3.0;
+  d.conductivity = 40.0;
+  d.reference_temperature = 10.0;
+  for (int32_t m = 0; m < 2; ++m) {
+    if (!w->set[m]) continue;
+    d.expansion = 1e-4;
+    d.dissipated_share = 0.9;
+    if (mpm_stepper_set_heat(w->stepper, w->set[m], &d)) {
+      d.expansion = d.dissipated_share = 0.0;
+      must(w, mpm_stepper_set_heat(w->stepper, w->set[m], &d));
+    }
+  }
+  must(w, mpm_stepper_set_conduction(w->stepper, implicit, 1e-8));
+  for (int32_t face = 0; face < 2 * is->dim; face += 3)
+    if (!is->periodic[face / 2] && !(face == MPM_X_MIN && is->geometry == MPM_AXISYMMETRIC))
+      must(w, mpm_stepper_set_heat_wall(w->stepper, face, MPM_HEAT_WALL_TEMPERATURE, 30.0 + face));
+  must(w, mpm_surface_set_heat(w->surface, 5.0, 2.0, 50.0));
+}
+
 void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
   const mpm_grid_desc g = describe_grid(is);
   const mpm_stepper_desc s = describe_stepper(is);
@@ -351,6 +375,7 @@ void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
   if (is->with & WITH_OBSTACLES) add_obstacles(w);
   if (is->with & WITH_SURFACE) add_surface(w, empty);
   if (is->with & WITH_ADAPTION) add_adaption(w);
+  if (is->with & WITH_HEAT) add_heat(w, is);
   for (int32_t face = 0; face < 2 * is->dim; ++face)
     if (!is->periodic[face / 2] && !(face == MPM_X_MIN && is->geometry == MPM_AXISYMMETRIC))
       must(w, mpm_stepper_set_wall(w->stepper, face, is->wall[face],

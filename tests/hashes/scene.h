@@ -42,7 +42,9 @@ enum {
   WITH_SURFACE = 8192,    /* markers at the upper end of the body, under loads of all kinds */
   WITH_ADAPTION = 16384,  /* the first set is split and merged every other step */
   WITH_HOLDING = 32768,   /* the surface prescribes how the material moves, */
-  WITH_SLIDING = 65536    /* or the normal component alone, along normals that differ */
+  WITH_SLIDING = 65536,   /* or the normal component alone, along normals that differ */
+  WITH_HEAT = 131072,     /* all sets have heat, faces and the surface give some */
+  WITH_IMPLICIT_HEAT = 262144
 };
 
 /* How it is stepped. */

@@ -181,7 +181,9 @@ START_TEST(table) {
                {"mpm_marker_batch", 88, sizeof(mpm_marker_batch)},
                {"mpm_adaption_desc", 72, sizeof(mpm_adaption_desc)},
                {"mpm_adaption_info", 80, sizeof(mpm_adaption_info)},
-               {"mpm_adaption_batch", 56, sizeof(mpm_adaption_batch)}};
+               {"mpm_adaption_batch", 56, sizeof(mpm_adaption_batch)},
+               {"mpm_heat_desc", 64, sizeof(mpm_heat_desc)},
+               {"mpm_heat_info", 176, sizeof(mpm_heat_info)}};
   const size_t count = sizeof known / sizeof *known;
   size_t found = 0;
   for (const mpmi_release *at = mpmi_releases; at->name; ++at) {
@@ -224,6 +226,7 @@ START_TEST(init_functions) {
     mpm_obstacle_desc obstacle;
     mpm_surface_desc surface;
     mpm_adaption_desc adaption;
+    mpm_heat_desc heat;
   } d;
 #define CHECK_INIT(name, at)                                                                                 \
   for (uint32_t bytes = 0; bytes < sizeof d; ++bytes) {                                                      \
@@ -244,6 +247,7 @@ START_TEST(init_functions) {
   CHECK_INIT(mpm_obstacle_desc, &d.obstacle);
   CHECK_INIT(mpm_surface_desc, &d.surface);
   CHECK_INIT(mpm_adaption_desc, &d.adaption);
+  CHECK_INIT(mpm_heat_desc, &d.heat);
 }
 END_TEST
 

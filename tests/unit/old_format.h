@@ -13,7 +13,7 @@ static inline int64_t cut_words(uint8_t *state, int64_t at, int64_t words, int64
 }
 
 /* Takes out what format 2 does not have: projected positions, the geometry, the kind of grid, the energies of
- * the affine part and of damping, the sums over steps, bodies, obstacles and surfaces. */
+ * the affine part and of damping, the sums over steps, heat, bodies, obstacles and surfaces. */
 static inline int64_t contents_of_format_2(const mpm_stepper *s, uint8_t *state, int64_t bytes) {
   enum {
     SUMS = offsetof(mpmi_state_numbers, sums) + offsetof(mpmi_sums, affine),
@@ -27,7 +27,8 @@ static inline int64_t contents_of_format_2(const mpm_stepper *s, uint8_t *state,
   int64_t at = (int64_t)sizeof(mpmi_state_header) + setup.at + SUMS;
   bytes = cut_words(state, (int64_t)sizeof(mpmi_state_header) + setup.at, 3, bytes);
   bytes = cut_words(state, at, 1, bytes);
-  bytes = cut_words(state, at += INFO, 7 + (int64_t)(sizeof(mpmi_totals) / 8), bytes);
+  bytes = cut_words(state, at += INFO, 7 + (int64_t)((sizeof(mpmi_totals) + sizeof(mpmi_heat_history)) / 8),
+                    bytes);
   for (int32_t m = 0; m < s->layout.member_count; ++m) bytes = cut_words(state, at += SET, NEW, bytes);
   mpmi_archive contact;
   mpmi_archive_begin(&contact, s->context, MPMI_MEASURE);

@@ -32,8 +32,8 @@ static void *fetch_view(world *w, const char *field, int32_t type, int64_t *n) {
   mpm_view view = {.struct_size = sizeof view};
   ck_ok(w, mpm_grid_map(w->stepper, 0, field, MPM_READ, &view));
   ck_assert_int_eq(view.type, type);
-  const int32_t scalar =
-      !strcmp(field, "mass") || !strcmp(field, "contact_gap") || !strcmp(field, "contact_area");
+  const int32_t scalar = !strcmp(field, "mass") || !strcmp(field, "contact_gap") ||
+                         !strcmp(field, "contact_area") || !strcmp(field, "temperature");
   ck_assert_int_eq(view.components, scalar ? 1 : w->dim);
   char *values = malloc((size_t)(view.count * view.components + 1) * 8); /* doubles or 64-bit integers */
   for (int32_t c = 0; c < view.components; ++c)

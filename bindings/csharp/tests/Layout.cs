@@ -448,6 +448,40 @@ namespace Mpm {
       Compare("AdaptionInfo.angular_momentum_loss", (byte*)it.angular_momentum_loss - at, 56, 56);
     }
 
+    static void CheckHeatDesc() {
+      var it = new HeatDesc();
+      byte* at = (byte*)&it;
+      Compare("HeatDesc", sizeof(HeatDesc), 64, 56);
+      Compare("HeatDesc.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("HeatDesc.reserved", (byte*)&it.reserved - at, 4, 4);
+      Compare("HeatDesc.specific_heat", (byte*)&it.specific_heat - at, 8, 8);
+      Compare("HeatDesc.conductivity", (byte*)&it.conductivity - at, 16, 16);
+      Compare("HeatDesc.expansion", (byte*)&it.expansion - at, 24, 24);
+      Compare("HeatDesc.reference_temperature", (byte*)&it.reference_temperature - at, 32, 32);
+      Compare("HeatDesc.dissipated_share", (byte*)&it.dissipated_share - at, 40, 40);
+      Compare("HeatDesc.source", (byte*)&it.source - at, 48, 48);
+      Compare("HeatDesc.user", (byte*)&it.user - at, 56, 52);
+    }
+
+    static void CheckHeatInfo() {
+      var it = new HeatInfo();
+      byte* at = (byte*)&it;
+      Compare("HeatInfo", sizeof(HeatInfo), 176, 176);
+      Compare("HeatInfo.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("HeatInfo.iterations", (byte*)&it.iterations - at, 4, 4);
+      Compare("HeatInfo.heat", (byte*)&it.heat - at, 8, 8);
+      Compare("HeatInfo.gained", (byte*)&it.gained - at, 16, 16);
+      Compare("HeatInfo.walls", (byte*)it.walls - at, 24, 24);
+      Compare("HeatInfo.sources", (byte*)&it.sources - at, 72, 72);
+      Compare("HeatInfo.surfaces", (byte*)&it.surfaces - at, 80, 80);
+      Compare("HeatInfo.dissipated", (byte*)&it.dissipated - at, 88, 88);
+      Compare("HeatInfo.gained_total", (byte*)&it.gained_total - at, 96, 96);
+      Compare("HeatInfo.walls_total", (byte*)it.walls_total - at, 104, 104);
+      Compare("HeatInfo.sources_total", (byte*)&it.sources_total - at, 152, 152);
+      Compare("HeatInfo.surfaces_total", (byte*)&it.surfaces_total - at, 160, 160);
+      Compare("HeatInfo.dissipated_total", (byte*)&it.dissipated_total - at, 168, 168);
+    }
+
     public static int Check() {
       wrong = 0;
       CheckParam();
@@ -473,6 +507,8 @@ namespace Mpm {
       CheckAdaptionBatch();
       CheckAdaptionDesc();
       CheckAdaptionInfo();
+      CheckHeatDesc();
+      CheckHeatInfo();
       foreach (var method in typeof(Native).GetMethods())
         if (method.IsStatic) Marshal.Prelink(method);
       return wrong;

@@ -35,6 +35,34 @@ class Callbacks(unittest.TestCase):
         stepper.step(1e-3)
         np.testing.assert_allclose(stepper.info.momentum[0], 3e-3 * one["mass"].sum(), rtol=1e-9)
 
+    def test_heat(self):
+        one, stepper = block()
+        seen = []
+
+        def source(batch, power):
+            seen.append((batch.particles, power.shape, batch.position.shape[0]))
+            power[:] = 4.0
+
+        stepper.set_heat(one, source, specific_heat=2.0, reference_temperature=10.0)
+        stepper.set_conduction(mpm.CONDUCTION_IMPLICIT)
+        self.assertEqual(one["temperature"][0], 10.0)
+        stepper.step(1e-4)
+        self.assertIs(seen[0][0], one)
+        self.assertEqual(seen[0][1], (seen[0][2],))
+        info = stepper.heat_info()
+        np.testing.assert_allclose(info.sources, 4e-4 * one["volume"].sum(), rtol=1e-6)
+        np.testing.assert_allclose(info.gained, info.sources, rtol=1e-9)
+        stepper.set_heat_wall(mpm.X_MIN, mpm.HEAT_WALL_TEMPERATURE, 12.0)
+
+        def fail(batch, power):
+            raise Trouble("heat")
+
+        stepper.set_heat(one, fail, specific_heat=2.0)
+        with self.assertRaises(Trouble):
+            stepper.step(1e-4)
+        stepper.set_heat(one)
+        stepper.step(1e-4)
+
     def test_adaption(self):
         one, stepper = block()
         one.add_field("heat")

@@ -360,6 +360,25 @@ class Adapt(IntEnum):
     ADAPT_MERGE = 1
 
 
+class Conduction(IntEnum):
+    """How the nodes conduct."""
+
+    #: By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused with
+    #: MPM_CUT_DT, and mpm_stable_dt() takes the bound into account.
+    CONDUCTION_EXPLICIT = 0
+    #: By those at its end (backward Euler), found by conjugate gradients: any step will do.
+    CONDUCTION_IMPLICIT = 1
+
+
+class HeatWall(IntEnum):
+    """What a face of the grid does to heat."""
+
+    #: lets none through
+    HEAT_WALL_INSULATED = 0
+    #: material at it has a prescribed temperature
+    HEAT_WALL_TEMPERATURE = 1
+
+
 OK = Status.OK
 CUT_DT = Status.CUT_DT
 INVERTED = Status.INVERTED
@@ -466,6 +485,10 @@ MOTION_PRESCRIBED = Motion.MOTION_PRESCRIBED
 MOTION_FREE = Motion.MOTION_FREE
 ADAPT_SPLIT = Adapt.ADAPT_SPLIT
 ADAPT_MERGE = Adapt.ADAPT_MERGE
+CONDUCTION_EXPLICIT = Conduction.CONDUCTION_EXPLICIT
+CONDUCTION_IMPLICIT = Conduction.CONDUCTION_IMPLICIT
+HEAT_WALL_INSULATED = HeatWall.HEAT_WALL_INSULATED
+HEAT_WALL_TEMPERATURE = HeatWall.HEAT_WALL_TEMPERATURE
 
 #: Names of all constants.
 CONSTANTS = """
@@ -479,7 +502,8 @@ CONSTANTS = """
     SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED
     NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT NORMAL_FIXED DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY
     BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE MOTION_FIXED
-    MOTION_PRESCRIBED MOTION_FREE ADAPT_SPLIT ADAPT_MERGE
+    MOTION_PRESCRIBED MOTION_FREE ADAPT_SPLIT ADAPT_MERGE CONDUCTION_EXPLICIT CONDUCTION_IMPLICIT HEAT_WALL_INSULATED
+    HEAT_WALL_TEMPERATURE
 """.split()
 
 
@@ -922,6 +946,28 @@ class adaption_info(Structure):
     ]
 
 
+class heat_info(Structure):
+    """Where heat came from, in the last step and in all steps since the first set was described or the time was set:
+    gained = sum of walls + sources + surfaces + dissipated, to rounding, and with implicit conduction to the
+    tolerance. All are energies."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("iterations", c_int32),
+        ("heat", c_double),
+        ("gained", c_double),
+        ("walls", c_double * 6),
+        ("sources", c_double),
+        ("surfaces", c_double),
+        ("dissipated", c_double),
+        ("gained_total", c_double),
+        ("walls_total", c_double * 6),
+        ("sources_total", c_double),
+        ("surfaces_total", c_double),
+        ("dissipated_total", c_double),
+    ]
+
+
 stress_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(material_batch))
 
 tangent_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(material_batch), c_void_p, c_void_p)
@@ -943,6 +989,8 @@ traction_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(marker_batch), c_void_p)
 marker_velocity_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(marker_batch), c_void_p)
 
 adaption_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(adaption_batch), c_void_p)
+
+heat_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(particle_batch), c_void_p)
 
 class material_desc(Structure):
     """A law of the host. Fill the struct with mpm_material_desc_init()."""
@@ -1003,6 +1051,22 @@ class adaption_desc(Structure):
     ]
 
 
+class heat_desc(Structure):
+    """The heat of a set. Fill it with mpm_heat_desc_init()."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_int32),
+        ("specific_heat", c_double),
+        ("conductivity", c_double),
+        ("expansion", c_double),
+        ("reference_temperature", c_double),
+        ("dissipated_share", c_double),
+        ("source", heat_fn),
+        ("user", c_void_p),
+    ]
+
+
 #: Sizes of the structs for pointers of 8 and of 4 bytes.
 SIZES = {
     param: (16, 16),
@@ -1028,6 +1092,8 @@ SIZES = {
     adaption_batch: (56, 48),
     adaption_desc: (72, 64),
     adaption_info: (80, 80),
+    heat_desc: (64, 56),
+    heat_info: (176, 176),
 }
 
 #: Result and arguments of every function.
@@ -1148,6 +1214,12 @@ FUNCTIONS = {
     "mpm_stepper_set_adaption": (c_int32, [c_void_p, c_void_p, POINTER(adaption_desc)]),
     "mpm_stepper_adapt": (c_int32, [c_void_p]),
     "mpm_stepper_adaption_info": (c_int32, [c_void_p, c_void_p, POINTER(adaption_info)]),
+    "mpm_heat_desc_init": (c_int32, [POINTER(heat_desc), c_uint32]),
+    "mpm_stepper_set_heat": (c_int32, [c_void_p, c_void_p, POINTER(heat_desc)]),
+    "mpm_stepper_set_conduction": (c_int32, [c_void_p, c_int32, c_double]),
+    "mpm_stepper_set_heat_wall": (c_int32, [c_void_p, c_int32, c_int32, c_double]),
+    "mpm_surface_set_heat": (c_int32, [c_void_p, c_double, c_double, c_double]),
+    "mpm_stepper_heat_info": (c_int32, [c_void_p, POINTER(heat_info)]),
     "mpm_state_size": (c_int32, [c_void_p, c_void_p]),
     "mpm_state_save": (c_int32, [c_void_p, c_void_p, c_int64]),
     "mpm_state_load": (c_int32, [c_void_p, c_void_p, c_int64]),
@@ -1682,6 +1754,7 @@ and mirrored ghosts are listed beside the nodes that they follow.
 | "contact_force"                    | F64  | dim        | force of other bodies and of obstacles        |
 | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
 | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
+| "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
 
 - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
 - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -1933,6 +2006,39 @@ written through one is bad.""",
 
 Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper. MPM_E_ARG: particles or info is
 NULL.""",
+    "mpm_heat_desc_init": """mpm_status mpm_heat_desc_init(mpm_heat_desc *desc, uint32_t struct_size)
+
+Fills desc with the defaults. struct_size is sizeof(mpm_heat_desc) of the caller; no byte beyond is written.
+MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.""",
+    "mpm_stepper_set_heat": """mpm_status mpm_stepper_set_heat(mpm_stepper *stepper, mpm_particles *particles, const mpm_heat_desc *desc)
+
+Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more, and its fields stay
+as fields of the host. Not part of a saved state, but the fields are: the host describes before it loads.
+MPM_E_NOT_FOUND: the set is not in the stepper. MPM_E_ARG: particles is NULL, a value is bad, or the set has a field
+"temperature" or "stress_temperature" of another type or with more components. MPM_E_UNSUPPORTED: expansion is not 0
+on MPM_PLANE_STRESS or with the law "rigid"; dissipated_share is not 0 with "rigid" or a law of the host. MPM_E_STATE:
+a step is under way, a view of the set is out, or the set has no room for another field.""",
+    "mpm_stepper_set_conduction": """mpm_status mpm_stepper_set_conduction(mpm_stepper *stepper, int32_t conduction, double tolerance)
+
+Chooses how the nodes conduct, from MPM_CONDUCTION_EXPLICIT (as made) on. tolerance: of the residual of conjugate
+gradients, relative to the right-hand side; > 0 and < 1; not read with explicit conduction. MPM_E_ARG: a value is bad.
+MPM_E_STATE: a step is under way.""",
+    "mpm_stepper_set_heat_wall": """mpm_status mpm_stepper_set_heat_wall(mpm_stepper *stepper, int32_t face, int32_t kind, double temperature)
+
+Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is not read of
+insulated ones, which all faces are from the start. Call it again where the temperature changes: that change, at first
+from what the material there has, reaches the particles in the next step; material that comes to the face later is
+heated by conduction alone. Not part of a saved state. MPM_E_ARG: a value is bad, or the axis is periodic.
+MPM_E_UNSUPPORTED: the face is the axis of MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a step is under
+way.""",
+    "mpm_surface_set_heat": """mpm_status mpm_surface_set_heat(mpm_surface *surface, double flux, double film, double ambient)
+
+Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the material),
+power/area into the material; film is >= 0. All 0 (as made): no heat. Not part of a saved state. MPM_E_ARG: a value is
+bad. MPM_E_STATE: a step is under way.""",
+    "mpm_stepper_heat_info": """mpm_status mpm_stepper_heat_info(const mpm_stepper *stepper, mpm_heat_info *info)
+
+Tells where heat came from. MPM_E_ARG: info is NULL. MPM_E_STATE: a step is under way, or no set was ever described.""",
     "mpm_state_size": """mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes)
 
 Tells how many bytes mpm_state_save() needs now.""",

@@ -41,7 +41,7 @@ class Stepper(Handle):
     def __init__(self, context, grid, *sets, **options):
         self._options = descriptor(_api.stepper_desc, lib.mpm_stepper_desc_init, options, "Stepper")
         made = context._make(lib.mpm_stepper_create, context, grid, ctypes.byref(self._options))
-        self._callbacks, self._held, self._adapting = {}, {}, {}
+        self._callbacks, self._held, self._adapting, self._heated = {}, {}, {}, {}
         self._own(context, made, context, grid)
         self.grid, self.dim, self._sets, self._obstacles = grid, grid.dim, [], []
         self._surfaces = []
@@ -159,15 +159,53 @@ class Stepper(Handle):
         self._context._check(lib.mpm_stepper_adaption_info(self, particles, ctypes.byref(info)))
         return info
 
+    # ---- heat ----
+
+    @documented("mpm_stepper_set_heat")
+    def set_heat(self, particles, source=None, **options):
+        """Describes the heat of a set, by the fields of mpm_heat_desc: specific_heat, conductivity, expansion ...; without
+        any it has none any more. source(batch, power) writes power per volume of a ParticleBatch to power (n,)."""
+
+        def call(_, batch, power):
+            return self._shown(batch)._run(source, (power, np.float64))
+
+        made = self._context._callback(_api.heat_fn, source, call)
+        desc = descriptor(_api.heat_desc, lib.mpm_heat_desc_init, options, "heat")
+        if source is not None:
+            desc.source = made
+        self._context._check(lib.mpm_stepper_set_heat(self, particles, ctypes.byref(desc) if options else None))
+        self._heated[id(particles)] = (particles, made)
+        particles._look()
+
+    @documented("mpm_stepper_set_conduction")
+    def set_conduction(self, conduction, tolerance=1e-9):
+        """CONDUCTION_EXPLICIT or CONDUCTION_IMPLICIT, with the tolerance of its solver."""
+        self._context._check(lib.mpm_stepper_set_conduction(self, conduction, tolerance))
+
+    @documented("mpm_stepper_set_heat_wall")
+    def set_heat_wall(self, face, kind, temperature=0.0):
+        """HEAT_WALL_INSULATED or HEAT_WALL_TEMPERATURE for a face."""
+        self._context._check(lib.mpm_stepper_set_heat_wall(self, face, kind, temperature))
+
+    @documented("mpm_stepper_heat_info")
+    def heat_info(self):
+        """Where heat came from."""
+        info = _api.heat_info(struct_size=ctypes.sizeof(_api.heat_info))
+        self._context._check(lib.mpm_stepper_heat_info(self, ctypes.byref(info)))
+        return info
+
     # ---- callbacks ----
+
+    def _shown(self, batch):
+        at = batch.contents.particles
+        one = next(one for one in self._sets if one._address.value == at)
+        shown = ParticleBatch(batch, lambda: [one._kinds])
+        shown.particles = one
+        return shown
 
     def _particle_callback(self, fn):
         def call(_, batch, add):
-            at = batch.contents.particles
-            one = next(one for one in self._sets if one._address.value == at)
-            shown = ParticleBatch(batch, lambda: [one._kinds])
-            shown.particles = one
-            return shown._run(fn, (add, np.float64, self.dim))
+            return self._shown(batch)._run(fn, (add, np.float64, self.dim))
 
         return self._context._callback(_api.particle_fn, fn, call)
 

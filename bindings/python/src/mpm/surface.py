@@ -83,6 +83,11 @@ class Surface(Handle):
         self._context._check(lib.mpm_surface_set_velocity(self, made, None))
         self._velocity = made
 
+    @documented("mpm_surface_set_heat")
+    def set_heat(self, flux=0.0, film=0.0, ambient=0.0):
+        """Heats what lies below, per area: flux + film (ambient - temperature)."""
+        self._context._check(lib.mpm_surface_set_heat(self, flux, film, ambient))
+
     # ---- markers ----
 
     def _rows(self, values):

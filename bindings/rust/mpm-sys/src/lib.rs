@@ -321,6 +321,21 @@ pub mod constants {
     pub const MPM_ADAPT_SPLIT: i32 = 0;
     /// pairs that are to become one particle
     pub const MPM_ADAPT_MERGE: i32 = 1;
+
+    // How the nodes conduct.
+
+    /// By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused with
+    /// MPM_CUT_DT, and mpm_stable_dt() takes the bound into account.
+    pub const MPM_CONDUCTION_EXPLICIT: i32 = 0;
+    /// By those at its end (backward Euler), found by conjugate gradients: any step will do.
+    pub const MPM_CONDUCTION_IMPLICIT: i32 = 1;
+
+    // What a face of the grid does to heat.
+
+    /// lets none through
+    pub const MPM_HEAT_WALL_INSULATED: i32 = 0;
+    /// material at it has a prescribed temperature
+    pub const MPM_HEAT_WALL_TEMPERATURE: i32 = 1;
 }
 
 /// A context holds the services of the host (memory, threads, log) and the text of the last error. Every other object is
@@ -591,6 +606,14 @@ pub type mpm_adaption_fn = Option<unsafe extern "C" fn(
     user: *mut c_void,
     batch: *const mpm_adaption_batch,
     accept: *mut u8,
+) -> mpm_status>;
+
+/// Heat sources: writes power[i], [ld], power per present volume. It runs as mpm_particle_fn does, on all threads, and
+/// returns as that does.
+pub type mpm_heat_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    batch: *const mpm_particle_batch,
+    power: *mut f64,
 ) -> mpm_status>;
 
 /// Takes the next bytes of an output, in the order in which a file would have them: for archives, sockets, browsers. All
@@ -1613,6 +1636,78 @@ pub struct mpm_adaption_info {
     pub angular_momentum_loss: [f64; 3],
 }
 
+/// The heat of a set. Fill it with mpm_heat_desc_init().
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_heat_desc {
+    /// sizeof(mpm_heat_desc) of the caller
+    pub struct_size: u32,
+    /// 0
+    pub reserved: i32,
+    /// energy / (mass temperature), > 0. Must be given.
+    pub specific_heat: f64,
+    /// power / (length temperature), >= 0. Default 0: no heat is conducted.
+    pub conductivity: f64,
+    /// linear, 1/temperature. Default 0. The law sees F / exp(expansion (T - T0)).
+    pub expansion: f64,
+    /// T0, at which F = I is free of stress. Default 0. Particles that are added have this temperature.
+    pub reference_temperature: f64,
+    /// Share of the work that the material dissipates which becomes heat, 0 to 1. Default 0. It is the work of the stress
+    /// less the change of strain energy; it heats the particle itself, at the end of the step.
+    pub dissipated_share: f64,
+    /// NULL (default): there is none
+    pub source: mpm_heat_fn,
+    /// is passed to source
+    pub user: *mut c_void,
+}
+
+impl Default for mpm_heat_desc {
+    /// The library's defaults: `mpm_heat_desc_init()`.
+    fn default() -> Self {
+        // SAFETY: zeros are a value of every field, and the library writes as many bytes as it is told.
+        unsafe {
+            let mut out: Self = std::mem::zeroed();
+            let status = mpm_heat_desc_init(&mut out, size_of::<Self>() as u32);
+            assert_eq!(status, MPM_OK, "mpm_heat_desc_init");
+            out
+        }
+    }
+}
+
+/// Where heat came from, in the last step and in all steps since the first set was described or the time was set: gained
+/// = sum of walls + sources + surfaces + dissipated, to rounding, and with implicit conduction to the tolerance. All are
+/// energies.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_heat_info {
+    /// sizeof(mpm_heat_info) of the caller
+    pub struct_size: u32,
+    /// of the last step's conjugate gradients
+    pub iterations: i32,
+    /// sum of mass specific_heat temperature now, of all sets that are described
+    pub heat: f64,
+    /// what particles took up in the last step
+    pub gained: f64,
+    /// through the faces, from MPM_X_MIN, into the material
+    pub walls: [f64; 6],
+    /// of the callbacks
+    pub sources: f64,
+    /// through surfaces, into the material
+    pub surfaces: f64,
+    /// dissipated work that became heat
+    pub dissipated: f64,
+    /// the same in all steps, and so with those below
+    pub gained_total: f64,
+    /// through the faces
+    pub walls_total: [f64; 6],
+    /// of the callbacks
+    pub sources_total: f64,
+    /// through surfaces
+    pub surfaces_total: f64,
+    /// dissipated work
+    pub dissipated_total: f64,
+}
+
 extern "C" {
     /// The version of the library that runs, as 0xMMmmpp, to be compared with MPM_VERSION. May be called from any thread
     /// at any time.
@@ -2347,6 +2442,7 @@ extern "C" {
     /// | "contact_force"                    | F64  | dim        | force of other bodies and of obstacles        |
     /// | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
     /// | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
+    /// | "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
     ///
     /// - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
     /// - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -2755,6 +2851,61 @@ extern "C" {
         stepper: *const mpm_stepper,
         particles: *const mpm_particles,
         info: *mut mpm_adaption_info,
+    ) -> mpm_status;
+
+    /// Fills desc with the defaults. struct_size is sizeof(mpm_heat_desc) of the caller; no byte beyond is written.
+    /// MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
+    pub fn mpm_heat_desc_init(desc: *mut mpm_heat_desc, struct_size: u32) -> mpm_status;
+
+    /// Describes the heat of a set of the stepper, for the steps that follow; NULL: it has none any more, and its fields
+    /// stay as fields of the host. Not part of a saved state, but the fields are: the host describes before it loads.
+    /// MPM_E_NOT_FOUND: the set is not in the stepper. MPM_E_ARG: particles is NULL, a value is bad, or the set has a
+    /// field "temperature" or "stress_temperature" of another type or with more components. MPM_E_UNSUPPORTED: expansion
+    /// is not 0 on MPM_PLANE_STRESS or with the law "rigid"; dissipated_share is not 0 with "rigid" or a law of the host.
+    /// MPM_E_STATE: a step is under way, a view of the set is out, or the set has no room for another field.
+    pub fn mpm_stepper_set_heat(
+        stepper: *mut mpm_stepper,
+        particles: *mut mpm_particles,
+        desc: *const mpm_heat_desc,
+    ) -> mpm_status;
+
+    /// Chooses how the nodes conduct, from MPM_CONDUCTION_EXPLICIT (as made) on. tolerance: of the residual of conjugate
+    /// gradients, relative to the right-hand side; > 0 and < 1; not read with explicit conduction. MPM_E_ARG: a value is
+    /// bad. MPM_E_STATE: a step is under way.
+    pub fn mpm_stepper_set_conduction(
+        stepper: *mut mpm_stepper,
+        conduction: i32,
+        tolerance: f64,
+    ) -> mpm_status;
+
+    /// Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is not read
+    /// of insulated ones, which all faces are from the start. Call it again where the temperature changes: that change,
+    /// at first from what the material there has, reaches the particles in the next step; material that comes to the face
+    /// later is heated by conduction alone. Not part of a saved state. MPM_E_ARG: a value is bad, or the axis is
+    /// periodic. MPM_E_UNSUPPORTED: the face is the axis of MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a
+    /// step is under way.
+    pub fn mpm_stepper_set_heat_wall(
+        stepper: *mut mpm_stepper,
+        face: i32,
+        kind: i32,
+        temperature: f64,
+    ) -> mpm_status;
+
+    /// Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the material),
+    /// power/area into the material; film is >= 0. All 0 (as made): no heat. Not part of a saved state. MPM_E_ARG: a
+    /// value is bad. MPM_E_STATE: a step is under way.
+    pub fn mpm_surface_set_heat(
+        surface: *mut mpm_surface,
+        flux: f64,
+        film: f64,
+        ambient: f64,
+    ) -> mpm_status;
+
+    /// Tells where heat came from. MPM_E_ARG: info is NULL. MPM_E_STATE: a step is under way, or no set was ever
+    /// described.
+    pub fn mpm_stepper_heat_info(
+        stepper: *const mpm_stepper,
+        info: *mut mpm_heat_info,
     ) -> mpm_status;
 
     /// Tells how many bytes mpm_state_save() needs now.

@@ -433,6 +433,38 @@ fn layout_of_mpm_adaption_info() {
 }
 
 #[test]
+fn layout_of_mpm_heat_desc() {
+    assert_eq!(size_of::<mpm_heat_desc>(), of(64, 56));
+    assert_eq!(offset!(mpm_heat_desc, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_heat_desc, reserved), of(4, 4));
+    assert_eq!(offset!(mpm_heat_desc, specific_heat), of(8, 8));
+    assert_eq!(offset!(mpm_heat_desc, conductivity), of(16, 16));
+    assert_eq!(offset!(mpm_heat_desc, expansion), of(24, 24));
+    assert_eq!(offset!(mpm_heat_desc, reference_temperature), of(32, 32));
+    assert_eq!(offset!(mpm_heat_desc, dissipated_share), of(40, 40));
+    assert_eq!(offset!(mpm_heat_desc, source), of(48, 48));
+    assert_eq!(offset!(mpm_heat_desc, user), of(56, 52));
+}
+
+#[test]
+fn layout_of_mpm_heat_info() {
+    assert_eq!(size_of::<mpm_heat_info>(), of(176, 176));
+    assert_eq!(offset!(mpm_heat_info, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_heat_info, iterations), of(4, 4));
+    assert_eq!(offset!(mpm_heat_info, heat), of(8, 8));
+    assert_eq!(offset!(mpm_heat_info, gained), of(16, 16));
+    assert_eq!(offset!(mpm_heat_info, walls), of(24, 24));
+    assert_eq!(offset!(mpm_heat_info, sources), of(72, 72));
+    assert_eq!(offset!(mpm_heat_info, surfaces), of(80, 80));
+    assert_eq!(offset!(mpm_heat_info, dissipated), of(88, 88));
+    assert_eq!(offset!(mpm_heat_info, gained_total), of(96, 96));
+    assert_eq!(offset!(mpm_heat_info, walls_total), of(104, 104));
+    assert_eq!(offset!(mpm_heat_info, sources_total), of(152, 152));
+    assert_eq!(offset!(mpm_heat_info, surfaces_total), of(160, 160));
+    assert_eq!(offset!(mpm_heat_info, dissipated_total), of(168, 168));
+}
+
+#[test]
 fn functions_are_there() {
     let all = [
         mpm_version as *const (),
@@ -551,6 +583,12 @@ fn functions_are_there() {
         mpm_stepper_set_adaption as *const (),
         mpm_stepper_adapt as *const (),
         mpm_stepper_adaption_info as *const (),
+        mpm_heat_desc_init as *const (),
+        mpm_stepper_set_heat as *const (),
+        mpm_stepper_set_conduction as *const (),
+        mpm_stepper_set_heat_wall as *const (),
+        mpm_surface_set_heat as *const (),
+        mpm_stepper_heat_info as *const (),
         mpm_state_size as *const (),
         mpm_state_save as *const (),
         mpm_state_load as *const (),

@@ -1,0 +1,177 @@
+/* The heat of a step comes first: all that follows has the new temperatures. */
+#include "heat/heat.h"
+#include "layout/particle_batch.h"
+#include "layout/tasks.h"
+#include "layout/tile.h"
+#include "particles/thermal.h"
+#include "stages/stages.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+static mpm_status prepare(const mpmi_heat_job *job) {
+  const mpmi_settings *settings = job->step->settings;
+  const mpmi_layout *layout = job->step->layout;
+  mpmi_heat *heat = job->heat;
+  mpm_context *c = settings->context;
+  const int64_t slots = mpmi_slots(layout), blocks = layout->blocks.count;
+  mpm_status status;
+  heat->tile_size = 4 * (int64_t)mpmi_tile_nodes(settings->grid);
+  heat->sums = (mpmi_heat_sums){.gained = 0.0};
+  heat->iterations = 0;
+  heat->ties.context = c;
+  if ((status = mpmi_nodal_reserve(c, &heat->nodes, slots, 4)) ||
+      (status = mpmi_nodal_reserve(c, &heat->flow, slots, 4)) ||
+      (status = MPMI_RESERVE_MORE(c, heat->tile, heat->tile_capacity, settings->tasks * heat->tile_size)) ||
+      (status = MPMI_RESERVE_MORE(c, heat->part, heat->part_capacity, blocks)))
+    return status;
+  if (blocks) memset(heat->part, 0, (size_t)blocks * sizeof *heat->part);
+  return mpmi_heat_tie(job);
+}
+
+void mpmi_heat_free(mpmi_heat *heat, const mpmi_settings *settings) {
+  mpm_context *c = settings->context;
+  if (!heat) return;
+  mpmi_nodal_free(c, &heat->nodes);
+  mpmi_nodal_free(c, &heat->flow);
+  heat->ties.context = c;
+  mpmi_constraints_free(&heat->ties);
+  MPMI_FREE_ARRAY(c, heat->met, heat->tie_capacity);
+  MPMI_FREE_ARRAY(c, heat->tile, heat->tile_capacity);
+  MPMI_FREE_ARRAY(c, heat->part, heat->part_capacity);
+  MPMI_FREE_ARRAY(c, heat->row, heat->row_capacity);
+  MPMI_FREE_ARRAY(c, heat->vector, heat->vector_capacity);
+  MPMI_FREE_ARRAY(c, heat->start, heat->start_capacity);
+  mpmi_free(c, heat, sizeof *heat);
+}
+
+/* ---- what there is before ------------------------------------------------------------------------------ */
+static mpm_status check_step(const mpmi_step *step) {
+  const double rate = mpmi_heat_rate(step->settings, step->layout);
+  if (!(step->dt * rate > 1.0 + 1e-9)) return MPM_OK;
+  return mpmi_fail(step->settings->context, MPM_CUT_DT,
+                   "dt is %g, and explicit conduction is stable up to %g: take a shorter step, or "
+                   "MPM_CONDUCTION_IMPLICIT",
+                   step->dt, 1.0 / rate);
+}
+
+static void sources_of_batch(void *user, int32_t m, const mpm_particle_batch *batch, int64_t begin,
+                             mpmi_failure *failure) {
+  const mpmi_step *step = user;
+  const mpm_heat_desc *desc = &step->settings->heat.set[m].desc;
+  const mpmi_member_rows *rows = &step->work->rows.of[m];
+  double *power = rows->heat + MPMI_ROW_POWER * rows->heat_ld + begin;
+  memset(power, 0, (size_t)batch->n * sizeof *power);
+  if (mpmi_call_particle_fn(desc->source, desc->user, "the heat source", m, batch, power, failure)) return;
+  for (int64_t p = 0; p < batch->n; ++p)
+    if (batch->id[p] >= 0 && !isfinite(power[p]))
+      mpmi_failure_take(failure, mpmi_particle_failure(MPM_NONFINITE, m, batch->id[p],
+                                                       "power of the heat source not finite"));
+}
+
+/* Explicit conduction takes the sources at the start of the step, implicit those at its end. */
+static mpm_status ask_sources(mpmi_step *step) {
+  const double t = step->t + (step->settings->heat.conduction == MPM_CONDUCTION_IMPLICIT ? step->dt : 0.0);
+  for (int32_t m = 0; m < step->layout->member_count; ++m) {
+    if (!mpmi_has_heat(step, m) || !step->settings->heat.set[m].desc.source) continue;
+    const mpm_status status = mpmi_particle_batches(step, m, t, 1, sources_of_batch, step);
+    if (status) return status;
+  }
+  return mpmi_step_failure(step);
+}
+
+/* ---- the stage ----------------------------------------------------------------------------------------- */
+static mpm_status conduct(const mpmi_heat_job *job) {
+  const int32_t implicit = job->step->settings->heat.conduction == MPM_CONDUCTION_IMPLICIT;
+  mpm_status status;
+  if ((status = mpmi_heat_meet(job)) || (status = mpmi_heat_temperatures(job)) ||
+      (status = mpmi_heat_surfaces(job)) || (status = mpmi_heat_conduct(job)))
+    return status;
+  mpmi_heat_films(job);
+  if ((status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job))) return status;
+  job->heat->sums.surfaces = job->step->dt * mpmi_heat_surface_power(job);
+  for (int64_t slot = 0; implicit && slot < mpmi_slots(job->step->layout); ++slot)
+    mpmi_heat_node(job->heat, slot)[MPMI_HEAT_TEMPERATURE] = job->heat->start[slot];
+  mpmi_heat_prescribe(job);
+  mpmi_heat_settle(job);
+  return MPM_OK;
+}
+
+mpm_status mpmi_heat_stage(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history) {
+  const mpmi_heat_job job = {step, heat, history};
+  double clock = mpmi_seconds();
+  mpm_status status;
+  if (!step->settings->heat.any) return MPM_OK;
+  if ((status = check_step(step)) || (status = prepare(&job)) || (status = ask_sources(step))) return status;
+  mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
+  status = mpmi_heat_project(&job);
+  mpmi_lap(step, MPMI_TIME_P2G, &clock);
+  if (!status) status = conduct(&job);
+  mpmi_lap(step, MPMI_TIME_GRID, &clock);
+  if (!status) status = mpmi_heat_gather(&job);
+  for (int32_t m = 0; m < step->layout->member_count && !status; ++m)
+    if (mpmi_expands(step->layout->member[m].set))
+      step->layout->member[m].set->thermal.next = step->work->rows.of[m].heat;
+  mpmi_lap(step, MPMI_TIME_G2P, &clock);
+  if (!status) status = mpmi_dissipation_prepare(step);
+  mpmi_lap(step, MPMI_TIME_LAW, &clock);
+  return status;
+}
+
+void mpmi_heat_forget(const mpmi_layout *layout) {
+  for (int32_t m = 0; m < layout->member_count; ++m) layout->member[m].set->thermal.next = NULL;
+}
+
+/* ---- the end ------------------------------------------------------------------------------------------- */
+double mpmi_heat_of(const mpmi_heat_rule *rule, const mpm_particles *set) {
+  double sum = 0.0;
+  if (!rule->on) return 0.0;
+  const double *mass = mpmi_f64(set, MPMI_MASS, 0), *T = mpmi_f64(set, set->thermal.temperature, 0);
+  for (int64_t slot = 0; slot < set->slots; ++slot) sum += mass[slot] * T[slot];
+  return rule->desc.specific_heat * sum;
+}
+
+/* Gives a set its new temperatures, with the heat of dissipation. Returns that. */
+static double commit_set(const mpmi_heat_rule *rule, const mpmi_member_rows *rows, const mpm_particles *set) {
+  const double *now = rows->heat, *dissipated = rows->heat + MPMI_ROW_DISSIPATED * rows->heat_ld;
+  const double *mass = mpmi_f64(set, MPMI_MASS, 0);
+  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  double *T = mpmi_f64(set, set->thermal.temperature, 0), sum = 0.0;
+  for (int64_t slot = 0; slot < set->slots; ++slot) {
+    if (id[slot] < 0) continue;
+    T[slot] = now[slot];
+    if (set->thermal.expansion != 0.0) mpmi_f64(set, set->thermal.stress_temperature, 0)[slot] = now[slot];
+    if (!(rule->desc.dissipated_share > 0.0)) continue;
+    const double heat = rule->desc.dissipated_share * dissipated[slot];
+    T[slot] += heat / (mass[slot] * rule->desc.specific_heat);
+    sum += heat;
+  }
+  return sum;
+}
+
+static void add(mpmi_heat_sums *to, const mpmi_heat_sums *of) {
+  to->gained += of->gained;
+  to->sources += of->sources;
+  to->surfaces += of->surfaces;
+  to->dissipated += of->dissipated;
+  for (int32_t face = 0; face < 6; ++face) to->walls[face] += of->walls[face];
+}
+
+void mpmi_heat_commit(const mpmi_step *step, mpmi_heat *heat, mpmi_heat_history *history) {
+  const mpmi_heat_rules *rules = &step->settings->heat;
+  if (!rules->any) return;
+  for (int32_t m = 0; m < step->layout->member_count; ++m)
+    if (rules->set[m].on)
+      heat->sums.dissipated +=
+          commit_set(&rules->set[m], &step->work->rows.of[m], step->layout->member[m].set);
+  heat->sums.gained += heat->sums.dissipated;
+  for (int32_t face = 0; face < 6; ++face) {
+    history->acted[face] = rules->wall[face].kind == MPM_HEAT_WALL_TEMPERATURE ? 1.0 : 0.0;
+    history->prescribed[face] = history->acted[face] > 0.0 ? rules->wall[face].temperature : 0.0;
+  }
+  mpmi_heat_forget(step->layout);
+  history->last = heat->sums;
+  history->iterations = heat->iterations;
+  add(&history->total, &heat->sums);
+}

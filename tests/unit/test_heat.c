@@ -1,0 +1,640 @@
+/* Conduction on the grid: exact solutions, what is kept, the balance, faces, surfaces, and that nothing else
+ * matters. */
+#include "heat.h"
+
+/* ---- exact solutions ----------------------------------------------------------------------------------- */
+/* A bar that fills the grid along x, of unit diffusivity, and hardly moves. */
+static mpm_particles *open_bar(world *w, int32_t dim, int64_t cells, const basis_option *basis,
+                               int32_t per_cell) {
+  world_desc desc = world_default(dim, cells, 1.0 / (double)cells);
+  use_basis(basis, &desc.grid);
+  double high[3] = {1.0, 0.0, 0.0};
+  for (int32_t k = 1; k < dim; ++k) {
+    desc.grid.cells[k] = 3;
+    high[k] = 3.0 / (double)cells;
+  }
+  desc.law.E = 1e-6;
+  desc.law.density = 2.0;
+  mpm_particles *set = world_open(w, &desc);
+  const double low[3] = {0.0, 0.0, 0.0};
+  world_fill(w, set, low, high, per_cell);
+  const mpm_heat_desc heat = heat_desc(3.0, 6.0);
+  ck_ok(w, mpm_stepper_set_heat(w->stepper, set, &heat));
+  return set;
+}
+
+static void hold_ends(const world *w, double T) {
+  ck_ok(w, mpm_stepper_set_heat_wall(w->stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, T));
+  ck_ok(w, mpm_stepper_set_heat_wall(w->stepper, MPM_X_MAX, MPM_HEAT_WALL_TEMPERATURE, T));
+}
+
+typedef double (*exact_fn)(double x, double t);
+
+static double sine(double x, double t) {
+  return sin(PI * x) * exp(-PI * PI * t);
+}
+
+static double step_at_ends(double x, double t) {
+  return erfc(0.5 * x / sqrt(t)) + erfc(0.5 * (1.0 - x) / sqrt(t));
+}
+
+static void put_exact(const world *w, mpm_particles *set, exact_fn exact) {
+  const int64_t n = mpm_particles_count(set);
+  double *x = fetch(w, set, "position", w->dim);
+  for (int64_t p = 0; p < n; ++p) x[p] = exact(x[p], 0.0);
+  put(w, set, "temperature", 1, x);
+  free(x);
+}
+
+static double error_of(const world *w, const mpm_particles *set, exact_fn exact, double t) {
+  const int64_t n = mpm_particles_count(set);
+  double *x = fetch(w, set, "position", w->dim), *T = fetch(w, set, "temperature", 1), sum = 0.0;
+  for (int64_t p = 0; p < n; ++p) sum += pow(T[p] - exact(x[p], t), 2.0);
+  free(x), free(T);
+  return sqrt(sum / (double)n);
+}
+
+static void run_to(world *w, double t, double share) {
+  const double most = share * heat_dt(w, 1.0) * w->dim;
+  const int32_t steps = (int32_t)ceil(t / most - 1e-9);
+  for (int32_t i = 0; i < steps; ++i) world_step(w, t / steps);
+}
+
+static const basis_option quadratic = {MPM_BSPLINE2, MPM_BOUNDARY_GHOST, 0.5, "quadratic"};
+
+/* The errors of a sine that decays are those of the scheme by itself, computed apart from the library. */
+START_TEST(sine_decays) {
+  static const double errors[] = {1.31151e-2, 3.27111e-3, 8.13307e-4};
+  for (int32_t i = 0; i < 3; ++i) {
+    world w;
+    mpm_particles *set = open_bar(&w, 1, 8 << i, &quadratic, 2);
+    put_exact(&w, set, sine);
+    hold_ends(&w, 0.0);
+    run_to(&w, 0.05, 0.5);
+    ck_within("sine", error_of(&w, set, sine, 0.05), errors[i], 1e-3 * errors[i]);
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* Every basis has second order, explicit and implicit; but open knots, whose last functions have their mass
+ * where they do not stand, lose some of it by capacities that are lumped. */
+START_TEST(every_basis_converges) {
+  const basis_option *basis = &basis_options[_i % BASES];
+  const int32_t dim = 1 + _i / BASES % 3, implicit = _i / BASES / 3;
+  double error[2];
+  for (int32_t i = 0; i < 2; ++i) {
+    world w;
+    mpm_particles *set = open_bar(&w, dim, (dim == 3 ? 6 : 8) << i, basis, 2);
+    put_exact(&w, set, sine);
+    hold_ends(&w, 0.0);
+    if (implicit) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-12));
+    run_to(&w, 0.05, implicit ? 2.0 / dim : 0.5 / dim);
+    error[i] = error_of(&w, set, sine, 0.05);
+    world_close(&w);
+  }
+  show("%s %d-D %s: %.3e %.3e, order %.2f\n", basis->name, dim, implicit ? "implicit" : "explicit", error[0],
+       error[1], log2(error[0] / error[1]));
+  ck_between(basis->name, log2(error[0] / error[1]), basis->boundary == MPM_BOUNDARY_OPEN_KNOT ? 1.1 : 1.6,
+             3.2);
+}
+END_TEST
+
+/* Where a temperature is prescribed suddenly, that reaches the particles, and once. */
+START_TEST(sudden_step) {
+  static const double most[] = {4.6e-2, 2.0e-2, 1.05e-2};
+  for (int32_t i = 0; i < 3; ++i) {
+    world w;
+    mpm_particles *set = open_bar(&w, 1, 10 << i, &quadratic, 2);
+    hold_ends(&w, 1.0);
+    run_to(&w, 0.01, 0.5);
+    ck_between("erfc", error_of(&w, set, step_at_ends, 0.01), 0.0, most[i]);
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* The same jump may come later: in a bar that is warm throughout the faces cool down by 1. */
+START_TEST(later_step) {
+  world w;
+  const double warm = 5.0;
+  mpm_particles *set = open_bar(&w, 1, 20, &quadratic, 2);
+  ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &warm));
+  hold_ends(&w, warm);
+  run_to(&w, 0.01, 0.5);
+  ck_ok(&w, mpm_stepper_set_time(w.stepper, 0.0, 0));
+  double *T = fetch(&w, set, "temperature", 1);
+  for (int64_t p = 0; p < 40; ++p) ck_within("still warm", T[p], warm, 1e-14 * warm);
+  hold_ends(&w, warm - 1.0);
+  run_to(&w, 0.01, 0.5);
+  double *x = fetch(&w, set, "position", 1), sum = 0.0;
+  free(T);
+  T = fetch(&w, set, "temperature", 1);
+  for (int64_t p = 0; p < 40; ++p) sum += pow(warm - step_at_ends(x[p], 0.01) - T[p], 2.0);
+  ck_between("erfc", sqrt(sum / 40.0), 0.0, 2.0e-2);
+  free(T), free(x);
+  world_close(&w);
+}
+END_TEST
+
+/* A linear field between two faces is at rest, from the first step on. */
+START_TEST(linear_field_stays) {
+  const basis_option *basis = &basis_options[_i % BASES];
+  const int32_t dim = 1 + _i / BASES % 3, implicit = _i / BASES / 3;
+  if (is_gimp(basis->basis)) return; /* domains at the faces reach beyond the nodes that mirror */
+  world w;
+  mpm_particles *set = open_bar(&w, dim, 6, basis, 2);
+  const int64_t n = mpm_particles_count(set);
+  double *x = fetch(&w, set, "position", dim);
+  for (int64_t p = 0; p < n; ++p) x[p] = 20.0 - 7.0 * x[p];
+  put(&w, set, "temperature", 1, x);
+  ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 20.0));
+  ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MAX, MPM_HEAT_WALL_TEMPERATURE, 13.0));
+  if (implicit) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-13));
+  for (int32_t i = 0; i < 3; ++i) world_step(&w, heat_dt(&w, 1.0));
+  double *T = fetch(&w, set, "temperature", 1), area = 1.0;
+  double worst = 0.0;
+  for (int64_t p = 0; p < n; ++p) worst = fmax(worst, fabs(T[p] - x[p]));
+  show("%s %d-D: %.2e\n", basis->name, dim, worst);
+  if (basis->boundary == MPM_BOUNDARY_GHOST) ck_within(basis->name, worst, 0.0, 1.0);
+  for (int32_t k = 1; k < dim; ++k) area *= 0.5;
+  const mpm_heat_info info = heat_told(&w);
+  ck_within(basis->name, heat_missing(&info), 0.0, 1e-12 * 42.0 * area);
+  free(x), free(T);
+  world_close(&w);
+}
+END_TEST
+
+/* ---- what is kept -------------------------------------------------------------------------------------- */
+static mpm_status warm_middle(void *user, const mpm_particle_batch *b, double *power) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i)
+    power[i] = b->id[i] < 0 ? NOT_A_NUMBER : 30.0 + 10.0 * sin(7.0 * b->position[i]);
+  return 0;
+}
+
+static mpm_particles *open_cloud(world *w, const world_desc *desc, uint64_t seed) {
+  dice d = {seed};
+  mpm_particles *set = world_open(w, desc);
+  add_cloud(w, set, &d, 60, 0.25, 0.0, 1.6, 0.3);
+  const int64_t n = mpm_particles_count(set);
+  mpm_heat_desc heat = heat_desc(2.0, 300.0);
+  heat.source = warm_middle;
+  ck_ok(w, mpm_stepper_set_heat(w->stepper, set, &heat));
+  double *T = malloc((size_t)n * sizeof *T);
+  for (int64_t p = 0; p < n; ++p) T[p] = 300.0 + 40.0 * noise_at((uint64_t)p + seed);
+  put(w, set, "temperature", 1, T);
+  free(T);
+  return set;
+}
+
+static void equip_faces(const world *w) {
+  ck_ok(w, mpm_stepper_set_heat_wall(w->stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 250.0));
+  if (w->dim > 1)
+    ck_ok(w, mpm_stepper_set_heat_wall(w->stepper, MPM_Y_MIN, MPM_HEAT_WALL_TEMPERATURE, 350.0));
+}
+
+/* The balance of a cloud closes in every method, and the sum of mass, capacity and temperature is the heat.
+ * */
+START_TEST(balance_closes) {
+  const method *how = broad_methods[_i % BROAD];
+  const int32_t dim = 1 + _i / BROAD % 3, implicit = _i / BROAD / 3;
+  world w;
+  if (dim == 1 && how->remedy) return;
+  world_desc desc = world_with(how, dim, 8, 0.25);
+  desc.grid.total_lagrangian = _i % 2 && how->basis != MPM_CPGIMP;
+  desc.law.E = 1e3;
+  mpm_particles *set = open_cloud(&w, &desc, 5 + (uint64_t)_i);
+  equip_faces(&w);
+  world_walls(&w, MPM_WALL_SLIP, 0.0);
+  mpm_surface_desc d = load_desc();
+  mpm_surface *s = put_surface(&w, &d);
+  const double at[] = {0.9, 0.9, 0.9}, normal[] = {1.0, 0.0, 0.0};
+  ck_ok(&w, mpm_surface_add(s, 1, at, normal, NULL));
+  ck_ok(&w, mpm_surface_set_heat(s, 40.0, 3.0, 400.0));
+  if (implicit) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-12));
+  double before = heat_told(&w).heat, gained = 0.0;
+  const double scale = fabs(before), dt = fmin(0.1 * world_stable_dt(&w), 1e-3);
+  for (int32_t i = 0; i < 6; ++i) {
+    world_step(&w, dt);
+    const mpm_heat_info info = heat_told(&w);
+    ck_within(how->name, heat_missing(&info), 0.0, (implicit ? 1e-11 : 1e-13) * scale);
+    ck_within(how->name, info.heat - before, info.gained, 1e-12 * scale);
+    ck_holds(info.walls[0] != 0.0 && info.surfaces != 0.0 && info.sources > 0.0 && info.walls[1] == 0.0);
+    ck_holds(implicit ? info.iterations > 0 : info.iterations == 0);
+    before = info.heat;
+    gained += info.gained;
+    ck_within(how->name, info.gained_total, gained, 1e-12 * scale);
+  }
+  (void)set;
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
+/* A body of one temperature keeps it, and one that conducts nothing keeps every bit while it flies. */
+START_TEST(motion_carries_temperatures) {
+  const method *how = broad_methods[_i % BROAD];
+  const int32_t dim = 1 + _i / BROAD;
+  if (dim == 1 && how->remedy) return;
+  world w;
+  const world_desc desc = world_with(how, dim, 12, 0.25);
+  mpm_particles *set = world_open(&w, &desc);
+  const int64_t n = world_fill_cube(&w, set, 0.3, 1.1);
+  mpm_heat_desc heat = heat_desc(2.0, 0.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  const double v[] = {1.0, 0.7, -0.1}, even = 293.15;
+  double *T = malloc((size_t)n * sizeof *T);
+  for (int64_t p = 0; p < n; ++p) T[p] = noise_at((uint64_t)p);
+  put(&w, set, "temperature", 1, T);
+  ck_ok(&w, mpm_particles_set_all(set, "velocity", MPM_F64, dim, v));
+  const double dt = 0.2 * world_stable_dt(&w);
+  for (int32_t i = 0; i < 10; ++i) world_step(&w, dt);
+  double *now = fetch(&w, set, "temperature", 1);
+  ck_assert_mem_eq(now, T, (size_t)n * sizeof *T);
+  free(now);
+  heat.conductivity = 10.0;
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &even));
+  for (int32_t i = 0; i < 10; ++i) world_step(&w, dt);
+  now = fetch(&w, set, "temperature", 1);
+  for (int64_t p = 0; p < n; ++p) ck_within(how->name, now[p], even, 1e-12 * even);
+  free(now), free(T);
+  world_close(&w);
+}
+END_TEST
+
+/* Halves keep the temperature, and pairs the heat. */
+START_TEST(parts_keep_heat) {
+  world w;
+  const world_desc desc = world_default(2, 8, 0.25);
+  mpm_particles *set = world_open(&w, &desc);
+  const int64_t n = world_fill_cube(&w, set, 0.6, 1.4);
+  const mpm_heat_desc heat = heat_desc(2.0, 0.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  double *T = fetch(&w, set, "temperature", 1), *m = fetch(&w, set, "mass", 1);
+  for (int64_t p = 0; p < n; ++p) T[p] = 300.0 + (double)p, m[p] *= 1.0 + 0.5 * noise_at((uint64_t)p);
+  put(&w, set, "temperature", 1, T);
+  put(&w, set, "mass", 1, m);
+  const double all = heat_told(&w).heat;
+  mpm_adaption_desc split, merge;
+  ck_ok(&w, mpm_adaption_desc_init(&split, sizeof split));
+  merge = split;
+  split.least_edge = 1e-6, split.split_edge = 2e-6;
+  merge.max_per_cell = 1, merge.merge_distance = 2.0, merge.merge_tolerance = 1e6;
+  ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &split));
+  ck_ok(&w, mpm_stepper_adapt(w.stepper));
+  const int64_t parts = mpm_particles_count(set);
+  ck_assert_int_gt(parts, n);
+  ck_within("split", heat_told(&w).heat, all, 1e-13 * all);
+  ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &merge));
+  ck_ok(&w, mpm_stepper_adapt(w.stepper));
+  ck_assert_int_lt(mpm_particles_count(set), parts);
+  ck_within("merge", heat_told(&w).heat, all, 1e-13 * all);
+  free(T), free(m);
+  world_close(&w);
+}
+END_TEST
+
+/* Heat does not cross between bodies, nor to a set that is not described, and crosses between sets of one. */
+START_TEST(bodies_and_sets) {
+  for (int32_t kind = 0; kind < 3; ++kind) {
+    world w;
+    world_desc desc = world_default(2, 8, 0.25);
+    desc.sets = 2;
+    world_open(&w, &desc);
+    const double low[] = {0.5, 0.5}, middle[] = {1.0, 1.0}, low2[] = {1.0, 0.5}, high[] = {1.5, 1.0};
+    world_fill(&w, w.set[0], low, middle, 2);
+    world_fill(&w, w.set[1], low2, high, 2);
+    const mpm_heat_desc heat = heat_desc(2.0, 100.0);
+    for (int32_t m = 0; m < (kind == 2 ? 1 : 2); ++m)
+      ck_ok(&w, mpm_stepper_set_heat(w.stepper, w.set[m], &heat));
+    if (kind == 1) ck_ok(&w, mpm_stepper_set_body(w.stepper, w.set[1], 1));
+    const double hot = 10.0;
+    ck_ok(&w, mpm_particles_set_all(w.set[0], "temperature", MPM_F64, 1, &hot));
+    for (int32_t i = 0; i < 3; ++i) world_step(&w, 1e-4);
+    double *T = fetch(&w, w.set[0], "temperature", 1);
+    double smallest = hot;
+    for (int64_t p = 0; p < mpm_particles_count(w.set[0]); ++p) smallest = fmin(smallest, T[p]);
+    if (kind == 0)
+      ck_holds(smallest < hot - 1e-5);
+    else
+      ck_within("apart", smallest, hot, 1e-13 * hot);
+    free(T);
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* ---- surfaces ------------------------------------------------------------------------------------------ */
+/* A flux gives its power times the area; a film cools a body that conducts well by the rule of one unknown.
+ * */
+START_TEST(flux_and_film) {
+  for (int32_t implicit = 0; implicit < 2; ++implicit) {
+    world w;
+    world_desc desc = world_default(2, 12, 0.25);
+    mpm_particles *set = world_open(&w, &desc);
+    const double low[] = {1.0, 1.0}, high[] = {2.0, 2.0}, at[] = {2.0, 1.0, 2.0, 2.0}, hot = 400.0;
+    world_fill(&w, set, low, high, 2);
+    const mpm_heat_desc heat = heat_desc(2.0, 1e9);
+    ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+    ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &hot));
+    mpm_surface_desc d = load_desc();
+    mpm_surface *s = put_surface(&w, &d);
+    ck_ok(&w, mpm_surface_add_polyline(s, 2, at, 0, 0.125, NULL, NULL));
+    if (implicit) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-13));
+    const double dt = implicit ? 1e-3 : 0.9 * heat_dt(&w, 1e9 / 2e3), capacity = 2.0 * mass_of(&w, set);
+    ck_ok(&w, mpm_surface_set_heat(s, 5.0, 0.0, 0.0));
+    world_step(&w, dt);
+    mpm_heat_info info = heat_told(&w);
+    ck_within("flux", info.surfaces, 5.0 * dt, 1e-12 * 5.0 * dt);
+    ck_within("flux", info.gained, 5.0 * dt, 1e-9 * 5.0 * dt + 1e-13 * capacity * hot);
+    const double film = 1e5, cold = 300.0;
+    ck_ok(&w, mpm_surface_set_heat(s, 0.0, film, cold));
+    const double start = info.heat / capacity, rate = film * dt / capacity;
+    world_step(&w, dt);
+    info = heat_told(&w);
+    const double wanted = -(start - cold) * (implicit ? film * dt / (1.0 + rate) : film * dt);
+    ck_within("film", info.surfaces, wanted, 2e-3 * fabs(wanted));
+    ck_within("film", heat_missing(&info), 0.0, 1e-12 * capacity * hot);
+    drop_surface(&w, s);
+    world_close(&w);
+  }
+}
+END_TEST
+
+/* ---- nothing else matters ------------------------------------------------------------------------------ */
+static world_desc warm_world(const method *how, int32_t dim, int32_t concurrency) {
+  world_desc desc = world_with(how, dim, 8, 0.25);
+  desc.law.E = 1e3;
+  desc.context.concurrency = concurrency;
+  return desc;
+}
+
+static void describe_again(const world *w, mpm_particles *set, int32_t implicit) {
+  mpm_heat_desc heat = heat_desc(2.0, 300.0);
+  heat.source = warm_middle;
+  heat.expansion = 1e-4;
+  heat.reference_temperature = 300.0;
+  heat.dissipated_share = 0.9;
+  ck_ok(w, mpm_stepper_set_heat(w->stepper, set, &heat));
+  if (implicit) ck_ok(w, mpm_stepper_set_conduction(w->stepper, MPM_CONDUCTION_IMPLICIT, 1e-10));
+  equip_faces(w);
+}
+
+/* Threads, and a state that is saved in the middle, make no difference to a bit. */
+START_TEST(threads_and_states) {
+  const method *how = broad_methods[_i % BROAD];
+  const int32_t dim = 1 + _i / BROAD % 3, implicit = _i / BROAD / 3;
+  if (dim == 1 && how->remedy) return;
+  world one, many;
+  const world_desc desc = warm_world(how, dim, 1), other = warm_world(how, dim, 3);
+  mpm_particles *a = open_cloud(&one, &desc, 3), *b = open_cloud(&many, &other, 3);
+  describe_again(&one, a, implicit);
+  describe_again(&many, b, implicit);
+  const double dt = fmin(0.1 * world_stable_dt(&one), 1e-3);
+  for (int32_t i = 0; i < 3; ++i) world_step(&one, dt), world_step(&many, dt);
+  ck_assert_uint_eq(world_hash(&one), world_hash(&many));
+  ck_assert_uint_eq(world_step_again(&one, dt), (world_step(&many, dt), world_hash(&many)));
+  const saved_state state = world_save(&one);
+  world_load(&many, &state);
+  world_step(&one, dt), world_step(&many, dt);
+  ck_assert_uint_eq(world_hash(&one), world_hash(&many));
+  const mpm_heat_info x = heat_told(&one), y = heat_told(&many);
+  ck_assert_mem_eq(&x, &y, sizeof x);
+  free(state.data);
+  world_close(&one);
+  world_close(&many);
+}
+END_TEST
+
+static mpm_status refuse(void *user, const mpm_step_info *info) {
+  (void)info;
+  return *(int32_t *)user;
+}
+
+static mpm_status bad_source(void *user, const mpm_particle_batch *b, double *power) {
+  const int32_t kind = *(int32_t *)user;
+  for (int64_t i = 0; i < b->n; ++i) power[i] = kind == 1 && b->id[i] == 7 ? NOT_A_NUMBER : 0.0;
+  return kind == 2 ? 5 : kind == 3 ? -5 : 0;
+}
+
+/* A step that fails changes nothing. */
+START_TEST(roll_back) {
+  const int32_t implicit = _i;
+  int32_t kind = 0, answer = -1;
+  world w;
+  const world_desc desc = warm_world(broad_methods[0], 2, 2);
+  mpm_particles *set = open_cloud(&w, &desc, 8);
+  describe_again(&w, set, implicit);
+  const double dt = fmin(0.1 * world_stable_dt(&w), 1e-3);
+  world_step(&w, dt);
+  world_bits was = world_take(&w);
+  const mpm_heat_info before = heat_told(&w);
+  ck_ok(&w, mpm_stepper_set_progress(w.stepper, refuse, &answer));
+  ck_refused(&w, mpm_step(w.stepper, dt, NULL), MPM_E_CALLBACK, "progress");
+  ck_ok(&w, mpm_stepper_set_progress(w.stepper, NULL, NULL));
+  world_same(&w, &was, "refused by the host");
+  mpm_heat_desc heat = heat_desc(2.0, 300.0);
+  heat.expansion = 1e-4, heat.reference_temperature = 300.0;
+  heat.source = bad_source, heat.user = &kind;
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  kind = 1;
+  ck_refused(&w, mpm_step(w.stepper, dt, NULL), MPM_NONFINITE, "power of the heat source not finite");
+  kind = 2;
+  ck_refused(&w, mpm_step(w.stepper, dt, NULL), MPM_CUT_DT, "the heat source");
+  kind = 3;
+  ck_refused(&w, mpm_step(w.stepper, dt, NULL), MPM_E_CALLBACK, "the heat source");
+  world_same(&w, &was, "refused by the source");
+  const double huge = 1e308;
+  kind = 0;
+  ck_ok(&w, mpm_step_begin(w.stepper, dt));
+  ck_ok(&w, mpm_step_abort(w.stepper));
+  world_same(&w, &was, "aborted");
+  const mpm_heat_info after = heat_told(&w);
+  ck_assert_mem_eq(&before, &after, sizeof before);
+  if (!implicit)
+    ck_refused(&w, mpm_step(w.stepper, 10.0, NULL), MPM_CUT_DT, "explicit conduction is stable up to");
+  world_same(&w, &was, "too long");
+  ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &huge));
+  bits_drop(&was);
+  was = world_take(&w);
+  ck_assert_int_ne(mpm_step(w.stepper, dt, NULL), MPM_OK);
+  world_same(&w, &was, "temperatures that overflow");
+  bits_drop(&was);
+  world_close(&w);
+}
+END_TEST
+
+/* Each allocation fails once; the call says so, changes nothing, and succeeds after that. */
+START_TEST(memory_runs_out) {
+  const int32_t implicit = _i;
+  for (int64_t at = 1; at < 400; ++at) {
+    world w;
+    const world_desc desc = warm_world(broad_methods[0], 2, 1);
+    mpm_particles *set = world_open(&w, &desc);
+    world_fill_cube(&w, set, 0.0, 1.4);
+    mpm_heat_desc heat = heat_desc(2.0, 300.0);
+    heat.expansion = 1e-4;
+    if (implicit) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-10));
+    equip_faces(&w);
+    world_bits was = world_take(&w);
+    int32_t failed = 0;
+    w.memory.fail_at = w.memory.calls + at;
+    mpm_status status = mpm_stepper_set_heat(w.stepper, set, &heat);
+    if (status) w.memory.fail_at = 0;
+    if (status) {
+      ck_assert_int_eq(status, MPM_E_NOMEM);
+      world_same(&w, &was, "described without memory");
+      ++failed;
+      ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+    }
+    bits_drop(&was);
+    const int64_t left = w.memory.fail_at ? w.memory.fail_at - w.memory.calls : 0;
+    w.memory.fail_at = 0;
+    was = world_take(&w);
+    w.memory.fail_at = left > 0 ? w.memory.calls + left : 0;
+    status = failed ? MPM_OK : mpm_step(w.stepper, 1e-4, NULL);
+    w.memory.fail_at = 0;
+    if (status) {
+      ck_assert_int_eq(status, MPM_E_NOMEM);
+      world_same(&w, &was, "stepped without memory");
+      ++failed;
+    }
+    bits_drop(&was);
+    world_step(&w, 1e-4);
+    world_close(&w);
+    if (!failed) return;
+  }
+  ck_abort_msg("allocations never end");
+}
+END_TEST
+
+/* ---- arguments ----------------------------------------------------------------------------------------- */
+START_TEST(refusals) {
+  world w;
+  world_desc desc = world_default(2, 8, 0.25);
+  desc.grid.periodic[1] = 1;
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill_cube(&w, set, 0.5, 1.0);
+  mpm_stepper *s = w.stepper;
+  mpm_heat_info info = {.struct_size = sizeof info};
+  ck_refused(&w, mpm_stepper_heat_info(s, &info), MPM_E_STATE, "mpm_stepper_set_heat");
+  mpm_heat_desc d = heat_desc(0.0, 1.0);
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "specific_heat is 0");
+  d = heat_desc(INFINITE, 1.0);
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "specific_heat is inf");
+  d = heat_desc(1.0, -1.0);
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "conductivity is -1");
+  d = heat_desc(1.0, NOT_A_NUMBER);
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "conductivity is");
+  d = heat_desc(1.0, 1.0);
+  d.expansion = INFINITE;
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "expansion is inf");
+  d = heat_desc(1.0, 1.0);
+  d.reference_temperature = NOT_A_NUMBER;
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "reference_temperature");
+  d = heat_desc(1.0, 1.0);
+  d.dissipated_share = 1.5;
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "dissipated_share is 1.5");
+  d = heat_desc(1.0, 1.0);
+  d.struct_size = 8;
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "struct_size");
+  d = heat_desc(1.0, 1.0);
+  ck_refused(&w, mpm_stepper_set_heat(s, NULL, &d), MPM_E_ARG, "particles is NULL");
+  ck_ok(&w, mpm_particles_add_field(set, "temperature", MPM_I64, 1));
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_ARG, "a field \"temperature\"");
+  ck_refused(&w, mpm_stepper_set_conduction(s, 2, 1e-9), MPM_E_ARG, "conduction is 2");
+  ck_refused(&w, mpm_stepper_set_conduction(s, MPM_CONDUCTION_IMPLICIT, 0.0), MPM_E_ARG, "tolerance is 0");
+  ck_refused(&w, mpm_stepper_set_conduction(s, MPM_CONDUCTION_IMPLICIT, 1.0), MPM_E_ARG, "tolerance is 1");
+  ck_refused(&w, mpm_stepper_set_heat_wall(s, 4, 0, 0.0), MPM_E_ARG, "face is 4");
+  ck_refused(&w, mpm_stepper_set_heat_wall(s, -1, 0, 0.0), MPM_E_ARG, "face is -1");
+  ck_refused(&w, mpm_stepper_set_heat_wall(s, 0, 2, 0.0), MPM_E_ARG, "kind is 2");
+  ck_refused(&w, mpm_stepper_set_heat_wall(s, 0, 1, INFINITE), MPM_E_ARG, "temperature is inf");
+  ck_refused(&w, mpm_stepper_set_heat_wall(s, 2, 1, 1.0), MPM_E_ARG, "periodic");
+  mpm_surface_desc of = load_desc();
+  mpm_surface *surface = put_surface(&w, &of);
+  ck_refused(&w, mpm_surface_set_heat(surface, NOT_A_NUMBER, 0.0, 0.0), MPM_E_ARG, "flux is");
+  ck_refused(&w, mpm_surface_set_heat(surface, 0.0, -1.0, 0.0), MPM_E_ARG, "film is -1");
+  ck_refused(&w, mpm_surface_set_heat(surface, 0.0, 0.0, INFINITE), MPM_E_ARG, "ambient");
+  drop_surface(&w, surface);
+  ck_ok(&w, mpm_step_begin(s, 1e-5));
+  ck_refused(&w, mpm_stepper_set_heat(s, set, &d), MPM_E_STATE, "a step is under way");
+  ck_refused(&w, mpm_stepper_set_conduction(s, 0, 0.0), MPM_E_STATE, "a step is under way");
+  ck_refused(&w, mpm_stepper_set_heat_wall(s, 0, 0, 0.0), MPM_E_STATE, "a step is under way");
+  ck_ok(&w, mpm_step_abort(s));
+  world_close(&w);
+  desc.grid.geometry = MPM_AXISYMMETRIC;
+  desc.grid.periodic[1] = 0;
+  world_open(&w, &desc);
+  ck_refused(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, 1, 1.0), MPM_E_UNSUPPORTED, "is the axis");
+  world_close(&w);
+  desc.grid.geometry = MPM_PLANE_STRESS;
+  set = world_open(&w, &desc);
+  d = heat_desc(1.0, 1.0);
+  d.expansion = 1e-5;
+  ck_refused(&w, mpm_stepper_set_heat(w.stepper, set, &d), MPM_E_UNSUPPORTED, "do not expand");
+  world_close(&w);
+  desc.grid.geometry = MPM_PLANE_STRAIN;
+  desc.law = (world_law){.model = "rigid", .density = 1e3};
+  set = world_open(&w, &desc);
+  ck_refused(&w, mpm_stepper_set_heat(w.stepper, set, &d), MPM_E_UNSUPPORTED, "does not expand");
+  d = heat_desc(1.0, 1.0);
+  d.dissipated_share = 1.0;
+  ck_refused(&w, mpm_stepper_set_heat(w.stepper, set, &d), MPM_E_UNSUPPORTED, "dissipates nothing");
+  world_close(&w);
+}
+END_TEST
+
+/* Without a description nothing is there; with one that is taken back fields stay. */
+START_TEST(comes_and_goes) {
+  world w;
+  const world_desc desc = world_default(2, 8, 0.25);
+  mpm_particles *set = world_open(&w, &desc);
+  world_fill_cube(&w, set, 0.5, 1.0);
+  mpm_heat_desc d = heat_desc(2.0, 1.0);
+  d.reference_temperature = 12.0;
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &d));
+  ck_assert(fetch1(&w, set, "temperature", 1, 0, 0) == 12.0);
+  ck_refused(&w, mpm_particles_set_extensive(set, "temperature", 1), MPM_E_ARG, "is the temperature");
+  const int64_t more = world_fill_cube(&w, set, 1.0, 1.25);
+  ck_assert(fetch1(&w, set, "temperature", 1, 0, more - 1) == 12.0);
+  world_step(&w, 1e-5);
+  int64_t n;
+  double *T = fetch_nodes(&w, "temperature", &n);
+  for (int64_t i = 0; i < n; ++i) ck_within("node", T[i], 12.0, 1e-13);
+  free(T);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, NULL));
+  mpm_view view = {.struct_size = sizeof view};
+  ck_refused(&w, mpm_grid_map(w.stepper, 0, "temperature", MPM_READ, &view), MPM_E_UNSUPPORTED,
+             "no set had heat");
+  world_step(&w, 1e-5);
+  ck_assert(fetch1(&w, set, "temperature", 1, 0, 0) == 12.0);
+  world_close(&w);
+}
+END_TEST
+
+Suite *heat_suite(void);
+Suite *heat_suite(void) {
+  Suite *suite = suite_create("heat");
+  TCase *grid = tcase_create("grid");
+  tcase_add_test(grid, sine_decays);
+  tcase_add_loop_test(grid, every_basis_converges, 0, 6 * BASES);
+  tcase_add_test(grid, sudden_step);
+  tcase_add_test(grid, later_step);
+  tcase_add_loop_test(grid, linear_field_stays, 0, 6 * BASES);
+  tcase_add_loop_test(grid, balance_closes, 0, 6 * BROAD);
+  tcase_add_loop_test(grid, motion_carries_temperatures, 0, 3 * BROAD);
+  tcase_add_test(grid, parts_keep_heat);
+  tcase_add_test(grid, bodies_and_sets);
+  tcase_add_test(grid, flux_and_film);
+  tcase_add_loop_test(grid, threads_and_states, 0, 6 * BROAD);
+  tcase_add_loop_test(grid, roll_back, 0, 2);
+  tcase_add_loop_test(grid, memory_runs_out, 0, 2);
+  tcase_add_test(grid, refusals);
+  tcase_add_test(grid, comes_and_goes);
+  tcase_set_timeout(grid, 120);
+  suite_add_tcase(suite, grid);
+  add_heat_laws(suite);
+  return suite;
+}
