@@ -1868,8 +1868,9 @@ end
 """
 Gives the force[dim] that the prescribed particles of a set exert on the material, on the axes on which they are
 prescribed: the mean over the last step, or with MPM_NEWMARK the one at its end. It is what holds them, less their own
-inertia, weight and external forces; 0 for a set without such particles. MPM_E_NOT_FOUND: the set is not in this
-stepper. MPM_E_STATE before the first step.
+inertia, weight and external forces; 0 for a set without such particles. What a body of its own gives others through
+contact is not in it: mpm_stepper_contact_info() has that. MPM_E_NOT_FOUND: the set is not in this stepper.
+MPM_E_STATE before the first step.
 """
 function mpm_stepper_particles_reaction(stepper, prescribed, force)
     return ccall((:mpm_stepper_particles_reaction, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_particles}, Ptr{Float64}),

@@ -1770,8 +1770,9 @@ the one at its end, but for friction walls. MPM_E_ARG: there is no such face. MP
 
 Gives the force[dim] that the prescribed particles of a set exert on the material, on the axes on which they are
 prescribed: the mean over the last step, or with MPM_NEWMARK the one at its end. It is what holds them, less their own
-inertia, weight and external forces; 0 for a set without such particles. MPM_E_NOT_FOUND: the set is not in this
-stepper. MPM_E_STATE before the first step.""",
+inertia, weight and external forces; 0 for a set without such particles. What a body of its own gives others through
+contact is not in it: mpm_stepper_contact_info() has that. MPM_E_NOT_FOUND: the set is not in this stepper.
+MPM_E_STATE before the first step.""",
     "mpm_stepper_wall_impulse": """mpm_status mpm_stepper_wall_impulse(const mpm_stepper *stepper, int32_t face, double *impulse)
 
 Gives the impulse[dim] of the wall at a face on the material, mass * length/time: the sum of
