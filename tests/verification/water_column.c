@@ -1,65 +1,26 @@
 /* Dam breaks. Martin and Moyce 1952: a column of water, a wide and 2 a high, a = 2.25 inches, and the way of
  * its front. Ritter 1892: water of depth h0 released on a dry bed, h = (2 c0 - x / t)^2 / (9 g), c0 = sqrt(g
  * h0), which is the limit of shallow water. No friction at the walls; water without tension. */
-#include "verify.h"
-
-static const double g = 9.81, density = 1000.0;
-
-typedef struct tank {
-  verify_world w;
-  mpm_particles *water;
-} tank;
-
-/* A column of water at rest, with its pressure, at the left end of a tank, cells per depth. */
-static void open_tank(tank *it, double width, double depth, double tank_length, int cells) {
-  const double h = depth / cells, bulk = density * 400.0 * g * depth;
-  verify_setup setup = verify_defaults(2, cells + cells / 2, h);
-  setup.grid.cells[0] = (int64_t)(tank_length / h);
-  setup.stepper.transfer = MPM_APIC;
-  setup.stepper.gravity[1] = -g;
-  verify_open(&it->w, &setup);
-  const mpm_param params[] = {
-      {"density", density}, {"bulk_modulus", bulk}, {"viscosity", 1e-3}, {"tension", 0.0}};
-  it->water = verify_set(&it->w, verify_material(&it->w, "newtonian_fluid", params, 4));
-  verify_fill_box(&it->w, it->water, (const double[]){0.0, 0.0}, (const double[]){width, depth}, 2);
-  for (int32_t face = MPM_X_MIN; face <= MPM_Y_MIN; ++face)
-    verify_ok(&it->w, mpm_stepper_set_wall(it->w.stepper, face, MPM_WALL_FRICTION_NODES, 0.0));
-  const int64_t n = mpm_particles_count(it->water);
-  double *x = verify_get(&it->w, it->water, "position", 2), *F = verify_array(9 * n);
-  for (int64_t i = 0; i < n; ++i) {
-    F[i] = F[8 * n + i] = 1.0;
-    F[4 * n + i] = pow(1.0 + 7.0 * density * g * (depth - x[n + i]) / bulk, -1.0 / 7.0);
-  }
-  verify_put(&it->w, it->water, "deformation_gradient", 9, F);
-  free(x);
-  free(F);
-}
-
-enum { POINTS = 15 };
-/* t sqrt(2 g / a) and front / a of the experiment, n^2 = 2. */
-static const double measured[POINTS][2] = {{0.41, 1.11}, {0.84, 1.22}, {1.19, 1.44}, {1.43, 1.67},
-                                           {1.63, 1.89}, {1.83, 2.11}, {1.98, 2.33}, {2.20, 2.56},
-                                           {2.32, 2.78}, {2.51, 3.00}, {2.65, 3.22}, {2.83, 3.44},
-                                           {2.98, 3.67}, {3.11, 3.89}, {3.33, 4.11}};
+#include "tank.h"
 
 static void martin_moyce(int cells, FILE *csv, FILE *cloud) {
-  const double a = 0.05715, unit = sqrt(a / (2.0 * g)), quarter = 0.25 * 2.0 * a / cells;
+  const double a = TANK_A, unit = sqrt(a / (2.0 * TANK_G)), quarter = 0.25 * 2.0 * a / cells;
   tank it;
-  open_tank(&it, a, 2.0 * a, 6.0 * a, cells);
+  tank_open(&it, a, 2.0 * a, 6.0 * a, cells);
   const int64_t n = mpm_particles_count(it.water);
   double least = HUGE_VAL, most = -HUGE_VAL;
-  for (int k = 0; k < POINTS; ++k) {
-    verify_advance(&it.w, 0.4, measured[k][0] * unit);
+  for (int k = 0; k < TANK_POINTS; ++k) {
+    verify_advance(&it.w, 0.4, tank_measured[k][0] * unit);
     double *x = verify_get(&it.w, it.water, "position", 2), front = 0.0;
     for (int64_t i = 0; i < n; ++i) front = fmax(front, x[i] + quarter);
-    const double ahead = front / a / measured[k][1] - 1.0;
+    const double ahead = front / a / tank_measured[k][1] - 1.0;
     least = fmin(least, ahead);
     most = fmax(most, ahead);
-    fprintf(csv, "%d,%.2f,%.5f,%.2f\n", cells, measured[k][0], front / a, measured[k][1]);
+    fprintf(csv, "%d,%.2f,%.5f,%.2f\n", cells, tank_measured[k][0], front / a, tank_measured[k][1]);
     if (cloud && (k == 4 || k == 10 || k == 14)) {
       double *v = verify_get(&it.w, it.water, "velocity", 2);
       for (int64_t i = 0; i < n; ++i)
-        fprintf(cloud, "%.2f,%.5f,%.5f,%.4f\n", measured[k][0], x[i] / a, x[n + i] / a,
+        fprintf(cloud, "%.2f,%.5f,%.5f,%.4f\n", tank_measured[k][0], x[i] / a, x[n + i] / a,
                 hypot(v[i], v[n + i]));
       free(v);
     }
@@ -81,9 +42,9 @@ static void martin_moyce(int cells, FILE *csv, FILE *cloud) {
 }
 
 static void ritter(int cells, FILE *csv) {
-  const double h0 = 1.0, c0 = sqrt(g * h0), gate = 7.0, h = h0 / cells;
+  const double g = TANK_G, h0 = 1.0, c0 = sqrt(g * h0), gate = 7.0, h = h0 / cells;
   tank it;
-  open_tank(&it, gate, h0, 20.0, cells);
+  tank_open(&it, gate, h0, 20.0, cells);
   const int64_t n = mpm_particles_count(it.water);
   char what[96];
   for (double T = 3.0; T < 6.5; T += 3.0) {
