@@ -272,6 +272,29 @@ def heat():
 
 
 @plot
+def adaption_front():
+    figure = plt.figure(figsize=(9.6, 3.4), layout="constrained")
+    ax = figure.subplot_mosaic([["not split", "front"], ["split and merged", "front"]], width_ratios=(1.5, 1))
+    name, methods = "Martin and Moyce; 2 a / 20", ("not split", "split and merged")
+    cloud, front = read("adaption_front_cloud"), read("adaption_front")
+    for method in methods:
+        at, panel = rows(cloud, case=name, method=method), ax[method]
+        drawn_there = panel.scatter([2 * x for x in at["x"]], [2 * y for y in at["y"]], c=at["mass"], s=4, cmap="viridis",
+                                    vmin=0, vmax=1, linewidths=0, antialiased=False, rasterized=True)
+        panel.set(aspect="equal", xlim=(0, 4.8), ylim=(0, 1.3), ylabel="y / a")
+        panel.set_title(method, fontsize=8, loc="left")
+        line = rows(front, case=name, method=method)
+        ax["front"].plot(line["T"], [x / 0.05715 for x in line["front"]], label=method)
+    ax[methods[0]].tick_params(labelbottom=False)
+    ax[methods[1]].set_xlabel("x / a")
+    figure.colorbar(drawn_there, ax=[ax[method] for method in methods], label="mass of a particle / first", location="left")
+    ax["front"].plot(line["T"], [x / 0.05715 for x in line["due"]], "ko", label="Martin and Moyce")
+    ax["front"].set(xlabel=r"$t \sqrt{2 g / a}$", ylabel="front / a")
+    ax["front"].legend()
+    return figure
+
+
+@plot
 def taylor_bar():
     figure, ax = axes(1, 4.0, 5.6)
     data = read("taylor_bar_cloud")
