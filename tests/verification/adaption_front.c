@@ -29,8 +29,8 @@ static double front_due(const flow *f, int32_t k) {
                                   : f->width + 2.0 * sqrt(TANK_G * f->depth) * time_of(f, k);
 }
 
-/* Sees how far the water is, to the end of its particles' domains, how many cells of the bed between the wall and the front have none, and how many
- * particles are in the fullest cell. */
+/* Sees how far the water is, to the end of its particles' domains, how many cells of the bed between the wall
+ * and the front have no particle, and how many are in the fullest cell. */
 static void look(const tank *it, double h, int32_t divided, int32_t k, outcome *out) {
   const int64_t n = mpm_particles_count(it->water);
   double *x = verify_get(&it->w, it->water, "position", 2), far = 0.0, high = 0.0;

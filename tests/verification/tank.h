@@ -12,8 +12,8 @@ typedef struct tank {
   mpm_particles *water;
 } tank;
 
-/* Opens a tank, half as high again as the column, with the water at rest under its pressure, in 4 particles per
- * cell and in so many cells per depth. Its speed of sound is 20 sqrt(g depth). */
+/* Opens a tank, half as high again as the column, with the water at rest under its pressure, in 4 particles
+ * per cell and so many cells per depth. Its speed of sound is 20 sqrt(g depth). */
 void tank_open(tank *it, double width, double depth, double length, int cells);
 
 enum { TANK_POINTS = 15 };
