@@ -207,6 +207,17 @@ if wanted bimetal; then
   [ -s bimetal/bimetal.svg ] || fail "bimetal: bimetal.svg is missing or empty"
 fi
 
+if wanted rubber_band; then
+  mkdir band
+  run rubber_band band
+  check "stretch" "drawn to" 2.85 2.87
+  check "force" "with" 340 365
+  check "force beside that of a thin band" "kN per m," -12 -7
+  check "particles" "by" 1500 3000
+  check "way without splitting" "after" 0.8 1.4
+  [ -s band/rubber_band.svg ] || fail "rubber_band: rubber_band.svg is missing or empty"
+fi
+
 if wanted rolling_disc; then
   mkdir slope
   run rolling_disc slope 12
