@@ -15,6 +15,8 @@ namespace Mpm {
   public delegate int NodeFunction(ref NodeBatch batch, Columns velocity, Columns force);
   /// <summary>(mt) Sets friction[i, 0] of nodes where bodies touch.</summary>
   public delegate int FrictionFunction(ref ContactBatch batch, Columns friction);
+  /// <summary>Keeps particles and pairs as they are by accept[i, 0] = 0, which is 1.</summary>
+  public delegate int AdaptionFunction(ref AdaptionBatch batch, ByteColumns accept);
   /// <summary>Watches steps; a status above 0 ends the call with MPM_CANCELLED.</summary>
   public delegate int ProgressFunction(ref StepInfo info);
   /// <summary>(mt) Gives distances and normals of points.</summary>
@@ -116,6 +118,10 @@ namespace Mpm {
     public Columns Area { get { return new Columns(area, ld, n, 1, false); } }
     public Columns Slip { get { return new Columns(slip, ld, n, dim, false); } }
     public Columns Pressure { get { return new Columns(pressure, ld, n, 1, false); } }
+  }
+
+  public unsafe partial struct AdaptionBatch {
+    public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
   }
 
   public unsafe partial struct DistanceBatch {
@@ -224,6 +230,7 @@ namespace Mpm {
     public static readonly VelocityFn Velocity = OnVelocity;
     public static readonly NodeFn Nodes = OnNodes;
     public static readonly FrictionFn Friction = OnFriction;
+    public static readonly AdaptionFn Adaption = OnAdaption;
     public static readonly ProgressFn Progress = OnProgress;
     public static readonly DistanceFn Distance = OnDistance;
     public static readonly MotionFn Motion = OnMotion;
@@ -273,6 +280,16 @@ namespace Mpm {
       var slot = Slot.Of(user);
       try {
         return ((FrictionFunction)slot.Function)(ref *batch, new Columns(friction, batch->ld, batch->n, 1));
+      } catch (Exception exception) {
+        return slot.Core.Keep(exception);
+      }
+    }
+
+    [MonoPInvokeCallback(typeof(AdaptionFn))]
+    static int OnAdaption(IntPtr user, AdaptionBatch* batch, byte* accept) {
+      var slot = Slot.Of(user);
+      try {
+        return ((AdaptionFunction)slot.Function)(ref *batch, new ByteColumns(accept, batch->ld, batch->n, 1));
       } catch (Exception exception) {
         return slot.Core.Keep(exception);
       }

@@ -1242,6 +1242,13 @@ namespace Mpm {
     /// <summary>Angular momentum before, less that after: of merges without a matrix. 0 of
     /// MPM_AXISYMMETRIC.</summary>
     public fixed double angular_momentum_loss[3];
+
+    /// <summary>Ready to be filled: zeros, and struct_size.</summary>
+    public static AdaptionInfo Empty() {
+      var it = new AdaptionInfo();
+      it.struct_size = (uint)sizeof(AdaptionInfo);
+      return it;
+    }
   }
 
   /// <summary>The heat of a set.</summary>

@@ -256,6 +256,7 @@ namespace Mpm {
     public void Remove(Particles set) {
       Call(p => Native.mpm_stepper_remove(p, set.Pointer));
       node.Put(MotionOf(set), null);
+      node.Put(AdaptionOf(set), null);
       node.LetGo(set.node);
     }
     public void Add(Obstacle obstacle) {
@@ -316,6 +317,34 @@ namespace Mpm {
       return info;
     }
 
+    /// <summary>Describes how a set is split and merged; null: no longer. A function in the descriptor is not called: it is
+    /// `accept` that keeps particles as they are.</summary>
+    public void SetAdaption(Particles set, AdaptionDesc? adaption, AdaptionFunction accept = null) {
+      var desc = adaption ?? AdaptionDesc.Default();
+      desc.struct_size = (uint)sizeof(AdaptionDesc);
+      Install(AdaptionOf(set), accept, (p, user) => {
+        var options = desc;
+        options.accept = user == IntPtr.Zero ? IntPtr.Zero : Trampolines.Address(Trampolines.Adaption);
+        options.user = user;
+        return Native.mpm_stepper_set_adaption(p, set.Pointer, adaption.HasValue ? &options : null);
+      });
+    }
+    /// <summary>Splits and merges now, whatever the descriptors say of steps.</summary>
+    public void Adapt() {
+      Call(p => Native.mpm_stepper_adapt(p), true);
+    }
+    /// <summary>What splitting and merging have done to a set.</summary>
+    public AdaptionInfo AdaptionInfo(Particles set) {
+      var info = Mpm.AdaptionInfo.Empty();
+      Call(p => {
+        var found = Mpm.AdaptionInfo.Empty();
+        int status = Native.mpm_stepper_adaption_info(p, set.Pointer, &found);
+        info = found;
+        return status;
+      });
+      return info;
+    }
+
     // Functions of the host; null takes one away. Each is kept alive while C may call it.
 
     public void SetForce(ParticleFunction function) {
@@ -348,6 +377,9 @@ namespace Mpm {
     }
     static string MotionOf(Particles set) {
       return "motion" + set.Pointer;
+    }
+    static string AdaptionOf(Particles set) {
+      return "adaption" + set.Pointer;
     }
     static T Fn<T>(T trampoline, IntPtr user) where T : class {
       return user == IntPtr.Zero ? null : trampoline;

@@ -2654,13 +2654,14 @@ module mpm
     module procedure init_mpm_obstacle_desc
     module procedure init_mpm_surface_desc
     module procedure init_mpm_adaption_desc
+    module procedure init_mpm_adaption_info
     module procedure init_mpm_heat_desc
   end interface mpm_init
 
   private :: init_mpm_view, init_mpm_context_desc, init_mpm_grid_desc, init_mpm_material_batch, &
       init_mpm_material_desc, init_mpm_operator_info, init_mpm_stepper_desc, init_mpm_step_info, &
       init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, init_mpm_obstacle_desc, &
-      init_mpm_surface_desc, init_mpm_adaption_desc, init_mpm_heat_desc
+      init_mpm_surface_desc, init_mpm_adaption_desc, init_mpm_adaption_info, init_mpm_heat_desc
 
 contains
 
@@ -2830,6 +2831,19 @@ contains
     type(mpm_adaption_desc), intent(out) :: it
     if (mpm_adaption_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
   end subroutine init_mpm_adaption_desc
+
+  subroutine init_mpm_adaption_info(it)
+    type(mpm_adaption_info), intent(out) :: it
+    it%struct_size = int(c_sizeof(it), c_int32_t)
+    it%reserved = 0
+    it%splits = 0
+    it%added = 0
+    it%merges = 0
+    it%kinetic_loss = 0.0_c_double
+    it%affine_loss = 0.0_c_double
+    it%strain_loss = 0.0_c_double
+    it%angular_momentum_loss = 0.0_c_double
+  end subroutine init_mpm_adaption_info
 
   subroutine init_mpm_heat_desc(it)
     type(mpm_heat_desc), intent(out) :: it

@@ -801,6 +801,23 @@ export interface ContactInfo {
    */
   impulse: number[];
 }
+/** What adaption has done to a set, in all steps since it was first described for it or the time was set. */
+export interface AdaptionInfo {
+  /** particles that were split */
+  splits: number;
+  /** particles that came by it */
+  added: number;
+  /** pairs that became one */
+  merges: number;
+  /** kinetic energy before, less that after: >= 0 of merges; splits with a matrix < 0 */
+  kinetic_loss: number;
+  /** the same of the matrices: what they give to velocities, and what is lost */
+  affine_loss: number;
+  /** the same of the strain energy, in merges; laws of the host are not counted */
+  strain_loss: number;
+  /** Angular momentum before, less that after: of merges without a matrix. 0 of MPM_AXISYMMETRIC. */
+  angular_momentum_loss: number[];
+}
 
 /** What a call says that was not done. After a positive status everything is as it was before. */
 export class MpmError extends Error {
@@ -1079,6 +1096,11 @@ export type NodeFunction = (batch: NodeBatch, velocity: Components, force: Compo
  * MPM_USF twice: first with the forces of the old stress. Returns as mpm_particle_fn does.
  */
 export type FrictionFunction = (batch: ContactBatch, friction: Float64Array) => Answer;
+/**
+ * Says which of them are left as they are: accept[i], [ld], is 1, and the callback writes 0 to keep the i-th
+ * from it. It runs on the thread of the call. Returns as mpm_particle_fn does.
+ */
+export type AdaptionFunction = (batch: AdaptionBatch, accept: Uint8Array) => Answer;
 /**
  * Gives distances of points (mt). Returns as mpm_particle_fn does. A value that is not finite, or a normal
  * whose length is not 1 to 1e-6, ends the step: MPM_NONFINITE, MPM_E_CALLBACK.
@@ -1861,6 +1883,28 @@ export class Stepper implements Handle {
    * MPM_SOLVER_MULTIGRID_CG, of bodies that there are. MPM_E_STATE during a staged step.
    */
   setContact(bodyA: number, bodyB: number, contact: ContactDesc | null): this;
+  /**
+   * null describes it no longer.
+   *
+   * Describes how a set of the stepper adapts, for the steps that follow; NULL: no longer. The set then keeps
+   * the field "size". Not part of a saved state: the host sets it again. MPM_E_NOT_FOUND: the set is not in
+   * the stepper. MPM_E_ARG: a value is bad or particles is NULL; an edge could be split that would be shorter
+   * than least_edge (split_edge < 2 least_edge), or max_per_cell < 2 min_per_cell. MPM_E_UNSUPPORTED:
+   * total_lagrangian = 1, where material does not come apart, or the law is "rigid". MPM_E_STATE: a step is
+   * under way, or a view of the set is out.
+   */
+  setAdaption(set: Particles, desc: AdaptionDesc | null, accept?: AdaptionFunction | null): this;
+  /**
+   * Adapts all sets that are described, now and whatever `every` is. Sets are unchanged on failure.
+   * MPM_E_CALLBACK, MPM_CUT_DT: accept returned an error. MPM_E_STATE: a step is under way, a view of a set
+   * is out, or a value that was written through one is bad.
+   */
+  adapt(): void;
+  /**
+   * Tells what adaption has done to a set. MPM_E_NOT_FOUND: it is not in the stepper. MPM_E_ARG: particles or
+   * info is NULL.
+   */
+  adaptionInfo(set: Particles): AdaptionInfo;
   /**
    * Sets the callback that adds accelerations of particles, length/time^2 (b of MPoint theory, eq. 21). It is
    * called for every set. NULL takes it away.

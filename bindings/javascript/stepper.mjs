@@ -38,6 +38,7 @@ export class Stepper extends Handle {
   remove(set) {
     this.call('mpm_stepper_remove', [this.#set(set)]);
     this.functions.set(set, 'mpm_particle_fn', null, () => {});
+    this.functions.set(`adaption ${this.#set(set)}`, 'mpm_adaption_fn', null, () => {});
     this.drop(set);
   }
   addObstacle(obstacle) {
@@ -80,6 +81,26 @@ export class Stepper extends Handle {
       this.call('mpm_stepper_set_contact', [bodyA, bodyB, contact ? a.struct('mpm_contact_desc', contact) : 0]),
     );
     return this;
+  }
+
+  // ---- splitting and merging ----
+  setAdaption(set, desc, accept = null) {
+    this.arguments((a) => {
+      const at = this.#set(set);
+      const to = desc ? a.struct('mpm_adaption_desc', desc) : 0;
+      this.functions.set(`adaption ${at}`, 'mpm_adaption_fn', desc ? accept : null, (call, user) => {
+        if (to) a.put(to, 'mpm_adaption_desc', 'accept', call);
+        if (to) a.put(to, 'mpm_adaption_desc', 'user', user);
+        this.call('mpm_stepper_set_adaption', [at, to]);
+      });
+    });
+    return this;
+  }
+  adapt() {
+    this.call('mpm_stepper_adapt', []);
+  }
+  adaptionInfo(set) {
+    return this.askStruct('mpm_stepper_adaption_info', [this.#set(set)], 'mpm_adaption_info');
   }
 
   // ---- callbacks ----

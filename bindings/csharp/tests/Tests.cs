@@ -403,6 +403,47 @@ namespace Mpm {
       }
     }
 
+    static void Adaption() {
+      using (var scene = new Scene()) {
+        var stepper = scene.Stepper;
+        long first = scene.Set.Count;
+        var halves = AdaptionDesc.Default();
+        halves.every = 0;
+        halves.split_edge = 0.4;
+        stepper.SetAdaption(scene.Set, halves);
+        stepper.Adapt();
+        var info = stepper.AdaptionInfo(scene.Set);
+        Is(scene.Set.Count, 4 * first, "particles that were split in both directions");
+        Is(info.splits + " " + info.added, first + " " + 3 * first, "what was split");
+        var merging = AdaptionDesc.Default();
+        merging.every = 0;
+        merging.max_per_cell = 1;
+        merging.merge_distance = 0.3;
+        long pairs = 0;
+        stepper.SetAdaption(scene.Set, merging, (ref AdaptionBatch batch, ByteColumns accept) => {
+          pairs = accept.Count;
+          Is(batch.what == MPM_ADAPT_MERGE && batch.Position.Count == pairs && batch.Position[0, 1] > 0.3, true, "a batch");
+          accept[0, 0] = 0;
+          return MPM_OK;
+        });
+        stepper.Adapt();
+        Is(pairs > 10 && stepper.AdaptionInfo(scene.Set).merges == pairs - 1, true, "one pair stays");
+        var before = stepper.Hash();
+        stepper.SetAdaption(scene.Set, merging, (ref AdaptionBatch batch, ByteColumns accept) => {
+          throw new InvalidOperationException("as they are");
+        });
+        Throws<InvalidOperationException>(() => stepper.Adapt(), "as they are");
+        halves.split_edge = 0.2;
+        Refuses(MPM_E_ARG, "split_edge", () => stepper.SetAdaption(scene.Set, halves));
+        Throws<InvalidOperationException>(() => stepper.Adapt(), "as they are");
+        stepper.SetAdaption(scene.Set, null);
+        stepper.Adapt();
+        Is(stepper.Hash(), before, "the state");
+        stepper.Remove(scene.Set);
+        Refuses(MPM_E_NOT_FOUND, "", () => stepper.AdaptionInfo(scene.Set));
+      }
+    }
+
     static double Sum(double[] values, long first, long count) {
       double sum = 0;
       for (long i = first; i < first + count; i++) sum += values[i];
@@ -634,6 +675,7 @@ namespace Mpm {
       Laws();
       Updates();
       Obstacles();
+      Adaption();
       Surfaces();
       Files(arguments[0]);
       Output(arguments[0]);

@@ -420,6 +420,41 @@ test('obstacles and friction by functions', () => {
   assert.ok(nodes > 0 && pair.stepper.contactInfo(0, 1).friction_work > 0);
 });
 
+test('splitting and merging', () => {
+  const { set, stepper } = scene({ velocity: 0 });
+  const first = set.count;
+  const halves = { every: 0, split_edge: 0.4 };
+  stepper.setAdaption(set, halves).adapt();
+  const info = stepper.adaptionInfo(set);
+  assert.deepEqual([set.count, info.splits, info.added], [4 * first, first, 3 * first]);
+  const merging = { every: 0, max_per_cell: 1, merge_distance: 0.3 };
+  let pairs = 0;
+  let kept;
+  stepper.setAdaption(set, merging, (batch, accept) => {
+    assert.equal(batch.what, C.MPM_ADAPT_MERGE);
+    assert.ok(batch.position[1][0] > 0 && accept.every((one) => one === 1));
+    pairs = batch.n;
+    kept = batch.other[0];
+    accept[0] = 0;
+  });
+  stepper.adapt();
+  assert.ok(pairs > 10 && stepper.adaptionInfo(set).merges === pairs - 1 && set.get('id').includes(kept));
+  const before = stepper.hash();
+  const mine = new RangeError('as they are');
+  stepper.setAdaption(set, merging, () => {
+    throw mine;
+  });
+  const isMine = (error) => error === mine;
+  assert.throws(() => stepper.adapt(), isMine);
+  assert.throws(() => stepper.setAdaption(set, { ...halves, split_edge: 0.2 }), /split_edge/);
+  assert.throws(() => stepper.setAdaption(set, { split_edges: 1 }), /split_edges/);
+  assert.throws(() => stepper.adapt(), isMine);
+  stepper.setAdaption(set, null).adapt();
+  assert.equal(stepper.hash(), before);
+  stepper.remove(set);
+  assert.throws(() => stepper.adaptionInfo(set), MpmError);
+});
+
 test('the log', () => {
   const lines = [];
   assert.throws(() => mpm.context({ concurrency: 7, log: (level, text) => lines.push([level, text]) }), MpmError);

@@ -36,6 +36,10 @@ export async function main(): Promise<bigint> {
     for (let i = 0; i < batch.n; i++) along[i] += batch.area[0][i] + batch.reference_area[i];
   });
   face.set('pressure', face.get('reference_area', face.get('id')), [line.first_id]);
+  stepper.setAdaption(set, { split_edge: 0.52 }, (batch, accept) => {
+    if (batch.other) accept.fill(0);
+  });
+  info.t += stepper.adaptionInfo(set).splits;
   stepper.addSurface(face).removeSurface(face);
   const id: bigint = info.particle;
 

@@ -1636,6 +1636,16 @@ pub struct mpm_adaption_info {
     pub angular_momentum_loss: [f64; 3],
 }
 
+impl Default for mpm_adaption_info {
+    /// Ready to be filled: zeros, and `struct_size`.
+    fn default() -> Self {
+        // SAFETY: zeros are a value of every field.
+        let mut out: Self = unsafe { std::mem::zeroed() };
+        out.struct_size = size_of::<Self>() as u32;
+        out
+    }
+}
+
 /// The heat of a set. Fill it with mpm_heat_desc_init().
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]

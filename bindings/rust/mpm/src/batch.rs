@@ -266,6 +266,51 @@ impl MarkerBatch<'_> {
     }
 }
 
+/// Particles that are to be split, or pairs that are to be merged.
+#[derive(Clone, Copy)]
+pub struct AdaptionBatch<'a>(pub(crate) &'a sys::mpm_adaption_batch);
+
+impl<'a> AdaptionBatch<'a> {
+    /// How many particles or pairs there are.
+    pub fn len(&self) -> usize {
+        self.0.n as usize
+    }
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.n == 0
+    }
+    /// The dimension of the grid.
+    pub fn dim(&self) -> usize {
+        self.0.dim as usize
+    }
+    /// `MPM_ADAPT_SPLIT` or `MPM_ADAPT_MERGE`.
+    pub fn what(&self) -> i32 {
+        self.0.what
+    }
+    /// Ids, ascending; of pairs those of the particles that stay.
+    pub fn id(&self) -> &'a [i64] {
+        // SAFETY: the library lends [ld] during the call.
+        unsafe { column(self.0.id, self.0.ld, self.0.n, 0, 1) }
+    }
+    /// Of pairs the ids of the particles that go.
+    pub fn other(&self) -> Option<&'a [i64]> {
+        if self.0.other.is_null() {
+            return None;
+        }
+        // SAFETY: the library lends [ld] during the call.
+        Some(unsafe { column(self.0.other, self.0.ld, self.0.n, 0, 1) })
+    }
+    /// A component of the position of the particle, or of the one that stays.
+    pub fn position(&self, component: usize) -> &'a [f64] {
+        // SAFETY: the library lends [dim][ld] during the call.
+        unsafe { column(self.0.position, self.0.ld, self.0.n, component, self.dim()) }
+    }
+    /// The struct of C.
+    pub fn raw(&self) -> &'a sys::mpm_adaption_batch {
+        self.0
+    }
+}
+
 /// What is to be said of the points.
 pub struct Distances<'a> {
     /// Signed distance, above 0 outside: one component.

@@ -121,7 +121,9 @@ mod stepper;
 mod surface;
 mod view;
 
-pub use batch::{Columns, ContactBatch, DistanceBatch, Distances, MarkerBatch, NodeBatch, ParticleBatch};
+pub use batch::{
+    AdaptionBatch, Columns, ContactBatch, DistanceBatch, Distances, MarkerBatch, NodeBatch, ParticleBatch,
+};
 pub use callback::{Flow, Refusal};
 pub use context::{Context, ContextDesc};
 pub use error::Error;
@@ -147,6 +149,10 @@ pub type AdvanceDesc = sys::mpm_advance_desc;
 pub type SurfaceDesc = sys::mpm_surface_desc;
 /// How two bodies meet.
 pub type ContactDesc = sys::mpm_contact_desc;
+/// How a set is split and merged.
+pub type AdaptionDesc = sys::mpm_adaption_desc;
+/// What splitting and merging have done to a set.
+pub type AdaptionInfo = sys::mpm_adaption_info;
 /// What a step did, or the state as it is.
 pub type StepInfo = sys::mpm_step_info;
 /// What two bodies did to each other.

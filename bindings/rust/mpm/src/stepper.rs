@@ -1,13 +1,13 @@
 //! The time loop.
-use crate::batch::{ContactBatch, NodeBatch, ParticleBatch};
-use crate::callback::{alone, shared, Owned};
+use crate::batch::{AdaptionBatch, ContactBatch, NodeBatch, ParticleBatch};
+use crate::callback::{alone, shared, user_of, Owned};
 use crate::entry::{Core, Sent};
 use crate::error::{c_text, c_texts};
 use crate::obstacle::sized;
 use crate::view::Lent;
 use crate::{
-    sys, AdvanceDesc, Columns, ContactDesc, ContactInfo, Element, Error, Flow, Grid, LinearSystem, Obstacle, Particles,
-    Profile, Refusal, Result, StagedStep, StepInfo, StepperDesc, Surface, View,
+    sys, AdaptionDesc, AdaptionInfo, AdvanceDesc, Columns, ContactDesc, ContactInfo, Element, Error, Flow, Grid,
+    LinearSystem, Obstacle, Particles, Profile, Refusal, Result, StagedStep, StepInfo, StepperDesc, Surface, View,
 };
 use std::mem::size_of;
 use std::os::raw::c_void;
@@ -18,6 +18,7 @@ type ParticleFn = dyn Fn(&ParticleBatch<'_>, &mut Columns<'_, f64>) -> Flow + Se
 type VelocityFn = dyn Fn(&NodeBatch<'_>, &mut Columns<'_, u8>, &mut Columns<'_, f64>) -> Flow + Send + Sync;
 type NodeFn = dyn Fn(&NodeBatch<'_>, &mut Columns<'_, f64>, &mut Columns<'_, f64>) -> Flow + Send + Sync;
 type FrictionFn = dyn Fn(&ContactBatch<'_>, &mut [f64]) -> Flow + Send + Sync;
+type AcceptFn = dyn FnMut(&AdaptionBatch<'_>, &mut [u8]) -> Flow + Send;
 type SolveFn = dyn FnMut(&mut LinearSystem<'_>) -> std::result::Result<i64, Refusal> + Send;
 type ProgressFn = dyn FnMut(&StepInfo) -> Flow + Send;
 
@@ -45,6 +46,7 @@ struct Kept {
     obstacles: Vec<(ObstacleKey, Obstacle)>,
     surfaces: Vec<(SurfaceKey, Surface)>,
     motions: Vec<(SetKey, Owned<ParticleFn>)>,
+    accepting: Vec<(SetKey, Owned<AcceptFn>)>,
     acceleration: Option<Owned<ParticleFn>>,
     force: Option<Owned<ParticleFn>>,
     velocity_bc: Option<Owned<VelocityFn>>,
@@ -125,6 +127,7 @@ impl Stepper {
         let k = self.find(set)?;
         call!(self, mpm_stepper_remove(self.kept.sets[k].1.as_ptr()))?;
         self.kept.motions.retain(|one| one.0 != set);
+        self.kept.accepting.retain(|one| one.0 != set);
         Ok(self.kept.sets.remove(k).1)
     }
 
@@ -246,6 +249,51 @@ impl Stepper {
     pub fn contact_info(&self, body_a: i32, body_b: i32) -> Result<ContactInfo> {
         let mut info = ContactInfo::default();
         call!(self, mpm_stepper_contact_info(body_a, body_b, &mut info))?;
+        Ok(info)
+    }
+
+    /// Describes how a set is split and merged; none: no longer. A function in the descriptor is not called: see
+    /// [`Stepper::set_adaption_with`].
+    pub fn set_adaption(&mut self, set: SetKey, desc: Option<&AdaptionDesc>) -> Result<()> {
+        self.describe(set, desc, None)
+    }
+
+    /// The same with a function that keeps particles as they are, by 0 in place of the 1 that is there.
+    pub fn set_adaption_with(
+        &mut self,
+        set: SetKey,
+        desc: &AdaptionDesc,
+        accept: impl FnMut(&AdaptionBatch<'_>, &mut [u8]) -> Flow + Send + 'static,
+    ) -> Result<()> {
+        let slot = Owned::<AcceptFn>::new(&self.context.thrown, Box::new(accept));
+        self.describe(set, Some(desc), Some(slot))
+    }
+
+    fn describe(&mut self, set: SetKey, desc: Option<&AdaptionDesc>, accept: Option<Owned<AcceptFn>>) -> Result<()> {
+        let k = self.find(set)?;
+        let desc = desc.map(|desc| AdaptionDesc {
+            struct_size: size_of::<AdaptionDesc>() as u32,
+            accept: accept.as_ref().map(|_| on_adaption as _),
+            user: user_of(&accept),
+            ..*desc
+        });
+        let pointer = desc.as_ref().map_or(std::ptr::null(), |desc| desc);
+        call!(self, mpm_stepper_set_adaption(self.kept.sets[k].1.as_ptr(), pointer))?;
+        self.kept.accepting.retain(|one| one.0 != set);
+        self.kept.accepting.extend(accept.map(|slot| (set, slot)));
+        Ok(())
+    }
+
+    /// Splits and merges now, whatever the descriptors say of steps.
+    pub fn adapt(&mut self) -> Result<()> {
+        call!(self, mpm_stepper_adapt())
+    }
+
+    /// What splitting and merging have done to a set.
+    pub fn adaption_info(&self, set: SetKey) -> Result<AdaptionInfo> {
+        let k = self.find(set)?;
+        let mut info = AdaptionInfo::default();
+        call!(self, mpm_stepper_adaption_info(self.kept.sets[k].1.as_ptr(), &mut info))?;
         Ok(info)
     }
 
@@ -549,6 +597,12 @@ unsafe extern "C" fn on_friction(user: *mut c_void, batch: *const sys::mpm_conta
     let slot = shared::<FrictionFn>(user);
     let raw = &*batch;
     slot.thrown.guard(|| (slot.function)(&ContactBatch(raw), Columns::new(friction, raw.ld, raw.n, 1).column_mut(0)))
+}
+
+unsafe extern "C" fn on_adaption(user: *mut c_void, batch: *const sys::mpm_adaption_batch, accept: *mut u8) -> i32 {
+    let slot = alone::<AcceptFn>(user);
+    let (raw, function) = (&*batch, &mut slot.function);
+    slot.thrown.guard(|| function(&AdaptionBatch(raw), Columns::new(accept, raw.ld, raw.n, 1).column_mut(0)))
 }
 
 unsafe extern "C" fn on_solve(

@@ -3,6 +3,7 @@ mod scene;
 use mpm::constants::*;
 use mpm::*;
 use scene::*;
+use std::sync::{Arc, Mutex};
 
 #[test]
 fn fields_and_views() {
@@ -206,6 +207,51 @@ fn obstacles_and_contact() {
     let mut floor = stepper.remove_obstacle(floor).unwrap();
     floor.clear_motion().unwrap();
     assert_eq!(floor.set_load([0.0; 3], [0.0; 3]).unwrap_err().status(), MPM_E_UNSUPPORTED);
+}
+
+#[test]
+fn splitting_and_merging() {
+    let context = Context::new().unwrap();
+    let (mut stepper, set) = falling(&context, StepperDesc::default()).unwrap();
+    let halves = AdaptionDesc { every: 0, split_edge: 0.4, ..Default::default() };
+    stepper.set_adaption(set, Some(&halves)).unwrap();
+    let first = stepper.particles(set).len();
+    stepper.adapt().unwrap();
+    let info = stepper.adaption_info(set).unwrap();
+    assert_eq!(
+        (stepper.particles(set).len(), info.splits as usize, info.added as usize),
+        (4 * first, first, 3 * first)
+    );
+
+    // one pair of those that are to be merged stays two particles
+    let seen = Arc::new(Mutex::new((0, -1)));
+    let merging = AdaptionDesc { every: 0, max_per_cell: 1, merge_distance: 0.3, ..Default::default() };
+    let shown = seen.clone();
+    stepper
+        .set_adaption_with(set, &merging, move |batch, accept| {
+            assert_eq!((batch.what(), batch.len(), batch.dim()), (MPM_ADAPT_MERGE, accept.len(), 2));
+            assert!(!batch.is_empty() && batch.position(1)[0] > 0.3 && batch.raw().n == batch.len() as i64);
+            accept[0] = 0;
+            *shown.lock().unwrap() = (batch.len(), batch.other().unwrap()[0]);
+            Ok(())
+        })
+        .unwrap();
+    stepper.adapt().unwrap();
+    let (pairs, stays) = *seen.lock().unwrap();
+    assert_eq!(stepper.adaption_info(set).unwrap().merges as usize, pairs - 1);
+    assert!(pairs > 10 && stepper.particles(set).get::<i64>("id").unwrap().contains(&stays));
+    let before = stepper.hash().unwrap();
+    stepper.set_adaption_with(set, &merging, |_, _| Err(Refusal::stop("as they are"))).unwrap();
+    let error = stepper.adapt().unwrap_err();
+    assert_eq!((error.status(), stepper.hash().unwrap()), (MPM_E_CALLBACK, before));
+
+    let refused = AdaptionDesc { split_edge: 0.2, ..halves };
+    assert_eq!(stepper.set_adaption(set, Some(&refused)).unwrap_err().status(), MPM_E_ARG);
+    stepper.set_adaption(set, None).unwrap();
+    stepper.adapt().unwrap();
+    assert_eq!(stepper.hash().unwrap(), before);
+    stepper.remove(set).unwrap();
+    assert_eq!(stepper.adaption_info(set).unwrap_err().status(), MPM_E_NOT_FOUND);
 }
 
 #[test]
