@@ -1,6 +1,7 @@
 /* Which particles are split and which pairs are merged. The order of ids decides, so that nothing depends on
  * where particles lie in memory. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "adaption/adaption.h"
 #include "context/radix.h"
@@ -10,6 +11,7 @@ typedef struct choice {
   const mpm_particles *set;
   int32_t copy;
   mpm_status status;
+  const double *x[3]; /* rows of positions */
 } choice;
 
 void mpmi_adaption_free(mpmi_adaption *a, mpm_context *context) {
@@ -37,7 +39,7 @@ static uint64_t cell_of(const choice *c, int64_t slot) {
   const mpm_grid *grid = c->set->grid;
   uint64_t cell = 0;
   for (int32_t k = 0; k < grid->dim; ++k) {
-    const double x = mpmi_row_of(c->set, MPMI_POSITION, c->copy, k)[slot];
+    const double x = c->x[k][slot];
     double at = floor((x - grid->desc.origin[k]) * grid->inverse_spacing[k]);
     const double last = (double)grid->desc.cells[k] - 1.0;
     at = at > last ? last : at > 0.0 ? at : 0.0;
@@ -51,7 +53,7 @@ static int32_t is_inside(const choice *c, int64_t slot) {
   const mpm_grid *grid = c->set->grid;
   int32_t inside = mpmi_i64(c->set, MPMI_ID, 0)[slot] >= 0;
   for (int32_t k = 0; k < grid->dim && inside; ++k) {
-    const double x = mpmi_row_of(c->set, MPMI_POSITION, c->copy, k)[slot];
+    const double x = c->x[k][slot];
     inside = x >= grid->desc.origin[k] && x <= grid->upper[k];
   }
   return inside;
@@ -91,7 +93,7 @@ static int32_t has_room(const choice *c, int64_t slot, int32_t edges) {
   }
   int32_t room = 1;
   for (int32_t k = 0; k < grid->dim; ++k) {
-    const double x = mpmi_row_of(c->set, MPMI_POSITION, c->copy, k)[slot];
+    const double x = c->x[k][slot];
     room &=
         grid->desc.periodic[k] || (x - reach[k] >= grid->desc.origin[k] && x + reach[k] <= grid->upper[k]);
   }
@@ -152,13 +154,16 @@ static void limit(choice *c) {
 }
 
 /* ---- merging ------------------------------------------------------------------------------------------ */
-static double distance_in_cells(const choice *c, int64_t s, int64_t t) {
+/* Returns the distance in cells; HUGE_VAL where one axis alone makes it longer than the bound, as it does for
+ * most pairs of a full cell. */
+static double distance_in_cells(const choice *c, int64_t s, int64_t t, double bound) {
+  const mpm_grid *grid = c->set->grid;
   double way[3];
-  for (int32_t k = 0; k < c->set->grid->dim; ++k) {
-    const double *x = mpmi_row_of(c->set, MPMI_POSITION, c->copy, k);
-    way[k] = x[t] - x[s];
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    way[k] = c->x[k][t] - c->x[k][s];
+    if (fabs(way[k] * grid->inverse_spacing[k]) > bound) return HUGE_VAL;
   }
-  return mpmi_edge_in_cells(c->set->grid, way);
+  return mpmi_edge_in_cells(grid, way);
 }
 
 static int32_t same_words(const choice *c, int32_t field, int64_t s, int64_t t) {
@@ -210,7 +215,7 @@ static void pair_up(choice *c, const uint32_t *slot, int64_t n) {
     int64_t with = -1;
     for (int64_t j = i + 1; j < n && !a->taken[slot[i]]; ++j) {
       if (a->taken[slot[j]]) continue;
-      const double away = distance_in_cells(c, slot[i], slot[j]);
+      const double away = distance_in_cells(c, slot[i], slot[j], nearest);
       if (away > nearest || (with >= 0 && away >= nearest) || !deform_alike(c, slot[i], slot[j])) continue;
       nearest = away;
       with = slot[j];
@@ -233,7 +238,7 @@ static int compare_pairs(const void *a, const void *b) {
 }
 
 mpm_status mpmi_adaption_choose(mpmi_adaption *a, const mpm_particles *set, int32_t copy) {
-  choice c = {a, set, copy, MPM_OK};
+  choice c = {a, set, copy, MPM_OK, {NULL}};
   mpm_context *context = set->context;
   const int32_t by_cell = a->desc.min_per_cell > 0 || a->desc.max_per_cell > 0;
   a->splits = a->pairs = 0;
@@ -243,6 +248,7 @@ mpm_status mpmi_adaption_choose(mpmi_adaption *a, const mpm_particles *set, int3
   if (!status) status = MPMI_RESERVE_MORE(context, a->taken, a->taken_capacity, set->slots);
   if (status) return status;
   memset(a->taken, 0, (size_t)set->slots);
+  for (int32_t k = 0; k < set->grid->dim; ++k) c.x[k] = mpmi_row_of(set, MPMI_POSITION, copy, k);
   const int64_t n = list(&c, by_cell);
   split_long(&c, a->order, n);
   for (int64_t begin = 0, end; begin < n && by_cell; begin = end) {
