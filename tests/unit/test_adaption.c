@@ -369,6 +369,28 @@ START_TEST(ties) {
 }
 END_TEST
 
+/* Pairs just nearer than the bound are merged, and those just farther are not, along axes and across them. */
+START_TEST(how_near) {
+  static const double way[4][2] = {{0.24, 0.0}, {0.0, -0.24}, {0.17, 0.17}, {-0.14, 0.19}};
+  world_desc desc = described(&methods[0], 2);
+  for (int32_t k = 0; k < 8; ++k) {
+    const double h = 0.25, more = k < 4 ? 1.0 : 1.1, x = 1.125, y = 1.125;
+    const double position[4] = {x, x + more * way[k % 4][0] * h, y, y + more * way[k % 4][1] * h},
+                 volume[2] = {0.01, 0.01};
+    world w;
+    mpm_particles *set = world_open(&w, &desc);
+    ck_ok(&w, mpm_particles_add(set, 2, position, NULL, volume, NULL, NULL, NULL));
+    mpm_adaption_desc d = adaption_desc();
+    d.every = 0;
+    d.max_per_cell = 1;
+    ck_ok(&w, mpm_stepper_set_adaption(w.stepper, set, &d));
+    ck_ok(&w, mpm_stepper_adapt(w.stepper));
+    ck_assert_msg(mpm_particles_count(set) == (k < 4 ? 1 : 2), "pair %d", (int)k);
+    world_close(&w);
+  }
+}
+END_TEST
+
 /* Prescribed particles keep their velocities; pairs of unlike ones stay apart. */
 START_TEST(prescribed_stay) {
   const method *how = &methods[_i];
@@ -525,6 +547,7 @@ Suite *adaption_suite(void) {
   tcase_add_test(parts, faces);
   tcase_add_test(parts, rings);
   tcase_add_test(parts, ties);
+  tcase_add_test(parts, how_near);
   tcase_add_loop_test(parts, prescribed_stay, 0, METHODS);
   tcase_add_test(parts, no_mean);
   tcase_add_test(parts, odd_sizes);
