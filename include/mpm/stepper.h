@@ -472,8 +472,8 @@ MPM_API mpm_status mpm_stepper_wall_reaction(const mpm_stepper *stepper, int32_t
 
 /** Gives the force[dim] that the prescribed particles of a set exert on the material, on the axes on which
  * they are prescribed: the mean over the last step, or with MPM_NEWMARK the one at its end. It is what holds
- * them, less their own inertia, weight and external forces; 0 for a set without such particles. What a body of
- * its own gives others through contact is not in it: mpm_stepper_contact_info() has that.
+ * them, less their own inertia, weight and external forces; 0 for a set without such particles. What a body
+ * of its own gives others through contact is not in it: mpm_stepper_contact_info() has that.
  * MPM_E_NOT_FOUND: the set is not in this stepper. MPM_E_STATE before the first step. */
 MPM_API mpm_status mpm_stepper_particles_reaction(const mpm_stepper *stepper, const mpm_particles *prescribed,
                                                   double *force);
