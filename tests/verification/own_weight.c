@@ -193,8 +193,8 @@ static void bars(void) {
 
 static const char *const fem = "own finite elements of order 4; set tolerance";
 
-/* One kind of grid, by several numbers of particles and of steps. The linear basis, which locks in bending and
- * on an updated grid feels how particles cross cells, has smaller cells there. */
+/* One kind of grid, by several numbers of particles and of steps. The linear basis, which locks in bending
+ * and on an updated grid feels how particles cross cells, has smaller cells there. */
 typedef struct kind {
   const char *name;
   int32_t basis, cells, least, most; /* particles per cell and axis */
@@ -205,8 +205,8 @@ typedef struct kind {
 static const char *const crossing =
     "particles that cross cells of the linear basis: too few per cell see too little of the bending";
 
-/* The verdict on one thing: a gate, or where the linear basis has too few particles, a failure that is expected
- * if `fails`. */
+/* The verdict on one thing: a gate, or, where the linear basis has too few particles for it and so `fails`, a
+ * failure that is expected. */
 static void judge(const char *name, const char *what, double value, double high, const char *source,
                   int32_t fails) {
   char both[160];
