@@ -860,7 +860,8 @@ namespace Mpm {
     /// <summary>time to reach, not before the present one.</summary>
     public double t_end;
     /// <summary>Explicit: share of mpm_stable_dt(), in (0, 1], or 0 (default since 0.2.0, was 0.5): two thirds of the
-    /// largest share at which bodies were found to stay bounded, by basis and scheme.</summary>
+    /// largest share at which bodies were found to stay bounded, by basis and scheme: with all transfers in 1-D and
+    /// 2-D (of MPM_XPIC order 2, of MPM_FMPM 2 and 8), with MPM_FLIP in 3-D.</summary>
     public double cfl;
     /// <summary>most that the first sub-step takes; 0 (default): the controller's dt.</summary>
     public double dt_first;

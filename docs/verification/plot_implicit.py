@@ -178,30 +178,67 @@ def beam():
     return figure
 
 
+BEAMS = (("thick", (-0.21083, -0.87838)), ("slender", (-0.29426, -0.94597)))
+UGIMP = 17.0
+
+
 @plot
 def own_weight():
+    """Load against deflection, of all bases by all numbers of steps."""
     figure, ax = axes(2)
     data = read("own_weight")
-    names = ((QUADRATIC, "quadratic"), (CUBIC, "cubic"), (GIMP, "GIMP"), (LINEAR, "linear, half the cells"))
-    for b, (beam, way) in enumerate((("thick", 0.87838), ("slender", 0.94597))):
-        for i, (basis, name) in enumerate(names):
-            per_cell = 4 if basis == LINEAR else 3
-            at = rows(data, beam=beam, basis=basis, per_cell=per_cell, steps=20, density=0)
-            ax[0].plot([0, *at["t"]], [0] + [-y for y in at["y"]], f"C{i}" + "-:"[b], label=f"{beam}, {name}")
-            steps, error = (10, 20, 40, 80), []
+    kinds = ((QUADRATIC, 4, 3, 0, "quadratic"), (CUBIC, 4, 3, 0, "cubic"), (GIMP, 4, 3, 0, "GIMP"), (UGIMP, 4, 3, 0, "uGIMP"),
+             (LINEAR, 8, 4, 0, "linear, half the cells"), (LINEAR, 4, 2, 1, "linear, total Lagrangian"))
+    for panel, (beam, tip) in zip(ax, BEAMS):
+        for i, (basis, cells, per_cell, lagrangian, name) in enumerate(kinds):
+            for steps, mark in ((10, "o"), (20, "s"), (40, "^"), (80, "-")):
+                at = rows(data, beam=beam, basis=basis, cells=cells, per_cell=per_cell, lagrangian=lagrangian, steps=steps, density=0)
+                panel.plot([0.12 * i + t for t in (0, *at["t"])], [0] + [-y for y in at["y"]], f"C{i}{mark}", fillstyle="none",
+                           markersize=3, linewidth=1, label=name if mark == "-" else None)
+            panel.plot([0.12 * i + 1], [-tip[1]], "k+", markersize=9, label=None if i else "FEM")
+        for steps, mark in ((10, "o"), (20, "s"), (40, "^"), (80, "-")):
+            panel.plot([], [], f"k{mark}", fillstyle="none", markersize=3, linewidth=1, label=f"{steps} steps")
+        panel.set_title(beam, fontsize=9)
+        panel.set_xlabel("share of the weight; each basis 0.12 further to the right")
+        panel.set_ylabel("way of the tip down")
+        panel.legend(fontsize=6)
+    return figure
+
+
+@plot
+def own_weight_drift():
+    """Error at the end against the number of steps: smooth bases, the linear one, and slow motion."""
+    figure, ax = axes(3)
+    data = read("own_weight")
+
+    def draw(panel, steps, basis, cells, per_cell, lagrangian, density, line, name):
+        for (beam, tip), mark in zip(BEAMS, "os"):
+            error = []
             for n in steps:
-                at = rows(data, beam=beam, basis=basis, per_cell=per_cell, steps=n, density=0)
-                error.append(-at["y"][-1] / way - 1)
-            ax[1].plot(steps, [100 * e for e in error], f"C{i}" + ("o-" if b == 0 else "s:"))
-        ax[0].plot([1], [way], "k+", markersize=9, label="FEM" if b else None)
-    ax[0].set_xlabel("share of the weight")
-    ax[0].set_ylabel("way of the tip down")
-    ax[0].legend(fontsize=6)
-    ax[1].set_xscale("log")
-    ticks(ax[1], (10, 20, 40, 80))
-    ax[1].axhspan(-3, 3, color="k", alpha=0.08)
-    ax[1].set_xlabel("steps")
-    ax[1].set_ylabel("way over FEM - 1, %")
+                at = rows(data, beam=beam, basis=basis, cells=cells, per_cell=per_cell, lagrangian=lagrangian, steps=n, density=density)
+                error.append(100 * math.hypot(at["x"][-1] - tip[0], at["y"][-1] - tip[1]) / math.hypot(*tip))
+            panel.plot(steps, error, line + mark, fillstyle="none", linewidth=1, label=name if mark == "o" else None)
+
+    still, moving = (10, 20, 40, 80), (10, 40, 160)
+    for i, (basis, name) in enumerate(((QUADRATIC, "quadratic"), (CUBIC, "cubic"), (GIMP, "GIMP"), (UGIMP, "uGIMP"))):
+        for per_cell, style in ((2, ":"), (3, "--"), (4, "-")):
+            draw(ax[0], still, basis, 4, per_cell, 0, 0, f"C{i}{style}", f"{name}, {per_cell} x {per_cell}")
+    for i, (per_cell, lagrangian) in enumerate(((2, 0), (3, 0), (4, 0), (2, 1), (3, 1))):
+        draw(ax[1], still, LINEAR, 8, per_cell, lagrangian, 0, f"C{i}" + "-:"[lagrangian],
+             f"{'total Lagrangian' if lagrangian else 'updated'}, {per_cell} x {per_cell}")
+    for i, (basis, name) in enumerate(((QUADRATIC, "quadratic"), (CUBIC, "cubic"), (GIMP, "GIMP"))):
+        for per_cell, style in ((2, ":"), (3, "--")):
+            draw(ax[2], moving, basis, 4, per_cell, 0, 1, f"C{i}{style}", f"{name}, {per_cell} x {per_cell}")
+    for panel, steps, title in zip(ax, (still, still, moving), ("quasi-static, smooth bases", "quasi-static, linear, 8 cells deep",
+                                                               "in slow motion")):
+        panel.set_xscale("log")
+        ticks(panel, steps)
+        panel.axhspan(0, 3, color="k", alpha=0.08)
+        panel.set_title(title + " (thick: o, slender: s)", fontsize=9)
+        panel.set_xlabel("steps")
+        panel.set_ylabel("error of the tip / its way, %")
+        panel.set_ylim(bottom=0)
+        panel.legend(fontsize=6)
     return figure
 
 

@@ -357,7 +357,8 @@ typedef struct mpm_advance_desc {
   int32_t max_cuts;     /**< most cuts of one sub-step before the call gives up; 0 (default): 60 */
   double t_end;         /**< time to reach, not before the present one */
   /** Explicit: share of mpm_stable_dt(), in (0, 1], or 0 (default since 0.2.0, was 0.5): two thirds of the
-   * largest share at which bodies were found to stay bounded, by basis and scheme. With MPM_USL that is 0.40
+   * largest share at which bodies were found to stay bounded, by basis and scheme: with all transfers in 1-D
+   * and 2-D (of MPM_XPIC order 2, of MPM_FMPM 2 and 8), with MPM_FLIP in 3-D. With MPM_USL that is 0.40
    * on MPM_LINEAR and MPM_BSPLINE2, 0.60 on MPM_BSPLINE3, 0.27 with GIMP; with MPM_MUSL and MPM_USF 0.60,
    * 0.67, 0.67 and 0.47, but 0.33 with MPM_CPGIMP and MPM_USF. Implicit: ignored. */
   double cfl;

@@ -1,6 +1,7 @@
 /* A block between two fixed walls, stretched or compressed along x and in equilibrium, with speeds of 1e-5
  * of that of sound: nothing should happen. E = 1000, nu = 0.3, density 1, 18 by 18 cells, periodic in y,
- * four tenths of the stable step. What grows is a mode that the method makes. */
+ * four tenths of the stable step. What grows is a mode that the method makes. Beside it nearly incompressible
+ * blocks with the locking remedy, stretched at constant volume, or without getting thinner. */
 #include "spinning_square.h"
 
 enum { STEPS = 3000, MANY_STEPS = 100000, CELLS = 18 };
@@ -13,8 +14,13 @@ typedef struct method {
   int32_t total; /* mpm_grid_desc.total_lagrangian */
 } method;
 
+typedef struct block {
+  double stretch, across, nu; /* stretches along x and y */
+  int32_t remedy;
+} block;
+
 /* Kinetic over strain energy at the end; 1 or more where a step failed. */
-static double shake(const method *how, const verify_scheme *by, double stretch, int32_t steps,
+static double shake(const method *how, const verify_scheme *by, const block *is, int32_t steps,
                     double *first) {
   const double h = 0.05, speed = 1e-3;
   verify_setup setup = verify_defaults(2, CELLS, h);
@@ -23,18 +29,19 @@ static double shake(const method *how, const verify_scheme *by, double stretch, 
   verify_use(&setup, by, how->transfer);
   setup.stepper.flip = how->flip;
   if (how->order) setup.stepper.xpic_order = how->order;
+  setup.stepper.locking_remedy = is->remedy;
   verify_world w;
   verify_open(&w, &setup);
-  mpm_particles *block = verify_set(&w, verify_elastic(&w, "neo_hookean", 1000.0, 0.3, 1.0));
-  verify_fill_box(&w, block, (const double[]){0.0, 0.0}, (const double[]){CELLS * h, CELLS * h}, 2);
-  const double F[9] = {stretch, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-  verify_ok(&w, mpm_particles_set_all(block, "deformation_gradient", MPM_F64, 9, F));
+  mpm_particles *set = verify_set(&w, verify_elastic(&w, "neo_hookean", 1000.0, is->nu, 1.0));
+  verify_fill_box(&w, set, (const double[]){0.0, 0.0}, (const double[]){CELLS * h, CELLS * h}, 2);
+  const double F[9] = {is->stretch, 0.0, 0.0, 0.0, is->across, 0.0, 0.0, 0.0, 1.0};
+  verify_ok(&w, mpm_particles_set_all(set, "deformation_gradient", MPM_F64, 9, F));
   verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0));
   verify_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_X_MAX, MPM_WALL_FIXED, 0.0));
-  const int64_t n = 2 * mpm_particles_count(block);
+  const int64_t n = 2 * mpm_particles_count(set);
   double *v = verify_array(n);
   verify_noise(n, speed, v);
-  verify_put(&w, block, "velocity", 2, v);
+  verify_put(&w, set, "velocity", 2, v);
   free(v);
   mpm_step_info now = verify_info(&w);
   const double strain = now.strain_energy;
@@ -47,6 +54,62 @@ static double shake(const method *how, const verify_scheme *by, double stretch, 
   }
   verify_close(&w);
   return status ? 1.0 : now.kinetic_energy / strain;
+}
+
+/* From which stretch on MUSL makes something grow: where there is more kinetic energy after 3000 steps than
+ * after a third of them. */
+static void onsets(void) {
+  static const double stretch[] = {1.05, 1.1, 1.2, 1.3, 1.5};
+  static const struct {
+    method how;
+    double least;
+  } list[] = {{{"FLIP", MPM_FLIP, 1.0, 0, 0}, 1.05},       {{"XPIC(2)", MPM_XPIC, 1.0, 2, 0}, 1.1},
+              {{"TFLIP", MPM_TFLIP, 1.0, 0, 0}, 1.2},      {{"AFLIP", MPM_AFLIP, 1.0, 0, 0}, 1.2},
+              {{"FMPM(2)", MPM_FMPM, 1.0, 2, 0}, 1.2},     {{"TPIC", MPM_TPIC, 1.0, 0, 0}, 1.2},
+              {{"APIC", MPM_APIC, 1.0, 0, 0}, 1.3},        {{"FMPM(8)", MPM_FMPM, 1.0, 8, 0}, 1.3},
+              {{"APIC_MLS", MPM_APIC_MLS, 1.0, 0, 0}, 1.5}};
+  for (size_t m = 0; m < sizeof list / sizeof *list; ++m) {
+    double least = HUGE_VAL, first;
+    for (size_t s = 0; s < sizeof stretch / sizeof *stretch && least == HUGE_VAL; ++s) {
+      const block is = {stretch[s], 1.0, 0.3, 0};
+      const verify_scheme *by = &verify_schemes[VERIFY_MUSL];
+      const double third = shake(&list[m].how, by, &is, STEPS / 3, &first);
+      if (shake(&list[m].how, by, &is, STEPS, &first) > third) least = stretch[s];
+    }
+    char what[100];
+    snprintf(what, sizeof what, "MUSL, %s: least of the stretches 1.05, 1.1, 1.2, 1.3, 1.5 at which it grows",
+             list[m].how.name);
+    verify_gate(what, least, list[m].least, list[m].least, "as the guide says");
+  }
+}
+
+/* Nearly incompressible blocks with the remedy and APIC. Where the volume is kept nothing may grow. Where it
+ * has to grow, the stress is of the size of the bulk modulus, and a total Lagrangian grid alone rests. */
+static void incompressible(void) {
+  static const char *const reason = "the volume is forced to grow: stress of the size of the bulk modulus";
+  static const method updated = {"APIC", MPM_APIC, 1.0, 0, 0}, total = {"APIC", MPM_APIC, 1.0, 0, 1};
+  static const struct {
+    double nu, stretch;
+    int32_t kept, scheme, total, grows; /* kept: the volume */
+  } list[] = {{0.49, 1.5, 1, VERIFY_MUSL, 0, 0},       {0.49, 1.5, 1, VERIFY_PROJECTED, 0, 0},
+              {0.49, 2.0, 1, VERIFY_USL, 0, 0},        {0.49, 2.0, 1, VERIFY_MUSL, 0, 0},
+              {0.49, 2.0, 1, VERIFY_PROJECTED, 0, 0},  {0.499, 2.0, 1, VERIFY_USL, 0, 0},
+              {0.499, 2.0, 1, VERIFY_MUSL, 0, 0},      {0.499, 2.0, 1, VERIFY_PROJECTED, 0, 0},
+              {0.49, 1.2, 0, VERIFY_USL, 0, 0},        {0.49, 1.2, 0, VERIFY_MUSL, 0, 1},
+              {0.49, 1.2, 0, VERIFY_PROJECTED, 0, 0},  {0.499, 1.2, 0, VERIFY_MUSL, 0, 1},
+              {0.499, 1.2, 0, VERIFY_PROJECTED, 0, 1}, {0.499, 1.2, 0, VERIFY_MUSL, 1, 0},
+              {0.499, 1.5, 0, VERIFY_MUSL, 1, 0}};
+  for (size_t i = 0; i < (verify_quick() ? 2 : sizeof list / sizeof *list); ++i) {
+    const block is = {list[i].stretch, list[i].kept ? 1.0 / list[i].stretch : 1.0, list[i].nu, 1};
+    const verify_scheme *by = &verify_schemes[list[i].scheme];
+    char what[160];
+    double first;
+    const double last = shake(list[i].total ? &total : &updated, by, &is, STEPS, &first);
+    snprintf(what, sizeof what, "nu = %g, remedy, APIC, %s, stretch %g, %s%s: kinetic energy, last / first",
+             is.nu, list[i].kept ? "volume kept" : "confined", is.stretch, by->name,
+             list[i].total ? ", total Lagrangian" : "");
+    verify_judge(what, last / first, 0.0, 1.0, "equilibrium", list[i].grows ? reason : NULL);
+  }
 }
 
 /* A square of 8 cells that spins freely: what the centrifugal force stretches. */
@@ -120,8 +183,8 @@ int main(int argc, char **argv) {
       double most = 0.0;
       for (int32_t m = 0; m < transfers; ++m) {
         double first;
-        const double last =
-            shake(&methods[m], &verify_schemes[k], stretch[s], verify_quick() ? STEPS / 3 : STEPS, &first);
+        const double last = shake(&methods[m], &verify_schemes[k], &(block){stretch[s], 1.0, 0.3, 0},
+                                  verify_quick() ? STEPS / 3 : STEPS, &first);
         most = fmax(most, last / first);
         fprintf(table, "%g,%s,%s,%.2e,%.2e\n", stretch[s], methods[m].name, verify_schemes[k].name, first,
                 last);
@@ -141,8 +204,8 @@ int main(int argc, char **argv) {
       double most = 0.0, first;
       const int32_t many = !verify_quick() && (k == VERIFY_USF || k == VERIFY_MUSL);
       for (int32_t m = 0; m < 2; ++m) {
-        const double at_end =
-            shake(&total[m], &verify_schemes[k], stretch[s], many ? MANY_STEPS : STEPS, &first);
+        const double at_end = shake(&total[m], &verify_schemes[k], &(block){stretch[s], 1.0, 0.3, 0},
+                                    many ? MANY_STEPS : STEPS, &first);
         most = fmax(most, at_end / first);
         fprintf(table, "%g,\"%s, total\",%s,%.2e,%.2e\n", stretch[s], total[m].name, verify_schemes[k].name,
                 first, at_end);
@@ -153,13 +216,15 @@ int main(int argc, char **argv) {
       verify_gate(what, most, 0.0, 1.0, "equilibrium");
       verify_progress("%s: %g", what, most);
     }
+  incompressible();
+  if (!verify_quick()) onsets();
   for (int32_t s = 0; s < (verify_quick() ? 0 : 6); ++s) {
     const int32_t projected = s >= 3; /* MUSL with FLIP, which damps nothing */
     char what[100];
     double first;
     const double last =
         shake(&methods[projected ? 0 : 1], &verify_schemes[projected ? VERIFY_PROJECTED : VERIFY_USL],
-              stretch[s % 3], MANY_STEPS, &first);
+              &(block){stretch[s % 3], 1.0, 0.3, 0}, MANY_STEPS, &first);
     snprintf(what, sizeof what, "stretch %g, %s, 100 000 steps: kinetic energy, last / first", stretch[s % 3],
              projected ? "MUSL projected, FLIP" : "USL, APIC");
     verify_gate(what, last / first, 0.0, 1.0, "equilibrium");
