@@ -20,6 +20,8 @@ static inline int32_t mpmi_surfaces_hold(const mpmi_settings *settings) {
 /* Finds the nodes that surfaces hold, once all others have said what they hold. The nodes around markers must
  * be known. */
 mpm_status mpmi_surface_holds_find(mpmi_bound *bound);
+/* Returns the last site at a node where some surface sets the velocity along a direction, or -1. */
+int32_t mpmi_surface_direction_at(const mpmi_bound *bound, int64_t slot);
 /* Sets the components along the directions of surfaces along which the material slides. */
 void mpmi_surface_holds_slide(mpmi_bound *bound);
 /* Tells surfaces and markers what their impulses were, at the end of the step. */
