@@ -91,6 +91,7 @@ static hit strike(const method *how, int32_t by, int32_t normal_only) {
     ck_ok(&w, mpm_stepper_set_contact(w.stepper, 0, 1, &rule));
   }
   mpm_surface_desc d = prescribing(normal_only);
+  d.velocity[1] = 0.25;
   mpm_surface *s = put_surface(&w, &d);
   cover(&w, s, from, to);
   hit of = {0.0, {0.0, 0.0}, 0.0, 0.0};
