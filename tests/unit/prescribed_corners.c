@@ -13,10 +13,11 @@ static void cover(const world *w, mpm_surface *s, const double *low, const doubl
     }
 }
 
-/* Walls come before surfaces: nodes on a wall stay on it, and each tells its own force. */
+/* Walls that hold come before surfaces: nodes on them stay there. Each tells its own force, walls that rub
+ * too. */
 START_TEST(walls_come_first) {
-  static const int32_t kinds[] = {MPM_WALL_FIXED, MPM_WALL_SLIP};
-  const int32_t kind = kinds[_i % 2], normal_only = _i / 2;
+  static const int32_t kinds[] = {MPM_WALL_FIXED, MPM_WALL_SLIP, MPM_WALL_FRICTION, MPM_WALL_FRICTION_NODES};
+  const int32_t kind = kinds[_i % 4], normal_only = _i / 4, holds = _i % 4 < 2;
   for (int32_t k = 0; k < BROAD; ++k) {
     const method *how = broad_methods[k];
     if (!is_explicit(how)) continue;
@@ -25,9 +26,9 @@ START_TEST(walls_come_first) {
     mpm_particles *set = world_open(&w, &desc);
     const double low[] = {0.9, 0.0}, high[] = {2.1, 1.0}, from[] = {0.7, 0.15}, to[] = {2.4, 0.5};
     world_fill(&w, set, low, high, 2);
-    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, kind, 0.0));
+    ck_ok(&w, mpm_stepper_set_wall(w.stepper, MPM_Y_MIN, kind, holds ? 0.0 : 0.3));
     mpm_surface_desc d = prescribing(normal_only);
-    d.velocity[0] = 0.5, d.velocity[1] = 2.0;
+    d.velocity[0] = 0.5, d.velocity[1] = holds ? 2.0 : -2.0;
     mpm_surface *s = put_surface(&w, &d);
     cover(&w, s, from, to);
     ck_ok(&w, mpm_step_begin(w.stepper, corner_dt));
@@ -35,8 +36,8 @@ START_TEST(walls_come_first) {
     int64_t n;
     double *v = fetch_nodes(&w, "velocity", &n), *x = fetch_nodes(&w, "position", &n), most = 0.0;
     for (int64_t i = 0; i < n; ++i) {
-      if (fabs(x[n + i]) < 1e-9) ck_within(how->name, v[n + i], 0.0, 1e-13);
-      most = fmax(most, v[n + i]);
+      if (holds && fabs(x[n + i]) < 1e-9) ck_within(how->name, v[n + i], 0.0, 1e-13);
+      most = fmax(most, fabs(v[n + i]));
     }
     ck_holds(most > 1.0); /* others go as the surface says */
     free(v), free(x);
@@ -139,10 +140,61 @@ START_TEST(holds_against_contact) {
 }
 END_TEST
 
+/* Across an inclined surface, with friction or tied, each impulse has its like, and contact makes no energy:
+ * what a surface takes of an impulse changes its direction. */
+START_TEST(inclined_against_contact) {
+  static const method how[] = {{METHOD(BSPLINE2, USL, FLIP, 1.0, "FLIP USL")},
+                               {METHOD(BSPLINE2, USF, APIC, 1.0, "APIC USF")},
+                               {METHOD(BSPLINE2, MUSL, FLIP, 0.97, "FLIP .97 MUSL")},
+                               {METHOD(BSPLINE2, USL, FMPM, 1.0, "FMPM(3) USL"), .xpic_order = 3}};
+  static const double normals[][2] = {{0.05, 0.1}, {0.1, 0.005}, {0.004, 0.1}};
+  const method *of = &how[_i / 3];
+  for (int32_t tied = 0; tied < 2; ++tied) {
+    world w;
+    world_desc desc = world_with(of, 2, CELLS, spacing);
+    mpm_particles *set = world_open(&w, &desc), *other = world_add_set(&w, NULL);
+    const double low[] = {0.9, 0.9}, high[] = {2.1, 1.5}, under[] = {0.9, 1.5}, above[] = {2.1, 2.1};
+    const double down[] = {0.3, -1.0};
+    world_fill(&w, set, low, high, 2);
+    world_fill(&w, other, under, above, 2);
+    ck_ok(&w, mpm_particles_set_all(other, "velocity", MPM_F64, 2, down));
+    ck_ok(&w, mpm_stepper_set_body(w.stepper, other, 1));
+    mpm_contact_desc rule = rule_with(0.4);
+    if (tied) rule.kind = MPM_CONTACT_TIED;
+    ck_ok(&w, mpm_stepper_set_contact(w.stepper, 0, 1, &rule));
+    const mpm_surface_desc d = prescribing(1);
+    mpm_surface *s = put_surface(&w, &d);
+    for (int32_t k = 0; k < 300; ++k) {
+      const double at[2] = {0.5 + 0.125 * (k % 17), 0.5 + 0.1 * (k / 17)};
+      ck_ok(&w, mpm_surface_add(s, 1, at, normals[_i % 3], NULL));
+    }
+    const mpm_step_info start = world_info(&w);
+    double scale = 0.0;
+    for (int32_t step = 0; step < 40; ++step) {
+      const mpm_step_info before = world_info(&w), after = world_step(&w, corner_dt);
+      const double *r = reaction_of(&w, s);
+      scale = fmax(scale, fabs(r[0]) + fabs(r[1]));
+      for (int32_t c = 0; c < 2; ++c)
+        ck_within(of->name, after.momentum[c] - before.momentum[c], corner_dt * r[c],
+                  1e-9 * corner_dt * scale);
+      ck_holds(after.contact_dissipation >= -1e-9 * start.kinetic_energy);
+      ck_within(of->name, after.external_work, 0.0, 1e-9 * start.kinetic_energy);
+    }
+    const mpm_step_info end = world_info(&w);
+    show("%s, %d: reaction up to %g, energy %g of %g\n", of->name, (int)(_i % 3), scale,
+         end.kinetic_energy + end.strain_energy, start.kinetic_energy);
+    ck_holds(end.kinetic_energy + end.strain_energy < start.kinetic_energy);
+    drop_surface(&w, s);
+    world_close(&w);
+  }
+}
+END_TEST
+
 void add_prescribed_corners(Suite *suite) {
   TCase *corners = tcase_create("corners");
-  tcase_add_loop_test(corners, walls_come_first, 0, 4);
+  tcase_add_loop_test(corners, walls_come_first, 0, 8);
   tcase_add_loop_test(corners, holds_against_contact, 0, 5 * HITS);
+  tcase_add_loop_test(corners, inclined_against_contact, 0, 12);
   tcase_set_timeout(corners, 60);
   suite_add_tcase(suite, corners);
 }
