@@ -67,7 +67,7 @@ static void take_sites(const encounter *e, const mpmi_party *party, double *impu
 }
 
 /* Finds by how much an impulse changes the relative velocity, but for a free obstacle. */
-static void give_way(const encounter *e, const double *impulse, double *change) {
+static void yield_to(const encounter *e, const double *impulse, double *change) {
   for (int32_t c = 0; c < 3; ++c) change[c] = e->compliance[c] * impulse[c];
   for (int32_t i = 0; i < 2 && e->site; ++i) {
     double left[3] = {impulse[0], impulse[1], impulse[2]};
@@ -83,7 +83,7 @@ static double of_free(const encounter *e, const double *n) {
 static double weighted(const encounter *e, const double *n) {
   if (e->site) {
     double change[3];
-    give_way(e, n, change);
+    yield_to(e, n, change);
     return mpmi_inner(n, change) + of_free(e, n);
   }
   return n[0] * n[0] * e->compliance[0] + n[1] * n[1] * e->compliance[1] + n[2] * n[2] * e->compliance[2] +
@@ -95,7 +95,7 @@ static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
                    int32_t keeps) {
   const double back[3] = {-impulse[0], -impulse[1], -impulse[2]};
   double taken = 0.0, change[3], to[2][3];
-  give_way(e, impulse, change);
+  yield_to(e, impulse, change);
   for (int32_t i = 0; i < 2; ++i) {
     for (int32_t c = 0; c < 3; ++c) to[i][c] = i ? impulse[c] : back[c];
     take_sites(e, e->party[i], to[i]);
@@ -193,7 +193,7 @@ static double give_friction(mpmi_bound *bound, mpmi_touch *touch, const encounte
     impulse[c] = (normal - touch->normal_impulse) * touch->normal[c] + change[c];
   }
   touch->dissipation += give(bound, touch, e, impulse, 0);
-  give_way(e, impulse, moved);
+  yield_to(e, impulse, moved);
   for (int32_t c = 0; c < bound->dim; ++c) {
     rubbed = fmax(rubbed, fabs(change[c]) * e->compliance[c]);
     touch->friction_work -= change[c] * (e->velocity[c] + 0.5 * moved[c]);

@@ -118,8 +118,8 @@ static void drop_prescribing(body *b, mpm_surface *s, const double *v, double ti
   ck_ok(&b->w, mpm_surface_destroy(s));
 }
 
-/* A block that starts on the lower faces flies stress-free through several cells on each axis; of three bodies
- * two have a surface that prescribes this. */
+/* A block that starts on the lower faces flies stress-free through several cells on each axis. Of three
+ * bodies two have a surface that prescribes this. */
 static void check_translation(const combination *c, int32_t number) {
   enum { FLIGHT = 12 };
   const double v[3] = {0.96, 0.8, 0.7}, dt = 0.08, none[3] = {0.0, 0.0, 0.0};
