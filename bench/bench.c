@@ -7,10 +7,10 @@
  * --implicit: implicit steps in their place, implicit.c.
  * --only: cases whose name contains the text; --case: the one of this name. --list: their names, those with a
  * solver of the host left out. --bare: for against.py, see choice.h. --spread: bounds of the grid over the
- * size of the body. --markers: a surface of so many through its middle prescribes. A line gives the median and the best of the repeats, nanoseconds per particle and step by
- * stage (weights are part of P2G and G2P), those of a thread for each node of the stencil, the rate as a
- * share of what one core, times the threads, can do in multiply-adds and in memory traffic, and the peak of
- * the whole process. */
+ * size of the body. --markers: a surface of so many through its middle prescribes. A line gives the median
+ * and the best of the repeats, nanoseconds per particle and step by stage (weights are part of P2G and
+ * G2P), those of a thread for each node of the stencil, the rate as a share of what one core, times the
+ * threads, can do in multiply-adds and in memory traffic, and the peak of the whole process. */
 #include "process.h"
 #include "ceilings.h"
 #include "choice.h"
