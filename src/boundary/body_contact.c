@@ -76,6 +76,13 @@ static void yield_to(const encounter *e, const double *impulse, double *change) 
   }
 }
 
+double mpmi_touch_compliance(mpmi_bound *bound, const mpmi_touch *touch) {
+  const encounter e = encounter_of(bound, touch, 1);
+  double change[3];
+  yield_to(&e, touch->normal, change);
+  return mpmi_inner(touch->normal, change);
+}
+
 static double of_free(const encounter *e, const double *n) {
   return e->free ? mpmi_rigid_compliance(e->free, e->party[0]->arm, n) : 0.0;
 }
@@ -136,8 +143,8 @@ static void tie_by(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
   for (int32_t c = 0; c < bound->dim; ++c) touch->tangential[c] += impulse[c] - along * touch->normal[c];
 }
 
-/* Stops the whole relative velocity; returns the largest component of it that could be stopped. Free obstacles
- * and surfaces along which a body slides couple components, and so these are stopped one after the other. */
+/* Stops the whole relative velocity; returns the largest component of it that could be stopped. Free
+ * obstacles and surfaces along which a body slides couple components: these are stopped one by one. */
 static double tie(mpmi_bound *bound, mpmi_touch *touch) {
   encounter e = encounter_of(bound, touch, 0);
   double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;

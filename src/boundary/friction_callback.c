@@ -13,7 +13,7 @@ typedef struct touch_list {
   double friction[RANGE];
 } touch_list;
 
-static void show_touch(const mpmi_bound *bound, const mpmi_touch *touch, touch_list *list) {
+static void show_touch(mpmi_bound *bound, const mpmi_touch *touch, touch_list *list) {
   const mpmi_blocks *b = &bound->step->layout->blocks;
   const mpmi_party *party = bound->nodes->contact.party;
   const int64_t slot[2] = {party[touch->party[0]].slot, party[touch->party[1]].slot}, at = list->n;
@@ -27,6 +27,8 @@ static void show_touch(const mpmi_bound *bound, const mpmi_touch *touch, touch_l
     list->position[k * RANGE + at] = place[k];
     list->normal[k * RANGE + at] = touch->normal[k];
   }
+  if (party[touch->party[0]].site >= 0 || party[touch->party[1]].site >= 0)
+    compliance = mpmi_touch_compliance(bound, touch);
   for (int32_t k = 0; k < bound->dim; ++k) list->slip[k * RANGE + at] = u[k] - approach * touch->normal[k];
   const int32_t apart = touch->gap > 0.0 && !mpmi_detects_by_velocity(touch->rule);
   const double closing = apart ? touch->gap / bound->step->dt : 0.0;

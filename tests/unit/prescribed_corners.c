@@ -61,8 +61,14 @@ END_TEST
  * surface or not; the force goes on to the surface. */
 enum { HIT_BY_BODY, TIED_TO_BODY, HIT_BY_OBSTACLE, HITS };
 typedef struct hit {
-  double y, momentum[2], work, dissipation;
+  double y, momentum[2], work, dissipation, pressure;
 } hit;
+
+static mpm_status note_pressure(void *user, const mpm_contact_batch *b, double *friction) {
+  (void)friction;
+  for (int64_t i = 0; i < b->n; ++i) *(double *)user += b->pressure[i];
+  return MPM_OK;
+}
 
 static hit strike(const method *how, int32_t by, int32_t normal_only) {
   world w;
@@ -95,7 +101,8 @@ static hit strike(const method *how, int32_t by, int32_t normal_only) {
   d.velocity[1] = 0.25;
   mpm_surface *s = put_surface(&w, &d);
   cover(&w, s, from, to);
-  hit of = {0.0, {0.0, 0.0}, 0.0, 0.0};
+  hit of = {0.0, {0.0, 0.0}, 0.0, 0.0, 0.0};
+  ck_ok(&w, mpm_stepper_set_friction(w.stepper, note_pressure, &of.pressure));
   double scale = 0.0;
   for (int32_t step = 0; step < 20; ++step) {
     const mpm_step_info before = world_info(&w), after = world_step(&w, corner_dt);
@@ -136,6 +143,7 @@ START_TEST(holds_against_contact) {
   for (int32_t c = 0; c < 2; ++c)
     ck_within(of->name, slid.momentum[c], held.momentum[c], share * (1.0 + fabs(held.momentum[1])));
   ck_within(of->name, slid.dissipation, held.dissipation, share * held.dissipation);
+  ck_within(of->name, slid.pressure, held.pressure, share * held.pressure);
   ck_within(of->name, slid.work, held.work, share * (1.0 + fabs(held.work)));
 }
 END_TEST
