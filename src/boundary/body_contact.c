@@ -57,30 +57,14 @@ static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_
   return e;
 }
 
-/* Takes out of an impulse what surfaces along which a party slides take of it. */
-static void take_sites(const encounter *e, const mpmi_party *party, double *impulse) {
-  for (int32_t at = e->site ? party->site : -1; at >= 0; at = e->site[at].before) {
-    if (!e->site[at].slides) continue;
-    const double along = mpmi_inner(e->site[at].vector, impulse);
-    for (int32_t c = 0; c < 3; ++c) impulse[c] -= along * e->site[at].vector[c];
-  }
-}
-
 /* Finds by how much an impulse changes the relative velocity, but for a free obstacle. */
 static void yield_to(const encounter *e, const double *impulse, double *change) {
   for (int32_t c = 0; c < 3; ++c) change[c] = e->compliance[c] * impulse[c];
   for (int32_t i = 0; i < 2 && e->site; ++i) {
     double left[3] = {impulse[0], impulse[1], impulse[2]};
-    take_sites(e, e->party[i], left);
+    mpmi_surface_take_out(e->site, e->party[i]->site, left);
     for (int32_t c = 0; c < 3; ++c) change[c] -= e->party[i]->inverse_mass[c] * (impulse[c] - left[c]);
   }
-}
-
-double mpmi_touch_compliance(mpmi_bound *bound, const mpmi_touch *touch) {
-  const encounter e = encounter_of(bound, touch, 1);
-  double change[3];
-  yield_to(&e, touch->normal, change);
-  return mpmi_inner(touch->normal, change);
 }
 
 static double of_free(const encounter *e, const double *n) {
@@ -105,7 +89,7 @@ static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
   yield_to(e, impulse, change);
   for (int32_t i = 0; i < 2; ++i) {
     for (int32_t c = 0; c < 3; ++c) to[i][c] = i ? impulse[c] : back[c];
-    take_sites(e, e->party[i], to[i]);
+    mpmi_surface_take_out(e->site, e->site ? e->party[i]->site : -1, to[i]);
   }
   for (int32_t c = 0; c < bound->dim; ++c) {
     for (int32_t i = 0; i < 2; ++i) {

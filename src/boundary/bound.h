@@ -127,8 +127,6 @@ mpm_status mpmi_body_contacts_find(mpmi_bound *bound);
 /* Lets bodies act on each other, or with keeps, in a projection without forces, keeps their contacts as they
  * were found. Rounds after the first go on from there. *most becomes the largest velocity that changed. */
 mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t first_round, double *most);
-/* Returns how much velocity a unit impulse along the normal of a touch stops, but for free obstacles. */
-double mpmi_touch_compliance(mpmi_bound *bound, const mpmi_touch *touch);
 /* Adds up what they did, for reports. */
 void mpmi_body_contacts_sum(mpmi_bound *bound);
 

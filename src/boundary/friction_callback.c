@@ -1,6 +1,6 @@
 /* The host's coefficients of friction. It sees touches in batches of one pair of bodies, which do not depend
  * on how tasks share them. */
-#include "boundary/bound.h"
+#include "boundary/surface_holds.h"
 #include "contact/contact.h"
 
 #include <math.h>
@@ -13,22 +13,25 @@ typedef struct touch_list {
   double friction[RANGE];
 } touch_list;
 
-static void show_touch(mpmi_bound *bound, const mpmi_touch *touch, touch_list *list) {
+static void show_touch(const mpmi_bound *bound, const mpmi_touch *touch, touch_list *list) {
   const mpmi_blocks *b = &bound->step->layout->blocks;
   const mpmi_party *party = bound->nodes->contact.party;
   const int64_t slot[2] = {party[touch->party[0]].slot, party[touch->party[1]].slot}, at = list->n;
   double u[3] = {0.0, 0.0, 0.0}, place[3], approach = 0.0, compliance = 0.0;
+  double left[2][3];
+  for (int32_t i = 0; i < 2; ++i) {
+    for (int32_t k = 0; k < 3; ++k) left[i][k] = touch->normal[k];
+    mpmi_surface_take_out(bound->nodes->surface_sites.site, party[touch->party[i]].site, left[i]);
+  }
   mpmi_contact_position(b, &bound->nodes->contact, slot[0], place);
   for (int32_t k = 0; k < bound->dim; ++k) {
     u[k] = mpmi_velocity(bound->values, slot[1])[k] - mpmi_velocity(bound->values, slot[0])[k];
     approach += u[k] * touch->normal[k];
     for (int32_t i = 0; i < 2; ++i)
-      compliance += party[touch->party[i]].inverse_mass[k] * touch->normal[k] * touch->normal[k];
+      compliance += party[touch->party[i]].inverse_mass[k] * touch->normal[k] * left[i][k];
     list->position[k * RANGE + at] = place[k];
     list->normal[k * RANGE + at] = touch->normal[k];
   }
-  if (party[touch->party[0]].site >= 0 || party[touch->party[1]].site >= 0)
-    compliance = mpmi_touch_compliance(bound, touch);
   for (int32_t k = 0; k < bound->dim; ++k) list->slip[k * RANGE + at] = u[k] - approach * touch->normal[k];
   const int32_t apart = touch->gap > 0.0 && !mpmi_detects_by_velocity(touch->rule);
   const double closing = apart ? touch->gap / bound->step->dt : 0.0;
