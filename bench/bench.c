@@ -2,15 +2,15 @@
  * every step, re-sorts included, with momentum, energy and the hash of the state looked at in the end.
  *
  *   bench [--quick] [--implicit] [--only TEXT] [--particles N,N] [--threads N,N] [--repeats N] [--spread X]
- *         [--csv FILE] [--case NAME] [--list] [--bare]
+ *         [--markers N] [--csv FILE] [--case NAME] [--list] [--bare]
  *
  * --implicit: implicit steps in their place, implicit.c.
  * --only: cases whose name contains the text; --case: the one of this name. --list: their names, those with a
  * solver of the host left out. --bare: for against.py, see choice.h. --spread: bounds of the grid over the
- * size of the body. A line gives the median and the best of the repeats, nanoseconds per particle and step by
- * stage (weights are part of P2G and G2P), those of a thread for each node of the stencil, the rate as a
- * share of what one core, times the threads, can do in multiply-adds and in memory traffic, and the peak of
- * the whole process. */
+ * size of the body. --markers: a surface of so many through its middle prescribes. A line gives the median
+ * and the best of the repeats, nanoseconds per particle and step by stage (weights are part of P2G and
+ * G2P), those of a thread for each node of the stencil, the rate as a share of what one core, times the
+ * threads, can do in multiply-adds and in memory traffic, and the peak of the whole process. */
 #include "process.h"
 #include "ceilings.h"
 #include "choice.h"
@@ -83,6 +83,7 @@ typedef struct settings {
     int64_t at[MOST_NUMBERS];
   } particles, threads;
   double spread;
+  int64_t markers;
 } settings;
 
 typedef struct result {
@@ -159,7 +160,7 @@ static void run(const void *data, void *to) {
   const run_job *job = data;
   result *r = to;
   bench_scene scene;
-  const bench_options options = {job->particles, job->threads, job->how->spread};
+  const bench_options options = {job->particles, job->threads, job->how->spread, job->how->markers};
   mpm_status status = bench_open(&scene, job->of, &options);
   if (!status) status = measure(&scene, job->of, job->how, r);
   r->failed = status != MPM_OK;
@@ -169,8 +170,8 @@ static void run(const void *data, void *to) {
 
 /* What a run must keep whatever its speed. Work is done by the force; walls take momentum; plastic laws
  * dissipate. */
-static int32_t is_sound(const bench_case *of, const result *r) {
-  const int32_t free_body = of->extras != BENCH_WALLS && of->extras != BENCH_FORCE;
+static int32_t is_sound(const bench_case *of, const settings *how, const result *r) {
+  const int32_t free_body = !how->markers && of->extras != BENCH_WALLS && of->extras != BENCH_FORCE;
   int32_t good = isfinite(r->energy) && r->energy < 0.01;
   if (free_body) good &= r->momentum < 1e-9 && (bench_yields(of) || r->energy > -0.2);
   if (!good)
@@ -216,7 +217,7 @@ static int32_t run_threads(const bench_case *of, const settings *how, int64_t pa
       bench_print_bare(of->name, threads, 1e-6 * r.best, r.hash);
     else
       print(csv, of, threads, how->spread, &r, peak, bandwidth);
-    bad |= !is_sound(of, &r);
+    bad |= !is_sound(of, how, &r);
     if (t > 0 && r.hash != hash) {
       fprintf(stderr, "%s: another hash on %d threads\n", of->name, (int)threads);
       bad = 1;
@@ -298,6 +299,8 @@ static int32_t read_options(int argc, char **argv, settings *how) {
       good = (how->repeats = atoi(value)) >= 1 && how->repeats <= MOST_REPEATS;
     else if (good && !strcmp(argv[i], "--spread"))
       good = (how->spread = atof(value)) >= 3.0;
+    else if (good && !strcmp(argv[i], "--markers"))
+      good = (how->markers = atoll(value)) >= 0;
     else if (good && !strcmp(argv[i], "--threads"))
       good = read_numbers(value, 1, 1024, &how->threads);
     else

@@ -220,6 +220,23 @@ static mpm_status add_obstacles(bench_scene *scene, const bench_case *of, const 
   return status;
 }
 
+/* Holds the middle of the body along y: half as wide as that, and in 3-D a helix as deep. */
+static mpm_status add_surface(bench_scene *scene, const bench_case *of, const lattice *l, int64_t markers) {
+  mpm_surface_desc d;
+  mpm_status status = mpm_surface_desc_init(&d, sizeof d);
+  d.prescribes = MPM_PRESCRIBES_NORMAL;
+  if (!status) status = mpm_surface_create(scene->context, scene->grid, &d, &scene->surface);
+  const double half = 0.125 * (double)l->side, middle = l->corner + 2.0 * half;
+  for (int64_t i = 0; i < markers && !status; ++i) {
+    const double at = (2.0 * (double)i + 1.0) / (double)markers - 1.0;
+    const double x[3] = {middle + half * at, middle, middle + half * (fmod(16.0 * at + 16.0, 2.0) - 1.0)};
+    double area[3] = {0.0, 2.0 * half / (double)markers, 0.0};
+    if (of->dim == 1) area[0] = 1.0;
+    status = mpm_surface_add(scene->surface, 1, x, area, NULL);
+  }
+  return status ? status : mpm_stepper_add_surface(scene->stepper, scene->surface);
+}
+
 static mpm_status add_extras(bench_scene *scene, const bench_case *of, const lattice *l) {
   mpm_status status = MPM_OK;
   mpm_contact_desc contact;
@@ -277,11 +294,13 @@ mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_opti
       (status = add_set(scene, of, &l, 0, &scene->body)) ||
       (l.part[0] && (status = add_set(scene, of, &l, 1, &scene->part))))
     return status;
-  return add_extras(scene, of, &l);
+  status = add_extras(scene, of, &l);
+  return status || !options->markers ? status : add_surface(scene, of, &l, options->markers);
 }
 
 void bench_close(bench_scene *scene) {
   mpm_stepper_destroy(scene->stepper);
+  mpm_surface_destroy(scene->surface);
   for (int32_t i = 0; i < BENCH_MOST_OBSTACLES; ++i) mpm_obstacle_destroy(scene->obstacle[i]);
   mpm_particles_destroy(scene->part);
   mpm_particles_destroy(scene->body);

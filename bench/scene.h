@@ -32,7 +32,8 @@ typedef struct bench_case {
 typedef struct bench_options {
   int64_t particles;
   int32_t threads;
-  double spread; /* bounds of the grid over the size of the body, 3 or more */
+  double spread;   /* bounds of the grid over the size of the body, 3 or more */
+  int64_t markers; /* of a surface through the middle of the body that prescribes; 0: there is none */
 } bench_options;
 
 typedef struct bench_scene {
@@ -42,6 +43,7 @@ typedef struct bench_scene {
   mpm_particles *body, *part; /* part: what is another body, or NULL */
   mpm_stepper *stepper;
   mpm_obstacle *obstacle[BENCH_MOST_OBSTACLES];
+  mpm_surface *surface; /* or NULL */
   int64_t particles;
   int64_t allocations; /* asked of the host so far */
 } bench_scene;

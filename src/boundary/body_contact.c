@@ -3,7 +3,7 @@
  * without forces, which keep to what was found. An impulse acts on the nodes of one meeting alone, so that
  * meetings are independent of each other but for those of free obstacles, which are swept one after the
  * other. */
-#include "boundary/bound.h"
+#include "boundary/surface_holds.h"
 #include "contact/contact.h"
 #include "simd/vector3.h"
 
@@ -20,6 +20,7 @@ static void weigh_party(const mpmi_bound *bound, mpmi_party *party, int32_t keep
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int32_t tie = constraints->tie_of[party->slot];
   const double mass = mpmi_moving_mass(bound, party->slot);
+  party->site = mpmi_surface_direction_at(bound, party->slot);
   for (int32_t c = 0; c < 3; ++c) {
     const int32_t held = c >= bound->dim || mpmi_held_by(bound->nodes, party->slot, c) ||
                          (tie >= 0 && constraints->tie[tie].zero[c]);
@@ -33,6 +34,7 @@ static void weigh_party(const mpmi_bound *bound, mpmi_party *party, int32_t keep
 typedef struct encounter {
   mpmi_party *party[2];
   mpmi_rigid_surface *surface, *free; /* the first party, or NULL */
+  const mpmi_surface_site *site;      /* what the parties' sites are numbers of, or NULL: they have none */
   double velocity[3], compliance[3], of_surface[3];
 } encounter;
 
@@ -45,6 +47,7 @@ static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_
     mpmi_surface_velocity(e.surface, e.party[0]->arm, e.of_surface);
     if (!keeps && mpmi_is_free(e.surface)) e.free = e.surface;
   }
+  if (e.party[0]->site >= 0 || e.party[1]->site >= 0) e.site = bound->nodes->surface_sites.site;
   for (int32_t c = 0; c < bound->dim; ++c) {
     if (e.surface) e.of_surface[c] += e.party[0]->own_velocity[c];
     const double first = e.surface ? e.of_surface[c] : mpmi_velocity(bound->values, e.party[0]->slot)[c];
@@ -54,11 +57,26 @@ static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_
   return e;
 }
 
+/* Finds by how much an impulse changes the relative velocity, but for a free obstacle. */
+static void yield_to(const encounter *e, const double *impulse, double *change) {
+  for (int32_t c = 0; c < 3; ++c) change[c] = e->compliance[c] * impulse[c];
+  for (int32_t i = 0; i < 2 && e->site; ++i) {
+    double left[3] = {impulse[0], impulse[1], impulse[2]};
+    mpmi_surface_take_out(e->site, e->party[i]->site, left);
+    for (int32_t c = 0; c < 3; ++c) change[c] -= e->party[i]->inverse_mass[c] * (impulse[c] - left[c]);
+  }
+}
+
 static double of_free(const encounter *e, const double *n) {
   return e->free ? mpmi_rigid_compliance(e->free, e->party[0]->arm, n) : 0.0;
 }
 
 static double weighted(const encounter *e, const double *n) {
+  if (e->site) {
+    double change[3];
+    yield_to(e, n, change);
+    return mpmi_inner(n, change) + of_free(e, n);
+  }
   return n[0] * n[0] * e->compliance[0] + n[1] * n[1] * e->compliance[1] + n[2] * n[2] * e->compliance[2] +
          of_free(e, n);
 }
@@ -67,10 +85,15 @@ static double weighted(const encounter *e, const double *n) {
 static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, const double *impulse,
                    int32_t keeps) {
   const double back[3] = {-impulse[0], -impulse[1], -impulse[2]};
-  double taken = 0.0;
+  double taken = 0.0, change[3], to[2][3];
+  yield_to(e, impulse, change);
+  for (int32_t i = 0; i < 2; ++i) {
+    for (int32_t c = 0; c < 3; ++c) to[i][c] = i ? impulse[c] : back[c];
+    mpmi_surface_take_out(e->site, e->site ? e->party[i]->site : -1, to[i]);
+  }
   for (int32_t c = 0; c < bound->dim; ++c) {
     for (int32_t i = 0; i < 2; ++i) {
-      const double by = (i ? impulse[c] : -impulse[c]) * e->party[i]->inverse_mass[c];
+      const double by = to[i][c] * e->party[i]->inverse_mass[c];
       if (!(by < 0.0 || by > 0.0)) continue;
       if (e->surface && e->surface->face >= 0) {
         mpmi_press_node(bound, e->party[i]->slot, c, by); /* a reaction of walls */
@@ -80,7 +103,7 @@ static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
         if (!keeps) e->party[i]->given[c] += by;
       }
     }
-    taken -= impulse[c] * (e->velocity[c] + 0.5 * e->compliance[c] * impulse[c]);
+    taken -= impulse[c] * (e->velocity[c] + 0.5 * change[c]);
   }
   if (keeps || !e->surface) return taken;
   const double half = 0.5 * of_free(e, impulse);
@@ -91,6 +114,11 @@ static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
   return taken - half;
 }
 
+/* Returns what a compliance must exceed: along a direction that a surface holds rounding is left of it. */
+static double least_compliance(const encounter *e) {
+  return e->site ? MPMI_NEARLY_HELD * fmax(fmax(e->compliance[0], e->compliance[1]), e->compliance[2]) : 0.0;
+}
+
 /* ---- one touch ----------------------------------------------------------------------------------------- */
 static void tie_by(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, const double *impulse) {
   touch->dissipation += give(bound, touch, e, impulse, 0);
@@ -99,22 +127,22 @@ static void tie_by(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
   for (int32_t c = 0; c < bound->dim; ++c) touch->tangential[c] += impulse[c] - along * touch->normal[c];
 }
 
-/* Stops the whole relative velocity; returns the largest component of it that could be stopped. A free
- * obstacle couples components, and so they are stopped one after the other. */
+/* Stops the whole relative velocity; returns the largest component of it that could be stopped. Free
+ * obstacles and surfaces along which a body slides couple components: these are stopped one by one. */
 static double tie(mpmi_bound *bound, mpmi_touch *touch) {
   encounter e = encounter_of(bound, touch, 0);
   double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
   for (int32_t c = 0; c < bound->dim; ++c) {
-    const double unit[3] = {c == 0, c == 1, c == 2}, compliance = e.compliance[c] + of_free(&e, unit);
-    if (!(compliance > 0.0)) continue;
+    const double unit[3] = {c == 0, c == 1, c == 2}, compliance = weighted(&e, unit);
+    if (!(compliance > least_compliance(&e))) continue;
     impulse[c] = -e.velocity[c] / compliance;
     stopped = fmax(stopped, fabs(e.velocity[c]));
-    if (!e.free) continue;
+    if (!e.free && !e.site) continue;
     tie_by(bound, touch, &e, impulse);
     impulse[c] = 0.0;
     e = encounter_of(bound, touch, 0);
   }
-  if (!e.free) tie_by(bound, touch, &e, impulse);
+  if (!e.free && !e.site) tie_by(bound, touch, &e, impulse);
   touch->closed = touch->stuck = e.free || weighted(&e, (const double[]){1.0, 1.0, 1.0}) > 0.0;
   touch->ambiguous = !touch->closed;
   return stopped;
@@ -150,15 +178,16 @@ static double press(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, do
 /* Gives what an impulse of this sweep adds to friction, and what is left of the normal one. */
 static double give_friction(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, double normal,
                             const double *tangential) {
-  double impulse[3], change[3], rubbed = 0.0;
+  double impulse[3], change[3], moved[3], rubbed = 0.0;
   for (int32_t c = 0; c < 3; ++c) {
     change[c] = tangential[c] - touch->tangential[c];
     impulse[c] = (normal - touch->normal_impulse) * touch->normal[c] + change[c];
   }
   touch->dissipation += give(bound, touch, e, impulse, 0);
+  yield_to(e, impulse, moved);
   for (int32_t c = 0; c < bound->dim; ++c) {
     rubbed = fmax(rubbed, fabs(change[c]) * e->compliance[c]);
-    touch->friction_work -= change[c] * (e->velocity[c] + 0.5 * e->compliance[c] * impulse[c]);
+    touch->friction_work -= change[c] * (e->velocity[c] + 0.5 * moved[c]);
     touch->tangential[c] = tangential[c];
   }
   if (!e->free) return rubbed;
@@ -209,10 +238,11 @@ static double keep(mpmi_bound *bound, mpmi_touch *touch) {
   const double compliance = weighted(&e, touch->normal), approach = mpmi_inner(e.velocity, touch->normal);
   double impulse[3] = {0.0, 0.0, 0.0}, stopped = 0.0;
   for (int32_t c = 0; c < bound->dim; ++c) {
-    if (touch->stuck && e.compliance[c] > 0.0) {
-      impulse[c] = -e.velocity[c] / e.compliance[c];
+    const double unit[3] = {c == 0, c == 1, c == 2}, alone = touch->stuck ? weighted(&e, unit) : 0.0;
+    if (touch->stuck && alone > least_compliance(&e)) {
+      impulse[c] = -e.velocity[c] / alone;
       stopped = fmax(stopped, fabs(e.velocity[c]));
-    } else if (!touch->stuck && compliance > 0.0) {
+    } else if (!touch->stuck && compliance > least_compliance(&e)) {
       impulse[c] = -approach / compliance * touch->normal[c];
       stopped = fabs(approach);
     }
@@ -237,6 +267,7 @@ static double act_once(const contact_job *job, mpmi_touch *touch) {
 static int32_t is_settled_at_once(const mpmi_contact_nodes *contact, const mpmi_touch *touch, int32_t dim) {
   for (int32_t i = 0; i < 2; ++i) {
     const double *inverse = contact->party[touch->party[i]].inverse_mass;
+    if (contact->party[touch->party[i]].site >= 0) return 0;
     for (int32_t c = 1; c < dim; ++c)
       if (inverse[c] < inverse[0] || inverse[c] > inverse[0]) return 0;
   }
@@ -355,6 +386,19 @@ static void add_work(mpmi_bound *bound, const mpmi_party *party, double sign, co
       bound->step->host_work -= sign * impulse[c] * bound->nodes->held_value[party->slot][c];
 }
 
+/* Surfaces that prescribe push back: what contact gives to what they hold is a part of their impulse. */
+static void tell_sites(mpmi_bound *bound, const mpmi_party *party, double sign, const double *impulse) {
+  if (party->surface >= 0 || !mpmi_surfaces_hold(bound->step->settings)) return;
+  mpmi_surface_sites *sites = &bound->nodes->surface_sites;
+  for (int32_t at = sites->last[party->slot]; at >= 0; at = sites->site[at].before) {
+    mpmi_surface_site *site = &sites->site[at];
+    const double along = site->slides ? mpmi_inner(site->vector, impulse) : 0.0;
+    bound->step->host_work -= sign * along * site->value;
+    for (int32_t c = 0; c < bound->dim; ++c)
+      site->impulse[c] -= sign * (site->holds[c] ? impulse[c] : along * site->vector[c]);
+  }
+}
+
 /* The impulse is on the second party. Bodies are turned about the origin, a surface about its centre, by the
  * opposite. */
 static void add_torque(const mpmi_bound *bound, const mpmi_party *first, const mpmi_party *second,
@@ -381,6 +425,8 @@ static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_su
   }
   add_work(bound, pair[0], -1.0, impulse);
   add_work(bound, pair[1], 1.0, impulse);
+  tell_sites(bound, pair[0], -1.0, impulse);
+  tell_sites(bound, pair[1], 1.0, impulse);
   add_torque(bound, pair[0], pair[1], impulse, sums);
   sums->normal_impulse += touch->normal_impulse;
   sums->area += touch->area;

@@ -1,6 +1,6 @@
 /* The host's coefficients of friction. It sees touches in batches of one pair of bodies, which do not depend
  * on how tasks share them. */
-#include "boundary/bound.h"
+#include "boundary/surface_holds.h"
 #include "contact/contact.h"
 
 #include <math.h>
@@ -18,12 +18,17 @@ static void show_touch(const mpmi_bound *bound, const mpmi_touch *touch, touch_l
   const mpmi_party *party = bound->nodes->contact.party;
   const int64_t slot[2] = {party[touch->party[0]].slot, party[touch->party[1]].slot}, at = list->n;
   double u[3] = {0.0, 0.0, 0.0}, place[3], approach = 0.0, compliance = 0.0;
+  double left[2][3];
+  for (int32_t i = 0; i < 2; ++i) {
+    for (int32_t k = 0; k < 3; ++k) left[i][k] = touch->normal[k];
+    mpmi_surface_take_out(bound->nodes->surface_sites.site, party[touch->party[i]].site, left[i]);
+  }
   mpmi_contact_position(b, &bound->nodes->contact, slot[0], place);
   for (int32_t k = 0; k < bound->dim; ++k) {
     u[k] = mpmi_velocity(bound->values, slot[1])[k] - mpmi_velocity(bound->values, slot[0])[k];
     approach += u[k] * touch->normal[k];
     for (int32_t i = 0; i < 2; ++i)
-      compliance += party[touch->party[i]].inverse_mass[k] * touch->normal[k] * touch->normal[k];
+      compliance += party[touch->party[i]].inverse_mass[k] * touch->normal[k] * left[i][k];
     list->position[k * RANGE + at] = place[k];
     list->normal[k * RANGE + at] = touch->normal[k];
   }

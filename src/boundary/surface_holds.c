@@ -10,10 +10,12 @@ static const double least_left = 0.1;
 
 /* ---- what sites hold ------------------------------------------------------------------------------------
  * */
-/* Holds all components that nothing holds yet. */
+/* Holds all components that nothing holds yet, nor a wall. */
 static void hold_velocity(mpmi_bound *bound, mpmi_surface_site *site) {
+  const mpmi_constraints *ties = mpmi_constraints_of(bound);
+  const int32_t tie = ties->tie_of[site->slot];
   for (int32_t c = 0; c < bound->dim; ++c) {
-    if (bound->nodes->held[site->slot][c]) continue;
+    if (bound->nodes->held[site->slot][c] || (tie >= 0 && ties->tie[tie].zero[c])) continue;
     bound->nodes->held[site->slot][c] = MPMI_HELD_BY_SURFACES;
     bound->nodes->held_value[site->slot][c] = site->vector[c];
     site->holds[c] = 1;
@@ -72,6 +74,14 @@ mpm_status mpmi_surface_holds_find(mpmi_bound *bound) {
   return MPM_OK;
 }
 
+int32_t mpmi_surface_direction_at(const mpmi_bound *bound, int64_t slot) {
+  const mpmi_surface_sites *sites = &bound->nodes->surface_sites;
+  int32_t slides = 0;
+  if (!sites->count || !mpmi_surfaces_hold(bound->step->settings)) return -1;
+  for (int32_t at = sites->last[slot]; at >= 0; at = sites->site[at].before) slides |= sites->site[at].slides;
+  return slides ? sites->last[slot] : -1;
+}
+
 /* ---- sliding ------------------------------------------------------------------------------------------- */
 /* Sets the velocity of a node along a direction; its increment is that of eq. 30, or 0 by option. */
 static void slide(mpmi_bound *bound, mpmi_surface_site *site) {
@@ -110,7 +120,7 @@ static void sum_impulse(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_sur
   const int32_t at = ties->tie_of[site->slot];
   for (int32_t c = 0; c < step->settings->grid->dim; ++c) {
     if (!site->holds[c]) continue;
-    site->impulse[c] = nodes->impulse[site->slot].given[c];
+    site->impulse[c] += nodes->impulse[site->slot].given[c];
     for (int64_t i = 0; at >= 0 && i < ties->tie[at].count; ++i)
       site->impulse[c] += nodes->impulse[ties->follower[ties->tie[at].first + i].slot].given[c];
   }

@@ -166,7 +166,8 @@ mpm_status mpmi_surface_sites_find(mpmi_bound *bound) {
   const mpmi_surfaces *list = &bound->step->settings->surfaces;
   mpmi_surface_sites *sites = &bound->nodes->surface_sites;
   mpm_status status = MPM_OK;
-  for (int64_t i = 0; i < mpmi_slots(bound->step->layout); ++i) sites->last[i] = -1;
+  const int64_t slots = mpmi_slots(bound->step->layout);
+  if (slots) memset(sites->last, 0xff, (size_t)slots * sizeof *sites->last); /* -1 */
   sites->count = 0;
   for (int32_t i = 0; i < list->count && !status; ++i)
     if (mpmi_surface_prescribes(list->surface[i])) status = find_sites(bound, i);

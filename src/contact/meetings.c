@@ -22,7 +22,7 @@ static mpmi_party party_of_surface(const mpmi_contact_search *search, int64_t ne
   const mpmi_blocks *b = &search->step->layout->blocks;
   const mpmi_near *of = &search->contact->near_surface[near];
   const mpmi_rigid_surface *surface = &search->contact->surface[of->surface];
-  mpmi_party party = {.slot = -1, .body = mpmi_code_of(surface), .surface = of->surface};
+  mpmi_party party = {.slot = -1, .body = mpmi_code_of(surface), .surface = of->surface, .site = -1};
   double x[3] = {0.0, 0.0, 0.0};
   mpmi_contact_position(b, search->contact, (int64_t)of->block * b->nodes + n, x);
   mpmi_surface_arm(surface, x, party.arm);
@@ -54,7 +54,7 @@ static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *si
       const int64_t slot = i * b->nodes + n;
       if (!takes_part(search, slot)) continue;
       contact->party[*party] =
-          (mpmi_party){.slot = slot, .body = b->body[i], .surface = -1, .meeting = number};
+          (mpmi_party){.slot = slot, .body = b->body[i], .surface = -1, .site = -1, .meeting = number};
       ++*party;
     }
     for (int64_t i = site->first_near; i < end_near && fill; ++i) {

@@ -60,6 +60,7 @@ typedef struct mpmi_party {
   double arm[3], normal[3], own_velocity[3]; /* of a surface: from its centre to the node */
   int64_t meeting;
   int64_t first_cloud, cloud_count;
+  int32_t site;           /* the last of the surfaces that prescribe its velocity along a direction, or -1 */
   double inverse_mass[3]; /* of all that moves with it; 0 where the component is held */
   double given[3];        /* by how much contact has changed what particles take per mass */
   double pressed[3];      /* and friction walls */

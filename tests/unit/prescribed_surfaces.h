@@ -18,7 +18,8 @@ static inline const double *reaction_of(const world *w, const mpm_surface *s) {
   return force;
 }
 
-/* Adds the cases of prescribed_implicit.c. */
+/* Add the cases of prescribed_implicit.c and prescribed_corners.c. */
 void add_prescribed_implicit(Suite *suite);
+void add_prescribed_corners(Suite *suite);
 
 #endif

@@ -635,5 +635,6 @@ Suite *prescribed_surface_suite(void) {
   tcase_set_timeout(other, 60);
   suite_add_tcase(suite, other);
   add_prescribed_implicit(suite);
+  add_prescribed_corners(suite);
   return suite;
 }
