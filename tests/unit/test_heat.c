@@ -137,6 +137,27 @@ START_TEST(later_step) {
 }
 END_TEST
 
+/* Sets that have heat again meet the faces as they did the first time. */
+START_TEST(faces_meet_anew) {
+  world w;
+  const double cold = 0.0;
+  mpm_heat_info info[2];
+  mpm_particles *set = open_bar(&w, 1, 8, &quadratic, 2);
+  ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 100.0));
+  for (int32_t i = 0; i < 2; ++i) {
+    const mpm_heat_desc heat = heat_desc(3.0, 6.0);
+    ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, NULL));
+    ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &cold));
+    ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+    world_step(&w, 0.2 * heat_dt(&w, 1.0));
+    info[i] = heat_told(&w);
+  }
+  ck_holds(info[0].gained > 0.0);
+  ck_within("anew", info[1].gained, info[0].gained, 1e-9 * info[0].gained);
+  world_close(&w);
+}
+END_TEST
+
 /* A linear field between two faces is at rest, from the first step on. */
 START_TEST(linear_field_stays) {
   const basis_option *basis = &basis_options[_i % BASES];
@@ -622,6 +643,7 @@ Suite *heat_suite(void) {
   tcase_add_loop_test(grid, every_basis_converges, 0, 6 * BASES);
   tcase_add_test(grid, sudden_step);
   tcase_add_test(grid, later_step);
+  tcase_add_test(grid, faces_meet_anew);
   tcase_add_loop_test(grid, linear_field_stays, 0, 6 * BASES);
   tcase_add_loop_test(grid, balance_closes, 0, 6 * BROAD);
   tcase_add_loop_test(grid, motion_carries_temperatures, 0, 3 * BROAD);
