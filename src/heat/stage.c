@@ -20,6 +20,7 @@ static mpm_status prepare(const mpmi_heat_job *job) {
   heat->tile_size = 4 * (int64_t)mpmi_tile_nodes(settings->grid);
   heat->sums = (mpmi_heat_sums){.gained = 0.0};
   heat->iterations = 0;
+  heat->checks_films = 0;
   heat->ties.context = c;
   if ((status = mpmi_nodal_reserve(c, &heat->nodes, slots, 4)) ||
       (status = mpmi_nodal_reserve(c, &heat->flow, slots, 4)) ||
@@ -88,7 +89,7 @@ static mpm_status conduct(const mpmi_heat_job *job) {
   if ((status = mpmi_heat_meet(job)) || (status = mpmi_heat_temperatures(job)) ||
       (status = mpmi_heat_surfaces(job)) || (status = mpmi_heat_conduct(job)))
     return status;
-  mpmi_heat_films(job);
+  job->heat->checks_films = mpmi_heat_films(job) && !implicit;
   if ((status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job))) return status;
   job->heat->sums.surfaces = job->step->dt * mpmi_heat_surface_power(job);
   for (int64_t slot = 0; implicit && slot < mpmi_slots(job->step->layout); ++slot)

@@ -384,6 +384,47 @@ START_TEST(flux_and_film) {
 }
 END_TEST
 
+/* Explicit conduction takes no step in which a film takes more than the difference to the ambient; below that
+ * the surface comes to the ambient without passing it. Implicit conduction takes both. */
+START_TEST(films_bound_the_step) {
+  world w;
+  world_desc desc = world_default(2, 12, 0.25);
+  desc.law.E = 1e-6;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {1.0, 1.0}, high[] = {2.0, 2.0}, at[] = {2.0, 1.0, 2.0, 2.0}, hot = 400.0,
+               cold = 300.0;
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  const mpm_heat_desc heat = heat_desc(2.0, 1e-3);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &hot));
+  mpm_surface_desc d = load_desc();
+  mpm_surface *s = put_surface(&w, &d);
+  ck_ok(&w, mpm_surface_add_polyline(s, 2, at, 0, 0.125, NULL, NULL));
+  const double dt = 1e-3, layer = 2.0 * desc.law.density * 0.125 / dt; /* what takes all from a layer */
+  ck_ok(&w, mpm_surface_set_heat(s, 0.0, 4.0 * layer, cold));
+  ck_refused(&w, mpm_step(w.stepper, dt, NULL), MPM_CUT_DT, "in a film that takes more");
+  double *T = fetch(&w, set, "temperature", 1);
+  for (int64_t p = 0; p < n; ++p) ck_assert(T[p] == hot);
+  free(T);
+  if (_i) {
+    ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-12));
+  } else {
+    ck_ok(&w, mpm_surface_set_heat(s, 0.0, 0.3 * layer, cold));
+  }
+  double first = 0.0, last = 0.0;
+  for (int32_t i = 0; i < 200; ++i) {
+    world_step(&w, dt);
+    last = heat_told(&w).surfaces;
+    ck_holds(last < 1e-9);
+    if (!i) first = last;
+  }
+  show("film: %g, then %g\n", first, last);
+  ck_holds(first < -1.0 && fabs(last) < 1e-3 * fabs(first));
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
 /* ---- nothing else matters ------------------------------------------------------------------------------ */
 static world_desc warm_world(const method *how, int32_t dim, int32_t concurrency) {
   world_desc desc = world_with(how, dim, 8, 0.25);
@@ -650,6 +691,7 @@ Suite *heat_suite(void) {
   tcase_add_test(grid, parts_keep_heat);
   tcase_add_test(grid, bodies_and_sets);
   tcase_add_test(grid, flux_and_film);
+  tcase_add_loop_test(grid, films_bound_the_step, 0, 2);
   tcase_add_loop_test(grid, threads_and_states, 0, 6 * BROAD);
   tcase_add_loop_test(grid, roll_back, 0, 2);
   tcase_add_loop_test(grid, memory_runs_out, 0, 2);

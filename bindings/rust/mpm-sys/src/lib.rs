@@ -325,7 +325,9 @@ pub mod constants {
     // How the nodes conduct.
 
     /// By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused with
-    /// MPM_CUT_DT, and mpm_stable_dt() takes the bound into account.
+    /// MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. So are steps in which a film of
+    /// mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of which
+    /// mpm_stable_dt() knows nothing.
     pub const MPM_CONDUCTION_EXPLICIT: i32 = 0;
     /// By those at its end (backward Euler), found by conjugate gradients: any step will do.
     pub const MPM_CONDUCTION_IMPLICIT: i32 = 1;
