@@ -132,6 +132,10 @@ static void project_particle(const mpmi_heat_job *job, const mpmi_visit *visit, 
     node[MPMI_HEAT_MASS] += of->near.w[n] * mass;
   }
   job->heat->part[visit->block].sources += job->step->dt * power;
+  if (isfinite(heat)) return;
+  mpmi_failure_take(&job->step->work->report[visit->task].failure,
+                    mpmi_particle_failure(MPM_NONFINITE, of->m, mpmi_i64(set, MPMI_ID, 0)[of->slot],
+                                          "the heat that a temperature stands for is not finite"));
 }
 
 static void project_block(void *user, const mpmi_visit *visit, double *tile) {

@@ -528,6 +528,29 @@ START_TEST(roll_back) {
 }
 END_TEST
 
+/* Products that overflow while the temperatures do not are no solution. */
+START_TEST(overflow_is_no_solution) {
+  world w;
+  const world_desc desc = world_default(2, 8, 0.25);
+  mpm_particles *set = world_open(&w, &desc);
+  const int64_t n = world_fill_cube(&w, set, 0.5, 1.0);
+  const mpm_heat_desc heat = _i ? heat_desc(1.0, 1e10) : heat_desc(1e10, 1.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  if (_i) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-9));
+  double *T = malloc((size_t)n * sizeof *T);
+  for (int64_t p = 0; p < n; ++p) T[p] = p == 3 ? 1e305 : 0.0;
+  put(&w, set, "temperature", 1, T);
+  world_bits was = world_take(&w);
+  ck_refused(&w, mpm_step(w.stepper, 1e-4, NULL), MPM_NONFINITE,
+             _i ? "what flows between nodes is not finite"
+                : "stands for is not finite at particle 3 of set 0");
+  world_same(&w, &was, "overflow");
+  bits_drop(&was);
+  free(T);
+  world_close(&w);
+}
+END_TEST
+
 /* Each allocation fails once; the call says so, changes nothing, and succeeds after that. */
 START_TEST(memory_runs_out) {
   const int32_t implicit = _i;
@@ -694,6 +717,7 @@ Suite *heat_suite(void) {
   tcase_add_loop_test(grid, films_bound_the_step, 0, 2);
   tcase_add_loop_test(grid, threads_and_states, 0, 6 * BROAD);
   tcase_add_loop_test(grid, roll_back, 0, 2);
+  tcase_add_loop_test(grid, overflow_is_no_solution, 0, 2);
   tcase_add_loop_test(grid, memory_runs_out, 0, 2);
   tcase_add_test(grid, refusals);
   tcase_add_test(grid, comes_and_goes);
