@@ -191,6 +191,14 @@ START_TEST(plastic_work_is_heat) {
 }
 END_TEST
 
+static void put_pressure(const world *w, mpm_particles *set) {
+  const int64_t n = mpm_particles_count(set);
+  double *stress = calloc((size_t)(6 * n), sizeof *stress);
+  for (int64_t p = 0; p < 3 * n; ++p) stress[p] = -1e3;
+  put(w, set, "stress", 6, stress);
+  free(stress);
+}
+
 /* Elastic material gives its work back, and viscous material does not. */
 START_TEST(elastic_work_is_not) {
   const law_option *option = &law_options[_i];
@@ -203,11 +211,12 @@ START_TEST(elastic_work_is_not) {
                              {"consistency", 1.0}};
   if (!option->model || !strcmp(option->model, "rigid")) return;
   if (!strcmp(option->model, "herschel_bulkley")) law.params = stiff, law.param_count = 5;
+  if (!strcmp(option->model, "cam_clay")) law.yield_stress = 1e3;
   const int32_t flows = !strcmp(option->model, "mu_i") || !strcmp(option->model, "newtonian_fluid") ||
                         !strcmp(option->model, "snow") || !strcmp(option->model, "cam_clay");
-  if (!strcmp(option->model, "cam_clay")) return; /* it has no state without a pressure */
   world w;
   mpm_particles *set = open_sheared(&w, broad_methods[0], 2, &law, 0.2);
+  if (!strcmp(option->model, "cam_clay")) put_pressure(&w, set); /* it has no state without */
   const double dt = 0.1 * world_stable_dt(&w);
   double stored = 0.0;
   for (int32_t i = 0; i < 60; ++i) {
@@ -220,7 +229,6 @@ START_TEST(elastic_work_is_not) {
     ck_holds(share > -1e-3 && isfinite(share));
   else
     ck_within(option->name, share, 0.0, 1e-3);
-  (void)set;
   world_close(&w);
 }
 END_TEST
