@@ -28,7 +28,10 @@ static mpm_status prepare(const mpmi_heat_job *job) {
       (status = MPMI_RESERVE_MORE(c, heat->part, heat->part_capacity, blocks)))
     return status;
   if (blocks) memset(heat->part, 0, (size_t)blocks * sizeof *heat->part);
-  return mpmi_heat_tie(job);
+  if ((status = mpmi_heat_tie(job))) return status;
+  /* nodes that are tied for heat alone have values of the last step where no stencil is */
+  if (heat->ties.tie_count) heat->nodes.zero_elsewhere = heat->flow.zero_elsewhere = -1;
+  return MPM_OK;
 }
 
 void mpmi_heat_free(mpmi_heat *heat, const mpmi_settings *settings) {

@@ -137,6 +137,32 @@ START_TEST(later_step) {
 }
 END_TEST
 
+/* What is tied for heat alone begins each step anew: a wall that the body does not touch, but whose mirror
+ * nodes are those of nodes that it does, makes no difference, whatever it does to velocities. */
+START_TEST(mirrors_begin_anew) {
+  const double x[] = {1.6, 1.9, 2.2, 2.7, 3.2}, volume[] = {0.5, 0.5, 0.5, 0.5, 0.5},
+               start[] = {5, 6, 7, 8, 9};
+  double *T[2];
+  for (int32_t i = 0; i < 2; ++i) {
+    world w;
+    world_desc desc = world_default(1, 12, 1.0);
+    desc.law.E = 1e-6;
+    mpm_particles *set = world_open(&w, &desc);
+    ck_ok(&w, mpm_particles_add(set, 5, x, NULL, volume, NULL, NULL, NULL));
+    const mpm_heat_desc heat = heat_desc(3.0, 6.0);
+    ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+    put(&w, set, "temperature", 1, start);
+    ck_ok(&w, mpm_stepper_set_conduction(w.stepper, _i, 1e-12));
+    if (i) ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 100.0));
+    for (int32_t k = 0; k < 5; ++k) world_step(&w, 1.0);
+    T[i] = fetch(&w, set, "temperature", 1);
+    world_close(&w);
+  }
+  for (int64_t p = 0; p < 5; ++p) ck_within("apart", T[1][p], T[0][p], 1e-9);
+  free(T[0]), free(T[1]);
+}
+END_TEST
+
 /* Sets that have heat again meet the faces as they did the first time. */
 START_TEST(faces_meet_anew) {
   world w;
@@ -708,6 +734,7 @@ Suite *heat_suite(void) {
   tcase_add_test(grid, sudden_step);
   tcase_add_test(grid, later_step);
   tcase_add_test(grid, faces_meet_anew);
+  tcase_add_loop_test(grid, mirrors_begin_anew, 0, 2);
   tcase_add_loop_test(grid, linear_field_stays, 0, 6 * BASES);
   tcase_add_loop_test(grid, balance_closes, 0, 6 * BROAD);
   tcase_add_loop_test(grid, motion_carries_temperatures, 0, 3 * BROAD);
