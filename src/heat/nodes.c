@@ -44,12 +44,29 @@ static double base_of(const mpmi_heat_job *job, const mpmi_tie *tie, const mpmi_
 }
 
 /* ---- faces that begin to prescribe ---------- */
-/* Finds the mean temperature around a node and where it is along an axis. Returns 0 where there is none. */
+/* Returns 1 for the image of a node on a periodic axis: particles around the seam give to either. */
+static int32_t is_image(const mpmi_follower *follower) {
+  return follower->sign[0] > 0.0 && follower->sign[1] > 0.0 && follower->sign[2] > 0.0;
+}
+
+/* Finds the mean temperature around a node and its images, and where that is along an axis. Returns 0 where
+ * there is none. */
 static int32_t find_mean(const mpmi_heat *heat, int64_t slot, int32_t axis, double *T, double *x) {
-  if (slot < 0 || !(mpmi_heat_node(heat, slot)[MPMI_HEAT_CAPACITY] > 0.0)) return 0;
-  const double *node = mpmi_heat_node(heat, slot);
-  *T = node[MPMI_HEAT_TEMPERATURE] / node[MPMI_HEAT_CAPACITY];
-  *x = mpmi_heat_flow(heat, slot)[axis] / node[MPMI_HEAT_CAPACITY];
+  if (slot < 0) return 0;
+  const mpmi_tie *tie = heat->ties.tie_of[slot] < 0 ? NULL : &heat->ties.tie[heat->ties.tie_of[slot]];
+  const double *node = mpmi_heat_node(heat, tie ? tie->master : slot);
+  double capacity = node[MPMI_HEAT_CAPACITY], heat_there = node[MPMI_HEAT_TEMPERATURE],
+         place = mpmi_heat_flow(heat, tie ? tie->master : slot)[axis];
+  for (int64_t i = tie ? tie->first : 0; tie && i < tie->first + tie->count; ++i) {
+    const mpmi_follower *f = &heat->ties.follower[i];
+    if (!is_image(f)) continue;
+    capacity += mpmi_heat_node(heat, f->slot)[MPMI_HEAT_CAPACITY];
+    heat_there += mpmi_heat_node(heat, f->slot)[MPMI_HEAT_TEMPERATURE];
+    place += mpmi_heat_flow(heat, f->slot)[axis];
+  }
+  if (!(capacity > 0.0)) return 0;
+  *T = heat_there / capacity;
+  *x = place / capacity;
   return 1;
 }
 

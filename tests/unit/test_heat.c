@@ -163,6 +163,30 @@ START_TEST(mirrors_begin_anew) {
 }
 END_TEST
 
+/* A face between periodic axes meets the material around their seam as it meets the rest. */
+START_TEST(faces_meet_images) {
+  const int32_t dim = 2 + _i / 2, implicit = _i % 2;
+  world w;
+  world_desc desc = world_default(dim, 8, 0.25);
+  double high[3] = {2.0, 2.0, 2.0}, low[3] = {0.0, 0.0, 0.0};
+  for (int32_t k = 1; k < dim; ++k) desc.grid.periodic[k] = 1;
+  mpm_particles *set = world_open(&w, &desc);
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  const mpm_heat_desc heat = heat_desc(3.0, 6.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  ck_ok(&w, mpm_stepper_set_conduction(w.stepper, implicit, 1e-14));
+  ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 10.0));
+  world_step(&w, 1e-3);
+  double *x = fetch(&w, set, "position", dim), *T = fetch(&w, set, "temperature", 1), largest_there = 0.0;
+  for (int64_t p = 0; p < n; ++p) largest_there = fmax(largest_there, T[p]);
+  for (int64_t p = 0; p < n; ++p)
+    if (x[p] < 0.125) ck_within("along the face", T[p], largest_there, 1e-9);
+  ck_between("jump", largest_there, 6.0, 10.0);
+  free(x), free(T);
+  world_close(&w);
+}
+END_TEST
+
 /* Sets that have heat again meet the faces as they did the first time. */
 START_TEST(faces_meet_anew) {
   world w;
@@ -734,6 +758,7 @@ Suite *heat_suite(void) {
   tcase_add_test(grid, sudden_step);
   tcase_add_test(grid, later_step);
   tcase_add_test(grid, faces_meet_anew);
+  tcase_add_loop_test(grid, faces_meet_images, 0, 4);
   tcase_add_loop_test(grid, mirrors_begin_anew, 0, 2);
   tcase_add_loop_test(grid, linear_field_stays, 0, 6 * BASES);
   tcase_add_loop_test(grid, balance_closes, 0, 6 * BROAD);
