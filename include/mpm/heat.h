@@ -52,9 +52,9 @@ enum mpm_heat_wall_value {
   MPM_HEAT_WALL_TEMPERATURE = 1 /**< material at it has a prescribed temperature */
 };
 
-/** Heat sources: writes power[i], [ld], power per present volume, at the time batch->t: the start of the step,
- * and with implicit conduction its end. It runs as mpm_particle_fn does, on all threads, and returns as that
- * does. A value that is not finite ends the step: MPM_NONFINITE. */
+/** Heat sources: writes power[i], [ld], power per present volume, at the time batch->t: the start of the
+ * step, and with implicit conduction its end. It runs as mpm_particle_fn does, on all threads, and returns as
+ * that does. A value that is not finite ends the step: MPM_NONFINITE. */
 typedef mpm_status (*mpm_heat_fn)(void *user, const mpm_particle_batch *batch, double *power);
 
 /** The heat of a set. Fill it with mpm_heat_desc_init(). */
