@@ -382,7 +382,8 @@ namespace Mpm {
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int AdaptionFn(IntPtr user, AdaptionBatch* batch, byte* accept);
 
-  /// <summary>Heat sources: writes power[i], [ld], power per present volume.</summary>
+  /// <summary>Heat sources: writes power[i], [ld], power per present volume, at the time batch-&gt;t: the start of
+  /// the step, and with implicit conduction its end.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int HeatFn(IntPtr user, ParticleBatch* batch, double* power);
 

@@ -1247,7 +1247,8 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_adaption_fn
 
-    !> Heat sources: writes power[i], [ld], power per present volume.
+    !> Heat sources: writes power[i], [ld], power per present volume, at the time batch->t: the start of the step, and
+    !! with implicit conduction its end.
     function mpm_heat_fn(user, batch, power) bind(c) result(answer)
       import
       type(c_ptr), value :: user

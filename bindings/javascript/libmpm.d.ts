@@ -256,7 +256,9 @@ export interface Constants {
   readonly MPM_ADAPT_MERGE: 1;
   /**
    * By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused
-   * with MPM_CUT_DT, and mpm_stable_dt() takes the bound into account.
+   * with MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. So are steps in which a film of
+   * mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of which
+   * mpm_stable_dt() knows nothing.
    */
   readonly MPM_CONDUCTION_EXPLICIT: 0;
   /** By those at its end (backward Euler), found by conjugate gradients: any step will do. */

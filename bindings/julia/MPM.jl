@@ -1004,8 +1004,9 @@ f(user, batch, accept): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_adaption_batch
 const mpm_adaption_fn = Ptr{Cvoid}
 
 """
-Heat sources: writes power[i], [ld], power per present volume. It runs as mpm_particle_fn does, on all threads, and
-returns as that does.
+Heat sources: writes power[i], [ld], power per present volume, at the time batch->t: the start of the step, and with
+implicit conduction its end. It runs as mpm_particle_fn does, on all threads, and returns as that does. A value that
+is not finite ends the step: MPM_NONFINITE.
 
 f(user, batch, power): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_particle_batch}, Ptr{Float64}))
 """
@@ -2329,9 +2330,9 @@ end
 Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is not read of
 insulated ones, which all faces are from the start. Call it again where the temperature changes: that change, at first
 from what the material there has, reaches the particles in the next step; material that comes to the face later is
-heated by conduction alone. Not part of a saved state. MPM_E_ARG: a value is bad, or the axis is periodic.
-MPM_E_UNSUPPORTED: the face is the axis of MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a step is under
-way.
+heated by conduction alone. Where two such faces meet, that of the lower axis prescribes the edge. Not part of a saved
+state. MPM_E_ARG: a value is bad, or the axis is periodic. MPM_E_UNSUPPORTED: the face is the axis of
+MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a step is under way.
 """
 function mpm_stepper_set_heat_wall(stepper, face, kind, temperature)
     return ccall((:mpm_stepper_set_heat_wall, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Int32, Float64),

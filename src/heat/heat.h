@@ -18,8 +18,9 @@
 /* Four values of each node: sums over the particles, the second of which becomes the temperature. */
 enum { MPMI_HEAT_CAPACITY, MPMI_HEAT_TEMPERATURE, MPMI_HEAT_POWER, MPMI_HEAT_MASS };
 /* And four of what is conducted: power that leaves the node, the diagonal of the conductance, the increment
- * of the temperature. */
-enum { MPMI_HEAT_OUTFLOW, MPMI_HEAT_DIAGONAL, MPMI_HEAT_INCREMENT };
+ * of the temperature, and the conductance of films, of which explicit conduction makes the share of the
+ * difference to the ambient that they take in the step. */
+enum { MPMI_HEAT_OUTFLOW, MPMI_HEAT_DIAGONAL, MPMI_HEAT_INCREMENT, MPMI_HEAT_FILM };
 
 /* Where heat came from: energies. */
 typedef struct mpmi_heat_sums {
@@ -57,6 +58,7 @@ typedef struct mpmi_heat {
   int64_t rows, row_capacity, vector_capacity, start_capacity;
   mpmi_heat_sums sums; /* of the step under way */
   int64_t iterations;
+  int32_t checks_films; /* explicit conduction with films: they bound the step */
 } mpmi_heat;
 
 typedef struct mpmi_heat_job {
@@ -124,8 +126,9 @@ mpm_status mpmi_heat_solve(const mpmi_heat_job *job);
 /* Finds the nodes around the markers of surfaces that heat, and adds the power that they give whatever the
  * temperature of the nodes is. */
 mpm_status mpmi_heat_surfaces(const mpmi_heat_job *job);
-/* Adds what films take at the temperatures on the nodes to the outflow, and to the diagonal. */
-void mpmi_heat_films(const mpmi_heat_job *job);
+/* Adds what films take at the temperatures on the nodes to the outflow, and to the diagonal. Returns 0 where
+ * there are none. */
+int32_t mpmi_heat_films(const mpmi_heat_job *job);
 /* Returns the power that surfaces give at these temperatures. */
 double mpmi_heat_surface_power(const mpmi_heat_job *job);
 

@@ -114,6 +114,11 @@ static mpm_status iterate(const mpmi_heat_job *job) {
   const double tolerance = job->step->settings->heat.tolerance;
   double rz, first, curvature, next;
   mpm_status status = weigh(job, &rz);
+  if (!status && !isfinite(rz))
+    return mpmi_fail(c, MPM_NONFINITE,
+                     "what flows between nodes is not finite in the step from t = %g with dt = %g: "
+                     "temperatures are too large",
+                     job->step->t, job->step->dt);
   first = rz;
   turn(heat, 0.0);
   while (!status && rz > tolerance * tolerance * first) {

@@ -44,12 +44,29 @@ static double base_of(const mpmi_heat_job *job, const mpmi_tie *tie, const mpmi_
 }
 
 /* ---- faces that begin to prescribe ---------- */
-/* Finds the mean temperature around a node and where it is along an axis. Returns 0 where there is none. */
+/* Returns 1 for the image of a node on a periodic axis: particles around the seam give to either. */
+static int32_t is_image(const mpmi_follower *follower) {
+  return follower->sign[0] > 0.0 && follower->sign[1] > 0.0 && follower->sign[2] > 0.0;
+}
+
+/* Finds the mean temperature around a node and its images, and where that is along an axis. Returns 0 where
+ * there is none. */
 static int32_t find_mean(const mpmi_heat *heat, int64_t slot, int32_t axis, double *T, double *x) {
-  if (slot < 0 || !(mpmi_heat_node(heat, slot)[MPMI_HEAT_CAPACITY] > 0.0)) return 0;
-  const double *node = mpmi_heat_node(heat, slot);
-  *T = node[MPMI_HEAT_TEMPERATURE] / node[MPMI_HEAT_CAPACITY];
-  *x = mpmi_heat_flow(heat, slot)[axis] / node[MPMI_HEAT_CAPACITY];
+  if (slot < 0) return 0;
+  const mpmi_tie *tie = heat->ties.tie_of[slot] < 0 ? NULL : &heat->ties.tie[heat->ties.tie_of[slot]];
+  const double *node = mpmi_heat_node(heat, tie ? tie->master : slot);
+  double capacity = node[MPMI_HEAT_CAPACITY], heat_there = node[MPMI_HEAT_TEMPERATURE],
+         place = mpmi_heat_flow(heat, tie ? tie->master : slot)[axis];
+  for (int64_t i = tie ? tie->first : 0; tie && i < tie->first + tie->count; ++i) {
+    const mpmi_follower *f = &heat->ties.follower[i];
+    if (!is_image(f)) continue;
+    capacity += mpmi_heat_node(heat, f->slot)[MPMI_HEAT_CAPACITY];
+    heat_there += mpmi_heat_node(heat, f->slot)[MPMI_HEAT_TEMPERATURE];
+    place += mpmi_heat_flow(heat, f->slot)[axis];
+  }
+  if (!(capacity > 0.0)) return 0;
+  *T = heat_there / capacity;
+  *x = place / capacity;
   return 1;
 }
 
@@ -142,6 +159,9 @@ static void untied_increments(void *data, int64_t task) {
         node[MPMI_HEAT_CAPACITY] > 0.0
             ? job->step->dt * (node[MPMI_HEAT_POWER] - flow[MPMI_HEAT_OUTFLOW]) / node[MPMI_HEAT_CAPACITY]
             : 0.0;
+    flow[MPMI_HEAT_FILM] = node[MPMI_HEAT_CAPACITY] > 0.0
+                               ? job->step->dt * flow[MPMI_HEAT_FILM] / node[MPMI_HEAT_CAPACITY]
+                               : 0.0;
   }
 }
 
@@ -155,6 +175,13 @@ static void spread(const mpmi_heat_job *job, const mpmi_tie *tie, double increme
   }
 }
 
+/* Films take this share from all nodes of a tie. */
+static void spread_films(const mpmi_heat_job *job, const mpmi_tie *tie, double share) {
+  mpmi_heat_flow(job->heat, tie->master)[MPMI_HEAT_FILM] = share;
+  for (int64_t i = tie->first; i < tie->first + tie->count; ++i)
+    mpmi_heat_flow(job->heat, job->heat->ties.follower[i].slot)[MPMI_HEAT_FILM] = share;
+}
+
 static double power_of(const mpmi_heat *heat, int64_t slot) {
   return mpmi_heat_node(heat, slot)[MPMI_HEAT_POWER] - mpmi_heat_flow(heat, slot)[MPMI_HEAT_OUTFLOW];
 }
@@ -162,20 +189,27 @@ static double power_of(const mpmi_heat *heat, int64_t slot) {
 static void tied_increment(const mpmi_heat_job *job, const mpmi_tie *tie) {
   const mpmi_constraints *ties = &job->heat->ties;
   double capacity = mpmi_heat_node(job->heat, tie->master)[MPMI_HEAT_CAPACITY],
-         power = power_of(job->heat, tie->master);
+         power = power_of(job->heat, tie->master),
+         film = mpmi_heat_flow(job->heat, tie->master)[MPMI_HEAT_FILM];
   for (int64_t i = tie->first; i < tie->first + tie->count; ++i) {
     const mpmi_follower *f = &ties->follower[i];
     capacity += mpmi_heat_node(job->heat, f->slot)[MPMI_HEAT_CAPACITY];
     power += mpmi_heat_sign(f) * power_of(job->heat, f->slot);
+    film += mpmi_heat_flow(job->heat, f->slot)[MPMI_HEAT_FILM];
   }
+  spread_films(job, tie, capacity > 0.0 ? job->step->dt * film / capacity : 0.0);
   spread(job, tie, capacity > 0.0 ? job->step->dt * power / capacity : 0.0, 1);
 }
 
 mpm_status mpmi_heat_advance(const mpmi_heat_job *job) {
   const mpmi_settings *settings = job->step->settings;
   const mpmi_constraints *ties = &job->heat->ties;
-  for (int64_t i = 0; i < ties->tie_count; ++i)
-    if (mpmi_heat_face(job, &ties->tie[i]) < 0) tied_increment(job, &ties->tie[i]);
+  for (int64_t i = 0; i < ties->tie_count; ++i) {
+    if (mpmi_heat_face(job, &ties->tie[i]) < 0)
+      tied_increment(job, &ties->tie[i]);
+    else
+      spread_films(job, &ties->tie[i], 0.0);
+  }
   return mpmi_run_tasks(settings, 0, settings->tasks, untied_increments, (void *)(uintptr_t)job);
 }
 

@@ -132,6 +132,10 @@ static void project_particle(const mpmi_heat_job *job, const mpmi_visit *visit, 
     node[MPMI_HEAT_MASS] += of->near.w[n] * mass;
   }
   job->heat->part[visit->block].sources += job->step->dt * power;
+  if (isfinite(heat)) return;
+  mpmi_failure_take(&job->step->work->report[visit->task].failure,
+                    mpmi_particle_failure(MPM_NONFINITE, of->m, mpmi_i64(set, MPMI_ID, 0)[of->slot],
+                                          "the heat that a temperature stands for is not finite"));
 }
 
 static void project_block(void *user, const mpmi_visit *visit, double *tile) {
@@ -226,6 +230,22 @@ mpm_status mpmi_heat_conduct(const mpmi_heat_job *job) {
 }
 
 /* ---- back to the particles ----------------------------------------------------------------------------- */
+/* Explicit conduction takes what films take at the temperature before. With more than the difference to the
+ * ambient it would swing, and with more than twice that grow without bound. By Gershgorin's theorem the
+ * largest share of a particle bounds those of all fields of temperature. */
+static void check_films(const mpmi_heat_job *job, const mpmi_visit *visit, const heat_particle *of,
+                        const double *gather) {
+  double share = 0.0;
+  for (int32_t n = 0; n < of->near.count; ++n)
+    share += of->near.w[n] * gather[of->near.at[n] + MPMI_HEAT_FILM];
+  if (!(share > 1.0 + 1e-9)) return;
+  const int64_t id = mpmi_i64(job->step->layout->member[of->m].set, MPMI_ID, 0)[of->slot];
+  mpmi_failure_take(
+      &job->step->work->report[visit->task].failure,
+      mpmi_particle_failure(MPM_CUT_DT, of->m, id,
+                            "explicit conduction in a film that takes more than the difference to ambient"));
+}
+
 static void gather_particle(const mpmi_heat_job *job, const mpmi_visit *visit, const heat_particle *of,
                             const double *gather, double *give) {
   const mpm_particles *set = job->step->layout->member[of->m].set;
@@ -238,6 +258,7 @@ static void gather_particle(const mpmi_heat_job *job, const mpmi_visit *visit, c
     rise += of->near.w[n] * gather[of->near.at[n] + MPMI_HEAT_INCREMENT];
   temperature_row(job, of->m)[of->slot] = before + rise;
   job->heat->part[visit->block].gained += capacity * rise;
+  if (job->heat->checks_films) check_films(job, visit, of, gather);
   if (isfinite(before + rise)) return;
   mpmi_failure_take(&job->step->work->report[visit->task].failure,
                     mpmi_particle_failure(MPM_NONFINITE, of->m, mpmi_i64(set, MPMI_ID, 0)[of->slot],

@@ -20,6 +20,7 @@ static mpm_status prepare(const mpmi_heat_job *job) {
   heat->tile_size = 4 * (int64_t)mpmi_tile_nodes(settings->grid);
   heat->sums = (mpmi_heat_sums){.gained = 0.0};
   heat->iterations = 0;
+  heat->checks_films = 0;
   heat->ties.context = c;
   if ((status = mpmi_nodal_reserve(c, &heat->nodes, slots, 4)) ||
       (status = mpmi_nodal_reserve(c, &heat->flow, slots, 4)) ||
@@ -27,7 +28,10 @@ static mpm_status prepare(const mpmi_heat_job *job) {
       (status = MPMI_RESERVE_MORE(c, heat->part, heat->part_capacity, blocks)))
     return status;
   if (blocks) memset(heat->part, 0, (size_t)blocks * sizeof *heat->part);
-  return mpmi_heat_tie(job);
+  if ((status = mpmi_heat_tie(job))) return status;
+  /* nodes that are tied for heat alone have values of the last step where no stencil is */
+  if (heat->ties.tie_count) heat->nodes.zero_elsewhere = heat->flow.zero_elsewhere = -1;
+  return MPM_OK;
 }
 
 void mpmi_heat_free(mpmi_heat *heat, const mpmi_settings *settings) {
@@ -88,7 +92,7 @@ static mpm_status conduct(const mpmi_heat_job *job) {
   if ((status = mpmi_heat_meet(job)) || (status = mpmi_heat_temperatures(job)) ||
       (status = mpmi_heat_surfaces(job)) || (status = mpmi_heat_conduct(job)))
     return status;
-  mpmi_heat_films(job);
+  job->heat->checks_films = mpmi_heat_films(job) && !implicit;
   if ((status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job))) return status;
   job->heat->sums.surfaces = job->step->dt * mpmi_heat_surface_power(job);
   for (int64_t slot = 0; implicit && slot < mpmi_slots(job->step->layout); ++slot)

@@ -43,11 +43,13 @@ mpm_status mpmi_heat_surfaces(const mpmi_heat_job *job) {
   return MPM_OK;
 }
 
-void mpmi_heat_films(const mpmi_heat_job *job) {
+int32_t mpmi_heat_films(const mpmi_heat_job *job) {
   const mpmi_surfaces *list = &job->step->settings->surfaces;
+  int32_t any = 0;
   for (int64_t i = 0; i < list->count; ++i) {
     const mpm_surface *s = list->surface[i];
     if (!(s->heat.film > 0.0)) continue;
+    any = 1;
     for (int64_t k = 0; k < s->next.count; ++k) {
       const double film = s->heat.film * mpmi_marker_size(&s->next.at[k], s->grid);
       const double taken = film * temperature_at(job->heat, s, k);
@@ -57,9 +59,11 @@ void mpmi_heat_films(const mpmi_heat_job *job) {
         double *flow = mpmi_heat_flow(job->heat, s->around.slot[n]);
         flow[MPMI_HEAT_OUTFLOW] += w * taken;
         flow[MPMI_HEAT_DIAGONAL] += w * w * film;
+        flow[MPMI_HEAT_FILM] += w * film;
       }
     }
   }
+  return any;
 }
 
 double mpmi_heat_surface_power(const mpmi_heat_job *job) {

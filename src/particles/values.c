@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "particles/thermal.h"
 #include "particles/values.h"
 
 typedef char whom_text[48];
@@ -155,6 +156,7 @@ void mpmi_field_written(mpm_particles *set, int32_t field) {
   if (field == mpmi_place_field(set->grid)) set->dirty |= MPMI_DIRTY_PLACE;
   if (field == MPMI_F || field == MPMI_INITIAL_VOLUME || field == MPMI_DILATION_RATIO)
     set->dirty |= MPMI_DIRTY_STRESS;
+  if (mpmi_expands(set) && field == set->thermal.stress_temperature) set->dirty |= MPMI_DIRTY_STRESS;
   if (field == MPMI_STRESS && mpmi_material_mean_from_F(set->material)) set->dirty |= MPMI_DIRTY_STRESS;
   if (field == MPMI_STATE && mpmi_material_stress_from_F(set->material)) set->dirty |= MPMI_DIRTY_STRESS;
   if (field == MPMI_MASS) mpmi_find_masses(set);

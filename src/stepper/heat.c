@@ -57,6 +57,10 @@ void mpmi_heat_take_off(mpm_stepper *s, int32_t m) {
   if (s->settings.heat.set[m].on) mpmi_thermal_drop(s->layout.member[m].set);
   s->settings.heat.set[m].on = 0;
   find_any(s);
+  if (s->settings.heat.any) return;
+  /* who has heat later meets the faces anew */
+  for (int32_t face = 0; face < 6; ++face)
+    s->history.heat.acted[face] = s->history.heat.prescribed[face] = 0.0;
 }
 
 mpm_status mpm_stepper_set_heat(mpm_stepper *s, mpm_particles *particles, const mpm_heat_desc *desc) {

@@ -399,14 +399,16 @@ static void draw_heat(cloud *c) {
 }
 
 static void look(cloud *c) {
-  static const char *const field[] = {"mass",         "force",      "reaction",      "acceleration",
-                                      "velocity",     "index",      "contact_force", "contact_normal",
-                                      "contact_area", "temperature"};
+  enum { FIELDS = 10 };
+  static const char *const field[FIELDS] = {"mass",         "force",      "reaction",      "acceleration",
+                                            "velocity",     "index",      "contact_force", "contact_normal",
+                                            "contact_area", "temperature"};
   mpm_view v = {.struct_size = sizeof v};
   mpm_contact_info contact = {.struct_size = sizeof contact};
   double force[3];
   const int32_t body = fuzz_below(&c->in, 8) ? 0 : fuzz_below(&c->in, 3);
-  if (!fuzz_status(c->context, mpm_grid_map(c->stepper, body, field[fuzz_below(&c->in, 9)], MPM_READ, &v))) {
+  if (!fuzz_status(c->context,
+                   mpm_grid_map(c->stepper, body, field[fuzz_below(&c->in, FIELDS)], MPM_READ, &v))) {
     for (int64_t i = 0; i < v.count && v.type == MPM_F64; ++i)
       for (int32_t k = 0; k < v.components; ++k)
         MUST(isfinite(((double *)v.data)[i * v.item_stride + k * v.component_stride]));

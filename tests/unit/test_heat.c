@@ -137,6 +137,77 @@ START_TEST(later_step) {
 }
 END_TEST
 
+/* What is tied for heat alone begins each step anew: a wall that the body does not touch, but whose mirror
+ * nodes are those of nodes that it does, makes no difference, whatever it does to velocities. */
+START_TEST(mirrors_begin_anew) {
+  const double x[] = {1.6, 1.9, 2.2, 2.7, 3.2}, volume[] = {0.5, 0.5, 0.5, 0.5, 0.5},
+               start[] = {5, 6, 7, 8, 9};
+  double *T[2];
+  for (int32_t i = 0; i < 2; ++i) {
+    world w;
+    world_desc desc = world_default(1, 12, 1.0);
+    desc.law.E = 1e-6;
+    mpm_particles *set = world_open(&w, &desc);
+    ck_ok(&w, mpm_particles_add(set, 5, x, NULL, volume, NULL, NULL, NULL));
+    const mpm_heat_desc heat = heat_desc(3.0, 6.0);
+    ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+    put(&w, set, "temperature", 1, start);
+    ck_ok(&w, mpm_stepper_set_conduction(w.stepper, _i, 1e-12));
+    if (i) ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 100.0));
+    for (int32_t k = 0; k < 5; ++k) world_step(&w, 1.0);
+    T[i] = fetch(&w, set, "temperature", 1);
+    world_close(&w);
+  }
+  for (int64_t p = 0; p < 5; ++p) ck_within("apart", T[1][p], T[0][p], 1e-9);
+  free(T[0]), free(T[1]);
+}
+END_TEST
+
+/* A face between periodic axes meets the material around their seam as it meets the rest. */
+START_TEST(faces_meet_images) {
+  const int32_t dim = 2 + _i / 2, implicit = _i % 2;
+  world w;
+  world_desc desc = world_default(dim, 8, 0.25);
+  double high[3] = {2.0, 2.0, 2.0}, low[3] = {0.0, 0.0, 0.0};
+  for (int32_t k = 1; k < dim; ++k) desc.grid.periodic[k] = 1;
+  mpm_particles *set = world_open(&w, &desc);
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  const mpm_heat_desc heat = heat_desc(3.0, 6.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  ck_ok(&w, mpm_stepper_set_conduction(w.stepper, implicit, 1e-14));
+  ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 10.0));
+  world_step(&w, 1e-3);
+  double *x = fetch(&w, set, "position", dim), *T = fetch(&w, set, "temperature", 1), largest_there = 0.0;
+  for (int64_t p = 0; p < n; ++p) largest_there = fmax(largest_there, T[p]);
+  for (int64_t p = 0; p < n; ++p)
+    if (x[p] < 0.125) ck_within("along the face", T[p], largest_there, 1e-9);
+  ck_between("jump", largest_there, 6.0, 10.0);
+  free(x), free(T);
+  world_close(&w);
+}
+END_TEST
+
+/* Sets that have heat again meet the faces as they did the first time. */
+START_TEST(faces_meet_anew) {
+  world w;
+  const double cold = 0.0;
+  mpm_heat_info info[2];
+  mpm_particles *set = open_bar(&w, 1, 8, &quadratic, 2);
+  ck_ok(&w, mpm_stepper_set_heat_wall(w.stepper, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 100.0));
+  for (int32_t i = 0; i < 2; ++i) {
+    const mpm_heat_desc heat = heat_desc(3.0, 6.0);
+    ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, NULL));
+    ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &cold));
+    ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+    world_step(&w, 0.2 * heat_dt(&w, 1.0));
+    info[i] = heat_told(&w);
+  }
+  ck_holds(info[0].gained > 0.0);
+  ck_within("anew", info[1].gained, info[0].gained, 1e-9 * info[0].gained);
+  world_close(&w);
+}
+END_TEST
+
 /* A linear field between two faces is at rest, from the first step on. */
 START_TEST(linear_field_stays) {
   const basis_option *basis = &basis_options[_i % BASES];
@@ -363,6 +434,47 @@ START_TEST(flux_and_film) {
 }
 END_TEST
 
+/* Explicit conduction takes no step in which a film takes more than the difference to the ambient; below that
+ * the surface comes to the ambient without passing it. Implicit conduction takes both. */
+START_TEST(films_bound_the_step) {
+  world w;
+  world_desc desc = world_default(2, 12, 0.25);
+  desc.law.E = 1e-6;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {1.0, 1.0}, high[] = {2.0, 2.0}, at[] = {2.0, 1.0, 2.0, 2.0}, hot = 400.0,
+               cold = 300.0;
+  const int64_t n = world_fill(&w, set, low, high, 2);
+  const mpm_heat_desc heat = heat_desc(2.0, 1e-3);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  ck_ok(&w, mpm_particles_set_all(set, "temperature", MPM_F64, 1, &hot));
+  mpm_surface_desc d = load_desc();
+  mpm_surface *s = put_surface(&w, &d);
+  ck_ok(&w, mpm_surface_add_polyline(s, 2, at, 0, 0.125, NULL, NULL));
+  const double dt = 1e-3, layer = 2.0 * desc.law.density * 0.125 / dt; /* what takes all from a layer */
+  ck_ok(&w, mpm_surface_set_heat(s, 0.0, 4.0 * layer, cold));
+  ck_refused(&w, mpm_step(w.stepper, dt, NULL), MPM_CUT_DT, "in a film that takes more");
+  double *T = fetch(&w, set, "temperature", 1);
+  for (int64_t p = 0; p < n; ++p) ck_assert(T[p] == hot);
+  free(T);
+  if (_i) {
+    ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-12));
+  } else {
+    ck_ok(&w, mpm_surface_set_heat(s, 0.0, 0.3 * layer, cold));
+  }
+  double first = 0.0, last = 0.0;
+  for (int32_t i = 0; i < 200; ++i) {
+    world_step(&w, dt);
+    last = heat_told(&w).surfaces;
+    ck_holds(last < 1e-9);
+    if (!i) first = last;
+  }
+  show("film: %g, then %g\n", first, last);
+  ck_holds(first < -1.0 && fabs(last) < 1e-3 * fabs(first));
+  drop_surface(&w, s);
+  world_close(&w);
+}
+END_TEST
+
 /* ---- nothing else matters ------------------------------------------------------------------------------ */
 static world_desc warm_world(const method *how, int32_t dim, int32_t concurrency) {
   world_desc desc = world_with(how, dim, 8, 0.25);
@@ -462,6 +574,29 @@ START_TEST(roll_back) {
   ck_assert_int_ne(mpm_step(w.stepper, dt, NULL), MPM_OK);
   world_same(&w, &was, "temperatures that overflow");
   bits_drop(&was);
+  world_close(&w);
+}
+END_TEST
+
+/* Products that overflow while the temperatures do not are no solution. */
+START_TEST(overflow_is_no_solution) {
+  world w;
+  const world_desc desc = world_default(2, 8, 0.25);
+  mpm_particles *set = world_open(&w, &desc);
+  const int64_t n = world_fill_cube(&w, set, 0.5, 1.0);
+  const mpm_heat_desc heat = _i ? heat_desc(1.0, 1e10) : heat_desc(1e10, 1.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &heat));
+  if (_i) ck_ok(&w, mpm_stepper_set_conduction(w.stepper, MPM_CONDUCTION_IMPLICIT, 1e-9));
+  double *T = malloc((size_t)n * sizeof *T);
+  for (int64_t p = 0; p < n; ++p) T[p] = p == 3 ? 1e305 : 0.0;
+  put(&w, set, "temperature", 1, T);
+  world_bits was = world_take(&w);
+  ck_refused(&w, mpm_step(w.stepper, 1e-4, NULL), MPM_NONFINITE,
+             _i ? "what flows between nodes is not finite"
+                : "stands for is not finite at particle 3 of set 0");
+  world_same(&w, &was, "overflow");
+  bits_drop(&was);
+  free(T);
   world_close(&w);
 }
 END_TEST
@@ -622,14 +757,19 @@ Suite *heat_suite(void) {
   tcase_add_loop_test(grid, every_basis_converges, 0, 6 * BASES);
   tcase_add_test(grid, sudden_step);
   tcase_add_test(grid, later_step);
+  tcase_add_test(grid, faces_meet_anew);
+  tcase_add_loop_test(grid, faces_meet_images, 0, 4);
+  tcase_add_loop_test(grid, mirrors_begin_anew, 0, 2);
   tcase_add_loop_test(grid, linear_field_stays, 0, 6 * BASES);
   tcase_add_loop_test(grid, balance_closes, 0, 6 * BROAD);
   tcase_add_loop_test(grid, motion_carries_temperatures, 0, 3 * BROAD);
   tcase_add_test(grid, parts_keep_heat);
   tcase_add_test(grid, bodies_and_sets);
   tcase_add_test(grid, flux_and_film);
+  tcase_add_loop_test(grid, films_bound_the_step, 0, 2);
   tcase_add_loop_test(grid, threads_and_states, 0, 6 * BROAD);
   tcase_add_loop_test(grid, roll_back, 0, 2);
+  tcase_add_loop_test(grid, overflow_is_no_solution, 0, 2);
   tcase_add_loop_test(grid, memory_runs_out, 0, 2);
   tcase_add_test(grid, refusals);
   tcase_add_test(grid, comes_and_goes);

@@ -364,7 +364,9 @@ class Conduction(IntEnum):
     """How the nodes conduct."""
 
     #: By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused with
-    #: MPM_CUT_DT, and mpm_stable_dt() takes the bound into account.
+    #: MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. So are steps in which a film of
+    #: mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of which
+    #: mpm_stable_dt() knows nothing.
     CONDUCTION_EXPLICIT = 0
     #: By those at its end (backward Euler), found by conjugate gradients: any step will do.
     CONDUCTION_IMPLICIT = 1
@@ -2029,9 +2031,9 @@ MPM_E_STATE: a step is under way.""",
 Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is not read of
 insulated ones, which all faces are from the start. Call it again where the temperature changes: that change, at first
 from what the material there has, reaches the particles in the next step; material that comes to the face later is
-heated by conduction alone. Not part of a saved state. MPM_E_ARG: a value is bad, or the axis is periodic.
-MPM_E_UNSUPPORTED: the face is the axis of MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a step is under
-way.""",
+heated by conduction alone. Where two such faces meet, that of the lower axis prescribes the edge. Not part of a saved
+state. MPM_E_ARG: a value is bad, or the axis is periodic. MPM_E_UNSUPPORTED: the face is the axis of
+MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a step is under way.""",
     "mpm_surface_set_heat": """mpm_status mpm_surface_set_heat(mpm_surface *surface, double flux, double film, double ambient)
 
 Heats what lies below a surface, per area of its markers: flux + film (ambient - temperature of the material),

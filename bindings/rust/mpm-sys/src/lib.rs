@@ -325,7 +325,9 @@ pub mod constants {
     // How the nodes conduct.
 
     /// By the temperatures at the start of the step. Steps longer than h^2 / (2 dim diffusivity) are refused with
-    /// MPM_CUT_DT, and mpm_stable_dt() takes the bound into account.
+    /// MPM_CUT_DT, and mpm_stable_dt() takes the bound into account. So are steps in which a film of
+    /// mpm_surface_set_heat() would take more from a particle than its difference to the ambient, of which
+    /// mpm_stable_dt() knows nothing.
     pub const MPM_CONDUCTION_EXPLICIT: i32 = 0;
     /// By those at its end (backward Euler), found by conjugate gradients: any step will do.
     pub const MPM_CONDUCTION_IMPLICIT: i32 = 1;
@@ -608,8 +610,9 @@ pub type mpm_adaption_fn = Option<unsafe extern "C" fn(
     accept: *mut u8,
 ) -> mpm_status>;
 
-/// Heat sources: writes power[i], [ld], power per present volume. It runs as mpm_particle_fn does, on all threads, and
-/// returns as that does.
+/// Heat sources: writes power[i], [ld], power per present volume, at the time batch->t: the start of the step, and with
+/// implicit conduction its end. It runs as mpm_particle_fn does, on all threads, and returns as that does. A value that
+/// is not finite ends the step: MPM_NONFINITE.
 pub type mpm_heat_fn = Option<unsafe extern "C" fn(
     user: *mut c_void,
     batch: *const mpm_particle_batch,
@@ -2893,9 +2896,9 @@ extern "C" {
     /// Says what a face does to heat, whatever kind of wall it has. kind: MPM_HEAT_WALL_...; the temperature is not read
     /// of insulated ones, which all faces are from the start. Call it again where the temperature changes: that change,
     /// at first from what the material there has, reaches the particles in the next step; material that comes to the face
-    /// later is heated by conduction alone. Not part of a saved state. MPM_E_ARG: a value is bad, or the axis is
-    /// periodic. MPM_E_UNSUPPORTED: the face is the axis of MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a
-    /// step is under way.
+    /// later is heated by conduction alone. Where two such faces meet, that of the lower axis prescribes the edge. Not
+    /// part of a saved state. MPM_E_ARG: a value is bad, or the axis is periodic. MPM_E_UNSUPPORTED: the face is the axis
+    /// of MPM_AXISYMMETRIC, through which nothing flows. MPM_E_STATE: a step is under way.
     pub fn mpm_stepper_set_heat_wall(
         stepper: *mut mpm_stepper,
         face: i32,
