@@ -82,8 +82,8 @@ static mpm_status read_pair(mpmi_archive *a, int32_t lowest, mpmi_pair_records *
   saved_pair pair = {.a = 0};
   mpmi_archive_words(a, &pair, sizeof pair);
   if (a->status) return a->status;
-  if (pair.a < lowest || pair.a == MPM_BODY_ANY || !is_body(pair.b, pair.a < 0 ? 0 : pair.a + 1) ||
-      pair.a >= MPMI_MAX_BODIES ||
+  if (pair.a < lowest || pair.a == MPM_BODY_ANY || pair.a >= MPMI_MAX_BODIES ||
+      !is_body(pair.b, pair.a < 0 ? 0 : pair.a + 1) ||
       (pairs->count &&
        !comes_after(pair.a, pair.b, pairs->record[pairs->count - 1].a, pairs->record[pairs->count - 1].b)))
     return mpmi_archive_damaged(a, "a pair of bodies makes no sense");
