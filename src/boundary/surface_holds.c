@@ -1,5 +1,5 @@
-/* Surfaces that prescribe velocities, in explicit steps: what they hold at their sites, and their impulses.
- * */
+/* Surfaces that prescribe velocities, in explicit steps: what they hold at their sites, and what
+ * that takes. */
 #include "boundary/surface_holds.h"
 
 #include <math.h>
@@ -8,8 +8,7 @@
 /* The least part of a unit normal that is left beside what holds the node already. */
 static const double least_left = 0.1;
 
-/* ---- what sites hold ------------------------------------------------------------------------------------
- * */
+/* ---- what sites hold ----------------------------------------------------------------------------------- */
 /* Holds all components that nothing holds yet, nor a wall. */
 static void hold_velocity(mpmi_bound *bound, mpmi_surface_site *site) {
   const mpmi_constraints *ties = mpmi_constraints_of(bound);
@@ -24,17 +23,14 @@ static void hold_velocity(mpmi_bound *bound, mpmi_surface_site *site) {
 
 /* Takes one direction, in which something else sets the velocity, out of what a site prescribes. */
 static void take_out(mpmi_surface_site *site, const double *direction, double value) {
-  double part = 0.0;
-  for (int32_t c = 0; c < 3; ++c) part += site->vector[c] * direction[c];
+  const double part = mpmi_inner(site->vector, direction);
   for (int32_t c = 0; c < 3; ++c) site->vector[c] -= part * direction[c];
   site->value -= part * value;
 }
 
 /* Makes a unit vector of the normal of a site; returns 0 where hardly any of it is left. */
 static int32_t make_unit(mpmi_surface_site *site, double least) {
-  double square = 0.0;
-  for (int32_t c = 0; c < 3; ++c) square += site->vector[c] * site->vector[c];
-  const double length = sqrt(square);
+  const double length = sqrt(mpmi_inner(site->vector, site->vector));
   if (!(length > least)) return 0;
   for (int32_t c = 0; c < 3; ++c) site->vector[c] /= length;
   site->value /= length;

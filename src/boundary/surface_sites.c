@@ -8,8 +8,8 @@
  * q = q_ + C y,   C = sum s q r^T - q_ r_^T,   S y = -r_ in the plane of the surface,   S = sum s r r^T -
  * r_ r_^T
  *
- * Without it the normals of a curved surface would turn a little from node to node, and strain what slides.
- * */
+ * Without it the normals of a curved surface would turn a little from node to node, and strain what
+ * slides. */
 #include "boundary/surface_sites.h"
 #include "simd/vector3.h"
 

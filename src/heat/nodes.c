@@ -1,3 +1,4 @@
+/* Temperatures and increments of nodes: nodes that go together, and what prescribed faces do. */
 #include "heat/heat.h"
 #include "layout/tasks.h"
 
@@ -43,7 +44,7 @@ static double base_of(const mpmi_heat_job *job, const mpmi_tie *tie, const mpmi_
   return 2.0 * sum / odd;
 }
 
-/* ---- faces that begin to prescribe ---------- */
+/* ---- faces that begin to prescribe --------------------------------------------------------------------- */
 /* Returns 1 for the image of a node on a periodic axis: particles around the seam give to either. */
 static int32_t is_image(const mpmi_follower *follower) {
   return follower->sign[0] > 0.0 && follower->sign[1] > 0.0 && follower->sign[2] > 0.0;

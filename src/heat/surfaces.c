@@ -1,3 +1,4 @@
+/* Flux and film through the markers of surfaces. */
 #include "heat/heat.h"
 #include "stages/stages.h"
 

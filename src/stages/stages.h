@@ -79,14 +79,16 @@ int32_t mpmi_has_nodal_stress(const mpmi_settings *settings, const mpmi_layout *
  * copy of their stress and dilation ratio. The nodes' sums are made anew. */
 mpm_status mpmi_cell_pressure_stage(mpmi_step *step, mpmi_nodes *nodes, int32_t copy);
 
+/* ---- marker_nodes.c ---------------------------------------------------------------------------------- */
+/* Finds the nodes around the markers of a surface from their masses, which are not folded. */
+mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *masses);
+
 /* ---- surfaces.c -------------------------------------------------------------------------------------- */
 /* Finds what the markers of surfaces that prescribe ask for in the step. */
 mpm_status mpmi_surfaces_aim(mpmi_step *step);
 /* Asks the host for tractions at time t, and finds the forces of all markers on their present areas. */
 mpm_status mpmi_surfaces_load(mpmi_step *step, double t);
-/* Finds the nodes around the markers of a surface from their masses, which are not folded. */
-mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_nodal *masses);
-/* Does that for all surfaces, and refuses loads that no node would take. */
+/* Finds the nodes around the markers of all surfaces, and refuses loads that no node would take. */
 mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses);
 /* Does the same, and adds the forces to the sums that particles have made there. */
 mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);

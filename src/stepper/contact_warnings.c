@@ -2,8 +2,7 @@
  * where a surface is. */
 #include "stepper/stepper.h"
 
-/* Overlaps deeper than this, in spacings, are told, and particles that fill more of a cell than one with this
- * edge. */
+/* Overlaps deeper than this, in spacings, are told, and particles that are larger than one with this edge. */
 static const double deep = 0.5, large = 0.6;
 
 /* Contact pushes no overlap out, and so one that was there at first stays. */
@@ -41,10 +40,11 @@ static void tell_large_particles(mpm_stepper *s) {
     for (int64_t p = 0; p < set->slots; ++p) count += id[p] >= 0 && volume[p] > most;
   }
   if (count != s->told_large && count)
-    mpmi_log(s->context, MPM_LOG_INFO,
-             "%lld of %lld particles of bodies in contact are larger than half a cell: gaps need two or more "
-             "across a cell",
-             (long long)count, (long long)live);
+    mpmi_log(
+        s->context, MPM_LOG_INFO,
+        "%lld of %lld particles have more than 0.6 of the edge of a cell: gaps between bodies need two or "
+        "more across a cell",
+        (long long)count, (long long)live);
   s->told_large = count;
 }
 

@@ -227,14 +227,15 @@ typedef struct heard {
 
 static void hear(void *user, int32_t level, const char *text) {
   heard *to = user;
-  const int32_t overlap = strstr(text, "overlap") != NULL, large = strstr(text, "larger than half") != NULL;
+  const int32_t overlap = strstr(text, "overlap") != NULL,
+                large = strstr(text, "more than 0.6 of the edge") != NULL;
   to->overlaps += overlap && level == MPM_LOG_WARNING;
   to->large += large && level == MPM_LOG_INFO;
   if (overlap || large) snprintf(to->text, sizeof to->text, "%s", text);
 }
 
 /* Bodies that overlap by more than half a cell are told once, and again when they have parted meanwhile;
- * particles with more than half of a cell's edge are counted. An overlap of less is noise. */
+ * particles with more than 0.6 of a cell's edge are counted. An overlap of less is noise. */
 START_TEST(overlaps_are_told) {
   static const double overlap[3] = {0.75, 0.3, 0.75};
   const double h = 0.25, lower[2] = {3.0 * h, 3.0 * h}, upper[2] = {6.0 * h, 6.0 * h};

@@ -135,8 +135,6 @@ START_TEST(images_couple) {
   const double *r = reaction_of(&w, s);
   for (int32_t k = 0; k < 2; ++k) ck_within("balance", r[k], -3.0 * load.dead_traction[k], 1e-9 * 2700.0);
   ck_assert_int_le(info.newton_iterations, 7);
-  double *u = fetch(&w, set, "velocity", 2);
-  free(u);
   drop_surface(&w, s);
   drop_surface(&w, t);
   world_close(&w);

@@ -167,6 +167,41 @@ static inline void away(const double *x, double *v) {
   for (int32_t k = 0; k < 3; ++k) v[k] = x[k] - 1.5;
 }
 
+/* Makes the next part of a story, number `done`; it may fail, and is then tried again. */
+typedef mpm_status (*story_fn)(world *w, mpm_surface **s, int32_t done);
+
+/* Runs a story of so many parts in which one allocation fails, or none; returns how many there were. */
+static inline int64_t run_story(const method *how, int32_t parts, story_fn part, int64_t fail_at,
+                                uint64_t *hash) {
+  world w;
+  mpm_surface *s = NULL;
+  open_block(&w, how, 2);
+  const int64_t start = w.memory.calls;
+  w.memory.fail_at = fail_at ? start + fail_at : 0;
+  for (int32_t done = 0, tries = 0; done < parts;) {
+    const mpm_status status = part(&w, &s, done);
+    ck_assert(status == MPM_OK || (status == MPM_E_NOMEM && fail_at && !tries++));
+    if (!status) ++done;
+  }
+  const int64_t calls = w.memory.calls - start;
+  w.memory.fail_at = 0;
+  *hash = world_hash(&w);
+  drop_surface(&w, s);
+  world_close(&w);
+  return calls;
+}
+
+/* The story ends the same whichever of its allocations fails. */
+static inline void fail_every_allocation(const method *how, int32_t parts, story_fn part) {
+  uint64_t wanted, hash;
+  const int64_t calls = run_story(how, parts, part, 0, &wanted);
+  ck_assert(calls > 5);
+  for (int64_t k = 1; k <= calls; ++k) {
+    run_story(how, parts, part, k, &hash);
+    ck_assert_msg(hash == wanted, "without allocation %lld the story is another", (long long)k);
+  }
+}
+
 /* Add the cases of surface_motion.c, surface_states.c and surface_implicit.c. */
 void add_surface_motion(Suite *suite);
 void add_surface_states(Suite *suite);

@@ -24,19 +24,32 @@ typedef struct scene {
   int32_t dim;
   double h, lower[2], upper[2];         /* of the grid */
   double friction, gravity, angle, end; /* angle: of a slope, whose surface is the line y = 0 */
-  double nu, shift, plane;              /* plane: an obstacle there in place of a body */
+  double nu, shift;
+  int32_t plane; /* an obstacle is there in place of a body */
   body bodies[MOST_BODIES];
 } scene;
+
+/* What scenes share: lines of bars of unit speed of sound, discs that fly, blocks on a floor. */
+#define BARS(from, to, time) .dim = 1, .h = 0.05, .lower = {from}, .upper = {to}, .end = time
+#define BAR(from, to, speed, stiff)                                                                          \
+  { {from}, {to}, {speed}, stiff, stiff, 0 }
+#define DISCS .dim = 2, .h = 0.05, .lower = {-0.7, -0.7}, .upper = {0.7, 0.7}, .end = 3.6, .nu = 0.3
+#define DISC(x, y, vx, vy)                                                                                   \
+  { {x, y}, {x + 0.4, y + 0.4}, {vx, vy}, 1e3, 1e3, 1 }
+#define FLOOR                                                                                                \
+  .dim = 2, .h = 0.1, .lower = {-1.0, -0.5}, .upper = {2.4, 1.0}, .nu = 0.3, .friction = 0.3, .gravity = 10.0
+#define BLOCK(speed)                                                                                         \
+  {                                                                                                          \
+    {{0.0, 0.0}, {0.8, 0.4}, {speed, 0.0}, 1e6, 1e3, 0}, {                                                   \
+      {-0.8, -0.3}, {2.2, 0.0}, {0.0, 0.0}, 0.0, 1e3, 0                                                      \
+    }                                                                                                        \
+  }
 
 /* Those of the other cases; discs that meet fly at 45 degrees or are turned from it. */
 static const scene scenes[] = {
     {.name = "bars of one kind",
-     .dim = 1,
-     .h = 0.05,
-     .lower = {-1.0},
-     .upper = {2.5},
-     .end = 3.0,
-     .bodies = {{{-0.6}, {0.0}, {0.01}, 1.0, 1.0, 0}, {{0.0}, {1.5}, {0.0}, 1.0, 1.0, 0}}},
+     BARS(-1.0, 2.5, 3.0),
+     .bodies = {BAR(-0.6, 0.0, 0.01, 1.0), BAR(0.0, 1.5, 0.0, 1.0)}},
     {.name = "strips",
      .dim = 2,
      .h = 0.1,
@@ -46,84 +59,26 @@ static const scene scenes[] = {
      .bodies = {{{-0.6, 0.0}, {0.0, 0.3}, {0.01, 0.0}, 1.0, 1.0, 0},
                 {{0.0, 0.0}, {1.5, 0.3}, {0.0, 0.0}, 1.0, 1.0, 0}}},
     {.name = "bars with a gap",
-     .dim = 1,
-     .h = 0.05,
-     .lower = {-1.5},
-     .upper = {1.5},
-     .end = 4.0,
-     .bodies = {{{-1.003}, {-0.003}, {0.01}, 1.0, 1.0, 0}, {{0.0}, {1.0}, {0.0}, 1.0, 1.0, 0}}},
+     BARS(-1.5, 1.5, 4.0),
+     .bodies = {BAR(-1.003, -0.003, 0.01, 1.0), BAR(0.0, 1.0, 0.0, 1.0)}},
     {.name = "bars of two kinds",
-     .dim = 1,
-     .h = 0.05,
-     .lower = {-1.5},
-     .upper = {1.5},
-     .end = 3.0,
-     .bodies = {{{-1.0}, {0.0}, {0.01}, 1.0, 1.0, 0}, {{0.0}, {1.0}, {0.0}, 4.0, 4.0, 0}}},
+     BARS(-1.5, 1.5, 3.0),
+     .bodies = {BAR(-1.0, 0.0, 0.01, 1.0), BAR(0.0, 1.0, 0.0, 4.0)}},
     {.name = "five bars",
-     .dim = 1,
-     .h = 0.05,
-     .lower = {-1.0},
-     .upper = {3.5},
-     .end = 5.0,
-     .bodies = {{{-0.5}, {0.0}, {0.01}, 1.0, 1.0, 0},
-                {{0.0}, {0.5}, {0.0}, 1.0, 1.0, 0},
-                {{0.5}, {1.0}, {0.0}, 1.0, 1.0, 0},
-                {{1.0}, {1.5}, {0.0}, 1.0, 1.0, 0},
-                {{1.5}, {2.0}, {0.0}, 1.0, 1.0, 0}}},
-    {.name = "discs",
-     .dim = 2,
-     .h = 0.05,
-     .lower = {-0.7, -0.7},
-     .upper = {0.7, 0.7},
-     .end = 3.6,
-     .nu = 0.3,
-     .bodies = {{{-0.5, -0.5}, {-0.1, -0.1}, {0.1, 0.1}, 1e3, 1e3, 1},
-                {{0.1, 0.1}, {0.5, 0.5}, {-0.1, -0.1}, 1e3, 1e3, 1}}},
+     BARS(-1.0, 3.5, 5.0),
+     .bodies = {BAR(-0.5, 0.0, 0.01, 1.0), BAR(0.0, 0.5, 0.0, 1.0), BAR(0.5, 1.0, 0.0, 1.0),
+                BAR(1.0, 1.5, 0.0, 1.0), BAR(1.5, 2.0, 0.0, 1.0)}},
+    {.name = "discs", DISCS, .bodies = {DISC(-0.5, -0.5, 0.1, 0.1), DISC(0.1, 0.1, -0.1, -0.1)}},
     {.name = "discs, elsewhere",
-     .dim = 2,
-     .h = 0.05,
-     .lower = {-0.7, -0.7},
-     .upper = {0.7, 0.7},
-     .end = 3.6,
-     .nu = 0.3,
+     DISCS,
      .shift = 0.37,
-     .bodies = {{{-0.5, -0.35}, {-0.1, 0.05}, {0.13, 0.05}, 1e3, 1e3, 1},
-                {{0.1, -0.05}, {0.5, 0.35}, {-0.13, -0.05}, 1e3, 1e3, 1}}},
+     .bodies = {DISC(-0.5, -0.35, 0.13, 0.05), DISC(0.1, -0.05, -0.13, -0.05)}},
     {.name = "discs, oblique, friction",
-     .dim = 2,
-     .h = 0.05,
-     .lower = {-0.7, -0.7},
-     .upper = {0.7, 0.7},
-     .end = 3.6,
-     .nu = 0.3,
+     DISCS,
      .friction = 0.3,
-     .bodies = {{{-0.5, -0.3}, {-0.1, 0.1}, {0.14, 0.0}, 1e3, 1e3, 1},
-                {{0.1, -0.1}, {0.5, 0.3}, {-0.14, 0.0}, 1e3, 1e3, 1}}},
-    {.name = "block down a slope",
-     .dim = 2,
-     .h = 0.1,
-     .lower = {-1.0, -0.5},
-     .upper = {2.4, 1.0},
-     .end = 0.5,
-     .nu = 0.3,
-     .friction = 0.3,
-     .gravity = 10.0,
-     .angle = 30.0,
-     .shift = 0.37,
-     .bodies = {{{0.0, 0.0}, {0.8, 0.4}, {0.0, 0.0}, 1e6, 1e3, 0},
-                {{-0.8, -0.3}, {2.2, 0.0}, {0.0, 0.0}, 0.0, 1e3, 0}}},
-    {.name = "block that comes to rest",
-     .dim = 2,
-     .h = 0.1,
-     .lower = {-1.0, -0.5},
-     .upper = {2.4, 1.0},
-     .end = 0.8,
-     .nu = 0.3,
-     .friction = 0.3,
-     .gravity = 10.0,
-     .shift = 0.6,
-     .bodies = {{{0.0, 0.0}, {0.8, 0.4}, {1.5, 0.0}, 1e6, 1e3, 0},
-                {{-0.8, -0.3}, {2.2, 0.0}, {0.0, 0.0}, 0.0, 1e3, 0}}},
+     .bodies = {DISC(-0.5, -0.3, 0.14, 0.0), DISC(0.1, -0.1, -0.14, 0.0)}},
+    {.name = "block down a slope", FLOOR, .end = 0.5, .angle = 30.0, .shift = 0.37, .bodies = BLOCK(0.0)},
+    {.name = "block that comes to rest", FLOOR, .end = 0.8, .shift = 0.6, .bodies = BLOCK(1.5)},
     {.name = "disc that rolls",
      .dim = 2,
      .h = 0.08,
@@ -144,7 +99,7 @@ static const scene scenes[] = {
      .end = 3.6,
      .nu = 0.3,
      .plane = 1,
-     .bodies = {{{-0.2, 0.05}, {0.2, 0.45}, {0.0, -0.14}, 1e3, 1e3, 1}}},
+     .bodies = {DISC(-0.2, 0.05, 0.0, -0.14)}},
 };
 enum { SCENES = sizeof scenes / sizeof scenes[0] };
 
@@ -214,7 +169,7 @@ static outcome run(const scene *s, int32_t scheme, int32_t transfer, int32_t bas
       verify_obstacle_defaults(&contact, MPM_SHAPE_PLANE, MPM_MOTION_FIXED, s->friction, 0.0);
   verify_ok(&w, mpm_stepper_set_contact(w.stepper, MPM_BODY_ANY, MPM_BODY_ANY, &contact));
   fill(&w, s);
-  mpm_obstacle *ground = s->plane > 0.0 ? verify_obstacle(&w, &plane) : NULL;
+  mpm_obstacle *ground = s->plane ? verify_obstacle(&w, &plane) : NULL;
   const int32_t held = w.sets > 1 && !(s->bodies[1].E > 0.0);
   const double mass = s->gravity > 0.0 ? mass_of(&w, w.set[0]) : 0.0;
   const mpm_step_info first = verify_info(&w);

@@ -10,21 +10,6 @@ static double displacement(double r) {
   return (1.0 + nu) * p * a * a / (E * (b * b - a * a)) * ((1.0 - 2.0 * nu) * r + b * b / r);
 }
 
-/* Rings of particles, `layers` of them, of exact volume. */
-static void fill(const verify_world *w, mpm_particles *set, const double *centre, int32_t layers) {
-  const double width = (b - a) / layers;
-  for (int32_t k = 0; k < layers; ++k) {
-    const double inner = a + k * width, outer = inner + width, r = 0.5 * (inner + outer);
-    const int32_t n = (int32_t)(2.0 * PI * r / width + 0.5);
-    const double volume = PI * (outer * outer - inner * inner) / n;
-    for (int32_t i = 0; i < n; ++i) {
-      const double angle = 2.0 * PI * (i + 0.5) / n,
-                   x[2] = {centre[0] + r * cos(angle), centre[1] + r * sin(angle)};
-      verify_ok(w, mpm_particles_add(set, 1, x, NULL, &volume, NULL, NULL, NULL));
-    }
-  }
-}
-
 /* Makes a line of markers round a circle; the material is outside of it. */
 static void add_circle(const verify_world *w, mpm_surface *s, const double *centre, double r, double spacing,
                        int32_t loaded) {
@@ -74,7 +59,7 @@ static outcome load(int32_t basis, int32_t per_unit, int32_t shifted, FILE *csv)
   verify_open(&w, &setup);
   const double centre[2] = {2.5 + (shifted ? 0.37 * h : 0.0), 2.5 + (shifted ? 0.21 * h : 0.0)};
   mpm_particles *set = verify_set(&w, verify_elastic(&w, "neo_hookean", E, nu, 1.0));
-  fill(&w, set, centre, 2 * per_unit);
+  verify_fill_rings(&w, set, centre, a, b, 2 * per_unit);
   mpm_surface_desc d;
   mpm_surface *s;
   verify_ok(&w, mpm_surface_desc_init(&d, sizeof d));

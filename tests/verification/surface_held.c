@@ -42,22 +42,8 @@ typedef struct outcome {
 } outcome;
 
 /* ---- in the plane -------------------------------------------------------------------------------------- */
-/* Rings of particles, of exact volume. */
-static void fill_rings(const verify_world *w, mpm_particles *set, const double *centre, int32_t layers) {
-  const double width = (b - a) / layers;
-  for (int32_t k = 0; k < layers; ++k) {
-    const double inner = a + k * width, outer = inner + width, r = 0.5 * (inner + outer);
-    const int32_t n = (int32_t)(2.0 * PI * r / width + 0.5);
-    const double volume = PI * (outer * outer - inner * inner) / n;
-    for (int32_t i = 0; i < n; ++i) {
-      const double angle = 2.0 * PI * (i + 0.5) / n,
-                   x[2] = {centre[0] + r * cos(angle), centre[1] + r * sin(angle)};
-      verify_ok(w, mpm_particles_add(set, 1, x, NULL, &volume, NULL, NULL, NULL));
-    }
-  }
-}
-
 enum { AROUND = 384 };
+
 /* A closed line of markers; with out 0 the material is outside of it. */
 static void add_circle(const verify_world *w, mpm_surface *s, const double *centre, double r, double spacing,
                        int32_t out) {
@@ -105,7 +91,7 @@ static outcome in_the_plane(int32_t per_unit, int32_t shifted, FILE *csv) {
   verify_open(&w, &setup);
   const double centre[2] = {2.5 + (shifted ? 0.37 * h : 0.0), 2.5 + (shifted ? 0.21 * h : 0.0)};
   mpm_particles *set = verify_set(&w, verify_elastic(&w, "neo_hookean", E, nu, 1.0));
-  fill_rings(&w, set, centre, 2 * per_unit);
+  verify_fill_rings(&w, set, centre, a, b, 2 * per_unit);
   mpm_surface *inner = make_surface(&w, MPM_PRESCRIBES_NOTHING, p),
               *outer = make_surface(&w, MPM_PRESCRIBES_VELOCITY, 0.0), *seen[RINGS];
   add_circle(&w, inner, centre, a, 0.5 * h, 0);

@@ -223,6 +223,21 @@ void verify_fill_box(const verify_world *w, mpm_particles *set, const double *lo
   verify_ok(w, mpm_particles_fill_box(set, lower, upper, n, NULL, NULL));
 }
 
+void verify_fill_rings(const verify_world *w, mpm_particles *set, const double *centre, double inner,
+                       double outer, int32_t layers) {
+  const double width = (outer - inner) / layers;
+  for (int32_t k = 0; k < layers; ++k) {
+    const double from = inner + k * width, to = from + width, r = 0.5 * (from + to);
+    const int32_t n = (int32_t)(2.0 * PI * r / width + 0.5);
+    const double volume = PI * (to * to - from * from) / n;
+    for (int32_t i = 0; i < n; ++i) {
+      const double angle = 2.0 * PI * (i + 0.5) / n,
+                   x[2] = {centre[0] + r * cos(angle), centre[1] + r * sin(angle)};
+      verify_ok(w, mpm_particles_add(set, 1, x, NULL, &volume, NULL, NULL, NULL));
+    }
+  }
+}
+
 void verify_place(const verify_world *w, mpm_particles *set, double turn, const double *by) {
   const int64_t n = mpm_particles_count(set);
   double *x = verify_get(w, set, "position", w->dim);

@@ -90,6 +90,9 @@ double *verify_array(int64_t n); /* zeros */
 /* A box of particles, as many along each axis of a cell. */
 void verify_fill_box(const verify_world *w, mpm_particles *set, const double *lower, const double *upper,
                      int32_t per_cell);
+/* A ring of particles in rings, so many layers of them, of exact volume; in 2-D. */
+void verify_fill_rings(const verify_world *w, mpm_particles *set, const double *centre, double inner,
+                       double outer, int32_t layers);
 /* Turns a set about the third axis through the origin, then shifts it. */
 void verify_place(const verify_world *w, mpm_particles *set, double turn, const double *by);
 mpm_step_info verify_advance(const verify_world *w, double cfl, double t); /* to time t by stable steps */
