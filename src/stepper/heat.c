@@ -1,4 +1,5 @@
 /* What the host says of heat, and what it is told. */
+#include "context/checks.h"
 #include "context/structs.h"
 #include "layout/members.h"
 #include "particles/thermal.h"
@@ -19,14 +20,12 @@ mpm_status mpm_heat_desc_init(mpm_heat_desc *desc, uint32_t struct_size) {
 static mpm_status check_desc(mpm_context *c, const mpm_heat_desc *d) {
   if (!(d->specific_heat > 0.0) || !isfinite(d->specific_heat))
     return mpmi_fail(c, MPM_E_ARG, "specific_heat is %g: it must be finite and > 0", d->specific_heat);
-  if (!(d->conductivity >= 0.0) || !isfinite(d->conductivity))
-    return mpmi_fail(c, MPM_E_ARG, "conductivity is %g: it must be finite and >= 0", d->conductivity);
   if (!isfinite(d->expansion) || !isfinite(d->reference_temperature))
     return mpmi_fail(c, MPM_E_ARG, "expansion is %g and reference_temperature %g: they must be finite",
                      d->expansion, d->reference_temperature);
   if (!(d->dissipated_share >= 0.0 && d->dissipated_share <= 1.0))
     return mpmi_fail(c, MPM_E_ARG, "dissipated_share is %g: it must be 0 to 1", d->dissipated_share);
-  return MPM_OK;
+  return mpmi_check_magnitude(c, "conductivity", d->conductivity);
 }
 
 static mpm_status check_set(const mpm_particles *set, const mpm_heat_desc *d) {
@@ -104,11 +103,8 @@ mpm_status mpm_stepper_set_conduction(mpm_stepper *s, int32_t conduction, double
 
 mpm_status mpm_stepper_set_heat_wall(mpm_stepper *s, int32_t face, int32_t kind, double temperature) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  const mpm_status status = mpmi_stepper_idle(s);
-  if (status) return status;
-  if (face < 0 || face >= 2 * s->grid->dim)
-    return mpmi_fail(s->context, MPM_E_ARG, "face is %d: a %d-D grid has 0 ... %d", (int)face,
-                     (int)s->grid->dim, 2 * (int)s->grid->dim - 1);
+  mpm_status status = mpmi_stepper_idle(s);
+  if (status || (status = mpmi_check_face(s, face))) return status;
   if (kind < MPM_HEAT_WALL_INSULATED || kind > MPM_HEAT_WALL_TEMPERATURE)
     return mpmi_fail(s->context, MPM_E_ARG,
                      "kind is %d: it must be MPM_HEAT_WALL_INSULATED or MPM_HEAT_WALL_TEMPERATURE",
@@ -130,12 +126,11 @@ mpm_status mpm_stepper_set_heat_wall(mpm_stepper *s, int32_t face, int32_t kind,
 
 mpm_status mpm_surface_set_heat(mpm_surface *s, double flux, double film, double ambient) {
   MPMI_ENTER(s, MPMI_SURFACE);
-  const mpm_status status = mpmi_surface_changeable(s);
+  mpm_status status = mpmi_surface_changeable(s);
   if (status) return status;
   if (!isfinite(flux) || !isfinite(ambient))
     return mpmi_fail(s->context, MPM_E_ARG, "flux is %g and ambient %g: they must be finite", flux, ambient);
-  if (!(film >= 0.0) || !isfinite(film))
-    return mpmi_fail(s->context, MPM_E_ARG, "film is %g: it must be finite and >= 0", film);
+  if ((status = mpmi_check_magnitude(s->context, "film", film))) return status;
   s->heat = (mpmi_surface_heat){flux, film, ambient};
   return MPM_OK;
 }
