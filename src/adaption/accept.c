@@ -12,11 +12,11 @@ typedef struct asked {
 static void show(const mpmi_adaption *a, const mpm_particles *set, int32_t copy, int32_t what, int64_t begin,
                  int64_t n, asked *to) {
   for (int64_t i = 0; i < n; ++i) {
-    const mpmi_merging *pair = &a->pair[begin + i];
-    const mpmi_splitting *split = &a->split[begin + i];
-    const int64_t slot = what == MPM_ADAPT_SPLIT ? split->slot : pair->stays;
-    to->id[i] = what == MPM_ADAPT_SPLIT ? split->id : pair->id;
-    to->other[i] = what == MPM_ADAPT_SPLIT ? -1 : pair->other;
+    const mpmi_merging *pair = what == MPM_ADAPT_MERGE ? &a->pair[begin + i] : NULL;
+    const mpmi_splitting *split = what == MPM_ADAPT_SPLIT ? &a->split[begin + i] : NULL;
+    const int64_t slot = split ? split->slot : pair->stays;
+    to->id[i] = split ? split->id : pair->id;
+    to->other[i] = split ? -1 : pair->other;
     to->accept[i] = 1;
     for (int32_t k = 0; k < set->grid->dim; ++k)
       to->position[k * BATCH + i] = mpmi_row_of(set, MPMI_POSITION, copy, k)[slot];

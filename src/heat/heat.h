@@ -37,7 +37,7 @@ typedef struct mpmi_heat_history {
 
 /* Sums over the particles of a block. */
 typedef struct mpmi_heat_part {
-  double gained, sources, dissipated;
+  double gained, sources;
 } mpmi_heat_part;
 
 /* Memory of the heat of a stepper. */

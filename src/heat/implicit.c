@@ -46,7 +46,8 @@ static mpm_status list_rows(const mpmi_heat_job *job) {
     heat->row[heat->rows] = slot;
     if (fold(heat, heat->rows, &heat->nodes, MPMI_HEAT_CAPACITY, 0) > 0.0) ++heat->rows;
   }
-  return MPMI_RESERVE_MORE(c, heat->vector, heat->vector_capacity, VECTORS * heat->rows);
+  /* Vectors have a place in memory also where faces hold all nodes and no row is left. */
+  return MPMI_RESERVE_MORE(c, heat->vector, heat->vector_capacity, VECTORS * (heat->rows + 1));
 }
 
 /* Puts values by row on a value of the nodes or of the flow, and 0 on all other nodes. */

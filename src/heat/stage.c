@@ -107,7 +107,9 @@ mpm_status mpmi_heat_stage(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_his
   double clock = mpmi_seconds();
   mpm_status status;
   if (!step->settings->heat.any) return MPM_OK;
-  if ((status = check_step(step)) || (status = prepare(&job)) || (status = ask_sources(step))) return status;
+  if ((status = check_step(step)) || (status = prepare(&job))) return status;
+  if (!step->layout->blocks.count) return MPM_OK; /* no particles are there to conduct */
+  if ((status = ask_sources(step))) return status;
   mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
   status = mpmi_heat_project(&job);
   mpmi_lap(step, MPMI_TIME_P2G, &clock);
@@ -166,7 +168,7 @@ void mpmi_heat_commit(const mpmi_step *step, mpmi_heat *heat, mpmi_heat_history 
   const mpmi_heat_rules *rules = &step->settings->heat;
   if (!rules->any) return;
   for (int32_t m = 0; m < step->layout->member_count; ++m)
-    if (rules->set[m].on)
+    if (rules->set[m].on && step->layout->member[m].set->slots)
       heat->sums.dissipated +=
           commit_set(&rules->set[m], &step->work->rows.of[m], step->layout->member[m].set);
   heat->sums.gained += heat->sums.dissipated;

@@ -76,7 +76,7 @@ static void open_grid(cloud *c) {
   static const int32_t basis[] = {MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP, MPM_UGIMP, MPM_CPGIMP};
   MUST(!mpm_grid_desc_init(&c->g, sizeof c->g));
   c->g.dim = 1 + fuzz_below(&c->in, 3);
-  c->g.basis = basis[fuzz_below(&c->in, 6)];
+  c->g.basis = FUZZ_PICK(&c->in, basis);
   c->g.boundary_basis = fuzz_below(&c->in, 4) == 0;
   c->g.smoothing = fuzz_between(&c->in, 0.01, 1.0);
   const int32_t periodic = fuzz_below(&c->in, 8);
@@ -134,7 +134,7 @@ static mpm_stepper_desc draw_stepper(cloud *c) {
   static const int32_t scheme[] = {MPM_USL, MPM_USF, MPM_MUSL, MPM_NEWMARK};
   mpm_stepper_desc d;
   MUST(!mpm_stepper_desc_init(&d, sizeof d));
-  d.scheme = scheme[fuzz_below(&c->in, 4)];
+  d.scheme = FUZZ_PICK(&c->in, scheme);
   d.transfer = 1 + fuzz_below(&c->in, 8);
   d.xpic_order = 1 + fuzz_below(&c->in, 5);
   d.xpic_every = fuzz_below(&c->in, 3);
@@ -250,7 +250,7 @@ static void draw_obstacle(cloud *c) {
   rule.adhesion = fuzz_between(&c->in, 0.0, 10.0);
   rule.offset = fuzz_between(&c->in, -0.1, 0.1);
   d.contact = &rule;
-  d.shape = shapes[fuzz_below(&c->in, 6)];
+  d.shape = FUZZ_PICK(&c->in, shapes);
   d.motion = fuzz_below(&c->in, 3);
   d.inside = fuzz_below(&c->in, 2);
   d.distance = bowl;

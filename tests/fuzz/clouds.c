@@ -96,7 +96,7 @@ static double draw_dt(cloud *c) {
   static const double share[] = {0.3, 0.1, 0.5, 0.9, 1.5, 4.0, 1e-3, 0.3};
   double dt;
   if (fuzz_status(c->context, mpm_stable_dt(c->stepper, &dt)) || !(dt < 1.0)) dt = 1e-2;
-  return dt * share[fuzz_below(&c->in, 8)];
+  return dt * FUZZ_PICK(&c->in, share);
 }
 
 static void step(cloud *c) {
@@ -247,10 +247,11 @@ static void write_view(cloud *c) {
                                       "state",
                                       "stress",
                                       "size",
-                                      "initial_volume"};
+                                      "initial_volume",
+                                      "temperature"};
   mpm_view v = {.struct_size = sizeof v};
   mpm_particles *set = draw_set(c);
-  const char *name = field[fuzz_below(&c->in, 10)];
+  const char *name = FUZZ_PICK(&c->in, field);
   if (fuzz_status(c->context, mpm_particles_map(set, name, MPM_READ | MPM_WRITE, &v))) return;
   const double factor = fuzz_between(&c->in, 0.8, 1.2);
   for (int64_t i = 0; i < v.count; ++i)
@@ -267,8 +268,7 @@ static void set_fields(cloud *c) {
   mpm_particles *set = draw_set(c);
   static const char *const vector[] = {"applied_force", "velocity", "acceleration", "size",
                                        "reference_position"};
-  fuzz_status(c->context,
-              mpm_particles_set_all(set, vector[fuzz_below(&c->in, 5)], MPM_F64, c->g.dim, value));
+  fuzz_status(c->context, mpm_particles_set_all(set, FUZZ_PICK(&c->in, vector), MPM_F64, c->g.dim, value));
   const int32_t further = fuzz_below(&c->in, 4), axis = fuzz_below(&c->in, 3);
   if (further == 1) fuzz_status(c->context, mpm_particles_set_all(set, "prescribed", MPM_U8, c->g.dim, axes));
   if (further == 2)
@@ -287,7 +287,7 @@ static void pack(cloud *c) {
   const char *names[3];
   size_t bytes = 0;
   for (int32_t i = 0; i < count; ++i) {
-    names[i] = field[fuzz_below(&c->in, 10)];
+    names[i] = FUZZ_PICK(&c->in, field);
     const int32_t f = mpmi_find_field(set, names[i]);
     if (f >= 0) bytes += (size_t)n * (size_t)set->field[f].full_components * sizeof(float);
   }
@@ -399,16 +399,14 @@ static void draw_heat(cloud *c) {
 }
 
 static void look(cloud *c) {
-  enum { FIELDS = 10 };
-  static const char *const field[FIELDS] = {"mass",         "force",      "reaction",      "acceleration",
-                                            "velocity",     "index",      "contact_force", "contact_normal",
-                                            "contact_area", "temperature"};
+  static const char *const field[] = {"mass",         "force",      "reaction",      "acceleration",
+                                      "velocity",     "index",      "contact_force", "contact_normal",
+                                      "contact_area", "temperature"};
   mpm_view v = {.struct_size = sizeof v};
   mpm_contact_info contact = {.struct_size = sizeof contact};
   double force[3];
   const int32_t body = fuzz_below(&c->in, 8) ? 0 : fuzz_below(&c->in, 3);
-  if (!fuzz_status(c->context,
-                   mpm_grid_map(c->stepper, body, field[fuzz_below(&c->in, FIELDS)], MPM_READ, &v))) {
+  if (!fuzz_status(c->context, mpm_grid_map(c->stepper, body, FUZZ_PICK(&c->in, field), MPM_READ, &v))) {
     for (int64_t i = 0; i < v.count && v.type == MPM_F64; ++i)
       for (int32_t k = 0; k < v.components; ++k)
         MUST(isfinite(((double *)v.data)[i * v.item_stride + k * v.component_stride]));

@@ -34,6 +34,8 @@ static inline uint32_t fuzz_byte(fuzz_input *in) {
 static inline int32_t fuzz_below(fuzz_input *in, int32_t n) {
   return (int32_t)(fuzz_byte(in) % (uint32_t)n);
 }
+/* one entry of a table, whatever its length is */
+#define FUZZ_PICK(in, table) ((table)[fuzz_below(in, (int32_t)(sizeof(table) / sizeof((table)[0])))])
 static inline uint64_t fuzz_word(fuzz_input *in, int32_t bytes) {
   uint64_t word = 0;
   for (int32_t i = 0; i < bytes; ++i) word = word << 8 | fuzz_byte(in);

@@ -721,6 +721,33 @@ START_TEST(refusals) {
 }
 END_TEST
 
+/* Nothing is left to conduct, or nothing is free: there are no particles, or faces hold all nodes. */
+START_TEST(nothing_is_free) {
+  world w;
+  world_desc desc = world_default(1, 1, 1.0);
+  desc.grid.basis = MPM_LINEAR;
+  mpm_particles *set = world_open(&w, &desc);
+  const double low[] = {0.0}, high[] = {1.0};
+  world_fill(&w, set, low, high, 4);
+  const mpm_heat_desc d = heat_desc(2.0, 1.0);
+  ck_ok(&w, mpm_stepper_set_heat(w.stepper, set, &d));
+  ck_ok(&w,
+        mpm_stepper_set_conduction(w.stepper, _i ? MPM_CONDUCTION_IMPLICIT : MPM_CONDUCTION_EXPLICIT, 1e-12));
+  hold_ends(&w, 3.0);
+  for (int32_t i = 0; i < 2; ++i) world_step(&w, 1e-3);
+  double *T = fetch(&w, set, "temperature", 1);
+  for (int64_t p = 0; p < 4; ++p) ck_within("held", T[p], 3.0, 1e-12);
+  free(T);
+  const int64_t all[] = {0, 1, 2, 3};
+  ck_ok(&w, mpm_particles_remove(set, 4, all));
+  for (int32_t i = 0; i < 2; ++i) world_step(&w, 1e-3);
+  mpm_heat_info info = {.struct_size = sizeof info};
+  ck_ok(&w, mpm_stepper_heat_info(w.stepper, &info));
+  ck_assert(info.gained == 0.0 && info.heat == 0.0);
+  world_close(&w);
+}
+END_TEST
+
 /* Without a description nothing is there; with one that is taken back fields stay. */
 START_TEST(comes_and_goes) {
   world w;
@@ -772,6 +799,7 @@ Suite *heat_suite(void) {
   tcase_add_loop_test(grid, overflow_is_no_solution, 0, 2);
   tcase_add_loop_test(grid, memory_runs_out, 0, 2);
   tcase_add_test(grid, refusals);
+  tcase_add_loop_test(grid, nothing_is_free, 0, 2);
   tcase_add_test(grid, comes_and_goes);
   tcase_set_timeout(grid, 120);
   suite_add_tcase(suite, grid);
