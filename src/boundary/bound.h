@@ -78,9 +78,6 @@ void mpmi_push_node(mpmi_bound *bound, int64_t slot, int32_t c, double by);
  * the wall's reaction. */
 double mpmi_press_node(mpmi_bound *bound, int64_t slot, int32_t c, double by);
 
-/* Adds the work of all blocks, in their order, to the work of the step. */
-void mpmi_add_block_work(mpmi_step *step);
-
 /* ---- ties.c ------------------------------------------------------------------------------------------ */
 /* Gives each master the velocity of its whole tie, before the forces and after them. */
 mpm_status mpmi_ties_fold(mpmi_bound *bound);

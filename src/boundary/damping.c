@@ -8,7 +8,6 @@
  * one after the other. A component that is held moves as its holder says, and keeps its force whole: damped,
  * it would only spoil the reaction. */
 #include "boundary/bound.h"
-#include "context/reduce.h"
 
 #include <math.h>
 
@@ -45,18 +44,16 @@ static void damp_task(void *data, int64_t k) {
   for (int64_t slot = share.begin; slot < share.end; ++slot) damp_node(bound, slot);
 }
 
-/* Adds up by block what damping took: its impulse times the mean velocity of the node. */
+/* Adds up what damping took: its impulse times the mean velocity of the node. */
 static void sum_task(void *data, int64_t k) {
   const mpmi_bound *bound = data;
-  const mpmi_blocks *blocks = &bound->step->layout->blocks;
-  const mpmi_share share = mpmi_share_of(bound->step->settings, blocks->count, k);
-  for (int64_t b = share.begin; b < share.end; ++b) {
+  const mpmi_share share = mpmi_share_of(bound->step->settings, mpmi_slots(bound->step->layout), k);
+  for (int64_t slot = share.begin; slot < share.end; ++slot) {
     double taken = 0.0;
-    for (int64_t slot = b * blocks->nodes; slot < (b + 1) * blocks->nodes; ++slot)
-      for (int32_t c = 0; c < bound->dim; ++c)
-        taken -= bound->nodes->damping_impulse[slot][c] *
-                 (mpmi_velocity(bound->values, slot)[c] - 0.5 * mpmi_increment(bound->values, slot)[c]);
-    bound->step->work->block_work[b] = taken;
+    for (int32_t c = 0; c < bound->dim; ++c)
+      taken -= bound->nodes->damping_impulse[slot][c] *
+               (mpmi_velocity(bound->values, slot)[c] - 0.5 * mpmi_increment(bound->values, slot)[c]);
+    mpmi_exact_add(&bound->step->work->report[k].damping, taken);
   }
 }
 
@@ -65,11 +62,5 @@ mpm_status mpmi_damp(mpmi_bound *bound) {
 }
 
 mpm_status mpmi_damping_sum(mpmi_bound *bound) {
-  mpmi_step *step = bound->step;
-  if (!mpmi_is_damped(step->settings)) return MPM_OK;
-  const mpm_status status = mpmi_run_bound(bound, sum_task);
-  if (!status)
-    step->info.damping_dissipation =
-        mpmi_reduce(MPMI_REDUCE_SUM, 0.0, step->work->block_work, 1, NULL, step->layout->blocks.count);
-  return status;
+  return mpmi_is_damped(bound->step->settings) ? mpmi_run_bound(bound, sum_task) : MPM_OK;
 }

@@ -14,33 +14,31 @@ static void prescribe(mpmi_bound *bound, int64_t slot, int32_t c, double value) 
 }
 
 /* The work is the impulse times the velocity that the step has. */
-static void set_block(mpmi_bound *bound, int64_t block) {
+static void set_block(mpmi_bound *bound, int64_t block, mpmi_exact_sum *sum) {
   const mpmi_nodes *nodes = bound->nodes;
   const int64_t first = block * bound->step->layout->blocks.nodes;
-  double work = 0.0;
   for (int64_t slot = first; slot < first + bound->step->layout->blocks.nodes; ++slot)
     for (int32_t c = 0; c < bound->dim; ++c) {
       if (!nodes->held[slot][c]) continue;
       const double value = nodes->held_value[slot][c];
       const mpmi_component before = mpmi_component_of(bound, slot, c);
       prescribe(bound, slot, c, value);
-      work += mpmi_record(bound, slot, c, before) * value;
+      const double work = mpmi_record(bound, slot, c, before) * value;
+      if (bound->records) mpmi_exact_add(sum, bound->share * work);
     }
-  if (bound->records) bound->step->work->block_work[block] = bound->share * work;
 }
 
 static void set_task(void *data, int64_t k) {
   mpmi_bound *bound = data;
   const mpmi_share share = mpmi_share_of(bound->step->settings, bound->step->layout->blocks.count, k);
-  for (int64_t b = share.begin; b < share.end; ++b) set_block(bound, b);
+  for (int64_t b = share.begin; b < share.end; ++b)
+    set_block(bound, b, &bound->step->work->report[k].host_work);
 }
 
 mpm_status mpmi_held_set(mpmi_bound *bound) {
   if (!bound->nodes->has_holders) return MPM_OK;
   const mpmi_settings *settings = bound->step->settings;
-  const mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, set_task, bound);
-  if (!status && bound->records) mpmi_add_block_work(bound->step);
-  return status;
+  return mpmi_run_tasks(settings, 0, settings->tasks, set_task, bound);
 }
 
 mpm_status mpmi_held_find(mpmi_bound *bound) {

@@ -103,17 +103,15 @@ mpm_status mpmi_hooks_run(mpmi_bound *bound, int32_t stage) {
   return status ? status : mpmi_step_failure(bound->step);
 }
 
-/* Adds up the hooks' work by block: impulse times the velocity of the node in the step. */
+/* Adds up the hooks' work: impulse times the velocity of the node in the step. */
 static void work_task(void *data, int64_t k) {
   mpmi_bound *bound = data;
-  const mpmi_blocks *blocks = &bound->step->layout->blocks;
-  const mpmi_share share = mpmi_share_of(bound->step->settings, blocks->count, k);
-  for (int64_t b = share.begin; b < share.end; ++b) {
+  const mpmi_share share = mpmi_share_of(bound->step->settings, mpmi_slots(bound->step->layout), k);
+  for (int64_t slot = share.begin; slot < share.end; ++slot) {
     double work = 0.0;
-    for (int64_t slot = b * blocks->nodes; slot < (b + 1) * blocks->nodes; ++slot)
-      for (int32_t c = 0; c < bound->dim; ++c)
-        work += bound->nodes->hook_impulse[slot][c] * mpmi_velocity(bound->values, slot)[c];
-    bound->step->work->block_work[b] = work;
+    for (int32_t c = 0; c < bound->dim; ++c)
+      work += bound->nodes->hook_impulse[slot][c] * mpmi_velocity(bound->values, slot)[c];
+    mpmi_exact_add(&bound->step->work->report[k].host_work, work);
   }
 }
 
@@ -129,7 +127,5 @@ mpm_status mpmi_hooks_begin(mpmi_bound *bound) {
 
 mpm_status mpmi_hooks_end(mpmi_bound *bound) {
   if (!mpmi_has_hooks(bound->step->settings)) return MPM_OK;
-  const mpm_status status = mpmi_run_bound(bound, work_task);
-  if (!status) mpmi_add_block_work(bound->step);
-  return status;
+  return mpmi_run_bound(bound, work_task);
 }

@@ -1,6 +1,5 @@
 /* What boundary conditions give to the particles, recorded as impulses on nodes and ties. */
 #include "boundary/bound.h"
-#include "context/reduce.h"
 
 void mpmi_note_impulse(mpmi_bound *bound, int64_t slot, int32_t c, double impulse, double change) {
   if (!bound->records) return;
@@ -72,9 +71,4 @@ void mpmi_push_node(mpmi_bound *bound, int64_t slot, int32_t c, double by) {
     const double mass = *mpmi_mass(bound->values, follower->slot);
     mpmi_note_impulse(bound, follower->slot, c, -mass * follower->sign[c] * by, 0.0);
   }
-}
-
-void mpmi_add_block_work(mpmi_step *step) {
-  step->host_work = mpmi_reduce(MPMI_REDUCE_SUM, step->host_work, step->work->block_work, 1, NULL,
-                                step->layout->blocks.count);
 }

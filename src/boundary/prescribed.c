@@ -125,13 +125,13 @@ uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t 
 }
 
 /* ---- reports ------------------------------------------------------------------------------------------ */
-void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes, int32_t m, double impulse[3]) {
+void mpmi_prescribed_report(const mpmi_step *step, const mpmi_nodes *nodes, int32_t m) {
   const mpmi_layout *layout = step->layout;
-  for (int32_t c = 0; c < 3; ++c) impulse[c] = 0.0;
   for (int64_t b = 0; b < layout->blocks.count && layout->member[m].prescribed; ++b) {
     if (!mpmi_block_is(nodes, b, MPMI_WITH_PRESCRIBED)) continue;
     const mpmi_prescribed_part *part = mpmi_part_of(layout, nodes, b, m);
-    for (int32_t c = 0; c < step->settings->grid->dim; ++c) impulse[c] += part->impulse[c];
-    step->host_work += part->work;
+    for (int32_t c = 0; c < step->settings->grid->dim; ++c)
+      mpmi_exact_add(&step->work->tally.sum[MPMI_TALLY_REACTIONS + 3 * m + c], part->impulse[c]);
+    mpmi_exact_add(&step->work->tally.sum[MPMI_TALLY_WORK], part->work);
   }
 }

@@ -49,8 +49,8 @@ mpm_status mpmi_prescribed_stage(mpmi_step *step);
  * of mpmi_move. */
 uint32_t mpmi_prescribed_move(const mpmi_step *step, mpmi_nodes *nodes, int32_t m, int64_t block,
                               const mpmi_move *move, int64_t begin, int64_t n);
-/* Finds the impulse of a set's prescribed particles on the material, and adds the work of moving them to the
+/* Adds the impulse of a set's prescribed particles on the material, and the work of moving them, to the
  * step's. */
-void mpmi_prescribed_report(mpmi_step *step, const mpmi_nodes *nodes, int32_t m, double impulse[3]);
+void mpmi_prescribed_report(const mpmi_step *step, const mpmi_nodes *nodes, int32_t m);
 
 #endif

@@ -138,8 +138,8 @@ static void add_reactions(mpmi_bound *bound) {
     const mpmi_tie *tie = &constraints->tie[i];
     for (int32_t c = 0; c < bound->dim; ++c)
       if (tie->face[c] >= 0 && !mpmi_held_by(bound->nodes, tie->master, c))
-        bound->step->impulse_by_face[tie->face[c]][c] +=
-            bound->share * bound->nodes->tie_state[i].recorded[c];
+        mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_FACES + 3 * tie->face[c] + c],
+                       bound->share * bound->nodes->tie_state[i].recorded[c]);
   }
 }
 

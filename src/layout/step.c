@@ -89,7 +89,7 @@ void mpmi_workspace_free(mpmi_workspace *work, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, work->report, settings->tasks);
   mpmi_member_rows_free(&work->rows, settings);
   MPMI_FREE_ARRAY(c, work->block_sums, work->block_sums_capacity);
-  MPMI_FREE_ARRAY(c, work->block_work, work->block_work_capacity);
+  mpmi_tally_free(&work->tally, c);
   MPMI_FREE_ARRAY(c, work->block_stops, work->block_stops_capacity);
 }
 
@@ -120,7 +120,7 @@ mpm_status mpmi_workspace_prepare(mpmi_workspace *work, const mpmi_settings *set
   const int64_t blocks = layout->blocks.count;
   mpm_status status;
   if ((status = MPMI_RESERVE_MORE(c, work->block_sums, work->block_sums_capacity, blocks)) ||
-      (status = MPMI_RESERVE_MORE(c, work->block_work, work->block_work_capacity, blocks)))
+      (status = mpmi_tally_prepare(&work->tally, c, layout->member_count)))
     return status;
   if (mpmi_has_friction_planes(settings)) {
     if ((status = MPMI_RESERVE_MORE(c, work->block_stops, work->block_stops_capacity, blocks))) return status;

@@ -4,6 +4,7 @@
 #define MPMI_STEP_H
 
 #include "layout/member_rows.h"
+#include "layout/tally.h"
 
 /* What ends a step early. Failures of tasks are collected, and the first decides so that reports repeat: that
  * of the smallest (set, particle), then of the smallest node. */
@@ -18,12 +19,13 @@ typedef struct mpmi_failure {
 /* What one task has to tell at the end. */
 typedef struct mpmi_task_report {
   mpmi_failure failure;
-  int32_t left_cover, left_tile; /* a particle left the cover of its block, its loose tile */
-  int32_t removes;               /* one left through an open wall */
-  int32_t holes_restored;        /* sums over the particles may not be finite */
-  int64_t active;                /* nodes in its share that are heavier than the cut */
-  int64_t light, first_light;    /* lighter ones with mass, and where their list begins */
-  double contact_change;         /* largest change of a velocity by contact of bodies */
+  int32_t left_cover, left_tile;     /* a particle left the cover of its block, its loose tile */
+  int32_t removes;                   /* one left through an open wall */
+  int32_t holes_restored;            /* sums over the particles may not be finite */
+  int64_t active;                    /* nodes in its share that are heavier than the cut */
+  int64_t light, first_light;        /* lighter ones with mass, and where their list begins */
+  double contact_change;             /* largest change of a velocity by contact of bodies */
+  mpmi_exact_sum host_work, damping; /* of the nodes in its share */
   double law_seconds, weights_seconds;
 } mpmi_task_report;
 
@@ -51,9 +53,9 @@ typedef struct mpmi_workspace {
   size_t scratch_bytes;
   mpmi_step_rows rows;
   mpmi_sums *block_sums;   /* [blocks] energies, momenta and rates of the new state */
-  double *block_work;      /* [blocks] work of the host on nodes */
   mpmi_stops *block_stops; /* [blocks], where there are friction walls */
-  int64_t block_sums_capacity, block_work_capacity, block_stops_capacity;
+  int64_t block_sums_capacity, block_stops_capacity;
+  mpmi_tally tally;
 } mpmi_workspace;
 
 /* Seconds by stage, in the order of mpm_profile. */

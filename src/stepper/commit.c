@@ -70,15 +70,38 @@ static void add_to_totals(mpm_stepper *s, double work) {
     for (int32_t c = 0; c < 3; ++c) totals->impulse_by_face[face][c] += s->step.impulse_by_face[face][c];
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
     mpmi_reaction *reaction = &s->history.reaction[m];
-    for (int32_t c = 0; c < 3; ++c) reaction->impulse_total[c] += reaction->impulse[c];
+    for (int32_t c = 0; c < 3; ++c) {
+      reaction->impulse[c] = s->work.tally.total[MPMI_TALLY_REACTIONS + 3 * m + c];
+      reaction->impulse_total[c] += reaction->impulse[c];
+    }
   }
+}
+
+/* Makes the totals of the step: those of blocks and tasks, and what walls, hosts and dampers did beside what
+ * the step has of it already. Returns the energies, momenta and rates of the new state. */
+static mpmi_sums close_tally(mpmi_step *step) {
+  mpmi_tally *tally = &step->work->tally;
+  const mpmi_worklist *blocks = &step->layout->worklist[0];
+  mpmi_sums sums = {0};
+  for (int64_t i = 0; i < blocks->count; ++i)
+    mpmi_tally_block(tally->sum, &step->work->block_sums[blocks->block[i]], &sums);
+  for (int32_t k = 0; k < step->settings->tasks; ++k) {
+    mpmi_exact_join(&tally->sum[MPMI_TALLY_WORK], &step->work->report[k].host_work);
+    mpmi_exact_join(&tally->sum[MPMI_TALLY_DAMPING], &step->work->report[k].damping);
+  }
+  for (int64_t i = 0; i < tally->count; ++i) tally->total[i] = mpmi_exact_total(&tally->sum[i]);
+  mpmi_tally_read(tally->total, &sums);
+  for (int32_t i = 0; i < 18; ++i) step->impulse_by_face[i / 3][i % 3] += tally->total[MPMI_TALLY_FACES + i];
+  step->host_work += tally->total[MPMI_TALLY_WORK];
+  step->info.damping_dissipation += tally->total[MPMI_TALLY_DAMPING];
+  return sums;
 }
 
 static void commit_history(mpm_stepper *s) {
   mpmi_step *step = &s->step;
   mpmi_history *history = &s->history;
   const mpmi_sums before = history->sums;
-  history->sums = mpmi_block_sums(step);
+  history->sums = close_tally(step);
   history->has_sums = 1;
   history->t += step->dt;
   ++history->step;
@@ -104,8 +127,7 @@ void mpmi_commit(mpm_stepper *s) {
     removes |= s->work.report[k].removes;
     restored |= s->work.report[k].holes_restored;
   }
-  for (int32_t m = 0; m < s->layout.member_count; ++m)
-    mpmi_prescribed_report(&s->step, &s->nodes, m, s->history.reaction[m].impulse);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) mpmi_prescribed_report(&s->step, &s->nodes, m);
   commit_history(s);
   mpmi_heat_commit(&s->step, s->heat, &s->history.heat);
   for (int32_t m = 0; m < s->layout.member_count; ++m) swap_copies(s, s->layout.member[m].set, left);

@@ -1,29 +1,9 @@
 /* Energies, momenta and rates of the present state. After a step they are there; after the host has changed
  * something, or before the first step, the particles are asked. */
 #include "stepper/stepper.h"
-#include "context/reduce.h"
 #include "stages/batch.h"
 
 #include <math.h>
-#include <stddef.h>
-
-/* ---- sums over blocks --------------------------------------------------------------------------------- */
-enum { SUMS = sizeof(mpmi_sums) / sizeof(double) };
-
-static int32_t is_rate(size_t at) {
-  return at == offsetof(mpmi_sums, rate) || at == offsetof(mpmi_sums, viscous_rate);
-}
-
-mpmi_sums mpmi_block_sums(const mpmi_step *step) {
-  const mpmi_worklist *blocks = &step->layout->worklist[0];
-  mpmi_sums sums = {0};
-  double *to = (double *)&sums;
-  if (!blocks->count) return sums;
-  for (int32_t i = 0; i < SUMS; ++i)
-    to[i] = mpmi_reduce(is_rate((size_t)i * sizeof(double)) ? MPMI_REDUCE_MAX : MPMI_REDUCE_SUM, 0.0,
-                        (const double *)step->work->block_sums + i, SUMS, blocks->block, blocks->count);
-  return sums;
-}
 
 double mpmi_stable_dt(const mpm_stepper *s) {
   const mpmi_sums *sums = &s->history.sums;
@@ -90,33 +70,51 @@ static mpm_status not_finite(mpm_stepper *s, int32_t m, const mpmi_law_batch *b,
                    b->wave_speed[p], b->viscosity[p], (long long)b->batch.id[p], (int)m);
 }
 
-/* Adds the sums of a set. The law is asked for the state as it is: F_inc = I, dt = 0. */
-static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_sums *sums, mpmi_failure *failure) {
+/* Adds the sums of the slots [begin, end) of a set. The law is asked for the state as it is: F_inc = I,
+ * dt = 0. */
+static mpm_status sum_slots(mpm_stepper *s, int32_t m, mpmi_law_batch *b, double *moments, int64_t begin,
+                            int64_t end, mpmi_sums *sums, mpmi_failure *failure) {
   mpm_particles *set = s->layout.member[m].set;
-  const size_t batch = mpmi_law_batch_bytes(set->material);
-  const size_t bytes = batch + mpmi_bytes(3 * mpmi_law_batch_length(set->material), sizeof(double));
-  char *memory = mpmi_alloc(s->context, bytes);
-  if (!memory) return MPM_E_NOMEM;
-  mpmi_law_batch b;
-  mpmi_law_batch_bind(&b, set->material, memory);
-  mpm_status status = MPM_OK;
-  for (int64_t begin = 0; begin < set->slots && !status; begin += b.ld) {
-    const int64_t n = set->slots - begin < b.ld ? set->slots - begin : b.ld;
-    mpmi_law_batch_load(&b, set, begin, n, s->history.t, 0.0);
-    mpmi_law_batch_load_F(&b, set, begin, n);
-    const mpm_status answer = mpmi_law_batch_run_in(&b, set);
-    if (answer) {
-      status = refused(s, m, answer, &b.fault, failure);
-      break;
-    }
+  for (; begin < end; begin += b->ld) {
+    const int64_t n = end - begin < b->ld ? end - begin : b->ld;
+    mpmi_law_batch_load(b, set, begin, n, s->history.t, 0.0);
+    mpmi_law_batch_load_F(b, set, begin, n);
+    const mpm_status answer = mpmi_law_batch_run_in(b, set);
+    if (answer) return refused(s, m, answer, &b->fault, failure);
     if (mpmi_is_total_lagrangian(set->grid)) {
       const double *F[9] = {NULL};
       mpmi_point_at(set, MPMI_F, 0, begin, F);
-      s->settings.pull_back->speeds[s->grid->dim](F, b.wave_speed, b.viscosity, n);
+      s->settings.pull_back->speeds[s->grid->dim](F, b->wave_speed, b->viscosity, n);
     }
     mpmi_sums_job job;
-    bind_particles(s, set, &b, begin, n, (double *)(void *)(memory + batch), &job);
-    if (s->settings.kernels->sums[s->grid->dim](&job, n, sums)) status = not_finite(s, m, &b, failure);
+    bind_particles(s, set, b, begin, n, moments, &job);
+    if (s->settings.kernels->sums[s->grid->dim](&job, n, sums)) return not_finite(s, m, b, failure);
+  }
+  return MPM_OK;
+}
+
+/* Adds the sums of a set, block by block, and in the end those of slots that are in none yet. */
+static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_exact_sum *sums, mpmi_sums *rates,
+                          mpmi_failure *failure) {
+  const mpmi_member *member = &s->layout.member[m];
+  const mpm_material *material = member->set->material;
+  const size_t batch = mpmi_law_batch_bytes(material);
+  const size_t bytes = batch + mpmi_bytes(3 * mpmi_law_batch_length(material), sizeof(double));
+  if (!member->set->slots) return MPM_OK;
+  char *memory = mpmi_alloc(s->context, bytes);
+  if (!memory) return MPM_E_NOMEM;
+  mpmi_law_batch b;
+  mpmi_law_batch_bind(&b, material, memory);
+  mpm_status status = MPM_OK;
+  const int64_t *start = member->now.start;
+  const int64_t blocks = start ? s->layout.blocks.count : 0;
+  for (int64_t block = 0; block <= blocks && !status; ++block) {
+    const int64_t begin = start ? start[block] : 0,
+                  end = block < blocks ? start[block + 1] : member->set->slots;
+    mpmi_sums here = {0};
+    if (begin == end) continue;
+    status = sum_slots(s, m, &b, (double *)(void *)(memory + batch), begin, end, &here, failure);
+    if (!status) mpmi_tally_block(sums, &here, rates);
   }
   mpmi_free(s->context, memory, bytes);
   return status;
@@ -138,16 +136,21 @@ mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure) {
   uint32_t dirty = 0;
   for (int32_t m = 0; m < layout->member_count; ++m) dirty |= layout->member[m].set->dirty;
   if (s->history.has_sums && !(dirty & MPMI_DIRTY_SUMS)) return MPM_OK;
+  mpmi_exact_sum sum[MPMI_TALLY_FACES];
+  double total[MPMI_TALLY_FACES];
   mpmi_sums sums = {0};
   mpm_status status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
-  /* sums follow the order of slots, which must not be the order of adding; so new particles are sorted first,
-   * and else nothing is, because that would end the nodal fields */
+  /* sums are made by blocks, and new particles have none until they are sorted; else nothing is sorted,
+   * because that would end the nodal fields */
   if (!status && dirty & MPMI_DIRTY_ORDER) status = mpmi_layout_sort(layout, &s->settings);
+  for (int32_t i = 0; i < MPMI_TALLY_FACES; ++i) mpmi_exact_clear(&sum[i]);
   for (int32_t m = 0; m < layout->member_count && !status; ++m) {
     status = mpmi_particles_refresh(layout->member[m].set);
-    if (!status) status = sum_set(s, m, &sums, failure);
+    if (!status) status = sum_set(s, m, sum, &sums, failure);
   }
   if (status) return status;
+  for (int32_t i = 0; i < MPMI_TALLY_FACES; ++i) total[i] = mpmi_exact_total(&sum[i]);
+  mpmi_tally_read(total, &sums);
   for (int32_t m = 0; m < layout->member_count; ++m)
     layout->member[m].set->dirty &= ~(uint32_t)MPMI_DIRTY_SUMS;
   s->history.has_sums = 1;

@@ -128,8 +128,6 @@ void mpmi_surfaces_forget(const mpmi_surfaces *list);
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */
 mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure);
-/* Returns the sums over the blocks of a step, in the order of the blocks. */
-mpmi_sums mpmi_block_sums(const mpmi_step *step);
 /* Returns the largest stable step: Courant's condition and that of viscosity. */
 double mpmi_stable_dt(const mpm_stepper *s);
 /* Returns MPM_E_STATE when a set has views out of the given access, or holds bad values. */
