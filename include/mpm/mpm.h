@@ -107,6 +107,7 @@
 #include <mpm/material.h>
 #include <mpm/obstacle.h>
 #include <mpm/operator.h>
+#include <mpm/parallel.h>
 #include <mpm/particles.h>
 #include <mpm/stepper.h>
 #include <mpm/surface.h>

@@ -53,6 +53,7 @@ static void sum_task(void *data, int64_t k) {
     for (int32_t c = 0; c < bound->dim; ++c)
       taken -= bound->nodes->damping_impulse[slot][c] *
                (mpmi_velocity(bound->values, slot)[c] - 0.5 * mpmi_increment(bound->values, slot)[c]);
+    if (!mpmi_owns_node(bound->step->layout->parts, slot)) continue;
     mpmi_exact_add(&bound->step->work->report[k].damping, taken);
   }
 }

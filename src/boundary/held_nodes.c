@@ -24,7 +24,8 @@ static void set_block(mpmi_bound *bound, int64_t block, mpmi_exact_sum *sum) {
       const mpmi_component before = mpmi_component_of(bound, slot, c);
       prescribe(bound, slot, c, value);
       const double work = mpmi_record(bound, slot, c, before) * value;
-      if (bound->records) mpmi_exact_add(sum, bound->share * work);
+      if (bound->records && mpmi_owns_node(bound->step->layout->parts, slot))
+        mpmi_exact_add(sum, bound->share * work);
     }
 }
 

@@ -111,6 +111,7 @@ static void work_task(void *data, int64_t k) {
     double work = 0.0;
     for (int32_t c = 0; c < bound->dim; ++c)
       work += bound->nodes->hook_impulse[slot][c] * mpmi_velocity(bound->values, slot)[c];
+    if (!mpmi_owns_node(bound->step->layout->parts, slot)) continue;
     mpmi_exact_add(&bound->step->work->report[k].host_work, work);
   }
 }

@@ -13,8 +13,8 @@ static int32_t any_in(const mpm_particles *set, int64_t begin, int64_t end) {
   return any != 0;
 }
 
-static void touch_around(const mpmi_blocks *b, uint8_t *flag, int64_t block) {
-  flag[block] |= MPMI_WITH_PRESCRIBED;
+static void touch_around(const mpmi_blocks *b, uint8_t *flag, int64_t block, uint8_t has) {
+  flag[block] |= has;
   for (int32_t n = 0; n < b->neighbours; ++n)
     if (b->neighbour[block][n] != MPMI_NO_BLOCK) flag[b->neighbour[block][n]] |= MPMI_TOUCHED;
 }
@@ -37,8 +37,10 @@ static void find_blocks(const mpmi_layout *layout, uint8_t *flag) {
     const mpmi_member *member = &layout->member[m];
     for (int64_t block = 0; block < b->count && member->prescribed; ++block)
       if (any_in(member->set, member->now.start[block], member->now.start[block + 1]))
-        touch_around(b, flag, block);
+        touch_around(b, flag, block, MPMI_WITH_PRESCRIBED);
   }
+  for (int64_t i = 0; layout->parts && i < layout->parts->ghost_count; ++i)
+    touch_around(b, flag, layout->parts->ghost[i].block, 0);
   touch_masters(&layout->constraints, b->nodes, flag);
 }
 
@@ -52,6 +54,8 @@ mpm_status mpmi_prescribed_prepare(mpmi_layout *layout, mpmi_nodes *nodes, const
     member->prescribed =
         member->set->field[MPMI_PRESCRIBED].present && any_in(member->set, 0, member->set->slots);
     p->any |= member->prescribed;
+    /* another part may have some */
+    p->any |= layout->parts && member->set->field[MPMI_PRESCRIBED].present;
   }
   if (!p->any) return MPM_OK;
   const int64_t blocks = layout->blocks.count;

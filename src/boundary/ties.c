@@ -41,6 +41,7 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
     const double mass = *mpmi_mass(bound->values, tie->master), cut = bound->step->layout->light_cut;
     double momentum[3], gained[3], apart[3] = {0.0, 0.0, 0.0}; /* apart: what light nodes have gained, no part
                                                                  * of their velocities yet */
+    int32_t alone = 1;
     state->mass = mass;
     for (int32_t c = 0; c < bound->dim; ++c) {
       state->net[c] = mass;
@@ -58,6 +59,7 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
       double *of = mpmi_velocity(bound->values, follower->slot);
       const double its_mass = *mpmi_mass(bound->values, follower->slot);
       state->mass += its_mass;
+      alone &= its_mass == 0.0;
       for (int32_t c = 0; c < bound->dim; ++c) {
         const double signed_mass = follower->sign[c] * its_mass;
         state->net[c] += signed_mass;
@@ -70,8 +72,10 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
         of[c] += mpmi_increment(bound->values, follower->slot)[c];
       }
     }
+    /* a node that has all the mass of its tie moves as if it were free, to the last bit: whether images without
+     * mass are stored must not count */
     const double inverse = state->mass > DBL_MIN ? 1.0 / state->mass : 0.0;
-    for (int32_t c = 0; tie->count && c < bound->dim; ++c) {
+    for (int32_t c = 0; !alone && c < bound->dim; ++c) {
       if (state->mass > cut) momentum[c] += apart[c];
       v[c] = momentum[c] * inverse;
       if (both) dv[c] = gained[c] * inverse;
@@ -136,6 +140,7 @@ static void add_reactions(mpmi_bound *bound) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   for (int64_t i = 0; i < constraints->tie_count; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
+    if (!mpmi_owns_node(bound->step->layout->parts, tie->master)) continue;
     for (int32_t c = 0; c < bound->dim; ++c)
       if (tie->face[c] >= 0 && !mpmi_held_by(bound->nodes, tie->master, c))
         mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_FACES + 3 * tie->face[c] + c],

@@ -34,6 +34,9 @@ struct mpm_context {
   mpm_context_desc host;             /* the services; alloc and release are always set */
   mpmi_pool *pool;                   /* own threads; NULL when concurrency is 1 or the host has an executor */
   int32_t pool_runs;                 /* in this process: 1, -1: not, 0: this call has not asked yet */
+  mpm_transport transport;           /* to the other parts; without one there is 1 part */
+  double reducing;                   /* seconds in its reduce and gather */
+  int32_t apart;                     /* the transport has failed: the other parts are lost */
   _Atomic int64_t bytes, peak_bytes; /* written by the thread of the call, read by any */
   _Atomic uint32_t busy;             /* a call on the context or one of its objects is under way */
   /* What the last failure said. A call writes into one text and leaves alone that which was there when it

@@ -4,6 +4,7 @@
 
 #include "context/structs.h"
 #include "context/context.h"
+#include "context/transport.h"
 #include "platform/platform.h"
 
 enum { MOST_THREADS = 1024 };
@@ -112,6 +113,45 @@ static mpm_status resolve(mpm_context *context, mpm_context_desc *host) {
   return status ? status : resolve_isa(context, &host->isa);
 }
 
+/* Copies the transport; without one there is one part. */
+static mpm_status resolve_transport(mpm_context *context, const mpm_transport *from) {
+  mpm_transport *to = &context->transport;
+  to->parts = 1;
+  if (!from) return MPM_OK;
+  mpm_transport is = {.struct_size = sizeof is};
+  const mpm_status status = mpmi_read_struct(context, "mpm_transport", from, sizeof is, &is);
+  if (status) return status;
+  if (is.parts < 1 || is.part < 0 || is.part >= is.parts)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_transport: part is %d of %d, must be 0 to parts - 1",
+                     (int)is.part, (int)is.parts);
+  if (!is.send || !is.receive || !is.reduce || !is.gather)
+    return mpmi_fail(context, MPM_E_ARG, "mpm_transport: %s is NULL",
+                     !is.send      ? "send"
+                     : !is.receive ? "receive"
+                     : !is.reduce  ? "reduce"
+                                   : "gather");
+  *to = is;
+  return MPM_OK;
+}
+
+/* Lets the parts find out that they are alike. One that has failed joins in, so that nobody waits for it. */
+static mpm_status meet(mpm_context *context, mpm_status status) {
+  if (mpmi_is_whole(context)) return status;
+  if ((status = mpmi_agree(context, status))) return status;
+  const int64_t mine[] = {mpm_version(), context->isa, context->transport.parts};
+  int64_t is[6];
+  for (int32_t i = 0; i < 3; ++i) is[2 * i] = mine[i], is[2 * i + 1] = -mine[i];
+  if ((status = mpmi_reduce_parts(context, MPM_REDUCE_MAX, 6, is))) return status;
+  static const char *const what[] = {"versions of the library", "instruction sets", "numbers of parts"};
+  for (int32_t i = 0; i < 3; ++i)
+    if (is[2 * i] != -is[2 * i + 1])
+      return mpmi_fail(context, MPM_E_UNSUPPORTED,
+                       "the parts have unlike %s, here %lld and up to %lld elsewhere: make them alike%s",
+                       what[i], (long long)mine[i], (long long)is[2 * i],
+                       i == 1 ? ", for instance with MPM_ISA_AVX2" : "");
+  return MPM_OK;
+}
+
 static void free_context(mpm_context *context) {
   mpm_context_desc host = context->host;
   mpmi_pool_destroy(context, context->pool);
@@ -132,12 +172,15 @@ static mpm_status make(mpm_context *first, const mpm_context_desc *desc, mpm_con
   mpm_status status = desc ? mpmi_read_struct(first, "mpm_context_desc", desc, sizeof *host, host) : MPM_OK;
   /* it says where to complain, too */
   if (status == MPM_E_UNSUPPORTED) mpmi_read_known("mpm_context_desc", desc, sizeof *host, host);
+  const mpm_status reached = resolve_transport(first, host->transport);
+  if (!status) status = reached;
+  host->transport = NULL; /* it is the host's, and was copied */
   if (!status && !out) status = mpmi_fail(first, MPM_E_ARG, "mpm_context_create: out is NULL");
   if (!status) status = resolve(first, host);
-  if (status) return status;
   first->isa = host->isa;
   first->works_by_halves = host->isa == MPM_ISA_AVX512 && mpmi_works_by_halves();
   first->concurrency = host->concurrency;
+  if ((status = meet(first, status))) return status;
   mpm_context *context = mpmi_alloc(first, sizeof *context);
   if (!context) return MPM_E_NOMEM;
   move_context(context, first);

@@ -33,6 +33,10 @@ static uint64_t morton(const int32_t *coord, int32_t dim) {
   return key;
 }
 
+uint64_t mpmi_block_key(const mpm_grid *grid, const int32_t *coord) {
+  return morton(coord, grid->dim);
+}
+
 static uint64_t hash(uint64_t key, int32_t body) {
   key = (key ^ (uint64_t)body * 0xd6e8feb86659fd93u) * 0x9e3779b97f4a7c15u;
   return key ^ (key >> 29);
@@ -167,8 +171,7 @@ mpm_status mpmi_blocks_insert(mpmi_blocks *b, int32_t body, const int32_t *coord
   return MPM_OK;
 }
 
-/* Finds a block, or returns MPMI_NO_BLOCK. */
-static int32_t find_block(const mpmi_blocks *b, int32_t body, const int32_t *coord) {
+int32_t mpmi_blocks_find(const mpmi_blocks *b, int32_t body, const int32_t *coord) {
   return table_get(b, body, morton(coord, b->grid->dim));
 }
 
@@ -263,7 +266,7 @@ mpm_status mpmi_blocks_order(mpmi_blocks *b) {
   for (int64_t i = 0; i < b->count; ++i)
     for (int32_t n = 0; n < b->neighbours; ++n) {
       neighbour_coord(b->coord[i], n, dim, coord);
-      b->neighbour[i][n] = find_block(b, b->body[i], coord);
+      b->neighbour[i][n] = mpmi_blocks_find(b, b->body[i], coord);
     }
   return MPM_OK;
 }
@@ -293,7 +296,7 @@ int64_t mpmi_blocks_node(const mpmi_blocks *b, int32_t body, const int64_t *inde
     coord[k] = (int32_t)floor_div(index[k], b->edge);
     place = place * b->edge + (index[k] - (int64_t)coord[k] * b->edge);
   }
-  const int32_t block = find_block(b, body, coord);
+  const int32_t block = mpmi_blocks_find(b, body, coord);
   return block < 0 ? -1 : (int64_t)block * b->nodes + place;
 }
 

@@ -61,6 +61,10 @@ mpm_status mpmi_blocks_insert(mpmi_blocks *blocks, int32_t body, const int32_t *
 /* Adds halo and periodic images to the blocks inserted so far, sorts all by Morton key and body and links
  * neighbours. Afterwards order[provisional] is the final index of a block. */
 mpm_status mpmi_blocks_order(mpmi_blocks *blocks);
+/* Returns the Morton key of the blocks at these coordinates. */
+uint64_t mpmi_block_key(const mpm_grid *grid, const int32_t *coord);
+/* Finds a block that has been inserted, or returns MPMI_NO_BLOCK. */
+int32_t mpmi_blocks_find(const mpmi_blocks *blocks, int32_t body, const int32_t *coord);
 /* Returns the anchor along an axis of a position that lies inside the grid. */
 int32_t mpmi_anchor(const mpm_grid *grid, int32_t axis, double x);
 /* Finds the block of a position that lies inside the grid. */

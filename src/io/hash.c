@@ -1,5 +1,6 @@
 /* The hash of a physical state is a sum over particles, so that neither their order nor the cut of the
  * work matters. */
+#include "context/transport.h"
 #include "io/mix.h"
 #include "particles/values.h"
 #include "stepper/stepper.h"
@@ -102,13 +103,17 @@ static void hash_piece(void *data, int64_t k) {
   job->sum[k] = sum;
 }
 
-static uint64_t hash_set(const mpm_particles *set, int32_t number) {
+/* Sums up over all parts, which add modulo 2^64 as the sum does. */
+static mpm_status hash_set(const mpm_particles *set, int32_t number, uint64_t *hash) {
   hash_job job = {.set = set, .set_seed = mpmi_avalanche((uint64_t)number + MPMI_MIX_B)};
   for (int32_t f = 0; f < set->field_count; ++f) job.field_seed[f] = seed_of(set->field[f].name);
   if (set->slots) mpmi_parallel_for_sure(set->context, PIECES, hash_piece, &job);
-  uint64_t sum = job.set_seed;
+  uint64_t sum = 0;
   for (int32_t k = 0; k < PIECES; ++k) sum += job.sum[k];
-  return mpmi_avalanche(absorb(sum, (uint64_t)set->count));
+  int64_t all[] = {(int64_t)sum, set->count};
+  const mpm_status status = mpmi_reduce_parts(set->context, MPM_REDUCE_SUM, 2, all);
+  *hash = mpmi_avalanche(absorb(job.set_seed + (uint64_t)all[0], (uint64_t)all[1]));
+  return status;
 }
 
 static uint64_t hash_pose(uint64_t h, const mpmi_pose *pose) {
@@ -140,9 +145,11 @@ mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
   for (int32_t m = 0; m < stepper->layout.member_count; ++m) {
     mpm_particles *set = stepper->layout.member[m].set;
     /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
-    mpm_status status = mpmi_settle(set, MPMI_STRESS);
+    uint64_t of_set;
+    mpm_status status = mpmi_agree(stepper->context, mpmi_settle(set, MPMI_STRESS));
+    if (!status) status = hash_set(set, m, &of_set);
     if (status) return status;
-    h = absorb(h, hash_set(set, m));
+    h = absorb(h, of_set);
   }
   const mpmi_obstacles *obstacles = &stepper->settings.obstacles;
   for (int64_t i = 0; i < obstacles->count; ++i) h = hash_pose(h, &obstacles->obstacle[i]->pose);

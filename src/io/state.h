@@ -123,6 +123,8 @@ void mpmi_state_take_surfaces(const mpm_stepper *s, mpmi_state_surface *saved);
 void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_blocks *blocks,
                           const int64_t *start);
 
+/* Refuses problems in several parts: MPM_E_UNSUPPORTED. */
+mpm_status mpmi_state_is_whole(const mpm_stepper *stepper);
 /* Brings what follows from the fields up to date, and refuses a state that cannot be saved now
  * (state_save.c). */
 mpm_status mpmi_state_settle(const mpm_stepper *s);

@@ -266,6 +266,7 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   memcpy(&header, buffer, bytes < (int64_t)sizeof header ? (size_t)bytes : sizeof header);
   header = mpmi_state_turn_header(header);
   mpm_status status = check_idle(s);
+  if (!status) status = mpmi_state_is_whole(s);
   if (!status) status = mpmi_state_check_header(s->context, &header, bytes);
   if (status) return status;
   const unsigned char *body = (const unsigned char *)buffer + sizeof header;

@@ -6,9 +6,16 @@
 #include <stddef.h>
 #include <string.h>
 
+mpm_status mpmi_state_is_whole(const mpm_stepper *s) {
+  if (mpmi_is_whole(s->context)) return MPM_OK;
+  return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                   "a problem in several parts has no saved states: use a context without a transport");
+}
+
 static mpm_status check_between_steps(const mpm_stepper *s) {
-  if (s->step.phase == MPMI_IDLE) return MPM_OK;
-  return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before saving");
+  if (s->step.phase != MPMI_IDLE)
+    return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before saving");
+  return mpmi_state_is_whole(s);
 }
 
 static mpm_status check_views(const mpm_stepper *s, int32_t m) {

@@ -8,6 +8,7 @@
 typedef struct sum_job {
   mpmi_step *step;
   const mpmi_accumulation *sum;
+  int32_t colour; /* of what is shared with other parts */
 } sum_job;
 
 static double *tile_of(const sum_job *job, int64_t task) {
@@ -58,12 +59,76 @@ static int32_t stays_zero_elsewhere(const mpmi_step *step, const mpmi_accumulati
          !mpmi_has_hooks(settings) && !mpmi_is_implicit(settings);
 }
 
+/* ---- with other parts ---------------------------------------------------------------------------------- */
+static void give_boundary(void *user, const mpmi_visit *visit) {
+  const sum_job *job = user;
+  const mpmi_accumulation *sum = job->sum;
+  if (sum->flags && !(sum->flags[visit->block] & sum->giving)) return;
+  sum->give(sum->user, visit, mpmi_tiles_of(job->step->layout->parts, visit->block, sum->to->values));
+}
+
+static int32_t has_colour(const mpmi_blocks *b, int64_t block, int32_t colour) {
+  return mpmi_colour_of(b->grid->dim, b->coord[block]) == colour;
+}
+
+/* Adds the tiles of one colour that are shared: those of boundary blocks and of ghosts. */
+static void add_shared_task(void *data, int64_t k) {
+  const sum_job *job = data;
+  const mpmi_layout *layout = job->step->layout;
+  const mpmi_parts *parts = layout->parts;
+  const mpmi_blocks *b = &layout->blocks;
+  const mpmi_kernels *kernels = job->step->settings->kernels;
+  const mpmi_share share = mpmi_share_of(job->step->settings, parts->boundary_count + parts->ghost_count, k);
+  for (int64_t i = share.begin; i < share.end; ++i) {
+    const mpmi_shared_block *ghost =
+        i < parts->boundary_count ? NULL : &parts->ghost[i - parts->boundary_count];
+    const int64_t block = ghost ? ghost->block : parts->boundary[i];
+    double *tile = ghost ? tile_of(job, k) : mpmi_tiles_of(parts, block, job->sum->to->values);
+    if (!has_colour(b, block, job->colour)) continue;
+    if (ghost && !mpmi_tiles_unpack(parts, ghost, job->sum->to->values, tile, &b->cover[block])) continue;
+    mpmi_tile_add(kernels, b, block, job->sum->to, tile);
+  }
+}
+
+static mpm_status add_colour(sum_job *job, int32_t colour) {
+  const mpmi_parts *parts = job->step->layout->parts;
+  const mpmi_settings *settings = job->step->settings;
+  job->colour = colour;
+  if (!(parts->boundary_count + parts->ghost_count)) return MPM_OK;
+  return mpmi_run_tasks(settings, 0, settings->tasks, add_shared_task, job);
+}
+
+/* Tiles of boundary blocks are made first and sent; what they give is added to the nodes with that of all
+ * other blocks of their colour, as if there had been one part. */
+static mpm_status add_with_others(sum_job *job, mpm_status status) {
+  const mpmi_accumulation *sum = job->sum;
+  mpmi_parts *parts = job->step->layout->parts;
+  const int32_t values = sum->to->values;
+  if (!status)
+    status = mpmi_visit_marked(job->step, parts->is_boundary, 0, sum->calls_host, give_boundary, job);
+  if (!status) status = mpmi_step_failure(job->step);
+  status = mpmi_tiles_send(parts, values, job->step->layout->blocks.cover, status);
+  if (!status) status = mpmi_visit_colour(job->step, parts->is_inner, 0, sum->calls_host, add_block, job);
+  status = mpmi_tiles_receive(parts, values, status);
+  for (int32_t c = 0; c < MPMI_COLOURS && !status; ++c) {
+    if (c) status = mpmi_visit_colour(job->step, parts->is_inner, c, sum->calls_host, add_block, job);
+    if (!status) status = add_colour(job, c);
+  }
+  if (status) mpmi_tiles_clear(parts, values);
+  for (int64_t i = 0; i < parts->partial_count && !status; ++i)
+    memset(mpmi_nodal_at(sum->to, parts->partial[i]), 0, (size_t)values * sizeof(double));
+  return status;
+}
+
 mpm_status mpmi_accumulate(mpmi_step *step, const mpmi_accumulation *sum) {
   const mpmi_settings *settings = step->settings;
-  sum_job job = {step, sum};
+  sum_job job = {step, sum, 0};
   mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, clear_task, &job);
   sum->to->zero_elsewhere = stays_zero_elsewhere(step, sum) ? step->layout->covers : -1;
-  if (!status) status = mpmi_visit_colours(step, sum->calls_host, add_block, &job);
+  if (step->layout->parts)
+    status = add_with_others(&job, status);
+  else if (!status)
+    status = mpmi_visit_colours(step, sum->calls_host, add_block, &job);
   if (!status && sum->fold) status = mpmi_run_tasks(settings, 0, settings->tasks, sum->fold, sum->user);
   return status;
 }

@@ -96,9 +96,18 @@ void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *c) {
   MPMI_FREE_ARRAY(c, p->block, p->block_capacity);
 }
 
-int64_t mpmi_count_active(const mpmi_layout *layout, const mpmi_nodal *nodes) {
+static int64_t count_heavy(const mpmi_layout *layout, const mpmi_nodal *nodes, const mpmi_parts *parts) {
   const int64_t slots = mpmi_slots(layout);
   int64_t active = 0;
-  for (int64_t i = 0; i < slots; ++i) active += *mpmi_mass(nodes, i) > layout->mass_cut;
+  for (int64_t i = 0; i < slots; ++i)
+    active += *mpmi_mass(nodes, i) > layout->mass_cut && mpmi_owns_node(parts, i);
   return active;
+}
+
+int64_t mpmi_count_active(const mpmi_layout *layout, const mpmi_nodal *nodes) {
+  return count_heavy(layout, nodes, NULL);
+}
+
+int64_t mpmi_count_owned(const mpmi_layout *layout, const mpmi_nodal *nodes) {
+  return count_heavy(layout, nodes, layout->parts);
 }

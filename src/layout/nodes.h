@@ -163,6 +163,8 @@ mpm_status mpmi_nodes_prepare(mpmi_nodes *nodes, const mpmi_settings *settings, 
                               int32_t staged);
 /* Returns the number of nodes that are heavier than the cut. */
 int64_t mpmi_count_active(const mpmi_layout *layout, const mpmi_nodal *nodes);
+/* Returns how many of them are this part's to count. */
+int64_t mpmi_count_owned(const mpmi_layout *layout, const mpmi_nodal *nodes);
 void mpmi_nodes_free(mpmi_nodes *nodes, mpm_context *context);
 
 #endif

@@ -120,6 +120,12 @@ static void reach_from(mpmi_blocks *b, int64_t block) {
   }
 }
 
+static mpmi_node_box whole_tile(const mpm_grid *grid) {
+  mpmi_node_box box = {{0, 0, 0}, {1, 1, 1}};
+  for (int32_t k = 0; k < grid->dim; ++k) box.high[k] = (uint8_t)MPMI_TILE_EDGE(grid->dim, grid->width);
+  return box;
+}
+
 void mpmi_layout_cover(mpmi_layout *layout) {
   mpmi_blocks *b = &layout->blocks;
   const mpmi_worklist *list = &layout->worklist[0];
@@ -127,6 +133,11 @@ void mpmi_layout_cover(mpmi_layout *layout) {
   for (int64_t i = 0; i < list->count; ++i) {
     find_cover(layout, list->block[i]);
     reach_from(b, list->block[i]);
+  }
+  for (int64_t i = 0; layout->parts && i < layout->parts->ghost_count; ++i) {
+    const int64_t ghost = layout->parts->ghost[i].block;
+    b->cover[ghost].nodes = whole_tile(b->grid);
+    reach_from(b, ghost);
   }
   layout->cover_is_old = 0;
   ++layout->covers;

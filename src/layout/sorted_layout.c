@@ -13,7 +13,13 @@ mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings
   mpmi_constraints_init(&layout->next_constraints, c);
   layout->bound_memory =
       mpmi_alloc_zeroed(c, mpmi_bytes((settings->tasks + 1) * MPMI_WORKLISTS, sizeof(int64_t)));
-  return layout->bound_memory ? MPM_OK : MPM_E_NOMEM;
+  if (!layout->bound_memory) return MPM_E_NOMEM;
+  if (mpmi_is_whole(c)) return MPM_OK;
+  const mpm_status status = mpmi_parts_create(c, settings->grid, &layout->parts);
+  /* light nodes look at others and give to them (boundary/light_nodes.c): two steps for a leader, one more for
+   * what that is, and the same again for who leads a node that is two steps away */
+  if (!status && settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 5;
+  return status;
 }
 
 void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
@@ -27,6 +33,7 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, layout->list_memory, layout->list_capacity);
   mpmi_free(c, layout->bound_memory, mpmi_bytes((settings->tasks + 1) * MPMI_WORKLISTS, sizeof(int64_t)));
   MPMI_FREE_ARRAY(c, layout->member, layout->member_capacity);
+  mpmi_parts_destroy(layout->parts);
 }
 
 static void swap_constraints(mpmi_layout *layout) {
@@ -62,7 +69,7 @@ static int64_t slots_in_block(const mpmi_layout *layout, int64_t block) {
   return slots;
 }
 
-static int32_t colour_of(int32_t dim, const int32_t *coord) {
+int32_t mpmi_colour_of(int32_t dim, const int32_t *coord) {
   int32_t colour = 0;
   for (int32_t k = 0; k < dim; ++k) colour = 2 * colour + (coord[k] & 1);
   return colour;
@@ -91,7 +98,7 @@ static void make_worklists(mpmi_layout *layout, const mpmi_settings *settings) {
     *list = (mpmi_worklist){memory, 0, layout->bound_memory + (settings->tasks + 1) * l};
     for (int64_t i = 0; i < blocks->count; ++i)
       if (slots_in_block(layout, i) > 0 &&
-          (l == 0 || colour_of(blocks->grid->dim, blocks->coord[i]) == l - 1))
+          (l == 0 || mpmi_colour_of(blocks->grid->dim, blocks->coord[i]) == l - 1))
         list->block[list->count++] = (int32_t)i;
     set_bounds(layout, settings->tasks, list);
     memory += list->count;
@@ -137,7 +144,8 @@ static void find_mass_cut(mpmi_layout *layout, const mpmi_settings *settings) {
   const int32_t divides = settings->grid->family == MPMI_FAMILY_BSPLINE1 && !mpmi_is_implicit(settings);
   double heaviest = 0.0;
   for (int32_t m = 0; m < layout->member_count; ++m)
-    if (layout->member[m].set->count) heaviest = fmax(heaviest, layout->member[m].set->mass_max);
+    if (layout->member[m].set->count || layout->parts) /* the mass is that of all parts */
+      heaviest = fmax(heaviest, layout->member[m].set->mass_max);
   layout->mass_cut = fmax(DBL_MIN, 1e-60 * heaviest); /* the inverse of a lighter one may not be finite */
   layout->light_cut = divides ? fmax(layout->mass_cut, MPMI_LIGHT_SHARE * heaviest) : layout->mass_cut;
 }
@@ -183,13 +191,19 @@ static void count_wide_domains(mpmi_layout *layout, const mpmi_settings *setting
   layout->wide_domains = wide;
 }
 
-static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings) {
-  mpm_status status;
+/* Inserts the blocks with particles. */
+static mpm_status insert_blocks(mpmi_layout *layout) {
+  mpm_status status = MPM_OK;
   mpmi_blocks_clear(&layout->next_blocks);
-  for (int32_t m = 0; m < layout->member_count; ++m)
-    if ((status = mpmi_sort_blocks(layout->member[m].set, layout->member[m].body, &layout->next_blocks)))
-      return status;
-  if ((status = mpmi_blocks_order(&layout->next_blocks))) return status;
+  for (int32_t m = 0; m < layout->member_count && !status; ++m)
+    status = mpmi_sort_blocks(layout->member[m].set, layout->member[m].body, &layout->next_blocks);
+  return status;
+}
+
+static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings) {
+  mpm_status status = insert_blocks(layout);
+  if (layout->parts) status = mpmi_layout_share_out(layout, status, insert_blocks);
+  if (status || (status = mpmi_blocks_order(&layout->next_blocks))) return status;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpmi_member *member = &layout->member[m];
     if ((status = mpmi_sort_plan(member->set, &layout->next_blocks, &member->sorting, &member->next)))
@@ -213,16 +227,23 @@ static mpm_status find_ties(mpmi_layout *layout, const mpmi_settings *settings) 
   return status;
 }
 
-mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings) {
-  int32_t moved = layout->blocks.count == 0;
+int32_t mpmi_layout_is_moved(const mpmi_layout *layout) {
+  int32_t moved = layout->parts ? layout->parts->is_stale : layout->blocks.count == 0;
   for (int32_t m = 0; m < layout->member_count; ++m)
     moved |= (layout->member[m].set->dirty & (MPMI_DIRTY_PLACE | MPMI_DIRTY_ORDER)) != 0;
-  return moved ? sort_anew(layout, settings) : MPM_OK;
+  return moved;
+}
+
+mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings) {
+  if (!mpmi_layout_is_moved(layout)) return MPM_OK;
+  const mpm_status status = sort_anew(layout, settings);
+  return layout->parts ? mpmi_layout_end_sort(layout, status) : status;
 }
 
 mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings) {
-  const mpm_status status = mpmi_layout_sort(layout, settings);
+  mpm_status status = mpmi_layout_sort(layout, settings);
   if (status) return status;
   find_mass_cut(layout, settings);
-  return layout->walls_changed ? find_ties(layout, settings) : MPM_OK;
+  if (layout->walls_changed) status = find_ties(layout, settings);
+  return status || !layout->parts ? status : mpmi_layout_share_nodes(layout, settings);
 }

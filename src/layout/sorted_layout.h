@@ -6,6 +6,7 @@
 
 #include "layout/contact_nodes.h"
 #include "layout/settings.h"
+#include "parallel/parts.h"
 #include "particles/sort.h"
 
 /* A set of particles in a stepper: where its particles lie, and what acts on them. */
@@ -29,6 +30,9 @@ typedef struct mpmi_worklist {
  * one list of all blocks with particles, and then one for each colour. */
 enum { MPMI_COLOURS = 8, MPMI_WORKLISTS = 1 + MPMI_COLOURS };
 
+/* Returns the colour of a block. */
+int32_t mpmi_colour_of(int32_t dim, const int32_t *coord);
+
 /* A node that has this share of the mass of one beside it, or less, goes with it (boundary/light_nodes.c). */
 #define MPMI_LIGHT_SHARE 1e-5
 
@@ -50,6 +54,7 @@ typedef struct mpmi_layout {
   double mass_cut;      /* a node that is not heavier takes no force */
   double light_cut;     /* one that is not heavier may have to go with others: at least the mass cut */
   int32_t walls_changed;
+  mpmi_parts *parts; /* of several parts of a problem this one, or NULL */
 } mpmi_layout;
 
 /* Returns 1 for a set whose pressure is averaged over cells, as its dilation is. */
@@ -67,11 +72,21 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings);
 /* Brings the layout up to date: sorts where particles have left their tiles, finds ties where walls have
  * changed. The old layout stays when that fails. */
 mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings);
-/* Sorts where particles have left their tiles or are new. */
+/* Returns 1 where particles have left their tiles or are new. */
+int32_t mpmi_layout_is_moved(const mpmi_layout *layout);
+/* Sorts then. */
 mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings);
 /* Turns next_blocks and the next arrangements into the layout: the last part of a sort and of loading a
  * sorted state. */
 mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings);
+
+/* With several parts (shared_layout.c), all collective: moves particles to the parts that have their blocks,
+ * and inserts the blocks of other parts that share nodes; ends a sort, of which status is what it has come to
+ * on this part; finds which nodes are whole and whose, where that has changed. */
+mpm_status mpmi_layout_share_out(mpmi_layout *layout, mpm_status status,
+                                 mpm_status (*insert_blocks)(mpmi_layout *layout));
+mpm_status mpmi_layout_end_sort(mpmi_layout *layout, mpm_status status);
+mpm_status mpmi_layout_share_nodes(mpmi_layout *layout, const mpmi_settings *settings);
 
 /* Tells kernels where the particles of a set are and how large; `copy` is that of position and deformation
  * gradient. */

@@ -23,6 +23,9 @@ mpm_status mpmi_visit_colours(const mpmi_step *step, int32_t calls_host, mpmi_vi
  * tasks get equal numbers of them. */
 mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t by_colour,
                              int32_t calls_host, mpmi_visit_fn visit, void *user);
+/* Visits those of one colour. */
+mpm_status mpmi_visit_colour(const mpmi_step *step, const uint8_t *mark, int32_t colour, int32_t calls_host,
+                             mpmi_visit_fn visit, void *user);
 /* Visits one block after the other, by task 0; for visits that write anywhere. */
 void mpmi_visit_in_turn(const mpmi_step *step, mpmi_visit_fn visit, void *user);
 

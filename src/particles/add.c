@@ -8,13 +8,11 @@
 #include "particles/values.h"
 
 /* ---- new particles at the end of a set ----------------------------------------------------------------- */
-mpm_status mpmi_check_room(const mpm_particles *set, int64_t n, int32_t numbered) {
+mpm_status mpmi_check_room(const mpm_particles *set, int64_t n) {
   if (n > MPMI_MAX_SLOTS - MPMI_PAD - set->slots)
     return mpmi_fail(set->context, MPM_E_ARG,
                      "%lld more particles are too many: a set has at most %lld slots", (long long)n,
                      (long long)MPMI_MAX_SLOTS);
-  if (numbered && n > INT64_MAX - set->next_id)
-    return mpmi_fail(set->context, MPM_E_ARG, "ids run out: the next is %lld", (long long)set->next_id);
   return MPM_OK;
 }
 
@@ -69,14 +67,47 @@ static void write_derived(mpm_particles *set, int32_t field, int64_t begin, int6
       mpmi_f64(set, field, 0)[c * set->ld + s] = mpmi_absent_value(set, field, c, s);
 }
 
-void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids) {
+/* Adds up how many the parts before this one add, and how many all do. */
+static mpm_status count_others(const mpm_particles *set, int64_t n, mpm_status status, int64_t *before,
+                               int64_t *total) {
+  mpm_context *c = set->context;
+  const int32_t parts = c->transport.parts, me = c->transport.part;
+  const size_t bytes = mpmi_bytes(parts, sizeof(int64_t));
+  int64_t *all = mpmi_alloc(c, bytes);
+  if (!all && !status) status = MPM_E_NOMEM;
+  status = mpmi_agree(c, status);
+  if (!status) status = mpmi_gather_parts(c, n, all);
+  *before = *total = 0;
+  for (int32_t r = 0; r < parts && !status; ++r) {
+    if (r < me) *before += all[r];
+    *total += all[r];
+  }
+  mpmi_free(c, all, bytes);
+  return status;
+}
+
+mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, mpm_status status,
+                       mpmi_numbers *out) {
+  int64_t before = 0, total = n;
+  out->first = set->next_id;
+  if (!mpmi_is_whole(set->context) && (status = count_others(set, n, status, &before, &total))) return status;
+  if (status) return status;
+  if (total > INT64_MAX - set->next_id)
+    return mpmi_fail(set->context, MPM_E_ARG, "ids run out: the next is %lld", (long long)set->next_id);
+  out->first += before;
+  out->next = ids ? set->next_id : set->next_id + total;
+  for (int64_t i = 0; i < n && ids; ++i)
+    if (ids[i] >= out->next) out->next = ids[i] + 1;
+  return mpmi_reduce_parts(set->context, MPM_REDUCE_MAX, 1, &out->next);
+}
+
+void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids,
+                        const mpmi_numbers *numbers) {
   int64_t *id = mpmi_i64(set, MPMI_ID, 0) + slot;
   double *mass = mpmi_f64(set, MPMI_MASS, 0) + slot, *volume = mpmi_f64(set, MPMI_VOLUME, 0) + slot;
   const double *initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + slot;
-  int64_t next_id = set->next_id;
   for (int64_t i = 0; i < n; ++i) {
-    id[i] = ids ? ids[i] : set->next_id + i;
-    if (id[i] >= next_id) next_id = id[i] + 1;
+    id[i] = ids ? ids[i] : numbers->first + i;
     volume[i] = initial_volume[i];
     mass[i] = set->material->density * volume[i];
     if (mass[i] > set->mass_max) set->mass_max = mass[i];
@@ -88,7 +119,7 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
   mpmi_thermal_start(set, slot, slot + n);
   for (int32_t c = 0; c < set->grid->dim && is_rigid(set); ++c)
     memset((uint8_t *)set->field[MPMI_PRESCRIBED].data[0] + c * set->ld + slot, 1, (size_t)n);
-  set->next_id = next_id;
+  set->next_id = numbers->next;
   set->count += n;
   set->dirty |= MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION;
   mpmi_index_drop(set);
@@ -174,26 +205,32 @@ static void copy_arrays(mpm_particles *set, int64_t slot, const arrays *from) {
   if (from->size) copy_rows(set, MPMI_SIZE, slot, from->size, from->n);
 }
 
+/* Does all that may fail. */
+static mpm_status prepare_arrays(mpm_particles *set, const arrays *from, int64_t *slot) {
+  mpm_status status;
+  if ((status = mpmi_check_room(set, from->n)) || (status = check_arrays(set, from)) ||
+      (from->ids && (status = check_ids(set, from->n, from->ids))))
+    return status;
+  return mpmi_append_begin(set, from->n, from->size != NULL, slot);
+}
+
 mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const double *position,
                              const double *velocity, const double *volume, const double *size,
                              const int64_t *ids, int64_t *first_id) {
   MPMI_ENTER(particles, MPMI_PARTICLES);
   mpm_status status = mpmi_particles_changeable(particles);
-  if (status) return status;
-  if (n < 0) return mpmi_fail(particles->context, MPM_E_ARG, "n is %lld, must be >= 0", (long long)n);
-  if (n > 0 && (!position || !volume))
-    return mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL", position ? "volume" : "position");
-  int64_t first = ids && n > 0 ? ids[0] : particles->next_id, slot;
-  if (n > 0) {
-    arrays from = {n, position, velocity, volume, size, ids};
-    status = mpmi_check_room(particles, n, ids == NULL);
-    if (!status) status = check_arrays(particles, &from);
-    if (!status && ids) status = check_ids(particles, n, ids);
-    if (!status) status = mpmi_append_begin(particles, n, size != NULL, &slot);
-    if (status) return status;
-    copy_arrays(particles, slot, &from);
-    mpmi_append_finish(particles, slot, n, size != NULL, ids);
-  }
-  if (first_id) *first_id = first;
+  if (!status && n < 0)
+    status = mpmi_fail(particles->context, MPM_E_ARG, "n is %lld, must be >= 0", (long long)n);
+  if (!status && n > 0 && (!position || !volume))
+    status = mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL", position ? "volume" : "position");
+  int64_t slot;
+  mpmi_numbers numbers;
+  const arrays from = {n, position, velocity, volume, size, ids};
+  if (!status && n > 0) status = prepare_arrays(particles, &from, &slot);
+  if ((status = mpmi_number(particles, n, ids, status, &numbers))) return status;
+  if (n > 0) copy_arrays(particles, slot, &from);
+  if (n > 0 || numbers.next > particles->next_id)
+    mpmi_append_finish(particles, n > 0 ? slot : 0, n, size != NULL, ids, &numbers);
+  if (first_id) *first_id = ids && n > 0 ? ids[0] : numbers.first;
   return MPM_OK;
 }

@@ -2,6 +2,7 @@
 #ifndef MPMI_ADD_H
 #define MPMI_ADD_H
 
+#include "context/transport.h"
 #include "particles/builtin_fields.h"
 
 /* Makes room for n more particles. in_step: a step is under way, whose results are kept. */
@@ -11,10 +12,18 @@ mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t in_step);
  * On success the slots [*slot, *slot + n) hold inert defaults in every field. The caller then writes
  * position (in reach of a wrap), velocity and initial_volume, and size when with_size is 1. */
 mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, int64_t *slot);
-/* Writes what follows from these fields and makes the slots particles. Without ids they are numbered on. */
-void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids);
-/* Refuses n more particles when slots or numbers for ids would run out. */
-mpm_status mpmi_check_room(const mpm_particles *set, int64_t n, int32_t numbered);
+/* Numbers for new particles of this part (collective where there are several): those of the parts before come
+ * first. status: what has happened before; on failure nothing has changed on any part. */
+typedef struct mpmi_numbers {
+  int64_t first, next; /* the number of the first one here; the next that is free on all parts afterwards */
+} mpmi_numbers;
+mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, mpm_status status,
+                       mpmi_numbers *out);
+/* Writes what follows from these fields and makes the slots particles. Without ids they are numbered as said. */
+void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids,
+                        const mpmi_numbers *numbers);
+/* Refuses n more particles when slots would run out. */
+mpm_status mpmi_check_room(const mpm_particles *set, int64_t n);
 
 /* Fills that part of a box which a function accepts: mpm_particles_fill() within a call. */
 mpm_status mpmi_fill_part(mpm_particles *set, const double *lower, const double *upper,

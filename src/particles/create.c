@@ -1,4 +1,5 @@
 /* Particle sets are made and freed here, and refuse changes while they are mapped or in a step. */
+#include "context/transport.h"
 #include "particles/builtin_fields.h"
 
 mpm_status mpmi_between_steps(const mpm_particles *set) {
@@ -78,6 +79,17 @@ mpm_status mpm_particles_destroy(mpm_particles *particles) {
   particles->material->users--;
   context->children--;
   mpmi_free(context, particles, sizeof *particles);
+  return MPM_OK;
+}
+
+mpm_status mpm_particles_total(const mpm_particles *particles, int64_t *n) {
+  MPMI_ENTER(particles, MPMI_PARTICLES);
+  int64_t total = particles->count;
+  mpm_status status = n ? MPM_OK : mpmi_fail(particles->context, MPM_E_ARG, "n is NULL");
+  if ((status = mpmi_agree(particles->context, status)) ||
+      (status = mpmi_reduce_parts(particles->context, MPM_REDUCE_SUM, 1, &total)))
+    return status;
+  *n = total;
   return MPM_OK;
 }
 

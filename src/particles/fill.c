@@ -15,6 +15,7 @@ static const double most_points = 4294967296.0;
 typedef struct lattice {
   const mpm_grid *grid;
   int64_t per[3], begin[3], n[3], points;
+  int64_t from, to; /* of the points, those that this part offers: all where there is one */
   double volume;
 } lattice;
 
@@ -59,6 +60,9 @@ static mpm_status lay_lattice(mpm_particles *set, const double *lower, const dou
     return mpmi_fail(set->context, MPM_E_ARG,
                      "a lattice cell has volume %g: that or its mass is out of range", on->volume);
   on->points = (int64_t)points;
+  const mpm_transport *t = &set->context->transport;
+  on->from = on->points / t->parts * t->part + on->points % t->parts * t->part / t->parts;
+  on->to = on->points / t->parts * (t->part + 1) + on->points % t->parts * (t->part + 1) / t->parts;
   return MPM_OK;
 }
 
@@ -80,17 +84,17 @@ static void points_at(const lattice *on, int64_t first, int64_t n, double *posit
 typedef struct sieve {
   double *position; /* [dim][BATCH] */
   uint8_t *inside;  /* [BATCH] */
-  uint8_t *taken;   /* [points] as bits */
+  uint8_t *taken;   /* [to - from] as bits */
   int64_t count;    /* how many bits are set */
 } sieve;
 
 static int64_t batch_length(const lattice *on, int64_t first) {
-  return on->points - first < BATCH ? on->points - first : BATCH;
+  return on->to - first < BATCH ? on->to - first : BATCH;
 }
 
 static mpm_status choose(mpm_context *context, const lattice *on, mpm_inside_fn inside, void *user,
                          sieve *through) {
-  for (int64_t first = 0; first < on->points; first += BATCH) {
+  for (int64_t first = on->from; first < on->to; first += BATCH) {
     int64_t n = batch_length(on, first);
     points_at(on, first, n, through->position, BATCH);
     memset(through->inside, 0, BATCH);
@@ -101,7 +105,7 @@ static mpm_status choose(mpm_context *context, const lattice *on, mpm_inside_fn 
                        (int)status);
     for (int64_t i = 0; i < n; ++i) {
       if (!through->inside[i]) continue;
-      through->taken[(first + i) / 8] |= (uint8_t)(1u << i % 8);
+      through->taken[(first - on->from + i) / 8] |= (uint8_t)(1u << i % 8);
       through->count++;
     }
   }
@@ -121,11 +125,11 @@ static int32_t edges_differ(const lattice *on) {
 static void write_points(mpm_particles *set, const lattice *on, const sieve *through, int64_t slot) {
   double *position = mpmi_f64(set, MPMI_POSITION, 0);
   int64_t to = slot;
-  for (int64_t first = 0; first < on->points; first += BATCH) {
+  for (int64_t first = on->from; first < on->to; first += BATCH) {
     int64_t n = batch_length(on, first);
     points_at(on, first, n, through->position, BATCH);
     for (int64_t i = 0; i < n; ++i) {
-      if (!(through->taken[(first + i) / 8] >> i % 8 & 1)) continue;
+      if (!(through->taken[(first - on->from + i) / 8] >> i % 8 & 1)) continue;
       for (int32_t k = 0; k < on->grid->dim; ++k)
         position[k * set->ld + to] = through->position[k * BATCH + i];
       ++to;
@@ -133,20 +137,21 @@ static void write_points(mpm_particles *set, const lattice *on, const sieve *thr
   }
 }
 
-static mpm_status append_points(mpm_particles *set, const lattice *on, const sieve *through) {
+static mpm_status append_points(mpm_particles *set, const lattice *on, const sieve *through,
+                                mpm_status status, mpmi_numbers *numbers) {
   int32_t with_size = edges_differ(on);
-  int64_t slot, n = through->count;
-  mpm_status status = mpmi_check_room(set, n, 1);
-  if (!status) status = mpmi_append_begin(set, n, with_size, &slot);
-  if (status) return status;
-  write_points(set, on, through, slot);
+  int64_t slot = 0, n = through->count;
+  if (!status && n) status = mpmi_check_room(set, n);
+  if (!status && n) status = mpmi_append_begin(set, n, with_size, &slot);
+  if ((status = mpmi_number(set, n, NULL, status, numbers)) || numbers->next == set->next_id) return status;
+  if (n) write_points(set, on, through, slot);
   for (int64_t s = slot; s < slot + n; ++s)
     mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[s] =
         on->volume * (mpmi_is_axisymmetric(on->grid) ? mpmi_f64(set, MPMI_POSITION, 0)[s] : 1.0);
   for (int32_t k = 0; k < on->grid->dim && with_size; ++k)
     for (int64_t s = slot; s < slot + n; ++s)
       mpmi_f64(set, MPMI_SIZE, 0)[k * set->ld + s] = on->grid->desc.spacing[k] / (double)on->per[k];
-  mpmi_append_finish(set, slot, n, with_size, NULL);
+  mpmi_append_finish(set, slot, n, with_size, NULL, numbers);
   return MPM_OK;
 }
 
@@ -154,19 +159,19 @@ static mpm_status fill(mpm_particles *set, const lattice *on, mpm_inside_fn insi
                        int64_t *first_id, int64_t *count) {
   mpm_context *context = set->context;
   size_t position_bytes = mpmi_bytes(on->grid->dim * BATCH, sizeof(double));
-  size_t taken_bytes = mpmi_bytes(on->points / 8 + 1, 1);
-  int64_t first = set->next_id;
+  size_t taken_bytes = mpmi_bytes((on->to - on->from) / 8 + 1, 1);
+  mpmi_numbers numbers;
   sieve through = {0};
   through.position = mpmi_alloc(context, position_bytes);
   if (through.position) through.inside = mpmi_alloc(context, BATCH);
   if (through.inside) through.taken = mpmi_alloc_zeroed(context, taken_bytes);
   mpm_status status = through.taken ? choose(context, on, inside, user, &through) : MPM_E_NOMEM;
-  if (!status && through.count > 0) status = append_points(set, on, &through);
+  status = append_points(set, on, &through, status, &numbers);
   mpmi_free(context, through.taken, taken_bytes);
   mpmi_free(context, through.inside, BATCH);
   mpmi_free(context, through.position, position_bytes);
   if (status) return status;
-  if (first_id) *first_id = first;
+  if (first_id) *first_id = numbers.first;
   if (count) *count = through.count;
   return MPM_OK;
 }

@@ -35,6 +35,10 @@ static uint32_t *blocks_of_slots(const mpm_particles *set) {
   return set->field[MPMI_POSITION].data[1];
 }
 
+const uint32_t *mpmi_sort_blocks_of_slots(const mpm_particles *set) {
+  return blocks_of_slots(set);
+}
+
 mpm_status mpmi_sort_blocks(mpm_particles *set, int32_t body, mpmi_blocks *blocks) {
   uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status;
@@ -58,12 +62,19 @@ static int64_t padded(int64_t count) {
   return (count + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD;
 }
 
+/* Returns the i-th slot in the order in which particles are taken. */
+static int64_t slot_in_turn(const mpmi_sorting *sorting, int64_t i) {
+  if (!sorting->tail_low) return i;
+  if (i < sorting->tail_low) return sorting->tail + i;
+  return i < sorting->tail + sorting->tail_low ? i - sorting->tail_low : i;
+}
+
 mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                           mpmi_arrangement *to) {
   const uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
   if (status) return status;
-  const int32_t by_id = (set->dirty & MPMI_DIRTY_ORDER) && !mpmi_ids_ascend(set);
+  const int32_t by_id = (set->dirty & MPMI_DIRTY_ORDER) && (sorting->tail_low || !mpmi_ids_ascend(set));
   if (by_id && (status = mpmi_index_build(set))) return status;
   memset(to->start, 0, (size_t)(blocks->count + 1) * sizeof *to->start);
   for (int64_t s = 0; s < set->slots; ++s)
@@ -82,7 +93,7 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
   /* start[b] serves as the cursor of block b and is put back afterwards. */
   const int64_t n = by_id ? set->count : set->slots;
   for (int64_t i = 0; i < n; ++i) {
-    const int64_t s = by_id ? set->index[i].slot : i;
+    const int64_t s = by_id ? set->index[i].slot : slot_in_turn(sorting, i);
     if (of_slot[s] != NONE) sorting->source[to->start[blocks->order[of_slot[s]]]++] = (uint32_t)s;
   }
   for (int64_t b = blocks->count; b > 0; --b) to->start[b] = padded(to->start[b - 1]);
@@ -198,7 +209,7 @@ static void hole_position(const mpm_grid *grid, const mpmi_blocks *blocks, int64
   }
 }
 
-void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_sorting *sorting,
+void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                      const mpmi_arrangement *to) {
   const int64_t slots = to->start[blocks->count];
   if (slots) {
@@ -213,6 +224,7 @@ void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_s
     hole_position(set->grid, blocks, b, position);
     mpmi_fill_holes(set, 0, begin, end, position);
   }
+  sorting->tail_low = 0;
   set->slots = slots;
   mpmi_particles_watch(set, slots);
   set->dirty &= ~(uint32_t)(MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE);

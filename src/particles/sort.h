@@ -16,6 +16,9 @@ typedef struct mpmi_arrangement {
 typedef struct mpmi_sorting {
   uint32_t *source; /* [slots] the slot that a particle comes from */
   int64_t source_capacity;
+  /* Particles that came from other parts stand in tail_count slots from `tail` on; the first tail_low of them
+   * come before the set's own, the others after these. */
+  int64_t tail, tail_count, tail_low;
 } mpmi_sorting;
 
 void mpmi_arrangement_init(mpmi_arrangement *arrangement, mpm_context *context);
@@ -28,9 +31,11 @@ mpm_status mpmi_arrangement_reserve_blocks(mpmi_arrangement *arrangement, int64_
  * mpmi_sort_plan() writes the new arrangement into `to` and makes room in the set. mpmi_sort_apply() moves
  * the particles and clears the set's ORDER and PLACE flags. */
 mpm_status mpmi_sort_blocks(mpm_particles *set, int32_t body, mpmi_blocks *blocks);
+/* Returns the provisional block of each slot that is not a hole, from then until mpmi_sort_plan(). */
+const uint32_t *mpmi_sort_blocks_of_slots(const mpm_particles *set);
 mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                           mpmi_arrangement *to);
-void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, const mpmi_sorting *sorting,
+void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                      const mpmi_arrangement *to);
 
 #endif

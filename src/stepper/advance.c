@@ -1,6 +1,6 @@
 /* Sub-steps to a given time: cut on failure, grown on success. */
 #include "context/structs.h"
-#include "stepper/stepper.h"
+#include "stepper/together.h"
 
 #include <float.h>
 #include <math.h>
@@ -159,7 +159,10 @@ mpm_status mpm_advance(mpm_stepper *s, const mpm_advance_desc *desc, mpm_step_in
   mpm_status status = mpmi_check_info(s, info);
   if (status || (status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d)) ||
       (status = check(s, &d)))
-    return status;
-  status = mpmi_stepper_idle(s);
+    return mpmi_together(s, status);
+  static const char *const name[] = {"t_end", "cfl", "dt_first", "dt_min", "dt_max"};
+  const double number[] = {d.t_end, d.cfl, d.dt_first, d.dt_min, d.dt_max};
+  status = mpmi_together(s, MPM_OK);
+  if (!status) status = mpmi_together_begin(s, mpmi_stepper_idle(s), 5, name, number);
   return status ? status : mpmi_give_info(s, sub_steps(s, &d), info);
 }

@@ -1,5 +1,5 @@
 /* The end of a step: the second copies become the state, or are dropped. */
-#include "stepper/stepper.h"
+#include "stepper/together.h"
 #include "boundary/prescribed.h"
 #include "stages/batch.h"
 
@@ -22,18 +22,23 @@ static int32_t written_by_step(int32_t field) {
   }
 }
 
+int32_t mpmi_is_beyond(const mpm_particles *set, int32_t copy, int64_t slot) {
+  const mpm_grid *grid = set->grid;
+  int32_t beyond = 0;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double x = mpmi_f64(set, MPMI_POSITION, copy)[k * set->ld + slot];
+    beyond |= x < grid->desc.origin[k] || x > grid->upper[k];
+  }
+  return beyond;
+}
+
 /* Makes holes of particles that went through an open wall. The hole stays where the particle was before the
  * step, inside the cover of its block. */
 static void remove_outside(mpm_stepper *s, mpm_particles *set) {
   const mpm_grid *grid = s->grid;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   for (int64_t slot = 0; slot < set->slots; ++slot) {
-    int32_t outside = 0;
-    for (int32_t k = 0; id[slot] >= 0 && k < grid->dim; ++k) {
-      const double x = mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + slot];
-      outside |= x < grid->desc.origin[k] || x > grid->upper[k];
-    }
-    if (!outside) continue;
+    if (id[slot] < 0 || !mpmi_is_beyond(set, 0, slot)) continue;
     for (int32_t k = 0; k < grid->dim; ++k)
       mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + slot] =
           mpmi_f64(set, MPMI_POSITION, 1)[k * set->ld + slot];
@@ -77,31 +82,34 @@ static void add_to_totals(mpm_stepper *s, double work) {
   }
 }
 
-/* Makes the totals of the step: those of blocks and tasks, and what walls, hosts and dampers did beside what
- * the step has of it already. Returns the energies, momenta and rates of the new state. */
-static mpmi_sums close_tally(mpmi_step *step) {
-  mpmi_tally *tally = &step->work->tally;
-  const mpmi_worklist *blocks = &step->layout->worklist[0];
-  mpmi_sums sums = {0};
+mpm_status mpmi_add_up(mpm_stepper *s, mpmi_sums *sums) {
+  mpmi_step *step = &s->step;
+  mpmi_tally *tally = &s->work.tally;
+  const mpmi_worklist *blocks = &s->layout.worklist[0];
+  mpm_status status;
+  *sums = (mpmi_sums){0};
   for (int64_t i = 0; i < blocks->count; ++i)
-    mpmi_tally_block(tally->sum, &step->work->block_sums[blocks->block[i]], &sums);
-  for (int32_t k = 0; k < step->settings->tasks; ++k) {
-    mpmi_exact_join(&tally->sum[MPMI_TALLY_WORK], &step->work->report[k].host_work);
-    mpmi_exact_join(&tally->sum[MPMI_TALLY_DAMPING], &step->work->report[k].damping);
+    mpmi_tally_block(tally->sum, &s->work.block_sums[blocks->block[i]], sums);
+  for (int32_t k = 0; k < s->settings.tasks; ++k) {
+    mpmi_exact_join(&tally->sum[MPMI_TALLY_WORK], &s->work.report[k].host_work);
+    mpmi_exact_join(&tally->sum[MPMI_TALLY_DAMPING], &s->work.report[k].damping);
   }
-  for (int64_t i = 0; i < tally->count; ++i) tally->total[i] = mpmi_exact_total(&tally->sum[i]);
-  mpmi_tally_read(tally->total, &sums);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) mpmi_prescribed_report(step, &s->nodes, m);
+  if ((status = mpmi_total_parts(s->context, tally->count, tally->sum, tally->total)) ||
+      (status = mpmi_together_count(s, sums)))
+    return status;
+  mpmi_tally_read(tally->total, sums);
   for (int32_t i = 0; i < 18; ++i) step->impulse_by_face[i / 3][i % 3] += tally->total[MPMI_TALLY_FACES + i];
   step->host_work += tally->total[MPMI_TALLY_WORK];
   step->info.damping_dissipation += tally->total[MPMI_TALLY_DAMPING];
-  return sums;
+  return MPM_OK;
 }
 
-static void commit_history(mpm_stepper *s) {
+static void commit_history(mpm_stepper *s, const mpmi_sums *sums) {
   mpmi_step *step = &s->step;
   mpmi_history *history = &s->history;
   const mpmi_sums before = history->sums;
-  history->sums = close_tally(step);
+  history->sums = *sums;
   history->has_sums = 1;
   history->t += step->dt;
   ++history->step;
@@ -119,7 +127,7 @@ static void commit_history(mpm_stepper *s) {
   history->has_reactions = 1;
 }
 
-void mpmi_commit(mpm_stepper *s) {
+void mpmi_commit(mpm_stepper *s, const mpmi_sums *sums) {
   int32_t left = 0, removes = 0, restored = 0, old = 0;
   for (int32_t k = 0; k < s->settings.tasks; ++k) {
     left |= s->work.report[k].left_tile;
@@ -127,13 +135,15 @@ void mpmi_commit(mpm_stepper *s) {
     removes |= s->work.report[k].removes;
     restored |= s->work.report[k].holes_restored;
   }
-  for (int32_t m = 0; m < s->layout.member_count; ++m) mpmi_prescribed_report(&s->step, &s->nodes, m);
-  commit_history(s);
+  commit_history(s, sums);
   mpmi_heat_commit(&s->step, s->heat, &s->history.heat);
   for (int32_t m = 0; m < s->layout.member_count; ++m) swap_copies(s, s->layout.member[m].set, left);
   if (old) s->layout.cover_is_old = 1;
   if (restored) s->history.has_sums = 0;
   for (int32_t m = 0; m < s->layout.member_count && removes; ++m) remove_outside(s, s->layout.member[m].set);
+  if (!mpmi_is_shared(s) || !s->layout.parts->leave_elsewhere) return;
+  s->history.removed += s->layout.parts->leave_elsewhere;
+  s->history.has_sums = 0;
 }
 
 void mpmi_roll_back(mpm_stepper *s) {

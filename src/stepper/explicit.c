@@ -52,8 +52,8 @@ mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_node_update_stage(step, forces, nodes);
   if (!status) status = mpmi_boundary_stage(step, forces, nodes, 1.0);
-  if (!status && step->layout->constraints.tie_count)
-    step->info.active_nodes = mpmi_count_active(step->layout, &nodes->solved);
+  if (!status && (step->layout->constraints.tie_count || step->layout->parts))
+    step->info.active_nodes = mpmi_count_owned(step->layout, &nodes->solved);
   mpmi_lap(step, MPMI_TIME_GRID, &clock);
   return status;
 }
@@ -75,4 +75,30 @@ mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
     status = mpmi_surfaces_move(step, mpmi_moves_last(settings) ? &nodes->projected : &nodes->solved);
   mpmi_move_samples(step, MPMI_TIME_G2P);
   return status;
+}
+
+/* ---- how many sums on nodes that makes ------------------------------------------------------------------ */
+/* Sums of cells come before forces and strains; those of prescribed particles in the projection that asks who
+ * holds nodes. */
+static int64_t of_projection(const mpmi_step *step, const mpmi_nodes *nodes, int32_t projection) {
+  const mpmi_projection *of = &mpmi_projections[projection];
+  return 1 + (of->forces && mpmi_has_nodal_stress(step->settings, step->layout)) +
+         (mpmi_asks_host(step->settings, of) && nodes->prescription.any);
+}
+
+int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, int32_t phase) {
+  const mpmi_settings *settings = step->settings;
+  const int64_t strain = settings->desc.locking_remedy != 0;
+  const int64_t holds =
+      mpmi_asks_host(settings, &mpmi_projections[MPMI_PROJECT_FORCES]) && nodes->prescription.any;
+  const int32_t correction = step->takes == MPMI_TAKES_FULL ? MPMI_PROJECT_FULL : MPMI_PROJECT_CORRECTION;
+  int64_t count = of_projection(step, nodes, MPMI_PROJECT_FORCES) - holds;
+  if (settings->desc.scheme == MPM_USF) count += of_projection(step, nodes, MPMI_PROJECT_STRAIN) + strain;
+  if (phase == MPMI_BEGUN) return count;
+  count += holds; /* they are found with the conditions of the nodes */
+  if (phase == MPMI_SOLVED) return count;
+  if (mpmi_corrects(step)) count += (settings->desc.xpic_order - 1) * of_projection(step, nodes, correction);
+  if (settings->desc.scheme == MPM_USL) count += strain;
+  if (settings->desc.scheme == MPM_MUSL) count += of_projection(step, nodes, MPMI_PROJECT_MOVED) + strain;
+  return count;
 }

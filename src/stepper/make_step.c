@@ -1,5 +1,6 @@
 /* Steps, whole or in three parts with the host in between: preparation, the scheme's stages, and the end. */
 #include "stepper/stepper.h"
+#include "stepper/together.h"
 #include "stages/stages.h"
 #include "boundary/prescribed.h"
 #include "implicit/newmark.h"
@@ -21,6 +22,19 @@ static mpm_status check_dt(mpm_stepper *s, double dt) {
     return mpmi_fail(s->context, MPM_E_STATE,
                      "%d views of nodal fields are out: release them before stepping", (int)s->mapped);
   return MPM_OK;
+}
+
+/* All parts begin the same step, or none does. */
+static mpm_status enter(mpm_stepper *s, mpm_status status, double dt) {
+  static const char *const name[] = {"dt", "the time"};
+  const double number[] = {dt, s->history.t};
+  if (!status) status = mpmi_together_offers(s);
+  return mpmi_together_begin(s, status, 2, name, number);
+}
+
+/* Returns how many sums on nodes parts have exchanged when a step has come to this phase. */
+static int64_t exchanges_to(const mpm_stepper *s, int32_t phase) {
+  return mpmi_is_shared(s) ? mpmi_explicit_exchanges(&s->step, &s->nodes, phase) : 0;
 }
 
 /* Asks the host whether to go on, and shows it the info that the step is about to have. */
@@ -59,6 +73,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
       /* the nodes are those of the step before until they are counted */
       .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};
   mpmi_reports_clear(&s->work, s->settings.tasks);
+  if (mpmi_is_shared(s)) s->layout.parts->exchanges = s->layout.parts->is_echo = 0;
 }
 
 /* Brings sets, layout and memory up to date for the step. */
@@ -66,9 +81,9 @@ static mpm_status prepare(mpm_stepper *s) {
   const mpmi_settings *settings = &s->settings;
   double clock = mpmi_seconds();
   mpm_status status;
-  if ((status = mpmi_state_sums(s, &s->step.failure)) ||
-      (status = mpmi_members_refresh(&s->layout, settings)))
-    return status;
+  if ((status = mpmi_state_sums(s, &s->step.failure))) return status;
+  status = mpmi_together_refreshed(s, mpmi_members_refresh(&s->layout, settings));
+  if (status) return status;
   s->nodes.shown = -1;
   if ((status = mpmi_layout_prepare(&s->layout, settings))) return status;
   if (s->layout.cover_is_old) mpmi_layout_cover(&s->layout);
@@ -122,8 +137,12 @@ static mpm_status finish(mpm_stepper *s) {
   mpm_status status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
   if (status) return status;
   mpmi_stops_report(&s->step);
-  if ((status = mpmi_adaption_prepare(s)) || (status = ask_progress(s))) return status;
-  mpmi_commit(s);
+  mpmi_sums sums;
+  if ((status = mpmi_adaption_prepare(s)) || (status = mpmi_add_up(s, &sums))) return status;
+  status = ask_progress(s);
+  if (mpmi_is_shared(s) && s->layout.parts->asks) status = mpmi_together(s, status);
+  if (status) return status;
+  mpmi_commit(s, &sums);
   mpmi_contact_warn(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
@@ -154,12 +173,15 @@ static mpm_status run_implicit(mpm_stepper *s) {
 }
 
 mpm_status mpmi_make_step(mpm_stepper *s, double dt, int32_t is_cut) {
-  mpm_status status = check_dt(s, dt);
+  mpm_status status = enter(s, check_dt(s, dt), dt);
   if (status) return status;
   begin(s, dt, 0);
   s->step.is_cut = is_cut;
-  status = prepare(s);
-  if (!status) status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
+  status = mpmi_together(s, prepare(s));
+  if (!status) {
+    status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
+    status = mpmi_together_end(s, status, exchanges_to(s, MPMI_IDLE));
+  }
   if (!status) status = finish(s);
   if (status) return give_up(s, status);
   mpmi_forget(s->context); /* drops the texts of failed attempts */
@@ -168,21 +190,22 @@ mpm_status mpmi_make_step(mpm_stepper *s, double dt, int32_t is_cut) {
 
 mpm_status mpm_step(mpm_stepper *s, double dt, mpm_step_info *info) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  const mpm_status status = mpmi_check_info(s, info);
+  const mpm_status status = mpmi_together(s, mpmi_check_info(s, info));
   return status ? status : mpmi_give_info(s, mpmi_make_step(s, dt, 0), info);
 }
 
 /* ---- steps in parts ----------------------------------------------------------------------------------- */
 mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = check_dt(s, dt);
+  mpm_status status = enter(s, check_dt(s, dt), dt);
   if (status) return status;
   if (mpmi_is_implicit(&s->settings))
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no steps in parts: use mpm_step, or an explicit scheme");
   begin(s, dt, 1);
-  status = prepare(s);
-  if (!status) status = mpmi_explicit_begin(&s->step, &s->nodes);
+  status = mpmi_together(s, prepare(s));
+  if (!status)
+    status = mpmi_together_end(s, mpmi_explicit_begin(&s->step, &s->nodes), exchanges_to(s, MPMI_BEGUN));
   if (status) return give_up(s, status);
   /* until the end the host sees the old state */
   if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, 0);
@@ -200,11 +223,12 @@ static mpm_status in_phase(mpm_stepper *s, int32_t phase, const char *call, cons
 
 mpm_status mpm_step_grid(mpm_stepper *s) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  mpm_status status = in_phase(s, MPMI_BEGUN, "mpm_step_grid", "mpm_step_begin");
+  mpm_status status = mpmi_together(s, in_phase(s, MPMI_BEGUN, "mpm_step_grid", "mpm_step_begin"));
   if (status) return status;
   s->step.phase = MPMI_RUNNING;
   status = mpmi_places_check(&s->step);
   if (!status) status = mpmi_explicit_grid(&s->step, &s->nodes);
+  status = mpmi_together_end(s, status, exchanges_to(s, MPMI_SOLVED));
   if (status) return give_up(s, status);
   s->step.phase = MPMI_SOLVED;
   return MPM_OK;
@@ -214,11 +238,12 @@ mpm_status mpm_step_end(mpm_stepper *s, mpm_step_info *info) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_status status = in_phase(s, MPMI_SOLVED, "mpm_step_end", "mpm_step_grid");
   if (!status) status = mpmi_check_info(s, info);
-  if (status) return status;
+  if ((status = mpmi_together(s, status))) return status;
   s->step.phase = MPMI_RUNNING;
   if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, 1);
   status = mpmi_places_check(&s->step);
   if (!status) status = mpmi_explicit_end(&s->step, &s->nodes);
+  status = mpmi_together_end(s, status, exchanges_to(s, MPMI_IDLE));
   if (!status) status = finish(s);
   return mpmi_give_info(s, status ? give_up(s, status) : MPM_OK, info);
 }

@@ -1,6 +1,6 @@
 /* What a stepper reports: the info of the state and of the last step, reactions, where the time went. */
 #include "context/structs.h"
-#include "stepper/stepper.h"
+#include "stepper/together.h"
 #include "implicit/balance.h"
 #include "layout/members.h"
 
@@ -66,7 +66,7 @@ mpm_status mpm_stepper_info(const mpm_stepper *stepper, mpm_step_info *info) {
   if (!info) return mpmi_fail(s->context, MPM_E_ARG, "info is NULL");
   mpm_status status = mpmi_stepper_idle(s);
   if (!status) status = mpmi_check_sets(s, MPM_WRITE);
-  if (!status) status = mpmi_state_sums(s, NULL);
+  if (!(status = mpmi_together_begin(s, status, 0, NULL, NULL))) status = mpmi_state_sums(s, NULL);
   if (status) return status;
   mpm_step_info now;
   mpmi_fill_info(s, &s->history.last, &now);
@@ -78,9 +78,10 @@ mpm_status mpmi_tell_stable_dt(mpm_stepper *s, double *dt) {
   if (status) return status;
   int64_t count = 0;
   for (int32_t m = 0; m < s->layout.member_count; ++m) count += s->layout.member[m].set->count;
+  if ((status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 1, &count))) return status;
   if (!count) return mpmi_fail(s->context, MPM_E_STATE, "the stepper has no particles");
   status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
-  if (!status) status = mpmi_state_sums(s, NULL);
+  if (!(status = mpmi_together_begin(s, status, 0, NULL, NULL))) status = mpmi_state_sums(s, NULL);
   if (status) return status;
   const double stable = mpmi_stable_dt(s);
   if (!(stable > 0.0))

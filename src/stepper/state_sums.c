@@ -1,6 +1,6 @@
 /* Energies, momenta and rates of the present state. After a step they are there; after the host has changed
  * something, or before the first step, the particles are asked. */
-#include "stepper/stepper.h"
+#include "stepper/together.h"
 #include "stages/batch.h"
 
 #include <math.h>
@@ -142,14 +142,18 @@ mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure) {
   mpm_status status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
   /* sums are made by blocks, and new particles have none until they are sorted; else nothing is sorted,
    * because that would end the nodal fields */
-  if (!status && dirty & MPMI_DIRTY_ORDER) status = mpmi_layout_sort(layout, &s->settings);
+  status = mpmi_together(s, status);
+  if (!status && (dirty & MPMI_DIRTY_ORDER || (mpmi_is_shared(s) && mpmi_layout_is_moved(layout))))
+    status = mpmi_layout_sort(layout, &s->settings);
   for (int32_t i = 0; i < MPMI_TALLY_FACES; ++i) mpmi_exact_clear(&sum[i]);
   for (int32_t m = 0; m < layout->member_count && !status; ++m) {
     status = mpmi_particles_refresh(layout->member[m].set);
     if (!status) status = sum_set(s, m, sum, &sums, failure);
   }
-  if (status) return status;
-  for (int32_t i = 0; i < MPMI_TALLY_FACES; ++i) total[i] = mpmi_exact_total(&sum[i]);
+  if ((status = mpmi_together(s, status)) ||
+      (status = mpmi_total_parts(s->context, MPMI_TALLY_FACES, sum, total)) ||
+      (status = mpmi_together_rates(s, &sums)))
+    return status;
   mpmi_tally_read(total, &sums);
   for (int32_t m = 0; m < layout->member_count; ++m)
     layout->member[m].set->dirty &= ~(uint32_t)MPMI_DIRTY_SUMS;

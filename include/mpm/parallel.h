@@ -1,0 +1,118 @@
+/**
+ * @file parallel.h
+ * One problem in several parts: each part is a context (in a process of its own, or a thread) with grid,
+ * materials, sets and steppers made alike, and holds the particles of its own blocks of the grid. The host
+ * lends each context a transport; the library says what has to go where, and never opens a connection.
+ *
+ * Calls marked (collective) are made on all parts, in the same order and with the same arguments, save those
+ * that are said to be of a part. All parts return the same status; where it is a failure, the text on the
+ * parts that are not at fault says which part is, and its sentence. Calls that only read or write a part's
+ * own objects are not collective. Without a transport, or with one part, every call behaves as it does
+ * without.
+ *
+ * States, statuses and reports have the same bits for any number of parts, as for any number of threads.
+ *
+ * (collective) are: mpm_context_create(); adding and filling particles, where each part adds its own and
+ * numbers without ids follow those of the parts before; all calls that set up a stepper; mpm_step() and its
+ * three parts, mpm_advance(), mpm_stepper_info(), mpm_stable_dt(), mpm_state_hash(). Particles go to the part
+ * that has their block of the grid when a step sorts them, wherever they were added.
+ *
+ * Of several parts these are asked for explicit steps of one body. MPM_E_UNSUPPORTED: implicit schemes, total
+ * Lagrangian grids, friction walls, obstacles, surfaces, heat, adaption, and saving or loading states.
+ */
+#ifndef MPM_PARALLEL_H
+#define MPM_PARALLEL_H
+
+#include <mpm/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** How much of an exchange its receivers know beforehand. */
+enum mpm_exchange_value {
+  MPM_EXCHANGE_KNOWN = 1, /**< both sides know who sends to whom: partners send and receive */
+  MPM_EXCHANGE_SPARSE = 2 /**< receivers do not know from whom: particles that move, changes of the pattern */
+};
+
+/** What mpm_reduce_fn does. There is no sum of floating-point numbers: it would depend on the parts. */
+enum mpm_reduce_value {
+  MPM_REDUCE_MAX = 1, /**< the largest of all parts */
+  MPM_REDUCE_SUM = 2  /**< the sum, modulo 2^64 */
+};
+
+/** Bytes for, or from, another part. */
+typedef struct mpm_message {
+  int32_t part;     /**< to whom, or from whom */
+  int32_t reserved; /**< 0 */
+  int64_t bytes;    /**< how many; 0 is sent too where the partner is known */
+  /** out: the library's, unchanged until mpm_receive_fn returns; in: the host's, at a multiple of 64, valid
+   * until the next mpm_send_fn. */
+  void *data;
+} mpm_message;
+
+/** Starts an exchange and returns before it is done. out: ascending by part, never this one. most: of each
+ * partner, a bound on what comes from it, [count]; NULL with MPM_EXCHANGE_SPARSE. Returns 0, or < 0: then the
+ * context is unusable (MPM_E_CALLBACK), for the other parts are lost. */
+typedef mpm_status (*mpm_send_fn)(void *user, int32_t exchange, int32_t count, const mpm_message *out,
+                                  const int64_t *most);
+
+/** Ends the exchange: all that was sent to this part, ascending by part. Returns as mpm_send_fn. */
+typedef mpm_status (*mpm_receive_fn)(void *user, int32_t *count, const mpm_message **in);
+
+/** values[count] of all parts into each of them (collective). Returns as mpm_send_fn. */
+typedef mpm_status (*mpm_reduce_fn)(void *user, int32_t op, int64_t count, int64_t *values);
+
+/** all[parts]: value of each part (collective). Only when the blocks are cut anew. Returns as mpm_send_fn. */
+typedef mpm_status (*mpm_gather_fn)(void *user, int64_t value, int64_t *all);
+
+/** Ways between the parts. All are called on the calling thread. Once one has failed, every collective call of
+ * the context returns MPM_E_CALLBACK. */
+typedef struct mpm_transport {
+  uint32_t struct_size;   /**< sizeof(mpm_transport) of the caller */
+  int32_t part;           /**< of this context, 0 ... parts - 1 */
+  int32_t parts;          /**< how many there are */
+  int32_t reserved;       /**< 0 */
+  mpm_send_fn send;       /**< required, as the three that follow */
+  mpm_receive_fn receive; /**< ends what send started */
+  mpm_reduce_fn reduce;   /**< maxima and sums of integers */
+  mpm_gather_fn gather;   /**< one integer of each part */
+  /** Called every 50 microseconds or so between send and receive, for transports that move only when called;
+   * may be NULL. */
+  void (*poll)(void *user);
+  void *user; /**< passed to all of them */
+} mpm_transport;
+
+/** Number of this part and how many there are; 0 and 1 without a transport. Pointers may be NULL. */
+MPM_API mpm_status mpm_context_part(const mpm_context *context, int32_t *part, int32_t *parts);
+
+/** Particles of a set on all parts (collective). mpm_particles_count() is that of this part. */
+MPM_API mpm_status mpm_particles_total(const mpm_particles *particles, int64_t *n);
+
+/** What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made
+ * or they were last reset; the caller sets struct_size. */
+typedef struct mpm_parallel_info {
+  uint32_t struct_size; /**< sizeof(mpm_parallel_info) of the caller */
+  int32_t neighbours;   /**< parts that share nodes with this one */
+  int64_t blocks;       /**< with particles of this part */
+  int64_t boundary;     /**< of them beside blocks of other parts */
+  int64_t ghosts;       /**< blocks of other parts beside them */
+  int64_t bytes_nodes;  /**< sent for sums on nodes */
+  int64_t bytes_moved;  /**< sent for particles that moved to another part */
+  int64_t moved;        /**< such particles */
+  int64_t cuts;         /**< how often blocks were given to parts anew */
+  double imbalance;     /**< largest weight of a part over the mean at the last sort, the same on all parts */
+  double seconds_packing;  /**< packing and adding what is exchanged */
+  double seconds_waiting;  /**< in receive */
+  double seconds_reducing; /**< in reduce and gather */
+} mpm_parallel_info;
+
+/** Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL
+ * or its struct_size is bad. Without a transport there is one part, and counts and seconds are 0. */
+MPM_API mpm_status mpm_stepper_parallel_info(mpm_stepper *stepper, int32_t reset, mpm_parallel_info *info);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,247 @@
+#include "parallel/migration.h"
+#include "particles/add.h"
+
+#include <string.h>
+
+/* ---- fields -------------------------------------------------------------------------------------------- */
+static uint64_t mix_name(uint64_t h, const mpmi_field *field) {
+  for (const char *at = field->name; *at; ++at) h = (h ^ (unsigned char)*at) * 0x100000001b3u;
+  return (h ^ (uint64_t)(field->type * 4096 + field->components)) * 0x100000001b3u;
+}
+
+mpm_status mpmi_move_align_fields(mpmi_parts *parts, mpmi_moving_set *sets, int32_t count) {
+  enum { WORDS = MPMI_BUILTIN_FIELDS + 4 };
+  mpm_context *c = parts->context;
+  mpm_status status = MPM_OK;
+  for (int32_t m = 0; m < count; ++m) {
+    mpm_particles *set = sets[m].set;
+    uint64_t names = 0xcbf29ce484222325u;
+    int64_t word[WORDS];
+    for (int32_t f = 0; f < set->field_count; ++f) names = mix_name(names, &set->field[f]);
+    for (int32_t f = 0; f < MPMI_BUILTIN_FIELDS; ++f) word[f] = set->field[f].present;
+    const int64_t half[2] = {(int64_t)(names >> 33), (int64_t)(names & 0x7fffffff)};
+    for (int32_t i = 0; i < 2; ++i)
+      word[MPMI_BUILTIN_FIELDS + i] = half[i], word[MPMI_BUILTIN_FIELDS + 2 + i] = -half[i];
+    mpm_status failed = mpmi_reduce_parts(c, MPM_REDUCE_MAX, WORDS, word);
+    if (failed) return failed;
+    for (int32_t i = 0; i < 2 && !status; ++i)
+      if (word[MPMI_BUILTIN_FIELDS + i] != -word[MPMI_BUILTIN_FIELDS + 2 + i])
+        status = mpmi_fail(c, MPM_E_STATE,
+                           "set %d has other fields than on another part: make the same ones on all", (int)m);
+    for (int32_t f = 0; f < MPMI_BUILTIN_FIELDS && !status; ++f)
+      if (word[f] && !set->field[f].present) status = mpmi_field_make_present(set, f);
+  }
+  return mpmi_agree(c, status);
+}
+
+/* ---- messages: how many of each set, then its fields component by component ----------------------------- */
+static int64_t padded_bytes(const mpmi_field *field, int64_t n) {
+  return ((int64_t)mpmi_type_size(field->type) * n + 7) / 8 * 8;
+}
+
+static int64_t bytes_of(const mpm_particles *set, int64_t n) {
+  int64_t bytes = 0;
+  for (int32_t f = 0; f < set->field_count; ++f)
+    if (set->field[f].present) bytes += set->field[f].components * padded_bytes(&set->field[f], n);
+  return bytes;
+}
+
+typedef struct packing {
+  mpmi_parts *parts;
+  const int32_t *owner; /* [blocks] by provisional number */
+  int32_t to;
+} packing;
+
+/* The blocks of the slots are where mpmi_sort_blocks() has put them. */
+static int32_t goes_to(const packing *p, const mpm_particles *set, int64_t slot) {
+  const uint32_t *block = mpmi_sort_blocks_of_slots(set);
+  return mpmi_i64(set, MPMI_ID, 0)[slot] < 0 ? -1 : p->owner[block[slot]];
+}
+
+static void pack_field(const packing *p, const mpm_particles *set, const mpmi_field *field, int64_t n,
+                       char *to) {
+  const size_t size = mpmi_type_size(field->type);
+  for (int32_t c = 0; c < field->components; ++c) {
+    const char *from = (const char *)field->data[0] + (size_t)(c * set->ld) * size;
+    char *at = to + c * padded_bytes(field, n);
+    for (int64_t s = 0; s < set->slots; ++s) {
+      if (goes_to(p, set, s) != p->to) continue;
+      memcpy(at, from + (size_t)s * size, size);
+      at += size;
+    }
+  }
+}
+
+static mpm_status pack_set(const packing *p, const mpm_particles *set, int64_t n) {
+  mpmi_buffer *buffer = &p->parts->out[p->to];
+  char *at = mpmi_buffer_take(p->parts->context, buffer, bytes_of(set, n));
+  if (!at) return MPM_E_NOMEM;
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    if (!set->field[f].present) continue;
+    pack_field(p, set, &set->field[f], n, at);
+    at += set->field[f].components * padded_bytes(&set->field[f], n);
+  }
+  return MPM_OK;
+}
+
+/* Notes the slots that are left; the memory in which their blocks stand is needed for others later. */
+static mpm_status note_leaving(const packing *p, mpmi_moving_set *of) {
+  const int32_t me = p->parts->context->transport.part;
+  int64_t *slot = mpmi_buffer_take(p->parts->context, &p->parts->gone, of->leave * (int64_t)sizeof *slot);
+  if (!slot) return MPM_E_NOMEM;
+  for (int64_t s = 0; s < of->set->slots; ++s) {
+    const int32_t to = goes_to(p, of->set, s);
+    if (to >= 0 && to != me) *slot++ = s;
+  }
+  return MPM_OK;
+}
+
+/* Counts what goes where, and packs that. */
+static mpm_status pack(mpmi_parts *parts, const int32_t *owner, mpmi_moving_set *sets, int32_t count) {
+  const int32_t all = mpmi_part_count(parts), me = parts->context->transport.part;
+  int64_t *n = parts->owner_count;
+  packing p = {parts, owner, 0};
+  parts->gone.used = 0;
+  for (int32_t r = 0; r < all; ++r) parts->out[r].used = 0;
+  for (int32_t m = 0; m < count; ++m) {
+    sets[m].leave = 0;
+    memset(n, 0, (size_t)all * sizeof *n);
+    for (int64_t s = 0; s < sets[m].set->slots; ++s) {
+      const int32_t to = goes_to(&p, sets[m].set, s);
+      if (to >= 0) ++n[to];
+    }
+    for (p.to = 0; p.to < all; ++p.to) {
+      if (p.to == me || !n[p.to]) continue;
+      const int64_t head[2] = {m, n[p.to]};
+      void *at = mpmi_buffer_take(parts->context, &parts->out[p.to], sizeof head);
+      if (!at) return MPM_E_NOMEM;
+      memcpy(at, head, sizeof head);
+      const mpm_status status = pack_set(&p, sets[m].set, n[p.to]);
+      if (status) return status;
+      sets[m].leave += n[p.to];
+    }
+    const mpm_status status = note_leaving(&p, &sets[m]);
+    if (status) return status;
+  }
+  return MPM_OK;
+}
+
+/* ---- what has come ------------------------------------------------------------------------------------- */
+typedef struct arrivals {
+  int32_t count;
+  const mpm_message *message;
+} arrivals;
+
+/* Goes through the pieces of all messages. low: they come from a part before this one. */
+typedef void (*piece_fn)(mpmi_moving_set *to, int32_t low, int64_t n, const char *values);
+static mpm_status each_piece(mpmi_parts *parts, const arrivals *in, mpmi_moving_set *sets, int32_t count,
+                             piece_fn fn) {
+  for (int32_t i = 0; i < in->count; ++i) {
+    const char *at = in->message[i].data, *end = at + in->message[i].bytes;
+    while (end - at >= (ptrdiff_t)(2 * sizeof(int64_t))) {
+      int64_t head[2];
+      memcpy(head, at, sizeof head);
+      at += sizeof head;
+      const int64_t room = end - at;
+      if (head[0] < 0 || head[0] >= count || head[1] < 1 || head[1] > room ||
+          bytes_of(sets[head[0]].set, head[1]) > room)
+        return mpmi_fail(parts->context, MPM_E_INTERNAL,
+                         "particles of part %d do not fit the sets of part %d", (int)in->message[i].part,
+                         (int)parts->context->transport.part);
+      fn(&sets[head[0]], in->message[i].part < parts->context->transport.part, head[1], at);
+      at += bytes_of(sets[head[0]].set, head[1]);
+    }
+  }
+  return MPM_OK;
+}
+
+static void count_piece(mpmi_moving_set *to, int32_t low, int64_t n, const char *values) {
+  (void)values;
+  to->arrive += n;
+  if (low) to->arrive_low += n;
+}
+
+/* Where the next piece of each set goes is kept in its sorting. */
+static void take_piece(mpmi_moving_set *to, int32_t low, int64_t n, const char *values) {
+  const mpm_particles *set = to->set;
+  const int64_t slot = to->sorting->tail + to->sorting->tail_count;
+  (void)low;
+  for (int32_t f = 0; f < set->field_count; ++f) {
+    const mpmi_field *field = &set->field[f];
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; field->present && c < field->components; ++c, values += padded_bytes(field, n))
+      memcpy((char *)field->data[0] + (size_t)(c * set->ld + slot) * size, values, (size_t)n * size);
+  }
+  to->sorting->tail_count += n;
+}
+
+/* ---- both ways ----------------------------------------------------------------------------------------- */
+static mpm_status exchange(mpmi_parts *parts, arrivals *in) {
+  const int32_t all = mpmi_part_count(parts);
+  int32_t count = 0;
+  for (int32_t r = 0; r < all; ++r) {
+    if (!parts->out[r].used) continue;
+    parts->info.bytes_moved += parts->out[r].used;
+    parts->message[count++] = (mpm_message){.part = r, .bytes = parts->out[r].used, .data = parts->out[r].at};
+  }
+  const mpm_status status = mpmi_send(parts->context, MPM_EXCHANGE_SPARSE, count, parts->message, NULL);
+  return status ? status : mpmi_receive(parts->context, &in->count, &in->message);
+}
+
+static mpm_status make_room(mpmi_parts *parts, const arrivals *in, mpmi_moving_set *sets, int32_t count) {
+  for (int32_t m = 0; m < count; ++m) sets[m].arrive = sets[m].arrive_low = 0;
+  mpm_status status = each_piece(parts, in, sets, count, count_piece);
+  for (int32_t m = 0; m < count && !status; ++m) {
+    status = mpmi_check_room(sets[m].set, sets[m].arrive);
+    if (!status && sets[m].arrive) status = mpmi_append_reserve(sets[m].set, sets[m].arrive, 0);
+  }
+  return status;
+}
+
+/* Makes holes of the particles that have gone, and the arrivals particles. There is room. */
+static void carry_out(mpmi_parts *parts, const arrivals *in, mpmi_moving_set *sets, int32_t count) {
+  const int64_t *gone = (const void *)parts->gone.at;
+  for (int32_t m = 0; m < count; ++m) {
+    mpm_particles *set = sets[m].set;
+    for (int64_t i = 0; i < sets[m].leave; ++i) mpmi_make_hole(set, *gone++);
+    int64_t slot = set->slots;
+    if (sets[m].arrive) mpmi_append_begin(set, sets[m].arrive, 0, &slot);
+    sets[m].sorting->tail = slot;
+    sets[m].sorting->tail_count = 0;
+    sets[m].sorting->tail_low = sets[m].arrive_low;
+    set->count += sets[m].arrive - sets[m].leave;
+    set->dirty |= MPMI_DIRTY_PLACE;
+    mpmi_index_drop(set);
+  }
+  each_piece(parts, in, sets, count, take_piece);
+}
+
+static mpm_status move_owned(mpmi_parts *parts, const mpmi_blocks *blocks, int32_t *owner,
+                             mpmi_moving_set *sets, int32_t count, int64_t *moved) {
+  arrivals in = {0, NULL};
+  for (int64_t i = 0; i < blocks->count; ++i) owner[i] = mpmi_cut_owner(parts, blocks->key[i]);
+  mpm_status status = pack(parts, owner, sets, count);
+  for (int32_t r = 0; r < mpmi_part_count(parts) && status; ++r) parts->out[r].used = 0;
+  const mpm_status lost = exchange(parts, &in);
+  if (lost) return lost;
+  if (!status) status = make_room(parts, &in, sets, count);
+  if ((status = mpmi_agree(parts->context, status))) return status;
+  for (int32_t m = 0; m < count; ++m) {
+    parts->info.moved += sets[m].leave;
+    *moved += sets[m].leave + sets[m].arrive;
+  }
+  if (*moved) carry_out(parts, &in, sets, count);
+  return MPM_OK;
+}
+
+mpm_status mpmi_move_particles(mpmi_parts *parts, const mpmi_blocks *blocks, mpmi_moving_set *sets,
+                               int32_t count, int64_t *moved) {
+  mpm_context *c = parts->context;
+  const size_t bytes = mpmi_bytes(blocks->count + 1, sizeof(int32_t));
+  int32_t *owner = mpmi_alloc(c, bytes);
+  mpm_status status = mpmi_agree(c, owner ? MPM_OK : MPM_E_NOMEM);
+  *moved = 0;
+  if (!status) status = move_owned(parts, blocks, owner, sets, count, moved);
+  mpmi_free(c, owner, bytes);
+  return status;
+}

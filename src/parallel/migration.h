@@ -1,0 +1,29 @@
+/* Particles that go to the part that has their block. First everything is found, packed, exchanged and given
+ * room, which may fail and changes nothing; then all parts know whether all have succeeded; then it is
+ * done, which cannot fail.
+ *
+ * Arrivals stand behind a set's own particles, those from parts before this one first. The sort that follows
+ * takes them in the order of the parts (particles/sort.h), as if there had been one part. */
+#ifndef MPMI_MIGRATION_H
+#define MPMI_MIGRATION_H
+
+#include "parallel/parts.h"
+#include "particles/sort.h"
+
+/* A set that takes part, and what of it is on the way. */
+typedef struct mpmi_moving_set {
+  mpm_particles *set;
+  mpmi_sorting *sorting;
+  int64_t leave, arrive,
+      arrive_low; /* those that go; arrivals, and those of them from parts before this one */
+} mpmi_moving_set;
+
+/* Makes the fields of the sets alike on all parts (collective): one that is present on a part becomes so on
+ * all. MPM_E_STATE: the host's own fields are unlike. */
+mpm_status mpmi_move_align_fields(mpmi_parts *parts, mpmi_moving_set *sets, int32_t count);
+/* Moves what has to be moved (collective). The provisional blocks are those of mpmi_sort_blocks(), which has to
+ * be called again where *moved is not 0: some particle of this part has gone or come. */
+mpm_status mpmi_move_particles(mpmi_parts *parts, const mpmi_blocks *blocks, mpmi_moving_set *sets,
+                               int32_t count, int64_t *moved);
+
+#endif

@@ -1,0 +1,62 @@
+#include "parallel/parts.h"
+
+#include <string.h>
+
+mpm_status mpmi_parts_create(mpm_context *c, const mpm_grid *grid, mpmi_parts **out) {
+  const int64_t count = c->transport.parts;
+  mpmi_parts *parts = mpmi_alloc_zeroed(c, sizeof *parts);
+  *out = parts;
+  if (!parts) return MPM_E_NOMEM;
+  parts->context = c;
+  parts->grid = grid;
+  parts->is_stale = 1;
+  parts->first = mpmi_alloc_zeroed(c, mpmi_bytes(count + 1, sizeof *parts->first));
+  parts->owner_count = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof *parts->owner_count));
+  parts->out = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof *parts->out));
+  parts->message = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof *parts->message));
+  parts->most = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof *parts->most));
+  return parts->first && parts->owner_count && parts->out && parts->message && parts->most ? MPM_OK
+                                                                                           : MPM_E_NOMEM;
+}
+
+void mpmi_parts_destroy(mpmi_parts *parts) {
+  if (!parts) return;
+  mpm_context *c = parts->context;
+  const int64_t count = c->transport.parts;
+  for (int64_t r = 0; r < count && parts->out; ++r)
+    MPMI_FREE_ARRAY(c, parts->out[r].at, parts->out[r].capacity);
+  MPMI_FREE_ARRAY(c, parts->gone.at, parts->gone.capacity);
+  MPMI_FREE_ARRAY(c, parts->first, count + 1);
+  MPMI_FREE_ARRAY(c, parts->owner_count, count);
+  MPMI_FREE_ARRAY(c, parts->out, count);
+  MPMI_FREE_ARRAY(c, parts->message, count);
+  MPMI_FREE_ARRAY(c, parts->most, count);
+  MPMI_FREE_ARRAY(c, parts->partner, parts->partner_capacity);
+  MPMI_FREE_ARRAY(c, parts->sent, parts->sent_capacity);
+  MPMI_FREE_ARRAY(c, parts->ghost, parts->ghost_capacity);
+  MPMI_FREE_ARRAY(c, parts->flags, parts->flags_capacity);
+  MPMI_FREE_ARRAY(c, parts->partial, parts->partial_capacity);
+  MPMI_FREE_ARRAY(c, parts->mark, parts->mark_capacity);
+  MPMI_FREE_ARRAY(c, parts->is_boundary, parts->is_boundary_capacity);
+  MPMI_FREE_ARRAY(c, parts->is_inner, parts->is_inner_capacity);
+  MPMI_FREE_ARRAY(c, parts->near, parts->near_capacity);
+  MPMI_FREE_ARRAY(c, parts->boundary, parts->boundary_capacity);
+  MPMI_FREE_ARRAY(c, parts->tile, parts->tile_capacity);
+  mpmi_free(c, parts, sizeof *parts);
+}
+
+void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes) {
+  const int64_t wanted = buffer->used + bytes;
+  if (wanted > buffer->capacity || !buffer->at) {
+    const int64_t capacity = wanted + wanted / 2 + 1024;
+    char *more = mpmi_alloc(context, mpmi_bytes(capacity, 1));
+    if (!more) return NULL;
+    if (buffer->used) memcpy(more, buffer->at, (size_t)buffer->used);
+    MPMI_FREE_ARRAY(context, buffer->at, buffer->capacity);
+    buffer->at = more;
+    buffer->capacity = capacity;
+  }
+  char *at = buffer->at + buffer->used;
+  buffer->used = wanted;
+  return at;
+}

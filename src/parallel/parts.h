@@ -1,0 +1,129 @@
+/* One problem in several parts, each with the particles of its own blocks of the grid.
+ *
+ *   cut.c        which part has which blocks: ranges of their Morton keys
+ *   migration.c  particles that go to another part, when they are sorted
+ *   pattern.c    which blocks of other parts share nodes with one's own, and which of the nodes have all that
+ *                particles give them
+ *   tiles.c      the exchange of what the particles of such blocks give
+ *
+ * The particles of all parts, one part after the other, have the order that one part would have; so have
+ * the tiles that are added to a node. Hence all bits are those of one part. */
+#ifndef MPMI_PARTS_H
+#define MPMI_PARTS_H
+
+#include "context/transport.h"
+#include "grid/constraints.h"
+
+/* Slots of a message that is sent to a partner, or has come from it. */
+typedef struct mpmi_buffer {
+  char *at;
+  int64_t capacity, used;
+} mpmi_buffer;
+
+/* A block with particles beside those of a partner. In the part that has it: the box of its tile that the
+ * partner wants. In the partner: the ghost, and the box of its tile that came last. */
+typedef struct mpmi_shared_block {
+  int64_t block;
+  int32_t partner; /* index in the list of partners */
+  mpmi_node_box box;
+  const double *values; /* of the ghost, in a message; NULL: there were none */
+} mpmi_shared_block;
+
+/* A part that shares nodes with this one. */
+typedef struct mpmi_partner {
+  int32_t part;
+  int64_t first_sent, sent;    /* in the list `sent` */
+  int64_t first_ghost, ghosts; /* in the list `ghost` */
+} mpmi_partner;
+
+/* Flags of a node that a ghost may give to. */
+enum {
+  MPMI_NODE_GIVEN = 1, /* a ghost's tile has it, or a node that is tied to it */
+  MPMI_NODE_WHOLE = 2, /* all that give to it are known here */
+  MPMI_NODE_OWN = 4,   /* a tile of this part has it */
+  MPMI_NODE_LOWER = 8  /* a tile of a part before this one has it */
+};
+
+typedef struct mpmi_parts {
+  mpm_context *context;
+  const mpm_grid *grid;
+  int32_t margin;           /* nodes so far beyond those of a tile are to be whole, too */
+  uint64_t *first;          /* [parts + 1] part r has the keys first[r] <= key < first[r + 1] */
+  int32_t is_cut, is_stale; /* stale: a sort has not come to its end on all parts */
+  int64_t *owner_count;     /* [parts] scratch */
+  int64_t partner_count, partner_capacity;
+  mpmi_partner *partner;
+  int64_t sent_count, sent_capacity, ghost_count, ghost_capacity;
+  mpmi_shared_block *sent, *ghost;  /* by partner; each in the order of the sender's blocks */
+  uint8_t *flags;                   /* [slots] MPMI_NODE_..., or NULL */
+  int64_t flags_capacity, *partial; /* slots of nodes that are given to and not whole */
+  int64_t partial_count, partial_capacity;
+  int64_t version; /* of the layout that the flags are of */
+  /* By block: 1 + its index in `boundary`, or 0; whether it is on the boundary; whether it has particles and is
+   * not; whether it has particles, 2 where it may share nodes with a ghost. */
+  int32_t *mark;
+  uint8_t *is_boundary, *is_inner, *near;
+  int64_t mark_capacity, is_boundary_capacity, is_inner_capacity, near_capacity;
+  int64_t boundary_count, boundary_capacity, *boundary; /* own blocks that are sent, each once */
+  double *tile;                                         /* [boundary] their tiles */
+  int64_t tile_capacity;
+  mpmi_buffer *out; /* [parts] */
+  mpmi_buffer gone; /* slots of particles that leave */
+  mpm_message *message;
+  int64_t *most;
+  int64_t exchanges;       /* of tiles in the step under way */
+  int32_t asks;            /* some part has a progress callback */
+  int64_t leave_elsewhere; /* particles that leave the grid on other parts in the step under way */
+  int32_t is_echo;         /* the step fails here because it has failed on a partner */
+  mpm_parallel_info info;
+} mpmi_parts;
+
+mpm_status mpmi_parts_create(mpm_context *context, const mpm_grid *grid, mpmi_parts **out);
+void mpmi_parts_destroy(mpmi_parts *parts);
+static inline int32_t mpmi_part_count(const mpmi_parts *parts) {
+  return parts->context->transport.parts;
+}
+
+/* Makes room for more bytes of a message, and returns where they go, or NULL. */
+void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes);
+
+/* ---- cut.c ------------------------------------------------------------------------------------------- */
+/* Gives the blocks, each with its weight, to the parts (collective), unless they are shared out evenly. */
+mpm_status mpmi_cut_blocks(mpmi_parts *parts, const mpmi_blocks *blocks, const int64_t *weight);
+/* Returns the part that has a block with this key. */
+int32_t mpmi_cut_owner(const mpmi_parts *parts, uint64_t key);
+
+/* ---- pattern.c --------------------------------------------------------------------------------------- */
+/* Finds the ghosts of the blocks with particles, which are all that have been inserted, and inserts them
+ * (collective). status: what has happened on this part before. */
+mpm_status mpmi_pattern_find(mpmi_parts *parts, mpmi_blocks *blocks, mpm_status status);
+/* Takes over the numbers that the blocks have now that they are in order, and tells apart those that are sent. */
+mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks);
+/* Finds the nodes that are whole, and whose they are. */
+mpm_status mpmi_pattern_nodes(mpmi_parts *parts, const mpmi_blocks *blocks,
+                              const mpmi_constraints *constraints);
+/* Returns 1 for the one part that books what happens at a node. */
+static inline int32_t mpmi_owns_node(const mpmi_parts *parts, int64_t slot) {
+  if (!parts) return 1;
+  const int32_t flags = parts->flags[slot];
+  return !(flags & MPMI_NODE_GIVEN) || (flags & (MPMI_NODE_OWN | MPMI_NODE_LOWER)) == MPMI_NODE_OWN;
+}
+
+/* ---- tiles.c ----------------------------------------------------------------------------------------- */
+/* Makes room for the tiles of the boundary blocks, of so many doubles each, and empties them. */
+mpm_status mpmi_tiles_reserve(mpmi_parts *parts, int64_t doubles);
+/* Returns the tile of a boundary block, with so many values per node. */
+double *mpmi_tiles_of(const mpmi_parts *parts, int64_t block, int32_t values);
+/* Empties them after a failure. */
+void mpmi_tiles_clear(const mpmi_parts *parts, int32_t values);
+/* Sends them to the partners; box: of the nodes of each block that have anything, in its tile. With a status
+ * that is not MPM_OK partners learn that this part has failed. */
+mpm_status mpmi_tiles_send(mpmi_parts *parts, int32_t values, const mpmi_cover *cover, mpm_status status);
+/* Waits for those of the partners. MPM_E_STATE, and is_echo, where one of them has failed. */
+mpm_status mpmi_tiles_receive(mpmi_parts *parts, int32_t values, mpm_status status);
+/* Puts what has come of a ghost into a clean tile, and its box into the cover; returns 0 where it has given
+ * nothing. */
+int32_t mpmi_tiles_unpack(const mpmi_parts *parts, const mpmi_shared_block *ghost, int32_t values,
+                          double *tile, mpmi_cover *cover);
+
+#endif

@@ -1,0 +1,366 @@
+/* Which blocks of other parts share nodes with one's own.
+ *
+ * A block with particles reaches the nodes of its tile. The part that has it wants the sums on these nodes
+ * to be whole, on those that are tied to them by walls and periods, and on `margin` more around them: that is
+ * what the block wants. A block of another part whose tile meets that is a ghost here; its owner sends what its
+ * particles give there. Each part finds out by itself what it has to send and what will come, once it knows
+ * the blocks of the others that are near its own. */
+#include "parallel/parts.h"
+
+#include <string.h>
+
+/* Nodes beyond a wall are so far from it, at most, and so are those that they mirror. */
+enum { BEYOND_WALL = 4 };
+
+/* A stretch of nodes along an axis, by index: low <= i < high. */
+typedef struct stretch {
+  int64_t low, high;
+} stretch;
+
+static stretch tile_of(const mpmi_parts *parts, int64_t coord) {
+  const mpm_grid *grid = parts->grid;
+  const int64_t low = coord * MPMI_BLOCK_EDGE(grid->dim) - MPMI_RING - grid->below;
+  return (stretch){low, low + MPMI_BLOCK_EDGE(grid->dim) + 2 * MPMI_RING + grid->width - 1};
+}
+
+static stretch wanted_by(const mpmi_parts *parts, int32_t axis, int64_t coord) {
+  const int64_t cells = parts->grid->desc.cells[axis];
+  stretch s = tile_of(parts, coord);
+  s.low -= parts->margin;
+  s.high += parts->margin;
+  if (parts->grid->desc.periodic[axis]) return s;
+  if (s.low < BEYOND_WALL && s.low > -BEYOND_WALL) s.low = -BEYOND_WALL;
+  if (s.high > cells - BEYOND_WALL && s.high <= cells + BEYOND_WALL) s.high = cells + BEYOND_WALL + 1;
+  return s;
+}
+
+static stretch meet(stretch a, stretch b) {
+  return (stretch){a.low > b.low ? a.low : b.low, a.high < b.high ? a.high : b.high};
+}
+
+/* A place along an axis where a block may be that is near another; over a period the other one stands `shift`
+ * nodes further on. */
+enum { MOST_PLACES = 24 };
+typedef struct place {
+  int64_t coord, shift;
+  int32_t wants, wanted; /* the block there wants nodes of this one's tile; the other way round */
+} place;
+
+static int32_t places_near(const mpmi_parts *parts, int32_t axis, int64_t coord, place *out) {
+  const mpm_grid *grid = parts->grid;
+  const int64_t edge = MPMI_BLOCK_EDGE(grid->dim), cells = grid->desc.cells[axis], last = cells / edge;
+  const int32_t periodic = grid->desc.periodic[axis] != 0;
+  const stretch tile = tile_of(parts, coord), wants = wanted_by(parts, axis, coord);
+  int32_t count = 0;
+  for (int64_t turn = -periodic; turn <= periodic; ++turn) {
+    const int64_t shift = turn * cells,
+                  reach = edge + grid->width + 2 * MPMI_RING + 2 * BEYOND_WALL + parts->margin;
+    int64_t low = (coord * edge + shift - reach) / edge - 1, high = (coord * edge + shift + reach) / edge + 1;
+    low = low < 0 ? 0 : low;
+    high = high > last ? last : high;
+    for (int64_t at = low; at <= high; ++at) {
+      const stretch its_tile = tile_of(parts, at), its_wants = wanted_by(parts, axis, at);
+      const stretch mine = {tile.low + shift, tile.high + shift},
+                    asked = {wants.low + shift, wants.high + shift};
+      const stretch a = meet(mine, its_wants), b = meet(asked, its_tile);
+      const place p = {at, shift, a.low < a.high, b.low < b.high};
+      if ((p.wants || p.wanted) && count < MOST_PLACES) out[count++] = p;
+    }
+  }
+  return count;
+}
+
+/* Calls fn for every place near a block. */
+typedef struct nearby {
+  mpmi_parts *parts;
+  const mpmi_blocks *blocks;
+  int32_t coord[3], body;
+  void *user;
+} nearby;
+typedef void (*near_fn)(nearby *n, const int32_t *coord, const place *const *at);
+
+static void each_near(nearby *n, near_fn fn) {
+  place list[3][MOST_PLACES];
+  int32_t count[3] = {1, 1, 1};
+  const int32_t dim = n->parts->grid->dim;
+  for (int32_t k = 0; k < 3; ++k) {
+    list[k][0] = (place){0, 0, 1, 1};
+    if (k < dim) count[k] = places_near(n->parts, k, n->coord[k], list[k]);
+  }
+  for (int32_t i = 0; i < count[0]; ++i)
+    for (int32_t j = 0; j < count[1]; ++j)
+      for (int32_t l = 0; l < count[2]; ++l) {
+        const place *at[3] = {&list[0][i], &list[1][j], &list[2][l]};
+        const int32_t coord[3] = {(int32_t)at[0]->coord, (int32_t)at[1]->coord, (int32_t)at[2]->coord};
+        fn(n, coord, at);
+      }
+}
+
+static int32_t all_want(const place *const *at) {
+  return at[0]->wants && at[1]->wants && at[2]->wants;
+}
+static int32_t all_wanted(const place *const *at) {
+  return at[0]->wanted && at[1]->wanted && at[2]->wanted;
+}
+
+/* ---- who is near --------------------------------------------------------------------------------------- */
+/* Marks the parts that have a place near a block. */
+static void mark_owner(nearby *n, const int32_t *coord, const place *const *at) {
+  if (!all_want(at) && !all_wanted(at)) return;
+  n->parts->owner_count[mpmi_cut_owner(n->parts, mpmi_block_key(n->parts->grid, coord))] = 1;
+}
+
+/* What parts tell each other of their blocks. */
+typedef struct told_block {
+  int32_t coord[3], body;
+} told_block;
+
+static mpm_status tell(mpmi_parts *parts, const mpmi_blocks *blocks) {
+  const int32_t all = mpmi_part_count(parts), me = parts->context->transport.part;
+  for (int64_t i = 0; i < blocks->count; ++i) {
+    nearby n = {parts,
+                blocks,
+                {blocks->coord[i][0], blocks->coord[i][1], blocks->coord[i][2]},
+                blocks->body[i],
+                NULL};
+    const told_block block = {{n.coord[0], n.coord[1], n.coord[2]}, n.body};
+    memset(parts->owner_count, 0, (size_t)all * sizeof *parts->owner_count);
+    each_near(&n, mark_owner);
+    for (int32_t r = 0; r < all; ++r) {
+      if (r == me || !parts->owner_count[r]) continue;
+      void *at = mpmi_buffer_take(parts->context, &parts->out[r], sizeof block);
+      if (!at) return MPM_E_NOMEM;
+      memcpy(at, &block, sizeof block);
+    }
+  }
+  return MPM_OK;
+}
+
+/* ---- what is sent and what comes ------------------------------------------------------------------------ */
+/* Looks for blocks near one whose numbers are in [first, end): `wants` says that one wants something of it,
+ * and the box says what; `wanted` the other way round. */
+typedef struct search {
+  int64_t first, end;
+  int32_t wants, wanted;
+  mpmi_node_box box; /* in the tile of the one that is searched around */
+} search;
+
+static void look_up(nearby *n, const int32_t *coord, const place *const *at) {
+  search *s = n->user;
+  if (!all_want(at) && !all_wanted(at)) return;
+  const int32_t found = mpmi_blocks_find(n->blocks, n->body, coord);
+  if (found < s->first || found >= s->end) return;
+  s->wanted |= all_wanted(at);
+  if (!all_want(at)) return;
+  s->wants = 1;
+  for (int32_t k = 0; k < n->parts->grid->dim; ++k) {
+    const stretch tile = tile_of(n->parts, n->coord[k]);
+    const stretch w = wanted_by(n->parts, k, at[k]->coord);
+    const stretch both = meet(tile, (stretch){w.low - at[k]->shift, w.high - at[k]->shift});
+    if (both.low - tile.low < s->box.low[k]) s->box.low[k] = (uint8_t)(both.low - tile.low);
+    if (both.high - tile.low > s->box.high[k]) s->box.high[k] = (uint8_t)(both.high - tile.low);
+  }
+}
+
+static search look_around(mpmi_parts *parts, const mpmi_blocks *blocks, const told_block *block,
+                          int64_t first, int64_t end) {
+  search s = {first, end, 0, 0, {{255, 255, 255}, {0, 0, 0}}};
+  nearby n = {parts, blocks, {block->coord[0], block->coord[1], block->coord[2]}, block->body, &s};
+  each_near(&n, look_up);
+  for (int32_t k = parts->grid->dim; k < 3; ++k) s.box.low[k] = 0, s.box.high[k] = 1;
+  return s;
+}
+
+/* Inserts those of a partner's blocks that are near, in its order. [first, end) are then their numbers. */
+static mpm_status insert_ghosts(mpmi_parts *parts, mpmi_blocks *blocks, int64_t own, int32_t partner,
+                                const mpm_message *in) {
+  const told_block *told = in->data;
+  const int64_t count = in->bytes / (int64_t)sizeof *told;
+  for (int64_t i = 0; i < count; ++i) {
+    /* seen from the ghost: an own block wants of its tile, or it wants of an own one */
+    const search s = look_around(parts, blocks, &told[i], 0, own);
+    if (!s.wants && !s.wanted) continue;
+    int32_t block;
+    mpm_status status = mpmi_blocks_insert(blocks, told[i].body, told[i].coord, &block);
+    if (!status && s.wants)
+      status = MPMI_RESERVE_NEXT(parts->context, parts->ghost, parts->ghost_capacity, parts->ghost_count);
+    if (status) return status;
+    if (s.wants) parts->ghost[parts->ghost_count++] = (mpmi_shared_block){block, partner, s.box, NULL};
+  }
+  return MPM_OK;
+}
+
+/* Lists what a partner wants of the blocks that were told it. */
+static mpm_status list_sent(mpmi_parts *parts, const mpmi_blocks *blocks, int32_t partner, int64_t first,
+                            const mpmi_buffer *out) {
+  const told_block *told = (const void *)out->at;
+  const int64_t count = out->used / (int64_t)sizeof *told, end = blocks->count;
+  for (int64_t i = 0; i < count; ++i) {
+    const search s = look_around(parts, blocks, &told[i], first, end);
+    if (!s.wants) continue;
+    const mpm_status status =
+        MPMI_RESERVE_NEXT(parts->context, parts->sent, parts->sent_capacity, parts->sent_count);
+    if (status) return status;
+    parts->sent[parts->sent_count++] =
+        (mpmi_shared_block){mpmi_blocks_find(blocks, told[i].body, told[i].coord), partner, s.box, NULL};
+  }
+  return MPM_OK;
+}
+
+static mpm_status add_partner(mpmi_parts *parts, mpmi_blocks *blocks, int64_t own, const mpm_message *in) {
+  const int64_t first = blocks->count;
+  mpm_status status =
+      MPMI_RESERVE_NEXT(parts->context, parts->partner, parts->partner_capacity, parts->partner_count);
+  if (status) return status;
+  mpmi_partner p = {.part = in->part, .first_sent = parts->sent_count, .first_ghost = parts->ghost_count};
+  if ((status = insert_ghosts(parts, blocks, own, (int32_t)parts->partner_count, in)) ||
+      (status = list_sent(parts, blocks, (int32_t)parts->partner_count, first, &parts->out[in->part])))
+    return status;
+  p.sent = parts->sent_count - p.first_sent;
+  p.ghosts = parts->ghost_count - p.first_ghost;
+  if (p.sent || p.ghosts) parts->partner[parts->partner_count++] = p;
+  return MPM_OK;
+}
+
+mpm_status mpmi_pattern_find(mpmi_parts *parts, mpmi_blocks *blocks, mpm_status status) {
+  const int32_t all = mpmi_part_count(parts);
+  const int64_t own = blocks->count;
+  int32_t count = 0, incoming;
+  const mpm_message *in;
+  for (int32_t r = 0; r < all; ++r) parts->out[r].used = 0;
+  if (!status) status = tell(parts, blocks);
+  for (int32_t r = 0; r < all; ++r) {
+    if (!parts->out[r].used) continue;
+    parts->message[count++] = (mpm_message){.part = r, .bytes = parts->out[r].used, .data = parts->out[r].at};
+  }
+  mpm_status lost = mpmi_send(parts->context, MPM_EXCHANGE_SPARSE, count, parts->message, NULL);
+  if (!lost) lost = mpmi_receive(parts->context, &incoming, &in);
+  if (lost) return lost;
+  parts->partner_count = parts->sent_count = parts->ghost_count = 0;
+  for (int32_t i = 0; i < incoming && !status; ++i) status = add_partner(parts, blocks, own, &in[i]);
+  parts->info.neighbours = (int32_t)parts->partner_count;
+  parts->info.blocks = own;
+  parts->info.ghosts = parts->ghost_count;
+  return status;
+}
+
+/* ---- nodes --------------------------------------------------------------------------------------------- */
+/* Flags the nodes of a box about a block, in and around it. */
+static void flag_box(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, const stretch *box,
+                     uint8_t flag) {
+  const int64_t edge = blocks->edge;
+  int64_t index[3];
+  const stretch one = {0, 1};
+  const stretch *b[3] = {&box[0], blocks->grid->dim > 1 ? &box[1] : &one,
+                         blocks->grid->dim > 2 ? &box[2] : &one};
+  for (index[0] = b[0]->low; index[0] < b[0]->high; ++index[0])
+    for (index[1] = b[1]->low; index[1] < b[1]->high; ++index[1])
+      for (index[2] = b[2]->low; index[2] < b[2]->high; ++index[2]) {
+        int32_t at[3] = {0, 0, 0}, near = 1;
+        for (int32_t k = 0; k < blocks->grid->dim; ++k) {
+          const int64_t offset = index[k] - blocks->coord[block][k] * edge;
+          near &= offset >= -edge && offset < 2 * edge;
+          at[k] = (int32_t)(near ? offset : 0);
+        }
+        const int64_t slot =
+            near ? mpmi_blocks_near(blocks, block, at) : mpmi_blocks_node(blocks, blocks->body[block], index);
+        if (slot >= 0) parts->flags[slot] |= flag;
+      }
+}
+
+static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, uint8_t flag) {
+  stretch box[3];
+  for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = tile_of(parts, blocks->coord[block][k]);
+  flag_box(parts, blocks, block, box, flag);
+}
+
+static void flag_wanted(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, uint8_t flag) {
+  stretch box[3];
+  for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = wanted_by(parts, k, blocks->coord[block][k]);
+  flag_box(parts, blocks, block, box, flag);
+}
+
+/* Nodes that are tied move as one: what is so for one of them is so for all. */
+static void join_ties(const mpmi_parts *parts, const mpmi_constraints *constraints) {
+  for (int64_t i = 0; i < constraints->tie_count; ++i) {
+    const mpmi_tie *tie = &constraints->tie[i];
+    uint8_t all = parts->flags[tie->master];
+    for (int64_t f = tie->first; f < tie->first + tie->count; ++f)
+      all |= parts->flags[constraints->follower[f].slot];
+    parts->flags[tie->master] |= all;
+    for (int64_t f = tie->first; f < tie->first + tie->count; ++f)
+      parts->flags[constraints->follower[f].slot] |= all;
+  }
+}
+
+/* Blocks near a ghost may share nodes with it. */
+static void flag_near(nearby *n, const int32_t *coord, const place *const *at) {
+  const int32_t found = mpmi_blocks_find(n->blocks, n->body, coord);
+  if (found >= 0 && (all_want(at) || all_wanted(at)) && n->parts->near[found]) n->parts->near[found] = 2;
+}
+
+mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks) {
+  mpm_context *c = parts->context;
+  const int64_t count = blocks->count;
+  mpm_status status;
+  if ((status = MPMI_RESERVE_MORE(c, parts->mark, parts->mark_capacity, count + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, parts->is_boundary, parts->is_boundary_capacity, count + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, parts->is_inner, parts->is_inner_capacity, count + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, parts->near, parts->near_capacity, count + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, parts->boundary, parts->boundary_capacity, parts->sent_count + 1)))
+    return status;
+  memset(parts->mark, 0, (size_t)(count + 1) * sizeof *parts->mark);
+  memset(parts->is_boundary, 0, (size_t)(count + 1));
+  memset(parts->is_inner, 0, (size_t)(count + 1));
+  for (int64_t i = 0; i < parts->info.blocks; ++i) parts->is_inner[blocks->order[i]] = 1;
+  memcpy(parts->near, parts->is_inner, (size_t)(count + 1));
+  for (int64_t i = 0; i < parts->ghost_count; ++i)
+    parts->ghost[i].block = blocks->order[parts->ghost[i].block];
+  parts->boundary_count = 0;
+  for (int64_t i = 0; i < parts->sent_count; ++i) {
+    const int64_t block = parts->sent[i].block = blocks->order[parts->sent[i].block];
+    if (parts->mark[block]) continue;
+    parts->boundary[parts->boundary_count] = block;
+    parts->mark[block] = (int32_t)++parts->boundary_count;
+    parts->is_boundary[block] = 1;
+    parts->is_inner[block] = 0;
+  }
+  parts->info.boundary = parts->boundary_count;
+  parts->version = -1;
+  return MPM_OK;
+}
+
+static void flag_ghost(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_shared_block *ghost) {
+  const int32_t *coord = blocks->coord[ghost->block];
+  const int32_t lower = parts->partner[ghost->partner].part < parts->context->transport.part;
+  nearby n = {parts, blocks, {coord[0], coord[1], coord[2]}, blocks->body[ghost->block], NULL};
+  flag_tile(parts, blocks, ghost->block, (uint8_t)(MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0)));
+  each_near(&n, flag_near);
+}
+
+static int32_t is_partial(const mpmi_parts *parts, int64_t slot) {
+  return (parts->flags[slot] & (MPMI_NODE_GIVEN | MPMI_NODE_WHOLE)) == MPMI_NODE_GIVEN;
+}
+
+mpm_status mpmi_pattern_nodes(mpmi_parts *parts, const mpmi_blocks *blocks,
+                              const mpmi_constraints *constraints) {
+  mpm_context *c = parts->context;
+  const int64_t slots = blocks->count * blocks->nodes;
+  mpm_status status = MPMI_RESERVE_MORE(c, parts->flags, parts->flags_capacity, slots + 1);
+  if (status) return status;
+  memset(parts->flags, 0, (size_t)(slots + 1));
+  for (int64_t i = 0; i < parts->ghost_count; ++i) flag_ghost(parts, blocks, &parts->ghost[i]);
+  for (int64_t block = 0; block < blocks->count; ++block) {
+    if (parts->near[block] != 2) continue;
+    flag_tile(parts, blocks, block, MPMI_NODE_OWN);
+    flag_wanted(parts, blocks, block, MPMI_NODE_WHOLE);
+  }
+  join_ties(parts, constraints);
+  int64_t count = 0;
+  for (int64_t slot = 0; slot < slots; ++slot) count += is_partial(parts, slot);
+  if ((status = MPMI_RESERVE_MORE(c, parts->partial, parts->partial_capacity, count + 1))) return status;
+  parts->partial_count = 0;
+  for (int64_t slot = 0; slot < slots; ++slot)
+    if (is_partial(parts, slot)) parts->partial[parts->partial_count++] = slot;
+  return MPM_OK;
+}

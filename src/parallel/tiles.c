@@ -1,0 +1,179 @@
+/* The exchange of what particles give to nodes that parts share. A message says first whether its part has
+ * failed; then come blocks, each with its number in the partner's list of ghosts, a box of nodes of its tile,
+ * and their values. Both sides know beforehand who sends to whom, so that every exchange takes place on all
+ * parts, also where one of them has nothing to give or has failed. */
+#include "parallel/parts.h"
+#include "transfer/weights.h"
+
+#include <string.h>
+
+typedef struct piece_head {
+  int32_t ghost;
+  mpmi_node_box box;
+  uint8_t unused[6];
+} piece_head;
+_Static_assert(sizeof(piece_head) == 16, "values are aligned");
+
+static int64_t nodes_in(const mpmi_parts *parts, const mpmi_node_box *box) {
+  int64_t nodes = 1;
+  for (int32_t k = 0; k < parts->grid->dim; ++k) {
+    if (box->low[k] >= box->high[k]) return 0;
+    nodes *= box->high[k] - box->low[k];
+  }
+  return nodes;
+}
+
+static mpmi_node_box meet_boxes(const mpmi_parts *parts, const mpmi_node_box *a, const mpmi_node_box *b) {
+  mpmi_node_box both = *a;
+  for (int32_t k = 0; k < parts->grid->dim; ++k) {
+    if (b->low[k] > both.low[k]) both.low[k] = b->low[k];
+    if (b->high[k] < both.high[k]) both.high[k] = b->high[k];
+  }
+  return both;
+}
+
+/* Copies a box of a tile to a row of values, or back. */
+static void copy_box(const mpmi_parts *parts, const mpmi_node_box *box, int32_t values, double *tile,
+                     double *row, int32_t into_tile) {
+  const int32_t dim = parts->grid->dim, edge = MPMI_TILE_EDGE(dim, parts->grid->width);
+  const int32_t last = dim - 1;
+  const int32_t low[2] = {dim > 2 ? box->low[0] : 0, dim > 1 ? box->low[last - 1] : 0};
+  const int32_t high[2] = {dim > 2 ? box->high[0] : 1, dim > 1 ? box->high[last - 1] : 1};
+  const int64_t run = (int64_t)values * (box->high[last] - box->low[last]);
+  for (int32_t x = low[0]; x < high[0]; ++x)
+    for (int32_t y = low[1]; y < high[1]; ++y, row += run) {
+      double *at = tile + (((int64_t)x * edge + y) * edge + box->low[last]) * values;
+      memcpy(into_tile ? at : row, into_tile ? row : at, (size_t)run * sizeof *at);
+    }
+}
+
+static int64_t tile_doubles(const mpmi_parts *parts, int32_t values) {
+  int64_t nodes = values;
+  for (int32_t k = 0; k < parts->grid->dim; ++k)
+    nodes *= MPMI_TILE_EDGE(parts->grid->dim, parts->grid->width);
+  return nodes;
+}
+
+mpm_status mpmi_tiles_reserve(mpmi_parts *parts, int64_t doubles) {
+  const mpm_status status =
+      MPMI_RESERVE_MORE(parts->context, parts->tile, parts->tile_capacity, doubles * parts->boundary_count);
+  if (!status && parts->boundary_count)
+    memset(parts->tile, 0, (size_t)(doubles * parts->boundary_count) * sizeof *parts->tile);
+  return status;
+}
+
+double *mpmi_tiles_of(const mpmi_parts *parts, int64_t block, int32_t values) {
+  return parts->tile + (parts->mark[block] - 1) * tile_doubles(parts, values);
+}
+
+void mpmi_tiles_clear(const mpmi_parts *parts, int32_t values) {
+  if (parts->boundary_count)
+    memset(parts->tile, 0,
+           (size_t)(tile_doubles(parts, values) * parts->boundary_count) * sizeof *parts->tile);
+}
+
+static mpm_status pack_partner(mpmi_parts *parts, const mpmi_partner *to, int32_t values,
+                               const mpmi_cover *cover) {
+  mpmi_buffer *buffer = &parts->out[to->part];
+  for (int64_t i = 0; i < to->sent; ++i) {
+    const mpmi_shared_block *block = &parts->sent[to->first_sent + i];
+    const mpmi_node_box box = meet_boxes(parts, &block->box, &cover[block->block].nodes);
+    const int64_t nodes = nodes_in(parts, &box);
+    if (!nodes) continue;
+    const piece_head head = {(int32_t)i, box, {0}};
+    char *at = mpmi_buffer_take(parts->context, buffer,
+                                (int64_t)sizeof head + nodes * values * (int64_t)sizeof(double));
+    if (!at) return MPM_E_NOMEM;
+    memcpy(at, &head, sizeof head);
+    copy_box(parts, &box, values, mpmi_tiles_of(parts, block->block, values),
+             (double *)(void *)(at + sizeof head), 0);
+  }
+  return MPM_OK;
+}
+
+/* Puts the status at the beginning, which is there in any case. */
+static mpm_status begin_message(mpmi_parts *parts, int32_t part, mpm_status status) {
+  const int64_t word[2] = {status, 0};
+  parts->out[part].used = 0;
+  void *at = mpmi_buffer_take(parts->context, &parts->out[part], sizeof word);
+  if (!at) return MPM_E_NOMEM;
+  memcpy(at, word, sizeof word);
+  return MPM_OK;
+}
+
+mpm_status mpmi_tiles_send(mpmi_parts *parts, int32_t values, const mpmi_cover *cover, mpm_status status) {
+  const double started = mpmi_seconds();
+  for (int64_t i = 0; i < parts->partner_count; ++i) {
+    const mpmi_partner *p = &parts->partner[i];
+    mpm_status bad = begin_message(parts, p->part, status);
+    if (!bad && !status) bad = pack_partner(parts, p, values, cover);
+    if (!bad) continue;
+    status = status ? status : bad;
+    for (int64_t j = 0; j <= i; ++j) begin_message(parts, parts->partner[j].part, status);
+  }
+  for (int64_t i = 0; i < parts->partner_count; ++i) {
+    const mpmi_partner *p = &parts->partner[i];
+    const mpmi_buffer *out = &parts->out[p->part];
+    /* without memory for a word nothing is sent, which says the same as a status */
+    parts->message[i] = (mpm_message){.part = p->part, .bytes = out->used, .data = out->at};
+    parts->most[i] =
+        16 + p->ghosts * (int64_t)(sizeof(piece_head) + sizeof(double) * (size_t)tile_doubles(parts, values));
+    parts->info.bytes_nodes += out->used;
+  }
+  ++parts->exchanges;
+  parts->info.seconds_packing += mpmi_seconds() - started;
+  const mpm_status lost = mpmi_send(parts->context, MPM_EXCHANGE_KNOWN, (int32_t)parts->partner_count,
+                                    parts->message, parts->most);
+  return lost ? lost : status;
+}
+
+/* Finds what has come for each ghost of a partner. */
+static mpm_status read_message(mpmi_parts *parts, const mpmi_partner *from, int32_t values,
+                               const mpm_message *in) {
+  const char *at = in->data, *end = at + in->bytes;
+  int64_t word[2] = {MPM_E_NOMEM, 0};
+  if (in->bytes >= (int64_t)sizeof word) memcpy(word, at, sizeof word);
+  if (word[0]) {
+    parts->is_echo = 1;
+    return MPM_E_STATE;
+  }
+  for (at += sizeof word; end - at >= (ptrdiff_t)sizeof(piece_head);) {
+    piece_head head;
+    memcpy(&head, at, sizeof head);
+    at += sizeof head;
+    const int64_t bytes = nodes_in(parts, &head.box) * values * (int64_t)sizeof(double);
+    if (head.ghost < 0 || head.ghost >= from->ghosts || bytes > end - at)
+      return mpmi_fail(parts->context, MPM_E_INTERNAL, "a message of part %d is not for part %d",
+                       (int)from->part, (int)parts->context->transport.part);
+    mpmi_shared_block *ghost = &parts->ghost[from->first_ghost + head.ghost];
+    ghost->box = head.box;
+    ghost->values = (const double *)(const void *)at;
+    at += bytes;
+  }
+  return MPM_OK;
+}
+
+mpm_status mpmi_tiles_receive(mpmi_parts *parts, int32_t values, mpm_status status) {
+  int32_t count = 0;
+  const mpm_message *in = NULL;
+  const double started = mpmi_seconds();
+  const mpm_status lost = mpmi_receive(parts->context, &count, &in);
+  parts->info.seconds_waiting += mpmi_seconds() - started;
+  if (lost) return lost;
+  for (int64_t i = 0; i < parts->ghost_count; ++i) parts->ghost[i].values = NULL;
+  if (count != parts->partner_count && !status)
+    status = mpmi_fail(parts->context, MPM_E_CALLBACK,
+                       "the transport has brought %d messages, and there are %lld partners", (int)count,
+                       (long long)parts->partner_count);
+  for (int32_t i = 0; i < count && !status; ++i)
+    status = read_message(parts, &parts->partner[i], values, &in[i]);
+  return status;
+}
+
+int32_t mpmi_tiles_unpack(const mpmi_parts *parts, const mpmi_shared_block *ghost, int32_t values,
+                          double *tile, mpmi_cover *cover) {
+  if (!ghost->values) return 0;
+  cover->nodes = ghost->box;
+  copy_box(parts, &ghost->box, values, tile, (double *)(uintptr_t)ghost->values, 1);
+  return 1;
+}

@@ -1,0 +1,222 @@
+#include "stepper/together.h"
+#include "context/structs.h"
+#include "boundary/prescribed.h"
+
+#include <string.h>
+
+mpm_status mpmi_together(mpm_stepper *s, mpm_status status) {
+  return mpmi_is_shared(s) ? mpmi_agree(s->context, status) : status;
+}
+
+/* ---- before a step ------------------------------------------------------------------------------------- */
+mpm_status mpmi_together_offers(mpm_stepper *s) {
+  const mpmi_settings *settings = &s->settings;
+  const char *what = NULL, *instead = "a context without a transport";
+  int32_t adapts = 0, bodies = 0;
+  if (!mpmi_is_shared(s)) return MPM_OK;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    adapts |= m < s->adaption_capacity && s->adaption[m].on;
+    bodies |= s->layout.member[m].body != 0;
+  }
+  if (mpmi_is_implicit(settings)) what = "scheme MPM_NEWMARK", instead = "MPM_USL, MPM_USF or MPM_MUSL";
+  if (mpmi_is_total_lagrangian(s->grid)) what = "a total Lagrangian grid", instead = "one that is not";
+  if (mpmi_has_friction_planes(settings) || s->layout.constraints.contact_count)
+    what = "a friction wall", instead = "MPM_WALL_SLIP or MPM_WALL_FIXED";
+  if (settings->obstacles.count) what = "an obstacle";
+  if (settings->surfaces.count) what = "a surface", instead = "forces on particles";
+  if (settings->heat.any) what = "heat";
+  if (adapts) what = "adaption";
+  if (bodies) what = "bodies with nodes of their own", instead = "body 0 for all sets";
+  return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                          "a problem in several parts does not have %s: use %s", what, instead)
+              : MPM_OK;
+}
+
+/* The flags of sets that count on all parts once they are set on one. */
+static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE, MPMI_DIRTY_STRESS, MPMI_DIRTY_SUMS,
+                                MPMI_DIRTY_ACCELERATION};
+enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 6, MOST_NUMBERS = 6 };
+
+/* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
+ * are alike. */
+static void put_number(int64_t *word, double number) {
+  memcpy(&word[0], &number, sizeof number);
+  word[1] = ~word[0];
+}
+
+mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
+                               const double *number) {
+  mpm_context *c = s->context;
+  mpmi_layout *layout = &s->layout;
+  if (!mpmi_is_shared(s)) return status;
+  int64_t word[OWN_WORDS + 2 * MOST_NUMBERS] = {0};
+  put_number(word, (double)layout->member_count);
+  word[2] = !s->history.has_sums;
+  word[3] = layout->walls_changed;
+  word[4] = layout->parts->is_stale;
+  word[5] = s->settings.progress != NULL;
+  for (int32_t i = 0; i < count; ++i) put_number(&word[OWN_WORDS + 2 * i], number[i]);
+  if ((status = mpmi_agree(c, status)) ||
+      (status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word)))
+    return status;
+  if (word[0] != ~word[1])
+    return mpmi_fail(c, MPM_E_STATE,
+                     "the stepper has other numbers of sets on other parts: add the same to all");
+  for (int32_t i = 0; i < count; ++i)
+    if (word[OWN_WORDS + 2 * i] != ~word[OWN_WORDS + 2 * i + 1])
+      return mpmi_fail(c, MPM_E_ARG, "%s is %g here, and another number on another part: give all the same",
+                       name[i], number[i]);
+  if (word[2]) s->history.has_sums = 0;
+  layout->walls_changed |= word[3] != 0;
+  layout->parts->is_stale |= word[4] != 0;
+  layout->parts->asks = word[5] != 0;
+  for (int32_t m = 0; m < layout->member_count; ++m) {
+    mpm_particles *set = layout->member[m].set;
+    int64_t of[FLAGS + 1];
+    for (int32_t i = 0; i < FLAGS; ++i) of[i] = (set->dirty & flag[i]) != 0;
+    of[FLAGS] = mpmi_ordered_bits(set->mass_max);
+    if ((status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, FLAGS + 1, of))) return status;
+    for (int32_t i = 0; i < FLAGS; ++i)
+      if (of[i]) set->dirty |= flag[i];
+    set->mass_max = mpmi_of_ordered_bits(of[FLAGS]);
+  }
+  return MPM_OK;
+}
+
+mpm_status mpmi_together_refreshed(mpm_stepper *s, mpm_status status) {
+  return mpmi_is_shared(s) && mpmi_layout_is_moved(&s->layout) ? mpmi_agree(s->context, status) : status;
+}
+
+/* ---- after it ------------------------------------------------------------------------------------------ */
+/* Takes part in the exchanges that are left, so that no part waits. */
+static mpm_status catch_up(mpm_stepper *s, mpm_status status, int64_t exchanges) {
+  mpmi_parts *parts = s->layout.parts;
+  while (status && parts->exchanges < exchanges && !s->context->apart) {
+    mpmi_tiles_send(parts, 8, s->layout.blocks.cover, status);
+    mpmi_tiles_receive(parts, 8, status);
+  }
+  if (!status && parts->exchanges != exchanges)
+    return mpmi_fail(s->context, MPM_E_INTERNAL, "a step had %lld exchanges and not %lld",
+                     (long long)parts->exchanges, (long long)exchanges);
+  return status;
+}
+
+/* Ranks failures: by the exchange that they came before, and there particles before nodes before the rest; those
+ * that only repeat what a partner has told come last. */
+static int64_t rank_of(const mpm_stepper *s, int64_t came_to) {
+  const mpmi_failure *f = &s->step.failure;
+  if (s->layout.parts->is_echo) return (int64_t)1 << 40;
+  return 4 * came_to + (f->particle >= 0 ? 0 : f->node >= 0 ? 1 : 2);
+}
+
+/* Finds the part with the first failure: of the smallest rank, set, particle or node, and part. */
+static mpm_status find_first(mpm_stepper *s, mpm_status status, int64_t came_to, int32_t *part) {
+  const mpmi_failure *f = &s->step.failure;
+  const int64_t key[] = {rank_of(s, came_to), f->set, f->particle >= 0 ? f->particle : f->node,
+                         s->context->transport.part};
+  int32_t is_first = status != MPM_OK;
+  for (int32_t i = 0; i < 4; ++i) {
+    int64_t best = is_first ? -key[i] : INT64_MIN;
+    const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, 1, &best);
+    if (lost) return lost;
+    is_first &= best == -key[i];
+    *part = (int32_t)-best;
+  }
+  return MPM_OK;
+}
+
+/* Takes over how the step has failed on a part. */
+static mpm_status take_failure(mpm_stepper *s, mpm_status status, int32_t part) {
+  mpmi_failure *f = &s->step.failure;
+  int64_t word[] = {f->callback_status, f->set, f->particle, f->node, f->body};
+  enum { WORDS = sizeof word / sizeof word[0] };
+  for (int32_t i = 0; i < WORDS && part != s->context->transport.part; ++i) word[i] = INT64_MIN;
+  const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, WORDS, word);
+  if (lost) return lost;
+  f->callback_status = (int32_t)word[0];
+  f->set = (int32_t)word[1];
+  f->particle = word[2];
+  f->node = word[3];
+  f->body = (int32_t)word[4];
+  return mpmi_take_over(s->context, part, status);
+}
+
+mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges) {
+  mpm_context *c = s->context;
+  if (!mpmi_is_shared(s)) return status;
+  const int64_t came_to = s->layout.parts->exchanges;
+  status = catch_up(s, status, exchanges);
+  mpmi_task_report *report = &s->work.report[0];
+  int64_t word[] = {status != MPM_OK, 0, 0, 0};
+  for (int32_t k = 0; k < s->settings.tasks; ++k) {
+    word[1] |= s->work.report[k].left_tile;
+    word[2] |= s->work.report[k].removes;
+    word[3] |= s->work.report[k].holes_restored;
+  }
+  const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 4, word);
+  if (lost) return lost;
+  if (word[0]) {
+    int32_t part;
+    const mpm_status found = find_first(s, status, came_to, &part);
+    return found ? found : take_failure(s, status, part);
+  }
+  report->left_tile |= word[1] != 0;
+  report->removes |= word[2] != 0;
+  report->holes_restored |= word[3] != 0;
+  return MPM_OK;
+}
+
+/* Counts the particles whose new position lies beyond the grid. */
+static int64_t count_leaving(const mpm_stepper *s) {
+  int64_t count = 0;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    const mpm_particles *set = s->layout.member[m].set;
+    for (int64_t slot = 0; slot < set->slots; ++slot)
+      count += mpmi_i64(set, MPMI_ID, 0)[slot] >= 0 && mpmi_is_beyond(set, 1, slot);
+  }
+  return count;
+}
+
+mpm_status mpmi_together_rates(mpm_stepper *s, mpmi_sums *rates) {
+  int64_t rate[] = {mpmi_ordered_bits(rates->rate), mpmi_ordered_bits(rates->viscous_rate)};
+  const mpm_status status = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, 2, rate);
+  rates->rate = mpmi_of_ordered_bits(rate[0]);
+  rates->viscous_rate = mpmi_of_ordered_bits(rate[1]);
+  return status;
+}
+
+mpm_status mpmi_together_count(mpm_stepper *s, mpmi_sums *rates) {
+  if (!mpmi_is_shared(s)) return MPM_OK;
+  const int64_t leaving = s->work.report[0].removes ? count_leaving(s) : 0;
+  int64_t sum[] = {s->step.info.active_nodes, leaving};
+  mpm_status status;
+  if ((status = mpmi_together_rates(s, rates)) ||
+      (status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 2, sum)))
+    return status;
+  s->step.info.active_nodes = sum[0];
+  s->layout.parts->leave_elsewhere = sum[1] - leaving;
+  return MPM_OK;
+}
+
+/* ---- what it costs ------------------------------------------------------------------------------------- */
+mpm_status mpm_stepper_parallel_info(mpm_stepper *s, int32_t reset, mpm_parallel_info *info) {
+  MPMI_ENTER(s, MPMI_STEPPER);
+  if (!info) return mpmi_fail(s->context, MPM_E_ARG, "info is NULL");
+  mpm_parallel_info now = {.imbalance = 1.0};
+  if (mpmi_is_shared(s)) {
+    now = s->layout.parts->info;
+    now.seconds_reducing = s->context->reducing;
+  } else {
+    now.blocks = s->layout.worklist[0].count;
+  }
+  now.struct_size = sizeof now;
+  const mpm_status status = mpmi_write_struct(s->context, "mpm_parallel_info", &now, sizeof now, info);
+  if (status || !reset) return status;
+  if (mpmi_is_shared(s)) {
+    mpm_parallel_info *counts = &s->layout.parts->info;
+    counts->bytes_nodes = counts->bytes_moved = counts->moved = counts->cuts = 0;
+    counts->seconds_packing = counts->seconds_waiting = 0.0;
+  }
+  s->context->reducing = 0.0;
+  return MPM_OK;
+}
