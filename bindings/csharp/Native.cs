@@ -465,6 +465,9 @@ namespace Mpm {
     public IntPtr error_text;
     /// <summary>size of error_text in bytes; 0 exactly where error_text is NULL.</summary>
     public ulong error_bytes;
+    /// <summary>The ways to the other parts of the problem, read during mpm_context_create() and copied, or NULL
+    /// (default): there is one part.</summary>
+    public Transport* transport;
 
     /// <summary>The library's defaults.</summary>
     public static ContextDesc Default() {

@@ -81,7 +81,7 @@ contains
 
   subroutine check_mpm_context_desc()
     type(mpm_context_desc), target :: it
-    call compare("mpm_context_desc", c_sizeof(it), of(88, 56))
+    call compare("mpm_context_desc", c_sizeof(it), of(96, 64))
     call compare("mpm_context_desc%struct_size", distance(c_loc(it), c_loc(it%struct_size)), of(0, 0))
     call compare("mpm_context_desc%concurrency", distance(c_loc(it), c_loc(it%concurrency)), of(4, 4))
     call compare("mpm_context_desc%isa", distance(c_loc(it), c_loc(it%isa)), of(8, 8))
@@ -95,6 +95,7 @@ contains
     call compare("mpm_context_desc%log_user", distance(c_loc(it), c_loc(it%log_user)), of(64, 40))
     call compare("mpm_context_desc%error_text", distance(c_loc(it), c_loc(it%error_text)), of(72, 44))
     call compare("mpm_context_desc%error_bytes", distance(c_loc(it), c_loc(it%error_bytes)), of(80, 48))
+    call compare("mpm_context_desc%transport", distance(c_loc(it), c_loc(it%transport)), of(88, 56))
   end subroutine check_mpm_context_desc
 
   subroutine check_mpm_grid_desc()

@@ -350,6 +350,9 @@ module mpm
     type(c_ptr) :: error_text
     !> size of error_text in bytes; 0 exactly where error_text is NULL.
     integer(c_int64_t) :: error_bytes
+    !> The ways to the other parts of the problem, read during mpm_context_create() and copied, or NULL (default): there
+    !! is one part.
+    type(c_ptr) :: transport
   end type mpm_context_desc
 
   !> Box, cells and basis of a grid.

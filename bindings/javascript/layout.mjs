@@ -138,7 +138,7 @@ export const structs = {
     },
   },
   mpm_context_desc: {
-    size: 56,
+    size: 64,
     fields: {
       struct_size: [0, 'u32'],
       concurrency: [4, 'i32'],
@@ -153,6 +153,7 @@ export const structs = {
       log_user: [40, 'pointer'],
       error_text: [44, 'pointer'],
       error_bytes: [48, 'u64'],
+      transport: [56, 'pointer'],
     },
   },
   mpm_grid_desc: {

@@ -296,6 +296,7 @@ mutable struct mpm_context_desc
     log_user::Ptr{Cvoid}
     error_text::Ptr{UInt8}
     error_bytes::UInt64
+    transport::Ptr{mpm_transport}
     mpm_context_desc() = new()
 end
 Base.cconvert(::Type{Ptr{mpm_context_desc}}, it::mpm_context_desc) = it

@@ -65,8 +65,8 @@ typedef struct mpm_context_desc {
   char *error_text;
   uint64_t error_bytes; /**< size of error_text in bytes; 0 exactly where error_text is NULL */
   /** The ways to the other parts of the problem, read during mpm_context_create() and copied, or NULL
-   * (default): there is one part. See parallel.h, which says what is collective then; mpm_context_create() is,
-   * and all parts need the same version and instruction set. */
+   * (default): there is one part. See parallel.h, which says what is collective then; mpm_context_create()
+   * is, and all parts need the same version and instruction set. */
   const mpm_transport *transport;
 } mpm_context_desc;
 

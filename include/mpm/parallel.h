@@ -66,8 +66,8 @@ typedef mpm_status (*mpm_reduce_fn)(void *user, int32_t op, int64_t count, int64
 /** all[parts]: value of each part (collective). Only when the blocks are cut anew. Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_gather_fn)(void *user, int64_t value, int64_t *all);
 
-/** Ways between the parts. All are called on the calling thread. Once one has failed, every collective call of
- * the context returns MPM_E_CALLBACK. */
+/** Ways between the parts. All are called on the calling thread. Once one has failed, every collective call
+ * of the context returns MPM_E_CALLBACK. */
 typedef struct mpm_transport {
   uint32_t struct_size;   /**< sizeof(mpm_transport) of the caller */
   int32_t part;           /**< of this context, 0 ... parts - 1 */

@@ -72,8 +72,8 @@ static void fold(mpmi_bound *bound, int64_t begin, int64_t end) {
         of[c] += mpmi_increment(bound->values, follower->slot)[c];
       }
     }
-    /* a node that has all the mass of its tie moves as if it were free, to the last bit: whether images without
-     * mass are stored must not count */
+    /* a node that has all the mass of its tie moves as if it were free, to the last bit: whether images
+     * without mass are stored must not count */
     const double inverse = state->mass > DBL_MIN ? 1.0 / state->mass : 0.0;
     for (int32_t c = 0; !alone && c < bound->dim; ++c) {
       if (state->mass > cut) momentum[c] += apart[c];

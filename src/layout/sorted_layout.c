@@ -1,4 +1,5 @@
 #include "layout/sorted_layout.h"
+#include "parallel/migration.h"
 #include "particles/values.h"
 
 #include <float.h>
@@ -16,8 +17,8 @@ mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings
   if (!layout->bound_memory) return MPM_E_NOMEM;
   if (mpmi_is_whole(c)) return MPM_OK;
   const mpm_status status = mpmi_parts_create(c, settings->grid, &layout->parts);
-  /* light nodes look at others and give to them (boundary/light_nodes.c): two steps for a leader, one more for
-   * what that is, and the same again for who leads a node that is two steps away */
+  /* light nodes look at others and give to them (boundary/light_nodes.c): two steps for a leader, one more
+   * for what that is, and the same again for who leads a node that is two steps away */
   if (!status && settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 5;
   return status;
 }
@@ -192,7 +193,8 @@ static void count_wide_domains(mpmi_layout *layout, const mpmi_settings *setting
 }
 
 /* Inserts the blocks with particles. */
-static mpm_status insert_blocks(mpmi_layout *layout) {
+static mpm_status insert_blocks(void *user) {
+  mpmi_layout *layout = user;
   mpm_status status = MPM_OK;
   mpmi_blocks_clear(&layout->next_blocks);
   for (int32_t m = 0; m < layout->member_count && !status; ++m)
@@ -200,9 +202,11 @@ static mpm_status insert_blocks(mpmi_layout *layout) {
   return status;
 }
 
-static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings) {
+static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings, mpmi_moving_set *moving) {
   mpm_status status = insert_blocks(layout);
-  if (layout->parts) status = mpmi_layout_share_out(layout, status, insert_blocks);
+  if (layout->parts)
+    status = mpmi_share_out(layout->parts, &layout->next_blocks, moving, layout->member_count,
+                            moving ? status : (mpm_status)MPM_E_NOMEM, insert_blocks, layout);
   if (status || (status = mpmi_blocks_order(&layout->next_blocks))) return status;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpmi_member *member = &layout->member[m];
@@ -218,6 +222,19 @@ static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings) 
   count_wide_domains(layout, settings);
   ++layout->sorts;
   return MPM_OK;
+}
+
+/* Sorts with the other parts. */
+static mpm_status sort_together(mpmi_layout *layout, const mpmi_settings *settings) {
+  const int32_t count = layout->member_count;
+  const size_t bytes = mpmi_bytes(count + 1, sizeof(mpmi_moving_set));
+  mpmi_moving_set *moving = mpmi_alloc(settings->context, bytes);
+  for (int32_t m = 0; m < count && moving; ++m)
+    moving[m] = (mpmi_moving_set){.set = layout->member[m].set, .sorting = &layout->member[m].sorting};
+  mpm_status status = sort_anew(layout, settings, moving);
+  status = mpmi_share_end(layout->parts, &layout->blocks, moving, count, status);
+  mpmi_free(settings->context, moving, bytes);
+  return status;
 }
 
 static mpm_status find_ties(mpmi_layout *layout, const mpmi_settings *settings) {
@@ -236,8 +253,7 @@ int32_t mpmi_layout_is_moved(const mpmi_layout *layout) {
 
 mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings) {
   if (!mpmi_layout_is_moved(layout)) return MPM_OK;
-  const mpm_status status = sort_anew(layout, settings);
-  return layout->parts ? mpmi_layout_end_sort(layout, status) : status;
+  return layout->parts ? sort_together(layout, settings) : sort_anew(layout, settings, NULL);
 }
 
 mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *settings) {
@@ -245,5 +261,6 @@ mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *setting
   if (status) return status;
   find_mass_cut(layout, settings);
   if (layout->walls_changed) status = find_ties(layout, settings);
-  return status || !layout->parts ? status : mpmi_layout_share_nodes(layout, settings);
+  if (status || !layout->parts) return status;
+  return mpmi_share_nodes(layout->parts, &layout->blocks, &layout->constraints, layout->version);
 }

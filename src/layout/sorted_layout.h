@@ -80,14 +80,6 @@ mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings);
  * sorted state. */
 mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings);
 
-/* With several parts (shared_layout.c), all collective: moves particles to the parts that have their blocks,
- * and inserts the blocks of other parts that share nodes; ends a sort, of which status is what it has come to
- * on this part; finds which nodes are whole and whose, where that has changed. */
-mpm_status mpmi_layout_share_out(mpmi_layout *layout, mpm_status status,
-                                 mpm_status (*insert_blocks)(mpmi_layout *layout));
-mpm_status mpmi_layout_end_sort(mpmi_layout *layout, mpm_status status);
-mpm_status mpmi_layout_share_nodes(mpmi_layout *layout, const mpmi_settings *settings);
-
 /* Tells kernels where the particles of a set are and how large; `copy` is that of position and deformation
  * gradient. */
 mpmi_points mpmi_points_of(const mpm_particles *set, int32_t copy);

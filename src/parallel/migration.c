@@ -34,7 +34,7 @@ mpm_status mpmi_move_align_fields(mpmi_parts *parts, mpmi_moving_set *sets, int3
   return mpmi_agree(c, status);
 }
 
-/* ---- messages: how many of each set, then its fields component by component ----------------------------- */
+/* ---- messages: how many of each set, then its fields component by component ---------- */
 static int64_t padded_bytes(const mpmi_field *field, int64_t n) {
   return ((int64_t)mpmi_type_size(field->type) * n + 7) / 8 * 8;
 }

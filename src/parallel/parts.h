@@ -59,8 +59,8 @@ typedef struct mpmi_parts {
   int64_t flags_capacity, *partial; /* slots of nodes that are given to and not whole */
   int64_t partial_count, partial_capacity;
   int64_t version; /* of the layout that the flags are of */
-  /* By block: 1 + its index in `boundary`, or 0; whether it is on the boundary; whether it has particles and is
-   * not; whether it has particles, 2 where it may share nodes with a ghost. */
+  /* By block: 1 + its index in `boundary`, or 0; whether it is on the boundary; whether it has particles
+   * and is not; whether it has particles, 2 where it may share nodes with a ghost. */
   int32_t *mark;
   uint8_t *is_boundary, *is_inner, *near;
   int64_t mark_capacity, is_boundary_capacity, is_inner_capacity, near_capacity;
@@ -97,7 +97,8 @@ int32_t mpmi_cut_owner(const mpmi_parts *parts, uint64_t key);
 /* Finds the ghosts of the blocks with particles, which are all that have been inserted, and inserts them
  * (collective). status: what has happened on this part before. */
 mpm_status mpmi_pattern_find(mpmi_parts *parts, mpmi_blocks *blocks, mpm_status status);
-/* Takes over the numbers that the blocks have now that they are in order, and tells apart those that are sent. */
+/* Takes over the numbers that the blocks have now that they are in order, and tells apart those that are
+ * sent. */
 mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks);
 /* Finds the nodes that are whole, and whose they are. */
 mpm_status mpmi_pattern_nodes(mpmi_parts *parts, const mpmi_blocks *blocks,
@@ -110,8 +111,8 @@ static inline int32_t mpmi_owns_node(const mpmi_parts *parts, int64_t slot) {
 }
 
 /* ---- tiles.c ----------------------------------------------------------------------------------------- */
-/* Makes room for the tiles of the boundary blocks, of so many doubles each, and empties them. */
-mpm_status mpmi_tiles_reserve(mpmi_parts *parts, int64_t doubles);
+/* Makes room for the tiles of the boundary blocks, and empties them. */
+mpm_status mpmi_tiles_reserve(mpmi_parts *parts);
 /* Returns the tile of a boundary block, with so many values per node. */
 double *mpmi_tiles_of(const mpmi_parts *parts, int64_t block, int32_t values);
 /* Empties them after a failure. */

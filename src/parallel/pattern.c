@@ -1,10 +1,10 @@
 /* Which blocks of other parts share nodes with one's own.
  *
  * A block with particles reaches the nodes of its tile. The part that has it wants the sums on these nodes
- * to be whole, on those that are tied to them by walls and periods, and on `margin` more around them: that is
- * what the block wants. A block of another part whose tile meets that is a ghost here; its owner sends what its
- * particles give there. Each part finds out by itself what it has to send and what will come, once it knows
- * the blocks of the others that are near its own. */
+ * to be whole, on those that are tied to them by walls and periods, and on `margin` more around them: that
+ * is what the block wants. A block of another part whose tile meets that is a ghost here; its owner sends
+ * what its particles give there. Each part finds out by itself what it has to send and what will come, once
+ * it knows the blocks of the others that are near its own. */
 #include "parallel/parts.h"
 
 #include <string.h>
@@ -136,7 +136,7 @@ static mpm_status tell(mpmi_parts *parts, const mpmi_blocks *blocks) {
   return MPM_OK;
 }
 
-/* ---- what is sent and what comes ------------------------------------------------------------------------ */
+/* ---- what is sent and what comes ---------- */
 /* Looks for blocks near one whose numbers are in [first, end): `wants` says that one wants something of it,
  * and the box says what; `wanted` the other way round. */
 typedef struct search {

@@ -54,7 +54,8 @@ static int64_t tile_doubles(const mpmi_parts *parts, int32_t values) {
   return nodes;
 }
 
-mpm_status mpmi_tiles_reserve(mpmi_parts *parts, int64_t doubles) {
+mpm_status mpmi_tiles_reserve(mpmi_parts *parts) {
+  const int64_t doubles = tile_doubles(parts, 8);
   const mpm_status status =
       MPMI_RESERVE_MORE(parts->context, parts->tile, parts->tile_capacity, doubles * parts->boundary_count);
   if (!status && parts->boundary_count)

@@ -19,7 +19,8 @@ typedef struct mpmi_numbers {
 } mpmi_numbers;
 mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, mpm_status status,
                        mpmi_numbers *out);
-/* Writes what follows from these fields and makes the slots particles. Without ids they are numbered as said. */
+/* Writes what follows from these fields and makes the slots particles. Without ids they are numbered as
+ * said. */
 void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids,
                         const mpmi_numbers *numbers);
 /* Refuses n more particles when slots would run out. */

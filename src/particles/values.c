@@ -162,6 +162,16 @@ void mpmi_field_written(mpm_particles *set, int32_t field) {
   if (field == MPMI_MASS) mpmi_find_masses(set);
 }
 
+int32_t mpmi_is_beyond(const mpm_particles *set, int32_t copy, int64_t slot) {
+  const mpm_grid *grid = set->grid;
+  int32_t beyond = 0;
+  for (int32_t k = 0; k < grid->dim; ++k) {
+    const double x = mpmi_f64(set, MPMI_POSITION, copy)[k * set->ld + slot];
+    beyond |= x < grid->desc.origin[k] || x > grid->upper[k];
+  }
+  return beyond;
+}
+
 mpm_status mpmi_settle(mpm_particles *set, int32_t field) {
   if (!(set->dirty & MPMI_DIRTY_STRESS) || (field != MPMI_VOLUME && field != MPMI_STRESS)) return MPM_OK;
   mpm_status status = mpmi_particles_check_suspects(set);

@@ -26,6 +26,8 @@ mpm_status mpmi_check_writable(const mpm_particles *set, int32_t field);
 void mpmi_field_written(mpm_particles *set, int32_t field);
 /* Finds the largest and the smallest mass anew. */
 void mpmi_find_masses(mpm_particles *set);
+/* Returns 1 for a particle that a copy of its position puts outside the grid. */
+int32_t mpmi_is_beyond(const mpm_particles *set, int32_t copy, int64_t slot);
 /* Brings a field that follows from others up to date before it is read. */
 mpm_status mpmi_settle(mpm_particles *set, int32_t field);
 

@@ -1,5 +1,6 @@
 /* The end of a step: the second copies become the state, or are dropped. */
 #include "stepper/together.h"
+#include "particles/values.h"
 #include "boundary/prescribed.h"
 #include "stages/batch.h"
 
@@ -20,16 +21,6 @@ static int32_t written_by_step(int32_t field) {
   default:
     return 0;
   }
-}
-
-int32_t mpmi_is_beyond(const mpm_particles *set, int32_t copy, int64_t slot) {
-  const mpm_grid *grid = set->grid;
-  int32_t beyond = 0;
-  for (int32_t k = 0; k < grid->dim; ++k) {
-    const double x = mpmi_f64(set, MPMI_POSITION, copy)[k * set->ld + slot];
-    beyond |= x < grid->desc.origin[k] || x > grid->upper[k];
-  }
-  return beyond;
 }
 
 /* Makes holes of particles that went through an open wall. The hole stays where the particle was before the

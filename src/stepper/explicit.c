@@ -77,7 +77,7 @@ mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
   return status;
 }
 
-/* ---- how many sums on nodes that makes ------------------------------------------------------------------ */
+/* ---- how many sums on nodes that makes ---------- */
 /* Sums of cells come before forces and strains; those of prescribed particles in the projection that asks who
  * holds nodes. */
 static int64_t of_projection(const mpmi_step *step, const mpmi_nodes *nodes, int32_t projection) {

@@ -149,7 +149,8 @@ mpm_status mpmi_tell_stable_dt(mpm_stepper *s, double *dt);
 mpm_status mpmi_explicit_begin(mpmi_step *step, mpmi_nodes *nodes);
 /* Solves for the velocities of the nodes, under walls and prescribed velocities. */
 mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes);
-/* Returns how many sums on nodes an explicit step has made when it has come to a phase; MPMI_IDLE: to its end. */
+/* Returns how many sums on nodes an explicit step has made when it has come to a phase; MPMI_IDLE: to its
+ * end. */
 int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, int32_t phase);
 /* Brings nodes back to particles. USL: everything from the updated nodal velocity. MUSL: L from the velocity
  * that the new particles give the nodes. USF has its strain already. */
@@ -170,8 +171,6 @@ void mpmi_adaption_carry_out(mpm_stepper *s);
 void mpmi_commit(mpm_stepper *s, const mpmi_sums *sums);
 /* Before that: adds up what the step will report, on all parts, and gives the sums of the new state. */
 mpm_status mpmi_add_up(mpm_stepper *s, mpmi_sums *sums);
-/* Returns 1 for a particle that a copy of its position puts outside the grid. */
-int32_t mpmi_is_beyond(const mpm_particles *set, int32_t copy, int64_t slot);
 /* Makes the volumes again, which alone were overwritten. */
 void mpmi_roll_back(mpm_stepper *s);
 

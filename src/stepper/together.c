@@ -1,6 +1,6 @@
 #include "stepper/together.h"
 #include "context/structs.h"
-#include "boundary/prescribed.h"
+#include "particles/values.h"
 
 #include <string.h>
 
@@ -101,8 +101,8 @@ static mpm_status catch_up(mpm_stepper *s, mpm_status status, int64_t exchanges)
   return status;
 }
 
-/* Ranks failures: by the exchange that they came before, and there particles before nodes before the rest; those
- * that only repeat what a partner has told come last. */
+/* Ranks failures: by the exchange that they came before, and there particles before nodes before the rest;
+ * those that only repeat what a partner has told come last. */
 static int64_t rank_of(const mpm_stepper *s, int64_t came_to) {
   const mpmi_failure *f = &s->step.failure;
   if (s->layout.parts->is_echo) return (int64_t)1 << 40;

@@ -11,16 +11,16 @@ static inline int32_t mpmi_is_shared(const mpm_stepper *s) {
 }
 /* All parts learn whether all have MPM_OK: mpmi_agree() where there are several. */
 mpm_status mpmi_together(mpm_stepper *s, mpm_status status);
-/* Begins a call: all parts have a status, and numbers that must be alike; what has been changed on one of them
- * counts as changed on all. names: of the numbers. */
+/* Begins a call: all parts have a status, and numbers that must be alike; what has been changed on one of
+ * them counts as changed on all. names: of the numbers. */
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
                                const double *number);
 /* Refuses what several parts cannot do. */
 mpm_status mpmi_together_offers(mpm_stepper *s);
 /* A step has brought its sets up to date: where it will sort, all parts must have. */
 mpm_status mpmi_together_refreshed(mpm_stepper *s, mpm_status status);
-/* A step, or a part of one, has been computed with so many exchanges, or has failed. Where it has failed on any
- * part, all have the status, the text and the numbers of the first failure. */
+/* A step, or a part of one, has been computed with so many exchanges, or has failed. Where it has failed on
+ * any part, all have the status, the text and the numbers of the first failure. */
 mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges);
 /* Makes the rates the largest of all parts. */
 mpm_status mpmi_together_rates(mpm_stepper *s, mpmi_sums *rates);

@@ -1,5 +1,5 @@
-/* One problem in several parts has the bits that it has in one. Parts are threads here (parts.h), where Check's
- * macros may not be used: every part keeps what it has found, which is compared afterwards. */
+/* One problem in several parts has the bits that it has in one. Parts are threads here (parts.h), where
+ * Check's macros may not be used: every part keeps what it has found, which is compared afterwards. */
 #include "combinations.h"
 #include "parts.h"
 

@@ -40,7 +40,7 @@ namespace Mpm {
     static void CheckContextDesc() {
       var it = new ContextDesc();
       byte* at = (byte*)&it;
-      Compare("ContextDesc", sizeof(ContextDesc), 88, 56);
+      Compare("ContextDesc", sizeof(ContextDesc), 96, 64);
       Compare("ContextDesc.struct_size", (byte*)&it.struct_size - at, 0, 0);
       Compare("ContextDesc.concurrency", (byte*)&it.concurrency - at, 4, 4);
       Compare("ContextDesc.isa", (byte*)&it.isa - at, 8, 8);
@@ -54,6 +54,7 @@ namespace Mpm {
       Compare("ContextDesc.log_user", (byte*)&it.log_user - at, 64, 40);
       Compare("ContextDesc.error_text", (byte*)&it.error_text - at, 72, 44);
       Compare("ContextDesc.error_bytes", (byte*)&it.error_bytes - at, 80, 48);
+      Compare("ContextDesc.transport", (byte*)&it.transport - at, 88, 56);
     }
 
     static void CheckGridDesc() {

@@ -574,6 +574,7 @@ class context_desc(Structure):
         ("log_user", c_void_p),
         ("error_text", c_void_p),
         ("error_bytes", c_uint64),
+        ("transport", c_void_p),
     ]
 
 
@@ -1073,7 +1074,7 @@ class heat_desc(Structure):
 SIZES = {
     param: (16, 16),
     view: (56, 48),
-    context_desc: (88, 56),
+    context_desc: (96, 64),
     grid_desc: (120, 120),
     material_batch: (144, 96),
     material_desc: (64, 48),

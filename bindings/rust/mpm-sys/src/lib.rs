@@ -719,6 +719,10 @@ pub struct mpm_context_desc {
     pub error_text: *mut c_char,
     /// size of error_text in bytes; 0 exactly where error_text is NULL
     pub error_bytes: u64,
+    /// The ways to the other parts of the problem, read during mpm_context_create() and copied, or NULL (default): there
+    /// is one part. See parallel.h, which says what is collective then; mpm_context_create() is, and all parts need the
+    /// same version and instruction set.
+    pub transport: *const mpm_transport,
 }
 
 impl Default for mpm_context_desc {

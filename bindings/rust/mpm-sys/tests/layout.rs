@@ -44,7 +44,7 @@ fn layout_of_mpm_view() {
 
 #[test]
 fn layout_of_mpm_context_desc() {
-    assert_eq!(size_of::<mpm_context_desc>(), of(88, 56));
+    assert_eq!(size_of::<mpm_context_desc>(), of(96, 64));
     assert_eq!(offset!(mpm_context_desc, struct_size), of(0, 0));
     assert_eq!(offset!(mpm_context_desc, concurrency), of(4, 4));
     assert_eq!(offset!(mpm_context_desc, isa), of(8, 8));
@@ -58,6 +58,7 @@ fn layout_of_mpm_context_desc() {
     assert_eq!(offset!(mpm_context_desc, log_user), of(64, 40));
     assert_eq!(offset!(mpm_context_desc, error_text), of(72, 44));
     assert_eq!(offset!(mpm_context_desc, error_bytes), of(80, 48));
+    assert_eq!(offset!(mpm_context_desc, transport), of(88, 56));
 }
 
 #[test]

@@ -1,0 +1,58 @@
+/* A sort of several parts: whose particles are whose, and which nodes are shared. */
+#include "parallel/migration.h"
+
+#include <string.h>
+
+/* A tile costs as much as so many particles. */
+enum { BLOCK_WEIGHT = 60 };
+
+static mpm_status weigh(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_moving_set *sets,
+                        int32_t count, int64_t *weight) {
+  for (int64_t i = 0; i < blocks->count; ++i) weight[i] = BLOCK_WEIGHT;
+  for (int32_t m = 0; m < count; ++m) {
+    const uint32_t *block = mpmi_sort_blocks_of_slots(sets[m].set);
+    const int64_t *id = mpmi_i64(sets[m].set, MPMI_ID, 0);
+    for (int64_t s = 0; s < sets[m].set->slots; ++s)
+      if (id[s] >= 0) ++weight[block[s]];
+  }
+  return mpmi_cut_blocks(parts, blocks, weight);
+}
+
+mpm_status mpmi_share_out(mpmi_parts *parts, mpmi_blocks *blocks, mpmi_moving_set *sets, int32_t count,
+                          mpm_status status, mpm_status (*insert)(void *user), void *user) {
+  mpm_context *c = parts->context;
+  const size_t bytes = mpmi_bytes(blocks->count + 1, sizeof(int64_t));
+  int64_t *weight = status ? NULL : mpmi_alloc(c, bytes), moved = 0;
+  parts->is_stale = 1;
+  if (!status && !weight) status = MPM_E_NOMEM;
+  status = mpmi_agree(c, status);
+  if (!status) status = weigh(parts, blocks, sets, count, weight);
+  mpmi_free(c, weight, bytes);
+  if (!status) status = mpmi_move_align_fields(parts, sets, count);
+  if (!status) status = mpmi_move_particles(parts, blocks, sets, count, &moved);
+  if (status) return status;
+  if (moved) status = insert(user);
+  return mpmi_pattern_find(parts, blocks, status);
+}
+
+mpm_status mpmi_share_end(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_moving_set *sets,
+                          int32_t count, mpm_status status) {
+  if (!status) status = mpmi_pattern_adopt(parts, blocks);
+  if ((status = mpmi_agree(parts->context, status))) return status;
+  for (int32_t m = 0; m < count && !status; ++m) {
+    int64_t heaviest = mpmi_ordered_bits(sets[m].set->mass_max);
+    status = mpmi_reduce_parts(parts->context, MPM_REDUCE_MAX, 1, &heaviest);
+    if (!status) sets[m].set->mass_max = mpmi_of_ordered_bits(heaviest);
+  }
+  if (!status) parts->is_stale = 0;
+  return status;
+}
+
+mpm_status mpmi_share_nodes(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_constraints *constraints,
+                            int64_t version) {
+  if (parts->version == version) return MPM_OK;
+  mpm_status status = mpmi_pattern_nodes(parts, blocks, constraints);
+  if (!status) status = mpmi_tiles_reserve(parts);
+  if (!status) parts->version = version;
+  return status;
+}
