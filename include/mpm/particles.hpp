@@ -155,6 +155,12 @@ public:
   int64_t count() const {
     return mpm_particles_count(core().handle);
   }
+  /** The number on all parts of the problem: see mpm_particles_total(). */
+  int64_t total() const {
+    int64_t n = 0;
+    check(mpm_particles_total(core().handle, &n));
+    return n;
+  }
 
   /** Describes all fields: see mpm_particles_field_info(). */
   std::vector<field_info> fields() const {

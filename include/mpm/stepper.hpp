@@ -162,6 +162,13 @@ public:
     check(mpm_stepper_heat_info(core().handle, &info));
     return info;
   }
+  /** What one part does of a problem in several: see mpm_stepper_parallel_info(). */
+  mpm_parallel_info parallel(bool reset = false) const {
+    mpm_parallel_info info = {};
+    info.struct_size = sizeof info;
+    check(mpm_stepper_parallel_info(core().handle, reset, &info));
+    return info;
+  }
   /** Sets the acceleration of particles; nullptr: none. See mpm_stepper_set_acceleration(). */
   void set_acceleration(particle_callback function) {
     install(mpm_stepper_set_acceleration, core().acceleration, std::move(function), core().on_particles);

@@ -65,6 +65,7 @@ mpm_status mpmi_members_add(mpmi_layout *layout, const mpmi_settings *settings, 
   mpmi_arrangement_init(&member->now, c);
   mpmi_arrangement_init(&member->next, c);
   set->dirty |= MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS;
+  if (layout->parts) layout->parts->is_stale = 1; /* its sums are made by blocks of this stepper */
   return MPM_OK;
 }
 

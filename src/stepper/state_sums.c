@@ -143,7 +143,7 @@ mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure) {
   /* sums are made by blocks, and new particles have none until they are sorted; else nothing is sorted,
    * because that would end the nodal fields */
   status = mpmi_together(s, status);
-  if (!status && (dirty & MPMI_DIRTY_ORDER || (mpmi_is_shared(s) && mpmi_layout_is_moved(layout))))
+  if (!status && (dirty & MPMI_DIRTY_ORDER || (mpmi_is_shared(s) && layout->parts->is_stale)))
     status = mpmi_layout_sort(layout, &s->settings);
   for (int32_t i = 0; i < MPMI_TALLY_FACES; ++i) mpmi_exact_clear(&sum[i]);
   for (int32_t m = 0; m < layout->member_count && !status; ++m) {

@@ -183,7 +183,9 @@ START_TEST(table) {
                {"mpm_adaption_info", 80, sizeof(mpm_adaption_info)},
                {"mpm_adaption_batch", 56, sizeof(mpm_adaption_batch)},
                {"mpm_heat_desc", 64, sizeof(mpm_heat_desc)},
-               {"mpm_heat_info", 176, sizeof(mpm_heat_info)}};
+               {"mpm_heat_info", 176, sizeof(mpm_heat_info)},
+               {"mpm_transport", 64, sizeof(mpm_transport)},
+               {"mpm_parallel_info", 96, sizeof(mpm_parallel_info)}};
   const size_t count = sizeof known / sizeof *known;
   size_t found = 0;
   for (const mpmi_release *at = mpmi_releases; at->name; ++at) {

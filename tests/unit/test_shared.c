@@ -21,7 +21,6 @@ struct scene {
   world_desc desc;
   scene_fn set_up, run; /* run: NULL for STEPS steps */
   double speed;
-  int32_t spread; /* 1: the last part adds all particles */
   outcome found[MOST_PARTS];
 };
 
@@ -114,10 +113,15 @@ static void check_scene(const scene *is, const char *name, int32_t parts) {
       ck_abort_msg("%s, part %d of %d: another state after %lld steps, %lld sorts", name, r, parts,
                    (long long)b->info.step, (long long)b->info.resorts);
     if (memcmp(&a->info, &b->info, sizeof a->info) != 0)
-      ck_abort_msg("%s, part %d of %d: kinetic energy %.17g, %.17g; active nodes %lld, %lld; work %g, %g",
-                   name, r, parts, a->info.kinetic_energy, b->info.kinetic_energy,
-                   (long long)a->info.active_nodes, (long long)b->info.active_nodes, a->info.external_work,
-                   b->info.external_work);
+      ck_abort_msg(
+          "%s, part %d of %d: another info: kinetic energy %.17g, %.17g; strain energy %.17g, %.17g; work "
+          "%.17g, %.17g; dissipation %.17g, %.17g; active nodes %lld, %lld; removed %lld, %lld; sorts %lld, "
+          "%lld",
+          name, r, parts, a->info.kinetic_energy, b->info.kinetic_energy, a->info.strain_energy,
+          b->info.strain_energy, a->info.external_work, b->info.external_work, a->info.dissipation,
+          b->info.dissipation, (long long)a->info.active_nodes, (long long)b->info.active_nodes,
+          (long long)a->info.removed, (long long)b->info.removed, (long long)a->info.resorts,
+          (long long)b->info.resorts);
     if (memcmp(a->reaction, b->reaction, sizeof a->reaction) != 0)
       ck_abort_msg("%s, part %d of %d: other reactions", name, r, parts);
     ck_assert_msg(a->stable_dt == b->stable_dt && a->total == b->total, "%s, part %d of %d: %g, %g", name, r,
@@ -167,6 +171,279 @@ START_TEST(combinations_in_parts) {
 }
 END_TEST
 
+/* ---- what hosts do ------------------------------------------------------------------------------------- */
+static const int32_t wide = 24; /* cells along an axis in 2-D: blocks are 16 wide, and parts have few */
+
+static scene scene_of(int32_t dim, int64_t cells, scene_fn set_up) {
+  scene is;
+  memset(&is, 0, sizeof is);
+  is.desc = world_default(dim, cells, 1.0 / (double)cells);
+  is.set_up = set_up;
+  is.speed = 8.0;
+  return is;
+}
+
+static mpm_status hold_some(void *user, const mpm_node_batch *batch, uint8_t *held, double *velocity) {
+  (void)user;
+  for (int64_t i = 0; i < batch->n; ++i) {
+    held[i] = batch->position[i] < 0.3;
+    velocity[i] = 0.5 * batch->t;
+  }
+  return MPM_OK;
+}
+
+static mpm_status push(void *user, const mpm_node_batch *batch, double *velocity, double *force) {
+  (void)user, (void)velocity;
+  for (int64_t i = 0; i < batch->n; ++i)
+    if (batch->position[batch->ld + i] > 0.5) force[i] += 3.0 * batch->mass[i];
+  return MPM_OK;
+}
+
+static mpm_status pull(void *user, const mpm_particle_batch *batch, double *force) {
+  (void)user;
+  for (int64_t p = 0; p < batch->n; ++p) force[p] = batch->position[p] > 0.5 ? 0.1 * batch->mass[p] : 0.0;
+  return MPM_OK;
+}
+
+static mpm_status add_callbacks(world *w) {
+  mpm_status status = mpm_stepper_set_velocity_bc(w->stepper, hold_some, NULL);
+  if (!status) status = mpm_stepper_set_node_hook(w->stepper, MPM_AFTER_FORCES, push, NULL);
+  return status ? status : mpm_stepper_set_force(w->stepper, pull, NULL);
+}
+
+static mpm_status prescribe_some(mpm_particles *set) {
+  const int64_t n = mpm_particles_count(set);
+  int64_t *id = calloc((size_t)n + 1, sizeof *id);
+  uint8_t *flags = calloc((size_t)n + 1, 2);
+  mpm_status status = mpm_particles_get(set, "id", MPM_I64, 1, n, NULL, id);
+  for (int64_t p = 0; p < n; ++p) flags[p] = id[p] % 7 == 0 && id[p] < 200;
+  if (!status) status = mpm_particles_set(set, "prescribed", MPM_U8, 2, n, NULL, flags);
+  free(id), free(flags);
+  return status;
+}
+
+static mpm_status set_up_host(world *w, const scene *is) {
+  mpm_status status = set_walls(w);
+  if (!status) status = fill_middle(w, w->set[0], 0.2, 0.6);
+  if (!status) status = fill_middle(w, w->set[1], 0.6, 0.8);
+  for (int32_t m = 0; m < 2 && !status; ++m) status = set_velocities(w, w->set[m], is->speed);
+  if (!status) status = prescribe_some(w->set[0]);
+  return status ? status : add_callbacks(w);
+}
+
+START_TEST(host_acts) {
+  static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL};
+  scene is = scene_of(2, 4 * wide, set_up_host);
+  is.desc.sets = 2;
+  is.desc.stepper.scheme = schemes[_i % 3];
+  is.desc.stepper.locking_remedy = _i / 3 % 2;
+  is.desc.grid.periodic[1] = _i / 6;
+  is.desc.grid.cells[1] = _i / 6 ? 4 * wide - 7 : 4 * wide; /* a period that is no multiple of a block */
+  is.desc.stepper.mass_damping = _i % 2 ? 2.0 : 0.0;
+  check_scene(&is, "host", 3);
+}
+END_TEST
+
+/* Particles that leave through an open wall, others that are added and removed while it goes on. */
+static mpm_status come_and_go(world *w, const scene *is) {
+  double dt;
+  mpm_status status = mpm_stable_dt(w->stepper, &dt);
+  int32_t part = 0, parts = 1;
+  mpm_context_part(w->context, &part, &parts);
+  for (int32_t i = 0; i < 60 && !status; ++i) {
+    status = mpm_step(w->stepper, 0.3 * dt, &w->info);
+    if (status || i % 20 != 10) continue;
+    const double x[] = {0.31 + 0.01 * i / 20, 0.27}, v[] = {is->speed, 0.0}, volume[] = {1e-4};
+    const int64_t id[] = {100000 + i};
+    status = mpm_particles_add(w->set[0], part == (i / 20) % parts, x, v, volume, NULL, id, NULL);
+    const int64_t gone[] = {500 + i};
+    if (!status && mpm_particles_remove(w->set[0], 1, gone) == MPM_E_NOT_FOUND) status = MPM_OK;
+  }
+  return status;
+}
+
+static mpm_status set_up_open(world *w, const scene *is) {
+  mpm_status status = MPM_OK;
+  for (int32_t face = 0; face < 4 && !status; ++face)
+    status = mpm_stepper_set_wall(w->stepper, face, MPM_WALL_OPEN, 0.0);
+  if (!status) status = fill_middle(w, w->set[0], 0.5, 0.99);
+  return status ? status : set_velocities(w, w->set[0], is->speed);
+}
+
+START_TEST(particles_come_and_go) {
+  scene is = scene_of(2, 4 * wide, set_up_open);
+  is.run = come_and_go;
+  is.speed = 40.0;
+  check_scene(&is, "open", 4);
+}
+END_TEST
+
+/* More parts than blocks, one block for all, and none at all. */
+static mpm_status set_up_small(world *w, const scene *is) {
+  (void)is;
+  return fill_middle(w, w->set[0], 0.4, 0.5);
+}
+
+START_TEST(few_blocks) {
+  scene is = scene_of(2, wide, set_up_small);
+  check_scene(&is, "small", MOST_PARTS);
+}
+END_TEST
+
+/* A body that flies through the grid takes the blocks of all parts in turn. */
+static mpm_status fly(world *w, const scene *is) {
+  (void)is;
+  mpm_advance_desc d = advance_desc(0.02);
+  return mpm_advance(w->stepper, &d, &w->info);
+}
+
+START_TEST(blocks_are_cut_anew) {
+  scene is = scene_of(2, 6 * wide, set_up_combination);
+  is.desc.grid.periodic[0] = 1;
+  is.run = fly;
+  is.speed = 30.0;
+  scene many = is;
+  parts_plan plan;
+  memset(&plan, 0, sizeof plan);
+  check_scene(&is, "flight", 4);
+  ck_assert_int_eq(parts_run(4, live, &many, &plan), 0);
+  int64_t moved = 0, own = 0;
+  for (int32_t r = 0; r < 4; ++r) {
+    moved += many.found[r].parallel.moved;
+    own += many.found[r].own;
+    ck_assert(many.found[r].parallel.cuts > 1 && many.found[r].parallel.imbalance < 1.6);
+  }
+  ck_assert_int_eq(own, many.found[0].total);
+  ck_assert_int_gt(moved, own / 2);
+}
+END_TEST
+
+/* ---- failures ------------------------------------------------------------------------------------------ */
+/* All parts fail as one part does, with the particle's number, and go on from the state before. */
+static mpm_status fail_and_go_on(world *w, const scene *is) {
+  double dt;
+  mpm_status status = mpm_stable_dt(w->stepper, &dt);
+  (void)is;
+  for (int32_t i = 0; i < 5 && !status; ++i) status = mpm_step(w->stepper, 0.3 * dt, &w->info);
+  if (status) return status;
+  w->info.struct_size = sizeof w->info;
+  status = mpm_step(w->stepper, 400.0 * dt, &w->info);
+  if (status != MPM_INVERTED && status != MPM_OFF_GRID && status != MPM_NONFINITE) return MPM_E_INTERNAL;
+  if (w->info.cause != status || w->info.particle < 0 || !strstr(mpm_last_error(w->context), "at particle"))
+    return MPM_E_INTERNAL;
+  for (int32_t i = 0; i < 5 && (!i || !status); ++i) status = mpm_step(w->stepper, 0.3 * dt, &w->info);
+  return status;
+}
+
+START_TEST(steps_fail_together) {
+  static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL};
+  scene is = scene_of(2, 4 * wide, set_up_combination);
+  is.desc.stepper.scheme = schemes[_i % 3];
+  is.desc.stepper.locking_remedy = _i / 3;
+  is.run = fail_and_go_on;
+  check_scene(&is, "failure", 3);
+}
+END_TEST
+
+/* Parts that differ in what they ask for are told so. */
+static mpm_status differ(world *w, const scene *is) {
+  int32_t part = 0, parts = 1;
+  (void)is;
+  mpm_context_part(w->context, &part, &parts);
+  const mpm_status dt = mpm_step(w->stepper, part == 1 ? 2e-5 : 1e-5, NULL);
+  if (parts > 1 && (dt != MPM_E_ARG || !strstr(mpm_last_error(w->context), "dt is"))) return MPM_E_INTERNAL;
+  const mpm_status bad = mpm_step(w->stepper, part == 2 ? -1.0 : 1e-5, NULL);
+  if (parts > 2 && (bad != MPM_E_ARG || !strstr(mpm_last_error(w->context), "dt is -1")))
+    return MPM_E_INTERNAL;
+  if (parts > 2 && part != 2 && !strstr(mpm_last_error(w->context), "part 2: ")) return MPM_E_INTERNAL;
+  const mpm_status body = mpm_stepper_set_body(w->stepper, w->set[0], 1);
+  const mpm_status refused =
+      parts > 1 && !body ? mpm_step(w->stepper, 1e-5, NULL) : (mpm_status)MPM_E_UNSUPPORTED;
+  int64_t bytes;
+  if (refused != MPM_E_UNSUPPORTED || (parts > 1 && mpm_state_size(w->stepper, &bytes) != MPM_E_UNSUPPORTED))
+    return MPM_E_INTERNAL;
+  return MPM_OK;
+}
+
+START_TEST(unlike_parts) {
+  scene is = scene_of(2, 2 * wide, set_up_combination);
+  is.run = differ;
+  parts_plan plan;
+  memset(&plan, 0, sizeof plan);
+  ck_assert_int_eq(parts_run(3, live, &is, &plan), 0);
+  /* infos are refused as well where bodies are */
+  for (int32_t r = 0; r < 3; ++r)
+    ck_assert_msg(is.found[r].status == MPM_OK, "part %d: %s", r, is.found[r].text);
+}
+END_TEST
+
+/* Wherever the transport fails on one part, every part returns and gives its memory back. */
+START_TEST(transport_fails) {
+  scene is = scene_of(2, 2 * wide, set_up_combination);
+  parts_plan plan;
+  int64_t calls = 0;
+  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 6) {
+    scene run = is;
+    memset(&plan, 0, sizeof plan);
+    plan.fail_part = (int32_t)(at % 3);
+    plan.fail_kinds = PARTS_ANY;
+    plan.fail_at = at;
+    const int done = parts_run(3, live, &run, &plan);
+    if (!at) calls = plan.calls[0];
+    ck_assert_msg(at ? done != 0 : done == 0, "call %lld of %lld: %s", (long long)at, (long long)calls,
+                  plan.text);
+    for (int32_t r = 0; r < 3; ++r)
+      ck_assert_msg(run.found[r].status == (at ? MPM_E_CALLBACK : MPM_OK), "call %lld, part %d: %s, %s",
+                    (long long)at, r, mpm_status_name(run.found[r].status), run.found[r].text);
+  }
+  ck_assert_int_gt(calls, 100);
+}
+END_TEST
+
+/* Wherever memory fails on one part, all fail, and nothing is lost. */
+typedef struct hungry {
+  scene is;
+  int64_t fail_at;
+  host_memory memory[3];
+} hungry;
+
+static void live_hungry(int32_t part, const mpm_transport *transport, void *user) {
+  hungry *h = user;
+  outcome *found = &h->is.found[part];
+  world w;
+  memset(&w, 0, sizeof w);
+  w.desc = h->is.desc;
+  w.desc.context.transport = transport;
+  w.memory.fail_at = part == 1 ? h->fail_at : 0;
+  found->status = play(&w, &h->is, found);
+  found->own = w.memory.calls;
+  w.memory.fail_at = 0;
+  world_try_close(&w);
+  h->memory[part] = w.memory;
+}
+
+START_TEST(memory_runs_out) {
+  static hungry h;
+  parts_plan plan;
+  int64_t calls = 0;
+  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 8) {
+    memset(&h, 0, sizeof h);
+    memset(&plan, 0, sizeof plan);
+    h.is = scene_of(2, 2 * wide, set_up_combination);
+    h.fail_at = at;
+    ck_assert_msg(!parts_run(3, live_hungry, &h, &plan) || at, "%lld: %s", (long long)at, plan.text);
+    if (!at) calls = h.is.found[1].own;
+    for (int32_t r = 0; r < 3; ++r) ck_assert_int_eq(h.memory[r].held, 0);
+    if (at && !plan.text[0])
+      for (int32_t r = 0; r < 3; ++r)
+        ck_assert_msg(h.is.found[r].status == MPM_E_NOMEM || (r == 1 && !h.is.found[r].status),
+                      "allocation %lld, part %d: %s", (long long)at, r,
+                      mpm_status_name(h.is.found[r].status));
+  }
+  ck_assert_int_gt(calls, 20);
+}
+END_TEST
+
 Suite *shared_suite(void) {
   Suite *suite = suite_create("shared");
   TCase *all = tcase_create("combinations");
@@ -174,5 +451,19 @@ Suite *shared_suite(void) {
   tcase_add_unchecked_fixture(all, set_up_list, tear_down_list);
   tcase_add_loop_test(all, combinations_in_parts, 0, SAMPLE);
   suite_add_tcase(suite, all);
+  TCase *host = tcase_create("host");
+  tcase_set_timeout(host, 120);
+  tcase_add_loop_test(host, host_acts, 0, 12);
+  tcase_add_test(host, particles_come_and_go);
+  tcase_add_test(host, few_blocks);
+  tcase_add_test(host, blocks_are_cut_anew);
+  suite_add_tcase(suite, host);
+  TCase *failures = tcase_create("failures");
+  tcase_set_timeout(failures, 120);
+  tcase_add_loop_test(failures, steps_fail_together, 0, 6);
+  tcase_add_test(failures, unlike_parts);
+  tcase_add_test(failures, transport_fails);
+  tcase_add_test(failures, memory_runs_out);
+  suite_add_tcase(suite, failures);
   return suite;
 }

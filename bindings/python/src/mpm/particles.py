@@ -52,6 +52,13 @@ class Particles(Handle):
     def __len__(self):
         return lib.mpm_particles_count(self)
 
+    @documented("mpm_particles_total")
+    def total(self):
+        """How many particles all parts of the problem have."""
+        n = ctypes.c_int64()
+        self._context._check(lib.mpm_particles_total(self, ctypes.byref(n)))
+        return n.value
+
     def __bool__(self):
         return True
 

@@ -194,6 +194,13 @@ class Stepper(Handle):
         self._context._check(lib.mpm_stepper_heat_info(self, ctypes.byref(info)))
         return info
 
+    @documented("mpm_stepper_parallel_info")
+    def parallel_info(self, reset=False):
+        """What this part does of a problem in several, and what that costs."""
+        info = _api.parallel_info(struct_size=ctypes.sizeof(_api.parallel_info))
+        self._context._check(lib.mpm_stepper_parallel_info(self, reset, ctypes.byref(info)))
+        return info
+
     # ---- callbacks ----
 
     def _shown(self, batch):
