@@ -5,6 +5,7 @@
 #ifndef MPM_CONTEXT_H
 #define MPM_CONTEXT_H
 
+#include <mpm/parallel.h>
 #include <mpm/types.h>
 
 #ifdef __cplusplus
@@ -63,6 +64,9 @@ typedef struct mpm_context_desc {
    * none. */
   char *error_text;
   uint64_t error_bytes; /**< size of error_text in bytes; 0 exactly where error_text is NULL */
+  /** Ways to the other parts of one problem; read during mpm_context_create() and copied. Default NULL: there
+   * is one part. */
+  const mpm_transport *transport;
 } mpm_context_desc;
 
 /** Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is

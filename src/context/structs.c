@@ -12,6 +12,7 @@
   X(mpm_view, owner, 56)                                                                                     \
   X(mpm_context_desc, log_user, 72)                                                                          \
   X(mpm_context_desc, error_bytes, 88)                                                                       \
+  X(mpm_context_desc, transport, 96)                                                                         \
   X(mpm_grid_desc, smoothing, 112)                                                                           \
   X(mpm_grid_desc, reserved, 120)                                                                            \
   X(mpm_material_batch, lookup, 144)                                                                         \
