@@ -20,6 +20,7 @@ typedef struct image {
   mpmx_place at;
   mpmx_file file;
   mpmx_head head;
+  mpm_status failed; /* in taking the head */
   int32_t fields;
   mpmx_array field[FIELDS];
   size_t record; /* bytes of one */
@@ -54,13 +55,14 @@ static mpm_status refused(mpm_mpi *m, const char *call, mpm_status status) {
 static mpm_status take_head(void *user, const void *data, int64_t bytes) {
   image *w = user;
   int64_t taken;
-  const mpm_status status = mpmx_head_take(w->m, &w->head, data, bytes, &taken);
-  return status ? status : w->head.whole;
+  w->failed = mpmx_head_take(w->m, &w->head, data, bytes, &taken);
+  return w->failed ? w->failed : w->head.whole;
 }
 
 static mpm_status read_head(image *w, const mpm_mpi_output *as) {
   mpm_mpi *m = w->m;
   const mpm_status status = mpm_write_grid_to(w->stepper, 0, take_head, w, as->count, as->fields);
+  if (w->failed) return w->failed;
   /* it is told to end when the head is there */
   if (!w->head.whole) return refused(m, "mpm_write_grid_to", status ? status : MPM_E_INTERNAL);
   if (!strstr(w->head.text, "<ImageData "))

@@ -72,10 +72,11 @@ mpm_status mpmx_agree_on(mpm_mpi *m, mpm_status status, uint64_t number, mpm_sta
                          const char *sentence) {
   status = mpmx_agree(m, status);
   if (status) return status;
-  uint64_t both[2] = {number, ~number};
-  status = mpmx_mpi(m, MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_UINT64_T, MPI_MAX, m->comm), MPM_E_CALLBACK,
+  const int64_t plain = (int64_t)(number >> 2);
+  int64_t both[2] = {plain, -plain};
+  status = mpmx_mpi(m, MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_INT64_T, MPI_MAX, m->comm), MPM_E_CALLBACK,
                     "MPI_Allreduce");
-  if (!status && both[0] != ~both[1]) status = mpmx_fail(m, unlike, "%s", sentence);
+  if (!status && both[0] != -both[1]) status = mpmx_fail(m, unlike, "%s", sentence);
   return status;
 }
 

@@ -16,10 +16,12 @@ typedef struct output {
   int32_t met, refused; /* 1: all have their heads, or know that some have not; and then go no further */
   mpm_status status;
   int32_t members, member;
+  int32_t first, shows;   /* the lowest part that has particles; 1: this part gives a piece */
   int64_t length, passed; /* of the data of this part: all, and those that have gone their way */
   int64_t *sizes;         /* of a writer: [2 members] bytes of head and data of each */
   char *heads;            /* and the heads one after another */
   unsigned char *piece;   /* and what comes from another part */
+  int *writes;            /* [parts] number of the file that the part has written; -1: none */
   size_t sizes_bytes, heads_bytes;
 } output;
 
@@ -40,6 +42,9 @@ static void copy_piece(mpmx_file *file, const char *head, int64_t base) {
 }
 
 static mpm_status open_file(output *o) {
+  int64_t shown = 0;
+  for (int32_t i = 0; i < o->members; ++i) shown += o->sizes[2 * i + 1];
+  if (!shown) return MPM_OK;
   mpm_status status = mpmx_file_open(o->m, &o->file, o->place.piece);
   if (status) return status;
   mpmx_print_start(&o->file, "PolyData");
@@ -57,6 +62,8 @@ static mpm_status open_file(output *o) {
 
 static mpm_status allocate(output *o) {
   mpm_mpi *m = o->m;
+  o->writes = mpmx_alloc(m, (size_t)m->parts * sizeof *o->writes);
+  if (!o->writes) return mpmx_fail(m, MPM_E_NOMEM, "there is no memory");
   if (o->member) return MPM_OK;
   o->sizes_bytes = (size_t)o->members * (2 * sizeof *o->sizes + 2 * sizeof(int));
   o->sizes = mpmx_alloc(m, o->sizes_bytes);
@@ -67,6 +74,7 @@ static mpm_status allocate(output *o) {
 /* Sizes first, then heads, which have their ending zeros. */
 static mpm_status gather_heads(output *o) {
   mpm_mpi *m = o->m;
+  if (!o->shows) o->head.used = 0, o->head.text[0] = '\0';
   const int64_t size[2] = {(int64_t)o->head.used + 1, o->length};
   mpm_status status = mpmx_mpi(m, MPI_Gather(size, 2, MPI_INT64_T, o->sizes, 2, MPI_INT64_T, 0, m->group),
                                MPM_E_CALLBACK, "MPI_Gather");
@@ -91,6 +99,23 @@ static mpm_status gather_heads(output *o) {
       MPM_E_CALLBACK, "MPI_Gatherv");
 }
 
+/* Parts with particles must have the same arrays. Those without give no piece, unless nobody has any. */
+static mpm_status compare_heads(output *o, int64_t points) {
+  mpm_mpi *m = o->m;
+  const int64_t hash = (int64_t)(mpmx_head_hash(&o->head) >> 2);
+  int64_t most[3] = {INT64_MIN, INT64_MIN, 0};
+  if (points) most[0] = hash, most[1] = -hash, most[2] = m->parts - m->part;
+  const mpm_status status = mpmx_mpi(m, MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_INT64_T, MPI_MAX, m->comm),
+                                     MPM_E_CALLBACK, "MPI_Allreduce");
+  if (status) return status;
+  o->first = most[2] ? m->parts - (int32_t)most[2] : 0;
+  o->shows = points > 0 || o->first == m->part;
+  if (most[2] && most[0] != -most[1])
+    return mpmx_fail(m, MPM_E_UNSUPPORTED,
+                     "the fields in use differ between the parts: name those that are to be written");
+  return MPM_OK;
+}
+
 /* Each part comes here once: when it has its head, or has failed before. */
 static mpm_status meet(output *o, mpm_status status) {
   mpm_mpi *m = o->m;
@@ -102,8 +127,9 @@ static mpm_status meet(output *o, mpm_status status) {
     if (piece) mpmx_attribute(piece, "NumberOfPoints", points, sizeof points);
     o->length = mpmx_head_data(&o->head, atoll(points));
   }
-  status = mpmx_agree_on(m, status, status ? 0 : mpmx_head_hash(&o->head), MPM_E_UNSUPPORTED,
-                         "the fields in use differ between the parts: name those that are to be written");
+  status = mpmx_agree(m, status);
+  if (!status) status = mpmx_agree(m, compare_heads(o, atoll(points)));
+  if (!o->shows) o->length = 0;
   if (!status) status = mpmx_agree(m, gather_heads(o));
   if (!status) status = mpmx_agree(m, o->member ? MPM_OK : open_file(o));
   o->status = status;
@@ -159,19 +185,23 @@ static mpm_status take_others(output *o) {
   return MPM_OK;
 }
 
-static mpm_status write_index(output *o) {
+/* Of those files that there are. */
+static mpm_status write_index(output *o, int wrote) {
   mpm_mpi *m = o->m;
   mpmx_file index;
-  if (m->part) return MPM_OK;
-  const mpm_status status = mpmx_file_open(m, &index, o->place.index);
+  mpm_status status = mpmx_mpi(m, MPI_Allgather(&wrote, 1, MPI_INT, o->writes, 1, MPI_INT, m->comm),
+                               MPM_E_CALLBACK, "MPI_Allgather");
+  if (status || m->part != o->first) return status;
+  status = mpmx_file_open(m, &index, o->place.index);
   if (status) return status;
   mpmx_print_start(&index, "PPolyData");
   mpmx_file_print(&index, "  <PPolyData GhostLevel=\"0\">\n");
   mpmx_head_index(&o->head, "Points", &index);
   mpmx_head_index(&o->head, "PointData", &index);
-  for (int32_t i = 0; i < m->writers; ++i) {
+  for (int32_t i = 0; i < m->parts; ++i) {
+    if (o->writes[i] < 0) continue;
     mpmx_file_print(&index, "    <Piece");
-    mpmx_print_source(&index, &o->place, i, ".vtp");
+    mpmx_print_source(&index, &o->place, o->writes[i], ".vtp");
   }
   mpmx_file_print(&index, "  </PPolyData>\n</VTKFile>\n");
   return mpmx_file_close(m, &index, 0);
@@ -189,7 +219,8 @@ static mpm_status write_all(output *o, const mpm_particles *set, const mpm_mpi_o
   /* who waits for more hears that none comes */
   if (o->member && o->passed < o->length && o->status)
     MPI_Send(NULL, 0, MPI_BYTE, 0, MPMX_TAG_STREAM, m->group);
-  if (!o->member) {
+  const int wrote = o->file.stream ? m->writer : -1;
+  if (o->file.stream) {
     status = take_others(o);
     if (!o->status) o->status = status;
     mpmx_file_print(&o->file, MPMX_DATA_END);
@@ -197,7 +228,7 @@ static mpm_status write_all(output *o, const mpm_particles *set, const mpm_mpi_o
     if (!o->status) o->status = status;
   }
   status = mpmx_agree(m, o->status);
-  return status ? status : mpmx_agree(m, write_index(o));
+  return status ? status : mpmx_agree(m, write_index(o, wrote));
 }
 
 mpm_status mpm_mpi_write_particles(mpm_mpi *m, const mpm_particles *set, const char *path,
@@ -220,6 +251,7 @@ mpm_status mpm_mpi_write_particles(mpm_mpi *m, const mpm_particles *set, const c
   mpmx_free(m, o.sizes, o.sizes_bytes);
   mpmx_free(m, o.heads, o.heads_bytes);
   mpmx_free(m, o.piece, PIECE);
+  mpmx_free(m, o.writes, (size_t)m->parts * sizeof *o.writes);
   mpmx_place_free(m, &o.place);
   return status;
 }

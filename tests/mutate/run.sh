@@ -14,7 +14,7 @@ for argument in "$@"; do
 done
 rm -rf "$BUILD/mutate"
 mkdir -p "$BUILD"/mutate/{whole/scratch,logs,trees}
-cp -a --parents Makefile platform.mk {bindings/bindings,bindings/javascript/rules,packaging/packaging}.mk include src umat tests \
+cp -a --parents Makefile platform.mk {bindings/bindings,bindings/javascript/rules,packaging/packaging}.mk include src umat mpi tests \
   "$BUILD/mutate/whole"
 rm -rf "$BUILD/mutate/whole/tests/examples"
 
