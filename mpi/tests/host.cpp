@@ -14,7 +14,7 @@ static int run(const std::string &folder) {
   g.spacing[0] = 1.0;
   mpm::grid grid(context, g);
   mpm::material material(context, "neo_hookean", {{"E", 1e4}, {"nu", 0.3}, {"density", 1000.0}});
-  mpm::particles set(context, grid, material);
+  mpm::particles set(grid, material);
   const double lower[] = {1.0}, upper[] = {3.0};
   const int32_t per_cell[] = {2};
   if (mpm_particles_fill_box(set.handle(), lower, upper, per_cell, nullptr, nullptr)) return 1;

@@ -136,8 +136,8 @@ for package in $packages; do
     for way in shared static; do
       libraries=("${shared[@]}")
       [ $way = shared ] || libraries=("${static[@]}")
-      "$CXX" "$scratch/host_$language.o" "${libraries[@]}" -o "$scratch/host"
-      LD_LIBRARY_PATH=$prefix/lib must "host in $language, $way" 2 "$scratch/host" "$scratch"
+      "$CXX" "$scratch/host_$language.o" "${libraries[@]}" -o "$scratch/program"
+      LD_LIBRARY_PATH=$prefix/lib must "host in $language, $way" 2 "$scratch/program" "$scratch"
       grep -q '^2 parts$' "$scratch/log" || { echo "mpi: $package: the host in $language does not see two parts" >&2; exit 1; }
     done
   done
