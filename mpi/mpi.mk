@@ -69,7 +69,8 @@ comma := ,
 
 #: install-mpi           its header, libraries and files for pkg-config, beside those of `make install`
 install-mpi: mpi
-	install -d $(call to,INCLUDEDIR,/mpm) $(call to,PKGCONFIGDIR)
+	install -d $(call to,INCLUDEDIR,/mpm) $(call to,PKGCONFIGDIR) $(call to,DATADIR)
+	install -m 644 bindings/mpi.json $(call to,DATADIR)
 	install -m 644 $(MPI_HEADERS) $(call to,INCLUDEDIR,/mpm)
 	install -m 644 $(MPI_STATIC) $(call to,LIBDIR)
 	install -m 755 $(BUILD)/$(MPI_SHARED) $(call to,LIBDIR)
@@ -81,5 +82,6 @@ install-mpi: mpi
 uninstall-mpi:
 	cd $(call to,INCLUDEDIR) && rm -f $(MPI_HEADERS:mpi/include/%=%)
 	cd $(call to,LIBDIR) && rm -f $(notdir $(MPI_STATIC)) $(MPI_SHARED) $(MPI_LINKS) pkgconfig/mpm-mpi.pc pkgconfig/mpm-mpi-static.pc
+	rm -f $(call to,DATADIR,/mpi.json)
 
 -include $(MPI_OBJECTS:.o=.d) $(MPI_EXAMPLES:=.d)
