@@ -2,10 +2,11 @@
  *
  *   mpirun -n 4 dam_break_mpi [CELLS [FRAMES [STATE]]]
  *
- * CELLS are those along the height of the block (default 20: 64 000 particles), FRAMES those that it is followed
- * for (40, each 0.02 s), STATE a file to go on from. It writes water_0000.pvtp ... for ParaView, every ten
- * frames water.state, and prints energies and a hash of the state, which are the same for any number of
- * processes. The lines for MPI are marked with a +: without them it is a program for one process. */
+ * CELLS are those along the height of the block (default 20: 64 000 particles), FRAMES those that it is
+ * followed for (40, each 0.02 s), STATE a file to go on from. It writes water_0000.pvtp ... for ParaView,
+ * every ten frames water.state, and prints energies and a hash of the state, which are the same for any
+ * number of processes. The lines for MPI are marked with a +: without them it is a program for one
+ * process. */
 #include <mpm/mpm_mpi.h> /* + */
 
 #include <inttypes.h>

@@ -66,8 +66,8 @@ typedef struct mpm_transport {
   void *user; /**< passed to all of them */
 } mpm_transport;
 
-/** Loads the state from count of its pieces (collective): part 0 the first few, part 1 those after, and so on;
- * count may be 0. How many parts saved them does not matter: continuing is the same bits. */
+/** Loads the state from count of its pieces (collective): part 0 the first few, part 1 those after, and so
+ * on; count may be 0. How many parts saved them does not matter: continuing is the same bits. */
 MPM_API mpm_status mpm_state_load_pieces(mpm_stepper *stepper, int32_t count, const void *const *piece,
                                          const int64_t *bytes);
 

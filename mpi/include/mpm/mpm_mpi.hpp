@@ -26,8 +26,8 @@ struct mpi_output {
  */
 class mpi {
 public:
-  /** Joins them and sets desc.transport: see mpm_mpi_open(). Of desc only plain pointers reach the library, no
-   * function objects. error::what() has the sentence that says why it cannot. */
+  /** Joins them and sets desc.transport: see mpm_mpi_open(). Of desc only plain pointers reach the library,
+   * no function objects. error::what() has the sentence that says why it cannot. */
   mpi(MPI_Comm comm, context_desc &desc) {
     char text[1024] = "";
     char *const of_host = desc.error_text;
