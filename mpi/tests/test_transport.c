@@ -75,6 +75,15 @@ static void test_rounds(int64_t largest) {
     if (failed) fprintf(stderr, "%s: %s\n", text, mpm_mpi_last_error(mpi));
     MUST(!failed);
   }
+  /* more values than a piece has, where pieces are small */
+  enum { VALUES = 2500 };
+  static int64_t values[VALUES];
+  for (int64_t i = 0; i < VALUES; ++i) values[i] = i * (rank + 1);
+  MUST(!t->reduce(t->user, MPM_REDUCE_MAX, VALUES, values));
+  for (int64_t i = 0; i < VALUES; ++i) MUST(values[i] == i * size);
+  for (int64_t i = 0; i < VALUES; ++i) values[i] = i + rank;
+  MUST(!t->reduce(t->user, MPM_REDUCE_SUM, VALUES, values));
+  for (int64_t i = 0; i < VALUES; ++i) MUST(values[i] == i * size + size * (size - 1) / 2);
   MUST(!mpm_mpi_close(mpi));
   MUST(s.open == 0 && s.calls > 0);
 }
