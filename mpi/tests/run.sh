@@ -48,7 +48,7 @@ build() { # folder, flags...: the tests with the sources of the library
   mkdir -p "$folder"
   for source in mpi/src/*.c mpi/tests/{meet,read_vtk,test_transport,test_files}.c tests/unit/transport_rounds.c; do
     # shellcheck disable=SC2046,SC2086
-    "$CC" -std=c11 $warnings -g "${flags[@]}" -Iinclude -Impi/include -Itests/unit $(flags $package) -c "$source" -o "$folder/${source//\//_}.o" || exit 1
+    "$CC" -std=c11 $warnings -g "${flags[@]}" -Iinclude -Impi/include -Impi/src -Itests/unit $(flags $package) -c "$source" -o "$folder/${source//\//_}.o" || exit 1
   done
   rm -f "$folder/libmpm-mpi.a"
   ar rcs "$folder/libmpm-mpi.a" "$folder"/mpi_src_*.o

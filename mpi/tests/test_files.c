@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "head.h"
 #include "meet.h"
 #include "read_vtk.h"
 
@@ -433,6 +434,84 @@ static void test_damage(mpm_mpi *mpi) {
   destroy(&w);
 }
 
+static void put_number(char *to, uint64_t value, int32_t bytes) {
+  for (int32_t i = 0; i < bytes; ++i) to[i] = (char)(value >> 8 * i);
+}
+
+/* A header whose sum is right, and which is not: the number at that place is another one. */
+static void test_forged(mpm_mpi *mpi) {
+  world w = {0};
+  create(&w, 1, 0, rank, rank + 1);
+  steps(&w, 1);
+  MUST(!mpm_mpi_save(mpi, w.stepper, in_folder("sound.state")));
+  const uint64_t now = hash_of(&w);
+  vtk_text sound = vtk_load(in_folder("sound.state"));
+  const uint64_t whole = (uint64_t)sound.count, table = 40 + 16 * (uint64_t)size;
+  const uint64_t first = (table + 63) / 64 * 64;
+  const struct {
+    int64_t place;
+    int32_t bytes;
+    uint64_t value;
+    const char *words;
+  } forged[] = {{8, 4, 2, "the format is 2"},
+                {16, 8, 0, "with 0 pieces"},
+                {16, 8, whole, "pieces"},
+                {24, 8, whole + 1, "the header says"},
+                {32, 8, 0, "the table of pieces is damaged"},
+                {40, 8, 0, "piece 0 is not in the file"},
+                {40, 8, first + 8, "piece 0 is not in the file"},
+                {40, 8, (whole + 63) / 64 * 64, "piece 0 is not in the file"},
+                {48, 8, whole, "piece 0 is not in the file"},
+                {48, 8, UINT64_MAX, "piece 0 is not in the file"},
+                {48, 8, whole - first, size > 1 ? "piece 1 is not in the file" : NULL}};
+  for (size_t i = 0; i < sizeof forged / sizeof *forged; ++i) {
+    if (!forged[i].words) continue;
+    if (!rank) {
+      vtk_text copy = vtk_load(in_folder("sound.state"));
+      put_number(copy.bytes + forged[i].place, forged[i].value, forged[i].bytes);
+      const uint64_t right = mpmx_hash(mpmx_hash(MPMX_HASH, copy.bytes, 32), copy.bytes + 40, table - 40);
+      if (forged[i].place != 32) put_number(copy.bytes + 32, right, 8);
+      FILE *out = fopen(in_folder("forged.state"), "wb");
+      MUST(out && fwrite(copy.bytes, 1, (size_t)copy.count, out) == (size_t)copy.count && !fclose(out));
+      vtk_drop(&copy);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    loaded.count = -1;
+    MUST(mpm_mpi_load(mpi, w.stepper, in_folder("forged.state")) == MPM_E_FORMAT);
+    MUST_SAY(mpm_mpi_last_error(mpi), forged[i].words);
+    MUST(loaded.count == -1 && hash_of(&w) == now);
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  vtk_drop(&sound);
+  destroy(&w);
+}
+
+/* A head that comes in two pieces, cut anywhere, with data that look like text behind it. */
+static void test_head(mpm_mpi *mpi) {
+  static const char text[] = "<Piece NumberOfPoints=\"1\">\n"
+                             "<DataArray type=\"UInt8\" Name=\"a\" NumberOfComponents=\"3\" offset=\"7\"/>\n"
+                             "  <AppendedData encoding=\"raw\">\n_"
+                             "data_<AppendedData";
+  const int64_t all = (int64_t)sizeof text - 1, head = (int64_t)(strstr(text, "data_") - text);
+  for (int64_t cut = 0; cut <= all; ++cut) {
+    mpmx_head h = {0};
+    int64_t taken = -1;
+    MUST(!mpmx_head_take(mpi, &h, text, cut, &taken));
+    MUST(h.whole == (cut >= head) && taken == (cut < head ? cut : head));
+    if (!h.whole) {
+      MUST(!mpmx_head_take(mpi, &h, text + cut, all - cut, &taken));
+      MUST(h.whole && taken == head - cut);
+    }
+    MUST((int64_t)h.used == head && (int64_t)strlen(h.text) == head);
+    mpmx_array a;
+    const char *at = h.text;
+    MUST(mpmx_head_next(&at, NULL, &a) && !strcmp(a.name, "a") && a.components == 3 && a.size == 1 &&
+         a.offset == 7);
+    MUST(!mpmx_head_next(&at, NULL, &a) && mpmx_head_data(&h, 2) == 7 + 8 + 6);
+    mpmx_head_free(mpi, &h);
+  }
+}
+
 /* ---- what is refused, and what fails */
 
 /* All the calls that write, in turn; then the one that reads. */
@@ -652,6 +731,8 @@ int main(int argc, char **argv) {
   test_grid(mpi);
   test_state(mpi);
   test_damage(mpi);
+  test_forged(mpi);
+  test_head(mpi);
   test_refusals(mpi);
   MUST(!mpm_mpi_close(mpi));
   MUST(held == 0);
