@@ -2,8 +2,10 @@
  * each part sends synchronously and takes what comes; when its own messages have been received it enters a
  * barrier, and when all have, nothing is under way any more: Hoefler, Siebert & Lumsdaine 2010, Scalable
  * communication protocols for dynamic sparse data exchange. */
+#define _POSIX_C_SOURCE 200809L /* sched_yield() */
 #include "handle.h"
 
+#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -241,6 +243,8 @@ mpm_status mpmx_receive(void *user, int32_t *count, const mpm_message **in) {
   while (!x->finished) {
     const mpm_status status = progress(m);
     if (status) return status;
+    /* where there are more processes than processors, those that are waited for want to run */
+    if (!x->finished) sched_yield();
   }
   if (x->kind == MPM_EXCHANGE_SPARSE) {
     x->parity ^= 1;
