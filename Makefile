@@ -62,7 +62,7 @@ STATIC_LIB := $(BUILD)/libmpm.a
 # Two examples show CHOLMOD and PETSc as the host's solver, where these are installed.
 HAS_CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null > /dev/null 2>&1 && echo yes)
 PETSC_PACKAGES := $(shell $(PKG_CONFIG) --exists PETSc mpi-c 2> /dev/null && echo PETSc mpi-c)
-EXAMPLES := $(patsubst examples/%,$(BUILD)/examples/%,$(basename $(sort $(wildcard examples/*.c examples/*.cpp))))
+EXAMPLES := $(patsubst examples/%,$(BUILD)/examples/%,$(basename $(filter-out %_mpi.c,$(sort $(wildcard examples/*.c examples/*.cpp)))))
 BENCH := $(BUILD)/bench/bench
 ifneq ($(HAS_CHOLMOD),yes)
 EXAMPLES := $(filter-out %/cholmod_solver,$(EXAMPLES))
@@ -87,7 +87,7 @@ all: $(STATIC_LIB) $(SHARED_LIB) $(UMAT_ARCHIVES) $(UMAT_SHARED_LIB)
 #: help                  this list
 help:
 	@awk '/^# ---- / { gsub(/^# -+ | -+$$/, ""); heading = $$0 } \
-	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk bindings/javascript/rules.mk packaging/packaging.mk
+	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk bindings/javascript/rules.mk packaging/packaging.mk mpi/mpi.mk
 	@printf '\n%s\n' 'V=1 shows the commands, -jN sets how many run at once, BUILD=folder builds there, CC and CFLAGS are yours.'
 
 $(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk src/kernels.txt
@@ -231,6 +231,7 @@ bench-quick: $(BENCH)
 include tests/tests.mk
 include bindings/bindings.mk
 include packaging/packaging.mk
+include mpi/mpi.mk
 
 # ---- reference -------------------------------------------------------------------------------------------
 #: docs                  HTML from the headers, in $(BUILD)/docs/html; a declaration without a comment is an error
@@ -240,7 +241,7 @@ docs:
 	@echo "$(BUILD)/docs/html/index.html"
 
 # ---- upkeep ----------------------------------------------------------------------------------------------
-FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/mpm/*.hpp umat/*/*.[ch] src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
+FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/mpm/*.hpp umat/*/*.[ch] mpi/include/mpm/*.h mpi/include/mpm/*.hpp mpi/*/*.[ch] src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
   tests/*/*.[ch] tests/*/*.cpp bindings/*.c bindings/*/*.c bindings/*/*/*.c)
 #: format                clang-format on all sources
 format:

@@ -169,7 +169,7 @@ check-asan:
 # For checks of what is the same with every instruction set: threads, and what files and descriptors say.
 ONE_SET = ISAS=baseline CPPFLAGS="$(CPPFLAGS) -DMPM_BASELINE_ONLY"
 # The fork of each test would hide threads from the sanitizer.
-TSAN_SUITES ?= context executor threads rollback restart linalg
+TSAN_SUITES ?= context executor threads parts rollback restart linalg
 #: check-tsan            the suites with threads under the thread sanitizer
 check-tsan:
 	+CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" $(ONE_SET) \

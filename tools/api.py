@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Describes the public interface in JSON, from the headers as clang parses them.
 
-    tools/api.py [--clang clang] [--umat umat/include] [include] > api.json
+    tools/api.py [--clang clang] [--umat umat/include | --mpi mpi/include] [include] > api.json
 
-With --umat it describes mpm_umat.h, the header of libmpm-umat, in the place of libmpm's.
+With --umat it describes mpm_umat.h, the header of libmpm-umat, in the place of libmpm's; with --mpi mpm_mpi.h, that of
+libmpm-mpi, for which MPI need not be there.
 
 The description holds what bindings need: functions, structs with the offsets of their fields, constants by group, types
 of callbacks, handles, and every comment. Offsets are those for pointers of 8 and of 4 bytes, where an 8-byte number lies
@@ -23,12 +24,21 @@ SIZES = {"int8_t": 1, "uint8_t": 1, "char": 1, "int": 4, "int32_t": 4, "uint32_t
 TARGETS = {8: "x86_64-linux-gnu", 4: "wasm32-unknown-unknown"}
 
 
+def companion(arguments):
+    """Header of the companion that is asked for, and the folders of headers; nothing for libmpm itself."""
+    if arguments.umat:
+        return ["mpm_umat", arguments.umat]
+    if arguments.mpi:
+        return ["mpm_mpi", arguments.mpi, f"{os.path.dirname(arguments.mpi)}/parsers"]
+    return []
+
+
 def source(arguments):
-    return "".join(f"#include <mpm/{name}.h>\n" for name in (["mpm_umat"] if arguments.umat else HEADERS))
+    return "".join(f"#include <mpm/{name}.h>\n" for name in companion(arguments)[:1] or HEADERS)
 
 
 def clang(arguments, text):
-    folders = [one for folder in (arguments.include, arguments.umat) if folder for one in ("-I", folder)]
+    folders = [one for folder in [arguments.include, *companion(arguments)[1:]] for one in ("-I", folder)]
     command = [arguments.clang, "-std=c11", "-ffreestanding", *folders, "-x", "c", "-"]
     return lambda *more: subprocess.run(command + list(more), input=text, capture_output=True, text=True, check=False)
 
@@ -92,7 +102,7 @@ def type_of(text, known):
             out["kind"] = kind
             return out
     out["kind"] = "value"
-    if base not in SIZES and base not in ("void", "size_t"):
+    if base not in SIZES and base not in ("void", "size_t", "MPI_Comm", "MPI_Fint"):
         raise SystemExit(f"api.py: the type '{text}' is not known")
     return out
 
@@ -251,11 +261,12 @@ def describe(arguments):
     reader = Reader(json.loads(parsed.stdout), texts)
     version = int(re.search(r"#define MPM_VERSION (\w+)", texts.of(f"{arguments.include}/mpm/types.h"))[1], 16)
     files = []
-    for name in ["mpm_umat"] if arguments.umat else HEADERS + ["mpm"]:
-        text = texts.of(f"{arguments.umat or arguments.include}/mpm/{name}.h")
+    header, *folders = companion(arguments) or ("", arguments.include)
+    for name in [header] if header else HEADERS + ["mpm"]:
+        text = texts.of(f"{folders[0]}/mpm/{name}.h")
         files.append({"name": f"{name}.h", "doc": plain(re.match(r"/\*\*.*?\*/", text, re.S)[0])})
     callbacks, structs = reader.callbacks_and_structs()
-    api = {"library": "libmpm-umat" if arguments.umat else "libmpm", "version": version, "files": files,
+    api = {"library": "lib" + (header or "mpm").replace("_", "-"), "version": version, "files": files,
            "handles": reader.handles(), "constants": reader.constants(), "callbacks": callbacks, "structs": structs,
            "functions": reader.functions()}
     names = {one["name"] for one in files}
@@ -290,6 +301,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--clang", default=os.environ.get("API_CLANG", "clang"))
     parser.add_argument("--umat", metavar="FOLDER")
+    parser.add_argument("--mpi", metavar="FOLDER")
     parser.add_argument("include", nargs="?", default="include")
     json.dump(describe(parser.parse_args()), sys.stdout, indent=1, ensure_ascii=False)
     print()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes manual pages from bindings/api.json and umat.json: mpm(7), one page a header in section 3, and a link to it for
+"""Writes manual pages from bindings/api.json, umat.json and mpi.json: mpm(7), one page a header in section 3, and a link to it for
 each function.
 
     tools/man.py VERSION FOLDER
@@ -98,10 +98,10 @@ def page(api, header, version):
     return "\n".join(out)
 
 
-def overview(api, companion, version):
+def overview(api, companions, version):
     mpm = next(one for one in api["files"] if one["name"] == "mpm.h")
     text = re.sub(r"^@file \S+\n", "", mpm["doc"])
-    others = ",\n".join(f".BR {page_name(one)} (3)" for one in api["files"] + companion["files"] if one is not mpm)
+    others = ",\n".join(f".BR {page_name(one)} (3)" for api in (api, *companions) for one in api["files"] if one is not mpm)
     compile_line = "cc host.c $(pkg-config --cflags --libs mpm)"
     return (head("mpm", 7, version, "the Material Point Method as a library")
             + f".SH SYNOPSIS\n.nf\n.B #include <mpm/mpm.h>\n.PP\n.B {escaped(compile_line)}\n.fi\n.SH DESCRIPTION\n"
@@ -111,11 +111,11 @@ def overview(api, companion, version):
 def main():
     version, folder = sys.argv[1:]
     descriptions = []
-    for name in ("api", "umat"):
+    for name in ("api", "umat", "mpi"):
         with open(f"{TOP}/bindings/{name}.json", encoding="utf-8") as file:
             descriptions.append(json.load(file))
     os.makedirs(folder, exist_ok=True)
-    pages = {"mpm.7": overview(*descriptions, version)}
+    pages = {"mpm.7": overview(descriptions[0], descriptions[1:], version)}
     for api in descriptions:
         for header in api["files"]:
             if header["name"] != "mpm.h":

@@ -41,7 +41,8 @@ def main():
     arguments = parser.parse_args()
     sys.path.insert(0, HERE)
     text = description("api.json")
-    files = {"api.json": text, "umat.json": description("umat.json", "--umat", f"{TOP}/umat/include")}
+    files = {"api.json": text, "umat.json": description("umat.json", "--umat", f"{TOP}/umat/include"),
+             "mpi.json": description("mpi.json", "--mpi", f"{TOP}/mpi/include")}
     for language in arguments.languages or LANGUAGES:
         files.update(importlib.import_module(language).files(json.loads(text)))
     stale = []

@@ -1,0 +1,526 @@
+/* Files of several parts, of contexts that know nothing of each other: each process has a body of its own.
+ *
+ *   test_files FOLDER
+ */
+#define _XOPEN_SOURCE 700
+#include <mpm/mpm_mpi.h>
+
+#include <signal.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "head.h"
+#include "meet.h"
+#include "read_vtk.h"
+
+enum { PATH = 600, MOST = 64 };
+
+typedef struct world {
+  mpm_context *context;
+  mpm_grid *grid;
+  mpm_material *material;
+  mpm_particles *set;
+  mpm_stepper *stepper;
+} world;
+
+static const char *folder;
+static int rank, size;
+static int64_t calls, fail_at, held; /* of the allocator that libmpm-mpi gets */
+
+static void *take(void *user, size_t bytes, size_t alignment) {
+  (void)user;
+  if (++calls == fail_at) return NULL;
+  ++held;
+  return aligned_alloc(alignment, bytes);
+}
+
+static void give_back(void *user, void *memory, size_t bytes, size_t alignment) {
+  (void)user, (void)bytes, (void)alignment;
+  --held;
+  free(memory);
+}
+
+static const char *in_folder(const char *name) {
+  static char path[4][PATH];
+  static int32_t turn;
+  turn = (turn + 1) % 4;
+  snprintf(path[turn], PATH, "%s/%s", folder, name);
+  return path[turn];
+}
+
+/* A row of bodies, four cells apart, of different sizes and speeds; from the first to before the last. */
+static void create(world *w, int32_t dim, int32_t open_knots, int32_t first, int32_t last) {
+  const mpm_param law[] = {{"E", 1e4}, {"nu", 0.3}, {"density", 1000.0}};
+  mpm_grid_desc g;
+  mpm_stepper_desc s;
+  MUST(!mpm_grid_desc_init(&g, sizeof g) && !mpm_stepper_desc_init(&s, sizeof s));
+  g.dim = dim;
+  g.boundary_basis = open_knots;
+  for (int32_t k = 0; k < dim; ++k)
+    g.cells[k] = k == dim - 1 ? 8 * (size + 1) : 12, g.spacing[k] = 0.1 * (k + 1), g.origin[k] = k - 0.3;
+  s.gravity[0] = -1.0;
+  MUST(!mpm_context_create(NULL, &w->context) && !mpm_grid_create(w->context, &g, &w->grid));
+  MUST(!mpm_material_create(w->context, "neo_hookean", law, 3, &w->material));
+  MUST(!mpm_particles_create(w->context, w->grid, w->material, &w->set));
+  for (int32_t i = first; i < last; ++i) {
+    double lower[3], upper[3], v[3] = {0.3, 0.1 * i, 0.2};
+    const int32_t per_cell[] = {2, 2, 2};
+    for (int32_t k = 0; k < dim; ++k) {
+      const double at = k == dim - 1 ? 8.0 * i + 3.0 : 4.0;
+      lower[k] = g.origin[k] + g.spacing[k] * at;
+      upper[k] = g.origin[k] + g.spacing[k] * (at + 2.0 + (k == 0 ? i % 3 : 0));
+    }
+    int64_t id = 0, n = 0;
+    MUST(!mpm_particles_fill_box(w->set, lower, upper, per_cell, &id, &n));
+    for (int64_t k = 0; k < n; ++k) {
+      const int64_t one = id + k;
+      MUST(!mpm_particles_set(w->set, "velocity", MPM_F64, dim, 1, &one, v));
+    }
+  }
+  MUST(!mpm_stepper_create(w->context, w->grid, &s, &w->stepper) && !mpm_stepper_add(w->stepper, w->set));
+}
+
+static void destroy(world *w) {
+  MUST(!mpm_stepper_destroy(w->stepper) && !mpm_particles_destroy(w->set) &&
+       !mpm_material_destroy(w->material));
+  MUST(!mpm_grid_destroy(w->grid) && !mpm_context_destroy(w->context));
+}
+
+static void steps(world *w, int32_t n) {
+  for (int32_t i = 0; i < n; ++i) MUST(!mpm_step(w->stepper, 1e-3, NULL));
+}
+
+static mpm_mpi *open_world(void) {
+  mpm_context_desc desc;
+  mpm_mpi *mpi;
+  MUST(!mpm_context_desc_init(&desc, sizeof desc));
+  desc.alloc = take;
+  desc.release = give_back;
+  fail_at = 0;
+  MUST(!mpm_mpi_open(MPI_COMM_WORLD, &desc, &mpi));
+  return mpi;
+}
+
+static int exists(const char *path) {
+  struct stat is;
+  return !stat(path, &is);
+}
+
+/* ---- particles */
+
+/* The part's own file by the library, whose data the file of all has. */
+static void compare_piece(const vtk_text *all, int32_t piece, int32_t part) {
+  char name[40];
+  snprintf(name, sizeof name, "alone_%d.vtp", (int)part);
+  vtk_text alone = vtk_load(in_folder(name));
+  const char *ours = vtk_element(all, "Piece", piece), *theirs = vtk_element(&alone, "Piece", 0);
+  char points[40];
+  MUST(ours && theirs);
+  snprintf(points, sizeof points, "%s", vtk_attribute(ours, "NumberOfPoints"));
+  MUST(!strcmp(points, vtk_attribute(theirs, "NumberOfPoints")));
+  int32_t arrays = 0;
+  for (const char *at = theirs; (at = strstr(at, "<DataArray ")); ++at, ++arrays) {
+    char array[80];
+    snprintf(array, sizeof array, "%s", vtk_attribute(at, "Name"));
+    int64_t n, m;
+    const char *a = vtk_array(&alone, theirs, array, &n), *b = vtk_array(all, ours, array, &m);
+    MUST(n == m && !memcmp(a, b, (size_t)n));
+  }
+  MUST(arrays > 8);
+  vtk_drop(&alone);
+}
+
+static void check_particles(const char *path, int32_t writers) {
+  vtk_text index = vtk_load(path);
+  MUST(vtk_element(&index, "PDataArray", 5));
+  int32_t part = 0, files = 0;
+  for (const char *source; (source = vtk_element(&index, "Piece", files)); ++files) {
+    vtk_text file = vtk_load(in_folder(vtk_attribute(source, "Source")));
+    for (int32_t k = 0; vtk_element(&file, "Piece", k); ++k) {
+      /* the second part has nothing to show */
+      part += part == 1;
+      compare_piece(&file, k, part++);
+    }
+    static const char end[] = "\n  </AppendedData>\n</VTKFile>\n";
+    MUST(!strcmp(file.bytes + file.count - strlen(end), end));
+    vtk_drop(&file);
+  }
+  MUST(part == size || (part == 1 && size == 2));
+  MUST(files == writers - (writers == size && size > 1));
+  vtk_drop(&index);
+}
+
+static void test_particles(mpm_mpi *mpi) {
+  for (int32_t dim = 1; dim <= 3; ++dim) {
+    world w = {0};
+    /* the second part has nothing */
+    create(&w, dim, 0, rank, rank == 1 ? rank : rank + 1);
+    if (rank != 1) steps(&w, 3);
+    char name[40];
+    snprintf(name, sizeof name, "alone_%d.vtp", rank);
+    MUST(!mpm_write_particles(w.set, in_folder(name), 0, NULL));
+    MPI_Barrier(MPI_COMM_WORLD);
+    for (int32_t writers = 0; writers <= size; ++writers) {
+      mpm_mpi_output as = {.struct_size = sizeof as, .writers = writers};
+      const mpm_status status =
+          mpm_mpi_write_particles(mpi, w.set, in_folder("set.pvtp"), writers || dim == 2 ? &as : NULL);
+      if (status) fprintf(stderr, "%s\n", mpm_mpi_last_error(mpi));
+      MUST(!status);
+      if (!rank) check_particles(in_folder("set.pvtp"), writers ? writers : 1);
+      MPI_Barrier(MPI_COMM_WORLD);
+    }
+    static const char *const two[] = {"velocity", "id"};
+    mpm_mpi_output as = {.struct_size = sizeof as, .writers = 1, .count = 2, .fields = two};
+    MUST(!mpm_mpi_write_particles(mpi, w.set, in_folder("two & \"<\".pvtp"), &as));
+    if (!rank) {
+      vtk_text index = vtk_load(in_folder("two & \"<\".pvtp"));
+      MUST(!strcmp(vtk_attribute(vtk_element(&index, "Piece", 0), "Source"),
+                   "two &amp; &quot;&lt;&quot;/two &amp; &quot;&lt;&quot;_0.vtp"));
+      MUST(vtk_element(&index, "PDataArray", 2) && !vtk_element(&index, "PDataArray", 3));
+      MUST(exists(in_folder("two & \"<\"/two & \"<\"_0.vtp")));
+      vtk_drop(&index);
+    }
+    /* for VTK to read */
+    if (dim == 3) MUST(!mpm_mpi_write_particles(mpi, w.set, in_folder("shown.pvtp"), NULL));
+    destroy(&w);
+  }
+}
+
+/* ---- nodes */
+
+static void read_extent(const char *text, long long at[6]) {
+  MUST(sscanf(text, "%lld %lld %lld %lld %lld %lld", at, at + 1, at + 2, at + 3, at + 4, at + 5) == 6);
+}
+
+/* Every value of a layer is that of the whole image, and the layers are all of it. */
+static void check_grid(const char *path, const char *whole_path, int32_t writers) {
+  vtk_text index = vtk_load(path), whole = vtk_load(whole_path);
+  const char *image = vtk_element(&whole, "ImageData", 0), *ours = vtk_element(&index, "PImageData", 0);
+  long long box[6], part[6], planes = 0, across = 0;
+  static const char *const same[] = {"WholeExtent", "Origin", "Spacing"};
+  for (int32_t i = 0; i < 3; ++i) {
+    char value[400];
+    snprintf(value, sizeof value, "%s", vtk_attribute(image, same[i]));
+    MUST(!strcmp(value, vtk_attribute(ours, same[i])));
+  }
+  read_extent(vtk_attribute(image, "WholeExtent"), box);
+  int32_t layers = 0;
+  for (const char *piece; (piece = vtk_element(&index, "Piece", layers)); ++layers) {
+    read_extent(vtk_attribute(piece, "Extent"), part);
+    for (int32_t k = 0; k < 3; ++k) {
+      if (part[2 * k] == box[2 * k] && part[2 * k + 1] == box[2 * k + 1] && writers > 1) continue;
+      across = k;
+      MUST(part[2 * k] == (layers ? planes : box[2 * k]));
+      planes = part[2 * k + 1];
+    }
+    vtk_text file = vtk_load(in_folder(vtk_attribute(piece, "Source")));
+    int32_t arrays = 0;
+    for (const char *at = strstr(image, "<DataArray "); at; at = strstr(at + 1, "<DataArray "), ++arrays) {
+      char name[80];
+      snprintf(name, sizeof name, "%s", vtk_attribute(at, "Name"));
+      const int64_t tuple = 8 * atoll(vtk_attribute(at, "NumberOfComponents"));
+      int64_t n, m, used = 0;
+      const char *a = vtk_array(&whole, image, name, &n), *b = vtk_array(&file, file.bytes, name, &m);
+      for (long long z = part[4]; z <= part[5]; ++z)
+        for (long long y = part[2]; y <= part[3]; ++y, used += tuple * (part[1] - part[0] + 1)) {
+          const long long place =
+              ((z - box[4]) * (box[3] - box[2] + 1) + y - box[2]) * (box[1] - box[0] + 1) + part[0] - box[0];
+          MUST(!memcmp(a + place * tuple, b + used, (size_t)(tuple * (part[1] - part[0] + 1))));
+        }
+      MUST(used == m && n >= m);
+    }
+    MUST(arrays >= 4);
+    vtk_drop(&file);
+  }
+  MUST(planes == box[2 * across + 1]);
+  MUST(layers == writers);
+  vtk_drop(&index);
+  vtk_drop(&whole);
+}
+
+static void test_grid(mpm_mpi *mpi) {
+  for (int32_t dim = 1; dim <= 3; ++dim) {
+    world w = {0}, all = {0};
+    create(&w, dim, 0, rank, rank + 1);
+    MUST(mpm_mpi_write_grid(mpi, w.stepper, in_folder("nodes.pvti"), NULL) == MPM_E_STATE);
+    MUST_SAY(mpm_mpi_last_error(mpi), "part 0: mpm_write_grid_to: MPM_E_STATE");
+    steps(&w, 2);
+    if (!rank) {
+      create(&all, dim, 0, 0, size);
+      steps(&all, 2);
+      MUST(!mpm_write_grid(all.stepper, in_folder("whole.vti"), 0, NULL));
+      if (dim == 3) MUST(!mpm_write_grid(all.stepper, in_folder("shown_whole.vti"), 0, NULL));
+      destroy(&all);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    for (int32_t writers = 0; writers <= size; ++writers) {
+      mpm_mpi_output as = {.struct_size = sizeof as, .writers = writers};
+      MUST(!mpm_mpi_write_grid(mpi, w.stepper, in_folder("nodes.pvti"), &as));
+      if (!rank) check_grid(in_folder("nodes.pvti"), in_folder("whole.vti"), writers ? writers : 1);
+      MPI_Barrier(MPI_COMM_WORLD);
+    }
+    if (dim == 3) {
+      const mpm_mpi_output as = {.struct_size = sizeof as, .writers = size};
+      MUST(!mpm_mpi_write_grid(mpi, w.stepper, in_folder("shown.pvti"), &as));
+    }
+    destroy(&w);
+  }
+  /* all have the same nodes: each is there once */
+  world w = {0};
+  create(&w, 2, 0, 0, 1);
+  steps(&w, 1);
+  if (!rank) MUST(!mpm_write_grid(w.stepper, in_folder("whole.vti"), 0, NULL));
+  MPI_Barrier(MPI_COMM_WORLD);
+  mpm_mpi_output as = {.struct_size = sizeof as, .writers = size};
+  MUST(!mpm_mpi_write_grid(mpi, w.stepper, in_folder("nodes.pvti"), &as));
+  if (!rank) check_grid(in_folder("nodes.pvti"), in_folder("whole.vti"), size);
+  destroy(&w);
+  create(&w, 2, MPM_BOUNDARY_OPEN_KNOT, rank, rank + 1);
+  steps(&w, 1);
+  MUST(mpm_mpi_write_grid(mpi, w.stepper, in_folder("knots.pvti"), NULL) == MPM_E_UNSUPPORTED);
+  MUST_SAY(mpm_mpi_last_error(mpi), "mpm_write_grid() writes those of a part into a .vtr");
+  MUST(!exists(in_folder("knots.pvti")));
+  destroy(&w);
+  /* nowhere a particle: an image of nothing */
+  create(&w, 2, 0, 0, 0);
+  steps(&w, 1);
+  MUST(!mpm_mpi_write_grid(mpi, w.stepper, in_folder("none.pvti"), NULL));
+  if (!rank) {
+    vtk_text index = vtk_load(in_folder("none.pvti"));
+    MUST(!strcmp(vtk_attribute(vtk_element(&index, "PImageData", 0), "WholeExtent"), "0 -1 0 -1 0 -1"));
+    vtk_drop(&index);
+  }
+  destroy(&w);
+}
+
+/* A head that comes in two pieces, cut anywhere, with data that look like text behind it. */
+static void test_head(mpm_mpi *mpi) {
+  static const char text[] = "<Piece NumberOfPoints=\"1\">\n"
+                             "<DataArray type=\"UInt8\" Name=\"a\" NumberOfComponents=\"3\" offset=\"7\"/>\n"
+                             "  <AppendedData encoding=\"raw\">\n_"
+                             "data_<AppendedData";
+  const int64_t all = (int64_t)sizeof text - 1, head = (int64_t)(strstr(text, "data_") - text);
+  for (int64_t cut = 0; cut <= all; ++cut) {
+    mpmx_head h = {0};
+    int64_t taken = -1;
+    MUST(!mpmx_head_take(mpi, &h, text, cut, &taken));
+    MUST(h.whole == (cut >= head) && taken == (cut < head ? cut : head));
+    if (!h.whole) {
+      MUST(!mpmx_head_take(mpi, &h, text + cut, all - cut, &taken));
+      MUST(h.whole && taken == head - cut);
+    }
+    MUST((int64_t)h.used == head && (int64_t)strlen(h.text) == head);
+    mpmx_array a;
+    const char *at = h.text;
+    MUST(mpmx_head_next(&at, NULL, &a) && !strcmp(a.name, "a") && a.components == 3 && a.size == 1 &&
+         a.offset == 7);
+    MUST(!mpmx_head_next(&at, NULL, &a) && mpmx_head_data(&h, 2) == 7 + 8 + 6);
+    mpmx_head_free(mpi, &h);
+  }
+}
+
+/* ---- what is refused, and what fails */
+
+/* All the calls that write, in turn. */
+enum { WRITE_SET, WRITE_NODES, FILES };
+static const char *const names[FILES] = {"set.pvtp", "nodes.pvti"};
+
+static mpm_status call(mpm_mpi *mpi, const world *w, int32_t which, const char *path,
+                       const mpm_mpi_output *as) {
+  return which == WRITE_SET ? mpm_mpi_write_particles(mpi, w ? w->set : NULL, path, as)
+                            : mpm_mpi_write_grid(mpi, w ? w->stepper : NULL, path, as);
+}
+
+/* The same status and sentence on all, which the last part has caused. */
+static void last_refuses(mpm_mpi *mpi, const world *w, int32_t which, const char *path,
+                         const mpm_mpi_output *as, mpm_status status, const char *words) {
+  const int last = rank == size - 1;
+  const mpm_mpi_output plain = {.struct_size = sizeof plain};
+  const world *mine = last ? w : w ? w : NULL;
+  MUST(call(mpi, mine, which, last ? path : in_folder(names[which]), last ? as : &plain) == status);
+  MUST_SAY(mpm_mpi_last_error(mpi), words);
+  char part[20];
+  snprintf(part, sizeof part, "part %d: ", size - 1);
+  MUST(!strncmp(mpm_mpi_last_error(mpi), part, strlen(part)));
+}
+
+static void test_refusals(mpm_mpi *mpi) {
+  world w = {0};
+  create(&w, 2, 0, rank, rank + 1);
+  steps(&w, 1);
+  static const char *const unknown[] = {"nothing"}, *const hole[] = {NULL},
+                           *const twice[] = {"velocity", "velocity"};
+  mpm_mpi_output as = {.struct_size = sizeof as};
+  MUST(mpm_mpi_write_particles(NULL, w.set, "x.pvtp", NULL) == MPM_E_ARG);
+  MUST(mpm_mpi_write_grid(NULL, w.stepper, "x.pvti", NULL) == MPM_E_ARG);
+  for (int32_t which = 0; which < FILES; ++which) {
+    const world *none = rank == size - 1 ? NULL : &w;
+    MUST(call(mpi, none, which, in_folder(names[which]), NULL) == MPM_E_ARG);
+    MUST_SAY(mpm_mpi_last_error(mpi), " is NULL");
+    last_refuses(mpi, &w, which, NULL, &as, MPM_E_ARG, "path is NULL");
+    last_refuses(mpi, &w, which, "", &as, MPM_E_ARG, "path is empty");
+    if (size > 1) {
+      MUST(call(mpi, &w, which, in_folder(rank ? "one.pvtp" : "other.pvtp"), NULL) == MPM_E_ARG);
+      MUST_SAY(mpm_mpi_last_error(mpi), "between the parts");
+    }
+    MUST(call(mpi, &w, which, in_folder("nowhere/a.pvtp") + 0, NULL) != MPM_OK);
+  }
+  for (int32_t which = 0; which < FILES; ++which) {
+    const char *path = in_folder(names[which]);
+    MUST(call(mpi, &w, which, in_folder(names[!which]), NULL) == MPM_E_ARG);
+    MUST_SAY(mpm_mpi_last_error(mpi), which ? "is to end with .pvti" : "is to end with .pvtp");
+    MUST(call(mpi, &w, which, which ? ".pvti" : ".pvtp", NULL) == MPM_E_ARG);
+    as = (mpm_mpi_output){.struct_size = sizeof as - 1};
+    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "struct_size is 23, must be at least 24");
+    struct {
+      mpm_mpi_output known;
+      int64_t later;
+    } longer = {{.struct_size = sizeof longer}, 0};
+    MUST(!call(mpi, &w, which, path, &longer.known));
+    longer.later = 1;
+    last_refuses(mpi, &w, which, path, &longer.known, MPM_E_UNSUPPORTED,
+                 "does not know the field at byte 24");
+    as = (mpm_mpi_output){.struct_size = sizeof as, .writers = size + 1};
+    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "writers is ");
+    as.writers = -1;
+    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "writers is -1");
+    as = (mpm_mpi_output){.struct_size = sizeof as, .count = -1};
+    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "count is -1");
+    as.count = 1;
+    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "fields is NULL");
+    as.fields = hole;
+    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "fields[0] is NULL");
+    as = (mpm_mpi_output){.struct_size = sizeof as, .reserved = 1};
+    last_refuses(mpi, &w, which, path, &as, MPM_E_ARG, "reserved is 1");
+    as = (mpm_mpi_output){.struct_size = sizeof as, .count = 1, .fields = unknown};
+    MUST(call(mpi, &w, which, path, &as) == MPM_E_NOT_FOUND);
+    MUST_SAY(mpm_mpi_last_error(mpi), "MPM_E_NOT_FOUND");
+    as = (mpm_mpi_output){.struct_size = sizeof as, .count = 2, .fields = twice};
+    MUST(call(mpi, &w, which, path, &as) == MPM_E_ARG);
+    MUST(call(mpi, &w, which, in_folder(which ? "nowhere/a.pvti" : "nowhere/a.pvtp"), NULL) == MPM_E_IO);
+    MUST_SAY(mpm_mpi_last_error(mpi), "cannot make the folder");
+  }
+  /* fields that only one part has */
+  if (!rank) MUST(!mpm_particles_add_field(w.set, "label", MPM_U8, 3));
+  const mpm_status status = mpm_mpi_write_particles(mpi, w.set, in_folder("set.pvtp"), NULL);
+  MUST(status == (size > 1 ? MPM_E_UNSUPPORTED : MPM_OK));
+  if (status) MUST_SAY(mpm_mpi_last_error(mpi), "name those that are to be written");
+  destroy(&w);
+}
+
+/* What is at path afterwards is what was there before, and nothing lies beside it. */
+static void unchanged(const vtk_text *before, int32_t which) {
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (!rank) {
+    vtk_text after = vtk_load(in_folder(names[which]));
+    MUST(after.count == before->count && !memcmp(after.bytes, before->bytes, (size_t)after.count));
+    vtk_drop(&after);
+    static const char *const left[] = {"set.pvtp.writing", "nodes.pvti.writing",
+                                       "set/set_0.vtp.writing", "nodes/nodes_0.vti.writing"};
+    for (size_t i = 0; i < sizeof left / sizeof *left; ++i) MUST(!exists(in_folder(left[i])));
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+}
+
+static void test_failures(void) {
+  static const struct {
+    faulty call;
+    int32_t which;
+    mpm_status status;
+  } faults[] = {{F_ALLGATHER, WRITE_NODES, MPM_E_CALLBACK},
+                {F_COMM_SPLIT, WRITE_SET, MPM_E_CALLBACK}};
+  world w = {0};
+  create(&w, 3, 0, rank, rank + 1);
+  steps(&w, 1);
+  mpm_mpi *mpi = open_world();
+  const mpm_mpi_output by_all = {.struct_size = sizeof by_all, .writers = size},
+                       by_one = {.struct_size = sizeof by_one, .writers = 1};
+  for (int32_t which = 0; which < FILES; ++which) {
+    MUST(!call(mpi, &w, which, in_folder(names[which]), &by_all));
+    vtk_text before = {0};
+    if (!rank) before = vtk_load(in_folder(names[which]));
+    steps(&w, 1);
+    for (size_t i = 0; i < sizeof faults / sizeof *faults; ++i) {
+      /* with one process there is one division, which is there already */
+      if (faults[i].which != which || (faults[i].call == F_COMM_SPLIT && size == 1)) continue;
+      fail_in(faults[i].call, 0);
+      MUST(call(mpi, &w, which, in_folder(names[which]), &by_one) == faults[i].status);
+      MUST(has_failed());
+      fail_in(NO_FAULT, 0);
+      unchanged(&before, which);
+    }
+    /* memory runs out on the last part, at each place; one writer takes from it, or it is one itself */
+    for (int32_t writers = 1; writers <= 2; ++writers) {
+      int32_t seen = 0;
+      for (int64_t at = 1;; ++at) {
+        const int64_t held_before = held;
+        fail_at = rank == size - 1 ? calls + at : 0;
+        const mpm_status status =
+            call(mpi, &w, which, in_folder(names[which]), writers == 1 ? &by_one : &by_all);
+        fail_at = 0;
+        MUST(held == held_before);
+        if (!status) break;
+        if (status != MPM_E_NOMEM)
+          fprintf(stderr, "%d at %lld: %s\n", (int)which, (long long)at, mpm_mpi_last_error(mpi));
+        MUST(status == MPM_E_NOMEM);
+        MUST_SAY(mpm_mpi_last_error(mpi), "there is no memory");
+        ++seen;
+        if (writers == 1) unchanged(&before, which);
+      }
+      MUST(seen >= 3);
+    }
+    if (!rank) vtk_drop(&before);
+  }
+  MUST(!mpm_mpi_close(mpi));
+  MUST(held == 0);
+  destroy(&w);
+}
+
+/* A disk that is full, in the form of files that may not grow. */
+static void test_full(mpm_mpi *mpi) {
+  world w = {0};
+  create(&w, 3, 0, rank, rank + 1);
+  steps(&w, 1);
+  signal(SIGXFSZ, SIG_IGN);
+  struct rlimit before, small;
+  MUST(!getrlimit(RLIMIT_FSIZE, &before));
+  small = before;
+  small.rlim_cur = 3000;
+  for (int32_t which = WRITE_SET; which <= WRITE_NODES; ++which) {
+    MUST(!call(mpi, &w, which, in_folder(names[which]), NULL));
+    vtk_text old = {0};
+    if (!rank) old = vtk_load(in_folder(names[which]));
+    MPI_Barrier(MPI_COMM_WORLD);
+    MUST(!setrlimit(RLIMIT_FSIZE, &small));
+    const mpm_status status = call(mpi, &w, which, in_folder(names[which]), NULL);
+    MUST(!setrlimit(RLIMIT_FSIZE, &before));
+    MUST(status == MPM_E_IO);
+    MUST_SAY(mpm_mpi_last_error(mpi), "File too large");
+    unchanged(&old, which);
+    if (!rank) vtk_drop(&old);
+  }
+  destroy(&w);
+}
+
+int main(int argc, char **argv) {
+  MPI_Init(&argc, &argv);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  MUST(argc > 1);
+  folder = argv[1];
+  mpm_mpi *mpi = open_world();
+  test_particles(mpi);
+  test_grid(mpi);
+  test_head(mpi);
+  test_refusals(mpi);
+  MUST(!mpm_mpi_close(mpi));
+  MUST(held == 0);
+  test_failures();
+  mpi = open_world();
+  test_full(mpi);
+  MUST(!mpm_mpi_close(mpi));
+  MPI_Finalize();
+  return 0;
+}
