@@ -8,7 +8,7 @@ man:
 
 #: deb                   Debian's packages by dpkg-buildpackage, from what git has, in $(BUILD)/deb; lintian must be content
 deb:
-	@bash packaging/deb.sh $(abspath $(BUILD))/deb
+	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL -u BUILD bash packaging/deb.sh $(abspath $(BUILD))/deb
 
 .PHONY: check-gallery
 #: check-gallery         every program of the gallery on few particles: docs/gallery.md. PYTHON: one that has the package mpm
