@@ -17,7 +17,7 @@ static mpm_status prepare(const mpmi_heat_job *job) {
   mpm_context *c = settings->context;
   const int64_t slots = mpmi_slots(layout), blocks = layout->blocks.count;
   mpm_status status;
-  heat->tile_size = 4 * (int64_t)mpmi_tile_nodes(settings->grid);
+  heat->tile_size = mpmi_heat_tile_size(settings);
   heat->sums = (mpmi_heat_sums){.gained = 0.0};
   heat->iterations = 0;
   heat->checks_films = 0;
@@ -90,7 +90,7 @@ static mpm_status conduct(const mpmi_heat_job *job) {
   const int32_t implicit = job->step->settings->heat.conduction == MPM_CONDUCTION_IMPLICIT;
   mpm_status status;
   if ((status = mpmi_heat_meet(job)) || (status = mpmi_heat_temperatures(job)) ||
-      (status = mpmi_heat_surfaces(job)) || (status = mpmi_heat_conduct(job)))
+      (status = mpmi_heat_surfaces(job)) || (status = mpmi_heat_conduct(job, implicit)))
     return status;
   job->heat->checks_films = mpmi_heat_films(job) && !implicit;
   if ((status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job))) return status;
