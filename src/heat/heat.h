@@ -51,7 +51,7 @@ typedef struct mpmi_heat {
   double *tile; /* [tasks] tiles of one value per node */
   int64_t tile_capacity, tile_size;
   int32_t wants_diagonal; /* of the conductance, which changes with the step only */
-  mpmi_heat_part *part; /* [blocks] */
+  mpmi_heat_part *part;   /* [blocks] */
   int64_t part_capacity;
   /* With implicit conduction: slots of the nodes that are free, vectors of these, temperatures of all
    * nodes. */

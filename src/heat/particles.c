@@ -63,14 +63,13 @@ static void visit_block(const mpmi_heat_job *job, const mpmi_visit *visit, heat_
     if (takes_part(job, visit, m)) visit_set(job, visit, m, fn, give);
 }
 
+static const mpmi_kernels *kernels_of(const heat_batch *b) {
+  return b->job->step->settings->kernels;
+}
+
 static double *row_of(const heat_batch *b, int32_t row) {
   const mpmi_member_rows *rows = &b->job->step->work->rows.of[b->m];
   return rows->heat + row * rows->heat_ld + b->begin;
-}
-
-/* The kernel of the grid in a table by dim and width. */
-static int32_t width_of(const heat_batch *b) {
-  return b->set->grid->width;
 }
 
 /* Takes note of the first particle of a batch with a value that is not finite, where `bad`, the sum of their
@@ -129,9 +128,9 @@ static void add_tile(const mpmi_heat_job *job, const double *tile, int32_t value
 
 /* ---- to the nodes -------------------------------------------------------------------------------------- */
 static void give_batch(const heat_batch *b, double (*value)[BATCH]) {
+  const mpm_grid *grid = b->set->grid;
   const double *const rows[NODE] = {value[0], value[1], value[2], value[3]};
-  b->job->step->settings->kernels->give_values[b->set->grid->dim][width_of(b)](&b->at, b->begin, b->n, rows,
-                                                                               b->give);
+  kernels_of(b)->give_values[grid->dim][grid->width](&b->at, b->begin, b->n, rows, b->give);
 }
 
 static void project_batch(heat_batch *b) {
@@ -190,6 +189,7 @@ mpm_status mpmi_heat_places(const mpmi_heat_job *job) {
 /* ---- conduction ---------------------------------------------------------------------------------------- */
 static void conduct_batch(heat_batch *b) {
   const mpmi_heat_job *job = b->job;
+  const mpm_grid *grid = b->set->grid;
   const double k = b->rule->desc.conductivity;
   double conductance[BATCH];
   mpmi_conduction conduction = {.at = b->at,
@@ -200,19 +200,19 @@ static void conduct_batch(heat_batch *b) {
                                     job->heat->wants_diagonal ? tile_of(job, b->visit, DIAGONAL) : NULL};
   if (!(k > 0.0)) return;
   for (int64_t p = 0; p < b->n; ++p) conductance[p] = b->id[p] < 0 ? 0.0 : k * b->volume[p];
-  for (int32_t c = 0; mpmi_is_total_lagrangian(b->set->grid) && c < mpmi_tensor_components(b->set->grid->dim);
-       ++c)
+  for (int32_t c = 0; mpmi_is_total_lagrangian(grid) && c < mpmi_tensor_components(grid->dim); ++c)
     conduction.F[c] = mpmi_component_row(b->set, MPMI_F, 0, c);
-  job->step->settings->kernels->conduct[b->set->grid->dim][width_of(b)](&conduction, b->begin, b->n);
+  kernels_of(b)->conduct[grid->dim][grid->width](&conduction, b->begin, b->n);
 }
 
 static void conduct_block(void *user, const mpmi_visit *visit, double *tile) {
   const mpmi_heat_job *job = user;
   load_field(job, visit, &job->heat->nodes, MPMI_HEAT_TEMPERATURE);
-  double *outflow = clean_tile(job, visit, OUTFLOW), *diagonal = clean_tile(job, visit, DIAGONAL);
+  double *outflow = clean_tile(job, visit, OUTFLOW);
+  double *diagonal = job->heat->wants_diagonal ? clean_tile(job, visit, DIAGONAL) : NULL;
   visit_block(job, visit, conduct_batch, tile);
   add_tile(job, outflow, MPMI_HEAT_OUTFLOW, tile);
-  if (job->heat->wants_diagonal) add_tile(job, diagonal, MPMI_HEAT_DIAGONAL, tile);
+  if (diagonal) add_tile(job, diagonal, MPMI_HEAT_DIAGONAL, tile);
 }
 
 mpm_status mpmi_heat_conduct(const mpmi_heat_job *job, int32_t diagonal) {
@@ -224,12 +224,14 @@ mpm_status mpmi_heat_conduct(const mpmi_heat_job *job, int32_t diagonal) {
 
 /* ---- back to the particles ----------------------------------------------------------------------------- */
 static void take_batch(const heat_batch *b, double *to) {
-  b->job->step->settings->kernels->take_values[b->set->grid->dim][width_of(b)](
-      &b->at, b->begin, b->n, tile_of(b->job, b->visit, FIELD), to);
+  const mpm_grid *grid = b->set->grid;
+  kernels_of(b)->take_values[grid->dim][grid->width](&b->at, b->begin, b->n, tile_of(b->job, b->visit, FIELD),
+                                                     to);
 }
 
 static void gather_batch(heat_batch *b) {
-  double *now = row_of(b, 0), rise[BATCH], bad = 0.0, gained = b->job->heat->part[b->visit->block].gained;
+  double *now = row_of(b, MPMI_ROW_TEMPERATURE), rise[BATCH], bad = 0.0,
+         gained = b->job->heat->part[b->visit->block].gained;
   take_batch(b, rise);
   for (int64_t p = 0; p < b->n; ++p) {
     rise[p] = b->id[p] < 0 ? 0.0 : rise[p];
@@ -251,10 +253,10 @@ static void check_films(heat_batch *b) {
   take_batch(b, share);
   for (int64_t p = 0; p < b->n; ++p)
     if (b->id[p] >= 0 && share[p] > 1.0 + 1e-9) {
-      mpmi_failure_take(
-          &b->job->step->work->report[b->visit->task].failure,
-          mpmi_particle_failure(MPM_CUT_DT, b->m, b->id[p],
-                                "explicit conduction in a film that takes more than the difference to ambient"));
+      mpmi_failure_take(&b->job->step->work->report[b->visit->task].failure,
+                        mpmi_particle_failure(
+                            MPM_CUT_DT, b->m, b->id[p],
+                            "explicit conduction in a film that takes more than the difference to ambient"));
       return;
     }
 }

@@ -29,8 +29,8 @@ MPMI_INLINE double largest_of(int32_t dim, const mpm_particles *set, const doubl
   mpmi_lanes largest = zero;
   for (int64_t slot = 0; slot < mpmi_whole_chunks(set->slots); slot += MPMI_LANES) {
     const mpmi_lanes m = mpmi_lanes_load(mass + slot);
-    const mpmi_lanes of = (dim ? reference_squares(dim, set->grid, F, slot) : squares) *
-                          mpmi_lanes_load(volume + slot) / m;
+    const mpmi_lanes of =
+        (dim ? reference_squares(dim, set->grid, F, slot) : squares) * mpmi_lanes_load(volume + slot) / m;
     largest = mpmi_lanes_max(largest, mpmi_lanes_where(m > 0.0, of));
   }
   return mpmi_lanes_largest(largest);

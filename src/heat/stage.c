@@ -140,15 +140,15 @@ double mpmi_heat_of(const mpmi_heat_rule *rule, const mpm_particles *set) {
 
 /* Gives a set its new temperatures, with the heat of dissipation. Returns that. */
 static double commit_set(const mpmi_heat_rule *rule, const mpmi_member_rows *rows, const mpm_particles *set) {
-  const double *now = rows->heat, *dissipated = rows->heat + MPMI_ROW_DISSIPATED * rows->heat_ld;
+  const double *dissipated = rows->heat + MPMI_ROW_DISSIPATED * rows->heat_ld;
   const double *mass = mpmi_f64(set, MPMI_MASS, 0);
-  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  const size_t bytes = (size_t)set->slots * sizeof(double);
   double *T = mpmi_f64(set, set->thermal.temperature, 0), sum = 0.0;
-  for (int64_t slot = 0; slot < set->slots; ++slot) {
-    if (id[slot] < 0) continue;
-    T[slot] = now[slot];
-    if (set->thermal.expansion != 0.0) mpmi_f64(set, set->thermal.stress_temperature, 0)[slot] = now[slot];
-    if (!(rule->desc.dissipated_share > 0.0)) continue;
+  memcpy(T, rows->heat, bytes);
+  if (set->thermal.expansion != 0.0)
+    memcpy(mpmi_f64(set, set->thermal.stress_temperature, 0), rows->heat, bytes);
+  for (int64_t slot = 0; slot < set->slots && rule->desc.dissipated_share > 0.0; ++slot) {
+    if (!(mass[slot] > 0.0)) continue;
     const double heat = rule->desc.dissipated_share * dissipated[slot];
     T[slot] += heat / (mass[slot] * rule->desc.specific_heat);
     sum += heat;

@@ -21,7 +21,8 @@ BASIS(open_bspline3)
 #define SCALARS(dim, width)                                                                                  \
   void KERNEL(give_values_##dim##_##width)(const mpmi_scalars *, int64_t, int64_t, const double *const *,    \
                                            double *);                                                        \
-  void KERNEL(take_values_##dim##_##width)(const mpmi_scalars *, int64_t, int64_t, const double *, double *); \
+  void KERNEL(take_values_##dim##_##width)(const mpmi_scalars *, int64_t, int64_t, const double *,           \
+                                           double *);                                                        \
   void KERNEL(conduct_##dim##_##width)(const mpmi_conduction *, int64_t, int64_t);
 #define PER_DIM(dim)                                                                                         \
   SCALARS(dim, 2)                                                                                            \

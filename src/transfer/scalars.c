@@ -119,7 +119,8 @@ MPMI_INLINE void find_flux(int32_t dim, int32_t width, int32_t total, const mpmi
   for (int64_t q = 0; q < MPMI_CHUNK; q += MPMI_LANES) {
     const mpmi_mask conducts = mpmi_lanes_load(job->conductance + s + q) > 0.0;
     mpmi_lanes slope[3];
-    for (int32_t k = 0; k < last; ++k) slope[k] = sum_rows(width, rows->g[k], (double(*)[MPMI_CHUNK])W->w[last], q);
+    for (int32_t k = 0; k < last; ++k)
+      slope[k] = sum_rows(width, rows->g[k], (double(*)[MPMI_CHUNK])W->w[last], q);
     slope[last] = sum_rows(width, rows->w, (double(*)[MPMI_CHUNK])W->g[last], q);
     for (int32_t i = 0; i < dim; ++i) {
       mpmi_lanes sum = mpmi_lanes_load(A->at[i][i] + q) * slope[i];
@@ -146,7 +147,8 @@ MPMI_INLINE void add_row(double *to, mpmi_v4 row) {
 MPMI_INLINE void add_outflow(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
                              const mpmi_rows *last, double (*flux)[MPMI_CHUNK], double *restrict stencil) {
   const int32_t edge = MPMI_TILE_EDGE(dim, width), mid = dim >= 2 ? dim - 2 : 0;
-  const mpmi_v4 w = mpmi_load4(last->w + 4 * p), along = mpmi_scale4(flux[dim - 1][p], mpmi_load4(last->g[0] + 4 * p));
+  const mpmi_v4 w = mpmi_load4(last->w + 4 * p),
+                along = mpmi_scale4(flux[dim - 1][p], mpmi_load4(last->g[0] + 4 * p));
   const mpmi_v4 first = mpmi_scale4(flux[0][p], w), second = mpmi_scale4(flux[mid][p], w);
   MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
     if (dim < 3 && i > 0) break;
@@ -161,7 +163,8 @@ MPMI_INLINE void add_outflow(int32_t dim, int32_t width, const mpmi_weights *W, 
       if (dim == 1)
         add_row(row, plane);
       else
-        mpmi_store4(row, mpmi_fma4(mpmi_fma4(mpmi_load4(row), W->w[mid][j][p], plane), W->g[mid][j][p], slope));
+        mpmi_store4(row,
+                    mpmi_fma4(mpmi_fma4(mpmi_load4(row), W->w[mid][j][p], plane), W->g[mid][j][p], slope));
     }
   }
 }
