@@ -120,7 +120,7 @@ void mpmi_heat_prescribe(const mpmi_heat_job *job);
 /* Finds the increments of the other nodes from the powers that there are. */
 mpm_status mpmi_heat_advance(const mpmi_heat_job *job);
 /* Takes increments into the temperatures, and counts what came through the faces. */
-void mpmi_heat_settle(const mpmi_heat_job *job);
+mpm_status mpmi_heat_settle(const mpmi_heat_job *job);
 
 /* ---- implicit.c -------------------------------------------------------------------------------------- */
 /* Finds the increments so that they are those of what flows at the end, where the flow then is. */

@@ -98,8 +98,7 @@ static mpm_status conduct(const mpmi_heat_job *job) {
   for (int64_t slot = 0; implicit && slot < mpmi_slots(job->step->layout); ++slot)
     mpmi_heat_node(job->heat, slot)[MPMI_HEAT_TEMPERATURE] = job->heat->start[slot];
   mpmi_heat_prescribe(job);
-  mpmi_heat_settle(job);
-  return MPM_OK;
+  return mpmi_heat_settle(job);
 }
 
 mpm_status mpmi_heat_stage(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history) {

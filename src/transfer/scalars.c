@@ -3,8 +3,8 @@
  *   given   n_i += w_ip a_p                  taken   a_p = sum w_ip n_i
  *   flows   f_i += k_p V_p grad w_ip . A_p sum grad w_jp T_j
  *
- * Stencils are summed over the outer axes, a row of nodes at a time; what is left of each particle then is one
- * row, which particles sum up side by side. */
+ * Stencils are summed over the outer axes, a row of nodes at a time. What is left of each particle then is
+ * one row of nodes, and those of several particles are summed side by side. */
 #include "transfer/scalars.h"
 #include "material/pull_back.h"
 #include "simd/pack.h"
@@ -53,7 +53,8 @@ MPMI_INLINE void sum_outer(int32_t dim, int32_t width, int32_t slopes, const mpm
 }
 
 /* Sums rows over their nodes, with weights along the last axis, from particle q on. */
-MPMI_INLINE mpmi_lanes sum_rows(int32_t width, const double *rows, double (*weight)[MPMI_CHUNK], int64_t q) {
+MPMI_INLINE mpmi_lanes sum_rows(int32_t width, const double *rows, const double (*weight)[MPMI_CHUNK],
+                                int64_t q) {
   mpmi_lanes node[4];
   mpmi_separate4(rows + 4 * q, node);
   mpmi_lanes sum = mpmi_lanes_load(weight[0] + q) * node[0];
@@ -69,7 +70,7 @@ MPMI_INLINE void take_values(int32_t dim, int32_t width, const mpmi_scalars *at,
     at->weights(at->axis, 0, &at->points, begin + s, MPMI_CHUNK, &W);
     for (int64_t p = 0; p < MPMI_CHUNK; ++p) sum_outer(dim, width, 0, &W, p, field, &rows);
     for (int64_t q = 0; q < MPMI_CHUNK; q += MPMI_LANES)
-      mpmi_lanes_store(to + s + q, sum_rows(width, rows.w, W.w[dim - 1], q));
+      mpmi_lanes_store(to + s + q, sum_rows(width, rows.w, (const double(*)[MPMI_CHUNK])W.w[dim - 1], q));
   }
 }
 
@@ -119,9 +120,8 @@ MPMI_INLINE void find_flux(int32_t dim, int32_t width, int32_t total, const mpmi
   for (int64_t q = 0; q < MPMI_CHUNK; q += MPMI_LANES) {
     const mpmi_mask conducts = mpmi_lanes_load(job->conductance + s + q) > 0.0;
     mpmi_lanes slope[3];
-    for (int32_t k = 0; k < last; ++k)
-      slope[k] = sum_rows(width, rows->g[k], (double(*)[MPMI_CHUNK])W->w[last], q);
-    slope[last] = sum_rows(width, rows->w, (double(*)[MPMI_CHUNK])W->g[last], q);
+    for (int32_t k = 0; k < last; ++k) slope[k] = sum_rows(width, rows->g[k], W->w[last], q);
+    slope[last] = sum_rows(width, rows->w, W->g[last], q);
     for (int32_t i = 0; i < dim; ++i) {
       mpmi_lanes sum = mpmi_lanes_load(A->at[i][i] + q) * slope[i];
       for (int32_t j = 0; total && j < dim; ++j)
