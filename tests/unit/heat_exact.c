@@ -26,7 +26,7 @@ static mpm_particles *open_sheared(world *w, int32_t dim, const basis_option *ba
   return set;
 }
 
-/* Returns a wave along the first two axes, of which the second has this sign, at each particle; to be freed. */
+/* Returns a wave along the first two axes, the second with this sign, at each particle; to be freed. */
 static double *wave_along(const world *w, mpm_particles *set, double sign) {
   const int64_t n = mpm_particles_count(set);
   double *x = fetch(w, set, "reference_position", w->dim), *wave = malloc((size_t)n * sizeof *wave);
