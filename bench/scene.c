@@ -140,6 +140,30 @@ static mpm_status set_velocities(mpm_particles *set, const bench_case *of, const
   return status;
 }
 
+/* Temperatures that change along the first axis. With this conductivity the steps of the motion are as long
+ * as explicit conduction allows, to a third. */
+static mpm_status add_heat(bench_scene *scene, const bench_case *of) {
+  enum { PIECE = 4096 };
+  static double x[3 * PIECE], T[PIECE];
+  static int64_t id[PIECE];
+  const int64_t n = mpm_particles_count(scene->body);
+  mpm_heat_desc d;
+  mpm_status status = mpm_heat_desc_init(&d, sizeof d);
+  d.specific_heat = 1.0;
+  d.conductivity = 0.2;
+  if (!status) status = mpm_stepper_set_heat(scene->stepper, scene->body, &d);
+  if (!status && of->extras == BENCH_HEAT_IMPLICIT)
+    status = mpm_stepper_set_conduction(scene->stepper, MPM_CONDUCTION_IMPLICIT, 1e-8);
+  for (int64_t begin = 0; begin < n && !status; begin += PIECE) {
+    const int64_t count = n - begin < PIECE ? n - begin : PIECE;
+    for (int64_t i = 0; i < count; ++i) id[i] = begin + i;
+    if ((status = mpm_particles_get(scene->body, "position", MPM_F64, of->dim, count, id, x))) break;
+    for (int64_t i = 0; i < count; ++i) T[i] = sin(0.3 * x[i]);
+    status = mpm_particles_set(scene->body, "temperature", MPM_F64, 1, count, id, T);
+  }
+  return status;
+}
+
 /* A constant force, as a host would add one. */
 static mpm_status add_constant(void *user, const mpm_particle_batch *batch, double *add) {
   (void)user;
@@ -243,6 +267,7 @@ static mpm_status add_extras(bench_scene *scene, const bench_case *of, const lat
   if (of->extras == BENCH_OBSTACLES) status = add_obstacles(scene, of, l);
   if (scene->part && !(status = mpm_contact_desc_init(&contact, sizeof contact)))
     status = mpm_stepper_set_contact(scene->stepper, 0, 1, &contact);
+  if (of->extras == BENCH_HEAT || of->extras == BENCH_HEAT_IMPLICIT) status = add_heat(scene, of);
   if (of->extras == BENCH_FORCE) status = mpm_stepper_set_force(scene->stepper, add_constant, NULL);
   for (int32_t face = 0; face < 2 * of->dim && of->extras == BENCH_WALLS && !status; ++face)
     status = mpm_stepper_set_wall(scene->stepper, face, MPM_WALL_SLIP, 0.0);
@@ -278,6 +303,7 @@ mpm_status bench_open(bench_scene *scene, const bench_case *of, const bench_opti
   g.dim = of->dim;
   g.basis = of->basis;
   g.boundary_basis = of->extras == BENCH_OPEN_KNOTS ? MPM_BOUNDARY_OPEN_KNOT : MPM_BOUNDARY_GHOST;
+  g.total_lagrangian = of->extras == BENCH_TOTAL;
   for (int32_t k = 0; k < of->dim; ++k) {
     g.spacing[k] = 1.0;
     g.cells[k] = of->extras == BENCH_WALLS ? (int64_t)cells + 4 : (int64_t)(options->spread * cells);

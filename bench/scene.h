@@ -16,7 +16,10 @@ enum {
   BENCH_REMEDY,       /* against locking */
   BENCH_OBSTACLES,    /* ten, which nothing comes near */
   BENCH_CORNER, /* a corner of the body, nine cells wide, is another body in contact: 999 shared nodes */
-  BENCH_HALVES  /* one half of the body is another body in contact */
+  BENCH_HALVES, /* one half of the body is another body in contact */
+  BENCH_TOTAL,  /* a total Lagrangian grid */
+  BENCH_HEAT,   /* the body conducts, in explicit steps */
+  BENCH_HEAT_IMPLICIT
 };
 
 typedef struct bench_case {

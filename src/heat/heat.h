@@ -3,6 +3,7 @@
  *   stage.c     the order of it; what goes in and out
  *   nodes.c     sums on nodes, nodes that are tied, nodes on faces with a prescribed temperature
  *   particles.c what particles give to nodes and take from them
+ *   rate.c      the stable step of explicit conduction
  *   implicit.c  the end of the step by conjugate gradients
  *   surfaces.c  what comes through surfaces
  *
@@ -47,9 +48,10 @@ typedef struct mpmi_heat {
   int64_t version, walls; /* of the layout, and of the kinds of faces, for which they were found */
   double *met;            /* [ties] of nodes on faces: the temperature that the material had there */
   int64_t tie_capacity;
-  double *tile; /* [tasks] to gather from */
+  double *tile; /* [tasks] tiles of one value per node */
   int64_t tile_capacity, tile_size;
-  mpmi_heat_part *part; /* [blocks] */
+  int32_t wants_diagonal; /* of the conductance, which changes with the step only */
+  mpmi_heat_part *part;   /* [blocks] */
   int64_t part_capacity;
   /* With implicit conduction: slots of the nodes that are free, vectors of these, temperatures of all
    * nodes. */
@@ -91,12 +93,14 @@ static inline double *mpmi_heat_flow(const mpmi_heat *heat, int64_t slot) {
 }
 
 /* ---- particles.c ------------------------------------------------------------------------------------- */
+/* Returns how many doubles the tiles of a task take. */
+int64_t mpmi_heat_tile_size(const mpmi_settings *settings);
 /* Sums capacity, heat, power and mass of the particles on the nodes. */
 mpm_status mpmi_heat_project(const mpmi_heat_job *job);
 /* Sums capacity times position, in the place of what flows. */
 mpm_status mpmi_heat_places(const mpmi_heat_job *job);
-/* Finds what the nodes' temperatures conduct, and the diagonal. */
-mpm_status mpmi_heat_conduct(const mpmi_heat_job *job);
+/* Finds what the nodes' temperatures conduct, and the diagonal where it is asked for, which is 0 else. */
+mpm_status mpmi_heat_conduct(const mpmi_heat_job *job, int32_t diagonal);
 /* Adds the increments of the nodes to the particles' temperatures. */
 mpm_status mpmi_heat_gather(const mpmi_heat_job *job);
 
@@ -116,7 +120,7 @@ void mpmi_heat_prescribe(const mpmi_heat_job *job);
 /* Finds the increments of the other nodes from the powers that there are. */
 mpm_status mpmi_heat_advance(const mpmi_heat_job *job);
 /* Takes increments into the temperatures, and counts what came through the faces. */
-void mpmi_heat_settle(const mpmi_heat_job *job);
+mpm_status mpmi_heat_settle(const mpmi_heat_job *job);
 
 /* ---- implicit.c -------------------------------------------------------------------------------------- */
 /* Finds the increments so that they are those of what flows at the end, where the flow then is. */

@@ -71,7 +71,7 @@ static mpm_status apply(const mpmi_heat_job *job) {
   const double *p = vector(heat, P), *capacity = vector(heat, CAPACITY);
   double *q = vector(heat, Q);
   spread(job, p, &heat->nodes, MPMI_HEAT_TEMPERATURE);
-  const mpm_status status = mpmi_heat_conduct(job);
+  const mpm_status status = mpmi_heat_conduct(job, 0);
   if (status) return status;
   mpmi_heat_films(job);
   for (int64_t row = 0; row < heat->rows; ++row)
@@ -155,7 +155,7 @@ mpm_status mpmi_heat_solve(const mpmi_heat_job *job) {
   spread(job, vector(heat, X), &heat->nodes, MPMI_HEAT_TEMPERATURE);
   for (int64_t slot = 0; slot < slots; ++slot)
     mpmi_heat_node(heat, slot)[MPMI_HEAT_TEMPERATURE] += heat->start[slot];
-  if ((status = mpmi_heat_conduct(job))) return status;
+  if ((status = mpmi_heat_conduct(job, 0))) return status;
   mpmi_heat_films(job);
   spread(job, vector(heat, X), &heat->flow, MPMI_HEAT_INCREMENT);
   return MPM_OK;

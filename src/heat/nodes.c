@@ -246,7 +246,15 @@ static void add_increment(const mpmi_heat *heat, int64_t slot) {
   mpmi_heat_node(heat, slot)[MPMI_HEAT_TEMPERATURE] += mpmi_heat_flow(heat, slot)[MPMI_HEAT_INCREMENT];
 }
 
-void mpmi_heat_settle(const mpmi_heat_job *job) {
+static void untied_rises(void *data, int64_t task) {
+  const mpmi_heat_job *job = data;
+  const mpmi_share share = mpmi_share_of(job->step->settings, mpmi_slots(job->step->layout), task);
+  for (int64_t slot = share.begin; slot < share.end; ++slot)
+    if (job->heat->ties.tie_of[slot] < 0) add_increment(job->heat, slot);
+}
+
+mpm_status mpmi_heat_settle(const mpmi_heat_job *job) {
+  const mpmi_settings *settings = job->step->settings;
   const mpmi_constraints *ties = &job->heat->ties;
   for (int64_t i = 0; i < ties->tie_count; ++i) {
     const mpmi_tie *tie = &ties->tie[i];
@@ -260,7 +268,5 @@ void mpmi_heat_settle(const mpmi_heat_job *job) {
     for (int64_t d = tie->first; d < tie->first + tie->count; ++d)
       add_increment(job->heat, ties->follower[d].slot);
   }
-  const int64_t slots = mpmi_slots(job->step->layout);
-  for (int64_t slot = 0; slot < slots; ++slot)
-    if (ties->tie_of[slot] < 0) add_increment(job->heat, slot);
+  return mpmi_run_tasks(settings, 0, settings->tasks, untied_rises, (void *)(uintptr_t)job);
 }

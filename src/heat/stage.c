@@ -17,7 +17,7 @@ static mpm_status prepare(const mpmi_heat_job *job) {
   mpm_context *c = settings->context;
   const int64_t slots = mpmi_slots(layout), blocks = layout->blocks.count;
   mpm_status status;
-  heat->tile_size = 4 * (int64_t)mpmi_tile_nodes(settings->grid);
+  heat->tile_size = mpmi_heat_tile_size(settings);
   heat->sums = (mpmi_heat_sums){.gained = 0.0};
   heat->iterations = 0;
   heat->checks_films = 0;
@@ -90,7 +90,7 @@ static mpm_status conduct(const mpmi_heat_job *job) {
   const int32_t implicit = job->step->settings->heat.conduction == MPM_CONDUCTION_IMPLICIT;
   mpm_status status;
   if ((status = mpmi_heat_meet(job)) || (status = mpmi_heat_temperatures(job)) ||
-      (status = mpmi_heat_surfaces(job)) || (status = mpmi_heat_conduct(job)))
+      (status = mpmi_heat_surfaces(job)) || (status = mpmi_heat_conduct(job, implicit)))
     return status;
   job->heat->checks_films = mpmi_heat_films(job) && !implicit;
   if ((status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job))) return status;
@@ -98,8 +98,7 @@ static mpm_status conduct(const mpmi_heat_job *job) {
   for (int64_t slot = 0; implicit && slot < mpmi_slots(job->step->layout); ++slot)
     mpmi_heat_node(job->heat, slot)[MPMI_HEAT_TEMPERATURE] = job->heat->start[slot];
   mpmi_heat_prescribe(job);
-  mpmi_heat_settle(job);
-  return MPM_OK;
+  return mpmi_heat_settle(job);
 }
 
 mpm_status mpmi_heat_stage(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history) {
@@ -140,15 +139,15 @@ double mpmi_heat_of(const mpmi_heat_rule *rule, const mpm_particles *set) {
 
 /* Gives a set its new temperatures, with the heat of dissipation. Returns that. */
 static double commit_set(const mpmi_heat_rule *rule, const mpmi_member_rows *rows, const mpm_particles *set) {
-  const double *now = rows->heat, *dissipated = rows->heat + MPMI_ROW_DISSIPATED * rows->heat_ld;
+  const double *dissipated = rows->heat + MPMI_ROW_DISSIPATED * rows->heat_ld;
   const double *mass = mpmi_f64(set, MPMI_MASS, 0);
-  const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
+  const size_t bytes = (size_t)set->slots * sizeof(double);
   double *T = mpmi_f64(set, set->thermal.temperature, 0), sum = 0.0;
-  for (int64_t slot = 0; slot < set->slots; ++slot) {
-    if (id[slot] < 0) continue;
-    T[slot] = now[slot];
-    if (set->thermal.expansion != 0.0) mpmi_f64(set, set->thermal.stress_temperature, 0)[slot] = now[slot];
-    if (!(rule->desc.dissipated_share > 0.0)) continue;
+  memcpy(T, rows->heat, bytes);
+  if (set->thermal.expansion != 0.0)
+    memcpy(mpmi_f64(set, set->thermal.stress_temperature, 0), rows->heat, bytes);
+  for (int64_t slot = 0; slot < set->slots && rule->desc.dissipated_share > 0.0; ++slot) {
+    if (!(mass[slot] > 0.0)) continue;
     const double heat = rule->desc.dissipated_share * dissipated[slot];
     T[slot] += heat / (mass[slot] * rule->desc.specific_heat);
     sum += heat;

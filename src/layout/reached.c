@@ -64,11 +64,13 @@ static int32_t first_place(const mpmi_blocks *b, int64_t block, int32_t k, doubl
   return place < 0 ? 0 : place > last ? last : place;
 }
 
-/* Narrows the cover of a block along an axis to its particles and a drift. */
+/* Narrows the cover of a block along an axis to its particles and a drift: of reference positions, which stay
+ * where they are, to what rounding may make of it. */
 static void narrow(const mpmi_layout *layout, int64_t block, int32_t k, mpmi_cover *cover) {
   const mpmi_blocks *b = &layout->blocks;
   const mpm_grid *grid = b->grid;
-  const double h = grid->desc.spacing[k], drift = MPMI_COVER_DRIFT * h, hair = 1e-6 * h;
+  const double h = grid->desc.spacing[k], hair = 1e-6 * h;
+  const double drift = mpmi_is_total_lagrangian(grid) ? hair : MPMI_COVER_DRIFT * h;
   const double tile_low = cover->centre[k] - cover->half[k], tile_high = cover->centre[k] + cover->half[k];
   double low = (double)INFINITY, high = (double)-INFINITY;
   for (int32_t m = 0; m < layout->member_count; ++m) {

@@ -14,7 +14,7 @@ static inline void mpmi_tile_use(const mpm_grid *grid, double *tile, int32_t val
   const size_t node = (size_t)mpmi_tile_nodes(grid) * sizeof(double);
   mpmi_slack(tile, 8 * node, (size_t)values * node);
 }
-/* Fills a tile with tile_values per node: all of the nodes' values, or the first half of 8. */
+/* Fills a tile with tile_values per node: all of the nodes' values, the first half of 8, or the first. */
 void mpmi_tile_load(const mpmi_kernels *kernels, const mpmi_blocks *b, int64_t block, const mpmi_nodal *nodes,
                     int32_t tile_values, double *tile);
 /* Prefetches the nodes that the block shares with its neighbours [begin, end), itself among them. */

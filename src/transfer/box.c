@@ -32,6 +32,16 @@ MPMI_INLINE void load_box(int32_t values, int32_t node_values, const mpmi_box *b
     }
 }
 
+/* Copies one value of each node. */
+MPMI_INLINE void load_value(int32_t node_values, const mpmi_box *box) {
+  for (int32_t i = 0; i < box->count[0]; ++i)
+    for (int32_t j = 0; j < box->count[1]; ++j) {
+      double *tile = box->tile + i * box->tile_stride[0] + j * box->tile_stride[1];
+      const double *nodes = box->nodes + node_values * (i * box->node_stride[0] + j * box->node_stride[1]);
+      for (int32_t k = 0; k < box->count[2]; ++k) tile[k] = nodes[node_values * k];
+    }
+}
+
 /* Asks for the nodes of a box, to the second-level cache. */
 void KERNEL(fetch_box)(int32_t values, const mpmi_box *box) {
   enum { LINE = 64 / (int32_t)sizeof(double) };
@@ -52,6 +62,8 @@ void KERNEL(add_box)(int32_t values, const mpmi_box *box) {
 void KERNEL(load_box)(int32_t values, int32_t node_values, const mpmi_box *box) {
   if (values == 8)
     load_box(8, 8, box);
+  else if (values == 1)
+    load_value(node_values, box);
   else
     load_box(4, node_values, box);
 }

@@ -13,7 +13,7 @@ typedef struct mpmi_box {
 typedef void (*mpmi_add_box_fn)(int32_t values, const mpmi_box *box);
 /* Prefetches the nodes. */
 typedef void (*mpmi_fetch_box_fn)(int32_t values, const mpmi_box *box);
-/* Copies nodes into the tile: 8 values from 8, or 4 from 4 or from the first half of 8. */
+/* Copies nodes into the tile: 8 values from 8, 4 from 4 or from the first half of 8, or the first alone. */
 typedef void (*mpmi_load_box_fn)(int32_t values, int32_t node_values, const mpmi_box *box);
 
 #endif

@@ -18,7 +18,16 @@ BASIS(open_bspline3)
 #define SCATTER(dim, width, form, name) void KERNEL(name)(const mpmi_scatter *, int64_t, int64_t);
 #define GATHER(dim, width, form, name)  mpmi_taken KERNEL(name)(const mpmi_gather *, int64_t, int64_t);
 #include "transfer/instances.h"
+#define SCALARS(dim, width)                                                                                  \
+  void KERNEL(give_values_##dim##_##width)(const mpmi_scalars *, int64_t, int64_t, const double *const *,    \
+                                           double *);                                                        \
+  void KERNEL(take_values_##dim##_##width)(const mpmi_scalars *, int64_t, int64_t, const double *,           \
+                                           double *);                                                        \
+  void KERNEL(conduct_##dim##_##width)(const mpmi_conduction *, int64_t, int64_t);
 #define PER_DIM(dim)                                                                                         \
+  SCALARS(dim, 2)                                                                                            \
+  SCALARS(dim, 3)                                                                                            \
+  SCALARS(dim, 4)                                                                                            \
   uint32_t KERNEL(move_##dim)(const mpmi_move *, int64_t);                                                   \
   uint32_t KERNEL(look_##dim)(const mpmi_move *, int64_t);                                                   \
   uint32_t KERNEL(sums_##dim)(const mpmi_sums_job *, int64_t, mpmi_sums *);                                  \
@@ -64,9 +73,11 @@ const mpmi_kernels KERNEL(kernels) = {
     .project = BY_DIM(project),
 #define BY_WIDTH(name)                                                                                       \
   { NULL, NULL, KERNEL(name##_2), KERNEL(name##_3), KERNEL(name##_4) }
-    .force_scatter = {{NULL},
-                      BY_WIDTH(force_scatter_1),
-                      BY_WIDTH(force_scatter_2),
-                      BY_WIDTH(force_scatter_3)},
+#define BY_DIM_AND_WIDTH(name)                                                                               \
+  { {NULL}, BY_WIDTH(name##_1), BY_WIDTH(name##_2), BY_WIDTH(name##_3) }
+    .force_scatter = BY_DIM_AND_WIDTH(force_scatter),
+    .give_values = BY_DIM_AND_WIDTH(give_values),
+    .take_values = BY_DIM_AND_WIDTH(take_values),
+    .conduct = BY_DIM_AND_WIDTH(conduct),
     .stiffness = BY_DIM(stiffness),
 };

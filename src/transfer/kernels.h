@@ -13,6 +13,7 @@
 #include "transfer/box.h"
 #include "transfer/gather.h"
 #include "transfer/move.h"
+#include "transfer/scalars.h"
 #include "transfer/scatter.h"
 #include "transfer/separation.h"
 #include "transfer/stiffness.h"
@@ -32,6 +33,9 @@ typedef struct mpmi_kernels {
   mpmi_push_fn push[4];
   mpmi_force_scatter_fn force_scatter[4][MPMI_MAX_WIDTH + 1];
   mpmi_stiffness_fn stiffness[4];
+  mpmi_give_values_fn give_values[4][MPMI_MAX_WIDTH + 1]; /* by dim, width */
+  mpmi_take_values_fn take_values[4][MPMI_MAX_WIDTH + 1];
+  mpmi_conduct_fn conduct[4][MPMI_MAX_WIDTH + 1];
   mpmi_separate_fn discriminate[4], fit[4];
   mpmi_project_fn project[4];
 } mpmi_kernels;

@@ -11,6 +11,7 @@
 #include "material/pull_back.h"
 #include "simd/pack.h"
 #include "simd/tensor.h"
+#include "transfer/plain.h"
 #include "transfer/scatter.h"
 
 /* The stencil's nodes are apart from the weights, which may then stay in registers from row to row; with 16
@@ -26,26 +27,6 @@
 typedef struct mpmi_first_order {
   _Alignas(64) double a[8 * MPMI_CHUNK], column[3][8 * MPMI_CHUNK];
 } mpmi_first_order;
-
-/* Scatters mass and momentum. */
-MPMI_INLINE void scatter_plain(int32_t dim, int32_t width, const mpmi_weights *W, int64_t p,
-                               const mpmi_first_order *of, double *restrict stencil) {
-  const int32_t edge = MPMI_TILE_EDGE(dim, width), last = dim - 1;
-  const mpmi_node a = mpmi_node_load(MPMI_LOW, of->a + 4 * p);
-  MPMI_UNROLL for (int32_t i = 0; i < width; ++i) {
-    if (dim < 3 && i > 0) break;
-    MPMI_UNROLL for (int32_t j = 0; j < width; ++j) {
-      if (dim < 2 && j > 0) break;
-      double outer = dim == 3 ? W->w[0][i][p] * W->w[1][j][p] : dim == 2 ? W->w[0][j][p] : 1.0;
-      const mpmi_node row = mpmi_node_scale(MPMI_LOW, outer, a);
-      double *node = stencil + 4 * (i * edge + j) * (dim == 1 ? 0 : edge);
-      MPMI_UNROLL for (int32_t k = 0; k < width; ++k) {
-        mpmi_node q = mpmi_node_load(MPMI_LOW, node + 4 * k);
-        mpmi_node_store(MPMI_LOW, node + 4 * k, mpmi_node_fma(MPMI_LOW, q, W->w[last][k][p], row));
-      }
-    }
-  }
-}
 
 /* Scatters mass and affine momentum: a is the function at the first node, column[k] its growth per node of
  * axis k. */
@@ -318,7 +299,7 @@ MPMI_INLINE void scatter(int32_t dim, int32_t width, int32_t form, const mpmi_sc
       MPMI_SETTLE(stencil);
       mpmi_prefetch(&job->streams, ahead, p);
       if (form == MPMI_SCATTER_4)
-        scatter_plain(dim, width, &W, p, &of, stencil);
+        mpmi_scatter_plain(dim, width, &W, p, of.a + 4 * p, stencil);
       else if (form == MPMI_SCATTER_4_AFFINE)
         scatter_linear(dim, width, &W, p, &of, stencil);
       else

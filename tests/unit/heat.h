@@ -32,7 +32,8 @@ static inline double heat_dt(const world *w, double diffusivity) {
   return 0.5 / (sum * diffusivity);
 }
 
-/* Adds the cases of heat_laws.c. */
+/* Add the cases of heat_laws.c and heat_exact.c. */
 void add_heat_laws(Suite *suite);
+void add_heat_exact(Suite *suite);
 
 #endif

@@ -804,5 +804,6 @@ Suite *heat_suite(void) {
   tcase_set_timeout(grid, 120);
   suite_add_tcase(suite, grid);
   add_heat_laws(suite);
+  add_heat_exact(suite);
   return suite;
 }
