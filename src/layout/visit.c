@@ -64,15 +64,11 @@ static void marked_task(void *data, int64_t k) {
   if (visit.block >= 0) m->walk.visit(m->walk.user, &visit);
 }
 
-mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t by_colour,
-                             int32_t calls_host, mpmi_visit_fn visit, void *user) {
-  mpm_status status = MPM_OK;
-  for (int32_t c = by_colour; c <= (by_colour ? MPMI_COLOURS : 0) && !status; ++c) {
-    marked m = {{&step->layout->worklist[c], visit, user}, mark, 0, step->settings->tasks};
-    for (int64_t i = 0; i < m.walk.list->count; ++i) m.count += mark[m.walk.list->block[i]] != 0;
-    if (m.count) status = mpmi_run_tasks(step->settings, calls_host, m.tasks, marked_task, &m);
-  }
-  return status;
+mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t calls_host,
+                             mpmi_visit_fn visit, void *user) {
+  marked m = {{&step->layout->worklist[0], visit, user}, mark, 0, step->settings->tasks};
+  for (int64_t i = 0; i < m.walk.list->count; ++i) m.count += mark[m.walk.list->block[i]] != 0;
+  return m.count ? mpmi_run_tasks(step->settings, calls_host, m.tasks, marked_task, &m) : MPM_OK;
 }
 
 void mpmi_visit_in_turn(const mpmi_step *step, mpmi_visit_fn visit, void *user) {
