@@ -255,8 +255,7 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
   if (!mpmi_detects_by_velocity(touch->rule)) touch->open = !(touch->gap <= grid->h_min);
 }
 
-/* Touches that are open at once cost a part of what others do, and lie side by side: tasks take a few in turn.
- */
+/* Touches that are open at once cost less than others, and lie side by side: tasks take a few in turn. */
 static void find_task(void *data, int64_t k) {
   const mpmi_contact_search *search = data;
   mpmi_contact_nodes *contact = search->contact;
