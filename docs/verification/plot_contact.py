@@ -28,6 +28,23 @@ def contact_slab():
 
 
 @plot
+def contact_release():
+    figure, ax = axes(2)
+    data = read("contact_release")
+    for panel, push in zip(ax, (0.05, 0.1)):
+        for name in ("linear", "GIMP", "quadratic", "cubic"):
+            at = rows(data, name=name, push=push)
+            if at["shift"]:
+                panel.plot(at["shift"], [1e3 * way for way in at["way"]], "o-", label=name)
+        panel.axhline(1e3 * rows(data, name="elements", push=push)["way"][0], color="k", linewidth=0.8)
+        panel.axhline(1e3 * 0.5 * push**2 / 1.06217783, color="k", linewidth=0.8, linestyle="--")
+        panel.set_xlabel("place of the floor in its cell / h (full: elements, dashed: rigid)")
+        panel.set_ylabel(f"way in 0.5 s / mm, pushed by {push} m/s")
+        panel.legend()
+    return figure
+
+
+@plot
 def contact_stack():
     figure, ax = axes(2)
     data = read("contact_stack")

@@ -1,12 +1,14 @@
 /* Clouds: the particles around the nodes of a meeting. They are found in two passes through the blocks around
- * these nodes, one that counts and one that writes, both colour by colour, so that each cloud has one order.
+ * these nodes, one that counts and one that writes. In each a task has clouds of its own, and goes through
+ * all blocks that have particles of these, in the order of colours: so each cloud has one order, whatever the
+ * number of tasks is, and no task waits for another where a colour has few blocks.
  *
  * A cloud reaches as far as a spline, whatever the basis is: planes between clouds that end where the linear
  * basis or GIMP does are tilted. */
 #include "contact/contact.h"
 #include "layout/reached.h"
+#include "layout/tasks.h"
 #include "layout/tile.h"
-#include "layout/visit.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,6 +32,11 @@ typedef struct cloud_job {
   int32_t fill;
 } cloud_job;
 
+/* Clouds [begin, end), those of a task. */
+typedef struct cloud_range {
+  int64_t begin, end;
+} cloud_range;
+
 /* ---- which blocks have particles near these nodes ------------------------------------------------------ */
 static void mark_near(const mpmi_contact_search *search, const cloud_basis *basis) {
   const mpmi_blocks *b = &search->step->layout->blocks;
@@ -52,21 +59,23 @@ static void mark_near(const mpmi_contact_search *search, const cloud_basis *basi
         for (int32_t z = from[2]; z <= to[2]; ++z) {
           const int32_t n = dim == 1 ? x : dim == 2 ? 3 * x + y : 9 * x + 3 * y + z;
           const int32_t other = b->neighbour[block][n];
-          if (other != MPMI_NO_BLOCK) contact->in_reach[other] = 1;
+          if (other == MPMI_NO_BLOCK) continue;
+          if (!contact->in_reach[other]) contact->reached[other].first = (int32_t)i;
+          contact->in_reach[other] = 1;
+          contact->reached[other].last = (int32_t)i;
         }
   }
 }
 
 /* ---- what a block knows of them ------------------------------------------------------------------------ */
-/* The clouds of the nodes of a tile, or -1, and by the first node of a stencil whether it meets any. */
+/* A task's clouds of the nodes of a tile, or -1, and by the first node of a stencil how many it meets. */
 typedef struct cloud_tile {
-  int32_t *cloud, *count; /* count: particles by first node of their stencils */
-  uint8_t *meets;
-  int32_t nodes, any, edge[3]; /* edge: 1 on axes that the grid does not have, which come first */
+  int32_t *cloud, *meets, *count; /* count: particles by first node of their stencils, then by node */
+  int32_t nodes, any, edge[3];    /* edge: 1 on axes that the grid does not have, which come first */
 } cloud_tile;
 
 static void load_neighbour(const mpmi_contact_nodes *contact, const mpmi_blocks *b, int64_t block, int32_t n,
-                           const mpmi_spans *spans, cloud_tile *tile) {
+                           const mpmi_spans *spans, const cloud_range *own, cloud_tile *tile) {
   const mpmi_span *x = &spans->at[0][n / 9], *y = &spans->at[1][n / 3 % 3], *z = &spans->at[2][n % 3];
   if (!x->length || !y->length || !z->length) return;
   const int64_t first = (int64_t)b->neighbour[block][n] * b->nodes;
@@ -76,64 +85,48 @@ static void load_neighbour(const mpmi_contact_nodes *contact, const mpmi_blocks 
         const int64_t slot =
             first + ((int64_t)(x->block + i) * b->edge + y->block + j) * b->edge + z->block + k;
         const int32_t at = ((x->tile + i) * tile->edge[1] + y->tile + j) * tile->edge[2] + z->tile + k;
-        tile->cloud[at] = contact->cloud_of[slot];
-        tile->any |= tile->cloud[at] >= 0;
+        const int32_t cloud = contact->cloud_of[slot];
+        if (cloud < own->begin || cloud >= own->end) continue;
+        tile->cloud[at] = cloud;
+        tile->any = 1;
       }
 }
 
-/* The places of the first nodes of stencils that meet a node. */
-typedef struct first_nodes {
-  int32_t low[3], high[3];
-} first_nodes;
-
-static first_nodes first_nodes_of(const cloud_tile *tile, int32_t width, int32_t node) {
-  first_nodes of;
-  for (int32_t k = 2; k >= 0; --k) {
-    const int32_t at = node % tile->edge[k], reach = tile->edge[k] > 1 ? width - 1 : 0;
-    of.low[k] = at > reach ? at - reach : 0;
-    of.high[k] = at < tile->edge[k] - 1 - reach ? at : tile->edge[k] - 1 - reach;
-    node /= tile->edge[k];
+/* Adds to the value of each node those of the other nodes of the stencil that begins there, or with ahead 0
+ * of the nodes at which stencils begin that have it, along one axis after the other. */
+static void sum_stencils(const cloud_tile *tile, int32_t width, int32_t ahead, int32_t *value) {
+  int32_t stride = 1;
+  for (int32_t k = 2; k >= 0; stride *= tile->edge[k--]) {
+    const int32_t edge = tile->edge[k];
+    for (int32_t line = 0; line < tile->nodes; line += stride * edge)
+      for (int32_t n = 0; n < edge; ++n) { /* nodes beyond are still as they were */
+        int32_t *at = value + line + (ahead ? n : edge - 1 - n) * stride;
+        for (int32_t r = 1; r < width && r < edge - n; ++r) {
+          const int32_t *from = at + (ahead ? r : -r) * stride;
+          for (int32_t s = 0; s < stride; ++s) at[s] += from[s];
+        }
+      }
   }
-  return of;
-}
-
-static void mark_first_nodes(const cloud_tile *tile, int32_t width, int32_t node) {
-  const first_nodes of = first_nodes_of(tile, width, node);
-  for (int32_t i = of.low[0]; i <= of.high[0]; ++i)
-    for (int32_t j = of.low[1]; j <= of.high[1]; ++j)
-      for (int32_t k = of.low[2]; k <= of.high[2]; ++k)
-        tile->meets[(i * tile->edge[1] + j) * tile->edge[2] + k] = 1;
-}
-
-static int64_t count_at(const cloud_tile *tile, int32_t width, int32_t node) {
-  const first_nodes of = first_nodes_of(tile, width, node);
-  int64_t count = 0;
-  for (int32_t i = of.low[0]; i <= of.high[0]; ++i)
-    for (int32_t j = of.low[1]; j <= of.high[1]; ++j)
-      for (int32_t k = of.low[2]; k <= of.high[2]; ++k)
-        count += tile->count[(i * tile->edge[1] + j) * tile->edge[2] + k];
-  return count;
 }
 
 /* The memory is that of eight values per node of the grid's own tile: it holds the wider one, too. */
-static cloud_tile load_tile(const cloud_job *job, int64_t block, double *memory) {
+static cloud_tile load_tile(const cloud_job *job, int64_t block, const cloud_range *own, double *memory) {
   const mpmi_contact_search *search = job->search;
   const mpmi_blocks *b = &search->step->layout->blocks;
   const mpm_grid *grid = b->grid;
-  const int32_t width = job->basis.width;
-  cloud_tile tile = {(int32_t *)(void *)memory, NULL, NULL, 1, 0, {1, 1, 1}};
+  cloud_tile tile = {.cloud = (int32_t *)(void *)memory, .nodes = 1, .edge = {1, 1, 1}};
   for (int32_t k = 3 - grid->dim; k < 3; ++k)
     tile.nodes *= tile.edge[k] = MPMI_TILE_EDGE(grid->dim, job->basis.spread);
   const int32_t nodes = tile.nodes;
-  tile.count = tile.cloud + nodes;
-  tile.meets = (uint8_t *)(tile.count + nodes);
+  tile.meets = tile.cloud + nodes;
+  tile.count = tile.meets + nodes;
   for (int32_t i = 0; i < nodes; ++i) tile.cloud[i] = -1;
   const mpmi_spans spans = mpmi_spans_of_stencil(b, block, job->basis.spread, job->basis.below);
-  for (int32_t n = 0; n < b->neighbours; ++n) load_neighbour(search->contact, b, block, n, &spans, &tile);
+  for (int32_t n = 0; n < b->neighbours; ++n)
+    load_neighbour(search->contact, b, block, n, &spans, own, &tile);
   if (!tile.any) return tile;
-  memset(tile.meets, 0, (size_t)nodes);
-  for (int32_t i = 0; i < nodes; ++i)
-    if (tile.cloud[i] >= 0) mark_first_nodes(&tile, width, i);
+  for (int32_t i = 0; i < nodes; ++i) tile.meets[i] = tile.cloud[i] >= 0;
+  sum_stencils(&tile, job->basis.width, 1, tile.meets);
   return tile;
 }
 
@@ -203,7 +196,10 @@ static void pull_back(const cloud_particles *of, const mpm_grid *grid, int64_t p
 static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of, const mpm_grid *grid,
                          int64_t p) {
   const cloud_tile *tile = of->tile;
-  const int32_t first = of->weights->node[p];
+  mpmi_cloud *clouds = contact->cloud;
+  mpmi_cloud_entry *entries = contact->entry;
+  const uint32_t slot = (uint32_t)(of->slot + p);
+  const int32_t first = of->weights->node[p], member = of->member, total = mpmi_is_total_lagrangian(grid);
   double volume = of->volume[of->slot + p];
   /* by their volume rings would turn normals away from the axis */
   if (of->radius && of->radius[of->slot + p] > 0.0) volume /= of->radius[of->slot + p];
@@ -213,16 +209,23 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
     for (int32_t j = 0; j < axis[1].width; ++j) {
       const double w = axis[0].w[i] * axis[1].w[j], own = axis[0].own[i] * axis[1].own[j];
       const double g0 = volume * axis[0].g[i] * axis[1].own[j], g1 = volume * axis[0].own[i] * axis[1].g[j];
+      const double g2 = volume * own, share = volume * w;
       const int32_t *cloud = tile->cloud + first + (i * tile->edge[1] + j) * tile->edge[2];
       for (int32_t k = 0; k < axis[2].width; ++k) {
         if (cloud[k] < 0 || !(w * axis[2].w[k] > 0.0)) continue;
-        mpmi_cloud *to = &contact->cloud[cloud[k]];
-        contact->entry[to->first + to->count++] = (mpmi_cloud_entry){
-            .slot = (uint32_t)(of->slot + p), .member = of->member, .volume = volume * w * axis[2].w[k]};
+        mpmi_cloud *to = &clouds[cloud[k]];
+        entries[to->first + to->count++] =
+            (mpmi_cloud_entry){.slot = slot, .member = member, .volume = share * axis[2].w[k]};
         /* the last axes are those of the grid */
-        double gradient[3] = {g0 * axis[2].own[k], g1 * axis[2].own[k], volume * own * axis[2].g[k]};
-        if (mpmi_is_total_lagrangian(grid)) pull_back(of, grid, p, gradient);
-        for (int32_t c = 0; c < 3; ++c) to->gradient[c] += gradient[c];
+        if (total) {
+          double gradient[3] = {g0 * axis[2].own[k], g1 * axis[2].own[k], g2 * axis[2].g[k]};
+          pull_back(of, grid, p, gradient);
+          for (int32_t c = 0; c < 3; ++c) to->gradient[c] += gradient[c];
+          continue;
+        }
+        to->gradient[0] += g0 * axis[2].own[k];
+        to->gradient[1] += g1 * axis[2].own[k];
+        to->gradient[2] += g2 * axis[2].g[k];
       }
     }
 }
@@ -230,25 +233,25 @@ static void add_particle(mpmi_contact_nodes *contact, const cloud_particles *of,
 /* Adds the counts of the tile to those of the clouds, which may be too large: a particle at the edge of its
  * stencil has no weight there. */
 static void add_counts(mpmi_contact_nodes *contact, const cloud_tile *tile, int32_t width) {
+  sum_stencils(tile, width, 0, tile->count);
   for (int32_t i = 0; i < tile->nodes; ++i)
-    if (tile->cloud[i] >= 0) contact->cloud[tile->cloud[i]].count += count_at(tile, width, i);
+    if (tile->cloud[i] >= 0) contact->cloud[tile->cloud[i]].count += tile->count[i];
 }
 
-static void visit_block(void *user, const mpmi_visit *visit) {
-  const cloud_job *job = user;
+static void visit_block(const cloud_job *job, int64_t task, int64_t block, const cloud_range *clouds) {
   mpmi_contact_search *search = job->search;
   const mpmi_step *step = search->step;
   const mpmi_layout *layout = step->layout;
   const mpm_grid *grid = layout->blocks.grid;
-  mpmi_tile_use(grid, step->work->scratch[visit->task].tile, 8);
-  const cloud_tile tile = load_tile(job, visit->block, step->work->scratch[visit->task].tile);
+  mpmi_tile_use(grid, step->work->scratch[task].tile, 8);
+  const cloud_tile tile = load_tile(job, block, clouds, step->work->scratch[task].tile);
   if (!tile.any) return;
   const int32_t is_own = job->basis.family == grid->family;
   const mpmi_weights_fn find_own = step->settings->kernels->weights[grid->family][grid->dim];
   const mpmi_weights_fn find = step->settings->kernels->weights[job->basis.family][grid->dim];
   mpmi_axis axis[3], own_axis[3];
   mpmi_weights W, own;
-  mpmi_block_axes(grid, layout->blocks.coord[visit->block], own_axis);
+  mpmi_block_axes(grid, layout->blocks.coord[block], own_axis);
   for (int32_t k = 0; k < grid->dim; ++k) {
     axis[k] = own_axis[k];
     axis[k].tile_base -= job->basis.below - grid->below; /* the corner of the wider tile */
@@ -256,7 +259,7 @@ static void visit_block(void *user, const mpmi_visit *visit) {
   memset(tile.count, 0, (size_t)tile.nodes * sizeof *tile.count);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpmi_member *member = &layout->member[m];
-    const int64_t begin = member->now.start[visit->block], end = member->now.start[visit->block + 1];
+    const int64_t begin = member->now.start[block], end = member->now.start[block + 1];
     if (begin == end) continue;
     const mpmi_points points = mpmi_points_of(member->set, 0);
     const int64_t *id = mpmi_i64(member->set, MPMI_ID, 0);
@@ -286,6 +289,39 @@ static void visit_block(void *user, const mpmi_visit *visit) {
     }
   }
   if (!job->fill) add_counts(search->contact, &tile, job->basis.width);
+}
+
+/* Clouds are as many for each task, or once they are counted have as many particles. */
+static int64_t first_of_task(const cloud_job *job, int64_t k) {
+  const mpmi_contact_nodes *contact = job->search->contact;
+  const int32_t tasks = job->search->step->settings->tasks;
+  if (!job->fill || k >= tasks) return contact->cloud_count * k / tasks;
+  const int64_t entry = contact->entry_count * k / tasks;
+  int64_t low = 0, high = contact->cloud_count;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    if (contact->cloud[middle].first < entry)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static void visit_task(void *data, int64_t k) {
+  const cloud_job *job = data;
+  const mpmi_layout *layout = job->search->step->layout;
+  const mpmi_contact_nodes *contact = job->search->contact;
+  const cloud_range own = {first_of_task(job, k), first_of_task(job, k + 1)};
+  for (int32_t c = 0; c < MPMI_COLOURS; ++c) {
+    const mpmi_worklist *list = &layout->worklist[1 + c];
+    for (int64_t i = 0; i < list->count; ++i) {
+      const int32_t block = list->block[i];
+      if (contact->in_reach[block] && contact->reached[block].first < own.end &&
+          contact->reached[block].last >= own.begin)
+        visit_block(job, k, block, &own);
+    }
+  }
 }
 
 double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *contact,
@@ -331,14 +367,17 @@ mpmi_cloud_frame mpmi_cloud_frame_of(const mpmi_blocks *b, const mpmi_cloud *clo
 }
 
 mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {
-  mpm_context *c = search->step->settings->context;
+  const mpmi_settings *settings = search->step->settings;
+  mpm_context *c = settings->context;
   mpmi_contact_nodes *contact = search->contact;
+  const int64_t blocks = search->step->layout->blocks.count;
   cloud_job job = {search, cloud_basis_of(search->step->layout->blocks.grid), 0};
-  mpm_status status =
-      MPMI_RESERVE_MORE(c, contact->in_reach, contact->reach_capacity, search->step->layout->blocks.count);
-  if (status) return status;
+  mpm_status status;
+  if ((status = MPMI_RESERVE_MORE(c, contact->in_reach, contact->reach_capacity, blocks)) ||
+      (status = MPMI_RESERVE_MORE(c, contact->reached, contact->reached_capacity, blocks)))
+    return status;
   mark_near(search, &job.basis);
-  if ((status = mpmi_visit_marked(search->step, contact->in_reach, 1, 0, visit_block, &job))) return status;
+  if ((status = mpmi_run_tasks(settings, 0, settings->tasks, visit_task, &job))) return status;
   contact->entry_count = 0;
   for (int64_t i = 0; i < contact->cloud_count; ++i) {
     contact->cloud[i].first = contact->entry_count; /* images count none */
@@ -347,7 +386,7 @@ mpm_status mpmi_clouds_fill(mpmi_contact_search *search) {
   }
   status = MPMI_RESERVE_MORE(c, contact->entry, contact->entry_capacity, contact->entry_count);
   job.fill = 1;
-  if (!status) status = mpmi_visit_marked(search->step, contact->in_reach, 1, 0, visit_block, &job);
+  if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, visit_task, &job);
   const int32_t unused = 3 - search->step->layout->blocks.grid->dim;
   for (int64_t i = 0; i < contact->cloud_count && unused; ++i)
     for (int32_t k = 0; k < 3; ++k)

@@ -18,7 +18,7 @@ typedef struct around {
   double *x[3], *weight, *half_edge; /* the last: half the edge of the cube that a particle has been */
   double *along, *off;               /* of the normal that is looked at */
 } around;
-enum { ROWS = 7 };
+enum { ROWS = 7, IN_TURN = 4 };
 
 static int64_t party_particles(const mpmi_contact_nodes *contact, const mpmi_party *party) {
   int64_t count = 0;
@@ -72,6 +72,20 @@ static void collect(around *of, int32_t which) {
 }
 
 /* ---- gaps ---------------------------------------------------------------------------------------------- */
+enum { AT_ONCE = 64 };
+
+/* Lists which of some particles may reach farther than `most`, without a branch that depends on where they
+ * are; returns how many there are. */
+static int32_t list_far(const double *along, const double *off, int32_t n, double sign, double half,
+                        double limit, double most, int32_t *list) {
+  int32_t count = 0;
+  for (int32_t p = 0; p < n; ++p) {
+    list[count] = p;
+    count += !(sign * along[p] + half <= most) & !(off[p] > limit);
+  }
+  return count;
+}
+
 /* Returns how far a party reaches along the unit vector n of the projection, or against it for the second
  * one: the largest x . n + R over its particles that are off the line through the node by no more than the
  * limit. most: the same without R. */
@@ -80,20 +94,27 @@ static double extent(const around *of, int32_t which, const double *n, double li
   const mpm_grid *grid = layout->blocks.grid;
   const mpmi_contact_nodes *contact = of->search->contact;
   const mpmi_party *party = of->party[which];
-  const double half = 0.5 * grid->h_min, sign = which ? -1.0 : 1.0, *along = of->along, *off = of->off;
+  const double half = 0.5 * grid->h_min, sign = which ? -1.0 : 1.0;
   int64_t at = of->points.first[which];
-  int32_t member = -1;
+  int32_t member = -1, list[AT_ONCE];
   mpmi_widths widths = {0};
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *cloud = &contact->cloud[i], *source = &contact->cloud[cloud->source];
     double seen[3] = {0.0, 0.0, 0.0};
     for (int32_t k = 0; k < grid->dim; ++k) seen[k] = cloud->mirrored >> k & 1 ? -n[k] : n[k];
-    for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
-      if (sign * along[at] + half <= most || off[at] > limit) continue;
-      const mpmi_cloud_entry *entry = &contact->entry[e];
-      if (entry->member != member) widths = mpmi_widths_of(layout->member[member = entry->member].set);
-      const double far = sign * along[at] + mpmi_half_width(&widths, entry->slot, of->half_edge[at], seen);
-      most = far > most ? far : most;
+    for (int64_t e = source->first, left = source->count; left > 0; e += AT_ONCE, left -= AT_ONCE) {
+      const int32_t some = left < AT_ONCE ? (int32_t)left : AT_ONCE;
+      const int32_t far_ones = list_far(of->along + at, of->off + at, some, sign, half, limit, most, list);
+      for (int32_t l = 0; l < far_ones; ++l) {
+        const double along = sign * of->along[at + list[l]];
+        const mpmi_cloud_entry *entry = &contact->entry[e + list[l]];
+        if (along + half <= most) continue;
+        if (entry->member != member) widths = mpmi_widths_of(layout->member[member = entry->member].set);
+        const double edge = of->half_edge[at + list[l]];
+        const double far = along + mpmi_half_width(&widths, entry->slot, edge, seen);
+        most = far > most ? far : most;
+      }
+      at += some;
     }
   }
   return most;
@@ -234,12 +255,13 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
   if (!mpmi_detects_by_velocity(touch->rule)) touch->open = !(touch->gap <= grid->h_min);
 }
 
+/* Touches that are open at once cost less than others, and lie side by side: tasks take a few in turn. */
 static void find_task(void *data, int64_t k) {
   const mpmi_contact_search *search = data;
   mpmi_contact_nodes *contact = search->contact;
-  const mpmi_share share = mpmi_share_of(search->step->settings, contact->touch_count, k);
-  for (int64_t i = share.begin; i < share.end; ++i)
-    if (!mpmi_is_of_surface(contact, &contact->touch[i]))
+  const int32_t tasks = search->step->settings->tasks;
+  for (int64_t i = 0; i < contact->touch_count; ++i)
+    if (i / IN_TURN % tasks == k && !mpmi_is_of_surface(contact, &contact->touch[i]))
       find_touch(search, &contact->touch[i], contact->work + k * contact->work_each);
 }
 

@@ -215,7 +215,7 @@ mpm_status mpmi_surface_gaps_find(mpmi_contact_search *search) {
   for (int32_t i = 0; i < contact->surface_count && !status; ++i) {
     surface_job job = {search, i};
     if (contact->by_surface[i] == contact->by_surface[i + 1]) continue;
-    status = mpmi_visit_marked(search->step, contact->in_reach, 0,
+    status = mpmi_visit_marked(search->step, contact->in_reach,
                                contact->surface[i].shape == MPM_SHAPE_DISTANCE, clear_block, &job);
     if (!status) status = mpmi_step_failure(search->step);
     if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, gap_task, &job);

@@ -104,8 +104,7 @@ static mpm_status add_with_others(sum_job *job, mpm_status status) {
   const mpmi_accumulation *sum = job->sum;
   mpmi_parts *parts = job->step->layout->parts;
   const int32_t values = sum->to->values;
-  if (!status)
-    status = mpmi_visit_marked(job->step, parts->is_boundary, 0, sum->calls_host, give_boundary, job);
+  if (!status) status = mpmi_visit_marked(job->step, parts->is_boundary, sum->calls_host, give_boundary, job);
   if (!status) status = mpmi_step_failure(job->step);
   status = mpmi_tiles_send(parts, values, job->step->layout->blocks.cover, status);
   if (!status) status = mpmi_visit_colour(job->step, parts->is_inner, 0, sum->calls_host, add_block, job);

@@ -15,6 +15,7 @@ void mpmi_contact_nodes_free(mpmi_contact_nodes *contact, mpm_context *c) {
   MPMI_FREE_ARRAY(c, contact->near_surface, contact->near_capacity);
   MPMI_FREE_ARRAY(c, contact->near_value, contact->value_capacity);
   MPMI_FREE_ARRAY(c, contact->in_reach, contact->reach_capacity);
+  MPMI_FREE_ARRAY(c, contact->reached, contact->reached_capacity);
   MPMI_FREE_ARRAY(c, contact->site_sum, contact->sum_capacity);
   MPMI_FREE_ARRAY(c, contact->by_surface, contact->by_surface_capacity);
   MPMI_FREE_ARRAY(c, contact->clearance, contact->clearance_capacity);

@@ -53,6 +53,11 @@ typedef struct mpmi_cloud {
   double gradient[3];   /* sum of V grad w: the surface integral of w n */
 } mpmi_cloud;
 
+/* The first and the last cloud to which particles of a block may belong. */
+typedef struct mpmi_reached {
+  int32_t first, last;
+} mpmi_reached;
+
 typedef struct mpmi_party {
   int64_t slot;                              /* of the master; -1 for a surface */
   int32_t body;                              /* or the code of a surface */
@@ -133,7 +138,8 @@ typedef struct mpmi_contact_nodes {
   int32_t *cloud_of;            /* [slots] the cloud of a node, or -1 */
   int64_t map_capacity, mapped; /* mapped: the version of the layout for which cloud_of was made */
   uint8_t *in_reach;            /* [blocks] 1: particles of the block may belong to clouds */
-  int64_t reach_capacity;
+  mpmi_reached *reached;        /* [blocks] and to which, where it is 1 */
+  int64_t reach_capacity, reached_capacity;
   int64_t *site_sum; /* [sites][2] meetings and parties, then the numbers of the first ones */
   int64_t sum_capacity;
   int64_t *by_surface; /* [surfaces + 1] then [touches of surfaces]: where those of each begin, and these */

@@ -71,12 +71,9 @@ static mpm_status walk_marked(const mpmi_step *step, const mpmi_worklist *list, 
   return m.count ? mpmi_run_tasks(step->settings, calls_host, m.tasks, marked_task, &m) : MPM_OK;
 }
 
-mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t by_colour,
-                             int32_t calls_host, mpmi_visit_fn visit, void *user) {
-  mpm_status status = MPM_OK;
-  for (int32_t c = by_colour; c <= (by_colour ? MPMI_COLOURS : 0) && !status; ++c)
-    status = walk_marked(step, &step->layout->worklist[c], mark, calls_host, visit, user);
-  return status;
+mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t calls_host,
+                             mpmi_visit_fn visit, void *user) {
+  return walk_marked(step, &step->layout->worklist[0], mark, calls_host, visit, user);
 }
 
 mpm_status mpmi_visit_colour(const mpmi_step *step, const uint8_t *mark, int32_t colour, int32_t calls_host,

@@ -19,11 +19,11 @@ mpm_status mpmi_visit_blocks(const mpmi_step *step, int32_t calls_host, mpmi_vis
 /* Visits blocks colour by colour: those that are visited at the same time share no node of their tiles, so
  * that what is added to nodes is added in one order. */
 mpm_status mpmi_visit_colours(const mpmi_step *step, int32_t calls_host, mpmi_visit_fn visit, void *user);
-/* Visits the blocks with particles that are marked, by their number, colour by colour or all at once;
- * tasks get equal numbers of them. */
-mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t by_colour,
-                             int32_t calls_host, mpmi_visit_fn visit, void *user);
-/* Visits those of one colour. */
+/* Visits the blocks with particles that are marked, by their number; for visits that write to no node. Tasks
+ * get equal numbers of them. */
+mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t calls_host,
+                             mpmi_visit_fn visit, void *user);
+/* Visits those of one colour, which may write to their tiles' nodes. */
 mpm_status mpmi_visit_colour(const mpmi_step *step, const uint8_t *mark, int32_t colour, int32_t calls_host,
                              mpmi_visit_fn visit, void *user);
 /* Visits one block after the other, by task 0; for visits that write anywhere. */

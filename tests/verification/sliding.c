@@ -83,7 +83,8 @@ slide_outcome slide_run(const slide *a) {
   const double h = a->h, two[2] = {0.0, 0.0};
   const floor_frame f = {{cos(a->turn), -sin(a->turn)}, {sin(a->turn), cos(a->turn)}};
   const double lift[2] = {a->shift * h * f.normal[0], a->shift * h * f.normal[1]};
-  const double push[2] = {a->speed * f.down[0], a->speed * f.down[1]};
+  const double faster = a->speed + a->push, keeps = a->keeps > 0.0 ? a->keeps : 0.99;
+  const double push[2] = {faster * f.down[0], faster * f.down[1]};
   const double area = a->radius > 0.0 ? PI * a->radius * a->radius : width * height;
   verify_world w;
   verify_setup setup;
@@ -105,7 +106,7 @@ slide_outcome slide_run(const slide *a) {
     verify_ok(&w, mpm_stable_dt(w.stepper, &dt));
     verify_step(&w, 0.4 * dt);
     for (int32_t m = 0; m < w.sets; ++m)
-      scale_velocities(&w, w.set[m], i < SETTLING * 4 / 5 ? 0.99 : 0.95, two);
+      scale_velocities(&w, w.set[m], i < SETTLING * 4 / 5 ? keeps : 0.95, two);
   }
   use(&w, &setup.stepper, &on, a, &f, 1, a->friction);
   scale_velocities(&w, body, 1.0, push);

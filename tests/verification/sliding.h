@@ -9,8 +9,10 @@
 typedef struct slide {
   int32_t support, basis; /* support: ON_BODY is one of prescribed particles */
   int32_t settled;        /* 1: under damping, before it is let go */
-  double h, radius;       /* radius: of a disc; 0: a block */
-  double slab;            /* thickness of elastic particles, of the block's law, on those of ON_BODY */
+  double keeps;     /* share of its velocity that a step of that leaves it; 0: 0.99, in which it swings */
+  double push;      /* velocity down the slope that a block gets which has settled sticking there */
+  double h, radius; /* radius: of a disc; 0: a block */
+  double slab;      /* thickness of elastic particles, of the block's law, on those of ON_BODY */
   double angle, friction, speed, end;
   double shift, turn; /* of the support: in cells, and against the grid; a wall has neither */
 } slide;
