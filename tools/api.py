@@ -17,7 +17,7 @@ import re
 import subprocess
 import sys
 
-HEADERS = ["types", "context", "grid", "material", "particles", "stepper", "operator", "contact", "obstacle", "surface",
+HEADERS = ["types", "parallel", "context", "grid", "material", "particles", "stepper", "operator", "contact", "obstacle", "surface",
            "adaption", "heat", "io"]
 SIZES = {"int8_t": 1, "uint8_t": 1, "char": 1, "int": 4, "int32_t": 4, "uint32_t": 4, "int64_t": 8, "uint64_t": 8, "double": 8,
          "float": 4, "mpm_status": 4}

@@ -218,6 +218,18 @@ namespace Mpm {
     /// <summary>the callback of mpm_stepper_set_linear_solver().</summary>
     public const int MPM_SOLVER_HOST = 100;
 
+    // How much of an exchange its receivers know beforehand.
+    /// <summary>both sides know who sends to whom: partners send and receive.</summary>
+    public const int MPM_EXCHANGE_KNOWN = 1;
+    /// <summary>receivers do not know from whom: particles that move, changes of the pattern.</summary>
+    public const int MPM_EXCHANGE_SPARSE = 2;
+
+    // What mpm_reduce_fn does.
+    /// <summary>the largest of all parts.</summary>
+    public const int MPM_REDUCE_MAX = 1;
+    /// <summary>the sum, modulo 2^64.</summary>
+    public const int MPM_REDUCE_SUM = 2;
+
     // How two bodies meet: mpm_contact_desc.kind.
     /// <summary>they push each other and never pull, with Coulomb friction (default).</summary>
     public const int MPM_CONTACT_UNILATERAL = 0;
@@ -289,6 +301,28 @@ namespace Mpm {
     /// <summary>material at it has a prescribed temperature.</summary>
     public const int MPM_HEAT_WALL_TEMPERATURE = 1;
   }
+
+  /// <summary>Starts an exchange and returns before it is done. out: ascending by part, never this one. most: of each
+  /// partner, a bound on what comes from it, [count]; NULL with MPM_EXCHANGE_SPARSE.</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int SendFn(IntPtr user, int exchange, int count, Message* @out, long* most);
+
+  /// <summary>Ends the exchange: all that was sent to this part, ascending by part.</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int ReceiveFn(IntPtr user, int* count, Message** @in);
+
+  /// <summary>values[count] of all parts into each of them (collective).</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int ReduceFn(IntPtr user, int op, long count, long* values);
+
+  /// <summary>all[parts]: value of each part (collective).</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate int GatherFn(IntPtr user, long value, long* all);
+
+  /// <summary>Called every 50 microseconds or so between send and receive, for transports that move only when called;
+  /// may be NULL.</summary>
+  [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+  public unsafe delegate void TransportPollFn(IntPtr user);
 
   /// <summary>A task of the library, which the host's executor calls with the task_data that it was given and a
   /// number k.</summary>
@@ -427,6 +461,84 @@ namespace Mpm {
     public static View Empty() {
       var it = new View();
       it.struct_size = (uint)sizeof(View);
+      return it;
+    }
+  }
+
+  /// <summary>Bytes for, or from, another part.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct Message {
+    /// <summary>to whom, or from whom.</summary>
+    public int part;
+    /// <summary>0.</summary>
+    public int reserved;
+    /// <summary>how many; 0 is sent too where the partner is known.</summary>
+    public long bytes;
+    /// <summary>out: the library's, unchanged until mpm_receive_fn returns; in: the host's, at a multiple of 64,
+    /// valid until the next mpm_send_fn.</summary>
+    public IntPtr data;
+  }
+
+  /// <summary>Ways between the parts.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct Transport {
+    /// <summary>sizeof(mpm_transport) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>of this context, 0 ... parts - 1.</summary>
+    public int part;
+    /// <summary>how many there are.</summary>
+    public int parts;
+    /// <summary>0.</summary>
+    public int reserved;
+    /// <summary>required, as the three that follow.</summary>
+    public IntPtr send;
+    /// <summary>ends what send started.</summary>
+    public IntPtr receive;
+    /// <summary>maxima and sums of integers.</summary>
+    public IntPtr reduce;
+    /// <summary>one integer of each part.</summary>
+    public IntPtr gather;
+    /// <summary>Called every 50 microseconds or so between send and receive, for transports that move only when
+    /// called; may be NULL.</summary>
+    public IntPtr poll;
+    /// <summary>passed to all of them.</summary>
+    public IntPtr user;
+  }
+
+  /// <summary>What one part does of a problem, and what that costs.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct ParallelInfo {
+    /// <summary>sizeof(mpm_parallel_info) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>parts that share nodes with this one.</summary>
+    public int neighbours;
+    /// <summary>with particles of this part.</summary>
+    public long blocks;
+    /// <summary>of them beside blocks of other parts.</summary>
+    public long boundary;
+    /// <summary>blocks of other parts beside them.</summary>
+    public long ghosts;
+    /// <summary>sent for sums on nodes.</summary>
+    public long bytes_nodes;
+    /// <summary>sent for particles that moved to another part.</summary>
+    public long bytes_moved;
+    /// <summary>such particles.</summary>
+    public long moved;
+    /// <summary>how often blocks were given to parts anew.</summary>
+    public long cuts;
+    /// <summary>largest weight of a part over the mean at the last sort, the same on all parts.</summary>
+    public double imbalance;
+    /// <summary>packing and adding what is exchanged.</summary>
+    public double seconds_packing;
+    /// <summary>in receive.</summary>
+    public double seconds_waiting;
+    /// <summary>in reduce and gather.</summary>
+    public double seconds_reducing;
+
+    /// <summary>Ready to be filled: zeros, and struct_size.</summary>
+    public static ParallelInfo Empty() {
+      var it = new ParallelInfo();
+      it.struct_size = (uint)sizeof(ParallelInfo);
       return it;
     }
   }
@@ -1346,6 +1458,18 @@ namespace Mpm {
     /// <summary>Gives back the memory of a view that mpm_particles_map() or mpm_grid_map() filled.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_view_release(View* view);
+
+    /// <summary>Number of this part and how many there are; 0 and 1 without a transport.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_context_part(IntPtr context, int* part, int* parts);
+
+    /// <summary>Particles of a set on all parts (collective). mpm_particles_count() is that of this part.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_total(IntPtr particles, long* n);
+
+    /// <summary>Tells what this part does, as of the last step; 1 in reset starts the counts anew.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_parallel_info(IntPtr stepper, int reset, ParallelInfo* info);
 
     /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond
     /// is written.</summary>

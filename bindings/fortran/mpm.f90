@@ -218,6 +218,18 @@ module mpm
   !> the callback of mpm_stepper_set_linear_solver().
   integer(c_int32_t), parameter :: MPM_SOLVER_HOST = 100_c_int32_t
 
+  !> How much of an exchange its receivers know beforehand.
+  !> both sides know who sends to whom: partners send and receive.
+  integer(c_int32_t), parameter :: MPM_EXCHANGE_KNOWN = 1_c_int32_t
+  !> receivers do not know from whom: particles that move, changes of the pattern.
+  integer(c_int32_t), parameter :: MPM_EXCHANGE_SPARSE = 2_c_int32_t
+
+  !> What mpm_reduce_fn does.
+  !> the largest of all parts.
+  integer(c_int32_t), parameter :: MPM_REDUCE_MAX = 1_c_int32_t
+  !> the sum, modulo 2^64.
+  integer(c_int32_t), parameter :: MPM_REDUCE_SUM = 2_c_int32_t
+
   !> How two bodies meet: mpm_contact_desc.kind.
   !> they push each other and never pull, with Coulomb friction (default).
   integer(c_int32_t), parameter :: MPM_CONTACT_UNILATERAL = 0_c_int32_t
@@ -318,6 +330,74 @@ module mpm
     !> for the library's use; NULL once released.
     type(c_ptr) :: owner
   end type mpm_view
+
+  !> Bytes for, or from, another part.
+  type, bind(c) :: mpm_message
+    !> to whom, or from whom.
+    integer(c_int32_t) :: part
+    !> 0.
+    integer(c_int32_t) :: reserved
+    !> how many; 0 is sent too where the partner is known.
+    integer(c_int64_t) :: bytes
+    !> out: the library's, unchanged until mpm_receive_fn returns; in: the host's, at a multiple of 64, valid until the
+    !! next mpm_send_fn.
+    type(c_ptr) :: data
+  end type mpm_message
+
+  !> Ways between the parts.
+  type, bind(c) :: mpm_transport
+    !> sizeof(mpm_transport) of the caller.
+    integer(c_int32_t) :: struct_size
+    !> of this context, 0 ... parts - 1.
+    integer(c_int32_t) :: part
+    !> how many there are.
+    integer(c_int32_t) :: parts
+    !> 0.
+    integer(c_int32_t) :: reserved
+    !> required, as the three that follow.
+    type(c_funptr) :: send
+    !> ends what send started.
+    type(c_funptr) :: receive
+    !> maxima and sums of integers.
+    type(c_funptr) :: reduce
+    !> one integer of each part.
+    type(c_funptr) :: gather
+    !> Called every 50 microseconds or so between send and receive, for transports that move only when called; may be
+    !! NULL.
+    type(c_funptr) :: poll
+    !> passed to all of them.
+    type(c_ptr) :: user
+  end type mpm_transport
+
+  !> What one part does of a problem, and what that costs.
+  type, bind(c) :: mpm_parallel_info
+    !> sizeof(mpm_parallel_info) of the caller.
+    integer(c_int32_t) :: struct_size
+    !> parts that share nodes with this one.
+    integer(c_int32_t) :: neighbours
+    !> with particles of this part.
+    integer(c_int64_t) :: blocks
+    !> of them beside blocks of other parts.
+    integer(c_int64_t) :: boundary
+    !> blocks of other parts beside them.
+    integer(c_int64_t) :: ghosts
+    !> sent for sums on nodes.
+    integer(c_int64_t) :: bytes_nodes
+    !> sent for particles that moved to another part.
+    integer(c_int64_t) :: bytes_moved
+    !> such particles.
+    integer(c_int64_t) :: moved
+    !> how often blocks were given to parts anew.
+    integer(c_int64_t) :: cuts
+    !> largest weight of a part over the mean at the last sort, the same on all parts.
+    real(c_double) :: imbalance
+    !> packing and adding what is exchanged.
+    real(c_double) :: seconds_packing
+    !> in receive.
+    real(c_double) :: seconds_waiting
+    !> in reduce and gather.
+    real(c_double) :: seconds_reducing
+  end type mpm_parallel_info
 
   !> Services of the host.
   type, bind(c) :: mpm_context_desc
@@ -1061,6 +1141,53 @@ module mpm
 
   ! Callbacks of the host: c_funloc() of a procedure of such an interface is what arguments and fields take.
   abstract interface
+    !> Starts an exchange and returns before it is done. out: ascending by part, never this one. most: of each partner,
+    !! a bound on what comes from it, [count]; NULL with MPM_EXCHANGE_SPARSE.
+    function mpm_send_fn(user, exchange, count, out, most) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      integer(c_int32_t), value :: exchange
+      integer(c_int32_t), value :: count
+      type(mpm_message), intent(in) :: out
+      integer(c_int64_t), intent(in) :: most(*)
+      integer(c_int32_t) :: answer
+    end function mpm_send_fn
+
+    !> Ends the exchange: all that was sent to this part, ascending by part.
+    function mpm_receive_fn(user, count, in) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      integer(c_int32_t), intent(inout) :: count
+      type(c_ptr), intent(out) :: in
+      integer(c_int32_t) :: answer
+    end function mpm_receive_fn
+
+    !> values[count] of all parts into each of them (collective).
+    function mpm_reduce_fn(user, op, count, values) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      integer(c_int32_t), value :: op
+      integer(c_int64_t), value :: count
+      integer(c_int64_t), intent(inout) :: values
+      integer(c_int32_t) :: answer
+    end function mpm_reduce_fn
+
+    !> all[parts]: value of each part (collective).
+    function mpm_gather_fn(user, value, all) bind(c) result(answer)
+      import
+      type(c_ptr), value :: user
+      integer(c_int64_t), value :: value
+      integer(c_int64_t), intent(inout) :: all
+      integer(c_int32_t) :: answer
+    end function mpm_gather_fn
+
+    !> Called every 50 microseconds or so between send and receive, for transports that move only when called; may be
+    !! NULL.
+    subroutine mpm_transport_poll_fn(user) bind(c)
+      import
+      type(c_ptr), value :: user
+    end subroutine mpm_transport_poll_fn
+
     !> A task of the library, which the host's executor calls with the task_data that it was given and a number k.
     subroutine mpm_task_fn(task_data, k) bind(c)
       import
@@ -1299,6 +1426,32 @@ module mpm
       type(mpm_view), intent(inout) :: view
       integer(c_int32_t) :: answer
     end function mpm_view_release
+
+    !> Number of this part and how many there are; 0 and 1 without a transport.
+    function mpm_context_part(context, part, parts) bind(c, name="mpm_context_part") result(answer)
+      import
+      type(c_ptr), value :: context
+      integer(c_int32_t), intent(inout) :: part
+      integer(c_int32_t), intent(inout) :: parts
+      integer(c_int32_t) :: answer
+    end function mpm_context_part
+
+    !> Particles of a set on all parts (collective). mpm_particles_count() is that of this part.
+    function mpm_particles_total(particles, n) bind(c, name="mpm_particles_total") result(answer)
+      import
+      type(c_ptr), value :: particles
+      integer(c_int64_t), intent(inout) :: n
+      integer(c_int32_t) :: answer
+    end function mpm_particles_total
+
+    !> Tells what this part does, as of the last step; 1 in reset starts the counts anew.
+    function mpm_stepper_parallel_info(stepper, reset, info) bind(c, name="mpm_stepper_parallel_info") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      integer(c_int32_t), value :: reset
+      type(mpm_parallel_info), intent(inout) :: info
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_parallel_info
 
     !> Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.
     function mpm_context_desc_init(desc, struct_size) bind(c, name="mpm_context_desc_init") result(answer)
@@ -2645,6 +2798,7 @@ module mpm
   !> Readies a struct: a descriptor gets the library's defaults, an output its struct_size and zeros.
   interface mpm_init
     module procedure init_mpm_view
+    module procedure init_mpm_parallel_info
     module procedure init_mpm_context_desc
     module procedure init_mpm_grid_desc
     module procedure init_mpm_material_batch
@@ -2663,10 +2817,11 @@ module mpm
     module procedure init_mpm_heat_desc
   end interface mpm_init
 
-  private :: init_mpm_view, init_mpm_context_desc, init_mpm_grid_desc, init_mpm_material_batch, &
-      init_mpm_material_desc, init_mpm_operator_info, init_mpm_stepper_desc, init_mpm_step_info, &
-      init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, init_mpm_obstacle_desc, &
-      init_mpm_surface_desc, init_mpm_adaption_desc, init_mpm_adaption_info, init_mpm_heat_desc
+  private :: init_mpm_view, init_mpm_parallel_info, init_mpm_context_desc, init_mpm_grid_desc, &
+      init_mpm_material_batch, init_mpm_material_desc, init_mpm_operator_info, init_mpm_stepper_desc, &
+      init_mpm_step_info, init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, &
+      init_mpm_obstacle_desc, init_mpm_surface_desc, init_mpm_adaption_desc, init_mpm_adaption_info, &
+      init_mpm_heat_desc
 
 contains
 
@@ -2682,6 +2837,23 @@ contains
     it%data = c_null_ptr
     it%owner = c_null_ptr
   end subroutine init_mpm_view
+
+  subroutine init_mpm_parallel_info(it)
+    type(mpm_parallel_info), intent(out) :: it
+    it%struct_size = int(c_sizeof(it), c_int32_t)
+    it%neighbours = 0
+    it%blocks = 0
+    it%boundary = 0
+    it%ghosts = 0
+    it%bytes_nodes = 0
+    it%bytes_moved = 0
+    it%moved = 0
+    it%cuts = 0
+    it%imbalance = 0.0_c_double
+    it%seconds_packing = 0.0_c_double
+    it%seconds_waiting = 0.0_c_double
+    it%seconds_reducing = 0.0_c_double
+  end subroutine init_mpm_parallel_info
 
   subroutine init_mpm_context_desc(it)
     type(mpm_context_desc), intent(out) :: it

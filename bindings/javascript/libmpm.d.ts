@@ -207,6 +207,14 @@ export interface Constants {
   readonly MPM_SOLVER_GMRES: 4;
   /** the callback of mpm_stepper_set_linear_solver() */
   readonly MPM_SOLVER_HOST: 100;
+  /** both sides know who sends to whom: partners send and receive */
+  readonly MPM_EXCHANGE_KNOWN: 1;
+  /** receivers do not know from whom: particles that move, changes of the pattern */
+  readonly MPM_EXCHANGE_SPARSE: 2;
+  /** the largest of all parts */
+  readonly MPM_REDUCE_MAX: 1;
+  /** the sum, modulo 2^64 */
+  readonly MPM_REDUCE_SUM: 2;
   /** they push each other and never pull, with Coulomb friction (default) */
   readonly MPM_CONTACT_UNILATERAL: 0;
   /** they pass through each other */
@@ -2138,6 +2146,9 @@ export interface Raw {
   mpm_status_name(status: number): number;
   mpm_status_text(status: number): number;
   mpm_view_release(view: number): number;
+  mpm_context_part(context: number, part: number, parts: number): number;
+  mpm_particles_total(particles: number, n: number): number;
+  mpm_stepper_parallel_info(stepper: number, reset: number, info: number): number;
   mpm_context_desc_init(desc: number, struct_size: number): number;
   mpm_context_create(desc: number, out: number): number;
   mpm_context_memory(context: number, bytes: number, peak_bytes: number): number;

@@ -160,6 +160,14 @@ const MPM_SOLVER_LDLT = Int32(3) # a direct solver, for symmetric systems that m
 const MPM_SOLVER_GMRES = Int32(4) # GMRES, for systems that are not symmetric
 const MPM_SOLVER_HOST = Int32(100) # the callback of mpm_stepper_set_linear_solver()
 
+# How much of an exchange its receivers know beforehand.
+const MPM_EXCHANGE_KNOWN = Int32(1) # both sides know who sends to whom
+const MPM_EXCHANGE_SPARSE = Int32(2) # receivers do not know from whom
+
+# What mpm_reduce_fn does. There is no sum of floating-point numbers: it would depend on the parts.
+const MPM_REDUCE_MAX = Int32(1) # the largest of all parts
+const MPM_REDUCE_SUM = Int32(2) # the sum, modulo 2^64
+
 # How two bodies meet: mpm_contact_desc.kind.
 const MPM_CONTACT_UNILATERAL = Int32(0) # they push each other and never pull, with Coulomb friction (default)
 const MPM_CONTACT_NONE = Int32(1) # they pass through each other
@@ -278,6 +286,62 @@ mutable struct mpm_view
 end
 Base.cconvert(::Type{Ptr{mpm_view}}, it::mpm_view) = it
 Base.unsafe_convert(::Type{Ptr{mpm_view}}, it::mpm_view) = Ptr{mpm_view}(pointer_from_objref(it))
+
+"""
+Bytes for, or from, another part.
+"""
+mutable struct mpm_message
+    part::Int32
+    reserved::Int32
+    bytes::Int64
+    data::Ptr{Cvoid}
+    mpm_message() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_message}}, it::mpm_message) = it
+Base.unsafe_convert(::Type{Ptr{mpm_message}}, it::mpm_message) = Ptr{mpm_message}(pointer_from_objref(it))
+
+"""
+Ways between the parts. All are called on the calling thread. Once one has failed, every collective call of the
+context returns MPM_E_CALLBACK.
+"""
+mutable struct mpm_transport
+    struct_size::UInt32
+    part::Int32
+    parts::Int32
+    reserved::Int32
+    send::Ptr{Cvoid}
+    receive::Ptr{Cvoid}
+    reduce::Ptr{Cvoid}
+    gather::Ptr{Cvoid}
+    poll::Ptr{Cvoid}
+    user::Ptr{Cvoid}
+    mpm_transport() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_transport}}, it::mpm_transport) = it
+Base.unsafe_convert(::Type{Ptr{mpm_transport}}, it::mpm_transport) = Ptr{mpm_transport}(pointer_from_objref(it))
+
+"""
+What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made or they were
+last reset; the caller sets struct_size.
+"""
+mutable struct mpm_parallel_info
+    struct_size::UInt32
+    neighbours::Int32
+    blocks::Int64
+    boundary::Int64
+    ghosts::Int64
+    bytes_nodes::Int64
+    bytes_moved::Int64
+    moved::Int64
+    cuts::Int64
+    imbalance::Float64
+    seconds_packing::Float64
+    seconds_waiting::Float64
+    seconds_reducing::Float64
+    mpm_parallel_info() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_parallel_info}}, it::mpm_parallel_info) = it
+Base.unsafe_convert(::Type{Ptr{mpm_parallel_info}}, it::mpm_parallel_info) = Ptr{mpm_parallel_info}(pointer_from_objref(it))
 
 """
 Services of the host. Fill the struct with mpm_context_desc_init(), then change what is wanted.
@@ -796,6 +860,43 @@ Base.unsafe_convert(::Type{Ptr{mpm_heat_info}}, it::mpm_heat_info) = Ptr{mpm_hea
 # Callbacks: what @cfunction(f, result, (arguments,)) takes for each type of C.
 
 """
+Starts an exchange and returns before it is done. out: ascending by part, never this one. most: of each partner, a
+bound on what comes from it, [count]; NULL with MPM_EXCHANGE_SPARSE. Returns 0, or < 0: then the context is unusable
+(MPM_E_CALLBACK), for the other parts are lost.
+
+f(user, exchange, count, out, most): @cfunction(f, Int32, (Ptr{Cvoid}, Int32, Int32, Ptr{mpm_message}, Ptr{Int64}))
+"""
+const mpm_send_fn = Ptr{Cvoid}
+
+"""
+Ends the exchange: all that was sent to this part, ascending by part. Returns as mpm_send_fn.
+
+f(user, count, in): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{Int32}, Ptr{Ptr{mpm_message}}))
+"""
+const mpm_receive_fn = Ptr{Cvoid}
+
+"""
+values[count] of all parts into each of them (collective). Returns as mpm_send_fn.
+
+f(user, op, count, values): @cfunction(f, Int32, (Ptr{Cvoid}, Int32, Int64, Ptr{Int64}))
+"""
+const mpm_reduce_fn = Ptr{Cvoid}
+
+"""
+all[parts]: value of each part (collective). Only when the blocks are cut anew. Returns as mpm_send_fn.
+
+f(user, value, all): @cfunction(f, Int32, (Ptr{Cvoid}, Int64, Ptr{Int64}))
+"""
+const mpm_gather_fn = Ptr{Cvoid}
+
+"""
+Called every 50 microseconds or so between send and receive, for transports that move only when called; may be NULL.
+
+f(user): @cfunction(f, Cvoid, (Ptr{Cvoid},))
+"""
+const mpm_transport_poll_fn = Ptr{Cvoid}
+
+"""
 A task of the library, which the host's executor calls with the task_data that it was given and a number k. A task
 neither throws nor blocks, and may run on any thread.
 
@@ -1060,6 +1161,29 @@ changed: whatever is written there harms no step beyond its numbers, and a libra
 """
 function mpm_view_release(view)
     return ccall((:mpm_view_release, libmpm), Int32, (Ptr{mpm_view},), view)
+end
+
+"""
+Number of this part and how many there are; 0 and 1 without a transport. Pointers may be NULL.
+"""
+function mpm_context_part(context, part, parts)
+    return ccall((:mpm_context_part, libmpm), Int32, (Ptr{mpm_context}, Ptr{Int32}, Ptr{Int32}), context, part, parts)
+end
+
+"""
+Particles of a set on all parts (collective). mpm_particles_count() is that of this part.
+"""
+function mpm_particles_total(particles, n)
+    return ccall((:mpm_particles_total, libmpm), Int32, (Ptr{mpm_particles}, Ptr{Int64}), particles, n)
+end
+
+"""
+Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
+struct_size is bad. Without a transport there is one part, and counts and seconds are 0.
+"""
+function mpm_stepper_parallel_info(stepper, reset, info)
+    return ccall((:mpm_stepper_parallel_info, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Ptr{mpm_parallel_info}),
+        stepper, reset, info)
 end
 
 """
@@ -2582,32 +2706,33 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     MPM_WALL_FRICTION_NODES, MPM_PRESCRIBES_NOTHING, MPM_PRESCRIBES_VELOCITY, MPM_PRESCRIBES_NORMAL, MPM_AFTER_P2G,
     MPM_AFTER_FORCES, MPM_AFTER_VELOCITY, MPM_READ, MPM_WRITE, MPM_F64, MPM_I64, MPM_U8, MPM_BY_ID, MPM_LIBRARY_ORDER,
     MPM_SOLVER_AUTO, MPM_SOLVER_CG, MPM_SOLVER_MULTIGRID_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES, MPM_SOLVER_HOST,
-    MPM_CONTACT_UNILATERAL, MPM_CONTACT_NONE, MPM_CONTACT_TIED, MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT,
-    MPM_NORMAL_GRADIENT, MPM_NORMAL_FIXED, MPM_DETECT_DEFAULT, MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY,
-    MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_CYLINDER, MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE,
-    MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED, MPM_MOTION_FREE, MPM_ADAPT_SPLIT, MPM_ADAPT_MERGE,
-    MPM_CONDUCTION_EXPLICIT, MPM_CONDUCTION_IMPLICIT, MPM_HEAT_WALL_INSULATED, MPM_HEAT_WALL_TEMPERATURE, mpm_context,
-    mpm_grid, mpm_material, mpm_particles, mpm_stepper, mpm_operator, mpm_obstacle, mpm_surface, mpm_series,
-    mpm_param, mpm_view, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc, mpm_operator_info,
+    MPM_EXCHANGE_KNOWN, MPM_EXCHANGE_SPARSE, MPM_REDUCE_MAX, MPM_REDUCE_SUM, MPM_CONTACT_UNILATERAL, MPM_CONTACT_NONE,
+    MPM_CONTACT_TIED, MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT, MPM_NORMAL_FIXED,
+    MPM_DETECT_DEFAULT, MPM_DETECT_GAP, MPM_DETECT_VELOCITY, MPM_BODY_ANY, MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE,
+    MPM_SHAPE_CYLINDER, MPM_SHAPE_CAPSULE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE, MPM_MOTION_FIXED, MPM_MOTION_PRESCRIBED,
+    MPM_MOTION_FREE, MPM_ADAPT_SPLIT, MPM_ADAPT_MERGE, MPM_CONDUCTION_EXPLICIT, MPM_CONDUCTION_IMPLICIT,
+    MPM_HEAT_WALL_INSULATED, MPM_HEAT_WALL_TEMPERATURE, mpm_context, mpm_grid, mpm_material, mpm_particles,
+    mpm_stepper, mpm_operator, mpm_obstacle, mpm_surface, mpm_series, mpm_param, mpm_view, mpm_message, mpm_transport,
+    mpm_parallel_info, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc, mpm_operator_info,
     mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch, mpm_advance_desc, mpm_profile,
     mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc, mpm_surface_desc,
     mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info, mpm_heat_desc, mpm_heat_info,
-    mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_desc_init, mpm_context_create,
-    mpm_context_memory, mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create,
-    mpm_grid_destroy, mpm_material_create, mpm_material_model_count, mpm_material_model_name,
-    mpm_material_model_param, mpm_material_state_count, mpm_material_state_name, mpm_batch_field,
-    mpm_material_desc_init, mpm_material_create_custom, mpm_material_update, mpm_material_destroy,
-    mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball,
-    mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
-    mpm_particles_add_field, mpm_particles_set_extensive, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32,
-    mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic, mpm_particles_reset_reference,
-    mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create,
-    mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure, mpm_stepper_set_time,
-    mpm_stepper_set_motion, mpm_stepper_set_wall, mpm_stepper_set_acceleration, mpm_stepper_set_force,
-    mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver, mpm_stepper_set_progress,
-    mpm_stable_dt, mpm_step, mpm_advance_desc_init, mpm_advance, mpm_stepper_profile, mpm_stepper_info,
-    mpm_stepper_residuals, mpm_step_begin, mpm_step_grid, mpm_step_end, mpm_step_abort, mpm_grid_map,
-    mpm_stepper_wall_reaction, mpm_stepper_particles_reaction, mpm_stepper_wall_impulse,
+    mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_part, mpm_particles_total,
+    mpm_stepper_parallel_info, mpm_context_desc_init, mpm_context_create, mpm_context_memory, mpm_context_destroy,
+    mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy, mpm_material_create,
+    mpm_material_model_count, mpm_material_model_name, mpm_material_model_param, mpm_material_state_count,
+    mpm_material_state_name, mpm_batch_field, mpm_material_desc_init, mpm_material_create_custom, mpm_material_update,
+    mpm_material_destroy, mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box,
+    mpm_particles_fill_ball, mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count,
+    mpm_particles_field_info, mpm_particles_add_field, mpm_particles_set_extensive, mpm_particles_map,
+    mpm_particles_get, mpm_particles_get_f32, mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic,
+    mpm_particles_reset_reference, mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init,
+    mpm_stepper_create, mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure,
+    mpm_stepper_set_time, mpm_stepper_set_motion, mpm_stepper_set_wall, mpm_stepper_set_acceleration,
+    mpm_stepper_set_force, mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver,
+    mpm_stepper_set_progress, mpm_stable_dt, mpm_step, mpm_advance_desc_init, mpm_advance, mpm_stepper_profile,
+    mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin, mpm_step_grid, mpm_step_end, mpm_step_abort,
+    mpm_grid_map, mpm_stepper_wall_reaction, mpm_stepper_particles_reaction, mpm_stepper_wall_impulse,
     mpm_stepper_particles_impulse, mpm_stepper_set_body, mpm_stepper_body, mpm_contact_desc_init,
     mpm_stepper_set_contact, mpm_stepper_set_friction, mpm_stepper_contact_info, mpm_obstacle_desc_init,
     mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle,

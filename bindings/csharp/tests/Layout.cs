@@ -37,6 +37,51 @@ namespace Mpm {
       Compare("View.owner", (byte*)&it.owner - at, 48, 44);
     }
 
+    static void CheckMessage() {
+      var it = new Message();
+      byte* at = (byte*)&it;
+      Compare("Message", sizeof(Message), 24, 24);
+      Compare("Message.part", (byte*)&it.part - at, 0, 0);
+      Compare("Message.reserved", (byte*)&it.reserved - at, 4, 4);
+      Compare("Message.bytes", (byte*)&it.bytes - at, 8, 8);
+      Compare("Message.data", (byte*)&it.data - at, 16, 16);
+    }
+
+    static void CheckTransport() {
+      var it = new Transport();
+      byte* at = (byte*)&it;
+      Compare("Transport", sizeof(Transport), 64, 40);
+      Compare("Transport.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("Transport.part", (byte*)&it.part - at, 4, 4);
+      Compare("Transport.parts", (byte*)&it.parts - at, 8, 8);
+      Compare("Transport.reserved", (byte*)&it.reserved - at, 12, 12);
+      Compare("Transport.send", (byte*)&it.send - at, 16, 16);
+      Compare("Transport.receive", (byte*)&it.receive - at, 24, 20);
+      Compare("Transport.reduce", (byte*)&it.reduce - at, 32, 24);
+      Compare("Transport.gather", (byte*)&it.gather - at, 40, 28);
+      Compare("Transport.poll", (byte*)&it.poll - at, 48, 32);
+      Compare("Transport.user", (byte*)&it.user - at, 56, 36);
+    }
+
+    static void CheckParallelInfo() {
+      var it = new ParallelInfo();
+      byte* at = (byte*)&it;
+      Compare("ParallelInfo", sizeof(ParallelInfo), 96, 96);
+      Compare("ParallelInfo.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("ParallelInfo.neighbours", (byte*)&it.neighbours - at, 4, 4);
+      Compare("ParallelInfo.blocks", (byte*)&it.blocks - at, 8, 8);
+      Compare("ParallelInfo.boundary", (byte*)&it.boundary - at, 16, 16);
+      Compare("ParallelInfo.ghosts", (byte*)&it.ghosts - at, 24, 24);
+      Compare("ParallelInfo.bytes_nodes", (byte*)&it.bytes_nodes - at, 32, 32);
+      Compare("ParallelInfo.bytes_moved", (byte*)&it.bytes_moved - at, 40, 40);
+      Compare("ParallelInfo.moved", (byte*)&it.moved - at, 48, 48);
+      Compare("ParallelInfo.cuts", (byte*)&it.cuts - at, 56, 56);
+      Compare("ParallelInfo.imbalance", (byte*)&it.imbalance - at, 64, 64);
+      Compare("ParallelInfo.seconds_packing", (byte*)&it.seconds_packing - at, 72, 72);
+      Compare("ParallelInfo.seconds_waiting", (byte*)&it.seconds_waiting - at, 80, 80);
+      Compare("ParallelInfo.seconds_reducing", (byte*)&it.seconds_reducing - at, 88, 88);
+    }
+
     static void CheckContextDesc() {
       var it = new ContextDesc();
       byte* at = (byte*)&it;
@@ -487,6 +532,9 @@ namespace Mpm {
       wrong = 0;
       CheckParam();
       CheckView();
+      CheckMessage();
+      CheckTransport();
+      CheckParallelInfo();
       CheckContextDesc();
       CheckGridDesc();
       CheckMaterialBatch();

@@ -280,6 +280,24 @@ class Solver(IntEnum):
     SOLVER_HOST = 100
 
 
+class Exchange(IntEnum):
+    """How much of an exchange its receivers know beforehand."""
+
+    #: both sides know who sends to whom: partners send and receive
+    EXCHANGE_KNOWN = 1
+    #: receivers do not know from whom: particles that move, changes of the pattern
+    EXCHANGE_SPARSE = 2
+
+
+class Reduce(IntEnum):
+    """What mpm_reduce_fn does. There is no sum of floating-point numbers: it would depend on the parts."""
+
+    #: the largest of all parts
+    REDUCE_MAX = 1
+    #: the sum, modulo 2^64
+    REDUCE_SUM = 2
+
+
 class Contact(IntEnum):
     """How two bodies meet: mpm_contact_desc.kind."""
 
@@ -465,6 +483,10 @@ SOLVER_MULTIGRID_CG = Solver.SOLVER_MULTIGRID_CG
 SOLVER_LDLT = Solver.SOLVER_LDLT
 SOLVER_GMRES = Solver.SOLVER_GMRES
 SOLVER_HOST = Solver.SOLVER_HOST
+EXCHANGE_KNOWN = Exchange.EXCHANGE_KNOWN
+EXCHANGE_SPARSE = Exchange.EXCHANGE_SPARSE
+REDUCE_MAX = Reduce.REDUCE_MAX
+REDUCE_SUM = Reduce.REDUCE_SUM
 CONTACT_UNILATERAL = Contact.CONTACT_UNILATERAL
 CONTACT_NONE = Contact.CONTACT_NONE
 CONTACT_TIED = Contact.CONTACT_TIED
@@ -501,13 +523,19 @@ CONSTANTS = """
     LOCKING_NONE LOCKING_CELL_AVERAGE TANGENT_MINOR_SYMMETRIC TANGENT_GENERAL X_MIN X_MAX Y_MIN Y_MAX Z_MIN Z_MAX
     WALL_NONE WALL_OPEN WALL_FIXED WALL_SLIP WALL_FRICTION WALL_FRICTION_NODES PRESCRIBES_NOTHING PRESCRIBES_VELOCITY
     PRESCRIBES_NORMAL AFTER_P2G AFTER_FORCES AFTER_VELOCITY READ WRITE F64 I64 U8 BY_ID LIBRARY_ORDER SOLVER_AUTO
-    SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED
-    NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT NORMAL_FIXED DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY
-    BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE MOTION_FIXED
-    MOTION_PRESCRIBED MOTION_FREE ADAPT_SPLIT ADAPT_MERGE CONDUCTION_EXPLICIT CONDUCTION_IMPLICIT HEAT_WALL_INSULATED
-    HEAT_WALL_TEMPERATURE
+    SOLVER_CG SOLVER_MULTIGRID_CG SOLVER_LDLT SOLVER_GMRES SOLVER_HOST EXCHANGE_KNOWN EXCHANGE_SPARSE REDUCE_MAX
+    REDUCE_SUM CONTACT_UNILATERAL CONTACT_NONE CONTACT_TIED NORMAL_LOGISTIC NORMAL_DISCRIMINANT NORMAL_GRADIENT
+    NORMAL_FIXED DETECT_DEFAULT DETECT_GAP DETECT_VELOCITY BODY_ANY SHAPE_PLANE SHAPE_SPHERE SHAPE_CYLINDER
+    SHAPE_CAPSULE SHAPE_BOX SHAPE_DISTANCE MOTION_FIXED MOTION_PRESCRIBED MOTION_FREE ADAPT_SPLIT ADAPT_MERGE
+    CONDUCTION_EXPLICIT CONDUCTION_IMPLICIT HEAT_WALL_INSULATED HEAT_WALL_TEMPERATURE
 """.split()
 
+
+reduce_fn = CFUNCTYPE(c_int32, c_void_p, c_int32, c_int64, c_void_p)
+
+gather_fn = CFUNCTYPE(c_int32, c_void_p, c_int64, c_void_p)
+
+transport_poll_fn = CFUNCTYPE(None, c_void_p)
 
 task_fn = CFUNCTYPE(None, c_void_p, c_int64)
 
@@ -557,24 +585,35 @@ class view(Structure):
     ]
 
 
-class context_desc(Structure):
-    """Services of the host. Fill the struct with mpm_context_desc_init(), then change what is wanted."""
+class message(Structure):
+    """Bytes for, or from, another part."""
+
+    _fields_ = [
+        ("part", c_int32),
+        ("reserved", c_int32),
+        ("bytes", c_int64),
+        ("data", c_void_p),
+    ]
+
+
+class parallel_info(Structure):
+    """What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made or
+    they were last reset; the caller sets struct_size."""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("concurrency", c_int32),
-        ("isa", c_int32),
-        ("serial_callbacks", c_int32),
-        ("alloc", context_desc_alloc_fn),
-        ("release", context_desc_release_fn),
-        ("alloc_user", c_void_p),
-        ("parallel_for", parallel_for_fn),
-        ("parallel_user", c_void_p),
-        ("log", context_desc_log_fn),
-        ("log_user", c_void_p),
-        ("error_text", c_void_p),
-        ("error_bytes", c_uint64),
-        ("transport", c_void_p),
+        ("neighbours", c_int32),
+        ("blocks", c_int64),
+        ("boundary", c_int64),
+        ("ghosts", c_int64),
+        ("bytes_nodes", c_int64),
+        ("bytes_moved", c_int64),
+        ("moved", c_int64),
+        ("cuts", c_int64),
+        ("imbalance", c_double),
+        ("seconds_packing", c_double),
+        ("seconds_waiting", c_double),
+        ("seconds_reducing", c_double),
     ]
 
 
@@ -971,6 +1010,10 @@ class heat_info(Structure):
     ]
 
 
+send_fn = CFUNCTYPE(c_int32, c_void_p, c_int32, c_int32, POINTER(message), c_void_p)
+
+receive_fn = CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p)
+
 stress_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(material_batch))
 
 tangent_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(material_batch), c_void_p, c_void_p)
@@ -994,6 +1037,45 @@ marker_velocity_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(marker_batch), c_void_
 adaption_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(adaption_batch), c_void_p)
 
 heat_fn = CFUNCTYPE(c_int32, c_void_p, POINTER(particle_batch), c_void_p)
+
+class transport(Structure):
+    """Ways between the parts. All are called on the calling thread. Once one has failed, every collective call of the
+    context returns MPM_E_CALLBACK."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("part", c_int32),
+        ("parts", c_int32),
+        ("reserved", c_int32),
+        ("send", send_fn),
+        ("receive", receive_fn),
+        ("reduce", reduce_fn),
+        ("gather", gather_fn),
+        ("poll", transport_poll_fn),
+        ("user", c_void_p),
+    ]
+
+
+class context_desc(Structure):
+    """Services of the host. Fill the struct with mpm_context_desc_init(), then change what is wanted."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("concurrency", c_int32),
+        ("isa", c_int32),
+        ("serial_callbacks", c_int32),
+        ("alloc", context_desc_alloc_fn),
+        ("release", context_desc_release_fn),
+        ("alloc_user", c_void_p),
+        ("parallel_for", parallel_for_fn),
+        ("parallel_user", c_void_p),
+        ("log", context_desc_log_fn),
+        ("log_user", c_void_p),
+        ("error_text", c_void_p),
+        ("error_bytes", c_uint64),
+        ("transport", POINTER(transport)),
+    ]
+
 
 class material_desc(Structure):
     """A law of the host. Fill the struct with mpm_material_desc_init()."""
@@ -1074,6 +1156,9 @@ class heat_desc(Structure):
 SIZES = {
     param: (16, 16),
     view: (56, 48),
+    message: (24, 24),
+    transport: (64, 40),
+    parallel_info: (96, 96),
     context_desc: (96, 64),
     grid_desc: (120, 120),
     material_batch: (144, 96),
@@ -1105,6 +1190,9 @@ FUNCTIONS = {
     "mpm_status_name": (c_char_p, [c_int32]),
     "mpm_status_text": (c_char_p, [c_int32]),
     "mpm_view_release": (c_int32, [POINTER(view)]),
+    "mpm_context_part": (c_int32, [c_void_p, c_void_p, c_void_p]),
+    "mpm_particles_total": (c_int32, [c_void_p, c_void_p]),
+    "mpm_stepper_parallel_info": (c_int32, [c_void_p, c_int32, POINTER(parallel_info)]),
     "mpm_context_desc_init": (c_int32, [POINTER(context_desc), c_uint32]),
     "mpm_context_create": (c_int32, [POINTER(context_desc), c_void_p]),
     "mpm_context_memory": (c_int32, [c_void_p, c_void_p, c_void_p]),
@@ -1265,6 +1353,16 @@ changed: whatever is written there harms no step beyond its numbers, and a libra
   values are dropped.
 - MPM_E_STATE: the view is not lent, or no longer; or, with MPM_DEBUG, it was lent for reading and its memory has
   changed: it is then released all the same. A view that was never filled has no context to keep a text.""",
+    "mpm_context_part": """mpm_status mpm_context_part(const mpm_context *context, int32_t *part, int32_t *parts)
+
+Number of this part and how many there are; 0 and 1 without a transport. Pointers may be NULL.""",
+    "mpm_particles_total": """mpm_status mpm_particles_total(const mpm_particles *particles, int64_t *n)
+
+Particles of a set on all parts (collective). mpm_particles_count() is that of this part.""",
+    "mpm_stepper_parallel_info": """mpm_status mpm_stepper_parallel_info(mpm_stepper *stepper, int32_t reset, mpm_parallel_info *info)
+
+Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
+struct_size is bad. Without a transport there is one part, and counts and seconds are 0.""",
     "mpm_context_desc_init": """mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size)
 
 Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.

@@ -256,6 +256,20 @@ pub mod constants {
     /// the callback of mpm_stepper_set_linear_solver()
     pub const MPM_SOLVER_HOST: i32 = 100;
 
+    // How much of an exchange its receivers know beforehand.
+
+    /// both sides know who sends to whom: partners send and receive
+    pub const MPM_EXCHANGE_KNOWN: i32 = 1;
+    /// receivers do not know from whom: particles that move, changes of the pattern
+    pub const MPM_EXCHANGE_SPARSE: i32 = 2;
+
+    // What mpm_reduce_fn does.
+
+    /// the largest of all parts
+    pub const MPM_REDUCE_MAX: i32 = 1;
+    /// the sum, modulo 2^64
+    pub const MPM_REDUCE_SUM: i32 = 2;
+
     // How two bodies meet: mpm_contact_desc.kind.
 
     /// they push each other and never pull, with Coulomb friction (default)
@@ -403,6 +417,42 @@ pub struct mpm_series {
     _opaque: [u8; 0],
     _neither_sent_nor_moved: PhantomData<(*mut u8, PhantomPinned)>,
 }
+
+/// Starts an exchange and returns before it is done. out: ascending by part, never this one. most: of each partner, a
+/// bound on what comes from it, [count]; NULL with MPM_EXCHANGE_SPARSE. Returns 0, or < 0: then the context is unusable
+/// (MPM_E_CALLBACK), for the other parts are lost.
+pub type mpm_send_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    exchange: i32,
+    count: i32,
+    out: *const mpm_message,
+    most: *const i64,
+) -> mpm_status>;
+
+/// Ends the exchange: all that was sent to this part, ascending by part. Returns as mpm_send_fn.
+pub type mpm_receive_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    count: *mut i32,
+    r#in: *mut *const mpm_message,
+) -> mpm_status>;
+
+/// values[count] of all parts into each of them (collective). Returns as mpm_send_fn.
+pub type mpm_reduce_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    op: i32,
+    count: i64,
+    values: *mut i64,
+) -> mpm_status>;
+
+/// all[parts]: value of each part (collective). Only when the blocks are cut anew. Returns as mpm_send_fn.
+pub type mpm_gather_fn = Option<unsafe extern "C" fn(
+    user: *mut c_void,
+    value: i64,
+    all: *mut i64,
+) -> mpm_status>;
+
+/// Called every 50 microseconds or so between send and receive, for transports that move only when called; may be NULL.
+pub type mpm_transport_poll_fn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
 /// A task of the library, which the host's executor calls with the task_data that it was given and a number k. A task
 /// neither throws nor blocks, and may run on any thread.
@@ -667,6 +717,92 @@ pub struct mpm_view {
 }
 
 impl Default for mpm_view {
+    /// Ready to be filled: zeros, and `struct_size`.
+    fn default() -> Self {
+        // SAFETY: zeros are a value of every field.
+        let mut out: Self = unsafe { std::mem::zeroed() };
+        out.struct_size = size_of::<Self>() as u32;
+        out
+    }
+}
+
+/// Bytes for, or from, another part.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_message {
+    /// to whom, or from whom
+    pub part: i32,
+    /// 0
+    pub reserved: i32,
+    /// how many; 0 is sent too where the partner is known
+    pub bytes: i64,
+    /// out: the library's, unchanged until mpm_receive_fn returns; in: the host's, at a multiple of 64, valid until the
+    /// next mpm_send_fn.
+    pub data: *mut c_void,
+}
+
+/// Ways between the parts. All are called on the calling thread. Once one has failed, every collective call of the
+/// context returns MPM_E_CALLBACK.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_transport {
+    /// sizeof(mpm_transport) of the caller
+    pub struct_size: u32,
+    /// of this context, 0 ... parts - 1
+    pub part: i32,
+    /// how many there are
+    pub parts: i32,
+    /// 0
+    pub reserved: i32,
+    /// required, as the three that follow
+    pub send: mpm_send_fn,
+    /// ends what send started
+    pub receive: mpm_receive_fn,
+    /// maxima and sums of integers
+    pub reduce: mpm_reduce_fn,
+    /// one integer of each part
+    pub gather: mpm_gather_fn,
+    /// Called every 50 microseconds or so between send and receive, for transports that move only when called; may be
+    /// NULL.
+    pub poll: mpm_transport_poll_fn,
+    /// passed to all of them
+    pub user: *mut c_void,
+}
+
+/// What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made or they were
+/// last reset; the caller sets struct_size.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_parallel_info {
+    /// sizeof(mpm_parallel_info) of the caller
+    pub struct_size: u32,
+    /// parts that share nodes with this one
+    pub neighbours: i32,
+    /// with particles of this part
+    pub blocks: i64,
+    /// of them beside blocks of other parts
+    pub boundary: i64,
+    /// blocks of other parts beside them
+    pub ghosts: i64,
+    /// sent for sums on nodes
+    pub bytes_nodes: i64,
+    /// sent for particles that moved to another part
+    pub bytes_moved: i64,
+    /// such particles
+    pub moved: i64,
+    /// how often blocks were given to parts anew
+    pub cuts: i64,
+    /// largest weight of a part over the mean at the last sort, the same on all parts
+    pub imbalance: f64,
+    /// packing and adding what is exchanged
+    pub seconds_packing: f64,
+    /// in receive
+    pub seconds_waiting: f64,
+    /// in reduce and gather
+    pub seconds_reducing: f64,
+}
+
+impl Default for mpm_parallel_info {
     /// Ready to be filled: zeros, and `struct_size`.
     fn default() -> Self {
         // SAFETY: zeros are a value of every field.
@@ -1750,6 +1886,24 @@ extern "C" {
     /// - MPM_E_STATE: the view is not lent, or no longer; or, with MPM_DEBUG, it was lent for reading and its memory has
     ///   changed: it is then released all the same. A view that was never filled has no context to keep a text.
     pub fn mpm_view_release(view: *mut mpm_view) -> mpm_status;
+
+    /// Number of this part and how many there are; 0 and 1 without a transport. Pointers may be NULL.
+    pub fn mpm_context_part(
+        context: *const mpm_context,
+        part: *mut i32,
+        parts: *mut i32,
+    ) -> mpm_status;
+
+    /// Particles of a set on all parts (collective). mpm_particles_count() is that of this part.
+    pub fn mpm_particles_total(particles: *const mpm_particles, n: *mut i64) -> mpm_status;
+
+    /// Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
+    /// struct_size is bad. Without a transport there is one part, and counts and seconds are 0.
+    pub fn mpm_stepper_parallel_info(
+        stepper: *mut mpm_stepper,
+        reset: i32,
+        info: *mut mpm_parallel_info,
+    ) -> mpm_status;
 
     /// Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.
     /// MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.

@@ -43,6 +43,48 @@ fn layout_of_mpm_view() {
 }
 
 #[test]
+fn layout_of_mpm_message() {
+    assert_eq!(size_of::<mpm_message>(), of(24, 24));
+    assert_eq!(offset!(mpm_message, part), of(0, 0));
+    assert_eq!(offset!(mpm_message, reserved), of(4, 4));
+    assert_eq!(offset!(mpm_message, bytes), of(8, 8));
+    assert_eq!(offset!(mpm_message, data), of(16, 16));
+}
+
+#[test]
+fn layout_of_mpm_transport() {
+    assert_eq!(size_of::<mpm_transport>(), of(64, 40));
+    assert_eq!(offset!(mpm_transport, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_transport, part), of(4, 4));
+    assert_eq!(offset!(mpm_transport, parts), of(8, 8));
+    assert_eq!(offset!(mpm_transport, reserved), of(12, 12));
+    assert_eq!(offset!(mpm_transport, send), of(16, 16));
+    assert_eq!(offset!(mpm_transport, receive), of(24, 20));
+    assert_eq!(offset!(mpm_transport, reduce), of(32, 24));
+    assert_eq!(offset!(mpm_transport, gather), of(40, 28));
+    assert_eq!(offset!(mpm_transport, poll), of(48, 32));
+    assert_eq!(offset!(mpm_transport, user), of(56, 36));
+}
+
+#[test]
+fn layout_of_mpm_parallel_info() {
+    assert_eq!(size_of::<mpm_parallel_info>(), of(96, 96));
+    assert_eq!(offset!(mpm_parallel_info, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_parallel_info, neighbours), of(4, 4));
+    assert_eq!(offset!(mpm_parallel_info, blocks), of(8, 8));
+    assert_eq!(offset!(mpm_parallel_info, boundary), of(16, 16));
+    assert_eq!(offset!(mpm_parallel_info, ghosts), of(24, 24));
+    assert_eq!(offset!(mpm_parallel_info, bytes_nodes), of(32, 32));
+    assert_eq!(offset!(mpm_parallel_info, bytes_moved), of(40, 40));
+    assert_eq!(offset!(mpm_parallel_info, moved), of(48, 48));
+    assert_eq!(offset!(mpm_parallel_info, cuts), of(56, 56));
+    assert_eq!(offset!(mpm_parallel_info, imbalance), of(64, 64));
+    assert_eq!(offset!(mpm_parallel_info, seconds_packing), of(72, 72));
+    assert_eq!(offset!(mpm_parallel_info, seconds_waiting), of(80, 80));
+    assert_eq!(offset!(mpm_parallel_info, seconds_reducing), of(88, 88));
+}
+
+#[test]
 fn layout_of_mpm_context_desc() {
     assert_eq!(size_of::<mpm_context_desc>(), of(96, 64));
     assert_eq!(offset!(mpm_context_desc, struct_size), of(0, 0));
@@ -472,6 +514,9 @@ fn functions_are_there() {
         mpm_status_name as *const (),
         mpm_status_text as *const (),
         mpm_view_release as *const (),
+        mpm_context_part as *const (),
+        mpm_particles_total as *const (),
+        mpm_stepper_parallel_info as *const (),
         mpm_context_desc_init as *const (),
         mpm_context_create as *const (),
         mpm_context_memory as *const (),
