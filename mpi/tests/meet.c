@@ -42,6 +42,7 @@ int MPI_Get_version(int *version, int *minor) {
 
 FAULTY(F_COMM_DUP, Comm_dup, (MPI_Comm c, MPI_Comm *d), (c, d))
 FAULTY(F_COMM_SPLIT, Comm_split, (MPI_Comm c, int colour, int key, MPI_Comm *d), (c, colour, key, d))
+FAULTY(F_BCAST, Bcast, (void *b, int n, MPI_Datatype t, int root, MPI_Comm c), (b, n, t, root, c))
 FAULTY(F_ALLREDUCE, Allreduce, (const void *s, void *r, int n, MPI_Datatype t, MPI_Op o, MPI_Comm c),
        (s, r, n, t, o, c))
 FAULTY(F_ALLGATHER, Allgather,

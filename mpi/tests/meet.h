@@ -28,6 +28,7 @@
 typedef enum faulty {
   NO_FAULT,
   F_COMM_DUP,
+  F_BCAST,
   F_ALLREDUCE,
   F_ALLGATHER,
   F_ISEND,

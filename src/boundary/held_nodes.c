@@ -14,7 +14,7 @@ static void prescribe(mpmi_bound *bound, int64_t slot, int32_t c, double value) 
 }
 
 /* The work is the impulse times the velocity that the step has. */
-static void set_block(mpmi_bound *bound, int64_t block, mpmi_exact_sum *sum) {
+static void set_block(mpmi_bound *bound, int64_t block, mpmi_whole_sum *sum) {
   const mpmi_nodes *nodes = bound->nodes;
   const int64_t first = block * bound->step->layout->blocks.nodes;
   for (int64_t slot = first; slot < first + bound->step->layout->blocks.nodes; ++slot)

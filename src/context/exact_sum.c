@@ -1,12 +1,12 @@
 #include "context/exact_sum.h"
 
-void mpmi_exact_join(mpmi_exact_sum *to, const mpmi_exact_sum *from) {
+void mpmi_exact_join(mpmi_whole_sum *to, const mpmi_whole_sum *from) {
   for (int32_t i = 0; i < MPMI_EXACT_DIGITS; ++i) to->digit[i] += from->digit[i];
   for (int32_t i = 0; i < 3; ++i) to->spoilt[i] += from->spoilt[i];
   if (from->top > to->top) to->top = from->top;
 }
 
-mpmi_exact_part mpmi_exact_take(const mpmi_exact_sum *sum, int32_t top) {
+mpmi_exact_part mpmi_exact_take(const mpmi_whole_sum *sum, int32_t top) {
   mpmi_exact_part part = {{sum->spoilt[0], sum->spoilt[1], sum->spoilt[2]}, {0}};
   for (int32_t i = 0; i < MPMI_EXACT_KEPT; ++i)
     if (top - MPMI_EXACT_KEPT + i >= 0) part.digit[i] = sum->digit[top - MPMI_EXACT_KEPT + i];
@@ -64,7 +64,7 @@ double mpmi_exact_value(const mpmi_exact_part *part, int32_t top) {
   return negative ? -value : value;
 }
 
-double mpmi_exact_total(const mpmi_exact_sum *sum) {
+double mpmi_exact_total(const mpmi_whole_sum *sum) {
   const mpmi_exact_part part = mpmi_exact_take(sum, sum->top);
   return mpmi_exact_value(&part, sum->top);
 }

@@ -10,22 +10,22 @@
 /* Digit i counts 2^(32 i - 1074). A term gives less than 2^33 to a digit, so that 2^30 terms fit. */
 enum { MPMI_EXACT_DIGITS = 66, MPMI_EXACT_KEPT = 5 };
 
-typedef struct mpmi_exact_sum {
+typedef struct mpmi_whole_sum {
   int32_t top;       /* above the highest digit that any term has reached */
   int64_t spoilt[3]; /* how many terms were infinite, minus infinite, not a number */
   int64_t digit[MPMI_EXACT_DIGITS];
-} mpmi_exact_sum;
+} mpmi_whole_sum;
 
 /* What is left of a sum to make a number of: as many digits as matter. */
 typedef struct mpmi_exact_part {
   int64_t spoilt[3], digit[MPMI_EXACT_KEPT];
 } mpmi_exact_part;
 
-static inline void mpmi_exact_clear(mpmi_exact_sum *sum) {
+static inline void mpmi_exact_clear(mpmi_whole_sum *sum) {
   memset(sum, 0, sizeof *sum);
 }
 
-static inline void mpmi_exact_add(mpmi_exact_sum *sum, double term) {
+static inline void mpmi_exact_add(mpmi_whole_sum *sum, double term) {
   uint64_t bits;
   memcpy(&bits, &term, sizeof bits);
   const int32_t exponent = (int32_t)(bits >> 52 & 0x7ff);
@@ -46,12 +46,12 @@ static inline void mpmi_exact_add(mpmi_exact_sum *sum, double term) {
 }
 
 /* Adds the terms of another sum. */
-void mpmi_exact_join(mpmi_exact_sum *to, const mpmi_exact_sum *from);
+void mpmi_exact_join(mpmi_whole_sum *to, const mpmi_whole_sum *from);
 /* Takes the digits below `top`, which is that of all that will be added together. */
-mpmi_exact_part mpmi_exact_take(const mpmi_exact_sum *sum, int32_t top);
+mpmi_exact_part mpmi_exact_take(const mpmi_whole_sum *sum, int32_t top);
 /* Returns the number, within half a unit in the last place of the sum or 2^-64 of its largest term. */
 double mpmi_exact_value(const mpmi_exact_part *part, int32_t top);
 /* Does both for a sum that is whole. */
-double mpmi_exact_total(const mpmi_exact_sum *sum);
+double mpmi_exact_total(const mpmi_whole_sum *sum);
 
 #endif

@@ -81,7 +81,7 @@ mpm_status mpmi_agree(mpm_context *context, mpm_status status) {
 /* The parts' sums go in portions, first how far up they reach and then their digits. */
 enum { PORTION = 64, WORDS = sizeof(mpmi_exact_part) / sizeof(int64_t) };
 
-static mpm_status total_portion(mpm_context *context, int64_t count, const mpmi_exact_sum *sum,
+static mpm_status total_portion(mpm_context *context, int64_t count, const mpmi_whole_sum *sum,
                                 double *total) {
   int64_t top[PORTION], word[PORTION * WORDS];
   mpmi_exact_part part;
@@ -100,7 +100,7 @@ static mpm_status total_portion(mpm_context *context, int64_t count, const mpmi_
   return MPM_OK;
 }
 
-mpm_status mpmi_total_parts(mpm_context *context, int64_t count, const mpmi_exact_sum *sum, double *total) {
+mpm_status mpmi_total_parts(mpm_context *context, int64_t count, const mpmi_whole_sum *sum, double *total) {
   mpm_status status = MPM_OK;
   if (mpmi_is_whole(context)) {
     for (int64_t i = 0; i < count; ++i) total[i] = mpmi_exact_total(&sum[i]);

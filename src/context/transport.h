@@ -23,7 +23,7 @@ mpm_status mpmi_agree(mpm_context *context, mpm_status status);
 /* All parts take over the status and the text of one of them. */
 mpm_status mpmi_take_over(mpm_context *context, int32_t part, mpm_status status);
 /* Makes the totals of exact sums over all parts. */
-mpm_status mpmi_total_parts(mpm_context *context, int64_t count, const mpmi_exact_sum *sum, double *total);
+mpm_status mpmi_total_parts(mpm_context *context, int64_t count, const mpmi_whole_sum *sum, double *total);
 
 /* Numbers that are not below 0 have the order of their bits, so that their largest is one of integers. */
 static inline int64_t mpmi_ordered_bits(double x) {

@@ -25,7 +25,7 @@ typedef struct mpmi_task_report {
   int64_t active;                    /* nodes in its share that are heavier than the cut */
   int64_t light, first_light;        /* lighter ones with mass, and where their list begins */
   double contact_change;             /* largest change of a velocity by contact of bodies */
-  mpmi_exact_sum host_work, damping; /* of the nodes in its share */
+  mpmi_whole_sum host_work, damping; /* of the nodes in its share */
   double law_seconds, weights_seconds;
 } mpmi_task_report;
 

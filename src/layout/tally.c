@@ -25,7 +25,7 @@ static int32_t is_rate(int32_t at) {
          at == offsetof(mpmi_sums, viscous_rate) / sizeof(double);
 }
 
-void mpmi_tally_block(mpmi_exact_sum *sum, const mpmi_sums *block, mpmi_sums *rates) {
+void mpmi_tally_block(mpmi_whole_sum *sum, const mpmi_sums *block, mpmi_sums *rates) {
   const double *term = (const double *)block;
   for (int32_t i = 0; i < ENERGIES; ++i)
     if (!is_rate(i)) mpmi_exact_add(&sum[i], term[i]);

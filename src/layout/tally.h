@@ -18,7 +18,7 @@ enum {
 };
 
 typedef struct mpmi_tally {
-  mpmi_exact_sum *sum;
+  mpmi_whole_sum *sum;
   double *total; /* what each has come to, once the step is made */
   int64_t count, sum_capacity, total_capacity;
 } mpmi_tally;
@@ -28,7 +28,7 @@ mpm_status mpmi_tally_prepare(mpmi_tally *tally, mpm_context *context, int32_t s
 void mpmi_tally_free(mpmi_tally *tally, mpm_context *context);
 
 /* Adds what a block has in mpmi_sums: its sums to the first of `sum`, its rates to the largest in `rates`. */
-void mpmi_tally_block(mpmi_exact_sum *sum, const mpmi_sums *block, mpmi_sums *rates);
+void mpmi_tally_block(mpmi_whole_sum *sum, const mpmi_sums *block, mpmi_sums *rates);
 /* Makes energies and momenta of their totals, beside the rates. */
 void mpmi_tally_read(const double *total, mpmi_sums *sums);
 

@@ -94,7 +94,7 @@ static mpm_status sum_slots(mpm_stepper *s, int32_t m, mpmi_law_batch *b, double
 }
 
 /* Adds the sums of a set, block by block, and in the end those of slots that are in none yet. */
-static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_exact_sum *sums, mpmi_sums *rates,
+static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_whole_sum *sums, mpmi_sums *rates,
                           mpmi_failure *failure) {
   const mpmi_member *member = &s->layout.member[m];
   const mpm_material *material = member->set->material;
@@ -136,7 +136,7 @@ mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure) {
   uint32_t dirty = 0;
   for (int32_t m = 0; m < layout->member_count; ++m) dirty |= layout->member[m].set->dirty;
   if (s->history.has_sums && !(dirty & MPMI_DIRTY_SUMS)) return MPM_OK;
-  mpmi_exact_sum sum[MPMI_TALLY_FACES];
+  mpmi_whole_sum sum[MPMI_TALLY_FACES];
   double total[MPMI_TALLY_FACES];
   mpmi_sums sums = {0};
   mpm_status status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
