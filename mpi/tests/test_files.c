@@ -417,8 +417,8 @@ static void unchanged(const vtk_text *before, int32_t which) {
     vtk_text after = vtk_load(in_folder(names[which]));
     MUST(after.count == before->count && !memcmp(after.bytes, before->bytes, (size_t)after.count));
     vtk_drop(&after);
-    static const char *const left[] = {"set.pvtp.writing", "nodes.pvti.writing",
-                                       "set/set_0.vtp.writing", "nodes/nodes_0.vti.writing"};
+    static const char *const left[] = {"set.pvtp.writing", "nodes.pvti.writing", "set/set_0.vtp.writing",
+                                       "nodes/nodes_0.vti.writing"};
     for (size_t i = 0; i < sizeof left / sizeof *left; ++i) MUST(!exists(in_folder(left[i])));
   }
   MPI_Barrier(MPI_COMM_WORLD);
@@ -429,8 +429,7 @@ static void test_failures(void) {
     faulty call;
     int32_t which;
     mpm_status status;
-  } faults[] = {{F_ALLGATHER, WRITE_NODES, MPM_E_CALLBACK},
-                {F_COMM_SPLIT, WRITE_SET, MPM_E_CALLBACK}};
+  } faults[] = {{F_ALLGATHER, WRITE_NODES, MPM_E_CALLBACK}, {F_COMM_SPLIT, WRITE_SET, MPM_E_CALLBACK}};
   world w = {0};
   create(&w, 3, 0, rank, rank + 1);
   steps(&w, 1);
