@@ -3,9 +3,9 @@
  *   mpirun -n 4 dam_break_mpi [CELLS [FRAMES]]
  *
  * CELLS are those along the height of the block (default 20: 64 000 particles), FRAMES those that it is
- * followed for (40, each 0.02 s). It writes water_0000.pvtp ... for ParaView, and prints energies and a hash
- * of the state, which are the same for any number of processes. The lines for MPI are marked with a +: without
- * them it is a program for one process. */
+ * followed for (40, each 0.02 s). It writes water_0000.pvtp ... for ParaView, and prints energies and a
+ * hash of the state, which are the same for any number of processes. The lines for MPI are marked with a
+ * +: without them it is a program for one process. */
 #include <mpm/mpm_mpi.h> /* + */
 
 #include <inttypes.h>
