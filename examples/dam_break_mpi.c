@@ -74,6 +74,13 @@ int main(int argc, char **argv) {
   uint64_t hash;
   if (mpm_state_hash(stepper, &hash)) goto end;
   if (!rank) printf("result: hash of the state %016" PRIx64 "\n", hash);
+  mpm_parallel_info part = {.struct_size = sizeof part};
+  if (mpm_stepper_parallel_info(stepper, 0, &part)) goto end;
+  printf("part %d: %" PRId64 " particles in %" PRId64 " blocks, %" PRId64
+         " at the edge; %d neighbours with %" PRId64 " ghosts; per step %.0f kB sent; %" PRId64
+         " particles left, imbalance %.2f\n",
+         rank, mpm_particles_count(water), part.blocks, part.boundary, (int)part.neighbours, part.ghosts,
+         1e-3 * (double)part.bytes_nodes / (double)now.step, part.moved, part.imbalance);
   failed = 0;
 
 end:

@@ -12,14 +12,17 @@ typedef struct outcome {
   mpm_step_info info;
   double reaction[6][3], stable_dt;
   int64_t total, own;
+  int64_t failed_particle; /* of a step that had to fail */
   mpm_parallel_info parallel;
 } outcome;
 
 typedef struct scene scene;
 typedef mpm_status (*scene_fn)(world *w, const scene *is);
+typedef mpm_status (*run_fn)(world *w, const scene *is, outcome *found);
 struct scene {
   world_desc desc;
-  scene_fn set_up, run; /* run: NULL for STEPS steps */
+  scene_fn set_up;
+  run_fn run; /* NULL: STEPS steps */
   double speed;
   outcome found[MOST_PARTS];
 };
@@ -57,10 +60,9 @@ static mpm_status set_walls(world *w) {
   return status;
 }
 
-static mpm_status run_steps(world *w, const scene *is) {
+static mpm_status run_steps(world *w) {
   double dt;
   mpm_status status = mpm_stable_dt(w->stepper, &dt);
-  (void)is;
   for (int32_t i = 0; i < STEPS && !status; ++i)
     status = mpm_step(w->stepper, dt * (0.2 + 0.1 * (i % 3)), &w->info);
   return status;
@@ -70,7 +72,7 @@ static mpm_status play(world *w, scene *is, outcome *found) {
   mpm_status status = world_try_open(w);
   w->info.struct_size = sizeof w->info;
   if (!status) status = is->set_up(w, is);
-  if (!status) status = is->run ? is->run(w, is) : run_steps(w, is);
+  if (!status) status = is->run ? is->run(w, is, found) : run_steps(w);
   found->info.struct_size = sizeof found->info;
   found->parallel.struct_size = sizeof found->parallel;
   mpm_status read = mpm_stepper_info(w->stepper, &found->info);
@@ -124,6 +126,8 @@ static void check_scene(const scene *is, const char *name, int32_t parts) {
           (long long)b->info.resorts);
     if (memcmp(a->reaction, b->reaction, sizeof a->reaction) != 0)
       ck_abort_msg("%s, part %d of %d: other reactions", name, r, parts);
+    ck_assert_msg(a->failed_particle == b->failed_particle, "%s, part %d of %d: particle %lld, not %lld",
+                  name, r, parts, (long long)b->failed_particle, (long long)a->failed_particle);
     ck_assert_msg(a->stable_dt == b->stable_dt && a->total == b->total, "%s, part %d of %d: %g, %g", name, r,
                   parts, a->stable_dt, b->stable_dt);
   }
@@ -245,8 +249,9 @@ START_TEST(host_acts) {
 END_TEST
 
 /* Particles that leave through an open wall, others that are added and removed while it goes on. */
-static mpm_status come_and_go(world *w, const scene *is) {
+static mpm_status come_and_go(world *w, const scene *is, outcome *found) {
   double dt;
+  (void)found;
   mpm_status status = mpm_stable_dt(w->stepper, &dt);
   int32_t part = 0, parts = 1;
   mpm_context_part(w->context, &part, &parts);
@@ -291,8 +296,8 @@ START_TEST(few_blocks) {
 END_TEST
 
 /* A body that flies through the grid takes the blocks of all parts in turn. */
-static mpm_status fly(world *w, const scene *is) {
-  (void)is;
+static mpm_status fly(world *w, const scene *is, outcome *found) {
+  (void)is, (void)found;
   mpm_advance_desc d = advance_desc(0.02);
   return mpm_advance(w->stepper, &d, &w->info);
 }
@@ -320,7 +325,7 @@ END_TEST
 
 /* ---- failures ------------------------------------------------------------------------------------------ */
 /* All parts fail as one part does, with the particle's number, and go on from the state before. */
-static mpm_status fail_and_go_on(world *w, const scene *is) {
+static mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
   double dt;
   mpm_status status = mpm_stable_dt(w->stepper, &dt);
   (void)is;
@@ -331,6 +336,7 @@ static mpm_status fail_and_go_on(world *w, const scene *is) {
   if (status != MPM_INVERTED && status != MPM_OFF_GRID && status != MPM_NONFINITE) return MPM_E_INTERNAL;
   if (w->info.cause != status || w->info.particle < 0 || !strstr(mpm_last_error(w->context), "at particle"))
     return MPM_E_INTERNAL;
+  found->failed_particle = w->info.particle;
   for (int32_t i = 0; i < 5 && (!i || !status); ++i) status = mpm_step(w->stepper, 0.3 * dt, &w->info);
   return status;
 }
@@ -346,9 +352,9 @@ START_TEST(steps_fail_together) {
 END_TEST
 
 /* Parts that differ in what they ask for are told so. */
-static mpm_status differ(world *w, const scene *is) {
+static mpm_status differ(world *w, const scene *is, outcome *found) {
   int32_t part = 0, parts = 1;
-  (void)is;
+  (void)is, (void)found;
   mpm_context_part(w->context, &part, &parts);
   const mpm_status dt = mpm_step(w->stepper, part == 1 ? 2e-5 : 1e-5, NULL);
   if (parts > 1 && (dt != MPM_E_ARG || !strstr(mpm_last_error(w->context), "dt is"))) return MPM_E_INTERNAL;
@@ -397,6 +403,101 @@ START_TEST(transport_fails) {
                     (long long)at, r, mpm_status_name(run.found[r].status), run.found[r].text);
   }
   ck_assert_int_gt(calls, 100);
+}
+END_TEST
+
+/* ---- a transport that one thread plays ---------- */
+/* The other part has what this one has, until it is to be unlike or gone. */
+typedef struct echo {
+  int32_t calls, fails, unlike;
+} echo;
+
+static mpm_status echo_send(void *user, int32_t exchange, int32_t count, const mpm_message *out,
+                            const int64_t *most) {
+  (void)user, (void)exchange, (void)count, (void)out, (void)most;
+  return MPM_OK;
+}
+static mpm_status echo_receive(void *user, int32_t *count, const mpm_message **in) {
+  (void)user, (void)in;
+  *count = 0;
+  return MPM_OK;
+}
+static mpm_status echo_reduce(void *user, int32_t op, int64_t count, int64_t *values) {
+  echo *e = user;
+  ++e->calls;
+  for (int64_t i = 0; i < count && op == MPM_REDUCE_SUM; ++i) values[i] *= 2;
+  if (e->unlike >= 0 && e->unlike < count) ++values[e->unlike];
+  return e->fails ? MPM_E_IO : MPM_OK;
+}
+static mpm_status echo_gather(void *user, int64_t value, int64_t *all) {
+  (void)user;
+  all[0] = all[1] = value;
+  return MPM_OK;
+}
+
+static mpm_transport echo_transport(echo *e) {
+  return (mpm_transport){.struct_size = sizeof(mpm_transport),
+                         .parts = 2,
+                         .send = echo_send,
+                         .receive = echo_receive,
+                         .reduce = echo_reduce,
+                         .gather = echo_gather,
+                         .user = e};
+}
+
+static void refuse_context(const mpm_transport *transport, mpm_status wanted, const char *words) {
+  char text[400] = "";
+  mpm_context_desc desc = context_desc();
+  mpm_context *context;
+  desc.transport = transport;
+  desc.error_text = text;
+  desc.error_bytes = sizeof text;
+  ck_assert_int_eq(mpm_context_create(&desc, &context), wanted);
+  ck_assert_msg(strstr(text, words) != NULL, "%s", text);
+}
+
+START_TEST(transport_is_checked) {
+  echo e = {0, 0, -1};
+  mpm_transport t = echo_transport(&e);
+  t.part = 2;
+  refuse_context(&t, MPM_E_ARG, "part is 2 of 2");
+  t = echo_transport(&e);
+  t.parts = 0;
+  refuse_context(&t, MPM_E_ARG, "part is 0 of 0");
+  t = echo_transport(&e);
+  t.gather = NULL;
+  refuse_context(&t, MPM_E_ARG, "gather is NULL");
+  t = echo_transport(&e);
+  t.struct_size = 8;
+  refuse_context(&t, MPM_E_ARG, "struct_size is 8");
+  t = echo_transport(&e);
+  e.unlike = 2; /* the second number that parts compare */
+  refuse_context(&t, MPM_E_UNSUPPORTED, "unlike instruction sets");
+}
+END_TEST
+
+/* What has failed once is not asked again. */
+START_TEST(transport_is_lost) {
+  echo e = {0, 0, -1};
+  const mpm_transport t = echo_transport(&e);
+  world w;
+  world_desc desc = world_default(2, 8, 0.25);
+  int64_t n;
+  int32_t part, parts;
+  desc.context.transport = &t;
+  mpm_particles *set = world_open(&w, &desc);
+  ck_ok(&w, mpm_context_part(w.context, &part, &parts));
+  ck_assert(part == 0 && parts == 2);
+  ck_ok(&w, mpm_particles_total(set, &n));
+  ck_refused(&w, mpm_particles_total(set, NULL), MPM_E_ARG, "n is NULL");
+  ck_refused(&w, mpm_stepper_parallel_info(w.stepper, 0, NULL), MPM_E_ARG, "info is NULL");
+  e.fails = 1;
+  ck_refused(&w, mpm_particles_total(set, &n), MPM_E_CALLBACK, "reduce returned -7");
+  e.fails = 0;
+  const int32_t calls = e.calls;
+  ck_refused(&w, mpm_particles_total(set, &n), MPM_E_CALLBACK, "has failed before");
+  ck_assert_int_eq(e.calls, calls);
+  world_close(&w);
 }
 END_TEST
 
@@ -463,6 +564,8 @@ Suite *shared_suite(void) {
   tcase_add_loop_test(failures, steps_fail_together, 0, 6);
   tcase_add_test(failures, unlike_parts);
   tcase_add_test(failures, transport_fails);
+  tcase_add_test(failures, transport_is_checked);
+  tcase_add_test(failures, transport_is_lost);
   tcase_add_test(failures, memory_runs_out);
   suite_add_tcase(suite, failures);
   return suite;
