@@ -139,7 +139,7 @@ static uint64_t hash_markers(uint64_t h, const mpmi_markers *markers, int32_t pr
 
 mpm_status mpm_state_hash(const mpm_stepper *stepper, uint64_t *hash) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
-  if (!hash) return mpmi_fail(stepper->context, MPM_E_ARG, "hash is NULL");
+  if (!hash) return mpmi_agree(stepper->context, mpmi_fail(stepper->context, MPM_E_ARG, "hash is NULL"));
   uint64_t h = absorb(absorb(absorb(MPMI_MIX_A, bits(stepper->history.t)), (uint64_t)stepper->history.step),
                       (uint64_t)stepper->layout.member_count);
   for (int32_t m = 0; m < stepper->layout.member_count; ++m) {

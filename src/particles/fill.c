@@ -215,7 +215,7 @@ mpm_status mpmi_fill_part(mpm_particles *set, const double *lower, const double 
   lattice on;
   mpm_status status = check_box(set, lower, upper);
   if (!status) status = lay_lattice(set, lower, upper, per_cell, &on);
-  return status ? status : fill(set, &on, inside, user, first_id, count);
+  return status ? mpmi_agree(set->context, status) : fill(set, &on, inside, user, first_id, count);
 }
 
 mpm_status mpm_particles_fill(mpm_particles *particles, const double *lower, const double *upper,
@@ -223,13 +223,13 @@ mpm_status mpm_particles_fill(mpm_particles *particles, const double *lower, con
                               int64_t *count) {
   MPMI_ENTER(particles, MPMI_PARTICLES);
   mpm_status status = mpmi_particles_changeable(particles);
-  if (status) return status;
-  if (!lower || !upper || !per_cell || !inside)
-    return mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL",
-                     !lower   ? "lower"
-                     : !upper ? "upper"
-                     : inside ? "per_cell"
-                              : "inside");
+  if (!status && (!lower || !upper || !per_cell || !inside))
+    status = mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL",
+                       !lower   ? "lower"
+                       : !upper ? "upper"
+                       : inside ? "per_cell"
+                                : "inside");
+  if (status) return mpmi_agree(particles->context, status); /* the other parts must not wait for this one */
   return mpmi_fill_part(particles, lower, upper, per_cell, inside, user, first_id, count);
 }
 
@@ -268,13 +268,12 @@ mpm_status mpm_particles_fill_ball(mpm_particles *particles, const double *centr
                                    const int32_t *per_cell, int64_t *first_id, int64_t *count) {
   MPMI_ENTER(particles, MPMI_PARTICLES);
   mpm_status status = mpmi_particles_changeable(particles);
-  if (status) return status;
-  if (!centre || !per_cell)
-    return mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL", centre ? "per_cell" : "centre");
-  if (!(radius > 0) || !isfinite(radius))
-    return mpmi_fail(particles->context, MPM_E_ARG, "radius is %g, must be > 0 and finite", radius);
-  status = check_centre(particles, centre);
-  if (status) return status;
+  if (!status && (!centre || !per_cell))
+    status = mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL", centre ? "per_cell" : "centre");
+  if (!status && (!(radius > 0) || !isfinite(radius)))
+    status = mpmi_fail(particles->context, MPM_E_ARG, "radius is %g, must be > 0 and finite", radius);
+  if (!status) status = check_centre(particles, centre);
+  if (status) return mpmi_agree(particles->context, status);
   double lower[3], upper[3];
   for (int32_t k = 0; k < particles->grid->dim; ++k) {
     lower[k] = centre[k] - radius;
@@ -283,5 +282,6 @@ mpm_status mpm_particles_fill_ball(mpm_particles *particles, const double *centr
   lattice on;
   ball shape = {centre, radius};
   status = lay_lattice(particles, lower, upper, per_cell, &on);
-  return status ? status : fill(particles, &on, inside_ball, &shape, first_id, count);
+  return status ? mpmi_agree(particles->context, status)
+                : fill(particles, &on, inside_ball, &shape, first_id, count);
 }

@@ -40,10 +40,10 @@ mpm_status mpm_particles_fill_mesh(mpm_particles *particles, int64_t n, const do
     status = mpmi_fail(c, MPM_E_ARG, "%s is NULL", !position ? "position" : corner ? "per_cell" : "corner");
   if (!status) status = check_count(particles, "n", n);
   if (!status) status = check_count(particles, "elements", elements);
-  if (status) return status;
+  if (status) return mpmi_agree(c, status);
   mpmi_mesh mesh;
   status = mpmi_mesh_open(c, dim, n, position, elements, corner, &mesh);
-  if (status) return status;
+  if (status) return mpmi_agree(c, status);
   double lower[3], upper[3];
   for (int32_t k = 0; k < dim; ++k) {
     lower[k] = mesh.lower[k] / mesh.scale;

@@ -63,8 +63,7 @@ mpm_status mpm_stepper_info(const mpm_stepper *stepper, mpm_step_info *info) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
   /* the sums are a cache of the particles' state */
   mpm_stepper *s = (mpm_stepper *)(uintptr_t)stepper;
-  if (!info) return mpmi_fail(s->context, MPM_E_ARG, "info is NULL");
-  mpm_status status = mpmi_stepper_idle(s);
+  mpm_status status = info ? mpmi_stepper_idle(s) : mpmi_fail(s->context, MPM_E_ARG, "info is NULL");
   if (!status) status = mpmi_check_sets(s, MPM_WRITE);
   if (!(status = mpmi_together_begin(s, status, 0, NULL, NULL))) status = mpmi_state_sums(s, NULL);
   if (status) return status;
@@ -74,14 +73,15 @@ mpm_status mpm_stepper_info(const mpm_stepper *stepper, mpm_step_info *info) {
 }
 
 mpm_status mpmi_tell_stable_dt(mpm_stepper *s, double *dt) {
-  mpm_status status = mpmi_stepper_idle(s);
-  if (status) return status;
   int64_t count = 0;
   for (int32_t m = 0; m < s->layout.member_count; ++m) count += s->layout.member[m].set->count;
-  if ((status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 1, &count))) return status;
+  mpm_status status = dt ? mpmi_stepper_idle(s) : mpmi_fail(s->context, MPM_E_ARG, "dt is NULL");
+  if ((status = mpmi_together(s, status)) ||
+      (status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 1, &count)))
+    return status;
   if (!count) return mpmi_fail(s->context, MPM_E_STATE, "the stepper has no particles");
-  status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
-  if (!(status = mpmi_together_begin(s, status, 0, NULL, NULL))) status = mpmi_state_sums(s, NULL);
+  status = mpmi_together_begin(s, mpmi_check_sets(s, MPM_READ | MPM_WRITE), 0, NULL, NULL);
+  if (!status) status = mpmi_state_sums(s, NULL);
   if (status) return status;
   const double stable = mpmi_stable_dt(s);
   if (!(stable > 0.0))
@@ -94,7 +94,6 @@ mpm_status mpmi_tell_stable_dt(mpm_stepper *s, double *dt) {
 
 mpm_status mpm_stable_dt(mpm_stepper *s, double *dt) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  if (!dt) return mpmi_fail(s->context, MPM_E_ARG, "dt is NULL");
   return mpmi_tell_stable_dt(s, dt);
 }
 

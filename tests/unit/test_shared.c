@@ -362,6 +362,17 @@ static mpm_status differ(world *w, const scene *is, outcome *found) {
   if (parts > 2 && (bad != MPM_E_ARG || !strstr(mpm_last_error(w->context), "dt is -1")))
     return MPM_E_INTERNAL;
   if (parts > 2 && part != 2 && !strstr(mpm_last_error(w->context), "part 2: ")) return MPM_E_INTERNAL;
+  double stable;
+  uint64_t hash;
+  const double low[] = {0.1, 0.1}, high[] = {0.2, part == 1 ? -0.1 : 0.2};
+  const int32_t per_cell[] = {2, 2};
+  mpm_step_info info = {.struct_size = sizeof info};
+  if (parts > 1 && (mpm_stable_dt(w->stepper, part == 1 ? NULL : &stable) != MPM_E_ARG ||
+                    mpm_stepper_info(w->stepper, part == 1 ? NULL : &info) != MPM_E_ARG ||
+                    mpm_state_hash(w->stepper, part == 1 ? NULL : &hash) != MPM_E_ARG ||
+                    mpm_particles_fill_box(w->set[0], low, high, per_cell, NULL, NULL) != MPM_E_ARG ||
+                    !strstr(mpm_last_error(w->context), "lower[1]")))
+    return MPM_E_INTERNAL;
   const mpm_status body = mpm_stepper_set_body(w->stepper, w->set[0], 1);
   const mpm_status refused =
       parts > 1 && !body ? mpm_step(w->stepper, 1e-5, NULL) : (mpm_status)MPM_E_UNSUPPORTED;
