@@ -140,7 +140,7 @@ END_TEST
 
 #define STRUCT mpm_context_desc
 START_TEST(layout_of_context_desc) {
-  SIZE(88);
+  SIZE(96);
   AT(0, struct_size);
   AT(4, concurrency);
   AT(8, isa);
@@ -154,6 +154,55 @@ START_TEST(layout_of_context_desc) {
   AT(64, log_user);
   AT(72, error_text);
   AT(80, error_bytes);
+  AT(88, transport);
+}
+END_TEST
+#undef STRUCT
+
+#define STRUCT mpm_transport
+START_TEST(layout_of_transport) {
+  SIZE(64);
+  AT(0, struct_size);
+  AT(4, part);
+  AT(8, parts);
+  AT(12, reserved);
+  AT(16, send);
+  AT(24, receive);
+  AT(32, reduce);
+  AT(40, gather);
+  AT(48, poll);
+  AT(56, user);
+}
+END_TEST
+#undef STRUCT
+
+#define STRUCT mpm_message
+START_TEST(layout_of_message) {
+  SIZE(24);
+  AT(0, part);
+  AT(4, reserved);
+  AT(8, bytes);
+  AT(16, data);
+}
+END_TEST
+#undef STRUCT
+
+#define STRUCT mpm_parallel_info
+START_TEST(layout_of_parallel_info) {
+  SIZE(96);
+  AT(0, struct_size);
+  AT(4, neighbours);
+  AT(8, blocks);
+  AT(16, boundary);
+  AT(24, ghosts);
+  AT(32, bytes_nodes);
+  AT(40, bytes_moved);
+  AT(48, moved);
+  AT(56, cuts);
+  AT(64, imbalance);
+  AT(72, seconds_packing);
+  AT(80, seconds_waiting);
+  AT(88, seconds_reducing);
 }
 END_TEST
 #undef STRUCT
@@ -493,6 +542,9 @@ Suite *abi_suite(void) {
     tcase_add_test(frozen, layout_of_param);
     tcase_add_test(frozen, layout_of_view);
     tcase_add_test(frozen, layout_of_context_desc);
+    tcase_add_test(frozen, layout_of_transport);
+    tcase_add_test(frozen, layout_of_message);
+    tcase_add_test(frozen, layout_of_parallel_info);
     tcase_add_test(frozen, layout_of_grid_desc);
     tcase_add_test(frozen, layout_of_material_batch);
     tcase_add_test(frozen, layout_of_material_desc);
