@@ -54,9 +54,8 @@ mpm_status mpmi_prescribed_prepare(mpmi_layout *layout, mpmi_nodes *nodes, const
     member->prescribed =
         member->set->field[MPMI_PRESCRIBED].present && any_in(member->set, 0, member->set->slots);
     p->any |= member->prescribed;
-    /* another part may have some */
-    p->any |= layout->parts && member->set->field[MPMI_PRESCRIBED].present;
   }
+  p->any |= layout->parts && layout->parts->prescribes;
   if (!p->any) return MPM_OK;
   const int64_t blocks = layout->blocks.count;
   if ((status = MPMI_RESERVE_MORE(c, p->sums, p->sums_capacity, mpmi_slots(layout))) ||

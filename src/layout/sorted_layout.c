@@ -17,9 +17,10 @@ mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings
   if (!layout->bound_memory) return MPM_E_NOMEM;
   if (mpmi_is_whole(c)) return MPM_OK;
   const mpm_status status = mpmi_parts_create(c, settings->grid, &layout->parts);
-  /* light nodes look at others and give to them (boundary/light_nodes.c): two steps for a leader, one more
-   * for what that is, and the same again for who leads a node that is two steps away */
-  if (!status && settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 5;
+  /* light nodes look at others and give to them (boundary/light_nodes.c): a leader is two steps away, and
+   * takes from others as far away, whose own leaders count, and what lies beside these; and so on once more
+   * */
+  if (!status && settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 9;
   return status;
 }
 

@@ -72,6 +72,8 @@ typedef struct mpmi_parts {
   mpm_message *message;
   int64_t *most;
   int64_t exchanges;       /* of tiles in the step under way */
+  int32_t has_counted;     /* the active nodes of the step under way */
+  int32_t prescribes;      /* some part may have prescribed particles */
   int32_t asks;            /* some part has a progress callback */
   int64_t leave_elsewhere; /* particles that leave the grid on other parts in the step under way */
   int32_t is_echo;         /* the step fails here because it has failed on a partner */

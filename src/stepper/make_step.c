@@ -73,7 +73,8 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
       /* the nodes are those of the step before until they are counted */
       .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};
   mpmi_reports_clear(&s->work, s->settings.tasks);
-  if (mpmi_is_shared(s)) s->layout.parts->exchanges = s->layout.parts->is_echo = 0;
+  if (mpmi_is_shared(s))
+    s->layout.parts->exchanges = s->layout.parts->is_echo = s->layout.parts->has_counted = 0;
 }
 
 /* Brings sets, layout and memory up to date for the step. */

@@ -35,7 +35,7 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
 /* The flags of sets that count on all parts once they are set on one. */
 static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE, MPMI_DIRTY_STRESS, MPMI_DIRTY_SUMS,
                                 MPMI_DIRTY_ACCELERATION};
-enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 6, MOST_NUMBERS = 6 };
+enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 7, MOST_NUMBERS = 6 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
@@ -55,6 +55,8 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   word[3] = layout->walls_changed;
   word[4] = layout->parts->is_stale;
   word[5] = s->settings.progress != NULL;
+  for (int32_t m = 0; m < layout->member_count; ++m)
+    word[6] |= layout->member[m].set->field[MPMI_PRESCRIBED].present;
   for (int32_t i = 0; i < count; ++i) put_number(&word[OWN_WORDS + 2 * i], number[i]);
   if ((status = mpmi_agree(c, status)) ||
       (status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word)))
@@ -70,6 +72,7 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   layout->walls_changed |= word[3] != 0;
   layout->parts->is_stale |= word[4] != 0;
   layout->parts->asks = word[5] != 0;
+  layout->parts->prescribes = word[6] != 0;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpm_particles *set = layout->member[m].set;
     int64_t of[FLAGS + 1];
@@ -133,6 +136,11 @@ static mpm_status take_failure(mpm_stepper *s, mpm_status status, int32_t part) 
   for (int32_t i = 0; i < WORDS && part != s->context->transport.part; ++i) word[i] = INT64_MIN;
   const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, WORDS, word);
   if (lost) return lost;
+  int64_t active[] = {s->layout.parts->has_counted, s->step.info.active_nodes};
+  const mpm_status summed = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 2, active);
+  if (summed) return summed;
+  s->step.info.active_nodes =
+      active[0] == s->context->transport.parts ? active[1] : s->history.last.active_nodes;
   f->callback_status = (int32_t)word[0];
   f->set = (int32_t)word[1];
   f->particle = word[2];

@@ -283,6 +283,59 @@ START_TEST(particles_come_and_go) {
 }
 END_TEST
 
+/* Particles become prescribed while it goes on; a part that has none of the set has nothing to set. */
+static mpm_status prescribe_later(world *w, const scene *is, outcome *found) {
+  double dt;
+  mpm_status status = mpm_stable_dt(w->stepper, &dt);
+  (void)is, (void)found;
+  for (int32_t i = 0; i < 12 && !status; ++i) {
+    if (i == 4) status = prescribe_some(w->set[0]);
+    if (!status) status = mpm_step(w->stepper, 0.3 * dt, &w->info);
+  }
+  return status;
+}
+
+START_TEST(prescribed_later) {
+  scene is = scene_of(2, 2 * wide, set_up_combination);
+  is.run = prescribe_later;
+  check_scene(&is, "prescribed later", MOST_PARTS);
+}
+END_TEST
+
+/* Clumps of a few particles about cells: on the linear basis nearly every node at their rim is light. */
+static mpm_status set_up_clumps(world *w, const scene *is) {
+  enum { CLUMPS = 60, EACH = 15 };
+  double x[2 * CLUMPS * EACH], volume[CLUMPS * EACH];
+  const double h = w->desc.grid.spacing[0], size = h * (double)w->desc.grid.cells[0];
+  int32_t part = 0, parts = 1;
+  dice random = {(uint64_t)is->speed};
+  mpm_context_part(w->context, &part, &parts);
+  for (int32_t k = 0; k < CLUMPS; ++k) {
+    const double at[] = {throw_between(&random, 0.1, 0.8) * size, throw_between(&random, 0.1, 0.8) * size};
+    for (int32_t i = 0; i < EACH; ++i)
+      for (int32_t c = 0; c < 2; ++c)
+        x[c * CLUMPS * EACH + k * EACH + i] =
+            h * (floor(at[c] / h) + 0.5 * floor(throw_between(&random, 0.0, 5.0)) +
+                 throw_between(&random, 1e-7, 2e-7));
+  }
+  for (int32_t p = 0; p < CLUMPS * EACH; ++p) volume[p] = 0.1 * h * h;
+  mpm_status status =
+      mpm_particles_add(w->set[0], part ? 0 : CLUMPS * EACH, x, NULL, volume, NULL, NULL, NULL);
+  return status ? status : set_velocities(w, w->set[0], 0.1);
+}
+
+START_TEST(light_nodes_lead) {
+  static const int32_t transfers[] = {MPM_FLIP, MPM_APIC, MPM_XPIC};
+  scene is = scene_of(2, 2 * wide, set_up_clumps);
+  is.speed = 1 + _i;
+  is.desc.grid.basis = MPM_LINEAR;
+  is.desc.stepper.scheme = _i % 2 ? MPM_MUSL : MPM_USL;
+  is.desc.stepper.transfer = transfers[_i % 3];
+  is.desc.stepper.xpic_order = 2;
+  check_scene(&is, "clumps", 2 + _i % 4);
+}
+END_TEST
+
 /* More parts than blocks, one block for all, and none at all. */
 static mpm_status set_up_small(world *w, const scene *is) {
   (void)is;
@@ -567,6 +620,8 @@ Suite *shared_suite(void) {
   tcase_set_timeout(host, 120);
   tcase_add_loop_test(host, host_acts, 0, 12);
   tcase_add_test(host, particles_come_and_go);
+  tcase_add_test(host, prescribed_later);
+  tcase_add_loop_test(host, light_nodes_lead, 0, 12);
   tcase_add_test(host, few_blocks);
   tcase_add_test(host, blocks_are_cut_anew);
   suite_add_tcase(suite, host);
