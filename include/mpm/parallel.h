@@ -63,7 +63,7 @@ typedef mpm_status (*mpm_receive_fn)(void *user, int32_t *count, const mpm_messa
 /** values[count] of all parts into each of them (collective). Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_reduce_fn)(void *user, int32_t op, int64_t count, int64_t *values);
 
-/** all[parts]: value of each part (collective). Only when the blocks are cut anew. Returns as mpm_send_fn. */
+/** all[parts]: value of each part (collective). Only when particles are added. Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_gather_fn)(void *user, int64_t value, int64_t *all);
 
 /** Ways between the parts. All are called on the calling thread. Once one has failed, every collective call
@@ -77,8 +77,8 @@ typedef struct mpm_transport {
   mpm_receive_fn receive; /**< ends what send started */
   mpm_reduce_fn reduce;   /**< maxima and sums of integers */
   mpm_gather_fn gather;   /**< one integer of each part */
-  /** Called every 50 microseconds or so between send and receive, for transports that move only when called;
-   * may be NULL. */
+  /** For transports that move only when called, between send and receive; may be NULL. This version does
+   * not call it. */
   void (*poll)(void *user);
   void *user; /**< passed to all of them */
 } mpm_transport;

@@ -78,6 +78,7 @@ void mpmi_members_remove(mpmi_layout *layout, const mpmi_settings *settings, int
   drop_fields(member->set, NULL);
   member->set->stepper = NULL;
   member->set->dirty |= MPMI_DIRTY_PLACE;
+  if (layout->parts) layout->parts->is_stale = 1;
   for (int32_t i = m + 1; i < layout->member_count; ++i) layout->member[i - 1] = layout->member[i];
   watch(layout, --layout->member_count);
   mpmi_blocks_clear(&layout->blocks); /* the worklists counted its slots: the next step sorts anew */

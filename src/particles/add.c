@@ -90,7 +90,8 @@ mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, 
                        mpmi_numbers *out) {
   int64_t before = 0, total = n;
   out->first = set->next_id;
-  if (!mpmi_is_whole(set->context) && (status = count_others(set, n, status, &before, &total))) return status;
+  if (!mpmi_is_whole(set->context) && (status = count_others(set, ids ? 0 : n, status, &before, &total)))
+    return status;
   if (status) return status;
   if (total > INT64_MAX - set->next_id)
     return mpmi_fail(set->context, MPM_E_ARG, "ids run out: the next is %lld", (long long)set->next_id);

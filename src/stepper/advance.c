@@ -160,9 +160,10 @@ mpm_status mpm_advance(mpm_stepper *s, const mpm_advance_desc *desc, mpm_step_in
   if (status || (status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d)) ||
       (status = check(s, &d)))
     return mpmi_together(s, status);
-  static const char *const name[] = {"t_end", "cfl", "dt_first", "dt_min", "dt_max"};
-  const double number[] = {d.t_end, d.cfl, d.dt_first, d.dt_min, d.dt_max};
+  static const char *const name[] = {"t_end", "cfl", "dt_first", "dt_min", "dt_max", "max_cuts", "max_steps"};
+  const double number[] = {
+      d.t_end, d.cfl, d.dt_first, d.dt_min, d.dt_max, (double)d.max_cuts, (double)d.max_steps};
   status = mpmi_together(s, MPM_OK);
-  if (!status) status = mpmi_together_begin(s, mpmi_stepper_idle(s), 5, name, number);
+  if (!status) status = mpmi_together_begin(s, mpmi_stepper_idle(s), 7, name, number);
   return status ? status : mpmi_give_info(s, sub_steps(s, &d), info);
 }

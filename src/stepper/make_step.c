@@ -26,10 +26,10 @@ static mpm_status check_dt(mpm_stepper *s, double dt) {
 
 /* All parts begin the same step, or none does. */
 static mpm_status enter(mpm_stepper *s, mpm_status status, double dt) {
-  static const char *const name[] = {"dt", "the time"};
-  const double number[] = {dt, s->history.t};
+  static const char *const name[] = {"dt", "the time", "the number of the step"};
+  const double number[] = {dt, s->history.t, (double)s->history.step};
   if (!status) status = mpmi_together_offers(s);
-  return mpmi_together_begin(s, status, 2, name, number);
+  return mpmi_together_begin(s, status, 3, name, number);
 }
 
 /* Returns how many sums on nodes parts have exchanged when a step has come to this phase. */

@@ -35,7 +35,7 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
 /* The flags of sets that count on all parts once they are set on one. */
 static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE, MPMI_DIRTY_STRESS, MPMI_DIRTY_SUMS,
                                 MPMI_DIRTY_ACCELERATION};
-enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 7, MOST_NUMBERS = 6 };
+enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 7, MOST_NUMBERS = 7 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
