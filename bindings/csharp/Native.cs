@@ -319,8 +319,7 @@ namespace Mpm {
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int GatherFn(IntPtr user, long value, long* all);
 
-  /// <summary>Called every 50 microseconds or so between send and receive, for transports that move only when called;
-  /// may be NULL.</summary>
+  /// <summary>For transports that move only when called, between send and receive; may be NULL.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate void TransportPollFn(IntPtr user);
 
@@ -498,8 +497,7 @@ namespace Mpm {
     public IntPtr reduce;
     /// <summary>one integer of each part.</summary>
     public IntPtr gather;
-    /// <summary>Called every 50 microseconds or so between send and receive, for transports that move only when
-    /// called; may be NULL.</summary>
+    /// <summary>For transports that move only when called, between send and receive; may be NULL.</summary>
     public IntPtr poll;
     /// <summary>passed to all of them.</summary>
     public IntPtr user;

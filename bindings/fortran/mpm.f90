@@ -362,8 +362,7 @@ module mpm
     type(c_funptr) :: reduce
     !> one integer of each part.
     type(c_funptr) :: gather
-    !> Called every 50 microseconds or so between send and receive, for transports that move only when called; may be
-    !! NULL.
+    !> For transports that move only when called, between send and receive; may be NULL.
     type(c_funptr) :: poll
     !> passed to all of them.
     type(c_ptr) :: user
@@ -1181,8 +1180,7 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_gather_fn
 
-    !> Called every 50 microseconds or so between send and receive, for transports that move only when called; may be
-    !! NULL.
+    !> For transports that move only when called, between send and receive; may be NULL.
     subroutine mpm_transport_poll_fn(user) bind(c)
       import
       type(c_ptr), value :: user

@@ -883,14 +883,14 @@ f(user, op, count, values): @cfunction(f, Int32, (Ptr{Cvoid}, Int32, Int64, Ptr{
 const mpm_reduce_fn = Ptr{Cvoid}
 
 """
-all[parts]: value of each part (collective). Only when the blocks are cut anew. Returns as mpm_send_fn.
+all[parts]: value of each part (collective). Only when particles are added. Returns as mpm_send_fn.
 
 f(user, value, all): @cfunction(f, Int32, (Ptr{Cvoid}, Int64, Ptr{Int64}))
 """
 const mpm_gather_fn = Ptr{Cvoid}
 
 """
-Called every 50 microseconds or so between send and receive, for transports that move only when called; may be NULL.
+For transports that move only when called, between send and receive; may be NULL. This version does not call it.
 
 f(user): @cfunction(f, Cvoid, (Ptr{Cvoid},))
 """

@@ -444,14 +444,14 @@ pub type mpm_reduce_fn = Option<unsafe extern "C" fn(
     values: *mut i64,
 ) -> mpm_status>;
 
-/// all[parts]: value of each part (collective). Only when the blocks are cut anew. Returns as mpm_send_fn.
+/// all[parts]: value of each part (collective). Only when particles are added. Returns as mpm_send_fn.
 pub type mpm_gather_fn = Option<unsafe extern "C" fn(
     user: *mut c_void,
     value: i64,
     all: *mut i64,
 ) -> mpm_status>;
 
-/// Called every 50 microseconds or so between send and receive, for transports that move only when called; may be NULL.
+/// For transports that move only when called, between send and receive; may be NULL. This version does not call it.
 pub type mpm_transport_poll_fn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
 /// A task of the library, which the host's executor calls with the task_data that it was given and a number k. A task
@@ -762,8 +762,7 @@ pub struct mpm_transport {
     pub reduce: mpm_reduce_fn,
     /// one integer of each part
     pub gather: mpm_gather_fn,
-    /// Called every 50 microseconds or so between send and receive, for transports that move only when called; may be
-    /// NULL.
+    /// For transports that move only when called, between send and receive; may be NULL. This version does not call it.
     pub poll: mpm_transport_poll_fn,
     /// passed to all of them
     pub user: *mut c_void,
