@@ -8,7 +8,7 @@
 
 /* What all processes must have alike, compared byte by byte. */
 typedef struct identity {
-  uint64_t byte_order, pointer, library, headers, message, transport;
+  uint64_t byte_order, pointer, version, headers, message, transport;
 } identity;
 
 /* There is no handle yet that could keep a sentence: the host's memory and its log get it. */
@@ -22,7 +22,7 @@ static mpm_status tell(const mpm_context_desc *desc, mpm_status status, const ch
 static identity identity_here(void) {
   return (identity){.byte_order = 0x0102030405060708u,
                     .pointer = sizeof(void *),
-                    .library = mpm_version(),
+                    .version = mpm_version(),
                     .headers = MPM_VERSION,
                     .message = sizeof(mpm_message),
                     .transport = sizeof(mpm_transport)};
@@ -39,7 +39,7 @@ static mpm_status check_alike(mpm_mpi *m) {
   return mpmx_fail(
       m, MPM_E_UNSUPPORTED,
       "this process runs libmpm 0x%06llx with libmpm-mpi 0x%06llx, part 0 runs 0x%06llx with 0x%06llx",
-      (unsigned long long)here.library, (unsigned long long)here.headers, (unsigned long long)first.library,
+      (unsigned long long)here.version, (unsigned long long)here.headers, (unsigned long long)first.version,
       (unsigned long long)first.headers);
 }
 
