@@ -319,7 +319,8 @@ namespace Mpm {
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate int GatherFn(IntPtr user, long value, long* all);
 
-  /// <summary>For transports that move only when called, between send and receive; may be NULL.</summary>
+  /// <summary>For transports that move only when called: called between send and receive, once the blocks that nobody
+  /// waits for have been worked on; may be NULL.</summary>
   [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
   public unsafe delegate void TransportPollFn(IntPtr user);
 
@@ -497,7 +498,8 @@ namespace Mpm {
     public IntPtr reduce;
     /// <summary>one integer of each part.</summary>
     public IntPtr gather;
-    /// <summary>For transports that move only when called, between send and receive; may be NULL.</summary>
+    /// <summary>For transports that move only when called: called between send and receive, once the blocks that
+    /// nobody waits for have been worked on; may be NULL.</summary>
     public IntPtr poll;
     /// <summary>passed to all of them.</summary>
     public IntPtr user;

@@ -362,7 +362,8 @@ module mpm
     type(c_funptr) :: reduce
     !> one integer of each part.
     type(c_funptr) :: gather
-    !> For transports that move only when called, between send and receive; may be NULL.
+    !> For transports that move only when called: called between send and receive, once the blocks that nobody waits for
+    !! have been worked on; may be NULL.
     type(c_funptr) :: poll
     !> passed to all of them.
     type(c_ptr) :: user
@@ -1180,7 +1181,8 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_gather_fn
 
-    !> For transports that move only when called, between send and receive; may be NULL.
+    !> For transports that move only when called: called between send and receive, once the blocks that nobody waits for
+    !! have been worked on; may be NULL.
     subroutine mpm_transport_poll_fn(user) bind(c)
       import
       type(c_ptr), value :: user

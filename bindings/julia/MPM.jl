@@ -890,7 +890,8 @@ f(user, value, all): @cfunction(f, Int32, (Ptr{Cvoid}, Int64, Ptr{Int64}))
 const mpm_gather_fn = Ptr{Cvoid}
 
 """
-For transports that move only when called, between send and receive; may be NULL. This version does not call it.
+For transports that move only when called: called between send and receive, once the blocks that nobody waits for have
+been worked on; may be NULL.
 
 f(user): @cfunction(f, Cvoid, (Ptr{Cvoid},))
 """
@@ -1179,7 +1180,7 @@ end
 
 """
 Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
-struct_size is bad. Without a transport there is one part, and counts and seconds are 0.
+struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0.
 """
 function mpm_stepper_parallel_info(stepper, reset, info)
     return ccall((:mpm_stepper_parallel_info, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Ptr{mpm_parallel_info}),

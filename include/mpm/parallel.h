@@ -6,16 +6,18 @@
  *
  * Calls marked (collective) are made on all parts, in the same order and with the same arguments, save those
  * that are said to be of a part. All parts return the same status; where it is a failure, the text on the
- * parts that are not at fault says which part is, and its sentence. Calls that only read or write a part's
- * own objects are not collective. Without a transport, or with one part, every call behaves as it does
- * without.
+ * parts that are not at fault says which part is, and its sentence. Grids, materials, sets and steppers are
+ * made and set up alike on all parts, by calls that do not wait for other parts: if one of these fails, the
+ * host ends the problem on all. Calls that only read or write a part's own objects concern that part alone.
+ * Without a transport, or with one part, every call behaves as it does without.
  *
  * States, statuses and reports have the same bits for any number of parts, as for any number of threads.
  *
- * (collective) are: mpm_context_create(); adding and filling particles, where each part adds its own and
- * numbers without ids follow those of the parts before; all calls that set up a stepper; mpm_step() and its
- * three parts, mpm_advance(), mpm_stepper_info(), mpm_stable_dt(), mpm_state_hash(). Particles go to the part
- * that has their block of the grid when a step sorts them, wherever they were added.
+ * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
+ * particles, where each part adds its own and numbers without ids follow those of the parts before;
+ * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stable_dt(), mpm_state_hash().
+ * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
+ * added. An id is given once over all parts, which is not checked.
  *
  * Of several parts these are asked for explicit steps of one body. MPM_E_UNSUPPORTED: implicit schemes, total
  * Lagrangian grids, friction walls, obstacles, surfaces, heat, adaption, and saving or loading states.
@@ -77,8 +79,8 @@ typedef struct mpm_transport {
   mpm_receive_fn receive; /**< ends what send started */
   mpm_reduce_fn reduce;   /**< maxima and sums of integers */
   mpm_gather_fn gather;   /**< one integer of each part */
-  /** For transports that move only when called, between send and receive; may be NULL. This version does
-   * not call it. */
+  /** For transports that move only when called: called between send and receive, once the blocks that nobody
+   * waits for have been worked on; may be NULL. */
   void (*poll)(void *user);
   void *user; /**< passed to all of them */
 } mpm_transport;
@@ -108,7 +110,7 @@ typedef struct mpm_parallel_info {
 } mpm_parallel_info;
 
 /** Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL
- * or its struct_size is bad. Without a transport there is one part, and counts and seconds are 0. */
+ * or its struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0. */
 MPM_API mpm_status mpm_stepper_parallel_info(mpm_stepper *stepper, int32_t reset, mpm_parallel_info *info);
 
 #ifdef __cplusplus

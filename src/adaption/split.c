@@ -128,15 +128,15 @@ static int64_t count_added(const mpmi_adaption *a) {
 
 mpm_status mpmi_adaption_reserve(const mpmi_adaption *a, mpm_particles *set, int32_t copy) {
   const int64_t added = count_added(a);
-  return added ? mpmi_append_reserve(set, added, copy) : MPM_OK;
+  return added ? mpmi_append_reserve(set, added, 0, copy) : MPM_OK;
 }
 
 /* The free slots are known to be there: room has been made. */
 void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set) {
   const int64_t added = count_added(a);
-  int64_t next;
   parts p;
-  if (!added || mpmi_append_begin(set, added, 0, &next)) return;
+  if (!added) return;
+  int64_t next = mpmi_append_begin(set, added);
   for (int64_t i = 0; i < a->splits; ++i) {
     const mpmi_splitting *split = &a->split[i];
     const mpmi_motion_of whole = mpmi_motion_in(settings, set, split->slot);

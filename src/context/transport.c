@@ -27,6 +27,13 @@ mpm_status mpmi_receive(mpm_context *context, int32_t *count, const mpm_message 
   return answered(context, "receive", t->receive(t->user, count, in));
 }
 
+void mpmi_poll(mpm_context *context) {
+  const mpm_transport *t = &context->transport;
+  if (!t->poll || context->apart) return;
+  t->poll(t->user);
+  mpmi_environment_mend();
+}
+
 mpm_status mpmi_reduce_parts(mpm_context *context, int32_t operation, int64_t count, int64_t *values) {
   const mpm_transport *t = &context->transport;
   if (mpmi_is_whole(context)) return MPM_OK;

@@ -14,6 +14,8 @@ static inline int32_t mpmi_is_whole(const mpm_context *context) {
 mpm_status mpmi_send(mpm_context *context, int32_t exchange, int32_t count, const mpm_message *out,
                      const int64_t *most);
 mpm_status mpmi_receive(mpm_context *context, int32_t *count, const mpm_message **in);
+/* Lets a transport move that does so only when it is called, between send and receive. */
+void mpmi_poll(mpm_context *context);
 mpm_status mpmi_reduce_parts(mpm_context *context, int32_t operation, int64_t count, int64_t *values);
 mpm_status mpmi_gather_parts(mpm_context *context, int64_t value, int64_t *all);
 

@@ -108,6 +108,7 @@ static mpm_status add_with_others(sum_job *job, mpm_status status) {
   if (!status) status = mpmi_step_failure(job->step);
   status = mpmi_tiles_send(parts, values, job->step->layout->blocks.cover, status);
   if (!status) status = mpmi_visit_colour(job->step, parts->is_inner, 0, sum->calls_host, add_block, job);
+  mpmi_poll(job->step->settings->context);
   status = mpmi_tiles_receive(parts, values, status);
   for (int32_t c = 0; c < MPMI_COLOURS && !status; ++c) {
     if (c) status = mpmi_visit_colour(job->step, parts->is_inner, c, sum->calls_host, add_block, job);

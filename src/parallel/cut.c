@@ -77,6 +77,7 @@ mpm_status mpmi_cut_blocks(mpmi_parts *parts, const mpmi_blocks *blocks, const i
   if ((status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 2, largest)) ||
       (status = mpmi_reduce_parts(c, MPM_REDUCE_SUM, 1, &total)))
     return status;
+  parts->is_empty = total == 0;
   parts->info.imbalance = total > 0 ? (double)largest[0] * (double)count / (double)total : 1.0;
   if (parts->is_cut && parts->info.imbalance <= uneven) return MPM_OK;
   const size_t bytes = mpmi_bytes(3 * count, sizeof(uint64_t));

@@ -34,7 +34,7 @@ mpm_status mpmi_move_align_fields(mpmi_parts *parts, mpmi_moving_set *sets, int3
   return mpmi_agree(c, status);
 }
 
-/* ---- messages: how many of each set, then its fields component by component ---------- */
+/* ---- messages: how many of each set, then its fields component by component ---------------------------- */
 static int64_t padded_bytes(const mpmi_field *field, int64_t n) {
   return ((int64_t)mpmi_type_size(field->type) * n + 7) / 8 * 8;
 }
@@ -127,14 +127,9 @@ static mpm_status pack(mpmi_parts *parts, const int32_t *owner, mpmi_moving_set 
 }
 
 /* ---- what has come ------------------------------------------------------------------------------------- */
-typedef struct arrivals {
-  int32_t count;
-  const mpm_message *message;
-} arrivals;
-
 /* Goes through the pieces of all messages. low: they come from a part before this one. */
 typedef void (*piece_fn)(mpmi_moving_set *to, int32_t low, int64_t n, const char *values);
-static mpm_status each_piece(mpmi_parts *parts, const arrivals *in, mpmi_moving_set *sets, int32_t count,
+static mpm_status each_piece(mpmi_parts *parts, const mpmi_arrivals *in, mpmi_moving_set *sets, int32_t count,
                              piece_fn fn) {
   for (int32_t i = 0; i < in->count; ++i) {
     const char *at = in->message[i].data, *end = at + in->message[i].bytes;
@@ -176,37 +171,24 @@ static void take_piece(mpmi_moving_set *to, int32_t low, int64_t n, const char *
 }
 
 /* ---- both ways ----------------------------------------------------------------------------------------- */
-static mpm_status exchange(mpmi_parts *parts, arrivals *in) {
-  const int32_t all = mpmi_part_count(parts);
-  int32_t count = 0;
-  for (int32_t r = 0; r < all; ++r) {
-    if (!parts->out[r].used) continue;
-    parts->info.bytes_moved += parts->out[r].used;
-    parts->message[count++] = (mpm_message){.part = r, .bytes = parts->out[r].used, .data = parts->out[r].at};
-  }
-  const mpm_status status = mpmi_send(parts->context, MPM_EXCHANGE_SPARSE, count, parts->message, NULL);
-  return status ? status : mpmi_receive(parts->context, &in->count, &in->message);
-}
-
-static mpm_status make_room(mpmi_parts *parts, const arrivals *in, mpmi_moving_set *sets, int32_t count) {
+static mpm_status make_room(mpmi_parts *parts, const mpmi_arrivals *in, mpmi_moving_set *sets,
+                            int32_t count) {
   for (int32_t m = 0; m < count; ++m) sets[m].arrive = sets[m].arrive_low = 0;
   mpm_status status = each_piece(parts, in, sets, count, count_piece);
   for (int32_t m = 0; m < count && !status; ++m) {
     status = mpmi_check_room(sets[m].set, sets[m].arrive);
-    if (!status && sets[m].arrive) status = mpmi_append_reserve(sets[m].set, sets[m].arrive, 0);
+    if (!status && sets[m].arrive) status = mpmi_append_reserve(sets[m].set, sets[m].arrive, 0, 0);
   }
   return status;
 }
 
 /* Makes holes of the particles that have gone, and the arrivals particles. There is room. */
-static void carry_out(mpmi_parts *parts, const arrivals *in, mpmi_moving_set *sets, int32_t count) {
+static void carry_out(mpmi_parts *parts, const mpmi_arrivals *in, mpmi_moving_set *sets, int32_t count) {
   const int64_t *gone = (const void *)parts->gone.at;
   for (int32_t m = 0; m < count; ++m) {
     mpm_particles *set = sets[m].set;
     for (int64_t i = 0; i < sets[m].leave; ++i) mpmi_make_hole(set, *gone++);
-    int64_t slot = set->slots;
-    if (sets[m].arrive) mpmi_append_begin(set, sets[m].arrive, 0, &slot);
-    sets[m].sorting->tail = slot;
+    sets[m].sorting->tail = sets[m].arrive ? mpmi_append_begin(set, sets[m].arrive) : set->slots;
     sets[m].sorting->tail_count = 0;
     sets[m].sorting->tail_low = sets[m].arrive_low;
     set->count += sets[m].arrive - sets[m].leave;
@@ -218,11 +200,12 @@ static void carry_out(mpmi_parts *parts, const arrivals *in, mpmi_moving_set *se
 
 static mpm_status move_owned(mpmi_parts *parts, const mpmi_blocks *blocks, int32_t *owner,
                              mpmi_moving_set *sets, int32_t count, int64_t *moved) {
-  arrivals in = {0, NULL};
+  mpmi_arrivals in;
   for (int64_t i = 0; i < blocks->count; ++i) owner[i] = mpmi_cut_owner(parts, blocks->key[i]);
   mpm_status status = pack(parts, owner, sets, count);
   for (int32_t r = 0; r < mpmi_part_count(parts) && status; ++r) parts->out[r].used = 0;
-  const mpm_status lost = exchange(parts, &in);
+  for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->info.bytes_moved += parts->out[r].used;
+  const mpm_status lost = mpmi_parts_exchange(parts, &in);
   if (lost) return lost;
   if (!status) status = make_room(parts, &in, sets, count);
   if ((status = mpmi_agree(parts->context, status))) return status;

@@ -14,8 +14,8 @@
 typedef struct mpmi_moving_set {
   mpm_particles *set;
   mpmi_sorting *sorting;
-  int64_t leave, arrive,
-      arrive_low; /* those that go; arrivals, and those of them from parts before this one */
+  int64_t leave;              /* particles that go */
+  int64_t arrive, arrive_low; /* those that come, and those of them from parts before this one */
 } mpmi_moving_set;
 
 /* Makes the fields of the sets alike on all parts (collective): one that is present on a part becomes so on
@@ -26,7 +26,7 @@ mpm_status mpmi_move_align_fields(mpmi_parts *parts, mpmi_moving_set *sets, int3
 mpm_status mpmi_move_particles(mpmi_parts *parts, const mpmi_blocks *blocks, mpmi_moving_set *sets,
                                int32_t count, int64_t *moved);
 
-/* ---- sharing.c: a sort, in which all that follows is collective ---------- */
+/* ---- sharing.c: a sort, in which all that follows is collective ---------------------------------------- */
 /* Moves particles to the parts that have their blocks, which have been inserted, and inserts the blocks of
  * other parts that share nodes. insert(user) inserts the blocks anew; status is what has happened before. */
 mpm_status mpmi_share_out(mpmi_parts *parts, mpmi_blocks *blocks, mpmi_moving_set *sets, int32_t count,

@@ -10,6 +10,7 @@ mpm_status mpmi_parts_create(mpm_context *c, const mpm_grid *grid, mpmi_parts **
   parts->context = c;
   parts->grid = grid;
   parts->is_stale = 1;
+  parts->info.imbalance = 1.0;
   parts->first = mpmi_alloc_zeroed(c, mpmi_bytes(count + 1, sizeof *parts->first));
   parts->owner_count = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof *parts->owner_count));
   parts->out = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof *parts->out));
@@ -59,4 +60,14 @@ void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes)
   char *at = buffer->at + buffer->used;
   buffer->used = wanted;
   return at;
+}
+
+mpm_status mpmi_parts_exchange(mpmi_parts *parts, mpmi_arrivals *in) {
+  int32_t count = 0;
+  for (int32_t r = 0; r < mpmi_part_count(parts); ++r) {
+    const mpmi_buffer *out = &parts->out[r];
+    if (out->used) parts->message[count++] = (mpm_message){.part = r, .bytes = out->used, .data = out->at};
+  }
+  const mpm_status status = mpmi_send(parts->context, MPM_EXCHANGE_SPARSE, count, parts->message, NULL);
+  return status ? status : mpmi_receive(parts->context, &in->count, &in->message);
 }

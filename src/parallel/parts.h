@@ -49,7 +49,8 @@ typedef struct mpmi_parts {
   const mpm_grid *grid;
   int32_t margin;           /* nodes so far beyond those of a tile are to be whole, too */
   uint64_t *first;          /* [parts + 1] part r has the keys first[r] <= key < first[r + 1] */
-  int32_t is_cut, is_stale; /* stale: a sort has not come to its end on all parts */
+  int32_t is_cut, is_empty; /* empty: no part has particles */
+  int32_t is_stale;         /* a sort has not come to its end on all parts */
   int64_t *owner_count;     /* [parts] scratch */
   int64_t partner_count, partner_capacity;
   mpmi_partner *partner;
@@ -88,6 +89,14 @@ static inline int32_t mpmi_part_count(const mpmi_parts *parts) {
 
 /* Makes room for more bytes of a message, and returns where they go, or NULL. */
 void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes);
+
+/* Sends what stands in `out` to the parts that it is for, and takes what comes from those that have something
+ * for this one. */
+typedef struct mpmi_arrivals {
+  int32_t count;
+  const mpm_message *message;
+} mpmi_arrivals;
+mpm_status mpmi_parts_exchange(mpmi_parts *parts, mpmi_arrivals *in);
 
 /* ---- cut.c ------------------------------------------------------------------------------------------- */
 /* Gives the blocks, each with its weight, to the parts (collective), unless they are shared out evenly. */

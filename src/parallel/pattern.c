@@ -136,7 +136,7 @@ static mpm_status tell(mpmi_parts *parts, const mpmi_blocks *blocks) {
   return MPM_OK;
 }
 
-/* ---- what is sent and what comes ---------- */
+/* ---- what is sent and what comes ----------------------------------------------------------------------- */
 /* Looks for blocks near one whose numbers are in [first, end): `wants` says that one wants something of it,
  * and the box says what; `wanted` the other way round. */
 typedef struct search {
@@ -223,21 +223,14 @@ static mpm_status add_partner(mpmi_parts *parts, mpmi_blocks *blocks, int64_t ow
 }
 
 mpm_status mpmi_pattern_find(mpmi_parts *parts, mpmi_blocks *blocks, mpm_status status) {
-  const int32_t all = mpmi_part_count(parts);
   const int64_t own = blocks->count;
-  int32_t count = 0, incoming;
-  const mpm_message *in;
-  for (int32_t r = 0; r < all; ++r) parts->out[r].used = 0;
+  mpmi_arrivals in;
+  for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->out[r].used = 0;
   if (!status) status = tell(parts, blocks);
-  for (int32_t r = 0; r < all; ++r) {
-    if (!parts->out[r].used) continue;
-    parts->message[count++] = (mpm_message){.part = r, .bytes = parts->out[r].used, .data = parts->out[r].at};
-  }
-  mpm_status lost = mpmi_send(parts->context, MPM_EXCHANGE_SPARSE, count, parts->message, NULL);
-  if (!lost) lost = mpmi_receive(parts->context, &incoming, &in);
+  const mpm_status lost = mpmi_parts_exchange(parts, &in);
   if (lost) return lost;
   parts->partner_count = parts->sent_count = parts->ghost_count = 0;
-  for (int32_t i = 0; i < incoming && !status; ++i) status = add_partner(parts, blocks, own, &in[i]);
+  for (int32_t i = 0; i < in.count && !status; ++i) status = add_partner(parts, blocks, own, &in.message[i]);
   parts->info.neighbours = (int32_t)parts->partner_count;
   parts->info.blocks = own;
   parts->info.ghosts = parts->ghost_count;
@@ -268,16 +261,14 @@ static void flag_box(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t
       }
 }
 
-static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, uint8_t flag) {
+/* Flags the nodes of a block's tile, or all that it wants. */
+static void flag_nodes(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t wanted,
+                       int32_t flag) {
+  const int32_t *coord = blocks->coord[block];
   stretch box[3];
-  for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = tile_of(parts, blocks->coord[block][k]);
-  flag_box(parts, blocks, block, box, flag);
-}
-
-static void flag_wanted(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, uint8_t flag) {
-  stretch box[3];
-  for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = wanted_by(parts, k, blocks->coord[block][k]);
-  flag_box(parts, blocks, block, box, flag);
+  for (int32_t k = 0; k < blocks->grid->dim; ++k)
+    box[k] = wanted ? wanted_by(parts, k, coord[k]) : tile_of(parts, coord[k]);
+  flag_box(parts, blocks, block, box, (uint8_t)flag);
 }
 
 /* Nodes that are tied move as one: what is so for one of them is so for all. */
@@ -334,7 +325,7 @@ static void flag_ghost(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_
   const int32_t *coord = blocks->coord[ghost->block];
   const int32_t lower = parts->partner[ghost->partner].part < parts->context->transport.part;
   nearby n = {parts, blocks, {coord[0], coord[1], coord[2]}, blocks->body[ghost->block], NULL};
-  flag_tile(parts, blocks, ghost->block, (uint8_t)(MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0)));
+  flag_nodes(parts, blocks, ghost->block, 0, MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0));
   each_near(&n, flag_near);
 }
 
@@ -352,8 +343,8 @@ mpm_status mpmi_pattern_nodes(mpmi_parts *parts, const mpmi_blocks *blocks,
   for (int64_t i = 0; i < parts->ghost_count; ++i) flag_ghost(parts, blocks, &parts->ghost[i]);
   for (int64_t block = 0; block < blocks->count; ++block) {
     if (parts->near[block] != 2) continue;
-    flag_tile(parts, blocks, block, MPMI_NODE_OWN);
-    flag_wanted(parts, blocks, block, MPMI_NODE_WHOLE);
+    flag_nodes(parts, blocks, block, 0, MPMI_NODE_OWN);
+    flag_nodes(parts, blocks, block, 1, MPMI_NODE_WHOLE);
   }
   join_ties(parts, constraints);
   int64_t count = 0;

@@ -44,7 +44,7 @@ mpm_status mpmi_share_end(mpmi_parts *parts, const mpmi_blocks *blocks, const mp
     status = mpmi_reduce_parts(parts->context, MPM_REDUCE_MAX, 1, &heaviest);
     if (!status) sets[m].set->mass_max = mpmi_of_ordered_bits(heaviest);
   }
-  if (!status) parts->is_stale = 0;
+  if (!status) parts->is_stale = parts->is_empty; /* one part sorts, too, until it has blocks */
   return status;
 }
 

@@ -131,6 +131,10 @@ mpm_status mpmi_tiles_send(mpmi_parts *parts, int32_t values, const mpmi_cover *
 /* Finds what has come for each ghost of a partner. */
 static mpm_status read_message(mpmi_parts *parts, const mpmi_partner *from, int32_t values,
                                const mpm_message *in) {
+  if (in->part != from->part)
+    return mpmi_fail(parts->context, MPM_E_CALLBACK,
+                     "the transport has brought a message of part %d, and not of part %d", (int)in->part,
+                     (int)from->part);
   const char *at = in->data, *end = at + in->bytes;
   int64_t word[2] = {MPM_E_NOMEM, 0};
   if (in->bytes >= (int64_t)sizeof word) memcpy(word, at, sizeof word);

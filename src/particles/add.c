@@ -34,28 +34,26 @@ static mpm_status grow(mpm_particles *set, int64_t slots, int32_t both) {
   return both ? mpmi_particles_reserve_in_step(set, wanted) : mpmi_particles_reserve(set, wanted);
 }
 
-mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t in_step) {
-  return grow(set, (set->slots + n + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD, in_step);
-}
-
 /* Particles whose F stays have no stress: they act only by being prescribed, and they are unless the host
  * says otherwise. */
 static int32_t is_rigid(const mpm_particles *set) {
   return mpmi_material_kinematics(set->material) == MPMI_F_STAYS;
 }
 
-mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, int64_t *slot) {
-  int64_t first = set->slots - free_tail(set);
-  int64_t slots = (first + n + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD;
-  mpm_status status = grow(set, slots, 0);
+mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t with_size, int32_t in_step) {
+  mpm_status status = grow(set, (set->slots + n + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD, in_step);
   if (!status && with_size) status = mpmi_field_make_present(set, MPMI_SIZE);
   if (!status && is_rigid(set)) status = mpmi_field_make_present(set, MPMI_PRESCRIBED);
-  if (status) return status;
+  return status;
+}
+
+int64_t mpmi_append_begin(mpm_particles *set, int64_t n) {
+  const int64_t first = set->slots - free_tail(set);
+  const int64_t slots = (first + n + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD;
   set->slots = slots;
   mpmi_particles_watch(set, slots);
   mpmi_fill_holes(set, 0, first, slots, set->grid->desc.origin);
-  *slot = first;
-  return MPM_OK;
+  return first;
 }
 
 /* Writes the default of a field that is kept, where the default is not 0 and the caller has not written
@@ -103,12 +101,12 @@ mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, 
 }
 
 void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids,
-                        const mpmi_numbers *numbers) {
+                        int64_t first_id) {
   int64_t *id = mpmi_i64(set, MPMI_ID, 0) + slot;
   double *mass = mpmi_f64(set, MPMI_MASS, 0) + slot, *volume = mpmi_f64(set, MPMI_VOLUME, 0) + slot;
   const double *initial_volume = mpmi_f64(set, MPMI_INITIAL_VOLUME, 0) + slot;
   for (int64_t i = 0; i < n; ++i) {
-    id[i] = ids ? ids[i] : numbers->first + i;
+    id[i] = ids ? ids[i] : first_id + i;
     volume[i] = initial_volume[i];
     mass[i] = set->material->density * volume[i];
     if (mass[i] > set->mass_max) set->mass_max = mass[i];
@@ -120,7 +118,6 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
   mpmi_thermal_start(set, slot, slot + n);
   for (int32_t c = 0; c < set->grid->dim && is_rigid(set); ++c)
     memset((uint8_t *)set->field[MPMI_PRESCRIBED].data[0] + c * set->ld + slot, 1, (size_t)n);
-  set->next_id = numbers->next;
   set->count += n;
   set->dirty |= MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION;
   mpmi_index_drop(set);
@@ -207,12 +204,12 @@ static void copy_arrays(mpm_particles *set, int64_t slot, const arrays *from) {
 }
 
 /* Does all that may fail. */
-static mpm_status prepare_arrays(mpm_particles *set, const arrays *from, int64_t *slot) {
+static mpm_status prepare_arrays(mpm_particles *set, const arrays *from) {
   mpm_status status;
   if ((status = mpmi_check_room(set, from->n)) || (status = check_arrays(set, from)) ||
       (from->ids && (status = check_ids(set, from->n, from->ids))))
     return status;
-  return mpmi_append_begin(set, from->n, from->size != NULL, slot);
+  return mpmi_append_reserve(set, from->n, from->size != NULL, 0);
 }
 
 mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const double *position,
@@ -224,14 +221,16 @@ mpm_status mpm_particles_add(mpm_particles *particles, int64_t n, const double *
     status = mpmi_fail(particles->context, MPM_E_ARG, "n is %lld, must be >= 0", (long long)n);
   if (!status && n > 0 && (!position || !volume))
     status = mpmi_fail(particles->context, MPM_E_ARG, "%s is NULL", position ? "volume" : "position");
-  int64_t slot;
   mpmi_numbers numbers;
   const arrays from = {n, position, velocity, volume, size, ids};
-  if (!status && n > 0) status = prepare_arrays(particles, &from, &slot);
+  if (!status && n > 0) status = prepare_arrays(particles, &from);
   if ((status = mpmi_number(particles, n, ids, status, &numbers))) return status;
-  if (n > 0) copy_arrays(particles, slot, &from);
-  if (n > 0 || numbers.next > particles->next_id)
-    mpmi_append_finish(particles, n > 0 ? slot : 0, n, size != NULL, ids, &numbers);
+  if (n > 0) {
+    const int64_t slot = mpmi_append_begin(particles, n);
+    copy_arrays(particles, slot, &from);
+    mpmi_append_finish(particles, slot, n, size != NULL, ids, numbers.first);
+  }
+  particles->next_id = numbers.next; /* other parts may have added some */
   if (first_id) *first_id = ids && n > 0 ? ids[0] : numbers.first;
   return MPM_OK;
 }

@@ -5,13 +5,13 @@
 #include "context/transport.h"
 #include "particles/builtin_fields.h"
 
-/* Makes room for n more particles. in_step: a step is under way, whose results are kept. */
-mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t in_step);
+/* Does everything that may fail, for n more particles; on failure the set is unchanged. in_step: a step is
+ * under way, whose results are kept. */
+mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t with_size, int32_t in_step);
 
-/* Does everything that may fail, for n particles that there is room for; on failure the set is unchanged.
- * On success the slots [*slot, *slot + n) hold inert defaults in every field. The caller then writes
- * position (in reach of a wrap), velocity and initial_volume, and size when with_size is 1. */
-mpm_status mpmi_append_begin(mpm_particles *set, int64_t n, int32_t with_size, int64_t *slot);
+/* Returns the first of n slots, for which there is room: they hold inert defaults in every field. The caller
+ * then writes position (in reach of a wrap), velocity and initial_volume, and size when with_size is 1. */
+int64_t mpmi_append_begin(mpm_particles *set, int64_t n);
 /* Numbers for new particles of this part (collective where there are several): those of the parts before come
  * first. status: what has happened before; on failure nothing has changed on any part. */
 typedef struct mpmi_numbers {
@@ -19,10 +19,10 @@ typedef struct mpmi_numbers {
 } mpmi_numbers;
 mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, mpm_status status,
                        mpmi_numbers *out);
-/* Writes what follows from these fields and makes the slots particles. Without ids they are numbered as
- * said. */
+/* Writes what follows from these fields and makes the slots particles. Without ids they are numbered from
+ * first_id on. The caller sets next_id. */
 void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids,
-                        const mpmi_numbers *numbers);
+                        int64_t first_id);
 /* Refuses n more particles when slots would run out. */
 mpm_status mpmi_check_room(const mpm_particles *set, int64_t n);
 

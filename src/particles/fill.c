@@ -137,21 +137,29 @@ static void write_points(mpm_particles *set, const lattice *on, const sieve *thr
   }
 }
 
-static mpm_status append_points(mpm_particles *set, const lattice *on, const sieve *through,
-                                mpm_status status, mpmi_numbers *numbers) {
-  int32_t with_size = edges_differ(on);
-  int64_t slot = 0, n = through->count;
-  if (!status && n) status = mpmi_check_room(set, n);
-  if (!status && n) status = mpmi_append_begin(set, n, with_size, &slot);
-  if ((status = mpmi_number(set, n, NULL, status, numbers)) || numbers->next == set->next_id) return status;
-  if (n) write_points(set, on, through, slot);
+/* Makes particles of the points, for which there is room. */
+static void write_particles(mpm_particles *set, const lattice *on, const sieve *through, int32_t with_size,
+                            int64_t first_id) {
+  const int64_t n = through->count, slot = mpmi_append_begin(set, n);
+  write_points(set, on, through, slot);
   for (int64_t s = slot; s < slot + n; ++s)
     mpmi_f64(set, MPMI_INITIAL_VOLUME, 0)[s] =
         on->volume * (mpmi_is_axisymmetric(on->grid) ? mpmi_f64(set, MPMI_POSITION, 0)[s] : 1.0);
   for (int32_t k = 0; k < on->grid->dim && with_size; ++k)
     for (int64_t s = slot; s < slot + n; ++s)
       mpmi_f64(set, MPMI_SIZE, 0)[k * set->ld + s] = on->grid->desc.spacing[k] / (double)on->per[k];
-  mpmi_append_finish(set, slot, n, with_size, NULL, numbers);
+  mpmi_append_finish(set, slot, n, with_size, NULL, first_id);
+}
+
+static mpm_status append_points(mpm_particles *set, const lattice *on, const sieve *through,
+                                mpm_status status, mpmi_numbers *numbers) {
+  int32_t with_size = edges_differ(on);
+  const int64_t n = through->count;
+  if (!status && n) status = mpmi_check_room(set, n);
+  if (!status && n) status = mpmi_append_reserve(set, n, with_size, 0);
+  if ((status = mpmi_number(set, n, NULL, status, numbers))) return status;
+  if (n) write_particles(set, on, through, with_size, numbers->first);
+  set->next_id = numbers->next; /* other parts may have added some */
   return MPM_OK;
 }
 

@@ -131,7 +131,7 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
       s->history.t = d->t_end;
       return MPM_OK;
     }
-    status = mpmi_make_step(s, dt, 1);
+    status = mpmi_make_step(s, MPM_OK, dt, 1);
     if (!status) {
       if (last) s->history.t = d->t_end;
       let_grow(s, dt);
@@ -154,16 +154,14 @@ static mpm_status sub_steps(mpm_stepper *s, const mpm_advance_desc *d) {
 
 mpm_status mpm_advance(mpm_stepper *s, const mpm_advance_desc *desc, mpm_step_info *info) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  if (!desc) return mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
   mpm_advance_desc d = defaults;
-  mpm_status status = mpmi_check_info(s, info);
-  if (status || (status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d)) ||
-      (status = check(s, &d)))
-    return mpmi_together(s, status);
+  mpm_status status = desc ? mpmi_check_info(s, info) : mpmi_fail(s->context, MPM_E_ARG, "desc is NULL");
+  if (!status) status = mpmi_read_struct(s->context, "mpm_advance_desc", desc, sizeof d, &d);
+  if (!status) status = check(s, &d);
+  if (!status) status = mpmi_stepper_idle(s);
   static const char *const name[] = {"t_end", "cfl", "dt_first", "dt_min", "dt_max", "max_cuts", "max_steps"};
   const double number[] = {
       d.t_end, d.cfl, d.dt_first, d.dt_min, d.dt_max, (double)d.max_cuts, (double)d.max_steps};
-  status = mpmi_together(s, MPM_OK);
-  if (!status) status = mpmi_together_begin(s, mpmi_stepper_idle(s), 7, name, number);
+  status = mpmi_together_begin(s, status, 7, name, number);
   return status ? status : mpmi_give_info(s, sub_steps(s, &d), info);
 }

@@ -173,8 +173,8 @@ static mpm_status run_implicit(mpm_stepper *s) {
   return mpmi_newmark_step(&balance);
 }
 
-mpm_status mpmi_make_step(mpm_stepper *s, double dt, int32_t is_cut) {
-  mpm_status status = enter(s, check_dt(s, dt), dt);
+mpm_status mpmi_make_step(mpm_stepper *s, mpm_status status, double dt, int32_t is_cut) {
+  status = enter(s, status ? status : check_dt(s, dt), dt);
   if (status) return status;
   begin(s, dt, 0);
   s->step.is_cut = is_cut;
@@ -191,8 +191,8 @@ mpm_status mpmi_make_step(mpm_stepper *s, double dt, int32_t is_cut) {
 
 mpm_status mpm_step(mpm_stepper *s, double dt, mpm_step_info *info) {
   MPMI_ENTER(s, MPMI_STEPPER);
-  const mpm_status status = mpmi_together(s, mpmi_check_info(s, info));
-  return status ? status : mpmi_give_info(s, mpmi_make_step(s, dt, 0), info);
+  const mpm_status bad = mpmi_check_info(s, info), status = mpmi_make_step(s, bad, dt, 0);
+  return bad ? status : mpmi_give_info(s, status, info);
 }
 
 /* ---- steps in parts ----------------------------------------------------------------------------------- */

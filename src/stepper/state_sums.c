@@ -131,6 +131,13 @@ mpm_status mpmi_check_sets(mpm_stepper *s, int32_t access) {
   return MPM_OK;
 }
 
+/* Returns 1 where sets have come or gone since the last sort, so that there are particles in no block. */
+static int32_t is_without_blocks(const mpmi_layout *layout) {
+  int32_t without = layout->parts ? layout->parts->is_stale : layout->blocks.count == 0;
+  for (int32_t m = 0; m < layout->member_count; ++m) without |= !layout->member[m].now.start;
+  return without;
+}
+
 mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure) {
   mpmi_layout *layout = &s->layout;
   uint32_t dirty = 0;
@@ -143,7 +150,7 @@ mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure) {
   /* sums are made by blocks, and new particles have none until they are sorted; else nothing is sorted,
    * because that would end the nodal fields */
   status = mpmi_together(s, status);
-  if (!status && (dirty & MPMI_DIRTY_ORDER || (mpmi_is_shared(s) && layout->parts->is_stale)))
+  if (!status && (dirty & MPMI_DIRTY_ORDER || is_without_blocks(layout)))
     status = mpmi_layout_sort(layout, &s->settings);
   for (int32_t i = 0; i < MPMI_TALLY_FACES; ++i) mpmi_exact_clear(&sum[i]);
   for (int32_t m = 0; m < layout->member_count && !status; ++m) {

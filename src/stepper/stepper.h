@@ -179,8 +179,8 @@ void mpmi_roll_back(mpm_stepper *s);
 void mpmi_contact_warn(mpm_stepper *s);
 
 /* ---- make_step.c ------------------------------------------------------------------------------------- */
-/* Makes a whole step, which is mpm_advance()'s own where `is_cut` is 1. On failure the particles are as
- * before, and the info of the last step says why. */
-mpm_status mpmi_make_step(mpm_stepper *s, double dt, int32_t is_cut);
+/* Makes a whole step, unless checks before it have come to another status than MPM_OK. is_cut: the step is
+ * mpm_advance()'s own. On failure the particles are as before, and the info of the last step says why. */
+mpm_status mpmi_make_step(mpm_stepper *s, mpm_status status, double dt, int32_t is_cut);
 
 #endif

@@ -35,7 +35,7 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
 /* The flags of sets that count on all parts once they are set on one. */
 static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE, MPMI_DIRTY_STRESS, MPMI_DIRTY_SUMS,
                                 MPMI_DIRTY_ACCELERATION};
-enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 7, MOST_NUMBERS = 7 };
+enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 8, MOST_NUMBERS = 7 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
@@ -58,9 +58,10 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   for (int32_t m = 0; m < layout->member_count; ++m)
     word[6] |= layout->member[m].set->field[MPMI_PRESCRIBED].present;
   for (int32_t i = 0; i < count; ++i) put_number(&word[OWN_WORDS + 2 * i], number[i]);
-  if ((status = mpmi_agree(c, status)) ||
-      (status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word)))
-    return status;
+  word[7] = status != MPM_OK;
+  const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word);
+  if (lost) return lost;
+  if (word[7]) return mpmi_agree(c, status);
   if (word[0] != ~word[1])
     return mpmi_fail(c, MPM_E_STATE,
                      "the stepper has other numbers of sets on other parts: add the same to all");
@@ -104,21 +105,15 @@ static mpm_status catch_up(mpm_stepper *s, mpm_status status, int64_t exchanges)
   return status;
 }
 
-/* Ranks failures: by the exchange that they came before, and there particles before nodes before the rest;
- * those that only repeat what a partner has told come last. */
-static int64_t rank_of(const mpm_stepper *s, int64_t came_to) {
-  const mpmi_failure *f = &s->step.failure;
-  if (s->layout.parts->is_echo) return (int64_t)1 << 40;
-  return 4 * came_to + (f->particle >= 0 ? 0 : f->node >= 0 ? 1 : 2);
-}
-
-/* Finds the part with the first failure: of the smallest rank, set, particle or node, and part. */
+/* Finds the part with the first failure: that before the earliest exchange, and among those the smallest set,
+ * particle, node and part, as among tasks. Those that only repeat what a partner has told come last. */
 static mpm_status find_first(mpm_stepper *s, mpm_status status, int64_t came_to, int32_t *part) {
   const mpmi_failure *f = &s->step.failure;
-  const int64_t key[] = {rank_of(s, came_to), f->set, f->particle >= 0 ? f->particle : f->node,
+  const int64_t key[] = {s->layout.parts->is_echo ? INT64_MAX : came_to, f->set, f->particle, f->node,
                          s->context->transport.part};
+  enum { KEYS = sizeof key / sizeof key[0] };
   int32_t is_first = status != MPM_OK;
-  for (int32_t i = 0; i < 4; ++i) {
+  for (int32_t i = 0; i < KEYS; ++i) {
     int64_t best = is_first ? -key[i] : INT64_MIN;
     const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, 1, &best);
     if (lost) return lost;

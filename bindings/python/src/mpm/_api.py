@@ -1362,7 +1362,7 @@ Particles of a set on all parts (collective). mpm_particles_count() is that of t
     "mpm_stepper_parallel_info": """mpm_status mpm_stepper_parallel_info(mpm_stepper *stepper, int32_t reset, mpm_parallel_info *info)
 
 Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
-struct_size is bad. Without a transport there is one part, and counts and seconds are 0.""",
+struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0.""",
     "mpm_context_desc_init": """mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size)
 
 Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.

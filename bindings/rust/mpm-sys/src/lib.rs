@@ -451,7 +451,8 @@ pub type mpm_gather_fn = Option<unsafe extern "C" fn(
     all: *mut i64,
 ) -> mpm_status>;
 
-/// For transports that move only when called, between send and receive; may be NULL. This version does not call it.
+/// For transports that move only when called: called between send and receive, once the blocks that nobody waits for have
+/// been worked on; may be NULL.
 pub type mpm_transport_poll_fn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
 /// A task of the library, which the host's executor calls with the task_data that it was given and a number k. A task
@@ -762,7 +763,8 @@ pub struct mpm_transport {
     pub reduce: mpm_reduce_fn,
     /// one integer of each part
     pub gather: mpm_gather_fn,
-    /// For transports that move only when called, between send and receive; may be NULL. This version does not call it.
+    /// For transports that move only when called: called between send and receive, once the blocks that nobody waits for
+    /// have been worked on; may be NULL.
     pub poll: mpm_transport_poll_fn,
     /// passed to all of them
     pub user: *mut c_void,
@@ -1897,7 +1899,7 @@ extern "C" {
     pub fn mpm_particles_total(particles: *const mpm_particles, n: *mut i64) -> mpm_status;
 
     /// Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
-    /// struct_size is bad. Without a transport there is one part, and counts and seconds are 0.
+    /// struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0.
     pub fn mpm_stepper_parallel_info(
         stepper: *mut mpm_stepper,
         reset: i32,
