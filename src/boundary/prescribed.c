@@ -32,6 +32,7 @@ static void touch_masters(const mpmi_constraints *constraints, int32_t block_nod
 
 static void find_blocks(const mpmi_layout *layout, uint8_t *flag) {
   const mpmi_blocks *b = &layout->blocks;
+  if (!b->count) return;
   memset(flag, 0, (size_t)b->count);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpmi_member *member = &layout->member[m];

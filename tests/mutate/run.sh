@@ -75,7 +75,7 @@ try() { # a fault's number or "none", suite
   rm -rf "$tree"
   printf '%s %s: %s, %s s%s\n' "$1" "$2" "$verdict" $((SECONDS - begin)) "${what:+: ${what//$'\n'/ }}"
 }
-export limit=$((300 * ${CK_TIMEOUT_MULTIPLIER:-1})) failed=':[0-9]+:[FE]:|\] +(FAILED|MET)$'
+export limit=$((300 * ${CK_TIMEOUT_MULTIPLIER:-1})) failed=':[0-9]+:[FE]:|\] +(FAILED|MET)$|^mpi: .* processes: status [0-9]+$'
 export -f compile units suite try
 
 cd "$BUILD/mutate/whole"
