@@ -46,6 +46,20 @@ void mpmi_parts_destroy(mpmi_parts *parts) {
   mpmi_free(c, parts, sizeof *parts);
 }
 
+void mpmi_parts_replace(mpmi_parts **present, mpmi_parts **next) {
+  mpmi_parts *old = *present, *now = *next;
+  const mpm_parallel_info *before = &old->info;
+  mpm_parallel_info *info = &now->info;
+  info->bytes_nodes += before->bytes_nodes;
+  info->bytes_moved += before->bytes_moved;
+  info->moved += before->moved;
+  info->cuts += before->cuts;
+  info->seconds_packing += before->seconds_packing;
+  info->seconds_waiting += before->seconds_waiting;
+  *present = now;
+  *next = old;
+}
+
 void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes) {
   const int64_t wanted = buffer->used + bytes;
   if (wanted > buffer->capacity || !buffer->at) {
