@@ -50,7 +50,7 @@ static mpm_status set_up(world *w) {
 
 static mpm_status steps(world *w, int32_t n) {
   mpm_status status = MPM_OK;
-  for (int32_t i = 0; i < n && !status; ++i) status = mpm_step(w->stepper, 2e-4, NULL);
+  for (int32_t i = 0; i < n && !status; ++i) status = mpm_step(w->stepper, 6e-4, NULL);
   return status;
 }
 
@@ -295,7 +295,7 @@ static void fail_and_save(int32_t part, const mpm_transport *transport, void *us
   if (!status) status = steps(&w, 5);
   const int64_t calls = w.memory.calls;
   if (!status && a->fail_at[part]) w.memory.fail_at = calls + a->fail_at[part];
-  for (int32_t i = 0; i < 12 && !status; ++i) status = mpm_step(w.stepper, 2e-4, NULL);
+  for (int32_t i = 0; i < 12 && !status; ++i) status = mpm_step(w.stepper, 6e-4, NULL);
   a->calls[part] = w.memory.calls - calls;
   w.memory.fail_at = 0;
   a->status[part] = status;
@@ -329,7 +329,7 @@ START_TEST(saved_after_a_failed_sort) {
     ck_ok(&w, set_up(&w));
     ck_ok(&w, mpm_state_load_pieces(w.stepper, PARTS, piece, bytes));
     mpm_step_info info = world_info(&w);
-    while (info.step < 17) info = world_step(&w, 2e-4);
+    while (info.step < 17) info = world_step(&w, 6e-4);
     if (!at) hash = world_hash(&w), resorts = info.resorts, all = a;
     ck_assert_msg(world_hash(&w) == hash && info.resorts == resorts,
                   "allocation %lld: another state, %lld sorts, %lld", (long long)at, (long long)info.resorts,
@@ -365,7 +365,7 @@ START_TEST(one_part_is_told) {
   ck_assert_uint_eq(hash, prepared.hash[0]);
   /* its own state is one piece */
   saved_state own = world_save(&w);
-  world_steps(&w, 1);
+  world_step(&w, 6e-4);
   ck_ok(&w, mpm_state_load_pieces(w.stepper, 1, (const void *[]){own.data}, &own.bytes));
   ck_assert_uint_eq(world_hash(&w), hash);
   ck_refused(&w,
