@@ -607,7 +607,7 @@ static void test_refusals(mpm_mpi *mpi) {
   MUST(mpm_mpi_save(mpi, w.stepper, in_folder("nowhere/a")) == MPM_E_IO);
   /* in a staged step no state is saved, on any part */
   if (rank == size - 1) MUST(!mpm_step_begin(w.stepper, 1e-3));
-  last_refuses(mpi, &w, SAVE, in_folder("all.state"), NULL, MPM_E_STATE, "mpm_state_save: MPM_E_STATE");
+  last_refuses(mpi, &w, SAVE, in_folder("all.state"), NULL, MPM_E_STATE, "mpm_state_size: MPM_E_STATE");
   if (rank == size - 1) MUST(!mpm_step_abort(w.stepper));
   /* fields that only one part has */
   if (!rank) MUST(!mpm_particles_add_field(w.set, "label", MPM_U8, 3));

@@ -232,7 +232,7 @@ static story story_of(int32_t dim, int64_t cells) {
   is.desc = world_default(dim, cells, 1.0 / (double)cells);
   is.set_up = set_up;
   is.speed = 8.0;
-  is.steps = 16;
+  is.steps = 20;
   is.stamp = 1;
   return is;
 }
@@ -315,7 +315,7 @@ static story tell(int32_t kind, const char **name) {
     is = story_of(3, 20);
     is.desc.stepper.scheme = MPM_MUSL;
     is.desc.stepper.transfer = MPM_APIC;
-    is.steps = 10;
+    is.speed = 14.0;
     break;
   case 7:
     is.desc.stepper.staggered = 1;
