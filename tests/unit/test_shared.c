@@ -564,8 +564,8 @@ START_TEST(transport_is_lost) {
 }
 END_TEST
 
-/* Wherever memory fails on one part once its world is open, the call fails on all, and goes through when it is
- * made again. No part waits, and nothing is lost. */
+/* Wherever memory fails on one part once its world is open, the call fails on all, and goes through when it
+ * is made again. No part waits, and nothing is lost. */
 typedef struct hungry {
   scene is;
   int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
