@@ -19,8 +19,11 @@
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts, which is not checked.
  *
- * Of several parts these are asked for explicit steps of one body. MPM_E_UNSUPPORTED: implicit schemes, total
- * Lagrangian grids, friction walls, obstacles, surfaces, heat, adaption, and saving or loading states.
+ * Callbacks about nodes, friction, distances and the motion of obstacles are asked on every part that needs
+ * the answer, and must give the same on all. Obstacles are made and moved alike on all parts.
+ *
+ * Of several parts these are asked for explicit steps. MPM_E_UNSUPPORTED: implicit schemes, total Lagrangian
+ * grids, MPM_WALL_FRICTION_NODES, free obstacles, surfaces, heat, adaption, and saving or loading states.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

@@ -379,11 +379,16 @@ mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t firs
 }
 
 /* ---- sums ---------------------------------------------------------------------------------------------- */
+/* Work of the host on nodes, in the exact sum of the step. */
+static void add_host_work(const mpmi_bound *bound, double work) {
+  mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_WORK], work);
+}
+
 /* What holds a component of a node takes the impulse on it, and does work where it moves the node. */
 static void add_work(mpmi_bound *bound, const mpmi_party *party, double sign, const double *impulse) {
   for (int32_t c = 0; c < bound->dim && party->surface < 0; ++c)
     if (mpmi_held_by(bound->nodes, party->slot, c))
-      bound->step->host_work -= sign * impulse[c] * bound->nodes->held_value[party->slot][c];
+      add_host_work(bound, -sign * impulse[c] * bound->nodes->held_value[party->slot][c]);
 }
 
 /* Surfaces that prescribe push back: what contact gives to what they hold is a part of their impulse. */
@@ -393,7 +398,7 @@ static void tell_sites(mpmi_bound *bound, const mpmi_party *party, double sign, 
   for (int32_t at = sites->last[party->slot]; at >= 0; at = sites->site[at].before) {
     mpmi_surface_site *site = &sites->site[at];
     const double along = site->slides ? mpmi_inner(site->vector, impulse) : 0.0;
-    bound->step->host_work -= sign * along * site->value;
+    add_host_work(bound, -sign * along * site->value);
     for (int32_t c = 0; c < bound->dim; ++c)
       site->impulse[c] -= sign * (site->holds[c] ? impulse[c] : along * site->vector[c]);
   }
@@ -402,16 +407,17 @@ static void tell_sites(mpmi_bound *bound, const mpmi_party *party, double sign, 
 /* The impulse is on the second party. Bodies are turned about the origin, a surface about its centre, by the
  * opposite. */
 static void add_torque(const mpmi_bound *bound, const mpmi_party *first, const mpmi_party *second,
-                       const double *impulse, mpmi_pair_sums *sums) {
+                       const double *impulse, mpmi_whole_sum *sums) {
   double x[3] = {0.0, 0.0, 0.0}, about[3];
   if (first->surface < 0)
     mpmi_contact_position(&bound->step->layout->blocks, &bound->nodes->contact, second->slot, x);
   for (int32_t k = 0; k < 3 && first->surface >= 0; ++k) x[k] = -first->arm[k];
   mpmi_cross(x, impulse, about);
-  for (int32_t c = 0; c < 3; ++c) sums->angular_impulse[c] += about[c];
+  for (int32_t c = 0; c < 3; ++c) mpmi_exact_add(&sums[MPMI_PAIR_MOMENT + c], about[c]);
 }
 
-static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_sums *sums) {
+static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_whole_sum *sums) {
+  const mpmi_tally *tally = &bound->step->work->tally;
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
   const mpmi_party *pair[2] = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]};
   const mpmi_rigid_surface *surface = pair[0]->surface < 0 ? NULL : &contact->surface[pair[0]->surface];
@@ -420,39 +426,44 @@ static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_su
     const int32_t moves = pair[0]->inverse_mass[c] > 0.0 || pair[1]->inverse_mass[c] > 0.0 ||
                           (c < bound->dim && surface && mpmi_is_free(surface));
     impulse[c] = moves ? touch->normal_impulse * touch->normal[c] + touch->tangential[c] : 0.0;
-    sums->impulse[c] += impulse[c];
-    if (surface && surface->face >= 0) bound->step->impulse_by_face[surface->face][c] += impulse[c];
+    mpmi_exact_add(&sums[MPMI_PAIR_IMPULSE + c], impulse[c]);
+    if (surface && surface->face >= 0)
+      mpmi_exact_add(&tally->sum[MPMI_TALLY_FACES + 3 * surface->face + c], impulse[c]);
   }
   add_work(bound, pair[0], -1.0, impulse);
   add_work(bound, pair[1], 1.0, impulse);
   tell_sites(bound, pair[0], -1.0, impulse);
   tell_sites(bound, pair[1], 1.0, impulse);
   add_torque(bound, pair[0], pair[1], impulse, sums);
-  sums->normal_impulse += touch->normal_impulse;
-  sums->area += touch->area;
+  mpmi_exact_add(&sums[MPMI_PAIR_NORMAL], touch->normal_impulse);
+  mpmi_exact_add(&sums[MPMI_PAIR_AREA], touch->area);
   const double force = touch->normal_impulse / bound->step->velocity_dt;
-  if (touch->area > 0.0) sums->pressure_max = fmax(sums->pressure_max, force / touch->area);
+  double *most = &bound->step->pairs->record[touch->record].now.pressure_max;
+  if (touch->area > 0.0) *most = fmax(*most, force / touch->area);
 }
 
 void mpmi_body_contacts_sum(mpmi_bound *bound) {
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
+  const mpmi_tally *tally = &bound->step->work->tally;
   mpm_step_info *info = &bound->step->info;
   for (int64_t m = 0; m < contact->meeting_count; ++m) {
     const mpmi_meeting *meeting = &contact->meeting[m];
     int32_t closed = 0;
+    if (!mpmi_owns_node(bound->step->layout->parts, contact->party[meeting->first_party].slot)) continue;
     for (int64_t i = meeting->first_touch; i < meeting->first_touch + meeting->touch_count; ++i) {
       const mpmi_touch *touch = &contact->touch[i];
-      mpmi_pair_sums *sums = &bound->step->pairs->record[touch->record].now;
-      ++sums->nodes;
-      sums->closed += touch->closed;
-      sums->stuck += touch->stuck;
-      sums->ambiguous += touch->ambiguous;
-      sums->gap = fmin(sums->gap, touch->gap);
-      sums->dissipation += touch->dissipation;
-      sums->friction_work += touch->friction_work;
-      info->contact_dissipation += touch->dissipation;
+      mpmi_pair_sums *counts = &bound->step->pairs->record[touch->record].now;
+      mpmi_whole_sum *sums = mpmi_tally_pair(tally, touch->record);
+      ++counts->nodes;
+      counts->closed += touch->closed;
+      counts->stuck += touch->stuck;
+      counts->ambiguous += touch->ambiguous;
+      counts->gap = fmin(counts->gap, touch->gap);
+      mpmi_exact_add(&sums[MPMI_PAIR_DISSIPATION], touch->dissipation);
+      mpmi_exact_add(&sums[MPMI_PAIR_FRICTION_WORK], touch->friction_work);
+      mpmi_exact_add(&tally->sum[MPMI_TALLY_CONTACT], touch->dissipation);
       closed |= touch->closed;
-      bound->step->host_work += touch->work;
+      add_host_work(bound, touch->work);
       if (touch->closed) add_impulse(bound, touch, sums);
     }
     info->contact_nodes += closed;

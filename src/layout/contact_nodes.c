@@ -36,6 +36,7 @@ mpm_status mpmi_pair_add(mpmi_pair_records *records, mpm_context *context, int32
   memmove(records->record + at + 1, records->record + at,
           (size_t)(records->count - at) * sizeof *records->record);
   ++records->count;
+  records->grown = 1;
   records->record[at] = (mpmi_pair_record){.a = a, .b = b, .last.gap = (double)INFINITY};
   return MPM_OK;
 }

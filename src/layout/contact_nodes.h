@@ -110,6 +110,7 @@ typedef struct mpmi_pair_record {
 typedef struct mpmi_pair_records {
   int64_t count, capacity;
   mpmi_pair_record *record;
+  int32_t grown; /* since parts last told each other theirs */
 } mpmi_pair_records;
 
 /* Returns the number of a pair's record, or -1. */
@@ -123,6 +124,7 @@ void mpmi_pairs_drop(mpmi_pair_records *records, int32_t code);
 typedef struct mpmi_contact_nodes {
   int64_t surface_count, site_count, near_count;
   int32_t at_walls; /* a friction wall is near some site */
+  int32_t anywhere; /* there are sites, here or on another part */
   int64_t surface_capacity, site_capacity, near_capacity, value_capacity;
   mpmi_rigid_surface *surface; /* obstacles, then friction walls by face */
   mpmi_site *site;

@@ -18,6 +18,19 @@ static mpm_status weigh(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi
   return mpmi_cut_blocks(parts, blocks, weight);
 }
 
+/* Lists the bodies of the sets. */
+static mpm_status list_bodies(mpmi_parts *parts, const mpmi_moving_set *sets, int32_t count) {
+  const mpm_status status = MPMI_RESERVE_MORE(parts->context, parts->body, parts->body_capacity, count);
+  if (status) return status;
+  parts->body_count = 0;
+  for (int32_t m = 0; m < count; ++m) {
+    int32_t known = 0;
+    for (int32_t i = 0; i < parts->body_count; ++i) known |= parts->body[i] == sets[m].body;
+    if (!known) parts->body[parts->body_count++] = sets[m].body;
+  }
+  return MPM_OK;
+}
+
 mpm_status mpmi_share_out(mpmi_parts *parts, mpmi_blocks *blocks, mpmi_moving_set *sets, int32_t count,
                           mpm_status status, mpm_status (*insert)(void *user), void *user) {
   mpm_context *c = parts->context;
@@ -25,6 +38,7 @@ mpm_status mpmi_share_out(mpmi_parts *parts, mpmi_blocks *blocks, mpmi_moving_se
   int64_t *weight = status ? NULL : mpmi_alloc(c, bytes), moved = 0;
   parts->is_stale = 1;
   if (!status && !weight) status = MPM_E_NOMEM;
+  if (!status) status = list_bodies(parts, sets, count);
   status = mpmi_agree(c, status);
   if (!status) status = weigh(parts, blocks, sets, count, weight);
   mpmi_free(c, weight, bytes);

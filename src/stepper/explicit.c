@@ -27,7 +27,7 @@ static mpm_status deform(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
 /* Strains the particles of USF by the velocities at the start of the step. */
 static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
   mpm_status status = MPM_OK;
-  if (step->layout->constraints.contact_count || nodes->contact.site_count)
+  if (step->layout->constraints.contact_count || nodes->contact.anywhere)
     status = project(step, nodes, MPMI_PROJECT_CONTACT, clock);
   if (!status) status = project(step, nodes, MPMI_PROJECT_STRAIN, clock);
   return status ? status : deform(step, nodes, clock);
@@ -95,6 +95,8 @@ int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, 
   const int32_t correction = step->takes == MPMI_TAKES_FULL ? MPMI_PROJECT_FULL : MPMI_PROJECT_CORRECTION;
   int64_t count = of_projection(step, nodes, MPMI_PROJECT_FORCES) - holds;
   if (settings->desc.scheme == MPM_USF) count += of_projection(step, nodes, MPMI_PROJECT_STRAIN) + strain;
+  if (settings->desc.scheme == MPM_USF && nodes->contact.anywhere)
+    count += of_projection(step, nodes, MPMI_PROJECT_CONTACT);
   if (phase == MPMI_BEGUN) return count;
   count += holds; /* they are found with the conditions of the nodes */
   if (phase == MPMI_SOLVED) return count;

@@ -91,6 +91,8 @@ static mpm_status prepare(mpm_stepper *s) {
   if ((status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
       (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
       (status = mpmi_contact_prepare(&s->layout, settings, &s->nodes.contact, &s->history.pairs)) ||
+      (status =
+           mpmi_tally_prepare(&s->work.tally, s->context, s->layout.member_count, s->history.pairs.count)) ||
       (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
       (status = mpmi_member_rows_prepare(&s->work.rows, settings, &s->layout)) ||
       (status = mpmi_surfaces_prepare(settings)) ||
@@ -102,6 +104,12 @@ static mpm_status prepare(mpm_stepper *s) {
     return status;
   mpmi_lap(&s->step, MPMI_TIME_SORT, &clock);
   return MPM_OK;
+}
+
+/* The same on all parts. */
+static mpm_status prepare_together(mpm_stepper *s) {
+  const mpm_status status = mpmi_together_ready(s, prepare(s));
+  return status ? status : mpmi_together_touching(s);
 }
 
 /* ---- the end ------------------------------------------------------------------------------------------ */
@@ -141,7 +149,7 @@ static mpm_status finish(mpm_stepper *s) {
   mpmi_sums sums;
   if ((status = mpmi_adaption_prepare(s)) || (status = mpmi_add_up(s, &sums))) return status;
   status = ask_progress(s);
-  if (mpmi_is_shared(s) && s->layout.parts->asks) status = mpmi_together(s, status);
+  if (mpmi_is_shared(s) && s->layout.parts->asks) status = mpmi_together_ready(s, status);
   if (status) return status;
   mpmi_commit(s, &sums);
   mpmi_contact_warn(s);
@@ -178,7 +186,7 @@ mpm_status mpmi_make_step(mpm_stepper *s, mpm_status status, double dt, int32_t 
   if (status) return status;
   begin(s, dt, 0);
   s->step.is_cut = is_cut;
-  status = mpmi_together(s, prepare(s));
+  status = prepare_together(s);
   if (!status) {
     status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
     status = mpmi_together_end(s, status, exchanges_to(s, MPMI_IDLE));
@@ -204,7 +212,7 @@ mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no steps in parts: use mpm_step, or an explicit scheme");
   begin(s, dt, 1);
-  status = mpmi_together(s, prepare(s));
+  status = prepare_together(s);
   if (!status)
     status = mpmi_together_end(s, mpmi_explicit_begin(&s->step, &s->nodes), exchanges_to(s, MPMI_BEGUN));
   if (status) return give_up(s, status);

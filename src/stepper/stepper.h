@@ -101,6 +101,8 @@ mpm_status mpmi_contact_desc_check(const mpm_grid *grid, int32_t a, int32_t b, c
 /* ---- contact_reports.c ------------------------------------------------------------------------------- */
 /* Empty what a step will write; make it what the last step did, which cannot fail; forget sums over steps. */
 void mpmi_pairs_begin(mpmi_pair_records *pairs);
+/* Takes what the sums of the step have come to. */
+void mpmi_pairs_total(mpmi_pair_records *pairs, const mpmi_tally *tally);
 void mpmi_pairs_commit(mpmi_pair_records *pairs);
 void mpmi_pairs_forget(mpmi_pair_records *pairs);
 /* Adds what a pair did to a report; sign is -1 where the body that is asked about is the first one. */

@@ -1,0 +1,183 @@
+/* Bodies, obstacles and friction walls of one problem in several parts: contact has the bits of one part, and
+ * so have its reports. */
+#include "shared_scenes.h"
+
+enum { SCENES = 96, OBSTACLES = 3 };
+
+/* Blocks are 64, 16 and 6 nodes wide: a body spans several along each axis. */
+static const int64_t cells_of[] = {0, 300, 56, 20};
+
+static int32_t throw_of(dice *d, int32_t n) {
+  return (int32_t)throw_between(d, 0.0, (double)n - 1e-9);
+}
+
+/* ---- what there is ------------------------------------------------------------------------------------- */
+static mpm_contact_desc rule_of(dice *d, int32_t dim) {
+  static const int32_t normals[] = {MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT,
+                                    MPM_NORMAL_FIXED};
+  mpm_contact_desc rule;
+  mpm_contact_desc_init(&rule, sizeof rule);
+  rule.friction = throw_of(d, 3) * 0.2;
+  rule.friction_static = rule.friction * (1.0 + throw_of(d, 2));
+  rule.normal = normals[throw_of(d, 3) ? 0 : throw_of(d, 4)];
+  if (rule.normal == MPM_NORMAL_FIXED) {
+    rule.direction[0] = dim == 1 ? 1.0 : 0.8;
+    rule.direction[1] = dim == 1 ? 0.0 : 0.6;
+  }
+  switch (throw_of(d, 6)) {
+  case 0:
+    rule.kind = MPM_CONTACT_TIED;
+    break;
+  case 1:
+    rule.detection = MPM_DETECT_VELOCITY;
+    break;
+  case 2:
+    rule.adhesion = 50.0;
+    break;
+  default:
+    rule.offset = throw_of(d, 2) * 0.002;
+  }
+  return rule;
+}
+
+static mpm_status rub(void *user, const mpm_contact_batch *batch, double *friction) {
+  (void)user;
+  for (int64_t i = 0; i < batch->n; ++i)
+    friction[i] += 0.1 + 0.1 * batch->position[i] + 1e-6 * batch->pressure[i];
+  return MPM_OK;
+}
+
+/* The distance from a ball, and what it is like at points that are asked for. */
+static mpm_status ball(void *user, const mpm_distance_batch *batch) {
+  (void)user;
+  for (int64_t i = 0; i < batch->n; ++i) {
+    double squared = 0.0;
+    for (int32_t k = 0; k < batch->dim; ++k)
+      squared += batch->position[k * batch->ld + i] * batch->position[k * batch->ld + i];
+    const double r = sqrt(squared);
+    batch->distance[i] = r - 0.12;
+    for (int32_t k = 0; k < batch->dim; ++k)
+      batch->normal[k * batch->ld + i] = r > 0.0 ? batch->position[k * batch->ld + i] / r : k == 0;
+  }
+  return MPM_OK;
+}
+
+static mpm_status move(void *user, double t, double dt, double *velocity, double *spin) {
+  (void)user, (void)dt;
+  velocity[0] = 2.0 + 30.0 * t;
+  spin[2] = 4.0;
+  return MPM_OK;
+}
+
+/* In 1-D there is only the plane. */
+static mpm_status add_obstacle(world *w, dice *d, mpm_obstacle **out) {
+  static const int32_t shapes[] = {MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE};
+  mpm_obstacle_desc desc;
+  const mpm_contact_desc rule = rule_of(d, w->dim);
+  mpm_obstacle_desc_init(&desc, sizeof desc);
+  desc.shape = w->dim == 1 ? MPM_SHAPE_PLANE : shapes[throw_of(d, 4)];
+  desc.motion = throw_of(d, 2) ? MPM_MOTION_PRESCRIBED : MPM_MOTION_FIXED;
+  for (int32_t k = 0; k < w->dim; ++k) desc.position[k] = throw_between(d, 0.3, 0.6);
+  desc.size[0] = 0.1, desc.size[1] = 0.07, desc.size[2] = 0.09;
+  if (desc.shape == MPM_SHAPE_PLANE) desc.position[w->dim == 1 ? 0 : 1] = 0.21;
+  if (desc.motion == MPM_MOTION_PRESCRIBED && w->dim > 1) desc.velocity[0] = 3.0;
+  desc.distance = ball;
+  desc.contact = &rule;
+  mpm_status status = mpm_obstacle_create(w->context, &desc, out);
+  if (!status) status = mpm_stepper_add_obstacle(w->stepper, *out);
+  if (!status && desc.motion == MPM_MOTION_PRESCRIBED && w->dim > 1 && throw_of(d, 2))
+    status = mpm_obstacle_set_motion(*out, move, NULL);
+  return status;
+}
+
+static mpm_status set_faces(world *w, dice *d) {
+  static const int32_t kinds[] = {MPM_WALL_SLIP, MPM_WALL_FIXED, MPM_WALL_FRICTION, MPM_WALL_OPEN};
+  mpm_status status = MPM_OK;
+  for (int32_t face = 0; face < 2 * w->dim && !status; ++face) {
+    const int32_t kind = kinds[throw_of(d, 4)];
+    if (!w->desc.grid.periodic[face / 2])
+      status = mpm_stepper_set_wall(w->stepper, face, kind, kind == MPM_WALL_FRICTION ? 0.3 : 0.0);
+  }
+  return status;
+}
+
+/* Two bodies side by side that run into each other, and a third one on them. */
+static mpm_status set_up_bodies(world *w, const scene *is) {
+  static const double low[3][3] = {{0.2, 0.2, 0.2}, {0.5, 0.25, 0.2}, {0.3, 0.6, 0.25}},
+                      high[3][3] = {{0.5, 0.6, 0.55}, {0.75, 0.6, 0.6}, {0.7, 0.8, 0.5}},
+                      along[3][3] = {{1.0, 0.4, 0.2}, {-1.0, 0.3, 0.0}, {0.2, -1.0, -0.3}};
+  const int32_t per_cell[] = {2, 2, 2};
+  dice d = {is->seed};
+  mpm_status status = set_faces(w, &d);
+  const int32_t bodies = w->sets;
+  for (int32_t m = 0; m < bodies && !status; ++m) {
+    double v[3];
+    for (int32_t k = 0; k < 3; ++k) v[k] = is->speed * along[m][k];
+    status = mpm_particles_fill_box(w->set[m], low[m], high[m], per_cell, NULL, NULL);
+    if (!status) status = mpm_particles_set_all(w->set[m], "velocity", MPM_F64, w->dim, v);
+    if (!status) status = mpm_stepper_set_body(w->stepper, w->set[m], m == 2 ? 7 : m);
+  }
+  for (int32_t pair = 0; pair < 2 && !status && bodies > 1; ++pair) {
+    const mpm_contact_desc rule = rule_of(&d, w->dim);
+    status = mpm_stepper_set_contact(w->stepper, pair ? MPM_BODY_ANY : 0, pair ? 7 : 1, &rule);
+  }
+  if (!status && throw_of(&d, 3) == 0) status = mpm_stepper_set_friction(w->stepper, rub, NULL);
+  return status;
+}
+
+/* ---- what happens -------------------------------------------------------------------------------------- */
+static mpm_status touch(world *w, const scene *is, outcome *found) {
+  mpm_obstacle *obstacle[OBSTACLES] = {NULL, NULL, NULL};
+  dice d = {is->seed + 77};
+  const int32_t count = throw_of(&d, OBSTACLES + 1);
+  mpm_status status = MPM_OK;
+  for (int32_t i = 0; i < count && !status; ++i) status = add_obstacle(w, &d, &obstacle[i]);
+  if (!status) status = run_steps(w);
+  for (int32_t i = 0; i < 4; ++i) found->contact[i].struct_size = sizeof found->contact[i];
+  for (int32_t i = 0; i < count && !status; ++i)
+    status = mpm_obstacle_contact_info(obstacle[i], MPM_BODY_ANY, &found->contact[i]);
+  if (!status) status = mpm_stepper_contact_info(w->stepper, MPM_BODY_ANY, 1, &found->contact[3]);
+  for (int32_t i = 0; i < count; ++i) {
+    if (!status) status = mpm_stepper_remove_obstacle(w->stepper, obstacle[i]);
+    if (status) mpm_stepper_remove_obstacle(w->stepper, obstacle[i]);
+    const mpm_status freed = mpm_obstacle_destroy(obstacle[i]);
+    if (!status) status = freed;
+  }
+  return status;
+}
+
+static scene throw_scene(uint64_t seed) {
+  dice d = {seed};
+  const int32_t dim = seed % 8 == 7 ? 3 : seed % 8 == 6 ? 1 : 2;
+  const basis_option *b = &basis_options[throw_of(&d, BASES)];
+  const scheme_option *s = &scheme_options[throw_of(&d, 3)];
+  const transfer_option *t = &transfer_options[throw_of(&d, TRANSFERS)];
+  const method how = method_of(b, s, t);
+  scene is;
+  memset(&is, 0, sizeof is);
+  is.desc = world_with(&how, dim, cells_of[dim], 1.0 / (double)cells_of[dim]);
+  is.desc.sets = 1 + throw_of(&d, 3);
+  is.desc.grid.periodic[dim - 1] = throw_of(&d, 3) == 0;
+  is.set_up = set_up_bodies;
+  is.run = touch;
+  is.speed = 4.0;
+  is.seed = seed;
+  return is;
+}
+
+START_TEST(bodies_touch) {
+  char name[120];
+  const scene is = throw_scene(1000 + (uint64_t)_i);
+  snprintf(name, sizeof name, "scene %d, %d-D", _i, is.desc.grid.dim);
+  check_scene(&is, name, 2 + _i % 4);
+}
+END_TEST
+
+Suite *shared_contact_suite(void) {
+  Suite *suite = suite_create("shared_contact");
+  TCase *all = tcase_create("bodies");
+  tcase_set_timeout(all, 120);
+  tcase_add_loop_test(all, bodies_touch, 0, SCENES);
+  suite_add_tcase(suite, all);
+  return suite;
+}
