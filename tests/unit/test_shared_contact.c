@@ -173,11 +173,148 @@ START_TEST(bodies_touch) {
 }
 END_TEST
 
+/* ---- failures ------------------------------------------------------------------------------------------ */
+/* Two blocks on a ball whose distance the host gives, until it fails. */
+enum { FAILS_NOT, RETURNS, NO_NUMBER, FAILURES };
+static const double fails_after = 2.5e-4;
+
+static mpm_status failing_ball(void *user, const mpm_distance_batch *batch) {
+  const scene *is = user;
+  const mpm_status status = ball(NULL, batch);
+  if (batch->t < fails_after || status) return status;
+  if (is->seed == RETURNS) return -7;
+  for (int64_t i = 0; i < batch->n && is->seed == NO_NUMBER; ++i)
+    if (batch->position[i] > 0.02) batch->distance[i] = NOT_A_NUMBER;
+  return MPM_OK;
+}
+
+static mpm_status failing_rub(void *user, const mpm_contact_batch *batch, double *friction) {
+  const scene *is = user;
+  for (int64_t i = 0; i < batch->n && batch->t >= fails_after; ++i)
+    if (is->seed == NO_NUMBER + FAILURES && batch->position[batch->ld + i] > 0.4) friction[i] = -1.0;
+  return batch->t >= fails_after && is->seed == RETURNS + FAILURES ? -7 : MPM_OK;
+}
+
+static mpm_status set_up_failure(world *w, const scene *is) {
+  void *user = (void *)(uintptr_t)is;
+  static const double low[2][2] = {{0.3, 0.62}, {0.5, 0.62}}, high[2][2] = {{0.5, 0.8}, {0.7, 0.8}};
+  const int32_t per_cell[] = {2, 2};
+  mpm_status status = set_walls(w);
+  for (int32_t m = 0; m < 2 && !status; ++m) {
+    const double v[] = {m ? -2.0 : 2.0, -3.0};
+    status = mpm_particles_fill_box(w->set[m], low[m], high[m], per_cell, NULL, NULL);
+    if (!status) status = mpm_particles_set_all(w->set[m], "velocity", MPM_F64, 2, v);
+    if (!status) status = mpm_stepper_set_body(w->stepper, w->set[m], m);
+  }
+  return status ? status : mpm_stepper_set_friction(w->stepper, failing_rub, user);
+}
+
+/* The step that fails says so alike on all parts, with the node or the particle. */
+static mpm_status fail_touching(world *w, const scene *is, outcome *found) {
+  mpm_obstacle *obstacle = NULL;
+  mpm_obstacle_desc desc;
+  mpm_obstacle_desc_init(&desc, sizeof desc);
+  desc.shape = MPM_SHAPE_DISTANCE;
+  desc.position[0] = desc.position[1] = 0.5;
+  desc.distance = failing_ball;
+  desc.user = (void *)(uintptr_t)is;
+  mpm_status status = mpm_obstacle_create(w->context, &desc, &obstacle);
+  if (!status) status = mpm_stepper_add_obstacle(w->stepper, obstacle);
+  int32_t steps = 0;
+  for (; steps < 20 && !status; ++steps) status = mpm_step(w->stepper, 5e-5, &w->info);
+  if (status) {
+    found->failed_particle = 1000000 * steps + 1000 * (w->info.particle + 1) + (w->info.node + 1);
+    snprintf(found->text, sizeof found->text, "%s", mpm_last_error(w->context));
+  }
+  const mpm_status wanted = is->seed % FAILURES == RETURNS     ? MPM_E_CALLBACK
+                            : is->seed == NO_NUMBER            ? (mpm_status)MPM_NONFINITE
+                            : is->seed == NO_NUMBER + FAILURES ? MPM_E_CALLBACK
+                                                               : MPM_OK;
+  const int32_t is_right = status == wanted;
+  status = mpm_stepper_remove_obstacle(w->stepper, obstacle);
+  if (!status) status = mpm_obstacle_destroy(obstacle);
+  return status || is_right ? status : MPM_E_INTERNAL;
+}
+
+START_TEST(callbacks_fail) {
+  scene is = scene_of(2, 96, set_up_failure);
+  is.desc.sets = 2;
+  is.desc.stepper.scheme = scheme_options[_i % 3].scheme;
+  is.run = fail_touching;
+  is.seed = (uint64_t)(_i % (2 * FAILURES));
+  check_scene(&is, "failure", 2 + _i % 4);
+}
+END_TEST
+
+/* Wherever memory fails on one part, the step fails on all, and is made when it is tried again. */
+typedef struct short_of {
+  scene is;
+  int64_t fail_at, calls; /* of part 1, from 1, once its world is set up; how many there are */
+  int32_t failed[3];
+  host_memory memory[3];
+} short_of;
+
+static void live_short(int32_t part, const mpm_transport *transport, void *user) {
+  short_of *h = user;
+  world w;
+  memset(&w, 0, sizeof w);
+  w.desc = h->is.desc;
+  w.desc.context.transport = transport;
+  mpm_status status = world_try_open(&w);
+  if (!status) status = set_up_bodies(&w, &h->is);
+  const int64_t before = w.memory.calls;
+  if (part == 1 && h->fail_at) w.memory.fail_at = before + h->fail_at;
+  for (int32_t i = 0; i < 8 && !status; ++i) {
+    status = mpm_step(w.stepper, 2e-4, NULL);
+    if (status != MPM_E_NOMEM) continue;
+    ++h->failed[part];
+    status = mpm_step(w.stepper, 2e-4, NULL);
+  }
+  if (part == 1) h->calls = w.memory.calls - before;
+  w.memory.fail_at = 0;
+  if (!status) status = mpm_state_hash(w.stepper, &h->is.found[part].hash);
+  h->is.found[part].status = status;
+  world_try_close(&w);
+  h->memory[part] = w.memory;
+}
+
+START_TEST(memory_runs_out_touching) {
+  static short_of h;
+  parts_plan plan;
+  int64_t calls = 0;
+  uint64_t hash = 0;
+  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
+    memset(&h, 0, sizeof h);
+    memset(&plan, 0, sizeof plan);
+    h.is = scene_of(2, 48, set_up_bodies);
+    h.is.desc.sets = 3;
+    h.is.seed = 3;
+    h.fail_at = at;
+    ck_assert_msg(!parts_run(3, live_short, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
+                  (long long)calls, plan.text);
+    if (!at) calls = h.calls, hash = h.is.found[0].hash;
+    for (int32_t r = 0; r < 3; ++r) {
+      ck_assert_int_eq(h.memory[r].held, 0);
+      ck_assert_msg(!h.is.found[r].status && h.failed[r] == (at != 0),
+                    "allocation %lld of %lld, part %d: %s, %d calls failed", (long long)at, (long long)calls,
+                    r, mpm_status_name(h.is.found[r].status), h.failed[r]);
+      ck_assert_msg(h.is.found[r].hash == hash, "allocation %lld, part %d: another state", (long long)at, r);
+    }
+  }
+  ck_assert_int_gt(calls, 20);
+}
+END_TEST
+
 Suite *shared_contact_suite(void) {
   Suite *suite = suite_create("shared_contact");
   TCase *all = tcase_create("bodies");
   tcase_set_timeout(all, 120);
   tcase_add_loop_test(all, bodies_touch, 0, SCENES);
   suite_add_tcase(suite, all);
+  TCase *failures = tcase_create("failures");
+  tcase_set_timeout(failures, 120);
+  tcase_add_loop_test(failures, callbacks_fail, 0, 12);
+  tcase_add_test(failures, memory_runs_out_touching);
+  suite_add_tcase(suite, failures);
   return suite;
 }
