@@ -23,7 +23,7 @@
  * the answer, and must give the same on all. Obstacles are made and moved alike on all parts.
  *
  * Of several parts these are asked for explicit steps. MPM_E_UNSUPPORTED: implicit schemes, total Lagrangian
- * grids, MPM_WALL_FRICTION_NODES, free obstacles, surfaces, heat, adaption, and saving or loading states.
+ * grids, MPM_WALL_FRICTION_NODES, surfaces, heat, adaption, and saving or loading states.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

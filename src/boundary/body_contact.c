@@ -38,6 +38,11 @@ typedef struct encounter {
   double velocity[3], compliance[3], of_surface[3];
 } encounter;
 
+/* Returns the velocity of a body at its node, or that of the copy of another part's. */
+static double *party_velocity(const mpmi_bound *bound, mpmi_party *party) {
+  return party->slot == MPMI_COPIED_PARTY ? party->copy : mpmi_velocity(bound->values, party->slot);
+}
+
 /* With keeps nothing pushes a free obstacle: its velocity is that of the step. */
 static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_t keeps) {
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
@@ -50,8 +55,8 @@ static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_
   if (e.party[0]->site >= 0 || e.party[1]->site >= 0) e.site = bound->nodes->surface_sites.site;
   for (int32_t c = 0; c < bound->dim; ++c) {
     if (e.surface) e.of_surface[c] += e.party[0]->own_velocity[c];
-    const double first = e.surface ? e.of_surface[c] : mpmi_velocity(bound->values, e.party[0]->slot)[c];
-    e.velocity[c] = mpmi_velocity(bound->values, e.party[1]->slot)[c] - first;
+    const double first = e.surface ? e.of_surface[c] : party_velocity(bound, e.party[0])[c];
+    e.velocity[c] = party_velocity(bound, e.party[1])[c] - first;
     e.compliance[c] = e.party[0]->inverse_mass[c] + e.party[1]->inverse_mass[c];
   }
   return e;
@@ -95,7 +100,9 @@ static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
     for (int32_t i = 0; i < 2; ++i) {
       const double by = to[i][c] * e->party[i]->inverse_mass[c];
       if (!(by < 0.0 || by > 0.0)) continue;
-      if (e->surface && e->surface->face >= 0) {
+      if (e->party[i]->slot == MPMI_COPIED_PARTY) {
+        e->party[i]->copy[c] += by;
+      } else if (e->surface && e->surface->face >= 0) {
         mpmi_press_node(bound, e->party[i]->slot, c, by); /* a reaction of walls */
         if (!keeps) e->party[i]->pressed[c] += by;
       } else {
@@ -307,10 +314,11 @@ static double sweep_touches(const contact_job *job, int64_t begin, int64_t count
   return first;
 }
 
-/* Touches that share no body are settled by themselves, as if the others were not there. */
+/* Touches that share no body are settled by themselves, as if the others were not there. In a projection
+ * without forces nothing couples meetings. */
 static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting) {
   double first = 0.0;
-  if (!meeting->touch_count || meeting->coupled) return 0.0;
+  if (!meeting->touch_count || (meeting->coupled && !job->keeps)) return 0.0;
   begin_meeting(job, meeting);
   if (!meeting->independent) return sweep_touches(job, meeting->first_touch, meeting->touch_count);
   for (int64_t i = 0; i < meeting->touch_count; ++i)
@@ -318,22 +326,35 @@ static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting)
   return first;
 }
 
-/* Meetings of free obstacles depend on each other, and are swept together in their order. */
-static double sweep_coupled(const contact_job *job) {
+/* Sweeps the meetings of free obstacles together, in their order. */
+static double sweep_listed(const contact_job *job) {
   const mpmi_contact_nodes *contact = &job->bound->nodes->contact;
   double first = 0.0;
-  for (int64_t m = 0; m < contact->meeting_count; ++m)
-    if (contact->meeting[m].coupled) begin_meeting(job, &contact->meeting[m]);
+  for (int64_t i = 0; i < contact->coupled_count; ++i)
+    begin_meeting(job, &contact->meeting[contact->coupled[i]]);
   for (int32_t sweep = 0; sweep < SWEEPS; ++sweep) {
     double most = 0.0;
-    for (int64_t m = 0; m < contact->meeting_count; ++m) {
-      const mpmi_meeting *meeting = &contact->meeting[m];
-      if (meeting->coupled) most = fmax(most, sweep_once(job, meeting->first_touch, meeting->touch_count));
+    for (int64_t i = 0; i < contact->coupled_count; ++i) {
+      const mpmi_meeting *meeting = &contact->meeting[contact->coupled[i]];
+      most = fmax(most, sweep_once(job, meeting->first_touch, meeting->touch_count));
     }
     if (!sweep) first = most;
     if (!(most > settled * first)) break;
   }
   return first;
+}
+
+/* Does so with those of other parts, which are gone afterwards. */
+static mpm_status sweep_coupled(const contact_job *job, double *first) {
+  mpmi_contact_nodes *contact = &job->bound->nodes->contact;
+  const int64_t meetings = contact->meeting_count, parties = contact->party_count,
+                touches = contact->touch_count;
+  const mpm_status status = mpmi_coupled_gather(job->bound);
+  if (!status) *first = sweep_listed(job);
+  contact->meeting_count = meetings;
+  contact->party_count = parties;
+  contact->touch_count = touches;
+  return status;
 }
 
 static void sweep_task(void *data, int64_t k) {
@@ -369,10 +390,10 @@ mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t firs
   const mpmi_settings *settings = bound->step->settings;
   contact_job job = {bound, keeps, first_round};
   *most = 0.0;
-  if (!mpmi_bodies_touch(bound)) return MPM_OK;
-  const mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, sweep_task, &job);
-  if (status) return status;
-  *most = sweep_coupled(&job);
+  mpm_status status = MPM_OK;
+  if (mpmi_bodies_touch(bound)) status = mpmi_run_tasks(settings, 0, settings->tasks, sweep_task, &job);
+  if (!status && !keeps) status = sweep_coupled(&job, most);
+  if (status || !mpmi_bodies_touch(bound)) return status;
   for (int32_t k = 0; k < settings->tasks; ++k)
     *most = fmax(*most, bound->step->work->report[k].contact_change);
   return MPM_OK;

@@ -54,7 +54,11 @@ static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *si
       surfaces += near_value(search, i, MPMI_NEAR_DISTANCE, n) < (double)INFINITY;
     if (!counts || bodies + surfaces < 2) continue;
     const int64_t number = meeting + meetings++;
-    if (fill) contact->meeting[number] = (mpmi_meeting){*party, bodies + surfaces, 0, 0, 0, 0};
+    if (fill)
+      contact->meeting[number] = (mpmi_meeting){.first_party = *party,
+                                                .party_count = bodies + surfaces,
+                                                .key = b->key[site->blocks.first],
+                                                .place = n};
     for (int64_t i = site->blocks.first; i < end && fill; ++i) {
       const int64_t slot = i * b->nodes + n;
       if (!takes_part(search, slot)) continue;

@@ -76,7 +76,10 @@ typedef struct mpmi_parts {
   mpmi_buffer gone; /* slots of particles that leave */
   mpm_message *message;
   int64_t *most;
-  int64_t exchanges;   /* of tiles in the step under way */
+  int64_t exchanges; /* of tiles in the step under way */
+  /* Of meetings that a free obstacle couples, in it: how many have been gathered, how often they will be, and
+   * after how many exchanges of tiles; how many there are to be by the end of the phase. */
+  int64_t gathers, gather_count, gather_at[2], gathers_due;
   int32_t has_counted; /* the active nodes of the step under way */
   int32_t prescribes;  /* some part may have prescribed particles */
   int32_t asks;        /* some part has a progress callback */

@@ -105,3 +105,11 @@ int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, 
   if (settings->desc.scheme == MPM_MUSL) count += of_projection(step, nodes, MPMI_PROJECT_MOVED) + strain;
   return count;
 }
+
+void mpmi_explicit_gathers(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_parts *parts) {
+  parts->gathers = parts->gather_count = 0;
+  if (!nodes->contact.anywhere || !mpmi_has_free_obstacles(step->settings)) return;
+  if (step->settings->desc.scheme == MPM_USF)
+    parts->gather_at[parts->gather_count++] = of_projection(step, nodes, MPMI_PROJECT_CONTACT);
+  parts->gather_at[parts->gather_count++] = mpmi_explicit_exchanges(step, nodes, MPMI_SOLVED);
+}

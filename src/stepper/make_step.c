@@ -34,7 +34,10 @@ static mpm_status enter(mpm_stepper *s, mpm_status status, double dt) {
 
 /* Returns how many sums on nodes parts have exchanged when a step has come to this phase. */
 static int64_t exchanges_to(const mpm_stepper *s, int32_t phase) {
-  return mpmi_is_shared(s) ? mpmi_explicit_exchanges(&s->step, &s->nodes, phase) : 0;
+  if (!mpmi_is_shared(s)) return 0;
+  mpmi_parts *parts = s->layout.parts; /* the last gather is that of the grid's part */
+  parts->gathers_due = parts->gather_count - (parts->gather_count && phase == MPMI_BEGUN);
+  return mpmi_explicit_exchanges(&s->step, &s->nodes, phase);
 }
 
 /* Asks the host whether to go on, and shows it the info that the step is about to have. */
@@ -109,7 +112,10 @@ static mpm_status prepare(mpm_stepper *s) {
 /* The same on all parts. */
 static mpm_status prepare_together(mpm_stepper *s) {
   const mpm_status status = mpmi_together_ready(s, prepare(s));
-  return status ? status : mpmi_together_touching(s);
+  if (status) return status;
+  const mpm_status touching = mpmi_together_touching(s);
+  if (mpmi_is_shared(s)) mpmi_explicit_gathers(&s->step, &s->nodes, s->layout.parts);
+  return touching;
 }
 
 /* ---- the end ------------------------------------------------------------------------------------------ */

@@ -12,18 +12,15 @@ mpm_status mpmi_together(mpm_stepper *s, mpm_status status) {
 mpm_status mpmi_together_offers(mpm_stepper *s) {
   const mpmi_settings *settings = &s->settings;
   const char *what = NULL, *instead = "a context without a transport";
-  int32_t adapts = 0, nodes = 0, free_ones = 0;
+  int32_t adapts = 0, nodes = 0;
   if (!mpmi_is_shared(s)) return MPM_OK;
   for (int32_t m = 0; m < s->layout.member_count; ++m)
     adapts |= m < s->adaption_capacity && s->adaption[m].on;
   for (int32_t face = 0; face < 2 * s->grid->dim; ++face)
     nodes |= mpmi_wall_kind_of(settings->wall[face].kind)->rubs == MPMI_RUBS_NODES;
-  for (int64_t i = 0; i < settings->obstacles.count; ++i)
-    free_ones |= settings->obstacles.obstacle[i]->desc.motion == MPM_MOTION_FREE;
   if (mpmi_is_implicit(settings)) what = "scheme MPM_NEWMARK", instead = "MPM_USL, MPM_USF or MPM_MUSL";
   if (mpmi_is_total_lagrangian(s->grid)) what = "a total Lagrangian grid", instead = "one that is not";
   if (nodes) what = "MPM_WALL_FRICTION_NODES", instead = "MPM_WALL_FRICTION";
-  if (free_ones) what = "a free obstacle", instead = "MPM_MOTION_FIXED or MPM_MOTION_PRESCRIBED";
   if (settings->surfaces.count) what = "a surface", instead = "forces on particles";
   if (settings->heat.any) what = "heat";
   if (adapts) what = "adaption";
@@ -130,9 +127,18 @@ mpm_status mpmi_together_refreshed(mpm_stepper *s, mpm_status status) {
 /* Takes part in the exchanges that are left, so that no part waits. */
 static mpm_status catch_up(mpm_stepper *s, mpm_status status, int64_t exchanges) {
   mpmi_parts *parts = s->layout.parts;
-  while (status && parts->exchanges < exchanges && !s->context->apart) {
-    mpmi_tiles_send(parts, 8, s->layout.blocks.cover, status);
-    mpmi_tiles_receive(parts, 8, status);
+  while (status && !s->context->apart) {
+    mpmi_arrivals in;
+    if (parts->gathers < parts->gathers_due && parts->gather_at[parts->gathers] == parts->exchanges) {
+      for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->out[r].used = 0;
+      ++parts->gathers;
+      mpmi_parts_exchange(parts, &in);
+    } else if (parts->exchanges < exchanges) {
+      mpmi_tiles_send(parts, 8, s->layout.blocks.cover, status);
+      mpmi_tiles_receive(parts, 8, status);
+    } else {
+      break;
+    }
   }
   if (!status && parts->exchanges != exchanges)
     return mpmi_fail(s->context, MPM_E_INTERNAL, "a step had %lld exchanges and not %lld",

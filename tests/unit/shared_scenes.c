@@ -107,6 +107,8 @@ void check_scene(const scene *is, const char *name, int32_t parts) {
           (long long)b->info.resorts);
     if (memcmp(a->reaction, b->reaction, sizeof a->reaction) != 0)
       ck_abort_msg("%s, part %d of %d: other reactions", name, r, parts);
+    if (memcmp(a->seen, b->seen, sizeof a->seen) != 0)
+      ck_abort_msg("%s, part %d of %d: another pose", name, r, parts);
     for (int32_t i = 0; i < 4; ++i)
       if (memcmp(&a->contact[i], &b->contact[i], sizeof a->contact[i]) != 0)
         ck_abort_msg(

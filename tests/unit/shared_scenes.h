@@ -21,6 +21,7 @@ typedef struct outcome {
   int64_t total, own;
   int64_t failed_particle;     /* of a step that had to fail */
   mpm_contact_info contact[4]; /* what a scene has asked for */
+  double seen[24];             /* likewise */
   mpm_parallel_info parallel;
 } outcome;
 

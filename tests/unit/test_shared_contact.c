@@ -76,11 +76,17 @@ static mpm_status add_obstacle(world *w, dice *d, mpm_obstacle **out) {
   const mpm_contact_desc rule = rule_of(d, w->dim);
   mpm_obstacle_desc_init(&desc, sizeof desc);
   desc.shape = w->dim == 1 ? MPM_SHAPE_PLANE : shapes[throw_of(d, 4)];
-  desc.motion = throw_of(d, 2) ? MPM_MOTION_PRESCRIBED : MPM_MOTION_FIXED;
+  desc.motion = throw_of(d, 3);
+  if (desc.motion == MPM_MOTION_FREE && desc.shape == MPM_SHAPE_PLANE) desc.motion = MPM_MOTION_FIXED;
+  if (desc.motion == MPM_MOTION_FREE) {
+    desc.mass = 20.0;
+    desc.inertia[0] = desc.inertia[4] = w->dim == 3 ? 0.3 : 0.0;
+    desc.inertia[8] = 0.2;
+  }
   for (int32_t k = 0; k < w->dim; ++k) desc.position[k] = throw_between(d, 0.3, 0.6);
   desc.size[0] = 0.1, desc.size[1] = 0.07, desc.size[2] = 0.09;
   if (desc.shape == MPM_SHAPE_PLANE) desc.position[w->dim == 1 ? 0 : 1] = 0.21;
-  if (desc.motion == MPM_MOTION_PRESCRIBED && w->dim > 1) desc.velocity[0] = 3.0;
+  if (desc.motion != MPM_MOTION_FIXED && w->dim > 1) desc.velocity[0] = 3.0;
   desc.distance = ball;
   desc.contact = &rule;
   mpm_status status = mpm_obstacle_create(w->context, &desc, out);
@@ -135,7 +141,8 @@ static mpm_status touch(world *w, const scene *is, outcome *found) {
   if (!status) status = run_steps(w);
   for (int32_t i = 0; i < 4; ++i) found->contact[i].struct_size = sizeof found->contact[i];
   for (int32_t i = 0; i < count && !status; ++i)
-    status = mpm_obstacle_contact_info(obstacle[i], MPM_BODY_ANY, &found->contact[i]);
+    if (!(status = mpm_obstacle_contact_info(obstacle[i], MPM_BODY_ANY, &found->contact[i])))
+      status = mpm_obstacle_get_pose(obstacle[i], found->seen + 8 * i, NULL, found->seen + 8 * i + 4, NULL);
   if (!status) status = mpm_stepper_contact_info(w->stepper, MPM_BODY_ANY, 1, &found->contact[3]);
   for (int32_t i = 0; i < count; ++i) {
     if (!status) status = mpm_stepper_remove_obstacle(w->stepper, obstacle[i]);
