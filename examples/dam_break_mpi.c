@@ -1,11 +1,12 @@
 /* A block of water collapses in a tank, on any number of processes:
  *
- *   mpirun -n 4 dam_break_mpi [CELLS [FRAMES]]
+ *   mpirun -n 4 dam_break_mpi [CELLS [FRAMES [STATE]]]
  *
  * CELLS are those along the height of the block (default 20: 64 000 particles), FRAMES those that it is
- * followed for (40, each 0.02 s). It writes water_0000.pvtp ... for ParaView, and prints energies and a
- * hash of the state, which are the same for any number of processes. The lines for MPI are marked with a
- * +: without them it is a program for one process. */
+ * followed for (40, each 0.02 s), STATE a file to go on from. It writes water_0000.pvtp ... for ParaView,
+ * every ten frames water.state, and prints energies and a hash of the state, which are the same for any
+ * number of processes. The lines for MPI are marked with a +: without them it is a program for one
+ * process. */
 #include <mpm/mpm_mpi.h> /* + */
 
 #include <inttypes.h>
@@ -58,13 +59,15 @@ int main(int argc, char **argv) {
     goto end;
   for (int32_t face = MPM_X_MIN; face <= MPM_Z_MAX; ++face)
     if (mpm_stepper_set_wall(stepper, face, MPM_WALL_SLIP, 0.0)) goto end;
+  if (argc > 3 && mpm_mpi_load(mpi, stepper, argv[3])) goto end; /* + */
 
   mpm_step_info now = {.struct_size = sizeof now};
   if (mpm_stepper_info(stepper, &now)) goto end;
   for (int frame = (int)(now.t / frame_time + 0.5); frame < frames; ++frame) {
     char path[40];
     snprintf(path, sizeof path, "water_%04d.pvtp", frame);
-    if (mpm_mpi_write_particles(mpi, water, path, NULL)) goto end; /* + */
+    if (mpm_mpi_write_particles(mpi, water, path, NULL)) goto end;              /* + */
+    if (frame % 10 == 9 && mpm_mpi_save(mpi, stepper, "water.state")) goto end; /* + */
     go.t_end = frame_time * (frame + 1);
     /* the same steps on all processes, and the same outcome */
     if (mpm_advance(stepper, &go, &now)) goto end;

@@ -2054,11 +2054,13 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_stepper_heat_info(IntPtr stepper, HeatInfo* info);
 
-    /// <summary>Tells how many bytes mpm_state_save() needs now.</summary>
+    /// <summary>Tells how many bytes mpm_state_save() needs now; of several parts, those of this part's piece
+    /// (collective).</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_state_size(IntPtr stepper, long* bytes);
 
-    /// <summary>Writes the state into the host's buffer of capacity bytes.</summary>
+    /// <summary>Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece
+    /// (collective).</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_state_save(IntPtr stepper, IntPtr buffer, long capacity);
 
@@ -2066,6 +2068,10 @@ namespace Mpm {
     /// the call.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_state_load(IntPtr stepper, IntPtr buffer, long bytes);
+
+    /// <summary>Replaces the state by one in pieces (collective).</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_state_load_pieces(IntPtr stepper, int count, IntPtr* piece, long* bytes);
 
     /// <summary>Writes the state into a file, as mpm_state_save() does into memory, and waits for the storage: path
     /// holds the old state or the new one.</summary>

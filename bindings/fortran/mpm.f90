@@ -2647,7 +2647,7 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_stepper_heat_info
 
-    !> Tells how many bytes mpm_state_save() needs now.
+    !> Tells how many bytes mpm_state_save() needs now; of several parts, those of this part's piece (collective).
     function mpm_state_size(stepper, bytes) bind(c, name="mpm_state_size") result(answer)
       import
       type(c_ptr), value :: stepper
@@ -2655,7 +2655,7 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_state_size
 
-    !> Writes the state into the host's buffer of capacity bytes.
+    !> Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece (collective).
     function mpm_state_save(stepper, buffer, capacity) bind(c, name="mpm_state_save") result(answer)
       import
       type(c_ptr), value :: stepper
@@ -2672,6 +2672,16 @@ module mpm
       integer(c_int64_t), value :: bytes
       integer(c_int32_t) :: answer
     end function mpm_state_load
+
+    !> Replaces the state by one in pieces (collective).
+    function mpm_state_load_pieces(stepper, count, piece, bytes) bind(c, name="mpm_state_load_pieces") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      integer(c_int32_t), value :: count
+      type(c_ptr), intent(out) :: piece
+      integer(c_int64_t), intent(in) :: bytes(*)
+      integer(c_int32_t) :: answer
+    end function mpm_state_load_pieces
 
     !> Writes the state into a file, as mpm_state_save() does into memory, and waits for the storage: path holds the old
     !! state or the new one.

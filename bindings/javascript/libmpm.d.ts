@@ -2108,15 +2108,17 @@ export class Stepper implements Handle {
   map<T>(field: string, access: number, use: (components: Float64Array[], count: number) => T, body?: number): T;
   map<A extends FieldArray, T>(field: string, access: number, use: (components: A[], count: number) => T, body?: number): T;
   /**
-   * Writes the state into the host's buffer of capacity bytes. MPM_E_ARG: the capacity is too small.
-   * MPM_E_STATE: a view is out for writing, or a staged step is under way.
+   * Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece
+   * (collective). MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged
+   * step is under way. MPM_E_UNSUPPORTED: several parts with a surface.
    */
   save(): Uint8Array;
   /**
    * Replaces the state by one saved with mpm_state_save(), of so many bytes; the buffer is read during the
    * call. MPM_E_FORMAT: the bytes are no state, or it is damaged, of a later format, or saved from an unlike
-   * setup; the error text names the first difference. MPM_E_STATE: a view is out, or a staged step is under
-   * way.
+   * setup; the error text names the first difference; or they are one piece of several. MPM_E_STATE: a view
+   * is out, or a staged step is under way. MPM_E_UNSUPPORTED: the context is one of several parts, which load
+   * by mpm_state_load_pieces().
    */
   load(state: ArrayLike<number>): void;
   /**
@@ -2270,6 +2272,7 @@ export interface Raw {
   mpm_state_size(stepper: number, bytes: number): number;
   mpm_state_save(stepper: number, buffer: number, capacity: bigint): number;
   mpm_state_load(stepper: number, buffer: number, bytes: bigint): number;
+  mpm_state_load_pieces(stepper: number, count: number, piece: number, bytes: number): number;
   mpm_state_save_file(stepper: number, path: number): number;
   mpm_state_save_to(stepper: number, write: number, user: number): number;
   mpm_state_load_file(stepper: number, path: number): number;

@@ -2483,15 +2483,16 @@ function mpm_stepper_heat_info(stepper, info)
 end
 
 """
-Tells how many bytes mpm_state_save() needs now.
+Tells how many bytes mpm_state_save() needs now; of several parts, those of this part's piece (collective).
 """
 function mpm_state_size(stepper, bytes)
     return ccall((:mpm_state_size, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{Int64}), stepper, bytes)
 end
 
 """
-Writes the state into the host's buffer of capacity bytes. MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view
-is out for writing, or a staged step is under way.
+Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece (collective).
+MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged step is under way.
+MPM_E_UNSUPPORTED: several parts with a surface.
 """
 function mpm_state_save(stepper, buffer, capacity)
     return ccall((:mpm_state_save, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{Cvoid}, Int64), stepper, buffer, capacity)
@@ -2500,15 +2501,38 @@ end
 """
 Replaces the state by one saved with mpm_state_save(), of so many bytes; the buffer is read during the call.
 MPM_E_FORMAT: the bytes are no state, or it is damaged, of a later format, or saved from an unlike setup; the error
-text names the first difference. MPM_E_STATE: a view is out, or a staged step is under way.
+text names the first difference; or they are one piece of several. MPM_E_STATE: a view is out, or a staged step is
+under way. MPM_E_UNSUPPORTED: the context is one of several parts, which load by mpm_state_load_pieces().
 """
 function mpm_state_load(stepper, buffer, bytes)
     return ccall((:mpm_state_load, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{Cvoid}, Int64), stepper, buffer, bytes)
 end
 
 """
+Replaces the state by one in pieces (collective). Each part gives count of them, piece[i] of bytes[i] bytes: part 0
+the first few, part 1 those after them, and so on, in the order of the parts that saved them; count may be 0, and then
+piece and bytes may be NULL. How many parts saved the state and how many load it does not matter, one among them:
+continuing has the bits of not having stopped. What mpm_state_save() of one part wrote, in any version, is the only
+piece of its state. Pieces are read during the call and need no alignment. On failure, which all parts return, no
+part's objects have changed.
+
+- MPM_E_ARG: pieces are missing, given twice, out of order, or of different states, which their marks tell; no part
+  gives one; or an argument is wrong.
+- MPM_E_FORMAT: as in mpm_state_load(); the text names the piece by its number in `piece`.
+- MPM_E_STATE: a view is out, or a staged step is under way.
+- MPM_E_UNSUPPORTED: several parts with a surface.
+
+Since 0.2.0.
+"""
+function mpm_state_load_pieces(stepper, count, piece, bytes)
+    return ccall((:mpm_state_load_pieces, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Ptr{Ptr{Cvoid}}, Ptr{Int64}),
+        stepper, count, piece, bytes)
+end
+
+"""
 Writes the state into a file, as mpm_state_save() does into memory, and waits for the storage: path holds the old
-state or the new one. MPM_E_IO: the file could not be written.
+state or the new one. Of several parts, each writes its piece under a path of its own (collective); where one of them
+could not, others may have replaced their files. MPM_E_IO: the file could not be written.
 """
 function mpm_state_save_file(stepper, path)
     return ccall((:mpm_state_save_file, libmpm), Int32, (Ptr{mpm_stepper}, Cstring), stepper, path)
@@ -2516,8 +2540,9 @@ end
 
 """
 Gives the bytes of mpm_state_save() to a callback. They are made twice, because the first of them hold a checksum of
-all others; memory for one piece is enough. MPM_E_CALLBACK: the callback refused. MPM_E_STATE: as in mpm_state_save();
-or what was written through a view for reading changed the state while it went out. Since 0.2.0.
+all others; memory for 65536 bytes is enough. Of several parts, each gives its piece (collective). MPM_E_CALLBACK: the
+callback refused. MPM_E_STATE: as in mpm_state_save(); or what was written through a view for reading changed the
+state while it went out. Since 0.2.0.
 """
 function mpm_state_save_to(stepper, write, user)
     return ccall((:mpm_state_save_to, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{Cvoid}, Ptr{Cvoid}),
@@ -2745,8 +2770,8 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     mpm_stepper_surface_reaction, mpm_stepper_surface_impulse, mpm_adaption_desc_init, mpm_stepper_set_adaption,
     mpm_stepper_adapt, mpm_stepper_adaption_info, mpm_heat_desc_init, mpm_stepper_set_heat,
     mpm_stepper_set_conduction, mpm_stepper_set_heat_wall, mpm_surface_set_heat, mpm_stepper_heat_info,
-    mpm_state_size, mpm_state_save, mpm_state_load, mpm_state_save_file, mpm_state_save_to, mpm_state_load_file,
-    mpm_state_hash, mpm_write_particles, mpm_write_particles_to, mpm_write_grid, mpm_write_body_grid,
-    mpm_write_grid_to, mpm_series_open, mpm_series_append, mpm_series_close
+    mpm_state_size, mpm_state_save, mpm_state_load, mpm_state_load_pieces, mpm_state_save_file, mpm_state_save_to,
+    mpm_state_load_file, mpm_state_hash, mpm_write_particles, mpm_write_particles_to, mpm_write_grid,
+    mpm_write_body_grid, mpm_write_grid_to, mpm_series_open, mpm_series_append, mpm_series_close
 
 end

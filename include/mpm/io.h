@@ -9,6 +9,10 @@
  * particles are replaced, and the sets may be empty. States of all versions from 0.1.0 on load; in those of
  * 0.1.0 sums over steps are 0.
  *
+ * Of one problem in several parts (parallel.h) each part saves a piece, and all pieces together are the
+ * state. Calls that measure or save are then collective: every part makes them, each with a buffer, a path or
+ * a callback of its own, and all return the same status. mpm_state_load_pieces() loads from pieces.
+ *
  * States and VTK files take the place of the file at their path when they are complete. Until then they are
  * written beside it under the name path.tmp0, or path.tmp1 ... where several are being written, and path
  * holds the old contents. Symbolic links are followed: the file that they lead to is replaced, in its own
@@ -40,27 +44,49 @@ extern "C" {
  * mpm_step_info.callback_status stays that of the last step. Since 0.2.0. */
 typedef mpm_status (*mpm_write_fn)(void *user, const void *data, int64_t bytes);
 
-/** Tells how many bytes mpm_state_save() needs now. */
+/** Tells how many bytes mpm_state_save() needs now; of several parts, those of this part's piece
+ * (collective). */
 MPM_API mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes);
 
-/** Writes the state into the host's buffer of capacity bytes. MPM_E_ARG: the capacity is too small.
- * MPM_E_STATE: a view is out for writing, or a staged step is under way. */
+/** Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece
+ * (collective). MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged
+ * step is under way. MPM_E_UNSUPPORTED: several parts with a surface. */
 MPM_API mpm_status mpm_state_save(const mpm_stepper *stepper, void *buffer, int64_t capacity);
 
 /** Replaces the state by one saved with mpm_state_save(), of so many bytes; the buffer is read during the
  * call. MPM_E_FORMAT: the bytes are no state, or it is damaged, of a later format, or saved from an unlike
- * setup; the error text names the first difference. MPM_E_STATE: a view is out, or a staged step is under
- * way. */
+ * setup; the error text names the first difference; or they are one piece of several. MPM_E_STATE: a view is
+ * out, or a staged step is under way. MPM_E_UNSUPPORTED: the context is one of several parts, which load by
+ * mpm_state_load_pieces(). */
 MPM_API mpm_status mpm_state_load(mpm_stepper *stepper, const void *buffer, int64_t bytes);
 
+/** Replaces the state by one in pieces (collective). Each part gives count of them, piece[i] of bytes[i]
+ * bytes: part 0 the first few, part 1 those after them, and so on, in the order of the parts that saved them;
+ * count may be 0, and then piece and bytes may be NULL. How many parts saved the state and how many load it
+ * does not matter, one among them: continuing has the bits of not having stopped. What mpm_state_save() of
+ * one part wrote, in any version, is the only piece of its state. Pieces are read during the call and need no
+ * alignment. On failure, which all parts return, no part's objects have changed.
+ *
+ * - MPM_E_ARG: pieces are missing, given twice, out of order, or of different states, which their marks tell;
+ *   no part gives one; or an argument is wrong.
+ * - MPM_E_FORMAT: as in mpm_state_load(); the text names the piece by its number in `piece`.
+ * - MPM_E_STATE: a view is out, or a staged step is under way.
+ * - MPM_E_UNSUPPORTED: several parts with a surface.
+ *
+ * Since 0.2.0. */
+MPM_API mpm_status mpm_state_load_pieces(mpm_stepper *stepper, int32_t count, const void *const *piece,
+                                         const int64_t *bytes);
+
 /** Writes the state into a file, as mpm_state_save() does into memory, and waits for the storage: path holds
- * the old state or the new one. MPM_E_IO: the file could not be written. */
+ * the old state or the new one. Of several parts, each writes its piece under a path of its own (collective);
+ * where one of them could not, others may have replaced their files. MPM_E_IO: the file could not be
+ * written. */
 MPM_API mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path);
 
 /** Gives the bytes of mpm_state_save() to a callback. They are made twice, because the first of them hold a
- * checksum of all others; memory for one piece is enough. MPM_E_CALLBACK: the callback refused.
- * MPM_E_STATE: as in mpm_state_save(); or what was written through a view for reading changed the state
- * while it went out. Since 0.2.0. */
+ * checksum of all others; memory for 65536 bytes is enough. Of several parts, each gives its piece
+ * (collective). MPM_E_CALLBACK: the callback refused. MPM_E_STATE: as in mpm_state_save(); or what was
+ * written through a view for reading changed the state while it went out. Since 0.2.0. */
 MPM_API mpm_status mpm_state_save_to(const mpm_stepper *stepper, mpm_write_fn write, void *user);
 
 /** Replaces the state by one from a file. Errors are those of mpm_state_load(), and MPM_E_IO: the file could

@@ -311,6 +311,17 @@ public:
   void load(span<const unsigned char> state) {
     check(mpm_state_load(core().handle, detail::not_null(state), static_cast<int64_t>(state.size())));
   }
+  /** Replaces the state by one in pieces, of which these are this part's: see mpm_state_load_pieces(). */
+  void load_pieces(const std::vector<span<const unsigned char>> &pieces) {
+    std::vector<const void *> data;
+    std::vector<int64_t> bytes;
+    for (const span<const unsigned char> &one : pieces) {
+      data.push_back(detail::not_null(one));
+      bytes.push_back(static_cast<int64_t>(one.size()));
+    }
+    check(
+        mpm_state_load_pieces(core().handle, static_cast<int32_t>(pieces.size()), data.data(), bytes.data()));
+  }
   /** Saves the state into a file: see mpm_state_save_file(). */
   void save_file(const std::string &path) const {
     check(mpm_state_save_file(core().handle, path.c_str()));

@@ -1,4 +1,4 @@
-/* A host in C, which an installation has to serve: it opens, writes and closes. */
+/* A host in C, which an installation has to serve: it opens, writes, saves, loads and closes. */
 #include <mpm/mpm_mpi.h>
 #include <stdio.h>
 
@@ -12,6 +12,7 @@ int main(int argc, char **argv) {
   mpm_grid *grid;
   mpm_material *material;
   mpm_particles *set;
+  mpm_stepper *stepper;
   const mpm_param law[] = {{"E", 1e4}, {"nu", 0.3}, {"density", 1000.0}};
   const double lower[] = {1.0}, upper[] = {3.0};
   const int32_t per_cell[] = {2};
@@ -28,6 +29,10 @@ int main(int argc, char **argv) {
       mpm_particles_create(context, grid, material, &set) ||
       mpm_particles_fill_box(set, lower, upper, per_cell, NULL, NULL) ||
       mpm_mpi_write_particles(mpi, set, path, NULL))
+    return 1;
+  snprintf(path, sizeof path, "%s/host.state", argv[1]);
+  if (mpm_stepper_create(context, grid, NULL, &stepper) || mpm_stepper_add(stepper, set) ||
+      mpm_mpi_save(mpi, stepper, path) || mpm_mpi_load(mpi, stepper, path) || mpm_stepper_destroy(stepper))
     return 1;
   if (!transport->part) printf("%d parts\n", (int)transport->parts);
   if (mpm_particles_destroy(set) || mpm_material_destroy(material) || mpm_grid_destroy(grid) ||

@@ -19,6 +19,10 @@ static int run(const std::string &folder) {
   const int32_t per_cell[] = {2};
   if (mpm_particles_fill_box(set.handle(), lower, upper, per_cell, nullptr, nullptr)) return 1;
   world.write(set, folder + "/host.pvtp", {1, {"velocity", "id"}});
+  mpm::stepper stepper(grid);
+  stepper.add(set);
+  world.save(stepper, folder + "/host.state");
+  world.load(stepper, folder + "/host.state");
   try {
     world.write(set, folder + "/host.vtp");
     return 1;

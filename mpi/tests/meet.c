@@ -58,3 +58,11 @@ FAULTY(F_IPROBE, Iprobe, (int from, int tag, MPI_Comm c, int *flag, MPI_Status *
 FAULTY(F_IBARRIER, Ibarrier, (MPI_Comm c, MPI_Request *r), (c, r))
 FAULTY(F_TESTSOME, Testsome, (int n, MPI_Request *r, int *done, int *i, MPI_Status *s), (n, r, done, i, s))
 FAULTY(F_GET_ELEMENTS, Get_elements_x, (const MPI_Status *s, MPI_Datatype t, MPI_Count *n), (s, t, n))
+FAULTY(F_FILE_OPEN, File_open, (MPI_Comm c, const char *path, int mode, MPI_Info i, MPI_File *f),
+       (c, path, mode, i, f))
+FAULTY(F_FILE_WRITE, File_write_at_all,
+       (MPI_File f, MPI_Offset o, const void *b, int n, MPI_Datatype t, MPI_Status *s), (f, o, b, n, t, s))
+FAULTY(F_FILE_READ, File_read_at_all,
+       (MPI_File f, MPI_Offset o, void *b, int n, MPI_Datatype t, MPI_Status *s), (f, o, b, n, t, s))
+FAULTY(F_FILE_SYNC, File_sync, (MPI_File f), (f))
+FAULTY(F_FILE_CLOSE, File_close, (MPI_File * f), (f))

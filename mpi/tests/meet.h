@@ -38,6 +38,11 @@ typedef enum faulty {
   F_IBARRIER,
   F_TESTSOME,
   F_GET_ELEMENTS,
+  F_FILE_OPEN,
+  F_FILE_WRITE,
+  F_FILE_READ,
+  F_FILE_SYNC,
+  F_FILE_CLOSE,
   F_COMM_SPLIT,
   FAULTS
 } faulty;

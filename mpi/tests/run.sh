@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # libmpm-mpi on 1 to 4 processes of Open MPI and of MPICH, those that are there: the transport by itself, files, processes that
-# fail; once more with small pieces in the place of two gigabytes, and under the sanitizers of addresses and undefined
+# fail; states that other numbers of processes go on from; once more with small pieces in the place of two gigabytes, and under the sanitizers of addresses and undefined
 # behaviour; hosts in C and C++ by pkg-config, from an installation; the example, whose bits do not depend on the processes.
 #
 #   run.sh tests     the tests alone, by the first MPI: what planted faults must fail
@@ -46,7 +46,7 @@ flags() { # package: what compilers take; its headers are the system's
 build() { # folder, flags...: the tests with the sources of the library
   local folder=$scratch/$package-$1 flags=("${@:2}") source
   mkdir -p "$folder"
-  for source in mpi/src/*.c mpi/tests/{meet,read_vtk,test_transport,test_files}.c tests/unit/transport_rounds.c; do
+  for source in mpi/src/*.c mpi/tests/{meet,read_vtk,test_transport,test_files,test_states}.c tests/unit/transport_rounds.c; do
     # shellcheck disable=SC2046,SC2086
     "$CC" -std=c11 $warnings -g "${flags[@]}" -Iinclude -Impi/include -Impi/src -Itests/unit $(flags $package) -c "$source" -o "$folder/${source//\//_}.o" || exit 1
   done
@@ -54,7 +54,8 @@ build() { # folder, flags...: the tests with the sources of the library
   ar rcs "$folder/libmpm-mpi.a" "$folder"/mpi_src_*.o
   # meet.o stands between the libraries and some functions, of theirs and of MPI
   link "$folder" transport '' mpi_tests_test_transport.c tests_unit_transport_rounds.c
-  link "$folder" files '' mpi_tests_test_files.c mpi_tests_read_vtk.c
+  link "$folder" files ,--wrap=mpm_state_load_pieces mpi_tests_test_files.c mpi_tests_read_vtk.c
+  link "$folder" states '' mpi_tests_test_states.c
 }
 link() { # folder, program, more for the linker, objects...; flags are those of build()
   # shellcheck disable=SC2046
@@ -64,6 +65,31 @@ link() { # folder, program, more for the linker, objects...; flags are those of 
 files() { # folder, processes
   mkdir -p "$scratch/$package-$1/out-$2"
   must "$1: files" "$2" "$scratch/$package-$1/files" "$scratch/$package-$1/out-$2"
+}
+
+result_of() { # what: the hash that the last run has printed
+  sed -n 's/^result: //p' "$scratch/log" | grep . || { echo "mpi: $package: $1: no result" >&2; exit 1; }
+}
+# A run that goes on with other processes, and one of which a process dies, have the bits of one that does not stop.
+restart() { # folder
+  local states=$scratch/$package-$1/states at=$scratch/$package-$1/states-out wanted result status=0 from=- n last
+  rm -rf "$at"
+  mkdir -p "$at"
+  must "$1: states" 1 "$states" "$at/one.state" - 30
+  wanted=$(result_of "$1: states")
+  for n in 4 3 1; do
+    case $n in 4) last=10 ;; 3) last=20 ;; 1) last=30 ;; esac
+    must "$1: restart" $n "$states" "$at/run.state" "$from" $last
+    result=$(result_of "$1: restart")
+    from=$at/run.state
+  done
+  [ "$result" = "$wanted" ] || { echo "mpi: $package: $1: restart 4, 3, 1: $result, wanted $wanted" >&2; exit 1; }
+  run 3 "$states" "$at/killed.state" - 30 17 > "$scratch/log" 2>&1 || status=$?
+  case $status in 0 | 124) echo "mpi: $package: $1: a process was killed, and the others went on or waited ($status)" >&2; exit 1 ;; esac
+  must "$1: after a process was killed" 2 "$states" "$at/killed.state" "$at/killed.state" 30
+  grep -q '^from step 15$' "$scratch/log" || { echo "mpi: $package: $1: it does not go on from the last state" >&2; exit 1; }
+  result=$(result_of "$1: after a process was killed")
+  [ "$result" = "$wanted" ] || { echo "mpi: $package: $1: after a process was killed: $result, wanted $wanted" >&2; exit 1; }
 }
 
 # MPI_TESTS=quick: one MPI, up to three processes, without small pieces and sanitizers
@@ -87,6 +113,7 @@ if [ "${1:-}" = tests ]; then
     files $folder 3
   done
   must open 3 "$scratch/$package-plain/transport" open
+  restart plain
   exit 0
 fi
 
@@ -102,6 +129,7 @@ for package in $packages; do
     files plain $n
     if [ -n "$python" ]; then "$python" mpi/tests/read_vtk.py "$scratch/$package-plain/out-$n" $n; fi
   done
+  restart plain
   # a process that ends without a word: the others end, too, and do not wait
   status=0
   run 3 "$scratch/$package-plain/transport" dies > "$scratch/log" 2>&1 || status=$?
@@ -112,11 +140,13 @@ for package in $packages; do
       for test in rounds faults; do must "$test in pieces" $n "$scratch/$package-pieces/transport" $test; done
       files pieces $n
     done
+    restart pieces
     # MPI keeps memory until the end, and some of it beyond
     build sanitized -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
     export ASAN_OPTIONS=detect_leaks=0:strict_string_checks=1
     for test in rounds wrong open faults; do must "$test, sanitized" 2 "$scratch/$package-sanitized/transport" $test; done
     files sanitized 2
+    restart sanitized
     unset ASAN_OPTIONS
   fi
   echo "mpi: $package: transport and files: ok"
@@ -155,7 +185,7 @@ for package in $packages; do
     exit 1
   fi
 
-  # the same bits on any number of processes
+  # the same bits on any number of processes, and when as many others go on
   cells=8 frames=12 wanted=
   for n in $many; do
     mkdir -p "$scratch/$package-dam-$n"
@@ -166,6 +196,11 @@ for package in $packages; do
     points=$(sed -n 's/.*NumberOfPoints="\([0-9]*\)".*/\1/p' -- "$scratch/$package-dam-$n"/water_0005/*.vtp 2> /dev/null | paste -sd +)
     points=$((points))
     [ "$points" = $((8 * cells * cells * cells)) ] || { echo "mpi: $package: on $n processes: $points points" >&2; exit 1; }
+  done
+  for n in 2 ${many##* }; do
+    (cd "$scratch/$package-dam-3" && must "example, going on" $n "$out/examples/dam_break_mpi" $cells $frames water.state)
+    result=$(grep '^result:' "$scratch/log")
+    [ "$result" = "$wanted" ] || { echo "mpi: $package: from 3 to $n processes: $result, on one: $wanted" >&2; exit 1; }
   done
   echo "mpi: $package: installed, and the example: ok, $wanted"
 done

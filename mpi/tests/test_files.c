@@ -1,7 +1,8 @@
 /* Files of several parts, of contexts that know nothing of each other: each process has a body of its own.
  *
  *   test_files FOLDER
- */
+ *
+ * The loader of the library is taken apart: a piece goes to mpm_state_load(), several are looked at. */
 #define _XOPEN_SOURCE 700
 #include <mpm/mpm_mpi.h>
 
@@ -295,6 +296,196 @@ static void test_grid(mpm_mpi *mpi) {
   destroy(&w);
 }
 
+/* ---- states */
+
+static struct {
+  int32_t count;
+  uint64_t hash[MOST];
+} loaded;
+
+static uint64_t sum(const void *data, int64_t bytes) {
+  uint64_t hash = 7;
+  for (int64_t i = 0; i < bytes; ++i) hash = (hash ^ ((const unsigned char *)data)[i]) * 0x100000001b3u;
+  return hash;
+}
+
+mpm_status __wrap_mpm_state_load_pieces(mpm_stepper *stepper, int32_t count, const void *const *piece,
+                                        const int64_t *bytes);
+mpm_status __wrap_mpm_state_load_pieces(mpm_stepper *stepper, int32_t count, const void *const *piece,
+                                        const int64_t *bytes) {
+  MUST(count <= MOST);
+  loaded.count = count;
+  for (int32_t i = 0; i < count; ++i) {
+    MUST((uintptr_t)piece[i] % 64 == 0);
+    loaded.hash[i] = sum(piece[i], bytes[i]);
+  }
+  return count == 1 ? mpm_state_load(stepper, piece[0], bytes[0]) : MPM_OK;
+}
+
+static uint64_t hash_of(const world *w) {
+  uint64_t hash;
+  MUST(!mpm_state_hash(w->stepper, &hash));
+  return hash;
+}
+
+/* The communicator of the first n processes; MPI_COMM_NULL on the others. */
+static MPI_Comm first_processes(int n) {
+  MPI_Comm out;
+  MPI_Comm_split(MPI_COMM_WORLD, rank < n ? 0 : MPI_UNDEFINED, rank, &out);
+  return out;
+}
+
+static mpm_mpi *open_comm(MPI_Comm comm) {
+  mpm_context_desc desc;
+  mpm_mpi *mpi;
+  MUST(!mpm_context_desc_init(&desc, sizeof desc));
+  MUST(!mpm_mpi_open(comm, &desc, &mpi));
+  return mpi;
+}
+
+static void test_state(mpm_mpi *mpi) {
+  world w = {0};
+  create(&w, 3, 0, rank, rank + 1);
+  steps(&w, 3);
+  int64_t bytes;
+  MUST(!mpm_state_size(w.stepper, &bytes));
+  void *piece = malloc((size_t)bytes);
+  MUST(piece && !mpm_state_save(w.stepper, piece, bytes));
+  uint64_t all[MOST], own = sum(piece, bytes);
+  MPI_Allgather(&own, 1, MPI_UINT64_T, all, 1, MPI_UINT64_T, MPI_COMM_WORLD);
+  MUST(!mpm_mpi_save(mpi, w.stepper, in_folder("all.state")));
+  MUST(!exists(in_folder("all.state.writing")));
+  const uint64_t then = hash_of(&w);
+  steps(&w, 2);
+  MUST(hash_of(&w) != then);
+  MUST(!mpm_mpi_load(mpi, w.stepper, in_folder("all.state")));
+  MUST(hash_of(&w) == then && loaded.count == 1);
+  steps(&w, 2);
+  /* as many processes as there are pieces or fewer: runs in order of parts */
+  for (int n = 1; n <= size; ++n) {
+    MPI_Comm comm = first_processes(n);
+    if (comm == MPI_COMM_NULL) continue;
+    mpm_mpi *few = open_comm(comm);
+    loaded.count = -1;
+    MUST(!mpm_mpi_load(few, w.stepper, in_folder("all.state")));
+    const int first = size * rank / n, last = size * (rank + 1) / n;
+    MUST(loaded.count == last - first);
+    for (int i = first; i < last; ++i) MUST(loaded.hash[i - first] == all[i]);
+    MUST(!mpm_mpi_close(few));
+    MPI_Comm_free(&comm);
+  }
+  /* more processes than pieces: one of them has it */
+  MPI_Barrier(MPI_COMM_WORLD);
+  MPI_Comm one = first_processes(1);
+  if (one != MPI_COMM_NULL) {
+    mpm_mpi *alone = open_comm(one);
+    MUST(!mpm_mpi_save(alone, w.stepper, in_folder("one.state")));
+    MUST(!mpm_mpi_close(alone));
+    MPI_Comm_free(&one);
+    MUST(!mpm_state_save_file(w.stepper, in_folder("serial.state")));
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  for (int32_t i = 0; i < 2; ++i) {
+    MUST(!mpm_mpi_load(mpi, w.stepper, in_folder(i ? "serial.state" : "one.state")));
+    MUST(loaded.count == (rank == size - 1));
+  }
+  /* a link stays one, and the mode of the file as it was */
+  if (!rank) MUST(!chmod(in_folder("all.state"), 0640) && !symlink("all.state", in_folder("link")));
+  MPI_Barrier(MPI_COMM_WORLD);
+  MUST(!mpm_mpi_save(mpi, w.stepper, in_folder("link")));
+  struct stat is;
+  MUST(!lstat(in_folder("link"), &is) && S_ISLNK(is.st_mode));
+  MUST(!lstat(in_folder("all.state"), &is) && S_ISREG(is.st_mode) && (is.st_mode & 0777) == 0640);
+  free(piece);
+  destroy(&w);
+}
+
+/* Every byte of header and table matters; and every length. */
+static void test_damage(mpm_mpi *mpi) {
+  world w = {0};
+  create(&w, 1, 0, rank, rank + 1);
+  steps(&w, 1);
+  MUST(!mpm_mpi_save(mpi, w.stepper, in_folder("sound.state")));
+  const uint64_t then = hash_of(&w);
+  steps(&w, 1);
+  const uint64_t now = hash_of(&w);
+  vtk_text sound = vtk_load(in_folder("sound.state"));
+  const int64_t header = 40 + 16 * size;
+  for (int64_t k = 0; k < header + 8; ++k) {
+    const int64_t cut = k < header ? sound.count : k == header ? 0 : sound.count / (k - header + 1) - 1;
+    if (!rank) {
+      FILE *out = fopen(in_folder("damaged.state"), "wb");
+      MUST(out);
+      if (k < header) sound.bytes[k] ^= 1;
+      MUST(fwrite(sound.bytes, 1, (size_t)cut, out) == (size_t)cut && !fclose(out));
+      if (k < header) sound.bytes[k] ^= 1;
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    loaded.count = -1;
+    const mpm_status status = mpm_mpi_load(mpi, w.stepper, in_folder("damaged.state"));
+    MUST(status == MPM_E_FORMAT);
+    /* what has no mark may be a state of one part, which the library looks at */
+    if (k >= 8 && k < header) MUST(loaded.count == -1);
+    MUST(hash_of(&w) == now);
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  vtk_drop(&sound);
+  MUST(!mpm_mpi_load(mpi, w.stepper, in_folder("sound.state")) && hash_of(&w) == then);
+  destroy(&w);
+}
+
+static void put_number(char *to, uint64_t value, int32_t bytes) {
+  for (int32_t i = 0; i < bytes; ++i) to[i] = (char)(value >> 8 * i);
+}
+
+/* A header whose sum is right, and which is not: the number at that place is another one. */
+static void test_forged(mpm_mpi *mpi) {
+  world w = {0};
+  create(&w, 1, 0, rank, rank + 1);
+  steps(&w, 1);
+  MUST(!mpm_mpi_save(mpi, w.stepper, in_folder("sound.state")));
+  const uint64_t now = hash_of(&w);
+  vtk_text sound = vtk_load(in_folder("sound.state"));
+  const uint64_t whole = (uint64_t)sound.count, table = 40 + 16 * (uint64_t)size;
+  const uint64_t first = (table + 63) / 64 * 64;
+  const struct {
+    int64_t place;
+    int32_t bytes;
+    uint64_t value;
+    const char *words;
+  } forged[] = {{8, 4, 2, "the format is 2"},
+                {16, 8, 0, "with 0 pieces"},
+                {16, 8, whole, "pieces"},
+                {24, 8, whole + 1, "the header says"},
+                {32, 8, 0, "the table of pieces is damaged"},
+                {40, 8, 0, "piece 0 is not in the file"},
+                {40, 8, first + 8, "piece 0 is not in the file"},
+                {40, 8, (whole + 63) / 64 * 64, "piece 0 is not in the file"},
+                {48, 8, whole, "piece 0 is not in the file"},
+                {48, 8, UINT64_MAX, "piece 0 is not in the file"},
+                {48, 8, whole - first, size > 1 ? "piece 1 is not in the file" : NULL}};
+  for (size_t i = 0; i < sizeof forged / sizeof *forged; ++i) {
+    if (!forged[i].words) continue;
+    if (!rank) {
+      vtk_text copy = vtk_load(in_folder("sound.state"));
+      put_number(copy.bytes + forged[i].place, forged[i].value, forged[i].bytes);
+      const uint64_t right = mpmx_hash(mpmx_hash(MPMX_HASH, copy.bytes, 32), copy.bytes + 40, table - 40);
+      if (forged[i].place != 32) put_number(copy.bytes + 32, right, 8);
+      FILE *out = fopen(in_folder("forged.state"), "wb");
+      MUST(out && fwrite(copy.bytes, 1, (size_t)copy.count, out) == (size_t)copy.count && !fclose(out));
+      vtk_drop(&copy);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    loaded.count = -1;
+    MUST(mpm_mpi_load(mpi, w.stepper, in_folder("forged.state")) == MPM_E_FORMAT);
+    MUST_SAY(mpm_mpi_last_error(mpi), forged[i].words);
+    MUST(loaded.count == -1 && hash_of(&w) == now);
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  vtk_drop(&sound);
+  destroy(&w);
+}
+
 /* A head that comes in two pieces, cut anywhere, with data that look like text behind it. */
 static void test_head(mpm_mpi *mpi) {
   static const char text[] = "<Piece NumberOfPoints=\"1\">\n"
@@ -323,14 +514,22 @@ static void test_head(mpm_mpi *mpi) {
 
 /* ---- what is refused, and what fails */
 
-/* All the calls that write, in turn. */
-enum { WRITE_SET, WRITE_NODES, FILES };
-static const char *const names[FILES] = {"set.pvtp", "nodes.pvti"};
+/* All the calls that write, in turn; then the one that reads. */
+enum { WRITE_SET, WRITE_NODES, SAVE, LOAD, FILES };
+static const char *const names[FILES] = {"set.pvtp", "nodes.pvti", "all.state", "all.state"};
 
 static mpm_status call(mpm_mpi *mpi, const world *w, int32_t which, const char *path,
                        const mpm_mpi_output *as) {
-  return which == WRITE_SET ? mpm_mpi_write_particles(mpi, w ? w->set : NULL, path, as)
-                            : mpm_mpi_write_grid(mpi, w ? w->stepper : NULL, path, as);
+  switch (which) {
+  case WRITE_SET:
+    return mpm_mpi_write_particles(mpi, w ? w->set : NULL, path, as);
+  case WRITE_NODES:
+    return mpm_mpi_write_grid(mpi, w ? w->stepper : NULL, path, as);
+  case SAVE:
+    return mpm_mpi_save(mpi, w ? w->stepper : NULL, path);
+  default:
+    return mpm_mpi_load(mpi, w ? w->stepper : NULL, path);
+  }
 }
 
 /* The same status and sentence on all, which the last part has caused. */
@@ -355,6 +554,7 @@ static void test_refusals(mpm_mpi *mpi) {
   mpm_mpi_output as = {.struct_size = sizeof as};
   MUST(mpm_mpi_write_particles(NULL, w.set, "x.pvtp", NULL) == MPM_E_ARG);
   MUST(mpm_mpi_write_grid(NULL, w.stepper, "x.pvti", NULL) == MPM_E_ARG);
+  MUST(mpm_mpi_save(NULL, w.stepper, "x") == MPM_E_ARG && mpm_mpi_load(NULL, w.stepper, "x") == MPM_E_ARG);
   for (int32_t which = 0; which < FILES; ++which) {
     const world *none = rank == size - 1 ? NULL : &w;
     MUST(call(mpi, none, which, in_folder(names[which]), NULL) == MPM_E_ARG);
@@ -367,7 +567,7 @@ static void test_refusals(mpm_mpi *mpi) {
     }
     MUST(call(mpi, &w, which, in_folder("nowhere/a.pvtp") + 0, NULL) != MPM_OK);
   }
-  for (int32_t which = 0; which < FILES; ++which) {
+  for (int32_t which = WRITE_SET; which <= WRITE_NODES; ++which) {
     const char *path = in_folder(names[which]);
     MUST(call(mpi, &w, which, in_folder(names[!which]), NULL) == MPM_E_ARG);
     MUST_SAY(mpm_mpi_last_error(mpi), which ? "is to end with .pvti" : "is to end with .pvtp");
@@ -402,6 +602,13 @@ static void test_refusals(mpm_mpi *mpi) {
     MUST(call(mpi, &w, which, in_folder(which ? "nowhere/a.pvti" : "nowhere/a.pvtp"), NULL) == MPM_E_IO);
     MUST_SAY(mpm_mpi_last_error(mpi), "cannot make the folder");
   }
+  MUST(mpm_mpi_load(mpi, w.stepper, in_folder("nowhere")) == MPM_E_IO);
+  MUST_SAY(mpm_mpi_last_error(mpi), "cannot read");
+  MUST(mpm_mpi_save(mpi, w.stepper, in_folder("nowhere/a")) == MPM_E_IO);
+  /* in a staged step no state is saved, on any part */
+  if (rank == size - 1) MUST(!mpm_step_begin(w.stepper, 1e-3));
+  last_refuses(mpi, &w, SAVE, in_folder("all.state"), NULL, MPM_E_STATE, "mpm_state_size: MPM_E_STATE");
+  if (rank == size - 1) MUST(!mpm_step_abort(w.stepper));
   /* fields that only one part has */
   if (!rank) MUST(!mpm_particles_add_field(w.set, "label", MPM_U8, 3));
   const mpm_status status = mpm_mpi_write_particles(mpi, w.set, in_folder("set.pvtp"), NULL);
@@ -417,8 +624,8 @@ static void unchanged(const vtk_text *before, int32_t which) {
     vtk_text after = vtk_load(in_folder(names[which]));
     MUST(after.count == before->count && !memcmp(after.bytes, before->bytes, (size_t)after.count));
     vtk_drop(&after);
-    static const char *const left[] = {"set.pvtp.writing", "nodes.pvti.writing", "set/set_0.vtp.writing",
-                                       "nodes/nodes_0.vti.writing"};
+    static const char *const left[] = {"all.state.writing", "set.pvtp.writing", "nodes.pvti.writing",
+                                       "set/set_0.vtp.writing", "nodes/nodes_0.vti.writing"};
     for (size_t i = 0; i < sizeof left / sizeof *left; ++i) MUST(!exists(in_folder(left[i])));
   }
   MPI_Barrier(MPI_COMM_WORLD);
@@ -429,7 +636,17 @@ static void test_failures(void) {
     faulty call;
     int32_t which;
     mpm_status status;
-  } faults[] = {{F_ALLGATHER, WRITE_NODES, MPM_E_CALLBACK}, {F_COMM_SPLIT, WRITE_SET, MPM_E_CALLBACK}};
+  } faults[] = {{F_FILE_OPEN, SAVE, MPM_E_IO},
+                {F_FILE_WRITE, SAVE, MPM_E_IO},
+                {F_FILE_SYNC, SAVE, MPM_E_IO},
+                {F_FILE_CLOSE, SAVE, MPM_E_IO},
+                {F_FILE_OPEN, LOAD, MPM_E_IO},
+                {F_FILE_READ, LOAD, MPM_E_IO},
+                {F_FILE_CLOSE, LOAD, MPM_E_IO},
+                {F_BCAST, SAVE, MPM_E_CALLBACK},
+                {F_ALLGATHER, SAVE, MPM_E_CALLBACK},
+                {F_ALLGATHER, WRITE_NODES, MPM_E_CALLBACK},
+                {F_COMM_SPLIT, WRITE_SET, MPM_E_CALLBACK}};
   world w = {0};
   create(&w, 3, 0, rank, rank + 1);
   steps(&w, 1);
@@ -440,7 +657,7 @@ static void test_failures(void) {
     MUST(!call(mpi, &w, which, in_folder(names[which]), &by_all));
     vtk_text before = {0};
     if (!rank) before = vtk_load(in_folder(names[which]));
-    steps(&w, 1);
+    if (which < LOAD) steps(&w, 1);
     for (size_t i = 0; i < sizeof faults / sizeof *faults; ++i) {
       /* with one process there is one division, which is there already */
       if (faults[i].which != which || (faults[i].call == F_COMM_SPLIT && size == 1)) continue;
@@ -512,6 +729,9 @@ int main(int argc, char **argv) {
   mpm_mpi *mpi = open_world();
   test_particles(mpi);
   test_grid(mpi);
+  test_state(mpi);
+  test_damage(mpi);
+  test_forged(mpi);
   test_head(mpi);
   test_refusals(mpi);
   MUST(!mpm_mpi_close(mpi));

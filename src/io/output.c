@@ -104,6 +104,15 @@ static mpm_status close_callback(mpmi_output *out) {
                    (long long)out->given);
 }
 
+void mpmi_output_drop(mpmi_output *out) {
+  if (!out->file) {
+    mpmi_free(out->context, out->piece, PIECE);
+    return;
+  }
+  mpmi_replacement_close(out->file, MPMI_STORAGE_FAILED, 0);
+  mpmi_free(out->context, out->file, sizeof *out->file);
+}
+
 mpm_status mpmi_output_close(mpmi_output *out, int32_t durable) {
   if (!out->file) return close_callback(out);
   errno = 0;

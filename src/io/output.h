@@ -45,6 +45,8 @@ void mpmi_output_rewind(mpmi_output *out); /* of a file: what follows is written
 /* Completes the file under its path, or removes what was written: MPM_E_IO. With `durable` it waits for
  * the storage. The host gets what is left: MPM_E_CALLBACK. */
 mpm_status mpmi_output_close(mpmi_output *out, int32_t durable);
+/* Removes what was written, or gives the host no more. */
+void mpmi_output_drop(mpmi_output *out);
 
 /* Fails with MPM_E_IO and the text "cannot <verb> <path>: <text of error>"; with MPM_E_UNSUPPORTED in a build
  * without files. */

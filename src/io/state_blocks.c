@@ -6,10 +6,7 @@
 #include <string.h>
 
 int32_t mpmi_state_is_sorted(const mpm_stepper *s) {
-  if (s->layout.blocks.count == 0) return 0;
-  for (int32_t m = 0; m < s->layout.member_count; ++m)
-    if (s->layout.member[m].set->dirty & (MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE)) return 0;
-  return 1;
+  return !mpmi_layout_is_moved(&s->layout);
 }
 
 static int32_t has_slots(const mpm_stepper *s, int64_t block) {
@@ -39,30 +36,35 @@ void mpmi_state_write_blocks(mpmi_archive *a, const mpm_stepper *s) {
   }
 }
 
-/* Reads the blocks with slots, in the order of the state. They are inserted as provisional blocks and must
- * come out in the same order. */
-static mpm_status read_places(mpmi_archive *a, mpmi_blocks *blocks, uint32_t format, int64_t count) {
-  const mpm_grid *grid = blocks->grid;
-  mpm_status status;
-  for (int64_t i = 0; i < count; ++i) {
-    int64_t saved[4] = {0, 0, 0, 0};
-    int32_t coord[3] = {0, 0, 0}, block = 0;
-    mpmi_archive_words(a, saved, (format > 2 ? 4 : 3) * (int64_t)sizeof *saved);
-    if (a->status) return a->status;
-    if (saved[3] < 0 || saved[3] >= MPMI_MAX_BODIES)
-      return mpmi_archive_damaged(a, "the body of a block makes no sense");
-    for (int32_t k = 0; k < grid->dim; ++k) {
-      if (saved[k] < 0 || saved[k] > grid->desc.cells[k] / blocks->edge)
-        return mpmi_archive_damaged(a, "a block lies outside the grid");
-      coord[k] = (int32_t)saved[k];
-    }
-    if ((status = mpmi_blocks_insert(blocks, (int32_t)saved[3], coord, &block))) return status;
-    if (block != i) return mpmi_archive_damaged(a, "a block stands there twice");
+/* ---- reading ------------------------------------------------------------------------------------------- */
+static size_t start_bytes(int32_t sets, int64_t count) {
+  return mpmi_bytes(sets * (count + 1) + 1, sizeof(int64_t));
+}
+
+mpm_status mpmi_state_blocks_make(mpm_context *c, int32_t sets, int64_t count, mpmi_state_blocks *blocks) {
+  *blocks = (mpmi_state_blocks){.count = count};
+  blocks->place = mpmi_alloc(c, mpmi_bytes(count + 1, sizeof *blocks->place));
+  if (blocks->place) blocks->start = mpmi_alloc_zeroed(c, start_bytes(sets, count));
+  return blocks->start ? MPM_OK : MPM_E_NOMEM;
+}
+
+void mpmi_state_blocks_free(mpm_context *c, int32_t sets, mpmi_state_blocks *blocks) {
+  mpmi_free(c, blocks->place, mpmi_bytes(blocks->count + 1, sizeof *blocks->place));
+  mpmi_free(c, blocks->start, start_bytes(sets, blocks->count));
+  *blocks = (mpmi_state_blocks){0};
+}
+
+static mpm_status read_place(mpmi_archive *a, const mpm_grid *grid, uint32_t format, int64_t *place) {
+  memset(place, 0, 4 * sizeof *place);
+  mpmi_archive_words(a, place, (format > 2 ? 4 : 3) * (int64_t)sizeof *place);
+  if (a->status) return a->status;
+  if (place[3] < 0 || place[3] >= MPMI_MAX_BODIES)
+    return mpmi_archive_damaged(a, "the body of a block makes no sense");
+  for (int32_t k = 0; k < 3; ++k) {
+    if (k >= grid->dim) place[k] = 0;
+    if (place[k] < 0 || place[k] > grid->desc.cells[k] / MPMI_BLOCK_EDGE(grid->dim))
+      return mpmi_archive_damaged(a, "a block lies outside the grid");
   }
-  if ((status = mpmi_blocks_order(blocks))) return status;
-  for (int64_t i = 1; i < count; ++i)
-    if (blocks->order[i - 1] >= blocks->order[i])
-      return mpmi_archive_damaged(a, "its blocks are out of order");
   return MPM_OK;
 }
 
@@ -83,31 +85,64 @@ static int32_t starts_are_good(const unsigned char *starts, int64_t count, int64
   return before == slots;
 }
 
-static mpm_status read_starts(mpmi_archive *a, const mpmi_blocks *blocks, int64_t count,
-                              const mpmi_state_set_numbers *set, mpmi_arrangement *to) {
-  const unsigned char *starts = mpmi_archive_take(a, (count + 1) * (int64_t)sizeof(int64_t));
-  if (!starts) return a->status;
-  if (!starts_are_good(starts, count, set->slots))
-    return mpmi_archive_damaged(a, "the slots of a set make no sense");
-  mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
-  if (status) return status;
-  int64_t i = 0;
-  for (int64_t b = 0; b <= blocks->count; ++b) { /* blocks that only the halo brings have no slots */
-    to->start[b] = saved_start(starts, i);
-    if (i == count || (int64_t)blocks->order[i] != b) continue;
-    ++i;
-    if (blocks->body[b] != set->body && saved_start(starts, i) != to->start[b])
-      return mpmi_archive_damaged(a, "a set has slots in blocks of another body");
+mpm_status mpmi_state_read_blocks(mpmi_archive *a, const mpm_stepper *s, uint32_t format,
+                                  const mpmi_state_head *head, mpmi_state_blocks *to, int64_t first,
+                                  const int64_t *slots) {
+  const int64_t count = head->numbers.blocks;
+  for (int64_t i = 0; i < count; ++i) {
+    int64_t place[4];
+    const mpm_status status = read_place(a, s->grid, format, place);
+    if (status) return status;
+    if (to) memcpy(to->place[first + i], place, sizeof place);
+  }
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    const unsigned char *starts = mpmi_archive_take(a, (count + 1) * (int64_t)sizeof(int64_t));
+    if (!starts) return a->status;
+    if (!starts_are_good(starts, count, head->set[m].numbers.slots))
+      return mpmi_archive_damaged(a, "the slots of a set make no sense");
+    for (int64_t i = 0; to && i <= count; ++i)
+      mpmi_state_starts(to, m)[first + i] = slots[m] + saved_start(starts, i);
   }
   return MPM_OK;
 }
 
-mpm_status mpmi_state_read_blocks(mpmi_archive *a, mpm_stepper *s, uint32_t format, int64_t count,
-                                  const mpmi_state_set *set) {
+static mpm_status refuse(const mpm_stepper *s, const char *what) {
+  return mpmi_fail(s->context, MPM_E_FORMAT, "the state is damaged: %s", what);
+}
+
+mpm_status mpmi_state_insert_blocks(mpm_stepper *s, const mpmi_state_blocks *from) {
   mpmi_blocks *blocks = &s->layout.next_blocks;
+  int32_t in_order = 1;
   mpmi_blocks_clear(blocks);
-  mpm_status status = read_places(a, blocks, format, count);
-  for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
-    status = read_starts(a, blocks, count, &set[m].numbers, &s->layout.member[m].next);
-  return status;
+  for (int64_t i = 0; i < from->count; ++i) {
+    const int64_t *place = from->place[i];
+    const int32_t coord[3] = {(int32_t)place[0], (int32_t)place[1], (int32_t)place[2]};
+    int32_t block;
+    const mpm_status status = mpmi_blocks_insert(blocks, (int32_t)place[3], coord, &block);
+    if (status) return status;
+    if (block != i) return refuse(s, "a block stands there twice");
+    if (i)
+      in_order &= blocks->key[i] > blocks->key[i - 1] ||
+                  (blocks->key[i] == blocks->key[i - 1] && blocks->body[i] > blocks->body[i - 1]);
+  }
+  return in_order ? MPM_OK : refuse(s, "its blocks are out of order");
+}
+
+mpm_status mpmi_state_arrange(mpm_stepper *s, const mpmi_state_blocks *from, const mpmi_state_set *set) {
+  const mpmi_blocks *blocks = &s->layout.next_blocks;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    mpmi_arrangement *to = &s->layout.member[m].next;
+    const int64_t *start = mpmi_state_starts(from, m);
+    const mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
+    if (status) return status;
+    int64_t i = 0;
+    for (int64_t b = 0; b <= blocks->count; ++b) { /* blocks that only the halo brings have no slots */
+      to->start[b] = start[i];
+      if (i == from->count || (int64_t)blocks->order[i] != b) continue;
+      ++i;
+      if (blocks->body[b] != set[m].numbers.body && start[i] != to->start[b])
+        return refuse(s, "a set has slots in blocks of another body");
+    }
+  }
+  return MPM_OK;
 }

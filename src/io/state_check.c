@@ -82,16 +82,18 @@ static void check_images(mpmi_archive *a, const mpm_particles *fresh) {
 
 /* Every stencil, that of a hole too, must lie in the tile of its block. The function that the kernels use
  * says where it lies. */
-static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_blocks *blocks,
+static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_state_blocks *blocks,
                         const int64_t *start) {
   const mpm_grid *grid = fresh->grid;
   const mpmi_weights_fn weights = mpmi_kernels_of(fresh->context->isa)->weights[grid->family][1];
-  const int32_t last = blocks->edge + 2 * MPMI_RING - 1;
+  const int32_t last = MPMI_BLOCK_EDGE(grid->dim) + 2 * MPMI_RING - 1;
   mpmi_weights W;
   mpmi_axis axis[3];
   int64_t astray = 0;
   for (int64_t b = 0; b < blocks->count; ++b) {
-    mpmi_block_axes(grid, blocks->coord[b], axis);
+    const int64_t *place = blocks->place[b];
+    const int32_t coord[3] = {(int32_t)place[0], (int32_t)place[1], (int32_t)place[2]};
+    mpmi_block_axes(grid, coord, axis);
     for (int64_t s = start[b]; s < start[b + 1]; s += MPMI_CHUNK)
       for (int32_t k = 0; k < grid->dim; ++k) {
         const mpmi_points points = {.x = {mpmi_places(fresh, 0) + k * fresh->ld}};
@@ -102,7 +104,7 @@ static void check_tiles(mpmi_archive *a, const mpm_particles *fresh, const mpmi_
   if (astray) mpmi_archive_damaged(a, "a particle is far from its block");
 }
 
-void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_blocks *blocks,
+void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_state_blocks *blocks,
                           const int64_t *start) {
   if (fresh->slots == 0) return;
   static const struct {

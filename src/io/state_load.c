@@ -1,73 +1,81 @@
-/* Loading reads everything into new storage and checks it before anything of the stepper changes. */
+/* Loading reads everything into new storage and checks it before anything of the stepper changes. What a part
+ * has of a state may be several pieces, which are read twice: their heads, which say what there is, and then
+ * all of them. */
 #include "io/state.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A state that is being loaded. */
-typedef struct loading {
-  mpmi_archive archive;
-  uint32_t format;
-  mpm_stepper *stepper;
-  mpmi_state_numbers numbers;
-  mpmi_state_set *set; /* [sets] */
-  mpmi_contact_rules rules;
-  mpmi_pair_records pairs;
-  mpmi_state_obstacle *obstacle; /* [obstacles] */
-  mpmi_state_surface *surface;   /* [surfaces] */
-  int64_t slots;                 /* slots of all sets */
-} loading;
-
-mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header *header, int64_t bytes) {
-  if (bytes < (int64_t)sizeof *header)
-    return mpmi_fail(context, MPM_E_FORMAT, "%lld bytes are too few for a state", (long long)bytes);
-  if (memcmp(header->magic, MPMI_STATE_MAGIC, sizeof header->magic) != 0)
-    return mpmi_fail(context, MPM_E_FORMAT, "this is not a state of libmpm");
-  if (header->byte_order != MPMI_STATE_BYTE_ORDER)
-    return mpmi_fail(context, MPM_E_FORMAT,
-                     "the state has the byte order of a machine on which 0.1.0 saved it, or is damaged");
-  if (header->format < MPMI_STATE_FIRST_FORMAT || header->format > MPMI_STATE_FORMAT)
-    return mpmi_fail(context, MPM_E_FORMAT, "the state has format %u: this library knows formats %d to %d",
-                     (unsigned)header->format, (int)MPMI_STATE_FIRST_FORMAT, (int)MPMI_STATE_FORMAT);
-  if (header->bytes != bytes)
-    return mpmi_fail(context, MPM_E_FORMAT, "the state has %lld bytes, of which there are %lld",
-                     (long long)header->bytes, (long long)bytes);
-  return MPM_OK;
-}
-
-static mpm_status check_checksum(mpm_context *context, const mpmi_state_header *header,
-                                 const unsigned char *body) {
-  const int64_t bytes = header->bytes - (int64_t)sizeof *header;
-  mpmi_checksum sum;
-  mpmi_checksum_begin(&sum);
-  if (bytes % 8 == 0) mpmi_checksum_add(&sum, body, bytes);
-  if (bytes % 8 == 0 && mpmi_checksum_end(&sum) == header->checksum) return MPM_OK;
-  return mpmi_fail(context, MPM_E_FORMAT, "the state is damaged: its checksum is wrong");
-}
-
-static mpm_status check_idle(const mpm_stepper *s) {
-  if (s->step.phase != MPMI_IDLE)
-    return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before loading");
-  if (s->mapped)
-    return mpmi_fail(s->context, MPM_E_STATE, "%d views of nodal fields are out: release them before loading",
-                     (int)s->mapped);
-  for (int32_t m = 0; m < s->layout.member_count; ++m)
-    if (s->layout.member[m].set->mapped)
-      return mpmi_fail(s->context, MPM_E_STATE, "%d views of set %d are out: release them before loading",
-                       (int)s->layout.member[m].set->mapped, (int)m);
-  return MPM_OK;
-}
-
-/* Starts with a copy of the set that has no storage. */
-static void start_set(mpmi_state_set *to, const mpm_particles *set) {
-  mpm_particles *fresh = &to->fresh;
+/* ---- memory -------------------------------------------------------------------------------------------- */
+/* Starts with a copy of the set that has no storage, and no fields but those that the state will have. */
+static void start_set(mpm_particles *fresh, const mpm_particles *set) {
   *fresh = *set;
-  fresh->count = fresh->slots = fresh->ld = 0;
+  fresh->count = fresh->slots = fresh->ld = fresh->next_id = 0;
+  fresh->dirty = 0;
+  fresh->mass_max = 0.0;
   fresh->index = NULL;
   fresh->index_capacity = 0;
-  for (int32_t f = 0; f < fresh->field_count; ++f) fresh->field[f].data[0] = fresh->field[f].data[1] = NULL;
+  for (int32_t f = 0; f < fresh->field_count; ++f) {
+    fresh->field[f].data[0] = fresh->field[f].data[1] = NULL;
+    fresh->field[f].present = 0;
+  }
 }
 
+mpm_status mpmi_state_load_begin(mpmi_state_loading *l) {
+  const mpm_stepper *s = l->stepper;
+  mpm_context *c = s->context;
+  const int64_t sets = s->layout.member_count;
+  l->here.set = mpmi_alloc_zeroed(c, mpmi_bytes(sets, sizeof *l->here.set));
+  if (l->here.set) l->all.set = mpmi_alloc_zeroed(c, mpmi_bytes(sets, sizeof *l->all.set));
+  if (l->all.set)
+    l->obstacle = mpmi_alloc_zeroed(c, mpmi_bytes(s->settings.obstacles.count, sizeof *l->obstacle));
+  if (l->obstacle)
+    l->surface = mpmi_alloc_zeroed(c, mpmi_bytes(s->settings.surfaces.count, sizeof *l->surface));
+  if (l->surface) l->slots = mpmi_alloc_zeroed(c, mpmi_bytes(sets, sizeof *l->slots));
+  if (l->slots) l->fresh = mpmi_alloc_zeroed(c, mpmi_bytes(sets, sizeof *l->fresh));
+  if (!l->fresh) return MPM_E_NOMEM;
+  for (int32_t m = 0; m < sets; ++m) start_set(&l->fresh[m], s->layout.member[m].set);
+  return MPM_OK;
+}
+
+/* Forgets what a head has given. */
+static void drop_common(mpmi_state_loading *l) {
+  mpm_context *c = l->stepper->context;
+  mpmi_contact_rules_free(&l->rules, c);
+  MPMI_FREE_ARRAY(c, l->pairs.record, l->pairs.capacity);
+  l->pairs = (mpmi_pair_records){0};
+  for (int64_t i = 0; i < l->stepper->settings.surfaces.count && l->surface; ++i) {
+    mpmi_markers_free(c, &l->surface[i].markers);
+    l->surface[i] = (mpmi_state_surface){0};
+  }
+}
+
+void mpmi_state_drop_storage(mpm_particles *fresh) {
+  for (int32_t f = 0; f < fresh->field_count; ++f) {
+    if (!fresh->field[f].present) continue;
+    mpmi_field_make_absent(fresh, f);
+    fresh->field[f].present = 1;
+  }
+  fresh->ld = fresh->slots = fresh->count = 0;
+}
+
+void mpmi_state_load_end(mpmi_state_loading *l) {
+  const mpm_stepper *s = l->stepper;
+  mpm_context *c = s->context;
+  const int32_t sets = s->layout.member_count;
+  drop_common(l);
+  for (int32_t m = 0; m < sets && l->fresh; ++m) mpmi_state_drop_storage(&l->fresh[m]);
+  mpmi_state_blocks_free(c, sets, &l->blocks);
+  mpmi_parts_destroy(l->parts);
+  MPMI_FREE_ARRAY(c, l->fresh, sets);
+  MPMI_FREE_ARRAY(c, l->slots, sets);
+  MPMI_FREE_ARRAY(c, l->surface, s->settings.surfaces.count);
+  MPMI_FREE_ARRAY(c, l->obstacle, s->settings.obstacles.count);
+  MPMI_FREE_ARRAY(c, l->all.set, sets);
+  MPMI_FREE_ARRAY(c, l->here.set, sets);
+}
+
+/* ---- heads --------------------------------------------------------------------------------------------- */
 static int32_t is_magnitude(double x) {
   return isfinite(x) && x >= 0.0;
 }
@@ -85,10 +93,9 @@ static int32_t heat_makes_sense(const mpmi_heat_history *heat) {
   return sense;
 }
 
-static void read_numbers(loading *l) {
-  mpmi_archive *a = &l->archive;
-  mpmi_state_numbers *n = &l->numbers;
-  mpmi_state_archive_numbers(a, l->format, n);
+static void read_numbers(mpmi_archive *a, uint32_t format, int32_t sets, mpmi_state_head *head) {
+  mpmi_state_numbers *n = &head->numbers;
+  mpmi_state_archive_numbers(a, format, n);
   if (a->status) return;
   if (!isfinite(n->t) || !is_count(n->step) || !is_count(n->resorts) || !is_count(n->removed) ||
       n->blocks < -1 || !is_magnitude(n->previous_dt) || !is_magnitude(n->controller_dt) ||
@@ -96,90 +103,184 @@ static void read_numbers(loading *l) {
     mpmi_archive_damaged(a, "its numbers make no sense");
   const int64_t unsorted = MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE,
                 flags = MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION | (n->blocks < 0 ? unsorted : 0);
-  for (int32_t m = 0; m < l->stepper->layout.member_count && !a->status; ++m) {
-    mpmi_state_set_numbers *of = &l->set[m].numbers;
-    mpmi_state_archive_set_numbers(a, l->format, of);
+  for (int32_t m = 0; m < sets && !a->status; ++m) {
+    mpmi_state_set_numbers *of = &head->set[m].numbers;
+    mpmi_state_archive_set_numbers(a, format, of);
     if (a->status) return;
     if (of->slots < 0 || of->slots > MPMI_MAX_SLOTS || of->slots % MPMI_PAD || of->count < 0 ||
         of->count > of->slots || of->next_id < 0 || of->body < 0 || of->body >= MPMI_MAX_BODIES ||
         of->dirty & ~flags || !is_magnitude(of->mass_max) || !is_count(of->adaption.splits) ||
         !is_count(of->adaption.added) || !is_count(of->adaption.merges))
       mpmi_archive_damaged(a, "the numbers of a set make no sense");
-    else
-      l->slots += of->slots;
   }
 }
 
-static mpm_status read_blocks(loading *l) {
-  /* Each block takes at least one group of slots. */
-  if (l->numbers.blocks > l->slots / MPMI_PAD)
-    mpmi_archive_damaged(&l->archive, "it has blocks without slots");
-  if (l->archive.status) return l->archive.status;
-  return mpmi_state_read_blocks(&l->archive, l->stepper, l->format, l->numbers.blocks, l->set);
+static mpm_status refuse_old(const mpm_stepper *s, const char *what, int64_t here) {
+  return mpmi_fail(s->context, MPM_E_FORMAT,
+                   "the state is of an unlike setup: number of %s is 0 there, %lld here", what,
+                   (long long)here);
 }
 
-static int64_t bytes_per_slot(const mpm_particles *set) {
-  int64_t bytes = 0;
-  for (int32_t f = 0; f < set->field_count; ++f)
-    if (set->field[f].present)
-      bytes += set->field[f].components * (int64_t)mpmi_type_size(set->field[f].type);
-  return bytes;
-}
-
-static mpm_status read_set(loading *l, int32_t m) {
-  mpmi_archive *a = &l->archive;
-  mpmi_state_set *from = &l->set[m];
-  mpm_particles *fresh = &from->fresh;
-  const int64_t slots = from->numbers.slots;
-  if (slots > (a->size - a->at) / bytes_per_slot(fresh)) mpmi_archive_damaged(a, "it ends too early");
-  mpm_status status = a->status ? a->status : mpmi_particles_reserve(fresh, slots);
-  if (status) return status;
-  for (int32_t i = 0; i < from->field_count && slots > 0; ++i) {
-    const mpmi_field *field = &fresh->field[from->field[i]];
-    const int64_t size = (int64_t)mpmi_type_size(field->type);
-    for (int32_t c = 0; c < field->components && field->present; ++c)
-      mpmi_state_archive_row(a, field->type, (char *)field->data[0] + c * fresh->ld * size, slots * size);
-  }
-  fresh->slots = slots;
-  fresh->count = from->numbers.count;
-  fresh->next_id = from->numbers.next_id;
-  fresh->mass_max = from->numbers.mass_max;
-  fresh->dirty = (uint32_t)from->numbers.dirty | (l->numbers.blocks < 0 ? (uint32_t)MPMI_DIRTY_PLACE : 0);
-  if (a->status) return a->status;
-  const int32_t sorted = l->numbers.blocks >= 0;
-  snprintf(a->where, sizeof a->where, "set %d: ", (int)m);
-  mpmi_state_check_set(a, fresh, sorted ? &l->stepper->layout.next_blocks : NULL,
-                       sorted ? l->stepper->layout.member[m].next.start : NULL);
-  a->where[0] = '\0';
-  return a->status;
-}
-
-static mpm_status read_state(loading *l) {
-  mpmi_archive *a = &l->archive;
-  mpm_stepper *s = l->stepper;
-  mpmi_state_setup(a, s, l->format, l->set);
-  read_numbers(l);
+/* Reads what stands before the blocks. */
+static mpm_status read_head(mpmi_state_loading *l, const mpmi_state_piece *piece, mpmi_archive *a,
+                            mpmi_state_head *head) {
+  const mpm_stepper *s = l->stepper;
+  drop_common(l);
+  memset(&head->numbers, 0, sizeof head->numbers);
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    memset(&head->set[m].numbers, 0, sizeof head->set[m].numbers);
+  mpmi_archive_begin(a, s->context, MPMI_FROM_MEMORY);
+  a->from = piece->body;
+  a->size = piece->bytes;
+  mpmi_state_setup(a, s, piece->format, head->set);
+  if (!a->status) read_numbers(a, piece->format, s->layout.member_count, head);
   mpm_status status = a->status;
-  if (!status && l->format > 2) status = mpmi_state_read_obstacles(a, s, l->obstacle);
-  if (!status && l->format > 2) status = mpmi_state_read_contact(a, s, &l->rules, &l->pairs);
-  if (!status && l->format > 2) status = mpmi_state_read_surfaces(a, s, l->surface);
-  if (!status && l->format <= 2 && s->settings.surfaces.count)
-    status = mpmi_fail(s->context, MPM_E_FORMAT,
-                       "the state is of an unlike setup: number of surfaces is 0 there, %lld here",
-                       (long long)s->settings.surfaces.count);
-  if (!status && l->format <= 2 && s->settings.obstacles.count)
-    status = mpmi_fail(s->context, MPM_E_FORMAT,
-                       "the state is of an unlike setup: number of obstacles is 0 there, %lld here",
-                       (long long)s->settings.obstacles.count);
-  if (!status && l->numbers.blocks >= 0) status = read_blocks(l);
-  for (int32_t m = 0; m < s->layout.member_count && !status; ++m) status = read_set(l, m);
-  if (!status && a->at != a->size) {
-    mpmi_archive_damaged(a, "it is longer than its contents");
-    status = a->status;
+  if (piece->format > 2) {
+    if (!status) status = mpmi_state_read_obstacles(a, s, l->obstacle);
+    if (!status) status = mpmi_state_read_contact(a, s, &l->rules, &l->pairs);
+    if (!status) status = mpmi_state_read_surfaces(a, s, l->surface);
+  } else if (!status && s->settings.surfaces.count) {
+    status = refuse_old(s, "surfaces", s->settings.surfaces.count);
+  } else if (!status && s->settings.obstacles.count) {
+    status = refuse_old(s, "obstacles", s->settings.obstacles.count);
   }
   return status;
 }
 
+static int32_t has_field(const mpmi_state_set *of, int32_t f) {
+  return (of->present >> f & 1) != 0;
+}
+
+static int64_t bytes_per_slot(const mpm_particles *set, const mpmi_state_set *of) {
+  int64_t bytes = 0;
+  for (int32_t f = 0; f < set->field_count; ++f)
+    if (has_field(of, f)) bytes += set->field[f].components * (int64_t)mpmi_type_size(set->field[f].type);
+  return bytes;
+}
+
+/* Puts the numbers of a set in a piece to those of the others. */
+static void join_set(mpm_particles *fresh, const mpmi_state_set *of) {
+  const mpmi_state_set_numbers *n = &of->numbers;
+  for (int32_t f = 0; f < fresh->field_count; ++f) fresh->field[f].present |= has_field(of, f);
+  if (n->next_id > fresh->next_id) fresh->next_id = n->next_id;
+  fresh->mass_max = fmax(fresh->mass_max, n->mass_max);
+  fresh->dirty |= (uint32_t)n->dirty;
+}
+
+/* Looks whether what follows the head may be there, and adds it up. */
+static mpm_status measure_piece(mpmi_state_loading *l, mpmi_archive *a) {
+  const mpm_stepper *s = l->stepper;
+  int64_t slots = 0, left = a->size - a->at;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    const mpmi_state_set *of = &l->here.set[m];
+    const int64_t each = bytes_per_slot(&l->fresh[m], of);
+    if (of->numbers.slots > left / each) return mpmi_archive_damaged(a, "it ends too early");
+    left -= of->numbers.slots * each;
+    slots += of->numbers.slots;
+    l->fresh[m].count += of->numbers.count;
+    l->slots[m] += of->numbers.slots;
+    join_set(&l->fresh[m], of);
+  }
+  /* each block takes at least one group of slots */
+  if (l->here.numbers.blocks > slots / MPMI_PAD)
+    return mpmi_archive_damaged(a, "it has blocks without slots");
+  l->lacks_sums |= !l->here.numbers.energies_valid;
+  if (l->here.numbers.blocks < 0)
+    l->is_unsorted = 1;
+  else
+    l->block_count += l->here.numbers.blocks;
+  return MPM_OK;
+}
+
+/* The text says which of several pieces a part means. */
+static mpm_status of_piece(const mpmi_state_loading *l, int32_t i, mpm_status status) {
+  mpm_context *c = l->stepper->context;
+  return status && l->tells ? mpmi_fail(c, status, "piece[%d]: %s", (int)i, mpm_last_error(c)) : status;
+}
+
+mpm_status mpmi_state_measure(mpmi_state_loading *l) {
+  for (int32_t i = 0; i < l->count; ++i) {
+    mpmi_archive a;
+    mpm_status status = read_head(l, &l->piece[i], &a, &l->here);
+    if (!status && l->piece[i].end.number == 0) l->head_bytes = a.at;
+    if (!status) status = measure_piece(l, &a);
+    if (status) return of_piece(l, i, status);
+  }
+  return MPM_OK;
+}
+
+mpm_status mpmi_state_read_all(mpmi_state_loading *l, const mpmi_state_piece *first) {
+  mpmi_archive a;
+  const mpm_status status = read_head(l, first, &a, &l->all);
+  if (status) return status;
+  l->format = first->format;
+  for (int32_t m = 0; m < l->stepper->layout.member_count; ++m) join_set(&l->fresh[m], &l->all.set[m]);
+  return MPM_OK;
+}
+
+/* ---- what follows them --------------------------------------------------------------------------------- */
+/* Reads what a piece has of a set, behind what there is. */
+static void read_set(mpmi_state_loading *l, int32_t m, mpmi_archive *a) {
+  const mpmi_state_set *from = &l->here.set[m];
+  mpm_particles *fresh = &l->fresh[m];
+  const int64_t first = fresh->slots, slots = from->numbers.slots;
+  for (int32_t i = 0; i < from->field_count && slots > 0; ++i) {
+    const mpmi_field *field = &fresh->field[from->field[i]];
+    const int64_t size = (int64_t)mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components && has_field(from, from->field[i]); ++c)
+      mpmi_state_archive_row(a, field->type, (char *)field->data[0] + (c * fresh->ld + first) * size,
+                             slots * size);
+  }
+  if (a->status) return;
+  for (int32_t f = 0; f < fresh->field_count && slots > 0; ++f)
+    if (fresh->field[f].present && !has_field(from, f))
+      mpmi_field_write_absent(fresh, f, first, first + slots);
+  fresh->slots += slots;
+}
+
+static mpm_status read_piece(mpmi_state_loading *l, const mpmi_state_piece *piece, int64_t *blocks) {
+  const mpm_stepper *s = l->stepper;
+  mpmi_archive a;
+  mpm_status status = read_head(l, piece, &a, &l->here);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) l->slots[m] = l->fresh[m].slots;
+  if (!status && l->here.numbers.blocks >= 0) {
+    status = mpmi_state_read_blocks(&a, s, piece->format, &l->here, l->is_unsorted ? NULL : &l->blocks,
+                                    *blocks, l->slots);
+    *blocks += l->here.numbers.blocks;
+  }
+  if (status) return status;
+  for (int32_t m = 0; m < s->layout.member_count && !a.status; ++m) read_set(l, m, &a);
+  if (!a.status && a.at != a.size) mpmi_archive_damaged(&a, "it is longer than its contents");
+  return a.status;
+}
+
+static mpm_status check_sets(mpmi_state_loading *l) {
+  mpmi_archive a;
+  mpmi_archive_begin(&a, l->stepper->context, MPMI_FROM_MEMORY);
+  for (int32_t m = 0; m < l->stepper->layout.member_count && !a.status; ++m) {
+    snprintf(a.where, sizeof a.where, "set %d: ", (int)m);
+    mpmi_state_check_set(&a, &l->fresh[m], l->is_unsorted ? NULL : &l->blocks,
+                         l->is_unsorted ? NULL : mpmi_state_starts(&l->blocks, m));
+  }
+  return a.status;
+}
+
+mpm_status mpmi_state_read_pieces(mpmi_state_loading *l) {
+  const int32_t sets = l->stepper->layout.member_count;
+  mpm_status status = MPM_OK;
+  int64_t blocks = 0;
+  for (int32_t m = 0; m < sets && !status; ++m) status = mpmi_particles_reserve(&l->fresh[m], l->slots[m]);
+  if (!status && !l->is_unsorted)
+    status = mpmi_state_blocks_make(l->stepper->context, sets, l->block_count, &l->blocks);
+  for (int32_t i = 0; i < l->count && !status; ++i)
+    status = of_piece(l, i, read_piece(l, &l->piece[i], &blocks));
+  if (status) return status;
+  for (int32_t m = 0; m < sets; ++m)
+    if (l->is_unsorted) l->fresh[m].dirty |= MPMI_DIRTY_PLACE;
+  return check_sets(l);
+}
+
+/* ---- taking over --------------------------------------------------------------------------------------- */
 /* Exchanges the storage, so that the old one is freed where the new one came from. */
 static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
   for (int32_t f = 0; f < set->field_count; ++f) {
@@ -200,8 +301,7 @@ static void exchange_storage(mpm_particles *set, mpm_particles *fresh) {
   mpmi_index_drop(set);
 }
 
-/* Refuses bodies of the state that this stepper does not offer, with its rules. */
-static mpm_status check_bodies(loading *l) {
+mpm_status mpmi_state_check_bodies(mpmi_state_loading *l) {
   mpm_stepper *s = l->stepper;
   const mpmi_contact_rules rules = s->settings.contact;
   mpm_status status = MPM_OK;
@@ -209,28 +309,44 @@ static mpm_status check_bodies(loading *l) {
     if (l->format > 2) s->settings.contact = swap ? rules : l->rules;
     for (int32_t m = 0; m < s->layout.member_count; ++m) {
       const int32_t body = s->layout.member[m].body;
-      s->layout.member[m].body = (int32_t)l->set[m].numbers.body;
-      l->set[m].numbers.body = body;
+      s->layout.member[m].body = (int32_t)l->all.set[m].numbers.body;
+      l->all.set[m].numbers.body = body;
     }
     if (!swap) status = mpmi_check_bodies(s, &s->settings.desc, -1);
   }
   return status;
 }
 
-/* Takes the loaded state over, which cannot fail. */
-static void take_over(loading *l) {
+static void take_sets(mpmi_state_loading *l) {
   mpm_stepper *s = l->stepper;
-  const mpmi_state_numbers *n = &l->numbers;
   for (int32_t m = 0; m < s->layout.member_count; ++m) {
-    exchange_storage(s->layout.member[m].set, &l->set[m].fresh);
-    mpmi_member *member = &s->layout.member[m];
-    member->body = (int32_t)l->set[m].numbers.body;
-    s->adaption[m].sums = l->set[m].numbers.adaption;
+    const mpmi_state_set_numbers *n = &l->all.set[m].numbers;
+    exchange_storage(s->layout.member[m].set, &l->fresh[m]);
+    s->layout.member[m].body = (int32_t)n->body;
+    s->adaption[m].sums = n->adaption;
     mpmi_reaction *reaction = &s->history.reaction[m];
-    memcpy(reaction->impulse, l->set[m].numbers.reaction, sizeof reaction->impulse);
-    memcpy(reaction->impulse_total, l->set[m].numbers.impulse_total, sizeof reaction->impulse_total);
+    memcpy(reaction->impulse, n->reaction, sizeof reaction->impulse);
+    memcpy(reaction->impulse_total, n->impulse_total, sizeof reaction->impulse_total);
   }
-  if (n->blocks < 0) mpmi_blocks_clear(&s->layout.blocks);
+}
+
+/* The layout, and how it is shared out. */
+static void take_layout(mpmi_state_loading *l) {
+  mpm_stepper *s = l->stepper;
+  if (l->is_unsorted)
+    mpmi_blocks_clear(&s->layout.blocks);
+  else
+    mpmi_layout_adopt(&s->layout, &s->settings);
+  if (!s->layout.parts) return;
+  if (l->parts) mpmi_parts_replace(&s->layout.parts, &l->parts);
+  s->layout.parts->is_stale = l->is_unsorted;
+}
+
+void mpmi_state_take_over(mpmi_state_loading *l) {
+  mpm_stepper *s = l->stepper;
+  const mpmi_state_numbers *n = &l->all.numbers;
+  take_layout(l);
+  take_sets(l);
   s->nodes.shown = -1;
   s->history.t = n->t;
   s->history.previous_dt = n->previous_dt;
@@ -241,7 +357,8 @@ static void take_over(loading *l) {
   s->layout.sorts = n->resorts;
   s->history.removed = n->removed;
   /* of format 2 the energy of the affine part is not known */
-  s->history.has_sums = n->energies_valid && (l->format > 2 || !mpmi_is_affine(&s->settings));
+  s->history.has_sums =
+      n->energies_valid && !l->lacks_sums && (l->format > 2 || !mpmi_is_affine(&s->settings));
   s->history.sums = n->sums;
   s->history.has_reactions = n->has_reactions != 0;
   memcpy(s->history.impulse_by_face, n->impulse_by_face, sizeof n->impulse_by_face);
@@ -258,57 +375,4 @@ static void take_over(loading *l) {
   }
   s->history.pairs = l->pairs;
   l->pairs = pairs;
-}
-
-mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
-  mpmi_state_header header;
-  memset(&header, 0, sizeof header);
-  memcpy(&header, buffer, bytes < (int64_t)sizeof header ? (size_t)bytes : sizeof header);
-  header = mpmi_state_turn_header(header);
-  mpm_status status = check_idle(s);
-  if (!status) status = mpmi_state_is_whole(s);
-  if (!status) status = mpmi_state_check_header(s->context, &header, bytes);
-  if (status) return status;
-  const unsigned char *body = (const unsigned char *)buffer + sizeof header;
-  if ((status = check_checksum(s->context, &header, body))) return status;
-  loading l = {.stepper = s, .format = header.format};
-  const size_t set_bytes = mpmi_bytes(s->layout.member_count, sizeof *l.set);
-  l.set = mpmi_alloc_zeroed(s->context, set_bytes);
-  if (!l.set) return MPM_E_NOMEM;
-  const int64_t obstacles = s->settings.obstacles.count;
-  const int64_t surfaces = s->settings.surfaces.count;
-  l.obstacle = mpmi_alloc_zeroed(s->context, mpmi_bytes(obstacles, sizeof *l.obstacle));
-  if (l.obstacle) l.surface = mpmi_alloc_zeroed(s->context, mpmi_bytes(surfaces, sizeof *l.surface));
-  if (!l.surface) {
-    MPMI_FREE_ARRAY(s->context, l.obstacle, obstacles);
-    mpmi_free(s->context, l.set, set_bytes);
-    return MPM_E_NOMEM;
-  }
-  for (int32_t m = 0; m < s->layout.member_count; ++m) start_set(&l.set[m], s->layout.member[m].set);
-  mpmi_archive_begin(&l.archive, s->context, MPMI_FROM_MEMORY);
-  l.archive.from = body;
-  l.archive.size = bytes - (int64_t)sizeof header;
-  status = read_state(&l);
-  if (!status) status = check_bodies(&l);
-  for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
-    if (s->adaption[m].on) status = mpmi_field_make_present(&l.set[m].fresh, MPMI_SIZE);
-  if (!status && l.numbers.blocks >= 0) status = mpmi_layout_adopt(&s->layout, &s->settings);
-  if (!status) take_over(&l);
-  for (int32_t m = 0; m < s->layout.member_count; ++m)
-    for (int32_t f = 0; f < l.set[m].fresh.field_count; ++f) mpmi_field_make_absent(&l.set[m].fresh, f);
-  mpmi_contact_rules_free(&l.rules, s->context);
-  for (int64_t i = 0; i < surfaces; ++i) mpmi_markers_free(s->context, &l.surface[i].markers);
-  MPMI_FREE_ARRAY(s->context, l.surface, surfaces);
-  MPMI_FREE_ARRAY(s->context, l.obstacle, obstacles);
-  MPMI_FREE_ARRAY(s->context, l.pairs.record, l.pairs.capacity);
-  mpmi_free(s->context, l.set, set_bytes);
-  return status;
-}
-
-mpm_status mpm_state_load(mpm_stepper *stepper, const void *buffer, int64_t bytes) {
-  MPMI_ENTER(stepper, MPMI_STEPPER);
-  if (!buffer) return mpmi_fail(stepper->context, MPM_E_ARG, "buffer is NULL");
-  if (bytes < 0)
-    return mpmi_fail(stepper->context, MPM_E_ARG, "bytes is %lld, must be >= 0", (long long)bytes);
-  return mpmi_state_load(stepper, buffer, bytes);
 }

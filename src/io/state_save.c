@@ -1,21 +1,19 @@
 /* Saving brings the sets up to date, then writes everything after the header, and last the header, which has
  * the checksum. A callback wants the header first: the checksum is then found before anything is written. */
+#include "context/transport.h"
 #include "io/byte_order.h"
 #include "io/state.h"
 
 #include <stddef.h>
 #include <string.h>
 
-mpm_status mpmi_state_is_whole(const mpm_stepper *s) {
-  if (mpmi_is_whole(s->context)) return MPM_OK;
-  return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                   "a problem in several parts has no saved states: use a context without a transport");
-}
-
 static mpm_status check_between_steps(const mpm_stepper *s) {
   if (s->step.phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before saving");
-  return mpmi_state_is_whole(s);
+  if (!mpmi_is_whole(s->context) && s->settings.surfaces.count)
+    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
+                     "a problem in several parts has no states with surfaces: use forces on particles");
+  return MPM_OK;
 }
 
 static mpm_status check_views(const mpm_stepper *s, int32_t m) {
@@ -28,8 +26,8 @@ static mpm_status check_views(const mpm_stepper *s, int32_t m) {
   return MPM_OK;
 }
 
-mpm_status mpmi_state_settle(const mpm_stepper *s) {
-  mpm_status status = check_between_steps(s);
+mpm_status mpmi_state_settle(const mpm_stepper *s, mpm_status status) {
+  if (!status) status = check_between_steps(s);
   for (int32_t m = 0; m < s->layout.member_count && !status; ++m) {
     status = check_views(s, m);
     /* Bad values written through a view bar saving as they bar a step; the text says which. */
@@ -37,7 +35,7 @@ mpm_status mpmi_state_settle(const mpm_stepper *s) {
     /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
     if (!status) status = mpmi_particles_refresh(s->layout.member[m].set);
   }
-  return status;
+  return mpmi_agree(s->context, status);
 }
 
 /* The info is all words but for what begins it. */
@@ -132,10 +130,23 @@ void mpmi_state_write(mpmi_archive *a, const mpm_stepper *s) {
   for (int32_t m = 0; m < s->layout.member_count; ++m) write_fields(a, s->layout.member[m].set);
 }
 
+mpm_status mpmi_state_mark(const mpmi_archive *a, uint64_t *mark) {
+  int64_t sum = (int64_t)mpmi_checksum_end(&a->checksum);
+  const mpm_status status = mpmi_reduce_parts(a->context, MPM_REDUCE_SUM, 1, &sum);
+  *mark = (uint64_t)sum;
+  return status;
+}
+
+void mpmi_state_write_end(mpmi_archive *a, uint64_t mark) {
+  const mpm_transport *t = &a->context->transport;
+  mpmi_state_end end = {t->part, t->parts, mark};
+  if (!mpmi_is_whole(a->context)) mpmi_archive_words(a, &end, sizeof end);
+}
+
 mpmi_state_header mpmi_state_header_of(const mpmi_archive *a) {
   mpmi_state_header header = {"", MPMI_STATE_BYTE_ORDER, MPMI_STATE_FORMAT, (int64_t)sizeof header + a->at,
                               mpmi_checksum_end(&a->checksum)};
-  memcpy(header.magic, MPMI_STATE_MAGIC, sizeof header.magic);
+  memcpy(header.magic, mpmi_is_whole(a->context) ? MPMI_STATE_MAGIC : MPMI_PIECE_MAGIC, sizeof header.magic);
   return mpmi_state_turn_header(header);
 }
 
@@ -143,59 +154,76 @@ static int64_t measure(const mpm_stepper *s) {
   mpmi_archive a;
   mpmi_archive_begin(&a, s->context, MPMI_MEASURE);
   mpmi_state_write(&a, s);
+  mpmi_state_write_end(&a, 0);
   return (int64_t)sizeof(mpmi_state_header) + a.at;
 }
 
 mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
-  if (!bytes) return mpmi_fail(stepper->context, MPM_E_ARG, "bytes is NULL");
-  mpm_status status = check_between_steps(stepper);
+  mpm_context *context = stepper->context;
+  mpm_status status = bytes ? MPM_OK : mpmi_fail(context, MPM_E_ARG, "bytes is NULL");
+  if (!status) status = check_between_steps(stepper);
+  status = mpmi_agree(context, status);
   if (!status) *bytes = measure(stepper);
   return status;
 }
 
 mpm_status mpm_state_save(const mpm_stepper *stepper, void *buffer, int64_t capacity) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
-  if (!buffer) return mpmi_fail(stepper->context, MPM_E_ARG, "buffer is NULL");
-  mpm_status status = mpmi_state_settle(stepper);
-  if (status) return status;
+  mpm_context *context = stepper->context;
+  mpm_status status = buffer ? MPM_OK : mpmi_fail(context, MPM_E_ARG, "buffer is NULL");
+  if ((status = mpmi_state_settle(stepper, status))) return status;
   const int64_t bytes = measure(stepper);
   if (capacity < bytes)
-    return mpmi_fail(stepper->context, MPM_E_ARG, "capacity is %lld, but the state takes %lld bytes",
-                     (long long)capacity, (long long)bytes);
+    status = mpmi_fail(context, MPM_E_ARG, "capacity is %lld, but the state takes %lld bytes",
+                       (long long)capacity, (long long)bytes);
+  if ((status = mpmi_agree(context, status))) return status;
+  uint64_t mark;
   mpmi_archive a;
-  mpmi_archive_begin(&a, stepper->context, MPMI_TO_MEMORY);
+  mpmi_archive_begin(&a, context, MPMI_TO_MEMORY);
   a.to = (unsigned char *)buffer + sizeof(mpmi_state_header);
   mpmi_state_write(&a, stepper);
+  if ((status = mpmi_state_mark(&a, &mark))) return status;
+  mpmi_state_write_end(&a, mark);
   const mpmi_state_header header = mpmi_state_header_of(&a);
   memcpy(buffer, &header, sizeof header);
   return MPM_OK;
 }
 
-static mpmi_state_header foresee_header(const mpm_stepper *s) {
+static mpm_status foresee_header(const mpm_stepper *s, mpmi_state_header *header, uint64_t *mark) {
   mpmi_archive a;
   mpmi_archive_begin(&a, s->context, MPMI_TO_CHECKSUM);
   mpmi_state_write(&a, s);
-  return mpmi_state_header_of(&a);
+  const mpm_status status = mpmi_state_mark(&a, mark);
+  mpmi_state_write_end(&a, *mark);
+  *header = mpmi_state_header_of(&a);
+  return status;
 }
 
 mpm_status mpm_state_save_to(const mpm_stepper *stepper, mpm_write_fn write, void *user) {
   MPMI_ENTER(stepper, MPMI_STEPPER);
   mpm_context *context = stepper->context;
-  mpm_status status = mpmi_check_write(context, write);
-  if (!status) status = mpmi_state_settle(stepper);
+  mpmi_state_header header;
+  uint64_t mark;
   mpmi_output out;
-  if (!status) status = mpmi_output_open(&out, context, &(mpmi_target){.write = write, .user = user});
+  mpm_status status = mpmi_state_settle(stepper, mpmi_check_write(context, write));
   if (status) return status;
-  const mpmi_state_header header = foresee_header(stepper);
+  status = mpmi_output_open(&out, context, &(mpmi_target){.write = write, .user = user});
+  const mpm_status opened = status;
+  if (!(status = mpmi_agree(context, status))) status = foresee_header(stepper, &header, &mark);
+  if (status) {
+    if (!opened) mpmi_output_drop(&out);
+    return status;
+  }
   mpmi_output_write(&out, &header, sizeof header);
   mpmi_archive a;
   mpmi_archive_begin(&a, context, MPMI_TO_OUTPUT);
   a.output = &out;
   mpmi_state_write(&a, stepper);
+  mpmi_state_write_end(&a, mark);
   status = mpmi_output_close(&out, 0);
   if (!status && mpmi_state_header_of(&a).checksum != header.checksum)
     status = mpmi_fail(context, MPM_E_STATE,
                        "the state changed while it was saved: a view for reading was written to");
-  return status;
+  return mpmi_agree(context, status);
 }

@@ -94,17 +94,17 @@ static mpm_status refuse_field(mpmi_archive *a, const char *name, const char *wh
 }
 
 /* Finds the field in the set. Where a field may be absent, its presence is taken from the state. */
-static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
+static void read_field(mpmi_archive *a, const mpm_particles *set, mpmi_state_set *to, uint64_t *found) {
   mpmi_state_field saved;
   archive_field(a, &saved);
   if (a->status) return;
   saved.name[MPMI_NAME - 1] = '\0';
-  const int32_t f = mpmi_find_field(&to->fresh, saved.name);
+  const int32_t f = mpmi_find_field(set, saved.name);
   if (f < 0) {
     a->status = refuse_field(a, saved.name, "is there, but not here");
     return;
   }
-  mpmi_field *field = &to->fresh.field[f];
+  const mpmi_field *field = &set->field[f];
   char what[MPMI_NAME + 32];
   snprintf(what, sizeof what, "type of %s", field->name);
   if (saved.type != field->type || saved.components != field->components) {
@@ -117,24 +117,26 @@ static void read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found) {
                   a->where, what, (long long)there, (int)here);
   } else if (saved.present < 0 || saved.present > 1 || *found & UINT64_C(1) << f) {
     mpmi_archive_damaged(a, "its list of fields makes no sense");
-  } else if (!may_be_absent(to->fresh.grid, f) && saved.present != field->present) {
+  } else if (!may_be_absent(set->grid, f) && saved.present != field->present) {
     a->status =
         refuse_field(a, saved.name, saved.present ? "is there, but not here" : "is here, but not there");
   }
   *found |= UINT64_C(1) << f;
-  field->present = (int32_t)saved.present;
+  to->present |= (uint64_t)(saved.present & 1) << f;
   to->field[to->field_count++] = f;
 }
 
-static void read_fields(mpmi_archive *a, mpmi_state_set *to) {
+static void read_fields(mpmi_archive *a, const mpm_particles *set, mpmi_state_set *to) {
   int64_t count = 0;
+  to->field_count = 0;
+  to->present = 0;
   uint64_t found = 0;
   mpmi_archive_words(a, &count, sizeof count);
   if (count < 0 || count > MPMI_MAX_FIELDS) mpmi_archive_damaged(a, "its list of fields makes no sense");
-  for (int64_t i = 0; i < count && !a->status; ++i) read_field(a, to, &found);
-  for (int32_t f = 0; f < to->fresh.field_count && !a->status; ++f)
+  for (int64_t i = 0; i < count && !a->status; ++i) read_field(a, set, to, &found);
+  for (int32_t f = 0; f < set->field_count && !a->status; ++f)
     if (!(found & UINT64_C(1) << f))
-      a->status = refuse_field(a, to->fresh.field[f].name, "is here, but not there");
+      a->status = refuse_field(a, set->field[f].name, "is here, but not there");
 }
 _Static_assert(MPMI_MAX_FIELDS <= 64, "one bit for each field");
 
@@ -150,7 +152,7 @@ void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, uint32_t format, mp
     snprintf(a->where, sizeof a->where, "set %d: ", (int)m);
     setup_law(a, s->layout.member[m].set->material);
     if (set)
-      read_fields(a, &set[m]);
+      read_fields(a, s->layout.member[m].set, &set[m]);
     else
       write_field_list(a, s->layout.member[m].set);
   }

@@ -36,6 +36,7 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, layout->groups.group, layout->groups.capacity);
   MPMI_FREE_ARRAY(c, layout->next_groups.group, layout->next_groups.capacity);
   MPMI_FREE_ARRAY(c, layout->list_memory, layout->list_capacity);
+  MPMI_FREE_ARRAY(c, layout->next_list_memory, layout->next_list_capacity);
   mpmi_free(c, layout->bound_memory, mpmi_bytes((settings->tasks + 1) * MPMI_WORKLISTS, sizeof(int64_t)));
   MPMI_FREE_ARRAY(c, layout->member, layout->member_capacity);
   if (layout->parts) mpmi_guests_free(layout->parts);
@@ -126,20 +127,29 @@ static int64_t list_groups(const mpmi_blocks *b, mpmi_block_group *group) {
   return groups;
 }
 
-mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings) {
+mpm_status mpmi_layout_plan(mpmi_layout *layout, const mpmi_settings *settings) {
   const int64_t blocks = layout->next_blocks.count, groups = list_groups(&layout->next_blocks, NULL);
   mpmi_block_groups *next = &layout->next_groups;
   mpm_status status;
   if ((status = mpmi_constraints_build(&layout->next_constraints, &layout->next_blocks, settings->wall)) ||
       (status = MPMI_RESERVE_MORE(settings->context, next->group, next->capacity, groups)) ||
-      /* this comes last, because the present worklists point there; + 1 so that it exists without blocks */
-      (status =
-           MPMI_RESERVE_MORE(settings->context, layout->list_memory, layout->list_capacity, 2 * blocks + 1)))
+      /* + 1 so that it exists without blocks */
+      (status = MPMI_RESERVE_MORE(settings->context, layout->next_list_memory, layout->next_list_capacity,
+                                  2 * blocks + 1)))
     return status;
   next->count = list_groups(&layout->next_blocks, next->group);
+  return MPM_OK;
+}
+
+void mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings) {
+  int32_t *memory = layout->list_memory;
+  const int64_t capacity = layout->list_capacity;
+  layout->list_memory = layout->next_list_memory;
+  layout->list_capacity = layout->next_list_capacity;
+  layout->next_list_memory = memory;
+  layout->next_list_capacity = capacity;
   make_worklists(layout, settings);
   swap_in_next(layout);
-  return MPM_OK;
 }
 
 /* Finds the mass cut: a node that is lighter is not divided by its mass, and nothing holds it. The lightest
@@ -218,7 +228,8 @@ static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings, 
     if ((status = mpmi_sort_plan(member->set, &layout->next_blocks, &member->sorting, &member->next)))
       return status;
   }
-  if ((status = mpmi_layout_adopt(layout, settings))) return status;
+  if ((status = mpmi_layout_plan(layout, settings))) return status;
+  mpmi_layout_adopt(layout, settings);
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpmi_member *member = &layout->member[m];
     mpmi_sort_apply(member->set, &layout->blocks, &member->sorting, &member->now);
@@ -233,12 +244,14 @@ static mpm_status sort_anew(mpmi_layout *layout, const mpmi_settings *settings, 
 static mpm_status sort_together(mpmi_layout *layout, const mpmi_settings *settings) {
   const int32_t count = layout->member_count;
   const size_t bytes = mpmi_bytes(count + 1, sizeof(mpmi_moving_set));
+  const int64_t sorts = layout->sorts;
   mpmi_moving_set *moving = mpmi_alloc(settings->context, bytes);
   for (int32_t m = 0; m < count && moving; ++m)
     moving[m] = (mpmi_moving_set){
         .set = layout->member[m].set, .body = layout->member[m].body, .sorting = &layout->member[m].sorting};
   mpm_status status = sort_anew(layout, settings, moving);
   status = mpmi_share_end(layout->parts, &layout->blocks, moving, count, status);
+  if (status) layout->sorts = sorts; /* it counts where it has come to its end on all parts */
   mpmi_free(settings->context, moving, bytes);
   return status;
 }

@@ -41,9 +41,9 @@ typedef struct mpmi_layout {
   mpmi_member *member;
   mpmi_blocks blocks, next_blocks;
   mpmi_constraints constraints, next_constraints;
-  mpmi_worklist worklist[MPMI_WORKLISTS]; /* all blocks with particles, then by colour */
-  int32_t *list_memory;                   /* memory of all worklists */
-  int64_t list_capacity;
+  mpmi_worklist worklist[MPMI_WORKLISTS];  /* all blocks with particles, then by colour */
+  int32_t *list_memory, *next_list_memory; /* memory of all worklists, and of those that are being made */
+  int64_t list_capacity, next_list_capacity;
   int64_t *bound_memory;
   mpmi_block_groups groups, next_groups;
   int64_t version;      /* counts changes of blocks and constraints */
@@ -101,9 +101,11 @@ mpm_status mpmi_layout_prepare(mpmi_layout *layout, const mpmi_settings *setting
 int32_t mpmi_layout_is_moved(const mpmi_layout *layout);
 /* Sorts then. */
 mpm_status mpmi_layout_sort(mpmi_layout *layout, const mpmi_settings *settings);
-/* Turns next_blocks and the next arrangements into the layout: the last part of a sort and of loading a
- * sorted state. */
-mpm_status mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings);
+/* These turn next_blocks and the next arrangements into the layout: the last part of a sort and of loading a
+ * sorted state. The first makes ready for it, which may fail and changes nothing that matters; the second
+ * does it. */
+mpm_status mpmi_layout_plan(mpmi_layout *layout, const mpmi_settings *settings);
+void mpmi_layout_adopt(mpmi_layout *layout, const mpmi_settings *settings);
 
 /* Tells kernels where the particles of a set are and how large; `copy` is that of position and deformation
  * gradient. */

@@ -188,5 +188,4 @@ void mpmi_guests_free(mpmi_parts *parts) {
     MPMI_FREE_ARRAY(c, parts->guests[m].memory, parts->guests[m].capacity);
   }
   MPMI_FREE_ARRAY(c, parts->guests, parts->guest_count);
-  MPMI_FREE_ARRAY(c, parts->guest_of, parts->guest_capacity);
 }

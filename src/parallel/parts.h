@@ -94,6 +94,10 @@ typedef struct mpmi_parts {
 
 mpm_status mpmi_parts_create(mpm_context *context, const mpm_grid *grid, mpmi_parts **out);
 void mpmi_parts_destroy(mpmi_parts *parts);
+/* Exchanges them; what they have cost is counted on. */
+void mpmi_parts_replace(mpmi_parts **present, mpmi_parts **next);
+/* Adds the body of a set to those that may meet, unless it is known. */
+mpm_status mpmi_parts_note_body(mpmi_parts *parts, int32_t body);
 static inline int32_t mpmi_part_count(const mpmi_parts *parts) {
   return parts->context->transport.parts;
 }
@@ -110,6 +114,8 @@ typedef struct mpmi_arrivals {
 mpm_status mpmi_parts_exchange(mpmi_parts *parts, mpmi_arrivals *in);
 
 /* ---- cut.c ------------------------------------------------------------------------------------------- */
+/* A tile costs as much as so many particles. */
+enum { MPMI_BLOCK_WEIGHT = 60 };
 /* Gives the blocks, each with its weight, to the parts (collective), unless they are shared out evenly. */
 mpm_status mpmi_cut_blocks(mpmi_parts *parts, const mpmi_blocks *blocks, const int64_t *weight);
 /* Returns the part that has a block with this key. */

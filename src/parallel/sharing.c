@@ -3,12 +3,9 @@
 
 #include <string.h>
 
-/* A tile costs as much as so many particles. */
-enum { BLOCK_WEIGHT = 60 };
-
 static mpm_status weigh(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_moving_set *sets,
                         int32_t count, int64_t *weight) {
-  for (int64_t i = 0; i < blocks->count; ++i) weight[i] = BLOCK_WEIGHT;
+  for (int64_t i = 0; i < blocks->count; ++i) weight[i] = MPMI_BLOCK_WEIGHT;
   for (int32_t m = 0; m < count; ++m) {
     const uint32_t *block = mpmi_sort_blocks_of_slots(sets[m].set);
     const int64_t *id = mpmi_i64(sets[m].set, MPMI_ID, 0);
@@ -20,15 +17,10 @@ static mpm_status weigh(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi
 
 /* Lists the bodies of the sets. */
 static mpm_status list_bodies(mpmi_parts *parts, const mpmi_moving_set *sets, int32_t count) {
-  const mpm_status status = MPMI_RESERVE_MORE(parts->context, parts->body, parts->body_capacity, count);
-  if (status) return status;
+  mpm_status status = MPM_OK;
   parts->body_count = 0;
-  for (int32_t m = 0; m < count; ++m) {
-    int32_t known = 0;
-    for (int32_t i = 0; i < parts->body_count; ++i) known |= parts->body[i] == sets[m].body;
-    if (!known) parts->body[parts->body_count++] = sets[m].body;
-  }
-  return MPM_OK;
+  for (int32_t m = 0; m < count && !status; ++m) status = mpmi_parts_note_body(parts, sets[m].body);
+  return status;
 }
 
 mpm_status mpmi_share_out(mpmi_parts *parts, mpmi_blocks *blocks, mpmi_moving_set *sets, int32_t count,
@@ -52,7 +44,9 @@ mpm_status mpmi_share_out(mpmi_parts *parts, mpmi_blocks *blocks, mpmi_moving_se
 mpm_status mpmi_share_end(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_moving_set *sets,
                           int32_t count, mpm_status status) {
   if (!status) status = mpmi_pattern_adopt(parts, blocks);
-  if ((status = mpmi_agree(parts->context, status))) return status;
+  status = mpmi_agree(parts->context, status);
+  for (int32_t m = 0; m < count && status && sets; ++m) mpmi_sort_settle(sets[m].set, sets[m].sorting);
+  if (status) return status;
   for (int32_t m = 0; m < count && !status; ++m) {
     int64_t heaviest = mpmi_ordered_bits(sets[m].set->mass_max);
     status = mpmi_reduce_parts(parts->context, MPM_REDUCE_MAX, 1, &heaviest);

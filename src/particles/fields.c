@@ -172,14 +172,13 @@ void mpmi_restore_holes(mpm_particles *set, int32_t field) {
     if (id[s] < 0) write_holes(set, field, 0, s, s + 1, set->grid->desc.origin);
 }
 
-/* Absent fields read as these values, so a field that becomes present changes nothing. */
-static void write_defaults(mpm_particles *set, int32_t field) {
+void mpmi_field_write_absent(mpm_particles *set, int32_t field, int64_t begin, int64_t end) {
   const mpmi_field *at = &set->field[field];
-  write_holes(set, field, 0, 0, set->slots, set->grid->desc.origin);
+  write_holes(set, field, 0, begin, end, set->grid->desc.origin);
   if (at->type != MPM_F64) return;
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
   for (int32_t c = 0; c < at->components; ++c)
-    for (int64_t s = 0; s < set->slots; ++s)
+    for (int64_t s = begin; s < end; ++s)
       if (id[s] >= 0) mpmi_f64(set, field, 0)[c * set->ld + s] = mpmi_absent_value(set, field, c, s);
 }
 
@@ -190,7 +189,7 @@ mpm_status mpmi_field_make_present(mpm_particles *set, int32_t field) {
   if (status) return status;
   at->present = 1;
   watch_field(at, set->ld, set->slots);
-  write_defaults(set, field);
+  mpmi_field_write_absent(set, field, 0, set->slots);
   return MPM_OK;
 }
 

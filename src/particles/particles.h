@@ -161,6 +161,9 @@ mpm_status mpmi_particles_reserve_in_step(mpm_particles *set, int64_t slots);
 void mpmi_particles_watch(const mpm_particles *set, int64_t slots);
 mpm_status mpmi_field_make_present(mpm_particles *set, int32_t field); /* with default values */
 void mpmi_field_make_absent(mpm_particles *set, int32_t field);
+/* Writes the values that a field reads as when it is absent into slots [begin, end), so that a field that
+ * becomes present changes nothing. */
+void mpmi_field_write_absent(mpm_particles *set, int32_t field, int64_t begin, int64_t end);
 /* Writes inert slots [begin, end) into copy `copy` of every present field; position is that of the hole. */
 void mpmi_fill_holes(mpm_particles *set, int32_t copy, int64_t begin, int64_t end, const double *position);
 /* Turns the particle in `slot` into a hole: copy 0 of all fields but its position. The caller counts it. */

@@ -230,3 +230,28 @@ void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting
   set->dirty &= ~(uint32_t)(MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE);
   mpmi_index_drop(set);
 }
+
+static void turn_round(char *row, size_t size, int64_t first, int64_t end) {
+  for (--end; first < end; ++first, --end)
+    for (size_t i = 0; i < size; ++i) {
+      const char swap = row[(size_t)first * size + i];
+      row[(size_t)first * size + i] = row[(size_t)end * size + i];
+      row[(size_t)end * size + i] = swap;
+    }
+}
+
+void mpmi_sort_settle(mpm_particles *set, mpmi_sorting *sorting) {
+  const int64_t low = sorting->tail_low, end = sorting->tail + low;
+  for (int32_t f = 0; f < set->field_count && low; ++f) {
+    const mpmi_field *field = &set->field[f];
+    const size_t size = mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components && field->present; ++c) {
+      char *row = (char *)field->data[0] + (size_t)(c * set->ld) * size;
+      turn_round(row, size, 0, end);
+      turn_round(row, size, 0, low);
+      turn_round(row, size, low, end);
+    }
+  }
+  if (low) mpmi_index_drop(set);
+  sorting->tail_low = 0;
+}

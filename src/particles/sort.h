@@ -37,5 +37,8 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
                           mpmi_arrangement *to);
 void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting *sorting,
                      const mpmi_arrangement *to);
+/* Puts what came from parts before this one in front of the set's own particles: a sort has failed, and the
+ * slots alone are to tell their order. */
+void mpmi_sort_settle(mpm_particles *set, mpmi_sorting *sorting);
 
 #endif

@@ -182,6 +182,11 @@ void files(world &w, const std::string &scratch) {
   w.stepper.load_file(scratch + "/wrapper.state");
   CHECK(w.stepper.hash() == before);
   CHECK(refused(MPM_E_FORMAT, "", [&] { w.stepper.load({}); }));
+  CHECK(w.stepper.step(1e-5) && w.stepper.hash() == after);
+  w.stepper.load_pieces({state});
+  CHECK(w.stepper.hash() == before);
+  CHECK(refused(MPM_E_ARG, "no part", [&] { w.stepper.load_pieces({}); }));
+  CHECK(refused(MPM_E_FORMAT, "piece[1]", [&] { w.stepper.load_pieces({state, {}}); }));
   CHECK(refused(MPM_E_IO, "nowhere", [&] { w.stepper.load_file(scratch + "/nowhere"); }));
 
   CHECK(refused(MPM_E_STATE, "nodal", [&] { w.stepper.write_grid(scratch + "/wrapper.vti"); }));

@@ -102,6 +102,7 @@ static void try_all(int32_t kind) {
       mpm_state_size(stepper, &bytes),
       mpm_state_save(stepper, byte, sizeof byte),
       mpm_state_load(stepper, byte, sizeof byte),
+      mpm_state_load_pieces(stepper, 0, NULL, NULL),
       mpm_state_save_file(stepper, path),
       mpm_state_load_file(stepper, path),
       mpm_state_hash(stepper, &hash),

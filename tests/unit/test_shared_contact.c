@@ -132,6 +132,18 @@ static mpm_status set_up_bodies(world *w, const scene *is) {
 }
 
 /* ---- what happens -------------------------------------------------------------------------------------- */
+/* Each part saves its piece and loads it again. */
+static mpm_status save_and_load(world *w) {
+  int64_t bytes = 0;
+  mpm_status status = mpm_state_size(w->stepper, &bytes);
+  void *state = malloc((size_t)bytes + 1);
+  const void *piece[] = {state};
+  if (!status) status = mpm_state_save(w->stepper, state, bytes);
+  if (!status) status = mpm_state_load_pieces(w->stepper, 1, piece, &bytes);
+  free(state);
+  return status;
+}
+
 static mpm_status touch(world *w, const scene *is, outcome *found) {
   mpm_obstacle *obstacle[OBSTACLES] = {NULL, NULL, NULL};
   dice d = {is->seed + 77};
@@ -139,6 +151,8 @@ static mpm_status touch(world *w, const scene *is, outcome *found) {
   mpm_status status = MPM_OK;
   for (int32_t i = 0; i < count && !status; ++i) status = add_obstacle(w, &d, &obstacle[i]);
   if (!status) status = run_steps(w);
+  if (!status && is->seed % 3 == 0) status = save_and_load(w);
+  if (!status && is->seed % 3 == 0) status = run_steps(w);
   for (int32_t i = 0; i < 4; ++i) found->contact[i].struct_size = sizeof found->contact[i];
   for (int32_t i = 0; i < count && !status; ++i)
     if (!(status = mpm_obstacle_contact_info(obstacle[i], MPM_BODY_ANY, &found->contact[i])))

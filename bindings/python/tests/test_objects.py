@@ -361,6 +361,13 @@ class States(unittest.TestCase):
                 stepper.load(saved)
                 stepper.step(1e-3)
                 self.assertEqual(stepper.hash, ahead)
+            stepper.load_pieces([state])
+            stepper.step(1e-3)
+            self.assertEqual(stepper.hash, ahead)
+            with self.assertRaisesRegex(mpm.Error, "no part gives a piece"):
+                stepper.load_pieces([])
+            with self.assertRaisesRegex(mpm.Error, r"given twice"):
+                stepper.load_pieces([state, state])
             with self.assertRaisesRegex(mpm.Error, "E_FORMAT"):
                 stepper.load(state[:100])
             with self.assertRaisesRegex(mpm.Error, "E_IO"):

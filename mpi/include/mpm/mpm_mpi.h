@@ -107,6 +107,15 @@ MPM_MPI_API mpm_status mpm_mpi_write_particles(mpm_mpi *mpi, const mpm_particles
 MPM_MPI_API mpm_status mpm_mpi_write_grid(mpm_mpi *mpi, mpm_stepper *stepper, const char *path,
                                           const mpm_mpi_output *output);
 
+/** Writes the state into one file (collective) by MPI-IO: under the name path.writing, which is renamed when
+ * all bytes are on disk, so that path holds the old state or the new one. On each part it takes memory for
+ * what mpm_state_size() tells. Errors are those of mpm_state_save_file(). */
+MPM_MPI_API mpm_status mpm_mpi_save(mpm_mpi *mpi, const mpm_stepper *stepper, const char *path);
+
+/** Replaces the state by that of a file (collective) which any number of processes wrote by mpm_mpi_save(),
+ * or one by mpm_state_save_file(). Errors are those of mpm_state_load_file(). */
+MPM_MPI_API mpm_status mpm_mpi_load(mpm_mpi *mpi, mpm_stepper *stepper, const char *path);
+
 #ifdef __cplusplus
 }
 #endif

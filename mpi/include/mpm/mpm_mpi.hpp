@@ -65,6 +65,14 @@ public:
     named plain(output);
     check(mpm_mpi_write_grid(handle_, of.handle(), path.c_str(), &plain.c));
   }
+  /** Writes the state: see mpm_mpi_save(). */
+  void save(const stepper &of, const std::string &path) const {
+    check(mpm_mpi_save(handle_, of.handle(), path.c_str()));
+  }
+  /** Replaces the state: see mpm_mpi_load(). */
+  void load(const stepper &into, const std::string &path) const {
+    check(mpm_mpi_load(handle_, into.handle(), path.c_str()));
+  }
 
 private:
   /* What C takes, while it lives. */

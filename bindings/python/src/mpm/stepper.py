@@ -462,6 +462,17 @@ class Stepper(Handle):
         for one in self._sets:
             one._look()
 
+    @documented("mpm_state_load_pieces")
+    def load_pieces(self, pieces):
+        """Replaces the state by one in pieces, as each part's save() has returned them: those of this part, in order."""
+        pieces = [bytes(piece) for piece in pieces]
+        data = (ctypes.c_char_p * len(pieces))(*pieces)
+        count = (ctypes.c_int64 * len(pieces))(*map(len, pieces))
+        self._context._check(
+            lib.mpm_state_load_pieces(self, len(pieces), ctypes.addressof(data), ctypes.addressof(count)))
+        for one in self._sets:
+            one._look()
+
     @property
     def hash(self):
         """The hash of the state."""

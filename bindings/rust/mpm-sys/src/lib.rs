@@ -3082,11 +3082,12 @@ extern "C" {
         info: *mut mpm_heat_info,
     ) -> mpm_status;
 
-    /// Tells how many bytes mpm_state_save() needs now.
+    /// Tells how many bytes mpm_state_save() needs now; of several parts, those of this part's piece (collective).
     pub fn mpm_state_size(stepper: *const mpm_stepper, bytes: *mut i64) -> mpm_status;
 
-    /// Writes the state into the host's buffer of capacity bytes. MPM_E_ARG: the capacity is too small. MPM_E_STATE: a
-    /// view is out for writing, or a staged step is under way.
+    /// Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece (collective).
+    /// MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged step is under way.
+    /// MPM_E_UNSUPPORTED: several parts with a surface.
     pub fn mpm_state_save(
         stepper: *const mpm_stepper,
         buffer: *mut c_void,
@@ -3095,20 +3096,44 @@ extern "C" {
 
     /// Replaces the state by one saved with mpm_state_save(), of so many bytes; the buffer is read during the call.
     /// MPM_E_FORMAT: the bytes are no state, or it is damaged, of a later format, or saved from an unlike setup; the
-    /// error text names the first difference. MPM_E_STATE: a view is out, or a staged step is under way.
+    /// error text names the first difference; or they are one piece of several. MPM_E_STATE: a view is out, or a staged
+    /// step is under way. MPM_E_UNSUPPORTED: the context is one of several parts, which load by mpm_state_load_pieces().
     pub fn mpm_state_load(
         stepper: *mut mpm_stepper,
         buffer: *const c_void,
         bytes: i64,
     ) -> mpm_status;
 
+    /// Replaces the state by one in pieces (collective). Each part gives count of them, piece[i] of bytes[i] bytes: part
+    /// 0 the first few, part 1 those after them, and so on, in the order of the parts that saved them; count may be 0,
+    /// and then piece and bytes may be NULL. How many parts saved the state and how many load it does not matter, one
+    /// among them: continuing has the bits of not having stopped. What mpm_state_save() of one part wrote, in any
+    /// version, is the only piece of its state. Pieces are read during the call and need no alignment. On failure, which
+    /// all parts return, no part's objects have changed.
+    ///
+    /// - MPM_E_ARG: pieces are missing, given twice, out of order, or of different states, which their marks tell; no
+    ///   part gives one; or an argument is wrong.
+    /// - MPM_E_FORMAT: as in mpm_state_load(); the text names the piece by its number in `piece`.
+    /// - MPM_E_STATE: a view is out, or a staged step is under way.
+    /// - MPM_E_UNSUPPORTED: several parts with a surface.
+    ///
+    /// Since 0.2.0.
+    pub fn mpm_state_load_pieces(
+        stepper: *mut mpm_stepper,
+        count: i32,
+        piece: *const *const c_void,
+        bytes: *const i64,
+    ) -> mpm_status;
+
     /// Writes the state into a file, as mpm_state_save() does into memory, and waits for the storage: path holds the old
-    /// state or the new one. MPM_E_IO: the file could not be written.
+    /// state or the new one. Of several parts, each writes its piece under a path of its own (collective); where one of
+    /// them could not, others may have replaced their files. MPM_E_IO: the file could not be written.
     pub fn mpm_state_save_file(stepper: *const mpm_stepper, path: *const c_char) -> mpm_status;
 
     /// Gives the bytes of mpm_state_save() to a callback. They are made twice, because the first of them hold a checksum
-    /// of all others; memory for one piece is enough. MPM_E_CALLBACK: the callback refused. MPM_E_STATE: as in
-    /// mpm_state_save(); or what was written through a view for reading changed the state while it went out. Since 0.2.0.
+    /// of all others; memory for 65536 bytes is enough. Of several parts, each gives its piece (collective).
+    /// MPM_E_CALLBACK: the callback refused. MPM_E_STATE: as in mpm_state_save(); or what was written through a view for
+    /// reading changed the state while it went out. Since 0.2.0.
     pub fn mpm_state_save_to(
         stepper: *const mpm_stepper,
         write: mpm_write_fn,

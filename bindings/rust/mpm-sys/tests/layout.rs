@@ -638,6 +638,7 @@ fn functions_are_there() {
         mpm_state_size as *const (),
         mpm_state_save as *const (),
         mpm_state_load as *const (),
+        mpm_state_load_pieces as *const (),
         mpm_state_save_file as *const (),
         mpm_state_save_to as *const (),
         mpm_state_load_file as *const (),

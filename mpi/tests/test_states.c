@@ -1,0 +1,107 @@
+/* A problem in as many parts as there are processes, which saves its state every five steps:
+ *
+ *   test_states STATE FROM LAST [DIES]
+ *
+ * It goes on from the file FROM, or from the beginning where that is -, up to step LAST; in step DIES a
+ * process is killed. It says from which step it goes on, and the hash of the state in the end. */
+#define _POSIX_C_SOURCE 200809L
+#include <mpm/mpm_mpi.h>
+
+#include <inttypes.h>
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "meet.h"
+
+typedef struct world {
+  mpm_mpi *mpi;
+  mpm_context *context;
+  mpm_grid *grid;
+  mpm_material *material;
+  mpm_particles *set;
+  mpm_stepper *stepper;
+} world;
+
+static void open_world(world *w, int32_t fills) {
+  const mpm_param law[] = {{"E", 1e5}, {"nu", 0.3}, {"density", 1000.0}};
+  const double low[] = {0.2, 0.2}, high[] = {0.7, 0.6}, speed[] = {6.0, 3.0};
+  const int32_t per_cell[] = {2, 2};
+  mpm_context_desc c;
+  mpm_grid_desc g;
+  mpm_stepper_desc s;
+  MUST(!mpm_context_desc_init(&c, sizeof c) && !mpm_grid_desc_init(&g, sizeof g));
+  MUST(!mpm_stepper_desc_init(&s, sizeof s) && !mpm_mpi_open(MPI_COMM_WORLD, &c, &w->mpi));
+  g.dim = 2;
+  for (int32_t k = 0; k < 2; ++k) g.cells[k] = 64, g.spacing[k] = 1.0 / 64.0;
+  s.transfer = MPM_APIC;
+  s.scheme = MPM_MUSL;
+  MUST(!mpm_context_create(&c, &w->context) && !mpm_grid_create(w->context, &g, &w->grid));
+  MUST(!mpm_material_create(w->context, "neo_hookean", law, 3, &w->material));
+  MUST(!mpm_particles_create(w->context, w->grid, w->material, &w->set));
+  if (fills) {
+    MUST(!mpm_particles_fill_box(w->set, low, high, per_cell, NULL, NULL));
+    MUST(!mpm_particles_set_all(w->set, "velocity", MPM_F64, 2, speed));
+  }
+  MUST(!mpm_stepper_create(w->context, w->grid, &s, &w->stepper) && !mpm_stepper_add(w->stepper, w->set));
+  for (int32_t face = 0; face < 4; ++face) MUST(!mpm_stepper_set_wall(w->stepper, face, MPM_WALL_SLIP, 0.0));
+}
+
+static void close_world(world *w) {
+  MUST(!mpm_stepper_destroy(w->stepper) && !mpm_particles_destroy(w->set));
+  MUST(!mpm_material_destroy(w->material) && !mpm_grid_destroy(w->grid));
+  MUST(!mpm_context_destroy(w->context) && !mpm_mpi_close(w->mpi));
+}
+
+/* What no process can load says so on all of them, and leaves the state as it was. */
+static void refuses(world *w, const char *path, int rank) {
+  char damaged[700];
+  uint64_t before, after;
+  snprintf(damaged, sizeof damaged, "%s.damaged", path);
+  if (!rank) {
+    FILE *in = fopen(path, "rb"), *out = fopen(damaged, "wb");
+    MUST(in && out);
+    int byte;
+    for (long at = 0; (byte = fgetc(in)) != EOF; ++at) fputc(at == 5000 ? byte ^ 1 : byte, out);
+    MUST(!fclose(in) && !fclose(out));
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  MUST(!mpm_state_hash(w->stepper, &before));
+  MUST(mpm_mpi_load(w->mpi, w->stepper, damaged) == MPM_E_FORMAT);
+  MUST_SAY(mpm_mpi_last_error(w->mpi), "mpm_state_load_pieces: MPM_E_FORMAT");
+  MUST_SAY(mpm_last_error(w->context), "the state is damaged: its checksum is wrong");
+  MUST(!mpm_state_hash(w->stepper, &after) && before == after);
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (!rank) remove(damaged);
+}
+
+int main(int argc, char **argv) {
+  int rank, size;
+  world w;
+  uint64_t hash;
+  mpm_step_info now = {.struct_size = sizeof now};
+  MPI_Init(&argc, &argv);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  MUST(argc >= 4);
+  const int32_t from = strcmp(argv[2], "-") != 0;
+  const int64_t last = atoi(argv[3]), dies = argc > 4 ? atoi(argv[4]) : -1;
+  open_world(&w, !from);
+  if (from) {
+    MUST(!mpm_mpi_load(w.mpi, w.stepper, argv[2]));
+    refuses(&w, argv[2], rank);
+  }
+  MUST(!mpm_stepper_info(w.stepper, &now));
+  if (!rank) printf("from step %" PRId64 "\n", now.step);
+  while (now.step < last) {
+    if (now.step + 1 == dies && rank == size - 1) raise(SIGKILL);
+    MUST(!mpm_step(w.stepper, 2e-4 * (double)(1 + now.step % 3), &now));
+    if (now.step % 5 == 0) MUST(!mpm_mpi_save(w.mpi, w.stepper, argv[1]));
+  }
+  MUST(!mpm_state_hash(w.stepper, &hash));
+  if (!rank)
+    printf("result: %016" PRIx64 ", %" PRId64 " sorts, kinetic energy %.17g\n", hash, now.resorts,
+           now.kinetic_energy);
+  close_world(&w);
+  return MPI_Finalize();
+}

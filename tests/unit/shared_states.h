@@ -1,0 +1,10 @@
+/* States of one problem in several parts: test cases of the suite `shared`. */
+#ifndef SHARED_STATES_H
+#define SHARED_STATES_H
+
+#include <check.h>
+
+TCase *shared_states_case(void);
+TCase *shared_pieces_case(void);
+
+#endif
