@@ -15,12 +15,13 @@
  *
  * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
  * particles, where each part adds its own and numbers without ids follow those of the parts before;
- * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stable_dt(), mpm_state_hash().
+ * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stepper_heat_info(),
+ * mpm_stable_dt(), mpm_state_hash().
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts, which is not checked.
  *
- * Of several parts these are asked for explicit steps of one body. MPM_E_UNSUPPORTED: implicit schemes, total
- * Lagrangian grids, friction walls, obstacles, surfaces, heat, adaption, and saving or loading states.
+ * Of several parts these are asked for explicit steps of one body. MPM_E_UNSUPPORTED: implicit schemes,
+ * friction walls, obstacles, surfaces, adaption, and saving or loading states.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

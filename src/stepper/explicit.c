@@ -94,6 +94,7 @@ int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, 
       mpmi_asks_host(settings, &mpmi_projections[MPMI_PROJECT_FORCES]) && nodes->prescription.any;
   const int32_t correction = step->takes == MPMI_TAKES_FULL ? MPMI_PROJECT_FULL : MPMI_PROJECT_CORRECTION;
   int64_t count = of_projection(step, nodes, MPMI_PROJECT_FORCES) - holds;
+  if (mpmi_places_nodes(settings, nodes)) count += of_projection(step, nodes, MPMI_PROJECT_DISPLACEMENT);
   if (settings->desc.scheme == MPM_USF) count += of_projection(step, nodes, MPMI_PROJECT_STRAIN) + strain;
   if (phase == MPMI_BEGUN) return count;
   count += holds; /* they are found with the conditions of the nodes */

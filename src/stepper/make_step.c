@@ -94,7 +94,6 @@ static mpm_status prepare(mpm_stepper *s) {
       (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
       (status = mpmi_member_rows_prepare(&s->work.rows, settings, &s->layout)) ||
       (status = mpmi_surfaces_prepare(settings)) ||
-      (status = mpmi_heat_stage(&s->step, s->heat, &s->history.heat)) ||
       (status = mpmi_obstacles_begin(&s->step, &s->nodes.contact)))
     return status;
   mpmi_pairs_begin(&s->history.pairs);
@@ -102,6 +101,29 @@ static mpm_status prepare(mpm_stepper *s) {
     return status;
   mpmi_lap(&s->step, MPMI_TIME_SORT, &clock);
   return MPM_OK;
+}
+
+/* Conducts heat, which comes first: all parts go on with the new temperatures, or none does. */
+static mpm_status conduct(mpm_stepper *s) {
+  const int32_t implicit = s->settings.heat.conduction == MPM_CONDUCTION_IMPLICIT;
+  mpm_status status = mpmi_heat_check_dt(&s->step);
+  if (status) return status;
+  int64_t exchanges = mpmi_heat_exchanges(&s->step, &s->history.heat);
+  status = mpmi_heat_begin(&s->step, s->heat, &s->history.heat);
+  /* iterations have exchanges of their own, as many on all parts */
+  if (implicit && (status = mpmi_together_end(s, status, exchanges))) return status;
+  if (!status) status = mpmi_heat_end(&s->step, s->heat, &s->history.heat);
+  if (implicit && mpmi_is_shared(s)) exchanges = s->layout.parts->exchanges;
+  status = mpmi_together_end(s, status, exchanges);
+  if (mpmi_is_shared(s)) s->layout.parts->exchanges = 0;
+  return status;
+}
+
+/* Begins a step that parts have agreed on, up to what its scheme does. */
+static mpm_status set_out(mpm_stepper *s) {
+  const mpm_status status = mpmi_together(s, prepare(s));
+  if (status || !s->settings.heat.any) return status;
+  return conduct(s);
 }
 
 /* ---- the end ------------------------------------------------------------------------------------------ */
@@ -148,8 +170,10 @@ static mpm_status finish(mpm_stepper *s) {
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
   mpm_step_info info = s->step.info;
-  info.dt_suggested =
-      mpmi_is_implicit(&s->settings) ? mpmi_next_dt(info.newton_iterations, info.dt) : mpmi_stable_dt(s);
+  if (mpmi_is_implicit(&s->settings))
+    info.dt_suggested = mpmi_next_dt(info.newton_iterations, info.dt);
+  else if (mpmi_stable_dt(s, &info.dt_suggested))
+    mpmi_forget(s->context); /* the other parts are lost, as the next call will say */
   drop(s, info);
   mpmi_adaption_carry_out(s); /* sums are those of the step until somebody asks for those of the state */
   s->nodes.shown = s->layout.version;
@@ -178,7 +202,7 @@ mpm_status mpmi_make_step(mpm_stepper *s, mpm_status status, double dt, int32_t 
   if (status) return status;
   begin(s, dt, 0);
   s->step.is_cut = is_cut;
-  status = mpmi_together(s, prepare(s));
+  status = set_out(s);
   if (!status) {
     status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
     status = mpmi_together_end(s, status, exchanges_to(s, MPMI_IDLE));
@@ -204,7 +228,7 @@ mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no steps in parts: use mpm_step, or an explicit scheme");
   begin(s, dt, 1);
-  status = mpmi_together(s, prepare(s));
+  status = set_out(s);
   if (!status)
     status = mpmi_together_end(s, mpmi_explicit_begin(&s->step, &s->nodes), exchanges_to(s, MPMI_BEGUN));
   if (status) return give_up(s, status);

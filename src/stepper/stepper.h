@@ -128,8 +128,9 @@ void mpmi_surfaces_forget(const mpmi_surfaces *list);
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */
 mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure);
-/* Returns the largest stable step: Courant's condition and that of viscosity. */
-double mpmi_stable_dt(const mpm_stepper *s);
+/* Finds the largest stable step: Courant's condition, and those of viscosity, heat and obstacles
+ * (collective). */
+mpm_status mpmi_stable_dt(const mpm_stepper *s, double *dt);
 /* Returns MPM_E_STATE when a set has views out of the given access, or holds bad values. */
 mpm_status mpmi_check_sets(mpm_stepper *s, int32_t access);
 

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-mpm_status mpmi_together(mpm_stepper *s, mpm_status status) {
+mpm_status mpmi_together(const mpm_stepper *s, mpm_status status) {
   return mpmi_is_shared(s) ? mpmi_agree(s->context, status) : status;
 }
 
@@ -19,12 +19,10 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
     bodies |= s->layout.member[m].body != 0;
   }
   if (mpmi_is_implicit(settings)) what = "scheme MPM_NEWMARK", instead = "MPM_USL, MPM_USF or MPM_MUSL";
-  if (mpmi_is_total_lagrangian(s->grid)) what = "a total Lagrangian grid", instead = "one that is not";
   if (mpmi_has_friction_planes(settings) || s->layout.constraints.contact_count)
     what = "a friction wall", instead = "MPM_WALL_SLIP or MPM_WALL_FIXED";
   if (settings->obstacles.count) what = "an obstacle";
   if (settings->surfaces.count) what = "a surface", instead = "forces on particles";
-  if (settings->heat.any) what = "heat";
   if (adapts) what = "adaption";
   if (bodies) what = "bodies with nodes of their own", instead = "body 0 for all sets";
   return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
