@@ -61,6 +61,11 @@ void add_option_list(TCase *to);
  * offered. */
 int32_t describe_option(scene *is, int32_t at, int32_t total, char *name, size_t size);
 
+/* A body with heat in the corner of the grid, from which faces conduct; and what is described of it before
+ * there are particles. */
+scene warm_scene(int32_t cells, int32_t implicit);
+mpm_status equip_heat(world *w, const scene *is);
+
 /* Add the cases of shared_options.c and shared_heat.c. */
 void add_shared_options(Suite *suite);
 void add_shared_heat(Suite *suite);

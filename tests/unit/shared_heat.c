@@ -43,8 +43,7 @@ static mpm_status set_temperatures(mpm_particles *set) {
   return status;
 }
 
-/* What is the same for a world whatever is in it. */
-static mpm_status equip(world *w, const scene *is) {
+mpm_status equip_heat(world *w, const scene *is) {
   mpm_status status = set_walls(w);
   for (int32_t m = 0; m < w->sets && !status; ++m) {
     const mpm_heat_desc d = describe_heat(w, m);
@@ -58,7 +57,7 @@ static mpm_status equip(world *w, const scene *is) {
 
 /* A body in the corner of the grid, so that faces conduct; its second half is another set. */
 static mpm_status set_up_warm(world *w, const scene *is) {
-  mpm_status status = equip(w, is);
+  mpm_status status = equip_heat(w, is);
   if (!status) status = fill_middle(w, w->set[0], 0.0, w->sets > 1 ? 0.4 : 0.6);
   if (!status && w->sets > 1) status = fill_middle(w, w->set[1], 0.4, 0.6);
   for (int32_t m = 0; m < w->sets && !status; ++m) {
@@ -91,7 +90,7 @@ static mpm_status warm_up(world *w, const scene *is, outcome *found) {
   return status;
 }
 
-static scene warm_scene(int32_t cells, int32_t implicit) {
+scene warm_scene(int32_t cells, int32_t implicit) {
   scene is = scene_of(2, cells, set_up_warm);
   is.run = warm_up;
   is.speed = 2.0;
@@ -126,7 +125,7 @@ START_TEST(warm_host) {
 END_TEST
 
 static mpm_status set_up_small(world *w, const scene *is) {
-  mpm_status status = equip(w, is);
+  mpm_status status = equip_heat(w, is);
   if (!status) status = fill_middle(w, w->set[0], 0.4, 0.5);
   return status ? status : set_temperatures(w->set[0]);
 }

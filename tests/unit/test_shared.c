@@ -439,7 +439,7 @@ END_TEST
 
 /* Wherever the transport fails on one part, every part returns and gives its memory back. */
 START_TEST(transport_fails) {
-  scene is = scene_of(2, 2 * wide, set_up_body);
+  scene is = _i ? warm_scene(2 * wide, _i - 1) : scene_of(2, 2 * wide, set_up_body);
   parts_plan plan;
   int64_t calls = 0;
   for (int64_t at = 0; !at || at <= calls; at += 1 + at / 6) {
@@ -580,6 +580,7 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
   w.desc = h->is.desc;
   w.desc.context.transport = transport;
   mpm_status status = world_try_open(&w);
+  if (!status && h->is.heat) status = equip_heat(&w, &h->is);
   const int64_t opened = w.memory.calls;
   if (part == 1 && h->fail_at) w.memory.fail_at = opened + h->fail_at;
   if (!status) AGAIN(h, part, status, fill_middle(&w, w.set[0], 0.2, 0.7));
@@ -602,7 +603,7 @@ START_TEST(memory_runs_out) {
   for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
     memset(&h, 0, sizeof h);
     memset(&plan, 0, sizeof plan);
-    h.is = scene_of(2, 2 * wide, set_up_body);
+    h.is = _i ? warm_scene(2 * wide, _i - 1) : scene_of(2, 2 * wide, set_up_body);
     h.fail_at = at;
     ck_assert_msg(!parts_run(3, live_hungry, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
                   (long long)calls, plan.text);
@@ -639,10 +640,10 @@ Suite *shared_suite(void) {
   tcase_set_timeout(failures, 120);
   tcase_add_loop_test(failures, steps_fail_together, 0, 12);
   tcase_add_test(failures, unlike_parts);
-  tcase_add_test(failures, transport_fails);
+  tcase_add_loop_test(failures, transport_fails, 0, 3);
   tcase_add_test(failures, transport_is_checked);
   tcase_add_test(failures, transport_is_lost);
-  tcase_add_test(failures, memory_runs_out);
+  tcase_add_loop_test(failures, memory_runs_out, 0, 3);
   suite_add_tcase(suite, failures);
   add_shared_options(suite);
   add_shared_heat(suite);
