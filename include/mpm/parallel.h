@@ -21,7 +21,10 @@
  * added. An id is given once over all parts, which is not checked.
  *
  * Of several parts these are asked for explicit steps of one body. MPM_E_UNSUPPORTED: implicit schemes,
- * friction walls, obstacles, surfaces, adaption, and saving or loading states.
+ * friction walls, obstacles, surfaces that prescribe or heat, adaption, and saving or loading states.
+ *
+ * Surfaces are made and filled alike on all parts: each part has all markers, and moves them alike.
+ * Callbacks of surfaces are asked on every part for all markers and must answer alike.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

@@ -72,10 +72,12 @@ mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
     if (!status) status = deform(step, nodes, &clock);
   }
   if (!status) mpmi_surface_holds_report(step, nodes);
-  if (!status)
-    status = mpmi_surfaces_move(step, mpmi_moves_last(settings) ? &nodes->projected : &nodes->solved);
   mpmi_move_samples(step, MPMI_TIME_G2P);
   return status;
+}
+
+mpm_status mpmi_explicit_move_surfaces(mpmi_step *step, mpmi_nodes *nodes) {
+  return mpmi_surfaces_move(step, mpmi_moves_last(step->settings) ? &nodes->projected : &nodes->solved);
 }
 
 /* ---- how many sums on nodes that makes ---------- */

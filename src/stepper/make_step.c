@@ -157,7 +157,10 @@ static mpm_status give_up(mpm_stepper *s, mpm_status status) {
 
 static mpm_status finish(mpm_stepper *s) {
   const double velocity_dt = s->step.velocity_dt;
-  mpm_status status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
+  mpm_status status = MPM_OK;
+  if (s->settings.surfaces.count && !mpmi_is_implicit(&s->settings))
+    status = mpmi_together(s, mpmi_explicit_move_surfaces(&s->step, &s->nodes));
+  if (!status) status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
   if (status) return status;
   mpmi_stops_report(&s->step);
   mpmi_sums sums;
@@ -182,8 +185,16 @@ static mpm_status finish(mpm_stepper *s) {
 }
 
 /* ---- whole steps -------------------------------------------------------------------------------------- */
-static mpm_status run_explicit(mpm_stepper *s) {
+/* Brings particles to the nodes. Only all parts together know whether nodes take the loads of markers. */
+static mpm_status begin_explicit(mpm_stepper *s) {
   mpm_status status = mpmi_explicit_begin(&s->step, &s->nodes);
+  if (s->step.staged || s->settings.surfaces.count)
+    status = mpmi_together_end(s, status, exchanges_to(s, MPMI_BEGUN));
+  return status ? status : mpmi_surfaces_carried(&s->step);
+}
+
+static mpm_status run_explicit(mpm_stepper *s) {
+  mpm_status status = begin_explicit(s);
   if (!status) status = mpmi_explicit_grid(&s->step, &s->nodes);
   return status ? status : mpmi_explicit_end(&s->step, &s->nodes);
 }
@@ -229,8 +240,7 @@ mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
                      "scheme MPM_NEWMARK has no steps in parts: use mpm_step, or an explicit scheme");
   begin(s, dt, 1);
   status = set_out(s);
-  if (!status)
-    status = mpmi_together_end(s, mpmi_explicit_begin(&s->step, &s->nodes), exchanges_to(s, MPMI_BEGUN));
+  if (!status) status = begin_explicit(s);
   if (status) return give_up(s, status);
   /* until the end the host sees the old state */
   if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, 0);

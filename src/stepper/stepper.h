@@ -156,6 +156,8 @@ int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, 
 /* Brings nodes back to particles. USL: everything from the updated nodal velocity. MUSL: L from the velocity
  * that the new particles give the nodes. USF has its strain already. */
 mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes);
+/* Moves surfaces with the nodes, once that is done on all parts (collective). */
+mpm_status mpmi_explicit_move_surfaces(mpmi_step *step, mpmi_nodes *nodes);
 
 /* ---- heat.c ------------------------------------------------------------------------------------------ */
 /* The heat of a set is no longer described. */

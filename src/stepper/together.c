@@ -22,7 +22,15 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
   if (mpmi_has_friction_planes(settings) || s->layout.constraints.contact_count)
     what = "a friction wall", instead = "MPM_WALL_SLIP or MPM_WALL_FIXED";
   if (settings->obstacles.count) what = "an obstacle";
-  if (settings->surfaces.count) what = "a surface", instead = "forces on particles";
+  for (int64_t i = 0; i < settings->surfaces.count; ++i) {
+    const mpm_surface *surface = settings->surfaces.surface[i];
+    if (mpmi_surface_prescribes(surface))
+      what = "a surface that prescribes", instead = "loads, prescribed particles or velocities of nodes";
+    if (settings->heat.any && (surface->heat.flux != 0.0 || surface->heat.film > 0.0))
+      what = "heat through a surface", instead = "the heat source of a set";
+  }
+  if (settings->surfaces.count && mpmi_is_implicit(settings))
+    what = "a surface in implicit steps", instead = "MPM_USL, MPM_USF or MPM_MUSL";
   if (adapts) what = "adaption";
   if (bodies) what = "bodies with nodes of their own", instead = "body 0 for all sets";
   return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
@@ -33,13 +41,20 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
 /* The flags of sets that count on all parts once they are set on one. */
 static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE, MPMI_DIRTY_STRESS, MPMI_DIRTY_SUMS,
                                 MPMI_DIRTY_ACCELERATION};
-enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 8, MOST_NUMBERS = 7 };
+enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 10, MOST_NUMBERS = 7 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
 static void put_number(int64_t *word, double number) {
   memcpy(&word[0], &number, sizeof number);
   word[1] = ~word[0];
+}
+
+/* Returns a number that is another where surfaces or their markers are. */
+static double count_markers(const mpmi_surfaces *list) {
+  double number = 0.0;
+  for (int64_t i = 0; i < list->count; ++i) number = 3.0 * number + 1.0 + (double)list->surface[i]->now.count;
+  return number;
 }
 
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
@@ -57,12 +72,16 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
     word[6] |= layout->member[m].set->field[MPMI_PRESCRIBED].present;
   for (int32_t i = 0; i < count; ++i) put_number(&word[OWN_WORDS + 2 * i], number[i]);
   word[7] = status != MPM_OK;
+  put_number(&word[8], count_markers(&s->settings.surfaces));
   const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word);
   if (lost) return lost;
   if (word[7]) return mpmi_agree(c, status);
   if (word[0] != ~word[1])
     return mpmi_fail(c, MPM_E_STATE,
                      "the stepper has other numbers of sets on other parts: add the same to all");
+  if (word[8] != ~word[9])
+    return mpmi_fail(c, MPM_E_STATE,
+                     "surfaces have other numbers of markers on other parts: all parts have all markers");
   for (int32_t i = 0; i < count; ++i)
     if (word[OWN_WORDS + 2 * i] != ~word[OWN_WORDS + 2 * i + 1])
       return mpmi_fail(c, MPM_E_ARG, "%s is %g here, and another number on another part: give all the same",

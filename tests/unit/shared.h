@@ -16,6 +16,7 @@ typedef struct outcome {
   mpm_step_info info;
   double reaction[6][3], stable_dt;
   mpm_heat_info heat; /* of steppers whose sets have heat */
+  uint64_t markers;   /* of what markers of surfaces have */
   int64_t total, own;
   int64_t failed_particle; /* of a step that had to fail */
   mpm_parallel_info parallel;
@@ -66,7 +67,7 @@ int32_t describe_option(scene *is, int32_t at, int32_t total, char *name, size_t
 scene warm_scene(int32_t cells, int32_t implicit);
 mpm_status equip_heat(world *w, const scene *is);
 
-/* Add the cases of shared_options.c and shared_heat.c. */
+/* Add the cases of shared_options.c, shared_heat.c and shared_surfaces.c. */
 void add_shared_options(Suite *suite);
 void add_shared_heat(Suite *suite);
 

@@ -102,6 +102,7 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
           (long long)b->info.resorts);
     if (memcmp(a->reaction, b->reaction, sizeof a->reaction) != 0)
       ck_abort_msg("%s, part %d of %d: other reactions", name, r, parts);
+    ck_assert_msg(a->markers == b->markers, "%s, part %d of %d: other markers", name, r, parts);
     if (memcmp(&a->heat, &b->heat, sizeof a->heat) != 0)
       ck_abort_msg("%s, part %d of %d: another heat: %.17g, %.17g; gained %.17g, %.17g; sources %.17g, "
                    "%.17g; walls %.17g, %.17g; dissipated %.17g, %.17g",
@@ -647,5 +648,6 @@ Suite *shared_suite(void) {
   suite_add_tcase(suite, failures);
   add_shared_options(suite);
   add_shared_heat(suite);
+  add_shared_surfaces(suite);
   return suite;
 }
