@@ -70,5 +70,6 @@ mpm_status equip_heat(world *w, const scene *is);
 /* Add the cases of shared_options.c, shared_heat.c and shared_surfaces.c. */
 void add_shared_options(Suite *suite);
 void add_shared_heat(Suite *suite);
+void add_shared_surfaces(Suite *suite);
 
 #endif
