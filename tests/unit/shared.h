@@ -67,6 +67,10 @@ int32_t describe_option(scene *is, int32_t at, int32_t total, char *name, size_t
 scene warm_scene(int32_t cells, int32_t implicit);
 mpm_status equip_heat(world *w, const scene *is);
 
+/* A closed surface that loads the material all around a place, and is split as it comes; takes it out. */
+mpm_status add_loads(world *w, double middle, double radius, mpm_surface **out);
+mpm_status drop_loads(world *w, mpm_surface *s);
+
 /* Add the cases of shared_options.c, shared_heat.c and shared_surfaces.c. */
 void add_shared_options(Suite *suite);
 void add_shared_heat(Suite *suite);

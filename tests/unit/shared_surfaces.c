@@ -38,7 +38,7 @@ static mpm_status add_around(const world *w, mpm_surface *s, double middle, doub
   return mpm_surface_add_triangles(s, 6, x, 8, corner, spacing, NULL, NULL);
 }
 
-static mpm_status add_surface(world *w, double middle, double radius, mpm_surface **out) {
+mpm_status add_loads(world *w, double middle, double radius, mpm_surface **out) {
   mpm_surface_desc d;
   const double h = w->desc.grid.spacing[0];
   mpm_status status = mpm_surface_desc_init(&d, sizeof d);
@@ -52,7 +52,7 @@ static mpm_status add_surface(world *w, double middle, double radius, mpm_surfac
   return status ? status : mpm_stepper_add_surface(w->stepper, *out);
 }
 
-static mpm_status drop(world *w, mpm_surface *s) {
+mpm_status drop_loads(world *w, mpm_surface *s) {
   const mpm_status status = mpm_stepper_remove_surface(w->stepper, s);
   return status ? status : mpm_surface_destroy(s);
 }
@@ -85,15 +85,15 @@ static mpm_status load(world *w, const scene *is, outcome *found) {
   double dt;
   mpm_surface *s[2] = {NULL, NULL};
   (void)is;
-  mpm_status status = add_surface(w, 0.45, 0.2, &s[0]), mixed = MPM_OK;
+  mpm_status status = add_loads(w, 0.45, 0.2, &s[0]), mixed = MPM_OK;
   const int64_t had = status ? 0 : mpm_surface_count(s[0]);
   if (!status) status = mpm_stable_dt(w->stepper, &dt);
   for (int32_t i = 0; i < STEPS && !status; ++i) {
-    if (i == 6) status = add_surface(w, 0.5, 0.15, &s[1]);
+    if (i == 6) status = add_loads(w, 0.5, 0.15, &s[1]);
     if (i == 12) {
       mixed = mix_markers(w, s[0], &found->markers);
       if (w->dim > 1 && mpm_surface_count(s[0]) <= had) return MPM_E_INTERNAL; /* some were split */
-      status = drop(w, s[0]);
+      status = drop_loads(w, s[0]);
       s[0] = NULL;
     }
     if (!status) status = mpm_step(w->stepper, dt * (0.2 + 0.1 * (i % 3)), &w->info);
@@ -101,7 +101,7 @@ static mpm_status load(world *w, const scene *is, outcome *found) {
   if (!status) status = mixed;
   if (!status) status = mix_markers(w, s[1], &found->markers);
   for (int32_t i = 0; i < 2; ++i)
-    if (s[i]) drop(w, s[i]);
+    if (s[i]) drop_loads(w, s[i]);
   return status;
 }
 
@@ -129,7 +129,7 @@ static mpm_status fly(world *w, const scene *is, outcome *found) {
   double dt;
   mpm_surface *s = NULL;
   (void)is;
-  mpm_status status = add_surface(w, 0.72, 0.2, &s);
+  mpm_status status = add_loads(w, 0.72, 0.2, &s);
   int64_t most = 0;
   if (!status) status = mpm_stable_dt(w->stepper, &dt);
   for (int32_t i = 0; i < 100 && !status; ++i) {
@@ -138,7 +138,7 @@ static mpm_status fly(world *w, const scene *is, outcome *found) {
   }
   if (!status) status = mix_markers(w, s, &found->markers);
   if (!status && mpm_surface_count(s) >= most) status = MPM_E_INTERNAL; /* none has left */
-  if (s) drop(w, s);
+  if (s) drop_loads(w, s);
   return status;
 }
 
@@ -175,7 +175,7 @@ static mpm_status fail_loads(world *w, const scene *is, outcome *found) {
   int32_t part = 0, parts = 1;
   (void)is;
   mpm_context_part(w->context, &part, &parts);
-  mpm_status status = add_surface(w, 0.45, 0.2, &s);
+  mpm_status status = add_loads(w, 0.45, 0.2, &s);
   if (!status) status = mpm_stable_dt(w->stepper, &dt);
   dt *= 0.3;
   for (int32_t i = 0; i < 4 && !status; ++i) status = mpm_step(w->stepper, dt, &w->info);
@@ -202,7 +202,7 @@ static mpm_status fail_loads(world *w, const scene *is, outcome *found) {
     if (!status) status = expect(w, dt, MPM_E_STATE, "other numbers of markers");
     if (status == MPM_OK) w->info.cause = MPM_OK;
   }
-  if (s) drop(w, s);
+  if (s) drop_loads(w, s);
   return status;
 }
 
@@ -217,13 +217,13 @@ END_TEST
 static mpm_status ask_for_more(world *w, const scene *is, outcome *found) {
   mpm_surface *s = NULL;
   mpm_surface_desc d;
-  mpm_status status = add_surface(w, 0.45, 0.2, &s);
+  mpm_status status = add_loads(w, 0.45, 0.2, &s);
   (void)is, (void)found;
   if (!status) status = mpm_surface_desc_init(&d, sizeof d);
   d.prescribes = MPM_PRESCRIBES_VELOCITY;
   if (!status) status = mpm_surface_configure(s, &d);
   if (!status) status = expect(w, 1e-5, MPM_E_UNSUPPORTED, "a surface that prescribes");
-  if (s) drop(w, s);
+  if (s) drop_loads(w, s);
   return status;
 }
 

@@ -560,6 +560,7 @@ END_TEST
  * made again. No part waits, and nothing is lost. */
 typedef struct hungry {
   scene is;
+  int32_t loads;          /* with a surface */
   int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
   int32_t failed[3];      /* how many calls of each part */
   host_memory memory[3];
@@ -581,7 +582,9 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
   w.desc = h->is.desc;
   w.desc.context.transport = transport;
   mpm_status status = world_try_open(&w);
+  mpm_surface *surface = NULL;
   if (!status && h->is.heat) status = equip_heat(&w, &h->is);
+  if (!status && h->loads) status = add_loads(&w, 0.45, 0.2, &surface);
   const int64_t opened = w.memory.calls;
   if (part == 1 && h->fail_at) w.memory.fail_at = opened + h->fail_at;
   if (!status) AGAIN(h, part, status, fill_middle(&w, w.set[0], 0.2, 0.7));
@@ -592,6 +595,7 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
   w.memory.fail_at = 0;
   if (!status) status = mpm_state_hash(w.stepper, &found->hash);
   found->status = status;
+  if (surface) drop_loads(&w, surface);
   world_try_close(&w);
   h->memory[part] = w.memory;
 }
@@ -604,7 +608,8 @@ START_TEST(memory_runs_out) {
   for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
     memset(&h, 0, sizeof h);
     memset(&plan, 0, sizeof plan);
-    h.is = _i ? warm_scene(2 * wide, _i - 1) : scene_of(2, 2 * wide, set_up_body);
+    h.loads = _i == 3;
+    h.is = _i && !h.loads ? warm_scene(2 * wide, _i - 1) : scene_of(2, 2 * wide, set_up_body);
     h.fail_at = at;
     ck_assert_msg(!parts_run(3, live_hungry, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
                   (long long)calls, plan.text);
@@ -644,7 +649,7 @@ Suite *shared_suite(void) {
   tcase_add_loop_test(failures, transport_fails, 0, 3);
   tcase_add_test(failures, transport_is_checked);
   tcase_add_test(failures, transport_is_lost);
-  tcase_add_loop_test(failures, memory_runs_out, 0, 3);
+  tcase_add_loop_test(failures, memory_runs_out, 0, 4);
   suite_add_tcase(suite, failures);
   add_shared_options(suite);
   add_shared_heat(suite);
