@@ -49,6 +49,7 @@ typedef struct mpmi_parts {
   mpm_context *context;
   const mpm_grid *grid;
   int32_t margin;           /* nodes so far beyond those of a tile are to be whole, too */
+  int32_t meets_markers;    /* there have been surfaces: the margin counts what their markers need */
   uint64_t *first;          /* [parts + 1] part r has the keys first[r] <= key < first[r + 1] */
   int32_t is_cut, is_empty; /* empty: no part has particles */
   int32_t is_stale;         /* a sort has not come to its end on all parts */

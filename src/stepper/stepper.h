@@ -130,8 +130,9 @@ void mpmi_surfaces_forget(const mpmi_surfaces *list);
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */
 mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure);
-/* Returns the largest stable step: Courant's condition and that of viscosity. */
-double mpmi_stable_dt(const mpm_stepper *s);
+/* Finds the largest stable step: Courant's condition, and those of viscosity, heat and obstacles
+ * (collective). */
+mpm_status mpmi_stable_dt(const mpm_stepper *s, double *dt);
 /* Returns MPM_E_STATE when a set has views out of the given access, or holds bad values. */
 mpm_status mpmi_check_sets(mpm_stepper *s, int32_t access);
 
@@ -159,6 +160,8 @@ void mpmi_explicit_gathers(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_
 /* Brings nodes back to particles. USL: everything from the updated nodal velocity. MUSL: L from the velocity
  * that the new particles give the nodes. USF has its strain already. */
 mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes);
+/* Moves surfaces with the nodes, once that is done on all parts (collective). */
+mpm_status mpmi_explicit_move_surfaces(mpmi_step *step, mpmi_nodes *nodes);
 
 /* ---- heat.c ------------------------------------------------------------------------------------------ */
 /* The heat of a set is no longer described. */

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-mpm_status mpmi_together(mpm_stepper *s, mpm_status status) {
+mpm_status mpmi_together(const mpm_stepper *s, mpm_status status) {
   return mpmi_is_shared(s) ? mpmi_agree(s->context, status) : status;
 }
 
@@ -19,10 +19,16 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
   for (int32_t face = 0; face < 2 * s->grid->dim; ++face)
     nodes |= mpmi_wall_kind_of(settings->wall[face].kind)->rubs == MPMI_RUBS_NODES;
   if (mpmi_is_implicit(settings)) what = "scheme MPM_NEWMARK", instead = "MPM_USL, MPM_USF or MPM_MUSL";
-  if (mpmi_is_total_lagrangian(s->grid)) what = "a total Lagrangian grid", instead = "one that is not";
   if (nodes) what = "MPM_WALL_FRICTION_NODES", instead = "MPM_WALL_FRICTION";
-  if (settings->surfaces.count) what = "a surface", instead = "forces on particles";
-  if (settings->heat.any) what = "heat";
+  for (int64_t i = 0; i < settings->surfaces.count; ++i) {
+    const mpm_surface *surface = settings->surfaces.surface[i];
+    if (mpmi_surface_prescribes(surface))
+      what = "a surface that prescribes", instead = "loads, prescribed particles or velocities of nodes";
+    if (settings->heat.any && (surface->heat.flux != 0.0 || surface->heat.film > 0.0))
+      what = "heat through a surface", instead = "the heat source of a set";
+  }
+  if (settings->surfaces.count && mpmi_is_implicit(settings))
+    what = "a surface in implicit steps", instead = "MPM_USL, MPM_USF or MPM_MUSL";
   if (adapts) what = "adaption";
   return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                           "a problem in several parts does not have %s: use %s", what, instead)
@@ -61,13 +67,20 @@ static int64_t fingerprint(const mpm_stepper *s) {
 /* The flags of sets that count on all parts once they are set on one. */
 static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE, MPMI_DIRTY_STRESS, MPMI_DIRTY_SUMS,
                                 MPMI_DIRTY_ACCELERATION};
-enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 10, MOST_NUMBERS = 7 };
+enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 12, MOST_NUMBERS = 7 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
 static void put_number(int64_t *word, double number) {
   memcpy(&word[0], &number, sizeof number);
   word[1] = ~word[0];
+}
+
+/* Returns a number that is another where surfaces or their markers are. */
+static double count_markers(const mpmi_surfaces *list) {
+  double number = 0.0;
+  for (int64_t i = 0; i < list->count; ++i) number = 3.0 * number + 1.0 + (double)list->surface[i]->now.count;
+  return number;
 }
 
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
@@ -87,6 +100,7 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   word[7] = status != MPM_OK;
   word[8] = fingerprint(s);
   word[9] = ~word[8];
+  put_number(&word[10], count_markers(&s->settings.surfaces));
   const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word);
   if (lost) return lost;
   if (word[7]) return mpmi_agree(c, status);
@@ -97,6 +111,9 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
     return mpmi_fail(c, MPM_E_STATE,
                      "the stepper is set up otherwise on another part: give it the same description, walls, "
                      "bodies, obstacles, hooks and velocities of nodes on all");
+  if (word[10] != ~word[11])
+    return mpmi_fail(c, MPM_E_STATE,
+                     "surfaces have other numbers of markers on other parts: all parts have all markers");
   for (int32_t i = 0; i < count; ++i)
     if (word[OWN_WORDS + 2 * i] != ~word[OWN_WORDS + 2 * i + 1])
       return mpmi_fail(c, MPM_E_ARG, "%s is %g here, and another number on another part: give all the same",

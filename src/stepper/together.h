@@ -10,7 +10,7 @@ static inline int32_t mpmi_is_shared(const mpm_stepper *s) {
   return s->layout.parts != NULL;
 }
 /* All parts learn whether all have MPM_OK: mpmi_agree() where there are several. */
-mpm_status mpmi_together(mpm_stepper *s, mpm_status status);
+mpm_status mpmi_together(const mpm_stepper *s, mpm_status status);
 /* The same within a step: all parts also have the numbers of the first part's failure. */
 mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status);
 /* Begins a call: all parts have a status, and numbers that must be alike; what has been changed on one of

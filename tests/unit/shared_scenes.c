@@ -1,4 +1,4 @@
-#include "shared_scenes.h"
+#include "shared.h"
 
 scene scene_of(int32_t dim, int64_t cells, scene_fn set_up) {
   scene is;
@@ -59,6 +59,8 @@ static mpm_status play(world *w, const scene *is, outcome *found) {
   mpm_status read = mpm_stepper_info(w->stepper, &found->info);
   if (!read) read = mpm_state_hash(w->stepper, &found->hash);
   if (!read) read = mpm_stable_dt(w->stepper, &found->stable_dt);
+  found->heat.struct_size = sizeof found->heat;
+  if (!read && is->heat) read = mpm_stepper_heat_info(w->stepper, &found->heat);
   if (!read) read = mpm_particles_total(w->set[0], &found->total);
   if (!read) read = mpm_stepper_parallel_info(w->stepper, 0, &found->parallel);
   for (int32_t face = 0; face < 2 * w->dim && !read && found->info.step > 0; ++face)
@@ -80,7 +82,7 @@ void live(int32_t part, const mpm_transport *transport, void *user) {
   if (world_try_close(&w) && !found->status) found->status = MPM_E_INTERNAL;
 }
 
-void check_scene(const scene *is, const char *name, int32_t parts) {
+mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
   scene one = *is, many = *is;
   parts_plan plan;
   memset(&plan, 0, sizeof plan);
@@ -107,6 +109,13 @@ void check_scene(const scene *is, const char *name, int32_t parts) {
           (long long)b->info.resorts);
     if (memcmp(a->reaction, b->reaction, sizeof a->reaction) != 0)
       ck_abort_msg("%s, part %d of %d: other reactions", name, r, parts);
+    ck_assert_msg(a->markers == b->markers, "%s, part %d of %d: other markers", name, r, parts);
+    if (memcmp(&a->heat, &b->heat, sizeof a->heat) != 0)
+      ck_abort_msg("%s, part %d of %d: another heat: %.17g, %.17g; gained %.17g, %.17g; sources %.17g, "
+                   "%.17g; walls %.17g, %.17g; dissipated %.17g, %.17g",
+                   name, r, parts, a->heat.heat, b->heat.heat, a->heat.gained_total, b->heat.gained_total,
+                   a->heat.sources_total, b->heat.sources_total, a->heat.walls_total[0],
+                   b->heat.walls_total[0], a->heat.dissipated_total, b->heat.dissipated_total);
     if (memcmp(a->seen, b->seen, sizeof a->seen) != 0)
       ck_abort_msg("%s, part %d of %d: another pose", name, r, parts);
     for (int32_t i = 0; i < 4; ++i)
@@ -125,4 +134,5 @@ void check_scene(const scene *is, const char *name, int32_t parts) {
     ck_assert_msg(a->stable_dt == b->stable_dt && a->total == b->total, "%s, part %d of %d: %g, %g", name, r,
                   parts, a->stable_dt, b->stable_dt);
   }
+  return a->status;
 }

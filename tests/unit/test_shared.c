@@ -1,13 +1,10 @@
-/* One problem in several parts has the bits that it has in one. Parts are threads here
- * (shared_scenes.h). */
-#include "combinations.h"
-#include "shared_scenes.h"
+/* One problem in several parts has the bits that it has in one. Parts are threads here (parts.h), where
+ * Check's macros may not be used: every part keeps what it has found, which is compared afterwards. */
+#include "shared.h"
 #include "shared_states.h"
 
-enum { SAMPLE = 120 };
-
 /* ---- combinations -------------------------------------------------------------------------------------- */
-static mpm_status set_up_combination(world *w, const scene *is) {
+mpm_status set_up_body(world *w, const scene *is) {
   mpm_status status = set_walls(w);
   if (!status) status = fill_middle(w, w->set[0], 0.2, 0.7);
   return status ? status : set_velocities(w, w->set[0], is->speed);
@@ -23,18 +20,22 @@ static void tear_down_list(void) {
   free(list);
 }
 
-/* Blocks are 64, 16 and 6 nodes WIDE: a body spans several along each axis. */
+/* Blocks are 64, 16 and 6 nodes wide. */
 static const int32_t cells_of[] = {0, 300, 56, 20};
+
+void refine(world_desc *desc) {
+  for (int32_t k = 0; k < desc->grid.dim; ++k) {
+    desc->grid.cells[k] = cells_of[desc->grid.dim];
+    desc->grid.spacing[k] = 1.0 / (double)desc->grid.cells[k];
+  }
+}
 
 static int32_t describe(scene *is, const combination *c) {
   if (refusal_of(c) || scheme_options[c->choice[CHOOSE_SCHEME]].scheme == MPM_NEWMARK) return 0;
   memset(is, 0, sizeof *is);
   is->desc = describe_combination(c);
-  for (int32_t k = 0; k < is->desc.grid.dim; ++k) {
-    is->desc.grid.cells[k] = cells_of[is->desc.grid.dim];
-    is->desc.grid.spacing[k] = 1.0 / (double)is->desc.grid.cells[k];
-  }
-  is->set_up = set_up_combination;
+  refine(&is->desc);
+  is->set_up = set_up_body;
   is->speed = 8.0;
   return 1;
 }
@@ -103,9 +104,10 @@ START_TEST(host_acts) {
   is.desc.sets = 2;
   is.desc.stepper.scheme = schemes[_i % 3];
   is.desc.stepper.locking_remedy = _i / 3 % 2;
-  is.desc.grid.periodic[1] = _i / 6;
-  is.desc.grid.cells[1] = _i / 6 ? 4 * WIDE - 7 : 4 * WIDE; /* a period that is no multiple of a block */
+  is.desc.grid.periodic[1] = _i / 6 % 2;
+  is.desc.grid.cells[1] = _i / 6 % 2 ? 4 * WIDE - 7 : 4 * WIDE; /* a period that is no multiple of a block */
   is.desc.stepper.mass_damping = _i % 2 ? 2.0 : 0.0;
+  is.desc.grid.total_lagrangian = _i / 12;
   check_scene(&is, "host", 3);
 }
 END_TEST
@@ -158,7 +160,7 @@ static mpm_status prescribe_later(world *w, const scene *is, outcome *found) {
 }
 
 START_TEST(prescribed_later) {
-  scene is = scene_of(2, 2 * WIDE, set_up_combination);
+  scene is = scene_of(2, 2 * WIDE, set_up_body);
   is.run = prescribe_later;
   check_scene(&is, "prescribed later", MOST_PARTS);
 }
@@ -194,6 +196,7 @@ START_TEST(light_nodes_lead) {
   is.desc.stepper.scheme = _i % 2 ? MPM_MUSL : MPM_USL;
   is.desc.stepper.transfer = transfers[_i % 3];
   is.desc.stepper.xpic_order = 2;
+  is.desc.grid.total_lagrangian = _i / 12;
   check_scene(&is, "clumps", 2 + _i % 4);
 }
 END_TEST
@@ -218,7 +221,7 @@ static mpm_status fly(world *w, const scene *is, outcome *found) {
 }
 
 START_TEST(blocks_are_cut_anew) {
-  scene is = scene_of(2, 6 * WIDE, set_up_combination);
+  scene is = scene_of(2, 6 * WIDE, set_up_body);
   is.desc.grid.periodic[0] = 1;
   is.run = fly;
   is.speed = 30.0;
@@ -258,9 +261,10 @@ static mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
 
 START_TEST(steps_fail_together) {
   static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL};
-  scene is = scene_of(2, 4 * WIDE, set_up_combination);
+  scene is = scene_of(2, 4 * WIDE, set_up_body);
   is.desc.stepper.scheme = schemes[_i % 3];
-  is.desc.stepper.locking_remedy = _i / 3;
+  is.desc.stepper.locking_remedy = _i / 3 % 2;
+  is.desc.grid.total_lagrangian = _i / 6;
   is.run = fail_and_go_on;
   check_scene(&is, "failure", 3);
 }
@@ -301,7 +305,7 @@ static mpm_status differ(world *w, const scene *is, outcome *found) {
 }
 
 START_TEST(unlike_parts) {
-  scene is = scene_of(2, 2 * WIDE, set_up_combination);
+  scene is = scene_of(2, 2 * WIDE, set_up_body);
   is.run = differ;
   parts_plan plan;
   memset(&plan, 0, sizeof plan);
@@ -313,7 +317,7 @@ END_TEST
 
 /* Wherever the transport fails on one part, every part returns and gives its memory back. */
 START_TEST(transport_fails) {
-  scene is = scene_of(2, 2 * WIDE, set_up_combination);
+  scene is = _i ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
   parts_plan plan;
   int64_t calls = 0;
   for (int64_t at = 0; !at || at <= calls; at += 1 + at / 6) {
@@ -433,6 +437,7 @@ END_TEST
  * is made again. No part waits, and nothing is lost. */
 typedef struct hungry {
   scene is;
+  int32_t loads;          /* with a surface */
   int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
   int32_t failed[3];      /* how many calls of each part */
   host_memory memory[3];
@@ -454,6 +459,9 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
   w.desc = h->is.desc;
   w.desc.context.transport = transport;
   mpm_status status = world_try_open(&w);
+  mpm_surface *surface = NULL;
+  if (!status && h->is.heat) status = equip_heat(&w, &h->is);
+  if (!status && h->loads) status = add_loads(&w, 0.45, 0.2, &surface);
   const int64_t opened = w.memory.calls;
   if (part == 1 && h->fail_at) w.memory.fail_at = opened + h->fail_at;
   if (!status) AGAIN(h, part, status, fill_middle(&w, w.set[0], 0.2, 0.7));
@@ -464,6 +472,7 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
   w.memory.fail_at = 0;
   if (!status) status = mpm_state_hash(w.stepper, &found->hash);
   found->status = status;
+  if (surface) drop_loads(&w, surface);
   world_try_close(&w);
   h->memory[part] = w.memory;
 }
@@ -476,7 +485,8 @@ START_TEST(memory_runs_out) {
   for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
     memset(&h, 0, sizeof h);
     memset(&plan, 0, sizeof plan);
-    h.is = scene_of(2, 2 * WIDE, set_up_combination);
+    h.loads = _i == 3;
+    h.is = _i && !h.loads ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
     h.fail_at = at;
     ck_assert_msg(!parts_run(3, live_hungry, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
                   (long long)calls, plan.text);
@@ -502,22 +512,25 @@ Suite *shared_suite(void) {
   suite_add_tcase(suite, all);
   TCase *host = tcase_create("host");
   tcase_set_timeout(host, 120);
-  tcase_add_loop_test(host, host_acts, 0, 12);
+  tcase_add_loop_test(host, host_acts, 0, 24);
   tcase_add_test(host, particles_come_and_go);
   tcase_add_test(host, prescribed_later);
-  tcase_add_loop_test(host, light_nodes_lead, 0, 12);
+  tcase_add_loop_test(host, light_nodes_lead, 0, 24);
   tcase_add_test(host, few_blocks);
   tcase_add_test(host, blocks_are_cut_anew);
   suite_add_tcase(suite, host);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);
-  tcase_add_loop_test(failures, steps_fail_together, 0, 6);
+  tcase_add_loop_test(failures, steps_fail_together, 0, 12);
   tcase_add_test(failures, unlike_parts);
-  tcase_add_test(failures, transport_fails);
+  tcase_add_loop_test(failures, transport_fails, 0, 3);
   tcase_add_test(failures, transport_is_checked);
   tcase_add_test(failures, transport_is_lost);
-  tcase_add_test(failures, memory_runs_out);
+  tcase_add_loop_test(failures, memory_runs_out, 0, 4);
   suite_add_tcase(suite, failures);
+  add_shared_options(suite);
+  add_shared_heat(suite);
+  add_shared_surfaces(suite);
   suite_add_tcase(suite, shared_states_case());
   suite_add_tcase(suite, shared_pieces_case());
   return suite;

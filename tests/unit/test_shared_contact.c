@@ -1,6 +1,6 @@
 /* Bodies, obstacles and friction walls of one problem in several parts: contact has the bits of one part, and
  * so have its reports. */
-#include "shared_scenes.h"
+#include "shared.h"
 
 enum { SCENES = 96, OBSTACLES = 3 };
 
