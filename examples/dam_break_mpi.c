@@ -81,9 +81,10 @@ int main(int argc, char **argv) {
   if (mpm_stepper_parallel_info(stepper, 0, &part)) goto end;
   printf("part %d: %" PRId64 " particles in %" PRId64 " blocks, %" PRId64
          " at the edge; %d neighbours with %" PRId64 " ghosts; per step %.0f kB sent; %" PRId64
-         " particles left, imbalance %.2f\n",
+         " particles left, imbalance %.2f; %.2f s packing, %.2f waiting, %.2f reducing\n",
          rank, mpm_particles_count(water), part.blocks, part.boundary, (int)part.neighbours, part.ghosts,
-         1e-3 * (double)part.bytes_nodes / (double)now.step, part.moved, part.imbalance);
+         1e-3 * (double)part.bytes_nodes / (double)now.step, part.moved, part.imbalance, part.seconds_packing,
+         part.seconds_waiting, part.seconds_reducing);
   failed = 0;
 
 end:

@@ -15,13 +15,20 @@
  *
  * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
  * particles, where each part adds its own and numbers without ids follow those of the parts before;
- * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stable_dt(), mpm_state_hash(),
- * mpm_state_size(), mpm_state_save() in all its forms and mpm_state_load_pieces().
+ * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stepper_heat_info(),
+ * mpm_stable_dt(), mpm_state_hash(), mpm_state_size(), mpm_state_save() in all its forms and
+ * mpm_state_load_pieces().
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts, which is not checked.
  *
- * Of several parts these are asked for explicit steps of one body. MPM_E_UNSUPPORTED: implicit schemes, total
- * Lagrangian grids, friction walls, obstacles, surfaces, heat and adaption.
+ * Callbacks about nodes, friction, distances and the motion of obstacles are asked on every part that needs
+ * the answer, and must give the same on all. Obstacles are made and moved alike on all parts.
+ *
+ * Surfaces are made and filled alike on all parts: each part has all markers, and moves them alike.
+ * Callbacks of surfaces are asked on every part for all markers and must answer alike.
+ *
+ * Of several parts these are asked for explicit steps. MPM_E_UNSUPPORTED: implicit schemes,
+ * MPM_WALL_FRICTION_NODES, surfaces that prescribe or heat, and adaption.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

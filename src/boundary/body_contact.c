@@ -38,6 +38,11 @@ typedef struct encounter {
   double velocity[3], compliance[3], of_surface[3];
 } encounter;
 
+/* Returns the velocity of a body at its node, or that of the copy of another part's. */
+static double *party_velocity(const mpmi_bound *bound, mpmi_party *party) {
+  return party->slot == MPMI_COPIED_PARTY ? party->copy : mpmi_velocity(bound->values, party->slot);
+}
+
 /* With keeps nothing pushes a free obstacle: its velocity is that of the step. */
 static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_t keeps) {
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
@@ -50,8 +55,8 @@ static encounter encounter_of(mpmi_bound *bound, const mpmi_touch *touch, int32_
   if (e.party[0]->site >= 0 || e.party[1]->site >= 0) e.site = bound->nodes->surface_sites.site;
   for (int32_t c = 0; c < bound->dim; ++c) {
     if (e.surface) e.of_surface[c] += e.party[0]->own_velocity[c];
-    const double first = e.surface ? e.of_surface[c] : mpmi_velocity(bound->values, e.party[0]->slot)[c];
-    e.velocity[c] = mpmi_velocity(bound->values, e.party[1]->slot)[c] - first;
+    const double first = e.surface ? e.of_surface[c] : party_velocity(bound, e.party[0])[c];
+    e.velocity[c] = party_velocity(bound, e.party[1])[c] - first;
     e.compliance[c] = e.party[0]->inverse_mass[c] + e.party[1]->inverse_mass[c];
   }
   return e;
@@ -95,7 +100,9 @@ static double give(mpmi_bound *bound, mpmi_touch *touch, const encounter *e, con
     for (int32_t i = 0; i < 2; ++i) {
       const double by = to[i][c] * e->party[i]->inverse_mass[c];
       if (!(by < 0.0 || by > 0.0)) continue;
-      if (e->surface && e->surface->face >= 0) {
+      if (e->party[i]->slot == MPMI_COPIED_PARTY) {
+        e->party[i]->copy[c] += by;
+      } else if (e->surface && e->surface->face >= 0) {
         mpmi_press_node(bound, e->party[i]->slot, c, by); /* a reaction of walls */
         if (!keeps) e->party[i]->pressed[c] += by;
       } else {
@@ -307,10 +314,11 @@ static double sweep_touches(const contact_job *job, int64_t begin, int64_t count
   return first;
 }
 
-/* Touches that share no body are settled by themselves, as if the others were not there. */
+/* Touches that share no body are settled by themselves, as if the others were not there. In a projection
+ * without forces nothing couples meetings. */
 static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting) {
   double first = 0.0;
-  if (!meeting->touch_count || meeting->coupled) return 0.0;
+  if (!meeting->touch_count || (meeting->coupled && !job->keeps)) return 0.0;
   begin_meeting(job, meeting);
   if (!meeting->independent) return sweep_touches(job, meeting->first_touch, meeting->touch_count);
   for (int64_t i = 0; i < meeting->touch_count; ++i)
@@ -318,22 +326,35 @@ static double sweep_meeting(const contact_job *job, const mpmi_meeting *meeting)
   return first;
 }
 
-/* Meetings of free obstacles depend on each other, and are swept together in their order. */
-static double sweep_coupled(const contact_job *job) {
+/* Sweeps the meetings of free obstacles together, in their order. */
+static double sweep_listed(const contact_job *job) {
   const mpmi_contact_nodes *contact = &job->bound->nodes->contact;
   double first = 0.0;
-  for (int64_t m = 0; m < contact->meeting_count; ++m)
-    if (contact->meeting[m].coupled) begin_meeting(job, &contact->meeting[m]);
+  for (int64_t i = 0; i < contact->coupled_count; ++i)
+    begin_meeting(job, &contact->meeting[contact->coupled[i]]);
   for (int32_t sweep = 0; sweep < SWEEPS; ++sweep) {
     double most = 0.0;
-    for (int64_t m = 0; m < contact->meeting_count; ++m) {
-      const mpmi_meeting *meeting = &contact->meeting[m];
-      if (meeting->coupled) most = fmax(most, sweep_once(job, meeting->first_touch, meeting->touch_count));
+    for (int64_t i = 0; i < contact->coupled_count; ++i) {
+      const mpmi_meeting *meeting = &contact->meeting[contact->coupled[i]];
+      most = fmax(most, sweep_once(job, meeting->first_touch, meeting->touch_count));
     }
     if (!sweep) first = most;
     if (!(most > settled * first)) break;
   }
   return first;
+}
+
+/* Does so with those of other parts, which are gone afterwards. */
+static mpm_status sweep_coupled(const contact_job *job, double *first) {
+  mpmi_contact_nodes *contact = &job->bound->nodes->contact;
+  const int64_t meetings = contact->meeting_count, parties = contact->party_count,
+                touches = contact->touch_count;
+  const mpm_status status = mpmi_coupled_gather(job->bound);
+  if (!status) *first = sweep_listed(job);
+  contact->meeting_count = meetings;
+  contact->party_count = parties;
+  contact->touch_count = touches;
+  return status;
 }
 
 static void sweep_task(void *data, int64_t k) {
@@ -369,21 +390,26 @@ mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t firs
   const mpmi_settings *settings = bound->step->settings;
   contact_job job = {bound, keeps, first_round};
   *most = 0.0;
-  if (!mpmi_bodies_touch(bound)) return MPM_OK;
-  const mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, sweep_task, &job);
-  if (status) return status;
-  *most = sweep_coupled(&job);
+  mpm_status status = MPM_OK;
+  if (mpmi_bodies_touch(bound)) status = mpmi_run_tasks(settings, 0, settings->tasks, sweep_task, &job);
+  if (!status && !keeps) status = sweep_coupled(&job, most);
+  if (status || !mpmi_bodies_touch(bound)) return status;
   for (int32_t k = 0; k < settings->tasks; ++k)
     *most = fmax(*most, bound->step->work->report[k].contact_change);
   return MPM_OK;
 }
 
 /* ---- sums ---------------------------------------------------------------------------------------------- */
+/* Work of the host on nodes, in the exact sum of the step. */
+static void add_host_work(const mpmi_bound *bound, double work) {
+  mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_WORK], work);
+}
+
 /* What holds a component of a node takes the impulse on it, and does work where it moves the node. */
 static void add_work(mpmi_bound *bound, const mpmi_party *party, double sign, const double *impulse) {
   for (int32_t c = 0; c < bound->dim && party->surface < 0; ++c)
     if (mpmi_held_by(bound->nodes, party->slot, c))
-      bound->step->host_work -= sign * impulse[c] * bound->nodes->held_value[party->slot][c];
+      add_host_work(bound, -sign * impulse[c] * bound->nodes->held_value[party->slot][c]);
 }
 
 /* Surfaces that prescribe push back: what contact gives to what they hold is a part of their impulse. */
@@ -393,7 +419,7 @@ static void tell_sites(mpmi_bound *bound, const mpmi_party *party, double sign, 
   for (int32_t at = sites->last[party->slot]; at >= 0; at = sites->site[at].before) {
     mpmi_surface_site *site = &sites->site[at];
     const double along = site->slides ? mpmi_inner(site->vector, impulse) : 0.0;
-    bound->step->host_work -= sign * along * site->value;
+    add_host_work(bound, -sign * along * site->value);
     for (int32_t c = 0; c < bound->dim; ++c)
       site->impulse[c] -= sign * (site->holds[c] ? impulse[c] : along * site->vector[c]);
   }
@@ -402,16 +428,17 @@ static void tell_sites(mpmi_bound *bound, const mpmi_party *party, double sign, 
 /* The impulse is on the second party. Bodies are turned about the origin, a surface about its centre, by the
  * opposite. */
 static void add_torque(const mpmi_bound *bound, const mpmi_party *first, const mpmi_party *second,
-                       const double *impulse, mpmi_pair_sums *sums) {
+                       const double *impulse, mpmi_whole_sum *sums) {
   double x[3] = {0.0, 0.0, 0.0}, about[3];
   if (first->surface < 0)
     mpmi_contact_position(&bound->step->layout->blocks, &bound->nodes->contact, second->slot, x);
   for (int32_t k = 0; k < 3 && first->surface >= 0; ++k) x[k] = -first->arm[k];
   mpmi_cross(x, impulse, about);
-  for (int32_t c = 0; c < 3; ++c) sums->angular_impulse[c] += about[c];
+  for (int32_t c = 0; c < 3; ++c) mpmi_exact_add(&sums[MPMI_PAIR_MOMENT + c], about[c]);
 }
 
-static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_sums *sums) {
+static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_whole_sum *sums) {
+  const mpmi_tally *tally = &bound->step->work->tally;
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
   const mpmi_party *pair[2] = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]};
   const mpmi_rigid_surface *surface = pair[0]->surface < 0 ? NULL : &contact->surface[pair[0]->surface];
@@ -420,39 +447,44 @@ static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_pair_su
     const int32_t moves = pair[0]->inverse_mass[c] > 0.0 || pair[1]->inverse_mass[c] > 0.0 ||
                           (c < bound->dim && surface && mpmi_is_free(surface));
     impulse[c] = moves ? touch->normal_impulse * touch->normal[c] + touch->tangential[c] : 0.0;
-    sums->impulse[c] += impulse[c];
-    if (surface && surface->face >= 0) bound->step->impulse_by_face[surface->face][c] += impulse[c];
+    mpmi_exact_add(&sums[MPMI_PAIR_IMPULSE + c], impulse[c]);
+    if (surface && surface->face >= 0)
+      mpmi_exact_add(&tally->sum[MPMI_TALLY_FACES + 3 * surface->face + c], impulse[c]);
   }
   add_work(bound, pair[0], -1.0, impulse);
   add_work(bound, pair[1], 1.0, impulse);
   tell_sites(bound, pair[0], -1.0, impulse);
   tell_sites(bound, pair[1], 1.0, impulse);
   add_torque(bound, pair[0], pair[1], impulse, sums);
-  sums->normal_impulse += touch->normal_impulse;
-  sums->area += touch->area;
+  mpmi_exact_add(&sums[MPMI_PAIR_NORMAL], touch->normal_impulse);
+  mpmi_exact_add(&sums[MPMI_PAIR_AREA], touch->area);
   const double force = touch->normal_impulse / bound->step->velocity_dt;
-  if (touch->area > 0.0) sums->pressure_max = fmax(sums->pressure_max, force / touch->area);
+  double *most = &bound->step->pairs->record[touch->record].now.pressure_max;
+  if (touch->area > 0.0) *most = fmax(*most, force / touch->area);
 }
 
 void mpmi_body_contacts_sum(mpmi_bound *bound) {
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
+  const mpmi_tally *tally = &bound->step->work->tally;
   mpm_step_info *info = &bound->step->info;
   for (int64_t m = 0; m < contact->meeting_count; ++m) {
     const mpmi_meeting *meeting = &contact->meeting[m];
     int32_t closed = 0;
+    if (!mpmi_owns_node(bound->step->layout->parts, contact->party[meeting->first_party].slot)) continue;
     for (int64_t i = meeting->first_touch; i < meeting->first_touch + meeting->touch_count; ++i) {
       const mpmi_touch *touch = &contact->touch[i];
-      mpmi_pair_sums *sums = &bound->step->pairs->record[touch->record].now;
-      ++sums->nodes;
-      sums->closed += touch->closed;
-      sums->stuck += touch->stuck;
-      sums->ambiguous += touch->ambiguous;
-      sums->gap = fmin(sums->gap, touch->gap);
-      sums->dissipation += touch->dissipation;
-      sums->friction_work += touch->friction_work;
-      info->contact_dissipation += touch->dissipation;
+      mpmi_pair_sums *counts = &bound->step->pairs->record[touch->record].now;
+      mpmi_whole_sum *sums = mpmi_tally_pair(tally, touch->record);
+      ++counts->nodes;
+      counts->closed += touch->closed;
+      counts->stuck += touch->stuck;
+      counts->ambiguous += touch->ambiguous;
+      counts->gap = fmin(counts->gap, touch->gap);
+      mpmi_exact_add(&sums[MPMI_PAIR_DISSIPATION], touch->dissipation);
+      mpmi_exact_add(&sums[MPMI_PAIR_FRICTION_WORK], touch->friction_work);
+      mpmi_exact_add(&tally->sum[MPMI_TALLY_CONTACT], touch->dissipation);
       closed |= touch->closed;
-      bound->step->host_work += touch->work;
+      add_host_work(bound, touch->work);
       if (touch->closed) add_impulse(bound, touch, sums);
     }
     info->contact_nodes += closed;

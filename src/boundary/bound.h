@@ -127,6 +127,11 @@ mpm_status mpmi_body_contacts_act(mpmi_bound *bound, int32_t keeps, int32_t firs
 /* Adds up what they did, for reports. */
 void mpmi_body_contacts_sum(mpmi_bound *bound);
 
+/* ---- coupled_meetings.c ------------------------------------------------------------------------------ */
+/* Lists the meetings that free obstacles couple, in their order; those of other parts become the last of the
+ * meetings, parties and touches, from which the caller takes them away again. */
+mpm_status mpmi_coupled_gather(mpmi_bound *bound);
+
 /* ---- friction_callback.c ----------------------------------------------------------------------------- */
 /* Asks the host for the coefficients of friction of the touches that may close. */
 mpm_status mpmi_ask_friction(mpmi_bound *bound);

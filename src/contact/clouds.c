@@ -258,27 +258,27 @@ static void visit_block(const cloud_job *job, int64_t task, int64_t block, const
   }
   memset(tile.count, 0, (size_t)tile.nodes * sizeof *tile.count);
   for (int32_t m = 0; m < layout->member_count; ++m) {
-    const mpmi_member *member = &layout->member[m];
-    const int64_t begin = member->now.start[block], end = member->now.start[block + 1];
+    const mpmi_residents in = mpmi_residents_of(layout, m, block);
+    const int64_t begin = in.begin, end = in.end;
     if (begin == end) continue;
-    const mpmi_points points = mpmi_points_of(member->set, 0);
-    const int64_t *id = mpmi_i64(member->set, MPMI_ID, 0);
+    const mpmi_points points = mpmi_points_of(in.set, 0);
+    const int64_t *id = mpmi_i64(in.set, MPMI_ID, 0);
     for (int64_t s = begin; s < end; s += MPMI_CHUNK) {
       const int64_t n = end - s < MPMI_CHUNK ? end - s : MPMI_CHUNK;
       const int32_t need = job->fill ? MPMI_NEED_GRADIENT : 0;
       find(axis, is_own ? need : 0, &points, s, n, &W);
       spread_nodes(&job->basis, grid->dim, n, W.node);
       if (need && !is_own) find_own(own_axis, need, &points, s, n, &own);
-      const cloud_particles of = {
-          .weights = &W,
-          .own = is_own ? &W : &own,
-          .width = job->basis.width,
-          .tile = &tile,
-          .slot = s,
-          .member = m,
-          .volume = mpmi_f64(member->set, MPMI_VOLUME, 0),
-          .radius = mpmi_is_axisymmetric(grid) ? mpmi_f64(member->set, MPMI_POSITION, 0) : NULL,
-          .set = member->set};
+      const cloud_particles of = {.weights = &W,
+                                  .own = is_own ? &W : &own,
+                                  .width = job->basis.width,
+                                  .tile = &tile,
+                                  .slot = s,
+                                  .member = in.member,
+                                  .volume = mpmi_f64(in.set, MPMI_VOLUME, 0),
+                                  .radius =
+                                      mpmi_is_axisymmetric(grid) ? mpmi_f64(in.set, MPMI_POSITION, 0) : NULL,
+                                  .set = in.set};
       for (int64_t p = 0; p < n; ++p) {
         if (id[s + p] < 0 || !tile.meets[W.node[p]]) continue;
         if (job->fill)
@@ -308,19 +308,25 @@ static int64_t first_of_task(const cloud_job *job, int64_t k) {
   return low;
 }
 
+static void visit_if_reached(const cloud_job *job, int64_t task, int64_t block, const cloud_range *own) {
+  const mpmi_contact_nodes *contact = job->search->contact;
+  if (contact->in_reach[block] && contact->reached[block].first < own->end &&
+      contact->reached[block].last >= own->begin)
+    visit_block(job, task, block, own);
+}
+
+/* Tiles of one colour do not meet, so that ghosts may come after the others of their colour. */
 static void visit_task(void *data, int64_t k) {
   const cloud_job *job = data;
   const mpmi_layout *layout = job->search->step->layout;
-  const mpmi_contact_nodes *contact = job->search->contact;
+  const mpmi_parts *parts = layout->parts;
   const cloud_range own = {first_of_task(job, k), first_of_task(job, k + 1)};
   for (int32_t c = 0; c < MPMI_COLOURS; ++c) {
     const mpmi_worklist *list = &layout->worklist[1 + c];
-    for (int64_t i = 0; i < list->count; ++i) {
-      const int32_t block = list->block[i];
-      if (contact->in_reach[block] && contact->reached[block].first < own.end &&
-          contact->reached[block].last >= own.begin)
-        visit_block(job, k, block, &own);
-    }
+    for (int64_t i = 0; i < list->count; ++i) visit_if_reached(job, k, list->block[i], &own);
+    for (int64_t g = 0; parts && g < parts->ghost_count; ++g)
+      if (mpmi_colour_of(layout->blocks.grid->dim, layout->blocks.coord[parts->ghost[g].block]) == c)
+        visit_if_reached(job, k, parts->ghost[g].block, &own);
   }
 }
 
@@ -332,7 +338,7 @@ double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *co
     const mpmi_cloud *cloud = &contact->cloud[contact->cloud[i].source];
     for (int64_t e = cloud->first; e < cloud->first + cloud->count; ++e) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
-      const double radius = mpmi_f64(layout->member[entry->member].set, MPMI_POSITION, 0)[entry->slot];
+      const double radius = mpmi_f64(mpmi_resident_set(layout, entry->member), MPMI_POSITION, 0)[entry->slot];
       sum += entry->volume * radius;
       weight += entry->volume;
     }

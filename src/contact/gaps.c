@@ -48,7 +48,7 @@ static void collect(around *of, int32_t which) {
     for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
       if (entry->member != member) {
-        set = layout->member[member = entry->member].set;
+        set = mpmi_resident_set(layout, member = entry->member);
         position = mpmi_f64(set, MPMI_POSITION, 0);
         ld = set->ld;
       }
@@ -109,7 +109,8 @@ static double extent(const around *of, int32_t which, const double *n, double li
         const double along = sign * of->along[at + list[l]];
         const mpmi_cloud_entry *entry = &contact->entry[e + list[l]];
         if (along + half <= most) continue;
-        if (entry->member != member) widths = mpmi_widths_of(layout->member[member = entry->member].set);
+        if (entry->member != member)
+          widths = mpmi_widths_of(mpmi_resident_set(layout, member = entry->member));
         const double edge = of->half_edge[at + list[l]];
         const double far = along + mpmi_half_width(&widths, entry->slot, edge, seen);
         most = far > most ? far : most;

@@ -44,12 +44,21 @@ static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *si
   int64_t meetings = 0;
   for (int32_t n = 0; n < b->nodes; ++n) {
     int64_t bodies = 0, surfaces = 0;
-    for (int64_t i = site->blocks.first; i < end; ++i) bodies += takes_part(search, i * b->nodes + n);
-    for (int64_t i = site->first_near; i < end_near && bodies; ++i)
+    int32_t counts = 0; /* here, and not only for other parts */
+    for (int64_t i = site->blocks.first; i < end; ++i) {
+      if (!takes_part(search, i * b->nodes + n)) continue;
+      counts |= mpmi_meets_node(search->step->layout->parts, i * b->nodes + n);
+      ++bodies;
+    }
+    for (int64_t i = site->first_near; i < end_near && counts; ++i)
       surfaces += near_value(search, i, MPMI_NEAR_DISTANCE, n) < (double)INFINITY;
-    if (!bodies || bodies + surfaces < 2) continue;
+    if (!counts || bodies + surfaces < 2) continue;
     const int64_t number = meeting + meetings++;
-    if (fill) contact->meeting[number] = (mpmi_meeting){*party, bodies + surfaces, 0, 0, 0, 0};
+    if (fill)
+      contact->meeting[number] = (mpmi_meeting){.first_party = *party,
+                                                .party_count = bodies + surfaces,
+                                                .key = b->key[site->blocks.first],
+                                                .place = n};
     for (int64_t i = site->blocks.first; i < end && fill; ++i) {
       const int64_t slot = i * b->nodes + n;
       if (!takes_part(search, slot)) continue;

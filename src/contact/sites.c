@@ -173,6 +173,7 @@ mpm_status mpmi_contact_prepare(const mpmi_layout *layout, const mpmi_settings *
   contact->touch_count = contact->meeting_count = contact->party_count = 0;
   mpm_status status = make_surfaces(settings, contact);
   if (!status) status = find_sites(layout, settings, contact);
+  contact->anywhere = contact->site_count > 0;
   return status ? status : add_records(layout, contact, settings->context, records);
 }
 

@@ -20,24 +20,24 @@ typedef struct half_edge_cache {
   double volume, edge;
 } half_edge_cache;
 
-static void note_fault(const surface_job *job, int32_t member, const mpmi_distance_fault *fault,
+static void note_fault(const surface_job *job, const mpmi_residents *in, const mpmi_distance_fault *fault,
                        const int64_t *slot, mpmi_failure *failure) {
-  const mpm_particles *set = job->search->step->layout->member[member].set;
-  const int64_t particle = fault->point < 0 ? -1 : mpmi_i64(set, MPMI_ID, 0)[slot[fault->point]];
-  mpmi_failure found = mpmi_particle_failure(fault->cause, member, particle, fault->what);
+  const int64_t particle = fault->point < 0 ? -1 : mpmi_i64(in->set, MPMI_ID, 0)[slot[fault->point]];
+  const int32_t m = mpmi_resident_home(job->search->step->layout, in->member);
+  mpmi_failure found = mpmi_particle_failure(fault->cause, m, particle, fault->what);
   found.callback_status = fault->returned;
   mpmi_failure_take(failure, found);
 }
 
 /* Inert slots are no particles of clouds. */
-static void clear_chunk(const surface_job *job, int32_t member, int64_t begin, int64_t end,
+static void clear_chunk(const surface_job *job, const mpmi_residents *in, int64_t begin, int64_t end,
                         half_edge_cache *last, mpmi_failure *failure) {
   const mpmi_contact_nodes *contact = job->search->contact;
-  const mpm_particles *set = job->search->step->layout->member[member].set;
+  const mpm_particles *set = in->set;
   const mpm_grid *grid = set->grid;
   const mpmi_widths widths = mpmi_widths_of(set);
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
-  double *clearance = contact->clearance + contact->clearance_first[member];
+  double *clearance = contact->clearance + contact->clearance_first[in->member];
   mpmi_distances points = {.n = 0, .t = job->search->step->t};
   mpmi_distance_fault fault;
   int64_t slot[MPMI_DISTANCE_POINTS];
@@ -49,7 +49,7 @@ static void clear_chunk(const surface_job *job, int32_t member, int64_t begin, i
   }
   if (!points.n) return;
   if (mpmi_surface_distances(&contact->surface[job->surface], &points, &fault)) {
-    note_fault(job, member, &fault, slot, failure);
+    note_fault(job, in, &fault, slot, failure);
     return;
   }
   for (int64_t p = 0; p < points.n; ++p) {
@@ -76,13 +76,12 @@ static void clear_block(void *user, const mpmi_visit *visit) {
   /* stencils and drift take particles less than three spacings out of their block's nodes */
   const int32_t far = mpmi_block_is_far(&layout->blocks, block, 3, surface, near_enough * grid->h_min);
   for (int32_t m = 0; m < layout->member_count; ++m) {
-    const mpmi_member *member = &layout->member[m];
-    const int64_t end = member->now.start[block + 1];
-    double *clearance = contact->clearance + contact->clearance_first[m];
-    for (int64_t s = member->now.start[block]; s < end; s += MPMI_DISTANCE_POINTS) {
-      const int64_t upto = end - s < MPMI_DISTANCE_POINTS ? end : s + MPMI_DISTANCE_POINTS;
+    const mpmi_residents in = mpmi_residents_of(layout, m, block);
+    double *clearance = contact->clearance + contact->clearance_first[in.member];
+    for (int64_t s = in.begin; s < in.end; s += MPMI_DISTANCE_POINTS) {
+      const int64_t upto = in.end - s < MPMI_DISTANCE_POINTS ? in.end : s + MPMI_DISTANCE_POINTS;
       for (int64_t p = s; p < upto && far; ++p) clearance[p] = (double)INFINITY;
-      if (!far) clear_chunk(job, m, s, upto, &last, failure);
+      if (!far) clear_chunk(job, &in, s, upto, &last, failure);
     }
   }
 }
@@ -127,7 +126,7 @@ static double gap_of(const mpmi_contact_search *search, const mpmi_party *party,
       const mpmi_cloud_entry *entry = &contact->entry[e];
       const double clearance = contact->clearance[contact->clearance_first[entry->member] + entry->slot];
       if (!(clearance < gap)) continue;
-      const mpm_particles *set = layout->member[entry->member].set;
+      const mpm_particles *set = mpmi_resident_set(layout, entry->member);
       mpmi_cloud_place(&frame, mpmi_places(set, 0), set->ld, entry->slot, x);
       double along[3] = {n[0], n[1], n[2]};
       if (mpmi_is_total_lagrangian(set->grid)) pull_direction(set, entry->slot, cloud->mirrored, n, along);
@@ -195,13 +194,14 @@ static mpm_status reserve_clearances(const mpmi_contact_search *search) {
   mpm_context *c = search->step->settings->context;
   const mpmi_layout *layout = search->step->layout;
   mpmi_contact_nodes *contact = search->contact;
-  mpm_status status =
-      MPMI_RESERVE_MORE(c, contact->clearance_first, contact->first_capacity, layout->member_count);
+  const int32_t members =
+      layout->parts && layout->parts->guest_count ? 2 * layout->member_count : layout->member_count;
+  mpm_status status = MPMI_RESERVE_MORE(c, contact->clearance_first, contact->first_capacity, members);
   if (status) return status;
   int64_t slots = 0;
-  for (int32_t m = 0; m < layout->member_count; ++m) {
+  for (int32_t m = 0; m < members; ++m) {
     contact->clearance_first[m] = slots;
-    slots += layout->member[m].set->slots;
+    slots += mpmi_resident_set(layout, m)->slots;
   }
   return MPMI_RESERVE_MORE(c, contact->clearance, contact->clearance_capacity, slots);
 }
@@ -217,6 +217,9 @@ mpm_status mpmi_surface_gaps_find(mpmi_contact_search *search) {
     if (contact->by_surface[i] == contact->by_surface[i + 1]) continue;
     status = mpmi_visit_marked(search->step, contact->in_reach,
                                contact->surface[i].shape == MPM_SHAPE_DISTANCE, clear_block, &job);
+    if (!status)
+      status = mpmi_visit_ghosts(search->step, contact->in_reach,
+                                 contact->surface[i].shape == MPM_SHAPE_DISTANCE, clear_block, &job);
     if (!status) status = mpmi_step_failure(search->step);
     if (!status) status = mpmi_run_tasks(settings, 0, settings->tasks, gap_task, &job);
   }

@@ -27,14 +27,15 @@ mpm_status mpmi_take_over(mpm_context *context, int32_t part, mpm_status status)
 /* Makes the totals of exact sums over all parts. */
 mpm_status mpmi_total_parts(mpm_context *context, int64_t count, const mpmi_whole_sum *sum, double *total);
 
-/* Numbers that are not below 0 have the order of their bits, so that their largest is one of integers. */
+/* Integers in the order of numbers, so that the largest of numbers is one of integers. */
 static inline int64_t mpmi_ordered_bits(double x) {
   int64_t bits;
   memcpy(&bits, &x, sizeof bits);
-  return bits;
+  return bits < 0 ? bits ^ INT64_MAX : bits;
 }
 static inline double mpmi_of_ordered_bits(int64_t bits) {
   double x;
+  if (bits < 0) bits ^= INT64_MAX;
   memcpy(&x, &bits, sizeof x);
   return x;
 }

@@ -12,6 +12,7 @@
 #ifndef MPMI_HEAT_H
 #define MPMI_HEAT_H
 
+#include "context/exact_sum.h"
 #include "layout/nodes.h"
 #include "layout/step.h"
 #include "layout/visit.h"
@@ -27,6 +28,16 @@ enum { MPMI_HEAT_OUTFLOW, MPMI_HEAT_DIAGONAL, MPMI_HEAT_INCREMENT, MPMI_HEAT_FIL
 typedef struct mpmi_heat_sums {
   double gained, walls[6], sources, surfaces, dissipated;
 } mpmi_heat_sums;
+/* Where they stand among the sums. */
+enum {
+  MPMI_HEAT_GAINED,
+  MPMI_HEAT_WALLS,
+  MPMI_HEAT_SOURCES = MPMI_HEAT_WALLS + 6,
+  MPMI_HEAT_SURFACES,
+  MPMI_HEAT_DISSIPATED,
+  MPMI_HEAT_SUMS
+};
+_Static_assert(sizeof(mpmi_heat_sums) == MPMI_HEAT_SUMS * sizeof(double), "sums have names and places");
 
 /* What one step leaves to the next, and to reports. All members have 8 bytes: saved states hold it. */
 typedef struct mpmi_heat_history {
@@ -58,7 +69,10 @@ typedef struct mpmi_heat {
   int64_t *row;
   double *vector, *start;
   int64_t rows, row_capacity, vector_capacity, start_capacity;
-  mpmi_heat_sums sums; /* of the step under way */
+  mpmi_whole_sum *product; /* [tasks] scratch of products of vectors */
+  int64_t product_capacity;
+  mpmi_whole_sum sum[MPMI_HEAT_SUMS]; /* of the step under way, as far as they are not by block */
+  mpmi_heat_sums sums;                /* what they have come to, once the step is made */
   int64_t iterations;
   int32_t checks_films; /* explicit conduction with films: they bound the step */
 } mpmi_heat;
@@ -69,17 +83,26 @@ typedef struct mpmi_heat_job {
   const mpmi_heat_history *history;
 } mpmi_heat_job;
 
-/* Conducts for the step under way: leaves new temperatures in the rows of the members. */
-mpm_status mpmi_heat_stage(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history);
+/* Refuses a step that explicit conduction is not stable with, on all parts alike (collective). */
+mpm_status mpmi_heat_check_dt(const mpmi_step *step);
+/* Conducts for the step under way: brings temperatures to the nodes and finds what flows between them; */
+mpm_status mpmi_heat_begin(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history);
+/* and finds new temperatures, which it leaves in the rows of the members. */
+mpm_status mpmi_heat_end(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history);
+/* Returns how many sums on nodes mpmi_heat_begin() makes; with explicit conduction there are no others. */
+int64_t mpmi_heat_exchanges(const mpmi_step *step, const mpmi_heat_history *history);
+/* Adds up where heat came from in the step, on all parts (collective). */
+mpm_status mpmi_heat_add_up(const mpmi_step *step, mpmi_heat *heat);
 /* Makes new temperatures, and those that the stress belongs to, the state, with the heat of dissipation; adds
  * to the history. Cannot fail. */
-void mpmi_heat_commit(const mpmi_step *step, mpmi_heat *heat, mpmi_heat_history *history);
+void mpmi_heat_commit(const mpmi_step *step, const mpmi_heat *heat, mpmi_heat_history *history);
 /* The step under way has no temperatures any more. */
 void mpmi_heat_forget(const mpmi_layout *layout);
-/* Returns the inverse of the longest step that explicit conduction is stable with, 0 where there is none. */
-double mpmi_heat_rate(const mpmi_settings *settings, const mpmi_layout *layout);
-/* Returns the heat in a set. */
-double mpmi_heat_of(const mpmi_heat_rule *rule, const mpm_particles *set);
+/* Finds the inverse of the longest step that explicit conduction is stable with, 0 where there is none
+ * (collective). */
+mpm_status mpmi_heat_rate(const mpmi_settings *settings, const mpmi_layout *layout, double *rate);
+/* Adds the heat in a set. */
+void mpmi_heat_of(const mpmi_heat_rule *rule, const mpm_particles *set, mpmi_whole_sum *sum);
 void mpmi_heat_free(mpmi_heat *heat, const mpmi_settings *settings);
 
 static inline int32_t mpmi_has_heat(const mpmi_step *step, int32_t m) {
@@ -111,7 +134,9 @@ mpm_status mpmi_heat_tie(const mpmi_heat_job *job);
 int32_t mpmi_heat_face(const mpmi_heat_job *job, const mpmi_tie *tie);
 /* Returns the sign with which a follower takes increments. */
 double mpmi_heat_sign(const mpmi_follower *follower);
-/* Finds what temperatures material has at faces that prescribe them from this step on. */
+/* Returns 1 where some face prescribes temperatures from this step on. */
+int32_t mpmi_heat_begins(const mpmi_step *step, const mpmi_heat_history *history);
+/* Finds what temperatures material has at such faces. */
 mpm_status mpmi_heat_meet(const mpmi_heat_job *job);
 /* Turns the sums of the nodes into temperatures. */
 mpm_status mpmi_heat_temperatures(const mpmi_heat_job *job);
@@ -123,7 +148,8 @@ mpm_status mpmi_heat_advance(const mpmi_heat_job *job);
 mpm_status mpmi_heat_settle(const mpmi_heat_job *job);
 
 /* ---- implicit.c -------------------------------------------------------------------------------------- */
-/* Finds the increments so that they are those of what flows at the end, where the flow then is. */
+/* Finds the increments so that they are those of what flows at the end, where the flow then is. Fails on all
+ * parts, after as many exchanges, or on none. */
 mpm_status mpmi_heat_solve(const mpmi_heat_job *job);
 
 /* ---- surfaces.c -------------------------------------------------------------------------------------- */

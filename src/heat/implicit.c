@@ -1,8 +1,13 @@
 /* Backward Euler: (C + dt K) dT = dt (Q - K T) for the increments of the free nodes, by conjugate gradients
  * that are scaled with the diagonal. K is never stored: particles conduct once for each iteration, so that
- * nodes that come and go cost nothing. */
+ * nodes that come and go cost nothing.
+ *
+ * Of several parts each has the rows of all nodes that it has, with the same bits, and counts those that it
+ * owns. Products are exact sums of their terms, so that neither tasks nor parts make a difference. */
 #include "heat/heat.h"
-#include "linalg/vectors.h"
+#include "context/transport.h"
+#include "layout/tasks.h"
+#include "parallel/parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,13 +35,25 @@ static double fold(const mpmi_heat *heat, int64_t row, const mpmi_nodal *from, i
   return sum;
 }
 
+/* Returns 1 where this part counts a row. */
+static int32_t owns(const mpmi_heat_job *job, int64_t row) {
+  return mpmi_owns_node(job->step->layout->parts, job->heat->row[row]);
+}
+
+/* All parts learn whether all have come so far; who only knows of it from a partner has nothing to tell. */
+static mpm_status agree(const mpmi_heat_job *job, mpm_status status) {
+  const mpmi_parts *parts = job->step->layout->parts;
+  return parts ? mpmi_agree(parts->context, parts->is_echo ? MPM_OK : status) : status;
+}
+
 static mpm_status list_rows(const mpmi_heat_job *job) {
   mpmi_heat *heat = job->heat;
   mpm_context *c = job->step->settings->context;
   const int64_t slots = mpmi_slots(job->step->layout);
   mpm_status status;
   if ((status = MPMI_RESERVE_MORE(c, heat->row, heat->row_capacity, slots)) ||
-      (status = MPMI_RESERVE_MORE(c, heat->start, heat->start_capacity, slots)))
+      (status = MPMI_RESERVE_MORE(c, heat->start, heat->start_capacity, slots)) ||
+      (status = MPMI_RESERVE_MORE(c, heat->product, heat->product_capacity, job->step->settings->tasks)))
     return status;
   heat->rows = 0;
   for (int64_t slot = 0; slot < slots; ++slot) {
@@ -65,13 +82,46 @@ static void spread(const mpmi_heat_job *job, const double *value, const mpmi_nod
   }
 }
 
+/* ---- products ------------------------------------------------------------------------------------------ */
+typedef struct dot_job {
+  const mpmi_heat_job *of;
+  const double *a, *b;
+} dot_job;
+
+static void dot_task(void *data, int64_t task) {
+  const dot_job *job = data;
+  const mpmi_share share = mpmi_share_of(job->of->step->settings, job->of->heat->rows, task);
+  mpmi_whole_sum *sum = &job->of->heat->product[task];
+  mpmi_exact_clear(sum);
+  for (int64_t row = share.begin; row < share.end; ++row)
+    if (owns(job->of, row)) mpmi_exact_add(sum, job->a[row] * job->b[row]);
+}
+
+static mpm_status dot(const mpmi_heat_job *job, int32_t a, int32_t b, double *out) {
+  const mpmi_settings *settings = job->step->settings;
+  dot_job products = {job, vector(job->heat, a), vector(job->heat, b)};
+  mpmi_whole_sum sum;
+  mpmi_exact_clear(&sum);
+  mpmi_parallel_for_sure(settings->context, settings->tasks, dot_task, &products);
+  for (int32_t k = 0; k < settings->tasks; ++k) mpmi_exact_join(&sum, &job->heat->product[k]);
+  return mpmi_total_parts(settings->context, 1, &sum, out);
+}
+
+/* Counts the rows of all parts. */
+static mpm_status count_rows(const mpmi_heat_job *job, int64_t *rows) {
+  *rows = 0;
+  for (int64_t row = 0; row < job->heat->rows; ++row) *rows += owns(job, row);
+  return mpmi_reduce_parts(job->step->settings->context, MPM_REDUCE_SUM, 1, rows);
+}
+
+/* ---- the method ---------------------------------------------------------------------------------------- */
 /* Sets q = (C + dt K) p. */
 static mpm_status apply(const mpmi_heat_job *job) {
   const mpmi_heat *heat = job->heat;
   const double *p = vector(heat, P), *capacity = vector(heat, CAPACITY);
   double *q = vector(heat, Q);
   spread(job, p, &heat->nodes, MPMI_HEAT_TEMPERATURE);
-  const mpm_status status = mpmi_heat_conduct(job, 0);
+  const mpm_status status = agree(job, mpmi_heat_conduct(job, 0));
   if (status) return status;
   mpmi_heat_films(job);
   for (int64_t row = 0; row < heat->rows; ++row)
@@ -106,15 +156,17 @@ static mpm_status weigh(const mpmi_heat_job *job, double *rz) {
   const mpmi_heat *heat = job->heat;
   double *q = vector(heat, Q);
   for (int64_t row = 0; row < heat->rows; ++row) q[row] = vector(heat, SCALE)[row] * vector(heat, R)[row];
-  return mpmi_dot(job->step->settings->context, vector(heat, R), q, heat->rows, rz);
+  return dot(job, R, Q, rz);
 }
 
 static mpm_status iterate(const mpmi_heat_job *job) {
   mpmi_heat *heat = job->heat;
   mpm_context *c = job->step->settings->context;
   const double tolerance = job->step->settings->heat.tolerance;
+  int64_t rows;
   double rz, first, curvature, next;
-  mpm_status status = weigh(job, &rz);
+  mpm_status status = count_rows(job, &rows);
+  if (!status) status = weigh(job, &rz);
   if (!status && !isfinite(rz))
     return mpmi_fail(c, MPM_NONFINITE,
                      "what flows between nodes is not finite in the step from t = %g with dt = %g: "
@@ -123,10 +175,8 @@ static mpm_status iterate(const mpmi_heat_job *job) {
   first = rz;
   turn(heat, 0.0);
   while (!status && rz > tolerance * tolerance * first) {
-    if ((status = apply(job)) ||
-        (status = mpmi_dot(c, vector(heat, P), vector(heat, Q), heat->rows, &curvature)))
-      return status;
-    if (!(curvature > 0.0) || heat->iterations > 10 * heat->rows + 100)
+    if ((status = apply(job)) || (status = dot(job, P, Q, &curvature))) return status;
+    if (!(curvature > 0.0) || heat->iterations > 10 * rows + 100)
       return mpmi_fail(
           c, MPM_NOT_CONVERGED,
           "implicit conduction did not converge in %lld iterations in the step from t = %g with dt = "
@@ -148,14 +198,14 @@ static mpm_status iterate(const mpmi_heat_job *job) {
 mpm_status mpmi_heat_solve(const mpmi_heat_job *job) {
   mpmi_heat *heat = job->heat;
   const int64_t slots = mpmi_slots(job->step->layout);
-  mpm_status status = list_rows(job);
+  mpm_status status = agree(job, list_rows(job));
   if (status) return status;
   begin(job);
   if ((status = iterate(job))) return status;
   spread(job, vector(heat, X), &heat->nodes, MPMI_HEAT_TEMPERATURE);
   for (int64_t slot = 0; slot < slots; ++slot)
     mpmi_heat_node(heat, slot)[MPMI_HEAT_TEMPERATURE] += heat->start[slot];
-  if ((status = mpmi_heat_conduct(job, 0))) return status;
+  if ((status = agree(job, mpmi_heat_conduct(job, 0)))) return status;
   mpmi_heat_films(job);
   spread(job, vector(heat, X), &heat->flow, MPMI_HEAT_INCREMENT);
   return MPM_OK;

@@ -1,6 +1,7 @@
 /* Temperatures and increments of nodes: nodes that go together, and what prescribed faces do. */
 #include "heat/heat.h"
 #include "layout/tasks.h"
+#include "parallel/parts.h"
 
 #include <math.h>
 
@@ -88,19 +89,24 @@ static double temperature_at(const mpmi_heat_job *job, const mpmi_tie *tie, int3
   return T + (T_in - T) * (plane - x) / apart;
 }
 
-static int32_t begins(const mpmi_heat_job *job, int32_t face) {
-  return face >= 0 && job->step->settings->heat.wall[face].kind == MPM_HEAT_WALL_TEMPERATURE &&
-         !(job->history->acted[face] > 0.0);
+static int32_t begins(const mpmi_step *step, const mpmi_heat_history *history, int32_t face) {
+  return face >= 0 && step->settings->heat.wall[face].kind == MPM_HEAT_WALL_TEMPERATURE &&
+         !(history->acted[face] > 0.0);
+}
+
+int32_t mpmi_heat_begins(const mpmi_step *step, const mpmi_heat_history *history) {
+  int32_t any = 0;
+  for (int32_t face = 0; face < 2 * step->settings->grid->dim; ++face) any |= begins(step, history, face);
+  return any;
 }
 
 mpm_status mpmi_heat_meet(const mpmi_heat_job *job) {
   const mpmi_constraints *ties = &job->heat->ties;
-  int32_t any = 0;
-  for (int32_t face = 0; face < 2 * job->step->settings->grid->dim; ++face) any |= begins(job, face);
+  const int32_t any = mpmi_heat_begins(job->step, job->history);
   const mpm_status status = any ? mpmi_heat_places(job) : MPM_OK;
   for (int64_t i = 0; i < ties->tie_count && any && !status; ++i) {
     const int32_t face = mpmi_heat_face(job, &ties->tie[i]);
-    if (begins(job, face)) job->heat->met[i] = temperature_at(job, &ties->tie[i], face);
+    if (begins(job->step, job->history, face)) job->heat->met[i] = temperature_at(job, &ties->tie[i], face);
   }
   return status;
 }
@@ -262,7 +268,8 @@ mpm_status mpmi_heat_settle(const mpmi_heat_job *job) {
     double heat = taken_up(job, tie->master);
     for (int64_t d = tie->first; d < tie->first + tie->count; ++d)
       heat += taken_up(job, ties->follower[d].slot);
-    if (face >= 0) job->heat->sums.walls[face] += heat;
+    if (face >= 0 && mpmi_owns_node(job->step->layout->parts, tie->master))
+      mpmi_exact_add(&job->heat->sum[MPMI_HEAT_WALLS + face], heat);
     if (mpmi_heat_face(job, tie) >= 0) continue;
     add_increment(job->heat, tie->master);
     for (int64_t d = tie->first; d < tie->first + tie->count; ++d)

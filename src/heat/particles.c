@@ -1,7 +1,6 @@
 /* Particles and nodes: sums go the way of nodal sums, block by block through tiles, by the kernels of
  * transfer/scalars.c. */
 #include "heat/heat.h"
-#include "context/reduce.h"
 #include "layout/accumulate.h"
 #include "layout/reached.h"
 #include "layout/tasks.h"
@@ -83,11 +82,6 @@ static void check_values(const heat_batch *b, const double *value, double bad, c
     }
 }
 
-static double sum_of_parts(const mpmi_heat_job *job, const double *first) {
-  return mpmi_reduce(MPMI_REDUCE_SUM, 0.0, first, sizeof(mpmi_heat_part) / sizeof(double), NULL,
-                     job->step->layout->blocks.count);
-}
-
 /* ---- tiles of one value -------------------------------------------------------------------------------- */
 /* A task has room for some of them. */
 enum { FIELD, OUTFLOW, DIAGONAL, TILES };
@@ -159,12 +153,10 @@ static void project_block(void *user, const mpmi_visit *visit, double *tile) {
 }
 
 mpm_status mpmi_heat_project(const mpmi_heat_job *job) {
-  mpm_status status = mpmi_accumulate(
+  const mpm_status status = mpmi_accumulate(
       job->step,
       &(mpmi_accumulation){.to = &job->heat->nodes, .give = project_block, .user = (void *)(uintptr_t)job});
-  if (!status) status = mpmi_step_failure(job->step);
-  job->heat->sums.sources = sum_of_parts(job, &job->heat->part->sources);
-  return status;
+  return status ? status : mpmi_step_failure(job->step);
 }
 
 static void place_batch(heat_batch *b) {
@@ -272,8 +264,6 @@ static void gather_block(void *user, const mpmi_visit *visit) {
 }
 
 mpm_status mpmi_heat_gather(const mpmi_heat_job *job) {
-  mpm_status status = mpmi_visit_blocks(job->step, 0, gather_block, (void *)(uintptr_t)job);
-  if (!status) status = mpmi_step_failure(job->step);
-  job->heat->sums.gained = sum_of_parts(job, &job->heat->part->gained);
-  return status;
+  const mpm_status status = mpmi_visit_blocks(job->step, 0, gather_block, (void *)(uintptr_t)job);
+  return status ? status : mpmi_step_failure(job->step);
 }

@@ -1,5 +1,6 @@
 /* The longest step that explicit conduction is stable with. */
 #include "heat/heat.h"
+#include "context/transport.h"
 #include "material/pull_back.h"
 #include "stages/batch.h"
 
@@ -44,9 +45,10 @@ static double largest_in(const mpm_particles *set) {
   return dim == 1 ? largest_of(1, set, F) : dim == 2 ? largest_of(2, set, F) : largest_of(3, set, F);
 }
 
-double mpmi_heat_rate(const mpmi_settings *settings, const mpmi_layout *layout) {
+mpm_status mpmi_heat_rate(const mpmi_settings *settings, const mpmi_layout *layout, double *out) {
   double rate = 0.0;
-  if (!settings->heat.any || settings->heat.conduction != MPM_CONDUCTION_EXPLICIT) return 0.0;
+  *out = 0.0;
+  if (!settings->heat.any || settings->heat.conduction != MPM_CONDUCTION_EXPLICIT) return MPM_OK;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     const mpm_heat_desc *desc = &settings->heat.set[m].desc;
     const mpm_particles *set = layout->member[m].set;
@@ -54,5 +56,8 @@ double mpmi_heat_rate(const mpmi_settings *settings, const mpmi_layout *layout) 
     const double of = 2.0 * desc->conductivity / desc->specific_heat * largest_in(set);
     rate = of > rate ? of : rate;
   }
-  return rate;
+  int64_t largest = mpmi_ordered_bits(rate);
+  const mpm_status status = mpmi_reduce_parts(settings->context, MPM_REDUCE_MAX, 1, &largest);
+  *out = mpmi_of_ordered_bits(largest);
+  return status;
 }

@@ -1,5 +1,6 @@
 /* The heat of a step comes first: all that follows has the new temperatures. */
 #include "heat/heat.h"
+#include "context/transport.h"
 #include "layout/particle_batch.h"
 #include "layout/tasks.h"
 #include "layout/tile.h"
@@ -18,7 +19,7 @@ static mpm_status prepare(const mpmi_heat_job *job) {
   const int64_t slots = mpmi_slots(layout), blocks = layout->blocks.count;
   mpm_status status;
   heat->tile_size = mpmi_heat_tile_size(settings);
-  heat->sums = (mpmi_heat_sums){.gained = 0.0};
+  for (int32_t i = 0; i < MPMI_HEAT_SUMS; ++i) mpmi_exact_clear(&heat->sum[i]);
   heat->iterations = 0;
   heat->checks_films = 0;
   heat->ties.context = c;
@@ -47,13 +48,15 @@ void mpmi_heat_free(mpmi_heat *heat, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, heat->row, heat->row_capacity);
   MPMI_FREE_ARRAY(c, heat->vector, heat->vector_capacity);
   MPMI_FREE_ARRAY(c, heat->start, heat->start_capacity);
+  MPMI_FREE_ARRAY(c, heat->product, heat->product_capacity);
   mpmi_free(c, heat, sizeof *heat);
 }
 
 /* ---- what there is before ------------------------------------------------------------------------------ */
-static mpm_status check_step(const mpmi_step *step) {
-  const double rate = mpmi_heat_rate(step->settings, step->layout);
-  if (!(step->dt * rate > 1.0 + 1e-9)) return MPM_OK;
+mpm_status mpmi_heat_check_dt(const mpmi_step *step) {
+  double rate;
+  const mpm_status status = mpmi_heat_rate(step->settings, step->layout, &rate);
+  if (status || !(step->dt * rate > 1.0 + 1e-9)) return status;
   return mpmi_fail(step->settings->context, MPM_CUT_DT,
                    "dt is %g, and explicit conduction is stable up to %g: take a shorter step, or "
                    "MPM_CONDUCTION_IMPLICIT",
@@ -86,33 +89,54 @@ static mpm_status ask_sources(mpmi_step *step) {
 }
 
 /* ---- the stage ----------------------------------------------------------------------------------------- */
+static int32_t is_implicit(const mpmi_step *step) {
+  return step->settings->heat.conduction == MPM_CONDUCTION_IMPLICIT;
+}
+
+/* Returns 1 where no particles are there to conduct; a part has sums to exchange also where it has none. */
+static int32_t is_void(const mpmi_step *step) {
+  return !step->layout->blocks.count && !step->layout->parts;
+}
+
+int64_t mpmi_heat_exchanges(const mpmi_step *step, const mpmi_heat_history *history) {
+  return 2 + mpmi_heat_begins(step, history);
+}
+
+mpm_status mpmi_heat_begin(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history) {
+  const mpmi_heat_job job = {step, heat, history};
+  double clock = mpmi_seconds();
+  mpm_status status = prepare(&job);
+  if (status || is_void(step)) return status;
+  if ((status = ask_sources(step))) return status;
+  mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
+  status = mpmi_heat_project(&job);
+  mpmi_lap(step, MPMI_TIME_P2G, &clock);
+  if (!status) status = mpmi_heat_meet(&job);
+  if (!status) status = mpmi_heat_temperatures(&job);
+  if (!status) status = mpmi_heat_surfaces(&job);
+  if (!status) status = mpmi_heat_conduct(&job, is_implicit(step));
+  mpmi_lap(step, MPMI_TIME_GRID, &clock);
+  return status;
+}
+
+/* Finds the increments of the nodes, and what has come through surfaces and faces. */
 static mpm_status conduct(const mpmi_heat_job *job) {
-  const int32_t implicit = job->step->settings->heat.conduction == MPM_CONDUCTION_IMPLICIT;
-  mpm_status status;
-  if ((status = mpmi_heat_meet(job)) || (status = mpmi_heat_temperatures(job)) ||
-      (status = mpmi_heat_surfaces(job)) || (status = mpmi_heat_conduct(job, implicit)))
-    return status;
+  const int32_t implicit = is_implicit(job->step);
   job->heat->checks_films = mpmi_heat_films(job) && !implicit;
-  if ((status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job))) return status;
-  job->heat->sums.surfaces = job->step->dt * mpmi_heat_surface_power(job);
+  const mpm_status status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job);
+  if (status) return status;
+  mpmi_exact_add(&job->heat->sum[MPMI_HEAT_SURFACES], job->step->dt * mpmi_heat_surface_power(job));
   for (int64_t slot = 0; implicit && slot < mpmi_slots(job->step->layout); ++slot)
     mpmi_heat_node(job->heat, slot)[MPMI_HEAT_TEMPERATURE] = job->heat->start[slot];
   mpmi_heat_prescribe(job);
   return mpmi_heat_settle(job);
 }
 
-mpm_status mpmi_heat_stage(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history) {
+mpm_status mpmi_heat_end(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_history *history) {
   const mpmi_heat_job job = {step, heat, history};
   double clock = mpmi_seconds();
-  mpm_status status;
-  if (!step->settings->heat.any) return MPM_OK;
-  if ((status = check_step(step)) || (status = prepare(&job))) return status;
-  if (!step->layout->blocks.count) return MPM_OK; /* no particles are there to conduct */
-  if ((status = ask_sources(step))) return status;
-  mpmi_lap(step, MPMI_TIME_CALLBACKS, &clock);
-  status = mpmi_heat_project(&job);
-  mpmi_lap(step, MPMI_TIME_P2G, &clock);
-  if (!status) status = conduct(&job);
+  if (is_void(step)) return MPM_OK;
+  mpm_status status = conduct(&job);
   mpmi_lap(step, MPMI_TIME_GRID, &clock);
   if (!status) status = mpmi_heat_gather(&job);
   for (int32_t m = 0; m < step->layout->member_count && !status; ++m)
@@ -129,30 +153,55 @@ void mpmi_heat_forget(const mpmi_layout *layout) {
 }
 
 /* ---- the end ------------------------------------------------------------------------------------------- */
-double mpmi_heat_of(const mpmi_heat_rule *rule, const mpm_particles *set) {
-  double sum = 0.0;
-  if (!rule->on) return 0.0;
+void mpmi_heat_of(const mpmi_heat_rule *rule, const mpm_particles *set, mpmi_whole_sum *sum) {
+  if (!rule->on) return;
   const double *mass = mpmi_f64(set, MPMI_MASS, 0), *T = mpmi_f64(set, set->thermal.temperature, 0);
-  for (int64_t slot = 0; slot < set->slots; ++slot) sum += mass[slot] * T[slot];
-  return rule->desc.specific_heat * sum;
+  for (int64_t slot = 0; slot < set->slots; ++slot)
+    mpmi_exact_add(sum, rule->desc.specific_heat * (mass[slot] * T[slot]));
 }
 
-/* Gives a set its new temperatures, with the heat of dissipation. Returns that. */
-static double commit_set(const mpmi_heat_rule *rule, const mpmi_member_rows *rows, const mpm_particles *set) {
+/* Adds the heat of what a set has dissipated, block by block. */
+static void add_dissipated(const mpmi_step *step, int32_t m, mpmi_whole_sum *sum) {
+  const mpmi_member *member = &step->layout->member[m];
+  const mpmi_member_rows *rows = &step->work->rows.of[m];
+  const double *dissipated = rows->heat + MPMI_ROW_DISSIPATED * rows->heat_ld;
+  const double share = step->settings->heat.set[m].desc.dissipated_share;
+  const double *mass = mpmi_f64(member->set, MPMI_MASS, 0);
+  for (int64_t block = 0; block < step->layout->blocks.count; ++block) {
+    double here = 0.0;
+    for (int64_t slot = member->now.start[block]; slot < member->now.start[block + 1]; ++slot)
+      if (mass[slot] > 0.0) here += share * dissipated[slot];
+    mpmi_exact_add(sum, here);
+  }
+}
+
+mpm_status mpmi_heat_add_up(const mpmi_step *step, mpmi_heat *heat) {
+  double total[MPMI_HEAT_SUMS];
+  for (int64_t block = 0; block < step->layout->blocks.count; ++block) {
+    mpmi_exact_add(&heat->sum[MPMI_HEAT_GAINED], heat->part[block].gained);
+    mpmi_exact_add(&heat->sum[MPMI_HEAT_SOURCES], heat->part[block].sources);
+  }
+  for (int32_t m = 0; m < step->layout->member_count; ++m)
+    if (mpmi_dissipates(step->settings, m) && step->layout->member[m].set->slots)
+      add_dissipated(step, m, &heat->sum[MPMI_HEAT_DISSIPATED]);
+  const mpm_status status = mpmi_total_parts(step->settings->context, MPMI_HEAT_SUMS, heat->sum, total);
+  memcpy(&heat->sums, total, sizeof total);
+  heat->sums.gained += heat->sums.dissipated;
+  return status;
+}
+
+/* Gives a set its new temperatures, with the heat of dissipation. */
+static void commit_set(const mpmi_heat_rule *rule, const mpmi_member_rows *rows, const mpm_particles *set) {
   const double *dissipated = rows->heat + MPMI_ROW_DISSIPATED * rows->heat_ld;
   const double *mass = mpmi_f64(set, MPMI_MASS, 0);
   const size_t bytes = (size_t)set->slots * sizeof(double);
-  double *T = mpmi_f64(set, set->thermal.temperature, 0), sum = 0.0;
+  double *T = mpmi_f64(set, set->thermal.temperature, 0);
   memcpy(T, rows->heat, bytes);
   if (set->thermal.expansion != 0.0)
     memcpy(mpmi_f64(set, set->thermal.stress_temperature, 0), rows->heat, bytes);
-  for (int64_t slot = 0; slot < set->slots && rule->desc.dissipated_share > 0.0; ++slot) {
-    if (!(mass[slot] > 0.0)) continue;
-    const double heat = rule->desc.dissipated_share * dissipated[slot];
-    T[slot] += heat / (mass[slot] * rule->desc.specific_heat);
-    sum += heat;
-  }
-  return sum;
+  for (int64_t slot = 0; slot < set->slots && rule->desc.dissipated_share > 0.0; ++slot)
+    if (mass[slot] > 0.0)
+      T[slot] += rule->desc.dissipated_share * dissipated[slot] / (mass[slot] * rule->desc.specific_heat);
 }
 
 static void add(mpmi_heat_sums *to, const mpmi_heat_sums *of) {
@@ -163,14 +212,12 @@ static void add(mpmi_heat_sums *to, const mpmi_heat_sums *of) {
   for (int32_t face = 0; face < 6; ++face) to->walls[face] += of->walls[face];
 }
 
-void mpmi_heat_commit(const mpmi_step *step, mpmi_heat *heat, mpmi_heat_history *history) {
+void mpmi_heat_commit(const mpmi_step *step, const mpmi_heat *heat, mpmi_heat_history *history) {
   const mpmi_heat_rules *rules = &step->settings->heat;
   if (!rules->any) return;
   for (int32_t m = 0; m < step->layout->member_count; ++m)
     if (rules->set[m].on && step->layout->member[m].set->slots)
-      heat->sums.dissipated +=
-          commit_set(&rules->set[m], &step->work->rows.of[m], step->layout->member[m].set);
-  heat->sums.gained += heat->sums.dissipated;
+      commit_set(&rules->set[m], &step->work->rows.of[m], step->layout->member[m].set);
   for (int32_t face = 0; face < 6; ++face) {
     history->acted[face] = rules->wall[face].kind == MPM_HEAT_WALL_TEMPERATURE ? 1.0 : 0.0;
     history->prescribed[face] = history->acted[face] > 0.0 ? rules->wall[face].temperature : 0.0;

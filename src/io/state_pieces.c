@@ -229,6 +229,8 @@ static mpm_status lay_out(mpmi_state_loading *l) {
     if (status) return status;
     l->parts->margin = present->margin;
     status = mpmi_state_share(l);
+    for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
+      status = mpmi_parts_note_body(l->parts, (int32_t)l->all.set[m].numbers.body);
   }
   if (!status) status = mpmi_state_insert_blocks(s, &l->blocks);
   if (present) status = mpmi_pattern_find(l->parts, &s->layout.next_blocks, status);

@@ -98,23 +98,35 @@ static mpm_status add_colour(sum_job *job, int32_t colour) {
   return mpmi_run_tasks(settings, 0, settings->tasks, add_shared_task, job);
 }
 
+/* Returns the first failure among all blocks of this part, or what has come from a partner where there is
+ * none. */
+static mpm_status own_failure(mpmi_step *step, mpmi_parts *parts, mpm_status status) {
+  const mpm_status own = mpmi_step_failure(step);
+  if (own) parts->is_echo = 0;
+  return own ? own : status;
+}
+
 /* Tiles of boundary blocks are made first and sent; what they give is added to the nodes with that of all
- * other blocks of their colour, as if there had been one part. */
-static mpm_status add_with_others(sum_job *job, mpm_status status) {
+ * other blocks of their colour, as if there had been one part. All blocks give, also where something has
+ * failed: one part would know of all particles that do. */
+static mpm_status add_with_others(sum_job *job, mpm_status given) {
   const mpmi_accumulation *sum = job->sum;
   mpmi_parts *parts = job->step->layout->parts;
   const int32_t values = sum->to->values;
-  if (!status) status = mpmi_visit_marked(job->step, parts->is_boundary, sum->calls_host, give_boundary, job);
-  if (!status) status = mpmi_step_failure(job->step);
+  if (!given) given = mpmi_visit_marked(job->step, parts->is_boundary, sum->calls_host, give_boundary, job);
+  mpm_status status = given ? given : mpmi_step_failure(job->step);
   status = mpmi_tiles_send(parts, values, job->step->layout->blocks.cover, status);
-  if (!status) status = mpmi_visit_colour(job->step, parts->is_inner, 0, sum->calls_host, add_block, job);
+  if (!given) given = mpmi_visit_colour(job->step, parts->is_inner, 0, sum->calls_host, add_block, job);
   mpmi_poll(job->step->settings->context);
-  status = mpmi_tiles_receive(parts, values, status);
-  for (int32_t c = 0; c < MPMI_COLOURS && !status; ++c) {
-    if (c) status = mpmi_visit_colour(job->step, parts->is_inner, c, sum->calls_host, add_block, job);
+  status = mpmi_tiles_receive(parts, values, status ? status : given);
+  for (int32_t c = 0; c < MPMI_COLOURS; ++c) {
+    if (c && !given)
+      given = mpmi_visit_colour(job->step, parts->is_inner, c, sum->calls_host, add_block, job);
+    if (!status) status = given;
     if (!status) status = add_colour(job, c);
   }
   if (status) mpmi_tiles_clear(parts, values);
+  if (status) status = own_failure(job->step, parts, status);
   for (int64_t i = 0; i < parts->partial_count && !status; ++i)
     memset(mpmi_nodal_at(sum->to, parts->partial[i]), 0, (size_t)values * sizeof(double));
   return status;

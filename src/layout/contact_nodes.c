@@ -20,6 +20,8 @@ void mpmi_contact_nodes_free(mpmi_contact_nodes *contact, mpm_context *c) {
   MPMI_FREE_ARRAY(c, contact->by_surface, contact->by_surface_capacity);
   MPMI_FREE_ARRAY(c, contact->clearance, contact->clearance_capacity);
   MPMI_FREE_ARRAY(c, contact->clearance_first, contact->first_capacity);
+  MPMI_FREE_ARRAY(c, contact->coupled, contact->coupled_capacity);
+  MPMI_FREE_ARRAY(c, contact->merged, contact->merged_capacity);
   MPMI_FREE_ARRAY(c, contact->work, contact->work_capacity);
   MPMI_FREE_ARRAY(c, contact->place, contact->place_capacity);
 }
@@ -36,6 +38,7 @@ mpm_status mpmi_pair_add(mpmi_pair_records *records, mpm_context *context, int32
   memmove(records->record + at + 1, records->record + at,
           (size_t)(records->count - at) * sizeof *records->record);
   ++records->count;
+  records->grown = 1;
   records->record[at] = (mpmi_pair_record){.a = a, .b = b, .last.gap = (double)INFINITY};
   return MPM_OK;
 }

@@ -58,6 +58,7 @@ typedef struct mpmi_reached {
   int32_t first, last;
 } mpmi_reached;
 
+enum { MPMI_COPIED_PARTY = -2 }; /* in place of a slot: a body at a node of another part */
 typedef struct mpmi_party {
   int64_t slot;                              /* of the master; -1 for a surface */
   int32_t body;                              /* or the code of a surface */
@@ -69,6 +70,7 @@ typedef struct mpmi_party {
   double inverse_mass[3]; /* of all that moves with it; 0 where the component is held */
   double given[3];        /* by how much contact has changed what particles take per mass */
   double pressed[3];      /* and friction walls */
+  double copy[3];         /* velocity of a copied one */
 } mpmi_party;
 
 /* What happened between two bodies at a node. The normal is that from the first to the second party. */
@@ -91,6 +93,8 @@ typedef struct mpmi_meeting {
   int64_t first_party, party_count, first_touch, touch_count;
   int32_t coupled;     /* a free obstacle takes part, and so others depend on it */
   int32_t independent; /* no body takes part in two touches */
+  uint64_t key;        /* of the place of its block, and which of that block's nodes it is */
+  int32_t place;
 } mpmi_meeting;
 
 /* What two bodies do to each other in a step, or have done. */
@@ -110,6 +114,7 @@ typedef struct mpmi_pair_record {
 typedef struct mpmi_pair_records {
   int64_t count, capacity;
   mpmi_pair_record *record;
+  int32_t grown; /* since parts last told each other theirs */
 } mpmi_pair_records;
 
 /* Returns the number of a pair's record, or -1. */
@@ -123,6 +128,7 @@ void mpmi_pairs_drop(mpmi_pair_records *records, int32_t code);
 typedef struct mpmi_contact_nodes {
   int64_t surface_count, site_count, near_count;
   int32_t at_walls; /* a friction wall is near some site */
+  int32_t anywhere; /* there are sites, here or on another part */
   int64_t surface_capacity, site_capacity, near_capacity, value_capacity;
   mpmi_rigid_surface *surface; /* obstacles, then friction walls by face */
   mpmi_site *site;
@@ -149,6 +155,8 @@ typedef struct mpmi_contact_nodes {
   int64_t clearance_capacity, first_capacity;
   double (*place)[3]; /* [slots] where nodes of a total Lagrangian grid are now, or NULL: where they stand */
   int64_t place_capacity;
+  int64_t *coupled, *merged; /* the coupled meetings in their order, with copies of other parts' */
+  int64_t coupled_count, coupled_capacity, merged_capacity;
   double *work; /* [tasks][work_each] memory to find normals in */
   int64_t work_capacity, work_each;
   int32_t listed; /* meetings and clouds are those of the step */

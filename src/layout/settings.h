@@ -95,6 +95,11 @@ static inline int32_t mpmi_has_friction_planes(const mpmi_settings *set) {
     if (mpmi_is_friction_plane(set, face)) return 1;
   return 0;
 }
+static inline int32_t mpmi_has_free_obstacles(const mpmi_settings *set) {
+  for (int64_t i = 0; i < set->obstacles.count; ++i)
+    if (set->obstacles.obstacle[i]->desc.motion == MPM_MOTION_FREE) return 1;
+  return 0;
+}
 static inline int32_t mpmi_has_hooks(const mpmi_settings *set) {
   return set->hook[0] || set->hook[1] || set->hook[2];
 }

@@ -17,11 +17,14 @@ mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings
   if (!layout->bound_memory) return MPM_E_NOMEM;
   if (mpmi_is_whole(c)) return MPM_OK;
   const mpm_status status = mpmi_parts_create(c, settings->grid, &layout->parts);
+  if (status) return status;
   /* light nodes look at others and give to them (boundary/light_nodes.c): a leader is two steps away, and
    * takes from others as far away, whose own leaders count, and what lies beside these; and so on once more
    * */
-  if (!status && settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 9;
-  return status;
+  if (settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 9;
+  /* particles belong to clouds of nodes that their own basis does not reach (contact/clouds.c) */
+  if (settings->grid->family == MPMI_FAMILY_GIMP) layout->parts->margin = 2;
+  return MPM_OK;
 }
 
 void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
@@ -36,6 +39,7 @@ void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {
   MPMI_FREE_ARRAY(c, layout->next_list_memory, layout->next_list_capacity);
   mpmi_free(c, layout->bound_memory, mpmi_bytes((settings->tasks + 1) * MPMI_WORKLISTS, sizeof(int64_t)));
   MPMI_FREE_ARRAY(c, layout->member, layout->member_capacity);
+  if (layout->parts) mpmi_guests_free(layout->parts);
   mpmi_parts_destroy(layout->parts);
 }
 
@@ -243,7 +247,8 @@ static mpm_status sort_together(mpmi_layout *layout, const mpmi_settings *settin
   const int64_t sorts = layout->sorts;
   mpmi_moving_set *moving = mpmi_alloc(settings->context, bytes);
   for (int32_t m = 0; m < count && moving; ++m)
-    moving[m] = (mpmi_moving_set){.set = layout->member[m].set, .sorting = &layout->member[m].sorting};
+    moving[m] = (mpmi_moving_set){
+        .set = layout->member[m].set, .body = layout->member[m].body, .sorting = &layout->member[m].sorting};
   mpm_status status = sort_anew(layout, settings, moving);
   status = mpmi_share_end(layout->parts, &layout->blocks, moving, count, status);
   if (status) layout->sorts = sorts; /* it counts where it has come to its end on all parts */

@@ -6,7 +6,7 @@
 
 #include "layout/contact_nodes.h"
 #include "layout/settings.h"
-#include "parallel/parts.h"
+#include "parallel/guests.h"
 #include "particles/sort.h"
 
 /* A set of particles in a stepper: where its particles lie, and what acts on them. */
@@ -68,6 +68,31 @@ static inline int64_t mpmi_slots(const mpmi_layout *layout) {
 
 mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings);
 void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings);
+
+/* Particles of a set in a block: those of this part, or in a ghost copies of another part's. Members from
+ * member_count on are those of the guests. */
+typedef struct mpmi_residents {
+  const mpm_particles *set;
+  int32_t member;
+  int64_t begin, end;
+} mpmi_residents;
+
+static inline mpmi_residents mpmi_residents_of(const mpmi_layout *layout, int32_t m, int64_t block) {
+  const int32_t ghost = layout->parts ? layout->parts->guest_of[block] : 0;
+  const mpmi_member *member = &layout->member[m];
+  if (!ghost) return (mpmi_residents){member->set, m, member->now.start[block], member->now.start[block + 1]};
+  const mpmi_guest_set *guests = &layout->parts->guests[m];
+  return (mpmi_residents){&guests->set, layout->member_count + m, guests->start[2 * ghost - 2],
+                          guests->start[2 * ghost - 1]};
+}
+/* Returns the set of a member of residents, and which of the stepper's sets it is. */
+static inline int32_t mpmi_resident_home(const mpmi_layout *layout, int32_t member) {
+  return member < layout->member_count ? member : member - layout->member_count;
+}
+static inline const mpm_particles *mpmi_resident_set(const mpmi_layout *layout, int32_t member) {
+  return member < layout->member_count ? layout->member[member].set
+                                       : &layout->parts->guests[member - layout->member_count].set;
+}
 
 /* Brings the layout up to date: sorts where particles have left their tiles, finds ties where walls have
  * changed. The old layout stays when that fails. */

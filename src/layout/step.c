@@ -119,9 +119,7 @@ mpm_status mpmi_workspace_prepare(mpmi_workspace *work, const mpmi_settings *set
   mpm_context *c = settings->context;
   const int64_t blocks = layout->blocks.count;
   mpm_status status;
-  if ((status = MPMI_RESERVE_MORE(c, work->block_sums, work->block_sums_capacity, blocks)) ||
-      (status = mpmi_tally_prepare(&work->tally, c, layout->member_count)))
-    return status;
+  if ((status = MPMI_RESERVE_MORE(c, work->block_sums, work->block_sums_capacity, blocks))) return status;
   if (mpmi_has_friction_planes(settings)) {
     if ((status = MPMI_RESERVE_MORE(c, work->block_stops, work->block_stops_capacity, blocks))) return status;
     if (blocks > 0) memset(work->block_stops, 0, (size_t)blocks * sizeof *work->block_stops);

@@ -4,13 +4,14 @@
 
 enum { ENERGIES = sizeof(mpmi_sums) / sizeof(double) };
 
-mpm_status mpmi_tally_prepare(mpmi_tally *tally, mpm_context *context, int32_t sets) {
-  const int64_t count = MPMI_TALLY_REACTIONS + 3 * (int64_t)sets;
+mpm_status mpmi_tally_prepare(mpmi_tally *tally, mpm_context *context, int32_t sets, int64_t pairs) {
+  const int64_t first = MPMI_TALLY_REACTIONS + 3 * (int64_t)sets, count = first + MPMI_PAIR_SUMS * pairs;
   mpm_status status;
   if ((status = MPMI_RESERVE_MORE(context, tally->sum, tally->sum_capacity, count)) ||
       (status = MPMI_RESERVE_MORE(context, tally->total, tally->total_capacity, count)))
     return status;
   tally->count = count;
+  tally->pairs = first;
   for (int64_t i = 0; i < count; ++i) mpmi_exact_clear(&tally->sum[i]);
   return MPM_OK;
 }

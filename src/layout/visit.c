@@ -81,6 +81,30 @@ mpm_status mpmi_visit_colour(const mpmi_step *step, const uint8_t *mark, int32_t
   return walk_marked(step, &step->layout->worklist[1 + colour], mark, calls_host, visit, user);
 }
 
+typedef struct ghost_visits {
+  const mpmi_step *step;
+  const uint8_t *mark;
+  mpmi_visit_fn visit;
+  void *user;
+} ghost_visits;
+
+static void ghosts_task(void *data, int64_t k) {
+  const ghost_visits *g = data;
+  const mpmi_parts *parts = g->step->layout->parts;
+  const mpmi_share share = mpmi_share_of(g->step->settings, parts->ghost_count, k);
+  for (int64_t i = share.begin; i < share.end; ++i) {
+    const mpmi_visit visit = {(int32_t)k, parts->ghost[i].block, -1};
+    if (g->mark[visit.block]) g->visit(g->user, &visit);
+  }
+}
+
+mpm_status mpmi_visit_ghosts(const mpmi_step *step, const uint8_t *mark, int32_t calls_host,
+                             mpmi_visit_fn visit, void *user) {
+  ghost_visits g = {step, mark, visit, user};
+  if (!step->layout->parts) return MPM_OK;
+  return mpmi_run_tasks(step->settings, calls_host, step->settings->tasks, ghosts_task, &g);
+}
+
 void mpmi_visit_in_turn(const mpmi_step *step, mpmi_visit_fn visit, void *user) {
   const walk w = {&step->layout->worklist[0], visit, user};
   walk_range(&w, 0, 0, w.list->count);

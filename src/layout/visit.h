@@ -26,6 +26,9 @@ mpm_status mpmi_visit_marked(const mpmi_step *step, const uint8_t *mark, int32_t
 /* Visits those of one colour, which may write to their tiles' nodes. */
 mpm_status mpmi_visit_colour(const mpmi_step *step, const uint8_t *mark, int32_t colour, int32_t calls_host,
                              mpmi_visit_fn visit, void *user);
+/* Visits marked blocks of other parts, which have guests or nothing. */
+mpm_status mpmi_visit_ghosts(const mpmi_step *step, const uint8_t *mark, int32_t calls_host,
+                             mpmi_visit_fn visit, void *user);
 /* Visits one block after the other, by task 0; for visits that write anywhere. */
 void mpmi_visit_in_turn(const mpmi_step *step, mpmi_visit_fn visit, void *user);
 

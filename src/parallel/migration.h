@@ -13,6 +13,7 @@
 /* A set that takes part, and what of it is on the way. */
 typedef struct mpmi_moving_set {
   mpm_particles *set;
+  int32_t body;
   mpmi_sorting *sorting;
   int64_t leave;              /* particles that go */
   int64_t arrive, arrive_low; /* those that come, and those of them from parts before this one */

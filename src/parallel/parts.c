@@ -30,6 +30,8 @@ void mpmi_parts_destroy(mpmi_parts *parts) {
   MPMI_FREE_ARRAY(c, parts->first, count + 1);
   MPMI_FREE_ARRAY(c, parts->owner_count, count);
   MPMI_FREE_ARRAY(c, parts->out, count);
+  MPMI_FREE_ARRAY(c, parts->body, parts->body_capacity);
+  MPMI_FREE_ARRAY(c, parts->guest_of, parts->guest_capacity);
   MPMI_FREE_ARRAY(c, parts->message, count);
   MPMI_FREE_ARRAY(c, parts->most, count);
   MPMI_FREE_ARRAY(c, parts->partner, parts->partner_capacity);
@@ -56,8 +58,21 @@ void mpmi_parts_replace(mpmi_parts **present, mpmi_parts **next) {
   info->cuts += before->cuts;
   info->seconds_packing += before->seconds_packing;
   info->seconds_waiting += before->seconds_waiting;
+  now->guests = old->guests; /* memory that is used again */
+  now->guest_count = old->guest_count;
+  old->guests = NULL;
+  old->guest_count = 0;
   *present = now;
   *next = old;
+}
+
+mpm_status mpmi_parts_note_body(mpmi_parts *parts, int32_t body) {
+  for (int32_t i = 0; i < parts->body_count; ++i)
+    if (parts->body[i] == body) return MPM_OK;
+  const mpm_status status =
+      MPMI_RESERVE_NEXT(parts->context, parts->body, parts->body_capacity, parts->body_count);
+  if (!status) parts->body[parts->body_count++] = body;
+  return status;
 }
 
 void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes) {

@@ -5,6 +5,7 @@
  *   pattern.c    which blocks of other parts share nodes with one's own, and which of the nodes have all that
  *                particles give them
  *   tiles.c      the exchange of what the particles of such blocks give
+ *   guests.c     copies of particles of other parts, around nodes at which bodies meet
  *
  * The particles of all parts, one part after the other, have the order that one part would have; so have
  * the tiles that are added to a node. Hence all bits are those of one part. */
@@ -48,10 +49,14 @@ typedef struct mpmi_parts {
   mpm_context *context;
   const mpm_grid *grid;
   int32_t margin;           /* nodes so far beyond those of a tile are to be whole, too */
+  int32_t meets_markers;    /* there have been surfaces: the margin counts what their markers need */
   uint64_t *first;          /* [parts + 1] part r has the keys first[r] <= key < first[r + 1] */
   int32_t is_cut, is_empty; /* empty: no part has particles */
   int32_t is_stale;         /* a sort has not come to its end on all parts */
   int64_t *owner_count;     /* [parts] scratch */
+  int32_t body_count;       /* of the sets */
+  int64_t body_capacity;
+  int32_t *body; /* [body_count] each once */
   int64_t partner_count, partner_capacity;
   mpmi_partner *partner;
   int64_t sent_count, sent_capacity, ghost_count, ghost_capacity;
@@ -72,10 +77,17 @@ typedef struct mpmi_parts {
   mpmi_buffer gone; /* slots of particles that leave */
   mpm_message *message;
   int64_t *most;
-  int64_t exchanges;       /* of tiles in the step under way */
-  int32_t has_counted;     /* the active nodes of the step under way */
-  int32_t prescribes;      /* some part may have prescribed particles */
-  int32_t asks;            /* some part has a progress callback */
+  int64_t exchanges; /* of tiles in the step under way */
+  /* Of meetings that a free obstacle couples, in it: how many have been gathered, how often they will be, and
+   * after how many exchanges of tiles; how many there are to be by the end of the phase. */
+  int64_t gathers, gather_count, gather_at[2], gathers_due;
+  int32_t has_counted; /* the active nodes of the step under way */
+  int32_t prescribes;  /* some part may have prescribed particles */
+  int32_t asks;        /* some part has a progress callback */
+  int32_t guest_count; /* of sets that have had guests (guests.h) */
+  struct mpmi_guest_set *guests;
+  int32_t *guest_of; /* [blocks] 1 + the index of the ghost that has guests in this step, or 0 */
+  int64_t guest_capacity;
   int64_t leave_elsewhere; /* particles that leave the grid on other parts in the step under way */
   int32_t is_echo;         /* the step fails here because it has failed on a partner */
   mpm_parallel_info info;
@@ -85,6 +97,8 @@ mpm_status mpmi_parts_create(mpm_context *context, const mpm_grid *grid, mpmi_pa
 void mpmi_parts_destroy(mpmi_parts *parts);
 /* Exchanges them; what they have cost is counted on. */
 void mpmi_parts_replace(mpmi_parts **present, mpmi_parts **next);
+/* Adds the body of a set to those that may meet, unless it is known. */
+mpm_status mpmi_parts_note_body(mpmi_parts *parts, int32_t body);
 static inline int32_t mpmi_part_count(const mpmi_parts *parts) {
   return parts->context->transport.parts;
 }
@@ -123,6 +137,11 @@ static inline int32_t mpmi_owns_node(const mpmi_parts *parts, int64_t slot) {
   if (!parts) return 1;
   const int32_t flags = parts->flags[slot];
   return !(flags & MPMI_NODE_GIVEN) || (flags & (MPMI_NODE_OWN | MPMI_NODE_LOWER)) == MPMI_NODE_OWN;
+}
+
+/* Returns 1 for a node to which particles of this part give, or that none of another part's do. */
+static inline int32_t mpmi_meets_node(const mpmi_parts *parts, int64_t slot) {
+  return !parts || (parts->flags[slot] & (MPMI_NODE_GIVEN | MPMI_NODE_OWN)) != MPMI_NODE_GIVEN;
 }
 
 /* ---- tiles.c ----------------------------------------------------------------------------------------- */

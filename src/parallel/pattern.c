@@ -4,7 +4,9 @@
  * to be whole, on those that are tied to them by walls and periods, and on `margin` more around them: that
  * is what the block wants. A block of another part whose tile meets that is a ghost here; its owner sends
  * what its particles give there. Each part finds out by itself what it has to send and what will come, once
- * it knows the blocks of the others that are near its own. */
+ * it knows the blocks of the others that are near its own.
+ *
+ * Where bodies have nodes of their own, they may meet at these: a block wants those of all bodies. */
 #include "parallel/parts.h"
 
 #include <string.h>
@@ -74,7 +76,7 @@ static int32_t places_near(const mpmi_parts *parts, int32_t axis, int64_t coord,
 typedef struct nearby {
   mpmi_parts *parts;
   const mpmi_blocks *blocks;
-  int32_t coord[3], body;
+  int32_t coord[3];
   void *user;
 } nearby;
 typedef void (*near_fn)(nearby *n, const int32_t *coord, const place *const *at);
@@ -118,12 +120,8 @@ typedef struct told_block {
 static mpm_status tell(mpmi_parts *parts, const mpmi_blocks *blocks) {
   const int32_t all = mpmi_part_count(parts), me = parts->context->transport.part;
   for (int64_t i = 0; i < blocks->count; ++i) {
-    nearby n = {parts,
-                blocks,
-                {blocks->coord[i][0], blocks->coord[i][1], blocks->coord[i][2]},
-                blocks->body[i],
-                NULL};
-    const told_block block = {{n.coord[0], n.coord[1], n.coord[2]}, n.body};
+    nearby n = {parts, blocks, {blocks->coord[i][0], blocks->coord[i][1], blocks->coord[i][2]}, NULL};
+    const told_block block = {{n.coord[0], n.coord[1], n.coord[2]}, blocks->body[i]};
     memset(parts->owner_count, 0, (size_t)all * sizeof *parts->owner_count);
     each_near(&n, mark_owner);
     for (int32_t r = 0; r < all; ++r) {
@@ -137,19 +135,25 @@ static mpm_status tell(mpmi_parts *parts, const mpmi_blocks *blocks) {
 }
 
 /* ---- what is sent and what comes ----------------------------------------------------------------------- */
-/* Looks for blocks near one whose numbers are in [first, end): `wants` says that one wants something of it,
- * and the box says what; `wanted` the other way round. */
+/* Looks for blocks of any body near one whose numbers are in [first, end): `wants` says that one wants
+ * something of it, and the box says what; `wanted` the other way round. */
 typedef struct search {
   int64_t first, end;
   int32_t wants, wanted;
   mpmi_node_box box; /* in the tile of the one that is searched around */
 } search;
 
+static int32_t is_there(const nearby *n, const search *s, const int32_t *coord) {
+  for (int32_t i = 0; i < n->parts->body_count; ++i) {
+    const int32_t found = mpmi_blocks_find(n->blocks, n->parts->body[i], coord);
+    if (found >= s->first && found < s->end) return 1;
+  }
+  return 0;
+}
+
 static void look_up(nearby *n, const int32_t *coord, const place *const *at) {
   search *s = n->user;
-  if (!all_want(at) && !all_wanted(at)) return;
-  const int32_t found = mpmi_blocks_find(n->blocks, n->body, coord);
-  if (found < s->first || found >= s->end) return;
+  if ((!all_want(at) && !all_wanted(at)) || !is_there(n, s, coord)) return;
   s->wanted |= all_wanted(at);
   if (!all_want(at)) return;
   s->wants = 1;
@@ -165,7 +169,7 @@ static void look_up(nearby *n, const int32_t *coord, const place *const *at) {
 static search look_around(mpmi_parts *parts, const mpmi_blocks *blocks, const told_block *block,
                           int64_t first, int64_t end) {
   search s = {first, end, 0, 0, {{255, 255, 255}, {0, 0, 0}}};
-  nearby n = {parts, blocks, {block->coord[0], block->coord[1], block->coord[2]}, block->body, &s};
+  nearby n = {parts, blocks, {block->coord[0], block->coord[1], block->coord[2]}, &s};
   each_near(&n, look_up);
   for (int32_t k = parts->grid->dim; k < 3; ++k) s.box.low[k] = 0, s.box.high[k] = 1;
   return s;
@@ -238,37 +242,56 @@ mpm_status mpmi_pattern_find(mpmi_parts *parts, mpmi_blocks *blocks, mpm_status 
 }
 
 /* ---- nodes --------------------------------------------------------------------------------------------- */
-/* Flags the nodes of a box about a block, in and around it. */
-static void flag_box(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, const stretch *box,
-                     uint8_t flag) {
-  const int64_t edge = blocks->edge;
-  int64_t index[3];
-  const stretch one = {0, 1};
-  const stretch *b[3] = {&box[0], blocks->grid->dim > 1 ? &box[1] : &one,
-                         blocks->grid->dim > 2 ? &box[2] : &one};
-  for (index[0] = b[0]->low; index[0] < b[0]->high; ++index[0])
-    for (index[1] = b[1]->low; index[1] < b[1]->high; ++index[1])
-      for (index[2] = b[2]->low; index[2] < b[2]->high; ++index[2]) {
-        int32_t at[3] = {0, 0, 0}, near = 1;
-        for (int32_t k = 0; k < blocks->grid->dim; ++k) {
-          const int64_t offset = index[k] - blocks->coord[block][k] * edge;
-          near &= offset >= -edge && offset < 2 * edge;
-          at[k] = (int32_t)(near ? offset : 0);
-        }
-        const int64_t slot =
-            near ? mpmi_blocks_near(blocks, block, at) : mpmi_blocks_node(blocks, blocks->body[block], index);
-        if (slot >= 0) parts->flags[slot] |= flag;
+/* Flags the nodes of a body's block that lie in a box. */
+static void flag_block(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, const stretch *box,
+                       uint8_t flag) {
+  int64_t low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
+  const int32_t dim = blocks->grid->dim, edge = blocks->edge;
+  for (int32_t k = 0; k < dim; ++k) {
+    const int64_t first = (int64_t)blocks->coord[block][k] * edge;
+    const stretch both = meet(box[k], (stretch){first, first + edge});
+    low[3 - dim + k] = both.low - first;
+    high[3 - dim + k] = both.high - first;
+  }
+  for (int64_t x = low[0]; x < high[0]; ++x)
+    for (int64_t y = low[1]; y < high[1]; ++y)
+      for (int64_t z = low[2]; z < high[2]; ++z)
+        parts->flags[block * blocks->nodes + (x * edge + y) * edge + z] |= flag;
+}
+
+static int64_t block_at(const mpmi_blocks *blocks, int64_t node) {
+  return node >= 0 ? node / blocks->edge : -((blocks->edge - 1 - node) / blocks->edge);
+}
+
+/* Flags the nodes of a body in a box. */
+static void flag_box(const mpmi_parts *parts, const mpmi_blocks *blocks, int32_t body, const stretch *box,
+                     int32_t flag) {
+  int64_t low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+  for (int32_t k = 0; k < blocks->grid->dim; ++k) {
+    low[k] = block_at(blocks, box[k].low);
+    high[k] = block_at(blocks, box[k].high - 1);
+  }
+  for (int64_t x = low[0]; x <= high[0]; ++x)
+    for (int64_t y = low[1]; y <= high[1]; ++y)
+      for (int64_t z = low[2]; z <= high[2]; ++z) {
+        const int32_t coord[3] = {(int32_t)x, (int32_t)y, (int32_t)z};
+        const int32_t block = mpmi_blocks_find(blocks, body, coord);
+        if (block >= 0) flag_block(parts, blocks, block, box, (uint8_t)flag);
       }
 }
 
-/* Flags the nodes of a block's tile, or all that it wants. */
-static void flag_nodes(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t wanted,
-                       int32_t flag) {
-  const int32_t *coord = blocks->coord[block];
+/* Flags the nodes of a block's tile. */
+static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t flag) {
   stretch box[3];
-  for (int32_t k = 0; k < blocks->grid->dim; ++k)
-    box[k] = wanted ? wanted_by(parts, k, coord[k]) : tile_of(parts, coord[k]);
-  flag_box(parts, blocks, block, box, (uint8_t)flag);
+  for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = tile_of(parts, blocks->coord[block][k]);
+  flag_box(parts, blocks, blocks->body[block], box, flag);
+}
+
+/* Flags all that a block wants. */
+static void flag_wanted(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t flag) {
+  stretch box[3];
+  for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = wanted_by(parts, k, blocks->coord[block][k]);
+  for (int32_t i = 0; i < parts->body_count; ++i) flag_box(parts, blocks, parts->body[i], box, flag);
 }
 
 /* Nodes that are tied move as one: what is so for one of them is so for all. */
@@ -286,8 +309,10 @@ static void join_ties(const mpmi_parts *parts, const mpmi_constraints *constrain
 
 /* Blocks near a ghost may share nodes with it. */
 static void flag_near(nearby *n, const int32_t *coord, const place *const *at) {
-  const int32_t found = mpmi_blocks_find(n->blocks, n->body, coord);
-  if (found >= 0 && (all_want(at) || all_wanted(at)) && n->parts->near[found]) n->parts->near[found] = 2;
+  for (int32_t i = 0; i < n->parts->body_count && (all_want(at) || all_wanted(at)); ++i) {
+    const int32_t found = mpmi_blocks_find(n->blocks, n->parts->body[i], coord);
+    if (found >= 0 && n->parts->near[found]) n->parts->near[found] = 2;
+  }
 }
 
 mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks) {
@@ -298,9 +323,11 @@ mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks) {
       (status = MPMI_RESERVE_MORE(c, parts->is_boundary, parts->is_boundary_capacity, count + 1)) ||
       (status = MPMI_RESERVE_MORE(c, parts->is_inner, parts->is_inner_capacity, count + 1)) ||
       (status = MPMI_RESERVE_MORE(c, parts->near, parts->near_capacity, count + 1)) ||
+      (status = MPMI_RESERVE_MORE(c, parts->guest_of, parts->guest_capacity, count + 1)) ||
       (status = MPMI_RESERVE_MORE(c, parts->boundary, parts->boundary_capacity, parts->sent_count + 1)))
     return status;
   memset(parts->mark, 0, (size_t)(count + 1) * sizeof *parts->mark);
+  memset(parts->guest_of, 0, (size_t)(count + 1) * sizeof *parts->guest_of);
   memset(parts->is_boundary, 0, (size_t)(count + 1));
   memset(parts->is_inner, 0, (size_t)(count + 1));
   for (int64_t i = 0; i < parts->info.blocks; ++i) parts->is_inner[blocks->order[i]] = 1;
@@ -324,8 +351,8 @@ mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks) {
 static void flag_ghost(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_shared_block *ghost) {
   const int32_t *coord = blocks->coord[ghost->block];
   const int32_t lower = parts->partner[ghost->partner].part < parts->context->transport.part;
-  nearby n = {parts, blocks, {coord[0], coord[1], coord[2]}, blocks->body[ghost->block], NULL};
-  flag_nodes(parts, blocks, ghost->block, 0, MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0));
+  nearby n = {parts, blocks, {coord[0], coord[1], coord[2]}, NULL};
+  flag_tile(parts, blocks, ghost->block, MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0));
   each_near(&n, flag_near);
 }
 
@@ -343,8 +370,8 @@ mpm_status mpmi_pattern_nodes(mpmi_parts *parts, const mpmi_blocks *blocks,
   for (int64_t i = 0; i < parts->ghost_count; ++i) flag_ghost(parts, blocks, &parts->ghost[i]);
   for (int64_t block = 0; block < blocks->count; ++block) {
     if (parts->near[block] != 2) continue;
-    flag_nodes(parts, blocks, block, 0, MPMI_NODE_OWN);
-    flag_nodes(parts, blocks, block, 1, MPMI_NODE_WHOLE);
+    flag_tile(parts, blocks, block, MPMI_NODE_OWN);
+    flag_wanted(parts, blocks, block, MPMI_NODE_WHOLE);
   }
   join_ties(parts, constraints);
   int64_t count = 0;

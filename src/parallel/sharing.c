@@ -15,6 +15,14 @@ static mpm_status weigh(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi
   return mpmi_cut_blocks(parts, blocks, weight);
 }
 
+/* Lists the bodies of the sets. */
+static mpm_status list_bodies(mpmi_parts *parts, const mpmi_moving_set *sets, int32_t count) {
+  mpm_status status = MPM_OK;
+  parts->body_count = 0;
+  for (int32_t m = 0; m < count && !status; ++m) status = mpmi_parts_note_body(parts, sets[m].body);
+  return status;
+}
+
 mpm_status mpmi_share_out(mpmi_parts *parts, mpmi_blocks *blocks, mpmi_moving_set *sets, int32_t count,
                           mpm_status status, mpm_status (*insert)(void *user), void *user) {
   mpm_context *c = parts->context;
@@ -22,6 +30,7 @@ mpm_status mpmi_share_out(mpmi_parts *parts, mpmi_blocks *blocks, mpmi_moving_se
   int64_t *weight = status ? NULL : mpmi_alloc(c, bytes), moved = 0;
   parts->is_stale = 1;
   if (!status && !weight) status = MPM_E_NOMEM;
+  if (!status) status = list_bodies(parts, sets, count);
   status = mpmi_agree(c, status);
   if (!status) status = weigh(parts, blocks, sets, count, weight);
   mpmi_free(c, weight, bytes);

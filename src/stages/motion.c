@@ -3,11 +3,9 @@
 #include "stages/batch.h"
 #include "stages/stages.h"
 #include "boundary/prescribed.h"
-#include "context/reduce.h"
 #include "layout/reached.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 void mpmi_motion_bind(mpmi_batch *b) {
@@ -91,16 +89,15 @@ static int32_t stop_at_wall(mpmi_batch *b, int64_t slot, int32_t k, double *x) {
 }
 
 void mpmi_stops_report(mpmi_step *step) {
-  enum { ROWS = sizeof(mpmi_stops) / sizeof(double), ENERGY = offsetof(mpmi_stops, energy) / sizeof(double) };
   const mpmi_worklist *blocks = &step->layout->worklist[0];
-  if (!mpmi_has_friction_planes(step->settings) || !blocks->count) return;
-  double sum[ROWS];
-  for (int32_t i = 0; i < ROWS; ++i)
-    sum[i] = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, (const double *)step->work->block_stops + i, ROWS,
-                         blocks->block, blocks->count);
-  for (int32_t face = 0; face < 2 * step->settings->grid->dim; ++face)
-    step->impulse_by_face[face][face / 2] += sum[face];
-  step->info.contact_dissipation += sum[ENERGY];
+  mpmi_whole_sum *sum = step->work->tally.sum;
+  if (!mpmi_has_friction_planes(step->settings)) return;
+  for (int64_t i = 0; i < blocks->count; ++i) {
+    const mpmi_stops *stops = &step->work->block_stops[blocks->block[i]];
+    for (int32_t face = 0; face < 2 * step->settings->grid->dim; ++face)
+      mpmi_exact_add(&sum[MPMI_TALLY_FACES + 3 * face + face / 2], stops->impulse[face]);
+    mpmi_exact_add(&sum[MPMI_TALLY_CONTACT], stops->energy);
+  }
 }
 
 /* Moves a position by whole periods into the grid and counts them; 0 where that is beyond counting. */

@@ -51,7 +51,8 @@ static void place_nodes(void *data, int64_t task) {
 mpm_status mpmi_node_places_stage(mpmi_step *step, mpmi_nodes *nodes) {
   const mpmi_projection *projection = &mpmi_projections[MPMI_PROJECT_DISPLACEMENT];
   places_job job = {step, nodes};
-  if (!mpmi_places_nodes(step->settings, nodes) || !step->layout->blocks.count) return MPM_OK;
+  if (!mpmi_places_nodes(step->settings, nodes)) return MPM_OK;
+  if (!step->layout->blocks.count && !step->layout->parts) return MPM_OK;
   mpm_status status = mpmi_run_tasks(step->settings, 0, step->settings->tasks, find_displacements, &job);
   if (!status) status = mpmi_p2g_stage(step, projection, nodes);
   if (!status) status = mpmi_node_update_stage(step, projection, nodes);

@@ -88,16 +88,20 @@ mpm_status mpmi_surface_find(mpmi_step *step, mpm_surface *surface, const mpmi_n
 mpm_status mpmi_surfaces_aim(mpmi_step *step);
 /* Asks the host for tractions at time t, and finds the forces of all markers on their present areas. */
 mpm_status mpmi_surfaces_load(mpmi_step *step, double t);
-/* Finds the nodes around the markers of all surfaces, and refuses loads that no node would take. */
+/* Finds the nodes around the markers of all surfaces, and refuses loads that no node would take: of several
+ * parts each knows of some. */
 mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses);
 /* Does the same, and adds the forces to the sums that particles have made there. */
 mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
+/* Refuses loads that no node of any part would take, on all parts alike (collective). */
+mpm_status mpmi_surfaces_carried(mpmi_step *step);
 /* Stretches all markers with the velocities of these nodes, from what they were at the start of the step, and
  * finds the forces on their new areas. */
 mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from);
 /* Finds all forces per present area in fixed directions on a marker. */
 void mpmi_marker_tractions(const mpm_surface *surface, int64_t marker, double *traction);
-/* Moves all markers with the velocities of these nodes, and splits those that have become too long. */
+/* Moves all markers with the velocities of these nodes, and splits those that have become too long
+ * (collective). */
 mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
 
 /* ---- motion.c ---------------------------------------------------------------------------------------- */

@@ -1,7 +1,9 @@
 /* Surfaces in a step (docs/theory.md): what the host asks of them, their loads, forces on the nodes around
  * their markers, and their motion. */
 #include "stages/stages.h"
+#include "context/transport.h"
 #include "layout/tasks.h"
+#include "parallel/parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -189,15 +191,21 @@ static void give_surface(const surface_job *job) {
       if (s->around.slot[n] >= 0) give_node(job, s->around.slot[n], s->next.at[i].force, s->around.weight[n]);
 }
 
-/* Refuses loads that no node would take. */
-static mpm_status check_carried(const surface_job *job) {
-  const mpm_surface *s = job->surface;
+/* Returns the first of the nodes around a marker that take something, or -1. */
+static int64_t first_slot(const mpm_surface *s, int64_t marker) {
+  for (int64_t n = marker * s->around.nodes; n < (marker + 1) * s->around.nodes; ++n)
+    if (s->around.slot[n] >= 0) return s->around.slot[n];
+  return -1;
+}
+
+/* Refuses loads that no node would take. carried: of each marker, whether some part has such nodes; NULL
+ * where there is one part. */
+static mpm_status check_carried(mpmi_step *step, const mpm_surface *s, const int64_t *carried) {
   for (int64_t i = 0; i < s->next.count; ++i) {
     const mpmi_marker *m = &s->next.at[i];
-    int32_t carried = !(fabs(m->force[0]) + fabs(m->force[1]) + fabs(m->force[2]) > 0.0);
-    for (int64_t n = i * s->around.nodes; n < (i + 1) * s->around.nodes; ++n)
-      carried |= s->around.slot[n] >= 0;
-    if (!carried) return fail_marker(job->step, MPM_E_STATE, s, m, "has a load and no material around it");
+    if (!(fabs(m->force[0]) + fabs(m->force[1]) + fabs(m->force[2]) > 0.0)) continue;
+    if (carried ? !carried[i] : first_slot(s, i) < 0)
+      return fail_marker(step, MPM_E_STATE, s, m, "has a load and no material around it");
   }
   return MPM_OK;
 }
@@ -206,9 +214,9 @@ mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses) {
   const mpmi_settings *settings = step->settings;
   mpm_status status = MPM_OK;
   for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
-    const surface_job job = {step, settings->surfaces.surface[i], masses};
-    status = mpmi_surface_find(step, job.surface, masses);
-    if (!status) status = check_carried(&job);
+    mpm_surface *surface = settings->surfaces.surface[i];
+    status = mpmi_surface_find(step, surface, masses);
+    if (!status && !step->layout->parts) status = check_carried(step, surface, NULL);
   }
   return status;
 }
@@ -219,6 +227,28 @@ mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to) {
   for (int64_t i = 0; i < list->count && !status; ++i) {
     const surface_job job = {step, list->surface[i], to};
     give_surface(&job);
+  }
+  return status;
+}
+
+/* ---- several parts ------------------------------------------------------------------------------------- */
+/* All parts have all markers. Who has a node in a tile of its own knows all nodes around markers beside it,
+ * and the forces of all markers there: the part that owns the first node around a marker tells the others
+ * how it moves. */
+static int32_t owns_marker(const mpmi_step *step, const mpm_surface *s, int64_t marker) {
+  const int64_t slot = first_slot(s, marker);
+  return slot >= 0 && mpmi_owns_node(step->layout->parts, slot);
+}
+
+mpm_status mpmi_surfaces_carried(mpmi_step *step) {
+  const mpmi_surfaces *list = &step->settings->surfaces;
+  mpm_status status = MPM_OK;
+  for (int64_t i = 0; i < list->count && !status && step->layout->parts; ++i) {
+    const mpm_surface *s = list->surface[i];
+    if (!s->next.count) continue;
+    for (int64_t k = 0; k < s->next.count; ++k) s->told[k] = owns_marker(step, s, k);
+    status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, s->next.count, s->told);
+    if (!status) status = check_carried(step, s, s->told);
   }
   return status;
 }
@@ -260,6 +290,42 @@ static void stretch(const surface_job *job, int64_t marker, double L[3][3]) {
       for (int32_t k = 0; k < dim; ++k) to->edge[e][c] += job->step->dt * L[c][k] * material[e][k];
 }
 
+/* Writes how the nodes move at markers of this part, and 0 for others. */
+static void tell_task(void *data, int64_t task) {
+  const surface_job *job = data;
+  const mpmi_share share = mpmi_share_of(job->step->settings, job->surface->next.count, task);
+  for (int64_t i = share.begin; i < share.end; ++i) {
+    double motion[MPMI_MARKER_MOTION] = {0.0};
+    if (owns_marker(job->step, job->surface, i)) gather(job, i, motion, (double(*)[3])(motion + 3));
+    memcpy(&job->surface->told[MPMI_MARKER_MOTION * i], motion, sizeof motion);
+  }
+}
+
+/* Lets all parts know how all markers move: of each marker one part adds its bits to zeros. */
+static mpm_status tell(mpmi_step *step, const mpmi_nodal *from) {
+  const mpmi_settings *settings = step->settings;
+  mpm_status status = MPM_OK;
+  for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
+    surface_job job = {step, settings->surfaces.surface[i], from};
+    if (!job.surface->next.count) continue;
+    mpmi_parallel_for_sure(settings->context, settings->tasks, tell_task, &job);
+    status = mpmi_reduce_parts(settings->context, MPM_REDUCE_SUM,
+                               MPMI_MARKER_MOTION * job.surface->next.count, job.surface->told);
+  }
+  return status;
+}
+
+static void find_motion(const surface_job *job, int64_t marker, double *velocity, double L[3][3]) {
+  double motion[MPMI_MARKER_MOTION];
+  if (!job->step->layout->parts) {
+    gather(job, marker, velocity, L);
+    return;
+  }
+  memcpy(motion, &job->surface->told[MPMI_MARKER_MOTION * marker], sizeof motion);
+  memcpy(velocity, motion, 3 * sizeof *motion);
+  memcpy(L, motion + 3, 9 * sizeof *motion);
+}
+
 static void stretch_task(void *data, int64_t task) {
   const surface_job *job = data;
   const mpmi_share share = mpmi_share_of(job->step->settings, job->surface->next.count, task);
@@ -290,7 +356,7 @@ static void move_task(void *data, int64_t task) {
   for (int64_t i = share.begin; i < share.end; ++i) {
     mpmi_marker *m = &job->surface->next.at[i];
     double L[3][3];
-    gather(job, i, m->velocity, L);
+    find_motion(job, i, m->velocity, L);
     if (!prescribes) {
       stretch(job, i, L);
       memset(m->reaction, 0, sizeof m->reaction);
@@ -352,7 +418,7 @@ static mpm_status move_surface(surface_job *job) {
 
 mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from) {
   const mpmi_surfaces *list = &step->settings->surfaces;
-  mpm_status status = MPM_OK;
+  mpm_status status = step->layout->parts ? tell(step, from) : MPM_OK;
   for (int64_t i = 0; i < list->count && !status; ++i) {
     surface_job job = {step, list->surface[i], from};
     status = move_surface(&job);

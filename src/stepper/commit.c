@@ -87,12 +87,15 @@ mpm_status mpmi_add_up(mpm_stepper *s, mpmi_sums *sums) {
   }
   for (int32_t m = 0; m < s->layout.member_count; ++m) mpmi_prescribed_report(step, &s->nodes, m);
   if ((status = mpmi_total_parts(s->context, tally->count, tally->sum, tally->total)) ||
-      (status = mpmi_together_count(s, sums)))
+      (status = mpmi_together_count(s, sums)) || (status = mpmi_together_touched(s)) ||
+      (status = s->settings.heat.any ? mpmi_heat_add_up(step, s->heat) : MPM_OK))
     return status;
   mpmi_tally_read(tally->total, sums);
+  mpmi_pairs_total(&s->history.pairs, tally);
   for (int32_t i = 0; i < 18; ++i) step->impulse_by_face[i / 3][i % 3] += tally->total[MPMI_TALLY_FACES + i];
   step->host_work += tally->total[MPMI_TALLY_WORK];
   step->info.damping_dissipation += tally->total[MPMI_TALLY_DAMPING];
+  step->info.contact_dissipation += tally->total[MPMI_TALLY_CONTACT];
   return MPM_OK;
 }
 

@@ -8,6 +8,22 @@ void mpmi_pairs_begin(mpmi_pair_records *pairs) {
   for (int64_t i = 0; i < pairs->count; ++i) pairs->record[i].now = (mpmi_pair_sums){.gap = (double)INFINITY};
 }
 
+static void take_totals(mpmi_pair_sums *now, const double *total) {
+  for (int32_t c = 0; c < 3; ++c) {
+    now->impulse[c] = total[MPMI_PAIR_IMPULSE + c];
+    now->angular_impulse[c] = total[MPMI_PAIR_MOMENT + c];
+  }
+  now->normal_impulse = total[MPMI_PAIR_NORMAL];
+  now->area = total[MPMI_PAIR_AREA];
+  now->dissipation = total[MPMI_PAIR_DISSIPATION];
+  now->friction_work = total[MPMI_PAIR_FRICTION_WORK];
+}
+
+void mpmi_pairs_total(mpmi_pair_records *pairs, const mpmi_tally *tally) {
+  for (int64_t i = 0; i < pairs->count; ++i)
+    take_totals(&pairs->record[i].now, tally->total + tally->pairs + MPMI_PAIR_SUMS * i);
+}
+
 void mpmi_pairs_commit(mpmi_pair_records *pairs) {
   for (int64_t i = 0; i < pairs->count; ++i) {
     mpmi_pair_record *record = &pairs->record[i];

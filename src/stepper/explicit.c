@@ -27,7 +27,7 @@ static mpm_status deform(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
 /* Strains the particles of USF by the velocities at the start of the step. */
 static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
   mpm_status status = MPM_OK;
-  if (step->layout->constraints.contact_count || nodes->contact.site_count)
+  if (step->layout->constraints.contact_count || nodes->contact.anywhere)
     status = project(step, nodes, MPMI_PROJECT_CONTACT, clock);
   if (!status) status = project(step, nodes, MPMI_PROJECT_STRAIN, clock);
   return status ? status : deform(step, nodes, clock);
@@ -72,10 +72,12 @@ mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
     if (!status) status = deform(step, nodes, &clock);
   }
   if (!status) mpmi_surface_holds_report(step, nodes);
-  if (!status)
-    status = mpmi_surfaces_move(step, mpmi_moves_last(settings) ? &nodes->projected : &nodes->solved);
   mpmi_move_samples(step, MPMI_TIME_G2P);
   return status;
+}
+
+mpm_status mpmi_explicit_move_surfaces(mpmi_step *step, mpmi_nodes *nodes) {
+  return mpmi_surfaces_move(step, mpmi_moves_last(step->settings) ? &nodes->projected : &nodes->solved);
 }
 
 /* ---- how many sums on nodes that makes ---------- */
@@ -87,6 +89,11 @@ static int64_t of_projection(const mpmi_step *step, const mpmi_nodes *nodes, int
          (mpmi_asks_host(step->settings, of) && nodes->prescription.any);
 }
 
+/* Nodes of total Lagrangian grids are placed first. */
+static int64_t placing(const mpmi_step *step, const mpmi_nodes *nodes) {
+  return mpmi_places_nodes(step->settings, nodes) ? of_projection(step, nodes, MPMI_PROJECT_DISPLACEMENT) : 0;
+}
+
 int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, int32_t phase) {
   const mpmi_settings *settings = step->settings;
   const int64_t strain = settings->desc.locking_remedy != 0;
@@ -94,7 +101,10 @@ int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, 
       mpmi_asks_host(settings, &mpmi_projections[MPMI_PROJECT_FORCES]) && nodes->prescription.any;
   const int32_t correction = step->takes == MPMI_TAKES_FULL ? MPMI_PROJECT_FULL : MPMI_PROJECT_CORRECTION;
   int64_t count = of_projection(step, nodes, MPMI_PROJECT_FORCES) - holds;
+  count += placing(step, nodes);
   if (settings->desc.scheme == MPM_USF) count += of_projection(step, nodes, MPMI_PROJECT_STRAIN) + strain;
+  if (settings->desc.scheme == MPM_USF && nodes->contact.anywhere)
+    count += of_projection(step, nodes, MPMI_PROJECT_CONTACT);
   if (phase == MPMI_BEGUN) return count;
   count += holds; /* they are found with the conditions of the nodes */
   if (phase == MPMI_SOLVED) return count;
@@ -102,4 +112,13 @@ int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, 
   if (settings->desc.scheme == MPM_USL) count += strain;
   if (settings->desc.scheme == MPM_MUSL) count += of_projection(step, nodes, MPMI_PROJECT_MOVED) + strain;
   return count;
+}
+
+void mpmi_explicit_gathers(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_parts *parts) {
+  parts->gathers = parts->gather_count = parts->gathers_due = 0;
+  if (!nodes->contact.anywhere || !mpmi_has_free_obstacles(step->settings)) return;
+  if (step->settings->desc.scheme == MPM_USF)
+    parts->gather_at[parts->gather_count++] =
+        placing(step, nodes) + of_projection(step, nodes, MPMI_PROJECT_CONTACT);
+  parts->gather_at[parts->gather_count++] = mpmi_explicit_exchanges(step, nodes, MPMI_SOLVED);
 }

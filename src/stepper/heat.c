@@ -3,7 +3,7 @@
 #include "context/structs.h"
 #include "layout/members.h"
 #include "particles/thermal.h"
-#include "stepper/stepper.h"
+#include "stepper/together.h"
 
 #include <math.h>
 
@@ -149,15 +149,19 @@ mpm_status mpm_stepper_heat_info(const mpm_stepper *s, mpm_heat_info *info) {
                        .sources_total = of->total.sources,
                        .surfaces_total = of->total.surfaces,
                        .dissipated_total = of->total.dissipated};
-  const mpm_status status = mpmi_stepper_idle(s);
-  if (status) return status;
-  if (!s->heat)
-    return mpmi_fail(s->context, MPM_E_STATE, "no set has heat: describe one by mpm_stepper_set_heat");
+  mpm_status status = mpmi_stepper_idle(s);
+  if (!status && !s->heat)
+    status = mpmi_fail(s->context, MPM_E_STATE, "no set has heat: describe one by mpm_stepper_set_heat");
+  if (!status) status = mpmi_check_out_struct(s->context, "mpm_heat_info", sizeof now, info);
+  if ((status = mpmi_together(s, status))) return status;
   for (int32_t face = 0; face < 6; ++face) {
     now.walls[face] = of->last.walls[face];
     now.walls_total[face] = of->total.walls[face];
   }
+  mpmi_whole_sum heat;
+  mpmi_exact_clear(&heat);
   for (int32_t m = 0; m < s->layout.member_count; ++m)
-    now.heat += mpmi_heat_of(&s->settings.heat.set[m], s->layout.member[m].set);
+    mpmi_heat_of(&s->settings.heat.set[m], s->layout.member[m].set, &heat);
+  if ((status = mpmi_total_parts(s->context, 1, &heat, &now.heat))) return status;
   return mpmi_write_struct(s->context, "mpm_heat_info", &now, sizeof now, info);
 }

@@ -34,7 +34,10 @@ static mpm_status enter(mpm_stepper *s, mpm_status status, double dt) {
 
 /* Returns how many sums on nodes parts have exchanged when a step has come to this phase. */
 static int64_t exchanges_to(const mpm_stepper *s, int32_t phase) {
-  return mpmi_is_shared(s) ? mpmi_explicit_exchanges(&s->step, &s->nodes, phase) : 0;
+  if (!mpmi_is_shared(s)) return 0;
+  mpmi_parts *parts = s->layout.parts; /* the last gather is that of the grid's part */
+  parts->gathers_due = parts->gather_count - (parts->gather_count && phase == MPMI_BEGUN);
+  return mpmi_explicit_exchanges(&s->step, &s->nodes, phase);
 }
 
 /* Asks the host whether to go on, and shows it the info that the step is about to have. */
@@ -91,10 +94,11 @@ static mpm_status prepare(mpm_stepper *s) {
   if ((status = mpmi_prescribed_prepare(&s->layout, &s->nodes, settings)) ||
       (status = mpmi_workspace_prepare(&s->work, settings, &s->layout)) ||
       (status = mpmi_contact_prepare(&s->layout, settings, &s->nodes.contact, &s->history.pairs)) ||
+      (status =
+           mpmi_tally_prepare(&s->work.tally, s->context, s->layout.member_count, s->history.pairs.count)) ||
       (status = mpmi_nodes_prepare(&s->nodes, settings, &s->layout, s->step.staged)) ||
       (status = mpmi_member_rows_prepare(&s->work.rows, settings, &s->layout)) ||
       (status = mpmi_surfaces_prepare(settings)) ||
-      (status = mpmi_heat_stage(&s->step, s->heat, &s->history.heat)) ||
       (status = mpmi_obstacles_begin(&s->step, &s->nodes.contact)))
     return status;
   mpmi_pairs_begin(&s->history.pairs);
@@ -102,6 +106,38 @@ static mpm_status prepare(mpm_stepper *s) {
     return status;
   mpmi_lap(&s->step, MPMI_TIME_SORT, &clock);
   return MPM_OK;
+}
+
+/* The same on all parts. */
+static mpm_status prepare_together(mpm_stepper *s) {
+  const mpm_status status = mpmi_together_ready(s, prepare(s));
+  if (status) return status;
+  const mpm_status touching = mpmi_together_touching(s);
+  if (mpmi_is_shared(s)) mpmi_explicit_gathers(&s->step, &s->nodes, s->layout.parts);
+  return touching;
+}
+
+/* Conducts heat, which comes first: all parts go on with the new temperatures, or none does. */
+static mpm_status conduct(mpm_stepper *s) {
+  const int32_t implicit = s->settings.heat.conduction == MPM_CONDUCTION_IMPLICIT;
+  mpm_status status = mpmi_heat_check_dt(&s->step);
+  if (status) return status;
+  int64_t exchanges = mpmi_heat_exchanges(&s->step, &s->history.heat);
+  status = mpmi_heat_begin(&s->step, s->heat, &s->history.heat);
+  /* iterations have exchanges of their own, as many on all parts */
+  if (implicit && (status = mpmi_together_end(s, status, exchanges))) return status;
+  if (!status) status = mpmi_heat_end(&s->step, s->heat, &s->history.heat);
+  if (implicit && mpmi_is_shared(s)) exchanges = s->layout.parts->exchanges;
+  status = mpmi_together_end(s, status, exchanges);
+  if (mpmi_is_shared(s)) s->layout.parts->exchanges = 0;
+  return status;
+}
+
+/* Begins a step that parts have agreed on, up to what its scheme does. */
+static mpm_status set_out(mpm_stepper *s) {
+  const mpm_status status = prepare_together(s);
+  if (status || !s->settings.heat.any) return status;
+  return conduct(s);
 }
 
 /* ---- the end ------------------------------------------------------------------------------------------ */
@@ -135,21 +171,26 @@ static mpm_status give_up(mpm_stepper *s, mpm_status status) {
 
 static mpm_status finish(mpm_stepper *s) {
   const double velocity_dt = s->step.velocity_dt;
-  mpm_status status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
+  mpm_status status = MPM_OK;
+  if (s->settings.surfaces.count && !mpmi_is_implicit(&s->settings))
+    status = mpmi_together(s, mpmi_explicit_move_surfaces(&s->step, &s->nodes));
+  if (!status) status = mpmi_obstacles_end(&s->step, &s->nodes.contact);
   if (status) return status;
   mpmi_stops_report(&s->step);
   mpmi_sums sums;
   if ((status = mpmi_adaption_prepare(s)) || (status = mpmi_add_up(s, &sums))) return status;
   status = ask_progress(s);
-  if (mpmi_is_shared(s) && s->layout.parts->asks) status = mpmi_together(s, status);
+  if (mpmi_is_shared(s) && s->layout.parts->asks) status = mpmi_together_ready(s, status);
   if (status) return status;
   mpmi_commit(s, &sums);
   mpmi_contact_warn(s);
   /* a removal leaves sums to be made anew; if the law refuses then, the next call that needs them says so */
   if (!s->history.has_sums && mpmi_state_sums(s, NULL)) mpmi_forget(s->context);
   mpm_step_info info = s->step.info;
-  info.dt_suggested =
-      mpmi_is_implicit(&s->settings) ? mpmi_next_dt(info.newton_iterations, info.dt) : mpmi_stable_dt(s);
+  if (mpmi_is_implicit(&s->settings))
+    info.dt_suggested = mpmi_next_dt(info.newton_iterations, info.dt);
+  else if (mpmi_stable_dt(s, &info.dt_suggested))
+    mpmi_forget(s->context); /* the other parts are lost, as the next call will say */
   drop(s, info);
   mpmi_adaption_carry_out(s); /* sums are those of the step until somebody asks for those of the state */
   s->nodes.shown = s->layout.version;
@@ -158,8 +199,16 @@ static mpm_status finish(mpm_stepper *s) {
 }
 
 /* ---- whole steps -------------------------------------------------------------------------------------- */
-static mpm_status run_explicit(mpm_stepper *s) {
+/* Brings particles to the nodes. Only all parts together know whether nodes take the loads of markers. */
+static mpm_status begin_explicit(mpm_stepper *s) {
   mpm_status status = mpmi_explicit_begin(&s->step, &s->nodes);
+  if (s->step.staged || s->settings.surfaces.count)
+    status = mpmi_together_end(s, status, exchanges_to(s, MPMI_BEGUN));
+  return status ? status : mpmi_surfaces_carried(&s->step);
+}
+
+static mpm_status run_explicit(mpm_stepper *s) {
+  mpm_status status = begin_explicit(s);
   if (!status) status = mpmi_explicit_grid(&s->step, &s->nodes);
   return status ? status : mpmi_explicit_end(&s->step, &s->nodes);
 }
@@ -178,7 +227,7 @@ mpm_status mpmi_make_step(mpm_stepper *s, mpm_status status, double dt, int32_t 
   if (status) return status;
   begin(s, dt, 0);
   s->step.is_cut = is_cut;
-  status = mpmi_together(s, prepare(s));
+  status = set_out(s);
   if (!status) {
     status = mpmi_is_implicit(&s->settings) ? run_implicit(s) : run_explicit(s);
     status = mpmi_together_end(s, status, exchanges_to(s, MPMI_IDLE));
@@ -204,9 +253,8 @@ mpm_status mpm_step_begin(mpm_stepper *s, double dt) {
     return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                      "scheme MPM_NEWMARK has no steps in parts: use mpm_step, or an explicit scheme");
   begin(s, dt, 1);
-  status = mpmi_together(s, prepare(s));
-  if (!status)
-    status = mpmi_together_end(s, mpmi_explicit_begin(&s->step, &s->nodes), exchanges_to(s, MPMI_BEGUN));
+  status = set_out(s);
+  if (!status) status = begin_explicit(s);
   if (status) return give_up(s, status);
   /* until the end the host sees the old state */
   if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, 0);

@@ -82,8 +82,8 @@ mpm_status mpmi_tell_stable_dt(mpm_stepper *s, double *dt) {
   if (!count) return mpmi_fail(s->context, MPM_E_STATE, "the stepper has no particles");
   status = mpmi_together_begin(s, mpmi_check_sets(s, MPM_READ | MPM_WRITE), 0, NULL, NULL);
   if (!status) status = mpmi_state_sums(s, NULL);
-  if (status) return status;
-  const double stable = mpmi_stable_dt(s);
+  double stable = 0.0;
+  if (status || (status = mpmi_stable_dt(s, &stable))) return status;
   if (!(stable > 0.0))
     return mpmi_fail(s->context, MPM_NONFINITE,
                      "velocity and wave speed over the spacing are beyond the range of double precision: no "

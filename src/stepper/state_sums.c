@@ -5,17 +5,18 @@
 
 #include <math.h>
 
-double mpmi_stable_dt(const mpm_stepper *s) {
+mpm_status mpmi_stable_dt(const mpm_stepper *s, double *dt) {
   const mpmi_sums *sums = &s->history.sums;
   const mpmi_obstacles *obstacles = &s->settings.obstacles;
-  double rate = sums->rate > sums->viscous_rate ? sums->rate : sums->viscous_rate;
-  const double of_heat = mpmi_heat_rate(&s->settings, &s->layout);
+  double rate = sums->rate > sums->viscous_rate ? sums->rate : sums->viscous_rate, of_heat;
+  const mpm_status status = mpmi_heat_rate(&s->settings, &s->layout, &of_heat);
   rate = of_heat > rate ? of_heat : rate;
   for (int64_t i = 0; i < obstacles->count; ++i) {
     const double of_obstacle = mpmi_obstacle_rate(obstacles->obstacle[i]);
     rate = of_obstacle > rate ? of_obstacle : rate;
   }
-  return rate > 0.0 ? 1.0 / rate : (double)INFINITY;
+  *dt = rate > 0.0 ? 1.0 / rate : (double)INFINITY;
+  return status;
 }
 
 /* ---- sums over particles ------------------------------------------------------------------------------ */

@@ -101,6 +101,8 @@ mpm_status mpmi_contact_desc_check(const mpm_grid *grid, int32_t a, int32_t b, c
 /* ---- contact_reports.c ------------------------------------------------------------------------------- */
 /* Empty what a step will write; make it what the last step did, which cannot fail; forget sums over steps. */
 void mpmi_pairs_begin(mpmi_pair_records *pairs);
+/* Takes what the sums of the step have come to. */
+void mpmi_pairs_total(mpmi_pair_records *pairs, const mpmi_tally *tally);
 void mpmi_pairs_commit(mpmi_pair_records *pairs);
 void mpmi_pairs_forget(mpmi_pair_records *pairs);
 /* Adds what a pair did to a report; sign is -1 where the body that is asked about is the first one. */
@@ -128,8 +130,9 @@ void mpmi_surfaces_forget(const mpmi_surfaces *list);
 /* ---- state_sums.c ------------------------------------------------------------------------------------ */
 /* Brings the sums of the history up to date; failure takes the refusal of a law, and may be NULL. */
 mpm_status mpmi_state_sums(mpm_stepper *s, mpmi_failure *failure);
-/* Returns the largest stable step: Courant's condition and that of viscosity. */
-double mpmi_stable_dt(const mpm_stepper *s);
+/* Finds the largest stable step: Courant's condition, and those of viscosity, heat and obstacles
+ * (collective). */
+mpm_status mpmi_stable_dt(const mpm_stepper *s, double *dt);
 /* Returns MPM_E_STATE when a set has views out of the given access, or holds bad values. */
 mpm_status mpmi_check_sets(mpm_stepper *s, int32_t access);
 
@@ -152,9 +155,13 @@ mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes);
 /* Returns how many sums on nodes an explicit step has made when it has come to a phase; MPMI_IDLE: to its
  * end. */
 int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, int32_t phase);
+/* Finds when in the step parts gather the meetings that free obstacles couple. */
+void mpmi_explicit_gathers(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_parts *parts);
 /* Brings nodes back to particles. USL: everything from the updated nodal velocity. MUSL: L from the velocity
  * that the new particles give the nodes. USF has its strain already. */
 mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes);
+/* Moves surfaces with the nodes, once that is done on all parts (collective). */
+mpm_status mpmi_explicit_move_surfaces(mpmi_step *step, mpmi_nodes *nodes);
 
 /* ---- heat.c ------------------------------------------------------------------------------------------ */
 /* The heat of a set is no longer described. */

@@ -1,8 +1,18 @@
 /* The surfaces of a stepper: coming and going, what a step begins and ends with, reports. */
-#include "stepper/stepper.h"
+#include "stepper/together.h"
 #include "transfer/weights.h"
 
 /* ---- coming and going ---------------------------------------------------------------------------------- */
+/* Nodes around a marker beside a node of a part, and those around the markers beside these, are to be whole
+ * there; the next step sorts, and finds who has them. With one part it sorts as well. */
+static void make_whole(mpm_stepper *s) {
+  mpmi_parts *parts = s->layout.parts;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) s->layout.member[m].set->dirty |= MPMI_DIRTY_PLACE;
+  if (!parts || parts->meets_markers) return;
+  parts->meets_markers = 1;
+  parts->margin += 2 * (s->grid->width - 1);
+}
+
 mpm_status mpm_stepper_add_surface(mpm_stepper *s, mpm_surface *surface) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_context *c = s->context;
@@ -17,6 +27,7 @@ mpm_status mpm_stepper_add_surface(mpm_stepper *s, mpm_surface *surface) {
     return mpmi_fail(c, MPM_E_STATE, "the surface already belongs to %s stepper",
                      surface->stepper == s ? "this" : "another");
   if ((status = MPMI_RESERVE_NEXT(c, list->surface, list->capacity, list->count))) return status;
+  if (!list->count) make_whole(s);
   surface->number = (int32_t)list->count;
   surface->stepper = s;
   surface->owner = &mpmi_stepper_owns;
@@ -69,6 +80,8 @@ static mpm_status reserve(mpm_surface *s) {
   const int32_t asks = s->traction || (s->velocity && prescribes);
   if (!status && asks) status = MPMI_RESERVE_MORE(c, s->batch_id, s->id_capacity, n);
   if (!status && asks) status = MPMI_RESERVE_MORE(c, s->batch, s->batch_capacity, (5 * dim + 1) * n);
+  if (!status && !mpmi_is_whole(c))
+    status = MPMI_RESERVE_MORE(c, s->told, s->told_capacity, MPMI_MARKER_MOTION * n);
   if (!status && prescribes) status = MPMI_RESERVE_MORE(c, s->aim, s->aim_capacity, n);
   if (!status && prescribes) status = MPMI_RESERVE_MORE(c, s->site, s->site_capacity, n * nodes);
   around->nodes = (int32_t)nodes;

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-mpm_status mpmi_together(mpm_stepper *s, mpm_status status) {
+mpm_status mpmi_together(const mpm_stepper *s, mpm_status status) {
   return mpmi_is_shared(s) ? mpmi_agree(s->context, status) : status;
 }
 
@@ -12,36 +12,75 @@ mpm_status mpmi_together(mpm_stepper *s, mpm_status status) {
 mpm_status mpmi_together_offers(mpm_stepper *s) {
   const mpmi_settings *settings = &s->settings;
   const char *what = NULL, *instead = "a context without a transport";
-  int32_t adapts = 0, bodies = 0;
+  int32_t adapts = 0, nodes = 0;
   if (!mpmi_is_shared(s)) return MPM_OK;
-  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
     adapts |= m < s->adaption_capacity && s->adaption[m].on;
-    bodies |= s->layout.member[m].body != 0;
-  }
+  for (int32_t face = 0; face < 2 * s->grid->dim; ++face)
+    nodes |= mpmi_wall_kind_of(settings->wall[face].kind)->rubs == MPMI_RUBS_NODES;
   if (mpmi_is_implicit(settings)) what = "scheme MPM_NEWMARK", instead = "MPM_USL, MPM_USF or MPM_MUSL";
-  if (mpmi_is_total_lagrangian(s->grid)) what = "a total Lagrangian grid", instead = "one that is not";
-  if (mpmi_has_friction_planes(settings) || s->layout.constraints.contact_count)
-    what = "a friction wall", instead = "MPM_WALL_SLIP or MPM_WALL_FIXED";
-  if (settings->obstacles.count) what = "an obstacle";
-  if (settings->surfaces.count) what = "a surface", instead = "forces on particles";
-  if (settings->heat.any) what = "heat";
+  if (nodes) what = "MPM_WALL_FRICTION_NODES", instead = "MPM_WALL_FRICTION";
+  for (int64_t i = 0; i < settings->surfaces.count; ++i) {
+    const mpm_surface *surface = settings->surfaces.surface[i];
+    if (mpmi_surface_prescribes(surface))
+      what = "a surface that prescribes", instead = "loads, prescribed particles or velocities of nodes";
+    if (settings->heat.any && (surface->heat.flux != 0.0 || surface->heat.film > 0.0))
+      what = "heat through a surface", instead = "the heat source of a set";
+  }
+  if (settings->surfaces.count && mpmi_is_implicit(settings))
+    what = "a surface in implicit steps", instead = "MPM_USL, MPM_USF or MPM_MUSL";
   if (adapts) what = "adaption";
-  if (bodies) what = "bodies with nodes of their own", instead = "body 0 for all sets";
   return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                           "a problem in several parts does not have %s: use %s", what, instead)
               : MPM_OK;
 }
 
+/* ---- how steppers are set up --------------------------------------------------------------------------- */
+static uint64_t fold_word(uint64_t h, uint64_t word) {
+  return (h ^ word) * 0x100000001b3u ^ h >> 29;
+}
+
+static uint64_t fold_number(uint64_t h, double number) {
+  uint64_t word;
+  memcpy(&word, &number, sizeof word);
+  return fold_word(h, word);
+}
+
+/* Makes one number of all that decides what a step does and exchanges: parts that differ there would wait for
+ * each other. */
+static int64_t fingerprint(const mpm_stepper *s) {
+  const mpmi_settings *settings = &s->settings;
+  uint64_t word[sizeof settings->desc / sizeof(uint64_t)], h = 0xcbf29ce484222325u;
+  _Static_assert(sizeof settings->desc % sizeof(uint64_t) == 0, "the description is whole words");
+  memcpy(word, &settings->desc, sizeof word);
+  for (size_t i = 0; i < sizeof word / sizeof word[0]; ++i) h = fold_word(h, word[i]);
+  for (int32_t face = 0; face < 2 * s->grid->dim; ++face)
+    h = fold_number(fold_word(h, (uint64_t)settings->wall[face].kind), settings->wall[face].friction);
+  for (int32_t m = 0; m < s->layout.member_count; ++m) h = fold_word(h, (uint64_t)s->layout.member[m].body);
+  for (int64_t i = 0; i < settings->obstacles.count; ++i)
+    h = fold_word(h, (uint64_t)(64 * settings->obstacles.obstacle[i]->desc.shape +
+                                settings->obstacles.obstacle[i]->desc.motion));
+  for (int32_t i = 0; i < 3; ++i) h = fold_word(h, settings->hook[i] != NULL);
+  return (int64_t)(fold_word(h, settings->velocity_bc != NULL) >> 2);
+}
+
 /* The flags of sets that count on all parts once they are set on one. */
 static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE, MPMI_DIRTY_STRESS, MPMI_DIRTY_SUMS,
                                 MPMI_DIRTY_ACCELERATION};
-enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 8, MOST_NUMBERS = 7 };
+enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 12, MOST_NUMBERS = 7 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
 static void put_number(int64_t *word, double number) {
   memcpy(&word[0], &number, sizeof number);
   word[1] = ~word[0];
+}
+
+/* Returns a number that is another where surfaces or their markers are. */
+static double count_markers(const mpmi_surfaces *list) {
+  double number = 0.0;
+  for (int64_t i = 0; i < list->count; ++i) number = 3.0 * number + 1.0 + (double)list->surface[i]->now.count;
+  return number;
 }
 
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
@@ -59,12 +98,22 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
     word[6] |= layout->member[m].set->field[MPMI_PRESCRIBED].present;
   for (int32_t i = 0; i < count; ++i) put_number(&word[OWN_WORDS + 2 * i], number[i]);
   word[7] = status != MPM_OK;
+  word[8] = fingerprint(s);
+  word[9] = ~word[8];
+  put_number(&word[10], count_markers(&s->settings.surfaces));
   const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word);
   if (lost) return lost;
   if (word[7]) return mpmi_agree(c, status);
   if (word[0] != ~word[1])
     return mpmi_fail(c, MPM_E_STATE,
                      "the stepper has other numbers of sets on other parts: add the same to all");
+  if (word[8] != ~word[9])
+    return mpmi_fail(c, MPM_E_STATE,
+                     "the stepper is set up otherwise on another part: give it the same description, walls, "
+                     "bodies, obstacles, hooks and velocities of nodes on all");
+  if (word[10] != ~word[11])
+    return mpmi_fail(c, MPM_E_STATE,
+                     "surfaces have other numbers of markers on other parts: all parts have all markers");
   for (int32_t i = 0; i < count; ++i)
     if (word[OWN_WORDS + 2 * i] != ~word[OWN_WORDS + 2 * i + 1])
       return mpmi_fail(c, MPM_E_ARG, "%s is %g here, and another number on another part: give all the same",
@@ -95,9 +144,18 @@ mpm_status mpmi_together_refreshed(mpm_stepper *s, mpm_status status) {
 /* Takes part in the exchanges that are left, so that no part waits. */
 static mpm_status catch_up(mpm_stepper *s, mpm_status status, int64_t exchanges) {
   mpmi_parts *parts = s->layout.parts;
-  while (status && parts->exchanges < exchanges && !s->context->apart) {
-    mpmi_tiles_send(parts, 8, s->layout.blocks.cover, status);
-    mpmi_tiles_receive(parts, 8, status);
+  while (status && !s->context->apart) {
+    mpmi_arrivals in;
+    if (parts->gathers < parts->gathers_due && parts->gather_at[parts->gathers] == parts->exchanges) {
+      for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->out[r].used = 0;
+      ++parts->gathers;
+      mpmi_parts_exchange(parts, &in);
+    } else if (parts->exchanges < exchanges) {
+      mpmi_tiles_send(parts, 8, s->layout.blocks.cover, status);
+      mpmi_tiles_receive(parts, 8, status);
+    } else {
+      break;
+    }
   }
   if (!status && parts->exchanges != exchanges)
     return mpmi_fail(s->context, MPM_E_INTERNAL, "a step had %lld exchanges and not %lld",
@@ -142,6 +200,18 @@ static mpm_status take_failure(mpm_stepper *s, mpm_status status, int32_t part) 
   f->node = word[3];
   f->body = (int32_t)word[4];
   return mpmi_take_over(s->context, part, status);
+}
+
+mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status) {
+  if (!mpmi_is_shared(s)) return status;
+  const mpmi_failure *f = &s->step.failure;
+  const int32_t parts = s->context->transport.parts;
+  /* where parts have agreed before, one alone knows where it was */
+  const int32_t knows = f->particle >= 0 || f->node >= 0 || f->callback_status;
+  int64_t first = status ? (1 + knows) * parts - s->context->transport.part : 0;
+  const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, 1, &first);
+  if (lost || !first) return lost;
+  return take_failure(s, status, (int32_t)((first > parts ? 2 * parts : parts) - first));
 }
 
 mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges) {

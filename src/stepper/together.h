@@ -10,7 +10,9 @@ static inline int32_t mpmi_is_shared(const mpm_stepper *s) {
   return s->layout.parts != NULL;
 }
 /* All parts learn whether all have MPM_OK: mpmi_agree() where there are several. */
-mpm_status mpmi_together(mpm_stepper *s, mpm_status status);
+mpm_status mpmi_together(const mpm_stepper *s, mpm_status status);
+/* The same within a step: all parts also have the numbers of the first part's failure. */
+mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status);
 /* Begins a call: all parts have a status, and numbers that must be alike; what has been changed on one of
  * them counts as changed on all. names: of the numbers. */
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
@@ -19,6 +21,11 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
 mpm_status mpmi_together_offers(mpm_stepper *s);
 /* A step has brought its sets up to date: where it will sort, all parts must have. */
 mpm_status mpmi_together_refreshed(mpm_stepper *s, mpm_status status);
+/* All parts are ready for a step: they get to know the pairs of bodies that may touch, and the particles
+ * around nodes at which these meet (contact_together.c). */
+mpm_status mpmi_together_touching(mpm_stepper *s);
+/* Adds up what pairs of bodies have done to each other. */
+mpm_status mpmi_together_touched(mpm_stepper *s);
 /* A step, or a part of one, has been computed with so many exchanges, or has failed. Where it has failed on
  * any part, all have the status, the text and the numbers of the first failure. */
 mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges);

@@ -87,6 +87,7 @@ mpm_status mpm_surface_destroy(mpm_surface *s) {
   MPMI_FREE_ARRAY(c, s->around.weight, s->around.weight_capacity);
   MPMI_FREE_ARRAY(c, s->aim, s->aim_capacity);
   MPMI_FREE_ARRAY(c, s->site, s->site_capacity);
+  MPMI_FREE_ARRAY(c, s->told, s->told_capacity);
   MPMI_FREE_ARRAY(c, s->batch, s->batch_capacity);
   MPMI_FREE_ARRAY(c, s->batch_id, s->id_capacity);
   mpmi_free(c, s, sizeof *s);

@@ -51,6 +51,9 @@ typedef struct mpmi_marker_aim {
   double velocity[3], normal[3], stiffness, curvature[3][3];
 } mpmi_marker_aim;
 
+/* Words in which a part tells the others how a marker moves: velocity and its gradient. */
+enum { MPMI_MARKER_MOTION = 12 };
+
 /* The impulses of what a surface prescribes, on the material: in the last step, and since it was added. */
 typedef struct mpmi_surface_impulses {
   double last[3], total[3];
@@ -84,6 +87,8 @@ struct mpm_surface {
   double *asked; /* the tractions in it in the step under way, or NULL */
   int64_t *batch_id;
   int64_t batch_capacity, id_capacity;
+  int64_t *told; /* of several parts: what they tell each other of markers */
+  int64_t told_capacity;
 };
 
 /* Surfaces of a stepper, in the order of adding. */

@@ -1,142 +1,10 @@
 /* One problem in several parts has the bits that it has in one. Parts are threads here (parts.h), where
  * Check's macros may not be used: every part keeps what it has found, which is compared afterwards. */
-#include "combinations.h"
-#include "parts.h"
+#include "shared.h"
 #include "shared_states.h"
 
-enum { MOST_PARTS = 5, STEPS = 16, SAMPLE = 120 };
-
-typedef struct outcome {
-  mpm_status status;
-  char text[400];
-  uint64_t hash;
-  mpm_step_info info;
-  double reaction[6][3], stable_dt;
-  int64_t total, own;
-  int64_t failed_particle; /* of a step that had to fail */
-  mpm_parallel_info parallel;
-} outcome;
-
-typedef struct scene scene;
-typedef mpm_status (*scene_fn)(world *w, const scene *is);
-typedef mpm_status (*run_fn)(world *w, const scene *is, outcome *found);
-struct scene {
-  world_desc desc;
-  scene_fn set_up;
-  run_fn run; /* NULL: STEPS steps */
-  double speed;
-  outcome found[MOST_PARTS];
-};
-
-/* Velocities that follow from the positions: a spin and a drift, so that particles change their blocks. */
-static mpm_status set_velocities(world *w, mpm_particles *set, double speed) {
-  const int64_t n = mpm_particles_count(set);
-  const int32_t dim = w->dim;
-  double *x = calloc((size_t)(n * dim + 1), 2 * sizeof *x), *v = x + n * dim;
-  const double middle = 0.5 * w->desc.grid.spacing[0] * (double)w->desc.grid.cells[0];
-  mpm_status status = mpm_particles_get(set, "position", MPM_F64, dim, n, NULL, x);
-  for (int64_t p = 0; p < n && !status; ++p) {
-    const double across = dim > 1 ? x[n + p] - middle : 0.0;
-    v[p] = speed * (1.0 + across);
-    if (dim > 1) v[n + p] = speed * (0.4 - x[p] + middle);
-    if (dim > 2) v[2 * n + p] = -0.3 * speed;
-  }
-  if (!status) status = mpm_particles_set(set, "velocity", MPM_F64, dim, n, NULL, v);
-  free(x);
-  return status;
-}
-
-static mpm_status fill_middle(world *w, mpm_particles *set, double from, double to) {
-  const double size = w->desc.grid.spacing[0] * (double)w->desc.grid.cells[0];
-  const double low[] = {from * size, from * size, from * size}, high[] = {to * size, to * size, to * size};
-  const int32_t per_cell[] = {2, 2, 2};
-  return mpm_particles_fill_box(set, low, high, per_cell, NULL, NULL);
-}
-
-static mpm_status set_walls(world *w) {
-  mpm_status status = MPM_OK;
-  for (int32_t face = 0; face < 2 * w->dim && !status; ++face)
-    if (!w->desc.grid.periodic[face / 2])
-      status = mpm_stepper_set_wall(w->stepper, face, face % 2 ? MPM_WALL_SLIP : MPM_WALL_FIXED, 0.0);
-  return status;
-}
-
-static mpm_status run_steps(world *w) {
-  double dt;
-  mpm_status status = mpm_stable_dt(w->stepper, &dt);
-  for (int32_t i = 0; i < STEPS && !status; ++i)
-    status = mpm_step(w->stepper, dt * (0.2 + 0.1 * (i % 3)), &w->info);
-  return status;
-}
-
-/* What is played in a world that is open. */
-static mpm_status play(world *w, const scene *is, outcome *found) {
-  mpm_status status = is->set_up(w, is);
-  w->info.struct_size = sizeof w->info;
-  if (!status) status = is->run ? is->run(w, is, found) : run_steps(w);
-  found->info.struct_size = sizeof found->info;
-  found->parallel.struct_size = sizeof found->parallel;
-  mpm_status read = mpm_stepper_info(w->stepper, &found->info);
-  if (!read) read = mpm_state_hash(w->stepper, &found->hash);
-  if (!read) read = mpm_stable_dt(w->stepper, &found->stable_dt);
-  if (!read) read = mpm_particles_total(w->set[0], &found->total);
-  if (!read) read = mpm_stepper_parallel_info(w->stepper, 0, &found->parallel);
-  for (int32_t face = 0; face < 2 * w->dim && !read && found->info.step > 0; ++face)
-    read = mpm_stepper_wall_reaction(w->stepper, face, found->reaction[face]);
-  found->own = mpm_particles_count(w->set[0]);
-  return status ? status : read;
-}
-
-static void live(int32_t part, const mpm_transport *transport, void *user) {
-  scene *is = user;
-  outcome *found = &is->found[part];
-  world w;
-  memset(&w, 0, sizeof w);
-  w.desc = is->desc;
-  w.desc.context.transport = transport;
-  found->status = world_try_open(&w);
-  if (!found->status) found->status = play(&w, is, found);
-  if (found->status) snprintf(found->text, sizeof found->text, "%s", mpm_last_error(w.context));
-  if (world_try_close(&w) && !found->status) found->status = MPM_E_INTERNAL;
-}
-
-/* Plays the scene in one part, and then in several. */
-static void check_scene(const scene *is, const char *name, int32_t parts) {
-  scene one = *is, many = *is;
-  parts_plan plan;
-  memset(&plan, 0, sizeof plan);
-  live(0, NULL, &one);
-  if (parts_run(parts, live, &many, &plan)) ck_abort_msg("%s, %d parts: %s", name, parts, plan.text);
-  const outcome *a = &one.found[0];
-  for (int32_t r = 0; r < parts; ++r) {
-    const outcome *b = &many.found[r];
-    if (a->status != b->status)
-      ck_abort_msg("%s, part %d of %d: %s (%s) and not %s (%s)", name, r, parts, mpm_status_name(b->status),
-                   b->text, mpm_status_name(a->status), a->text);
-    if (a->hash != b->hash)
-      ck_abort_msg("%s, part %d of %d: another state after %lld steps, %lld sorts", name, r, parts,
-                   (long long)b->info.step, (long long)b->info.resorts);
-    if (memcmp(&a->info, &b->info, sizeof a->info) != 0)
-      ck_abort_msg(
-          "%s, part %d of %d: another info: kinetic energy %.17g, %.17g; strain energy %.17g, %.17g; work "
-          "%.17g, %.17g; dissipation %.17g, %.17g; active nodes %lld, %lld; removed %lld, %lld; sorts %lld, "
-          "%lld",
-          name, r, parts, a->info.kinetic_energy, b->info.kinetic_energy, a->info.strain_energy,
-          b->info.strain_energy, a->info.external_work, b->info.external_work, a->info.dissipation,
-          b->info.dissipation, (long long)a->info.active_nodes, (long long)b->info.active_nodes,
-          (long long)a->info.removed, (long long)b->info.removed, (long long)a->info.resorts,
-          (long long)b->info.resorts);
-    if (memcmp(a->reaction, b->reaction, sizeof a->reaction) != 0)
-      ck_abort_msg("%s, part %d of %d: other reactions", name, r, parts);
-    ck_assert_msg(a->failed_particle == b->failed_particle, "%s, part %d of %d: particle %lld, not %lld",
-                  name, r, parts, (long long)b->failed_particle, (long long)a->failed_particle);
-    ck_assert_msg(a->stable_dt == b->stable_dt && a->total == b->total, "%s, part %d of %d: %g, %g", name, r,
-                  parts, a->stable_dt, b->stable_dt);
-  }
-}
-
 /* ---- combinations -------------------------------------------------------------------------------------- */
-static mpm_status set_up_combination(world *w, const scene *is) {
+mpm_status set_up_body(world *w, const scene *is) {
   mpm_status status = set_walls(w);
   if (!status) status = fill_middle(w, w->set[0], 0.2, 0.7);
   return status ? status : set_velocities(w, w->set[0], is->speed);
@@ -152,18 +20,22 @@ static void tear_down_list(void) {
   free(list);
 }
 
-/* Blocks are 64, 16 and 6 nodes wide: a body spans several along each axis. */
+/* Blocks are 64, 16 and 6 nodes wide. */
 static const int32_t cells_of[] = {0, 300, 56, 20};
+
+void refine(world_desc *desc) {
+  for (int32_t k = 0; k < desc->grid.dim; ++k) {
+    desc->grid.cells[k] = cells_of[desc->grid.dim];
+    desc->grid.spacing[k] = 1.0 / (double)desc->grid.cells[k];
+  }
+}
 
 static int32_t describe(scene *is, const combination *c) {
   if (refusal_of(c) || scheme_options[c->choice[CHOOSE_SCHEME]].scheme == MPM_NEWMARK) return 0;
   memset(is, 0, sizeof *is);
   is->desc = describe_combination(c);
-  for (int32_t k = 0; k < is->desc.grid.dim; ++k) {
-    is->desc.grid.cells[k] = cells_of[is->desc.grid.dim];
-    is->desc.grid.spacing[k] = 1.0 / (double)is->desc.grid.cells[k];
-  }
-  is->set_up = set_up_combination;
+  refine(&is->desc);
+  is->set_up = set_up_body;
   is->speed = 8.0;
   return 1;
 }
@@ -178,17 +50,6 @@ START_TEST(combinations_in_parts) {
 END_TEST
 
 /* ---- what hosts do ------------------------------------------------------------------------------------- */
-static const int32_t wide = 24; /* cells along an axis in 2-D: blocks are 16 wide, and parts have few */
-
-static scene scene_of(int32_t dim, int64_t cells, scene_fn set_up) {
-  scene is;
-  memset(&is, 0, sizeof is);
-  is.desc = world_default(dim, cells, 1.0 / (double)cells);
-  is.set_up = set_up;
-  is.speed = 8.0;
-  return is;
-}
-
 static mpm_status hold_some(void *user, const mpm_node_batch *batch, uint8_t *held, double *velocity) {
   (void)user;
   for (int64_t i = 0; i < batch->n; ++i) {
@@ -239,13 +100,14 @@ static mpm_status set_up_host(world *w, const scene *is) {
 
 START_TEST(host_acts) {
   static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL};
-  scene is = scene_of(2, 4 * wide, set_up_host);
+  scene is = scene_of(2, 4 * WIDE, set_up_host);
   is.desc.sets = 2;
   is.desc.stepper.scheme = schemes[_i % 3];
   is.desc.stepper.locking_remedy = _i / 3 % 2;
-  is.desc.grid.periodic[1] = _i / 6;
-  is.desc.grid.cells[1] = _i / 6 ? 4 * wide - 7 : 4 * wide; /* a period that is no multiple of a block */
+  is.desc.grid.periodic[1] = _i / 6 % 2;
+  is.desc.grid.cells[1] = _i / 6 % 2 ? 4 * WIDE - 7 : 4 * WIDE; /* a period that is no multiple of a block */
   is.desc.stepper.mass_damping = _i % 2 ? 2.0 : 0.0;
+  is.desc.grid.total_lagrangian = _i / 12;
   check_scene(&is, "host", 3);
 }
 END_TEST
@@ -278,7 +140,7 @@ static mpm_status set_up_open(world *w, const scene *is) {
 }
 
 START_TEST(particles_come_and_go) {
-  scene is = scene_of(2, 4 * wide, set_up_open);
+  scene is = scene_of(2, 4 * WIDE, set_up_open);
   is.run = come_and_go;
   is.speed = 40.0;
   check_scene(&is, "open", 4);
@@ -298,7 +160,7 @@ static mpm_status prescribe_later(world *w, const scene *is, outcome *found) {
 }
 
 START_TEST(prescribed_later) {
-  scene is = scene_of(2, 2 * wide, set_up_combination);
+  scene is = scene_of(2, 2 * WIDE, set_up_body);
   is.run = prescribe_later;
   check_scene(&is, "prescribed later", MOST_PARTS);
 }
@@ -328,12 +190,13 @@ static mpm_status set_up_clumps(world *w, const scene *is) {
 
 START_TEST(light_nodes_lead) {
   static const int32_t transfers[] = {MPM_FLIP, MPM_APIC, MPM_XPIC};
-  scene is = scene_of(2, 2 * wide, set_up_clumps);
+  scene is = scene_of(2, 2 * WIDE, set_up_clumps);
   is.speed = 1 + _i;
   is.desc.grid.basis = MPM_LINEAR;
   is.desc.stepper.scheme = _i % 2 ? MPM_MUSL : MPM_USL;
   is.desc.stepper.transfer = transfers[_i % 3];
   is.desc.stepper.xpic_order = 2;
+  is.desc.grid.total_lagrangian = _i / 12;
   check_scene(&is, "clumps", 2 + _i % 4);
 }
 END_TEST
@@ -345,7 +208,7 @@ static mpm_status set_up_small(world *w, const scene *is) {
 }
 
 START_TEST(few_blocks) {
-  scene is = scene_of(2, wide, set_up_small);
+  scene is = scene_of(2, WIDE, set_up_small);
   check_scene(&is, "small", MOST_PARTS);
 }
 END_TEST
@@ -358,7 +221,7 @@ static mpm_status fly(world *w, const scene *is, outcome *found) {
 }
 
 START_TEST(blocks_are_cut_anew) {
-  scene is = scene_of(2, 6 * wide, set_up_combination);
+  scene is = scene_of(2, 6 * WIDE, set_up_body);
   is.desc.grid.periodic[0] = 1;
   is.run = fly;
   is.speed = 30.0;
@@ -398,9 +261,10 @@ static mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
 
 START_TEST(steps_fail_together) {
   static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL};
-  scene is = scene_of(2, 4 * wide, set_up_combination);
+  scene is = scene_of(2, 4 * WIDE, set_up_body);
   is.desc.stepper.scheme = schemes[_i % 3];
-  is.desc.stepper.locking_remedy = _i / 3;
+  is.desc.stepper.locking_remedy = _i / 3 % 2;
+  is.desc.grid.total_lagrangian = _i / 6;
   is.run = fail_and_go_on;
   check_scene(&is, "failure", 3);
 }
@@ -428,19 +292,24 @@ static mpm_status differ(world *w, const scene *is, outcome *found) {
                     mpm_particles_fill_box(w->set[0], low, high, per_cell, NULL, NULL) != MPM_E_ARG ||
                     !strstr(mpm_last_error(w->context), "lower[1]")))
     return MPM_E_INTERNAL;
-  const mpm_status body = mpm_stepper_set_body(w->stepper, w->set[0], 1);
+  const mpm_status held = part == 1 ? mpm_stepper_set_velocity_bc(w->stepper, hold_some, NULL) : MPM_OK;
+  const mpm_status unlike = mpm_step(w->stepper, 1e-5, NULL);
+  if (held ||
+      (parts > 1 && (unlike != MPM_E_STATE || !strstr(mpm_last_error(w->context), "set up otherwise"))))
+    return MPM_E_INTERNAL;
+  mpm_stepper_set_velocity_bc(w->stepper, NULL, NULL);
+  const mpm_status wall = mpm_stepper_set_wall(w->stepper, MPM_X_MIN, MPM_WALL_FRICTION_NODES, 0.1);
   const mpm_status refused =
-      parts > 1 && !body ? mpm_step(w->stepper, 1e-5, NULL) : (mpm_status)MPM_E_UNSUPPORTED;
+      parts > 1 && !wall ? mpm_step(w->stepper, 1e-5, NULL) : (mpm_status)MPM_E_UNSUPPORTED;
   return refused == MPM_E_UNSUPPORTED ? MPM_OK : MPM_E_INTERNAL;
 }
 
 START_TEST(unlike_parts) {
-  scene is = scene_of(2, 2 * wide, set_up_combination);
+  scene is = scene_of(2, 2 * WIDE, set_up_body);
   is.run = differ;
   parts_plan plan;
   memset(&plan, 0, sizeof plan);
   ck_assert_int_eq(parts_run(3, live, &is, &plan), 0);
-  /* infos are refused as well where bodies are */
   for (int32_t r = 0; r < 3; ++r)
     ck_assert_msg(is.found[r].status == MPM_OK, "part %d: %s", r, is.found[r].text);
 }
@@ -448,7 +317,7 @@ END_TEST
 
 /* Wherever the transport fails on one part, every part returns and gives its memory back. */
 START_TEST(transport_fails) {
-  scene is = scene_of(2, 2 * wide, set_up_combination);
+  scene is = _i ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
   parts_plan plan;
   int64_t calls = 0;
   for (int64_t at = 0; !at || at <= calls; at += 1 + at / 6) {
@@ -568,6 +437,7 @@ END_TEST
  * is made again. No part waits, and nothing is lost. */
 typedef struct hungry {
   scene is;
+  int32_t loads;          /* with a surface */
   int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
   int32_t failed[3];      /* how many calls of each part */
   host_memory memory[3];
@@ -589,6 +459,9 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
   w.desc = h->is.desc;
   w.desc.context.transport = transport;
   mpm_status status = world_try_open(&w);
+  mpm_surface *surface = NULL;
+  if (!status && h->is.heat) status = equip_heat(&w, &h->is);
+  if (!status && h->loads) status = add_loads(&w, 0.45, 0.2, &surface);
   const int64_t opened = w.memory.calls;
   if (part == 1 && h->fail_at) w.memory.fail_at = opened + h->fail_at;
   if (!status) AGAIN(h, part, status, fill_middle(&w, w.set[0], 0.2, 0.7));
@@ -599,6 +472,7 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
   w.memory.fail_at = 0;
   if (!status) status = mpm_state_hash(w.stepper, &found->hash);
   found->status = status;
+  if (surface) drop_loads(&w, surface);
   world_try_close(&w);
   h->memory[part] = w.memory;
 }
@@ -611,7 +485,8 @@ START_TEST(memory_runs_out) {
   for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
     memset(&h, 0, sizeof h);
     memset(&plan, 0, sizeof plan);
-    h.is = scene_of(2, 2 * wide, set_up_combination);
+    h.loads = _i == 3;
+    h.is = _i && !h.loads ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
     h.fail_at = at;
     ck_assert_msg(!parts_run(3, live_hungry, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
                   (long long)calls, plan.text);
@@ -637,22 +512,25 @@ Suite *shared_suite(void) {
   suite_add_tcase(suite, all);
   TCase *host = tcase_create("host");
   tcase_set_timeout(host, 120);
-  tcase_add_loop_test(host, host_acts, 0, 12);
+  tcase_add_loop_test(host, host_acts, 0, 24);
   tcase_add_test(host, particles_come_and_go);
   tcase_add_test(host, prescribed_later);
-  tcase_add_loop_test(host, light_nodes_lead, 0, 12);
+  tcase_add_loop_test(host, light_nodes_lead, 0, 24);
   tcase_add_test(host, few_blocks);
   tcase_add_test(host, blocks_are_cut_anew);
   suite_add_tcase(suite, host);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);
-  tcase_add_loop_test(failures, steps_fail_together, 0, 6);
+  tcase_add_loop_test(failures, steps_fail_together, 0, 12);
   tcase_add_test(failures, unlike_parts);
-  tcase_add_test(failures, transport_fails);
+  tcase_add_loop_test(failures, transport_fails, 0, 3);
   tcase_add_test(failures, transport_is_checked);
   tcase_add_test(failures, transport_is_lost);
-  tcase_add_test(failures, memory_runs_out);
+  tcase_add_loop_test(failures, memory_runs_out, 0, 4);
   suite_add_tcase(suite, failures);
+  add_shared_options(suite);
+  add_shared_heat(suite);
+  add_shared_surfaces(suite);
   suite_add_tcase(suite, shared_states_case());
   suite_add_tcase(suite, shared_pieces_case());
   return suite;

@@ -1,0 +1,85 @@
+/* Scenes that are played in one part and in several, and have to come to the same bits. Parts are threads
+ * (parts.h), where Check's macros may not be used: every part keeps what it has found, which is compared
+ * afterwards. */
+#ifndef SHARED_H
+#define SHARED_H
+
+#include "combinations.h"
+#include "parts.h"
+
+enum { MOST_PARTS = 5, STEPS = 16, SAMPLE = 120 };
+
+/* Cells along an axis in 2-D: blocks are 16 wide, and parts have few. */
+enum { WIDE = 24 };
+
+typedef struct outcome {
+  mpm_status status;
+  char text[400];
+  uint64_t hash;
+  mpm_step_info info;
+  double reaction[6][3], stable_dt;
+  mpm_heat_info heat; /* of steppers whose sets have heat */
+  uint64_t markers;   /* of what markers of surfaces have */
+  int64_t total, own;
+  int64_t failed_particle;     /* of a step that had to fail */
+  mpm_contact_info contact[4]; /* what a scene has asked for */
+  double seen[24];             /* likewise */
+  mpm_parallel_info parallel;
+} outcome;
+
+typedef struct scene scene;
+typedef mpm_status (*scene_fn)(world *w, const scene *is);
+typedef mpm_status (*run_fn)(world *w, const scene *is, outcome *found);
+struct scene {
+  world_desc desc;
+  scene_fn set_up;
+  run_fn run; /* NULL: STEPS steps */
+  double speed;
+  uint64_t seed; /* of what a scene throws dice for */
+  int32_t heat;  /* its sets have heat; 2: which is conducted implicitly */
+  outcome found[MOST_PARTS];
+};
+
+/* A scene on a square of edge 1, or what it is in other dimensions. */
+scene scene_of(int32_t dim, int64_t cells, scene_fn set_up);
+/* Makes the grid as fine as it takes for a body to span several blocks along each axis. */
+void refine(world_desc *desc);
+/* Velocities that follow from the positions: a spin and a drift, so that particles change their blocks. */
+mpm_status set_velocities(world *w, mpm_particles *set, double speed);
+mpm_status fill_middle(world *w, mpm_particles *set, double from, double to);
+mpm_status set_walls(world *w);
+mpm_status run_steps(world *w);
+/* Walls, a body and its velocities. */
+mpm_status set_up_body(world *w, const scene *is);
+
+/* One part of a scene, for parts_run(). */
+void live(int32_t part, const mpm_transport *transport, void *user);
+/* Plays the scene in one part, and then in several. Returns what it has come to. */
+mpm_status check_scene(const scene *is, const char *name, int32_t parts);
+
+/* The scene must come to its end. */
+void check_made(const scene *is, const char *name, int32_t parts);
+
+/* ---- options ---- */
+enum { OPTIONS_SAMPLE = 48 };
+/* Lists the combinations for the tests of a case. */
+void add_option_list(TCase *to);
+/* Describes one of OPTIONS_SAMPLE combinations as a scene, and names it; 0: it is not an explicit one that is
+ * offered. */
+int32_t describe_option(scene *is, int32_t at, int32_t total, char *name, size_t size);
+
+/* A body with heat in the corner of the grid, from which faces conduct; and what is described of it before
+ * there are particles. */
+scene warm_scene(int32_t cells, int32_t implicit);
+mpm_status equip_heat(world *w, const scene *is);
+
+/* A closed surface that loads the material all around a place, and is split as it comes; takes it out. */
+mpm_status add_loads(world *w, double middle, double radius, mpm_surface **out);
+mpm_status drop_loads(world *w, mpm_surface *s);
+
+/* Add the cases of shared_options.c, shared_heat.c and shared_surfaces.c. */
+void add_shared_options(Suite *suite);
+void add_shared_heat(Suite *suite);
+void add_shared_surfaces(Suite *suite);
+
+#endif
