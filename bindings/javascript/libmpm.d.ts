@@ -2110,7 +2110,7 @@ export class Stepper implements Handle {
   /**
    * Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece
    * (collective). MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged
-   * step is under way. MPM_E_UNSUPPORTED: several parts with a surface.
+   * step is under way.
    */
   save(): Uint8Array;
   /**

@@ -2492,7 +2492,6 @@ end
 """
 Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece (collective).
 MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged step is under way.
-MPM_E_UNSUPPORTED: several parts with a surface.
 """
 function mpm_state_save(stepper, buffer, capacity)
     return ccall((:mpm_state_save, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{Cvoid}, Int64), stepper, buffer, capacity)
@@ -2520,7 +2519,6 @@ part's objects have changed.
   gives one; or an argument is wrong.
 - MPM_E_FORMAT: as in mpm_state_load(); the text names the piece by its number in `piece`.
 - MPM_E_STATE: a view is out, or a staged step is under way.
-- MPM_E_UNSUPPORTED: several parts with a surface.
 
 Since 0.2.0.
 """

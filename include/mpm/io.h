@@ -50,7 +50,7 @@ MPM_API mpm_status mpm_state_size(const mpm_stepper *stepper, int64_t *bytes);
 
 /** Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece
  * (collective). MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged
- * step is under way. MPM_E_UNSUPPORTED: several parts with a surface. */
+ * step is under way. */
 MPM_API mpm_status mpm_state_save(const mpm_stepper *stepper, void *buffer, int64_t capacity);
 
 /** Replaces the state by one saved with mpm_state_save(), of so many bytes; the buffer is read during the
@@ -71,7 +71,6 @@ MPM_API mpm_status mpm_state_load(mpm_stepper *stepper, const void *buffer, int6
  *   no part gives one; or an argument is wrong.
  * - MPM_E_FORMAT: as in mpm_state_load(); the text names the piece by its number in `piece`.
  * - MPM_E_STATE: a view is out, or a staged step is under way.
- * - MPM_E_UNSUPPORTED: several parts with a surface.
  *
  * Since 0.2.0. */
 MPM_API mpm_status mpm_state_load_pieces(mpm_stepper *stepper, int32_t count, const void *const *piece,

@@ -228,6 +228,7 @@ static mpm_status lay_out(mpmi_state_loading *l) {
     status = mpmi_agree(c, mpmi_parts_create(c, s->grid, &l->parts));
     if (status) return status;
     l->parts->margin = present->margin;
+    l->parts->meets_markers = present->meets_markers;
     status = mpmi_state_share(l);
     for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
       status = mpmi_parts_note_body(l->parts, (int32_t)l->all.set[m].numbers.body);
@@ -299,9 +300,6 @@ static mpm_status open_pieces(const mpm_stepper *s, int32_t count, const void *c
       return mpmi_fail(c, MPM_E_ARG, "bytes[%d] is %lld, must be >= 0", (int)i, (long long)bytes[i]);
   }
   mpm_status status = check_idle(s);
-  if (!status && !mpmi_is_whole(c) && s->settings.surfaces.count)
-    status = mpmi_fail(c, MPM_E_UNSUPPORTED,
-                       "a problem in several parts has no states with surfaces: use forces on particles");
   if (status) return status;
   if (!(*piece = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof **piece)))) return MPM_E_NOMEM;
   for (int32_t i = 0; i < count; ++i)

@@ -10,9 +10,6 @@
 static mpm_status check_between_steps(const mpm_stepper *s) {
   if (s->step.phase != MPMI_IDLE)
     return mpmi_fail(s->context, MPM_E_STATE, "a step is under way: end or abort it before saving");
-  if (!mpmi_is_whole(s->context) && s->settings.surfaces.count)
-    return mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                     "a problem in several parts has no states with surfaces: use forces on particles");
   return MPM_OK;
 }
 

@@ -35,6 +35,8 @@ struct story {
   int32_t stamp; /* of the host's fields to begin with */
   saved_state piece[MOST_PIECES];
   int32_t pieces;
+  mpm_surface *surface[MOST_PARTS];
+  mpm_obstacle *obstacle[MOST_PARTS];
   outcome found[MOST_PARTS];
 };
 
@@ -159,6 +161,13 @@ static void live(int32_t part, const mpm_transport *transport, void *user) {
   found->status = world_try_open(&w);
   if (!found->status) found->status = play(&w, is, part, found);
   if (found->status) snprintf(found->text, sizeof found->text, "%s", mpm_last_error(w.context));
+  if (is->surface[part] &&
+      (mpm_stepper_remove_surface(w.stepper, is->surface[part]) || mpm_surface_destroy(is->surface[part])))
+    found->status = MPM_E_INTERNAL;
+  if (is->obstacle[part] && (mpm_stepper_remove_obstacle(w.stepper, is->obstacle[part]) ||
+                             mpm_obstacle_destroy(is->obstacle[part])))
+    found->status = MPM_E_INTERNAL;
+  is->surface[part] = NULL, is->obstacle[part] = NULL;
   if (world_try_close(&w) && !found->status) found->status = MPM_E_INTERNAL;
 }
 
@@ -279,13 +288,63 @@ static mpm_status set_up_small(world *w, const story *is, int32_t part) {
   return status ? status : give_values(w, w->set[0], is);
 }
 
-enum { STORIES = 11, MOMENTS = 3 };
+/* Two bodies that meet with friction, walls that rub, and a ball that they push away. */
+static mpm_status set_up_bodies(world *w, const story *is, int32_t part) {
+  story *to = (story *)(uintptr_t)is;
+  mpm_contact_desc rule;
+  mpm_obstacle_desc ball;
+  mpm_status status = mpm_contact_desc_init(&rule, sizeof rule);
+  rule.friction = 0.3;
+  if (!status) status = mpm_obstacle_desc_init(&ball, sizeof ball);
+  ball.shape = MPM_SHAPE_SPHERE;
+  ball.motion = MPM_MOTION_FREE;
+  ball.mass = 20.0;
+  ball.inertia[8] = 0.2;
+  ball.position[0] = 0.72, ball.position[1] = 0.5;
+  ball.size[0] = 0.08;
+  ball.contact = &rule;
+  for (int32_t face = 0; face < 4 && !status; ++face)
+    status = mpm_stepper_set_wall(w->stepper, face, MPM_WALL_FRICTION, 0.3);
+  for (int32_t m = 0; m < 2 && !status; ++m) {
+    const double low[] = {m ? 0.45 : 0.2, 0.05}, high[] = {m ? 0.65 : 0.45, m ? 0.6 : 0.4};
+    const int32_t per_cell[] = {2, 2};
+    status = mpm_particles_fill_box(w->set[m], low, high, per_cell, NULL, NULL);
+    if (!status) status = give_values(w, w->set[m], is);
+    if (!status) status = mpm_stepper_set_body(w->stepper, w->set[m], m);
+  }
+  if (!status) status = mpm_stepper_set_contact(w->stepper, 0, 1, &rule);
+  if (!status) status = mpm_obstacle_create(w->context, &ball, &to->obstacle[part]);
+  return status ? status : mpm_stepper_add_obstacle(w->stepper, to->obstacle[part]);
+}
+
+/* Pressure on a ring in the body. */
+static mpm_status set_up_surface(world *w, const story *is, int32_t part) {
+  enum { EDGES = 24 };
+  story *to = (story *)(uintptr_t)is;
+  const double h = w->desc.grid.spacing[0];
+  double x[2 * EDGES];
+  mpm_surface_desc d;
+  mpm_status status = mpm_surface_desc_init(&d, sizeof d);
+  d.pressure = 500.0;
+  d.max_spacing = 0.5 * h;
+  for (int32_t i = 0; i < EDGES; ++i) {
+    x[i] = 0.4 + 0.15 * cos(2.0 * PI * i / EDGES);
+    x[EDGES + i] = 0.4 + 0.15 * sin(2.0 * PI * i / EDGES);
+  }
+  if (!status) status = set_up(w, is, part);
+  if (!status) status = mpm_surface_create(w->context, w->grid, &d, &to->surface[part]);
+  if (!status) status = mpm_surface_add_polyline(to->surface[part], EDGES, x, 1, h, NULL, NULL);
+  return status ? status : mpm_stepper_add_surface(w->stepper, to->surface[part]);
+}
+
+enum { STORIES = 14, MOMENTS = 3 };
 
 static story tell(int32_t kind, const char **name) {
   story is = story_of(2, 96);
   static const char *const names[STORIES] = {
       "USL, FLIP", "USF, APIC, two sets", "MUSL, XPIC, periodic", "prescribed", "come and go", "open walls",
-      "3-D, MUSL", "staggered",           "few blocks",           "1-D, AFLIP", "light nodes"};
+      "3-D, MUSL", "staggered",           "few blocks",           "1-D, AFLIP", "light nodes", "bodies, ball",
+      "surface",   "total Lagrangian"};
   *name = names[kind];
   switch (kind) {
   case 1:
@@ -331,6 +390,16 @@ static story tell(int32_t kind, const char **name) {
   case 10:
     is.desc.grid.basis = MPM_LINEAR;
     is.desc.sets = 2;
+    break;
+  case 11:
+    is.desc.sets = 2;
+    is.set_up = set_up_bodies;
+    break;
+  case 12:
+    is.set_up = set_up_surface;
+    break;
+  case 13:
+    is.desc.grid.total_lagrangian = 1;
     break;
   default:
     break;

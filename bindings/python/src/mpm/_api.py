@@ -2148,8 +2148,7 @@ Tells how many bytes mpm_state_save() needs now; of several parts, those of this
     "mpm_state_save": """mpm_status mpm_state_save(const mpm_stepper *stepper, void *buffer, int64_t capacity)
 
 Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece (collective).
-MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged step is under way.
-MPM_E_UNSUPPORTED: several parts with a surface.""",
+MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged step is under way.""",
     "mpm_state_load": """mpm_status mpm_state_load(mpm_stepper *stepper, const void *buffer, int64_t bytes)
 
 Replaces the state by one saved with mpm_state_save(), of so many bytes; the buffer is read during the call.
@@ -2169,7 +2168,6 @@ part's objects have changed.
   gives one; or an argument is wrong.
 - MPM_E_FORMAT: as in mpm_state_load(); the text names the piece by its number in `piece`.
 - MPM_E_STATE: a view is out, or a staged step is under way.
-- MPM_E_UNSUPPORTED: several parts with a surface.
 
 Since 0.2.0.""",
     "mpm_state_save_file": """mpm_status mpm_state_save_file(const mpm_stepper *stepper, const char *path)

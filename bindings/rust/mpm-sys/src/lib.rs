@@ -3087,7 +3087,6 @@ extern "C" {
 
     /// Writes the state into the host's buffer of capacity bytes; of several parts, this part's piece (collective).
     /// MPM_E_ARG: the capacity is too small. MPM_E_STATE: a view is out for writing, or a staged step is under way.
-    /// MPM_E_UNSUPPORTED: several parts with a surface.
     pub fn mpm_state_save(
         stepper: *const mpm_stepper,
         buffer: *mut c_void,
@@ -3115,7 +3114,6 @@ extern "C" {
     ///   part gives one; or an argument is wrong.
     /// - MPM_E_FORMAT: as in mpm_state_load(); the text names the piece by its number in `piece`.
     /// - MPM_E_STATE: a view is out, or a staged step is under way.
-    /// - MPM_E_UNSUPPORTED: several parts with a surface.
     ///
     /// Since 0.2.0.
     pub fn mpm_state_load_pieces(
