@@ -57,6 +57,9 @@ typedef struct mpmi_parts {
   int64_t sent_count, sent_capacity, ghost_count, ghost_capacity;
   mpmi_shared_block *sent, *ghost;  /* by partner; each in the order of the sender's blocks */
   uint8_t *flags;                   /* [slots] MPMI_NODE_..., or NULL */
+  int32_t *lowest, names_owners; /* [slots] where given to: the lowest part with a tile that has the node;
+                                  * 1: that is asked for */
+  int64_t lowest_capacity;
   int64_t flags_capacity, *partial; /* slots of nodes that are given to and not whole */
   int64_t partial_count, partial_capacity;
   int64_t version; /* of the layout that the flags are of */
@@ -119,6 +122,15 @@ static inline int32_t mpmi_owns_node(const mpmi_parts *parts, int64_t slot) {
   if (!parts) return 1;
   const int32_t flags = parts->flags[slot];
   return !(flags & MPMI_NODE_GIVEN) || (flags & (MPMI_NODE_OWN | MPMI_NODE_LOWER)) == MPMI_NODE_OWN;
+}
+
+/* Returns the part that does so, of a node that is whole, where names_owners is set. */
+static inline int32_t mpmi_owner_of_node(const mpmi_parts *parts, int64_t slot) {
+  return parts->flags[slot] & MPMI_NODE_GIVEN ? parts->lowest[slot] : parts->context->transport.part;
+}
+/* Returns 1 for nodes of this part's own tiles. */
+static inline int32_t mpmi_has_node(const mpmi_parts *parts, int64_t slot) {
+  return !(parts->flags[slot] & MPMI_NODE_GIVEN) || (parts->flags[slot] & MPMI_NODE_OWN);
 }
 
 /* ---- tiles.c ----------------------------------------------------------------------------------------- */

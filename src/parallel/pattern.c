@@ -238,9 +238,9 @@ mpm_status mpmi_pattern_find(mpmi_parts *parts, mpmi_blocks *blocks, mpm_status 
 }
 
 /* ---- nodes --------------------------------------------------------------------------------------------- */
-/* Flags the nodes of a box about a block, in and around it. */
+/* Flags the nodes of a box about a block, in and around it; part: whose tile the box is, or -1. */
 static void flag_box(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, const stretch *box,
-                     uint8_t flag) {
+                     uint8_t flag, int32_t part) {
   const int64_t edge = blocks->edge;
   int64_t index[3];
   const stretch one = {0, 1};
@@ -257,18 +257,20 @@ static void flag_box(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t
         }
         const int64_t slot =
             near ? mpmi_blocks_near(blocks, block, at) : mpmi_blocks_node(blocks, blocks->body[block], index);
-        if (slot >= 0) parts->flags[slot] |= flag;
+        if (slot < 0) continue;
+        parts->flags[slot] |= flag;
+        if (parts->names_owners && part >= 0 && part < parts->lowest[slot]) parts->lowest[slot] = part;
       }
 }
 
 /* Flags the nodes of a block's tile, or all that it wants. */
 static void flag_nodes(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t wanted,
-                       int32_t flag) {
+                       int32_t flag, int32_t part) {
   const int32_t *coord = blocks->coord[block];
   stretch box[3];
   for (int32_t k = 0; k < blocks->grid->dim; ++k)
     box[k] = wanted ? wanted_by(parts, k, coord[k]) : tile_of(parts, coord[k]);
-  flag_box(parts, blocks, block, box, (uint8_t)flag);
+  flag_box(parts, blocks, block, box, (uint8_t)flag, part);
 }
 
 /* Nodes that are tied move as one: what is so for one of them is so for all. */
@@ -276,9 +278,14 @@ static void join_ties(const mpmi_parts *parts, const mpmi_constraints *constrain
   for (int64_t i = 0; i < constraints->tie_count; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
     uint8_t all = parts->flags[tie->master];
-    for (int64_t f = tie->first; f < tie->first + tie->count; ++f)
-      all |= parts->flags[constraints->follower[f].slot];
+    int32_t lowest = parts->names_owners ? parts->lowest[tie->master] : 0;
+    for (int64_t f = tie->first; f < tie->first + tie->count; ++f) {
+      const int64_t slot = constraints->follower[f].slot;
+      all |= parts->flags[slot];
+      if (parts->names_owners && parts->lowest[slot] < lowest) lowest = parts->lowest[slot];
+    }
     parts->flags[tie->master] |= all;
+    if (parts->names_owners) parts->lowest[tie->master] = lowest;
     for (int64_t f = tie->first; f < tie->first + tie->count; ++f)
       parts->flags[constraints->follower[f].slot] |= all;
   }
@@ -323,9 +330,9 @@ mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks) {
 
 static void flag_ghost(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_shared_block *ghost) {
   const int32_t *coord = blocks->coord[ghost->block];
-  const int32_t lower = parts->partner[ghost->partner].part < parts->context->transport.part;
+  const int32_t part = parts->partner[ghost->partner].part, lower = part < parts->context->transport.part;
   nearby n = {parts, blocks, {coord[0], coord[1], coord[2]}, blocks->body[ghost->block], NULL};
-  flag_nodes(parts, blocks, ghost->block, 0, MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0));
+  flag_nodes(parts, blocks, ghost->block, 0, MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0), part);
   each_near(&n, flag_near);
 }
 
@@ -338,13 +345,16 @@ mpm_status mpmi_pattern_nodes(mpmi_parts *parts, const mpmi_blocks *blocks,
   mpm_context *c = parts->context;
   const int64_t slots = blocks->count * blocks->nodes;
   mpm_status status = MPMI_RESERVE_MORE(c, parts->flags, parts->flags_capacity, slots + 1);
+  if (!status && parts->names_owners)
+    status = MPMI_RESERVE_MORE(c, parts->lowest, parts->lowest_capacity, slots + 1);
   if (status) return status;
   memset(parts->flags, 0, (size_t)(slots + 1));
+  for (int64_t i = 0; i < slots && parts->names_owners; ++i) parts->lowest[i] = INT32_MAX;
   for (int64_t i = 0; i < parts->ghost_count; ++i) flag_ghost(parts, blocks, &parts->ghost[i]);
   for (int64_t block = 0; block < blocks->count; ++block) {
     if (parts->near[block] != 2) continue;
-    flag_nodes(parts, blocks, block, 0, MPMI_NODE_OWN);
-    flag_nodes(parts, blocks, block, 1, MPMI_NODE_WHOLE);
+    flag_nodes(parts, blocks, block, 0, MPMI_NODE_OWN, c->transport.part);
+    flag_nodes(parts, blocks, block, 1, MPMI_NODE_WHOLE, -1);
   }
   join_ties(parts, constraints);
   int64_t count = 0;

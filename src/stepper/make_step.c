@@ -34,7 +34,8 @@ static mpm_status enter(mpm_stepper *s, mpm_status status, double dt) {
 
 /* Returns how many sums on nodes parts have exchanged when a step has come to this phase. */
 static int64_t exchanges_to(const mpm_stepper *s, int32_t phase) {
-  return mpmi_is_shared(s) ? mpmi_explicit_exchanges(&s->step, &s->nodes, phase) : 0;
+  if (!mpmi_is_shared(s) || mpmi_is_implicit(&s->settings)) return 0; /* there the last vote has counted */
+  return mpmi_explicit_exchanges(&s->step, &s->nodes, phase);
 }
 
 /* Asks the host whether to go on, and shows it the info that the step is about to have. */
@@ -69,6 +70,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
       .velocity_dt = mean ? 0.5 * (history->previous_dt + dt) : dt,
       .failure = mpmi_no_failure(),
       .ask_progress = ask_progress,
+      .vote = mpmi_together_vote,
       .stepper = s,
       /* the nodes are those of the step before until they are counted */
       .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};

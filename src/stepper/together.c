@@ -18,7 +18,8 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
     adapts |= m < s->adaption_capacity && s->adaption[m].on;
     bodies |= s->layout.member[m].body != 0;
   }
-  if (mpmi_is_implicit(settings)) what = "scheme MPM_NEWMARK", instead = "MPM_USL, MPM_USF or MPM_MUSL";
+  if (mpmi_is_implicit(settings) && settings->desc.linear_solver > MPM_SOLVER_CG)
+    what = "a linear solver other than conjugate gradients", instead = "MPM_SOLVER_CG";
   if (mpmi_is_total_lagrangian(s->grid)) what = "a total Lagrangian grid", instead = "one that is not";
   if (mpmi_has_friction_planes(settings) || s->layout.constraints.contact_count)
     what = "a friction wall", instead = "MPM_WALL_SLIP or MPM_WALL_FIXED";
@@ -131,11 +132,6 @@ static mpm_status take_failure(mpm_stepper *s, mpm_status status, int32_t part) 
   for (int32_t i = 0; i < WORDS && part != s->context->transport.part; ++i) word[i] = INT64_MIN;
   const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, WORDS, word);
   if (lost) return lost;
-  int64_t active[] = {s->layout.parts->has_counted, s->step.info.active_nodes};
-  const mpm_status summed = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 2, active);
-  if (summed) return summed;
-  s->step.info.active_nodes =
-      active[0] == s->context->transport.parts ? active[1] : s->history.last.active_nodes;
   f->callback_status = (int32_t)word[0];
   f->set = (int32_t)word[1];
   f->particle = word[2];
@@ -144,24 +140,48 @@ static mpm_status take_failure(mpm_stepper *s, mpm_status status, int32_t part) 
   return mpmi_take_over(s->context, part, status);
 }
 
-mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges) {
-  mpm_context *c = s->context;
-  if (!mpmi_is_shared(s)) return status;
+/* Makes the active nodes of a step that has failed those of all parts. */
+static mpm_status count_active(mpm_stepper *s) {
+  int64_t active[] = {s->layout.parts->has_counted, s->step.info.active_nodes};
+  const mpm_status status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 2, active);
+  s->step.info.active_nodes =
+      active[0] == s->context->transport.parts ? active[1] : s->history.last.active_nodes;
+  return status;
+}
+
+/* Returns the status of the first failure of all parts; word: largest numbers of all parts, of which the first
+ * says whether there is any. */
+static mpm_status settle(mpm_stepper *s, mpm_status status, int64_t exchanges, int64_t count, int64_t *word) {
   const int64_t came_to = s->layout.parts->exchanges;
+  int32_t part;
   status = catch_up(s, status, exchanges);
+  word[0] = status != MPM_OK;
+  mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, count, word);
+  if (!lost && word[0]) lost = find_first(s, status, came_to, &part);
+  if (lost || !word[0]) return lost;
+  return take_failure(s, status, part);
+}
+
+mpm_status mpmi_together_vote(mpm_stepper *s, mpm_status status, int64_t exchanges) {
+  int64_t word[1];
+  status = settle(s, status, exchanges, 1, word);
+  s->layout.parts->exchanges = s->layout.parts->is_echo = 0;
+  return status;
+}
+
+mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges) {
+  if (!mpmi_is_shared(s)) return status;
   mpmi_task_report *report = &s->work.report[0];
-  int64_t word[] = {status != MPM_OK, 0, 0, 0};
+  int64_t word[] = {0, 0, 0, 0};
   for (int32_t k = 0; k < s->settings.tasks; ++k) {
     word[1] |= s->work.report[k].left_tile;
     word[2] |= s->work.report[k].removes;
     word[3] |= s->work.report[k].holes_restored;
   }
-  const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 4, word);
-  if (lost) return lost;
-  if (word[0]) {
-    int32_t part;
-    const mpm_status found = find_first(s, status, came_to, &part);
-    return found ? found : take_failure(s, status, part);
+  status = settle(s, status, exchanges, 4, word);
+  if (status) {
+    const mpm_status lost = count_active(s);
+    return lost ? lost : status;
   }
   report->left_tile |= word[1] != 0;
   report->removes |= word[2] != 0;
