@@ -19,7 +19,9 @@
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts, which is not checked.
  *
- * Of several parts these are asked for explicit steps of one body. MPM_E_UNSUPPORTED: implicit schemes, total
+ * Of several parts these are asked for steps of one body, explicit ones, and implicit ones whose linear system
+ * the library's conjugate gradients solve: MPM_SOLVER_CG, which MPM_SOLVER_AUTO is here.
+ * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric, total
  * Lagrangian grids, friction walls, obstacles, surfaces, heat, adaption, and saving or loading states.
  */
 #ifndef MPM_PARALLEL_H
@@ -65,7 +67,8 @@ typedef mpm_status (*mpm_receive_fn)(void *user, int32_t *count, const mpm_messa
 /** values[count] of all parts into each of them (collective). Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_reduce_fn)(void *user, int32_t op, int64_t count, int64_t *values);
 
-/** all[parts]: value of each part (collective). Only when particles are added. Returns as mpm_send_fn. */
+/** all[parts]: value of each part (collective). Only when particles are added, and when implicit steps number
+ * their unknowns. Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_gather_fn)(void *user, int64_t value, int64_t *all);
 
 /** Ways between the parts. All are called on the calling thread. Once one has failed, every collective call

@@ -152,7 +152,8 @@ void mpmi_shared_stiffness_add(mpmi_balance *balance, int32_t task, int64_t bloc
     const double *x = record + (rows.points + k) * ld;
     of.points.x[k] = x;
     if (mpmi_has_domains(grid)) of.points.size[k] = x + grid->dim * ld;
-    if (grid->domains == MPMI_DOMAINS_STRETCHED) of.points.stretch[k] = x + 2 * grid->dim * ld;
+    if (grid->domains == MPMI_DOMAINS_STRETCHED && !mpmi_is_total_lagrangian(grid))
+      of.points.stretch[k] = x + 2 * grid->dim * ld;
   }
   for (of.begin = 0; of.begin < ld; of.begin += of.n > 0 ? of.n : MPMI_CHUNK) {
     of.n = (int64_t)record[ld + of.begin];

@@ -217,7 +217,7 @@ static mpm_status find_numbers(mpmi_rows *rows, const mpmi_rows_desc *d, int64_t
     const int64_t *of = part == me ? answers.sent + first_of(&answers, me) : answers.arrived[k].data;
     rows->number[r] = of[i++];
   }
-  rows->all = first[c->transport.parts];
+  if (!status) rows->all = first[c->transport.parts];
   close_mail(c, &names);
   close_mail(c, &answers);
   return status;

@@ -16,8 +16,9 @@ static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
 static mpm_status not_positive(const mpmi_system *s) {
   s->report->indefinite = 1;
   return mpmi_fail(s->context, MPM_SINGULAR,
-                   "conjugate gradients: the matrix is not positive definite: use MPM_SOLVER_LDLT or "
-                   "MPM_SOLVER_AUTO");
+                   "conjugate gradients: the matrix is not positive definite: %s",
+                   s->A->shared ? "hold the body in each direction, or use a smaller dt"
+                                : "use MPM_SOLVER_LDLT or MPM_SOLVER_AUTO");
 }
 
 static mpm_status by_cg(mpmi_system *s, int64_t limit) {
@@ -209,9 +210,9 @@ static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) 
                                          [MPM_SOLVER_LDLT] = "MPM_SOLVER_LDLT"};
   if (choice >= MPM_SOLVER_CG && choice <= MPM_SOLVER_LDLT && !job->matrix->symmetric)
     return mpmi_fail(context, MPM_E_UNSUPPORTED,
-                     "%s is for symmetric matrices, and this one is not: use MPM_SOLVER_GMRES or "
-                     "MPM_SOLVER_AUTO",
-                     symmetric_only[choice]);
+                     "%s is for symmetric matrices, and this one is not: use %s", symmetric_only[choice],
+                     job->matrix->shared ? "a context without a transport"
+                                         : "MPM_SOLVER_GMRES or MPM_SOLVER_AUTO");
   if (choice != MPM_SOLVER_HOST && (choice < MPM_SOLVER_AUTO || choice > MPM_SOLVER_GMRES))
     return mpmi_fail(context, MPM_E_ARG, "linear_solver is %d, must be MPM_SOLVER_AUTO ... MPM_SOLVER_HOST",
                      (int)choice);
