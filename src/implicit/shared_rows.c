@@ -31,7 +31,7 @@ mpm_status mpmi_shared_rows_find(mpmi_balance *balance, int64_t rows) {
     s->owner[r] = mpmi_owner_of_node(parts, slot);
     s->home[r] = mpmi_cut_owner(parts, blocks->key[block]);
     s->kept[r] = s->owner[r] == c->transport.part;
-    s->wanted[r] = mpmi_has_node(parts, slot);
+    s->wanted[r] = mpmi_has_node(parts, slot) != 0;
   }
   return MPM_OK;
 }

@@ -9,7 +9,8 @@ static const mpm_param associated[] = {{"density", 1e3}, {"E", 1e5},    {"nu", 0
 
 /* Laws whose matrix is symmetric; with the remedy that is so where pressure is averaged as well. */
 static world_law law_of(int32_t i) {
-  static const char *const model[LAWS_HERE] = {"neo_hookean", "j2", "drucker_prager", "linear_elastic"};
+  static const char *const model[LAWS_HERE] = {"neo_hookean", "herschel_bulkley", "drucker_prager",
+                                                "neo_hookean_decoupled"};
   world_law law = {.model = model[i], .E = 1e5, .nu = 0.3, .density = 1e3, .yield_stress = 1e3};
   if (i == 2) law.params = associated, law.param_count = 6;
   return law;
@@ -58,7 +59,7 @@ static mpm_status set_up_implicit(world *w, const scene *is) {
   if (!status) status = fill_middle(w, w->set[0], low, 0.5);
   if (!status && w->sets > 1) status = fill_middle(w, w->set[1], 0.5, 0.62);
   for (int32_t m = 0; m < w->sets && !status && (options & MOVES); ++m)
-    status = set_velocities(w, w->set[m], 2.0);
+    status = set_velocities(w, w->set[m], 0.5);
   if (!status && (options & LEADS)) status = lead_some(w->set[0], w->dim);
   if (!status && (options & LEADS)) status = mpm_stepper_set_motion(w->stepper, w->set[0], lead, NULL);
   if (!status && (options & HOLDS)) status = mpm_stepper_set_velocity_bc(w->stepper, hold_corner, NULL);
@@ -78,7 +79,7 @@ static mpm_status run_implicit(world *w, const scene *is, outcome *found) {
 static const int32_t cells_of[] = {0, 260, 44, 13};
 
 static scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_static) {
-  scene is = scene_of(dim, cells_of[dim], set_up_implicit);
+  scene is = scene_of(dim, cells_of[dim] * (dim < 3 && !quasi_static ? 2 : 1), set_up_implicit);
   use_basis(basis, &is.desc.grid);
   is.desc.stepper.scheme = MPM_NEWMARK;
   is.desc.stepper.quasi_static = quasi_static;
@@ -95,6 +96,7 @@ static void check_made(const scene *is, const char *name, int32_t parts) {
 }
 
 START_TEST(table) {
+  if (getenv("ONE") && atoi(getenv("ONE")) != _i) return;
   const int32_t dim = 1 + _i % 3, b = _i / 3 % IMPLICIT_BASES, quasi_static = _i / (3 * IMPLICIT_BASES);
   const basis_option *basis = implicit_basis(b);
   scene is = implicit_scene(dim, basis, quasi_static);
@@ -103,8 +105,9 @@ START_TEST(table) {
   if (basis->basis == MPM_CPGIMP && keeps_volume_alone(is.desc.law.model)) is.desc.law = law_of(0);
   is.desc.grid.periodic[0] = dim > 1 && _i % 4 == 1;
   is.speed += _i % 8;
-  is.desc.stepper.mass_damping = _i % 5 == 2 ? 3.0 : 0.0;
-  if (_i % 3 == 0) is.desc.sets = 2, is.desc.other_law = law_of((_i + 1) % 2);
+  is.desc.stepper.mass_damping = _i % 5 == 2 && !quasi_static ? 3.0 : 0.0;
+  if (_i / 2 % 3 == 0) is.desc.sets = 2, is.desc.other_law = law_of((_i + 1) % 3);
+  if (basis->basis == MPM_CPGIMP) is.desc.other_law = law_of(3);
   snprintf(name, sizeof name, "%d: %d-D %s %s %s, options %d", _i, dim, basis->name, is.desc.law.model,
            quasi_static ? "quasi-static" : "Newmark", (int)is.speed);
   check_made(&is, name, 2 + _i % 4);
@@ -113,6 +116,7 @@ END_TEST
 
 /* With the remedy against locking, where the matrix is symmetric. */
 START_TEST(remedy) {
+  if (getenv("ONE")) return;
   static const int32_t bases[] = {0, 2, 3};
   scene is = implicit_scene(2 + _i % 2, implicit_basis(bases[_i / 2 % 3]), _i / 6);
   is.desc.stepper.locking_remedy = MPM_LOCKING_CELL_AVERAGE;

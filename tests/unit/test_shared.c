@@ -69,6 +69,7 @@ void live(int32_t part, const mpm_transport *transport, void *user) {
   w.desc.context.transport = transport;
   found->status = world_try_open(&w);
   if (!found->status) found->status = play(&w, is, found);
+  if (found->status && getenv("ONE")) fprintf(stderr, "[%d] %s\n", part, mpm_last_error(w.context));
   if (found->status) snprintf(found->text, sizeof found->text, "%s", mpm_last_error(w.context));
   if (world_try_close(&w) && !found->status) found->status = MPM_E_INTERNAL;
 }
