@@ -17,6 +17,7 @@ typedef struct outcome {
   double reaction[6][3], stable_dt;
   int64_t total, own;
   int64_t failed_particle; /* of a step that had to fail */
+  mpm_step_info failed;    /* the info of one */
   mpm_parallel_info parallel;
 } outcome;
 
@@ -28,6 +29,7 @@ struct scene {
   scene_fn set_up;
   run_fn run; /* NULL: STEPS steps */
   double speed;
+  int32_t heard; /* the sentence that is asked for is to be heard */
   outcome found[MOST_PARTS];
 };
 
