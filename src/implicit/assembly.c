@@ -275,8 +275,7 @@ static mpm_status add_with_others(mpmi_balance *balance, mpm_status status, int6
   if (!status)
     status = mpmi_visit_marked(balance->step, parts->is_boundary, calls_host, record_block, balance);
   if (!status) status = mpmi_step_failure(balance->step);
-  if ((status = mpmi_vote(balance, status, exchanges)) ||
-      (status = mpmi_shared_stiffness_exchange(balance)))
+  if ((status = mpmi_vote(balance, status, exchanges)) || (status = mpmi_shared_stiffness_exchange(balance)))
     return status;
   begin_pass(balance, &inner);
   for (int32_t c = 0; c < MPMI_COLOURS && !status; ++c) {

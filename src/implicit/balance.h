@@ -108,19 +108,18 @@ typedef struct mpmi_newton_work {
 
 /* What one of several parts knows of its rows. */
 typedef struct mpmi_shared_rows {
-  uint64_t *key;                  /* [rows] of the block of the node */
-  int32_t *place, *owner, *home;  /* [rows] of the node in it; the part that owns it, that numbers it */
-  uint8_t *wanted, *kept;         /* [rows] 1: its values count here; it is to be complete */
+  uint64_t *key;                 /* [rows] of the block of the node */
+  int32_t *place, *owner, *home; /* [rows] of the node in it; the part that owns it, that numbers it */
+  uint8_t *wanted, *kept;        /* [rows] 1: its values count here; it is to be complete */
   int64_t key_capacity, place_capacity, owner_capacity, home_capacity, wanted_capacity, kept_capacity;
   int32_t is_shared; /* all parts know whose rows are whose, as they are now */
 } mpmi_shared_rows;
 
-/* The stiffness of the particles of a block that parts share, as it is sent: heads of blocks, each with rows of
- * so many numbers for each slot (shared_stiffness.c). */
+/* The stiffness of the particles of blocks that parts share, as it is sent (shared_stiffness.c). */
 typedef struct mpmi_shared_stiffness {
-  double *record;     /* of own blocks at the edge of the part */
-  int64_t *start;     /* [boundary + 1] where each begins */
-  const double **at;  /* [blocks] where the record of a block is, own or come, or NULL */
+  double *record;    /* of own blocks at the edge of the part */
+  int64_t *start;    /* [boundary + 1] where each begins */
+  const double **at; /* [blocks] where the record of a block is, own or come, or NULL */
   int64_t record_capacity, start_capacity, at_capacity;
 } mpmi_shared_stiffness;
 
@@ -266,8 +265,8 @@ void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings); /* NU
 mpm_status mpmi_balance_prepare(mpmi_balance *balance);
 
 /* ---- vote.c ------------------------------------------------------------------------------------------ */
-/* With several parts: all have made so many exchanges of tiles since the last vote, or have failed; all return
- * the status of the first failure. With one: returns the status. */
+/* With several parts: all have made so many exchanges of tiles since the last vote, or have failed; all
+ * return the status of the first failure. With one: returns the status. */
 mpm_status mpmi_vote(const mpmi_balance *balance, mpm_status status, int64_t exchanges);
 /* Returns how many exchanges internal forces take. */
 int64_t mpmi_force_exchanges(const mpmi_balance *balance);

@@ -43,7 +43,8 @@ static mpm_status find_nodes(mpmi_balance *balance, double *clock) {
   const int64_t slots = mpmi_slots(balance->layout);
   mpm_status status = project(balance, MPMI_PROJECT_STRAIN, clock);
   if (status) return status;
-  if (slots) memset(balance->nodes->solved.at, 0, (size_t)(slots * balance->nodes->solved.values) * sizeof(double));
+  if (slots)
+    memset(balance->nodes->solved.at, 0, (size_t)(slots * balance->nodes->solved.values) * sizeof(double));
   for (int64_t i = 0; i < slots; ++i)
     *mpmi_mass(&balance->nodes->solved, i) = *mpmi_mass(&balance->nodes->projected, i);
   balance->step->info.active_nodes = mpmi_count_owned(balance->layout, &balance->nodes->solved);
@@ -166,8 +167,7 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   if (!status) status = mpmi_surfaces_aim(balance->step);
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
   if (!status) status = find_nodes(balance, clock);
-  if (!status)
-    status = find_external(balance, at_start ? balance->step->t : balance->step->t + dt, clock);
+  if (!status) status = find_external(balance, at_start ? balance->step->t : balance->step->t + dt, clock);
   if ((status = mpmi_vote(balance, status, to_unknowns)) || (status = mpmi_unknowns_find(balance)) ||
       (status = mpmi_surface_loads_find(balance)))
     return status;

@@ -178,19 +178,19 @@ static mpm_status solve(iteration *it) {
    * closes has stiffness, and its part of the right-hand side takes some of them */
   const double kept = newton->constraint_count ? 1e-3 : 1.0;
   const double wanted = fmax(1e-10, kept * fmin(1e-3, 0.1 * relative(it)));
-  const mpmi_solve_job job = {.matrix = &newton->matrix,
-                              .rhs = newton->vector[MPMI_RHS],
-                              .x = x,
-                              .choice = newton->shared ? MPM_SOLVER_CG : balance->settings->desc.linear_solver,
-                              .tolerance = balance->settings->desc.linear_tolerance > 0.0
-                                               ? balance->settings->desc.linear_tolerance
-                                               : wanted,
-                              .max_iterations = balance->settings->desc.linear_max_iterations,
-                              .host = balance->settings->solver,
-                              .host_user = balance->settings->solver_user,
-                              .expects_positive = newton->matrix.symmetric,
-                              .inertia = it->inertia_share,
-                              .several_fields = newton->couples_bodies};
+  const mpmi_solve_job job = {
+      .matrix = &newton->matrix,
+      .rhs = newton->vector[MPMI_RHS],
+      .x = x,
+      .choice = newton->shared ? MPM_SOLVER_CG : balance->settings->desc.linear_solver,
+      .tolerance =
+          balance->settings->desc.linear_tolerance > 0.0 ? balance->settings->desc.linear_tolerance : wanted,
+      .max_iterations = balance->settings->desc.linear_max_iterations,
+      .host = balance->settings->solver,
+      .host_user = balance->settings->solver_user,
+      .expects_positive = newton->matrix.symmetric,
+      .inertia = it->inertia_share,
+      .several_fields = newton->couples_bodies};
   mpmi_solve_report report = {.node = -1};
   status = mpmi_solve(newton->solver, &job, &report);
   balance->factor_seconds += report.factor_seconds;

@@ -194,8 +194,7 @@ mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
   if (status) return status;
   status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, neighbours_task, &job);
   if (!status) mpmi_shared_rows_keep(balance);
-  if (!status)
-    status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job);
+  if (!status) status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job);
   if (status) return status;
   int64_t entries = 0;
   for (int64_t r = 0; r < rows; ++r) entries += newton->diagonal[r];

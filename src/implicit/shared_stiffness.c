@@ -54,8 +54,7 @@ mpm_status mpmi_shared_stiffness_begin(mpmi_balance *balance) {
   for (int64_t i = 0; i < parts->boundary_count; ++i)
     s->start[i + 1] =
         s->start[i] + HEAD + rows.count * slots_before(layout, parts->boundary[i], layout->member_count);
-  if ((status =
-           MPMI_RESERVE_MORE(c, s->record, s->record_capacity, s->start[parts->boundary_count] + 1)))
+  if ((status = MPMI_RESERVE_MORE(c, s->record, s->record_capacity, s->start[parts->boundary_count] + 1)))
     return status;
   memset(s->record, 0, (size_t)(s->start[parts->boundary_count] + 1) * sizeof *s->record);
   for (int64_t i = 0; i < layout->blocks.count; ++i) s->at[i] = NULL;
@@ -85,10 +84,8 @@ static mpmi_locking_particle recorded_cell(const mpmi_stiff_particles *p, const 
                                            const mpmi_newton_work *work, int64_t q) {
   const double *from = p->record + p->begin + q;
   const int64_t ld = p->record_ld;
-  mpmi_locking_particle of = {.volume = from[27 * ld],
-                              .q = from[28 * ld],
-                              .hoop = from[29 * ld],
-                              .paired = from[30 * ld] > 0.0};
+  mpmi_locking_particle of = {
+      .volume = from[27 * ld], .q = from[28 * ld], .hoop = from[29 * ld], .paired = from[30 * ld] > 0.0};
   (void)balance, (void)work;
   for (int32_t k = 0; k < 9; ++k) {
     of.h[k] = from[k * ld];
@@ -104,7 +101,8 @@ void mpmi_shared_stiffness_record(mpmi_balance *balance, mpmi_batch *b) {
   const mpmi_newton_work *work = &newton->work[b->task];
   const mpm_grid *grid = balance->settings->grid;
   const rows_of_record rows = find_rows(balance);
-  double *record = newton->stiffness_of.record + newton->stiffness_of.start[layout->parts->mark[b->block] - 1];
+  double *record =
+      newton->stiffness_of.record + newton->stiffness_of.start[layout->parts->mark[b->block] - 1];
   int64_t ld;
   if (!mpmi_find_stiffness(balance, b)) return;
   memcpy(&ld, record, sizeof ld);
@@ -155,7 +153,7 @@ void mpmi_shared_stiffness_add(mpmi_balance *balance, int32_t task, int64_t bloc
     if (grid->domains == MPMI_DOMAINS_STRETCHED && !mpmi_is_total_lagrangian(grid))
       of.points.stretch[k] = x + 2 * grid->dim * ld;
   }
-  for (of.begin = 0; of.begin < ld; of.begin += of.n > 0 ? of.n : MPMI_CHUNK) {
+  for (of.begin = 0; of.begin<ld; of.begin += of.n> 0 ? of.n : MPMI_CHUNK) {
     of.n = (int64_t)record[ld + of.begin];
     for (int32_t e = 0; e < rows.components && of.n > 0; ++e)
       memcpy(work->stiffness + rows.component[e] * of.ld, record + (rows.stiffness + e) * ld + of.begin,

@@ -21,8 +21,7 @@ static mpm_status take_nearest(mpmi_balance *balance, double nearest) {
   if (!balance->layout->parts) return MPM_OK;
   for (int32_t i = 0; i < KEYS; ++i) {
     int64_t best = is_best ? key[i] : INT64_MIN;
-    const mpm_status status =
-        mpmi_reduce_parts(balance->settings->context, MPM_REDUCE_MAX, 1, &best);
+    const mpm_status status = mpmi_reduce_parts(balance->settings->context, MPM_REDUCE_MAX, 1, &best);
     if (status) return status;
     is_best &= best == key[i];
     key[i] = best;

@@ -80,8 +80,8 @@ static mpm_status apply(const mpmi_matrix *A, int32_t what, const double *b, con
   job.ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A));
   const mpm_status status = mpmi_run_ranges(A->context, &job.ranges, apply_task, &job);
   if (A->shared && !status && sum)
-    return mpmi_rows_sum(A->shared, MPMI_BY_ROWS, 1,
-                         &(mpmi_row_terms){.a = y, .b = what == PRODUCT ? x : y}, sum);
+    return mpmi_rows_sum(A->shared, MPMI_BY_ROWS, 1, &(mpmi_row_terms){.a = y, .b = what == PRODUCT ? x : y},
+                         sum);
   if (sum) *sum = status ? 0.0 : mpmi_reduce(MPMI_REDUCE_SUM, 0.0, job.part, 1, NULL, job.ranges.count);
   return status;
 }

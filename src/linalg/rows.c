@@ -46,9 +46,8 @@ static mpm_status deliver(mpm_context *c, mail *of) {
   for (int32_t r = 0; r < c->transport.parts; ++r) {
     const int64_t from = r ? of->start[r - 1] : 0, words = (of->start[r] - from) * of->width;
     if (r == me || !words) continue;
-    of->message[count++] = (mpm_message){.part = r,
-                                         .bytes = words * (int64_t)sizeof(int64_t),
-                                         .data = of->sent + from * of->width};
+    of->message[count++] = (mpm_message){
+        .part = r, .bytes = words * (int64_t)sizeof(int64_t), .data = of->sent + from * of->width};
   }
   mpm_status status = mpmi_send(c, MPM_EXCHANGE_SPARSE, count, of->message, NULL);
   if (!status) status = mpmi_receive(c, &arrived, &of->arrived);

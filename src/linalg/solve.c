@@ -15,8 +15,7 @@ static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
 
 static mpm_status not_positive(const mpmi_system *s) {
   s->report->indefinite = 1;
-  return mpmi_fail(s->context, MPM_SINGULAR,
-                   "conjugate gradients: the matrix is not positive definite: %s",
+  return mpmi_fail(s->context, MPM_SINGULAR, "conjugate gradients: the matrix is not positive definite: %s",
                    s->A->shared ? "hold the body in each direction, or use a smaller dt"
                                 : "use MPM_SOLVER_LDLT or MPM_SOLVER_AUTO");
 }
@@ -209,8 +208,8 @@ static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) 
                                          [MPM_SOLVER_MULTIGRID_CG] = "MPM_SOLVER_MULTIGRID_CG",
                                          [MPM_SOLVER_LDLT] = "MPM_SOLVER_LDLT"};
   if (choice >= MPM_SOLVER_CG && choice <= MPM_SOLVER_LDLT && !job->matrix->symmetric)
-    return mpmi_fail(context, MPM_E_UNSUPPORTED,
-                     "%s is for symmetric matrices, and this one is not: use %s", symmetric_only[choice],
+    return mpmi_fail(context, MPM_E_UNSUPPORTED, "%s is for symmetric matrices, and this one is not: use %s",
+                     symmetric_only[choice],
                      job->matrix->shared ? "a context without a transport"
                                          : "MPM_SOLVER_GMRES or MPM_SOLVER_AUTO");
   if (choice != MPM_SOLVER_HOST && (choice < MPM_SOLVER_AUTO || choice > MPM_SOLVER_GMRES))
@@ -225,8 +224,8 @@ static mpm_status check_rhs(const mpmi_system *s) {
   for (int64_t i = 0; i < s->n && !status; ++i) {
     if (isfinite(s->b[i]) || !mpmi_is_own_row(s->A, i / s->A->block)) continue;
     row = i / s->A->block;
-    status = mpmi_system_fail_at(s, MPM_NONFINITE, row,
-                                 "the right-hand side of the linear system is not finite");
+    status =
+        mpmi_system_fail_at(s, MPM_NONFINITE, row, "the right-hand side of the linear system is not finite");
   }
   status = mpmi_system_together_at(s, status, row);
   if (status) return status;

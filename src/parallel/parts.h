@@ -55,12 +55,13 @@ typedef struct mpmi_parts {
   int64_t partner_count, partner_capacity;
   mpmi_partner *partner;
   int64_t sent_count, sent_capacity, ghost_count, ghost_capacity;
-  mpmi_shared_block *sent, *ghost;  /* by partner; each in the order of the sender's blocks */
-  uint8_t *flags;                   /* [slots] MPMI_NODE_..., or NULL */
-  int32_t *lowest, names_owners; /* [slots] where given to: the lowest part with a tile that has the node;
-                                  * 1: that is asked for */
-  int64_t lowest_capacity;
-  int64_t flags_capacity, *partial; /* slots of nodes that are given to and not whole */
+  mpmi_shared_block *sent, *ghost; /* by partner; each in the order of the sender's blocks */
+  uint8_t *flags;                  /* [slots] MPMI_NODE_..., or NULL */
+  int64_t flags_capacity;
+  int32_t names_owners,
+      *lowest; /* [slots] of nodes that are given to, where that is asked for: the lowest part
+                                  * with a tile that has it */
+  int64_t lowest_capacity, *partial; /* slots of nodes that are given to and not whole */
   int64_t partial_count, partial_capacity;
   int64_t version; /* of the layout that the flags are of */
   /* By block: 1 + its index in `boundary`, or 0; whether it is on the boundary; whether it has particles

@@ -10,7 +10,7 @@ static const mpm_param associated[] = {{"density", 1e3}, {"E", 1e5},    {"nu", 0
 /* Laws whose matrix is symmetric; with the remedy that is so where pressure is averaged as well. */
 static world_law law_of(int32_t i) {
   static const char *const model[LAWS_HERE] = {"neo_hookean", "herschel_bulkley", "drucker_prager",
-                                                "neo_hookean_decoupled"};
+                                               "neo_hookean_decoupled"};
   world_law law = {.model = model[i], .E = 1e5, .nu = 0.3, .density = 1e3, .yield_stress = 1e3};
   if (i == 2) law.params = associated, law.param_count = 6;
   return law;
@@ -132,7 +132,7 @@ START_TEST(remedy) {
 }
 END_TEST
 
-/* ---- what may go wrong ----------------------------------------------------------------------------------- */
+/* ---- what may go wrong --------------------------------------------------------------------------------- */
 /* A step that no part can make, and then others. */
 static mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
   const double h = is->desc.grid.spacing[0];
@@ -207,7 +207,8 @@ static mpm_status ask_in_vain(world *w, const scene *is, outcome *found) {
   mpm_context_part(w->context, &part, &parts);
   const mpm_status status = mpm_step(w->stepper, 0.3 * is->desc.grid.spacing[0], &w->info);
   if (parts == 1) return status;
-  if (status != MPM_E_UNSUPPORTED || (strstr(mpm_last_error(w->context), "use MPM_SOLVER_CG") != NULL) != is->heard)
+  if (status != MPM_E_UNSUPPORTED ||
+      (strstr(mpm_last_error(w->context), "use MPM_SOLVER_CG") != NULL) != is->heard)
     return MPM_E_INTERNAL;
   return MPM_OK;
 }

@@ -103,11 +103,12 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
     ck_assert_msg(a->failed_particle == b->failed_particle, "%s, part %d of %d: particle %lld, not %lld",
                   name, r, parts, (long long)b->failed_particle, (long long)a->failed_particle);
     if (memcmp(&a->failed, &b->failed, sizeof a->failed) != 0)
-      ck_abort_msg("%s, part %d of %d: another failure: particle %lld, %lld; node %lld, %lld; residual %.17g, "
-                   "%.17g; iterations %d, %d",
-                   name, r, parts, (long long)a->failed.particle, (long long)b->failed.particle,
-                   (long long)a->failed.node, (long long)b->failed.node, a->failed.residual,
-                   b->failed.residual, (int)a->failed.newton_iterations, (int)b->failed.newton_iterations);
+      ck_abort_msg(
+          "%s, part %d of %d: another failure: particle %lld, %lld; node %lld, %lld; residual %.17g, "
+          "%.17g; iterations %d, %d",
+          name, r, parts, (long long)a->failed.particle, (long long)b->failed.particle,
+          (long long)a->failed.node, (long long)b->failed.node, a->failed.residual, b->failed.residual,
+          (int)a->failed.newton_iterations, (int)b->failed.newton_iterations);
     ck_assert_msg(a->stable_dt == b->stable_dt && a->total == b->total, "%s, part %d of %d: %g, %g", name, r,
                   parts, a->stable_dt, b->stable_dt);
   }
@@ -550,8 +551,8 @@ START_TEST(transport_is_lost) {
 }
 END_TEST
 
-/* Wherever memory fails on one part once its world is open, the call fails on all, and goes through when it is
- * made again. No part waits, and nothing is lost. */
+/* Wherever memory fails on one part once its world is open, the call fails on all, and goes through when it
+ * is made again. No part waits, and nothing is lost. */
 typedef struct hungry {
   scene is;
   int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
