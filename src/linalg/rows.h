@@ -1,6 +1,6 @@
 /* Rows of a matrix of which several parts of a problem have some each. A part has the rows of its nodes,
- * those that it owns and others beside them; a row is owned by one part, which alone computes with it, and gives
- * its values to those who have it, too.
+ * those that it owns and others beside them; a row is owned by one part, which alone computes with it and
+ * gives its values to those who have it, too.
  *
  * Rows have the numbers that they would have in one part. Sums over them are made in that order, range by
  * range (vectors.h), so that all bits are those of one part: whoever owns a row sends its term to the part

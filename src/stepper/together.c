@@ -149,8 +149,8 @@ static mpm_status count_active(mpm_stepper *s) {
   return status;
 }
 
-/* Returns the status of the first failure of all parts; word: largest numbers of all parts, of which the first
- * says whether there is any. */
+/* Returns the status of the first failure of all parts; word: largest numbers of all parts, the first of
+ * which says whether there is any. */
 static mpm_status settle(mpm_stepper *s, mpm_status status, int64_t exchanges, int64_t count, int64_t *word) {
   const int64_t came_to = s->layout.parts->exchanges;
   int32_t part;
