@@ -19,10 +19,10 @@
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts, which is not checked.
  *
- * Of several parts these are asked for steps of one body, explicit ones, and implicit ones whose linear system
- * the library's conjugate gradients solve: MPM_SOLVER_CG, which MPM_SOLVER_AUTO is here.
- * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric, total
- * Lagrangian grids, friction walls, obstacles, surfaces, heat, adaption, and saving or loading states.
+ * Of several parts these are asked for steps of one body: explicit ones, and implicit ones whose linear
+ * systems the library's conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here.
+ * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric, total Lagrangian grids,
+ * friction walls, obstacles, surfaces, heat, adaption, and saving or loading states.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H
