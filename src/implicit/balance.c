@@ -112,13 +112,27 @@ mpm_status mpmi_balance_prepare(mpmi_balance *balance) {
   return mpmi_nodal_reserve(c, &newton->external, slots, 4);
 }
 
+/* Frees what one of several parts keeps. */
+static void free_shared(mpmi_newton *newton, mpm_context *c) {
+  mpmi_shared_rows *rows = &newton->rows_of;
+  mpmi_shared_stiffness *stiffness = &newton->stiffness_of;
+  mpmi_rows_destroy(newton->shared);
+  MPMI_FREE_ARRAY(c, rows->key, rows->key_capacity);
+  MPMI_FREE_ARRAY(c, rows->place, rows->place_capacity);
+  MPMI_FREE_ARRAY(c, rows->owner, rows->owner_capacity);
+  MPMI_FREE_ARRAY(c, rows->home, rows->home_capacity);
+  MPMI_FREE_ARRAY(c, rows->wanted, rows->wanted_capacity);
+  MPMI_FREE_ARRAY(c, rows->kept, rows->kept_capacity);
+  MPMI_FREE_ARRAY(c, stiffness->record, stiffness->record_capacity);
+  MPMI_FREE_ARRAY(c, stiffness->start, stiffness->start_capacity);
+  MPMI_FREE_ARRAY(c, stiffness->at, stiffness->at_capacity);
+}
+
 void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {
   mpm_context *c = settings->context;
   if (!newton) return;
   mpmi_matrix_free(&newton->matrix);
-  mpmi_rows_destroy(newton->shared);
-  mpmi_shared_rows_free(&newton->rows_of, c);
-  mpmi_shared_stiffness_free(&newton->stiffness_of, c);
+  free_shared(newton, c);
   mpmi_solver_destroy(newton->solver);
   MPMI_FREE_ARRAY(c, newton->active, newton->active_capacity);
   MPMI_FREE_ARRAY(c, newton->active_of, newton->map_capacity);

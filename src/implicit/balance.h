@@ -286,7 +286,6 @@ void mpmi_shared_rows_keep(mpmi_balance *balance);
 /* Lets the parts know whose rows are whose, where they have changed on some part (collective); status: what
  * has happened before. */
 mpm_status mpmi_shared_rows_agree(mpmi_balance *balance, int32_t changed, mpm_status status);
-void mpmi_shared_rows_free(mpmi_shared_rows *rows, mpm_context *context);
 /* Returns 0 for rows of which only the diagonal is kept. */
 static inline int32_t mpmi_is_kept(const mpmi_newton *newton, int64_t row) {
   return !newton->shared || newton->rows_of.kept[row];
@@ -301,7 +300,6 @@ void mpmi_shared_stiffness_record(mpmi_balance *balance, mpmi_batch *b);
 mpm_status mpmi_shared_stiffness_exchange(mpmi_balance *balance);
 /* Adds what has been recorded of a block, an own one or a ghost, to the matrix, by a task. */
 void mpmi_shared_stiffness_add(mpmi_balance *balance, int32_t task, int64_t block);
-void mpmi_shared_stiffness_free(mpmi_shared_stiffness *of, mpm_context *context);
 
 /* ---- unknowns.c -------------------------------------------------------------------------------------- */
 /* Finds active nodes, rows and held components, from the masses and from the external forces, whose fourth

@@ -74,12 +74,3 @@ mpm_status mpmi_shared_rows_agree(mpmi_balance *balance, int32_t changed, mpm_st
   s->is_shared = !status;
   return status;
 }
-
-void mpmi_shared_rows_free(mpmi_shared_rows *s, mpm_context *c) {
-  MPMI_FREE_ARRAY(c, s->key, s->key_capacity);
-  MPMI_FREE_ARRAY(c, s->place, s->place_capacity);
-  MPMI_FREE_ARRAY(c, s->owner, s->owner_capacity);
-  MPMI_FREE_ARRAY(c, s->home, s->home_capacity);
-  MPMI_FREE_ARRAY(c, s->wanted, s->wanted_capacity);
-  MPMI_FREE_ARRAY(c, s->kept, s->kept_capacity);
-}

@@ -217,9 +217,3 @@ mpm_status mpmi_shared_stiffness_exchange(mpmi_balance *balance) {
         status = unpack(balance, &parts->partner[k], &in.message[i]);
   return status;
 }
-
-void mpmi_shared_stiffness_free(mpmi_shared_stiffness *s, mpm_context *c) {
-  MPMI_FREE_ARRAY(c, s->record, s->record_capacity);
-  MPMI_FREE_ARRAY(c, s->start, s->start_capacity);
-  MPMI_FREE_ARRAY(c, s->at, s->at_capacity);
-}

@@ -118,7 +118,8 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
 /* The residual of the recursion drifts away from the true one. Where the true one is not as wanted yet,
  * the iteration starts again from it, as long as this helps. */
 mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user, int64_t limit) {
-  mpm_status status = mpmi_system_together(s, mpmi_system_work(s, precondition ? 4 : 3, 0));
+  /* one number more, so that the vectors exist without rows */
+  mpm_status status = mpmi_system_together(s, mpmi_system_work(s, precondition ? 4 : 3, 1));
   if (status) return status;
   cg c = {.system = s, .precondition = precondition, .user = user, .ranges = mpmi_ranges_of(s->n, s->n)};
   c.inverse = precondition ? NULL : s->solver->diagonal;
