@@ -16,6 +16,8 @@ static const char *not_implicit(const mpm_stepper *s, const char **instead) {
   for (int32_t m = 0; m < s->layout.member_count; ++m) bodies |= s->layout.member[m].body != 0;
   *instead = "MPM_SOLVER_CG";
   if (settings->desc.linear_solver > MPM_SOLVER_CG) return "a linear solver other than conjugate gradients";
+  *instead = "a new stepper";
+  if (!s->layout.parts->names_owners) return "scheme MPM_NEWMARK in a stepper that was made with another one";
   *instead = "MPM_USL, MPM_USF or MPM_MUSL";
   if (mpmi_is_total_lagrangian(s->grid)) return "implicit steps on a total Lagrangian grid";
   if (bodies) return "implicit steps of bodies with nodes of their own";
