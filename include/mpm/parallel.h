@@ -27,8 +27,11 @@
  * Surfaces are made and filled alike on all parts: each part has all markers, and moves them alike.
  * Callbacks of surfaces are asked on every part for all markers and must answer alike.
  *
- * Of several parts these are asked for explicit steps. MPM_E_UNSUPPORTED: implicit schemes,
- * MPM_WALL_FRICTION_NODES, surfaces that prescribe or heat, and adaption.
+ * Of several parts these are asked for explicit steps, and for implicit ones whose linear systems the library's
+ * conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here. MPM_E_UNSUPPORTED: other
+ * linear solvers, linear systems that are not symmetric, MPM_WALL_FRICTION_NODES, surfaces that prescribe or
+ * heat, and adaption; in implicit steps total Lagrangian grids, bodies other than 0, obstacles, friction walls,
+ * surfaces and heat.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H
@@ -73,7 +76,8 @@ typedef mpm_status (*mpm_receive_fn)(void *user, int32_t *count, const mpm_messa
 /** values[count] of all parts into each of them (collective). Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_reduce_fn)(void *user, int32_t op, int64_t count, int64_t *values);
 
-/** all[parts]: value of each part (collective). Only when particles are added. Returns as mpm_send_fn. */
+/** all[parts]: value of each part (collective). Only when particles are added, and when implicit steps number
+ * their unknowns. Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_gather_fn)(void *user, int64_t value, int64_t *all);
 
 /** Ways between the parts. All are called on the calling thread. Once one has failed, every collective call

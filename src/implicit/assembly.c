@@ -165,7 +165,8 @@ mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
   if (!status)
     status =
         sum_internal(balance, mpmi_has_nodal_stress(balance->settings, balance->layout) ? &again : &at_once);
-  return status ? status : mpmi_springs_pull(balance);
+  if (!status) status = mpmi_springs_pull(balance);
+  return mpmi_vote(balance, status, mpmi_force_exchanges(balance));
 }
 
 mpm_status mpmi_start_forces(mpmi_balance *balance) {
@@ -215,8 +216,84 @@ static void add_at_seam(void *user, const mpmi_visit *visit) {
   if (is_at_seam(user, visit->block)) add_block(user, visit);
 }
 
-mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
+static mpm_status add_all(mpmi_balance *balance) {
   static const mpmi_pass pass = STRAIN_PASS(take_stiffness);
+  begin_pass(balance, &pass);
+  const mpm_status status =
+      mpmi_visit_colours(balance->step, mpmi_has_host_law(balance->layout), add_inner, balance);
+  if (status) return status;
+  /* images add to rows of masters in any block: blocks at a seam come one by one */
+  mpmi_visit_in_turn(balance->step, add_at_seam, balance);
+  return mpmi_step_failure(balance->step);
+}
+
+/* ---- with other parts ---------- */
+static void take_record(mpmi_batch *b) {
+  take(b, mpmi_shared_stiffness_record);
+}
+
+static void record_block(void *user, const mpmi_visit *visit) {
+  mpmi_balance *balance = user;
+  mpmi_pass_block(&balance->newton->work[visit->task].batch, visit->block, visit->next);
+}
+
+typedef struct colour_job {
+  mpmi_balance *balance;
+  int32_t colour;
+} colour_job;
+
+/* Adds what is recorded of the blocks of one colour that are at no seam; task k takes its share. */
+static void add_recorded_task(void *data, int64_t k) {
+  const colour_job *job = data;
+  const mpmi_blocks *blocks = &job->balance->layout->blocks;
+  const mpmi_share share = mpmi_share_of(job->balance->settings, blocks->count, k);
+  for (int64_t i = share.begin; i < share.end; ++i)
+    if (mpmi_colour_of(blocks->grid->dim, blocks->coord[i]) == job->colour && !is_at_seam(job->balance, i))
+      mpmi_shared_stiffness_add(job->balance, (int32_t)k, i);
+}
+
+/* Adds the stiffness of own blocks and ghosts at the seam, in the order of one part. */
+static void add_seam_in_turn(mpmi_balance *balance) {
+  const mpmi_parts *parts = balance->layout->parts;
+  for (int64_t i = 0; i < balance->layout->blocks.count; ++i) {
+    if (!is_at_seam(balance, i)) continue;
+    if (parts->is_inner[i])
+      add_block(balance, &(mpmi_visit){0, i, -1});
+    else
+      mpmi_shared_stiffness_add(balance, 0, i);
+  }
+}
+
+/* The particles at the edge come first, whose stiffness the partners get; then all is added in the order of
+ * one part. */
+static mpm_status add_with_others(mpmi_balance *balance, mpm_status status, int64_t exchanges) {
+  static const mpmi_pass record = STRAIN_PASS(take_record), inner = STRAIN_PASS(take_stiffness);
+  const mpmi_parts *parts = balance->layout->parts;
+  const int32_t calls_host = mpmi_has_host_law(balance->layout), tasks = balance->settings->tasks;
+  if (!status) status = mpmi_shared_stiffness_begin(balance);
+  if (!status) begin_pass(balance, &record);
+  if (!status)
+    status = mpmi_visit_marked(balance->step, parts->is_boundary, calls_host, record_block, balance);
+  if (!status) status = mpmi_step_failure(balance->step);
+  if ((status = mpmi_vote(balance, status, exchanges)) || (status = mpmi_shared_stiffness_exchange(balance)))
+    return status;
+  begin_pass(balance, &inner);
+  for (int32_t c = 0; c < MPMI_COLOURS && !status; ++c) {
+    colour_job job = {balance, c};
+    status = mpmi_visit_colour(balance->step, parts->is_inner, c, calls_host, add_inner, balance);
+    if (!status) status = mpmi_run_tasks(balance->settings, 0, tasks, add_recorded_task, &job);
+  }
+  if (!status) add_seam_in_turn(balance);
+  return status ? status : mpmi_step_failure(balance->step);
+}
+
+/* Returns how many exchanges of tiles come before the stiffness is added. */
+static int64_t stiffness_exchanges(const mpmi_balance *balance) {
+  const int64_t strain = balance->settings->desc.locking_remedy != 0;
+  return strain + (mpmi_has_nodal_stress(balance->settings, balance->layout) ? 1 + strain : 0);
+}
+
+mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
   mpmi_newton *newton = balance->newton;
   const int32_t tasks = balance->settings->tasks, remedy = balance->settings->desc.locking_remedy;
   mpm_status status = mpmi_run_tasks(balance->settings, 0, tasks, clear_matrix_task, balance);
@@ -227,15 +304,15 @@ mpm_status mpmi_stiffness(mpmi_balance *balance, const double *u) {
     status = find_pressures(balance);
     if (!status) status = begin_strain(balance, u); /* the sums held pressures meanwhile */
   }
-  begin_pass(balance, &pass);
-  if (!status)
-    status = mpmi_visit_colours(balance->step, mpmi_has_host_law(balance->layout), add_inner, balance);
-  if (status) return status;
-  /* images add to rows of masters in any block: blocks at a seam come one by one */
-  mpmi_visit_in_turn(balance->step, add_at_seam, balance);
-  if ((status = mpmi_step_failure(balance->step))) return status;
-  newton->matrix.symmetric = 1;
-  for (int32_t k = 0; k < tasks; ++k) newton->matrix.symmetric &= newton->work[k].symmetric;
+  if (balance->layout->parts)
+    status = add_with_others(balance, status, stiffness_exchanges(balance));
+  else if (!status)
+    status = add_all(balance);
+  if ((status = mpmi_vote(balance, status, 0))) return status;
+  double unsymmetric = 0.0;
+  for (int32_t k = 0; k < tasks; ++k) unsymmetric += !newton->work[k].symmetric;
+  if ((status = mpmi_largest_of_parts(balance, 1, &unsymmetric))) return status;
+  newton->matrix.symmetric = !(unsymmetric > 0.0);
   if (remedy) mpmi_locking_stiffness_end(balance);
   return mpmi_surface_loads_stiffen(balance);
 }

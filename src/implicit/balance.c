@@ -1,6 +1,7 @@
 /* Memory of implicit steps: what stays with the stepper, and what the tasks of one step assemble with. */
 #include "implicit/balance.h"
 #include "context/arena.h"
+#include "context/transport.h"
 #include "layout/tile.h"
 
 #include <string.h>
@@ -22,6 +23,7 @@ static void lay_out(const mpmi_balance *balance, mpmi_arena *from, mpmi_newton_w
     length = ld > length ? ld : length;
     tangent = bytes > tangent ? bytes : tangent;
   }
+  balance->newton->batch_length = length;
   to->F_inc = take_rows(from, 9, length);
   to->nominal = take_rows(from, 9, length);
   to->stiffness = take_rows(from, 81, length);
@@ -69,6 +71,11 @@ mpm_status mpmi_newton_create(const mpmi_settings *settings, mpmi_newton **out) 
     return MPM_E_NOMEM;
   }
   mpmi_matrix_init(&newton->matrix, c);
+  if (!mpmi_is_whole(c) && mpmi_rows_create(c, settings->grid->dim, &newton->shared)) {
+    mpmi_newton_free(newton, settings);
+    return MPM_E_NOMEM;
+  }
+  newton->matrix.shared = newton->shared;
   *out = newton;
   return MPM_OK;
 }
@@ -105,10 +112,27 @@ mpm_status mpmi_balance_prepare(mpmi_balance *balance) {
   return mpmi_nodal_reserve(c, &newton->external, slots, 4);
 }
 
+/* Frees what one of several parts keeps. */
+static void free_shared(mpmi_newton *newton, mpm_context *c) {
+  mpmi_shared_rows *rows = &newton->rows_of;
+  mpmi_shared_stiffness *stiffness = &newton->stiffness_of;
+  mpmi_rows_destroy(newton->shared);
+  MPMI_FREE_ARRAY(c, rows->key, rows->key_capacity);
+  MPMI_FREE_ARRAY(c, rows->place, rows->place_capacity);
+  MPMI_FREE_ARRAY(c, rows->owner, rows->owner_capacity);
+  MPMI_FREE_ARRAY(c, rows->home, rows->home_capacity);
+  MPMI_FREE_ARRAY(c, rows->wanted, rows->wanted_capacity);
+  MPMI_FREE_ARRAY(c, rows->kept, rows->kept_capacity);
+  MPMI_FREE_ARRAY(c, stiffness->record, stiffness->record_capacity);
+  MPMI_FREE_ARRAY(c, stiffness->start, stiffness->start_capacity);
+  MPMI_FREE_ARRAY(c, stiffness->at, stiffness->at_capacity);
+}
+
 void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings) {
   mpm_context *c = settings->context;
   if (!newton) return;
   mpmi_matrix_free(&newton->matrix);
+  free_shared(newton, c);
   mpmi_solver_destroy(newton->solver);
   MPMI_FREE_ARRAY(c, newton->active, newton->active_capacity);
   MPMI_FREE_ARRAY(c, newton->active_of, newton->map_capacity);

@@ -17,6 +17,9 @@
  *   contact_outcome.c      what contact did in the step
  *   trouble.c              what steps that fail tell
  *   reactions.c            what walls, the host and prescribed particles exert
+ *   vote.c                 several parts: failures, sums and maxima of all of them
+ *   shared_rows.c          whose rows are whose
+ *   shared_stiffness.c     the stiffness of particles of other parts
  *   balance.c              memory
  *
  * Vectors have matrix.rows * dim entries, one row per node that moves by itself; what happens at its periodic
@@ -103,8 +106,29 @@ typedef struct mpmi_newton_work {
   int32_t symmetric;
 } mpmi_newton_work;
 
+/* What one of several parts knows of its rows. */
+typedef struct mpmi_shared_rows {
+  uint64_t *key;                 /* [rows] of the block of the node */
+  int32_t *place, *owner, *home; /* [rows] of the node in it; the part that owns it, that numbers it */
+  uint8_t *wanted, *kept;        /* [rows] 1: its values count here; it is to be complete */
+  int64_t key_capacity, place_capacity, owner_capacity, home_capacity, wanted_capacity, kept_capacity;
+  int32_t is_shared; /* all parts know whose rows are whose, as they are now */
+} mpmi_shared_rows;
+
+/* The stiffness of the particles of blocks that parts share, as it is sent (shared_stiffness.c). */
+typedef struct mpmi_shared_stiffness {
+  double *record;    /* of own blocks at the edge of the part */
+  int64_t *start;    /* [boundary + 1] where each begins */
+  const double **at; /* [blocks] where the record of a block is, own or come, or NULL */
+  int64_t record_capacity, start_capacity, at_capacity;
+} mpmi_shared_stiffness;
+
 typedef struct mpmi_newton {
   mpmi_matrix matrix;
+  mpmi_rows *shared; /* NULL: there is one part */
+  mpmi_shared_rows rows_of;
+  mpmi_shared_stiffness stiffness_of;
+  int64_t batch_length; /* of the longest batch */
   mpmi_solver *solver;
   int64_t active_count, active_capacity;
   mpmi_active_node *active;
@@ -240,6 +264,43 @@ void mpmi_newton_free(mpmi_newton *newton, const mpmi_settings *settings); /* NU
 /* Makes room for what does not depend on the unknowns of a step, and forgets the step before. */
 mpm_status mpmi_balance_prepare(mpmi_balance *balance);
 
+/* ---- vote.c ------------------------------------------------------------------------------------------ */
+/* With several parts: all have made so many exchanges of tiles since the last vote, or have failed; all
+ * return the status of the first failure. With one: returns the status. */
+mpm_status mpmi_vote(const mpmi_balance *balance, mpm_status status, int64_t exchanges);
+/* Returns how many exchanges internal forces take. */
+int64_t mpmi_force_exchanges(const mpmi_balance *balance);
+/* Makes numbers that are not below 0, at most four, the largest of all parts. */
+mpm_status mpmi_largest_of_parts(const mpmi_balance *balance, int32_t count, double *values);
+/* Return the sum and the largest of the entries of a vector, over the rows of all parts; the sum is exact, so
+ * that its bits do not depend on the parts. Not a number where the other parts are lost, which the next vote
+ * tells. */
+double mpmi_sum_rows(const mpmi_balance *balance, const double *term);
+double mpmi_largest_in_rows(const mpmi_balance *balance, const double *term);
+
+/* ---- shared_rows.c ----------------------------------------------------------------------------------- */
+/* These do nothing with one part. Finds whose the numbered rows are. */
+mpm_status mpmi_shared_rows_find(mpmi_balance *balance, int64_t rows);
+/* Finds which are to be complete; newton->place still has the rows around each node. */
+void mpmi_shared_rows_keep(mpmi_balance *balance);
+/* Lets the parts know whose rows are whose, where they have changed on some part (collective); status: what
+ * has happened before. */
+mpm_status mpmi_shared_rows_agree(mpmi_balance *balance, int32_t changed, mpm_status status);
+/* Returns 0 for rows of which only the diagonal is kept. */
+static inline int32_t mpmi_is_kept(const mpmi_newton *newton, int64_t row) {
+  return !newton->shared || newton->rows_of.kept[row];
+}
+
+/* ---- shared_stiffness.c ------------------------------------------------------------------------------ */
+/* Makes room for what boundary blocks have to send, and empties it. */
+mpm_status mpmi_shared_stiffness_begin(mpmi_balance *balance);
+/* Records the stiffness of a batch in such a block. */
+void mpmi_shared_stiffness_record(mpmi_balance *balance, mpmi_batch *b);
+/* Sends the records to the partners, and takes theirs (collective). */
+mpm_status mpmi_shared_stiffness_exchange(mpmi_balance *balance);
+/* Adds what has been recorded of a block, an own one or a ghost, to the matrix, by a task. */
+void mpmi_shared_stiffness_add(mpmi_balance *balance, int32_t task, int64_t block);
+
 /* ---- unknowns.c -------------------------------------------------------------------------------------- */
 /* Finds active nodes, rows and held components, from the masses and from the external forces, whose fourth
  * value is > 0 where a node has stiffness. */
@@ -275,7 +336,9 @@ void mpmi_tile_of_unknowns(const mpmi_balance *balance, int64_t block, int32_t *
 void mpmi_keep_whole_F(const mpmi_balance *balance, const mpmi_batch *b);
 /* Adds the internal forces of a batch to the tile of its task. */
 void mpmi_add_forces(mpmi_balance *balance, mpmi_batch *b);
-/* Adds the stiffness of a batch to the matrix. */
+/* Puts the stiffness of a batch into the memory of its task; 0: it has none, or the law fails. */
+int32_t mpmi_find_stiffness(mpmi_balance *balance, mpmi_batch *b);
+/* Does so and adds it to the matrix. */
 void mpmi_add_stiffness(mpmi_balance *balance, mpmi_batch *b);
 
 /* ---- locking_stiffness.c ----------------------------------------------------------------------------- */
@@ -300,6 +363,25 @@ typedef struct mpmi_locking_particle {
   double hoop; /* of a ring 1 / r */
   int32_t paired;
 } mpmi_locking_particle;
+/* Returns that of the particle q of a batch, whose stiffness has been found. */
+mpmi_locking_particle mpmi_locking_particle_of(const mpmi_balance *balance, const mpmi_newton_work *work,
+                                               const mpmi_batch *b, int64_t q);
+/* Particles whose stiffness is in the memory of a task, wherever they come from: points and ids at slot 0,
+ * stiffness with leading dimension ld from slot `begin` on; who knows what each gives to its cell. */
+typedef struct mpmi_stiff_particles mpmi_stiff_particles;
+struct mpmi_stiff_particles {
+  const mpmi_axis *axis;
+  mpmi_points points;
+  const int64_t *id; /* < 0: none */
+  int64_t begin, n, ld;
+  mpmi_locking_particle (*in_cell)(const mpmi_stiff_particles *of, const mpmi_balance *balance,
+                                   const mpmi_newton_work *work, int64_t q);
+  const mpmi_batch *batch; /* or */
+  const double *record;
+  int64_t record_ld;
+};
+/* Adds the stiffness of particles to the matrix, and what they give to their cells. */
+void mpmi_add_stencils(mpmi_balance *balance, mpmi_newton_work *work, const mpmi_stiff_particles *of);
 /* Adds particle p of a chunk to the sums of the cell whose lower corner is at this place of the tile. */
 void mpmi_locking_stiffness_add(mpmi_balance *balance, const mpmi_newton_work *work, const mpmi_weights *W,
                                 int64_t p, int32_t cell_place, const mpmi_locking_particle *of);

@@ -4,7 +4,6 @@
 #include "implicit/surface_springs.h"
 #include "boundary/boundary.h"
 #include "boundary/prescribed.h"
-#include "context/reduce.h"
 #include "stages/stages.h"
 
 #include <string.h>
@@ -44,10 +43,12 @@ static mpm_status find_nodes(mpmi_balance *balance, double *clock) {
   const int64_t slots = mpmi_slots(balance->layout);
   mpm_status status = project(balance, MPMI_PROJECT_STRAIN, clock);
   if (status) return status;
-  memset(balance->nodes->solved.at, 0, (size_t)(slots * balance->nodes->solved.values) * sizeof(double));
+  if (slots)
+    memset(balance->nodes->solved.at, 0, (size_t)(slots * balance->nodes->solved.values) * sizeof(double));
   for (int64_t i = 0; i < slots; ++i)
     *mpmi_mass(&balance->nodes->solved, i) = *mpmi_mass(&balance->nodes->projected, i);
-  balance->step->info.active_nodes = mpmi_count_active(balance->layout, &balance->nodes->solved);
+  balance->step->info.active_nodes = mpmi_count_owned(balance->layout, &balance->nodes->solved);
+  if (balance->layout->parts) balance->layout->parts->has_counted = 1;
   status = mpmi_boundary_hold(balance->step, balance->nodes);
   mpmi_lap(balance->step, MPMI_TIME_GRID, clock);
   return status;
@@ -160,12 +161,15 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
       unknown ||
       (mpmi_is_dynamic(balance->settings) &&
        (balance->nodes->contact.site_count > 0 || mpmi_surfaces_prescribe(&balance->settings->surfaces)));
+  const int64_t to_unknowns = 2 + balance->nodes->prescription.any, /* exchanges */
+      to_end = (unknown ? mpmi_force_exchanges(balance) : 0) + mpmi_is_dynamic(balance->settings) + at_start;
   mpm_status status = mpmi_prescribed_stage(balance->step);
   if (!status) status = mpmi_surfaces_aim(balance->step);
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
-  if (status || (status = find_nodes(balance, clock)) ||
-      (status = find_external(balance, at_start ? balance->step->t : balance->step->t + dt, clock)) ||
-      (status = mpmi_unknowns_find(balance)) || (status = mpmi_surface_loads_find(balance)))
+  if (!status) status = find_nodes(balance, clock);
+  if (!status) status = find_external(balance, at_start ? balance->step->t : balance->step->t + dt, clock);
+  if ((status = mpmi_vote(balance, status, to_unknowns)) || (status = mpmi_unknowns_find(balance)) ||
+      (status = mpmi_surface_loads_find(balance)))
     return status;
   fold_means(balance, newton->vector[MPMI_V0]);
   status = mpmi_active_set_find(balance);
@@ -174,9 +178,9 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   if (status) return status;
   memset(newton->vector[MPMI_A0], 0,
          (size_t)(newton->matrix.rows * balance->settings->grid->dim) * sizeof(double));
-  if (mpmi_is_dynamic(balance->settings) && (status = prepare_accelerations(balance, unknown, clock)))
-    return status;
-  if (at_start && (status = find_external(balance, balance->step->t + dt, clock))) return status;
+  if (mpmi_is_dynamic(balance->settings)) status = prepare_accelerations(balance, unknown, clock);
+  if (!status && at_start) status = find_external(balance, balance->step->t + dt, clock);
+  if ((status = mpmi_vote(balance, status, to_end))) return status;
   mpmi_unknowns_fold(balance, &newton->external, newton->vector[MPMI_EXTERNAL]);
   return MPM_OK;
 }
@@ -227,15 +231,14 @@ static void set_nodes(mpmi_balance *balance) {
 static void sum_damping(mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
-  double *term = newton->vector[MPMI_TERMS];
   if (!(balance->settings->desc.mass_damping > 0.0)) return;
   for (int64_t at = 0; at < newton->matrix.rows * dim; ++at) {
     const double mean = 0.5 * (newton->vector[MPMI_V0][at] + mpmi_newmark_velocity(balance, at));
-    term[at] =
-        newton->mass[at / dim] * mpmi_damping_acceleration(balance, at, mean) * newton->vector[MPMI_U][at];
+    if (mpmi_is_own_row(&newton->matrix, at / dim))
+      mpmi_exact_add(&balance->step->work->tally.sum[MPMI_TALLY_DAMPING],
+                     newton->mass[at / dim] * mpmi_damping_acceleration(balance, at, mean) *
+                         newton->vector[MPMI_U][at]);
   }
-  balance->step->info.damping_dissipation =
-      mpmi_reduce(MPMI_REDUCE_SUM, 0.0, term, 1, NULL, newton->matrix.rows * dim);
 }
 
 /* Lets the nodes show the velocity at the end of the step. */
@@ -275,10 +278,16 @@ static mpm_status solve(mpmi_balance *balance, double *clock) {
   return status;
 }
 
+/* Returns 1 where no part has particles. */
+static int32_t has_nothing(const mpmi_layout *layout) {
+  return layout->parts ? layout->parts->is_empty : layout->blocks.count == 0;
+}
+
 mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   double clock = mpmi_seconds();
   mpm_status status = mpmi_balance_prepare(balance);
-  if (!status && !balance->layout->blocks.count) return MPM_OK; /* no particles */
+  if (balance->layout->parts) status = mpmi_vote(balance, status, 0);
+  if (!status && has_nothing(balance->layout)) return MPM_OK;
   if (!status) status = mpmi_node_places_stage(balance->step, balance->nodes);
   if (!status) status = particles_to_grid(balance, &clock);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);

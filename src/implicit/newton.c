@@ -7,7 +7,6 @@
 #include "implicit/active_set.h"
 #include "implicit/extension.h"
 #include "implicit/trouble.h"
-#include "context/reduce.h"
 
 #include <float.h>
 #include <math.h>
@@ -19,7 +18,7 @@ enum { MOST_HALVINGS = 12, RESIDUAL_HALVINGS = 4 };
 typedef struct iteration {
   mpmi_balance *balance;
   mpmi_newton *newton;
-  int64_t n;            /* rows * dim */
+  int64_t n, all;       /* rows * dim, of this part and of all */
   double norm, scale;   /* norm of the residual, of free components; scale from all kinds of forces */
   double stiffness;     /* largest diagonal entry, without inertia */
   double inertia;       /* norm of the terms of M a before they cancel: its rounding grows with them */
@@ -27,9 +26,9 @@ typedef struct iteration {
   double du_largest, energy_first;
 } iteration;
 
-/* Returns the sum, or the largest, of all entries of MPMI_TERMS. */
-static double reduced(const iteration *it, int32_t operation) {
-  return mpmi_reduce(operation, 0.0, it->newton->vector[MPMI_TERMS], 1, NULL, it->n);
+/* Returns the sum of all entries of MPMI_TERMS. */
+static double sum_of(const iteration *it) {
+  return mpmi_sum_rows(it->balance, it->newton->vector[MPMI_TERMS]);
 }
 
 /* Returns the dot product of the free components alone, or of all. */
@@ -37,7 +36,7 @@ static double dot_of(const iteration *it, const double *a, const double *b, int3
   const uint8_t *held = it->newton->matrix.held;
   double *term = it->newton->vector[MPMI_TERMS];
   for (int64_t i = 0; i < it->n; ++i) term[i] = free_only && held[i] ? 0.0 : a[i] * b[i];
-  return reduced(it, MPMI_REDUCE_SUM);
+  return sum_of(it);
 }
 
 static double norm_of(const iteration *it, const double *v, int32_t free_only) {
@@ -49,7 +48,7 @@ static double norm_of(const iteration *it, const double *v, int32_t free_only) {
 static double length_of(const iteration *it, const double *du) {
   double *term = it->newton->vector[MPMI_TERMS];
   for (int64_t i = 0; i < it->n; ++i) term[i] = it->newton->vector[MPMI_DIAGONAL][i] * du[i] * du[i];
-  return sqrt(reduced(it, MPMI_REDUCE_SUM));
+  return sqrt(sum_of(it));
 }
 
 /* Computes the residual of the internal forces as they are; returns the norm of the inertia. */
@@ -66,7 +65,7 @@ static double find_forces(iteration *it) {
     term[i] = Ma * Ma;
   }
   mpmi_condense_forces(balance, residual);
-  return sqrt(reduced(it, MPMI_REDUCE_SUM));
+  return sqrt(sum_of(it));
 }
 
 /* Returns the norm of the terms of M a before they cancel: its rounding grows with them. */
@@ -81,7 +80,7 @@ static double inertia_terms(const iteration *it) {
     const double term = newton->mass[i / dim] * reach / (beta * dt * dt);
     newton->vector[MPMI_TERMS][i] = term * term;
   }
-  return sqrt(reduced(it, MPMI_REDUCE_SUM));
+  return sqrt(sum_of(it));
 }
 
 /* Computes residual and scale; reactions are in the scale, as internal forces of held components. */
@@ -102,7 +101,7 @@ static double relative(const iteration *it) {
  * edge, and the rounding of the inertia terms. */
 static double noise(const iteration *it) {
   return 16.0 * DBL_EPSILON *
-         (it->stiffness * it->balance->settings->grid->h_min * sqrt((double)it->n) + it->inertia);
+         (it->stiffness * it->balance->settings->grid->h_min * sqrt((double)it->all) + it->inertia);
 }
 
 static void note(iteration *it) {
@@ -129,10 +128,10 @@ static void add_inertia(iteration *it) {
     *diagonal += by_mass * newton->mass[i / dim];
     size[i] = fabs(*diagonal);
   }
-  it->stiffness = reduced(it, MPMI_REDUCE_MAX);
+  it->stiffness = mpmi_largest_in_rows(balance, term);
   for (int64_t i = 0; i < it->n; ++i) term[i] = by_mass * newton->mass[i / dim];
-  const double inertia = reduced(it, MPMI_REDUCE_SUM);
-  const double total = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, size, 1, NULL, it->n);
+  const double inertia = sum_of(it);
+  const double total = mpmi_sum_rows(balance, size);
   it->inertia_share = total > 0.0 ? inertia / total : 0.0;
 }
 
@@ -157,10 +156,11 @@ static mpm_status find_rhs(iteration *it, int32_t *moves_held) {
     *moves_held |= du[i] != 0.0;
   }
   memset(rhs, 0, (size_t)it->n * sizeof *rhs);
-  if (*moves_held) {
-    const mpm_status status = mpmi_matrix_apply(&newton->matrix, du, rhs);
-    if (status) return status;
-  }
+  double any = *moves_held;
+  mpm_status status = mpmi_largest_of_parts(it->balance, 1, &any);
+  *moves_held = any > 0.0;
+  if (!status && *moves_held) status = mpmi_matrix_apply(&newton->matrix, du, rhs);
+  if (status) return status;
   for (int64_t i = 0; i < it->n; ++i) rhs[i] = held[i] ? 0.0 : -newton->vector[MPMI_RESIDUAL][i] - rhs[i];
   mpmi_active_set_load(it->balance, rhs);
   return MPM_OK;
@@ -171,26 +171,26 @@ static mpm_status solve(iteration *it) {
   mpmi_newton *newton = it->newton;
   const double *du_held = newton->vector[MPMI_DU];
   double *x = newton->vector[MPMI_START];
-  mpm_status status = mpmi_matrix_eliminate(&newton->matrix);
+  mpm_status status = mpmi_vote(balance, mpmi_matrix_eliminate(&newton->matrix), 0);
   if (status) return status;
   memset(x, 0, (size_t)it->n * sizeof *x);
   /* as many digits as keep the iteration quadratic, and none that the next one throws away; what contact
    * closes has stiffness, and its part of the right-hand side takes some of them */
   const double kept = newton->constraint_count ? 1e-3 : 1.0;
   const double wanted = fmax(1e-10, kept * fmin(1e-3, 0.1 * relative(it)));
-  const mpmi_solve_job job = {.matrix = &newton->matrix,
-                              .rhs = newton->vector[MPMI_RHS],
-                              .x = x,
-                              .choice = balance->settings->desc.linear_solver,
-                              .tolerance = balance->settings->desc.linear_tolerance > 0.0
-                                               ? balance->settings->desc.linear_tolerance
-                                               : wanted,
-                              .max_iterations = balance->settings->desc.linear_max_iterations,
-                              .host = balance->settings->solver,
-                              .host_user = balance->settings->solver_user,
-                              .expects_positive = newton->matrix.symmetric,
-                              .inertia = it->inertia_share,
-                              .several_fields = newton->couples_bodies};
+  const mpmi_solve_job job = {
+      .matrix = &newton->matrix,
+      .rhs = newton->vector[MPMI_RHS],
+      .x = x,
+      .choice = newton->shared ? MPM_SOLVER_CG : balance->settings->desc.linear_solver,
+      .tolerance =
+          balance->settings->desc.linear_tolerance > 0.0 ? balance->settings->desc.linear_tolerance : wanted,
+      .max_iterations = balance->settings->desc.linear_max_iterations,
+      .host = balance->settings->solver,
+      .host_user = balance->settings->solver_user,
+      .expects_positive = newton->matrix.symmetric,
+      .inertia = it->inertia_share,
+      .several_fields = newton->couples_bodies};
   mpmi_solve_report report = {.node = -1};
   status = mpmi_solve(newton->solver, &job, &report);
   balance->factor_seconds += report.factor_seconds;
@@ -202,10 +202,11 @@ static mpm_status solve(iteration *it) {
     balance->step->failure.callback_status = report.callback_status;
     return mpmi_tell_unsolved(balance, status, report.node);
   }
+  if (newton->shared && (status = mpmi_rows_complete(newton->shared, x))) return status;
   for (int64_t i = 0; i < it->n; ++i)
     newton->vector[MPMI_DU][i] = mpmi_is_held(newton->matrix.held[i]) ? du_held[i] : x[i];
   mpmi_condense_extend(balance, newton->vector[MPMI_DU]);
-  return MPM_OK;
+  return newton->shared ? mpmi_rows_complete(newton->shared, newton->vector[MPMI_DU]) : MPM_OK;
 }
 
 /* Returns 1 for statuses of a trial that a shorter increment may mend. */
@@ -270,6 +271,12 @@ static void tell(const mpmi_balance *balance) {
   balance->step->info.linear_iterations = balance->linear_iterations;
 }
 
+/* Asks the host whether to go on; of several parts all go on, or none. */
+static mpm_status ask_progress(const mpmi_balance *balance) {
+  const mpm_status status = balance->step->ask_progress(balance->step->stepper);
+  return balance->layout->parts && balance->layout->parts->asks ? mpmi_vote(balance, status, 0) : status;
+}
+
 static mpm_status iterate(iteration *it) {
   mpmi_newton *newton = it->newton;
   int32_t settled = 1;
@@ -290,7 +297,7 @@ static mpm_status iterate(iteration *it) {
     settled = settle_contact(it);
     note(it);
     tell(it->balance);
-    if ((status = it->balance->step->ask_progress(it->balance->step->stepper))) return status;
+    if ((status = ask_progress(it->balance))) return status;
     if (taken == 1.0 && settled && converged(it, length_of(it, newton->vector[MPMI_DU]), energy))
       return MPM_OK;
     it->du_largest = fmax(it->du_largest, taken * length_of(it, newton->vector[MPMI_DU]));
@@ -301,6 +308,7 @@ mpm_status mpmi_newton_solve(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   iteration it = {
       .balance = balance, .newton = newton, .n = newton->matrix.rows * balance->settings->grid->dim};
+  it.all = newton->shared ? newton->shared->all * balance->settings->grid->dim : it.n;
   memset(newton->vector[MPMI_U], 0, (size_t)it.n * sizeof(double));
   mpm_status status = mpmi_internal_forces(balance, newton->vector[MPMI_U]);
   if (status) return status;

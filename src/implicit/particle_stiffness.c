@@ -56,7 +56,7 @@ MPMI_INLINE void add_stencil_in(int32_t dim, mpmi_newton *newton, const mpmi_new
   int32_t active[MPMI_MOST_NODES];
   for (int32_t a = 0; a < stencil->count; ++a) active[a] = work->tile_active[first + stencil->in_tile[a]];
   for (int32_t a = 0; a < stencil->count; ++a) {
-    if (active[a] < 0) continue;
+    if (active[a] < 0 || !mpmi_is_kept(newton, newton->active[active[a]].row)) continue;
     const int32_t *place =
         newton->place + (int64_t)active[a] * newton->offsets + newton->offsets / 2 - stencil->offset[a];
     for (int32_t b = 0; b < stencil->count; ++b)
@@ -81,17 +81,20 @@ static void add_stencil(mpmi_balance *balance, mpmi_newton_work *work, int32_t f
 }
 
 /* Returns 1 / r of a ring, and 0 in a plane. */
-static double hoop_of(const mpm_particles *set, int64_t slot) {
-  const double radius = mpmi_places(set, 0)[slot];
-  return mpmi_is_axisymmetric(set->grid) && radius > 0.0 ? 1.0 / radius : 0.0;
+static double hoop_of(const mpm_grid *grid, const mpmi_points *points, int64_t slot) {
+  const double radius = points->x[0][slot];
+  return mpmi_is_axisymmetric(grid) && radius > 0.0 ? 1.0 / radius : 0.0;
 }
 
-/* Adds one particle's share of what couples its cell. */
-static void add_to_cell(mpmi_balance *balance, const mpmi_newton_work *work, const mpm_particles *set,
-                        const mpmi_weights *W, int64_t p, int32_t cell, int64_t slot, int64_t q, int64_t ld) {
+mpmi_locking_particle mpmi_locking_particle_of(const mpmi_balance *balance, const mpmi_newton_work *work,
+                                               const mpmi_batch *b, int64_t q) {
+  const mpm_particles *set = b->set;
+  const mpmi_points points = mpmi_points_of(set, 0);
   const int32_t dim = mpmi_strain_dim(set->grid), paired = mpmi_averages_pressure(balance->settings, set);
-  mpmi_locking_particle of = {
-      .volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot], .hoop = hoop_of(set, slot), .paired = paired};
+  const int64_t ld = b->law.ld, slot = b->begin + q;
+  mpmi_locking_particle of = {.volume = mpmi_f64(set, MPMI_VOLUME, 0)[slot],
+                              .hoop = hoop_of(set->grid, &points, slot),
+                              .paired = paired};
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t K = 0; K < dim; ++K) {
       of.inverse[3 * K + i] = work->inverse[(3 * K + i) * ld + q];
@@ -102,31 +105,30 @@ static void add_to_cell(mpmi_balance *balance, const mpmi_newton_work *work, con
       }
     }
   if (paired) of.q = work->weight[q] * work->q[q];
-  mpmi_locking_stiffness_add(balance, work, W, p, cell, &of);
+  return of;
 }
 
-/* Adds the stiffness of a batch to the matrix. Particles with the same stencil follow each other for the most
- * part: their stiffness is added up first. */
-static void add_stencils(mpmi_balance *balance, mpmi_newton_work *work, const mpm_particles *set,
-                         const mpmi_axis *axis, int64_t begin, int64_t n, int64_t ld) {
+/* Particles with the same stencil follow each other for the most part: their stiffness is added up first. */
+void mpmi_add_stencils(mpmi_balance *balance, mpmi_newton_work *work, const mpmi_stiff_particles *of) {
   const mpm_grid *grid = balance->settings->grid;
-  const mpmi_points points = mpmi_points_of(set, 0);
-  const int64_t *id = mpmi_i64(set, MPMI_ID, 0) + begin;
+  const int32_t remedy = balance->settings->desc.locking_remedy;
   mpmi_weights W;
   int32_t first = -1, cell[MPMI_CHUNK];
-  for (int64_t at = 0; at < n; at += MPMI_CHUNK) {
-    balance->settings->kernels->weights[grid->family][grid->dim](axis, MPMI_NEED_GRADIENT, &points,
-                                                                 begin + at, MPMI_CHUNK, &W);
-    if (balance->settings->desc.locking_remedy)
-      mpmi_cell_places(grid, axis, &points, begin + at, MPMI_CHUNK, cell);
+  for (int64_t at = 0; at < of->n; at += MPMI_CHUNK) {
+    balance->settings->kernels->weights[grid->family][grid->dim](of->axis, MPMI_NEED_GRADIENT, &of->points,
+                                                                 of->begin + at, MPMI_CHUNK, &W);
+    if (remedy) mpmi_cell_places(grid, of->axis, &of->points, of->begin + at, MPMI_CHUNK, cell);
     for (int64_t p = 0; p < MPMI_CHUNK; ++p) {
-      if (id[at + p] < 0) continue;
-      if (balance->settings->desc.locking_remedy)
-        add_to_cell(balance, work, set, &W, p, cell[p], begin + at + p, at + p, ld);
+      if (of->id[of->begin + at + p] < 0) continue;
+      if (remedy) {
+        const mpmi_locking_particle in_cell = of->in_cell(of, balance, work, at + p);
+        mpmi_locking_stiffness_add(balance, work, &W, p, cell[p], &in_cell);
+      }
       if (first >= 0 && W.node[p] != first) add_stencil(balance, work, first);
       first = W.node[p];
-      balance->settings->kernels->stiffness[grid->dim](grid->width, &W, p, work->stiffness + at + p, ld,
-                                                       hoop_of(set, begin + at + p), work->K);
+      balance->settings->kernels->stiffness[grid->dim](grid->width, &W, p, work->stiffness + at + p, of->ld,
+                                                       hoop_of(grid, &of->points, of->begin + at + p),
+                                                       work->K);
     }
   }
   if (first >= 0) add_stencil(balance, work, first);
@@ -245,11 +247,29 @@ void mpmi_add_forces(mpmi_balance *balance, mpmi_batch *b) {
   balance->settings->kernels->force_scatter[grid->dim][grid->width](&scatter, b->begin, b->n);
 }
 
-void mpmi_add_stiffness(mpmi_balance *balance, mpmi_batch *b) {
+int32_t mpmi_find_stiffness(mpmi_balance *balance, mpmi_batch *b) {
   mpmi_newton_work *work = &balance->newton->work[b->task];
-  if (is_rigid(b) || !find_tangent(work, b)) return;
+  if (is_rigid(b) || !find_tangent(work, b)) return 0;
   find_weights(balance, b->set, b->begin, b->n, work->weight);
   if (balance->settings->desc.locking_remedy) add_local_part(work, b);
   push_forward(balance, work, b, work->tangent);
-  add_stencils(balance, work, b->set, b->gather.axis, b->begin, b->n, b->law.ld);
+  return 1;
+}
+
+static mpmi_locking_particle in_cell(const mpmi_stiff_particles *of, const mpmi_balance *balance,
+                                     const mpmi_newton_work *work, int64_t q) {
+  return mpmi_locking_particle_of(balance, work, of->batch, q);
+}
+
+void mpmi_add_stiffness(mpmi_balance *balance, mpmi_batch *b) {
+  if (!mpmi_find_stiffness(balance, b)) return;
+  mpmi_add_stencils(balance, &balance->newton->work[b->task],
+                    &(mpmi_stiff_particles){.axis = b->gather.axis,
+                                            .points = mpmi_points_of(b->set, 0),
+                                            .id = mpmi_i64(b->set, MPMI_ID, 0),
+                                            .begin = b->begin,
+                                            .n = b->n,
+                                            .ld = b->law.ld,
+                                            .in_cell = in_cell,
+                                            .batch = b});
 }

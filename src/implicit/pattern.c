@@ -103,6 +103,10 @@ static int32_t add_columns(const mpmi_balance *balance, int64_t row, int32_t *ou
 /* Lists the distinct columns of a row, ascending, and returns how many. */
 static int32_t columns_of(const mpmi_balance *balance, int64_t row, int32_t *out) {
   const mpmi_newton *newton = balance->newton;
+  if (!mpmi_is_kept(newton, row)) {
+    out[0] = (int32_t)row;
+    return 1;
+  }
   int32_t count = add_columns(balance, row, out, 0);
   for (int64_t i = newton->led_start[row]; i < newton->led_start[row + 1]; ++i)
     count = add_columns(balance, newton->led[i], out, count);
@@ -188,9 +192,10 @@ mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
   mpm_status status = MPMI_RESERVE_MORE(balance->settings->context, newton->columns, newton->columns_capacity,
                                         job.most * balance->settings->tasks);
   if (status) return status;
-  if ((status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, neighbours_task, &job)) ||
-      (status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job)))
-    return status;
+  status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, neighbours_task, &job);
+  if (!status) mpmi_shared_rows_keep(balance);
+  if (!status) status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job);
+  if (status) return status;
   int64_t entries = 0;
   for (int64_t r = 0; r < rows; ++r) entries += newton->diagonal[r];
   if (entries > INT32_MAX)

@@ -67,6 +67,8 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const double dt = balance->step->dt, contact = contact_on(balance, row, c),
                beyond = 1.0 - mpmi_contact_share(balance->settings),
                given = contact + extension_on(balance, row, c);
+  mpmi_whole_sum *tally = balance->step->work->tally.sum;
+  const int32_t own = mpmi_is_own_row(&newton->matrix, row); /* one part books what happens there */
   double total = 0.0, along = 0.0, on_nodes = 0.0;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m) {
     const mpmi_active_node *node = &newton->active[newton->members[m]];
@@ -84,21 +86,22 @@ static void record_row(mpmi_balance *balance, int64_t row, int32_t c) {
   const int64_t slot = newton->active[newton->members[newton->members_start[row]]].slot;
   const int32_t tie = constraints->tie_of[slot];
   const int64_t master = tie < 0 ? slot : constraints->tie[tie].master;
-  if (mpmi_held_by(balance->nodes, master, c))
-    balance->step->host_work += along * balance->nodes->held_value[master][c];
-  else if (tie < 0) /* nothing holds it: this is what the iterations have left */
+  if (mpmi_held_by(balance->nodes, master, c)) {
+    if (own) mpmi_exact_add(&tally[MPMI_TALLY_WORK], along * balance->nodes->held_value[master][c]);
+  } else if (tie < 0) { /* nothing holds it: this is what the iterations have left */
     balance->nodes->impulse[slot].given[c] = balance->nodes->impulse[slot].change[c] = 0.0;
-  else if (constraints->tie[tie].face[c] >= 0) {
+  } else if (constraints->tie[tie].face[c] >= 0) {
     /* a mirror image undoes a part of what its master is given: the wall has that */
     const double undone = dt * (on_nodes - given);
     balance->nodes->impulse[master].given[c] += undone;
-    balance->step->impulse_by_face[constraints->tie[tie].face[c]][c] += total + undone;
+    if (own) mpmi_exact_add(&tally[MPMI_TALLY_FACES + 3 * constraints->tie[tie].face[c] + c], total + undone);
   }
 }
 
 mpm_status mpmi_record_reactions(mpmi_balance *balance) {
   if (!balance->nodes->has_impulses) return MPM_OK;
-  memset(balance->nodes->impulse, 0, (size_t)mpmi_slots(balance->layout) * sizeof *balance->nodes->impulse);
+  const int64_t slots = mpmi_slots(balance->layout);
+  if (slots) memset(balance->nodes->impulse, 0, (size_t)slots * sizeof *balance->nodes->impulse);
   for (int64_t r = 0; r < balance->newton->matrix.rows; ++r)
     for (int32_t c = 0; c < balance->settings->grid->dim; ++c) record_row(balance, r, c);
   record_friction_walls(balance);

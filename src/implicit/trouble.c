@@ -1,17 +1,38 @@
 /* What a step that Newton's method does not bring to an end tells: where the balance is worst, which particle
  * is beside, and what helps in such a case. */
 #include "implicit/trouble.h"
+#include "context/transport.h"
 #include "stages/batch.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Falling by more than this, over the last iterations, the residual only needs more of them; falling each
  * time, but by less, it lacks the right tangent. */
 static const double soon = 0.2, hardly = 0.9;
 enum { LAST = 3 };
 
+/* Of several parts all take the particle that is nearest, of equals the first. */
+static mpm_status take_nearest(mpmi_balance *balance, double nearest) {
+  mpmi_failure *failure = &balance->step->failure;
+  int64_t key[] = {-mpmi_ordered_bits(nearest), -(int64_t)failure->set, -failure->particle};
+  enum { KEYS = sizeof key / sizeof key[0] };
+  int32_t is_best = 1;
+  if (!balance->layout->parts) return MPM_OK;
+  for (int32_t i = 0; i < KEYS; ++i) {
+    int64_t best = is_best ? key[i] : INT64_MIN;
+    const mpm_status status = mpmi_reduce_parts(balance->settings->context, MPM_REDUCE_MAX, 1, &best);
+    if (status) return status;
+    is_best &= best == key[i];
+    key[i] = best;
+  }
+  failure->set = (int32_t)-key[1];
+  failure->particle = -key[2];
+  return MPM_OK;
+}
+
 /* Notes the particle that is nearest to a node, the first of equals. */
-static void find_particle(mpmi_balance *balance, const double *node) {
+static mpm_status find_particle(mpmi_balance *balance, const double *node) {
   const mpm_grid *grid = balance->settings->grid;
   mpmi_failure *failure = &balance->step->failure;
   double nearest = HUGE_VAL;
@@ -34,24 +55,55 @@ static void find_particle(mpmi_balance *balance, const double *node) {
       failure->particle = id[slot];
     }
   }
+  return take_nearest(balance, nearest);
 }
 
-/* Returns the row with the largest share of the residual of unknowns, or -1. */
-static int64_t worst_row(const mpmi_newton *newton, double *share) {
+/* A node behind a row; of several parts it is known to all, whoever has the row. */
+typedef struct row_node {
+  int64_t number;
+  double position[3];
+} row_node;
+
+/* Finds the node of a row of this part, or with row -1 that of another one's; *any: somebody has one. */
+static mpm_status find_node(const mpmi_balance *balance, int64_t row, row_node *to, int32_t *any) {
+  const mpmi_matrix *A = &balance->newton->matrix;
+  int64_t word[5] = {row >= 0, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN};
+  if (row >= 0) {
+    word[1] = A->number[row];
+    memcpy(&word[2], A->position + 3 * row, sizeof to->position);
+  }
+  const mpm_status status = mpmi_reduce_parts(balance->settings->context, MPM_REDUCE_MAX, 5, word);
+  *any = word[0] > 0;
+  to->number = word[1];
+  memcpy(to->position, &word[2], sizeof to->position);
+  return status;
+}
+
+/* Finds the row with the largest share of the residual of unknowns, or -1: none, or one of another part. */
+static mpm_status worst_row(const mpmi_balance *balance, int64_t *worst, double *share) {
+  const mpmi_newton *newton = balance->newton;
   const int32_t dim = newton->matrix.block;
-  double most = 0.0, all = 0.0;
-  int64_t worst = -1;
+  double most = 0.0, *term = newton->vector[MPMI_TERMS];
+  int32_t part = 0;
+  *worst = -1;
   for (int64_t r = 0; r < newton->matrix.rows; ++r) {
     double square = 0.0;
-    for (int32_t c = 0; c < dim; ++c)
-      if (!newton->matrix.held[r * dim + c]) square += pow(newton->vector[MPMI_RESIDUAL][r * dim + c], 2);
-    all += square;
-    if (!(square > most)) continue;
+    for (int32_t c = 0; c < dim; ++c) {
+      const double residual = newton->vector[MPMI_RESIDUAL][r * dim + c];
+      term[r * dim + c] = newton->matrix.held[r * dim + c] ? 0.0 : residual * residual;
+      square += term[r * dim + c];
+    }
+    if (!(square > most) || !mpmi_is_own_row(&newton->matrix, r)) continue;
     most = square;
-    worst = r;
+    *worst = r;
   }
+  const double mine = most, all = mpmi_sum_rows(balance, term);
+  mpm_status status = mpmi_largest_of_parts(balance, 1, &most);
+  if (most > mine) *worst = -1;
+  if (!status && newton->shared) status = mpmi_rows_first(newton->shared, *worst, &part);
+  if (newton->shared && part != balance->settings->context->transport.part) *worst = -1;
   *share = all > 0.0 ? most / all : 0.0;
-  return worst;
+  return status;
 }
 
 const char *mpmi_smaller_steps(const mpmi_balance *balance) {
@@ -78,14 +130,18 @@ static const char *advice(const mpmi_balance *balance, int32_t touches_change) {
 }
 
 mpm_status mpmi_tell_not_converged(mpmi_balance *balance, int32_t touches_change) {
-  const mpmi_newton *newton = balance->newton;
   mpmi_failure *failure = &balance->step->failure;
   double share;
-  const int64_t row = worst_row(newton, &share);
-  if (row >= 0) {
-    failure->node = newton->matrix.number[row];
-    find_particle(balance, newton->matrix.position + 3 * row);
+  int64_t row;
+  row_node node;
+  int32_t any;
+  mpm_status status = worst_row(balance, &row, &share);
+  if (!status) status = find_node(balance, row, &node, &any);
+  if (!status && any) {
+    failure->node = node.number;
+    status = find_particle(balance, node.position);
   }
+  if (status) return status;
   return mpmi_fail(
       balance->settings->context, MPM_NOT_CONVERGED,
       "Newton's method has a relative residual of %g after %d iterations in the step from t = %g "
@@ -96,14 +152,18 @@ mpm_status mpmi_tell_not_converged(mpmi_balance *balance, int32_t touches_change
 }
 
 mpm_status mpmi_tell_unsolved(mpmi_balance *balance, mpm_status status, int64_t node) {
-  const mpmi_newton *newton = balance->newton;
+  const mpmi_matrix *A = &balance->newton->matrix;
   const mpmi_failure *failure = &balance->step->failure;
   balance->step->failure.node = node;
-  for (int64_t r = 0; r < newton->matrix.rows && node >= 0; ++r)
-    if (newton->matrix.number[r] == node) {
-      find_particle(balance, newton->matrix.position + 3 * r);
-      break;
-    }
+  if (node >= 0) {
+    int64_t row = 0;
+    row_node of;
+    int32_t any;
+    while (row < A->rows && (A->number[row] != node || !mpmi_is_own_row(A, row))) ++row;
+    mpm_status lost = find_node(balance, row < A->rows ? row : -1, &of, &any);
+    if (!lost && any) lost = find_particle(balance, of.position);
+    if (lost) return lost;
+  }
   if (status != MPM_SINGULAR || failure->particle < 0) return status;
   return mpmi_fail(balance->settings->context, status, "%s, beside particle %lld of set %d%s",
                    mpm_last_error(balance->settings->context), (long long)failure->particle,

@@ -8,18 +8,23 @@
 /* A node is active when it has stiffness, or in a dynamic step inertia; light ones too, because leaving them
  * out would hold them. Amounts below these cuts are rounding of weights that are zero. */
 typedef struct cuts {
-  double stiffness, mass;
+  double stiffness, mass, force;
 } cuts;
-static const double STIFFNESS_ROUNDING = 1e-26, MASS_ROUNDING = 1e-14;
+static const double STIFFNESS_ROUNDING = 1e-26, MASS_ROUNDING = 1e-14, FORCE_ROUNDING = 1e-10;
 
-static cuts find_cuts(const mpmi_balance *balance) {
+static mpm_status find_cuts(const mpmi_balance *balance, cuts *to) {
   const int64_t slots = mpmi_slots(balance->layout);
-  cuts most = {0.0, 0.0};
+  const int32_t dim = balance->settings->grid->dim, dynamic = mpmi_is_dynamic(balance->settings);
+  double most[3] = {0.0, 0.0, 0.0};
   for (int64_t i = 0; i < slots; ++i) {
-    most.stiffness = fmax(most.stiffness, *mpmi_mass(&balance->newton->external, i));
-    most.mass = fmax(most.mass, *mpmi_mass(&balance->nodes->solved, i));
+    most[0] = fmax(most[0], *mpmi_mass(&balance->newton->external, i));
+    most[1] = fmax(most[1], *mpmi_mass(&balance->nodes->solved, i));
+    for (int32_t c = 0; c < dim && !dynamic; ++c)
+      most[2] = fmax(most[2], fabs(mpmi_momentum(&balance->newton->external, i)[c]));
   }
-  return (cuts){STIFFNESS_ROUNDING * most.stiffness, MASS_ROUNDING * most.mass};
+  const mpm_status status = mpmi_largest_of_parts(balance, 3, most);
+  *to = (cuts){STIFFNESS_ROUNDING * most[0], MASS_ROUNDING * most[1], FORCE_ROUNDING * most[2]};
+  return status;
 }
 
 static int32_t is_active(const mpmi_balance *balance, const cuts *cut, int64_t slot) {
@@ -30,14 +35,10 @@ static int32_t is_active(const mpmi_balance *balance, const cuts *cut, int64_t s
 /* Without inertia only stiffness or a held component can carry a force; a force on a node with neither has no
  * balance. Forces up to FORCE_ROUNDING of the largest are what rounding leaves of vanishing weights, and
  * count as none. */
-static const double FORCE_ROUNDING = 1e-10;
-static mpm_status check_carried(mpmi_balance *balance) {
+static mpm_status check_carried(mpmi_balance *balance, const cuts *cut) {
   const mpmi_newton *newton = balance->newton;
   const int64_t slots = mpmi_slots(balance->layout);
   const int32_t dim = balance->settings->grid->dim;
-  double most = 0.0;
-  for (int64_t i = 0; i < slots; ++i)
-    for (int32_t c = 0; c < dim; ++c) most = fmax(most, fabs(mpmi_momentum(&newton->external, i)[c]));
   for (int64_t i = 0; i < slots; ++i)
     for (int32_t c = 0; c < dim && newton->active_of[i] < 0; ++c) {
       const double force = mpmi_momentum(&newton->external, i)[c];
@@ -45,7 +46,7 @@ static mpm_status check_carried(mpmi_balance *balance) {
       const int32_t tie = balance->layout->constraints.tie_of[i];
       const int32_t held = mpmi_held_by(balance->nodes, master, c) ||
                            (tie >= 0 && balance->layout->constraints.tie[tie].zero[c]);
-      if (held || fabs(force) <= FORCE_ROUNDING * most) continue;
+      if (held || fabs(force) <= cut->force) continue;
       balance->step->failure.node = mpmi_blocks_number(&balance->layout->blocks, i);
       return mpmi_fail(
           balance->settings->context, MPM_SINGULAR,
@@ -57,13 +58,12 @@ static mpm_status check_carried(mpmi_balance *balance) {
 }
 
 /* Marks active nodes and the masters that they move with, and counts both. */
-static void mark(mpmi_balance *balance, int64_t *active, int64_t *rows) {
+static void mark(mpmi_balance *balance, const cuts *cut, int64_t *active, int64_t *rows) {
   mpmi_newton *newton = balance->newton;
   const int64_t slots = mpmi_slots(balance->layout);
-  const cuts cut = find_cuts(balance);
   for (int64_t i = 0; i < slots; ++i) newton->active_of[i] = -1;
   for (int64_t i = 0; i < slots; ++i)
-    if (is_active(balance, &cut, i)) newton->active_of[i] = newton->active_of[mpmi_master_of(balance, i)] = 0;
+    if (is_active(balance, cut, i)) newton->active_of[i] = newton->active_of[mpmi_master_of(balance, i)] = 0;
   /* images of what is active are too: a cell may be seen from either side of a seam */
   for (int64_t i = 0; i < slots; ++i)
     if (newton->active_of[i] < 0 && newton->active_of[mpmi_master_of(balance, i)] >= 0)
@@ -174,10 +174,12 @@ static void hold(mpmi_balance *balance) {
   A->pattern_id += changed;
 }
 
-mpm_status mpmi_unknowns_find(mpmi_balance *balance) {
+/* Finds them on this part; tells whether anything is new. */
+static mpm_status find_here(mpmi_balance *balance, const cuts *cut, int32_t *is_new) {
   mpmi_newton *newton = balance->newton;
   int64_t active, rows;
   mpm_status status;
+  *is_new = 0;
   if ((status = MPMI_RESERVE_MORE(balance->settings->context, newton->active_of, newton->map_capacity,
                                   mpmi_slots(balance->layout))))
     return status;
@@ -186,8 +188,8 @@ mpm_status mpmi_unknowns_find(mpmi_balance *balance) {
     offsets *= 2 * mpmi_coupling_span(balance->settings) - 1;
   if (newton->offsets != offsets) newton->version = -1;
   newton->offsets = offsets;
-  mark(balance, &active, &rows);
-  if (!mpmi_is_dynamic(balance->settings) && (status = check_carried(balance))) return status;
+  mark(balance, cut, &active, &rows);
+  if (!mpmi_is_dynamic(balance->settings) && (status = check_carried(balance, cut))) return status;
   if (active > INT32_MAX)
     return mpmi_fail(balance->settings->context, MPM_E_UNSUPPORTED,
                      "%lld nodes are active, more than 2147483647: use an explicit scheme",
@@ -203,13 +205,24 @@ mpm_status mpmi_unknowns_find(mpmi_balance *balance) {
   }
   if ((status = mpmi_extension_find(balance, rows, &extended))) return status;
   if (changed || extended) {
-    if ((status = mpmi_make_pattern(balance, rows))) return status;
+    if ((status = mpmi_shared_rows_find(balance, rows)) || (status = mpmi_make_pattern(balance, rows)))
+      return status;
     place_rows(balance);
     memset(newton->matrix.held, 0, (size_t)(rows * balance->settings->grid->dim));
   }
   newton->version = balance->layout->version;
+  *is_new = changed || extended;
   hold(balance);
   return MPM_OK;
+}
+
+mpm_status mpmi_unknowns_find(mpmi_balance *balance) {
+  cuts cut;
+  int32_t is_new;
+  mpm_status status = find_cuts(balance, &cut);
+  if (status) return status;
+  status = find_here(balance, &cut, &is_new);
+  return mpmi_shared_rows_agree(balance, is_new, status);
 }
 
 void mpmi_unknowns_fold(const mpmi_balance *balance, const mpmi_nodal *forces, double *vector) {

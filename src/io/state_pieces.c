@@ -228,6 +228,7 @@ static mpm_status lay_out(mpmi_state_loading *l) {
     status = mpmi_agree(c, mpmi_parts_create(c, s->grid, &l->parts));
     if (status) return status;
     l->parts->margin = present->margin;
+    l->parts->names_owners = present->names_owners;
     l->parts->meets_markers = present->meets_markers;
     status = mpmi_state_share(l);
     for (int32_t m = 0; m < s->layout.member_count && !status; ++m)

@@ -6,6 +6,14 @@
 #include <math.h>
 #include <string.h>
 
+/* Implicit steps look beyond the nodes of a part's own particles: an inner row has what its outer ones couple
+ * with, four nodes away, and that again the inner ones that it moves with, found by the stiffness in reach
+ * (implicit/extension.c). The remedy against locking may come later. */
+static int32_t implicit_margin(const mpm_grid *grid) {
+  const int32_t extends = 4, couples = grid->width - 1 + grid->centred;
+  return 2 * extends + couples + grid->width - 1;
+}
+
 mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings) {
   mpm_context *c = settings->context;
   mpmi_blocks_init(&layout->blocks, settings->grid);
@@ -24,6 +32,10 @@ mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings
   if (settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 9;
   /* particles belong to clouds of nodes that their own basis does not reach (contact/clouds.c) */
   if (settings->grid->family == MPMI_FAMILY_GIMP) layout->parts->margin = 2;
+  if (mpmi_is_implicit(settings)) {
+    layout->parts->margin = implicit_margin(settings->grid);
+    layout->parts->names_owners = 1;
+  }
   return MPM_OK;
 }
 

@@ -99,6 +99,8 @@ typedef struct mpmi_step {
   mpm_step_info info;           /* what the step reports if it is made, as far as it is known */
   /* Shows the host the info and asks whether to go on; anything but MPM_OK ends the step. */
   mpm_status (*ask_progress)(struct mpm_stepper *stepper);
+  /* Lets all parts know whether one of them has failed (stepper/together.c). */
+  mpm_status (*vote)(struct mpm_stepper *stepper, mpm_status status, int64_t exchanges);
   struct mpm_stepper *stepper;
 } mpmi_step;
 

@@ -59,15 +59,19 @@ MPMI_INLINE double apply_blocks(const apply_job *job, int32_t what, int64_t begi
   return apply_rows(job, 3, what, begin, end);
 }
 
+static double apply_what(const apply_job *job, int64_t begin, int64_t end) {
+  if (job->what == PRODUCT) return apply_blocks(job, PRODUCT, begin, end);
+  if (job->what == RESIDUAL) return apply_blocks(job, RESIDUAL, begin, end);
+  return apply_blocks(job, ROUNDING, begin, end);
+}
+
 static void apply_task(void *data, int64_t k) {
   apply_job *job = data;
   const int64_t begin = mpmi_range_begin(&job->ranges, k), end = mpmi_range_begin(&job->ranges, k + 1);
-  if (job->what == PRODUCT)
-    job->part[k] = apply_blocks(job, PRODUCT, begin, end);
-  else if (job->what == RESIDUAL)
-    job->part[k] = apply_blocks(job, RESIDUAL, begin, end);
-  else
-    job->part[k] = apply_blocks(job, ROUNDING, begin, end);
+  const mpmi_rows *shared = job->A->shared;
+  if (!shared) job->part[k] = apply_what(job, begin, end);
+  for (int64_t i = begin; i < end && shared; ++i)
+    if (shared->own[i]) apply_what(job, i, i + 1);
 }
 
 static mpm_status apply(const mpmi_matrix *A, int32_t what, const double *b, const double *x, double *y,
@@ -75,13 +79,15 @@ static mpm_status apply(const mpmi_matrix *A, int32_t what, const double *b, con
   apply_job job = {.A = A, .b = b, .x = x, .y = y, .what = what};
   job.ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A));
   const mpm_status status = mpmi_run_ranges(A->context, &job.ranges, apply_task, &job);
-  *sum = status ? 0.0 : mpmi_reduce(MPMI_REDUCE_SUM, 0.0, job.part, 1, NULL, job.ranges.count);
+  if (A->shared && !status && sum)
+    return mpmi_rows_sum(A->shared, MPMI_BY_ROWS, 1, &(mpmi_row_terms){.a = y, .b = what == PRODUCT ? x : y},
+                         sum);
+  if (sum) *sum = status ? 0.0 : mpmi_reduce(MPMI_REDUCE_SUM, 0.0, job.part, 1, NULL, job.ranges.count);
   return status;
 }
 
 mpm_status mpmi_matrix_apply(const mpmi_matrix *A, const double *x, double *y) {
-  double unused;
-  return apply(A, PRODUCT, NULL, x, y, &unused);
+  return apply(A, PRODUCT, NULL, x, y, NULL);
 }
 
 mpm_status mpmi_matrix_apply_dot(const mpmi_matrix *A, const double *x, double *y, double *dot) {

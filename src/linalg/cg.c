@@ -15,7 +15,14 @@ typedef struct cg {
   double alpha, beta;
   mpmi_ranges ranges;
   double rz[MPMI_MOST_RANGES], rr[MPMI_MOST_RANGES]; /* by range: r . D^-1 r and r . r */
+  double norm;                                       /* of r */
 } cg;
+
+/* With several parts a product needs the values of rows that others own. */
+static mpm_status complete(const cg *c, double *x) {
+  const mpmi_rows *shared = c->system->A->shared;
+  return shared ? mpmi_rows_complete(shared, x) : MPM_OK;
+}
 
 /* Sets x += alpha p and r -= alpha q, and sums over the new r. */
 static void advance_task(void *data, int64_t k) {
@@ -45,11 +52,28 @@ static mpm_status run_cg(cg *c, mpm_task_fn task) {
   return mpmi_run_ranges(c->system->context, &c->ranges, task, c);
 }
 
+/* Makes r . D^-1 r, and the norm of r. */
+static mpm_status sum_up(cg *c, double *rz) {
+  const mpmi_rows *shared = c->system->A->shared;
+  double sum[2];
+  if (shared) {
+    const mpmi_row_terms terms[2] = {{c->r, c->r, c->inverse}, {c->r, c->r, NULL}};
+    const mpm_status status = mpmi_rows_sum(shared, MPMI_BY_UNKNOWNS, 2, terms, sum);
+    if (status) return status;
+  } else {
+    sum[0] = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, c->rz, 1, NULL, c->ranges.count);
+    sum[1] = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, c->rr, 1, NULL, c->ranges.count);
+  }
+  *rz = sum[0];
+  c->norm = sqrt(sum[1]);
+  return MPM_OK;
+}
+
 /* Advances x and r, and then forms z = M^-1 r and r . z. */
 static mpm_status advance(cg *c, double *rz) {
   mpm_status status = run_cg(c, advance_task);
+  if (!status) status = sum_up(c, rz);
   if (status) return status;
-  *rz = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, c->rz, 1, NULL, c->ranges.count);
   if (!c->precondition) return MPM_OK;
   status = c->precondition(c->user, c->r, c->z);
   return status ? status : mpmi_dot(c->system->context, c->r, c->z, c->system->n, rz);
@@ -58,7 +82,9 @@ static mpm_status advance(cg *c, double *rz) {
 /* Starts from r = b - A x, with its sums and the direction that it gives. */
 static mpm_status start(cg *c, double *rz) {
   mpmi_system *s = c->system;
-  mpm_status status = mpmi_matrix_residual(s->A, s->b, s->x, c->r, &s->reached);
+  mpm_status status = complete(c, s->x);
+  if (s->A->shared) memset(c->r, 0, (size_t)s->n * sizeof *c->r); /* only own rows are written */
+  if (!status) status = mpmi_matrix_residual(s->A, s->b, s->x, c->r, &s->reached);
   c->alpha = c->beta = 0.0;
   memset(c->p, 0, (size_t)s->n * sizeof *c->p);
   memset(c->q, 0, (size_t)s->n * sizeof *c->q);
@@ -72,14 +98,15 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
   double norm = s->reached;
   while (norm > s->wanted && s->report->iterations < limit) {
     double curvature;
-    mpm_status status = mpmi_matrix_apply_dot(s->A, c->p, c->q, &curvature);
+    mpm_status status = complete(c, c->p);
+    if (!status) status = mpmi_matrix_apply_dot(s->A, c->p, c->q, &curvature);
     if (status) return status;
     if (!isfinite(curvature) || !isfinite(rz)) return MPM_NOT_CONVERGED;
     if (!(curvature > 0.0) || !(rz > 0.0)) return MPM_SINGULAR;
     c->alpha = rz / curvature;
     double next;
     if ((status = advance(c, &next))) return status;
-    norm = sqrt(mpmi_reduce(MPMI_REDUCE_SUM, 0.0, c->rr, 1, NULL, c->ranges.count));
+    norm = c->norm;
     c->beta = next / rz;
     rz = next;
     ++s->report->iterations;
@@ -91,7 +118,8 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
 /* The residual of the recursion drifts away from the true one. Where the true one is not as wanted yet,
  * the iteration starts again from it, as long as this helps. */
 mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user, int64_t limit) {
-  mpm_status status = mpmi_system_work(s, precondition ? 4 : 3, 0);
+  /* one number more, so that the vectors exist without rows */
+  mpm_status status = mpmi_system_together(s, mpmi_system_work(s, precondition ? 4 : 3, 1));
   if (status) return status;
   cg c = {.system = s, .precondition = precondition, .user = user, .ranges = mpmi_ranges_of(s->n, s->n)};
   c.inverse = precondition ? NULL : s->solver->diagonal;

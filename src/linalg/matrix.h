@@ -3,7 +3,7 @@
 #ifndef MPMI_MATRIX_H
 #define MPMI_MATRIX_H
 
-#include "context/context.h"
+#include "linalg/rows.h"
 
 typedef struct mpmi_matrix {
   mpm_context *context;
@@ -20,6 +20,9 @@ typedef struct mpmi_matrix {
   double *position;    /* [rows][3] */
   int64_t period[3];   /* nodes along a periodic axis, else 0 */
   int64_t pattern_id;  /* changes whenever the pattern or held does */
+  /* Of several parts: whose rows these are; only own ones are complete, and products and norms are those of
+   * them. NULL: all rows are here. */
+  const mpmi_rows *shared;
 } mpmi_matrix;
 
 void mpmi_matrix_init(mpmi_matrix *A, mpm_context *context);
@@ -57,6 +60,11 @@ static inline int64_t mpmi_matrix_entry(const mpmi_matrix *A, int64_t row, int64
       high = middle;
   }
   return low;
+}
+
+/* Returns 1 for the rows that are complete here. */
+static inline int32_t mpmi_is_own_row(const mpmi_matrix *A, int64_t row) {
+  return !A->shared || A->shared->own[row];
 }
 
 static inline int64_t mpmi_matrix_unknowns(const mpmi_matrix *A) {

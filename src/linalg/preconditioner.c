@@ -22,7 +22,7 @@ mpm_status mpmi_inverse_diagonal(const mpmi_system *s, int64_t *node) {
   for (int64_t i = 0; i < A->rows; ++i) {
     const double *block = diagonal_block(A, i);
     for (int32_t c = 0; c < A->block; ++c) {
-      const double value = block[c * A->block + c];
+      const double value = mpmi_is_own_row(A, i) ? block[c * A->block + c] : 1.0;
       *node = i;
       if (!isfinite(value)) return MPM_NONFINITE;
       if (!(value > 0.0)) return MPM_SINGULAR;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "context/transport.h"
 #include "linalg/methods.h"
 #include "simd/elementary.h"
 
@@ -14,9 +15,9 @@ static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
 
 static mpm_status not_positive(const mpmi_system *s) {
   s->report->indefinite = 1;
-  return mpmi_fail(s->context, MPM_SINGULAR,
-                   "conjugate gradients: the matrix is not positive definite: use MPM_SOLVER_LDLT or "
-                   "MPM_SOLVER_AUTO");
+  return mpmi_fail(s->context, MPM_SINGULAR, "conjugate gradients: the matrix is not positive definite: %s",
+                   s->A->shared ? "hold the body in each direction, or use a smaller dt"
+                                : "use MPM_SOLVER_LDLT or MPM_SOLVER_AUTO");
 }
 
 static mpm_status by_cg(mpmi_system *s, int64_t limit) {
@@ -25,12 +26,15 @@ static mpm_status by_cg(mpmi_system *s, int64_t limit) {
   s->report->solver = MPM_SOLVER_CG;
   mpm_status status = mpmi_inverse_diagonal(s, &row);
   s->report->factor_seconds += mpmi_seconds() - started;
-  if (status == MPM_SINGULAR) {
-    s->report->indefinite = 1;
-    return mpmi_system_fail_at(s, status, row, "conjugate gradients: a diagonal entry is not positive");
+  if (status == MPM_SINGULAR)
+    status = mpmi_system_fail_at(s, status, row, "conjugate gradients: a diagonal entry is not positive");
+  if (status == MPM_NONFINITE) status = bad_diagonal(s, row);
+  status = mpmi_system_together_at(s, status, row);
+  if (status) {
+    s->report->indefinite = status == MPM_SINGULAR;
+    return status;
   }
-  if (status == MPM_NONFINITE) return bad_diagonal(s, row);
-  if (!status) status = mpmi_cg(s, NULL, NULL, limit);
+  status = mpmi_cg(s, NULL, NULL, limit);
   if (status == MPM_NOT_CONVERGED) return mpmi_system_not_converged(s, "conjugate gradients");
   return status == MPM_SINGULAR ? not_positive(s) : status;
 }
@@ -116,12 +120,16 @@ typedef struct costs {
 
 /* Counts the nodes along each axis; the longest comes first. */
 static void extents_of(const mpmi_matrix *A, double *extent) {
-  for (int32_t k = 0; k < 3; ++k) {
-    int64_t low = A->rows ? A->index[0][k] : 0, high = low;
-    for (int64_t i = 1; i < A->rows; ++i) {
-      if (A->index[i][k] < low) low = A->index[i][k];
-      if (A->index[i][k] > high) high = A->index[i][k];
+  int64_t bound[6];
+  for (int32_t k = 0; k < 6; ++k) bound[k] = A->rows || A->shared ? -INT64_MAX : 0;
+  for (int64_t i = 0; i < A->rows; ++i)
+    for (int32_t k = 0; k < 3 && mpmi_is_own_row(A, i); ++k) {
+      if (A->index[i][k] > bound[k]) bound[k] = A->index[i][k];
+      if (-A->index[i][k] > bound[3 + k]) bound[3 + k] = -A->index[i][k];
     }
+  if (A->shared && mpmi_reduce_parts(A->context, MPM_REDUCE_MAX, 6, bound)) memset(bound, 0, sizeof bound);
+  for (int32_t k = 0; k < 3; ++k) {
+    const int64_t high = bound[k], low = -bound[3 + k];
     int32_t at = k;
     for (; at > 0 && extent[at - 1] < (double)(high - low + 1); --at) extent[at] = extent[at - 1];
     extent[at] = (double)(high - low + 1);
@@ -200,10 +208,10 @@ static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) 
                                          [MPM_SOLVER_MULTIGRID_CG] = "MPM_SOLVER_MULTIGRID_CG",
                                          [MPM_SOLVER_LDLT] = "MPM_SOLVER_LDLT"};
   if (choice >= MPM_SOLVER_CG && choice <= MPM_SOLVER_LDLT && !job->matrix->symmetric)
-    return mpmi_fail(context, MPM_E_UNSUPPORTED,
-                     "%s is for symmetric matrices, and this one is not: use MPM_SOLVER_GMRES or "
-                     "MPM_SOLVER_AUTO",
-                     symmetric_only[choice]);
+    return mpmi_fail(context, MPM_E_UNSUPPORTED, "%s is for symmetric matrices, and this one is not: use %s",
+                     symmetric_only[choice],
+                     job->matrix->shared ? "a context without a transport"
+                                         : "MPM_SOLVER_GMRES or MPM_SOLVER_AUTO");
   if (choice != MPM_SOLVER_HOST && (choice < MPM_SOLVER_AUTO || choice > MPM_SOLVER_GMRES))
     return mpmi_fail(context, MPM_E_ARG, "linear_solver is %d, must be MPM_SOLVER_AUTO ... MPM_SOLVER_HOST",
                      (int)choice);
@@ -211,11 +219,25 @@ static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) 
 }
 
 static mpm_status check_rhs(const mpmi_system *s) {
-  for (int64_t i = 0; i < s->n; ++i)
-    if (!isfinite(s->b[i]))
-      return mpmi_system_fail_at(s, MPM_NONFINITE, i / s->A->block,
-                                 "the right-hand side of the linear system is not finite");
+  mpm_status status = MPM_OK;
+  int64_t row = -1;
+  for (int64_t i = 0; i < s->n && !status; ++i) {
+    if (isfinite(s->b[i]) || !mpmi_is_own_row(s->A, i / s->A->block)) continue;
+    row = i / s->A->block;
+    status =
+        mpmi_system_fail_at(s, MPM_NONFINITE, row, "the right-hand side of the linear system is not finite");
+  }
+  status = mpmi_system_together_at(s, status, row);
+  if (status) return status;
   return mpmi_fail(s->context, MPM_NONFINITE, "the right-hand side of the linear system is too large");
+}
+
+static mpm_status find_norm(mpmi_system *s) {
+  if (!s->A->shared) return mpmi_norm(s->context, s->b, s->n, &s->b_norm);
+  const mpm_status status =
+      mpmi_rows_sum(s->A->shared, MPMI_BY_FOURS, 1, &(mpmi_row_terms){.a = s->b, .b = s->b}, &s->b_norm);
+  s->b_norm = sqrt(s->b_norm);
+  return status;
 }
 
 /* Keeps a guess only if its residual is smaller than that of x = 0. */
@@ -241,7 +263,7 @@ static mpm_status solve(mpmi_solver *solver, const mpmi_solve_job *job, mpmi_sol
                    .n = mpmi_matrix_unknowns(job->matrix),
                    .report = report};
   mpm_status status = check_choice(s.context, job);
-  if (!status) status = mpmi_norm(s.context, s.b, s.n, &s.b_norm);
+  if (!status) status = find_norm(&s);
   if (status) return status;
   if (!isfinite(s.b_norm)) return check_rhs(&s);
   if (!(s.b_norm > 0.0)) {

@@ -1,5 +1,6 @@
 /* A solver has its memory here, and every method asks here whether its solution is good enough. */
 #include "linalg/system.h"
+#include "context/transport.h"
 
 /* Where the terms of A x are more than this many times as large as b, what rounding leaves of them is no
  * solution. Slender beams reach 3, bodies that nothing holds reach hundreds. */
@@ -41,6 +42,21 @@ mpm_status mpmi_system_good(const mpmi_system *s, double norm, double *scratch, 
   *good = norm <= rounding &&
           rounding < MOST_ROUNDING * s->b_norm; /* beyond that the terms cancel and say nothing */
   return status;
+}
+
+mpm_status mpmi_system_together(const mpmi_system *s, mpm_status status) {
+  return s->A->shared ? mpmi_agree(s->context, status) : status;
+}
+
+mpm_status mpmi_system_together_at(const mpmi_system *s, mpm_status status, int64_t row) {
+  int32_t part;
+  if (!s->A->shared) return status;
+  const mpm_status lost = mpmi_rows_first(s->A->shared, status > 0 ? row : -1, &part);
+  if (lost || part < 0) return lost ? lost : mpmi_agree(s->context, status);
+  int64_t node = part == s->context->transport.part ? s->report->node : INT64_MIN;
+  const mpm_status told = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, 1, &node);
+  s->report->node = node;
+  return told ? told : mpmi_take_over(s->context, part, status);
 }
 
 mpm_status mpmi_system_fail_at(const mpmi_system *s, mpm_status status, int64_t row, const char *what) {

@@ -37,6 +37,12 @@ mpm_status mpmi_system_work(const mpmi_system *s, int64_t vectors, int64_t more)
  * leaves of A x - b. scratch: a vector. */
 mpm_status mpmi_system_good(const mpmi_system *s, double norm, double *scratch, int32_t *good);
 
+/* Of several parts: all have the status of the first one that has failed. */
+mpm_status mpmi_system_together(const mpmi_system *s, mpm_status status);
+/* The same for a status that may have been written for a row, by which the first is found; it goes into the
+ * report. */
+mpm_status mpmi_system_together_at(const mpmi_system *s, mpm_status status, int64_t row);
+
 /* Fails with a sentence that names a row of the matrix, which goes into the report. */
 mpm_status mpmi_system_fail_at(const mpmi_system *s, mpm_status status, int64_t row, const char *what);
 mpm_status mpmi_system_not_converged(const mpmi_system *s, const char *method);

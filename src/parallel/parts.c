@@ -38,6 +38,7 @@ void mpmi_parts_destroy(mpmi_parts *parts) {
   MPMI_FREE_ARRAY(c, parts->sent, parts->sent_capacity);
   MPMI_FREE_ARRAY(c, parts->ghost, parts->ghost_capacity);
   MPMI_FREE_ARRAY(c, parts->flags, parts->flags_capacity);
+  MPMI_FREE_ARRAY(c, parts->lowest, parts->lowest_capacity);
   MPMI_FREE_ARRAY(c, parts->partial, parts->partial_capacity);
   MPMI_FREE_ARRAY(c, parts->mark, parts->mark_capacity);
   MPMI_FREE_ARRAY(c, parts->is_boundary, parts->is_boundary_capacity);

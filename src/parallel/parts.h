@@ -60,9 +60,13 @@ typedef struct mpmi_parts {
   int64_t partner_count, partner_capacity;
   mpmi_partner *partner;
   int64_t sent_count, sent_capacity, ghost_count, ghost_capacity;
-  mpmi_shared_block *sent, *ghost;  /* by partner; each in the order of the sender's blocks */
-  uint8_t *flags;                   /* [slots] MPMI_NODE_..., or NULL */
-  int64_t flags_capacity, *partial; /* slots of nodes that are given to and not whole */
+  mpmi_shared_block *sent, *ghost; /* by partner; each in the order of the sender's blocks */
+  uint8_t *flags;                  /* [slots] MPMI_NODE_..., or NULL */
+  int64_t flags_capacity;
+  int32_t names_owners,
+      *lowest; /* [slots] of nodes that are given to, where that is asked for: the lowest part
+                                  * with a tile that has it */
+  int64_t lowest_capacity, *partial; /* slots of nodes that are given to and not whole */
   int64_t partial_count, partial_capacity;
   int64_t version; /* of the layout that the flags are of */
   /* By block: 1 + its index in `boundary`, or 0; whether it is on the boundary; whether it has particles
@@ -139,6 +143,10 @@ static inline int32_t mpmi_owns_node(const mpmi_parts *parts, int64_t slot) {
   return !(flags & MPMI_NODE_GIVEN) || (flags & (MPMI_NODE_OWN | MPMI_NODE_LOWER)) == MPMI_NODE_OWN;
 }
 
+/* Returns the part that does so, of a node that is whole, where names_owners is set. */
+static inline int32_t mpmi_owner_of_node(const mpmi_parts *parts, int64_t slot) {
+  return parts->flags[slot] & MPMI_NODE_GIVEN ? parts->lowest[slot] : parts->context->transport.part;
+}
 /* Returns 1 for a node to which particles of this part give, or that none of another part's do. */
 static inline int32_t mpmi_meets_node(const mpmi_parts *parts, int64_t slot) {
   return !parts || (parts->flags[slot] & (MPMI_NODE_GIVEN | MPMI_NODE_OWN)) != MPMI_NODE_GIVEN;

@@ -242,9 +242,9 @@ mpm_status mpmi_pattern_find(mpmi_parts *parts, mpmi_blocks *blocks, mpm_status 
 }
 
 /* ---- nodes --------------------------------------------------------------------------------------------- */
-/* Flags the nodes of a body's block that lie in a box. */
+/* Flags the nodes of a body's block that lie in a box; part: whose tile the box is, or -1. */
 static void flag_block(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, const stretch *box,
-                       uint8_t flag) {
+                       uint8_t flag, int32_t part) {
   int64_t low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
   const int32_t dim = blocks->grid->dim, edge = blocks->edge;
   for (int32_t k = 0; k < dim; ++k) {
@@ -255,8 +255,11 @@ static void flag_block(const mpmi_parts *parts, const mpmi_blocks *blocks, int64
   }
   for (int64_t x = low[0]; x < high[0]; ++x)
     for (int64_t y = low[1]; y < high[1]; ++y)
-      for (int64_t z = low[2]; z < high[2]; ++z)
-        parts->flags[block * blocks->nodes + (x * edge + y) * edge + z] |= flag;
+      for (int64_t z = low[2]; z < high[2]; ++z) {
+        const int64_t slot = block * blocks->nodes + (x * edge + y) * edge + z;
+        parts->flags[slot] |= flag;
+        if (parts->names_owners && part >= 0 && part < parts->lowest[slot]) parts->lowest[slot] = part;
+      }
 }
 
 static int64_t block_at(const mpmi_blocks *blocks, int64_t node) {
@@ -265,7 +268,7 @@ static int64_t block_at(const mpmi_blocks *blocks, int64_t node) {
 
 /* Flags the nodes of a body in a box. */
 static void flag_box(const mpmi_parts *parts, const mpmi_blocks *blocks, int32_t body, const stretch *box,
-                     int32_t flag) {
+                     int32_t flag, int32_t part) {
   int64_t low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
   for (int32_t k = 0; k < blocks->grid->dim; ++k) {
     low[k] = block_at(blocks, box[k].low);
@@ -276,22 +279,23 @@ static void flag_box(const mpmi_parts *parts, const mpmi_blocks *blocks, int32_t
       for (int64_t z = low[2]; z <= high[2]; ++z) {
         const int32_t coord[3] = {(int32_t)x, (int32_t)y, (int32_t)z};
         const int32_t block = mpmi_blocks_find(blocks, body, coord);
-        if (block >= 0) flag_block(parts, blocks, block, box, (uint8_t)flag);
+        if (block >= 0) flag_block(parts, blocks, block, box, (uint8_t)flag, part);
       }
 }
 
 /* Flags the nodes of a block's tile. */
-static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t flag) {
+static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t flag,
+                      int32_t part) {
   stretch box[3];
   for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = tile_of(parts, blocks->coord[block][k]);
-  flag_box(parts, blocks, blocks->body[block], box, flag);
+  flag_box(parts, blocks, blocks->body[block], box, flag, part);
 }
 
 /* Flags all that a block wants. */
 static void flag_wanted(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t flag) {
   stretch box[3];
   for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = wanted_by(parts, k, blocks->coord[block][k]);
-  for (int32_t i = 0; i < parts->body_count; ++i) flag_box(parts, blocks, parts->body[i], box, flag);
+  for (int32_t i = 0; i < parts->body_count; ++i) flag_box(parts, blocks, parts->body[i], box, flag, -1);
 }
 
 /* Nodes that are tied move as one: what is so for one of them is so for all. */
@@ -299,9 +303,14 @@ static void join_ties(const mpmi_parts *parts, const mpmi_constraints *constrain
   for (int64_t i = 0; i < constraints->tie_count; ++i) {
     const mpmi_tie *tie = &constraints->tie[i];
     uint8_t all = parts->flags[tie->master];
-    for (int64_t f = tie->first; f < tie->first + tie->count; ++f)
-      all |= parts->flags[constraints->follower[f].slot];
+    int32_t lowest = parts->names_owners ? parts->lowest[tie->master] : 0;
+    for (int64_t f = tie->first; f < tie->first + tie->count; ++f) {
+      const int64_t slot = constraints->follower[f].slot;
+      all |= parts->flags[slot];
+      if (parts->names_owners && parts->lowest[slot] < lowest) lowest = parts->lowest[slot];
+    }
     parts->flags[tie->master] |= all;
+    if (parts->names_owners) parts->lowest[tie->master] = lowest;
     for (int64_t f = tie->first; f < tie->first + tie->count; ++f)
       parts->flags[constraints->follower[f].slot] |= all;
   }
@@ -350,9 +359,9 @@ mpm_status mpmi_pattern_adopt(mpmi_parts *parts, const mpmi_blocks *blocks) {
 
 static void flag_ghost(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_shared_block *ghost) {
   const int32_t *coord = blocks->coord[ghost->block];
-  const int32_t lower = parts->partner[ghost->partner].part < parts->context->transport.part;
+  const int32_t part = parts->partner[ghost->partner].part, lower = part < parts->context->transport.part;
   nearby n = {parts, blocks, {coord[0], coord[1], coord[2]}, NULL};
-  flag_tile(parts, blocks, ghost->block, MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0));
+  flag_tile(parts, blocks, ghost->block, MPMI_NODE_GIVEN | (lower ? MPMI_NODE_LOWER : 0), part);
   each_near(&n, flag_near);
 }
 
@@ -365,12 +374,15 @@ mpm_status mpmi_pattern_nodes(mpmi_parts *parts, const mpmi_blocks *blocks,
   mpm_context *c = parts->context;
   const int64_t slots = blocks->count * blocks->nodes;
   mpm_status status = MPMI_RESERVE_MORE(c, parts->flags, parts->flags_capacity, slots + 1);
+  if (!status && parts->names_owners)
+    status = MPMI_RESERVE_MORE(c, parts->lowest, parts->lowest_capacity, slots + 1);
   if (status) return status;
   memset(parts->flags, 0, (size_t)(slots + 1));
+  for (int64_t i = 0; i < slots && parts->names_owners; ++i) parts->lowest[i] = INT32_MAX;
   for (int64_t i = 0; i < parts->ghost_count; ++i) flag_ghost(parts, blocks, &parts->ghost[i]);
   for (int64_t block = 0; block < blocks->count; ++block) {
     if (parts->near[block] != 2) continue;
-    flag_tile(parts, blocks, block, MPMI_NODE_OWN);
+    flag_tile(parts, blocks, block, MPMI_NODE_OWN, c->transport.part);
     flag_wanted(parts, blocks, block, MPMI_NODE_WHOLE);
   }
   join_ties(parts, constraints);

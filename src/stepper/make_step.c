@@ -37,6 +37,7 @@ static int64_t exchanges_to(const mpm_stepper *s, int32_t phase) {
   if (!mpmi_is_shared(s)) return 0;
   mpmi_parts *parts = s->layout.parts; /* the last gather is that of the grid's part */
   parts->gathers_due = parts->gather_count - (parts->gather_count && phase == MPMI_BEGUN);
+  if (mpmi_is_implicit(&s->settings)) return 0; /* there the last vote has counted */
   return mpmi_explicit_exchanges(&s->step, &s->nodes, phase);
 }
 
@@ -72,6 +73,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
       .velocity_dt = mean ? 0.5 * (history->previous_dt + dt) : dt,
       .failure = mpmi_no_failure(),
       .ask_progress = ask_progress,
+      .vote = mpmi_together_vote,
       .stepper = s,
       /* the nodes are those of the step before until they are counted */
       .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};

@@ -9,6 +9,24 @@ mpm_status mpmi_together(const mpm_stepper *s, mpm_status status) {
 }
 
 /* ---- before a step ------------------------------------------------------------------------------------- */
+/* Returns what implicit steps of several parts do not have of what the stepper has, and what to use, or NULL. */
+static const char *not_implicit(const mpm_stepper *s, const char **instead) {
+  const mpmi_settings *settings = &s->settings;
+  int32_t bodies = 0;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) bodies |= s->layout.member[m].body != 0;
+  *instead = "MPM_SOLVER_CG";
+  if (settings->desc.linear_solver > MPM_SOLVER_CG) return "a linear solver other than conjugate gradients";
+  *instead = "a new stepper";
+  if (!s->layout.parts->names_owners) return "scheme MPM_NEWMARK in a stepper that was made with another one";
+  *instead = "MPM_USL, MPM_USF or MPM_MUSL";
+  if (mpmi_is_total_lagrangian(s->grid)) return "implicit steps on a total Lagrangian grid";
+  if (bodies) return "implicit steps of bodies with nodes of their own";
+  if (settings->obstacles.count) return "obstacles in implicit steps";
+  if (mpmi_has_friction_planes(settings)) return "friction walls in implicit steps";
+  if (settings->surfaces.count) return "surfaces in implicit steps";
+  return settings->heat.any ? "heat in implicit steps" : NULL;
+}
+
 mpm_status mpmi_together_offers(mpm_stepper *s) {
   const mpmi_settings *settings = &s->settings;
   const char *what = NULL, *instead = "a context without a transport";
@@ -18,7 +36,6 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
     adapts |= m < s->adaption_capacity && s->adaption[m].on;
   for (int32_t face = 0; face < 2 * s->grid->dim; ++face)
     nodes |= mpmi_wall_kind_of(settings->wall[face].kind)->rubs == MPMI_RUBS_NODES;
-  if (mpmi_is_implicit(settings)) what = "scheme MPM_NEWMARK", instead = "MPM_USL, MPM_USF or MPM_MUSL";
   if (nodes) what = "MPM_WALL_FRICTION_NODES", instead = "MPM_WALL_FRICTION";
   for (int64_t i = 0; i < settings->surfaces.count; ++i) {
     const mpm_surface *surface = settings->surfaces.surface[i];
@@ -27,8 +44,7 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
     if (settings->heat.any && (surface->heat.flux != 0.0 || surface->heat.film > 0.0))
       what = "heat through a surface", instead = "the heat source of a set";
   }
-  if (settings->surfaces.count && mpmi_is_implicit(settings))
-    what = "a surface in implicit steps", instead = "MPM_USL, MPM_USF or MPM_MUSL";
+  if (mpmi_is_implicit(settings) && !what) what = not_implicit(s, &instead);
   if (adapts) what = "adaption";
   return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                           "a problem in several parts does not have %s: use %s", what, instead)
@@ -189,17 +205,21 @@ static mpm_status take_failure(mpm_stepper *s, mpm_status status, int32_t part) 
   for (int32_t i = 0; i < WORDS && part != s->context->transport.part; ++i) word[i] = INT64_MIN;
   const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, WORDS, word);
   if (lost) return lost;
-  int64_t active[] = {s->layout.parts->has_counted, s->step.info.active_nodes};
-  const mpm_status summed = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 2, active);
-  if (summed) return summed;
-  s->step.info.active_nodes =
-      active[0] == s->context->transport.parts ? active[1] : s->history.last.active_nodes;
   f->callback_status = (int32_t)word[0];
   f->set = (int32_t)word[1];
   f->particle = word[2];
   f->node = word[3];
   f->body = (int32_t)word[4];
   return mpmi_take_over(s->context, part, status);
+}
+
+/* Makes the active nodes of a step that has failed those of all parts. */
+static mpm_status count_active(mpm_stepper *s) {
+  int64_t active[] = {s->layout.parts->has_counted, s->step.info.active_nodes};
+  const mpm_status status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 2, active);
+  s->step.info.active_nodes =
+      active[0] == s->context->transport.parts ? active[1] : s->history.last.active_nodes;
+  return status;
 }
 
 mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status) {
@@ -211,27 +231,44 @@ mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status) {
   int64_t first = status ? (1 + knows) * parts - s->context->transport.part : 0;
   const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, 1, &first);
   if (lost || !first) return lost;
-  return take_failure(s, status, (int32_t)((first > parts ? 2 * parts : parts) - first));
+  status = take_failure(s, status, (int32_t)((first > parts ? 2 * parts : parts) - first));
+  const mpm_status counted = count_active(s);
+  return counted ? counted : status;
+}
+
+/* Returns the status of the first failure of all parts; word: largest numbers of all parts, the first of
+ * which says whether there is any. */
+static mpm_status settle(mpm_stepper *s, mpm_status status, int64_t exchanges, int64_t count, int64_t *word) {
+  const int64_t came_to = s->layout.parts->exchanges;
+  int32_t part;
+  status = catch_up(s, status, exchanges);
+  word[0] = status != MPM_OK;
+  mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, count, word);
+  if (!lost && word[0]) lost = find_first(s, status, came_to, &part);
+  if (lost || !word[0]) return lost;
+  return take_failure(s, status, part);
+}
+
+mpm_status mpmi_together_vote(mpm_stepper *s, mpm_status status, int64_t exchanges) {
+  int64_t word[1];
+  status = settle(s, status, exchanges, 1, word);
+  s->layout.parts->exchanges = s->layout.parts->is_echo = 0;
+  return status;
 }
 
 mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges) {
-  mpm_context *c = s->context;
   if (!mpmi_is_shared(s)) return status;
-  const int64_t came_to = s->layout.parts->exchanges;
-  status = catch_up(s, status, exchanges);
   mpmi_task_report *report = &s->work.report[0];
-  int64_t word[] = {status != MPM_OK, 0, 0, 0};
+  int64_t word[] = {0, 0, 0, 0};
   for (int32_t k = 0; k < s->settings.tasks; ++k) {
     word[1] |= s->work.report[k].left_tile;
     word[2] |= s->work.report[k].removes;
     word[3] |= s->work.report[k].holes_restored;
   }
-  const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 4, word);
-  if (lost) return lost;
-  if (word[0]) {
-    int32_t part;
-    const mpm_status found = find_first(s, status, came_to, &part);
-    return found ? found : take_failure(s, status, part);
+  status = settle(s, status, exchanges, 4, word);
+  if (status) {
+    const mpm_status lost = count_active(s);
+    return lost ? lost : status;
   }
   report->left_tile |= word[1] != 0;
   report->removes |= word[2] != 0;

@@ -24,6 +24,7 @@ typedef struct outcome {
   int64_t failed_particle;     /* of a step that had to fail */
   mpm_contact_info contact[4]; /* what a scene has asked for */
   double seen[24];             /* likewise */
+  mpm_step_info failed;        /* the info of one */
   mpm_parallel_info parallel;
 } outcome;
 
@@ -37,6 +38,7 @@ struct scene {
   double speed;
   uint64_t seed; /* of what a scene throws dice for */
   int32_t heat;  /* its sets have heat; 2: which is conducted implicitly */
+  int32_t heard; /* the sentence that is asked for is to be heard */
   outcome found[MOST_PARTS];
 };
 
@@ -81,5 +83,7 @@ mpm_status drop_loads(world *w, mpm_surface *s);
 void add_shared_options(Suite *suite);
 void add_shared_heat(Suite *suite);
 void add_shared_surfaces(Suite *suite);
+/* Adds the cases of shared_implicit.c. */
+void add_shared_implicit(Suite *suite);
 
 #endif

@@ -129,6 +129,13 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
             (long long)b->contact[i].ambiguous, a->contact[i].normal_force, b->contact[i].normal_force,
             a->contact[i].area, b->contact[i].area, a->contact[i].gap, b->contact[i].gap,
             a->contact[i].pressure_max, b->contact[i].pressure_max);
+    if (memcmp(&a->failed, &b->failed, sizeof a->failed) != 0)
+      ck_abort_msg(
+          "%s, part %d of %d: another failure: particle %lld, %lld; node %lld, %lld; residual %.17g, "
+          "%.17g; iterations %d, %d",
+          name, r, parts, (long long)a->failed.particle, (long long)b->failed.particle,
+          (long long)a->failed.node, (long long)b->failed.node, a->failed.residual, b->failed.residual,
+          (int)a->failed.newton_iterations, (int)b->failed.newton_iterations);
     ck_assert_msg(a->failed_particle == b->failed_particle, "%s, part %d of %d: particle %lld, not %lld",
                   name, r, parts, (long long)b->failed_particle, (long long)a->failed_particle);
     ck_assert_msg(a->stable_dt == b->stable_dt && a->total == b->total, "%s, part %d of %d: %g, %g", name, r,

@@ -227,6 +227,30 @@ static mpm_status ask_for_more(world *w, const scene *is, outcome *found) {
   return status;
 }
 
+/* Loads on a body with heat; that surfaces heat is refused. */
+static mpm_status load_warm(world *w, const scene *is, outcome *found) {
+  mpm_surface *s = NULL;
+  int32_t parts = 1;
+  (void)is;
+  mpm_context_part(w->context, NULL, &parts);
+  mpm_status status = add_loads(w, 0.3, 0.2, &s);
+  if (!status) status = run_steps(w);
+  if (!status) status = mix_markers(w, s, &found->markers);
+  if (!status && parts > 1) {
+    status = mpm_surface_set_heat(s, 10.0, 0.0, 0.0);
+    if (!status) status = expect(w, 1e-5, MPM_E_UNSUPPORTED, "heat through a surface: use the heat source");
+  }
+  if (s) drop_loads(w, s);
+  return status;
+}
+
+START_TEST(loads_on_warm_bodies) {
+  scene is = warm_scene(96, _i % 2);
+  is.run = load_warm;
+  check_made(&is, "warm and loaded", 2 + _i);
+}
+END_TEST
+
 START_TEST(refused_surfaces) {
   scene is = scene_of(2, 48, set_up_body);
   is.run = ask_for_more;
@@ -245,6 +269,7 @@ void add_shared_surfaces(Suite *suite) {
   tcase_add_loop_test(surfaces, loads_combine, 0, OPTIONS_SAMPLE);
   tcase_add_loop_test(surfaces, markers_fly, 0, 4);
   tcase_add_loop_test(surfaces, loads_fail_together, 0, 4);
+  tcase_add_loop_test(surfaces, loads_on_warm_bodies, 0, 4);
   tcase_add_test(surfaces, refused_surfaces);
   suite_add_tcase(suite, surfaces);
 }

@@ -486,7 +486,11 @@ START_TEST(memory_runs_out) {
     memset(&h, 0, sizeof h);
     memset(&plan, 0, sizeof plan);
     h.loads = _i == 3;
-    h.is = _i && !h.loads ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
+    h.is = _i == 1 || _i == 2 ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
+    if (_i == 4) {
+      h.is.desc.stepper.scheme = MPM_NEWMARK;
+      h.is.desc.stepper.linear_solver = MPM_SOLVER_CG;
+    }
     h.fail_at = at;
     ck_assert_msg(!parts_run(3, live_hungry, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
                   (long long)calls, plan.text);
@@ -526,11 +530,12 @@ Suite *shared_suite(void) {
   tcase_add_loop_test(failures, transport_fails, 0, 3);
   tcase_add_test(failures, transport_is_checked);
   tcase_add_test(failures, transport_is_lost);
-  tcase_add_loop_test(failures, memory_runs_out, 0, 4);
+  tcase_add_loop_test(failures, memory_runs_out, 0, 5);
   suite_add_tcase(suite, failures);
   add_shared_options(suite);
   add_shared_heat(suite);
   add_shared_surfaces(suite);
+  add_shared_implicit(suite);
   suite_add_tcase(suite, shared_states_case());
   suite_add_tcase(suite, shared_pieces_case());
   return suite;
