@@ -1471,6 +1471,20 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_stepper_parallel_info(IntPtr stepper, int reset, ParallelInfo* info);
 
+    /// <summary>Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it
+    /// has now.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_packed_size(IntPtr particles, long n, long* bytes);
+
+    /// <summary>Packs n particles into a buffer, for hosts that move them themselves: between sets, programs,
+    /// machines.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_pack(IntPtr particles, long n, long* ids, IntPtr buffer, long capacity);
+
+    /// <summary>Adds packed particles to a set, bit by bit: all or none.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_unpack(IntPtr particles, IntPtr buffer, long bytes);
+
     /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond
     /// is written.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

@@ -1453,6 +1453,35 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_stepper_parallel_info
 
+    !> Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has now.
+    function mpm_particles_packed_size(particles, n, bytes) bind(c, name="mpm_particles_packed_size") result(answer)
+      import
+      type(c_ptr), value :: particles
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(inout) :: bytes
+      integer(c_int32_t) :: answer
+    end function mpm_particles_packed_size
+
+    !> Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines.
+    function mpm_particles_pack(particles, n, ids, buffer, capacity) bind(c, name="mpm_particles_pack") result(answer)
+      import
+      type(c_ptr), value :: particles
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: ids(*)
+      type(*), intent(inout) :: buffer(*)
+      integer(c_int64_t), value :: capacity
+      integer(c_int32_t) :: answer
+    end function mpm_particles_pack
+
+    !> Adds packed particles to a set, bit by bit: all or none.
+    function mpm_particles_unpack(particles, buffer, bytes) bind(c, name="mpm_particles_unpack") result(answer)
+      import
+      type(c_ptr), value :: particles
+      type(*), intent(in) :: buffer(*)
+      integer(c_int64_t), value :: bytes
+      integer(c_int32_t) :: answer
+    end function mpm_particles_unpack
+
     !> Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.
     function mpm_context_desc_init(desc, struct_size) bind(c, name="mpm_context_desc_init") result(answer)
       import

@@ -1188,6 +1188,50 @@ function mpm_stepper_parallel_info(stepper, reset, info)
 end
 
 """
+Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has now.
+MPM_E_ARG: n is negative or beyond 2^32 - 2, or bytes is NULL. Since 0.2.0.
+"""
+function mpm_particles_packed_size(particles, n, bytes)
+    return ccall((:mpm_particles_packed_size, libmpm), Int32, (Ptr{mpm_particles}, Int64, Ptr{Int64}),
+        particles, n, bytes)
+end
+
+"""
+Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines. They have
+every field in use, bit by bit, with ids, images and the host's fields, and what says of which law they are. The order
+of bytes is the same on all machines. The particles stay in the set.
+
+- ids: [n], each once, in this order; NULL for all particles by ascending id, where n is mpm_particles_count().
+- buffer: of `capacity` bytes, of which those of mpm_particles_packed_size() are written; anywhere.
+
+Of a problem in several parts these are particles of this part, and no other part takes part. MPM_E_NOT_FOUND: an id
+is not in the set. MPM_E_ARG: capacity is too small, an id is given twice, n does not match or buffer is NULL.
+MPM_E_STATE: a staged step is under way, a view of the set is out for writing, or a value that was written through one
+is bad. Since 0.2.0.
+"""
+function mpm_particles_pack(particles, n, ids, buffer, capacity)
+    return ccall((:mpm_particles_pack, libmpm), Int32, (Ptr{mpm_particles}, Int64, Ptr{Int64}, Ptr{Cvoid}, Int64),
+        particles, n, ids, buffer, capacity)
+end
+
+"""
+Adds packed particles to a set, bit by bit: all or none. The law is not asked: stress, state variables and volume come
+along. Fields that the set has and the buffer lacks have the values of new particles. Grids may have other cells and
+bases, if the particles lie inside.
+
+Of a problem in several parts they are added to this part, and no other part takes part; the next step brings them
+home. MPM_E_FORMAT: the buffer is damaged; it is of another law, or of other parameters, dimension, geometry or kind
+of grid, or counts images of other periods; or it has fields that the set has not: of the host, of another type, or
+\"reference_position\" and \"dilation_ratio\" where no stepper keeps them. MPM_E_ARG: an id is in use, or a particle
+lies outside the grid, which the text names; or buffer is NULL. MPM_E_STATE: as for all that changes a set. Since
+0.2.0.
+"""
+function mpm_particles_unpack(particles, buffer, bytes)
+    return ccall((:mpm_particles_unpack, libmpm), Int32, (Ptr{mpm_particles}, Ptr{Cvoid}, Int64),
+        particles, buffer, bytes)
+end
+
+"""
 Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.
 MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
 """
@@ -2719,8 +2763,9 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc, mpm_surface_desc,
     mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info, mpm_heat_desc, mpm_heat_info,
     mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_part, mpm_particles_total,
-    mpm_stepper_parallel_info, mpm_context_desc_init, mpm_context_create, mpm_context_memory, mpm_context_destroy,
-    mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy, mpm_material_create,
+    mpm_stepper_parallel_info, mpm_particles_packed_size, mpm_particles_pack, mpm_particles_unpack,
+    mpm_context_desc_init, mpm_context_create, mpm_context_memory, mpm_context_destroy, mpm_last_error,
+    mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy, mpm_material_create,
     mpm_material_model_count, mpm_material_model_name, mpm_material_model_param, mpm_material_state_count,
     mpm_material_state_name, mpm_batch_field, mpm_material_desc_init, mpm_material_create_custom, mpm_material_update,
     mpm_material_destroy, mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box,

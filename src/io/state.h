@@ -82,6 +82,15 @@ typedef struct mpmi_state_set {
 /* Writes the setup, or compares it (state_setup.c). `set` receives the fields of the state, and is NULL
  * when writing. */
 void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, uint32_t format, mpmi_state_set *set);
+/* Parts of it: a law with its parameters; the name, type and presence of a field. A field that is read is
+ * found in the set; where it may be absent, its presence is taken from the archive. found: bits of the
+ * fields so far. */
+void mpmi_state_archive_law(mpmi_archive *a, const mpm_material *material);
+void mpmi_state_write_field(mpmi_archive *a, const mpmi_field *field);
+void mpmi_state_read_field(mpmi_archive *a, mpmi_state_set *to, uint64_t *found);
+mpm_status mpmi_state_refuse_field(mpmi_archive *a, const char *name, const char *what);
+/* Returns 1 for built-in fields that a set on this grid has only when something uses them. */
+int32_t mpmi_state_may_lack(const mpm_grid *grid, int32_t field);
 
 /* Returns 1 when the next step will keep the present order of the slots (state_blocks.c). */
 int32_t mpmi_state_is_sorted(const mpm_stepper *s);
@@ -128,6 +137,8 @@ mpm_status mpmi_state_is_whole(const mpm_stepper *stepper);
 /* Brings what follows from the fields up to date, and refuses a state that cannot be saved now
  * (state_save.c). */
 mpm_status mpmi_state_settle(const mpm_stepper *s);
+/* The same for one set, which texts call `name`; before: what has to be done first. */
+mpm_status mpmi_state_settle_set(mpm_particles *set, const char *name, const char *before);
 /* Numbers of the time loop and of a set as a format has them, and one component of a field. */
 void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_numbers *n);
 void mpmi_state_archive_set_numbers(mpmi_archive *a, uint32_t format, mpmi_state_set_numbers *n);
@@ -141,6 +152,13 @@ mpmi_state_header mpmi_state_header_of(const mpmi_archive *a);
 /* Refuses what cannot be the first bytes of a state that has so many bytes in all: MPM_E_FORMAT
  * (state_load.c). */
 mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header *header, int64_t bytes);
+/* Refuses what follows a header where its checksum is another: MPM_E_FORMAT. name: for the text. */
+mpm_status mpmi_state_check_sum(mpm_context *context, const char *name, const mpmi_state_header *header,
+                                const void *body);
+/* Starts with a copy of the set that has no storage. */
+void mpmi_state_start_set(mpmi_state_set *to, const mpm_particles *set);
+/* Returns how many bytes a particle takes in the fields that are present. */
+int64_t mpmi_state_bytes_per_slot(const mpm_particles *set);
 mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes);
 
 #endif

@@ -35,14 +35,14 @@ mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header
   return MPM_OK;
 }
 
-static mpm_status check_checksum(mpm_context *context, const mpmi_state_header *header,
-                                 const unsigned char *body) {
+mpm_status mpmi_state_check_sum(mpm_context *context, const char *name, const mpmi_state_header *header,
+                                const void *body) {
   const int64_t bytes = header->bytes - (int64_t)sizeof *header;
   mpmi_checksum sum;
   mpmi_checksum_begin(&sum);
   if (bytes % 8 == 0) mpmi_checksum_add(&sum, body, bytes);
   if (bytes % 8 == 0 && mpmi_checksum_end(&sum) == header->checksum) return MPM_OK;
-  return mpmi_fail(context, MPM_E_FORMAT, "the state is damaged: its checksum is wrong");
+  return mpmi_fail(context, MPM_E_FORMAT, "%s is damaged: its checksum is wrong", name);
 }
 
 static mpm_status check_idle(const mpm_stepper *s) {
@@ -58,8 +58,7 @@ static mpm_status check_idle(const mpm_stepper *s) {
   return MPM_OK;
 }
 
-/* Starts with a copy of the set that has no storage. */
-static void start_set(mpmi_state_set *to, const mpm_particles *set) {
+void mpmi_state_start_set(mpmi_state_set *to, const mpm_particles *set) {
   mpm_particles *fresh = &to->fresh;
   *fresh = *set;
   fresh->count = fresh->slots = fresh->ld = 0;
@@ -118,7 +117,7 @@ static mpm_status read_blocks(loading *l) {
   return mpmi_state_read_blocks(&l->archive, l->stepper, l->format, l->numbers.blocks, l->set);
 }
 
-static int64_t bytes_per_slot(const mpm_particles *set) {
+int64_t mpmi_state_bytes_per_slot(const mpm_particles *set) {
   int64_t bytes = 0;
   for (int32_t f = 0; f < set->field_count; ++f)
     if (set->field[f].present)
@@ -131,7 +130,8 @@ static mpm_status read_set(loading *l, int32_t m) {
   mpmi_state_set *from = &l->set[m];
   mpm_particles *fresh = &from->fresh;
   const int64_t slots = from->numbers.slots;
-  if (slots > (a->size - a->at) / bytes_per_slot(fresh)) mpmi_archive_damaged(a, "it ends too early");
+  if (slots > (a->size - a->at) / mpmi_state_bytes_per_slot(fresh))
+    mpmi_archive_damaged(a, "it ends too early");
   mpm_status status = a->status ? a->status : mpmi_particles_reserve(fresh, slots);
   if (status) return status;
   for (int32_t i = 0; i < from->field_count && slots > 0; ++i) {
@@ -270,7 +270,7 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
   if (!status) status = mpmi_state_check_header(s->context, &header, bytes);
   if (status) return status;
   const unsigned char *body = (const unsigned char *)buffer + sizeof header;
-  if ((status = check_checksum(s->context, &header, body))) return status;
+  if ((status = mpmi_state_check_sum(s->context, "the state", &header, body))) return status;
   loading l = {.stepper = s, .format = header.format};
   const size_t set_bytes = mpmi_bytes(s->layout.member_count, sizeof *l.set);
   l.set = mpmi_alloc_zeroed(s->context, set_bytes);
@@ -284,7 +284,8 @@ mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes) {
     mpmi_free(s->context, l.set, set_bytes);
     return MPM_E_NOMEM;
   }
-  for (int32_t m = 0; m < s->layout.member_count; ++m) start_set(&l.set[m], s->layout.member[m].set);
+  for (int32_t m = 0; m < s->layout.member_count; ++m)
+    mpmi_state_start_set(&l.set[m], s->layout.member[m].set);
   mpmi_archive_begin(&l.archive, s->context, MPMI_FROM_MEMORY);
   l.archive.from = body;
   l.archive.size = bytes - (int64_t)sizeof header;

@@ -76,13 +76,15 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   layout->parts->prescribes = word[6] != 0;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpm_particles *set = layout->member[m].set;
-    int64_t of[FLAGS + 1];
+    int64_t of[FLAGS + 2];
     for (int32_t i = 0; i < FLAGS; ++i) of[i] = (set->dirty & flag[i]) != 0;
     of[FLAGS] = mpmi_ordered_bits(set->mass_max);
-    if ((status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, FLAGS + 1, of))) return status;
+    of[FLAGS + 1] = set->next_id;
+    if ((status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, FLAGS + 2, of))) return status;
     for (int32_t i = 0; i < FLAGS; ++i)
       if (of[i]) set->dirty |= flag[i];
     set->mass_max = mpmi_of_ordered_bits(of[FLAGS]);
+    set->next_id = of[FLAGS + 1];
   }
   return MPM_OK;
 }

@@ -620,6 +620,14 @@ namespace Mpm {
         Refuses(MPM_E_NOT_FOUND, "velocity", () => set.GetF32(MPM_BY_ID, "velocty"));
         Refuses(MPM_E_ARG, "", () => set.GetF32(7, "mass"));
 
+        byte[] all = set.Pack(), some = set.Pack(new long[] { 3, 1 });
+        Refuses(MPM_E_ARG, "is in use", () => set.Unpack(some));
+        set.Remove(new long[] { 1, 3 });
+        set.Unpack(some);
+        Is(Same(set.Pack(), all), true, "particles that were packed");
+        some[some.Length - 1] ^= 1;
+        Refuses(MPM_E_FORMAT, "damaged", () => set.Unpack(some));
+
         MemoryStream state = new MemoryStream(), vtp = new MemoryStream(), vti = new MemoryStream();
         scene.Stepper.SaveTo(state);
         Is(Same(state.ToArray(), scene.Stepper.Save()), true, "a state in a stream");

@@ -1193,6 +1193,9 @@ FUNCTIONS = {
     "mpm_context_part": (c_int32, [c_void_p, c_void_p, c_void_p]),
     "mpm_particles_total": (c_int32, [c_void_p, c_void_p]),
     "mpm_stepper_parallel_info": (c_int32, [c_void_p, c_int32, POINTER(parallel_info)]),
+    "mpm_particles_packed_size": (c_int32, [c_void_p, c_int64, c_void_p]),
+    "mpm_particles_pack": (c_int32, [c_void_p, c_int64, c_void_p, c_void_p, c_int64]),
+    "mpm_particles_unpack": (c_int32, [c_void_p, c_void_p, c_int64]),
     "mpm_context_desc_init": (c_int32, [POINTER(context_desc), c_uint32]),
     "mpm_context_create": (c_int32, [POINTER(context_desc), c_void_p]),
     "mpm_context_memory": (c_int32, [c_void_p, c_void_p, c_void_p]),
@@ -1363,6 +1366,35 @@ Particles of a set on all parts (collective). mpm_particles_count() is that of t
 
 Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
 struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0.""",
+    "mpm_particles_packed_size": """mpm_status mpm_particles_packed_size(const mpm_particles *particles, int64_t n, int64_t *bytes)
+
+Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has now.
+MPM_E_ARG: n is negative or beyond 2^32 - 2, or bytes is NULL. Since 0.2.0.""",
+    "mpm_particles_pack": """mpm_status mpm_particles_pack(const mpm_particles *particles, int64_t n, const int64_t *ids, void *buffer, int64_t
+capacity)
+
+Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines. They have
+every field in use, bit by bit, with ids, images and the host's fields, and what says of which law they are. The order
+of bytes is the same on all machines. The particles stay in the set.
+
+- ids: [n], each once, in this order; NULL for all particles by ascending id, where n is mpm_particles_count().
+- buffer: of `capacity` bytes, of which those of mpm_particles_packed_size() are written; anywhere.
+
+Of a problem in several parts these are particles of this part, and no other part takes part. MPM_E_NOT_FOUND: an id
+is not in the set. MPM_E_ARG: capacity is too small, an id is given twice, n does not match or buffer is NULL.
+MPM_E_STATE: a staged step is under way, a view of the set is out for writing, or a value that was written through one
+is bad. Since 0.2.0.""",
+    "mpm_particles_unpack": """mpm_status mpm_particles_unpack(mpm_particles *particles, const void *buffer, int64_t bytes)
+
+Adds packed particles to a set, bit by bit: all or none. The law is not asked: stress, state variables and volume come
+along. Fields that the set has and the buffer lacks have the values of new particles. Grids may have other cells and
+bases, if the particles lie inside.
+
+Of a problem in several parts they are added to this part, and no other part takes part; the next step brings them
+home. MPM_E_FORMAT: the buffer is damaged; it is of another law, or of other parameters, dimension, geometry or kind
+of grid, or counts images of other periods; or it has fields that the set has not: of the host, of another type, or
+"reference_position" and "dilation_ratio" where no stepper keeps them. MPM_E_ARG: an id is in use, or a particle lies
+outside the grid, which the text names; or buffer is NULL. MPM_E_STATE: as for all that changes a set. Since 0.2.0.""",
     "mpm_context_desc_init": """mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size)
 
 Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.

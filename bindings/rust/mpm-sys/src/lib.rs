@@ -1906,6 +1906,49 @@ extern "C" {
         info: *mut mpm_parallel_info,
     ) -> mpm_status;
 
+    /// Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has now.
+    /// MPM_E_ARG: n is negative or beyond 2^32 - 2, or bytes is NULL. Since 0.2.0.
+    pub fn mpm_particles_packed_size(
+        particles: *const mpm_particles,
+        n: i64,
+        bytes: *mut i64,
+    ) -> mpm_status;
+
+    /// Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines. They have
+    /// every field in use, bit by bit, with ids, images and the host's fields, and what says of which law they are. The
+    /// order of bytes is the same on all machines. The particles stay in the set.
+    ///
+    /// - ids: [n], each once, in this order; NULL for all particles by ascending id, where n is mpm_particles_count().
+    /// - buffer: of `capacity` bytes, of which those of mpm_particles_packed_size() are written; anywhere.
+    ///
+    /// Of a problem in several parts these are particles of this part, and no other part takes part. MPM_E_NOT_FOUND: an
+    /// id is not in the set. MPM_E_ARG: capacity is too small, an id is given twice, n does not match or buffer is NULL.
+    /// MPM_E_STATE: a staged step is under way, a view of the set is out for writing, or a value that was written through
+    /// one is bad. Since 0.2.0.
+    pub fn mpm_particles_pack(
+        particles: *const mpm_particles,
+        n: i64,
+        ids: *const i64,
+        buffer: *mut c_void,
+        capacity: i64,
+    ) -> mpm_status;
+
+    /// Adds packed particles to a set, bit by bit: all or none. The law is not asked: stress, state variables and volume
+    /// come along. Fields that the set has and the buffer lacks have the values of new particles. Grids may have other
+    /// cells and bases, if the particles lie inside.
+    ///
+    /// Of a problem in several parts they are added to this part, and no other part takes part; the next step brings them
+    /// home. MPM_E_FORMAT: the buffer is damaged; it is of another law, or of other parameters, dimension, geometry or
+    /// kind of grid, or counts images of other periods; or it has fields that the set has not: of the host, of another
+    /// type, or "reference_position" and "dilation_ratio" where no stepper keeps them. MPM_E_ARG: an id is in use, or a
+    /// particle lies outside the grid, which the text names; or buffer is NULL. MPM_E_STATE: as for all that changes a
+    /// set. Since 0.2.0.
+    pub fn mpm_particles_unpack(
+        particles: *mut mpm_particles,
+        buffer: *const c_void,
+        bytes: i64,
+    ) -> mpm_status;
+
     /// Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.
     /// MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
     pub fn mpm_context_desc_init(desc: *mut mpm_context_desc, struct_size: u32) -> mpm_status;
