@@ -505,6 +505,29 @@ namespace Mpm {
     public IntPtr user;
   }
 
+  /// <summary>How blocks of the grid are given to parts.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct BalanceDesc {
+    /// <summary>sizeof(mpm_balance_desc) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>0 (default): a block weighs what its particles and block_weight come to. 1: the seconds that a part
+    /// has spent in steps since blocks were last given to parts, those of waiting left out, are what its blocks weigh
+    /// together, each in proportion to that.</summary>
+    public int measure;
+    /// <summary>Blocks are given to parts anew when the largest weight of a part is this many times the mean, at
+    /// least 1; infinity: never.</summary>
+    public double limit;
+    /// <summary>What a block costs beside its particles, in particles, from 0 to 1e6.</summary>
+    public double block_weight;
+
+    /// <summary>The library's defaults.</summary>
+    public static BalanceDesc Default() {
+      var it = new BalanceDesc();
+      MpmException.Check(Native.mpm_balance_desc_init(&it, (uint)sizeof(BalanceDesc)), IntPtr.Zero);
+      return it;
+    }
+  }
+
   /// <summary>What one part does of a problem, and what that costs.</summary>
   [StructLayout(LayoutKind.Sequential)]
   public unsafe partial struct ParallelInfo {
@@ -964,6 +987,9 @@ namespace Mpm {
     public double* position;
     /// <summary>[ld].</summary>
     public double* mass;
+    /// <summary>[ld] 1 on exactly one of the parts that have the node, for sums of the host, else 0; all 1 with one
+    /// part: see parallel.h.</summary>
+    public byte* owned;
   }
 
   /// <summary>How mpm_advance() chooses its sub-steps.</summary>
@@ -1466,6 +1492,16 @@ namespace Mpm {
     /// <summary>Particles of a set on all parts (collective). mpm_particles_count() is that of this part.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_particles_total(IntPtr particles, long* n);
+
+    /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_balance_desc) of the caller; no byte beyond
+    /// is written.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_balance_desc_init(BalanceDesc* desc, uint struct_size);
+
+    /// <summary>Sets how blocks are given to parts, from the next sort of particles on (collective); desc NULL: by
+    /// the defaults.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_set_balance(IntPtr stepper, BalanceDesc* desc);
 
     /// <summary>Tells what this part does, as of the last step; 1 in reset starts the counts anew.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

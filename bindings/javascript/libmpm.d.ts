@@ -279,6 +279,27 @@ export interface Constants {
 /** All constants of the library, under their names in C. */
 export const C: Constants;
 
+/**
+ * How blocks of the grid are given to parts. Fill it with mpm_balance_desc_init(); all 0 are the defaults.
+ */
+export interface BalanceDesc {
+  /**
+   * 0 (default): a block weighs what its particles and block_weight come to. 1: the seconds that a part has
+   * spent in steps since blocks were last given to parts, those of waiting left out, are what its blocks
+   * weigh together, each in proportion to that.
+   */
+  measure?: number | boolean;
+  /**
+   * Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least 1;
+   * infinity: never. 0 (default): 1.1.
+   */
+  limit?: number;
+  /**
+   * What a block costs beside its particles, in particles, from 0 to 1e6. 0 (default): 60, about what the
+   * sums of its nodes take.
+   */
+  block_weight?: number;
+}
 /** Services of the host. */
 export interface ContextDesc {
   /**
@@ -956,6 +977,11 @@ export interface NodeBatch {
   readonly position: Float64Array[];
   /** [ld] */
   readonly mass: Float64Array;
+  /**
+   * [ld] 1 on exactly one of the parts that have the node, for sums of the host, else 0; all 1 with one part:
+   * see parallel.h. Since 0.2.0.
+   */
+  readonly owned: Uint8Array;
 }
 /** Nodes at which two bodies touch, for mpm_friction_fn. Arrays belong to the library. */
 export interface ContactBatch {
@@ -2129,6 +2155,7 @@ export class Stepper implements Handle {
    * | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
    * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
    * | "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
+   * | "owned"                            | U8   | 1          | as in mpm_node_batch                          |
    *
    * - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
    * - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -2180,6 +2207,8 @@ export interface Raw {
   mpm_view_release(view: number): number;
   mpm_context_part(context: number, part: number, parts: number): number;
   mpm_particles_total(particles: number, n: number): number;
+  mpm_balance_desc_init(desc: number, struct_size: number): number;
+  mpm_stepper_set_balance(stepper: number, desc: number): number;
   mpm_stepper_parallel_info(stepper: number, reset: number, info: number): number;
   mpm_particles_packed_size(particles: number, n: bigint, bytes: number): number;
   mpm_particles_pack(particles: number, n: bigint, ids: number, buffer: number, capacity: bigint): number;

@@ -15,7 +15,8 @@
  *
  * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
  * particles, where each part adds its own and numbers without ids follow those of the parts before;
- * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stable_dt(), mpm_state_hash().
+ * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stable_dt(), mpm_state_hash(),
+ * mpm_stepper_set_balance().
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts, which is not checked.
  *
@@ -90,6 +91,32 @@ MPM_API mpm_status mpm_context_part(const mpm_context *context, int32_t *part, i
 
 /** Particles of a set on all parts (collective). mpm_particles_count() is that of this part. */
 MPM_API mpm_status mpm_particles_total(const mpm_particles *particles, int64_t *n);
+
+/** How blocks of the grid are given to parts. Fill it with mpm_balance_desc_init(); all 0 are the defaults.
+ */
+typedef struct mpm_balance_desc {
+  uint32_t struct_size; /**< sizeof(mpm_balance_desc) of the caller */
+  /** 0 (default): a block weighs what its particles and block_weight come to. 1: the seconds that a part has
+   * spent in steps since blocks were last given to parts, those of waiting left out, are what its blocks
+   * weigh together, each in proportion to that. */
+  int32_t measure;
+  /** Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least
+   * 1; infinity: never. 0 (default): 1.1. */
+  double limit;
+  /** What a block costs beside its particles, in particles, from 0 to 1e6. 0 (default): 60, about what the
+   * sums of its nodes take. */
+  double block_weight;
+} mpm_balance_desc;
+
+/** Fills desc with the defaults. struct_size is sizeof(mpm_balance_desc) of the caller; no byte beyond is
+ * written. MPM_E_ARG: it is smaller than the first released struct. Any thread, any time. */
+MPM_API mpm_status mpm_balance_desc_init(mpm_balance_desc *desc, uint32_t struct_size);
+
+/** Sets how blocks are given to parts, from the next sort of particles on (collective); desc NULL: by the
+ * defaults. Results do not depend on it, bit by bit. Not part of a saved state: the host sets it again. With
+ * one part it is checked and does nothing. MPM_E_ARG: a value is out of range, or another one is given on
+ * another part. MPM_E_STATE: a step is under way. Since 0.2.0. */
+MPM_API mpm_status mpm_stepper_set_balance(mpm_stepper *stepper, const mpm_balance_desc *desc);
 
 /** What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made
  * or they were last reset; the caller sets struct_size. */

@@ -72,20 +72,30 @@ typedef struct mpmi_parts {
   mpmi_buffer gone; /* slots of particles that leave */
   mpm_message *message;
   int64_t *most;
-  int64_t exchanges;       /* of tiles in the step under way */
-  int32_t has_counted;     /* the active nodes of the step under way */
-  int32_t prescribes;      /* some part may have prescribed particles */
-  int32_t asks;            /* some part has a progress callback */
-  int64_t leave_elsewhere; /* particles that leave the grid on other parts in the step under way */
-  int32_t is_echo;         /* the step fails here because it has failed on a partner */
+  int64_t exchanges;        /* of tiles in the step under way */
+  int32_t has_counted;      /* the active nodes of the step under way */
+  int32_t prescribes;       /* some part may have prescribed particles */
+  int32_t asks;             /* some part has a progress callback */
+  int64_t leave_elsewhere;  /* particles that leave the grid on other parts in the step under way */
+  int32_t is_echo;          /* the step fails here because it has failed on a partner */
+  mpm_balance_desc balance; /* with what 0 stands for */
+  double busy;              /* seconds of steps since blocks were given to parts, without waiting */
+  double since; /* when the call under way began, or was last counted in these, by the same clock */
   mpm_parallel_info info;
 } mpmi_parts;
 
+/* A description with the defaults in place of 0; NULL: all of them. */
+mpm_balance_desc mpmi_balance_of(const mpm_balance_desc *desc);
 mpm_status mpmi_parts_create(mpm_context *context, const mpm_grid *grid, mpmi_parts **out);
 void mpmi_parts_destroy(mpmi_parts *parts);
 static inline int32_t mpmi_part_count(const mpmi_parts *parts) {
   return parts->context->transport.parts;
 }
+/* The time that a part takes, which blocks may be weighed by: a call goes on working; so it has until now;
+ * from now on it counts anew. Nothing is done without parts. */
+void mpmi_time_begin(mpmi_parts *parts);
+void mpmi_time_add(mpmi_parts *parts);
+void mpmi_time_reset(mpmi_parts *parts);
 
 /* Makes room for more bytes of a message, and returns where they go, or NULL. */
 void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes);
@@ -97,6 +107,8 @@ typedef struct mpmi_arrivals {
   const mpm_message *message;
 } mpmi_arrivals;
 mpm_status mpmi_parts_exchange(mpmi_parts *parts, mpmi_arrivals *in);
+/* Takes what comes of an exchange that has been started, and counts how long that takes. */
+mpm_status mpmi_parts_receive(mpmi_parts *parts, mpmi_arrivals *in);
 
 /* ---- cut.c ------------------------------------------------------------------------------------------- */
 /* Gives the blocks, each with its weight, to the parts (collective), unless they are shared out evenly. */

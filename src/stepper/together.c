@@ -39,9 +39,19 @@ enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 8, MOST_NUMBERS = 7 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
-static void put_number(int64_t *word, double number) {
+void mpmi_put_number(int64_t *word, double number) {
   memcpy(&word[0], &number, sizeof number);
   word[1] = ~word[0];
+}
+
+mpm_status mpmi_check_alike(const mpm_stepper *s, int32_t count, const char *const *name,
+                            const double *number, const int64_t *word) {
+  for (int32_t i = 0; i < count; ++i)
+    if (word[2 * i] != ~word[2 * i + 1])
+      return mpmi_fail(s->context, MPM_E_ARG,
+                       "%s is %g here, and another number on another part: give all the same", name[i],
+                       number[i]);
+  return MPM_OK;
 }
 
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
@@ -50,14 +60,14 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   mpmi_layout *layout = &s->layout;
   if (!mpmi_is_shared(s)) return status;
   int64_t word[OWN_WORDS + 2 * MOST_NUMBERS] = {0};
-  put_number(word, (double)layout->member_count);
+  mpmi_put_number(word, (double)layout->member_count);
   word[2] = !s->history.has_sums;
   word[3] = layout->walls_changed;
   word[4] = layout->parts->is_stale;
   word[5] = s->settings.progress != NULL;
   for (int32_t m = 0; m < layout->member_count; ++m)
     word[6] |= layout->member[m].set->field[MPMI_PRESCRIBED].present;
-  for (int32_t i = 0; i < count; ++i) put_number(&word[OWN_WORDS + 2 * i], number[i]);
+  for (int32_t i = 0; i < count; ++i) mpmi_put_number(&word[OWN_WORDS + 2 * i], number[i]);
   word[7] = status != MPM_OK;
   const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word);
   if (lost) return lost;
@@ -65,10 +75,7 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   if (word[0] != ~word[1])
     return mpmi_fail(c, MPM_E_STATE,
                      "the stepper has other numbers of sets on other parts: add the same to all");
-  for (int32_t i = 0; i < count; ++i)
-    if (word[OWN_WORDS + 2 * i] != ~word[OWN_WORDS + 2 * i + 1])
-      return mpmi_fail(c, MPM_E_ARG, "%s is %g here, and another number on another part: give all the same",
-                       name[i], number[i]);
+  if ((status = mpmi_check_alike(s, count, name, number, word + OWN_WORDS))) return status;
   if (word[2]) s->history.has_sums = 0;
   layout->walls_changed |= word[3] != 0;
   layout->parts->is_stale |= word[4] != 0;
@@ -149,6 +156,7 @@ static mpm_status take_failure(mpm_stepper *s, mpm_status status, int32_t part) 
 mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges) {
   mpm_context *c = s->context;
   if (!mpmi_is_shared(s)) return status;
+  mpmi_time_add(s->layout.parts);
   const int64_t came_to = s->layout.parts->exchanges;
   status = catch_up(s, status, exchanges);
   mpmi_task_report *report = &s->work.report[0];

@@ -172,6 +172,8 @@ void views(world &w) {
   for (int64_t i = 0; i < mass.size(); ++i) sum += mass(i);
   CHECK(mass.components() == 1 && std::abs(sum - 500.0) < 1e-9);
   CHECK(w.stepper.map<const int64_t>("index").components() == 2);
+  const auto owned = w.stepper.map<const uint8_t>("owned");
+  for (int64_t i = 0; i < owned.size(); ++i) CHECK(owned(i) == 1);
   CHECK(refused(MPM_E_NOT_FOUND, "body", [&] { w.stepper.map<const double>("mass", 1); }));
 }
 

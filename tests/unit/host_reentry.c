@@ -87,6 +87,7 @@ static void try_all(int32_t kind) {
       mpm_stepper_set_node_hook(stepper, MPM_AFTER_P2G, NULL, NULL),
       mpm_stepper_set_linear_solver(stepper, NULL, NULL),
       mpm_stepper_set_progress(stepper, NULL, NULL),
+      mpm_stepper_set_balance(stepper, NULL),
       mpm_stable_dt(stepper, value),
       mpm_step(stepper, 1e-5, NULL),
       mpm_advance(stepper, &go, NULL),

@@ -2,33 +2,12 @@
  * Check's macros may not be used: every part keeps what it has found, which is compared afterwards. */
 #include "combinations.h"
 #include "parts.h"
+#include "shared.h"
 
-enum { MOST_PARTS = 5, STEPS = 16, SAMPLE = 120 };
-
-typedef struct outcome {
-  mpm_status status;
-  char text[400];
-  uint64_t hash;
-  mpm_step_info info;
-  double reaction[6][3], stable_dt;
-  int64_t total, own;
-  int64_t failed_particle; /* of a step that had to fail */
-  mpm_parallel_info parallel;
-} outcome;
-
-typedef struct scene scene;
-typedef mpm_status (*scene_fn)(world *w, const scene *is);
-typedef mpm_status (*run_fn)(world *w, const scene *is, outcome *found);
-struct scene {
-  world_desc desc;
-  scene_fn set_up;
-  run_fn run; /* NULL: STEPS steps */
-  double speed;
-  outcome found[MOST_PARTS];
-};
+enum { SAMPLE = 120 };
 
 /* Velocities that follow from the positions: a spin and a drift, so that particles change their blocks. */
-static mpm_status set_velocities(world *w, mpm_particles *set, double speed) {
+mpm_status set_velocities(world *w, mpm_particles *set, double speed) {
   const int64_t n = mpm_particles_count(set);
   const int32_t dim = w->dim;
   double *x = calloc((size_t)(n * dim + 1), 2 * sizeof *x), *v = x + n * dim;
@@ -45,7 +24,7 @@ static mpm_status set_velocities(world *w, mpm_particles *set, double speed) {
   return status;
 }
 
-static mpm_status fill_middle(world *w, mpm_particles *set, double from, double to) {
+mpm_status fill_middle(world *w, mpm_particles *set, double from, double to) {
   const double size = w->desc.grid.spacing[0] * (double)w->desc.grid.cells[0];
   const double low[] = {from * size, from * size, from * size}, high[] = {to * size, to * size, to * size};
   const int32_t per_cell[] = {2, 2, 2};
@@ -60,7 +39,7 @@ static mpm_status set_walls(world *w) {
   return status;
 }
 
-static mpm_status run_steps(world *w) {
+mpm_status run_steps(world *w) {
   double dt;
   mpm_status status = mpm_stable_dt(w->stepper, &dt);
   for (int32_t i = 0; i < STEPS && !status; ++i)
@@ -86,7 +65,7 @@ static mpm_status play(world *w, const scene *is, outcome *found) {
   return status ? status : read;
 }
 
-static void live(int32_t part, const mpm_transport *transport, void *user) {
+void live(int32_t part, const mpm_transport *transport, void *user) {
   scene *is = user;
   outcome *found = &is->found[part];
   world w;
@@ -100,7 +79,7 @@ static void live(int32_t part, const mpm_transport *transport, void *user) {
 }
 
 /* Plays the scene in one part, and then in several. */
-static void check_scene(const scene *is, const char *name, int32_t parts) {
+void check_scene(const scene *is, const char *name, int32_t parts) {
   scene one = *is, many = *is;
   parts_plan plan;
   memset(&plan, 0, sizeof plan);
@@ -135,7 +114,7 @@ static void check_scene(const scene *is, const char *name, int32_t parts) {
 }
 
 /* ---- combinations -------------------------------------------------------------------------------------- */
-static mpm_status set_up_combination(world *w, const scene *is) {
+mpm_status set_up_combination(world *w, const scene *is) {
   mpm_status status = set_walls(w);
   if (!status) status = fill_middle(w, w->set[0], 0.2, 0.7);
   return status ? status : set_velocities(w, w->set[0], is->speed);
@@ -177,9 +156,7 @@ START_TEST(combinations_in_parts) {
 END_TEST
 
 /* ---- what hosts do ------------------------------------------------------------------------------------- */
-static const int32_t wide = 24; /* cells along an axis in 2-D: blocks are 16 wide, and parts have few */
-
-static scene scene_of(int32_t dim, int64_t cells, scene_fn set_up) {
+scene scene_of(int32_t dim, int64_t cells, scene_fn set_up) {
   scene is;
   memset(&is, 0, sizeof is);
   is.desc = world_default(dim, cells, 1.0 / (double)cells);
@@ -350,7 +327,7 @@ START_TEST(few_blocks) {
 END_TEST
 
 /* A body that flies through the grid takes the blocks of all parts in turn. */
-static mpm_status fly(world *w, const scene *is, outcome *found) {
+mpm_status fly(world *w, const scene *is, outcome *found) {
   (void)is, (void)found;
   mpm_advance_desc d = advance_desc(0.02);
   return mpm_advance(w->stepper, &d, &w->info);
@@ -566,8 +543,8 @@ START_TEST(transport_is_lost) {
 }
 END_TEST
 
-/* Wherever memory fails on one part once its world is open, the call fails on all, and goes through when it is
- * made again. No part waits, and nothing is lost. */
+/* Wherever memory fails on one part once its world is open, the call fails on all, and goes through when it
+ * is made again. No part waits, and nothing is lost. */
 typedef struct hungry {
   scene is;
   int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
@@ -646,6 +623,8 @@ Suite *shared_suite(void) {
   tcase_add_test(host, few_blocks);
   tcase_add_test(host, blocks_are_cut_anew);
   suite_add_tcase(suite, host);
+  suite_add_tcase(suite, shared_calls_case());
+  suite_add_tcase(suite, shared_balance_case());
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);
   tcase_add_loop_test(failures, steps_fail_together, 0, 6);

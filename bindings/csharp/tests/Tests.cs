@@ -178,7 +178,7 @@ namespace Mpm {
         Refuses(MPM_CANCELLED, "", () => stepper.Step(1e-3));
         stepper.SetProgress(null);
         stepper.SetNodeHook(MPM_AFTER_FORCES, (ref NodeBatch batch, Columns velocity, Columns force) => {
-          for (long i = 0; i < batch.n; i++) force[i, 1] += 9.81 * batch.Mass[i, 0];
+          for (long i = 0; i < batch.n; i++) force[i, 1] += 9.81 * batch.Mass[i, 0] * batch.Owned[i, 0];
           return MPM_OK;
         });
         Refuses(MPM_E_ARG, "stage", () => stepper.SetNodeHook(9, (ref NodeBatch batch, Columns velocity, Columns force) => 0));
