@@ -24,6 +24,8 @@ typedef struct outcome {
   int64_t failed_particle;     /* of a step that had to fail */
   mpm_contact_info contact[4]; /* what a scene has asked for */
   double seen[24];             /* likewise */
+  uint64_t node_sum;           /* of index and mass of the nodes that are owned, in any order */
+  int64_t nodes, in_hook;      /* how many these are; how many a hook has been shown */
   mpm_parallel_info parallel;
 } outcome;
 
@@ -49,6 +51,8 @@ mpm_status set_velocities(world *w, mpm_particles *set, double speed);
 mpm_status fill_middle(world *w, mpm_particles *set, double from, double to);
 mpm_status set_walls(world *w);
 mpm_status run_steps(world *w);
+/* A body that flies through the grid takes the blocks of all parts in turn. */
+mpm_status fly_through(world *w, const scene *is, outcome *found);
 /* Walls, a body and its velocities. */
 mpm_status set_up_body(world *w, const scene *is);
 
@@ -81,5 +85,7 @@ mpm_status drop_loads(world *w, mpm_surface *s);
 void add_shared_options(Suite *suite);
 void add_shared_heat(Suite *suite);
 void add_shared_surfaces(Suite *suite);
+TCase *shared_calls_case(void);
+TCase *shared_balance_case(void);
 
 #endif
