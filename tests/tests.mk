@@ -186,9 +186,9 @@ check-valgrind: $(UNIT)
 	    valgrind -q --error-exitcode=1 --leak-check=full $(UNIT) || exit 1; \
 	done
 
-# libFuzzer on saved states, descriptors and small clouds of particles; what is new stays in $(FUZZ)/fuzz/corpus.
+# libFuzzer on saved states, packed particles, descriptors, small clouds of particles and problems in parts; what is new stays in $(FUZZ)/fuzz/corpus.
 FUZZ = $(BUILD)-fuzz
-FUZZ_TARGETS ?= state descriptors clouds meshes
+FUZZ_TARGETS ?= state packed descriptors clouds meshes parts
 FUZZ_SECONDS ?= 600
 FUZZ_FLAGS = -g -fno-omit-frame-pointer -fno-sanitize-recover=all -fsanitize=address,undefined
 FUZZ_CC ?= clang

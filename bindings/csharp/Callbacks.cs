@@ -109,6 +109,7 @@ namespace Mpm {
   public unsafe partial struct NodeBatch {
     public Columns Position { get { return new Columns(position, ld, n, dim, false); } }
     public Columns Mass { get { return new Columns(mass, ld, n, 1, false); } }
+    public ByteColumns Owned { get { return new ByteColumns(owned, ld, n, 1); } }
   }
 
   public unsafe partial struct ContactBatch {

@@ -505,6 +505,29 @@ namespace Mpm {
     public IntPtr user;
   }
 
+  /// <summary>How blocks of the grid are given to parts.</summary>
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe partial struct BalanceDesc {
+    /// <summary>sizeof(mpm_balance_desc) of the caller.</summary>
+    public uint struct_size;
+    /// <summary>0 (default): a block weighs what its particles and block_weight come to. 1: the seconds that a part
+    /// has spent in steps since blocks were last given to parts, those of waiting left out, are what its blocks weigh
+    /// together, each in proportion to that.</summary>
+    public int measure;
+    /// <summary>Blocks are given to parts anew when the largest weight of a part is this many times the mean, at
+    /// least 1; infinity: never.</summary>
+    public double limit;
+    /// <summary>What a block costs beside its particles, in particles, from 0 to 1e6.</summary>
+    public double block_weight;
+
+    /// <summary>The library's defaults.</summary>
+    public static BalanceDesc Default() {
+      var it = new BalanceDesc();
+      MpmException.Check(Native.mpm_balance_desc_init(&it, (uint)sizeof(BalanceDesc)), IntPtr.Zero);
+      return it;
+    }
+  }
+
   /// <summary>What one part does of a problem, and what that costs.</summary>
   [StructLayout(LayoutKind.Sequential)]
   public unsafe partial struct ParallelInfo {
@@ -964,6 +987,9 @@ namespace Mpm {
     public double* position;
     /// <summary>[ld].</summary>
     public double* mass;
+    /// <summary>[ld] 1 on exactly one of the parts that have the node, for sums of the host, else 0; all 1 with one
+    /// part: see parallel.h.</summary>
+    public byte* owned;
   }
 
   /// <summary>How mpm_advance() chooses its sub-steps.</summary>
@@ -1467,9 +1493,33 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_particles_total(IntPtr particles, long* n);
 
+    /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_balance_desc) of the caller; no byte beyond
+    /// is written.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_balance_desc_init(BalanceDesc* desc, uint struct_size);
+
+    /// <summary>Sets how blocks are given to parts, from the next sort of particles on (collective); desc NULL: by
+    /// the defaults.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_stepper_set_balance(IntPtr stepper, BalanceDesc* desc);
+
     /// <summary>Tells what this part does, as of the last step; 1 in reset starts the counts anew.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_stepper_parallel_info(IntPtr stepper, int reset, ParallelInfo* info);
+
+    /// <summary>Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it
+    /// has now.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_packed_size(IntPtr particles, long n, long* bytes);
+
+    /// <summary>Packs n particles into a buffer, for hosts that move them themselves: between sets, programs,
+    /// machines.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_pack(IntPtr particles, long n, long* ids, IntPtr buffer, long capacity);
+
+    /// <summary>Adds packed particles to a set, bit by bit: all or none.</summary>
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern int mpm_particles_unpack(IntPtr particles, IntPtr buffer, long bytes);
 
     /// <summary>Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond
     /// is written.</summary>

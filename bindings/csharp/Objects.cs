@@ -182,6 +182,29 @@ namespace Mpm {
       });
     }
 
+    /// <summary>Packs the particles with these ids in this order, or all by ascending id, for Unpack of this set or of
+    /// another.</summary>
+    public byte[] Pack(long[] ids = null) {
+      long n = ids == null ? Count : ids.Length;
+      byte[] packed = null;
+      Call(p => {
+        long bytes;
+        int status = Native.mpm_particles_packed_size(p, n, &bytes);
+        if (status != MPM_OK) return status;
+        packed = new byte[bytes];
+        var first = new long[] { 0 };
+        fixed (long* id = ids != null && n == 0 ? first : ids) fixed (byte* to = packed)
+          return Native.mpm_particles_pack(p, n, id, (IntPtr)to, bytes);
+      });
+      return packed;
+    }
+    /// <summary>Adds particles that Pack has given: all or none.</summary>
+    public void Unpack(byte[] packed) {
+      Call(p => {
+        fixed (byte* from = packed) return Native.mpm_particles_unpack(p, (IntPtr)from, packed.Length);
+      });
+    }
+
     /// <summary>Components of copies of a field; 1 for a name that there is not, which the library then refuses.</summary>
     int ComponentsOf(string field) {
       for (int k = 0;; k++) {

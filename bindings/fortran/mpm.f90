@@ -369,6 +369,21 @@ module mpm
     type(c_ptr) :: user
   end type mpm_transport
 
+  !> How blocks of the grid are given to parts.
+  type, bind(c) :: mpm_balance_desc
+    !> sizeof(mpm_balance_desc) of the caller.
+    integer(c_int32_t) :: struct_size
+    !> 0 (default): a block weighs what its particles and block_weight come to. 1: the seconds that a part has spent in
+    !! steps since blocks were last given to parts, those of waiting left out, are what its blocks weigh together, each
+    !! in proportion to that.
+    integer(c_int32_t) :: measure
+    !> Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least 1;
+    !! infinity: never.
+    real(c_double) :: limit
+    !> What a block costs beside its particles, in particles, from 0 to 1e6.
+    real(c_double) :: block_weight
+  end type mpm_balance_desc
+
   !> What one part does of a problem, and what that costs.
   type, bind(c) :: mpm_parallel_info
     !> sizeof(mpm_parallel_info) of the caller.
@@ -753,6 +768,9 @@ module mpm
     type(c_ptr) :: position
     !> [ld].
     type(c_ptr) :: mass
+    !> [ld] 1 on exactly one of the parts that have the node, for sums of the host, else 0; all 1 with one part: see
+    !! parallel.h.
+    type(c_ptr) :: owned
   end type mpm_node_batch
 
   !> How mpm_advance() chooses its sub-steps.
@@ -1444,6 +1462,22 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_particles_total
 
+    !> Fills desc with the defaults. struct_size is sizeof(mpm_balance_desc) of the caller; no byte beyond is written.
+    function mpm_balance_desc_init(desc, struct_size) bind(c, name="mpm_balance_desc_init") result(answer)
+      import
+      type(mpm_balance_desc), intent(inout) :: desc
+      integer(c_int32_t), value :: struct_size
+      integer(c_int32_t) :: answer
+    end function mpm_balance_desc_init
+
+    !> Sets how blocks are given to parts, from the next sort of particles on (collective); desc NULL: by the defaults.
+    function mpm_stepper_set_balance(stepper, desc) bind(c, name="mpm_stepper_set_balance") result(answer)
+      import
+      type(c_ptr), value :: stepper
+      type(mpm_balance_desc), intent(in) :: desc
+      integer(c_int32_t) :: answer
+    end function mpm_stepper_set_balance
+
     !> Tells what this part does, as of the last step; 1 in reset starts the counts anew.
     function mpm_stepper_parallel_info(stepper, reset, info) bind(c, name="mpm_stepper_parallel_info") result(answer)
       import
@@ -1452,6 +1486,35 @@ module mpm
       type(mpm_parallel_info), intent(inout) :: info
       integer(c_int32_t) :: answer
     end function mpm_stepper_parallel_info
+
+    !> Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has now.
+    function mpm_particles_packed_size(particles, n, bytes) bind(c, name="mpm_particles_packed_size") result(answer)
+      import
+      type(c_ptr), value :: particles
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(inout) :: bytes
+      integer(c_int32_t) :: answer
+    end function mpm_particles_packed_size
+
+    !> Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines.
+    function mpm_particles_pack(particles, n, ids, buffer, capacity) bind(c, name="mpm_particles_pack") result(answer)
+      import
+      type(c_ptr), value :: particles
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: ids(*)
+      type(*), intent(inout) :: buffer(*)
+      integer(c_int64_t), value :: capacity
+      integer(c_int32_t) :: answer
+    end function mpm_particles_pack
+
+    !> Adds packed particles to a set, bit by bit: all or none.
+    function mpm_particles_unpack(particles, buffer, bytes) bind(c, name="mpm_particles_unpack") result(answer)
+      import
+      type(c_ptr), value :: particles
+      type(*), intent(in) :: buffer(*)
+      integer(c_int64_t), value :: bytes
+      integer(c_int32_t) :: answer
+    end function mpm_particles_unpack
 
     !> Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.
     function mpm_context_desc_init(desc, struct_size) bind(c, name="mpm_context_desc_init") result(answer)
@@ -2808,6 +2871,7 @@ module mpm
   !> Readies a struct: a descriptor gets the library's defaults, an output its struct_size and zeros.
   interface mpm_init
     module procedure init_mpm_view
+    module procedure init_mpm_balance_desc
     module procedure init_mpm_parallel_info
     module procedure init_mpm_context_desc
     module procedure init_mpm_grid_desc
@@ -2827,7 +2891,7 @@ module mpm
     module procedure init_mpm_heat_desc
   end interface mpm_init
 
-  private :: init_mpm_view, init_mpm_parallel_info, init_mpm_context_desc, init_mpm_grid_desc, &
+  private :: init_mpm_view, init_mpm_balance_desc, init_mpm_parallel_info, init_mpm_context_desc, init_mpm_grid_desc, &
       init_mpm_material_batch, init_mpm_material_desc, init_mpm_operator_info, init_mpm_stepper_desc, &
       init_mpm_step_info, init_mpm_advance_desc, init_mpm_profile, init_mpm_contact_desc, init_mpm_contact_info, &
       init_mpm_obstacle_desc, init_mpm_surface_desc, init_mpm_adaption_desc, init_mpm_adaption_info, &
@@ -2847,6 +2911,11 @@ contains
     it%data = c_null_ptr
     it%owner = c_null_ptr
   end subroutine init_mpm_view
+
+  subroutine init_mpm_balance_desc(it)
+    type(mpm_balance_desc), intent(out) :: it
+    if (mpm_balance_desc_init(it, int(c_sizeof(it), c_int32_t)) /= MPM_OK) error stop "libmpm is older than the module mpm"
+  end subroutine init_mpm_balance_desc
 
   subroutine init_mpm_parallel_info(it)
     type(mpm_parallel_info), intent(out) :: it

@@ -165,6 +165,15 @@ export const structs = {
       user: [36, 'pointer'],
     },
   },
+  mpm_balance_desc: {
+    size: 24,
+    fields: {
+      struct_size: [0, 'u32'],
+      measure: [4, 'i32'],
+      limit: [8, 'f64'],
+      block_weight: [16, 'f64'],
+    },
+  },
   mpm_parallel_info: {
     size: 96,
     fields: {
@@ -376,6 +385,7 @@ export const structs = {
       index: [48, 'i64*', 'dim', 'ld'],
       position: [52, 'f64*', 'dim', 'ld'],
       mass: [56, 'f64*', 'ld'],
+      owned: [60, 'u8*', 'ld'],
     },
   },
   mpm_advance_desc: {

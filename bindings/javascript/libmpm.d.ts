@@ -279,6 +279,27 @@ export interface Constants {
 /** All constants of the library, under their names in C. */
 export const C: Constants;
 
+/**
+ * How blocks of the grid are given to parts. Fill it with mpm_balance_desc_init(); all 0 are the defaults.
+ */
+export interface BalanceDesc {
+  /**
+   * 0 (default): a block weighs what its particles and block_weight come to. 1: the seconds that a part has
+   * spent in steps since blocks were last given to parts, those of waiting left out, are what its blocks
+   * weigh together, each in proportion to that.
+   */
+  measure?: number | boolean;
+  /**
+   * Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least 1;
+   * infinity: never. 0 (default): 1.1.
+   */
+  limit?: number;
+  /**
+   * What a block costs beside its particles, in particles, from 0 to 1e6. 0 (default): 60, about what the
+   * sums of its nodes take.
+   */
+  block_weight?: number;
+}
 /** Services of the host. */
 export interface ContextDesc {
   /**
@@ -956,6 +977,11 @@ export interface NodeBatch {
   readonly position: Float64Array[];
   /** [ld] */
   readonly mass: Float64Array;
+  /**
+   * [ld] 1 on exactly one of the parts that have the node, for sums of the host, else 0; all 1 with one part:
+   * see parallel.h. Since 0.2.0.
+   */
+  readonly owned: Uint8Array;
 }
 /** Nodes at which two bodies touch, for mpm_friction_fn. Arrays belong to the library. */
 export interface ContactBatch {
@@ -1524,6 +1550,38 @@ export class Particles implements Handle {
    * MPM_E_ARG: an id is given twice.
    */
   remove(ids: ArrayLike<number | bigint>): void;
+  /**
+   * All particles by ascending id, or those with these ids in this order, as bytes for `unpack`.
+   *
+   * Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines.
+   * They have every field in use, bit by bit, with ids, images and the host's fields, and what says of which
+   * law they are. The order of bytes is the same on all machines. The particles stay in the set.
+   *
+   * - ids: [n], each once, in this order; NULL for all particles by ascending id, where n is
+   *   mpm_particles_count().
+   * - buffer: of `capacity` bytes, of which those of mpm_particles_packed_size() are written; anywhere.
+   *
+   * Of a problem in several parts these are particles of this part, and no other part takes part.
+   * MPM_E_NOT_FOUND: an id is not in the set. MPM_E_ARG: capacity is too small, an id is given twice, n does
+   * not match or buffer is NULL. MPM_E_STATE: a staged step is under way, a view of the set is out for
+   * writing, or a value that was written through one is bad. Since 0.2.0.
+   */
+  pack(ids?: ArrayLike<number | bigint>): Uint8Array;
+  /**
+   * Takes what `pack` has given, of this set or of another.
+   *
+   * Adds packed particles to a set, bit by bit: all or none. The law is not asked: stress, state variables
+   * and volume come along. Fields that the set has and the buffer lacks have the values of new particles.
+   * Grids may have other cells and bases, if the particles lie inside.
+   *
+   * Of a problem in several parts they are added to this part, and no other part takes part; the next step
+   * brings them home. MPM_E_FORMAT: the buffer is damaged; it is of another law, or of other parameters,
+   * dimension, geometry or kind of grid, or counts images of other periods; or it has fields that the set has
+   * not: of the host, of another type, or "reference_position" and "dilation_ratio" where no stepper keeps
+   * them. MPM_E_ARG: an id is in use, or a particle lies outside the grid, which the text names; or buffer is
+   * NULL. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+   */
+  unpack(packed: Uint8Array): void;
   /** The fields of the set, those of the host included. */
   fields(): Field[];
   /**
@@ -2097,6 +2155,7 @@ export class Stepper implements Handle {
    * | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
    * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
    * | "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
+   * | "owned"                            | U8   | 1          | as in mpm_node_batch                          |
    *
    * - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
    * - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -2150,7 +2209,12 @@ export interface Raw {
   mpm_view_release(view: number): number;
   mpm_context_part(context: number, part: number, parts: number): number;
   mpm_particles_total(particles: number, n: number): number;
+  mpm_balance_desc_init(desc: number, struct_size: number): number;
+  mpm_stepper_set_balance(stepper: number, desc: number): number;
   mpm_stepper_parallel_info(stepper: number, reset: number, info: number): number;
+  mpm_particles_packed_size(particles: number, n: bigint, bytes: number): number;
+  mpm_particles_pack(particles: number, n: bigint, ids: number, buffer: number, capacity: bigint): number;
+  mpm_particles_unpack(particles: number, buffer: number, bytes: bigint): number;
   mpm_context_desc_init(desc: number, struct_size: number): number;
   mpm_context_create(desc: number, out: number): number;
   mpm_context_memory(context: number, bytes: number, peak_bytes: number): number;

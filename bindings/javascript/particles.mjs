@@ -107,6 +107,21 @@ export class Particles extends Handle {
       this.call('mpm_particles_remove', [BigInt(ids.length), a.array('i64', ids, undefined, 'ids')]),
     );
   }
+  pack(ids) {
+    return this.arguments((a) => {
+      const n = ids ? ids.length : this.count;
+      const [bytes] = this.ask('mpm_particles_packed_size', [BigInt(n)], ['i64']);
+      const at = a.bytes(bytes);
+      const chosen = ids ? a.array('i64', ids, undefined, 'ids') : 0;
+      this.call('mpm_particles_pack', [BigInt(n), chosen, at, BigInt(bytes)]);
+      return this.machine.array('u8', at, bytes).slice();
+    });
+  }
+  unpack(packed) {
+    this.arguments((a) =>
+      this.call('mpm_particles_unpack', [a.array('u8', packed, undefined, 'packed'), BigInt(packed.length)]),
+    );
+  }
 
   // ---- fields ----
   #field(a, index) {

@@ -321,6 +321,19 @@ Base.cconvert(::Type{Ptr{mpm_transport}}, it::mpm_transport) = it
 Base.unsafe_convert(::Type{Ptr{mpm_transport}}, it::mpm_transport) = Ptr{mpm_transport}(pointer_from_objref(it))
 
 """
+How blocks of the grid are given to parts. Fill it with mpm_balance_desc_init(); all 0 are the defaults.
+"""
+mutable struct mpm_balance_desc
+    struct_size::UInt32
+    measure::Int32
+    limit::Float64
+    block_weight::Float64
+    mpm_balance_desc() = new()
+end
+Base.cconvert(::Type{Ptr{mpm_balance_desc}}, it::mpm_balance_desc) = it
+Base.unsafe_convert(::Type{Ptr{mpm_balance_desc}}, it::mpm_balance_desc) = Ptr{mpm_balance_desc}(pointer_from_objref(it))
+
+"""
 What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made or they were
 last reset; the caller sets struct_size.
 """
@@ -574,6 +587,7 @@ struct mpm_node_batch
     index::Ptr{Int64}
     position::Ptr{Float64}
     mass::Ptr{Float64}
+    owned::Ptr{UInt8}
 end
 
 """
@@ -1180,12 +1194,74 @@ function mpm_particles_total(particles, n)
 end
 
 """
+Fills desc with the defaults. struct_size is sizeof(mpm_balance_desc) of the caller; no byte beyond is written.
+MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
+"""
+function mpm_balance_desc_init(desc, struct_size)
+    return ccall((:mpm_balance_desc_init, libmpm), Int32, (Ptr{mpm_balance_desc}, UInt32), desc, struct_size)
+end
+
+"""
+Sets how blocks are given to parts, from the next sort of particles on (collective); desc NULL: by the defaults.
+Results do not depend on it, bit by bit. Not part of a saved state: the host sets it again. With one part it is
+checked and does nothing. MPM_E_ARG: a value is out of range, or another one is given on another part. MPM_E_STATE: a
+step is under way. Since 0.2.0.
+"""
+function mpm_stepper_set_balance(stepper, desc)
+    return ccall((:mpm_stepper_set_balance, libmpm), Int32, (Ptr{mpm_stepper}, Ptr{mpm_balance_desc}), stepper, desc)
+end
+
+"""
 Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
 struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0.
 """
 function mpm_stepper_parallel_info(stepper, reset, info)
     return ccall((:mpm_stepper_parallel_info, libmpm), Int32, (Ptr{mpm_stepper}, Int32, Ptr{mpm_parallel_info}),
         stepper, reset, info)
+end
+
+"""
+Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has now.
+MPM_E_ARG: n is negative or beyond 2^32 - 2, or bytes is NULL. Since 0.2.0.
+"""
+function mpm_particles_packed_size(particles, n, bytes)
+    return ccall((:mpm_particles_packed_size, libmpm), Int32, (Ptr{mpm_particles}, Int64, Ptr{Int64}),
+        particles, n, bytes)
+end
+
+"""
+Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines. They have
+every field in use, bit by bit, with ids, images and the host's fields, and what says of which law they are. The order
+of bytes is the same on all machines. The particles stay in the set.
+
+- ids: [n], each once, in this order; NULL for all particles by ascending id, where n is mpm_particles_count().
+- buffer: of `capacity` bytes, of which those of mpm_particles_packed_size() are written; anywhere.
+
+Of a problem in several parts these are particles of this part, and no other part takes part. MPM_E_NOT_FOUND: an id
+is not in the set. MPM_E_ARG: capacity is too small, an id is given twice, n does not match or buffer is NULL.
+MPM_E_STATE: a staged step is under way, a view of the set is out for writing, or a value that was written through one
+is bad. Since 0.2.0.
+"""
+function mpm_particles_pack(particles, n, ids, buffer, capacity)
+    return ccall((:mpm_particles_pack, libmpm), Int32, (Ptr{mpm_particles}, Int64, Ptr{Int64}, Ptr{Cvoid}, Int64),
+        particles, n, ids, buffer, capacity)
+end
+
+"""
+Adds packed particles to a set, bit by bit: all or none. The law is not asked: stress, state variables and volume come
+along. Fields that the set has and the buffer lacks have the values of new particles. Grids may have other cells and
+bases, if the particles lie inside.
+
+Of a problem in several parts they are added to this part, and no other part takes part; the next step brings them
+home. MPM_E_FORMAT: the buffer is damaged; it is of another law, or of other parameters, dimension, geometry or kind
+of grid, or counts images of other periods; or it has fields that the set has not: of the host, of another type, or
+\"reference_position\" and \"dilation_ratio\" where no stepper keeps them. MPM_E_ARG: an id is in use, or a particle
+lies outside the grid, which the text names; or buffer is NULL. MPM_E_STATE: as for all that changes a set. Since
+0.2.0.
+"""
+function mpm_particles_unpack(particles, buffer, bytes)
+    return ccall((:mpm_particles_unpack, libmpm), Int32, (Ptr{mpm_particles}, Ptr{Cvoid}, Int64),
+        particles, buffer, bytes)
 end
 
 """
@@ -1971,6 +2047,7 @@ and mirrored ghosts are listed beside the nodes that they follow.
 | \"contact_normal\"                   | F64  | dim        | unit, away from the body, where it meets them |
 | \"contact_gap\" \"contact_area\"       | F64  | 1          | length, infinite where it meets nothing       |
 | \"temperature\"                      | F64  | 1          | at the end of the step, where sets have heat  |
+| \"owned\"                            | U8   | 1          | as in mpm_node_batch                          |
 
 - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
 - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -2590,8 +2667,8 @@ Writes nodal fields of the last step, or of a staged step while one is under way
 VTK image data (.vti, appended raw), or with open knots, whose nodes are not evenly spaced at the faces, as a
 rectilinear grid (.vtr). Fields are named as in mpm_grid_map(); vectors have three components in 2-D and 3-D. Extents
 are indices of nodes; where no node is active values are zero. With count 0, when fields may be NULL, it writes every
-field that the step has kept but \"position\", which is that of the points. Memory follows the active nodes; long runs
-of zeros take no room on storage that knows holes.
+field that the step has kept but \"position\", which is that of the points, and \"owned\". Memory follows the active
+nodes; long runs of zeros take no room on storage that knows holes.
 
 - MPM_E_NOT_FOUND: there is no such field, or no set is in body 0.
 - MPM_E_STATE: nothing has been stepped yet.
@@ -2656,6 +2733,12 @@ function ready(::Type{T}) where {T}
     if hasfield(T, :struct_size)
         it.struct_size = UInt32(sizeof(T))
     end
+    return it
+end
+function ready(::Type{mpm_balance_desc})
+    it = zeroed(mpm_balance_desc)
+    status = mpm_balance_desc_init(it, UInt32(sizeof(mpm_balance_desc)))
+    status == MPM_OK || error("mpm_balance_desc_init: libmpm is older than the module")
     return it
 end
 function ready(::Type{mpm_context_desc})
@@ -2738,26 +2821,28 @@ export check, columns, ready, MpmError, MPM_OK, MPM_CUT_DT, MPM_INVERTED, MPM_NO
     MPM_MOTION_FREE, MPM_ADAPT_SPLIT, MPM_ADAPT_MERGE, MPM_CONDUCTION_EXPLICIT, MPM_CONDUCTION_IMPLICIT,
     MPM_HEAT_WALL_INSULATED, MPM_HEAT_WALL_TEMPERATURE, mpm_context, mpm_grid, mpm_material, mpm_particles,
     mpm_stepper, mpm_operator, mpm_obstacle, mpm_surface, mpm_series, mpm_param, mpm_view, mpm_message, mpm_transport,
-    mpm_parallel_info, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc, mpm_operator_info,
-    mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch, mpm_advance_desc, mpm_profile,
-    mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc, mpm_surface_desc,
-    mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info, mpm_heat_desc, mpm_heat_info,
-    mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_part, mpm_particles_total,
-    mpm_stepper_parallel_info, mpm_context_desc_init, mpm_context_create, mpm_context_memory, mpm_context_destroy,
-    mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create, mpm_grid_destroy, mpm_material_create,
-    mpm_material_model_count, mpm_material_model_name, mpm_material_model_param, mpm_material_state_count,
-    mpm_material_state_name, mpm_batch_field, mpm_material_desc_init, mpm_material_create_custom, mpm_material_update,
-    mpm_material_destroy, mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box,
-    mpm_particles_fill_ball, mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count,
-    mpm_particles_field_info, mpm_particles_add_field, mpm_particles_set_extensive, mpm_particles_map,
-    mpm_particles_get, mpm_particles_get_f32, mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic,
-    mpm_particles_reset_reference, mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init,
-    mpm_stepper_create, mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure,
-    mpm_stepper_set_time, mpm_stepper_set_motion, mpm_stepper_set_wall, mpm_stepper_set_acceleration,
-    mpm_stepper_set_force, mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver,
-    mpm_stepper_set_progress, mpm_stable_dt, mpm_step, mpm_advance_desc_init, mpm_advance, mpm_stepper_profile,
-    mpm_stepper_info, mpm_stepper_residuals, mpm_step_begin, mpm_step_grid, mpm_step_end, mpm_step_abort,
-    mpm_grid_map, mpm_stepper_wall_reaction, mpm_stepper_particles_reaction, mpm_stepper_wall_impulse,
+    mpm_balance_desc, mpm_parallel_info, mpm_context_desc, mpm_grid_desc, mpm_material_batch, mpm_material_desc,
+    mpm_operator_info, mpm_stepper_desc, mpm_step_info, mpm_particle_batch, mpm_node_batch, mpm_advance_desc,
+    mpm_profile, mpm_contact_desc, mpm_contact_info, mpm_contact_batch, mpm_distance_batch, mpm_obstacle_desc,
+    mpm_surface_desc, mpm_marker_batch, mpm_adaption_batch, mpm_adaption_desc, mpm_adaption_info, mpm_heat_desc,
+    mpm_heat_info, mpm_version, mpm_status_name, mpm_status_text, mpm_view_release, mpm_context_part,
+    mpm_particles_total, mpm_balance_desc_init, mpm_stepper_set_balance, mpm_stepper_parallel_info,
+    mpm_particles_packed_size, mpm_particles_pack, mpm_particles_unpack, mpm_context_desc_init, mpm_context_create,
+    mpm_context_memory, mpm_context_destroy, mpm_last_error, mpm_set_last_error, mpm_grid_desc_init, mpm_grid_create,
+    mpm_grid_destroy, mpm_material_create, mpm_material_model_count, mpm_material_model_name,
+    mpm_material_model_param, mpm_material_state_count, mpm_material_state_name, mpm_batch_field,
+    mpm_material_desc_init, mpm_material_create_custom, mpm_material_update, mpm_material_destroy,
+    mpm_particles_create, mpm_particles_destroy, mpm_particles_add, mpm_particles_fill_box, mpm_particles_fill_ball,
+    mpm_particles_fill, mpm_particles_fill_mesh, mpm_particles_remove, mpm_particles_count, mpm_particles_field_info,
+    mpm_particles_add_field, mpm_particles_set_extensive, mpm_particles_map, mpm_particles_get, mpm_particles_get_f32,
+    mpm_particles_set, mpm_particles_set_all, mpm_particles_set_geostatic, mpm_particles_reset_reference,
+    mpm_operator_get_info, mpm_operator_apply, mpm_operator_csr, mpm_stepper_desc_init, mpm_stepper_create,
+    mpm_stepper_destroy, mpm_stepper_add, mpm_stepper_remove, mpm_stepper_configure, mpm_stepper_set_time,
+    mpm_stepper_set_motion, mpm_stepper_set_wall, mpm_stepper_set_acceleration, mpm_stepper_set_force,
+    mpm_stepper_set_velocity_bc, mpm_stepper_set_node_hook, mpm_stepper_set_linear_solver, mpm_stepper_set_progress,
+    mpm_stable_dt, mpm_step, mpm_advance_desc_init, mpm_advance, mpm_stepper_profile, mpm_stepper_info,
+    mpm_stepper_residuals, mpm_step_begin, mpm_step_grid, mpm_step_end, mpm_step_abort, mpm_grid_map,
+    mpm_stepper_wall_reaction, mpm_stepper_particles_reaction, mpm_stepper_wall_impulse,
     mpm_stepper_particles_impulse, mpm_stepper_set_body, mpm_stepper_body, mpm_contact_desc_init,
     mpm_stepper_set_contact, mpm_stepper_set_friction, mpm_stepper_contact_info, mpm_obstacle_desc_init,
     mpm_obstacle_create, mpm_obstacle_destroy, mpm_stepper_add_obstacle, mpm_stepper_remove_obstacle,

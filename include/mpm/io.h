@@ -117,8 +117,8 @@ MPM_API mpm_status mpm_write_particles_to(const mpm_particles *particles, mpm_wr
  * at the faces, as a rectilinear grid (.vtr). Fields are named as in mpm_grid_map(); vectors have three
  * components in 2-D and 3-D. Extents are indices of nodes; where no node is active values are zero. With
  * count 0, when fields may be NULL, it writes every field that the step has kept but "position", which is
- * that of the points. Memory follows the active nodes; long runs of zeros take no room on storage that knows
- * holes.
+ * that of the points, and "owned". Memory follows the active nodes; long runs of zeros take no room on
+ * storage that knows holes.
  *
  * - MPM_E_NOT_FOUND: there is no such field, or no set is in body 0.
  * - MPM_E_STATE: nothing has been stepped yet.

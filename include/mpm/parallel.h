@@ -16,8 +16,8 @@
  * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
  * particles, where each part adds its own and numbers without ids follow those of the parts before;
  * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stepper_heat_info(),
- * mpm_stable_dt(), mpm_state_hash(), mpm_state_size(), mpm_state_save() in all its forms and
- * mpm_state_load_pieces().
+ * mpm_stable_dt(), mpm_stepper_set_balance(), mpm_state_hash(), mpm_state_size(), mpm_state_save() in all
+ * its forms and mpm_state_load_pieces().
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts, which is not checked.
  *
@@ -103,6 +103,32 @@ MPM_API mpm_status mpm_context_part(const mpm_context *context, int32_t *part, i
 /** Particles of a set on all parts (collective). mpm_particles_count() is that of this part. */
 MPM_API mpm_status mpm_particles_total(const mpm_particles *particles, int64_t *n);
 
+/** How blocks of the grid are given to parts. Fill it with mpm_balance_desc_init(); all 0 are the defaults.
+ */
+typedef struct mpm_balance_desc {
+  uint32_t struct_size; /**< sizeof(mpm_balance_desc) of the caller */
+  /** 0 (default): a block weighs what its particles and block_weight come to. 1: the seconds that a part has
+   * spent in steps since blocks were last given to parts, those of waiting left out, are what its blocks
+   * weigh together, each in proportion to that. */
+  int32_t measure;
+  /** Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least
+   * 1; infinity: never. 0 (default): 1.1. */
+  double limit;
+  /** What a block costs beside its particles, in particles, from 0 to 1e6. 0 (default): 60, about what the
+   * sums of its nodes take. */
+  double block_weight;
+} mpm_balance_desc;
+
+/** Fills desc with the defaults. struct_size is sizeof(mpm_balance_desc) of the caller; no byte beyond is
+ * written. MPM_E_ARG: it is smaller than the first released struct. Any thread, any time. */
+MPM_API mpm_status mpm_balance_desc_init(mpm_balance_desc *desc, uint32_t struct_size);
+
+/** Sets how blocks are given to parts, from the next sort of particles on (collective); desc NULL: by the
+ * defaults. Results do not depend on it, bit by bit. Not part of a saved state: the host sets it again. With
+ * one part it is checked and does nothing. MPM_E_ARG: a value is out of range, or another one is given on
+ * another part. MPM_E_STATE: a step is under way. Since 0.2.0. */
+MPM_API mpm_status mpm_stepper_set_balance(mpm_stepper *stepper, const mpm_balance_desc *desc);
+
 /** What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made
  * or they were last reset; the caller sets struct_size. */
 typedef struct mpm_parallel_info {
@@ -124,6 +150,41 @@ typedef struct mpm_parallel_info {
 /** Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL
  * or its struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0. */
 MPM_API mpm_status mpm_stepper_parallel_info(mpm_stepper *stepper, int32_t reset, mpm_parallel_info *info);
+
+/** Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has
+ * now. MPM_E_ARG: n is negative or beyond 2^32 - 2, or bytes is NULL. Since 0.2.0. */
+MPM_API mpm_status mpm_particles_packed_size(const mpm_particles *particles, int64_t n, int64_t *bytes);
+
+/**
+ * Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines.
+ * They have every field in use, bit by bit, with ids, images and the host's fields, and what says of which
+ * law they are. The order of bytes is the same on all machines. The particles stay in the set.
+ *
+ * - ids: [n], each once, in this order; NULL for all particles by ascending id, where n is
+ *   mpm_particles_count().
+ * - buffer: of `capacity` bytes, of which those of mpm_particles_packed_size() are written; anywhere.
+ *
+ * Of a problem in several parts these are particles of this part, and no other part takes part.
+ * MPM_E_NOT_FOUND: an id is not in the set. MPM_E_ARG: capacity is too small, an id is given twice, n does
+ * not match or buffer is NULL. MPM_E_STATE: a staged step is under way, a view of the set is out for
+ * writing, or a value that was written through one is bad. Since 0.2.0.
+ */
+MPM_API mpm_status mpm_particles_pack(const mpm_particles *particles, int64_t n, const int64_t *ids,
+                                      void *buffer, int64_t capacity);
+
+/**
+ * Adds packed particles to a set, bit by bit: all or none. The law is not asked: stress, state variables and
+ * volume come along. Fields that the set has and the buffer lacks have the values of new particles. Grids may
+ * have other cells and bases, if the particles lie inside.
+ *
+ * Of a problem in several parts they are added to this part, and no other part takes part; the next step
+ * brings them home. MPM_E_FORMAT: the buffer is damaged; it is of another law, or of other parameters,
+ * dimension, geometry or kind of grid, or counts images of other periods; or it has fields that the set has
+ * not: of the host, of another type, or "reference_position" and "dilation_ratio" where no stepper keeps
+ * them. MPM_E_ARG: an id is in use, or a particle lies outside the grid, which the text names; or buffer is
+ * NULL. MPM_E_STATE: as for all that changes a set. Since 0.2.0.
+ */
+MPM_API mpm_status mpm_particles_unpack(mpm_particles *particles, const void *buffer, int64_t bytes);
 
 #ifdef __cplusplus
 }

@@ -162,6 +162,19 @@ public:
     return n;
   }
 
+  /** All particles by ascending id as bytes, for another set: see mpm_particles_pack(). */
+  std::vector<unsigned char> pack() const {
+    return packed(count(), nullptr);
+  }
+  /** The particles with the given ids, in this order. */
+  std::vector<unsigned char> pack(span<const int64_t> ids) const {
+    return packed(static_cast<int64_t>(ids.size()), detail::not_null(ids));
+  }
+  /** Adds particles that pack() has given, of this set or of another: see mpm_particles_unpack(). */
+  void unpack(span<const unsigned char> bytes) {
+    check(mpm_particles_unpack(core().handle, detail::not_null(bytes), static_cast<int64_t>(bytes.size())));
+  }
+
   /** Describes all fields: see mpm_particles_field_info(). */
   std::vector<field_info> fields() const {
     std::vector<field_info> all;
@@ -287,6 +300,13 @@ private:
     check(mpm_particles_get_f32(core().handle, static_cast<int32_t>(names.size()),
                                 detail::c_names(names).data(), order, count(),
                                 out.empty() ? &none : out.data()));
+  }
+  std::vector<unsigned char> packed(int64_t n, const int64_t *ids) const {
+    int64_t bytes = 0;
+    check(mpm_particles_packed_size(core().handle, n, &bytes));
+    std::vector<unsigned char> buffer(static_cast<std::size_t>(bytes));
+    check(mpm_particles_pack(core().handle, n, ids, buffer.data(), bytes));
+    return buffer;
   }
   template <class T> std::vector<T> copy(const std::string &field, int64_t n, const int64_t *ids) const {
     const int32_t components = components_of(field);

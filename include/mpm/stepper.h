@@ -206,6 +206,9 @@ typedef struct mpm_node_batch {
   const int64_t *index;
   const double *position; /**< [dim][ld] origin + index * spacing; with open knots the Greville points */
   const double *mass;     /**< [ld] */
+  /** [ld] 1 on exactly one of the parts that have the node, for sums of the host, else 0; all 1 with one
+   * part: see parallel.h. Since 0.2.0. */
+  const uint8_t *owned;
 } mpm_node_batch;
 
 /** Gives a vector per particle (mt): the callback does add[c * ld + i] += value for c < dim, because several
@@ -455,6 +458,7 @@ MPM_API mpm_status mpm_step_abort(mpm_stepper *stepper);
  * | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
  * | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
  * | "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
+ * | "owned"                            | U8   | 1          | as in mpm_node_batch                          |
  *
  * - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
  * - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.

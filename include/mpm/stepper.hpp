@@ -169,6 +169,10 @@ public:
     check(mpm_stepper_parallel_info(core().handle, reset, &info));
     return info;
   }
+  /** Sets how blocks are given to parts: see mpm_stepper_set_balance(). */
+  void set_balance(const mpm_balance_desc &desc) {
+    check(mpm_stepper_set_balance(core().handle, &desc));
+  }
   /** Sets the acceleration of particles; nullptr: none. See mpm_stepper_set_acceleration(). */
   void set_acceleration(particle_callback function) {
     install(mpm_stepper_set_acceleration, core().acceleration, std::move(function), core().on_particles);

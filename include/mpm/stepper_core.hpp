@@ -26,6 +26,15 @@ struct stepper_desc : mpm_stepper_desc {
   }
 };
 
+/** An mpm_balance_desc that starts with the defaults. */
+struct balance_desc : mpm_balance_desc {
+  /** Starts with the defaults. */
+  balance_desc() : mpm_balance_desc() {
+    if (const mpm_status status = mpm_balance_desc_init(this, sizeof(mpm_balance_desc)))
+      throw error(status, "mpm_balance_desc_init");
+  }
+};
+
 /** An mpm_advance_desc that starts with the defaults. */
 struct advance_desc : mpm_advance_desc {
   /** Starts with the defaults and t_end = t, the time to reach. */

@@ -150,6 +150,7 @@ _Static_assert(MPMI_BLOCK_EDGE(3) * MPMI_BLOCK_EDGE(3) * MPMI_BLOCK_EDGE(3) <= M
 typedef struct mpmi_node_list {
   int64_t n, slot[MPMI_NODE_BATCH], index[3 * MPMI_NODE_BATCH];
   double position[3 * MPMI_NODE_BATCH], mass[MPMI_NODE_BATCH];
+  uint8_t owned[MPMI_NODE_BATCH];
   mpm_node_batch batch;
 } mpmi_node_list;
 

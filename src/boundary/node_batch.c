@@ -15,6 +15,7 @@ int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *
       list->position[k * MPMI_NODE_BATCH + list->n] = mpmi_node_position(b->grid, k, index[k]);
     }
     list->mass[list->n] = mpmi_moving_mass(bound, slot);
+    list->owned[list->n] = (uint8_t)mpmi_owns_node(step->layout->parts, slot);
     list->slot[list->n++] = slot;
   }
   list->batch = (mpm_node_batch){.struct_size = sizeof list->batch,
@@ -26,7 +27,8 @@ int64_t mpmi_list_nodes(const mpmi_bound *bound, int64_t block, mpmi_node_list *
                                  .dt = step->dt,
                                  .index = list->index,
                                  .position = list->position,
-                                 .mass = list->mass};
+                                 .mass = list->mass,
+                                 .owned = list->owned};
   return list->n;
 }
 

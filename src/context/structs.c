@@ -14,6 +14,7 @@
   X(mpm_context_desc, transport, 96)                                                                         \
   X(mpm_transport, user, 64)                                                                                 \
   X(mpm_parallel_info, seconds_reducing, 96)                                                                 \
+  X(mpm_balance_desc, block_weight, 24)                                                                      \
   X(mpm_grid_desc, smoothing, 112)                                                                           \
   X(mpm_grid_desc, reserved, 120)                                                                            \
   X(mpm_material_batch, lookup, 144)                                                                         \
@@ -36,6 +37,7 @@
   X(mpm_heat_info, dissipated_total, 176)                                                                    \
   X(mpm_particle_batch, lookup, 104)                                                                         \
   X(mpm_node_batch, mass, 72)                                                                                \
+  X(mpm_node_batch, owned, 80)                                                                               \
   X(mpm_advance_desc, max_steps, 56)                                                                         \
   X(mpm_profile, weights, 96)                                                                                \
   X(mpm_operator_info, position, 72)

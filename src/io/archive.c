@@ -50,12 +50,13 @@ void mpmi_archive_begin(mpmi_archive *a, mpm_context *context, int32_t mode) {
   memset(a, 0, sizeof *a);
   a->context = context;
   a->mode = mode;
+  a->name = "the state";
   mpmi_checksum_begin(&a->checksum);
 }
 
 mpm_status mpmi_archive_damaged(mpmi_archive *a, const char *what) {
   if (!a->status)
-    a->status = mpmi_fail(a->context, MPM_E_FORMAT, "the state is damaged: %s%s", a->where, what);
+    a->status = mpmi_fail(a->context, MPM_E_FORMAT, "%s is damaged: %s%s", a->name, a->where, what);
   return a->status;
 }
 
@@ -148,18 +149,17 @@ void mpmi_archive_same_int(mpmi_archive *a, const char *what, int64_t here) {
   int64_t saved = here;
   mpmi_archive_words(a, &saved, sizeof saved);
   if (reads(a) && saved != here)
-    a->status =
-        mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %s%s is %lld there, %lld here",
-                  a->where, what, (long long)saved, (long long)here);
+    a->status = mpmi_fail(a->context, MPM_E_FORMAT, "%s is of an unlike setup: %s%s is %lld there, %lld here",
+                          a->name, a->where, what, (long long)saved, (long long)here);
 }
 
 void mpmi_archive_same_real(mpmi_archive *a, const char *what, double here) {
   double saved = here;
   mpmi_archive_words(a, &saved, sizeof saved);
   if (reads(a) && !(saved == here))
-    a->status = mpmi_fail(a->context, MPM_E_FORMAT,
-                          "the state is of an unlike setup: %s%s is %.17g there, %.17g here", a->where, what,
-                          saved, here);
+    a->status =
+        mpmi_fail(a->context, MPM_E_FORMAT, "%s is of an unlike setup: %s%s is %.17g there, %.17g here",
+                  a->name, a->where, what, saved, here);
 }
 
 void mpmi_archive_same_text(mpmi_archive *a, const char *what, const char *here) {
@@ -168,7 +168,7 @@ void mpmi_archive_same_text(mpmi_archive *a, const char *what, const char *here)
   mpmi_archive_bytes(a, saved, sizeof saved);
   saved[MPMI_TEXT - 1] = '\0';
   if (reads(a) && strcmp(saved, here) != 0)
-    a->status = mpmi_fail(a->context, MPM_E_FORMAT,
-                          "the state is of an unlike setup: %s%s is \"%s\" there, \"%s\" here", a->where,
-                          what, saved, here);
+    a->status =
+        mpmi_fail(a->context, MPM_E_FORMAT, "%s is of an unlike setup: %s%s is \"%s\" there, \"%s\" here",
+                  a->name, a->where, what, saved, here);
 }

@@ -24,7 +24,8 @@ typedef struct mpmi_archive {
   const unsigned char *from; /* MPMI_FROM_MEMORY */
   int64_t size;              /* how many bytes `from` has */
   mpmi_checksum checksum;    /* sum over what was written */
-  char where[48];            /* for error texts: the part under way, "" or ending in a space */
+  const char *name;          /* for error texts: "the state" unless the caller says otherwise */
+  char where[48];            /* the same: the part under way, "" or ending in a space */
 } mpmi_archive;
 
 void mpmi_archive_begin(mpmi_archive *a, mpm_context *context, int32_t mode);

@@ -105,6 +105,15 @@ typedef struct mpmi_state_head {
 /* Writes the setup, or compares it (state_setup.c). `set` receives the fields of the state, and is NULL
  * when writing. */
 void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, uint32_t format, mpmi_state_set *set);
+/* Parts of it: a law with its parameters; the name, type and presence of a field. A field that is read is
+ * found in the set; where it may be absent, the list takes its presence from the archive. found: bits of the
+ * fields so far. */
+void mpmi_state_archive_law(mpmi_archive *a, const mpm_material *material);
+void mpmi_state_write_field(mpmi_archive *a, const mpmi_field *field);
+void mpmi_state_read_field(mpmi_archive *a, const mpm_particles *set, mpmi_state_set *to, uint64_t *found);
+mpm_status mpmi_state_refuse_field(mpmi_archive *a, const char *name, const char *what);
+/* Returns 1 for built-in fields that a set on this grid has only when something uses them. */
+int32_t mpmi_state_may_lack(const mpm_grid *grid, int32_t field);
 
 /* Returns 1 when the next step will keep the present order of the slots (state_blocks.c). */
 int32_t mpmi_state_is_sorted(const mpm_stepper *s);
@@ -169,6 +178,8 @@ void mpmi_state_check_set(mpmi_archive *a, mpm_particles *fresh, const mpmi_stat
 /* Brings what follows from the fields up to date, and refuses a state that cannot be saved now (collective).
  * status: what has happened before. */
 mpm_status mpmi_state_settle(const mpm_stepper *s, mpm_status status);
+/* The same for one set, of this part alone; texts call it `name`. before: what has to be done first. */
+mpm_status mpmi_state_settle_set(mpm_particles *set, const char *name, const char *before);
 /* Numbers of the time loop and of a set as a format has them, and one component of a field. */
 void mpmi_state_archive_numbers(mpmi_archive *a, uint32_t format, mpmi_state_numbers *n);
 void mpmi_state_archive_set_numbers(mpmi_archive *a, uint32_t format, mpmi_state_set_numbers *n);
@@ -221,6 +232,14 @@ void mpmi_state_load_end(mpmi_state_loading *l);
 mpm_status mpmi_state_measure(mpmi_state_loading *l);
 /* Reads the head of the first piece, which gives all that is not of sets or blocks. */
 mpm_status mpmi_state_read_all(mpmi_state_loading *l, const mpmi_state_piece *first);
+/* Starts with a copy of the set that has no storage, and no fields but those that the state will have. */
+void mpmi_state_start_set(mpm_particles *fresh, const mpm_particles *set);
+static inline int32_t mpmi_state_has_field(const mpmi_state_set *of, int32_t field) {
+  return (of->present >> field & 1) != 0;
+}
+/* Reads the fields of a list for the slots [first, first + slots), one field after the other. */
+void mpmi_state_read_rows(mpmi_archive *a, const mpmi_state_set *of, mpm_particles *fresh, int64_t first,
+                          int64_t slots);
 /* Reads what follows the heads into new storage, and checks it. */
 mpm_status mpmi_state_read_pieces(mpmi_state_loading *l);
 /* Frees storage and keeps which fields there are. */
@@ -239,6 +258,9 @@ mpm_status mpmi_state_share(mpmi_state_loading *l);
  * piece of several is welcome. */
 mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header *header, int64_t bytes,
                                    int32_t of_piece);
+/* Refuses what follows a header where its checksum is another: MPM_E_FORMAT. name: for the text. */
+mpm_status mpmi_state_check_sum(mpm_context *context, const char *name, const mpmi_state_header *header,
+                                const void *body);
 /* Loads a state that is one piece, by one part. */
 mpm_status mpmi_state_load(mpm_stepper *s, const void *buffer, int64_t bytes);
 

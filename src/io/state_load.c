@@ -7,8 +7,7 @@
 #include <string.h>
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
-/* Starts with a copy of the set that has no storage, and no fields but those that the state will have. */
-static void start_set(mpm_particles *fresh, const mpm_particles *set) {
+void mpmi_state_start_set(mpm_particles *fresh, const mpm_particles *set) {
   *fresh = *set;
   fresh->count = fresh->slots = fresh->ld = fresh->next_id = 0;
   fresh->dirty = 0;
@@ -34,7 +33,7 @@ mpm_status mpmi_state_load_begin(mpmi_state_loading *l) {
   if (l->surface) l->slots = mpmi_alloc_zeroed(c, mpmi_bytes(sets, sizeof *l->slots));
   if (l->slots) l->fresh = mpmi_alloc_zeroed(c, mpmi_bytes(sets, sizeof *l->fresh));
   if (!l->fresh) return MPM_E_NOMEM;
-  for (int32_t m = 0; m < sets; ++m) start_set(&l->fresh[m], s->layout.member[m].set);
+  for (int32_t m = 0; m < sets; ++m) mpmi_state_start_set(&l->fresh[m], s->layout.member[m].set);
   return MPM_OK;
 }
 
@@ -147,21 +146,18 @@ static mpm_status read_head(mpmi_state_loading *l, const mpmi_state_piece *piece
   return status;
 }
 
-static int32_t has_field(const mpmi_state_set *of, int32_t f) {
-  return (of->present >> f & 1) != 0;
-}
-
 static int64_t bytes_per_slot(const mpm_particles *set, const mpmi_state_set *of) {
   int64_t bytes = 0;
   for (int32_t f = 0; f < set->field_count; ++f)
-    if (has_field(of, f)) bytes += set->field[f].components * (int64_t)mpmi_type_size(set->field[f].type);
+    if (mpmi_state_has_field(of, f))
+      bytes += set->field[f].components * (int64_t)mpmi_type_size(set->field[f].type);
   return bytes;
 }
 
 /* Puts the numbers of a set in a piece to those of the others. */
 static void join_set(mpm_particles *fresh, const mpmi_state_set *of) {
   const mpmi_state_set_numbers *n = &of->numbers;
-  for (int32_t f = 0; f < fresh->field_count; ++f) fresh->field[f].present |= has_field(of, f);
+  for (int32_t f = 0; f < fresh->field_count; ++f) fresh->field[f].present |= mpmi_state_has_field(of, f);
   if (n->next_id > fresh->next_id) fresh->next_id = n->next_id;
   fresh->mass_max = fmax(fresh->mass_max, n->mass_max);
   fresh->dirty |= (uint32_t)n->dirty;
@@ -219,21 +215,26 @@ mpm_status mpmi_state_read_all(mpmi_state_loading *l, const mpmi_state_piece *fi
 }
 
 /* ---- what follows them --------------------------------------------------------------------------------- */
+void mpmi_state_read_rows(mpmi_archive *a, const mpmi_state_set *of, mpm_particles *fresh, int64_t first,
+                          int64_t slots) {
+  for (int32_t i = 0; i < of->field_count && slots > 0; ++i) {
+    const mpmi_field *field = &fresh->field[of->field[i]];
+    const int64_t size = (int64_t)mpmi_type_size(field->type);
+    for (int32_t c = 0; c < field->components && mpmi_state_has_field(of, of->field[i]); ++c)
+      mpmi_state_archive_row(a, field->type, (char *)field->data[0] + (c * fresh->ld + first) * size,
+                             slots * size);
+  }
+}
+
 /* Reads what a piece has of a set, behind what there is. */
 static void read_set(mpmi_state_loading *l, int32_t m, mpmi_archive *a) {
   const mpmi_state_set *from = &l->here.set[m];
   mpm_particles *fresh = &l->fresh[m];
   const int64_t first = fresh->slots, slots = from->numbers.slots;
-  for (int32_t i = 0; i < from->field_count && slots > 0; ++i) {
-    const mpmi_field *field = &fresh->field[from->field[i]];
-    const int64_t size = (int64_t)mpmi_type_size(field->type);
-    for (int32_t c = 0; c < field->components && has_field(from, from->field[i]); ++c)
-      mpmi_state_archive_row(a, field->type, (char *)field->data[0] + (c * fresh->ld + first) * size,
-                             slots * size);
-  }
+  mpmi_state_read_rows(a, from, fresh, first, slots);
   if (a->status) return;
   for (int32_t f = 0; f < fresh->field_count && slots > 0; ++f)
-    if (fresh->field[f].present && !has_field(from, f))
+    if (fresh->field[f].present && !mpmi_state_has_field(from, f))
       mpmi_field_write_absent(fresh, f, first, first + slots);
   fresh->slots += slots;
 }

@@ -31,14 +31,14 @@ mpm_status mpmi_state_check_header(mpm_context *context, const mpmi_state_header
   return MPM_OK;
 }
 
-static mpm_status check_checksum(mpm_context *context, const mpmi_state_header *header,
-                                 const unsigned char *body) {
+mpm_status mpmi_state_check_sum(mpm_context *context, const char *name, const mpmi_state_header *header,
+                                const void *body) {
   const int64_t bytes = header->bytes - (int64_t)sizeof *header;
   mpmi_checksum sum;
   mpmi_checksum_begin(&sum);
   if (bytes % 8 == 0) mpmi_checksum_add(&sum, body, bytes);
   if (bytes % 8 == 0 && mpmi_checksum_end(&sum) == header->checksum) return MPM_OK;
-  return mpmi_fail(context, MPM_E_FORMAT, "the state is damaged: its checksum is wrong");
+  return mpmi_fail(context, MPM_E_FORMAT, "%s is damaged: its checksum is wrong", name);
 }
 
 /* Reads the end of a piece; a state of one part is all there is. */
@@ -69,7 +69,7 @@ static mpm_status open_piece(mpm_context *context, const void *data, int64_t byt
   *piece = (mpmi_state_piece){.body = (const unsigned char *)data + sizeof header,
                               .bytes = bytes - (int64_t)sizeof header,
                               .format = header.format};
-  status = check_checksum(context, &header, piece->body);
+  status = mpmi_state_check_sum(context, "the state", &header, piece->body);
   return status ? status : read_end(context, &header, piece);
 }
 
@@ -159,7 +159,7 @@ static mpm_status send_head(const mpmi_state_loading *l, const mpmi_buffer *buff
     if (r != c->transport.part)
       message[count++] = (mpm_message){.part = r, .bytes = buffer->used, .data = buffer->at};
   const mpm_status status = mpmi_send(c, MPM_EXCHANGE_SPARSE, count, message, NULL);
-  return status ? status : mpmi_receive(c, &in->count, &in->message);
+  return status ? status : mpmi_parts_receive(l->stepper->layout.parts, in);
 }
 
 /* All parts read it (collective). */
@@ -230,6 +230,7 @@ static mpm_status lay_out(mpmi_state_loading *l) {
     l->parts->margin = present->margin;
     l->parts->names_owners = present->names_owners;
     l->parts->meets_markers = present->meets_markers;
+    l->parts->balance = present->balance;
     status = mpmi_state_share(l);
     for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
       status = mpmi_parts_note_body(l->parts, (int32_t)l->all.set[m].numbers.body);

@@ -13,24 +13,23 @@ static mpm_status check_between_steps(const mpm_stepper *s) {
   return MPM_OK;
 }
 
-static mpm_status check_views(const mpm_stepper *s, int32_t m) {
-  const mpm_particles *set = s->layout.member[m].set;
+mpm_status mpmi_state_settle_set(mpm_particles *set, const char *name, const char *before) {
   for (int32_t i = 0; i < MPMI_MAX_VIEWS; ++i)
     if (set->view[i].live && set->view[i].access & MPM_WRITE)
-      return mpmi_fail(s->context, MPM_E_STATE,
-                       "%s of set %d is mapped for writing: release it before saving",
-                       set->field[set->view[i].field].name, (int)m);
-  return MPM_OK;
+      return mpmi_fail(set->context, MPM_E_STATE, "%s of %s is mapped for writing: release it before %s",
+                       set->field[set->view[i].field].name, name, before);
+  /* Bad values written through a view bar saving as they bar a step; the text says which. */
+  if (mpmi_particles_check_suspects(set)) return MPM_E_STATE;
+  /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
+  return mpmi_particles_refresh(set);
 }
 
 mpm_status mpmi_state_settle(const mpm_stepper *s, mpm_status status) {
   if (!status) status = check_between_steps(s);
   for (int32_t m = 0; m < s->layout.member_count && !status; ++m) {
-    status = check_views(s, m);
-    /* Bad values written through a view bar saving as they bar a step; the text says which. */
-    if (!status && mpmi_particles_check_suspects(s->layout.member[m].set)) status = MPM_E_STATE;
-    /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
-    if (!status) status = mpmi_particles_refresh(s->layout.member[m].set);
+    char name[MPMI_TEXT];
+    snprintf(name, sizeof name, "set %d", (int)m);
+    status = mpmi_state_settle_set(s->layout.member[m].set, name, "saving");
   }
   return mpmi_agree(s->context, status);
 }

@@ -56,7 +56,7 @@ static void setup_later(mpmi_archive *a, uint32_t format, const mpm_stepper *s) 
   later_int(a, format, "total_lagrangian", s->grid->desc.total_lagrangian);
 }
 
-static void setup_law(mpmi_archive *a, const mpm_material *material) {
+void mpmi_state_archive_law(mpmi_archive *a, const mpm_material *material) {
   const mpmi_law *law = material->law;
   mpmi_archive_same_text(a, "law", law ? law->name : "custom");
   mpmi_archive_same_int(a, "state_count", material->state_count);
@@ -70,38 +70,38 @@ static void archive_field(mpmi_archive *a, mpmi_state_field *field) {
   mpmi_archive_words(a, &field->type, sizeof *field - sizeof field->name);
 }
 
+void mpmi_state_write_field(mpmi_archive *a, const mpmi_field *field) {
+  mpmi_state_field saved = {{0}, field->type, field->components, field->present};
+  memcpy(saved.name, field->name, strlen(field->name));
+  archive_field(a, &saved);
+}
+
 static void write_field_list(mpmi_archive *a, const mpm_particles *set) {
   int64_t count = set->field_count;
   mpmi_archive_words(a, &count, sizeof count);
-  for (int32_t f = 0; f < set->field_count; ++f) {
-    const mpmi_field *field = &set->field[f];
-    mpmi_state_field saved = {{0}, field->type, field->components, field->present};
-    memcpy(saved.name, field->name, strlen(field->name));
-    archive_field(a, &saved);
-  }
+  for (int32_t f = 0; f < set->field_count; ++f) mpmi_state_write_field(a, &set->field[f]);
 }
 
-static int32_t may_be_absent(const mpm_grid *grid, int32_t field) {
+int32_t mpmi_state_may_lack(const mpm_grid *grid, int32_t field) {
   if (field == MPMI_SIZE) return !mpmi_has_sizes(grid);
   if (field == MPMI_REFERENCE) return !mpmi_is_total_lagrangian(grid);
   return field == MPMI_ACCELERATION || field == MPMI_DILATION_RATIO || field == MPMI_L ||
          field == MPMI_PRESCRIBED || field == MPMI_APPLIED_FORCE;
 }
 
-static mpm_status refuse_field(mpmi_archive *a, const char *name, const char *what) {
-  return mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %sfield \"%s\" %s", a->where,
+mpm_status mpmi_state_refuse_field(mpmi_archive *a, const char *name, const char *what) {
+  return mpmi_fail(a->context, MPM_E_FORMAT, "%s is of an unlike setup: %sfield \"%s\" %s", a->name, a->where,
                    name, what);
 }
 
-/* Finds the field in the set. Where a field may be absent, its presence is taken from the state. */
-static void read_field(mpmi_archive *a, const mpm_particles *set, mpmi_state_set *to, uint64_t *found) {
+void mpmi_state_read_field(mpmi_archive *a, const mpm_particles *set, mpmi_state_set *to, uint64_t *found) {
   mpmi_state_field saved;
   archive_field(a, &saved);
   if (a->status) return;
   saved.name[MPMI_NAME - 1] = '\0';
   const int32_t f = mpmi_find_field(set, saved.name);
   if (f < 0) {
-    a->status = refuse_field(a, saved.name, "is there, but not here");
+    a->status = mpmi_state_refuse_field(a, saved.name, "is there, but not here");
     return;
   }
   const mpmi_field *field = &set->field[f];
@@ -112,14 +112,13 @@ static void read_field(mpmi_archive *a, const mpm_particles *set, mpmi_state_set
       snprintf(what, sizeof what, "number of components of %s", field->name);
     const int64_t there = saved.components != field->components ? saved.components : saved.type;
     const int32_t here = saved.components != field->components ? field->components : field->type;
-    a->status =
-        mpmi_fail(a->context, MPM_E_FORMAT, "the state is of an unlike setup: %s%s is %lld there, %d here",
-                  a->where, what, (long long)there, (int)here);
+    a->status = mpmi_fail(a->context, MPM_E_FORMAT, "%s is of an unlike setup: %s%s is %lld there, %d here",
+                          a->name, a->where, what, (long long)there, (int)here);
   } else if (saved.present < 0 || saved.present > 1 || *found & UINT64_C(1) << f) {
     mpmi_archive_damaged(a, "its list of fields makes no sense");
-  } else if (!may_be_absent(set->grid, f) && saved.present != field->present) {
-    a->status =
-        refuse_field(a, saved.name, saved.present ? "is there, but not here" : "is here, but not there");
+  } else if (!mpmi_state_may_lack(set->grid, f) && saved.present != field->present) {
+    a->status = mpmi_state_refuse_field(a, saved.name,
+                                        saved.present ? "is there, but not here" : "is here, but not there");
   }
   *found |= UINT64_C(1) << f;
   to->present |= (uint64_t)(saved.present & 1) << f;
@@ -133,10 +132,10 @@ static void read_fields(mpmi_archive *a, const mpm_particles *set, mpmi_state_se
   uint64_t found = 0;
   mpmi_archive_words(a, &count, sizeof count);
   if (count < 0 || count > MPMI_MAX_FIELDS) mpmi_archive_damaged(a, "its list of fields makes no sense");
-  for (int64_t i = 0; i < count && !a->status; ++i) read_field(a, set, to, &found);
+  for (int64_t i = 0; i < count && !a->status; ++i) mpmi_state_read_field(a, set, to, &found);
   for (int32_t f = 0; f < set->field_count && !a->status; ++f)
     if (!(found & UINT64_C(1) << f))
-      a->status = refuse_field(a, set->field[f].name, "is here, but not there");
+      a->status = mpmi_state_refuse_field(a, set->field[f].name, "is here, but not there");
 }
 _Static_assert(MPMI_MAX_FIELDS <= 64, "one bit for each field");
 
@@ -150,7 +149,7 @@ void mpmi_state_setup(mpmi_archive *a, const mpm_stepper *s, uint32_t format, mp
   mpmi_archive_same_int(a, "number of sets", s->layout.member_count);
   for (int32_t m = 0; m < s->layout.member_count && !a->status; ++m) {
     snprintf(a->where, sizeof a->where, "set %d: ", (int)m);
-    setup_law(a, s->layout.member[m].set->material);
+    mpmi_state_archive_law(a, s->layout.member[m].set->material);
     if (set)
       read_fields(a, s->layout.member[m].set, &set[m]);
     else

@@ -202,9 +202,10 @@ mpm_status mpmi_state_share(mpmi_state_loading *l) {
   int64_t *weight = mpmi_alloc(c, mpmi_bytes(count + 1, sizeof *weight));
   mpm_status status = weight ? mpmi_state_insert_blocks(s, &l->blocks) : (mpm_status)MPM_E_NOMEM;
   for (int64_t b = 0; b < count && weight; ++b) {
-    weight[b] = MPMI_BLOCK_WEIGHT;
+    weight[b] = mpmi_block_weight(l->parts);
     for (int32_t m = 0; m < s->layout.member_count; ++m)
-      weight[b] += mpmi_state_starts(&l->blocks, m)[b + 1] - mpmi_state_starts(&l->blocks, m)[b];
+      weight[b] += MPMI_PARTICLE_WEIGHT *
+                   (mpmi_state_starts(&l->blocks, m)[b + 1] - mpmi_state_starts(&l->blocks, m)[b]);
   }
   status = mpmi_agree(c, status);
   if (!status) status = mpmi_cut_blocks(l->parts, &s->layout.next_blocks, weight);

@@ -42,8 +42,9 @@ static mpm_status choose_arrays(image *w, int32_t count, const char *const *fiel
                                   shown_components(s, f), w->points);
   }
   for (int32_t f = 0; f < MPMI_NODE_FIELDS && !count && !status; ++f) {
-    /* The points of the image are the positions, and only what the step has kept can be shown. */
-    if (f == MPMI_NODE_POSITION || !mpmi_node_keeps(s, f)) continue;
+    /* The points of the image are the positions, and only what the step has kept can be shown; owned is there
+     * for sums. */
+    if (f == MPMI_NODE_POSITION || f == MPMI_NODE_OWNED || !mpmi_node_keeps(s, f)) continue;
     if (f >= MPMI_NODE_CONTACT_FORCE && f <= MPMI_NODE_CONTACT_AREA && !s->nodes.contact.listed) continue;
     mpmi_vtk_add(&w->file, mpmi_node_fields[f].name, f, mpmi_node_fields[f].type, shown_components(s, f),
                  w->points);

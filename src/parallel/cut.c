@@ -3,9 +3,6 @@
 
 #include <string.h>
 
-/* Blocks are given to parts anew where the heaviest part has this many times the mean. */
-static const double uneven = 1.1;
-
 int32_t mpmi_cut_owner(const mpmi_parts *parts, uint64_t key) {
   int32_t low = 0, high = mpmi_part_count(parts);
   while (high - low > 1) {
@@ -79,7 +76,7 @@ mpm_status mpmi_cut_blocks(mpmi_parts *parts, const mpmi_blocks *blocks, const i
     return status;
   parts->is_empty = total == 0;
   parts->info.imbalance = total > 0 ? (double)largest[0] * (double)count / (double)total : 1.0;
-  if (parts->is_cut && parts->info.imbalance <= uneven) return MPM_OK;
+  if (parts->is_cut && parts->info.imbalance <= parts->balance.limit) return MPM_OK;
   const size_t bytes = mpmi_bytes(3 * count, sizeof(uint64_t));
   uint64_t *scratch = mpmi_alloc(c, bytes);
   if ((status = mpmi_agree(c, scratch ? MPM_OK : MPM_E_NOMEM))) {
@@ -92,5 +89,6 @@ mpm_status mpmi_cut_blocks(mpmi_parts *parts, const mpmi_blocks *blocks, const i
   if (status) return status;
   parts->is_cut = 1;
   ++parts->info.cuts;
+  mpmi_time_reset(parts);
   return MPM_OK;
 }

@@ -11,6 +11,7 @@ mpm_status mpmi_parts_create(mpm_context *c, const mpm_grid *grid, mpmi_parts **
   parts->grid = grid;
   parts->is_stale = 1;
   parts->info.imbalance = 1.0;
+  parts->balance = mpmi_balance_of(NULL);
   parts->first = mpmi_alloc_zeroed(c, mpmi_bytes(count + 1, sizeof *parts->first));
   parts->owner_count = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof *parts->owner_count));
   parts->out = mpmi_alloc_zeroed(c, mpmi_bytes(count, sizeof *parts->out));
@@ -99,5 +100,42 @@ mpm_status mpmi_parts_exchange(mpmi_parts *parts, mpmi_arrivals *in) {
     if (out->used) parts->message[count++] = (mpm_message){.part = r, .bytes = out->used, .data = out->at};
   }
   const mpm_status status = mpmi_send(parts->context, MPM_EXCHANGE_SPARSE, count, parts->message, NULL);
-  return status ? status : mpmi_receive(parts->context, &in->count, &in->message);
+  return status ? status : mpmi_parts_receive(parts, in);
+}
+
+mpm_status mpmi_parts_receive(mpmi_parts *parts, mpmi_arrivals *in) {
+  const double started = mpmi_seconds();
+  const mpm_status lost = mpmi_receive(parts->context, &in->count, &in->message);
+  parts->info.seconds_waiting += mpmi_seconds() - started;
+  return lost;
+}
+
+/* ---- what blocks weigh --------------------------------------------------------------------------------- */
+mpm_balance_desc mpmi_balance_of(const mpm_balance_desc *desc) {
+  mpm_balance_desc d = {.struct_size = sizeof d};
+  if (desc) d = *desc;
+  if (d.limit == 0.0) d.limit = 1.1;
+  if (d.block_weight == 0.0) d.block_weight = MPMI_BLOCK_WEIGHT;
+  return d;
+}
+
+/* Stands still while this part waits for others. */
+static double working_clock(const mpmi_parts *parts) {
+  return mpmi_seconds() - parts->info.seconds_waiting - parts->context->reducing;
+}
+
+void mpmi_time_begin(mpmi_parts *parts) {
+  if (parts) parts->since = working_clock(parts);
+}
+
+void mpmi_time_add(mpmi_parts *parts) {
+  if (!parts) return;
+  const double now = working_clock(parts);
+  if (now > parts->since) parts->busy += now - parts->since;
+  parts->since = now;
+}
+
+void mpmi_time_reset(mpmi_parts *parts) {
+  parts->busy = 0.0;
+  mpmi_time_begin(parts);
 }

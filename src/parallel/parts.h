@@ -92,11 +92,16 @@ typedef struct mpmi_parts {
   struct mpmi_guest_set *guests;
   int32_t *guest_of; /* [blocks] 1 + the index of the ghost that has guests in this step, or 0 */
   int64_t guest_capacity;
-  int64_t leave_elsewhere; /* particles that leave the grid on other parts in the step under way */
-  int32_t is_echo;         /* the step fails here because it has failed on a partner */
+  int64_t leave_elsewhere;  /* particles that leave the grid on other parts in the step under way */
+  int32_t is_echo;          /* the step fails here because it has failed on a partner */
+  mpm_balance_desc balance; /* with what 0 stands for */
+  double busy;              /* seconds of steps since blocks were given to parts, without waiting */
+  double since; /* when the call under way began, or was last counted in these, by the same clock */
   mpm_parallel_info info;
 } mpmi_parts;
 
+/* A description with the defaults in place of 0; NULL: all of them. */
+mpm_balance_desc mpmi_balance_of(const mpm_balance_desc *desc);
 mpm_status mpmi_parts_create(mpm_context *context, const mpm_grid *grid, mpmi_parts **out);
 void mpmi_parts_destroy(mpmi_parts *parts);
 /* Exchanges them; what they have cost is counted on. */
@@ -106,6 +111,11 @@ mpm_status mpmi_parts_note_body(mpmi_parts *parts, int32_t body);
 static inline int32_t mpmi_part_count(const mpmi_parts *parts) {
   return parts->context->transport.parts;
 }
+/* The time that a part takes, which blocks may be weighed by: a call goes on working; so it has until now;
+ * from now on it counts anew. Nothing is done without parts. */
+void mpmi_time_begin(mpmi_parts *parts);
+void mpmi_time_add(mpmi_parts *parts);
+void mpmi_time_reset(mpmi_parts *parts);
 
 /* Makes room for more bytes of a message, and returns where they go, or NULL. */
 void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes);
@@ -117,10 +127,16 @@ typedef struct mpmi_arrivals {
   const mpm_message *message;
 } mpmi_arrivals;
 mpm_status mpmi_parts_exchange(mpmi_parts *parts, mpmi_arrivals *in);
+/* Takes what comes of an exchange that has been started, and counts how long that takes. */
+mpm_status mpmi_parts_receive(mpmi_parts *parts, mpmi_arrivals *in);
 
 /* ---- cut.c ------------------------------------------------------------------------------------------- */
-/* A tile costs as much as so many particles. */
-enum { MPMI_BLOCK_WEIGHT = 60 };
+/* Weights are integers, so that their sums do not depend on the parts: a particle weighs so much; a block
+ * beside its particles as much as so many, unless the host says otherwise: its tile costs that. */
+enum { MPMI_PARTICLE_WEIGHT = 256, MPMI_BLOCK_WEIGHT = 60 };
+static inline int64_t mpmi_block_weight(const mpmi_parts *parts) {
+  return (int64_t)(parts->balance.block_weight * MPMI_PARTICLE_WEIGHT + 0.5);
+}
 /* Gives the blocks, each with its weight, to the parts (collective), unless they are shared out evenly. */
 mpm_status mpmi_cut_blocks(mpmi_parts *parts, const mpmi_blocks *blocks, const int64_t *weight);
 /* Returns the part that has a block with this key. */

@@ -3,16 +3,32 @@
 
 #include <string.h>
 
+static const double second_weight = 1e7;
+
+/* Gives the blocks of this part the time that it has taken, in proportion to their weights. Seconds are no
+ * particles: it is done on all parts that have blocks, or on none. */
+static mpm_status weigh_by_time(mpmi_parts *parts, int64_t count, int64_t *weight) {
+  int64_t total = 0;
+  for (int64_t i = 0; i < count; ++i) total += weight[i];
+  int64_t is_unknown = !parts->is_cut || (total > 0 && !(parts->busy > 0.0));
+  const mpm_status status = mpmi_reduce_parts(parts->context, MPM_REDUCE_MAX, 1, &is_unknown);
+  if (status || is_unknown) return status;
+  const double share = total > 0 ? second_weight * parts->busy / (double)total : 0.0;
+  for (int64_t i = 0; i < count; ++i) weight[i] = 1 + (int64_t)(share * (double)weight[i]);
+  return MPM_OK;
+}
+
 static mpm_status weigh(mpmi_parts *parts, const mpmi_blocks *blocks, const mpmi_moving_set *sets,
                         int32_t count, int64_t *weight) {
-  for (int64_t i = 0; i < blocks->count; ++i) weight[i] = MPMI_BLOCK_WEIGHT;
+  for (int64_t i = 0; i < blocks->count; ++i) weight[i] = mpmi_block_weight(parts);
   for (int32_t m = 0; m < count; ++m) {
     const uint32_t *block = mpmi_sort_blocks_of_slots(sets[m].set);
     const int64_t *id = mpmi_i64(sets[m].set, MPMI_ID, 0);
     for (int64_t s = 0; s < sets[m].set->slots; ++s)
-      if (id[s] >= 0) ++weight[block[s]];
+      if (id[s] >= 0) weight[block[s]] += MPMI_PARTICLE_WEIGHT;
   }
-  return mpmi_cut_blocks(parts, blocks, weight);
+  const mpm_status status = parts->balance.measure ? weigh_by_time(parts, blocks->count, weight) : MPM_OK;
+  return status ? status : mpmi_cut_blocks(parts, blocks, weight);
 }
 
 /* Lists the bodies of the sets. */

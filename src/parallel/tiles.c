@@ -159,19 +159,16 @@ static mpm_status read_message(mpmi_parts *parts, const mpmi_partner *from, int3
 }
 
 mpm_status mpmi_tiles_receive(mpmi_parts *parts, int32_t values, mpm_status status) {
-  int32_t count = 0;
-  const mpm_message *in = NULL;
-  const double started = mpmi_seconds();
-  const mpm_status lost = mpmi_receive(parts->context, &count, &in);
-  parts->info.seconds_waiting += mpmi_seconds() - started;
+  mpmi_arrivals in = {0, NULL};
+  const mpm_status lost = mpmi_parts_receive(parts, &in);
   if (lost) return lost;
   for (int64_t i = 0; i < parts->ghost_count; ++i) parts->ghost[i].values = NULL;
-  if (count != parts->partner_count && !status)
+  if (in.count != parts->partner_count && !status)
     status = mpmi_fail(parts->context, MPM_E_CALLBACK,
-                       "the transport has brought %d messages, and there are %lld partners", (int)count,
+                       "the transport has brought %d messages, and there are %lld partners", (int)in.count,
                        (long long)parts->partner_count);
-  for (int32_t i = 0; i < count && !status; ++i)
-    status = read_message(parts, &parts->partner[i], values, &in[i]);
+  for (int32_t i = 0; i < in.count && !status; ++i)
+    status = read_message(parts, &parts->partner[i], values, &in.message[i]);
   return status;
 }
 

@@ -3,21 +3,10 @@
 
 #include "particles/values.h"
 
-enum { PORTION = 256 };
-
-/* A selection says which particles a call is about, and how its buffer is laid out: by ids[n], or all by
- * ascending id. With `uniform` it is all slots in library order, with one value for all. */
-typedef struct selection {
-  int64_t n;
-  const int64_t *ids;
-  int32_t uniform;
-} selection;
-
-/* Lists the slots of the items [begin, begin + PORTION) of a selection whose ids are known to exist. Returns
- * how many there are. */
-static int64_t slots_of(const mpm_particles *set, const selection *of, int64_t begin, int64_t *slot) {
+int64_t mpmi_selected_slots(const mpm_particles *set, const mpmi_selection *of, int64_t begin,
+                            int64_t *slot) {
   const int64_t *id = mpmi_i64(set, MPMI_ID, 0);
-  int64_t end = of->n - begin < PORTION ? of->n : begin + PORTION, found = 0;
+  int64_t end = of->n - begin < MPMI_SELECTED ? of->n : begin + MPMI_SELECTED, found = 0;
   for (int64_t i = begin; i < end; ++i) {
     if (of->uniform && id[i] < 0) continue;
     slot[found++] = of->uniform ? i : of->ids ? mpmi_index_find(set, of->ids[i]) : set->index[i].slot;
@@ -34,9 +23,8 @@ static mpm_status check_layout(const mpm_particles *set, int32_t field, int32_t 
                    type_name[type >= MPM_F64 && type <= MPM_U8 ? type : 0], (int)components);
 }
 
-/* Checks what is selected and builds the index that it needs. The index is a cache, which const sets have
- * too. */
-static mpm_status check_selection(const mpm_particles *set, const selection *of) {
+/* The index is a cache, which const sets have too. */
+mpm_status mpmi_check_selection(const mpm_particles *set, const mpmi_selection *of) {
   mpm_context *context = set->context;
   if (!of->ids && of->n != set->count)
     return mpmi_fail(context, MPM_E_ARG, "n is %lld, but the set has %lld particles and ids is NULL",
@@ -83,15 +71,15 @@ mpm_status mpm_particles_get(const mpm_particles *particles, const char *field, 
   if (!status) status = check_layout(particles, f, type, components);
   if (!status) status = mpmi_check_exists(particles, f);
   if (status) return status;
-  selection of = {n, ids, 0};
-  status = check_selection(particles, &of);
+  mpmi_selection of = {n, ids, 0};
+  status = mpmi_check_selection(particles, &of);
   if (!status && !out && n > 0 && components > 0)
     status = mpmi_fail(particles->context, MPM_E_ARG, "out is NULL");
   /* Volume and stress follow from F and may be out of date. The host must not see that, const or not. */
   if (!status) status = mpmi_settle((mpm_particles *)particles, f);
-  int64_t slot[PORTION];
-  for (int64_t begin = 0; begin < n && !status; begin += PORTION) {
-    int64_t found = slots_of(particles, &of, begin, slot);
+  int64_t slot[MPMI_SELECTED];
+  for (int64_t begin = 0; begin < n && !status; begin += MPMI_SELECTED) {
+    int64_t found = mpmi_selected_slots(particles, &of, begin, slot);
     for (int32_t c = 0; c < components; ++c)
       copy_out(particles, f, c, found, slot, (char *)out + (size_t)(c * n + begin) * mpmi_type_size(type));
   }
@@ -104,7 +92,7 @@ typedef struct source {
   int64_t item_stride, component_stride;
 } source;
 
-static mpm_status check_given(const mpm_particles *set, int32_t field, const selection *of,
+static mpm_status check_given(const mpm_particles *set, int32_t field, const mpmi_selection *of,
                               const source *from) {
   const double *values = (const double *)(const void *)from->values;
   const uint8_t *flags = (const uint8_t *)from->values;
@@ -124,12 +112,12 @@ static mpm_status check_given(const mpm_particles *set, int32_t field, const sel
 
 /* Copies one item after the other, so that of two values for one particle the later stands, and both are
  * wrapped. */
-static void copy_in(mpm_particles *set, int32_t field, const selection *of, const source *from) {
+static void copy_in(mpm_particles *set, int32_t field, const mpmi_selection *of, const source *from) {
   const mpmi_field *at = &set->field[field];
   size_t size = mpmi_type_size(at->type);
-  int64_t slot[PORTION];
-  for (int64_t begin = 0; begin < of->n; begin += PORTION) {
-    int64_t found = slots_of(set, of, begin, slot);
+  int64_t slot[MPMI_SELECTED];
+  for (int64_t begin = 0; begin < of->n; begin += MPMI_SELECTED) {
+    int64_t found = mpmi_selected_slots(set, of, begin, slot);
     for (int64_t i = 0; i < found; ++i) {
       const char *item = from->values + (size_t)((begin + i) * from->item_stride) * size;
       for (int32_t c = 0; c < at->full_components; ++c) {
@@ -143,7 +131,8 @@ static void copy_in(mpm_particles *set, int32_t field, const selection *of, cons
   }
 }
 
-static mpm_status write_field(mpm_particles *set, int32_t field, const selection *of, const source *from) {
+static mpm_status write_field(mpm_particles *set, int32_t field, const mpmi_selection *of,
+                              const source *from) {
   const mpmi_field *at = &set->field[field];
   int64_t given = (of->uniform ? 1 : of->n) * at->full_components;
   if (!from->values && given > 0) return mpmi_fail(set->context, MPM_E_ARG, "the values are NULL");
@@ -169,8 +158,8 @@ mpm_status mpm_particles_set(mpm_particles *particles, const char *field, int32_
   mpm_status status = mpmi_particles_changeable(particles);
   if (!status) status = mpmi_require_field(particles, field, &f);
   if (!status) status = check_layout(particles, f, type, components);
-  selection of = {n, ids, 0};
-  if (!status) status = check_selection(particles, &of);
+  mpmi_selection of = {n, ids, 0};
+  if (!status) status = mpmi_check_selection(particles, &of);
   source from = {values, 1, n};
   return status ? status : write_field(particles, f, &of, &from);
 }
@@ -182,7 +171,7 @@ mpm_status mpm_particles_set_all(mpm_particles *particles, const char *field, in
   mpm_status status = mpmi_particles_changeable(particles);
   if (!status) status = mpmi_require_field(particles, field, &f);
   if (!status) status = check_layout(particles, f, type, components);
-  selection of = {particles->slots, NULL, 1};
+  mpmi_selection of = {particles->slots, NULL, 1};
   source from = {value, 0, 1};
   return status ? status : write_field(particles, f, &of, &from);
 }

@@ -56,18 +56,17 @@ int64_t mpmi_append_begin(mpm_particles *set, int64_t n) {
   return first;
 }
 
-/* Writes the default of a field that is kept, where the default is not 0 and the caller has not written
- * the field. */
-static void write_derived(mpm_particles *set, int32_t field, int64_t begin, int64_t end) {
+void mpmi_append_default(mpm_particles *set, int32_t field, int64_t begin, int64_t end) {
   if (!set->field[field].present) return;
   for (int32_t c = 0; c < set->field[field].components; ++c)
     for (int64_t s = begin; s < end; ++s)
       mpmi_f64(set, field, 0)[c * set->ld + s] = mpmi_absent_value(set, field, c, s);
 }
 
-/* Adds up how many the parts before this one add, and how many all do. */
+/* Adds up how many the parts before this one add, and how many all do, and finds the number that is free on
+ * all parts: a host may have unpacked particles on some. */
 static mpm_status count_others(const mpm_particles *set, int64_t n, mpm_status status, int64_t *before,
-                               int64_t *total) {
+                               int64_t *total, int64_t *free_id) {
   mpm_context *c = set->context;
   const int32_t parts = c->transport.parts, me = c->transport.part;
   const size_t bytes = mpmi_bytes(parts, sizeof(int64_t));
@@ -75,6 +74,7 @@ static mpm_status count_others(const mpm_particles *set, int64_t n, mpm_status s
   if (!all && !status) status = MPM_E_NOMEM;
   status = mpmi_agree(c, status);
   if (!status) status = mpmi_gather_parts(c, n, all);
+  if (!status) status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 1, free_id);
   *before = *total = 0;
   for (int32_t r = 0; r < parts && !status; ++r) {
     if (r < me) *before += all[r];
@@ -88,13 +88,14 @@ mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, 
                        mpmi_numbers *out) {
   int64_t before = 0, total = n;
   out->first = set->next_id;
-  if (!mpmi_is_whole(set->context) && (status = count_others(set, ids ? 0 : n, status, &before, &total)))
+  if (!mpmi_is_whole(set->context) &&
+      (status = count_others(set, ids ? 0 : n, status, &before, &total, &out->first)))
     return status;
   if (status) return status;
-  if (total > INT64_MAX - set->next_id)
-    return mpmi_fail(set->context, MPM_E_ARG, "ids run out: the next is %lld", (long long)set->next_id);
+  if (total > INT64_MAX - out->first)
+    return mpmi_fail(set->context, MPM_E_ARG, "ids run out: the next is %lld", (long long)out->first);
+  out->next = ids ? out->first : out->first + total;
   out->first += before;
-  out->next = ids ? set->next_id : set->next_id + total;
   for (int64_t i = 0; i < n && ids; ++i)
     if (ids[i] >= out->next) out->next = ids[i] + 1;
   return mpmi_reduce_parts(set->context, MPM_REDUCE_MAX, 1, &out->next);
@@ -112,9 +113,9 @@ void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t wit
     if (mass[i] > set->mass_max) set->mass_max = mass[i];
   }
   for (int64_t s = slot; s < slot + n; ++s) mpmi_wrap_slot(set, MPMI_POSITION, s);
-  write_derived(set, MPMI_REFERENCE, slot, slot + n); /* the size of rings needs it */
-  if (!with_size) write_derived(set, MPMI_SIZE, slot, slot + n);
-  write_derived(set, MPMI_DILATION_RATIO, slot, slot + n);
+  mpmi_append_default(set, MPMI_REFERENCE, slot, slot + n); /* the size of rings needs it */
+  if (!with_size) mpmi_append_default(set, MPMI_SIZE, slot, slot + n);
+  mpmi_append_default(set, MPMI_DILATION_RATIO, slot, slot + n);
   mpmi_thermal_start(set, slot, slot + n);
   for (int32_t c = 0; c < set->grid->dim && is_rigid(set); ++c)
     memset((uint8_t *)set->field[MPMI_PRESCRIBED].data[0] + c * set->ld + slot, 1, (size_t)n);
@@ -152,21 +153,23 @@ static mpm_status check_arrays(const mpm_particles *set, const arrays *from) {
   return MPM_OK;
 }
 
-/* Refuses ids that the set has already, or that are given twice. order: the ids, ascending. */
-static mpm_status check_known(const mpm_particles *set, int64_t n, const int64_t *ids,
+/* Refuses ids that are given twice, or of new particles those that the set has already. order: the ids,
+ * ascending. */
+static mpm_status check_known(const mpm_particles *set, int64_t n, const int64_t *ids, int32_t are_new,
                               const uint32_t *order) {
   for (int64_t i = 0; i < n; ++i) {
     int64_t id = ids[order[i]];
     if (i > 0 && id == ids[order[i - 1]])
       return mpmi_fail(set->context, MPM_E_ARG, "id %lld is given twice", (long long)id);
-    if (id < set->next_id && mpmi_index_find(set, id) >= 0)
+    if (are_new && id < set->next_id && mpmi_index_find(set, id) >= 0)
       return mpmi_fail(set->context, MPM_E_ARG, "id %lld is in use", (long long)id);
   }
   return MPM_OK;
 }
 
-static mpm_status check_unique(mpm_particles *set, int64_t n, const int64_t *ids) {
+mpm_status mpmi_check_unique(mpm_particles *set, int64_t n, const int64_t *ids, int32_t are_new) {
   mpm_context *context = set->context;
+  if (n == 0) return MPM_OK;
   size_t key_bytes = mpmi_bytes(n, 2 * sizeof(uint64_t)), order_bytes = mpmi_bytes(n, 2 * sizeof(uint32_t));
   uint64_t *key = mpmi_alloc(context, key_bytes);
   uint32_t *order = key ? mpmi_alloc(context, order_bytes) : NULL;
@@ -176,7 +179,7 @@ static mpm_status check_unique(mpm_particles *set, int64_t n, const int64_t *ids
     mpmi_radix_sort(n, key, order, key + n, order + n);
     /* An id beyond all that were ever used cannot be in the set. */
     status = ids[order[0]] < set->next_id ? mpmi_index_build(set) : MPM_OK;
-    if (!status) status = check_known(set, n, ids, order);
+    if (!status) status = check_known(set, n, ids, are_new, order);
   }
   mpmi_free(context, order, order_bytes);
   mpmi_free(context, key, key_bytes);
@@ -188,7 +191,7 @@ static mpm_status check_ids(mpm_particles *set, int64_t n, const int64_t *ids) {
     if (ids[i] < 0 || ids[i] == INT64_MAX)
       return mpmi_fail(set->context, MPM_E_ARG, "ids[%lld] is %lld, must be >= 0 and below 2^63 - 1",
                        (long long)i, (long long)ids[i]);
-  return check_unique(set, n, ids);
+  return mpmi_check_unique(set, n, ids, 1);
 }
 
 static void copy_rows(mpm_particles *set, int32_t field, int64_t slot, const double *from, int64_t n) {

@@ -23,8 +23,13 @@ mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, 
  * first_id on. The caller sets next_id. */
 void mpmi_append_finish(mpm_particles *set, int64_t slot, int64_t n, int32_t with_size, const int64_t *ids,
                         int64_t first_id);
+/* Writes the default of a field that is kept, where the default is not 0 and the caller has not written the
+ * field. */
+void mpmi_append_default(mpm_particles *set, int32_t field, int64_t begin, int64_t end);
 /* Refuses n more particles when slots would run out. */
 mpm_status mpmi_check_room(const mpm_particles *set, int64_t n);
+/* Refuses ids that are given twice: MPM_E_ARG; of new particles also those that the set has. */
+mpm_status mpmi_check_unique(mpm_particles *set, int64_t n, const int64_t *ids, int32_t are_new);
 
 /* Fills that part of a box which a function accepts: mpm_particles_fill() within a call. */
 mpm_status mpmi_fill_part(mpm_particles *set, const double *lower, const double *upper,

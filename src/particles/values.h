@@ -31,4 +31,18 @@ int32_t mpmi_is_beyond(const mpm_particles *set, int32_t copy, int64_t slot);
 /* Brings a field that follows from others up to date before it is read. */
 mpm_status mpmi_settle(mpm_particles *set, int32_t field);
 
+/* Which particles a call is about, in which order (access.c): those with ids[n], or all by ascending id. With
+ * `uniform` it is all slots in library order. */
+typedef struct mpmi_selection {
+  int64_t n;
+  const int64_t *ids;
+  int32_t uniform;
+} mpmi_selection;
+/* Checks what is selected and builds the index that it needs. */
+mpm_status mpmi_check_selection(const mpm_particles *set, const mpmi_selection *of);
+/* Lists the slots of the items [begin, begin + MPMI_SELECTED) of a selection whose ids are known to exist.
+ * Returns how many there are. */
+enum { MPMI_SELECTED = 256 };
+int64_t mpmi_selected_slots(const mpm_particles *set, const mpmi_selection *of, int64_t begin, int64_t *slot);
+
 #endif

@@ -78,6 +78,7 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
       /* the nodes are those of the step before until they are counted */
       .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};
   mpmi_reports_clear(&s->work, s->settings.tasks);
+  mpmi_time_begin(s->layout.parts);
   if (mpmi_is_shared(s))
     s->layout.parts->exchanges = s->layout.parts->is_echo = s->layout.parts->has_counted = 0;
 }
@@ -197,6 +198,7 @@ static mpm_status finish(mpm_stepper *s) {
   mpmi_adaption_carry_out(s); /* sums are those of the step until somebody asks for those of the state */
   s->nodes.shown = s->layout.version;
   s->nodes.shown_dt = velocity_dt;
+  mpmi_time_add(s->layout.parts);
   return MPM_OK;
 }
 
@@ -276,6 +278,7 @@ mpm_status mpm_step_grid(mpm_stepper *s) {
   MPMI_ENTER(s, MPMI_STEPPER);
   mpm_status status = mpmi_together(s, in_phase(s, MPMI_BEGUN, "mpm_step_grid", "mpm_step_begin"));
   if (status) return status;
+  mpmi_time_begin(s->layout.parts);
   s->step.phase = MPMI_RUNNING;
   status = mpmi_places_check(&s->step);
   if (!status) status = mpmi_explicit_grid(&s->step, &s->nodes);
@@ -290,6 +293,7 @@ mpm_status mpm_step_end(mpm_stepper *s, mpm_step_info *info) {
   mpm_status status = in_phase(s, MPMI_SOLVED, "mpm_step_end", "mpm_step_grid");
   if (!status) status = mpmi_check_info(s, info);
   if ((status = mpmi_together(s, status))) return status;
+  mpmi_time_begin(s->layout.parts);
   s->step.phase = MPMI_RUNNING;
   if (mpmi_deforms_first(&s->settings)) mpmi_make_volumes(&s->layout, 1);
   status = mpmi_places_check(&s->step);

@@ -17,6 +17,7 @@ const mpmi_node_field mpmi_node_fields[MPMI_NODE_FIELDS] = {
     [MPMI_NODE_CONTACT_GAP] = {"contact_gap", MPM_F64, 1},
     [MPMI_NODE_CONTACT_AREA] = {"contact_area", MPM_F64, 1},
     [MPMI_NODE_TEMPERATURE] = {"temperature", MPM_F64, 1},
+    [MPMI_NODE_OWNED] = {"owned", MPM_U8, 1},
 };
 
 static int32_t components_of(const mpm_stepper *s, int32_t field) {
@@ -100,6 +101,8 @@ void mpmi_node_values(const mpm_stepper *s, int32_t field, const int64_t *slot, 
         ((int64_t *)out)[at] = index[c];
       else if (field == MPMI_NODE_POSITION)
         ((double *)out)[at] = mpmi_node_position(s->grid, c, index[c]);
+      else if (field == MPMI_NODE_OWNED)
+        ((uint8_t *)out)[at] = (uint8_t)mpmi_owns_node(s->layout.parts, slot[i]);
       else
         ((double *)out)[at] = value_of(s, field, slot[i], c);
     }

@@ -17,6 +17,7 @@ enum {
   MPMI_NODE_CONTACT_GAP,
   MPMI_NODE_CONTACT_AREA,
   MPMI_NODE_TEMPERATURE,
+  MPMI_NODE_OWNED,
   MPMI_NODE_FIELDS
 };
 typedef struct mpmi_node_field {

@@ -87,7 +87,7 @@ enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 12, MOST_NUMBERS = 7 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
  * are alike. */
-static void put_number(int64_t *word, double number) {
+void mpmi_put_number(int64_t *word, double number) {
   memcpy(&word[0], &number, sizeof number);
   word[1] = ~word[0];
 }
@@ -99,24 +99,34 @@ static double count_markers(const mpmi_surfaces *list) {
   return number;
 }
 
+mpm_status mpmi_check_alike(const mpm_stepper *s, int32_t count, const char *const *name,
+                            const double *number, const int64_t *word) {
+  for (int32_t i = 0; i < count; ++i)
+    if (word[2 * i] != ~word[2 * i + 1])
+      return mpmi_fail(s->context, MPM_E_ARG,
+                       "%s is %g here, and another number on another part: give all the same", name[i],
+                       number[i]);
+  return MPM_OK;
+}
+
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
                                const double *number) {
   mpm_context *c = s->context;
   mpmi_layout *layout = &s->layout;
   if (!mpmi_is_shared(s)) return status;
   int64_t word[OWN_WORDS + 2 * MOST_NUMBERS] = {0};
-  put_number(word, (double)layout->member_count);
+  mpmi_put_number(word, (double)layout->member_count);
   word[2] = !s->history.has_sums;
   word[3] = layout->walls_changed;
   word[4] = layout->parts->is_stale;
   word[5] = s->settings.progress != NULL;
   for (int32_t m = 0; m < layout->member_count; ++m)
     word[6] |= layout->member[m].set->field[MPMI_PRESCRIBED].present;
-  for (int32_t i = 0; i < count; ++i) put_number(&word[OWN_WORDS + 2 * i], number[i]);
+  for (int32_t i = 0; i < count; ++i) mpmi_put_number(&word[OWN_WORDS + 2 * i], number[i]);
   word[7] = status != MPM_OK;
   word[8] = fingerprint(s);
   word[9] = ~word[8];
-  put_number(&word[10], count_markers(&s->settings.surfaces));
+  mpmi_put_number(&word[10], count_markers(&s->settings.surfaces));
   const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word);
   if (lost) return lost;
   if (word[7]) return mpmi_agree(c, status);
@@ -130,10 +140,7 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   if (word[10] != ~word[11])
     return mpmi_fail(c, MPM_E_STATE,
                      "surfaces have other numbers of markers on other parts: all parts have all markers");
-  for (int32_t i = 0; i < count; ++i)
-    if (word[OWN_WORDS + 2 * i] != ~word[OWN_WORDS + 2 * i + 1])
-      return mpmi_fail(c, MPM_E_ARG, "%s is %g here, and another number on another part: give all the same",
-                       name[i], number[i]);
+  if ((status = mpmi_check_alike(s, count, name, number, word + OWN_WORDS))) return status;
   if (word[2]) s->history.has_sums = 0;
   layout->walls_changed |= word[3] != 0;
   layout->parts->is_stale |= word[4] != 0;
@@ -141,13 +148,15 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   layout->parts->prescribes = word[6] != 0;
   for (int32_t m = 0; m < layout->member_count; ++m) {
     mpm_particles *set = layout->member[m].set;
-    int64_t of[FLAGS + 1];
+    int64_t of[FLAGS + 2];
     for (int32_t i = 0; i < FLAGS; ++i) of[i] = (set->dirty & flag[i]) != 0;
     of[FLAGS] = mpmi_ordered_bits(set->mass_max);
-    if ((status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, FLAGS + 1, of))) return status;
+    of[FLAGS + 1] = set->next_id;
+    if ((status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, FLAGS + 2, of))) return status;
     for (int32_t i = 0; i < FLAGS; ++i)
       if (of[i]) set->dirty |= flag[i];
     set->mass_max = mpmi_of_ordered_bits(of[FLAGS]);
+    set->next_id = of[FLAGS + 1];
   }
   return MPM_OK;
 }
@@ -241,6 +250,7 @@ mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status) {
 static mpm_status settle(mpm_stepper *s, mpm_status status, int64_t exchanges, int64_t count, int64_t *word) {
   const int64_t came_to = s->layout.parts->exchanges;
   int32_t part;
+  mpmi_time_add(s->layout.parts);
   status = catch_up(s, status, exchanges);
   word[0] = status != MPM_OK;
   mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, count, word);

@@ -13,6 +13,11 @@ static inline int32_t mpmi_is_shared(const mpm_stepper *s) {
 mpm_status mpmi_together(const mpm_stepper *s, mpm_status status);
 /* The same within a step: all parts also have the numbers of the first part's failure. */
 mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status);
+/* Numbers that must be alike on all parts: each takes two words, of which the largest of all parts are
+ * wanted; then those that are not are refused on all: MPM_E_ARG. */
+void mpmi_put_number(int64_t *word, double number);
+mpm_status mpmi_check_alike(const mpm_stepper *s, int32_t count, const char *const *name,
+                            const double *number, const int64_t *word);
 /* Begins a call: all parts have a status, and numbers that must be alike; what has been changed on one of
  * them counts as changed on all. names: of the numbers. */
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,

@@ -324,6 +324,13 @@ int main(int argc, char **argv) {
   APPEND(mpm_adaption_desc, patient);
   OK(mpm_stepper_set_adaption(stepper, set[0], patient));
 #endif
+#ifdef MPM_PARALLEL_H
+  mpm_balance_desc *even = MAKE(mpm_balance_desc);
+  OK(mpm_balance_desc_init(even, sizeof *even));
+  even->limit = 2.0; /* there is one part */
+  APPEND(mpm_balance_desc, even);
+  OK(mpm_stepper_set_balance(stepper, even));
+#endif
 #ifdef MPM_HEAT_H
   mpm_heat_desc *warm = MAKE(mpm_heat_desc);
   OK(mpm_heat_desc_init(warm, sizeof *warm));

@@ -98,6 +98,17 @@ void copies(world &w) {
   CHECK(refused(MPM_E_NOT_FOUND, "velocity", [&] { w.set.get_f32({"velocty"}); }));
   CHECK(refused(MPM_E_NOT_FOUND, "velocity", [&] { w.set.get_f32({"id", "velocty"}, ids); }));
   CHECK(refused(MPM_E_ARG, "order is 0", [&] { w.set.get_f32({"velocity"}, 0); }));
+
+  const std::vector<unsigned char> all = w.set.pack();
+  std::vector<unsigned char> some = w.set.pack({3, 1});
+  CHECK(refused(MPM_E_ARG, "id 1 is in use", [&] { w.set.unpack(some); }));
+  w.set.remove({1, 3});
+  w.set.unpack(some);
+  CHECK(w.set.count() == 64 && w.set.pack() == all);
+  some.back() ^= 1;
+  CHECK(refused(MPM_E_FORMAT, "damaged", [&] { w.set.unpack(some); }));
+  CHECK(refused(MPM_E_NOT_FOUND, "id 99", [&] { w.set.pack({99}); }));
+
   CHECK(refused(MPM_E_ARG, "count is 0", [&] { w.set.get_f32({}); }));
 
   CHECK(refused(MPM_E_NOT_FOUND, "velocity", [&] { w.set.get("velocty"); }));
@@ -161,6 +172,8 @@ void views(world &w) {
   for (int64_t i = 0; i < mass.size(); ++i) sum += mass(i);
   CHECK(mass.components() == 1 && std::abs(sum - 500.0) < 1e-9);
   CHECK(w.stepper.map<const int64_t>("index").components() == 2);
+  const auto owned = w.stepper.map<const uint8_t>("owned");
+  for (int64_t i = 0; i < owned.size(); ++i) CHECK(owned(i) == 1);
   CHECK(refused(MPM_E_NOT_FOUND, "body", [&] { w.stepper.map<const double>("mass", 1); }));
 }
 

@@ -297,6 +297,32 @@ static void pack(cloud *c) {
   free(out);
 }
 
+/* Particles leave as bytes and come back, all or none, with every bit; what memory denies is tried again. */
+static void pack_and_unpack(cloud *c) {
+  mpm_particles *set = draw_set(c);
+  const int64_t n = mpm_particles_count(set), stride = 1 + fuzz_below(&c->in, 3);
+  int64_t *ids = get(c, set, "id", MPM_I64, 1), some = 0, bytes = 0, size;
+  for (int64_t i = 0; i < n; i += stride) ids[some++] = ids[i];
+  MUST(!mpm_particles_packed_size(set, some, &bytes));
+  void *packed = malloc((size_t)bytes), *again = malloc((size_t)bytes);
+  if (!fuzz_status(c->context, mpm_particles_pack(set, some, ids, packed, bytes))) {
+    MUST(mpm_particles_unpack(set, packed, bytes) == MPM_E_ARG || !some || c->memory.fail_at);
+    if (!fuzz_status(c->context, mpm_particles_remove(set, some, ids))) {
+      mpm_status status;
+      while ((status = fuzz_status(c->context, mpm_particles_unpack(set, packed, bytes))) == MPM_E_NOMEM)
+        MUST(mpm_particles_count(set) == n - some);
+      MUST(!status && mpm_particles_count(set) == n);
+      fuzz_no_failure(&c->memory);
+      MUST(!mpm_particles_packed_size(set, some, &size) && size == bytes);
+      MUST(!mpm_particles_pack(set, some, ids, again, bytes));
+      MUST(!memcmp(packed, again, (size_t)bytes));
+    }
+  }
+  c->count = count_all(c);
+  c->mass = mass_all(c);
+  free(ids), free(packed), free(again);
+}
+
 /* A host that takes so many bytes of an output, and looks at all of them. */
 static mpm_status swallow(void *user, const void *data, int64_t bytes) {
   static volatile unsigned char seen;
@@ -496,6 +522,9 @@ static void act(cloud *c) {
     break;
   case 27:
     draw_heat(c);
+    break;
+  case 28:
+    pack_and_unpack(c);
     break;
   default:
     step(c);

@@ -26,6 +26,8 @@ static const member of_stepper[] = {MEMBER(mpm_stepper_desc, scheme, I32, 9),
                                     MEMBER(mpm_stepper_desc, xpic_every, I32, 1)};
 static const member of_advance[] = {MEMBER(mpm_advance_desc, max_cuts, I32, 1),
                                     MEMBER(mpm_advance_desc, t_end, F64, 5)};
+static const member of_balance[] = {MEMBER(mpm_balance_desc, measure, I32, 1),
+                                    MEMBER(mpm_balance_desc, limit, F64, 2)};
 static const member of_material[] = {MEMBER(mpm_material_desc, state_count, I32, 3),
                                      MEMBER(mpm_material_desc, density, F64, 1)};
 
@@ -268,6 +270,11 @@ static void use_stepper(fuzz_input *in, world *w) {
   fuzz_status(w->context,
               mpm_stepper_set_time(w->stepper, fuzz_below(in, 4) ? 0.0 : fuzz_double(in), fuzz_integer(in)));
   step(in, w);
+  mpm_balance_desc balance;
+  MUST(!mpm_balance_desc_init(&balance, sizeof balance));
+  made = MAKE(in, balance, of_balance);
+  fuzz_status(w->context, mpm_stepper_set_balance(w->stepper, made));
+  free(made);
   made = MAKE(in, d, of_stepper);
   if (!fuzz_status(w->context, mpm_stepper_configure(w->stepper, made))) step(in, w);
   free(made);

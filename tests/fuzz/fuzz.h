@@ -115,7 +115,8 @@ static inline int64_t fuzz_no_failure(fuzz_memory *m) {
   return fail_at;
 }
 
-static inline mpm_context *fuzz_context(fuzz_memory *memory, int32_t concurrency) {
+static inline mpm_context *fuzz_context_of_part(fuzz_memory *memory, int32_t concurrency,
+                                                const mpm_transport *transport) {
   mpm_context_desc desc;
   mpm_context *context;
   *memory = (fuzz_memory){0, 0, 0};
@@ -124,8 +125,13 @@ static inline mpm_context *fuzz_context(fuzz_memory *memory, int32_t concurrency
   desc.release = fuzz_release;
   desc.alloc_user = memory;
   desc.concurrency = concurrency;
+  desc.transport = transport;
   MUST(mpm_context_create(&desc, &context) == MPM_OK);
   return context;
+}
+
+static inline mpm_context *fuzz_context(fuzz_memory *memory, int32_t concurrency) {
+  return fuzz_context_of_part(memory, concurrency, NULL);
 }
 
 static inline void fuzz_close(mpm_context *context, fuzz_memory *memory) {

@@ -1,7 +1,7 @@
 /* States that were damaged, cut, forged or made up: loaded whole, or refused with a sentence and nothing
  * changed. What was loaded can be stepped, shown and saved again. */
 #include "../unit/old_format.h"
-#include "fuzz.h"
+#include "change.h"
 
 typedef struct world {
   fuzz_memory memory;
@@ -230,7 +230,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     MUST(!mpm_state_size(w.stepper, &bytes) && bytes < ROOM);
     MUST(!mpm_state_save(w.stepper, state, bytes));
     if (format == 2) bytes = contents_of_format_2(w.stepper, state, bytes);
-    while (fuzz_left(&in)) bytes = change(&in, state, bytes);
+    while (fuzz_left(&in)) bytes = fuzz_change(&in, state, bytes, ROOM);
   } else { /* the input itself */
     bytes = in.end - in.at;
     memcpy(state, in.at, (size_t)bytes);

@@ -185,7 +185,8 @@ START_TEST(table) {
                {"mpm_heat_desc", 64, sizeof(mpm_heat_desc)},
                {"mpm_heat_info", 176, sizeof(mpm_heat_info)},
                {"mpm_transport", 64, sizeof(mpm_transport)},
-               {"mpm_parallel_info", 96, sizeof(mpm_parallel_info)}};
+               {"mpm_parallel_info", 96, sizeof(mpm_parallel_info)},
+               {"mpm_balance_desc", 24, sizeof(mpm_balance_desc)}};
   const size_t count = sizeof known / sizeof *known;
   size_t found = 0;
   for (const mpmi_release *at = mpmi_releases; at->name; ++at) {
@@ -228,6 +229,7 @@ START_TEST(init_functions) {
     mpm_obstacle_desc obstacle;
     mpm_surface_desc surface;
     mpm_adaption_desc adaption;
+    mpm_balance_desc balance;
     mpm_heat_desc heat;
   } d;
 #define CHECK_INIT(name, at)                                                                                 \
@@ -249,6 +251,7 @@ START_TEST(init_functions) {
   CHECK_INIT(mpm_obstacle_desc, &d.obstacle);
   CHECK_INIT(mpm_surface_desc, &d.surface);
   CHECK_INIT(mpm_adaption_desc, &d.adaption);
+  CHECK_INIT(mpm_balance_desc, &d.balance);
   CHECK_INIT(mpm_heat_desc, &d.heat);
 }
 END_TEST

@@ -25,6 +25,8 @@ typedef struct outcome {
   mpm_contact_info contact[4]; /* what a scene has asked for */
   double seen[24];             /* likewise */
   mpm_step_info failed;        /* the info of one */
+  uint64_t node_sum;           /* of index and mass of the nodes that are owned, in any order */
+  int64_t nodes, in_hook;      /* how many these are; how many a hook has been shown */
   mpm_parallel_info parallel;
 } outcome;
 
@@ -51,6 +53,8 @@ mpm_status set_velocities(world *w, mpm_particles *set, double speed);
 mpm_status fill_middle(world *w, mpm_particles *set, double from, double to);
 mpm_status set_walls(world *w);
 mpm_status run_steps(world *w);
+/* A body that flies through the grid takes the blocks of all parts in turn. */
+mpm_status fly_through(world *w, const scene *is, outcome *found);
 /* Walls, a body and its velocities. */
 mpm_status set_up_body(world *w, const scene *is);
 
@@ -85,5 +89,7 @@ void add_shared_heat(Suite *suite);
 void add_shared_surfaces(Suite *suite);
 /* Adds the cases of shared_implicit.c. */
 void add_shared_implicit(Suite *suite);
+TCase *shared_calls_case(void);
+TCase *shared_balance_case(void);
 
 #endif

@@ -3,7 +3,7 @@
 
 enum { NONE = -1 }; /* no particle */
 
-/* ---- worlds ---------------------------------------------------------------------------------------------- */
+/* ---- worlds -------------------------------------------------------------------------------------------- */
 /* A source that differs from place to place, and has no value for a hole. */
 static mpm_status warm_places(void *user, const mpm_particle_batch *b, double *power) {
   (void)user;

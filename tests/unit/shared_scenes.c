@@ -49,6 +49,12 @@ mpm_status run_steps(world *w) {
   return status;
 }
 
+mpm_status fly_through(world *w, const scene *is, outcome *found) {
+  (void)is, (void)found;
+  mpm_advance_desc d = advance_desc(0.02);
+  return mpm_advance(w->stepper, &d, &w->info);
+}
+
 /* What is played in a world that is open. */
 static mpm_status play(world *w, const scene *is, outcome *found) {
   mpm_status status = is->set_up(w, is);

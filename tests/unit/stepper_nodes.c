@@ -252,6 +252,21 @@ START_TEST(periodic_nodes) {
 }
 END_TEST
 
+/* One part owns all its nodes. */
+START_TEST(owned_nodes) {
+  world r;
+  mpm_view v = {.struct_size = sizeof v};
+  body_open(&r, &(body_desc){.dim = 2, .periodic = _i});
+  world_steps(&r, 1);
+  ck_ok(&r, mpm_grid_map(r.stepper, 0, "owned", MPM_READ, &v));
+  ck_assert(v.type == MPM_U8 && v.components == 1 && v.count == r.info.active_nodes);
+  for (int64_t i = 0; i < v.count; ++i) ck_holds(((const uint8_t *)v.data)[i] == 1);
+  ck_ok(&r, mpm_view_release(&v));
+  ck_refused(&r, mpm_grid_map(r.stepper, 0, "owned", MPM_WRITE, &v), MPM_E_ARG, "cannot be written");
+  world_close(&r);
+}
+END_TEST
+
 TCase *stepper_nodes_case(void) {
   TCase *tests = tcase_create("nodes");
   tcase_set_timeout(tests, 120);
@@ -262,5 +277,6 @@ TCase *stepper_nodes_case(void) {
   tcase_add_test(tests, bad_values);
   tcase_add_loop_test(tests, fields_fit_together, 0, COMBINATIONS);
   tcase_add_loop_test(tests, periodic_nodes, 0, 3);
+  tcase_add_loop_test(tests, owned_nodes, 0, 2);
   return tests;
 }

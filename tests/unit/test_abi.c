@@ -207,6 +207,17 @@ START_TEST(layout_of_parallel_info) {
 END_TEST
 #undef STRUCT
 
+#define STRUCT mpm_balance_desc
+START_TEST(layout_of_balance_desc) {
+  SIZE(24);
+  AT(0, struct_size);
+  AT(4, measure);
+  AT(8, limit);
+  AT(16, block_weight);
+}
+END_TEST
+#undef STRUCT
+
 #define STRUCT mpm_grid_desc
 START_TEST(layout_of_grid_desc) {
   SIZE(120);
@@ -463,7 +474,7 @@ END_TEST
 
 #define STRUCT mpm_node_batch
 START_TEST(layout_of_node_batch) {
-  SIZE(72);
+  SIZE(80);
   AT(0, struct_size);
   AT(4, dim);
   AT(8, body);
@@ -475,6 +486,7 @@ START_TEST(layout_of_node_batch) {
   AT(48, index);
   AT(56, position);
   AT(64, mass);
+  AT(72, owned);
 }
 END_TEST
 #undef STRUCT
@@ -545,6 +557,7 @@ Suite *abi_suite(void) {
     tcase_add_test(frozen, layout_of_transport);
     tcase_add_test(frozen, layout_of_message);
     tcase_add_test(frozen, layout_of_parallel_info);
+    tcase_add_test(frozen, layout_of_balance_desc);
     tcase_add_test(frozen, layout_of_grid_desc);
     tcase_add_test(frozen, layout_of_material_batch);
     tcase_add_test(frozen, layout_of_material_desc);

@@ -213,17 +213,10 @@ START_TEST(few_blocks) {
 }
 END_TEST
 
-/* A body that flies through the grid takes the blocks of all parts in turn. */
-static mpm_status fly(world *w, const scene *is, outcome *found) {
-  (void)is, (void)found;
-  mpm_advance_desc d = advance_desc(0.02);
-  return mpm_advance(w->stepper, &d, &w->info);
-}
-
 START_TEST(blocks_are_cut_anew) {
   scene is = scene_of(2, 6 * WIDE, set_up_body);
   is.desc.grid.periodic[0] = 1;
-  is.run = fly;
+  is.run = fly_through;
   is.speed = 30.0;
   scene many = is;
   parts_plan plan;
@@ -523,6 +516,8 @@ Suite *shared_suite(void) {
   tcase_add_test(host, few_blocks);
   tcase_add_test(host, blocks_are_cut_anew);
   suite_add_tcase(suite, host);
+  suite_add_tcase(suite, shared_calls_case());
+  suite_add_tcase(suite, shared_balance_case());
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);
   tcase_add_loop_test(failures, steps_fail_together, 0, 12);

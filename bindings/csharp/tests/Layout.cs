@@ -63,6 +63,16 @@ namespace Mpm {
       Compare("Transport.user", (byte*)&it.user - at, 56, 36);
     }
 
+    static void CheckBalanceDesc() {
+      var it = new BalanceDesc();
+      byte* at = (byte*)&it;
+      Compare("BalanceDesc", sizeof(BalanceDesc), 24, 24);
+      Compare("BalanceDesc.struct_size", (byte*)&it.struct_size - at, 0, 0);
+      Compare("BalanceDesc.measure", (byte*)&it.measure - at, 4, 4);
+      Compare("BalanceDesc.limit", (byte*)&it.limit - at, 8, 8);
+      Compare("BalanceDesc.block_weight", (byte*)&it.block_weight - at, 16, 16);
+    }
+
     static void CheckParallelInfo() {
       var it = new ParallelInfo();
       byte* at = (byte*)&it;
@@ -272,7 +282,7 @@ namespace Mpm {
     static void CheckNodeBatch() {
       var it = new NodeBatch();
       byte* at = (byte*)&it;
-      Compare("NodeBatch", sizeof(NodeBatch), 72, 64);
+      Compare("NodeBatch", sizeof(NodeBatch), 80, 64);
       Compare("NodeBatch.struct_size", (byte*)&it.struct_size - at, 0, 0);
       Compare("NodeBatch.dim", (byte*)&it.dim - at, 4, 4);
       Compare("NodeBatch.body", (byte*)&it.body - at, 8, 8);
@@ -284,6 +294,7 @@ namespace Mpm {
       Compare("NodeBatch.index", (byte*)&it.index - at, 48, 48);
       Compare("NodeBatch.position", (byte*)&it.position - at, 56, 52);
       Compare("NodeBatch.mass", (byte*)&it.mass - at, 64, 56);
+      Compare("NodeBatch.owned", (byte*)&it.owned - at, 72, 60);
     }
 
     static void CheckAdvanceDesc() {
@@ -534,6 +545,7 @@ namespace Mpm {
       CheckView();
       CheckMessage();
       CheckTransport();
+      CheckBalanceDesc();
       CheckParallelInfo();
       CheckContextDesc();
       CheckGridDesc();

@@ -178,7 +178,7 @@ namespace Mpm {
         Refuses(MPM_CANCELLED, "", () => stepper.Step(1e-3));
         stepper.SetProgress(null);
         stepper.SetNodeHook(MPM_AFTER_FORCES, (ref NodeBatch batch, Columns velocity, Columns force) => {
-          for (long i = 0; i < batch.n; i++) force[i, 1] += 9.81 * batch.Mass[i, 0];
+          for (long i = 0; i < batch.n; i++) force[i, 1] += 9.81 * batch.Mass[i, 0] * batch.Owned[i, 0];
           return MPM_OK;
         });
         Refuses(MPM_E_ARG, "stage", () => stepper.SetNodeHook(9, (ref NodeBatch batch, Columns velocity, Columns force) => 0));
@@ -619,6 +619,14 @@ namespace Mpm {
         for (long i = 0; i < n; i++) Is(ids[i], (float)i, "ids in library order");
         Refuses(MPM_E_NOT_FOUND, "velocity", () => set.GetF32(MPM_BY_ID, "velocty"));
         Refuses(MPM_E_ARG, "", () => set.GetF32(7, "mass"));
+
+        byte[] all = set.Pack(), some = set.Pack(new long[] { 3, 1 });
+        Refuses(MPM_E_ARG, "is in use", () => set.Unpack(some));
+        set.Remove(new long[] { 1, 3 });
+        set.Unpack(some);
+        Is(Same(set.Pack(), all), true, "particles that were packed");
+        some[some.Length - 1] ^= 1;
+        Refuses(MPM_E_FORMAT, "damaged", () => set.Unpack(some));
 
         MemoryStream state = new MemoryStream(), vtp = new MemoryStream(), vti = new MemoryStream();
         scene.Stepper.SaveTo(state);

@@ -167,6 +167,14 @@ test('fills by a function, and floats for renderers', () => {
     );
   }
   assert.throws(() => set.toFloat32(['position', 'position']), refused('MPM_E_ARG', /./));
+  const all = set.pack();
+  const some = set.pack([3, 1]);
+  assert.throws(() => set.unpack(some), refused('MPM_E_ARG', /is in use/));
+  set.remove([1, 3]);
+  set.unpack(some);
+  assert.deepEqual(set.pack(), all);
+  some[some.length - 1] ^= 1;
+  assert.throws(() => set.unpack(some), refused('MPM_E_FORMAT', /damaged/));
   const error = new RangeError('mine');
   assert.throws(
     () =>

@@ -182,7 +182,7 @@ class Callbacks(unittest.TestCase):
         stepper.set_velocity_bc(None)
         one["velocity"] = 0.0
         stepper.set_node_hook(mpm.AFTER_FORCES, lambda batch, velocity, force: force.__setitem__(
-            (slice(None), 1), force[:, 1] + 2.0 * batch.mass))
+            (slice(None), 1), force[:, 1] + 2.0 * batch.mass * batch.owned))
         stepper.step(1e-3)
         np.testing.assert_allclose(stepper.info.momentum[1], 2e-3 * one["mass"].sum(), rtol=1e-9)
 
@@ -357,7 +357,7 @@ class Compiled(unittest.TestCase):
         @compiled.node_hook
         def lift(batch, velocity, force):
             for i in range(batch.n):
-                force[i, 1] += 2.0 * batch.mass[i]
+                force[i, 1] += 2.0 * batch.mass[i] * batch.owned[i]
 
         one, stepper = block()
         stepper.set_velocity_bc(hold)

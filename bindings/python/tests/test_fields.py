@@ -136,6 +136,7 @@ class Views(unittest.TestCase):
         one, stepper = block(flip=0)
         stepper.step(1e-3)
         mass = stepper.nodes("mass")
+        self.assertEqual(stepper.nodes("owned").sum(), len(mass))
         self.assertAlmostEqual(mass.sum(), one["mass"].sum(), places=9)
         with self.assertRaises(mpm.Error):
             stepper.step(1e-3)

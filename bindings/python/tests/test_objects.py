@@ -411,6 +411,27 @@ class States(unittest.TestCase):
         with self.assertRaises(mpm.Error):
             one.get_f32("position", order=7)
 
+    def test_packed(self):
+        one, _ = block()
+        other, _ = block()
+        for each in one, other:
+            each.add_field("colour", 3, np.uint8)
+        one["colour"] = np.arange(3 * len(one)).reshape(-1, 3) % 251
+        some = one.ids[::3]
+        packed = one.pack(some)
+        with self.assertRaisesRegex(mpm.Error, "is in use"):
+            other.unpack(packed)
+        other.remove(other.ids)
+        other.unpack(packed)
+        np.testing.assert_array_equal(other.ids, some)
+        for field in "position", "mass", "colour":
+            np.testing.assert_array_equal(other[field], one.get(field, some))
+        other.remove(some)
+        other.unpack(bytearray(one.pack()))
+        self.assertEqual(other.pack(), one.pack())
+        with self.assertRaisesRegex(mpm.Error, "damaged"):
+            other.unpack(packed[:-1] + bytes([packed[-1] ^ 1]))
+
     def test_reports(self):
         one, stepper = block(gravity=(0, -10), pic_damping=10.0)
         stepper.wall(mpm.Y_MIN, mpm.WALL_SLIP)

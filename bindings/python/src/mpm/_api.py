@@ -596,6 +596,17 @@ class message(Structure):
     ]
 
 
+class balance_desc(Structure):
+    """How blocks of the grid are given to parts. Fill it with mpm_balance_desc_init(); all 0 are the defaults."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("measure", c_int32),
+        ("limit", c_double),
+        ("block_weight", c_double),
+    ]
+
+
 class parallel_info(Structure):
     """What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made or
     they were last reset; the caller sets struct_size."""
@@ -799,6 +810,7 @@ class node_batch(Structure):
         ("index", c_void_p),
         ("position", c_void_p),
         ("mass", c_void_p),
+        ("owned", c_void_p),
     ]
 
 
@@ -1158,6 +1170,7 @@ SIZES = {
     view: (56, 48),
     message: (24, 24),
     transport: (64, 40),
+    balance_desc: (24, 24),
     parallel_info: (96, 96),
     context_desc: (96, 64),
     grid_desc: (120, 120),
@@ -1167,7 +1180,7 @@ SIZES = {
     stepper_desc: (176, 176),
     step_info: (248, 248),
     particle_batch: (104, 72),
-    node_batch: (72, 64),
+    node_batch: (80, 64),
     advance_desc: (56, 56),
     profile: (96, 96),
     contact_desc: (72, 72),
@@ -1192,7 +1205,12 @@ FUNCTIONS = {
     "mpm_view_release": (c_int32, [POINTER(view)]),
     "mpm_context_part": (c_int32, [c_void_p, c_void_p, c_void_p]),
     "mpm_particles_total": (c_int32, [c_void_p, c_void_p]),
+    "mpm_balance_desc_init": (c_int32, [POINTER(balance_desc), c_uint32]),
+    "mpm_stepper_set_balance": (c_int32, [c_void_p, POINTER(balance_desc)]),
     "mpm_stepper_parallel_info": (c_int32, [c_void_p, c_int32, POINTER(parallel_info)]),
+    "mpm_particles_packed_size": (c_int32, [c_void_p, c_int64, c_void_p]),
+    "mpm_particles_pack": (c_int32, [c_void_p, c_int64, c_void_p, c_void_p, c_int64]),
+    "mpm_particles_unpack": (c_int32, [c_void_p, c_void_p, c_int64]),
     "mpm_context_desc_init": (c_int32, [POINTER(context_desc), c_uint32]),
     "mpm_context_create": (c_int32, [POINTER(context_desc), c_void_p]),
     "mpm_context_memory": (c_int32, [c_void_p, c_void_p, c_void_p]),
@@ -1360,10 +1378,49 @@ Number of this part and how many there are; 0 and 1 without a transport. Pointer
     "mpm_particles_total": """mpm_status mpm_particles_total(const mpm_particles *particles, int64_t *n)
 
 Particles of a set on all parts (collective). mpm_particles_count() is that of this part.""",
+    "mpm_balance_desc_init": """mpm_status mpm_balance_desc_init(mpm_balance_desc *desc, uint32_t struct_size)
+
+Fills desc with the defaults. struct_size is sizeof(mpm_balance_desc) of the caller; no byte beyond is written.
+MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.""",
+    "mpm_stepper_set_balance": """mpm_status mpm_stepper_set_balance(mpm_stepper *stepper, const mpm_balance_desc *desc)
+
+Sets how blocks are given to parts, from the next sort of particles on (collective); desc NULL: by the defaults.
+Results do not depend on it, bit by bit. Not part of a saved state: the host sets it again. With one part it is
+checked and does nothing. MPM_E_ARG: a value is out of range, or another one is given on another part. MPM_E_STATE: a
+step is under way. Since 0.2.0.""",
     "mpm_stepper_parallel_info": """mpm_status mpm_stepper_parallel_info(mpm_stepper *stepper, int32_t reset, mpm_parallel_info *info)
 
 Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
 struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0.""",
+    "mpm_particles_packed_size": """mpm_status mpm_particles_packed_size(const mpm_particles *particles, int64_t n, int64_t *bytes)
+
+Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has now.
+MPM_E_ARG: n is negative or beyond 2^32 - 2, or bytes is NULL. Since 0.2.0.""",
+    "mpm_particles_pack": """mpm_status mpm_particles_pack(const mpm_particles *particles, int64_t n, const int64_t *ids, void *buffer, int64_t
+capacity)
+
+Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines. They have
+every field in use, bit by bit, with ids, images and the host's fields, and what says of which law they are. The order
+of bytes is the same on all machines. The particles stay in the set.
+
+- ids: [n], each once, in this order; NULL for all particles by ascending id, where n is mpm_particles_count().
+- buffer: of `capacity` bytes, of which those of mpm_particles_packed_size() are written; anywhere.
+
+Of a problem in several parts these are particles of this part, and no other part takes part. MPM_E_NOT_FOUND: an id
+is not in the set. MPM_E_ARG: capacity is too small, an id is given twice, n does not match or buffer is NULL.
+MPM_E_STATE: a staged step is under way, a view of the set is out for writing, or a value that was written through one
+is bad. Since 0.2.0.""",
+    "mpm_particles_unpack": """mpm_status mpm_particles_unpack(mpm_particles *particles, const void *buffer, int64_t bytes)
+
+Adds packed particles to a set, bit by bit: all or none. The law is not asked: stress, state variables and volume come
+along. Fields that the set has and the buffer lacks have the values of new particles. Grids may have other cells and
+bases, if the particles lie inside.
+
+Of a problem in several parts they are added to this part, and no other part takes part; the next step brings them
+home. MPM_E_FORMAT: the buffer is damaged; it is of another law, or of other parameters, dimension, geometry or kind
+of grid, or counts images of other periods; or it has fields that the set has not: of the host, of another type, or
+"reference_position" and "dilation_ratio" where no stepper keeps them. MPM_E_ARG: an id is in use, or a particle lies
+outside the grid, which the text names; or buffer is NULL. MPM_E_STATE: as for all that changes a set. Since 0.2.0.""",
     "mpm_context_desc_init": """mpm_status mpm_context_desc_init(mpm_context_desc *desc, uint32_t struct_size)
 
 Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.
@@ -1857,6 +1914,7 @@ and mirrored ghosts are listed beside the nodes that they follow.
 | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
 | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
 | "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
+| "owned"                            | U8   | 1          | as in mpm_node_batch                          |
 
 - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
 - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -2208,8 +2266,8 @@ Writes nodal fields of the last step, or of a staged step while one is under way
 VTK image data (.vti, appended raw), or with open knots, whose nodes are not evenly spaced at the faces, as a
 rectilinear grid (.vtr). Fields are named as in mpm_grid_map(); vectors have three components in 2-D and 3-D. Extents
 are indices of nodes; where no node is active values are zero. With count 0, when fields may be NULL, it writes every
-field that the step has kept but "position", which is that of the points. Memory follows the active nodes; long runs
-of zeros take no room on storage that knows holes.
+field that the step has kept but "position", which is that of the points, and "owned". Memory follows the active
+nodes; long runs of zeros take no room on storage that knows holes.
 
 - MPM_E_NOT_FOUND: there is no such field, or no set is in body 0.
 - MPM_E_STATE: nothing has been stepped yet.

@@ -72,6 +72,7 @@ class Batch:
     #: components of the fields that are arrays, as a function of the batch; tensors are 3 x 3
     _arrays = {}
     _integers = ("id", "index", "component", "other")
+    _bytes = ("owned",)
 
     #: those that the callback fills
     _written = ()
@@ -92,7 +93,8 @@ class Batch:
             if components is tensor:
                 array = self._raw(at, 9, writable=writable).reshape(3, 3, -1)[:, :, :self._struct.n].transpose(2, 0, 1)
             else:
-                array = self._show(at, components(self._struct), np.int64 if name in self._integers else np.float64, writable)
+                kind = np.int64 if name in self._integers else np.uint8 if name in self._bytes else np.float64
+                array = self._show(at, components(self._struct), kind, writable)
         self.__dict__[name] = array
         return array
 

@@ -12,9 +12,9 @@ class ParticleBatch(Batch):
 
 
 class NodeBatch(Batch):
-    """Active nodes: n, dim, t, dt, body, index and position (n, dim), mass (n,). Arrays end with the call."""
+    """Active nodes: n, dim, t, dt, body, index and position (n, dim), mass and owned (n,). Arrays end with the call."""
 
-    _arrays = {"index": vector, "position": vector, "mass": scalar}
+    _arrays = {"index": vector, "position": vector, "mass": scalar, "owned": scalar}
 
 
 class AdaptionBatch(Batch):

@@ -19,7 +19,7 @@ from numba.extending import intrinsic
 from . import _api
 
 ParticleItems = collections.namedtuple("ParticleItems", "n dim t dt id position reference_position velocity mass volume")
-NodeItems = collections.namedtuple("NodeItems", "n dim body t dt index position mass")
+NodeItems = collections.namedtuple("NodeItems", "n dim body t dt index position mass owned")
 MaterialItems = collections.namedtuple(
     "MaterialItems", "n t dt id F F_inc L stress state stress_new state_new wave_speed kinematic_viscosity energy")
 
@@ -100,15 +100,16 @@ def _particle_reader():
 
 def _node_reader():
     word, integer, double = _readers(_api.node_batch)
-    dim, body, n, ld, t, dt, index, position, mass = (
+    dim, body, n, ld, t, dt, index, position, mass, owned = (
         word("dim"), word("body"), integer("n"), integer("ld"), double("t"), double("dt"), integer("index"),
-        integer("position"), integer("mass"))
+        integer("position"), integer("mass"), integer("owned"))
 
     @numba.njit
     def read(batch):
         d, k, stride = dim(batch), n(batch), ld(batch)
         return NodeItems(k, d, body(batch), t(batch), dt(batch), _number_rows(index(batch), d, k, stride),
-                         _rows(position(batch), d, k, stride), _column(mass(batch), k))
+                         _rows(position(batch), d, k, stride), _column(mass(batch), k),
+                         _byte_rows(owned(batch), 1, k, k)[:, 0])
 
     return read, ld
 

@@ -133,6 +133,22 @@ class Particles(Handle):
         ids = np.ascontiguousarray(np.atleast_1d(ids), np.int64)
         self._context._check(lib.mpm_particles_remove(self, len(ids), address(ids)))
 
+    @documented("mpm_particles_pack")
+    def pack(self, ids=None):
+        """All particles by ascending id, or those with the given ids, as bytes that unpack() takes."""
+        ids, n = chosen(ids, len(self))
+        count = ctypes.c_int64()
+        self._context._check(lib.mpm_particles_packed_size(self, n, ctypes.byref(count)))
+        buffer = ctypes.create_string_buffer(count.value)
+        self._context._check(lib.mpm_particles_pack(self, n, address(ids), buffer, count.value))
+        return buffer.raw
+
+    @documented("mpm_particles_unpack")
+    def unpack(self, packed):
+        """Adds particles that pack() has given, of this set or of another."""
+        packed = bytes(packed)
+        self._context._check(lib.mpm_particles_unpack(self, packed, len(packed)))
+
     @property
     def ids(self):
         """The ids of all particles, ascending."""

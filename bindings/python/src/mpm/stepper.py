@@ -194,6 +194,12 @@ class Stepper(Handle):
         self._context._check(lib.mpm_stepper_heat_info(self, ctypes.byref(info)))
         return info
 
+    @documented("mpm_stepper_set_balance")
+    def set_balance(self, **options):
+        """Sets how blocks are given to parts, by the fields of mpm_balance_desc: measure, limit, block_weight."""
+        desc = descriptor(_api.balance_desc, lib.mpm_balance_desc_init, options, "balance")
+        self._context._check(lib.mpm_stepper_set_balance(self, ctypes.byref(desc)))
+
     @documented("mpm_stepper_parallel_info")
     def parallel_info(self, reset=False):
         """What this part does of a problem in several, and what that costs."""

@@ -771,6 +771,37 @@ pub struct mpm_transport {
     pub user: *mut c_void,
 }
 
+/// How blocks of the grid are given to parts. Fill it with mpm_balance_desc_init(); all 0 are the defaults.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct mpm_balance_desc {
+    /// sizeof(mpm_balance_desc) of the caller
+    pub struct_size: u32,
+    /// 0 (default): a block weighs what its particles and block_weight come to. 1: the seconds that a part has spent in
+    /// steps since blocks were last given to parts, those of waiting left out, are what its blocks weigh together, each
+    /// in proportion to that.
+    pub measure: i32,
+    /// Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least 1;
+    /// infinity: never. 0 (default): 1.1.
+    pub limit: f64,
+    /// What a block costs beside its particles, in particles, from 0 to 1e6. 0 (default): 60, about what the sums of its
+    /// nodes take.
+    pub block_weight: f64,
+}
+
+impl Default for mpm_balance_desc {
+    /// The library's defaults: `mpm_balance_desc_init()`.
+    fn default() -> Self {
+        // SAFETY: zeros are a value of every field, and the library writes as many bytes as it is told.
+        unsafe {
+            let mut out: Self = std::mem::zeroed();
+            let status = mpm_balance_desc_init(&mut out, size_of::<Self>() as u32);
+            assert_eq!(status, MPM_OK, "mpm_balance_desc_init");
+            out
+        }
+    }
+}
+
 /// What one part does of a problem, and what that costs. Counts are of this part, since the stepper was made or they were
 /// last reset; the caller sets struct_size.
 #[repr(C)]
@@ -1323,6 +1354,9 @@ pub struct mpm_node_batch {
     pub position: *const f64,
     /// [ld]
     pub mass: *const f64,
+    /// [ld] 1 on exactly one of the parts that have the node, for sums of the host, else 0; all 1 with one part: see
+    /// parallel.h. Since 0.2.0.
+    pub owned: *const u8,
 }
 
 /// How mpm_advance() chooses its sub-steps. Fill the struct with mpm_advance_desc_init().
@@ -1899,12 +1933,68 @@ extern "C" {
     /// Particles of a set on all parts (collective). mpm_particles_count() is that of this part.
     pub fn mpm_particles_total(particles: *const mpm_particles, n: *mut i64) -> mpm_status;
 
+    /// Fills desc with the defaults. struct_size is sizeof(mpm_balance_desc) of the caller; no byte beyond is written.
+    /// MPM_E_ARG: it is smaller than the first released struct. Any thread, any time.
+    pub fn mpm_balance_desc_init(desc: *mut mpm_balance_desc, struct_size: u32) -> mpm_status;
+
+    /// Sets how blocks are given to parts, from the next sort of particles on (collective); desc NULL: by the defaults.
+    /// Results do not depend on it, bit by bit. Not part of a saved state: the host sets it again. With one part it is
+    /// checked and does nothing. MPM_E_ARG: a value is out of range, or another one is given on another part.
+    /// MPM_E_STATE: a step is under way. Since 0.2.0.
+    pub fn mpm_stepper_set_balance(
+        stepper: *mut mpm_stepper,
+        desc: *const mpm_balance_desc,
+    ) -> mpm_status;
+
     /// Tells what this part does, as of the last step; 1 in reset starts the counts anew. MPM_E_ARG: info is NULL or its
     /// struct_size is bad. With one part nothing is exchanged: all but blocks and imbalance, 1, is 0.
     pub fn mpm_stepper_parallel_info(
         stepper: *mut mpm_stepper,
         reset: i32,
         info: *mut mpm_parallel_info,
+    ) -> mpm_status;
+
+    /// Tells how many bytes mpm_particles_pack() needs for n particles of the set, with the fields that it has now.
+    /// MPM_E_ARG: n is negative or beyond 2^32 - 2, or bytes is NULL. Since 0.2.0.
+    pub fn mpm_particles_packed_size(
+        particles: *const mpm_particles,
+        n: i64,
+        bytes: *mut i64,
+    ) -> mpm_status;
+
+    /// Packs n particles into a buffer, for hosts that move them themselves: between sets, programs, machines. They have
+    /// every field in use, bit by bit, with ids, images and the host's fields, and what says of which law they are. The
+    /// order of bytes is the same on all machines. The particles stay in the set.
+    ///
+    /// - ids: [n], each once, in this order; NULL for all particles by ascending id, where n is mpm_particles_count().
+    /// - buffer: of `capacity` bytes, of which those of mpm_particles_packed_size() are written; anywhere.
+    ///
+    /// Of a problem in several parts these are particles of this part, and no other part takes part. MPM_E_NOT_FOUND: an
+    /// id is not in the set. MPM_E_ARG: capacity is too small, an id is given twice, n does not match or buffer is NULL.
+    /// MPM_E_STATE: a staged step is under way, a view of the set is out for writing, or a value that was written through
+    /// one is bad. Since 0.2.0.
+    pub fn mpm_particles_pack(
+        particles: *const mpm_particles,
+        n: i64,
+        ids: *const i64,
+        buffer: *mut c_void,
+        capacity: i64,
+    ) -> mpm_status;
+
+    /// Adds packed particles to a set, bit by bit: all or none. The law is not asked: stress, state variables and volume
+    /// come along. Fields that the set has and the buffer lacks have the values of new particles. Grids may have other
+    /// cells and bases, if the particles lie inside.
+    ///
+    /// Of a problem in several parts they are added to this part, and no other part takes part; the next step brings them
+    /// home. MPM_E_FORMAT: the buffer is damaged; it is of another law, or of other parameters, dimension, geometry or
+    /// kind of grid, or counts images of other periods; or it has fields that the set has not: of the host, of another
+    /// type, or "reference_position" and "dilation_ratio" where no stepper keeps them. MPM_E_ARG: an id is in use, or a
+    /// particle lies outside the grid, which the text names; or buffer is NULL. MPM_E_STATE: as for all that changes a
+    /// set. Since 0.2.0.
+    pub fn mpm_particles_unpack(
+        particles: *mut mpm_particles,
+        buffer: *const c_void,
+        bytes: i64,
     ) -> mpm_status;
 
     /// Fills desc with the defaults. struct_size is sizeof(mpm_context_desc) of the caller; no byte beyond is written.
@@ -2617,6 +2707,7 @@ extern "C" {
     /// | "contact_normal"                   | F64  | dim        | unit, away from the body, where it meets them |
     /// | "contact_gap" "contact_area"       | F64  | 1          | length, infinite where it meets nothing       |
     /// | "temperature"                      | F64  | 1          | at the end of the step, where sets have heat  |
+    /// | "owned"                            | U8   | 1          | as in mpm_node_batch                          |
     ///
     /// - body: velocity field, of which there is one for each body (mpm_stepper_set_body()).
     /// - MPM_E_STATE: nothing has been stepped yet, or MPM_WRITE is asked for outside a staged step.
@@ -3174,8 +3265,8 @@ extern "C" {
     /// nodes: as VTK image data (.vti, appended raw), or with open knots, whose nodes are not evenly spaced at the faces,
     /// as a rectilinear grid (.vtr). Fields are named as in mpm_grid_map(); vectors have three components in 2-D and 3-D.
     /// Extents are indices of nodes; where no node is active values are zero. With count 0, when fields may be NULL, it
-    /// writes every field that the step has kept but "position", which is that of the points. Memory follows the active
-    /// nodes; long runs of zeros take no room on storage that knows holes.
+    /// writes every field that the step has kept but "position", which is that of the points, and "owned". Memory follows
+    /// the active nodes; long runs of zeros take no room on storage that knows holes.
     ///
     /// - MPM_E_NOT_FOUND: there is no such field, or no set is in body 0.
     /// - MPM_E_STATE: nothing has been stepped yet.

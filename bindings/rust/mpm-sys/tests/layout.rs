@@ -67,6 +67,15 @@ fn layout_of_mpm_transport() {
 }
 
 #[test]
+fn layout_of_mpm_balance_desc() {
+    assert_eq!(size_of::<mpm_balance_desc>(), of(24, 24));
+    assert_eq!(offset!(mpm_balance_desc, struct_size), of(0, 0));
+    assert_eq!(offset!(mpm_balance_desc, measure), of(4, 4));
+    assert_eq!(offset!(mpm_balance_desc, limit), of(8, 8));
+    assert_eq!(offset!(mpm_balance_desc, block_weight), of(16, 16));
+}
+
+#[test]
 fn layout_of_mpm_parallel_info() {
     assert_eq!(size_of::<mpm_parallel_info>(), of(96, 96));
     assert_eq!(offset!(mpm_parallel_info, struct_size), of(0, 0));
@@ -265,7 +274,7 @@ fn layout_of_mpm_particle_batch() {
 
 #[test]
 fn layout_of_mpm_node_batch() {
-    assert_eq!(size_of::<mpm_node_batch>(), of(72, 64));
+    assert_eq!(size_of::<mpm_node_batch>(), of(80, 64));
     assert_eq!(offset!(mpm_node_batch, struct_size), of(0, 0));
     assert_eq!(offset!(mpm_node_batch, dim), of(4, 4));
     assert_eq!(offset!(mpm_node_batch, body), of(8, 8));
@@ -277,6 +286,7 @@ fn layout_of_mpm_node_batch() {
     assert_eq!(offset!(mpm_node_batch, index), of(48, 48));
     assert_eq!(offset!(mpm_node_batch, position), of(56, 52));
     assert_eq!(offset!(mpm_node_batch, mass), of(64, 56));
+    assert_eq!(offset!(mpm_node_batch, owned), of(72, 60));
 }
 
 #[test]
@@ -516,7 +526,12 @@ fn functions_are_there() {
         mpm_view_release as *const (),
         mpm_context_part as *const (),
         mpm_particles_total as *const (),
+        mpm_balance_desc_init as *const (),
+        mpm_stepper_set_balance as *const (),
         mpm_stepper_parallel_info as *const (),
+        mpm_particles_packed_size as *const (),
+        mpm_particles_pack as *const (),
+        mpm_particles_unpack as *const (),
         mpm_context_desc_init as *const (),
         mpm_context_create as *const (),
         mpm_context_memory as *const (),

@@ -190,6 +190,8 @@ batch!(
         position: f64, axes;
         /// Masses.
         mass: f64, one;
+        /// 1 on one of the parts that have the node, which sums of the host count.
+        owned: u8, one;
     }
 );
 

@@ -227,6 +227,33 @@ impl Particles {
         entry.done(status)
     }
 
+    /// Packs the particles with the given ids in this order, or all by ascending id, for [`Particles::unpack`]: see
+    /// `mpm_particles_pack()`.
+    pub fn pack(&self, ids: Option<&[i64]>) -> Result<Vec<u8>> {
+        let (n, first) = ids.map_or((self.len(), std::ptr::null()), |ids| (ids.len(), ids.as_ptr()));
+        let mut bytes = 0;
+        let entry = self.context.enter()?;
+        // SAFETY: the handle lives, and the number is written during the call.
+        let status = unsafe { sys::mpm_particles_packed_size(self.handle, n as i64, &mut bytes) };
+        entry.done(status)?;
+        let mut out = vec![0u8; bytes as usize];
+        let entry = self.context.enter()?;
+        // SAFETY: the ids are as many as is said, and so are the bytes.
+        let status =
+            unsafe { sys::mpm_particles_pack(self.handle, n as i64, first, out.as_mut_ptr().cast(), bytes) };
+        entry.done(status)?;
+        Ok(out)
+    }
+
+    /// Adds particles that [`Particles::pack`] has given, of this set or of another: all or none.
+    pub fn unpack(&mut self, packed: &[u8]) -> Result<()> {
+        let entry = self.context.enter()?;
+        // SAFETY: the bytes are as many as is said.
+        let status =
+            unsafe { sys::mpm_particles_unpack(self.handle, packed.as_ptr().cast(), packed.len() as i64) };
+        entry.done(status)
+    }
+
     /// All fields.
     pub fn fields(&self) -> Result<Vec<FieldInfo>> {
         let mut out = Vec::new();

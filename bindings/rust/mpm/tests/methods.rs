@@ -423,6 +423,15 @@ fn floats_and_writers() {
     assert_eq!(set.get_f32(&["velocty"], MPM_BY_ID).unwrap_err().status(), MPM_E_NOT_FOUND);
     assert_eq!(set.get_f32(&["mass"], 7).unwrap_err().status(), MPM_E_ARG);
 
+    let (all, mut some) = (set.pack(None).unwrap(), set.pack(Some(&[3, 1])).unwrap());
+    let set = stepper.particles_mut(key);
+    assert_eq!(set.unpack(&some).unwrap_err().status(), MPM_E_ARG);
+    set.remove(&[1, 3]).unwrap();
+    set.unpack(&some).unwrap();
+    assert_eq!(set.pack(None).unwrap(), all);
+    *some.last_mut().unwrap() ^= 1;
+    assert_eq!(set.unpack(&some).unwrap_err().status(), MPM_E_FORMAT);
+
     let (mut state, mut vtp, mut vti) = (Vec::new(), Vec::new(), Vec::new());
     stepper.save_to(&mut state).unwrap();
     assert_eq!(state, stepper.save().unwrap());

@@ -1,0 +1,208 @@
+/* How blocks are given to parts: by counts or by time, without a bit of the results. */
+#define _POSIX_C_SOURCE 200809L /* nanosleep */
+#include "shared.h"
+
+#include <time.h>
+
+static const mpm_balance_desc balances[] = {{sizeof(mpm_balance_desc), 0, 1.0, 0.0},
+                                            {sizeof(mpm_balance_desc), 1, 1.0, 1e-3},
+                                            {sizeof(mpm_balance_desc), 1, 1.3, 1e6},
+                                            {sizeof(mpm_balance_desc), 0, (double)INFINITY, 60.0}};
+
+/* The settings change while it goes on; _i of the test is in the speed. */
+static mpm_status fly_balanced(world *w, const scene *is, outcome *found) {
+  const mpm_balance_desc *balance = &balances[(int32_t)is->speed % 10];
+  mpm_status status = mpm_stepper_set_balance(w->stepper, balance);
+  if (!status) status = fly_through(w, is, found);
+  if (!status && balance->limit > 2.0) return MPM_OK; /* cut once, and never again */
+  if (!status) status = mpm_stepper_set_balance(w->stepper, NULL);
+  return status ? status : run_steps(w);
+}
+
+START_TEST(balance_changes_no_bit) {
+  scene is = scene_of(2, 4 * WIDE, set_up_body), many;
+  is.desc.grid.periodic[0] = 1;
+  is.run = fly_balanced;
+  is.speed = 30.0 + _i;
+  many = is;
+  check_scene(&is, "balance", 3);
+  parts_plan plan;
+  memset(&plan, 0, sizeof plan);
+  ck_assert_int_eq(parts_run(3, live, &many, &plan), 0);
+  const int64_t cuts = many.found[0].parallel.cuts, sorts = many.found[0].info.resorts;
+  ck_assert_int_gt(sorts, 6);
+  if (balances[_i].limit > 2.0)
+    ck_assert_int_eq(cuts, 1);
+  else if (balances[_i].limit < 1.1)
+    ck_assert_int_gt(cuts, sorts / 2);
+}
+END_TEST
+
+/* A host whose particles are slow on one side: it sleeps for each of them, and counts them. */
+enum { SLOW_STEPS = 40, COUNTED = 8 };
+typedef struct slow_side {
+  scene is;
+  int32_t measure;
+  int64_t slept[3];
+} slow_side;
+typedef struct slow_part {
+  int64_t slept;
+  double speed;
+} slow_part;
+
+static mpm_status be_slow(void *user, const mpm_particle_batch *batch, double *force) {
+  slow_part *part = user;
+  int64_t slow = 0;
+  (void)force;
+  for (int64_t p = 0; p < batch->n; ++p)
+    slow += batch->id[p] >= 0 && batch->position[p] - part->speed * batch->t < 0.35;
+  part->slept += slow;
+  const struct timespec time = {.tv_nsec = 30000 * (long)slow};
+  nanosleep(&time, NULL);
+  return MPM_OK;
+}
+
+/* One particle in each cell, so that sleeping takes most of the time. */
+static mpm_status set_up_thin(world *w, const scene *is) {
+  const double low[] = {0.2, 0.2}, high[] = {0.7, 0.7};
+  const int32_t per_cell[] = {1, 1};
+  const mpm_status status = mpm_particles_fill_box(w->set[0], low, high, per_cell, NULL, NULL);
+  return status ? status : set_velocities(w, w->set[0], is->speed);
+}
+
+static void live_slow(int32_t part, const mpm_transport *transport, void *user) {
+  slow_side *side = user;
+  outcome *found = &side->is.found[part];
+  slow_part mine = {0, side->is.speed};
+  mpm_balance_desc balance;
+  world w;
+  double dt;
+  memset(&w, 0, sizeof w);
+  w.desc = side->is.desc;
+  w.desc.context.transport = transport;
+  mpm_status status = world_try_open(&w);
+  if (!status) status = set_up_thin(&w, &side->is);
+  if (!status) status = mpm_stepper_set_force(w.stepper, be_slow, &mine);
+  if (!status) status = mpm_balance_desc_init(&balance, sizeof balance);
+  balance.measure = side->measure;
+  if (!status) status = mpm_stepper_set_balance(w.stepper, &balance);
+  if (!status) status = mpm_stable_dt(w.stepper, &dt);
+  for (int32_t i = 0; i < SLOW_STEPS && !status; ++i) {
+    if (i == SLOW_STEPS - COUNTED) mine.slept = 0;
+    status = mpm_step(w.stepper, 0.3 * dt, NULL);
+  }
+  side->slept[part] = mine.slept;
+  found->parallel.struct_size = sizeof found->parallel;
+  if (!status) status = mpm_stepper_parallel_info(w.stepper, 0, &found->parallel);
+  if (!status) status = mpm_state_hash(w.stepper, &found->hash);
+  if (status) snprintf(found->text, sizeof found->text, "%s", mpm_last_error(w.context));
+  found->status = status;
+  world_try_close(&w);
+}
+
+/* Returns the largest time of a part over the mean, as the host has slept. */
+static double uneven_time(int32_t parts, int32_t measure, uint64_t *hash) {
+  static slow_side side;
+  parts_plan plan;
+  memset(&side, 0, sizeof side);
+  memset(&plan, 0, sizeof plan);
+  side.is = scene_of(2, 6 * WIDE, set_up_thin);
+  side.is.speed = 20.0;
+  side.measure = measure;
+  ck_assert_msg(!parts_run(parts, live_slow, &side, &plan), "%s", plan.text);
+  int64_t largest = 0, total = 0;
+  for (int32_t r = 0; r < parts; ++r) {
+    ck_assert_msg(!side.is.found[r].status, "part %d: %s", r, side.is.found[r].text);
+    if (side.slept[r] > largest) largest = side.slept[r];
+    total += side.slept[r];
+  }
+  ck_assert_int_gt(total, 1000);
+  *hash = side.is.found[0].hash;
+  show("%d parts, measure %d: %lld %lld %lld, cuts %lld, imbalance %g\n", parts, measure,
+       (long long)side.slept[0], (long long)side.slept[1], (long long)side.slept[2],
+       (long long)side.is.found[0].parallel.cuts, side.is.found[0].parallel.imbalance);
+  return (double)largest * parts / (double)total;
+}
+
+START_TEST(measured_time_evens_out) {
+  const int32_t parts = 2 + _i;
+  uint64_t plain_hash, measured_hash;
+  const double plain = uneven_time(parts, 0, &plain_hash), measured = uneven_time(parts, 1, &measured_hash);
+  ck_assert_uint_eq(plain_hash, measured_hash);
+  ck_between("plain", plain, 1.8, 3.0);
+  /* what is not slept is measured as well, and blocks are few */
+  ck_between("measured", measured, 1.0, 1.0 + 0.6 * (plain - 1.0));
+}
+END_TEST
+
+/* All parts must give the same. */
+static mpm_status unlike_balance(world *w, const scene *is, outcome *found) {
+  int32_t part = 0, parts = 1;
+  mpm_balance_desc d;
+  (void)is, (void)found;
+  mpm_context_part(w->context, &part, &parts);
+  if (mpm_balance_desc_init(&d, sizeof d)) return MPM_E_INTERNAL;
+  d.limit = part == 1 ? 1.5 : 1.2;
+  if (mpm_stepper_set_balance(w->stepper, &d) != MPM_E_ARG ||
+      !strstr(mpm_last_error(w->context), "limit is 1."))
+    return MPM_E_INTERNAL;
+  d.limit = part == 1 ? 0.9 : 1.2;
+  if (mpm_stepper_set_balance(w->stepper, &d) != MPM_E_ARG ||
+      !strstr(mpm_last_error(w->context), "limit is 0.9: it must be 0, or at least 1"))
+    return MPM_E_INTERNAL;
+  return run_steps(w);
+}
+
+START_TEST(balance_is_alike) {
+  scene is = scene_of(2, 2 * WIDE, set_up_body);
+  is.run = unlike_balance;
+  parts_plan plan;
+  memset(&plan, 0, sizeof plan);
+  ck_assert_int_eq(parts_run(3, live, &is, &plan), 0);
+  for (int32_t r = 0; r < 3; ++r)
+    ck_assert_msg(is.found[r].status == MPM_OK, "part %d: %s", r, is.found[r].text);
+}
+END_TEST
+
+START_TEST(balance_is_checked) {
+  world w;
+  mpm_balance_desc d;
+  world_desc desc = world_default(2, 8, 0.25);
+  world_open(&w, &desc);
+  ck_ok(&w, mpm_balance_desc_init(&d, sizeof d));
+  ck_assert(d.measure == 0 && d.limit == 0.0 && d.block_weight == 0.0);
+  ck_ok(&w, mpm_stepper_set_balance(w.stepper, &d));
+  ck_ok(&w, mpm_stepper_set_balance(w.stepper, NULL));
+  d.measure = 2;
+  ck_refused(&w, mpm_stepper_set_balance(w.stepper, &d), MPM_E_ARG, "measure is 2");
+  d.measure = 1;
+  d.limit = 0.99;
+  ck_refused(&w, mpm_stepper_set_balance(w.stepper, &d), MPM_E_ARG, "limit is 0.99");
+  d.limit = NOT_A_NUMBER;
+  ck_refused(&w, mpm_stepper_set_balance(w.stepper, &d), MPM_E_ARG, "limit is nan");
+  d.limit = 1.0;
+  d.block_weight = -1.0;
+  ck_refused(&w, mpm_stepper_set_balance(w.stepper, &d), MPM_E_ARG, "block_weight is -1");
+  d.block_weight = 2e6;
+  ck_refused(&w, mpm_stepper_set_balance(w.stepper, &d), MPM_E_ARG, "block_weight is 2e+06");
+  d.block_weight = 1.0;
+  d.struct_size = 4;
+  ck_refused(&w, mpm_stepper_set_balance(w.stepper, &d), MPM_E_ARG, "struct_size is 4");
+  d.struct_size = sizeof d;
+  world_fill_cube(&w, w.set[0], 0.5, 1.0);
+  ck_ok(&w, mpm_step_begin(w.stepper, 1e-5));
+  ck_refused(&w, mpm_stepper_set_balance(w.stepper, &d), MPM_E_STATE, "");
+  ck_ok(&w, mpm_step_abort(w.stepper));
+  world_close(&w);
+}
+END_TEST
+
+TCase *shared_balance_case(void) {
+  TCase *tests = tcase_create("balance");
+  tcase_set_timeout(tests, 120);
+  tcase_add_loop_test(tests, balance_changes_no_bit, 0, 4);
+  tcase_add_loop_test(tests, measured_time_evens_out, 0, 2);
+  tcase_add_test(tests, balance_is_alike);
+  tcase_add_test(tests, balance_is_checked);
+  return tests;
+}
