@@ -27,11 +27,11 @@
  * Surfaces are made and filled alike on all parts: each part has all markers, and moves them alike.
  * Callbacks of surfaces are asked on every part for all markers and must answer alike.
  *
- * Of several parts these are asked for explicit steps, and for implicit ones whose linear systems the library's
- * conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here. MPM_E_UNSUPPORTED: other
- * linear solvers, linear systems that are not symmetric, MPM_WALL_FRICTION_NODES, surfaces that prescribe or
- * heat, and adaption; in implicit steps total Lagrangian grids, bodies other than 0, obstacles, friction walls,
- * surfaces and heat.
+ * Of several parts these are asked for explicit steps, and for implicit ones whose linear systems the
+ * library's conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here.
+ * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric, MPM_WALL_FRICTION_NODES,
+ * surfaces that prescribe or heat, and adaption; in implicit steps total Lagrangian grids, bodies other than
+ * 0, obstacles, friction walls, surfaces and heat.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

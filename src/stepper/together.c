@@ -9,7 +9,8 @@ mpm_status mpmi_together(const mpm_stepper *s, mpm_status status) {
 }
 
 /* ---- before a step ------------------------------------------------------------------------------------- */
-/* Returns what implicit steps of several parts do not have of what the stepper has, and what to use, or NULL. */
+/* Returns what implicit steps of several parts do not have of what the stepper has, and what to use; or NULL.
+ */
 static const char *not_implicit(const mpm_stepper *s, const char **instead) {
   const mpmi_settings *settings = &s->settings;
   int32_t bodies = 0;

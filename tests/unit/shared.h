@@ -91,5 +91,6 @@ void add_shared_surfaces(Suite *suite);
 void add_shared_implicit(Suite *suite);
 TCase *shared_calls_case(void);
 TCase *shared_balance_case(void);
+TCase *shared_timed_case(void);
 
 #endif
