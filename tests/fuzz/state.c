@@ -86,42 +86,6 @@ static void seal(uint8_t *state, uint32_t format, int64_t bytes) {
   if (bytes >= (int64_t)sizeof(mpmi_state_header) && bytes % 8 == 0) seal_state(state, format, bytes);
 }
 
-/* A change at a place of the state, or far from it: a word, a byte, a copy of other words, words put in or
- * taken out. */
-static int64_t change(fuzz_input *in, uint8_t *state, int64_t bytes) {
-  const int32_t what = fuzz_below(in, 8);
-  const int64_t words = bytes / 8;
-  if (words < 8) return bytes;
-  const int64_t at = 8 * (int64_t)(fuzz_word(in, 2) % (uint64_t)words),
-                n = 8 * (1 + (int64_t)fuzz_below(in, 16));
-  const double real = fuzz_double(in);
-  const int64_t integer = fuzz_integer(in), other = 8 * (integer % words + (integer < 0 ? words - 1 : 0));
-  switch (what) {
-  case 0:
-  case 1:
-    memcpy(state + at, &integer, 8);
-    return bytes;
-  case 2:
-    memcpy(state + at, &real, 8);
-    return bytes;
-  case 3:
-  case 4:
-    state[at + n % 8] = (uint8_t)integer;
-    return bytes;
-  case 5:
-    if (at + n <= bytes && other >= 0 && other + n <= bytes) memmove(state + at, state + other, (size_t)n);
-    return bytes;
-  case 6:
-    if (bytes + n > ROOM) return bytes;
-    memmove(state + at + n, state + at, (size_t)(bytes - at));
-    return bytes + n;
-  default:
-    if (at + n > bytes) return bytes;
-    memmove(state + at, state + at + n, (size_t)(bytes - at - n));
-    return bytes - n;
-  }
-}
-
 /* ---- pieces -------------------------------------------------------------------------------------------- */
 /* Makes the state of an empty problem a sorted one without blocks. Returns its bytes. */
 static int64_t make_sorted(const world *w, uint8_t *state, int64_t bytes) {

@@ -38,6 +38,35 @@ START_TEST(balance_changes_no_bit) {
 }
 END_TEST
 
+/* A state does not have the settings, and those that are there stay. */
+static mpm_status load_and_fly(world *w, const scene *is, outcome *found) {
+  saved_state state = {NULL, 0};
+  mpm_status status = mpm_stepper_set_balance(w->stepper, &balances[3]);
+  if (!status) status = run_steps(w);
+  if (!status) status = mpm_state_size(w->stepper, &state.bytes);
+  if (!status) state.data = malloc((size_t)state.bytes);
+  if (!status) status = mpm_state_save(w->stepper, state.data, state.bytes);
+  const void *const piece[] = {state.data};
+  if (!status) status = mpm_state_load_pieces(w->stepper, 1, piece, &state.bytes);
+  free(state.data);
+  return status ? status : fly_through(w, is, found);
+}
+
+START_TEST(balance_stays_with_a_state) {
+  scene is = scene_of(2, 4 * WIDE, set_up_body), many;
+  is.desc.grid.periodic[0] = 1;
+  is.run = load_and_fly;
+  is.speed = 30.0;
+  many = is;
+  check_scene(&is, "loaded", 3);
+  parts_plan plan;
+  memset(&plan, 0, sizeof plan);
+  ck_assert_int_eq(parts_run(3, live, &many, &plan), 0);
+  ck_assert_int_eq(many.found[0].parallel.cuts, 2); /* of the first sort, and of loading */
+  ck_assert_int_gt(many.found[0].info.resorts, 6);
+}
+END_TEST
+
 /* A host whose particles are slow on one side: it sleeps for each of them, and counts them. */
 enum { SLOW_STEPS = 40, COUNTED = 8 };
 typedef struct slow_side {
@@ -210,6 +239,7 @@ TCase *shared_balance_case(void) {
   TCase *tests = tcase_create("balance");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, balance_changes_no_bit, 0, 4);
+  tcase_add_test(tests, balance_stays_with_a_state);
   tcase_add_test(tests, balance_is_alike);
   tcase_add_test(tests, balance_is_checked);
   return tests;
