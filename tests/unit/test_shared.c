@@ -1,7 +1,6 @@
 /* One problem in several parts has the bits that it has in one. Parts are threads here (parts.h), where
  * Check's macros may not be used: every part keeps what it has found, which is compared afterwards. */
 #include "shared.h"
-#include "shared_states.h"
 
 /* ---- combinations -------------------------------------------------------------------------------------- */
 mpm_status set_up_body(world *w, const scene *is) {
@@ -528,11 +527,5 @@ Suite *shared_suite(void) {
   tcase_add_test(failures, transport_is_lost);
   tcase_add_loop_test(failures, memory_runs_out, 0, 5);
   suite_add_tcase(suite, failures);
-  add_shared_options(suite);
-  add_shared_heat(suite);
-  add_shared_surfaces(suite);
-  add_shared_implicit(suite);
-  suite_add_tcase(suite, shared_states_case());
-  suite_add_tcase(suite, shared_pieces_case());
   return suite;
 }
