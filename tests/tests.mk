@@ -159,7 +159,7 @@ check-setup:
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q check pkg-config g++ python3
 
 # Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
-SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock" EXAMPLES="two_disks user_material host_threads staged_coupling cpp_block" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
+SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock wide" EXAMPLES="two_disks user_material host_threads staged_coupling cpp_block" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
 #: check-asan            check-unit and check-examples under the address and the undefined-behaviour sanitizer
 check-asan:
 	+ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \

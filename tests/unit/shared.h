@@ -60,6 +60,10 @@ mpm_status set_up_body(world *w, const scene *is);
 
 /* One part of a scene, for parts_run(). */
 void live(int32_t part, const mpm_transport *transport, void *user);
+/* A case for what takes long because it is much: it has the tag "wide". */
+TCase *wide_case(Suite *suite, const char *name);
+/* Adds every third of a table of tests to a case, and the others to a wide one. */
+void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count);
 /* Plays the scene in one part, and then in several. Returns what it has come to. */
 mpm_status check_scene(const scene *is, const char *name, int32_t parts);
 

@@ -216,7 +216,9 @@ void add_shared_heat(Suite *suite) {
   TCase *heat = tcase_create("heat");
   tcase_set_timeout(heat, 120);
   add_option_list(heat);
-  tcase_add_loop_test(heat, warm_combinations, 0, OPTIONS_SAMPLE);
+  TCase *wide = wide_case(suite, "more heat");
+  add_option_list(wide);
+  add_table(heat, wide, warm_combinations, OPTIONS_SAMPLE);
   tcase_add_loop_test(heat, warm_host, 0, 8);
   tcase_add_loop_test(heat, few_warm_blocks, 0, 2);
   tcase_add_loop_test(heat, warm_failures, 0, 4);

@@ -255,8 +255,9 @@ END_TEST
 void add_shared_implicit(Suite *suite) {
   TCase *all = tcase_create("implicit");
   tcase_set_timeout(all, 240);
-  tcase_add_loop_test(all, table, 0, TABLE);
-  tcase_add_loop_test(all, remedy, 0, 12);
+  TCase *wide = wide_case(suite, "more implicit");
+  add_table(all, wide, table, TABLE);
+  add_table(all, wide, remedy, 12);
   suite_add_tcase(suite, all);
   TCase *failures = tcase_create("implicit failures");
   tcase_set_timeout(failures, 240);

@@ -79,7 +79,9 @@ void add_shared_options(Suite *suite) {
   TCase *total = tcase_create("lagrangian");
   tcase_set_timeout(total, 120);
   add_option_list(total);
-  tcase_add_loop_test(total, total_combinations, 0, OPTIONS_SAMPLE);
+  TCase *wide = wide_case(suite, "more lagrangian");
+  add_option_list(wide);
+  add_table(total, wide, total_combinations, OPTIONS_SAMPLE);
   tcase_add_loop_test(total, total_begun_anew, 0, 4);
   suite_add_tcase(suite, total);
 }

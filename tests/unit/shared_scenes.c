@@ -149,3 +149,15 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
   }
   return a->status;
 }
+
+TCase *wide_case(Suite *suite, const char *name) {
+  TCase *wide = tcase_create(name);
+  tcase_set_tags(wide, "wide");
+  tcase_set_timeout(wide, 300);
+  suite_add_tcase(suite, wide);
+  return wide;
+}
+
+void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count) {
+  for (int32_t i = 0; i < count; ++i) tcase_add_loop_test(i % 3 ? wide : some, test, i, i + 1);
+}

@@ -4,7 +4,7 @@
 
 #include <check.h>
 
-TCase *shared_states_case(void);
+TCase *shared_states_case(Suite *suite);
 TCase *shared_pieces_case(void);
 
 #endif

@@ -266,7 +266,9 @@ void add_shared_surfaces(Suite *suite) {
   TCase *surfaces = tcase_create("surfaces");
   tcase_set_timeout(surfaces, 120);
   add_option_list(surfaces);
-  tcase_add_loop_test(surfaces, loads_combine, 0, OPTIONS_SAMPLE);
+  TCase *wide = wide_case(suite, "more surfaces");
+  add_option_list(wide);
+  add_table(surfaces, wide, loads_combine, OPTIONS_SAMPLE);
   tcase_add_loop_test(surfaces, markers_fly, 0, 4);
   tcase_add_loop_test(surfaces, loads_fail_together, 0, 4);
   tcase_add_loop_test(surfaces, loads_on_warm_bodies, 0, 4);

@@ -504,7 +504,9 @@ Suite *shared_suite(void) {
   TCase *all = tcase_create("combinations");
   tcase_set_timeout(all, 120);
   tcase_add_unchecked_fixture(all, set_up_list, tear_down_list);
-  tcase_add_loop_test(all, combinations_in_parts, 0, SAMPLE);
+  TCase *wide = wide_case(suite, "more combinations");
+  tcase_add_unchecked_fixture(wide, set_up_list, tear_down_list);
+  add_table(all, wide, combinations_in_parts, SAMPLE);
   suite_add_tcase(suite, all);
   TCase *host = tcase_create("host");
   tcase_set_timeout(host, 120);

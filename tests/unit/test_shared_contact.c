@@ -330,7 +330,7 @@ Suite *shared_contact_suite(void) {
   Suite *suite = suite_create("shared_contact");
   TCase *all = tcase_create("bodies");
   tcase_set_timeout(all, 120);
-  tcase_add_loop_test(all, bodies_touch, 0, SCENES);
+  add_table(all, wide_case(suite, "more bodies"), bodies_touch, SCENES);
   suite_add_tcase(suite, all);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 120);

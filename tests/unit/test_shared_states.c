@@ -3,7 +3,7 @@
 
 Suite *shared_states_suite(void) {
   Suite *suite = suite_create("shared_states");
-  suite_add_tcase(suite, shared_states_case());
+  suite_add_tcase(suite, shared_states_case(suite));
   suite_add_tcase(suite, shared_pieces_case());
   return suite;
 }
