@@ -128,7 +128,7 @@ static mpm_status play(world *w, story *is, int32_t part, outcome *found) {
   mpm_status status = is->set_up(w, is, part);
   w->info.struct_size = sizeof w->info;
   if (is->what == BOTH && !status) {
-    if (!is->dt) status = mpm_stable_dt(w->stepper, &is->dt);
+    if (!(is->dt > 0.0)) status = mpm_stable_dt(w->stepper, &is->dt);
     if (!status) status = steps(w, is, part, 0, is->steps, found);
   } else if (is->what == SAVE && !status) {
     status = steps(w, is, part, 0, is->saved_at, found);

@@ -169,7 +169,7 @@ static mpm_status expect(world *w, double dt, mpm_status wanted, const char *wor
 
 /* All parts fail as one does, and go on from the state before. */
 static mpm_status fail_loads(world *w, const scene *is, outcome *found) {
-  double dt;
+  double dt = 0.0;
   mpm_surface *s = NULL;
   mpm_status answer = MPM_OK;
   int32_t part = 0, parts = 1;
