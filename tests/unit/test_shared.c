@@ -524,10 +524,13 @@ Suite *shared_suite(void) {
   tcase_set_timeout(failures, 120);
   tcase_add_loop_test(failures, steps_fail_together, 0, 12);
   tcase_add_test(failures, unlike_parts);
-  tcase_add_loop_test(failures, transport_fails, 0, 3);
+  tcase_add_loop_test(failures, transport_fails, 0, 1);
   tcase_add_test(failures, transport_is_checked);
   tcase_add_test(failures, transport_is_lost);
-  tcase_add_loop_test(failures, memory_runs_out, 0, 5);
+  tcase_add_loop_test(failures, memory_runs_out, 0, 2);
   suite_add_tcase(suite, failures);
+  TCase *more = wide_case(suite, "more failures");
+  tcase_add_loop_test(more, transport_fails, 1, 3);
+  tcase_add_loop_test(more, memory_runs_out, 2, 5);
   return suite;
 }
