@@ -71,7 +71,10 @@ mpm_status mpmi_reserve(mpm_context *context, void **at, int64_t *capacity, int6
 }
 
 mpm_status mpmi_reserve_next(mpm_context *context, void **at, int64_t *capacity, int64_t count, size_t size) {
-  if (count < *capacity) return MPM_OK;
+  if (count < *capacity) {
+    mpmi_slack_open(*at, mpmi_bytes(count + 1, size));
+    return MPM_OK;
+  }
   const int64_t wanted = count ? 2 * count : 4;
   void *memory = mpmi_alloc(context, mpmi_bytes(wanted, size));
   if (!memory) return MPM_E_NOMEM;

@@ -34,7 +34,16 @@ static inline void mpmi_slack(void *memory, size_t held, size_t used) {
 #endif
 }
 
-/* The same for each of `rows` rows of `ld` elements of a size, of which `count` are in use. */
+/* Opens the first `used` bytes, and leaves the rest as it is. */
+static inline void mpmi_slack_open(void *memory, size_t used) {
+#if MPMI_WATCHED
+  __asan_unpoison_memory_region(memory, used);
+#else
+  (void)memory, (void)used;
+#endif
+}
+
+/* Does as mpmi_slack() in each of `rows` rows of `ld` elements of a size, of which `count` are in use. */
 static inline void mpmi_slack_rows(void *memory, size_t rows, size_t ld, size_t count, size_t size) {
   for (size_t c = 0; c < rows && MPMI_WATCHED && memory; ++c)
     mpmi_slack((char *)memory + c * ld * size, ld * size, count * size);
