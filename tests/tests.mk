@@ -205,7 +205,7 @@ $(BUILD)/fuzz/%: tests/fuzz/%.c $(wildcard tests/fuzz/*.h) $(STATIC_LIB) Makefil
 fuzz: fuzz-programs
 	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target $(FUZZ_SECONDS) || exit 1; done
 #: check-fuzz            the committed corpora, then a minute in all
-check-fuzz: FUZZ_SECONDS = 20
+check-fuzz: FUZZ_SECONDS = 14
 check-fuzz: fuzz-programs
 	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target $(FUZZ_SECONDS) || exit 1; done
 #: fuzz-corpus           packs the corpora again, with what was found that covers more
