@@ -250,7 +250,7 @@ mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status) {
  * which says whether there is any. */
 static mpm_status settle(mpm_stepper *s, mpm_status status, int64_t exchanges, int64_t count, int64_t *word) {
   const int64_t came_to = s->layout.parts->exchanges;
-  int32_t part;
+  int32_t part = 0;
   mpmi_time_add(s->layout.parts);
   status = catch_up(s, status, exchanges);
   word[0] = status != MPM_OK;
