@@ -63,9 +63,8 @@ typedef struct mpmi_parts {
   mpmi_shared_block *sent, *ghost; /* by partner; each in the order of the sender's blocks */
   uint8_t *flags;                  /* [slots] MPMI_NODE_..., or NULL */
   int64_t flags_capacity;
-  int32_t names_owners,
-      *lowest; /* [slots] of nodes that are given to, where that is asked for: the lowest part
-                                  * with a tile that has it */
+  int32_t names_owners; /* `lowest` is asked for */
+  int32_t *lowest;      /* [slots] of nodes that are given to: the first part with a tile that has it */
   int64_t lowest_capacity, *partial; /* slots of nodes that are given to and not whole */
   int64_t partial_count, partial_capacity;
   int64_t version; /* of the layout that the flags are of */

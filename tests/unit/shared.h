@@ -60,6 +60,23 @@ mpm_status set_up_body(world *w, const scene *is);
 
 /* One part of a scene, for parts_run(). */
 void live(int32_t part, const mpm_transport *transport, void *user);
+/* Plays the scene in several parts, each of which must come to its end. */
+void check_parts(scene *is, int32_t parts);
+/* Wherever the transport fails on one of three parts, every part returns and gives its memory back. The calls
+ * that are tried lie closer together the larger `density` is; there must be more than `least`. */
+void check_lost_transport(const scene *is, int64_t density, int64_t least);
+
+/* Wherever memory fails on one of three parts, a call fails on all, and goes through when it is made again.
+ * No part waits, and nothing is lost. What parts do notes calls that failed, and their memory. */
+typedef struct hungry {
+  scene is;
+  int32_t loads;          /* with a surface */
+  int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
+  int32_t failed[3];      /* how many calls of each part */
+  host_memory memory[3];
+} hungry;
+void check_hunger(const hungry *as, parts_fn lives);
+
 /* A case for what takes long because it is much: it has the tag "wide". */
 TCase *wide_case(Suite *suite, const char *name);
 /* Adds every third of a table of tests to a case, and the others to a wide one. */

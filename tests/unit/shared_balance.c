@@ -185,11 +185,7 @@ static mpm_status unlike_balance(world *w, const scene *is, outcome *found) {
 START_TEST(balance_is_alike) {
   scene is = scene_of(2, 2 * WIDE, set_up_body);
   is.run = unlike_balance;
-  parts_plan plan;
-  memset(&plan, 0, sizeof plan);
-  ck_assert_int_eq(parts_run(3, live, &is, &plan), 0);
-  for (int32_t r = 0; r < 3; ++r)
-    ck_assert_msg(is.found[r].status == MPM_OK, "part %d: %s", r, is.found[r].text);
+  check_parts(&is, 3);
 }
 END_TEST
 

@@ -232,23 +232,7 @@ END_TEST
 
 START_TEST(transport_fails) {
   const scene is = implicit_scene(2, implicit_basis(1), 0);
-  parts_plan plan;
-  int64_t calls = 0;
-  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 4) {
-    scene run = is;
-    memset(&plan, 0, sizeof plan);
-    plan.fail_part = (int32_t)(at % 3);
-    plan.fail_kinds = PARTS_ANY;
-    plan.fail_at = at;
-    const int done = parts_run(3, live, &run, &plan);
-    if (!at) calls = plan.calls[0];
-    ck_assert_msg(at ? done != 0 : done == 0, "call %lld of %lld: %s", (long long)at, (long long)calls,
-                  plan.text);
-    for (int32_t r = 0; r < 3; ++r)
-      ck_assert_msg(run.found[r].status == (at ? MPM_E_CALLBACK : MPM_OK), "call %lld, part %d: %s, %s",
-                    (long long)at, r, mpm_status_name(run.found[r].status), run.found[r].text);
-  }
-  ck_assert_int_gt(calls, 500);
+  check_lost_transport(&is, 4, 500);
 }
 END_TEST
 

@@ -150,6 +150,57 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
   return a->status;
 }
 
+void check_parts(scene *is, int32_t parts) {
+  parts_plan plan;
+  memset(&plan, 0, sizeof plan);
+  ck_assert_msg(!parts_run(parts, live, is, &plan), "%s", plan.text);
+  for (int32_t r = 0; r < parts; ++r)
+    ck_assert_msg(is->found[r].status == MPM_OK, "part %d: %s", r, is->found[r].text);
+}
+
+void check_lost_transport(const scene *is, int64_t density, int64_t least) {
+  parts_plan plan;
+  int64_t calls = 0;
+  for (int64_t at = 0; !at || at <= calls; at += 1 + at / density) {
+    scene run = *is;
+    memset(&plan, 0, sizeof plan);
+    plan.fail_part = (int32_t)(at % 3);
+    plan.fail_kinds = PARTS_ANY;
+    plan.fail_at = at;
+    const int done = parts_run(3, live, &run, &plan);
+    if (!at) calls = plan.calls[0];
+    ck_assert_msg(at ? done != 0 : done == 0, "call %lld of %lld: %s", (long long)at, (long long)calls,
+                  plan.text);
+    for (int32_t r = 0; r < 3; ++r)
+      ck_assert_msg(run.found[r].status == (at ? MPM_E_CALLBACK : MPM_OK), "call %lld, part %d: %s, %s",
+                    (long long)at, r, mpm_status_name(run.found[r].status), run.found[r].text);
+  }
+  ck_assert_int_gt(calls, least);
+}
+
+void check_hunger(const hungry *as, parts_fn lives) {
+  static hungry h;
+  parts_plan plan;
+  int64_t calls = 0;
+  uint64_t hash = 0;
+  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
+    h = *as;
+    memset(&plan, 0, sizeof plan);
+    h.fail_at = at;
+    ck_assert_msg(!parts_run(3, lives, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
+                  (long long)calls, plan.text);
+    if (!at) calls = h.calls, hash = h.is.found[0].hash;
+    for (int32_t r = 0; r < 3; ++r) {
+      ck_assert_int_eq(h.memory[r].held, 0);
+      ck_assert_msg(!h.is.found[r].status && h.failed[r] == (at != 0),
+                    "allocation %lld of %lld, part %d: %s, %d calls failed", (long long)at, (long long)calls,
+                    r, mpm_status_name(h.is.found[r].status), h.failed[r]);
+      ck_assert_msg(h.is.found[r].hash == hash, "allocation %lld, part %d: another state", (long long)at, r);
+    }
+  }
+  ck_assert_int_gt(calls, 20);
+}
+
 TCase *wide_case(Suite *suite, const char *name) {
   TCase *wide = tcase_create(name);
   tcase_set_tags(wide, "wide");

@@ -246,21 +246,10 @@ static story story_of(int32_t dim, int64_t cells) {
   return is;
 }
 
-static mpm_status prescribe(mpm_particles *set) {
-  const int64_t n = mpm_particles_count(set);
-  int64_t *id = calloc((size_t)n + 1, sizeof *id);
-  uint8_t *flags = calloc((size_t)n + 1, 2);
-  mpm_status status = mpm_particles_get(set, "id", MPM_I64, 1, n, NULL, id);
-  for (int64_t p = 0; p < n; ++p) flags[p] = id[p] % 7 == 0 && id[p] < 200;
-  if (!status) status = mpm_particles_set(set, "prescribed", MPM_U8, 2, n, NULL, flags);
-  free(id), free(flags);
-  return status;
-}
-
 /* Some become prescribed, so that only parts that have them keep the field. */
 static mpm_status prescribe_some(world *w, const story *is, int32_t part, int32_t step) {
   (void)part;
-  return step == is->saved_at - 1 ? prescribe(w->set[0]) : MPM_OK;
+  return step == is->saved_at - 1 ? prescribe_sevenths(w->set[0]) : MPM_OK;
 }
 
 /* Particles are added by one part, and others are removed, right before it is saved. */

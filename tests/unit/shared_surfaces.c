@@ -254,11 +254,7 @@ END_TEST
 START_TEST(refused_surfaces) {
   scene is = scene_of(2, 48, set_up_body);
   is.run = ask_for_more;
-  parts_plan plan;
-  memset(&plan, 0, sizeof plan);
-  ck_assert_int_eq(parts_run(2, live, &is, &plan), 0);
-  for (int32_t r = 0; r < 2; ++r)
-    ck_assert_msg(is.found[r].status == MPM_OK, "part %d: %s", r, is.found[r].text);
+  check_parts(&is, 2);
 }
 END_TEST
 

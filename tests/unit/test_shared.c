@@ -77,23 +77,12 @@ static mpm_status add_callbacks(world *w) {
   return status ? status : mpm_stepper_set_force(w->stepper, pull, NULL);
 }
 
-static mpm_status prescribe_some(mpm_particles *set) {
-  const int64_t n = mpm_particles_count(set);
-  int64_t *id = calloc((size_t)n + 1, sizeof *id);
-  uint8_t *flags = calloc((size_t)n + 1, 2);
-  mpm_status status = mpm_particles_get(set, "id", MPM_I64, 1, n, NULL, id);
-  for (int64_t p = 0; p < n; ++p) flags[p] = id[p] % 7 == 0 && id[p] < 200;
-  if (!status) status = mpm_particles_set(set, "prescribed", MPM_U8, 2, n, NULL, flags);
-  free(id), free(flags);
-  return status;
-}
-
 static mpm_status set_up_host(world *w, const scene *is) {
   mpm_status status = set_walls(w);
   if (!status) status = fill_middle(w, w->set[0], 0.2, 0.6);
   if (!status) status = fill_middle(w, w->set[1], 0.6, 0.8);
   for (int32_t m = 0; m < 2 && !status; ++m) status = set_velocities(w, w->set[m], is->speed);
-  if (!status) status = prescribe_some(w->set[0]);
+  if (!status) status = prescribe_sevenths(w->set[0]);
   return status ? status : add_callbacks(w);
 }
 
@@ -152,7 +141,7 @@ static mpm_status prescribe_later(world *w, const scene *is, outcome *found) {
   mpm_status status = mpm_stable_dt(w->stepper, &dt);
   (void)is, (void)found;
   for (int32_t i = 0; i < 12 && !status; ++i) {
-    if (i == 4) status = prescribe_some(w->set[0]);
+    if (i == 4) status = prescribe_sevenths(w->set[0]);
     if (!status) status = mpm_step(w->stepper, 0.3 * dt, &w->info);
   }
   return status;
@@ -299,34 +288,13 @@ static mpm_status differ(world *w, const scene *is, outcome *found) {
 START_TEST(unlike_parts) {
   scene is = scene_of(2, 2 * WIDE, set_up_body);
   is.run = differ;
-  parts_plan plan;
-  memset(&plan, 0, sizeof plan);
-  ck_assert_int_eq(parts_run(3, live, &is, &plan), 0);
-  for (int32_t r = 0; r < 3; ++r)
-    ck_assert_msg(is.found[r].status == MPM_OK, "part %d: %s", r, is.found[r].text);
+  check_parts(&is, 3);
 }
 END_TEST
 
-/* Wherever the transport fails on one part, every part returns and gives its memory back. */
 START_TEST(transport_fails) {
-  scene is = _i ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
-  parts_plan plan;
-  int64_t calls = 0;
-  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 6) {
-    scene run = is;
-    memset(&plan, 0, sizeof plan);
-    plan.fail_part = (int32_t)(at % 3);
-    plan.fail_kinds = PARTS_ANY;
-    plan.fail_at = at;
-    const int done = parts_run(3, live, &run, &plan);
-    if (!at) calls = plan.calls[0];
-    ck_assert_msg(at ? done != 0 : done == 0, "call %lld of %lld: %s", (long long)at, (long long)calls,
-                  plan.text);
-    for (int32_t r = 0; r < 3; ++r)
-      ck_assert_msg(run.found[r].status == (at ? MPM_E_CALLBACK : MPM_OK), "call %lld, part %d: %s, %s",
-                    (long long)at, r, mpm_status_name(run.found[r].status), run.found[r].text);
-  }
-  ck_assert_int_gt(calls, 100);
+  const scene is = _i ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
+  check_lost_transport(&is, 6, 100);
 }
 END_TEST
 
@@ -425,16 +393,6 @@ START_TEST(transport_is_lost) {
 }
 END_TEST
 
-/* Wherever memory fails on one part once its world is open, the call fails on all, and goes through when it
- * is made again. No part waits, and nothing is lost. */
-typedef struct hungry {
-  scene is;
-  int32_t loads;          /* with a surface */
-  int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
-  int32_t failed[3];      /* how many calls of each part */
-  host_memory memory[3];
-} hungry;
-
 /* Tries a call until it is not for want of memory that it fails. */
 #define AGAIN(h, part, status, call)                                                                         \
   do {                                                                                                       \
@@ -471,31 +429,14 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
 
 START_TEST(memory_runs_out) {
   static hungry h;
-  parts_plan plan;
-  int64_t calls = 0;
-  uint64_t hash = 0;
-  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
-    memset(&h, 0, sizeof h);
-    memset(&plan, 0, sizeof plan);
-    h.loads = _i == 3;
-    h.is = _i == 1 || _i == 2 ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
-    if (_i == 4) {
-      h.is.desc.stepper.scheme = MPM_NEWMARK;
-      h.is.desc.stepper.linear_solver = MPM_SOLVER_CG;
-    }
-    h.fail_at = at;
-    ck_assert_msg(!parts_run(3, live_hungry, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
-                  (long long)calls, plan.text);
-    if (!at) calls = h.calls, hash = h.is.found[0].hash;
-    for (int32_t r = 0; r < 3; ++r) {
-      ck_assert_int_eq(h.memory[r].held, 0);
-      ck_assert_msg(!h.is.found[r].status && h.failed[r] == (at != 0),
-                    "allocation %lld, part %d: %s, %d calls failed", (long long)at, r,
-                    mpm_status_name(h.is.found[r].status), h.failed[r]);
-      ck_assert_msg(h.is.found[r].hash == hash, "allocation %lld, part %d: another state", (long long)at, r);
-    }
+  memset(&h, 0, sizeof h);
+  h.loads = _i == 3;
+  h.is = _i == 1 || _i == 2 ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
+  if (_i == 4) {
+    h.is.desc.stepper.scheme = MPM_NEWMARK;
+    h.is.desc.stepper.linear_solver = MPM_SOLVER_CG;
   }
-  ck_assert_int_gt(calls, 20);
+  check_hunger(&h, live_hungry);
 }
 END_TEST
 

@@ -267,16 +267,8 @@ START_TEST(callbacks_fail) {
 }
 END_TEST
 
-/* Wherever memory fails on one part, the step fails on all, and is made when it is tried again. */
-typedef struct short_of {
-  scene is;
-  int64_t fail_at, calls; /* of part 1, from 1, once its world is set up; how many there are */
-  int32_t failed[3];
-  host_memory memory[3];
-} short_of;
-
 static void live_short(int32_t part, const mpm_transport *transport, void *user) {
-  short_of *h = user;
+  hungry *h = user;
   world w;
   memset(&w, 0, sizeof w);
   w.desc = h->is.desc;
@@ -300,29 +292,12 @@ static void live_short(int32_t part, const mpm_transport *transport, void *user)
 }
 
 START_TEST(memory_runs_out_touching) {
-  static short_of h;
-  parts_plan plan;
-  int64_t calls = 0;
-  uint64_t hash = 0;
-  for (int64_t at = 0; !at || at <= calls; at += 1 + at / 12) {
-    memset(&h, 0, sizeof h);
-    memset(&plan, 0, sizeof plan);
-    h.is = scene_of(2, 48, set_up_bodies);
-    h.is.desc.sets = 3;
-    h.is.seed = 3;
-    h.fail_at = at;
-    ck_assert_msg(!parts_run(3, live_short, &h, &plan), "allocation %lld of %lld: %s", (long long)at,
-                  (long long)calls, plan.text);
-    if (!at) calls = h.calls, hash = h.is.found[0].hash;
-    for (int32_t r = 0; r < 3; ++r) {
-      ck_assert_int_eq(h.memory[r].held, 0);
-      ck_assert_msg(!h.is.found[r].status && h.failed[r] == (at != 0),
-                    "allocation %lld of %lld, part %d: %s, %d calls failed", (long long)at, (long long)calls,
-                    r, mpm_status_name(h.is.found[r].status), h.failed[r]);
-      ck_assert_msg(h.is.found[r].hash == hash, "allocation %lld, part %d: another state", (long long)at, r);
-    }
-  }
-  ck_assert_int_gt(calls, 20);
+  static hungry h;
+  memset(&h, 0, sizeof h);
+  h.is = scene_of(2, 48, set_up_bodies);
+  h.is.desc.sets = 3;
+  h.is.seed = 3;
+  check_hunger(&h, live_short);
 }
 END_TEST
 

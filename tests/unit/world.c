@@ -301,3 +301,14 @@ int64_t world_fill_cube(world *w, mpm_particles *set, double low, double high) {
   const double lower[3] = {low, low, low}, upper[3] = {high, high, high};
   return world_fill(w, set, lower, upper, 2);
 }
+
+mpm_status prescribe_sevenths(mpm_particles *set) {
+  const int64_t n = mpm_particles_count(set);
+  int64_t *id = calloc((size_t)n + 1, sizeof *id);
+  uint8_t *flags = calloc((size_t)n + 1, 2);
+  mpm_status status = mpm_particles_get(set, "id", MPM_I64, 1, n, NULL, id);
+  for (int64_t p = 0; p < n; ++p) flags[p] = id[p] % 7 == 0 && id[p] < 200;
+  if (!status) status = mpm_particles_set(set, "prescribed", MPM_U8, 2, n, NULL, flags);
+  free(id), free(flags);
+  return status;
+}

@@ -198,6 +198,8 @@ int64_t world_fill(world *w, mpm_particles *set, const double *lower, const doub
 int64_t world_fill_cube(world *w, mpm_particles *set, double low, double high);
 
 /* ---- fields ---- */
+/* Prescribes both components of every seventh particle with an id below 200, in 2-D. */
+mpm_status prescribe_sevenths(mpm_particles *set);
 /* These return a whole field by ascending id, as [components][count]. The caller frees it. */
 double *fetch(const world *w, const mpm_particles *set, const char *field, int32_t components);
 void *fetch_as(const world *w, const mpm_particles *set, const char *field, int32_t type, int32_t components);
