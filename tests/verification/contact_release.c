@@ -133,9 +133,12 @@ static double rigid(double push) {
   return 0.5 * push * push / (slide_gravity * (0.7 * cos(PI / 6.0) - sin(PI / 6.0)));
 }
 
-/* Returns the way of a block with little viscosity that is pushed by 0.05 (0), or 0.1 (1). */
+/* Returns the way of a block with little viscosity that is pushed by 0.05 (0), or 0.1 (1). In small this is of
+ * the coarse elements, and nothing is said of them. */
 static void judge_elements(FILE *table, double *way) {
   static const double push[2] = {0.05, 0.1};
+  for (int32_t k = 0; k < 2 && verify_quick(); ++k) way[k] = finite_elements(8, gently, push[k], viscous);
+  if (verify_quick()) return;
   const double rough[2] = {finite_elements(8, roughly, 0.0, 0.0), finite_elements(16, roughly, 0.0, 0.0)};
   const double calm = finite_elements(16, gently, 0.0, 0.0);
   verify_judge("elements, h = 1/20, let go while it swings: creep, m", rough[0], 1e-3, 2e-3, source, NULL);
@@ -184,7 +187,7 @@ int main(int argc, char **argv) {
   static const double place[5] = {0.02, 0.1, 0.24, 0.5, 0.9};
   static const int32_t basis[4] = {MPM_LINEAR, MPM_BSPLINE2, MPM_BSPLINE3, MPM_GIMP};
   for (int32_t b = 0; b < 4; ++b)
-    for (int32_t k = 0; k < (verify_quick() ? 2 : 5); ++k)
+    for (int32_t k = 0; k < (verify_quick() ? 1 : 5); ++k)
       judge_block(table, slide_basis(basis[b]), basis[b], place[k], elements);
   fclose(table);
   return verify_end();
