@@ -203,11 +203,11 @@ $(BUILD)/fuzz/%: tests/fuzz/%.c $(wildcard tests/fuzz/*.h) $(STATIC_LIB) Makefil
 
 #: fuzz                  FUZZ_SECONDS (600) for each of FUZZ_TARGETS, from the committed corpora
 fuzz: fuzz-programs
-	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target $(FUZZ_SECONDS) || exit 1; done
-#: check-fuzz            the committed corpora, then a minute in all
+	@printf '%s\n' $(FUZZ_TARGETS) | xargs -P $(JOBS) -I{} bash tests/fuzz/run.sh $(FUZZ) {} $(FUZZ_SECONDS)
+#: check-fuzz            the committed corpora, then a minute and a half in all
 check-fuzz: FUZZ_SECONDS = 14
 check-fuzz: fuzz-programs
-	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/run.sh $(FUZZ) $$target $(FUZZ_SECONDS) || exit 1; done
+	@printf '%s\n' $(FUZZ_TARGETS) | xargs -P $(JOBS) -I{} bash tests/fuzz/run.sh $(FUZZ) {} $(FUZZ_SECONDS)
 #: fuzz-corpus           packs the corpora again, with what was found that covers more
 fuzz-corpus: fuzz-programs
 	@for target in $(FUZZ_TARGETS); do bash tests/fuzz/pack.sh $(FUZZ) $$target || exit 1; done

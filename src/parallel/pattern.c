@@ -291,11 +291,24 @@ static void flag_tile(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_
   flag_box(parts, blocks, blocks->body[block], box, flag, part);
 }
 
-/* Flags all that a block wants. */
+/* Flags all that a block wants, also a period further on: another body may have nodes there alone. */
 static void flag_wanted(const mpmi_parts *parts, const mpmi_blocks *blocks, int64_t block, int32_t flag) {
-  stretch box[3];
-  for (int32_t k = 0; k < blocks->grid->dim; ++k) box[k] = wanted_by(parts, k, blocks->coord[block][k]);
-  for (int32_t i = 0; i < parts->body_count; ++i) flag_box(parts, blocks, parts->body[i], box, flag, -1);
+  const mpm_grid *grid = blocks->grid;
+  int32_t turns[3] = {0, 0, 0};
+  for (int32_t k = 0; k < grid->dim && parts->body_count > 1; ++k) turns[k] = grid->desc.periodic[k] != 0;
+  for (int32_t x = -turns[0]; x <= turns[0]; ++x)
+    for (int32_t y = -turns[1]; y <= turns[1]; ++y)
+      for (int32_t z = -turns[2]; z <= turns[2]; ++z) {
+        const int32_t turn[3] = {x, y, z};
+        stretch box[3];
+        for (int32_t k = 0; k < grid->dim; ++k) {
+          const int64_t shift = turn[k] * grid->desc.cells[k];
+          box[k] = wanted_by(parts, k, blocks->coord[block][k]);
+          box[k] = (stretch){box[k].low + shift, box[k].high + shift};
+        }
+        for (int32_t i = 0; i < parts->body_count; ++i)
+          flag_box(parts, blocks, parts->body[i], box, flag, -1);
+      }
 }
 
 /* Nodes that are tied move as one: what is so for one of them is so for all. */

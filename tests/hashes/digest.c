@@ -46,12 +46,13 @@ void mix_info(uint64_t *hash, const mpm_step_info *info) {
   }
 }
 
-/* Of each node a hash; their sum does not know in which order the library lists them. */
+/* Of each node a hash; their sum does not know in which order the library lists them, and which part has them. */
 static void mix_nodes(world *w) {
   static const char *const field[] = {"index", "mass", "position", "velocity", "reaction"};
   enum { FIELDS = sizeof field / sizeof *field };
-  uint64_t *node = NULL, sum = 0;
-  int64_t count = 0;
+  uint64_t *node = NULL;
+  int64_t count = 0, total[2] = {0, 0}; /* nodes of all parts, sum of their hashes */
+  mpm_view owned = {.struct_size = sizeof owned};
   for (int32_t f = 0; f < FIELDS; ++f) {
     mpm_view view = {.struct_size = sizeof view};
     must(w, mpm_grid_map(w->stepper, 0, field[f], MPM_READ, &view));
@@ -70,10 +71,19 @@ static void mix_nodes(world *w) {
       }
     must(w, mpm_view_release(&view));
   }
-  for (int64_t i = 0; i < count; ++i) sum += node[i];
+  must(w, mpm_grid_map(w->stepper, 0, "owned", MPM_READ, &owned));
+  uint64_t sum = 0;
+  for (int64_t i = 0; i < count; ++i) {
+    const int32_t is_own = ((const uint8_t *)owned.data)[i * owned.item_stride];
+    total[0] += is_own;
+    if (is_own) sum += node[i];
+  }
+  must(w, mpm_view_release(&owned));
   free(node);
-  mix(&w->hash, (uint64_t)count);
-  mix(&w->hash, sum);
+  memcpy(&total[1], &sum, sizeof sum);
+  sum_parts(w, 2, total);
+  mix(&w->hash, (uint64_t)total[0]);
+  mix(&w->hash, (uint64_t)total[1]);
 }
 
 static void mix_force(world *w, const double *force) {

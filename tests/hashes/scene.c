@@ -16,7 +16,11 @@ static const double speed = 10.0, explicit_dt = 1.6e-3, implicit_dt = 4e-3; /* 0
 
 void must_be_ok(const world *w, mpm_status status, const char *call) {
   if (!status) return;
-  fprintf(stderr, "%s: %s: %s: %s\n", w->is->name, call, mpm_status_name(status), mpm_last_error(w->context));
+  if (status == MPM_E_UNSUPPORTED && w->how && w->how->refusal)
+    snprintf(w->how->refusal, REFUSAL, "%s", mpm_last_error(w->context));
+  else
+    fprintf(stderr, "%s: %s: %s: %s\n", w->is->name, call, mpm_status_name(status),
+            mpm_last_error(w->context));
   give_up();
 }
 
@@ -177,6 +181,12 @@ static void place(const scene *is, const int64_t *at, const int64_t *first, int6
     v[k] = share * (along[k] + turn[k] + 0.01 * noise((uint64_t)(6 * id + 2 * k + 1)));
 }
 
+void sum_parts(world *w, int64_t count, int64_t *values) {
+  const mpm_transport *between = w->how->transport;
+  if (between) must(w, between->reduce(between->user, MPM_REDUCE_SUM, count, values));
+}
+
+/* Particles of this part are a range of the list: the parts one after the other have them as one part has. */
 static void add_particles(world *w, int32_t m) {
   const scene *is = w->is;
   int64_t first[3], cells[3], count[3] = {1, 1, 1}, all = 1, n = 0;
@@ -192,14 +202,20 @@ static void add_particles(world *w, int32_t m) {
   if (!memory || !ids) exit(1);
   double *at = memory, *speeds = memory + 3 * all, *x = memory + 6 * all, *v = memory + 9 * all;
   double *size = memory + 12 * all, *volumes = memory + 15 * all;
+  const mpm_transport *between = w->how->transport;
+  int64_t *const whole = &w->all[m];
   for (int64_t i = 0; i < all; ++i) {
     const int64_t cell[3] = {i % count[0], i / count[0] % count[1], i / count[0] / count[1]};
     const int32_t second = is->with & WITH_BODIES ? 2 * cell[0] >= count[0] : i % 3 == 1;
     if (is->law[1] && second != m) continue; /* side by side, or both everywhere */
-    ids[n] = 2 * i + 1;
-    place(is, cell, first, ids[n], &at[3 * n], &speeds[3 * n]);
-    ++n;
+    ids[*whole] = 2 * i + 1;
+    place(is, cell, first, ids[*whole], &at[3 * *whole], &speeds[3 * *whole]);
+    ++*whole;
   }
+  const int64_t from = between ? *whole * between->part / between->parts : 0;
+  n = (between ? *whole * (between->part + 1) / between->parts : *whole) - from;
+  w->first[m] = from;
+  ids += from, at += 3 * from, speeds += 3 * from;
   for (int64_t i = 0; i < n; ++i) {
     volumes[i] = volume * (1.0 + 0.05 * noise((uint64_t)(7000 + ids[i])));
     for (int32_t k = 0; k < is->dim; ++k) {
@@ -211,7 +227,7 @@ static void add_particles(world *w, int32_t m) {
   const int32_t sized = is->basis >= MPM_GIMP && !(is->with & WITH_SPARE_SIZE);
   must(w, mpm_particles_add(w->set[m], n, x, v, volumes, sized ? size : NULL, ids, NULL));
   free(memory);
-  free(ids);
+  free(ids - from);
 }
 
 static void set_fields(world *w, int32_t m) {
@@ -221,7 +237,8 @@ static void set_fields(world *w, int32_t m) {
   double *value = calloc((size_t)(3 * n + 1), sizeof *value);
   uint8_t *flags = calloc((size_t)(3 * n + 1), 1);
   if (!value || !flags) exit(1);
-  for (int64_t i = 0; i < 3 * n; ++i) value[i] = 40.0 * noise((uint64_t)(900 + i));
+  const int64_t from = w->first[m], all = w->all[m];
+  for (int64_t i = 0; i < 3 * n; ++i) value[i] = 40.0 * noise((uint64_t)(900 + i / n * all + from + i % n));
   must(w, mpm_particles_set(w->set[m], "heat", MPM_F64, 1, n, NULL, value));
   static const double pressure[6] = {-4e3, -4e3, -4e3, 0.0, 0.0, 0.0};
   if (w->is->law[m] == LAW_CLAY) must(w, mpm_particles_set_all(w->set[m], "stress", MPM_F64, 6, pressure));
@@ -231,8 +248,10 @@ static void set_fields(world *w, int32_t m) {
     must(w, mpm_particles_set_all(w->set[m], "acceleration", MPM_F64, dim, zeros));
     must(w, mpm_particles_set_all(w->set[m], "velocity_gradient", MPM_F64, 9, zeros));
   }
-  for (int64_t i = 0; i < n * dim; ++i) /* one particle in eight, on one axis or all */
-    flags[i] = i % n % 8 == 3 && (i % n % 16 == 3 || i / n == i % n % dim);
+  for (int64_t i = 0; i < n * dim; ++i) { /* one particle in eight, on one axis or all */
+    const int64_t p = from + i % n;
+    flags[i] = p % 8 == 3 && (p % 16 == 3 || i / n == p % dim);
+  }
   if (with & WITH_PRESCRIBED && m == last)
     must(w, mpm_particles_set(w->set[m], "prescribed", MPM_U8, dim, n, NULL, flags));
   free(value);
@@ -341,14 +360,15 @@ static void add_heat(world *w, const scene *is) {
   must(w, mpm_surface_set_heat(w->surface, 5.0, 2.0, 50.0));
 }
 
-void open_world(world *w, const scene *is, int32_t isa, int32_t empty) {
+void open_world(world *w, const scene *is, const errand *how, int32_t empty) {
   const mpm_grid_desc g = describe_grid(is);
   const mpm_stepper_desc s = describe_stepper(is);
   mpm_context_desc c;
   mpm_context_desc_init(&c, sizeof c);
-  c.isa = isa;
+  c.isa = how->isa;
+  c.transport = how->transport;
   c.concurrency = is->concurrency;
-  *w = (world){.is = is, .dt = is->scheme == MPM_NEWMARK ? implicit_dt : explicit_dt};
+  *w = (world){.is = is, .how = how, .dt = is->scheme == MPM_NEWMARK ? implicit_dt : explicit_dt};
   mpm_status made = mpm_context_create(&c, &w->context);
   if (made == MPM_E_UNSUPPORTED) { /* a build without threads, which must give the same bits */
     c.concurrency = 1;

@@ -70,8 +70,20 @@ typedef struct scene {
   int32_t with, solver, story, steps, concurrency;
 } scene;
 
+/* A scene is told as a whole, or in halves with its state in a file between them, which may be on different
+ * machines: the second one gives the hash of the whole. Or it is told on several parts, each of which calls
+ * run_scene() and gives the hash of the whole. */
+enum { WHOLE, FIRST_HALF, SECOND_HALF, REFUSAL = 256 };
+typedef struct errand {
+  int32_t isa, half;
+  const char *file;
+  const mpm_transport *transport; /* NULL: one part */
+  char *refusal; /* [REFUSAL] what the library refuses is written here; NULL: to the standard error */
+} errand;
+
 typedef struct world {
   const scene *is;
+  const errand *how;
   mpm_context *context;
   mpm_grid *grid;
   mpm_material *material[2];
@@ -80,7 +92,9 @@ typedef struct world {
   mpm_obstacle *obstacle[3];
   mpm_surface *surface;
   mpm_step_info info;
-  double dt; /* of a middling step */
+  int64_t first[2],
+      all[2]; /* particles of each set: number of the first one of this part, and of all parts */
+  double dt;  /* of a middling step */
   uint64_t hash;
 } world;
 
@@ -91,16 +105,11 @@ void must_be_ok(const world *w, mpm_status status, const char *call);
 /* Whether the library offers the grid and the method of the scene. */
 int32_t is_offered(const scene *is);
 /* empty: without particles. */
-void open_world(world *w, const scene *is, int32_t isa, int32_t empty);
+void open_world(world *w, const scene *is, const errand *how, int32_t empty);
 void close_world(world *w);
 mpm_stepper_desc describe_stepper(const scene *is);
-/* A scene is told as a whole, or in halves with its state in a file between them, which may be on different
- * machines: the second one gives the hash of the whole. */
-enum { WHOLE, FIRST_HALF, SECOND_HALF };
-typedef struct errand {
-  int32_t isa, half;
-  const char *file;
-} errand;
+/* Replaces values by their sums over all parts. */
+void sum_parts(world *w, int64_t count, int64_t *values);
 /* Tells the story of a scene; 0 if it failed, which is on the standard error and leaves behind what was open.
  */
 int32_t run_scene(const scene *is, const errand *how, uint64_t *hash);

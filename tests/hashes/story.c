@@ -5,6 +5,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #if !defined(__wasi__) /* which has no jumps: the first scene that fails ends the program there */
 #include <setjmp.h>
 #define MAY_FAIL
@@ -57,15 +58,15 @@ static void step_in_parts(world *w, int32_t step) {
   mix_info(&w->hash, &w->info);
 }
 
-static void save_and_load(world *w, int32_t isa) {
+static void save_and_load(world *w) {
   world other;
   int64_t bytes = 0;
   must(w, mpm_state_size(w->stepper, &bytes));
   void *buffer = malloc((size_t)bytes);
   expect(w, buffer != NULL, "no memory");
   must(w, mpm_state_save(w->stepper, buffer, bytes));
-  open_world(&other, w->is, isa, 1);
-  must(&other, mpm_state_load(other.stepper, buffer, bytes));
+  open_world(&other, w->is, w->how, 1);
+  must(&other, mpm_state_load_pieces(other.stepper, 1, (const void *const *)&buffer, &bytes));
   free(buffer);
   other.hash = w->hash;
   other.info = w->info;
@@ -80,20 +81,42 @@ static void fail(world *w) {
   mix_info(&w->hash, &w->info);
 }
 
+/* Where the particle is, on all parts; it is on one of them. */
+static void find_place(world *w, int64_t id, int32_t is_here, double *x) {
+  int64_t bits[3] = {0, 0, 0};
+  if (is_here) must(w, mpm_particles_get(w->set[0], "position", MPM_F64, w->is->dim, 1, &id, x));
+  memcpy(bits, x, sizeof bits);
+  sum_parts(w, 3, bits);
+  memcpy(x, bits, sizeof bits);
+}
+
 /* Some particles go, one comes, and the steps go on by another method. */
 static void change(world *w) {
+  enum { IDS = 16384 }; /* all are smaller */
   const int64_t n = mpm_particles_count(w->set[0]), born = 5000;
-  int64_t *ids = malloc((size_t)n * sizeof *ids), some = 0;
+  int64_t *own = malloc(((size_t)n + 1) * sizeof *own);
+  int64_t *has = calloc(IDS, sizeof *has), *all = calloc(IDS, sizeof *all);
+  int64_t whole = 0, some = 0, middle = 0;
   double x[3] = {0.0, 0.0, 0.0}, v[3] = {1.0, 2.0, 3.0};
   const double volume = 1e-4;
-  expect(w, ids != NULL, "no memory");
-  must(w, mpm_particles_get(w->set[0], "id", MPM_I64, 1, n, NULL, ids));
-  must(w, mpm_particles_get(w->set[0], "position", MPM_F64, w->is->dim, 1, &ids[n / 2], x));
-  for (int64_t i = 0; i < n; ++i)
-    if (i % 11 == 4) ids[some++] = ids[i];
-  must(w, mpm_particles_remove(w->set[0], some, ids));
-  free(ids);
-  must(w, mpm_particles_add(w->set[0], 1, x, v, &volume, NULL, &born, NULL));
+  expect(w, own && has && all, "no memory");
+  must(w, mpm_particles_get(w->set[0], "id", MPM_I64, 1, n, NULL, own));
+  for (int64_t i = 0; i < n; ++i) has[own[i]] = all[own[i]] = 1;
+  sum_parts(w, IDS, all);
+  for (int64_t id = 0; id < IDS; ++id) whole += all[id];
+  for (int64_t id = 0, i = 0; id < IDS; ++id) {
+    if (!all[id]) continue;
+    if (i == whole / 2) middle = id;
+    if (i++ % 11 == 4 && has[id]) own[some++] = id;
+  }
+  find_place(w, middle, has[middle] != 0, x);
+  if (some) must(w, mpm_particles_remove(w->set[0], some, own));
+  free(own);
+  free(has);
+  free(all);
+  const mpm_transport *between = w->how->transport;
+  const int32_t adds = !between || between->part == between->parts - 1; /* the last of all */
+  must(w, mpm_particles_add(w->set[0], adds, x, v, &volume, NULL, &born, NULL));
   mpm_stepper_desc d = describe_stepper(w->is);
   d.scheme = w->is->scheme == MPM_MUSL ? MPM_USL : MPM_MUSL;
   d.transfer = w->is->transfer == MPM_APIC ? MPM_FLIP : MPM_APIC;
@@ -145,15 +168,15 @@ static void take(world *w, const char *file) {
 }
 
 static uint64_t tell(const scene *is, const errand *how) {
-  const int32_t isa = how->isa, steps = how->half == FIRST_HALF ? is->steps / 2 : is->steps;
+  const int32_t steps = how->half == FIRST_HALF ? is->steps / 2 : is->steps;
   const int32_t first = how->half == SECOND_HALF ? is->steps / 2 : 0;
   world w;
-  open_world(&w, is, isa, how->half == SECOND_HALF);
+  open_world(&w, is, how, how->half == SECOND_HALF);
   w.info.struct_size = sizeof w.info;
   if (how->half) expect(&w, is->story == STORY_PLAIN, "only scenes of plain steps are told in halves");
   if (how->half == SECOND_HALF) take(&w, how->file);
   for (int32_t i = first; i < steps && is->story != STORY_ADVANCE; ++i) {
-    if (i == is->steps / 2 && is->story == STORY_SAVED) save_and_load(&w, isa);
+    if (i == is->steps / 2 && is->story == STORY_SAVED) save_and_load(&w);
     if (i == is->steps / 2 && is->story == STORY_FAILING) fail(&w);
     if (i == is->steps / 2 && is->story == STORY_CHANGED) change(&w);
     if (is->story == STORY_STAGED_VELOCITY || is->story == STORY_STAGED_FORCE)
@@ -174,8 +197,8 @@ static uint64_t tell(const scene *is, const errand *how) {
 }
 
 #if defined(MAY_FAIL)
-static jmp_buf failed;
-static int32_t is_told;
+static _Thread_local jmp_buf failed;
+static _Thread_local int32_t is_told;
 
 void give_up(void) {
   if (!is_told) exit(1);
