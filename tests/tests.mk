@@ -3,7 +3,7 @@
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
 .PHONY: check-builds check-windows check-wasm check-valgrind
 .PHONY: check-amalgamation check-cmake check-umat mutate-slack
-.PHONY: mutate mutate-check check-hashes update-hashes
+.PHONY: mutate mutate-check check-hashes update-hashes check-parts check-parts-quick
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-portable check-abi update-abi
 .PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
 
@@ -30,7 +30,7 @@ $(UNIT): $(UNIT_OBJECTS) $(STATIC_LIB)
 
 #: check                 what a change must pass: the checks of structure, units, hashes, interface, examples, faults, and
 #:                       verify-quick
-check: check-structure check-unit check-hashes check-api check-examples mutate-check verify-quick
+check: check-structure check-unit check-hashes check-parts-quick check-api check-examples mutate-check verify-quick
 
 # First the check must notice what is planted in a small tree of its own.
 STRUCTURE = python3 tests/structure/check.py --objects $(BUILD)/obj/src
@@ -89,6 +89,19 @@ $(HASHES): $(wildcard tests/hashes/*.[ch]) $(STATIC_LIB) Makefile
 #: update-hashes         takes the hashes that are there as the expected ones
 check-hashes update-hashes: $(HASHES)
 	@$(TEST_ENVIRONMENT) CFLAGS="$(CFLAGS)" JOBS=$(JOBS) bash tests/hashes/run.sh $(@:-hashes=)
+
+PARTS := $(BUILD)/tests/parts/parts
+$(PARTS): tests/parts/main.c tests/unit/parts.c $(filter-out tests/hashes/main.c,$(wildcard tests/hashes/*.[ch])) $(STATIC_LIB) Makefile
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) -std=c11 -Iinclude -Itests/hashes -Itests/unit $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) -ffp-contract=off $(filter %.c,$^) \
+	  $(STATIC_LIB) $(LDFLAGS) $(LIBS) -o $@
+#: check-parts           the same scenes on 2, 3 and 5 parts: the bits of one part in states, reports, reactions and nodes
+#: check-parts-quick     every fourth of them on 3 parts
+check-parts: $(PARTS)
+	@bash tests/parts/run.sh $(PARTS) $(BUILD)/tests/parts/found $(JOBS) 1 2 3 5
+check-parts-quick: $(PARTS)
+	@bash tests/parts/run.sh $(PARTS) $(BUILD)/tests/parts/found $(JOBS) 4 3
 
 #: check-portable        the same bits on every platform whose compiler and emulator are there: a table. SCENES=all, gate;
 #:                       PLATFORMS="gcc s390x"
