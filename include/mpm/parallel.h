@@ -19,7 +19,7 @@
  * mpm_stable_dt(), mpm_stepper_set_balance(), mpm_state_hash(), mpm_state_size(), mpm_state_save() in all
  * its forms and mpm_state_load_pieces().
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
- * added. An id is given once over all parts, which is not checked.
+ * added. An id is given once over all parts: mpm_particles_add() returns MPM_E_ARG where it is not.
  *
  * Callbacks about nodes, friction, distances and the motion of obstacles are asked on every part that needs
  * the answer, and must give the same on all. Obstacles are made and moved alike on all parts.
@@ -29,9 +29,8 @@
  *
  * Of several parts these are asked for explicit steps, and for implicit ones whose linear systems the
  * library's conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here.
- * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric, MPM_WALL_FRICTION_NODES,
- * surfaces that prescribe or heat, and adaption; in implicit steps total Lagrangian grids, bodies other than
- * 0, obstacles, friction walls, surfaces and heat.
+ * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric, and adaption; in implicit
+ * steps total Lagrangian grids, bodies other than 0, obstacles, friction walls, surfaces and heat.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

@@ -412,14 +412,16 @@ static void add_work(mpmi_bound *bound, const mpmi_party *party, double sign, co
       add_host_work(bound, -sign * impulse[c] * bound->nodes->held_value[party->slot][c]);
 }
 
-/* Surfaces that prescribe push back: what contact gives to what they hold is a part of their impulse. */
-static void tell_sites(mpmi_bound *bound, const mpmi_party *party, double sign, const double *impulse) {
+/* Surfaces that prescribe push back: what contact gives to what they hold is a part of their impulse. books:
+ * the work counts here. */
+static void tell_sites(mpmi_bound *bound, const mpmi_party *party, double sign, const double *impulse,
+                       int32_t books) {
   if (party->surface >= 0 || !mpmi_surfaces_hold(bound->step->settings)) return;
   mpmi_surface_sites *sites = &bound->nodes->surface_sites;
   for (int32_t at = sites->last[party->slot]; at >= 0; at = sites->site[at].before) {
     mpmi_surface_site *site = &sites->site[at];
     const double along = site->slides ? mpmi_inner(site->vector, impulse) : 0.0;
-    add_host_work(bound, -sign * along * site->value);
+    if (books) add_host_work(bound, -sign * along * site->value);
     for (int32_t c = 0; c < bound->dim; ++c)
       site->impulse[c] -= sign * (site->holds[c] ? impulse[c] : along * site->vector[c]);
   }
@@ -437,6 +439,7 @@ static void add_torque(const mpmi_bound *bound, const mpmi_party *first, const m
   for (int32_t c = 0; c < 3; ++c) mpmi_exact_add(&sums[MPMI_PAIR_MOMENT + c], about[c]);
 }
 
+/* sums: of the pair where this part books what happens at the node, else NULL. */
 static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_whole_sum *sums) {
   const mpmi_tally *tally = &bound->step->work->tally;
   const mpmi_contact_nodes *contact = &bound->nodes->contact;
@@ -447,14 +450,17 @@ static void add_impulse(mpmi_bound *bound, const mpmi_touch *touch, mpmi_whole_s
     const int32_t moves = pair[0]->inverse_mass[c] > 0.0 || pair[1]->inverse_mass[c] > 0.0 ||
                           (c < bound->dim && surface && mpmi_is_free(surface));
     impulse[c] = moves ? touch->normal_impulse * touch->normal[c] + touch->tangential[c] : 0.0;
+  }
+  tell_sites(bound, pair[0], -1.0, impulse, sums != NULL);
+  tell_sites(bound, pair[1], 1.0, impulse, sums != NULL);
+  if (!sums) return;
+  for (int32_t c = 0; c < 3; ++c) {
     mpmi_exact_add(&sums[MPMI_PAIR_IMPULSE + c], impulse[c]);
     if (surface && surface->face >= 0)
       mpmi_exact_add(&tally->sum[MPMI_TALLY_FACES + 3 * surface->face + c], impulse[c]);
   }
   add_work(bound, pair[0], -1.0, impulse);
   add_work(bound, pair[1], 1.0, impulse);
-  tell_sites(bound, pair[0], -1.0, impulse);
-  tell_sites(bound, pair[1], 1.0, impulse);
   add_torque(bound, pair[0], pair[1], impulse, sums);
   mpmi_exact_add(&sums[MPMI_PAIR_NORMAL], touch->normal_impulse);
   mpmi_exact_add(&sums[MPMI_PAIR_AREA], touch->area);
@@ -470,9 +476,14 @@ void mpmi_body_contacts_sum(mpmi_bound *bound) {
   for (int64_t m = 0; m < contact->meeting_count; ++m) {
     const mpmi_meeting *meeting = &contact->meeting[m];
     int32_t closed = 0;
-    if (!mpmi_owns_node(bound->step->layout->parts, contact->party[meeting->first_party].slot)) continue;
+    const int32_t books =
+        mpmi_owns_node(bound->step->layout->parts, contact->party[meeting->first_party].slot);
     for (int64_t i = meeting->first_touch; i < meeting->first_touch + meeting->touch_count; ++i) {
       const mpmi_touch *touch = &contact->touch[i];
+      if (!books) {
+        if (touch->closed) add_impulse(bound, touch, NULL);
+        continue;
+      }
       mpmi_pair_sums *counts = &bound->step->pairs->record[touch->record].now;
       mpmi_whole_sum *sums = mpmi_tally_pair(tally, touch->record);
       ++counts->nodes;

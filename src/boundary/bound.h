@@ -137,9 +137,15 @@ mpm_status mpmi_coupled_gather(mpmi_bound *bound);
 mpm_status mpmi_ask_friction(mpmi_bound *bound);
 
 /* ---- friction_wall.c --------------------------------------------------------------------------------- */
-/* Lets friction walls act. With keep, in a projection without forces, contacts stay as they were found.
- * Rounds after the first go on from there. Returns the largest velocity that was stopped at first. */
-double mpmi_friction_walls(mpmi_bound *bound, int32_t keep, int32_t first_round);
+/* A round in which bodies act on each other, and then walls on nodes. */
+typedef struct mpmi_contact_round {
+  int32_t touches; /* bodies touch; then: somewhere, and nodes rub on walls */
+  double most;     /* the largest velocity that has changed between bodies; then also that at walls */
+} mpmi_contact_round;
+/* Lets friction walls act on nodes. With keep, in a projection without forces, contacts stay as they were
+ * found. Rounds after the first go on from there. Of several parts all do so (collective). */
+mpm_status mpmi_friction_walls(mpmi_bound *bound, int32_t keep, int32_t first_round,
+                               mpmi_contact_round *round);
 
 /* ---- node_batch.c ------------------------------------------------------------------------------------ */
 enum { MPMI_NODE_BATCH = 256 }; /* the most nodes that a block has */

@@ -9,16 +9,17 @@ static const double settled = 1e-13;
 enum { ROUNDS = 30 };
 
 static mpm_status act_in_contact(mpmi_bound *bound, int32_t keeps) {
-  double first = 0.0, most;
+  double first = 0.0;
   mpm_status status = keeps ? MPM_OK : mpmi_body_contacts_find(bound);
-  const int32_t both = mpmi_constraints_of(bound)->contact_count > 0 && mpmi_bodies_touch(bound);
-  for (int32_t round = 0; round < ROUNDS && !status; ++round) {
-    status = mpmi_body_contacts_act(bound, keeps, !round, &most);
-    const double at_walls = mpmi_friction_walls(bound, keeps, !round);
-    most = at_walls > most ? at_walls : most;
-    if (!round) first = most;
-    if (!both || !(most > settled * first)) break;
+  const int32_t rubs = mpmi_has_friction_nodes(bound->step->settings);
+  for (int32_t i = 0; i < ROUNDS && !status; ++i) {
+    mpmi_contact_round round = {.touches = mpmi_bodies_touch(bound)};
+    status = mpmi_body_contacts_act(bound, keeps, !i, &round.most);
+    if (!status && rubs) status = mpmi_friction_walls(bound, keeps, !i, &round);
+    if (!i) first = round.most;
+    if (!rubs || !round.touches || !(round.most > settled * first)) break;
   }
+  if (!status && rubs && bound->step->layout->parts) mpmi_accord_end(bound->step->layout->parts);
   return status;
 }
 

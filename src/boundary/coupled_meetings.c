@@ -159,8 +159,8 @@ mpm_status mpmi_coupled_gather(mpmi_bound *bound) {
       status = pack_meeting(bound, parts, meeting);
   }
   for (int32_t r = 0; r < mpmi_part_count(parts) && status; ++r) parts->out[r].used = 0;
-  ++parts->gathers;
   const mpm_status lost = mpmi_parts_exchange(parts, &in);
+  mpmi_accord_gathered(parts);
   for (int32_t i = 0; i < in.count && !lost && !status; ++i) status = take_meetings(bound, &in.message[i]);
   return lost ? lost : status;
 }

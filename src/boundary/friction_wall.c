@@ -1,5 +1,7 @@
 /* Friction walls: unilateral contacts of nodes on a wall's plane, and of ghosts with their mirrors. */
 #include "boundary/bound.h"
+#include "context/transport.h"
+#include "parallel/parts.h"
 
 #include <math.h>
 
@@ -19,11 +21,12 @@ static double sum_of(mpmi_bound *bound, const contact_nodes *n, int32_t c) {
 }
 
 static void give(mpmi_bound *bound, const contact_nodes *n, int32_t face, int32_t c, double impulse) {
+  const int32_t books = bound->records && mpmi_owns_node(bound->step->layout->parts, n->slot[0]);
   for (int32_t i = 0; i < n->count; ++i) {
     if (!(n->inverse_mass[i][c] > 0.0)) continue;
-    const double impulse_given =
+    const double given =
         mpmi_press_node(bound, n->slot[i], c, impulse / n->moving[c] * n->inverse_mass[i][c]);
-    if (bound->records) bound->step->impulse_by_face[face][c] += impulse_given;
+    if (books) mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_FACES + 3 * face + c], given);
   }
 }
 
@@ -101,22 +104,64 @@ static double keep_contact(mpmi_bound *bound, const mpmi_contact *pair, const mp
 static const double settled = 1e-13;
 enum { SWEEPS = 100 };
 
-double mpmi_friction_walls(mpmi_bound *bound, int32_t keep, int32_t first_round) {
+/* What a sweep has come to: the largest velocity that was stopped, and the faces with contacts. */
+typedef struct sweep {
+  double most;
+  int32_t first_face, last_face; /* -1: there are none */
+} sweep;
+
+/* Of several parts each sweeps all contacts that it has, and only its own count: others may lack a node. */
+static sweep sweep_once(mpmi_bound *bound, int32_t keep, int32_t first) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int64_t count = constraints->contact_count;
-  double first = 0.0;
-  for (int32_t sweep = 0; count && sweep < SWEEPS; ++sweep) {
-    double most = 0.0;
-    for (int64_t i = 0; i < count; ++i) {
-      const mpmi_contact *pair = &constraints->contact[i];
-      mpmi_contact_state *state = &bound->nodes->contact_state[i];
-      most = fmax(most, keep ? keep_contact(bound, pair, state)
-                             : contact(bound, pair, state, first_round && !sweep));
-    }
-    if (!sweep) first = most;
-    /* contacts of one face share no node: one sweep is enough */
-    if (!(most > settled * first) || constraints->contact[0].face == constraints->contact[count - 1].face)
-      break;
+  sweep done = {0.0, -1, -1};
+  if (count) {
+    done.first_face = constraints->contact[0].face;
+    done.last_face = constraints->contact[count - 1].face;
   }
-  return first;
+  for (int64_t i = 0; i < count; ++i) {
+    const mpmi_contact *pair = &constraints->contact[i];
+    mpmi_contact_state *state = &bound->nodes->contact_state[i];
+    const double stopped = keep ? keep_contact(bound, pair, state) : contact(bound, pair, state, first);
+    if (mpmi_owns_node(bound->step->layout->parts, pair->slot)) done.most = fmax(done.most, stopped);
+  }
+  return done;
+}
+
+/* Makes what parts know by themselves what all of them know. */
+static mpm_status know_of_all(mpmi_parts *parts, sweep *done, mpmi_contact_round *round) {
+  enum { FACES = 6 };
+  int64_t word[MPMI_ACCORD_WORDS] = {0,
+                                     mpmi_ordered_bits(done->most),
+                                     done->first_face < 0 ? 0 : FACES - done->first_face,
+                                     1 + done->last_face,
+                                     round->touches,
+                                     mpmi_ordered_bits(round->most)};
+  const mpm_status status = mpmi_accord_settle(parts, word);
+  if (status) return status;
+  done->most = mpmi_of_ordered_bits(word[1]);
+  done->first_face = word[2] ? FACES - (int32_t)word[2] : -1;
+  done->last_face = (int32_t)word[3] - 1;
+  round->touches = word[4] != 0;
+  round->most = mpmi_of_ordered_bits(word[5]);
+  return MPM_OK;
+}
+
+mpm_status mpmi_friction_walls(mpmi_bound *bound, int32_t keep, int32_t first_round,
+                               mpmi_contact_round *round) {
+  mpmi_parts *parts = bound->step->layout->parts;
+  mpm_status status = MPM_OK;
+  double first = 0.0;
+  for (int32_t i = 0; i < SWEEPS; ++i) {
+    sweep done = sweep_once(bound, keep, first_round && !i);
+    if (parts && (status = know_of_all(parts, &done, round))) return status;
+    if (!i) {
+      first = done.most;
+      round->touches &= done.last_face >= 0;
+    }
+    /* contacts of one face share no node: one sweep is enough */
+    if (!(done.most > settled * first) || done.first_face == done.last_face) break;
+  }
+  round->most = fmax(round->most, first);
+  return MPM_OK;
 }

@@ -1,6 +1,7 @@
 /* Surfaces that prescribe velocities, in explicit steps: what they hold at their sites, and what
  * that takes. */
 #include "boundary/surface_holds.h"
+#include "parallel/parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -98,7 +99,8 @@ static void slide(mpmi_bound *bound, mpmi_surface_site *site) {
     const double impulse = mpmi_record(bound, site->slot, c, before[c]);
     if (!bound->records) continue;
     site->impulse[c] += bound->share * impulse;
-    bound->step->host_work += bound->share * impulse * v[c];
+    if (mpmi_owns_node(bound->step->layout->parts, site->slot))
+      mpmi_exact_add(&bound->step->work->tally.sum[MPMI_TALLY_WORK], bound->share * impulse * v[c]);
   }
 }
 
@@ -122,8 +124,13 @@ static void sum_impulse(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_sur
   }
 }
 
-/* Shares the impulses of its sites out among the markers of a surface. */
+/* Shares the impulses of its sites out among the markers of a surface. Of several parts each tells of the
+ * sites whose nodes it owns (stages/surfaces.c). */
 static void tell_surface(const mpmi_step *step, const mpmi_nodes *nodes, mpm_surface *s) {
+  const mpmi_parts *parts = step->layout->parts;
+  if (parts && s->next.count)
+    memset(mpmi_surface_told_impulse(s, 0), 0,
+           (size_t)(MPMI_MARKER_VECTOR * s->next.count * s->around.nodes) * sizeof *s->told);
   for (int64_t k = 0; k < s->next.count; ++k) {
     mpmi_marker *m = &s->next.at[k];
     const double area = mpmi_marker_size(m, s->grid);
@@ -133,10 +140,12 @@ static void tell_surface(const mpmi_step *step, const mpmi_nodes *nodes, mpm_sur
       if (s->site[n] < 0) continue;
       const mpmi_surface_site *site = &nodes->surface_sites.site[s->site[n]];
       const double share = s->around.plain[n] * area / site->weight;
-      for (int32_t c = 0; c < s->grid->dim; ++c) {
-        s->impulse[c] += share * site->impulse[c];
-        m->reaction[c] += share * site->impulse[c] / step->velocity_dt;
-      }
+      double impulse[3] = {0.0, 0.0, 0.0};
+      for (int32_t c = 0; c < s->grid->dim; ++c) impulse[c] = share * site->impulse[c];
+      if (!parts)
+        mpmi_surface_impulse_add(s, k, impulse, step->velocity_dt);
+      else if (mpmi_owns_node(parts, site->slot))
+        memcpy(mpmi_surface_told_impulse(s, n), impulse, sizeof impulse);
     }
   }
 }

@@ -75,7 +75,10 @@ static void arm_to(const mpmi_bound *bound, int64_t slot, const double *x, const
   for (int32_t k = 0; k < grid->dim; ++k) {
     const double period = (double)grid->desc.cells[k] * grid->desc.spacing[k];
     arm[k] = x[k] - mpmi_node_position(grid, k, index[k]);
-    if (grid->desc.periodic[k]) arm[k] -= period * nearbyint(arm[k] / period);
+    if (grid->desc.periodic[k]) { /* by the nearest image, whichever of them has storage */
+      index[k] += grid->desc.cells[k] * (int64_t)nearbyint(arm[k] / period);
+      arm[k] = x[k] - mpmi_node_position(grid, k, index[k]);
+    }
     arm[k] *= sign[k];
   }
 }

@@ -156,10 +156,14 @@ mpm_status mpmi_heat_solve(const mpmi_heat_job *job);
 /* Finds the nodes around the markers of surfaces that heat, and adds the power that they give whatever the
  * temperature of the nodes is. */
 mpm_status mpmi_heat_surfaces(const mpmi_heat_job *job);
-/* Adds what films take at the temperatures on the nodes to the outflow, and to the diagonal. Returns 0 where
- * there are none. */
-int32_t mpmi_heat_films(const mpmi_heat_job *job);
-/* Returns the power that surfaces give at these temperatures. */
+/* Returns 1 when surfaces heat; when some of them have films. */
+int32_t mpmi_heat_has_surfaces(const mpmi_settings *settings);
+int32_t mpmi_heat_has_films(const mpmi_settings *settings);
+/* Of several parts: refuses markers that heat where no part has material (collective). */
+mpm_status mpmi_heat_surfaces_check(const mpmi_heat_job *job);
+/* Adds what films take at the temperatures on the nodes to the outflow, and to the diagonal (collective). */
+mpm_status mpmi_heat_films(const mpmi_heat_job *job);
+/* Returns the power that surfaces give at these temperatures, which films have seen. */
 double mpmi_heat_surface_power(const mpmi_heat_job *job);
 
 #endif

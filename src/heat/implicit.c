@@ -121,9 +121,9 @@ static mpm_status apply(const mpmi_heat_job *job) {
   const double *p = vector(heat, P), *capacity = vector(heat, CAPACITY);
   double *q = vector(heat, Q);
   spread(job, p, &heat->nodes, MPMI_HEAT_TEMPERATURE);
-  const mpm_status status = agree(job, mpmi_heat_conduct(job, 0));
+  mpm_status status = agree(job, mpmi_heat_conduct(job, 0));
+  if (!status) status = mpmi_heat_films(job);
   if (status) return status;
-  mpmi_heat_films(job);
   for (int64_t row = 0; row < heat->rows; ++row)
     q[row] = capacity[row] * p[row] + job->step->dt * fold(heat, row, &heat->flow, MPMI_HEAT_OUTFLOW, 1);
   return MPM_OK;
@@ -205,8 +205,7 @@ mpm_status mpmi_heat_solve(const mpmi_heat_job *job) {
   spread(job, vector(heat, X), &heat->nodes, MPMI_HEAT_TEMPERATURE);
   for (int64_t slot = 0; slot < slots; ++slot)
     mpmi_heat_node(heat, slot)[MPMI_HEAT_TEMPERATURE] += heat->start[slot];
-  if ((status = agree(job, mpmi_heat_conduct(job, 0)))) return status;
-  mpmi_heat_films(job);
+  if ((status = agree(job, mpmi_heat_conduct(job, 0))) || (status = mpmi_heat_films(job))) return status;
   spread(job, vector(heat, X), &heat->flow, MPMI_HEAT_INCREMENT);
   return MPM_OK;
 }

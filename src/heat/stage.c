@@ -122,10 +122,14 @@ mpm_status mpmi_heat_begin(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_his
 /* Finds the increments of the nodes, and what has come through surfaces and faces. */
 static mpm_status conduct(const mpmi_heat_job *job) {
   const int32_t implicit = is_implicit(job->step);
-  job->heat->checks_films = mpmi_heat_films(job) && !implicit;
-  const mpm_status status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job);
+  const mpmi_parts *parts = job->step->layout->parts;
+  job->heat->checks_films = mpmi_heat_has_films(job->step->settings) && !implicit;
+  mpm_status status = mpmi_heat_surfaces_check(job);
+  if (!status) status = mpmi_heat_films(job);
+  if (!status) status = implicit ? mpmi_heat_solve(job) : mpmi_heat_advance(job);
   if (status) return status;
-  mpmi_exact_add(&job->heat->sum[MPMI_HEAT_SURFACES], job->step->dt * mpmi_heat_surface_power(job));
+  if (!parts || !parts->context->transport.part) /* all parts know the power, and one of them tells it */
+    mpmi_exact_add(&job->heat->sum[MPMI_HEAT_SURFACES], job->step->dt * mpmi_heat_surface_power(job));
   for (int64_t slot = 0; implicit && slot < mpmi_slots(job->step->layout); ++slot)
     mpmi_heat_node(job->heat, slot)[MPMI_HEAT_TEMPERATURE] = job->heat->start[slot];
   mpmi_heat_prescribe(job);

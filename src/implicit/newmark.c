@@ -301,7 +301,7 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   status = mpmi_record_reactions(balance);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);
   if (!status) status = mpmi_g2p_move(balance->step, balance->nodes, &balance->nodes->solved);
-  if (!status) status = mpmi_surfaces_move(balance->step, &balance->nodes->solved);
+  if (!status) status = mpmi_surfaces_move(balance->step, &balance->nodes->solved, 0);
   if (!status) show_velocities(balance);
   mpmi_lap(balance->step, MPMI_TIME_G2P, &clock);
   return status;

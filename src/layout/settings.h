@@ -95,6 +95,14 @@ static inline int32_t mpmi_has_friction_planes(const mpmi_settings *set) {
     if (mpmi_is_friction_plane(set, face)) return 1;
   return 0;
 }
+/* Returns 1 where some wall lets nodes on its plane rub. */
+static inline int32_t mpmi_has_friction_nodes(const mpmi_settings *set) {
+  for (int32_t face = 0; face < 2 * set->grid->dim; ++face)
+    if (mpmi_wall_kind_of(set->wall[face].kind)->rubs == MPMI_RUBS_NODES &&
+        !set->grid->desc.periodic[face / 2])
+      return 1;
+  return 0;
+}
 static inline int32_t mpmi_has_free_obstacles(const mpmi_settings *set) {
   for (int64_t i = 0; i < set->obstacles.count; ++i)
     if (set->obstacles.obstacle[i]->desc.motion == MPM_MOTION_FREE) return 1;

@@ -5,6 +5,7 @@
  *   pattern.c    which blocks of other parts share nodes with one's own, and which of the nodes have all that
  *                particles give them
  *   tiles.c      the exchange of what the particles of such blocks give
+ *   accord.c     what parts settle together in the conditions on nodes
  *   guests.c     copies of particles of other parts, around nodes at which bodies meet
  *
  * The particles of all parts, one part after the other, have the order that one part would have; so have
@@ -45,6 +46,15 @@ enum {
   MPMI_NODE_LOWER = 8  /* a tile of a part before this one has it */
 };
 
+/* What parts settle together in the conditions on the nodes of a projection, once it is there: the meetings
+ * that free obstacles couple, which are gathered, and the contacts of nodes with friction walls, which are
+ * swept as often on all parts. */
+typedef struct mpmi_accord {
+  int64_t after; /* so many exchanges of tiles */
+  int32_t phase, gathers, sweeps;
+} mpmi_accord;
+enum { MPMI_MOST_ACCORDS = 3 };
+
 typedef struct mpmi_parts {
   mpm_context *context;
   const mpm_grid *grid;
@@ -81,9 +91,10 @@ typedef struct mpmi_parts {
   mpm_message *message;
   int64_t *most;
   int64_t exchanges; /* of tiles in the step under way */
-  /* Of meetings that a free obstacle couples, in it: how many have been gathered, how often they will be, and
-   * after how many exchanges of tiles; how many there are to be by the end of the phase. */
-  int64_t gathers, gather_count, gather_at[2], gathers_due;
+  /* What parts settle together between them: how often, how often so far, and how often by the end of the
+   * phase; whether of the one under way meetings have been gathered. */
+  mpmi_accord accord[MPMI_MOST_ACCORDS];
+  int32_t accord_count, accords, accords_due, has_gathered;
   int32_t has_counted; /* the active nodes of the step under way */
   int32_t prescribes;  /* some part may have prescribed particles */
   int32_t asks;        /* some part has a progress callback */
@@ -166,6 +177,19 @@ static inline int32_t mpmi_owner_of_node(const mpmi_parts *parts, int64_t slot) 
 static inline int32_t mpmi_meets_node(const mpmi_parts *parts, int64_t slot) {
   return !parts || (parts->flags[slot] & (MPMI_NODE_GIVEN | MPMI_NODE_OWN)) != MPMI_NODE_GIVEN;
 }
+
+/* ---- accord.c ---------------------------------------------------------------------------------------- */
+/* What parts tell each other in one: first, whether one of them has failed. */
+enum { MPMI_ACCORD_WORDS = 6 };
+/* Meetings have been gathered in the one under way. */
+void mpmi_accord_gathered(mpmi_parts *parts);
+/* Makes the words the largest of all parts. MPM_E_STATE, and is_echo, where one of them has failed: then it
+ * is over. */
+mpm_status mpmi_accord_settle(mpmi_parts *parts, int64_t *word);
+/* It is over. */
+void mpmi_accord_end(mpmi_parts *parts);
+/* Takes the next part in it that is due on a part that has failed. */
+void mpmi_accord_break(mpmi_parts *parts);
 
 /* ---- tiles.c ----------------------------------------------------------------------------------------- */
 /* Makes room for the tiles of the boundary blocks, and empties them. */

@@ -4,6 +4,7 @@
 
 #include "context/radix.h"
 #include "particles/add.h"
+#include "particles/shared_ids.h"
 #include "particles/thermal.h"
 #include "particles/values.h"
 
@@ -63,10 +64,22 @@ void mpmi_append_default(mpm_particles *set, int32_t field, int64_t begin, int64
       mpmi_f64(set, field, 0)[c * set->ld + s] = mpmi_absent_value(set, field, c, s);
 }
 
-/* Adds up how many the parts before this one add, and how many all do, and finds the number that is free on
- * all parts: a host may have unpacked particles on some. */
+/* Finds the number that is free on all parts, since a host may have unpacked particles on some, and checks
+ * the ids where some part is given ids; so many particles of all parts are numbered from there on. */
+static mpm_status meet_others(mpm_particles *set, int64_t n, const int64_t *ids, int64_t numbered,
+                              int64_t *free_id) {
+  int64_t word[2] = {*free_id, INT64_MIN};
+  for (int64_t i = 0; i < n && ids; ++i)
+    if (-ids[i] > word[1]) word[1] = -ids[i];
+  const mpm_status status = mpmi_reduce_parts(set->context, MPM_REDUCE_MAX, 2, word);
+  *free_id = word[0];
+  if (status || word[1] == INT64_MIN) return status;
+  return mpmi_check_shared_ids(set, ids ? n : 0, ids, -word[1], word[0], numbered);
+}
+
+/* Adds up how many the parts before this one add, and how many all do. */
 static mpm_status count_others(const mpm_particles *set, int64_t n, mpm_status status, int64_t *before,
-                               int64_t *total, int64_t *free_id) {
+                               int64_t *total) {
   mpm_context *c = set->context;
   const int32_t parts = c->transport.parts, me = c->transport.part;
   const size_t bytes = mpmi_bytes(parts, sizeof(int64_t));
@@ -74,7 +87,6 @@ static mpm_status count_others(const mpm_particles *set, int64_t n, mpm_status s
   if (!all && !status) status = MPM_E_NOMEM;
   status = mpmi_agree(c, status);
   if (!status) status = mpmi_gather_parts(c, n, all);
-  if (!status) status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 1, free_id);
   *before = *total = 0;
   for (int32_t r = 0; r < parts && !status; ++r) {
     if (r < me) *before += all[r];
@@ -84,12 +96,12 @@ static mpm_status count_others(const mpm_particles *set, int64_t n, mpm_status s
   return status;
 }
 
-mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, mpm_status status,
+mpm_status mpmi_number(mpm_particles *set, int64_t n, const int64_t *ids, mpm_status status,
                        mpmi_numbers *out) {
   int64_t before = 0, total = n;
   out->first = set->next_id;
-  if (!mpmi_is_whole(set->context) &&
-      (status = count_others(set, ids ? 0 : n, status, &before, &total, &out->first)))
+  if (!mpmi_is_whole(set->context) && ((status = count_others(set, ids ? 0 : n, status, &before, &total)) ||
+                                       (status = meet_others(set, n, ids, total, &out->first))))
     return status;
   if (status) return status;
   if (total > INT64_MAX - out->first)

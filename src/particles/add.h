@@ -17,7 +17,7 @@ int64_t mpmi_append_begin(mpm_particles *set, int64_t n);
 typedef struct mpmi_numbers {
   int64_t first, next; /* the number of the first one here; the next that is free on all parts afterwards */
 } mpmi_numbers;
-mpm_status mpmi_number(const mpm_particles *set, int64_t n, const int64_t *ids, mpm_status status,
+mpm_status mpmi_number(mpm_particles *set, int64_t n, const int64_t *ids, mpm_status status,
                        mpmi_numbers *out);
 /* Writes what follows from these fields and makes the slots particles. Without ids they are numbered from
  * first_id on. The caller sets next_id. */

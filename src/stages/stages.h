@@ -93,6 +93,10 @@ mpm_status mpmi_surfaces_load(mpmi_step *step, double t);
 mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses);
 /* Does the same, and adds the forces to the sums that particles have made there. */
 mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
+/* Returns the first of the nodes around a marker that take something, or -1. */
+int64_t mpmi_marker_first_slot(const mpm_surface *surface, int64_t marker);
+/* Returns 1 on the one part that tells the others of a marker: it owns that node. */
+int32_t mpmi_owns_marker(const mpmi_step *step, const mpm_surface *surface, int64_t marker);
 /* Refuses loads that no node of any part would take, on all parts alike (collective). */
 mpm_status mpmi_surfaces_carried(mpmi_step *step);
 /* Stretches all markers with the velocities of these nodes, from what they were at the start of the step, and
@@ -101,8 +105,8 @@ mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from);
 /* Finds all forces per present area in fixed directions on a marker. */
 void mpmi_marker_tractions(const mpm_surface *surface, int64_t marker, double *traction);
 /* Moves all markers with the velocities of these nodes, and splits those that have become too long
- * (collective). */
-mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from);
+ * (collective). meets: parts know the outcome of contact on nodes in their own tiles alone. */
+mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from, int32_t meets);
 
 /* ---- motion.c ---------------------------------------------------------------------------------------- */
 /* Returns 1 when a position beyond a face on axis k stands on a wall, and puts it there: by rounding, or

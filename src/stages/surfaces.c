@@ -150,6 +150,7 @@ typedef struct surface_job {
   mpmi_step *step;
   mpm_surface *surface;
   const mpmi_nodal *nodes;
+  int32_t told; /* of several parts: the velocities are those that parts have told */
 } surface_job;
 
 /* ---- forces on nodes ----------------------------------------------------------------------------------- */
@@ -191,8 +192,7 @@ static void give_surface(const surface_job *job) {
       if (s->around.slot[n] >= 0) give_node(job, s->around.slot[n], s->next.at[i].force, s->around.weight[n]);
 }
 
-/* Returns the first of the nodes around a marker that take something, or -1. */
-static int64_t first_slot(const mpm_surface *s, int64_t marker) {
+int64_t mpmi_marker_first_slot(const mpm_surface *s, int64_t marker) {
   for (int64_t n = marker * s->around.nodes; n < (marker + 1) * s->around.nodes; ++n)
     if (s->around.slot[n] >= 0) return s->around.slot[n];
   return -1;
@@ -204,7 +204,7 @@ static mpm_status check_carried(mpmi_step *step, const mpm_surface *s, const int
   for (int64_t i = 0; i < s->next.count; ++i) {
     const mpmi_marker *m = &s->next.at[i];
     if (!(fabs(m->force[0]) + fabs(m->force[1]) + fabs(m->force[2]) > 0.0)) continue;
-    if (carried ? !carried[i] : first_slot(s, i) < 0)
+    if (carried ? !carried[i] : mpmi_marker_first_slot(s, i) < 0)
       return fail_marker(step, MPM_E_STATE, s, m, "has a load and no material around it");
   }
   return MPM_OK;
@@ -225,7 +225,7 @@ mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to) {
   const mpmi_surfaces *list = &step->settings->surfaces;
   const mpm_status status = mpmi_surfaces_find(step, to);
   for (int64_t i = 0; i < list->count && !status; ++i) {
-    const surface_job job = {step, list->surface[i], to};
+    const surface_job job = {step, list->surface[i], to, 0};
     give_surface(&job);
   }
   return status;
@@ -235,8 +235,8 @@ mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to) {
 /* All parts have all markers. Who has a node in a tile of its own knows all nodes around markers beside it,
  * and the forces of all markers there: the part that owns the first node around a marker tells the others
  * how it moves. */
-static int32_t owns_marker(const mpmi_step *step, const mpm_surface *s, int64_t marker) {
-  const int64_t slot = first_slot(s, marker);
+int32_t mpmi_owns_marker(const mpmi_step *step, const mpm_surface *s, int64_t marker) {
+  const int64_t slot = mpmi_marker_first_slot(s, marker);
   return slot >= 0 && mpmi_owns_node(step->layout->parts, slot);
 }
 
@@ -246,7 +246,7 @@ mpm_status mpmi_surfaces_carried(mpmi_step *step) {
   for (int64_t i = 0; i < list->count && !status && step->layout->parts; ++i) {
     const mpm_surface *s = list->surface[i];
     if (!s->next.count) continue;
-    for (int64_t k = 0; k < s->next.count; ++k) s->told[k] = owns_marker(step, s, k);
+    for (int64_t k = 0; k < s->next.count; ++k) s->told[k] = mpmi_owns_marker(step, s, k);
     status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, s->next.count, s->told);
     if (!status) status = check_carried(step, s, s->told);
   }
@@ -254,22 +254,36 @@ mpm_status mpmi_surfaces_carried(mpmi_step *step) {
 }
 
 /* ---- motion -------------------------------------------------------------------------------------------- */
+/* Finds the velocity of one of the nodes around a marker with which markers move. */
+static void velocity_of(const surface_job *job, int64_t node, double *velocity) {
+  const mpmi_settings *settings = job->step->settings;
+  const int64_t slot = job->surface->around.slot[node];
+  const int32_t lags =
+      settings->desc.position_order == 2 && !mpmi_is_implicit(settings) && mpmi_has_increments(job->nodes);
+  if (job->told) {
+    memcpy(velocity, mpmi_surface_told_velocity(job->surface, node), MPMI_MARKER_VECTOR * sizeof *velocity);
+    return;
+  }
+  for (int32_t c = 0; c < settings->grid->dim; ++c) {
+    velocity[c] = mpmi_velocity(job->nodes, slot)[c];
+    if (lags) velocity[c] -= 0.5 * mpmi_increment(job->nodes, slot)[c];
+  }
+}
+
 /* Finds the velocity of the nodes at a marker, and its gradient. */
 static void gather(const surface_job *job, int64_t marker, double *velocity, double L[3][3]) {
   const mpmi_settings *settings = job->step->settings;
   const mpmi_marker_nodes *around = &job->surface->around;
-  const int32_t dim = settings->grid->dim, lags = settings->desc.position_order == 2 &&
-                                                  !mpmi_is_implicit(settings) &&
-                                                  mpmi_has_increments(job->nodes);
+  const int32_t dim = settings->grid->dim;
   memset(velocity, 0, 3 * sizeof *velocity);
   memset(L, 0, 9 * sizeof(double));
   for (int64_t n = marker * around->nodes; n < (marker + 1) * around->nodes; ++n) {
-    const int64_t slot = around->slot[n];
-    for (int32_t c = 0; c < dim && slot >= 0; ++c) {
-      double v = mpmi_velocity(job->nodes, slot)[c];
-      if (lags) v -= 0.5 * mpmi_increment(job->nodes, slot)[c];
-      velocity[c] += around->weight[n] * v;
-      for (int32_t k = 0; k < dim; ++k) L[c][k] += v * around->gradient[n * dim + k];
+    double v[3];
+    if (around->slot[n] < 0) continue;
+    velocity_of(job, n, v);
+    for (int32_t c = 0; c < dim; ++c) {
+      velocity[c] += around->weight[n] * v[c];
+      for (int32_t k = 0; k < dim; ++k) L[c][k] += v[c] * around->gradient[n * dim + k];
     }
   }
   const double radius = mpmi_marker_place_of(&job->surface->now.at[marker], settings->grid)[0];
@@ -296,21 +310,54 @@ static void tell_task(void *data, int64_t task) {
   const mpmi_share share = mpmi_share_of(job->step->settings, job->surface->next.count, task);
   for (int64_t i = share.begin; i < share.end; ++i) {
     double motion[MPMI_MARKER_MOTION] = {0.0};
-    if (owns_marker(job->step, job->surface, i)) gather(job, i, motion, (double(*)[3])(motion + 3));
+    if (mpmi_owns_marker(job->step, job->surface, i)) gather(job, i, motion, (double(*)[3])(motion + 3));
     memcpy(&job->surface->told[MPMI_MARKER_MOTION * i], motion, sizeof motion);
   }
 }
 
-/* Lets all parts know how all markers move: of each marker one part adds its bits to zeros. */
-static mpm_status tell(mpmi_step *step, const mpmi_nodal *from) {
+/* Adds up what a surface that prescribes has given to the nodes, as parts have told it. */
+static void take_impulses(const mpmi_step *step, mpm_surface *s) {
+  for (int64_t k = 0; k < s->next.count; ++k)
+    for (int64_t n = k * s->around.nodes; n < (k + 1) * s->around.nodes; ++n) {
+      double impulse[MPMI_MARKER_VECTOR];
+      memcpy(impulse, mpmi_surface_told_impulse(s, n), sizeof impulse);
+      mpmi_surface_impulse_add(s, k, impulse, step->velocity_dt);
+    }
+}
+
+/* Lets all parts know the velocities of the nodes around markers, each from the part that owns it. */
+static mpm_status tell_velocities(const surface_job *job) {
+  const mpm_surface *s = job->surface;
+  const int64_t nodes = s->next.count * s->around.nodes;
+  for (int64_t n = 0; n < nodes; ++n) {
+    double v[MPMI_MARKER_VECTOR] = {0.0, 0.0, 0.0};
+    if (s->around.slot[n] >= 0 && mpmi_owns_node(job->step->layout->parts, s->around.slot[n]))
+      velocity_of(job, n, v);
+    memcpy(mpmi_surface_told_velocity(s, n), v, sizeof v);
+  }
+  return mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, MPMI_MARKER_VECTOR * nodes,
+                           mpmi_surface_told_velocity(s, 0));
+}
+
+/* Lets all parts know how all markers move: of each marker one part adds its bits to zeros; and what a surface
+ * that prescribes has given. */
+static mpm_status tell(mpmi_step *step, const mpmi_nodal *from, int32_t meets) {
   const mpmi_settings *settings = step->settings;
   mpm_status status = MPM_OK;
   for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
-    surface_job job = {step, settings->surfaces.surface[i], from};
-    if (!job.surface->next.count) continue;
+    surface_job job = {step, settings->surfaces.surface[i], from, 0};
+    mpm_surface *s = job.surface;
+    if (!s->next.count) continue;
+    if (meets && (status = tell_velocities(&job))) return status;
+    job.told = meets;
     mpmi_parallel_for_sure(settings->context, settings->tasks, tell_task, &job);
+    status =
+        mpmi_reduce_parts(settings->context, MPM_REDUCE_SUM, MPMI_MARKER_MOTION * s->next.count, s->told);
+    if (status || !mpmi_surface_prescribes(s)) continue;
     status = mpmi_reduce_parts(settings->context, MPM_REDUCE_SUM,
-                               MPMI_MARKER_MOTION * job.surface->next.count, job.surface->told);
+                               MPMI_MARKER_VECTOR * s->next.count * s->around.nodes,
+                               mpmi_surface_told_impulse(s, 0));
+    if (!status) take_impulses(step, s);
   }
   return status;
 }
@@ -340,7 +387,7 @@ mpm_status mpmi_surfaces_stretch(mpmi_step *step, const mpmi_nodal *from) {
   const mpmi_settings *settings = step->settings;
   mpm_status status = MPM_OK;
   for (int64_t i = 0; i < settings->surfaces.count && !status; ++i) {
-    surface_job job = {step, settings->surfaces.surface[i], from};
+    surface_job job = {step, settings->surfaces.surface[i], from, 0};
     status = mpmi_run_tasks(settings, 0, settings->tasks, stretch_task, &job);
     if (!status) status = load_surface(step, job.surface);
   }
@@ -416,11 +463,11 @@ static mpm_status move_surface(surface_job *job) {
   return mpmi_markers_split(settings->context, s->grid, &s->next, s->desc.max_spacing, 1);
 }
 
-mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from) {
+mpm_status mpmi_surfaces_move(mpmi_step *step, const mpmi_nodal *from, int32_t meets) {
   const mpmi_surfaces *list = &step->settings->surfaces;
-  mpm_status status = step->layout->parts ? tell(step, from) : MPM_OK;
+  mpm_status status = step->layout->parts ? tell(step, from, meets) : MPM_OK;
   for (int64_t i = 0; i < list->count && !status; ++i) {
-    surface_job job = {step, list->surface[i], from};
+    surface_job job = {step, list->surface[i], from, 0};
     status = move_surface(&job);
   }
   return status;

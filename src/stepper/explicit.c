@@ -24,11 +24,18 @@ static mpm_status deform(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
   return status;
 }
 
+/* Returns 1 where the strain of USF needs to know which contacts are closed. Of several parts one alone may
+ * have nodes on a wall. */
+static int32_t finds_contacts_first(const mpmi_step *step, const mpmi_nodes *nodes) {
+  const int32_t on_walls = step->layout->parts ? mpmi_has_friction_nodes(step->settings)
+                                               : step->layout->constraints.contact_count > 0;
+  return on_walls || nodes->contact.anywhere;
+}
+
 /* Strains the particles of USF by the velocities at the start of the step. */
 static mpm_status deform_first(mpmi_step *step, mpmi_nodes *nodes, double *clock) {
   mpm_status status = MPM_OK;
-  if (step->layout->constraints.contact_count || nodes->contact.anywhere)
-    status = project(step, nodes, MPMI_PROJECT_CONTACT, clock);
+  if (finds_contacts_first(step, nodes)) status = project(step, nodes, MPMI_PROJECT_CONTACT, clock);
   if (!status) status = project(step, nodes, MPMI_PROJECT_STRAIN, clock);
   return status ? status : deform(step, nodes, clock);
 }
@@ -77,7 +84,8 @@ mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes) {
 }
 
 mpm_status mpmi_explicit_move_surfaces(mpmi_step *step, mpmi_nodes *nodes) {
-  return mpmi_surfaces_move(step, mpmi_moves_last(step->settings) ? &nodes->projected : &nodes->solved);
+  return mpmi_surfaces_move(step, mpmi_moves_last(step->settings) ? &nodes->projected : &nodes->solved,
+                            nodes->contact.anywhere);
 }
 
 /* ---- how many sums on nodes that makes ---------- */
@@ -103,7 +111,7 @@ int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, 
   int64_t count = of_projection(step, nodes, MPMI_PROJECT_FORCES) - holds;
   count += placing(step, nodes);
   if (settings->desc.scheme == MPM_USF) count += of_projection(step, nodes, MPMI_PROJECT_STRAIN) + strain;
-  if (settings->desc.scheme == MPM_USF && nodes->contact.anywhere)
+  if (settings->desc.scheme == MPM_USF && finds_contacts_first(step, nodes))
     count += of_projection(step, nodes, MPMI_PROJECT_CONTACT);
   if (phase == MPMI_BEGUN) return count;
   count += holds; /* they are found with the conditions of the nodes */
@@ -114,11 +122,31 @@ int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, 
   return count;
 }
 
-void mpmi_explicit_gathers(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_parts *parts) {
-  parts->gathers = parts->gather_count = parts->gathers_due = 0;
-  if (!nodes->contact.anywhere || !mpmi_has_free_obstacles(step->settings)) return;
-  if (step->settings->desc.scheme == MPM_USF)
-    parts->gather_at[parts->gather_count++] =
-        placing(step, nodes) + of_projection(step, nodes, MPMI_PROJECT_CONTACT);
-  parts->gather_at[parts->gather_count++] = mpmi_explicit_exchanges(step, nodes, MPMI_SOLVED);
+/* Notes that a projection is there, after so many exchanges. */
+static void note_accord(const mpmi_step *step, const mpmi_nodes *nodes, int64_t after, int32_t phase,
+                        int32_t finds) {
+  mpmi_parts *parts = step->layout->parts;
+  const mpmi_accord accord = {after, phase,
+                              finds && nodes->contact.anywhere && mpmi_has_free_obstacles(step->settings),
+                              mpmi_has_friction_nodes(step->settings)};
+  if (accord.gathers || accord.sweeps) parts->accord[parts->accord_count++] = accord;
+}
+
+void mpmi_explicit_accords(const mpmi_step *step, const mpmi_nodes *nodes) {
+  const int32_t scheme = step->settings->desc.scheme;
+  mpmi_parts *parts = step->layout->parts;
+  int64_t after = placing(step, nodes);
+  parts->accords = parts->accord_count = parts->accords_due = parts->has_gathered = 0;
+  if (scheme == MPM_USF) {
+    if (finds_contacts_first(step, nodes)) {
+      after += of_projection(step, nodes, MPMI_PROJECT_CONTACT);
+      note_accord(step, nodes, after, MPMI_BEGUN, 1);
+    }
+    note_accord(step, nodes, after + of_projection(step, nodes, MPMI_PROJECT_STRAIN), MPMI_BEGUN, 0);
+  }
+  after = mpmi_explicit_exchanges(step, nodes, MPMI_SOLVED);
+  note_accord(step, nodes, after, MPMI_SOLVED, 1);
+  if (scheme != MPM_MUSL) return;
+  after = mpmi_explicit_exchanges(step, nodes, MPMI_IDLE) - (step->settings->desc.locking_remedy != 0);
+  note_accord(step, nodes, after, MPMI_IDLE, 0);
 }

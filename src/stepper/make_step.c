@@ -32,11 +32,18 @@ static mpm_status enter(mpm_stepper *s, mpm_status status, double dt) {
   return mpmi_together_begin(s, status, 3, name, number);
 }
 
+/* Returns 1 for what is done by the time that a step has come to a phase; MPMI_IDLE: to its end. */
+static int32_t is_due(int32_t of, int32_t phase) {
+  return phase == MPMI_IDLE || (of != MPMI_IDLE && of <= phase);
+}
+
 /* Returns how many sums on nodes parts have exchanged when a step has come to this phase. */
 static int64_t exchanges_to(const mpm_stepper *s, int32_t phase) {
   if (!mpmi_is_shared(s)) return 0;
-  mpmi_parts *parts = s->layout.parts; /* the last gather is that of the grid's part */
-  parts->gathers_due = parts->gather_count - (parts->gather_count && phase == MPMI_BEGUN);
+  mpmi_parts *parts = s->layout.parts;
+  parts->accords_due = 0;
+  while (parts->accords_due < parts->accord_count && is_due(parts->accord[parts->accords_due].phase, phase))
+    ++parts->accords_due;
   if (mpmi_is_implicit(&s->settings)) return 0; /* there the last vote has counted */
   return mpmi_explicit_exchanges(&s->step, &s->nodes, phase);
 }
@@ -116,7 +123,7 @@ static mpm_status prepare_together(mpm_stepper *s) {
   const mpm_status status = mpmi_together_ready(s, prepare(s));
   if (status) return status;
   const mpm_status touching = mpmi_together_touching(s);
-  if (mpmi_is_shared(s)) mpmi_explicit_gathers(&s->step, &s->nodes, s->layout.parts);
+  if (mpmi_is_shared(s)) mpmi_explicit_accords(&s->step, &s->nodes);
   return touching;
 }
 
@@ -127,8 +134,9 @@ static mpm_status conduct(mpm_stepper *s) {
   if (status) return status;
   int64_t exchanges = mpmi_heat_exchanges(&s->step, &s->history.heat);
   status = mpmi_heat_begin(&s->step, s->heat, &s->history.heat);
-  /* iterations have exchanges of their own, as many on all parts */
-  if (implicit && (status = mpmi_together_end(s, status, exchanges))) return status;
+  /* iterations have exchanges of their own, as many on all parts, and so have surfaces that heat */
+  const int32_t votes = implicit || mpmi_heat_has_surfaces(&s->settings);
+  if (votes && (status = mpmi_together_end(s, status, exchanges))) return status;
   if (!status) status = mpmi_heat_end(&s->step, s->heat, &s->history.heat);
   if (implicit && mpmi_is_shared(s)) exchanges = s->layout.parts->exchanges;
   status = mpmi_together_end(s, status, exchanges);

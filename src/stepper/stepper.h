@@ -155,8 +155,8 @@ mpm_status mpmi_explicit_grid(mpmi_step *step, mpmi_nodes *nodes);
 /* Returns how many sums on nodes an explicit step has made when it has come to a phase; MPMI_IDLE: to its
  * end. */
 int64_t mpmi_explicit_exchanges(const mpmi_step *step, const mpmi_nodes *nodes, int32_t phase);
-/* Finds when in the step parts gather the meetings that free obstacles couple. */
-void mpmi_explicit_gathers(const mpmi_step *step, const mpmi_nodes *nodes, mpmi_parts *parts);
+/* Finds when in the step parts settle contact together. */
+void mpmi_explicit_accords(const mpmi_step *step, const mpmi_nodes *nodes);
 /* Brings nodes back to particles. USL: everything from the updated nodal velocity. MUSL: L from the velocity
  * that the new particles give the nodes. USF has its strain already. */
 mpm_status mpmi_explicit_end(mpmi_step *step, mpmi_nodes *nodes);

@@ -80,11 +80,11 @@ static mpm_status reserve(mpm_surface *s) {
   const int32_t asks = s->traction || (s->velocity && prescribes);
   if (!status && asks) status = MPMI_RESERVE_MORE(c, s->batch_id, s->id_capacity, n);
   if (!status && asks) status = MPMI_RESERVE_MORE(c, s->batch, s->batch_capacity, (5 * dim + 1) * n);
-  if (!status && !mpmi_is_whole(c))
-    status = MPMI_RESERVE_MORE(c, s->told, s->told_capacity, MPMI_MARKER_MOTION * n);
   if (!status && prescribes) status = MPMI_RESERVE_MORE(c, s->aim, s->aim_capacity, n);
   if (!status && prescribes) status = MPMI_RESERVE_MORE(c, s->site, s->site_capacity, n * nodes);
   around->nodes = (int32_t)nodes;
+  if (!status && !mpmi_is_whole(c))
+    status = MPMI_RESERVE_MORE(c, s->told, s->told_capacity, mpmi_surface_told_words(s));
   around->gradient = around->weight + n * nodes;
   around->plain = prescribes ? around->gradient + n * nodes * dim : NULL;
   return status;

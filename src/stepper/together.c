@@ -31,20 +31,10 @@ static const char *not_implicit(const mpm_stepper *s, const char **instead) {
 mpm_status mpmi_together_offers(mpm_stepper *s) {
   const mpmi_settings *settings = &s->settings;
   const char *what = NULL, *instead = "a context without a transport";
-  int32_t adapts = 0, nodes = 0;
+  int32_t adapts = 0;
   if (!mpmi_is_shared(s)) return MPM_OK;
   for (int32_t m = 0; m < s->layout.member_count; ++m)
     adapts |= m < s->adaption_capacity && s->adaption[m].on;
-  for (int32_t face = 0; face < 2 * s->grid->dim; ++face)
-    nodes |= mpmi_wall_kind_of(settings->wall[face].kind)->rubs == MPMI_RUBS_NODES;
-  if (nodes) what = "MPM_WALL_FRICTION_NODES", instead = "MPM_WALL_FRICTION";
-  for (int64_t i = 0; i < settings->surfaces.count; ++i) {
-    const mpm_surface *surface = settings->surfaces.surface[i];
-    if (mpmi_surface_prescribes(surface))
-      what = "a surface that prescribes", instead = "loads, prescribed particles or velocities of nodes";
-    if (settings->heat.any && (surface->heat.flux != 0.0 || surface->heat.film > 0.0))
-      what = "heat through a surface", instead = "the heat source of a set";
-  }
   if (mpmi_is_implicit(settings) && !what) what = not_implicit(s, &instead);
   if (adapts) what = "adaption";
   return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
@@ -77,6 +67,11 @@ static int64_t fingerprint(const mpm_stepper *s) {
   for (int64_t i = 0; i < settings->obstacles.count; ++i)
     h = fold_word(h, (uint64_t)(64 * settings->obstacles.obstacle[i]->desc.shape +
                                 settings->obstacles.obstacle[i]->desc.motion));
+  for (int64_t i = 0; i < settings->surfaces.count; ++i) {
+    const mpm_surface *surface = settings->surfaces.surface[i];
+    h = fold_word(h, (uint64_t)(4 * surface->desc.prescribes + 2 * (surface->heat.flux != 0.0) +
+                                (surface->heat.film > 0.0)));
+  }
   for (int32_t i = 0; i < 3; ++i) h = fold_word(h, settings->hook[i] != NULL);
   return (int64_t)(fold_word(h, settings->velocity_bc != NULL) >> 2);
 }
@@ -137,7 +132,7 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   if (word[8] != ~word[9])
     return mpmi_fail(c, MPM_E_STATE,
                      "the stepper is set up otherwise on another part: give it the same description, walls, "
-                     "bodies, obstacles, hooks and velocities of nodes on all");
+                     "bodies, obstacles, surfaces, hooks and velocities of nodes on all");
   if (word[10] != ~word[11])
     return mpmi_fail(c, MPM_E_STATE,
                      "surfaces have other numbers of markers on other parts: all parts have all markers");
@@ -171,11 +166,8 @@ mpm_status mpmi_together_refreshed(mpm_stepper *s, mpm_status status) {
 static mpm_status catch_up(mpm_stepper *s, mpm_status status, int64_t exchanges) {
   mpmi_parts *parts = s->layout.parts;
   while (status && !s->context->apart) {
-    mpmi_arrivals in;
-    if (parts->gathers < parts->gathers_due && parts->gather_at[parts->gathers] == parts->exchanges) {
-      for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->out[r].used = 0;
-      ++parts->gathers;
-      mpmi_parts_exchange(parts, &in);
+    if (parts->accords < parts->accords_due && parts->accord[parts->accords].after == parts->exchanges) {
+      mpmi_accord_break(parts);
     } else if (parts->exchanges < exchanges) {
       mpmi_tiles_send(parts, 8, s->layout.blocks.cover, status);
       mpmi_tiles_receive(parts, 8, status);

@@ -13,6 +13,8 @@
 #include "grid/blocks.h"
 #include "particles/particles.h"
 
+#include <string.h>
+
 /* All members have 8 bytes: saved states hold markers as they are. */
 typedef struct mpmi_marker {
   int64_t id;
@@ -51,8 +53,10 @@ typedef struct mpmi_marker_aim {
   double velocity[3], normal[3], stiffness, curvature[3][3];
 } mpmi_marker_aim;
 
-/* Words in which a part tells the others how a marker moves: velocity and its gradient. */
-enum { MPMI_MARKER_MOTION = 12 };
+/* Words in which a part tells the others how a marker moves: velocity and its gradient. Then, for each of the
+ * nodes around markers, those of its velocity, and of a surface that prescribes those of the impulse that it
+ * had there. */
+enum { MPMI_MARKER_MOTION = 12, MPMI_MARKER_VECTOR = 3 };
 
 /* The impulses of what a surface prescribes, on the material: in the last step, and since it was added. */
 typedef struct mpmi_surface_impulses {
@@ -110,6 +114,27 @@ static inline int32_t mpmi_surfaces_prescribe(const mpmi_surfaces *list) {
 /* Returns where in the grid a marker is: what its weights are made of. */
 static inline const double *mpmi_marker_place_of(const mpmi_marker *marker, const mpm_grid *grid) {
   return mpmi_is_total_lagrangian(grid) ? marker->reference : marker->position;
+}
+
+/* What parts tell each other of a surface: how many words these are; velocity and impulse at one of the nodes
+ * around its markers. */
+static inline int64_t mpmi_surface_told_words(const mpm_surface *s) {
+  const int64_t vectors = (1 + mpmi_surface_prescribes(s)) * s->around.nodes;
+  return s->next.count * (MPMI_MARKER_MOTION + MPMI_MARKER_VECTOR * vectors);
+}
+static inline int64_t *mpmi_surface_told_velocity(const mpm_surface *s, int64_t node) {
+  return s->told + MPMI_MARKER_MOTION * s->next.count + MPMI_MARKER_VECTOR * node;
+}
+static inline int64_t *mpmi_surface_told_impulse(const mpm_surface *s, int64_t node) {
+  return mpmi_surface_told_velocity(s, s->next.count * s->around.nodes + node);
+}
+/* Adds an impulse at one of the nodes around a marker to what the surface and the marker report. */
+static inline void mpmi_surface_impulse_add(mpm_surface *s, int64_t marker, const double *impulse,
+                                            double velocity_dt) {
+  for (int32_t c = 0; c < s->grid->dim; ++c) {
+    s->impulse[c] += impulse[c];
+    s->next.at[marker].reaction[c] += impulse[c] / velocity_dt;
+  }
 }
 
 /* ---- markers.c --------------------------------------------------------------------------------------- */

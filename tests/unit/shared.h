@@ -103,11 +103,18 @@ mpm_status equip_heat(world *w, const scene *is);
 /* A closed surface that loads the material all around a place, and is split as it comes; takes it out. */
 mpm_status add_loads(world *w, double middle, double radius, mpm_surface **out);
 mpm_status drop_loads(world *w, mpm_surface *s);
+/* Adds such a surface without loads. */
+mpm_status add_around(const world *w, mpm_surface *s, double middle, double radius, double spacing);
+/* Mixes what all markers of a surface have. */
+mpm_status mix_markers(const world *w, const mpm_surface *s, uint64_t *hash);
 
 /* Add the cases of shared_options.c, shared_heat.c and shared_surfaces.c. */
 void add_shared_options(Suite *suite);
 void add_shared_heat(Suite *suite);
 void add_shared_surfaces(Suite *suite);
+/* Add the cases of shared_rubbing.c and shared_prescribing.c. */
+void add_shared_rubbing(Suite *suite);
+void add_shared_prescribing(Suite *suite);
 /* Adds the cases of shared_implicit.c. */
 void add_shared_implicit(Suite *suite);
 TCase *shared_calls_case(void);

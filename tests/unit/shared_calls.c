@@ -127,10 +127,106 @@ START_TEST(nodes_are_owned_once) {
 }
 END_TEST
 
+/* ---- ids ----------------------------------------------------------------------------------------------- */
+/* What a part gives: two particles with ids, or without where the first is negative; or nothing. */
+static mpm_status add_some(world *w, int32_t part, const int64_t (*id)[2], int32_t count) {
+  const double x[] = {0.5, 0.52, 0.5, 0.5}, volume[] = {1e-4, 1e-4};
+  const int32_t gives = part < count;
+  return mpm_particles_add(w->set[0], gives ? 2 : 0, x, NULL, volume, NULL,
+                           gives && id[part][0] >= 0 ? id[part] : NULL, NULL);
+}
+
+/* Wants it refused on all parts, and nothing to have changed. */
+static mpm_status refuse_ids(world *w, int32_t part, const int64_t (*id)[2], const char *words) {
+  int64_t before, after;
+  mpm_status status = mpm_particles_total(w->set[0], &before);
+  const mpm_status refused = add_some(w, part, id, 3);
+  const int32_t is_said = strstr(mpm_last_error(w->context), words) != NULL;
+  if (refused != MPM_E_ARG || !is_said)
+    fprintf(stderr, "part %d: %s, %s\n", part, mpm_status_name(refused), mpm_last_error(w->context));
+  if (!status) status = mpm_particles_total(w->set[0], &after);
+  return status || (refused == MPM_E_ARG && is_said && before == after) ? status : MPM_E_INTERNAL;
+}
+
+static mpm_status give_ids(world *w, const scene *is, outcome *found) {
+  int32_t part = 0;
+  int64_t first = 0, last;
+  (void)is, (void)found;
+  mpm_context_part(w->context, &part, NULL);
+  mpm_status status = mpm_step(w->stepper, 1e-5, &w->info);
+  if (!status) status = mpm_particles_total(w->set[0], &first);
+  const int64_t twice[][2] = {{9000, 9004}, {9001, 9003}, {9002, 9003}},
+                used[][2] = {{9000, first - 1}, {9001, 9003}, {9002, 9007}},
+                both[][2] = {{-1, -1}, {first + 1, 9003}, {9002, 9007}},
+                own[][2] = {{9000, 9001}, {9002, 9002}, {9003, 9004}},
+                good[][2] = {{9000, 9007}, {-1, -1}, {20000, 9001}};
+  /* ids of the fill are those below `first`: two parts do not have the last one */
+  for (int32_t turn = 0; turn < 3 && !status; ++turn) {
+    int64_t asked[3][2];
+    for (int32_t r = 0; r < 3; ++r) memcpy(asked[r], used[(r + turn) % 3], sizeof asked[r]);
+    last = mpm_particles_count(w->set[0]);
+    status = refuse_ids(w, part, (const int64_t(*)[2])asked, "is in use");
+    if (last != mpm_particles_count(w->set[0])) status = MPM_E_INTERNAL;
+  }
+  if (!status) status = refuse_ids(w, part, twice, "id 9003 is given twice");
+  if (!status) status = refuse_ids(w, part, both, "is given twice");
+  if (!status) status = refuse_ids(w, part, own, "id 9002 is given twice");
+  if (!status) status = add_some(w, part, good, 3);
+  if (!status) status = refuse_ids(w, part, good, "is in use");
+  if (!status) status = mpm_step(w->stepper, 1e-5, &w->info);
+  if (!status) status = mpm_particles_total(w->set[0], &last);
+  return status || last == first + 6 ? status : MPM_E_INTERNAL;
+}
+
+START_TEST(ids_are_given_once) {
+  scene is = scene_of(2, 2 * WIDE, set_up_body);
+  is.run = give_ids;
+  check_parts(&is, 3);
+}
+END_TEST
+
+/* Memory that runs out on one part changes nothing on any. */
+static void live_adding(int32_t part, const mpm_transport *transport, void *user) {
+  hungry *h = user;
+  world w;
+  const int64_t id[][2] = {{9000, 1}, {9001, 9003}, {9002, 9007}}, gone = 1;
+  memset(&w, 0, sizeof w);
+  w.desc = h->is.desc;
+  w.desc.context.transport = transport;
+  mpm_status status = world_try_open(&w);
+  if (!status) status = set_up_body(&w, &h->is);
+  if (!status && (status = mpm_particles_remove(w.set[0], 1, &gone)) == MPM_E_NOT_FOUND)
+    status = MPM_OK; /* another part has it */
+  const int64_t before = w.memory.calls;
+  if (part == 1 && h->fail_at) w.memory.fail_at = before + h->fail_at;
+  for (int32_t i = 0; i < 2 && !status; ++i) {
+    status = i ? mpm_step(w.stepper, 1e-5, NULL) : add_some(&w, part, id, 3);
+    if (status != MPM_E_NOMEM) continue;
+    ++h->failed[part];
+    status = i ? mpm_step(w.stepper, 1e-5, NULL) : add_some(&w, part, id, 3);
+  }
+  if (part == 1) h->calls = w.memory.calls - before;
+  w.memory.fail_at = 0;
+  if (!status) status = mpm_state_hash(w.stepper, &h->is.found[part].hash);
+  h->is.found[part].status = status;
+  world_try_close(&w);
+  h->memory[part] = w.memory;
+}
+
+START_TEST(memory_runs_out_adding) {
+  static hungry h;
+  memset(&h, 0, sizeof h);
+  h.is = scene_of(2, 2 * WIDE, set_up_body);
+  check_hunger(&h, live_adding);
+}
+END_TEST
+
 TCase *shared_calls_case(void) {
   TCase *tests = tcase_create("calls");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, particles_are_packed, 0, 4);
   tcase_add_loop_test(tests, nodes_are_owned_once, 0, 8);
+  tcase_add_test(tests, ids_are_given_once);
+  tcase_add_test(tests, memory_runs_out_adding);
   return tests;
 }

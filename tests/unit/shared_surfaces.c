@@ -12,8 +12,8 @@ static mpm_status push_by_place(void *user, const mpm_marker_batch *b, double *a
   return MPM_OK;
 }
 
-/* A closed surface around the middle of the body: it lies inside, and its corners come near the outline. */
-static mpm_status add_around(const world *w, mpm_surface *s, double middle, double radius, double spacing) {
+/* It lies inside the body, and its corners come near the outline. */
+mpm_status add_around(const world *w, mpm_surface *s, double middle, double radius, double spacing) {
   if (w->dim == 1) {
     const double x[] = {middle - radius, middle + radius}, area[] = {-1.0, 1.0};
     return mpm_surface_add(s, 2, x, area, NULL);
@@ -57,16 +57,16 @@ mpm_status drop_loads(world *w, mpm_surface *s) {
   return status ? status : mpm_surface_destroy(s);
 }
 
-/* Mixes what all markers have. */
-static mpm_status mix_markers(const world *w, const mpm_surface *s, uint64_t *hash) {
-  static const char *const field[] = {"position", "area",  "displacement",
-                                      "velocity", "force", "reference_area"};
+mpm_status mix_markers(const world *w, const mpm_surface *s, uint64_t *hash) {
+  static const char *const field[] = {"position", "area",     "displacement",  "velocity",
+                                      "force",    "reaction", "reference_area"};
+  enum { VECTORS = 6, FIELDS };
   const int64_t n = mpm_surface_count(s);
   double *value = calloc((size_t)(3 * n + 1), sizeof *value);
   mpm_status status = MPM_OK;
   *hash = *hash * 31 + (uint64_t)n;
-  for (int32_t f = 0; f < 6 && !status; ++f) {
-    const int32_t components = f < 5 ? w->dim : 1;
+  for (int32_t f = 0; f < FIELDS && !status; ++f) {
+    const int32_t components = f < VECTORS ? w->dim : 1;
     status = mpm_surface_get(s, field[f], MPM_F64, components, n, NULL, value);
     for (int64_t i = 0; i < components * n && !status; ++i) {
       uint64_t word;
@@ -213,33 +213,13 @@ START_TEST(loads_fail_together) {
 }
 END_TEST
 
-/* What is not offered is refused in a sentence. */
-static mpm_status ask_for_more(world *w, const scene *is, outcome *found) {
-  mpm_surface *s = NULL;
-  mpm_surface_desc d;
-  mpm_status status = add_loads(w, 0.45, 0.2, &s);
-  (void)is, (void)found;
-  if (!status) status = mpm_surface_desc_init(&d, sizeof d);
-  d.prescribes = MPM_PRESCRIBES_VELOCITY;
-  if (!status) status = mpm_surface_configure(s, &d);
-  if (!status) status = expect(w, 1e-5, MPM_E_UNSUPPORTED, "a surface that prescribes");
-  if (s) drop_loads(w, s);
-  return status;
-}
-
-/* Loads on a body with heat; that surfaces heat is refused. */
+/* Loads on a body with heat. */
 static mpm_status load_warm(world *w, const scene *is, outcome *found) {
   mpm_surface *s = NULL;
-  int32_t parts = 1;
   (void)is;
-  mpm_context_part(w->context, NULL, &parts);
   mpm_status status = add_loads(w, 0.3, 0.2, &s);
   if (!status) status = run_steps(w);
   if (!status) status = mix_markers(w, s, &found->markers);
-  if (!status && parts > 1) {
-    status = mpm_surface_set_heat(s, 10.0, 0.0, 0.0);
-    if (!status) status = expect(w, 1e-5, MPM_E_UNSUPPORTED, "heat through a surface: use the heat source");
-  }
   if (s) drop_loads(w, s);
   return status;
 }
@@ -248,13 +228,6 @@ START_TEST(loads_on_warm_bodies) {
   scene is = warm_scene(96, _i % 2);
   is.run = load_warm;
   check_made(&is, "warm and loaded", 2 + _i);
-}
-END_TEST
-
-START_TEST(refused_surfaces) {
-  scene is = scene_of(2, 48, set_up_body);
-  is.run = ask_for_more;
-  check_parts(&is, 2);
 }
 END_TEST
 
@@ -268,6 +241,5 @@ void add_shared_surfaces(Suite *suite) {
   tcase_add_loop_test(surfaces, markers_fly, 0, 4);
   tcase_add_loop_test(surfaces, loads_fail_together, 0, 4);
   tcase_add_loop_test(surfaces, loads_on_warm_bodies, 0, 4);
-  tcase_add_test(surfaces, refused_surfaces);
   suite_add_tcase(suite, surfaces);
 }

@@ -1,5 +1,5 @@
-/* One problem in several parts has the bits that it has in one: total Lagrangian grids, heat, surfaces and
- * implicit steps, which have a file of their own each. */
+/* One problem in several parts has the bits that it has in one: total Lagrangian grids, heat, surfaces,
+ * implicit steps and friction walls of nodes, which have files of their own. */
 #include "shared.h"
 
 Suite *shared_options_suite(void) {
@@ -8,5 +8,7 @@ Suite *shared_options_suite(void) {
   add_shared_heat(suite);
   add_shared_surfaces(suite);
   add_shared_implicit(suite);
+  add_shared_rubbing(suite);
+  add_shared_prescribing(suite);
   return suite;
 }
