@@ -71,6 +71,7 @@ static void mark_near(const mpmi_contact_search *search, const cloud_basis *basi
 /* A task's clouds of the nodes of a tile, or -1, and by the first node of a stencil how many it meets. */
 typedef struct cloud_tile {
   int32_t *cloud, *meets, *count; /* count: particles by first node of their stencils, then by node */
+  int32_t *before;                /* memory for sums */
   int32_t nodes, any, edge[3];    /* edge: 1 on axes that the grid does not have, which come first */
 } cloud_tile;
 
@@ -92,20 +93,31 @@ static void load_neighbour(const mpmi_contact_nodes *contact, const mpmi_blocks 
       }
 }
 
-/* Adds to the value of each node those of the other nodes of the stencil that begins there, or with ahead 0
- * of the nodes at which stencils begin that have it, along one axis after the other. */
+/* Adds the values of n nodes to those of as many others, four at a time. */
+static void add_nodes(int32_t n, const int32_t *from, int32_t *to) {
+  typedef int32_t four __attribute__((vector_size(16)));
+  int32_t i = 0;
+  for (; i + 4 <= n; i += 4) {
+    four a, b;
+    memcpy(&a, from + i, sizeof a);
+    memcpy(&b, to + i, sizeof b);
+    b += a;
+    memcpy(to + i, &b, sizeof b);
+  }
+  for (; i < n; ++i) to[i] += from[i];
+}
+
+/* Adds to the value of each node at which stencils may begin those of the others of its stencil, or with
+ * ahead 0 to that of each node those of the nodes at which stencils begin that have it, along one axis after
+ * the other. The end of a line goes on in the next one: no stencil begins there, and what stands there does
+ * not count. */
 static void sum_stencils(const cloud_tile *tile, int32_t width, int32_t ahead, int32_t *value) {
   int32_t stride = 1;
   for (int32_t k = 2; k >= 0; stride *= tile->edge[k--]) {
-    const int32_t edge = tile->edge[k];
-    for (int32_t line = 0; line < tile->nodes; line += stride * edge)
-      for (int32_t n = 0; n < edge; ++n) { /* nodes beyond are still as they were */
-        int32_t *at = value + line + (ahead ? n : edge - 1 - n) * stride;
-        for (int32_t r = 1; r < width && r < edge - n; ++r) {
-          const int32_t *from = at + (ahead ? r : -r) * stride;
-          for (int32_t s = 0; s < stride; ++s) at[s] += from[s];
-        }
-      }
+    if (tile->edge[k] == 1) continue;
+    memcpy(tile->before, value, (size_t)tile->nodes * sizeof *value);
+    for (int32_t off = stride; off < width * stride; off += stride)
+      add_nodes(tile->nodes - off, tile->before + (ahead ? off : 0), value + (ahead ? 0 : off));
   }
 }
 
@@ -120,11 +132,12 @@ static cloud_tile load_tile(const cloud_job *job, int64_t block, const cloud_ran
   const int32_t nodes = tile.nodes;
   tile.meets = tile.cloud + nodes;
   tile.count = tile.meets + nodes;
+  tile.before = tile.count + nodes;
   for (int32_t i = 0; i < nodes; ++i) tile.cloud[i] = -1;
   const mpmi_spans spans = mpmi_spans_of_stencil(b, block, job->basis.spread, job->basis.below);
   for (int32_t n = 0; n < b->neighbours; ++n)
     load_neighbour(search->contact, b, block, n, &spans, own, &tile);
-  if (!tile.any) return tile;
+  if (!tile.any || !job->fill) return tile; /* what is counted where there are no clouds is not asked for */
   for (int32_t i = 0; i < nodes; ++i) tile.meets[i] = tile.cloud[i] >= 0;
   sum_stencils(&tile, job->basis.width, 1, tile.meets);
   return tile;
@@ -165,12 +178,12 @@ static void find_stencil(const cloud_particles *of, const mpm_grid *grid, int32_
   axis->width = k < 0 ? 1 : of->width;
   axis->w[0] = 1.0, axis->g[0] = 0.0;
   axis->own = axis->w;
-  for (int32_t a = 0; a < of->width && k >= 0; ++a) axis->w[a] = of->weights->w[k][a][p];
+  if (k < 0) return;
+  for (int32_t a = 0; a < of->width; ++a) axis->w[a] = of->weights->w[k][a][p];
   if (of->own == of->weights) {
-    for (int32_t a = 0; a < of->width && k >= 0; ++a) axis->g[a] = of->own->g[k][a][p];
+    for (int32_t a = 0; a < of->width; ++a) axis->g[a] = of->own->g[k][a][p];
     return;
   }
-  if (k < 0) return;
   axis->own = axis->other;
   for (int32_t a = 0; a < MPMI_MAX_WIDTH; ++a) axis->other[a] = axis->g[a] = 0.0;
   const int32_t skipped = (int32_t)rint(of->own->first[k][p] - of->weights->first[k][p]);
@@ -280,11 +293,11 @@ static void visit_block(const cloud_job *job, int64_t task, int64_t block, const
                                       mpmi_is_axisymmetric(grid) ? mpmi_f64(in.set, MPMI_POSITION, 0) : NULL,
                                   .set = in.set};
       for (int64_t p = 0; p < n; ++p) {
-        if (id[s + p] < 0 || !tile.meets[W.node[p]]) continue;
-        if (job->fill)
-          add_particle(search->contact, &of, grid, p);
-        else
+        if (id[s + p] < 0) continue;
+        if (!job->fill)
           ++tile.count[W.node[p]];
+        else if (tile.meets[W.node[p]])
+          add_particle(search->contact, &of, grid, p);
       }
     }
   }

@@ -54,14 +54,15 @@ typedef struct mpmi_cloud_frame {
 mpmi_cloud_frame mpmi_cloud_frame_of(const mpmi_blocks *b, const mpmi_cloud *cloud);
 
 /* Finds the place of a particle from the node of a cloud, in cells, as the master of the cloud's party sees
- * it. position: of its set. */
+ * it: along one axis, or from the positions of its set along all of them. */
+static inline double mpmi_cloud_coordinate(const mpmi_cloud_frame *of, int32_t k, double position) {
+  double from = position - of->node[k];
+  if (of->period[k] > 0.0) from -= of->period[k] * rint(from / of->period[k]);
+  return from * of->scale[k];
+}
 static inline void mpmi_cloud_place(const mpmi_cloud_frame *of, const double *position, int64_t ld,
                                     int64_t slot, double *x) {
-  for (int32_t k = 0; k < of->dim; ++k) {
-    double from = position[k * ld + slot] - of->node[k];
-    if (of->period[k] > 0.0) from -= of->period[k] * rint(from / of->period[k]);
-    x[k] = from * of->scale[k];
-  }
+  for (int32_t k = 0; k < of->dim; ++k) x[k] = mpmi_cloud_coordinate(of, k, position[k * ld + slot]);
 }
 /* Returns the mean radius of a party's rings at the node, by which areas are those of one radian; else 1. */
 double mpmi_party_radius(const mpmi_layout *layout, const mpmi_contact_nodes *contact,

@@ -16,9 +16,10 @@ typedef struct around {
   const mpmi_party *party[2];
   mpmi_separation points;
   double *x[3], *weight, *half_edge; /* the last: half the edge of the cube that a particle has been */
-  double *along, *off;               /* of the normal that is looked at */
+  double *far;                       /* towards the other party, along the normal that is looked at */
+  double offset;
 } around;
-enum { ROWS = 7, IN_TURN = 4 };
+enum { ROWS = 6, IN_TURN = 4 };
 
 static int64_t party_particles(const mpmi_contact_nodes *contact, const mpmi_party *party) {
   int64_t count = 0;
@@ -31,40 +32,48 @@ static int64_t padded(int64_t count) {
   return (count + MPMI_CHUNK - 1) / MPMI_CHUNK * MPMI_CHUNK;
 }
 
-/* Collects the particles of one party. Equal volumes in a row have equal edges. */
+/* The edges of particles: equal volumes in a row have equal ones. ball: their sum for the discriminant. */
+typedef struct edges_in_turn {
+  double volume, half, ball;
+} edges_in_turn;
+
+/* Collects some particles of one set, in a row from `at` on. */
+static void collect_some(around *of, const mpmi_cloud_frame *frame, const mpm_particles *set,
+                         const mpmi_cloud_entry *entry, int64_t count, int64_t at, edges_in_turn *edges) {
+  for (int32_t k = 0; k < frame->dim; ++k) {
+    const double *position = mpmi_f64(set, MPMI_POSITION, 0) + k * set->ld;
+    for (int64_t e = 0; e < count; ++e)
+      of->x[k][at + e] = mpmi_cloud_coordinate(frame, k, position[entry[e].slot]);
+  }
+  for (int64_t e = 0; e < count; ++e) {
+    const double volume = mpmi_initial_extent(set, entry[e].slot), share = entry[e].volume;
+    if (volume < edges->volume || volume > edges->volume) edges->half = mpmi_half_edge(frame->dim, volume);
+    edges->volume = volume;
+    edges->ball += share * edges->half * edges->half / 3.0;
+    of->weight[at + e] = share;
+    of->half_edge[at + e] = edges->half;
+  }
+}
+
+/* Collects the particles of one party. */
 static void collect(around *of, int32_t which) {
   const mpmi_layout *layout = of->search->step->layout;
   const mpm_grid *grid = layout->blocks.grid;
   const mpmi_contact_nodes *contact = of->search->contact;
   const mpmi_party *party = of->party[which];
-  int64_t at = of->points.first[which], ld = 0;
-  int32_t member = -1;
-  const mpm_particles *set = NULL;
-  const double *position = NULL;
-  double last_volume = -1.0, r = 0.0, ball = 0.0;
+  int64_t at = of->points.first[which];
+  edges_in_turn edges = {.volume = -1.0};
   for (int64_t i = party->first_cloud; i < party->first_cloud + party->cloud_count; ++i) {
     const mpmi_cloud *source = &contact->cloud[contact->cloud[i].source];
     const mpmi_cloud_frame frame = mpmi_cloud_frame_of(&layout->blocks, &contact->cloud[i]);
-    for (int64_t e = source->first; e < source->first + source->count; ++e, ++at) {
+    for (int64_t e = source->first, next, end = e + source->count; e < end; at += next - e, e = next) {
       const mpmi_cloud_entry *entry = &contact->entry[e];
-      if (entry->member != member) {
-        set = mpmi_resident_set(layout, member = entry->member);
-        position = mpmi_f64(set, MPMI_POSITION, 0);
-        ld = set->ld;
-      }
-      const double volume = mpmi_initial_extent(set, entry->slot);
-      double x[3];
-      mpmi_cloud_place(&frame, position, ld, entry->slot, x);
-      for (int32_t k = 0; k < grid->dim; ++k) of->x[k][at] = x[k];
-      of->weight[at] = entry->volume;
-      if (volume < last_volume || volume > last_volume) r = mpmi_half_edge(grid->dim, volume);
-      last_volume = volume;
-      of->half_edge[at] = r;
-      ball += entry->volume * r * r / 3.0;
+      for (next = e + 1; next < end && contact->entry[next].member == entry->member;) ++next;
+      collect_some(of, &frame, mpmi_resident_set(layout, entry->member), entry, next - e, at, &edges);
     }
   }
   for (int32_t k = 0; k < grid->dim; ++k)
-    of->points.ball[which][k] = ball * grid->inverse_spacing[k] * grid->inverse_spacing[k];
+    of->points.ball[which][k] = edges.ball * grid->inverse_spacing[k] * grid->inverse_spacing[k];
   for (; at < of->points.first[which] + of->points.padded[which]; ++at) {
     for (int32_t k = 0; k < grid->dim; ++k) of->x[k][at] = 0.0;
     of->weight[at] = 0.0;
@@ -76,25 +85,28 @@ enum { AT_ONCE = 64 };
 
 /* Lists which of some particles may reach farther than `most`, without a branch that depends on where they
  * are; returns how many there are. */
-static int32_t list_far(const double *along, const double *off, int32_t n, double sign, double half,
-                        double limit, double most, int32_t *list) {
+static int32_t list_far(const double *far, int32_t n, double half, double most, int32_t *list) {
   int32_t count = 0;
   for (int32_t p = 0; p < n; ++p) {
     list[count] = p;
-    count += !(sign * along[p] + half <= most) & !(off[p] > limit);
+    count += far[p] + half > most;
   }
   return count;
 }
 
-/* Returns how far a party reaches along the unit vector n of the projection, or against it for the second
- * one: the largest x . n + R over its particles that are off the line through the node by no more than the
- * limit. most: the same without R. */
-static double extent(const around *of, int32_t which, const double *n, double limit, double most) {
+static double gap_between(const around *of, const double *most) {
+  return -most[0] - most[1] - of->offset;
+}
+
+/* Finds how far a party reaches towards the other one along the unit vector n of the projection: the largest
+ * x . n + R over its particles that are near the line through the node, in the place of the same without R.
+ * It stops where this is known to be enough for a gap no wider than that. */
+static void reach_out(const around *of, int32_t which, const double *n, double enough, double *most) {
   const mpmi_layout *layout = of->search->step->layout;
   const mpm_grid *grid = layout->blocks.grid;
   const mpmi_contact_nodes *contact = of->search->contact;
   const mpmi_party *party = of->party[which];
-  const double half = 0.5 * grid->h_min, sign = which ? -1.0 : 1.0;
+  const double half = 0.5 * grid->h_min;
   int64_t at = of->points.first[which];
   int32_t member = -1, list[AT_ONCE];
   mpmi_widths widths = {0};
@@ -104,33 +116,34 @@ static double extent(const around *of, int32_t which, const double *n, double li
     for (int32_t k = 0; k < grid->dim; ++k) seen[k] = cloud->mirrored >> k & 1 ? -n[k] : n[k];
     for (int64_t e = source->first, left = source->count; left > 0; e += AT_ONCE, left -= AT_ONCE) {
       const int32_t some = left < AT_ONCE ? (int32_t)left : AT_ONCE;
-      const int32_t far_ones = list_far(of->along + at, of->off + at, some, sign, half, limit, most, list);
+      const int32_t far_ones = list_far(of->far + at, some, half, most[which], list);
       for (int32_t l = 0; l < far_ones; ++l) {
-        const double along = sign * of->along[at + list[l]];
+        const double along = of->far[at + list[l]];
         const mpmi_cloud_entry *entry = &contact->entry[e + list[l]];
-        if (along + half <= most) continue;
+        if (along + half <= most[which]) continue;
         if (entry->member != member)
           widths = mpmi_widths_of(mpmi_resident_set(layout, member = entry->member));
         const double edge = of->half_edge[at + list[l]];
         const double far = along + mpmi_half_width(&widths, entry->slot, edge, seen);
-        most = far > most ? far : most;
+        most[which] = far > most[which] ? far : most[which];
       }
+      if (gap_between(of, most) <= enough) return;
       at += some;
     }
   }
-  return most;
 }
 
 /* The gap between all particles of both, or between those near the line through the node; infinite where one
- * of them has none. */
-static double gap_along(const around *of, const double *n, int32_t whole) {
+ * of them has none. One that is no wider than `enough` need not be found: then any other such is returned. */
+static double gap_along(const around *of, const double *n, int32_t whole, double enough) {
   const mpmi_step *step = of->search->step;
   const mpm_grid *grid = step->layout->blocks.grid;
   const double limit = whole || grid->dim == 1 ? (double)INFINITY : MPMI_CONTACT_REACH * MPMI_CONTACT_REACH;
   double most[2];
-  step->settings->kernels->project[grid->dim](&of->points, grid->desc.spacing, n, limit, of->along, of->off,
-                                              most);
-  return -extent(of, 0, n, limit, most[0]) - extent(of, 1, n, limit, most[1]);
+  step->settings->kernels->project[grid->dim](&of->points, grid->desc.spacing, n, limit, of->far, most);
+  for (int32_t which = 0; which < 2 && !(gap_between(of, most) <= enough); ++which)
+    reach_out(of, which, n, enough, most);
+  return gap_between(of, most);
 }
 
 /* ---- normals ------------------------------------------------------------------------------------------- */
@@ -194,8 +207,8 @@ static int32_t plane_normal(around *of, mpmi_touch *touch) {
                              ? grid->h_min
                              : fmax(surely_open * grid->h_min, 2.0 * step->dt * relative_speed(of));
     /* that of all particles is no wider than that of some */
-    double gap = gap_along(of, touch->normal, 0) - touch->rule->offset;
-    if (gap > least) gap = gap_along(of, touch->normal, 1) - touch->rule->offset;
+    double gap = gap_along(of, touch->normal, 0, least);
+    if (gap > least) gap = gap_along(of, touch->normal, 1, least);
     touch->open = gap > least;
     if (touch->open) touch->gap = gap;
   }
@@ -221,7 +234,8 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
   const mpmi_contact_nodes *contact = search->contact;
   const mpm_grid *grid = search->step->layout->blocks.grid;
   around of = {.search = search,
-               .party = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]}};
+               .party = {&contact->party[touch->party[0]], &contact->party[touch->party[1]]},
+               .offset = touch->rule->offset};
   touch->open = touch->ambiguous = 0;
   touch->gap = (double)INFINITY;
   touch->friction = touch->rule->friction;
@@ -236,8 +250,7 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
   for (int32_t k = 0; k < 3; ++k) of.points.x[k] = of.x[k] = memory + k * first;
   of.points.weight = of.weight = memory + 3 * first;
   of.half_edge = memory + 4 * first;
-  of.along = memory + 5 * first;
-  of.off = memory + 6 * first;
+  of.far = memory + 5 * first;
   collect(&of, 0);
   collect(&of, 1);
   double gradient[3], along = 0.0;
@@ -252,7 +265,7 @@ static void find_touch(const mpmi_contact_search *search, mpmi_touch *touch, dou
                 (mpmi_party_radius(search->step->layout, contact, of.party[0]) +
                  mpmi_party_radius(search->step->layout, contact, of.party[1]));
   if (touch->open || touch->rule->kind == MPM_CONTACT_TIED) return;
-  touch->gap = gap_along(&of, touch->normal, 0) - touch->rule->offset;
+  touch->gap = gap_along(&of, touch->normal, 0, -(double)INFINITY);
   if (!mpmi_detects_by_velocity(touch->rule)) touch->open = !(touch->gap <= grid->h_min);
 }
 

@@ -46,6 +46,7 @@ static int64_t visit_site(const mpmi_contact_search *search, const mpmi_site *si
     int64_t bodies = 0, surfaces = 0;
     int32_t counts = 0; /* here, and not only for other parts */
     for (int64_t i = site->blocks.first; i < end; ++i) {
+      if (end - i + bodies + site->near_count < 2) break; /* too few are left for a meeting */
       if (!takes_part(search, i * b->nodes + n)) continue;
       counts |= mpmi_meets_node(search->step->layout->parts, i * b->nodes + n);
       ++bodies;

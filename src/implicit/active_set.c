@@ -13,6 +13,9 @@ static const double slides_by = 1e-3;
 /* One that has changed so often stays closed where it has no way to go, or has no friction in this step:
  * neither can give energy. */
 enum { MOST_CHANGES = 3, MOST_STALLS = 4 };
+/* What a closed touch misses falls by the ratio of the stiffnesses, to a thousandth. Where it is more than
+ * this share, the node is held by other touches too, and resists by more than its own stiffness. */
+static const double slowly = 0.1, harder = 10.0;
 
 /* ---- finding constraints ------------------------------------------------------------------------------- */
 /* Finds the row of a party, or how it moves without one. */
@@ -233,10 +236,16 @@ static int32_t update_touch(const mpmi_balance *balance, mpmi_constraint *of) {
 /* Counts the iterations in which a closed touch has hardly come closer. */
 static void look_after(const mpmi_balance *balance, mpmi_constraint *of) {
   const double now = of->closed ? misses(balance, of) : 0.0;
-  const int32_t stalls = now > MPMI_CONTACT_HOLDS_TO * balance->settings->grid->h_min &&
-                         now > 0.5 * of->missed && of->missed > 0.0;
-  of->stalls = stalls ? of->stalls + 1 : 0;
+  const int32_t yet = now > MPMI_CONTACT_HOLDS_TO * balance->settings->grid->h_min && of->missed > 0.0;
+  of->stalls = yet && now > 0.5 * of->missed ? of->stalls + 1 : 0;
+  of->slow = yet && now > slowly * of->missed;
   of->missed = now;
+}
+
+void mpmi_active_set_harden(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  for (int64_t k = 0; k < newton->constraint_count; ++k)
+    if (newton->constraint[k].slow) newton->constraint[k].stiffness *= harder;
 }
 
 /* Where surfaces squeeze one node from two sides nothing can close both: the touch that misses most among

@@ -76,6 +76,8 @@ void mpmi_active_set_move(mpmi_balance *balance, double share);
 /* Closes and opens touches by the displacements and forces as they are, and bounds friction; returns how many
  * have changed. */
 int64_t mpmi_active_set_update(mpmi_balance *balance);
+/* Makes closed touches stiffer that come closer slowly where all else is in balance. */
+void mpmi_active_set_harden(mpmi_balance *balance);
 /* Returns by how much closed touches miss, as a multiple of what they may. */
 double mpmi_active_set_error(const mpmi_balance *balance);
 /* Tells touches and reports what contact did. MPM_CUT_DT: bodies slid too far for one step. */

@@ -72,6 +72,7 @@ typedef struct mpmi_constraint {
   int32_t changes, slips;    /* how often either has changed */
   int32_t turned, smooth;    /* friction has been turned round; there is none in this step */
   int32_t stalls, gives_way; /* iterations without coming closer; it stays open in this step */
+  int32_t slow;              /* it has come closer, but hardly as it should have */
   double missed;             /* by how much it was not closed in the iteration before */
   int32_t free[3];           /* components in which a party moves by itself */
   double moves[3];           /* relative displacement by what is moved from outside */

@@ -244,13 +244,18 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
   }
 }
 
+/* Tells whether the bound of the residual holds. */
+static int32_t balances(const iteration *it) {
+  const mpm_stepper_desc *d = &it->balance->settings->desc;
+  return it->norm <= d->newton_tolerance_residual * it->scale || it->norm <= d->newton_residual_floor;
+}
+
 /* Tells whether the bounds of eq. 13 and of the residual hold, or the residual is rounding. */
 static int32_t converged(iteration *it, double du, double energy) {
   const mpm_stepper_desc *d = &it->balance->settings->desc;
   it->du_largest = fmax(it->du_largest, du);
   if (it->norm <= noise(it)) return 1;
-  return (it->norm <= d->newton_tolerance_residual * it->scale || it->norm <= d->newton_residual_floor) &&
-         du <= d->newton_tolerance_displacement * it->du_largest &&
+  return balances(it) && du <= d->newton_tolerance_displacement * it->du_largest &&
          energy <= d->newton_tolerance_energy * it->energy_first;
 }
 
@@ -261,6 +266,7 @@ static int32_t settle_contact(iteration *it) {
   const int64_t changed = mpmi_active_set_update(it->balance);
   mpmi_active_set_fold(it->balance);
   find_residual(it);
+  if (!changed && balances(it)) mpmi_active_set_harden(it->balance);
   return !changed && mpmi_active_set_error(it->balance) <= 1.0;
 }
 

@@ -98,12 +98,21 @@ typedef struct mpmi_power {
   double two_to_k, rest;
 } mpmi_power;
 
-MPMI_INLINE mpmi_power mpmi_split_power(double x, double lowest) {
-  double within = x < lowest ? lowest : x > 710.0 ? 710.0 : x; /* keeps a NaN */
+MPMI_INLINE mpmi_power mpmi_split_power_within(double within) {
   double shifted = within * MPMI_LOG2_E + MPMI_ROUNDING_SHIFT, k = shifted - MPMI_ROUNDING_SHIFT;
   double r = (within - k * MPMI_LN2_HIGH) - k * MPMI_LN2_LOW;
   return (mpmi_power){mpmi_from_bits((mpmi_bits_of(shifted) + UINT64_C(1023)) << 52),
                       r + r * r * mpmi_exp_series(r)};
+}
+
+MPMI_INLINE mpmi_power mpmi_split_power(double x, double lowest) {
+  return mpmi_split_power_within(x < lowest ? lowest : x > 710.0 ? 710.0 : x); /* keeps a NaN */
+}
+
+/* exp(x) for -700 <= x <= 700. */
+MPMI_INLINE double mpmi_lane_exp_within(double x) {
+  mpmi_power p = mpmi_split_power_within(x);
+  return p.two_to_k + p.two_to_k * p.rest;
 }
 
 /* exp(x) for x >= -700. */

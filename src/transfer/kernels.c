@@ -40,7 +40,7 @@ BASIS(open_bspline3)
   int32_t KERNEL(discriminate_##dim)(mpmi_separation *);                                                     \
   int32_t KERNEL(fit_##dim)(mpmi_separation *);                                                              \
   void KERNEL(project_##dim)(const mpmi_separation *, const double *, const double *, double, double *,      \
-                             double *, double *);
+                             double *);
 PER_DIM(1)
 PER_DIM(2)
 PER_DIM(3)

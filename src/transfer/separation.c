@@ -86,7 +86,7 @@ MPMI_INLINE void add_chunk(int32_t dim, const mpmi_separation *in, int64_t s, do
     double t = in->plane[3];
     for (int32_t k = 0; k < dim; ++k) t += in->plane[k] * in->x[k][s + p];
     t = mpmi_min(mpmi_max(t, -30.0), 30.0);
-    const double share = 1.0 / (1.0 + mpmi_lane_exp(-t)), of = in->weight[s + p] > 0.0 ? omega : 0.0;
+    const double share = 1.0 / (1.0 + mpmi_lane_exp_within(-t)), of = in->weight[s + p] > 0.0 ? omega : 0.0;
     slope[p] = of * (y - share);
     curvature[p] = of * share * (1.0 - share);
   }
@@ -147,7 +147,7 @@ MPMI_INLINE int32_t fit(int32_t dim, mpmi_separation *io) {
 }
 
 MPMI_INLINE void project(int32_t dim, const mpmi_separation *in, const double *spacing, const double *n,
-                         double limit, double *along, double *off, double *most) {
+                         double limit, double *far, double *most) {
   const mpmi_lanes zero = {0.0}, none = zero - (double)INFINITY;
   double cells[3] = {0.0, 0.0, 0.0}; /* the line, in cells for a unit of length */
   for (int32_t k = 0; k < dim; ++k) cells[k] = n[k] / spacing[k];
@@ -161,10 +161,9 @@ MPMI_INLINE void project(int32_t dim, const mpmi_separation *in, const double *s
         beside += x * x;
       }
       const mpmi_lanes weight = mpmi_lanes_load(in->weight + p);
-      mpmi_lanes_store(along + p, sum);
-      mpmi_lanes_store(off + p, beside);
-      const mpmi_lanes far = mpmi_lanes_select((weight > 0.0) & (beside <= limit), c ? -sum : sum, none);
-      farthest = mpmi_lanes_max(farthest, far);
+      const mpmi_lanes reach = mpmi_lanes_select((weight > 0.0) & (beside <= limit), c ? -sum : sum, none);
+      mpmi_lanes_store(far + p, reach);
+      farthest = mpmi_lanes_max(farthest, reach);
     }
     most[c] = mpmi_lanes_largest(farthest);
   }
@@ -180,10 +179,10 @@ MPMI_INLINE void project(int32_t dim, const mpmi_separation *in, const double *s
     return fit(dim, clouds);                                                                                 \
   }                                                                                                          \
   void KERNEL(project_##dim)(const mpmi_separation *clouds, const double *spacing, const double *n,          \
-                             double limit, double *along, double *off, double *most);                        \
+                             double limit, double *far, double *most);                                       \
   void KERNEL(project_##dim)(const mpmi_separation *clouds, const double *spacing, const double *n,          \
-                             double limit, double *along, double *off, double *most) {                       \
-    project(dim, clouds, spacing, n, limit, along, off, most);                                               \
+                             double limit, double *far, double *most) {                                      \
+    project(dim, clouds, spacing, n, limit, far, most);                                                      \
   }
 SEPARATION(1)
 SEPARATION(2)

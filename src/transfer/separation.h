@@ -17,11 +17,10 @@ typedef struct mpmi_separation {
 /* Each finds the plane and returns 1, or 0 where there is none. The first starts from the clouds, by Fisher's
  * linear discriminant; the second goes on from there, by logistic regression. */
 typedef int32_t (*mpmi_separate_fn)(mpmi_separation *clouds);
-/* Finds of each particle how far it lies along a unit vector n, in units of length, and the square of how
- * far it lies off the line through the node along n, in cells; and of the particles of each cloud that are
- * off by no more than a limit, most[0] how far one of the first cloud lies along n, most[1] one of the second
- * against it. */
+/* Finds of each particle how far it lies towards the other cloud, along a unit vector n or against it for
+ * the second cloud, in units of length: -infinity where the square of how far it lies off the line through
+ * the node along n, in cells, is above a limit. most: of each cloud, the largest of these. */
 typedef void (*mpmi_project_fn)(const mpmi_separation *clouds, const double *spacing, const double *n,
-                                double limit, double *along, double *off, double *most);
+                                double limit, double *far, double *most);
 
 #endif

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Counts the instructions of a particle-step with callgrind and compares with expected.txt, within 3 %: a slower hot path
-# shows on any machine, however loaded. Obstacles that nothing comes near may add 0.5 %. `run.sh update` writes
-# expected.txt instead.
+# shows on any machine, however loaded, and so does slower contact. Obstacles that nothing comes near may add 0.5 %.
+# `run.sh update` writes expected.txt instead.
 set -euo pipefail
 cd "$(dirname "$0")"
 BUILD=${BUILD:-../../build} CC=${CC:-cc}

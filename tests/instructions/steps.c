@@ -12,19 +12,22 @@ typedef struct scene {
   int32_t dim, basis, transfer;
   int32_t cells;     /* of the body on each axis, with two particles on each axis in a cell */
   int32_t obstacles; /* spheres that are far from it */
+  int32_t halves;    /* it is cut in the middle of the last axis: two bodies, which touch all over the cut */
 } scene;
 static const scene scenes[] = {
-    {"3-D quadratic FLIP", 3, MPM_BSPLINE2, MPM_FLIP, 12, 0},
-    {"3-D quadratic APIC_MLS", 3, MPM_BSPLINE2, MPM_APIC_MLS, 12, 0},
-    {"3-D linear FLIP", 3, MPM_LINEAR, MPM_FLIP, 12, 0},
-    {"2-D quadratic FLIP", 2, MPM_BSPLINE2, MPM_FLIP, 48, 0},
-    {"3-D quadratic FLIP, far obstacles", 3, MPM_BSPLINE2, MPM_FLIP, 12, MOST_OBSTACLES}};
+    {"3-D quadratic FLIP", 3, MPM_BSPLINE2, MPM_FLIP, 12, 0, 0},
+    {"3-D quadratic APIC_MLS", 3, MPM_BSPLINE2, MPM_APIC_MLS, 12, 0, 0},
+    {"3-D linear FLIP", 3, MPM_LINEAR, MPM_FLIP, 12, 0, 0},
+    {"2-D quadratic FLIP", 2, MPM_BSPLINE2, MPM_FLIP, 48, 0, 0},
+    {"3-D quadratic FLIP, far obstacles", 3, MPM_BSPLINE2, MPM_FLIP, 12, MOST_OBSTACLES, 0},
+    {"3-D quadratic FLIP, halves in contact", 3, MPM_BSPLINE2, MPM_FLIP, 6, 0, 1}};
 
 typedef struct simulation {
   mpm_context *context;
   mpm_grid *grid;
   mpm_material *material;
-  mpm_particles *body;
+  mpm_particles *set[2];
+  int32_t sets;
   mpm_stepper *stepper;
   mpm_obstacle *obstacle[MOST_OBSTACLES];
 } simulation;
@@ -64,10 +67,25 @@ static mpm_status add_obstacles(simulation *sim, const scene *in) {
   return status;
 }
 
+static mpm_status add_set(simulation *sim, const scene *in, int32_t which) {
+  static const int32_t per_cell[3] = {2, 2, 2};
+  const int32_t last = in->dim - 1;
+  double lower[3], upper[3];
+  for (int32_t k = 0; k < in->dim; ++k) {
+    lower[k] = which && k == last ? in->cells : 0.5 * in->cells;
+    upper[k] = in->halves && !which && k == last ? in->cells : 1.5 * in->cells;
+  }
+  mpm_particles **set = &sim->set[which];
+  mpm_status status = mpm_particles_create(sim->context, sim->grid, sim->material, set);
+  if (!status) status = mpm_particles_fill_box(*set, lower, upper, per_cell, NULL, NULL);
+  if (!status) status = spin(*set, in->dim, in->cells);
+  if (!status) status = mpm_stepper_add(sim->stepper, *set);
+  if (!status && which) status = mpm_stepper_set_body(sim->stepper, *set, which);
+  return status;
+}
+
 static mpm_status set_up(simulation *sim, const scene *in) {
   static const mpm_param elastic[] = {{"E", 1.0}, {"nu", 0.3}, {"density", 1.0}};
-  static const int32_t per_cell[3] = {2, 2, 2};
-  double lower[3], upper[3];
   mpm_context_desc c;
   mpm_grid_desc g;
   mpm_stepper_desc s;
@@ -81,18 +99,14 @@ static mpm_status set_up(simulation *sim, const scene *in) {
   for (int32_t k = 0; k < in->dim; ++k) {
     g.spacing[k] = 1.0;
     g.cells[k] = 4 * in->cells; /* obstacles are beyond the body's blocks */
-    lower[k] = 0.5 * in->cells;
-    upper[k] = 1.5 * in->cells;
   }
   s.transfer = in->transfer;
   mpm_status status = mpm_context_create(&c, &sim->context);
   if (!status) status = mpm_grid_create(sim->context, &g, &sim->grid);
   if (!status) status = mpm_material_create(sim->context, "neo_hookean", elastic, 3, &sim->material);
-  if (!status) status = mpm_particles_create(sim->context, sim->grid, sim->material, &sim->body);
-  if (!status) status = mpm_particles_fill_box(sim->body, lower, upper, per_cell, NULL, NULL);
-  if (!status) status = spin(sim->body, in->dim, in->cells);
   if (!status) status = mpm_stepper_create(sim->context, sim->grid, &s, &sim->stepper);
-  if (!status) status = mpm_stepper_add(sim->stepper, sim->body);
+  sim->sets = 1 + in->halves;
+  for (int32_t m = 0; m < sim->sets && !status; ++m) status = add_set(sim, in, m);
   if (!status) status = add_obstacles(sim, in);
   return status;
 }
@@ -103,10 +117,12 @@ static int run(const scene *in) {
   mpm_status status = set_up(&sim, in);
   for (int32_t i = 0; i < STEPS && !status; ++i) status = mpm_step(sim.stepper, 0.02, &info);
   if (status) fprintf(stderr, "%s: %s\n", in->name, mpm_last_error(sim.context));
-  if (!status) printf("%lld\n", (long long)(STEPS * mpm_particles_count(sim.body)));
+  int64_t particles = 0;
+  for (int32_t m = 0; m < sim.sets; ++m) particles += mpm_particles_count(sim.set[m]);
+  if (!status) printf("%lld\n", (long long)(STEPS * particles));
   mpm_stepper_destroy(sim.stepper);
   for (int32_t i = 0; i < in->obstacles; ++i) mpm_obstacle_destroy(sim.obstacle[i]);
-  mpm_particles_destroy(sim.body);
+  for (int32_t m = 0; m < sim.sets; ++m) mpm_particles_destroy(sim.set[m]);
   mpm_material_destroy(sim.material);
   mpm_grid_destroy(sim.grid);
   mpm_context_destroy(sim.context);

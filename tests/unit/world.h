@@ -172,6 +172,7 @@ struct world {
   uint64_t dice;  /* of the executor */
   host_memory memory;
   mpm_step_info info; /* of the last step */
+  double most_energy; /* of the particles, or given to them and taken, that steps have had */
 };
 
 /* Opens a world of which only desc and memory are set, or goes on where a failed call left it. */
@@ -184,7 +185,7 @@ mpm_status world_try_close(world *w);
 void world_close(world *w); /* closes what is open; no memory is left */
 
 mpm_step_info world_info(const world *w);
-mpm_step_info world_step(world *w, double dt);
+mpm_step_info world_step(world *w, double dt); /* in which contact may give no energy */
 mpm_step_info world_staged_step(world *w, double dt);
 void world_steps(world *w, int32_t n); /* of desc.dt */
 double world_stable_dt(world *w);

@@ -266,6 +266,8 @@ mpm_step_info verify_advance(const verify_world *w, double cfl, double t) {
 mpm_step_info verify_step(const verify_world *w, double dt) {
   mpm_step_info info = {.struct_size = sizeof info};
   verify_ok(w, mpm_step(w->stepper, dt, &info));
+  const double energy = info.kinetic_energy + fabs(info.strain_energy) + fabs(info.external_work_total);
+  if (info.contact_dissipation < -1e-12 * energy) stop("contact gives energy", "");
   return info;
 }
 

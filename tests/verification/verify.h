@@ -96,7 +96,7 @@ void verify_fill_rings(const verify_world *w, mpm_particles *set, const double *
 /* Turns a set about the third axis through the origin, then shifts it. */
 void verify_place(const verify_world *w, mpm_particles *set, double turn, const double *by);
 mpm_step_info verify_advance(const verify_world *w, double cfl, double t); /* to time t by stable steps */
-mpm_step_info verify_step(const verify_world *w, double dt);
+mpm_step_info verify_step(const verify_world *w, double dt); /* ends the program where contact gives energy */
 
 /* What a collision must keep, from the info of its start and of each step. */
 typedef struct verify_laws {
