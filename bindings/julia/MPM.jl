@@ -897,8 +897,8 @@ f(user, op, count, values): @cfunction(f, Int32, (Ptr{Cvoid}, Int32, Int64, Ptr{
 const mpm_reduce_fn = Ptr{Cvoid}
 
 """
-all[parts]: value of each part (collective). Only when particles are added, and when implicit steps number their
-unknowns. Returns as mpm_send_fn.
+all[parts]: value of each part (collective). Only when particles are added or sets adapt, and when implicit steps
+number their unknowns. Returns as mpm_send_fn.
 
 f(user, value, all): @cfunction(f, Int32, (Ptr{Cvoid}, Int64, Ptr{Int64}))
 """

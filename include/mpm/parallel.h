@@ -16,7 +16,7 @@
  * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
  * particles, where each part adds its own and numbers without ids follow those of the parts before;
  * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stepper_heat_info(),
- * mpm_stable_dt(), mpm_stepper_set_balance(), mpm_state_hash(), mpm_state_size(), mpm_state_save() in all
+ * mpm_stable_dt(), mpm_stepper_adapt(), mpm_stepper_set_balance(), mpm_state_hash(), mpm_state_size(), mpm_state_save() in all
  * its forms and mpm_state_load_pieces().
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts: mpm_particles_add() returns MPM_E_ARG where it is not.
@@ -27,10 +27,13 @@
  * Surfaces are made and filled alike on all parts: each part has all markers, and moves them alike.
  * Callbacks of surfaces are asked on every part for all markers and must answer alike.
  *
+ * Sets are described alike on all parts where they adapt. Whether a particle is split or a pair merged, the
+ * part is asked that has their cell: not always the one that has the particle.
+ *
  * Of several parts these are asked for explicit steps, and for implicit ones whose linear systems the
  * library's conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here.
- * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric, and adaption; in implicit
- * steps total Lagrangian grids, bodies other than 0, obstacles, friction walls, surfaces and heat.
+ * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric; in implicit steps total
+ * Lagrangian grids, bodies other than 0, obstacles, friction walls, surfaces and heat.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H
@@ -75,8 +78,8 @@ typedef mpm_status (*mpm_receive_fn)(void *user, int32_t *count, const mpm_messa
 /** values[count] of all parts into each of them (collective). Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_reduce_fn)(void *user, int32_t op, int64_t count, int64_t *values);
 
-/** all[parts]: value of each part (collective). Only when particles are added, and when implicit steps number
- * their unknowns. Returns as mpm_send_fn. */
+/** all[parts]: value of each part (collective). Only when particles are added or sets adapt, and when
+ * implicit steps number their unknowns. Returns as mpm_send_fn. */
 typedef mpm_status (*mpm_gather_fn)(void *user, int64_t value, int64_t *all);
 
 /** Ways between the parts. All are called on the calling thread. Once one has failed, every collective call

@@ -3,15 +3,18 @@
 #ifndef MPMI_ADAPTION_H
 #define MPMI_ADAPTION_H
 
+#include "context/transport.h"
 #include "layout/step.h"
 #include "particles/builtin_fields.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A particle that is split: bit k of `edges` for its edge k. */
 typedef struct mpmi_splitting {
   int64_t id, slot;
   int32_t edges;
+  int64_t before; /* so many particles come of those with lower ids that are split, on all parts */
 } mpmi_splitting;
 
 /* Returns how many particles come of one whose edges are halved. */
@@ -33,11 +36,30 @@ typedef struct mpmi_adaption_sums {
   double kinetic, affine, strain, angular[3];
 } mpmi_adaption_sums;
 
+/* The sums of an adaption that are no counts, as they are made. */
+enum { MPMI_LOST_KINETIC, MPMI_LOST_AFFINE, MPMI_LOST_STRAIN, MPMI_LOST_ANGULAR, MPMI_LOST = 6 };
+
+/* A particle of another part, of which this one has a copy: where it is. */
+typedef struct mpmi_stray {
+  int32_t part;
+  int64_t slot;
+} mpmi_stray;
+
 /* How a set adapts, and what is about to be done to it. */
 typedef struct mpmi_adaption {
-  int32_t on;
+  int32_t on, planned;
   mpm_adaption_desc desc;
   mpmi_adaption_sums sums; /* since it was first described, or the time was set */
+  mpmi_whole_sum lost[MPMI_LOST];
+  int64_t added, split_total, pair_total; /* on all parts: particles that come, those that are split, pairs */
+  int64_t own;                            /* slots of the set: copies of particles of other parts follow */
+  int64_t strays, stray_capacity;
+  mpmi_stray *stray;
+  int64_t gone_count, gone_capacity; /* slots of particles that go, merged with others on another part */
+  int64_t *gone;
+  int32_t skips; /* particles are left out that are `away`, by slot: others choose for them */
+  uint8_t *away;
+  int64_t away_capacity;
   mpmi_splitting *split;
   int64_t splits, split_capacity;
   mpmi_merging *pair;
@@ -75,8 +97,39 @@ static inline int32_t mpmi_keeps_velocity(const mpm_particles *set, int64_t slot
 
 void mpmi_adaption_free(mpmi_adaption *a, mpm_context *context);
 
+/* A set that adapts, member m of a stepper: from the state in `copy`, at time t. step: that makes it, or
+ * NULL. */
+typedef struct mpmi_adapting {
+  mpmi_adaption *a;
+  mpm_particles *set;
+  mpmi_parts *parts; /* NULL: there is one */
+  const mpmi_settings *settings;
+  const mpmi_step *step;
+  int32_t m, copy;
+  double t;
+} mpmi_adapting;
+
+/* Finds and computes all that is to be done, and makes room for it, on all parts or none (collective). */
+mpm_status mpmi_adaption_plan(const mpmi_adapting *of);
+/* Does the same where there are several parts (strays.c). */
+mpm_status mpmi_adaption_plan_together(const mpmi_adapting *of);
+
+/* Returns the cell along an axis in which a position is. */
+static inline int64_t mpmi_cell_along(const mpm_grid *grid, int32_t axis, double x) {
+  const double at = floor((x - grid->desc.origin[axis]) * grid->inverse_spacing[axis]);
+  const double last = (double)grid->desc.cells[axis] - 1.0;
+  return (int64_t)(at > last ? last : at > 0.0 ? at : 0.0);
+}
+/* Returns 1 for particles, but not for those that an open wall lets go: they are not there any more once the
+ * step is made. */
+int32_t mpmi_adapts_slot(const mpm_particles *set, int32_t copy, int64_t slot);
 /* Finds what is to be done: fills in the lists, in the order of ids (choose.c). */
 mpm_status mpmi_adaption_choose(mpmi_adaption *a, const mpm_particles *set, int32_t copy);
+/* Finds how many particles come before those of each that is split, and how many there are on all parts
+ * (ranks.c, collective). */
+mpm_status mpmi_adaption_rank(const mpmi_adapting *of, int64_t *total);
+/* Ends the list, which has ranks, where the set would get too large; it has so many on all parts. */
+void mpmi_adaption_limit(const mpmi_adapting *of, int64_t particles);
 /* Computes what pairs become, and drops pairs that are not alike by the law or that it refuses (merge.c). */
 mpm_status mpmi_adaption_merge_states(mpmi_adaption *a, const mpm_particles *set, int32_t copy, double t);
 /* Asks the host, whose answers thin out the lists (accept.c). */
@@ -86,9 +139,9 @@ void mpmi_keep_merging(mpmi_adaption *a, const mpm_particles *set, int64_t i, in
 /* Makes room for the particles that come, in both copies where `copy` is 1 (split.c). */
 mpm_status mpmi_adaption_reserve(const mpmi_adaption *a, mpm_particles *set, int32_t copy);
 
-/* Do it to the present state (split.c, merge.c). */
-void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set);
+/* Do it to the present state (split.c, merge.c): first pairs, for new particles take the place of copies. */
 void mpmi_adaption_merge(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set);
+void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set);
 
 /* ---- momenta.c ---------------------------------------------------------------------------------------- */
 /* A particle's motion, with the matrix that the transfer carries and the second moments of the basis
@@ -103,7 +156,7 @@ void mpmi_write_motion(const mpmi_settings *settings, mpm_particles *set, int64_
                        const mpmi_motion_of *motion);
 /* Adds a particle's energies and its angular momentum about a centre, times sign, to what is lost. */
 void mpmi_count_motion(const mpm_grid *grid, const mpmi_motion_of *motion, const double *centre, double sign,
-                       mpmi_adaption_sums *sums);
+                       mpmi_whole_sum *lost);
 
 /* Doubles of a merged particle: F, stress, state. */
 static inline int64_t mpmi_merged_rows(const mpm_particles *set) {

@@ -21,6 +21,9 @@ void mpmi_adaption_free(mpmi_adaption *a, mpm_context *context) {
   MPMI_FREE_ARRAY(context, a->key, a->key_capacity);
   MPMI_FREE_ARRAY(context, a->order, a->order_capacity);
   MPMI_FREE_ARRAY(context, a->taken, a->taken_capacity);
+  MPMI_FREE_ARRAY(context, a->stray, a->stray_capacity);
+  MPMI_FREE_ARRAY(context, a->gone, a->gone_capacity);
+  MPMI_FREE_ARRAY(context, a->away, a->away_capacity);
   *a = (mpmi_adaption){0};
 }
 
@@ -38,25 +41,24 @@ double mpmi_edge_in_cells(const mpm_grid *grid, const double *edge) {
 static uint64_t cell_of(const choice *c, int64_t slot) {
   const mpm_grid *grid = c->set->grid;
   uint64_t cell = 0;
-  for (int32_t k = 0; k < grid->dim; ++k) {
-    const double x = c->x[k][slot];
-    double at = floor((x - grid->desc.origin[k]) * grid->inverse_spacing[k]);
-    const double last = (double)grid->desc.cells[k] - 1.0;
-    at = at > last ? last : at > 0.0 ? at : 0.0;
-    cell = cell * (uint64_t)grid->desc.cells[k] + (uint64_t)at;
-  }
+  for (int32_t k = 0; k < grid->dim; ++k)
+    cell = cell * (uint64_t)grid->desc.cells[k] + (uint64_t)mpmi_cell_along(grid, k, c->x[k][slot]);
   return cell;
 }
 
-/* Particles that an open wall lets go are not there any more once the step is made. */
-static int32_t is_inside(const choice *c, int64_t slot) {
-  const mpm_grid *grid = c->set->grid;
-  int32_t inside = mpmi_i64(c->set, MPMI_ID, 0)[slot] >= 0;
+int32_t mpmi_adapts_slot(const mpm_particles *set, int32_t copy, int64_t slot) {
+  const mpm_grid *grid = set->grid;
+  int32_t inside = mpmi_i64(set, MPMI_ID, 0)[slot] >= 0;
   for (int32_t k = 0; k < grid->dim && inside; ++k) {
-    const double x = c->x[k][slot];
+    const double x = mpmi_row_of(set, MPMI_POSITION, copy, k)[slot];
     inside = x >= grid->desc.origin[k] && x <= grid->upper[k];
   }
   return inside;
+}
+
+static int32_t is_chosen_here(const choice *c, int64_t slot) {
+  const int32_t away = c->a->skips && slot < c->a->own && c->a->away[slot];
+  return !away && mpmi_adapts_slot(c->set, c->copy, slot);
 }
 
 /* Lists the particles, by cell and in a cell by id where that is asked for: order[i] is the slot of the i-th.
@@ -68,7 +70,7 @@ static int64_t list(choice *c, int32_t by_cell) {
   uint32_t *first = a->order, *order = a->order + slots, *scratch = a->order + 2 * slots;
   int64_t n = 0;
   for (int64_t s = 0; s < slots; ++s)
-    if (is_inside(c, s)) {
+    if (is_chosen_here(c, s)) {
       first[n] = (uint32_t)s;
       key[n++] = (uint64_t)id[s];
     }
@@ -106,7 +108,7 @@ static int64_t take_split(choice *c, int64_t slot, int32_t edges) {
   if (!edges || a->taken[slot] || !has_room(c, slot, edges) || c->status) return 0;
   c->status = MPMI_RESERVE_NEXT(c->set->context, a->split, a->split_capacity, a->splits);
   if (c->status) return 0;
-  a->split[a->splits++] = (mpmi_splitting){mpmi_i64(c->set, MPMI_ID, 0)[slot], slot, edges};
+  a->split[a->splits++] = (mpmi_splitting){mpmi_i64(c->set, MPMI_ID, 0)[slot], slot, edges, 0};
   a->taken[slot] = (uint8_t)mpmi_parts_of(edges);
   return mpmi_parts_of(edges) - 1;
 }
@@ -138,19 +140,6 @@ static void split_few(choice *c, const uint32_t *slot, int64_t n) {
     if (c->a->taken[slot[i]] > 1) count += c->a->taken[slot[i]] - 1;
   for (int64_t i = 0; i < n && count < c->a->desc.min_per_cell; ++i)
     count += take_split(c, slot[i], edges_of(c, slot[i], 1));
-}
-
-/* Ends the list, which is in the order of ids, where the set would get too large. */
-static void limit(choice *c) {
-  mpmi_adaption *a = c->a;
-  const int64_t most = a->desc.most_particles, room = MPMI_MAX_SLOTS - MPMI_PAD - c->set->slots;
-  int64_t added = 0, kept = 0;
-  for (; kept < a->splits; ++kept) {
-    added += mpmi_parts_of(a->split[kept].edges) - 1;
-    if ((most > 0 && c->set->count + added > most) || added > room || added > INT64_MAX - c->set->next_id)
-      break;
-  }
-  a->splits = kept;
 }
 
 /* ---- merging ------------------------------------------------------------------------------------------ */
@@ -242,7 +231,7 @@ mpm_status mpmi_adaption_choose(mpmi_adaption *a, const mpm_particles *set, int3
   mpm_context *context = set->context;
   const int32_t by_cell = a->desc.min_per_cell > 0 || a->desc.max_per_cell > 0;
   a->splits = a->pairs = 0;
-  if (!set->count || !(by_cell || a->desc.split_edge > 0.0)) return MPM_OK;
+  if (!set->slots || !(by_cell || a->desc.split_edge > 0.0)) return MPM_OK;
   mpm_status status = MPMI_RESERVE_MORE(context, a->key, a->key_capacity, 2 * set->slots);
   if (!status) status = MPMI_RESERVE_MORE(context, a->order, a->order_capacity, 3 * set->slots);
   if (!status) status = MPMI_RESERVE_MORE(context, a->taken, a->taken_capacity, set->slots);
@@ -259,6 +248,5 @@ mpm_status mpmi_adaption_choose(mpmi_adaption *a, const mpm_particles *set, int3
   }
   if (a->splits) qsort(a->split, (size_t)a->splits, sizeof *a->split, compare_splits);
   if (a->pairs) qsort(a->pair, (size_t)a->pairs, sizeof *a->pair, compare_pairs);
-  limit(&c);
   return c.status;
 }

@@ -111,12 +111,18 @@ static void load_pair(asking *of, int64_t lane, int64_t i) {
       (of->volume[0] * ratio[0] + of->volume[1] * ratio[1]) / (of->volume[0] + of->volume[1]);
 }
 
+/* A step has the temperatures of its particles in rows; copies have theirs in the field. */
+static double stress_temperature(const asking *of, int64_t slot) {
+  return mpmi_stress_temperature(of->set, slot < of->a->own ? of->copy : 0)[slot];
+}
+
 static void expand_pair(asking *of, int64_t lane, const mpmi_merging *pair) {
-  const double *T = mpmi_stress_temperature(of->set, of->copy), *mass = mpmi_f64(of->set, MPMI_MASS, 0);
-  const double of_pair[2] = {mass[pair->stays], mass[pair->goes]};
-  mpmi_expand_lane(&of->law, of->set, lane, T[pair->stays]);
-  mpmi_expand_lane(&of->law, of->set, lane + 1, T[pair->goes]);
-  mpmi_expand_lane(&of->law, of->set, lane + 2, mean(T, pair, of_pair));
+  const double *mass = mpmi_f64(of->set, MPMI_MASS, 0), of_pair[2] = {mass[pair->stays], mass[pair->goes]};
+  const double T[2] = {stress_temperature(of, pair->stays), stress_temperature(of, pair->goes)};
+  mpmi_expand_lane(&of->law, of->set, lane, T[0]);
+  mpmi_expand_lane(&of->law, of->set, lane + 1, T[1]);
+  mpmi_expand_lane(&of->law, of->set, lane + 2,
+                   (of_pair[0] * T[0] + of_pair[1] * T[1]) / (of_pair[0] + of_pair[1]));
 }
 
 /* Returns the norm of what a field has in a slot, less what it has in another; -1: that is nothing. */
@@ -312,8 +318,8 @@ static void join_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_pa
                         ? sum[r][k] / (one.mass * one.D[k])
                         : of[0].C[r][k];
   mpmi_write_motion(settings, set, pair->stays, &one);
-  for (int32_t i = 0; i < 2; ++i) mpmi_count_motion(set->grid, &of[i], one.x, 1.0, &a->sums);
-  mpmi_count_motion(set->grid, &one, one.x, -1.0, &a->sums);
+  for (int32_t i = 0; i < 2; ++i) mpmi_count_motion(set->grid, &of[i], one.x, 1.0, a->lost);
+  mpmi_count_motion(set->grid, &one, one.x, -1.0, a->lost);
 }
 
 static void write_state(mpm_particles *set, int64_t slot, const double *merged) {
@@ -324,6 +330,11 @@ static void write_state(mpm_particles *set, int64_t slot, const double *merged) 
     mpmi_f64(set, MPMI_STRESS, 0)[c * set->ld + slot] = *merged++;
   for (int32_t c = 0; c < set->material->state_count; ++c)
     mpmi_f64(set, MPMI_STATE, 0)[c * set->ld + slot] = *merged++;
+}
+
+static void drop(mpm_particles *set, int64_t slot) {
+  mpmi_make_hole(set, slot);
+  --set->count;
 }
 
 void mpmi_adaption_merge(mpmi_adaption *a, const mpmi_settings *settings, mpm_particles *set) {
@@ -341,11 +352,10 @@ void mpmi_adaption_merge(mpmi_adaption *a, const mpmi_settings *settings, mpm_pa
     join_fields(set, pair, initial);
     write_state(set, pair->stays, a->merged + i * mpmi_merged_rows(set));
     join_motions(a, settings, set, pair, of); /* moments of GIMP follow from domains */
-    a->sums.strain += pair->strain_loss;
+    mpmi_exact_add(&a->lost[MPMI_LOST_STRAIN], pair->strain_loss);
     if (mpmi_f64(set, MPMI_MASS, 0)[pair->stays] > set->mass_max)
       set->mass_max = mpmi_f64(set, MPMI_MASS, 0)[pair->stays];
-    mpmi_make_hole(set, pair->goes);
-    --set->count;
-    ++a->sums.merges;
+    if (pair->goes < a->own) drop(set, pair->goes); /* else it is a copy */
   }
+  for (int64_t i = 0; i < a->gone_count; ++i) drop(set, a->gone[i]);
 }

@@ -40,19 +40,20 @@ void mpmi_write_motion(const mpmi_settings *settings, mpm_particles *set, int64_
 }
 
 void mpmi_count_motion(const mpm_grid *grid, const mpmi_motion_of *motion, const double *centre, double sign,
-                       mpmi_adaption_sums *sums) {
+                       mpmi_whole_sum *lost) {
   double square = 0.0, spin = 0.0;
   const double m = sign * motion->mass;
   for (int32_t r = 0; r < 3; ++r) {
     square += motion->v[r] * motion->v[r];
     for (int32_t k = 0; k < 3; ++k) spin += motion->D[k] * motion->C[r][k] * motion->C[r][k];
   }
-  sums->kinetic += 0.5 * m * square;
-  sums->affine += 0.5 * m * spin;
+  mpmi_exact_add(&lost[MPMI_LOST_KINETIC], 0.5 * m * square);
+  mpmi_exact_add(&lost[MPMI_LOST_AFFINE], 0.5 * m * spin);
   for (int32_t r = 0; r < 3 && !mpmi_is_axisymmetric(grid); ++r) {
     const int32_t a = (r + 1) % 3, b = (r + 2) % 3;
-    sums->angular[r] +=
-        m * ((motion->x[a] - centre[a]) * motion->v[b] - (motion->x[b] - centre[b]) * motion->v[a] +
-             motion->D[a] * motion->C[b][a] - motion->D[b] * motion->C[a][b]);
+    mpmi_exact_add(&lost[MPMI_LOST_ANGULAR + r],
+                   m * ((motion->x[a] - centre[a]) * motion->v[b] -
+                        (motion->x[b] - centre[b]) * motion->v[a] + motion->D[a] * motion->C[b][a] -
+                        motion->D[b] * motion->C[a][b]));
   }
 }

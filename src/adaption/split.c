@@ -102,7 +102,7 @@ static void set_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_par
     }
   }
   share_matrix(whole, p, mean, rest);
-  mpmi_count_motion(set->grid, whole, whole->x, 1.0, &a->sums);
+  mpmi_count_motion(set->grid, whole, whole->x, 1.0, a->lost);
   for (int32_t i = 0; i < p->count; ++i) {
     mpmi_motion_of part = *whole;
     part.mass = p->share[i] * whole->mass;
@@ -116,7 +116,7 @@ static void set_motions(mpmi_adaption *a, const mpmi_settings *settings, mpm_par
       part.D[k] = here[i][k];
       part.x[k] = whole->x[k] + p->away[i][k];
     }
-    mpmi_count_motion(set->grid, &part, whole->x, -1.0, &a->sums);
+    mpmi_count_motion(set->grid, &part, whole->x, -1.0, a->lost);
   }
 }
 
@@ -136,7 +136,7 @@ void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_pa
   const int64_t added = count_added(a);
   parts p;
   if (!added) return;
-  int64_t next = mpmi_append_begin(set, added);
+  int64_t next = mpmi_append_apart(set, added);
   for (int64_t i = 0; i < a->splits; ++i) {
     const mpmi_splitting *split = &a->split[i];
     const mpmi_motion_of whole = mpmi_motion_in(settings, set, split->slot);
@@ -144,12 +144,10 @@ void mpmi_adaption_split(mpmi_adaption *a, const mpmi_settings *settings, mpm_pa
     for (int32_t k = p.count - 1; k >= 0; --k) give_fields(set, split->slot, p.slot[k], p.share[k]);
     for (int32_t k = 0; k < p.count; ++k) {
       place(set, split, &p, k);
-      if (k) mpmi_i64(set, MPMI_ID, 0)[p.slot[k]] = set->next_id++;
+      if (k) mpmi_i64(set, MPMI_ID, 0)[p.slot[k]] = set->next_id + split->before + k - 1;
     }
     set_motions(a, settings, set, &whole, &p);
     next += p.count - 1;
   }
   set->count += added;
-  a->sums.splits += a->splits;
-  a->sums.added += added;
 }

@@ -105,16 +105,16 @@ static const double settled = 1e-13;
 enum { SWEEPS = 100 };
 
 /* What a sweep has come to: the largest velocity that was stopped, and the faces with contacts. */
-typedef struct sweep {
+typedef struct wall_sweep {
   double most;
   int32_t first_face, last_face; /* -1: there are none */
-} sweep;
+} wall_sweep;
 
 /* Of several parts each sweeps all contacts that it has, and only its own count: others may lack a node. */
-static sweep sweep_once(mpmi_bound *bound, int32_t keep, int32_t first) {
+static wall_sweep sweep_once(mpmi_bound *bound, int32_t keep, int32_t first) {
   const mpmi_constraints *constraints = mpmi_constraints_of(bound);
   const int64_t count = constraints->contact_count;
-  sweep done = {0.0, -1, -1};
+  wall_sweep done = {0.0, -1, -1};
   if (count) {
     done.first_face = constraints->contact[0].face;
     done.last_face = constraints->contact[count - 1].face;
@@ -129,7 +129,7 @@ static sweep sweep_once(mpmi_bound *bound, int32_t keep, int32_t first) {
 }
 
 /* Makes what parts know by themselves what all of them know. */
-static mpm_status know_of_all(mpmi_parts *parts, sweep *done, mpmi_contact_round *round) {
+static mpm_status know_of_all(mpmi_parts *parts, wall_sweep *done, mpmi_contact_round *round) {
   enum { FACES = 6 };
   int64_t word[MPMI_ACCORD_WORDS] = {0,
                                      mpmi_ordered_bits(done->most),
@@ -153,7 +153,7 @@ mpm_status mpmi_friction_walls(mpmi_bound *bound, int32_t keep, int32_t first_ro
   mpm_status status = MPM_OK;
   double first = 0.0;
   for (int32_t i = 0; i < SWEEPS; ++i) {
-    sweep done = sweep_once(bound, keep, first_round && !i);
+    wall_sweep done = sweep_once(bound, keep, first_round && !i);
     if (parts && (status = know_of_all(parts, &done, round))) return status;
     if (!i) {
       first = done.most;

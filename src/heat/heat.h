@@ -93,6 +93,9 @@ mpm_status mpmi_heat_end(mpmi_step *step, mpmi_heat *heat, const mpmi_heat_histo
 int64_t mpmi_heat_exchanges(const mpmi_step *step, const mpmi_heat_history *history);
 /* Adds up where heat came from in the step, on all parts (collective). */
 mpm_status mpmi_heat_add_up(const mpmi_step *step, mpmi_heat *heat);
+/* Returns the temperature that a particle will have by the step, with the heat of dissipation. */
+double mpmi_heat_new_temperature(const mpmi_heat_rule *rule, const mpmi_member_rows *rows,
+                                 const mpm_particles *set, int64_t slot);
 /* Makes new temperatures, and those that the stress belongs to, the state, with the heat of dissipation; adds
  * to the history. Cannot fail. */
 void mpmi_heat_commit(const mpmi_step *step, const mpmi_heat *heat, mpmi_heat_history *history);

@@ -194,18 +194,22 @@ mpm_status mpmi_heat_add_up(const mpmi_step *step, mpmi_heat *heat) {
   return status;
 }
 
+double mpmi_heat_new_temperature(const mpmi_heat_rule *rule, const mpmi_member_rows *rows,
+                                 const mpm_particles *set, int64_t slot) {
+  const double mass = mpmi_f64(set, MPMI_MASS, 0)[slot], T = rows->heat[slot];
+  if (!(rule->desc.dissipated_share > 0.0 && mass > 0.0)) return T;
+  const double dissipated = rows->heat[MPMI_ROW_DISSIPATED * rows->heat_ld + slot];
+  return T + rule->desc.dissipated_share * dissipated / (mass * rule->desc.specific_heat);
+}
+
 /* Gives a set its new temperatures, with the heat of dissipation. */
 static void commit_set(const mpmi_heat_rule *rule, const mpmi_member_rows *rows, const mpm_particles *set) {
-  const double *dissipated = rows->heat + MPMI_ROW_DISSIPATED * rows->heat_ld;
-  const double *mass = mpmi_f64(set, MPMI_MASS, 0);
-  const size_t bytes = (size_t)set->slots * sizeof(double);
   double *T = mpmi_f64(set, set->thermal.temperature, 0);
-  memcpy(T, rows->heat, bytes);
   if (set->thermal.expansion != 0.0)
-    memcpy(mpmi_f64(set, set->thermal.stress_temperature, 0), rows->heat, bytes);
-  for (int64_t slot = 0; slot < set->slots && rule->desc.dissipated_share > 0.0; ++slot)
-    if (mass[slot] > 0.0)
-      T[slot] += rule->desc.dissipated_share * dissipated[slot] / (mass[slot] * rule->desc.specific_heat);
+    memcpy(mpmi_f64(set, set->thermal.stress_temperature, 0), rows->heat,
+           (size_t)set->slots * sizeof(double));
+  for (int64_t slot = 0; slot < set->slots; ++slot)
+    T[slot] = mpmi_heat_new_temperature(rule, rows, set, slot);
 }
 
 static void add(mpmi_heat_sums *to, const mpmi_heat_sums *of) {

@@ -100,7 +100,7 @@ static void read_numbers(mpmi_archive *a, uint32_t format, int32_t sets, mpmi_st
       n->blocks < -1 || !is_magnitude(n->previous_dt) || !is_magnitude(n->controller_dt) ||
       !is_magnitude(n->mass_cut) || !heat_makes_sense(&n->heat))
     mpmi_archive_damaged(a, "its numbers make no sense");
-  const int64_t unsorted = MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE,
+  const int64_t unsorted = MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_IDS,
                 flags = MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION | (n->blocks < 0 ? unsorted : 0);
   for (int32_t m = 0; m < sets && !a->status; ++m) {
     mpmi_state_set_numbers *of = &head->set[m].numbers;

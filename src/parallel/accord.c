@@ -32,7 +32,7 @@ void mpmi_accord_break(mpmi_parts *parts) {
     mpmi_accord_end(parts);
     return;
   }
-  for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->out[r].used = 0;
+  mpmi_messages_clear(parts);
   mpmi_parts_exchange(parts, &in);
   mpmi_accord_gathered(parts);
 }

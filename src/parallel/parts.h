@@ -130,6 +130,10 @@ void mpmi_time_reset(mpmi_parts *parts);
 /* Makes room for more bytes of a message, and returns where they go, or NULL. */
 void *mpmi_buffer_take(mpm_context *context, mpmi_buffer *buffer, int64_t bytes);
 
+/* Nothing is to be sent to any part. */
+static inline void mpmi_messages_clear(const mpmi_parts *parts) {
+  for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->out[r].used = 0;
+}
 /* Sends what stands in `out` to the parts that it is for, and takes what comes from those that have something
  * for this one. */
 typedef struct mpmi_arrivals {

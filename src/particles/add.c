@@ -48,13 +48,20 @@ mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t with_size,
   return status;
 }
 
-int64_t mpmi_append_begin(mpm_particles *set, int64_t n) {
-  const int64_t first = set->slots - free_tail(set);
+static int64_t append_at(mpm_particles *set, int64_t first, int64_t n) {
   const int64_t slots = (first + n + MPMI_PAD - 1) / MPMI_PAD * MPMI_PAD;
   set->slots = slots;
   mpmi_particles_watch(set, slots);
   mpmi_fill_holes(set, 0, first, slots, set->grid->desc.origin);
   return first;
+}
+
+int64_t mpmi_append_begin(mpm_particles *set, int64_t n) {
+  return append_at(set, set->slots - free_tail(set), n);
+}
+
+int64_t mpmi_append_apart(mpm_particles *set, int64_t n) {
+  return append_at(set, set->slots, n);
 }
 
 void mpmi_append_default(mpm_particles *set, int32_t field, int64_t begin, int64_t end) {

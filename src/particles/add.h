@@ -12,6 +12,8 @@ mpm_status mpmi_append_reserve(mpm_particles *set, int64_t n, int32_t with_size,
 /* Returns the first of n slots, for which there is room: they hold inert defaults in every field. The caller
  * then writes position (in reach of a wrap), velocity and initial_volume, and size when with_size is 1. */
 int64_t mpmi_append_begin(mpm_particles *set, int64_t n);
+/* The same, and no slot is in the last block as the set is sorted. */
+int64_t mpmi_append_apart(mpm_particles *set, int64_t n);
 /* Numbers for new particles of this part (collective where there are several): those of the parts before come
  * first. status: what has happened before; on failure nothing has changed on any part. */
 typedef struct mpmi_numbers {

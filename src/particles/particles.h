@@ -55,7 +55,8 @@ enum {
   MPMI_DIRTY_PLACE = 2,  /* positions changed, or a particle left its loose tile: sort before the next step */
   MPMI_DIRTY_STRESS = 4, /* F or initial_volume was set: volume and stress must be brought up to date */
   MPMI_DIRTY_SUMS = 8,   /* energies, momenta and the stable dt are not those of the current state */
-  MPMI_DIRTY_ACCELERATION = 16 /* accelerations are not those of an implicit step, nor given by the host */
+  MPMI_DIRTY_ACCELERATION = 16, /* accelerations are not those of an implicit step, nor given by the host */
+  MPMI_DIRTY_IDS = 32 /* particles came by splitting: the next sort, which may wait, orders blocks by id */
 };
 
 /* A record stands for a view that is out, of a set or of the nodes of a stepper. */

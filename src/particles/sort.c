@@ -74,7 +74,8 @@ mpm_status mpmi_sort_plan(mpm_particles *set, const mpmi_blocks *blocks, mpmi_so
   const uint32_t *of_slot = blocks_of_slots(set);
   mpm_status status = mpmi_arrangement_reserve_blocks(to, blocks->count);
   if (status) return status;
-  const int32_t by_id = (set->dirty & MPMI_DIRTY_ORDER) && (sorting->tail_low || !mpmi_ids_ascend(set));
+  const int32_t by_id =
+      (set->dirty & (MPMI_DIRTY_ORDER | MPMI_DIRTY_IDS)) && (sorting->tail_low || !mpmi_ids_ascend(set));
   if (by_id && (status = mpmi_index_build(set))) return status;
   memset(to->start, 0, (size_t)(blocks->count + 1) * sizeof *to->start);
   for (int64_t s = 0; s < set->slots; ++s)
@@ -227,7 +228,7 @@ void mpmi_sort_apply(mpm_particles *set, const mpmi_blocks *blocks, mpmi_sorting
   sorting->tail_low = 0;
   set->slots = slots;
   mpmi_particles_watch(set, slots);
-  set->dirty &= ~(uint32_t)(MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE);
+  set->dirty &= ~(uint32_t)(MPMI_DIRTY_ORDER | MPMI_DIRTY_PLACE | MPMI_DIRTY_IDS);
   mpmi_index_drop(set);
 }
 

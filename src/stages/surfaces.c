@@ -339,7 +339,7 @@ static mpm_status tell_velocities(const surface_job *job) {
                            mpmi_surface_told_velocity(s, 0));
 }
 
-/* Lets all parts know how all markers move: of each marker one part adds its bits to zeros; and what a surface
+/* Lets all parts know how all markers move, of which one part each adds its bits to zeros, and what a surface
  * that prescribes has given. */
 static mpm_status tell(mpmi_step *step, const mpmi_nodal *from, int32_t meets) {
   const mpmi_settings *settings = step->settings;

@@ -1,7 +1,8 @@
 /* How the sets of a stepper adapt: the host's descriptions, what steps and calls do, and reports. */
 #include "context/structs.h"
 #include "layout/members.h"
-#include "stepper/stepper.h"
+#include "stepper/together.h"
+#include "parallel/migration.h"
 
 #include <math.h>
 
@@ -77,33 +78,68 @@ mpm_status mpm_stepper_set_adaption(mpm_stepper *s, mpm_particles *particles, co
 
 /* ---- steps -------------------------------------------------------------------------------------------- */
 static mpm_status plan(mpm_stepper *s, int32_t m, int32_t copy, double t) {
-  mpmi_adaption *a = &s->adaption[m];
-  mpm_particles *set = s->layout.member[m].set;
-  mpm_status status = mpmi_adaption_choose(a, set, copy);
-  if (!status) status = mpmi_adaption_merge_states(a, set, copy, t);
-  if (!status) status = mpmi_adaption_ask(a, set, copy);
-  return status ? status : mpmi_adaption_reserve(a, set, copy);
+  const mpmi_adapting of = {.a = &s->adaption[m],
+                            .set = s->layout.member[m].set,
+                            .parts = s->layout.parts,
+                            .settings = &s->settings,
+                            .step = copy ? &s->step : NULL,
+                            .m = m,
+                            .copy = copy,
+                            .t = t};
+  const mpm_status status = mpmi_adaption_plan(&of);
+  s->adaption[m].planned = !status && (s->adaption[m].split_total || s->adaption[m].pair_total);
+  return status;
+}
+
+static void add_lost(mpmi_adaption *a, const double *lost) {
+  a->sums.splits += a->split_total;
+  a->sums.added += a->added;
+  a->sums.merges += a->pair_total;
+  a->sums.kinetic += lost[MPMI_LOST_KINETIC];
+  a->sums.affine += lost[MPMI_LOST_AFFINE];
+  a->sums.strain += lost[MPMI_LOST_STRAIN];
+  for (int32_t c = 0; c < 3; ++c) a->sums.angular[c] += lost[MPMI_LOST_ANGULAR + c];
 }
 
 static void carry_out(mpm_stepper *s, int32_t m) {
   mpmi_adaption *a = &s->adaption[m];
   mpm_particles *set = s->layout.member[m].set;
-  if (!a->splits && !a->pairs) return;
-  mpmi_adaption_split(a, &s->settings, set);
+  double lost[MPMI_LOST] = {0.0};
+  if (!a->planned) return;
+  for (int32_t i = 0; i < MPMI_LOST; ++i) mpmi_exact_clear(&a->lost[i]);
   mpmi_adaption_merge(a, &s->settings, set);
+  mpmi_adaption_split(a, &s->settings, set);
+  set->next_id += a->added;
   mpmi_particles_make_volumes(set, 0);
   mpmi_index_drop(set);
   set->dirty |= MPMI_DIRTY_PLACE | MPMI_DIRTY_SUMS | MPMI_DIRTY_ACCELERATION;
-  a->splits = a->pairs = 0;
+  if (a->added) set->dirty |= MPMI_DIRTY_IDS; /* whichever part they have come on */
+  a->splits = a->pairs = a->planned = 0;
+  if (mpmi_total_parts(s->context, MPMI_LOST, a->lost, lost))
+    mpmi_forget(s->context); /* the other parts are lost, as the next call will say */
+  add_lost(a, lost);
 }
 
 static int32_t is_due(const mpmi_adaption *a, int64_t step) {
   return a->on && a->desc.every > 0 && step % a->desc.every == 0;
 }
 
+/* Particles go to other parts with all their fields, which a host may have made on one alone. */
+static mpm_status align_fields(mpm_stepper *s, int32_t m) {
+  mpmi_moving_set set = {.set = s->layout.member[m].set};
+  return s->layout.parts ? mpmi_move_align_fields(s->layout.parts, &set, 1) : MPM_OK;
+}
+
+mpm_status mpmi_adaption_begin(mpm_stepper *s) {
+  mpm_status status = MPM_OK;
+  for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
+    if (is_due(&s->adaption[m], s->history.step + 1)) status = align_fields(s, m);
+  return status;
+}
+
 mpm_status mpmi_adaption_prepare(mpm_stepper *s) {
   mpm_status status = MPM_OK;
-  for (int32_t m = 0; m < s->layout.member_count; ++m) s->adaption[m].splits = s->adaption[m].pairs = 0;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) s->adaption[m].planned = 0;
   for (int32_t m = 0; m < s->layout.member_count && !status; ++m)
     if (is_due(&s->adaption[m], s->history.step + 1)) status = plan(s, m, 1, s->step.t + s->step.dt);
   return status;
@@ -118,10 +154,12 @@ mpm_status mpm_stepper_adapt(mpm_stepper *s) {
   mpm_status status = mpmi_stepper_idle(s);
   if (!status) status = mpmi_members_unmapped(&s->layout, &s->settings, "before they adapt");
   if (!status) status = mpmi_check_sets(s, MPM_READ | MPM_WRITE);
+  if ((status = mpmi_together_begin(s, status, 0, NULL, NULL))) return status;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) s->adaption[m].planned = 0;
   for (int32_t m = 0; m < s->layout.member_count && !status; ++m) {
-    s->adaption[m].splits = s->adaption[m].pairs = 0;
     if (!s->adaption[m].on) continue;
-    status = mpmi_particles_refresh(s->layout.member[m].set);
+    status = mpmi_together(s, mpmi_particles_refresh(s->layout.member[m].set));
+    if (!status) status = align_fields(s, m);
     if (!status) status = plan(s, m, 0, s->history.t);
   }
   if (!status) mpmi_adaption_carry_out(s);

@@ -146,7 +146,8 @@ static mpm_status conduct(mpm_stepper *s) {
 
 /* Begins a step that parts have agreed on, up to what its scheme does. */
 static mpm_status set_out(mpm_stepper *s) {
-  const mpm_status status = prepare_together(s);
+  mpm_status status = mpmi_adaption_begin(s);
+  if (!status) status = prepare_together(s);
   if (status || !s->settings.heat.any) return status;
   return conduct(s);
 }
@@ -189,7 +190,11 @@ static mpm_status finish(mpm_stepper *s) {
   if (status) return status;
   mpmi_stops_report(&s->step);
   mpmi_sums sums;
-  if ((status = mpmi_adaption_prepare(s)) || (status = mpmi_add_up(s, &sums))) return status;
+  if ((status = mpmi_adaption_prepare(s))) { /* on all parts */
+    const mpm_status lost = mpmi_is_shared(s) ? mpmi_together_active(s) : MPM_OK;
+    return lost ? lost : status;
+  }
+  if ((status = mpmi_add_up(s, &sums))) return status;
   status = ask_progress(s);
   if (mpmi_is_shared(s) && s->layout.parts->asks) status = mpmi_together_ready(s, status);
   if (status) return status;

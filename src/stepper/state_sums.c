@@ -71,10 +71,60 @@ static mpm_status not_finite(mpm_stepper *s, int32_t m, const mpmi_law_batch *b,
                    b->wave_speed[p], b->viscosity[p], (long long)b->batch.id[p], (int)m);
 }
 
-/* Adds the sums of the slots [begin, end) of a set. The law is asked for the state as it is: F_inc = I,
- * dt = 0. */
-static mpm_status sum_slots(mpm_stepper *s, int32_t m, mpmi_law_batch *b, double *moments, int64_t begin,
-                            int64_t end, mpmi_sums *sums, mpmi_failure *failure) {
+/* What a set comes to, with the memory that takes. */
+typedef struct summing {
+  mpm_stepper *s;
+  int32_t m;
+  mpmi_law_batch law;
+  double *moments;
+  mpmi_whole_sum *sum; /* of energies and momenta */
+  mpmi_sums *rates;
+} summing;
+
+/* Moves a job on by so many slots. */
+static void shift_job(mpmi_sums_job *job, int64_t by) {
+  const double **row[] = {
+      &job->x[0],   &job->x[1],      &job->x[2],           &job->v[0],       &job->v[1],
+      &job->v[2],   &job->mass,      &job->initial_volume, &job->wave_speed, &job->kinematic_viscosity,
+      &job->energy, &job->moment[0], &job->moment[1],      &job->moment[2]};
+  for (size_t i = 0; i < sizeof row / sizeof row[0]; ++i)
+    if (*row[i]) *row[i] += by;
+  for (int32_t c = 0; c < 9; ++c) {
+    if (job->affine[c]) job->affine[c] += by;
+    if (job->F[c]) job->F[c] += by;
+  }
+}
+
+/* Adds particles one by one: which of them lie side by side depends on the parts. Returns what the sums of
+ * all of them would. */
+static uint32_t sum_singly(const summing *of, const mpmi_sums_job *job, int64_t n) {
+  const mpmi_sums_fn sums = of->s->settings.kernels->sums[of->s->grid->dim];
+  double mass[MPMI_CHUNK] = {0.0}, volume[MPMI_CHUNK] = {0.0};
+  uint32_t bad = 0;
+  for (int64_t p = 0; p < n; ++p) {
+    const int64_t lane = p % MPMI_CHUNK;
+    mpmi_sums_job one = *job;
+    mpmi_sums here = {0};
+    if (!(job->initial_volume[p] > 0.0)) continue;
+    shift_job(&one, p - lane);
+    mass[lane] = one.mass[lane];
+    volume[lane] = one.initial_volume[lane];
+    one.mass = mass;
+    one.initial_volume = volume;
+    bad |= sums(&one, MPMI_CHUNK, &here);
+    mpmi_tally_block(of->sum, &here, of->rates);
+    mass[lane] = volume[lane] = 0.0;
+  }
+  return bad;
+}
+
+/* Adds the sums of the slots [begin, end) of a set, those of a block, or singly. The law is asked for the
+ * state as it is: F_inc = I, dt = 0. */
+static mpm_status sum_slots(summing *of, int64_t begin, int64_t end, int32_t singly, mpmi_failure *failure) {
+  mpm_stepper *s = of->s;
+  const int32_t m = of->m;
+  mpmi_law_batch *b = &of->law;
+  mpmi_sums here = {0};
   mpm_particles *set = s->layout.member[m].set;
   for (; begin < end; begin += b->ld) {
     const int64_t n = end - begin < b->ld ? end - begin : b->ld;
@@ -88,9 +138,11 @@ static mpm_status sum_slots(mpm_stepper *s, int32_t m, mpmi_law_batch *b, double
       s->settings.pull_back->speeds[s->grid->dim](F, b->wave_speed, b->viscosity, n);
     }
     mpmi_sums_job job;
-    bind_particles(s, set, b, begin, n, moments, &job);
-    if (s->settings.kernels->sums[s->grid->dim](&job, n, sums)) return not_finite(s, m, b, failure);
+    bind_particles(s, set, b, begin, n, of->moments, &job);
+    if (singly ? sum_singly(of, &job, n) : s->settings.kernels->sums[s->grid->dim](&job, n, &here))
+      return not_finite(s, m, b, failure);
   }
+  if (!singly) mpmi_tally_block(of->sum, &here, of->rates);
   return MPM_OK;
 }
 
@@ -104,18 +156,15 @@ static mpm_status sum_set(mpm_stepper *s, int32_t m, mpmi_whole_sum *sums, mpmi_
   if (!member->set->slots) return MPM_OK;
   char *memory = mpmi_alloc(s->context, bytes);
   if (!memory) return MPM_E_NOMEM;
-  mpmi_law_batch b;
-  mpmi_law_batch_bind(&b, material, memory);
+  summing of = {.s = s, .m = m, .moments = (double *)(void *)(memory + batch), .sum = sums, .rates = rates};
+  mpmi_law_batch_bind(&of.law, material, memory);
   mpm_status status = MPM_OK;
   const int64_t *start = member->now.start;
   const int64_t blocks = start ? s->layout.blocks.count : 0;
   for (int64_t block = 0; block <= blocks && !status; ++block) {
     const int64_t begin = start ? start[block] : 0,
                   end = block < blocks ? start[block + 1] : member->set->slots;
-    mpmi_sums here = {0};
-    if (begin == end) continue;
-    status = sum_slots(s, m, &b, (double *)(void *)(memory + batch), begin, end, &here, failure);
-    if (!status) mpmi_tally_block(sums, &here, rates);
+    if (begin < end) status = sum_slots(&of, begin, end, block == blocks, failure);
   }
   mpmi_free(s->context, memory, bytes);
   return status;

@@ -168,6 +168,8 @@ mpm_status mpmi_explicit_move_surfaces(mpmi_step *step, mpmi_nodes *nodes);
 void mpmi_heat_take_off(mpm_stepper *s, int32_t m);
 
 /* ---- adaption.c -------------------------------------------------------------------------------------- */
+/* A step begins at whose end sets may adapt (collective, as what follows). */
+mpm_status mpmi_adaption_begin(mpm_stepper *s);
 /* Finds what sets are split and merged at the end of the step under way, and makes room for it. */
 mpm_status mpmi_adaption_prepare(mpm_stepper *s);
 /* Does it to the present state; cannot fail. */

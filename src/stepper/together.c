@@ -31,12 +31,8 @@ static const char *not_implicit(const mpm_stepper *s, const char **instead) {
 mpm_status mpmi_together_offers(mpm_stepper *s) {
   const mpmi_settings *settings = &s->settings;
   const char *what = NULL, *instead = "a context without a transport";
-  int32_t adapts = 0;
   if (!mpmi_is_shared(s)) return MPM_OK;
-  for (int32_t m = 0; m < s->layout.member_count; ++m)
-    adapts |= m < s->adaption_capacity && s->adaption[m].on;
   if (mpmi_is_implicit(settings) && !what) what = not_implicit(s, &instead);
-  if (adapts) what = "adaption";
   return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
                           "a problem in several parts does not have %s: use %s", what, instead)
               : MPM_OK;
@@ -53,6 +49,16 @@ static uint64_t fold_number(uint64_t h, double number) {
   return fold_word(h, word);
 }
 
+static uint64_t fold_adaption(uint64_t h, const mpmi_adaption *a) {
+  const double number[] = {a->desc.split_edge, a->desc.least_edge, a->desc.merge_distance,
+                           a->desc.merge_tolerance, (double)a->desc.most_particles};
+  h = fold_word(fold_word(h, (uint64_t)a->on), (uint64_t)(a->on ? a->desc.every : 0));
+  if (!a->on) return h;
+  h = fold_word(fold_word(h, (uint64_t)a->desc.min_per_cell), (uint64_t)a->desc.max_per_cell);
+  for (int32_t i = 0; i < 5; ++i) h = fold_number(h, number[i]);
+  return h;
+}
+
 /* Makes one number of all that decides what a step does and exchanges: parts that differ there would wait for
  * each other. */
 static int64_t fingerprint(const mpm_stepper *s) {
@@ -67,6 +73,7 @@ static int64_t fingerprint(const mpm_stepper *s) {
   for (int64_t i = 0; i < settings->obstacles.count; ++i)
     h = fold_word(h, (uint64_t)(64 * settings->obstacles.obstacle[i]->desc.shape +
                                 settings->obstacles.obstacle[i]->desc.motion));
+  for (int32_t m = 0; m < s->layout.member_count; ++m) h = fold_adaption(h, &s->adaption[m]);
   for (int64_t i = 0; i < settings->surfaces.count; ++i) {
     const mpm_surface *surface = settings->surfaces.surface[i];
     h = fold_word(h, (uint64_t)(4 * surface->desc.prescribes + 2 * (surface->heat.flux != 0.0) +
@@ -77,8 +84,8 @@ static int64_t fingerprint(const mpm_stepper *s) {
 }
 
 /* The flags of sets that count on all parts once they are set on one. */
-static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE, MPMI_DIRTY_STRESS, MPMI_DIRTY_SUMS,
-                                MPMI_DIRTY_ACCELERATION};
+static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE,        MPMI_DIRTY_STRESS,
+                                MPMI_DIRTY_SUMS,  MPMI_DIRTY_ACCELERATION, MPMI_DIRTY_IDS};
 enum { FLAGS = sizeof flag / sizeof flag[0], OWN_WORDS = 12, MOST_NUMBERS = 7 };
 
 /* Whole words of a double, as they are and the other way round, so that the largest of both say whether all
@@ -132,7 +139,7 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   if (word[8] != ~word[9])
     return mpmi_fail(c, MPM_E_STATE,
                      "the stepper is set up otherwise on another part: give it the same description, walls, "
-                     "bodies, obstacles, surfaces, hooks and velocities of nodes on all");
+                     "bodies, adaption, obstacles, surfaces, hooks and velocities of nodes on all");
   if (word[10] != ~word[11])
     return mpmi_fail(c, MPM_E_STATE,
                      "surfaces have other numbers of markers on other parts: all parts have all markers");
@@ -215,8 +222,7 @@ static mpm_status take_failure(mpm_stepper *s, mpm_status status, int32_t part) 
   return mpmi_take_over(s->context, part, status);
 }
 
-/* Makes the active nodes of a step that has failed those of all parts. */
-static mpm_status count_active(mpm_stepper *s) {
+mpm_status mpmi_together_active(mpm_stepper *s) {
   int64_t active[] = {s->layout.parts->has_counted, s->step.info.active_nodes};
   const mpm_status status = mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, 2, active);
   s->step.info.active_nodes =
@@ -234,7 +240,7 @@ mpm_status mpmi_together_ready(mpm_stepper *s, mpm_status status) {
   const mpm_status lost = mpmi_reduce_parts(s->context, MPM_REDUCE_MAX, 1, &first);
   if (lost || !first) return lost;
   status = take_failure(s, status, (int32_t)((first > parts ? 2 * parts : parts) - first));
-  const mpm_status counted = count_active(s);
+  const mpm_status counted = mpmi_together_active(s);
   return counted ? counted : status;
 }
 
@@ -270,7 +276,7 @@ mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchange
   }
   status = settle(s, status, exchanges, 4, word);
   if (status) {
-    const mpm_status lost = count_active(s);
+    const mpm_status lost = mpmi_together_active(s);
     return lost ? lost : status;
   }
   report->left_tile |= word[1] != 0;

@@ -36,6 +36,8 @@ mpm_status mpmi_together_touched(mpm_stepper *s);
 mpm_status mpmi_together_end(mpm_stepper *s, mpm_status status, int64_t exchanges);
 /* The same within a step that goes on, even where it has failed; exchanges are counted from here on. */
 mpm_status mpmi_together_vote(mpm_stepper *s, mpm_status status, int64_t exchanges);
+/* Makes the active nodes of a step that has failed those of all parts. */
+mpm_status mpmi_together_active(mpm_stepper *s);
 /* Makes the rates the largest of all parts. */
 mpm_status mpmi_together_rates(mpm_stepper *s, mpmi_sums *rates);
 /* Adds up what is to be reported, and how many particles leave. */

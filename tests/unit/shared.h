@@ -112,9 +112,10 @@ mpm_status mix_markers(const world *w, const mpm_surface *s, uint64_t *hash);
 void add_shared_options(Suite *suite);
 void add_shared_heat(Suite *suite);
 void add_shared_surfaces(Suite *suite);
-/* Add the cases of shared_rubbing.c and shared_prescribing.c. */
+/* Add the cases of shared_rubbing.c, shared_prescribing.c and shared_adaption.c. */
 void add_shared_rubbing(Suite *suite);
 void add_shared_prescribing(Suite *suite);
+void add_shared_adaption(Suite *suite);
 /* Adds the cases of shared_implicit.c. */
 void add_shared_implicit(Suite *suite);
 TCase *shared_calls_case(void);

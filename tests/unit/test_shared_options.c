@@ -1,5 +1,5 @@
 /* One problem in several parts has the bits that it has in one: total Lagrangian grids, heat, surfaces,
- * implicit steps and friction walls of nodes, which have files of their own. */
+ * implicit steps, friction walls of nodes and adaption, which have files of their own. */
 #include "shared.h"
 
 Suite *shared_options_suite(void) {
@@ -10,5 +10,6 @@ Suite *shared_options_suite(void) {
   add_shared_implicit(suite);
   add_shared_rubbing(suite);
   add_shared_prescribing(suite);
+  add_shared_adaption(suite);
   return suite;
 }

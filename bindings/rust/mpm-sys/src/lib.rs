@@ -444,8 +444,8 @@ pub type mpm_reduce_fn = Option<unsafe extern "C" fn(
     values: *mut i64,
 ) -> mpm_status>;
 
-/// all[parts]: value of each part (collective). Only when particles are added, and when implicit steps number their
-/// unknowns. Returns as mpm_send_fn.
+/// all[parts]: value of each part (collective). Only when particles are added or sets adapt, and when implicit steps
+/// number their unknowns. Returns as mpm_send_fn.
 pub type mpm_gather_fn = Option<unsafe extern "C" fn(
     user: *mut c_void,
     value: i64,
