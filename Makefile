@@ -59,9 +59,9 @@ KERNEL_FLAGS = $(KERNEL_OPT) $(KERNEL_COMMON) $(if $(filter -g,$(CFLAGS)),-g1)
 OBJECTS := $(PLAIN:%.c=$(BUILD)/obj/%.o) $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/obj/%.$(isa).o))
 STATIC_LIB := $(BUILD)/libmpm.a
 
-# Two examples show CHOLMOD and PETSc as the host's solver, where these are installed.
+# Two examples show CHOLMOD and PETSc as the host's solver, where these are installed; the second by libmpm-petsc.
 HAS_CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null > /dev/null 2>&1 && echo yes)
-PETSC_PACKAGES := $(shell $(PKG_CONFIG) --exists PETSc mpi-c 2> /dev/null && echo PETSc mpi-c)
+PETSC_PACKAGES ?= $(shell $(PKG_CONFIG) --exists 'PETSc >= 3.17' mpi-c 2> /dev/null && echo PETSc mpi-c)
 EXAMPLES := $(patsubst examples/%,$(BUILD)/examples/%,$(basename $(filter-out %_mpi.c,$(sort $(wildcard examples/*.c examples/*.cpp)))))
 BENCH := $(BUILD)/bench/bench
 ifneq ($(HAS_CHOLMOD),yes)
@@ -71,8 +71,6 @@ ifeq ($(PETSC_PACKAGES),)
 EXAMPLES := $(filter-out %/petsc_solver,$(EXAMPLES))
 endif
 $(BUILD)/examples/cholmod_solver: LIBS += -lcholmod
-PETSC_LIBS = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags-only-I --libs $(PETSC_PACKAGES)))
-$(BUILD)/examples/petsc_solver: LIBS += $(PETSC_LIBS)
 
 .PHONY: all help install uninstall amalgamation examples demo bench bench-quick docs clean format format-check
 .DELETE_ON_ERROR:
@@ -87,7 +85,7 @@ all: $(STATIC_LIB) $(SHARED_LIB) $(UMAT_ARCHIVES) $(UMAT_SHARED_LIB)
 #: help                  this list
 help:
 	@awk '/^# ---- / { gsub(/^# -+ | -+$$/, ""); heading = $$0 } \
-	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk bindings/javascript/rules.mk packaging/packaging.mk mpi/mpi.mk
+	  /^#: / { if (heading) print (lines++ ? "\n" : "") heading; heading = ""; sub(/^#:/, " "); gsub(/[$$][(]BUILD[)]/, "$(BUILD)"); print }' Makefile tests/tests.mk bindings/bindings.mk bindings/javascript/rules.mk packaging/packaging.mk mpi/mpi.mk petsc/petsc.mk
 	@printf '\n%s\n' 'V=1 shows the commands, -jN sets how many run at once, BUILD=folder builds there, CC and CFLAGS are yours.'
 
 $(BUILD)/obj/src/%.o: src/%.c Makefile platform.mk src/kernels.txt
@@ -195,14 +193,14 @@ $(BUILD)/examples/%: examples/%.cpp $(STATIC_LIB) Makefile
 # The benchmark is a host program: it is compiled against an installation and runs the shared library; with the
 # solvers of the examples as well, where they are found.
 BENCH_HOSTS := $(if $(HAS_CHOLMOD),-DBENCH_CHOLMOD) $(if $(PETSC_PACKAGES),-DBENCH_PETSC)
-BENCH_HOST_LIBS = $(if $(HAS_CHOLMOD),-lcholmod) $(if $(PETSC_PACKAGES),$(PETSC_LIBS))
-$(BENCH): $(wildcard bench/*.[ch] examples/*.h) $(SHARED_LIB) $(STATIC_LIB) Makefile
+BENCH_HOST_LIBS = $(if $(HAS_CHOLMOD),-lcholmod) $(if $(PETSC_PACKAGES),$(PETSC_CFLAGS) $(BUILD)/libmpm-petsc.a $(PETSC_LIBS))
+$(BENCH): $(wildcard bench/*.[ch] examples/*.h) $(SHARED_LIB) $(STATIC_LIB) $(if $(PETSC_PACKAGES),$(BUILD)/libmpm-petsc.a) Makefile
 	@mkdir -p $(@D)
 	$(Q)$(MAKE) -s install PREFIX=$(abspath $(@D))/installed DESTDIR= > /dev/null
 	$(call SAY,LINK)
 	$(Q)$(CC) -std=c11 $(WARNINGS) $(CFLAGS) -O3 -ffp-contract=fast -fno-math-errno -Wno-psabi $(BENCH_HOSTS) $(wildcard bench/*.c) \
 	  -I$(@D)/installed/include -L$(@D)/installed/lib -Wl,--enable-new-dtags,-rpath,$(abspath $(@D))/installed/lib $(LDFLAGS) -lmpm \
-	  $(BENCH_HOST_LIBS) -lm -o $@
+	  $(BENCH_HOST_LIBS) -lmpm -lm -o $@
 
 #: examples              the programs of examples/, in $(BUILD)/examples
 examples: $(EXAMPLES)
@@ -232,6 +230,7 @@ include tests/tests.mk
 include bindings/bindings.mk
 include packaging/packaging.mk
 include mpi/mpi.mk
+include petsc/petsc.mk
 
 # ---- reference -------------------------------------------------------------------------------------------
 #: docs                  HTML from the headers, in $(BUILD)/docs/html; a declaration without a comment is an error
@@ -241,7 +240,7 @@ docs:
 	@echo "$(BUILD)/docs/html/index.html"
 
 # ---- upkeep ----------------------------------------------------------------------------------------------
-FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/mpm/*.hpp umat/*/*.[ch] mpi/include/mpm/*.h mpi/include/mpm/*.hpp mpi/*/*.[ch] src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
+FORMATTED = $(wildcard include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/mpm/*.hpp umat/*/*.[ch] mpi/include/mpm/*.h mpi/include/mpm/*.hpp mpi/*/*.[ch] petsc/include/mpm/*.h petsc/include/mpm/*.hpp petsc/*/*.[ch] src/*/*.[ch] examples/*.[ch] examples/*.cpp bench/*.[ch] \
   tests/*/*.[ch] tests/*/*.cpp bindings/*.c bindings/*/*.c bindings/*/*/*.c)
 #: format                clang-format on all sources
 format:

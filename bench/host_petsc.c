@@ -1,24 +1,20 @@
 #include "hosts.h"
 
 #ifdef BENCH_PETSC
-#include "../examples/petsc_multigrid.h"
-
-#include <stdlib.h>
+#include <mpm/mpm_petsc.h>
+#include <petscsys.h>
 
 static void *start(void) {
-  multigrid *own = malloc(sizeof *own);
-  if (own) *own = (multigrid){.pattern_id = -1};
-  if (own && !multigrid_defaults() && !PetscInitialize(NULL, NULL, NULL, NULL)) return own;
-  free(own);
-  return NULL;
+  mpm_petsc *own = NULL;
+  if (!PetscInitialize(NULL, NULL, NULL, NULL)) (void)!mpm_petsc_open(PETSC_COMM_SELF, "", &own);
+  return own;
 }
 
 /* What PETSc says in its end is of no use here. */
 static void end(void *own) {
-  if (!multigrid_forget(own)) (void)!PetscFinalize();
-  free(own);
+  if (!mpm_petsc_close(own)) (void)!PetscFinalize();
 }
 
 extern const bench_host bench_petsc;
-const bench_host bench_petsc = {"PETSc GAMG", start, multigrid_solve, end};
+const bench_host bench_petsc = {"PETSc GAMG", start, mpm_petsc_solve, end};
 #endif

@@ -1,5 +1,5 @@
 /* A linear solver of the host: a block of rubber, bonded between two platens, is squeezed in quasi-static
- * steps, once with the library's solvers and once with PETSc's multigrid (petsc_multigrid.h).
+ * steps, once with the library's solvers and once with PETSc's multigrid, by libmpm-petsc.
  *
  *   petsc_solver [-cells 16] [-locking_remedy] [options of PETSc, such as -ksp_view]
  *
@@ -11,7 +11,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "petsc_multigrid.h"
+#include <mpm/mpm_petsc.h>
+#include <petscsys.h>
 
 static const double edge = 0.1, way = 0.01; /* of the platen, m */
 enum { STEPS = 2 };
@@ -35,7 +36,7 @@ static mpm_status push(void *user, const mpm_particle_batch *b, double *add) {
   return MPM_OK;
 }
 
-static mpm_status open_press(press *p, const options *o, int32_t solver, multigrid *own) {
+static mpm_status open_press(press *p, const options *o, int32_t solver, mpm_petsc *own) {
   const mpm_param soft[] = {{"E", 1e6}, {"nu", 0.45}, {"density", 1050.0}}, heavy[] = {{"density", 7800.0}};
   const double h = edge / o->cells, wide = edge + 3.0 * h;
   const double lower[] = {0.0, 0.0, 0.0}, upper[] = {edge, edge, edge};
@@ -69,7 +70,7 @@ static mpm_status open_press(press *p, const options *o, int32_t solver, multigr
     return status;
   for (int32_t face = MPM_X_MIN; face <= MPM_Z_MIN && !status; face += 2)
     status = mpm_stepper_set_wall(p->stepper, face, MPM_WALL_SLIP, 0.0);
-  return status ? status : mpm_stepper_set_linear_solver(p->stepper, multigrid_solve, own);
+  return status ? status : mpm_stepper_set_linear_solver(p->stepper, mpm_petsc_solve, own);
 }
 
 typedef struct answer {
@@ -77,7 +78,7 @@ typedef struct answer {
   double *x, force[3]; /* positions, [3][n]; of the platen */
 } answer;
 
-static int run(const options *o, int32_t solver, multigrid *own, answer *is) {
+static int run(const options *o, int32_t solver, mpm_petsc *own, answer *is) {
   press p = {.context = NULL};
   mpm_step_info info = {.struct_size = sizeof info};
   mpm_profile profile = {.struct_size = sizeof profile};
@@ -95,7 +96,8 @@ static int run(const options *o, int32_t solver, multigrid *own, answer *is) {
   is->x = malloc(3 * (size_t)is->n * sizeof *is->x);
   if (!status && is->x) status = mpm_particles_get(p.block, "position", MPM_F64, 3, is->n, NULL, is->x);
   if (status || !is->x) {
-    fprintf(stderr, "petsc_solver: %s\n", p.context ? mpm_last_error(p.context) : "no context");
+    fprintf(stderr, "petsc_solver: %s %s\n", p.context ? mpm_last_error(p.context) : "no context",
+            mpm_petsc_last_error(own));
     return 1;
   }
   printf("%-8s %6" PRId64 " %8" PRId64 " %12.2f s %8.2f s %16.8f N\n",
@@ -112,23 +114,25 @@ static int run(const options *o, int32_t solver, multigrid *own, answer *is) {
 
 /* Newton's method ends with an increment of 1e-8 of the largest of its step, and with forces that balance to
  * 1e-8: that much each answer may be off. */
-static int compare(const multigrid *own, answer *a, const answer *b) {
+static int compare(mpm_petsc *own, const answer *a, const answer *b) {
   const double allowed = 2e-8;
+  mpm_petsc_info info = {.struct_size = sizeof info};
   double apart = 0.0;
   for (int64_t i = 0; i < 3 * a->n; ++i) apart = fmax(apart, fabs(a->x[i] - b->x[i]));
   apart /= way;
   const double force = fabs(a->force[2] - b->force[2]) / fabs(a->force[2]);
+  if (mpm_petsc_get_info(own, &info)) return 1;
   printf("result: positions differ by %.1e of the way of the platen, forces by %.1e, with %d unknowns, %d "
          "patterns for %d solves\n",
-         apart, force, (int)own->n, (int)own->patterns, (int)own->solves);
+         apart, force, (int)info.unknowns, (int)info.patterns, (int)info.solves);
   return !(apart <= allowed * STEPS && force <= allowed);
 }
 
 int main(int argc, char **argv) {
-  multigrid own = {.pattern_id = -1};
+  mpm_petsc *own = NULL;
   options o = {.cells = 16};
   answer a = {.n = 0}, b = {.n = 0};
-  if (multigrid_defaults() || PetscInitialize(&argc, &argv, NULL, NULL) ||
+  if (PetscInitialize(&argc, &argv, NULL, NULL) || mpm_petsc_open(PETSC_COMM_SELF, "", &own) ||
       PetscOptionsGetInt(NULL, NULL, "-cells", &o.cells, NULL) ||
       PetscOptionsHasName(NULL, NULL, "-locking_remedy", &o.remedy))
     return 1;
@@ -137,9 +141,9 @@ int main(int argc, char **argv) {
     return 1;
   }
   printf("         Newton   linear       assembly     solver   force of the platen\n");
-  if (run(&o, MPM_SOLVER_AUTO, &own, &a) || run(&o, MPM_SOLVER_HOST, &own, &b)) return 1;
-  const int failed = compare(&own, &a, &b);
+  if (run(&o, MPM_SOLVER_AUTO, own, &a) || run(&o, MPM_SOLVER_HOST, own, &b)) return 1;
+  const int failed = compare(own, &a, &b);
   free(a.x);
   free(b.x);
-  return multigrid_forget(&own) || PetscFinalize() || failed;
+  return mpm_petsc_close(own) || PetscFinalize() || failed;
 }

@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=$1 tree=$1/libmpm
 for tool in dpkg-buildpackage dh dh_python3 lintian doxygen; do
-  command -v $tool > /dev/null || { echo "deb.sh: $tool is missing: apt install build-essential debhelper dh-python lintian doxygen python3-dev mpi-default-dev" >&2; exit 1; }
+  command -v $tool > /dev/null || { echo "deb.sh: $tool is missing: apt install build-essential debhelper dh-python lintian doxygen python3-dev mpi-default-dev petsc-dev" >&2; exit 1; }
 done
 rm -rf "$folder"
 mkdir -p "$tree"
@@ -35,7 +35,7 @@ in_root() {
 }
 in_root apt-get update -q > "$folder/install.log"
 in_root sh -c 'apt-get install -y -q --no-install-recommends /packages/*.deb gcc g++ libc6-dev pkgconf mpi-default-bin' >> "$folder/install.log"
-for test in build bits mpi; do
+for test in build bits mpi petsc; do
   in_root sh "/tree/debian/tests/$test"
   echo "deb.sh: test $test on the installation: ok"
 done

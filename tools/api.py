@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Describes the public interface in JSON, from the headers as clang parses them.
 
-    tools/api.py [--clang clang] [--umat umat/include | --mpi mpi/include] [include] > api.json
+    tools/api.py [--clang clang] [--umat umat/include | --mpi mpi/include | --petsc petsc/include] [include] > api.json
 
 With --umat it describes mpm_umat.h, the header of libmpm-umat, in the place of libmpm's; with --mpi mpm_mpi.h, that of
-libmpm-mpi, for which MPI need not be there.
+libmpm-mpi, and with --petsc mpm_petsc.h, that of libmpm-petsc, for which MPI and PETSc need not be there.
 
 The description holds what bindings need: functions, structs with the offsets of their fields, constants by group, types
 of callbacks, handles, and every comment. Offsets are those for pointers of 8 and of 4 bytes, where an 8-byte number lies
@@ -30,6 +30,8 @@ def companion(arguments):
         return ["mpm_umat", arguments.umat]
     if arguments.mpi:
         return ["mpm_mpi", arguments.mpi, f"{os.path.dirname(arguments.mpi)}/parsers"]
+    if arguments.petsc:
+        return ["mpm_petsc", arguments.petsc, f"{os.path.dirname(os.path.dirname(arguments.petsc))}/mpi/parsers"]
     return []
 
 
@@ -302,6 +304,7 @@ def main():
     parser.add_argument("--clang", default=os.environ.get("API_CLANG", "clang"))
     parser.add_argument("--umat", metavar="FOLDER")
     parser.add_argument("--mpi", metavar="FOLDER")
+    parser.add_argument("--petsc", metavar="FOLDER")
     parser.add_argument("include", nargs="?", default="include")
     json.dump(describe(parser.parse_args()), sys.stdout, indent=1, ensure_ascii=False)
     print()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes manual pages from bindings/api.json, umat.json and mpi.json: mpm(7), one page a header in section 3, and a link to it for
+"""Writes manual pages from bindings/api.json, umat.json, mpi.json and petsc.json: mpm(7), one page a header in section 3, and a link to it for
 each function.
 
     tools/man.py VERSION FOLDER
@@ -111,7 +111,7 @@ def overview(api, companions, version):
 def main():
     version, folder = sys.argv[1:]
     descriptions = []
-    for name in ("api", "umat", "mpi"):
+    for name in ("api", "umat", "mpi", "petsc"):
         with open(f"{TOP}/bindings/{name}.json", encoding="utf-8") as file:
             descriptions.append(json.load(file))
     os.makedirs(folder, exist_ok=True)

@@ -742,11 +742,11 @@ namespace Mpm {
     public int symmetric;
     /// <summary>1 if the matrix is expected to be positive definite, which is not checked.</summary>
     public int positive_definite;
-    /// <summary>number of rows and of columns.</summary>
+    /// <summary>number of local rows and of local columns.</summary>
     public long rows;
-    /// <summary>number of stored entries.</summary>
+    /// <summary>number of stored entries, all of them in owned rows.</summary>
     public long nonzeros;
-    /// <summary>a number that stays the same as long as the sparsity does.</summary>
+    /// <summary>a number that stays the same as long as the sparsity does, on all parts.</summary>
     public long pattern_id;
     /// <summary>distance from component c to c + 1 of position, in elements; &gt;= rows.</summary>
     public long ld;
@@ -756,6 +756,14 @@ namespace Mpm {
     public int* component;
     /// <summary>[dim][ld] position of the node of each row, for near-null spaces.</summary>
     public double* position;
+    /// <summary>number of the first owned row over all parts; 0 with one part.</summary>
+    public long first_row;
+    /// <summary>number of rows that this part owns; rows with one part.</summary>
+    public long owned_rows;
+    /// <summary>number of rows of all parts together.</summary>
+    public long all_rows;
+    /// <summary>[rows] number of each local row over all parts.</summary>
+    public long* number;
 
     /// <summary>Ready to be filled: zeros, and struct_size.</summary>
     public static OperatorInfo Empty() {
@@ -1725,7 +1733,7 @@ namespace Mpm {
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_operator_get_info(IntPtr matrix, OperatorInfo* info);
 
-    /// <summary>Computes y = matrix * x.</summary>
+    /// <summary>Computes y = matrix * x on owned rows.</summary>
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern int mpm_operator_apply(IntPtr matrix, double* x, double* y);
 

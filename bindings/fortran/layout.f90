@@ -212,7 +212,7 @@ contains
 
   subroutine check_mpm_operator_info()
     type(mpm_operator_info), target :: it
-    call compare("mpm_operator_info", c_sizeof(it), of(72, 64))
+    call compare("mpm_operator_info", c_sizeof(it), of(104, 96))
     call compare("mpm_operator_info%struct_size", distance(c_loc(it), c_loc(it%struct_size)), of(0, 0))
     call compare("mpm_operator_info%block", distance(c_loc(it), c_loc(it%block)), of(4, 4))
     call compare("mpm_operator_info%symmetric", distance(c_loc(it), c_loc(it%symmetric)), of(8, 8))
@@ -224,6 +224,10 @@ contains
     call compare("mpm_operator_info%node", distance(c_loc(it), c_loc(it%node)), of(48, 48))
     call compare("mpm_operator_info%component", distance(c_loc(it), c_loc(it%component)), of(56, 52))
     call compare("mpm_operator_info%position", distance(c_loc(it), c_loc(it%position)), of(64, 56))
+    call compare("mpm_operator_info%first_row", distance(c_loc(it), c_loc(it%first_row)), of(72, 64))
+    call compare("mpm_operator_info%owned_rows", distance(c_loc(it), c_loc(it%owned_rows)), of(80, 72))
+    call compare("mpm_operator_info%all_rows", distance(c_loc(it), c_loc(it%all_rows)), of(88, 80))
+    call compare("mpm_operator_info%number", distance(c_loc(it), c_loc(it%number)), of(96, 88))
   end subroutine check_mpm_operator_info
 
   subroutine check_mpm_stepper_desc()

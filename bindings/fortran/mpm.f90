@@ -554,11 +554,11 @@ module mpm
     integer(c_int32_t) :: symmetric
     !> 1 if the matrix is expected to be positive definite, which is not checked.
     integer(c_int32_t) :: positive_definite
-    !> number of rows and of columns.
+    !> number of local rows and of local columns.
     integer(c_int64_t) :: rows
-    !> number of stored entries.
+    !> number of stored entries, all of them in owned rows.
     integer(c_int64_t) :: nonzeros
-    !> a number that stays the same as long as the sparsity does.
+    !> a number that stays the same as long as the sparsity does, on all parts.
     integer(c_int64_t) :: pattern_id
     !> distance from component c to c + 1 of position, in elements; >= rows.
     integer(c_int64_t) :: ld
@@ -568,6 +568,14 @@ module mpm
     type(c_ptr) :: component
     !> [dim][ld] position of the node of each row, for near-null spaces.
     type(c_ptr) :: position
+    !> number of the first owned row over all parts; 0 with one part.
+    integer(c_int64_t) :: first_row
+    !> number of rows that this part owns; rows with one part.
+    integer(c_int64_t) :: owned_rows
+    !> number of rows of all parts together.
+    integer(c_int64_t) :: all_rows
+    !> [rows] number of each local row over all parts.
+    type(c_ptr) :: number
   end type mpm_operator_info
 
   !> Options of a stepper.
@@ -1941,7 +1949,7 @@ module mpm
       integer(c_int32_t) :: answer
     end function mpm_operator_get_info
 
-    !> Computes y = matrix * x.
+    !> Computes y = matrix * x on owned rows.
     function mpm_operator_apply(matrix, x, y) bind(c, name="mpm_operator_apply") result(answer)
       import
       type(c_ptr), value :: matrix
@@ -2985,6 +2993,10 @@ contains
     it%node = c_null_ptr
     it%component = c_null_ptr
     it%position = c_null_ptr
+    it%first_row = 0
+    it%owned_rows = 0
+    it%all_rows = 0
+    it%number = c_null_ptr
   end subroutine init_mpm_operator_info
 
   subroutine init_mpm_stepper_desc(it)

@@ -42,7 +42,8 @@ def main():
     sys.path.insert(0, HERE)
     text = description("api.json")
     files = {"api.json": text, "umat.json": description("umat.json", "--umat", f"{TOP}/umat/include"),
-             "mpi.json": description("mpi.json", "--mpi", f"{TOP}/mpi/include")}
+             "mpi.json": description("mpi.json", "--mpi", f"{TOP}/mpi/include"),
+             "petsc.json": description("petsc.json", "--petsc", f"{TOP}/petsc/include")}
     for language in arguments.languages or LANGUAGES:
         files.update(importlib.import_module(language).files(json.loads(text)))
     stale = []

@@ -268,7 +268,7 @@ export const structs = {
     },
   },
   mpm_operator_info: {
-    size: 64,
+    size: 96,
     fields: {
       struct_size: [0, 'u32'],
       block: [4, 'i32'],
@@ -281,6 +281,10 @@ export const structs = {
       node: [48, 'i64*', 'rows'],
       component: [52, 'i32*', 'rows'],
       position: [56, 'f64*', 'dim', 'ld'],
+      first_row: [64, 'i64'],
+      owned_rows: [72, 'i64'],
+      all_rows: [80, 'i64'],
+      number: [88, 'i64*', 'rows'],
     },
   },
   mpm_stepper_desc: {

@@ -657,7 +657,14 @@ export interface HeatDesc {
 }
 /**
  * A linear system. The arrays belong to the library and are valid until the solve callback returns. A row is
- * one component of one node; nodes and components whose displacement is prescribed have none.
+ * one component of one node; nodes and components whose displacement is prescribed have none. Rows of one
+ * node follow each other, by ascending component.
+ *
+ * With several parts a row is owned by exactly one part. Local rows 0 to owned_rows - 1 are those that this
+ * part owns, in the order of nodes that it has; they are numbered first_row, first_row + 1, ... over all
+ * parts, part by part. Behind them stand rows that other parts own, those alone that columns of owned rows
+ * name: they have number, node, component and position, and no entries of their own. Every vector has
+ * owned_rows entries. With one part all rows are owned, and number[i] is i.
  */
 export interface OperatorInfo {
   /** number of rows of a node on which nothing is prescribed */
@@ -666,14 +673,20 @@ export interface OperatorInfo {
   symmetric: number;
   /** 1 if the matrix is expected to be positive definite, which is not checked */
   positive_definite: number;
-  /** number of rows and of columns */
+  /** number of local rows and of local columns */
   rows: number;
-  /** number of stored entries */
+  /** number of stored entries, all of them in owned rows */
   nonzeros: number;
-  /** a number that stays the same as long as the sparsity does */
+  /** a number that stays the same as long as the sparsity does, on all parts */
   pattern_id: number;
   /** distance from component c to c + 1 of position, in elements; >= rows */
   ld: number;
+  /** number of the first owned row over all parts; 0 with one part */
+  first_row: number;
+  /** number of rows that this part owns; rows with one part */
+  owned_rows: number;
+  /** number of rows of all parts together */
+  all_rows: number;
 }
 /**
  * What a step did, or the state as it is. Energies and momenta are the particles'; the angular momentum is
@@ -1212,19 +1225,31 @@ export type TangentFunction = (batch: MaterialBatch & Lent, tangent: Components)
  * false if the system was not solved.
  *
  * Solves matrix * solution = rhs. Runs on the calling thread. Both vectors have as many entries as
- * mpm_operator_get_info() reports rows, and solution is preset to the best guess known. The host writes the
- * solution, and into *iterations the number that linear_iterations is to count.
+ * mpm_operator_get_info() reports owned rows, and solution is preset to the best guess known. The host writes
+ * the solution, and into *iterations the number that linear_iterations is to count.
  *
  * - tolerance: the wanted ||matrix * solution - rhs|| / ||rhs||.
  *
  * Returns 0, a value > 0 if the system was not solved (MPM_CUT_DT), or a value < 0 to stop (MPM_E_CALLBACK).
+ *
+ * With several parts (parallel.h) it is called on all of them, and solves the system of all rows together:
+ * each part lends the rows that it owns, complete, with the right-hand side on them, and takes its part of
+ * the solution. Where the solver returns another value than 0 on a part, all parts have the outcome of the
+ * lowest such; of the iterations the largest number counts. The residual is checked over all parts. A solver
+ * that waits for its other parts ends on all of them when it ends on one.
  */
 export type SolveFunction = (matrix: System, rhs: Float64Array, solution: Float64Array, tolerance: number) => number | boolean | void;
 
 /**
  * A linear system. The caller sets struct_size. The arrays belong to the library and are valid until the
  * solve callback returns. A row is one component of one node; nodes and components whose displacement is
- * prescribed have none.
+ * prescribed have none. Rows of one node follow each other, by ascending component.
+ *
+ * With several parts a row is owned by exactly one part. Local rows 0 to owned_rows - 1 are those that this
+ * part owns, in the order of nodes that it has; they are numbered first_row, first_row + 1, ... over all
+ * parts, part by part. Behind them stand rows that other parts own, those alone that columns of owned rows
+ * name: they have number, node, component and position, and no entries of their own. Every vector has
+ * owned_rows entries. With one part all rows are owned, and number[i] is i.
  */
 export interface System extends OperatorInfo {
   /** [rows] number of the node of each row, as in mpm_step_info.node */
@@ -1233,7 +1258,13 @@ export interface System extends OperatorInfo {
   readonly component: Int32Array;
   /** [dim][ld] position of the node of each row, for near-null spaces */
   readonly position: Components;
-  /** Computes y = matrix * x. Both vectors have the rows of the system and do not overlap. */
+  /**
+   * Computes y = matrix * x on owned rows. Both vectors have owned_rows entries and do not overlap.
+   *
+   * With several parts it is (collective): x of rows that others own comes from them. It fails on all parts
+   * that make it when one is refused, and with MPM_E_STATE when the solver has returned on a part, so that
+   * nobody waits.
+   */
   apply(x: ArrayLike<number>): Float64Array;
   /** A copy of the matrix by compressed rows, with both triangles: row r has the entries row_start[r] to row_start[r + 1] - 1. */
   csr(): { row_start: BigInt64Array; column: Int32Array; value: Float64Array };

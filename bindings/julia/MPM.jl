@@ -451,7 +451,14 @@ Base.unsafe_convert(::Type{Ptr{mpm_material_desc}}, it::mpm_material_desc) = Ptr
 
 """
 A linear system. The caller sets struct_size. The arrays belong to the library and are valid until the solve callback
-returns. A row is one component of one node; nodes and components whose displacement is prescribed have none.
+returns. A row is one component of one node; nodes and components whose displacement is prescribed have none. Rows of
+one node follow each other, by ascending component.
+
+With several parts a row is owned by exactly one part. Local rows 0 to owned_rows - 1 are those that this part owns,
+in the order of nodes that it has; they are numbered first_row, first_row + 1, ... over all parts, part by part.
+Behind them stand rows that other parts own, those alone that columns of owned rows name: they have number, node,
+component and position, and no entries of their own. Every vector has owned_rows entries. With one part all rows are
+owned, and number[i] is i.
 """
 mutable struct mpm_operator_info
     struct_size::UInt32
@@ -465,6 +472,10 @@ mutable struct mpm_operator_info
     node::Ptr{Int64}
     component::Ptr{Int32}
     position::Ptr{Float64}
+    first_row::Int64
+    owned_rows::Int64
+    all_rows::Int64
+    number::Ptr{Int64}
     mpm_operator_info() = new()
 end
 Base.cconvert(::Type{Ptr{mpm_operator_info}}, it::mpm_operator_info) = it
@@ -1005,12 +1016,18 @@ const mpm_inside_fn = Ptr{Cvoid}
 
 """
 Solves matrix * solution = rhs. Runs on the calling thread. Both vectors have as many entries as
-mpm_operator_get_info() reports rows, and solution is preset to the best guess known. The host writes the solution,
-and into *iterations the number that linear_iterations is to count.
+mpm_operator_get_info() reports owned rows, and solution is preset to the best guess known. The host writes the
+solution, and into *iterations the number that linear_iterations is to count.
 
 - tolerance: the wanted ||matrix * solution - rhs|| / ||rhs||.
 
 Returns 0, a value > 0 if the system was not solved (MPM_CUT_DT), or a value < 0 to stop (MPM_E_CALLBACK).
+
+With several parts (parallel.h) it is called on all of them, and solves the system of all rows together: each part
+lends the rows that it owns, complete, with the right-hand side on them, and takes its part of the solution. Where the
+solver returns another value than 0 on a part, all parts have the outcome of the lowest such; of the iterations the
+largest number counts. The residual is checked over all parts. A solver that waits for its other parts ends on all of
+them when it ends on one.
 
 f(user, matrix, rhs, solution, tolerance, iterations): @cfunction(f, Int32, (Ptr{Cvoid}, Ptr{mpm_operator},
 Ptr{Float64}, Ptr{Float64}, Float64, Ptr{Int64}))
@@ -1758,14 +1775,18 @@ end
 
 """
 Describes the system. This call and the two below may be made from within the solve callback only, one at a time; at
-other times they return MPM_E_STATE.
+other times they return MPM_E_STATE. It waits for no other part. MPM_E_UNSUPPORTED: there are several parts, and
+struct_size is that of a release without number.
 """
 function mpm_operator_get_info(matrix, info)
     return ccall((:mpm_operator_get_info, libmpm), Int32, (Ptr{mpm_operator}, Ptr{mpm_operator_info}), matrix, info)
 end
 
 """
-Computes y = matrix * x. Both vectors have the rows of the system and do not overlap.
+Computes y = matrix * x on owned rows. Both vectors have owned_rows entries and do not overlap.
+
+With several parts it is (collective): x of rows that others own comes from them. It fails on all parts that make it
+when one is refused, and with MPM_E_STATE when the solver has returned on a part, so that nobody waits.
 """
 function mpm_operator_apply(matrix, x, y)
     return ccall((:mpm_operator_apply, libmpm), Int32, (Ptr{mpm_operator}, Ptr{Float64}, Ptr{Float64}), matrix, x, y)
@@ -1773,8 +1794,9 @@ end
 
 """
 Lends the matrix by compressed rows, with both triangles and with columns in ascending order: row r has the entries
-(*row_start)[r] to (*row_start)[r + 1] - 1 of *column and *value. The arrays belong to the library and are valid until
-the solve callback returns. MPM_E_NOMEM: there is no memory for them.
+(*row_start)[r] to (*row_start)[r + 1] - 1 of *column and *value. Columns are local ones, and number of
+mpm_operator_info has those over all parts; rows that others own are empty. The arrays belong to the library and are
+valid until the solve callback returns. It waits for no other part. MPM_E_NOMEM: there is no memory for them.
 """
 function mpm_operator_csr(matrix, row_start, column, value)
     return ccall((:mpm_operator_csr, libmpm), Int32, (Ptr{mpm_operator}, Ptr{Ptr{Int64}}, Ptr{Ptr{Int32}}, Ptr{Ptr{Float64}}),

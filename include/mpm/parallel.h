@@ -11,7 +11,9 @@
  * host ends the problem on all. Calls that only read or write a part's own objects concern that part alone.
  * Without a transport, or with one part, every call behaves as it does without.
  *
- * States, statuses and reports have the same bits for any number of parts, as for any number of threads.
+ * States, statuses and reports have the same bits for any number of parts, as for any number of threads. A
+ * solver of the host is the exception: the solutions of linear systems are as it makes them, and everything
+ * else follows from them alike.
  *
  * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
  * particles, where each part adds its own and numbers without ids follow those of the parts before;
@@ -31,9 +33,10 @@
  * part is asked that has their cell: not always the one that has the particle.
  *
  * Of several parts these are asked for explicit steps, and for implicit ones whose linear systems the
- * library's conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here.
- * MPM_E_UNSUPPORTED: other linear solvers, linear systems that are not symmetric; in implicit steps total
- * Lagrangian grids, bodies other than 0, obstacles, friction walls, surfaces and heat.
+ * library's conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here, or a solver of
+ * the host, MPM_SOLVER_HOST, as libmpm-petsc has one (operator.h). MPM_E_UNSUPPORTED: other linear solvers,
+ * linear systems that are not symmetric without a solver of the host; in implicit steps total Lagrangian
+ * grids, bodies other than 0, obstacles, friction walls, surfaces and heat.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

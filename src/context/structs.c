@@ -40,7 +40,8 @@
   X(mpm_node_batch, owned, 80)                                                                               \
   X(mpm_advance_desc, max_steps, 56)                                                                         \
   X(mpm_profile, weights, 96)                                                                                \
-  X(mpm_operator_info, position, 72)
+  X(mpm_operator_info, position, 72)                                                                         \
+  X(mpm_operator_info, number, 104)
 
 #define END(type, last) (offsetof(type, last) + sizeof(((type *)0)->last))
 /* Where pointers have 4 bytes, a struct may end with padding. */

@@ -170,6 +170,7 @@ static mpm_status solve(iteration *it) {
   mpmi_balance *balance = it->balance;
   mpmi_newton *newton = it->newton;
   const double *du_held = newton->vector[MPMI_DU];
+  const int32_t choice = balance->settings->desc.linear_solver;
   double *x = newton->vector[MPMI_START];
   mpm_status status = mpmi_vote(balance, mpmi_matrix_eliminate(&newton->matrix), 0);
   if (status) return status;
@@ -178,19 +179,19 @@ static mpm_status solve(iteration *it) {
    * closes has stiffness, and its part of the right-hand side takes some of them */
   const double kept = newton->constraint_count ? 1e-3 : 1.0;
   const double wanted = fmax(1e-10, kept * fmin(1e-3, 0.1 * relative(it)));
-  const mpmi_solve_job job = {
-      .matrix = &newton->matrix,
-      .rhs = newton->vector[MPMI_RHS],
-      .x = x,
-      .choice = newton->shared ? MPM_SOLVER_CG : balance->settings->desc.linear_solver,
-      .tolerance =
-          balance->settings->desc.linear_tolerance > 0.0 ? balance->settings->desc.linear_tolerance : wanted,
-      .max_iterations = balance->settings->desc.linear_max_iterations,
-      .host = balance->settings->solver,
-      .host_user = balance->settings->solver_user,
-      .expects_positive = newton->matrix.symmetric,
-      .inertia = it->inertia_share,
-      .several_fields = newton->couples_bodies};
+  const mpmi_solve_job job = {.matrix = &newton->matrix,
+                              .rhs = newton->vector[MPMI_RHS],
+                              .x = x,
+                              .choice = newton->shared && choice != MPM_SOLVER_HOST ? MPM_SOLVER_CG : choice,
+                              .tolerance = balance->settings->desc.linear_tolerance > 0.0
+                                               ? balance->settings->desc.linear_tolerance
+                                               : wanted,
+                              .max_iterations = balance->settings->desc.linear_max_iterations,
+                              .host = balance->settings->solver,
+                              .host_user = balance->settings->solver_user,
+                              .expects_positive = newton->matrix.symmetric,
+                              .inertia = it->inertia_share,
+                              .several_fields = newton->couples_bodies};
   mpmi_solve_report report = {.node = -1};
   status = mpmi_solve(newton->solver, &job, &report);
   balance->factor_seconds += report.factor_seconds;

@@ -1,13 +1,16 @@
 /* The host's solver borrows the linear system as an operator. */
 #include "context/structs.h"
+#include "context/transport.h"
 #include "linalg/operator.h"
 
+#include <stddef.h>
 #include <string.h>
 
 void mpmi_operator_init(mpm_operator *op, mpm_context *context) {
   memset(op, 0, sizeof *op);
   op->magic = MPMI_OPERATOR;
   op->context = context;
+  op->numbered = -1;
 }
 
 void mpmi_operator_free(mpm_operator *op) {
@@ -16,13 +19,14 @@ void mpmi_operator_free(mpm_operator *op) {
   MPMI_FREE_ARRAY(context, op->row_start, op->row_start_capacity);
   MPMI_FREE_ARRAY(context, op->column, op->column_capacity);
   MPMI_FREE_ARRAY(context, op->value, op->value_capacity);
+  MPMI_FREE_ARRAY(context, op->rows_of, op->rows_of_capacity);
   memset(op, 0, sizeof *op);
 }
 
 /* All lists of one element per unknown of the matrix share one piece of memory. */
 static mpm_status divide_slab(mpm_operator *op, int64_t unknowns) {
   const uint64_t bytes =
-      mpmi_bytes(unknowns + 1, 2 * sizeof(int64_t) + 2 * sizeof(int32_t) + 5 * sizeof(double));
+      mpmi_bytes(unknowns + 1, 3 * sizeof(int64_t) + 2 * sizeof(int32_t) + 5 * sizeof(double));
   const mpm_status status = mpmi_reserve(op->context, (void **)&op->slab, &op->slab_capacity,
                                          bytes < INT64_MAX ? (int64_t)bytes : INT64_MAX, 1);
   if (status) return status;
@@ -32,22 +36,49 @@ static mpm_status divide_slab(mpm_operator *op, int64_t unknowns) {
   op->y = op->x + n;
   op->unknown = (int64_t *)(op->y + n);
   op->node = op->unknown + n;
-  op->row = (int32_t *)(op->node + n);
+  op->number = op->node + n;
+  op->row = (int32_t *)(op->number + n);
   op->component = op->row + n;
   return MPM_OK;
 }
 
+static void add_row(mpm_operator *op, int64_t u) {
+  const mpmi_matrix *A = op->A;
+  op->row[u] = (int32_t)op->rows;
+  op->unknown[op->rows] = u;
+  op->node[op->rows] = A->number[u / A->block];
+  op->component[op->rows++] = (int32_t)(u % A->block);
+}
+
+static int32_t is_own_unknown(const mpmi_matrix *A, int64_t u) {
+  return !A->held[u] && mpmi_is_own_row(A, u / A->block);
+}
+
+/* Marks the unknowns of other parts which the owned rows of a node couple with. */
+static void mark_others(mpm_operator *op, int64_t node) {
+  enum { WANTED = -2 };
+  const mpmi_matrix *A = op->A;
+  int32_t any = 0;
+  for (int64_t c = 0; c < A->block; ++c) any |= !A->held[node * A->block + c];
+  for (int64_t e = A->row_start[node]; any && e < A->row_start[node + 1]; ++e)
+    for (int64_t u = (int64_t)A->column[e] * A->block; u < ((int64_t)A->column[e] + 1) * A->block; ++u)
+      if (!A->held[u] && op->row[u] == -1) op->row[u] = WANTED;
+}
+
+/* Owned rows come first; then those of other parts, without entries. */
 static void list_rows(mpm_operator *op) {
   const mpmi_matrix *A = op->A;
+  const int64_t unknowns = mpmi_matrix_unknowns(A);
   op->rows = 0;
-  for (int64_t u = 0; u < mpmi_matrix_unknowns(A); ++u) {
+  for (int64_t u = 0; u < unknowns; ++u) {
     op->row[u] = -1;
-    if (A->held[u]) continue;
-    op->row[u] = (int32_t)op->rows;
-    op->unknown[op->rows] = u;
-    op->node[op->rows] = A->number[u / A->block];
-    op->component[op->rows++] = (int32_t)(u % A->block);
+    if (is_own_unknown(A, u)) add_row(op, u);
   }
+  op->own = op->rows;
+  for (int64_t i = 0; i < A->rows && A->shared; ++i)
+    if (mpmi_is_own_row(A, i)) mark_others(op, i);
+  for (int64_t u = 0; u < unknowns && A->shared; ++u)
+    if (op->row[u] < -1) add_row(op, u);
   for (int64_t r = 0; r < op->rows; ++r)
     for (int32_t k = 0; k < 3; ++k)
       op->position[k * op->rows + r] = A->position[3 * (op->unknown[r] / A->block) + k];
@@ -58,6 +89,7 @@ static int64_t count_nonzeros(const mpm_operator *op) {
   int64_t count = 0;
   for (int64_t i = 0; i < A->rows; ++i) {
     int64_t wide = 0, high = 0;
+    if (!mpmi_is_own_row(A, i)) continue;
     for (int32_t c = 0; c < A->block; ++c) high += !A->held[i * A->block + c];
     for (int64_t e = A->row_start[i]; high && e < A->row_start[i + 1]; ++e)
       for (int32_t c = 0; c < A->block; ++c) wide += !A->held[(int64_t)A->column[e] * A->block + c];
@@ -66,41 +98,116 @@ static int64_t count_nonzeros(const mpm_operator *op) {
   return count;
 }
 
-mpm_status mpmi_operator_open(mpm_operator *op, const mpmi_matrix *A, int32_t positive_definite) {
-  const int64_t unknowns = mpmi_matrix_unknowns(A);
+static mpm_status open_here(mpm_operator *op, const mpmi_matrix *A) {
+  const int64_t unknowns = mpmi_matrix_unknowns(A), parts = op->context->transport.parts;
   if (unknowns > INT32_MAX)
     return mpmi_fail(op->context, MPM_E_UNSUPPORTED, "%lld unknowns are more than columns can be numbered",
                      (long long)unknowns);
-  const mpm_status status = divide_slab(op, unknowns);
+  mpm_status status = divide_slab(op, unknowns);
+  if (!status && A->shared) status = MPMI_RESERVE_MORE(op->context, op->rows_of, op->rows_of_capacity, parts);
   if (status) return status;
   op->A = A;
-  op->positive_definite = positive_definite;
   op->has_rows = 0;
   list_rows(op);
   op->nonzeros = count_nonzeros(op);
+  return MPM_OK;
+}
+
+/* ---- with other parts ---------------------------------------------------------------------------------- */
+/* Takes the numbers of all rows, which the owners tell. */
+static mpm_status take_numbers(mpm_operator *op) {
+  const mpmi_matrix *A = op->A;
+  mpm_context *c = op->context;
+  for (int64_t u = 0; u < mpmi_matrix_unknowns(A); ++u)
+    op->x[u] = is_own_unknown(A, u) ? (double)(op->first + op->row[u]) : -1.0;
+  mpm_status status = mpmi_rows_complete(A->shared, op->x);
+  if (status) return status;
+  for (int64_t r = 0; r < op->rows; ++r) {
+    op->number[r] = (int64_t)op->x[op->unknown[r]];
+    if (op->number[r] < 0 && !status)
+      status =
+          mpmi_fail(c, MPM_E_INTERNAL, "part %d has an unknown at node %lld that its owner does not have",
+                    (int)c->transport.part, (long long)op->node[r]);
+  }
+  return mpmi_agree(c, status);
+}
+
+/* Numbers the rows of all parts, part by part, where the pattern has changed on any of them. */
+static mpm_status number_rows(mpm_operator *op, mpm_status status) {
+  mpm_context *c = op->context;
+  int64_t is_new = status || op->numbered != op->A->pattern_id;
+  if (status) op->numbered = -1; /* the memory of the numbers may be another one */
+  if ((status = mpmi_agree(c, status)) || (status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 1, &is_new)) ||
+      !is_new)
+    return status;
+  op->numbered = -1;
+  ++op->pattern_id;
+  if ((status = mpmi_gather_parts(c, op->own, op->rows_of))) return status;
+  op->first = op->all = 0;
+  for (int32_t r = 0; r < c->transport.parts; ++r) {
+    if (r < c->transport.part) op->first += op->rows_of[r];
+    op->all += op->rows_of[r];
+  }
+  if (!(status = take_numbers(op))) op->numbered = op->A->pattern_id;
+  return status;
+}
+
+/* Parts meet for a product, or where their solver has returned (collective). A product is made when all want
+ * it and none is refused; else it fails on those who want it. *any: somebody wants one. */
+static mpm_status meet(mpm_operator *op, int32_t wants, mpm_status status, int32_t *any) {
+  mpm_context *c = op->context;
+  int64_t word[] = {wants, !wants || status};
+  const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 2, word);
+  *any = !lost && word[0];
+  if (lost || !word[0] || !word[1]) return lost;
+  if (!wants)
+    status = mpmi_fail(c, MPM_E_STATE,
+                       "the linear solver has returned here, and applies the matrix on another part");
+  return mpmi_agree(c, status);
+}
+
+mpm_status mpmi_operator_open(mpm_operator *op, const mpmi_matrix *A, int32_t positive_definite) {
+  mpm_status status = open_here(op, A);
+  if (A->shared) {
+    op->A = A;
+    status = number_rows(op, status);
+  }
+  if (status) return status;
+  for (int64_t r = 0; r < op->rows && !A->shared; ++r) op->number[r] = r;
+  if (!A->shared) {
+    op->all = op->rows;
+    op->first = 0;
+    op->pattern_id = A->pattern_id;
+  }
+  op->positive_definite = positive_definite;
   op->open = 1;
   return MPM_OK;
 }
 
 void mpmi_operator_close(mpm_operator *op) {
+  int32_t any = op->A->shared != NULL;
   op->open = 0;
+  while (any) meet(op, 0, MPM_OK, &any);
 }
 
 void mpmi_operator_compress(const mpm_operator *op, const double *full, double *rows) {
-  for (int64_t r = 0; r < op->rows; ++r) rows[r] = full[op->unknown[r]];
+  for (int64_t r = 0; r < op->own; ++r) rows[r] = full[op->unknown[r]];
 }
 
 void mpmi_operator_expand(const mpm_operator *op, const double *rows, double *full) {
-  for (int64_t u = 0; u < mpmi_matrix_unknowns(op->A); ++u) full[u] = op->row[u] < 0 ? 0.0 : rows[op->row[u]];
+  for (int64_t u = 0; u < mpmi_matrix_unknowns(op->A); ++u)
+    full[u] = op->row[u] < 0 || op->row[u] >= op->own ? 0.0 : rows[op->row[u]];
 }
 
-static void write_row(mpm_operator *op, int64_t r, int64_t *count) {
+/* ---- rows of the matrix -------------------------------------------------------------------------------- */
+/* Writes the entries of a row whose columns are of rows from `first` up to `end`. */
+static void write_columns(mpm_operator *op, int64_t r, int64_t first, int64_t end, int64_t *count) {
   const mpmi_matrix *A = op->A;
   const int64_t block = A->block, node = op->unknown[r] / block, component = op->unknown[r] % block;
   for (int64_t e = A->row_start[node]; e < A->row_start[node + 1]; ++e)
     for (int64_t c = 0; c < block; ++c) {
       const int32_t column = op->row[A->column[e] * block + c];
-      if (column < 0) continue;
+      if (column < first || column >= end) continue;
       op->column[*count] = column;
       op->value[(*count)++] = A->value[(e * block + component) * block + c];
     }
@@ -110,18 +217,21 @@ static mpm_status make_rows(mpm_operator *op) {
   mpm_context *context = op->context;
   mpm_status status = mpmi_reserve(context, (void **)&op->row_start, &op->row_start_capacity, op->rows + 1,
                                    sizeof *op->row_start);
+  /* one more, so that the arrays exist without entries */
+  if (!status)
+    status = mpmi_reserve(context, (void **)&op->column, &op->column_capacity, op->nonzeros + 1,
+                          sizeof *op->column);
   if (!status)
     status =
-        mpmi_reserve(context, (void **)&op->column, &op->column_capacity, op->nonzeros, sizeof *op->column);
-  if (!status)
-    status = mpmi_reserve(context, (void **)&op->value, &op->value_capacity, op->nonzeros, sizeof *op->value);
+        mpmi_reserve(context, (void **)&op->value, &op->value_capacity, op->nonzeros + 1, sizeof *op->value);
   if (status) return status;
   int64_t count = 0;
-  for (int64_t r = 0; r < op->rows; ++r) {
+  for (int64_t r = 0; r < op->own; ++r) {
     op->row_start[r] = count;
-    write_row(op, r, &count);
+    write_columns(op, r, 0, op->own, &count);
+    if (op->own < op->rows) write_columns(op, r, op->own, op->rows, &count);
   }
-  op->row_start[op->rows] = count;
+  for (int64_t r = op->own; r <= op->rows; ++r) op->row_start[r] = count;
   op->has_rows = 1;
   return MPM_OK;
 }
@@ -145,17 +255,29 @@ mpm_status mpm_operator_get_info(const mpm_operator *matrix, mpm_operator_info *
   mpm_status status = check_open(matrix);
   if (status) return status;
   if (!info) return mpmi_fail(matrix->context, MPM_E_ARG, "info is NULL");
+  status = mpmi_check_out_struct(matrix->context, "mpm_operator_info", (uint32_t)sizeof *info, info);
+  if (status) return status;
+  const uint32_t needed = (uint32_t)(offsetof(mpm_operator_info, number) + sizeof info->number);
+  if (matrix->A->shared && info->struct_size < needed)
+    return mpmi_fail(matrix->context, MPM_E_UNSUPPORTED,
+                     "mpm_operator_info: struct_size is %u: with several parts a host needs the numbers of "
+                     "rows, which stand in %u bytes",
+                     info->struct_size, needed);
   const mpm_operator_info known = {.struct_size = sizeof known,
                                    .block = matrix->A->block,
                                    .symmetric = matrix->A->symmetric,
                                    .positive_definite = matrix->positive_definite,
                                    .rows = matrix->rows,
                                    .nonzeros = matrix->nonzeros,
-                                   .pattern_id = matrix->A->pattern_id,
+                                   .pattern_id = matrix->pattern_id,
                                    .ld = matrix->rows,
                                    .node = matrix->node,
                                    .component = matrix->component,
-                                   .position = matrix->position};
+                                   .position = matrix->position,
+                                   .first_row = matrix->first,
+                                   .owned_rows = matrix->own,
+                                   .all_rows = matrix->all,
+                                   .number = matrix->number};
   return mpmi_write_struct(matrix->context, "mpm_operator_info", &known, sizeof known, info);
 }
 
@@ -163,9 +285,13 @@ mpm_status mpm_operator_apply(const mpm_operator *matrix, const double *x, doubl
   ENTER(matrix);
   mpm_status status = check_open(matrix);
   if (status) return status;
-  if (!x || !y) return mpmi_fail(matrix->context, MPM_E_ARG, "%s is NULL", x ? "y" : "x");
+  if (!x || !y) status = mpmi_fail(matrix->context, MPM_E_ARG, "%s is NULL", x ? "y" : "x");
+  int32_t any;
+  if (matrix->A->shared) status = meet((mpm_operator *)(uintptr_t)matrix, 1, status, &any);
+  if (status) return status;
   mpmi_operator_expand(matrix, x, matrix->x);
-  status = mpmi_matrix_apply(matrix->A, matrix->x, matrix->y);
+  if (matrix->A->shared) status = mpmi_rows_complete(matrix->A->shared, matrix->x);
+  if (!status) status = mpmi_matrix_apply(matrix->A, matrix->x, matrix->y);
   if (!status) mpmi_operator_compress(matrix, matrix->y, y);
   return status;
 }

@@ -1,4 +1,6 @@
-/* The host's solver sees the linear system without held unknowns. */
+/* The host's solver sees the linear system without held unknowns. Of several parts each lends the rows that
+ * it owns, which are complete; the rows of others that these name in their columns stand behind them,
+ * empty. */
 #ifndef MPMI_OPERATOR_H
 #define MPMI_OPERATOR_H
 
@@ -12,8 +14,10 @@ struct mpm_operator {
   const mpmi_matrix *A;
   int32_t positive_definite;
   int64_t rows, nonzeros;
-  int64_t *unknown;   /* [rows] place in vectors of the matrix */
-  int32_t *row;       /* [unknowns of the matrix] the other way, -1 where held */
+  int64_t own, first, all; /* rows that are owned here, of them the first's number, rows of all parts */
+  int64_t *unknown;        /* [rows] place in vectors of the matrix */
+  int32_t *row;       /* [unknowns of the matrix] the other way, -1 where held, or of no use to owned rows */
+  int64_t *number;    /* [rows] over all parts */
   int64_t *node;      /* [rows] */
   int32_t *component; /* [rows] */
   double *position;   /* [3][rows] */
@@ -23,18 +27,22 @@ struct mpm_operator {
   int64_t *row_start;
   int32_t *column;
   double *value;
+  /* Of several parts: the matrix' pattern that the numbers are of, -1: of none; what the host is told, which
+   * changes on all parts together; rows of each part. */
+  int64_t numbered, pattern_id;
+  int64_t *rows_of;
   char *slab;
-  int64_t slab_capacity, row_start_capacity, column_capacity, value_capacity;
+  int64_t slab_capacity, row_start_capacity, column_capacity, value_capacity, rows_of_capacity;
 };
 
 void mpmi_operator_init(mpm_operator *op, mpm_context *context);
 void mpmi_operator_free(mpm_operator *op);
-/* Lends the matrix until mpmi_operator_close(). */
+/* Lends the matrix until mpmi_operator_close(); of several parts all do both together. */
 mpm_status mpmi_operator_open(mpm_operator *op, const mpmi_matrix *A, int32_t positive_definite);
 void mpmi_operator_close(mpm_operator *op);
 
-/* These convert between vectors of the matrix and those of the host, which have no held unknowns;
- * expanding writes zeros there. */
+/* These convert between vectors of the matrix and those of the host, which have owned rows and no held
+ * unknowns; expanding writes zeros there. */
 void mpmi_operator_compress(const mpm_operator *op, const double *full, double *rows);
 void mpmi_operator_expand(const mpm_operator *op, const double *rows, double *full);
 

@@ -210,7 +210,7 @@ static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) 
   if (choice >= MPM_SOLVER_CG && choice <= MPM_SOLVER_LDLT && !job->matrix->symmetric)
     return mpmi_fail(context, MPM_E_UNSUPPORTED, "%s is for symmetric matrices, and this one is not: use %s",
                      symmetric_only[choice],
-                     job->matrix->shared ? "a context without a transport"
+                     job->matrix->shared ? "MPM_SOLVER_HOST, or a context without a transport"
                                          : "MPM_SOLVER_GMRES or MPM_SOLVER_AUTO");
   if (choice != MPM_SOLVER_HOST && (choice < MPM_SOLVER_AUTO || choice > MPM_SOLVER_GMRES))
     return mpmi_fail(context, MPM_E_ARG, "linear_solver is %d, must be MPM_SOLVER_AUTO ... MPM_SOLVER_HOST",

@@ -15,8 +15,9 @@ static const char *not_implicit(const mpm_stepper *s, const char **instead) {
   const mpmi_settings *settings = &s->settings;
   int32_t bodies = 0;
   for (int32_t m = 0; m < s->layout.member_count; ++m) bodies |= s->layout.member[m].body != 0;
-  *instead = "MPM_SOLVER_CG";
-  if (settings->desc.linear_solver > MPM_SOLVER_CG) return "a linear solver other than conjugate gradients";
+  *instead = "MPM_SOLVER_CG or MPM_SOLVER_HOST";
+  if (settings->desc.linear_solver > MPM_SOLVER_CG && settings->desc.linear_solver != MPM_SOLVER_HOST)
+    return "a linear solver other than conjugate gradients and the host's";
   *instead = "a new stepper";
   if (!s->layout.parts->names_owners) return "scheme MPM_NEWMARK in a stepper that was made with another one";
   *instead = "MPM_USL, MPM_USF or MPM_MUSL";
@@ -80,6 +81,7 @@ static int64_t fingerprint(const mpm_stepper *s) {
                                 (surface->heat.film > 0.0)));
   }
   for (int32_t i = 0; i < 3; ++i) h = fold_word(h, settings->hook[i] != NULL);
+  if (settings->desc.linear_solver == MPM_SOLVER_HOST) h = fold_word(h, settings->solver != NULL);
   return (int64_t)(fold_word(h, settings->velocity_bc != NULL) >> 2);
 }
 
@@ -137,9 +139,10 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
     return mpmi_fail(c, MPM_E_STATE,
                      "the stepper has other numbers of sets on other parts: add the same to all");
   if (word[8] != ~word[9])
-    return mpmi_fail(c, MPM_E_STATE,
-                     "the stepper is set up otherwise on another part: give it the same description, walls, "
-                     "bodies, adaption, obstacles, surfaces, hooks and velocities of nodes on all");
+    return mpmi_fail(
+        c, MPM_E_STATE,
+        "the stepper is set up otherwise on another part: give it the same description, walls, "
+        "bodies, adaption, obstacles, surfaces, hooks, velocities of nodes and linear solver on all");
   if (word[10] != ~word[11])
     return mpmi_fail(c, MPM_E_STATE,
                      "surfaces have other numbers of markers on other parts: all parts have all markers");

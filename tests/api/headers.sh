@@ -11,14 +11,15 @@ compile() { # compiler, standard, language, header
   local source=$scratch/$1-$2.$3
   printf '#include <%s>\n#include <%s>\nint used(void);\nint used(void) { return 0; }\n' "$4" "$4" > "$source"
   # shellcheck disable=SC2086
-  "$1" -std="$2" $warnings -Iinclude -Iumat/include -Impi/include -Impi/parsers -c "$source" -o "$source.o"
+  "$1" -std="$2" $warnings -Iinclude -Iumat/include -Impi/include -Ipetsc/include -Impi/parsers -c "$source" -o "$source.o"
 }
 
 count=0
-for path in include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/mpm/*.hpp mpi/include/mpm/*.h mpi/include/mpm/*.hpp; do
+for path in include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/mpm/*.hpp mpi/include/mpm/*.h mpi/include/mpm/*.hpp petsc/include/mpm/*.h petsc/include/mpm/*.hpp; do
   [ -e "$path" ] || continue
   header=${path#umat/}
   header=${header#mpi/}
+  header=${header#petsc/}
   header=${header#include/}
   case $path in
   *.hpp) ;;
@@ -27,7 +28,7 @@ for path in include/mpm/*.h include/mpm/*.hpp umat/include/mpm/*.h umat/include/
       compile gcc $standard c "$header"
       compile clang $standard c "$header"
     done
-    gcc -E -P -std=c99 -Iinclude -Iumat/include -Impi/include -Impi/parsers "$path" > "$scratch/expanded"
+    gcc -E -P -std=c99 -Iinclude -Iumat/include -Impi/include -Ipetsc/include -Impi/parsers "$path" > "$scratch/expanded"
     if grep -nwE 'inline|_Bool|bool|FILE|va_list' "$scratch/expanded"; then
       echo "headers.sh: $path is more than plain declarations" >&2
       exit 1

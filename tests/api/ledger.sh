@@ -6,7 +6,7 @@ BUILD=${BUILD:-build} CC=${CC:-cc}
 scratch=${MPM_SCRATCH:-$BUILD/tests/scratch}/ledger
 rm -rf "$scratch"
 mkdir -p "$scratch"
-headers="include/mpm/*.h umat/include/mpm/*.h mpi/include/mpm/*.h"
+headers="include/mpm/*.h umat/include/mpm/*.h mpi/include/mpm/*.h petsc/include/mpm/*.h"
 # shellcheck disable=SC2086
 ledger=$scratch/ledger
 sed -n '/^# Ledger/,$p' ABI.md > "$ledger"
@@ -19,10 +19,11 @@ same() { # what, in the ledger, in the library
 }
 
 sed -n '/^### Functions/,/^### /p' "$ledger" | grep -o '`mpm_[a-z0-9_]*`' | tr -d '`' | sort > "$scratch/functions"
-# libmpm-mpi need not be there: mpi/tests/run.sh compares what it exports with its header
+# libmpm-mpi and libmpm-petsc need not be there: their tests compare what they export with their headers
 {
   for library in libmpm libmpm-umat; do nm -D --defined-only "$BUILD/$library.so"; done | awk '$3 ~ /^mpm_/ { sub("@.*", "", $3); print $3 }'
   sed -nE 's/^MPM_MPI_API .*[ *](mpm_mpi_[a-z_]+)\(.*/\1/p' mpi/include/mpm/mpm_mpi.h
+  sed -nE 's/^MPM_PETSC_API .*[ *](mpm_petsc_[a-z_]+)\(.*/\1/p' petsc/include/mpm/mpm_petsc.h
 } | sort > "$scratch/exported"
 same functions "$scratch/functions" "$scratch/exported"
 
@@ -35,14 +36,14 @@ same constants "$scratch/constants" "$scratch/declared"
 sed -nE 's/^\| `(mpm_[a-z_]+)` \| ([0-9]+) \|.*/\1 \2/p' "$ledger" | awk '{ size[$1] = $2 } END { for (s in size) print s, size[s] }' |
   sort > "$scratch/sizes"
 {
-  printf '#include <mpm/%s.h>\n' mpm_umat mpm_mpi
+  printf '#include <mpm/%s.h>\n' mpm_umat mpm_mpi mpm_petsc
   echo '#include <stdio.h>'
   echo 'int main(void) {'
   sed -nE 's/^\} (mpm_[a-z_]+);.*/  printf("%s %zu\\n", "\1", sizeof(\1));/p' $headers
   echo '  return 0;'
   echo '}'
 } > "$scratch/sizes.c"
-"$CC" -std=c11 -Iinclude -Iumat/include -Impi/include -Impi/parsers "$scratch/sizes.c" -o "$scratch/sizes_of"
+"$CC" -std=c11 -Iinclude -Iumat/include -Impi/include -Ipetsc/include -Impi/parsers "$scratch/sizes.c" -o "$scratch/sizes_of"
 if [ "$(getconf LONG_BIT)" = 64 ]; then
   "$scratch/sizes_of" | sort > "$scratch/actual"
   same sizes "$scratch/sizes" "$scratch/actual"

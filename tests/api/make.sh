@@ -6,7 +6,7 @@ MAKE=${MAKE:-make}
 scratch=${MPM_SCRATCH:-${BUILD:-build}/tests/scratch}/make
 rm -rf "$scratch"
 mkdir -p "$scratch"
-files="Makefile tests/tests.mk bindings/bindings.mk bindings/javascript/rules.mk packaging/packaging.mk mpi/mpi.mk"
+files="Makefile tests/tests.mk bindings/bindings.mk bindings/javascript/rules.mk packaging/packaging.mk mpi/mpi.mk petsc/petsc.mk"
 
 # shellcheck disable=SC2086
 sed -n 's/^\.PHONY://p' $files | tr ' ' '\n' | sed '/^$/d' | sort > "$scratch/phony"

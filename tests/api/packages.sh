@@ -35,7 +35,7 @@ awk '/^[^ ]/ { inside = /^Description:/ } inside { print FNR ": " $0 }' $debian/
 symbols() { # library, package
   local file=$debian/$2.symbols
   [ "$(head -n 1 "$file")" = "$1.so.0 $2 #MINVER#" ] || fail "$file: the first line is not that of $1.so.0"
-  ! grep -nvE '^[^ ]+\.so\.0 [^ ]+ #MINVER#$|^\* Build-Depends-Package: libmpm(-mpi)?-dev$|^ [A-Za-z_0-9]+@[A-Z_0-9]+ [0-9.]+~?$' "$file" || fail "$file: another form of lines"
+  ! grep -nvE '^[^ ]+\.so\.0 [^ ]+ #MINVER#$|^\* Build-Depends-Package: libmpm(-mpi|-petsc)?-dev$|^ [A-Za-z_0-9]+@[A-Z_0-9]+ [0-9.]+~?$' "$file" || fail "$file: another form of lines"
   sed -n 's/^ \([^ ]*\) .*/\1/p' "$file" | LC_ALL=C sort > "$scratch/listed"
   # the node of versions is a symbol as well
   nm -D --defined-only --with-symbol-versions "$BUILD/$1.so" |
@@ -47,6 +47,7 @@ symbols libmpm libmpm0
 symbols libmpm-umat libmpm-umat0
 # where it was made
 [ ! -e "$BUILD/libmpm-mpi.so" ] || symbols libmpm-mpi libmpm-mpi0
+[ ! -e "$BUILD/libmpm-petsc.so" ] || symbols libmpm-petsc libmpm-petsc0
 
 # Each of these functions has a manual page, which may be a link to that of its header.
 "$MAKE" -s BUILD="$scratch/man" man

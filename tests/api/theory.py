@@ -1,7 +1,7 @@
 """Do the files and symbols that the documents name exist?  theory.py [ROOT]
 
 In docs/theory.md everything in backticks is looked at. A file must be there, and be the only one that its name can
-mean. An identifier must be a function, macro, constant, type or member of src/ or include/, here or in umat/ or mpi/, or a name of the interface
+mean. An identifier must be a function, macro, constant, type or member of src/ or include/, here or in umat/, mpi/ or petsc/, or a name of the interface
 (a string in src/). A symbol in front of a file, "`symbol`, ..., `file`" or "`symbol` in `file`", must be declared there,
 and each internal function must stand so in one place at least. In the other documents files and names that begin with
 mpm_ or mpmi_ are looked at.
@@ -144,12 +144,12 @@ files = set(files)
 places = files | {f[:i] for f in files for i in range(len(f)) if f[i] == '/'}
 symbols_in, every, interface, public = {}, set(), set(), set()
 for path in files:
-    if re.match(r'((umat|mpi)/)?(src|include)/.*\.(c|h|hpp)$', path):
+    if re.match(r'((umat|mpi|petsc)/)?(src|include)/.*\.(c|h|hpp)$', path):
         text = read(path)
         symbols_in[path], literals = symbols_of(text)
         every |= symbols_in[path]
         interface |= literals
-        if path.startswith(('include/', 'umat/include/', 'mpi/include/')):
+        if path.startswith(('include/', 'umat/include/', 'mpi/include/', 'petsc/include/')):
             public |= set(re.findall(r'\w+', STRIP.sub(' ', text)))
 functions = {name for name in every - public - interface if name.islower()}  # with types and members
 every |= public

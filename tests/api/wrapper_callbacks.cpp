@@ -112,6 +112,8 @@ void linear_solver() {
     const mpm::csr_matrix matrix = system.csr();
     const auto n = static_cast<std::size_t>(system.info().rows);
     CHECK(matrix.row_start.size() == n + 1 && matrix.column.size() == matrix.value.size());
+    CHECK(system.number().size() == n && system.number()[n - 1] == system.info().all_rows - 1);
+    CHECK(system.info().owned_rows == system.info().rows && system.info().first_row == 0);
     std::vector<double> r(system.rhs().begin(), system.rhs().end()), q(n);
     const mpm::span<double> x = system.solution();
     const auto dot = [n](const auto &a, const auto &b) {

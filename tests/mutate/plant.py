@@ -15,7 +15,7 @@ import sys
 
 FAULTS = pathlib.Path(os.environ.get("MUTATE_FAULTS", "tests/mutate/faults.txt"))
 SOURCES = ("src/**/*.[ch]", "include/mpm/*.h", "include/mpm/*.hpp", "umat/src/*.[ch]", "umat/utilities/*.[ch]",
-           "mpi/src/*.[ch]")
+           "mpi/src/*.[ch]", "petsc/src/*.[ch]")
 
 TOKEN = re.compile(r"""
     (?P<space>\s+ | \\\n | //[^\n]* | /\*.*?\*/)

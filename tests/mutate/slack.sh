@@ -7,7 +7,7 @@ export MUTATE_FAULTS=tests/mutate/slack.txt MPM_ISA=baseline
 copy=$BUILD/slack
 rm -rf "$copy/tests" "$copy/src"
 mkdir -p "$copy/scratch"
-cp -a --parents Makefile platform.mk {bindings/bindings,bindings/javascript/rules,packaging/packaging}.mk include src umat mpi tests \
+cp -a --parents Makefile platform.mk {bindings/bindings,bindings/javascript/rules,packaging/packaging}.mk include src umat mpi petsc tests \
   "$copy"
 cd "$copy"
 

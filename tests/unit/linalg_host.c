@@ -38,11 +38,13 @@ static void check_info(const host *h, const mpm_operator *matrix, mpm_operator_i
   ck_ok(NULL, mpm_operator_get_info(matrix, info));
   ck_assert(info->block == of->block && info->symmetric == of->symmetric && info->positive_definite == 1);
   ck_assert(info->pattern_id == of->pattern_id && info->ld >= info->rows);
+  ck_assert(info->first_row == 0 && info->owned_rows == info->rows && info->all_rows == info->rows);
   int64_t r = 0;
   for (int64_t u = 0; u < mpmi_matrix_unknowns(of); ++u) {
     if (of->held[u]) continue;
     ck_assert_int_eq(info->node[r], of->number[u / of->block]);
     ck_assert_int_eq(info->component[r], u % of->block);
+    ck_assert_int_eq(info->number[r], r);
     for (int64_t k = 0; k < 3; ++k)
       ck_assert(info->position[k * info->ld + r] == of->position[3 * (u / of->block) + k]);
     ++r;

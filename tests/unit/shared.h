@@ -84,6 +84,12 @@ void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count);
 /* Plays the scene in one part, and then in several. Returns what it has come to. */
 mpm_status check_scene(const scene *is, const char *name, int32_t parts);
 
+/* An implicit step by conjugate gradients, quasi-static or by Newmark's rule. Which options it has: bits of
+ * `speed`, which is no velocity there: some particles are led, some nodes are held, a force pulls, bodies
+ * move at first. */
+enum { LEADS = 1, HOLDS = 2, PULLS = 4, MOVES = 8 };
+scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_static);
+
 /* The scene must come to its end. */
 void check_made(const scene *is, const char *name, int32_t parts);
 

@@ -49,9 +49,6 @@ static mpm_status pull(void *user, const mpm_particle_batch *batch, double *forc
   return MPM_OK;
 }
 
-/* Which options a scene has: bits of `speed`, which is no velocity here. */
-enum { LEADS = 1, HOLDS = 2, PULLS = 4, MOVES = 8 };
-
 /* A set beside the first, which it would not fall off. */
 static mpm_status fill_beside(mpm_particles *set, double low) {
   const double from[] = {0.5, low, low}, to[] = {0.62, 0.5, 0.5};
@@ -85,7 +82,7 @@ static mpm_status run_implicit(world *w, const scene *is, outcome *found) {
 /* Blocks are 64, 16 and 6 nodes wide. */
 static const int32_t cells_of[] = {0, 260, 44, 13};
 
-static scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_static) {
+scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_static) {
   scene is = scene_of(dim, cells_of[dim] * (dim < 3 && !quasi_static ? 2 : 1), set_up_implicit);
   use_basis(basis, &is.desc.grid);
   is.desc.stepper.scheme = MPM_NEWMARK;

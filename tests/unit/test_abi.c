@@ -528,7 +528,7 @@ END_TEST
 
 #define STRUCT mpm_operator_info
 START_TEST(layout_of_operator_info) {
-  SIZE(72);
+  SIZE(104);
   AT(0, struct_size);
   AT(4, block);
   AT(8, symmetric);
@@ -540,6 +540,10 @@ START_TEST(layout_of_operator_info) {
   AT(48, node);
   AT(56, component);
   AT(64, position);
+  AT(72, first_row);
+  AT(80, owned_rows);
+  AT(88, all_rows);
+  AT(96, number);
 }
 END_TEST
 #undef STRUCT

@@ -174,7 +174,7 @@ namespace Mpm {
     static void CheckOperatorInfo() {
       var it = new OperatorInfo();
       byte* at = (byte*)&it;
-      Compare("OperatorInfo", sizeof(OperatorInfo), 72, 64);
+      Compare("OperatorInfo", sizeof(OperatorInfo), 104, 96);
       Compare("OperatorInfo.struct_size", (byte*)&it.struct_size - at, 0, 0);
       Compare("OperatorInfo.block", (byte*)&it.block - at, 4, 4);
       Compare("OperatorInfo.symmetric", (byte*)&it.symmetric - at, 8, 8);
@@ -186,6 +186,10 @@ namespace Mpm {
       Compare("OperatorInfo.node", (byte*)&it.node - at, 48, 48);
       Compare("OperatorInfo.component", (byte*)&it.component - at, 56, 52);
       Compare("OperatorInfo.position", (byte*)&it.position - at, 64, 56);
+      Compare("OperatorInfo.first_row", (byte*)&it.first_row - at, 72, 64);
+      Compare("OperatorInfo.owned_rows", (byte*)&it.owned_rows - at, 80, 72);
+      Compare("OperatorInfo.all_rows", (byte*)&it.all_rows - at, 88, 80);
+      Compare("OperatorInfo.number", (byte*)&it.number - at, 96, 88);
     }
 
     static void CheckStepperDesc() {

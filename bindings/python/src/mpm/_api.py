@@ -679,7 +679,13 @@ class material_batch(Structure):
 class operator_info(Structure):
     """A linear system. The caller sets struct_size. The arrays belong to the library and are valid until the solve
     callback returns. A row is one component of one node; nodes and components whose displacement is prescribed have
-    none."""
+    none. Rows of one node follow each other, by ascending component.
+
+    With several parts a row is owned by exactly one part. Local rows 0 to owned_rows - 1 are those that this part
+    owns, in the order of nodes that it has; they are numbered first_row, first_row + 1, ... over all parts, part by
+    part. Behind them stand rows that other parts own, those alone that columns of owned rows name: they have number,
+    node, component and position, and no entries of their own. Every vector has owned_rows entries. With one part all
+    rows are owned, and number[i] is i."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -693,6 +699,10 @@ class operator_info(Structure):
         ("node", c_void_p),
         ("component", c_void_p),
         ("position", c_void_p),
+        ("first_row", c_int64),
+        ("owned_rows", c_int64),
+        ("all_rows", c_int64),
+        ("number", c_void_p),
     ]
 
 
@@ -1176,7 +1186,7 @@ SIZES = {
     grid_desc: (120, 120),
     material_batch: (144, 96),
     material_desc: (64, 48),
-    operator_info: (72, 64),
+    operator_info: (104, 96),
     stepper_desc: (176, 176),
     step_info: (248, 248),
     particle_batch: (104, 72),
@@ -1752,16 +1762,21 @@ the old reference. Since 0.2.0.""",
     "mpm_operator_get_info": """mpm_status mpm_operator_get_info(const mpm_operator *matrix, mpm_operator_info *info)
 
 Describes the system. This call and the two below may be made from within the solve callback only, one at a time; at
-other times they return MPM_E_STATE.""",
+other times they return MPM_E_STATE. It waits for no other part. MPM_E_UNSUPPORTED: there are several parts, and
+struct_size is that of a release without number.""",
     "mpm_operator_apply": """mpm_status mpm_operator_apply(const mpm_operator *matrix, const double *x, double *y)
 
-Computes y = matrix * x. Both vectors have the rows of the system and do not overlap.""",
+Computes y = matrix * x on owned rows. Both vectors have owned_rows entries and do not overlap.
+
+With several parts it is (collective): x of rows that others own comes from them. It fails on all parts that make it
+when one is refused, and with MPM_E_STATE when the solver has returned on a part, so that nobody waits.""",
     "mpm_operator_csr": """mpm_status mpm_operator_csr(const mpm_operator *matrix, const int64_t **row_start, const int32_t **column, const
 double **value)
 
 Lends the matrix by compressed rows, with both triangles and with columns in ascending order: row r has the entries
-(*row_start)[r] to (*row_start)[r + 1] - 1 of *column and *value. The arrays belong to the library and are valid until
-the solve callback returns. MPM_E_NOMEM: there is no memory for them.""",
+(*row_start)[r] to (*row_start)[r + 1] - 1 of *column and *value. Columns are local ones, and number of
+mpm_operator_info has those over all parts; rows that others own are empty. The arrays belong to the library and are
+valid until the solve callback returns. It waits for no other part. MPM_E_NOMEM: there is no memory for them.""",
     "mpm_stepper_desc_init": """mpm_status mpm_stepper_desc_init(mpm_stepper_desc *desc, uint32_t struct_size)
 
 Fills desc with the defaults. struct_size is sizeof(mpm_stepper_desc) of the caller; no byte beyond is written.

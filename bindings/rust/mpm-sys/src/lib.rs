@@ -543,12 +543,18 @@ pub type mpm_inside_fn = Option<unsafe extern "C" fn(
 ) -> mpm_status>;
 
 /// Solves matrix * solution = rhs. Runs on the calling thread. Both vectors have as many entries as
-/// mpm_operator_get_info() reports rows, and solution is preset to the best guess known. The host writes the solution,
-/// and into *iterations the number that linear_iterations is to count.
+/// mpm_operator_get_info() reports owned rows, and solution is preset to the best guess known. The host writes the
+/// solution, and into *iterations the number that linear_iterations is to count.
 ///
 /// - tolerance: the wanted ||matrix * solution - rhs|| / ||rhs||.
 ///
 /// Returns 0, a value > 0 if the system was not solved (MPM_CUT_DT), or a value < 0 to stop (MPM_E_CALLBACK).
+///
+/// With several parts (parallel.h) it is called on all of them, and solves the system of all rows together: each part
+/// lends the rows that it owns, complete, with the right-hand side on them, and takes its part of the solution. Where the
+/// solver returns another value than 0 on a part, all parts have the outcome of the lowest such; of the iterations the
+/// largest number counts. The residual is checked over all parts. A solver that waits for its other parts ends on all of
+/// them when it ends on one.
 pub type mpm_solve_fn = Option<unsafe extern "C" fn(
     user: *mut c_void,
     matrix: *const mpm_operator,
@@ -1052,7 +1058,14 @@ impl Default for mpm_material_desc {
 }
 
 /// A linear system. The caller sets struct_size. The arrays belong to the library and are valid until the solve callback
-/// returns. A row is one component of one node; nodes and components whose displacement is prescribed have none.
+/// returns. A row is one component of one node; nodes and components whose displacement is prescribed have none. Rows of
+/// one node follow each other, by ascending component.
+///
+/// With several parts a row is owned by exactly one part. Local rows 0 to owned_rows - 1 are those that this part owns,
+/// in the order of nodes that it has; they are numbered first_row, first_row + 1, ... over all parts, part by part.
+/// Behind them stand rows that other parts own, those alone that columns of owned rows name: they have number, node,
+/// component and position, and no entries of their own. Every vector has owned_rows entries. With one part all rows are
+/// owned, and number[i] is i.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct mpm_operator_info {
@@ -1064,11 +1077,11 @@ pub struct mpm_operator_info {
     pub symmetric: i32,
     /// 1 if the matrix is expected to be positive definite, which is not checked
     pub positive_definite: i32,
-    /// number of rows and of columns
+    /// number of local rows and of local columns
     pub rows: i64,
-    /// number of stored entries
+    /// number of stored entries, all of them in owned rows
     pub nonzeros: i64,
-    /// a number that stays the same as long as the sparsity does
+    /// a number that stays the same as long as the sparsity does, on all parts
     pub pattern_id: i64,
     /// distance from component c to c + 1 of position, in elements; >= rows
     pub ld: i64,
@@ -1078,6 +1091,14 @@ pub struct mpm_operator_info {
     pub component: *const i32,
     /// [dim][ld] position of the node of each row, for near-null spaces
     pub position: *const f64,
+    /// number of the first owned row over all parts; 0 with one part
+    pub first_row: i64,
+    /// number of rows that this part owns; rows with one part
+    pub owned_rows: i64,
+    /// number of rows of all parts together
+    pub all_rows: i64,
+    /// [rows] number of each local row over all parts
+    pub number: *const i64,
 }
 
 impl Default for mpm_operator_info {
@@ -2474,13 +2495,17 @@ extern "C" {
     pub fn mpm_particles_reset_reference(particles: *mut mpm_particles) -> mpm_status;
 
     /// Describes the system. This call and the two below may be made from within the solve callback only, one at a time;
-    /// at other times they return MPM_E_STATE.
+    /// at other times they return MPM_E_STATE. It waits for no other part. MPM_E_UNSUPPORTED: there are several parts,
+    /// and struct_size is that of a release without number.
     pub fn mpm_operator_get_info(
         matrix: *const mpm_operator,
         info: *mut mpm_operator_info,
     ) -> mpm_status;
 
-    /// Computes y = matrix * x. Both vectors have the rows of the system and do not overlap.
+    /// Computes y = matrix * x on owned rows. Both vectors have owned_rows entries and do not overlap.
+    ///
+    /// With several parts it is (collective): x of rows that others own comes from them. It fails on all parts that make
+    /// it when one is refused, and with MPM_E_STATE when the solver has returned on a part, so that nobody waits.
     pub fn mpm_operator_apply(
         matrix: *const mpm_operator,
         x: *const f64,
@@ -2488,8 +2513,9 @@ extern "C" {
     ) -> mpm_status;
 
     /// Lends the matrix by compressed rows, with both triangles and with columns in ascending order: row r has the
-    /// entries (*row_start)[r] to (*row_start)[r + 1] - 1 of *column and *value. The arrays belong to the library and are
-    /// valid until the solve callback returns. MPM_E_NOMEM: there is no memory for them.
+    /// entries (*row_start)[r] to (*row_start)[r + 1] - 1 of *column and *value. Columns are local ones, and number of
+    /// mpm_operator_info has those over all parts; rows that others own are empty. The arrays belong to the library and
+    /// are valid until the solve callback returns. It waits for no other part. MPM_E_NOMEM: there is no memory for them.
     pub fn mpm_operator_csr(
         matrix: *const mpm_operator,
         row_start: *mut *const i64,

@@ -170,7 +170,7 @@ fn layout_of_mpm_material_desc() {
 
 #[test]
 fn layout_of_mpm_operator_info() {
-    assert_eq!(size_of::<mpm_operator_info>(), of(72, 64));
+    assert_eq!(size_of::<mpm_operator_info>(), of(104, 96));
     assert_eq!(offset!(mpm_operator_info, struct_size), of(0, 0));
     assert_eq!(offset!(mpm_operator_info, block), of(4, 4));
     assert_eq!(offset!(mpm_operator_info, symmetric), of(8, 8));
@@ -182,6 +182,10 @@ fn layout_of_mpm_operator_info() {
     assert_eq!(offset!(mpm_operator_info, node), of(48, 48));
     assert_eq!(offset!(mpm_operator_info, component), of(56, 52));
     assert_eq!(offset!(mpm_operator_info, position), of(64, 56));
+    assert_eq!(offset!(mpm_operator_info, first_row), of(72, 64));
+    assert_eq!(offset!(mpm_operator_info, owned_rows), of(80, 72));
+    assert_eq!(offset!(mpm_operator_info, all_rows), of(88, 80));
+    assert_eq!(offset!(mpm_operator_info, number), of(96, 88));
 }
 
 #[test]
