@@ -18,8 +18,8 @@
  * (collective) are: mpm_context_create(), save that memory may fail on one part alone; adding and filling
  * particles, where each part adds its own and numbers without ids follow those of the parts before;
  * mpm_step() and its three parts, mpm_advance(), mpm_stepper_info(), mpm_stepper_heat_info(),
- * mpm_stable_dt(), mpm_stepper_adapt(), mpm_stepper_set_balance(), mpm_state_hash(), mpm_state_size(), mpm_state_save() in all
- * its forms and mpm_state_load_pieces().
+ * mpm_stable_dt(), mpm_stepper_adapt(), mpm_stepper_set_balance(), mpm_state_hash(), mpm_state_size(),
+ * mpm_state_save() in all its forms and mpm_state_load_pieces().
  * Particles go to the part that has their block of the grid when a step sorts them, wherever they were
  * added. An id is given once over all parts: mpm_particles_add() returns MPM_E_ARG where it is not.
  *
@@ -36,7 +36,7 @@
  * library's conjugate gradients solve, MPM_SOLVER_CG, for which MPM_SOLVER_AUTO stands here, or a solver of
  * the host, MPM_SOLVER_HOST, as libmpm-petsc has one (operator.h). MPM_E_UNSUPPORTED: other linear solvers,
  * linear systems that are not symmetric without a solver of the host; in implicit steps total Lagrangian
- * grids, bodies other than 0, obstacles, friction walls, surfaces and heat.
+ * grids, bodies other than 0, adaption, obstacles, friction walls, surfaces and heat.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

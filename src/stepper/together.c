@@ -13,8 +13,11 @@ mpm_status mpmi_together(const mpm_stepper *s, mpm_status status) {
  */
 static const char *not_implicit(const mpm_stepper *s, const char **instead) {
   const mpmi_settings *settings = &s->settings;
-  int32_t bodies = 0;
-  for (int32_t m = 0; m < s->layout.member_count; ++m) bodies |= s->layout.member[m].body != 0;
+  int32_t bodies = 0, adapts = 0;
+  for (int32_t m = 0; m < s->layout.member_count; ++m) {
+    bodies |= s->layout.member[m].body != 0;
+    adapts |= s->adaption[m].on;
+  }
   *instead = "MPM_SOLVER_CG or MPM_SOLVER_HOST";
   if (settings->desc.linear_solver > MPM_SOLVER_CG && settings->desc.linear_solver != MPM_SOLVER_HOST)
     return "a linear solver other than conjugate gradients and the host's";
@@ -23,6 +26,7 @@ static const char *not_implicit(const mpm_stepper *s, const char **instead) {
   *instead = "MPM_USL, MPM_USF or MPM_MUSL";
   if (mpmi_is_total_lagrangian(s->grid)) return "implicit steps on a total Lagrangian grid";
   if (bodies) return "implicit steps of bodies with nodes of their own";
+  if (adapts) return "adaption in implicit steps";
   if (settings->obstacles.count) return "obstacles in implicit steps";
   if (mpmi_has_friction_planes(settings)) return "friction walls in implicit steps";
   if (settings->surfaces.count) return "surfaces in implicit steps";

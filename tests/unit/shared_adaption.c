@@ -139,6 +139,24 @@ START_TEST(warm_sets_adapt) {
 }
 END_TEST
 
+/* What is not offered is refused in a sentence. */
+static mpm_status ask_in_implicit_steps(world *w, const scene *is, outcome *found) {
+  (void)is, (void)found;
+  const mpm_status status = mpm_step(w->stepper, 1e-5, &w->info);
+  return status == MPM_E_UNSUPPORTED && strstr(mpm_last_error(w->context), "adaption in implicit steps")
+             ? MPM_OK
+             : MPM_E_INTERNAL;
+}
+
+START_TEST(implicit_steps_do_not_adapt) {
+  scene is = scene_of(2, 48, set_up_uneven);
+  is.desc.stepper.scheme = MPM_NEWMARK;
+  is.desc.stepper.linear_solver = MPM_SOLVER_CG;
+  is.run = ask_in_implicit_steps;
+  check_parts(&is, 2);
+}
+END_TEST
+
 /* ---- failures ------------------------------------------------------------------------------------------ */
 static mpm_status refuse(void *user, const mpm_adaption_batch *b, uint8_t *accept) {
   const mpm_status *answer = user;
@@ -235,6 +253,7 @@ void add_shared_adaption(Suite *suite) {
   add_table(adaption, wide, adaption_combines, OPTIONS_SAMPLE);
   add_table(adaption, wide, adapted_between_steps, 12);
   tcase_add_loop_test(adaption, warm_sets_adapt, 0, 2);
+  tcase_add_test(adaption, implicit_steps_do_not_adapt);
   tcase_add_loop_test(adaption, adaption_fails_together, 0, 2);
   tcase_add_test(adaption, memory_runs_out_adapting);
   tcase_add_test(wide, transport_fails_adapting);
