@@ -42,7 +42,7 @@ static mpm_status divide_slab(mpm_operator *op, int64_t unknowns) {
   return MPM_OK;
 }
 
-static void add_row(mpm_operator *op, int64_t u) {
+static void list_row(mpm_operator *op, int64_t u) {
   const mpmi_matrix *A = op->A;
   op->row[u] = (int32_t)op->rows;
   op->unknown[op->rows] = u;
@@ -72,13 +72,13 @@ static void list_rows(mpm_operator *op) {
   op->rows = 0;
   for (int64_t u = 0; u < unknowns; ++u) {
     op->row[u] = -1;
-    if (is_own_unknown(A, u)) add_row(op, u);
+    if (is_own_unknown(A, u)) list_row(op, u);
   }
   op->own = op->rows;
   for (int64_t i = 0; i < A->rows && A->shared; ++i)
     if (mpmi_is_own_row(A, i)) mark_others(op, i);
   for (int64_t u = 0; u < unknowns && A->shared; ++u)
-    if (op->row[u] < -1) add_row(op, u);
+    if (op->row[u] < -1) list_row(op, u);
   for (int64_t r = 0; r < op->rows; ++r)
     for (int32_t k = 0; k < 3; ++k)
       op->position[k * op->rows + r] = A->position[3 * (op->unknown[r] / A->block) + k];
@@ -154,7 +154,7 @@ static mpm_status number_rows(mpm_operator *op, mpm_status status) {
 
 /* Parts meet for a product, or where their solver has returned (collective). A product is made when all want
  * it and none is refused; else it fails on those who want it. *any: somebody wants one. */
-static mpm_status meet(mpm_operator *op, int32_t wants, mpm_status status, int32_t *any) {
+static mpm_status meet_at_product(mpm_operator *op, int32_t wants, mpm_status status, int32_t *any) {
   mpm_context *c = op->context;
   int64_t word[] = {wants, !wants || status};
   const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, 2, word);
@@ -187,7 +187,7 @@ mpm_status mpmi_operator_open(mpm_operator *op, const mpmi_matrix *A, int32_t po
 void mpmi_operator_close(mpm_operator *op) {
   int32_t any = op->A->shared != NULL;
   op->open = 0;
-  while (any) meet(op, 0, MPM_OK, &any);
+  while (any) meet_at_product(op, 0, MPM_OK, &any);
 }
 
 void mpmi_operator_compress(const mpm_operator *op, const double *full, double *rows) {
@@ -287,7 +287,7 @@ mpm_status mpm_operator_apply(const mpm_operator *matrix, const double *x, doubl
   if (status) return status;
   if (!x || !y) status = mpmi_fail(matrix->context, MPM_E_ARG, "%s is NULL", x ? "y" : "x");
   int32_t any;
-  if (matrix->A->shared) status = meet((mpm_operator *)(uintptr_t)matrix, 1, status, &any);
+  if (matrix->A->shared) status = meet_at_product((mpm_operator *)(uintptr_t)matrix, 1, status, &any);
   if (status) return status;
   mpmi_operator_expand(matrix, x, matrix->x);
   if (matrix->A->shared) status = mpmi_rows_complete(matrix->A->shared, matrix->x);
