@@ -45,8 +45,9 @@ mpm_status mpmi_locking_stiffness_begin(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   const int64_t cells = newton->matrix.rows, nodes = nodes_of(balance);
   mpm_status status;
+  /* one number more, so that the array exists without cells */
   if ((status = MPMI_RESERVE_MORE(balance->settings->context, newton->cell, newton->cell_capacity,
-                                  cells * cell_values(balance))) ||
+                                  cells * cell_values(balance) + 1)) ||
       (status = MPMI_RESERVE_MORE(balance->settings->context, newton->cell_node, newton->cell_node_capacity,
                                   cells * nodes)))
     return status;
