@@ -165,8 +165,14 @@ mpm_status mpmi_internal_forces(mpmi_balance *balance, const double *u) {
   if (!status)
     status =
         sum_internal(balance, mpmi_has_nodal_stress(balance->settings, balance->layout) ? &again : &at_once);
-  if (!status) status = mpmi_springs_pull(balance);
-  return mpmi_vote(balance, status, mpmi_force_exchanges(balance));
+  int64_t exchanges = mpmi_force_exchanges(balance);
+  if (mpmi_springs_lack_stiffness(balance)) {
+    if ((status = mpmi_vote(balance, status, exchanges))) return status;
+    status = mpmi_springs_begin(balance);
+    exchanges = 0;
+  }
+  if (!status) mpmi_springs_pull(balance);
+  return mpmi_vote(balance, status, exchanges);
 }
 
 mpm_status mpmi_start_forces(mpmi_balance *balance) {

@@ -169,7 +169,8 @@ typedef struct mpmi_newton {
   mpmi_newton_work *work; /* [tasks] */
   int64_t constraint_count, constraint_capacity;
   mpmi_constraint *constraint;
-  int32_t has_springs; /* surfaces prescribe how some of the material moves */
+  int32_t has_springs;     /* surfaces prescribe how some of the material moves */
+  int32_t springs_measure; /* and their springs have got their stiffness in this step */
   int32_t history_capacity, history_count;
   double *history;
 } mpmi_newton;

@@ -295,12 +295,13 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   if (status) return status;
   status = mpmi_active_set_finish(balance);
   if (status) return status;
-  mpmi_springs_finish(balance);
+  if ((status = mpmi_springs_finish(balance))) return status;
   set_nodes(balance);
   sum_damping(balance);
   status = mpmi_record_reactions(balance);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);
   if (!status) status = mpmi_g2p_move(balance->step, balance->nodes, &balance->nodes->solved);
+  if (balance->settings->surfaces.count) status = mpmi_vote(balance, status, 0);
   if (!status) status = mpmi_surfaces_move(balance->step, &balance->nodes->solved, 0);
   if (!status) show_velocities(balance);
   mpmi_lap(balance->step, MPMI_TIME_G2P, &clock);

@@ -159,8 +159,9 @@ static mpm_status find_rhs(iteration *it, int32_t *moves_held) {
   double any = *moves_held;
   mpm_status status = mpmi_largest_of_parts(it->balance, 1, &any);
   *moves_held = any > 0.0;
-  if (!status && *moves_held) status = mpmi_matrix_apply(&newton->matrix, du, rhs);
   if (status) return status;
+  if (*moves_held && (status = mpmi_vote(it->balance, mpmi_matrix_apply(&newton->matrix, du, rhs), 0)))
+    return status;
   for (int64_t i = 0; i < it->n; ++i) rhs[i] = held[i] ? 0.0 : -newton->vector[MPMI_RESIDUAL][i] - rhs[i];
   mpmi_active_set_load(it->balance, rhs);
   return MPM_OK;
@@ -170,7 +171,6 @@ static mpm_status solve(iteration *it) {
   mpmi_balance *balance = it->balance;
   mpmi_newton *newton = it->newton;
   const double *du_held = newton->vector[MPMI_DU];
-  const int32_t choice = balance->settings->desc.linear_solver;
   double *x = newton->vector[MPMI_START];
   mpm_status status = mpmi_vote(balance, mpmi_matrix_eliminate(&newton->matrix), 0);
   if (status) return status;
@@ -182,7 +182,7 @@ static mpm_status solve(iteration *it) {
   const mpmi_solve_job job = {.matrix = &newton->matrix,
                               .rhs = newton->vector[MPMI_RHS],
                               .x = x,
-                              .choice = newton->shared && choice != MPM_SOLVER_HOST ? MPM_SOLVER_CG : choice,
+                              .choice = balance->settings->desc.linear_solver,
                               .tolerance = balance->settings->desc.linear_tolerance > 0.0
                                                ? balance->settings->desc.linear_tolerance
                                                : wanted,

@@ -218,6 +218,19 @@ static int32_t body_of_row(const mpmi_balance *balance, int64_t row) {
   return b->body[newton->active[newton->members[newton->members_start[row]]].slot / b->nodes];
 }
 
+/* Returns the row of the node at an offset from an active one, or -1. Of several parts rows that are not to
+ * be complete have no entries for it. */
+static int64_t row_beside(const mpmi_balance *balance, int64_t active, int32_t o) {
+  const mpmi_newton *newton = balance->newton;
+  const int32_t entry = newton->place[active * newton->offsets + o];
+  int32_t offset[3];
+  if (mpmi_is_kept(newton, newton->active[active].row)) return entry < 0 ? -1 : newton->matrix.column[entry];
+  offset_of(balance, o, offset);
+  const int64_t slot = mpmi_blocks_beside(&balance->layout->blocks, newton->active[active].slot, offset);
+  const int32_t other = slot < 0 ? -1 : newton->active_of[slot];
+  return other < 0 ? -1 : newton->active[other].row;
+}
+
 int64_t mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_matrix *A = &newton->matrix;
@@ -226,9 +239,8 @@ int64_t mpmi_heaviest_beside(const mpmi_balance *balance, int64_t row, int32_t c
   int64_t found = -1;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m)
     for (int32_t o = 0; o < newton->offsets; ++o) {
-      const int32_t entry = newton->place[newton->members[m] * newton->offsets + o];
-      const int64_t other = entry < 0 ? row : A->column[entry];
-      if (other == row || !(newton->mass[other] > most) ||
+      const int64_t other = row_beside(balance, newton->members[m], o);
+      if (other < 0 || other == row || !(newton->mass[other] > most) ||
           (c >= 0 && mpmi_is_held(A->held[other * A->block + c])) || body_of_row(balance, other) != body)
         continue;
       most = newton->mass[other];

@@ -36,21 +36,43 @@ mpm_status mpmi_shared_rows_find(mpmi_balance *balance, int64_t rows) {
   return MPM_OK;
 }
 
-/* Returns 1 where an outer row couples with an own one, or moves with one. */
-static int32_t adds_to_own(const mpmi_newton *newton, int64_t outer, int32_t me) {
-  const int64_t row = newton->outer[outer].row;
+/* Returns 1 where an outer row moves with an own one. */
+static int32_t moves_with_own(const mpmi_newton *newton, int64_t outer, int32_t me) {
   for (int64_t t = mpmi_first_term(newton, outer); t < newton->outer[outer].end; ++t)
     if (newton->rows_of.owner[newton->term[t].row] == me) return 1;
+  return 0;
+}
+
+/* Returns 1 where an outer row moves with an own one, couples with one, or couples with another outer row
+ * that moves with one: then it is among the columns that an own row gets from that. */
+static int32_t adds_to_own(const mpmi_newton *newton, int64_t outer, int32_t me) {
+  const int64_t row = newton->outer[outer].row;
+  if (moves_with_own(newton, outer, me)) return 1;
   for (int64_t m = newton->members_start[row]; m < newton->members_start[row + 1]; ++m)
     for (int32_t o = 0; o < newton->offsets; ++o) {
       const int32_t other = newton->place[newton->members[m] * newton->offsets + o];
-      if (other >= 0 && newton->rows_of.owner[other] == me) return 1;
+      if (other < 0) continue;
+      if (newton->rows_of.owner[other] == me) return 1;
+      if (newton->outer_of[other] >= 0 && moves_with_own(newton, newton->outer_of[other], me)) return 1;
     }
   return 0;
 }
 
+/* Markers of surfaces beside nodes of own particles load these by how the nodes around them move. */
+static void want_around_markers(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  for (int64_t i = 0; i < newton->active_count; ++i) {
+    if (!mpmi_meets_node(balance->layout->parts, newton->active[i].slot)) continue;
+    for (int32_t o = 0; o < newton->offsets; ++o) {
+      const int32_t row = newton->place[i * newton->offsets + o];
+      if (row >= 0) newton->rows_of.wanted[row] = 1;
+    }
+  }
+}
+
 void mpmi_shared_rows_keep(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
+  if (balance->layout->parts && balance->settings->surfaces.count) want_around_markers(balance);
   for (int64_t i = 0; i < newton->outer_count && balance->layout->parts; ++i)
     newton->rows_of.kept[newton->outer[i].row] |=
         (uint8_t)adds_to_own(newton, i, balance->settings->context->transport.part);

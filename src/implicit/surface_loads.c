@@ -5,9 +5,13 @@
  *   de_k = (E_k . grad w_b) du_b,  da = de_0 x e_1 + e_0 x de_1 (2-D: de_0 turned),  dt = P da,
  *   P = T (x) a / |a| - p 1
  *
- * which is not symmetric. Dead loads D have no stiffness. */
+ * which is not symmetric. Dead loads D have no stiffness.
+ *
+ * Of several parts each knows how the nodes move around its own and around the markers beside these, and so
+ * the forces and stiffness of all markers there. */
 #include "implicit/surface_springs.h"
 #include "boundary/surface_sites.h"
+#include "context/transport.h"
 #include "stages/stages.h"
 #include "simd/vector3.h"
 
@@ -33,26 +37,47 @@ static double leave_out(const mpmi_balance *balance, mpmi_marker_nodes *around, 
  * quasi-static steps; more than this share of a force is not lost by rounding. */
 static const double WEIGHT_ROUNDING = 1e-8;
 
+/* Leaves out the nodes of a marker that are no unknowns; returns 1 where nothing carries its load then. Of
+ * several parts one says so, that which knows how the marker moves. */
+static int32_t is_uncarried(const mpmi_balance *balance, mpm_surface *s, int64_t marker) {
+  const mpmi_marker *m = &s->next.at[marker];
+  const int32_t tells = mpmi_owns_marker(balance->step, s, marker),
+                loads = fabs(m->force[0]) + fabs(m->force[1]) + fabs(m->force[2]) > 0.0;
+  return leave_out(balance, &s->around, marker) > WEIGHT_ROUNDING && loads && tells;
+}
+
+/* Leaves out such nodes of all markers of a surface. */
+static mpm_status find_carried(const mpmi_balance *balance, mpm_surface *s) {
+  mpm_context *c = balance->settings->context;
+  const int32_t shared = balance->layout->parts != NULL;
+  int64_t first = -1;
+  for (int64_t k = 0; k < s->next.count; ++k) {
+    const int32_t uncarried = is_uncarried(balance, s, k);
+    if (shared) s->told[k] = uncarried;
+    if (uncarried && first < 0) first = k;
+  }
+  if (shared && s->next.count) {
+    const mpm_status status = mpmi_reduce_parts(c, MPM_REDUCE_MAX, s->next.count, s->told);
+    if (status) return status;
+    for (first = 0; first < s->next.count && !s->told[first];) ++first;
+    if (first == s->next.count) first = -1;
+  }
+  if (first < 0) return MPM_OK;
+  return mpmi_fail(c, MPM_SINGULAR,
+                   "marker %lld of surface %d loads rigid particles, and nothing carries its force: "
+                   "prescribe their motion, or set quasi_static = 0",
+                   (long long)s->next.at[first].id, (int)s->number);
+}
+
 mpm_status mpmi_surface_loads_find(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
   mpm_status status = mpmi_surfaces_find(balance->step, &balance->nodes->solved);
+  if (list->count) status = mpmi_vote(balance, status, 0);
+  if (!status) status = mpmi_surfaces_carried(balance->step);
   if (!status && mpmi_surfaces_prescribe(list))
-    status = mpmi_surface_normals_smooth(balance->step, balance->nodes);
-  for (int64_t i = 0; i < list->count && !status; ++i) {
-    mpm_surface *s = list->surface[i];
-    for (int64_t k = 0; k < s->next.count; ++k) {
-      const mpmi_marker *m = &s->next.at[k];
-      const double left = leave_out(balance, &s->around, k);
-      const int32_t loads = fabs(m->force[0]) + fabs(m->force[1]) + fabs(m->force[2]) > 0.0;
-      if (loads && left > WEIGHT_ROUNDING)
-        return mpmi_fail(balance->settings->context, MPM_SINGULAR,
-                         "marker %lld of surface %lld loads rigid particles, and nothing carries its force: "
-                         "prescribe their motion, or set quasi_static = 0",
-                         (long long)m->id, (long long)i);
-    }
-  }
-  if (!status) mpmi_springs_find(balance);
-  return status;
+    status = mpmi_vote(balance, mpmi_surface_normals_smooth(balance->step, balance->nodes), 0);
+  for (int64_t i = 0; i < list->count && !status; ++i) status = find_carried(balance, list->surface[i]);
+  return status ? status : mpmi_springs_find(balance);
 }
 
 mpm_status mpmi_surface_loads_add(mpmi_balance *balance) {
@@ -111,8 +136,8 @@ static void add_block(mpmi_balance *balance, int64_t slot_a, int64_t slot_b, dou
   const int32_t dim = balance->settings->grid->dim;
   const mpmi_active_node *A = &newton->active[newton->active_of[slot_a]];
   const mpmi_active_node *B = &newton->active[newton->active_of[slot_b]];
+  if (!mpmi_is_kept(newton, A->row)) return;
   const int64_t entry = mpmi_matrix_entry(&newton->matrix, A->row, B->row);
-  if (entry < 0) return; /* without it the iteration takes longer */
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t j = 0; j < dim; ++j) {
       double sum = 0.0;
@@ -147,10 +172,15 @@ static void stiffen_marker(mpmi_balance *balance, const mpm_surface *s, int64_t 
 
 mpm_status mpmi_surface_loads_stiffen(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
-  const mpm_status status = mpmi_surfaces_stretch(balance->step, &balance->nodes->solved);
+  mpm_status status = mpmi_surfaces_stretch(balance->step, &balance->nodes->solved);
   for (int64_t s = 0; s < list->count && !status && balance->settings->grid->dim > 1; ++s)
     for (int64_t i = 0; i < list->surface[s]->next.count && !mpmi_surface_prescribes(list->surface[s]); ++i)
       stiffen_marker(balance, list->surface[s], i);
   if (!status) mpmi_springs_stiffen(balance);
-  return status;
+  if (!balance->layout->parts || !list->count) return status;
+  double unsymmetric = !balance->newton->matrix.symmetric;
+  if ((status = mpmi_vote(balance, status, 0)) || (status = mpmi_largest_of_parts(balance, 1, &unsymmetric)))
+    return status;
+  balance->newton->matrix.symmetric = !(unsymmetric > 0.0);
+  return MPM_OK;
 }

@@ -12,6 +12,8 @@
  * As contact it acts wholly at the end of the step: the accelerations at its start have nothing of it. */
 #include "implicit/active_set.h"
 #include "implicit/surface_springs.h"
+#include "context/transport.h"
+#include "stages/stages.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,18 +25,23 @@ static int32_t reaches_material(const mpmi_marker_nodes *around, int64_t marker)
   return reaches;
 }
 
-void mpmi_springs_find(mpmi_balance *balance) {
+mpm_status mpmi_springs_find(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
-  balance->newton->has_springs = 0;
+  double any = 0.0;
+  balance->newton->has_springs = balance->newton->springs_measure = 0;
+  if (!mpmi_surfaces_prescribe(list)) return MPM_OK;
   for (int64_t i = 0; i < list->count; ++i) {
     mpm_surface *s = list->surface[i];
     for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k) {
       const int32_t springs = s->aim[k].stiffness < 0.0 && mpmi_marker_size(&s->next.at[k], s->grid) > 0.0 &&
                               reaches_material(&s->around, k);
-      balance->newton->has_springs |= springs;
+      if (springs) any = 1.0;
       if (!springs) s->aim[k].stiffness = 0.0;
     }
   }
+  const mpm_status status = mpmi_largest_of_parts(balance, 1, &any);
+  balance->newton->has_springs = any > 0.0;
+  return status;
 }
 
 /* ---- stiffness ----------------------------------------------------------------------------------------- */
@@ -54,22 +61,37 @@ static double largest_modulus(const mpmi_balance *balance, int32_t body) {
   return most;
 }
 
-/* Gives the springs of a surface that have none yet their stiffness. */
+/* Gives the springs of a surface their stiffness; of several parts each knows some of the springs. */
 static mpm_status stiffen_surface(mpmi_balance *balance, mpm_surface *s) {
-  double modulus = s->desc.modulus;
-  for (int64_t k = 0; k < s->next.count; ++k) {
-    if (!(s->aim[k].stiffness < 0.0)) continue;
-    if (!(modulus > 0.0)) modulus = largest_modulus(balance, s->desc.body);
-    if (!(modulus > 0.0))
-      return mpmi_fail(
-          balance->settings->context, MPM_SINGULAR,
-          "surface %d prescribes how body %d moves, whose particles have no wave speed from which "
-          "its stiffness follows: set mpm_surface_desc.modulus",
-          (int)s->number, (int)s->desc.body);
-    s->aim[k].stiffness =
-        s->desc.penalty * modulus / s->grid->h_min * mpmi_marker_size(&s->next.at[k], s->grid);
-  }
+  double most[2] = {0.0, s->desc.modulus}; /* whether there are springs, and the modulus */
+  for (int64_t k = 0; k < s->next.count; ++k)
+    if (s->aim[k].stiffness < 0.0) most[0] = 1.0;
+  if (!(most[1] > 0.0)) most[1] = largest_modulus(balance, s->desc.body);
+  const mpm_status status = mpmi_largest_of_parts(balance, 2, most);
+  if (status) return status;
+  if (most[0] > 0.0 && !(most[1] > 0.0))
+    return mpmi_fail(balance->settings->context, MPM_SINGULAR,
+                     "surface %d prescribes how body %d moves, whose particles have no wave speed from which "
+                     "its stiffness follows: set mpm_surface_desc.modulus",
+                     (int)s->number, (int)s->desc.body);
+  for (int64_t k = 0; k < s->next.count; ++k)
+    if (s->aim[k].stiffness < 0.0)
+      s->aim[k].stiffness =
+          s->desc.penalty * most[1] / s->grid->h_min * mpmi_marker_size(&s->next.at[k], s->grid);
   return MPM_OK;
+}
+
+int32_t mpmi_springs_lack_stiffness(const mpmi_balance *balance) {
+  return balance->newton->has_springs && !balance->newton->springs_measure;
+}
+
+mpm_status mpmi_springs_begin(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  mpm_status status = MPM_OK;
+  for (int64_t i = 0; i < list->count && !status; ++i)
+    if (mpmi_surface_prescribes(list->surface[i])) status = stiffen_surface(balance, list->surface[i]);
+  balance->newton->springs_measure = !status;
+  return status;
 }
 
 /* ---- forces -------------------------------------------------------------------------------------------- */
@@ -102,18 +124,15 @@ static void find_stretch(const mpmi_balance *balance, const mpm_surface *s, int6
   for (int32_t c = 0; c < dim; ++c) to->stretch[c] = to->length * to->normal[c];
 }
 
-mpm_status mpmi_springs_pull(mpmi_balance *balance) {
+void mpmi_springs_pull(mpmi_balance *balance) {
   const mpmi_surfaces *list = &balance->settings->surfaces;
   mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
   double *to = newton->vector[MPMI_SPRINGS];
-  mpm_status status = MPM_OK;
   memset(to, 0, (size_t)(newton->matrix.rows * dim) * sizeof *to);
-  for (int64_t i = 0; i < list->count && newton->has_springs && !status; ++i) {
-    mpm_surface *s = list->surface[i];
-    if (!mpmi_surface_prescribes(s)) continue;
-    status = stiffen_surface(balance, s);
-    for (int64_t k = 0; k < s->next.count && !status; ++k) {
+  for (int64_t i = 0; i < list->count && newton->has_springs; ++i) {
+    const mpm_surface *s = list->surface[i];
+    for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k) {
       spring is;
       if (!(s->aim[k].stiffness > 0.0)) continue;
       find_stretch(balance, s, k, &is);
@@ -126,7 +145,6 @@ mpm_status mpmi_springs_pull(mpmi_balance *balance) {
       }
     }
   }
-  return status;
 }
 
 /* Adds the block of two nodes of a spring. */
@@ -137,8 +155,8 @@ static void add_block(mpmi_newton *newton, const mpm_surface *s, int64_t k, cons
   const mpmi_marker_aim *aim = &s->aim[k];
   const int32_t dim = s->grid->dim, whole = s->desc.prescribes == MPM_PRESCRIBES_VELOCITY;
   const double by = aim->stiffness * s->around.weight[a] * s->around.weight[b];
+  if (!mpmi_is_kept(newton, A->row)) return;
   const int64_t entry = mpmi_matrix_entry(&newton->matrix, A->row, B->row);
-  if (entry < 0) return; /* without it the iteration takes longer */
   for (int32_t i = 0; i < dim; ++i)
     for (int32_t j = 0; j < dim; ++j) {
       const double part =
@@ -180,7 +198,8 @@ static void tell_walls(mpmi_balance *balance, const mpm_surface *s, int64_t k, c
       const double given =
           s->around.weight[n] * force[c] *
           (mpmi_is_held(newton->matrix.held[(int64_t)node->row * s->grid->dim + c]) ? share : 1.0);
-      balance->step->impulse_by_face[tie->face[c]][c] -= balance->step->dt * (1.0 - node->sign[c]) * given;
+      mpmi_exact_add(&balance->step->work->tally.sum[MPMI_TALLY_FACES + 3 * tie->face[c] + c],
+                     -balance->step->dt * (1.0 - node->sign[c]) * given);
     }
   }
 }
@@ -198,26 +217,61 @@ static double kept_of(const mpm_surface *s, const spring *is) {
   return kept > 0.0 ? kept : 0.0;
 }
 
-void mpmi_springs_finish(mpmi_balance *balance) {
-  const mpmi_surfaces *list = &balance->settings->surfaces;
-  const double share = mpmi_contact_share(balance->settings), dt = balance->step->dt;
-  for (int64_t i = 0; i < list->count; ++i) {
-    mpm_surface *s = list->surface[i];
-    for (int64_t k = 0; k < s->next.count && mpmi_surface_prescribes(s); ++k) {
-      const double stiffness = s->aim[k].stiffness;
-      mpmi_marker *m = &s->next.at[k];
-      spring is = {.length = 0.0};
-      double force[3];
-      if (stiffness > 0.0) find_stretch(balance, s, k, &is);
-      const double kept = kept_of(s, &is);
-      for (int32_t c = 0; c < 3; ++c) {
-        m->gap[c] = kept * is.stretch[c];
-        force[c] = -stiffness * is.stretch[c];
-        m->reaction[c] = share * force[c];
-        s->impulse[c] += dt * m->reaction[c];
-        balance->step->host_work += m->reaction[c] * is.moved[c];
-      }
-      if (stiffness > 0.0) tell_walls(balance, s, k, force);
-    }
+/* What a spring came to, as the parts tell each other. */
+typedef struct spring_end {
+  double stiffness, kept, stretch[3], moved[3];
+} spring_end;
+enum { END_WORDS = sizeof(spring_end) / sizeof(int64_t) };
+_Static_assert((int)END_WORDS <= (int)MPMI_MARKER_MOTION, "there is room for it");
+
+static void find_end(const mpmi_balance *balance, const mpm_surface *s, int64_t k, spring_end *to) {
+  spring is = {.length = 0.0};
+  if (s->aim[k].stiffness > 0.0) find_stretch(balance, s, k, &is);
+  *to = (spring_end){.stiffness = s->aim[k].stiffness, .kept = kept_of(s, &is)};
+  memcpy(to->stretch, is.stretch, sizeof to->stretch);
+  memcpy(to->moved, is.moved, sizeof to->moved);
+}
+
+/* Lets all parts know what the springs of a surface came to: of each one part adds its bits to zeros. */
+static mpm_status tell_ends(const mpmi_balance *balance, mpm_surface *s) {
+  for (int64_t k = 0; k < s->next.count; ++k) {
+    spring_end end = {.stiffness = 0.0};
+    if (mpmi_owns_marker(balance->step, s, k)) find_end(balance, s, k, &end);
+    memcpy(&s->told[END_WORDS * k], &end, sizeof end);
   }
+  return s->next.count ? mpmi_reduce_parts(s->context, MPM_REDUCE_SUM, END_WORDS * s->next.count, s->told)
+                       : MPM_OK;
+}
+
+static void finish_surface(mpmi_balance *balance, mpm_surface *s) {
+  const double share = mpmi_contact_share(balance->settings), dt = balance->step->dt;
+  for (int64_t k = 0; k < s->next.count; ++k) {
+    mpmi_marker *m = &s->next.at[k];
+    spring_end is;
+    double force[3];
+    if (balance->layout->parts)
+      memcpy(&is, &s->told[END_WORDS * k], sizeof is);
+    else
+      find_end(balance, s, k, &is);
+    for (int32_t c = 0; c < 3; ++c) {
+      m->gap[c] = is.kept * is.stretch[c];
+      force[c] = -is.stiffness * is.stretch[c];
+      m->reaction[c] = share * force[c];
+      s->impulse[c] += dt * m->reaction[c];
+      balance->step->host_work += m->reaction[c] * is.moved[c];
+    }
+    if (is.stiffness > 0.0 && mpmi_owns_marker(balance->step, s, k)) tell_walls(balance, s, k, force);
+  }
+}
+
+mpm_status mpmi_springs_finish(mpmi_balance *balance) {
+  const mpmi_surfaces *list = &balance->settings->surfaces;
+  mpm_status status = MPM_OK;
+  for (int64_t i = 0; i < list->count && !status; ++i) {
+    mpm_surface *s = list->surface[i];
+    if (!mpmi_surface_prescribes(s)) continue;
+    if (balance->layout->parts) status = tell_ends(balance, s);
+    if (!status) finish_surface(balance, s);
+  }
+  return status;
 }

@@ -32,11 +32,17 @@ mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings
   if (settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 9;
   /* particles belong to clouds of nodes that their own basis does not reach (contact/clouds.c) */
   if (settings->grid->family == MPMI_FAMILY_GIMP) layout->parts->margin = 2;
-  if (mpmi_is_implicit(settings)) {
-    layout->parts->margin = implicit_margin(settings->grid);
-    layout->parts->names_owners = 1;
-  }
+  if (mpmi_is_implicit(settings)) mpmi_layout_widen(layout, settings);
   return MPM_OK;
+}
+
+void mpmi_layout_widen(mpmi_layout *layout, const mpmi_settings *settings) {
+  mpmi_parts *parts = layout->parts;
+  for (int32_t m = 0; m < layout->member_count; ++m) layout->member[m].set->dirty |= MPMI_DIRTY_PLACE;
+  if (!parts) return;
+  parts->names_owners = 1;
+  parts->margin = implicit_margin(settings->grid);
+  if (parts->meets_markers) parts->margin += mpmi_marker_margin(settings->grid);
 }
 
 void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings) {

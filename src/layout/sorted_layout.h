@@ -67,6 +67,9 @@ static inline int64_t mpmi_slots(const mpmi_layout *layout) {
 }
 
 mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings);
+/* The steps to come are implicit, and of several parts each has to know more nodes then. They find these when
+ * they sort, which is before the next step; with one part, too. */
+void mpmi_layout_widen(mpmi_layout *layout, const mpmi_settings *settings);
 void mpmi_layout_free(mpmi_layout *layout, const mpmi_settings *settings);
 
 /* Particles of a set in a block: those of this part, or in a ghost copies of another part's. Members from

@@ -75,28 +75,29 @@ static void apply_task(void *data, int64_t k) {
 }
 
 static mpm_status apply(const mpmi_matrix *A, int32_t what, const double *b, const double *x, double *y,
-                        double *sum) {
+                        double *sum, mpm_status status) {
   apply_job job = {.A = A, .b = b, .x = x, .y = y, .what = what};
   job.ranges = mpmi_ranges_of(A->rows, mpmi_matrix_unknowns(A));
-  const mpm_status status = mpmi_run_ranges(A->context, &job.ranges, apply_task, &job);
-  if (A->shared && !status && sum)
+  if (!status) status = mpmi_run_ranges(A->context, &job.ranges, apply_task, &job);
+  if (A->shared && sum)
     return mpmi_rows_sum(A->shared, MPMI_BY_ROWS, 1, &(mpmi_row_terms){.a = y, .b = what == PRODUCT ? x : y},
-                         sum);
+                         sum, status);
   if (sum) *sum = status ? 0.0 : mpmi_reduce(MPMI_REDUCE_SUM, 0.0, job.part, 1, NULL, job.ranges.count);
   return status;
 }
 
 mpm_status mpmi_matrix_apply(const mpmi_matrix *A, const double *x, double *y) {
-  return apply(A, PRODUCT, NULL, x, y, NULL);
+  return apply(A, PRODUCT, NULL, x, y, NULL, MPM_OK);
 }
 
-mpm_status mpmi_matrix_apply_dot(const mpmi_matrix *A, const double *x, double *y, double *dot) {
-  return apply(A, PRODUCT, NULL, x, y, dot);
+mpm_status mpmi_matrix_apply_dot(const mpmi_matrix *A, const double *x, double *y, double *dot,
+                                 mpm_status status) {
+  return apply(A, PRODUCT, NULL, x, y, dot, status);
 }
 
 mpm_status mpmi_matrix_residual(const mpmi_matrix *A, const double *b, const double *x, double *r,
                                 double *norm) {
-  const mpm_status status = apply(A, RESIDUAL, b, x, r, norm);
+  const mpm_status status = apply(A, RESIDUAL, b, x, r, norm, MPM_OK);
   *norm = sqrt(*norm);
   return status;
 }
@@ -104,7 +105,7 @@ mpm_status mpmi_matrix_residual(const mpmi_matrix *A, const double *b, const dou
 mpm_status mpmi_matrix_rounding(const mpmi_matrix *A, const double *b, const double *x, double *scratch,
                                 double *norm) {
   const double units = 32.0;
-  const mpm_status status = apply(A, ROUNDING, b, x, scratch, norm);
+  const mpm_status status = apply(A, ROUNDING, b, x, scratch, norm, MPM_OK);
   *norm = units * DBL_EPSILON * sqrt(*norm);
   return status;
 }

@@ -14,6 +14,7 @@ typedef struct cg {
   double *z;             /* M^-1 r of a preconditioner */
   double alpha, beta;
   mpmi_ranges ranges;
+  mpm_status status; /* of the passes since the last sum, where all parts learn of it */
   double rz[MPMI_MOST_RANGES], rr[MPMI_MOST_RANGES]; /* by range: r . D^-1 r and r . r */
   double norm;                                       /* of r */
 } cg;
@@ -48,19 +49,21 @@ static void turn_task(void *data, int64_t k) {
     p[i] = (inverse ? inverse[i] * r[i] : z[i]) + beta * p[i];
 }
 
-static mpm_status run_cg(cg *c, mpm_task_fn task) {
-  return mpmi_run_ranges(c->system->context, &c->ranges, task, c);
+/* A pass that fails on one part ends none of the exchanges that the others wait for. */
+static void run_cg(cg *c, mpm_task_fn task) {
+  if (!c->status) c->status = mpmi_run_ranges(c->system->context, &c->ranges, task, c);
 }
 
-/* Makes r . D^-1 r, and the norm of r. */
+/* Makes r . D^-1 r, and the norm of r; returns how the passes before have gone, on all parts. */
 static mpm_status sum_up(cg *c, double *rz) {
   const mpmi_rows *shared = c->system->A->shared;
   double sum[2];
   if (shared) {
     const mpmi_row_terms terms[2] = {{c->r, c->r, c->inverse}, {c->r, c->r, NULL}};
-    const mpm_status status = mpmi_rows_sum(shared, MPMI_BY_UNKNOWNS, 2, terms, sum);
+    const mpm_status status = mpmi_rows_sum(shared, MPMI_BY_UNKNOWNS, 2, terms, sum, c->status);
     if (status) return status;
   } else {
+    if (c->status) return c->status;
     sum[0] = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, c->rz, 1, NULL, c->ranges.count);
     sum[1] = mpmi_reduce(MPMI_REDUCE_SUM, 0.0, c->rr, 1, NULL, c->ranges.count);
   }
@@ -71,8 +74,8 @@ static mpm_status sum_up(cg *c, double *rz) {
 
 /* Advances x and r, and then forms z = M^-1 r and r . z. */
 static mpm_status advance(cg *c, double *rz) {
-  mpm_status status = run_cg(c, advance_task);
-  if (!status) status = sum_up(c, rz);
+  run_cg(c, advance_task);
+  mpm_status status = sum_up(c, rz);
   if (status) return status;
   if (!c->precondition) return MPM_OK;
   status = c->precondition(c->user, c->r, c->z);
@@ -89,7 +92,8 @@ static mpm_status start(cg *c, double *rz) {
   memset(c->p, 0, (size_t)s->n * sizeof *c->p);
   memset(c->q, 0, (size_t)s->n * sizeof *c->q);
   if (!status) status = advance(c, rz);
-  return status ? status : run_cg(c, turn_task);
+  if (!status) run_cg(c, turn_task);
+  return status;
 }
 
 /* Iterates until the recursion's residual is as wanted or the limit is reached. */
@@ -99,7 +103,7 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
   while (norm > s->wanted && s->report->iterations < limit) {
     double curvature;
     mpm_status status = complete(c, c->p);
-    if (!status) status = mpmi_matrix_apply_dot(s->A, c->p, c->q, &curvature);
+    if (!status) status = mpmi_matrix_apply_dot(s->A, c->p, c->q, &curvature, c->status);
     if (status) return status;
     if (!isfinite(curvature) || !isfinite(rz)) return MPM_NOT_CONVERGED;
     if (!(curvature > 0.0) || !(rz > 0.0)) return MPM_SINGULAR;
@@ -110,7 +114,7 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
     c->beta = next / rz;
     rz = next;
     ++s->report->iterations;
-    if (norm > s->wanted && (status = run_cg(c, turn_task))) return status;
+    if (norm > s->wanted) run_cg(c, turn_task);
   }
   return MPM_OK;
 }
@@ -132,7 +136,9 @@ mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user
     double rz;
     if ((status = start(&c, &rz))) return status;
     int32_t good;
-    if ((status = mpmi_system_good(s, s->reached, c.q, &good)) || good) return status;
+    if ((status = mpmi_system_good(s, s->reached, c.q, &good)) ||
+        (status = mpmi_system_together(s, c.status)) || good)
+      return status;
     if (!(s->reached < 0.5 * before) || s->report->iterations >= limit) return MPM_NOT_CONVERGED;
     before = s->reached;
     if ((status = iterate(&c, rz, limit))) return status;

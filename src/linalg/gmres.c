@@ -2,6 +2,7 @@
  * need not be linear to the last digit, and a cycle in single precision is not. Two rounds of classical
  * Gram-Schmidt make the vectors orthogonal, with all sums of a round in one pass. */
 #include <math.h>
+#include <string.h>
 
 #include "context/reduce.h"
 #include "linalg/methods.h"
@@ -16,6 +17,7 @@ typedef struct gmres {
   double *hessenberg;                  /* [restart][restart + 1], by columns; triangular once rotated */
   double *cosine, *sine, *rest, *part; /* rest: right-hand side of the small system; part: sums by range */
   double scale;
+  mpm_status status;    /* of the passes since the last sum, where all parts learn of it */
   int32_t last;         /* how many vectors w is made orthogonal to */
   int32_t second_round; /* 0: the first round of Gram-Schmidt, 1: the second */
   mpmi_ranges ranges;
@@ -25,7 +27,8 @@ static double *vector(const gmres *g, int32_t j) {
   return g->basis + j * g->system->n;
 }
 
-/* Sums the products of w with the vectors. In the second round w first loses what the first round found. */
+/* Sums the products of w with the vectors. In the second round w first loses what the first round found. Of
+ * several parts the sums come later (take_sums). */
 static void project_task(void *data, int64_t k) {
   const gmres *g = data;
   const int64_t begin = mpmi_range_begin(&g->ranges, k), end = mpmi_range_begin(&g->ranges, k + 1);
@@ -36,7 +39,7 @@ static void project_task(void *data, int64_t k) {
       const double *v = vector(g, j);
       for (int64_t i = begin; i < end; ++i) g->w[i] -= h[j] * v[i];
     }
-  for (int32_t j = 0; j < g->last; ++j) {
+  for (int32_t j = 0; j < g->last && !g->system->A->shared; ++j) {
     const double *v = vector(g, j);
     double sum = 0.0;
     for (int64_t i = begin; i < end; ++i) sum += g->w[i] * v[i];
@@ -79,34 +82,58 @@ static void combine_task(void *data, int64_t k) {
   }
 }
 
-static mpm_status run_gmres(gmres *g, mpm_task_fn task) {
-  return mpmi_run_ranges(g->system->context, &g->ranges, task, g);
+/* A pass that fails on one part ends none of the exchanges that the others wait for. */
+static void run_gmres(gmres *g, mpm_task_fn task) {
+  if (!g->status) g->status = mpmi_run_ranges(g->system->context, &g->ranges, task, g);
 }
 
 static double sum_of(const gmres *g, int32_t j) {
   return mpmi_reduce(MPMI_REDUCE_SUM, 0.0, g->part + j, g->plan->restart + 1, NULL, g->ranges.count);
 }
 
+/* Makes the first `count` sums of a pass: the products of w with the vectors, or the square of w. Returns how
+ * the passes before have gone, on all parts. */
+static mpm_status take_sums(gmres *g, int32_t count, int32_t square, double *to) {
+  const mpmi_rows *shared = g->system->A->shared;
+  mpm_status status = shared ? MPM_OK : g->status;
+  for (int32_t i = 0; i < count && !shared && !status; ++i) to[i] = sum_of(g, i);
+  for (int32_t first = 0; first < count && shared && !status; first += MPMI_ROW_SUMS) {
+    const int32_t more = count - first, n = more < MPMI_ROW_SUMS ? more : MPMI_ROW_SUMS;
+    mpmi_row_terms terms[MPMI_ROW_SUMS];
+    for (int32_t i = 0; i < n; ++i)
+      terms[i] = (mpmi_row_terms){g->w, square ? g->w : vector(g, first + i), NULL};
+    status = mpmi_rows_sum(shared, MPMI_BY_UNKNOWNS, n, terms, to + first, g->status);
+  }
+  return status;
+}
+
+/* Makes z = M^-1 v and w = A z. With several parts the product needs the values of rows that others own. */
+static mpm_status multiply(gmres *g, const double *v, double *z) {
+  const mpmi_matrix *A = g->system->A;
+  if (!g->status) g->status = g->plan->precondition(g->plan->user, v, z);
+  const mpm_status lost = A->shared ? mpmi_rows_complete(A->shared, z) : MPM_OK;
+  if (!g->status && !lost) g->status = mpmi_matrix_apply(A, z, g->w);
+  return lost;
+}
+
 /* Makes w = A M^-1 v_j orthogonal to v_0 ... v_j, which gives column j of the Hessenberg matrix. */
 static mpm_status extend(gmres *g, int32_t j, double *h) {
-  mpmi_system *s = g->system;
   double *correction = g->rest + g->plan->restart + 1;
-  double *z = g->ready + j * s->n;
-  mpm_status status = g->plan->precondition(g->plan->user, vector(g, j), z);
-  if (!status) status = mpmi_matrix_apply(s->A, z, g->w);
+  mpm_status status = multiply(g, vector(g, j), g->ready + j * g->system->n);
   g->last = j + 1;
   g->second_round = 0;
-  if (!status) status = run_gmres(g, project_task);
-  if (status) return status;
-  for (int32_t i = 0; i <= j; ++i) h[i] = sum_of(g, i);
+  run_gmres(g, project_task);
+  if (status || (status = take_sums(g, j + 1, 0, h))) return status;
   g->second_round = 1;
-  if ((status = run_gmres(g, project_task))) return status;
-  for (int32_t i = 0; i <= j; ++i) correction[i] = sum_of(g, i);
-  if ((status = run_gmres(g, clean_task))) return status;
+  run_gmres(g, project_task);
+  if ((status = take_sums(g, j + 1, 0, correction))) return status;
+  run_gmres(g, clean_task);
   for (int32_t i = 0; i <= j; ++i) h[i] += correction[i];
-  h[j + 1] = sqrt(sum_of(g, 0));
+  if ((status = take_sums(g, 1, 1, &h[j + 1]))) return status;
+  h[j + 1] = sqrt(h[j + 1]);
   g->scale = h[j + 1] > 0.0 ? 1.0 / h[j + 1] : 0.0;
-  return run_gmres(g, next_vector_task);
+  run_gmres(g, next_vector_task);
+  return MPM_OK;
 }
 
 /* Rotates the new column so that the matrix stays triangular. Returns the norm of the residual that is
@@ -127,7 +154,7 @@ static double rotate(gmres *g, int32_t j, double *h) {
 }
 
 /* Adds to x the combination of `count` vectors M^-1 v that leaves the least residual. */
-static mpm_status step(gmres *g, int32_t count) {
+static void step(gmres *g, int32_t count) {
   const int32_t ld = g->plan->restart + 1;
   double *y = g->rest + ld;
   for (int32_t i = count - 1; i >= 0; --i) {
@@ -137,7 +164,7 @@ static mpm_status step(gmres *g, int32_t count) {
     y[i] = pivot > 0.0 ? sum / pivot : 0.0; /* 0: the small system is singular in this direction */
   }
   g->last = count;
-  return run_gmres(g, combine_task);
+  run_gmres(g, combine_task);
 }
 
 /* Starts from the residual in w, whose norm is s->reached, and ends when the basis is full or the residual
@@ -148,17 +175,19 @@ static mpm_status fill_basis(gmres *g) {
   g->last = 0;
   g->scale = 1.0 / s->reached;
   g->rest[0] = s->reached;
-  mpm_status status = run_gmres(g, next_vector_task);
+  run_gmres(g, next_vector_task);
   int32_t j = 0;
-  for (double left = s->reached; !status && left > s->wanted && j < g->plan->restart; ++j) {
+  for (double left = s->reached; left > s->wanted && j < g->plan->restart; ++j) {
     if (s->report->iterations >= g->plan->limit) break;
     double *h = g->hessenberg + j * ld;
-    if ((status = extend(g, j, h))) return status;
+    const mpm_status status = extend(g, j, h);
+    if (status) return status;
     if (!isfinite(h[j + 1])) return MPM_NOT_CONVERGED;
     left = h[j + 1] > 0.0 ? rotate(g, j, h) : (rotate(g, j, h), 0.0);
     ++s->report->iterations;
   }
-  return status ? status : step(g, j);
+  step(g, j);
+  return mpmi_system_together(s, g->status);
 }
 
 static mpm_status reserve_basis(gmres *g) {
@@ -184,12 +213,24 @@ static int32_t goes_on(const gmres *g, double before) {
          mpmi_ln(g->system->wanted / g->system->reached) / mpmi_ln(share) < (double)SLOW_CYCLES;
 }
 
+/* Finds the residual of x as it is. With several parts only own rows of w are written, and all of it is
+ * scaled. */
+static mpm_status take_residual(gmres *g) {
+  mpmi_system *s = g->system;
+  mpm_status status = MPM_OK;
+  if (s->A->shared) {
+    status = mpmi_rows_complete(s->A->shared, s->x);
+    memset(g->w, 0, (size_t)s->n * sizeof *g->w);
+  }
+  return status ? status : mpmi_matrix_residual(s->A, s->b, s->x, g->w, &s->reached);
+}
+
 mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan) {
   gmres g = {.system = s, .plan = plan, .ranges = mpmi_ranges_of(s->n, s->n)};
-  mpm_status status = reserve_basis(&g);
+  mpm_status status = mpmi_system_together(s, reserve_basis(&g));
   for (double before = (double)INFINITY; !status; before = s->reached) {
     int32_t good;
-    if ((status = mpmi_matrix_residual(s->A, s->b, s->x, g.w, &s->reached))) break;
+    if ((status = take_residual(&g))) break;
     if ((status = mpmi_system_good(s, s->reached, g.basis, &good)) || good) break;
     if (!isfinite(s->reached) || !goes_on(&g, before)) return MPM_NOT_CONVERGED;
     status = fill_basis(&g);

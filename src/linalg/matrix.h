@@ -36,8 +36,10 @@ mpm_status mpmi_matrix_eliminate(mpmi_matrix *A);
 
 /* Sets y = A x over all rows, those of held unknowns too (apply.c). */
 mpm_status mpmi_matrix_apply(const mpmi_matrix *A, const double *x, double *y);
-/* Does the same, and sets *dot = x . y. */
-mpm_status mpmi_matrix_apply_dot(const mpmi_matrix *A, const double *x, double *y, double *dot);
+/* Does the same, and sets *dot = x . y, unless something has failed before, which status says. With several
+ * parts all calls that make a sum return the same status on all of them. */
+mpm_status mpmi_matrix_apply_dot(const mpmi_matrix *A, const double *x, double *y, double *dot,
+                                 mpm_status status);
 /* Sets r = b - A x, and *norm to its norm. */
 mpm_status mpmi_matrix_residual(const mpmi_matrix *A, const double *b, const double *x, double *r,
                                 double *norm);

@@ -43,8 +43,9 @@ mpm_status mpmi_inverse_blocks(const mpmi_system *s, int64_t *node) {
     for (int32_t r = 0; r < n; ++r)
       for (int32_t c = 0; c < n; ++c) sum += a[r][c] = block[r * n + c];
     *node = i;
-    if (!isfinite(sum)) return MPM_NONFINITE;
-    const int32_t regular = mpmi_invert_block(n, a);
+    const int32_t own = mpmi_is_own_row(A, i);
+    if (own && !isfinite(sum)) return MPM_NONFINITE;
+    const int32_t regular = own && mpmi_invert_block(n, a);
     double *out = s->solver->diagonal + i * n * n;
     for (int32_t r = 0; r < n; ++r)
       for (int32_t c = 0; c < n; ++c) out[r * n + c] = regular ? a[r][c] : r == c ? 1.0 : 0.0;

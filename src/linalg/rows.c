@@ -64,6 +64,10 @@ static int64_t lists_in(const mail *of, const mpm_message *in) {
 }
 
 /* ---- links --------------------------------------------------------------------------------------------- */
+static int64_t packed_length(const mpmi_row_link *link, int32_t block) {
+  return (int64_t)link->vectors * block * link->out_count;
+}
+
 static void free_link(mpm_context *c, mpmi_row_link *link, int32_t block) {
   const int64_t capacity = link->partner_capacity;
   MPMI_FREE_ARRAY(c, link->part, capacity);
@@ -73,13 +77,14 @@ static void free_link(mpm_context *c, mpmi_row_link *link, int32_t block) {
   MPMI_FREE_ARRAY(c, link->most, capacity);
   MPMI_FREE_ARRAY(c, link->out, link->out_count);
   MPMI_FREE_ARRAY(c, link->in, link->in_count);
-  MPMI_FREE_ARRAY(c, link->packed, 2 * block * link->out_count);
+  MPMI_FREE_ARRAY(c, link->packed, packed_length(link, block));
   *link = (mpmi_row_link){.partners = 0};
 }
 
-/* Makes room for a link over which so many rows go and come by part; [parts] each. */
-static mpm_status make_link(mpm_context *c, mpmi_row_link *link, int32_t block, const int64_t *out,
-                            const int64_t *in) {
+/* Makes room for a link over which so many rows go and come by part; [parts] each. Of so many vectors they go
+ * at once. */
+static mpm_status make_link(mpm_context *c, mpmi_row_link *link, int32_t block, int32_t vectors,
+                            const int64_t *out, const int64_t *in) {
   int32_t partners = 0;
   int64_t all_out = 1, all_in = 1;
   for (int32_t r = 0; r < c->transport.parts; ++r) {
@@ -87,6 +92,7 @@ static mpm_status make_link(mpm_context *c, mpmi_row_link *link, int32_t block, 
     all_out += out[r];
     all_in += in[r];
   }
+  link->vectors = vectors;
   link->partner_capacity = partners;
   link->out_count = all_out;
   link->in_count = all_in;
@@ -97,7 +103,7 @@ static mpm_status make_link(mpm_context *c, mpmi_row_link *link, int32_t block, 
   link->most = mpmi_alloc(c, mpmi_bytes(partners, sizeof *link->most));
   link->out = mpmi_alloc(c, mpmi_bytes(all_out, sizeof *link->out));
   link->in = mpmi_alloc(c, mpmi_bytes(all_in, sizeof *link->in));
-  link->packed = mpmi_alloc(c, mpmi_bytes(2 * block * all_out, sizeof *link->packed));
+  link->packed = mpmi_alloc(c, mpmi_bytes(packed_length(link, block), sizeof *link->packed));
   if (!link->part || !link->out_start || !link->in_start || !link->message || !link->most || !link->out ||
       !link->in || !link->packed)
     return MPM_E_NOMEM;
@@ -256,7 +262,7 @@ static mpm_status find_halo(mpmi_rows *rows, const mpmi_rows_desc *d, int64_t *a
   }
   if (!status) {
     count_link(c, &names, asked);
-    status = make_link(c, link, rows->block, asked, asked + c->transport.parts);
+    status = make_link(c, link, rows->block, 1, asked, asked + c->transport.parts);
     for (int64_t i = 0; i < names.arrived_count && !status; ++i) {
       const int64_t *word = names.arrived[i].data, count = lists_in(&names, &names.arrived[i]);
       int64_t *to = link->out + link->out_start[partner_of(link, names.arrived[i].part)];
@@ -332,8 +338,8 @@ static mpm_status find_sums(mpmi_rows *rows, const int64_t *first, int64_t *aske
   for (int32_t r = 0; r < parts && count; ++r) all += count[r + 1];
   mpm_status status = count ? open_mail(c, 1, all, &of) : MPM_E_NOMEM;
   if (!status)
-    status = MPMI_RESERVE_MORE(c, rows->term, rows->term_capacity,
-                               2 * (rows->end - rows->first) * rows->block + 1);
+    status =
+        MPMI_RESERVE_MORE(c, rows->term, rows->term_capacity, (rows->end - rows->first) * rows->block + 1);
   if (!(status = mpmi_agree(c, status))) {
     memcpy(of.start, count, (size_t)(parts + 1) * sizeof *count);
     begin_mail(c, &of);
@@ -343,7 +349,7 @@ static mpm_status find_sums(mpmi_rows *rows, const int64_t *first, int64_t *aske
   if (!status) {
     count_link(c, &of, asked);
     /* here it is rows that are sent, and terms that come */
-    status = make_link(c, link, rows->block, asked + parts, asked);
+    status = make_link(c, link, rows->block, MPMI_ROW_SUMS, asked + parts, asked);
     for (int32_t k = 0; k < link->partners && !status; ++k) {
       int64_t at = link->out_start[k], from = first_of(&of, link->part[k]);
       for (int64_t r = 0; r < rows->count && at < link->out_start[k + 1]; ++r)

@@ -16,9 +16,10 @@ typedef struct mpmi_row_link {
   int32_t *part;                 /* [partners] ascending */
   int64_t *out_start, *in_start; /* [partners + 1] */
   int64_t *out, *in;             /* rows that are sent, and where they go */
-  double *packed;                /* what is sent: room for two vectors */
-  mpm_message *message;          /* [partners] */
-  int64_t *most;                 /* [partners] */
+  double *packed;                /* what is sent: numbers of each row, for so many vectors */
+  int32_t vectors;
+  mpm_message *message; /* [partners] */
+  int64_t *most;        /* [partners] */
   int32_t partner_capacity;
   int64_t out_count, in_count; /* capacities */
 } mpmi_row_link;
@@ -33,7 +34,7 @@ typedef struct mpmi_rows {
   mpmi_row_link halo, sums;     /* values of rows; terms of sums */
   int64_t first, end;           /* rows whose terms come here, by number */
   int64_t added_from, added_to; /* ranges are added up here that begin at these rows, by number */
-  double *term;                 /* [2][end - first][block] */
+  double *term;                 /* [end - first][block] of one sum */
   int64_t term_capacity;
 } mpmi_rows;
 
@@ -52,17 +53,21 @@ void mpmi_rows_destroy(mpmi_rows *rows); /* NULL is fine */
 /* Numbers the rows, and finds who needs what (collective). status: what has happened before. */
 mpm_status mpmi_rows_share(mpmi_rows *rows, const mpmi_rows_desc *desc, mpm_status status);
 
-/* Takes the values of wanted rows from those who own them (collective). */
+/* Takes the values of wanted rows from those who own them (collective). Fails only where the parts have lost
+ * each other. */
 mpm_status mpmi_rows_complete(const mpmi_rows *rows, double *x);
 
 /* Sums of a . b, or with `scale` of a . (scale b), over the unknowns of own rows of all parts (collective);
- * `by` says into which ranges they are cut: of rows, of unknowns, or as mpmi_dot() adds. */
+ * `by` says into which ranges they are cut: of rows, of unknowns, or as mpmi_dot() adds. There are at most
+ * MPMI_ROW_SUMS of them. status: what has happened on this part before; whoever has failed takes part, and
+ * all parts have the status of the first one. */
 enum { MPMI_BY_ROWS, MPMI_BY_UNKNOWNS, MPMI_BY_FOURS };
+enum { MPMI_ROW_SUMS = 16 };
 typedef struct mpmi_row_terms {
   const double *a, *b, *scale;
 } mpmi_row_terms;
 mpm_status mpmi_rows_sum(const mpmi_rows *rows, int32_t by, int32_t count, const mpmi_row_terms *terms,
-                         double *sum);
+                         double *sum, mpm_status status);
 
 /* Returns the part whose own row comes first by number among all that have one, or -1 (collective); row: -1
  * for none. */

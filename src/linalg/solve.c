@@ -16,7 +16,7 @@ static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
 static mpm_status not_positive(const mpmi_system *s) {
   s->report->indefinite = 1;
   return mpmi_fail(s->context, MPM_SINGULAR, "conjugate gradients: the matrix is not positive definite: %s",
-                   s->A->shared ? "hold the body in each direction, or use a smaller dt"
+                   s->A->shared ? "use MPM_SOLVER_GMRES, hold the body in each direction, or use a smaller dt"
                                 : "use MPM_SOLVER_LDLT or MPM_SOLVER_AUTO");
 }
 
@@ -69,7 +69,8 @@ static mpm_status by_multigrid(mpmi_system *s, int64_t limit) {
   return status == MPM_SINGULAR && !s->report->indefinite ? not_positive(s) : status;
 }
 
-/* The preconditioner is a cycle of multigrid, or the blocks of the diagonal where there are no levels. */
+/* The preconditioner is a cycle of multigrid, or the blocks of the diagonal where there are no levels, as
+ * with several parts. */
 static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient, int32_t multigrid) {
   mpmi_gmres_plan plan = {mpmi_times_inverse_blocks, s, RESTART, impatient, limit};
   mpm_status status = multigrid ? prepare_multigrid(s) : MPM_SINGULAR;
@@ -85,7 +86,8 @@ static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient, int
     mpmi_forget(s->context); /* drops what prepare_multigrid() wrote */
     status = mpmi_inverse_blocks(s, &row);
     s->report->factor_seconds += mpmi_seconds() - started;
-    if (status == MPM_NONFINITE) return bad_diagonal(s, row);
+    if (status == MPM_NONFINITE) status = bad_diagonal(s, row);
+    if ((status = mpmi_system_together_at(s, status, row))) return status;
   }
   if (!status) status = mpmi_gmres(s, &plan);
   return status == MPM_NOT_CONVERGED ? mpmi_system_not_converged(s, "GMRES") : status;
@@ -175,9 +177,15 @@ static mpm_status by_cheapest(mpmi_system *s, const mpmi_solve_job *job) {
   return status > 0 ? fall_back(s, status) : status;
 }
 
+/* What MPM_SOLVER_AUTO stands for where several parts have the matrix. */
+static int32_t choice_of(const mpmi_solve_job *job) {
+  if (job->choice || !job->matrix->shared) return job->choice;
+  return job->matrix->symmetric ? MPM_SOLVER_CG : MPM_SOLVER_GMRES;
+}
+
 static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
   const int64_t limit = job->max_iterations;
-  switch (job->choice) {
+  switch (choice_of(job)) {
   case MPM_SOLVER_HOST:
     return mpmi_solve_by_host(s, job);
   case MPM_SOLVER_CG:
@@ -188,7 +196,7 @@ static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
     return mpmi_direct(s);
   case MPM_SOLVER_GMRES:
     return by_gmres(s, limit ? limit : RESTART * MOST_RESTARTS, 0,
-                    s->n > MPMI_ALONE_UNKNOWNS && !job->several_fields);
+                    !s->A->shared && s->n > MPMI_ALONE_UNKNOWNS && !job->several_fields);
   default:
     return by_cheapest(s, job);
   }
@@ -208,10 +216,10 @@ static mpm_status check_choice(mpm_context *context, const mpmi_solve_job *job) 
                                          [MPM_SOLVER_MULTIGRID_CG] = "MPM_SOLVER_MULTIGRID_CG",
                                          [MPM_SOLVER_LDLT] = "MPM_SOLVER_LDLT"};
   if (choice >= MPM_SOLVER_CG && choice <= MPM_SOLVER_LDLT && !job->matrix->symmetric)
-    return mpmi_fail(context, MPM_E_UNSUPPORTED, "%s is for symmetric matrices, and this one is not: use %s",
-                     symmetric_only[choice],
-                     job->matrix->shared ? "MPM_SOLVER_HOST, or a context without a transport"
-                                         : "MPM_SOLVER_GMRES or MPM_SOLVER_AUTO");
+    return mpmi_fail(
+        context, MPM_E_UNSUPPORTED,
+        "%s is for symmetric matrices, and this one is not: use MPM_SOLVER_GMRES or MPM_SOLVER_AUTO",
+        symmetric_only[choice]);
   if (choice != MPM_SOLVER_HOST && (choice < MPM_SOLVER_AUTO || choice > MPM_SOLVER_GMRES))
     return mpmi_fail(context, MPM_E_ARG, "linear_solver is %d, must be MPM_SOLVER_AUTO ... MPM_SOLVER_HOST",
                      (int)choice);
@@ -234,8 +242,8 @@ static mpm_status check_rhs(const mpmi_system *s) {
 
 static mpm_status find_norm(mpmi_system *s) {
   if (!s->A->shared) return mpmi_norm(s->context, s->b, s->n, &s->b_norm);
-  const mpm_status status =
-      mpmi_rows_sum(s->A->shared, MPMI_BY_FOURS, 1, &(mpmi_row_terms){.a = s->b, .b = s->b}, &s->b_norm);
+  const mpm_status status = mpmi_rows_sum(s->A->shared, MPMI_BY_FOURS, 1,
+                                          &(mpmi_row_terms){.a = s->b, .b = s->b}, &s->b_norm, MPM_OK);
   s->b_norm = sqrt(s->b_norm);
   return status;
 }
@@ -268,7 +276,8 @@ static mpm_status solve(mpmi_solver *solver, const mpmi_solve_job *job, mpmi_sol
   if (!isfinite(s.b_norm)) return check_rhs(&s);
   if (!(s.b_norm > 0.0)) {
     memset(s.x, 0, (size_t)s.n * sizeof *s.x);
-    if (!job->choice) report->solver = s.A->symmetric ? MPM_SOLVER_LDLT : MPM_SOLVER_GMRES;
+    report->solver = choice_of(job);
+    if (!report->solver) report->solver = s.A->symmetric ? MPM_SOLVER_LDLT : MPM_SOLVER_GMRES;
     return MPM_OK;
   }
   s.wanted = s.reached = job->tolerance * s.b_norm;

@@ -114,6 +114,11 @@ typedef struct mpmi_parts {
 mpm_balance_desc mpmi_balance_of(const mpm_balance_desc *desc);
 mpm_status mpmi_parts_create(mpm_context *context, const mpm_grid *grid, mpmi_parts **out);
 void mpmi_parts_destroy(mpmi_parts *parts);
+/* Returns how much further out nodes are to be whole where there are surfaces: those around markers beside a
+ * node of a part, and those around the markers beside these. */
+static inline int32_t mpmi_marker_margin(const mpm_grid *grid) {
+  return 2 * (grid->width - 1);
+}
 /* Exchanges them; what they have cost is counted on. */
 void mpmi_parts_replace(mpmi_parts **present, mpmi_parts **next);
 /* Adds the body of a set to those that may meet, unless it is known. */

@@ -448,6 +448,9 @@ static mpm_status move_surface(surface_job *job) {
   mpm_surface *s = job->surface;
   const mpmi_settings *settings = step->settings;
   mpm_status status = mpmi_run_tasks(settings, 0, settings->tasks, move_task, job);
+  /* iterations have found the forces of the markers beside this part; now that all of them have moved, those
+   * of others are known, too */
+  if (!status && step->layout->parts && mpmi_is_implicit(settings)) status = load_surface(step, s);
   int64_t stay = 0;
   for (int64_t i = 0; i < s->next.count && !status; ++i) {
     mpmi_marker *m = &s->next.at[i];

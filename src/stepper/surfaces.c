@@ -10,7 +10,7 @@ static void make_whole(mpm_stepper *s) {
   for (int32_t m = 0; m < s->layout.member_count; ++m) s->layout.member[m].set->dirty |= MPMI_DIRTY_PLACE;
   if (!parts || parts->meets_markers) return;
   parts->meets_markers = 1;
-  parts->margin += 2 * (s->grid->width - 1);
+  parts->margin += mpmi_marker_margin(s->grid);
 }
 
 mpm_status mpm_stepper_add_surface(mpm_stepper *s, mpm_surface *surface) {

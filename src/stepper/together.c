@@ -18,19 +18,15 @@ static const char *not_implicit(const mpm_stepper *s, const char **instead) {
     bodies |= s->layout.member[m].body != 0;
     adapts |= s->adaption[m].on;
   }
-  *instead = "MPM_SOLVER_CG or MPM_SOLVER_HOST";
-  if (settings->desc.linear_solver > MPM_SOLVER_CG && settings->desc.linear_solver != MPM_SOLVER_HOST)
-    return "a linear solver other than conjugate gradients and the host's";
-  *instead = "a new stepper";
-  if (!s->layout.parts->names_owners) return "scheme MPM_NEWMARK in a stepper that was made with another one";
+  *instead = "MPM_SOLVER_CG, MPM_SOLVER_GMRES or MPM_SOLVER_HOST";
+  if (settings->desc.linear_solver == MPM_SOLVER_MULTIGRID_CG) return "MPM_SOLVER_MULTIGRID_CG";
+  if (settings->desc.linear_solver == MPM_SOLVER_LDLT) return "MPM_SOLVER_LDLT";
   *instead = "MPM_USL, MPM_USF or MPM_MUSL";
-  if (mpmi_is_total_lagrangian(s->grid)) return "implicit steps on a total Lagrangian grid";
   if (bodies) return "implicit steps of bodies with nodes of their own";
   if (adapts) return "adaption in implicit steps";
   if (settings->obstacles.count) return "obstacles in implicit steps";
   if (mpmi_has_friction_planes(settings)) return "friction walls in implicit steps";
-  if (settings->surfaces.count) return "surfaces in implicit steps";
-  return settings->heat.any ? "heat in implicit steps" : NULL;
+  return NULL;
 }
 
 mpm_status mpmi_together_offers(mpm_stepper *s) {

@@ -16,7 +16,7 @@ START_TEST(products) {
   double *a = dense_of(&A), *x = noise_vector(&A, 1), *b = noise_vector(&A, 2), dot, norm, rounding;
   double *y = malloc((size_t)n * sizeof *y), *r = malloc((size_t)n * sizeof *r);
   for (int64_t i = 0; i < n; ++i) x[i] += A.held[i] ? 3.0 : 0.0; /* held ones are multiplied, too */
-  ck_ok(context, mpmi_matrix_apply_dot(&A, x, y, &dot));
+  ck_ok(context, mpmi_matrix_apply_dot(&A, x, y, &dot, MPM_OK));
   ck_ok(context, mpmi_matrix_residual(&A, b, x, r, &norm));
   double wanted_dot = 0.0, wanted_norm = 0.0, size = 0.0;
   for (int64_t i = 0; i < n; ++i) {

@@ -79,7 +79,8 @@ void check_hunger(const hungry *as, parts_fn lives);
 
 /* A case for what takes long because it is much: it has the tag "wide". */
 TCase *wide_case(Suite *suite, const char *name);
-/* Adds every third of a table of tests to a case, and the others to a wide one. */
+/* Adds every so many of a table of tests to a case, and the others to a wide one; every third. */
+void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every);
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count);
 /* Plays the scene in one part, and then in several. Returns what it has come to. */
 mpm_status check_scene(const scene *is, const char *name, int32_t parts);
@@ -89,6 +90,12 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts);
  * move at first. */
 enum { LEADS = 1, HOLDS = 2, PULLS = 4, MOVES = 8 };
 scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_static);
+
+/* Plays it in two numbers of parts, where one part would make other bits; it must come to its end. */
+void check_alike(const scene *is, const char *name, int32_t parts, int32_t more);
+/* Such a step by GMRES, with so few unknowns that one part preconditions by blocks, too; save for
+ * quasi-static ones in 3-D: with more it does so by multigrid. */
+scene small_scene(int32_t dim, const basis_option *basis, int32_t quasi_static);
 
 /* The scene must come to its end. */
 void check_made(const scene *is, const char *name, int32_t parts);
@@ -105,12 +112,16 @@ int32_t describe_option(scene *is, int32_t at, int32_t total, char *name, size_t
  * there are particles. */
 scene warm_scene(int32_t cells, int32_t implicit);
 mpm_status equip_heat(world *w, const scene *is);
+/* Faces begin and end to prescribe temperatures, in implicit steps. */
+mpm_status warm_slowly(world *w, const scene *is, outcome *found);
 
 /* A closed surface that loads the material all around a place, and is split as it comes; takes it out. */
 mpm_status add_loads(world *w, double middle, double radius, mpm_surface **out);
 mpm_status drop_loads(world *w, mpm_surface *s);
 /* Adds such a surface without loads. */
 mpm_status add_around(const world *w, mpm_surface *s, double middle, double radius, double spacing);
+/* One of the same shape that prescribes how the material moves. */
+mpm_status add_holder(world *w, double middle, double radius, int32_t prescribes, mpm_surface **out);
 /* Mixes what all markers of a surface have. */
 mpm_status mix_markers(const world *w, const mpm_surface *s, uint64_t *hash);
 
@@ -122,8 +133,9 @@ void add_shared_surfaces(Suite *suite);
 void add_shared_rubbing(Suite *suite);
 void add_shared_prescribing(Suite *suite);
 void add_shared_adaption(Suite *suite);
-/* Adds the cases of shared_implicit.c. */
+/* Add the cases of shared_implicit.c and shared_steps.c. */
 void add_shared_implicit(Suite *suite);
+void add_shared_steps(Suite *suite);
 TCase *shared_calls_case(void);
 TCase *shared_balance_case(void);
 TCase *shared_timed_case(void);

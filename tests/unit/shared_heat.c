@@ -90,6 +90,19 @@ static mpm_status warm_up(world *w, const scene *is, outcome *found) {
   return status;
 }
 
+mpm_status warm_slowly(world *w, const scene *is, outcome *found) {
+  mpm_status status = MPM_OK;
+  (void)found;
+  for (int32_t i = 0; i < 6 && !status; ++i) {
+    if (i == 2) status = hold_face(w, MPM_Y_MIN, MPM_HEAT_WALL_TEMPERATURE, 350.0);
+    if (i == 3) status = hold_face(w, MPM_X_MIN, MPM_HEAT_WALL_TEMPERATURE, 260.0);
+    if (i == 4) status = hold_face(w, MPM_X_MIN, MPM_HEAT_WALL_INSULATED, 0.0);
+    if (!status)
+      status = mpm_step(w->stepper, (is->heat > 1 ? 1e-3 : 2e-4) * (1.0 + 0.5 * (i % 2)), &w->info);
+  }
+  return status;
+}
+
 scene warm_scene(int32_t cells, int32_t implicit) {
   scene is = scene_of(2, cells, set_up_warm);
   is.run = warm_up;

@@ -195,31 +195,21 @@ END_TEST
 
 /* What several parts do not have says what they have. */
 static mpm_status ask_in_vain(world *w, const scene *is, outcome *found) {
-  int32_t part = 0, parts = 1;
-  (void)found;
-  mpm_context_part(w->context, &part, &parts);
-  mpm_stepper_desc desc = is->desc.stepper;
-  desc.scheme = MPM_NEWMARK;
-  const mpm_status changed = mpm_stepper_configure(w->stepper, &desc);
   const mpm_status status = mpm_step(w->stepper, 0.3 * is->desc.grid.spacing[0], &w->info);
-  if (parts == 1 || changed) return changed ? changed : status;
-  if (status != MPM_E_UNSUPPORTED ||
-      (strstr(mpm_last_error(w->context), "use MPM_SOLVER_CG") != NULL) != is->heard)
-    return MPM_E_INTERNAL;
-  return MPM_OK;
+  (void)found;
+  if (status == MPM_E_UNSUPPORTED &&
+      strstr(mpm_last_error(w->context), "use MPM_SOLVER_CG, MPM_SOLVER_GMRES or MPM_SOLVER_HOST"))
+    return MPM_OK;
+  return MPM_E_INTERNAL;
 }
 
 START_TEST(refused) {
-  static const int32_t solvers[] = {MPM_SOLVER_MULTIGRID_CG, MPM_SOLVER_LDLT, MPM_SOLVER_GMRES,
-                                    MPM_SOLVER_AUTO, MPM_SOLVER_CG};
+  static const int32_t solvers[] = {MPM_SOLVER_MULTIGRID_CG, MPM_SOLVER_LDLT};
   scene is = implicit_scene(2, implicit_basis(1), 0);
   parts_plan plan;
   memset(&plan, 0, sizeof plan);
   is.run = ask_in_vain;
-  is.heard = _i < 3;
   is.desc.stepper.linear_solver = solvers[_i];
-  if (_i == 3) is.desc.law.model = "j2"; /* whose matrix is not symmetric */
-  if (_i == 4) is.desc.stepper.scheme = MPM_USL;
   ck_assert_int_eq(parts_run(2, live, &is, &plan), 0);
   for (int32_t r = 0; r < 2; ++r)
     ck_assert_msg(is.found[r].status == MPM_OK, "solver %d, part %d: %s", (int)solvers[_i], r,
@@ -245,7 +235,7 @@ void add_shared_implicit(Suite *suite) {
   tcase_add_loop_test(failures, steps_fail, 0, 12);
   tcase_add_loop_test(failures, advances, 0, 3);
   tcase_add_test(failures, hosts_stop);
-  tcase_add_loop_test(failures, refused, 0, 5);
+  tcase_add_loop_test(failures, refused, 0, 2);
   tcase_add_test(failures, transport_fails);
   suite_add_tcase(suite, failures);
 }

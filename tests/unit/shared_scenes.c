@@ -88,15 +88,10 @@ void live(int32_t part, const mpm_transport *transport, void *user) {
   if (world_try_close(&w) && !found->status) found->status = MPM_E_INTERNAL;
 }
 
-mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
-  scene one = *is, many = *is;
-  parts_plan plan;
-  memset(&plan, 0, sizeof plan);
-  live(0, NULL, &one);
-  if (parts_run(parts, live, &many, &plan)) ck_abort_msg("%s, %d parts: %s", name, parts, plan.text);
-  const outcome *a = &one.found[0];
+/* All parts must have found what was found before. */
+static void compare(const outcome *a, const scene *many, const char *name, int32_t parts) {
   for (int32_t r = 0; r < parts; ++r) {
-    const outcome *b = &many.found[r];
+    const outcome *b = &many->found[r];
     if (a->status != b->status)
       ck_abort_msg("%s, part %d of %d: %s (%s) and not %s (%s)", name, r, parts, mpm_status_name(b->status),
                    b->text, mpm_status_name(a->status), a->text);
@@ -147,7 +142,28 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
     ck_assert_msg(a->stable_dt == b->stable_dt && a->total == b->total, "%s, part %d of %d: %g, %g", name, r,
                   parts, a->stable_dt, b->stable_dt);
   }
-  return a->status;
+}
+
+static void play_in_parts(scene *is, const char *name, int32_t parts) {
+  parts_plan plan;
+  memset(&plan, 0, sizeof plan);
+  if (parts_run(parts, live, is, &plan)) ck_abort_msg("%s, %d parts: %s", name, parts, plan.text);
+}
+
+mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
+  scene one = *is, many = *is;
+  live(0, NULL, &one);
+  play_in_parts(&many, name, parts);
+  compare(&one.found[0], &many, name, parts);
+  return one.found[0].status;
+}
+
+void check_alike(const scene *is, const char *name, int32_t parts, int32_t more) {
+  scene few = *is, many = *is;
+  play_in_parts(&few, name, parts);
+  play_in_parts(&many, name, more);
+  compare(&few.found[0], &many, name, more);
+  ck_assert_msg(few.found[0].status == MPM_OK, "%s: %s", name, few.found[0].text);
 }
 
 void check_parts(scene *is, int32_t parts) {
@@ -209,6 +225,10 @@ TCase *wide_case(Suite *suite, const char *name) {
   return wide;
 }
 
+void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every) {
+  for (int32_t i = 0; i < count; ++i) tcase_add_loop_test(i % every ? wide : some, test, i, i + 1);
+}
+
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count) {
-  for (int32_t i = 0; i < count; ++i) tcase_add_loop_test(i % 3 ? wide : some, test, i, i + 1);
+  add_every(some, wide, test, count, 3);
 }

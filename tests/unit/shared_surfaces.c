@@ -52,6 +52,27 @@ mpm_status add_loads(world *w, double middle, double radius, mpm_surface **out) 
   return status ? status : mpm_stepper_add_surface(w->stepper, *out);
 }
 
+/* A velocity that differs from marker to marker. */
+static mpm_status drag_by_place(void *user, const mpm_marker_batch *b, double *add) {
+  (void)user;
+  for (int64_t i = 0; i < b->n; ++i)
+    for (int32_t k = 0; k < b->dim; ++k) add[k * b->ld + i] += 0.02 * sin(9.0 * b->position[i] + k + b->t);
+  return MPM_OK;
+}
+
+mpm_status add_holder(world *w, double middle, double radius, int32_t prescribes, mpm_surface **out) {
+  mpm_surface_desc d;
+  mpm_status status = mpm_surface_desc_init(&d, sizeof d);
+  d.prescribes = prescribes;
+  d.velocity[0] = 0.02;
+  d.dead_traction[0] = 50.0;
+  d.penalty = 10.0;
+  if (!status) status = mpm_surface_create(w->context, w->grid, &d, out);
+  if (!status) status = mpm_surface_set_velocity(*out, drag_by_place, NULL);
+  if (!status) status = add_around(w, *out, middle, radius, 0.7 * w->desc.grid.spacing[0]);
+  return status ? status : mpm_stepper_add_surface(w->stepper, *out);
+}
+
 mpm_status drop_loads(world *w, mpm_surface *s) {
   const mpm_status status = mpm_stepper_remove_surface(w->stepper, s);
   return status ? status : mpm_surface_destroy(s);

@@ -427,11 +427,11 @@ static void live_hungry(int32_t part, const mpm_transport *transport, void *user
 START_TEST(memory_runs_out) {
   static hungry h;
   memset(&h, 0, sizeof h);
-  h.loads = _i == 3;
+  h.loads = _i == 3 || _i == 5;
   h.is = _i == 1 || _i == 2 ? warm_scene(2 * WIDE, _i - 1) : scene_of(2, 2 * WIDE, set_up_body);
-  if (_i == 4) {
+  if (_i >= 4) {
     h.is.desc.stepper.scheme = MPM_NEWMARK;
-    h.is.desc.stepper.linear_solver = MPM_SOLVER_CG;
+    h.is.desc.stepper.linear_solver = _i == 4 ? MPM_SOLVER_CG : MPM_SOLVER_GMRES;
   }
   check_hunger(&h, live_hungry);
 }
@@ -469,6 +469,6 @@ Suite *shared_suite(void) {
   suite_add_tcase(suite, failures);
   TCase *more = wide_case(suite, "more failures");
   tcase_add_loop_test(more, transport_fails, 1, 3);
-  tcase_add_loop_test(more, memory_runs_out, 2, 5);
+  tcase_add_loop_test(more, memory_runs_out, 2, 6);
   return suite;
 }
