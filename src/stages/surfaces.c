@@ -353,7 +353,8 @@ static mpm_status tell(mpmi_step *step, const mpmi_nodal *from, int32_t meets) {
     mpmi_parallel_for_sure(settings->context, settings->tasks, tell_task, &job);
     status =
         mpmi_reduce_parts(settings->context, MPM_REDUCE_SUM, MPMI_MARKER_MOTION * s->next.count, s->told);
-    if (status || !mpmi_surface_prescribes(s)) continue;
+    /* in implicit steps springs hold, which tell by themselves what they have given */
+    if (status || !mpmi_surface_prescribes(s) || mpmi_is_implicit(settings)) continue;
     status = mpmi_reduce_parts(settings->context, MPM_REDUCE_SUM,
                                MPMI_MARKER_VECTOR * s->next.count * s->around.nodes,
                                mpmi_surface_told_impulse(s, 0));

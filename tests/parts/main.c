@@ -44,6 +44,10 @@ static int32_t compare(telling *t, int32_t parts, char *why, size_t room) {
   uint64_t hash = 0;
   parts_plan plan = {.fail_part = 0};
   why[0] = '\0';
+  if (t->is.solver == MPM_SOLVER_HOST) {
+    snprintf(why, room, "the host's solver of this scene is for one part");
+    return REFUSED;
+  }
   char alone[REFUSAL] = "";
   if (!tell_alone(t, &hash, alone)) {
     snprintf(why, room, "one part failed. %s", alone);

@@ -13,15 +13,15 @@ for parts in "$@"; do
 done | xargs -P "$jobs" -L 1 sh -c \
   '"$0" every $(($2 * '$slices')) $(($2 * $3)) "$4" > "$1/$4.$3" 2>&1; [ $? -lt 2 ]' "$program" "$out" "$share"
 for parts in "$@"; do
-  cat "$out/$parts".* | grep -v '^[0-9]* parts: ' > "$out/$parts.lines"
-  grep -vE ': (equal|refused: .*)$' "$out/$parts.lines" && failed=1
-  sed -n 's/.*: refused: //p' "$out/$parts.lines" | sort | uniq -c > "$out/$parts.refused"
-  if sed 's/^ *[0-9]* //' "$out/$parts.refused" | grep -Fxvf "$here/refused.txt"; then
+  cat "$out/$parts".* | grep -v '^[0-9]* parts: ' > "$out/lines.$parts"
+  grep -vE ': (equal|refused: .*)$' "$out/lines.$parts" && failed=1
+  sed -n 's/.*: refused: //p' "$out/lines.$parts" | sort | uniq -c > "$out/refused.$parts"
+  if sed 's/^ *[0-9]* //' "$out/refused.$parts" | grep -Fxvf "$here/refused.txt"; then
     echo "check-parts: refused as above, which refused.txt does not have" >&2
     failed=1
   fi
-  equal=$(grep -c ': equal$' "$out/$parts.lines" || :)
-  echo "check-parts: $parts parts: $equal of $(wc -l < "$out/$parts.lines") scenes equal, $(grep -c ': refused: ' "$out/$parts.lines" || :) refused"
+  equal=$(grep -c ': equal$' "$out/lines.$parts" || :)
+  echo "check-parts: $parts parts: $equal of $(wc -l < "$out/lines.$parts") scenes equal, $(grep -c ': refused: ' "$out/lines.$parts" || :) refused"
   [ "$equal" -gt 0 ] || failed=1
 done
 exit $failed
