@@ -95,7 +95,8 @@ mpm_status mpmi_surfaces_find(mpmi_step *step, const mpmi_nodal *masses);
 mpm_status mpmi_surfaces_give(mpmi_step *step, const mpmi_nodal *to);
 /* Returns the first of the nodes around a marker that take something, or -1. */
 int64_t mpmi_marker_first_slot(const mpm_surface *surface, int64_t marker);
-/* Returns 1 on the one part that tells the others of a marker, after mpmi_surfaces_find(): it owns that node. */
+/* Returns 1 on the one part that tells the others of a marker, after mpmi_surfaces_find(): it owns that
+ * node. */
 int32_t mpmi_owns_marker(const mpmi_step *step, const mpm_surface *surface, int64_t marker);
 /* Refuses loads that no node of any part would take, on all parts alike (collective). */
 mpm_status mpmi_surfaces_carried(mpmi_step *step);

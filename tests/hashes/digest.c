@@ -46,7 +46,8 @@ void mix_info(uint64_t *hash, const mpm_step_info *info) {
   }
 }
 
-/* Of each node a hash; their sum does not know in which order the library lists them, and which part has them. */
+/* Of each node a hash; their sum does not know in which order the library lists them, nor which part has
+ * them. */
 static void mix_nodes(world *w) {
   static const char *const field[] = {"index", "mass", "position", "velocity", "reaction"};
   enum { FIELDS = sizeof field / sizeof *field };

@@ -1,8 +1,8 @@
 /* parts [every MANY SKIP] COUNT [NAME ...]: tells scenes of tests/hashes on one part and on COUNT parts,
  * threads of this process, and compares hashes: of state, reports of all steps, reactions and nodal fields.
  * One scene in a line, with "equal", or "refused" and the library's sentence, or what went wrong; at the end
- * how many of each. All scenes, or every MANY-th of those from number SKIP on, or those of these names. Ends with 1
- * unless all are equal or refused. */
+ * how many of each. All scenes, or every MANY-th of those from number SKIP on, or those of these names. Ends
+ * with 1 unless all are equal or refused. */
 #include "scene.h"
 #include "parts.h"
 

@@ -1,8 +1,8 @@
 /* volumes SIDE CELLS [STEPS]: what parts send each other. A cube of SIDE * CELLS cells a side with 8
- * particles in each flies a tenth of a cell per step on SIDE^3 parts, threads of this process. Of each part: particles,
- * blocks and those at the edge, neighbours, ghosts, and what it sends in the step that sends least and in the
- * one that sends most; at the end the means of all parts and the largest. 3-D, quadratic, MPM_USL, MPM_FLIP:
- * one sum on nodes in a step. */
+ * particles in each flies a tenth of a cell per step on SIDE^3 parts, threads of this process. Of each part:
+ * particles, blocks and those at the edge, neighbours, ghosts, and what it sends in the step that sends least
+ * and in the one that sends most; at the end the means of all parts and the largest. 3-D, quadratic, MPM_USL,
+ * MPM_FLIP: one sum on nodes in a step. */
 #include "parts.h"
 
 #include <mpm/mpm.h>
