@@ -1,6 +1,6 @@
 /* A film strip in pairs, before and after blocks of the grid were given to other processes: the particles of
- * a slice from all processes, coloured by the process that has them. All processes call these functions alike;
- * the first one draws. */
+ * a slice from all processes, coloured by the process that has them. All processes call these functions
+ * alike; the first one draws. */
 #ifndef EXAMPLES_PARTS_FILM_H
 #define EXAMPLES_PARTS_FILM_H
 

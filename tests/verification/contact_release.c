@@ -133,8 +133,8 @@ static double rigid(double push) {
   return 0.5 * push * push / (slide_gravity * (0.7 * cos(PI / 6.0) - sin(PI / 6.0)));
 }
 
-/* Returns the way of a block with little viscosity that is pushed by 0.05 (0), or 0.1 (1). In small this is of
- * the coarse elements, and nothing is said of them. */
+/* Returns the way of a block with little viscosity that is pushed by 0.05 (0), or 0.1 (1). In small this is
+ * of the coarse elements, and nothing is said of them. */
 static void judge_elements(FILE *table, double *way) {
   static const double push[2] = {0.05, 0.1};
   for (int32_t k = 0; k < 2 && verify_quick(); ++k) way[k] = finite_elements(8, gently, push[k], viscous);
