@@ -55,6 +55,8 @@ mpm_status set_walls(world *w);
 mpm_status run_steps(world *w);
 /* A body that flies through the grid takes the blocks of all parts in turn. */
 mpm_status fly_through(world *w, const scene *is, outcome *found);
+/* Each part saves its piece, and takes it up again. */
+mpm_status save_and_load(world *w);
 /* Walls, a body and its velocities. */
 mpm_status set_up_body(world *w, const scene *is);
 
@@ -74,8 +76,13 @@ typedef struct hungry {
   int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
   int32_t failed[3];      /* how many calls of each part */
   host_memory memory[3];
+  /* For live_hungrily(): what the part does, as often as `acts` says; MPM_E_NOMEM is to leave all as it was. */
+  mpm_status (*act)(world *w, int32_t part, int32_t number);
+  int32_t acts;
 } hungry;
 void check_hunger(const hungry *as, parts_fn lives);
+/* The life of a part: the scene is set up, and each act that memory runs out in is done once more. */
+void live_hungrily(int32_t part, const mpm_transport *transport, void *user);
 
 /* A case for what takes long because it is much: it has the tag "wide". */
 TCase *wide_case(Suite *suite, const char *name);
@@ -90,6 +97,8 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts);
  * move at first. */
 enum { LEADS = 1, HOLDS = 2, PULLS = 4, MOVES = 8 };
 scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_static);
+/* An implicit step that no part can make, and then others. */
+mpm_status fail_and_go_on(world *w, const scene *is, outcome *found);
 
 /* Plays it in two numbers of parts, where one part would make other bits; it must come to its end. */
 void check_alike(const scene *is, const char *name, int32_t parts, int32_t more);
@@ -118,6 +127,10 @@ mpm_status warm_slowly(world *w, const scene *is, outcome *found);
 /* A closed surface that loads the material all around a place, and is split as it comes; takes it out. */
 mpm_status add_loads(world *w, double middle, double radius, mpm_surface **out);
 mpm_status drop_loads(world *w, mpm_surface *s);
+/* A callback about markers that returns the status that user points to. */
+mpm_status refuse_markers(void *user, const mpm_marker_batch *b, double *add);
+/* Makes a step that is to end with this status and these words. */
+mpm_status expect_step(world *w, double dt, mpm_status wanted, const char *words);
 /* Adds such a surface without loads. */
 mpm_status add_around(const world *w, mpm_surface *s, double middle, double radius, double spacing);
 /* One of the same shape that prescribes how the material moves. */

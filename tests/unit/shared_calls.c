@@ -186,38 +186,26 @@ START_TEST(ids_are_given_once) {
 END_TEST
 
 /* Memory that runs out on one part changes nothing on any. */
-static void live_adding(int32_t part, const mpm_transport *transport, void *user) {
-  hungry *h = user;
-  world w;
-  const int64_t id[][2] = {{9000, 1}, {9001, 9003}, {9002, 9007}}, gone = 1;
-  memset(&w, 0, sizeof w);
-  w.desc = h->is.desc;
-  w.desc.context.transport = transport;
-  mpm_status status = world_try_open(&w);
-  if (!status) status = set_up_body(&w, &h->is);
-  if (!status && (status = mpm_particles_remove(w.set[0], 1, &gone)) == MPM_E_NOT_FOUND)
+static mpm_status set_up_fewer(world *w, const scene *is) {
+  const int64_t gone = 1;
+  mpm_status status = set_up_body(w, is);
+  if (!status && (status = mpm_particles_remove(w->set[0], 1, &gone)) == MPM_E_NOT_FOUND)
     status = MPM_OK; /* another part has it */
-  const int64_t before = w.memory.calls;
-  if (part == 1 && h->fail_at) w.memory.fail_at = before + h->fail_at;
-  for (int32_t i = 0; i < 2 && !status; ++i) {
-    status = i ? mpm_step(w.stepper, 1e-5, NULL) : add_some(&w, part, id, 3);
-    if (status != MPM_E_NOMEM) continue;
-    ++h->failed[part];
-    status = i ? mpm_step(w.stepper, 1e-5, NULL) : add_some(&w, part, id, 3);
-  }
-  if (part == 1) h->calls = w.memory.calls - before;
-  w.memory.fail_at = 0;
-  if (!status) status = mpm_state_hash(w.stepper, &h->is.found[part].hash);
-  h->is.found[part].status = status;
-  world_try_close(&w);
-  h->memory[part] = w.memory;
+  return status;
+}
+
+static mpm_status add_and_step(world *w, int32_t part, int32_t number) {
+  const int64_t id[][2] = {{9000, 1}, {9001, 9003}, {9002, 9007}};
+  return number ? mpm_step(w->stepper, 1e-5, NULL) : add_some(w, part, id, 3);
 }
 
 START_TEST(memory_runs_out_adding) {
   static hungry h;
   memset(&h, 0, sizeof h);
-  h.is = scene_of(2, 2 * WIDE, set_up_body);
-  check_hunger(&h, live_adding);
+  h.is = scene_of(2, 2 * WIDE, set_up_fewer);
+  h.act = add_and_step;
+  h.acts = 2;
+  check_hunger(&h, live_hungrily);
 }
 END_TEST
 

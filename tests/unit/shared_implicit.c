@@ -126,8 +126,7 @@ START_TEST(remedy) {
 END_TEST
 
 /* ---- what may go wrong --------------------------------------------------------------------------------- */
-/* A step that no part can make, and then others. */
-static mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
+mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
   const double h = is->desc.grid.spacing[0];
   mpm_status status = mpm_step(w->stepper, 0.3 * h, &w->info);
   if (status) return status;

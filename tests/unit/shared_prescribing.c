@@ -141,18 +141,6 @@ START_TEST(surfaces_heat) {
 END_TEST
 
 /* ---- failures ------------------------------------------------------------------------------------------ */
-static mpm_status refuse(void *user, const mpm_marker_batch *b, double *add) {
-  (void)b, (void)add;
-  return *(const mpm_status *)user;
-}
-
-static mpm_status expect(world *w, mpm_status wanted, const char *words) {
-  const mpm_status status = mpm_step(w->stepper, 1e-5, &w->info);
-  if (status == wanted && strstr(mpm_last_error(w->context), words) && w->info.cause == wanted) return MPM_OK;
-  fprintf(stderr, "%s: %s\n", mpm_status_name(status), mpm_last_error(w->context));
-  return MPM_E_INTERNAL;
-}
-
 /* One part refuses, markers heat where nothing is, parts describe surfaces otherwise. */
 static mpm_status fail_held(world *w, const scene *is, outcome *found) {
   mpm_surface *s[2] = {NULL, NULL};
@@ -164,18 +152,21 @@ static mpm_status fail_held(world *w, const scene *is, outcome *found) {
   if (!status) status = add_loads(w, 0.26, 0.2, &s[1]);
   if (!status) status = mpm_surface_set_heat(s[1], 1.0, 2.0, 300.0);
   for (int32_t i = 0; i < 4 && !status; ++i) status = mpm_step(w->stepper, 1e-5, &w->info);
-  if (!status) status = mpm_surface_set_velocity(s[0], refuse, &answer);
+  if (!status) status = mpm_surface_set_velocity(s[0], refuse_markers, &answer);
   if (part == parts - 1) answer = -3;
-  if (!status) status = expect(w, MPM_E_CALLBACK, "the velocity callback of surface 0 returned -3");
+  if (!status)
+    status = expect_step(w, 1e-5, MPM_E_CALLBACK, "the velocity callback of surface 0 returned -3");
   answer = MPM_OK;
   const double x[] = {0.9, 0.9}, area[] = {0.01, 0.0}, infinite[] = {(double)INFINITY, 0.0};
   int64_t id;
   if (!status) status = mpm_surface_add(s[1], 1, x, area, &id);
-  if (!status) status = expect(w, MPM_E_STATE, "heats, and there is no material with heat around it");
+  if (!status)
+    status = expect_step(w, 1e-5, MPM_E_STATE, "heats, and there is no material with heat around it");
   if (!status) status = mpm_surface_remove(s[1], 1, &id);
   if (!status && parts > 1) {
     if (part) status = mpm_surface_set_heat(s[1], 1.0, 0.0, 300.0);
-    if (!status) status = expect(w, MPM_E_STATE, "the stepper is set up otherwise on another part");
+    if (!status)
+      status = expect_step(w, 1e-5, MPM_E_STATE, "the stepper is set up otherwise on another part");
     if (status == MPM_OK) w->info.cause = MPM_OK;
     if (!status) status = mpm_surface_set_heat(s[1], 1.0, 2.0, 300.0);
   }

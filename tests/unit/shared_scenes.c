@@ -217,6 +217,41 @@ void check_hunger(const hungry *as, parts_fn lives) {
   ck_assert_int_gt(calls, 20);
 }
 
+mpm_status save_and_load(world *w) {
+  int64_t bytes = 0;
+  mpm_status status = mpm_state_size(w->stepper, &bytes);
+  void *state = malloc((size_t)bytes + 1);
+  const void *piece[] = {state};
+  if (!status) status = mpm_state_save(w->stepper, state, bytes);
+  if (!status) status = mpm_state_load_pieces(w->stepper, 1, piece, &bytes);
+  free(state);
+  return status;
+}
+
+void live_hungrily(int32_t part, const mpm_transport *transport, void *user) {
+  hungry *h = user;
+  world w;
+  memset(&w, 0, sizeof w);
+  w.desc = h->is.desc;
+  w.desc.context.transport = transport;
+  mpm_status status = world_try_open(&w);
+  if (!status) status = h->is.set_up(&w, &h->is);
+  const int64_t before = w.memory.calls;
+  if (part == 1 && h->fail_at) w.memory.fail_at = before + h->fail_at;
+  for (int32_t i = 0; i < h->acts && !status; ++i) {
+    status = h->act(&w, part, i);
+    if (status != MPM_E_NOMEM) continue;
+    ++h->failed[part];
+    status = h->act(&w, part, i);
+  }
+  if (part == 1) h->calls = w.memory.calls - before;
+  w.memory.fail_at = 0;
+  if (!status) status = mpm_state_hash(w.stepper, &h->is.found[part].hash);
+  h->is.found[part].status = status;
+  world_try_close(&w);
+  h->memory[part] = w.memory;
+}
+
 TCase *wide_case(Suite *suite, const char *name) {
   TCase *wide = tcase_create(name);
   tcase_set_tags(wide, "wide");

@@ -127,18 +127,6 @@ START_TEST(loads_rigid) {
 }
 END_TEST
 
-static mpm_status refuse(void *user, const mpm_marker_batch *b, double *add) {
-  (void)b, (void)add;
-  return *(mpm_status *)user;
-}
-
-static mpm_status expect(world *w, double dt, mpm_status wanted, const char *words) {
-  const mpm_status status = mpm_step(w->stepper, dt, &w->info);
-  if (status == wanted && strstr(mpm_last_error(w->context), words) && w->info.cause == wanted) return MPM_OK;
-  fprintf(stderr, "%s: %s\n", mpm_status_name(status), mpm_last_error(w->context));
-  return MPM_E_INTERNAL;
-}
-
 /* All parts fail as one does, and go on from the state before. */
 static mpm_status fail_loads(world *w, const scene *is, outcome *found) {
   const double dt = 0.3 * is->desc.grid.spacing[0], x[] = {0.9, 0.9}, area[] = {0.01, 0.0}, huge = 1e300;
@@ -150,12 +138,12 @@ static mpm_status fail_loads(world *w, const scene *is, outcome *found) {
   mpm_context_part(w->context, &part, &parts);
   mpm_status status = add_loads(w, 0.3, 0.12, &s);
   if (!status) status = mpm_step(w->stepper, dt, &w->info);
-  if (!status) status = mpm_surface_set_traction(s, refuse, &answer);
+  if (!status) status = mpm_surface_set_traction(s, refuse_markers, &answer);
   if (part == parts - 1) answer = -3; /* one of them says no */
-  if (!status) status = expect(w, dt, MPM_E_CALLBACK, "the traction callback of surface 0 returned -3");
+  if (!status) status = expect_step(w, dt, MPM_E_CALLBACK, "the traction callback of surface 0 returned -3");
   answer = MPM_OK;
   if (!status) status = mpm_surface_add(s, 1, x, area, &id);
-  if (!status) status = expect(w, dt, MPM_E_STATE, "has a load and no material around it");
+  if (!status) status = expect_step(w, dt, MPM_E_STATE, "has a load and no material around it");
   if (!status) status = mpm_surface_remove(s, 1, &id);
   id = 0;
   if (!status) status = mpm_surface_set(s, "pressure", MPM_F64, 1, 1, &id, &huge);

@@ -176,12 +176,12 @@ START_TEST(markers_fly) {
 END_TEST
 
 /* ---- failures ------------------------------------------------------------------------------------------ */
-static mpm_status refuse(void *user, const mpm_marker_batch *b, double *add) {
+mpm_status refuse_markers(void *user, const mpm_marker_batch *b, double *add) {
   (void)b, (void)add;
   return *(mpm_status *)user;
 }
 
-static mpm_status expect(world *w, double dt, mpm_status wanted, const char *words) {
+mpm_status expect_step(world *w, double dt, mpm_status wanted, const char *words) {
   const mpm_status status = mpm_step(w->stepper, dt, &w->info);
   if (status == wanted && strstr(mpm_last_error(w->context), words) && w->info.cause == wanted) return MPM_OK;
   fprintf(stderr, "%s: %s\n", mpm_status_name(status), mpm_last_error(w->context));
@@ -200,14 +200,14 @@ static mpm_status fail_loads(world *w, const scene *is, outcome *found) {
   if (!status) status = mpm_stable_dt(w->stepper, &dt);
   dt *= 0.3;
   for (int32_t i = 0; i < 4 && !status; ++i) status = mpm_step(w->stepper, dt, &w->info);
-  if (!status) status = mpm_surface_set_traction(s, refuse, &answer);
+  if (!status) status = mpm_surface_set_traction(s, refuse_markers, &answer);
   if (part == parts - 1) answer = -3; /* one of them says no */
-  if (!status) status = expect(w, dt, MPM_E_CALLBACK, "the traction callback of surface 0 returned -3");
+  if (!status) status = expect_step(w, dt, MPM_E_CALLBACK, "the traction callback of surface 0 returned -3");
   answer = MPM_OK;
   const double x[] = {0.9, 0.9}, area[] = {0.01, 0.0};
   int64_t id;
   if (!status) status = mpm_surface_add(s, 1, x, area, &id);
-  if (!status) status = expect(w, dt, MPM_E_STATE, "has a load and no material around it");
+  if (!status) status = expect_step(w, dt, MPM_E_STATE, "has a load and no material around it");
   if (!status && mpm_step_begin(w->stepper, dt) != MPM_E_STATE) status = MPM_E_INTERNAL;
   if (!status) status = mpm_surface_remove(s, 1, &id);
   const double huge = 1e300;
@@ -220,7 +220,7 @@ static mpm_status fail_loads(world *w, const scene *is, outcome *found) {
   if (!status) status = mix_markers(w, s, &found->markers);
   if (!status && parts > 1) { /* markers that only one part has */
     if (part == 1) status = mpm_surface_add(s, 1, x, NULL, NULL);
-    if (!status) status = expect(w, dt, MPM_E_STATE, "other numbers of markers");
+    if (!status) status = expect_step(w, dt, MPM_E_STATE, "other numbers of markers");
     if (status == MPM_OK) w->info.cause = MPM_OK;
   }
   if (s) drop_loads(w, s);

@@ -99,18 +99,6 @@ START_TEST(chosen) {
 END_TEST
 
 /* ---- what may go wrong --------------------------------------------------------------------------------- */
-/* A step that no part can make, and then others. */
-static mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
-  const double h = is->desc.grid.spacing[0];
-  mpm_status status = mpm_step(w->stepper, 0.3 * h, &w->info);
-  if (status) return status;
-  status = mpm_step(w->stepper, 1e3 * h, &w->info);
-  if (!status || w->info.cause != status) return MPM_E_INTERNAL;
-  found->failed = w->info;
-  for (int32_t i = 0; i < 2 && (!i || !status); ++i) status = mpm_step(w->stepper, 0.2 * h, &w->info);
-  return status;
-}
-
 START_TEST(steps_fail) {
   scene is = small_scene(2, implicit_basis(_i % 4), 0);
   is.run = fail_and_go_on;

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""What a step of several machines would take: a model, with what one machine has measured. Prints the tables of
+docs/distributed.md. 3-D, quadratic splines, MPM_USL, MPM_FLIP, 8 particles per cell.
+
+A step is the work of a part's particles, packing and adding what is exchanged, the exchange less what blocks
+hide that nobody waits for, reductions, and a thirtieth of a sort."""
+import math
+
+# Measured. Of the part that sends most, the mean of a fresh and a loose sort (make measure-parts, and SIDE=3 CELLS=48):
+# particles per part: bytes that it sends in a step, share of its blocks that nobody waits for.
+SENT = {110592: (3.92e6, 0.14), 884736: (12.4e6, 0.41)}
+NEIGHBOURS = 22
+REDUCTIONS = 8  # in a step, counted by the transport
+PARTICLE = 70e-9  # seconds per particle and step on one core: 3-D quadratic FLIP on a Zen 4 at 3.65 GHz
+PACKING = 0.27e-9  # seconds per byte: dam_break_mpi 24 40 on four processes of a busy machine
+
+# Assumed: nothing of this has been measured.
+THREADS = 0.75  # what 16 threads of a part lose to each other: 12 times the rate of one
+STAYS = 0.4  # share of the bytes that goes to processes of the same machine, where it has several
+HIDES = 0.4  # share of the work that is done before anybody waits, of blocks that nobody waits for
+MIGRATES = 0.06 * 400.0  # bytes per particle in a sort
+SORT = 0.4  # of a step's work
+NETWORKS = {  # latency, bytes per second of a machine each way, cores of a machine; a part has 16 of them
+    "A": (2e-6, 25e9, 128),
+    "B": (20e-6, 12.5e9, 96),
+    "C": (30e-6, 1.25e9, 16),
+}
+CORES = 16
+
+
+def between(n, k):
+    """By a power law through the two measured sizes."""
+    (small, a), (large, b) = ((size, row[k]) for size, row in SENT.items())
+    return a * (n / small) ** (math.log(b / a) / math.log(large / small))
+
+
+def step(n, parts, network):
+    latency, bandwidth, cores = NETWORKS[network]
+    work = n * PARTICLE / (CORES * THREADS)
+    sort = SORT * work / 30.0
+    if parts == 1:
+        return work + sort
+    beside = cores // CORES
+    leaves = 1.0 if beside == 1 else 1.0 - STAYS
+    sent, inner = between(n, 0), min(0.9, between(n, 1))
+    exchange = NEIGHBOURS * latency + leaves * sent * beside / bandwidth
+    reduce = REDUCTIONS * 2.0 * latency * math.ceil(math.log2(parts))
+    sort += (MIGRATES * n * beside * leaves / bandwidth + 2 * NEIGHBOURS * latency) / 30.0
+    return work + PACKING * sent + max(0.0, exchange - HIDES * inner * work) + reduce + sort
+
+
+def table(cases):
+    print("| | " + " | ".join(NETWORKS) + " |\n|---|" + "---|" * len(NETWORKS))
+    for name, n, parts in cases:
+        cells = []
+        for network in NETWORKS:
+            took = step(n, parts, network)
+            cells.append(f"{1e3 * took:.1f} ({100 * step(n, 1, network) / took:.0f} %)")
+        print(f"| {name} | " + " | ".join(cells) + " |")
+
+
+if __name__ == "__main__":
+    table([(f"10⁶ particles on each of {parts:,} parts".replace(",", " "), 10 ** 6, parts) for parts in (8, 1000, 10000)]
+          + [(f"10⁹ particles on {parts:,} parts".replace(",", " "), 10 ** 9 // parts, parts) for parts in (250, 1000, 4000, 10000)]
+          + [("10¹⁰ particles on 2 500 parts", 4 * 10 ** 6, 2500)])
