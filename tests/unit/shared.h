@@ -98,7 +98,7 @@ mpm_status check_scene(const scene *is, const char *name, int32_t parts);
 enum { LEADS = 1, HOLDS = 2, PULLS = 4, MOVES = 8 };
 scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_static);
 /* An implicit step that no part can make, and then others. */
-mpm_status fail_and_go_on(world *w, const scene *is, outcome *found);
+mpm_status fail_implicitly(world *w, const scene *is, outcome *found);
 
 /* Plays it in two numbers of parts, where one part would make other bits; it must come to its end. */
 void check_alike(const scene *is, const char *name, int32_t parts, int32_t more);

@@ -126,7 +126,7 @@ START_TEST(remedy) {
 END_TEST
 
 /* ---- what may go wrong --------------------------------------------------------------------------------- */
-mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
+mpm_status fail_implicitly(world *w, const scene *is, outcome *found) {
   const double h = is->desc.grid.spacing[0];
   mpm_status status = mpm_step(w->stepper, 0.3 * h, &w->info);
   if (status) return status;
@@ -139,7 +139,7 @@ mpm_status fail_and_go_on(world *w, const scene *is, outcome *found) {
 
 START_TEST(steps_fail) {
   scene is = implicit_scene(2, implicit_basis(_i % 4), 0);
-  is.run = fail_and_go_on;
+  is.run = fail_implicitly;
   is.speed = MOVES | (_i % 2 ? LEADS : 0);
   if (_i % 3 == 1) is.desc.stepper.newton_max_iterations = 6;
   if (_i % 3 == 2) is.desc.stepper.linear_max_iterations = 40;

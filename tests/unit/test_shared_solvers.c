@@ -101,7 +101,7 @@ END_TEST
 /* ---- what may go wrong --------------------------------------------------------------------------------- */
 START_TEST(steps_fail) {
   scene is = small_scene(2, implicit_basis(_i % 4), 0);
-  is.run = fail_and_go_on;
+  is.run = fail_implicitly;
   is.speed = MOVES | (_i % 2 ? LEADS : 0);
   is.desc.law = law_of(_i % LAWS_HERE);
   if (_i % 2) is.desc.stepper.linear_max_iterations = 40;
