@@ -76,7 +76,7 @@ typedef struct hungry {
   int64_t fail_at, calls; /* of part 1: the allocation that fails, from 1; how many there are */
   int32_t failed[3];      /* how many calls of each part */
   host_memory memory[3];
-  /* For live_hungrily(): what the part does, as often as `acts` says; MPM_E_NOMEM is to leave all as it was. */
+  /* For live_hungrily(): what the part does, as often as `acts` says; MPM_E_NOMEM leaves all as it was. */
   mpm_status (*act)(world *w, int32_t part, int32_t number);
   int32_t acts;
 } hungry;
