@@ -21,7 +21,7 @@ rm -rf "$BUILD/mutate/whole/tests/examples"
 # A fault that the compiler's warnings would catch is no fault: they are off. It must still compile.
 compile() { # jobs, suite
   local target=out/tests/unit
-  case $2 in wrapper | mpi | petsc) target=out/libmpm.a ;; umat) target='out/libmpm-umat.a out/libmpm-umat-utilities.a out/libmpm.a' ;; verify/*) target=out/verification/${2#*/} ;; esac
+  case $2 in wrapper | mpi | petsc) target=out/libmpm.a ;; scenes) target=out/tests/parts/parts ;; umat) target='out/libmpm-umat.a out/libmpm-umat-utilities.a out/libmpm.a' ;; verify/*) target=out/verification/${2#*/} ;; esac
   # shellcheck disable=SC2086
   "$MAKE" -s -j"$1" BUILD=out CC="$CC" WERROR=-w $target > "$log" 2>&1
 }
@@ -46,6 +46,7 @@ suite() {
   umat) BUILD=out MPM_SCRATCH=$PWD/scratch WERROR=-w timeout $limit bash tests/umat/run.sh tests > "$log" 2>&1 ;;
   mpi) BUILD=out MPM_SCRATCH=$PWD/scratch WERROR=-w MPI_LIMIT=60 timeout $limit bash mpi/tests/run.sh tests > "$log" 2>&1 ;;
   petsc) BUILD=out MPM_SCRATCH=$PWD/scratch WERROR=-w PETSC_LIMIT=120 PETSC_CELLS=10 timeout $limit bash petsc/tests/run.sh tests > "$log" 2>&1 ;;
+  scenes) timeout $limit bash tests/parts/run.sh out/tests/parts/parts out/found 1 1 3 > "$log" 2>&1 ;;
   verify/*) timeout $limit "$MAKE" -s -j1 BUILD=out CC="$CC" WERROR=-w CASES="${1#*/}" verify-quick > "$log" 2>&1 ;;
   exact) units exact CK_EXCLUDE_TAGS ;; # minutes in all, and the short tests see the faults
   *) units "$1" CK_EXCLUDE_TAGS && units "$1" CK_INCLUDE_TAGS ;; # long tests come last: most faults are seen before
@@ -76,7 +77,7 @@ try() { # a fault's number or "none", suite
   rm -rf "$tree"
   printf '%s %s: %s, %s s%s\n' "$1" "$2" "$verdict" $((SECONDS - begin)) "${what:+: ${what//$'\n'/ }}"
 }
-export limit=$((300 * ${CK_TIMEOUT_MULTIPLIER:-1})) failed=':[0-9]+:[FE]:|\] +(FAILED|MET)$|^(mpi|petsc): .* processes: status [0-9]+$'
+export limit=$((300 * ${CK_TIMEOUT_MULTIPLIER:-1})) failed=':[0-9]+:[FE]:|\] +(FAILED|MET)$|^(mpi|petsc): .* processes: status [0-9]+$|^[1-3]-D .*: (other bits|failed)'
 export -f compile units suite try
 
 cd "$BUILD/mutate/whole"
