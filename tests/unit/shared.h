@@ -86,7 +86,7 @@ void live_hungrily(int32_t part, const mpm_transport *transport, void *user);
 
 /* A case for what takes long because it is much: it has the tag "wide". */
 TCase *wide_case(Suite *suite, const char *name);
-/* Adds every so many of a table of tests to a case, and the others to a wide one; every third. */
+/* Adds every so many of a table of tests to a case, and the others to a wide one; every fifth. */
 void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every);
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count);
 /* Plays the scene in one part, and then in several. Returns what it has come to. */

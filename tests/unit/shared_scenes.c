@@ -265,5 +265,5 @@ void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32
 }
 
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count) {
-  add_every(some, wide, test, count, 3);
+  add_every(some, wide, test, count, 5);
 }

@@ -222,14 +222,14 @@ Suite *shared_solvers_suite(void) {
   TCase *all = tcase_create("solvers");
   tcase_set_timeout(all, 240);
   TCase *wide = wide_case(suite, "more solvers");
-  add_every(all, wide, table, TABLE, 6);
-  add_every(all, wide, remedy, 12, 6);
+  add_every(all, wide, table, TABLE, 7);
+  add_every(all, wide, remedy, 12, 7);
   tcase_add_loop_test(wide, large, 0, 3);
   tcase_add_loop_test(all, chosen, 0, 4);
   suite_add_tcase(suite, all);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 240);
-  add_table(failures, wide, steps_fail, 6);
+  add_table(failures, wide, steps_fail, 7);
   tcase_add_test(failures, symmetric_only);
   tcase_add_test(failures, transport_fails);
   add_table(failures, wide, executor_fails, 2);

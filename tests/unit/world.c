@@ -265,8 +265,9 @@ mpm_step_info world_info(const world *w) {
 static mpm_step_info see_step(world *w) {
   const mpm_step_info *now = &w->info;
   const double energy = now->kinetic_energy + fabs(now->strain_energy) + fabs(now->external_work_total);
-  if (energy > w->most_energy) w->most_energy = energy;
-  if (now->contact_dissipation < 0.0)
+  /* without a trap where a law tells no energy */
+  if (isgreater(energy, w->most_energy)) w->most_energy = energy;
+  if (isless(now->contact_dissipation, 0.0))
     ck_between("contact takes energy", now->contact_dissipation, -1e-12 * w->most_energy, 0.0);
   return *now;
 }
