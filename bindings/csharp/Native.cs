@@ -551,7 +551,7 @@ namespace Mpm {
     public long cuts;
     /// <summary>largest weight of a part over the mean at the last sort, the same on all parts.</summary>
     public double imbalance;
-    /// <summary>packing and adding what is exchanged.</summary>
+    /// <summary>packing what is sent.</summary>
     public double seconds_packing;
     /// <summary>in receive.</summary>
     public double seconds_waiting;

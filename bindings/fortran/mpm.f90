@@ -406,7 +406,7 @@ module mpm
     integer(c_int64_t) :: cuts
     !> largest weight of a part over the mean at the last sort, the same on all parts.
     real(c_double) :: imbalance
-    !> packing and adding what is exchanged.
+    !> packing what is sent.
     real(c_double) :: seconds_packing
     !> in receive.
     real(c_double) :: seconds_waiting

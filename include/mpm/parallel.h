@@ -150,7 +150,7 @@ typedef struct mpm_parallel_info {
   int64_t moved;        /**< such particles */
   int64_t cuts;         /**< how often blocks were given to parts anew */
   double imbalance;     /**< largest weight of a part over the mean at the last sort, the same on all parts */
-  double seconds_packing;  /**< packing and adding what is exchanged */
+  double seconds_packing;  /**< packing what is sent */
   double seconds_waiting;  /**< in receive */
   double seconds_reducing; /**< in reduce and gather */
 } mpm_parallel_info;

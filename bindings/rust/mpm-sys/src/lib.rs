@@ -833,7 +833,7 @@ pub struct mpm_parallel_info {
     pub cuts: i64,
     /// largest weight of a part over the mean at the last sort, the same on all parts
     pub imbalance: f64,
-    /// packing and adding what is exchanged
+    /// packing what is sent
     pub seconds_packing: f64,
     /// in receive
     pub seconds_waiting: f64,
