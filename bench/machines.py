@@ -12,7 +12,7 @@ SENT = {110592: (3.92e6, 0.14), 884736: (12.4e6, 0.41)}
 NEIGHBOURS = 22
 REDUCTIONS = 8  # in a step, counted by the transport
 PARTICLE = 70e-9  # seconds per particle and step on one core: 3-D quadratic FLIP on a Zen 4 at 3.65 GHz
-PACKING = 0.27e-9  # seconds per byte, by one thread: dam_break_mpi 24 40 on four processes of a busy machine
+PACKING = 0.19e-9  # seconds per byte, by one thread: dam_break_mpi 48 2 on two processes of two cores
 
 # Assumed: nothing of this has been measured.
 THREADS = 0.75  # what 16 threads of a part lose to each other: 12 times the rate of one

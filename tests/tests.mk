@@ -3,7 +3,7 @@
 .PHONY: check check-setup check-structure measure-structure check-unit check-api check-examples check-asan check-tsan
 .PHONY: check-builds check-windows check-wasm check-valgrind
 .PHONY: check-amalgamation check-cmake check-umat mutate-slack
-.PHONY: mutate mutate-check check-hashes update-hashes check-parts check-parts-quick measure-parts
+.PHONY: mutate mutate-check check-hashes update-hashes check-parts check-parts-quick check-parts-verify measure-parts
 .PHONY: check-determinism check-combinations check-instructions update-instructions check-aarch64 check-portable check-abi update-abi
 .PHONY: fuzz-programs fuzz fuzz-corpus check-fuzz verify verify-quick verify-plots
 
@@ -107,11 +107,13 @@ CELLS ?= 24
 measure-parts: $(VOLUMES)
 	$(VOLUMES) $(SIDE) $(CELLS)
 #: check-parts           the same scenes on 2, 3 and 5 parts: the bits of one part in states, reports, reactions and nodes
-#: check-parts-quick     every fourth of them on 3 parts
+#: check-parts-quick     every fourth of them on 3 parts, and some of check-parts-verify
 check-parts: $(PARTS)
 	@bash tests/parts/run.sh $(PARTS) $(BUILD)/tests/parts/found $(JOBS) 1 2 3 5
-check-parts-quick: $(PARTS)
+PARTED_QUICK := $(addprefix $(BUILD)/tests/parts/cases/,boundary_density cantilever contact_corner heat hydrostatic pulse ring_cylinder two_disks)
+check-parts-quick: $(PARTS) $(PARTED_QUICK)
 	@bash tests/parts/run.sh $(PARTS) $(BUILD)/tests/parts/found $(JOBS) 4 3
+	@bash tests/parts/cases.sh $(BUILD)/tests/parts/told $(JOBS) 3 $(PARTED_QUICK)
 
 #: check-portable        the same bits on every platform whose compiler and emulator are there: a table. SCENES=all, gate;
 #:                       PLATFORMS="gcc s390x"
@@ -271,6 +273,18 @@ verify: $(VERIFY)
 #: verify-quick          the same in small
 verify-quick: $(VERIFY)
 	@bash tests/verification/run.sh $(VERIFIED)/quick $(VERIFY_JOBS) --quick $(VERIFY)
+# The same programs on parts: their calls of the library go through tests/parts/whole.c.
+CASE_OBJECTS = $(patsubst %.c,$(BUILD)/obj/%.o,$(VERIFY_SHARED) $(addprefix tests/parts/,whole.c table.c processes.c))
+CASE_CALLS := $(shell sed -n 's/^REAL.[^,]*, \([a-z_]*\),.*/\1/p' tests/parts/whole.c) timespec_get main
+CASE_PROGRAMS := $(CASES:%=$(BUILD)/tests/parts/cases/%)
+.SECONDARY: $(CASE_OBJECTS) $(CASES:%=$(BUILD)/obj/tests/verification/%.o)
+$(BUILD)/tests/parts/cases/%: $(BUILD)/obj/tests/verification/%.o $(CASE_OBJECTS) $(STATIC_LIB)
+	@mkdir -p $(@D)
+	$(call SAY,LINK)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(CASE_CALLS:%=-Wl,--wrap=%) $(filter %.o,$^) $(STATIC_LIB) $(LIBS) -o $@
+#: check-parts-verify    the cases in small on 2, 3 and 5 parts: the hashes, results and files of one part
+check-parts-verify: $(CASE_PROGRAMS)
+	@bash tests/parts/cases.sh $(BUILD)/tests/parts/told $(JOBS) "2 3 5" $^
 #: verify-plots          the numbers of the last `make verify` into docs/verification: plots, and tables of its page
 verify-plots:
 	/usr/bin/python3 docs/verification/plot.py --from $(VERIFIED)/full

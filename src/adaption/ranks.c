@@ -1,9 +1,8 @@
 /* The ids of particles that come by splitting: they follow each other in the order of the particles that are
  * split, by id. Of several parts each has its share of the range of ids, counts what is split there on all
  * parts, and tells the others how many come before. */
-#include <stdlib.h>
-
 #include "adaption/adaption.h"
+#include "context/radix.h"
 
 static int64_t added_by(const mpmi_splitting *split) {
   return mpmi_parts_of(split->edges) - 1;
@@ -18,11 +17,7 @@ static int64_t rank_alone(mpmi_adaption *a) {
   return added;
 }
 
-/* A particle of some part that is split: what it adds, and where it stands among those that have come. */
-typedef struct ranked {
-  int64_t id, added, place;
-} ranked;
-
+/* A particle of some part that is split, and what it adds. */
 typedef struct told_split {
   int64_t id, added;
 } told_split;
@@ -48,9 +43,11 @@ static mpm_status tell_splits(const mpmi_adapting *of) {
 /* What this part counts: of its own particles first, then of those of other parts as they have come. */
 typedef struct counting {
   int64_t n, total;
-  ranked *list;
-  int64_t *before; /* [n] by place */
-  size_t list_bytes, before_bytes;
+  told_split *list;
+  int64_t *before; /* [n] so many come of those with lower ids */
+  uint64_t *key;   /* [2 n] and order[2 n]: to sort by */
+  uint32_t *order;
+  size_t bytes; /* of all in one piece */
 } counting;
 
 static mpm_status open_counting(const mpmi_adapting *of, const mpmi_arrivals *in, counting *c) {
@@ -58,39 +55,34 @@ static mpm_status open_counting(const mpmi_adapting *of, const mpmi_arrivals *in
   const int32_t me = context->transport.part;
   int64_t n = of->a->splits;
   for (int32_t i = 0; i < in->count; ++i) n += in->message[i].bytes / (int64_t)sizeof(told_split);
-  *c = (counting){0, 0, NULL, NULL, mpmi_bytes(n + 1, sizeof(ranked)), mpmi_bytes(n + 1, sizeof(int64_t))};
-  c->list = mpmi_alloc(context, c->list_bytes);
-  c->before = c->list ? mpmi_alloc(context, c->before_bytes) : NULL;
-  if (!c->before) return MPM_E_NOMEM;
+  const size_t each = sizeof(told_split) + 3 * sizeof(int64_t) + 2 * sizeof(uint32_t);
+  *c = (counting){.bytes = mpmi_bytes(n + 1, each)};
+  c->list = mpmi_alloc(context, c->bytes);
+  if (!c->list) return MPM_E_NOMEM;
+  c->before = (int64_t *)(c->list + n);
+  c->key = (uint64_t *)(c->before + n);
+  c->order = (uint32_t *)(c->key + 2 * n);
   for (int64_t i = 0; i < of->a->splits; ++i)
     if (counter_of(of, of->a->split[i].id) == me)
-      c->list[c->n] = (ranked){of->a->split[i].id, added_by(&of->a->split[i]), c->n}, ++c->n;
+      c->list[c->n++] = (told_split){of->a->split[i].id, added_by(&of->a->split[i])};
   for (int32_t i = 0; i < in->count; ++i)
     for (int64_t at = 0; at + (int64_t)sizeof(told_split) <= in->message[i].bytes;
-         at += (int64_t)sizeof(told_split)) {
-      told_split told;
-      memcpy(&told, (const char *)in->message[i].data + at, sizeof told);
-      c->list[c->n] = (ranked){told.id, told.added, c->n}, ++c->n;
-    }
+         at += (int64_t)sizeof(told_split))
+      memcpy(&c->list[c->n++], (const char *)in->message[i].data + at, sizeof(told_split));
   return MPM_OK;
 }
 
 static void close_counting(const mpmi_adapting *of, counting *c) {
-  mpmi_free(of->set->context, c->list, c->list_bytes);
-  mpmi_free(of->set->context, c->before, c->before_bytes);
-}
-
-static int compare_ranked(const void *a, const void *b) {
-  const int64_t x = ((const ranked *)a)->id, y = ((const ranked *)b)->id;
-  return x < y ? -1 : x > y;
+  mpmi_free(of->set->context, c->list, c->bytes);
 }
 
 static void count(counting *c) {
-  qsort(c->list, (size_t)c->n, sizeof *c->list, compare_ranked);
+  for (int64_t i = 0; i < c->n; ++i) c->key[i] = (uint64_t)c->list[i].id;
+  mpmi_radix_sort(c->n, c->key, c->order, c->key + c->n, c->order + c->n);
   c->total = 0;
   for (int64_t i = 0; i < c->n; ++i) {
-    c->before[c->list[i].place] = c->total;
-    c->total += c->list[i].added;
+    c->before[c->order[i]] = c->total;
+    c->total += c->list[c->order[i]].added;
   }
 }
 
@@ -174,7 +166,7 @@ mpm_status mpmi_adaption_rank(const mpmi_adapting *of, int64_t *total) {
                told_bytes = mpmi_bytes(mpmi_part_count(of->parts), sizeof(int64_t));
   int32_t *part = mpmi_alloc(context, part_bytes);
   int64_t *told = part ? mpmi_alloc(context, told_bytes) : NULL;
-  counting c = {0, 0, NULL, NULL, 0, 0};
+  counting c = {0};
   mpm_status status = mpmi_agree(context, told ? MPM_OK : MPM_E_NOMEM);
   if (!status) status = meet(of, &c, part, told, total);
   close_counting(of, &c);

@@ -123,11 +123,11 @@ static mpm_status iterate(cg *c, double rz, int64_t limit) {
  * the iteration starts again from it, as long as this helps. */
 mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user, int64_t limit) {
   /* one number more, so that the vectors exist without rows */
-  mpm_status status = mpmi_system_together(s, mpmi_system_work(s, precondition ? 4 : 3, 1));
-  if (status) return status;
+  mpm_status status = s->room ? MPM_OK : mpmi_system_work(s, precondition ? 4 : 3, 1);
+  if ((status = mpmi_system_together(s, status))) return status;
   cg c = {.system = s, .precondition = precondition, .user = user, .ranges = mpmi_ranges_of(s->n, s->n)};
   c.inverse = precondition ? NULL : s->solver->diagonal;
-  c.r = s->solver->work;
+  c.r = s->room ? s->room : s->solver->work;
   c.p = c.r + s->n;
   c.q = c.p + s->n;
   c.z = precondition ? c.q + s->n : NULL;

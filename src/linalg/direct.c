@@ -74,8 +74,10 @@ mpm_status mpmi_direct(mpmi_system *s) {
   const int32_t useless = !(s->reached < s->b_norm);
   if (useless)
     for (int64_t i = 0; i < s->n; ++i) s->x[i] = 0.0;
-  const mpmi_gmres_plan plan = {times_factor, s, FACTOR_RESTART, 0,
-                                s->report->iterations + FACTOR_RESTART * FACTOR_CYCLES};
+  const mpmi_gmres_plan plan = {.precondition = times_factor,
+                                .user = s,
+                                .restart = FACTOR_RESTART,
+                                .limit = s->report->iterations + FACTOR_RESTART * FACTOR_CYCLES};
   status = mpmi_gmres(s, &plan);
   return status == MPM_NOT_CONVERGED ? without_solution(s, useless) : status;
 }

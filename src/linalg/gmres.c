@@ -110,6 +110,7 @@ static mpm_status take_sums(gmres *g, int32_t count, int32_t square, double *to)
 /* Makes z = M^-1 v and w = A z. With several parts the product needs the values of rows that others own. */
 static mpm_status multiply(gmres *g, const double *v, double *z) {
   const mpmi_matrix *A = g->system->A;
+  if (g->plan->together) g->status = mpmi_system_together(g->system, g->status);
   if (!g->status) g->status = g->plan->precondition(g->plan->user, v, z);
   const mpm_status lost = A->shared ? mpmi_rows_complete(A->shared, z) : MPM_OK;
   if (!g->status && !lost) g->status = mpmi_matrix_apply(A, z, g->w);

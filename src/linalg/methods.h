@@ -15,6 +15,7 @@ mpm_status mpmi_cg(mpmi_system *s, mpmi_precondition_fn precondition, void *user
 typedef struct mpmi_gmres_plan {
   mpmi_precondition_fn precondition;
   void *user;
+  int32_t together;  /* 1: all parts are asked to precondition, or none */
   int32_t restart;   /* how many vectors the basis may have */
   int32_t impatient; /* 1: ends where progress is so slow that a factor is the better way */
   int64_t limit;     /* the most iterations, counted in the report */
@@ -29,6 +30,10 @@ mpm_status mpmi_gmres(mpmi_system *s, const mpmi_gmres_plan *plan);
 mpm_status mpmi_inverse_diagonal(const mpmi_system *s, int64_t *node);
 mpm_status mpmi_inverse_blocks(const mpmi_system *s, int64_t *node);
 mpm_status mpmi_times_inverse_blocks(void *system, const double *r, double *z);
+/* Conjugate gradients precondition GMRES, where blocks do too little: r comes with norm 1, and z is A^-1 r as
+ * if the matrix were symmetric, to a tenth. First room is made, and the diagonal inverted as for CG. */
+mpm_status mpmi_reserve_inner_cg(mpmi_system *s, int64_t *node);
+mpm_status mpmi_times_inner_cg(void *system, const double *r, double *z);
 
 /* The direct solver reaches the tolerance with LDL^T, or with GMRES and L D U (direct.c). */
 mpm_status mpmi_direct(mpmi_system *s);

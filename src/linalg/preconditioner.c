@@ -1,5 +1,6 @@
-/* The diagonal preconditions CG, and its blocks by node precondition GMRES. */
+/* The diagonal preconditions CG, and its blocks by node precondition GMRES, or CG does. */
 #include <math.h>
+#include <string.h>
 
 #include "linalg/methods.h"
 
@@ -77,4 +78,32 @@ mpm_status mpmi_times_inverse_blocks(void *system, const double *r, double *z) {
   const mpmi_system *s = system;
   times_job job = {s, r, z, mpmi_ranges_of(s->A->rows, s->n)};
   return mpmi_run_ranges(s->context, &job.ranges, times_task, &job);
+}
+
+static const double INNER_WANTED = 0.1;
+enum { INNER_MOST = 300 };
+
+mpm_status mpmi_reserve_inner_cg(mpmi_system *s, int64_t *node) {
+  mpmi_solver *solver = s->solver;
+  const mpm_status status = mpmi_reserve(s->context, (void **)&solver->inner, &solver->inner_capacity,
+                                         3 * s->n + 1, sizeof *solver->inner);
+  return status ? status : mpmi_inverse_diagonal(s, node);
+}
+
+/* Where iterations lead nowhere, because the matrix is far from symmetric, z is what there is. */
+mpm_status mpmi_times_inner_cg(void *system, const double *r, double *z) {
+  mpmi_system *s = system, inner = *s;
+  mpmi_solve_report told = {.node = -1};
+  inner.b = r;
+  inner.x = z;
+  inner.b_norm = 1.0;
+  inner.wanted = INNER_WANTED;
+  inner.report = &told;
+  inner.room = s->solver->inner;
+  memset(z, 0, (size_t)s->n * sizeof *z);
+  const mpm_status status = mpmi_cg(&inner, NULL, NULL, INNER_MOST);
+  s->report->iterations += told.iterations;
+  if (status != MPM_NOT_CONVERGED && status != MPM_SINGULAR) return status;
+  for (int64_t i = 0; i < s->n && !told.iterations; ++i) z[i] = s->solver->diagonal[i] * r[i];
+  return MPM_OK;
 }

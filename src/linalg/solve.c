@@ -6,7 +6,7 @@
 #include "linalg/methods.h"
 #include "simd/elementary.h"
 
-enum { RESTART = 60, MOST_RESTARTS = 50, MOST_CYCLES = 500 };
+enum { RESTART = 60, MOST_RESTARTS = 50, MOST_CYCLES = 500, RESTART_INNER = 10 };
 
 /* ---- methods ------------------------------------------------------------------------------------------- */
 static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
@@ -67,30 +67,6 @@ static mpm_status by_multigrid(mpmi_system *s, int64_t limit) {
   if (!status) status = mpmi_cg(s, times_cycle, &s->solver->multigrid, limit);
   if (status == MPM_NOT_CONVERGED) return mpmi_system_not_converged(s, "multigrid conjugate gradients");
   return status == MPM_SINGULAR && !s->report->indefinite ? not_positive(s) : status;
-}
-
-/* The preconditioner is a cycle of multigrid, or the blocks of the diagonal where there are no levels, as
- * with several parts. */
-static mpm_status by_gmres(mpmi_system *s, int64_t limit, int32_t impatient, int32_t multigrid) {
-  mpmi_gmres_plan plan = {mpmi_times_inverse_blocks, s, RESTART, impatient, limit};
-  mpm_status status = multigrid ? prepare_multigrid(s) : MPM_SINGULAR;
-  s->report->solver = MPM_SOLVER_GMRES;
-  if (!status) {
-    plan.precondition = times_cycle;
-    plan.user = &s->solver->multigrid;
-  } else if (status > 0) {
-    int64_t row = 0;
-    const double started = mpmi_seconds();
-    s->report->indefinite = 0;
-    s->report->node = -1;
-    mpmi_forget(s->context); /* drops what prepare_multigrid() wrote */
-    status = mpmi_inverse_blocks(s, &row);
-    s->report->factor_seconds += mpmi_seconds() - started;
-    if (status == MPM_NONFINITE) status = bad_diagonal(s, row);
-    if ((status = mpmi_system_together_at(s, status, row))) return status;
-  }
-  if (!status) status = mpmi_gmres(s, &plan);
-  return status == MPM_NOT_CONVERGED ? mpmi_system_not_converged(s, "GMRES") : status;
 }
 
 /* Solves with the factor where iterations have failed, unless the factor is too large for a machine. */
@@ -163,13 +139,62 @@ static costs costs_of(const mpmi_matrix *A, double inertia, int32_t several_fiel
   return c;
 }
 
+static int64_t most_of_cg(const mpmi_system *s, const mpmi_solve_job *job) {
+  if (job->max_iterations) return job->max_iterations;
+  return 5000 + 30 * (int64_t)costs_of(s->A, 0.0, job->several_fields).cg;
+}
+
+/* Goes on where the blocks of the diagonal are too weak a preconditioner, and no other method follows. */
+static mpm_status by_inner_cg(mpmi_system *s, const mpmi_solve_job *job) {
+  const mpmi_gmres_plan plan = {.precondition = mpmi_times_inner_cg,
+                                .user = s,
+                                .together = 1,
+                                .impatient = 1,
+                                .restart = RESTART_INNER,
+                                .limit = most_of_cg(s, job)};
+  int64_t row = 0;
+  const mpm_status status = mpmi_system_together(s, mpmi_reserve_inner_cg(s, &row));
+  if (status) return status > 0 ? MPM_NOT_CONVERGED : status;
+  return mpmi_gmres(s, &plan);
+}
+
+/* The preconditioner is a cycle of multigrid, or the blocks of the diagonal where there are no levels, as
+ * with several parts. */
+static mpm_status by_gmres(mpmi_system *s, const mpmi_solve_job *job, int32_t last, int32_t multigrid) {
+  const int64_t limit = job->max_iterations;
+  mpmi_gmres_plan plan = {.precondition = times_cycle,
+                          .user = &s->solver->multigrid,
+                          .restart = RESTART,
+                          .impatient = !last,
+                          .limit = limit ? limit : RESTART * MOST_RESTARTS};
+  mpm_status status = multigrid ? prepare_multigrid(s) : MPM_SINGULAR;
+  const int32_t blocks = status > 0;
+  s->report->solver = MPM_SOLVER_GMRES;
+  if (blocks) {
+    int64_t row = 0;
+    const double started = mpmi_seconds();
+    plan.precondition = mpmi_times_inverse_blocks;
+    plan.user = s;
+    s->report->indefinite = 0;
+    s->report->node = -1;
+    mpmi_forget(s->context); /* drops what prepare_multigrid() wrote */
+    status = mpmi_inverse_blocks(s, &row);
+    s->report->factor_seconds += mpmi_seconds() - started;
+    if (status == MPM_NONFINITE) status = bad_diagonal(s, row);
+    if ((status = mpmi_system_together_at(s, status, row))) return status;
+  }
+  if (!status) status = mpmi_gmres(s, &plan);
+  if (status == MPM_NOT_CONVERGED && blocks && last) status = by_inner_cg(s, job);
+  return status == MPM_NOT_CONVERGED ? mpmi_system_not_converged(s, "GMRES") : status;
+}
+
 static mpm_status by_cheapest(mpmi_system *s, const mpmi_solve_job *job) {
   const costs c = costs_of(s->A, job->inertia, job->several_fields);
   const int64_t limit = job->max_iterations;
   mpm_status status;
   if (c.factor <= fmin(c.cg, c.multigrid)) return mpmi_direct(s);
   if (!s->A->symmetric)
-    status = by_gmres(s, limit ? limit : RESTART * MOST_RESTARTS, 1, c.multigrid < c.cg);
+    status = by_gmres(s, job, 0, c.multigrid < c.cg);
   else if (c.multigrid < c.cg)
     status = by_multigrid(s, limit ? limit : MOST_CYCLES);
   else
@@ -183,20 +208,28 @@ static int32_t choice_of(const mpmi_solve_job *job) {
   return job->matrix->symmetric ? MPM_SOLVER_CG : MPM_SOLVER_GMRES;
 }
 
+/* Of several parts GMRES goes on where conjugate gradients fail and the library chooses. */
+static mpm_status by_cg_or_gmres(mpmi_system *s, const mpmi_solve_job *job) {
+  const mpm_status status = by_cg(s, most_of_cg(s, job));
+  if (status <= 0 || job->choice) return status;
+  if (status == MPM_SINGULAR) memset(s->x, 0, (size_t)s->n * sizeof *s->x); /* what it left is no better */
+  s->report->iterations = 0;
+  return by_gmres(s, job, 1, 0);
+}
+
 static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
   const int64_t limit = job->max_iterations;
   switch (choice_of(job)) {
   case MPM_SOLVER_HOST:
     return mpmi_solve_by_host(s, job);
   case MPM_SOLVER_CG:
-    return by_cg(s, limit ? limit : 5000 + 30 * (int64_t)costs_of(s->A, 0.0, job->several_fields).cg);
+    return by_cg_or_gmres(s, job);
   case MPM_SOLVER_MULTIGRID_CG:
     return by_multigrid(s, limit ? limit : 10 * MOST_CYCLES);
   case MPM_SOLVER_LDLT:
     return mpmi_direct(s);
   case MPM_SOLVER_GMRES:
-    return by_gmres(s, limit ? limit : RESTART * MOST_RESTARTS, 0,
-                    !s->A->shared && s->n > MPMI_ALONE_UNKNOWNS && !job->several_fields);
+    return by_gmres(s, job, 1, !s->A->shared && s->n > MPMI_ALONE_UNKNOWNS && !job->several_fields);
   default:
     return by_cheapest(s, job);
   }

@@ -25,6 +25,7 @@ void mpmi_solver_destroy(mpmi_solver *solver) {
   mpmi_operator_free(&solver->lent);
   MPMI_FREE_ARRAY(context, solver->work, solver->work_capacity);
   MPMI_FREE_ARRAY(context, solver->diagonal, solver->diagonal_capacity);
+  MPMI_FREE_ARRAY(context, solver->inner, solver->inner_capacity);
   mpmi_free(context, solver, sizeof *solver);
 }
 
@@ -68,6 +69,7 @@ mpm_status mpmi_system_fail_at(const mpmi_system *s, mpm_status status, int64_t 
 
 mpm_status mpmi_system_not_converged(const mpmi_system *s, const char *method) {
   return mpmi_fail(s->context, MPM_NOT_CONVERGED,
-                   "%s: after %lld iterations the residual is %g of the right-hand side, wanted is %g",
-                   method, (long long)s->report->iterations, s->reached / s->b_norm, s->wanted / s->b_norm);
+                   "%s: after %lld iterations the residual is %g of the right-hand side, wanted is %g%s",
+                   method, (long long)s->report->iterations, s->reached / s->b_norm, s->wanted / s->b_norm,
+                   s->A->shared ? "; in several parts MPM_SOLVER_HOST may have a better preconditioner" : "");
 }

@@ -15,6 +15,8 @@ struct mpmi_solver {
   int64_t work_capacity;
   double *diagonal; /* inverse of the diagonal, or of its blocks */
   int64_t diagonal_capacity;
+  double *inner; /* vectors of conjugate gradients that precondition */
+  int64_t inner_capacity;
 };
 
 /* A system stands between job and report. */
@@ -29,6 +31,7 @@ typedef struct mpmi_system {
   double wanted;  /* the residual must have this norm or less */
   double reached; /* norm of the residual of the last solution */
   mpmi_solve_report *report;
+  double *room; /* vectors for mpmi_cg() where those of the solver are in use; else NULL */
 } mpmi_system;
 
 /* Makes room for so many vectors of unknowns and `more` doubles. */

@@ -2,9 +2,9 @@
  * are new go to the part that they are hashed to, which sees whether one comes twice, and those that may be
  * in use are asked of all parts. */
 #include "particles/shared_ids.h"
+#include "context/radix.h"
 #include "context/transport.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Ids on their way: those for part r stand at first[r] ... first[r + 1]. */
@@ -65,26 +65,26 @@ static void sort_by_home(letters *l, const int64_t *ids) {
   for (int64_t i = 0; i < l->n; ++i) l->id[l->first[home_of(l, ids[i]) + 1]++] = ids[i];
 }
 
-static int compare_ids(const void *a, const void *b) {
-  const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-  return x < y ? -1 : x > y;
-}
-
 /* Finds the lowest id that has come twice, or INT64_MAX. */
 static mpm_status find_twice(const letters *l, int32_t count, const mpm_message *in, int64_t *twice) {
   mpm_context *c = l->set->context;
   const int32_t me = c->transport.part;
   int64_t n = l->first[me + 1] - l->first[me], at = n;
   for (int32_t i = 0; i < count; ++i) n += ids_in(&in[i]);
-  const size_t bytes = mpmi_bytes(n + 1, sizeof(int64_t));
+  if (n > UINT32_MAX)
+    return mpmi_fail(c, MPM_E_UNSUPPORTED, "%lld ids are more than one part compares at once", (long long)n);
+  const size_t bytes = mpmi_bytes(n + 1, 3 * sizeof(int64_t) + 2 * sizeof(uint32_t));
   int64_t *all = mpmi_alloc(c, bytes);
   if (!all) return MPM_E_NOMEM;
+  uint64_t *key = (uint64_t *)(all + n);
+  uint32_t *order = (uint32_t *)(key + 2 * n);
   memcpy(all, l->id + l->first[me], (size_t)at * sizeof *all);
   for (int32_t i = 0; i < count; at += ids_in(&in[i++]))
     if (in[i].bytes) memcpy(all + at, in[i].data, (size_t)ids_in(&in[i]) * sizeof *all);
-  qsort(all, (size_t)n, sizeof *all, compare_ids);
+  if (n) memcpy(key, all, (size_t)n * sizeof *all);
+  mpmi_radix_sort(n, key, order, key + n, order + n);
   for (int64_t i = n - 1; i > 0; --i)
-    if (all[i] == all[i - 1]) *twice = all[i];
+    if (all[order[i]] == all[order[i - 1]]) *twice = all[order[i]];
   mpmi_free(c, all, bytes);
   return MPM_OK;
 }
