@@ -55,6 +55,9 @@ static mpm_status open_counting(const mpmi_adapting *of, const mpmi_arrivals *in
   const int32_t me = context->transport.part;
   int64_t n = of->a->splits;
   for (int32_t i = 0; i < in->count; ++i) n += in->message[i].bytes / (int64_t)sizeof(told_split);
+  if (n > UINT32_MAX)
+    return mpmi_fail(context, MPM_E_UNSUPPORTED, "%lld particles are more than one part counts at once",
+                     (long long)n);
   const size_t each = sizeof(told_split) + 3 * sizeof(int64_t) + 2 * sizeof(uint32_t);
   *c = (counting){.bytes = mpmi_bytes(n + 1, each)};
   c->list = mpmi_alloc(context, c->bytes);

@@ -7,10 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Falling by more than this, over the last iterations, the residual only needs more of them; falling each
- * time, but by less, it lacks the right tangent. */
+/* Falling by more than this in the last two iterations, the residual only needs more of them; falling in the
+ * last three, but by less, it lacks the right tangent. */
 static const double soon = 0.2, hardly = 0.9;
-enum { LAST = 3 };
+enum { LAST_FAST = 2, LAST_SLOW = 3 };
 
 /* Of several parts all take the particle that is nearest, of equals the first. */
 static mpm_status take_nearest(mpmi_balance *balance, double nearest) {
@@ -110,9 +110,9 @@ const char *mpmi_smaller_steps(const mpmi_balance *balance) {
   return balance->step->is_cut ? "smaller steps were tried" : "use a smaller dt, or mpm_advance";
 }
 
-static int32_t falls(const mpmi_newton *newton, double by) {
-  int32_t all = newton->history_count > LAST;
-  for (int32_t k = newton->history_count - LAST; k < newton->history_count && all; ++k)
+static int32_t falls(const mpmi_newton *newton, int32_t last, double by) {
+  int32_t all = newton->history_count > last;
+  for (int32_t k = newton->history_count - last; k < newton->history_count && all; ++k)
     all = newton->history[k] <= by * newton->history[k - 1];
   return all;
 }
@@ -123,8 +123,8 @@ static const char *advice(const mpmi_balance *balance, int32_t touches_change) {
   if (touches_change)
     return balance->step->is_cut ? "bodies go on to part and touch again: use less friction"
                                  : "bodies go on to part and touch again: use mpm_advance, or less friction";
-  if (falls(newton, soon)) return "it falls fast: raise newton_max_iterations";
-  if (falls(newton, hardly) && mpmi_has_host_law(balance->layout))
+  if (falls(newton, LAST_FAST, soon)) return "it falls fast: raise newton_max_iterations";
+  if (falls(newton, LAST_SLOW, hardly) && mpmi_has_host_law(balance->layout))
     return "it falls slowly, as with a tangent callback that is not the derivative of the stress";
   return mpmi_smaller_steps(balance);
 }

@@ -31,9 +31,13 @@ mpm_status mpmi_inverse_diagonal(const mpmi_system *s, int64_t *node);
 mpm_status mpmi_inverse_blocks(const mpmi_system *s, int64_t *node);
 mpm_status mpmi_times_inverse_blocks(void *system, const double *r, double *z);
 /* Conjugate gradients precondition GMRES, where blocks do too little: r comes with norm 1, and z is A^-1 r as
- * if the matrix were symmetric, to a tenth. First room is made, and the diagonal inverted as for CG. */
+ * if the matrix were symmetric, to a thousandth. First room is made, and the diagonal inverted as for CG. */
+typedef struct mpmi_inner_cg {
+  mpmi_system *system;
+  int64_t limit; /* the most iterations of both methods, counted in the report */
+} mpmi_inner_cg;
 mpm_status mpmi_reserve_inner_cg(mpmi_system *s, int64_t *node);
-mpm_status mpmi_times_inner_cg(void *system, const double *r, double *z);
+mpm_status mpmi_times_inner_cg(void *inner_cg, const double *r, double *z);
 
 /* The direct solver reaches the tolerance with LDL^T, or with GMRES and L D U (direct.c). */
 mpm_status mpmi_direct(mpmi_system *s);

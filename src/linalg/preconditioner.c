@@ -80,8 +80,8 @@ mpm_status mpmi_times_inverse_blocks(void *system, const double *r, double *z) {
   return mpmi_run_ranges(s->context, &job.ranges, times_task, &job);
 }
 
-static const double INNER_WANTED = 0.1;
-enum { INNER_MOST = 300 };
+static const double INNER_WANTED = 1e-3;
+enum { INNER_MOST = 1000 };
 
 mpm_status mpmi_reserve_inner_cg(mpmi_system *s, int64_t *node) {
   mpmi_solver *solver = s->solver;
@@ -90,10 +90,13 @@ mpm_status mpmi_reserve_inner_cg(mpmi_system *s, int64_t *node) {
   return status ? status : mpmi_inverse_diagonal(s, node);
 }
 
-/* Where iterations lead nowhere, because the matrix is far from symmetric, z is what there is. */
-mpm_status mpmi_times_inner_cg(void *system, const double *r, double *z) {
-  mpmi_system *s = system, inner = *s;
+/* Where iterations lead nowhere, because the matrix is far from symmetric, z is what there is, and where not
+ * one could be made it is r scaled by the diagonal. */
+mpm_status mpmi_times_inner_cg(void *user, const double *r, double *z) {
+  const mpmi_inner_cg *plan = user;
+  mpmi_system *s = plan->system, inner = *s;
   mpmi_solve_report told = {.node = -1};
+  const int64_t left = plan->limit - s->report->iterations;
   inner.b = r;
   inner.x = z;
   inner.b_norm = 1.0;
@@ -101,7 +104,7 @@ mpm_status mpmi_times_inner_cg(void *system, const double *r, double *z) {
   inner.report = &told;
   inner.room = s->solver->inner;
   memset(z, 0, (size_t)s->n * sizeof *z);
-  const mpm_status status = mpmi_cg(&inner, NULL, NULL, INNER_MOST);
+  const mpm_status status = mpmi_cg(&inner, NULL, NULL, left < INNER_MOST ? left : INNER_MOST);
   s->report->iterations += told.iterations;
   if (status != MPM_NOT_CONVERGED && status != MPM_SINGULAR) return status;
   for (int64_t i = 0; i < s->n && !told.iterations; ++i) z[i] = s->solver->diagonal[i] * r[i];

@@ -146,12 +146,13 @@ static int64_t most_of_cg(const mpmi_system *s, const mpmi_solve_job *job) {
 
 /* Goes on where the blocks of the diagonal are too weak a preconditioner, and no other method follows. */
 static mpm_status by_inner_cg(mpmi_system *s, const mpmi_solve_job *job) {
+  mpmi_inner_cg inner = {s, most_of_cg(s, job)};
   const mpmi_gmres_plan plan = {.precondition = mpmi_times_inner_cg,
-                                .user = s,
+                                .user = &inner,
                                 .together = 1,
                                 .impatient = 1,
                                 .restart = RESTART_INNER,
-                                .limit = most_of_cg(s, job)};
+                                .limit = inner.limit};
   int64_t row = 0;
   const mpm_status status = mpmi_system_together(s, mpmi_reserve_inner_cg(s, &row));
   if (status) return status > 0 ? MPM_NOT_CONVERGED : status;
@@ -208,13 +209,18 @@ static int32_t choice_of(const mpmi_solve_job *job) {
   return job->matrix->symmetric ? MPM_SOLVER_CG : MPM_SOLVER_GMRES;
 }
 
-/* Of several parts GMRES goes on where conjugate gradients fail and the library chooses. */
+/* Of several parts GMRES goes on where conjugate gradients fail and the library chooses. What is singular for
+ * both is told as such. */
 static mpm_status by_cg_or_gmres(mpmi_system *s, const mpmi_solve_job *job) {
   const mpm_status status = by_cg(s, most_of_cg(s, job));
   if (status <= 0 || job->choice) return status;
-  if (status == MPM_SINGULAR) memset(s->x, 0, (size_t)s->n * sizeof *s->x); /* what it left is no better */
+  const int64_t node = s->report->node;
+  memset(s->x, 0, (size_t)s->n * sizeof *s->x); /* what they have left may be far off */
   s->report->iterations = 0;
-  return by_gmres(s, job, 1, 0);
+  const mpm_status then = by_gmres(s, job, 1, 0);
+  if (then != MPM_NOT_CONVERGED || status != MPM_SINGULAR) return then;
+  s->report->node = node;
+  return not_positive(s);
 }
 
 static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {

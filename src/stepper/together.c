@@ -39,52 +39,6 @@ mpm_status mpmi_together_offers(mpm_stepper *s) {
               : MPM_OK;
 }
 
-/* ---- how steppers are set up --------------------------------------------------------------------------- */
-static uint64_t fold_word(uint64_t h, uint64_t word) {
-  return (h ^ word) * 0x100000001b3u ^ h >> 29;
-}
-
-static uint64_t fold_number(uint64_t h, double number) {
-  uint64_t word;
-  memcpy(&word, &number, sizeof word);
-  return fold_word(h, word);
-}
-
-static uint64_t fold_adaption(uint64_t h, const mpmi_adaption *a) {
-  const double number[] = {a->desc.split_edge, a->desc.least_edge, a->desc.merge_distance,
-                           a->desc.merge_tolerance, (double)a->desc.most_particles};
-  h = fold_word(fold_word(h, (uint64_t)a->on), (uint64_t)(a->on ? a->desc.every : 0));
-  if (!a->on) return h;
-  h = fold_word(fold_word(h, (uint64_t)a->desc.min_per_cell), (uint64_t)a->desc.max_per_cell);
-  for (int32_t i = 0; i < 5; ++i) h = fold_number(h, number[i]);
-  return h;
-}
-
-/* Makes one number of all that decides what a step does and exchanges: parts that differ there would wait for
- * each other. */
-static int64_t fingerprint(const mpm_stepper *s) {
-  const mpmi_settings *settings = &s->settings;
-  uint64_t word[sizeof settings->desc / sizeof(uint64_t)], h = 0xcbf29ce484222325u;
-  _Static_assert(sizeof settings->desc % sizeof(uint64_t) == 0, "the description is whole words");
-  memcpy(word, &settings->desc, sizeof word);
-  for (size_t i = 0; i < sizeof word / sizeof word[0]; ++i) h = fold_word(h, word[i]);
-  for (int32_t face = 0; face < 2 * s->grid->dim; ++face)
-    h = fold_number(fold_word(h, (uint64_t)settings->wall[face].kind), settings->wall[face].friction);
-  for (int32_t m = 0; m < s->layout.member_count; ++m) h = fold_word(h, (uint64_t)s->layout.member[m].body);
-  for (int64_t i = 0; i < settings->obstacles.count; ++i)
-    h = fold_word(h, (uint64_t)(64 * settings->obstacles.obstacle[i]->desc.shape +
-                                settings->obstacles.obstacle[i]->desc.motion));
-  for (int32_t m = 0; m < s->layout.member_count; ++m) h = fold_adaption(h, &s->adaption[m]);
-  for (int64_t i = 0; i < settings->surfaces.count; ++i) {
-    const mpm_surface *surface = settings->surfaces.surface[i];
-    h = fold_word(h, (uint64_t)(4 * surface->desc.prescribes + 2 * (surface->heat.flux != 0.0) +
-                                (surface->heat.film > 0.0)));
-  }
-  for (int32_t i = 0; i < 3; ++i) h = fold_word(h, settings->hook[i] != NULL);
-  if (settings->desc.linear_solver == MPM_SOLVER_HOST) h = fold_word(h, settings->solver != NULL);
-  return (int64_t)(fold_word(h, settings->velocity_bc != NULL) >> 2);
-}
-
 /* The flags of sets that count on all parts once they are set on one. */
 static const uint32_t flag[] = {MPMI_DIRTY_ORDER, MPMI_DIRTY_PLACE,        MPMI_DIRTY_STRESS,
                                 MPMI_DIRTY_SUMS,  MPMI_DIRTY_ACCELERATION, MPMI_DIRTY_IDS};
@@ -129,7 +83,7 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
     word[6] |= layout->member[m].set->field[MPMI_PRESCRIBED].present;
   for (int32_t i = 0; i < count; ++i) mpmi_put_number(&word[OWN_WORDS + 2 * i], number[i]);
   word[7] = status != MPM_OK;
-  word[8] = fingerprint(s);
+  word[8] = mpmi_fingerprint(s);
   word[9] = ~word[8];
   mpmi_put_number(&word[10], count_markers(&s->settings.surfaces));
   const mpm_status lost = mpmi_reduce_parts(c, MPM_REDUCE_MAX, OWN_WORDS + 2 * count, word);
@@ -141,8 +95,8 @@ mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count,
   if (word[8] != ~word[9])
     return mpmi_fail(
         c, MPM_E_STATE,
-        "the stepper is set up otherwise on another part: give it the same description, walls, "
-        "bodies, adaption, obstacles, surfaces, hooks, velocities of nodes and linear solver on all");
+        "the stepper is set up otherwise on another part: give it the same grid, laws, description, walls, "
+        "bodies, contact, heat, adaption, obstacles, surfaces, callbacks and linear solver on all");
   if (word[10] != ~word[11])
     return mpmi_fail(c, MPM_E_STATE,
                      "surfaces have other numbers of markers on other parts: all parts have all markers");

@@ -14,7 +14,7 @@
 enum {
   SLOT_BYTES = 1 << 25, /* of address space; memory is taken as it is used */
   VALUES = 1 << 20,
-  PATIENCE = 120 /* seconds */
+  PATIENCE = 600 /* seconds: a part may compute for long, on a busy machine */
 };
 
 /* From one process to another. There are two, for a process may be one exchange ahead of the other. */
@@ -208,15 +208,18 @@ static arena *make_arena(int32_t n) {
 }
 
 /* Ends all where one has come to an end that is not that of the others. */
-static int wait_for_end(int32_t n, const pid_t *child) {
+static int wait_for_end(int32_t n, pid_t *child) {
   int first = -1, bad = 0;
   for (int32_t i = 0; i < n; ++i) {
     int now = 0;
-    if (wait(&now) < 0) return 3;
-    const int status = WIFEXITED(now) ? WEXITSTATUS(now) : 3;
+    const pid_t ended = wait(&now);
+    const int status = ended > 0 && WIFEXITED(now) ? WEXITSTATUS(now) : 3;
     bad |= status == 3 || (first >= 0 && status != first);
     first = status;
-    for (int32_t k = 0; k < n && bad; ++k) kill(child[k], SIGKILL);
+    for (int32_t k = 0; k < n; ++k) {
+      if (child[k] == ended) child[k] = 0;
+      if (bad && child[k]) kill(child[k], SIGKILL);
+    }
   }
   return bad ? 3 : first;
 }

@@ -52,7 +52,7 @@ REAL(mpm_status, mpm_particles_add, mpm_particles *set, int64_t n, const double 
 /* How many particles all parts have filled in, and the first of their ids. */
 static mpm_status sum_filled(mpm_status status, int64_t own_first, int64_t own_count, int64_t *first_id,
                              int64_t *count) {
-  int64_t first = own_count > 0 ? -own_first : INT64_MIN;
+  int64_t first = own_count > 0 ? -own_first : -INT64_MAX;
   if (way && !status) {
     must(way->reduce(way->user, MPM_REDUCE_SUM, 1, &own_count));
     must(way->reduce(way->user, MPM_REDUCE_MAX, 1, &first));
@@ -235,6 +235,7 @@ REAL(mpm_status, mpm_stepper_create, mpm_context *context, mpm_grid *grid, const
   const int32_t chooses = !way && own.scheme == MPM_NEWMARK && own.linear_solver == MPM_SOLVER_AUTO;
   if (chooses) own.linear_solver = MPM_SOLVER_CG;
   const mpm_status status = __real_mpm_stepper_create(context, grid, &own, out);
+  if (!status && chooses && chosen.stepper) stop("two steppers at a time would choose their solver");
   if (!status && chooses) chosen.stepper = *out, chosen.desc = own;
   return status;
 }

@@ -76,6 +76,57 @@ START_TEST(large) {
 }
 END_TEST
 
+/* A long body that one end holds, under a pressure that follows it: diagonal blocks lead nowhere, and
+ * conjugate gradients precondition in their place. */
+static mpm_status set_up_long(world *w, const scene *is) {
+  const double h = is->desc.grid.spacing[0], low[] = {0.0, 4.0 * h}, high[] = {35.0 * h, 8.0 * h};
+  const int32_t per_cell[] = {2, 2};
+  const mpm_status status = mpm_particles_fill_box(w->set[0], low, high, per_cell, NULL, NULL);
+  return status ? status : mpm_stepper_set_wall(w->stepper, MPM_X_MIN, MPM_WALL_FIXED, 0.0);
+}
+
+static mpm_status bend(world *w, const scene *is, outcome *found) {
+  const double h = is->desc.grid.spacing[0], ends[] = {34.0 * h, 12.0 * h, 8.0 * h, 8.0 * h};
+  mpm_surface_desc d;
+  mpm_surface *s = NULL;
+  mpm_status status = mpm_surface_desc_init(&d, sizeof d);
+  d.pressure = 1.0;
+  if (!status) status = mpm_surface_create(w->context, w->grid, &d, &s);
+  if (!status) status = mpm_surface_add_polyline(s, 2, ends, 0, 0.5 * h, NULL, NULL);
+  if (!status) status = mpm_stepper_add_surface(w->stepper, s);
+  if (!status) status = mpm_step(w->stepper, 0.05, &w->info);
+  found->seen[0] = (double)w->info.linear_iterations;
+  if (s) drop_loads(w, s);
+  return status || found->seen[0] > 600.0 ? status : MPM_E_INTERNAL; /* blocks alone would stop far before */
+}
+
+static scene long_scene(void) {
+  scene is = implicit_scene(2, implicit_basis(1), 1);
+  is.desc.grid.cells[0] = 40;
+  is.desc.grid.cells[1] = 16;
+  is.desc.grid.spacing[0] = is.desc.grid.spacing[1] = 1.0 / 40.0;
+  is.desc.law = law_of(3);
+  is.desc.stepper.linear_solver = MPM_SOLVER_GMRES;
+  is.desc.stepper.linear_tolerance = 1e-8;
+  is.desc.stepper.gravity[1] = 0.0;
+  is.speed = 0.0;
+  is.set_up = set_up_long;
+  is.run = bend;
+  return is;
+}
+
+START_TEST(long_body) {
+  const scene is = long_scene();
+  check_made(&is, "long body", 2 + _i);
+}
+END_TEST
+
+START_TEST(long_body_loses_transport) {
+  const scene is = long_scene();
+  check_lost_transport(&is, 2, 500);
+}
+END_TEST
+
 /* What the library chooses: conjugate gradients where the matrix is symmetric, else GMRES. */
 static mpm_status choose(world *w, const scene *is, outcome *found) {
   int32_t parts = 1;
@@ -226,12 +277,15 @@ Suite *shared_solvers_suite(void) {
   add_every(all, wide, remedy, 12, 7);
   tcase_add_loop_test(wide, large, 0, 3);
   tcase_add_loop_test(all, chosen, 0, 4);
+  tcase_add_loop_test(all, long_body, 0, 1);
+  tcase_add_loop_test(wide, long_body, 1, 4);
   suite_add_tcase(suite, all);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 240);
   add_table(failures, wide, steps_fail, 7);
   tcase_add_test(failures, symmetric_only);
   tcase_add_test(failures, transport_fails);
+  tcase_add_test(wide, long_body_loses_transport);
   add_table(failures, wide, executor_fails, 2);
   suite_add_tcase(suite, failures);
   add_shared_steps(suite);
