@@ -1,6 +1,6 @@
 /* How a stepper is set up, as one number: parts that differ there would wait for each other, or compute
  * different problems. */
-#include "stepper/together.h"
+#include "stepper/fingerprint.h"
 
 #include <string.h>
 

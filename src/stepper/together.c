@@ -1,6 +1,7 @@
 #include "stepper/together.h"
 #include "context/structs.h"
 #include "particles/values.h"
+#include "stepper/fingerprint.h"
 
 #include <string.h>
 

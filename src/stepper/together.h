@@ -22,8 +22,6 @@ mpm_status mpmi_check_alike(const mpm_stepper *s, int32_t count, const char *con
  * them counts as changed on all. names: of the numbers. */
 mpm_status mpmi_together_begin(mpm_stepper *s, mpm_status status, int32_t count, const char *const *name,
                                const double *number);
-/* One number of all that decides what a step does and exchanges (fingerprint.c). */
-int64_t mpmi_fingerprint(const mpm_stepper *s);
 /* Refuses what several parts cannot do. */
 mpm_status mpmi_together_offers(mpm_stepper *s);
 /* A step has brought its sets up to date: where it will sort, all parts must have. */

@@ -2,7 +2,7 @@
  * for whatever decides what a step does. */
 #include "world.h"
 
-#include "stepper/together.h"
+#include "stepper/fingerprint.h"
 
 typedef struct problem {
   mpm_grid_desc grid;
