@@ -192,7 +192,8 @@ def own_weight():
     for panel, (beam, tip) in zip(ax, BEAMS):
         for i, (basis, cells, per_cell, lagrangian, name) in enumerate(kinds):
             for steps, mark in ((10, "o"), (20, "s"), (40, "^"), (80, "-")):
-                at = rows(data, beam=beam, basis=basis, cells=cells, per_cell=per_cell, lagrangian=lagrangian, steps=steps, density=0)
+                at = rows(data, beam=beam, basis=basis, cells=cells, per_cell=per_cell, lagrangian=lagrangian, remedy=0,
+                          steps=steps, density=0)
                 panel.plot([0.12 * i + t for t in (0, *at["t"])], [0] + [-y for y in at["y"]], f"C{i}{mark}", fillstyle="none",
                            markersize=3, linewidth=1, label=name if mark == "-" else None)
             panel.plot([0.12 * i + 1], [-tip[1]], "k+", markersize=9, label=None if i else "FEM")
@@ -215,7 +216,8 @@ def own_weight_drift():
         for (beam, tip), mark in zip(BEAMS, "os"):
             error = []
             for n in steps:
-                at = rows(data, beam=beam, basis=basis, cells=cells, per_cell=per_cell, lagrangian=lagrangian, steps=n, density=density)
+                at = rows(data, beam=beam, basis=basis, cells=cells, per_cell=per_cell, lagrangian=lagrangian, remedy=0, steps=n,
+                          density=density)
                 error.append(100 * math.hypot(at["x"][-1] - tip[0], at["y"][-1] - tip[1]) / math.hypot(*tip))
             panel.plot(steps, error, line + mark, fillstyle="none", linewidth=1, label=name if mark == "o" else None)
 

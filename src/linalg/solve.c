@@ -220,7 +220,11 @@ static mpm_status by_cg_or_gmres(mpmi_system *s, const mpmi_solve_job *job) {
   const mpm_status then = by_gmres(s, job, 1, 0);
   if (then != MPM_NOT_CONVERGED || status != MPM_SINGULAR) return then;
   s->report->node = node;
-  return not_positive(s);
+  s->report->indefinite = 1;
+  return mpmi_fail(
+      s->context, MPM_SINGULAR,
+      "conjugate gradients and GMRES: the matrix is not positive definite, and hard: hold the body "
+      "in each direction, or use a smaller dt");
 }
 
 static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {

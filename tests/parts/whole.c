@@ -229,14 +229,34 @@ static struct {
   mpm_stepper_desc desc;
 } chosen;
 
+/* Of one part: the description with the solver that several parts try first. */
+static mpm_stepper_desc with_choice(const mpm_stepper_desc *desc, int32_t *chooses) {
+  mpm_stepper_desc own = *desc;
+  *chooses = !way && own.scheme == MPM_NEWMARK && own.linear_solver == MPM_SOLVER_AUTO;
+  if (*chooses) own.linear_solver = MPM_SOLVER_CG;
+  return own;
+}
+
+static void note_choice(mpm_stepper *stepper, const mpm_stepper_desc *desc) {
+  if (chosen.stepper && chosen.stepper != stepper) stop("two steppers at a time would choose their solver");
+  chosen.stepper = stepper;
+  chosen.desc = *desc;
+}
+
 REAL(mpm_status, mpm_stepper_create, mpm_context *context, mpm_grid *grid, const mpm_stepper_desc *desc,
      mpm_stepper **out) {
-  mpm_stepper_desc own = *desc;
-  const int32_t chooses = !way && own.scheme == MPM_NEWMARK && own.linear_solver == MPM_SOLVER_AUTO;
-  if (chooses) own.linear_solver = MPM_SOLVER_CG;
+  int32_t chooses;
+  const mpm_stepper_desc own = with_choice(desc, &chooses);
   const mpm_status status = __real_mpm_stepper_create(context, grid, &own, out);
-  if (!status && chooses && chosen.stepper) stop("two steppers at a time would choose their solver");
-  if (!status && chooses) chosen.stepper = *out, chosen.desc = own;
+  if (!status && chooses) note_choice(*out, &own);
+  return status;
+}
+
+REAL(mpm_status, mpm_stepper_configure, mpm_stepper *stepper, const mpm_stepper_desc *desc) {
+  int32_t chooses;
+  const mpm_stepper_desc own = with_choice(desc, &chooses);
+  const mpm_status status = __real_mpm_stepper_configure(stepper, &own);
+  if (!status && chooses) note_choice(stepper, &own);
   return status;
 }
 
@@ -249,7 +269,7 @@ static int32_t chooses_anew(mpm_stepper *stepper, mpm_status status) {
   }
   chosen.desc.linear_solver = MPM_SOLVER_GMRES;
   chosen.stepper = NULL;
-  return !mpm_stepper_configure(stepper, &chosen.desc);
+  return !__real_mpm_stepper_configure(stepper, &chosen.desc);
 }
 
 REAL(mpm_status, mpm_step, mpm_stepper *stepper, double dt, mpm_step_info *info) {

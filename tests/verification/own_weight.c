@@ -64,9 +64,9 @@ static outcome bend(const cantilever *of, const setting *by, FILE *csv) {
     verify_step(&w, 1.0 / by->steps);
     out.tail = fmax(out.tail, loading_tail(&w, 1e-4));
     tip_of(&w, X, corner, u);
-    fprintf(csv, "%s,%d,%d,%d,%d,%d,%g,%.4f,%.6f,%.6f\n", of->name, (int)by->basis, (int)by->cells,
-            (int)by->per_cell, (int)by->lagrangian, (int)by->steps, by->density, (double)k / by->steps, u[0],
-            u[1]);
+    fprintf(csv, "%s,%d,%d,%d,%d,%d,%d,%g,%.4f,%.6f,%.6f\n", of->name, (int)by->basis, (int)by->cells,
+            (int)by->per_cell, (int)by->lagrangian, (int)by->remedy, (int)by->steps, by->density,
+            (double)k / by->steps, u[0], u[1]);
   }
   out.error = hypot(u[0] - of->tip[0], u[1] - of->tip[1]) / hypot(of->tip[0], of->tip[1]);
   free(X);
@@ -269,7 +269,7 @@ static void dynamics(const cantilever *of, int32_t basis, const char *basis_name
 int main(int argc, char **argv) {
   verify_begin("own_weight", argc, argv);
   FILE *csv = verify_csv("own_weight");
-  fprintf(csv, "beam,basis,cells,per_cell,lagrangian,steps,density,t,x,y\n");
+  fprintf(csv, "beam,basis,cells,per_cell,lagrangian,remedy,steps,density,t,x,y\n");
   static const kind list[] = {
       {"quadratic", MPM_BSPLINE2, 4, 2, 4, 0, 0, 0.01},
       {"cubic", MPM_BSPLINE3, 4, 2, 4, 0, 0, 0.01},
