@@ -95,16 +95,21 @@ restart() { # folder
 # MPI_TESTS=quick: one MPI, up to three processes, without small pieces and sanitizers
 many="1 2 3 4" kinds="pieces sanitized" known="ompi-c mpich"
 if [ "${MPI_TESTS:-}" = quick ]; then many="1 2 3" kinds= known="ompi-c"; fi
-if [ -z "$(launcher ompi-c)$(launcher mpich)" ] && [ "${SKIP_MISSING:-}" != 1 ] && command -v apt-get > /dev/null; then
+find_packages() {
+  local package
+  packages=
+  for package in $known; do
+    if "$PKG_CONFIG" --exists $package && [ -n "$(launcher $package)" ]; then packages="$packages $package"; fi
+  done
+}
+find_packages
+if [ -z "$packages" ] && [ "${SKIP_MISSING:-}" != 1 ] && command -v apt-get > /dev/null; then
   sudo=
   if [ "$(id -u)" != 0 ]; then sudo=sudo; fi
   $sudo apt-get update -q
   $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends libopenmpi-dev openmpi-bin libmpich-dev mpich
+  find_packages
 fi
-packages=
-for package in $known; do
-  if "$PKG_CONFIG" --exists $package && [ -n "$(launcher $package)" ]; then packages="$packages $package"; fi
-done
 if [ -z "$packages" ]; then
   echo 'mpi: there is no MPI (libopenmpi-dev openmpi-bin, or libmpich-dev mpich); SKIP_MISSING=1 does without' >&2
   [ "${SKIP_MISSING:-}" = 1 ] && exit 0

@@ -52,7 +52,7 @@ START_TEST(holds_combine) {
   is.set_up = set_up_body;
   is.run = hold;
   is.seed = (uint64_t)_i;
-  is.speed = 3.0;
+  is.speed = 3.0; /* with which no scene inverts, in one part or in several */
   check_made(&is, name, 2 + _i % 4);
 }
 END_TEST
