@@ -249,25 +249,26 @@ static PetscErrorCode make_solver(mpm_petsc *m, int by_cg) {
   PetscFunctionReturn(0);
 }
 
-/* Splines overlap far: a sweep of Gauss-Seidel smooths what PETSc's usual smoother, Chebyshev's over the
- * diagonal, does not. On several processes each sweeps its own rows, which together may overshoot:
- * Chebyshev's polynomial damps that. An aggregate of few nodes does not have all rigid motions: the shift
- * is the diagonal of those that it lacks. Levels take their options from the database alone: there they
- * stand while they are made, where the host has none. */
-enum { DEFAULTS = 4 };
+/* Splines overlap far, and PETSc's usual smoother, Chebyshev's over the diagonal, is weak there. Incomplete
+ * factors, of the rows of each process with those beside them, smooth nearly alike on any number of them.
+ * For conjugate gradients they must be symmetric: what processes find for the same row is added, and
+ * Chebyshev's polynomial damps it; GMRES takes each row from its own process. An aggregate of few nodes does
+ * not have all rigid motions: the shift makes pivots of those that it lacks. Levels take their options from
+ * the database alone: there they stand while they are made, where the host has none. */
+enum { DEFAULTS = 6 };
 typedef struct defaults {
   char name[DEFAULTS][PREFIX + 64];
   int given; /* bits: the host has none of these */
 } defaults;
 
 static PetscErrorCode give_defaults(const mpm_petsc *m, defaults *d) {
-  int processes = 1;
-  MPI_Comm_size(m->comm, &processes);
   const char *const options[DEFAULTS][2] = {
-      {"mg_levels_pc_type", "sor"},
-      {"mg_levels_ksp_type", processes > 1 ? "chebyshev" : "richardson"},
-      {"mg_levels_ksp_max_it", processes > 1 ? "2" : "1"},
-      {"mg_levels_pc_sor_diagonal_shift", "1e-12"}};
+      {"mg_levels_ksp_type", "chebyshev"},
+      {"mg_levels_ksp_max_it", "2"},
+      {"mg_levels_pc_type", "asm"},
+      {"mg_levels_pc_asm_type", m->by_cg ? "basic" : "restrict"},
+      {"mg_levels_sub_pc_type", m->by_cg ? "icc" : "ilu"},
+      {"mg_levels_sub_pc_factor_shift_type", m->by_cg ? "positive_definite" : "nonzero"}};
   PetscFunctionBeginUser;
   d->given = 0;
   for (int i = 0; i < DEFAULTS; ++i) {

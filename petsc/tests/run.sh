@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # libmpm-petsc on 1 to 4 processes: what is refused, solvers that fail; the history of Newton's method is that of one process;
 # the same answer as the library's conjugate gradients; a host in C++ by pkg-config, from an installation; the example. Prints
-# how many iterations GAMG takes on each number of processes: its smoother is one of each process, so that several take up to
-# 1.5 times as many as one, however many they are.
+# how many iterations GAMG takes on each number of processes: at most 1.15 times as many on one as on another.
 #
 #   run.sh tests     the tests alone: what planted faults must fail
 set -euo pipefail
@@ -56,17 +55,14 @@ cat "$scratch/log"
 for law in neo_hookean j2; do
   least= most=
   for n in 1 2 3 4; do
-    # one process has another smoother by itself
-    [ $n != 1 ] || export PETSC_OPTIONS='-mpm_mg_levels_ksp_type chebyshev -mpm_mg_levels_ksp_max_it 2'
     must "$law" $n "$scratch/test_petsc" history $law "$cells" "$scratch/$law.history"
-    unset PETSC_OPTIONS
     cat "$scratch/log"
     iterations=$(sed -n 's/.* \([0-9]*\) iterations,.*/\1/p' "$scratch/log")
     [ -n "$least" ] || least=$iterations most=$iterations
     [ "$iterations" -ge "$least" ] || least=$iterations
     [ "$iterations" -le "$most" ] || most=$iterations
   done
-  [ $((10 * most)) -le $((15 * least)) ] || { echo "petsc: $law: from $least to $most iterations" >&2; exit 1; }
+  [ $((100 * most)) -le $((115 * least)) ] || { echo "petsc: $law: from $least to $most iterations" >&2; exit 1; }
 done
 echo 'petsc: solver: ok'
 [ "${1:-}" != tests ] || exit 0

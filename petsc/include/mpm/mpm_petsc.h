@@ -47,8 +47,8 @@ typedef struct mpm_petsc mpm_petsc;
  *
  * - prefix: of options in PETSc's database, 1 to 63 letters, digits and underscores that begin with a
  *   letter, as in "-mpm_ksp_view" for "mpm_"; "" for options without a prefix; NULL is "mpm_". Where the host
- *   sets none for the smoother of multigrid this library has its own: a sweep of Gauss-Seidel on one process,
- *   on several two of Chebyshev's over the Gauss-Seidel of each.
+ *   sets none for the smoother of multigrid this library has its own: two steps of Chebyshev's over
+ *   incomplete factors, each of the rows of a process and those beside them.
  *
  * - MPM_E_ARG: out is NULL, comm is MPI_COMM_NULL or an intercommunicator, or prefix is none.
  * - MPM_E_STATE: PETSc is not started, or has ended.
