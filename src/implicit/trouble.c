@@ -165,11 +165,11 @@ mpm_status mpmi_tell_unsolved(mpmi_balance *balance, mpm_status status, int64_t 
     if (lost) return lost;
   }
   if (status != MPM_SINGULAR || failure->particle < 0) return status;
-  return mpmi_fail(balance->settings->context, status, "%s, beside particle %lld of set %d%s",
+  return mpmi_fail(balance->settings->context, status, "%s, beside particle %lld of set %d: %s",
                    mpm_last_error(balance->settings->context), (long long)failure->particle,
                    (int)failure->set,
                    mpmi_is_dynamic(balance->settings)
-                       ? ""
-                       : ": hold the body in every direction, see whether it has torn, or set "
+                       ? mpmi_smaller_steps(balance)
+                       : "hold the body in every direction, see whether it has torn, or set "
                          "quasi_static = 0");
 }

@@ -16,7 +16,7 @@ static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
 static mpm_status not_positive(const mpmi_system *s) {
   s->report->indefinite = 1;
   return mpmi_fail(s->context, MPM_SINGULAR, "conjugate gradients: the matrix is not positive definite: %s",
-                   s->A->shared ? "use MPM_SOLVER_GMRES, hold the body in each direction, or use a smaller dt"
+                   s->A->shared ? "use MPM_SOLVER_GMRES or MPM_SOLVER_AUTO"
                                 : "use MPM_SOLVER_LDLT or MPM_SOLVER_AUTO");
 }
 
@@ -221,10 +221,8 @@ static mpm_status by_cg_or_gmres(mpmi_system *s, const mpmi_solve_job *job) {
   if (then != MPM_NOT_CONVERGED || status != MPM_SINGULAR) return then;
   s->report->node = node;
   s->report->indefinite = 1;
-  return mpmi_fail(
-      s->context, MPM_SINGULAR,
-      "conjugate gradients and GMRES: the matrix is not positive definite, and hard: hold the body "
-      "in each direction, or use a smaller dt");
+  return mpmi_fail(s->context, MPM_SINGULAR,
+                   "conjugate gradients and GMRES: the matrix is not positive definite, and hard");
 }
 
 static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
