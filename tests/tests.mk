@@ -264,11 +264,17 @@ VERIFY_ALL := $(basename $(notdir $(filter-out $(VERIFY_SHARED),$(sort $(wildcar
 CASES ?= $(filter $(VERIFY_LONG),$(VERIFY_ALL)) $(filter-out $(VERIFY_LONG),$(VERIFY_ALL))
 VERIFY := $(CASES:%=$(VERIFIED)/%)
 VERIFY_JOBS ?= 2
-$(VERIFIED)/%: tests/verification/%.c $(VERIFY_SHARED) $(VERIFY_HEADERS) $(SHARED_LIB) Makefile tests/tests.mk
+VERIFY_OBJECTS := $(VERIFY_SHARED:%.c=$(BUILD)/obj/%.o)
+CASE_OBJECTS := $(CASES:%=$(BUILD)/obj/tests/verification/%.o)
+.SECONDARY: $(VERIFY_OBJECTS) $(CASE_OBJECTS)
+$(BUILD)/obj/tests/verification/%.o: tests/verification/%.c Makefile tests/tests.mk
+	@mkdir -p $(@D)
+	$(call SAY,CC)
+	$(Q)$(CC) -std=c11 $(NEEDS) -Iinclude $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) -c $< -o $@
+$(VERIFIED)/%: $(BUILD)/obj/tests/verification/%.o $(VERIFY_OBJECTS) $(SHARED_LIB)
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
-	$(Q)$(CC) -std=c11 -Iinclude $(WARNINGS) $(CPPFLAGS) $(CFLAGS) $(OPT) $(filter %.c,$^) -L$(BUILD) \
-	  -Wl,-rpath,'$$ORIGIN/..' $(LDFLAGS) -lmpm -lm -o $@
+	$(Q)$(CC) $(CFLAGS) $(filter %.o,$^) -L$(BUILD) -Wl,-rpath,'$$ORIGIN/..' $(LDFLAGS) -lmpm -lm -o $@
 
 #: verify                the method against exact solutions, with a table of gates: docs/verification.md
 verify: $(VERIFY)
@@ -277,11 +283,11 @@ verify: $(VERIFY)
 verify-quick: $(VERIFY)
 	@bash tests/verification/run.sh $(VERIFIED)/quick $(VERIFY_JOBS) --quick $(VERIFY)
 # The same programs on parts: their calls of the library go through tests/parts/whole.c.
-CASE_OBJECTS = $(patsubst %.c,$(BUILD)/obj/%.o,$(VERIFY_SHARED) $(addprefix tests/parts/,whole.c table.c processes.c))
+PARTED_OBJECTS := $(VERIFY_OBJECTS) $(addprefix $(BUILD)/obj/tests/parts/,whole.o table.o processes.o)
 CASE_CALLS := $(shell sed -n 's/^REAL.[^,]*, \([a-z_]*\),.*/\1/p' tests/parts/whole.c) timespec_get main
 CASE_PROGRAMS := $(CASES:%=$(BUILD)/tests/parts/cases/%)
-.SECONDARY: $(CASE_OBJECTS) $(CASES:%=$(BUILD)/obj/tests/verification/%.o)
-$(BUILD)/tests/parts/cases/%: $(BUILD)/obj/tests/verification/%.o $(CASE_OBJECTS) $(STATIC_LIB)
+.SECONDARY: $(PARTED_OBJECTS)
+$(BUILD)/tests/parts/cases/%: $(BUILD)/obj/tests/verification/%.o $(PARTED_OBJECTS) $(STATIC_LIB)
 	@mkdir -p $(@D)
 	$(call SAY,LINK)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(CASE_CALLS:%=-Wl,--wrap=%) $(filter %.o,$^) $(STATIC_LIB) $(LIBS) -o $@
@@ -293,4 +299,4 @@ check-parts-verify: $(filter-out %/advice,$(CASE_PROGRAMS))
 verify-plots:
 	/usr/bin/python3 docs/verification/plot.py --from $(VERIFIED)/full
 
--include $(UNIT_OBJECTS:.o=.d) $(STEPS).d $(FUZZ_TARGETS:%=$(BUILD)/fuzz/%.d)
+-include $(UNIT_OBJECTS:.o=.d) $(CASE_OBJECTS:.o=.d) $(PARTED_OBJECTS:.o=.d) $(STEPS).d $(FUZZ_TARGETS:%=$(BUILD)/fuzz/%.d)

@@ -70,7 +70,7 @@ int main(int argc, char **argv) {
   fprintf(csv, "axis,absorbs,cells,t,energy\n");
   static const char *const of[] = {"pressure", "shear"};
   char what[96];
-  for (int32_t cells = 20; cells <= 40; cells *= 2)
+  for (int32_t cells = 20; cells <= (verify_quick() ? 20 : 40); cells *= 2)
     for (int32_t axis = 0; axis < 2; ++axis) {
       snprintf(what, sizeof what, "%s wave, h = 1/%d: energy left over the first", of[axis], (int)cells);
       verify_gate(what, left_over(cells, MPM_USL, axis, 1, csv), 0.0, 1e-3, "exact: 0; set tolerance");
@@ -81,6 +81,7 @@ int main(int argc, char **argv) {
     const double coarse = left_over(20, MPM_NEWMARK, axis, 1, NULL);
     snprintf(what, sizeof what, "%s wave, implicit, h = 1/20: energy left over the first", of[axis]);
     verify_gate(what, coarse, 0.0, 1e-2, "exact: 0; set tolerance");
+    if (verify_quick()) continue;
     snprintf(what, sizeof what, "%s wave, implicit: that of h = 1/40 over that of 1/20", of[axis]);
     verify_gate(what, left_over(40, MPM_NEWMARK, axis, 1, NULL) / coarse, 0.0, 1.0 / 3.0, "second order");
   }

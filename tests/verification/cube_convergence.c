@@ -107,7 +107,7 @@ int main(int argc, char **argv) {
   } methods[METHODS] = {{"quadratic, periodic", MPM_BSPLINE2, PERIODIC, 0, 1.7, 2.4, 0},
                         {"cpGIMP, periodic", MPM_CPGIMP, PERIODIC, 0, 1.7, 2.4, 1},
                         {"quadratic, slip walls", MPM_BSPLINE2, SYMMETRY_WALLS, 0, 1.7, 2.4, 1},
-                        {"quadratic, ghosts overwritten", MPM_BSPLINE2, OVERWRITTEN_NODES, 0, 0.7, 1.4, 0},
+                        {"quadratic, ghosts overwritten", MPM_BSPLINE2, OVERWRITTEN_NODES, 0, 0.7, 1.4, 1},
                         {"quadratic, periodic, total Lagrangian", MPM_BSPLINE2, PERIODIC, 1, 1.8, 2.4, 0},
                         {"linear, slip walls, total Lagrangian", MPM_LINEAR, SYMMETRY_WALLS, 1, 1.8, 2.4, 0}};
   const int32_t sizes = verify_quick() ? 2 : SIZES, coarsest = 8;

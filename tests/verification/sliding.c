@@ -163,7 +163,7 @@ void slide_heading(FILE *table) {
 void slide_gates(const slide_series *s, FILE *table) {
   double low = HUGE_VAL, high = 0.0, creep = 0.0, way[2] = {HUGE_VAL, 0.0}, range = 0.0, weight = 0.0,
          balance = 0.0;
-  const int32_t count = s->support == ON_WALL ? 1 : verify_quick() && s->places > 2 ? 2 : s->places;
+  const int32_t count = s->support == ON_WALL || verify_quick() ? 1 : s->places;
   for (int32_t k = 0; k < count; ++k) {
     slide a = {.support = s->support,
                .basis = s->basis,
