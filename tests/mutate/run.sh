@@ -28,8 +28,8 @@ compile() { # jobs, suite
 
 # The unit tests of a suite until the first failure, which is enough: Check tells of each test as it ends, and stops the
 # one that runs when it is stopped itself.
-units() { # suite, what is said of the tag "long"
-  exec 3< <(export "$2=long" CK_RUN_SUITE="$1" CK_VERBOSITY=silent CK_LOG_FILE_NAME=- MPM_SCRATCH="$PWD/scratch"
+units() { # suite, what is said of the tags "long" and "wide"
+  exec 3< <(export "$2=long wide" CK_RUN_SUITE="$1" CK_VERBOSITY=silent CK_LOG_FILE_NAME=- MPM_SCRATCH="$PWD/scratch"
     exec timeout $limit out/tests/unit 2>&1)
   local program=$!
   sed -E "/$failed/q" <&3 > "$log"
@@ -49,7 +49,7 @@ suite() {
   scenes) timeout $limit bash tests/parts/run.sh out/tests/parts/parts out/found 1 1 3 > "$log" 2>&1 ;;
   verify/*) timeout $limit "$MAKE" -s -j1 BUILD=out CC="$CC" WERROR=-w CASES="${1#*/}" verify-quick > "$log" 2>&1 ;;
   exact) units exact CK_EXCLUDE_TAGS ;; # minutes in all, and the short tests see the faults
-  *) units "$1" CK_EXCLUDE_TAGS && units "$1" CK_INCLUDE_TAGS ;; # long tests come last: most faults are seen before
+  *) units "$1" CK_EXCLUDE_TAGS && units "$1" CK_INCLUDE_TAGS ;; # long ones and whole tables come last: most faults are seen before
   esac
 }
 
