@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # libmpm-petsc on 1 to 4 processes: what is refused, solvers that fail; the history of Newton's method is that of one process;
 # the same answer as the library's conjugate gradients; a host in C++ by pkg-config, from an installation; the example. Prints
-# how many iterations GAMG takes on each number of processes: at most 1.15 times as many on one as on another.
+# how many iterations GAMG takes on each number of processes: at most 1.15 times as many on one as on another with 10 or 12 cells.
 #
 #   run.sh tests     the tests alone: what planted faults must fail
 set -euo pipefail

@@ -19,6 +19,10 @@ typedef struct block {
   int32_t remedy;
 } block;
 
+static int32_t steps(void) {
+  return verify_quick() ? STEPS / 6 : STEPS;
+}
+
 /* Kinetic over strain energy at the end; 1 or more where a step failed. */
 static double shake(const method *how, const verify_scheme *by, const block *is, int32_t steps,
                     double *first) {
@@ -104,8 +108,7 @@ static void incompressible(void) {
     const verify_scheme *by = &verify_schemes[list[i].scheme];
     char what[160];
     double first;
-    const double last =
-        shake(list[i].total ? &total : &updated, by, &is, verify_quick() ? STEPS / 6 : STEPS, &first);
+    const double last = shake(list[i].total ? &total : &updated, by, &is, steps(), &first);
     snprintf(what, sizeof what, "nu = %g, remedy, APIC, %s, stretch %g, %s%s: kinetic energy, last / first",
              is.nu, list[i].kept ? "volume kept" : "confined", is.stretch, by->name,
              list[i].total ? ", total Lagrangian" : "");
@@ -178,7 +181,6 @@ int main(int argc, char **argv) {
                                    {"FMPM(8)", MPM_FMPM, 1.0, 8, 0}};
   static const double stretch[3] = {0.8, 1.05, 1.5};
   const int32_t transfers = verify_quick() ? 2 : (int32_t)(sizeof methods / sizeof *methods);
-  const int32_t steps = verify_quick() ? STEPS / 6 : STEPS;
   for (int32_t s = 0; s < 3; ++s)
     for (int32_t k = 0; k < VERIFY_SCHEMES; ++k) {
       if (verify_quick() && k != VERIFY_USL && k != VERIFY_PROJECTED) continue;
@@ -186,7 +188,7 @@ int main(int argc, char **argv) {
       for (int32_t m = 0; m < transfers; ++m) {
         double first;
         const double last =
-            shake(&methods[m], &verify_schemes[k], &(block){stretch[s], 1.0, 0.3, 0}, steps, &first);
+            shake(&methods[m], &verify_schemes[k], &(block){stretch[s], 1.0, 0.3, 0}, steps(), &first);
         most = fmax(most, last / first);
         fprintf(table, "%g,%s,%s,%.2e,%.2e\n", stretch[s], methods[m].name, verify_schemes[k].name, first,
                 last);
@@ -207,7 +209,7 @@ int main(int argc, char **argv) {
       const int32_t many = !verify_quick() && (k == VERIFY_USF || k == VERIFY_MUSL);
       for (int32_t m = 0; m < 2; ++m) {
         const double at_end = shake(&total[m], &verify_schemes[k], &(block){stretch[s], 1.0, 0.3, 0},
-                                    many ? MANY_STEPS : steps, &first);
+                                    many ? MANY_STEPS : steps(), &first);
         most = fmax(most, at_end / first);
         fprintf(table, "%g,\"%s, total\",%s,%.2e,%.2e\n", stretch[s], total[m].name, verify_schemes[k].name,
                 first, at_end);
