@@ -205,7 +205,8 @@ namespace Mpm {
     public const int MPM_LIBRARY_ORDER = 2;
 
     // Linear solver of an implicit step.
-    /// <summary>the library chooses by size, stencil, symmetry and inertia.</summary>
+    /// <summary>the library chooses by size, stencil, symmetry and inertia; with a transport as parallel.h
+    /// says.</summary>
     public const int MPM_SOLVER_AUTO = 0;
     /// <summary>conjugate gradients, for symmetric positive definite systems.</summary>
     public const int MPM_SOLVER_CG = 1;

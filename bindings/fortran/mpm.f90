@@ -205,7 +205,7 @@ module mpm
   integer(c_int32_t), parameter :: MPM_LIBRARY_ORDER = 2_c_int32_t
 
   !> Linear solver of an implicit step.
-  !> the library chooses by size, stencil, symmetry and inertia.
+  !> the library chooses by size, stencil, symmetry and inertia; with a transport as parallel.h says.
   integer(c_int32_t), parameter :: MPM_SOLVER_AUTO = 0_c_int32_t
   !> conjugate gradients, for symmetric positive definite systems.
   integer(c_int32_t), parameter :: MPM_SOLVER_CG = 1_c_int32_t

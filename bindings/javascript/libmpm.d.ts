@@ -195,7 +195,7 @@ export interface Constants {
   readonly MPM_BY_ID: 1;
   /** as they lie in memory, without inert slots; changes when they are sorted anew */
   readonly MPM_LIBRARY_ORDER: 2;
-  /** the library chooses by size, stencil, symmetry and inertia */
+  /** the library chooses by size, stencil, symmetry and inertia; with a transport as parallel.h says */
   readonly MPM_SOLVER_AUTO: 0;
   /** conjugate gradients, for symmetric positive definite systems */
   readonly MPM_SOLVER_CG: 1;

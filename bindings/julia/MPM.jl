@@ -153,7 +153,7 @@ const MPM_BY_ID = Int32(1) # by ascending id
 const MPM_LIBRARY_ORDER = Int32(2) # as they lie in memory, without inert slots; changes when they are sorted anew
 
 # Linear solver of an implicit step.
-const MPM_SOLVER_AUTO = Int32(0) # the library chooses by size, stencil, symmetry and inertia
+const MPM_SOLVER_AUTO = Int32(0) # the library chooses by size, stencil, symmetry and inertia; with a transport as parallel.h says
 const MPM_SOLVER_CG = Int32(1) # conjugate gradients, for symmetric positive definite systems
 const MPM_SOLVER_MULTIGRID_CG = Int32(2) # conjugate gradients with geometric multigrid, for the same systems
 const MPM_SOLVER_LDLT = Int32(3) # a direct solver, for symmetric systems that may be indefinite

@@ -34,12 +34,11 @@
  *
  * Of several parts these are asked for explicit steps, and for implicit ones whose linear systems the
  * library's iterations solve: MPM_SOLVER_CG, and MPM_SOLVER_GMRES for those that are not symmetric; or a
- * solver of the host, MPM_SOLVER_HOST, as libmpm-petsc has one (operator.h). MPM_SOLVER_AUTO stands for one
- * of the two iterations here, and takes GMRES too where conjugate gradients have failed. GMRES has the bits
- * of one part up to 2000 unknowns, those that are held among them; with more one part makes a preconditioner
- * that several do not have, and the bits are those of any other number of parts.
- * MPM_E_UNSUPPORTED: other linear solvers; in implicit steps bodies other than 0, adaption, obstacles and
- * friction walls.
+ * solver of the host, MPM_SOLVER_HOST, as libmpm-petsc has one (operator.h). With a transport
+ * MPM_SOLVER_AUTO stands for one of the two iterations, and takes GMRES too where conjugate gradients have
+ * failed; and GMRES has no multigrid as preconditioner. That is so for one part, too, so that bits do not
+ * depend on the number of parts; one part may ask for MPM_SOLVER_MULTIGRID_CG or MPM_SOLVER_LDLT by name.
+ * MPM_E_UNSUPPORTED: these two of several parts.
  */
 #ifndef MPM_PARALLEL_H
 #define MPM_PARALLEL_H

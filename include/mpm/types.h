@@ -231,7 +231,8 @@ enum mpm_order_value {
 
 /** Linear solver of an implicit step. */
 enum mpm_solver_value {
-  MPM_SOLVER_AUTO = 0,         /**< the library chooses by size, stencil, symmetry and inertia */
+  MPM_SOLVER_AUTO = 0,         /**< the library chooses by size, stencil, symmetry and inertia; with a
+                                  transport as parallel.h says */
   MPM_SOLVER_CG = 1,           /**< conjugate gradients, for symmetric positive definite systems */
   MPM_SOLVER_MULTIGRID_CG = 2, /**< conjugate gradients with geometric multigrid, for the same systems */
   MPM_SOLVER_LDLT = 3,         /**< a direct solver, for symmetric systems that may be indefinite */

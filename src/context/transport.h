@@ -10,6 +10,12 @@ static inline int32_t mpmi_is_whole(const mpm_context *context) {
   return context->transport.parts == 1;
 }
 
+/* Returns 1 where the host has given a transport, be it to one part: what does not depend on the number of
+ * parts must be as with several. */
+static inline int32_t mpmi_has_transport(const mpm_context *context) {
+  return context->transport.send != NULL;
+}
+
 /* The host's functions. MPM_E_CALLBACK: one has failed, now or before. */
 mpm_status mpmi_send(mpm_context *context, int32_t exchange, int32_t count, const mpm_message *out,
                      const int64_t *most);

@@ -101,7 +101,7 @@ static mpm_status list_constraints(mpmi_balance *balance) {
     touch->closed = touch->stuck = 0;
     if (touch->ambiguous || !is_possible(balance, touch)) continue;
     mpmi_constraint *of = &newton->constraint[newton->constraint_count++];
-    *of = (mpmi_constraint){.touch = t, .stiffness = -1.0};
+    *of = (mpmi_constraint){.touch = t, .coupling = {-1, -1}};
     for (int32_t i = 0; i < 2; ++i) {
       const mpmi_party *party = &contact->party[touch->party[i]];
       place(balance, party, i, of);
@@ -110,18 +110,17 @@ static mpm_status list_constraints(mpmi_balance *balance) {
     if (!mpmi_detects_by_velocity(touch->rule) && touch->gap > 0.0 && !mpmi_is_tie(balance, of))
       of->allowed = touch->gap;
     guess(balance, of, predicted);
-    if (of->row[0] < 0 || of->row[1] < 0) continue;
-    of->coupling[0] = mpmi_matrix_entry(&newton->matrix, of->row[0], of->row[1]);
-    of->coupling[1] = mpmi_matrix_entry(&newton->matrix, of->row[1], of->row[0]);
+    for (int32_t i = 0; i < 2 && of->row[0] >= 0 && of->row[1] >= 0; ++i)
+      if (mpmi_is_kept(newton, of->row[i]))
+        of->coupling[i] = mpmi_matrix_entry(&newton->matrix, of->row[i], of->row[1 - i]);
   }
   return MPM_OK;
 }
 
-mpm_status mpmi_active_set_find(mpmi_balance *balance) {
+/* Finds those that this part has. */
+static mpm_status find_here(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
-  newton->constraint_count = 0;
-  memset(newton->vector[MPMI_CONTACT], 0, (size_t)(newton->matrix.rows * dim) * sizeof(double));
   if (!balance->nodes->contact.site_count) return MPM_OK;
   /* contact looks at the velocities of nodes */
   for (int64_t i = 0; i < newton->active_count; ++i) {
@@ -136,16 +135,34 @@ mpm_status mpmi_active_set_find(mpmi_balance *balance) {
   return status ? status : list_constraints(balance);
 }
 
-int64_t mpmi_active_set_hold(mpmi_balance *balance) {
+mpm_status mpmi_active_set_find(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
-  int64_t closed = 0;
+  newton->constraint_count = 0;
+  newton->touches = newton->several_fields = newton->knows_stiffness = 0;
+  memset(newton->vector[MPMI_CONTACT], 0,
+         (size_t)(newton->matrix.rows * balance->settings->grid->dim) * sizeof(double));
+  if (!balance->nodes->contact.anywhere) return MPM_OK;
+  mpm_status status = mpmi_vote(balance, find_here(balance), 0);
+  if (status) return status;
+  double any[] = {newton->constraint_count > 0, newton->couples_bodies};
+  status = mpmi_largest_of_parts(balance, 2, any);
+  newton->touches = any[0] > 0.0;
+  newton->several_fields = any[1] > 0.0;
+  return status;
+}
+
+mpm_status mpmi_active_set_hold(mpmi_balance *balance, int32_t *any) {
+  mpmi_newton *newton = balance->newton;
+  double closed = 0.0;
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     mpmi_constraint *of = &newton->constraint[k];
     if (of->closed || of->changes || of->allowed > still_close_by * balance->settings->grid->h_min) continue;
     of->closed = 1;
-    ++closed;
+    closed = 1.0;
   }
-  return closed;
+  const mpm_status status = mpmi_largest_of_parts(balance, 1, &closed);
+  *any = closed > 0.0;
+  return status;
 }
 
 /* ---- the set ------------------------------------------------------------------------------------------- */
@@ -170,6 +187,7 @@ double mpmi_active_set_error(const mpmi_balance *balance) {
   for (int64_t k = 0; k < newton->constraint_count; ++k)
     if (newton->constraint[k].closed && !newton->constraint[k].light)
       most = fmax(most, misses(balance, &newton->constraint[k]));
+  if (newton->touches && mpmi_largest_of_parts(balance, 1, &most)) return (double)NAN;
   return most / (MPMI_CONTACT_HOLDS_TO * balance->settings->grid->h_min);
 }
 
@@ -248,33 +266,52 @@ void mpmi_active_set_harden(mpmi_balance *balance) {
     if (newton->constraint[k].slow) newton->constraint[k].stiffness *= harder;
 }
 
-/* Where surfaces squeeze one node from two sides nothing can close both: the touch that misses most among
- * those that have come no closer for a while stays open in this step. */
-static int32_t give_way(mpmi_balance *balance) {
-  mpmi_newton *newton = balance->newton;
-  mpmi_constraint *worst = NULL;
+/* Returns the first touch that misses so much and has come no closer for a while, or NULL. */
+static mpmi_constraint *find_stalled(const mpmi_newton *newton, double missed) {
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     mpmi_constraint *of = &newton->constraint[k];
-    if (of->stalls >= MOST_STALLS && (!worst || of->missed > worst->missed)) worst = of;
+    if (of->stalls >= MOST_STALLS && of->missed >= missed) return of;
   }
-  if (!worst) return 0;
+  return NULL;
+}
+
+/* Where surfaces squeeze one node from two sides nothing can close both: the touch that misses most among
+ * those that have come no closer for a while stays open in this step, of equals the first. */
+static mpm_status give_way(mpmi_balance *balance, double missed) {
+  mpmi_newton *newton = balance->newton;
+  const mpmi_blocks *b = &balance->layout->blocks;
+  mpmi_constraint *worst = find_stalled(newton, missed);
+  int32_t is_first = worst != NULL;
+  int64_t place[3] = {0, 0, 0};
+  if (worst) {
+    const int64_t slot = balance->nodes->contact.party[mpmi_touch_of(balance, worst)->party[1]].slot;
+    const uint64_t key = b->key[slot / b->nodes];
+    place[0] = (int64_t)(key >> 32);
+    place[1] = (int64_t)(key & UINT32_MAX);
+    place[2] = slot % b->nodes;
+  }
+  const mpm_status status = mpmi_first_of_parts(balance, 3, place, &is_first);
+  for (int64_t k = 0; k < newton->constraint_count; ++k) newton->constraint[k].stalls = 0;
+  if (status || !is_first) return status;
   worst->closed = 0;
   worst->gives_way = 1;
   for (int32_t c = 0; c < 3; ++c) worst->force[c] = 0.0;
-  for (int64_t k = 0; k < newton->constraint_count; ++k) newton->constraint[k].stalls = 0;
-  return 1;
+  return MPM_OK;
 }
 
-int64_t mpmi_active_set_update(mpmi_balance *balance) {
+mpm_status mpmi_active_set_update(mpmi_balance *balance, int32_t *changed) {
   mpmi_newton *newton = balance->newton;
-  int64_t changed = 0;
+  double any[] = {0.0, 0.0}; /* changes; the most that a stalled touch misses */
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     mpmi_constraint *of = &newton->constraint[k];
     if (of->gives_way) continue;
     const int32_t changes = mpmi_is_tie(balance, of) ? 0 : update_touch(balance, of);
     if (of->light) continue;
-    changed += changes;
+    any[0] = fmax(any[0], changes);
     look_after(balance, of);
+    if (of->stalls >= MOST_STALLS) any[1] = fmax(any[1], of->missed);
   }
-  return changed + give_way(balance);
+  const mpm_status status = mpmi_largest_of_parts(balance, 2, any);
+  *changed = any[0] > 0.0 || any[1] > 0.0;
+  return status || !(any[1] > 0.0) ? status : give_way(balance, any[1]);
 }

@@ -60,27 +60,33 @@ static inline void mpmi_stoppable(const mpmi_constraint *of, double *move) {
 }
 
 /* ---- the step ------------------------------------------------------------------------------------------ */
-/* Finds the touches that may close in the step, from the velocities of its start, and guesses which do. */
+/* Of several parts each has the touches of the nodes that it meets, as in explicit steps, and does the same
+ * with those that others have, too. What all of them decide together is marked (collective).
+ *
+ * Finds the touches that may close in the step, from the velocities of its start, and guesses which do
+ * (collective). */
 mpm_status mpmi_active_set_find(mpmi_balance *balance);
-/* Closes what is open yet within a part of a cell, so that it may hold a body that nothing else holds;
- * returns how many touches. */
-int64_t mpmi_active_set_hold(mpmi_balance *balance);
-/* Adds the stiffness of closed touches to the matrix, and to the right-hand side what they still lack. */
-void mpmi_active_set_stiffen(mpmi_balance *balance);
+/* Closes what is open yet within a part of a cell, so that it may hold a body that nothing else holds; tells
+ * whether that is any touch (collective). */
+mpm_status mpmi_active_set_hold(mpmi_balance *balance, int32_t *any);
+/* Adds the stiffness of closed touches to the matrix (collective), and to the right-hand side what they still
+ * lack. */
+mpm_status mpmi_active_set_stiffen(mpmi_balance *balance);
 void mpmi_active_set_load(const mpmi_balance *balance, double *rhs);
 /* Puts the forces as they are on the rows. */
 void mpmi_active_set_fold(mpmi_balance *balance);
 /* Finds the forces after a whole increment of the displacements; then takes a share of their change. */
 void mpmi_active_set_aim(mpmi_balance *balance, const double *du);
 void mpmi_active_set_move(mpmi_balance *balance, double share);
-/* Closes and opens touches by the displacements and forces as they are, and bounds friction; returns how many
- * have changed. */
-int64_t mpmi_active_set_update(mpmi_balance *balance);
+/* Closes and opens touches by the displacements and forces as they are, and bounds friction; tells whether
+ * any has changed (collective). */
+mpm_status mpmi_active_set_update(mpmi_balance *balance, int32_t *changed);
 /* Makes closed touches stiffer that come closer slowly where all else is in balance. */
 void mpmi_active_set_harden(mpmi_balance *balance);
-/* Returns by how much closed touches miss, as a multiple of what they may. */
+/* Returns by how much closed touches miss, as a multiple of what they may (collective; not a number where the
+ * other parts are lost). */
 double mpmi_active_set_error(const mpmi_balance *balance);
-/* Tells touches and reports what contact did. MPM_CUT_DT: bodies slid too far for one step. */
+/* Tells touches and reports what contact did (collective). MPM_CUT_DT: bodies slid too far for one step. */
 mpm_status mpmi_active_set_finish(mpmi_balance *balance);
 
 #endif

@@ -66,7 +66,7 @@ typedef struct mpmi_stencil {
  * party. */
 typedef struct mpmi_constraint {
   int64_t touch;
-  int64_t coupling[2]; /* the entries of the matrix that couple the rows */
+  int64_t coupling[2]; /* the entries of the matrix that couple the rows; -1: not complete here */
   int32_t row[2];      /* -1: of a party that is moved from outside */
   int32_t closed, stuck;
   int32_t changes, slips;    /* how often either has changed */
@@ -79,7 +79,7 @@ typedef struct mpmi_constraint {
   double allowed;            /* how far the parties may approach, >= 0 */
   double nodal_stiffness;
   int32_t light;    /* hardly anything is there that resists: what it misses is rounding */
-  double stiffness; /* of the augmented Lagrangian; < 0: not known yet */
+  double stiffness; /* of the augmented Lagrangian */
   double force[3], start[3], target[3]; /* as it is, before the increment, after all of it */
 } mpmi_constraint;
 
@@ -109,9 +109,10 @@ typedef struct mpmi_newton_work {
 
 /* What one of several parts knows of its rows. */
 typedef struct mpmi_shared_rows {
-  uint64_t *key;                 /* [rows] of the block of the node */
-  int32_t *place, *owner, *home; /* [rows] of the node in it; the part that owns it, that numbers it */
-  uint8_t *wanted, *kept;        /* [rows] 1: its values count here; it is to be complete */
+  uint64_t *key; /* [rows] of the block of the node */
+  int32_t *place, *owner,
+      *home;              /* [rows] of the body and the node in it; the part that owns it, numbers it */
+  uint8_t *wanted, *kept; /* [rows] 1: its values count here; it is to be complete */
   int64_t key_capacity, place_capacity, owner_capacity, home_capacity, wanted_capacity, kept_capacity;
   int32_t is_shared; /* all parts know whose rows are whose, as they are now */
 } mpmi_shared_rows;
@@ -163,14 +164,16 @@ typedef struct mpmi_newton {
   double *cell;           /* by row of the lower corner of a cell: sums of the locking remedy */
   int32_t *cell_node;     /* active nodes of its stencils, or -1 */
   int64_t version;        /* of the layout that the pattern was made for; -1: none */
-  int32_t couples_bodies; /* nodes of several bodies at one index are coupled */
+  int32_t couples_bodies; /* nodes of several bodies at one index are coupled, on this part */
   void *work_memory;
   size_t work_bytes;
   mpmi_newton_work *work; /* [tasks] */
   int64_t constraint_count, constraint_capacity;
   mpmi_constraint *constraint;
-  int32_t has_springs;     /* surfaces prescribe how some of the material moves */
-  int32_t springs_measure; /* and their springs have got their stiffness in this step */
+  int32_t touches, several_fields; /* some part has constraints; some part couples bodies */
+  int32_t knows_stiffness;         /* constraints have got their stiffness in this step */
+  int32_t has_springs;             /* surfaces prescribe how some of the material moves */
+  int32_t springs_measure;         /* and their springs have got their stiffness in this step */
   int32_t history_capacity, history_count;
   double *history;
 } mpmi_newton;
@@ -211,6 +214,10 @@ enum { MPMI_ROW_FREE, MPMI_ROW_PRESCRIBED, MPMI_ROW_WALL, MPMI_ROW_OUTER };
 static inline int32_t mpmi_is_held(uint8_t held) {
   return held == MPMI_ROW_PRESCRIBED || held == MPMI_ROW_WALL;
 }
+
+/* Lists the rows of other bodies at the index of a node that moves by itself, after `count` others; returns
+ * how many there are then. (pattern.c) */
+int32_t mpmi_list_partners(const mpmi_balance *balance, int64_t slot, int32_t *out, int32_t count);
 
 /* Returns the slot of the node that one moves with as its image or ghost: itself for most. */
 static inline int64_t mpmi_master_of(const mpmi_balance *balance, int64_t slot) {
@@ -274,6 +281,10 @@ mpm_status mpmi_vote(const mpmi_balance *balance, mpm_status status, int64_t exc
 int64_t mpmi_force_exchanges(const mpmi_balance *balance);
 /* Makes numbers that are not below 0, at most four, the largest of all parts. */
 mpm_status mpmi_largest_of_parts(const mpmi_balance *balance, int32_t count, double *values);
+/* Finds who has the first of some places, by so many whole numbers, the first of them before the others:
+ * is_first: 1 where this part has one and it is that; all get its numbers. */
+mpm_status mpmi_first_of_parts(const mpmi_balance *balance, int32_t count, int64_t *number,
+                               int32_t *is_first);
 /* Return the sum and the largest of the entries of a vector, over the rows of all parts; the sum is exact, so
  * that its bits do not depend on the parts. Not a number where the other parts are lost, which the next vote
  * tells. */

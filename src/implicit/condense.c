@@ -2,16 +2,30 @@
  * move with, by the same shares. */
 #include "implicit/extension.h"
 
-void mpmi_condense_mark(mpmi_balance *balance) {
+#include <string.h>
+
+/* Marks the outer rows of touches. Of several parts the owners of rows know what touches there. */
+static mpm_status mark_touching(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  const int64_t rows = newton->matrix.rows, dim = newton->matrix.block;
+  double *touches = newton->vector[MPMI_TERMS];
+  memset(touches, 0, (size_t)(rows * dim) * sizeof *touches);
+  for (int64_t i = 0; i < newton->constraint_count; ++i)
+    for (int32_t k = 0; k < 2; ++k)
+      if (newton->constraint[i].row[k] >= 0) touches[newton->constraint[i].row[k] * dim] = 1.0;
+  const mpm_status status = newton->shared ? mpmi_rows_complete(newton->shared, touches) : MPM_OK;
+  for (int64_t i = 0; i < newton->outer_count; ++i)
+    newton->outer[i].in_contact = touches[newton->outer[i].row * dim] > 0.0;
+  return status;
+}
+
+mpm_status mpmi_condense_mark(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   mpmi_matrix *A = &newton->matrix;
   int32_t changed = 0;
   for (int64_t i = 0; i < newton->outer_count; ++i) newton->outer[i].in_contact = 0;
-  for (int64_t i = 0; i < newton->constraint_count; ++i)
-    for (int32_t k = 0; k < 2; ++k) {
-      const int32_t row = newton->constraint[i].row[k];
-      if (row >= 0 && newton->outer_of[row] >= 0) newton->outer[newton->outer_of[row]].in_contact = 1;
-    }
+  const mpm_status status = newton->touches ? mark_touching(balance) : MPM_OK;
+  if (status) return status;
   for (int64_t i = 0; i < newton->outer_count; ++i)
     for (int32_t c = 0; c < A->block; ++c) {
       uint8_t *held = &A->held[(int64_t)newton->outer[i].row * A->block + c];
@@ -21,6 +35,7 @@ void mpmi_condense_mark(mpmi_balance *balance) {
       *held = now;
     }
   A->pattern_id += changed;
+  return MPM_OK;
 }
 
 /* Returns 1 when a component of an outer row moves with the inner ones. */

@@ -53,11 +53,14 @@ static int32_t may_slide(const mpmi_balance *balance, const mpmi_constraint *of,
          (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE);
 }
 
+/* Of several parts one looks after each node. */
 static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
   const double most = 0.5 * balance->settings->grid->h_min;
   double move[3], along, across[3];
-  if (may_slide(balance, of, most_force)) return MPM_OK;
+  if (!mpmi_owns_node(balance->layout->parts, balance->nodes->contact.party[touch->party[1]].slot) ||
+      may_slide(balance, of, most_force))
+    return MPM_OK;
   mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
   mpmi_split(move, touch->normal, &along, across);
   const double slipped = sqrt(mpmi_inner(across, across));
@@ -74,14 +77,15 @@ static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint 
 
 mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
-  mpm_status status = MPM_OK;
   double most = 0.0;
+  if (!newton->touches) return MPM_OK;
   for (int64_t k = 0; k < newton->constraint_count; ++k)
     most = fmax(most, mpmi_inner(newton->constraint[k].force,
                                  mpmi_touch_of(balance, &newton->constraint[k])->normal));
+  mpm_status status = mpmi_largest_of_parts(balance, 1, &most);
   for (int64_t k = 0; k < newton->constraint_count && !status; ++k)
     status = check_slip(balance, &newton->constraint[k], most);
-  if (status) return status;
+  if ((status = mpmi_vote(balance, status, 0))) return status;
   for (int64_t k = 0; k < newton->constraint_count; ++k) tell(balance, &newton->constraint[k]);
   mpmi_bound bound = {.step = balance->step,
                       .nodes = balance->nodes,

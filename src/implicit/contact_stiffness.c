@@ -80,11 +80,10 @@ static response respond(const mpmi_balance *balance, const mpmi_constraint *of) 
 static double row_stiffness(const mpmi_balance *balance, int32_t row, const double *n) {
   const mpmi_newton *newton = balance->newton;
   const int32_t dim = balance->settings->grid->dim;
-  const double *block = newton->matrix.value + newton->diagonal[row] * dim * dim;
+  const double *size = newton->vector[MPMI_DIAGONAL] + (int64_t)row * dim;
   double sum = 0.0;
   for (int32_t c = 0; c < dim; ++c)
-    if (!mpmi_is_held(newton->matrix.held[(int64_t)row * dim + c]))
-      sum += n[c] * n[c] * fabs(block[c * dim + c]);
+    if (!mpmi_is_held(newton->matrix.held[(int64_t)row * dim + c])) sum += n[c] * n[c] * size[c];
   return sum;
 }
 
@@ -104,32 +103,42 @@ static void add_block(mpmi_matrix *A, int64_t entry, double sign, const double (
 }
 
 /* Stiffnesses stay as they are at the first matrix of a step. */
-static void set_stiffnesses(mpmi_balance *balance) {
+static mpm_status set_stiffnesses(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
   double most = 0.0;
+  mpm_status status = MPM_OK;
+  if (newton->shared) status = mpmi_rows_complete(newton->shared, newton->vector[MPMI_DIAGONAL]);
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     mpmi_constraint *of = &newton->constraint[k];
     of->nodal_stiffness = stiffness_of(balance, of);
     of->stiffness = stiffening * of->nodal_stiffness;
     most = fmax(most, of->nodal_stiffness);
   }
+  if (!status) status = mpmi_largest_of_parts(balance, 1, &most);
   for (int64_t k = 0; k < newton->constraint_count; ++k)
     newton->constraint[k].light = newton->constraint[k].nodal_stiffness <= light_share * most;
+  newton->knows_stiffness = !status;
+  return status;
 }
 
-void mpmi_active_set_stiffen(mpmi_balance *balance) {
+mpm_status mpmi_active_set_stiffen(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
-  if (newton->constraint_count && newton->constraint[0].stiffness < 0.0) set_stiffnesses(balance);
+  mpm_status status = MPM_OK;
+  double unsymmetric = 0.0;
+  if (!newton->touches || (!newton->knows_stiffness && (status = set_stiffnesses(balance)))) return status;
   for (int64_t k = 0; k < newton->constraint_count; ++k) {
     const mpmi_constraint *of = &newton->constraint[k];
     if (!of->closed) continue;
     const response at = respond(balance, of);
-    newton->matrix.symmetric &= !mpmi_slides(balance, of);
-    for (int32_t i = 0; i < 2; ++i)
+    unsymmetric = fmax(unsymmetric, mpmi_slides(balance, of));
+    for (int32_t i = 0; i < 2; ++i) {
       if (of->row[i] >= 0) add_block(&newton->matrix, newton->diagonal[of->row[i]], 1.0, at.stiffness);
-    for (int32_t i = 0; i < 2 && of->row[0] >= 0 && of->row[1] >= 0; ++i)
-      add_block(&newton->matrix, of->coupling[i], -1.0, at.stiffness);
+      if (of->coupling[i] >= 0) add_block(&newton->matrix, of->coupling[i], -1.0, at.stiffness);
+    }
   }
+  status = mpmi_largest_of_parts(balance, 1, &unsymmetric);
+  newton->matrix.symmetric &= !(unsymmetric > 0.0);
+  return status;
 }
 
 void mpmi_active_set_load(const mpmi_balance *balance, double *rhs) {

@@ -20,8 +20,8 @@ static inline int32_t mpmi_is_extended(const mpmi_newton *newton, int64_t row) {
 
 /* ---- condense.c --------------------------------------------------------------------------------------- */
 /* Lets the outer rows that may touch something be unknowns of their own in this step, and marks the others in
- * matrix.held. */
-void mpmi_condense_mark(mpmi_balance *balance);
+ * matrix.held (collective). */
+mpm_status mpmi_condense_mark(mpmi_balance *balance);
 /* Adds the entries of outer rows in a vector of forces to their inner rows, and clears them. */
 void mpmi_condense_forces(const mpmi_balance *balance, double *vector);
 /* Adds rows and columns of outer rows in the matrix to those of their inner rows: shares^T A shares. */

@@ -126,7 +126,7 @@ static void smooth_light_rows(mpmi_balance *balance, const double *of_particles)
 /* Returns 1 where forces act that act wholly at the end of the step: those of contact and of surfaces that
  * prescribe. */
 static int32_t pushes_at_end(const mpmi_balance *balance) {
-  return balance->newton->constraint_count > 0 || balance->newton->has_springs;
+  return balance->newton->touches || balance->newton->has_springs;
 }
 
 /* Brings the accelerations at the start of the step into the second copies and onto the nodes. Where bodies
@@ -160,9 +160,9 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
   const int32_t at_start =
       unknown ||
       (mpmi_is_dynamic(balance->settings) &&
-       (balance->nodes->contact.site_count > 0 || mpmi_surfaces_prescribe(&balance->settings->surfaces)));
-  const int64_t to_unknowns = 2 + balance->nodes->prescription.any, /* exchanges */
-      to_end = (unknown ? mpmi_force_exchanges(balance) : 0) + mpmi_is_dynamic(balance->settings) + at_start;
+       (balance->nodes->contact.anywhere || mpmi_surfaces_prescribe(&balance->settings->surfaces)));
+  const int64_t to_unknowns = 2 + balance->nodes->prescription.any +
+                              mpmi_places_nodes(balance->settings, balance->nodes); /* exchanges */
   mpm_status status = mpmi_prescribed_stage(balance->step);
   if (!status) status = mpmi_surfaces_aim(balance->step);
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
@@ -173,14 +173,17 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
     return status;
   fold_means(balance, newton->vector[MPMI_V0]);
   status = mpmi_active_set_find(balance);
-  if (!status) mpmi_condense_mark(balance);
+  if (!status) status = mpmi_condense_mark(balance);
   mpmi_lap(balance->step, MPMI_TIME_GRID, clock);
   if (status) return status;
   memset(newton->vector[MPMI_A0], 0,
          (size_t)(newton->matrix.rows * balance->settings->grid->dim) * sizeof(double));
   if (mpmi_is_dynamic(balance->settings)) status = prepare_accelerations(balance, unknown, clock);
   if (!status && at_start) status = find_external(balance, balance->step->t + dt, clock);
-  if ((status = mpmi_vote(balance, status, to_end))) return status;
+  int64_t exchanges = at_start;
+  if (mpmi_is_dynamic(balance->settings))
+    exchanges += 1 + (unknown || pushes_at_end(balance) ? mpmi_force_exchanges(balance) : 0);
+  if ((status = mpmi_vote(balance, status, exchanges))) return status;
   mpmi_unknowns_fold(balance, &newton->external, newton->vector[MPMI_EXTERNAL]);
   return MPM_OK;
 }

@@ -136,10 +136,10 @@ static void add_inertia(iteration *it) {
 }
 
 static mpm_status assemble(iteration *it) {
-  const mpm_status status = mpmi_stiffness(it->balance, it->newton->vector[MPMI_U]);
+  mpm_status status = mpmi_stiffness(it->balance, it->newton->vector[MPMI_U]);
   if (status) return status;
   add_inertia(it);
-  mpmi_active_set_stiffen(it->balance);
+  if ((status = mpmi_active_set_stiffen(it->balance))) return status;
   mpmi_condense_matrix(it->balance);
   return MPM_OK;
 }
@@ -177,7 +177,7 @@ static mpm_status solve(iteration *it) {
   memset(x, 0, (size_t)it->n * sizeof *x);
   /* as many digits as keep the iteration quadratic, and none that the next one throws away; what contact
    * closes has stiffness, and its part of the right-hand side takes some of them */
-  const double kept = newton->constraint_count ? 1e-3 : 1.0;
+  const double kept = newton->touches ? 1e-3 : 1.0;
   const double wanted = fmax(1e-10, kept * fmin(1e-3, 0.1 * relative(it)));
   const mpmi_solve_job job = {.matrix = &newton->matrix,
                               .rhs = newton->vector[MPMI_RHS],
@@ -191,7 +191,7 @@ static mpm_status solve(iteration *it) {
                               .host_user = balance->settings->solver_user,
                               .expects_positive = newton->matrix.symmetric,
                               .inertia = it->inertia_share,
-                              .several_fields = newton->couples_bodies};
+                              .several_fields = newton->several_fields};
   mpmi_solve_report report = {.node = -1};
   status = mpmi_solve(newton->solver, &job, &report);
   balance->factor_seconds += report.factor_seconds;
@@ -222,7 +222,7 @@ static mpm_status line_search(iteration *it, int32_t moves_held, double *taken) 
   double *u = newton->vector[MPMI_U], *start = newton->vector[MPMI_START];
   const double *du = newton->vector[MPMI_DU];
   /* what contact still lacks is on the right-hand side alone */
-  const double lacks = newton->constraint_count ? norm_of(it, newton->vector[MPMI_RHS], 1) : 0.0;
+  const double lacks = newton->touches ? norm_of(it, newton->vector[MPMI_RHS], 1) : 0.0;
   const double before = fmax(it->norm, lacks), slope = fabs(dot_of(it, du, newton->vector[MPMI_RESIDUAL], 1));
   memcpy(start, u, (size_t)it->n * sizeof *u);
   mpmi_active_set_aim(it->balance, du);
@@ -260,15 +260,18 @@ static int32_t converged(iteration *it, double du, double energy) {
          energy <= d->newton_tolerance_energy * it->energy_first;
 }
 
-/* Brings the set of closed touches up to date; returns 1 when it was so already and all of them are
- * closed. */
-static int32_t settle_contact(iteration *it) {
-  if (!it->newton->constraint_count) return 1;
-  const int64_t changed = mpmi_active_set_update(it->balance);
+/* Brings the set of closed touches up to date; tells whether it was so already and all of them are closed. */
+static mpm_status settle_contact(iteration *it, int32_t *settled) {
+  int32_t changed;
+  *settled = 1;
+  if (!it->newton->touches) return MPM_OK;
+  const mpm_status status = mpmi_active_set_update(it->balance, &changed);
+  if (status) return status;
   mpmi_active_set_fold(it->balance);
   find_residual(it);
   if (!changed && balances(it)) mpmi_active_set_harden(it->balance);
-  return !changed && mpmi_active_set_error(it->balance) <= 1.0;
+  *settled = !changed && mpmi_active_set_error(it->balance) <= 1.0;
+  return MPM_OK;
 }
 
 /* Puts the counts so far into the info of the step. */
@@ -286,7 +289,7 @@ static mpm_status ask_progress(const mpmi_balance *balance) {
 
 static mpm_status iterate(iteration *it) {
   mpmi_newton *newton = it->newton;
-  int32_t settled = 1;
+  int32_t settled = 1, holds = 0;
   for (;;) {
     int32_t moves_held;
     double taken;
@@ -296,12 +299,16 @@ static mpm_status iterate(iteration *it) {
     if ((status = assemble(it)) || (status = find_rhs(it, &moves_held))) return status;
     if (!moves_held && it->norm <= noise(it) && mpmi_active_set_error(it->balance) <= 1.0) return MPM_OK;
     status = solve(it);
-    if (status == MPM_SINGULAR && it->balance->iterations == 1 && mpmi_active_set_hold(it->balance)) continue;
+    if (status == MPM_SINGULAR && it->balance->iterations == 1 && newton->touches) {
+      const mpm_status lost = mpmi_active_set_hold(it->balance, &holds);
+      if (lost) return lost;
+      if (holds) continue;
+    }
     if (status) return status;
     const double energy = fabs(dot_of(it, newton->vector[MPMI_DU], newton->vector[MPMI_RHS], 1));
     if (!(it->energy_first > 0.0)) it->energy_first = energy;
     if ((status = line_search(it, moves_held, &taken))) return status;
-    settled = settle_contact(it);
+    if ((status = settle_contact(it, &settled))) return status;
     note(it);
     tell(it->balance);
     if ((status = ask_progress(it->balance))) return status;

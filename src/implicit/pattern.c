@@ -68,9 +68,8 @@ static int32_t may_touch(const mpmi_balance *balance, int64_t block, int64_t oth
              ->kind != MPM_CONTACT_NONE;
 }
 
-/* Adds the rows of other bodies at the index of a node; their blocks are neighbours in the list. Masters meet
- * masters. */
-static int32_t add_partners(const mpmi_balance *balance, int64_t slot, int32_t *out, int32_t count) {
+/* Their blocks are neighbours in the list. Masters meet masters. */
+int32_t mpmi_list_partners(const mpmi_balance *balance, int64_t slot, int32_t *out, int32_t count) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_blocks *b = &balance->layout->blocks;
   const int64_t block = slot / b->nodes, node = slot % b->nodes;
@@ -94,7 +93,7 @@ static int32_t add_columns(const mpmi_balance *balance, int64_t row, int32_t *ou
     for (int32_t o = 0; o < newton->offsets; ++o)
       if (rows[o] >= 0) out[count++] = rows[o];
     if (newton->couples_bodies)
-      count = add_partners(balance, newton->active[newton->members[m]].slot, out, count);
+      count = mpmi_list_partners(balance, newton->active[newton->members[m]].slot, out, count);
     count = sort_distinct(count, out);
   }
   return count;

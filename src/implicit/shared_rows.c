@@ -27,7 +27,7 @@ mpm_status mpmi_shared_rows_find(mpmi_balance *balance, int64_t rows) {
   for (int64_t r = 0; r < rows; ++r) {
     const int64_t slot = newton->master[r], block = slot / blocks->nodes;
     s->key[r] = blocks->key[block];
-    s->place[r] = (int32_t)(slot % blocks->nodes);
+    s->place[r] = blocks->body[block] * blocks->nodes + (int32_t)(slot % blocks->nodes);
     s->owner[r] = mpmi_owner_of_node(parts, slot);
     s->home[r] = mpmi_cut_owner(parts, blocks->key[block]);
     s->kept[r] = s->owner[r] == c->transport.part;
@@ -70,8 +70,20 @@ static void want_around_markers(mpmi_balance *balance) {
   }
 }
 
+/* Bodies that touch at a node may have other owners there. */
+static void want_partners(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  for (int64_t i = 0; i < newton->active_count && newton->couples_bodies; ++i) {
+    int32_t partner[MPMI_MAX_BODIES];
+    if (!mpmi_meets_node(balance->layout->parts, newton->active[i].slot)) continue;
+    const int32_t count = mpmi_list_partners(balance, newton->active[i].slot, partner, 0);
+    for (int32_t k = 0; k < count; ++k) newton->rows_of.wanted[partner[k]] = 1;
+  }
+}
+
 void mpmi_shared_rows_keep(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
+  if (balance->layout->parts) want_partners(balance);
   if (balance->layout->parts && balance->settings->surfaces.count) want_around_markers(balance);
   for (int64_t i = 0; i < newton->outer_count && balance->layout->parts; ++i)
     newton->rows_of.kept[newton->outer[i].row] |=

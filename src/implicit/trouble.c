@@ -15,20 +15,12 @@ enum { LAST_FAST = 2, LAST_SLOW = 3 };
 /* Of several parts all take the particle that is nearest, of equals the first. */
 static mpm_status take_nearest(mpmi_balance *balance, double nearest) {
   mpmi_failure *failure = &balance->step->failure;
-  int64_t key[] = {-mpmi_ordered_bits(nearest), -(int64_t)failure->set, -failure->particle};
-  enum { KEYS = sizeof key / sizeof key[0] };
-  int32_t is_best = 1;
-  if (!balance->layout->parts) return MPM_OK;
-  for (int32_t i = 0; i < KEYS; ++i) {
-    int64_t best = is_best ? key[i] : INT64_MIN;
-    const mpm_status status = mpmi_reduce_parts(balance->settings->context, MPM_REDUCE_MAX, 1, &best);
-    if (status) return status;
-    is_best &= best == key[i];
-    key[i] = best;
-  }
-  failure->set = (int32_t)-key[1];
-  failure->particle = -key[2];
-  return MPM_OK;
+  int64_t number[] = {mpmi_ordered_bits(nearest), failure->set, failure->particle};
+  int32_t is_first = 1;
+  const mpm_status status = mpmi_first_of_parts(balance, 3, number, &is_first);
+  failure->set = (int32_t)number[1];
+  failure->particle = number[2];
+  return status;
 }
 
 /* Notes the particle that is nearest to a node, the first of equals. */

@@ -25,6 +25,18 @@ mpm_status mpmi_largest_of_parts(const mpmi_balance *balance, int32_t count, dou
   return status;
 }
 
+mpm_status mpmi_first_of_parts(const mpmi_balance *balance, int32_t count, int64_t *number,
+                               int32_t *is_first) {
+  for (int32_t i = 0; i < count && balance->layout->parts; ++i) {
+    int64_t best = *is_first ? -number[i] : INT64_MIN;
+    const mpm_status status = mpmi_reduce_parts(balance->settings->context, MPM_REDUCE_MAX, 1, &best);
+    if (status) return status;
+    *is_first &= best == -number[i];
+    number[i] = -best;
+  }
+  return MPM_OK;
+}
+
 double mpmi_sum_rows(const mpmi_balance *balance, const double *term) {
   const mpmi_matrix *A = &balance->newton->matrix;
   const int32_t dim = A->block;

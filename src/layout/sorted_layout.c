@@ -30,8 +30,6 @@ mpm_status mpmi_layout_create(mpmi_layout *layout, const mpmi_settings *settings
    * takes from others as far away, whose own leaders count, and what lies beside these; and so on once more
    * */
   if (settings->grid->family == MPMI_FAMILY_BSPLINE1) layout->parts->margin = 9;
-  /* particles belong to clouds of nodes that their own basis does not reach (contact/clouds.c) */
-  if (settings->grid->family == MPMI_FAMILY_GIMP) layout->parts->margin = 2;
   if (mpmi_is_implicit(settings)) mpmi_layout_widen(layout, settings);
   return MPM_OK;
 }

@@ -160,7 +160,7 @@ static mpm_status by_inner_cg(mpmi_system *s, const mpmi_solve_job *job) {
 }
 
 /* The preconditioner is a cycle of multigrid, or the blocks of the diagonal where there are no levels, as
- * with several parts. */
+ * with a transport. */
 static mpm_status by_gmres(mpmi_system *s, const mpmi_solve_job *job, int32_t last, int32_t multigrid) {
   const int64_t limit = job->max_iterations;
   mpmi_gmres_plan plan = {.precondition = times_cycle,
@@ -203,13 +203,18 @@ static mpm_status by_cheapest(mpmi_system *s, const mpmi_solve_job *job) {
   return status > 0 ? fall_back(s, status) : status;
 }
 
-/* What MPM_SOLVER_AUTO stands for where several parts have the matrix. */
+/* Returns 1 where GMRES takes a cycle of multigrid as its preconditioner. */
+static int32_t has_levels(const mpmi_system *s, const mpmi_solve_job *job) {
+  return !mpmi_has_transport(s->context) && s->n > MPMI_ALONE_UNKNOWNS && !job->several_fields;
+}
+
+/* What MPM_SOLVER_AUTO stands for with a transport: one part has the bits of several. */
 static int32_t choice_of(const mpmi_solve_job *job) {
-  if (job->choice || !job->matrix->shared) return job->choice;
+  if (job->choice || !mpmi_has_transport(job->matrix->context)) return job->choice;
   return job->matrix->symmetric ? MPM_SOLVER_CG : MPM_SOLVER_GMRES;
 }
 
-/* Of several parts GMRES goes on where conjugate gradients fail and the library chooses. What is singular for
+/* With a transport GMRES goes on where conjugate gradients fail and the library chooses. What is singular for
  * both is told as such. */
 static mpm_status by_cg_or_gmres(mpmi_system *s, const mpmi_solve_job *job) {
   const mpm_status status = by_cg(s, most_of_cg(s, job));
@@ -237,7 +242,7 @@ static mpm_status by_choice(mpmi_system *s, const mpmi_solve_job *job) {
   case MPM_SOLVER_LDLT:
     return mpmi_direct(s);
   case MPM_SOLVER_GMRES:
-    return by_gmres(s, job, 1, !s->A->shared && s->n > MPMI_ALONE_UNKNOWNS && !job->several_fields);
+    return by_gmres(s, job, 1, has_levels(s, job));
   default:
     return by_cheapest(s, job);
   }

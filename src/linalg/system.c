@@ -71,5 +71,6 @@ mpm_status mpmi_system_not_converged(const mpmi_system *s, const char *method) {
   return mpmi_fail(s->context, MPM_NOT_CONVERGED,
                    "%s: after %lld iterations the residual is %g of the right-hand side, wanted is %g%s",
                    method, (long long)s->report->iterations, s->reached / s->b_norm, s->wanted / s->b_norm,
-                   s->A->shared ? "; in several parts MPM_SOLVER_HOST may have a better preconditioner" : "");
+                   mpmi_has_transport(s->context) ? "; MPM_SOLVER_HOST may have a better preconditioner"
+                                                  : "");
 }

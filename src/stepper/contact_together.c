@@ -44,22 +44,12 @@ static mpm_status unite_pairs(mpm_stepper *s) {
 }
 
 /* ---- particles ----------------------------------------------------------------------------------------- */
-/* Marks the blocks at sites, and all that have nodes which are tied to such. */
+/* Marks the blocks at sites. A node that follows one of them by a wall or a period has a site there, too: a
+ * body that comes near has all blocks around its own, with those of the masters of what follows in them. */
 static void mark_sites(const mpm_stepper *s, uint8_t *mark) {
   const mpmi_contact_nodes *contact = &s->nodes.contact;
-  const mpmi_constraints *constraints = &s->layout.constraints;
-  const int32_t nodes = s->layout.blocks.nodes;
   for (int64_t i = 0; i < contact->site_count; ++i)
     memset(mark + contact->site[i].blocks.first, 1, (size_t)contact->site[i].blocks.count);
-  for (int64_t i = 0; i < constraints->tie_count; ++i) {
-    const mpmi_tie *tie = &constraints->tie[i];
-    uint8_t any = mark[tie->master / nodes];
-    for (int64_t f = tie->first; f < tie->first + tie->count; ++f)
-      any |= mark[constraints->follower[f].slot / nodes];
-    mark[tie->master / nodes] |= any;
-    for (int64_t f = tie->first; f < tie->first + tie->count; ++f)
-      mark[constraints->follower[f].slot / nodes] |= any;
-  }
 }
 
 /* Marks the boundary blocks beside them, whose particles others need; returns 1 where there are some. */

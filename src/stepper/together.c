@@ -10,34 +10,14 @@ mpm_status mpmi_together(const mpm_stepper *s, mpm_status status) {
 }
 
 /* ---- before a step ------------------------------------------------------------------------------------- */
-/* Returns what implicit steps of several parts do not have of what the stepper has, and what to use; or NULL.
- */
-static const char *not_implicit(const mpm_stepper *s, const char **instead) {
-  const mpmi_settings *settings = &s->settings;
-  int32_t bodies = 0, adapts = 0;
-  for (int32_t m = 0; m < s->layout.member_count; ++m) {
-    bodies |= s->layout.member[m].body != 0;
-    adapts |= s->adaption[m].on;
-  }
-  *instead = "MPM_SOLVER_CG, MPM_SOLVER_GMRES or MPM_SOLVER_HOST";
-  if (settings->desc.linear_solver == MPM_SOLVER_MULTIGRID_CG) return "MPM_SOLVER_MULTIGRID_CG";
-  if (settings->desc.linear_solver == MPM_SOLVER_LDLT) return "MPM_SOLVER_LDLT";
-  *instead = "MPM_USL, MPM_USF or MPM_MUSL";
-  if (bodies) return "implicit steps of bodies with nodes of their own";
-  if (adapts) return "adaption in implicit steps";
-  if (settings->obstacles.count) return "obstacles in implicit steps";
-  if (mpmi_has_friction_planes(settings)) return "friction walls in implicit steps";
-  return NULL;
-}
-
 mpm_status mpmi_together_offers(mpm_stepper *s) {
-  const mpmi_settings *settings = &s->settings;
-  const char *what = NULL, *instead = "a context without a transport";
-  if (!mpmi_is_shared(s)) return MPM_OK;
-  if (mpmi_is_implicit(settings) && !what) what = not_implicit(s, &instead);
-  return what ? mpmi_fail(s->context, MPM_E_UNSUPPORTED,
-                          "a problem in several parts does not have %s: use %s", what, instead)
-              : MPM_OK;
+  const int32_t solver = s->settings.desc.linear_solver;
+  if (!mpmi_is_shared(s) || !mpmi_is_implicit(&s->settings)) return MPM_OK;
+  if (solver != MPM_SOLVER_MULTIGRID_CG && solver != MPM_SOLVER_LDLT) return MPM_OK;
+  return mpmi_fail(
+      s->context, MPM_E_UNSUPPORTED,
+      "a problem in several parts does not have %s: use MPM_SOLVER_CG, MPM_SOLVER_GMRES or MPM_SOLVER_HOST",
+      solver == MPM_SOLVER_LDLT ? "MPM_SOLVER_LDLT" : "MPM_SOLVER_MULTIGRID_CG");
 }
 
 /* The flags of sets that count on all parts once they are set on one. */

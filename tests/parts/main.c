@@ -26,18 +26,14 @@ static void tell_part(int32_t part, const mpm_transport *transport, void *user) 
   t->told[part] = run_scene(&t->is, &how, &t->hash[part]);
 }
 
-/* By one part, which takes the linear solver that several parts have for such a matrix. */
+/* By one part: where the library chooses the linear solver, with a transport, as several parts. */
 static int32_t tell_alone(telling *t, uint64_t *hash, char *refusal) {
   const errand how = {.refusal = refusal};
-  const int32_t chooses = t->is.scheme == MPM_NEWMARK && t->is.solver == MPM_SOLVER_AUTO;
-  if (chooses) t->is.solver = MPM_SOLVER_CG;
-  int32_t told = run_scene(&t->is, &how, hash);
-  if (!told && chooses && *refusal) {
-    t->is.solver = MPM_SOLVER_GMRES;
-    *refusal = '\0';
-    told = run_scene(&t->is, &how, hash);
-  }
-  return told;
+  parts_plan plan = {.fail_part = 0};
+  if (t->is.scheme != MPM_NEWMARK || t->is.solver != MPM_SOLVER_AUTO) return run_scene(&t->is, &how, hash);
+  if (parts_run(1, tell_part, t, &plan)) return 0;
+  *hash = t->hash[0];
+  return t->told[0];
 }
 
 static int32_t compare(telling *t, int32_t parts, char *why, size_t room) {

@@ -44,7 +44,7 @@ void sort_rows(table *t) {
 
 void gather_rows(const mpm_transport *way, int64_t n, const int64_t *key, const char *bytes, size_t width,
                  table *t) {
-  const int32_t me = way ? way->part : 0, parts = way ? way->parts : 1;
+  const int32_t me = way->part, parts = way->parts;
   const size_t size = 8 + (size_t)n * (8 + width);
   mpm_message out[PROCESSES_MOST];
   const mpm_message *in = NULL;
@@ -62,11 +62,9 @@ void gather_rows(const mpm_transport *way, int64_t n, const int64_t *key, const 
     most[count] = INT64_MAX;
     out[count++] = (mpm_message){.part = p, .bytes = (int64_t)size, .data = mine};
   }
-  if (way) {
-    must(way->reduce(way->user, MPM_REDUCE_SUM, 1, &total));
-    must(way->send(way->user, MPM_EXCHANGE_KNOWN, count, out, most));
-    must(way->receive(way->user, &count, &in));
-  }
+  must(way->reduce(way->user, MPM_REDUCE_SUM, 1, &total));
+  must(way->send(way->user, MPM_EXCHANGE_KNOWN, count, out, most));
+  must(way->receive(way->user, &count, &in));
   for (int32_t i = 0; i < count; ++i)
     memcpy(t->memory[in[i].part] = room_for(in[i].bytes, 1), in[i].data, (size_t)in[i].bytes);
   t->row = room_for(total, sizeof *t->row);

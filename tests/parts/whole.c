@@ -1,8 +1,8 @@
 /* A program that knows nothing of parts, told on several: its calls of the library come here first, and what
  * it reads and writes of particles and nodes is that of all parts. main() begins with "--parts N"; each part
  * runs the program, writes to a folder part_K of that of "--out", and tells the hash of every stepper at its
- * end. Where the program leaves the choice of the linear solver to the library, one part takes that which
- * several have. Linked with --wrap for each call below. */
+ * end. One part has a transport, too, and with it the linear solver that several have. Linked with --wrap for
+ * each call below. */
 #include "table.h"
 
 #include <mpm/mpm.h>
@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
-static const mpm_transport *way; /* NULL where one part is all */
+static const mpm_transport *way;
 
 #define REAL(type, name, ...)                                                                                \
   type __real_##name(__VA_ARGS__);                                                                           \
@@ -45,15 +45,14 @@ REAL(int64_t, mpm_particles_count, const mpm_particles *set) {
 REAL(mpm_status, mpm_particles_add, mpm_particles *set, int64_t n, const double *position,
      const double *velocity, const double *volume, const double *size, const int64_t *ids,
      int64_t *first_id) {
-  return __real_mpm_particles_add(set, way && way->part ? 0 : n, position, velocity, volume, size, ids,
-                                  first_id);
+  return __real_mpm_particles_add(set, way->part ? 0 : n, position, velocity, volume, size, ids, first_id);
 }
 
 /* How many particles all parts have filled in, and the first of their ids. */
 static mpm_status sum_filled(mpm_status status, int64_t own_first, int64_t own_count, int64_t *first_id,
                              int64_t *count) {
   int64_t first = own_count > 0 ? -own_first : -INT64_MAX;
-  if (way && !status) {
+  if (!status) {
     must(way->reduce(way->user, MPM_REDUCE_SUM, 1, &own_count));
     must(way->reduce(way->user, MPM_REDUCE_MAX, 1, &first));
   }
@@ -209,77 +208,14 @@ mpm_status __wrap_mpm_view_release(mpm_view *view) {
   return MPM_OK;
 }
 
-/* ---- contexts, steppers and their steps ---------------------------------------------------------------- */
-
-static const mpm_context *context_at_hand; /* the last that was made */
+/* ---- contexts and steppers ---------------------------------------------------------------------------- */
 
 REAL(mpm_status, mpm_context_create, const mpm_context_desc *desc, mpm_context **out) {
   mpm_context_desc own;
   must(mpm_context_desc_init(&own, sizeof own));
   if (desc) own = *desc;
   own.transport = way;
-  const mpm_status status = __real_mpm_context_create(&own, out);
-  context_at_hand = status ? NULL : *out;
-  return status;
-}
-
-/* Steppers whose solver is chosen here: conjugate gradients, until the library says that they cannot. */
-static struct {
-  mpm_stepper *stepper;
-  mpm_stepper_desc desc;
-} chosen;
-
-/* Of one part: the description with the solver that several parts try first. */
-static mpm_stepper_desc with_choice(const mpm_stepper_desc *desc, int32_t *chooses) {
-  mpm_stepper_desc own = *desc;
-  *chooses = !way && own.scheme == MPM_NEWMARK && own.linear_solver == MPM_SOLVER_AUTO;
-  if (*chooses) own.linear_solver = MPM_SOLVER_CG;
-  return own;
-}
-
-static void note_choice(mpm_stepper *stepper, const mpm_stepper_desc *desc) {
-  if (chosen.stepper && chosen.stepper != stepper) stop("two steppers at a time would choose their solver");
-  chosen.stepper = stepper;
-  chosen.desc = *desc;
-}
-
-REAL(mpm_status, mpm_stepper_create, mpm_context *context, mpm_grid *grid, const mpm_stepper_desc *desc,
-     mpm_stepper **out) {
-  int32_t chooses;
-  const mpm_stepper_desc own = with_choice(desc, &chooses);
-  const mpm_status status = __real_mpm_stepper_create(context, grid, &own, out);
-  if (!status && chooses) note_choice(*out, &own);
-  return status;
-}
-
-REAL(mpm_status, mpm_stepper_configure, mpm_stepper *stepper, const mpm_stepper_desc *desc) {
-  int32_t chooses;
-  const mpm_stepper_desc own = with_choice(desc, &chooses);
-  const mpm_status status = __real_mpm_stepper_configure(stepper, &own);
-  if (!status && chooses) note_choice(stepper, &own);
-  return status;
-}
-
-/* A step that is refused for good ends the program with the library's sentence. */
-static int32_t chooses_anew(mpm_stepper *stepper, mpm_status status) {
-  if (status != MPM_E_UNSUPPORTED) return 0;
-  if (stepper != chosen.stepper) {
-    fprintf(stderr, "parts: MPM_E_UNSUPPORTED: %s\n", mpm_last_error(context_at_hand));
-    exit(2);
-  }
-  chosen.desc.linear_solver = MPM_SOLVER_GMRES;
-  chosen.stepper = NULL;
-  return !__real_mpm_stepper_configure(stepper, &chosen.desc);
-}
-
-REAL(mpm_status, mpm_step, mpm_stepper *stepper, double dt, mpm_step_info *info) {
-  const mpm_status status = __real_mpm_step(stepper, dt, info);
-  return chooses_anew(stepper, status) ? __wrap_mpm_step(stepper, dt, info) : status;
-}
-
-REAL(mpm_status, mpm_advance, mpm_stepper *stepper, const mpm_advance_desc *desc, mpm_step_info *info) {
-  const mpm_status status = __real_mpm_advance(stepper, desc, info);
-  return chooses_anew(stepper, status) ? __wrap_mpm_advance(stepper, desc, info) : status;
+  return __real_mpm_context_create(&own, out);
 }
 
 REAL(mpm_status, mpm_state_load, mpm_stepper *stepper, const void *buffer, int64_t bytes) {
@@ -292,7 +228,6 @@ REAL(mpm_status, mpm_stepper_destroy, mpm_stepper *stepper) {
     must(mpm_state_hash(stepper, &hash));
     printf("HASH %016" PRIx64 "\n", hash);
   }
-  if (stepper == chosen.stepper) chosen.stepper = NULL;
   return __real_mpm_stepper_destroy(stepper);
 }
 
@@ -315,10 +250,9 @@ int __wrap_main(int argc, char **argv) {
     if (!strcmp(argv[i], "--out")) out = i + 1;
   if (parts < 1 || parts > PROCESSES_MOST || !out) stop("--parts N ... --out FOLDER");
   int status = 0;
-  const mpm_transport *transport = processes_start(parts, &status);
-  if (!transport) return status;
-  way = parts > 1 ? transport : NULL;
-  snprintf(folder, sizeof folder, "%s/part_%d", argv[out], (int)transport->part);
+  way = processes_start(parts, &status);
+  if (!way) return status;
+  snprintf(folder, sizeof folder, "%s/part_%d", argv[out], (int)way->part);
   snprintf(log, sizeof log, "%s/log", folder);
   mkdir(folder, 0777);
   if (!freopen(log, "w", stdout)) stop("cannot write a log");

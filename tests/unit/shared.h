@@ -89,7 +89,8 @@ TCase *wide_case(Suite *suite, const char *name);
 /* Adds every so many of a table of tests to a case, and the others to a wide one; every fifth. */
 void add_every(TCase *some, TCase *wide, const TTest *test, int32_t count, int32_t every);
 void add_table(TCase *some, TCase *wide, const TTest *test, int32_t count);
-/* Plays the scene in one part, and then in several. Returns what it has come to. */
+/* Plays the scene in one part, which has a transport where its linear solver depends on that, and then in
+ * several. Returns what it has come to. */
 mpm_status check_scene(const scene *is, const char *name, int32_t parts);
 
 /* An implicit step by conjugate gradients, quasi-static or by Newmark's rule. Which options it has: bits of
@@ -100,14 +101,20 @@ scene implicit_scene(int32_t dim, const basis_option *basis, int32_t quasi_stati
 /* An implicit step that no part can make, and then others. */
 mpm_status fail_implicitly(world *w, const scene *is, outcome *found);
 
-/* Plays it in two numbers of parts, where one part would make other bits; it must come to its end. */
-void check_alike(const scene *is, const char *name, int32_t parts, int32_t more);
-/* Such a step by GMRES, with so few unknowns that one part preconditions by blocks, too; save for
- * quasi-static ones in 3-D: with more it does so by multigrid. */
-scene small_scene(int32_t dim, const basis_option *basis, int32_t quasi_static);
+/* Such a step by GMRES. */
+scene gmres_scene(int32_t dim, const basis_option *basis, int32_t quasi_static);
 
 /* The scene must come to its end. */
 void check_made(const scene *is, const char *name, int32_t parts);
+
+/* ---- contact ---- */
+/* Throws how bodies or an obstacle touch; in implicit steps there is no adhesion. */
+mpm_contact_desc throw_rule(dice *d, int32_t dim, int32_t implicit);
+/* Throws an obstacle and adds it; in implicit steps none is free. */
+mpm_status throw_obstacle(world *w, dice *d, mpm_obstacle **out);
+int32_t throw_of(dice *d, int32_t n); /* one of 0 ... n - 1 */
+mpm_status take_obstacle(world *w, mpm_obstacle *obstacle,
+                         mpm_status status); /* out of the stepper, and frees it */
 
 /* ---- options ---- */
 enum { OPTIONS_SAMPLE = 48 };
@@ -146,9 +153,10 @@ void add_shared_surfaces(Suite *suite);
 void add_shared_rubbing(Suite *suite);
 void add_shared_prescribing(Suite *suite);
 void add_shared_adaption(Suite *suite);
-/* Add the cases of shared_implicit.c and shared_steps.c. */
+/* Add the cases of shared_implicit.c, shared_steps.c and shared_touching.c. */
 void add_shared_implicit(Suite *suite);
 void add_shared_steps(Suite *suite);
+void add_shared_touching(Suite *suite);
 TCase *shared_calls_case(void);
 TCase *shared_balance_case(void);
 TCase *shared_timed_case(void);

@@ -150,20 +150,21 @@ static void play_in_parts(scene *is, const char *name, int32_t parts) {
   if (parts_run(parts, live, is, &plan)) ck_abort_msg("%s, %d parts: %s", name, parts, plan.text);
 }
 
+/* One part has the linear solver of several where it has a transport. */
+static int32_t asks_transport(const mpm_stepper_desc *d) {
+  return d->scheme == MPM_NEWMARK &&
+         (d->linear_solver == MPM_SOLVER_AUTO || d->linear_solver == MPM_SOLVER_GMRES);
+}
+
 mpm_status check_scene(const scene *is, const char *name, int32_t parts) {
   scene one = *is, many = *is;
-  live(0, NULL, &one);
+  if (asks_transport(&is->desc.stepper))
+    play_in_parts(&one, name, 1);
+  else
+    live(0, NULL, &one);
   play_in_parts(&many, name, parts);
   compare(&one.found[0], &many, name, parts);
   return one.found[0].status;
-}
-
-void check_alike(const scene *is, const char *name, int32_t parts, int32_t more) {
-  scene few = *is, many = *is;
-  play_in_parts(&few, name, parts);
-  play_in_parts(&many, name, more);
-  compare(&few.found[0], &many, name, more);
-  ck_assert_msg(few.found[0].status == MPM_OK, "%s: %s", name, few.found[0].text);
 }
 
 void check_parts(scene *is, int32_t parts) {

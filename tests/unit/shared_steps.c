@@ -10,16 +10,6 @@ static world_law law_of(int32_t i) {
   return (world_law){.model = model[i], .E = 1e5, .nu = 0.3, .density = 1e3, .yield_stress = 1e3};
 }
 
-/* Plays it in one part, too, where that has the same preconditioner. */
-static void check(const scene *is, const char *name, int32_t parts) {
-  const int32_t many = is->desc.grid.dim == 3 && is->desc.stepper.quasi_static &&
-                       is->desc.stepper.linear_solver == MPM_SOLVER_GMRES;
-  if (many)
-    check_alike(is, name, 2, parts > 2 ? parts : 3);
-  else
-    check_made(is, name, parts);
-}
-
 /* ---- surfaces ------------------------------------------------------------------------------------------ */
 /* Two surfaces, the second of which comes later, and the first goes. */
 static mpm_status load(world *w, const scene *is, outcome *found) {
@@ -42,7 +32,7 @@ static mpm_status load(world *w, const scene *is, outcome *found) {
 static scene loaded_scene(int32_t i, char *name, size_t size) {
   const int32_t dim = 1 + (i + 1) % 3, b = i / 3 % IMPLICIT_BASES, quasi_static = i / (3 * IMPLICIT_BASES);
   const basis_option *basis = implicit_basis(b);
-  scene is = small_scene(dim, basis, quasi_static);
+  scene is = gmres_scene(dim, basis, quasi_static);
   is.desc.law = law_of(i % LAWS_HERE);
   if (basis->basis == MPM_CPGIMP && keeps_volume_alone(is.desc.law.model)) is.desc.law = law_of(0);
   is.desc.grid.periodic[0] = dim > 1 && i % 4 == 1;
@@ -57,7 +47,7 @@ static scene loaded_scene(int32_t i, char *name, size_t size) {
 START_TEST(loads) {
   char name[200];
   const scene is = loaded_scene(_i, name, sizeof name);
-  check(&is, name, 2 + _i % 4);
+  check_made(&is, name, 2 + _i % 4);
 }
 END_TEST
 
@@ -70,7 +60,7 @@ START_TEST(loads_beside) {
   is.desc.stepper.locking_remedy = _i % 2;
   is.desc.grid.total_lagrangian = _i % 3 == 2;
   is.desc.law = law_of(0);
-  check(&is, "beside", 2 + _i % 4);
+  check_made(&is, "beside", 2 + _i % 4);
 }
 END_TEST
 
@@ -103,7 +93,7 @@ START_TEST(holds) {
     is.desc.stepper.linear_tolerance = 1e-4; /* springs are hard for diagonal blocks */
   if (_i % 4 == 3) is.desc.grid.total_lagrangian = 1;
   if (_i % 2 && strcmp(is.desc.law.model, "j2")) is.desc.law = law_of(0);
-  check(&is, name, 2 + _i % 4);
+  check_made(&is, name, 2 + _i % 4);
 }
 END_TEST
 
@@ -119,7 +109,7 @@ static mpm_status load_rigid(world *w, const scene *is, outcome *found) {
 }
 
 START_TEST(loads_rigid) {
-  scene is = small_scene(2, implicit_basis(_i), 1);
+  scene is = gmres_scene(2, implicit_basis(_i), 1);
   is.desc.law = (world_law){.model = "rigid", .density = 1e3};
   is.desc.stepper.gravity[1] = 0.0;
   is.run = load_rigid;
@@ -156,14 +146,14 @@ static mpm_status fail_loads(world *w, const scene *is, outcome *found) {
 }
 
 START_TEST(loads_fail_together) {
-  scene is = small_scene(2, implicit_basis(1), 0);
+  scene is = gmres_scene(2, implicit_basis(1), 0);
   is.run = fail_loads;
   check_made(&is, "failures", 2 + _i);
 }
 END_TEST
 
 START_TEST(transport_fails) {
-  scene is = small_scene(2, implicit_basis(1), 0);
+  scene is = gmres_scene(2, implicit_basis(1), 0);
   is.run = load;
   check_lost_transport(&is, 4, 500);
 }
@@ -189,7 +179,7 @@ END_TEST
 /* ---- total Lagrangian grids ---------------------------------------------------------------------------- */
 START_TEST(total) {
   const int32_t dim = 1 + (_i + 1) % 3, b = _i / 3 % IMPLICIT_BASES, quasi_static = _i / (3 * IMPLICIT_BASES);
-  scene is = small_scene(dim, implicit_basis(b), quasi_static);
+  scene is = gmres_scene(dim, implicit_basis(b), quasi_static);
   char name[200];
   is.desc.grid.total_lagrangian = 1;
   is.desc.law = law_of((_i + quasi_static) % LAWS_HERE);
@@ -198,7 +188,7 @@ START_TEST(total) {
   is.speed += _i % 8;
   snprintf(name, sizeof name, "%d: %d-D %s %s %s, options %d", _i, dim, implicit_basis(b)->name,
            is.desc.law.model, quasi_static ? "quasi-static" : "Newmark", (int)is.speed);
-  check(&is, name, 2 + _i % 4);
+  check_made(&is, name, 2 + _i % 4);
 }
 END_TEST
 
@@ -223,7 +213,7 @@ static mpm_status turn(world *w, const scene *is, outcome *found) {
 
 START_TEST(turned) {
   static const int32_t schemes[] = {MPM_USL, MPM_USF, MPM_MUSL};
-  scene is = small_scene(2, implicit_basis(_i), 0);
+  scene is = gmres_scene(2, implicit_basis(_i), 0);
   is.desc.stepper.scheme = schemes[_i % 3];
   is.desc.law = law_of(_i % LAWS_HERE);
   is.run = turn;

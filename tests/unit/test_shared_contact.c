@@ -7,12 +7,12 @@ enum { SCENES = 96, OBSTACLES = 3 };
 /* Blocks are 64, 16 and 6 nodes wide: a body spans several along each axis. */
 static const int64_t cells_of[] = {0, 300, 56, 20};
 
-static int32_t throw_of(dice *d, int32_t n) {
+int32_t throw_of(dice *d, int32_t n) {
   return (int32_t)throw_between(d, 0.0, (double)n - 1e-9);
 }
 
 /* ---- what there is ------------------------------------------------------------------------------------- */
-static mpm_contact_desc rule_of(dice *d, int32_t dim) {
+mpm_contact_desc throw_rule(dice *d, int32_t dim, int32_t implicit) {
   static const int32_t normals[] = {MPM_NORMAL_LOGISTIC, MPM_NORMAL_DISCRIMINANT, MPM_NORMAL_GRADIENT,
                                     MPM_NORMAL_FIXED};
   mpm_contact_desc rule;
@@ -32,7 +32,7 @@ static mpm_contact_desc rule_of(dice *d, int32_t dim) {
     rule.detection = MPM_DETECT_VELOCITY;
     break;
   case 2:
-    rule.adhesion = 50.0;
+    rule.adhesion = implicit ? 0.0 : 50.0;
     break;
   default:
     rule.offset = throw_of(d, 2) * 0.002;
@@ -70,14 +70,16 @@ static mpm_status move(void *user, double t, double dt, double *velocity, double
 }
 
 /* In 1-D there is only the plane. */
-static mpm_status add_obstacle(world *w, dice *d, mpm_obstacle **out) {
+mpm_status throw_obstacle(world *w, dice *d, mpm_obstacle **out) {
   static const int32_t shapes[] = {MPM_SHAPE_PLANE, MPM_SHAPE_SPHERE, MPM_SHAPE_BOX, MPM_SHAPE_DISTANCE};
   mpm_obstacle_desc desc;
-  const mpm_contact_desc rule = rule_of(d, w->dim);
+  const int32_t implicit = w->desc.stepper.scheme == MPM_NEWMARK;
+  const mpm_contact_desc rule = throw_rule(d, w->dim, implicit);
   mpm_obstacle_desc_init(&desc, sizeof desc);
   desc.shape = w->dim == 1 ? MPM_SHAPE_PLANE : shapes[throw_of(d, 4)];
   desc.motion = throw_of(d, 3);
-  if (desc.motion == MPM_MOTION_FREE && desc.shape == MPM_SHAPE_PLANE) desc.motion = MPM_MOTION_FIXED;
+  if (desc.motion == MPM_MOTION_FREE && (desc.shape == MPM_SHAPE_PLANE || implicit))
+    desc.motion = MPM_MOTION_FIXED;
   if (desc.motion == MPM_MOTION_FREE) {
     desc.mass = 20.0;
     desc.inertia[0] = desc.inertia[4] = w->dim == 3 ? 0.3 : 0.0;
@@ -94,6 +96,12 @@ static mpm_status add_obstacle(world *w, dice *d, mpm_obstacle **out) {
   if (!status && desc.motion == MPM_MOTION_PRESCRIBED && w->dim > 1 && throw_of(d, 2))
     status = mpm_obstacle_set_motion(*out, move, NULL);
   return status;
+}
+
+mpm_status take_obstacle(world *w, mpm_obstacle *obstacle, mpm_status status) {
+  const mpm_status removed = mpm_stepper_remove_obstacle(w->stepper, obstacle),
+                   freed = mpm_obstacle_destroy(obstacle);
+  return status ? status : removed ? removed : freed;
 }
 
 /* Contacts of nodes take many sweeps of all parts: beside shared_prescribing.c they are for wide cases. */
@@ -127,7 +135,7 @@ static mpm_status set_up_bodies(world *w, const scene *is) {
     if (!status) status = mpm_stepper_set_body(w->stepper, w->set[m], m == 2 ? 7 : m);
   }
   for (int32_t pair = 0; pair < 2 && !status && bodies > 1; ++pair) {
-    const mpm_contact_desc rule = rule_of(&d, w->dim);
+    const mpm_contact_desc rule = throw_rule(&d, w->dim, 0);
     status = mpm_stepper_set_contact(w->stepper, pair ? MPM_BODY_ANY : 0, pair ? 7 : 1, &rule);
   }
   if (!status && throw_of(&d, 3) == 0) status = mpm_stepper_set_friction(w->stepper, rub, NULL);
@@ -140,7 +148,7 @@ static mpm_status touch(world *w, const scene *is, outcome *found) {
   dice d = {is->seed + 77};
   const int32_t count = throw_of(&d, OBSTACLES + 1);
   mpm_status status = MPM_OK;
-  for (int32_t i = 0; i < count && !status; ++i) status = add_obstacle(w, &d, &obstacle[i]);
+  for (int32_t i = 0; i < count && !status; ++i) status = throw_obstacle(w, &d, &obstacle[i]);
   if (!status) status = run_steps(w);
   if (!status && is->seed % 3 == 0) status = save_and_load(w);
   if (!status && is->seed % 3 == 0) status = run_steps(w);
@@ -149,12 +157,7 @@ static mpm_status touch(world *w, const scene *is, outcome *found) {
     if (!(status = mpm_obstacle_contact_info(obstacle[i], MPM_BODY_ANY, &found->contact[i])))
       status = mpm_obstacle_get_pose(obstacle[i], found->seen + 8 * i, NULL, found->seen + 8 * i + 4, NULL);
   if (!status) status = mpm_stepper_contact_info(w->stepper, MPM_BODY_ANY, 1, &found->contact[3]);
-  for (int32_t i = 0; i < count; ++i) {
-    if (!status) status = mpm_stepper_remove_obstacle(w->stepper, obstacle[i]);
-    if (status) mpm_stepper_remove_obstacle(w->stepper, obstacle[i]);
-    const mpm_status freed = mpm_obstacle_destroy(obstacle[i]);
-    if (!status) status = freed;
-  }
+  for (int32_t i = 0; i < count; ++i) status = take_obstacle(w, obstacle[i], status);
   return status;
 }
 
@@ -286,5 +289,6 @@ Suite *shared_contact_suite(void) {
   tcase_add_loop_test(failures, callbacks_fail, 0, 12);
   tcase_add_test(failures, memory_runs_out_touching);
   suite_add_tcase(suite, failures);
+  add_shared_touching(suite);
   return suite;
 }

@@ -266,7 +266,7 @@ class Order(IntEnum):
 class Solver(IntEnum):
     """Linear solver of an implicit step."""
 
-    #: the library chooses by size, stencil, symmetry and inertia
+    #: the library chooses by size, stencil, symmetry and inertia; with a transport as parallel.h says
     SOLVER_AUTO = 0
     #: conjugate gradients, for symmetric positive definite systems
     SOLVER_CG = 1

@@ -243,7 +243,7 @@ pub mod constants {
 
     // Linear solver of an implicit step.
 
-    /// the library chooses by size, stencil, symmetry and inertia
+    /// the library chooses by size, stencil, symmetry and inertia; with a transport as parallel.h says
     pub const MPM_SOLVER_AUTO: i32 = 0;
     /// conjugate gradients, for symmetric positive definite systems
     pub const MPM_SOLVER_CG: i32 = 1;
