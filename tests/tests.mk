@@ -292,8 +292,7 @@ $(BUILD)/tests/parts/cases/%: $(BUILD)/obj/tests/verification/%.o $(PARTED_OBJEC
 	$(call SAY,LINK)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(CASE_CALLS:%=-Wl,--wrap=%) $(filter %.o,$^) $(STATIC_LIB) $(LIBS) -o $@
 #: check-parts-verify    the cases in small on 2, 3 and 5 parts: the hashes, results and files of one part
-# What `advice` provokes are failures of the solvers of one part.
-check-parts-verify: $(filter-out %/advice,$(CASE_PROGRAMS))
+check-parts-verify: $(CASE_PROGRAMS)
 	@bash tests/parts/cases.sh $(BUILD)/tests/parts/told $(JOBS) "2 3 5" $^
 #: verify-plots          the numbers of the last `make verify` into docs/verification: plots, and tables of its page
 verify-plots:

@@ -535,7 +535,7 @@ Suite *contact_suite(void) {
   tcase_add_loop_test(options, unequal_spacings, 2, 4);
   tcase_add_loop_test(options, half_on_a_wall, 0, METHODS);
   tcase_add_loop_test(options, friction_callback, 0, METHODS);
-  tcase_add_loop_test(bits, threads_and_order, 0, BROAD);
+  tcase_add_loop_test(law, threads_and_order, 0, BROAD);
   tcase_add_loop_test(bits, saved_in_contact, 0, BROAD);
   tcase_add_loop_test(bits, name_of_a_body, 0, METHODS);
   tcase_set_tags(law, "long");

@@ -746,6 +746,7 @@ Suite *obstacles_suite(void) {
   tcase_add_test(motion, tumbling);
   tcase_add_test(motion, stable_step);
   tcase_set_tags(law, "long");
+  tcase_set_tags(same, "long");
   tcase_set_timeout(law, 60);
   tcase_set_timeout(same, 60);
   tcase_set_timeout(motion, 60);
