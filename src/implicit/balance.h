@@ -215,10 +215,6 @@ static inline int32_t mpmi_is_held(uint8_t held) {
   return held == MPMI_ROW_PRESCRIBED || held == MPMI_ROW_WALL;
 }
 
-/* Lists the rows of other bodies at the index of a node that moves by itself, after `count` others; returns
- * how many there are then. (pattern.c) */
-int32_t mpmi_list_partners(const mpmi_balance *balance, int64_t slot, int32_t *out, int32_t count);
-
 /* Returns the slot of the node that one moves with as its image or ghost: itself for most. */
 static inline int64_t mpmi_master_of(const mpmi_balance *balance, int64_t slot) {
   const int32_t tie = balance->layout->constraints.tie_of[slot];

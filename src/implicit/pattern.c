@@ -68,8 +68,9 @@ static int32_t may_touch(const mpmi_balance *balance, int64_t block, int64_t oth
              ->kind != MPM_CONTACT_NONE;
 }
 
-/* Their blocks are neighbours in the list. Masters meet masters. */
-int32_t mpmi_list_partners(const mpmi_balance *balance, int64_t slot, int32_t *out, int32_t count) {
+/* Adds the rows of other bodies at the index of a node; their blocks are neighbours in the list. Masters meet
+ * masters. */
+static int32_t add_partners(const mpmi_balance *balance, int64_t slot, int32_t *out, int32_t count) {
   const mpmi_newton *newton = balance->newton;
   const mpmi_blocks *b = &balance->layout->blocks;
   const int64_t block = slot / b->nodes, node = slot % b->nodes;
@@ -93,7 +94,7 @@ static int32_t add_columns(const mpmi_balance *balance, int64_t row, int32_t *ou
     for (int32_t o = 0; o < newton->offsets; ++o)
       if (rows[o] >= 0) out[count++] = rows[o];
     if (newton->couples_bodies)
-      count = mpmi_list_partners(balance, newton->active[newton->members[m]].slot, out, count);
+      count = add_partners(balance, newton->active[newton->members[m]].slot, out, count);
     count = sort_distinct(count, out);
   }
   return count;
@@ -133,6 +134,18 @@ static int64_t most_columns(const mpmi_newton *newton, int64_t rows) {
     if (columns > most) most = columns;
   }
   return most * (1 + terms);
+}
+
+/* Of several parts one that meets a node wants the values of all bodies there, which may have other
+ * owners. */
+static void want_partners(mpmi_balance *balance) {
+  mpmi_newton *newton = balance->newton;
+  for (int64_t i = 0; i < newton->active_count && newton->shared && newton->couples_bodies; ++i) {
+    int32_t partner[MPMI_MAX_BODIES];
+    if (!mpmi_meets_node(balance->layout->parts, newton->active[i].slot)) continue;
+    const int32_t count = add_partners(balance, newton->active[i].slot, partner, 0);
+    for (int32_t k = 0; k < count; ++k) newton->rows_of.wanted[partner[k]] = 1;
+  }
 }
 
 static void count_task(void *data, int64_t k) {
@@ -192,6 +205,7 @@ mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
                                         job.most * balance->settings->tasks);
   if (status) return status;
   status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, neighbours_task, &job);
+  if (!status) want_partners(balance);
   if (!status) mpmi_shared_rows_keep(balance);
   if (!status) status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job);
   if (status) return status;

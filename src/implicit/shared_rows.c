@@ -70,20 +70,8 @@ static void want_around_markers(mpmi_balance *balance) {
   }
 }
 
-/* Bodies that touch at a node may have other owners there. */
-static void want_partners(mpmi_balance *balance) {
-  mpmi_newton *newton = balance->newton;
-  for (int64_t i = 0; i < newton->active_count && newton->couples_bodies; ++i) {
-    int32_t partner[MPMI_MAX_BODIES];
-    if (!mpmi_meets_node(balance->layout->parts, newton->active[i].slot)) continue;
-    const int32_t count = mpmi_list_partners(balance, newton->active[i].slot, partner, 0);
-    for (int32_t k = 0; k < count; ++k) newton->rows_of.wanted[partner[k]] = 1;
-  }
-}
-
 void mpmi_shared_rows_keep(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
-  if (balance->layout->parts) want_partners(balance);
   if (balance->layout->parts && balance->settings->surfaces.count) want_around_markers(balance);
   for (int64_t i = 0; i < newton->outer_count && balance->layout->parts; ++i)
     newton->rows_of.kept[newton->outer[i].row] |=
