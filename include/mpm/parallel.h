@@ -9,7 +9,8 @@
  * parts that are not at fault says which part is, and its sentence. Grids, materials, sets and steppers are
  * made and set up alike on all parts, by calls that do not wait for other parts: if one of these fails, the
  * host ends the problem on all. Calls that only read or write a part's own objects concern that part alone.
- * Without a transport, or with one part, every call behaves as it does without.
+ * With a transport and one part every call behaves as without one, but for the linear solvers of implicit
+ * steps, which are those of several parts (below).
  *
  * States, statuses and reports have the same bits for any number of parts, as for any number of threads. A
  * solver of the host is the exception: the solutions of linear systems are as it makes them, and everything

@@ -10,8 +10,7 @@ static inline int32_t mpmi_is_whole(const mpm_context *context) {
   return context->transport.parts == 1;
 }
 
-/* Returns 1 where the host has given a transport, be it to one part: what does not depend on the number of
- * parts must be as with several. */
+/* Returns 1 where the host has given a transport: one part, too, then chooses what several would. */
 static inline int32_t mpmi_has_transport(const mpm_context *context) {
   return context->transport.send != NULL;
 }

@@ -109,9 +109,9 @@ typedef struct mpmi_newton_work {
 
 /* What one of several parts knows of its rows. */
 typedef struct mpmi_shared_rows {
-  uint64_t *key; /* [rows] of the block of the node */
-  int32_t *place, *owner,
-      *home;              /* [rows] of the body and the node in it; the part that owns it, numbers it */
+  uint64_t *key;          /* [rows] of the block of the node */
+  int32_t *place;         /* [rows] which of the bodies and nodes there it is */
+  int32_t *owner, *home;  /* [rows] the part that owns it, that numbers it */
   uint8_t *wanted, *kept; /* [rows] 1: its values count here; it is to be complete */
   int64_t key_capacity, place_capacity, owner_capacity, home_capacity, wanted_capacity, kept_capacity;
   int32_t is_shared; /* all parts know whose rows are whose, as they are now */

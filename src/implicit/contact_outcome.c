@@ -53,39 +53,58 @@ static int32_t may_slide(const mpmi_balance *balance, const mpmi_constraint *of,
          (first->surface >= 0 && contact->surface[first->surface].shape == MPM_SHAPE_PLANE);
 }
 
-/* Of several parts one looks after each node. */
-static mpm_status check_slip(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
+/* Returns the way that a touch has slid, of those that this part looks after and that may not slide. */
+static double slipped(const mpmi_balance *balance, const mpmi_constraint *of, double most_force) {
   const mpmi_touch *touch = mpmi_touch_of(balance, of);
-  const double most = 0.5 * balance->settings->grid->h_min;
   double move[3], along, across[3];
   if (!mpmi_owns_node(balance->layout->parts, balance->nodes->contact.party[touch->party[1]].slot) ||
       may_slide(balance, of, most_force))
-    return MPM_OK;
+    return 0.0;
   mpmi_relative(balance, of, balance->newton->vector[MPMI_U], move);
   mpmi_split(move, touch->normal, &along, across);
-  const double slipped = sqrt(mpmi_inner(across, across));
-  if (slipped <= most) return MPM_OK;
-  balance->step->failure.node =
-      mpmi_blocks_number(&balance->layout->blocks, balance->nodes->contact.party[touch->party[1]].slot);
+  return sqrt(mpmi_inner(across, across));
+}
+
+/* Of several touches that slide too far the one at the node with the smallest number is told. */
+static mpm_status check_slips(const mpmi_balance *balance, double most_force) {
+  const mpmi_newton *newton = balance->newton;
+  const double most = 0.5 * balance->settings->grid->h_min;
+  double told = 0.0;
+  int64_t node = -1;
+  for (int64_t k = 0; k < newton->constraint_count; ++k) {
+    const mpmi_constraint *of = &newton->constraint[k];
+    const double slip = slipped(balance, of, most_force);
+    const int64_t slot = balance->nodes->contact.party[mpmi_touch_of(balance, of)->party[1]].slot,
+                  number = slip > most ? mpmi_blocks_number(&balance->layout->blocks, slot) : -1;
+    if (!(slip > most) || (node >= 0 && number >= node)) continue;
+    told = slip;
+    node = number;
+  }
+  if (node < 0) return MPM_OK;
+  balance->step->failure.node = node;
   return mpmi_fail(
       balance->settings->context, MPM_CUT_DT,
       "bodies in contact slide by %g at node %lld in the step from t = %g with dt = %g, more than "
       "half a cell: %s",
-      slipped, (long long)balance->step->failure.node, balance->step->t, balance->step->dt,
-      mpmi_smaller_steps(balance));
+      told, (long long)node, balance->step->t, balance->step->dt, mpmi_smaller_steps(balance));
 }
 
-mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
+/* Returns the same on all parts. */
+static mpm_status check_touches(const mpmi_balance *balance) {
   const mpmi_newton *newton = balance->newton;
   double most = 0.0;
-  if (!newton->touches) return MPM_OK;
   for (int64_t k = 0; k < newton->constraint_count; ++k)
     most = fmax(most, mpmi_inner(newton->constraint[k].force,
                                  mpmi_touch_of(balance, &newton->constraint[k])->normal));
   mpm_status status = mpmi_largest_of_parts(balance, 1, &most);
-  for (int64_t k = 0; k < newton->constraint_count && !status; ++k)
-    status = check_slip(balance, &newton->constraint[k], most);
-  if ((status = mpmi_vote(balance, status, 0))) return status;
+  if (!status) status = check_slips(balance, most);
+  return mpmi_vote(balance, status, 0);
+}
+
+mpm_status mpmi_active_set_finish(mpmi_balance *balance) {
+  const mpmi_newton *newton = balance->newton;
+  const mpm_status status = newton->touches ? check_touches(balance) : MPM_OK;
+  if (status) return status;
   for (int64_t k = 0; k < newton->constraint_count; ++k) tell(balance, &newton->constraint[k]);
   mpmi_bound bound = {.step = balance->step,
                       .nodes = balance->nodes,

@@ -163,7 +163,8 @@ static mpm_status particles_to_grid(mpmi_balance *balance, double *clock) {
        (balance->nodes->contact.anywhere || mpmi_surfaces_prescribe(&balance->settings->surfaces)));
   const int64_t to_unknowns = 2 + balance->nodes->prescription.any +
                               mpmi_places_nodes(balance->settings, balance->nodes); /* exchanges */
-  mpm_status status = mpmi_prescribed_stage(balance->step);
+  mpm_status status = mpmi_node_places_stage(balance->step, balance->nodes);
+  if (!status) status = mpmi_prescribed_stage(balance->step);
   if (!status) status = mpmi_surfaces_aim(balance->step);
   mpmi_lap(balance->step, MPMI_TIME_CALLBACKS, clock);
   if (!status) status = find_nodes(balance, clock);
@@ -291,7 +292,6 @@ mpm_status mpmi_newmark_step(mpmi_balance *balance) {
   mpm_status status = mpmi_balance_prepare(balance);
   if (balance->layout->parts) status = mpmi_vote(balance, status, 0);
   if (!status && has_nothing(balance->layout)) return MPM_OK;
-  if (!status) status = mpmi_node_places_stage(balance->step, balance->nodes);
   if (!status) status = particles_to_grid(balance, &clock);
   mpmi_lap(balance->step, MPMI_TIME_GRID, &clock);
   if (!status) status = solve(balance, &clock);

@@ -136,15 +136,23 @@ static int64_t most_columns(const mpmi_newton *newton, int64_t rows) {
   return most * (1 + terms);
 }
 
-/* Of several parts one that meets a node wants the values of all bodies there, which may have other
- * owners. */
-static void want_partners(mpmi_balance *balance) {
+/* Of several parts one that meets the node of a body has all touches there (contact/meetings.c), and wants
+ * the values of all bodies, which may have other owners. */
+static void want_together(mpmi_balance *balance) {
   mpmi_newton *newton = balance->newton;
-  for (int64_t i = 0; i < newton->active_count && newton->shared && newton->couples_bodies; ++i) {
-    int32_t partner[MPMI_MAX_BODIES];
-    if (!mpmi_meets_node(balance->layout->parts, newton->active[i].slot)) continue;
-    const int32_t count = add_partners(balance, newton->active[i].slot, partner, 0);
-    for (int32_t k = 0; k < count; ++k) newton->rows_of.wanted[partner[k]] = 1;
+  const mpmi_parts *parts = balance->layout->parts;
+  const mpmi_block_groups *groups = &balance->layout->groups;
+  const int64_t nodes = balance->layout->blocks.nodes;
+  for (int64_t g = 0; g < groups->count && parts; ++g) {
+    const int64_t first = groups->group[g].first, end = first + groups->group[g].count;
+    for (int64_t n = 0; n < nodes; ++n) {
+      int32_t meets = 0;
+      for (int64_t i = first; i < end; ++i) meets |= mpmi_meets_node(parts, i * nodes + n);
+      for (int64_t i = first; i < end && meets; ++i) {
+        const int32_t active = newton->active_of[i * nodes + n];
+        if (active >= 0) newton->rows_of.wanted[newton->active[active].row] = 1;
+      }
+    }
   }
 }
 
@@ -205,7 +213,7 @@ mpm_status mpmi_make_pattern(mpmi_balance *balance, int64_t rows) {
                                         job.most * balance->settings->tasks);
   if (status) return status;
   status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, neighbours_task, &job);
-  if (!status) want_partners(balance);
+  if (!status) want_together(balance);
   if (!status) mpmi_shared_rows_keep(balance);
   if (!status) status = mpmi_run_tasks(balance->settings, 0, balance->settings->tasks, count_task, &job);
   if (status) return status;

@@ -16,8 +16,8 @@ static mpm_status bad_diagonal(const mpmi_system *s, int64_t row) {
 static mpm_status not_positive(const mpmi_system *s) {
   s->report->indefinite = 1;
   return mpmi_fail(s->context, MPM_SINGULAR, "conjugate gradients: the matrix is not positive definite: %s",
-                   s->A->shared ? "use MPM_SOLVER_GMRES or MPM_SOLVER_AUTO"
-                                : "use MPM_SOLVER_LDLT or MPM_SOLVER_AUTO");
+                   mpmi_has_transport(s->context) ? "use MPM_SOLVER_GMRES or MPM_SOLVER_AUTO"
+                                                  : "use MPM_SOLVER_LDLT or MPM_SOLVER_AUTO");
 }
 
 static mpm_status by_cg(mpmi_system *s, int64_t limit) {

@@ -26,11 +26,12 @@ static void tell_part(int32_t part, const mpm_transport *transport, void *user) 
   t->told[part] = run_scene(&t->is, &how, &t->hash[part]);
 }
 
-/* By one part: where the library chooses the linear solver, with a transport, as several parts. */
+/* By one part: with a transport where its linear solver depends on that. */
 static int32_t tell_alone(telling *t, uint64_t *hash, char *refusal) {
   const errand how = {.refusal = refusal};
   parts_plan plan = {.fail_part = 0};
-  if (t->is.scheme != MPM_NEWMARK || t->is.solver != MPM_SOLVER_AUTO) return run_scene(&t->is, &how, hash);
+  if (t->is.scheme != MPM_NEWMARK || (t->is.solver != MPM_SOLVER_AUTO && t->is.solver != MPM_SOLVER_GMRES))
+    return run_scene(&t->is, &how, hash);
   if (parts_run(1, tell_part, t, &plan)) return 0;
   *hash = t->hash[0];
   return t->told[0];

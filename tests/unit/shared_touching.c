@@ -42,7 +42,8 @@ static mpm_status set_up_stack(world *w, const scene *is) {
     if (!status) status = mpm_stepper_set_body(w->stepper, w->set[m], m == 2 ? 7 : m);
   }
   for (int32_t pair = 0; pair < 2 && !status && w->sets > 1; ++pair) {
-    const mpm_contact_desc rule = throw_rule(&d, w->dim, 1);
+    mpm_contact_desc rule = throw_rule(&d, w->dim, 1);
+    if (throw_of(&d, 4) == 0) rule.kind = MPM_CONTACT_NONE;
     status = mpm_stepper_set_contact(w->stepper, pair ? MPM_BODY_ANY : 0, pair ? 7 : 1, &rule);
   }
   return status;
