@@ -211,6 +211,47 @@ START_TEST(light_touches_slide) {
 }
 END_TEST
 
+/* ---- a bar that is pushed at one end -------------------------------------------------------------------- */
+/* So long that most parts are far from all touches, which there are after some steps. */
+static mpm_status set_up_bar(world *w, const scene *is) {
+  static const double low[] = {0.1}, high[] = {0.9};
+  const int32_t per_cell[] = {2};
+  (void)is;
+  return mpm_particles_fill_box(w->set[0], low, high, per_cell, NULL, NULL);
+}
+
+static mpm_status push(world *w, const scene *is, outcome *found) {
+  mpm_obstacle *plate = NULL;
+  mpm_obstacle_desc d;
+  mpm_obstacle_desc_init(&d, sizeof d);
+  d.shape = MPM_SHAPE_PLANE;
+  d.motion = MPM_MOTION_PRESCRIBED;
+  d.position[0] = 0.1 - 0.25 * is->desc.grid.spacing[0];
+  d.velocity[0] = 0.5;
+  mpm_status status = mpm_obstacle_create(w->context, &d, &plate);
+  if (!status) status = mpm_stepper_add_obstacle(w->stepper, plate);
+  for (int32_t i = 0; i < 6 && !status; ++i)
+    status = mpm_step(w->stepper, 0.2 * is->desc.grid.spacing[0], &w->info);
+  found->contact[0].struct_size = sizeof found->contact[0];
+  if (!status) status = mpm_obstacle_contact_info(plate, MPM_BODY_ANY, &found->contact[0]);
+  const int32_t pushes = found->contact[0].closed > 0;
+  status = take_obstacle(w, plate, status);
+  return status || pushes ? status : MPM_E_INTERNAL;
+}
+
+START_TEST(bar_is_pushed) {
+  scene is = implicit_scene(1, implicit_basis(_i), 0);
+  is.desc.grid.cells[0] = 1000;
+  is.desc.grid.spacing[0] = 1e-3;
+  is.desc.law = (world_law){.model = "neo_hookean", .E = 1e5, .nu = 0.3, .density = 1e3};
+  is.desc.stepper.linear_solver = MPM_SOLVER_AUTO;
+  is.desc.stepper.gravity[0] = 0.0;
+  is.set_up = set_up_bar;
+  is.run = push;
+  check_made(&is, "bar", 4 + _i);
+}
+END_TEST
+
 /* ---- a body that nothing holds at first ---------------------------------------------------------------- */
 /* A block above a floor, which its weight brings it to; only parts at the floor know that it will hold. */
 static mpm_status set_up_hovering(world *w, const scene *is) {
@@ -355,6 +396,7 @@ void add_shared_touching(Suite *suite) {
   tcase_add_loop_test(all, strips_are_squeezed, 0, 2);
   tcase_add_loop_test(all, light_touches_slide, 0, 2);
   tcase_add_loop_test(all, body_is_held, 0, 2);
+  tcase_add_loop_test(all, bar_is_pushed, 0, 2);
   suite_add_tcase(suite, all);
   TCase *failures = tcase_create("failures");
   tcase_set_timeout(failures, 240);
