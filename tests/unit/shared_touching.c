@@ -211,7 +211,7 @@ START_TEST(light_touches_slide) {
 }
 END_TEST
 
-/* ---- a bar that is pushed at one end -------------------------------------------------------------------- */
+/* ---- a bar that is pushed at one end ------------------------------------------------------------------- */
 /* So long that most parts are far from all touches, which there are after some steps. */
 static mpm_status set_up_bar(world *w, const scene *is) {
   static const double low[] = {0.1}, high[] = {0.9};
