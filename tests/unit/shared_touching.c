@@ -112,6 +112,28 @@ START_TEST(bodies_touch) {
 }
 END_TEST
 
+/* ---- obstacles of one's own ---------------------------------------------------------------------------- */
+static mpm_obstacle_desc shape_of(int32_t shape, int32_t motion) {
+  mpm_obstacle_desc d;
+  mpm_obstacle_desc_init(&d, sizeof d);
+  d.shape = shape;
+  d.motion = motion;
+  return d;
+}
+
+static mpm_status put_obstacle(world *w, const mpm_obstacle_desc *d, mpm_obstacle **out) {
+  const mpm_status status = mpm_obstacle_create(w->context, d, out);
+  return status ? status : mpm_stepper_add_obstacle(w->stepper, *out);
+}
+
+/* Takes out one that must have pushed. */
+static mpm_status take_pushing(world *w, mpm_obstacle *obstacle, mpm_status status, outcome *found) {
+  found->contact[0].struct_size = sizeof found->contact[0];
+  if (!status) status = mpm_obstacle_contact_info(obstacle, MPM_BODY_ANY, &found->contact[0]);
+  if (!status && !(found->contact[0].closed > 0)) status = MPM_E_INTERNAL;
+  return take_obstacle(w, obstacle, status);
+}
+
 /* ---- strips between two plates ------------------------------------------------------------------------ */
 /* Two strips, alike to the last bit, in blocks of different parts. Plates come closer than the nodes between
  * them can; of touches that miss as much the first gives way. */
@@ -131,15 +153,11 @@ static mpm_status squeeze(world *w, const scene *is, outcome *found) {
   mpm_obstacle *plate[2] = {NULL, NULL};
   mpm_status status = MPM_OK;
   for (int32_t i = 0; i < 2 && !status; ++i) {
-    mpm_obstacle_desc d;
-    mpm_obstacle_desc_init(&d, sizeof d);
-    d.shape = MPM_SHAPE_PLANE;
-    d.motion = MPM_MOTION_PRESCRIBED;
+    mpm_obstacle_desc d = shape_of(MPM_SHAPE_PLANE, MPM_MOTION_PRESCRIBED);
     d.position[1] = (i ? 8.8 : 8.2) * h;
     if (i) d.orientation[0] = 0.0, d.orientation[3] = 1.0; /* it looks down */
     d.velocity[1] = i ? -1.0 : 1.0;
-    status = mpm_obstacle_create(w->context, &d, &plate[i]);
-    if (!status) status = mpm_stepper_add_obstacle(w->stepper, plate[i]);
+    status = put_obstacle(w, &d, &plate[i]);
   }
   for (int32_t i = 0; i < 3 && !status; ++i) status = mpm_step(w->stepper, 0.04 * h, &w->info);
   for (int32_t i = 0; i < 2; ++i) found->contact[i].struct_size = sizeof found->contact[i];
@@ -185,20 +203,16 @@ static mpm_status slide_lightly(world *w, const scene *is, outcome *found) {
   (void)found;
   for (int32_t i = 0; i < 2 && !status; ++i) {
     mpm_contact_desc rule;
-    mpm_obstacle_desc d;
+    mpm_obstacle_desc d = shape_of(MPM_SHAPE_SPHERE, MPM_MOTION_PRESCRIBED);
     mpm_contact_desc_init(&rule, sizeof rule);
-    mpm_obstacle_desc_init(&d, sizeof d);
     rule.detection = MPM_DETECT_VELOCITY;
-    d.shape = MPM_SHAPE_SPHERE;
-    d.motion = MPM_MOTION_PRESCRIBED;
     d.position[0] = i ? 0.85 : 0.15;
     d.position[1] = 0.305;
     d.size[0] = 0.1;
     d.velocity[1] = i ? 1e-3 : 1.0;
     d.angular_velocity[2] = i ? 80.0 : 0.0;
     d.contact = &rule;
-    status = mpm_obstacle_create(w->context, &d, &ball[i]);
-    if (!status) status = mpm_stepper_add_obstacle(w->stepper, ball[i]);
+    status = put_obstacle(w, &d, &ball[i]);
   }
   if (!status) status = mpm_step(w->stepper, 0.1 * is->desc.grid.spacing[0], &w->info);
   for (int32_t i = 0; i < 2; ++i) status = take_obstacle(w, ball[i], status);
@@ -212,7 +226,7 @@ START_TEST(light_touches_slide) {
 END_TEST
 
 /* ---- a bar that is pushed at one end ------------------------------------------------------------------- */
-/* So long that most parts are far from all touches, which there are after some steps. */
+/* So long that most parts are far from all touches. */
 static mpm_status set_up_bar(world *w, const scene *is) {
   static const double low[] = {0.1}, high[] = {0.9};
   const int32_t per_cell[] = {2};
@@ -222,21 +236,13 @@ static mpm_status set_up_bar(world *w, const scene *is) {
 
 static mpm_status push(world *w, const scene *is, outcome *found) {
   mpm_obstacle *plate = NULL;
-  mpm_obstacle_desc d;
-  mpm_obstacle_desc_init(&d, sizeof d);
-  d.shape = MPM_SHAPE_PLANE;
-  d.motion = MPM_MOTION_PRESCRIBED;
+  mpm_obstacle_desc d = shape_of(MPM_SHAPE_PLANE, MPM_MOTION_PRESCRIBED);
   d.position[0] = 0.1 - 0.25 * is->desc.grid.spacing[0];
   d.velocity[0] = 0.5;
-  mpm_status status = mpm_obstacle_create(w->context, &d, &plate);
-  if (!status) status = mpm_stepper_add_obstacle(w->stepper, plate);
+  mpm_status status = put_obstacle(w, &d, &plate);
   for (int32_t i = 0; i < 6 && !status; ++i)
     status = mpm_step(w->stepper, 0.2 * is->desc.grid.spacing[0], &w->info);
-  found->contact[0].struct_size = sizeof found->contact[0];
-  if (!status) status = mpm_obstacle_contact_info(plate, MPM_BODY_ANY, &found->contact[0]);
-  const int32_t pushes = found->contact[0].closed > 0;
-  status = take_obstacle(w, plate, status);
-  return status || pushes ? status : MPM_E_INTERNAL;
+  return take_pushing(w, plate, status, found);
 }
 
 START_TEST(bar_is_pushed) {
@@ -263,18 +269,11 @@ static mpm_status set_up_hovering(world *w, const scene *is) {
 
 static mpm_status settle_down(world *w, const scene *is, outcome *found) {
   mpm_obstacle *floor = NULL;
-  mpm_obstacle_desc d;
-  mpm_obstacle_desc_init(&d, sizeof d);
-  d.shape = MPM_SHAPE_PLANE;
+  mpm_obstacle_desc d = shape_of(MPM_SHAPE_PLANE, MPM_MOTION_FIXED);
   d.position[1] = 6.0 * is->desc.grid.spacing[1];
-  mpm_status status = mpm_obstacle_create(w->context, &d, &floor);
-  if (!status) status = mpm_stepper_add_obstacle(w->stepper, floor);
+  mpm_status status = put_obstacle(w, &d, &floor);
   if (!status) status = mpm_step(w->stepper, 1.0, &w->info);
-  found->contact[0].struct_size = sizeof found->contact[0];
-  if (!status) status = mpm_obstacle_contact_info(floor, MPM_BODY_ANY, &found->contact[0]);
-  const int32_t holds = found->contact[0].closed > 0;
-  status = take_obstacle(w, floor, status);
-  return status || holds ? status : MPM_E_INTERNAL;
+  return take_pushing(w, floor, status, found);
 }
 
 START_TEST(body_is_held) {
@@ -321,18 +320,15 @@ static mpm_status fail_touching(world *w, const scene *is, outcome *found) {
   const double dt = 0.1 * is->desc.grid.spacing[0], spin[] = {0.0, 0.0, 80.0};
   fault f = {is->seed, 0};
   mpm_obstacle *obstacle = NULL;
-  mpm_obstacle_desc d;
+  mpm_obstacle_desc d =
+      shape_of(f.is < RETURNS ? MPM_SHAPE_SPHERE : MPM_SHAPE_DISTANCE, MPM_MOTION_PRESCRIBED);
   mpm_contact_desc rule;
   mpm_contact_desc_init(&rule, sizeof rule);
-  mpm_obstacle_desc_init(&d, sizeof d);
-  d.shape = f.is < RETURNS ? MPM_SHAPE_SPHERE : MPM_SHAPE_DISTANCE;
-  d.motion = MPM_MOTION_PRESCRIBED;
   d.position[0] = 0.8, d.position[1] = 0.24;
   d.size[0] = 0.12;
   d.distance = ball;
   d.user = &f;
-  mpm_status status = mpm_obstacle_create(w->context, &d, &obstacle);
-  if (!status) status = mpm_stepper_add_obstacle(w->stepper, obstacle);
+  mpm_status status = put_obstacle(w, &d, &obstacle);
   if (!status) status = mpm_step(w->stepper, dt, &w->info);
   f.there = 1;
   rule.adhesion = f.is == ADHERES ? 10.0 : 0.0;
