@@ -188,6 +188,41 @@ START_TEST(strips_are_squeezed) {
 }
 END_TEST
 
+/* ---- bodies that meet where parts do ------------------------------------------------------------------- */
+/* Each part has one of them, and a plate pushes both: which do not touch each other, so that only the plate
+ * makes each part ask how the other body moves. */
+static mpm_status set_up_pair(world *w, const scene *is) {
+  const double h = is->desc.grid.spacing[0];
+  const int32_t per_cell[] = {2, 2};
+  mpm_contact_desc rule;
+  mpm_status status = mpm_contact_desc_init(&rule, sizeof rule);
+  rule.kind = MPM_CONTACT_NONE;
+  for (int32_t m = 0; m < 2 && !status; ++m) {
+    const double low[] = {(m ? 16.0 : 6.0) * h, 4.0 * h}, high[] = {(m ? 26.0 : 16.0) * h, 12.0 * h};
+    status = mpm_particles_fill_box(w->set[m], low, high, per_cell, NULL, NULL);
+    if (!status) status = mpm_stepper_set_body(w->stepper, w->set[m], m);
+  }
+  return status ? status : mpm_stepper_set_contact(w->stepper, 0, 1, &rule);
+}
+
+static mpm_status push_pair(world *w, const scene *is, outcome *found) {
+  mpm_obstacle *plate = NULL;
+  mpm_obstacle_desc d = shape_of(MPM_SHAPE_PLANE, MPM_MOTION_PRESCRIBED);
+  d.position[1] = 4.0 * is->desc.grid.spacing[1];
+  d.velocity[1] = 0.5;
+  mpm_status status = put_obstacle(w, &d, &plate);
+  for (int32_t i = 0; i < 3 && !status; ++i)
+    status = mpm_step(w->stepper, 0.2 * is->desc.grid.spacing[0], &w->info);
+  return take_pushing(w, plate, status, found);
+}
+
+START_TEST(bodies_meet_where_parts_do) {
+  scene is = contact_scene(_i, set_up_pair, push_pair);
+  is.desc.sets = 2;
+  check_made(&is, "pair", 2);
+}
+END_TEST
+
 /* ---- one that is pushed at one end and hardly touched at the other ------------------------------------- */
 static mpm_status set_up_long(world *w, const scene *is) {
   static const double low[] = {0.05, 0.4}, high[] = {0.95, 0.6};
@@ -391,6 +426,7 @@ void add_shared_touching(Suite *suite) {
   add_every(all, wide, bodies_touch, SCENES, 10);
   tcase_add_loop_test(all, strips_are_squeezed, 0, 2);
   tcase_add_loop_test(all, light_touches_slide, 0, 2);
+  tcase_add_loop_test(all, bodies_meet_where_parts_do, 0, 3);
   tcase_add_loop_test(all, body_is_held, 0, 2);
   tcase_add_loop_test(all, bar_is_pushed, 0, 2);
   suite_add_tcase(suite, all);
