@@ -68,7 +68,7 @@ check-combinations: $(UNIT)
 	@printf '%s\n' rules 'first half' 'second half' | xargs -P $(JOBS) -I{} sh -c \
 	  'out=$$(MPM_FULL=1 CK_RUN_SUITE=combinations CK_RUN_CASE="{}" $(UNIT) 2>&1); status=$$?; echo "{}: $$out"; exit $$status'
 
-#: check-instructions    instructions of a particle-step under callgrind, within 3 % of tests/instructions/expected.txt
+#: check-instructions    instructions of a particle-step under callgrind, within 1 % of tests/instructions/expected.txt
 #: update-instructions   takes what is counted as what is expected
 STEPS := $(BUILD)/tests/instructions/steps
 $(STEPS): tests/instructions/steps.c $(STATIC_LIB) Makefile tests/tests.mk

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Counts the instructions of a particle-step with callgrind and compares with expected.txt, within 3 %: a slower hot path
+# Counts the instructions of a particle-step with callgrind and compares with expected.txt, within 1 %: a slower hot path
 # shows on any machine, however loaded, and so does slower contact. Obstacles that nothing comes near may add 0.5 %.
 # `run.sh update` writes expected.txt instead.
 set -euo pipefail
@@ -60,8 +60,8 @@ while read -r name; do
   counted=$(per_particle_step "$name")
   if ! awk -v name="$name" -v wanted="${wanted:-0}" -v counted="${counted:-0}" 'BEGIN {
     change = wanted > 0 ? 100 * (counted / wanted - 1) : 100
-    bad = change > 3 || change < -3
-    printf "%-34s %10.1f %10.1f %+7.2f%%%s\n", name, wanted, counted, change, bad ? "  more than 3 % off" : ""
+    bad = change > 1 || change < -1
+    printf "%-34s %10.1f %10.1f %+7.2f%%%s\n", name, wanted, counted, change, bad ? "  more than 1 % off" : ""
     exit bad
   }'; then failed=1; fi
   count[$name]=$counted
