@@ -168,11 +168,11 @@ check-umat: all
 	@mkdir -p $(BUILD)/tests/scratch
 	@env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL $(TEST_ENVIRONMENT) bash tests/umat/run.sh
 
-#: check-examples        every example, with the numbers that it prints
-check-examples: examples
+#: check-examples        every example, with the numbers that it prints; EXAMPLES_RUN="two_disks dam_break" selects
+EXAMPLES_RUN ?=
+check-examples: $(if $(EXAMPLES_RUN),$(EXAMPLES_RUN:%=$(BUILD)/examples/%),examples)
 	@mkdir -p $(BUILD)/tests/scratch
-	@for script in $(sort $(wildcard tests/examples/*.sh)); do \
-	  echo "$$script"; $(TEST_ENVIRONMENT) bash $$script || exit 1; done
+	@$(TEST_ENVIRONMENT) EXAMPLES_RUN="$(EXAMPLES_RUN)" sh tests/examples/run.sh
 
 # With `make -j check-setup check` the tools come before the first file that needs them.
 ifneq (,$(filter check-setup,$(MAKECMDGOALS)))
@@ -187,8 +187,9 @@ check-setup:
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q check pkg-config g++ python3
 
 # Long runs of the method add nothing under a sanitizer but time, and all runs take longer.
-SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock wide" EXAMPLES="two_disks user_material host_threads staged_coupling cpp_block" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
+SANITIZED = CK_TIMEOUT_MULTIPLIER=5 CK_EXCLUDE_TAGS="long clock wide" EXAMPLES_RUN="$(SANITIZED_EXAMPLES)" $(MAKE) OPT=-O1 KERNEL_OPT=-O1 NO_UNDEFINED= check-unit check-examples
 #: check-asan            check-unit and check-examples under the address and the undefined-behaviour sanitizer
+check-asan: SANITIZED_EXAMPLES = two_disks user_material host_threads staged_coupling cpp_block
 check-asan:
 	+ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 $(SANITIZED) \
 	  BUILD=$(BUILD)-asan CPPFLAGS="$(CPPFLAGS) -DMPM_DEBUG" \
@@ -199,6 +200,7 @@ ONE_SET = ISAS=baseline CPPFLAGS="$(CPPFLAGS) -DMPM_BASELINE_ONLY"
 # The fork of each test would hide threads from the sanitizer.
 TSAN_SUITES ?= context executor threads parts rollback restart linalg
 #: check-tsan            the suites with threads under the thread sanitizer
+check-tsan: SANITIZED_EXAMPLES = host_threads
 check-tsan:
 	+CK_FORK=no TSAN_OPTIONS=halt_on_error=1 $(SANITIZED) SUITES="$(TSAN_SUITES)" $(ONE_SET) \
 	  BUILD=$(BUILD)-tsan CFLAGS="-g -fno-omit-frame-pointer -fsanitize=thread"

@@ -72,24 +72,31 @@ result_of() { # what: the hash that the last run has printed
 }
 # A run that goes on with other processes, and one of which a process dies, have the bits of one that does not stop.
 restart() { # folder
-  local states=$scratch/$package-$1/states at=$scratch/$package-$1/states-out wanted result status=0 from=- n last
+  scheme=explicit restart_of "$1" 30 17 # more than one sort
+  scheme=implicit restart_of "$1" 12 8
+}
+restart_of() { # folder, steps, the step in which a process is killed
+  local states="$scratch/$package-$1/states $scheme" at=$scratch/$package-$1/states-out wanted result status=0 from=- n last
   rm -rf "$at"
   mkdir -p "$at"
-  must "$1: states" 1 "$states" "$at/one.state" - 30
-  wanted=$(result_of "$1: states")
-  for n in 4 3 1; do
-    case $n in 4) last=10 ;; 3) last=20 ;; 1) last=30 ;; esac
-    must "$1: restart" $n "$states" "$at/run.state" "$from" $last
-    result=$(result_of "$1: restart")
-    from=$at/run.state
-  done
-  [ "$result" = "$wanted" ] || { echo "mpi: $package: $1: restart 4, 3, 1: $result, wanted $wanted" >&2; exit 1; }
-  run 3 "$states" "$at/killed.state" - 30 17 > "$scratch/log" 2>&1 || status=$?
-  case $status in 0 | 124) echo "mpi: $package: $1: a process was killed, and the others went on or waited ($status)" >&2; exit 1 ;; esac
-  must "$1: after a process was killed" 2 "$states" "$at/killed.state" "$at/killed.state" 30
-  grep -q '^from step 15$' "$scratch/log" || { echo "mpi: $package: $1: it does not go on from the last state" >&2; exit 1; }
-  result=$(result_of "$1: after a process was killed")
-  [ "$result" = "$wanted" ] || { echo "mpi: $package: $1: after a process was killed: $result, wanted $wanted" >&2; exit 1; }
+  # shellcheck disable=SC2086
+  {
+    must "$1: states, $scheme" 1 $states "$at/one.state" - "$2"
+    wanted=$(result_of "$1: states, $scheme")
+    for n in 4 3 1; do
+      case $n in 4) last=5 ;; 3) last=10 ;; 1) last=$2 ;; esac
+      must "$1: restart, $scheme" $n $states "$at/run.state" "$from" $last
+      result=$(result_of "$1: restart, $scheme")
+      from=$at/run.state
+    done
+    [ "$result" = "$wanted" ] || { echo "mpi: $package: $1: restart 4, 3, 1, $scheme: $result, wanted $wanted" >&2; exit 1; }
+    run 3 $states "$at/killed.state" - "$2" "$3" > "$scratch/log" 2>&1 || status=$?
+    case $status in 0 | 124) echo "mpi: $package: $1: a process was killed, and the others went on or waited ($status)" >&2; exit 1 ;; esac
+    must "$1: after a process was killed" 2 $states "$at/killed.state" "$at/killed.state" "$2"
+    grep -q "^from step $((($3 - 1) / 5 * 5))\$" "$scratch/log" || { echo "mpi: $package: $1: it does not go on from the last state" >&2; exit 1; }
+    result=$(result_of "$1: after a process was killed")
+  }
+  [ "$result" = "$wanted" ] || { echo "mpi: $package: $1: after a process was killed, $scheme: $result, wanted $wanted" >&2; exit 1; }
 }
 
 # MPI_TESTS=quick: one MPI, up to three processes, without small pieces and sanitizers

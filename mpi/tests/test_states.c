@@ -1,9 +1,10 @@
 /* A problem in as many parts as there are processes, which saves its state every five steps:
  *
- *   test_states STATE FROM LAST [DIES]
+ *   test_states explicit|implicit STATE FROM LAST [DIES]
  *
  * It goes on from the file FROM, or from the beginning where that is -, up to step LAST; in step DIES a
- * process is killed. It says from which step it goes on, and the hash of the state in the end. */
+ * process is killed. It says from which step it goes on, and the hash of the state in the end. A block flies
+ * in explicit steps; in implicit ones it falls on another, with friction. */
 #define _POSIX_C_SOURCE 200809L
 #include <mpm/mpm_mpi.h>
 
@@ -19,36 +20,56 @@ typedef struct world {
   mpm_context *context;
   mpm_grid *grid;
   mpm_material *material;
-  mpm_particles *set;
+  mpm_particles *set[2];
+  int32_t sets;
   mpm_stepper *stepper;
 } world;
 
-static void open_world(world *w, int32_t fills) {
+static void add_block(world *w, int32_t fills, const double low[2], const double high[2],
+                      const double speed[2]) {
+  const int32_t per_cell[] = {2, 2}, body = w->sets++;
+  mpm_particles **set = &w->set[body];
+  MUST(!mpm_particles_create(w->context, w->grid, w->material, set));
+  if (fills) {
+    MUST(!mpm_particles_fill_box(*set, low, high, per_cell, NULL, NULL));
+    MUST(!mpm_particles_set_all(*set, "velocity", MPM_F64, 2, speed));
+  }
+  MUST(!mpm_stepper_add(w->stepper, *set));
+  if (body) MUST(!mpm_stepper_set_body(w->stepper, *set, body));
+}
+
+static void open_world(world *w, int32_t is_implicit, int32_t fills) {
   const mpm_param law[] = {{"E", 1e5}, {"nu", 0.3}, {"density", 1000.0}};
-  const double low[] = {0.2, 0.2}, high[] = {0.7, 0.6}, speed[] = {6.0, 3.0};
-  const int32_t per_cell[] = {2, 2};
   mpm_context_desc c;
   mpm_grid_desc g;
   mpm_stepper_desc s;
+  mpm_contact_desc meets;
+  const int32_t cells = is_implicit ? 32 : 64;
   MUST(!mpm_context_desc_init(&c, sizeof c) && !mpm_grid_desc_init(&g, sizeof g));
-  MUST(!mpm_stepper_desc_init(&s, sizeof s) && !mpm_mpi_open(MPI_COMM_WORLD, &c, &w->mpi));
+  MUST(!mpm_stepper_desc_init(&s, sizeof s) && !mpm_contact_desc_init(&meets, sizeof meets));
+  MUST(!mpm_mpi_open(MPI_COMM_WORLD, &c, &w->mpi));
   g.dim = 2;
-  for (int32_t k = 0; k < 2; ++k) g.cells[k] = 64, g.spacing[k] = 1.0 / 64.0;
-  s.transfer = MPM_APIC;
-  s.scheme = MPM_MUSL;
+  for (int32_t k = 0; k < 2; ++k) g.cells[k] = cells, g.spacing[k] = 1.0 / cells;
+  s.transfer = is_implicit ? MPM_FLIP : MPM_APIC;
+  s.scheme = is_implicit ? MPM_NEWMARK : MPM_MUSL;
   MUST(!mpm_context_create(&c, &w->context) && !mpm_grid_create(w->context, &g, &w->grid));
   MUST(!mpm_material_create(w->context, "neo_hookean", law, 3, &w->material));
-  MUST(!mpm_particles_create(w->context, w->grid, w->material, &w->set));
-  if (fills) {
-    MUST(!mpm_particles_fill_box(w->set, low, high, per_cell, NULL, NULL));
-    MUST(!mpm_particles_set_all(w->set, "velocity", MPM_F64, 2, speed));
+  MUST(!mpm_stepper_create(w->context, w->grid, &s, &w->stepper));
+  w->sets = 0;
+  if (is_implicit) {
+    meets.friction = 0.3;
+    add_block(w, fills, (double[]){0.0625, 0.125}, (double[]){0.9375, 0.375}, (double[]){0.0, 0.0});
+    add_block(w, fills, (double[]){0.25, 0.375}, (double[]){0.625, 0.5625}, (double[]){0.5, -1.0});
+    MUST(!mpm_stepper_set_contact(w->stepper, 0, 1, &meets));
+  } else {
+    add_block(w, fills, (double[]){0.2, 0.2}, (double[]){0.7, 0.6}, (double[]){6.0, 3.0});
   }
-  MUST(!mpm_stepper_create(w->context, w->grid, &s, &w->stepper) && !mpm_stepper_add(w->stepper, w->set));
   for (int32_t face = 0; face < 4; ++face) MUST(!mpm_stepper_set_wall(w->stepper, face, MPM_WALL_SLIP, 0.0));
 }
 
 static void close_world(world *w) {
-  MUST(!mpm_stepper_destroy(w->stepper) && !mpm_particles_destroy(w->set));
+  MUST(!mpm_stepper_destroy(w->stepper));
+  for (int32_t m = 0; m < w->sets; ++m) MUST(!mpm_particles_destroy(w->set[m]));
   MUST(!mpm_material_destroy(w->material) && !mpm_grid_destroy(w->grid));
   MUST(!mpm_context_destroy(w->context) && !mpm_mpi_close(w->mpi));
 }
@@ -83,21 +104,22 @@ int main(int argc, char **argv) {
   MPI_Init(&argc, &argv);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
-  MUST(argc >= 4);
-  const int32_t from = strcmp(argv[2], "-") != 0;
-  const int64_t last = atoi(argv[3]), dies = argc > 4 ? atoi(argv[4]) : -1;
-  open_world(&w, !from);
+  MUST(argc >= 5);
+  const int32_t is_implicit = !strcmp(argv[1], "implicit"), from = strcmp(argv[3], "-") != 0;
+  const int64_t last = atoi(argv[4]), dies = argc > 5 ? atoi(argv[5]) : -1;
+  open_world(&w, is_implicit, !from);
   if (from) {
-    MUST(!mpm_mpi_load(w.mpi, w.stepper, argv[2]));
-    refuses(&w, argv[2], rank);
+    MUST(!mpm_mpi_load(w.mpi, w.stepper, argv[3]));
+    refuses(&w, argv[3], rank);
   }
   MUST(!mpm_stepper_info(w.stepper, &now));
   if (!rank) printf("from step %" PRId64 "\n", now.step);
   while (now.step < last) {
     if (now.step + 1 == dies && rank == size - 1) raise(SIGKILL);
-    MUST(!mpm_step(w.stepper, 2e-4 * (double)(1 + now.step % 3), &now));
-    if (now.step % 5 == 0) MUST(!mpm_mpi_save(w.mpi, w.stepper, argv[1]));
+    MUST(!mpm_step(w.stepper, (is_implicit ? 4e-4 : 2e-4) * (double)(1 + now.step % 3), &now));
+    if (now.step % 5 == 0) MUST(!mpm_mpi_save(w.mpi, w.stepper, argv[2]));
   }
+  MUST(!is_implicit || now.contact_nodes > 0);
   MUST(!mpm_state_hash(w.stepper, &hash));
   if (!rank)
     printf("result: %016" PRIx64 ", %" PRId64 " sorts, kinetic energy %.17g\n", hash, now.resorts,

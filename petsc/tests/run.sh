@@ -87,5 +87,5 @@ if find "$prefix" -type f -o -type l | grep .; then
   exit 1
 fi
 "$MAKE" -s BUILD="$BUILD" CC="$CC" "$BUILD/examples/petsc_solver"
-BUILD=$BUILD EXAMPLES=petsc_solver sh tests/examples/run.sh
+BUILD=$BUILD EXAMPLES_RUN=petsc_solver sh tests/examples/run.sh
 echo 'petsc: installed, and the example: ok'

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs every example in a scratch directory and checks the result line that it prints, and the files of two_disks.
-#   BUILD     where the built library lives; the examples are in $BUILD/examples (default: build)
-#   EXAMPLES  those to run (default: all)
+#   BUILD         where the built library lives; the examples are in $BUILD/examples (default: build)
+#   EXAMPLES_RUN  those to run (default: all)
 set -u
 
 build=$(cd "${BUILD:-build}" && pwd) || exit 1
@@ -9,6 +9,7 @@ scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch" || exit 1
 failures=0
+ran=
 
 fail() {
   echo "FAIL $*"
@@ -50,8 +51,8 @@ check() {
 }
 
 wanted() {
-  case " ${EXAMPLES:-$1} " in
-  *" $1 "*) ;;
+  case " ${EXAMPLES_RUN:-$1} " in
+  *" $1 "*) ran="$ran $1 " ;;
   *) return 1 ;;
   esac
 }
@@ -363,6 +364,12 @@ if wanted cpp_block; then
   check "weight" "from weight by" 0 0.01
 fi
 
+for name in ${EXAMPLES_RUN:-two_disks}; do
+  case "$ran" in
+  *" $name "*) ;;
+  *) fail "$name: nothing was run" ;;
+  esac
+done
 [ "$failures" -eq 0 ] || {
   echo "$failures checks of the examples failed"
   exit 1
