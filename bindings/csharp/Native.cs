@@ -515,8 +515,8 @@ namespace Mpm {
     /// has spent in steps since blocks were last given to parts, those of waiting left out, are what its blocks weigh
     /// together, each in proportion to that.</summary>
     public int measure;
-    /// <summary>Blocks are given to parts anew when the largest weight of a part is this many times the mean, at
-    /// least 1; infinity: never.</summary>
+    /// <summary>Blocks are given to parts anew, at a sort, when the largest weight of a part is this many times the
+    /// mean, at least 1; infinity: never.</summary>
     public double limit;
     /// <summary>What a block costs beside its particles, in particles, from 0 to 1e6.</summary>
     public double block_weight;
@@ -552,7 +552,7 @@ namespace Mpm {
     public long cuts;
     /// <summary>largest weight of a part over the mean at the last sort, the same on all parts.</summary>
     public double imbalance;
-    /// <summary>packing what is sent.</summary>
+    /// <summary>packing what is sent, and unpacking particles.</summary>
     public double seconds_packing;
     /// <summary>in receive.</summary>
     public double seconds_waiting;

@@ -377,8 +377,8 @@ module mpm
     !! steps since blocks were last given to parts, those of waiting left out, are what its blocks weigh together, each
     !! in proportion to that.
     integer(c_int32_t) :: measure
-    !> Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least 1;
-    !! infinity: never.
+    !> Blocks are given to parts anew, at a sort, when the largest weight of a part is this many times the mean, at
+    !! least 1; infinity: never.
     real(c_double) :: limit
     !> What a block costs beside its particles, in particles, from 0 to 1e6.
     real(c_double) :: block_weight
@@ -406,7 +406,7 @@ module mpm
     integer(c_int64_t) :: cuts
     !> largest weight of a part over the mean at the last sort, the same on all parts.
     real(c_double) :: imbalance
-    !> packing what is sent.
+    !> packing what is sent, and unpacking particles.
     real(c_double) :: seconds_packing
     !> in receive.
     real(c_double) :: seconds_waiting

@@ -290,8 +290,9 @@ export interface BalanceDesc {
    */
   measure?: number | boolean;
   /**
-   * Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least 1;
-   * infinity: never. 0 (default): 1.1.
+   * Blocks are given to parts anew, at a sort, when the largest weight of a part is this many times the mean,
+   * at least 1; infinity: never. 0 (default): 1.1, and only when the steps since the last time would have
+   * gained more by it than it costs to move the particles.
    */
   limit?: number;
   /**

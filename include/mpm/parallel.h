@@ -119,8 +119,9 @@ typedef struct mpm_balance_desc {
    * spent in steps since blocks were last given to parts, those of waiting left out, are what its blocks
    * weigh together, each in proportion to that. */
   int32_t measure;
-  /** Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least
-   * 1; infinity: never. 0 (default): 1.1. */
+  /** Blocks are given to parts anew, at a sort, when the largest weight of a part is this many times the
+   * mean, at least 1; infinity: never. 0 (default): 1.1, and only when the steps since the last time would
+   * have gained more by it than it costs to move the particles. */
   double limit;
   /** What a block costs beside its particles, in particles, from 0 to 1e6. 0 (default): 60, about what the
    * sums of its nodes take. */
@@ -150,7 +151,7 @@ typedef struct mpm_parallel_info {
   int64_t moved;        /**< such particles */
   int64_t cuts;         /**< how often blocks were given to parts anew */
   double imbalance;     /**< largest weight of a part over the mean at the last sort, the same on all parts */
-  double seconds_packing;  /**< packing what is sent */
+  double seconds_packing;  /**< packing what is sent, and unpacking particles */
   double seconds_waiting;  /**< in receive */
   double seconds_reducing; /**< in reduce and gather */
 } mpm_parallel_info;

@@ -3,6 +3,10 @@
 
 #include <string.h>
 
+/* What the library does where the host has set no limit: the imbalance at which a cut is looked for, and
+ * the steps of a particle that take as long as one thread of several takes to pack and to unpack it. */
+static const double usual_limit = 1.1, move_steps = 10.0;
+
 int32_t mpmi_cut_owner(const mpmi_parts *parts, uint64_t key) {
   int32_t low = 0, high = mpmi_part_count(parts);
   while (high - low > 1) {
@@ -33,7 +37,8 @@ static void weigh_below(const mpmi_blocks *blocks, const int64_t *weight, int64_
   for (int64_t r = 1; r < count; ++r) below[r] += below[r - 1];
 }
 
-/* Finds the ranges by bisection: part r begins where the weight before it is r / parts of the total. */
+/* Finds the ranges by bisection: part r + 1 begins at low[r], where the weight before it is r + 1 / parts of
+ * the total. */
 static mpm_status bisect(mpmi_parts *parts, const mpmi_blocks *blocks, const int64_t *weight, double total,
                          uint64_t top, uint64_t *low, uint64_t *high, uint64_t *middle) {
   const int32_t count = mpmi_part_count(parts);
@@ -55,10 +60,34 @@ static mpm_status bisect(mpmi_parts *parts, const mpmi_blocks *blocks, const int
       open |= high[r] - low[r] > 1;
     }
   }
+  return MPM_OK;
+}
+
+static void adopt(mpmi_parts *parts, const uint64_t *low) {
+  const int32_t count = mpmi_part_count(parts);
   for (int32_t r = 1; r < count; ++r) parts->first[r] = low[r - 1];
   parts->first[0] = 0;
   parts->first[count] = UINT64_MAX;
-  return MPM_OK;
+}
+
+/* Whether the steps since the last cut would have gained more with the next one than the particles cost that
+ * it moves. Whatever comes, no more than twice the time is lost that the best times for cuts would have
+ * lost. The parts have the ranges of the next cut, `present` those of the last. */
+static mpm_status pays(mpmi_parts *parts, const mpmi_blocks *blocks, const int64_t *weight,
+                       const uint64_t *present, int64_t largest, int32_t *so) {
+  const int32_t count = mpmi_part_count(parts);
+  int64_t *next = parts->owner_count, most[2] = {0, parts->steps}, largest_next = 0;
+  memset(next, 0, (size_t)count * sizeof *next);
+  for (int64_t i = 0; i < blocks->count; ++i) {
+    const int32_t owner = mpmi_cut_owner(parts, blocks->key[i]);
+    next[owner] += weight[i];
+    if (blocks->key[i] < present[owner] || blocks->key[i] >= present[owner + 1]) most[0] += weight[i];
+  }
+  mpm_status status = mpmi_reduce_parts(parts->context, MPM_REDUCE_SUM, count, next);
+  if (!status) status = mpmi_reduce_parts(parts->context, MPM_REDUCE_MAX, 2, most);
+  for (int32_t r = 0; r < count; ++r) largest_next = next[r] > largest_next ? next[r] : largest_next;
+  *so = (double)(largest - largest_next) * (double)most[1] > move_steps * (double)most[0];
+  return status;
 }
 
 mpm_status mpmi_cut_blocks(mpmi_parts *parts, const mpmi_blocks *blocks, const int64_t *weight) {
@@ -76,19 +105,29 @@ mpm_status mpmi_cut_blocks(mpmi_parts *parts, const mpmi_blocks *blocks, const i
     return status;
   parts->is_empty = total == 0;
   parts->info.imbalance = total > 0 ? (double)largest[0] * (double)count / (double)total : 1.0;
-  if (parts->is_cut && parts->info.imbalance <= parts->balance.limit) return MPM_OK;
-  const size_t bytes = mpmi_bytes(3 * count, sizeof(uint64_t));
-  uint64_t *scratch = mpmi_alloc(c, bytes);
-  if ((status = mpmi_agree(c, scratch ? MPM_OK : MPM_E_NOMEM))) {
-    mpmi_free(c, scratch, bytes);
+  const double limit = parts->balance.limit > 0.0 ? parts->balance.limit : usual_limit;
+  if (parts->is_cut && parts->info.imbalance <= limit) return MPM_OK;
+  const size_t bytes = mpmi_bytes(4 * count + 1, sizeof(uint64_t));
+  uint64_t *low = mpmi_alloc(c, bytes), *present = low ? low + 3 * count : NULL;
+  int32_t is_next = 1;
+  if ((status = mpmi_agree(c, low ? MPM_OK : MPM_E_NOMEM))) {
+    mpmi_free(c, low, bytes);
     return status;
   }
-  status = bisect(parts, blocks, weight, (double)total, (uint64_t)largest[1] + 1, scratch, scratch + count,
-                  scratch + 2 * count);
-  mpmi_free(c, scratch, bytes);
-  if (status) return status;
+  status = bisect(parts, blocks, weight, (double)total, (uint64_t)largest[1] + 1, low, low + count,
+                  low + 2 * count);
+  if (!status) {
+    memcpy(present, parts->first, ((size_t)count + 1) * sizeof *present);
+    adopt(parts, low);
+    if (parts->is_cut && !(parts->balance.limit > 0.0))
+      status = pays(parts, blocks, weight, present, largest[0], &is_next);
+    if (status || !is_next) memcpy(parts->first, present, ((size_t)count + 1) * sizeof *present);
+  }
+  mpmi_free(c, low, bytes);
+  if (status || !is_next) return status;
   parts->is_cut = 1;
   ++parts->info.cuts;
+  parts->steps = 0;
   mpmi_time_reset(parts);
   return MPM_OK;
 }

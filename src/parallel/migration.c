@@ -46,81 +46,76 @@ static int64_t bytes_of(const mpm_particles *set, int64_t n) {
   return bytes;
 }
 
-typedef struct packing {
-  mpmi_parts *parts;
-  const int32_t *owner; /* [blocks] by provisional number */
-  int32_t to;
-} packing;
-
-/* The blocks of the slots are where mpmi_sort_blocks() has put them. */
-static int32_t goes_to(const packing *p, const mpm_particles *set, int64_t slot) {
-  const uint32_t *block = mpmi_sort_blocks_of_slots(set);
-  return mpmi_i64(set, MPMI_ID, 0)[slot] < 0 ? -1 : p->owner[block[slot]];
+/* The part to which a particle goes, -1 for a hole. The blocks of the slots are where mpmi_sort_blocks() has
+ * put them. */
+static int32_t goes_to(const int32_t *owner, const mpm_particles *set, int64_t slot) {
+  return mpmi_i64(set, MPMI_ID, 0)[slot] < 0 ? -1 : owner[mpmi_sort_blocks_of_slots(set)[slot]];
 }
 
-static void pack_field(const packing *p, const mpm_particles *set, const mpmi_field *field, int64_t n,
+static void pack_field(const mpm_particles *set, const mpmi_field *field, int64_t n, const int64_t *slot,
                        char *to) {
   const size_t size = mpmi_type_size(field->type);
   for (int32_t c = 0; c < field->components; ++c) {
     const char *from = (const char *)field->data[0] + (size_t)(c * set->ld) * size;
     char *at = to + c * padded_bytes(field, n);
-    for (int64_t s = 0; s < set->slots; ++s) {
-      if (goes_to(p, set, s) != p->to) continue;
-      memcpy(at, from + (size_t)s * size, size);
-      at += size;
-    }
+    for (int64_t i = 0; i < n; ++i) memcpy(at + (size_t)i * size, from + (size_t)slot[i] * size, size);
   }
 }
 
-static mpm_status pack_set(const packing *p, const mpm_particles *set, int64_t n) {
-  mpmi_buffer *buffer = &p->parts->out[p->to];
-  char *at = mpmi_buffer_take(p->parts->context, buffer, bytes_of(set, n));
+/* Adds n particles of set number m to the message of a part. */
+static mpm_status pack_set(mpmi_parts *parts, int32_t to, int32_t m, const mpm_particles *set, int64_t n,
+                           const int64_t *slot) {
+  const int64_t head[2] = {m, n};
+  char *at = mpmi_buffer_take(parts->context, &parts->out[to], (int64_t)sizeof head + bytes_of(set, n));
   if (!at) return MPM_E_NOMEM;
+  memcpy(at, head, sizeof head);
+  at += sizeof head;
   for (int32_t f = 0; f < set->field_count; ++f) {
     if (!set->field[f].present) continue;
-    pack_field(p, set, &set->field[f], n, at);
+    pack_field(set, &set->field[f], n, slot, at);
     at += set->field[f].components * padded_bytes(&set->field[f], n);
   }
   return MPM_OK;
 }
 
-/* Notes the slots that are left; the memory in which their blocks stand is needed for others later. */
-static mpm_status note_leaving(const packing *p, mpmi_moving_set *of) {
-  const int32_t me = p->parts->context->transport.part;
-  int64_t *slot = mpmi_buffer_take(p->parts->context, &p->parts->gone, of->leave * (int64_t)sizeof *slot);
-  if (!slot) return MPM_E_NOMEM;
+/* Lists the slots that are left, part by part: end[r] is behind those that go to part r. They are kept,
+ * because the memory in which their blocks stand is needed for others later. */
+static mpm_status list_leaving(mpmi_parts *parts, const int32_t *owner, mpmi_moving_set *of, int64_t *end,
+                               const int64_t **slots) {
+  const int32_t all = mpmi_part_count(parts), me = parts->context->transport.part;
+  memset(end, 0, (size_t)all * sizeof *end);
   for (int64_t s = 0; s < of->set->slots; ++s) {
-    const int32_t to = goes_to(p, of->set, s);
-    if (to >= 0 && to != me) *slot++ = s;
+    const int32_t to = goes_to(owner, of->set, s);
+    if (to >= 0 && to != me) ++end[to];
   }
+  of->leave = 0;
+  for (int32_t r = 0; r < all; ++r) {
+    const int64_t n = end[r];
+    end[r] = of->leave;
+    of->leave += n;
+  }
+  int64_t *slot = mpmi_buffer_take(parts->context, &parts->gone, of->leave * (int64_t)sizeof *slot);
+  if (!slot) return MPM_E_NOMEM;
+  for (int64_t s = 0; s < of->set->slots && of->leave; ++s) {
+    const int32_t to = goes_to(owner, of->set, s);
+    if (to >= 0 && to != me) slot[end[to]++] = s;
+  }
+  *slots = slot;
   return MPM_OK;
 }
 
-/* Counts what goes where, and packs that. */
+/* Packs what goes elsewhere. */
 static mpm_status pack(mpmi_parts *parts, const int32_t *owner, mpmi_moving_set *sets, int32_t count) {
-  const int32_t all = mpmi_part_count(parts), me = parts->context->transport.part;
-  int64_t *n = parts->owner_count;
-  packing p = {parts, owner, 0};
+  const int32_t all = mpmi_part_count(parts);
+  int64_t *end = parts->owner_count;
+  const int64_t *slot = NULL;
   parts->gone.used = 0;
   for (int32_t r = 0; r < all; ++r) parts->out[r].used = 0;
   for (int32_t m = 0; m < count; ++m) {
-    sets[m].leave = 0;
-    memset(n, 0, (size_t)all * sizeof *n);
-    for (int64_t s = 0; s < sets[m].set->slots; ++s) {
-      const int32_t to = goes_to(&p, sets[m].set, s);
-      if (to >= 0) ++n[to];
-    }
-    for (p.to = 0; p.to < all; ++p.to) {
-      if (p.to == me || !n[p.to]) continue;
-      const int64_t head[2] = {m, n[p.to]};
-      void *at = mpmi_buffer_take(parts->context, &parts->out[p.to], sizeof head);
-      if (!at) return MPM_E_NOMEM;
-      memcpy(at, head, sizeof head);
-      const mpm_status status = pack_set(&p, sets[m].set, n[p.to]);
-      if (status) return status;
-      sets[m].leave += n[p.to];
-    }
-    const mpm_status status = note_leaving(&p, &sets[m]);
+    mpm_status status = list_leaving(parts, owner, &sets[m], end, &slot);
+    int64_t begin = 0;
+    for (int32_t r = 0; r < all && !status; begin = end[r++])
+      if (end[r] > begin) status = pack_set(parts, r, m, sets[m].set, end[r] - begin, slot + begin);
     if (status) return status;
   }
   return MPM_OK;
@@ -201,10 +196,12 @@ static void carry_out(mpmi_parts *parts, const mpmi_arrivals *in, mpmi_moving_se
 static mpm_status move_owned(mpmi_parts *parts, const mpmi_blocks *blocks, int32_t *owner,
                              mpmi_moving_set *sets, int32_t count, int64_t *moved) {
   mpmi_arrivals in;
+  double started = mpmi_seconds();
   for (int64_t i = 0; i < blocks->count; ++i) owner[i] = mpmi_cut_owner(parts, blocks->key[i]);
   mpm_status status = pack(parts, owner, sets, count);
   for (int32_t r = 0; r < mpmi_part_count(parts) && status; ++r) parts->out[r].used = 0;
   for (int32_t r = 0; r < mpmi_part_count(parts); ++r) parts->info.bytes_moved += parts->out[r].used;
+  parts->info.seconds_packing += mpmi_seconds() - started;
   const mpm_status lost = mpmi_parts_exchange(parts, &in);
   if (lost) return lost;
   if (!status) status = make_room(parts, &in, sets, count);
@@ -213,7 +210,9 @@ static mpm_status move_owned(mpmi_parts *parts, const mpmi_blocks *blocks, int32
     parts->info.moved += sets[m].leave;
     *moved += sets[m].leave + sets[m].arrive;
   }
+  started = mpmi_seconds();
   if (*moved) carry_out(parts, &in, sets, count);
+  parts->info.seconds_packing += mpmi_seconds() - started;
   return MPM_OK;
 }
 

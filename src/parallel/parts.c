@@ -114,7 +114,6 @@ mpm_status mpmi_parts_receive(mpmi_parts *parts, mpmi_arrivals *in) {
 mpm_balance_desc mpmi_balance_of(const mpm_balance_desc *desc) {
   mpm_balance_desc d = {.struct_size = sizeof d};
   if (desc) d = *desc;
-  if (d.limit == 0.0) d.limit = 1.1;
   if (d.block_weight == 0.0) d.block_weight = MPMI_BLOCK_WEIGHT;
   return d;
 }

@@ -104,13 +104,14 @@ typedef struct mpmi_parts {
   int64_t guest_capacity;
   int64_t leave_elsewhere;  /* particles that leave the grid on other parts in the step under way */
   int32_t is_echo;          /* the step fails here because it has failed on a partner */
-  mpm_balance_desc balance; /* with what 0 stands for */
+  mpm_balance_desc balance; /* with what 0 stands for, but in limit */
+  int64_t steps;            /* since blocks were given to parts */
   double busy;              /* seconds of steps since blocks were given to parts, without waiting */
   double since; /* when the call under way began, or was last counted in these, by the same clock */
   mpm_parallel_info info;
 } mpmi_parts;
 
-/* A description with the defaults in place of 0; NULL: all of them. */
+/* A description with the defaults in place of 0, but for limit; NULL: all of them. */
 mpm_balance_desc mpmi_balance_of(const mpm_balance_desc *desc);
 mpm_status mpmi_parts_create(mpm_context *context, const mpm_grid *grid, mpmi_parts **out);
 void mpmi_parts_destroy(mpmi_parts *parts);

@@ -86,8 +86,10 @@ static void begin(mpm_stepper *s, double dt, int32_t staged) {
       .info = {.dt = dt, .set = -1, .particle = -1, .node = -1, .active_nodes = history->last.active_nodes}};
   mpmi_reports_clear(&s->work, s->settings.tasks);
   mpmi_time_begin(s->layout.parts);
-  if (mpmi_is_shared(s))
+  if (mpmi_is_shared(s)) {
     s->layout.parts->exchanges = s->layout.parts->is_echo = s->layout.parts->has_counted = 0;
+    ++s->layout.parts->steps;
+  }
 }
 
 /* Brings sets, layout and memory up to date for the step. */

@@ -19,6 +19,13 @@ static mpm_status fly_balanced(world *w, const scene *is, outcome *found) {
   return status ? status : run_steps(w);
 }
 
+/* With the default, or with a limit: then it is no matter what a cut gains. */
+static mpm_status fly_balanced_by(world *w, const scene *is, outcome *found) {
+  const mpm_balance_desc limited = {sizeof limited, 0, 1.1, 0.0};
+  const mpm_status status = mpm_stepper_set_balance(w->stepper, is->seed ? &limited : NULL);
+  return status ? status : fly_through(w, is, found);
+}
+
 START_TEST(balance_changes_no_bit) {
   scene is = scene_of(2, 4 * WIDE, set_up_body), many;
   is.desc.grid.periodic[0] = 1;
@@ -35,6 +42,28 @@ START_TEST(balance_changes_no_bit) {
     ck_assert_int_eq(cuts, 1);
   else if (balances[_i].limit < 1.1)
     ck_assert_int_gt(cuts, sorts / 2);
+}
+END_TEST
+
+START_TEST(default_cuts_where_it_pays) {
+  static scene is[2];
+  for (int32_t k = 0; k < 2; ++k) {
+    parts_plan plan;
+    memset(&plan, 0, sizeof plan);
+    is[k] = scene_of(2, 6 * WIDE, set_up_body);
+    is[k].desc.grid.periodic[0] = 1;
+    is[k].run = fly_balanced_by;
+    is[k].speed = 30.0;
+    is[k].seed = (uint64_t)k;
+    ck_assert_int_eq(parts_run(5, live, &is[k], &plan), 0);
+  }
+  const mpm_parallel_info *usual = &is[0].found[0].parallel, *limited = &is[1].found[0].parallel;
+  show("cuts %lld and %lld, imbalance %g and %g\n", (long long)usual->cuts, (long long)limited->cuts,
+       usual->imbalance, limited->imbalance);
+  ck_assert_uint_eq(is[0].found[0].hash, is[1].found[0].hash);
+  ck_assert_int_gt(usual->cuts, 4);
+  ck_assert_int_gt(limited->cuts, 3 * usual->cuts);
+  ck_between("imbalance", usual->imbalance, 1.0, 1.2);
 }
 END_TEST
 
@@ -236,6 +265,7 @@ TCase *shared_balance_case(void) {
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, balance_changes_no_bit, 0, 4);
   tcase_add_test(tests, balance_stays_with_a_state);
+  tcase_add_test(tests, default_cuts_where_it_pays);
   tcase_add_test(tests, balance_is_alike);
   tcase_add_test(tests, balance_is_checked);
   return tests;

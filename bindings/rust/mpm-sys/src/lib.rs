@@ -787,8 +787,9 @@ pub struct mpm_balance_desc {
     /// steps since blocks were last given to parts, those of waiting left out, are what its blocks weigh together, each
     /// in proportion to that.
     pub measure: i32,
-    /// Blocks are given to parts anew when the largest weight of a part is this many times the mean, at least 1;
-    /// infinity: never. 0 (default): 1.1.
+    /// Blocks are given to parts anew, at a sort, when the largest weight of a part is this many times the mean, at least
+    /// 1; infinity: never. 0 (default): 1.1, and only when the steps since the last time would have gained more by it
+    /// than it costs to move the particles.
     pub limit: f64,
     /// What a block costs beside its particles, in particles, from 0 to 1e6. 0 (default): 60, about what the sums of its
     /// nodes take.
@@ -833,7 +834,7 @@ pub struct mpm_parallel_info {
     pub cuts: i64,
     /// largest weight of a part over the mean at the last sort, the same on all parts
     pub imbalance: f64,
-    /// packing what is sent
+    /// packing what is sent, and unpacking particles
     pub seconds_packing: f64,
     /// in receive
     pub seconds_waiting: f64,
