@@ -1,10 +1,14 @@
 /* A problem in as many parts as there are processes, which saves its state every five steps:
  *
- *   test_states explicit|implicit STATE FROM LAST [DIES]
+ *   test_states explicit|implicit STATE FROM LAST [dies STEP|fails]
+ *   test_states explicit|implicit - - LAST
  *
- * It goes on from the file FROM, or from the beginning where that is -, up to step LAST; in step DIES a
- * process is killed. It says from which step it goes on, and the hash of the state in the end. A block flies
- * in explicit steps; in implicit ones it falls on another, with friction. */
+ * It goes on from the file FROM, or from the beginning where that is -, up to step LAST. A process is killed
+ * in step STEP; or each step is refused by the last process alone before it is made. It says from which step
+ * it goes on, and the hash of the state in the end. Some processes have two threads. A block flies in
+ * explicit steps; in implicit ones it falls on another, with friction.
+ *
+ * Without STATE the problem has no transport, and one thread: what it says is wanted of all others. */
 #define _POSIX_C_SOURCE 200809L
 #include <mpm/mpm_mpi.h>
 
@@ -23,7 +27,14 @@ typedef struct world {
   mpm_particles *set[2];
   int32_t sets;
   mpm_stepper *stepper;
+  mpm_status answer; /* of the force callback on this process */
 } world;
+
+static mpm_status push(void *user, const mpm_particle_batch *b, double *add) {
+  const world *w = user;
+  for (int64_t i = 0; i < b->n; ++i) add[b->ld + i] -= 2.0 * b->mass[i] * b->position[i];
+  return w->answer;
+}
 
 static void add_block(world *w, int32_t fills, const double low[2], const double high[2],
                       const double speed[2]) {
@@ -38,7 +49,7 @@ static void add_block(world *w, int32_t fills, const double low[2], const double
   if (body) MUST(!mpm_stepper_set_body(w->stepper, *set, body));
 }
 
-static void open_world(world *w, int32_t is_implicit, int32_t fills) {
+static void open_world(world *w, int32_t is_implicit, int32_t is_alone, int32_t fills) {
   const mpm_param law[] = {{"E", 1e5}, {"nu", 0.3}, {"density", 1000.0}};
   mpm_context_desc c;
   mpm_grid_desc g;
@@ -47,15 +58,23 @@ static void open_world(world *w, int32_t is_implicit, int32_t fills) {
   const int32_t cells = is_implicit ? 32 : 64;
   MUST(!mpm_context_desc_init(&c, sizeof c) && !mpm_grid_desc_init(&g, sizeof g));
   MUST(!mpm_stepper_desc_init(&s, sizeof s) && !mpm_contact_desc_init(&meets, sizeof meets));
-  MUST(!mpm_mpi_open(MPI_COMM_WORLD, &c, &w->mpi));
+  *w = (world){.mpi = NULL};
+  if (!is_alone) {
+    int rank;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    c.concurrency = 2 - rank % 2;
+    MUST(!mpm_mpi_open(MPI_COMM_WORLD, &c, &w->mpi));
+  }
   g.dim = 2;
   for (int32_t k = 0; k < 2; ++k) g.cells[k] = cells, g.spacing[k] = 1.0 / cells;
   s.transfer = is_implicit ? MPM_FLIP : MPM_APIC;
   s.scheme = is_implicit ? MPM_NEWMARK : MPM_MUSL;
+  /* what MPM_SOLVER_AUTO is with a transport and friction; without a transport it would be a factor */
+  if (is_alone && is_implicit) s.linear_solver = MPM_SOLVER_GMRES;
   MUST(!mpm_context_create(&c, &w->context) && !mpm_grid_create(w->context, &g, &w->grid));
   MUST(!mpm_material_create(w->context, "neo_hookean", law, 3, &w->material));
   MUST(!mpm_stepper_create(w->context, w->grid, &s, &w->stepper));
-  w->sets = 0;
+  MUST(!mpm_stepper_set_force(w->stepper, push, w));
   if (is_implicit) {
     meets.friction = 0.3;
     add_block(w, fills, (double[]){0.0625, 0.125}, (double[]){0.9375, 0.375}, (double[]){0.0, 0.0});
@@ -96,18 +115,41 @@ static void refuses(world *w, const char *path, int rank) {
   if (!rank) remove(damaged);
 }
 
+/* What the last process alone refuses, or wants smaller, all refuse with its sentence; nothing changes. */
+static void refuse_step(world *w, double dt, int rank, int last) {
+  const mpm_status answer[] = {-3, 7}, wanted[] = {MPM_E_CALLBACK, MPM_CUT_DT};
+  const char *words[] = {"the force callback returned -3", "the force callback returned 7"};
+  char text[1000], with_part[1050];
+  for (int k = 0; k < 2; ++k) {
+    mpm_step_info info = {.struct_size = sizeof info};
+    uint64_t before, after;
+    MUST(!mpm_state_hash(w->stepper, &before));
+    if (rank == last) w->answer = answer[k];
+    MUST(mpm_step(w->stepper, dt, &info) == wanted[k]);
+    w->answer = MPM_OK;
+    MUST(info.callback_status == answer[k]);
+    snprintf(text, sizeof text, "%s", mpm_last_error(w->context));
+    MPI_Bcast(text, sizeof text, MPI_CHAR, last, MPI_COMM_WORLD);
+    MUST_SAY(text, words[k]);
+    snprintf(with_part, sizeof with_part, "part %d: %s", last, strstr(text, words[k]));
+    MUST(rank == last || !strcmp(mpm_last_error(w->context), with_part));
+    MUST(!mpm_state_hash(w->stepper, &after) && before == after);
+  }
+}
+
 int main(int argc, char **argv) {
-  int rank, size;
+  int rank, size, level;
   world w;
   uint64_t hash;
   mpm_step_info now = {.struct_size = sizeof now};
-  MPI_Init(&argc, &argv);
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
-  MUST(argc >= 5);
-  const int32_t is_implicit = !strcmp(argv[1], "implicit"), from = strcmp(argv[3], "-") != 0;
-  const int64_t last = atoi(argv[4]), dies = argc > 5 ? atoi(argv[5]) : -1;
-  open_world(&w, is_implicit, !from);
+  MUST(argc >= 5 && level >= MPI_THREAD_FUNNELED);
+  const int32_t is_implicit = !strcmp(argv[1], "implicit"), is_alone = !strcmp(argv[2], "-");
+  const int32_t from = strcmp(argv[3], "-") != 0, fails = argc > 5 && !strcmp(argv[5], "fails");
+  const int64_t last = atoi(argv[4]), dies = argc > 6 ? atoi(argv[6]) : -1;
+  open_world(&w, is_implicit, is_alone, !from);
   if (from) {
     MUST(!mpm_mpi_load(w.mpi, w.stepper, argv[3]));
     refuses(&w, argv[3], rank);
@@ -115,9 +157,11 @@ int main(int argc, char **argv) {
   MUST(!mpm_stepper_info(w.stepper, &now));
   if (!rank) printf("from step %" PRId64 "\n", now.step);
   while (now.step < last) {
+    const double dt = (is_implicit ? 4e-4 : 2e-4) * (double)(1 + now.step % 3);
     if (now.step + 1 == dies && rank == size - 1) raise(SIGKILL);
-    MUST(!mpm_step(w.stepper, (is_implicit ? 4e-4 : 2e-4) * (double)(1 + now.step % 3), &now));
-    if (now.step % 5 == 0) MUST(!mpm_mpi_save(w.mpi, w.stepper, argv[2]));
+    if (fails) refuse_step(&w, dt, rank, size - 1);
+    MUST(!mpm_step(w.stepper, dt, &now));
+    if (now.step % 5 == 0 && !is_alone) MUST(!mpm_mpi_save(w.mpi, w.stepper, argv[2]));
   }
   MUST(!is_implicit || now.contact_nodes > 0);
   MUST(!mpm_state_hash(w.stepper, &hash));
