@@ -3,7 +3,8 @@
 docs/distributed.md. 3-D, quadratic splines, MPM_USL, MPM_FLIP, 8 particles per cell.
 
 A step is the work of a part's particles, packing what is exchanged, the exchange less what blocks
-hide that nobody waits for, reductions, and a thirtieth of a sort."""
+hide that nobody waits for, adding what has come, reductions, and a thirtieth of a sort, in which particles
+move and now and then blocks are given to parts anew."""
 import math
 
 # Measured. Of the part that sends most, the mean of a fresh and a loose sort (make measure-parts, and SIDE=3 CELLS=48):
@@ -13,11 +14,17 @@ NEIGHBOURS = 22
 REDUCTIONS = 8  # in a step, counted by the transport
 PARTICLE = 70e-9  # seconds per particle and step on one core: 3-D quadratic FLIP on a Zen 4 at 3.65 GHz
 PACKING = 0.19e-9  # seconds per byte, by one thread: dam_break_mpi 48 2 on two processes of two cores
+ADDING = 0.83e-9  # seconds per byte that has come, by clocks around it in the same run
+MOVING = 1.5e-9  # seconds per byte of a particle that moves, packed and unpacked by one thread: dam_break_mpi 36 20, likewise
+SCANNING = 8e-9  # seconds per particle, by one thread, to find those that move
+SORT_REDUCTIONS = 10  # in a sort with its two sparse exchanges, counted in the sources
+CUT_REDUCTIONS = 63  # in a cut, at most: one for each bit of a key
 
 # Assumed: nothing of this has been measured.
 THREADS = 0.75  # what 16 threads of a part lose to each other: 12 times the rate of one
 STAYS = 0.4  # share of the bytes that goes to processes of the same machine, where it has several
-HIDES = 0.4  # share of the work that is done before anybody waits, of blocks that nobody waits for
+HIDES = 0.05  # share of the work that is done before anybody waits, of blocks that nobody waits for: the sums of one colour
+CUTS = 0.1  # cuts per sort
 MIGRATES = 0.06 * 400.0  # bytes per particle in a sort
 SORT = 0.4  # of a step's work
 NETWORKS = {  # latency, bytes per second of a machine each way, cores of a machine; a part has 16 of them
@@ -45,8 +52,10 @@ def step(n, parts, network):
     sent, inner = between(n, 0), min(0.9, between(n, 1))
     exchange = NEIGHBOURS * latency + leaves * sent * beside / bandwidth
     reduce = REDUCTIONS * 2.0 * latency * math.ceil(math.log2(parts))
-    sort += (MIGRATES * n * beside * leaves / bandwidth + 2 * NEIGHBOURS * latency) / 30.0
-    return work + PACKING * sent + max(0.0, exchange - HIDES * inner * work) + reduce + sort
+    moves = MIGRATES * n
+    together = (SORT_REDUCTIONS + CUTS * CUT_REDUCTIONS) * 2.0 * latency * math.ceil(math.log2(parts))
+    sort += (SCANNING * n + MOVING * moves + moves * beside * leaves / bandwidth + 2 * NEIGHBOURS * latency + together) / 30.0
+    return work + (PACKING + ADDING / (CORES * THREADS)) * sent + max(0.0, exchange - HIDES * inner * work) + reduce + sort
 
 
 def table(cases):

@@ -333,7 +333,7 @@ static void write_state(mpm_particles *set, int64_t slot, const double *merged) 
 }
 
 static void drop(mpm_particles *set, int64_t slot) {
-  mpmi_make_hole(set, slot);
+  mpmi_make_holes(set, slot, slot + 1);
   --set->count;
 }
 

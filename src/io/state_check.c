@@ -26,7 +26,7 @@ static void check_ids(mpmi_archive *a, mpm_particles *fresh) {
 static void restore_holes(mpm_particles *fresh) {
   const int64_t *id = mpmi_i64(fresh, MPMI_ID, 0);
   for (int64_t s = 0; s < fresh->slots; ++s)
-    if (id[s] < 0) mpmi_make_hole(fresh, s);
+    if (id[s] < 0) mpmi_make_holes(fresh, s, s + 1);
 }
 
 enum { ANY, NOT_NEGATIVE, POSITIVE };

@@ -52,19 +52,27 @@ static int32_t goes_to(const int32_t *owner, const mpm_particles *set, int64_t s
   return mpmi_i64(set, MPMI_ID, 0)[slot] < 0 ? -1 : owner[mpmi_sort_blocks_of_slots(set)[slot]];
 }
 
-static void pack_field(const mpm_particles *set, const mpmi_field *field, int64_t n, const int64_t *slot,
-                       char *to) {
+/* Slots one after the other of particles that leave for the same part: sorts put those of a block together. */
+typedef struct leaving {
+  int64_t slot, n;
+} leaving;
+
+static void pack_field(const mpm_particles *set, const mpmi_field *field, int64_t n, const leaving *run,
+                       const leaving *end, char *to) {
   const size_t size = mpmi_type_size(field->type);
   for (int32_t c = 0; c < field->components; ++c) {
     const char *from = (const char *)field->data[0] + (size_t)(c * set->ld) * size;
     char *at = to + c * padded_bytes(field, n);
-    for (int64_t i = 0; i < n; ++i) memcpy(at + (size_t)i * size, from + (size_t)slot[i] * size, size);
+    for (const leaving *i = run; i < end; at += (size_t)i++->n * size)
+      memcpy(at, from + (size_t)i->slot * size, (size_t)i->n * size);
   }
 }
 
-/* Adds n particles of set number m to the message of a part. */
-static mpm_status pack_set(mpmi_parts *parts, int32_t to, int32_t m, const mpm_particles *set, int64_t n,
-                           const int64_t *slot) {
+/* Adds particles of set number m to the message of a part. */
+static mpm_status pack_set(mpmi_parts *parts, int32_t to, int32_t m, const mpm_particles *set,
+                           const leaving *run, const leaving *end) {
+  int64_t n = 0;
+  for (const leaving *i = run; i < end; ++i) n += i->n;
   const int64_t head[2] = {m, n};
   char *at = mpmi_buffer_take(parts->context, &parts->out[to], (int64_t)sizeof head + bytes_of(set, n));
   if (!at) return MPM_E_NOMEM;
@@ -72,35 +80,45 @@ static mpm_status pack_set(mpmi_parts *parts, int32_t to, int32_t m, const mpm_p
   at += sizeof head;
   for (int32_t f = 0; f < set->field_count; ++f) {
     if (!set->field[f].present) continue;
-    pack_field(set, &set->field[f], n, slot, at);
+    pack_field(set, &set->field[f], n, run, end, at);
     at += set->field[f].components * padded_bytes(&set->field[f], n);
   }
   return MPM_OK;
 }
 
-/* Lists the slots that are left, part by part: end[r] is behind those that go to part r. They are kept,
- * because the memory in which their blocks stand is needed for others later. */
+/* Lists what leaves, part by part: end[r] is behind what goes to part r. The list is kept, because the memory
+ * in which the blocks of slots stand is needed for others later. */
 static mpm_status list_leaving(mpmi_parts *parts, const int32_t *owner, mpmi_moving_set *of, int64_t *end,
-                               const int64_t **slots) {
+                               const leaving **list) {
   const int32_t all = mpmi_part_count(parts), me = parts->context->transport.part;
+  int32_t before = me;
   memset(end, 0, (size_t)all * sizeof *end);
+  of->leave = of->runs = 0;
   for (int64_t s = 0; s < of->set->slots; ++s) {
     const int32_t to = goes_to(owner, of->set, s);
-    if (to >= 0 && to != me) ++end[to];
+    if (to >= 0 && to != me) {
+      ++of->leave;
+      end[to] += to != before;
+    }
+    before = to;
   }
-  of->leave = 0;
   for (int32_t r = 0; r < all; ++r) {
     const int64_t n = end[r];
-    end[r] = of->leave;
-    of->leave += n;
+    end[r] = of->runs;
+    of->runs += n;
   }
-  int64_t *slot = mpmi_buffer_take(parts->context, &parts->gone, of->leave * (int64_t)sizeof *slot);
-  if (!slot) return MPM_E_NOMEM;
+  leaving *run = mpmi_buffer_take(parts->context, &parts->gone, of->runs * (int64_t)sizeof *run);
+  if (!run) return MPM_E_NOMEM;
+  before = me;
   for (int64_t s = 0; s < of->set->slots && of->leave; ++s) {
     const int32_t to = goes_to(owner, of->set, s);
-    if (to >= 0 && to != me) slot[end[to]++] = s;
+    if (to >= 0 && to != me) {
+      if (to != before) run[end[to]++] = (leaving){s, 0};
+      ++run[end[to] - 1].n;
+    }
+    before = to;
   }
-  *slots = slot;
+  *list = run;
   return MPM_OK;
 }
 
@@ -108,14 +126,14 @@ static mpm_status list_leaving(mpmi_parts *parts, const int32_t *owner, mpmi_mov
 static mpm_status pack(mpmi_parts *parts, const int32_t *owner, mpmi_moving_set *sets, int32_t count) {
   const int32_t all = mpmi_part_count(parts);
   int64_t *end = parts->owner_count;
-  const int64_t *slot = NULL;
+  const leaving *run = NULL;
   parts->gone.used = 0;
   for (int32_t r = 0; r < all; ++r) parts->out[r].used = 0;
   for (int32_t m = 0; m < count; ++m) {
-    mpm_status status = list_leaving(parts, owner, &sets[m], end, &slot);
+    mpm_status status = list_leaving(parts, owner, &sets[m], end, &run);
     int64_t begin = 0;
     for (int32_t r = 0; r < all && !status; begin = end[r++])
-      if (end[r] > begin) status = pack_set(parts, r, m, sets[m].set, end[r] - begin, slot + begin);
+      if (end[r] > begin) status = pack_set(parts, r, m, sets[m].set, run + begin, run + end[r]);
     if (status) return status;
   }
   return MPM_OK;
@@ -179,10 +197,10 @@ static mpm_status make_room(mpmi_parts *parts, const mpmi_arrivals *in, mpmi_mov
 
 /* Makes holes of the particles that have gone, and the arrivals particles. There is room. */
 static void carry_out(mpmi_parts *parts, const mpmi_arrivals *in, mpmi_moving_set *sets, int32_t count) {
-  const int64_t *gone = (const void *)parts->gone.at;
+  const leaving *gone = (const void *)parts->gone.at;
   for (int32_t m = 0; m < count; ++m) {
     mpm_particles *set = sets[m].set;
-    for (int64_t i = 0; i < sets[m].leave; ++i) mpmi_make_hole(set, *gone++);
+    for (int64_t i = 0; i < sets[m].runs; ++i, ++gone) mpmi_make_holes(set, gone->slot, gone->slot + gone->n);
     sets[m].sorting->tail = sets[m].arrive ? mpmi_append_begin(set, sets[m].arrive) : set->slots;
     sets[m].sorting->tail_count = 0;
     sets[m].sorting->tail_low = sets[m].arrive_low;

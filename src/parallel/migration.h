@@ -15,7 +15,7 @@ typedef struct mpmi_moving_set {
   mpm_particles *set;
   int32_t body;
   mpmi_sorting *sorting;
-  int64_t leave;              /* particles that go */
+  int64_t leave, runs;        /* particles that go, and runs of their slots */
   int64_t arrive, arrive_low; /* those that come, and those of them from parts before this one */
 } mpmi_moving_set;
 

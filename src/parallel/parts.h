@@ -87,7 +87,7 @@ typedef struct mpmi_parts {
   double *tile;                                         /* [boundary] their tiles */
   int64_t tile_capacity;
   mpmi_buffer *out; /* [parts] */
-  mpmi_buffer gone; /* slots of particles that leave */
+  mpmi_buffer gone; /* runs of slots of particles that leave */
   mpm_message *message;
   int64_t *most;
   int64_t exchanges; /* of tiles in the step under way */

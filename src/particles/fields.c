@@ -155,9 +155,9 @@ void mpmi_fill_holes(mpm_particles *set, int32_t copy, int64_t begin, int64_t en
   for (int32_t f = 0; f < set->field_count; ++f) write_holes(set, f, copy, begin, end, position);
 }
 
-void mpmi_make_hole(mpm_particles *set, int64_t slot) {
+void mpmi_make_holes(mpm_particles *set, int64_t begin, int64_t end) {
   for (int32_t f = 0; f < set->field_count; ++f)
-    if (f != MPMI_POSITION && f != mpmi_place_field(set->grid)) write_holes(set, f, 0, slot, slot + 1, NULL);
+    if (f != MPMI_POSITION && f != mpmi_place_field(set->grid)) write_holes(set, f, 0, begin, end, NULL);
 }
 
 void mpmi_wrap_slot(mpm_particles *set, int32_t field, int64_t slot) {

@@ -167,8 +167,9 @@ void mpmi_field_make_absent(mpm_particles *set, int32_t field);
 void mpmi_field_write_absent(mpm_particles *set, int32_t field, int64_t begin, int64_t end);
 /* Writes inert slots [begin, end) into copy `copy` of every present field; position is that of the hole. */
 void mpmi_fill_holes(mpm_particles *set, int32_t copy, int64_t begin, int64_t end, const double *position);
-/* Turns the particle in `slot` into a hole: copy 0 of all fields but its position. The caller counts it. */
-void mpmi_make_hole(mpm_particles *set, int64_t slot);
+/* Turns the particles in slots [begin, end) into holes: copy 0 of all fields but their positions. The caller
+ * counts them. */
+void mpmi_make_holes(mpm_particles *set, int64_t begin, int64_t end);
 /* Returns the value that an absent optional field has for the particle in `slot`, component c of the full
  * layout. */
 double mpmi_absent_value(const mpm_particles *set, int32_t field, int32_t c, int64_t slot);

@@ -27,7 +27,7 @@ mpm_status mpm_particles_remove(mpm_particles *particles, int64_t n, const int64
   for (int64_t i = 0; i < marked; ++i) {
     int64_t slot = mpmi_index_find(particles, ids[i]);
     if (marked == n)
-      mpmi_make_hole(particles, slot);
+      mpmi_make_holes(particles, slot, slot + 1);
     else
       id[slot] = ~id[slot];
   }

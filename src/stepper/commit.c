@@ -33,7 +33,7 @@ static void remove_outside(mpm_stepper *s, mpm_particles *set) {
     for (int32_t k = 0; k < grid->dim; ++k)
       mpmi_f64(set, MPMI_POSITION, 0)[k * set->ld + slot] =
           mpmi_f64(set, MPMI_POSITION, 1)[k * set->ld + slot];
-    mpmi_make_hole(set, slot);
+    mpmi_make_holes(set, slot, slot + 1);
     --set->count;
     ++s->history.removed;
     s->history.has_sums = 0;
